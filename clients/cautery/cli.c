@@ -1,0 +1,155 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// The connection of a command, and how commands end.
+#include "cautery/cli.h"
+
+#include <signal.h>
+#include <stdlib.h>
+#include <string.h>
+
+enum { SESSIONS_MAX = 4096 };
+
+// ---- ends --------------------------------------------------------------------------------------
+static void print_error_json(const cli *c)
+{
+	char text[2048];
+	cau_json_writer writer;
+	cau_json_begin(&writer, text, sizeof text, 0);
+	cau_json_open(&writer, NULL, '{');
+	cau_json_open(&writer, "error", '{');
+	cau_json_string(&writer, "status", cau_status_name(c->error.status));
+	cau_json_string(&writer, "file", c->error.file);
+	cau_json_string(&writer, "path", c->error.path);
+	cau_json_string(&writer, "reason", c->error.reason);
+	cau_json_close(&writer);
+	cau_json_close(&writer);
+	if (!cau_json_end(&writer, NULL, NULL))
+		fprintf(c->out, "%s\n", text);
+}
+
+static void tell_error(const cli *c)
+{
+	const cau_error *e = &c->error;
+	if (c->json)
+		print_error_json(c);
+	cli_complain(c, "%s%s%s%s%s", e->file, *e->file ? ": " : "", e->path, *e->path ? ": " : "",
+	             *e->reason ? e->reason : cau_status_sentence(e->status));
+}
+
+cli_exit cli_fail(cli *c)
+{
+	tell_error(c);
+	bool answered = c->client && cau_client_fault(c->client)->code != 0;
+	return answered ? CLI_REFUSED : c->error.status == CAU_BAD_VALUE ? CLI_USAGE : CLI_CONNECTION;
+}
+
+cli_exit cli_fail_file(cli *c)
+{
+	tell_error(c);
+	return CLI_FILE;
+}
+
+static volatile sig_atomic_t interrupted;
+
+static void note_signal(int number)
+{
+	(void)number;
+	interrupted = 1;
+}
+
+void cli_watch_signals(void)
+{
+	struct sigaction action = {.sa_handler = note_signal, .sa_flags = (int)SA_RESETHAND};
+	sigaction(SIGINT, &action, NULL);
+	sigaction(SIGTERM, &action, NULL);
+}
+
+bool cli_interrupted(void)
+{
+	return interrupted;
+}
+
+// ---- connection --------------------------------------------------------------------------------
+// The session that is meant where none is named: the only one.
+static cli_exit only_session(cli *c)
+{
+	cli_exit code = CLI_DONE;
+	cau_wire_session_list list = {
+		.sessions = {calloc(SESSIONS_MAX, sizeof(cau_wire_session_summary)), 0, SESSIONS_MAX}};
+	cau_wire_session_summary *all = list.sessions.items;
+	if (!all)
+		return CLI_CONNECTION;
+	if (cau_client_call(c->client, CAU_METHOD_SESSION_LIST, &(cau_wire_nothing){0}, &list,
+	                    &c->error)) {
+		code = cli_fail(c);
+	} else if (list.sessions.count != 1) {
+		cli_complain(c, "the daemon has %d sessions: say which (cautery ls)", list.sessions.count);
+		code = CLI_USAGE;
+	} else {
+		memcpy(c->session, all[0].session, sizeof c->session);
+	}
+	free(all);
+	return code;
+}
+
+static cli_exit choose_session(cli *c)
+{
+	if (!c->command->session_optional)
+		return CLI_DONE;
+	// Named if there is one argument more than the command must have.
+	if (c->argument_count <= c->command->least)
+		return only_session(c);
+	snprintf(c->session, sizeof c->session, "%s", c->arguments[0]);
+	c->argument_count--;
+	memmove(c->arguments, c->arguments + 1, (size_t)c->argument_count * sizeof *c->arguments);
+	return CLI_DONE;
+}
+
+cli_exit cli_connect(cli *c)
+{
+	c->def.url = c->url ? c->url : CAU_CLIENT_DEFAULT_URL;
+	c->def.token = c->token;
+	c->def.timeout_s = c->timeout_s;
+	if (cau_loop_create(&c->loop, &c->error) ||
+	    cau_client_create(c->loop, &c->def, &c->client, &c->error) ||
+	    cau_client_connect(c->client, &c->error))
+		return cli_fail(c);
+	return choose_session(c);
+}
+
+void cli_finish(cli *c)
+{
+	if (c->client)
+		cau_client_close(c->client);
+	cau_client_destroy(c->client);
+	cau_loop_destroy(c->loop);
+	c->client = NULL;
+	c->loop = NULL;
+}
+
+// ---- results -----------------------------------------------------------------------------------
+void cli_print_result(const cli *c, cau_method method, const void *result)
+{
+	// The tables write whole answers; what stands in their member "result" is printed.
+	static const char member[] = "\"result\":";
+	cau_rpc_id id = {.kind = CAU_RPC_ID_NONE};
+	cau_rpc_buffer out = {NULL, 0, 0};
+	cau_rpc_write_result(&out, &id, method, result, NULL);
+	out.capacity = out.bytes + 1;
+	out.buffer = malloc(out.capacity);
+	if (out.buffer && !cau_rpc_write_result(&out, &id, method, result, NULL)) {
+		const char *start = strstr(out.buffer, member);
+		if (start)
+			fprintf(c->out, "%.*s\n", (int)(strlen(start) - sizeof member),
+			        start + sizeof member - 1);
+	}
+	free(out.buffer);
+}
+
+cli_exit cli_call(cli *c, cau_method method, const void *params, void *result)
+{
+	if (cau_client_call(c->client, method, params, result, &c->error))
+		return cli_fail(c);
+	if (c->json)
+		cli_print_result(c, method, result ? result : &(cau_wire_nothing){0});
+	return CLI_DONE;
+}

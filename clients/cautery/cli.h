@@ -1,0 +1,100 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// What the commands of `cautery` share: their arguments, the connection, and how they end.
+#pragma once
+
+#include <stdio.h>
+
+#include "cautery/client.h"
+#include "cautery/json_writer.h"
+
+// Exit codes, as --help and clients/README.md state them.
+typedef enum cli_exit {
+	CLI_DONE = 0,
+	CLI_REFUSED = 1,    // the server answered with an error, or the session is faulted or gone
+	CLI_USAGE = 2,      // arguments
+	CLI_CONNECTION = 3, // no server, no answer in time, connection lost
+	CLI_FILE = 4,       // a file here cannot be read or written, or does not hold what it should
+	CLI_INCOMPLETE = 5, // some commands of a script were refused, or it was interrupted
+} cli_exit;
+
+enum { CLI_ARGUMENTS_MAX = 128, CLI_OPTIONS_MAX = 8 };
+
+typedef struct cli cli;
+
+typedef struct cli_option {
+	const char *name;     // without the dashes; NULL ends a table
+	const char *argument; // as help shows it; NULL: a flag
+	const char *meaning;
+} cli_option;
+
+typedef struct cli_command {
+	const char *name;
+	const char *arguments; // as help shows them
+	const char *summary;   // one line
+	const char *help;      // more lines, may be NULL
+	int least, most;       // arguments, a session that may be left out not counted
+	bool session_optional; // one more argument in front: the session; else the only one there is
+	cli_option options[CLI_OPTIONS_MAX];
+	cli_exit (*run)(cli *c);
+} cli_command;
+
+struct cli {
+	FILE *out, *complaints;
+	const cli_command *command;
+	const char *arguments[CLI_ARGUMENTS_MAX];
+	int argument_count;
+	const char *values[CLI_OPTIONS_MAX]; // of the command's options; NULL: not given; flags: ""
+	const char *url, *token;
+	double timeout_s;
+	bool json, help;
+	cau_client_def def; // what cli_connect uses; commands may set callbacks before
+	cau_loop *loop;
+	cau_client *client;
+	char session[CAU_NAME_BYTES]; // chosen by cli_connect
+	cau_error error;
+};
+
+extern const cli_command *const cli_commands[]; // ends with NULL
+const cli_command *cli_find_command(const char *name);
+
+// Reads the command line. On a mistake, says it on c->complaints and returns false.
+bool cli_read(cli *c, int argument_count, char **arguments);
+void cli_help(const cli *c); // of the command, or of all
+
+const char *cli_value(const cli *c, const char *option); // NULL: not given
+// The number of an option or `otherwise`; sets *bad and complains if it is none or out of bounds.
+double cli_number(const cli *c, const char *option, double least, double most, double otherwise,
+                  bool *bad);
+bool cli_read_number(const cli *c, const char *what, const char *text, double least, double most,
+                     double *value);
+
+// Connects and, for commands about a session, finds which one. CLI_DONE or how it failed, told.
+cli_exit cli_connect(cli *c);
+void cli_finish(cli *c);
+
+// Tells c->error and returns the exit code that belongs to it.
+cli_exit cli_fail(cli *c);
+cli_exit cli_fail_file(cli *c); // the same, where a file here is to blame
+void cli_complain(const cli *c, const char *format, ...) __attribute__((format(printf, 2, 3)));
+
+// Calls the method and prints its result: with --json, as JSON. `result` may be NULL.
+cli_exit cli_call(cli *c, cau_method method, const void *params, void *result);
+// The method's result as one line of JSON, by the message tables.
+void cli_print_result(const cli *c, cau_method method, const void *result);
+
+// The session of the command as parameter of a method.
+#define CLI_SESSION_PARAMS(c, params)                                                              \
+	do {                                                                                           \
+		(params)->has_session = true;                                                              \
+		memcpy((params)->session, (c)->session, sizeof(params)->session);                          \
+	} while (0)
+#define CLI_CHANGE_PARAMS(c, params)                                                               \
+	do {                                                                                           \
+		CLI_SESSION_PARAMS(c, params);                                                             \
+		(params)->has_client_sequence = true;                                                      \
+		(params)->client_sequence = cau_client_next_sequence((c)->client);                         \
+	} while (0)
+
+// True after SIGINT or SIGTERM, once cli_watch_signals was called.
+void cli_watch_signals(void);
+bool cli_interrupted(void);

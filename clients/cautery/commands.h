@@ -1,0 +1,19 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Every command of `cautery`, each in the file that is named beside it.
+#pragma once
+
+#include "cautery/cli.h"
+
+extern const cli_command cli_ls, cli_scenes;                 // list.c
+extern const cli_command cli_create;                         // create.c
+extern const cli_command cli_info;                           // info.c
+extern const cli_command cli_watch;                          // watch.c
+extern const cli_command cli_tool;                           // tool.c
+extern const cli_command cli_run;                            // run.c
+extern const cli_command cli_record;                         // record.c
+extern const cli_command cli_export, cli_log;                // files.c
+extern const cli_command cli_rm;                             // list.c
+extern const cli_command cli_pause, cli_resume, cli_step;    // time.c
+extern const cli_command cli_speed, cli_reset;               // time.c
+extern const cli_command cli_rewind, cli_fork, cli_timeline; // history.c
+extern const cli_command cli_snapshot, cli_restore;          // history.c

@@ -1,0 +1,194 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// create: a session from a scene of the daemon, from a scene file here, or from a mesh.
+#include <stdlib.h>
+#include <string.h>
+
+#include "cautery/commands.h"
+#include "cautery/local_file.h"
+#include "cautery/mesh_scene.h"
+#include "cautery/progress.h"
+#include "cautery/scene_json.h"
+
+enum { MESH_BYTES_MAX = 1 << 30 };
+
+// Uploads the mesh file and makes the mesh say so. `folder` is where relative names start.
+static cli_exit upload_mesh(cli *c, const char *folder, cau_mesh_def *mesh)
+{
+	char file[2 * CAU_TEXT_BYTES], *bytes = NULL;
+	size_t byte_count = 0;
+	cau_wire_upload_result result = {0};
+	cli_progress progress;
+	bool beside = *folder && mesh->file[0] != '/';
+	snprintf(file, sizeof file, "%s%s%s", beside ? folder : "", beside ? "/" : "", mesh->file);
+	if (cli_read_file(file, MESH_BYTES_MAX, &bytes, &byte_count, &c->error))
+		return cli_fail_file(c);
+	const char *slash = strrchr(file, '/');
+	cli_progress_begin(&progress, c->complaints, file);
+	cau_status status =
+		cau_client_upload(c->client, mesh->name, slash ? slash + 1 : file, bytes, byte_count,
+	                      cli_progress_bytes, &progress, &result, &c->error);
+	cli_progress_end(&progress);
+	free(bytes);
+	if (status)
+		return cli_fail(c);
+	mesh->source = CAU_MESH_BYTES;
+	memcpy(mesh->file, result.file, sizeof result.file);
+	return CLI_DONE;
+}
+
+static cli_exit upload_meshes(cli *c, cau_scene_def *scene)
+{
+	cli_exit code = CLI_DONE;
+	for (int32_t i = 0; !code && i < scene->mesh_count; i++)
+		if (scene->meshes[i].source == CAU_MESH_FILE)
+			code = upload_mesh(c, scene->directory, &scene->meshes[i]);
+	return code;
+}
+
+static cli_exit read_scene(cli *c, const char *file, cau_scene_def *scene)
+{
+	char *text;
+	size_t bytes;
+	if (cli_read_file(file, CAU_SCENE_JSON_MAX_BYTES, &text, &bytes, &c->error))
+		return cli_fail_file(c);
+	cau_status status = cau_scene_from_json(file, text, bytes, scene, &c->error);
+	const char *slash = strrchr(file, '/');
+	snprintf(scene->directory, sizeof scene->directory, "%.*s", slash ? (int)(slash - file) : 0,
+	         file);
+	free(text);
+	return status ? cli_fail_file(c) : CLI_DONE;
+}
+
+static cli_exit create(cli *c, cau_wire_session_create *params, cau_wire_session_description *d)
+{
+	params->has_client_sequence = true;
+	params->client_sequence = cau_client_next_sequence(c->client);
+	return cau_client_call(c->client, CAU_METHOD_SESSION_CREATE, params, d, &c->error) ? cli_fail(c)
+	                                                                                   : CLI_DONE;
+}
+
+// ---- a scene around a mesh ---------------------------------------------------------------------
+static cli_exit destroy(cli *c, const char *session)
+{
+	cau_wire_session_change params = {.has_session = true, .has_client_sequence = true};
+	snprintf(params.session, sizeof params.session, "%s", session);
+	params.client_sequence = cau_client_next_sequence(c->client);
+	return cau_client_call(c->client, CAU_METHOD_SESSION_DESTROY, &params, NULL, &c->error)
+	           ? cli_fail(c)
+	           : CLI_DONE;
+}
+
+// How large the tissue is, from a paused session that is only made to ask.
+static cli_exit measure(cli *c, cau_scene_def *scene, cau_wire_session_description *d,
+                        double least_m[3], double most_m[3])
+{
+	cau_wire_session_create params = {
+		.has_definition = true, .definition = scene, .has_paused = true, .paused = true};
+	cau_wire_session_join join = {.has_session = true};
+	cau_client_stream *stream;
+	cli_exit code = create(c, &params, d);
+	if (code)
+		return code;
+	memcpy(join.session, d->summary.session, sizeof join.session);
+	if (cau_client_join(c->client, &join, &stream, &c->error))
+		code = cli_fail(c);
+	else
+		cli_mesh_scene_measure(stream, least_m, most_m);
+	cli_exit destroyed = destroy(c, d->summary.session);
+	return code ? code : destroyed;
+}
+
+static cli_exit make_mesh_scene(cli *c, const char *file, cau_scene_def *scene,
+                                cau_wire_session_description *d)
+{
+	double least_m[3], most_m[3];
+	bool bad = false, fat = true;
+	const char *kind = cli_value(c, "as");
+	double unit_m = cli_number(c, "unit-m", 1e-9, 1000, 1, &bad);
+	if (kind && strcmp(kind, "fat") != 0 && strcmp(kind, "fascia") != 0) {
+		cli_complain(c, "--as wants fat or fascia, not \"%s\"", kind);
+		bad = true;
+	}
+	const char *ending = strrchr(file, '.');
+	fat = kind ? strcmp(kind, "fat") == 0 : !(ending && strcmp(ending, ".obj") == 0);
+	if (bad)
+		return CLI_USAGE;
+	if (cli_mesh_scene_begin(scene, file, unit_m, fat, &c->error))
+		return cli_fail_file(c);
+	cli_exit code = upload_meshes(c, scene);
+	cau_mesh_def uploaded = scene->meshes[0];
+	if (!code)
+		code = measure(c, scene, d, least_m, most_m);
+	if (code)
+		return code;
+	scene->meshes[0] = uploaded; // the upload is kept until the connection closes
+	cli_mesh_scene_end(scene, least_m, most_m);
+	return CLI_DONE;
+}
+
+// ---- the command -------------------------------------------------------------------------------
+static cli_exit fill_params(cli *c, cau_wire_session_create *params, cau_scene_def *scene,
+                            cau_wire_session_description *d)
+{
+	const char *definition = cli_value(c, "definition"), *mesh = cli_value(c, "mesh");
+	const char *name = cli_value(c, "name");
+	params->has_name = name;
+	snprintf(params->name, sizeof params->name, "%s", name ? name : "");
+	params->has_paused = true;
+	params->paused = cli_value(c, "paused");
+	params->has_scene = c->argument_count == 1;
+	if (params->has_scene) {
+		snprintf(params->scene, sizeof params->scene, "%s", c->arguments[0]);
+		return CLI_DONE;
+	}
+	params->has_definition = true;
+	params->definition = scene;
+	cli_exit code = definition ? read_scene(c, definition, scene) : CLI_DONE;
+	if (!code)
+		code = mesh ? make_mesh_scene(c, mesh, scene, d) : upload_meshes(c, scene);
+	return code;
+}
+
+static cli_exit run(cli *c)
+{
+	cau_wire_layer_description layers[CAU_MAX_LAYERS];
+	cau_wire_driver drivers[CAU_MAX_TOOLS];
+	cau_wire_session_create params = {0};
+	cau_wire_session_description d = {.layers = {layers, 0, CAU_MAX_LAYERS},
+	                                  .drivers = {drivers, 0, CAU_MAX_TOOLS}};
+	int sources = c->argument_count + !!cli_value(c, "definition") + !!cli_value(c, "mesh");
+	if (sources != 1) {
+		cli_complain(c, "one of SCENE, --definition and --mesh says what the session is made from");
+		return CLI_USAGE;
+	}
+	cau_scene_def *scene = calloc(1, sizeof *scene);
+	d.definition = calloc(1, sizeof *d.definition);
+	cli_exit code = scene && d.definition ? cli_connect(c) : CLI_CONNECTION;
+	if (!code)
+		code = fill_params(c, &params, scene, &d);
+	if (!code)
+		code = create(c, &params, &d);
+	if (!code && c->json)
+		cli_print_result(c, CAU_METHOD_SESSION_CREATE, &d);
+	else if (!code)
+		fprintf(c->out, "%s\n", d.summary.session);
+	free(scene);
+	free(d.definition);
+	return code;
+}
+
+const cli_command cli_create = {
+	.name = "create",
+	.arguments = "SCENE | --definition FILE | --mesh FILE",
+	.summary = "makes a session and prints its id",
+	.help = "SCENE is one of `cautery scenes`. A scene file's meshes are uploaded. Around a mesh\n"
+			"(.msh, .obj, .vtk) a scene is made: its lowest tenth pinned (a sheet: its rim), a\n"
+			"hot ball as tool.\n",
+	.most = 1,
+	.options = {{"name", "N", "wanted name, without the daemon's label"},
+                {"paused", NULL, "starts paused"},
+                {"definition", "FILE", "a scene file (.json) here"},
+                {"mesh", "FILE", "a mesh file here"},
+                {"as", "KIND", "fat (tetrahedra) or fascia (triangles); default: .obj is fascia"},
+                {"unit-m", "U", "metres in one unit of the mesh (default 1)"}},
+	.run = run};

@@ -1,0 +1,182 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// rewind, fork, snapshot, restore, timeline.
+#include <stdlib.h>
+#include <string.h>
+
+#include "cautery/commands.h"
+#include "cautery/words.h"
+
+static const double tick_max = 9007199254740991.0; // of the wire
+
+// The name given with --name; false after complaining.
+static bool take_name(cli *c, bool *has, char name[CAU_NAME_BYTES])
+{
+	const char *given = cli_value(c, "name");
+	*has = given;
+	if (given && strlen(given) >= CAU_NAME_BYTES) {
+		cli_complain(c, "--name is longer than %d bytes", CAU_NAME_BYTES - 1);
+		return false;
+	}
+	snprintf(name, CAU_NAME_BYTES, "%s", given ? given : "");
+	return true;
+}
+
+static void print_restored(const cli *c, const cau_wire_restored *restored)
+{
+	if (!c->json)
+		fprintf(c->out, "%s is at tick %lld, branch %lld, energy off%s\n", c->session,
+		        (long long)restored->tick, (long long)restored->branch,
+		        restored->exact ? "" : "; not bit-exact: another build wrote it");
+}
+
+static cli_exit run_rewind(cli *c)
+{
+	cau_wire_session_rewind params = {0};
+	cau_wire_restored restored = {0};
+	double tick;
+	if (!cli_read_number(c, "TICK", c->arguments[c->argument_count - 1], 0, tick_max, &tick))
+		return CLI_USAGE;
+	cli_exit code = cli_connect(c);
+	if (code)
+		return code;
+	params.tick = (int64_t)tick;
+	CLI_CHANGE_PARAMS(c, &params);
+	code = cli_call(c, CAU_METHOD_SESSION_REWIND, &params, &restored);
+	if (!code)
+		print_restored(c, &restored);
+	return code;
+}
+
+static cli_exit run_restore(cli *c)
+{
+	cau_wire_session_restore params = {0};
+	cau_wire_restored restored = {0};
+	cli_exit code = cli_connect(c);
+	if (code)
+		return code;
+	snprintf(params.name, sizeof params.name, "%s", c->arguments[0]);
+	CLI_CHANGE_PARAMS(c, &params);
+	code = cli_call(c, CAU_METHOD_SESSION_RESTORE, &params, &restored);
+	if (!code)
+		print_restored(c, &restored);
+	return code;
+}
+
+static cli_exit run_snapshot(cli *c)
+{
+	cau_wire_session_snapshot params = {0};
+	cau_wire_snapshot_result result = {0};
+	cli_exit code = take_name(c, &params.has_name, params.name) ? cli_connect(c) : CLI_USAGE;
+	if (code)
+		return code;
+	CLI_CHANGE_PARAMS(c, &params);
+	code = cli_call(c, CAU_METHOD_SESSION_SNAPSHOT, &params, &result);
+	if (!code && !c->json)
+		fprintf(c->out, "%s: tick %lld, hash %016llx, %lld bytes\n", result.name,
+		        (long long)result.tick, (unsigned long long)result.hash,
+		        (long long)result.byte_count);
+	return code;
+}
+
+static cli_exit run_fork(cli *c)
+{
+	cau_wire_layer_description layers[CAU_MAX_LAYERS];
+	cau_wire_driver drivers[CAU_MAX_TOOLS];
+	cau_wire_session_description d = {.layers = {layers, 0, CAU_MAX_LAYERS},
+	                                  .drivers = {drivers, 0, CAU_MAX_TOOLS}};
+	cau_wire_session_fork params = {
+		.has_tick = cli_value(c, "tick"), .has_paused = true, .paused = cli_value(c, "paused")};
+	bool bad = !take_name(c, &params.has_name, params.name);
+	params.tick = (int64_t)cli_number(c, "tick", 0, tick_max, 0, &bad);
+	cli_exit code = bad ? CLI_USAGE : cli_connect(c);
+	if (code)
+		return code;
+	CLI_CHANGE_PARAMS(c, &params);
+	d.definition = calloc(1, sizeof *d.definition);
+	code = d.definition ? cli_call(c, CAU_METHOD_SESSION_FORK, &params, &d) : CLI_CONNECTION;
+	if (!code && !c->json)
+		fprintf(c->out, "%s\n", d.summary.session);
+	free(d.definition);
+	return code;
+}
+
+static void print_event(const cli *c, const cau_wire_timeline_event *e)
+{
+	fprintf(c->out, "%9lld %8.2f s  %-12s", (long long)e->tick, e->time_s, cli_event_word(e->kind));
+	if (e->has_tool)
+		fprintf(c->out, " %s", e->tool);
+	if (e->has_client)
+		fprintf(c->out, " by %s", e->client);
+	if (e->has_count)
+		fprintf(c->out, " %lld", (long long)e->count);
+	if (e->has_detail)
+		fprintf(c->out, " %s", e->detail);
+	fputc('\n', c->out);
+}
+
+enum { EVENTS_MAX = 4096 };
+
+static cli_exit run_timeline(cli *c)
+{
+	bool bad = false;
+	cau_wire_session_timeline params = {.has_from_tick = true, .has_count = true};
+	params.from_tick = (int64_t)cli_number(c, "from", 0, tick_max, 0, &bad);
+	params.count = (int64_t)cli_number(c, "count", 1, EVENTS_MAX, 1024, &bad);
+	cau_wire_timeline_event *events = calloc(EVENTS_MAX, sizeof *events);
+	cau_wire_timeline timeline = {.events = {events, 0, EVENTS_MAX}};
+	cli_exit code = bad ? CLI_USAGE : events ? cli_connect(c) : CLI_CONNECTION;
+	CLI_SESSION_PARAMS(c, &params);
+	if (!code)
+		code = cli_call(c, CAU_METHOD_SESSION_TIMELINE, &params, &timeline);
+	if (!code && !c->json) {
+		for (int32_t i = 0; i < timeline.events.count; i++)
+			print_event(c, &events[i]);
+		fprintf(c->out, "now at tick %lld of branch %lld; rewind reaches back to tick %lld\n",
+		        (long long)timeline.tick, (long long)timeline.branch,
+		        (long long)timeline.oldest_tick);
+	}
+	free(events);
+	return code;
+}
+
+const cli_command cli_rewind = {.name = "rewind",
+                                .arguments = "[SESSION] TICK",
+                                .summary = "back to a tick, on a new branch; energy goes off",
+                                .help = "`cautery timeline` tells how far back one can go.\n",
+                                .least = 1,
+                                .most = 1,
+                                .session_optional = true,
+                                .run = run_rewind};
+
+const cli_command cli_fork = {
+	.name = "fork",
+	.arguments = "[SESSION]",
+	.summary = "makes a new session from the state of this one",
+	.session_optional = true,
+	.options = {{"name", "N", "of the new one, without the daemon's label"},
+                {"tick", "K", "state to start from (default: now)"},
+                {"paused", NULL, "the new session starts paused"}},
+	.run = run_fork};
+
+const cli_command cli_snapshot = {.name = "snapshot",
+                                  .arguments = "[SESSION]",
+                                  .summary = "stores the state under a name",
+                                  .session_optional = true,
+                                  .options = {{"name", "N", "default: made up by the server"}},
+                                  .run = run_snapshot};
+
+const cli_command cli_restore = {.name = "restore",
+                                 .arguments = "[SESSION] NAME",
+                                 .summary = "back to a snapshot, on a new branch",
+                                 .least = 1,
+                                 .most = 1,
+                                 .session_optional = true,
+                                 .run = run_restore};
+
+const cli_command cli_timeline = {.name = "timeline",
+                                  .arguments = "[SESSION]",
+                                  .summary = "lists cuts and other events",
+                                  .session_optional = true,
+                                  .options = {{"from", "TICK", "first tick (default 0)"},
+                                              {"count", "N", "newest events (default 1024)"}},
+                                  .run = run_timeline};

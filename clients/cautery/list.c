@@ -1,0 +1,79 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// ls, scenes, rm.
+#include <stdlib.h>
+#include <string.h>
+
+#include "cautery/commands.h"
+#include "cautery/words.h"
+
+enum { SESSIONS_MAX = 65536, SCENES_MAX = 256 };
+
+static void print_sessions(const cli *c, const cau_wire_list *list)
+{
+	const cau_wire_session_summary *all = list->items;
+	fprintf(c->out, "%-24s %-18s %-8s %9s %9s %6s %8s %8s %5s %7s\n", "SESSION", "SCENE", "STATE",
+	        "TICK", "TIME", "RATE", "VERTICES", "FACES", "TOOLS", "STREAMS");
+	for (int32_t i = 0; i < list->count; i++)
+		fprintf(c->out, "%-24s %-18s %-8s %9lld %7.2f s %6.3f %8lld %8lld %5lld %7lld\n",
+		        all[i].session, all[i].scene, cli_state_word(all[i].state), (long long)all[i].tick,
+		        all[i].time_s, all[i].realtime_factor, (long long)all[i].vertex_count,
+		        (long long)all[i].face_count, (long long)all[i].tool_count,
+		        (long long)all[i].subscriber_count);
+}
+
+static cli_exit run_ls(cli *c)
+{
+	cau_wire_session_list list = {
+		.sessions = {calloc(SESSIONS_MAX, sizeof(cau_wire_session_summary)), 0, SESSIONS_MAX}};
+	cli_exit code = list.sessions.items ? cli_connect(c) : CLI_CONNECTION;
+	if (!code)
+		code = cli_call(c, CAU_METHOD_SESSION_LIST, &(cau_wire_nothing){0}, &list);
+	if (!code && !c->json)
+		print_sessions(c, &list.sessions);
+	free(list.sessions.items);
+	return code;
+}
+
+static cli_exit run_scenes(cli *c)
+{
+	cau_wire_scene_summary all[SCENES_MAX];
+	cau_wire_scene_list list = {.scenes = {all, 0, SCENES_MAX}};
+	cli_exit code = cli_connect(c);
+	if (!code)
+		code = cli_call(c, CAU_METHOD_SCENE_LIST, &(cau_wire_nothing){0}, &list);
+	for (int32_t i = 0; !code && !c->json && i < list.scenes.count; i++)
+		fprintf(c->out, "%-20s %s\n", all[i].name, all[i].description);
+	return code;
+}
+
+static cli_exit run_rm(cli *c)
+{
+	cli_exit code = cli_connect(c);
+	for (int i = 0; !code && i < c->argument_count; i++) {
+		cau_wire_session_change params = {.has_session = true, .has_client_sequence = true};
+		snprintf(params.session, sizeof params.session, "%s", c->arguments[i]);
+		params.client_sequence = cau_client_next_sequence(c->client);
+		code = cli_call(c, CAU_METHOD_SESSION_DESTROY, &params, NULL);
+		if (!code && !c->json)
+			fprintf(c->out, "%s is gone\n", c->arguments[i]);
+	}
+	return code;
+}
+
+const cli_command cli_ls = {.name = "ls",
+                            .arguments = "",
+                            .summary = "lists the daemon's sessions",
+                            .help = "RATE is simulated over wall time, over the last second.\n",
+                            .run = run_ls};
+
+const cli_command cli_scenes = {.name = "scenes",
+                                .arguments = "",
+                                .summary = "lists the scenes that sessions can be made from",
+                                .run = run_scenes};
+
+const cli_command cli_rm = {.name = "rm",
+                            .arguments = "SESSION...",
+                            .summary = "ends sessions and removes them from the store",
+                            .least = 1,
+                            .most = CLI_ARGUMENTS_MAX,
+                            .run = run_rm};

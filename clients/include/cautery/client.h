@@ -1,0 +1,207 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// A connection to cauteryd: hello, requests, streams decoded to the newest state, files, and coming
+// back after a lost connection. protocol/README.md tells what travels.
+//
+//     cau_loop *loop;
+//     cau_client *client;
+//     cau_client_def def = cau_default_client_def();
+//     if (cau_loop_create(&loop, &error) || cau_client_create(loop, &def, &client, &error) ||
+//         cau_client_connect(client, &error)) ...
+//     cau_client_stream *stream;
+//     cau_client_join(client, &(cau_wire_session_join){.has_session = true, ...}, &stream, &error);
+//     while (...) {
+//         cau_loop_wait(loop, 0.1);         // everything happens in here
+//         if (stream->state->synced) ...    // the newest positions, mask and tools
+//     }
+//     cau_client_destroy(client);
+//     cau_loop_destroy(loop);
+//
+// A loop and its clients belong to one thread. Callbacks are called inside cau_loop_wait and inside
+// the calls that wait (connect, call, command, join, upload, download, close); they may send, but
+// must not wait and must not destroy.
+#pragma once
+
+#include <stdbool.h>
+#include <stddef.h>
+#include <stdint.h>
+
+#include "cautery/messages.h"
+#include "cautery/rpc.h"
+#include "cautery/stream.h"
+#include "cautery/topology_codec.h"
+
+#define CAU_CLIENT_DEFAULT_URL "ws://127.0.0.1:8740"
+
+typedef struct cau_loop cau_loop;
+typedef struct cau_client cau_client;
+typedef struct cau_client_stream cau_client_stream;
+
+// ---- loop --------------------------------------------------------------------------------------
+// Errors: CAU_NO_MEMORY.
+cau_status cau_loop_create(cau_loop **loop, cau_error *error);
+void cau_loop_destroy(cau_loop *loop); // after its clients; takes NULL
+
+// Waits until something happens, `seconds` at most, and handles it; 0: what is there already.
+void cau_loop_wait(cau_loop *loop, double seconds);
+
+double cau_client_now(void); // s, CLOCK_MONOTONIC
+
+// ---- client ------------------------------------------------------------------------------------
+typedef enum cau_client_condition {
+	CAU_CLIENT_IDLE,       // not connected yet
+	CAU_CLIENT_CONNECTING, // up to the answer to hello
+	CAU_CLIENT_READY,
+	CAU_CLIENT_LOST,   // waits before it connects again
+	CAU_CLIENT_CLOSED, // for good; cau_client_trouble says why
+} cau_client_condition;
+
+// A frame as it came, after it was decoded.
+typedef struct cau_client_frame {
+	cau_frame_header header;
+	const void *bytes; // borrowed for the call
+	size_t byte_count;
+	cau_status status; // of decoding: CAU_BAD_STATE was skipped, CAU_CORRUPT is damaged
+	double received_s; // cau_client_now() when its last byte was there
+	double decoded_s;
+} cau_client_frame;
+
+// Strings are copied by cau_client_create; NULL where there is none.
+typedef struct cau_client_def {
+	const char *url;       // ws://, wss://, http:// or https://; host, port
+	const char *session;   // that messages mean when they name none; for proxies, too
+	const char *token;     // access token
+	const char *name;      // of the program, for logs and other users
+	const char *client_id; // lasting identity; by default one from the server
+	int role;              // CAU_ROLE_* wanted at most; -1: what the token gives
+	bool reconnect;        // come back after a lost connection: resume, join again, resend
+	double timeout_s;      // of connecting and of each call that waits
+	void *user;            // for the callbacks, each of which may be NULL
+	void (*on_condition)(void *user, cau_client *client, cau_client_condition condition);
+	void (*on_notification)(void *user, cau_client *client, const cau_rpc_message *message);
+	void (*on_frame)(void *user, cau_client *client, cau_client_stream *stream,
+	                 const cau_client_frame *frame);
+} cau_client_def;
+
+cau_client_def cau_default_client_def(void);
+
+// Errors: CAU_BAD_VALUE (the URL), CAU_NO_MEMORY.
+cau_status cau_client_create(cau_loop *loop, const cau_client_def *def, cau_client **client,
+                             cau_error *error);
+// Takes NULL. Cuts what is open; cau_client_close before it is more polite.
+void cau_client_destroy(cau_client *client);
+
+// Connects, says hello and waits for the answer. Errors: CAU_IO (no server, no answer, refused: the
+// reason says), or the status of the server's error.
+cau_status cau_client_connect(cau_client *client, cau_error *error);
+
+// Starts connecting without waiting; on_condition tells the rest.
+void cau_client_start(cau_client *client);
+
+// Sends what is queued and closes; waits a second at most. The client may connect again.
+void cau_client_close(cau_client *client);
+
+// Drops the connection without a word, as a cable pulled would; with `reconnect` it comes back.
+void cau_client_drop(cau_client *client);
+
+cau_client_condition cau_client_get_condition(const cau_client *client);
+const cau_error *cau_client_trouble(const cau_client *client); // of the last loss
+const cau_wire_hello_result *cau_client_server(const cau_client *client);
+uint64_t cau_client_connections(const cau_client *client); // hellos answered so far
+
+// While on, sends a heartbeat every 100 ms: whoever drives an energized tool needs it.
+void cau_client_keep_alive(cau_client *client, bool on);
+
+// Stops and starts reading from the socket, as a slow reader does.
+void cau_client_read(cau_client *client, bool on);
+
+// ---- requests ----------------------------------------------------------------------------------
+// Called once for each request: with the answer, or with an error and NULL.
+typedef void cau_client_answer(void *user, const cau_rpc_message *answer, const cau_error *error);
+
+// The next client_sequence: a request that has one is sent again after a lost connection and acts
+// once all the same. Requests that change something and have none fail then.
+int64_t cau_client_next_sequence(cau_client *client);
+
+// Sends without waiting. Errors: CAU_BAD_VALUE (params), CAU_LIMIT (too much is queued), CAU_IO
+// (not connected, and never again).
+cau_status cau_client_send(cau_client *client, cau_method method, const void *params,
+                           cau_client_answer *answer, void *user, cau_error *error);
+// With client_sequence. `session` may be NULL where the URL names it.
+cau_status cau_client_send_command(cau_client *client, const char *session,
+                                   const cau_command *command, cau_client_answer *answer,
+                                   void *user, cau_error *error);
+// A notification: heartbeat, stream.ack.
+cau_status cau_client_notify(cau_client *client, cau_method method, const void *params,
+                             cau_error *error);
+// tool.move as a notification: the newest counts, and nothing comes back.
+cau_status cau_client_move(cau_client *client, const char *session, const cau_command *command,
+                           cau_error *error);
+
+// Sends and waits. `result` is the method's C type (lists and scenes as cau_rpc_result wants them)
+// or NULL. Errors: those of sending; CAU_IO (lost, timeout); what the server answered: the status
+// of its error if there is one of that name, else CAU_BAD_STATE; cau_client_fault has it whole.
+cau_status cau_client_call(cau_client *client, cau_method method, const void *params, void *result,
+                           cau_error *error);
+cau_status cau_client_command(cau_client *client, const char *session, const cau_command *command,
+                              cau_wire_command_result *result, cau_error *error);
+
+// The last error that the server answered; code 0: none so far, or the trouble was not the
+// server's.
+const cau_rpc_fault *cau_client_fault(const cau_client *client);
+
+// ---- streams -----------------------------------------------------------------------------------
+enum { CAU_CLIENT_STREAMS_MAX = 16 };
+
+// Belongs to the client; valid until it is destroyed. Read only.
+struct cau_client_stream {
+	cau_wire_stream_description description; // of the last join
+	cau_stream_def def;
+	const cau_stream_state *state; // the newest; state->synced tells whether there is any
+	cau_topology_arrays topology;
+	bool has_topology;
+	bool ended; // left, or the session is gone
+	uint64_t frames, key_frames, bytes;
+	uint64_t gaps;     // times that the chain of deltas broke
+	uint64_t skipped;  // frames that did not fit
+	uint64_t damaged;  // frames that were no frames
+	double received_s; // when the newest came
+};
+
+// Asks for frames and waits for the first key frame. After a lost connection the client joins again
+// by itself. Joining a session again changes the profile; the stream is the same.
+cau_status cau_client_join(cau_client *client, const cau_wire_session_join *params,
+                           cau_client_stream **stream, cau_error *error);
+// The same without waiting: the stream's state is synced when the first key frame is there.
+// `answer` may be NULL.
+cau_status cau_client_send_join(cau_client *client, const cau_wire_session_join *params,
+                                cau_client_stream **stream, cau_client_answer *answer, void *user,
+                                cau_error *error);
+cau_status cau_client_leave(cau_client *client, cau_client_stream *stream, cau_error *error);
+
+// Faces that are drawn now: those whose bit in the mask is not set.
+int64_t cau_client_faces_drawn(const cau_client_stream *stream);
+
+// ---- files -------------------------------------------------------------------------------------
+typedef void cau_client_progress(void *user, uint64_t done, uint64_t total); // bytes
+
+// Sends a mesh file; result->file is what a mesh of source bytes says. `progress` may be NULL.
+cau_status cau_client_upload(cau_client *client, const char *name, const char *file_name,
+                             const void *bytes, size_t byte_count, cau_client_progress *progress,
+                             void *user, cau_wire_upload_result *result, cau_error *error);
+
+// session.export or session.log: asks, receives and checks the hash. The caller frees *bytes.
+// Errors: those of cau_client_call; CAU_CORRUPT (another hash, a gap), CAU_LIMIT, CAU_NO_MEMORY.
+cau_status cau_client_download(cau_client *client, cau_method method, const void *params,
+                               cau_client_progress *progress, void *user,
+                               cau_wire_transfer *transfer, unsigned char **bytes,
+                               cau_error *error);
+
+// ---- clock -------------------------------------------------------------------------------------
+typedef struct cau_client_clock {
+	double offset_s; // server's clock minus cau_client_now()
+	double error_s;  // at most, half the shortest round trip
+} cau_client_clock;
+
+// Measures by `count` heartbeats; the shortest round trip counts.
+cau_status cau_client_measure_clock(cau_client *client, int32_t count, cau_client_clock *clock,
+                                    cau_error *error);

@@ -1,0 +1,305 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Requests and their answers, and the server's notifications.
+#include <stdlib.h>
+#include <string.h>
+
+#include "library/internal.h"
+
+enum { FIRST_CAPACITY = 2048 };
+
+// A text of the least size that the writer needs; the caller frees it.
+typedef struct message_text {
+	char *bytes;
+	size_t byte_count;
+} message_text;
+
+typedef struct writing { // what one message is made of
+	int64_t id;          // below 0: a notification
+	cau_method method;
+	const void *params;
+	const cau_rpc_envelope *envelope; // of a command
+	const cau_command *command;       // NULL: not a command
+} writing;
+
+static cau_status write_once(const writing *w, cau_rpc_buffer *out, cau_error *error)
+{
+	if (w->command)
+		return cau_rpc_write_command(out, w->id < 0 ? NULL : &w->id, w->envelope, w->command,
+		                             error);
+	if (w->id < 0)
+		return cau_rpc_write_notification(out, w->method, w->params, error);
+	return cau_rpc_write_request(out, w->id, w->method, w->params, error);
+}
+
+static cau_status write_text(const writing *w, size_t room_before, message_text *made,
+                             cau_error *error)
+{
+	size_t capacity = FIRST_CAPACITY;
+	cau_status status = CAU_LIMIT;
+	*made = (message_text){0};
+	for (int i = 0; i < 2 && status == CAU_LIMIT; i++) {
+		char *grown = realloc(made->bytes, room_before + capacity);
+		if (!grown) {
+			status = cau_fail(error, CAU_NO_MEMORY, NULL, "no memory for a message");
+			break;
+		}
+		made->bytes = grown;
+		cau_rpc_buffer out = {grown + room_before, capacity, 0};
+		status = write_once(w, &out, error);
+		made->byte_count = out.bytes;
+		capacity = out.bytes + 1;
+	}
+	if (status) {
+		free(made->bytes);
+		made->bytes = NULL;
+	}
+	return status;
+}
+
+// ---- sending -----------------------------------------------------------------------------------
+static void append_pending(cau_client *client, cau_client_pending *pending)
+{
+	pending->next = NULL;
+	if (client->last_pending)
+		client->last_pending->next = pending;
+	else
+		client->first_pending = pending;
+	client->last_pending = pending;
+}
+
+// Whether the same text may go out again on another connection.
+static bool can_resend(cau_method method, const char *sent, size_t bytes)
+{
+	cau_rpc_message message;
+	cau_rpc_fault fault;
+	cau_rpc_envelope envelope = {0};
+	switch (method) {
+	case CAU_METHOD_UPLOAD_BEGIN: // files belong to their connection
+	case CAU_METHOD_UPLOAD_END:
+	case CAU_METHOD_SESSION_EXPORT:
+	case CAU_METHOD_SESSION_LOG:
+	case CAU_METHOD_SESSION_JOIN: // joined again anyway
+		return false;
+	default:
+		break;
+	}
+	if (!cau_method_describe(method)->changes)
+		return true;
+	if (cau_rpc_read(sent, bytes, CAU_CLIENT_TEXT_MAX, &message, &fault))
+		return false;
+	bool known = !cau_rpc_envelope_read(&message, &envelope, NULL) && envelope.has_client_sequence;
+	cau_rpc_finish(&message);
+	return known;
+}
+
+static cau_status send_request(cau_client *client, const writing *w, cau_client_answer *answer,
+                               void *user, cau_error *error)
+{
+	message_text made;
+	if (client->condition == CAU_CLIENT_IDLE || client->condition == CAU_CLIENT_CLOSED)
+		return cau_fail(error, CAU_IO, NULL, "not connected%s%s",
+		                *client->trouble.reason ? ": " : "", client->trouble.reason);
+	cau_status status = write_text(w, sizeof(cau_client_pending), &made, error);
+	if (status)
+		return status;
+	cau_client_pending *pending = (cau_client_pending *)made.bytes;
+	*pending = (cau_client_pending){.id = w->id,
+	                                .method = w->method,
+	                                .answer = answer,
+	                                .user = user,
+	                                .byte_count = made.byte_count};
+	pending->resendable = can_resend(w->method, pending->text, pending->byte_count);
+	if (client->condition == CAU_CLIENT_READY) // else hello's answer sends it
+		status = cau_socket_send(client, false, pending->text, pending->byte_count, NULL, 0, error);
+	if (status) {
+		free(pending);
+		return status;
+	}
+	append_pending(client, pending);
+	return CAU_OK;
+}
+
+int64_t cau_client_next_sequence(cau_client *client)
+{
+	return ++client->last_sequence;
+}
+
+cau_status cau_client_send(cau_client *client, cau_method method, const void *params,
+                           cau_client_answer *answer, void *user, cau_error *error)
+{
+	writing w = {.id = ++client->last_id, .method = method, .params = params};
+	return send_request(client, &w, answer, user, error);
+}
+
+static cau_method method_of(const cau_command *command)
+{
+	int method = 0;
+	while (method < CAU_METHOD_COUNT &&
+	       cau_method_describe((cau_method)method)->command != command->kind)
+		method++;
+	return (cau_method)method;
+}
+
+static cau_rpc_envelope envelope_of(const char *session)
+{
+	cau_rpc_envelope envelope = {.has_session = session && *session};
+	snprintf(envelope.session, sizeof envelope.session, "%s", session ? session : "");
+	return envelope;
+}
+
+cau_status cau_client_send_command(cau_client *client, const char *session,
+                                   const cau_command *command, cau_client_answer *answer,
+                                   void *user, cau_error *error)
+{
+	cau_rpc_envelope envelope = envelope_of(session);
+	envelope.has_client_sequence = true;
+	envelope.client_sequence = cau_client_next_sequence(client);
+	writing w = {++client->last_id, method_of(command), NULL, &envelope, command};
+	return send_request(client, &w, answer, user, error);
+}
+
+static cau_status send_notification(cau_client *client, const writing *w, cau_error *error)
+{
+	message_text made;
+	if (client->condition != CAU_CLIENT_READY)
+		return cau_fail(error, CAU_IO, NULL, "not connected");
+	cau_status status = write_text(w, 0, &made, error);
+	if (!status)
+		status = cau_socket_send(client, false, made.bytes, made.byte_count, NULL, 0, error);
+	free(made.bytes);
+	return status;
+}
+
+cau_status cau_client_notify(cau_client *client, cau_method method, const void *params,
+                             cau_error *error)
+{
+	return send_notification(client, &(writing){.id = -1, .method = method, .params = params},
+	                         error);
+}
+
+cau_status cau_client_move(cau_client *client, const char *session, const cau_command *command,
+                           cau_error *error)
+{
+	cau_rpc_envelope envelope = envelope_of(session);
+	return send_notification(client, &(writing){-1, CAU_METHOD_TOOL_MOVE, NULL, &envelope, command},
+	                         error);
+}
+
+// ---- answers -----------------------------------------------------------------------------------
+void cau_error_of_fault(const cau_rpc_fault *fault, cau_error *error)
+{
+	cau_status status = CAU_BAD_STATE;
+	const char *sentence = cau_rpc_error_sentence(fault->code);
+	bool more = *fault->reason && strcmp(fault->reason, sentence) != 0;
+	for (int i = 1; i < CAU_STATUS_COUNT; i++)
+		if (strcmp(fault->status, cau_status_name((cau_status)i)) == 0)
+			status = (cau_status)i;
+	cau_fail(error, status, fault->path, "%s%s%s", sentence, more ? ": " : "",
+	         more ? fault->reason : "");
+}
+
+static cau_client_pending *take_pending(cau_client *client, int64_t id)
+{
+	cau_client_pending *before = NULL, *pending = client->first_pending;
+	while (pending && pending->id != id) {
+		before = pending;
+		pending = pending->next;
+	}
+	if (!pending)
+		return NULL;
+	if (before)
+		before->next = pending->next;
+	else
+		client->first_pending = pending->next;
+	if (client->last_pending == pending)
+		client->last_pending = before;
+	return pending;
+}
+
+static void fail_pending(cau_client_pending *pending, const cau_error *error)
+{
+	if (pending->answer)
+		pending->answer(pending->user, NULL, error);
+	free(pending);
+}
+
+static void answered(cau_client *client, const cau_rpc_message *message)
+{
+	cau_error error = {0};
+	if (message->id.kind != CAU_RPC_ID_NUMBER)
+		return; // to a message that could not be read, or to nobody
+	if (message->id.number == 0 && client->condition == CAU_CLIENT_CONNECTING) {
+		cau_hello_answered(client, message);
+		return;
+	}
+	cau_client_pending *pending = take_pending(client, message->id.number);
+	if (!pending)
+		return; // answered before, on an earlier connection
+	if (message->kind == CAU_RPC_ERROR) {
+		client->fault = message->fault;
+		cau_error_of_fault(&message->fault, &error);
+		fail_pending(pending, &error);
+		return;
+	}
+	if (pending->answer)
+		pending->answer(pending->user, message, NULL);
+	free(pending);
+}
+
+static void notified(cau_client *client, const cau_rpc_message *message)
+{
+	if (message->method == CAU_METHOD_SESSION_CHANGED)
+		cau_streams_changed(client, message);
+	if (client->def.on_notification)
+		client->def.on_notification(client->def.user, client, message);
+}
+
+void cau_text_received(cau_client *client, const char *text, size_t bytes)
+{
+	cau_rpc_message message;
+	cau_rpc_fault fault;
+	if (cau_rpc_read(text, bytes, CAU_CLIENT_TEXT_MAX, &message, &fault))
+		return; // of a later version, perhaps; whoever waits for it times out
+	if (message.kind == CAU_RPC_RESULT || message.kind == CAU_RPC_ERROR)
+		answered(client, &message);
+	else
+		notified(client, &message);
+	cau_rpc_finish(&message);
+}
+
+void cau_calls_lost(cau_client *client, bool all)
+{
+	cau_error error = {0};
+	cau_client_pending *kept_first = NULL, *kept_last = NULL, *pending = client->first_pending;
+	client->first_pending = client->last_pending = NULL;
+	for (cau_client_pending *next; pending; pending = next) {
+		next = pending->next;
+		if (!all && pending->resendable) {
+			pending->next = NULL;
+			if (kept_last)
+				kept_last->next = pending;
+			else
+				kept_first = pending;
+			kept_last = pending;
+			continue;
+		}
+		cau_fail(&error, CAU_IO, NULL, "%s; whether %s took effect is not known",
+		         *client->trouble.reason ? client->trouble.reason : "the client was ended",
+		         cau_method_describe(pending->method)->name);
+		fail_pending(pending, &error);
+	}
+	client->first_pending = kept_first;
+	client->last_pending = kept_last;
+}
+
+void cau_calls_resend(cau_client *client)
+{
+	for (cau_client_pending *p = client->first_pending; p; p = p->next)
+		if (cau_socket_send(client, false, p->text, p->byte_count, NULL, 0, NULL))
+			return; // the outbox is full: what is left goes with the next connection
+}
+
+const cau_rpc_fault *cau_client_fault(const cau_client *client)
+{
+	return &client->fault;
+}

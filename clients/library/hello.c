@@ -1,0 +1,48 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// The first message on a connection and its answer.
+#include <string.h>
+
+#include "library/internal.h"
+
+enum { WIRE_VERSION = 1, HELLO_ID = 0, HELLO_BYTES_MAX = 4096 };
+
+cau_status cau_hello_send(cau_client *client, cau_error *error)
+{
+	char text[HELLO_BYTES_MAX];
+	cau_rpc_buffer out = {text, sizeof text, 0};
+	cau_wire_hello hello = {.version = WIRE_VERSION};
+	bool again = client->connections > 0;
+	snprintf(hello.client, sizeof hello.client, "%s", client->name);
+	hello.has_token = *client->token;
+	memcpy(hello.token, client->token, sizeof client->token);
+	// Coming back keeps the identity that the stored answers belong to.
+	const char *id = again ? client->server.client_id : client->client_id;
+	hello.has_client_id = *id;
+	snprintf(hello.client_id, sizeof hello.client_id, "%s", id);
+	hello.has_resume = again;
+	snprintf(hello.resume, sizeof hello.resume, "%s", client->server.resume);
+	hello.has_role = client->def.role >= 0;
+	hello.role = client->def.role;
+	cau_status status = cau_rpc_write_request(&out, HELLO_ID, CAU_METHOD_HELLO, &hello, error);
+	if (!status)
+		status = cau_socket_send(client, false, text, out.bytes, NULL, 0, error);
+	return status;
+}
+
+void cau_hello_answered(cau_client *client, const cau_rpc_message *message)
+{
+	cau_error error = {0};
+	if (message->kind == CAU_RPC_ERROR) {
+		client->fault = message->fault;
+		cau_error_of_fault(&message->fault, &error);
+		cau_client_refused(client, &error);
+		return;
+	}
+	cau_wire_hello_result server = {0};
+	if (cau_rpc_result(message, CAU_METHOD_HELLO, &server, &error)) {
+		cau_client_refused(client, &error);
+		return;
+	}
+	client->server = server;
+	cau_client_greeted(client);
+}

@@ -1,0 +1,115 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// What the files of the client library share.
+#pragma once
+
+#include <libwebsockets.h>
+
+#include "cautery/client.h"
+#include "library/outbox.h"
+#include "library/url.h"
+
+enum {
+	CAU_CLIENT_TEXT_MAX = 64 << 20,  // of a text message from the server
+	CAU_CLIENT_BINARY_MAX = 1 << 30, // of a frame or chunk
+	CAU_CLIENT_TICK_US = 100000,     // heartbeats, acknowledgements, calls for key frames
+	CAU_CLIENT_CLOSE_WAIT_US = 1000000,
+};
+
+struct cau_loop {
+	struct lws_context *context;
+	lws_sorted_usec_list_t wake; // ends a wait
+};
+
+// A request without answer yet.
+typedef struct cau_client_pending {
+	struct cau_client_pending *next;
+	int64_t id;
+	cau_method method;
+	cau_client_answer *answer; // NULL: nobody waits any more
+	void *user;
+	bool resendable;
+	size_t byte_count;
+	char text[];
+} cau_client_pending;
+
+typedef struct cau_client_slot {
+	cau_client_stream stream; // what the caller sees
+	cau_client *client;
+	cau_wire_session_join wanted;
+	void *storage; // of the decoder
+	cau_frame_decoder *decoder;
+	double gap_s;       // since when a key frame is missing; 0: none is
+	double key_asked_s; // when one was last asked for
+	uint64_t acknowledged;
+	cau_client_answer *answer; // of the caller's join
+	void *user;
+} cau_client_slot;
+
+// A file that comes in chunks.
+typedef struct cau_client_incoming {
+	int64_t transfer; // 0: the answer is still out
+	unsigned char *bytes;
+	size_t byte_count, received;
+	bool broken;
+} cau_client_incoming;
+
+struct cau_client {
+	cau_loop *loop;
+	cau_client_def def; // its strings point at what follows
+	char session[CAU_NAME_BYTES], token[513], name[65], client_id[65];
+	cau_url url;
+	struct lws *wsi;
+	cau_client_condition condition;
+	bool closing; // our own wish
+	int close_code;
+	char close_reason[128];
+	cau_error trouble;
+	cau_rpc_fault fault;
+	cau_outbox outbox;
+	unsigned char *message; // the one that is being received
+	size_t message_bytes, message_capacity;
+	cau_client_pending *first_pending, *last_pending;
+	int64_t last_id, last_sequence;
+	cau_wire_hello_result server;
+	uint64_t connections;
+	int attempts; // to connect, since the last hello
+	bool keep_alive;
+	lws_sorted_usec_list_t tick, retry, deadline;
+	cau_client_slot *slots[CAU_CLIENT_STREAMS_MAX];
+	cau_client_incoming *incoming; // one at a time
+};
+
+// socket.c
+extern const struct lws_protocols cau_client_protocols[];
+void cau_socket_open(cau_client *client);
+void cau_socket_cut(cau_client *client); // by and by; ends in cau_client_lost
+cau_status cau_socket_send(cau_client *client, bool binary, const void *head, size_t head_bytes,
+                           const void *body, size_t body_bytes, cau_error *error);
+
+// client.c
+void cau_client_opened(cau_client *client);
+void cau_client_lost(cau_client *client, const char *reason);
+void cau_client_refused(cau_client *client, const cau_error *error); // closes for good
+void cau_client_greeted(cau_client *client);
+bool cau_client_wait_for(cau_client *client, const bool *done, double until_s);
+
+// hello.c
+cau_status cau_hello_send(cau_client *client, cau_error *error);
+void cau_hello_answered(cau_client *client, const cau_rpc_message *message);
+
+// calls.c
+void cau_text_received(cau_client *client, const char *text, size_t bytes);
+void cau_calls_lost(cau_client *client, bool all); // fails those that cannot be sent again
+void cau_calls_resend(cau_client *client);
+void cau_error_of_fault(const cau_rpc_fault *fault, cau_error *error);
+
+// streams.c, frames.c
+void cau_streams_lost(cau_client *client);
+void cau_streams_rejoin(cau_client *client);
+void cau_streams_changed(cau_client *client, const cau_rpc_message *message);
+void cau_streams_tick(cau_client *client);
+void cau_frame_received(cau_client *client, const void *bytes, size_t byte_count);
+void cau_slot_free(cau_client_slot *slot);
+
+// transfer.c
+void cau_chunk_received(cau_client *client, const void *bytes, size_t byte_count);

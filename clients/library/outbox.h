@@ -1,0 +1,29 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Messages that wait to be written to the socket, first in first out.
+#pragma once
+
+#include <stdbool.h>
+#include <stddef.h>
+
+#include "cautery/status.h"
+
+enum { CAU_OUTBOX_BYTES_MAX = 8 << 20 }; // beyond it messages are refused with CAU_LIMIT
+
+typedef struct cau_outbox_message {
+	struct cau_outbox_message *next;
+	bool binary;
+	size_t byte_count;
+	unsigned char bytes[]; // headroom for the WebSocket header, then the message
+} cau_outbox_message;
+
+typedef struct cau_outbox {
+	cau_outbox_message *first, *last;
+	size_t byte_count;
+} cau_outbox;
+
+// Appends a copy of head and body, joined. Errors: CAU_LIMIT, CAU_NO_MEMORY.
+cau_status cau_outbox_add(cau_outbox *outbox, bool binary, const void *head, size_t head_bytes,
+                          const void *body, size_t body_bytes, cau_error *error);
+unsigned char *cau_outbox_bytes(cau_outbox_message *message); // after the headroom
+cau_outbox_message *cau_outbox_take(cau_outbox *outbox);      // NULL: empty; the caller frees it
+void cau_outbox_clear(cau_outbox *outbox);

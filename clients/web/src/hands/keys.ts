@@ -1,0 +1,116 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Keys while the picture has the focus, and a gamepad. What they do stands in KEY_HELP.
+import type { Viewport } from '../scene/viewport';
+import type { ToolHand } from './tool_hand';
+
+export const KEY_HELP: readonly (readonly [string, string])[] = [
+  ['Drag', 'move the tool'],
+  ['Space', 'energy while held'],
+  ['Wheel', 'depth'],
+  ['Arrows, W S', 'move the tool; W deeper, S nearer'],
+  ['Q E, R F', 'turn the tool, tilt it'],
+  ['G', 'grasp or let go'],
+  ['Right drag, Shift + drag', 'turn or move the camera'],
+  ['Ctrl + wheel, + −', 'zoom'],
+  ['H', 'camera home'],
+];
+
+const SPEED_M_S = 0.03;
+const TURN_RAD_S = 1.2;
+const ZOOM_PER_S = 2.5;
+const STICK_REST = 0.12;
+
+const HELD = new Set([
+  'ArrowLeft', 'ArrowRight', 'ArrowUp', 'ArrowDown', 'KeyW', 'KeyS', 'KeyQ', 'KeyE', 'KeyR', 'KeyF', 'Equal', 'Minus',
+  'NumpadAdd', 'NumpadSubtract',
+]);
+
+export class Keys {
+  private readonly down = new Set<string>();
+  private padEnergy = false;
+  private padGrasp = false;
+  private last = performance.now();
+
+  constructor(
+    canvas: HTMLCanvasElement,
+    private readonly viewport: Viewport,
+    private readonly hand: ToolHand,
+    private readonly grasping: () => boolean,
+  ) {
+    canvas.addEventListener('keydown', (event) => this.press(event));
+    canvas.addEventListener('keyup', (event) => this.release(event));
+    canvas.addEventListener('blur', () => this.letGo());
+    window.addEventListener('blur', () => this.letGo());
+  }
+
+  /** What held keys and sticks do in a time; once per animation frame. */
+  advance(): void {
+    const now = performance.now();
+    const seconds = Math.min((now - this.last) / 1000, 0.1);
+    this.last = now;
+    const axis = (less: string, more: string): number => Number(this.down.has(more)) - Number(this.down.has(less));
+    const step = SPEED_M_S * seconds;
+    const turn = TURN_RAD_S * seconds;
+    this.apply(
+      axis('ArrowLeft', 'ArrowRight') * step,
+      axis('ArrowDown', 'ArrowUp') * step,
+      axis('KeyW', 'KeyS') * step,
+      axis('KeyQ', 'KeyE') * turn,
+      axis('KeyR', 'KeyF') * turn,
+    );
+    const zoom = axis('Equal', 'Minus') + axis('NumpadAdd', 'NumpadSubtract');
+    if (zoom !== 0) {
+      this.viewport.orbit.zoom(ZOOM_PER_S ** (zoom * seconds));
+      this.viewport.invalidate();
+    }
+    this.gamepad(step * 1.5, turn);
+  }
+
+  private apply(right: number, up: number, nearer: number, turn: number, tilt: number): void {
+    if (right !== 0 || up !== 0 || nearer !== 0) this.hand.nudge(right, up, nearer);
+    if (turn !== 0 || tilt !== 0) this.hand.turn(turn, tilt);
+  }
+
+  /** Left stick moves, right stick is depth and turn; right trigger energy, A grasp. */
+  private gamepad(step: number, turn: number): void {
+    const pad = navigator.getGamepads().find((candidate) => candidate?.mapping === 'standard');
+    if (!pad) return;
+    const stick = (i: number): number => (Math.abs(pad.axes[i]) > STICK_REST ? pad.axes[i] : 0);
+    this.apply(stick(0) * step, -stick(1) * step, stick(3) * step, stick(2) * turn, 0);
+    const energy = pad.buttons[7].value > 0.5;
+    if (energy !== this.padEnergy) this.hand.energize(energy);
+    this.padEnergy = energy;
+    const grasp = pad.buttons[0].pressed;
+    if (grasp && !this.padGrasp) this.hand.grasp(!this.grasping());
+    this.padGrasp = grasp;
+  }
+
+  private press(event: KeyboardEvent): void {
+    if (event.ctrlKey || event.metaKey || event.altKey) return;
+    if (HELD.has(event.code)) {
+      this.down.add(event.code);
+    } else if (event.repeat) {
+      if (event.code !== 'Space') return;
+    } else if (event.code === 'Space') {
+      this.hand.energize(true);
+    } else if (event.code === 'KeyG') {
+      this.hand.grasp(!this.grasping());
+    } else if (event.code === 'KeyH') {
+      this.viewport.orbit.reset();
+      this.viewport.invalidate();
+    } else {
+      return;
+    }
+    event.preventDefault();
+  }
+
+  private release(event: KeyboardEvent): void {
+    this.down.delete(event.code);
+    if (event.code === 'Space') this.hand.energize(false);
+  }
+
+  private letGo(): void {
+    this.down.clear();
+    this.hand.energize(false);
+  }
+}

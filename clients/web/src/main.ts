@@ -1,0 +1,140 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// The page: makes the rooms and ties them together.
+import { Keys } from './hands/keys';
+import { Pointer } from './hands/pointer';
+import { ToolHand } from './hands/tool_hand';
+import { Control } from './model/control';
+import { Model } from './model/model';
+import { byId } from './panels/dom';
+import { materialsPanel } from './panels/materials';
+import { showHandles, showHint, showLink, showNotices, showReading } from './panels/overlay';
+import { plotsPanel } from './panels/plots';
+import { saveReceived, sessionsPanel } from './panels/sessions';
+import { makeTabs } from './panels/tabs';
+import { timeBar } from './panels/time';
+import { toolsPanel } from './panels/tools';
+import { viewPanel } from './panels/view';
+import { Viewport } from './scene/viewport';
+import { Link } from './wire/link';
+import type { Tool } from './wire/messages.gen';
+
+const model = new Model();
+const viewport = new Viewport(byId<HTMLCanvasElement>('picture'));
+/** milliseconds of the page's own work in the last animation frame, drawing left out */
+let workMs = 0;
+let takeMs = 0;
+
+const link: Link = new Link({
+  state: (state) => {
+    model.setLink(state);
+    if (state.state === 'online')
+      control.refresh().catch((error: unknown) => model.notice('error', error instanceof Error ? error.message : String(error)));
+  },
+  joined: (joined) => {
+    viewport.setSession(joined);
+    model.setJoined(joined);
+  },
+  notJoined: (session, message) => model.notice('error', `${session} cannot be watched: ${message}`),
+  frame: (frame) => {
+    const started = performance.now();
+    const buffers = viewport.takeFrame(frame);
+    model.setFrame(frame);
+    link.giveBack(buffers ?? frame.buffers);
+    takeMs += performance.now() - started;
+  },
+  push: (method, params) => control.push(method, params),
+  file: (name, mediaType, bytes, sound) => {
+    if (!sound) model.notice('error', `${name} was damaged on its way.`);
+    else saveReceived(name, mediaType, bytes);
+  },
+});
+const control = new Control(model, link);
+const hand = new ToolHand(model, control, viewport);
+const pointer = new Pointer(viewport.canvas, viewport, hand);
+const keys = new Keys(viewport.canvas, viewport, hand, () => model.toolState?.grasping === true);
+
+model.on('tools', () => viewport.setTools(model.tools));
+model.on('joined', (joined) => {
+  if (!joined) viewport.setSession(null);
+});
+
+makeTabs([sessionsPanel(control, link), toolsPanel(control, hand), materialsPanel(control), viewPanel(control, viewport), plotsPanel(model)]);
+timeBar(control);
+showHandles(control, hand, pointer);
+showNotices(control);
+showReading(control);
+showHint();
+
+function connect(token?: string): void {
+  const url = new URL('./v1', window.location.href);
+  url.protocol = url.protocol === 'https:' ? 'wss:' : 'ws:';
+  const wanted = new URLSearchParams(window.location.search).get('session');
+  url.search = wanted === null ? '' : `session=${encodeURIComponent(wanted)}`;
+  url.hash = '';
+  link.connect(url.href, token);
+  const session = model.session ?? wanted;
+  if (session !== null) control.watch(session);
+}
+showLink(control, connect);
+connect();
+
+new ResizeObserver(() => viewport.resize()).observe(viewport.canvas);
+
+function animate(): void {
+  const started = performance.now();
+  keys.advance();
+  viewport.poseTools(hand.advance());
+  workMs = performance.now() - started + takeMs;
+  takeMs = 0;
+  viewport.draw();
+  requestAnimationFrame(animate);
+}
+requestAnimationFrame(animate);
+
+/** For tests and the curious: what the page holds. */
+export interface Inspection {
+  session: string | null;
+  link: string;
+  tick: number;
+  epoch: string;
+  paused: boolean;
+  drawnFaces: Readonly<Record<string, number>>;
+  framesDecoded: number;
+  framesSkipped: number;
+  driving: boolean;
+  energized: boolean;
+  tip: readonly number[];
+  /** definition of the tool in hand */
+  tool: Tool | null;
+  workMs: number;
+  drawMs: number;
+  pictureMs: number;
+  picturesDrawn: number;
+  /** nothing is left to draw */
+  idle: boolean;
+  latencyMs: number;
+  project(point: readonly [number, number, number]): { x: number; y: number };
+}
+
+const inspection: Inspection = {
+  get session() { return model.joined?.description.summary.session ?? null; },
+  get link() { return model.link.state; },
+  get tick() { return model.frame?.tick ?? -1; },
+  get epoch() { return model.frame?.epoch ?? ''; },
+  get paused() { return model.frame?.paused ?? false; },
+  get drawnFaces() { return model.frame?.drawnFaces ?? {}; },
+  get framesDecoded() { return model.frame?.framesDecoded ?? 0; },
+  get framesSkipped() { return model.frame?.framesSkipped ?? 0; },
+  get driving() { return model.driving; },
+  get energized() { return model.toolState?.energized ?? false; },
+  get tip() { return model.toolState?.positionM ?? []; },
+  get tool() { return model.tool; },
+  get workMs() { return workMs; },
+  get drawMs() { return viewport.drawMs; },
+  get pictureMs() { return viewport.pictureMs; },
+  get picturesDrawn() { return viewport.picturesDrawn; },
+  get idle() { return viewport.idle; },
+  get latencyMs() { return model.samples.at(-1)?.latencyMs ?? 0; },
+  project: (point) => viewport.project(point),
+};
+Object.assign(window, { cautery: inspection });

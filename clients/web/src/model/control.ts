@@ -1,0 +1,191 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Between model and daemon: what the user wants done, and what the daemon pushes.
+import type { Link } from '../wire/link';
+import type { MaterialSet, Pushes, Requests, Scene, SessionDescription, Tool } from '../wire/messages.gen';
+import type { Channels } from '../wire/worker_messages';
+import type { Model } from './model';
+
+const CHANNELS: Channels = ['positions', 'mask', 'exposure', 'charring', 'tools', 'statistics'];
+const OFF_WORDS: Readonly<Record<string, string>> = {
+  watchdog: 'no sign of life came from its driver in time',
+  taken_over: 'somebody else took the tool over',
+  restored: 'the session went back or was restarted',
+};
+
+export class Control {
+  private withStress = false;
+
+  constructor(
+    readonly model: Model,
+    readonly link: Link,
+  ) {}
+
+  /** After every hello: what may have changed meanwhile. */
+  async refresh(): Promise<void> {
+    const { scenes } = await this.link.call('scene.list', {});
+    this.model.scenes = scenes;
+    const { sessions } = await this.link.call('session.list', {});
+    this.model.setSessions(sessions);
+    if (this.model.session === null) {
+      const first = sessions.find((summary) => summary.session.endsWith('-demo')) ?? sessions[0];
+      if (first) this.watch(first.session);
+    }
+  }
+
+  watch(session: string | null): void {
+    const { model } = this;
+    model.session = session;
+    if (session === null) model.setJoined(null);
+    this.link.watch(session, this.withStress ? [...CHANNELS, 'stress'] : CHANNELS);
+    model.emit('sessions', model.sessions);
+  }
+
+  setStress(wanted: boolean): void {
+    if (wanted === this.withStress) return;
+    this.withStress = wanted;
+    if (this.model.session !== null) this.watch(this.model.session);
+  }
+
+  async create(params: { scene?: string; definition?: Scene; name?: string }): Promise<SessionDescription> {
+    const description = await this.link.call('session.create', params);
+    this.model.putSession(description.summary);
+    this.watch(description.summary.session);
+    return description;
+  }
+
+  async fork(name?: string): Promise<SessionDescription> {
+    const params = { ...this.here(), ...(name === undefined || name === '' ? {} : { name }) };
+    const description = await this.link.call('session.fork', params);
+    this.model.putSession(description.summary);
+    this.watch(description.summary.session);
+    return description;
+  }
+
+  async destroy(session: string): Promise<void> {
+    await this.link.call('session.destroy', { session });
+    this.left(session);
+  }
+
+  async rewind(tick: number): Promise<void> {
+    await this.link.call('session.rewind', { ...this.here(), tick });
+    await this.loadTimeline();
+  }
+
+  async loadTimeline(): Promise<void> {
+    if (this.model.session === null) return;
+    this.model.setTimeline(await this.link.call('session.timeline', this.here()));
+  }
+
+  async setMaterial(params: MaterialSet): Promise<void> {
+    await this.link.call('material.set', { ...params, ...this.here() });
+    await this.describe();
+  }
+
+  async addTool(tool: Tool): Promise<void> {
+    await this.link.call('tool.add', { ...tool, ...this.here() });
+    this.model.selectedTool = tool.name;
+    await this.describe();
+  }
+
+  async removeTool(tool: string): Promise<void> {
+    await this.link.call('tool.remove', { ...this.here(), tool });
+    await this.describe();
+  }
+
+  async configureTool(tool: Tool): Promise<void> {
+    const { name, ...definition } = tool;
+    delete definition.position_m; // the pose stays as it is
+    delete definition.rotation;
+    await this.link.call('tool.configure', { ...definition, ...this.here(), tool: name });
+    await this.describe();
+  }
+
+  /** Takes a tool that nobody drives, or from somebody as admin; else asks its driver. */
+  async takeOver(tool: string): Promise<'taken' | 'asked'> {
+    const driver = this.model.drivers.get(tool);
+    if (driver && driver.client !== 0 && this.model.hello?.role !== 'admin') {
+      await this.link.call('tool.request_takeover', { ...this.here(), tool });
+      return 'asked';
+    }
+    this.model.setDriver(await this.link.call('tool.take_over', { ...this.here(), tool }));
+    return 'taken';
+  }
+
+  async ask(tool: string): Promise<void> {
+    await this.link.call('tool.request_takeover', { ...this.here(), tool });
+  }
+
+  async handOver(tool: string, client?: number): Promise<void> {
+    const params = { ...this.here(), tool, ...(client === undefined ? {} : { client }) };
+    this.model.setDriver(await this.link.call('tool.hand_over', params));
+  }
+
+  /** A call about the watched session. */
+  call<M extends keyof Requests>(method: M, params: Requests[M]['params']): Promise<Requests[M]['result']> {
+    return this.link.call(method, { ...params, ...this.here() });
+  }
+
+  async describe(): Promise<void> {
+    if (this.model.session === null) return;
+    const description = await this.link.call('session.describe', this.here());
+    const { joined } = this.model;
+    if (!joined || joined.description.summary.session !== description.summary.session) return;
+    joined.description = description;
+    this.model.setTools(description.definition.tools ?? [], description.drivers);
+  }
+
+  push<M extends keyof Pushes>(method: M, params: Pushes[M]): void {
+    const handle = this.pushes[method] as (params: Pushes[M]) => void;
+    handle(params);
+  }
+
+  here(): { session: string } {
+    if (this.model.session === null) throw new Error('no session is open');
+    return { session: this.model.session };
+  }
+
+  private readonly pushes: { [M in keyof Pushes]: (params: Pushes[M]) => void } = {
+    'session.changed': (params) => this.sessionChanged(params),
+    'session.faulted': ({ session, reason }) => {
+      if (session === this.model.session)
+        this.model.notice('error', `The simulation met numerical trouble: ${reason}. Rewind or reset the session.`);
+    },
+    'tool.driver_changed': ({ session, driver }) => {
+      if (session !== this.model.session) return;
+      const before = this.model.drivers.get(driver.tool);
+      this.model.setDriver(driver);
+      const words = driver.energized ? undefined : OFF_WORDS[driver.energy_off];
+      if (before?.energized && words) this.model.notice('warning', `Energy of ${driver.tool} is off: ${words}.`);
+    },
+    'tool.refused': ({ tool, count, reason }) =>
+      this.model.notice('warning', `${count === 1 ? 'A command' : `${count} commands`} to ${tool} refused: ${reason}`),
+    'takeover.requested': (params) => this.model.setTakeover(params),
+    'event': (params) => {
+      if (params.session === this.model.session) this.model.addEvent(params);
+    },
+  };
+
+  private sessionChanged({ change, summary, target }: Pushes['session.changed']): void {
+    if (change === 'destroyed') {
+      this.model.removeSession(summary.session);
+      this.left(summary.session);
+      return;
+    }
+    this.model.putSession(summary);
+    if (summary.session !== this.model.session) return;
+    if (change === 'moved') this.model.notice('warning', `The session has moved to ${target ?? 'another daemon'}.`);
+    if (['reset', 'rewound', 'restored', 'restarted'].includes(change)) this.later(this.loadTimeline());
+    if (['tools', 'tissue', 'reset', 'rewound', 'restored'].includes(change)) this.later(this.describe());
+  }
+
+  private left(session: string): void {
+    if (session !== this.model.session) return;
+    this.model.notice('info', `${session} is gone.`);
+    this.watch(this.model.sessions.find((other) => other.session !== session)?.session ?? null);
+  }
+
+  /** Follow-up questions whose failure only means that the next change asks again. */
+  private later(work: Promise<void>): void {
+    work.catch((error: unknown) => this.model.notice('warning', error instanceof Error ? error.message : String(error)));
+  }
+}

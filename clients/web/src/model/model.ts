@@ -1,0 +1,186 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// What the page knows: the connection, sessions, the session that is watched, its newest frame, who
+// drives which tool. Panels and the picture listen to it; it knows neither.
+import type { LinkState } from '../wire/connection';
+import type {
+  Driver,
+  HelloResult,
+  Pushes,
+  SceneSummary,
+  SessionSummary,
+  TakeoverRequested,
+  Timeline,
+  Tool,
+} from '../wire/messages.gen';
+import type { ToolState } from '../wire/records';
+import type { Frame, Joined, Sample } from '../wire/worker_messages';
+
+export interface Events {
+  link: LinkState;
+  sessions: readonly SessionSummary[];
+  joined: Joined | null;
+  /** definitions of tools, drivers, or the chosen tool changed */
+  tools: undefined;
+  frame: Frame;
+  timeline: Timeline | null;
+  takeover: TakeoverRequested | null;
+  notice: Notice;
+}
+
+/** Something to tell the user in words. */
+export interface Notice {
+  kind: 'info' | 'warning' | 'error';
+  words: string;
+}
+
+type Listener<T> = (value: T) => void;
+
+const SAMPLES_MAX = 7200; // two minutes at 60 a second
+const EVENTS_MAX = 4096;
+
+export class Model {
+  link: LinkState = { state: 'connecting' };
+  hello: HelloResult | null = null;
+  scenes: readonly SceneSummary[] = [];
+  sessions: readonly SessionSummary[] = [];
+  /** id of the session that is or will be watched */
+  session: string | null = null;
+  joined: Joined | null = null;
+  frame: Frame | null = null;
+  drivers = new Map<string, Driver>();
+  selectedTool: string | null = null;
+  timeline: Timeline | null = null;
+  takeover: TakeoverRequested | null = null;
+  samples: Sample[] = [];
+  private readonly listeners = new Map<keyof Events, Set<Listener<never>>>();
+
+  on<K extends keyof Events>(event: K, listener: Listener<Events[K]>): void {
+    const set = this.listeners.get(event) ?? new Set();
+    set.add(listener as Listener<never>);
+    this.listeners.set(event, set);
+  }
+
+  emit<K extends keyof Events>(event: K, value: Events[K]): void {
+    for (const listener of this.listeners.get(event) ?? []) (listener as Listener<Events[K]>)(value);
+  }
+
+  notice(kind: Notice['kind'], words: string): void {
+    this.emit('notice', { kind, words });
+  }
+
+  get summary(): SessionSummary | null {
+    return this.sessions.find((summary) => summary.session === this.session) ?? null;
+  }
+
+  get mayOperate(): boolean {
+    return this.link.state === 'online' && this.hello !== null && this.hello.role !== 'view';
+  }
+
+  /** Definitions of the session's tools. */
+  get tools(): readonly Tool[] {
+    return this.joined?.description.definition.tools ?? [];
+  }
+
+  get tool(): Tool | null {
+    return this.tools.find((tool) => tool.name === this.selectedTool) ?? null;
+  }
+
+  get toolState(): ToolState | null {
+    return this.frame?.tools.find((tool) => tool.name === this.selectedTool) ?? null;
+  }
+
+  /** Whether this page drives the chosen tool. */
+  get driving(): boolean {
+    const driver = this.selectedTool === null ? undefined : this.drivers.get(this.selectedTool);
+    return this.mayOperate && driver !== undefined && driver.client === this.hello?.client;
+  }
+
+  setLink(link: LinkState): void {
+    this.link = link;
+    if (link.state === 'online') this.hello = link.hello;
+    this.emit('link', link);
+    this.emit('tools', undefined);
+  }
+
+  setSessions(sessions: readonly SessionSummary[]): void {
+    this.sessions = [...sessions].sort((a, b) => a.session.localeCompare(b.session));
+    this.emit('sessions', this.sessions);
+  }
+
+  putSession(summary: SessionSummary): void {
+    this.setSessions([...this.sessions.filter((other) => other.session !== summary.session), summary]);
+  }
+
+  removeSession(session: string): void {
+    this.setSessions(this.sessions.filter((other) => other.session !== session));
+  }
+
+  setJoined(joined: Joined | null): void {
+    const another = joined?.description.summary.session !== this.joined?.description.summary.session;
+    this.joined = joined;
+    if (another) {
+      this.frame = null;
+      this.samples = [];
+      this.timeline = null;
+    }
+    this.drivers = new Map(joined?.description.drivers.map((driver) => [driver.tool, driver]));
+    if (!this.tool) this.selectedTool = this.tools[0]?.name ?? null;
+    if (joined) this.putSession(joined.description.summary);
+    this.emit('joined', joined);
+    this.emit('tools', undefined);
+  }
+
+  setTools(tools: Tool[], drivers: readonly Driver[]): void {
+    if (!this.joined) return;
+    this.joined.description.definition.tools = tools;
+    this.drivers = new Map(drivers.map((driver) => [driver.tool, driver]));
+    if (!this.tool) this.selectedTool = tools[0]?.name ?? null;
+    this.emit('tools', undefined);
+  }
+
+  setDriver(driver: Driver): void {
+    this.drivers.set(driver.tool, driver);
+    this.emit('tools', undefined);
+  }
+
+  selectTool(name: string): void {
+    this.selectedTool = name;
+    this.emit('tools', undefined);
+  }
+
+  setFrame(frame: Frame): void {
+    const before = this.frame;
+    this.frame = frame;
+    this.samples.push(...frame.samples);
+    if (this.samples.length > SAMPLES_MAX) this.samples.splice(0, this.samples.length - SAMPLES_MAX);
+    const drivers = frame.tools.map((tool) => tool.driver).join();
+    if (before && drivers !== before.tools.map((tool) => tool.driver).join()) this.followDrivers(frame);
+    this.emit('frame', frame);
+  }
+
+  setTimeline(timeline: Timeline | null): void {
+    this.timeline = timeline;
+    this.emit('timeline', timeline);
+  }
+
+  addEvent({ event }: Pushes['event']): void {
+    const { timeline } = this;
+    if (!timeline) return;
+    const events = [...timeline.events, event].slice(-EVENTS_MAX);
+    this.setTimeline({ ...timeline, tick: Math.max(timeline.tick, event.tick), events });
+  }
+
+  setTakeover(takeover: TakeoverRequested | null): void {
+    this.takeover = takeover;
+    this.emit('takeover', takeover);
+  }
+
+  /** Frames tell driver numbers too, should a notification have been missed. */
+  private followDrivers(frame: Frame): void {
+    for (const tool of frame.tools) {
+      const known = this.drivers.get(tool.name);
+      if (known && known.client !== tool.driver) this.drivers.set(tool.name, { ...known, client: tool.driver, name: '' });
+    }
+    this.emit('tools', undefined);
+  }
+}

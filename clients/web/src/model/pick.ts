@@ -1,0 +1,50 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Where a ray first meets the drawn tissue (Moeller and Trumbore, both sides).
+
+export interface Hit {
+  distance: number;
+  batch: number;
+  vertex: number;
+}
+
+export function pick(
+  origin: readonly [number, number, number],
+  direction: readonly [number, number, number],
+  position: Float32Array,
+  indices: readonly (Uint32Array | null)[],
+): Hit | null {
+  let best: Hit | null = null;
+  for (let batch = 0; batch < indices.length; batch++) {
+    const index = indices[batch];
+    if (!index) continue;
+    for (let i = 0; i < index.length; i += 3) {
+      const distance = meet(origin, direction, position, 3 * index[i], 3 * index[i + 1], 3 * index[i + 2]);
+      if (distance > 0 && (!best || distance < best.distance)) best = { distance, batch, vertex: index[i] };
+    }
+  }
+  return best;
+}
+
+const PARALLEL = 1e-18; // m^2: edges of a micrometre seen edge-on
+
+function meet(
+  o: readonly [number, number, number],
+  d: readonly [number, number, number],
+  p: Float32Array,
+  a: number,
+  b: number,
+  c: number,
+): number {
+  const ux = p[b] - p[a], uy = p[b + 1] - p[a + 1], uz = p[b + 2] - p[a + 2];
+  const vx = p[c] - p[a], vy = p[c + 1] - p[a + 1], vz = p[c + 2] - p[a + 2];
+  const px = d[1] * vz - d[2] * vy, py = d[2] * vx - d[0] * vz, pz = d[0] * vy - d[1] * vx;
+  const determinant = ux * px + uy * py + uz * pz;
+  if (Math.abs(determinant) < PARALLEL) return -1;
+  const sx = o[0] - p[a], sy = o[1] - p[a + 1], sz = o[2] - p[a + 2];
+  const s = (sx * px + sy * py + sz * pz) / determinant;
+  if (s < 0 || s > 1) return -1;
+  const qx = sy * uz - sz * uy, qy = sz * ux - sx * uz, qz = sx * uy - sy * ux;
+  const t = (d[0] * qx + d[1] * qy + d[2] * qz) / determinant;
+  if (t < 0 || s + t > 1) return -1;
+  return (vx * qx + vy * qy + vz * qz) / determinant;
+}

@@ -1,0 +1,227 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// The tissue as it is drawn: positions in metres, smooth normals, cut rims, and the indices of drawn
+// faces in batches. Brought up to date from a stream's state; only what moved is worked on.
+// Lives in the worker and knows no renderer.
+import type { Changes, StreamState } from '../wire/decoder';
+import type { LayerDescription } from '../wire/messages.gen';
+import type { Topology } from '../wire/topology';
+import { makeVertexFaces, markInnerFaces, type VertexFaces } from './topology_tables';
+
+export interface Batch {
+  layer: string;
+  kind: LayerDescription['kind'];
+  /** the inside of fat, which only cuts lay open */
+  bared: boolean;
+  faces: Int32Array;
+}
+
+export interface TissueSource {
+  vertexCount: number;
+  faceCount: number;
+  originM: readonly [number, number, number];
+  stepM: number;
+  layers: readonly LayerDescription[];
+  topology: Topology;
+}
+
+/** Bytes of each vertex in `burn`: heat exposure, charring, cut rim, stress over stressScale. */
+export const BURN_BYTES = 4;
+const RIM = 2;
+const STRESS = 3;
+
+export class Tissue {
+  readonly batches: Batch[];
+  readonly position: Float32Array;
+  readonly normal: Float32Array;
+  readonly burn: Uint8Array;
+  /** largest stress seen so far, in steps of the stream; 255 in burn */
+  stressScale = 1;
+  /** drawn faces of each batch; made anew where changed */
+  readonly drawnIndex: Uint32Array[];
+  private readonly vertexFaces: VertexFaces;
+  private readonly batchOfFace: Int32Array;
+  private readonly hidden: Uint8Array;
+  private readonly faceNormal: Float32Array;
+  private readonly vertexMark: Int32Array;
+  private readonly faceMark: Int32Array;
+  private mark = 0;
+
+  constructor(private readonly source: TissueSource) {
+    const { vertexCount, faceCount, topology } = source;
+    this.position = new Float32Array(3 * vertexCount);
+    this.normal = new Float32Array(3 * vertexCount);
+    this.burn = new Uint8Array(BURN_BYTES * vertexCount);
+    this.vertexFaces = makeVertexFaces(topology.faces, vertexCount);
+    this.hidden = new Uint8Array(faceCount).fill(1);
+    this.faceNormal = new Float32Array(3 * faceCount);
+    this.vertexMark = new Int32Array(vertexCount);
+    this.faceMark = new Int32Array(faceCount);
+    this.batches = makeBatches(source);
+    this.drawnIndex = this.batches.map(() => new Uint32Array(0));
+    this.batchOfFace = new Int32Array(faceCount);
+    this.batches.forEach((batch, b) => {
+      for (const face of batch.faces) this.batchOfFace[face] = b;
+    });
+  }
+
+  /** Takes a state over. Returns the batches whose drawn faces changed. */
+  update(state: StreamState, changes: Changes): number[] {
+    this.mark++;
+    const touched: number[] = [];
+    const changedBatches = this.updateMask(state.mask, changes, touched);
+    this.updatePositions(state.quantised, changes, touched);
+    this.updateNormals(touched);
+    if (changes.scalars) this.updateBurn(state);
+    for (const batch of changedBatches) this.updateIndex(batch);
+    return [...changedBatches];
+  }
+
+  /** Drawn faces by layer and what was hidden of it, for people and tests. */
+  drawnFaceCounts(): Record<string, number> {
+    const counts: Record<string, number> = {};
+    this.batches.forEach((batch, b) => {
+      const name = batch.bared ? `${batch.layer} (inside)` : batch.layer;
+      counts[name] = this.drawnIndex[b].length / 3;
+    });
+    return counts;
+  }
+
+  private touchFace(face: number, touched: number[]): void {
+    if (this.faceMark[face] === this.mark) return;
+    this.faceMark[face] = this.mark;
+    this.computeFaceNormal(face);
+    for (let c = 0; c < 3; c++) {
+      const vertex = this.source.topology.faces[3 * face + c];
+      if (this.vertexMark[vertex] === this.mark) continue;
+      this.vertexMark[vertex] = this.mark;
+      touched.push(vertex);
+    }
+  }
+
+  private updateMask(mask: Int32Array, changes: Changes, touched: number[]): Set<number> {
+    const changed = new Set<number>();
+    const changedFaces: number[] = [];
+    const words = changes.whole ? [0, mask.length] : changes.maskWords;
+    for (let run = 0; run < words.length; run += 2) {
+      const end = Math.min(32 * (words[run] + words[run + 1]), this.source.faceCount);
+      for (let face = 32 * words[run]; face < end; face++) {
+        const hidden = (mask[face >>> 5] >>> (face & 31)) & 1;
+        if (hidden === this.hidden[face]) continue;
+        this.hidden[face] = hidden;
+        changed.add(this.batchOfFace[face]);
+        changedFaces.push(face);
+      }
+    }
+    // Normals of faces are computed from positions that are taken over below; here only vertices count.
+    for (const face of changedFaces) {
+      for (let c = 0; c < 3; c++) {
+        const vertex = this.source.topology.faces[3 * face + c];
+        if (this.vertexMark[vertex] !== this.mark) {
+          this.vertexMark[vertex] = this.mark;
+          touched.push(vertex);
+        }
+      }
+    }
+    return changed;
+  }
+
+  private updatePositions(quantised: Int32Array, changes: Changes, touched: number[]): void {
+    const { originM, stepM, vertexCount } = this.source;
+    const runs = changes.whole ? [0, vertexCount] : changes.moved;
+    for (let run = 0; run < runs.length; run += 2) {
+      for (let v = runs[run]; v < runs[run] + runs[run + 1]; v++) {
+        for (let c = 0; c < 3; c++) this.position[3 * v + c] = originM[c] + stepM * quantised[3 * v + c];
+      }
+    }
+    const { start, items } = this.vertexFaces;
+    for (let run = 0; run < runs.length; run += 2) {
+      const end = runs[run] + runs[run + 1];
+      for (let i = start[runs[run]]; i < start[end]; i++) if (!this.hidden[items[i]]) this.touchFace(items[i], touched);
+    }
+  }
+
+  private computeFaceNormal(face: number): void {
+    const { position: p, faceNormal: n } = this;
+    const { faces } = this.source.topology;
+    const a = 3 * faces[3 * face];
+    const b = 3 * faces[3 * face + 1];
+    const c = 3 * faces[3 * face + 2];
+    const ux = p[b] - p[a], uy = p[b + 1] - p[a + 1], uz = p[b + 2] - p[a + 2];
+    const vx = p[c] - p[a], vy = p[c + 1] - p[a + 1], vz = p[c + 2] - p[a + 2];
+    n[3 * face] = uy * vz - uz * vy;
+    n[3 * face + 1] = uz * vx - ux * vz;
+    n[3 * face + 2] = ux * vy - uy * vx;
+  }
+
+  /** Area-weighted sums over drawn faces; the inside of fat has its own flat shading. */
+  private updateNormals(touched: readonly number[]): void {
+    const { start, items } = this.vertexFaces;
+    for (const vertex of touched) {
+      let x = 0, y = 0, z = 0;
+      let rim = 0;
+      for (let i = start[vertex]; i < start[vertex + 1]; i++) {
+        const face = items[i];
+        const batch = this.batches[this.batchOfFace[face]];
+        if (batch.bared) continue;
+        if (this.hidden[face]) {
+          if (batch.kind !== 'fat') rim = 255;
+          continue;
+        }
+        if (this.faceMark[face] !== this.mark) this.computeFaceNormal(face);
+        x += this.faceNormal[3 * face];
+        y += this.faceNormal[3 * face + 1];
+        z += this.faceNormal[3 * face + 2];
+      }
+      const length = Math.hypot(x, y, z) || 1;
+      this.normal[3 * vertex] = x / length;
+      this.normal[3 * vertex + 1] = y / length;
+      this.normal[3 * vertex + 2] = z / length;
+      this.burn[BURN_BYTES * vertex + RIM] = rim;
+    }
+  }
+
+  private updateBurn(state: StreamState): void {
+    const { burn } = this;
+    const { exposure, charring, stress } = state;
+    for (const value of stress) if (value > this.stressScale) this.stressScale = value;
+    const perStep = 255 / this.stressScale;
+    for (let v = 0; v < exposure.length; v++) {
+      burn[BURN_BYTES * v] = Math.min(exposure[v], 255);
+      burn[BURN_BYTES * v + 1] = Math.min(charring[v], 255);
+      burn[BURN_BYTES * v + STRESS] = stress[v] * perStep;
+    }
+  }
+
+  private updateIndex(b: number): void {
+    const { faces } = this.source.topology;
+    const drawn = this.batches[b].faces.filter((face) => !this.hidden[face]);
+    const index = new Uint32Array(3 * drawn.length);
+    drawn.forEach((face, i) => index.set(faces.subarray(3 * face, 3 * face + 3), 3 * i));
+    this.drawnIndex[b] = index;
+  }
+}
+
+function range(first: number, count: number): Int32Array {
+  return Int32Array.from({ length: count }, (_, i) => first + i);
+}
+
+function makeBatches(source: TissueSource): Batch[] {
+  const { layers, topology, vertexCount, faceCount } = source;
+  const inner = new Uint8Array(faceCount);
+  const membranes = layers.filter((layer) => layer.kind === 'membrane');
+  const covers = Int32Array.from(membranes.flatMap((layer) => [...range(layer.first_face, layer.face_count)]));
+  const batches: Batch[] = [];
+  for (const layer of layers) {
+    if (layer.face_count === 0) continue;
+    const faces = range(layer.first_face, layer.face_count);
+    const { name, kind } = layer;
+    if (kind !== 'fat') {
+      batches.push({ layer: name, kind, bared: false, faces });
+      continue;
+    }
+    markInnerFaces(topology.faces, faces, covers, vertexCount, inner);
+    batches.push({ layer: name, kind, bared: false, faces: faces.filter((face) => !inner[face]) });
+    batches.push({ layer: name, kind, bared: true, faces: faces.filter((face) => inner[face]) });
+  }
+  return batches;
+}

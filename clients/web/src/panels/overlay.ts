@@ -1,0 +1,152 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// What lies over the picture: connection, first-run hint, messages, the tool's buttons, requests of
+// others, and the reading that screen readers hear.
+import type { Pointer } from '../hands/pointer';
+import { KEY_HELP } from '../hands/keys';
+import type { ToolHand } from '../hands/tool_hand';
+import type { Control } from '../model/control';
+import type { LinkState } from '../wire/connection';
+import type { Notice } from '../model/model';
+import { attempt, button, byId, element, field, problemPlace } from './dom';
+
+const NOTICE_MS = 9000;
+const NOTICES_MAX = 4;
+
+function linkWords(link: LinkState): string {
+  switch (link.state) {
+    case 'connecting':
+      return 'Connecting…';
+    case 'online':
+      return `${link.hello.server} · ${link.hello.role}`;
+    case 'lost':
+      return `No connection: ${link.words}. Trying again.`;
+    case 'refused':
+      return link.words;
+  }
+}
+
+export function showLink(control: Control, connect: (token?: string) => void): void {
+  const { model } = control;
+  const place = byId('link');
+  const show = (): void => {
+    place.textContent = linkWords(model.link);
+    place.className = `link ${model.link.state}`;
+    if (model.link.state === 'refused' && model.link.status === 'unauthorized') askToken(connect);
+  };
+  model.on('link', show);
+  model.on('joined', (joined) => (byId('where').textContent = joined ? joined.description.summary.session : 'no session'));
+  show();
+}
+
+function askToken(connect: (token?: string) => void): void {
+  if (document.getElementById('token')) return;
+  const token = element('input', { type: 'password', name: 'token', autocomplete: 'current-password', required: true });
+  const dialog = element('dialog', { id: 'token', aria: { label: 'Access token' } });
+  const form = element('form', { class: 'form', method: 'dialog' }, field('Access token', token), element('button', { type: 'submit' }, 'Connect'));
+  form.addEventListener('submit', () => {
+    dialog.remove();
+    connect(token.value);
+  });
+  dialog.append(element('p', {}, 'This daemon asks for a token. It is kept in this page only.'), form);
+  document.body.append(dialog);
+  dialog.showModal();
+}
+
+export function showHint(): void {
+  const hint = byId('hint');
+  const open = (): void => {
+    const close = button('Understood', () => {
+      hint.hidden = true;
+      localStorage.setItem('hint', 'seen');
+    });
+    hint.replaceChildren(
+      element('p', {}, 'Drag on the tissue to lead the hook over it.'),
+      element('p', {}, 'Hold Space, or the Energy button, to cut with heat.'),
+      element('p', {}, 'Right drag turns the view; the timeline below takes you back.'),
+      element('details', {}, element('summary', {}, 'All keys'), element('dl', {}, ...KEY_HELP.flatMap(([key, what]) => [element('dt', {}, key), element('dd', {}, what)]))),
+      close,
+    );
+    hint.hidden = false;
+  };
+  if (localStorage.getItem('hint') !== 'seen') open();
+  document.querySelector('.bar')?.append(button('Help', open, { id: 'help' }));
+}
+
+export function showNotices(control: Control): void {
+  const place = byId('notices');
+  control.model.on('notice', ({ kind, words }: Notice) => {
+    const same = [...place.children].find((child) => child.firstChild?.textContent === words);
+    same?.remove();
+    const line = element('div', { class: `notice ${kind}` }, element('span', {}, words));
+    line.append(button('×', () => line.remove(), { aria: { label: 'Dismiss' } }));
+    place.append(line);
+    while (place.children.length > NOTICES_MAX) place.firstElementChild?.remove();
+    setTimeout(() => line.remove(), NOTICE_MS);
+  });
+  control.model.on('takeover', (asked) => {
+    place.querySelector('.asked')?.remove();
+    if (!asked) return;
+    const problem = problemPlace();
+    const done = (): void => control.model.setTakeover(null);
+    const give = button('Hand over', () => {
+      void attempt(problem, () => control.handOver(asked.tool, asked.client), give).then((given) => given === null || done());
+    });
+    const words = `${asked.name || `Client ${asked.client}`} asks for ${asked.tool}.`;
+    place.append(element('div', { class: 'notice info asked' }, element('span', {}, words), give, button('Keep it', done), problem));
+  });
+}
+
+/** Buttons for hands without a keyboard: hold for energy, grasp, nearer and deeper, camera. */
+export function showHandles(control: Control, hand: ToolHand, pointer: Pointer): void {
+  const { model } = control;
+  const energy = button('Energy', () => undefined, { id: 'energy', class: 'energy', aria: { pressed: 'false' }, title: 'Hold' });
+  energy.addEventListener('pointerdown', (event) => {
+    energy.setPointerCapture(event.pointerId);
+    hand.energize(true);
+  });
+  for (const end of ['pointerup', 'pointercancel', 'blur'] as const) energy.addEventListener(end, () => hand.energize(false));
+  energy.addEventListener('keydown', (event) => {
+    if ((event.code === 'Space' || event.code === 'Enter') && !event.repeat) hand.energize(true);
+  });
+  energy.addEventListener('keyup', () => hand.energize(false));
+  energy.addEventListener('contextmenu', (event) => event.preventDefault());
+  const grasp = button('Grasp', () => hand.grasp(model.toolState?.grasping !== true), { id: 'grasp', aria: { pressed: 'false' } });
+  const nearer = button('Nearer', () => hand.nudge(0, 0, 0.001));
+  const deeper = button('Deeper', () => hand.nudge(0, 0, -0.001));
+  const camera = button('Camera', () => {
+    pointer.cameraMode = !pointer.cameraMode;
+    camera.setAttribute('aria-pressed', String(pointer.cameraMode));
+  }, { aria: { pressed: 'false' }, title: 'Drag turns the view instead of moving the tool' });
+  byId('handles').append(energy, grasp, nearer, deeper, camera);
+  const refresh = (): void => {
+    const free = model.drivers.get(model.selectedTool ?? '')?.client === 0;
+    energy.disabled = !hand.mayHeat;
+    energy.title = hand.mayHeat ? 'Hold for energy (Space)' : free ? 'Drag on the tissue to take the tool first' : 'Only the driver may';
+    grasp.hidden = !hand.mayGrasp;
+    for (const one of [nearer, deeper]) one.disabled = !model.driving;
+  };
+  model.on('tools', refresh);
+  refresh();
+  model.on('frame', () => {
+    const state = model.toolState;
+    const on = String(state?.energized === true);
+    if (energy.getAttribute('aria-pressed') !== on) energy.setAttribute('aria-pressed', on);
+    const grasps = String(state?.grasping === true);
+    if (grasp.getAttribute('aria-pressed') !== grasps) grasp.setAttribute('aria-pressed', grasps);
+  });
+}
+
+const READING_MS = 1500;
+
+/** A line for those who cannot see the picture: what is left of each layer and where the tool is. */
+export function showReading(control: Control): void {
+  const { model } = control;
+  const place = byId('reading');
+  setInterval(() => {
+    const { frame, toolState: tool } = model;
+    if (!frame) return;
+    const layers = Object.entries(frame.drawnFaces).map(([name, count]) => `${name} ${count} faces`);
+    const at = tool ? `${tool.name} at ${tool.positionM.map((v) => (1000 * v).toFixed(1)).join(', ')} mm` : '';
+    place.textContent = `${layers.join(', ')}. ${at}`;
+  }, READING_MS);
+}

@@ -1,0 +1,162 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Sessions: join, create from a scene with its parameters, upload a mesh, fork, destroy.
+import type { Control } from '../model/control';
+import type { Link } from '../wire/link';
+import type { Scene, SessionSummary } from '../wire/messages.gen';
+import { attempt, button, element, field, problemPlace, save } from './dom';
+import type { Panel } from './tabs';
+import { uploadForm } from './upload';
+
+const REFRESH_MS = 5000; // of states and counts, while the list is looked at
+const NAME_PATTERN = '[a-z][a-z0-9]*([_\\-][a-z0-9]+)*';
+
+function row(control: Control, summary: SessionSummary, problem: HTMLElement): HTMLElement {
+  const here = summary.session === control.model.session;
+  const details = `${summary.scene}, ${summary.state}, ${summary.time_s.toFixed(1)} s, ${summary.subscriber_count} watching`;
+  const join = button(summary.session, () => control.watch(summary.session), {
+    class: 'session-name',
+    title: `Watch ${summary.session}`,
+    aria: here ? { current: 'true' } : {},
+  });
+  const destroy = button('Destroy', () => {
+    if (!window.confirm(`Destroy ${summary.session} and all that is stored of it?`)) return;
+    void attempt(problem, () => control.destroy(summary.session), destroy);
+  });
+  destroy.setAttribute('aria-label', `Destroy ${summary.session}`);
+  destroy.disabled = !control.model.mayOperate;
+  return element('li', { class: here ? 'session here' : 'session' }, join, element('small', {}, details), destroy);
+}
+
+/** Scene members that are worth choosing before a session is made. */
+function createForm(control: Control, problem: HTMLElement): HTMLElement {
+  const { model, link } = control;
+  const scene = element('select', { name: 'scene' });
+  const name = element('input', { name: 'name', pattern: NAME_PATTERN, maxLength: 40, placeholder: 'chosen by the daemon', autocomplete: 'off' });
+  const iterations = element('input', { type: 'number', name: 'iterations', min: '1', max: '1000', step: '1' });
+  const step = element('input', { type: 'number', name: 'step', min: '1', max: '33.3', step: 'any' });
+  const gravity = element('input', { type: 'number', name: 'gravity', min: '-100', max: '100', step: 'any' });
+  const seed = element('input', { type: 'number', name: 'seed', min: '0', step: '1' });
+  const about = element('p', { class: 'about' });
+  const submit = element('button', { type: 'submit' }, 'Create');
+  let definition: Scene | null = null;
+  const load = async (): Promise<void> => {
+    about.textContent = model.scenes.find((other) => other.name === scene.value)?.description ?? '';
+    definition = (await link.call('scene.get', { scene: scene.value })).definition;
+    iterations.value = String(definition.iterations ?? 10);
+    step.value = (1000 * (definition.step_s ?? 1 / 60)).toFixed(2);
+    gravity.value = String(definition.gravity_m_s2?.[2] ?? -9.81);
+    seed.value = String(definition.seed ?? 0);
+  };
+  scene.addEventListener('change', () => void attempt(problem, load));
+  const fill = (): void => {
+    if (scene.options.length === model.scenes.length) return;
+    scene.replaceChildren(...model.scenes.map((other) => element('option', { value: other.name }, other.name)));
+    if (model.scenes.length > 0) void attempt(problem, load);
+  };
+  model.on('sessions', fill);
+  model.on('link', () => (submit.disabled = !model.mayOperate));
+  const form = element(
+    'form',
+    { class: 'form' },
+    field('Scene', scene),
+    about,
+    field('Name', name),
+    field('Iterations', iterations, '', 'of a step: more is stiffer and slower'),
+    field('Step', step, 'ms', 'simulated time of one tick'),
+    field('Gravity', gravity, 'm/s²', 'along z'),
+    field('Seed', seed, '', 'of everything drawn at random'),
+    submit,
+  );
+  form.addEventListener('submit', (event) => {
+    event.preventDefault();
+    void attempt(problem, () => control.create(request(definition, { scene, name, iterations, step, gravity, seed })), submit);
+  });
+  return element('details', { class: 'section' }, element('summary', {}, 'New session'), form);
+}
+
+interface CreateFields {
+  scene: HTMLSelectElement;
+  name: HTMLInputElement;
+  iterations: HTMLInputElement;
+  step: HTMLInputElement;
+  gravity: HTMLInputElement;
+  seed: HTMLInputElement;
+}
+
+/** A scene by name if nothing in it was changed, else whole. */
+function request(definition: Scene | null, fields: CreateFields): { scene?: string; definition?: Scene; name?: string } {
+  const name = fields.name.value === '' ? {} : { name: fields.name.value };
+  if (!definition) return { scene: fields.scene.value, ...name };
+  const changed: Scene = {
+    ...definition,
+    iterations: fields.iterations.valueAsNumber,
+    step_s: fields.step.valueAsNumber / 1000,
+    gravity_m_s2: [definition.gravity_m_s2?.[0] ?? 0, definition.gravity_m_s2?.[1] ?? 0, fields.gravity.valueAsNumber],
+    seed: fields.seed.valueAsNumber,
+  };
+  const sameStep = Math.abs((changed.step_s ?? 0) - (definition.step_s ?? 1 / 60)) < 1e-5;
+  if (sameStep) changed.step_s = definition.step_s ?? 1 / 60;
+  const same = JSON.stringify(changed) === JSON.stringify(definition);
+  return same ? { scene: fields.scene.value, ...name } : { definition: changed, ...name };
+}
+
+function forkAndFiles(control: Control, problem: HTMLElement): HTMLElement {
+  const { model } = control;
+  const name = element('input', { name: 'fork', pattern: NAME_PATTERN, maxLength: 40, placeholder: 'name', autocomplete: 'off' });
+  name.setAttribute('aria-label', 'Name of the fork');
+  const fork = button('Fork this session', () => void attempt(problem, () => control.fork(name.value), fork), { id: 'fork' });
+  const exported = (format: 'vtu' | 'obj'): HTMLButtonElement => {
+    const press = button(`Save as .${format}`, () => void attempt(problem, () => control.call('session.export', { format }), press));
+    return press;
+  };
+  const log = button('Save the script', () => void attempt(problem, () => control.call('session.log', {}), log));
+  const buttons = [fork, exported('vtu'), exported('obj'), log];
+  const refresh = (): void => {
+    for (const one of buttons) one.disabled = model.joined === null || model.link.state !== 'online';
+    fork.disabled ||= !model.mayOperate;
+  };
+  model.on('joined', refresh);
+  model.on('link', refresh);
+  refresh();
+  return element('div', { class: 'buttons' }, name, ...buttons);
+}
+
+export function sessionsPanel(control: Control, link: Link): Panel {
+  const { model } = control;
+  const problem = problemPlace();
+  const list = element('ul', { class: 'sessions', aria: { label: 'Sessions' } });
+  const about = element('p', { class: 'about' });
+  const show = (): void => {
+    list.replaceChildren(...model.sessions.map((summary) => row(control, summary, problem)));
+    if (model.sessions.length === 0) list.replaceChildren(element('li', {}, 'No sessions yet. Create one below.'));
+  };
+  model.on('sessions', show);
+  model.on('link', show);
+  model.on('joined', (joined) => {
+    const description = joined?.description;
+    about.textContent = description
+      ? `${description.description} ${description.summary.vertex_count} vertices, ${description.triangle_count} triangles, ` +
+        `${description.tetrahedron_count} tetrahedra, ${description.link_count} links; ${description.instruction_set}.`
+      : '';
+  });
+  const body = element(
+    'div',
+    {},
+    problem,
+    list,
+    about,
+    forkAndFiles(control, problem),
+    createForm(control, problem),
+    uploadForm(control, link),
+  );
+  let visible = true;
+  setInterval(() => {
+    if (!visible || document.hidden || model.link.state !== 'online' || list.contains(document.activeElement)) return;
+    void attempt(problem, async () => model.setSessions((await link.call('session.list', {})).sessions));
+  }, REFRESH_MS);
+  return { id: 'sessions', title: 'Sessions', body, shown: (now) => (visible = now) };
+}
+
+export function saveReceived(name: string, mediaType: string, bytes: Uint8Array): void {
+  save(name, new Blob([bytes as BlobPart], { type: mediaType }));
+}

@@ -1,0 +1,105 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Time: pause, step, speed, and the timeline with its events, along which a session goes back.
+import type { Control } from '../model/control';
+import type { TimelineEvent } from '../wire/messages.gen';
+import { attempt, button, byId, element, problemPlace } from './dom';
+
+const SPEEDS = [0.1, 0.25, 0.5, 1, 2];
+const REFRESH_MS = 2000;
+const EVENT_WORDS: Partial<Record<TimelineEvent['kind'], string>> = {
+  cut: 'cut',
+  energy_on: 'energy on',
+  energy_off: 'energy off',
+  watchdog: 'watchdog',
+  fault: 'fault',
+  snapshot: 'snapshot',
+  rewind: 'rewind',
+  reset: 'reset',
+};
+
+function marks(events: readonly TimelineEvent[], least: number, most: number): SVGElement {
+  const svg = document.createElementNS('http://www.w3.org/2000/svg', 'svg');
+  svg.setAttribute('viewBox', '0 0 1000 10');
+  svg.setAttribute('preserveAspectRatio', 'none');
+  svg.setAttribute('aria-hidden', 'true');
+  for (const event of events) {
+    if (!(event.kind in EVENT_WORDS) || event.tick < least) continue;
+    const mark = document.createElementNS('http://www.w3.org/2000/svg', 'rect');
+    mark.setAttribute('class', `mark ${event.kind}`);
+    mark.setAttribute('x', String((1000 * (event.tick - least)) / Math.max(most - least, 1) - 1));
+    mark.setAttribute('width', '3');
+    mark.setAttribute('height', '10');
+    svg.append(mark);
+  }
+  return svg;
+}
+
+export function timeBar(control: Control): void {
+  const { model } = control;
+  const problem = problemPlace();
+  const pause = button('Pause', () => {
+    const paused = model.frame?.paused === true;
+    void attempt(problem, () => control.call(paused ? 'session.resume' : 'session.pause', {}), pause);
+  }, { id: 'pause' });
+  const step = button('Step', () => void attempt(problem, () => control.call('session.step', { ticks: 1 }), step), { id: 'step' });
+  const reset = button('Reset', () => void attempt(problem, () => control.call('session.reset', {}), reset), { id: 'reset', title: 'Back to the start' });
+  const speed = element('select', { name: 'speed', aria: { label: 'Speed' } }, ...SPEEDS.map((s) => element('option', { value: String(s) }, `${s} ×`)));
+  speed.value = '1';
+  speed.addEventListener('change', () => void attempt(problem, () => control.call('session.speed', { speed: Number(speed.value) })));
+  const slider = element('input', { type: 'range', name: 'tick', id: 'tick', min: '0', max: '1', value: '1', aria: { label: 'Timeline: tick to go back to' } });
+  const track = element('div', { class: 'track' }, slider);
+  const rewind = button('Rewind here', () => void attempt(problem, async () => {
+    await control.rewind(slider.valueAsNumber);
+    held = false;
+  }, rewind), { id: 'rewind', hidden: true });
+  const now = element('output', { class: 'now', id: 'now' });
+  let held = false;
+  slider.addEventListener('input', () => {
+    held = slider.valueAsNumber < Number(slider.max);
+    rewind.hidden = !held;
+    rewind.textContent = `Rewind to ${slider.valueAsNumber}`;
+  });
+  byId('time').append(pause, step, reset, speed, track, rewind, now, problem);
+
+  const place = (): void => {
+    const { timeline, frame } = model;
+    const least = timeline?.oldest_tick ?? 0;
+    const most = Math.max(frame?.tick ?? 0, least + 1);
+    slider.min = String(least);
+    slider.max = String(most);
+    if (!held) slider.value = String(most);
+    rewind.hidden = !held;
+  };
+  const drawMarks = (): void => {
+    place();
+    track.querySelector('svg')?.remove();
+    track.prepend(marks(model.timeline?.events ?? [], Number(slider.min), Number(slider.max)));
+  };
+  const enable = (): void => {
+    const usable = model.mayOperate && model.joined !== null;
+    for (const control_ of [pause, reset, speed, slider, rewind]) control_.disabled = !usable;
+    step.disabled = !usable || model.frame?.paused !== true;
+  };
+  model.on('timeline', drawMarks);
+  model.on('link', enable);
+  model.on('joined', (joined) => {
+    held = false;
+    enable();
+    if (joined) void attempt(problem, () => control.loadTimeline());
+  });
+  let paused: boolean | null = null;
+  model.on('frame', (frame) => {
+    const rate = frame.samples.at(-1)?.statistics?.realtimeFactor;
+    const text = `${frame.timeS.toFixed(2)} s · tick ${frame.tick}${frame.faulted ? ' · faulted' : ''}${rate === undefined || frame.paused ? '' : ` · ${rate.toFixed(2)} ×`}`;
+    if (now.value !== text) now.value = text;
+    if (frame.paused !== paused) {
+      paused = frame.paused;
+      pause.textContent = paused ? 'Resume' : 'Pause';
+      enable();
+    }
+  });
+  setInterval(() => {
+    if (model.timeline && !document.hidden) drawMarks();
+  }, REFRESH_MS);
+  enable();
+}

@@ -1,0 +1,138 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Tools: which one the hand holds, who drives it, its shape and sizes, new ones.
+import type { ToolHand } from '../hands/tool_hand';
+import type { Control } from '../model/control';
+import { PARAMETERS, TOOL_SHAPES, type Tool } from '../wire/messages.gen';
+import { attempt, button, element, field, problemPlace, short } from './dom';
+import { parameterInputs } from './parameters';
+import type { Panel } from './tabs';
+
+const SHOWN = ['temperature_c', 'hot_radius_m', 'tip_length_m', 'shaft_radius_m', 'jaw_open_rad', 'max_speed_m_s', 'friction'];
+const LEAST_FORCE_N = 1e-4; // below it a hand feels nothing
+const OFF_WORDS = {
+  never_enabled: 'off',
+  commanded: 'off',
+  watchdog: 'off: no sign of life from the driver',
+  restored: 'off: the session went back',
+  taken_over: 'off: taken over',
+} as const;
+
+function shapeSelect(): HTMLSelectElement {
+  return element('select', { name: 'shape' }, ...TOOL_SHAPES.map((shape) => element('option', { value: shape }, shape)));
+}
+
+function driverWords(control: Control, tool: string): string {
+  const driver = control.model.drivers.get(tool);
+  if (!driver || driver.client === 0) return 'nobody drives it';
+  if (driver.client === control.model.hello?.client) return 'you drive it';
+  return `driven by ${driver.name || `client ${driver.client}`}`;
+}
+
+function drivingButtons(control: Control, problem: HTMLElement): { place: HTMLElement; refresh(): void } {
+  const { model } = control;
+  const said = element('p', { class: 'about', aria: { role: 'status' } });
+  const chosen = (): string => model.selectedTool ?? '';
+  const take = button('Take the tool', () => void attempt(problem, () => control.takeOver(chosen()), take), { id: 'take' });
+  const ask = button('Ask its driver', () => {
+    void attempt(problem, () => control.ask(chosen()), ask).then((done) => {
+      if (done !== null) said.textContent = 'Asked. The driver may hand it over.';
+    });
+  });
+  const give = button('Let it go', () => void attempt(problem, () => control.handOver(chosen()), give), { id: 'give' });
+  const refresh = (): void => {
+    const driver = model.drivers.get(chosen());
+    const others = driver !== undefined && driver.client !== 0 && !model.driving;
+    said.textContent = model.tool ? `${model.tool.name}: ${driverWords(control, model.tool.name)}.` : 'This session has no tools.';
+    take.hidden = model.driving || (others && model.hello?.role !== 'admin');
+    ask.hidden = !others;
+    give.hidden = !model.driving;
+    for (const one of [take, ask, give]) one.disabled = !model.mayOperate || !model.tool;
+  };
+  return { place: element('div', {}, said, element('div', { class: 'buttons' }, take, ask, give)), refresh };
+}
+
+function editForm(control: Control, problem: HTMLElement): { form: HTMLElement; refresh(): void } {
+  const { model } = control;
+  const shape = shapeSelect();
+  const sizes = parameterInputs(PARAMETERS.tool.filter((parameter) => SHOWN.includes(parameter.name)));
+  const apply = element('button', { type: 'submit' }, 'Apply');
+  const remove = button('Remove', () => void attempt(problem, () => control.removeTool(model.selectedTool ?? ''), remove));
+  const form = element('form', { class: 'form' }, field('Shape', shape), ...sizes.fields, element('div', { class: 'buttons' }, apply, remove));
+  let shown = '';
+  form.addEventListener('submit', (event) => {
+    event.preventDefault();
+    const work = async (): Promise<void> => {
+      if (!model.tool) throw new Error('choose a tool first');
+      await control.configureTool({ ...model.tool, ...sizes.read(), shape: shape.value as Tool['shape'] });
+    };
+    void attempt(problem, work, apply);
+  });
+  return {
+    form,
+    refresh: () => {
+      const { tool } = model;
+      form.hidden = !tool;
+      apply.disabled = remove.disabled = !model.driving;
+      const now = JSON.stringify(tool);
+      if (!tool || now === shown) return;
+      shown = now;
+      shape.value = tool.shape;
+      sizes.show({ ...tool });
+    },
+  };
+}
+
+function addForm(control: Control): HTMLElement {
+  const { model } = control;
+  const problem = problemPlace();
+  const name = element('input', { name: 'tool', required: true, maxLength: 48, pattern: '[a-z][a-z0-9]*([_\\-][a-z0-9]+)*', value: 'grasper', autocomplete: 'off' });
+  const shape = shapeSelect();
+  shape.value = 'grasper';
+  shape.addEventListener('change', () => (name.value = shape.value));
+  const add = element('button', { type: 'submit' }, 'Add');
+  const form = element('form', { class: 'form' }, field('Shape', shape), field('Name', name), add, problem);
+  form.addEventListener('submit', (event) => {
+    event.preventDefault();
+    void attempt(problem, () => control.addTool({ name: name.value, shape: shape.value as Tool['shape'], position_m: [0.03, 0, 0.05] }), add);
+  });
+  model.on('tools', () => (add.disabled = !model.mayOperate || !model.joined));
+  return element('details', { class: 'section' }, element('summary', {}, 'Another tool'), form);
+}
+
+export function toolsPanel(control: Control, hand: ToolHand): Panel {
+  const { model } = control;
+  const problem = problemPlace();
+  const choose = element('select', { name: 'held', id: 'held' });
+  choose.addEventListener('change', () => model.selectTool(choose.value));
+  const guide = element(
+    'select',
+    { name: 'guide' },
+    element('option', { value: 'surface' }, 'over the surface'),
+    element('option', { value: 'plane' }, 'in the view plane'),
+  );
+  guide.addEventListener('change', () => (hand.guide = guide.value === 'plane' ? 'plane' : 'surface'));
+  const jaw = element('input', { type: 'range', min: '0', max: '1', step: '0.01', name: 'jaw' });
+  jaw.addEventListener('input', () => hand.setJaw(jaw.valueAsNumber));
+  const jawField = field('Jaws', jaw, '', 'closed to open');
+  const state = element('output', { class: 'state' });
+  const driving = drivingButtons(control, problem);
+  const edit = editForm(control, problem);
+  model.on('tools', () => {
+    choose.replaceChildren(...model.tools.map((tool) => element('option', { value: tool.name }, tool.name)));
+    choose.value = model.selectedTool ?? '';
+    jawField.hidden = !hand.mayGrasp;
+    driving.refresh();
+    edit.refresh();
+  });
+  model.on('frame', () => {
+    const tool = model.toolState;
+    if (!tool) return;
+    const energy = tool.energized ? 'energy on' : OFF_WORDS[tool.energyOff];
+    const force = Math.hypot(...tool.forceN);
+    const grasp = tool.grasping ? `, holds ${tool.graspedVertices} vertices` : '';
+    const text = `${energy}${grasp}; ${tool.tipTemperatureC.toFixed(0)} °C, ${force < LEAST_FORCE_N ? '0' : short(force, 2)} N, ${short(tool.energyJ, 3)} J`;
+    if (state.value !== text) state.value = text;
+  });
+  const body = element('div', {}, problem, field('Tool in hand', choose), driving.place, state, field('Moves', guide), jawField, edit.form, addForm(control));
+  return { id: 'tools', title: 'Tools', body };
+}

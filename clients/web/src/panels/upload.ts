@@ -1,0 +1,58 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// A mesh of one's own: the file travels in chunks, then a session is made of it.
+import type { Control } from '../model/control';
+import { sceneOfMesh, type MeshKind } from '../model/mesh_scene';
+import type { Link } from '../wire/link';
+import { attempt, element, field, problemPlace } from './dom';
+
+const MESH_KINDS: readonly (readonly [MeshKind, string])[] = [
+  ['fat', 'fat in its membrane (tetrahedra)'],
+  ['fascia', 'fascia (triangles)'],
+];
+
+export function uploadForm(control: Control, link: Link): HTMLElement {
+  const { model } = control;
+  const problem = problemPlace();
+  const file = element('input', { type: 'file', name: 'mesh', accept: '.msh,.obj,.vtk', required: true });
+  const kind = element('select', { name: 'kind' }, ...MESH_KINDS.map(([value, words]) => element('option', { value }, words)));
+  const size = element('input', { type: 'number', name: 'unit', value: '0.01', min: '1e-9', max: '1000', step: 'any', required: true });
+  const bar = element('progress', { max: 1, value: 0, hidden: true, aria: { label: 'Upload' } });
+  const submit = element('button', { type: 'submit' }, 'Upload and create');
+  file.addEventListener('change', () => {
+    const obj = file.files?.[0]?.name.endsWith('.obj') === true;
+    kind.value = obj ? 'fascia' : 'fat';
+  });
+  let uploads = 0; // each has a name of its own: the daemon keeps what no session took
+  const work = async (): Promise<void> => {
+    const mesh = file.files?.[0];
+    if (!mesh) throw new Error('choose a mesh file first');
+    bar.hidden = false;
+    bar.value = 0;
+    try {
+      const uploaded = await link.upload(`mesh-${++uploads}`, mesh, (sent, total) => (bar.value = sent / total));
+      await control.create({ definition: sceneOfMesh(uploaded.file, kind.value as MeshKind, size.valueAsNumber) });
+    } finally {
+      bar.hidden = true;
+    }
+  };
+  const form = element(
+    'form',
+    { class: 'form' },
+    field('Mesh file', file, '', 'Gmsh .msh, Wavefront .obj or legacy .vtk'),
+    field('Tissue', kind),
+    field('One unit is', size, 'm', 'length of the file’s unit: 0.001 for millimetres'),
+    submit,
+    bar,
+    problem,
+  );
+  form.addEventListener('submit', (event) => {
+    event.preventDefault();
+    void attempt(problem, work, submit);
+  });
+  const refresh = (): void => {
+    submit.disabled = !model.mayOperate || model.hello?.capabilities.includes('upload') !== true;
+  };
+  model.on('link', refresh);
+  refresh();
+  return element('details', { class: 'section', id: 'upload' }, element('summary', {}, 'Your own mesh'), form);
+}

@@ -1,0 +1,57 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Keeps the page quick where drawing is slow: no picture is asked for while the last one is still being
+// made, so that the page's own thread never waits for it, and pictures get coarser until they take
+// less than a twentieth of a second.
+
+const SLOW_MS = 50;
+const QUICK_MS = 12;
+const STEPS = [1, 0.75, 0.55, 0.4]; // of the screen's resolution
+const PATIENCE = 12; // pictures before the resolution changes
+
+export class Pace {
+  private fence: WebGLSync | null = null;
+  private started = 0;
+  private level = 0;
+  private slow = 0;
+  private quick = 0;
+  /** milliseconds of the last picture, from the order until it was there */
+  pictureMs = 0;
+
+  constructor(
+    private readonly gl: WebGL2RenderingContext,
+    private readonly setScale: (scale: number) => void,
+  ) {}
+
+  /** Whether the last picture is there; asked once per animation frame. */
+  ready(): boolean {
+    if (!this.fence) return true;
+    const status = this.gl.getSyncParameter(this.fence, this.gl.SYNC_STATUS) as number;
+    if (status !== this.gl.SIGNALED) return false;
+    this.gl.deleteSync(this.fence);
+    this.fence = null;
+    this.pictureMs = performance.now() - this.started;
+    this.adapt();
+    return true;
+  }
+
+  /** After the drawing commands of a picture. */
+  drawn(started: number): void {
+    this.started = started;
+    this.fence = this.gl.fenceSync(this.gl.SYNC_GPU_COMMANDS_COMPLETE, 0);
+    this.gl.flush();
+  }
+
+  private adapt(): void {
+    this.slow = this.pictureMs > SLOW_MS ? this.slow + 1 : 0;
+    this.quick = this.pictureMs < QUICK_MS ? this.quick + 1 : 0;
+    if (this.slow >= PATIENCE && this.level < STEPS.length - 1) this.change(1);
+    // Going back up waits ten times as long: a picture that flickers between two sharpnesses is worse.
+    else if (this.quick >= 10 * PATIENCE && this.level > 0) this.change(-1);
+  }
+
+  private change(by: number): void {
+    this.level += by;
+    this.slow = this.quick = 0;
+    this.setScale(STEPS[this.level]);
+  }
+}

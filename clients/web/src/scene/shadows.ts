@@ -1,0 +1,43 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// What instruments do to the light on the tissue: shafts and tips cast shadow, hot tips glow.
+import { Vector3 } from 'three';
+
+import { toolSizes } from '../model/tool_parts';
+import type { ToolState } from '../wire/records';
+import { CAPSULES_MAX, GLOWS_MAX, type SharedUniforms } from './tissue_view';
+import type { ToolView } from './tool_view';
+
+const GLOW = 0.8; // of a tip at its hottest
+
+export function placeShadows(
+  shared: SharedUniforms,
+  states: readonly ToolState[],
+  tools: ReadonlyMap<string, ToolView>,
+  heatOf: (state: ToolState) => number,
+): void {
+  const { capsuleFrom, capsuleTo, capsuleCount, glow } = shared;
+  let capsules = 0;
+  let glows = 0;
+  for (const light of glow.value) light.w = 0;
+  for (const state of states) {
+    const view = tools.get(state.name);
+    if (!view || capsules + 2 > CAPSULES_MAX) continue;
+    view.group.updateMatrixWorld();
+    const matrix = view.group.matrixWorld;
+    const { hot, tip, shaft, shaftLength } = toolSizes(view.definition);
+    const add = (from: Vector3, to: Vector3, radius: number): void => {
+      from.applyMatrix4(matrix);
+      capsuleFrom.value[capsules].set(from.x, from.y, from.z, radius);
+      capsuleTo.value[capsules++].copy(to.applyMatrix4(matrix));
+    };
+    add(new Vector3(0, 0, 2.2 * tip), new Vector3(0, 0, shaftLength), shaft);
+    const half = view.definition.shape === 'hook' ? tip / 2 : 0;
+    add(new Vector3(-half, 0, 0), half > 0 ? new Vector3(half, 0, 0) : new Vector3(0, 0, tip), hot);
+    const heat = heatOf(state);
+    if (heat > 0 && glows < GLOWS_MAX) {
+      const { x, y, z } = view.group.position;
+      glow.value[glows++].set(x, y, z, GLOW * heat);
+    }
+  }
+  capsuleCount.value = capsules;
+}

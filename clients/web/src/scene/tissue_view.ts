@@ -1,0 +1,161 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// The tissue in three.js: vertex arrays shared by all batches, one index and one material for each.
+import {
+  BufferAttribute,
+  BufferGeometry,
+  ClampToEdgeWrapping,
+  DataTexture,
+  DoubleSide,
+  DynamicDrawUsage,
+  GLSL3,
+  Group,
+  LinearFilter,
+  Mesh,
+  ShaderMaterial,
+  Vector3,
+  Vector4,
+  type IUniform,
+} from 'three';
+
+import { colourRow } from '../model/colour_maps';
+import { BURN_BYTES } from '../model/tissue';
+import type { Frame, Joined } from '../wire/worker_messages';
+import { makeNoise } from './noise';
+import { FRAGMENTS, VERTEX, type SurfaceKind } from './tissue_shader';
+
+export const CAPSULES_MAX = 8;
+export const GLOWS_MAX = 4;
+
+export interface SharedUniforms {
+  [name: string]: IUniform;
+  noise: IUniform;
+  colourMap: IUniform<DataTexture>;
+  mapChannel: IUniform<number>;
+  light: IUniform<Vector3>;
+  ambient: IUniform<number>;
+  capsuleCount: IUniform<number>;
+  capsuleFrom: IUniform<Vector4[]>;
+  capsuleTo: IUniform<Vector3[]>;
+  glow: IUniform<Vector4[]>;
+}
+
+function mapTexture(): DataTexture {
+  const texture = new DataTexture(colourRow(256), 256, 1);
+  texture.minFilter = texture.magFilter = LinearFilter;
+  texture.wrapS = texture.wrapT = ClampToEdgeWrapping;
+  texture.needsUpdate = true;
+  return texture;
+}
+
+export function makeSharedUniforms(): SharedUniforms {
+  return {
+    noise: { value: makeNoise() },
+    colourMap: { value: mapTexture() },
+    mapChannel: { value: -1 },
+    light: { value: new Vector3(0, 0, 1) },
+    ambient: { value: 0.42 },
+    capsuleCount: { value: 0 },
+    capsuleFrom: { value: Array.from({ length: CAPSULES_MAX }, () => new Vector4()) },
+    capsuleTo: { value: Array.from({ length: CAPSULES_MAX }, () => new Vector3()) },
+    glow: { value: Array.from({ length: GLOWS_MAX }, () => new Vector4()) },
+  };
+}
+
+function makeMaterial(kind: SurfaceKind, shared: SharedUniforms): ShaderMaterial {
+  const material = new ShaderMaterial({
+    glslVersion: GLSL3,
+    vertexShader: VERTEX,
+    fragmentShader: FRAGMENTS[kind],
+    uniforms: shared,
+    side: DoubleSide,
+    transparent: kind === 'fascia',
+  });
+  return material;
+}
+
+export class TissueView {
+  readonly group = new Group();
+  readonly indices: (Uint32Array | null)[];
+  readonly position: BufferAttribute;
+  private readonly normal: BufferAttribute;
+  private readonly burn: BufferAttribute;
+  private readonly meshes: Mesh<BufferGeometry, ShaderMaterial>[];
+
+  constructor(
+    readonly joined: Joined,
+    shared: SharedUniforms,
+  ) {
+    const count = joined.stream.vertex_count;
+    this.position = new BufferAttribute(new Float32Array(3 * count), 3).setUsage(DynamicDrawUsage);
+    this.normal = new BufferAttribute(new Float32Array(3 * count), 3).setUsage(DynamicDrawUsage);
+    this.burn = new BufferAttribute(new Uint8Array(BURN_BYTES * count), BURN_BYTES, true).setUsage(DynamicDrawUsage);
+    const material = new BufferAttribute(joined.material, 3);
+    this.indices = joined.batches.map(() => null);
+    this.meshes = joined.batches.map((batch) => {
+      const geometry = new BufferGeometry();
+      geometry.setAttribute('position', this.position);
+      geometry.setAttribute('normal', this.normal);
+      geometry.setAttribute('burn', this.burn);
+      geometry.setAttribute('material', material);
+      geometry.setIndex(new BufferAttribute(new Uint32Array(0), 1));
+      const kind: SurfaceKind = batch.bared ? 'bared' : batch.kind === 'links' ? 'membrane' : batch.kind;
+      const mesh = new Mesh(geometry, makeMaterial(kind, shared));
+      mesh.frustumCulled = false;
+      mesh.renderOrder = kind === 'fascia' ? 2 : 1;
+      this.group.add(mesh);
+      return mesh;
+    });
+  }
+
+  /** Takes a frame over; returns the arrays that were drawn before, to be given back. */
+  take(frame: Frame): Frame['buffers'] {
+    const before = {
+      position: this.position.array as Float32Array,
+      normal: this.normal.array as Float32Array,
+      burn: this.burn.array as Uint8Array,
+    };
+    this.position.array = frame.buffers.position;
+    this.normal.array = frame.buffers.normal;
+    this.burn.array = frame.buffers.burn;
+    for (const attribute of [this.position, this.normal, this.burn]) attribute.needsUpdate = true;
+    for (const { batch, index } of frame.drawn) this.setIndex(batch, index);
+    return before;
+  }
+
+  showLayer(layer: string, visible: boolean): void {
+    this.joined.batches.forEach((batch, b) => {
+      if (batch.layer === layer) this.meshes[b].visible = visible;
+    });
+  }
+
+  setWireframe(wireframe: boolean): void {
+    for (const mesh of this.meshes) mesh.material.wireframe = wireframe;
+  }
+
+  /** Indices of what can be seen, for picking. */
+  visibleIndices(): (Uint32Array | null)[] {
+    return this.indices.map((index, b) => (this.meshes[b].visible ? index : null));
+  }
+
+  dispose(): void {
+    for (const mesh of this.meshes) {
+      mesh.geometry.dispose();
+      mesh.material.dispose();
+    }
+  }
+
+  private setIndex(batch: number, index: Uint32Array): void {
+    this.indices[batch] = index;
+    const { geometry } = this.meshes[batch];
+    const attribute = geometry.getIndex()!;
+    // A batch's index mostly shrinks: the buffer on the card is kept and only its first part drawn.
+    if (index.length > attribute.array.length) {
+      geometry.setIndex(new BufferAttribute(index.slice(), 1).setUsage(DynamicDrawUsage));
+    } else {
+      attribute.array.set(index);
+      attribute.needsUpdate = true;
+    }
+    geometry.setDrawRange(0, index.length);
+  }
+}
+

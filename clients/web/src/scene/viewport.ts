@@ -1,0 +1,264 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// The picture: tissue, instruments, drape, smoke. Draws only when something changed.
+import { ArrowHelper, Box3, Color, Scene, Vector3, WebGLRenderer, type IUniform } from 'three';
+
+import type { Tool } from '../wire/messages.gen';
+import type { ToolState } from '../wire/records';
+import type { Frame, FrameBuffers, Joined } from '../wire/worker_messages';
+import { Drape } from './drape';
+import { Orbit } from './orbit';
+import { Pace } from './pace';
+import { placeShadows } from './shadows';
+import { Smoke } from './smoke';
+import { makeSharedUniforms, TissueView } from './tissue_view';
+import { ToolView } from './tool_view';
+
+export interface ViewOptions {
+  wireframe: boolean;
+  hiddenLayers: ReadonlySet<string>;
+  /** as tissue, or a scalar as colour */
+  colouring: 'tissue' | 'exposure' | 'charring' | 'stress';
+  forceArrow: boolean;
+}
+
+export interface Pose {
+  positionM: readonly [number, number, number];
+  rotation: readonly [number, number, number, number];
+  jaw: number;
+}
+
+const CHANNELS = { tissue: -1, exposure: 0, charring: 1, stress: 3 } as const;
+const METRES_PER_NEWTON = 0.02;
+const BODY_TEMPERATURE_C = 37;
+const SHARPEN_MS = 300;
+
+export class Viewport {
+  readonly orbit = new Orbit();
+  readonly renderer: WebGLRenderer;
+  tissue: TissueView | null = null;
+  /** milliseconds that the page's thread spent on the last picture */
+  drawMs = 0;
+  picturesDrawn = 0;
+  private readonly pace: Pace;
+  /** of moving pictures, from pace */
+  private scale = 1;
+  /** the picture shown is in full although moving ones are not */
+  private sharp = false;
+  private changedAt = 0;
+  private readonly scene = new Scene();
+  private readonly shared = makeSharedUniforms();
+  private readonly tools = new Map<string, ToolView>();
+  private readonly smoke = new Smoke();
+  private readonly arrow = new ArrowHelper(new Vector3(0, 0, 1), new Vector3(), 0.01, 0xf5b301);
+  private readonly drape: Drape;
+  private readonly background: IUniform<Color> = { value: new Color() };
+  private options: ViewOptions = { wireframe: false, hiddenLayers: new Set(), colouring: 'tissue', forceArrow: false };
+  private states: ToolState[] = [];
+  private dirty = true;
+  private lastDrawn = performance.now();
+
+  constructor(readonly canvas: HTMLCanvasElement) {
+    this.renderer = new WebGLRenderer({ canvas, antialias: true, powerPreference: 'high-performance' });
+    this.pace = new Pace(this.renderer.getContext() as WebGL2RenderingContext, (scale) => {
+      this.scale = scale;
+      this.resize();
+    });
+    this.drape = new Drape(this.background);
+    this.arrow.visible = false;
+    this.scene.add(this.drape.mesh, this.smoke.points, this.arrow);
+    this.setTheme(true);
+  }
+
+  setTheme(dark: boolean): void {
+    this.background.value.set(dark ? 0x14181c : 0xdfe5e8);
+    this.scene.background = this.background.value;
+    this.drape.setTheme(dark);
+    this.shared.ambient.value = dark ? 0.4 : 0.52;
+    this.smoke.setLight(dark);
+    this.invalidate();
+  }
+
+  setSession(joined: Joined | null): void {
+    if (this.tissue) {
+      this.scene.remove(this.tissue.group);
+      this.tissue.dispose();
+      this.tissue = null;
+    }
+    this.setTools([]);
+    this.drape.mesh.visible = joined !== null;
+    if (joined) {
+      this.tissue = new TissueView(joined, this.shared);
+      this.scene.add(this.tissue.group);
+      this.frameTissue(joined.rest);
+      this.setOptions(this.options);
+    }
+    this.invalidate();
+  }
+
+  /** Definitions of the instruments, when they come, go or change. */
+  setTools(tools: readonly Tool[]): void {
+    for (const [name, view] of this.tools) {
+      const kept = tools.find((tool) => tool.name === name);
+      if (kept && JSON.stringify(kept) === JSON.stringify(view.definition)) continue;
+      this.scene.remove(view.group);
+      view.dispose();
+      this.tools.delete(name);
+    }
+    for (const tool of tools) {
+      if (this.tools.has(tool.name)) continue;
+      const view = new ToolView(tool, this.shared.light);
+      view.group.visible = false;
+      this.tools.set(tool.name, view);
+      this.scene.add(view.group);
+    }
+    this.invalidate();
+  }
+
+  /** Draws a frame next; returns arrays to give back. */
+  takeFrame(frame: Frame): FrameBuffers | null {
+    this.states = frame.tools;
+    if (frame.changed || this.options.forceArrow) this.invalidate();
+    return this.tissue ? this.tissue.take(frame) : null;
+  }
+
+  /** Where an instrument is drawn: the hand's pose goes before the server's. */
+  poseTools(poses: ReadonlyMap<string, Pose>): void {
+    let changed = false;
+    for (const state of this.states) {
+      const pose = poses.get(state.name) ?? state;
+      const view = this.tools.get(state.name);
+      if (view?.set(pose.positionM, pose.rotation, pose.jaw, this.heatOf(state))) changed = true;
+    }
+    if (!changed) return;
+    placeShadows(this.shared, this.states, this.tools, (state) => this.heatOf(state));
+    this.invalidate();
+  }
+
+  setOptions(options: ViewOptions): void {
+    this.options = options;
+    this.shared.mapChannel.value = CHANNELS[options.colouring];
+    this.tissue?.setWireframe(options.wireframe);
+    for (const batch of this.tissue?.joined.batches ?? [])
+      this.tissue?.showLayer(batch.layer, !options.hiddenLayers.has(batch.layer));
+    this.invalidate();
+  }
+
+  invalidate(): void {
+    this.dirty = true;
+  }
+
+  resize(): void {
+    this.orbit.resize(this.canvas.clientWidth, this.canvas.clientHeight);
+    this.setScale(this.scale);
+    this.invalidate();
+  }
+
+  /** Draws if anything changed; called once per animation frame. */
+  draw(): void {
+    const now = performance.now();
+    const seconds = Math.min((now - this.lastDrawn) / 1000, 0.1);
+    if (this.smoke.advance(seconds, this.smoking())) this.dirty = true;
+    this.lastDrawn = now;
+    if (!this.pace.ready()) return;
+    if (!this.dirty) {
+      this.sharpen(now);
+      return;
+    }
+    this.dirty = false;
+    this.changedAt = now;
+    if (this.sharp) this.setScale(this.scale);
+    this.render();
+    this.pace.drawn(now);
+    this.drawMs = performance.now() - now;
+  }
+
+  /** Nothing is left to draw, and what is drawn is sharp. */
+  get idle(): boolean {
+    return !this.dirty && this.pace.ready() && (this.sharp || this.scale === 1);
+  }
+
+  /** A picture that stands still is drawn once more in full, however coarse moving ones are. */
+  private sharpen(now: number): void {
+    if (this.scale === 1 || this.sharp || now - this.changedAt < SHARPEN_MS) return;
+    this.setScale(1);
+    this.sharp = true;
+    this.render();
+  }
+
+  private render(): void {
+    this.placeLamp();
+    this.placeArrow();
+    this.renderer.render(this.scene, this.orbit.camera);
+    this.picturesDrawn++;
+  }
+
+  private setScale(scale: number): void {
+    const { clientWidth, clientHeight } = this.canvas;
+    this.renderer.setPixelRatio(Math.min(window.devicePixelRatio, 2) * scale);
+    this.renderer.setSize(clientWidth, clientHeight, false);
+    this.smoke.resize(this.canvas.height);
+    this.sharp = false;
+  }
+
+  /** milliseconds that the last picture took to be there */
+  get pictureMs(): number {
+    return this.pace.pictureMs;
+  }
+
+  /** Where a point of the world is in the page, in CSS pixels. */
+  project(point: readonly [number, number, number]): { x: number; y: number } {
+    const at = new Vector3(...point).project(this.orbit.camera);
+    const box = this.canvas.getBoundingClientRect();
+    return { x: box.left + ((at.x + 1) / 2) * box.width, y: box.top + ((1 - at.y) / 2) * box.height };
+  }
+
+  /** The picture as PNG. */
+  async png(): Promise<Blob> {
+    this.setScale(1);
+    this.render();
+    return new Promise<Blob>((resolve, reject) =>
+      this.canvas.toBlob((blob) => (blob ? resolve(blob) : reject(new Error('the picture could not be written'))), 'image/png'),
+    ).finally(() => this.resize());
+  }
+
+  private frameTissue(rest: Float32Array): void {
+    const box = new Box3().setFromArray(rest);
+    this.orbit.frame(box);
+    this.drape.place(box);
+  }
+
+  /** A lamp beside the camera, above it. */
+  private placeLamp(): void {
+    const { x, y } = this.orbit.axes();
+    const distance = this.orbit.camera.position.distanceTo(this.orbit.target);
+    this.shared.light.value
+      .copy(this.orbit.camera.position)
+      .addScaledVector(x, -0.55 * distance)
+      .addScaledVector(y, 0.75 * distance);
+  }
+
+  private heatOf(state: ToolState): number {
+    if (!state.energized) return 0;
+    return Math.min(Math.max((state.tipTemperatureC - BODY_TEMPERATURE_C) / 130, 0.15), 1);
+  }
+
+  private smoking(): Vector3[] {
+    const sources: Vector3[] = [];
+    for (const state of this.states) {
+      const view = this.tools.get(state.name);
+      if (view && state.energized && state.touchedLayers !== 0) sources.push(view.group.position);
+    }
+    return sources;
+  }
+
+  private placeArrow(): void {
+    const pressed = this.states.find((state) => Math.hypot(...state.forceN) > 1e-3);
+    this.arrow.visible = this.options.forceArrow && pressed !== undefined;
+    if (!pressed || !this.arrow.visible) return;
+    const force = new Vector3(...pressed.forceN);
+    const length = Math.min(Math.max(force.length() * METRES_PER_NEWTON, 0.004), 0.08);
+    this.arrow.position.set(...pressed.positionM);
+    this.arrow.setDirection(force.normalize());
+    this.arrow.setLength(length, 0.3 * length, 0.15 * length);
+  }
+}

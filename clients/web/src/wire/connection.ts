@@ -1,0 +1,221 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// One lasting connection to a daemon: hello, requests and answers, and coming back after a loss with
+// back-off, the same client identity and the resume token. Knows no page: sockets are given to it.
+import { CHANGING_METHODS, CLOSE_REASONS, SUBPROTOCOL, WIRE_VERSION } from './messages.gen';
+import type { HelloResult, Notices, Pushes, Requests } from './messages.gen';
+
+export interface Socket {
+  binaryType: BinaryType;
+  send(data: string | ArrayBufferView): void;
+  close(): void;
+  onopen: ((event: Event) => void) | null;
+  onclose: ((event: CloseEvent) => void) | null;
+  onmessage: ((event: MessageEvent) => void) | null;
+}
+
+export interface ConnectionOptions {
+  url: string;
+  client: string;
+  clientId: string;
+  token?: string;
+}
+
+export type LinkState =
+  | { state: 'connecting' }
+  | { state: 'online'; hello: HelloResult; again: boolean }
+  | { state: 'lost'; words: string; retryInS: number }
+  | { state: 'refused'; words: string; status: 'version' | 'unauthorized' | 'replaced' };
+
+export interface ConnectionEvents {
+  state(state: LinkState): void;
+  push<M extends keyof Pushes>(method: M, params: Pushes[M]): void;
+  binary(bytes: Uint8Array): void;
+}
+
+/** An answer that is an error, in the server's words; path is the offending member. */
+export class RpcError extends Error {
+  constructor(
+    readonly status: string,
+    message: string,
+    readonly path?: string,
+    readonly reason?: string,
+  ) {
+    super(reason ?? message);
+  }
+}
+
+interface Pending {
+  method: string;
+  text: string;
+  resolve(result: unknown): void;
+  reject(error: Error): void;
+}
+
+interface Answer {
+  id?: number | null;
+  method?: keyof Pushes;
+  params?: never;
+  result?: unknown;
+  error?: { message: string; data?: { status?: string; path?: string; reason?: string } };
+}
+
+const FIRST_RETRY_S = 0.25;
+const LONGEST_RETRY_S = 8;
+const REFUSALS: Readonly<Record<number, 'version' | 'unauthorized' | 'replaced'>> = {
+  4002: 'unauthorized',
+  4003: 'version',
+  4007: 'replaced',
+};
+
+/** Commands to a tool mean the moment in which they are given: after a loss they are not sent again. */
+function outlivesLoss(method: string): boolean {
+  return !method.startsWith('tool.') && !method.startsWith('upload.') && !method.startsWith('stream.') && method !== 'heartbeat';
+}
+
+export class Connection {
+  private socket: Socket | null = null;
+  private hello: HelloResult | null = null;
+  private pending = new Map<number, Pending>();
+  private nextId = 1;
+  private clientSequence = 0;
+  private retries = 0;
+  private timer: ReturnType<typeof setTimeout> | undefined;
+
+  constructor(
+    private readonly options: ConnectionOptions,
+    private readonly open: (url: string, protocol: string) => Socket,
+    private readonly events: ConnectionEvents,
+  ) {}
+
+  start(): void {
+    this.events.state({ state: 'connecting' });
+    const socket = this.open(this.options.url, SUBPROTOCOL);
+    socket.binaryType = 'arraybuffer';
+    this.socket = socket;
+    socket.onopen = () => this.greet();
+    socket.onmessage = (event) => this.receive(event.data as string | ArrayBuffer);
+    socket.onclose = (event) => this.closed(event);
+  }
+
+  /** Ends for good. */
+  stop(): void {
+    clearTimeout(this.timer);
+    const { socket } = this;
+    this.socket = null;
+    if (socket) {
+      socket.onclose = null;
+      socket.close();
+    }
+    this.abandon(() => true, 'the connection was closed');
+  }
+
+  get online(): boolean {
+    return this.hello !== null;
+  }
+
+  request<M extends keyof Requests>(method: M, params: Requests[M]['params']): Promise<Requests[M]['result']> {
+    return new Promise((resolve, reject) => {
+      const id = this.nextId++;
+      const sequenced = CHANGING_METHODS.has(method) ? { ...params, client_sequence: ++this.clientSequence } : params;
+      const text = JSON.stringify({ jsonrpc: '2.0', id, method, params: sequenced });
+      if (!this.online && method !== 'hello' && !outlivesLoss(method)) {
+        reject(new RpcError('lost', 'the daemon cannot be reached just now'));
+        return;
+      }
+      this.pending.set(id, { method, text, resolve: resolve as (result: unknown) => void, reject });
+      if (this.online || method === 'hello') this.socket?.send(text);
+    });
+  }
+
+  notify<M extends keyof Notices>(method: M, params: Notices[M]): void {
+    if (this.online) this.socket?.send(JSON.stringify({ jsonrpc: '2.0', method, params }));
+  }
+
+  sendBytes(bytes: Uint8Array): void {
+    if (this.online) this.socket?.send(bytes);
+  }
+
+  private greet(): void {
+    const { client, clientId, token } = this.options;
+    const resume = this.lastResume;
+    const params = {
+      version: WIRE_VERSION,
+      client,
+      client_id: clientId,
+      ...(token === undefined ? {} : { token }),
+      ...(resume === null ? {} : { resume }),
+    };
+    this.request('hello', params).then(
+      (hello) => this.greeted(hello),
+      (error: unknown) => this.refused(error),
+    );
+  }
+
+  private lastResume: string | null = null;
+
+  private greeted(hello: HelloResult): void {
+    const again = this.lastResume !== null;
+    this.hello = hello;
+    this.lastResume = hello.resume;
+    this.retries = 0;
+    for (const pending of this.pending.values()) this.socket?.send(pending.text);
+    this.events.state({ state: 'online', hello, again });
+  }
+
+  private refused(error: unknown): void {
+    if (!(error instanceof RpcError)) return;
+    const status = error.status === 'version' ? 'version' : error.status === 'unauthorized' ? 'unauthorized' : null;
+    if (status) this.end(status, error.message);
+  }
+
+  private end(status: 'version' | 'unauthorized' | 'replaced', words: string): void {
+    this.stop();
+    const versions = `This page speaks wire version ${WIRE_VERSION}, and the daemon does not: reload the page, or update the daemon.`;
+    this.events.state({ state: 'refused', status, words: status === 'version' ? versions : words });
+  }
+
+  private receive(data: string | ArrayBuffer): void {
+    if (typeof data !== 'string') {
+      this.events.binary(new Uint8Array(data));
+      return;
+    }
+    const answer = JSON.parse(data) as Answer;
+    if (answer.method !== undefined) {
+      this.events.push(answer.method, answer.params as never);
+      return;
+    }
+    const pending = this.pending.get(answer.id ?? -1);
+    if (!pending) return;
+    this.pending.delete(answer.id ?? -1);
+    if (answer.error) {
+      const { message, data: detail } = answer.error;
+      pending.reject(new RpcError(detail?.status ?? 'internal', message, detail?.path, detail?.reason));
+    } else {
+      pending.resolve(answer.result);
+    }
+  }
+
+  private closed(event: CloseEvent): void {
+    this.socket = null;
+    this.hello = null;
+    const words = CLOSE_REASONS[event.code] ?? (event.reason || 'the daemon cannot be reached');
+    const refusal = REFUSALS[event.code];
+    if (refusal) {
+      this.end(refusal, words);
+      return;
+    }
+    this.abandon((method) => method === 'hello' || !outlivesLoss(method), 'the connection was lost');
+    const retryInS = Math.min(LONGEST_RETRY_S, FIRST_RETRY_S * 2 ** this.retries) * (0.75 + 0.5 * Math.random());
+    this.retries++;
+    this.events.state({ state: 'lost', words, retryInS });
+    this.timer = setTimeout(() => this.start(), retryInS * 1000);
+  }
+
+  private abandon(which: (method: string) => boolean, words: string): void {
+    for (const [id, pending] of this.pending) {
+      if (!which(pending.method)) continue;
+      this.pending.delete(id);
+      pending.reject(new RpcError('lost', words));
+    }
+  }
+}

@@ -1,0 +1,164 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Holds a stream's state and takes frames into it: the rules of "Streams" in protocol/README.md.
+import { applyElements, type Runs } from './elements';
+import { readHeader, readSections, WireError, type FrameHeader } from './header';
+import { SECTION } from './messages.gen';
+import { readStatistics, readToolNames, readTools, type Statistics, type ToolName, type ToolState } from './records';
+
+export interface StreamShape {
+  session_number: number;
+  profile: number;
+  vertex_count: number;
+  face_count: number;
+}
+
+export interface StreamState {
+  /** false: nothing to draw yet, or damaged; a key frame is needed */
+  synced: boolean;
+  epoch: bigint;
+  sequence: number;
+  tick: number;
+  timeS: number;
+  publishedUs: number;
+  paused: boolean;
+  faulted: boolean;
+  /** steps from the origin (vertices x 3) */
+  quantised: Int32Array;
+  /** words of 32 faces; a set bit: not drawn */
+  mask: Int32Array;
+  /** (vertices), 255 = 1 */
+  exposure: Int32Array;
+  /** (vertices), 255 = 1 */
+  charring: Int32Array;
+  /** (vertices), stress_step_pa */
+  stress: Int32Array;
+  tools: ToolState[];
+  statistics: Statistics | null;
+}
+
+/** What the last frame changed; whole: anything may have. */
+export interface Changes {
+  whole: boolean;
+  moved: Runs;
+  maskWords: Runs;
+  scalars: boolean;
+}
+
+export type Outcome =
+  | { kind: 'applied'; key: boolean; changes: Changes }
+  | { kind: 'skipped'; reason: string; gap: boolean };
+
+const SCALARS = [
+  [SECTION.exposure, 'exposure'],
+  [SECTION.charring, 'charring'],
+  [SECTION.stress, 'stress'],
+] as const;
+
+export class FrameDecoder {
+  readonly state: StreamState;
+  private names: ToolName[] = [];
+
+  constructor(private readonly shape: StreamShape) {
+    const scalar = (): Int32Array => new Int32Array(shape.vertex_count);
+    this.state = {
+      synced: false,
+      epoch: 0n,
+      sequence: 0,
+      tick: 0,
+      timeS: 0,
+      publishedUs: 0,
+      paused: false,
+      faulted: false,
+      quantised: new Int32Array(3 * shape.vertex_count),
+      mask: new Int32Array(Math.ceil(shape.face_count / 32)),
+      exposure: scalar(),
+      charring: scalar(),
+      stress: scalar(),
+      tools: [],
+      statistics: null,
+    };
+  }
+
+  /** Takes a key or delta frame. Throws WireError on damage; the state then waits for a key frame. */
+  decode(bytes: Uint8Array): Outcome {
+    const header = readHeader(bytes);
+    const refusal = this.refusal(header);
+    if (refusal) return refusal;
+    try {
+      const changes = this.apply(header, readSections(bytes, header.sectionCount));
+      return { kind: 'applied', key: header.kind === 'key', changes };
+    } catch (error) {
+      this.state.synced = false;
+      throw error;
+    }
+  }
+
+  private refusal(header: FrameHeader): Outcome | null {
+    const { state, shape } = this;
+    const skip = (reason: string, gap = false): Outcome => ({ kind: 'skipped', reason, gap });
+    if (header.session !== shape.session_number || header.profile !== shape.profile)
+      return skip('a frame of another stream');
+    if (header.kind === 'topology') return skip('a topology frame');
+    if (header.kind === 'key') {
+      const older = state.synced && header.epoch === state.epoch && header.sequence <= state.sequence;
+      return older ? skip('a key frame of what is held') : null;
+    }
+    if (!state.synced) return skip('a delta before a key frame', true);
+    if (header.epoch !== state.epoch) return skip('a delta of another epoch', true);
+    if (header.sequence <= state.sequence) return skip('a delta that is held already');
+    if (header.baseSequence !== state.sequence) return skip('a delta on a state that is not held', true);
+    return null;
+  }
+
+  private apply(header: FrameHeader, sections: Map<number, Uint8Array>): Changes {
+    const { state } = this;
+    const key = header.kind === 'key';
+    if (key) this.clear();
+    const changes: Changes = { whole: key, moved: [], maskWords: [], scalars: key };
+    const positions = sections.get(SECTION.positions);
+    if (positions) changes.moved = applyElements(positions, state.quantised, 3, !key);
+    if (key) this.requireWhole(changes.moved, positions !== undefined);
+    const mask = sections.get(SECTION.mask);
+    if (mask) changes.maskWords = applyElements(mask, state.mask, 1, !key);
+    for (const [type, name] of SCALARS) {
+      const payload = sections.get(type);
+      if (!payload) continue;
+      const runs = applyElements(payload, state[name], 1, !key);
+      changes.scalars ||= runs.length > 0;
+    }
+    this.applyRecords(sections);
+    state.epoch = header.epoch;
+    state.sequence = header.sequence;
+    state.tick = header.tick;
+    state.timeS = header.timeS;
+    state.publishedUs = header.publishedUs;
+    state.paused = header.paused;
+    state.faulted = header.faulted;
+    state.synced = true;
+    return changes;
+  }
+
+  /** What a key frame leaves out is zero. */
+  private clear(): void {
+    const { state } = this;
+    for (const array of [state.mask, state.exposure, state.charring, state.stress]) array.fill(0);
+    state.tools = [];
+    state.statistics = null;
+    this.names = [];
+  }
+
+  private requireWhole(runs: Runs, present: boolean): void {
+    const { vertex_count } = this.shape;
+    const whole = runs.length === 2 && runs[0] === 0 && runs[1] === vertex_count;
+    if (present && !whole && vertex_count > 0) throw new WireError('a key frame without all positions');
+  }
+
+  private applyRecords(sections: Map<number, Uint8Array>): void {
+    const names = sections.get(SECTION.tool_names);
+    if (names) this.names = readToolNames(names);
+    const tools = sections.get(SECTION.tools);
+    if (tools) this.state.tools = readTools(tools, this.names);
+    const statistics = sections.get(SECTION.statistics);
+    if (statistics) this.state.statistics = readStatistics(statistics);
+  }
+}

@@ -1,0 +1,86 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// From decoded frames to what the page draws: every frame goes into the tissue, the newest is handed
+// over as soon as the page has given the last one's buffers back. So the page can never fall behind.
+import { materialCoordinates } from '../model/fibres';
+import { BURN_BYTES, Tissue } from '../model/tissue';
+import type { Changes, StreamState } from './decoder';
+import type { SessionDescription, StreamDescription } from './messages.gen';
+import type { Topology } from './topology';
+import type { Frame, FrameBuffers, Joined, Sample } from './worker_messages';
+
+const SAMPLES_MAX = 600;
+
+export class Feed {
+  readonly joined: Joined;
+  private readonly tissue: Tissue;
+  private readonly stale = new Set<number>();
+  private spare: FrameBuffers | null;
+  private newest: StreamState | null = null;
+  private changed = true;
+  private samples: Sample[] = [];
+
+  constructor(
+    description: SessionDescription,
+    private readonly stream: StreamDescription,
+    topology: Topology,
+  ) {
+    const { vertex_count: vertexCount, face_count: faceCount, origin_m: originM, step_m: stepM } = stream;
+    const { layers } = description;
+    this.tissue = new Tissue({ vertexCount, faceCount, originM, stepM, layers, topology });
+    const rest = Float32Array.from(topology.rest, (value, i) => originM[i % 3] + stepM * value);
+    const material = materialCoordinates(topology, rest, layers, description.definition);
+    const batches = this.tissue.batches.map(({ faces, ...batch }) => ({ ...batch, faceCount: faces.length }));
+    this.joined = { description, stream, batches, rest, material };
+    this.spare = {
+      position: new Float32Array(3 * vertexCount),
+      normal: new Float32Array(3 * vertexCount),
+      burn: new Uint8Array(BURN_BYTES * vertexCount),
+    };
+  }
+
+  take(state: StreamState, changes: Changes, sample: Sample): void {
+    for (const batch of this.tissue.update(state, changes)) this.stale.add(batch);
+    this.changed ||= changes.whole || changes.scalars || changes.moved.length > 0 || changes.maskWords.length > 0;
+    this.newest = state;
+    this.samples.push(sample);
+    if (this.samples.length > SAMPLES_MAX) this.samples.shift();
+  }
+
+  giveBack(buffers: FrameBuffers): void {
+    if (buffers.position.length === this.tissue.position.length) this.spare = buffers;
+  }
+
+  /** The newest state if it was not handed over yet and buffers are here; the caller transfers them. */
+  handOver(framesDecoded: number, framesSkipped: number): Frame | null {
+    const { newest: state, spare: buffers, tissue } = this;
+    if (!state || !buffers) return null;
+    this.newest = null;
+    this.spare = null;
+    buffers.position.set(tissue.position);
+    buffers.normal.set(tissue.normal);
+    buffers.burn.set(tissue.burn);
+    const drawn = [...this.stale].map((batch) => ({ batch, index: tissue.drawnIndex[batch] }));
+    this.stale.clear();
+    const { samples, changed } = this;
+    this.samples = [];
+    this.changed = false;
+    return {
+      session: this.stream.session,
+      epoch: state.epoch.toString(16).padStart(16, '0'),
+      sequence: state.sequence,
+      tick: state.tick,
+      timeS: state.timeS,
+      paused: state.paused,
+      faulted: state.faulted,
+      changed,
+      buffers,
+      drawn,
+      drawnFaces: tissue.drawnFaceCounts(),
+      stressScalePa: tissue.stressScale * this.stream.stress_step_pa,
+      tools: state.tools,
+      samples,
+      framesDecoded,
+      framesSkipped,
+    };
+  }
+}

@@ -1,0 +1,78 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Files in both directions: uploads in chunks with progress, exports put together and checked.
+import type { Chunk } from './chunk';
+import { writeChunk } from './chunk';
+import type { Connection } from './connection';
+import { RpcError } from './connection';
+import type { Transfer, UploadResult } from './messages.gen';
+
+async function sha256(bytes: Uint8Array): Promise<string> {
+  // Pages beyond loopback without TLS have no SubtleCrypto.
+  if (typeof crypto === 'undefined' || !('subtle' in crypto) || !crypto.subtle)
+    throw new RpcError('unsupported', 'uploads need a secure page: use https, or the daemon on this machine');
+  const digest = new Uint8Array(await crypto.subtle.digest('SHA-256', bytes));
+  return Array.from(digest, (byte) => byte.toString(16).padStart(2, '0')).join('');
+}
+
+export async function upload(
+  connection: Connection,
+  name: string,
+  fileName: string,
+  bytes: Uint8Array,
+  progress: (sent: number) => void,
+): Promise<UploadResult> {
+  const hash = await sha256(bytes);
+  const begun = await connection.request('upload.begin', { name, file_name: fileName, byte_count: bytes.byteLength });
+  const { transfer, chunk_bytes_max: most } = begun;
+  for (let offset = 0; offset < bytes.byteLength; offset += most) {
+    connection.sendBytes(writeChunk({ transfer, offset, data: bytes.subarray(offset, offset + most) }));
+    progress(Math.min(offset + most, bytes.byteLength));
+    // lets answers in between, and the progress be seen
+    await new Promise((resolve) => setTimeout(resolve));
+  }
+  return connection.request('upload.end', { transfer, sha256: hash });
+}
+
+export interface ReceivedFile {
+  name: string;
+  mediaType: string;
+  bytes: Uint8Array;
+  /** the hash is as announced */
+  sound: boolean;
+}
+
+/** Chunks of announced transfers, until they are whole. */
+export class Downloads {
+  private readonly open = new Map<number, { transfer: Transfer; bytes: Uint8Array; got: number }>();
+
+  constructor(private readonly done: (file: ReceivedFile) => void) {}
+
+  announce(transfer: Transfer): void {
+    const download = { transfer, bytes: new Uint8Array(transfer.byte_count), got: 0 };
+    if (transfer.byte_count === 0) void this.finish(download);
+    else this.open.set(transfer.transfer, download);
+  }
+
+  take(chunk: Chunk): void {
+    const download = this.open.get(chunk.transfer);
+    if (!download) return;
+    const end = chunk.offset + chunk.data.byteLength;
+    if (chunk.offset !== download.got || end > download.bytes.byteLength) {
+      this.open.delete(chunk.transfer);
+      return;
+    }
+    download.bytes.set(chunk.data, chunk.offset);
+    download.got = end;
+    if (end < download.bytes.byteLength) return;
+    this.open.delete(chunk.transfer);
+    void this.finish(download);
+  }
+
+  private async finish({ transfer, bytes }: { transfer: Transfer; bytes: Uint8Array }): Promise<void> {
+    const sound = await sha256(bytes).then(
+      (hash) => hash === transfer.sha256,
+      () => true, // without SubtleCrypto the hash cannot be checked
+    );
+    this.done({ name: transfer.file_name, mediaType: transfer.media_type, bytes, sound });
+  }
+}

@@ -1,0 +1,122 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// The page's end of the worker: calls with answers, and events.
+import type { LinkState } from './connection';
+import { RpcError } from './connection';
+import type { Notices, Pushes, Requests, UploadResult } from './messages.gen';
+import type { Channels, Frame, FrameBuffers, FromWorker, Joined, ToWorker } from './worker_messages';
+
+export interface LinkEvents {
+  state(state: LinkState): void;
+  joined(joined: Joined): void;
+  notJoined(session: string, message: string): void;
+  frame(frame: Frame): void;
+  push<M extends keyof Pushes>(method: M, params: Pushes[M]): void;
+  file(name: string, mediaType: string, bytes: Uint8Array, sound: boolean): void;
+}
+
+interface Call {
+  resolve(result: unknown): void;
+  reject(error: Error): void;
+  progress?: (sent: number, total: number) => void;
+}
+
+export class Link {
+  private readonly worker: Worker;
+  private readonly calls = new Map<number, Call>();
+  private nextCall = 1;
+
+  constructor(private readonly events: LinkEvents) {
+    this.worker = new Worker(new URL('./worker.ts', import.meta.url), { type: 'module' });
+    this.worker.onmessage = (event: MessageEvent<FromWorker>) => this.receive(event.data);
+  }
+
+  /** A new connection, under a new identity: answers of an earlier one are of no use to it. */
+  connect(url: string, token?: string): void {
+    const clientId = Array.from(crypto.getRandomValues(new Uint8Array(12)), (b) => b.toString(16).padStart(2, '0')).join('');
+    const client = `viewer ${__VIEWER_VERSION__}`;
+    this.send({ type: 'connect', url, client, clientId, ...(token === undefined ? {} : { token }) });
+  }
+
+  call<M extends keyof Requests>(method: M, params: Requests[M]['params']): Promise<Requests[M]['result']> {
+    return new Promise((resolve, reject) => {
+      const call = this.remember({ resolve: resolve as (result: unknown) => void, reject });
+      this.send({ type: 'call', call, method, params });
+    });
+  }
+
+  notify<M extends keyof Notices>(method: M, params: Notices[M]): void {
+    this.send({ type: 'notice', method, params });
+  }
+
+  heartbeat(visible: boolean): void {
+    this.send({ type: 'heartbeat', visible });
+  }
+
+  watch(session: string | null, channels: Channels): void {
+    this.send({ type: 'watch', session, channels });
+  }
+
+  upload(name: string, file: File, progress: (sent: number, total: number) => void): Promise<UploadResult> {
+    return file.arrayBuffer().then(
+      (bytes) =>
+        new Promise((resolve, reject) => {
+          const call = this.remember({ resolve: resolve as (result: unknown) => void, reject, progress });
+          this.send({ type: 'upload', call, name, fileName: file.name, bytes }, [bytes]);
+        }),
+    );
+  }
+
+  /** Gives a frame's arrays back; the worker answers with the next. */
+  giveBack(buffers: FrameBuffers): void {
+    const { position, normal, burn } = buffers;
+    this.send({ type: 'return', buffers }, [position.buffer, normal.buffer, burn.buffer]);
+  }
+
+  private remember(call: Call): number {
+    this.calls.set(this.nextCall, call);
+    return this.nextCall++;
+  }
+
+  private send(message: ToWorker, transfer: Transferable[] = []): void {
+    this.worker.postMessage(message, transfer);
+  }
+
+  private take(call: number): Call | undefined {
+    const found = this.calls.get(call);
+    this.calls.delete(call);
+    return found;
+  }
+
+  private receive(message: FromWorker): void {
+    const { events } = this;
+    switch (message.type) {
+      case 'link':
+        events.state(message.state);
+        break;
+      case 'answer':
+        this.take(message.call)?.resolve(message.result);
+        break;
+      case 'failure':
+        this.take(message.call)?.reject(new RpcError(message.status, message.message, message.path));
+        break;
+      case 'push':
+        events.push(message.method, message.params as never);
+        break;
+      case 'joined':
+        events.joined(message.joined);
+        break;
+      case 'not_joined':
+        events.notJoined(message.session, message.message);
+        break;
+      case 'frame':
+        events.frame(message.frame);
+        break;
+      case 'progress':
+        this.calls.get(message.call)?.progress?.(message.sent, message.total);
+        break;
+      case 'file':
+        events.file(message.name, message.mediaType, message.bytes, message.sound);
+        break;
+    }
+  }
+}

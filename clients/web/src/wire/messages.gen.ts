@@ -1,0 +1,1752 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Generated from protocol/include/cautery/*.def and the codec's tables; do not edit.
+// After a change there, build the target `messages`.
+
+export const WIRE_VERSION = 1;
+export const SUBPROTOCOL = 'cautery.v1';
+
+/** no members */
+export type Nothing = Record<string, never>;
+
+/** the first message on a connection */
+export interface Hello {
+  /** wire version wanted; this document is version 1 (1 to 1000) */
+  version: number;
+  /** name and version of the client program, for logs and other users */
+  client: string;
+  /** the client's own lasting identity; names the stored answers of client_sequence */
+  client_id?: string;
+  /** access token, where the server asks for one */
+  token?: string;
+  /** token of an earlier hello: takes back the tools driven within 10 s of the loss, energy off */
+  resume?: string;
+  /** role wanted; the token's by default and at most */
+  role?: 'view' | 'operate' | 'admin';
+}
+
+/** what the server accepts; beyond it are errors or a close code */
+export interface Limits {
+  /** of a text message (1 to 9007199254740991 B) */
+  message_bytes_max: number;
+  /** of one upload (0 to 9007199254740991 B) */
+  upload_bytes_max: number;
+  /** of data in one binary chunk (1 to 9007199254740991 B) */
+  chunk_bytes_max: number;
+  /** sessions of the daemon (0 to 9007199254740991) */
+  sessions_max: number;
+  /** connections of the daemon (0 to 9007199254740991) */
+  subscribers_max: number;
+  /** different stream profiles of a session (1 to 4) */
+  profiles_max: number;
+  /** tools of a session (1 to 8) */
+  tools_max: number;
+  /** requests of a connection (1 to 9007199254740991 1/s) */
+  requests_per_s_max: number;
+  /** tool.move notifications of a connection (1 to 9007199254740991 1/s) */
+  motions_per_s_max: number;
+  /** frames unsent before some are skipped (1 to 9007199254740991 B) */
+  bytes_in_flight_max: number;
+  /** longest pause between a driver's messages before energy is cut (0.01 to 60 s) */
+  heartbeat_s: number;
+}
+
+/** who the server is and what the client may do */
+export interface HelloResult {
+  /** name and version of the server */
+  server: string;
+  /** wire version spoken from now on (1 to 1000) */
+  version: number;
+  /** the daemon's label; session ids start with it */
+  daemon: string;
+  /** role granted */
+  role: 'view' | 'operate' | 'admin';
+  /** the connection's number: the driver number in frames (1 to 4294967295) */
+  client: number;
+  /** as given, or one made up by the server */
+  client_id: string;
+  /** token for a later hello */
+  resume: string;
+  /** what this server can do */
+  capabilities: ('upload' | 'export' | 'dds' | 'store')[];
+  /** limits of this connection */
+  limits: Limits;
+  /** the server's monotonic clock, as in frames (0 to 9007199254740991 us) */
+  server_time_us: number;
+  /** the server's wall clock since 1970 (0 to 1000000000000 s) */
+  wall_time_s: number;
+}
+
+/** sign of life of a driver; a notification, or a request to measure the clock */
+export interface Heartbeat {
+  /** false: the page is hidden or blurred, energy is cut at once */
+  visible: boolean;
+  /** the client's clock, returned (0 to 9007199254740991 us) */
+  client_time_us?: number;
+}
+
+/** for the offset of the clocks */
+export interface HeartbeatResult {
+  /** the server's monotonic clock (0 to 9007199254740991 us) */
+  server_time_us: number;
+  /** as given (0 to 9007199254740991 us) */
+  client_time_us?: number;
+}
+
+/** a scene that sessions can be made from */
+export interface SceneSummary {
+  /** its name */
+  name: string;
+  /** in words */
+  description: string;
+}
+
+/** all of them */
+export interface SceneList {
+  /** by name */
+  scenes: SceneSummary[];
+}
+
+/** names a scene */
+export interface SceneRef {
+  /** its name */
+  scene: string;
+}
+
+/** a scene whole, to change and send back to session.create */
+export interface SceneResult {
+  /** every member, defaults too */
+  definition: Scene;
+}
+
+/** names a session */
+export interface SessionRef {
+  /** its id; that of the connection's URL by default */
+  session?: string;
+}
+
+/** names a session to change */
+export interface SessionChange {
+  /** its id; that of the connection's URL by default */
+  session?: string;
+  /** counts the client_id's changes; the same again returns the first answer (1 to 9007199254740991) */
+  client_sequence?: number;
+}
+
+/** a session in a list */
+export interface SessionSummary {
+  /** its id */
+  session: string;
+  /** the scene it was made from */
+  scene: string;
+  /** what it does */
+  state: 'starting' | 'running' | 'paused' | 'faulted';
+  /** steps since creation, along the present branch (0 to 9007199254740991) */
+  tick: number;
+  /** simulated (0 to 1000000000000 s) */
+  time_s: number;
+  /** one tick (0.0001 to 1 s) */
+  step_s: number;
+  /** simulated over wall time that is aimed at (0 to 100) */
+  speed: number;
+  /** what is reached, over the last second (0 to 1000000) */
+  realtime_factor: number;
+  /** vertices (0 to 16777216) */
+  vertex_count: number;
+  /** faces, drawn and not (0 to 16777216) */
+  face_count: number;
+  /** tools (0 to 8) */
+  tool_count: number;
+  /** streams joined (0 to 9007199254740991) */
+  subscriber_count: number;
+  /** of its frames; another after rewind, reset, restore and restart */
+  epoch: string;
+  /** why it is faulted */
+  fault?: string;
+}
+
+/** all sessions of the daemon */
+export interface SessionList {
+  /** by id */
+  sessions: SessionSummary[];
+}
+
+/** makes a session from a scene of the daemon or from one given whole */
+export interface SessionCreate {
+  /** see session_change (1 to 9007199254740991) */
+  client_sequence?: number;
+  /** wanted id, without the daemon's label; made up by default */
+  name?: string;
+  /** a scene of the daemon; either this or definition */
+  scene?: string;
+  /** the scene itself; meshes of source bytes name an upload in file */
+  definition?: Scene;
+  /** starts paused; false by default */
+  paused?: boolean;
+}
+
+/** a layer and its range in the face list */
+export interface LayerDescription {
+  /** of the scene */
+  name: string;
+  /** of tissue */
+  kind: 'fascia' | 'membrane' | 'fat' | 'links';
+  /** index of its first face (0 to 16777216) */
+  first_face: number;
+  /** faces; 0 for links (0 to 16777216) */
+  face_count: number;
+  /** triangles, tetrahedra or links (0 to 16777216) */
+  element_count: number;
+}
+
+/** who moves a tool */
+export interface Driver {
+  /** the tool */
+  tool: string;
+  /** the driving connection's number; 0: nobody (0 to 4294967295) */
+  client: number;
+  /** the client's name in its hello, or the DDS participant's */
+  name: string;
+  /** whether its energy is on */
+  energized: boolean;
+  /** why it is off; meaningless while on */
+  energy_off: 'never_enabled' | 'commanded' | 'watchdog' | 'restored' | 'taken_over';
+}
+
+/** what a client must know of a session */
+export interface SessionDescription {
+  /** as in the list */
+  summary: SessionSummary;
+  /** of the scene, in words */
+  description: string;
+  /** chosen by this machine; determinism holds within one */
+  instruction_set: string;
+  /** of sheets (0 to 9007199254740991) */
+  triangle_count: number;
+  /** of fat (0 to 9007199254740991) */
+  tetrahedron_count: number;
+  /** trusses (0 to 9007199254740991) */
+  link_count: number;
+  /** in the order of the scene */
+  layers: LayerDescription[];
+  /** one for each tool, in the order of frames */
+  drivers: Driver[];
+  /** the scene with its present materials, tools and gravity */
+  definition: Scene;
+}
+
+/** advances a paused session */
+export interface SessionStep {
+  /** its id; that of the connection's URL by default */
+  session?: string;
+  /** see session_change (1 to 9007199254740991) */
+  client_sequence?: number;
+  /** steps; 1 by default (1 to 100000) */
+  ticks?: number;
+}
+
+/** sets the pace */
+export interface SessionSpeed {
+  /** its id; that of the connection's URL by default */
+  session?: string;
+  /** see session_change (1 to 9007199254740991) */
+  client_sequence?: number;
+  /** simulated over wall time to aim at (0.01 to 10) */
+  speed: number;
+}
+
+/** makes a new session from this one's state */
+export interface SessionFork {
+  /** its id; that of the connection's URL by default */
+  session?: string;
+  /** see session_change (1 to 9007199254740991) */
+  client_sequence?: number;
+  /** wanted id of the new one, without the daemon's label; made up by default */
+  name?: string;
+  /** of the state; the present one by default (0 to 9007199254740991) */
+  tick?: number;
+  /** the new session starts paused; false by default */
+  paused?: boolean;
+}
+
+/** stores the state under a name */
+export interface SessionSnapshot {
+  /** its id; that of the connection's URL by default */
+  session?: string;
+  /** see session_change (1 to 9007199254740991) */
+  client_sequence?: number;
+  /** made up by default */
+  name?: string;
+}
+
+/** a stored state */
+export interface SnapshotResult {
+  /** for session.restore */
+  name: string;
+  /** of the state (0 to 9007199254740991) */
+  tick: number;
+  /** of the whole state */
+  hash: string;
+  /** stored (0 to 9007199254740991 B) */
+  byte_count: number;
+}
+
+/** goes back to a snapshot, energy off; a new branch */
+export interface SessionRestore {
+  /** its id; that of the connection's URL by default */
+  session?: string;
+  /** see session_change (1 to 9007199254740991) */
+  client_sequence?: number;
+  /** of the snapshot */
+  name: string;
+}
+
+/** goes back to a tick, energy off; a new branch */
+export interface SessionRewind {
+  /** its id; that of the connection's URL by default */
+  session?: string;
+  /** see session_change (1 to 9007199254740991) */
+  client_sequence?: number;
+  /** at or after the timeline's oldest_tick (0 to 9007199254740991) */
+  tick: number;
+}
+
+/** where a session is after going back */
+export interface Restored {
+  /** of the state (0 to 9007199254740991) */
+  tick: number;
+  /** of the frames from now on */
+  epoch: string;
+  /** number of the branch in the store (0 to 9007199254740991) */
+  branch: number;
+  /** false: written by another build or instruction set, so not bit-exact */
+  exact: boolean;
+}
+
+/** asks for the tissue as a file */
+export interface SessionExport {
+  /** its id; that of the connection's URL by default */
+  session?: string;
+  /** of the file */
+  format: 'vtu' | 'obj';
+}
+
+/** asks for the command log as a script for cautery-sim */
+export interface SessionLog {
+  /** its id; that of the connection's URL by default */
+  session?: string;
+  /** first tick; 0 by default (0 to 9007199254740991) */
+  from_tick?: number;
+  /** last tick; the present one by default (0 to 9007199254740991) */
+  to_tick?: number;
+}
+
+/** a file that follows in binary chunks */
+export interface Transfer {
+  /** number in the chunks' headers (1 to 4294967295) */
+  transfer: number;
+  /** proposed */
+  file_name: string;
+  /** of the file */
+  media_type: string;
+  /** of the file (0 to 9007199254740991 B) */
+  byte_count: number;
+  /** of the file, 64 lower-case hex digits */
+  sha256: string;
+}
+
+/** asks for what happened */
+export interface SessionTimeline {
+  /** its id; that of the connection's URL by default */
+  session?: string;
+  /** first tick; 0 by default (0 to 9007199254740991) */
+  from_tick?: number;
+  /** newest events wanted at most; 1024 by default (1 to 4096) */
+  count?: number;
+}
+
+/** something that happened on the present branch */
+export interface TimelineEvent {
+  /** when (0 to 9007199254740991) */
+  tick: number;
+  /** simulated (0 to 1000000000000 s) */
+  time_s: number;
+  /** what */
+  kind: 'created' | 'cut' | 'energy_on' | 'energy_off' | 'watchdog' | 'driver' | 'tool_added' | 'tool_removed' | 'refused' | 'fault' | 'rewind' | 'reset' | 'snapshot' | 'restore';
+  /** with which tool */
+  tool?: string;
+  /** by whom */
+  client?: string;
+  /** cut: elements removed; refused: commands (0 to 9007199254740991) */
+  count?: number;
+  /** in words */
+  detail?: string;
+}
+
+/** what happened, and how far back one can go */
+export interface Timeline {
+  /** the present (0 to 9007199254740991) */
+  tick: number;
+  /** of session.rewind (0 to 9007199254740991) */
+  oldest_tick: number;
+  /** number of the present branch (0 to 9007199254740991) */
+  branch: number;
+  /** oldest first; cuts of neighbouring ticks are merged */
+  events: TimelineEvent[];
+}
+
+/** when a change takes effect */
+export interface TickResult {
+  /** the tick border (0 to 9007199254740991) */
+  tick: number;
+}
+
+/** asks for frames */
+export interface SessionJoin {
+  /** its id; that of the connection's URL by default */
+  session?: string;
+  /** frames a wall second at most; 60 by default (0.1 to 1000 1/s) */
+  rate_hz?: number;
+  /** all but stress and statistics by default */
+  channels?: ('positions' | 'mask' | 'exposure' | 'charring' | 'stress' | 'tools' | 'statistics')[];
+  /** quantisation wanted; the server may choose a finer one; 5e-5 by default (1e-07 to 0.001 m) */
+  step_m?: number;
+}
+
+/** what a decoder needs; a topology frame and a key frame follow */
+export interface StreamDescription {
+  /** its id */
+  session: string;
+  /** in the frames' headers (0 to 4294967295) */
+  session_number: number;
+  /** in the frames' headers (0 to 3) */
+  profile: number;
+  /** at the time of joining */
+  epoch: string;
+  /** granted (0.1 to 1000 1/s) */
+  rate_hz: number;
+  /** granted */
+  channels: ('positions' | 'mask' | 'exposure' | 'charring' | 'stress' | 'tools' | 'statistics')[];
+  /** of positions and scalars (0 to 16777216) */
+  vertex_count: number;
+  /** of mask and topology (0 to 16777216) */
+  face_count: number;
+  /** where the quantised zero is (-1000000 to 1000000 m) */
+  origin_m: [number, number, number];
+  /** one quantised step (1e-07 to 0.01 m) */
+  step_m: number;
+  /** one step of the stress channel (0.001 to 1000000000 Pa) */
+  stress_step_pa: number;
+}
+
+/** how far the client has decoded; bounds what is in flight, shows delays */
+export interface StreamAck {
+  /** its id; that of the connection's URL by default */
+  session?: string;
+  /** of the frame */
+  epoch: string;
+  /** of the frame (0 to 9007199254740991) */
+  sequence: number;
+}
+
+/** names a tool of a session */
+export interface ToolRef {
+  /** its id; that of the connection's URL by default */
+  session?: string;
+  /** see session_change (1 to 9007199254740991) */
+  client_sequence?: number;
+  /** its name */
+  tool: string;
+}
+
+/** gives a tool up */
+export interface ToolHandOver {
+  /** its id; that of the connection's URL by default */
+  session?: string;
+  /** see session_change (1 to 9007199254740991) */
+  client_sequence?: number;
+  /** its name */
+  tool: string;
+  /** to this connection; to nobody by default (1 to 4294967295) */
+  client?: number;
+}
+
+/** a command is in the log */
+export interface CommandResult {
+  /** the tick border at which it takes effect (0 to 9007199254740991) */
+  tick: number;
+  /** as given (0 to 9007199254740991) */
+  sequence: number;
+}
+
+/** announces a mesh file */
+export interface UploadBegin {
+  /** for scenes: meshes[].file of source bytes, with file_name's ending */
+  name: string;
+  /** its ending tells the format: .msh, .obj, .vtk */
+  file_name: string;
+  /** of the file, exactly (1 to 9007199254740991 B) */
+  byte_count: number;
+}
+
+/** chunks may come */
+export interface UploadBeginResult {
+  /** number for the chunks' headers (1 to 4294967295) */
+  transfer: number;
+  /** of data in one chunk (1 to 9007199254740991 B) */
+  chunk_bytes_max: number;
+}
+
+/** all chunks are sent */
+export interface UploadEnd {
+  /** as upload.begin answered (1 to 4294967295) */
+  transfer: number;
+  /** of the file, 64 lower-case hex digits */
+  sha256: string;
+}
+
+/** the file is kept until the connection closes or a session takes it */
+export interface UploadResult {
+  /** as given */
+  name: string;
+  /** what a mesh of source bytes says in file */
+  file: string;
+  /** received (0 to 9007199254740991 B) */
+  byte_count: number;
+}
+
+/** a session is no longer as it was */
+export interface SessionChanged {
+  /** why */
+  change: 'created' | 'destroyed' | 'paused' | 'resumed' | 'stepped' | 'speed' | 'reset' | 'rewound' | 'restored' | 'restarted' | 'moved' | 'tools' | 'tissue';
+  /** as it is now */
+  summary: SessionSummary;
+  /** who did it */
+  client?: string;
+  /** moved: the address of the daemon that has it now */
+  target?: string;
+}
+
+/** the simulation met numerical trouble; rewind or reset */
+export interface SessionFaulted {
+  /** its id */
+  session: string;
+  /** when (0 to 9007199254740991) */
+  tick: number;
+  /** in words */
+  reason: string;
+}
+
+/** a tool has another driver or lost its energy */
+export interface DriverChanged {
+  /** its id */
+  session: string;
+  /** as it is now */
+  driver: Driver;
+}
+
+/** commands to a tool were refused; sent at most once a second and tool */
+export interface ToolRefused {
+  /** its id */
+  session: string;
+  /** the tool */
+  tool: string;
+  /** refused since the last such message (1 to 9007199254740991) */
+  count: number;
+  /** of the last one (0 to 9007199254740991) */
+  sequence: number;
+  /** why the last one was refused: a status of the error table */
+  status: string;
+  /** its offending member */
+  path?: string;
+  /** in words */
+  reason: string;
+}
+
+/** somebody asks the driver for a tool; answer with tool.hand_over or not at all */
+export interface TakeoverRequested {
+  /** its id */
+  session: string;
+  /** the tool */
+  tool: string;
+  /** who asks (1 to 4294967295) */
+  client: number;
+  /** the client's name in its hello */
+  name: string;
+}
+
+/** something happened, as it will stand in the timeline */
+export interface EventNotice {
+  /** its id */
+  session: string;
+  /** what */
+  event: TimelineEvent;
+}
+
+/** a mesh of a scene */
+export interface Mesh {
+  /** where the mesh comes from */
+  source: 'sheet' | 'slab' | 'pattern' | 'file' | 'bytes';
+  /** name of the mesh */
+  name: string;
+  /** extent, centred in x and y, top at z = 0 (1e-06 to 10 m) */
+  size_m?: number[];
+  /** cells along each axis; of a pattern, triangles of the fan (1 to 1000) */
+  cells?: number[];
+  /** turns the UV axes against the mesh's axes (-6.3 to 6.3 rad) */
+  texture_turn_rad?: number;
+  /** .msh, .obj or .vtk, relative to the scene file */
+  file?: string;
+  /** metres in one unit of the file (1e-09 to 1000 m) */
+  unit_m?: number;
+  /** moves the mesh, after the unit (-100 to 100 m) */
+  translate_m?: [number, number, number];
+}
+
+/** a choice of vertices by rest position */
+export interface Selection {
+  /** which vertices */
+  kind: 'rim' | 'box' | 'sphere' | 'nearest';
+  /** only of this layer; any if absent */
+  layer?: string;
+  /** least corner of the box (-100 to 100 m) */
+  least_m?: [number, number, number];
+  /** largest corner (-100 to 100 m) */
+  most_m?: [number, number, number];
+  /** centre of the sphere, or the place (-100 to 100 m) */
+  center_m?: [number, number, number];
+  /** radius of the sphere (0 to 100 m) */
+  radius_m?: number;
+}
+
+/** a tool of a scene */
+export interface Tool {
+  /** name of the tool */
+  name: string;
+  /** shape */
+  shape: 'sphere' | 'capsule' | 'hook' | 'spatula' | 'bipolar' | 'shears' | 'grasper';
+  /** radius of the hot part (0.0002 to 0.05 m) */
+  hot_radius_m?: number;
+  /** length of needle, hook foot, blade or jaws (0.001 to 0.1 m) */
+  tip_length_m?: number;
+  /** radius of the shaft (0.0002 to 0.05 m) */
+  shaft_radius_m?: number;
+  /** length of the shaft (0.001 to 1 m) */
+  shaft_length_m?: number;
+  /** angle between open jaws (0.05 to 1.5 rad) */
+  jaw_open_rad?: number;
+  /** temperature of the hot part while energized (0 to 1500 degC) */
+  temperature_c?: number;
+  /** nodes of the heat grid along each axis (8 to 64) */
+  grid_cells?: number;
+  /** spacing dl of the heat grid; at most the hot radius (5e-05 to 0.01 m) */
+  grid_step_m?: number;
+  /** alpha of eq. 18 (0 to 0.001 m^2/s) */
+  diffusivity_m2_s?: number;
+  /** faster commands are followed at this speed (0.001 to 5 m/s) */
+  max_speed_m_s?: number;
+  /** likewise for turning (0.1 to 100 rad/s) */
+  max_turn_rad_s?: number;
+  /** Coulomb coefficient of the cold parts (0 to 2) */
+  friction?: number;
+  /** viscous drag of the hot part on each vertex in it (0 to 100 N s/m) */
+  drag_ns_m?: number;
+  /** of the attachment of one grasped vertex (1 to 1000000 N/m) */
+  grasp_stiffness_n_m?: number;
+  /** an attached vertex slips above this force (0 to 1000 N) */
+  slip_force_n?: number;
+  /** clamp of the force reported to drivers (0.01 to 1000 N) */
+  force_max_n?: number;
+  /** first place of the tip (-100 to 100 m) */
+  position_m?: [number, number, number];
+  /** unit quaternion w, x, y, z: tool frame (shaft along +z) to world */
+  rotation?: [number, number, number, number];
+}
+
+/** a scripted pull, for measurements */
+export interface Pull {
+  /** way of the chosen vertices (-100 to 100 m) */
+  move_m?: [number, number, number];
+  /** time of the way (0.001 to 3600 s) */
+  duration_s?: number;
+  /** vertices that are pulled */
+  selection: Selection;
+}
+
+/** a scripted cut, for measurements */
+export interface Cut {
+  /** tool of the scene */
+  tool: string;
+  /** where the tip dwells (-100 to 100 m) */
+  from_m: [number, number, number];
+  /** where it is drawn to (-100 to 100 m) */
+  to_m: [number, number, number];
+  /** unit quaternion w, x, y, z of the tool */
+  rotation?: [number, number, number, number];
+  /** time before it is drawn (0 to 3600 s) */
+  dwell_s?: number;
+  /** speed of drawing (1e-05 to 1 m/s) */
+  speed_m_s?: number;
+}
+
+/** a layer of tissue */
+export type Layer = FasciaLayer | MembraneLayer | FatLayer | LinksLayer;
+
+/** what differs from the layer's material in a region */
+export interface FasciaRegion {
+  /** of the mesh file (0 to 2147483647) */
+  region: number;
+  /** sheet thickness (1e-06 to 0.05 m) */
+  thickness_m?: number;
+  /** mass density (1 to 25000 kg/m^3) */
+  density_kg_m3?: number;
+  /** stiffness k of the strain limit (1 to 10000000000 Pa) */
+  limit_stiffness_pa?: number;
+  /** range: |k_12| / sqrt(k_11 k_22) stays below (0 to 0.99) */
+  shear_max?: number;
+  /** bending; 0: no hinges (0 to 10 N m) */
+  bending_stiffness_nm?: number;
+  /** strain limit */
+  limit?: 'none' | 'target' | 'range';
+  /** how a target is projected */
+  projection?: 'closed_form' | 'linearised';
+  /** target: t_00, t_11, t_01 of F^T F; positive definite (-100 to 100) */
+  target?: [number, number, number];
+  /** range: least engineering strain along each axis (-0.99 to 0) */
+  strain_min?: [number, number];
+  /** range: largest (0 to 100) */
+  strain_max?: [number, number];
+  /** S of eq. 21: squared stretches; 1: no shrinkage (0.001 to 10) */
+  shrink?: [number, number];
+  /** an edge parts when its exposure exceeds this (1 to 2000 degC) */
+  ignition_c?: number;
+  /** standard deviation over edges, drawn by seed (0 to 500 degC) */
+  ignition_spread_c?: number;
+  /** xi of eq. 20 (0 to 1000 1/s) */
+  absorption_per_s?: number;
+}
+
+/** a layer of this kind, with its material */
+export interface FasciaLayer {
+  /** tissue */
+  kind: 'fascia';
+  /** name of the layer */
+  name: string;
+  /** mesh whose triangles or tetrahedra the layer takes */
+  mesh?: string;
+  /** material direction where the mesh has no UV; fat: first axis (-1000000 to 1000000) */
+  fibre?: [number, number, number];
+  /** sheet thickness (1e-06 to 0.05 m) */
+  thickness_m?: number;
+  /** mass density (1 to 25000 kg/m^3) */
+  density_kg_m3?: number;
+  /** stiffness k of the strain limit (1 to 10000000000 Pa) */
+  limit_stiffness_pa?: number;
+  /** range: |k_12| / sqrt(k_11 k_22) stays below (0 to 0.99) */
+  shear_max?: number;
+  /** bending; 0: no hinges (0 to 10 N m) */
+  bending_stiffness_nm?: number;
+  /** strain limit */
+  limit?: 'none' | 'target' | 'range';
+  /** how a target is projected */
+  projection?: 'closed_form' | 'linearised';
+  /** target: t_00, t_11, t_01 of F^T F; positive definite (-100 to 100) */
+  target?: [number, number, number];
+  /** range: least engineering strain along each axis (-0.99 to 0) */
+  strain_min?: [number, number];
+  /** range: largest (0 to 100) */
+  strain_max?: [number, number];
+  /** S of eq. 21: squared stretches; 1: no shrinkage (0.001 to 10) */
+  shrink?: [number, number];
+  /** an edge parts when its exposure exceeds this (1 to 2000 degC) */
+  ignition_c?: number;
+  /** standard deviation over edges, drawn by seed (0 to 500 degC) */
+  ignition_spread_c?: number;
+  /** xi of eq. 20 (0 to 1000 1/s) */
+  absorption_per_s?: number;
+  /** what differs in regions of the mesh file */
+  regions?: FasciaRegion[];
+}
+
+/** what differs from the layer's material in a region */
+export interface MembraneRegion {
+  /** of the mesh file (0 to 2147483647) */
+  region: number;
+  /** sheet thickness (1e-06 to 0.05 m) */
+  thickness_m?: number;
+  /** mass density (1 to 25000 kg/m^3) */
+  density_kg_m3?: number;
+  /** stiffness k of the strain limit (1 to 10000000000 Pa) */
+  limit_stiffness_pa?: number;
+  /** range: |k_12| / sqrt(k_11 k_22) stays below (0 to 0.99) */
+  shear_max?: number;
+  /** bending; 0: no hinges (0 to 10 N m) */
+  bending_stiffness_nm?: number;
+  /** strain limit */
+  limit?: 'none' | 'target' | 'range';
+  /** how a target is projected */
+  projection?: 'closed_form' | 'linearised';
+  /** target: t_00, t_11, t_01 of F^T F; positive definite (-100 to 100) */
+  target?: [number, number, number];
+  /** range: least engineering strain along each axis (-0.99 to 0) */
+  strain_min?: [number, number];
+  /** range: largest (0 to 100) */
+  strain_max?: [number, number];
+  /** S of eq. 21: squared stretches; 1: no shrinkage (0.001 to 10) */
+  shrink?: [number, number];
+  /** an edge parts when its exposure exceeds this (1 to 2000 degC) */
+  ignition_c?: number;
+  /** standard deviation over edges, drawn by seed (0 to 500 degC) */
+  ignition_spread_c?: number;
+  /** xi of eq. 20 (0 to 1000 1/s) */
+  absorption_per_s?: number;
+}
+
+/** a layer of this kind, with its material */
+export interface MembraneLayer {
+  /** tissue */
+  kind: 'membrane';
+  /** name of the layer */
+  name: string;
+  /** mesh whose triangles or tetrahedra the layer takes */
+  mesh?: string;
+  /** membrane: the fat whose boundary it is; links: the upper layer */
+  of?: string;
+  /** material direction where the mesh has no UV; fat: first axis (-1000000 to 1000000) */
+  fibre?: [number, number, number];
+  /** sheet thickness (1e-06 to 0.05 m) */
+  thickness_m?: number;
+  /** mass density (1 to 25000 kg/m^3) */
+  density_kg_m3?: number;
+  /** stiffness k of the strain limit (1 to 10000000000 Pa) */
+  limit_stiffness_pa?: number;
+  /** range: |k_12| / sqrt(k_11 k_22) stays below (0 to 0.99) */
+  shear_max?: number;
+  /** bending; 0: no hinges (0 to 10 N m) */
+  bending_stiffness_nm?: number;
+  /** strain limit */
+  limit?: 'none' | 'target' | 'range';
+  /** how a target is projected */
+  projection?: 'closed_form' | 'linearised';
+  /** target: t_00, t_11, t_01 of F^T F; positive definite (-100 to 100) */
+  target?: [number, number, number];
+  /** range: least engineering strain along each axis (-0.99 to 0) */
+  strain_min?: [number, number];
+  /** range: largest (0 to 100) */
+  strain_max?: [number, number];
+  /** S of eq. 21: squared stretches; 1: no shrinkage (0.001 to 10) */
+  shrink?: [number, number];
+  /** an edge parts when its exposure exceeds this (1 to 2000 degC) */
+  ignition_c?: number;
+  /** standard deviation over edges, drawn by seed (0 to 500 degC) */
+  ignition_spread_c?: number;
+  /** xi of eq. 20 (0 to 1000 1/s) */
+  absorption_per_s?: number;
+  /** what differs in regions of the mesh file */
+  regions?: MembraneRegion[];
+}
+
+/** what differs from the layer's material in a region */
+export interface FatRegion {
+  /** of the mesh file (0 to 2147483647) */
+  region: number;
+  /** elastic energy */
+  model?: 'neohookean' | 'corotated' | 'stvk' | 'energy';
+  /** mass density (1 to 25000 kg/m^3) */
+  density_kg_m3?: number;
+  /** Young's modulus (1 to 10000000000 Pa) */
+  young_modulus_pa?: number;
+  /** Poisson's ratio; at most 1/3 for model energy (0 to 0.45) */
+  poisson_ratio?: number;
+  /** stiffness of the strain limit and shrinkage (1 to 10000000000 Pa) */
+  limit_stiffness_pa?: number;
+  /** range: |k_ab| / sqrt(k_aa k_bb) stays below (0 to 0.99) */
+  shear_max?: number;
+  /** gamma_1 (strain with the half); plastic if gamma_2 > 0 (0 to 10) */
+  yield_strain?: number;
+  /** gamma_2; 0: no plasticity (0 to 10) */
+  plastic_strain_max?: number;
+  /** strain limit */
+  limit?: 'none' | 'target' | 'range';
+  /** how a target is projected */
+  projection?: 'closed_form' | 'linearised';
+  /** target: t_00, t_11, t_22, t_01, t_02, t_12 of F^T F; positive definite (-100 to 100) */
+  target?: [number, number, number, number, number, number];
+  /** range: least engineering strain along each axis (-0.99 to 0) */
+  strain_min?: [number, number, number];
+  /** range: largest (0 to 100) */
+  strain_max?: [number, number, number];
+  /** S of eq. 21: squared stretches; 1: no shrinkage (0.001 to 10) */
+  shrink?: [number, number, number];
+  /** an edge parts when its exposure exceeds this (1 to 2000 degC) */
+  ignition_c?: number;
+  /** standard deviation over edges, drawn by seed (0 to 500 degC) */
+  ignition_spread_c?: number;
+  /** xi of eq. 20 (0 to 1000 1/s) */
+  absorption_per_s?: number;
+}
+
+/** a layer of this kind, with its material */
+export interface FatLayer {
+  /** tissue */
+  kind: 'fat';
+  /** name of the layer */
+  name: string;
+  /** mesh whose triangles or tetrahedra the layer takes */
+  mesh?: string;
+  /** material direction where the mesh has no UV; fat: first axis (-1000000 to 1000000) */
+  fibre?: [number, number, number];
+  /** elastic energy */
+  model?: 'neohookean' | 'corotated' | 'stvk' | 'energy';
+  /** mass density (1 to 25000 kg/m^3) */
+  density_kg_m3?: number;
+  /** Young's modulus (1 to 10000000000 Pa) */
+  young_modulus_pa?: number;
+  /** Poisson's ratio; at most 1/3 for model energy (0 to 0.45) */
+  poisson_ratio?: number;
+  /** stiffness of the strain limit and shrinkage (1 to 10000000000 Pa) */
+  limit_stiffness_pa?: number;
+  /** range: |k_ab| / sqrt(k_aa k_bb) stays below (0 to 0.99) */
+  shear_max?: number;
+  /** gamma_1 (strain with the half); plastic if gamma_2 > 0 (0 to 10) */
+  yield_strain?: number;
+  /** gamma_2; 0: no plasticity (0 to 10) */
+  plastic_strain_max?: number;
+  /** strain limit */
+  limit?: 'none' | 'target' | 'range';
+  /** how a target is projected */
+  projection?: 'closed_form' | 'linearised';
+  /** target: t_00, t_11, t_22, t_01, t_02, t_12 of F^T F; positive definite (-100 to 100) */
+  target?: [number, number, number, number, number, number];
+  /** range: least engineering strain along each axis (-0.99 to 0) */
+  strain_min?: [number, number, number];
+  /** range: largest (0 to 100) */
+  strain_max?: [number, number, number];
+  /** S of eq. 21: squared stretches; 1: no shrinkage (0.001 to 10) */
+  shrink?: [number, number, number];
+  /** an edge parts when its exposure exceeds this (1 to 2000 degC) */
+  ignition_c?: number;
+  /** standard deviation over edges, drawn by seed (0 to 500 degC) */
+  ignition_spread_c?: number;
+  /** xi of eq. 20 (0 to 1000 1/s) */
+  absorption_per_s?: number;
+  /** what differs in regions of the mesh file */
+  regions?: FatRegion[];
+}
+
+/** a layer of this kind, with its material */
+export interface LinksLayer {
+  /** tissue */
+  kind: 'links';
+  /** name of the layer */
+  name: string;
+  /** membrane: the fat whose boundary it is; links: the upper layer */
+  of?: string;
+  /** the lower layer */
+  to?: string;
+  /** Young's modulus of a truss (1 to 100000000000 Pa) */
+  young_modulus_pa?: number;
+  /** cross section of a truss (1e-12 to 1 m^2) */
+  area_m2?: number;
+  /** longest truss (1e-06 to 1 m) */
+  reach_m?: number;
+  /** trusses from each vertex of the upper sheet (1 to 8) */
+  per_vertex?: number;
+  /** an edge parts when its exposure exceeds this (1 to 2000 degC) */
+  ignition_c?: number;
+  /** standard deviation over edges, drawn by seed (0 to 500 degC) */
+  ignition_spread_c?: number;
+  /** xi of eq. 20 (0 to 1000 1/s) */
+  absorption_per_s?: number;
+}
+
+/** the plain data from which a session is made */
+export interface Scene {
+  /** name of the scene */
+  name: string;
+  /** a sentence for people */
+  description?: string;
+  /** time step; one tick (0.001 to 0.03333333333333333 s) */
+  step_s?: number;
+  /** v <- v exp(-c dt) (0 to 1000 1/s) */
+  damping_per_s?: number;
+  /** temperature of the body around the tools (-20 to 60 degC) */
+  ambient_c?: number;
+  /** stop a step at this relative residual; 0: never (0 to 1) */
+  tolerance?: number;
+  /** iterations of a step (1 to 1000) */
+  iterations?: number;
+  /** global system */
+  solver?: 'cholesky' | 'diagonal';
+  /** of the local and global steps */
+  precision?: 'single' | 'double';
+  /** of everything drawn at random (0 to 9007199254740991) */
+  seed?: number;
+  /** gravity (-100 to 100 m/s^2) */
+  gravity_m_s2?: [number, number, number];
+  /** meshes that layers take */
+  meshes?: Mesh[];
+  /** layers of tissue */
+  layers?: Layer[];
+  /** vertices that are held */
+  pins?: Selection[];
+  /** tools that are there from the start */
+  tools?: Tool[];
+  /** a scripted pull */
+  pull?: Pull;
+  /** a scripted cut */
+  cut?: Cut;
+}
+
+/** a new tool, driven by the caller */
+export interface ToolAdd {
+  /** its id; that of the connection's URL by default */
+  session?: string;
+  /** see session_change (1 to 9007199254740991) */
+  client_sequence?: number;
+  /** applied at the first tick border at or after this; 0: the next (0 to 9007199254740991) */
+  tick?: number;
+  /** the driver's own count (0 to 9007199254740991) */
+  sequence?: number;
+  /** shape */
+  shape: 'sphere' | 'capsule' | 'hook' | 'spatula' | 'bipolar' | 'shears' | 'grasper';
+  /** radius of the hot part (0.0002 to 0.05 m) */
+  hot_radius_m?: number;
+  /** length of needle, hook foot, blade or jaws (0.001 to 0.1 m) */
+  tip_length_m?: number;
+  /** radius of the shaft (0.0002 to 0.05 m) */
+  shaft_radius_m?: number;
+  /** length of the shaft (0.001 to 1 m) */
+  shaft_length_m?: number;
+  /** angle between open jaws (0.05 to 1.5 rad) */
+  jaw_open_rad?: number;
+  /** temperature of the hot part while energized (0 to 1500 degC) */
+  temperature_c?: number;
+  /** nodes of the heat grid along each axis (8 to 64) */
+  grid_cells?: number;
+  /** spacing dl of the heat grid; at most the hot radius (5e-05 to 0.01 m) */
+  grid_step_m?: number;
+  /** alpha of eq. 18 (0 to 0.001 m^2/s) */
+  diffusivity_m2_s?: number;
+  /** faster commands are followed at this speed (0.001 to 5 m/s) */
+  max_speed_m_s?: number;
+  /** likewise for turning (0.1 to 100 rad/s) */
+  max_turn_rad_s?: number;
+  /** Coulomb coefficient of the cold parts (0 to 2) */
+  friction?: number;
+  /** viscous drag of the hot part on each vertex in it (0 to 100 N s/m) */
+  drag_ns_m?: number;
+  /** of the attachment of one grasped vertex (1 to 1000000 N/m) */
+  grasp_stiffness_n_m?: number;
+  /** an attached vertex slips above this force (0 to 1000 N) */
+  slip_force_n?: number;
+  /** clamp of the force reported to drivers (0.01 to 1000 N) */
+  force_max_n?: number;
+  /** name of the tool */
+  name: string;
+  /** first place of the tip (-100 to 100 m) */
+  position_m?: [number, number, number];
+  /** unit quaternion w, x, y, z: tool frame (shaft along +z) to world */
+  rotation?: [number, number, number, number];
+}
+
+/** takes it away */
+export interface ToolRemove {
+  /** its id; that of the connection's URL by default */
+  session?: string;
+  /** see session_change (1 to 9007199254740991) */
+  client_sequence?: number;
+  /** applied at the first tick border at or after this; 0: the next (0 to 9007199254740991) */
+  tick?: number;
+  /** the driver's own count (0 to 9007199254740991) */
+  sequence?: number;
+  /** which tool */
+  tool: string;
+}
+
+/** replaces shape and sizes */
+export interface ToolConfigure {
+  /** its id; that of the connection's URL by default */
+  session?: string;
+  /** see session_change (1 to 9007199254740991) */
+  client_sequence?: number;
+  /** applied at the first tick border at or after this; 0: the next (0 to 9007199254740991) */
+  tick?: number;
+  /** the driver's own count (0 to 9007199254740991) */
+  sequence?: number;
+  /** which tool */
+  tool: string;
+  /** shape */
+  shape: 'sphere' | 'capsule' | 'hook' | 'spatula' | 'bipolar' | 'shears' | 'grasper';
+  /** radius of the hot part (0.0002 to 0.05 m) */
+  hot_radius_m?: number;
+  /** length of needle, hook foot, blade or jaws (0.001 to 0.1 m) */
+  tip_length_m?: number;
+  /** radius of the shaft (0.0002 to 0.05 m) */
+  shaft_radius_m?: number;
+  /** length of the shaft (0.001 to 1 m) */
+  shaft_length_m?: number;
+  /** angle between open jaws (0.05 to 1.5 rad) */
+  jaw_open_rad?: number;
+  /** temperature of the hot part while energized (0 to 1500 degC) */
+  temperature_c?: number;
+  /** nodes of the heat grid along each axis (8 to 64) */
+  grid_cells?: number;
+  /** spacing dl of the heat grid; at most the hot radius (5e-05 to 0.01 m) */
+  grid_step_m?: number;
+  /** alpha of eq. 18 (0 to 0.001 m^2/s) */
+  diffusivity_m2_s?: number;
+  /** faster commands are followed at this speed (0.001 to 5 m/s) */
+  max_speed_m_s?: number;
+  /** likewise for turning (0.1 to 100 rad/s) */
+  max_turn_rad_s?: number;
+  /** Coulomb coefficient of the cold parts (0 to 2) */
+  friction?: number;
+  /** viscous drag of the hot part on each vertex in it (0 to 100 N s/m) */
+  drag_ns_m?: number;
+  /** of the attachment of one grasped vertex (1 to 1000000 N/m) */
+  grasp_stiffness_n_m?: number;
+  /** an attached vertex slips above this force (0 to 1000 N) */
+  slip_force_n?: number;
+  /** clamp of the force reported to drivers (0.01 to 1000 N) */
+  force_max_n?: number;
+}
+
+/** moves it, at its speed limit; needs to be its driver */
+export interface ToolMove {
+  /** its id; that of the connection's URL by default */
+  session?: string;
+  /** see session_change (1 to 9007199254740991) */
+  client_sequence?: number;
+  /** applied at the first tick border at or after this; 0: the next (0 to 9007199254740991) */
+  tick?: number;
+  /** the driver's own count (0 to 9007199254740991) */
+  sequence?: number;
+  /** which tool */
+  tool: string;
+  /** place of the tip (-100 to 100 m) */
+  position_m: [number, number, number];
+  /** unit quaternion w, x, y, z */
+  rotation: [number, number, number, number];
+  /** 0 closed to 1 open (0 to 1) */
+  jaw?: number;
+}
+
+/** energy on (driver only) or off */
+export interface ToolEnergize {
+  /** its id; that of the connection's URL by default */
+  session?: string;
+  /** see session_change (1 to 9007199254740991) */
+  client_sequence?: number;
+  /** applied at the first tick border at or after this; 0: the next (0 to 9007199254740991) */
+  tick?: number;
+  /** the driver's own count (0 to 9007199254740991) */
+  sequence?: number;
+  /** which tool */
+  tool: string;
+  /** on or off */
+  energized: boolean;
+}
+
+/** closes the jaws on what is between them; driver only */
+export interface ToolGrasp {
+  /** its id; that of the connection's URL by default */
+  session?: string;
+  /** see session_change (1 to 9007199254740991) */
+  client_sequence?: number;
+  /** applied at the first tick border at or after this; 0: the next (0 to 9007199254740991) */
+  tick?: number;
+  /** the driver's own count (0 to 9007199254740991) */
+  sequence?: number;
+  /** which tool */
+  tool: string;
+}
+
+/** opens them; driver only */
+export interface ToolRelease {
+  /** its id; that of the connection's URL by default */
+  session?: string;
+  /** see session_change (1 to 9007199254740991) */
+  client_sequence?: number;
+  /** applied at the first tick border at or after this; 0: the next (0 to 9007199254740991) */
+  tick?: number;
+  /** the driver's own count (0 to 9007199254740991) */
+  sequence?: number;
+  /** which tool */
+  tool: string;
+}
+
+/** holds vertices where they are */
+export interface Pin {
+  /** its id; that of the connection's URL by default */
+  session?: string;
+  /** see session_change (1 to 9007199254740991) */
+  client_sequence?: number;
+  /** applied at the first tick border at or after this; 0: the next (0 to 9007199254740991) */
+  tick?: number;
+  /** the driver's own count (0 to 9007199254740991) */
+  sequence?: number;
+  /** which vertices */
+  selection: Selection;
+}
+
+/** lets them go */
+export interface Unpin {
+  /** its id; that of the connection's URL by default */
+  session?: string;
+  /** see session_change (1 to 9007199254740991) */
+  client_sequence?: number;
+  /** applied at the first tick border at or after this; 0: the next (0 to 9007199254740991) */
+  tick?: number;
+  /** the driver's own count (0 to 9007199254740991) */
+  sequence?: number;
+  /** which vertices */
+  selection: Selection;
+}
+
+/** replaces a layer's material */
+export type MaterialSet = MaterialSetFascia | MaterialSetMembrane | MaterialSetFat | MaterialSetLinks;
+
+/** replaces a layer's material */
+export interface MaterialSetFascia {
+  /** its id; that of the connection's URL by default */
+  session?: string;
+  /** see session_change (1 to 9007199254740991) */
+  client_sequence?: number;
+  /** applied at the first tick border at or after this; 0: the next (0 to 9007199254740991) */
+  tick?: number;
+  /** the driver's own count (0 to 9007199254740991) */
+  sequence?: number;
+  /** the layer's kind */
+  kind: 'fascia';
+  /** which layer */
+  layer: string;
+  /** of the mesh file; 0: the layer's default (0 to 2147483647) */
+  region?: number;
+  /** sheet thickness (1e-06 to 0.05 m) */
+  thickness_m?: number;
+  /** mass density (1 to 25000 kg/m^3) */
+  density_kg_m3?: number;
+  /** stiffness k of the strain limit (1 to 10000000000 Pa) */
+  limit_stiffness_pa?: number;
+  /** range: |k_12| / sqrt(k_11 k_22) stays below (0 to 0.99) */
+  shear_max?: number;
+  /** bending; 0: no hinges (0 to 10 N m) */
+  bending_stiffness_nm?: number;
+  /** strain limit */
+  limit?: 'none' | 'target' | 'range';
+  /** how a target is projected */
+  projection?: 'closed_form' | 'linearised';
+  /** target: t_00, t_11, t_01 of F^T F; positive definite (-100 to 100) */
+  target?: [number, number, number];
+  /** range: least engineering strain along each axis (-0.99 to 0) */
+  strain_min?: [number, number];
+  /** range: largest (0 to 100) */
+  strain_max?: [number, number];
+  /** S of eq. 21: squared stretches; 1: no shrinkage (0.001 to 10) */
+  shrink?: [number, number];
+  /** an edge parts when its exposure exceeds this (1 to 2000 degC) */
+  ignition_c?: number;
+  /** standard deviation over edges, drawn by seed (0 to 500 degC) */
+  ignition_spread_c?: number;
+  /** xi of eq. 20 (0 to 1000 1/s) */
+  absorption_per_s?: number;
+}
+
+/** replaces a layer's material */
+export interface MaterialSetMembrane {
+  /** its id; that of the connection's URL by default */
+  session?: string;
+  /** see session_change (1 to 9007199254740991) */
+  client_sequence?: number;
+  /** applied at the first tick border at or after this; 0: the next (0 to 9007199254740991) */
+  tick?: number;
+  /** the driver's own count (0 to 9007199254740991) */
+  sequence?: number;
+  /** the layer's kind */
+  kind: 'membrane';
+  /** which layer */
+  layer: string;
+  /** of the mesh file; 0: the layer's default (0 to 2147483647) */
+  region?: number;
+  /** sheet thickness (1e-06 to 0.05 m) */
+  thickness_m?: number;
+  /** mass density (1 to 25000 kg/m^3) */
+  density_kg_m3?: number;
+  /** stiffness k of the strain limit (1 to 10000000000 Pa) */
+  limit_stiffness_pa?: number;
+  /** range: |k_12| / sqrt(k_11 k_22) stays below (0 to 0.99) */
+  shear_max?: number;
+  /** bending; 0: no hinges (0 to 10 N m) */
+  bending_stiffness_nm?: number;
+  /** strain limit */
+  limit?: 'none' | 'target' | 'range';
+  /** how a target is projected */
+  projection?: 'closed_form' | 'linearised';
+  /** target: t_00, t_11, t_01 of F^T F; positive definite (-100 to 100) */
+  target?: [number, number, number];
+  /** range: least engineering strain along each axis (-0.99 to 0) */
+  strain_min?: [number, number];
+  /** range: largest (0 to 100) */
+  strain_max?: [number, number];
+  /** S of eq. 21: squared stretches; 1: no shrinkage (0.001 to 10) */
+  shrink?: [number, number];
+  /** an edge parts when its exposure exceeds this (1 to 2000 degC) */
+  ignition_c?: number;
+  /** standard deviation over edges, drawn by seed (0 to 500 degC) */
+  ignition_spread_c?: number;
+  /** xi of eq. 20 (0 to 1000 1/s) */
+  absorption_per_s?: number;
+}
+
+/** replaces a layer's material */
+export interface MaterialSetFat {
+  /** its id; that of the connection's URL by default */
+  session?: string;
+  /** see session_change (1 to 9007199254740991) */
+  client_sequence?: number;
+  /** applied at the first tick border at or after this; 0: the next (0 to 9007199254740991) */
+  tick?: number;
+  /** the driver's own count (0 to 9007199254740991) */
+  sequence?: number;
+  /** the layer's kind */
+  kind: 'fat';
+  /** which layer */
+  layer: string;
+  /** of the mesh file; 0: the layer's default (0 to 2147483647) */
+  region?: number;
+  /** elastic energy */
+  model?: 'neohookean' | 'corotated' | 'stvk' | 'energy';
+  /** mass density (1 to 25000 kg/m^3) */
+  density_kg_m3?: number;
+  /** Young's modulus (1 to 10000000000 Pa) */
+  young_modulus_pa?: number;
+  /** Poisson's ratio; at most 1/3 for model energy (0 to 0.45) */
+  poisson_ratio?: number;
+  /** stiffness of the strain limit and shrinkage (1 to 10000000000 Pa) */
+  limit_stiffness_pa?: number;
+  /** range: |k_ab| / sqrt(k_aa k_bb) stays below (0 to 0.99) */
+  shear_max?: number;
+  /** gamma_1 (strain with the half); plastic if gamma_2 > 0 (0 to 10) */
+  yield_strain?: number;
+  /** gamma_2; 0: no plasticity (0 to 10) */
+  plastic_strain_max?: number;
+  /** strain limit */
+  limit?: 'none' | 'target' | 'range';
+  /** how a target is projected */
+  projection?: 'closed_form' | 'linearised';
+  /** target: t_00, t_11, t_22, t_01, t_02, t_12 of F^T F; positive definite (-100 to 100) */
+  target?: [number, number, number, number, number, number];
+  /** range: least engineering strain along each axis (-0.99 to 0) */
+  strain_min?: [number, number, number];
+  /** range: largest (0 to 100) */
+  strain_max?: [number, number, number];
+  /** S of eq. 21: squared stretches; 1: no shrinkage (0.001 to 10) */
+  shrink?: [number, number, number];
+  /** an edge parts when its exposure exceeds this (1 to 2000 degC) */
+  ignition_c?: number;
+  /** standard deviation over edges, drawn by seed (0 to 500 degC) */
+  ignition_spread_c?: number;
+  /** xi of eq. 20 (0 to 1000 1/s) */
+  absorption_per_s?: number;
+}
+
+/** replaces a layer's material */
+export interface MaterialSetLinks {
+  /** its id; that of the connection's URL by default */
+  session?: string;
+  /** see session_change (1 to 9007199254740991) */
+  client_sequence?: number;
+  /** applied at the first tick border at or after this; 0: the next (0 to 9007199254740991) */
+  tick?: number;
+  /** the driver's own count (0 to 9007199254740991) */
+  sequence?: number;
+  /** the layer's kind */
+  kind: 'links';
+  /** which layer */
+  layer: string;
+  /** Young's modulus of a truss (1 to 100000000000 Pa) */
+  young_modulus_pa?: number;
+  /** cross section of a truss (1e-12 to 1 m^2) */
+  area_m2?: number;
+  /** longest truss (1e-06 to 1 m) */
+  reach_m?: number;
+  /** trusses from each vertex of the upper sheet (1 to 8) */
+  per_vertex?: number;
+  /** an edge parts when its exposure exceeds this (1 to 2000 degC) */
+  ignition_c?: number;
+  /** standard deviation over edges, drawn by seed (0 to 500 degC) */
+  ignition_spread_c?: number;
+  /** xi of eq. 20 (0 to 1000 1/s) */
+  absorption_per_s?: number;
+}
+
+/** for the whole session */
+export interface GravitySet {
+  /** its id; that of the connection's URL by default */
+  session?: string;
+  /** see session_change (1 to 9007199254740991) */
+  client_sequence?: number;
+  /** applied at the first tick border at or after this; 0: the next (0 to 9007199254740991) */
+  tick?: number;
+  /** the driver's own count (0 to 9007199254740991) */
+  sequence?: number;
+  /** gravity (-100 to 100 m/s^2) */
+  gravity_m_s2: [number, number, number];
+}
+
+/** an outer force on vertices */
+export interface ForceSet {
+  /** its id; that of the connection's URL by default */
+  session?: string;
+  /** see session_change (1 to 9007199254740991) */
+  client_sequence?: number;
+  /** applied at the first tick border at or after this; 0: the next (0 to 9007199254740991) */
+  tick?: number;
+  /** the driver's own count (0 to 9007199254740991) */
+  sequence?: number;
+  /** on each chosen vertex (-10000 to 10000 N) */
+  force_n: [number, number, number];
+  /** which vertices */
+  selection: Selection;
+}
+
+/** Requests: params and result of each method. */
+export interface Requests {
+  /** first of all; nothing else is served before it */
+  'hello': { params: Hello; result: HelloResult };
+  /** sign of life of a driver, every 100 ms while energy is on */
+  'heartbeat': { params: Heartbeat; result: HeartbeatResult };
+  /** scenes of the daemon */
+  'scene.list': { params: Nothing; result: SceneList };
+  /** one of them whole */
+  'scene.get': { params: SceneRef; result: SceneResult };
+  /** sessions of the daemon */
+  'session.list': { params: Nothing; result: SessionList };
+  /** makes a session */
+  'session.create': { params: SessionCreate; result: SessionDescription };
+  /** layers, drivers, scene */
+  'session.describe': { params: SessionRef; result: SessionDescription };
+  /** asks for frames; again to change the profile */
+  'session.join': { params: SessionJoin; result: StreamDescription };
+  /** no more frames */
+  'session.leave': { params: SessionRef; result: Nothing };
+  /** stops time at a tick border; cuts energy */
+  'session.pause': { params: SessionChange; result: SessionSummary };
+  /** lets time run */
+  'session.resume': { params: SessionChange; result: SessionSummary };
+  /** advances a paused session; answered when done */
+  'session.step': { params: SessionStep; result: TickResult };
+  /** sets the pace */
+  'session.speed': { params: SessionSpeed; result: SessionSummary };
+  /** back to tick 0; a new branch */
+  'session.reset': { params: SessionChange; result: Restored };
+  /** ends it and removes it from the store */
+  'session.destroy': { params: SessionChange; result: Nothing };
+  /** a new session from this state, energy off */
+  'session.fork': { params: SessionFork; result: SessionDescription };
+  /** stores the state under a name */
+  'session.snapshot': { params: SessionSnapshot; result: SnapshotResult };
+  /** back to a snapshot */
+  'session.restore': { params: SessionRestore; result: Restored };
+  /** back to a tick */
+  'session.rewind': { params: SessionRewind; result: Restored };
+  /** the tissue as a file; binary chunks follow */
+  'session.export': { params: SessionExport; result: Transfer };
+  /** the command log as a script; binary chunks follow */
+  'session.log': { params: SessionLog; result: Transfer };
+  /** cuts and other events */
+  'session.timeline': { params: SessionTimeline; result: Timeline };
+  /** asks for a key frame; at most one a second */
+  'stream.key_frame': { params: SessionRef; result: Nothing };
+  /** a new tool, driven by the caller */
+  'tool.add': { params: ToolAdd; result: CommandResult };
+  /** takes it away */
+  'tool.remove': { params: ToolRemove; result: CommandResult };
+  /** replaces shape and sizes */
+  'tool.configure': { params: ToolConfigure; result: CommandResult };
+  /** moves it, at its speed limit; needs to be its driver */
+  'tool.move': { params: ToolMove; result: CommandResult };
+  /** energy on (driver only) or off */
+  'tool.energize': { params: ToolEnergize; result: CommandResult };
+  /** closes the jaws on what is between them; driver only */
+  'tool.grasp': { params: ToolGrasp; result: CommandResult };
+  /** opens them; driver only */
+  'tool.release': { params: ToolRelease; result: CommandResult };
+  /** becomes the driver: of a tool that nobody drives, or with role admin; energy off */
+  'tool.take_over': { params: ToolRef; result: Driver };
+  /** asks its driver, who sees takeover.requested */
+  'tool.request_takeover': { params: ToolRef; result: Nothing };
+  /** gives it up; energy off; driver only */
+  'tool.hand_over': { params: ToolHandOver; result: Driver };
+  /** holds vertices where they are */
+  'pin': { params: Pin; result: CommandResult };
+  /** lets them go */
+  'unpin': { params: Unpin; result: CommandResult };
+  /** replaces a layer's material */
+  'material.set': { params: MaterialSet; result: CommandResult };
+  /** for the whole session */
+  'gravity.set': { params: GravitySet; result: CommandResult };
+  /** an outer force on vertices */
+  'force.set': { params: ForceSet; result: CommandResult };
+  /** announces a mesh file */
+  'upload.begin': { params: UploadBegin; result: UploadBeginResult };
+  /** checks its length and hash */
+  'upload.end': { params: UploadEnd; result: UploadResult };
+}
+
+/** Notifications from the client. */
+export interface Notices {
+  /** sign of life of a driver, every 100 ms while energy is on */
+  'heartbeat': Heartbeat;
+  /** how far the client has decoded */
+  'stream.ack': StreamAck;
+  /** moves it, at its speed limit; needs to be its driver */
+  'tool.move': ToolMove;
+}
+
+/** Notifications from the server. */
+export interface Pushes {
+  /** to everybody who joined the session, and to all for created and destroyed */
+  'session.changed': SessionChanged;
+  /** to everybody who joined the session */
+  'session.faulted': SessionFaulted;
+  /** to everybody who joined the session */
+  'tool.driver_changed': DriverChanged;
+  /** to the tool's driver */
+  'tool.refused': ToolRefused;
+  /** to the tool's driver */
+  'takeover.requested': TakeoverRequested;
+  /** to everybody who joined the session */
+  'event': EventNotice;
+}
+
+/** Requests that take client_sequence: sent again they act once. */
+export const CHANGING_METHODS: ReadonlySet<string> = new Set<string>([
+  'session.create',
+  'session.pause',
+  'session.resume',
+  'session.step',
+  'session.speed',
+  'session.reset',
+  'session.destroy',
+  'session.fork',
+  'session.snapshot',
+  'session.restore',
+  'session.rewind',
+  'tool.add',
+  'tool.remove',
+  'tool.configure',
+  'tool.move',
+  'tool.energize',
+  'tool.grasp',
+  'tool.release',
+  'tool.take_over',
+  'tool.hand_over',
+  'pin',
+  'unpin',
+  'material.set',
+  'gravity.set',
+  'force.set',
+]);
+
+/** error.code by error.data.status. */
+export const ERROR_CODES = {
+  bad_syntax: -32700,
+  invalid_request: -32600,
+  method_not_found: -32601,
+  bad_value: -32602,
+  internal: -32603,
+  bad_mesh: -32003,
+  bad_state: -32004,
+  not_found: -32005,
+  already_exists: -32006,
+  limit: -32007,
+  unsupported: -32008,
+  no_memory: -32009,
+  io: -32010,
+  numerical: -32011,
+  faulted: -32012,
+  corrupt: -32013,
+  not_here: -32040,
+  hello_required: -32041,
+  unauthorized: -32042,
+  forbidden: -32043,
+  version: -32044,
+  not_driver: -32045,
+  rate: -32046,
+  draining: -32047,
+  store_full: -32048,
+  sequence_past: -32049,
+} as const;
+export type ErrorStatus = keyof typeof ERROR_CODES;
+
+/** Close codes of the connection and what they mean. */
+export const CLOSE_REASONS: Readonly<Record<number, string>> = {
+  1000: 'done',
+  1001: 'the server is shutting down',
+  1002: 'the WebSocket protocol was broken',
+  1003: 'a binary message that is no chunk of an upload',
+  1007: 'a text message that is not UTF-8',
+  1009: 'a message beyond the limit',
+  1011: 'the server met an error of its own',
+  1013: 'too many connections',
+  4001: 'no hello within 5 s',
+  4002: 'the token is missing or not known',
+  4003: 'no common version',
+  4004: 'frames were not read fast enough',
+  4005: 'too many messages a second',
+  4006: 'pings were not answered',
+  4007: 'another connection resumed this one',
+  4008: 'too many malformed messages',
+};
+
+export const FRAME_KIND = { key: 1, delta: 2, topology: 3, } as const;
+export const SECTION = {
+  positions: 1,
+  mask: 2,
+  exposure: 3,
+  charring: 4,
+  stress: 5,
+  tool_names: 6,
+  tools: 7,
+  statistics: 8,
+  faces: 16,
+  face_layers: 17,
+  texture: 18,
+  rest: 19,
+} as const;
+
+/** Words that frames tell by their number. */
+export const TOOL_SHAPES = ['sphere', 'capsule', 'hook', 'spatula', 'bipolar', 'shears', 'grasper', ] as const;
+export const ENERGY_OFF_REASONS = ['never_enabled', 'commanded', 'watchdog', 'restored', 'taken_over', ] as const;
+
+export interface Parameter {
+  name: string;
+  unit: string;
+  least: number;
+  most: number;
+  default: number;
+  meaning: string;
+}
+
+/** Numbers that panels edit. */
+export const PARAMETERS = {
+  scene: [
+    { name: 'step_s', unit: 's', least: 0.001, most: 0.03333333333333333, default: 0.01666666666666667,
+      meaning: "time step; one tick" },
+    { name: 'damping_per_s', unit: '1/s', least: 0, most: 1000, default: 0,
+      meaning: "v <- v exp(-c dt)" },
+    { name: 'ambient_c', unit: 'degC', least: -20, most: 60, default: 37,
+      meaning: "temperature of the body around the tools" },
+    { name: 'tolerance', unit: '1', least: 0, most: 1, default: 0,
+      meaning: "stop a step at this relative residual; 0: never" },
+  ],
+  tool: [
+    { name: 'hot_radius_m', unit: 'm', least: 0.0002, most: 0.05, default: 0.003,
+      meaning: "radius of the hot part" },
+    { name: 'tip_length_m', unit: 'm', least: 0.001, most: 0.1, default: 0.008,
+      meaning: "length of needle, hook foot, blade or jaws" },
+    { name: 'shaft_radius_m', unit: 'm', least: 0.0002, most: 0.05, default: 0.0025,
+      meaning: "radius of the shaft" },
+    { name: 'shaft_length_m', unit: 'm', least: 0.001, most: 1, default: 0.12,
+      meaning: "length of the shaft" },
+    { name: 'jaw_open_rad', unit: 'rad', least: 0.05, most: 1.5, default: 0.6,
+      meaning: "angle between open jaws" },
+    { name: 'temperature_c', unit: 'degC', least: 0, most: 1500, default: 170,
+      meaning: "temperature of the hot part while energized" },
+    { name: 'grid_cells', unit: '1', least: 8, most: 64, default: 16,
+      meaning: "nodes of the heat grid along each axis" },
+    { name: 'grid_step_m', unit: 'm', least: 5e-05, most: 0.01, default: 0.001,
+      meaning: "spacing dl of the heat grid; at most the hot radius" },
+    { name: 'diffusivity_m2_s', unit: 'm^2/s', least: 0, most: 0.001, default: 4.2e-06,
+      meaning: "alpha of eq. 18" },
+    { name: 'max_speed_m_s', unit: 'm/s', least: 0.001, most: 5, default: 0.5,
+      meaning: "faster commands are followed at this speed" },
+    { name: 'max_turn_rad_s', unit: 'rad/s', least: 0.1, most: 100, default: 12,
+      meaning: "likewise for turning" },
+    { name: 'friction', unit: '1', least: 0, most: 2, default: 0.2,
+      meaning: "Coulomb coefficient of the cold parts" },
+    { name: 'drag_ns_m', unit: 'N s/m', least: 0, most: 100, default: 0.05,
+      meaning: "viscous drag of the hot part on each vertex in it" },
+    { name: 'grasp_stiffness_n_m', unit: 'N/m', least: 1, most: 1000000, default: 200,
+      meaning: "of the attachment of one grasped vertex" },
+    { name: 'slip_force_n', unit: 'N', least: 0, most: 1000, default: 2,
+      meaning: "an attached vertex slips above this force" },
+    { name: 'force_max_n', unit: 'N', least: 0.01, most: 1000, default: 20,
+      meaning: "clamp of the force reported to drivers" },
+  ],
+  fascia: [
+    { name: 'thickness_m', unit: 'm', least: 1e-06, most: 0.05, default: 0.0005,
+      meaning: "sheet thickness" },
+    { name: 'density_kg_m3', unit: 'kg/m^3', least: 1, most: 25000, default: 1100,
+      meaning: "mass density" },
+    { name: 'limit_stiffness_pa', unit: 'Pa', least: 1, most: 10000000000, default: 1000000,
+      meaning: "stiffness k of the strain limit" },
+    { name: 'shear_max', unit: '1', least: 0, most: 0.99, default: 0,
+      meaning: "range: |k_12| / sqrt(k_11 k_22) stays below" },
+    { name: 'bending_stiffness_nm', unit: 'N m', least: 0, most: 10, default: 0,
+      meaning: "bending; 0: no hinges" },
+    { name: 'ignition_c', unit: 'degC', least: 1, most: 2000, default: 172,
+      meaning: "an edge parts when its exposure exceeds this" },
+    { name: 'ignition_spread_c', unit: 'degC', least: 0, most: 500, default: 0,
+      meaning: "standard deviation over edges, drawn by seed" },
+    { name: 'absorption_per_s', unit: '1/s', least: 0, most: 1000, default: 0.4,
+      meaning: "xi of eq. 20" },
+  ],
+  membrane: [
+    { name: 'thickness_m', unit: 'm', least: 1e-06, most: 0.05, default: 0.0005,
+      meaning: "sheet thickness" },
+    { name: 'density_kg_m3', unit: 'kg/m^3', least: 1, most: 25000, default: 1100,
+      meaning: "mass density" },
+    { name: 'limit_stiffness_pa', unit: 'Pa', least: 1, most: 10000000000, default: 1000000,
+      meaning: "stiffness k of the strain limit" },
+    { name: 'shear_max', unit: '1', least: 0, most: 0.99, default: 0,
+      meaning: "range: |k_12| / sqrt(k_11 k_22) stays below" },
+    { name: 'bending_stiffness_nm', unit: 'N m', least: 0, most: 10, default: 0,
+      meaning: "bending; 0: no hinges" },
+    { name: 'ignition_c', unit: 'degC', least: 1, most: 2000, default: 96.40000000000001,
+      meaning: "an edge parts when its exposure exceeds this" },
+    { name: 'ignition_spread_c', unit: 'degC', least: 0, most: 500, default: 0,
+      meaning: "standard deviation over edges, drawn by seed" },
+    { name: 'absorption_per_s', unit: '1/s', least: 0, most: 1000, default: 0.4,
+      meaning: "xi of eq. 20" },
+  ],
+  fat: [
+    { name: 'density_kg_m3', unit: 'kg/m^3', least: 1, most: 25000, default: 911,
+      meaning: "mass density" },
+    { name: 'young_modulus_pa', unit: 'Pa', least: 1, most: 10000000000, default: 5000,
+      meaning: "Young's modulus" },
+    { name: 'poisson_ratio', unit: '1', least: 0, most: 0.45, default: 0.4,
+      meaning: "Poisson's ratio; at most 1/3 for model energy" },
+    { name: 'limit_stiffness_pa', unit: 'Pa', least: 1, most: 10000000000, default: 1000,
+      meaning: "stiffness of the strain limit and shrinkage" },
+    { name: 'shear_max', unit: '1', least: 0, most: 0.99, default: 0,
+      meaning: "range: |k_ab| / sqrt(k_aa k_bb) stays below" },
+    { name: 'yield_strain', unit: '1', least: 0, most: 10, default: 0,
+      meaning: "gamma_1 (strain with the half); plastic if gamma_2 > 0" },
+    { name: 'plastic_strain_max', unit: '1', least: 0, most: 10, default: 0,
+      meaning: "gamma_2; 0: no plasticity" },
+    { name: 'ignition_c', unit: 'degC', least: 1, most: 2000, default: 76,
+      meaning: "an edge parts when its exposure exceeds this" },
+    { name: 'ignition_spread_c', unit: 'degC', least: 0, most: 500, default: 0,
+      meaning: "standard deviation over edges, drawn by seed" },
+    { name: 'absorption_per_s', unit: '1/s', least: 0, most: 1000, default: 0.4,
+      meaning: "xi of eq. 20" },
+  ],
+  links: [
+    { name: 'young_modulus_pa', unit: 'Pa', least: 1, most: 100000000000, default: 100000,
+      meaning: "Young's modulus of a truss" },
+    { name: 'area_m2', unit: 'm^2', least: 1e-12, most: 1, default: 1e-06,
+      meaning: "cross section of a truss" },
+    { name: 'reach_m', unit: 'm', least: 1e-06, most: 1, default: 0.005,
+      meaning: "longest truss" },
+    { name: 'per_vertex', unit: '1', least: 1, most: 8, default: 3,
+      meaning: "trusses from each vertex of the upper sheet" },
+    { name: 'ignition_c', unit: 'degC', least: 1, most: 2000, default: 172,
+      meaning: "an edge parts when its exposure exceeds this" },
+    { name: 'ignition_spread_c', unit: 'degC', least: 0, most: 500, default: 0,
+      meaning: "standard deviation over edges, drawn by seed" },
+    { name: 'absorption_per_s', unit: '1/s', least: 0, most: 1000, default: 0.4,
+      meaning: "xi of eq. 20" },
+  ],
+} satisfies Record<string, Parameter[]>;

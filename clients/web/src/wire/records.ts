@@ -1,0 +1,132 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Tool names, tool records and the statistics record of a frame.
+import { viewOf, WireError } from './header';
+import { ENERGY_OFF_REASONS, TOOL_SHAPES } from './messages.gen';
+
+export type ToolShape = (typeof TOOL_SHAPES)[number];
+export type EnergyOff = (typeof ENERGY_OFF_REASONS)[number];
+export type Vector = [number, number, number];
+export type Quaternion = [number, number, number, number];
+
+export interface ToolName {
+  name: string;
+  shape: ToolShape;
+}
+
+export interface ToolState extends ToolName {
+  sequence: number;
+  positionM: Vector;
+  rotation: Quaternion;
+  jaw: number;
+  forceN: Vector;
+  torqueNm: Vector;
+  tipTemperatureC: number;
+  energyJ: number;
+  driver: number;
+  energized: boolean;
+  grasping: boolean;
+  frozen: boolean;
+  energyOff: EnergyOff;
+  graspedVertices: number;
+  contactVertices: number;
+  touchedLayers: number;
+}
+
+export const STAGES = ['commands', 'predict', 'local', 'global', 'contact', 'heat', 'dissect', 'frame'] as const;
+
+export interface Statistics {
+  realtimeFactor: number;
+  stepCostS: number;
+  stageS: number[];
+  residual: number;
+  deferredMaxS: number;
+  iterations: number;
+  backtracks: number;
+  inverted: number;
+  edgesParted: number;
+  elementsRemoved: number;
+  pendingDowndates: number;
+  refactorisations: number;
+  contacts: number;
+  frozenVertices: number;
+  refusedCommands: number;
+}
+
+const TOOL_BYTES = 84;
+const STATISTICS_BYTES = 88;
+const TOOLS_MAX = 8;
+
+export function readToolNames(payload: Uint8Array): ToolName[] {
+  if (payload.byteLength < 4) throw new WireError('tool names are cut off');
+  const count = viewOf(payload).getUint32(0, true);
+  if (count > TOOLS_MAX) throw new WireError(`${count} tools`);
+  const names: ToolName[] = [];
+  let offset = 4;
+  for (let i = 0; i < count; i++) {
+    const shape = TOOL_SHAPES[payload[offset] ?? -1];
+    const length = payload[offset + 1] ?? 0;
+    offset += 2;
+    if (shape === undefined || length === 0 || offset + length > payload.byteLength)
+      throw new WireError('tool names are damaged');
+    names.push({ shape, name: String.fromCharCode(...payload.subarray(offset, offset + length)) });
+    offset += length;
+  }
+  return names;
+}
+
+function readVector(view: DataView, offset: number): Vector {
+  return [view.getFloat32(offset, true), view.getFloat32(offset + 4, true), view.getFloat32(offset + 8, true)];
+}
+
+function readTool(view: DataView, offset: number, name: ToolName): ToolState {
+  const flags = view.getUint8(offset + 76);
+  return {
+    ...name,
+    sequence: Number(view.getBigUint64(offset, true)),
+    positionM: readVector(view, offset + 8),
+    rotation: [view.getFloat32(offset + 20, true), ...readVector(view, offset + 24)],
+    jaw: view.getFloat32(offset + 36, true),
+    forceN: readVector(view, offset + 40),
+    torqueNm: readVector(view, offset + 52),
+    tipTemperatureC: view.getFloat32(offset + 64, true),
+    energyJ: view.getFloat32(offset + 68, true),
+    driver: view.getUint32(offset + 72, true),
+    energized: (flags & 1) !== 0,
+    grasping: (flags & 2) !== 0,
+    frozen: (flags & 4) !== 0,
+    energyOff: ENERGY_OFF_REASONS[view.getUint8(offset + 77)] ?? 'never_enabled',
+    graspedVertices: view.getUint16(offset + 78, true),
+    contactVertices: view.getUint16(offset + 80, true),
+    touchedLayers: view.getUint16(offset + 82, true),
+  };
+}
+
+export function readTools(payload: Uint8Array, names: readonly ToolName[]): ToolState[] {
+  if (payload.byteLength !== names.length * TOOL_BYTES) throw new WireError('tool records do not match their names');
+  const view = viewOf(payload);
+  return names.map((name, i) => readTool(view, i * TOOL_BYTES, name));
+}
+
+export function readStatistics(payload: Uint8Array): Statistics {
+  if (payload.byteLength < STATISTICS_BYTES) throw new WireError('the statistics record is cut off');
+  const view = viewOf(payload);
+  const real = (i: number): number => view.getFloat32(4 * i, true);
+  const count = (i: number): number => view.getUint32(48 + 4 * i, true);
+  return {
+    realtimeFactor: real(0),
+    stepCostS: real(1),
+    stageS: STAGES.map((_, i) => real(2 + i)),
+    residual: real(10),
+    deferredMaxS: real(11),
+    iterations: count(0),
+    backtracks: count(1),
+    inverted: count(2),
+    edgesParted: count(3),
+    elementsRemoved: count(4),
+    pendingDowndates: count(5),
+    refactorisations: count(6),
+    contacts: count(7),
+    frozenVertices: count(8),
+    refusedCommands: count(9),
+  };
+}

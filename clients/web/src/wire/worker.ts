@@ -1,0 +1,184 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// The worker: owns the socket, decodes every frame, hands the newest state to the page.
+import { isChunk, readChunk } from './chunk';
+import { Connection, RpcError } from './connection';
+import { decoderReady } from './elements';
+import { Feed } from './feed';
+import { Downloads, upload } from './files';
+import { Subscription } from './subscription';
+import type { Channels, FromWorker, Sample, ToWorker } from './worker_messages';
+import type { StreamState } from './decoder';
+import type { Transfer } from './messages.gen';
+
+/** The few names of a worker's global scope that are used; the DOM's types have no room for both. */
+interface WorkerScope {
+  postMessage(message: FromWorker, transfer?: Transferable[]): void;
+  onmessage: ((event: MessageEvent<ToWorker>) => void) | null;
+}
+const scope = self as unknown as WorkerScope;
+
+const CLOCK_US = 2e6;
+
+let connection: Connection | null = null;
+let subscription: Subscription | null = null;
+let feed: Feed | null = null;
+let clockOffsetUs = 0; // the daemon's clock minus this one's
+let leastDelayUs = Infinity;
+let nextMeasureUs = 0;
+const downloads = new Downloads((file) => scope.postMessage({ type: 'file', ...file }, [file.bytes.buffer]));
+
+const nowUs = (): number => Math.round(performance.now() * 1000);
+
+function fail(call: number, error: unknown): void {
+  const message = error instanceof Error ? error.message : String(error);
+  const known = error instanceof RpcError ? error : null;
+  const path = known?.path === undefined ? {} : { path: known.path };
+  scope.postMessage({ type: 'failure', call, status: known?.status ?? 'internal', message, ...path });
+}
+
+/**
+ * Passes the page's sign of life on, and never gives one of its own: a page that hangs must lose its
+ * energy. Now and then it is a request, whose answer shows the offset of the clocks; the least delay of
+ * several shows it best.
+ */
+async function heartbeat(visible: boolean): Promise<void> {
+  const sent = nowUs();
+  if (!connection?.online) return;
+  if (sent < nextMeasureUs) {
+    connection.notify('heartbeat', { visible });
+    return;
+  }
+  nextMeasureUs = sent + CLOCK_US;
+  const { server_time_us: server } = await connection.request('heartbeat', { visible, client_time_us: sent });
+  const delay = nowUs() - sent;
+  if (delay > leastDelayUs) return;
+  leastDelayUs = delay;
+  clockOffsetUs = server - (sent + delay / 2);
+}
+
+function handOver(): void {
+  const frame = feed?.handOver(subscription?.framesDecoded ?? 0, subscription?.framesSkipped ?? 0);
+  if (!frame) return;
+  const { position, normal, burn } = frame.buffers;
+  scope.postMessage({ type: 'frame', frame }, [position.buffer, normal.buffer, burn.buffer]);
+}
+
+function sampleOf(state: StreamState, bytes: number, decodeMs: number): Sample {
+  return {
+    atS: performance.now() / 1000,
+    tick: state.tick,
+    latencyMs: Math.max(0, nowUs() + clockOffsetUs - state.publishedUs) / 1000,
+    bytes,
+    decodeMs,
+    statistics: state.statistics,
+    forceN: Math.max(0, ...state.tools.map((tool) => Math.hypot(...tool.forceN))),
+    energyJ: state.tools.reduce((sum, tool) => sum + tool.energyJ, 0),
+  };
+}
+
+function watch(session: string | null, channels: Channels): void {
+  if (subscription && subscription.session === session) {
+    void subscription.start({ channels });
+    return;
+  }
+  subscription?.stop();
+  subscription = null;
+  feed = null;
+  if (session === null || !connection) return;
+  let received = performance.now();
+  subscription = new Subscription(connection, session, { channels }, {
+    joined: (description, stream, topology) => {
+      feed = new Feed(description, stream, topology);
+      scope.postMessage({ type: 'joined', joined: feed.joined });
+    },
+    frame: (state, changes, bytes) => {
+      feed?.take(state, changes, sampleOf(state, bytes, performance.now() - received));
+      handOver();
+    },
+    failed: (error) => {
+      const status = error instanceof RpcError ? error.status : 'internal';
+      scope.postMessage({ type: 'not_joined', session, status, message: error instanceof Error ? error.message : String(error) });
+    },
+  });
+  takeBytes = (bytes) => {
+    received = performance.now();
+    subscription?.take(bytes);
+  };
+  if (connection.online) void subscription.start();
+}
+
+let takeBytes: (bytes: Uint8Array) => void = () => undefined;
+
+function connect(message: ToWorker & { type: 'connect' }): void {
+  connection?.stop();
+  subscription = null; // it belongs to the old connection; the page says anew what it watches
+  feed = null;
+  const { url, client, clientId, token } = message;
+  const options = { url, client, clientId, ...(token === undefined ? {} : { token }) };
+  connection = new Connection(options, (address, protocol) => new WebSocket(address, protocol), {
+    state: (state) => {
+      scope.postMessage({ type: 'link', state });
+      if (state.state !== 'online') return;
+      clockOffsetUs = state.hello.server_time_us - nowUs();
+      nextMeasureUs = 0;
+      if (subscription) void subscription.start();
+    },
+    push: (method, params) => scope.postMessage({ type: 'push', method, params }),
+    binary: (bytes) => (isChunk(bytes) ? downloads.take(readChunk(bytes)) : takeBytes(bytes)),
+  });
+  connection.start();
+  leastDelayUs = Infinity;
+}
+
+function call(message: ToWorker & { type: 'call' }): void {
+  const { call: number, method, params } = message;
+  if (!connection) return;
+  connection.request(method, params as never).then(
+    (result) => {
+      if (method === 'session.export' || method === 'session.log') downloads.announce(result as Transfer);
+      scope.postMessage({ type: 'answer', call: number, result });
+    },
+    (error: unknown) => fail(number, error),
+  );
+}
+
+function send(message: ToWorker & { type: 'upload' }): void {
+  const { call: number, name, fileName } = message;
+  const bytes = new Uint8Array(message.bytes);
+  const total = bytes.byteLength;
+  if (!connection) return;
+  upload(connection, name, fileName, bytes, (sent) => scope.postMessage({ type: 'progress', call: number, sent, total })).then(
+    (result) => scope.postMessage({ type: 'answer', call: number, result }),
+    (error: unknown) => fail(number, error),
+  );
+}
+
+async function receive(message: ToWorker): Promise<void> {
+  await decoderReady;
+  switch (message.type) {
+    case 'connect':
+      connect(message);
+      break;
+    case 'call':
+      call(message);
+      break;
+    case 'notice':
+      connection?.notify(message.method, message.params as never);
+      break;
+    case 'heartbeat':
+      await heartbeat(message.visible).catch(() => undefined); // lost: the link's state says so
+      break;
+    case 'watch':
+      watch(message.session, message.channels);
+      break;
+    case 'upload':
+      send(message);
+      break;
+    case 'return':
+      feed?.giveBack(message.buffers);
+      handOver();
+      break;
+  }
+}
+
+scope.onmessage = (event) => void receive(event.data);

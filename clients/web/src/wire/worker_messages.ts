@@ -1,0 +1,82 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// What page and worker say to each other.
+import type { Batch } from '../model/tissue';
+import type { LinkState } from './connection';
+import type { Pushes, Requests, Notices, SessionDescription, SessionJoin, StreamDescription } from './messages.gen';
+import type { Statistics, ToolState } from './records';
+
+export type Channels = NonNullable<SessionJoin['channels']>;
+
+export type ToWorker =
+  | { type: 'connect'; url: string; client: string; clientId: string; token?: string }
+  | { type: 'call'; call: number; method: keyof Requests; params: object }
+  | { type: 'notice'; method: keyof Notices; params: object }
+  | { type: 'heartbeat'; visible: boolean }
+  | { type: 'watch'; session: string | null; channels: Channels }
+  | { type: 'upload'; call: number; name: string; fileName: string; bytes: ArrayBuffer }
+  | { type: 'return'; buffers: FrameBuffers };
+
+/** Arrays of a frame on their way to the page and back. */
+export interface FrameBuffers {
+  position: Float32Array;
+  normal: Float32Array;
+  burn: Uint8Array;
+}
+
+/** One decoded frame for the plots. */
+export interface Sample {
+  /** the page's clock */
+  atS: number;
+  tick: number;
+  latencyMs: number;
+  bytes: number;
+  decodeMs: number;
+  statistics: Statistics | null;
+  forceN: number;
+  energyJ: number;
+}
+
+export interface TissueBatch extends Omit<Batch, 'faces'> {
+  faceCount: number;
+}
+
+/** Everything that stays while a session is watched. */
+export interface Joined {
+  description: SessionDescription;
+  stream: StreamDescription;
+  batches: TissueBatch[];
+  rest: Float32Array;
+  material: Float32Array;
+}
+
+export interface Frame {
+  session: string;
+  epoch: string;
+  sequence: number;
+  tick: number;
+  timeS: number;
+  paused: boolean;
+  faulted: boolean;
+  /** tissue looks other than in the frame that was handed over before */
+  changed: boolean;
+  buffers: FrameBuffers;
+  /** index of drawn faces by batch, where they changed since the last frame that was handed over */
+  drawn: { batch: number; index: Uint32Array }[];
+  drawnFaces: Record<string, number>;
+  stressScalePa: number;
+  tools: ToolState[];
+  samples: Sample[];
+  framesDecoded: number;
+  framesSkipped: number;
+}
+
+export type FromWorker =
+  | { type: 'link'; state: LinkState }
+  | { type: 'answer'; call: number; result: unknown }
+  | { type: 'failure'; call: number; status: string; message: string; path?: string }
+  | { type: 'push'; method: keyof Pushes; params: Pushes[keyof Pushes] }
+  | { type: 'joined'; joined: Joined }
+  | { type: 'not_joined'; session: string; message: string; status: string }
+  | { type: 'frame'; frame: Frame }
+  | { type: 'progress'; call: number; sent: number; total: number }
+  | { type: 'file'; name: string; mediaType: string; bytes: Uint8Array; sound: boolean };

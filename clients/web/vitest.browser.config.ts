@@ -1,0 +1,25 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+import { fileURLToPath } from 'node:url';
+import { defineConfig } from 'vitest/config';
+
+const here = (path: string): string => fileURLToPath(new URL(path, import.meta.url));
+
+// Pages in Chromium against a real daemon, one after the other: two cores draw one page in software.
+export default defineConfig({
+  resolve: {
+    alias: {
+      'playwright-core': here('./node_modules/playwright-core/index.mjs'),
+      '@axe-core/playwright': here('./node_modules/@axe-core/playwright/dist/index.mjs'),
+    },
+  },
+  test: {
+    globals: true,
+    dir: here('../../tests/browser/page'),
+    include: ['**/*.test.ts'],
+    pool: 'forks',
+    poolOptions: { forks: { singleFork: true } },
+    fileParallelism: false,
+    testTimeout: 120_000,
+    hookTimeout: 60_000,
+  },
+});

@@ -1,0 +1,147 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "base/pool.h"
+
+#include <pthread.h>
+#include <sched.h>
+#include <stdatomic.h>
+#include <stdlib.h>
+
+// Loops follow each other within microseconds during a step, so helpers spin for a while before
+// they sleep; between steps they sleep.
+enum { SPINS = 20000, MAX_THREADS = 16 };
+
+struct cau_pool {
+	int32_t thread_count;
+	pthread_t threads[MAX_THREADS];
+	void (*part)(void *context, int32_t index);
+	void *context;
+	// One word holds the loop's generation (32 bits), its part count (16) and the next part to
+	// claim (16): a claim is one exchange, so a late helper can never take a part of a loop it did
+	// not see. `part` and `context` are read only after a claim, while the loop cannot end.
+	_Atomic uint64_t ticket;
+	_Atomic int32_t parts_left;
+	_Atomic int32_t sleepers;
+	atomic_bool stop;
+	pthread_mutex_t lock;
+	pthread_cond_t wake;
+};
+
+static void relax(void)
+{
+#if defined(__x86_64__)
+	__builtin_ia32_pause();
+#endif
+}
+
+static uint32_t generation_of(uint64_t ticket)
+{
+	return (uint32_t)(ticket >> 32);
+}
+
+static void run_parts(cau_pool *pool)
+{
+	uint64_t ticket = atomic_load(&pool->ticket);
+	for (;;) {
+		uint32_t index = ticket & 0xffff;
+		if (index >= ((ticket >> 16) & 0xffff))
+			return;
+		if (!atomic_compare_exchange_weak(&pool->ticket, &ticket, ticket + 1))
+			continue;
+		pool->part(pool->context, (int32_t)index);
+		atomic_fetch_sub(&pool->parts_left, 1);
+		ticket = atomic_load(&pool->ticket);
+	}
+}
+
+static void sleep_until_changed(cau_pool *pool, uint32_t seen)
+{
+	pthread_mutex_lock(&pool->lock);
+	atomic_fetch_add(&pool->sleepers, 1);
+	while (generation_of(atomic_load(&pool->ticket)) == seen && !atomic_load(&pool->stop))
+		pthread_cond_wait(&pool->wake, &pool->lock);
+	atomic_fetch_sub(&pool->sleepers, 1);
+	pthread_mutex_unlock(&pool->lock);
+}
+
+static void *helper(void *argument)
+{
+	cau_pool *pool = argument;
+	uint32_t seen = 0;
+	while (!atomic_load(&pool->stop)) {
+		int spins = 0;
+		while (generation_of(atomic_load(&pool->ticket)) == seen && !atomic_load(&pool->stop)) {
+			if (++spins < SPINS)
+				relax();
+			else
+				sleep_until_changed(pool, seen);
+		}
+		seen = generation_of(atomic_load(&pool->ticket));
+		run_parts(pool);
+	}
+	return NULL;
+}
+
+cau_pool *cau_pool_create(int32_t thread_count)
+{
+	cau_pool *pool = calloc(1, sizeof *pool);
+	if (!pool)
+		return NULL;
+	pthread_mutex_init(&pool->lock, NULL);
+	pthread_cond_init(&pool->wake, NULL);
+	pool->thread_count = 1;
+	if (thread_count > MAX_THREADS)
+		thread_count = MAX_THREADS;
+	while (pool->thread_count < thread_count) {
+		if (pthread_create(&pool->threads[pool->thread_count], NULL, helper, pool))
+			break;
+		pool->thread_count++;
+	}
+	return pool;
+}
+
+void cau_pool_destroy(cau_pool *pool)
+{
+	if (!pool)
+		return;
+	pthread_mutex_lock(&pool->lock);
+	atomic_store(&pool->stop, 1);
+	pthread_cond_broadcast(&pool->wake);
+	pthread_mutex_unlock(&pool->lock);
+	for (int32_t i = 1; i < pool->thread_count; ++i)
+		pthread_join(pool->threads[i], NULL);
+	pthread_cond_destroy(&pool->wake);
+	pthread_mutex_destroy(&pool->lock);
+	free(pool);
+}
+
+int32_t cau_pool_thread_count(const cau_pool *pool)
+{
+	return pool->thread_count;
+}
+
+void cau_pool_run(cau_pool *pool, int32_t part_count, void (*part)(void *context, int32_t index),
+                  void *context)
+{
+	if (pool->thread_count == 1 || part_count <= 1) {
+		for (int32_t i = 0; i < part_count; ++i)
+			part(context, i);
+		return;
+	}
+	pool->part = part;
+	pool->context = context;
+	atomic_store(&pool->parts_left, part_count);
+	uint64_t generation = generation_of(atomic_load(&pool->ticket)) + 1u;
+	atomic_store(&pool->ticket, generation << 32 | (uint64_t)part_count << 16);
+	if (atomic_load(&pool->sleepers)) {
+		pthread_mutex_lock(&pool->lock);
+		pthread_cond_broadcast(&pool->wake);
+		pthread_mutex_unlock(&pool->lock);
+	}
+	run_parts(pool);
+	for (int spins = 0; atomic_load(&pool->parts_left); ++spins) {
+		if (spins < SPINS)
+			relax();
+		else
+			sched_yield();
+	}
+}

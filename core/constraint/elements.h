@@ -1,0 +1,121 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// The elements of a tissue as structure-of-arrays, in groups of one law, for the element kernels.
+//
+// Every element has a slot. Slots of one group are contiguous and padded to whole batches; padding
+// has weight 0 and vertex 0. Arrays marked `real` are float or double, as the session's precision
+// says. A removed element keeps its slot with weight 0.
+//
+// Each slot writes the gradient of its energy (N) on its vertices to `gradient`, four reals a
+// vertex (x, y, z, 0): (slot_count x vertices x 4). Vertices sum them up in a fixed order
+// (vertex_sum.h).
+#pragma once
+
+#include <stdint.h>
+
+#include "cautery/scene.h"
+
+enum {
+	CAU_BATCH = 16, // slots in a batch of every set: a multiple of the lanes of each precision
+	CAU_MAX_GROUPS = CAU_MAX_LAYERS * CAU_MAX_MATERIALS,
+};
+
+// One law over a range of slots.
+typedef struct cau_sheet_group {
+	int32_t first_slot, slot_count, layer, material;
+	int limit, projection;                 // CAU_LIMIT_*, CAU_PROJECTION_*
+	double stretch_min[2], stretch_max[2]; // RANGE: sqrt(k_aa)
+	double shear_max;
+} cau_sheet_group;
+
+typedef struct cau_fat_group {
+	int32_t first_slot, slot_count, layer, material;
+	int model; // CAU_MODEL_*
+	int limit, projection;
+	int plastic;            // 1: `plastic` holds C_p^(-1/2) - I
+	double mu, lambda;      // Pa, of the energy as it is evaluated
+	double stiffness;       // Pa: k of the energy's share of A
+	double limit_stiffness; // Pa
+	double stretch_min[3], stretch_max[3];
+	double shear_max;
+	double yield_strain, plastic_strain_max;
+} cau_fat_group;
+
+// Fascia and membrane. F = F_0 + [du_1 du_2] D_m'^-1 (eq. 8-10), 3 x 2.
+typedef struct cau_sheet_set {
+	int32_t slot_count, group_count;
+	cau_sheet_group *group;
+	int32_t *vertex[3];   // (slot_count)
+	void *dm_inverse[4];  // real, 1/m: row-major D_m'^-1
+	void *rest[6];        // real: columns of F_0 = F at rest
+	void *weight;         // real, N m: k x area x thickness; 0 once removed
+	void *target[3];      // real: T^(1/2): 00, 11, 01
+	void *polar[6];       // real: Q of the last evaluation, kept where F loses rank
+	void *position_scale; // real, m^2: |G|^2 of the element, for the diagonal system
+} cau_sheet_set;
+
+// Fat. F = I + [du_1 du_2 du_3] D_m^-1, world axes.
+typedef struct cau_fat_set {
+	int32_t slot_count, group_count;
+	cau_fat_group *group;
+	int32_t *vertex[4];
+	void *dm_inverse[9]; // real, 1/m: row-major
+	void *volume;        // real, m^3; 0 once removed
+	void *
+		limit_weight; // real, N m: limit stiffness x volume where a limit or shrinkage acts, else 0
+	void *target[6];  // real: T^(1/2): 00, 11, 22, 01, 02, 12
+	void *polar[4];   // real: rotation of the limit, or of corotated fat: w, x, y, z
+	void *plastic[6]; // real: C_p^(-1/2) - I
+	void *plastic_strain[6]; // real: e_p, with C_p = I + 2 e_p
+	uint8_t *limited; // (slot_count / CAU_BATCH): some slot of the batch has limit_weight > 0
+	uint8_t *flowed;  // likewise: some slot has plastic strain
+	void *position_scale;
+} cau_fat_set;
+
+// Trusses (section 5.2, last paragraph).
+typedef struct cau_link_set {
+	int32_t slot_count;
+	int32_t *vertex[2];
+	void *rest[3];     // real, m: edge vector at rest
+	void *rest_length; // real, m
+	void *weight;      // real, N/m: E A / L; 0 once removed
+} cau_link_set;
+
+// Bending: e = sum of c_i x_i over the four vertices of two triangles that share an edge.
+typedef struct cau_hinge_set {
+	int32_t slot_count;
+	int32_t *vertex[4];
+	void *coefficient[4]; // real: c_i, sum 0
+	void *rest[3];        // real, m: e at rest
+	void *rest_length;    // real, m: |e| at rest
+	void *weight;         // real, N/m
+} cau_hinge_set;
+
+typedef struct cau_elements {
+	int single; // precision of the real arrays
+	cau_sheet_set sheet;
+	cau_fat_set fat;
+	cau_link_set link;
+	cau_hinge_set hinge;
+	// Gradient records, (record_count x 4 reals): sheets, fat, links, hinges one after the other.
+	void *gradient; // real
+	int64_t sheet_record, fat_record, link_record, hinge_record, record_count;
+	// Energy of each batch, J, in the same order.
+	double *energy;
+	int32_t sheet_batch, fat_batch, link_batch, hinge_batch, batch_count;
+} cau_elements;
+
+static inline double cau_real_get(const void *array, int single, int64_t index)
+{
+	return single ? (double)((const float *)array)[index] : ((const double *)array)[index];
+}
+static inline void cau_real_set(void *array, int single, int64_t index, double value)
+{
+	if (single)
+		((float *)array)[index] = (float)value;
+	else
+		((double *)array)[index] = value;
+}
+static inline size_t cau_real_bytes(int single)
+{
+	return single ? sizeof(float) : sizeof(double);
+}

@@ -1,0 +1,101 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Energies of fat (section 5.2): density Psi (Pa) and first Piola-Kirchhoff
+// stress P = dPsi/dF (Pa) of F = I + H. Written in H so that both are exactly zero at rest.
+// Strain here is (F^T F - I)/2, with the half.
+#pragma once
+
+#include "constraint/polar.h"
+
+// E = (H + H^T + H^T H) / 2
+INLINE sym3 green_strain(m3 h)
+{
+	sym3 hh = m3_transpose_times(h, h);
+	const real half = (real)0.5;
+	return (sym3){h.c[0].x + half * hh.a00,
+	              h.c[1].y + half * hh.a11,
+	              h.c[2].z + half * hh.a22,
+	              half * (h.c[1].x + h.c[0].y + hh.a01),
+	              half * (h.c[2].x + h.c[0].z + hh.a02),
+	              half * (h.c[2].y + h.c[1].z + hh.a12)};
+}
+INLINE vreal sym3_dot(sym3 a, sym3 b)
+{
+	return a.a00 * b.a00 + a.a11 * b.a11 + a.a22 * b.a22 +
+	       2 * (a.a01 * b.a01 + a.a02 * b.a02 + a.a12 * b.a12);
+}
+
+// St. Venant-Kirchhoff: Psi = mu e:e + lambda/2 tr(e)^2, P = F (2 mu e + lambda tr(e) I).
+INLINE m3 stvk_stress(m3 f, m3 h, real mu, real lambda, vreal *density)
+{
+	sym3 e = green_strain(h);
+	vreal trace = e.a00 + e.a11 + e.a22;
+	*density = mu * sym3_dot(e, e) + (real)0.5 * lambda * trace * trace;
+	vreal l = lambda * trace, m = v_set(2 * mu);
+	sym3 s = {m * e.a00 + l, m * e.a11 + l, m * e.a22 + l, m * e.a01, m * e.a02, m * e.a12};
+	return m3_times_sym(f, s);
+}
+
+// q - log(1 + q) for q > -1 without cancellation: with z = q / (2 + q), log(1 + q) = 2 atanh(z).
+INLINE vreal log_remainder(vreal q)
+{
+	vreal z = q / (2 + q), z2 = z * z;
+	vreal series = v_set(0);
+	for (int odd = CAU_SINGLE ? 19 : 41; odd >= 3; odd -= 2)
+		series = series * z2 + (real)(1.0 / odd);
+	vreal out = q * z - 2 * z * z2 * series;
+	vmask outside = v_abs(z) > (real)0.4;
+	if (v_any(outside))
+		for (int l = 0; l < LANES; ++l)
+			if (outside[l])
+				out[l] = (real)((double)q[l] - log1p((double)q[l]));
+	return out;
+}
+
+// Stable neo-Hookean [Smith, De Goes, Kim 2018], without its constant at rest:
+// Psi = mu/2 (I_C - 3) + lambda/2 (J - alpha)^2 - mu/2 log(I_C + 1), alpha = 1 + 3 mu / (4 lambda).
+// P = mu (1 - 1/(I_C + 1)) F + lambda (J - alpha) cof F
+//   = mu [3/4 (F - cof F) + (1/4 - 1/(I_C + 1)) F] + lambda (J - 1) cof F.
+INLINE m3 neohookean_stress(m3 f, m3 h, real mu, real lambda, vreal *density)
+{
+	m3 cof_h = m3_cofactor(h);
+	vreal trace = m3_trace(h);
+	vreal ic3 = 2 * trace + m3_dot(h, h); // I_C - 3
+	vreal bulge = m3_trace(cof_h) + m3_determinant(h);
+	vreal j1 = trace + bulge; // J - 1
+	m3 cof = m3_cofactor(f);
+	// cof F - I = tr(H) I - H^T + cof H
+	m3 cof1 = cof_h;
+	cof1.c[0] = v3_sub(cof1.c[0], (v3){h.c[0].x - trace, h.c[1].x, h.c[2].x});
+	cof1.c[1] = v3_sub(cof1.c[1], (v3){h.c[0].y, h.c[1].y - trace, h.c[2].y});
+	cof1.c[2] = v3_sub(cof1.c[2], (v3){h.c[0].z, h.c[1].z, h.c[2].z - trace});
+	vreal q = (real)0.25 * ic3;              // (I_C + 1)/4 - 1
+	vreal growth = (real)0.25 * q / (1 + q); // 1/4 - 1/(I_C + 1)
+	// Psi with its constant left out and its first-order terms, which cancel, taken out by hand.
+	*density =
+		mu * ((real)0.375 * m3_dot(h, h) - (real)0.75 * bulge + (real)0.5 * log_remainder(q)) +
+		(real)0.5 * lambda * j1 * j1;
+	m3 p = m3_scale((real)0.75 * v_set(mu), m3_sub(h, cof1));
+	p = m3_add_scaled(p, mu * growth, f);
+	return m3_add_scaled(p, lambda * j1, cof);
+}
+
+// Corotated linear elasticity with determinant-corrected rotation R:
+// Psi = mu |F - R|^2 + lambda/2 tr(R^T F - I)^2, P = 2 mu (F - R) + lambda tr(R^T F - I) R.
+INLINE m3 corotated_stress(m3 f, rotation_lanes *q, real mu, real lambda, vreal *density)
+{
+	m3 rotation = polar_rotation(f, q);
+	m3 stretch = m3_sub(f, rotation);
+	vreal trace = m3_dot(rotation, stretch);
+	*density = mu * m3_dot(stretch, stretch) + (real)0.5 * lambda * trace * trace;
+	return m3_add_scaled(m3_scale(2 * v_set(mu), stretch), lambda * trace, rotation);
+}
+
+// The printed energy constraint C = Psi (eq. 14-17) projected in F: dF = -Psi P / |P|^2. The
+// residual is Psi P / |P|^2; 0/0 at rest is guarded relative to the stiffness.
+INLINE m3 energy_residual(m3 f, m3 h, real mu, real lambda, vreal *density)
+{
+	m3 p = stvk_stress(f, h, mu, lambda, density);
+	real least = (real)1e-10 * (2 * mu + 3 * lambda); // stress at a strain of 1e-10
+	vreal step = *density / (m3_dot(p, p) + least * least);
+	return m3_scale(step, p);
+}

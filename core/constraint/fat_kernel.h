@@ -1,0 +1,163 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Gradient and energy of a range of tetrahedra: the local step (eq. 6) for fat.
+#pragma once
+
+#include "constraint/diagonal.h"
+#include "constraint/elements.h"
+#include "constraint/fat_energy.h"
+#include "constraint/strain_limit_fat.h"
+
+INLINE rotation_lanes rotation_load(void *const array[4], int32_t slot)
+{
+	return (rotation_lanes){v_load(array[0], slot), v_load(array[1], slot), v_load(array[2], slot),
+	                        v_load(array[3], slot)};
+}
+INLINE void rotation_store(void *const array[4], int32_t slot, rotation_lanes q)
+{
+	v_store(array[0], slot, q.w);
+	v_store(array[1], slot, q.x);
+	v_store(array[2], slot, q.y);
+	v_store(array[3], slot, q.z);
+}
+INLINE sym3 sym3_load(void *const array[6], int32_t slot)
+{
+	return (sym3){v_load(array[0], slot), v_load(array[1], slot), v_load(array[2], slot),
+	              v_load(array[3], slot), v_load(array[4], slot), v_load(array[5], slot)};
+}
+
+// Stress of the energy (Pa) in F = I + H and its density (Pa). In the diagonal system the stress is
+// scaled to the printed position projection.
+INLINE m3 fat_energy_stress(const cau_fat_group *group, m3 f, m3 h, rotation_lanes *polar,
+                            vreal *density)
+{
+	real mu = (real)group->mu, lambda = (real)group->lambda;
+	switch (group->model) {
+	case CAU_MODEL_STVK:
+		return stvk_stress(f, h, mu, lambda, density);
+	case CAU_MODEL_COROTATED:
+		return corotated_stress(f, polar, mu, lambda, density);
+	case CAU_MODEL_ENERGY:
+		return m3_scale(v_set((real)group->stiffness), energy_residual(f, h, mu, lambda, density));
+	default:
+		return neohookean_stress(f, h, mu, lambda, density);
+	}
+}
+
+// F_e = F C_p^(-1/2): H_e = Z + H + H Z with Z = C_p^(-1/2) - I, and back.
+INLINE m3 fat_plastic_energy_stress(const cau_fat_group *group, m3 h, sym3 z, rotation_lanes *polar,
+                                    vreal *density)
+{
+	m3 he = m3_add(h, m3_times_sym(h, z));
+	he.c[0] = v3_add(he.c[0], (v3){z.a00, z.a01, z.a02});
+	he.c[1] = v3_add(he.c[1], (v3){z.a01, z.a11, z.a12});
+	he.c[2] = v3_add(he.c[2], (v3){z.a02, z.a12, z.a22});
+	m3 p = fat_energy_stress(group, m3_add(m3_identity(), he), he, polar, density);
+	return m3_add(p, m3_times_sym(p, z));
+}
+
+// Residual of the strain limit (dimensionless). Slots without a target (00 = 0) follow the range,
+// if any.
+INLINE m3 fat_limit_residual(const cau_fat_group *group, m3 f, sym3 root, rotation_lanes *polar,
+                             const vreal dm_inverse[9], vreal g2, int diagonal)
+{
+	if (group->limit == CAU_LIMIT_TARGET && group->projection == CAU_PROJECTION_LINEARISED) {
+		m3 rows = {{{root.a00, root.a01, root.a02},
+		            {root.a01, root.a11, root.a12},
+		            {root.a02, root.a12, root.a22}}};
+		m3 part[6], r = {{v3_zero(), v3_zero(), v3_zero()}};
+		fat_linearised_residuals(f, m3_transpose_times(rows, rows), part);
+		for (int i = 0; i < 6; ++i) {
+			vreal s = diagonal ? diagonal_scale_fat(part[i], dm_inverse, g2) : v_set(1);
+			r = m3_add_scaled(r, s, part[i]);
+		}
+		return r;
+	}
+	vmask targeted = root.a00 > v_set(0), idle = ~targeted;
+	if (group->limit == CAU_LIMIT_TARGET) { // every slot has a target, padding too
+		m3 r = fat_target_residual(f, root, polar);
+		return diagonal ? m3_scale(diagonal_scale_fat(r, dm_inverse, g2), r) : r;
+	}
+	vreal one = v_set(1), zero = v_set(0);
+	sym3 used = {v_select(targeted, root.a00, one),  v_select(targeted, root.a11, one),
+	             v_select(targeted, root.a22, one),  v_select(targeted, root.a01, zero),
+	             v_select(targeted, root.a02, zero), v_select(targeted, root.a12, zero)};
+	if (group->limit == CAU_LIMIT_RANGE && v_any(~targeted)) {
+		vmask inside;
+		sym3 range = sym3_sqrt(fat_range_metric(m3_transpose_times(f, f), group->stretch_min,
+		                                        group->stretch_max, group->shear_max, &inside));
+		used = (sym3){
+			v_select(targeted, used.a00, range.a00), v_select(targeted, used.a11, range.a11),
+			v_select(targeted, used.a22, range.a22), v_select(targeted, used.a01, range.a01),
+			v_select(targeted, used.a02, range.a02), v_select(targeted, used.a12, range.a12)};
+		idle = ~targeted & inside;
+	}
+	m3 r = fat_target_residual(f, used, polar);
+	r = m3_select(idle, (m3){{v3_zero(), v3_zero(), v3_zero()}}, r);
+	return diagonal ? m3_scale(diagonal_scale_fat(r, dm_inverse, g2), r) : r;
+}
+
+// One lane group: returns the sum of energies (J) and writes the gradient on the four vertices.
+INLINE double fat_lanes(const cau_fat_set *set, const cau_fat_group *group, int32_t slot,
+                        const real *displacement, int limited, int diagonal, real *record)
+{
+	v3 u0 = v3_gather(displacement, set->vertex[0] + slot);
+	v3 d[3];
+	for (int i = 0; i < 3; ++i)
+		d[i] = v3_sub(v3_gather(displacement, set->vertex[i + 1] + slot), u0);
+	vreal m[9];
+	for (int i = 0; i < 9; ++i)
+		m[i] = v_load(set->dm_inverse[i], slot);
+	m3 h;
+	for (int c = 0; c < 3; ++c)
+		h.c[c] = v3_add_scaled(v3_add_scaled(v3_scale(m[c], d[0]), m[3 + c], d[1]), m[6 + c], d[2]);
+	m3 f = m3_add(m3_identity(), h);
+	vreal volume = v_load(set->volume, slot);
+	vreal g2 = diagonal ? v_load(set->position_scale, slot) : v_set(0);
+	rotation_lanes polar = {v_set(1), v_set(0), v_set(0), v_set(0)};
+	int rotated = limited || group->model == CAU_MODEL_COROTATED;
+	if (rotated)
+		polar = rotation_load(set->polar, slot);
+	vreal density;
+	rotation_lanes energy_polar = polar;
+	m3 p = group->plastic && set->flowed[slot / CAU_BATCH]
+	           ? fat_plastic_energy_stress(group, h, sym3_load(set->plastic, slot), &energy_polar,
+	                                       &density)
+	           : fat_energy_stress(group, f, h, &energy_polar, &density);
+	if (diagonal) {
+		m3 r = m3_scale(v_set((real)(1 / group->stiffness)), p);
+		p = m3_scale(diagonal_scale_fat(r, m, g2), p);
+	}
+	m3 stress = m3_scale(volume, p); // N m
+	double energy = v_sum(volume * density);
+	if (limited) {
+		vreal w = v_load(set->limit_weight, slot);
+		m3 r = fat_limit_residual(group, f, sym3_load(set->target, slot), &polar, m, g2, diagonal);
+		stress = m3_add_scaled(stress, w, r);
+		energy += 0.5 * v_sum(w * m3_dot(r, r));
+	}
+	if (rotated)
+		rotation_store(set->polar, slot, limited ? polar : energy_polar);
+	v3 sum = v3_zero();
+	for (int i = 0; i < 3; ++i) {
+		v3 g = m3_apply(stress, (v3){m[3 * i], m[3 * i + 1], m[3 * i + 2]});
+		sum = v3_add(sum, g);
+		v3_scatter(record + 4 * (i + 1), 16, g);
+	}
+	v3_scatter(record, 16, v3_sub(v3_zero(), sum));
+	return energy;
+}
+
+// Slots [first, last) of one group. `displacement` is u = x - X, m, (vertex_count x 4).
+static void fat_kernel(const cau_elements *elements, const cau_fat_group *group, int32_t first,
+                       int32_t last, const real *displacement, int diagonal)
+{
+	const cau_fat_set *set = &elements->fat;
+	real *out = (real *)elements->gradient + 4 * elements->fat_record;
+	for (int32_t batch = first / CAU_BATCH; batch < last / CAU_BATCH; ++batch) {
+		double energy = 0;
+		for (int32_t slot = batch * CAU_BATCH; slot < (batch + 1) * CAU_BATCH; slot += LANES)
+			energy += fat_lanes(set, group, slot, displacement, set->limited[batch], diagonal,
+			                    out + 16 * (int64_t)slot);
+		elements->energy[elements->fat_batch + batch] = energy;
+	}
+}

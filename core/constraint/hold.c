@@ -1,0 +1,106 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "constraint/hold.h"
+
+static const cau_tool_def *tool_of(const cau_contact_set *set, const cau_contact_row *row)
+{
+	return set->tool[row->tool].def;
+}
+
+static double between(const cau_contact_set *set, int32_t i, int32_t j)
+{
+	return set->inverse[set->row[i].column * CAU_MAX_CONTACTS + set->row[j].column];
+}
+
+// Lower triangle, by rows, over hold_row. Returns 0 if it is not positive definite.
+static int factor(cau_contact_set *set)
+{
+	for (int32_t i = 0; i < set->hold_count; ++i) {
+		double *at = set->hold + (size_t)i * CAU_MAX_CONTACTS;
+		for (int32_t j = 0; j <= i; ++j) {
+			const double *other = set->hold + (size_t)j * CAU_MAX_CONTACTS;
+			double sum = between(set, set->hold_row[i], set->hold_row[j]);
+			if (i == j)
+				sum += 1 / tool_of(set, &set->row[set->hold_row[i]])->grasp_stiffness_n_m;
+			for (int32_t k = 0; k < j; ++k)
+				sum -= at[k] * other[k];
+			if (i == j && !(sum > 0))
+				return 0;
+			at[j] = i == j ? sqrt(sum) : sum / other[j];
+		}
+	}
+	return 1;
+}
+
+void cau_hold_prepare(cau_contact_set *set)
+{
+	set->hold_count = 0;
+	for (int32_t i = 0; i < set->row_count; ++i)
+		if (set->row[i].attached)
+			set->hold_row[set->hold_count++] = i;
+	if (!factor(set))
+		set->hold_count = 0; // columns that lag behind cuts: row by row will do
+}
+
+// x (hold_count) for one coordinate, in place.
+static void substitute(const cau_contact_set *set, double *x)
+{
+	int32_t n = set->hold_count;
+	for (int32_t i = 0; i < n; ++i) {
+		const double *at = set->hold + (size_t)i * CAU_MAX_CONTACTS;
+		for (int32_t k = 0; k < i; ++k)
+			x[i] -= at[k] * x[k];
+		x[i] /= at[i];
+	}
+	for (int32_t i = n - 1; i >= 0; --i) {
+		x[i] /= set->hold[(size_t)i * CAU_MAX_CONTACTS + (size_t)i];
+		for (int32_t k = 0; k < i; ++k)
+			x[k] -= set->hold[(size_t)i * CAU_MAX_CONTACTS + (size_t)k] * x[i];
+	}
+}
+
+// By how much each reaction has to change: (S + 1/k) dr = anchor - x - step - r / k.
+static void changes(const cau_contact_set *set, const cau_step_solver *solver,
+                    double dr[3][CAU_MAX_CONTACTS])
+{
+	for (int32_t i = 0; i < set->hold_count; ++i) {
+		int32_t at = set->hold_row[i];
+		const cau_contact_row *row = &set->row[at];
+		double compliance = 1 / tool_of(set, row)->grasp_stiffness_n_m;
+		for (int c = 0; c < 3; ++c)
+			dr[c][i] = row->anchor[c] - solver->position[3 * (size_t)row->vertex + (size_t)c] -
+			           set->step[3 * at + c] - compliance * row->reaction[c];
+	}
+	for (int c = 0; c < 3; ++c)
+		substitute(set, dr[c]);
+}
+
+static int would_slip(const cau_contact_set *set, double dr[3][CAU_MAX_CONTACTS])
+{
+	for (int32_t i = 0; i < set->hold_count; ++i) {
+		const cau_contact_row *row = &set->row[set->hold_row[i]];
+		cau_vec3 by = {dr[0][i], dr[1][i], dr[2][i]};
+		if (row->slipping ||
+		    cau_length(cau_add(cau_vec3_of(row->reaction), by)) > tool_of(set, row)->slip_force_n)
+			return 1;
+	}
+	return 0;
+}
+
+void cau_hold_solve(cau_contact_set *set, const cau_step_solver *solver)
+{
+	double dr[3][CAU_MAX_CONTACTS];
+	if (!set->hold_count)
+		return;
+	changes(set, solver, dr);
+	if (would_slip(set, dr))
+		return;
+	for (int32_t i = 0; i < set->hold_count; ++i)
+		for (int c = 0; c < 3; ++c)
+			set->row[set->hold_row[i]].reaction[c] += dr[c][i];
+	for (int32_t j = 0; j < set->row_count; ++j)
+		for (int32_t i = 0; i < set->hold_count; ++i) {
+			double share = between(set, j, set->hold_row[i]);
+			for (int c = 0; c < 3; ++c)
+				set->step[3 * j + c] += share * dr[c][i];
+		}
+}

@@ -1,0 +1,91 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Once a tick, after the last iteration: inverted tetrahedra are counted and plastic flow takes
+// place (section 5.2). With e' the deviator of the elastic strain E_e =
+// (F_e^T F_e - I)/2 and d = |e'| - gamma_1 > 0, e_p grows by (d / |e'|) e' and is scaled back to
+// gamma_2 if longer.
+#pragma once
+
+#include "constraint/fat_kernel.h"
+
+INLINE vreal sym3_norm(sym3 a)
+{
+	return v_sqrt(v_max(sym3_dot(a, a), v_set(REAL_TINY)));
+}
+
+// e_p after flow; `flowed` marks the lanes that changed.
+INLINE sym3 plastic_flow(const cau_fat_group *group, m3 h, sym3 z, sym3 plastic, vmask *flowed)
+{
+	m3 he = m3_add(h, m3_times_sym(h, z));
+	he.c[0] = v3_add(he.c[0], (v3){z.a00, z.a01, z.a02});
+	he.c[1] = v3_add(he.c[1], (v3){z.a01, z.a11, z.a12});
+	he.c[2] = v3_add(he.c[2], (v3){z.a02, z.a12, z.a22});
+	sym3 e = green_strain(he);
+	vreal mean = (e.a00 + e.a11 + e.a22) * (real)(1.0 / 3.0);
+	e.a00 -= mean, e.a11 -= mean, e.a22 -= mean;
+	vreal size = sym3_norm(e), beyond = size - (real)group->yield_strain;
+	*flowed = beyond > v_set(0);
+	vreal step = v_select(*flowed, beyond / size, v_set(0));
+	sym3 p = {plastic.a00 + step * e.a00, plastic.a11 + step * e.a11, plastic.a22 + step * e.a22,
+	          plastic.a01 + step * e.a01, plastic.a02 + step * e.a02, plastic.a12 + step * e.a12};
+	vreal length = sym3_norm(p), most = v_set((real)group->plastic_strain_max);
+	vreal scale = v_select(length > most, most / length, v_set(1));
+	return (sym3){scale * p.a00, scale * p.a11, scale * p.a22,
+	              scale * p.a01, scale * p.a02, scale * p.a12};
+}
+
+// (I + 2 e_p)^(-1/2) - I. The strain is bounded so that I + 2 e_p stays positive definite.
+INLINE sym3 plastic_map(sym3 p)
+{
+	vreal size = sym3_norm(p), most = v_set((real)0.45);
+	vreal s = 2 * v_select(size > most, most / size, v_set(1));
+	sym3 c = {1 + s * p.a00, 1 + s * p.a11, 1 + s * p.a22, s * p.a01, s * p.a02, s * p.a12};
+	sym3 z = sym3_inverse(sym3_sqrt(c));
+	z.a00 -= 1, z.a11 -= 1, z.a22 -= 1;
+	return z;
+}
+
+static void sym3_store(void *const array[6], int32_t slot, sym3 a)
+{
+	v_store(array[0], slot, a.a00);
+	v_store(array[1], slot, a.a11);
+	v_store(array[2], slot, a.a22);
+	v_store(array[3], slot, a.a01);
+	v_store(array[4], slot, a.a02);
+	v_store(array[5], slot, a.a12);
+}
+
+// Slots [first, last) of one group; returns how many live ones are inverted.
+static int32_t settle_kernel(const cau_elements *elements, const cau_fat_group *group,
+                             int32_t first, int32_t last, const real *displacement)
+{
+	const cau_fat_set *set = &elements->fat;
+	int32_t inverted = 0;
+	for (int32_t slot = first; slot < last; slot += LANES) {
+		v3 u0 = v3_gather(displacement, set->vertex[0] + slot);
+		v3 d[3];
+		for (int i = 0; i < 3; ++i)
+			d[i] = v3_sub(v3_gather(displacement, set->vertex[i + 1] + slot), u0);
+		vreal m[9];
+		for (int i = 0; i < 9; ++i)
+			m[i] = v_load(set->dm_inverse[i], slot);
+		m3 h;
+		for (int c = 0; c < 3; ++c)
+			h.c[c] =
+				v3_add_scaled(v3_add_scaled(v3_scale(m[c], d[0]), m[3 + c], d[1]), m[6 + c], d[2]);
+		vreal det = m3_determinant(m3_add(m3_identity(), h));
+		vmask bad = (det <= v_set(0)) & (v_load(set->volume, slot) > v_set(0));
+		for (int l = 0; l < LANES; ++l)
+			inverted += bad[l] != 0;
+		if (!group->plastic)
+			continue;
+		vmask flowed;
+		sym3 p = plastic_flow(group, h, sym3_load(set->plastic, slot),
+		                      sym3_load(set->plastic_strain, slot), &flowed);
+		if (!v_any(flowed))
+			continue;
+		set->flowed[slot / CAU_BATCH] = 1;
+		sym3_store(set->plastic_strain, slot, p);
+		sym3_store(set->plastic, slot, plastic_map(p));
+	}
+	return inverted;
+}

@@ -1,0 +1,114 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include <math.h>
+
+#define CAU_SINGLE 0
+#include "constraint/polar.h"
+
+enum { SWEEPS = 12 };
+
+// One Jacobi rotation of the symmetric s (3x3) in the plane (p, r); v collects the eigenvectors
+// (columns).
+static void rotate(double s[3][3], double v[3][3], int p, int r)
+{
+	if (s[p][r] == 0)
+		return;
+	double theta = (s[r][r] - s[p][p]) / (2 * s[p][r]);
+	double t = (theta < 0 ? -1 : 1) / (fabs(theta) + sqrt(theta * theta + 1));
+	double c = 1 / sqrt(t * t + 1), n = t * c;
+	for (int k = 0; k < 3; ++k) {
+		double a = s[k][p], b = s[k][r];
+		s[k][p] = c * a - n * b;
+		s[k][r] = n * a + c * b;
+	}
+	for (int k = 0; k < 3; ++k) {
+		double a = s[p][k], b = s[r][k];
+		s[p][k] = c * a - n * b;
+		s[r][k] = n * a + c * b;
+		a = v[k][p], b = v[k][r];
+		v[k][p] = c * a - n * b;
+		v[k][r] = n * a + c * b;
+	}
+}
+
+static void cross(const double a[3], const double b[3], double out[3])
+{
+	out[0] = a[1] * b[2] - a[2] * b[1];
+	out[1] = a[2] * b[0] - a[0] * b[2];
+	out[2] = a[0] * b[1] - a[1] * b[0];
+}
+
+static double normalise(double a[3])
+{
+	double length = sqrt(a[0] * a[0] + a[1] * a[1] + a[2] * a[2]);
+	for (int i = 0; i < 3 && length > 0; ++i)
+		a[i] /= length;
+	return length;
+}
+
+// Unit quaternion of a rotation matrix by rows r[row][column] [Shepperd 1978].
+static void quaternion_of(double r[3][3], double q[4])
+{
+	double trace = r[0][0] + r[1][1] + r[2][2];
+	if (trace > 0) {
+		double s = sqrt(trace + 1) * 2;
+		q[0] = s / 4;
+		q[1] = (r[2][1] - r[1][2]) / s;
+		q[2] = (r[0][2] - r[2][0]) / s;
+		q[3] = (r[1][0] - r[0][1]) / s;
+		return;
+	}
+	int i = r[1][1] > r[0][0] ? 1 : 0;
+	i = r[2][2] > r[i][i] ? 2 : i;
+	int j = (i + 1) % 3, k = (i + 2) % 3;
+	double s = sqrt(r[i][i] - r[j][j] - r[k][k] + 1) * 2;
+	q[0] = (r[k][j] - r[j][k]) / s;
+	q[1 + i] = s / 4;
+	q[1 + j] = (r[j][i] + r[i][j]) / s;
+	q[1 + k] = (r[k][i] + r[i][k]) / s;
+}
+
+void cau_polar_robust(const double a[9], double q[4])
+{
+	// Eigenvectors of A^T A, largest first.
+	double s[3][3], v[3][3] = {{1, 0, 0}, {0, 1, 0}, {0, 0, 1}};
+	for (int i = 0; i < 3; ++i)
+		for (int j = 0; j < 3; ++j)
+			s[i][j] =
+				a[3 * i] * a[3 * j] + a[3 * i + 1] * a[3 * j + 1] + a[3 * i + 2] * a[3 * j + 2];
+	for (int sweep = 0; sweep < SWEEPS; ++sweep) {
+		rotate(s, v, 0, 1);
+		rotate(s, v, 0, 2);
+		rotate(s, v, 1, 2);
+	}
+	int order[3] = {0, 1, 2};
+	for (int i = 0; i < 2; ++i)
+		for (int j = 0; j < 2 - i; ++j)
+			if (s[order[j]][order[j]] < s[order[j + 1]][order[j + 1]]) {
+				int swap = order[j];
+				order[j] = order[j + 1], order[j + 1] = swap;
+			}
+	// Left singular vectors u_1, u_2 from A v; u_3 = u_1 x u_2 turns the smallest direction as
+	// needed when v_3 = v_1 x v_2 is right-handed too.
+	double right[3][3], left[3][3], length[2];
+	for (int i = 0; i < 2; ++i) {
+		for (int k = 0; k < 3; ++k)
+			right[i][k] = v[k][order[i]];
+		for (int k = 0; k < 3; ++k)
+			left[i][k] = a[k] * right[i][0] + a[3 + k] * right[i][1] + a[6 + k] * right[i][2];
+		length[i] = normalise(left[i]);
+	}
+	if (!(length[1] > 1e-6 * length[0]) || !(length[0] > 1e-6))
+		return; // two singular values vanish, or all: keep the last rotation
+	double along = left[0][0] * left[1][0] + left[0][1] * left[1][1] + left[0][2] * left[1][2];
+	for (int k = 0; k < 3; ++k)
+		left[1][k] -= along * left[0][k];
+	normalise(left[1]);
+	cross(right[0], right[1], right[2]);
+	cross(left[0], left[1], left[2]);
+	double rotation[3][3];
+	for (int c = 0; c < 3; ++c)
+		for (int k = 0; k < 3; ++k)
+			rotation[k][c] =
+				left[0][k] * right[0][c] + left[1][k] * right[1][c] + left[2][k] * right[2][c];
+	quaternion_of(rotation, q);
+}

@@ -1,0 +1,83 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Strain limits of tetrahedra: the rules of strain_limit_sheet.h on the 3x3 metric.
+#pragma once
+
+#include "constraint/polar.h"
+
+// TARGET in closed form: R = F - Q T^(1/2), Q the rotation of F T^(1/2). `q` keeps it.
+INLINE m3 fat_target_residual(m3 f, sym3 target_root, rotation_lanes *q)
+{
+	m3 rotation = polar_rotation(m3_times_sym(f, target_root), q);
+	return m3_sub(f, m3_times_sym(rotation, target_root));
+}
+
+INLINE sym3 sym3_inverse(sym3 a)
+{
+	sym3 c = {a.a11 * a.a22 - a.a12 * a.a12, a.a00 * a.a22 - a.a02 * a.a02,
+	          a.a00 * a.a11 - a.a01 * a.a01, a.a02 * a.a12 - a.a01 * a.a22,
+	          a.a01 * a.a12 - a.a02 * a.a11, a.a01 * a.a02 - a.a00 * a.a12};
+	vreal i = 1 / v_max(a.a00 * c.a00 + a.a01 * c.a01 + a.a02 * c.a02, v_set(REAL_TINY));
+	return (sym3){c.a00 * i, c.a11 * i, c.a22 * i, c.a01 * i, c.a02 * i, c.a12 * i};
+}
+INLINE sym3 sym3_mean(sym3 a, sym3 b)
+{
+	const real h = (real)0.5;
+	return (sym3){h * (a.a00 + b.a00), h * (a.a11 + b.a11), h * (a.a22 + b.a22),
+	              h * (a.a01 + b.a01), h * (a.a02 + b.a02), h * (a.a12 + b.a12)};
+}
+
+// Square root of a symmetric positive definite 3x3 by the Denman-Beavers iteration.
+INLINE sym3 sym3_sqrt(sym3 a)
+{
+	enum { STEPS = 10 };
+	vreal one = v_set(1), zero = v_set(0);
+	sym3 y = a, z = {one, one, one, zero, zero, zero};
+	for (int i = 0; i < STEPS; ++i) {
+		sym3 next = sym3_mean(y, sym3_inverse(z));
+		z = sym3_mean(z, sym3_inverse(y));
+		y = next;
+	}
+	return y;
+}
+
+// RANGE as a metric, like sheet_range_metric. Shear is clamped by at most 0.49 so that K' stays
+// positive definite (strict diagonal dominance of the correlations).
+INLINE sym3 fat_range_metric(sym3 k, const double stretch_min[3], const double stretch_max[3],
+                             double shear_max, vmask *inside)
+{
+	vreal s[3] = {v_sqrt(v_max(k.a00, v_set(REAL_TINY))), v_sqrt(v_max(k.a11, v_set(REAL_TINY))),
+	              v_sqrt(v_max(k.a22, v_set(REAL_TINY)))};
+	vreal t[3];
+	*inside = v_set(0) <= v_set(1); // all lanes
+	for (int a = 0; a < 3; ++a) {
+		t[a] = v_clamp(s[a], (real)stretch_min[a], (real)stretch_max[a]);
+		*inside &= s[a] == t[a];
+	}
+	real limit = (real)(shear_max < 0.49 ? shear_max : 0.49);
+	vreal c[3] = {k.a01 / (s[0] * s[1]), k.a02 / (s[0] * s[2]), k.a12 / (s[1] * s[2])};
+	vreal n[3];
+	for (int a = 0; a < 3; ++a) {
+		n[a] = v_clamp(c[a], -limit, limit);
+		*inside &= c[a] == n[a];
+	}
+	return (sym3){t[0] * t[0],        t[1] * t[1],        t[2] * t[2],
+	              n[0] * t[0] * t[1], n[1] * t[0] * t[2], n[2] * t[1] * t[2]};
+}
+
+// TARGET linearised: the six unordered pairs of eq. 12 on the 3x3 metric, each projected once in F.
+// part[i] is the residual of pair i.
+INLINE void fat_linearised_residuals(m3 f, sym3 target, m3 part[6])
+{
+	static const int first[6] = {0, 1, 2, 0, 0, 1}, second[6] = {0, 1, 2, 1, 2, 2};
+	sym3 k = m3_transpose_times(f, f);
+	vreal have[6] = {k.a00, k.a11, k.a22, k.a01, k.a02, k.a12};
+	vreal want[6] = {target.a00, target.a11, target.a22, target.a01, target.a02, target.a12};
+	for (int i = 0; i < 6; ++i) {
+		int a = first[i], b = second[i];
+		vreal scale = a == b ? 4 * have[a] : have[a] + have[b];
+		vreal step = (have[i] - want[i]) / v_max(scale, v_set((real)1e-6));
+		part[i] = (m3){{v3_zero(), v3_zero(), v3_zero()}};
+		part[i].c[a] = v3_scale(step, f.c[b]);
+		part[i].c[b] = v3_add_scaled(part[i].c[b], step, f.c[a]);
+	}
+}

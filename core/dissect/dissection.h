@@ -1,0 +1,60 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// The edge-based structure at work (section 6.1): exposure of edges, parted edges, share counts,
+// removed elements, faces drawn.
+#pragma once
+
+#include "dissect/near.h"
+#include "heat/exposure.h"
+#include "solve/system.h"
+#include "tissue/tissue.h"
+
+typedef struct cau_removed {
+	int32_t kind, element; // cau_element_kind
+} cau_removed;
+
+typedef struct cau_dissection {
+	const cau_tissue *tissue;
+	uint64_t seed;
+	double *exposure; // (edge_count): integral of (u_a + u_b)/2 dt while charring, degC s
+	uint16_t *parted; // (edge_count): bit per layer
+	uint8_t *share_count[CAU_PRIMITIVE_KINDS]; // live edges of each primitive
+	cau_alive alive;
+	int32_t *live_elements; // (vertex_count): live triangles, tetrahedra, links at each vertex
+	uint32_t *face_mask;    // a set bit: not drawn
+	uint8_t *face_owners;   // (face_count): live tetrahedra that have it; sheets: 1 while alive
+	int32_t *triangle_hinge_first, *triangle_hinge; // hinges of each triangle
+	// Of the present tick.
+	int32_t touched_count;
+	int32_t *touched; // edges that gained exposure
+	uint8_t *touched_mark;
+	int32_t removed_count;
+	cau_removed *removed;
+	// Since creation.
+	int32_t edges_parted, elements_removed;
+} cau_dissection;
+
+cau_status cau_dissection_create(cau_dissection *dissection, const cau_tissue *tissue,
+                                 uint64_t seed, cau_arena *arena, cau_error *error);
+
+// Forgets the present tick's lists.
+void cau_dissection_begin(cau_dissection *dissection);
+
+// Exposes the edges near the tool's hot part at `pose` for duration_s (eq. 20). Returns the heat
+// that the tissue took up, J (absorbed degrees times heat capacity of the edges' share of mass: an
+// estimate).
+double cau_dissection_expose(cau_dissection *dissection, const cau_near *near,
+                             const double *position, const cau_heat_grid *grid,
+                             const cau_tool_def *tool, const cau_pose *pose, double jaw,
+                             double duration_s);
+
+// Parts the edges that have reached their ignition temperature and removes what they held up.
+// Removed elements are appended to `removed`. *layers gets a bit for each layer that lost
+// something.
+void cau_dissection_part(cau_dissection *dissection, uint32_t *layers);
+
+// Recounts everything that follows from `parted` (after a restore): share counts, alive, faces,
+// vertices.
+void cau_dissection_recount(cau_dissection *dissection);
+
+// Largest exposure / ignition over the layers of an edge, 0 to 1.
+double cau_dissection_char(const cau_dissection *dissection, int32_t edge);

@@ -1,0 +1,152 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "dissect/near.h"
+
+#include <stdlib.h>
+#include <string.h>
+
+typedef struct keyed {
+	uint32_t key;
+	int32_t vertex;
+} keyed;
+
+static uint32_t spread_bits(uint32_t x) // 10 bits to every third
+{
+	x = (x | x << 16) & 0x030000ffu;
+	x = (x | x << 8) & 0x0300f00fu;
+	x = (x | x << 4) & 0x030c30c3u;
+	return (x | x << 2) & 0x09249249u;
+}
+
+static int compare(const void *a, const void *b)
+{
+	const keyed *x = a, *y = b;
+	if (x->key != y->key)
+		return x->key < y->key ? -1 : 1;
+	return (x->vertex > y->vertex) - (x->vertex < y->vertex);
+}
+
+static void morton_order(const cau_tissue *tissue, keyed *order)
+{
+	double least[3] = {1e300, 1e300, 1e300}, most = 0;
+	for (int32_t i = 0; i < 3 * tissue->vertex_count; ++i)
+		least[i % 3] = fmin(least[i % 3], tissue->rest[i]);
+	for (int32_t i = 0; i < 3 * tissue->vertex_count; ++i)
+		most = fmax(most, tissue->rest[i] - least[i % 3]);
+	for (int32_t v = 0; v < tissue->vertex_count; ++v) {
+		uint32_t key = 0;
+		for (int c = 0; c < 3; ++c) {
+			double unit =
+				most > 0 ? (tissue->rest[3 * (size_t)v + (size_t)c] - least[c]) / most : 0;
+			key |= spread_bits((uint32_t)(unit * 1023)) << c;
+		}
+		order[v] = (keyed){key, v};
+	}
+	qsort(order, (size_t)tissue->vertex_count, sizeof *order, compare);
+}
+
+// Edges go to the block of their first vertex; their second vertices are its halo.
+static void own_edges(cau_near *near, const cau_tissue *tissue, const int32_t *block_of)
+{
+	const cau_edge_table *edges = &tissue->edges;
+	for (int32_t e = 0; e < edges->edge_count; ++e)
+		near->edge_first[block_of[edges->vertex[2 * e]] + 1]++;
+	for (int32_t b = 0; b < near->block_count; ++b)
+		near->edge_first[b + 1] += near->edge_first[b];
+	memcpy(near->halo_first, near->edge_first, (size_t)(near->block_count + 1) * sizeof(int32_t));
+	for (int32_t e = 0; e < edges->edge_count; ++e) {
+		int32_t at = near->halo_first[block_of[edges->vertex[2 * e]]]++;
+		near->edge[at] = e;
+		near->halo[at] = edges->vertex[2 * e + 1];
+	}
+	memcpy(near->halo_first, near->edge_first, (size_t)(near->block_count + 1) * sizeof(int32_t));
+}
+
+static int compare_index(const void *a, const void *b)
+{
+	int32_t x = *(const int32_t *)a, y = *(const int32_t *)b;
+	return (x > y) - (x < y);
+}
+
+// Drops repeated halo vertices, block by block.
+static void thin_halo(cau_near *near)
+{
+	int32_t to = 0;
+	for (int32_t b = 0; b < near->block_count; ++b) {
+		int32_t first = near->halo_first[b], last = near->edge_first[b + 1], start = to;
+		qsort(near->halo + first, (size_t)(last - first), sizeof *near->halo, compare_index);
+		for (int32_t k = first; k < last; ++k)
+			if (to == start || near->halo[to - 1] != near->halo[k])
+				near->halo[to++] = near->halo[k];
+		near->halo_first[b] = start;
+	}
+	near->halo_first[near->block_count] = to;
+}
+
+cau_status cau_near_create(cau_near *near, const cau_tissue *tissue, cau_arena *arena,
+                           cau_error *error)
+{
+	size_t n = (size_t)tissue->vertex_count, e = (size_t)tissue->edges.edge_count;
+	near->vertex_count = tissue->vertex_count;
+	near->block_count = (tissue->vertex_count + CAU_NEAR_BLOCK - 1) / CAU_NEAR_BLOCK;
+	size_t blocks = (size_t)near->block_count;
+	cau_arena scratch = {0};
+	keyed *order = cau_arena_array(&scratch, n, sizeof *order);
+	int32_t *block_of = cau_arena_array(&scratch, n, sizeof *block_of);
+	near->vertex = cau_arena_array(arena, n, sizeof(int32_t));
+	near->halo_first = cau_arena_array(arena, blocks + 1, sizeof(int32_t));
+	near->halo = cau_arena_array(arena, e, sizeof(int32_t));
+	near->edge_first = cau_arena_array(arena, blocks + 1, sizeof(int32_t));
+	near->edge = cau_arena_array(arena, e, sizeof(int32_t));
+	near->vertex_box = cau_arena_array(arena, blocks, sizeof(cau_box));
+	near->edge_box = cau_arena_array(arena, blocks, sizeof(cau_box));
+	cau_status status = CAU_OK;
+	if (!order || !block_of || !near->vertex || !near->halo_first || !near->halo ||
+	    !near->edge_first || !near->edge || !near->vertex_box || !near->edge_box) {
+		status = cau_fail(error, CAU_NO_MEMORY, NULL, "no memory for the broad phase");
+	} else {
+		morton_order(tissue, order);
+		for (int32_t i = 0; i < tissue->vertex_count; ++i) {
+			near->vertex[i] = order[i].vertex;
+			block_of[order[i].vertex] = i / CAU_NEAR_BLOCK;
+		}
+		own_edges(near, tissue, block_of);
+		thin_halo(near);
+	}
+	cau_arena_finish(&scratch);
+	return status;
+}
+
+static void grow(cau_box *box, const double *x)
+{
+	for (int c = 0; c < 3; ++c) {
+		float value = (float)x[c];
+		box->least[c] = value < box->least[c] ? value : box->least[c];
+		box->most[c] = value > box->most[c] ? value : box->most[c];
+	}
+}
+
+void cau_near_refit(cau_near *near, const double *position)
+{
+	for (int32_t b = 0; b < near->block_count; ++b) {
+		cau_box box = {{1e30f, 1e30f, 1e30f}, {-1e30f, -1e30f, -1e30f}};
+		int32_t last = (b + 1) * CAU_NEAR_BLOCK;
+		for (int32_t i = b * CAU_NEAR_BLOCK; i < last && i < near->vertex_count; ++i)
+			grow(&box, position + 3 * (size_t)near->vertex[i]);
+		near->vertex_box[b] = box;
+		for (int32_t k = near->halo_first[b]; k < near->halo_first[b + 1]; ++k)
+			grow(&box, position + 3 * (size_t)near->halo[k]);
+		near->edge_box[b] = box;
+	}
+}
+
+int cau_box_meets(const cau_box *box, cau_vec3 center, double radius_m)
+{
+	const double c[3] = {center.x, center.y, center.z};
+	double squared = 0;
+	for (int i = 0; i < 3; ++i) {
+		double outside = fmax(fmax((double)box->least[i] - c[i], c[i] - (double)box->most[i]), 0);
+		squared += outside * outside;
+	}
+	double reach = radius_m + 1e-6; // boxes are in float
+	return squared <= reach * reach;
+}

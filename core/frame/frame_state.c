@@ -1,0 +1,100 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "frame/frame_state.h"
+
+#include <string.h>
+
+static int32_t word_count(const cau_tissue *tissue)
+{
+	return (tissue->faces.face_count + 31) / 32;
+}
+
+cau_status cau_frame_create(cau_frame_state *frame, const cau_tissue *tissue,
+                            const cau_dissection *dissection, cau_arena *arena, cau_error *error)
+{
+	size_t n = (size_t)tissue->vertex_count, words = (size_t)word_count(tissue);
+	frame->moved = cau_arena_array(arena, n, sizeof(int32_t));
+	frame->mask_changed = cau_arena_array(arena, words, sizeof(int32_t));
+	frame->mask_before = cau_arena_array(arena, words, sizeof(uint32_t));
+	frame->vertex_visible = cau_arena_array(arena, n, 1);
+	frame->vertex_faces = cau_arena_array(arena, n, sizeof(int32_t));
+	frame->exposure = cau_arena_array(arena, n, sizeof(float));
+	frame->stress = cau_arena_array(arena, n, sizeof(float));
+	frame->stress_weight = cau_arena_array(arena, n, sizeof(float));
+	if (!frame->moved || !frame->mask_changed || !frame->mask_before || !frame->vertex_visible ||
+	    !frame->vertex_faces || !frame->exposure || !frame->stress || !frame->stress_weight)
+		return cau_fail(error, CAU_NO_MEMORY, NULL, "no memory for frames");
+	cau_frame_rebuild(frame, dissection);
+	return CAU_OK;
+}
+
+static void change_face(cau_frame_state *frame, const cau_tissue *tissue, int32_t face, int drawn)
+{
+	for (int i = 0; i < 3; ++i) {
+		int32_t v = tissue->faces.vertex[3 * (size_t)face + (size_t)i];
+		frame->vertex_faces[v] += drawn ? 1 : -1;
+		frame->vertex_visible[v] = frame->vertex_faces[v] > 0;
+	}
+}
+
+static void update_mask(cau_frame_state *frame, const cau_dissection *dissection)
+{
+	const cau_tissue *tissue = dissection->tissue;
+	frame->mask_changed_count = 0;
+	for (int32_t w = 0; w < word_count(tissue); ++w) {
+		uint32_t changed = frame->mask_before[w] ^ dissection->face_mask[w];
+		if (!changed)
+			continue;
+		for (int32_t bit = 0; bit < 32; ++bit)
+			if (changed >> bit & 1)
+				change_face(frame, tissue, 32 * w + bit, !(dissection->face_mask[w] >> bit & 1));
+		frame->mask_before[w] = dissection->face_mask[w];
+		frame->mask_changed[frame->mask_changed_count++] = w;
+	}
+}
+
+static void expose_edge(cau_frame_state *frame, const cau_dissection *dissection, int32_t edge)
+{
+	float value = (float)cau_dissection_char(dissection, edge);
+	for (int i = 0; i < 2; ++i) {
+		int32_t v = dissection->tissue->edges.vertex[2 * (size_t)edge + (size_t)i];
+		frame->exposure[v] = value > frame->exposure[v] ? value : frame->exposure[v];
+	}
+}
+
+void cau_frame_update(cau_frame_state *frame, const cau_dissection *dissection, const double *from,
+                      const double *to)
+{
+	frame->moved_count = 0;
+	for (int32_t v = 0; v < dissection->tissue->vertex_count; ++v)
+		if (from[3 * v] != to[3 * v] || from[3 * v + 1] != to[3 * v + 1] ||
+		    from[3 * v + 2] != to[3 * v + 2])
+			frame->moved[frame->moved_count++] = v;
+	for (int32_t k = 0; k < dissection->touched_count; ++k)
+		expose_edge(frame, dissection, dissection->touched[k]);
+	update_mask(frame, dissection);
+}
+
+void cau_frame_rebuild(cau_frame_state *frame, const cau_dissection *dissection)
+{
+	const cau_tissue *tissue = dissection->tissue;
+	size_t n = (size_t)tissue->vertex_count;
+	memset(frame->vertex_faces, 0, n * sizeof *frame->vertex_faces);
+	memset(frame->exposure, 0, n * sizeof *frame->exposure);
+	for (int32_t f = 0; f < tissue->faces.face_count; ++f)
+		if (!(dissection->face_mask[f >> 5] >> (f & 31) & 1))
+			for (int i = 0; i < 3; ++i)
+				frame->vertex_faces[tissue->faces.vertex[3 * (size_t)f + (size_t)i]]++;
+	frame->moved_count = tissue->vertex_count;
+	for (int32_t v = 0; v < tissue->vertex_count; ++v) {
+		frame->moved[v] = v;
+		frame->vertex_visible[v] = frame->vertex_faces[v] > 0;
+	}
+	for (int32_t e = 0; e < tissue->edges.edge_count; ++e)
+		if (dissection->exposure[e] > 0)
+			expose_edge(frame, dissection, e);
+	frame->mask_changed_count = word_count(tissue);
+	for (int32_t w = 0; w < word_count(tissue); ++w) {
+		frame->mask_changed[w] = w;
+		frame->mask_before[w] = dissection->face_mask[w];
+	}
+}

@@ -1,0 +1,33 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// What a tick made, kept for its viewers: which vertices moved, which words of the mask changed,
+// scalars.
+#pragma once
+
+#include "constraint/elements_make.h"
+#include "dissect/dissection.h"
+
+typedef struct cau_frame_state {
+	int32_t moved_count, mask_changed_count;
+	int32_t *moved;          // (vertex_count)
+	int32_t *mask_changed;   // (mask words)
+	uint32_t *mask_before;   // (mask words)
+	uint8_t *vertex_visible; // (vertex_count)
+	int32_t *vertex_faces;   // (vertex_count): drawn faces at the vertex
+	float *exposure;         // (vertex_count)
+	float *stress;           // (vertex_count)
+	float *stress_weight;    // (vertex_count)
+} cau_frame_state;
+
+cau_status cau_frame_create(cau_frame_state *frame, const cau_tissue *tissue,
+                            const cau_dissection *dissection, cau_arena *arena, cau_error *error);
+
+// After a tick: from is the position at its start, to at its end (n x 3).
+void cau_frame_update(cau_frame_state *frame, const cau_dissection *dissection, const double *from,
+                      const double *to);
+
+// Everything anew, with every vertex marked as moved and every word as changed (creation, restore).
+void cau_frame_rebuild(cau_frame_state *frame, const cau_dissection *dissection);
+
+// Von Mises stress of the fat, volume weighted at the vertices, Pa.
+void cau_frame_stress(cau_frame_state *frame, const cau_tissue *tissue,
+                      const cau_dissection *dissection, const double *position);

@@ -1,0 +1,13 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// One explicit step of the heat equation on a cubic grid (eq. 18-19, FTCS). Private to this room.
+#pragma once
+
+#include <stdint.h>
+
+// next = u + rate (sum of the six neighbours - 6 u) at every inner node of the (nodes x nodes x
+// nodes) grid, x fastest; the outer nodes of `next` are left alone. `rate` is alpha dt / dl^2 at
+// each node, at most 1/6 for stability; a node with rate 0 keeps its value exactly.
+void cau_diffuse(const float *temperature, const float *rate, float *next, int32_t nodes);
+
+// Least and greatest of `count` values; `count` is at least 1.
+void cau_extremes(const float *values, int64_t count, float *least, float *greatest);

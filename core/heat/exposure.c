@@ -1,0 +1,40 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "heat/exposure.h"
+
+enum { PARTS_MAX = 32 };
+
+double cau_exposure_gain(const cau_heat_grid *grid, const cau_tool_def *tool, const cau_pose *pose,
+                         double jaw, cau_vec3 a, cau_vec3 b, double absorption_per_s,
+                         double duration_s)
+{
+	if (cau_heat_grid_warmest(grid) <= CAU_LIVING_C)
+		return 0;
+	double mean = (cau_heat_grid_at(grid, a) + cau_heat_grid_at(grid, b)) / 2;
+	if (mean <= CAU_LIVING_C)
+		return 0;
+	if (!cau_tool_meets_segment(tool, jaw, CAU_PART_HOT, cau_pose_to_local(pose, a),
+	                            cau_pose_to_local(pose, b)))
+		return 0;
+	return absorption_per_s * mean * duration_s;
+}
+
+// Greatest rate of turning along cau_pose_between, times its duration (rad): blending quaternions
+// whose rotations differ by theta turns fastest half way, at 4 tan(theta / 4).
+static double turn_between(const cau_pose *from, const cau_pose *to)
+{
+	double dot = 0;
+	for (int i = 0; i < 4; ++i)
+		dot += from->rotation[i] * to->rotation[i];
+	return 4 * tan(acos(fmin(fabs(dot), 1)) / 2);
+}
+
+int cau_exposure_parts(const cau_tool_def *tool, const cau_pose *from, const cau_pose *to)
+{
+	cau_vec3 center;
+	double radius;
+	cau_tool_bound(tool, CAU_PART_HOT, &center, &radius);
+	double reach = cau_length(center) + radius; // of the hot part about the tip
+	double way = cau_length(cau_sub(cau_vec3_of(to->position_m), cau_vec3_of(from->position_m)));
+	double parts = (way + reach * turn_between(from, to)) / (cau_tool_thinnest_hot_m(tool) / 2);
+	return (int)fmin(fmax(ceil(parts * (1 - 1e-12)), 1), PARTS_MAX);
+}

@@ -1,0 +1,208 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// A tissue session: the whole interface of Cautery's core.
+//
+//     cau_scene_def *scene = ...;                        // protocol reads it from JSON
+//     cau_session_def def = cau_default_session_def();
+//     def.scene = scene;
+//     cau_session *session;
+//     if (cau_session_create(&def, &session, &error)) ...
+//     cau_session_submit(session, &command, &error);     // any number, any time
+//     cau_session_step(session, &error);                 // one tick
+//     cau_session_frame(session, &frame);                // what to draw, valid until the next step
+//     cau_session_destroy(session);
+//
+// A session is used from one thread at a time; several sessions may be used from several threads.
+// Determinism: the same definition and the same commands at the same ticks give the same bits, for
+// one build on one instruction-set tier, whatever thread_count is and whatever runs beside.
+#pragma once
+
+#include <stdbool.h>
+
+#include "cautery/command.h"
+#include "cautery/defaults.h" // cau_default_*_def(): definitions with every member at its default
+#include "cautery/energy_off.h"
+#include "cautery/scene.h"
+#include "cautery/status.h"
+
+typedef struct cau_session cau_session;
+
+// ---- definition -------------------------------------------------------------------------------
+typedef struct cau_session_def {
+	const cau_scene_def *scene; // borrowed during create
+	int32_t thread_count;       // 1 to 16 threads used by step, the caller's among them
+	int32_t command_capacity;   // queued commands; more are refused with CAU_LIMIT
+	const char
+		*instruction_set; // highest tier to use: "baseline", "avx2", "avx512"; NULL: the best
+} cau_session_def;
+
+cau_session_def cau_default_session_def(void);
+
+// Checks every range, name and reference without building anything. The path in *error is the JSON
+// path.
+cau_status cau_scene_check(const cau_scene_def *scene, cau_error *error);
+
+// ---- life ---------------------------------------------------------------------------------------
+// Loads meshes, builds layers, factors the system, relaxes built-in tension to rest (physics.md,
+// 4).
+cau_status cau_session_create(const cau_session_def *def, cau_session **session, cau_error *error);
+void cau_session_destroy(cau_session *session); // takes NULL
+
+// Threads that step may use from now on; results do not depend on it.
+void cau_session_set_threads(cau_session *session, int32_t thread_count);
+
+// Queues a copy of the command. CAU_BAD_VALUE / CAU_NOT_FOUND / CAU_LIMIT say why it was refused;
+// what can only be known at its tick (a tool removed meanwhile) is reported by the frame's
+// refusals.
+cau_status cau_session_submit(cau_session *session, const cau_command *command, cau_error *error);
+
+// Moves pinned vertices to position (m, count x 3) during the next step, and leaves them there: a
+// support that moves, a prescribed displacement. A later call before that step replaces this one;
+// it is not a command, so it is neither queued nor part of a snapshot. CAU_BAD_STATE names a vertex
+// that is not pinned.
+cau_status cau_session_drive(cau_session *session, int32_t count, const int32_t *vertex,
+                             const double *position, cau_error *error);
+
+// Advances one tick. CAU_NUMERICAL marks the session faulted: steps return CAU_FAULTED until
+// restore.
+cau_status cau_session_step(cau_session *session, cau_error *error);
+
+// ---- what never changes -----------------------------------------------------------------------
+typedef struct cau_session_layer {
+	char name[CAU_NAME_BYTES];
+	int32_t kind; // CAU_LAYER_*
+	int32_t first_face,
+		face_count; // its range in the face list; FAT: its unique faces; LINKS: none
+	int32_t element_count;
+} cau_session_layer;
+
+typedef struct cau_session_info {
+	char name[CAU_NAME_BYTES];
+	char description[CAU_TEXT_BYTES];
+	double step_s;
+	int32_t vertex_count;
+	int32_t face_count;
+	int32_t triangle_count, tetrahedron_count, link_count, hinge_count, edge_count;
+	int32_t layer_count;
+	cau_session_layer layers[CAU_MAX_LAYERS];
+	const int32_t *face;         // vertices, (face_count x 3); the session's, for its whole life
+	const int32_t *face_layer;   // (face_count)
+	const double *rest_position; // m, (vertex_count x 3)
+	const float *texture;        // (face_count x 3 x 2): UV of fascia and membrane corners, or NULL
+	const int32_t *tetrahedron;  // (tetrahedron_count x 4), for export
+	const int32_t *link;         // (link_count x 2)
+	const char *instruction_set; // "avx512", "avx2", "baseline"
+} cau_session_info;
+
+void cau_session_describe(const cau_session *session, cau_session_info *info);
+
+// ---- what a tick made ---------------------------------------------------------------------------
+typedef struct cau_tool_state {
+	char name[CAU_NAME_BYTES];
+	cau_tool_def definition;
+	cau_pose pose;
+	double jaw;
+	bool energized;
+	bool grasping;            // jaws commanded closed on tissue
+	int32_t grasped_vertices; // 0 while grasping: the jaws are empty
+	int32_t contact_vertices;
+	int32_t touched_layers; // bit per layer
+	double force_n[3];      // of the tissue on the tool, filtered and clamped
+	double torque_nm[3];    // about the tip
+	double raw_force_n[3];  // unfiltered
+	double raw_torque_nm[3];
+	double tip_temperature_c;
+	double energy_j;   // heat taken up by tissue, rough
+	uint64_t sequence; // last applied command's
+} cau_tool_state;
+
+typedef struct cau_statistics {
+	double seconds[8]; // of the last step by stage, see CAU_STAGE_TABLE; filled if timing is on
+	int32_t iterations;
+	double residual; // relative, after the last iteration
+	int32_t backtracks;
+	int32_t inverted;          // tetrahedra with negative volume after the step
+	int32_t edges_parted;      // since creation
+	int32_t elements_removed;  // since creation
+	int32_t pending_downdates; // removed elements the factor still holds
+	double deferred_max_s;     // longest such wait so far, in simulated seconds
+	int32_t refactorisations;  // since creation
+	int32_t factor_operations; // since the last canonical factorisation
+	int32_t contacts;
+	int32_t frozen_vertices;
+} cau_statistics;
+
+#define CAU_STAGE_TABLE(X)                                                                         \
+	X(COMMANDS, "commands")                                                                        \
+	X(PREDICT, "predict")                                                                          \
+	X(LOCAL, "local")                                                                              \
+	X(GLOBAL, "global")                                                                            \
+	X(CONTACT, "contact")                                                                          \
+	X(HEAT, "heat")                                                                                \
+	X(DISSECT, "dissect")                                                                          \
+	X(FRAME, "frame")
+typedef enum cau_stage {
+#define X(code, name) CAU_STAGE_##code,
+	CAU_STAGE_TABLE(X)
+#undef X
+		CAU_STAGE_COUNT
+} cau_stage;
+
+// A view into the session after a step: borrowed, valid until the next call that changes the
+// session.
+typedef struct cau_frame {
+	uint64_t tick;
+	double time_s;
+	const double *position;        // m, (vertex_count x 3)
+	const double *velocity;        // m/s, (vertex_count x 3)
+	int32_t moved_count;           // vertices whose position changed in this step
+	const int32_t *moved;          // (moved_count), ascending
+	const uint32_t *face_mask;     // a set bit: not drawn; ((face_count + 31) / 32 words)
+	int32_t mask_changed_count;    // words that changed in this step
+	const int32_t *mask_changed;   // ascending
+	const uint8_t *vertex_visible; // (vertex_count): 1 if on a drawn face
+	const float *exposure; // (vertex_count): largest exposure / ignition of its edges, 0 to 1
+	const float *stress;   // Pa, (vertex_count): von Mises, volume weighted; NULL unless asked for
+	int32_t tool_count;
+	const cau_tool_state *tools;
+	int32_t refusal_count; // commands refused at their tick in this step
+	const cau_error *refusals;
+	cau_statistics statistics;
+} cau_frame;
+
+void cau_session_frame(const cau_session *session, cau_frame *frame);
+
+// Switches stage timing (off by default; needs a clock that the caller gives, in seconds).
+void cau_session_set_clock(cau_session *session, double (*now_s)(void));
+// Switches the stress channel (off by default).
+void cau_session_set_stress(cau_session *session, bool on);
+
+// Elements alive, as bytes 0/1, (tetrahedron_count), (triangle_count), (link_count): for export.
+void cau_session_alive(const cau_session *session, const uint8_t **tetrahedron,
+                       const uint8_t **triangle, const uint8_t **link);
+
+// ---- snapshots
+// ------------------------------------------------------------------------------------ The whole
+// state at a tick border, queued commands among it, tagged with version, instruction set and a hash
+// of the definition. Restoring and stepping gives the same bits as never having stopped.
+size_t cau_session_snapshot_bytes(const cau_session *session); // an upper bound
+cau_status cau_session_snapshot(const cau_session *session, void *bytes, size_t capacity,
+                                size_t *byte_count, cau_error *error);
+// CAU_CORRUPT leaves the session as it was. *exact is false if another instruction set or build
+// wrote it.
+cau_status cau_session_restore(cau_session *session, const void *bytes, size_t byte_count,
+                               bool *exact, cau_error *error);
+
+// Hash of the whole state (positions, velocities, heat, exposure, removed elements, tools).
+uint64_t cau_session_hash(const cau_session *session);
+
+// Total mechanical quantities, for tests and plots.
+typedef struct cau_balance {
+	double momentum[3];   // kg m/s
+	double net_force[3];  // sum of internal forces, N
+	double net_torque[3]; // about the origin, N m
+	double force_sum;     // sum of |f_i|, N
+	double torque_sum;    // sum of |r_i| |f_i|, N m
+	double kinetic_j, elastic_j;
+	double residual_n; // |gradient of eq. 4| over free vertices at the last step's end
+} cau_balance;
+void cau_session_balance(cau_session *session, cau_balance *balance);

@@ -1,0 +1,249 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "mesh/edge_table.h"
+
+#include <string.h>
+
+#include "mesh/index_sort.h"
+#include "mesh/mesh_memory.h"
+#include "mesh/primitives.h"
+
+// Every primitive puts its edges into consecutive slots: three a triangle, six a tetrahedron, one a
+// link, in this order of kinds. Sorting the slots by their ends brings the uses of an edge
+// together.
+static const int slots_of[CAU_PRIMITIVE_KINDS] = {3, 6, 1};
+static const int corners_of[CAU_PRIMITIVE_KINDS] = {3, 4, 2};
+static const int8_t ends_of[CAU_PRIMITIVE_KINDS][6][2] = {
+	{{0, 1}, {1, 2}, {2, 0}},
+	{{0, 1}, {0, 2}, {0, 3}, {1, 2}, {1, 3}, {2, 3}},
+	{{0, 1}},
+};
+
+typedef struct kind_rows {
+	int32_t count;
+	const int32_t *corner;  // (count x corners_of)
+	int32_t **edge_of_slot; // in the table, (count x slots_of)
+} kind_rows;
+
+static kind_rows rows_of(const cau_primitives *p, cau_edge_table *table, int kind)
+{
+	switch (kind) {
+	case CAU_PRIMITIVE_TRIANGLE:
+		return (kind_rows){p->triangle_count, p->triangle, &table->triangle_edge};
+	case CAU_PRIMITIVE_TETRAHEDRON:
+		return (kind_rows){p->tetrahedron_count, p->tetrahedron, &table->tetrahedron_edge};
+	default:
+		return (kind_rows){p->link_count, p->link, &table->link_edge};
+	}
+}
+
+// Writes the ends (a < b) of every slot, (slot_count x 2).
+static void fill_slots(const cau_primitives *primitives, cau_edge_table *table, int32_t *end)
+{
+	for (int kind = 0; kind < CAU_PRIMITIVE_KINDS; kind++) {
+		kind_rows rows = rows_of(primitives, table, kind);
+		const int32_t *corner = rows.corner;
+		for (int32_t i = 0; i < rows.count; i++, corner += corners_of[kind])
+			for (int s = 0; s < slots_of[kind]; s++, end += 2) {
+				end[0] = corner[ends_of[kind][s][0]];
+				end[1] = corner[ends_of[kind][s][1]];
+				cau_index_order_row(end, 2);
+			}
+	}
+}
+
+static bool same_edge(const int32_t *end, int32_t s, int32_t t)
+{
+	const int32_t *p = end + 2 * (size_t)s, *q = end + 2 * (size_t)t;
+	return p[0] == q[0] && p[1] == q[1];
+}
+
+// Numbers the unique edges: vertex of the table, and edge_of_slot (slot_count).
+static bool number_edges(const int32_t *end, const int32_t *order, int32_t slot_count,
+                         int32_t *edge_of_slot, cau_edge_table *table)
+{
+	int32_t edge = -1;
+	for (int32_t i = 0; i < slot_count; i++) {
+		if (i == 0 || !same_edge(end, order[i - 1], order[i]))
+			edge++;
+		edge_of_slot[order[i]] = edge;
+	}
+	table->edge_count = edge + 1;
+	table->vertex = cau_mesh_array(2 * (size_t)table->edge_count, sizeof *table->vertex);
+	if (!table->vertex)
+		return false;
+	for (int32_t s = 0; s < slot_count; s++)
+		memcpy(table->vertex + 2 * (size_t)edge_of_slot[s], end + 2 * (size_t)s, 2 * sizeof *end);
+	return true;
+}
+
+// The rows of one kind: which primitives share each edge, ascending.
+static bool fill_sharers(cau_edge_table *table, int kind, const int32_t *edge_of_slot,
+                         int32_t slot_count)
+{
+	int32_t edge_count = table->edge_count;
+	int32_t *first = cau_mesh_array((size_t)edge_count + 1, sizeof *first);
+	int32_t *sharer = cau_mesh_array((size_t)slot_count, sizeof *sharer);
+	table->first[kind] = first;
+	table->sharer[kind] = sharer;
+	if (!first || !sharer)
+		return false;
+
+	for (int32_t s = 0; s < slot_count; s++)
+		first[edge_of_slot[s]]++;
+	for (int32_t e = 0, sum = 0; e <= edge_count; e++) {
+		sum += first[e];
+		first[e] = sum;
+	}
+	// From the back, so that first[e] comes down to the start of its row.
+	for (int32_t s = slot_count - 1; s >= 0; s--)
+		sharer[--first[edge_of_slot[s]]] = s / slots_of[kind];
+	return true;
+}
+
+// Hands each kind its part of edge_of_slot and its sharers.
+static bool fill_kinds(const cau_primitives *primitives, const int32_t *edge_of_slot,
+                       cau_edge_table *table)
+{
+	for (int kind = 0; kind < CAU_PRIMITIVE_KINDS; kind++) {
+		kind_rows rows = rows_of(primitives, table, kind);
+		int32_t slot_count = rows.count * slots_of[kind];
+		*rows.edge_of_slot = cau_mesh_array((size_t)slot_count, sizeof **rows.edge_of_slot);
+		if (!*rows.edge_of_slot)
+			return false;
+		memcpy(*rows.edge_of_slot, edge_of_slot, (size_t)slot_count * sizeof *edge_of_slot);
+		if (!fill_sharers(table, kind, edge_of_slot, slot_count))
+			return false;
+		edge_of_slot += slot_count;
+	}
+	return true;
+}
+
+typedef struct layer_triangle {
+	int32_t layer;
+	int32_t triangle;
+} layer_triangle;
+
+static int compare_layers(const void *left, const void *right)
+{
+	const layer_triangle *a = left, *b = right;
+	int layers = (a->layer > b->layer) - (a->layer < b->layer);
+	return layers ? layers : (a->triangle > b->triangle) - (a->triangle < b->triangle);
+}
+
+// Writes the hinges of edge e after the `hinge_count` there are (or only counts them where the
+// table has no hinge arrays yet) and returns their new number. `row` is scratch.
+static int32_t add_hinges(cau_edge_table *table, const int32_t *triangle_layer, int32_t e,
+                          layer_triangle *row, int32_t hinge_count)
+{
+	int32_t start = table->first[CAU_PRIMITIVE_TRIANGLE][e];
+	int32_t length = table->first[CAU_PRIMITIVE_TRIANGLE][e + 1] - start;
+	for (int32_t i = 0; i < length; i++) {
+		int32_t triangle = table->sharer[CAU_PRIMITIVE_TRIANGLE][start + i];
+		row[i] = (layer_triangle){triangle_layer[triangle], triangle};
+	}
+	if (length > 2)
+		qsort(row, (size_t)length, sizeof *row, compare_layers);
+	for (int32_t i = 0, next; i < length; i = next) {
+		for (next = i + 1; next < length && row[next].layer == row[i].layer;)
+			next++;
+		if (next - i != 2)
+			continue;
+		if (table->hinge_edge) {
+			table->hinge_edge[hinge_count] = e;
+			table->hinge_triangle[2 * (size_t)hinge_count] = row[i].triangle;
+			table->hinge_triangle[2 * (size_t)hinge_count + 1] = row[i + 1].triangle;
+		}
+		hinge_count++;
+	}
+	return hinge_count;
+}
+
+static int32_t add_all_hinges(cau_edge_table *table, const int32_t *triangle_layer,
+                              layer_triangle *row)
+{
+	int32_t hinge_count = 0;
+	for (int32_t e = 0; e < table->edge_count; e++)
+		hinge_count = add_hinges(table, triangle_layer, e, row, hinge_count);
+	return hinge_count;
+}
+
+static bool fill_hinges(cau_edge_table *table, int32_t triangle_count,
+                        const int32_t *triangle_layer)
+{
+	layer_triangle *row = cau_mesh_array((size_t)triangle_count, sizeof *row);
+	if (!row)
+		return false;
+	table->hinge_count = add_all_hinges(table, triangle_layer, row);
+	table->hinge_edge = cau_mesh_array((size_t)table->hinge_count, sizeof *table->hinge_edge);
+	table->hinge_triangle =
+		cau_mesh_array(2 * (size_t)table->hinge_count, sizeof *table->hinge_triangle);
+	bool done = table->hinge_edge && table->hinge_triangle;
+	if (done)
+		add_all_hinges(table, triangle_layer, row);
+	free(row);
+	return done;
+}
+
+cau_status cau_edge_table_make(const cau_primitives *primitives, const int32_t *triangle_layer,
+                               cau_edge_table *table, cau_error *error)
+{
+	*table = (cau_edge_table){0};
+	cau_status status = cau_primitives_check(primitives, error);
+	if (status)
+		return status;
+
+	int32_t slot_count =
+		3 * primitives->triangle_count + 6 * primitives->tetrahedron_count + primitives->link_count;
+	int32_t *end = cau_mesh_array(2 * (size_t)slot_count, sizeof *end);
+	int32_t *order = cau_mesh_array((size_t)slot_count, sizeof *order);
+	int32_t *edge_of_slot = cau_mesh_array((size_t)slot_count, sizeof *edge_of_slot);
+	bool done = end && order && edge_of_slot;
+	if (done) {
+		fill_slots(primitives, table, end);
+		done = cau_index_sort(end, 2, slot_count, primitives->vertex_count, order) &&
+		       number_edges(end, order, slot_count, edge_of_slot, table) &&
+		       fill_kinds(primitives, edge_of_slot, table) &&
+		       fill_hinges(table, primitives->triangle_count, triangle_layer);
+	}
+	free(end);
+	free(order);
+	free(edge_of_slot);
+	if (done)
+		return CAU_OK;
+	cau_edge_table_finish(table);
+	return cau_fail(error, CAU_NO_MEMORY, NULL, "no memory for the edges of a tissue");
+}
+
+void cau_edge_table_finish(cau_edge_table *table)
+{
+	free(table->vertex);
+	for (int kind = 0; kind < CAU_PRIMITIVE_KINDS; kind++) {
+		free(table->first[kind]);
+		free(table->sharer[kind]);
+	}
+	free(table->triangle_edge);
+	free(table->tetrahedron_edge);
+	free(table->link_edge);
+	free(table->hinge_edge);
+	free(table->hinge_triangle);
+	*table = (cau_edge_table){0};
+}
+
+int32_t cau_edge_table_find(const cau_edge_table *table, int32_t a, int32_t b)
+{
+	int32_t wanted[2] = {a, b};
+	cau_index_order_row(wanted, 2);
+	int32_t low = 0, high = table->edge_count;
+	while (low < high) {
+		int32_t middle = low + (high - low) / 2;
+		const int32_t *vertex = table->vertex + 2 * (size_t)middle;
+		if (vertex[0] < wanted[0] || (vertex[0] == wanted[0] && vertex[1] < wanted[1]))
+			low = middle + 1;
+		else
+			high = middle;
+	}
+	if (low == table->edge_count)
+		return -1;
+	const int32_t *found = table->vertex + 2 * (size_t)low;
+	return found[0] == wanted[0] && found[1] == wanted[1] ? low : -1;
+}

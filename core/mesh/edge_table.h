@@ -1,0 +1,68 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// The edge-based structure (section 6.1, figure 5): every edge knows the primitives that share it.
+#pragma once
+
+#include <stdint.h>
+
+#include "cautery/status.h"
+
+// The primitives of a tissue over one vertex array. Hinges are pairs of triangles and follow them.
+typedef struct cau_primitives {
+	int32_t vertex_count;
+	int32_t triangle_count;
+	const int32_t *triangle; // (triangle_count x 3)
+	int32_t tetrahedron_count;
+	const int32_t *tetrahedron; // (tetrahedron_count x 4)
+	int32_t link_count;
+	const int32_t *link; // (link_count x 2)
+} cau_primitives;
+
+typedef enum cau_primitive_kind {
+	CAU_PRIMITIVE_TRIANGLE,
+	CAU_PRIMITIVE_TETRAHEDRON,
+	CAU_PRIMITIVE_LINK,
+	CAU_PRIMITIVE_KINDS
+} cau_primitive_kind;
+
+// Unique edges (a < b), sorted by (a, b), and for each kind the primitives that share each edge, in
+// compressed rows: primitives of edge e are sharer[kind][first[kind][e] .. first[kind][e + 1]).
+typedef struct cau_edge_table {
+	int32_t edge_count;
+	int32_t *vertex;                     // (edge_count x 2)
+	int32_t *first[CAU_PRIMITIVE_KINDS]; // (edge_count + 1)
+	int32_t *sharer[CAU_PRIMITIVE_KINDS];
+	int32_t *triangle_edge;    // (triangle_count x 3): edges 01, 12, 20
+	int32_t *tetrahedron_edge; // (tetrahedron_count x 6): edges 01, 02, 03, 12, 13, 23
+	int32_t *link_edge;        // (link_count)
+	int32_t hinge_count;       // edges that exactly two triangles of the same layer share
+	int32_t *hinge_edge;       // (hinge_count)
+	int32_t *hinge_triangle;   // (hinge_count x 2)
+} cau_edge_table;
+
+// Builds the table. `triangle_layer` (triangle_count) says which triangles may form hinges
+// together.
+cau_status cau_edge_table_make(const cau_primitives *primitives, const int32_t *triangle_layer,
+                               cau_edge_table *table, cau_error *error);
+void cau_edge_table_finish(cau_edge_table *table);
+
+// Edge between two vertices, or -1. O(log edges).
+int32_t cau_edge_table_find(const cau_edge_table *table, int32_t a, int32_t b);
+
+// Faces, in the order of the streamed mask: first every triangle of the sheets, then every unique
+// face of the tetrahedra. A fat face is drawn while exactly one live tetrahedron has it and no live
+// triangle covers it.
+typedef struct cau_face_table {
+	int32_t face_count;
+	int32_t triangle_count; // faces [0, triangle_count) are the sheets' triangles
+	int32_t
+		*vertex; // (face_count x 3); for a fat face counter-clockwise seen from outside owner[0]
+	int32_t
+		*owner; // (face_count x 2): tetrahedra that have it (-1: none); a sheet's face: (-1, -1)
+	int32_t *cover;            // (face_count): triangle with the same three vertices, or -1
+	int32_t *tetrahedron_face; // (tetrahedron_count x 4): face opposite vertex 0, 1, 2, 3
+	int32_t *triangle_covers;  // (triangle_count): fat face with the same three vertices, or -1
+} cau_face_table;
+
+cau_status cau_face_table_make(const cau_primitives *primitives, cau_face_table *table,
+                               cau_error *error);
+void cau_face_table_finish(cau_face_table *table);

@@ -1,0 +1,165 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Generated meshes. Vertices are numbered with the last axis fastest, elements cell by cell in the
+// same order, so that neighbours lie near each other in memory.
+#include <math.h>
+#include <string.h>
+
+#include "mesh/mesh_memory.h"
+
+static cau_status check_sizes(const cau_mesh_def *def, int axes, cau_error *error)
+{
+	for (int a = 0; a < axes; a++)
+		if (!(def->size_m[a] > 0) || !isfinite(def->size_m[a]))
+			return cau_fail(error, CAU_BAD_VALUE, "size_m", "size_m[%d] must be above zero", a);
+	return CAU_OK;
+}
+
+static cau_status check_turn(const cau_mesh_def *def, cau_error *error)
+{
+	if (isfinite(def->texture_turn_rad))
+		return CAU_OK;
+	return cau_fail(error, CAU_BAD_VALUE, "texture_turn_rad", "must be a finite angle");
+}
+
+// Fails also where the product of the cells passes the bound on elements.
+static cau_status check_cells(const cau_mesh_def *def, int axes, int elements_per_cell,
+                              cau_error *error)
+{
+	int64_t elements = elements_per_cell;
+	for (int a = 0; a < axes; a++) {
+		if (def->cells[a] < 1)
+			return cau_fail(error, CAU_BAD_VALUE, "cells", "cells[%d] must be at least 1", a);
+		elements *= def->cells[a];
+		if (elements > CAU_MESH_MAX_ELEMENTS)
+			return cau_fail(error, CAU_LIMIT, "cells",
+			                "these cells make more than %d elements, the most of one mesh",
+			                CAU_MESH_MAX_ELEMENTS);
+	}
+	return CAU_OK;
+}
+
+// UV of each corner: x and y in metres, turned, so that the map to the surface is an isometry.
+static void fill_texture(cau_mesh *mesh, double turn_rad)
+{
+	double c = cos(turn_rad), s = sin(turn_rad);
+	for (size_t corner = 0; corner < 3 * (size_t)mesh->triangle_count; corner++) {
+		const double *x = mesh->position + 3 * (size_t)mesh->triangle[corner];
+		mesh->texture[2 * corner] = c * x[0] + s * x[1];
+		mesh->texture[2 * corner + 1] = -s * x[0] + c * x[1];
+	}
+}
+
+// Vertices of a box of cells, centred in x and y, top at z = 0; cells[2] = 0 for a plane.
+static void fill_lattice(cau_mesh *mesh, const double size_m[3], const int32_t cells[3])
+{
+	double *x = mesh->position;
+	for (int32_t i = 0; i <= cells[0]; i++)
+		for (int32_t j = 0; j <= cells[1]; j++)
+			for (int32_t k = 0; k <= cells[2]; k++, x += 3) {
+				x[0] = size_m[0] * ((double)i / cells[0] - 0.5);
+				x[1] = size_m[1] * ((double)j / cells[1] - 0.5);
+				x[2] = cells[2] ? size_m[2] * ((double)k / cells[2] - 1) : 0;
+			}
+}
+
+// Two triangles a cell, counter-clockwise seen from +z; every cell is split along the diagonal from
+// its corner of least x and y to that of greatest, as the slab's top is.
+cau_status cau_mesh_make_sheet(const cau_mesh_def *def, cau_mesh *mesh, cau_error *error)
+{
+	*mesh = (cau_mesh){0};
+	cau_status status = check_sizes(def, 2, error);
+	if (!status)
+		status = check_turn(def, error);
+	if (!status)
+		status = check_cells(def, 2, 2, error);
+	if (status)
+		return status;
+
+	const int32_t cells[3] = {def->cells[0], def->cells[1], 0};
+	int64_t cell_count = (int64_t)cells[0] * cells[1];
+	status = cau_mesh_reserve(mesh, ((int64_t)cells[0] + 1) * (cells[1] + 1), 2 * cell_count, 0,
+	                          true, error);
+	if (status)
+		return status;
+	fill_lattice(mesh, def->size_m, cells);
+	int32_t *triangle = mesh->triangle;
+	for (int32_t i = 0; i < cells[0]; i++)
+		for (int32_t j = 0; j < cells[1]; j++, triangle += 6) {
+			int32_t a = i * (cells[1] + 1) + j, b = a + cells[1] + 1; // b: next along x
+			memcpy(triangle, (int32_t[]){a, b, b + 1, a, b + 1, a + 1}, 6 * sizeof *triangle);
+		}
+	fill_texture(mesh, def->texture_turn_rad);
+	return CAU_OK;
+}
+
+// The six tetrahedra of one cell (Kuhn's subdivision): each walks from the least corner to the
+// greatest along the axes in another order. Neighbouring cells agree on their common faces.
+static void fill_cell(int32_t *tetrahedron, int32_t least, const int32_t stride[3])
+{
+	static const int8_t walks[6][3] = {{0, 1, 2}, {1, 2, 0}, {2, 0, 1},
+	                                   {0, 2, 1}, {1, 0, 2}, {2, 1, 0}};
+	for (int w = 0; w < 6; w++, tetrahedron += 4) {
+		int32_t first = least + stride[walks[w][0]];
+		int32_t second = first + stride[walks[w][1]];
+		bool turned = w >= 3; // odd permutations of the axes have negative volume
+		tetrahedron[0] = least;
+		tetrahedron[1] = turned ? second : first;
+		tetrahedron[2] = turned ? first : second;
+		tetrahedron[3] = second + stride[walks[w][2]];
+	}
+}
+
+cau_status cau_mesh_make_slab(const cau_mesh_def *def, cau_mesh *mesh, cau_error *error)
+{
+	*mesh = (cau_mesh){0};
+	cau_status status = check_sizes(def, 3, error);
+	if (!status)
+		status = check_cells(def, 3, 6, error);
+	if (status)
+		return status;
+
+	const int32_t *cells = def->cells;
+	int64_t cell_count = (int64_t)cells[0] * cells[1] * cells[2];
+	status = cau_mesh_reserve(mesh, ((int64_t)cells[0] + 1) * (cells[1] + 1) * (cells[2] + 1), 0,
+	                          6 * cell_count, false, error);
+	if (status)
+		return status;
+	fill_lattice(mesh, def->size_m, cells);
+	const int32_t stride[3] = {(cells[1] + 1) * (cells[2] + 1), cells[2] + 1, 1};
+	int32_t *tetrahedron = mesh->tetrahedron;
+	for (int32_t i = 0; i < cells[0]; i++)
+		for (int32_t j = 0; j < cells[1]; j++)
+			for (int32_t k = 0; k < cells[2]; k++, tetrahedron += 24)
+				fill_cell(tetrahedron, i * stride[0] + j * stride[1] + k, stride);
+	return CAU_OK;
+}
+
+// Figure 5: a closed fan of cells[0] triangles round vertex 0, its rim on the ellipse with axes
+// size_m[0] along x and size_m[1] along y, starting on +x.
+cau_status cau_mesh_make_pattern(const cau_mesh_def *def, cau_mesh *mesh, cau_error *error)
+{
+	*mesh = (cau_mesh){0};
+	cau_status status = check_sizes(def, 2, error);
+	if (!status)
+		status = check_turn(def, error);
+	if (status)
+		return status;
+	int32_t count = def->cells[0];
+	if (count < 3 || count > 1000)
+		return cau_fail(error, CAU_BAD_VALUE, "cells",
+		                "cells[0] is the number of triangles of the fan, 3 to 1000");
+	status = cau_mesh_reserve(mesh, (int64_t)count + 1, count, 0, true, error);
+	if (status)
+		return status;
+
+	const double full_turn_rad = 2 * acos(-1.0);
+	for (int32_t i = 0; i < count; i++) {
+		double *x = mesh->position + 3 * ((size_t)i + 1);
+		x[0] = 0.5 * def->size_m[0] * cos(full_turn_rad * i / count);
+		x[1] = 0.5 * def->size_m[1] * sin(full_turn_rad * i / count);
+		memcpy(mesh->triangle + 3 * (size_t)i, (int32_t[]){0, 1 + i, 1 + (i + 1) % count},
+		       3 * sizeof *mesh->triangle);
+	}
+	fill_texture(mesh, def->texture_turn_rad);
+	return CAU_OK;
+}

@@ -1,0 +1,193 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "mesh/obj.h"
+
+#include <stdlib.h>
+#include <string.h>
+
+#include "mesh/mesh_memory.h"
+
+enum { MAX_REGIONS = 256 };
+
+typedef struct obj {
+	cau_scan *scan;
+	cau_mesh_builder *builder;
+	double *texture; // UV of the vt lines, (texture_count x 2)
+	int32_t texture_count;
+	int32_t texture_capacity;
+	bool bare; // a corner without texture has been seen
+	const char *region_keyword;
+	cau_word region_name[MAX_REGIONS];
+	int32_t region_count;
+	int32_t region; // of the faces that follow
+} obj;
+
+typedef struct corner {
+	int32_t vertex;
+	double texture[2];
+} corner;
+
+static void read_vertex(obj *o)
+{
+	double position[3];
+	for (int c = 0; c < 3; c++)
+		position[c] = cau_scan_word_real(o->scan, cau_scan_word_of_line(o->scan), "a coordinate");
+	cau_mesh_builder_vertex(o->builder, position);
+}
+
+static void read_texture(obj *o)
+{
+	double u = cau_scan_word_real(o->scan, cau_scan_word_of_line(o->scan), "a texture coordinate");
+	cau_word word = cau_scan_word_of_line(o->scan); // v may be left out
+	double v = word.length ? cau_scan_word_real(o->scan, word, "a texture coordinate") : 0;
+	if (o->texture_count == o->texture_capacity) {
+		int32_t capacity = o->texture_capacity ? 2 * o->texture_capacity : 64;
+		void *grown = capacity <= 3 * CAU_MESH_MAX_ELEMENTS
+		                  ? realloc(o->texture, 2 * (size_t)capacity * sizeof *o->texture)
+		                  : NULL;
+		if (!grown) {
+			cau_scan_fail(o->scan, CAU_NO_MEMORY, "no memory for %d texture coordinates", capacity);
+			return;
+		}
+		o->texture = grown;
+		o->texture_capacity = capacity;
+	}
+	o->texture[2 * (size_t)o->texture_count] = u;
+	o->texture[2 * (size_t)o->texture_count + 1] = v;
+	o->texture_count++;
+}
+
+// Cuts the part before the next '/' off a word.
+static cau_word cut_part(cau_word *word)
+{
+	const char *slash = word->length ? memchr(word->text, '/', word->length) : NULL;
+	cau_word part = {word->text, slash ? (size_t)(slash - word->text) : word->length};
+	size_t used = part.length + (slash ? 1 : 0);
+	*word = (cau_word){word->text + used, word->length - used};
+	return part;
+}
+
+// An index from 1, or from -1 backwards, into the `count` things so far; from 0. -1: it failed.
+static int32_t read_index(obj *o, cau_word word, const char *what, int32_t count)
+{
+	int64_t number = cau_scan_word_integer(o->scan, word, what, INT32_MIN, INT32_MAX);
+	int64_t index = number < 0 ? count + number : number - 1;
+	if (!o->scan->status && (index < 0 || index >= count))
+		cau_scan_fail(o->scan, CAU_BAD_MESH, "%lld as %s: there are %d so far", (long long)number,
+		              what, count);
+	return o->scan->status ? -1 : (int32_t)index;
+}
+
+static corner read_corner(obj *o, cau_word word)
+{
+	corner read = {0};
+	read.vertex = read_index(o, cut_part(&word), "a vertex number", o->builder->mesh.vertex_count);
+	cau_word texture = cut_part(&word);
+	if (!texture.length) {
+		o->bare = true;
+		return read;
+	}
+	int32_t index = read_index(o, texture, "a texture number", o->texture_count);
+	if (index >= 0)
+		memcpy(read.texture, o->texture + 2 * (size_t)index, sizeof read.texture);
+	return read;
+}
+
+static void add_triangle(obj *o, const corner c[3])
+{
+	const int32_t vertex[3] = {c[0].vertex, c[1].vertex, c[2].vertex};
+	const double texture[6] = {c[0].texture[0], c[0].texture[1], c[1].texture[0],
+	                           c[1].texture[1], c[2].texture[0], c[2].texture[1]};
+	cau_mesh_builder_triangle(o->builder, vertex, o->region, texture);
+}
+
+// A polygon, as a fan round its first corner.
+static void read_face(obj *o)
+{
+	size_t line = o->scan->mark;
+	corner fan[3];
+	int corner_count = 0;
+	for (;;) {
+		cau_word word = cau_scan_word_of_line(o->scan);
+		if (!word.length || word.text[0] == '#')
+			break;
+		fan[corner_count < 2 ? corner_count : 2] = read_corner(o, word);
+		if (++corner_count < 3)
+			continue;
+		add_triangle(o, fan);
+		fan[1] = fan[2];
+		corner_count = 3;
+	}
+	o->scan->mark = line;
+	if (corner_count < 3)
+		cau_scan_fail(o->scan, CAU_BAD_SYNTAX, "a face of %d corners", corner_count);
+}
+
+// Makes the rest of the line the name of the region of the faces that follow.
+static void read_region(obj *o)
+{
+	cau_word name = cau_scan_word_of_line(o->scan), word = name;
+	while (word.length) {
+		name.length = (size_t)(word.text - name.text) + word.length;
+		word = cau_scan_word_of_line(o->scan);
+	}
+	for (int32_t i = 0; i < o->region_count; i++)
+		if (o->region_name[i].length == name.length &&
+		    (name.length == 0 || !memcmp(o->region_name[i].text, name.text, name.length))) {
+			o->region = i + 1;
+			return;
+		}
+	if (o->region_count == MAX_REGIONS) {
+		cau_scan_fail(o->scan, CAU_LIMIT, "more than %d names of materials or groups", MAX_REGIONS);
+		return;
+	}
+	o->region_name[o->region_count++] = name;
+	o->region = o->region_count;
+}
+
+static void read_line(obj *o)
+{
+	cau_word keyword = cau_scan_word_of_line(o->scan);
+	if (cau_word_is(keyword, "v"))
+		read_vertex(o);
+	else if (cau_word_is(keyword, "vt"))
+		read_texture(o);
+	else if (cau_word_is(keyword, "f"))
+		read_face(o);
+	else if (cau_word_is(keyword, "l") || cau_word_is(keyword, "p"))
+		cau_mesh_builder_skip(o->builder, keyword.text[0], 1);
+	else if (cau_word_is(keyword, o->region_keyword))
+		read_region(o);
+	cau_scan_skip_line(o->scan);
+}
+
+static bool has_keyword(cau_scan scan, const char *keyword)
+{
+	while (cau_scan_left(&scan)) {
+		if (cau_word_is(cau_scan_word_of_line(&scan), keyword))
+			return true;
+		cau_scan_skip_line(&scan);
+	}
+	return false;
+}
+
+static const char *name_of_skipped(int kind)
+{
+	return kind == 'l' ? "lines" : "points";
+}
+
+cau_status cau_mesh_read_obj(cau_mesh_builder *builder)
+{
+	cau_scan *scan = builder->scan;
+	obj o = {.scan = scan, .builder = builder};
+	o.region_keyword = has_keyword(*scan, "usemtl") ? "usemtl" : "g";
+	builder->texture = true;
+	while (cau_scan_left(scan) && !scan->status)
+		read_line(&o);
+	cau_mesh_builder_check(builder, name_of_skipped);
+	free(o.texture);
+	if (o.bare) {
+		free(builder->mesh.texture);
+		builder->mesh.texture = NULL;
+	}
+	return scan->status;
+}

@@ -1,0 +1,85 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// A spatial hash whose cells are `distance` wide. Only vertices that stay are entered, and they are
+// farther than `distance` from each other, so that a cell holds few.
+#include "mesh/vertex_merge.h"
+
+#include "mesh/mesh_memory.h"
+
+typedef struct grid {
+	const double *position;
+	const double *origin;
+	double distance;
+	int32_t *bucket; // (mask + 1): the vertex entered last, or -1
+	int32_t *next;   // (vertex_count): the vertex entered before it in the same bucket, or -1
+	uint64_t mask;
+} grid;
+
+static void cell_of(const grid *g, int32_t vertex, int64_t cell[3])
+{
+	for (size_t c = 0; c < 3; c++)
+		cell[c] = (int64_t)((g->position[3 * (size_t)vertex + c] - g->origin[c]) / g->distance);
+}
+
+static uint64_t bucket_of(const grid *g, const int64_t cell[3])
+{
+	uint64_t hash = 0;
+	for (int c = 0; c < 3; c++) {
+		hash = (hash ^ (uint64_t)cell[c]) * UINT64_C(0x9e3779b97f4a7c15);
+		hash ^= hash >> 29;
+	}
+	return hash & g->mask;
+}
+
+static bool is_near(const grid *g, int32_t a, int32_t b)
+{
+	double square = 0;
+	for (size_t c = 0; c < 3; c++) {
+		double d = g->position[3 * (size_t)a + c] - g->position[3 * (size_t)b + c];
+		square += d * d;
+	}
+	return square < g->distance * g->distance;
+}
+
+// The lowest entered vertex near `vertex` among its cell and the 26 round it, or `vertex`.
+static int32_t find_near(const grid *g, int32_t vertex, const int64_t cell[3])
+{
+	int32_t lowest = vertex;
+	for (int i = 0; i < 27; i++) {
+		const int64_t beside[3] = {cell[0] + i / 9 - 1, cell[1] + i / 3 % 3 - 1,
+		                           cell[2] + i % 3 - 1};
+		for (int32_t v = g->bucket[bucket_of(g, beside)]; v >= 0; v = g->next[v])
+			if (v < lowest && is_near(g, v, vertex))
+				lowest = v;
+	}
+	return lowest;
+}
+
+static void enter(grid *g, int32_t vertex, const int64_t cell[3])
+{
+	int32_t *bucket = g->bucket + bucket_of(g, cell);
+	g->next[vertex] = *bucket;
+	*bucket = vertex;
+}
+
+bool cau_vertex_merge(const double *position, int32_t vertex_count, const double origin[3],
+                      double distance, int32_t *map)
+{
+	grid g = {.position = position, .origin = origin, .distance = distance, .mask = 63};
+	while (g.mask < 2 * (uint64_t)vertex_count)
+		g.mask = 2 * g.mask + 1;
+	g.bucket = cau_mesh_array((size_t)g.mask + 1, sizeof *g.bucket);
+	g.next = cau_mesh_array((size_t)vertex_count, sizeof *g.next);
+	bool done = g.bucket && g.next;
+	for (uint64_t b = 0; done && b <= g.mask; b++)
+		g.bucket[b] = -1;
+	for (int32_t v = 0; done && v < vertex_count; v++) {
+		int64_t cell[3];
+		cell_of(&g, v, cell);
+		map[v] = find_near(&g, v, cell);
+		if (map[v] == v)
+			enter(&g, v, cell);
+	}
+	free(g.bucket);
+	free(g.next);
+	return done;
+}

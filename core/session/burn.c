@@ -1,0 +1,55 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Heat and dissection of one tick, tool by tool (sections 6.1 to 6.3).
+#include "session/session_internal.h"
+
+// The tool's motion in equal parts: its heat grid follows, and the edges it meets are exposed (eq.
+// 18-20).
+static void heat_edges(cau_session *session, cau_tool *tool)
+{
+	const cau_tool_def *def = &tool->state.definition;
+	int parts = cau_exposure_parts(def, &tool->pose_before, &tool->state.pose);
+	double duration = session->solver.step_s / parts;
+	for (int part = 1; part <= parts; ++part) {
+		cau_pose pose =
+			cau_pose_between(&tool->pose_before, &tool->state.pose, (double)part / parts);
+		cau_heat_grid_advance(&tool->grid, def, &pose, tool->state.jaw, tool->state.energized,
+		                      duration);
+		if (cau_heat_grid_warmest(&tool->grid) > CAU_LIVING_C)
+			tool->state.energy_j +=
+				cau_dissection_expose(&session->dissection, &session->near, session->position,
+			                          &tool->grid, def, &pose, tool->state.jaw, duration);
+	}
+	cau_vec3 tip = cau_vec3_of(tool->state.pose.position_m);
+	tool->state.tip_temperature_c = cau_heat_grid_at(&tool->grid, tip);
+}
+
+// Takes what the cut removed out of the local step and puts it on the list of the factor.
+static void take_out(cau_session *session, int32_t first)
+{
+	for (int32_t k = first; k < session->dissection.removed_count; ++k) {
+		const cau_removed *removed = &session->dissection.removed[k];
+		cau_elements_remove(&session->solver.elements, &session->solver.slots, removed->kind,
+		                    removed->element);
+		cau_matrix_update_remove(&session->update, removed->kind, removed->element, session->tick);
+	}
+}
+
+void cau_session_burn(cau_session *session)
+{
+	if (session->tool_count)
+		cau_near_refit(&session->near, session->position);
+	for (int32_t i = 0; i < session->tool_count; ++i) {
+		cau_tool *tool = &session->tool[i];
+		int32_t first = session->dissection.removed_count;
+		uint32_t layers = 0;
+		heat_edges(session, tool);
+		cau_dissection_part(&session->dissection, &layers); // section 6.1
+		take_out(session, first);
+		cau_shrink_expose(&session->shrink, &session->dissection, first, session->position,
+		                  &tool->state.definition, &tool->state.pose, tool->state.jaw,
+		                  &session->solver.elements, &session->solver.slots); // eq. 21
+		tool->state.touched_layers = (int32_t)layers;
+	}
+	cau_shrink_advance(&session->shrink, &session->tissue, session->solver.step_s,
+	                   &session->solver.elements, &session->solver.slots);
+}

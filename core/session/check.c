@@ -1,0 +1,417 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Range checks of everything that comes from outside, from the tables of scene.h. Paths are JSON
+// paths.
+#include <math.h>
+#include <string.h>
+
+#include "base/symmetric.h"
+#include "cautery/name.h"
+#include "session/session_internal.h"
+
+enum { PATH_BYTES = 160 };
+
+static void join(char out[PATH_BYTES], const char *path, const char *field)
+{
+	snprintf(out, PATH_BYTES, "%.80s%s%.70s", path, *path ? "." : "", field);
+}
+
+static cau_status in_range(double value, double least, double most, const char *unit,
+                           const char *path, const char *field, cau_error *error)
+{
+	if (value >= least && value <= most)
+		return CAU_OK;
+	char full[PATH_BYTES];
+	join(full, path, field);
+	return cau_fail(error, CAU_BAD_VALUE, full, "%g is not between %g and %g %s", value, least,
+	                most, unit);
+}
+
+static cau_status is_choice(int value, int count, const char *path, const char *field,
+                            cau_error *error)
+{
+	if (value >= 0 && value < count)
+		return CAU_OK;
+	char full[PATH_BYTES];
+	join(full, path, field);
+	return cau_fail(error, CAU_BAD_VALUE, full, "%d is no choice (0 to %d)", value, count - 1);
+}
+
+static cau_status finite_vector(const double *v, int count, double most, const char *path,
+                                const char *field, cau_error *error)
+{
+	for (int i = 0; i < count; ++i)
+		if (!(fabs(v[i]) <= most)) {
+			char full[PATH_BYTES];
+			join(full, path, field);
+			return cau_fail(error, CAU_BAD_VALUE, full, "component %d, %g, is not within %g", i,
+			                v[i], most);
+		}
+	return CAU_OK;
+}
+
+#define CHECK_FIELD(field, default_, least, most, unit, meaning)                                   \
+	if (!status)                                                                                   \
+		status = in_range(object->field, least, most, unit, path, #field, error);
+
+static cau_status check_name(const char *name, const char *path, const char *field,
+                             cau_error *error)
+{
+	if (cau_name_is_valid(name))
+		return CAU_OK;
+	char full[PATH_BYTES];
+	join(full, path, field);
+	return cau_fail(error, CAU_BAD_VALUE, full, "\"%.60s\" is no name: " CAU_NAME_RULE, name);
+}
+
+// ---- materials
+static cau_status check_heat(const cau_heat_material *object, const char *path, cau_error *error)
+{
+	cau_status status = CAU_OK;
+	CAU_HEAT_TABLE(CHECK_FIELD)
+	return status;
+}
+
+static cau_status check_interval(const double *least, const double *most, int count,
+                                 const char *path, cau_error *error)
+{
+	for (int i = 0; i < count; ++i)
+		if (!(least[i] > -1 && least[i] <= most[i] && most[i] <= 100)) {
+			char full[PATH_BYTES];
+			join(full, path, "strain_min");
+			return cau_fail(error, CAU_BAD_VALUE, full,
+			                "axis %d: [%g, %g] is no interval of strains above -1 and up to 100", i,
+			                least[i], most[i]);
+		}
+	return CAU_OK;
+}
+
+static cau_status check_shrink(const double *shrink, int count, const char *path, cau_error *error)
+{
+	for (int i = 0; i < count; ++i)
+		if (!(shrink[i] >= 0.01 && shrink[i] <= 4)) {
+			char full[PATH_BYTES];
+			join(full, path, "shrink");
+			return cau_fail(error, CAU_BAD_VALUE, full,
+			                "component %d, %g, is not between 0.01 and 4 (squared stretch)", i,
+			                shrink[i]);
+		}
+	return CAU_OK;
+}
+
+// T must be symmetric positive definite: squared stretches between 1e-4 and 100.
+static cau_status check_target(const double eigen[3], int count, const char *path, cau_error *error)
+{
+	for (int i = 0; i < count; ++i)
+		if (!(eigen[i] >= 1e-4 && eigen[i] <= 100)) {
+			char full[PATH_BYTES];
+			join(full, path, "target");
+			return cau_fail(
+				error, CAU_BAD_VALUE, full,
+				"T must be positive definite, its squared stretches between 1e-4 and 100; "
+				"one is %g",
+				eigen[i]);
+		}
+	return CAU_OK;
+}
+
+static cau_status check_sheet(const cau_sheet_material *object, const char *path, cau_error *error)
+{
+	cau_status status = CAU_OK;
+	CAU_SHEET_TABLE(CHECK_FIELD)
+	if (!status)
+		status = is_choice(object->limit, CAU_LIMIT_COUNT, path, "limit", error);
+	if (!status)
+		status = is_choice(object->projection, CAU_PROJECTION_COUNT, path, "projection", error);
+	if (!status)
+		status = check_interval(object->strain_min, object->strain_max, 2, path, error);
+	const double *t = object->target;
+	double mean = (t[0] + t[1]) / 2, spread = hypot((t[0] - t[1]) / 2, t[2]);
+	const double eigen[3] = {mean + spread, mean - spread, 1};
+	if (!status)
+		status = check_target(eigen, 2, path, error);
+	if (!status)
+		status = check_shrink(object->shrink, 2, path, error);
+	return status ? status : check_heat(&object->heat, path, error);
+}
+
+static cau_status check_fat(const cau_fat_material *object, const char *path, cau_error *error)
+{
+	cau_status status = CAU_OK;
+	CAU_FAT_TABLE(CHECK_FIELD)
+	if (!status)
+		status = is_choice(object->model, CAU_MODEL_COUNT, path, "model", error);
+	if (!status && object->model == CAU_MODEL_ENERGY && object->poisson_ratio > 1.0 / 3.0) {
+		char full[PATH_BYTES];
+		join(full, path, "poisson_ratio");
+		status = cau_fail(error, CAU_BAD_VALUE, full,
+		                  "%g: the printed energy constraint is stable up to 1/3 only",
+		                  object->poisson_ratio);
+	}
+	if (!status)
+		status = is_choice(object->limit, CAU_LIMIT_COUNT, path, "limit", error);
+	if (!status)
+		status = is_choice(object->projection, CAU_PROJECTION_COUNT, path, "projection", error);
+	if (!status)
+		status = check_interval(object->strain_min, object->strain_max, 3, path, error);
+	double eigen[3], axes[3][3];
+	if (!status)
+		status = finite_vector(object->target, 6, 100, path, "target", error);
+	if (!status) {
+		cau_symmetric_eigen3(object->target, eigen, axes);
+		status = check_target(eigen, 3, path, error);
+	}
+	if (!status)
+		status = check_shrink(object->shrink, 3, path, error);
+	return status ? status : check_heat(&object->heat, path, error);
+}
+
+static cau_status check_link(const cau_link_material *object, const char *path, cau_error *error)
+{
+	cau_status status = CAU_OK;
+	CAU_LINK_TABLE(CHECK_FIELD)
+	return status ? status : check_heat(&object->heat, path, error);
+}
+
+cau_status cau_material_check(int kind, const void *material, const char *path, cau_error *error)
+{
+	switch (kind) {
+	case CAU_LAYER_FAT:
+		return check_fat(material, path, error);
+	case CAU_LAYER_LINKS:
+		return check_link(material, path, error);
+	case CAU_LAYER_FASCIA:
+	case CAU_LAYER_MEMBRANE:
+		return check_sheet(material, path, error);
+	default:
+		return is_choice(kind, CAU_LAYER_COUNT, path, "kind", error);
+	}
+}
+
+// ---- tools, selections, poses
+cau_status cau_pose_check(const cau_pose *pose, const char *path, cau_error *error)
+{
+	cau_status status = finite_vector(pose->position_m, 3, 1000, path, "position_m", error);
+	if (!status)
+		status = finite_vector(pose->rotation, 4, 1.001, path, "rotation", error);
+	double squared = 0;
+	for (int i = 0; i < 4; ++i)
+		squared += pose->rotation[i] * pose->rotation[i];
+	if (!status && !(fabs(sqrt(squared) - 1) <= 1e-3)) {
+		char full[PATH_BYTES];
+		join(full, path, "rotation");
+		status = cau_fail(error, CAU_BAD_VALUE, full,
+		                  "a unit quaternion is needed; its length is %g", sqrt(squared));
+	}
+	return status;
+}
+
+cau_status cau_tool_check(const cau_tool_def *object, const char *path, double step_s,
+                          cau_error *error)
+{
+	cau_status status = check_name(object->name, path, "name", error);
+	if (!status)
+		status = is_choice(object->shape, CAU_TOOL_SHAPE_COUNT, path, "shape", error);
+	CAU_TOOL_TABLE(CHECK_FIELD)
+	if (!status)
+		status = cau_pose_check(&object->pose, path, error);
+	if (status)
+		return status;
+	cau_heat_grid grid; // the grid knows its own stability limits
+	cau_error inner = {0};
+	status = cau_heat_grid_create(&grid, object, 37, step_s, &object->pose, &inner);
+	if (!status) {
+		cau_heat_grid_finish(&grid);
+		return CAU_OK;
+	}
+	char full[PATH_BYTES];
+	join(full, path, inner.path);
+	return cau_fail(error, status, full, "%s", inner.reason);
+}
+
+cau_status cau_selection_check(const cau_selection *selection, const char *path, cau_error *error)
+{
+	cau_status status = is_choice(selection->kind, CAU_SELECT_COUNT, path, "select", error);
+	if (!status && selection->layer[0])
+		status = check_name(selection->layer, path, "layer", error);
+	if (!status)
+		status = finite_vector(selection->least_m, 3, 1000, path, "least_m", error);
+	if (!status)
+		status = finite_vector(selection->most_m, 3, 1000, path, "most_m", error);
+	if (!status)
+		status = finite_vector(selection->center_m, 3, 1000, path, "center_m", error);
+	if (!status)
+		status = in_range(selection->radius_m, 0, 1000, "m", path, "radius_m", error);
+	return status;
+}
+
+// ---- scene
+static int32_t find_layer(const cau_scene_def *scene, const char *name)
+{
+	for (int32_t i = 0; i < scene->layer_count; ++i)
+		if (!strcmp(scene->layers[i].name, name))
+			return i;
+	return -1;
+}
+
+static int32_t find_mesh(const cau_scene_def *scene, const char *name)
+{
+	for (int32_t i = 0; i < scene->mesh_count; ++i)
+		if (!strcmp(scene->meshes[i].name, name))
+			return i;
+	return -1;
+}
+
+static cau_status missing(const char *path, const char *field, const char *what, const char *name,
+                          cau_error *error)
+{
+	char full[PATH_BYTES];
+	join(full, path, field);
+	return cau_fail(error, CAU_NOT_FOUND, full, "there is no %s \"%.60s\"", what, name);
+}
+
+static cau_status check_layer_links(const cau_scene_def *scene, const cau_layer_def *layer,
+                                    const char *path, cau_error *error)
+{
+	int32_t of = find_layer(scene, layer->of), to = find_layer(scene, layer->to);
+	if (layer->kind == CAU_LAYER_LINKS) {
+		if (of < 0 || scene->layers[of].kind == CAU_LAYER_LINKS)
+			return missing(path, "of", "sheet or fat layer", layer->of, error);
+		if (to < 0 || to == of || scene->layers[to].kind == CAU_LAYER_LINKS)
+			return missing(path, "to", "other sheet or fat layer", layer->to, error);
+		return CAU_OK;
+	}
+	if (layer->kind == CAU_LAYER_MEMBRANE && layer->of[0]) {
+		if (of < 0 || scene->layers[of].kind != CAU_LAYER_FAT)
+			return missing(path, "of", "fat layer", layer->of, error);
+		return CAU_OK;
+	}
+	return find_mesh(scene, layer->mesh) < 0 ? missing(path, "mesh", "mesh", layer->mesh, error)
+	                                         : CAU_OK;
+}
+
+static cau_status check_layer(const cau_scene_def *scene, int32_t index, cau_error *error)
+{
+	const cau_layer_def *layer = &scene->layers[index];
+	char path[PATH_BYTES];
+	snprintf(path, sizeof path, "layers[%d]", index);
+	cau_status status = check_name(layer->name, path, "name", error);
+	if (!status && find_layer(scene, layer->name) != index)
+		status =
+			cau_fail(error, CAU_ALREADY_EXISTS, path, "two layers are named \"%s\"", layer->name);
+	if (!status)
+		status = is_choice(layer->kind, CAU_LAYER_COUNT, path, "kind", error);
+	if (!status)
+		status = finite_vector(layer->fibre, 3, 1e6, path, "fibre", error);
+	if (!status && !(layer->material_count >= 1 && layer->material_count <= CAU_MAX_MATERIALS))
+		status = cau_fail(error, CAU_BAD_VALUE, path, "%d materials; at least 1, at most %d",
+		                  layer->material_count, CAU_MAX_MATERIALS);
+	for (int32_t m = 0; m < layer->material_count && !status; ++m) {
+		char inner[PATH_BYTES];
+		if (m)
+			snprintf(inner, sizeof inner, "layers[%d].regions[%d]", index, m - 1);
+		else
+			snprintf(inner, sizeof inner, "layers[%d]", index);
+		const void *material = layer->kind == CAU_LAYER_FAT     ? (const void *)&layer->fat[m]
+		                       : layer->kind == CAU_LAYER_LINKS ? (const void *)&layer->link
+		                                                        : (const void *)&layer->sheet[m];
+		status = cau_material_check(layer->kind, material, inner, error);
+	}
+	return status ? status : check_layer_links(scene, layer, path, error);
+}
+
+static cau_status check_mesh(const cau_scene_def *scene, int32_t index, cau_error *error)
+{
+	const cau_mesh_def *mesh = &scene->meshes[index];
+	char path[PATH_BYTES];
+	snprintf(path, sizeof path, "meshes[%d]", index);
+	cau_status status = check_name(mesh->name, path, "name", error);
+	if (!status && find_mesh(scene, mesh->name) != index)
+		status =
+			cau_fail(error, CAU_ALREADY_EXISTS, path, "two meshes are named \"%s\"", mesh->name);
+	if (!status)
+		status = is_choice(mesh->source, CAU_MESH_SOURCE_COUNT, path, "source", error);
+	if (!status)
+		status = finite_vector(mesh->translate_m, 3, 1000, path, "translate_m", error);
+	if (!status)
+		status = in_range(mesh->unit_m, 1e-9, 1e6, "m", path, "unit_m", error);
+	return status;
+}
+
+static cau_status check_counts(const cau_scene_def *scene, cau_error *error)
+{
+	const struct {
+		const char *what;
+		int32_t count, least, most;
+	} counts[] = {
+		{"meshes", scene->mesh_count, 1, CAU_MAX_MESHES},
+		{"layers", scene->layer_count, 1, CAU_MAX_LAYERS},
+		{"pins", scene->pin_count, 0, CAU_MAX_PINS},
+		{"tools", scene->tool_count, 0, CAU_MAX_TOOLS},
+	};
+	for (size_t i = 0; i < sizeof counts / sizeof *counts; ++i)
+		if (counts[i].count < counts[i].least || counts[i].count > counts[i].most)
+			return cau_fail(error, CAU_BAD_VALUE, counts[i].what,
+			                "%d of them; %d to %d are allowed", counts[i].count, counts[i].least,
+			                counts[i].most);
+	return CAU_OK;
+}
+
+static cau_status check_time(const cau_scene_def *object, cau_error *error)
+{
+	const char *path = "";
+	cau_status status = CAU_OK;
+	CAU_TIME_TABLE(CHECK_FIELD)
+	if (!status && !(object->iterations >= 1 && object->iterations <= 1000))
+		status = cau_fail(error, CAU_BAD_VALUE, "iterations", "%d is not between 1 and 1000",
+		                  object->iterations);
+	if (!status)
+		status = is_choice(object->solver, CAU_SOLVER_COUNT, path, "solver", error);
+	if (!status)
+		status = is_choice(object->precision, CAU_PRECISION_COUNT, path, "precision", error);
+	if (!status)
+		status = finite_vector(object->gravity_m_s2, 3, 1000, path, "gravity_m_s2", error);
+	return status;
+}
+
+static cau_status check_scripts(const cau_scene_def *scene, cau_error *error)
+{
+	cau_status status = CAU_OK;
+	if (scene->pull.present) {
+		status = cau_selection_check(&scene->pull.selection, "pull.selection", error);
+		if (!status)
+			status = finite_vector(scene->pull.move_m, 3, 1, "pull", "move_m", error);
+		if (!status)
+			status = in_range(scene->pull.duration_s, 1e-3, 3600, "s", "pull", "duration_s", error);
+	}
+	if (!status && scene->cut.present) {
+		status = finite_vector(scene->cut.from_m, 3, 1000, "cut", "from_m", error);
+		if (!status)
+			status = finite_vector(scene->cut.to_m, 3, 1000, "cut", "to_m", error);
+		if (!status)
+			status = in_range(scene->cut.speed_m_s, 1e-6, 10, "m/s", "cut", "speed_m_s", error);
+	}
+	return status;
+}
+
+cau_status cau_scene_check(const cau_scene_def *scene, cau_error *error)
+{
+	cau_status status = check_name(scene->name, "", "name", error);
+	if (!status)
+		status = check_time(scene, error);
+	if (!status)
+		status = check_counts(scene, error);
+	for (int32_t i = 0; i < scene->mesh_count && !status; ++i)
+		status = check_mesh(scene, i, error);
+	for (int32_t i = 0; i < scene->layer_count && !status; ++i)
+		status = check_layer(scene, i, error);
+	char path[PATH_BYTES];
+	for (int32_t i = 0; i < scene->pin_count && !status; ++i) {
+		snprintf(path, sizeof path, "pins[%d]", i);
+		status = cau_selection_check(&scene->pins[i], path, error);
+	}
+	for (int32_t i = 0; i < scene->tool_count && !status; ++i) {
+		snprintf(path, sizeof path, "tools[%d]", i);
+		status = cau_tool_check(&scene->tools[i], path, scene->step_s, error);
+	}
+	return status ? status : check_scripts(scene, error);
+}

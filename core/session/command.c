@@ -1,0 +1,209 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Commands: checked when submitted, queued in order, applied at tick borders.
+#include <math.h>
+#include <string.h>
+
+#include "session/session_internal.h"
+
+// ---- submission
+static cau_status check_values(const cau_session *session, const cau_command *command,
+                               cau_error *error)
+{
+	switch (command->kind) {
+	case CAU_COMMAND_TOOL_ADD:
+		return cau_tool_check(&command->as.definition, "definition", session->solver.step_s, error);
+	case CAU_COMMAND_TOOL_CONFIGURE: {
+		cau_tool_def named = command->as.definition; // its own name stands in `tool`
+		memcpy(named.name, command->tool, sizeof named.name);
+		return cau_tool_check(&named, "definition", session->solver.step_s, error);
+	}
+	case CAU_COMMAND_TOOL_MOVE:
+		if (!(command->as.move.jaw >= 0 && command->as.move.jaw <= 1))
+			return cau_fail(error, CAU_BAD_VALUE, "jaw", "%g is not between 0 and 1",
+			                command->as.move.jaw);
+		return cau_pose_check(&command->as.move.pose, "pose", error);
+	case CAU_COMMAND_PIN:
+	case CAU_COMMAND_UNPIN:
+		return cau_selection_check(&command->as.selection, "selection", error);
+	case CAU_COMMAND_SET_MATERIAL: {
+		int kind = command->as.material.kind;
+		const void *material = kind == CAU_LAYER_FAT ? (const void *)&command->as.material.fat
+		                       : kind == CAU_LAYER_LINKS
+		                           ? (const void *)&command->as.material.link
+		                           : (const void *)&command->as.material.sheet;
+		return cau_material_check(kind, material, "material", error);
+	}
+	case CAU_COMMAND_SET_GRAVITY:
+		for (int c = 0; c < 3; ++c)
+			if (!(fabs(command->as.gravity_m_s2[c]) <= 1000))
+				return cau_fail(error, CAU_BAD_VALUE, "gravity_m_s2", "%g is not within 1000 m/s^2",
+				                command->as.gravity_m_s2[c]);
+		return CAU_OK;
+	case CAU_COMMAND_SET_FORCE:
+		for (int c = 0; c < 3; ++c)
+			if (!(fabs(command->as.force.force_n[c]) <= 1000))
+				return cau_fail(error, CAU_BAD_VALUE, "force_n", "%g is not within 1000 N",
+				                command->as.force.force_n[c]);
+		return cau_selection_check(&command->as.force.selection, "selection", error);
+	default:
+		return CAU_OK;
+	}
+}
+
+cau_status cau_session_submit(cau_session *session, const cau_command *command, cau_error *error)
+{
+	if (command->kind < 0 || command->kind >= CAU_COMMAND_COUNT)
+		return cau_fail(error, CAU_BAD_VALUE, "command", "%d is no command", command->kind);
+	cau_status status = check_values(session, command, error);
+	if (status)
+		return status;
+	if (session->command_count == session->command_capacity)
+		return cau_fail(error, CAU_LIMIT, NULL, "%d commands are waiting already",
+		                session->command_count);
+	session->command[session->command_count++] = *command;
+	return CAU_OK;
+}
+
+// ---- application
+static cau_status configure_tool(cau_session *session, cau_tool *tool, const cau_tool_def *def,
+                                 cau_error *error)
+{
+	cau_heat_grid grid;
+	cau_status status = cau_heat_grid_create(&grid, def, session->scene->ambient_c,
+	                                         session->solver.step_s, &tool->state.pose, error);
+	if (status)
+		return status;
+	cau_heat_grid_finish(&tool->grid);
+	tool->grid = grid;
+	cau_pose pose = tool->state.definition.pose;
+	tool->state.definition = *def;
+	tool->state.definition.pose = pose;
+	memcpy(tool->state.definition.name, tool->state.name, sizeof tool->state.name);
+	cau_session_release(tool);
+	return CAU_OK;
+}
+
+static cau_status apply_to_tool(cau_session *session, const cau_command *command, cau_error *error)
+{
+	int32_t index = cau_session_find_tool(session, command->tool);
+	if (index < 0)
+		return cau_fail(error, CAU_NOT_FOUND, "tool", "there is no tool \"%s\"", command->tool);
+	cau_tool *tool = &session->tool[index];
+	tool->state.sequence = command->sequence;
+	switch (command->kind) {
+	case CAU_COMMAND_TOOL_REMOVE:
+		cau_session_drop_tool(session, index);
+		return CAU_OK;
+	case CAU_COMMAND_TOOL_CONFIGURE:
+		return configure_tool(session, tool, &command->as.definition, error);
+	case CAU_COMMAND_TOOL_MOVE:
+		tool->target = command->as.move.pose;
+		if (!tool->state.grasping)
+			tool->jaw_target = command->as.move.jaw;
+		return CAU_OK;
+	case CAU_COMMAND_TOOL_ENERGIZE:
+		tool->state.energized = command->as.energized != 0;
+		return CAU_OK;
+	case CAU_COMMAND_TOOL_GRASP:
+		return cau_session_grasp(session, tool, error);
+	default:
+		cau_session_release(tool);
+		return CAU_OK;
+	}
+}
+
+static cau_status set_material(cau_session *session, const cau_command *command, cau_error *error)
+{
+	int32_t index = cau_tissue_find_layer(&session->tissue, command->as.material.layer);
+	if (index < 0)
+		return cau_fail(error, CAU_NOT_FOUND, "layer", "there is no layer \"%s\"",
+		                command->as.material.layer);
+	cau_layer_def *def = &session->tissue.layer[index].def;
+	int fat = def->kind == CAU_LAYER_FAT, links = def->kind == CAU_LAYER_LINKS;
+	int given = command->as.material.kind;
+	if (fat != (given == CAU_LAYER_FAT) || links != (given == CAU_LAYER_LINKS))
+		return cau_fail(error, CAU_BAD_VALUE, "kind", "layer \"%s\" is of another kind of tissue",
+		                def->name);
+	cau_matrix_update_stop(&session->update); // the factor in the making reads the materials
+	int32_t m = 0;
+	if (fat) {
+		while (m + 1 < def->material_count && def->fat[m].region != command->as.material.fat.region)
+			m++;
+		m = def->fat[m].region == command->as.material.fat.region ? m : 0;
+		def->fat[m] = command->as.material.fat;
+	} else if (links) {
+		def->link = command->as.material.link;
+	} else {
+		while (m + 1 < def->material_count &&
+		       def->sheet[m].region != command->as.material.sheet.region)
+			m++;
+		m = def->sheet[m].region == command->as.material.sheet.region ? m : 0;
+		def->sheet[m] = command->as.material.sheet;
+	}
+	cau_elements_set_materials(&session->solver.elements, &session->solver.slots, &session->tissue,
+	                           session->dissection.alive.element, session->shrink.shrunk);
+	session->solver.conservative =
+		cau_solver_is_conservative(&session->tissue, session->solver.diagonal);
+	return cau_matrix_update_refactor(&session->update, &session->dissection.alive, error);
+}
+
+static cau_status set_force(cau_session *session, const cau_command *command, cau_error *error)
+{
+	memset(session->chosen, 0, (size_t)session->tissue.vertex_count);
+	int32_t count =
+		cau_tissue_select(&session->tissue, &command->as.force.selection, session->chosen);
+	if (count <= 0)
+		return cau_fail(error, CAU_NOT_FOUND, "selection", "no vertex lies in this selection");
+	for (int32_t v = 0; v < session->tissue.vertex_count; ++v)
+		if (session->chosen[v])
+			memcpy(session->external + 3 * (size_t)v, command->as.force.force_n,
+			       3 * sizeof(double));
+	return CAU_OK;
+}
+
+static cau_status apply(cau_session *session, const cau_command *command, cau_error *error)
+{
+	switch (command->kind) {
+	case CAU_COMMAND_TOOL_ADD:
+		return cau_session_add_tool(session, &command->as.definition, error);
+	case CAU_COMMAND_PIN:
+	case CAU_COMMAND_UNPIN:
+		return cau_session_set_pins(session, &command->as.selection,
+		                            command->kind == CAU_COMMAND_PIN, error);
+	case CAU_COMMAND_SET_MATERIAL:
+		return set_material(session, command, error);
+	case CAU_COMMAND_SET_GRAVITY:
+		memcpy(session->scene->gravity_m_s2, command->as.gravity_m_s2, 3 * sizeof(double));
+		return CAU_OK;
+	case CAU_COMMAND_SET_FORCE:
+		return set_force(session, command, error);
+	default:
+		return apply_to_tool(session, command, error);
+	}
+}
+
+// A command that does not fit the present state is refused and reported; only numerical trouble and
+// a lack of memory end the step.
+cau_status cau_session_apply_commands(cau_session *session, cau_error *error)
+{
+	cau_status status = CAU_OK;
+	int32_t kept = 0;
+	for (int32_t k = 0; k < session->command_count; ++k) {
+		const cau_command *command = &session->command[k];
+		if (status || command->tick > session->tick) {
+			session->command[kept++] = *command;
+			continue;
+		}
+		cau_error refusal = {0};
+		cau_status applied = apply(session, command, &refusal);
+		if (applied == CAU_NUMERICAL || applied == CAU_NO_MEMORY) {
+			status = applied;
+			if (error)
+				*error = refusal;
+		} else if (applied && session->refusal_count < CAU_MAX_REFUSALS) {
+			session->refusal[session->refusal_count++] = refusal;
+		}
+	}
+	session->command_count = kept;
+	return status;
+}

@@ -1,0 +1,192 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include <stdlib.h>
+#include <string.h>
+
+#include "base/hash.h"
+#include "session/session_internal.h"
+
+cau_session_def cau_default_session_def(void)
+{
+	return (cau_session_def){.thread_count = 1, .command_capacity = 1024};
+}
+
+static cau_status no_memory(cau_error *error)
+{
+	return cau_fail(error, CAU_NO_MEMORY, NULL, "no memory for a session");
+}
+
+static cau_status allocate_state(cau_session *session, cau_error *error)
+{
+	size_t n = (size_t)session->tissue.vertex_count;
+	cau_arena *arena = &session->arena;
+	session->position = cau_arena_copy(arena, session->tissue.rest, 3 * n, sizeof(double));
+	session->velocity = cau_arena_array(arena, 3 * n, sizeof(double));
+	session->position_start = cau_arena_copy(arena, session->tissue.rest, 3 * n, sizeof(double));
+	session->external = cau_arena_array(arena, 3 * n, sizeof(double));
+	session->solver.predicted = cau_arena_array(arena, 3 * n, sizeof(double));
+	session->pinned = cau_arena_copy(arena, session->tissue.pinned, n, 1);
+	session->fixed = cau_arena_copy(arena, session->tissue.pinned, n, 1);
+	session->chosen = cau_arena_array(arena, n, 1);
+	session->drag = cau_arena_array(arena, n, sizeof *session->drag);
+	session->driven = cau_arena_array(arena, n, sizeof *session->driven);
+	session->driven_position = cau_arena_array(arena, 3 * n, sizeof(double));
+	session->tool = cau_arena_array(arena, CAU_MAX_TOOLS, sizeof *session->tool);
+	session->tool_view = cau_arena_array(arena, CAU_MAX_TOOLS, sizeof *session->tool_view);
+	session->command =
+		cau_arena_array(arena, (size_t)session->command_capacity, sizeof *session->command);
+	if (!session->position || !session->velocity || !session->position_start ||
+	    !session->external || !session->solver.predicted || !session->pinned || !session->fixed ||
+	    !session->chosen || !session->drag || !session->driven || !session->driven_position ||
+	    !session->tool || !session->tool_view || !session->command)
+		return no_memory(error);
+	session->solver.position = session->position;
+	session->solver.position_start = session->position_start;
+	session->solver.external = session->external;
+	session->solver.fixed = session->fixed;
+	session->solver.drag = session->drag;
+	session->solver.pool = session->pool;
+	return CAU_OK;
+}
+
+static cau_status make_solver(cau_session *session, cau_error *error)
+{
+	cau_arena *arena = &session->arena;
+	cau_step_solver *solver = &session->solver;
+	cau_dissection *dissection = &session->dissection;
+	cau_status status = cau_solver_create(solver, session->scene, &session->tissue, arena, error);
+	if (!status)
+		status =
+			cau_dissection_create(dissection, &session->tissue, session->scene->seed, arena, error);
+	if (!status)
+		status = cau_shrink_create(&session->shrink, &session->tissue, arena, error);
+	if (status)
+		return status;
+	cau_elements_set_materials(&solver->elements, &solver->slots, &session->tissue,
+	                           dissection->alive.element, session->shrink.shrunk);
+	status = cau_solver_factor(solver, &dissection->alive, NULL, arena, error);
+	if (!status)
+		status =
+			cau_matrix_update_create(&session->update, solver, &dissection->alive, arena, error);
+	if (!status)
+		status = cau_contact_create(&session->contact, &session->tissue, solver->elements.single,
+		                            arena, error);
+	return status;
+}
+
+static cau_status make_rest(cau_session *session, cau_error *error)
+{
+	cau_arena *arena = &session->arena;
+	cau_status status = cau_near_create(&session->near, &session->tissue, arena, error);
+	for (int32_t i = 0; i < session->scene->tool_count && !status; ++i)
+		status = cau_session_add_tool(session, &session->scene->tools[i], error);
+	if (!status)
+		status = cau_session_relax(session, error);
+	if (!status)
+		status = cau_session_make_faces(session, error);
+	if (!status)
+		status =
+			cau_frame_create(&session->frame, &session->tissue, &session->dissection, arena, error);
+	return status;
+}
+
+static uint64_t hash_array(uint64_t hash, const void *array, int32_t count, size_t bytes)
+{
+	return cau_hash_bytes(cau_hash_word(hash, (uint64_t)count), array, (size_t)count * bytes);
+}
+
+// What a snapshot does not hold: time, solver and the tissue at rest. Materials it does hold.
+static uint64_t hash_definition(const cau_session *session)
+{
+	const cau_scene_def *scene = session->scene;
+	const cau_tissue *t = &session->tissue;
+	const double numbers[] = {scene->step_s, scene->damping_per_s, scene->ambient_c,
+	                          scene->tolerance};
+	const int32_t choices[] = {scene->iterations, scene->solver, scene->precision, t->layer_count};
+	uint64_t hash = cau_hash_bytes(CAU_HASH_START, numbers, sizeof numbers);
+	hash = cau_hash_bytes(hash, choices, sizeof choices);
+	hash = cau_hash_word(hash, scene->seed);
+	hash = hash_array(hash, t->rest, t->vertex_count, 3 * sizeof(double));
+	hash = hash_array(hash, t->mass, t->vertex_count, sizeof(double));
+	hash = hash_array(hash, t->triangle, t->triangle_count, 3 * sizeof(int32_t));
+	hash = hash_array(hash, t->triangle_layer, t->triangle_count, sizeof(int32_t));
+	hash = hash_array(hash, t->triangle_frame, t->triangle_count, 6 * sizeof(double));
+	hash = hash_array(hash, t->tetrahedron, t->tetrahedron_count, 4 * sizeof(int32_t));
+	hash = hash_array(hash, t->tetrahedron_layer, t->tetrahedron_count, sizeof(int32_t));
+	hash = hash_array(hash, t->tetrahedron_dm_inverse, t->tetrahedron_count, 9 * sizeof(double));
+	hash = hash_array(hash, t->link, t->link_count, 2 * sizeof(int32_t));
+	hash = hash_array(hash, t->hinge_vertex, t->hinge_count, 4 * sizeof(int32_t));
+	return hash_array(hash, t->hinge_weight, t->hinge_count, sizeof(double));
+}
+
+static cau_status build(cau_session *session, const cau_session_def *def, cau_error *error)
+{
+	cau_status status = cau_scene_check(def->scene, error);
+	if (status)
+		return status;
+	session->scene = cau_arena_copy(&session->arena, def->scene, 1, sizeof *def->scene);
+	session->pool = cau_pool_create(def->thread_count);
+	session->command_capacity = def->command_capacity;
+	if (!session->scene || !session->pool)
+		return no_memory(error);
+	session->solver.kernels =
+		cau_kernels_choose(session->scene->precision == CAU_PRECISION_SINGLE, def->instruction_set);
+	status = cau_tissue_make(session->scene, &session->arena, &session->tissue, error);
+	if (!status)
+		status = allocate_state(session, error);
+	if (!status)
+		status = make_solver(session, error);
+	if (!status)
+		status = make_rest(session, error);
+	if (status)
+		return status;
+	session->reach_m = cau_session_reach(session);
+	session->definition_hash = hash_definition(session);
+	return status;
+}
+
+cau_status cau_session_create(const cau_session_def *def, cau_session **out, cau_error *error)
+{
+	if (def->thread_count < 1 || def->thread_count > 16)
+		return cau_fail(error, CAU_BAD_VALUE, "thread_count", "%d is not between 1 and 16",
+		                def->thread_count);
+	if (def->command_capacity < 1 || def->command_capacity > 1 << 20)
+		return cau_fail(error, CAU_BAD_VALUE, "command_capacity", "%d is not between 1 and 1048576",
+		                def->command_capacity);
+	cau_session *session = calloc(1, sizeof *session);
+	if (!session)
+		return no_memory(error);
+	cau_status status = build(session, def, error);
+	if (status) {
+		cau_session_destroy(session);
+		return status;
+	}
+	*out = session;
+	return CAU_OK;
+}
+
+void cau_session_destroy(cau_session *session)
+{
+	if (!session)
+		return;
+	for (int32_t i = 0; i < session->tool_count; ++i)
+		cau_heat_grid_finish(&session->tool[i].grid);
+	cau_matrix_update_finish(&session->update);
+	cau_solver_finish(&session->solver);
+	cau_tissue_finish(&session->tissue);
+	cau_pool_destroy(session->pool);
+	cau_arena_finish(&session->rebuilt_arena);
+	cau_arena_finish(&session->arena);
+	free(session);
+}
+
+void cau_session_set_threads(cau_session *session, int32_t thread_count)
+{
+	thread_count = thread_count < 1 ? 1 : thread_count > 16 ? 16 : thread_count;
+	if (thread_count == cau_pool_thread_count(session->pool))
+		return;
+	cau_pool *pool = cau_pool_create(thread_count);
+	if (!pool)
+		return; // the old one still serves
+	cau_pool_destroy(session->pool);
+	session->pool = session->solver.pool = pool;
+}

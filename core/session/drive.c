@@ -1,0 +1,48 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Supports that move: pinned vertices led along a path that the caller gives, tick by tick.
+#include <math.h>
+#include <string.h>
+
+#include "session/session_internal.h"
+
+static const double farthest_m = 1000; // as for every place that comes from outside
+
+static cau_status check_driven(const cau_session *session, int32_t vertex, const double at[3],
+                               cau_error *error)
+{
+	if (vertex < 0 || vertex >= session->tissue.vertex_count)
+		return cau_fail(error, CAU_BAD_VALUE, "vertices", "there is no vertex %d", vertex);
+	if (!session->pinned[vertex])
+		return cau_fail(error, CAU_BAD_STATE, "vertices", "vertex %d is not pinned", vertex);
+	for (int c = 0; c < 3; ++c)
+		if (!(fabs(at[c]) <= farthest_m))
+			return cau_fail(error, CAU_BAD_VALUE, "position_m", "%g is not within %g m", at[c],
+			                farthest_m);
+	return CAU_OK;
+}
+
+cau_status cau_session_drive(cau_session *session, int32_t count, const int32_t *vertex,
+                             const double *position, cau_error *error)
+{
+	if (count < 0 || count > session->tissue.vertex_count)
+		return cau_fail(error, CAU_BAD_VALUE, "count", "%d of %d vertices", count,
+		                session->tissue.vertex_count);
+	cau_status status = CAU_OK;
+	for (int32_t k = 0; k < count && !status; ++k)
+		status = check_driven(session, vertex[k], position + 3 * (size_t)k, error);
+	if (status || !count)
+		return status;
+	memcpy(session->driven, vertex, (size_t)count * sizeof *vertex);
+	memcpy(session->driven_position, position, 3 * (size_t)count * sizeof *position);
+	session->driven_count = count;
+	return CAU_OK;
+}
+
+void cau_session_lead_driven(cau_session *session)
+{
+	for (int32_t k = 0; k < session->driven_count; ++k)
+		if (session->pinned[session->driven[k]]) // else a command of this tick has unpinned it
+			memcpy(session->position + 3 * (size_t)session->driven[k],
+			       session->driven_position + 3 * (size_t)k, 3 * sizeof(double));
+	session->driven_count = 0;
+}

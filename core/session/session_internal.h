@@ -1,0 +1,125 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// What a session is made of, between the files of this room.
+#pragma once
+
+#include "base/memory.h"
+#include "base/pool.h"
+#include "cautery/session.h"
+#include "constraint/contact.h"
+#include "dissect/dissection.h"
+#include "dissect/shrink.h"
+#include "frame/frame_state.h"
+#include "heat/exposure.h"
+#include "solve/matrix_update.h"
+#include "solve/solver.h"
+#include "tissue/tissue.h"
+
+enum { CAU_MAX_GRASPED = 96, CAU_MAX_REFUSALS = 32 };
+
+typedef struct cau_grasp { // one attached vertex
+	int32_t vertex;
+	double local[3]; // m, anchor in the tool's frame
+	double start[3]; // m, where it was taken hold of
+} cau_grasp;
+
+typedef struct cau_tool {
+	cau_tool_state state;
+	cau_pose target; // where the driver wants it
+	double jaw_target;
+	cau_pose pose_before; // at the start of the tick
+	cau_heat_grid grid;
+	int32_t grasp_count;
+	cau_grasp grasp[CAU_MAX_GRASPED];
+} cau_tool;
+
+struct cau_session {
+	cau_arena arena;
+	cau_arena rebuilt_arena; // the system since pins last changed: pins.c
+	cau_scene_def *scene;
+	uint64_t definition_hash;
+	cau_tissue tissue;
+	cau_pool *pool;
+	cau_step_solver solver;
+	cau_matrix_update update;
+	cau_dissection dissection;
+	cau_shrink shrink;
+	cau_near near;
+	cau_contact_set contact;
+	cau_frame_state frame;
+
+	uint64_t tick;
+	bool faulted;
+	double *position, *velocity; // (n x 3)
+	double *position_start;      // x at the start of the tick
+	double *external;            // N, (n x 3), set by commands
+	uint8_t *pinned;             // (n): by scene and commands
+	uint8_t *fixed;              // (n): pinned or frozen
+	uint8_t *chosen;             // (n): scratch of selections
+	cau_drag *drag;              // (n)
+	int32_t inverted, frozen_count;
+	double reach_m;          // a vertex farther from its rest is stopped: stray.c
+	int32_t driven_count;    // pinned vertices that the next step moves
+	int32_t *driven;         // (n)
+	double *driven_position; // m, (n x 3), by place in `driven`
+
+	int32_t tool_count;
+	cau_tool *tool;            // (CAU_MAX_TOOLS)
+	cau_tool_state *tool_view; // (CAU_MAX_TOOLS), for the frame
+
+	int32_t command_count, command_capacity;
+	cau_command *command; // queued, in order of submission
+	int32_t refusal_count;
+	cau_error refusal[CAU_MAX_REFUSALS];
+
+	int32_t *face_layer; // (face_count)
+	float *face_texture; // (face_count x 3 x 2)
+	int32_t fat_first_face[CAU_MAX_LAYERS], fat_face_count[CAU_MAX_LAYERS];
+
+	double (*now_s)(void);
+	double stage_s[CAU_STAGE_COUNT];
+	double stage_start;
+	bool stress_on;
+};
+
+// command.c: applies the queued commands that are due.
+cau_status cau_session_apply_commands(cau_session *session, cau_error *error);
+// tool_motion.c: tools follow their drivers, within their speed limits.
+void cau_session_move_tools(cau_session *session);
+cau_status cau_session_add_tool(cau_session *session, const cau_tool_def *def, cau_error *error);
+void cau_session_drop_tool(cau_session *session, int32_t index);
+int32_t cau_session_find_tool(const cau_session *session, const char *name);
+// touch.c: contact rows, attachments and drag before the solve; forces after it.
+void cau_session_find_contacts(cau_session *session);
+void cau_session_read_forces(cau_session *session);
+cau_status cau_session_grasp(cau_session *session, cau_tool *tool, cau_error *error);
+void cau_session_release(cau_tool *tool);
+void cau_session_drop_frozen_grasps(cau_session *session);
+// burn.c: heat, exposure, parting.
+void cau_session_burn(cau_session *session);
+// relax.c: built-in tension brought to its equilibrium.
+cau_status cau_session_relax(cau_session *session, cau_error *error);
+// pins.c: a new set of pinned vertices, and the systems that follow from it.
+cau_status cau_session_set_pins(cau_session *session, const cau_selection *selection, int pin,
+                                cau_error *error);
+// Analyses and factors the system anew; `permutation` as in cau_factor_create.
+cau_status cau_session_rebuild_system(cau_session *session, const int32_t *permutation,
+                                      cau_error *error);
+// view.c: layer and texture of the faces.
+cau_status cau_session_make_faces(cau_session *session, cau_error *error);
+// drive.c: pinned vertices go where the caller wants them in this tick.
+void cau_session_lead_driven(cau_session *session);
+// stray.c: vertices that have gone too far stop; how far that is.
+void cau_session_stop_strays(cau_session *session);
+double cau_session_reach(const cau_session *session);
+// step.c: predicts s of eq. 4; plastic flow after a solve.
+void cau_session_predict(cau_session *session);
+void cau_session_settle(cau_session *session);
+// stage timing
+void cau_session_stage_begin(cau_session *session);
+void cau_session_stage_end(cau_session *session, int stage);
+// check.c
+cau_status cau_tool_check(const cau_tool_def *tool, const char *path, double step_s,
+                          cau_error *error);
+cau_status cau_material_check(int kind, const void *material, const char *path, cau_error *error);
+cau_status cau_selection_check(const cau_selection *selection, const char *path, cau_error *error);
+cau_status cau_pose_check(const cau_pose *pose, const char *path, cau_error *error);

@@ -1,0 +1,441 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// The whole state at a tick border as bytes, and back.
+//
+// A downdated factor differs in its last bits from a fresh one, so a snapshot holds what the factor
+// was made of: the live elements at the last canonical factorisation and the ordered updates since,
+// and likewise the factor in the making. A header with every count and a hash of the rest comes
+// first: a damaged snapshot is refused before anything is touched.
+#include <stdlib.h>
+#include <string.h>
+
+#include "base/hash.h"
+#include "session/session_internal.h"
+
+static const char magic[8] = "CAUSNAP";
+enum { VERSION = 1 };
+
+typedef struct snapshot_header {
+	char magic[8];
+	uint32_t version;
+	uint32_t single;
+	char instruction_set[16];
+	uint64_t build;           // hash of the compiler's own words
+	uint64_t definition_hash; // create.c
+	uint64_t hash;            // of the header with this member 0, then the payload
+	uint64_t payload_bytes;
+	uint64_t tick, swap_tick, longest_wait, factor_version;
+	int32_t vertex_count, edge_count, row_count;
+	int32_t tool_count, command_count, active_count, column_count;
+	int32_t waiting_count, operation_count, group_count, waiting_at_start;
+	int32_t making, refactorisations, frozen_count, inverted, edges_parted, elements_removed;
+	int32_t grid_nodes[CAU_MAX_TOOLS];
+	int32_t faulted;
+	double gravity_m_s2[3];
+} snapshot_header;
+
+typedef struct snapshot_archive {
+	unsigned char *bytes; // NULL: only counts
+	size_t at, capacity;
+	int reading;
+} snapshot_archive;
+
+static void pass(snapshot_archive *archive, void *data, size_t bytes)
+{
+	if (archive->bytes && archive->at + bytes <= archive->capacity && bytes) {
+		if (archive->reading)
+			memcpy(data, archive->bytes + archive->at, bytes);
+		else
+			memcpy(archive->bytes + archive->at, data, bytes);
+	}
+	archive->at += bytes;
+}
+
+static void pass_arrays(snapshot_archive *archive, void *const *arrays, int count, int32_t slots,
+                        int single)
+{
+	for (int i = 0; i < count; ++i)
+		pass(archive, arrays[i], (size_t)slots * cau_real_bytes(single));
+}
+
+static void pass_elements(snapshot_archive *archive, cau_session *session)
+{
+	cau_elements *elements = &session->solver.elements;
+	int single = elements->single;
+	pass_arrays(archive, &elements->sheet.weight, 1, elements->sheet.slot_count, single);
+	pass_arrays(archive, elements->sheet.target, 3, elements->sheet.slot_count, single);
+	pass_arrays(archive, elements->sheet.polar, 6, elements->sheet.slot_count, single);
+	pass_arrays(archive, &elements->fat.volume, 1, elements->fat.slot_count, single);
+	pass_arrays(archive, &elements->fat.limit_weight, 1, elements->fat.slot_count, single);
+	pass_arrays(archive, elements->fat.target, 6, elements->fat.slot_count, single);
+	pass_arrays(archive, elements->fat.polar, 4, elements->fat.slot_count, single);
+	pass_arrays(archive, elements->fat.plastic, 6, elements->fat.slot_count, single);
+	pass_arrays(archive, elements->fat.plastic_strain, 6, elements->fat.slot_count, single);
+	pass(archive, elements->fat.limited, (size_t)(elements->fat.slot_count / CAU_BATCH));
+	pass(archive, elements->fat.flowed, (size_t)(elements->fat.slot_count / CAU_BATCH));
+	pass_arrays(archive, &elements->link.weight, 1, elements->link.slot_count, single);
+	pass_arrays(archive, &elements->hinge.weight, 1, elements->hinge.slot_count, single);
+}
+
+// Columns of A^-1 that contacts keep: they lag behind cuts, so they cannot be made again.
+static int32_t kept_columns(const cau_session *session)
+{
+	return session->contact.epoch == session->solver.factor_epoch ? session->contact.column_count
+	                                                              : 0;
+}
+
+static void pass_columns(snapshot_archive *archive, cau_session *session)
+{
+	cau_contact_set *set = &session->contact;
+	int32_t count = kept_columns(session);
+	int single = session->solver.elements.single;
+	pass(archive, set->column_vertex, (size_t)count * sizeof *set->column_vertex);
+	pass(archive, set->column_version, (size_t)count * sizeof *set->column_version);
+	pass_arrays(archive, set->column, count, session->tissue.vertex_count, single);
+	for (int32_t i = 0; i < count; ++i)
+		pass(archive, set->inverse + (size_t)i * CAU_MAX_CONTACTS,
+		     (size_t)count * sizeof *set->inverse);
+}
+
+static void pass_update(snapshot_archive *archive, cau_session *session)
+{
+	cau_matrix_update *update = &session->update;
+	pass(archive, update->waiting, (size_t)update->waiting_count * sizeof *update->waiting);
+	pass(archive, update->operation, (size_t)update->operation_count * sizeof *update->operation);
+	for (int kind = 0; kind < CAU_ELEMENT_KINDS; ++kind) {
+		size_t count = (size_t)cau_tissue_element_count(&session->tissue, kind);
+		pass(archive, update->canonical[kind], count);
+		pass(archive, update->next_canonical[kind], count);
+	}
+}
+
+static void pass_tool(snapshot_archive *archive, cau_tool *tool)
+{
+	cau_heat_grid grid = tool->grid;
+	pass(archive, &tool->state, sizeof tool->state);
+	pass(archive, &tool->target, sizeof tool->target);
+	pass(archive, &tool->jaw_target, sizeof tool->jaw_target);
+	pass(archive, &tool->pose_before, sizeof tool->pose_before);
+	pass(archive, &tool->grasp_count, sizeof tool->grasp_count);
+	pass(archive, tool->grasp, sizeof tool->grasp);
+	pass(archive, tool->grid.origin, sizeof tool->grid.origin);
+	size_t nodes = (size_t)grid.nodes * (size_t)grid.nodes * (size_t)grid.nodes;
+	pass(archive, tool->grid.temperature, nodes * sizeof *tool->grid.temperature);
+}
+
+// Everything but the tools and what decides the system's shape, which restoring needs first.
+static void pass_state(snapshot_archive *archive, cau_session *session)
+{
+	size_t n = (size_t)session->tissue.vertex_count,
+		   edges = (size_t)session->tissue.edges.edge_count;
+	pass(archive, session->position, 3 * n * sizeof(double));
+	pass(archive, session->velocity, 3 * n * sizeof(double));
+	pass(archive, session->external, 3 * n * sizeof(double));
+	pass(archive, session->fixed, n);
+	pass(archive, session->solver.system.diagonal, n * sizeof(double));
+	pass(archive, session->dissection.exposure, edges * sizeof(double));
+	pass(archive, session->dissection.parted, edges * sizeof(uint16_t));
+	pass(archive, session->shrink.shrunk[0], (size_t)session->tissue.triangle_count);
+	pass(archive, session->shrink.shrunk[1], (size_t)session->tissue.tetrahedron_count);
+	pass(archive, session->shrink.active,
+	     (size_t)session->shrink.active_count * sizeof *session->shrink.active);
+	pass(archive, session->command, (size_t)session->command_count * sizeof *session->command);
+	for (int32_t i = 0; i < session->tissue.layer_count; ++i)
+		pass(archive, &session->tissue.layer[i].def, sizeof session->tissue.layer[i].def);
+	pass_elements(archive, session);
+	pass_update(archive, session);
+	pass_columns(archive, session);
+}
+
+static uint64_t build_hash(void)
+{
+	static const char words[] = __VERSION__ " " __DATE__;
+	return cau_hash_bytes(CAU_HASH_START, words, sizeof words);
+}
+
+static void fill_header(const cau_session *session, snapshot_header *header)
+{
+	memset(header, 0, sizeof *header);
+	memcpy(header->magic, magic, sizeof header->magic);
+	header->version = VERSION;
+	header->single = (uint32_t)session->solver.elements.single;
+	snprintf(header->instruction_set, sizeof header->instruction_set, "%s",
+	         session->solver.kernels->instruction_set);
+	header->build = build_hash();
+	header->definition_hash = session->definition_hash;
+	header->tick = session->tick;
+	header->vertex_count = session->tissue.vertex_count;
+	header->edge_count = session->tissue.edges.edge_count;
+	header->row_count = session->solver.factor ? session->solver.system.row_count : 0;
+	header->tool_count = session->tool_count;
+	header->command_count = session->command_count;
+	header->active_count = session->shrink.active_count;
+	header->factor_version = session->solver.factor_version;
+	header->column_count = kept_columns(session);
+	header->waiting_count = session->update.waiting_count;
+	header->operation_count = session->update.operation_count;
+	header->group_count = session->update.group_count;
+	header->waiting_at_start = session->update.waiting_at_start;
+	header->making = session->update.making;
+	header->swap_tick = session->update.swap_tick;
+	header->longest_wait = session->update.longest_wait;
+	header->refactorisations = session->update.refactorisations;
+	header->frozen_count = session->frozen_count;
+	header->inverted = session->inverted;
+	header->edges_parted = session->dissection.edges_parted;
+	header->elements_removed = session->dissection.elements_removed;
+	header->faulted = session->faulted;
+	for (int32_t i = 0; i < session->tool_count; ++i)
+		header->grid_nodes[i] = session->tool[i].grid.nodes;
+	memcpy(header->gravity_m_s2, session->scene->gravity_m_s2, sizeof header->gravity_m_s2);
+}
+
+static uint64_t hash_of(const snapshot_header *header, const unsigned char *payload, size_t bytes)
+{
+	snapshot_header unsigned_header;
+	memcpy(&unsigned_header, header, sizeof unsigned_header); // with its padding, which is zero
+	unsigned_header.hash = 0;
+	return cau_hash_bytes(cau_hash_bytes(CAU_HASH_START, &unsigned_header, sizeof unsigned_header),
+	                      payload, bytes);
+}
+
+static void write_payload(cau_session *session, snapshot_archive *archive)
+{
+	pass(archive, session->pinned, (size_t)session->tissue.vertex_count);
+	if (session->solver.factor)
+		pass(archive, (void *)(uintptr_t)cau_factor_permutation(session->solver.factor),
+		     (size_t)session->solver.system.row_count * sizeof(int32_t));
+	for (int32_t i = 0; i < session->tool_count; ++i)
+		pass_tool(archive, &session->tool[i]);
+	pass_state(archive, session);
+}
+
+size_t cau_session_snapshot_bytes(const cau_session *session)
+{
+	snapshot_archive archive = {0};
+	write_payload((cau_session *)(uintptr_t)session, &archive); // only counts
+	return sizeof(snapshot_header) + archive.at;
+}
+
+cau_status cau_session_snapshot(const cau_session *session, void *bytes, size_t capacity,
+                                size_t *byte_count, cau_error *error)
+{
+	size_t needed = cau_session_snapshot_bytes(session);
+	if (capacity < needed)
+		return cau_fail(error, CAU_LIMIT, NULL, "a snapshot needs %zu bytes, %zu are given", needed,
+		                capacity);
+	snapshot_header header;
+	fill_header(session, &header);
+	snapshot_archive archive = {.bytes = (unsigned char *)bytes + sizeof header,
+	                            .capacity = capacity - sizeof header};
+	write_payload((cau_session *)(uintptr_t)session, &archive);
+	header.payload_bytes = archive.at;
+	header.hash = hash_of(&header, archive.bytes, archive.at);
+	memcpy(bytes, &header, sizeof header);
+	*byte_count = sizeof header + archive.at;
+	return CAU_OK;
+}
+
+// ---- restoring
+static cau_status corrupt(cau_error *error, const char *why)
+{
+	return cau_fail(error, CAU_CORRUPT, NULL, "this is no snapshot of this session: %s", why);
+}
+
+static cau_status check_header(const cau_session *session, const snapshot_header *header,
+                               const unsigned char *payload, size_t payload_bytes, cau_error *error)
+{
+	const cau_matrix_update *update = &session->update;
+	if (memcmp(header->magic, magic, sizeof magic) != 0)
+		return corrupt(error, "it does not begin like one");
+	if (header->version != VERSION)
+		return corrupt(error, "it is of another version");
+	if (header->single != (uint32_t)session->solver.elements.single)
+		return corrupt(error, "it is of another precision");
+	if (header->definition_hash != session->definition_hash ||
+	    header->vertex_count != session->tissue.vertex_count ||
+	    header->edge_count != session->tissue.edges.edge_count)
+		return corrupt(error, "it is of another tissue");
+	if (header->tool_count < 0 || header->tool_count > CAU_MAX_TOOLS || header->command_count < 0 ||
+	    header->command_count > session->command_capacity || header->active_count < 0 ||
+	    header->active_count > session->tissue.triangle_count + session->tissue.tetrahedron_count ||
+	    header->waiting_count < 0 || header->waiting_count > update->waiting_capacity ||
+	    header->operation_count < 0 || header->operation_count > CAU_DOWNDATES_AT_MOST ||
+	    header->column_count < 0 || header->column_count > CAU_MAX_CONTACTS ||
+	    header->waiting_at_start < 0 || header->row_count < 0 ||
+	    header->row_count > header->vertex_count)
+		return corrupt(error, "a count is out of its range");
+	if (header->payload_bytes != payload_bytes)
+		return corrupt(error, "bytes are missing");
+	if (header->hash != hash_of(header, payload, payload_bytes))
+		return corrupt(error, "its bytes have changed");
+	return CAU_OK;
+}
+
+static cau_status restore_tools(cau_session *session, const snapshot_header *header,
+                                snapshot_archive *archive, cau_error *error)
+{
+	while (session->tool_count)
+		cau_session_drop_tool(session, session->tool_count - 1);
+	for (int32_t i = 0; i < header->tool_count; ++i) {
+		cau_tool *tool = &session->tool[i];
+		memset(tool, 0, sizeof *tool);
+		cau_tool_state state;
+		snapshot_archive ahead = *archive;
+		pass(&ahead, &state, sizeof state);
+		cau_status status =
+			cau_heat_grid_create(&tool->grid, &state.definition, session->scene->ambient_c,
+		                         session->solver.step_s, &state.pose, error);
+		if (status)
+			return status;
+		session->tool_count++;
+		if (tool->grid.nodes != header->grid_nodes[i])
+			return corrupt(error, "a heat grid has another size");
+		pass_tool(archive, tool);
+		cau_heat_grid_survey(&tool->grid);
+	}
+	return CAU_OK;
+}
+
+static void restore_counts(cau_session *session, const snapshot_header *header)
+{
+	cau_matrix_update *update = &session->update;
+	session->command_count = header->command_count;
+	session->driven_count = 0;
+	session->shrink.active_count = header->active_count;
+	session->contact.column_count = header->column_count;
+	session->contact.epoch = session->solver.factor_epoch;
+	session->solver.factor_version = header->factor_version;
+	update->waiting_count = header->waiting_count;
+	update->operation_count = header->operation_count;
+	update->group_count = header->group_count;
+	update->waiting_at_start = header->waiting_at_start;
+	update->longest_wait = header->longest_wait;
+	session->tick = header->tick;
+	session->faulted = header->faulted;
+	session->frozen_count = header->frozen_count;
+	session->inverted = header->inverted;
+	memcpy(session->scene->gravity_m_s2, header->gravity_m_s2, sizeof header->gravity_m_s2);
+}
+
+// The factor as it was: canonical, then the recorded updates in their groups.
+static cau_status replay_factor(cau_session *session, const snapshot_header *header,
+                                cau_error *error)
+{
+	cau_step_solver *solver = &session->solver;
+	cau_matrix_update *update = &session->update;
+	update->refactorisations = header->refactorisations;
+	if (!solver->factor)
+		return CAU_OK;
+	cau_alive canonical;
+	memcpy(canonical.element, update->canonical, sizeof canonical.element);
+	cau_system_assemble(&solver->system, &session->tissue, &canonical, solver->step_s,
+	                    solver->system.matrix.value);
+	cau_status status = cau_factor_refactor(solver->factor, &solver->system.matrix, error);
+	for (int32_t k = 0; k < update->operation_count && !status;) {
+		cau_waiting list[CAU_DOWNDATES_AT_MOST]; // elements between pins fill a group, not its rank
+		int32_t count = 0, taken = 0, group = update->operation[k].group;
+		for (; k < update->operation_count && update->operation[k].group == group; ++k)
+			list[count++] =
+				(cau_waiting){update->operation[k].kind, update->operation[k].element, 0};
+		status = cau_matrix_update_downdate(update, list, count, &taken, error);
+	}
+	memset(update->touched, 0, (size_t)solver->sweep.supernode_count);
+	if (!status)
+		cau_sweep_pack(&solver->sweep, solver->factor, NULL);
+	if (!status && header->making)
+		cau_matrix_update_start(update, header->swap_tick);
+	return status;
+}
+
+static cau_status restore_system(cau_session *session, const snapshot_header *header,
+                                 snapshot_archive *archive, cau_error *error)
+{
+	size_t n = (size_t)session->tissue.vertex_count;
+	int32_t *permutation = malloc((size_t)header->row_count * sizeof *permutation + 1);
+	uint8_t *pinned = malloc(n);
+	cau_status status = CAU_OK;
+	if (!permutation || !pinned) {
+		status = cau_fail(error, CAU_NO_MEMORY, NULL, "no memory to restore");
+		goto done;
+	}
+	pass(archive, pinned, n);
+	pass(archive, permutation, (size_t)header->row_count * sizeof *permutation);
+	const cau_factor *factor = session->solver.factor;
+	int32_t rows = factor ? session->solver.system.row_count : 0; // none after a failed rebuild
+	int same = !memcmp(pinned, session->pinned, n) && rows == header->row_count &&
+	           (!rows || !memcmp(permutation, cau_factor_permutation(factor),
+	                             (size_t)rows * sizeof *permutation));
+	memcpy(session->pinned, pinned, n);
+	if (!same)
+		status = cau_session_rebuild_system(session, header->row_count ? permutation : NULL, error);
+done:
+	free(permutation);
+	free(pinned);
+	return status;
+}
+
+cau_status cau_session_restore(cau_session *session, const void *bytes, size_t byte_count,
+                               bool *exact, cau_error *error)
+{
+	snapshot_header header;
+	if (byte_count < sizeof header)
+		return corrupt(error, "it is too short");
+	memcpy(&header, bytes, sizeof header);
+	unsigned char *payload = (unsigned char *)(uintptr_t)bytes + sizeof header;
+	size_t payload_bytes = byte_count - sizeof header;
+	cau_status status = check_header(session, &header, payload, payload_bytes, error);
+	if (status)
+		return status;
+	snapshot_archive archive = {.bytes = payload, .capacity = payload_bytes, .reading = 1};
+	cau_matrix_update_stop(&session->update);
+	status = restore_system(session, &header, &archive, error);
+	if (!status)
+		status = restore_tools(session, &header, &archive, error);
+	if (!status) {
+		restore_counts(session, &header);
+		pass_state(&archive, session);
+		cau_elements_set_laws(&session->solver.elements, &session->tissue);
+		session->solver.conservative =
+			cau_solver_is_conservative(&session->tissue, session->solver.diagonal);
+		cau_dissection_begin(&session->dissection);
+		cau_dissection_recount(&session->dissection);
+		session->dissection.edges_parted = header.edges_parted;
+		session->dissection.elements_removed = header.elements_removed;
+		session->contact.row_count = session->refusal_count = 0;
+		status = replay_factor(session, &header, error);
+		cau_frame_rebuild(&session->frame, &session->dissection);
+	}
+	if (status) // half restored: say so instead of going on
+		session->faulted = true;
+	if (exact)
+		*exact = header.build == build_hash() &&
+		         !strncmp(header.instruction_set, session->solver.kernels->instruction_set,
+		                  sizeof header.instruction_set);
+	return status;
+}
+
+uint64_t cau_session_hash(const cau_session *session)
+{
+	const cau_tissue *tissue = &session->tissue;
+	const cau_elements *elements = &session->solver.elements;
+	size_t n = (size_t)tissue->vertex_count, edges = (size_t)tissue->edges.edge_count;
+	uint64_t hash = cau_hash_word(CAU_HASH_START, session->tick);
+	hash = cau_hash_bytes(hash, session->position, 3 * n * sizeof(double));
+	hash = cau_hash_bytes(hash, session->velocity, 3 * n * sizeof(double));
+	hash = cau_hash_bytes(hash, session->dissection.exposure, edges * sizeof(double));
+	hash = cau_hash_bytes(hash, session->dissection.parted, edges * sizeof(uint16_t));
+	for (int i = 0; i < 6; ++i)
+		hash = cau_hash_bytes(hash, elements->fat.plastic_strain[i],
+		                      (size_t)elements->fat.slot_count * cau_real_bytes(elements->single));
+	for (int32_t i = 0; i < session->tool_count; ++i) {
+		const cau_tool *tool = &session->tool[i];
+		size_t nodes =
+			(size_t)tool->grid.nodes * (size_t)tool->grid.nodes * (size_t)tool->grid.nodes;
+		hash = cau_hash_bytes(hash, &tool->state.pose, sizeof tool->state.pose);
+		hash = cau_hash_bytes(hash, tool->state.force_n, sizeof tool->state.force_n);
+		hash = cau_hash_word(hash,
+		                     (uint64_t)tool->state.energized << 32 | (uint32_t)tool->grasp_count);
+		hash = cau_hash_bytes(hash, tool->grid.temperature, nodes * sizeof(float));
+	}
+	return hash;
+}

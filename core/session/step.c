@@ -1,0 +1,154 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// One tick. cau_session_step is the table of contents; each line names the stage and where its
+// equations live.
+#include <math.h>
+#include <string.h>
+
+#include "session/session_internal.h"
+
+void cau_session_stage_begin(cau_session *session)
+{
+	if (session->now_s)
+		session->stage_start = session->now_s();
+}
+
+void cau_session_stage_end(cau_session *session, int stage)
+{
+	if (!session->now_s)
+		return;
+	double now = session->now_s();
+	session->stage_s[stage] += now - session->stage_start;
+	session->stage_start = now;
+}
+
+// s = x + dt v + dt^2 M^-1 f_ext (eq. 4), and the first guess x + dt v.
+void cau_session_predict(cau_session *session)
+{
+	double dt = session->solver.step_s;
+	const double *gravity = session->scene->gravity_m_s2;
+	for (int32_t v = 0; v < session->tissue.vertex_count; ++v)
+		for (int c = 0; c < 3; ++c) {
+			size_t i = 3 * (size_t)v + (size_t)c;
+			double guess = session->position_start[i] + dt * session->velocity[i];
+			double push = gravity[c] + session->external[i] / session->tissue.mass[v];
+			session->solver.predicted[i] = guess + dt * dt * push;
+			session->position[i] = session->fixed[v] ? session->position_start[i] : guess;
+		}
+}
+
+// v = (x - x_t) / dt, damped by exp(-c dt) (eq. 2).
+static void update_velocities(cau_session *session)
+{
+	double dt = session->solver.step_s;
+	double scale = exp(-session->scene->damping_per_s * dt) / dt;
+	for (int32_t v = 0; v < session->tissue.vertex_count; ++v)
+		for (int c = 0; c < 3; ++c) {
+			size_t i = 3 * (size_t)v + (size_t)c;
+			session->velocity[i] =
+				session->fixed[v] ? 0 : scale * (session->position[i] - session->position_start[i]);
+		}
+}
+
+// Plastic flow and the count of inverted tetrahedra (plasticity_kernel.h).
+void cau_session_settle(cau_session *session)
+{
+	const cau_step_solver *solver = &session->solver;
+	session->inverted = 0;
+	for (int32_t w = 0; w < solver->slots.work_count; ++w)
+		session->inverted += solver->kernels->settle(&solver->elements, &solver->slots.work[w],
+		                                             solver->displacement);
+}
+
+// Vertices whose last element is gone keep their row and stay where they are.
+static void freeze_isolated(cau_session *session)
+{
+	if (!session->dissection.removed_count)
+		return;
+	for (int32_t v = 0; v < session->tissue.vertex_count; ++v)
+		if (!session->fixed[v] && !session->dissection.live_elements[v]) {
+			session->fixed[v] = 1;
+			session->frozen_count++;
+			memset(session->velocity + 3 * (size_t)v, 0, 3 * sizeof(double));
+		}
+	cau_session_drop_frozen_grasps(session);
+}
+
+static cau_status solve(cau_session *session, cau_error *error)
+{
+	cau_step_solver *solver = &session->solver;
+	solver->contact = session->contact.row_count ? &session->contact : NULL;
+	cau_status status = cau_solver_run(solver, error);
+	for (int32_t i = 0; i < 3 * session->tissue.vertex_count && !status; ++i)
+		if (!isfinite(session->position[i]))
+			status = cau_fail(error, CAU_NUMERICAL, NULL, "vertex %d left the numbers at tick %llu",
+			                  i / 3, (unsigned long long)session->tick);
+	return status;
+}
+
+static void begin_tick(cau_session *session)
+{
+	size_t bytes = 3 * (size_t)session->tissue.vertex_count * sizeof(double);
+	memcpy(session->position_start, session->position, bytes);
+	memset(session->stage_s, 0, sizeof session->stage_s);
+	session->refusal_count = 0;
+	cau_dissection_begin(&session->dissection);
+}
+
+static cau_status fault(cau_session *session, cau_status status)
+{
+	size_t bytes = 3 * (size_t)session->tissue.vertex_count * sizeof(double);
+	memcpy(session->position, session->position_start, bytes);
+	memset(session->velocity, 0, bytes);
+	session->faulted = true;
+	return status;
+}
+
+// The solver's time, split into its local and contact shares and the rest.
+static void end_solve_stages(cau_session *session)
+{
+	cau_session_stage_end(session, CAU_STAGE_GLOBAL);
+	session->stage_s[CAU_STAGE_LOCAL] = session->solver.local_s;
+	session->stage_s[CAU_STAGE_CONTACT] = session->solver.contact_s;
+	session->stage_s[CAU_STAGE_GLOBAL] -= session->solver.local_s + session->solver.contact_s;
+}
+
+// The way of one step: each stage in order, and nothing else.
+cau_status cau_session_step(cau_session *session, cau_error *error)
+{
+	if (session->faulted)
+		return cau_fail(error, CAU_FAULTED, NULL, "the session is faulted: restore a snapshot");
+	cau_session_stage_begin(session);
+	begin_tick(session);
+	cau_status status = cau_session_apply_commands(session, error); // command.c
+	cau_session_move_tools(session);                                // tool_motion.c
+	cau_session_stage_end(session, CAU_STAGE_COMMANDS);
+	cau_session_predict(session);       // eq. 4, above
+	cau_session_lead_driven(session);   // drive.c
+	cau_session_find_contacts(session); // touch.c
+	cau_session_stage_end(session, CAU_STAGE_PREDICT);
+	if (!status)
+		status = solve(session, error); // eq. 6 and 7: solve/descend.c
+	if (status)
+		return fault(session, status);
+	update_velocities(session);       // eq. 2, above
+	cau_session_settle(session);      // plasticity, section 5.2
+	cau_session_read_forces(session); // touch.c
+	end_solve_stages(session);
+	cau_session_burn(session); // eq. 18-21: burn.c
+	cau_session_stage_end(session, CAU_STAGE_HEAT);
+	freeze_isolated(session);
+	cau_session_stop_strays(session); // stray.c
+	status = cau_matrix_update_advance(&session->update, &session->dissection.alive, session->tick,
+	                                   error); // section 7.2: solve/matrix_update.c
+	cau_session_stage_end(session, CAU_STAGE_DISSECT);
+	if (status)
+		return fault(session, status);
+	cau_frame_update(&session->frame, &session->dissection, session->position_start,
+	                 session->position); // frame/frame_state.c
+	if (session->stress_on)
+		cau_frame_stress(&session->frame, &session->tissue, &session->dissection,
+		                 session->position);
+	cau_session_stage_end(session, CAU_STAGE_FRAME);
+	session->tick++;
+	return CAU_OK;
+}

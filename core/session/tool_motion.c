@@ -1,0 +1,79 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Tools follow their drivers, within their speed limits: a command that leaps is followed, not
+// obeyed.
+#include <string.h>
+
+#include "session/session_internal.h"
+
+static const double jaw_per_s = 8; // a full stroke takes an eighth of a second
+
+int32_t cau_session_find_tool(const cau_session *session, const char *name)
+{
+	for (int32_t i = 0; i < session->tool_count; ++i)
+		if (!strcmp(session->tool[i].state.name, name))
+			return i;
+	return -1;
+}
+
+cau_status cau_session_add_tool(cau_session *session, const cau_tool_def *def, cau_error *error)
+{
+	if (session->tool_count == CAU_MAX_TOOLS)
+		return cau_fail(error, CAU_LIMIT, "tool", "a session has at most %d tools", CAU_MAX_TOOLS);
+	if (cau_session_find_tool(session, def->name) >= 0)
+		return cau_fail(error, CAU_ALREADY_EXISTS, "tool.name", "there is a tool \"%s\"",
+		                def->name);
+	cau_tool *tool = &session->tool[session->tool_count];
+	memset(tool, 0, sizeof *tool);
+	cau_status status = cau_heat_grid_create(&tool->grid, def, session->scene->ambient_c,
+	                                         session->solver.step_s, &def->pose, error);
+	if (status)
+		return status;
+	memcpy(tool->state.name, def->name, sizeof tool->state.name);
+	tool->state.definition = *def;
+	tool->state.pose = tool->target = tool->pose_before = def->pose;
+	tool->state.jaw = tool->jaw_target = 1;
+	tool->state.tip_temperature_c = session->scene->ambient_c;
+	session->tool_count++;
+	return CAU_OK;
+}
+
+void cau_session_drop_tool(cau_session *session, int32_t index)
+{
+	cau_heat_grid_finish(&session->tool[index].grid);
+	session->tool_count--;
+	memmove(&session->tool[index], &session->tool[index + 1],
+	        (size_t)(session->tool_count - index) * sizeof *session->tool);
+}
+
+// Angle between two rotations, rad.
+static double angle_between(const cau_pose *a, const cau_pose *b)
+{
+	double dot = 0;
+	for (int i = 0; i < 4; ++i)
+		dot += a->rotation[i] * b->rotation[i];
+	return 2 * acos(fmin(fabs(dot), 1));
+}
+
+static void move_tool(cau_tool *tool, double dt)
+{
+	const cau_tool_def *def = &tool->state.definition;
+	tool->pose_before = tool->state.pose;
+	double distance = cau_length(
+		cau_sub(cau_vec3_of(tool->target.position_m), cau_vec3_of(tool->state.pose.position_m)));
+	double angle = angle_between(&tool->state.pose, &tool->target);
+	double share = 1;
+	if (distance > def->max_speed_m_s * dt)
+		share = fmin(share, def->max_speed_m_s * dt / distance);
+	if (angle > def->max_turn_rad_s * dt)
+		share = fmin(share, def->max_turn_rad_s * dt / angle);
+	tool->state.pose =
+		share < 1 ? cau_pose_between(&tool->state.pose, &tool->target, share) : tool->target;
+	double jaw = tool->jaw_target - tool->state.jaw;
+	tool->state.jaw += fmax(-jaw_per_s * dt, fmin(jaw_per_s * dt, jaw));
+}
+
+void cau_session_move_tools(cau_session *session)
+{
+	for (int32_t i = 0; i < session->tool_count; ++i)
+		move_tool(&session->tool[i], session->solver.step_s);
+}

@@ -1,0 +1,264 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Tools that touch: which vertices are in contact, held or dragged, and
+// what force the tools feel. The constraints themselves are in constraint/contact.c.
+#include <stdlib.h>
+#include <string.h>
+
+#include "session/session_internal.h"
+
+enum { CANDIDATES = 4 * CAU_MAX_CONTACTS };
+static const double filter_s = 0.02;   // time constant of the reported force
+static const double drag_share = 0.25; // of a vertex's diagonal in A that drag may add
+static const double least_margin_m = 5e-4;
+
+// Cold parts push; the hot part pushes too while it is off.
+static cau_tool_part pushing_part(const cau_tool *tool)
+{
+	return tool->state.energized ? CAU_PART_COLD : CAU_PART_BOTH;
+}
+
+static cau_contact_row contact_row(const cau_session *session, const cau_tool *tool, int32_t index,
+                                   int32_t vertex)
+{
+	cau_contact_row row = {.vertex = vertex, .tool = index};
+	cau_vec3 start = cau_vec3_of(session->position_start + 3 * (size_t)vertex);
+	cau_vec3 local = cau_pose_to_local(&tool->pose_before, start);
+	cau_vec3_to(cau_pose_to_world(&tool->state.pose, local), row.no_slip);
+	return row;
+}
+
+static int compare_rows(const void *a, const void *b)
+{
+	const cau_contact_row *x = a, *y = b;
+	if (x->gap != y->gap)
+		return x->gap < y->gap ? -1 : 1;
+	return (x->vertex > y->vertex) - (x->vertex < y->vertex);
+}
+
+static int is_grasped(const cau_tool *tool, int32_t vertex)
+{
+	for (int32_t k = 0; k < tool->grasp_count; ++k)
+		if (tool->grasp[k].vertex == vertex)
+			return 1;
+	return 0;
+}
+
+// Collects the free vertices within the margin of the pushing part, the deepest first.
+static int32_t collect(const cau_session *session, int32_t index, cau_contact_row *rows)
+{
+	const cau_tool *tool = &session->tool[index];
+	const cau_tool_def *def = &tool->state.definition;
+	cau_tool_part part = pushing_part(tool);
+	double margin = fmax(least_margin_m, 0.25 * def->hot_radius_m), radius;
+	int32_t count = 0;
+	cau_vec3 center;
+	cau_tool_bound(def, part, &center, &radius);
+	center = cau_pose_to_world(&tool->state.pose, center);
+	for (int32_t b = 0; b < session->near.block_count; ++b) {
+		if (!cau_box_meets(&session->near.vertex_box[b], center, radius + margin))
+			continue;
+		int32_t last = (b + 1) * CAU_NEAR_BLOCK;
+		for (int32_t i = b * CAU_NEAR_BLOCK; i < last && i < session->tissue.vertex_count; ++i) {
+			int32_t v = session->near.vertex[i];
+			if (session->fixed[v] || count == CANDIDATES || is_grasped(tool, v))
+				continue;
+			double gap = cau_tool_distance_at(def, &tool->state.pose, tool->state.jaw, part,
+			                                  cau_vec3_of(session->position + 3 * (size_t)v), NULL);
+			if (gap > margin)
+				continue;
+			rows[count] = contact_row(session, tool, index, v);
+			rows[count++].gap = gap;
+		}
+	}
+	qsort(rows, (size_t)count, sizeof *rows, compare_rows);
+	return count;
+}
+
+static void add_attachments(cau_session *session, int32_t index)
+{
+	cau_tool *tool = &session->tool[index];
+	for (int32_t k = 0; k < tool->grasp_count; ++k) {
+		cau_contact_row row = {.vertex = tool->grasp[k].vertex, .tool = index, .attached = 1};
+		cau_vec3_to(cau_pose_to_world(&tool->state.pose, cau_vec3_of(tool->grasp[k].local)),
+		            row.anchor);
+		cau_contact_add(&session->contact, &row);
+	}
+}
+
+// Energized surfaces do not push: they drag what is in them along, viscously, while it chars.
+static void add_drag(cau_session *session, int32_t index)
+{
+	const cau_tool *tool = &session->tool[index];
+	const cau_tool_def *def = &tool->state.definition;
+	cau_step_solver *solver = &session->solver;
+	double radius;
+	cau_vec3 center;
+	if (!tool->state.energized || def->drag_ns_m == 0)
+		return;
+	cau_tool_bound(def, CAU_PART_HOT, &center, &radius);
+	center = cau_pose_to_world(&tool->state.pose, center);
+	for (int32_t b = 0; b < session->near.block_count; ++b) {
+		if (!cau_box_meets(&session->near.vertex_box[b], center, radius))
+			continue;
+		int32_t last = (b + 1) * CAU_NEAR_BLOCK;
+		for (int32_t i = b * CAU_NEAR_BLOCK; i < last && i < session->tissue.vertex_count; ++i) {
+			int32_t v = session->near.vertex[i];
+			cau_vec3 x = cau_vec3_of(session->position_start + 3 * (size_t)v);
+			if (session->fixed[v] || solver->drag_count == session->tissue.vertex_count ||
+			    cau_tool_distance_at(def, &tool->state.pose, tool->state.jaw, CAU_PART_HOT, x,
+			                         NULL) > 0)
+				continue;
+			double most = drag_share * solver->system.diagonal[v];
+			cau_drag drag = {.vertex = v,
+			                 .coefficient = fmin(def->drag_ns_m / solver->step_s, most)};
+			cau_vec3 local = cau_pose_to_local(&tool->pose_before, x);
+			cau_vec3_to(cau_pose_to_world(&tool->state.pose, local), drag.target);
+			solver->drag[solver->drag_count++] = drag;
+		}
+	}
+}
+
+static void describe_tools(cau_session *session)
+{
+	session->contact.tool_count = session->tool_count;
+	for (int32_t i = 0; i < session->tool_count; ++i) {
+		const cau_tool *tool = &session->tool[i];
+		session->contact.tool[i] = (cau_contact_tool){
+			.def = &tool->state.definition,
+			.pose = tool->state.pose,
+			.pose_before = tool->pose_before,
+			.jaw = tool->state.jaw,
+			.part = (int)pushing_part(tool),
+		};
+	}
+}
+
+void cau_session_find_contacts(cau_session *session)
+{
+	cau_contact_row rows[CANDIDATES];
+	session->contact.row_count = 0;
+	session->solver.drag_count = 0;
+	if (!session->tool_count)
+		return;
+	cau_near_refit(&session->near, session->position);
+	describe_tools(session);
+	for (int32_t i = 0; i < session->tool_count; ++i)
+		add_attachments(session, i);
+	for (int32_t i = 0; i < session->tool_count; ++i) {
+		int32_t count = collect(session, i, rows);
+		for (int32_t k = 0; k < count && cau_contact_add(&session->contact, &rows[k]); ++k)
+			;
+		add_drag(session, i);
+	}
+	if (session->contact.row_count)
+		cau_contact_prepare(&session->contact, &session->solver);
+}
+
+// ---- after the solve
+// ------------------------------------------------------------------------------------ An
+// attachment at its slip force gives way: its anchor follows the vertex so far that the force
+// stays; past the length of the jaws it is lost.
+static void slip(cau_tool *tool, const cau_contact_row *row, const double *position)
+{
+	const cau_tool_def *def = &tool->state.definition;
+	for (int32_t k = 0; k < tool->grasp_count; ++k) {
+		cau_grasp *grasp = &tool->grasp[k];
+		if (grasp->vertex != row->vertex)
+			continue;
+		cau_vec3 anchor = cau_add_scaled(cau_vec3_of(position + 3 * (size_t)row->vertex),
+		                                 1 / def->grasp_stiffness_n_m, cau_vec3_of(row->reaction));
+		cau_vec3 local = cau_pose_to_local(&tool->state.pose, anchor);
+		cau_vec3_to(local, grasp->local);
+		if (cau_length(cau_sub(local, cau_vec3_of(grasp->start))) > def->tip_length_m)
+			*grasp = tool->grasp[--tool->grasp_count];
+		return;
+	}
+}
+
+static void add_force(cau_tool_state *state, cau_vec3 force, cau_vec3 at)
+{
+	cau_vec3 arm = cau_sub(at, cau_vec3_of(state->pose.position_m));
+	cau_vec3_to(cau_add(cau_vec3_of(state->raw_force_n), force), state->raw_force_n);
+	cau_vec3_to(cau_add(cau_vec3_of(state->raw_torque_nm), cau_cross(arm, force)),
+	            state->raw_torque_nm);
+}
+
+static void filter(double filtered[3], const double raw[3], double most, double dt)
+{
+	cau_vec3 now = cau_vec3_of(filtered);
+	now = cau_add_scaled(now, dt / (dt + filter_s), cau_sub(cau_vec3_of(raw), now));
+	double length = cau_length(now);
+	cau_vec3_to(length > most ? cau_scale(most / length, now) : now, filtered);
+}
+
+void cau_session_read_forces(cau_session *session)
+{
+	for (int32_t i = 0; i < session->tool_count; ++i) {
+		cau_tool_state *state = &session->tool[i].state;
+		memset(state->raw_force_n, 0, sizeof state->raw_force_n);
+		memset(state->raw_torque_nm, 0, sizeof state->raw_torque_nm);
+		state->contact_vertices = 0;
+	}
+	for (int32_t k = 0; k < session->contact.row_count; ++k) {
+		const cau_contact_row *row = &session->contact.row[k];
+		cau_tool *tool = &session->tool[row->tool];
+		cau_vec3 reaction = cau_vec3_of(row->reaction);
+		add_force(&tool->state, cau_scale(-1, reaction),
+		          cau_vec3_of(session->position + 3 * (size_t)row->vertex));
+		tool->state.contact_vertices += !row->attached && cau_dot(reaction, reaction) > 0;
+		if (row->attached && row->slipping)
+			slip(tool, row, session->position);
+	}
+	for (int32_t i = 0; i < session->tool_count; ++i) {
+		cau_tool_state *state = &session->tool[i].state;
+		double most = state->definition.force_max_n, dt = session->solver.step_s;
+		filter(state->force_n, state->raw_force_n, most, dt);
+		filter(state->torque_nm, state->raw_torque_nm, most * state->definition.tip_length_m, dt);
+		state->grasped_vertices = session->tool[i].grasp_count;
+	}
+}
+
+// ---- grasping
+cau_status cau_session_grasp(cau_session *session, cau_tool *tool, cau_error *error)
+{
+	const cau_tool_def *def = &tool->state.definition;
+	if (def->shape != CAU_TOOL_BIPOLAR && def->shape != CAU_TOOL_SHEARS &&
+	    def->shape != CAU_TOOL_GRASPER)
+		return cau_fail(error, CAU_BAD_STATE, "tool", "tool \"%s\" has no jaws to grasp with",
+		                def->name);
+	tool->state.grasping = true;
+	tool->grasp_count = 0;
+	for (int32_t i = 0; i < session->tissue.vertex_count; ++i) {
+		int32_t v = session->near.vertex[i];
+		double across;
+		cau_vec3 local =
+			cau_pose_to_local(&tool->state.pose, cau_vec3_of(session->position + 3 * (size_t)v));
+		if (session->fixed[v] || tool->grasp_count == CAU_MAX_GRASPED ||
+		    !cau_tool_between_jaws(def, tool->state.jaw, local, &across))
+			continue;
+		cau_grasp grasp = {.vertex = v};
+		cau_vec3_to(local, grasp.local);
+		cau_vec3_to(local, grasp.start);
+		tool->grasp[tool->grasp_count++] = grasp;
+	}
+	tool->jaw_target = 0;
+	return CAU_OK;
+}
+
+void cau_session_release(cau_tool *tool)
+{
+	tool->state.grasping = false;
+	tool->grasp_count = 0;
+	tool->jaw_target = 1;
+}
+
+void cau_session_drop_frozen_grasps(cau_session *session)
+{
+	for (int32_t i = 0; i < session->tool_count; ++i) {
+		cau_tool *tool = &session->tool[i];
+		for (int32_t k = tool->grasp_count - 1; k >= 0; --k)
+			if (session->fixed[tool->grasp[k].vertex])
+				tool->grasp[k] = tool->grasp[--tool->grasp_count];
+		tool->state.grasped_vertices = tool->grasp_count;
+	}
+}

@@ -1,0 +1,138 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// What callers see of a session: its constant parts, and the last tick's frame.
+#include <string.h>
+
+#include "session/session_internal.h"
+
+static void describe_layers(const cau_session *session, cau_session_info *info)
+{
+	const cau_tissue *tissue = &session->tissue;
+	for (int32_t i = 0; i < tissue->layer_count; ++i) {
+		const cau_tissue_layer *layer = &tissue->layer[i];
+		cau_session_layer *out = &info->layers[i];
+		memcpy(out->name, layer->def.name, sizeof out->name);
+		out->kind = layer->def.kind;
+		out->element_count = layer->triangle_count + layer->tetrahedron_count + layer->link_count;
+		if (layer->def.kind == CAU_LAYER_FAT) {
+			out->first_face = session->fat_first_face[i];
+			out->face_count = session->fat_face_count[i];
+		} else {
+			out->first_face = layer->first_triangle;
+			out->face_count = layer->triangle_count;
+		}
+	}
+}
+
+void cau_session_describe(const cau_session *session, cau_session_info *info)
+{
+	const cau_tissue *tissue = &session->tissue;
+	*info = (cau_session_info){
+		.step_s = session->solver.step_s,
+		.vertex_count = tissue->vertex_count,
+		.face_count = tissue->faces.face_count,
+		.triangle_count = tissue->triangle_count,
+		.tetrahedron_count = tissue->tetrahedron_count,
+		.link_count = tissue->link_count,
+		.hinge_count = tissue->hinge_count,
+		.edge_count = tissue->edges.edge_count,
+		.layer_count = tissue->layer_count,
+		.face = tissue->faces.vertex,
+		.face_layer = session->face_layer,
+		.rest_position = tissue->rest,
+		.texture = session->face_texture,
+		.tetrahedron = tissue->tetrahedron,
+		.link = tissue->link,
+		.instruction_set = session->solver.kernels->instruction_set,
+	};
+	memcpy(info->name, session->scene->name, sizeof info->name);
+	memcpy(info->description, session->scene->description, sizeof info->description);
+	describe_layers(session, info);
+}
+
+// Layer and texture of every face; fat faces take the layer of their first owner.
+cau_status cau_session_make_faces(cau_session *session, cau_error *error)
+{
+	const cau_tissue *tissue = &session->tissue;
+	const cau_face_table *faces = &tissue->faces;
+	size_t count = (size_t)faces->face_count;
+	session->face_layer = cau_arena_array(&session->arena, count, sizeof(int32_t));
+	session->face_texture = cau_arena_array(&session->arena, 6 * count, sizeof(float));
+	if (!session->face_layer || !session->face_texture)
+		return cau_fail(error, CAU_NO_MEMORY, NULL, "no memory for the faces");
+	memcpy(session->face_texture, tissue->texture,
+	       6 * (size_t)tissue->triangle_count * sizeof(float));
+	for (int32_t f = 0; f < faces->face_count; ++f) {
+		if (f < faces->triangle_count) {
+			session->face_layer[f] = tissue->triangle_layer[f];
+			continue;
+		}
+		int32_t layer = tissue->tetrahedron_layer[faces->owner[2 * (size_t)f]];
+		session->face_layer[f] = layer;
+		if (!session->fat_face_count[layer]++)
+			session->fat_first_face[layer] = f;
+	}
+	return CAU_OK;
+}
+
+static void fill_statistics(const cau_session *session, cau_statistics *statistics)
+{
+	const cau_step_solver *solver = &session->solver;
+	*statistics = (cau_statistics){
+		.iterations = solver->iterations_done,
+		.residual = solver->residual,
+		.backtracks = solver->backtracks,
+		.inverted = session->inverted,
+		.edges_parted = session->dissection.edges_parted,
+		.elements_removed = session->dissection.elements_removed,
+		.pending_downdates = session->update.waiting_count,
+		.deferred_max_s = (double)session->update.longest_wait * solver->step_s,
+		.refactorisations = session->update.refactorisations,
+		.factor_operations = session->update.operation_count,
+		.contacts = session->contact.row_count,
+		.frozen_vertices = session->frozen_count,
+	};
+	memcpy(statistics->seconds, session->stage_s, sizeof session->stage_s);
+}
+
+void cau_session_frame(const cau_session *session, cau_frame *frame)
+{
+	*frame = (cau_frame){
+		.tick = session->tick,
+		.time_s = (double)session->tick * session->solver.step_s,
+		.position = session->position,
+		.velocity = session->velocity,
+		.moved_count = session->frame.moved_count,
+		.moved = session->frame.moved,
+		.face_mask = session->dissection.face_mask,
+		.mask_changed_count = session->frame.mask_changed_count,
+		.mask_changed = session->frame.mask_changed,
+		.vertex_visible = session->frame.vertex_visible,
+		.exposure = session->frame.exposure,
+		.stress = session->stress_on ? session->frame.stress : NULL,
+		.tool_count = session->tool_count,
+		.tools = session->tool_view,
+		.refusal_count = session->refusal_count,
+		.refusals = session->refusal,
+	};
+	for (int32_t i = 0; i < session->tool_count; ++i)
+		session->tool_view[i] = session->tool[i].state;
+	fill_statistics(session, &frame->statistics);
+}
+
+void cau_session_set_clock(cau_session *session, double (*now_s)(void))
+{
+	session->now_s = session->solver.now_s = now_s;
+}
+
+void cau_session_set_stress(cau_session *session, bool on)
+{
+	session->stress_on = on;
+}
+
+void cau_session_alive(const cau_session *session, const uint8_t **tetrahedron,
+                       const uint8_t **triangle, const uint8_t **link)
+{
+	*tetrahedron = session->dissection.alive.element[CAU_ELEMENT_TETRAHEDRON];
+	*triangle = session->dissection.alive.element[CAU_ELEMENT_TRIANGLE];
+	*link = session->dissection.alive.element[CAU_ELEMENT_LINK];
+}

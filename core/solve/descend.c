@@ -1,0 +1,178 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// The iteration of one step (section 4, figure 3): local and global by turns, accelerated,
+// safeguarded.
+#include <math.h>
+#include <string.h>
+
+#include "constraint/contact.h"
+#include "solve/solver.h"
+
+// What rounding can do to the objective, relative to its terms.
+static double objective_noise(const cau_step_solver *solver)
+{
+	return (solver->elements.single ? 1e-6 : 1e-13) * fabs(cau_solver_elastic_energy(solver));
+}
+
+typedef struct move {
+	cau_step_solver *solver;
+	double scale;
+} move;
+
+// position = position_before + scale * trial_increment
+static void move_part(void *context, int32_t chunk)
+{
+	const move *work = context;
+	const cau_step_solver *solver = work->solver;
+	int32_t first = chunk * CAU_VERTEX_CHUNK, last = first + CAU_VERTEX_CHUNK;
+	if (last > solver->tissue->vertex_count)
+		last = solver->tissue->vertex_count;
+	const double *before = solver->position_before;
+	double *x = solver->position;
+	if (solver->elements.single) {
+		const float *d = solver->trial_increment;
+		for (int32_t v = first; v < last; ++v)
+			for (int c = 0; c < 3; ++c)
+				x[3 * v + c] = before[3 * v + c] + work->scale * (double)d[4 * v + c];
+	} else {
+		const double *d = solver->trial_increment;
+		for (int32_t v = first; v < last; ++v)
+			for (int c = 0; c < 3; ++c)
+				x[3 * v + c] = before[3 * v + c] + work->scale * d[4 * v + c];
+	}
+}
+
+static void move_to(cau_step_solver *solver, double scale)
+{
+	cau_pool_run(solver->pool, solver->chunk_count, move_part, &(move){solver, scale});
+}
+
+static double evaluate_at(cau_step_solver *solver, double scale)
+{
+	move_to(solver, scale);
+	return cau_solver_evaluate(solver);
+}
+
+static void scale_trial(cau_step_solver *solver, double scale)
+{
+	solver->kernels->add_scaled(solver->trial_increment, scale - 1, solver->trial_increment,
+	                            4 * (int64_t)solver->tissue->vertex_count);
+}
+
+static void use_plain_step(cau_step_solver *solver)
+{
+	memcpy(solver->trial_increment, solver->increment,
+	       4 * (size_t)solver->tissue->vertex_count * cau_real_bytes(solver->elements.single));
+}
+
+// Where the parabola through the objective before the step, its slope there and its value after a
+// part `scale` of the step has its bottom: at most half of the part, at least a hundredth of it.
+// Tissue drawn far beyond its rest is thousands of times stiffer than A, and halving alone would
+// not come down to it.
+static double shorter(double scale, double before, double after, double slope)
+{
+	double rise = after - before - slope * scale;
+	double bottom = isfinite(after) && rise > 0 ? -slope * scale / (2 * rise) : 0;
+	return scale * fmin(fmax(bottom, 0.01), 0.5);
+}
+
+// Takes the trial step if it lowers the objective; else the plain step, whose slope is `slope`;
+// else shortens it. Laws without an energy take the first finite step. Returns 0 when nothing
+// helps: the position is as before.
+static int take_step(cau_step_solver *solver, int accelerated, double slope, double *objective)
+{
+	double bound = *objective + objective_noise(solver);
+	if (solver->contact)
+		bound += cau_contact_work(solver->contact, solver);
+	double scale = 1;
+	for (int tries = 0; tries <= CAU_MAX_BACKTRACKS; ++tries) {
+		double value = evaluate_at(solver, scale);
+		if (isfinite(value) && (!solver->conservative || value <= bound)) {
+			*objective = value;
+			if (scale != 1)
+				scale_trial(solver, scale);
+			return 1;
+		}
+		solver->backtracks++;
+		if (accelerated) {
+			use_plain_step(solver);
+			accelerated = 0;
+		} else {
+			scale = shorter(scale, *objective, value, slope);
+		}
+	}
+	*objective = evaluate_at(solver, 0);
+	return 0;
+}
+
+// When the first step had to be shortened, the guess x + dt v may be far up a slope that a few
+// short steps do not come down: then the start of the tick is the better guess. From there, or from
+// a guess that is lower still, eq. 4 only falls, so that a tick never ends with more energy than it
+// began with. Returns whether it went back.
+static int go_back(cau_step_solver *solver, double *objective)
+{
+	size_t count = (size_t)solver->tissue->vertex_count;
+	if (!solver->position_start || !solver->conservative)
+		return 0;
+	memcpy(solver->position_before, solver->position, 3 * count * sizeof(double));
+	for (size_t v = 0; v < count; ++v)
+		if (!solver->fixed[v])
+			memcpy(solver->position + 3 * v, solver->position_start + 3 * v, 3 * sizeof(double));
+	double value = cau_solver_evaluate(solver);
+	if (value < *objective) {
+		cau_anderson_start(solver);
+		*objective = value;
+		return 1;
+	}
+	memcpy(solver->position, solver->position_before, 3 * count * sizeof(double));
+	*objective = cau_solver_evaluate(solver);
+	return 0;
+}
+
+static double step_norm(const cau_step_solver *solver)
+{
+	double product = solver->kernels->dot(solver->increment, solver->gradient,
+	                                      4 * (int64_t)solver->tissue->vertex_count);
+	return sqrt(fmax(-product, 0));
+}
+
+cau_status cau_solver_run(cau_step_solver *solver, cau_error *error)
+{
+	size_t bytes = 3 * (size_t)solver->tissue->vertex_count * sizeof(double);
+	solver->iterations_done = solver->backtracks = 0;
+	solver->local_s = solver->contact_s = 0;
+	solver->residual = 0;
+	double objective = cau_solver_evaluate(solver), first = 0, last = 0;
+	int32_t steps = 0; // since the guess
+	cau_anderson_start(solver);
+	for (int32_t k = 0; k < solver->iterations; ++k) {
+		cau_solver_global(solver);
+		double norm = step_norm(solver);
+		if (!isfinite(norm) || !isfinite(objective))
+			return cau_fail(error, CAU_NUMERICAL, NULL,
+			                "the state is not finite after %d iterations", k);
+		if (!k)
+			first = norm;
+		solver->residual = first > 0 ? norm / first : 0;
+		solver->iterations_done = k + 1;
+		if (norm == 0 || (k && solver->residual <= solver->tolerance))
+			break;
+		if (!solver->conservative && k && norm > 2 * last)
+			cau_anderson_start(solver); // the history misleads: forget it
+		last = norm;
+		int accelerated = cau_anderson_mix(solver, steps++);
+		cau_anderson_accept(solver);
+		memcpy(solver->position_before, solver->position, bytes);
+		if (!solver->conservative && k + 1 == solver->iterations) { // nothing to compare with
+			move_to(solver, 1);
+			break;
+		}
+		int taken = take_step(solver, accelerated, -norm * norm, &objective);
+		int back = !k && solver->backtracks && go_back(solver, &objective);
+		if (!taken && !back)
+			break;
+		if (back)
+			steps = 0;
+	}
+	cau_solver_displace(solver);
+	return CAU_OK;
+}

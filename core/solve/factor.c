@@ -1,0 +1,244 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "solve/factor.h"
+
+#include <cholmod.h>
+#include <pthread.h>
+#include <stdlib.h>
+#include <string.h>
+
+struct cau_factor {
+	cholmod_common common;
+	cholmod_factor *l;
+	int32_t *inverse;             // (n): place of each row of A in L
+	cholmod_dense *b, *x, *y, *e; // of cau_factor_solve
+	int update_first[CAU_UPDATE_RANK + 1];
+	int update_row[CAU_UPDATE_RANK * 8];
+	double update_value[CAU_UPDATE_RANK * 8];
+};
+
+static pthread_mutex_t analysis_lock = PTHREAD_MUTEX_INITIALIZER;
+
+static cholmod_sparse view_of(const cau_matrix *matrix)
+{
+	return (cholmod_sparse){
+		.nrow = (size_t)matrix->n,
+		.ncol = (size_t)matrix->n,
+		.nzmax = (size_t)matrix->first[matrix->n],
+		.p = matrix->first,
+		.i = matrix->row,
+		.x = matrix->value,
+		.stype = -1,
+		.itype = CHOLMOD_INT,
+		.xtype = CHOLMOD_REAL,
+		.dtype = CHOLMOD_DOUBLE,
+		.sorted = 1,
+		.packed = 1,
+	};
+}
+
+static void start(cholmod_common *common)
+{
+	cholmod_start(common);
+	common->print = 0;
+	common->try_catch = 1;
+	common->supernodal = CHOLMOD_SIMPLICIAL;
+	common->final_ll = 0;
+	common->final_monotonic = 1;
+	common->final_pack = 1;
+	common->nmethods = 1;
+	common->method[0].ordering = CHOLMOD_METIS;
+	common->postorder = 1;
+}
+
+static cau_status create_empty(cau_factor **out, cau_error *error)
+{
+	cau_factor *factor = calloc(1, sizeof *factor);
+	if (!factor)
+		return cau_fail(error, CAU_NO_MEMORY, NULL, "no memory for a factor");
+	start(&factor->common);
+	*out = factor;
+	return CAU_OK;
+}
+
+static cau_status finish_analysis(cau_factor *factor, cau_error *error)
+{
+	int32_t n = (int32_t)factor->l->n;
+	factor->inverse = malloc((size_t)n * sizeof *factor->inverse);
+	if (!factor->inverse)
+		return cau_fail(error, CAU_NO_MEMORY, NULL, "no memory for a factor of %d rows", n);
+	const int *permutation = factor->l->Perm;
+	for (int32_t k = 0; k < n; ++k)
+		factor->inverse[permutation[k]] = k;
+	return CAU_OK;
+}
+
+cau_status cau_factor_create(cau_factor **out, const cau_matrix *matrix, const int32_t *permutation,
+                             cau_error *error)
+{
+	cau_factor *factor = NULL;
+	cau_status status = create_empty(&factor, error);
+	if (status)
+		return status;
+	cholmod_sparse a = view_of(matrix);
+	if (permutation) {
+		factor->common.method[0].ordering = CHOLMOD_GIVEN;
+		factor->common.postorder = 0; // the given order is a postorder already
+	}
+	pthread_mutex_lock(&analysis_lock);
+	factor->l = cholmod_analyze_p(&a, (int *)(uintptr_t)permutation, NULL, 0, &factor->common);
+	pthread_mutex_unlock(&analysis_lock);
+	if (!factor->l)
+		status = cau_fail(error, CAU_NO_MEMORY, NULL, "no memory to analyse a system of %d rows",
+		                  matrix->n);
+	if (!status)
+		status = finish_analysis(factor, error);
+	if (!status)
+		status = cau_factor_refactor(factor, matrix, error);
+	if (status) {
+		cau_factor_destroy(factor);
+		return status;
+	}
+	*out = factor;
+	return CAU_OK;
+}
+
+void cau_factor_destroy(cau_factor *factor)
+{
+	if (!factor)
+		return;
+	cholmod_free_dense(&factor->b, &factor->common);
+	cholmod_free_dense(&factor->x, &factor->common);
+	cholmod_free_dense(&factor->y, &factor->common);
+	cholmod_free_dense(&factor->e, &factor->common);
+	cholmod_free_factor(&factor->l, &factor->common);
+	cholmod_finish(&factor->common);
+	free(factor->inverse);
+	free(factor);
+}
+
+cau_status cau_factor_clone(const cau_factor *factor, cau_factor **out, cau_error *error)
+{
+	cau_factor *clone = NULL;
+	cau_status status = create_empty(&clone, error);
+	if (status)
+		return status;
+	clone->l = cholmod_copy_factor(factor->l, &clone->common);
+	if (!clone->l)
+		status = cau_fail(error, CAU_NO_MEMORY, NULL, "no memory for a second factor");
+	if (!status)
+		status = finish_analysis(clone, error);
+	if (status) {
+		cau_factor_destroy(clone);
+		return status;
+	}
+	*out = clone;
+	return CAU_OK;
+}
+
+cau_status cau_factor_refactor(cau_factor *factor, const cau_matrix *matrix, cau_error *error)
+{
+	cholmod_sparse a = view_of(matrix);
+	int done = cholmod_factorize(&a, factor->l, &factor->common);
+	if (!done || factor->common.status < CHOLMOD_OK)
+		return cau_fail(error, CAU_NO_MEMORY, NULL, "no memory to factor a system of %d rows",
+		                matrix->n);
+	if (factor->l->minor < factor->l->n || !(cau_factor_least_pivot(factor) > 0))
+		return cau_fail(error, CAU_NUMERICAL, NULL,
+		                "the system matrix is not positive definite (row %d)",
+		                (int)factor->l->minor);
+	return CAU_OK;
+}
+
+// Sorts one short column of C by its permuted rows.
+static void place_column(cau_factor *factor, int at, int count, const int32_t *row,
+                         const double *value)
+{
+	for (int i = 0; i < count; ++i) {
+		int place = factor->inverse[row[i]], k = at + i;
+		for (; k > at && factor->update_row[k - 1] > place; --k) {
+			factor->update_row[k] = factor->update_row[k - 1];
+			factor->update_value[k] = factor->update_value[k - 1];
+		}
+		factor->update_row[k] = place;
+		factor->update_value[k] = value[i];
+	}
+}
+
+cau_status cau_factor_update(cau_factor *factor, int32_t columns, const int32_t *first,
+                             const int32_t *row, const double *value, int add, cau_error *error)
+{
+	if (columns > CAU_UPDATE_RANK || first[columns] > CAU_UPDATE_RANK * 8)
+		return cau_fail(error, CAU_LIMIT, NULL, "an update of rank %d is above %d", columns,
+		                CAU_UPDATE_RANK);
+	for (int32_t k = 0; k < columns; ++k) {
+		factor->update_first[k] = first[k];
+		place_column(factor, first[k], first[k + 1] - first[k], row + first[k], value + first[k]);
+	}
+	factor->update_first[columns] = first[columns];
+	cholmod_sparse c = {
+		.nrow = factor->l->n,
+		.ncol = (size_t)columns,
+		.nzmax = (size_t)first[columns],
+		.p = factor->update_first,
+		.i = factor->update_row,
+		.x = factor->update_value,
+		.itype = CHOLMOD_INT,
+		.xtype = CHOLMOD_REAL,
+		.dtype = CHOLMOD_DOUBLE,
+		.sorted = 1,
+		.packed = 1,
+	};
+	if (!cholmod_updown(add, &c, factor->l, &factor->common))
+		return cau_fail(error, CAU_NO_MEMORY, NULL, "no memory for an update of the factor");
+	return CAU_OK;
+}
+
+int32_t cau_factor_size(const cau_factor *factor)
+{
+	return (int32_t)factor->l->n;
+}
+
+const int32_t *cau_factor_permutation(const cau_factor *factor)
+{
+	return factor->l->Perm;
+}
+
+const int32_t *cau_factor_places(const cau_factor *factor)
+{
+	return factor->inverse;
+}
+
+int32_t cau_factor_column(const cau_factor *factor, int32_t j, const int32_t **row,
+                          const double **value, double *pivot)
+{
+	const int *first = factor->l->p, *count = factor->l->nz;
+	*row = (const int *)factor->l->i + first[j] + 1;
+	*value = (const double *)factor->l->x + first[j] + 1;
+	*pivot = ((const double *)factor->l->x)[first[j]];
+	return count[j] - 1;
+}
+
+double cau_factor_least_pivot(const cau_factor *factor)
+{
+	double least = 1e300;
+	const int *first = factor->l->p;
+	const double *x = factor->l->x;
+	for (size_t j = 0; j < factor->l->n; ++j)
+		least = x[first[j]] < least ? x[first[j]] : least;
+	return least;
+}
+
+cau_status cau_factor_solve(cau_factor *factor, const double *b, double *x, cau_error *error)
+{
+	size_t n = factor->l->n, bytes = 3 * n * sizeof(double);
+	if (!factor->b)
+		factor->b = cholmod_allocate_dense(n, 3, n, CHOLMOD_REAL, &factor->common);
+	if (!factor->b)
+		return cau_fail(error, CAU_NO_MEMORY, NULL, "no memory to solve");
+	memcpy(factor->b->x, b, bytes);
+	if (!cholmod_solve2(CHOLMOD_A, factor->l, factor->b, NULL, &factor->x, NULL, &factor->y,
+	                    &factor->e, &factor->common))
+		return cau_fail(error, CAU_NO_MEMORY, NULL, "no memory to solve");
+	memcpy(x, factor->x->x, bytes);
+	return CAU_OK;
+}

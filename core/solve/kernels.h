@@ -1,0 +1,59 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// The inner loops of a step, compiled once per precision and instruction set, chosen at run time.
+#pragma once
+
+#include "constraint/elements.h"
+#include "solve/sweep.h"
+
+// A share of the local step: slots [first, last) of one group, whole batches.
+typedef enum cau_work_kind {
+	CAU_WORK_SHEET,
+	CAU_WORK_FAT,
+	CAU_WORK_LINK,
+	CAU_WORK_HINGE,
+} cau_work_kind;
+
+typedef struct cau_local_work {
+	int32_t kind, group, first, last;
+} cau_local_work;
+
+// For each vertex the gradient records of its elements: record[first[v] .. first[v + 1]),
+// ascending.
+typedef struct cau_incidence {
+	int32_t *first; // (vertex_count + 1)
+	int32_t *record;
+} cau_incidence;
+
+// Arrays marked `real` hold four reals a vertex (x, y, z, 0), float or double as the table's name
+// says.
+typedef struct cau_kernels {
+	const char *instruction_set;
+	int single;
+
+	// Gradient records (N) and batch energies (J) of the elements in `work`, at displacement u
+	// (real, m).
+	void (*local)(const cau_elements *elements, const cau_local_work *work,
+	              const void *displacement, int diagonal);
+	// After a step: plastic flow; returns the number of inverted tetrahedra.
+	int32_t (*settle)(const cau_elements *elements, const cau_local_work *work,
+	                  const void *displacement);
+	// gradient[v] = sum of v's records, in their order, for v in [first, last).
+	void (*sum)(const cau_elements *elements, const cau_incidence *incidence, int32_t first,
+	            int32_t last, void *gradient);
+	// One node of a sweep: rhs and above are three real arrays each; work has room for
+	// 3 x (max_rows + max_columns) reals.
+	void (*forward)(const cau_sweep *sweep, int32_t supernode, void *const rhs[3],
+	                void *const above[3], void *work);
+	void (*backward)(const cau_sweep *sweep, int32_t supernode, void *const rhs[3], void *work);
+	// Dot product in double of n reals, in a fixed order.
+	double (*dot)(const void *a, const void *b, int64_t n);
+	// increment[v] += column[v] * force for v in [first, last); column is real, one a vertex.
+	void (*spread)(void *increment, const void *column, const double force[3], int32_t first,
+	               int32_t last);
+	// y += s x over n reals
+	void (*add_scaled)(void *y, double s, const void *x, int64_t n);
+} cau_kernels;
+
+// The best table this processor runs, not above `ceiling` ("baseline", "avx2", "avx512"; NULL: no
+// ceiling).
+const cau_kernels *cau_kernels_choose(int single, const char *ceiling);

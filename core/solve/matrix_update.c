@@ -1,0 +1,289 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "solve/matrix_update.h"
+
+#include <math.h>
+#include <string.h>
+
+static const double swap_after_s = 1.0 / 60.0; // between starting a new factor and using it
+
+static cau_status no_memory(cau_error *error)
+{
+	return cau_fail(error, CAU_NO_MEMORY, NULL, "no memory to keep the factor in step with cuts");
+}
+
+static void copy_alive(uint8_t *const to[CAU_ELEMENT_KINDS], const cau_alive *alive,
+                       const cau_tissue *tissue)
+{
+	for (int kind = 0; kind < CAU_ELEMENT_KINDS; ++kind)
+		memcpy(to[kind], alive->element[kind], (size_t)cau_tissue_element_count(tissue, kind));
+}
+
+static double least_mass_pivot(const cau_step_solver *solver)
+{
+	double least = INFINITY;
+	for (int32_t r = 0; r < solver->system.row_count; ++r)
+		least = fmin(least, solver->tissue->mass[solver->system.vertex_of_row[r]]);
+	return least / (2 * solver->step_s * solver->step_s);
+}
+
+cau_status cau_matrix_update_create(cau_matrix_update *update, cau_step_solver *solver,
+                                    const cau_alive *alive, cau_arena *arena, cau_error *error)
+{
+	const cau_tissue *tissue = solver->tissue;
+	update->solver = solver;
+	int missing = 0;
+	for (int kind = 0; kind < CAU_ELEMENT_KINDS; ++kind) {
+		size_t count = (size_t)cau_tissue_element_count(tissue, kind);
+		update->canonical[kind] = cau_arena_array(arena, count, 1);
+		update->next_canonical[kind] = cau_arena_array(arena, count, 1);
+		missing |= !update->canonical[kind] || !update->next_canonical[kind];
+		update->waiting_capacity += (int32_t)count;
+	}
+	update->waiting =
+		cau_arena_array(arena, (size_t)update->waiting_capacity, sizeof *update->waiting);
+	update->operation = cau_arena_array(arena, CAU_DOWNDATES_AT_MOST, sizeof *update->operation);
+	if (missing || !update->waiting || !update->operation)
+		return no_memory(error);
+	copy_alive(update->canonical, alive, tissue);
+	if (solver->diagonal)
+		return CAU_OK;
+	update->least_pivot_bound = least_mass_pivot(solver);
+	size_t entries = (size_t)solver->system.matrix.first[solver->system.row_count];
+	update->touched = cau_arena_array(arena, (size_t)solver->sweep.supernode_count, 1);
+	update->next_value = cau_arena_array(arena, entries, sizeof(double));
+	update->next_scratch =
+		cau_arena_array(arena, (size_t)cau_sweep_scratch_count(&solver->sweep), sizeof(double));
+	update->background = cau_background_create();
+	if (!update->touched || !update->next_value || !update->next_scratch || !update->background)
+		return no_memory(error);
+	cau_status status = cau_sweep_create_panels(&solver->sweep, arena, &update->next_panels, error);
+	if (!status)
+		status = cau_factor_clone(solver->factor, &update->next_factor, error);
+	return status;
+}
+
+void cau_matrix_update_finish(cau_matrix_update *update)
+{
+	cau_background_destroy(update->background);
+	cau_factor_destroy(update->next_factor);
+	update->background = NULL;
+	update->next_factor = NULL;
+}
+
+// The diagonal bounds drag in char, so it must not count what is gone (never less than the mass).
+static void take_off_diagonal(cau_step_solver *solver, int kind, int32_t element)
+{
+	cau_element_map map;
+	cau_tissue_element_map(solver->tissue, kind, element, &map);
+	double omega = map.weight * cau_element_map_scale(&map);
+	for (int k = 0; k < map.vertex_count; ++k) {
+		int32_t v = map.vertex[k];
+		double inertia = solver->tissue->mass[v] / (solver->step_s * solver->step_s);
+		solver->system.diagonal[v] = fmax(solver->system.diagonal[v] - omega, inertia);
+	}
+}
+
+void cau_matrix_update_remove(cau_matrix_update *update, int kind, int32_t element, uint64_t tick)
+{
+	take_off_diagonal(update->solver, kind, element);
+	update->waiting[update->waiting_count++] = (cau_waiting){kind, element, tick};
+}
+
+static void forget_waiting(cau_matrix_update *update, int32_t count, uint64_t tick)
+{
+	for (int32_t k = 0; k < count; ++k)
+		if (tick - update->waiting[k].tick > update->longest_wait)
+			update->longest_wait = tick - update->waiting[k].tick;
+	update->waiting_count -= count;
+	memmove(update->waiting, update->waiting + count,
+	        (size_t)update->waiting_count * sizeof *update->waiting);
+}
+
+// ---- exact downdates
+// ---------------------------------------------------------------------------------- Takes the
+// columns of as many elements as one update of rank 8 holds, from waiting[from]. Returns how many.
+static int32_t fill_update(const cau_matrix_update *update, const cau_waiting *list, int32_t count,
+                           int32_t *columns, int32_t *first, int32_t *row, double *value)
+{
+	int32_t taken = 0;
+	*columns = first[0] = 0;
+	for (; taken < count; ++taken) {
+		cau_element_map map;
+		cau_tissue_element_map(update->solver->tissue, list[taken].kind, list[taken].element, &map);
+		if (*columns + map.rank > CAU_UPDATE_RANK)
+			break;
+		cau_system_columns(&update->solver->system, &map, columns, first, row, value);
+	}
+	return taken;
+}
+
+static void mark_columns(cau_matrix_update *update, int32_t entries, const int32_t *row,
+                         const int32_t *place_of_row)
+{
+	for (int32_t k = 0; k < entries; ++k)
+		cau_sweep_mark_path(&update->solver->sweep, place_of_row[row[k]], update->touched);
+}
+
+cau_status cau_matrix_update_downdate(cau_matrix_update *update, const cau_waiting *list,
+                                      int32_t count, int32_t *taken, cau_error *error)
+{
+	int32_t first[CAU_UPDATE_RANK + 1], row[CAU_UPDATE_RANK * 8], columns;
+	double value[CAU_UPDATE_RANK * 8];
+	*taken = fill_update(update, list, count, &columns, first, row, value);
+	if (!columns)
+		return CAU_OK;
+	cau_status status =
+		cau_factor_update(update->solver->factor, columns, first, row, value, 0, error);
+	if (!status)
+		mark_columns(update, first[columns], row, cau_factor_places(update->solver->factor));
+	return status;
+}
+
+void cau_matrix_update_pack(cau_matrix_update *update)
+{
+	cau_sweep_pack(&update->solver->sweep, update->solver->factor, update->touched);
+	memset(update->touched, 0, (size_t)update->solver->sweep.supernode_count);
+	update->solver->factor_version++;
+}
+
+static void note_operations(cau_matrix_update *update, const cau_waiting *list, int32_t count)
+{
+	for (int32_t k = 0; k < count; ++k)
+		update->operation[update->operation_count++] =
+			(cau_operation){list[k].kind, list[k].element, update->group_count};
+	update->group_count++;
+}
+
+// A few exact downdates, the oldest first, then the touched part of the packed factor anew.
+static cau_status downdate(cau_matrix_update *update, uint64_t tick, cau_error *error)
+{
+	cau_status status = CAU_OK;
+	int32_t done = 0;
+	for (int i = 0; i < CAU_DOWNDATES_PER_TICK && done < update->waiting_count && !status; ++i) {
+		int32_t taken = 0;
+		status = cau_matrix_update_downdate(update, update->waiting + done,
+		                                    update->waiting_count - done, &taken, error);
+		note_operations(update, update->waiting + done, taken);
+		done += taken;
+	}
+	forget_waiting(update, done, tick);
+	if (done)
+		cau_matrix_update_pack(update);
+	return status;
+}
+
+// ---- a new factor in the background
+static void make_next(void *context)
+{
+	cau_matrix_update *update = context;
+	cau_step_solver *solver = update->solver;
+	cau_alive alive;
+	memcpy(alive.element, update->next_canonical, sizeof alive.element);
+	cau_matrix matrix = solver->system.matrix;
+	matrix.value = update->next_value;
+	cau_system_assemble(&solver->system, solver->tissue, &alive, solver->step_s, matrix.value);
+	update->next_status = cau_factor_refactor(update->next_factor, &matrix, NULL);
+	if (!update->next_status)
+		cau_sweep_pack_panels(&solver->sweep, &update->next_panels, update->next_factor,
+		                      update->next_scratch);
+}
+
+void cau_matrix_update_start(cau_matrix_update *update, uint64_t swap_tick)
+{
+	update->making = 1;
+	update->swap_tick = swap_tick;
+	cau_background_start(update->background, make_next, update);
+}
+
+static cau_status swap(cau_matrix_update *update, uint64_t tick, cau_error *error)
+{
+	cau_background_wait(update->background);
+	update->making = 0;
+	if (update->next_status)
+		return cau_fail(error, update->next_status, NULL, "the system could not be factored anew");
+	cau_step_solver *solver = update->solver;
+	cau_factor *old = solver->factor;
+	solver->factor = update->next_factor;
+	update->next_factor = old;
+	cau_sweep_swap_panels(&solver->sweep, &update->next_panels);
+	solver->factor_version++;
+	for (int kind = 0; kind < CAU_ELEMENT_KINDS; ++kind) {
+		uint8_t *canonical = update->canonical[kind];
+		update->canonical[kind] = update->next_canonical[kind];
+		update->next_canonical[kind] = canonical;
+	}
+	forget_waiting(update, update->waiting_at_start, tick);
+	update->operation_count = update->group_count = 0;
+	update->refactorisations++;
+	return CAU_OK;
+}
+
+static uint64_t swap_delay(const cau_matrix_update *update)
+{
+	double ticks = swap_after_s / update->solver->step_s;
+	return ticks < 1 ? 1 : (uint64_t)(ticks + 0.5);
+}
+
+// Elements that a tick takes out for certain: of tetrahedra (rank 3) an update holds two.
+static int32_t tick_capacity(void)
+{
+	return CAU_DOWNDATES_PER_TICK * (CAU_UPDATE_RANK / 3);
+}
+
+cau_status cau_matrix_update_advance(cau_matrix_update *update, const cau_alive *alive,
+                                     uint64_t tick, cau_error *error)
+{
+	cau_step_solver *solver = update->solver;
+	if (solver->diagonal) {
+		if (update->waiting_count) {
+			cau_system_assemble_diagonal(&solver->system, solver->tissue, alive, solver->step_s);
+			solver->factor_version++;
+		}
+		update->waiting_count = 0;
+		return CAU_OK;
+	}
+	cau_status status = CAU_OK;
+	if (update->making && tick >= update->swap_tick)
+		status = swap(update, tick, error);
+	if (status || update->making || !update->waiting_count)
+		return status;
+	int worn = update->operation_count + update->waiting_count > CAU_DOWNDATES_AT_MOST;
+	if (update->waiting_count <= tick_capacity() && !worn) {
+		status = downdate(update, tick, error);
+		if (status || cau_factor_least_pivot(solver->factor) >= update->least_pivot_bound)
+			return status;
+		return cau_matrix_update_refactor(update, alive, error);
+	}
+	update->waiting_at_start = update->waiting_count;
+	copy_alive(update->next_canonical, alive, solver->tissue);
+	cau_matrix_update_start(update, tick + swap_delay(update));
+	return CAU_OK;
+}
+
+void cau_matrix_update_stop(cau_matrix_update *update)
+{
+	if (update->making)
+		cau_background_wait(update->background);
+	update->making = 0;
+}
+
+cau_status cau_matrix_update_refactor(cau_matrix_update *update, const cau_alive *alive,
+                                      cau_error *error)
+{
+	cau_step_solver *solver = update->solver;
+	cau_matrix_update_stop(update);
+	cau_system_assemble_diagonal(&solver->system, solver->tissue, alive, solver->step_s);
+	update->waiting_count = update->operation_count = update->group_count = 0;
+	copy_alive(update->canonical, alive, solver->tissue);
+	solver->factor_version++;
+	solver->factor_epoch++;
+	if (solver->diagonal)
+		return CAU_OK;
+	cau_system_assemble(&solver->system, solver->tissue, alive, solver->step_s,
+	                    solver->system.matrix.value);
+	cau_status status = cau_factor_refactor(solver->factor, &solver->system.matrix, error);
+	if (!status)
+		cau_sweep_pack(&solver->sweep, solver->factor, NULL);
+	update->refactorisations++;
+	return status;
+}

@@ -1,0 +1,78 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Keeping the factor in step with cuts (section 7.2).
+//
+// A removed element stays in the factor without force until it is taken out: a few a tick by exact
+// downdates; when more wait than that can serve, a whole new factor is made on another thread and
+// swapped in a fixed number of ticks later, so that every replay swaps at the same tick.
+#pragma once
+
+#include "base/background.h"
+#include "solve/solver.h"
+
+enum {
+	CAU_DOWNDATES_PER_TICK = 6,   // updates of rank 8 at most
+	CAU_DOWNDATES_AT_MOST = 2000, // elements, then a canonical factorisation
+};
+
+typedef struct cau_waiting {
+	int32_t kind, element;
+	uint64_t tick; // of removal
+} cau_waiting;
+
+typedef struct cau_operation { // an element taken out of the factor
+	int32_t kind, element;
+	int32_t group; // elements of one update share it
+} cau_operation;
+
+typedef struct cau_matrix_update {
+	int32_t waiting_count, waiting_capacity;
+	cau_waiting *waiting;    // removed, still in the factor, in order of removal
+	int32_t operation_count; // elements downdated since the last canonical factorisation
+	int32_t group_count;
+	cau_operation *operation;              // (CAU_DOWNDATES_AT_MOST): which, in order
+	uint8_t *canonical[CAU_ELEMENT_KINDS]; // alive at the last canonical factorisation
+	// The factor in the making.
+	int making;
+	uint64_t swap_tick;
+	int32_t waiting_at_start; // the first of `waiting` that it takes care of
+	uint8_t *next_canonical[CAU_ELEMENT_KINDS];
+	cau_background *background;
+	cau_factor *next_factor;
+	cau_sweep_panels next_panels;
+	double *next_value, *next_scratch;
+	cau_status next_status;
+	uint8_t *touched; // (supernode_count)
+	double least_pivot_bound;
+	int32_t refactorisations;
+	uint64_t longest_wait; // ticks
+	cau_step_solver *solver;
+} cau_matrix_update;
+
+cau_status cau_matrix_update_create(cau_matrix_update *update, cau_step_solver *solver,
+                                    const cau_alive *alive, cau_arena *arena, cau_error *error);
+void cau_matrix_update_finish(cau_matrix_update *update);
+
+// Notes a removal; the element has left the local step already.
+void cau_matrix_update_remove(cau_matrix_update *update, int kind, int32_t element, uint64_t tick);
+
+// Once a tick, after cuts: downdates, starts or swaps factors. CAU_NUMERICAL if a factorisation
+// fails.
+cau_status cau_matrix_update_advance(cau_matrix_update *update, const cau_alive *alive,
+                                     uint64_t tick, cau_error *error);
+
+// Takes as many elements of `list` out of the factor as one update of rank 8 holds; *taken of them.
+// The packed factor is refreshed by cau_matrix_update_pack.
+cau_status cau_matrix_update_downdate(cau_matrix_update *update, const cau_waiting *list,
+                                      int32_t count, int32_t *taken, cau_error *error);
+void cau_matrix_update_pack(cau_matrix_update *update);
+
+// Starts making the factor of next_canonical, to be swapped in at swap_tick.
+void cau_matrix_update_start(cau_matrix_update *update, uint64_t swap_tick);
+
+// Waits for the factor in the making and forgets it: before what it reads (materials, pins, the
+// live elements it stands for) changes.
+void cau_matrix_update_stop(cau_matrix_update *update);
+
+// Factors anew at once (materials or pins changed, restore): nothing waits afterwards.
+cau_status cau_matrix_update_refactor(cau_matrix_update *update, const cau_alive *alive,
+                                      cau_error *error);

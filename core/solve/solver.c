@@ -1,0 +1,118 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "solve/solver.h"
+
+#include <string.h>
+
+#include "constraint/contact.h"
+
+static cau_status no_memory(cau_error *error)
+{
+	return cau_fail(error, CAU_NO_MEMORY, NULL, "no memory for the solver");
+}
+
+// Linearised limits and the printed energy constraint are not gradients of any energy; nor is the
+// printed position projection.
+int cau_solver_is_conservative(const cau_tissue *tissue, int diagonal)
+{
+	for (int32_t i = 0; i < tissue->layer_count; ++i) {
+		const cau_layer_def *def = &tissue->layer[i].def;
+		for (int32_t m = 0; m < def->material_count; ++m) {
+			if (def->kind == CAU_LAYER_FAT) {
+				const cau_fat_material *fat = &def->fat[m];
+				if (fat->model == CAU_MODEL_ENERGY || fat->limit == CAU_LIMIT_RANGE ||
+				    (fat->limit == CAU_LIMIT_TARGET &&
+				     fat->projection == CAU_PROJECTION_LINEARISED))
+					return 0;
+			} else if (def->kind != CAU_LAYER_LINKS) {
+				const cau_sheet_material *sheet = &def->sheet[m];
+				if (sheet->limit == CAU_LIMIT_RANGE ||
+				    (sheet->limit == CAU_LIMIT_TARGET &&
+				     sheet->projection == CAU_PROJECTION_LINEARISED))
+					return 0;
+			}
+		}
+	}
+	return !diagonal;
+}
+
+static cau_status allocate_vectors(cau_step_solver *solver, cau_arena *arena, cau_error *error)
+{
+	size_t n = (size_t)solver->tissue->vertex_count, size = cau_real_bytes(solver->elements.single);
+	void **vectors[] = {&solver->displacement,    &solver->gradient,       &solver->increment,
+	                    &solver->trial_increment, &solver->last_increment, &solver->last_gradient,
+	                    &solver->difference};
+	for (size_t i = 0; i < sizeof vectors / sizeof *vectors; ++i)
+		if (!(*vectors[i] = cau_arena_array(arena, 4 * n, size)))
+			return no_memory(error);
+	for (int j = 0; j < CAU_ANDERSON_WINDOW; ++j) {
+		solver->anderson_df[j] = cau_arena_array(arena, 4 * n, size);
+		solver->anderson_h[j] = cau_arena_array(arena, 4 * n, size);
+		if (!solver->anderson_df[j] || !solver->anderson_h[j])
+			return no_memory(error);
+	}
+	solver->chunk_count = (solver->tissue->vertex_count + CAU_VERTEX_CHUNK - 1) / CAU_VERTEX_CHUNK;
+	solver->chunk_energy = cau_arena_array(arena, (size_t)solver->chunk_count, sizeof(double));
+	solver->chunk_dot = cau_arena_array(
+		arena, (size_t)solver->chunk_count * 2 * CAU_ANDERSON_WINDOW, sizeof(double));
+	solver->position_before = cau_arena_array(arena, 3 * n, sizeof(double));
+	if (!solver->chunk_energy || !solver->chunk_dot || !solver->position_before)
+		return no_memory(error);
+	return CAU_OK;
+}
+
+static cau_status allocate_sweep_work(cau_step_solver *solver, cau_arena *arena, cau_error *error)
+{
+	size_t count = 3 * ((size_t)solver->sweep.max_rows + (size_t)solver->sweep.max_columns);
+	for (int i = 0; i <= CAU_SWEEP_TASKS; ++i) {
+		solver->sweep_work[i] =
+			cau_arena_array(arena, count, cau_real_bytes(solver->elements.single));
+		if (!solver->sweep_work[i])
+			return no_memory(error);
+	}
+	return CAU_OK;
+}
+
+cau_status cau_solver_create(cau_step_solver *solver, const cau_scene_def *scene,
+                             const cau_tissue *tissue, cau_arena *arena, cau_error *error)
+{
+	int single = scene->precision == CAU_PRECISION_SINGLE;
+	solver->tissue = tissue;
+	solver->iterations = scene->iterations;
+	solver->tolerance = scene->tolerance;
+	solver->step_s = scene->step_s;
+	solver->diagonal = scene->solver == CAU_SOLVER_DIAGONAL;
+	solver->conservative = cau_solver_is_conservative(tissue, solver->diagonal);
+	cau_status status =
+		cau_elements_make(tissue, single, arena, &solver->elements, &solver->slots, error);
+	if (!status)
+		status = allocate_vectors(solver, arena, error);
+	if (!status)
+		status = cau_system_create(&solver->system, tissue, tissue->pinned, arena, error);
+	return status;
+}
+
+cau_status cau_solver_factor(cau_step_solver *solver, const cau_alive *alive,
+                             const int32_t *permutation, cau_arena *arena, cau_error *error)
+{
+	cau_system_assemble_diagonal(&solver->system, solver->tissue, alive, solver->step_s);
+	if (solver->diagonal || !solver->system.row_count) {
+		solver->diagonal = 1;
+		return CAU_OK;
+	}
+	cau_system_assemble(&solver->system, solver->tissue, alive, solver->step_s,
+	                    solver->system.matrix.value);
+	cau_status status =
+		cau_factor_create(&solver->factor, &solver->system.matrix, permutation, error);
+	if (!status)
+		status =
+			cau_sweep_create(&solver->sweep, arena, solver->factor, solver->elements.single, error);
+	if (!status)
+		status = allocate_sweep_work(solver, arena, error);
+	return status;
+}
+
+void cau_solver_finish(cau_step_solver *solver)
+{
+	cau_factor_destroy(solver->factor);
+	solver->factor = NULL;
+}

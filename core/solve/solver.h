@@ -1,0 +1,109 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// One time step: the minimum of eq. 4 by alternating a local step (project every element, eq. 6)
+// and a global one (one constant system, eq. 7), as the quasi-Newton iteration x <- x - A^-1 grad
+// E, for increments. Anderson acceleration in the norm of A; backtracking where the laws have an
+// energy.
+//
+// Vectors marked `real` hold four reals a vertex (x, y, z, 0), float or double; those marked double
+// hold three.
+#pragma once
+
+#include "base/pool.h"
+#include "constraint/elements_make.h"
+#include "solve/kernels.h"
+#include "solve/system.h"
+
+enum {
+	CAU_ANDERSON_WINDOW = 5,
+	CAU_MAX_BACKTRACKS = 8,
+	CAU_VERTEX_CHUNK = 256, // vertices in one share of a vertex loop
+};
+
+// Forces on vertices that are neither inertia nor elements: drag in char.
+// Its energy is c / (2 dt) |x - x_t - carried|^2.
+typedef struct cau_drag {
+	int32_t vertex;
+	double coefficient; // c / dt, N/m
+	double target[3];   // x_t + carried, m
+} cau_drag;
+
+typedef struct cau_contact_set cau_contact_set;
+
+typedef struct cau_step_solver {
+	const cau_tissue *tissue;
+	const cau_kernels *kernels;
+	cau_pool *pool;
+	cau_elements elements;
+	cau_element_slots slots;
+	cau_system system;
+	cau_factor *factor;
+	cau_sweep sweep;
+	uint64_t factor_version; // counts every change of the factor
+	uint64_t factor_epoch;   // counts those that leave nothing of the old one
+
+	int diagonal;     // CAU_SOLVER_DIAGONAL
+	int conservative; // every law is the gradient of an energy: backtracking applies
+	int32_t iterations;
+	double tolerance, step_s;
+	const uint8_t *fixed; // (vertex_count): pinned or frozen
+
+	double *position;             // x, (n x 3), of the session
+	double *predicted;            // s of eq. 4, (n x 3)
+	const double *position_start; // x_t, (n x 3); NULL: no second guess
+	double *external;             // N, (n x 3)
+	cau_drag *drag;
+	int32_t drag_count;
+	cau_contact_set *contact; // NULL: none
+
+	void *displacement;    // real: u = x - X
+	void *gradient;        // real: grad of eq. 4
+	void *increment;       // real: d = -A^-1 grad
+	void *trial_increment; // real: the step that is taken
+	void *anderson_df[CAU_ANDERSON_WINDOW], *anderson_h[CAU_ANDERSON_WINDOW];
+	void *last_increment, *last_gradient, *difference;                 // real
+	double anderson_product[CAU_ANDERSON_WINDOW][CAU_ANDERSON_WINDOW]; // df_i . A df_j
+	int32_t anderson_count, anderson_next;
+	void *sweep_work[CAU_SWEEP_TASKS + 1]; // real
+	double *chunk_energy;                  // (chunk_count)
+	double *chunk_dot;                     // (chunk_count x 2 CAU_ANDERSON_WINDOW)
+	double *position_before;               // (n x 3)
+	int32_t chunk_count;
+
+	double (*now_s)(void); // NULL: no timing
+
+	// Of the last step.
+	double local_s, contact_s;
+	int32_t iterations_done, backtracks;
+	double residual; // |grad| in the norm of A^-1, relative to the first iteration's
+} cau_step_solver;
+
+// Elements, pattern and vectors. The system is factored by cau_solver_factor once the laws are set.
+cau_status cau_solver_create(cau_step_solver *solver, const cau_scene_def *scene,
+                             const cau_tissue *tissue, cau_arena *arena, cau_error *error);
+// Assembles and factors A over the live elements; `permutation` as in cau_factor_create.
+cau_status cau_solver_factor(cau_step_solver *solver, const cau_alive *alive,
+                             const int32_t *permutation, cau_arena *arena, cau_error *error);
+void cau_solver_finish(cau_step_solver *solver);
+
+// Whether every law of the tissue is the gradient of an energy, so that backtracking applies.
+int cau_solver_is_conservative(const cau_tissue *tissue, int diagonal);
+
+// Solves the step from the guess in solver->position. CAU_NUMERICAL if the state is not finite.
+cau_status cau_solver_run(cau_step_solver *solver, cau_error *error);
+
+// ---- stages, in files of their own
+// -------------------------------------------------------------------- evaluate.c: gradient and
+// objective (J, in double, fixed order) of eq. 4 at the present position.
+double cau_solver_evaluate(cau_step_solver *solver);
+// The displacements alone, for those who need no gradient.
+void cau_solver_displace(cau_step_solver *solver);
+// Sum of elements' energies of the last evaluation, J.
+double cau_solver_elastic_energy(const cau_step_solver *solver);
+// global.c: increment = -A^-1 gradient, with unilateral constraints if there are any.
+void cau_solver_global(cau_step_solver *solver);
+// Plain A^-1 applied: out = A^-1 in (real vectors by vertex; rows of fixed vertices come out zero).
+void cau_solver_apply_inverse(cau_step_solver *solver, const void *in, void *out, double sign);
+// anderson.c: trial_increment from increment and the history of this step.
+void cau_anderson_start(cau_step_solver *solver);
+int cau_anderson_mix(cau_step_solver *solver, int32_t iteration);
+void cau_anderson_accept(cau_step_solver *solver);

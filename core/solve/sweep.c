@@ -1,0 +1,411 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "solve/sweep.h"
+
+#include <string.h>
+
+#include "constraint/elements.h"
+
+enum {
+	LEAF_COLUMNS = 48,  // subtrees up to this size become one dense block (32 to 64 measured best)
+	NODE_COLUMNS = 128, // no supernode is wider
+	PAD = 16,
+};
+
+// A supernode while the tree is being shaped.
+typedef struct draft {
+	int32_t first, last;   // columns [first, last)
+	int32_t subtree_first; // first column of its whole subtree
+	int64_t entries;       // true nonzeros
+} draft;
+
+static int32_t pad(int32_t count)
+{
+	return (count + PAD - 1) / PAD * PAD;
+}
+
+// Number of distinct rows at or after `last` in columns [first, last); `mark` (n) is scratch of
+// -1s.
+static int32_t rows_below(const cau_factor *factor, int32_t first, int32_t last, int32_t *mark,
+                          int32_t stamp, int32_t *out)
+{
+	int32_t count = 0;
+	for (int32_t j = first; j < last; ++j) {
+		const int32_t *row;
+		const double *value;
+		double pivot;
+		int32_t n = cau_factor_column(factor, j, &row, &value, &pivot);
+		for (int32_t k = 0; k < n; ++k)
+			if (row[k] >= last && mark[row[k]] != stamp) {
+				mark[row[k]] = stamp;
+				if (out)
+					out[count] = row[k];
+				count++;
+			}
+	}
+	return count;
+}
+
+static int32_t column_parent(const cau_factor *factor, int32_t j)
+{
+	const int32_t *row;
+	const double *value;
+	double pivot;
+	return cau_factor_column(factor, j, &row, &value, &pivot) ? row[0] : -1;
+}
+
+static int32_t column_count(const cau_factor *factor, int32_t j)
+{
+	const int32_t *row;
+	const double *value;
+	double pivot;
+	return cau_factor_column(factor, j, &row, &value, &pivot);
+}
+
+// Whether two neighbouring drafts are better held as one dense block than as two: few zeros are
+// added.
+static int worth_merging(int64_t columns, int64_t rows, int64_t entries)
+{
+	int64_t area = columns * (columns + 1) / 2 + columns * rows;
+	return columns <= NODE_COLUMNS && (area - entries) * 5 <= area;
+}
+
+// Shapes the supernodes: leaf subtrees whole, then chains of columns with the same rows, then
+// neighbours where that adds few zeros. Returns their number; drafts has room for n.
+static int32_t shape(const cau_factor *factor, draft *drafts, int32_t *subtree_first, int32_t *mark)
+{
+	int32_t n = cau_factor_size(factor), count = 0;
+	for (int32_t j = 0; j < n; ++j)
+		subtree_first[j] = j;
+	for (int32_t j = 0; j < n; ++j) {
+		int32_t parent = column_parent(factor, j);
+		if (parent >= 0 && subtree_first[j] < subtree_first[parent])
+			subtree_first[parent] = subtree_first[j];
+	}
+	int32_t stamp = 0;
+	memset(mark, -1, (size_t)n * sizeof *mark);
+	for (int32_t j = 0; j < n; ++j) {
+		int64_t entries = 1 + column_count(factor, j);
+		if (j + 1 - subtree_first[j] <= LEAF_COLUMNS) {
+			int64_t sum = entries;
+			while (count && drafts[count - 1].first >= subtree_first[j])
+				sum += drafts[--count].entries;
+			drafts[count++] = (draft){subtree_first[j], j + 1, subtree_first[j], sum};
+			continue;
+		}
+		draft fresh = {j, j + 1, subtree_first[j], entries};
+		while (count) {
+			draft *before = &drafts[count - 1];
+			int32_t parent = column_parent(factor, before->last - 1);
+			if (before->last != fresh.first || parent < fresh.first || parent >= fresh.last)
+				break;
+			int32_t rows = rows_below(factor, before->first, fresh.last, mark, stamp++, NULL);
+			if (!worth_merging(fresh.last - before->first, rows, before->entries + fresh.entries))
+				break;
+			fresh.first = before->first;
+			fresh.entries += before->entries;
+			count--;
+		}
+		drafts[count++] = fresh;
+	}
+	return count;
+}
+
+static void sort_rows(int32_t *row, int32_t count)
+{
+	for (int32_t gap = count / 2; gap > 0; gap /= 2)
+		for (int32_t i = gap; i < count; ++i) {
+			int32_t value = row[i], k = i;
+			for (; k >= gap && row[k - gap] > value; k -= gap)
+				row[k] = row[k - gap];
+			row[k] = value;
+		}
+}
+
+// Cuts the tree into at most CAU_SWEEP_TASKS disjoint subtrees of about equal work; what is above
+// them is done by one thread.
+static void choose_tasks(cau_sweep *sweep, const int64_t *subtree_work,
+                         const int32_t *subtree_first)
+{
+	int32_t count = sweep->supernode_count, candidates[CAU_SWEEP_TASKS], used = 0;
+	for (int32_t s = count - 1; s >= 0 && used < CAU_SWEEP_TASKS; --s)
+		if (sweep->supernode[s].parent < 0)
+			candidates[used++] = s;
+	for (;;) { // open the largest subtree while there is room for its children
+		int32_t largest = -1;
+		for (int32_t i = 0; i < used; ++i)
+			if (subtree_first[candidates[i]] < candidates[i] &&
+			    (largest < 0 || subtree_work[candidates[i]] > subtree_work[candidates[largest]]))
+				largest = i;
+		if (largest < 0)
+			break;
+		int32_t node = candidates[largest], children = 0;
+		for (int32_t s = subtree_first[node]; s < node; ++s)
+			children += sweep->supernode[s].parent == node;
+		if (used - 1 + children > CAU_SWEEP_TASKS)
+			break;
+		candidates[largest] = candidates[--used];
+		for (int32_t s = subtree_first[node]; s < node; ++s)
+			if (sweep->supernode[s].parent == node)
+				candidates[used++] = s;
+	}
+	sort_rows(candidates, used);
+	sweep->task_count = used;
+	for (int32_t i = 0; i < used; ++i) {
+		sweep->task_first[i] = subtree_first[candidates[i]];
+		sweep->task_last[i] = candidates[i] + 1;
+		for (int32_t s = sweep->task_first[i]; s < sweep->task_last[i]; ++s)
+			sweep->supernode[s].task = i;
+	}
+}
+
+// Parents, subtree ranges and work of the supernode tree, then the tasks.
+static void link_tree(cau_sweep *sweep, int64_t *work, int32_t *first)
+{
+	for (int32_t s = 0; s < sweep->supernode_count; ++s) {
+		first[s] = s;
+		work[s] = (int64_t)sweep->supernode[s].padded_rows * sweep->supernode[s].columns;
+	}
+	for (int32_t s = 0; s < sweep->supernode_count; ++s) {
+		cau_supernode *node = &sweep->supernode[s];
+		node->task = -1;
+		node->parent = node->rows ? sweep->column_node[sweep->row_global[node->row]] : -1;
+		if (node->parent >= 0) {
+			work[node->parent] += work[s];
+			if (first[s] < first[node->parent])
+				first[node->parent] = first[s];
+		}
+	}
+	choose_tasks(sweep, work, first);
+}
+
+// Numbers the columns above the tasks and renames the rows that tasks have among them.
+static void name_top_rows(cau_sweep *sweep, int32_t *top_number)
+{
+	for (int32_t s = 0; s < sweep->supernode_count; ++s) {
+		const cau_supernode *node = &sweep->supernode[s];
+		if (node->task >= 0)
+			continue;
+		sweep->top_node[sweep->top_node_count++] = s;
+		for (int32_t j = 0; j < node->columns; ++j) {
+			top_number[node->first + j] = sweep->top_count;
+			sweep->top_column[sweep->top_count++] = node->first + j;
+		}
+	}
+	for (int32_t s = 0; s < sweep->supernode_count; ++s) {
+		cau_supernode *node = &sweep->supernode[s];
+		node->inner_rows = node->rows;
+		for (int32_t i = 0; i < node->rows; ++i) {
+			int32_t row = sweep->row_global[node->row + i];
+			int above = node->task >= 0 && sweep->supernode[sweep->column_node[row]].task < 0;
+			if (above && i < node->inner_rows)
+				node->inner_rows = i;
+			sweep->row_index[node->row + i] = above ? top_number[row] : row;
+		}
+	}
+}
+
+static void lay_out(cau_sweep *sweep)
+{
+	int64_t forward = 0, backward = 0;
+	for (int32_t s = 0; s < sweep->supernode_count; ++s) {
+		cau_supernode *node = &sweep->supernode[s];
+		int32_t rows = node->columns + node->rows;
+		node->padded_rows = pad(rows);
+		node->padded_columns = pad(node->columns);
+		node->forward = forward;
+		node->backward = backward;
+		forward += (int64_t)node->padded_rows * node->columns;
+		backward += (int64_t)node->padded_columns * rows;
+		if (node->padded_rows > sweep->max_rows)
+			sweep->max_rows = node->padded_rows;
+		if (node->padded_columns > sweep->max_columns)
+			sweep->max_columns = node->padded_columns;
+	}
+	sweep->panel_reals = forward > backward ? forward : backward;
+}
+
+static cau_status no_memory(cau_error *error)
+{
+	return cau_fail(error, CAU_NO_MEMORY, NULL, "no memory for the packed factor");
+}
+
+cau_status cau_sweep_create_panels(const cau_sweep *sweep, cau_arena *arena,
+                                   cau_sweep_panels *panels, cau_error *error)
+{
+	size_t size = cau_real_bytes(sweep->single);
+	panels->forward = cau_arena_array(arena, (size_t)sweep->panel_reals, size);
+	panels->backward = cau_arena_array(arena, (size_t)sweep->panel_reals, size);
+	panels->d_inverse = cau_arena_array(arena, (size_t)sweep->n, size);
+	return panels->forward && panels->backward && panels->d_inverse ? CAU_OK : no_memory(error);
+}
+
+static cau_status shape_supernodes(cau_sweep *sweep, cau_arena *arena, const cau_factor *factor,
+                                   cau_arena *scratch, cau_error *error)
+{
+	size_t n = (size_t)sweep->n;
+	draft *drafts = cau_arena_array(scratch, n, sizeof *drafts);
+	int32_t *subtree_first = cau_arena_array(scratch, n, sizeof(int32_t));
+	int32_t *mark = cau_arena_array(scratch, n, sizeof(int32_t));
+	sweep->column_node = cau_arena_array(arena, n, sizeof(int32_t));
+	if (!drafts || !subtree_first || !mark || !sweep->column_node)
+		return no_memory(error);
+	sweep->supernode_count = shape(factor, drafts, subtree_first, mark);
+	sweep->supernode =
+		cau_arena_array(arena, (size_t)sweep->supernode_count, sizeof *sweep->supernode);
+	if (!sweep->supernode)
+		return no_memory(error);
+	memset(mark, -1, n * sizeof *mark);
+	for (int32_t s = 0; s < sweep->supernode_count; ++s) {
+		cau_supernode *node = &sweep->supernode[s];
+		node->first = drafts[s].first;
+		node->columns = drafts[s].last - drafts[s].first;
+		node->row = sweep->row_count;
+		node->rows = rows_below(factor, drafts[s].first, drafts[s].last, mark, s, NULL);
+		sweep->row_count += node->rows;
+		for (int32_t j = 0; j < node->columns; ++j)
+			sweep->column_node[node->first + j] = s;
+	}
+	sweep->row_index = cau_arena_array(arena, (size_t)sweep->row_count, sizeof(int32_t));
+	sweep->row_global = cau_arena_array(arena, (size_t)sweep->row_count, sizeof(int32_t));
+	if (!sweep->row_index || !sweep->row_global)
+		return no_memory(error);
+	memset(mark, -1, n * sizeof *mark);
+	for (int32_t s = 0; s < sweep->supernode_count; ++s) {
+		const cau_supernode *node = &sweep->supernode[s];
+		int32_t *row = sweep->row_global + node->row;
+		rows_below(factor, node->first, node->first + node->columns, mark, s, row);
+		sort_rows(row, node->rows);
+	}
+	lay_out(sweep);
+	return CAU_OK;
+}
+
+cau_status cau_sweep_create(cau_sweep *sweep, cau_arena *arena, const cau_factor *factor,
+                            int single, cau_error *error)
+{
+	*sweep = (cau_sweep){.single = single, .n = cau_factor_size(factor)};
+	cau_arena scratch = {0};
+	cau_status status = shape_supernodes(sweep, arena, factor, &scratch, error);
+	size_t nodes = (size_t)sweep->supernode_count, n = (size_t)sweep->n;
+	int64_t *work = cau_arena_array(&scratch, nodes, sizeof *work);
+	int32_t *first = cau_arena_array(&scratch, nodes, sizeof *first);
+	int32_t *top_number = cau_arena_array(&scratch, n, sizeof *top_number);
+	sweep->top_node = cau_arena_array(arena, nodes, sizeof(int32_t));
+	sweep->top_column = cau_arena_array(arena, n, sizeof(int32_t));
+	if (!status && (!work || !first || !top_number || !sweep->top_node || !sweep->top_column))
+		status = no_memory(error);
+	if (!status) {
+		link_tree(sweep, work, first);
+		name_top_rows(sweep, top_number);
+		sweep->padded_n = pad(sweep->n);
+		sweep->padded_top = pad(sweep->top_count);
+		size_t size = cau_real_bytes(single);
+		cau_sweep_panels panels;
+		status = cau_sweep_create_panels(sweep, arena, &panels, error);
+		cau_sweep_swap_panels(sweep, &panels);
+		sweep->rhs = cau_arena_array(arena, 3 * (size_t)sweep->padded_n, size);
+		sweep->above =
+			cau_arena_array(arena, (size_t)sweep->task_count * 3 * (size_t)sweep->padded_top, size);
+		sweep->scratch =
+			cau_arena_array(arena, (size_t)cau_sweep_scratch_count(sweep), sizeof(double));
+		if (!status && (!sweep->rhs || !sweep->above || !sweep->scratch))
+			status = no_memory(error);
+	}
+	if (!status)
+		cau_sweep_pack(sweep, factor, NULL);
+	cau_arena_finish(&scratch);
+	return status;
+}
+
+void cau_sweep_swap_panels(cau_sweep *sweep, cau_sweep_panels *panels)
+{
+	cau_sweep_panels old = {sweep->forward, sweep->backward, sweep->d_inverse};
+	sweep->forward = panels->forward;
+	sweep->backward = panels->backward;
+	sweep->d_inverse = panels->d_inverse;
+	*panels = old;
+}
+
+int64_t cau_sweep_scratch_count(const cau_sweep *sweep)
+{
+	return (int64_t)NODE_COLUMNS * (sweep->max_rows + NODE_COLUMNS) + sweep->n;
+}
+
+// Dense W of one supernode in double, by columns with stride columns + rows: first L, then L_s^-1
+// in place of the diagonal block and L_r L_s^-1 below.
+static void dense_panel(const cau_sweep *sweep, const cau_supernode *node, const cau_factor *factor,
+                        cau_sweep_panels *panels, double *w, double *place)
+{
+	int32_t columns = node->columns, stride = columns + node->rows;
+	int32_t *row_place = (int32_t *)place;
+	for (int32_t i = 0; i < node->rows; ++i)
+		row_place[sweep->row_global[node->row + i]] = columns + i;
+	memset(w, 0, (size_t)columns * (size_t)stride * sizeof *w);
+	for (int32_t j = 0; j < columns; ++j) {
+		const int32_t *row;
+		const double *value;
+		double pivot;
+		int32_t count = cau_factor_column(factor, node->first + j, &row, &value, &pivot);
+		cau_real_set(panels->d_inverse, sweep->single, node->first + j, 1 / pivot);
+		double *column = w + (int64_t)j * stride;
+		column[j] = 1;
+		for (int32_t k = 0; k < count; ++k) {
+			int32_t local = row[k] - node->first;
+			column[local < columns ? local : row_place[row[k]]] = value[k];
+		}
+	}
+	// Column j of W = column j of L minus the later columns of W weighted by L's entries in j: from
+	// the last column back, W_j = L_j - sum over i > j of L_ij W_i for the rows below; and for the
+	// inverse block W_j = e_j - sum L_ij W_i.
+	for (int32_t j = columns - 1; j >= 0; --j) {
+		double *column = w + (int64_t)j * stride;
+		double weight[NODE_COLUMNS];
+		for (int32_t i = j + 1; i < columns; ++i) {
+			weight[i] = column[i];
+			column[i] = 0;
+		}
+		for (int32_t i = j + 1; i < columns; ++i) {
+			const double *later = w + (int64_t)i * stride;
+			for (int32_t r = i; weight[i] != 0 && r < stride; ++r)
+				column[r] -= weight[i] * later[r];
+		}
+	}
+}
+
+static void pack_node(const cau_sweep *sweep, const cau_supernode *node, const cau_factor *factor,
+                      cau_sweep_panels *panels, double *scratch)
+{
+	double *w = scratch + sweep->n;
+	int32_t columns = node->columns, stride = columns + node->rows;
+	dense_panel(sweep, node, factor, panels, w, scratch);
+	for (int32_t j = 0; j < columns; ++j)
+		for (int32_t r = 0; r < stride; ++r) {
+			double value = w[(int64_t)j * stride + r];
+			cau_real_set(panels->forward, sweep->single,
+			             node->forward + (int64_t)j * node->padded_rows + r, value);
+			cau_real_set(panels->backward, sweep->single,
+			             node->backward + (int64_t)r * node->padded_columns + j, value);
+		}
+}
+
+void cau_sweep_pack_panels(const cau_sweep *sweep, cau_sweep_panels *panels,
+                           const cau_factor *factor, double *scratch)
+{
+	for (int32_t s = 0; s < sweep->supernode_count; ++s)
+		pack_node(sweep, &sweep->supernode[s], factor, panels, scratch);
+}
+
+void cau_sweep_pack(cau_sweep *sweep, const cau_factor *factor, const uint8_t *touched)
+{
+	cau_sweep_panels panels = {sweep->forward, sweep->backward, sweep->d_inverse};
+	for (int32_t s = 0; s < sweep->supernode_count; ++s)
+		if (!touched || touched[s])
+			pack_node(sweep, &sweep->supernode[s], factor, &panels, sweep->scratch);
+}
+
+void cau_sweep_mark_path(const cau_sweep *sweep, int32_t column, uint8_t *touched)
+{
+	for (int32_t s = sweep->column_node[column]; s >= 0 && !touched[s];
+	     s = sweep->supernode[s].parent)
+		touched[s] = 1;
+}

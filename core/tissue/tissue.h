@@ -1,0 +1,102 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// A tissue: the layers of a scene over one vertex array, at rest (sections 3 and 5).
+//
+// Everything here is fixed for a session's life but the materials. Removal and motion live
+// elsewhere.
+#pragma once
+
+#include "base/memory.h"
+#include "cautery/scene.h"
+#include "cautery/status.h"
+#include "mesh/edge_table.h"
+#include "mesh/mesh.h"
+
+typedef struct cau_tissue_layer {
+	cau_layer_def def; // name, kind, materials
+	int32_t first_triangle, triangle_count;
+	int32_t first_tetrahedron, tetrahedron_count;
+	int32_t first_link, link_count;
+	int32_t first_vertex, vertex_count; // of its mesh's copy; a membrane `of` fat has the fat's
+} cau_tissue_layer;
+
+typedef struct cau_tissue {
+	int32_t vertex_count;
+	double *rest;    // m, (vertex_count x 3)
+	double *mass;    // kg, (vertex_count), lumped
+	uint8_t *pinned; // (vertex_count)
+
+	int32_t layer_count;
+	cau_tissue_layer *layer;
+
+	int32_t triangle_count;
+	int32_t *triangle;       // (triangle_count x 3)
+	int32_t *triangle_layer; // (triangle_count)
+	int32_t *triangle_material;
+	double *triangle_frame;      // (triangle_count x 6): unit t_u, t_v (eq. 9)
+	double *triangle_dm_inverse; // 1/m, (triangle_count x 4), row-major D_m'^-1 (eq. 10)
+	double *triangle_area;       // m^2
+	float *texture;              // (triangle_count x 3 x 2)
+
+	int32_t tetrahedron_count;
+	int32_t *tetrahedron; // (tetrahedron_count x 4)
+	int32_t *tetrahedron_layer;
+	int32_t *tetrahedron_material;
+	double
+		*tetrahedron_dm_inverse; // 1/m, (tetrahedron_count x 9), row-major; D_m columns X_i - X_0
+	double *tetrahedron_volume;  // m^3
+
+	int32_t link_count;
+	int32_t *link; // (link_count x 2)
+	int32_t *link_layer;
+	double *link_length; // m
+
+	int32_t hinge_count;     // of sheets with bending stiffness
+	int32_t *hinge_vertex;   // (hinge_count x 4): the shared edge a, b, then the opposite vertices
+	int32_t *hinge_triangle; // (hinge_count x 2)
+	double *hinge_coefficient; // (hinge_count x 4), sum 0: e = sum of c_i x_i
+	double *hinge_weight;      // N/m
+
+	cau_primitives primitives; // views of the arrays above
+	cau_edge_table edges;
+	cau_face_table faces;
+} cau_tissue;
+
+// Builds the tissue of a checked scene. The caller finishes it, on failure too.
+cau_status cau_tissue_make(const cau_scene_def *scene, cau_arena *arena, cau_tissue *tissue,
+                           cau_error *error);
+void cau_tissue_finish(cau_tissue *tissue);
+
+// Vertices of a selection, as bytes (vertex_count) set to 1 in `chosen`; returns how many, or -1 if
+// the layer it names is not there.
+int32_t cau_tissue_select(const cau_tissue *tissue, const cau_selection *selection,
+                          uint8_t *chosen);
+
+int32_t cau_tissue_find_layer(const cau_tissue *tissue, const char *name); // -1: none
+
+// Materials of one element.
+const cau_sheet_material *cau_triangle_material(const cau_tissue *tissue, int32_t triangle);
+const cau_fat_material *cau_tetrahedron_material(const cau_tissue *tissue, int32_t tetrahedron);
+const cau_heat_material *cau_layer_heat(const cau_tissue_layer *layer, int32_t material);
+
+// Elements as the system sees them: rank-r maps G with weight w.
+typedef enum cau_element_kind {
+	CAU_ELEMENT_TRIANGLE,
+	CAU_ELEMENT_TETRAHEDRON,
+	CAU_ELEMENT_LINK,
+	CAU_ELEMENT_HINGE,
+	CAU_ELEMENT_KINDS
+} cau_element_kind;
+
+typedef struct cau_element_map {
+	int32_t vertex_count, rank;
+	int32_t vertex[4];
+	double coefficient[3][4]; // row r of G: sum over i of coefficient[r][i] x_i
+	double weight;            // N m (triangle, tetrahedron; G in 1/m) or N/m (link, hinge)
+} cau_element_map;
+
+int32_t cau_tissue_element_count(const cau_tissue *tissue, int kind);
+void cau_tissue_element_map(const cau_tissue *tissue, int kind, int32_t index,
+                            cau_element_map *map);
+
+// Lame's first and second parameters of small strain, Pa.
+void cau_fat_lame(const cau_fat_material *material, double *lambda, double *mu);

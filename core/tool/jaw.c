@@ -1,0 +1,94 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "tool/jaw.h"
+
+#include "tool/distance.h"
+
+cau_jaw cau_jaw_of(double side, double hinge, double angle_rad)
+{
+	return (cau_jaw){side, hinge, cos(angle_rad), sin(angle_rad)};
+}
+
+cau_plate cau_plate_of(double x_least, double x_most, double half_width, double z_least,
+                       double z_most, double rounding)
+{
+	cau_plate plate = {
+		.least = {x_least, -fmax(half_width, rounding), z_least},
+		.most = {fmax(x_most, x_least + 2 * rounding), fmax(half_width, rounding),
+	             fmax(z_most, z_least + 2 * rounding)},
+		.rounding = rounding,
+	};
+	return plate;
+}
+
+cau_jaw cau_jaw_opposite(const cau_jaw *jaw)
+{
+	return (cau_jaw){-jaw->side, jaw->hinge, jaw->cosine, jaw->sine};
+}
+
+cau_vec3 cau_jaw_to_own(const cau_jaw *jaw, cau_vec3 point)
+{
+	double x = jaw->side * point.x;
+	double z = point.z - jaw->hinge;
+	return (cau_vec3){jaw->cosine * x + jaw->sine * z, point.y, jaw->cosine * z - jaw->sine * x};
+}
+
+static cau_vec3 direction_to_tool(const cau_jaw *jaw, cau_vec3 v)
+{
+	return (cau_vec3){jaw->side * (jaw->cosine * v.x - jaw->sine * v.z), v.y,
+	                  jaw->sine * v.x + jaw->cosine * v.z};
+}
+
+double cau_jaw_plate_distance(const cau_jaw *jaw, const cau_plate *plate, cau_vec3 point,
+                              cau_vec3 *gradient)
+{
+	cau_vec3 center = cau_scale(0.5, cau_add(plate->least, plate->most));
+	cau_vec3 half = cau_scale(0.5, cau_sub(plate->most, plate->least));
+	cau_vec3 core = {fmax(half.x - plate->rounding, 0), fmax(half.y - plate->rounding, 0),
+	                 fmax(half.z - plate->rounding, 0)};
+	double distance = cau_distance_rounded_box(cau_jaw_to_own(jaw, point), center, core,
+	                                           plate->rounding, gradient);
+	if (gradient)
+		*gradient = direction_to_tool(jaw, *gradient);
+	return distance;
+}
+
+// A corner (x, z) turns on a circle about the hinge, and its distance from the ball's centre below
+// the hinge grows with the angle, until it is straight above: the greatest angle decides. Corners
+// above the hinge are taken to come straight above.
+cau_ball cau_jaw_plate_bound(double hinge, double angle_rad, const cau_plate *plate,
+                             double center_z)
+{
+	double cosine = cos(angle_rad), sine = sin(angle_rad);
+	double below = hinge - center_z;
+	double farthest = 0; // squared, in the plane y = 0
+	for (int corner = 0; corner < 4; ++corner) {
+		double x = corner & 1 ? plate->most.x : plate->least.x;
+		double z = corner & 2 ? plate->most.z : plate->least.z;
+		double arm_squared = x * x + z * z;
+		double lowered = z <= 0 ? -z * cosine - x * sine : -sqrt(arm_squared);
+		double squared = below * below + arm_squared - 2 * below * lowered;
+		farthest = squared > farthest ? squared : farthest;
+	}
+	return (cau_ball){{0, 0, center_z}, sqrt(farthest + plate->most.y * plate->most.y)};
+}
+
+static double clamp(double value, double least, double most)
+{
+	return fmin(fmax(value, least), most);
+}
+
+int cau_jaws_hold(const cau_jaw *low, double low_face, const cau_jaw *high, double high_face,
+                  double half_width, double reach, double depth, cau_vec3 point, double *coordinate)
+{
+	cau_vec3 in_low = cau_jaw_to_own(low, point);
+	cau_vec3 in_high = cau_jaw_to_own(high, point);
+	double low_gap = low_face - in_low.x;
+	double high_gap = high_face - in_high.x;
+	if (low_gap < -depth || high_gap < -depth || fabs(point.y) > half_width)
+		return 0;
+	if (fmax(in_low.z, in_high.z) > 0 || fmin(in_low.z, in_high.z) < -reach)
+		return 0;
+	if (coordinate)
+		*coordinate = clamp((low_gap - high_gap) / fmax(low_gap + high_gap, depth), -1, 1);
+	return 1;
+}

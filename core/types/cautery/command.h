@@ -1,0 +1,57 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Typed commands to a session: what a driver or an operator can ask of a tissue. Shared by core
+// (which applies them at tick borders) and protocol (which reads and writes them as JSON).
+#pragma once
+
+#include "cautery/scene.h"
+
+// code, JSON name
+#define CAU_COMMAND_TABLE(X)                                                                       \
+	X(TOOL_ADD, "tool.add")                                                                        \
+	X(TOOL_REMOVE, "tool.remove")                                                                  \
+	X(TOOL_CONFIGURE, "tool.configure")                                                            \
+	X(TOOL_MOVE, "tool.move")                                                                      \
+	X(TOOL_ENERGIZE, "tool.energize")                                                              \
+	X(TOOL_GRASP, "tool.grasp")                                                                    \
+	X(TOOL_RELEASE, "tool.release")                                                                \
+	X(PIN, "pin")                                                                                  \
+	X(UNPIN, "unpin")                                                                              \
+	X(SET_MATERIAL, "material.set")                                                                \
+	X(SET_GRAVITY, "gravity.set")                                                                  \
+	X(SET_FORCE, "force.set")
+
+typedef enum cau_command_kind {
+#define X(code, name) CAU_COMMAND_##code,
+	CAU_COMMAND_TABLE(X)
+#undef X
+		CAU_COMMAND_COUNT
+} cau_command_kind;
+
+// One command. Only the members named beside a kind are read.
+typedef struct cau_command {
+	int kind;                  // CAU_COMMAND_*
+	uint64_t tick;             // applied at the first tick border at or after this; 0: the next one
+	uint64_t sequence;         // the driver's own count; reported back as last applied
+	char tool[CAU_NAME_BYTES]; // all TOOL_* but TOOL_ADD
+	union {
+		cau_tool_def definition; // TOOL_ADD, TOOL_CONFIGURE (its pose is ignored)
+		struct {
+			cau_pose pose;
+			double jaw;          // 0 closed to 1 open
+		} move;                  // TOOL_MOVE
+		int32_t energized;       // TOOL_ENERGIZE
+		cau_selection selection; // PIN, UNPIN
+		struct {
+			char layer[CAU_NAME_BYTES];
+			int32_t kind; // CAU_LAYER_*: which of the three follows
+			cau_sheet_material sheet;
+			cau_fat_material fat;
+			cau_link_material link;
+		} material;             // SET_MATERIAL: replaces the layer's material of that region
+		double gravity_m_s2[3]; // SET_GRAVITY
+		struct {
+			cau_selection selection;
+			double force_n[3]; // on each chosen vertex, until set again; zero ends it
+		} force;               // SET_FORCE
+	} as;
+} cau_command;

@@ -1,0 +1,18 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Why a tool's energy is off; shared by core, protocol and the server's watchdog.
+#pragma once
+
+// code, wire name
+#define CAU_ENERGY_OFF_TABLE(X)                                                                    \
+	X(NEVER_ENABLED, "never_enabled")                                                              \
+	X(COMMANDED, "commanded")                                                                      \
+	X(WATCHDOG, "watchdog")                                                                        \
+	X(RESTORED, "restored")                                                                        \
+	X(TAKEN_OVER, "taken_over")
+
+typedef enum cau_energy_off {
+#define X(code, name) CAU_ENERGY_OFF_##code,
+	CAU_ENERGY_OFF_TABLE(X)
+#undef X
+		CAU_ENERGY_OFF_COUNT
+} cau_energy_off;

@@ -1,0 +1,26 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// The rule for names of scenes, meshes, layers, sessions and tools: they become ROS names,
+// partitions and URLs.
+#pragma once
+
+#include <stdbool.h>
+#include <stddef.h>
+
+#include "cautery/scene.h"
+
+#define CAU_NAME_RULE "[a-z][a-z0-9]*([_-][a-z0-9]+)*, at most 48 bytes"
+
+static inline bool cau_name_is_valid(const char *name)
+{
+	bool word = false; // the byte before ends a word
+	for (size_t i = 0; name[i]; i++) {
+		bool letter = name[i] >= 'a' && name[i] <= 'z';
+		bool digit = name[i] >= '0' && name[i] <= '9';
+		bool joint = name[i] == '_' || name[i] == '-';
+		if (i + 1 >= CAU_NAME_BYTES || (i == 0 && !letter) || !(letter || digit || joint) ||
+		    (joint && !word))
+			return false;
+		word = !joint;
+	}
+	return word;
+}

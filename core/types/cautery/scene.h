@@ -1,0 +1,309 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// A scene: the plain data from which a session is made. Shared by core (which checks and builds it)
+// and protocol (which reads and writes it as JSON). SI units; temperatures in degrees Celsius.
+//
+// Every scalar parameter stands once, in a table X(field, default, least, most, unit, meaning).
+// The tables make the struct fields, the defaults, the range checks, the JSON fields (JSON name =
+// field name) and the documentation. Lengths, vectors and choices stand beside them.
+#pragma once
+
+#include <stddef.h>
+#include <stdint.h>
+
+enum {
+	CAU_NAME_BYTES = 49, // [a-z][a-z0-9]*([_-][a-z0-9]+)*, at most 48 bytes and a zero
+	CAU_TEXT_BYTES = 256,
+	CAU_MAX_MESHES = 8,
+	CAU_MAX_LAYERS = 12,
+	CAU_MAX_MATERIALS = 16, // of one layer: the default and its regions
+	CAU_MAX_PINS = 16,
+	CAU_MAX_TOOLS = 8,
+};
+
+#define CAU_FIELD(field, default_, least, most, unit, meaning) double field;
+
+// ---- time and solver ------------------------------------------------------------------------
+#define CAU_TIME_TABLE(X)                                                                          \
+	X(step_s, 1.0 / 60.0, 1.0 / 1000.0, 1.0 / 30.0, "s", "time step; one tick")                    \
+	X(damping_per_s, 0.0, 0.0, 1000.0, "1/s", "v <- v exp(-c dt)")                                 \
+	X(ambient_c, 37.0, -20.0, 60.0, "degC", "temperature of the body around the tools")            \
+	X(tolerance, 0.0, 0.0, 1.0, "1", "stop a step at this relative residual; 0: never")
+
+#define CAU_SOLVER_TABLE(X) /* code, JSON name */                                                  \
+	X(CHOLESKY, "cholesky")                                                                        \
+	X(DIAGONAL, "diagonal")
+#define CAU_PRECISION_TABLE(X)                                                                     \
+	X(SINGLE, "single")                                                                            \
+	X(DOUBLE, "double")
+
+// ---- meshes ---------------------------------------------------------------------------------
+#define CAU_MESH_SOURCE_TABLE(X)                                                                   \
+	X(SHEET, "sheet")     /* size_m[0..1], cells[0..1]: two triangles a cell, UV along x and y */  \
+	X(SLAB, "slab")       /* size_m, cells: six tetrahedra a cell */                               \
+	X(PATTERN, "pattern") /* figure 5: a small fan of cells[0] triangles round one vertex */       \
+	X(FILE, "file")       /* .msh, .obj, .vtk */                                                   \
+	X(BYTES, "bytes")     /* an uploaded file, in memory */
+
+typedef struct cau_mesh_def {
+	char name[CAU_NAME_BYTES];
+	int source;                // CAU_MESH_*
+	double size_m[3];          // generated meshes; centred on the origin in x and y, top at z = 0
+	int32_t cells[3];          // generated meshes
+	double texture_turn_rad;   // generated sheets: turns the UV axes against the mesh's axes
+	char file[CAU_TEXT_BYTES]; // FILE: relative to the scene file. BYTES: name, for its ending
+	double unit_m;             // metres in one unit of the file (0.001 for millimetres)
+	double translate_m[3];     // applied after the unit
+	const void *bytes;         // BYTES: borrowed until the session is created
+	size_t byte_count;
+} cau_mesh_def;
+
+// ---- materials ------------------------------------------------------------------------------
+#define CAU_MODEL_TABLE(X)                                                                         \
+	X(NEOHOOKEAN, "neohookean")                                                                    \
+	X(COROTATED, "corotated")                                                                      \
+	X(STVK, "stvk")                                                                                \
+	X(ENERGY, "energy") /* eq. 14-17 as printed */
+#define CAU_LIMIT_TABLE(X)                                                                         \
+	X(NONE, "none")                                                                                \
+	X(TARGET, "target") /* F^T F is driven to T (eq. 11, 12) */                                    \
+	X(RANGE, "range")   /* strains kept inside an interval */
+#define CAU_PROJECTION_TABLE(X)                                                                    \
+	X(CLOSED_FORM, "closed_form") /* P = Q T^(1/2) */                                              \
+	X(LINEARISED, "linearised")   /* eq. 13 in F */
+
+// Common to all tissue that heat parts (section 6.2, 6.3).
+#define CAU_HEAT_TABLE(X)                                                                          \
+	X(ignition_c, 172.0, 1.0, 2000.0, "degC", "an edge parts when its exposure exceeds this")      \
+	X(ignition_spread_c, 0.0, 0.0, 500.0, "degC", "standard deviation over edges, drawn by seed")  \
+	X(absorption_per_s, 0.4, 0.0, 1000.0, "1/s", "xi of eq. 20")
+
+#define CAU_SHEET_TABLE(X)                                                                         \
+	X(thickness_m, 5e-4, 1e-6, 0.05, "m", "sheet thickness")                                       \
+	X(density_kg_m3, 1100.0, 1.0, 25000.0, "kg/m^3", "mass density")                               \
+	X(limit_stiffness_pa, 1e6, 1.0, 1e10, "Pa", "stiffness k of the strain limit")                 \
+	X(shear_max, 0.0, 0.0, 0.99, "1", "range: |k_12| / sqrt(k_11 k_22) stays below")               \
+	X(bending_stiffness_nm, 0.0, 0.0, 10.0, "N m", "bending; 0: no hinges")
+
+#define CAU_FAT_TABLE(X)                                                                           \
+	X(density_kg_m3, 911.0, 1.0, 25000.0, "kg/m^3", "mass density")                                \
+	X(young_modulus_pa, 5000.0, 1.0, 1e10, "Pa", "Young's modulus")                                \
+	X(poisson_ratio, 0.4, 0.0, 0.45, "1", "Poisson's ratio; at most 1/3 for model energy")         \
+	X(limit_stiffness_pa, 1000.0, 1.0, 1e10, "Pa", "stiffness of the strain limit and shrinkage")  \
+	X(shear_max, 0.0, 0.0, 0.99, "1", "range: |k_ab| / sqrt(k_aa k_bb) stays below")               \
+	X(yield_strain, 0.0, 0.0, 10.0, "1", "gamma_1 (strain with the half); plastic if gamma_2 > 0") \
+	X(plastic_strain_max, 0.0, 0.0, 10.0, "1", "gamma_2; 0: no plasticity")
+
+#define CAU_LINK_TABLE(X)                                                                          \
+	X(young_modulus_pa, 1e5, 1.0, 1e11, "Pa", "Young's modulus of a truss")                        \
+	X(area_m2, 1e-6, 1e-12, 1.0, "m^2", "cross section of a truss")                                \
+	X(reach_m, 5e-3, 1e-6, 1.0, "m", "longest truss")                                              \
+	X(per_vertex, 3.0, 1.0, 8.0, "1", "trusses from each vertex of the upper sheet")
+
+typedef struct cau_heat_material {
+	CAU_HEAT_TABLE(CAU_FIELD)
+} cau_heat_material;
+
+typedef struct cau_sheet_material {
+	int32_t region; // of the mesh file; ignored for the layer's first material, its default
+	CAU_SHEET_TABLE(CAU_FIELD)
+	int limit;            // CAU_LIMIT_*
+	int projection;       // CAU_PROJECTION_*
+	double target[3];     // TARGET: t_00, t_11, t_01: squared stretches; T positive definite
+	double strain_min[2]; // RANGE: engineering strain sqrt(k_aa) - 1 along u and v
+	double strain_max[2];
+	double shrink[2]; // S_x, S_y of eq. 21: squared stretches
+	cau_heat_material heat;
+} cau_sheet_material;
+
+typedef struct cau_fat_material {
+	int32_t region;
+	CAU_FAT_TABLE(CAU_FIELD)
+	int model; // CAU_MODEL_*
+	int limit;
+	int projection;
+	double target[6]; // t_00, t_11, t_22, t_01, t_02, t_12 in the material axes
+	double strain_min[3];
+	double strain_max[3];
+	double shrink[3];
+	cau_heat_material heat;
+} cau_fat_material;
+
+typedef struct cau_link_material {
+	CAU_LINK_TABLE(CAU_FIELD)
+	cau_heat_material heat;
+} cau_link_material;
+
+// ---- layers ---------------------------------------------------------------------------------
+#define CAU_LAYER_TABLE(X)                                                                         \
+	X(FASCIA, "fascia")     /* a sheet over its own mesh's triangles */                            \
+	X(MEMBRANE, "membrane") /* a sheet; with `of`, the boundary of that fat layer */               \
+	X(FAT, "fat")           /* the tetrahedra of its mesh */                                       \
+	X(LINKS, "links")       /* trusses from each vertex of layer `of` to the nearest of `to` */
+
+typedef struct cau_layer_def {
+	char name[CAU_NAME_BYTES];
+	int kind;                  // CAU_LAYER_*
+	char mesh[CAU_NAME_BYTES]; // FASCIA, FAT, MEMBRANE without `of`
+	char of[CAU_NAME_BYTES];   // MEMBRANE: a fat layer. LINKS: the upper layer
+	char to[CAU_NAME_BYTES];   // LINKS: the lower layer
+	double fibre[3];        // material direction where the mesh has no UV; fat: first material axis
+	int32_t material_count; // at least 1; materials[0] is the default
+	cau_sheet_material sheet[CAU_MAX_MATERIALS]; // FASCIA, MEMBRANE
+	cau_fat_material fat[CAU_MAX_MATERIALS];     // FAT
+	cau_link_material link;                      // LINKS
+} cau_layer_def;
+
+// ---- pins and other choices of vertices -------------------------------------------------------
+#define CAU_SELECT_TABLE(X)                                                                        \
+	X(RIM, "rim")       /* vertices on an edge that only one triangle of the sheet `layer` has */  \
+	X(BOX, "box")       /* rest position inside [least_m, most_m] */                               \
+	X(SPHERE, "sphere") /* rest position within radius_m of center_m */                            \
+	X(NEAREST, "nearest") /* the one vertex nearest to center_m */
+
+typedef struct cau_selection {
+	int kind;                   // CAU_SELECT_*
+	char layer[CAU_NAME_BYTES]; // empty: any layer
+	double least_m[3];
+	double most_m[3];
+	double center_m[3];
+	double radius_m;
+} cau_selection;
+
+// ---- tools ----------------------------------------------------------------------------------
+#define CAU_TOOL_SHAPE_TABLE(X)                                                                    \
+	X(SPHERE, "sphere")   /* hot ball at the tip, cold shaft */                                    \
+	X(CAPSULE, "capsule") /* hot needle of tip_length_m, cold shaft */                             \
+	X(HOOK, "hook")       /* monopolar L hook: hot foot and heel, cold shaft */                    \
+	X(SPATULA, "spatula") /* hot flat blade, cold shaft */                                         \
+	X(BIPOLAR, "bipolar") /* two jaws that close, hot inner faces */                               \
+	X(SHEARS, "shears")   /* ultrasonic: one hot blade, one cold clamping jaw */                   \
+	X(GRASPER, "grasper") /* two cold jaws */
+
+// Sizes of a tool. Its own frame: the tip at the origin, the shaft along +z, jaws open in x.
+#define CAU_TOOL_TABLE(X)                                                                          \
+	X(hot_radius_m, 3e-3, 2e-4, 0.05, "m", "radius of the hot part")                               \
+	X(tip_length_m, 8e-3, 1e-3, 0.1, "m", "length of needle, hook foot, blade or jaws")            \
+	X(shaft_radius_m, 2.5e-3, 2e-4, 0.05, "m", "radius of the shaft")                              \
+	X(shaft_length_m, 0.12, 1e-3, 1.0, "m", "length of the shaft")                                 \
+	X(jaw_open_rad, 0.6, 0.05, 1.5, "rad", "angle between open jaws")                              \
+	X(temperature_c, 170.0, 0.0, 1500.0, "degC", "temperature of the hot part while energized")    \
+	X(grid_cells, 16.0, 8.0, 64.0, "1", "nodes of the heat grid along each axis")                  \
+	X(grid_step_m, 1e-3, 5e-5, 0.01, "m", "spacing dl of the heat grid; at most the hot radius")   \
+	X(diffusivity_m2_s, 4.2e-6, 0.0, 1e-3, "m^2/s", "alpha of eq. 18")                             \
+	X(max_speed_m_s, 0.5, 1e-3, 5.0, "m/s", "faster commands are followed at this speed")          \
+	X(max_turn_rad_s, 12.0, 0.1, 100.0, "rad/s", "likewise for turning")                           \
+	X(friction, 0.2, 0.0, 2.0, "1", "Coulomb coefficient of the cold parts")                       \
+	X(drag_ns_m, 0.05, 0.0, 100.0, "N s/m", "viscous drag of the hot part on each vertex in it")   \
+	X(grasp_stiffness_n_m, 200.0, 1.0, 1e6, "N/m", "of the attachment of one grasped vertex")      \
+	X(slip_force_n, 2.0, 0.0, 1000.0, "N", "an attached vertex slips above this force")            \
+	X(force_max_n, 20.0, 0.01, 1000.0, "N", "clamp of the force reported to drivers")
+
+typedef struct cau_pose {
+	double position_m[3];
+	double rotation[4]; // unit quaternion w, x, y, z: tool frame to world
+} cau_pose;
+
+typedef struct cau_tool_def {
+	char name[CAU_NAME_BYTES];
+	int shape; // CAU_TOOL_*
+	CAU_TOOL_TABLE(CAU_FIELD)
+	cau_pose pose; // first pose
+} cau_tool_def;
+
+// ---- the scripted motions that benchmarks and demonstrations share ------------------------------
+typedef struct cau_pull_def { // the vertices chosen are moved by `move_m` in `duration_s`
+	int32_t present;
+	cau_selection selection;
+	double move_m[3];
+	double duration_s;
+} cau_pull_def;
+
+typedef struct cau_cut_def { // the tool dwells at `from_m`, then is drawn to `to_m`
+	int32_t present;
+	char tool[CAU_NAME_BYTES];
+	double from_m[3];
+	double to_m[3];
+	double rotation[4];
+	double dwell_s;
+	double speed_m_s;
+} cau_cut_def;
+
+// ---- the scene --------------------------------------------------------------------------------
+typedef struct cau_scene_def {
+	char name[CAU_NAME_BYTES];
+	char description[CAU_TEXT_BYTES];
+	char directory[CAU_TEXT_BYTES]; // where relative mesh files are looked up; not in the JSON
+	CAU_TIME_TABLE(CAU_FIELD)
+	int32_t iterations; // of a step, 1 to 1000
+	int solver;         // CAU_SOLVER_*
+	int precision;      // CAU_PRECISION_* of the local and global steps
+	uint64_t seed;      // of everything drawn at random (ignition temperatures)
+	double gravity_m_s2[3];
+	int32_t mesh_count;
+	cau_mesh_def meshes[CAU_MAX_MESHES];
+	int32_t layer_count;
+	cau_layer_def layers[CAU_MAX_LAYERS];
+	int32_t pin_count;
+	cau_selection pins[CAU_MAX_PINS];
+	int32_t tool_count;
+	cau_tool_def tools[CAU_MAX_TOOLS];
+	cau_pull_def pull;
+	cau_cut_def cut;
+} cau_scene_def; // about 70 KiB: keep it on the heap
+
+#undef CAU_FIELD
+
+typedef enum cau_solver {
+#define X(code, name) CAU_SOLVER_##code,
+	CAU_SOLVER_TABLE(X)
+#undef X
+		CAU_SOLVER_COUNT
+} cau_solver;
+typedef enum cau_precision {
+#define X(code, name) CAU_PRECISION_##code,
+	CAU_PRECISION_TABLE(X)
+#undef X
+		CAU_PRECISION_COUNT
+} cau_precision;
+typedef enum cau_mesh_source {
+#define X(code, name) CAU_MESH_##code,
+	CAU_MESH_SOURCE_TABLE(X)
+#undef X
+		CAU_MESH_SOURCE_COUNT
+} cau_mesh_source;
+typedef enum cau_model {
+#define X(code, name) CAU_MODEL_##code,
+	CAU_MODEL_TABLE(X)
+#undef X
+		CAU_MODEL_COUNT
+} cau_model;
+typedef enum cau_limit {
+#define X(code, name) CAU_LIMIT_##code,
+	CAU_LIMIT_TABLE(X)
+#undef X
+		CAU_LIMIT_COUNT
+} cau_limit;
+typedef enum cau_projection {
+#define X(code, name) CAU_PROJECTION_##code,
+	CAU_PROJECTION_TABLE(X)
+#undef X
+		CAU_PROJECTION_COUNT
+} cau_projection;
+typedef enum cau_layer_kind {
+#define X(code, name) CAU_LAYER_##code,
+	CAU_LAYER_TABLE(X)
+#undef X
+		CAU_LAYER_COUNT
+} cau_layer_kind;
+typedef enum cau_select_kind {
+#define X(code, name) CAU_SELECT_##code,
+	CAU_SELECT_TABLE(X)
+#undef X
+		CAU_SELECT_COUNT
+} cau_select_kind;
+typedef enum cau_tool_shape_kind {
+#define X(code, name) CAU_TOOL_##code,
+	CAU_TOOL_SHAPE_TABLE(X)
+#undef X
+		CAU_TOOL_SHAPE_COUNT
+} cau_tool_shape_kind;

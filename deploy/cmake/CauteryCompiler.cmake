@@ -1,0 +1,32 @@
+# Compiler rules that every target of the project shares.
+set(CMAKE_C_STANDARD 17)
+set(CMAKE_C_STANDARD_REQUIRED ON)
+set(CMAKE_C_EXTENSIONS ON) # vector extensions, POSIX
+set(CMAKE_EXPORT_COMPILE_COMMANDS ON)
+set(CMAKE_POSITION_INDEPENDENT_CODE ON)
+
+add_library(cautery_compiler INTERFACE)
+target_compile_options(cautery_compiler INTERFACE
+  -Wall -Wextra -Wpedantic -Wshadow -Wconversion -Wvla -Wstrict-prototypes -Wmissing-prototypes
+  -ffp-contract=off -fno-math-errno -fno-omit-frame-pointer)
+target_compile_definitions(cautery_compiler INTERFACE _GNU_SOURCE)
+if(CAUTERY_WERROR)
+  target_compile_options(cautery_compiler INTERFACE -Werror)
+endif()
+if(CAUTERY_FUZZ)
+  if(NOT CMAKE_C_COMPILER_ID STREQUAL "Clang")
+    message(FATAL_ERROR "CAUTERY_FUZZ needs clang (libFuzzer): configure with -DCMAKE_C_COMPILER=clang")
+  endif()
+  if(NOT CAUTERY_SANITIZE)
+    set(CAUTERY_SANITIZE address,undefined)
+  endif()
+  target_compile_options(cautery_compiler INTERFACE -fsanitize=fuzzer-no-link)
+endif()
+if(CAUTERY_SANITIZE)
+  target_compile_options(cautery_compiler INTERFACE -fsanitize=${CAUTERY_SANITIZE} -fno-sanitize-recover=all)
+  target_link_options(cautery_compiler INTERFACE -fsanitize=${CAUTERY_SANITIZE})
+  if(CMAKE_C_COMPILER_ID STREQUAL "GNU")
+    # gcc's instrumented code trips its own flow analysis; the plain builds keep the warning.
+    target_compile_options(cautery_compiler INTERFACE -Wno-maybe-uninitialized)
+  endif()
+endif()

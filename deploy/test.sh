@@ -1,0 +1,116 @@
+#!/usr/bin/env bash
+# SPDX-License-Identifier: GPL-3.0-or-later
+# Installs what is missing, builds, and runs the tests. Ends with ctest's closing lines; the exit
+# code is 0 only if everything was built and every test passed. See --help.
+set -euo pipefail
+exec </dev/null
+
+usage() {
+	cat <<'END'
+Usage: deploy/test.sh [--fast | --full | --long] [--no-install]
+
+  (nothing)     the Release suite, browser tests included; address and undefined-behaviour
+                sanitizers over the unit and e2e tests; 10 s of fuzzing for each parser
+  --fast        the Release suite alone
+  --full        adds the thread sanitizer over the unit, determinism and e2e tests, clang-tidy,
+                tests labelled full, the whole tree built with clang; 60 s of fuzzing
+  --long        as --full, with tests labelled long, and 600 s of fuzzing
+  --no-install  fail if a package of deploy/packages.txt is missing, instead of installing it
+  --help        this text
+
+Build trees: build, build-asan, build-fuzz, build-tsan. Logs of the stages: build/log.
+Environment: CAUTERY_MESHES, a folder with further test meshes (default: ../shared/meshes beside
+the source folder, if there is one); CAUTERY_JOBS, parallel compilers (default: one per core).
+END
+}
+
+level=default
+install=yes
+for argument in "$@"; do
+	case $argument in
+	--fast | --full | --long) level=${argument#--} ;;
+	--no-install) install=no ;;
+	--help | -h)
+		usage
+		exit 0
+		;;
+	*)
+		echo "deploy/test.sh: unknown option '$argument'" >&2
+		usage >&2
+		exit 2
+		;;
+	esac
+done
+
+source_folder=$(cd "$(dirname "${BASH_SOURCE[0]}")/.." && pwd)
+cd "$source_folder"
+logs=$source_folder/build/log
+suite=$source_folder/build/suite
+jobs=${CAUTERY_JOBS:-$(nproc)}
+mkdir -p "$logs"
+
+export LC_ALL=C.UTF-8
+if [ ! -w "${HOME:-}" ]; then # npm and git want one
+	export HOME=$source_folder/build/home
+	mkdir -p "$HOME"
+fi
+if [ -z "${CAUTERY_MESHES:-}" ] && [ -d ../shared/meshes ]; then
+	CAUTERY_MESHES=$(cd ../shared/meshes && pwd)
+	export CAUTERY_MESHES
+fi
+export ASAN_OPTIONS=${ASAN_OPTIONS:-detect_stack_use_after_return=1:strict_string_checks=1}
+export UBSAN_OPTIONS=${UBSAN_OPTIONS:-print_stacktrace=1}
+export TSAN_OPTIONS=${TSAN_OPTIONS:-second_deadlock_stack=1}
+
+script=deploy/test.sh
+. deploy/install.sh
+
+# build PRESET TARGET CONFIGURE_ARGUMENTS...: the folder is the preset's.
+build() {
+	local preset=$1 target=$2
+	shift 2
+	heading "build: $preset"
+	quietly "configure-$preset" cmake --preset "$preset" "$@"
+	quietly "build-$preset" cmake --build --preset "$preset" --target "$target" --parallel "$jobs"
+}
+
+# collect NAME TREE LABELS WITHOUT TIMEOUT_FACTOR: adds a tree's tests to the suite.
+collect() {
+	python3 deploy/collect_tests.py "$suite" "$@"
+}
+
+without='full|long'
+fuzz_seconds=10
+fuzz_target=fuzz_targets
+tidy=OFF
+long=OFF
+case $level in
+full) without=long fuzz_seconds=60 fuzz_target=all tidy=ON ;;
+long) without='' fuzz_seconds=600 fuzz_target=all tidy=ON long=ON ;;
+esac
+
+# tests that only look at the sources need no second tree
+sanitizers_without=static${without:+|$without}
+
+install_packages
+if [ "$install" = yes ]; then
+	install_npm_packages clients/web
+fi
+export CMAKE_GENERATOR=${CMAKE_GENERATOR:-Ninja}
+rm -rf "$suite"
+
+build release all -DCAUTERY_LONG=$long
+collect release build '' "$without" 1
+if [ "$level" != fast ]; then
+	build asan-ubsan all
+	collect asan build-asan 'unit|e2e' "$sanitizers_without" 4
+	build fuzz $fuzz_target -DCAUTERY_FUZZ_SECONDS=$fuzz_seconds -DCAUTERY_TIDY=$tidy
+	collect clang build-fuzz 'fuzz|tidy' '' 1
+fi
+if [ "$level" = full ] || [ "$level" = long ]; then
+	build tsan all
+	collect tsan build-tsan 'unit|determinism|e2e' "$sanitizers_without" 10
+fi
+
+heading "tests"
+exec ctest --test-dir "$suite" --parallel 2 --output-on-failure --no-label-summary --no-tests=error

@@ -1,0 +1,58 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Every JSON type of the wire in one form: objects of messages.def, commands, scenes. What is
+// printed for people, other languages and machines all comes from here.
+#pragma once
+
+#include "rpc/message_table.h"
+
+typedef enum property_kind {
+	PROPERTY_FLAG,
+	PROPERTY_INTEGER,
+	PROPERTY_NUMBER,
+	PROPERTY_NUMBERS,  // array of least_count to count numbers
+	PROPERTY_INTEGERS, // array of least_count to count integers
+	PROPERTY_ROTATION,
+	PROPERTY_TEXT,
+	PROPERTY_NAME,
+	PROPERTY_HEX64,
+	PROPERTY_CHOICE,
+	PROPERTY_CHOICES, // a set
+	PROPERTY_OBJECT,  // of type `type`
+	PROPERTY_OBJECTS, // array of at most `count`
+} property_kind;
+
+typedef struct property {
+	const char *name;
+	property_kind kind;
+	bool required;
+	double least, most;
+	int32_t count, least_count;
+	const cau_choices *choices;
+	int32_t fixed; // CHOICE: the one word allowed, or -1
+	const char *type;
+	const char *unit, *meaning;
+	const double *default_value; // NUMBER of a scene or command, or NULL
+} property;
+
+enum { NAME_BYTES = 48, PROPERTIES_MAX = 48, TYPES_MAX = 128, VARIANTS_MAX = 4 };
+
+typedef struct type {
+	char name[NAME_BYTES]; // PascalCase
+	const char *meaning;
+	bool strict; // other members are refused
+	int property_count;
+	property properties[PROPERTIES_MAX];
+	int variant_count; // a union: one of these types, and no properties
+	char variants[VARIANTS_MAX][NAME_BYTES];
+} type;
+
+typedef struct model {
+	int type_count;
+	type types[TYPES_MAX];
+	char params[CAU_METHOD_COUNT][NAME_BYTES];  // type of each method's params
+	char results[CAU_METHOD_COUNT][NAME_BYTES]; // and result; empty: none
+} model;
+
+// Fills *made, which is large: keep it static. Aborts if a bound above is too small.
+void model_make(model *made);
+const type *model_find(const model *of, const char *name);

@@ -1,0 +1,50 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Commands as JSON, the same on the wire, in logs and in scripts:
+//
+//     {"tick": 60, "command": "tool.move", "tool": "hook",
+//      "position_m": [0, 0, 0.002], "rotation": [1, 0, 0, 0], "jaw": 0}
+//
+// Members beside "command", "tick" (0: at once) and "sequence" (0), by command:
+//     tool.add         name, shape, and what else a scene's tool may have
+//     tool.remove      tool
+//     tool.configure   tool, shape, sizes as in a scene's tool: replaces them all, defaults where
+//     absent tool.move        tool, position_m, rotation, jaw (0) tool.energize    tool, energized
+//     (true or false) tool.grasp       tool tool.release     tool pin, unpin       selection
+//     material.set     layer, kind (the layer's), region (0), and the members of such a material
+//     gravity.set      gravity_m_s2
+//     force.set        selection, force_n
+// Rotations are quaternions w, x, y, z, within 1e-3 of unit length; they are normalised.
+#pragma once
+
+#include <stdbool.h>
+#include <stddef.h>
+
+#include "cautery/command.h"
+#include "cautery/status.h"
+
+enum { CAU_COMMAND_JSON_MAX_BYTES = 16384 };
+
+// Errors: CAU_BAD_SYNTAX, CAU_LIMIT, CAU_NO_MEMORY, CAU_BAD_VALUE with the member's path.
+cau_status cau_command_from_json(const char *text, size_t bytes, cau_command *command,
+                                 cau_error *error);
+
+// One line without its end. Writes every member that the kind has; see cau_scene_to_json for
+// `bytes`.
+cau_status cau_command_to_json(const cau_command *command, char *buffer, size_t capacity,
+                               size_t *bytes, cau_error *error);
+
+// A script: one command as JSON on each line, ticks never falling; empty lines are skipped.
+typedef struct cau_script {
+	const char *name; // for error->file; may be NULL
+	const char *text; // borrowed
+	size_t bytes;
+	size_t offset; // of the next line
+	int32_t line;  // last read, from 1
+	uint64_t tick; // last read
+} cau_script;
+
+void cau_script_begin(cau_script *script, const char *name, const char *text, size_t bytes);
+
+// Reads the next command. *end is true (and *command untouched) after the last one. The reason of
+// an error starts with the script's line; reading may go on after it.
+cau_status cau_script_next(cau_script *script, cau_command *command, bool *end, cau_error *error);

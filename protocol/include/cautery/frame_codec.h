@@ -1,0 +1,134 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Binary frames: positions, face mask, scalars and tools of one session, as key frames and as
+// deltas against what the decoder holds. Pure functions over the caller's buffers; nothing is
+// allocated.
+//
+//     size_t bytes = cau_frame_encoder_bytes(&def);
+//     cau_frame_encoder *encoder;
+//     cau_frame_encoder_init(malloc(bytes), bytes, &def, random_epoch, &encoder, &error);
+//     each due tick:
+//         cau_frame_encode(encoder, &sample, buffer, capacity, &count, &error);  // to the
+//         subscribers if (someone joined or lost a frame)
+//             cau_frame_encode_key(encoder, buffer, capacity, &count, &error);   // to those
+//
+// The encoder keeps what every decoder in step with it holds, in whole steps, so that errors never
+// add up: the key frame at n makes the same state as the chain of deltas up to n.
+#pragma once
+
+#include "cautery/status.h"
+#include "cautery/stream.h"
+
+enum {
+	CAU_FRAME_VERSION = 1,
+	CAU_FRAME_HEADER_BYTES = 72,
+	CAU_FRAME_SECTION_BYTES = 8, // before each section's payload
+};
+
+// code, number, wire name
+#define CAU_FRAME_KIND_TABLE(X)                                                                    \
+	X(KEY, 1, "key")                                                                               \
+	X(DELTA, 2, "delta")                                                                           \
+	X(TOPOLOGY, 3, "topology")
+typedef enum cau_frame_kind {
+#define X(code, number, name) CAU_FRAME_##code = (number),
+	CAU_FRAME_KIND_TABLE(X)
+#undef X
+} cau_frame_kind;
+
+// code, number, wire name
+#define CAU_SECTION_TABLE(X)                                                                       \
+	X(POSITIONS, 1, "positions")                                                                   \
+	X(MASK, 2, "mask")                                                                             \
+	X(EXPOSURE, 3, "exposure")                                                                     \
+	X(CHARRING, 4, "charring")                                                                     \
+	X(STRESS, 5, "stress")                                                                         \
+	X(TOOL_NAMES, 6, "tool_names")                                                                 \
+	X(TOOLS, 7, "tools")                                                                           \
+	X(STATISTICS, 8, "statistics")                                                                 \
+	X(FACES, 16, "faces")                                                                          \
+	X(FACE_LAYERS, 17, "face_layers")                                                              \
+	X(TEXTURE, 18, "texture")                                                                      \
+	X(REST, 19, "rest")
+typedef enum cau_section {
+#define X(code, number, name) CAU_SECTION_##code = (number),
+	CAU_SECTION_TABLE(X)
+#undef X
+} cau_section;
+
+// The fixed start of every frame.
+typedef struct cau_frame_header {
+	uint8_t version;
+	uint8_t kind; // CAU_FRAME_*
+	uint16_t flags;
+	uint32_t byte_count; // of the whole frame
+	uint32_t session;
+	uint64_t epoch;
+	uint64_t sequence;      // counts from 1 in each epoch
+	uint64_t base_sequence; // the state that the frame builds on; in a key frame its own sequence
+	uint64_t tick;
+	double time_s;
+	uint64_t published_us;
+	uint16_t profile;
+	uint16_t section_count;
+} cau_frame_header;
+
+// Reads and checks the header alone, for routing. Errors: CAU_CORRUPT (too short, no frame of ours,
+// a length that lies), CAU_UNSUPPORTED (another version).
+cau_status cau_frame_header_read(const void *bytes, size_t byte_count, cau_frame_header *header,
+                                 cau_error *error);
+
+// A capacity that holds any frame (key, delta) of such a stream.
+size_t cau_frame_bytes_max(const cau_stream_def *def);
+
+// ---- encoder ------------------------------------------------------------------------------------
+typedef struct cau_frame_encoder cau_frame_encoder;
+
+// Storage for an encoder of such a stream, any alignment that malloc gives.
+size_t cau_frame_encoder_bytes(const cau_stream_def *def);
+
+// Makes an encoder in `storage`, which it keeps. `epoch` is random and not 0. Errors: CAU_BAD_VALUE
+// (the definition), CAU_LIMIT (storage too small).
+cau_status cau_frame_encoder_init(void *storage, size_t storage_bytes, const cau_stream_def *def,
+                                  uint64_t epoch, cau_frame_encoder **encoder, cau_error *error);
+
+// Forgets the state and starts `epoch`: after rewind, reset, restore and restart. The next frame is
+// a key frame with sequence 1.
+void cau_frame_encoder_restart(cau_frame_encoder *encoder, uint64_t epoch);
+
+// Advances the chain to `sample` and writes the frame that takes a decoder there: a key frame if it
+// is the epoch's first, else a delta. Errors leave the chain where it was: CAU_LIMIT (capacity
+// below cau_frame_bytes_max), CAU_NUMERICAL (a position that is not finite or beyond 2^30 steps of
+// the origin), CAU_BAD_VALUE (an array of a wanted channel is NULL, too many tools).
+cau_status cau_frame_encode(cau_frame_encoder *encoder, const cau_stream_sample *sample,
+                            void *bytes, size_t capacity, size_t *byte_count, cau_error *error);
+
+// Writes the key frame of the present state, with the sequence of the last cau_frame_encode.
+// Errors: CAU_BAD_STATE before the first, CAU_LIMIT.
+cau_status cau_frame_encode_key(const cau_frame_encoder *encoder, void *bytes, size_t capacity,
+                                size_t *byte_count, cau_error *error);
+
+uint64_t cau_frame_encoder_epoch(const cau_frame_encoder *encoder);
+uint64_t cau_frame_encoder_sequence(const cau_frame_encoder *encoder); // 0 before the first frame
+
+// ---- decoder ------------------------------------------------------------------------------------
+typedef struct cau_frame_decoder cau_frame_decoder;
+
+size_t cau_frame_decoder_bytes(const cau_stream_def *def);
+cau_status cau_frame_decoder_init(void *storage, size_t storage_bytes, const cau_stream_def *def,
+                                  cau_frame_decoder **decoder, cau_error *error);
+
+// Takes one key or delta frame. Errors:
+//   CAU_BAD_STATE    another session, profile or epoch, a base that is not held, or older than what
+//                    is held (path names the field). The state is kept as it was.
+//   CAU_UNSUPPORTED  another version. The state is kept.
+//   CAU_CORRUPT      truncated, indices out of range, damaged sections. If the header was sound,
+//   the
+//                    state is lost (synced is false) until the next key frame.
+cau_status cau_frame_decode(cau_frame_decoder *decoder, const void *bytes, size_t byte_count,
+                            cau_error *error);
+
+const cau_stream_state *cau_frame_decoder_state(const cau_frame_decoder *decoder);
+const cau_stream_def *cau_frame_decoder_def(const cau_frame_decoder *decoder);
+
+// Positions in metres, (vertex_count x 3), into the caller's array.
+void cau_frame_decoder_position(const cau_frame_decoder *decoder, double *position);

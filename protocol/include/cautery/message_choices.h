@@ -1,0 +1,96 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Words that messages choose from. Each table is X(code, wire name); tables of scenes, channels and
+// reasons for energy off stand with their types.
+#pragma once
+
+#include "cautery/energy_off.h"
+#include "cautery/scene.h"
+#include "cautery/status.h"
+#include "cautery/stream.h"
+
+#define CAU_ROLE_TABLE(X) /* each may do what those before it may */                               \
+	X(VIEW, "view")                                                                                \
+	X(OPERATE, "operate")                                                                          \
+	X(ADMIN, "admin")
+
+#define CAU_SESSION_STATE_TABLE(X)                                                                 \
+	X(STARTING, "starting")                                                                        \
+	X(RUNNING, "running")                                                                          \
+	X(PAUSED, "paused")                                                                            \
+	X(FAULTED, "faulted")
+
+#define CAU_CHANGE_TABLE(X) /* why session.changed was sent */                                     \
+	X(CREATED, "created")                                                                          \
+	X(DESTROYED, "destroyed")                                                                      \
+	X(PAUSED, "paused")                                                                            \
+	X(RESUMED, "resumed")                                                                          \
+	X(STEPPED, "stepped")                                                                          \
+	X(SPEED, "speed")                                                                              \
+	X(RESET, "reset")                                                                              \
+	X(REWOUND, "rewound")                                                                          \
+	X(RESTORED, "restored")                                                                        \
+	X(RESTARTED, "restarted")                                                                      \
+	X(MOVED, "moved")                                                                              \
+	X(TOOLS, "tools")                                                                              \
+	X(TISSUE, "tissue")
+
+#define CAU_EVENT_TABLE(X)                                                                         \
+	X(CREATED, "created")                                                                          \
+	X(CUT, "cut")                                                                                  \
+	X(ENERGY_ON, "energy_on")                                                                      \
+	X(ENERGY_OFF, "energy_off")                                                                    \
+	X(WATCHDOG, "watchdog")                                                                        \
+	X(DRIVER, "driver")                                                                            \
+	X(TOOL_ADDED, "tool_added")                                                                    \
+	X(TOOL_REMOVED, "tool_removed")                                                                \
+	X(REFUSED, "refused")                                                                          \
+	X(FAULT, "fault")                                                                              \
+	X(REWIND, "rewind")                                                                            \
+	X(RESET, "reset")                                                                              \
+	X(SNAPSHOT, "snapshot")                                                                        \
+	X(RESTORE, "restore")
+
+#define CAU_EXPORT_TABLE(X)                                                                        \
+	X(VTU, "vtu") /* tetrahedra and triangles that are left, with fields, for ParaView */          \
+	X(OBJ, "obj") /* drawn faces */
+
+#define CAU_CAPABILITY_TABLE(X)                                                                    \
+	X(UPLOAD, "upload")                                                                            \
+	X(EXPORT, "export")                                                                            \
+	X(DDS, "dds")                                                                                  \
+	X(STORE, "store")
+
+// Every choice that a message can name. CHOICE_TABLE(id, table)
+#define CAU_CHOICE_LIST(CHOICE_TABLE)                                                              \
+	CHOICE_TABLE(role, CAU_ROLE_TABLE)                                                             \
+	CHOICE_TABLE(session_state, CAU_SESSION_STATE_TABLE)                                           \
+	CHOICE_TABLE(change, CAU_CHANGE_TABLE)                                                         \
+	CHOICE_TABLE(event_kind, CAU_EVENT_TABLE)                                                      \
+	CHOICE_TABLE(export_format, CAU_EXPORT_TABLE)                                                  \
+	CHOICE_TABLE(capability, CAU_CAPABILITY_TABLE)                                                 \
+	CHOICE_TABLE(channel, CAU_CHANNEL_TABLE)                                                       \
+	CHOICE_TABLE(energy_off, CAU_ENERGY_OFF_TABLE)                                                 \
+	CHOICE_TABLE(layer_kind, CAU_LAYER_TABLE)
+
+#define X(code, name) CAU_ROLE_##code,
+typedef enum cau_role { CAU_ROLE_TABLE(X) CAU_ROLE_COUNT } cau_role;
+#undef X
+#define X(code, name) CAU_SESSION_##code,
+typedef enum cau_session_state {
+	CAU_SESSION_STATE_TABLE(X) CAU_SESSION_STATE_COUNT
+} cau_session_state;
+#undef X
+#define X(code, name) CAU_CHANGE_##code,
+typedef enum cau_change { CAU_CHANGE_TABLE(X) CAU_CHANGE_COUNT } cau_change;
+#undef X
+#define X(code, name) CAU_EVENT_##code,
+typedef enum cau_event_kind { CAU_EVENT_TABLE(X) CAU_EVENT_COUNT } cau_event_kind;
+#undef X
+#define X(code, name) CAU_EXPORT_##code,
+typedef enum cau_export_format { CAU_EXPORT_TABLE(X) CAU_EXPORT_COUNT } cau_export_format;
+#undef X
+#define X(code, name) CAU_CAPABILITY_##code,
+typedef enum cau_capability {
+	CAU_CAPABILITY_TABLE(X) CAU_CAPABILITY_COUNT
+} cau_capability; // bit numbers of hello_result.capabilities
+#undef X

@@ -1,0 +1,97 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// The messages as C types, made from messages.def: object `hello` there is cau_wire_hello here. An
+// optional member f has a bool has_f before it. Text is UTF-8 with a closing zero.
+#pragma once
+
+#include <stdbool.h>
+#include <stddef.h>
+#include <stdint.h>
+
+#include "cautery/message_choices.h"
+#include "cautery/scene.h"
+
+// Objects of one kind. Writers take `count` of them. Readers fill `items`, which the caller gives
+// with its `capacity`, and set `count`; more objects than that are CAU_LIMIT.
+typedef struct cau_wire_list {
+	void *items;
+	int32_t count;
+	int32_t capacity;
+} cau_wire_list;
+
+#define CAU_NEED_R(field)
+#define CAU_NEED_O(field) bool has_##field;
+
+#define OBJECT(o, meaning) typedef struct cau_wire_##o {
+#define OBJECT_END(o)                                                                              \
+	char end_; /* keeps objects without members standard C */                                      \
+	}                                                                                              \
+	cau_wire_##o;
+#define FLAG(o, field, need, meaning) CAU_NEED_##need(field) bool field;
+#define INTEGER(o, field, need, least, most, unit, meaning) CAU_NEED_##need(field) int64_t field;
+#define NUMBER(o, field, need, least, most, unit, meaning) CAU_NEED_##need(field) double field;
+#define VECTOR(o, field, need, count, least, most, unit, meaning)                                  \
+	CAU_NEED_##need(field) double field[count];
+#define TEXT(o, field, need, bytes_max, meaning) CAU_NEED_##need(field) char field[(bytes_max) + 1];
+#define NAME(o, field, need, meaning) CAU_NEED_##need(field) char field[CAU_NAME_BYTES];
+#define HEX64(o, field, need, meaning) CAU_NEED_##need(field) uint64_t field;
+#define CHOICE(o, field, need, choice, meaning) CAU_NEED_##need(field) int32_t field;
+#define CHOICES(o, field, need, choice, meaning)                                                   \
+	CAU_NEED_##need(field) uint32_t field; // bit per word
+#define PART(o, field, need, object, meaning) CAU_NEED_##need(field) cau_wire_##object field;
+#define LIST(o, field, need, object, count_max, meaning) CAU_NEED_##need(field) cau_wire_list field;
+// Borrowed. Readers fill what it points to, or skip the member if it is NULL.
+#define SCENE(o, field, need, meaning) CAU_NEED_##need(field) cau_scene_def *field;
+#include "cautery/messages.def"
+#undef CAU_NEED_R
+#undef CAU_NEED_O
+
+typedef enum cau_wire_object {
+#define OBJECT(o, meaning) CAU_WIRE_##o,
+#define OBJECT_END(o)
+#define FLAG(o, field, need, meaning)
+#define INTEGER(o, field, need, least, most, unit, meaning)
+#define NUMBER(o, field, need, least, most, unit, meaning)
+#define VECTOR(o, field, need, count, least, most, unit, meaning)
+#define TEXT(o, field, need, bytes_max, meaning)
+#define NAME(o, field, need, meaning)
+#define HEX64(o, field, need, meaning)
+#define CHOICE(o, field, need, choice, meaning)
+#define CHOICES(o, field, need, choice, meaning)
+#define PART(o, field, need, object, meaning)
+#define LIST(o, field, need, object, count_max, meaning)
+#define SCENE(o, field, need, meaning)
+#include "cautery/messages.def"
+	CAU_WIRE_OBJECT_COUNT
+} cau_wire_object;
+
+typedef enum cau_method {
+#define REQUEST(code, name, params, result, role, effect, meaning) CAU_METHOD_##code,
+#define EITHER_WAY(code, name, params, result, role, effect, meaning) CAU_METHOD_##code,
+#define NOTICE(code, name, params, role, meaning) CAU_METHOD_##code,
+#define COMMAND(code, name, form, meaning) CAU_METHOD_##code,
+#define PUSH(code, name, params, meaning) CAU_METHOD_##code,
+#include "cautery/methods.def"
+	CAU_METHOD_COUNT
+} cau_method;
+
+// What the method table says.
+typedef enum cau_method_form {
+	CAU_FORM_REQUEST,    // has an id and is answered
+	CAU_FORM_EITHER_WAY, // answered if it has an id
+	CAU_FORM_NOTICE,     // from the client, never answered
+	CAU_FORM_PUSH,       // from the server
+} cau_method_form;
+
+typedef struct cau_method_info {
+	const char *name;
+	cau_method_form form;
+	cau_wire_object params; // CAU_WIRE_nothing of commands: cautery/command_json.h tells theirs
+	cau_wire_object result; // CAU_WIRE_nothing where there is none; commands: command_result
+	cau_role role;          // the least that may call it
+	bool changes;           // stored; client_sequence applies
+	int32_t command;        // CAU_COMMAND_*, to be read with cau_rpc_command; or -1
+	const char *meaning;
+} cau_method_info;
+
+const cau_method_info *cau_method_describe(cau_method method); // NULL beyond the table
+int32_t cau_method_find(const char *name);                     // CAU_METHOD_*, or -1

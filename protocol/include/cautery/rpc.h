@@ -1,0 +1,107 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// JSON-RPC 2.0 messages, read and written by the tables of messages.h. Reading allocates one
+// document that cau_rpc_finish gives back; writing goes into the caller's buffer.
+//
+//     cau_rpc_message message;
+//     cau_rpc_fault fault;
+//     if (cau_rpc_read(text, bytes, limit, &message, &fault)) -> answer cau_rpc_write_error, if it
+//     asks switch (message.method) { case CAU_METHOD_SESSION_STEP: {
+//         cau_wire_session_step params = {0};
+//         status = cau_rpc_params(&message, &params, &error);
+//     ...
+//     cau_rpc_finish(&message);
+#pragma once
+
+#include "cautery/command.h"
+#include "cautery/messages.h"
+#include "cautery/rpc_errors.h"
+
+enum { CAU_RPC_ID_BYTES = 65 };
+
+typedef struct cau_rpc_id {
+	enum { CAU_RPC_ID_NONE, CAU_RPC_ID_NUMBER, CAU_RPC_ID_TEXT } kind;
+	int64_t number;
+	char text[CAU_RPC_ID_BYTES];
+} cau_rpc_id;
+
+// The error member of an answer. `path` starts in the request: "params.rotation[2]".
+typedef struct cau_rpc_fault {
+	int32_t code;     // CAU_RPC_*, or what the server sent
+	char status[33];  // data.status: the word of the error table
+	char path[160];   // data.path, may be empty
+	char reason[320]; // data.reason
+} cau_rpc_fault;
+
+typedef struct cau_rpc_message {
+	enum {
+		CAU_RPC_REQUEST,
+		CAU_RPC_NOTIFICATION,
+		CAU_RPC_RESULT, // answers, as clients read them: read by cau_rpc_result
+		CAU_RPC_ERROR,  // `fault` tells it
+	} kind;
+	cau_rpc_id id;
+	cau_method method; // of requests and notifications
+	cau_rpc_fault fault;
+	void *document; // private; cau_rpc_finish frees it
+} cau_rpc_message;
+
+// Reads a text message of at most `bytes_max` bytes: strict JSON, then the rules of JSON-RPC 2.0.
+// Batches, ids that are null, fractions or longer than 64 bytes, unknown members and params by
+// position are refused. On failure *fault says why, message->id is the id to answer
+// (CAU_RPC_ID_NONE: answer with id null) and message->kind is CAU_RPC_NOTIFICATION if nothing must
+// be answered; nothing is to be finished. Returns CAU_OK, CAU_BAD_SYNTAX, CAU_BAD_VALUE, CAU_LIMIT,
+// CAU_NO_MEMORY.
+cau_status cau_rpc_read(const char *text, size_t bytes, size_t bytes_max, cau_rpc_message *message,
+                        cau_rpc_fault *fault);
+void cau_rpc_finish(cau_rpc_message *message); // may be called twice
+
+// Fills the C type of the method's params (see cau_method_describe). Required members must be
+// there, unknown ones must not; ranges are checked. `params` starts zeroed, but for lists and
+// scenes that it borrows. Error paths start with "params".
+cau_status cau_rpc_params(const cau_rpc_message *message, void *params, cau_error *error);
+
+// Members that methods share.
+typedef struct cau_rpc_envelope {
+	bool has_session;
+	char session[CAU_NAME_BYTES];
+	bool has_client_sequence;
+	int64_t client_sequence;
+} cau_rpc_envelope;
+
+// Reads these two of any method's params, and nothing else.
+cau_status cau_rpc_envelope_read(const cau_rpc_message *message, cau_rpc_envelope *envelope,
+                                 cau_error *error);
+
+// The command of a method that is one (cau_method_info.command >= 0).
+cau_status cau_rpc_command(const cau_rpc_message *message, cau_command *command, cau_error *error);
+
+// The result of an answer to `method`. Error paths start with "result". Members that this version
+// does not know are skipped: servers may be newer.
+cau_status cau_rpc_result(const cau_rpc_message *message, cau_method method, void *result,
+                          cau_error *error);
+
+void cau_rpc_fault_of_error(cau_rpc_fault *fault, const cau_error *error);
+void cau_rpc_fault_of_code(cau_rpc_fault *fault, cau_rpc_error_code code, const char *reason);
+
+// ---- writing ------------------------------------------------------------------------------------
+// Into `buffer`, with a closing zero; *bytes is the length without it, also when it did not fit.
+// Errors: CAU_LIMIT (capacity), CAU_BAD_VALUE (a member out of its range, text that is not UTF-8).
+typedef struct cau_rpc_buffer {
+	char *buffer;
+	size_t capacity;
+	size_t bytes; // written
+} cau_rpc_buffer;
+
+cau_status cau_rpc_write_request(cau_rpc_buffer *out, int64_t id, cau_method method,
+                                 const void *params, cau_error *error);
+cau_status cau_rpc_write_notification(cau_rpc_buffer *out, cau_method method, const void *params,
+                                      cau_error *error);
+// `id` is NULL for a notification; `envelope` may be NULL.
+cau_status cau_rpc_write_command(cau_rpc_buffer *out, const int64_t *id,
+                                 const cau_rpc_envelope *envelope, const cau_command *command,
+                                 cau_error *error);
+cau_status cau_rpc_write_result(cau_rpc_buffer *out, const cau_rpc_id *id, cau_method method,
+                                const void *result, cau_error *error);
+// `id` of kind NONE is written as null.
+cau_status cau_rpc_write_error(cau_rpc_buffer *out, const cau_rpc_id *id,
+                               const cau_rpc_fault *fault, cau_error *error);

@@ -1,0 +1,138 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// What a stream carries: its description, what the server puts in at a tick, and what a client
+// holds after decoding. Byte layouts stand in protocol/README.md. SI units, degrees Celsius.
+#pragma once
+
+#include <stdbool.h>
+#include <stddef.h>
+#include <stdint.h>
+
+#include "cautery/energy_off.h"
+#include "cautery/scene.h"
+#include "cautery/status.h"
+
+// Channels that a subscriber chooses: code, wire name. The order gives the bits.
+#define CAU_CHANNEL_TABLE(X)                                                                       \
+	X(POSITIONS, "positions")   /* vertex positions; in a delta the moved and visible ones */      \
+	X(MASK, "mask")             /* bits of faces that are not drawn */                             \
+	X(EXPOSURE, "exposure")     /* heat exposure over ignition of each vertex, 0 to 1 in 1/255 */  \
+	X(CHARRING, "charring")     /* char of each vertex, 0 to 1 in 1/255 */                         \
+	X(STRESS, "stress")         /* von Mises stress of each vertex in steps of stress_step_pa */   \
+	X(TOOLS, "tools")           /* pose, driver, force, temperature and energy of every tool */    \
+	X(STATISTICS, "statistics") /* cost and condition of the last step */
+
+#define X(code, name) CAU_CHANNEL_INDEX_##code,
+typedef enum cau_channel_index { CAU_CHANNEL_TABLE(X) CAU_CHANNEL_COUNT } cau_channel_index;
+#undef X
+#define X(code, name) CAU_CHANNEL_##code = 1 << CAU_CHANNEL_INDEX_##code,
+typedef enum cau_channel {
+	CAU_CHANNEL_TABLE(X) CAU_CHANNEL_ALL = (1 << CAU_CHANNEL_COUNT) - 1
+} cau_channel;
+#undef X
+
+enum {
+	CAU_STREAM_PROFILES_MAX = 4,       // of a session
+	CAU_STREAM_ELEMENTS_MAX = 1 << 24, // vertices, and faces
+	CAU_STREAM_STAGES = 8,             // of a step, see CAU_STAGE_TABLE in the README
+};
+
+// Flags in a frame's header
+enum {
+	CAU_FRAME_PAUSED = 1 << 0,
+	CAU_FRAME_FAULTED = 1 << 1,
+};
+
+// What encoder and decoder must agree on; sent as stream_description by session.join.
+typedef struct cau_stream_def {
+	uint32_t session;  // the session's number on its daemon
+	uint16_t profile;  // of the session, 0 to CAU_STREAM_PROFILES_MAX - 1
+	uint32_t channels; // CAU_CHANNEL_* bits
+	int32_t vertex_count;
+	int32_t face_count;
+	double origin_m[3];    // position = origin_m + step_m * quantised
+	double step_m;         // 1e-7 to 1e-2
+	double stress_step_pa; // 1e-3 to 1e9; stress saturates at 65535 steps
+} cau_stream_def;
+
+// All channels but stress and statistics, 0.05 mm, 10 Pa, origin 0; counts and numbers zero.
+cau_stream_def cau_default_stream_def(void);
+cau_status cau_stream_def_check(const cau_stream_def *def, cau_error *error);
+
+// One tool as a frame shows it.
+typedef struct cau_stream_tool {
+	char name[CAU_NAME_BYTES];
+	int32_t shape; // CAU_TOOL_*
+	cau_pose pose; // single precision on the wire, like all that follows
+	double jaw;    // 0 closed to 1 open
+	double force_n[3];
+	double torque_nm[3]; // about the tip
+	double tip_temperature_c;
+	double energy_j;
+	uint64_t sequence; // of the last applied command
+	uint32_t driver;   // the driving client's number; 0: nobody
+	bool energized;
+	bool grasping;
+	bool frozen;               // its watchdog fired: it stands still until a new command
+	uint8_t energy_off;        // CAU_ENERGY_OFF_*; meaningless while energized
+	uint16_t grasped_vertices; // saturates
+	uint16_t contact_vertices; // saturates
+	uint16_t touched_layers;   // bit per layer
+} cau_stream_tool;
+
+// Scalars about the last step; see cau_statistics of the core for their meaning.
+typedef struct cau_stream_statistics {
+	float realtime_factor; // simulated over wall time, last second
+	float step_cost_s;     // wall time of the last step
+	float stage_s[CAU_STREAM_STAGES];
+	float residual;
+	float deferred_max_s;
+	uint32_t iterations;
+	uint32_t backtracks;
+	uint32_t inverted;
+	uint32_t edges_parted;
+	uint32_t elements_removed;
+	uint32_t pending_downdates;
+	uint32_t refactorisations;
+	uint32_t contacts;
+	uint32_t frozen_vertices;
+	uint32_t refused_commands; // since creation
+} cau_stream_statistics;
+
+// What the server knows at a tick; everything is borrowed for the call. Arrays whose channel the
+// stream lacks may be NULL.
+typedef struct cau_stream_sample {
+	uint64_t tick;
+	double time_s;                 // simulated
+	uint64_t published_us;         // the server's monotonic clock
+	uint16_t flags;                // CAU_FRAME_*
+	const double *position;        // m, (vertex_count x 3)
+	const uint8_t *vertex_visible; // (vertex_count), 1: on a drawn face; NULL: all are
+	const uint32_t *face_mask;     // ((face_count + 31) / 32), a set bit: not drawn
+	const float *exposure;         // (vertex_count), 0 to 1
+	const float *charring;         // (vertex_count), 0 to 1
+	const float *stress;           // Pa, (vertex_count)
+	int32_t tool_count;            // at most CAU_MAX_TOOLS
+	const cau_stream_tool *tools;
+	const cau_stream_statistics *statistics;
+} cau_stream_sample;
+
+// What a decoder holds; borrowed, valid until the next decode.
+typedef struct cau_stream_state {
+	bool synced; // false: nothing to draw yet, or damaged: a key frame is needed
+	uint64_t epoch;
+	uint64_t sequence;
+	uint64_t tick;
+	double time_s;
+	uint64_t published_us;
+	uint16_t flags;
+	const int32_t *quantised;   // steps from the origin, (vertex_count x 3)
+	const uint32_t *face_mask;  // ((face_count + 31) / 32)
+	const uint32_t *exposure;   // (vertex_count), 255: 1
+	const uint32_t *charring;   // (vertex_count), 255: 1
+	const uint32_t *stress;     // stress_step_pa, (vertex_count)
+	int32_t moved_count;        // vertices that the last frame carried
+	int32_t mask_changed_count; // mask words that the last frame carried
+	int32_t tool_count;
+	const cau_stream_tool *tools;
+	cau_stream_statistics statistics;
+} cau_stream_state;

@@ -1,0 +1,34 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// The frame that says what never changes in a session: faces, their layers, texture coordinates and
+// rest positions. Sent once after session.join, before the first key frame. Nothing is allocated.
+#pragma once
+
+#include "cautery/frame_codec.h"
+
+typedef struct cau_topology {
+	const int32_t *face;         // vertices, (face_count x 3)
+	const uint8_t *face_layer;   // (face_count)
+	const float *texture;        // (face_count x 3 x 2), or NULL
+	const double *rest_position; // m, (vertex_count x 3)
+} cau_topology;
+
+size_t cau_topology_bytes_max(const cau_stream_def *def);
+size_t cau_topology_scratch_bytes(const cau_stream_def *def);
+
+// `scratch` is working memory of cau_topology_scratch_bytes. Errors: CAU_LIMIT, CAU_BAD_VALUE (a
+// face with a vertex that is not there), CAU_NUMERICAL (rest positions).
+cau_status cau_topology_encode(const cau_stream_def *def, uint64_t epoch,
+                               const cau_topology *topology, void *scratch, void *bytes,
+                               size_t capacity, size_t *byte_count, cau_error *error);
+
+typedef struct cau_topology_arrays {
+	int32_t *face;       // (face_count x 3)
+	uint8_t *face_layer; // (face_count)
+	float *texture;      // (face_count x 3 x 2); zero where the frame has none
+	int32_t *rest;       // quantised, (vertex_count x 3)
+	bool has_texture;
+} cau_topology_arrays;
+
+// Fills the caller's arrays. Errors: CAU_CORRUPT, CAU_UNSUPPORTED, CAU_BAD_STATE (another session).
+cau_status cau_topology_decode(const cau_stream_def *def, const void *bytes, size_t byte_count,
+                               void *scratch, cau_topology_arrays *arrays, cau_error *error);

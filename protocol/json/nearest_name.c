@@ -1,0 +1,60 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "json/nearest_name.h"
+
+#include <ctype.h>
+#include <stdbool.h>
+#include <string.h>
+
+enum { LONGEST = 48 };
+
+static int least(int a, int b)
+{
+	return a < b ? a : b;
+}
+
+static bool same_letter(char a, char b)
+{
+	return tolower((unsigned char)a) == tolower((unsigned char)b);
+}
+
+// Optimal string alignment distance; both at most LONGEST bytes.
+static int distance(const char *a, const char *b)
+{
+	int rows[3][LONGEST + 1];
+	int a_count = (int)strlen(a), b_count = (int)strlen(b);
+	for (int j = 0; j <= b_count; j++)
+		rows[0][j] = j;
+	for (int i = 1; i <= a_count; i++) {
+		int *row = rows[i % 3];
+		const int *above = rows[(i + 2) % 3], *second = rows[(i + 1) % 3];
+		row[0] = i;
+		for (int j = 1; j <= b_count; j++) {
+			int change = above[j - 1] + !same_letter(a[i - 1], b[j - 1]);
+			row[j] = least(change, least(above[j], row[j - 1]) + 1);
+			if (i > 1 && j > 1 && same_letter(a[i - 1], b[j - 2]) &&
+			    same_letter(a[i - 2], b[j - 1]))
+				row[j] = least(row[j], second[j - 2] + 1);
+		}
+	}
+	return rows[a_count % 3][b_count];
+}
+
+const char *cau_nearest_name(const char *word, const char *const *names, int count)
+{
+	const char *nearest = NULL;
+	size_t bytes = strlen(word);
+	if (bytes > LONGEST)
+		return NULL;
+	int best = (int)bytes / 3 + 2;
+	for (int i = 0; i < count; i++) {
+		int d = strlen(names[i]) <= LONGEST ? distance(word, names[i]) : best;
+		// A forgotten unit ("young_modulus") is the likeliest slip of all.
+		if (bytes >= 3 && strncmp(word, names[i], bytes) == 0)
+			d = 0;
+		if (d < best) {
+			best = d;
+			nearest = names[i];
+		}
+	}
+	return nearest;
+}

@@ -1,0 +1,72 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Structs told by tables: one table per struct serves reading, writing, the check for unknown
+// members and the documentation.
+#pragma once
+
+#include <stdbool.h>
+#include <stddef.h>
+#include <stdint.h>
+
+#include "cautery/json_writer.h"
+#include "cautery/scene.h"
+#include "json/value.h"
+
+typedef enum cau_field_type {
+	CAU_FIELD_NUMBER,   // double
+	CAU_FIELD_INTEGER,  // int32_t
+	CAU_FIELD_COUNT,    // uint64_t below 2^53
+	CAU_FIELD_CHOICE,   // int, an index into names
+	CAU_FIELD_FLAG,     // int32_t, 0 or 1
+	CAU_FIELD_NAME,     // char[CAU_NAME_BYTES]
+	CAU_FIELD_TEXT,     // char[CAU_TEXT_BYTES]
+	CAU_FIELD_ROTATION, // double[4]
+} cau_field_type;
+
+typedef struct cau_choices {
+	const char *const *names;
+	int count;
+} cau_choices;
+
+typedef struct cau_field {
+	const char *name;
+	cau_field_type type;
+	size_t offset;       // in the struct
+	int32_t count;       // of a NUMBER or INTEGER: 0 for a scalar, else length of the array
+	int32_t least_count; // a shorter array that will do, the rest keeping its values; 0: none
+	double least, most;  // of each NUMBER or INTEGER
+	const cau_choices *choices; // of a CHOICE
+	unsigned kinds;             // bits of the kinds that have it; 0: all
+	bool required;
+	const char *unit, *meaning;
+} cau_field;
+
+typedef struct cau_record {
+	const char *title;
+	const cau_field *fields;
+	int field_count;
+	const cau_choices
+		*kinds; // what the bits of cau_field.kinds are called (fields[0] says), or NULL
+} cau_record;
+
+// A struct to read or write. Several parts may make one JSON object.
+typedef struct cau_part {
+	const cau_record *record;
+	void *base;
+	int kind; // index of the bit, where the record has kinds
+} cau_part;
+
+enum { CAU_MAX_PARTS = 6 };
+
+// Reads the members that the parts have; absent ones leave their values alone. Any member that is
+// neither of a part nor among `others` fails.
+void cau_read_parts(cau_reader *reader, const cJSON *object, const cau_part *parts, int part_count,
+                    const char *const *others, int other_count);
+
+// Reads the one member `field` of `object` into base.
+void cau_read_field(cau_reader *reader, const cJSON *object, const cau_field *field, void *base);
+
+// Writes all members that the parts have, inside an object that is open.
+void cau_write_parts(cau_json_writer *writer, const cau_part *parts, int part_count);
+
+// Whether a part's record has the field for this kind.
+bool cau_field_applies(const cau_field *field, int kind);

@@ -1,0 +1,110 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "json/record.h"
+
+enum { MAX_KEYS = 96 };
+
+bool cau_field_applies(const cau_field *field, int kind)
+{
+	return field->kinds == 0 || (kind >= 0 && (field->kinds >> kind & 1u));
+}
+
+static void read_element(cau_reader *reader, const cJSON *value, const cau_field *field,
+                         int32_t index, void *at)
+{
+	if (field->type == CAU_FIELD_NUMBER)
+		((double *)at)[index] =
+			cau_read_number(reader, value, field->least, field->most, field->unit);
+	else
+		((int32_t *)at)[index] =
+			(int32_t)cau_read_integer(reader, value, (int64_t)field->least, (int64_t)field->most);
+}
+
+static void read_array(cau_reader *reader, const cJSON *value, const cau_field *field, void *at)
+{
+	if (!cau_read_array(reader, value, field->least_count ? field->least_count : field->count,
+	                    field->count))
+		return;
+	int32_t index = 0;
+	for (const cJSON *element = value->child; element; element = element->next, index++) {
+		size_t mark = cau_reader_enter(reader, NULL, index);
+		read_element(reader, element, field, index, at);
+		cau_reader_leave(reader, mark);
+	}
+}
+
+static void read_value(cau_reader *reader, const cJSON *value, const cau_field *field, void *at)
+{
+	int choice;
+	switch (field->type) {
+	case CAU_FIELD_NUMBER:
+	case CAU_FIELD_INTEGER:
+		if (field->count)
+			read_array(reader, value, field, at);
+		else
+			read_element(reader, value, field, 0, at);
+		break;
+	case CAU_FIELD_COUNT:
+		*(uint64_t *)at = (uint64_t)cau_read_integer(reader, value, 0, (INT64_C(1) << 53) - 1);
+		break;
+	case CAU_FIELD_CHOICE:
+		choice = cau_read_choice(reader, value, field->choices->names, field->choices->count);
+		*(int *)at = choice < 0 ? 0 : choice;
+		break;
+	case CAU_FIELD_FLAG:
+		*(int32_t *)at = cau_read_bool(reader, value);
+		break;
+	case CAU_FIELD_NAME:
+		cau_read_name(reader, value, at);
+		break;
+	case CAU_FIELD_TEXT:
+		cau_read_text(reader, value, at, CAU_TEXT_BYTES);
+		break;
+	case CAU_FIELD_ROTATION:
+		cau_read_rotation(reader, value, at);
+		break;
+	}
+}
+
+void cau_read_field(cau_reader *reader, const cJSON *object, const cau_field *field, void *base)
+{
+	const cJSON *value = cau_value_member(object, field->name);
+	if (reader->status || (!value && !field->required))
+		return;
+	size_t mark = cau_reader_enter(reader, field->name, 0);
+	read_value(reader, value, field, (char *)base + field->offset);
+	cau_reader_leave(reader, mark);
+}
+
+// A member that other kinds of the record have deserves a better word than "unknown".
+static void refuse_other_kinds(cau_reader *reader, const cJSON *object, const cau_part *part)
+{
+	for (int i = 0; i < part->record->field_count; i++) {
+		const cau_field *field = &part->record->fields[i];
+		if (!cau_field_applies(field, part->kind) && cau_value_member(object, field->name))
+			cau_reader_fail(reader, CAU_BAD_VALUE, field->name,
+			                "%s of kind \"%s\" has no such member", part->record->title,
+			                part->record->kinds->names[part->kind]);
+	}
+}
+
+void cau_read_parts(cau_reader *reader, const cJSON *object, const cau_part *parts, int part_count,
+                    const char *const *others, int other_count)
+{
+	const char *keys[MAX_KEYS] = {NULL};
+	int key_count = 0;
+	for (int p = 0; p < part_count; p++) {
+		const cau_record *record = parts[p].record;
+		for (int i = 0; i < record->field_count && key_count < MAX_KEYS; i++)
+			if (cau_field_applies(&record->fields[i], parts[p].kind))
+				keys[key_count++] = record->fields[i].name;
+		if (record->kinds)
+			refuse_other_kinds(reader, object, &parts[p]);
+	}
+	for (int i = 0; i < other_count && key_count < MAX_KEYS; i++)
+		keys[key_count++] = others[i];
+	cau_read_no_others(reader, object, keys, key_count);
+	for (int p = 0; p < part_count; p++)
+		for (int i = 0; i < parts[p].record->field_count; i++)
+			if (cau_field_applies(&parts[p].record->fields[i], parts[p].kind))
+				cau_read_field(reader, object, &parts[p].record->fields[i], parts[p].base);
+}

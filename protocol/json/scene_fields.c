@@ -1,0 +1,188 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// What a scene may hold. Scalars come from scene.h's tables; vectors, names and choices stand here.
+#include "json/field_macros.h"
+#include "json/fields.h"
+
+CHOICES(solver_choices, CAU_SOLVER_TABLE)
+CHOICES(precision_choices, CAU_PRECISION_TABLE)
+CHOICES(mesh_source_choices, CAU_MESH_SOURCE_TABLE)
+CHOICES(model_choices, CAU_MODEL_TABLE)
+CHOICES(limit_choices, CAU_LIMIT_TABLE)
+CHOICES(projection_choices, CAU_PROJECTION_TABLE)
+CHOICES(layer_kind_choices, CAU_LAYER_TABLE)
+CHOICES(select_kind_choices, CAU_SELECT_TABLE)
+CHOICES(tool_shape_choices, CAU_TOOL_SHAPE_TABLE)
+
+enum { FAR_M = 100 }; // places and ways
+
+// clang-format off: rows of tables
+#define STRUCT cau_scene_def
+static const cau_field scene_fields[] = {
+	{OTHER(name, NAME, "name of the scene"), .required = true},
+	{OTHER(description, TEXT, "a sentence for people")},
+	CAU_TIME_TABLE(SCALAR){INTEGER(iterations, 1, 1000, "iterations of a step")},
+	{CHOICE(solver, solver_choices, "global system")},
+	{CHOICE(precision, precision_choices, "of the local and global steps")},
+	{OTHER(seed, COUNT, "of everything drawn at random")},
+	{VECTOR(gravity_m_s2, 3, -100.0, 100.0, "m/s^2", "gravity")},
+};
+#undef STRUCT
+RECORD(cau_scene_record, "a scene", scene_fields, NULL)
+
+#define KIND(code) (1u << CAU_MESH_##code)
+#define STRUCT cau_mesh_def
+static const cau_field mesh_fields[] = {
+	{CHOICE(source, mesh_source_choices, "where the mesh comes from"), .required = true},
+	{OTHER(name, NAME, "name of the mesh"), .required = true},
+	{VECTOR(size_m, 3, 1e-6, 10.0, "m", "extent, centred in x and y, top at z = 0"),
+     .least_count = 1, .kinds = KIND(SHEET) | KIND(SLAB) | KIND(PATTERN)},
+	{INTEGER(cells, 1, 1000, "cells along each axis; of a pattern, triangles of the fan"),
+     .count = 3, .least_count = 1, .kinds = KIND(SHEET) | KIND(SLAB) | KIND(PATTERN)},
+	{SCALAR_OF(texture_turn_rad, -6.3, 6.3, "rad", "turns the UV axes against the mesh's axes"),
+     .kinds = KIND(SHEET) | KIND(PATTERN)},
+	{OTHER(file, TEXT, ".msh, .obj or .vtk, relative to the scene file"), .required = true,
+     .kinds = KIND(FILE) | KIND(BYTES)},
+	{SCALAR_OF(unit_m, 1e-9, 1000.0, "m", "metres in one unit of the file"),
+     .kinds = KIND(FILE) | KIND(BYTES)},
+	{VECTOR(translate_m, 3, -FAR_M, FAR_M, "m", "moves the mesh, after the unit")},
+};
+#undef STRUCT
+#undef KIND
+RECORD(cau_mesh_record, "a mesh", mesh_fields, &mesh_source_choices)
+
+#define KIND(code) (1u << CAU_LAYER_##code)
+#define STRUCT cau_layer_def
+static const cau_field layer_fields[] = {
+	{CHOICE(kind, layer_kind_choices, "tissue"), .required = true},
+	{OTHER(name, NAME, "name of the layer"), .required = true},
+	{OTHER(mesh, NAME, "mesh whose triangles or tetrahedra the layer takes"),
+     .kinds = KIND(FASCIA) | KIND(FAT) | KIND(MEMBRANE)},
+	{OTHER(of, NAME, "membrane: the fat whose boundary it is; links: the upper layer"),
+     .kinds = KIND(MEMBRANE) | KIND(LINKS)},
+	{OTHER(to, NAME, "the lower layer"), .kinds = KIND(LINKS)},
+	{VECTOR(fibre, 3, -1e6, 1e6, "1",
+            "material direction where the mesh has no UV; fat: first axis"),
+     .kinds = KIND(FASCIA) | KIND(FAT) | KIND(MEMBRANE)},
+};
+#undef STRUCT
+#undef KIND
+RECORD(cau_layer_record, "a layer", layer_fields, &layer_kind_choices)
+
+static const cau_field region_fields[] = {
+	{.name = "region",
+     .type = CAU_FIELD_INTEGER,
+     .least = 0.0,
+     .most = INT32_MAX,
+     .required = true,
+     .unit = "1",
+     .meaning = "of the mesh file"},
+};
+RECORD(cau_region_record, "a region", region_fields, NULL)
+
+#define LIMIT_FIELDS(entries, entry_names, axes)                                                   \
+	{CHOICE(limit, limit_choices, "strain limit")},                                                \
+		{CHOICE(projection, projection_choices, "how a target is projected")},                     \
+		{VECTOR(target, entries, -100.0, 100.0, "1",                                               \
+	            "target: " entry_names " of F^T F; positive definite")},                           \
+		{VECTOR(strain_min, axes, -0.99, 0.0, "1",                                                 \
+	            "range: least engineering strain along each axis")},                               \
+		{VECTOR(strain_max, axes, 0.0, 100.0, "1", "range: largest")},                             \
+		{VECTOR(shrink, axes, 1e-3, 10.0, "1",                                                     \
+	            "S of eq. 21: squared stretches; 1: no shrinkage")},
+
+#define STRUCT cau_sheet_material
+static const cau_field sheet_fields[] = {CAU_SHEET_TABLE(SCALAR)
+                                             LIMIT_FIELDS(3, "t_00, t_11, t_01", 2)};
+#undef STRUCT
+RECORD(cau_sheet_record, "a sheet", sheet_fields, NULL)
+
+#define STRUCT cau_fat_material
+static const cau_field fat_fields[] = {
+	{CHOICE(model, model_choices, "elastic energy")},
+	CAU_FAT_TABLE(SCALAR) LIMIT_FIELDS(6, "t_00, t_11, t_22, t_01, t_02, t_12", 3)};
+#undef STRUCT
+RECORD(cau_fat_record, "fat", fat_fields, NULL)
+
+#define STRUCT cau_link_material
+static const cau_field link_fields[] = {CAU_LINK_TABLE(SCALAR)};
+#undef STRUCT
+RECORD(cau_link_record, "links", link_fields, NULL)
+
+#define STRUCT cau_heat_material
+static const cau_field heat_fields[] = {CAU_HEAT_TABLE(SCALAR)};
+#undef STRUCT
+RECORD(cau_heat_record, "a heated material", heat_fields, NULL)
+
+#define KIND(code) (1u << CAU_SELECT_##code)
+#define STRUCT cau_selection
+static const cau_field selection_fields[] = {
+	{CHOICE(kind, select_kind_choices, "which vertices"), .required = true},
+	{OTHER(layer, NAME, "only of this layer; any if absent")},
+	{VECTOR(least_m, 3, -FAR_M, FAR_M, "m", "least corner of the box"), .required = true,
+     .kinds = KIND(BOX)},
+	{VECTOR(most_m, 3, -FAR_M, FAR_M, "m", "largest corner"), .required = true, .kinds = KIND(BOX)},
+	{VECTOR(center_m, 3, -FAR_M, FAR_M, "m", "centre of the sphere, or the place"),
+     .required = true, .kinds = KIND(SPHERE) | KIND(NEAREST)},
+	{SCALAR_OF(radius_m, 0.0, FAR_M, "m", "radius of the sphere"), .required = true,
+     .kinds = KIND(SPHERE)},
+};
+#undef STRUCT
+#undef KIND
+RECORD(cau_selection_record, "a selection", selection_fields, &select_kind_choices)
+
+#define STRUCT cau_tool_def
+static const cau_field tool_name_fields[] = {
+	{OTHER(name, NAME, "name of the tool"), .required = true},
+};
+RECORD(cau_tool_name_record, "a tool", tool_name_fields, NULL)
+
+static const cau_field tool_fields[] = {
+	{CHOICE(shape, tool_shape_choices, "shape"), .required = true}, CAU_TOOL_TABLE(SCALAR)};
+#undef STRUCT
+RECORD(cau_tool_record, "a tool", tool_fields, NULL)
+
+#define STRUCT cau_pose
+static const cau_field pose_fields[] = {
+	{VECTOR(position_m, 3, -FAR_M, FAR_M, "m", "first place of the tip")},
+	{OTHER(rotation, ROTATION, "unit quaternion w, x, y, z: tool frame (shaft along +z) to world")},
+};
+#undef STRUCT
+RECORD(cau_pose_record, "a pose", pose_fields, NULL)
+
+#define STRUCT cau_pull_def
+static const cau_field pull_fields[] = {
+	{VECTOR(move_m, 3, -FAR_M, FAR_M, "m", "way of the chosen vertices")},
+	{SCALAR_OF(duration_s, 1e-3, 3600.0, "s", "time of the way")},
+};
+#undef STRUCT
+RECORD(cau_pull_record, "a pull", pull_fields, NULL)
+
+#define STRUCT cau_cut_def
+static const cau_field cut_fields[] = {
+	{OTHER(tool, NAME, "tool of the scene"), .required = true},
+	{VECTOR(from_m, 3, -FAR_M, FAR_M, "m", "where the tip dwells"), .required = true},
+	{VECTOR(to_m, 3, -FAR_M, FAR_M, "m", "where it is drawn to"), .required = true},
+	{OTHER(rotation, ROTATION, "unit quaternion w, x, y, z of the tool")},
+	{SCALAR_OF(dwell_s, 0.0, 3600.0, "s", "time before it is drawn")},
+	{SCALAR_OF(speed_m_s, 1e-5, 1.0, "m/s", "speed of drawing")},
+};
+#undef STRUCT
+RECORD(cau_cut_record, "a cut", cut_fields, NULL)
+
+// clang-format on
+
+int cau_material_parts(int layer_kind, cau_sheet_material *sheet, cau_fat_material *fat,
+                       cau_link_material *link, cau_part parts[2])
+{
+	if (layer_kind == CAU_LAYER_FAT) {
+		parts[0] = (cau_part){&cau_fat_record, fat, 0};
+		parts[1] = (cau_part){&cau_heat_record, &fat->heat, 0};
+	} else if (layer_kind == CAU_LAYER_LINKS) {
+		parts[0] = (cau_part){&cau_link_record, link, 0};
+		parts[1] = (cau_part){&cau_heat_record, &link->heat, 0};
+	} else {
+		parts[0] = (cau_part){&cau_sheet_record, sheet, 0};
+		parts[1] = (cau_part){&cau_heat_record, &sheet->heat, 0};
+	}
+	return 2;
+}

@@ -1,0 +1,121 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "rpc/message_table.h"
+
+#include <string.h>
+
+#include "cautery/command.h"
+
+// clang-format off: rows of tables
+
+// ---- words to choose from -----------------------------------------------------------------------
+#define X(code, name) name,
+#define CHOICE_TABLE(choice, table)                                                                \
+	static const char *const choice##_names[] = {table(X)};                                        \
+	static const cau_choices choice##_choices = {choice##_names,                                   \
+	                                             (int)(sizeof choice##_names / sizeof(char *))};
+CAU_CHOICE_LIST(CHOICE_TABLE)
+#undef CHOICE_TABLE
+#undef X
+
+// ---- members ------------------------------------------------------------------------------------
+#define HAS_R(o, field) 0
+#define HAS_O(o, field) offsetof(cau_wire_##o, has_##field)
+#define REQUIRED_R true
+#define REQUIRED_O false
+#define PLACE(o, field, need, TYPE, meaning_)                                                      \
+	.name = #field, .type = CAU_WIRE_TYPE_##TYPE, .required = REQUIRED_##need,                     \
+	.offset = offsetof(cau_wire_##o, field), .has_offset = HAS_##need(o, field),                   \
+	.meaning = meaning_
+#define LIMITS(least_, most_, unit_) .least = least_, .most = most_, .unit = unit_
+
+#define OBJECT(o, meaning) static const cau_wire_field o##_fields[] = {
+#define OBJECT_END(o)                                                                              \
+	{                                                                                              \
+		.name = NULL                                                                               \
+	}                                                                                              \
+	}                                                                                              \
+	;
+#define FLAG(o, field, need, meaning) {PLACE(o, field, need, FLAG, meaning)},
+#define INTEGER(o, field, need, least, most, unit, meaning)                                        \
+	{PLACE(o, field, need, INTEGER, meaning), LIMITS(least, most, unit)},
+#define NUMBER(o, field, need, least, most, unit, meaning)                                         \
+	{PLACE(o, field, need, NUMBER, meaning), LIMITS(least, most, unit)},
+#define VECTOR(o, field, need, count_, least, most, unit, meaning)                                 \
+	{PLACE(o, field, need, VECTOR, meaning), LIMITS(least, most, unit), .count = count_},
+#define TEXT(o, field, need, bytes_max, meaning)                                                   \
+	{PLACE(o, field, need, TEXT, meaning), .count = bytes_max},
+#define NAME(o, field, need, meaning) {PLACE(o, field, need, NAME, meaning)},
+#define HEX64(o, field, need, meaning) {PLACE(o, field, need, HEX64, meaning)},
+#define CHOICE(o, field, need, choice, meaning)                                                    \
+	{PLACE(o, field, need, CHOICE, meaning), .choices = &choice##_choices},
+#define CHOICES(o, field, need, choice, meaning)                                                   \
+	{PLACE(o, field, need, CHOICES, meaning), .choices = &choice##_choices},
+#define PART(o, field, need, object_, meaning)                                                     \
+	{PLACE(o, field, need, PART, meaning), .object = CAU_WIRE_##object_},
+#define LIST(o, field, need, object_, count_max, meaning)                                          \
+	{PLACE(o, field, need, LIST, meaning), .object = CAU_WIRE_##object_, .count = count_max},
+#define SCENE(o, field, need, meaning) {PLACE(o, field, need, SCENE, meaning)},
+#include "cautery/messages.def"
+
+// ---- objects ------------------------------------------------------------------------------------
+#define OBJECT(o, meaning)                                                                         \
+	[CAU_WIRE_##o] = {#o, meaning, sizeof(cau_wire_##o), o##_fields,                               \
+	                  (int32_t)(sizeof o##_fields / sizeof *o##_fields) - 1},
+#define OBJECT_END(o)
+#define FLAG(o, field, need, meaning)
+#define INTEGER(o, field, need, least, most, unit, meaning)
+#define NUMBER(o, field, need, least, most, unit, meaning)
+#define VECTOR(o, field, need, count, least, most, unit, meaning)
+#define TEXT(o, field, need, bytes_max, meaning)
+#define NAME(o, field, need, meaning)
+#define HEX64(o, field, need, meaning)
+#define CHOICE(o, field, need, choice, meaning)
+#define CHOICES(o, field, need, choice, meaning)
+#define PART(o, field, need, object, meaning)
+#define LIST(o, field, need, object, count_max, meaning)
+#define SCENE(o, field, need, meaning)
+const cau_wire_shape cau_wire_shapes[CAU_WIRE_OBJECT_COUNT] = {
+#include "cautery/messages.def"
+};
+
+// ---- methods ------------------------------------------------------------------------------------
+#define CHANGES true
+#define READS false
+#define REQUEST(code, name, params, result, role, effect, meaning)                                 \
+	{name, CAU_FORM_REQUEST, CAU_WIRE_##params, CAU_WIRE_##result, CAU_ROLE_##role, effect,        \
+	 -1,   meaning},
+#define EITHER_WAY(code, name, params, result, role, effect, meaning)                              \
+	{                                                                                              \
+		name,                                                                                      \
+		CAU_FORM_EITHER_WAY,                                                                       \
+		CAU_WIRE_##params,                                                                         \
+		CAU_WIRE_##result,                                                                         \
+		CAU_ROLE_##role,                                                                           \
+		effect,                                                                                    \
+		-1,                                                                                        \
+		meaning},
+#define NOTICE(code, name, params, role, meaning)                                                  \
+	{name, CAU_FORM_NOTICE, CAU_WIRE_##params, CAU_WIRE_nothing, CAU_ROLE_##role, false,           \
+	 -1,   meaning},
+#define COMMAND(code, name, form, meaning)                                                         \
+	{name, CAU_FORM_##form,    CAU_WIRE_nothing, CAU_WIRE_command_result, CAU_ROLE_OPERATE,        \
+	 true, CAU_COMMAND_##code, meaning},
+#define PUSH(code, name, params, meaning)                                                          \
+	{name, CAU_FORM_PUSH, CAU_WIRE_##params, CAU_WIRE_nothing, CAU_ROLE_VIEW, false, -1, meaning},
+static const cau_method_info methods[CAU_METHOD_COUNT] = {
+#include "cautery/methods.def"
+};
+// clang-format on
+
+const cau_method_info *cau_method_describe(cau_method method)
+{
+	return (unsigned)method < CAU_METHOD_COUNT ? &methods[method] : NULL;
+}
+
+int32_t cau_method_find(const char *name)
+{
+	for (int32_t method = 0; method < CAU_METHOD_COUNT; method++)
+		if (strcmp(methods[method].name, name) == 0)
+			return method;
+	return -1;
+}

@@ -1,0 +1,46 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// messages.def as data: reading, checking, writing and describing messages all go by it.
+#pragma once
+
+#include "cautery/messages.h"
+#include "json/record.h"
+
+typedef enum cau_wire_type {
+	CAU_WIRE_TYPE_FLAG,
+	CAU_WIRE_TYPE_INTEGER,
+	CAU_WIRE_TYPE_NUMBER,
+	CAU_WIRE_TYPE_VECTOR,
+	CAU_WIRE_TYPE_TEXT,
+	CAU_WIRE_TYPE_NAME,
+	CAU_WIRE_TYPE_HEX64,
+	CAU_WIRE_TYPE_CHOICE,
+	CAU_WIRE_TYPE_CHOICES,
+	CAU_WIRE_TYPE_PART,
+	CAU_WIRE_TYPE_LIST,
+	CAU_WIRE_TYPE_SCENE,
+} cau_wire_type;
+
+typedef struct cau_wire_field {
+	const char *name;
+	const char *unit, *meaning;
+	double least, most;         // INTEGER, NUMBER, VECTOR
+	const cau_choices *choices; // CHOICE, CHOICES
+	size_t offset;              // in the C type
+	size_t has_offset;          // of bool has_<name>, where it is optional
+	cau_wire_type type;
+	cau_wire_object object; // PART, LIST
+	int32_t count;          // VECTOR: numbers; TEXT: bytes at most; LIST: objects at most
+	bool required;
+} cau_wire_field;
+
+enum { CAU_WIRE_FIELDS_MAX = 32 };
+
+typedef struct cau_wire_shape {
+	const char *name;
+	const char *meaning;
+	size_t bytes; // of the C type
+	const cau_wire_field *fields;
+	int32_t field_count;
+} cau_wire_shape;
+
+extern const cau_wire_shape cau_wire_shapes[CAU_WIRE_OBJECT_COUNT];

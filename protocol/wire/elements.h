@@ -1,0 +1,60 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// The element sections of frames: some elements of an array, chosen by a run list, as numbers of 1,
+// 2 or 4 bytes, plain or in meshoptimizer's vertex codec. See protocol/README.md, "Elements".
+#pragma once
+
+#include <stdbool.h>
+#include <stddef.h>
+#include <stdint.h>
+
+#include "cautery/status.h"
+
+enum {
+	ELEMENTS_HEAD_BYTES = 12,
+	ELEMENTS_PLAIN = 0,
+	ELEMENTS_MESHOPT = 1,
+};
+
+// Differences are kept in balanced digits: byte k counts as signed and stands for 256^k. Small
+// numbers of either sign then have high bytes of 0, which is what the codec likes. With b = 0x80
+// repeated over the width: digits = (number + b) ^ b, number = (digits ^ b) - b.
+#define ELEMENTS_BALANCE UINT32_C(0x80808080)
+
+typedef enum elements_reference {
+	ELEMENTS_NONE = 0,     // numbers are values
+	ELEMENTS_PREVIOUS = 1, // signed differences to the element before
+	ELEMENTS_HELD = 2,     // signed differences to what the decoder holds
+} elements_reference;
+
+// What to write: elements of `now` that differ from `held` (NULL: from zero), or all of them.
+typedef struct elements_source {
+	const uint32_t *now;  // (count x components)
+	const uint32_t *held; // (count x components) or NULL
+	size_t count;
+	uint32_t components; // 1, 3 or 6
+	elements_reference reference;
+	bool all;
+} elements_source;
+
+// Bounds for an array of `count` elements.
+size_t cau_elements_bytes_max(size_t count, uint32_t components);
+size_t cau_elements_scratch_bytes(size_t count, uint32_t components);
+
+// Writes the payload, a multiple of 4 bytes, at `out`, which has room for cau_elements_bytes_max.
+// Returns its length; *written (may be NULL) is the number of elements in it.
+size_t cau_elements_encode(const elements_source *source, uint8_t *scratch, uint8_t *out,
+                           size_t *written);
+
+// Where to put what is read.
+typedef struct elements_target {
+	uint32_t *values; // (count x components)
+	size_t count;
+	uint32_t components;
+	uint32_t bias, most; // value + bias, modulo 2^32, must not exceed most
+	bool may_refer_to_held;
+	bool all; // every element must be there
+} elements_target;
+
+// Reads a payload into `target`. Returns NULL, or what is wrong, with some values perhaps changed.
+const char *cau_elements_decode(const uint8_t *payload, size_t bytes, const elements_target *target,
+                                uint8_t *scratch, size_t *read);

@@ -1,0 +1,197 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "cautery/frame_codec.h"
+
+#include <string.h>
+
+#include "wire/arrays.h"
+#include "wire/header.h"
+#include "wire/records.h"
+
+struct cau_frame_decoder {
+	cau_stream_def def;
+	cau_stream_state state;
+	uint32_t *arrays[ARRAY_COUNT];
+	cau_stream_tool tools[CAU_MAX_TOOLS];
+	uint8_t *scratch;
+};
+
+static size_t struct_bytes(void)
+{
+	return (sizeof(cau_frame_decoder) + 15) & ~(size_t)15;
+}
+
+size_t cau_frame_decoder_bytes(const cau_stream_def *def)
+{
+	return struct_bytes() + 4 * cau_arrays_words(def) + cau_arrays_scratch_bytes(def);
+}
+
+cau_status cau_frame_decoder_init(void *storage, size_t storage_bytes, const cau_stream_def *def,
+                                  cau_frame_decoder **decoder, cau_error *error)
+{
+	cau_status status = cau_stream_def_check(def, error);
+	if (status)
+		return status;
+	if (storage_bytes < cau_frame_decoder_bytes(def))
+		return cau_fail(error, CAU_LIMIT, NULL, "the decoder needs %zu bytes",
+		                cau_frame_decoder_bytes(def));
+	cau_frame_decoder *made = storage;
+	*made = (cau_frame_decoder){.def = *def};
+	uint32_t *words = (uint32_t *)(void *)((uint8_t *)storage + struct_bytes());
+	memset(words, 0, 4 * cau_arrays_words(def));
+	for (int channel = 0; channel < ARRAY_COUNT; channel++) {
+		array_shape shape = cau_array_shape_of(def, channel);
+		made->arrays[channel] = words;
+		words += shape.count * shape.components;
+	}
+	made->scratch = (uint8_t *)words;
+	made->state.quantised = (const int32_t *)made->arrays[CAU_CHANNEL_INDEX_POSITIONS];
+	made->state.face_mask = made->arrays[CAU_CHANNEL_INDEX_MASK];
+	made->state.exposure = made->arrays[CAU_CHANNEL_INDEX_EXPOSURE];
+	made->state.charring = made->arrays[CAU_CHANNEL_INDEX_CHARRING];
+	made->state.stress = made->arrays[CAU_CHANNEL_INDEX_STRESS];
+	made->state.tools = made->tools;
+	*decoder = made;
+	return CAU_OK;
+}
+
+const cau_stream_state *cau_frame_decoder_state(const cau_frame_decoder *decoder)
+{
+	return &decoder->state;
+}
+
+const cau_stream_def *cau_frame_decoder_def(const cau_frame_decoder *decoder)
+{
+	return &decoder->def;
+}
+
+void cau_frame_decoder_position(const cau_frame_decoder *decoder, double *position)
+{
+	const cau_stream_def *def = &decoder->def;
+	bool present = (def->channels & CAU_CHANNEL_POSITIONS) != 0;
+	for (size_t i = 0; i < 3 * (size_t)def->vertex_count; i++)
+		position[i] =
+			def->origin_m[i % 3] + (present ? def->step_m * decoder->state.quantised[i] : 0.0);
+}
+
+// Whether the frame is the next one for this decoder.
+static cau_status check_place(const cau_frame_decoder *decoder, const cau_frame_header *header,
+                              cau_error *error)
+{
+	const cau_stream_state *state = &decoder->state;
+	if (header->kind == CAU_FRAME_TOPOLOGY)
+		return cau_fail(error, CAU_BAD_STATE, "kind", "topology is not for the frame decoder");
+	if (header->session != decoder->def.session)
+		return cau_fail(error, CAU_BAD_STATE, "session", "the frame is of session %u, not %u",
+		                header->session, decoder->def.session);
+	if (header->profile != decoder->def.profile)
+		return cau_fail(error, CAU_BAD_STATE, "profile", "the frame is of profile %u, not %u",
+		                header->profile, decoder->def.profile);
+	if (header->kind == CAU_FRAME_KEY) {
+		bool older =
+			state->synced && header->epoch == state->epoch && header->sequence <= state->sequence;
+		return older ? cau_fail(error, CAU_BAD_STATE, "sequence",
+		                        "the key frame is not newer than what is held")
+		             : CAU_OK;
+	}
+	if (!state->synced)
+		return cau_fail(error, CAU_BAD_STATE, NULL, "a key frame is needed first");
+	if (header->epoch != state->epoch)
+		return cau_fail(error, CAU_BAD_STATE, "epoch", "the frame is of another epoch");
+	if (header->base_sequence != state->sequence)
+		return cau_fail(
+			error, CAU_BAD_STATE, "base_sequence", "the frame builds on %llu, what is held is %llu",
+			(unsigned long long)header->base_sequence, (unsigned long long)state->sequence);
+	return header->sequence > header->base_sequence
+	           ? CAU_OK
+	           : cau_fail(error, CAU_CORRUPT, "sequence", "a delta does not advance");
+}
+
+static void forget(cau_frame_decoder *decoder)
+{
+	memset(decoder->arrays[0], 0, 4 * cau_arrays_words(&decoder->def));
+	decoder->state.tool_count = 0;
+	decoder->state.statistics = (cau_stream_statistics){0};
+}
+
+static const char *read_array(cau_frame_decoder *decoder, const section_cursor *cursor, bool key)
+{
+	int channel = cursor->type - 1;
+	array_shape shape = cau_array_shape_of(&decoder->def, channel);
+	elements_target target = {.values = decoder->arrays[channel],
+	                          .count = shape.count,
+	                          .components = shape.components,
+	                          .bias = shape.bias,
+	                          .most = shape.most,
+	                          .may_refer_to_held = !key,
+	                          .all = key && channel == CAU_CHANNEL_INDEX_POSITIONS};
+	size_t count;
+	const char *wrong = cau_elements_decode(cursor->payload, cursor->payload_bytes, &target,
+	                                        decoder->scratch, &count);
+	if (!wrong && channel == CAU_CHANNEL_INDEX_POSITIONS)
+		decoder->state.moved_count = (int32_t)count;
+	if (!wrong && channel == CAU_CHANNEL_INDEX_MASK)
+		decoder->state.mask_changed_count = (int32_t)count;
+	return wrong;
+}
+
+// Sections of channels that the stream has not are skipped, like unknown ones.
+static const char *read_section(cau_frame_decoder *decoder, const section_cursor *cursor, bool key)
+{
+	cau_stream_state *state = &decoder->state;
+	uint32_t channels = decoder->def.channels;
+	if (cursor->type <= ARRAY_COUNT)
+		return channels & 1u << (cursor->type - 1) ? read_array(decoder, cursor, key) : NULL;
+	if (cursor->type == CAU_SECTION_TOOL_NAMES && channels & CAU_CHANNEL_TOOLS)
+		return cau_tool_names_read(cursor->payload, cursor->payload_bytes, decoder->tools,
+		                           &state->tool_count);
+	if (cursor->type == CAU_SECTION_TOOLS && channels & CAU_CHANNEL_TOOLS)
+		return cau_tools_read(cursor->payload, cursor->payload_bytes, decoder->tools,
+		                      state->tool_count);
+	if (cursor->type == CAU_SECTION_STATISTICS && channels & CAU_CHANNEL_STATISTICS)
+		return cau_statistics_read(cursor->payload, cursor->payload_bytes, &state->statistics);
+	return NULL;
+}
+
+static const char *read_sections(cau_frame_decoder *decoder, const void *bytes,
+                                 const cau_frame_header *header)
+{
+	bool key = header->kind == CAU_FRAME_KEY;
+	bool has_positions = !(decoder->def.channels & CAU_CHANNEL_POSITIONS);
+	section_cursor cursor = cau_sections_begin(bytes, header);
+	while (cau_sections_next(&cursor)) {
+		const char *wrong = read_section(decoder, &cursor, key);
+		if (wrong)
+			return wrong;
+		has_positions = has_positions || cursor.type == CAU_SECTION_POSITIONS;
+	}
+	if (!cursor.wrong && key && !has_positions)
+		return "a key frame has no positions";
+	return cursor.wrong;
+}
+
+cau_status cau_frame_decode(cau_frame_decoder *decoder, const void *bytes, size_t byte_count,
+                            cau_error *error)
+{
+	cau_frame_header header;
+	cau_status status = cau_frame_header_read(bytes, byte_count, &header, error);
+	if (!status)
+		status = check_place(decoder, &header, error);
+	if (status)
+		return status;
+	cau_stream_state *state = &decoder->state;
+	if (header.kind == CAU_FRAME_KEY)
+		forget(decoder);
+	state->moved_count = 0;
+	state->mask_changed_count = 0;
+	const char *wrong = read_sections(decoder, bytes, &header);
+	state->synced = !wrong;
+	if (wrong)
+		return cau_fail(error, CAU_CORRUPT, "sections", "%s", wrong);
+	state->epoch = header.epoch;
+	state->sequence = header.sequence;
+	state->tick = header.tick;
+	state->time_s = header.time_s;
+	state->published_us = header.published_us;
+	state->flags = header.flags;
+	return CAU_OK;
+}

@@ -1,0 +1,371 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "cautery/frame_codec.h"
+
+#include <math.h>
+#include <string.h>
+
+#include "wire/arrays.h"
+#include "wire/bytes.h"
+#include "wire/header.h"
+#include "wire/records.h"
+
+typedef struct tool_set {
+	int32_t count;
+	cau_stream_tool tools[CAU_MAX_TOOLS];
+} tool_set;
+
+struct cau_frame_encoder {
+	cau_stream_def def;
+	cau_frame_header header;     // of the last frame
+	uint32_t *held[ARRAY_COUNT]; // what decoders in step hold
+	uint32_t *next[ARRAY_COUNT]; // what they hold after the frame being made
+	tool_set tools;
+	cau_stream_statistics statistics;
+	uint8_t *scratch;
+};
+
+size_t cau_frame_bytes_max(const cau_stream_def *def)
+{
+	size_t bytes = CAU_FRAME_HEADER_BYTES;
+	for (int channel = 0; channel < ARRAY_COUNT; channel++) {
+		array_shape shape = cau_array_shape_of(def, channel);
+		bytes += CAU_FRAME_SECTION_BYTES + cau_elements_bytes_max(shape.count, shape.components);
+	}
+	return bytes + (size_t)3 * CAU_FRAME_SECTION_BYTES + TOOL_NAMES_BYTES_MAX +
+	       (size_t)CAU_MAX_TOOLS * TOOL_RECORD_BYTES + STATISTICS_RECORD_BYTES;
+}
+
+static size_t struct_bytes(void)
+{
+	return (sizeof(cau_frame_encoder) + 15) & ~(size_t)15;
+}
+
+size_t cau_frame_encoder_bytes(const cau_stream_def *def)
+{
+	return struct_bytes() + 2 * sizeof(uint32_t) * cau_arrays_words(def) +
+	       cau_arrays_scratch_bytes(def);
+}
+
+cau_status cau_frame_encoder_init(void *storage, size_t storage_bytes, const cau_stream_def *def,
+                                  uint64_t epoch, cau_frame_encoder **encoder, cau_error *error)
+{
+	cau_status status = cau_stream_def_check(def, error);
+	if (status)
+		return status;
+	if (epoch == 0)
+		return cau_fail(error, CAU_BAD_VALUE, "epoch", "an epoch is not 0");
+	if (storage_bytes < cau_frame_encoder_bytes(def))
+		return cau_fail(error, CAU_LIMIT, NULL, "the encoder needs %zu bytes",
+		                cau_frame_encoder_bytes(def));
+	cau_frame_encoder *made = storage;
+	*made = (cau_frame_encoder){.def = *def};
+	uint32_t *words = (uint32_t *)(void *)((uint8_t *)storage + struct_bytes());
+	for (int channel = 0; channel < ARRAY_COUNT; channel++) {
+		array_shape shape = cau_array_shape_of(def, channel);
+		made->held[channel] = words;
+		made->next[channel] = words + shape.count * shape.components;
+		words += 2 * shape.count * shape.components;
+	}
+	made->scratch = (uint8_t *)words;
+	cau_frame_encoder_restart(made, epoch);
+	*encoder = made;
+	return CAU_OK;
+}
+
+void cau_frame_encoder_restart(cau_frame_encoder *encoder, uint64_t epoch)
+{
+	encoder->header = (cau_frame_header){
+		.session = encoder->def.session, .profile = encoder->def.profile, .epoch = epoch};
+}
+
+uint64_t cau_frame_encoder_epoch(const cau_frame_encoder *encoder)
+{
+	return encoder->header.epoch;
+}
+
+uint64_t cau_frame_encoder_sequence(const cau_frame_encoder *encoder)
+{
+	return encoder->header.sequence;
+}
+
+// ---- taking a sample ----------------------------------------------------------------------------
+
+static bool wants(const cau_frame_encoder *encoder, cau_channel channel)
+{
+	return (encoder->def.channels & channel) != 0;
+}
+
+static cau_status check_sample(const cau_frame_encoder *encoder, const cau_stream_sample *sample,
+                               cau_error *error)
+{
+	const struct {
+		cau_channel channel;
+		const void *array;
+		const char *name;
+	} needed[] = {
+		{CAU_CHANNEL_POSITIONS, sample->position, "position"},
+		{CAU_CHANNEL_MASK, sample->face_mask, "face_mask"},
+		{CAU_CHANNEL_EXPOSURE, sample->exposure, "exposure"},
+		{CAU_CHANNEL_CHARRING, sample->charring, "charring"},
+		{CAU_CHANNEL_STRESS, sample->stress, "stress"},
+		{CAU_CHANNEL_STATISTICS, sample->statistics, "statistics"},
+	};
+	for (size_t i = 0; i < sizeof needed / sizeof *needed; i++) {
+		if (wants(encoder, needed[i].channel) && !needed[i].array)
+			return cau_fail(error, CAU_BAD_VALUE, needed[i].name, "the stream has this channel");
+	}
+	if (sample->tool_count < 0 || sample->tool_count > CAU_MAX_TOOLS)
+		return cau_fail(error, CAU_BAD_VALUE, "tool_count", "%d is not within 0 and %d",
+		                sample->tool_count, CAU_MAX_TOOLS);
+	for (int32_t i = 0; i < sample->tool_count; i++) {
+		const char *wrong = cau_stream_tool_check(&sample->tools[i]);
+		if (wrong)
+			return cau_fail(error, CAU_BAD_VALUE, "tools", "tool %d: %s", i, wrong);
+	}
+	return isfinite(sample->time_s)
+	           ? CAU_OK
+	           : cau_fail(error, CAU_NUMERICAL, "time_s", "the time is not finite");
+}
+
+// In the epoch's first frame hidden vertices are sent too: there is nothing yet to keep for them.
+static bool is_kept(const cau_frame_encoder *encoder, const cau_stream_sample *sample,
+                    int32_t vertex)
+{
+	return encoder->header.sequence > 0 && sample->vertex_visible &&
+	       !sample->vertex_visible[vertex];
+}
+
+static cau_status quantise_positions(cau_frame_encoder *encoder, const cau_stream_sample *sample,
+                                     cau_error *error)
+{
+	const cau_stream_def *def = &encoder->def;
+	uint32_t *next = encoder->next[CAU_CHANNEL_INDEX_POSITIONS];
+	const uint32_t *held = encoder->held[CAU_CHANNEL_INDEX_POSITIONS];
+	double steps_per_m = 1.0 / def->step_m;
+	for (int32_t vertex = 0; vertex < def->vertex_count; vertex++) {
+		size_t first = 3 * (size_t)vertex;
+		if (is_kept(encoder, sample, vertex)) {
+			memcpy(next + first, held + first, 3 * sizeof *next);
+			continue;
+		}
+		for (size_t i = 0; i < 3; i++) {
+			double steps = (sample->position[first + i] - def->origin_m[i]) * steps_per_m;
+			if (!(fabs(steps) <= POSITION_LIMIT))
+				return cau_fail(error, CAU_NUMERICAL, "position",
+				                "vertex %d at %g m cannot be told in steps of %g m", vertex,
+				                sample->position[first + i], def->step_m);
+			next[first + i] = (uint32_t)(int32_t)lrint(steps);
+		}
+	}
+	return CAU_OK;
+}
+
+// Nearest whole number of 1/scale, saturated; what is not a number becomes 0.
+static void quantise_scalar(cau_frame_encoder *encoder, const cau_stream_sample *sample,
+                            int channel, const float *values, double scale, double most)
+{
+	uint32_t *next = encoder->next[channel];
+	for (int32_t vertex = 0; vertex < encoder->def.vertex_count; vertex++) {
+		double steps = (double)values[vertex] * scale;
+		steps = steps > 0.0 ? steps : 0.0;
+		steps = steps < most ? steps : most;
+		next[vertex] = is_kept(encoder, sample, vertex) ? encoder->held[channel][vertex]
+		                                                : (uint32_t)lrint(steps);
+	}
+}
+
+static cau_status take_arrays(cau_frame_encoder *encoder, const cau_stream_sample *sample,
+                              cau_error *error)
+{
+	if (wants(encoder, CAU_CHANNEL_POSITIONS)) {
+		cau_status status = quantise_positions(encoder, sample, error);
+		if (status)
+			return status;
+	}
+	if (wants(encoder, CAU_CHANNEL_MASK))
+		memcpy(encoder->next[CAU_CHANNEL_INDEX_MASK], sample->face_mask,
+		       4 * cau_array_shape_of(&encoder->def, CAU_CHANNEL_INDEX_MASK).count);
+	if (wants(encoder, CAU_CHANNEL_EXPOSURE))
+		quantise_scalar(encoder, sample, CAU_CHANNEL_INDEX_EXPOSURE, sample->exposure, 255.0,
+		                255.0);
+	if (wants(encoder, CAU_CHANNEL_CHARRING))
+		quantise_scalar(encoder, sample, CAU_CHANNEL_INDEX_CHARRING, sample->charring, 255.0,
+		                255.0);
+	if (wants(encoder, CAU_CHANNEL_STRESS))
+		quantise_scalar(encoder, sample, CAU_CHANNEL_INDEX_STRESS, sample->stress,
+		                1.0 / encoder->def.stress_step_pa, 65535.0);
+	return CAU_OK;
+}
+
+static bool take_tools(cau_frame_encoder *encoder, const cau_stream_sample *sample)
+{
+	tool_set *held = &encoder->tools;
+	bool renamed = held->count != sample->tool_count;
+	for (int32_t i = 0; i < sample->tool_count; i++) {
+		const cau_stream_tool *tool = &sample->tools[i];
+		renamed = renamed || tool->shape != held->tools[i].shape ||
+		          strncmp(tool->name, held->tools[i].name, sizeof tool->name) != 0;
+		held->tools[i] = *tool;
+	}
+	held->count = sample->tool_count;
+	return renamed;
+}
+
+// ---- writing frames
+// -------------------------------------------------------------------------------
+
+typedef struct frame_writer {
+	uint8_t *start;
+	uint8_t *at;
+	uint16_t section_count;
+} frame_writer;
+
+static uint8_t *section_payload(const frame_writer *writer)
+{
+	return writer->at + CAU_FRAME_SECTION_BYTES;
+}
+
+static void end_section(frame_writer *writer, cau_section type, size_t payload_bytes)
+{
+	cau_section_head_write(writer->at, type, payload_bytes);
+	writer->at += CAU_FRAME_SECTION_BYTES + payload_bytes;
+	writer->section_count++;
+}
+
+static void write_key_arrays(const cau_frame_encoder *encoder, frame_writer *writer)
+{
+	for (int channel = 0; channel < ARRAY_COUNT; channel++) {
+		array_shape shape = cau_array_shape_of(&encoder->def, channel);
+		bool positions = channel == CAU_CHANNEL_INDEX_POSITIONS;
+		if (!wants(encoder, (cau_channel)(1 << channel)))
+			continue;
+		elements_source source = {.now = encoder->held[channel],
+		                          .count = shape.count,
+		                          .components = shape.components,
+		                          .reference = positions ? ELEMENTS_PREVIOUS : ELEMENTS_NONE,
+		                          .all = positions};
+		end_section(writer, (cau_section)(channel + 1),
+		            cau_elements_encode(&source, encoder->scratch, section_payload(writer), NULL));
+	}
+}
+
+// From `next`, which has become what is held, back to the arrays before it.
+static void write_delta_arrays(const cau_frame_encoder *encoder, frame_writer *writer)
+{
+	for (int channel = 0; channel < ARRAY_COUNT; channel++) {
+		array_shape shape = cau_array_shape_of(&encoder->def, channel);
+		bool mask = channel == CAU_CHANNEL_INDEX_MASK;
+		elements_source source = {.now = encoder->held[channel],
+		                          .held = encoder->next[channel],
+		                          .count = shape.count,
+		                          .components = shape.components,
+		                          .reference = mask ? ELEMENTS_NONE : ELEMENTS_HELD};
+		size_t written;
+		size_t bytes =
+			cau_elements_encode(&source, encoder->scratch, section_payload(writer), &written);
+		if (written > 0)
+			end_section(writer, (cau_section)(channel + 1), bytes);
+	}
+}
+
+static void write_records(const cau_frame_encoder *encoder, frame_writer *writer, bool names)
+{
+	const tool_set *set = &encoder->tools;
+	if (wants(encoder, CAU_CHANNEL_TOOLS)) {
+		if (names)
+			end_section(writer, CAU_SECTION_TOOL_NAMES,
+			            cau_tool_names_write(section_payload(writer), set->tools, set->count));
+		end_section(writer, CAU_SECTION_TOOLS,
+		            cau_tools_write(section_payload(writer), set->tools, set->count));
+	}
+	if (wants(encoder, CAU_CHANNEL_STATISTICS))
+		end_section(writer, CAU_SECTION_STATISTICS,
+		            cau_statistics_write(section_payload(writer), &encoder->statistics));
+}
+
+static size_t end_frame(const cau_frame_encoder *encoder, frame_writer *writer, cau_frame_kind kind)
+{
+	cau_frame_header header = encoder->header;
+	header.kind = (uint8_t)kind;
+	header.byte_count = (uint32_t)(writer->at - writer->start);
+	header.base_sequence = header.sequence - (kind == CAU_FRAME_DELTA);
+	header.section_count = writer->section_count;
+	cau_frame_header_write(writer->start, &header);
+	return header.byte_count;
+}
+
+static cau_status check_capacity(const cau_frame_encoder *encoder, size_t capacity,
+                                 cau_error *error)
+{
+	size_t needed = cau_frame_bytes_max(&encoder->def);
+	return capacity >= needed
+	           ? CAU_OK
+	           : cau_fail(error, CAU_LIMIT, NULL, "a frame may need %zu bytes", needed);
+}
+
+static frame_writer begin_frame(void *bytes)
+{
+	uint8_t *start = bytes;
+	return (frame_writer){.start = start, .at = start + CAU_FRAME_HEADER_BYTES};
+}
+
+static size_t write_key(const cau_frame_encoder *encoder, void *bytes)
+{
+	frame_writer writer = begin_frame(bytes);
+	write_key_arrays(encoder, &writer);
+	write_records(encoder, &writer, true);
+	return end_frame(encoder, &writer, CAU_FRAME_KEY);
+}
+
+static size_t write_delta(const cau_frame_encoder *encoder, bool names, void *bytes)
+{
+	frame_writer writer = begin_frame(bytes);
+	write_delta_arrays(encoder, &writer);
+	write_records(encoder, &writer, names);
+	return end_frame(encoder, &writer, CAU_FRAME_DELTA);
+}
+
+static void advance(cau_frame_encoder *encoder, const cau_stream_sample *sample)
+{
+	for (int channel = 0; channel < ARRAY_COUNT; channel++) {
+		uint32_t *before = encoder->held[channel];
+		encoder->held[channel] = encoder->next[channel];
+		encoder->next[channel] = before;
+	}
+	encoder->header.sequence++;
+	encoder->header.tick = sample->tick;
+	encoder->header.time_s = sample->time_s;
+	encoder->header.published_us = sample->published_us;
+	encoder->header.flags = sample->flags;
+	if (sample->statistics)
+		encoder->statistics = *sample->statistics;
+}
+
+cau_status cau_frame_encode(cau_frame_encoder *encoder, const cau_stream_sample *sample,
+                            void *bytes, size_t capacity, size_t *byte_count, cau_error *error)
+{
+	cau_status status = check_capacity(encoder, capacity, error);
+	if (!status)
+		status = check_sample(encoder, sample, error);
+	if (!status)
+		status = take_arrays(encoder, sample, error);
+	if (status)
+		return status;
+	bool first = encoder->header.sequence == 0;
+	bool renamed = take_tools(encoder, sample);
+	advance(encoder, sample);
+	*byte_count = first ? write_key(encoder, bytes) : write_delta(encoder, renamed, bytes);
+	return CAU_OK;
+}
+
+cau_status cau_frame_encode_key(const cau_frame_encoder *encoder, void *bytes, size_t capacity,
+                                size_t *byte_count, cau_error *error)
+{
+	cau_status status = check_capacity(encoder, capacity, error);
+	if (status)
+		return status;
+	if (encoder->header.sequence == 0)
+		return cau_fail(error, CAU_BAD_STATE, NULL, "there is no state before the first frame");
+	*byte_count = write_key(encoder, bytes);
+	return CAU_OK;
+}

@@ -1,0 +1,184 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "wire/records.h"
+
+#include <math.h>
+
+#include "cautery/name.h"
+#include "wire/bytes.h"
+
+enum {
+	TOOL_ENERGIZED = 1 << 0,
+	TOOL_GRASPING = 1 << 1,
+	TOOL_FROZEN = 1 << 2,
+	STATISTICS_FLOATS = 2 + CAU_STREAM_STAGES + 2,
+	STATISTICS_COUNTS = 10,
+};
+_Static_assert(sizeof(cau_stream_statistics) == STATISTICS_RECORD_BYTES &&
+                   4 * (STATISTICS_FLOATS + STATISTICS_COUNTS) == STATISTICS_RECORD_BYTES,
+               "the record lists every member of cau_stream_statistics");
+
+size_t cau_tool_names_write(uint8_t *out, const cau_stream_tool *tools, int32_t count)
+{
+	uint8_t *at = out + 4;
+	store_u32(out, (uint32_t)count);
+	for (int32_t i = 0; i < count; i++) {
+		size_t length = strlen(tools[i].name);
+		*at++ = (uint8_t)tools[i].shape;
+		*at++ = (uint8_t)length;
+		memcpy(at, tools[i].name, length);
+		at += length;
+	}
+	for (; (at - out) % 4; at++)
+		*at = 0;
+	return (size_t)(at - out);
+}
+
+const char *cau_tool_names_read(const uint8_t *payload, size_t bytes, cau_stream_tool *tools,
+                                int32_t *count)
+{
+	uint32_t announced = bytes >= 4 ? load_u32(payload) : UINT32_MAX;
+	if (announced > CAU_MAX_TOOLS)
+		return "too many tools, or a damaged list of them";
+	size_t at = 4;
+	for (uint32_t i = 0; i < announced; i++) {
+		if (bytes - at < 2 || bytes - at - 2 < payload[at + 1] || payload[at + 1] >= CAU_NAME_BYTES)
+			return "a tool's name is longer than its section or than names may be";
+		tools[i].shape = payload[at];
+		size_t length = payload[at + 1];
+		memcpy(tools[i].name, payload + at + 2, length);
+		tools[i].name[length] = 0;
+		if (tools[i].shape >= CAU_TOOL_SHAPE_COUNT || !cau_name_is_valid(tools[i].name))
+			return "a tool's shape or name cannot be";
+		at += 2 + length;
+	}
+	*count = (int32_t)announced;
+	return round_up_4(at) == bytes ? NULL : "the list of tools has the wrong length";
+}
+
+static uint8_t *store_vector(uint8_t *at, const double *value, int count)
+{
+	for (int i = 0; i < count; i++, at += 4)
+		store_f32(at, (float)value[i]);
+	return at;
+}
+
+static void store_tool(uint8_t *at, const cau_stream_tool *tool)
+{
+	store_u64(at, tool->sequence);
+	at = store_vector(at + 8, tool->pose.position_m, 3);
+	at = store_vector(at, tool->pose.rotation, 4);
+	at = store_vector(at, &tool->jaw, 1);
+	at = store_vector(at, tool->force_n, 3);
+	at = store_vector(at, tool->torque_nm, 3);
+	at = store_vector(at, &tool->tip_temperature_c, 1);
+	at = store_vector(at, &tool->energy_j, 1);
+	store_u32(at, tool->driver);
+	at[4] = (uint8_t)((tool->energized ? TOOL_ENERGIZED : 0) |
+	                  (tool->grasping ? TOOL_GRASPING : 0) | (tool->frozen ? TOOL_FROZEN : 0));
+	at[5] = tool->energy_off;
+	store_u16(at + 6, tool->grasped_vertices);
+	store_u16(at + 8, tool->contact_vertices);
+	store_u16(at + 10, tool->touched_layers);
+}
+
+static bool is_finite(const double *value, int count)
+{
+	for (int i = 0; i < count; i++) {
+		if (!isfinite((float)value[i]))
+			return false;
+	}
+	return true;
+}
+
+const char *cau_stream_tool_check(const cau_stream_tool *tool)
+{
+	if (!memchr(tool->name, 0, sizeof tool->name) || !cau_name_is_valid(tool->name))
+		return "its name breaks the rule " CAU_NAME_RULE;
+	if (tool->shape < 0 || tool->shape >= CAU_TOOL_SHAPE_COUNT ||
+	    tool->energy_off >= CAU_ENERGY_OFF_COUNT)
+		return "its shape or its reason for energy off is none";
+	if (!is_finite(tool->pose.position_m, 3) || !is_finite(tool->pose.rotation, 4) ||
+	    !is_finite(&tool->jaw, 1) || !is_finite(tool->force_n, 3) ||
+	    !is_finite(tool->torque_nm, 3) || !is_finite(&tool->tip_temperature_c, 1) ||
+	    !is_finite(&tool->energy_j, 1))
+		return "a number is not finite in single precision";
+	return NULL;
+}
+
+size_t cau_tools_write(uint8_t *out, const cau_stream_tool *tools, int32_t count)
+{
+	for (int32_t i = 0; i < count; i++)
+		store_tool(out + (size_t)i * TOOL_RECORD_BYTES, &tools[i]);
+	return (size_t)count * TOOL_RECORD_BYTES;
+}
+
+static const uint8_t *load_vector(const uint8_t *at, double *value, int count, bool *finite)
+{
+	for (int i = 0; i < count; i++, at += 4) {
+		value[i] = (double)load_f32(at);
+		*finite &= isfinite(value[i]) != 0;
+	}
+	return at;
+}
+
+static bool load_tool(const uint8_t *at, cau_stream_tool *tool)
+{
+	bool finite = true;
+	tool->sequence = load_u64(at);
+	at = load_vector(at + 8, tool->pose.position_m, 3, &finite);
+	at = load_vector(at, tool->pose.rotation, 4, &finite);
+	at = load_vector(at, &tool->jaw, 1, &finite);
+	at = load_vector(at, tool->force_n, 3, &finite);
+	at = load_vector(at, tool->torque_nm, 3, &finite);
+	at = load_vector(at, &tool->tip_temperature_c, 1, &finite);
+	at = load_vector(at, &tool->energy_j, 1, &finite);
+	tool->driver = load_u32(at);
+	tool->energized = at[4] & TOOL_ENERGIZED;
+	tool->grasping = at[4] & TOOL_GRASPING;
+	tool->frozen = at[4] & TOOL_FROZEN;
+	tool->energy_off = at[5];
+	tool->grasped_vertices = load_u16(at + 6);
+	tool->contact_vertices = load_u16(at + 8);
+	tool->touched_layers = load_u16(at + 10);
+	return finite && tool->energy_off < CAU_ENERGY_OFF_COUNT;
+}
+
+const char *cau_tools_read(const uint8_t *payload, size_t bytes, cau_stream_tool *tools,
+                           int32_t count)
+{
+	if (bytes != (size_t)count * TOOL_RECORD_BYTES)
+		return "there are not as many tools as names";
+	for (int32_t i = 0; i < count; i++) {
+		if (!load_tool(payload + (size_t)i * TOOL_RECORD_BYTES, &tools[i]))
+			return "a tool's number is not finite or its reason for energy off is not known";
+	}
+	return NULL;
+}
+
+// A statistic that is not finite (a rate over no time, say) is told as 0.
+size_t cau_statistics_write(uint8_t *out, const cau_stream_statistics *statistics)
+{
+	uint32_t words[STATISTICS_FLOATS + STATISTICS_COUNTS];
+	memcpy(words, statistics, sizeof words);
+	for (size_t i = 0; i < STATISTICS_FLOATS + STATISTICS_COUNTS; i++) {
+		store_u32(out + 4 * i, words[i]);
+		if (i < STATISTICS_FLOATS && !isfinite(load_f32(out + 4 * i)))
+			store_f32(out + 4 * i, 0.0f);
+	}
+	return STATISTICS_RECORD_BYTES;
+}
+
+const char *cau_statistics_read(const uint8_t *payload, size_t bytes,
+                                cau_stream_statistics *statistics)
+{
+	uint32_t words[STATISTICS_FLOATS + STATISTICS_COUNTS];
+	if (bytes < STATISTICS_RECORD_BYTES)
+		return "the statistics are too short";
+	for (size_t i = 0; i < STATISTICS_FLOATS + STATISTICS_COUNTS; i++) {
+		words[i] = load_u32(payload + 4 * i);
+		if (i < STATISTICS_FLOATS && !isfinite(load_f32(payload + 4 * i)))
+			return "a statistic is not finite";
+	}
+	memcpy(statistics, words, sizeof words);
+	return NULL;
+}

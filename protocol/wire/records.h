@@ -1,0 +1,28 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// The sections of frames that are records: tool names, tools, statistics.
+#pragma once
+
+#include "cautery/stream.h"
+
+enum {
+	TOOL_RECORD_BYTES = 84,
+	TOOL_NAMES_BYTES_MAX = 4 + CAU_MAX_TOOLS * (2 + CAU_NAME_BYTES) + 3,
+	STATISTICS_RECORD_BYTES = 88,
+};
+
+// What a decoder would refuse in this tool, or NULL.
+const char *cau_stream_tool_check(const cau_stream_tool *tool);
+
+// Each writes a payload and returns its length.
+size_t cau_tool_names_write(uint8_t *out, const cau_stream_tool *tools, int32_t count);
+size_t cau_tools_write(uint8_t *out, const cau_stream_tool *tools, int32_t count);
+size_t cau_statistics_write(uint8_t *out, const cau_stream_statistics *statistics);
+
+// Each reads a payload; returns NULL or what is wrong. tool_names_read keeps the rest of the
+// records.
+const char *cau_tool_names_read(const uint8_t *payload, size_t bytes, cau_stream_tool *tools,
+                                int32_t *count);
+const char *cau_tools_read(const uint8_t *payload, size_t bytes, cau_stream_tool *tools,
+                           int32_t count);
+const char *cau_statistics_read(const uint8_t *payload, size_t bytes,
+                                cau_stream_statistics *statistics);

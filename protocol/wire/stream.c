@@ -1,0 +1,40 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "cautery/stream.h"
+
+#include <math.h>
+
+cau_stream_def cau_default_stream_def(void)
+{
+	return (cau_stream_def){
+		.channels = CAU_CHANNEL_ALL & ~(uint32_t)(CAU_CHANNEL_STRESS | CAU_CHANNEL_STATISTICS),
+		.step_m = 5e-5,
+		.stress_step_pa = 10.0,
+	};
+}
+
+cau_status cau_stream_def_check(const cau_stream_def *def, cau_error *error)
+{
+	if (def->vertex_count < 1 || def->vertex_count > CAU_STREAM_ELEMENTS_MAX)
+		return cau_fail(error, CAU_BAD_VALUE, "vertex_count", "%d is not within 1 and %d",
+		                def->vertex_count, CAU_STREAM_ELEMENTS_MAX);
+	if (def->face_count < 0 || def->face_count > CAU_STREAM_ELEMENTS_MAX)
+		return cau_fail(error, CAU_BAD_VALUE, "face_count", "%d is not within 0 and %d",
+		                def->face_count, CAU_STREAM_ELEMENTS_MAX);
+	if (def->profile >= CAU_STREAM_PROFILES_MAX)
+		return cau_fail(error, CAU_BAD_VALUE, "profile", "%d is not below %d", def->profile,
+		                CAU_STREAM_PROFILES_MAX);
+	if (def->channels & ~(uint32_t)CAU_CHANNEL_ALL)
+		return cau_fail(error, CAU_BAD_VALUE, "channels", "a bit stands for no channel");
+	if (!(def->step_m >= 1e-7 && def->step_m <= 1e-2))
+		return cau_fail(error, CAU_BAD_VALUE, "step_m", "%g m is not within 1e-7 m and 0.01 m",
+		                def->step_m);
+	if (!(def->stress_step_pa >= 1e-3 && def->stress_step_pa <= 1e9))
+		return cau_fail(error, CAU_BAD_VALUE, "stress_step_pa",
+		                "%g Pa is not within 0.001 Pa and 1e9 Pa", def->stress_step_pa);
+	for (int i = 0; i < 3; i++) {
+		if (!(fabs(def->origin_m[i]) <= 1e6))
+			return cau_fail(error, CAU_BAD_VALUE, "origin_m", "%g m is not within 1e6 m of zero",
+			                def->origin_m[i]);
+	}
+	return CAU_OK;
+}

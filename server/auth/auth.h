@@ -1,0 +1,32 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Who may do what: tokens with roles, and the checks of Host and Origin that keep web pages of
+// others from driving the daemon.
+#pragma once
+
+#include <stdbool.h>
+#include <stddef.h>
+
+#include "cautery/message_choices.h"
+#include "cautery/status.h"
+#include "config/config.h"
+
+typedef struct cau_auth cau_auth;
+
+// Reads the file of tokens if the settings name one: `ROLE TOKEN` a line, `#` starts a comment,
+// tokens of 16 to 128 printable characters. A file that others than its owner can read is refused.
+cau_status cau_auth_create(cau_auth **auth, const cau_config *config, cau_error *error);
+void cau_auth_destroy(cau_auth *auth); // takes NULL
+
+// The role of a token (not zero-ended); false if it has none. Without a file of tokens everyone is
+// admin, with or without a token. Takes the same time for every wrong token of a length.
+bool cau_auth_role(const cau_auth *auth, const char *token, size_t bytes, cau_role *role);
+
+// Whether requests must carry a token.
+bool cau_auth_required(const cau_auth *auth);
+
+// Whether a Host header names this daemon: loopback names and the listening address, each with the
+// listening port or none, and what the settings add.
+bool cau_auth_host_allowed(const cau_config *config, const char *host);
+// Whether an Origin header is this daemon's own page (same host and port as `host`) or one that the
+// settings add. An absent one (NULL or "") is no browser and passes.
+bool cau_auth_origin_allowed(const cau_config *config, const char *origin, const char *host);

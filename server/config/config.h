@@ -1,0 +1,99 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// What cauteryd can be told, from one table: flags over environment over a JSON file over defaults.
+//
+//     setting `max_sessions`: flag --max-sessions 8, environment CAUTERY_MAX_SESSIONS=8,
+//     file {"max_sessions": 8}
+#pragma once
+
+#include <stdbool.h>
+#include <stdint.h>
+#include <stdio.h>
+
+#include "cautery/status.h"
+
+enum { CAU_CONFIG_TEXT_BYTES = 512 };
+
+// TEXT(name, default, meaning) INTEGER(name, default, least, most, meaning)
+// REAL(name, default, least, most, meaning) SWITCH(name, default, meaning)
+#define CAU_CONFIG_TABLE(TEXT, INTEGER, REAL, SWITCH)                                              \
+	TEXT(listen, "127.0.0.1", "address to listen on; others than loopback need tokens")            \
+	INTEGER(port, 8740, 0, 65535, "port of HTTP and WebSocket; 0: any free one")                   \
+	TEXT(store, "cautery.db", "file of the store")                                                 \
+	TEXT(scenes, "", "folder of named scenes; empty: the installed one")                           \
+	TEXT(viewer, "", "folder of viewer files to serve; empty: a plain page")                       \
+	TEXT(label, "d1", "this daemon's label, first part of its sessions' ids")                      \
+	TEXT(demo, "", "scene of which a session exists at start, made if the store has none")         \
+	TEXT(tokens, "", "file of tokens, one `ROLE TOKEN` a line; empty: loopback is admin")          \
+	TEXT(hosts, "", "more accepted Host names, separated by commas")                               \
+	TEXT(origins, "", "more accepted Origins, separated by commas")                                \
+	TEXT(log_level, "info", "least level logged: debug, info, notice, warning, error")             \
+	INTEGER(workers, 0, 0, 256, "threads that step sessions; 0: one a core")                       \
+	INTEGER(session_threads, 1, 1, 16, "threads one session's step may use")                       \
+	INTEGER(max_sessions, 64, 1, 4096, "sessions at once")                                         \
+	INTEGER(max_connections, 1024, 1, 65536, "WebSocket connections at once")                      \
+	INTEGER(max_subscribers, 128, 1, 4096, "streams of one session at once")                       \
+	INTEGER(max_message_bytes, 1048576, 4096, 67108864, "largest message of a client")             \
+	INTEGER(max_upload_bytes, 67108864, 1024, 1073741824, "largest uploaded mesh")                 \
+	INTEGER(max_requests_per_s, 2000, 1, 1000000, "messages of one client in a second")            \
+	INTEGER(queue_commands, 256, 8, 65536, "commands that wait for a session's tick border")       \
+	INTEGER(subscriber_bytes, 196608, 16384, 16777216, "frames in flight to one subscriber")       \
+	REAL(hello_timeout_s, 5, 0.05, 60, "a connection without hello is closed after this")          \
+	REAL(browser_deadline_s, 0.25, 0.02, 10, "silence of a browser's driver to energy off")        \
+	REAL(resume_s, 10, 0, 600, "a lost connection's driver role is kept for this")                 \
+	REAL(ping_s, 10, 0.5, 3600, "a silent connection is pinged after this, hung up after three")   \
+	REAL(slow_close_s, 30, 1, 3600, "a subscriber that takes no frame for this is closed")         \
+	REAL(checkpoint_s, 10, 0.1, 3600, "wall time between checkpoints of a running session")        \
+	REAL(retention_h, 24, 0.01, 8760, "old branches and checkpoints are kept for this")            \
+	INTEGER(retention_bytes, 1073741824, 1048576, 1099511627776, "and up to this, a session")      \
+	REAL(drain_s, 10, 0.1, 600, "longest wait for checkpoints when told to end")                   \
+	SWITCH(dds, false, "open the DDS transport")                                                   \
+	INTEGER(dds_domain, 0, 0, 230, "DDS domain")                                                   \
+	TEXT(dds_config, "", "file of Cyclone DDS settings; empty: loopback only")                     \
+	SWITCH(dds_network, false, "let dds_config take DDS off loopback without DDS Security")        \
+	REAL(dds_deadline_s, 0.25, 0.02, 1, "silence to energy off of a DDS driver without deadline")
+
+#define CAU_CONFIG_TEXT(name, default_, meaning) char name[CAU_CONFIG_TEXT_BYTES];
+#define CAU_CONFIG_INTEGER(name, default_, least, most, meaning) int64_t name;
+#define CAU_CONFIG_REAL(name, default_, least, most, meaning) double name;
+#define CAU_CONFIG_SWITCH(name, default_, meaning) bool name;
+
+typedef struct cau_config {
+	CAU_CONFIG_TABLE(CAU_CONFIG_TEXT, CAU_CONFIG_INTEGER, CAU_CONFIG_REAL, CAU_CONFIG_SWITCH)
+} cau_config;
+
+#undef CAU_CONFIG_TEXT
+#undef CAU_CONFIG_INTEGER
+#undef CAU_CONFIG_REAL
+#undef CAU_CONFIG_SWITCH
+
+// What the command line asked for besides settings.
+typedef struct cau_config_request {
+	bool help, version, json, print_config;
+} cau_config_request;
+
+void cau_config_default(cau_config *config);
+
+// Sets one setting from text, as flags, environment and file all do. CAU_NOT_FOUND: no such
+// setting; CAU_BAD_VALUE: not of its type or out of its range.
+cau_status cau_config_set(cau_config *config, const char *name, const char *text, cau_error *error);
+
+// Reads a JSON object of settings; `text` ends with a zero that is not among its bytes.
+cau_status cau_config_read_text(cau_config *config, const char *text, size_t bytes,
+                                cau_error *error);
+// The same from a file of at most 64 KiB.
+cau_status cau_config_read_file(cau_config *config, const char *file, cau_error *error);
+
+// Reads every CAUTERY_* of a zero-ended environment. CAUTERY_CONFIG and CAUTERY_MESHES are not
+// settings.
+cau_status cau_config_read_environment(cau_config *config, char *const *environment,
+                                       cau_error *error);
+
+// Everything in order: defaults, file (--config or CAUTERY_CONFIG), environment, flags; then checks
+// what concerns several settings.
+cau_status cau_config_load(cau_config *config, cau_config_request *request, int argument_count,
+                           char *const *arguments, char *const *environment, cau_error *error);
+
+// Writes the settings as one JSON object.
+void cau_config_print(const cau_config *config, FILE *stream);
+// Writes the usage text.
+void cau_config_help(FILE *stream);

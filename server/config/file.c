@@ -1,0 +1,119 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// A settings file is one flat JSON object. The strict scan vouches for its form, so the walk below
+// only has to cut it into names and values.
+#include <stdlib.h>
+#include <string.h>
+
+#include "cautery/json_text.h"
+#include "config/config.h"
+#include "config/setting.h"
+
+enum { FILE_MAX_BYTES = 65536 };
+
+static cau_status read_whole(const char *file, char *text, size_t *bytes, cau_error *error)
+{
+	FILE *stream = fopen(file, "rb");
+	if (!stream)
+		return cau_fail(error, CAU_IO, "config", "cannot open %.200s", file);
+	*bytes = fread(text, 1, FILE_MAX_BYTES + 1, stream);
+	bool failed = ferror(stream);
+	fclose(stream);
+	if (failed)
+		return cau_fail(error, CAU_IO, "config", "cannot read %.200s", file);
+	if (*bytes > FILE_MAX_BYTES)
+		return cau_fail(error, CAU_LIMIT, "config", "longer than %d bytes", FILE_MAX_BYTES);
+	text[*bytes] = 0;
+	return CAU_OK;
+}
+
+static const char *skip_space(const char *at)
+{
+	return at + strspn(at, " \t\r\n");
+}
+
+// Copies a string's content; false if it has an escape that settings do not need or is too long.
+static bool take_string(const char **at, char *text, size_t capacity)
+{
+	size_t length = 0;
+	const char *c = *at + 1;
+	for (; *c != '"'; c++) {
+		if (*c == '\\' && *++c != '"' && *c != '\\' && *c != '/')
+			return false;
+		if (length + 1 >= capacity)
+			return false;
+		text[length++] = *c;
+	}
+	text[length] = 0;
+	*at = c + 1;
+	return true;
+}
+
+// Numbers, true, false; false for anything nested.
+static bool take_plain(const char **at, char *text, size_t capacity)
+{
+	size_t length = strcspn(*at, ",} \t\r\n");
+	if (**at == '{' || **at == '[' || length >= capacity)
+		return false;
+	memcpy(text, *at, length);
+	text[length] = 0;
+	*at += length;
+	return true;
+}
+
+static cau_status store_member(cau_config *config, const char *name, const char *text, bool quoted,
+                               cau_error *error)
+{
+	const setting *found = cau_setting_find(name);
+	if (!found || strchr(name, '-'))
+		return cau_fail(error, CAU_NOT_FOUND, name, "there is no such setting");
+	if (quoted != (found->kind == SETTING_TEXT))
+		return cau_fail(error, CAU_BAD_VALUE, name,
+		                quoted ? "must not be a string" : "must be a string");
+	return cau_setting_store(found, config, text, error);
+}
+
+static cau_status read_members(cau_config *config, const char *at, cau_error *error)
+{
+	char name[64], text[CAU_CONFIG_TEXT_BYTES];
+	at = skip_space(at);
+	if (*at != '{')
+		return cau_fail(error, CAU_BAD_VALUE, "", "must be an object");
+	at = skip_space(at + 1);
+	while (*at != '}') {
+		if (!take_string(&at, name, sizeof name))
+			return cau_fail(error, CAU_NOT_FOUND, "", "a name is no setting's");
+		at = skip_space(skip_space(at) + 1); // past the colon
+		bool quoted = *at == '"';
+		if (!(quoted ? take_string(&at, text, sizeof text) : take_plain(&at, text, sizeof text)))
+			return cau_fail(error, CAU_BAD_VALUE, name, "too long or nested");
+		cau_status status = store_member(config, name, text, quoted, error);
+		if (status)
+			return status;
+		at = skip_space(at);
+		if (*at == ',')
+			at = skip_space(at + 1);
+	}
+	return CAU_OK;
+}
+
+cau_status cau_config_read_text(cau_config *config, const char *text, size_t bytes,
+                                cau_error *error)
+{
+	cau_status status = cau_json_scan(text, bytes, FILE_MAX_BYTES, error);
+	return status ? status : read_members(config, text, error);
+}
+
+cau_status cau_config_read_file(cau_config *config, const char *file, cau_error *error)
+{
+	size_t bytes = 0;
+	char *text = malloc(FILE_MAX_BYTES + 2);
+	if (!text)
+		return cau_fail(error, CAU_NO_MEMORY, "config", "memory ran out");
+	cau_status status = read_whole(file, text, &bytes, error);
+	if (!status)
+		status = cau_config_read_text(config, text, bytes, error);
+	if (status && error)
+		snprintf(error->file, sizeof error->file, "%.250s", file);
+	free(text);
+	return status;
+}

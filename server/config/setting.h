@@ -1,0 +1,33 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// The settings as an array, made from the one table in config.h.
+#pragma once
+
+#include <stddef.h>
+
+#include "config/config.h"
+
+typedef enum setting_kind {
+	SETTING_TEXT,
+	SETTING_INTEGER,
+	SETTING_REAL,
+	SETTING_SWITCH
+} setting_kind;
+
+typedef struct setting {
+	const char *name;
+	setting_kind kind;
+	size_t offset; // in cau_config
+	const char *default_text;
+	double least, most; // SETTING_INTEGER, SETTING_REAL
+	const char *meaning;
+} setting;
+
+extern const setting cau_settings[];
+extern const size_t cau_setting_count;
+
+// NULL if there is none. Takes both spellings, `max_sessions` and `max-sessions`.
+const setting *cau_setting_find(const char *name);
+
+// Checks and stores one value.
+cau_status cau_setting_store(const setting *setting, cau_config *config, const char *text,
+                             cau_error *error);

@@ -1,0 +1,197 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "daemon/daemon.h"
+
+#include <stdlib.h>
+#include <string.h>
+#include <systemd/sd-daemon.h>
+#include <unistd.h>
+
+#include "auth/auth.h"
+#include "clock/clock.h"
+#include "http/static_files.h"
+#include "hub/hub.h"
+#include "log/log.h"
+#include "rpc/service.h"
+#include "transport_dds/dds_transport.h"
+#include "transport_ws/network.h"
+#include "watchdog/watchdog.h"
+#include "worker/pool.h"
+
+enum {
+	WORKER_NICE = 5, // below network and watchdog
+	CLOSING_S = 2,   // for connections to take their close frames
+	REAP_MS = 250,
+};
+
+struct cau_daemon {
+	cau_config *config;
+	cau_auth *auth;
+	cau_static_files *files;
+	cau_scenes *scenes;
+	cau_store *store;
+	cau_worker_pool *pool;
+	cau_hub *hub;
+	cau_watchdog *watchdog;
+	cau_service *service;
+	cau_network *network;
+	cau_dds *dds; // NULL: not wanted
+	unsigned long ticks_seen;
+};
+
+static void on_armed(void *user)
+{
+	cau_daemon *daemon = user;
+	cau_watchdog_wake(daemon->watchdog);
+}
+
+static double on_look(void *user, double now_s)
+{
+	cau_daemon *daemon = user;
+	return cau_hub_watch(daemon->hub, now_s);
+}
+
+// On the store's thread.
+static void on_store_state(void *user, cau_store_state state, const char *reason)
+{
+	cau_daemon *daemon = user;
+	cau_log(state == CAU_STORE_READY ? CAU_LOG_NOTICE : CAU_LOG_ERROR, NULL, "store_state",
+	        "state=%s reason=\"%s\"", cau_store_state_name(state), reason);
+	if (state == CAU_STORE_READY && daemon->hub)
+		cau_hub_want_checkpoints(daemon->hub);
+}
+
+static cau_status open_store(cau_daemon *daemon, cau_error *error)
+{
+	const cau_config *config = daemon->config;
+	cau_store_config store = cau_store_default_config();
+	store.path = config->store;
+	store.label = config->label;
+	store.retention_bytes = config->retention_bytes;
+	store.retention_age_ms = (int64_t)(config->retention_h * 3.6e6);
+	store.on_state = on_store_state;
+	store.user = daemon;
+	return cau_store_open(&store, &daemon->store, error);
+}
+
+static cau_status open_hub(cau_daemon *daemon, cau_error *error)
+{
+	cau_config *config = daemon->config;
+	long cores = sysconf(_SC_NPROCESSORS_ONLN);
+	int32_t workers = config->workers ? (int32_t)config->workers : cores > 0 ? (int32_t)cores : 1;
+	cau_status status = cau_worker_pool_create(
+		&daemon->pool, workers, 2 * (int32_t)config->max_sessions + 1, WORKER_NICE, error);
+	cau_hub_def def = {.config = config,
+	                   .store = daemon->store,
+	                   .pool = daemon->pool,
+	                   .scenes = daemon->scenes,
+	                   .armed = on_armed,
+	                   .user = daemon};
+	if (!status)
+		status = cau_hub_create(&daemon->hub, &def, error);
+	if (!status)
+		status = cau_watchdog_create(&daemon->watchdog, on_look, daemon, error);
+	return status;
+}
+
+static cau_status open_network(cau_daemon *daemon, cau_error *error)
+{
+	cau_status status = cau_service_create(&daemon->service, daemon->config, daemon->auth,
+	                                       daemon->hub, daemon->store, error);
+	if (status)
+		return status;
+	cau_network_def def = {.config = daemon->config,
+	                       .auth = daemon->auth,
+	                       .files = daemon->files,
+	                       .handler = cau_service_handler(daemon->service)};
+	status = cau_network_create(&daemon->network, &def, error);
+	if (!status)
+		cau_service_set_network(daemon->service, daemon->network);
+	return status;
+}
+
+static cau_status open_all(cau_daemon *daemon, cau_error *error)
+{
+	cau_config *config = daemon->config;
+	if (!*config->scenes)
+		snprintf(config->scenes, sizeof config->scenes, "%s", CAUTERY_SCENES);
+	cau_status status = cau_auth_create(&daemon->auth, config, error);
+	if (!status)
+		status = cau_static_files_load(&daemon->files, config->viewer, error);
+	if (!status)
+		status = cau_scenes_load(&daemon->scenes, config->scenes, error);
+	if (!status)
+		status = open_store(daemon, error);
+	if (!status)
+		status = open_hub(daemon, error);
+	if (!status)
+		status = open_network(daemon, error);
+	if (!status && config->dds)
+		status = cau_dds_create(&daemon->dds, config, daemon->hub, error);
+	if (!status)
+		status = cau_hub_resume(daemon->hub, error);
+	if (!status)
+		status = cau_network_start(daemon->network, error);
+	if (!status && daemon->dds)
+		status = cau_dds_start(daemon->dds, error);
+	return status;
+}
+
+cau_status cau_daemon_start(cau_daemon **made, cau_config *config, cau_error *error)
+{
+	*made = NULL;
+	cau_daemon *daemon = calloc(1, sizeof *daemon);
+	if (!daemon)
+		return cau_fail(error, CAU_NO_MEMORY, NULL, "no memory for the daemon");
+	daemon->config = config;
+	cau_status status = open_all(daemon, error);
+	if (status) {
+		cau_daemon_stop(daemon);
+		return status;
+	}
+	cau_log(CAU_LOG_NOTICE, NULL, "listening", "address=%s port=%lld store=\"%s\"", config->listen,
+	        (long long)config->port, config->store);
+	sd_notify(0, "READY=1");
+	*made = daemon;
+	return CAU_OK;
+}
+
+int cau_daemon_wait(cau_daemon *daemon, const sigset_t *signals, int *signal_number)
+{
+	struct timespec patience = {0, REAP_MS * 1000000L};
+	int got = sigtimedwait(signals, NULL, &patience);
+	if (got > 0)
+		*signal_number = got;
+	cau_hub_reap(daemon->hub);
+	unsigned long ticks = cau_service_ticks(daemon->service);
+	if (ticks != daemon->ticks_seen)
+		sd_notify(0, "WATCHDOG=1");
+	daemon->ticks_seen = ticks;
+	return 0;
+}
+
+void cau_daemon_stop(cau_daemon *daemon)
+{
+	if (!daemon)
+		return;
+	sd_notify(0, "STOPPING=1");
+	if (daemon->service)
+		cau_service_drain(daemon->service);
+	cau_dds_stop(daemon->dds);
+	if (daemon->hub)
+		cau_hub_drain(daemon->hub, daemon->config->drain_s);
+	if (daemon->network)
+		cau_network_stop(daemon->network, CAU_CLOSE_DRAINING, CLOSING_S);
+	cau_watchdog_destroy(daemon->watchdog);
+	if (daemon->service)
+		cau_service_set_network(daemon->service, NULL);
+	cau_network_destroy(daemon->network);
+	cau_hub_destroy(daemon->hub);
+	cau_dds_destroy(daemon->dds);
+	cau_service_destroy(daemon->service);
+	cau_worker_pool_destroy(daemon->pool);
+	cau_store_close(daemon->store);
+	cau_scenes_destroy(daemon->scenes);
+	cau_static_files_destroy(daemon->files);
+	cau_auth_destroy(daemon->auth);
+	free(daemon);
+}

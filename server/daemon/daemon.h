@@ -1,0 +1,19 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// The daemon: everything put together, started and ended in order.
+#pragma once
+
+#include <signal.h>
+
+#include "cautery/status.h"
+#include "config/config.h"
+
+typedef struct cau_daemon cau_daemon;
+
+// Opens what the settings say, resumes what the store holds, listens. `config` is borrowed; its
+// port becomes the real one.
+cau_status cau_daemon_start(cau_daemon **daemon, cau_config *config, cau_error *error);
+// Waits for one of the signals, telling systemd meanwhile that all threads live. Non-zero: the
+// daemon cannot go on.
+int cau_daemon_wait(cau_daemon *daemon, const sigset_t *signals, int *signal_number);
+// Checkpoints every session, closes connections with a reason, ends the threads, frees all.
+void cau_daemon_stop(cau_daemon *daemon);

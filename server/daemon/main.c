@@ -1,0 +1,88 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// cauteryd: reads its settings, starts the daemon, waits for a signal, drains.
+#include <pthread.h>
+#include <signal.h>
+#include <stdio.h>
+#include <string.h>
+#include <unistd.h>
+
+#include "config/config.h"
+#include "daemon/daemon.h"
+#include "log/log.h"
+
+// Ends 0 after a drain, 1 if the daemon could not start, 2 for bad settings.
+enum { EXIT_STARTED = 0, EXIT_FAILED = 1, EXIT_USAGE = 2 };
+
+static void block_signals(sigset_t *signals)
+{
+	sigemptyset(signals);
+	sigaddset(signals, SIGTERM);
+	sigaddset(signals, SIGINT);
+	pthread_sigmask(SIG_BLOCK, signals, NULL); // every thread made later inherits it
+	signal(SIGPIPE, SIG_IGN);
+	signal(SIGXFSZ, SIG_IGN); // a file that may not grow is the store's to answer
+}
+
+static int fail(const char *event, const cau_error *error)
+{
+	cau_log(CAU_LOG_ERROR, NULL, event, "status=%s file=\"%s\" path=\"%s\" reason=\"%s\"",
+	        cau_status_name(error->status), error->file, error->path, error->reason);
+	return EXIT_FAILED;
+}
+
+static void print_ready(const cau_config *config)
+{
+	printf("{\"address\": \"%s\", \"port\": %lld, \"url\": \"http://%s:%lld/\", \"pid\": %d}\n",
+	       config->listen, (long long)config->port, config->listen, (long long)config->port,
+	       getpid());
+	fflush(stdout);
+}
+
+static int run(cau_config *config, bool json)
+{
+	sigset_t signals;
+	cau_error error = {0};
+	cau_daemon *daemon;
+	block_signals(&signals);
+	if (cau_daemon_start(&daemon, config, &error))
+		return fail("start_failed", &error);
+	if (json)
+		print_ready(config);
+	int signal_number = 0;
+	while (signal_number != SIGTERM && signal_number != SIGINT)
+		if (cau_daemon_wait(daemon, &signals, &signal_number))
+			break;
+	cau_log(CAU_LOG_NOTICE, NULL, "ending", "signal=%d", signal_number);
+	cau_daemon_stop(daemon);
+	cau_log(CAU_LOG_NOTICE, NULL, "ended", "pid=%d", getpid());
+	return EXIT_STARTED;
+}
+
+int main(int argument_count, char **arguments)
+{
+	cau_config config;
+	cau_config_request request;
+	cau_error error = {0};
+	if (cau_config_load(&config, &request, argument_count, arguments, environ, &error)) {
+		fail("bad_settings", &error);
+		return EXIT_USAGE;
+	}
+	if (request.help) {
+		cau_config_help(stdout);
+		return EXIT_STARTED;
+	}
+	if (request.version) {
+		puts("cauteryd " CAUTERY_VERSION);
+		return EXIT_STARTED;
+	}
+	if (request.print_config) {
+		cau_config_print(&config, stdout);
+		return EXIT_STARTED;
+	}
+	if (!cau_log_set_level(config.log_level)) {
+		cau_fail(&error, CAU_BAD_VALUE, "log_level", "there is no level `%.20s`", config.log_level);
+		fail("bad_settings", &error);
+		return EXIT_USAGE;
+	}
+	return run(&config, request.json);
+}

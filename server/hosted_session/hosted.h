@@ -1,0 +1,131 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// A session on this daemon: the core's session, its queue, drivers, streams and log. It is a task
+// of the worker pool; the functions here may be called from any thread, and none of them waits for
+// a step or a disk.
+#pragma once
+
+#include "cautery/scene.h"
+#include "config/config.h"
+#include "hosted_session/order.h"
+#include "store/store.h"
+#include "worker/pool.h"
+
+// What all sessions share; outlives them.
+typedef struct cau_surroundings {
+	const cau_config *config;
+	cau_store *store;
+	cau_worker_pool *pool;
+	cau_sink sink;
+	// Energy came on somewhere: the watchdog must look at its times again.
+	void (*armed)(void *user);
+	// Makes a new session that starts from the state of another; see cau_hosted_origin.
+	void (*fork)(void *user, cau_hosted *source, const cau_order *order, uint64_t tick);
+	void *user;
+} cau_surroundings;
+
+// Where the first state comes from.
+typedef struct cau_hosted_origin {
+	enum {
+		CAU_ORIGIN_SCENE, // tick 0 of its scene
+		CAU_ORIGIN_STORE, // its own last state in the store
+		CAU_ORIGIN_FORK,  // another session's
+	} kind;
+	char session[CAU_STORE_ID_BYTES]; // FORK
+	int64_t branch;
+	uint64_t tick; // FORK
+} cau_hosted_origin;
+
+typedef struct cau_hosted_def {
+	const char *id;
+	uint32_t number;
+	cau_scene_def *scene; // malloc'ed, taken; meshes of source bytes point into `meshes`
+	void *meshes;         // malloc'ed, taken; may be NULL
+	size_t mesh_bytes;
+	bool paused;
+	cau_hosted_origin origin;
+	cau_asker creator;
+	int64_t client_sequence;
+	cau_reply reply; // answered with session_description once it is stored
+} cau_hosted_def;
+
+// One reference, for the caller; the session is in the pool and builds itself there.
+cau_status cau_hosted_create(cau_hosted **hosted, const cau_surroundings *around,
+                             const cau_hosted_def *def, cau_error *error);
+cau_hosted *cau_hosted_share(cau_hosted *hosted);
+void cau_hosted_release(cau_hosted *hosted); // takes NULL
+// Takes the session out of the pool. Not from a worker.
+void cau_hosted_stop(cau_hosted *hosted);
+
+const char *cau_hosted_id(const cau_hosted *hosted);
+uint32_t cau_hosted_number(const cau_hosted *hosted);
+// For whoever makes a fork, on the session's own worker: its definition and present branch.
+const cau_scene_def *cau_hosted_scene(const cau_hosted *hosted);
+int64_t cau_hosted_branch(const cau_hosted *hosted);
+// Destroyed, or never came to be: to be forgotten.
+bool cau_hosted_ended(cau_hosted *hosted);
+// Being built, or its first rows not handed to the store yet.
+bool cau_hosted_starting(cau_hosted *hosted);
+// Made by this very request.
+bool cau_hosted_made_by(const cau_hosted *hosted, const char *client_id, int64_t client_sequence);
+void cau_hosted_summary(cau_hosted *hosted, cau_wire_session_summary *summary);
+
+// Queues an order, which is malloc'ed and taken on CAU_OK. CAU_LIMIT: the queue is full; CAU_IO:
+// the store takes nothing; CAU_NOT_FOUND: the session is going away. Motion that is refused is
+// counted and told to its driver.
+cau_status cau_hosted_submit(cau_hosted *hosted, cau_order *order, cau_error *error);
+
+// ---- drivers
+// ------------------------------------------------------------------------------------- A sign of
+// life of a client: its tools' watchdogs start anew.
+void cau_hosted_feed(cau_hosted *hosted, uint32_t client);
+// The client is gone or looks away: energy off at the next tick border, tools stay where they are.
+// `tell` names the reason in events.
+void cau_hosted_cut(cau_hosted *hosted, uint32_t client, const char *tell);
+// The client will not come back: its tools have no driver any more.
+void cau_hosted_forget_client(cau_hosted *hosted, uint32_t client);
+// Cuts the energy of drivers that are silent for too long. Returns the time when it must look
+// again, INFINITY if nothing is energized.
+double cau_hosted_watch(cau_hosted *hosted, double now_s);
+
+// ---- streams
+// ------------------------------------------------------------------------------------- One stream
+// of one connection; zeroed but for `stream` at the start.
+typedef struct cau_subscriber {
+	int32_t stream;
+	bool topology_sent, has_key, wants_key, acknowledges;
+	uint64_t epoch, sequence; // of the last frame sent
+	double key_asked_s;       // a key frame at most once a second
+	double key_pause_s;       // twice that for one that keeps falling behind
+	double waiting_since_s;   // frames are there and it takes none; 0: not so
+	double fallen_s;
+	int32_t falls;
+	size_t in_flight; // bytes sent and not acknowledged
+	struct {
+		uint64_t sequence;
+		size_t bytes;
+	} sent[32]; // by sequence modulo 32
+} cau_subscriber;
+
+// The frame that the subscriber should get now, shared for the caller, or NULL.
+cau_buffer *cau_hosted_next_frame(cau_hosted *hosted, cau_subscriber *subscriber, double now_s);
+// It holds everything up to this frame.
+void cau_hosted_acknowledge(cau_hosted *hosted, cau_subscriber *subscriber, uint64_t epoch,
+                            uint64_t sequence);
+// True if there is something that the subscriber has not got.
+bool cau_hosted_has_frame(cau_hosted *hosted, const cau_subscriber *subscriber);
+void cau_hosted_leave(cau_hosted *hosted, const cau_subscriber *subscriber);
+
+// ---- for the daemon
+// ------------------------------------------------------------------------------ The store was full
+// and is not any more: the log has a gap that only a checkpoint closes.
+void cau_hosted_want_checkpoint(cau_hosted *hosted);
+// Stops time, cuts energy, writes a checkpoint. cau_hosted_drained tells when that is done.
+void cau_hosted_drain(cau_hosted *hosted);
+bool cau_hosted_drained(cau_hosted *hosted);
+
+typedef struct cau_hosted_counts {
+	uint64_t steps, frames, frame_bytes, key_frames, commands, motions, refused, watchdog_cuts;
+	double step_seconds; // spent in steps
+	double realtime_factor;
+} cau_hosted_counts;
+void cau_hosted_count(cau_hosted *hosted, cau_hosted_counts *counts);

@@ -1,0 +1,255 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// What the files of this room share. `worker` marks what only the worker that runs the session's
+// slice touches; the rest is guarded by the mutex, which is held for moments only.
+#pragma once
+
+#include <pthread.h>
+#include <stdatomic.h>
+
+#include "cautery/frame_codec.h"
+#include "cautery/session.h"
+#include "clock/clock.h"
+#include "hosted_session/hosted.h"
+#include "log/log.h"
+
+enum {
+	RING_FRAMES = 16,  // deltas kept for subscribers that are a little behind
+	EVENT_COUNT = 512, // kept in memory for session.timeline
+	SNAPSHOT_COUNT = 64,
+	CUT_MERGE_TICKS = 30, // cuts of neighbouring ticks are one event
+};
+
+// A tool and who drives it.
+typedef struct cau_drive {
+	char tool[CAU_NAME_BYTES];
+	cau_asker driver; // client 0: nobody
+	double last_s;    // the driver's last sign of life
+	bool energized;   // the watchdog looks only at these
+	bool frozen;
+	bool cut_wanted; // by the watchdog or a transport; done at the next tick border
+	char cut_cause[32];
+	int energy_off; // CAU_ENERGY_OFF_*
+	// refused motion, told once a second
+	int64_t refused;
+	double refused_told_s;
+	uint32_t refused_client;
+	uint64_t refused_sequence;
+	cau_error refused_error;
+} cau_drive;
+
+typedef struct cau_ring_frame {
+	uint64_t sequence;
+	cau_buffer *buffer;
+} cau_ring_frame;
+
+typedef struct cau_stream {
+	bool used;                        // slot taken; changed by the worker under the mutex
+	int32_t subscribers;              // mutex
+	bool key_wanted;                  // mutex
+	uint64_t epoch;                   // mutex: of what is in the ring
+	uint64_t newest;                  // mutex: sequence
+	cau_ring_frame ring[RING_FRAMES]; // mutex, by sequence modulo RING_FRAMES
+	cau_ring_frame key;               // mutex
+	cau_buffer *topology;             // mutex
+	cau_stream_def def;               // worker
+	double rate_hz, next_s;           // worker
+	void *storage, *scratch;          // worker
+	size_t scratch_bytes;
+	cau_frame_encoder *encoder; // worker
+} cau_stream;
+
+// A command of the log that is being replayed.
+typedef struct cau_replayed {
+	uint64_t tick;
+	cau_command command;
+} cau_replayed;
+
+// Going to a state of the store; in slices.
+typedef struct cau_replay {
+	bool active;
+	uint64_t until;
+	bool exact;
+	cau_replayed *commands;
+	size_t count, capacity, at;
+	cau_order *order; // the rewind, reset or restore that asked; NULL: the start
+} cau_replay;
+
+typedef struct cau_named_snapshot {
+	char name[CAU_NAME_BYTES];
+	int64_t branch;
+	uint64_t tick;
+} cau_named_snapshot;
+
+// Answers that wait for their commit.
+typedef struct cau_pending {
+	struct cau_pending *next;
+	cau_reply reply;
+	char *text; // malloc'ed
+	size_t text_bytes;
+} cau_pending;
+
+struct cau_hosted {
+	cau_task task; // first
+	atomic_int references;
+	const cau_surroundings *around;
+	char id[CAU_NAME_BYTES];
+	uint32_t number;
+
+	// worker
+	cau_scene_def *scene;   // as it was made
+	cau_scene_def *present; // with the tools, gravity and materials of now
+	void *meshes;
+	size_t mesh_bytes;
+	cau_hosted_origin origin;
+	cau_asker creator;
+	int64_t creator_sequence;
+	cau_reply creator_reply;
+	cau_session *core;
+	cau_session_info info;
+	int state; // CAU_SESSION_*
+	bool pause_at_start;
+	char fault[320];
+	uint64_t tick, first_tick, oldest_tick;
+	int64_t branch, next_branch;
+	uint64_t logged_tick; // of the last log entry
+	uint32_t logged_order;
+	uint64_t epoch;
+	double speed, next_step_s;
+	int64_t steps_left;
+	cau_order *stepping; // answered when steps_left is 0
+	cau_replay replay;
+	cau_store_batch *batch; // of this slice; NULL: nothing to write
+	cau_pending *pending;   // answers that wait for it
+	double checkpoint_s;
+	uint64_t checkpoint_tick;
+	double window_s; // realtime_factor's window
+	uint64_t window_tick;
+	double step_cost_s, realtime_factor;
+	int32_t elements_removed;
+	uint32_t refused_commands;
+	bool dirty; // streams must show a change that no step made
+	cau_named_snapshot snapshots[SNAPSHOT_COUNT];
+	int32_t snapshot_count;
+	cau_wire_timeline_event events[EVENT_COUNT]; // ring
+	uint64_t event_count;
+	cau_order *postponed; // resends whose first is not committed yet
+
+	pthread_mutex_t mutex;
+	cau_order *first, *last;
+	int32_t queued;
+	cau_drive drives[CAU_MAX_TOOLS];
+	int32_t drive_count;
+	cau_stream streams[CAU_STREAM_PROFILES_MAX];
+	cau_tool_state tools[CAU_MAX_TOOLS]; // of the newest tick, for transports
+	int32_t tool_count;
+	uint64_t tools_tick;
+	double tools_time_s;
+	cau_wire_session_summary summary;
+	cau_hosted_counts counts;
+	atomic_bool unanswered; // its making is not with the store yet
+	atomic_bool ended, starting, checkpoint_wanted, drain_wanted, drained;
+	atomic_int commits;         // on their way to the disk
+	atomic_bool commit_awaited; // wake the task when none is
+};
+
+// ---- run.c
+cau_due cau_hosted_run(cau_task *task);
+void cau_hosted_set_fault(cau_hosted *h, const cau_error *error);
+void cau_hosted_publish_summary(cau_hosted *h);
+
+// ---- tools.c
+void cau_hosted_publish_tools(cau_hosted *h); // for other threads to read
+
+// ---- start.c: builds the core, loads the state
+void cau_hosted_start(cau_hosted *h);
+void cau_hosted_started(cau_hosted *h); // after the replay of a start
+
+// ---- replay.c
+// Loads the checkpoint and log of a session's branch up to `tick` (UINT64_MAX: the end) into the
+// core and begins the replay. On failure the core is as it was.
+cau_status cau_replay_begin(cau_hosted *h, const char *session, int64_t branch, uint64_t tick,
+                            cau_order *order, cau_error *error);
+// One slice. False when it has ended (or faulted the session).
+bool cau_replay_slice(cau_hosted *h);
+void cau_replay_finish(cau_replay *replay);
+
+// ---- apply.c: what each order does. Takes the order.
+void cau_hosted_apply(cau_hosted *h, cau_order *order);
+// A command of the daemon's own: submitted to the core and logged for nobody.
+void cau_hosted_command(cau_hosted *h, const cau_command *command);
+
+// ---- time.c: orders about time and history
+void cau_apply_pause(cau_hosted *h, cau_order *order);
+void cau_apply_resume(cau_hosted *h, cau_order *order);
+void cau_apply_step(cau_hosted *h, cau_order *order);
+void cau_apply_speed(cau_hosted *h, cau_order *order);
+void cau_apply_back(cau_hosted *h, cau_order *order); // rewind, reset, restore
+void cau_apply_snapshot(cau_hosted *h, cau_order *order);
+void cau_apply_fork(cau_hosted *h, cau_order *order);
+void cau_apply_destroy(cau_hosted *h, cau_order *order);
+// After the replay of a rewind, reset or restore.
+void cau_back_arrived(cau_hosted *h, cau_order *order);
+
+// ---- drive.c
+cau_drive *cau_drive_find(cau_hosted *h, const char *tool); // worker, or under the mutex
+void cau_drive_add(cau_hosted *h, const char *tool, const cau_asker *driver);
+void cau_drive_remove(cau_hosted *h, const char *tool);
+// Follows the core's tools: after a restore.
+void cau_drive_match_tools(cau_hosted *h, const char *client_cause);
+// Does the cuts that the watchdog and the transports asked for.
+void cau_drive_apply_cuts(cau_hosted *h);
+// Energy off and the tool frozen, now, by the daemon itself.
+void cau_drive_cut(cau_hosted *h, cau_drive *drive, int energy_off, const char *cause);
+void cau_drive_cut_all(cau_hosted *h, int energy_off, const char *cause);
+void cau_drive_tell(cau_hosted *h, const cau_drive *drive); // tool.driver_changed
+void cau_drive_describe(const cau_drive *drive, cau_wire_driver *driver);
+void cau_apply_take_over(cau_hosted *h, cau_order *order);
+void cau_apply_hand_over(cau_hosted *h, cau_order *order);
+void cau_apply_request_takeover(cau_hosted *h, cau_order *order);
+// Counts a refused motion; told once a second by cau_drive_tell_refusals.
+void cau_drive_refuse(cau_hosted *h, const cau_order *order, const cau_error *error);
+void cau_drive_tell_refusals(cau_hosted *h, double now_s);
+
+// ---- streams.c (subscribe.c: what a subscriber gets)
+void cau_streams_publish(cau_hosted *h, double now_s); // frames that are due
+void cau_streams_restart(cau_hosted *h);               // a new epoch
+void cau_streams_destroy(cau_hosted *h);
+void cau_apply_join(cau_hosted *h, cau_order *order);
+
+// ---- record.c: the store
+cau_store_batch *cau_record_batch(cau_hosted *h); // of this slice; NULL if memory ran out
+// Logs a command that the core has taken, with the answer to its request if `order` has one.
+void cau_record_command(cau_hosted *h, const cau_command *command, const cau_order *order,
+                        const char *text, size_t text_bytes);
+// Records an answer that is no command's.
+void cau_record_answer(cau_hosted *h, const cau_order *order, const char *text, size_t text_bytes);
+void cau_record_state(cau_hosted *h);
+void cau_record_checkpoint(cau_hosted *h, uint64_t *hash, size_t *bytes);
+void cau_record_event(cau_hosted *h, const cau_wire_timeline_event *event, cau_log_level level);
+// Answers once what is recorded so far is on the disk. Takes `text`.
+void cau_record_reply(cau_hosted *h, const cau_reply *reply, char *text, size_t text_bytes);
+void cau_record_commit(cau_hosted *h); // submits the slice's batch
+// The stored answer of a resent request: CAU_OK (answered), CAU_NOT_FOUND (act), CAU_BAD_STATE
+// (wait).
+cau_status cau_record_resend(cau_hosted *h, const cau_order *order);
+
+// ---- answer.c
+// Writes a result as a whole JSON-RPC answer with the id 0; malloc'ed, NULL on failure.
+char *cau_answer_text(cau_method method, const void *result, size_t *bytes, cau_error *error);
+// Answers at once, or after the commit if the method changes something. Takes the order.
+void cau_answer_order(cau_hosted *h, cau_order *order, const void *result);
+void cau_answer_fail(cau_order *order, const cau_error *error, int32_t code);
+// Sends a notification.
+void cau_answer_notify(cau_hosted *h, cau_audience audience, cau_method method, const void *params);
+void cau_answer_changed(cau_hosted *h, int change, const char *client);
+void cau_answer_describe(cau_hosted *h, cau_order *order);
+char *cau_answer_description(cau_hosted *h, cau_method method, size_t *bytes, cau_error *error);
+
+// ---- event.c
+void cau_event_add(cau_hosted *h, int kind, const char *tool, const char *client, int64_t count,
+                   const char *detail);
+void cau_apply_timeline(cau_hosted *h, cau_order *order);
+
+// ---- export.c
+void cau_apply_export(cau_hosted *h, cau_order *order);
+void cau_apply_log(cau_hosted *h, cau_order *order);

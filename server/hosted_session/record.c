@@ -1,0 +1,251 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// The session's side of the store: one batch a slice, answers after its commit.
+#include <stdlib.h>
+#include <string.h>
+
+#include "cautery/command_json.h"
+#include "hosted_session/internal.h"
+
+cau_store_batch *cau_record_batch(cau_hosted *h)
+{
+	if (!h->batch)
+		h->batch = cau_store_batch_create();
+	return h->batch;
+}
+
+// A log that misses something is only good again from the next checkpoint on.
+static void gap(cau_hosted *h, const cau_error *error)
+{
+	cau_log(CAU_LOG_ERROR, h->id, "store_refused", "status=%s reason=\"%s\"",
+	        cau_status_name(error->status), error->reason);
+	h->checkpoint_wanted = true;
+}
+
+void cau_record_command(cau_hosted *h, const cau_command *command, const cau_order *order,
+                        const char *text, size_t text_bytes)
+{
+	char json[CAU_COMMAND_JSON_MAX_BYTES];
+	size_t json_bytes = 0;
+	cau_error error = {0};
+	cau_store_batch *batch = cau_record_batch(h);
+	if (h->logged_tick != h->tick)
+		h->logged_order = 0;
+	h->logged_tick = h->tick;
+	cau_store_command row = {.session = h->id,
+	                         .branch = h->branch,
+	                         .tick = h->tick,
+	                         .order = h->logged_order++,
+	                         .kind = command->kind};
+	if (order && order->client_sequence && text) {
+		row.client = order->asker.client_id;
+		row.sequence = (uint64_t)order->client_sequence;
+		row.result = (cau_store_bytes){text, text_bytes};
+	}
+	cau_status status = cau_command_to_json(command, json, sizeof json, &json_bytes, &error);
+	row.payload = (cau_store_bytes){json, json_bytes};
+	if (!status && !batch)
+		status = cau_fail(&error, CAU_NO_MEMORY, NULL, "no memory for a batch");
+	if (!status)
+		status = cau_store_put_command(batch, &row, &error);
+	if (status)
+		gap(h, &error);
+}
+
+void cau_record_answer(cau_hosted *h, const cau_order *order, const char *text, size_t text_bytes)
+{
+	cau_error error = {0};
+	cau_store_batch *batch = cau_record_batch(h);
+	cau_store_answer row = {
+		order->asker.client_id, (uint64_t)order->client_sequence, h->id, {text, text_bytes}};
+	if (order->client_sequence && batch && cau_store_put_answer(batch, &row, &error))
+		gap(h, &error);
+}
+
+void cau_record_state(cau_hosted *h)
+{
+	cau_error error = {0};
+	cau_store_batch *batch = cau_record_batch(h);
+	const char *state = h->state == CAU_SESSION_RUNNING ? "running" : "paused";
+	if (batch && cau_store_put_session_state(batch, h->id, state, &error))
+		gap(h, &error);
+}
+
+// A checkpoint at tick T comes before the commands logged at T. Once some are with the core, this
+// border is past that: the log leads here from the checkpoint before, and the next border gets one.
+static bool is_past_commands(const cau_hosted *h)
+{
+	return h->logged_tick == h->tick && h->logged_order > 0;
+}
+
+void cau_record_checkpoint(cau_hosted *h, uint64_t *hash, size_t *bytes)
+{
+	if (is_past_commands(h)) {
+		h->checkpoint_wanted = true;
+		if (hash)
+			*hash = cau_session_hash(h->core);
+		return;
+	}
+	cau_error error = {0};
+	cau_store_batch *batch = cau_record_batch(h);
+	size_t capacity = cau_session_snapshot_bytes(h->core), count = 0;
+	void *snapshot = malloc(capacity);
+	cau_store_checkpoint row = {
+		.session = h->id, .branch = h->branch, .tick = h->tick, .hash = cau_session_hash(h->core)};
+	cau_status status = snapshot && batch
+	                        ? cau_session_snapshot(h->core, snapshot, capacity, &count, &error)
+	                        : cau_fail(&error, CAU_NO_MEMORY, NULL, "no memory for a checkpoint");
+	row.snapshot = (cau_store_bytes){snapshot, count};
+	if (!status)
+		status = cau_store_put_checkpoint(batch, &row, &error);
+	free(snapshot);
+	if (status)
+		gap(h, &error);
+	else
+		h->checkpoint_wanted = false;
+	h->checkpoint_s = cau_monotonic_s();
+	h->checkpoint_tick = h->tick;
+	if (hash)
+		*hash = row.hash;
+	if (bytes)
+		*bytes = count;
+}
+
+void cau_record_event(cau_hosted *h, const cau_wire_timeline_event *event, cau_log_level level)
+{
+	static const char *const kinds[] = {
+#define X(code, name) name,
+		CAU_EVENT_TABLE(X)
+#undef X
+	};
+	char text[640];
+	cau_error error = {0};
+	cau_store_batch *batch = cau_record_batch(h);
+	snprintf(text, sizeof text, "tool=%s client=%s count=%lld %s", event->tool, event->client,
+	         (long long)event->count, event->detail);
+	cau_store_event row = {.session = h->id,
+	                       .tick = h->tick,
+	                       .level = (int32_t)level,
+	                       .kind = kinds[event->kind],
+	                       .text = text};
+	cau_log(level, h->id, kinds[event->kind], "tick=%llu tool=%s client=\"%s\" detail=\"%s\"",
+	        (unsigned long long)h->tick, event->tool, event->client, event->detail);
+	if (batch && cau_store_put_event(batch, &row, &error))
+		gap(h, &error);
+}
+
+void cau_record_reply(cau_hosted *h, const cau_reply *reply, char *text, size_t text_bytes)
+{
+	cau_pending *pending = reply->answer ? malloc(sizeof *pending) : NULL;
+	if (!pending) {
+		free(text);
+		return;
+	}
+	*pending = (cau_pending){h->pending, *reply, text, text_bytes};
+	h->pending = pending;
+}
+
+// What travels with a batch.
+typedef struct commit {
+	cau_hosted *hosted;
+	cau_pending *pending;
+	bool making; // the session's first rows: without them there is no session
+} commit;
+
+static cau_pending *reversed(cau_pending *list)
+{
+	cau_pending *turned = NULL;
+	for (cau_pending *next; list; list = next) {
+		next = list->next;
+		list->next = turned;
+		turned = list;
+	}
+	return turned;
+}
+
+static int32_t code_of(cau_status status)
+{
+	return status == CAU_IO || status == CAU_LIMIT ? CAU_RPC_STORE_FULL : 0;
+}
+
+static void answer_all(cau_pending *list, cau_status status, const char *reason)
+{
+	cau_error error = {.status = status};
+	snprintf(error.reason, sizeof error.reason, "%s", reason);
+	for (cau_pending *next; list; list = next) {
+		next = list->next;
+		cau_outcome outcome = {.text = list->text, .text_bytes = list->text_bytes};
+		if (status)
+			outcome = (cau_outcome){.error = &error, .code = code_of(status)};
+		cau_reply_answer(&list->reply, &outcome);
+		free(list->text);
+		free(list);
+	}
+}
+
+// On the store's thread.
+static void committed(void *user, cau_status status, const char *reason)
+{
+	commit *done = user;
+	if (status) {
+		cau_log(CAU_LOG_ERROR, done->hosted->id, "commit_failed", "status=%s reason=\"%s\"",
+		        cau_status_name(status), reason);
+		done->hosted->checkpoint_wanted = true;
+		done->hosted->ended = done->hosted->ended || done->making;
+	}
+	answer_all(done->pending, status, reason);
+	if (atomic_fetch_sub(&done->hosted->commits, 1) == 1 && done->hosted->commit_awaited)
+		cau_worker_pool_wake(done->hosted->around->pool, &done->hosted->task);
+	cau_hosted_release(done->hosted);
+	free(done);
+}
+
+static bool is_being_made(const cau_hosted *h)
+{
+	return h->unanswered && h->origin.kind != CAU_ORIGIN_STORE;
+}
+
+void cau_record_commit(cau_hosted *h)
+{
+	cau_error error = {0};
+	cau_pending *pending = reversed(h->pending);
+	h->pending = NULL;
+	if (!h->batch) {
+		answer_all(pending, pending ? CAU_NO_MEMORY : CAU_OK, "nothing could be stored");
+		return;
+	}
+	commit *travelling = malloc(sizeof *travelling);
+	cau_status status = CAU_NO_MEMORY;
+	if (travelling) {
+		*travelling = (commit){cau_hosted_share(h), pending, is_being_made(h)};
+		atomic_fetch_add(&h->commits, 1);
+		status = cau_store_submit(h->around->store, h->batch, committed, travelling, &error);
+	}
+	if (status) {
+		cau_store_batch_destroy(h->batch);
+		gap(h, &error);
+		answer_all(pending, status, error.reason);
+		h->ended = h->ended || is_being_made(h);
+		if (travelling) {
+			atomic_fetch_sub(&h->commits, 1);
+			cau_hosted_release(h);
+		}
+		free(travelling);
+	}
+	h->batch = NULL;
+}
+
+static cau_status send_again(void *user, const cau_store_answer *answer)
+{
+	const cau_order *order = user;
+	cau_outcome outcome = {.text = answer->result.data, .text_bytes = answer->result.bytes};
+	cau_reply_answer(&order->reply, &outcome);
+	return CAU_OK;
+}
+
+cau_status cau_record_resend(cau_hosted *h, const cau_order *order)
+{
+	if (!order->client_sequence)
+		return CAU_NOT_FOUND;
+	return cau_store_read_answer(h->around->store, order->asker.client_id,
+	                             (uint64_t)order->client_sequence, send_again, (void *)order, NULL);
+}

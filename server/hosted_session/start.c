@@ -1,0 +1,161 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// How a session comes to be: from its scene, from the store, or from another session's state.
+#include <stdlib.h>
+#include <string.h>
+
+#include "cautery/scene_json.h"
+#include "hosted_session/internal.h"
+
+static cau_status build(cau_hosted *h, cau_error *error)
+{
+	cau_session_def def = cau_default_session_def();
+	def.scene = h->scene;
+	def.thread_count = (int32_t)h->around->config->session_threads;
+	cau_status status = cau_session_create(&def, &h->core, error);
+	if (status)
+		return status;
+	cau_session_set_clock(h->core, cau_monotonic_s);
+	cau_session_describe(h->core, &h->info);
+	return CAU_OK;
+}
+
+// The first rows of a session: definition, meshes, and later the first checkpoint.
+static cau_status record_session(cau_hosted *h, cau_error *error)
+{
+	size_t bytes = 0;
+	char *json = malloc(CAU_SCENE_JSON_MAX_BYTES);
+	cau_store_batch *batch = cau_record_batch(h);
+	if (!json || !batch) {
+		free(json);
+		return cau_fail(error, CAU_NO_MEMORY, NULL, "no memory for the definition");
+	}
+	cau_status status = cau_scene_to_json(h->scene, json, CAU_SCENE_JSON_MAX_BYTES, &bytes, error);
+	cau_store_session row = {.id = h->id,
+	                         .name = h->scene->name,
+	                         .state = h->pause_at_start ? "paused" : "running",
+	                         .definition = {json, bytes},
+	                         .mesh = {h->meshes, h->mesh_bytes}};
+	if (!status)
+		status = cau_store_put_session(batch, &row, error);
+	free(json);
+	return status;
+}
+
+static void answer_creator(cau_hosted *h)
+{
+	cau_order asked = {
+		.asker = h->creator, .client_sequence = h->creator_sequence, .reply = h->creator_reply};
+	cau_error error = {0};
+	size_t bytes = 0;
+	if (!asked.reply.answer)
+		return;
+	char *text = cau_answer_description(h, asked.reply.method, &bytes, &error);
+	if (!text) {
+		cau_reply_fail(&asked.reply, &error, 0);
+		return;
+	}
+	cau_record_answer(h, &asked, text, bytes);
+	cau_record_reply(h, &asked.reply, text, bytes);
+}
+
+// Named snapshots, and the tick where the session began.
+static cau_status take_event(void *user, const cau_store_event *event)
+{
+	cau_hosted *h = user;
+	if (strcmp(event->kind, "created") == 0)
+		h->first_tick = event->tick;
+	cau_named_snapshot *made = &h->snapshots[h->snapshot_count];
+	long long branch;
+	const char *at = strcmp(event->kind, "snapshot") == 0 ? strstr(event->text, "name=") : NULL;
+	if (!at || h->snapshot_count == SNAPSHOT_COUNT ||
+	    sscanf(at, "name=%48s branch=%lld", made->name, &branch) != 2)
+		return CAU_OK;
+	made->branch = branch;
+	made->tick = event->tick;
+	h->snapshot_count++;
+	return CAU_OK;
+}
+
+static cau_status count_branch(void *user, const cau_store_branch *branch)
+{
+	cau_hosted *h = user;
+	if (branch->branch >= h->next_branch)
+		h->next_branch = branch->branch + 1;
+	return CAU_OK;
+}
+
+static cau_status resume_from_store(cau_hosted *h, cau_error *error)
+{
+	enum { EVENTS_READ = 4096 };
+	cau_store *store = h->around->store;
+	h->branch = h->origin.branch;
+	cau_status status = cau_store_read_branches(store, h->id, count_branch, h, error);
+	if (!status)
+		status = cau_store_read_events(store, h->id, EVENTS_READ, take_event, h, error);
+	if (!status)
+		status = cau_replay_begin(h, h->id, h->branch, UINT64_MAX, NULL, error);
+	return status;
+}
+
+static void fail_start(cau_hosted *h, const cau_error *error)
+{
+	cau_log(CAU_LOG_ERROR, h->id, "start_failed", "status=%s path=%s reason=\"%s\"",
+	        cau_status_name(error->status), error->path, error->reason);
+	cau_store_batch_destroy(h->batch);
+	h->batch = NULL;
+	cau_reply_fail(&h->creator_reply, error, 0);
+	h->starting = false;
+	h->ended = true;
+}
+
+void cau_hosted_start(cau_hosted *h)
+{
+	cau_error error = {0};
+	double began_s = cau_monotonic_s();
+	cau_status status = build(h, &error);
+	if (!status && h->origin.kind == CAU_ORIGIN_STORE)
+		status = resume_from_store(h, &error);
+	else if (!status && h->origin.kind == CAU_ORIGIN_FORK)
+		status =
+			cau_replay_begin(h, h->origin.session, h->origin.branch, h->origin.tick, NULL, &error);
+	if (!status && h->origin.kind != CAU_ORIGIN_STORE)
+		status = record_session(h, &error);
+	if (status) {
+		fail_start(h, &error);
+		return;
+	}
+	cau_log(CAU_LOG_INFO, h->id, "built", "seconds=%.3f vertices=%d", cau_monotonic_s() - began_s,
+	        h->info.vertex_count);
+	if (!h->replay.active)
+		cau_hosted_started(h);
+}
+
+void cau_hosted_started(cau_hosted *h)
+{
+	bool restarted = h->origin.kind == CAU_ORIGIN_STORE;
+	if (h->state != CAU_SESSION_FAULTED)
+		h->state = h->pause_at_start ? CAU_SESSION_PAUSED : CAU_SESSION_RUNNING;
+	if (!restarted)
+		h->first_tick = h->tick;
+	h->oldest_tick = h->first_tick;
+	h->logged_tick = UINT64_MAX;
+	if (restarted && h->replay.count) { // go on counting within the last tick of the log
+		h->logged_tick = h->tick;
+		h->logged_order = 0;
+		for (size_t i = 0; i < h->replay.count; i++)
+			h->logged_order += h->replay.commands[i].tick == h->tick;
+	}
+	cau_record_checkpoint(h, NULL, NULL);
+	cau_drive_match_tools(h, restarted ? "the daemon was restarted" : "a new session");
+	cau_streams_restart(h);
+	h->next_step_s = h->window_s = cau_monotonic_s();
+	h->window_tick = h->tick;
+	h->starting = false;
+	if (restarted)
+		cau_log(CAU_LOG_NOTICE, h->id, "resumed", "tick=%llu exact=%d", (unsigned long long)h->tick,
+		        h->replay.exact);
+	else
+		cau_event_add(h, CAU_EVENT_CREATED, NULL, h->creator.name, 0, NULL);
+	cau_answer_changed(h, restarted ? CAU_CHANGE_RESTARTED : CAU_CHANGE_CREATED, h->creator.name);
+	answer_creator(h);
+}

@@ -1,0 +1,216 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Orders about time and history.
+#include <stdlib.h>
+#include <string.h>
+
+#include "hosted_session/internal.h"
+
+static void answer_summary(cau_hosted *h, cau_order *order, int change)
+{
+	cau_wire_session_summary summary;
+	cau_answer_changed(h, change, order->asker.name);
+	cau_hosted_summary(h, &summary);
+	cau_answer_order(h, order, &summary);
+}
+
+static void fail(cau_order *order, cau_status status, const char *path, const char *reason)
+{
+	cau_error error = {0};
+	cau_fail(&error, status, path, "%s", reason);
+	cau_answer_fail(order, &error, 0);
+}
+
+void cau_apply_pause(cau_hosted *h, cau_order *order)
+{
+	cau_drive_cut_all(h, CAU_ENERGY_OFF_COMMANDED, "paused");
+	if (h->state == CAU_SESSION_RUNNING) {
+		h->state = CAU_SESSION_PAUSED;
+		h->realtime_factor = 0;
+		cau_record_state(h);
+		cau_record_checkpoint(h, NULL, NULL);
+	}
+	h->dirty = true;
+	answer_summary(h, order, CAU_CHANGE_PAUSED);
+}
+
+void cau_apply_resume(cau_hosted *h, cau_order *order)
+{
+	if (h->state == CAU_SESSION_FAULTED) {
+		fail(order, CAU_FAULTED, "", h->fault);
+		return;
+	}
+	if (h->steps_left) {
+		fail(order, CAU_BAD_STATE, "", "the session is being stepped");
+		return;
+	}
+	if (h->state == CAU_SESSION_PAUSED) {
+		h->state = CAU_SESSION_RUNNING;
+		h->next_step_s = h->window_s = cau_monotonic_s();
+		h->window_tick = h->tick;
+		cau_record_state(h);
+	}
+	answer_summary(h, order, CAU_CHANGE_RESUMED);
+}
+
+void cau_apply_step(cau_hosted *h, cau_order *order)
+{
+	if (h->state == CAU_SESSION_FAULTED)
+		fail(order, CAU_FAULTED, "", h->fault);
+	else if (h->state != CAU_SESSION_PAUSED || h->steps_left)
+		fail(order, CAU_BAD_STATE, "", "only a paused session is stepped, once at a time");
+	else {
+		h->steps_left = order->as.ticks;
+		h->stepping = order;
+	}
+}
+
+void cau_apply_speed(cau_hosted *h, cau_order *order)
+{
+	h->speed = order->as.speed;
+	h->next_step_s = cau_monotonic_s();
+	answer_summary(h, order, CAU_CHANGE_SPEED);
+}
+
+static const cau_named_snapshot *find_snapshot(const cau_hosted *h, const char *name)
+{
+	for (int32_t i = h->snapshot_count; i-- > 0;)
+		if (strcmp(h->snapshots[i].name, name) == 0)
+			return &h->snapshots[i];
+	return NULL;
+}
+
+void cau_apply_snapshot(cau_hosted *h, cau_order *order)
+{
+	cau_wire_snapshot_result result = {.tick = (int64_t)h->tick};
+	char detail[128];
+	size_t bytes = 0;
+	if (!*order->as.name)
+		snprintf(order->as.name, sizeof order->as.name, "tick-%llu-%lld",
+		         (unsigned long long)h->tick, (long long)h->branch);
+	if (find_snapshot(h, order->as.name)) {
+		fail(order, CAU_ALREADY_EXISTS, "params.name", "a snapshot has this name");
+		return;
+	}
+	if (h->snapshot_count == SNAPSHOT_COUNT) {
+		fail(order, CAU_LIMIT, "params.name", "the session has 64 snapshots");
+		return;
+	}
+	cau_record_checkpoint(h, &result.hash, &bytes);
+	cau_named_snapshot *made = &h->snapshots[h->snapshot_count++];
+	*made = (cau_named_snapshot){.branch = h->branch, .tick = h->tick};
+	memcpy(made->name, order->as.name, sizeof made->name);
+	memcpy(result.name, order->as.name, sizeof result.name);
+	result.byte_count = (int64_t)bytes;
+	snprintf(detail, sizeof detail, "name=%s branch=%lld hash=%016llx", made->name,
+	         (long long)h->branch, (unsigned long long)result.hash);
+	cau_event_add(h, CAU_EVENT_SNAPSHOT, NULL, order->asker.name, 0, detail);
+	cau_answer_order(h, order, &result);
+}
+
+void cau_apply_back(cau_hosted *h, cau_order *order)
+{
+	cau_error error = {0};
+	int64_t branch = h->branch;
+	uint64_t tick = order->kind == CAU_ORDER_RESET ? h->first_tick : order->as.tick;
+	if (order->kind == CAU_ORDER_RESTORE) {
+		const cau_named_snapshot *snapshot = find_snapshot(h, order->as.name);
+		if (!snapshot) {
+			fail(order, CAU_NOT_FOUND, "params.name", "no snapshot has this name");
+			return;
+		}
+		branch = snapshot->branch;
+		tick = snapshot->tick;
+	} else if (tick > h->tick || tick < h->oldest_tick) {
+		fail(order, CAU_BAD_VALUE, "params.tick", "not between the oldest tick and the present");
+		return;
+	}
+	if (h->steps_left) {
+		fail(order, CAU_BAD_STATE, "", "the session is being stepped");
+		return;
+	}
+	// The log up to here must be in the store before it is read.
+	cau_record_commit(h);
+	cau_store_flush(h->around->store);
+	if (cau_replay_begin(h, h->id, branch, tick, order, &error)) {
+		cau_answer_fail(order, &error, 0);
+		return;
+	}
+	h->branch = branch;
+}
+
+static int change_of(cau_order_kind kind, int *event)
+{
+	*event = kind == CAU_ORDER_RESET     ? CAU_EVENT_RESET
+	         : kind == CAU_ORDER_RESTORE ? CAU_EVENT_RESTORE
+	                                     : CAU_EVENT_REWIND;
+	return kind == CAU_ORDER_RESET     ? CAU_CHANGE_RESET
+	       : kind == CAU_ORDER_RESTORE ? CAU_CHANGE_RESTORED
+	                                   : CAU_CHANGE_REWOUND;
+}
+
+static void open_branch(cau_hosted *h)
+{
+	cau_error error = {0};
+	cau_store_batch *batch = cau_record_batch(h);
+	cau_store_branch row = {
+		.session = h->id, .branch = h->next_branch, .parent = h->branch, .fork_tick = h->tick};
+	cau_status status = batch ? cau_store_put_branch(batch, &row, &error) : CAU_NO_MEMORY;
+	if (status)
+		cau_log(CAU_LOG_ERROR, h->id, "branch_lost", "reason=\"%s\"", error.reason);
+	h->branch = h->next_branch++;
+	h->logged_order = 0;
+	h->logged_tick = UINT64_MAX;
+}
+
+void cau_back_arrived(cau_hosted *h, cau_order *order)
+{
+	int event;
+	int change = change_of(order->kind, &event);
+	if (h->state == CAU_SESSION_FAULTED)
+		h->state = CAU_SESSION_PAUSED;
+	h->fault[0] = 0;
+	*h->present = *h->scene;
+	open_branch(h);
+	cau_event_add(h, event, NULL, order->asker.name, 0, NULL);
+	cau_record_checkpoint(h, NULL, NULL);
+	cau_drive_match_tools(h, "the session went back");
+	cau_streams_restart(h);
+	cau_record_state(h);
+	h->next_step_s = h->window_s = cau_monotonic_s();
+	h->window_tick = h->tick;
+	cau_wire_restored result = {
+		.tick = (int64_t)h->tick, .epoch = h->epoch, .branch = h->branch, .exact = h->replay.exact};
+	cau_answer_changed(h, change, order->asker.name);
+	cau_answer_order(h, order, &result);
+}
+
+void cau_apply_fork(cau_hosted *h, cau_order *order)
+{
+	uint64_t tick = order->as.fork.has_tick ? order->as.fork.tick : h->tick;
+	if (tick > h->tick || tick < h->oldest_tick) {
+		fail(order, CAU_BAD_VALUE, "params.tick", "not between the oldest tick and the present");
+		return;
+	}
+	if (tick == h->tick)
+		cau_record_checkpoint(h, NULL, NULL);
+	cau_record_commit(h);
+	cau_store_flush(h->around->store);
+	h->around->fork(h->around->user, h, order, tick);
+	free(order);
+}
+
+void cau_apply_destroy(cau_hosted *h, cau_order *order)
+{
+	cau_error error = {0};
+	cau_wire_nothing result = {0};
+	cau_store_batch *batch = cau_record_batch(h);
+	if (!batch || cau_store_delete_session(batch, h->id, &error)) {
+		cau_fail(&error, CAU_NO_MEMORY, "", "no memory to destroy it");
+		cau_answer_fail(order, &error, 0);
+		return;
+	}
+	cau_answer_changed(h, CAU_CHANGE_DESTROYED, order->asker.name);
+	cau_log(CAU_LOG_INFO, h->id, "destroyed", "client=\"%s\"", order->asker.name);
+	cau_answer_order(h, order, &result);
+	h->ended = true;
+}

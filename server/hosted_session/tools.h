@@ -1,0 +1,25 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// A session's tools as transports that drive them without messages see them.
+#pragma once
+
+#include "cautery/session.h"
+#include "hosted_session/hosted.h"
+
+typedef struct cau_hosted_tool {
+	cau_tool_state state; // of the newest tick
+	cau_asker driver;     // client 0: nobody
+	bool energized;       // as the watchdog sees it
+	int energy_off;       // CAU_ENERGY_OFF_*
+} cau_hosted_tool;
+
+// Copies the tools into `tools`, at most CAU_MAX_TOOLS; 0 while the session starts. *tick and
+// *time_s (s, simulated) are theirs. Any thread.
+int32_t cau_hosted_tools(cau_hosted *hosted, cau_hosted_tool *tools, uint64_t *tick,
+                         double *time_s);
+// One of them. False: there is none of this name.
+bool cau_hosted_find_tool(cau_hosted *hosted, const char *name, cau_hosted_tool *tool);
+// The driver of one tool gives a sign of life for it.
+void cau_hosted_feed_tool(cau_hosted *hosted, uint32_t client, const char *tool);
+// Counts motion that a transport refused before it became an order.
+void cau_hosted_refuse(cau_hosted *hosted, const char *tool, const cau_asker *asker,
+                       uint64_t sequence, const cau_error *error);

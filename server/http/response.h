@@ -1,0 +1,40 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Answers to HTTP requests: small ones made on the spot, files from memory.
+#pragma once
+
+#include <stddef.h>
+
+struct lws;
+
+// A body that is sent as the connection takes it. Owned by the connection's HTTP state.
+typedef struct cau_http_body {
+	const void *bytes;
+	size_t byte_count;
+	size_t sent;
+	void *owned; // freed with the state; NULL if the bytes live elsewhere
+} cau_http_body;
+
+typedef struct cau_http_answer {
+	unsigned status;              // 200, 404, ...
+	const char *content_type;     // "application/json", ...
+	const char *content_encoding; // NULL or "gzip"
+	const char *cache_control;    // NULL: "no-store"
+	const char *extra_name;       // one more header, "www-authenticate:"; NULL: none
+	const char *extra_value;
+	const void *bytes;
+	size_t byte_count;
+	void *owned; // malloc'ed; taken
+} cau_http_answer;
+
+// Sends the head with the security headers and starts the body. Returns what the lws callback is to
+// return.
+int cau_http_answer_start(struct lws *wsi, cau_http_body *body, const cau_http_answer *answer);
+
+// Continues the body when the socket can take more.
+int cau_http_answer_continue(struct lws *wsi, cau_http_body *body);
+
+// A one-line JSON answer {"status": ..., "reason": ...}.
+int cau_http_answer_reason(struct lws *wsi, cau_http_body *body, unsigned status, const char *name,
+                           const char *reason);
+
+void cau_http_body_finish(cau_http_body *body);

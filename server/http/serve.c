@@ -1,0 +1,93 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Plain HTTP: pages that the handler makes, viewer files from memory.
+#include <stdlib.h>
+#include <string.h>
+
+#include "transport_ws/internal.h"
+
+static bool is_page(const char *path)
+{
+	return strcmp(path, "/healthz") == 0 || strcmp(path, "/readyz") == 0 ||
+	       strcmp(path, "/metrics") == 0 || strcmp(path, "/api/sessions") == 0;
+}
+
+static bool needs_token(const char *path)
+{
+	return strcmp(path, "/metrics") == 0 || strncmp(path, "/api/", 5) == 0;
+}
+
+// Authorization: Bearer TOKEN, when tokens are in use.
+static bool may_read(cau_network *network, struct lws *wsi)
+{
+	static const char scheme[] = "Bearer ";
+	char text[HEADER_BYTES];
+	cau_role role;
+	if (!cau_auth_required(network->def.auth))
+		return true;
+	return cau_request_header(wsi, WSI_TOKEN_HTTP_AUTHORIZATION, text, sizeof text) &&
+	       strncmp(text, scheme, sizeof scheme - 1) == 0 &&
+	       cau_auth_role(network->def.auth, text + sizeof scheme - 1,
+	                     strlen(text) - (sizeof scheme - 1), &role);
+}
+
+static int serve_page(cau_network *network, struct lws *wsi, cau_http_body *body, const char *path)
+{
+	if (needs_token(path) && !may_read(network, wsi)) {
+		cau_http_answer denied = {.status = 401,
+		                          .content_type = "application/json",
+		                          .extra_name = "www-authenticate:",
+		                          .extra_value = "Bearer"};
+		return cau_http_answer_start(wsi, body, &denied);
+	}
+	char *text = NULL;
+	size_t bytes = 0;
+	const cau_network_handler *handler = &network->def.handler;
+	unsigned status = handler->page(handler->user, path, &text, &bytes);
+	bool metrics = strcmp(path, "/metrics") == 0;
+	cau_http_answer answer = {.status = status,
+	                          .content_type = metrics ? "text/plain; version=0.0.4; charset=utf-8"
+	                                                  : "application/json",
+	                          .bytes = text,
+	                          .byte_count = bytes,
+	                          .owned = text};
+	return cau_http_answer_start(wsi, body, &answer);
+}
+
+static int serve_file(struct lws *wsi, cau_http_body *body, const cau_static_file *file)
+{
+	char accepted[HEADER_BYTES];
+	bool gzip =
+		file->gzip &&
+		cau_request_header(wsi, WSI_TOKEN_HTTP_ACCEPT_ENCODING, accepted, sizeof accepted) &&
+		strstr(accepted, "gzip");
+	cau_http_answer answer = {
+		.status = 200,
+		.content_type = file->content_type,
+		.content_encoding = gzip ? "gzip" : NULL,
+		.cache_control = file->hashed ? "public, max-age=31536000, immutable" : "no-cache",
+		.extra_name = "vary:",
+		.extra_value = "accept-encoding",
+		.bytes = gzip ? file->gzip : file->plain,
+		.byte_count = gzip ? file->gzip_bytes : file->plain_bytes,
+	};
+	return cau_http_answer_start(wsi, body, &answer);
+}
+
+int cau_http_serve(cau_network *network, struct lws *wsi, cau_http_body *body, const char *path)
+{
+	const char *name, *reason;
+	unsigned refused = cau_request_check(network, wsi, &name, &reason);
+	if (refused)
+		return cau_http_answer_reason(wsi, body, refused, name, reason);
+	if (lws_hdr_total_length(wsi, WSI_TOKEN_GET_URI) <= 0 &&
+	    lws_hdr_total_length(wsi, WSI_TOKEN_HEAD_URI) <= 0)
+		return cau_http_answer_reason(wsi, body, 405, "bad_method", "only GET and HEAD are served");
+	if (is_page(path))
+		return serve_page(network, wsi, body, path);
+	if (strcmp(path, CAU_WS_PATH) == 0)
+		return cau_http_answer_reason(wsi, body, 426, "bad_handshake", "this is for WebSocket");
+	const cau_static_file *file = cau_static_files_find(network->def.files, path);
+	if (!file)
+		return cau_http_answer_reason(wsi, body, 404, "not_found", "nothing has this path");
+	return serve_file(wsi, body, file);
+}

@@ -1,0 +1,206 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Makes sessions, one after the other, on a worker: it looks for stored answers first.
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "hub/internal.h"
+
+#define AGAIN_S 0.02 // for a resend whose first is on its way
+
+void cau_creation_free(cau_creation *creation)
+{
+	free(creation->scene);
+	free(creation->meshes);
+	free(creation);
+}
+
+void cau_hub_submit_creation(cau_hub *hub, cau_creation *creation)
+{
+	creation->next = NULL;
+	pthread_mutex_lock(&hub->clerk_mutex);
+	if (hub->last)
+		hub->last->next = creation;
+	else
+		hub->first = creation;
+	hub->last = creation;
+	pthread_mutex_unlock(&hub->clerk_mutex);
+	cau_worker_pool_wake(hub->def.pool, &hub->clerk);
+}
+
+static cau_creation *take(cau_hub *hub)
+{
+	pthread_mutex_lock(&hub->clerk_mutex);
+	cau_creation *creation = hub->first;
+	if (creation)
+		hub->first = creation->next;
+	if (!hub->first)
+		hub->last = NULL;
+	pthread_mutex_unlock(&hub->clerk_mutex);
+	return creation;
+}
+
+// "label-name", or with a number made up if the name is empty.
+static cau_status make_id(cau_hub *hub, const cau_creation *creation, char id[CAU_NAME_BYTES],
+                          cau_error *error)
+{
+	char text[3 * CAU_NAME_BYTES];
+	const char *label = hub->def.config->label;
+	if (*creation->name)
+		snprintf(text, sizeof text, "%.48s-%s", label, creation->name);
+	else
+		snprintf(text, sizeof text, "%.48s-%.30s-%u", label, creation->scene->name,
+		         ++hub->last_name);
+	if (strlen(text) >= CAU_NAME_BYTES)
+		return cau_fail(error, CAU_BAD_VALUE, "params.name",
+		                "with the label `%s-` it is longer than %d bytes", label,
+		                CAU_NAME_BYTES - 1);
+	memcpy(id, text, strlen(text) + 1);
+	return CAU_OK;
+}
+
+static cau_status check_place(cau_hub *hub, const char *id, cau_error *error)
+{
+	cau_hosted *other = cau_hub_find(hub, id);
+	cau_hosted_release(other);
+	if (other)
+		return cau_fail(error, CAU_ALREADY_EXISTS, "params.name", "`%s` exists", id);
+	if (cau_hub_count(hub) >= hub->def.config->max_sessions)
+		return cau_fail(error, CAU_LIMIT, "", "the daemon has %lld sessions (setting max_sessions)",
+		                (long long)hub->def.config->max_sessions);
+	return CAU_OK;
+}
+
+cau_status cau_clerk_make(cau_hub *hub, cau_creation *creation, const char *id, cau_error *error)
+{
+	cau_hosted *hosted = NULL;
+	cau_status status = check_place(hub, id, error);
+	if (status)
+		return status;
+	cau_hosted_def def = {.id = id,
+	                      .number = ++hub->last_session,
+	                      .scene = creation->scene,
+	                      .meshes = creation->meshes,
+	                      .mesh_bytes = creation->mesh_bytes,
+	                      .paused = creation->paused,
+	                      .origin = creation->origin,
+	                      .creator = creation->asker,
+	                      .client_sequence = creation->client_sequence,
+	                      .reply = creation->reply};
+	pthread_mutex_lock(&hub->mutex);
+	bool room = (size_t)hub->session_count < SLOTS(hub->def.config);
+	status = room ? cau_hosted_create(&hosted, &hub->around, &def, error)
+	              : cau_fail(error, CAU_LIMIT, "", "sessions are still being cleared away");
+	if (!status) {
+		hub->sessions[hub->session_count++] = hosted;
+		creation->scene = NULL;
+		creation->meshes = NULL;
+	}
+	pthread_mutex_unlock(&hub->mutex);
+	return status;
+}
+
+static cau_status answer_again(void *user, const cau_store_answer *answer)
+{
+	const cau_creation *creation = user;
+	cau_outcome outcome = {.text = answer->result.data, .text_bytes = answer->result.bytes};
+	cau_reply_answer(&creation->reply, &outcome);
+	return CAU_OK;
+}
+
+typedef struct being_made {
+	const cau_creation *creation;
+	bool found;
+} being_made;
+
+static void compare_maker(void *user, cau_hosted *hosted)
+{
+	being_made *search = user;
+	if (cau_hosted_starting(hosted) && cau_hosted_made_by(hosted, search->creation->asker.client_id,
+	                                                      search->creation->client_sequence))
+		search->found = true;
+}
+
+// CAU_OK: answered from the store; CAU_BAD_STATE: its first is being worked on; else: act.
+static cau_status resent(cau_hub *hub, cau_creation *creation)
+{
+	being_made search = {creation, false};
+	if (!creation->client_sequence)
+		return CAU_NOT_FOUND;
+	cau_hub_each(hub, compare_maker, &search);
+	if (search.found)
+		return CAU_BAD_STATE;
+	return cau_store_read_answer(hub->def.store, creation->asker.client_id,
+	                             (uint64_t)creation->client_sequence, answer_again, creation, NULL);
+}
+
+static void act(cau_hub *hub, cau_creation *creation)
+{
+	cau_error error = {0};
+	char id[CAU_NAME_BYTES];
+	cau_status status;
+	if (creation->kind == CAU_CREATION_ANSWER) {
+		cau_fail(&error, CAU_NOT_FOUND, "params.session", "this daemon does not have the session");
+		cau_reply_fail(&creation->reply, &error, CAU_RPC_NOT_HERE);
+		return;
+	}
+	do
+		status = make_id(hub, creation, id, &error);
+	while (!status && (status = cau_clerk_make(hub, creation, id, &error)) == CAU_ALREADY_EXISTS &&
+	       !*creation->name);
+	if (status)
+		cau_reply_fail(&creation->reply, &error, 0);
+}
+
+cau_due cau_clerk_run(cau_task *task)
+{
+	cau_hub *hub = (cau_hub *)((char *)task - offsetof(cau_hub, clerk));
+	double now_s = cau_monotonic_s();
+	cau_creation *creation = take(hub);
+	if (!creation)
+		return (cau_due){INFINITY, INFINITY};
+	if (resent(hub, creation) == CAU_BAD_STATE) {
+		cau_hub_submit_creation(hub, creation);
+		return (cau_due){now_s + AGAIN_S, now_s + AGAIN_S};
+	}
+	if (resent(hub, creation) != CAU_OK)
+		act(hub, creation);
+	cau_creation_free(creation);
+	return (cau_due){0, now_s};
+}
+
+// ---- forks
+// -------------------------------------------------------------------------------------------
+void cau_clerk_fork(void *user, cau_hosted *source, const cau_order *order, uint64_t tick)
+{
+	cau_hub *hub = user;
+	cau_error error = {0};
+	cau_creation *creation = calloc(1, sizeof *creation);
+	const cau_scene_def *scene = cau_hosted_scene(source);
+	if (creation)
+		creation->scene = malloc(sizeof *scene);
+	if (!creation || !creation->scene) {
+		free(creation);
+		cau_fail(&error, CAU_NO_MEMORY, "", "no memory for a fork");
+		cau_reply_fail(&order->reply, &error, 0);
+		return;
+	}
+	*creation->scene = *scene;
+	memcpy(creation->name, order->as.fork.name, sizeof creation->name);
+	creation->paused = order->as.fork.paused;
+	creation->asker = order->asker;
+	creation->client_sequence = order->client_sequence;
+	creation->reply = order->reply;
+	creation->origin = (cau_hosted_origin){
+		.kind = CAU_ORIGIN_FORK, .branch = cau_hosted_branch(source), .tick = tick};
+	snprintf(creation->origin.session, sizeof creation->origin.session, "%s",
+	         cau_hosted_id(source));
+	cau_status status =
+		cau_meshes_pack(creation->scene, &creation->meshes, &creation->mesh_bytes, &error);
+	if (status) {
+		cau_reply_fail(&order->reply, &error, 0);
+		cau_creation_free(creation);
+		return;
+	}
+	cau_hub_submit_creation(hub, creation);
+}

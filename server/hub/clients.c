@@ -1,0 +1,125 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Who is here. A client outlives its connection for a while, so that it can come back to its tools.
+#include <stdlib.h>
+#include <string.h>
+#include <sys/random.h>
+
+#include "hub/internal.h"
+
+enum { CLIENTS_MOST = 1 << 20 };
+
+static void make_token(char token[CAU_RESUME_BYTES])
+{
+	unsigned char bytes[(CAU_RESUME_BYTES - 1) / 2];
+	if (getrandom(bytes, sizeof bytes, 0) != sizeof bytes)
+		memset(bytes, 0, sizeof bytes); // a token of zeros resumes nothing, see find_token
+	for (size_t i = 0; i < sizeof bytes; i++)
+		snprintf(token + 2 * i, 3, "%02x", bytes[i]);
+}
+
+static cau_client *find_number(cau_hub *hub, uint32_t number)
+{
+	for (int32_t i = 0; i < hub->client_count; i++)
+		if (hub->clients[i].asker.client == number)
+			return &hub->clients[i];
+	return NULL;
+}
+
+static cau_client *find_token(cau_hub *hub, const char *token)
+{
+	if (!token || strspn(token, "0") == strlen(token))
+		return NULL;
+	for (int32_t i = 0; i < hub->client_count; i++)
+		if (strcmp(hub->clients[i].resume, token) == 0)
+			return &hub->clients[i];
+	return NULL;
+}
+
+static cau_client *add_client(cau_hub *hub)
+{
+	if (hub->client_count == hub->client_capacity) {
+		int32_t capacity = hub->client_capacity ? 2 * hub->client_capacity : 16;
+		cau_client *grown = capacity > CLIENTS_MOST
+		                        ? NULL
+		                        : realloc(hub->clients, (size_t)capacity * sizeof *grown);
+		if (!grown)
+			return NULL;
+		hub->clients = grown;
+		hub->client_capacity = capacity;
+	}
+	cau_client *client = &hub->clients[hub->client_count++];
+	*client = (cau_client){.asker.client = ++hub->last_client};
+	return client;
+}
+
+bool cau_hub_attach(cau_hub *hub, cau_client *client, const char *resume, uint64_t *replaced)
+{
+	*replaced = 0;
+	pthread_mutex_lock(&hub->mutex);
+	cau_client *kept = find_token(hub, resume);
+	if (kept && !kept->lost)
+		*replaced = kept->connection;
+	else if (!kept)
+		kept = add_client(hub);
+	if (kept) {
+		client->asker.client = kept->asker.client;
+		make_token(client->resume);
+		if (!*client->asker.client_id && *kept->asker.client_id)
+			memcpy(client->asker.client_id, kept->asker.client_id, sizeof kept->asker.client_id);
+		if (!*client->asker.client_id)
+			snprintf(client->asker.client_id, sizeof client->asker.client_id, "made-%s",
+			         client->resume);
+		client->lost = false;
+		*kept = *client;
+	}
+	pthread_mutex_unlock(&hub->mutex);
+	return kept != NULL;
+}
+
+typedef struct cut {
+	uint32_t client;
+	const char *cause;
+} cut;
+
+static void cut_one(void *user, cau_hosted *hosted)
+{
+	const cut *what = user;
+	cau_hosted_cut(hosted, what->client, what->cause);
+}
+
+void cau_hub_detach(cau_hub *hub, uint32_t number, uint64_t connection)
+{
+	pthread_mutex_lock(&hub->mutex);
+	cau_client *client = find_number(hub, number);
+	bool its_own = client && client->connection == connection;
+	if (its_own) {
+		client->lost = true;
+		client->lost_s = cau_monotonic_s();
+	}
+	pthread_mutex_unlock(&hub->mutex);
+	if (its_own)
+		cau_hub_each(hub, cut_one, &(cut){number, "its connection is lost"});
+}
+
+static void feed_one(void *user, cau_hosted *hosted)
+{
+	cau_hosted_feed(hosted, *(uint32_t *)user);
+}
+
+void cau_hub_heartbeat(cau_hub *hub, uint32_t number, bool visible)
+{
+	if (visible)
+		cau_hub_each(hub, feed_one, &number);
+	else
+		cau_hub_each(hub, cut_one, &(cut){number, "its page is hidden"});
+}
+
+bool cau_hub_find_client(cau_hub *hub, uint32_t number, cau_asker *asker)
+{
+	pthread_mutex_lock(&hub->mutex);
+	const cau_client *client = find_number(hub, number);
+	if (client)
+		*asker = client->asker;
+	pthread_mutex_unlock(&hub->mutex);
+	return client != NULL;
+}

@@ -1,0 +1,108 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// The hub: the daemon's sessions and clients, for every transport alike. A transport
+//   - attaches a client for each connection (WebSocket) or publication handle (DDS) that may drive,
+//   - hands its commands as orders to sessions, with that client as the asker,
+//   - feeds sign of life, and detaches the client when it is gone,
+//   - gives a sink to hear answers, notifications and new frames.
+// Drivers, watchdogs, order and log are then the same for all. Any thread may call; nothing here
+// waits for a step or a disk, but for what says so.
+#pragma once
+
+#include "cautery/messages.h"
+#include "config/config.h"
+#include "hosted_session/hosted.h"
+#include "hub/scenes.h"
+
+typedef struct cau_hub cau_hub;
+
+typedef struct cau_hub_def {
+	const cau_config *config; // borrowed, like all here
+	cau_store *store;
+	cau_worker_pool *pool;
+	const cau_scenes *scenes;
+	void (*armed)(void *user); // energy came on: cau_hub_watch is to be called again
+	void *user;
+} cau_hub_def;
+
+cau_status cau_hub_create(cau_hub **hub, const cau_hub_def *def, cau_error *error);
+// After the pool's threads have ended or every session is stopped. Takes NULL.
+void cau_hub_destroy(cau_hub *hub);
+
+// Before sessions exist. At most four; the sink must outlive the hub's sessions.
+void cau_hub_add_sink(cau_hub *hub, const cau_sink *sink);
+// Resumes the store's sessions; reads the store. Then makes the demo if the settings want one.
+cau_status cau_hub_resume(cau_hub *hub, cau_error *error);
+const cau_scenes *cau_hub_scenes(const cau_hub *hub);
+
+// ---- clients
+// -------------------------------------------------------------------------------------
+enum { CAU_RESUME_BYTES = 33 };
+
+typedef struct cau_client {
+	cau_asker asker; // number, name, client_id, role, deadline
+	char resume[CAU_RESUME_BYTES];
+	uint64_t connection; // the transport's own
+	bool lost;
+	double lost_s;
+} cau_client;
+
+// Registers a client: fills its number, a client_id if it has none, and its token for resuming.
+// `resume` (may be NULL) is the token of an earlier one: if that is still kept its number and tools
+// become this client's, and *replaced is its connection (0: it was lost already).
+// False: too many clients.
+bool cau_hub_attach(cau_hub *hub, cau_client *client, const char *resume, uint64_t *replaced);
+// The connection is gone: energy off at once; tools are kept for `resume_s`.
+void cau_hub_detach(cau_hub *hub, uint32_t number, uint64_t connection);
+// A sign of life for all tools that the client drives; not visible: energy off at once.
+void cau_hub_heartbeat(cau_hub *hub, uint32_t number, bool visible);
+// A copy of a client's asker, for handing tools over. False: no such client.
+bool cau_hub_find_client(cau_hub *hub, uint32_t number, cau_asker *asker);
+
+// ---- sessions
+// ------------------------------------------------------------------------------------ Shared for
+// the caller, or NULL.
+cau_hosted *cau_hub_find(cau_hub *hub, const char *id);
+cau_hosted *cau_hub_find_number(cau_hub *hub, uint32_t number);
+// Visits every session; the visitor must not call the hub.
+void cau_hub_each(cau_hub *hub, void (*visit)(void *user, cau_hosted *hosted), void *user);
+int32_t cau_hub_count(cau_hub *hub);
+
+// A session to be made. Answered through `reply`, on failure too.
+typedef struct cau_creation {
+	struct cau_creation *next;
+	enum {
+		CAU_CREATION_SESSION,
+		CAU_CREATION_ANSWER, // only look for the stored answer: the session is not here (any more)
+	} kind;
+	char name[CAU_NAME_BYTES]; // "": made up
+	cau_scene_def *scene;      // malloc'ed, taken
+	void *meshes;              // malloc'ed, taken
+	size_t mesh_bytes;
+	bool paused;
+	cau_hosted_origin origin;
+	cau_asker asker;
+	int64_t client_sequence;
+	cau_reply reply;
+} cau_creation;
+
+// Takes the creation, which is malloc'ed.
+void cau_hub_submit_creation(cau_hub *hub, cau_creation *creation);
+
+// Packs the bytes of a scene's uploaded meshes into one allocation and points the scene there;
+// *meshes is NULL if it has none. And back, after reading both from the store.
+cau_status cau_meshes_pack(cau_scene_def *scene, void **meshes, size_t *bytes, cau_error *error);
+cau_status cau_meshes_unpack(cau_scene_def *scene, const void *meshes, size_t bytes,
+                             cau_error *error);
+
+// ---- for the daemon
+// ------------------------------------------------------------------------------ Cuts silent
+// drivers' energy; the time to look again, INFINITY if nothing is energized.
+double cau_hub_watch(cau_hub *hub, double now_s);
+// Forgets lost clients and ended sessions. Waits for a worker's slice: not from one.
+void cau_hub_reap(cau_hub *hub);
+// True once every session of the store has been brought up.
+bool cau_hub_ready(cau_hub *hub);
+// The store has room again.
+void cau_hub_want_checkpoints(cau_hub *hub);
+// Checkpoints all sessions; returns when they are on the disk or the time is over.
+void cau_hub_drain(cau_hub *hub, double seconds);

@@ -1,0 +1,42 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// What the files of this room share.
+#pragma once
+
+#include <pthread.h>
+
+#include "clock/clock.h"
+#include "hub/hub.h"
+#include "log/log.h"
+
+enum { MOST_SINKS = 4 };
+
+// Sessions that have ended keep their place until they are reaped.
+#define SLOTS(config) (2 * (size_t)(config)->max_sessions)
+
+struct cau_hub {
+	cau_hub_def def;
+	cau_surroundings around;
+	cau_sink sinks[MOST_SINKS];
+	int sink_count;
+
+	pthread_mutex_t mutex; // guards what follows; taken before a session's, never inside one
+	cau_hosted **sessions;
+	int32_t session_count;
+	uint32_t last_session;
+	cau_client *clients;
+	int32_t client_count, client_capacity;
+	uint32_t last_client;
+
+	// the clerk: makes sessions, off the network thread since it reads the store
+	cau_task clerk; // see clerk.c
+	pthread_mutex_t clerk_mutex;
+	cau_creation *first, *last;
+	uint32_t last_name;
+};
+
+// ---- clerk.c
+cau_due cau_clerk_run(cau_task *task);
+// Makes and registers a session; takes the creation.
+cau_status cau_clerk_make(cau_hub *hub, cau_creation *creation, const char *id, cau_error *error);
+void cau_clerk_fork(void *user, cau_hosted *source, const cau_order *order, uint64_t tick);
+void cau_creation_free(cau_creation *creation);

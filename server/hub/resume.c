@@ -1,0 +1,121 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Brings the store's sessions up at start, and the demo.
+#include <stdlib.h>
+#include <string.h>
+
+#include "cautery/scene_json.h"
+#include "hub/internal.h"
+
+typedef struct ids {
+	char (*id)[CAU_STORE_ID_BYTES];
+	int32_t count, capacity;
+} ids;
+
+static cau_status take_id(void *user, const cau_store_session *session)
+{
+	ids *list = user;
+	if (list->count == list->capacity) {
+		int32_t capacity = list->capacity ? 2 * list->capacity : 32;
+		void *grown = realloc(list->id, (size_t)capacity * sizeof *list->id);
+		if (!grown)
+			return CAU_NO_MEMORY;
+		list->id = grown;
+		list->capacity = capacity;
+	}
+	snprintf(list->id[list->count++], CAU_STORE_ID_BYTES, "%s", session->id);
+	return CAU_OK;
+}
+
+static cau_status take_meshes(cau_creation *creation, const cau_store_bytes *mesh, cau_error *error)
+{
+	if (mesh->bytes) {
+		creation->meshes = malloc(mesh->bytes);
+		if (!creation->meshes)
+			return cau_fail(error, CAU_NO_MEMORY, "", "no memory for the meshes");
+		memcpy(creation->meshes, mesh->data, mesh->bytes);
+		creation->mesh_bytes = mesh->bytes;
+	}
+	return cau_meshes_unpack(creation->scene, creation->meshes, creation->mesh_bytes, error);
+}
+
+static cau_status take_session(void *user, const cau_store_session *row)
+{
+	cau_creation *creation = user;
+	cau_error error = {0};
+	cau_status status = cau_scene_from_json(row->id, row->definition.data, row->definition.bytes,
+	                                        creation->scene, &error);
+	if (!status)
+		status = take_meshes(creation, &row->mesh, &error);
+	creation->paused = strcmp(row->state, "paused") == 0;
+	creation->origin = (cau_hosted_origin){.kind = CAU_ORIGIN_STORE, .branch = row->branch};
+	if (status)
+		cau_log(CAU_LOG_ERROR, row->id, "definition_refused", "path=%s reason=\"%s\"", error.path,
+		        error.reason);
+	return status;
+}
+
+// A session that cannot be brought up is reported and left in the store.
+static void resume_one(cau_hub *hub, const char *id)
+{
+	cau_error error = {0};
+	cau_creation *creation = calloc(1, sizeof *creation);
+	if (creation)
+		creation->scene = calloc(1, sizeof *creation->scene);
+	cau_status status =
+		creation && creation->scene
+			? cau_store_read_session(hub->def.store, id, take_session, creation, &error)
+			: CAU_NO_MEMORY;
+	if (!status) {
+		snprintf(creation->scene->directory, sizeof creation->scene->directory, "%.255s",
+		         hub->def.config->scenes);
+		status = cau_clerk_make(hub, creation, id, &error);
+	}
+	if (status)
+		cau_log(CAU_LOG_ERROR, id, "not_resumed", "status=%s reason=\"%s\"",
+		        cau_status_name(status), error.reason);
+	if (creation)
+		cau_creation_free(creation);
+}
+
+static void note_scene(void *user, cau_hosted *hosted)
+{
+	cau_wire_session_summary summary;
+	const char **wanted = user;
+	cau_hosted_summary(hosted, &summary);
+	if (*wanted && strcmp(summary.scene, *wanted) == 0)
+		*wanted = NULL;
+}
+
+static cau_status make_demo(cau_hub *hub, cau_error *error)
+{
+	const char *missing = hub->def.config->demo;
+	const cau_scene_def *scene = cau_scenes_find(hub->def.scenes, missing);
+	cau_hub_each(hub, note_scene, &missing);
+	if (!missing)
+		return CAU_OK;
+	if (!scene)
+		return cau_fail(error, CAU_NOT_FOUND, "demo", "there is no scene `%.60s`", missing);
+	cau_creation *creation = calloc(1, sizeof *creation);
+	if (creation)
+		creation->scene = malloc(sizeof *scene);
+	if (!creation || !creation->scene) {
+		free(creation);
+		return cau_fail(error, CAU_NO_MEMORY, "demo", "no memory");
+	}
+	*creation->scene = *scene;
+	snprintf(creation->name, sizeof creation->name, "%s", scene->name);
+	cau_hub_submit_creation(hub, creation);
+	return CAU_OK;
+}
+
+cau_status cau_hub_resume(cau_hub *hub, cau_error *error)
+{
+	ids list = {0};
+	cau_status status = cau_store_read_sessions(hub->def.store, take_id, &list, error);
+	for (int32_t i = 0; !status && i < list.count; i++)
+		resume_one(hub, list.id[i]);
+	free(list.id);
+	if (!status && *hub->def.config->demo)
+		status = make_demo(hub, error);
+	return status;
+}

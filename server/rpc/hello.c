@@ -1,0 +1,119 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// hello and heartbeat.
+#include <string.h>
+
+#include "rpc/internal.h"
+
+#ifndef CAUTERY_VERSION
+#define CAUTERY_VERSION "0"
+#endif
+
+enum { WIRE_VERSION = 1 };
+
+static void refuse(const cau_call *call, int32_t code, cau_close_code close, const char *reason)
+{
+	cau_error error = {0};
+	cau_fail(&error, CAU_BAD_VALUE, "", "%s", reason);
+	cau_call_fail(call, &error, code);
+	cau_connection_close(call->peer->connection, close, NULL);
+}
+
+static void fill_limits(const cau_config *config, cau_wire_limits *limits)
+{
+	*limits = (cau_wire_limits){.message_bytes_max = config->max_message_bytes,
+	                            .upload_bytes_max = config->max_upload_bytes,
+	                            .chunk_bytes_max = CAU_CHUNK_BYTES_MAX,
+	                            .sessions_max = config->max_sessions,
+	                            .subscribers_max = config->max_connections,
+	                            .profiles_max = CAU_STREAM_PROFILES_MAX,
+	                            .tools_max = CAU_MAX_TOOLS,
+	                            .requests_per_s_max = config->max_requests_per_s,
+	                            .motions_per_s_max = config->max_requests_per_s,
+	                            .bytes_in_flight_max = config->subscriber_bytes,
+	                            .heartbeat_s = config->browser_deadline_s};
+}
+
+static void answer(const cau_call *call)
+{
+	const cau_service *service = call->peer->service;
+	const cau_asker *asker = &call->peer->client.asker;
+	cau_wire_hello_result result = {
+		.version = WIRE_VERSION,
+		.role = (int32_t)asker->role,
+		.client = asker->client,
+		.capabilities = 1u << CAU_CAPABILITY_UPLOAD | 1u << CAU_CAPABILITY_EXPORT |
+	                    1u << CAU_CAPABILITY_STORE |
+	                    (service->config->dds ? 1u << CAU_CAPABILITY_DDS : 0),
+		.server_time_us = (int64_t)(cau_monotonic_s() * 1e6),
+		.wall_time_s = (double)cau_wall_us() * 1e-6,
+	};
+	snprintf(result.server, sizeof result.server, "cauteryd %s", CAUTERY_VERSION);
+	snprintf(result.daemon, sizeof result.daemon, "%.48s", service->config->label);
+	memcpy(result.client_id, asker->client_id, sizeof result.client_id);
+	snprintf(result.resume, sizeof result.resume, "%s", call->peer->client.resume);
+	fill_limits(service->config, &result.limits);
+	cau_call_result(call, &result);
+}
+
+static void replace(cau_service *service, uint64_t connection)
+{
+	cau_connection *old = connection ? cau_network_find(service->network, connection) : NULL;
+	if (old)
+		cau_connection_close(old, CAU_CLOSE_RESUMED, NULL);
+}
+
+void cau_call_hello(cau_call *call)
+{
+	cau_peer *peer = call->peer;
+	cau_service *service = peer->service;
+	cau_error error = {0};
+	cau_role role;
+	uint64_t replaced = 0;
+	cau_wire_hello params = {0};
+	if (cau_rpc_params(call->message, &params, &error)) {
+		cau_call_fail(call, &error, 0);
+		return;
+	}
+	if (peer->greeted) {
+		cau_fail(&error, CAU_BAD_STATE, "", "hello was said already");
+		cau_call_fail(call, &error, 0);
+		return;
+	}
+	if (!cau_auth_role(service->auth, params.token, strlen(params.token), &role)) {
+		refuse(call, CAU_RPC_UNAUTHORIZED, CAU_CLOSE_UNAUTHORIZED, "the token is not known");
+		return;
+	}
+	cau_asker *asker = &peer->client.asker;
+	asker->role = params.has_role && params.role < (int32_t)role ? (cau_role)params.role : role;
+	asker->deadline_s = service->config->browser_deadline_s;
+	memcpy(asker->name, params.client, sizeof asker->name);
+	memcpy(asker->client_id, params.client_id, sizeof asker->client_id);
+	peer->client.connection = peer->connection->id;
+	if (!cau_hub_attach(service->hub, &peer->client, params.has_resume ? params.resume : NULL,
+	                    &replaced)) {
+		refuse(call, CAU_RPC_LIMIT, CAU_CLOSE_FULL, "too many clients");
+		return;
+	}
+	replace(service, replaced);
+	peer->greeted = peer->connection->served = true;
+	cau_hub_heartbeat(service->hub, asker->client, true);
+	cau_log(CAU_LOG_INFO, NULL, "hello", "connection=%llu client=%u name=\"%s\" resumed=%d",
+	        (unsigned long long)peer->connection->id, asker->client, asker->name,
+	        params.has_resume);
+	answer(call);
+}
+
+void cau_call_heartbeat(cau_call *call)
+{
+	cau_error error = {0};
+	cau_wire_heartbeat params = {0};
+	if (cau_rpc_params(call->message, &params, &error)) {
+		cau_call_fail(call, &error, 0);
+		return;
+	}
+	cau_hub_heartbeat(call->peer->service->hub, call->peer->client.asker.client, params.visible);
+	cau_wire_heartbeat_result result = {.server_time_us = (int64_t)(cau_monotonic_s() * 1e6),
+	                                    .has_client_time_us = params.has_client_time_us,
+	                                    .client_time_us = params.client_time_us};
+	cau_call_result(call, &result);
+}

@@ -1,0 +1,141 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// What the files of this room share.
+#pragma once
+
+#include <pthread.h>
+#include <stdatomic.h>
+
+#include "cautery/chunk_codec.h"
+#include "clock/clock.h"
+#include "log/log.h"
+#include "rpc/service.h"
+
+enum {
+	STREAMS_OF_PEER = 8,
+	UPLOADS_OF_PEER = 8,
+	FILES_OF_PEER = 4,
+	MALFORMED_MOST = 16, // messages that are no JSON-RPC, before the connection is closed
+};
+
+// A stream of this connection.
+typedef struct cau_subscription {
+	cau_hosted *hosted; // shared; NULL: free
+	cau_subscriber subscriber;
+} cau_subscription;
+
+// A file that comes in.
+typedef struct cau_upload {
+	uint32_t transfer; // 0: free
+	char name[CAU_NAME_BYTES];
+	char file_name[129];
+	unsigned char *bytes;
+	size_t byte_count, received;
+	bool complete;
+	char trouble[160]; // what ended it early; told by upload.end
+} cau_upload;
+
+// A file that goes out, in chunks.
+typedef struct cau_outgoing {
+	cau_buffer *file; // shared; NULL: free
+	uint32_t transfer;
+	size_t sent;
+} cau_outgoing;
+
+// What the service knows of a connection.
+typedef struct cau_peer {
+	cau_service *service;
+	cau_connection *connection;
+	bool greeted; // hello was answered
+	cau_client client;
+	char session[CAU_NAME_BYTES]; // of the URL
+	int malformed;
+	int64_t motions;
+	cau_subscription streams[STREAMS_OF_PEER];
+	int next_stream; // round robin
+	cau_upload uploads[UPLOADS_OF_PEER];
+	uint32_t last_transfer;
+	cau_outgoing files[FILES_OF_PEER];
+} cau_peer;
+
+// From other threads to the network thread.
+typedef struct cau_post {
+	struct cau_post *next;
+	enum { POST_ANSWER, POST_NOTICE } kind;
+	uint64_t connection;   // ANSWER
+	cau_audience audience; // NOTICE
+	cau_buffer *text;
+	cau_buffer *file; // ANSWER, may be NULL
+	uint32_t transfer;
+	cau_hosted *joined; // ANSWER, may be NULL
+	int32_t stream;
+} cau_post;
+
+struct cau_service {
+	const cau_config *config;
+	const cau_auth *auth;
+	cau_hub *hub;
+	cau_store *store;
+	cau_network *network;
+	atomic_bool draining, frames_waiting;
+	atomic_ulong ticks;
+	pthread_mutex_t mutex; // guards the posts
+	cau_post *first, *last;
+	uint64_t requests, errors;
+};
+
+// One request on its way through the handlers.
+typedef struct cau_call {
+	cau_peer *peer;
+	const cau_rpc_message *message;
+	const cau_method_info *method;
+	cau_rpc_envelope envelope;
+} cau_call;
+
+// ---- reply.c
+void cau_call_fail(const cau_call *call, const cau_error *error, int32_t code);
+void cau_call_result(const cau_call *call, const void *result);
+cau_reply cau_call_reply(const cau_call *call); // for answers that come later
+void cau_peer_fault(cau_peer *peer, const cau_rpc_id *id, const cau_rpc_fault *fault);
+
+// ---- mailbox.c
+void cau_service_answer(void *user, const cau_reply *reply, const cau_outcome *outcome);
+void cau_service_notify(void *user, cau_audience audience, cau_buffer *text);
+void cau_service_frames(void *user);
+void cau_service_read_posts(cau_service *service);
+
+// ---- the method families. Each answers the call, now or later.
+typedef void cau_call_handler(cau_call *call);
+cau_call_handler cau_call_hello, cau_call_heartbeat;
+cau_call_handler cau_call_scene_list, cau_call_scene_get;
+cau_call_handler cau_call_session_list, cau_call_session_create, cau_call_session_order;
+cau_call_handler cau_call_command, cau_call_tool_order;
+cau_call_handler cau_call_join, cau_call_leave, cau_call_key_frame, cau_call_ack;
+cau_call_handler cau_call_upload_begin, cau_call_upload_end;
+
+// The session of a call, shared, or NULL after a failure that is answered.
+cau_hosted *cau_call_session(const cau_call *call);
+// A zeroed order of the call's client.
+cau_order *cau_call_order(const cau_call *call, cau_order_kind kind);
+// Submits to the call's session; takes the order.
+void cau_call_submit(const cau_call *call, cau_order *order);
+
+// ---- streams
+cau_buffer *cau_peer_next_frame(cau_peer *peer);
+bool cau_peer_has_frames(const cau_peer *peer);
+void cau_peer_join(cau_peer *peer, cau_hosted *hosted, int32_t stream); // takes the reference
+void cau_peer_watch_slowness(cau_peer *peer, double now_s);
+
+// ---- uploads
+void cau_peer_chunk(cau_peer *peer, const void *bytes, size_t byte_count);
+cau_buffer *cau_peer_next_chunk(cau_peer *peer);
+// Points the scene's meshes of source bytes at this connection's uploads.
+cau_status cau_peer_fill_meshes(cau_peer *peer, cau_scene_def *scene, cau_error *error);
+void cau_upload_finish(cau_upload *upload);
+
+// ---- pages.c
+unsigned cau_service_page(void *user, const char *path, char **body, size_t *bytes);
+
+static inline cau_peer *cau_peer_of(cau_connection *connection)
+{
+	return connection->peer;
+}

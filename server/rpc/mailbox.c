@@ -1,0 +1,190 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// What workers and the store's thread have for connections waits here for the network thread.
+#include <stdlib.h>
+#include <string.h>
+
+#include "cautery/json_writer.h"
+#include "rpc/internal.h"
+
+enum { ID_BYTES = 6 * CAU_RPC_ID_BYTES + 3 };
+
+static void put(cau_service *service, cau_post *post)
+{
+	pthread_mutex_lock(&service->mutex);
+	if (service->last)
+		service->last->next = post;
+	else
+		service->first = post;
+	service->last = post;
+	pthread_mutex_unlock(&service->mutex);
+	if (service->network)
+		cau_network_wake(service->network);
+}
+
+static void write_id(char text[ID_BYTES], const cau_rpc_id *id)
+{
+	cau_json_writer writer;
+	cau_json_begin(&writer, text, ID_BYTES, 0);
+	if (id->kind == CAU_RPC_ID_NUMBER)
+		cau_json_integer(&writer, NULL, id->number);
+	else if (id->kind == CAU_RPC_ID_TEXT)
+		cau_json_string(&writer, NULL, id->text);
+	else
+		cau_json_null(&writer, NULL);
+	cau_json_end(&writer, NULL, NULL);
+}
+
+// Answers are made, and stored, with the id 0; here each asker's own goes in.
+static cau_buffer *with_id(const char *text, size_t bytes, const cau_rpc_id *id)
+{
+	static const char member[] = "\"id\":";
+	char own[ID_BYTES];
+	const char *found = memmem(text, bytes, member, sizeof member - 1);
+	if (!found)
+		return NULL;
+	write_id(own, id);
+	size_t head = (size_t)(found - text) + sizeof member - 1;
+	size_t skipped = head + strcspn(text + head, ",");
+	size_t own_bytes = strlen(own);
+	cau_buffer *buffer = cau_buffer_create(head + own_bytes + bytes - skipped, false);
+	if (!buffer)
+		return NULL;
+	unsigned char *to = cau_buffer_bytes(buffer);
+	memcpy(to, text, head);
+	memcpy(to + head, own, own_bytes);
+	memcpy(to + head + own_bytes, text + skipped, bytes - skipped);
+	return buffer;
+}
+
+static cau_buffer *fault_text(const cau_rpc_id *id, const cau_outcome *outcome)
+{
+	enum { FAULT_BYTES = 4096 };
+	cau_buffer *buffer = cau_buffer_create(FAULT_BYTES, false);
+	cau_rpc_fault fault;
+	if (!buffer)
+		return NULL;
+	cau_rpc_buffer out = {(char *)cau_buffer_bytes(buffer), FAULT_BYTES, 0};
+	cau_rpc_fault_of_error(&fault, outcome->error);
+	if (outcome->code) {
+		cau_rpc_fault_of_code(&fault, (cau_rpc_error_code)outcome->code, outcome->error->reason);
+		snprintf(fault.path, sizeof fault.path, "%s", outcome->error->path);
+	}
+	if (cau_rpc_write_error(&out, id, &fault, NULL)) {
+		cau_buffer_release(buffer);
+		return NULL;
+	}
+	buffer->byte_count = out.bytes;
+	return buffer;
+}
+
+void cau_service_answer(void *user, const cau_reply *reply, const cau_outcome *outcome)
+{
+	cau_service *service = user;
+	cau_post *post = calloc(1, sizeof *post);
+	if (!post)
+		return;
+	post->kind = POST_ANSWER;
+	post->connection = reply->connection;
+	post->text = outcome->error ? fault_text(&reply->id, outcome)
+	                            : with_id(outcome->text, outcome->text_bytes, &reply->id);
+	if (!outcome->error && outcome->file)
+		post->file = cau_buffer_share(outcome->file);
+	post->transfer = outcome->transfer;
+	if (!outcome->error && outcome->joined)
+		post->joined = cau_hosted_share(outcome->joined);
+	post->stream = outcome->stream;
+	put(service, post);
+}
+
+void cau_service_notify(void *user, cau_audience audience, cau_buffer *text)
+{
+	cau_post *post = calloc(1, sizeof *post);
+	if (!post) {
+		cau_buffer_release(text);
+		return;
+	}
+	post->kind = POST_NOTICE;
+	post->audience = audience;
+	post->text = text;
+	put(user, post);
+}
+
+void cau_service_frames(void *user)
+{
+	cau_service *service = user;
+	if (!atomic_exchange(&service->frames_waiting, true) && service->network)
+		cau_network_wake(service->network);
+}
+
+// ---- on the network thread
+// -------------------------------------------------------------------------
+static void send_file(cau_peer *peer, cau_post *post)
+{
+	for (int i = 0; i < FILES_OF_PEER; i++)
+		if (!peer->files[i].file) {
+			peer->files[i] = (cau_outgoing){post->file, post->transfer, 0};
+			post->file = NULL;
+			return;
+		}
+	cau_connection_close(peer->connection, CAU_CLOSE_RATE, "too many exports at once");
+}
+
+static void deliver_answer(cau_service *service, cau_post *post)
+{
+	cau_connection *connection = cau_network_find(service->network, post->connection);
+	if (connection && post->text) {
+		cau_connection_send(connection, post->text);
+		post->text = NULL;
+		if (post->file)
+			send_file(cau_peer_of(connection), post);
+	}
+	if (post->joined && connection) {
+		cau_peer_join(cau_peer_of(connection), post->joined, post->stream);
+	} else if (post->joined) {
+		cau_hosted_leave(post->joined, &(cau_subscriber){.stream = post->stream});
+		cau_hosted_release(post->joined);
+	}
+}
+
+static bool listens(const cau_peer *peer, cau_audience audience)
+{
+	if (!peer->greeted || audience.kind == CAU_AUDIENCE_EVERYBODY)
+		return peer->greeted;
+	if (audience.kind == CAU_AUDIENCE_CLIENT)
+		return peer->client.asker.client == audience.id;
+	for (int i = 0; i < STREAMS_OF_PEER; i++)
+		if (peer->streams[i].hosted && cau_hosted_number(peer->streams[i].hosted) == audience.id)
+			return true;
+	return false;
+}
+
+// Every listener's queue needs its own node, so notices are copied; they are small.
+static void deliver_notice(cau_service *service, cau_post *post)
+{
+	for (cau_connection *c = cau_network_first(service->network); c; c = c->next) {
+		if (!listens(cau_peer_of(c), post->audience))
+			continue;
+		cau_buffer *copy = cau_buffer_create(post->text->byte_count, false);
+		if (copy)
+			memcpy(cau_buffer_bytes(copy), cau_buffer_bytes(post->text), copy->byte_count);
+		cau_connection_send(c, copy);
+	}
+}
+
+void cau_service_read_posts(cau_service *service)
+{
+	pthread_mutex_lock(&service->mutex);
+	cau_post *post = service->first;
+	service->first = service->last = NULL;
+	pthread_mutex_unlock(&service->mutex);
+	for (cau_post *next; post; post = next) {
+		next = post->next;
+		if (post->kind == POST_ANSWER)
+			deliver_answer(service, post);
+		else
+			deliver_notice(service, post);
+		cau_buffer_release(post->text);
+		cau_buffer_release(post->file);
+		free(post);
+	}
+}

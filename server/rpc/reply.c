@@ -1,0 +1,140 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Answers that the network thread gives itself.
+#include <stdlib.h>
+#include <string.h>
+
+#include "rpc/internal.h"
+
+enum { FIRST_BYTES = 4096, FAULT_BYTES = 4096 };
+
+void cau_peer_fault(cau_peer *peer, const cau_rpc_id *id, const cau_rpc_fault *fault)
+{
+	cau_buffer *buffer = cau_buffer_create(FAULT_BYTES, false);
+	cau_rpc_buffer out = {.capacity = FAULT_BYTES};
+	cau_error error = {0};
+	peer->service->errors++;
+	if (!buffer)
+		return;
+	out.buffer = (char *)cau_buffer_bytes(buffer);
+	if (cau_rpc_write_error(&out, id, fault, &error)) {
+		cau_log(CAU_LOG_ERROR, NULL, "answer_lost", "reason=\"%s\"", error.reason);
+		cau_buffer_release(buffer);
+		return;
+	}
+	buffer->byte_count = out.bytes;
+	cau_connection_send(peer->connection, buffer);
+}
+
+void cau_call_fail(const cau_call *call, const cau_error *error, int32_t code)
+{
+	cau_rpc_fault fault;
+	if (call->message->kind == CAU_RPC_NOTIFICATION)
+		return;
+	cau_rpc_fault_of_error(&fault, error);
+	if (code) {
+		cau_rpc_fault_of_code(&fault, (cau_rpc_error_code)code, error->reason);
+		snprintf(fault.path, sizeof fault.path, "%s", error->path);
+	}
+	cau_peer_fault(call->peer, &call->message->id, &fault);
+}
+
+void cau_call_result(const cau_call *call, const void *result)
+{
+	size_t capacity = FIRST_BYTES;
+	cau_error error = {0};
+	cau_status status = CAU_LIMIT;
+	if (call->message->kind == CAU_RPC_NOTIFICATION)
+		return;
+	for (int attempt = 0; attempt < 2 && status == CAU_LIMIT; attempt++) {
+		cau_buffer *buffer = cau_buffer_create(capacity, false);
+		if (!buffer) {
+			status = cau_fail(&error, CAU_NO_MEMORY, "", "no memory for the answer");
+			break;
+		}
+		cau_rpc_buffer out = {(char *)cau_buffer_bytes(buffer), capacity, 0};
+		status =
+			cau_rpc_write_result(&out, &call->message->id, call->message->method, result, &error);
+		buffer->byte_count = out.bytes;
+		capacity = out.bytes + 1;
+		if (!status)
+			cau_connection_send(call->peer->connection, buffer);
+		else
+			cau_buffer_release(buffer);
+	}
+	if (status)
+		cau_call_fail(call, &error, CAU_RPC_INTERNAL);
+}
+
+cau_reply cau_call_reply(const cau_call *call)
+{
+	cau_reply reply = {.method = call->message->method};
+	if (call->message->kind == CAU_RPC_REQUEST) {
+		reply.answer = cau_service_answer;
+		reply.user = call->peer->service;
+		reply.connection = call->peer->connection->id;
+		reply.id = call->message->id;
+	}
+	return reply;
+}
+
+cau_hosted *cau_call_session(const cau_call *call)
+{
+	cau_error error = {0};
+	const char *id = call->envelope.has_session ? call->envelope.session : call->peer->session;
+	if (!*id) {
+		cau_fail(&error, CAU_BAD_VALUE, "params.session",
+		         "missing: neither the message nor the connection's URL names a session");
+		cau_call_fail(call, &error, 0);
+		return NULL;
+	}
+	cau_hosted *hosted = cau_hub_find(call->peer->service->hub, id);
+	if (hosted)
+		return hosted;
+	cau_creation *lookup = NULL;
+	if (call->method->changes && call->envelope.has_client_sequence)
+		lookup = calloc(1, sizeof *lookup);
+	if (lookup) { // it may be a request sent again whose session is gone since
+		lookup->kind = CAU_CREATION_ANSWER;
+		lookup->asker = call->peer->client.asker;
+		lookup->client_sequence = call->envelope.client_sequence;
+		lookup->reply = cau_call_reply(call);
+		cau_hub_submit_creation(call->peer->service->hub, lookup);
+		return NULL;
+	}
+	cau_fail(&error, CAU_NOT_FOUND, "params.session", "this daemon does not have `%.48s`", id);
+	cau_call_fail(call, &error, CAU_RPC_NOT_HERE);
+	return NULL;
+}
+
+cau_order *cau_call_order(const cau_call *call, cau_order_kind kind)
+{
+	cau_error error = {0};
+	cau_order *order = calloc(1, sizeof *order);
+	if (!order) {
+		cau_fail(&error, CAU_NO_MEMORY, "", "no memory for the request");
+		cau_call_fail(call, &error, 0);
+		return NULL;
+	}
+	order->kind = kind;
+	order->asker = call->peer->client.asker;
+	if (call->method->changes && call->envelope.has_client_sequence)
+		order->client_sequence = call->envelope.client_sequence;
+	order->reply = cau_call_reply(call);
+	return order;
+}
+
+void cau_call_submit(const cau_call *call, cau_order *order)
+{
+	cau_error error = {0};
+	cau_hosted *hosted = cau_call_session(call);
+	if (!hosted) {
+		free(order);
+		return;
+	}
+	cau_status status = cau_hosted_submit(hosted, order, &error);
+	if (status) {
+		free(order);
+		cau_call_fail(call, &error, status == CAU_IO ? CAU_RPC_STORE_FULL : 0);
+	}
+	cau_hosted_release(hosted);
+}

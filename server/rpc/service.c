@@ -1,0 +1,244 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// From messages to handlers: role, state and form are checked here, once.
+#include "rpc/service.h"
+
+#include <stdlib.h>
+#include <string.h>
+
+#include "rpc/internal.h"
+
+static cau_call_handler *const handlers[CAU_METHOD_COUNT] = {
+	[CAU_METHOD_HELLO] = cau_call_hello,
+	[CAU_METHOD_HEARTBEAT] = cau_call_heartbeat,
+	[CAU_METHOD_SCENE_LIST] = cau_call_scene_list,
+	[CAU_METHOD_SCENE_GET] = cau_call_scene_get,
+	[CAU_METHOD_SESSION_LIST] = cau_call_session_list,
+	[CAU_METHOD_SESSION_CREATE] = cau_call_session_create,
+	[CAU_METHOD_SESSION_DESCRIBE] = cau_call_session_order,
+	[CAU_METHOD_SESSION_JOIN] = cau_call_join,
+	[CAU_METHOD_SESSION_LEAVE] = cau_call_leave,
+	[CAU_METHOD_SESSION_PAUSE] = cau_call_session_order,
+	[CAU_METHOD_SESSION_RESUME] = cau_call_session_order,
+	[CAU_METHOD_SESSION_STEP] = cau_call_session_order,
+	[CAU_METHOD_SESSION_SPEED] = cau_call_session_order,
+	[CAU_METHOD_SESSION_RESET] = cau_call_session_order,
+	[CAU_METHOD_SESSION_DESTROY] = cau_call_session_order,
+	[CAU_METHOD_SESSION_FORK] = cau_call_session_order,
+	[CAU_METHOD_SESSION_SNAPSHOT] = cau_call_session_order,
+	[CAU_METHOD_SESSION_RESTORE] = cau_call_session_order,
+	[CAU_METHOD_SESSION_REWIND] = cau_call_session_order,
+	[CAU_METHOD_SESSION_EXPORT] = cau_call_session_order,
+	[CAU_METHOD_SESSION_LOG] = cau_call_session_order,
+	[CAU_METHOD_SESSION_TIMELINE] = cau_call_session_order,
+	[CAU_METHOD_STREAM_KEY_FRAME] = cau_call_key_frame,
+	[CAU_METHOD_STREAM_ACK] = cau_call_ack,
+	[CAU_METHOD_TOOL_ADD] = cau_call_command,
+	[CAU_METHOD_TOOL_REMOVE] = cau_call_command,
+	[CAU_METHOD_TOOL_CONFIGURE] = cau_call_command,
+	[CAU_METHOD_TOOL_MOVE] = cau_call_command,
+	[CAU_METHOD_TOOL_ENERGIZE] = cau_call_command,
+	[CAU_METHOD_TOOL_GRASP] = cau_call_command,
+	[CAU_METHOD_TOOL_RELEASE] = cau_call_command,
+	[CAU_METHOD_TOOL_TAKE_OVER] = cau_call_tool_order,
+	[CAU_METHOD_TOOL_REQUEST_TAKEOVER] = cau_call_tool_order,
+	[CAU_METHOD_TOOL_HAND_OVER] = cau_call_tool_order,
+	[CAU_METHOD_PIN] = cau_call_command,
+	[CAU_METHOD_UNPIN] = cau_call_command,
+	[CAU_METHOD_SET_MATERIAL] = cau_call_command,
+	[CAU_METHOD_SET_GRAVITY] = cau_call_command,
+	[CAU_METHOD_SET_FORCE] = cau_call_command,
+	[CAU_METHOD_UPLOAD_BEGIN] = cau_call_upload_begin,
+	[CAU_METHOD_UPLOAD_END] = cau_call_upload_end,
+};
+
+// ---- messages
+// ----------------------------------------------------------------------------------------
+static void refuse(const cau_call *call, cau_status status, int32_t code, const char *reason)
+{
+	cau_error error = {0};
+	cau_fail(&error, status, "", "%s", reason);
+	cau_call_fail(call, &error, code);
+}
+
+// Whether the call may go on; answers it if not.
+static bool admit(cau_call *call)
+{
+	const cau_peer *peer = call->peer;
+	cau_error error = {0};
+	bool hello = call->message->method == CAU_METHOD_HELLO;
+	if (!peer->greeted && !hello)
+		refuse(call, CAU_BAD_STATE, CAU_RPC_HELLO_REQUIRED, "the first message must be hello");
+	else if (peer->service->draining && call->method->changes)
+		refuse(call, CAU_BAD_STATE, CAU_RPC_DRAINING, "the server is shutting down");
+	else if (!hello && peer->client.asker.role < call->method->role)
+		refuse(call, CAU_BAD_STATE, CAU_RPC_FORBIDDEN, "the role does not allow this");
+	else if (!handlers[call->message->method])
+		refuse(call, CAU_BAD_VALUE, CAU_RPC_METHOD_NOT_FOUND, "only the server sends this");
+	else if (!hello && cau_rpc_envelope_read(call->message, &call->envelope, &error))
+		cau_call_fail(call, &error, 0);
+	else
+		return true;
+	return false;
+}
+
+static void malformed(cau_peer *peer, const cau_rpc_message *message, const cau_rpc_fault *fault)
+{
+	if (message->kind != CAU_RPC_NOTIFICATION)
+		cau_peer_fault(peer, &message->id, fault);
+	bool garbage = fault->code == CAU_RPC_PARSE || fault->code == CAU_RPC_INVALID_REQUEST;
+	if (garbage && ++peer->malformed >= MALFORMED_MOST)
+		cau_connection_close(peer->connection, CAU_CLOSE_GARBAGE, NULL);
+}
+
+static void on_text(void *user, cau_connection *connection, const char *text, size_t bytes)
+{
+	cau_service *service = user;
+	cau_peer *peer = cau_peer_of(connection);
+	cau_rpc_message message = {0};
+	cau_rpc_fault fault = {0};
+	service->requests++;
+	if (cau_rpc_read(text, bytes, (size_t)service->config->max_message_bytes, &message, &fault)) {
+		malformed(peer, &message, &fault);
+		return;
+	}
+	cau_call call = {.peer = peer, .message = &message};
+	if (message.kind == CAU_RPC_REQUEST || message.kind == CAU_RPC_NOTIFICATION) {
+		call.method = cau_method_describe(message.method);
+		if (admit(&call))
+			handlers[message.method](&call);
+	}
+	cau_rpc_finish(&message);
+}
+
+static void on_binary(void *user, cau_connection *connection, const void *bytes, size_t byte_count)
+{
+	(void)user;
+	cau_peer_chunk(cau_peer_of(connection), bytes, byte_count);
+}
+
+// ---- connections
+// -------------------------------------------------------------------------------------
+static bool on_opened(void *user, cau_connection *connection, const char *session)
+{
+	cau_peer *peer = calloc(1, sizeof *peer);
+	if (!peer)
+		return false;
+	peer->service = user;
+	peer->connection = connection;
+	snprintf(peer->session, sizeof peer->session, "%.48s", session);
+	connection->peer = peer;
+	return true;
+}
+
+static void on_closed(void *user, cau_connection *connection)
+{
+	cau_service *service = user;
+	cau_peer *peer = cau_peer_of(connection);
+	if (!peer)
+		return;
+	for (int i = 0; i < STREAMS_OF_PEER; i++)
+		if (peer->streams[i].hosted) {
+			cau_hosted_leave(peer->streams[i].hosted, &peer->streams[i].subscriber);
+			cau_hosted_release(peer->streams[i].hosted);
+		}
+	for (int i = 0; i < UPLOADS_OF_PEER; i++)
+		cau_upload_finish(&peer->uploads[i]);
+	for (int i = 0; i < FILES_OF_PEER; i++)
+		cau_buffer_release(peer->files[i].file);
+	if (peer->greeted)
+		cau_hub_detach(service->hub, peer->client.asker.client, connection->id);
+	free(peer);
+	connection->peer = NULL;
+}
+
+static cau_buffer *on_next_frame(void *user, cau_connection *connection)
+{
+	(void)user;
+	return cau_peer_next_frame(cau_peer_of(connection));
+}
+
+static void want_frames(cau_service *service)
+{
+	for (cau_connection *c = cau_network_first(service->network); c; c = c->next)
+		if (cau_peer_has_frames(cau_peer_of(c)))
+			cau_connection_want_frame(c);
+}
+
+static void on_woken(void *user)
+{
+	cau_service *service = user;
+	cau_service_read_posts(service);
+	if (atomic_exchange(&service->frames_waiting, false))
+		want_frames(service);
+}
+
+static void on_tick(void *user)
+{
+	cau_service *service = user;
+	double now_s = cau_monotonic_s();
+	service->ticks++;
+	for (cau_connection *c = cau_network_first(service->network); c; c = c->next)
+		cau_peer_watch_slowness(cau_peer_of(c), now_s);
+	want_frames(service);
+}
+
+// ---- life
+// --------------------------------------------------------------------------------------------
+cau_status cau_service_create(cau_service **made, const cau_config *config, const cau_auth *auth,
+                              cau_hub *hub, cau_store *store, cau_error *error)
+{
+	cau_service *service = calloc(1, sizeof *service);
+	*made = service;
+	if (!service)
+		return cau_fail(error, CAU_NO_MEMORY, NULL, "no memory for the service");
+	service->config = config;
+	service->auth = auth;
+	service->hub = hub;
+	service->store = store;
+	pthread_mutex_init(&service->mutex, NULL);
+	cau_hub_add_sink(hub, &(cau_sink){service, cau_service_notify, cau_service_frames, NULL});
+	return CAU_OK;
+}
+
+void cau_service_destroy(cau_service *service)
+{
+	if (!service)
+		return;
+	for (cau_post *next; service->first; service->first = next) {
+		next = service->first->next;
+		cau_buffer_release(service->first->text);
+		cau_buffer_release(service->first->file);
+		cau_hosted_release(service->first->joined);
+		free(service->first);
+	}
+	pthread_mutex_destroy(&service->mutex);
+	free(service);
+}
+
+cau_network_handler cau_service_handler(cau_service *service)
+{
+	return (cau_network_handler){.user = service,
+	                             .opened = on_opened,
+	                             .text = on_text,
+	                             .binary = on_binary,
+	                             .closed = on_closed,
+	                             .next_frame = on_next_frame,
+	                             .woken = on_woken,
+	                             .tick = on_tick,
+	                             .page = cau_service_page};
+}
+
+void cau_service_set_network(cau_service *service, cau_network *network)
+{
+	service->network = network;
+}
+
+unsigned long cau_service_ticks(cau_service *service)
+{
+	return service->ticks;
+}
+
+void cau_service_drain(cau_service *service)
+{
+	service->draining = true;
+}

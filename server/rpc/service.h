@@ -1,0 +1,25 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// The wire's methods over WebSocket connections: what arrives becomes orders for the hub, what
+// comes back from it is sent. Lives on the network thread; other threads only post to it.
+#pragma once
+
+#include "auth/auth.h"
+#include "hub/hub.h"
+#include "transport_ws/network.h"
+
+typedef struct cau_service cau_service;
+
+// Registers its sink with the hub.
+cau_status cau_service_create(cau_service **service, const cau_config *config, const cau_auth *auth,
+                              cau_hub *hub, cau_store *store, cau_error *error);
+// After the network has ended and the hub's sessions are gone. Takes NULL.
+void cau_service_destroy(cau_service *service);
+
+// What the network calls.
+cau_network_handler cau_service_handler(cau_service *service);
+// Once the network exists.
+void cau_service_set_network(cau_service *service, cau_network *network);
+// Counts up while the network thread lives, ten times a second.
+unsigned long cau_service_ticks(cau_service *service);
+// From now on requests are answered with `draining`.
+void cau_service_drain(cau_service *service);

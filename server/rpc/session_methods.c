@@ -1,0 +1,238 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include <stdlib.h>
+#include <string.h>
+
+#include "rpc/internal.h"
+
+// ---- session.list
+// ------------------------------------------------------------------------------------
+static void list_one(void *user, cau_hosted *hosted)
+{
+	cau_wire_list *list = user;
+	if (list->count < list->capacity)
+		cau_hosted_summary(hosted, (cau_wire_session_summary *)list->items + list->count++);
+}
+
+static int by_id(const void *a, const void *b)
+{
+	return strcmp(((const cau_wire_session_summary *)a)->session,
+	              ((const cau_wire_session_summary *)b)->session);
+}
+
+void cau_call_session_list(cau_call *call)
+{
+	cau_hub *hub = call->peer->service->hub;
+	int32_t capacity = cau_hub_count(hub) + 8;
+	cau_wire_session_list result = {
+		.sessions = {calloc((size_t)capacity, sizeof(cau_wire_session_summary)), 0, capacity}};
+	if (!result.sessions.items) {
+		cau_error error = {.status = CAU_NO_MEMORY};
+		cau_call_fail(call, &error, 0);
+		return;
+	}
+	cau_hub_each(hub, list_one, &result.sessions);
+	qsort(result.sessions.items, (size_t)result.sessions.count, sizeof(cau_wire_session_summary),
+	      by_id);
+	cau_call_result(call, &result);
+	free(result.sessions.items);
+}
+
+// ---- session.create
+// ----------------------------------------------------------------------------------
+static cau_status choose_scene(cau_peer *peer, const cau_wire_session_create *params,
+                               cau_scene_def *scene, cau_error *error)
+{
+	const cau_scenes *scenes = cau_hub_scenes(peer->service->hub);
+	if (params->has_scene == params->has_definition)
+		return cau_fail(error, CAU_BAD_VALUE, "params.scene",
+		                "either scene or definition must be given");
+	if (params->has_scene) {
+		const cau_scene_def *named = cau_scenes_find(scenes, params->scene);
+		if (!named)
+			return cau_fail(error, CAU_NOT_FOUND, "params.scene", "there is no scene `%.48s`",
+			                params->scene);
+		*scene = *named;
+		return CAU_OK;
+	}
+	for (int32_t i = 0; i < scene->mesh_count; i++)
+		if (scene->meshes[i].source == CAU_MESH_FILE)
+			return cau_fail(error, CAU_UNSUPPORTED, "params.definition.meshes",
+			                "mesh files of the daemon are for its own scenes; upload the mesh");
+	return cau_peer_fill_meshes(peer, scene, error);
+}
+
+static cau_status read_creation(cau_call *call, cau_creation *creation, cau_error *error)
+{
+	cau_wire_session_create params = {0};
+	params.definition = creation->scene;
+	cau_status status = cau_rpc_params(call->message, &params, error);
+	if (!status)
+		status = choose_scene(call->peer, &params, creation->scene, error);
+	if (!status)
+		status = cau_meshes_pack(creation->scene, &creation->meshes, &creation->mesh_bytes, error);
+	if (status)
+		return status;
+	memcpy(creation->name, params.name, sizeof creation->name);
+	creation->paused = params.paused;
+	creation->client_sequence = params.client_sequence;
+	creation->asker = call->peer->client.asker;
+	creation->reply = cau_call_reply(call);
+	return CAU_OK;
+}
+
+void cau_call_session_create(cau_call *call)
+{
+	cau_error error = {0};
+	cau_creation *creation = calloc(1, sizeof *creation);
+	if (creation)
+		creation->scene = calloc(1, sizeof *creation->scene);
+	cau_status status = creation && creation->scene
+	                        ? read_creation(call, creation, &error)
+	                        : cau_fail(&error, CAU_NO_MEMORY, "", "no memory for a scene");
+	cau_store_health health;
+	cau_store_get_health(call->peer->service->store, &health);
+	bool full = health.state != CAU_STORE_READY;
+	if (!status && full)
+		status = cau_fail(&error, CAU_IO, "", "%s", health.reason);
+	if (!status) {
+		cau_hub_submit_creation(call->peer->service->hub, creation);
+		return;
+	}
+	cau_call_fail(call, &error, full && status == CAU_IO ? CAU_RPC_STORE_FULL : 0);
+	if (creation) {
+		free(creation->meshes);
+		free(creation->scene);
+	}
+	free(creation);
+}
+
+// ---- everything that is one order
+// --------------------------------------------------------------------
+static cau_status read_step(const cau_rpc_message *message, cau_order *order, cau_error *error)
+{
+	cau_wire_session_step params = {0};
+	cau_status status = cau_rpc_params(message, &params, error);
+	order->as.ticks = params.has_ticks ? params.ticks : 1;
+	return status;
+}
+
+static cau_status read_speed(const cau_rpc_message *message, cau_order *order, cau_error *error)
+{
+	cau_wire_session_speed params = {0};
+	cau_status status = cau_rpc_params(message, &params, error);
+	order->as.speed = params.speed;
+	return status;
+}
+
+static cau_status read_rewind(const cau_rpc_message *message, cau_order *order, cau_error *error)
+{
+	cau_wire_session_rewind params = {0};
+	cau_status status = cau_rpc_params(message, &params, error);
+	order->as.tick = (uint64_t)params.tick;
+	return status;
+}
+
+static cau_status read_snapshot(const cau_rpc_message *message, cau_order *order, cau_error *error)
+{
+	cau_wire_session_snapshot params = {0};
+	cau_status status = cau_rpc_params(message, &params, error);
+	memcpy(order->as.name, params.name, sizeof order->as.name);
+	return status;
+}
+
+static cau_status read_restore(const cau_rpc_message *message, cau_order *order, cau_error *error)
+{
+	cau_wire_session_restore params = {0};
+	cau_status status = cau_rpc_params(message, &params, error);
+	memcpy(order->as.name, params.name, sizeof order->as.name);
+	return status;
+}
+
+static cau_status read_fork(const cau_rpc_message *message, cau_order *order, cau_error *error)
+{
+	cau_wire_session_fork params = {0};
+	cau_status status = cau_rpc_params(message, &params, error);
+	memcpy(order->as.fork.name, params.name, sizeof order->as.fork.name);
+	order->as.fork.has_tick = params.has_tick;
+	order->as.fork.tick = (uint64_t)params.tick;
+	order->as.fork.paused = params.paused;
+	return status;
+}
+
+static cau_status read_timeline(const cau_rpc_message *message, cau_order *order, cau_error *error)
+{
+	cau_wire_session_timeline params = {0};
+	cau_status status = cau_rpc_params(message, &params, error);
+	order->as.timeline.from_tick = (uint64_t)params.from_tick;
+	order->as.timeline.count = params.has_count ? (int32_t)params.count : 1024;
+	return status;
+}
+
+static cau_status read_export(const cau_rpc_message *message, cau_order *order, cau_error *error)
+{
+	cau_wire_session_export params = {0};
+	cau_status status = cau_rpc_params(message, &params, error);
+	order->as.format = params.format;
+	return status;
+}
+
+static cau_status read_log(const cau_rpc_message *message, cau_order *order, cau_error *error)
+{
+	cau_wire_session_log params = {0};
+	cau_status status = cau_rpc_params(message, &params, error);
+	order->as.log.from_tick = (uint64_t)params.from_tick;
+	order->as.log.to_tick = params.has_to_tick ? (uint64_t)params.to_tick : UINT64_MAX;
+	return status;
+}
+
+static cau_status read_change(const cau_rpc_message *message, cau_order *order, cau_error *error)
+{
+	cau_wire_session_change params = {0};
+	(void)order;
+	return cau_rpc_params(message, &params, error);
+}
+
+static cau_status read_ref(const cau_rpc_message *message, cau_order *order, cau_error *error)
+{
+	cau_wire_session_ref params = {0};
+	(void)order;
+	return cau_rpc_params(message, &params, error);
+}
+
+static const struct {
+	cau_method method;
+	cau_order_kind kind;
+	cau_status (*read)(const cau_rpc_message *message, cau_order *order, cau_error *error);
+} orders[] = {
+	{CAU_METHOD_SESSION_DESCRIBE, CAU_ORDER_DESCRIBE, read_ref},
+	{CAU_METHOD_SESSION_PAUSE, CAU_ORDER_PAUSE, read_change},
+	{CAU_METHOD_SESSION_RESUME, CAU_ORDER_RESUME, read_change},
+	{CAU_METHOD_SESSION_STEP, CAU_ORDER_STEP, read_step},
+	{CAU_METHOD_SESSION_SPEED, CAU_ORDER_SPEED, read_speed},
+	{CAU_METHOD_SESSION_RESET, CAU_ORDER_RESET, read_change},
+	{CAU_METHOD_SESSION_DESTROY, CAU_ORDER_DESTROY, read_change},
+	{CAU_METHOD_SESSION_FORK, CAU_ORDER_FORK, read_fork},
+	{CAU_METHOD_SESSION_SNAPSHOT, CAU_ORDER_SNAPSHOT, read_snapshot},
+	{CAU_METHOD_SESSION_RESTORE, CAU_ORDER_RESTORE, read_restore},
+	{CAU_METHOD_SESSION_REWIND, CAU_ORDER_REWIND, read_rewind},
+	{CAU_METHOD_SESSION_EXPORT, CAU_ORDER_EXPORT, read_export},
+	{CAU_METHOD_SESSION_LOG, CAU_ORDER_LOG, read_log},
+	{CAU_METHOD_SESSION_TIMELINE, CAU_ORDER_TIMELINE, read_timeline},
+};
+
+void cau_call_session_order(cau_call *call)
+{
+	cau_error error = {0};
+	size_t i = 0;
+	while (orders[i].method != call->message->method)
+		i++;
+	cau_order *order = cau_call_order(call, orders[i].kind);
+	if (!order)
+		return;
+	if (orders[i].read(call->message, order, &error)) {
+		cau_call_fail(call, &error, 0);
+		free(order);
+		return;
+	}
+	cau_call_submit(call, order);
+}

@@ -1,0 +1,242 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "sim/vtu_writer.h"
+
+#include <errno.h>
+#include <inttypes.h>
+#include <stdlib.h>
+#include <string.h>
+#include <sys/stat.h>
+
+enum { VTK_LINE = 3, VTK_TRIANGLE = 5, VTK_TETRA = 10, PATH_BYTES = 1024 };
+
+typedef enum cell_kind { CELL_TETRAHEDRON, CELL_LINK, CELL_TRIANGLE } cell_kind;
+
+// The cells of one file, as the format wants them.
+typedef struct cells {
+	int64_t count, corner_count;
+	int64_t *corner; // vertices of all cells, one after the other
+	int64_t *end;    // (count): where each cell's corners end
+	uint8_t *type;   // (count)
+	uint8_t *kind;   // (count): cell_kind
+	int32_t *layer;  // (count)
+} cells;
+
+static cau_status fail_file(const char *path, cau_error *error)
+{
+	const char *reason = strerror(errno);
+	snprintf(error->file, sizeof error->file, "%.255s", path);
+	return cau_fail(error, CAU_IO, NULL, "cannot write: %s", reason);
+}
+
+static cau_status make_path(const sim_vtu *vtu, const char *name, char path[PATH_BYTES],
+                            cau_error *error)
+{
+	int bytes = snprintf(path, PATH_BYTES, "%s/%s", vtu->folder, name);
+	if (bytes < 0 || bytes >= PATH_BYTES)
+		return cau_fail(error, CAU_LIMIT, NULL, "the folder's name is too long");
+	return CAU_OK;
+}
+
+// ---- cells ------------------------------------------------------------------------------------
+
+static void finish_cells(cells *c)
+{
+	free(c->corner);
+	free(c->end);
+	free(c->type);
+	free(c->kind);
+	free(c->layer);
+}
+
+static bool reserve_cells(cells *c, size_t most)
+{
+	c->corner = malloc((4 * most + 1) * sizeof *c->corner);
+	c->end = malloc((most + 1) * sizeof *c->end);
+	c->type = malloc(most + 1);
+	c->kind = malloc(most + 1);
+	c->layer = malloc((most + 1) * sizeof *c->layer);
+	return c->corner && c->end && c->type && c->kind && c->layer;
+}
+
+static void add_cell(cells *c, const int32_t *vertex, int corners, uint8_t type, cell_kind kind,
+                     int32_t layer)
+{
+	for (int i = 0; i < corners; i++)
+		c->corner[c->corner_count++] = vertex[i];
+	c->end[c->count] = c->corner_count;
+	c->type[c->count] = type;
+	c->kind[c->count] = (uint8_t)kind;
+	c->layer[c->count++] = layer;
+}
+
+static bool is_drawn(const cau_frame *frame, int32_t face)
+{
+	return !(frame->face_mask[face / 32] >> (face % 32) & 1u);
+}
+
+static bool fill_cells(const cau_session *session, const cau_session_info *info,
+                       const cau_frame *frame, cells *c)
+{
+	const uint8_t *tetrahedron, *triangle, *link;
+	if (!reserve_cells(c, (size_t)info->tetrahedron_count + (size_t)info->link_count +
+	                          (size_t)info->face_count))
+		return false;
+	cau_session_alive(session, &tetrahedron, &triangle, &link);
+	for (int32_t i = 0; i < info->tetrahedron_count; i++)
+		if (tetrahedron[i])
+			add_cell(c, info->tetrahedron + 4 * (size_t)i, 4, VTK_TETRA, CELL_TETRAHEDRON, -1);
+	for (int32_t i = 0; i < info->link_count; i++)
+		if (link[i])
+			add_cell(c, info->link + 2 * (size_t)i, 2, VTK_LINE, CELL_LINK, -1);
+	for (int32_t i = 0; i < info->face_count; i++) {
+		int32_t layer = info->face_layer[i];
+		if (info->layers[layer].kind != CAU_LAYER_FAT && is_drawn(frame, i))
+			add_cell(c, info->face + 3 * (size_t)i, 3, VTK_TRIANGLE, CELL_TRIANGLE, layer);
+	}
+	return true;
+}
+
+// ---- a file -----------------------------------------------------------------------------------
+
+typedef struct array {
+	const char *group; // opens this element before the array; NULL: the one that is open
+	const char *name, *type;
+	int components;
+	const void *data;
+	size_t bytes;
+} array;
+
+static void write_head(FILE *file, const array *arrays, int count, int64_t points,
+                       int64_t cell_count)
+{
+	const char *open = NULL;
+	uint64_t offset = 0;
+	fprintf(file,
+	        "<?xml version=\"1.0\"?>\n<VTKFile type=\"UnstructuredGrid\" version=\"1.0\" "
+	        "byte_order=\"LittleEndian\" header_type=\"UInt64\">\n<UnstructuredGrid>\n"
+	        "<Piece NumberOfPoints=\"%" PRId64 "\" NumberOfCells=\"%" PRId64 "\">\n",
+	        points, cell_count);
+	for (int i = 0; i < count; i++) {
+		if (arrays[i].group) {
+			if (open)
+				fprintf(file, "</%s>\n", open);
+			open = arrays[i].group;
+			fprintf(file, "<%s>\n", open);
+		}
+		fprintf(file,
+		        "<DataArray type=\"%s\" Name=\"%s\" NumberOfComponents=\"%d\" "
+		        "format=\"appended\" offset=\"%" PRIu64 "\"/>\n",
+		        arrays[i].type, arrays[i].name, arrays[i].components, offset);
+		offset += sizeof(uint64_t) + arrays[i].bytes;
+	}
+	if (open)
+		fprintf(file, "</%s>\n", open);
+	fputs("</Piece>\n</UnstructuredGrid>\n<AppendedData encoding=\"raw\">\n_", file);
+}
+
+static cau_status write_arrays(const char *path, const array *arrays, int count, int64_t points,
+                               int64_t cell_count, cau_error *error)
+{
+	FILE *file = fopen(path, "wb");
+	if (!file)
+		return fail_file(path, error);
+	write_head(file, arrays, count, points, cell_count);
+	for (int i = 0; i < count; i++) {
+		uint64_t bytes = arrays[i].bytes;
+		fwrite(&bytes, sizeof bytes, 1, file);
+		if (bytes > 0)
+			fwrite(arrays[i].data, 1, arrays[i].bytes, file);
+	}
+	fputs("\n</AppendedData>\n</VTKFile>\n", file);
+	bool failed = ferror(file) != 0;
+	if (fclose(file) != 0 || failed)
+		return fail_file(path, error);
+	return CAU_OK;
+}
+
+static cau_status write_grid(const char *path, const cau_session_info *info, const cau_frame *frame,
+                             const cells *c, cau_error *error)
+{
+	size_t n = (size_t)info->vertex_count, m = (size_t)c->count;
+	const array arrays[] = {
+		{"PointData", "velocity_m_s", "Float64", 3, frame->velocity, 24 * n},
+		{NULL, "exposure", "Float32", 1, frame->exposure, 4 * n},
+		{"CellData", "kind", "UInt8", 1, c->kind, m},
+		{NULL, "layer", "Int32", 1, c->layer, 4 * m},
+		{"Points", "position_m", "Float64", 3, frame->position, 24 * n},
+		{"Cells", "connectivity", "Int64", 1, c->corner, 8 * (size_t)c->corner_count},
+		{NULL, "offsets", "Int64", 1, c->end, 8 * m},
+		{NULL, "types", "UInt8", 1, c->type, m},
+	};
+	return write_arrays(path, arrays, (int)(sizeof arrays / sizeof *arrays), info->vertex_count,
+	                    c->count, error);
+}
+
+// ---- the series ---------------------------------------------------------------------------------
+
+cau_status sim_vtu_begin(const char *folder, sim_vtu *vtu, cau_error *error)
+{
+	*vtu = (sim_vtu){.folder = folder};
+	if (mkdir(folder, 0777) != 0 && errno != EEXIST)
+		return fail_file(folder, error);
+	return CAU_OK;
+}
+
+static cau_status remember(sim_vtu *vtu, const cau_frame *frame, cau_error *error)
+{
+	size_t count = (size_t)vtu->file_count + 1;
+	uint64_t *tick = realloc(vtu->tick, count * sizeof *tick);
+	if (tick)
+		vtu->tick = tick;
+	double *time_s = realloc(vtu->time_s, count * sizeof *time_s);
+	if (time_s)
+		vtu->time_s = time_s;
+	if (!tick || !time_s)
+		return cau_fail(error, CAU_NO_MEMORY, NULL, "no memory for the list of files");
+	vtu->tick[vtu->file_count] = frame->tick;
+	vtu->time_s[vtu->file_count++] = frame->time_s;
+	return CAU_OK;
+}
+
+cau_status sim_vtu_write(sim_vtu *vtu, const cau_session *session, cau_error *error)
+{
+	char name[64], path[PATH_BYTES];
+	cau_session_info info;
+	cau_frame frame;
+	cells c = {0};
+	cau_session_describe(session, &info);
+	cau_session_frame(session, &frame);
+	snprintf(name, sizeof name, "tissue-%08" PRIu64 ".vtu", frame.tick);
+	cau_status status = make_path(vtu, name, path, error);
+	if (!status && !fill_cells(session, &info, &frame, &c))
+		status = cau_fail(error, CAU_NO_MEMORY, NULL, "no memory for a file's cells");
+	if (!status)
+		status = write_grid(path, &info, &frame, &c, error);
+	if (!status)
+		status = remember(vtu, &frame, error);
+	finish_cells(&c);
+	return status;
+}
+
+cau_status sim_vtu_finish(sim_vtu *vtu, cau_error *error)
+{
+	char path[PATH_BYTES];
+	cau_status status = make_path(vtu, "cautery.pvd", path, error);
+	FILE *file = status ? NULL : fopen(path, "wb");
+	if (!status && !file)
+		status = fail_file(path, error);
+	if (file) {
+		fputs("<?xml version=\"1.0\"?>\n<VTKFile type=\"Collection\" version=\"0.1\">\n"
+		      "<Collection>\n",
+		      file);
+		for (int32_t i = 0; i < vtu->file_count; i++)
+			fprintf(file, "<DataSet timestep=\"%.9g\" file=\"tissue-%08" PRIu64 ".vtu\"/>\n",
+			        vtu->time_s[i], vtu->tick[i]);
+		fputs("</Collection>\n</VTKFile>\n", file);
+		if (fclose(file) != 0)
+			status = fail_file(path, error);
+	}
+	free(vtu->tick);
+	free(vtu->time_s);
+	return status;
+}

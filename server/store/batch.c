@@ -1,0 +1,299 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "batch.h"
+
+#include <stdlib.h>
+#include <string.h>
+
+cau_store_batch *cau_store_batch_create(void)
+{
+	return calloc(1, sizeof(cau_store_batch));
+}
+
+void cau_store_batch_destroy(cau_store_batch *batch)
+{
+	if (!batch)
+		return;
+	for (struct record *record = batch->first, *next; record; record = next) {
+		next = record->next;
+		free(record);
+	}
+	free(batch);
+}
+
+size_t cau_store_batch_bytes(const cau_store_batch *batch)
+{
+	return batch->bytes;
+}
+
+bool cau_store_record_request(const struct record *record, const char **client, uint64_t *sequence)
+{
+	if (record->kind == RECORD_COMMAND) {
+		*client = record->as.command.client;
+		*sequence = record->as.command.sequence;
+		return *client != NULL;
+	}
+	if (record->kind == RECORD_ANSWER) {
+		*client = record->as.answer.client;
+		*sequence = record->as.answer.sequence;
+		return true;
+	}
+	return false;
+}
+
+// ---- checks ---------------------------------------------------------------------------
+static cau_status check_text(const char *path, const char *text, bool required, cau_error *error)
+{
+	if (!text)
+		return required ? cau_fail(error, CAU_BAD_VALUE, path, "is missing") : CAU_OK;
+	if (required && !text[0])
+		return cau_fail(error, CAU_BAD_VALUE, path, "is empty");
+	if (strnlen(text, CAU_STORE_ID_BYTES) == CAU_STORE_ID_BYTES)
+		return cau_fail(error, CAU_BAD_VALUE, path, "is longer than %d bytes",
+		                CAU_STORE_ID_BYTES - 1);
+	return CAU_OK;
+}
+
+static cau_status check_blob(const char *path, cau_store_bytes blob, cau_error *error)
+{
+	if (blob.bytes && !blob.data)
+		return cau_fail(error, CAU_BAD_VALUE, path, "%zu bytes at no address", blob.bytes);
+	if (blob.bytes > CAU_STORE_BLOB_BYTES)
+		return cau_fail(error, CAU_LIMIT, path, "%zu bytes; at most %d", blob.bytes,
+		                CAU_STORE_BLOB_BYTES);
+	return CAU_OK;
+}
+
+// SQLite's integers are signed.
+static cau_status check_count(const char *path, uint64_t value, cau_error *error)
+{
+	if (value > INT64_MAX)
+		return cau_fail(error, CAU_BAD_VALUE, path, "%llu is above 2^63 - 1",
+		                (unsigned long long)value);
+	return CAU_OK;
+}
+
+static cau_status check_branch(const char *path, int64_t branch, int64_t lowest, cau_error *error)
+{
+	if (branch < lowest)
+		return cau_fail(error, CAU_BAD_VALUE, path, "branch %lld; at least %lld", (long long)branch,
+		                (long long)lowest);
+	return CAU_OK;
+}
+
+#define TRY(check)                                                                                 \
+	do {                                                                                           \
+		cau_status status = (check);                                                               \
+		if (status)                                                                                \
+			return status;                                                                         \
+	} while (0)
+
+// ---- copies ---------------------------------------------------------------------------
+static size_t text_bytes(const char *text)
+{
+	return text ? strlen(text) + 1 : 0;
+}
+
+static const char *copy_text(unsigned char **at, const char *text)
+{
+	if (!text)
+		return NULL;
+	char *copy = memcpy(*at, text, text_bytes(text));
+	*at += text_bytes(text);
+	return copy;
+}
+
+static cau_store_bytes copy_blob(unsigned char **at, cau_store_bytes blob)
+{
+	cau_store_bytes copy = {*at, blob.bytes};
+	if (blob.bytes)
+		memcpy(*at, blob.data, blob.bytes);
+	*at += blob.bytes;
+	return copy;
+}
+
+static const char *empty_as_null(const char *text)
+{
+	return text && text[0] ? text : NULL;
+}
+
+// Appends a record with room for `bytes` of copies; NULL if memory ran out.
+static struct record *append(cau_store_batch *batch, enum record_kind kind, size_t bytes,
+                             cau_error *error)
+{
+	struct record *record = calloc(1, sizeof *record + bytes);
+	if (!record) {
+		cau_fail(error, CAU_NO_MEMORY, NULL, "a record of %zu bytes", bytes);
+		return NULL;
+	}
+	record->kind = kind;
+	if (batch->last)
+		batch->last->next = record;
+	else
+		batch->first = record;
+	batch->last = record;
+	batch->bytes += sizeof *record + bytes;
+	batch->record_count++;
+	return record;
+}
+
+// ---- puts -----------------------------------------------------------------------------
+static cau_status append_session(cau_store_batch *batch, enum record_kind kind,
+                                 const cau_store_session *session, cau_error *error)
+{
+	size_t bytes = text_bytes(session->id) + text_bytes(session->name) +
+	               text_bytes(session->state) + session->definition.bytes + session->mesh.bytes;
+	struct record *record = append(batch, kind, bytes, error);
+	if (!record)
+		return CAU_NO_MEMORY;
+	unsigned char *at = record->storage;
+	cau_store_session *copy = &record->as.session;
+	copy->id = copy_text(&at, session->id);
+	copy->name = copy_text(&at, session->name);
+	copy->state = copy_text(&at, session->state);
+	copy->definition = copy_blob(&at, session->definition);
+	copy->mesh = copy_blob(&at, session->mesh);
+	copy->created_ms = session->created_ms;
+	return CAU_OK;
+}
+
+cau_status cau_store_put_session(cau_store_batch *batch, const cau_store_session *session,
+                                 cau_error *error)
+{
+	TRY(check_text("id", session->id, true, error));
+	TRY(check_text("name", session->name, true, error));
+	TRY(check_text("state", session->state, true, error));
+	TRY(check_blob("definition", session->definition, error));
+	TRY(check_blob("mesh", session->mesh, error));
+	if (session->branch)
+		return cau_fail(error, CAU_BAD_VALUE, "branch", "a session starts on branch 0");
+	return append_session(batch, RECORD_SESSION, session, error);
+}
+
+cau_status cau_store_put_session_state(cau_store_batch *batch, const char *session,
+                                       const char *state, cau_error *error)
+{
+	TRY(check_text("session", session, true, error));
+	TRY(check_text("state", state, true, error));
+	cau_store_session change = {.id = session, .state = state};
+	return append_session(batch, RECORD_SESSION_STATE, &change, error);
+}
+
+cau_status cau_store_delete_session(cau_store_batch *batch, const char *session, cau_error *error)
+{
+	TRY(check_text("session", session, true, error));
+	cau_store_session gone = {.id = session};
+	return append_session(batch, RECORD_SESSION_DELETE, &gone, error);
+}
+
+cau_status cau_store_put_command(cau_store_batch *batch, const cau_store_command *command,
+                                 cau_error *error)
+{
+	const char *client = empty_as_null(command->client);
+	TRY(check_text("session", command->session, true, error));
+	TRY(check_text("client", client, false, error));
+	TRY(check_branch("branch", command->branch, 0, error));
+	TRY(check_count("tick", command->tick, error));
+	TRY(check_count("sequence", command->sequence, error));
+	TRY(check_blob("payload", command->payload, error));
+	TRY(check_blob("result", command->result, error));
+	if (!client && command->result.bytes)
+		return cau_fail(error, CAU_BAD_VALUE, "result", "an answer to no client");
+
+	size_t bytes = text_bytes(command->session) + text_bytes(client) + command->payload.bytes +
+	               command->result.bytes;
+	struct record *record = append(batch, RECORD_COMMAND, bytes, error);
+	if (!record)
+		return CAU_NO_MEMORY;
+	unsigned char *at = record->storage;
+	cau_store_command *copy = &record->as.command;
+	*copy = *command;
+	copy->session = copy_text(&at, command->session);
+	copy->client = copy_text(&at, client);
+	copy->payload = copy_blob(&at, command->payload);
+	copy->result = copy_blob(&at, command->result);
+	return CAU_OK;
+}
+
+cau_status cau_store_put_answer(cau_store_batch *batch, const cau_store_answer *answer,
+                                cau_error *error)
+{
+	const char *session = empty_as_null(answer->session);
+	TRY(check_text("client", answer->client, true, error));
+	TRY(check_text("session", session, false, error));
+	TRY(check_count("sequence", answer->sequence, error));
+	TRY(check_blob("result", answer->result, error));
+
+	size_t bytes = text_bytes(answer->client) + text_bytes(session) + answer->result.bytes;
+	struct record *record = append(batch, RECORD_ANSWER, bytes, error);
+	if (!record)
+		return CAU_NO_MEMORY;
+	unsigned char *at = record->storage;
+	cau_store_answer *copy = &record->as.answer;
+	copy->sequence = answer->sequence;
+	copy->client = copy_text(&at, answer->client);
+	copy->session = copy_text(&at, session);
+	copy->result = copy_blob(&at, answer->result);
+	return CAU_OK;
+}
+
+cau_status cau_store_put_checkpoint(cau_store_batch *batch, const cau_store_checkpoint *checkpoint,
+                                    cau_error *error)
+{
+	TRY(check_text("session", checkpoint->session, true, error));
+	TRY(check_branch("branch", checkpoint->branch, 0, error));
+	TRY(check_count("tick", checkpoint->tick, error));
+	TRY(check_blob("snapshot", checkpoint->snapshot, error));
+
+	size_t bytes = text_bytes(checkpoint->session) + checkpoint->snapshot.bytes;
+	struct record *record = append(batch, RECORD_CHECKPOINT, bytes, error);
+	if (!record)
+		return CAU_NO_MEMORY;
+	unsigned char *at = record->storage;
+	cau_store_checkpoint *copy = &record->as.checkpoint;
+	*copy = *checkpoint;
+	copy->session = copy_text(&at, checkpoint->session);
+	copy->snapshot = copy_blob(&at, checkpoint->snapshot);
+	return CAU_OK;
+}
+
+cau_status cau_store_put_event(cau_store_batch *batch, const cau_store_event *event,
+                               cau_error *error)
+{
+	const char *session = empty_as_null(event->session);
+	TRY(check_text("session", session, false, error));
+	TRY(check_text("kind", event->kind, true, error));
+	TRY(check_count("tick", event->tick, error));
+	if (!event->text)
+		return cau_fail(error, CAU_BAD_VALUE, "text", "is missing");
+	TRY(check_blob("text", (cau_store_bytes){event->text, strlen(event->text)}, error));
+
+	size_t bytes = text_bytes(session) + text_bytes(event->kind) + text_bytes(event->text);
+	struct record *record = append(batch, RECORD_EVENT, bytes, error);
+	if (!record)
+		return CAU_NO_MEMORY;
+	unsigned char *at = record->storage;
+	cau_store_event *copy = &record->as.event;
+	*copy = *event;
+	copy->session = copy_text(&at, session);
+	copy->kind = copy_text(&at, event->kind);
+	copy->text = copy_text(&at, event->text);
+	return CAU_OK;
+}
+
+cau_status cau_store_put_branch(cau_store_batch *batch, const cau_store_branch *branch,
+                                cau_error *error)
+{
+	TRY(check_text("session", branch->session, true, error));
+	TRY(check_branch("branch", branch->branch, 1, error));
+	TRY(check_branch("parent", branch->parent, 0, error));
+	TRY(check_count("fork_tick", branch->fork_tick, error));
+
+	struct record *record = append(batch, RECORD_BRANCH, text_bytes(branch->session), error);
+	if (!record)
+		return CAU_NO_MEMORY;
+	unsigned char *at = record->storage;
+	cau_store_branch *copy = &record->as.branch;
+	*copy = *branch;
+	copy->session = copy_text(&at, branch->session);
+	return CAU_OK;
+}

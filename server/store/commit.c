@@ -1,0 +1,179 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "commit.h"
+
+#include <string.h>
+#include <sys/statvfs.h>
+
+#include "clock.h"
+#include "fault.h"
+#include "metrics.h"
+#include "queue.h"
+#include "retention.h"
+
+enum {
+	SPARE_BYTES = 1000000, // asked for on top of what failed, before a full store is tried again
+	FOLD_PATIENCE = 4,
+	CHORE_PAUSE_MS = 5, // between small steps of retention
+	MAX_FAILED_BYTES = 1 << 30,
+};
+
+// ---- one group ------------------------------------------------------------------------
+// The batch's own fault: it alone fails. Everything else is the disk's and fails the group.
+static bool is_own_fault(cau_status status)
+{
+	return status == CAU_ALREADY_EXISTS || status == CAU_NOT_FOUND || status == CAU_LIMIT ||
+	       status == CAU_BAD_VALUE;
+}
+
+static cau_status write_batch(struct cau_store *store, struct cau_store_batch *batch,
+                              int64_t now_ms, cau_error *error)
+{
+	cau_status status = cau_store_execute(store->writing, "SAVEPOINT batch", "writing", error);
+	for (const struct record *record = batch->first; record && !status; record = record->next)
+		status = cau_store_writer_apply(&store->writer, record, now_ms, error);
+	if (is_own_fault(status)) {
+		batch->error = *error;
+		status = cau_store_execute(store->writing, "ROLLBACK TO batch", "writing", error);
+	}
+	if (!status)
+		status = cau_store_execute(store->writing, "RELEASE batch", "writing", error);
+	return status;
+}
+
+static void roll_back(struct cau_store *store)
+{
+	// SQLite has done so itself after some failures.
+	if (!sqlite3_get_autocommit(store->writing))
+		sqlite3_exec(store->writing, "ROLLBACK", NULL, NULL, NULL);
+}
+
+// Writes and commits store->committing. Batches with a fault of their own have it in batch->error.
+static cau_status write_group(struct cau_store *store, cau_error *error)
+{
+	int64_t now_ms = store->config.wall_clock_ms();
+	int count = 0;
+	cau_status status = cau_store_execute(store->writing, "BEGIN IMMEDIATE", "writing", error);
+	for (struct cau_store_batch *batch = store->committing; batch && !status; batch = batch->next) {
+		status = write_batch(store, batch, now_ms, error);
+		count++;
+	}
+	double start_s = cau_store_monotonic_s();
+	if (!status)
+		status = cau_store_execute(store->writing, "COMMIT", "writing", error);
+	if (status)
+		roll_back(store);
+	else
+		cau_store_count_commit(store, count, cau_store_monotonic_s() - start_s);
+	return status;
+}
+
+// Nothing can be written: fails the group and all that waits, and takes no more.
+static void block(struct cau_store *store, const cau_error *error)
+{
+	uint64_t bytes = 0;
+	for (const struct cau_store_batch *batch = store->committing; batch; batch = batch->next)
+		bytes += batch->bytes;
+	store->wanted_bytes = (bytes < MAX_FAILED_BYTES ? bytes : MAX_FAILED_BYTES) + SPARE_BYTES;
+	store->retry_due_s = cau_store_monotonic_s() + 1e-3 * store->config.full_retry_ms;
+	cau_store_queue_set_state(
+		store, error->status == CAU_CORRUPT ? CAU_STORE_DAMAGED : CAU_STORE_FULL, error->reason);
+	for (struct cau_store_batch *batch = store->committing; batch; batch = batch->next)
+		batch->error = *error;
+}
+
+static void commit_group(struct cau_store *store)
+{
+	cau_error error = {0};
+	if (write_group(store, &error))
+		block(store, &error);
+	cau_store_queue_answer(store);
+}
+
+// ---- chores ---------------------------------------------------------------------------
+// Has the write-ahead log folded into the file once it is long, so that it starts over. Under
+// commits without a pause the folder's thread never gets to the log's end: from FOLD_PATIENCE times
+// the bound on, commits wait for a fold.
+static void fold_log(struct cau_store *store)
+{
+	double now_s = cau_store_monotonic_s();
+	size_t log_bytes = (size_t)store->wal_pages * store->page_bytes;
+	if (log_bytes < store->config.wal_bytes)
+		return;
+	cau_store_folder_ask(&store->folder);
+	if (log_bytes / FOLD_PATIENCE < store->config.wal_bytes || now_s < store->fold_due_s)
+		return;
+	if (!cau_store_folder_wait(&store->folder)) // not repeated at once
+		store->fold_due_s = cau_store_monotonic_s() + 1e-3 * store->config.full_retry_ms;
+}
+
+static void retire(struct cau_store *store)
+{
+	cau_error error = {0};
+	int64_t rows = 0;
+	int pause_ms = store->config.retention_interval_ms;
+	cau_status status = cau_store_retention_step(store->writing, &store->config, &rows, &error);
+	if (status == CAU_CORRUPT) {
+		block(store, &error);
+		cau_store_queue_answer(store);
+	}
+	if (!status && rows) {
+		pthread_mutex_lock(&store->mutex);
+		store->metrics.retired_rows += (uint64_t)rows;
+		pthread_mutex_unlock(&store->mutex);
+		pause_ms = CHORE_PAUSE_MS;
+	}
+	store->chore_due_s = cau_store_monotonic_s() + 1e-3 * pause_ms;
+}
+
+static bool has_room(const struct cau_store *store)
+{
+	struct statvfs disk;
+	return statvfs(store->path, &disk) == 0 &&
+	       (uint64_t)disk.f_bavail * disk.f_frsize >= store->wanted_bytes;
+}
+
+// One attempt while full. A commit that failed may have left the log long: folding gives that back.
+static void try_again(struct cau_store *store)
+{
+	cau_error error = {0};
+	char sql[128];
+	store->retry_due_s = cau_store_monotonic_s() + 1e-3 * store->config.full_retry_ms;
+	pthread_mutex_lock(&store->mutex);
+	store->metrics.full_attempts++;
+	pthread_mutex_unlock(&store->mutex);
+	sqlite3_wal_checkpoint_v2(store->writing, NULL, SQLITE_CHECKPOINT_TRUNCATE, NULL, NULL);
+	if (!has_room(store))
+		return;
+	snprintf(sql, sizeof sql, "REPLACE INTO meta VALUES('recovered_ms', %lld)",
+	         (long long)store->config.wall_clock_ms());
+	cau_status status = cau_store_execute(store->writing, sql, "trying again", &error);
+	if (status == CAU_CORRUPT)
+		cau_store_queue_set_state(store, CAU_STORE_DAMAGED, error.reason);
+	else if (!status)
+		cau_store_queue_set_state(store, CAU_STORE_READY, "");
+}
+
+void *cau_store_commit_run(void *context)
+{
+	struct cau_store *store = context;
+	for (;;) {
+		switch (cau_store_queue_await(store)) {
+		case TURN_GROUP:
+			commit_group(store);
+			break;
+		case TURN_CHORE:
+			break;
+		case TURN_END:
+			return NULL;
+		}
+		// The state changes on this thread only.
+		double now_s = cau_store_monotonic_s();
+		if (store->state == CAU_STORE_FULL && now_s >= store->retry_due_s)
+			try_again(store);
+		if (store->state != CAU_STORE_READY)
+			continue;
+		fold_log(store);
+		if (now_s >= store->chore_due_s)
+			retire(store);
+	}
+}

@@ -1,0 +1,120 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "file.h"
+
+#include <errno.h>
+#include <fcntl.h>
+#include <stdint.h>
+#include <string.h>
+#include <unistd.h>
+
+#include "fault.h"
+#include "migrate.h"
+
+enum { BUSY_MS = 2000 }; // patience with an operator's sqlite3 that holds the write lock
+
+static cau_status open_connection(const char *path, int flags, sqlite3 **database, cau_error *error)
+{
+	int code = sqlite3_open_v2(path, database, flags, NULL);
+	if (code) {
+		cau_status status = cau_store_fault(*database, code, "opening it", error);
+		sqlite3_close(*database);
+		*database = NULL;
+		return status;
+	}
+	sqlite3_extended_result_codes(*database, 1);
+	sqlite3_busy_timeout(*database, BUSY_MS);
+	return CAU_OK;
+}
+
+static cau_status set_wal(sqlite3 *database, cau_error *error)
+{
+	sqlite3_stmt *statement = NULL;
+	cau_status status = CAU_OK;
+	int code = sqlite3_prepare_v2(database, "PRAGMA journal_mode = WAL", -1, &statement, NULL);
+	if (!code)
+		code = sqlite3_step(statement);
+	if (code != SQLITE_ROW)
+		status = cau_store_fault(database, code, "setting the journal mode", error);
+	else if (strcmp((const char *)sqlite3_column_text(statement, 0), "wal") != 0)
+		status = cau_fail(error, CAU_IO, NULL, "the file system allows no write-ahead log");
+	sqlite3_finalize(statement);
+	return status;
+}
+
+static cau_status sync_folder(const char *path, cau_error *error)
+{
+	char folder[4096];
+	snprintf(folder, sizeof folder, "%s", path);
+	char *slash = strrchr(folder, '/');
+	if (slash)
+		slash[slash == folder] = 0;
+	else
+		strcpy(folder, ".");
+	int descriptor = open(folder, O_RDONLY | O_DIRECTORY | O_CLOEXEC);
+	int code = descriptor < 0 ? -1 : fsync(descriptor);
+	int reason = errno;
+	if (descriptor >= 0)
+		close(descriptor);
+	if (code)
+		return cau_fail(error, CAU_IO, NULL, "cannot sync its folder: %s", strerrordesc_np(reason));
+	return CAU_OK;
+}
+
+// Builds a whole store at `draft`, an empty file.
+static cau_status build(const char *draft, cau_error *error)
+{
+	sqlite3 *database;
+	cau_status status =
+		open_connection(draft, SQLITE_OPEN_READWRITE | SQLITE_OPEN_NOMUTEX, &database, error);
+	if (status)
+		return status;
+	status = cau_store_migrate(database, error);
+	if (!status)
+		status = set_wal(database, error); // written into the header; folded by the close
+	sqlite3_close(database);
+	return status;
+}
+
+cau_status cau_store_file_create(const char *path, cau_error *error)
+{
+	char draft[4200];
+	snprintf(draft, sizeof draft, "%s-new-%ld", path, (long)getpid());
+	int descriptor = open(draft, O_RDWR | O_CREAT | O_TRUNC | O_CLOEXEC, 0600);
+	if (descriptor < 0)
+		return cau_fail(error, CAU_IO, NULL, "cannot make it: %s", strerrordesc_np(errno));
+	close(descriptor);
+	cau_status status = build(draft, error);
+	if (!status && link(draft, path))
+		status = cau_fail(error, CAU_IO, NULL, "cannot make it: %s", strerrordesc_np(errno));
+	unlink(draft);
+	return status ? status : sync_folder(path, error);
+}
+
+cau_status cau_store_file_open(const char *path, size_t wal_bytes, sqlite3 **database,
+                               cau_error *error)
+{
+	char sql[320];
+	cau_status status =
+		open_connection(path, SQLITE_OPEN_READWRITE | SQLITE_OPEN_NOMUTEX, database, error);
+	if (status)
+		return status;
+	status = set_wal(*database, error);
+	// Debian's SQLite overwrites what it deletes; here that would double the cost of retention.
+	snprintf(sql, sizeof sql,
+	         "PRAGMA synchronous = FULL; PRAGMA wal_autocheckpoint = 0; PRAGMA secure_delete = OFF;"
+	         "PRAGMA temp_store = MEMORY; PRAGMA cache_size = -16000; PRAGMA trusted_schema = OFF;"
+	         "PRAGMA journal_size_limit = %lld",
+	         (long long)wal_bytes);
+	if (!status)
+		status = cau_store_execute(*database, sql, "setting up the connection", error);
+	if (status) {
+		sqlite3_close(*database);
+		*database = NULL;
+	}
+	return status;
+}
+
+cau_status cau_store_file_open_reader(const char *path, sqlite3 **database, cau_error *error)
+{
+	return open_connection(path, SQLITE_OPEN_READONLY | SQLITE_OPEN_NOMUTEX, database, error);
+}

@@ -1,0 +1,476 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Synchronous reads on a connection of their own: in WAL they neither wait for commits nor hold
+// them up.
+#include <stdlib.h>
+#include <string.h>
+
+#include "fault.h"
+#include "store_state.h"
+
+enum {
+	PIECE_ROWS = 256,      // commands read at once
+	PIECE_BYTES = 1 << 20, // and their bytes, about
+	MAX_DEPTH = 100000,    // branches from one to its root; more is damage
+};
+
+// ---- small pieces ---------------------------------------------------------------------
+static cau_status prepare(cau_store *store, const char *sql, sqlite3_stmt **statement,
+                          cau_error *error)
+{
+	int code = sqlite3_prepare_v2(store->reading, sql, -1, statement, NULL);
+	return code ? cau_store_fault(store->reading, code, "reading", error) : CAU_OK;
+}
+
+// Advances to the next row. CAU_NOT_FOUND (without a report) at the end.
+static cau_status next_row(cau_store *store, sqlite3_stmt *statement, cau_error *error)
+{
+	int code = sqlite3_step(statement);
+	if (code == SQLITE_ROW)
+		return CAU_OK;
+	return code == SQLITE_DONE ? CAU_NOT_FOUND
+	                           : cau_store_fault(store->reading, code, "reading", error);
+}
+
+static cau_status end_is_fine(cau_status status)
+{
+	return status == CAU_NOT_FOUND ? CAU_OK : status;
+}
+
+static cau_store_bytes column_blob(sqlite3_stmt *statement, int column)
+{
+	cau_store_bytes blob = {.data = sqlite3_column_blob(statement, column)};
+	blob.bytes = (size_t)sqlite3_column_bytes(statement, column);
+	return blob;
+}
+
+static const char *column_text(sqlite3_stmt *statement, int column)
+{
+	return (const char *)sqlite3_column_text(statement, column);
+}
+
+static cau_status find_session(cau_store *store, const char *id, int64_t *key, cau_error *error)
+{
+	sqlite3_stmt *statement = NULL;
+	cau_status status =
+		prepare(store, "SELECT key FROM sessions WHERE id = ?1 AND deleted = 0", &statement, error);
+	if (!status) {
+		sqlite3_bind_text(statement, 1, id, -1, SQLITE_STATIC);
+		status = next_row(store, statement, error);
+	}
+	if (!status)
+		*key = sqlite3_column_int64(statement, 0);
+	else if (status == CAU_NOT_FOUND)
+		cau_fail(error, status, "session", "no session '%s'", id);
+	sqlite3_finalize(statement);
+	return status;
+}
+
+// ---- sessions -------------------------------------------------------------------------
+static void fill_session(sqlite3_stmt *statement, cau_store_session *session)
+{
+	session->id = column_text(statement, 0);
+	session->name = column_text(statement, 1);
+	session->state = column_text(statement, 2);
+	session->branch = sqlite3_column_int64(statement, 3);
+	session->created_ms = sqlite3_column_int64(statement, 4);
+	session->definition = column_blob(statement, 5);
+	session->mesh = column_blob(statement, 6);
+}
+
+cau_status cau_store_read_sessions(cau_store *store, cau_store_visit_session visit, void *user,
+                                   cau_error *error)
+{
+	sqlite3_stmt *statement = NULL;
+	cau_store_session session;
+	pthread_mutex_lock(&store->reading_mutex);
+	cau_status status = prepare(store,
+	                            "SELECT id, name, state, branch, created_ms, definition, x''"
+	                            " FROM sessions WHERE deleted = 0 ORDER BY key",
+	                            &statement, error);
+	cau_status visited = CAU_OK;
+	while (!status && !visited && !(status = next_row(store, statement, error))) {
+		fill_session(statement, &session);
+		visited = visit(user, &session);
+	}
+	sqlite3_finalize(statement);
+	pthread_mutex_unlock(&store->reading_mutex);
+	return visited ? visited : end_is_fine(status);
+}
+
+cau_status cau_store_read_session(cau_store *store, const char *id, cau_store_visit_session visit,
+                                  void *user, cau_error *error)
+{
+	sqlite3_stmt *statement = NULL;
+	cau_store_session session;
+	pthread_mutex_lock(&store->reading_mutex);
+	cau_status status = prepare(store,
+	                            "SELECT id, name, state, branch, created_ms, definition, mesh"
+	                            " FROM sessions WHERE id = ?1 AND deleted = 0",
+	                            &statement, error);
+	if (!status) {
+		sqlite3_bind_text(statement, 1, id, -1, SQLITE_STATIC);
+		status = next_row(store, statement, error);
+		if (status == CAU_NOT_FOUND)
+			cau_fail(error, status, "session", "no session '%s'", id);
+	}
+	if (!status) {
+		fill_session(statement, &session);
+		status = visit(user, &session);
+	}
+	sqlite3_finalize(statement);
+	pthread_mutex_unlock(&store->reading_mutex);
+	return status;
+}
+
+// ---- branches, events, clients --------------------------------------------------------
+cau_status cau_store_read_branches(cau_store *store, const char *session,
+                                   cau_store_visit_branch visit, void *user, cau_error *error)
+{
+	sqlite3_stmt *statement = NULL;
+	int64_t key;
+	cau_status visited = CAU_OK;
+	pthread_mutex_lock(&store->reading_mutex);
+	cau_status status = find_session(store, session, &key, error);
+	cau_status found = status;
+	if (!status)
+		status = prepare(store,
+		                 "SELECT branch, parent, fork_tick, opened_ms, left_ms, end_tick"
+		                 " FROM branches WHERE session = ?1 ORDER BY branch",
+		                 &statement, error);
+	if (!status)
+		sqlite3_bind_int64(statement, 1, key);
+	while (!status && !visited && !(status = next_row(store, statement, error))) {
+		cau_store_branch branch = {
+			.session = session,
+			.branch = sqlite3_column_int64(statement, 0),
+			.parent = sqlite3_column_int64(statement, 1),
+			.fork_tick = (uint64_t)sqlite3_column_int64(statement, 2),
+			.opened_ms = sqlite3_column_int64(statement, 3),
+			.left_ms = sqlite3_column_int64(statement, 4),
+			.end_tick = (uint64_t)sqlite3_column_int64(statement, 5),
+		};
+		visited = visit(user, &branch);
+	}
+	sqlite3_finalize(statement);
+	pthread_mutex_unlock(&store->reading_mutex);
+	return found ? found : visited ? visited : end_is_fine(status);
+}
+
+cau_status cau_store_read_events(cau_store *store, const char *session, int32_t count,
+                                 cau_store_visit_event visit, void *user, cau_error *error)
+{
+	sqlite3_stmt *statement = NULL;
+	int64_t key = 0;
+	cau_status visited = CAU_OK;
+	pthread_mutex_lock(&store->reading_mutex);
+	cau_status status = session ? find_session(store, session, &key, error) : CAU_OK;
+	cau_status found = status;
+	if (!status)
+		status = prepare(store,
+		                 "SELECT tick, level, kind, text, time_ms FROM events WHERE session = ?1"
+		                 " ORDER BY key DESC LIMIT ?2",
+		                 &statement, error);
+	if (!status) {
+		sqlite3_bind_int64(statement, 1, key);
+		sqlite3_bind_int64(statement, 2, count > 0 ? count : 0);
+	}
+	while (!status && !visited && !(status = next_row(store, statement, error))) {
+		cau_store_event event = {
+			.session = session,
+			.tick = (uint64_t)sqlite3_column_int64(statement, 0),
+			.level = sqlite3_column_int(statement, 1),
+			.kind = column_text(statement, 2),
+			.text = column_text(statement, 3),
+			.time_ms = sqlite3_column_int64(statement, 4),
+		};
+		visited = visit(user, &event);
+	}
+	sqlite3_finalize(statement);
+	pthread_mutex_unlock(&store->reading_mutex);
+	return found ? found : visited ? visited : end_is_fine(status);
+}
+
+cau_status cau_store_read_clients(cau_store *store, const char *session,
+                                  cau_store_visit_client visit, void *user, cau_error *error)
+{
+	sqlite3_stmt *statement = NULL;
+	int64_t key;
+	cau_status visited = CAU_OK;
+	pthread_mutex_lock(&store->reading_mutex);
+	cau_status status = find_session(store, session, &key, error);
+	cau_status found = status;
+	if (!status)
+		status = prepare(store,
+		                 "SELECT client, sequence FROM clients WHERE session = ?1 ORDER BY client",
+		                 &statement, error);
+	if (!status)
+		sqlite3_bind_int64(statement, 1, key);
+	while (!status && !visited && !(status = next_row(store, statement, error)))
+		visited =
+			visit(user, column_text(statement, 0), (uint64_t)sqlite3_column_int64(statement, 1));
+	sqlite3_finalize(statement);
+	pthread_mutex_unlock(&store->reading_mutex);
+	return found ? found : visited ? visited : end_is_fine(status);
+}
+
+// ---- what a branch sees ---------------------------------------------------------------
+// A stretch of the line from a branch to the root: the branch, and where the next one forks from
+// it.
+struct stretch {
+	int64_t branch;
+	int64_t from_tick, before_tick;
+};
+
+// The branch's parent (-1: none) and fork tick. CAU_NOT_FOUND.
+static cau_status find_branch(cau_store *store, int64_t key, int64_t branch, int64_t *parent,
+                              int64_t *fork_tick, cau_error *error)
+{
+	sqlite3_stmt *statement = NULL;
+	cau_status status =
+		prepare(store, "SELECT parent, fork_tick FROM branches WHERE session = ?1 AND branch = ?2",
+	            &statement, error);
+	if (!status) {
+		sqlite3_bind_int64(statement, 1, key);
+		sqlite3_bind_int64(statement, 2, branch);
+		status = next_row(store, statement, error);
+	}
+	if (status == CAU_NOT_FOUND)
+		cau_fail(error, status, "branch", "no branch %lld", (long long)branch);
+	if (!status) {
+		*parent = sqlite3_column_int64(statement, 0);
+		*fork_tick = sqlite3_column_int64(statement, 1);
+	}
+	sqlite3_finalize(statement);
+	return status;
+}
+
+// Fills *line (free()d by the caller) from the branch up to the root, each stretch later than the
+// next.
+static cau_status find_line(cau_store *store, int64_t key, int64_t branch, struct stretch **line,
+                            int *count, cau_error *error)
+{
+	int64_t before_tick = INT64_MAX, parent = -1;
+	int capacity = 0;
+	*line = NULL;
+	*count = 0;
+	for (; branch >= 0; branch = parent) {
+		if (*count == MAX_DEPTH)
+			return cau_fail(error, CAU_CORRUPT, NULL, "branches form a circle");
+		if (*count == capacity) {
+			capacity = capacity ? 2 * capacity : 16;
+			struct stretch *grown = realloc(*line, (size_t)capacity * sizeof **line);
+			if (!grown)
+				return cau_fail(error, CAU_NO_MEMORY, NULL, "%d branches", capacity);
+			*line = grown;
+		}
+		struct stretch *stretch = &(*line)[*count];
+		cau_status status = find_branch(store, key, branch, &parent, &stretch->from_tick, error);
+		if (status)
+			return status;
+		stretch->branch = branch;
+		stretch->before_tick = before_tick;
+		before_tick = stretch->from_tick;
+		++*count;
+	}
+	return CAU_OK;
+}
+
+cau_status cau_store_read_checkpoint(cau_store *store, const char *session, int64_t branch,
+                                     uint64_t tick, cau_store_visit_checkpoint visit, void *user,
+                                     cau_error *error)
+{
+	sqlite3_stmt *statement = NULL;
+	struct stretch *line = NULL;
+	int count = 0;
+	int64_t key, newest = tick < INT64_MAX ? (int64_t)tick : INT64_MAX;
+	cau_store_checkpoint checkpoint = {.session = session};
+	pthread_mutex_lock(&store->reading_mutex);
+	cau_status status = find_session(store, session, &key, error);
+	if (!status)
+		status = find_line(store, key, branch, &line, &count, error);
+	if (!status)
+		status = prepare(store,
+		                 "SELECT tick, hash, snapshot FROM checkpoints WHERE session = ?1"
+		                 " AND branch = ?2 AND tick <= ?3 ORDER BY tick DESC LIMIT 1",
+		                 &statement, error);
+	if (status)
+		goto out;
+	status = CAU_NOT_FOUND;
+	for (int i = 0; i < count && status == CAU_NOT_FOUND; i++) {
+		if (line[i].before_tick < newest)
+			newest = line[i].before_tick; // a checkpoint at the fork itself is shared
+		checkpoint.branch = line[i].branch;
+		sqlite3_reset(statement);
+		sqlite3_bind_int64(statement, 1, key);
+		sqlite3_bind_int64(statement, 2, line[i].branch);
+		sqlite3_bind_int64(statement, 3, newest);
+		status = next_row(store, statement, error);
+	}
+	if (status == CAU_NOT_FOUND)
+		cau_fail(error, status, "tick", "no checkpoint at or before tick %llu",
+		         (unsigned long long)tick);
+	if (status)
+		goto out;
+	checkpoint.tick = (uint64_t)sqlite3_column_int64(statement, 0);
+	checkpoint.hash = (uint64_t)sqlite3_column_int64(statement, 1);
+	checkpoint.snapshot = column_blob(statement, 2);
+	status = visit(user, &checkpoint);
+out:
+	sqlite3_finalize(statement);
+	pthread_mutex_unlock(&store->reading_mutex);
+	free(line);
+	return status;
+}
+
+// ---- the log --------------------------------------------------------------------------
+// Where the next piece of a stretch starts.
+struct cursor {
+	int64_t tick, position;
+};
+
+// Copies one piece of a stretch into `piece` and moves the cursor behind it. *more: there may be
+// another.
+static cau_status read_piece(cau_store *store, int64_t key, const char *session,
+                             const struct stretch *stretch, struct cursor *cursor,
+                             cau_store_batch *piece, bool *more, cau_error *error)
+{
+	sqlite3_stmt *statement = NULL;
+	int rows = 0;
+	cau_status status = prepare(store,
+	                            "SELECT tick, position, kind, client, sequence, payload"
+	                            " FROM commands WHERE session = ?1 AND branch = ?2"
+	                            " AND (tick, position) >= (?3, ?4) AND tick < ?5"
+	                            " ORDER BY tick, position LIMIT 256",
+	                            &statement, error);
+	const int64_t parameter[] = {key, stretch->branch, cursor->tick, cursor->position,
+	                             stretch->before_tick};
+	for (int i = 0; !status && i < 5; i++)
+		sqlite3_bind_int64(statement, i + 1, parameter[i]);
+	while (!status && cau_store_batch_bytes(piece) < PIECE_BYTES) {
+		status = next_row(store, statement, error);
+		if (status)
+			break;
+		cau_store_command command = {
+			.session = session,
+			.branch = stretch->branch,
+			.tick = (uint64_t)sqlite3_column_int64(statement, 0),
+			.order = (uint32_t)sqlite3_column_int64(statement, 1),
+			.kind = sqlite3_column_int(statement, 2),
+			.client = column_text(statement, 3),
+			.sequence = (uint64_t)sqlite3_column_int64(statement, 4),
+			.payload = column_blob(statement, 5),
+		};
+		cursor->tick = (int64_t)command.tick;
+		cursor->position = (int64_t)command.order + 1;
+		rows++;
+		status = cau_store_put_command(piece, &command, error);
+	}
+	*more = status != CAU_NOT_FOUND || rows == PIECE_ROWS;
+	sqlite3_finalize(statement);
+	return end_is_fine(status);
+}
+
+static cau_status read_stretch(cau_store *store, int64_t key, const char *session,
+                               const struct stretch *stretch, cau_store_visit_command visit,
+                               void *user, cau_error *error)
+{
+	struct cursor cursor = {stretch->from_tick, 0};
+	cau_status status = CAU_OK;
+	for (bool more = true; more && !status;) {
+		cau_store_batch *piece = cau_store_batch_create();
+		if (!piece)
+			return cau_fail(error, CAU_NO_MEMORY, NULL, "reading the log");
+		pthread_mutex_lock(&store->reading_mutex);
+		status = read_piece(store, key, session, stretch, &cursor, piece, &more, error);
+		pthread_mutex_unlock(&store->reading_mutex);
+		for (const struct record *record = piece->first; record && !status; record = record->next)
+			status = visit(user, &record->as.command);
+		cau_store_batch_destroy(piece);
+	}
+	return status;
+}
+
+cau_status cau_store_read_log(cau_store *store, const char *session, int64_t branch,
+                              uint64_t from_tick, uint64_t before_tick,
+                              cau_store_visit_command visit, void *user, cau_error *error)
+{
+	struct stretch *line = NULL;
+	int count = 0;
+	int64_t key;
+	int64_t from = from_tick < INT64_MAX ? (int64_t)from_tick : INT64_MAX;
+	int64_t before = before_tick < INT64_MAX ? (int64_t)before_tick : INT64_MAX;
+	pthread_mutex_lock(&store->reading_mutex);
+	cau_status status = find_session(store, session, &key, error);
+	if (!status)
+		status = find_line(store, key, branch, &line, &count, error);
+	pthread_mutex_unlock(&store->reading_mutex);
+	for (int i = count - 1; i >= 0 && !status; i--) {
+		if (line[i].from_tick < from)
+			line[i].from_tick = from;
+		if (line[i].before_tick > before)
+			line[i].before_tick = before;
+		if (line[i].from_tick < line[i].before_tick)
+			status = read_stretch(store, key, session, &line[i], visit, user, error);
+	}
+	free(line);
+	return status;
+}
+
+// ---- answers --------------------------------------------------------------------------
+// Called with the queue's mutex held.
+static bool list_answers(const struct cau_store_batch *batch, const char *client, uint64_t sequence)
+{
+	for (; batch; batch = batch->next) {
+		for (const struct record *record = batch->first; record; record = record->next) {
+			const char *name;
+			uint64_t number;
+			if (cau_store_record_request(record, &name, &number) && number == sequence &&
+			    strcmp(name, client) == 0)
+				return true;
+		}
+	}
+	return false;
+}
+
+static bool is_pending(cau_store *store, const char *client, uint64_t sequence)
+{
+	pthread_mutex_lock(&store->mutex);
+	bool pending = list_answers(store->committing, client, sequence) ||
+	               list_answers(store->first, client, sequence);
+	pthread_mutex_unlock(&store->mutex);
+	return pending;
+}
+
+cau_status cau_store_read_answer(cau_store *store, const char *client, uint64_t sequence,
+                                 cau_store_visit_answer visit, void *user, cau_error *error)
+{
+	sqlite3_stmt *statement = NULL;
+	// The queue first: what leaves it meanwhile is in the database.
+	if (is_pending(store, client, sequence))
+		return cau_fail(error, CAU_BAD_STATE, "sequence", "request %llu is being stored",
+		                (unsigned long long)sequence);
+	pthread_mutex_lock(&store->reading_mutex);
+	cau_status status =
+		prepare(store, "SELECT session, result FROM answers WHERE client = ?1 AND sequence = ?2",
+	            &statement, error);
+	if (!status) {
+		sqlite3_bind_text(statement, 1, client, -1, SQLITE_STATIC);
+		sqlite3_bind_int64(statement, 2, (int64_t)sequence);
+		status = next_row(store, statement, error);
+	}
+	if (status == CAU_NOT_FOUND)
+		cau_fail(error, status, "sequence", "no answer to request %llu of '%s'",
+		         (unsigned long long)sequence, client);
+	if (!status) {
+		cau_store_answer answer = {
+			.client = client,
+			.sequence = sequence,
+			.session = column_text(statement, 0),
+			.result = column_blob(statement, 1),
+		};
+		status = visit(user, &answer);
+	}
+	sqlite3_finalize(statement);
+	pthread_mutex_unlock(&store->reading_mutex);
+	return status;
+}

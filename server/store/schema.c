@@ -1,0 +1,51 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "schema.h"
+
+// Ticks, sequences and hashes are stored as signed 64-bit integers with the same bits. Times are
+// Unix milliseconds. `session` is sessions.key, so that an id is free again once its session is
+// deleted.
+static const char first_step[] =
+	"CREATE TABLE meta(name TEXT PRIMARY KEY, value) WITHOUT ROWID;"
+
+	// deleted: the rows of this session are being removed in small steps.
+	"CREATE TABLE sessions(key INTEGER PRIMARY KEY, id TEXT NOT NULL, name TEXT NOT NULL,"
+	" state TEXT NOT NULL, branch INTEGER NOT NULL, created_ms INTEGER NOT NULL,"
+	" deleted INTEGER NOT NULL DEFAULT 0, definition BLOB NOT NULL, mesh BLOB NOT NULL);"
+	"CREATE UNIQUE INDEX session_by_id ON sessions(id) WHERE deleted = 0;"
+
+	// bytes: of the commands and checkpoints on this branch. end_tick: retention has removed the
+    // commands from there on.
+	"CREATE TABLE branches(session INTEGER NOT NULL, branch INTEGER NOT NULL,"
+	" parent INTEGER NOT NULL, fork_tick INTEGER NOT NULL, opened_ms INTEGER NOT NULL,"
+	" left_ms INTEGER NOT NULL DEFAULT 0, bytes INTEGER NOT NULL DEFAULT 0,"
+	" end_tick INTEGER NOT NULL DEFAULT 9223372036854775807,"
+	" PRIMARY KEY(session, branch)) WITHOUT ROWID;"
+
+	"CREATE TABLE commands(session INTEGER NOT NULL, branch INTEGER NOT NULL, tick INTEGER NOT "
+	"NULL,"
+	" position INTEGER NOT NULL, kind INTEGER NOT NULL, client TEXT, sequence INTEGER,"
+	" payload BLOB NOT NULL, PRIMARY KEY(session, branch, tick, position)) WITHOUT ROWID;"
+
+	"CREATE TABLE checkpoints(session INTEGER NOT NULL, branch INTEGER NOT NULL,"
+	" tick INTEGER NOT NULL, hash INTEGER NOT NULL, bytes INTEGER NOT NULL,"
+	" snapshot BLOB NOT NULL, PRIMARY KEY(session, branch, tick));"
+
+	// session 0: the daemon's own.
+	"CREATE TABLE events(key INTEGER PRIMARY KEY, session INTEGER NOT NULL, tick INTEGER NOT NULL,"
+	" level INTEGER NOT NULL, time_ms INTEGER NOT NULL, kind TEXT NOT NULL, text TEXT NOT NULL);"
+	"CREATE INDEX event_by_session ON events(session, key);"
+
+	// Outlives its session: a resent request to destroy it still gets its answer.
+	"CREATE TABLE answers(client TEXT NOT NULL, sequence INTEGER NOT NULL, time_ms INTEGER NOT "
+	"NULL,"
+	" session TEXT, result BLOB NOT NULL, PRIMARY KEY(client, sequence)) WITHOUT ROWID;"
+	"CREATE INDEX answer_by_time ON answers(time_ms);";
+
+// Who has driven a session, without a walk through its log.
+static const char second_step[] =
+	"CREATE TABLE clients(session INTEGER NOT NULL, client TEXT NOT NULL,"
+	" sequence INTEGER NOT NULL, PRIMARY KEY(session, client)) WITHOUT ROWID;"
+	"INSERT INTO clients SELECT session, client, max(sequence) FROM commands"
+	" WHERE client IS NOT NULL GROUP BY session, client;";
+
+const char *const cau_store_schema_steps[CAU_STORE_SCHEMA_VERSION] = {first_step, second_step};

@@ -1,0 +1,9 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// The tables, as the steps that make them: step i takes schema version i to i + 1. A new store runs
+// them all; an older one runs what it lacks. A step that has been released is never changed.
+#pragma once
+
+#define CAU_STORE_APPLICATION_ID 0x43617574 // "Caut", SQLite's application_id
+#define CAU_STORE_SCHEMA_VERSION 2          // SQLite's user_version
+
+extern const char *const cau_store_schema_steps[CAU_STORE_SCHEMA_VERSION];

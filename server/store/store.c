@@ -1,0 +1,279 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Opens and closes the store.
+#include <libgen.h>
+#include <limits.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "clock.h"
+#include "commit.h"
+#include "fault.h"
+#include "file.h"
+#include "migrate.h"
+#include "probe.h"
+#include "store_state.h"
+
+static const int64_t hour_ms = 3600000;
+
+static int64_t system_clock_ms(void)
+{
+	struct timespec now;
+	clock_gettime(CLOCK_REALTIME, &now);
+	return (int64_t)now.tv_sec * 1000 + now.tv_nsec / 1000000;
+}
+
+cau_store_config cau_store_default_config(void)
+{
+	return (cau_store_config){
+		.commit_delay_ms = 5,
+		.queue_batches = 4096,
+		.queue_bytes = 256000000,
+		.full_retry_ms = 1000,
+		.retention_bytes = 1000000000,
+		.retention_age_ms = 24 * hour_ms,
+		.answer_age_ms = 24 * hour_ms,
+		.event_age_ms = 30 * 24 * hour_ms,
+		.retention_interval_ms = 10000,
+		.wal_bytes = 16000000,
+		.wall_clock_ms = system_clock_ms,
+	};
+}
+
+const char *cau_store_state_name(cau_store_state state)
+{
+	static const char *const names[] = {
+#define X(code, name) name,
+		CAU_STORE_STATE_TABLE(X)
+#undef X
+	};
+	return (unsigned)state < CAU_STORE_STATE_COUNT ? names[state] : "unknown";
+}
+
+// ---- configuration --------------------------------------------------------------------
+static cau_status check_range(const char *path, int64_t value, int64_t least, int64_t most,
+                              cau_error *error)
+{
+	if (value < least || value > most)
+		return cau_fail(error, CAU_BAD_VALUE, path, "%lld; %lld to %lld", (long long)value,
+		                (long long)least, (long long)most);
+	return CAU_OK;
+}
+
+static cau_status check_config(const cau_store_config *config, cau_error *error)
+{
+	const struct {
+		const char *path;
+		int64_t value, least, most;
+	} ranges[] = {
+		{"commit_delay_ms", config->commit_delay_ms, 0, 10},
+		{"queue_batches", config->queue_batches, 1, INT32_MAX},
+		{"queue_bytes", (int64_t)config->queue_bytes, 1, INT64_MAX},
+		{"full_retry_ms", config->full_retry_ms, 1, INT32_MAX},
+		{"retention_bytes", config->retention_bytes, 0, INT64_MAX},
+		{"retention_age_ms", config->retention_age_ms, 0, INT64_MAX},
+		{"answer_age_ms", config->answer_age_ms, 0, INT64_MAX},
+		{"event_age_ms", config->event_age_ms, 0, INT64_MAX},
+		{"retention_interval_ms", config->retention_interval_ms, 1, INT32_MAX},
+		{"wal_bytes", (int64_t)config->wal_bytes, 0, INT64_MAX},
+	};
+	if (!config->path || !config->path[0])
+		return cau_fail(error, CAU_BAD_VALUE, "path", "is missing");
+	if (config->label && strnlen(config->label, CAU_STORE_ID_BYTES) == CAU_STORE_ID_BYTES)
+		return cau_fail(error, CAU_BAD_VALUE, "label", "is longer than %d bytes",
+		                CAU_STORE_ID_BYTES - 1);
+	for (size_t i = 0; i < sizeof ranges / sizeof *ranges; i++) {
+		cau_status status =
+			check_range(ranges[i].path, ranges[i].value, ranges[i].least, ranges[i].most, error);
+		if (status)
+			return status;
+	}
+	return CAU_OK;
+}
+
+// One name for one file, however it was given: links followed, absolute. The file need not be
+// there.
+static cau_status find_path(const char *given, char path[4096], cau_error *error)
+{
+	char folder[PATH_MAX], resolved[PATH_MAX], name[PATH_MAX];
+	if (strlen(given) >= sizeof folder)
+		return cau_fail(error, CAU_BAD_VALUE, "path", "is too long");
+	if (realpath(given, resolved)) {
+		snprintf(path, 4096, "%s", resolved);
+		return CAU_OK;
+	}
+	strcpy(folder, given);
+	strcpy(name, given);
+	if (!realpath(dirname(folder), resolved))
+		return cau_fail(error, CAU_IO, "path", "no folder %s", folder);
+	if ((size_t)snprintf(path, 4096, "%s/%s", resolved, basename(name)) >= 4096)
+		return cau_fail(error, CAU_BAD_VALUE, "path", "is too long");
+	return CAU_OK;
+}
+
+// ---- opening --------------------------------------------------------------------------
+static int count_wal_pages(void *context, sqlite3 *database, const char *name, int pages)
+{
+	(void)database, (void)name;
+	((struct cau_store *)context)->wal_pages = pages;
+	return SQLITE_OK;
+}
+
+// Stores the label if none is stored, and keeps the one that is.
+static cau_status settle_label(struct cau_store *store, cau_error *error)
+{
+	sqlite3_stmt *statement = NULL;
+	int code = SQLITE_OK;
+	if (store->config.label) {
+		code = sqlite3_prepare_v2(store->writing, "INSERT OR IGNORE INTO meta VALUES('label', ?1)",
+		                          -1, &statement, NULL);
+		if (!code) {
+			sqlite3_bind_text(statement, 1, store->config.label, -1, SQLITE_STATIC);
+			sqlite3_step(statement);
+			code = sqlite3_finalize(statement);
+		}
+	}
+	if (!code)
+		code = sqlite3_prepare_v2(store->writing, "SELECT value FROM meta WHERE name = 'label'", -1,
+		                          &statement, NULL);
+	if (!code && sqlite3_step(statement) == SQLITE_ROW)
+		snprintf(store->label, sizeof store->label, "%s",
+		         (const char *)sqlite3_column_text(statement, 0));
+	if (!code)
+		code = sqlite3_finalize(statement);
+	return code ? cau_store_fault(store->writing, code, "the label", error) : CAU_OK;
+}
+
+// The lock is held: makes or checks the file, opens the connections, migrates.
+static cau_status open_database(struct cau_store *store, cau_error *error)
+{
+	enum cau_store_found found;
+	int64_t page_bytes = 0;
+	cau_status status = cau_store_probe(store->path, store->config.label, &found, error);
+	if (!status && found == CAU_STORE_ABSENT)
+		status = cau_store_file_create(store->path, error);
+	if (!status)
+		status = cau_store_file_open(store->path, store->config.wal_bytes, &store->writing, error);
+	if (status)
+		return status;
+	sqlite3_wal_hook(store->writing, count_wal_pages, store);
+	status = cau_store_migrate(store->writing, error);
+	if (!status)
+		status = settle_label(store, error);
+	if (!status)
+		status = cau_store_integer(store->writing, "PRAGMA page_size", &page_bytes, error);
+	store->page_bytes = (size_t)page_bytes;
+	// Best effort, so that the file alone tells its schema and a full disk does not prevent a
+	// start.
+	if (!status)
+		sqlite3_wal_checkpoint_v2(store->writing, NULL, SQLITE_CHECKPOINT_TRUNCATE, NULL, NULL);
+	if (!status)
+		status = cau_store_writer_init(&store->writer, store->writing, error);
+	if (!status)
+		status = cau_store_file_open_reader(store->path, &store->reading, error);
+	if (!status)
+		status = cau_store_file_open(store->path, store->config.wal_bytes, &store->folding, error);
+	return status;
+}
+
+static void close_database(struct cau_store *store)
+{
+	cau_store_writer_finish(&store->writer);
+	sqlite3_close(store->reading);
+	sqlite3_close(store->folding);
+	sqlite3_close(store->writing); // the last connection folds the log and removes it
+	cau_store_lock_release(&store->lock);
+}
+
+static void init_locks(struct cau_store *store)
+{
+	pthread_condattr_t monotonic;
+	pthread_condattr_init(&monotonic);
+	pthread_condattr_setclock(&monotonic, CLOCK_MONOTONIC);
+	pthread_cond_init(&store->work, &monotonic);
+	pthread_condattr_destroy(&monotonic);
+	pthread_cond_init(&store->answer, NULL);
+	pthread_mutex_init(&store->mutex, NULL);
+	pthread_mutex_init(&store->reading_mutex, NULL);
+}
+
+static void destroy(struct cau_store *store)
+{
+	close_database(store);
+	pthread_cond_destroy(&store->work);
+	pthread_cond_destroy(&store->answer);
+	pthread_mutex_destroy(&store->mutex);
+	pthread_mutex_destroy(&store->reading_mutex);
+	free(store);
+}
+
+static cau_status start_threads(struct cau_store *store, cau_error *error)
+{
+	if (cau_store_folder_start(&store->folder, store->folding))
+		return cau_fail(error, CAU_NO_MEMORY, NULL, "no thread to fold the log");
+	if (pthread_create(&store->thread, NULL, cau_store_commit_run, store)) {
+		cau_store_folder_stop(&store->folder);
+		return cau_fail(error, CAU_NO_MEMORY, NULL, "no thread to commit");
+	}
+	return CAU_OK;
+}
+
+cau_status cau_store_open(const cau_store_config *config, cau_store **out, cau_error *error)
+{
+	cau_error local;
+	if (!error)
+		error = &local;
+	snprintf(error->file, sizeof error->file, "%s", config->path ? config->path : "");
+	cau_status status = check_config(config, error);
+	if (status)
+		return status;
+	struct cau_store *store = calloc(1, sizeof *store);
+	if (!store)
+		return cau_fail(error, CAU_NO_MEMORY, NULL, "opening the store");
+	store->config = *config;
+	store->lock.descriptor = -1;
+	if (!store->config.wall_clock_ms)
+		store->config.wall_clock_ms = system_clock_ms;
+	init_locks(store);
+	status = find_path(config->path, store->path, error);
+	if (!status)
+		status = cau_store_lock_take(&store->lock, store->path, error);
+	if (!status)
+		status = open_database(store, error);
+	store->config.path = store->path;
+	store->config.label = store->label;
+	store->chore_due_s = cau_store_monotonic_s() + 1e-3 * store->config.retention_interval_ms;
+	if (!status)
+		status = start_threads(store, error);
+	if (status)
+		destroy(store);
+	else
+		*out = store;
+	return status;
+}
+
+void cau_store_close(cau_store *store)
+{
+	if (!store)
+		return;
+	pthread_mutex_lock(&store->mutex);
+	store->closing = true;
+	pthread_cond_signal(&store->work);
+	pthread_mutex_unlock(&store->mutex);
+	pthread_join(store->thread, NULL);
+	cau_store_folder_stop(&store->folder);
+	destroy(store);
+}
+
+const char *cau_store_label(const cau_store *store)
+{
+	return store->label;
+}
+
+void cau_store_get_health(cau_store *store, cau_store_health *health)
+{
+	pthread_mutex_lock(&store->mutex);
+	health->state =
+		store->closing && store->state == CAU_STORE_READY ? CAU_STORE_CLOSING : store->state;
+	snprintf(health->reason, sizeof health->reason, "%s", store->reason);
+	pthread_mutex_unlock(&store->mutex);
+}

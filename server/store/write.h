@@ -1,0 +1,23 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Writes records into the database, inside a transaction of the caller's.
+#pragma once
+
+#include <sqlite3.h>
+
+#include "batch.h"
+
+enum { CAU_STORE_STATEMENTS = 15 };
+
+struct cau_store_writer {
+	sqlite3 *database; // borrowed
+	sqlite3_stmt *statement[CAU_STORE_STATEMENTS];
+};
+
+// Compiles every statement, which also finds out whether the tables are as this build expects.
+cau_status cau_store_writer_init(struct cau_store_writer *writer, sqlite3 *database,
+                                 cau_error *error);
+void cau_store_writer_finish(struct cau_store_writer *writer); // zeroed or initialised
+
+// CAU_ALREADY_EXISTS and CAU_NOT_FOUND are the record's own fault; anything else is the disk's.
+cau_status cau_store_writer_apply(struct cau_store_writer *writer, const struct record *record,
+                                  int64_t now_ms, cau_error *error);

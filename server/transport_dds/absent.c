@@ -1,0 +1,28 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// The transport in a build without DDS.
+#include <stddef.h>
+
+#include "transport_dds/dds_transport.h"
+
+cau_status cau_dds_create(cau_dds **dds, const cau_config *config, cau_hub *hub, cau_error *error)
+{
+	(void)config, (void)hub;
+	*dds = NULL;
+	return cau_fail(error, CAU_UNSUPPORTED, "dds", "this cauteryd was built without DDS");
+}
+
+cau_status cau_dds_start(cau_dds *dds, cau_error *error)
+{
+	(void)dds;
+	return cau_fail(error, CAU_UNSUPPORTED, "dds", "this cauteryd was built without DDS");
+}
+
+void cau_dds_stop(cau_dds *dds)
+{
+	(void)dds;
+}
+
+void cau_dds_destroy(cau_dds *dds)
+{
+	(void)dds;
+}

@@ -1,0 +1,161 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Readers and writers of sessions and tools, with their QoS.
+#include <string.h>
+
+#include "cautery.h"
+#include "ros2.h"
+#include "transport_dds/internal.h"
+
+enum { NATIVE_KEPT = 16, ROS2_KEPT = 10 };
+
+static dds_qos_t *reliable_qos(int32_t kept)
+{
+	dds_qos_t *qos = dds_create_qos();
+	dds_qset_reliability(qos, DDS_RELIABILITY_RELIABLE, DDS_MSECS(100));
+	dds_qset_durability(qos, DDS_DURABILITY_VOLATILE);
+	dds_qset_ownership(qos, DDS_OWNERSHIP_SHARED);
+	dds_qset_history(qos, DDS_HISTORY_KEEP_LAST, kept);
+	return qos;
+}
+
+static bool open_door(cau_dds *dds, cau_door *door, dds_entity_t subscriber, const dds_qos_t *qos)
+{
+	door->reader = dds_create_reader(subscriber, door->topic, qos, NULL);
+	if (door->reader < 0) {
+		cau_log(CAU_LOG_ERROR, cau_hosted_id(door->session->hosted), "dds_no_reader",
+		        "tool=%s reason=\"%s\"", door->tool, dds_strretcode(door->reader));
+		door->reader = 0;
+		return false;
+	}
+	dds_set_status_mask(door->reader, DDS_DATA_AVAILABLE_STATUS | DDS_SUBSCRIPTION_MATCHED_STATUS);
+	dds_waitset_attach(dds->waitset, door->reader, (dds_attach_t)door);
+	return true;
+}
+
+static void close_door(cau_dds *dds, cau_door *door)
+{
+	dds_entity_t reader = door->reader;
+	if (reader > 0) {
+		dds_waitset_detach(dds->waitset, reader);
+		dds_delete(reader);
+		cau_dds_prune(dds, reader, false);
+	}
+	if (door->topic > 0 && door->kind != DOOR_NATIVE)
+		dds_delete(door->topic);
+	*door = (cau_door){0};
+}
+
+cau_status cau_dds_open_session(cau_dds *dds, cau_dds_session *session)
+{
+	const char *id = cau_hosted_id(session->hosted);
+	dds_qos_t *partition = dds_create_qos(), *taken = reliable_qos(NATIVE_KEPT),
+			  *given = reliable_qos(1);
+	dds_qset_partition1(partition, id);
+	dds_qset_durability(given, DDS_DURABILITY_TRANSIENT_LOCAL);
+	session->subscriber = dds_create_subscriber(dds->participant, partition, NULL);
+	session->publisher = dds_create_publisher(dds->participant, partition, NULL);
+	session->native =
+		(cau_door){.kind = DOOR_NATIVE, .topic = dds->command_topic, .session = session};
+	bool done = open_door(dds, &session->native, session->subscriber, taken);
+	session->state_writer = dds_create_writer(session->publisher, dds->state_topic, given, NULL);
+	dds_delete_qos(partition);
+	dds_delete_qos(taken);
+	dds_delete_qos(given);
+	if (!session->has_ros_name)
+		cau_log(CAU_LOG_WARNING, id, "dds_name_taken",
+		        "name=%s reason=\"another session has it: no ROS 2 topics\"", session->ros_name);
+	cau_log(CAU_LOG_INFO, id, "dds_session", "partition=%s ros_name=%s", id, session->ros_name);
+	return done ? CAU_OK : CAU_IO;
+}
+
+void cau_dds_close_session(cau_dds *dds, cau_dds_session *session)
+{
+	for (int i = 0; i < CAU_MAX_TOOLS; i++)
+		if (session->tools[i].used)
+			cau_dds_close_tool(dds, &session->tools[i]);
+	close_door(dds, &session->native);
+	if (session->subscriber > 0)
+		dds_delete(session->subscriber);
+	if (session->publisher > 0)
+		dds_delete(session->publisher);
+}
+
+// ---- ROS 2
+// ---------------------------------------------------------------------------------------------
+static bool ros_tool_name(const cau_dds_session *session, const cau_dds_tool *tool,
+                          char name[CAU_NAME_BYTES])
+{
+	char other[CAU_NAME_BYTES];
+	for (int pass = 0; pass <= CAU_MAX_TOOLS; pass++) {
+		const cau_dds_tool *t = pass ? &session->tools[pass - 1] : tool;
+		if ((pass && t == tool) || !t->used)
+			continue;
+		char *to = pass ? other : name;
+		snprintf(to, CAU_NAME_BYTES, "%s", t->name);
+		for (char *c = to; *c; c++)
+			if (*c == '-')
+				*c = '_';
+		if (pass && t->servo_cp.reader && strcmp(other, name) == 0)
+			return false;
+	}
+	return true;
+}
+
+static dds_entity_t ros_topic(cau_dds *dds, const char *prefix, const char *name,
+                              const dds_topic_descriptor_t *type)
+{
+	char topic[TOPIC_BYTES];
+	snprintf(topic, sizeof topic, "rt/%s/%s", prefix, name);
+	return dds_create_topic(dds->participant, type, topic, NULL, NULL);
+}
+
+void cau_dds_open_tool(cau_dds *dds, cau_dds_session *session, cau_dds_tool *tool)
+{
+	char name[CAU_NAME_BYTES], prefix[2 * CAU_NAME_BYTES];
+	if (!session->has_ros_name)
+		return;
+	if (!ros_tool_name(session, tool, name)) {
+		cau_log(CAU_LOG_WARNING, cau_hosted_id(session->hosted), "dds_name_taken",
+		        "tool=%s name=%s reason=\"another tool has it: no ROS 2 topics\"", tool->name,
+		        name);
+		return;
+	}
+	snprintf(prefix, sizeof prefix, "%.48s/%.48s", session->ros_name, name);
+	const struct {
+		cau_door *door;
+		cau_door_kind kind;
+		const char *name;
+		const dds_topic_descriptor_t *type;
+	} doors[] = {
+		{&tool->servo_cp, DOOR_SERVO_CP, "servo_cp", &geometry_msgs_msg_dds__PoseStamped__desc},
+		{&tool->servo_jp, DOOR_SERVO_JP, "jaw/servo_jp", &sensor_msgs_msg_dds__JointState__desc},
+		{&tool->energize, DOOR_ENERGIZE, "energize", &sensor_msgs_msg_dds__Joy__desc},
+	};
+	dds_qos_t *qos = reliable_qos(ROS2_KEPT);
+	for (size_t i = 0; i < sizeof doors / sizeof doors[0]; i++) {
+		*doors[i].door = (cau_door){.kind = doors[i].kind, .session = session};
+		memcpy(doors[i].door->tool, tool->name, sizeof tool->name);
+		doors[i].door->topic = ros_topic(dds, prefix, doors[i].name, doors[i].type);
+		open_door(dds, doors[i].door, dds->subscriber, qos);
+	}
+	tool->pose_topic =
+		ros_topic(dds, prefix, "measured_cp", &geometry_msgs_msg_dds__PoseStamped__desc);
+	tool->force_topic =
+		ros_topic(dds, prefix, "measured_cf", &geometry_msgs_msg_dds__WrenchStamped__desc);
+	tool->pose_writer = dds_create_writer(dds->publisher, tool->pose_topic, qos, NULL);
+	tool->force_writer = dds_create_writer(dds->publisher, tool->force_topic, qos, NULL);
+	dds_delete_qos(qos);
+}
+
+void cau_dds_close_tool(cau_dds *dds, cau_dds_tool *tool)
+{
+	close_door(dds, &tool->servo_cp);
+	close_door(dds, &tool->servo_jp);
+	close_door(dds, &tool->energize);
+	const dds_entity_t made[] = {tool->pose_writer, tool->force_writer, tool->pose_topic,
+	                             tool->force_topic};
+	for (size_t i = 0; i < sizeof made / sizeof made[0]; i++)
+		if (made[i] > 0)
+			dds_delete(made[i]);
+	*tool = (cau_dds_tool){0};
+}

@@ -1,0 +1,146 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// What the files of this room share. All but the wake-up is the transport's own thread's.
+#pragma once
+
+#include <dds/dds.h>
+#include <pthread.h>
+#include <stdatomic.h>
+
+#include "clock/clock.h"
+#include "hosted_session/tools.h"
+#include "log/log.h"
+#include "transport_dds/checks.h"
+#include "transport_dds/dds_transport.h"
+
+enum {
+	CLIENTS_MOST = 128,
+	WRITERS_MOST = 512,
+	HANDS_MOST = 512,
+	TOPIC_BYTES = 2 * CAU_NAME_BYTES + 32,
+};
+
+typedef enum cau_door_kind {
+	DOOR_NATIVE,   // cautery/tool_command
+	DOOR_SERVO_CP, // rt/SESSION/TOOL/...
+	DOOR_SERVO_JP,
+	DOOR_ENERGIZE,
+} cau_door_kind;
+
+struct cau_dds_session;
+
+// A reader. `tool` is empty for DOOR_NATIVE, whose samples name theirs.
+typedef struct cau_door {
+	cau_door_kind kind;
+	dds_entity_t topic, reader; // 0: closed; the native topic is the participant's
+	struct cau_dds_session *session;
+	char tool[CAU_NAME_BYTES];
+} cau_door;
+
+typedef struct cau_dds_tool {
+	bool used, seen;
+	char name[CAU_NAME_BYTES];
+	cau_door servo_cp, servo_jp, energize;  // closed where the ROS 2 name is taken
+	dds_entity_t pose_topic, pose_writer;   // measured_cp
+	dds_entity_t force_topic, force_writer; // measured_cf
+} cau_dds_tool;
+
+typedef struct cau_dds_session {
+	struct cau_dds_session *next;
+	cau_hosted *hosted; // shared
+	bool seen;
+	char ros_name[CAU_NAME_BYTES];
+	bool has_ros_name;
+	dds_entity_t subscriber, publisher; // of its partition
+	cau_door native;
+	dds_entity_t state_writer;
+	cau_dds_tool tools[CAU_MAX_TOOLS];
+	// refusals, logged once a second
+	int64_t refused;
+	double refused_told_s;
+} cau_dds_session;
+
+// A driver as the hub knows it.
+typedef struct cau_dds_client {
+	uint64_t identity; // of the publication (native) or participant (ROS 2); 0: free
+	bool native;
+	int32_t writers;
+	uint64_t connection; // for the hub
+	cau_asker asker;
+} cau_dds_client;
+
+typedef struct cau_dds_writer {
+	dds_entity_t reader;
+	dds_instance_handle_t handle;
+	cau_dds_client *client; // NULL: free
+} cau_dds_writer;
+
+// A client's hold on one tool.
+typedef struct cau_dds_hand {
+	cau_dds_client *client; // NULL: free
+	cau_dds_session *session;
+	char tool[CAU_NAME_BYTES];
+	cau_motion_past past;
+	double jaw;
+	double claim_until_s;            // its claim waits in the session's queue
+	bool energy_ready, energy_asked; // the level was 0; energy was asked for
+	bool grasp_asked;
+} cau_dds_hand;
+
+struct cau_dds {
+	const cau_config *config;
+	cau_hub *hub;
+	dds_entity_t domain, participant, subscriber, publisher; // of the default partition
+	dds_entity_t command_topic, state_topic;
+	dds_entity_t waitset, wake;
+	pthread_t thread;
+	bool started;
+	atomic_bool ending, sessions_changed, sliced;
+	uint64_t last_connection;
+	cau_dds_session *sessions;
+	cau_dds_client clients[CLIENTS_MOST];
+	cau_dds_writer writers[WRITERS_MOST];
+	cau_dds_hand hands[HANDS_MOST];
+};
+
+// ---- sessions.c: follows the hub
+void cau_dds_follow(cau_dds *dds);
+void cau_dds_close_sessions(cau_dds *dds);
+
+// ---- doors.c: readers and writers
+cau_status cau_dds_open_session(cau_dds *dds, cau_dds_session *session);
+void cau_dds_close_session(cau_dds *dds, cau_dds_session *session);
+void cau_dds_open_tool(cau_dds *dds, cau_dds_session *session, cau_dds_tool *tool);
+void cau_dds_close_tool(cau_dds *dds, cau_dds_tool *tool);
+
+// ---- writers.c: who writes
+// The client behind a sample, or NULL: its writer is gone or there are too many.
+cau_dds_client *cau_dds_client_of(cau_dds *dds, const cau_door *door, dds_instance_handle_t handle);
+// Forgets writers that no longer match the reader, and clients without writers.
+void cau_dds_prune(cau_dds *dds, dds_entity_t reader, bool all);
+// NULL: too many.
+cau_dds_hand *cau_dds_hand_of(cau_dds *dds, cau_dds_client *client, cau_dds_session *session,
+                              const char *tool);
+void cau_dds_drop_hands(cau_dds *dds, const cau_dds_session *session, const char *tool);
+
+// ---- drive.c: orders
+// Checks and submits a motion; feeds the watchdog if all is well. False: refused, and counted.
+bool cau_dds_move(cau_dds *dds, cau_dds_hand *hand, cau_pose pose, double jaw, uint64_t sequence);
+void cau_dds_energy(cau_dds *dds, cau_dds_hand *hand, bool level);
+void cau_dds_grasp(cau_dds_hand *hand, bool level);
+// Gives up the tool of a hand, through the queue: to nobody, or to `to`.
+bool cau_dds_hand_over(cau_dds_hand *hand, const cau_asker *to);
+void cau_dds_refuse(cau_dds_session *session, const char *tool, const cau_dds_client *client,
+                    uint64_t sequence, const cau_error *error);
+
+// ---- native.c, ros2.c: samples
+void cau_dds_take_command(cau_dds *dds, cau_door *door, cau_dds_client *client, const void *sample);
+void cau_dds_take_servo_cp(cau_dds *dds, cau_door *door, cau_dds_client *client,
+                           const void *sample);
+void cau_dds_take_servo_jp(cau_dds *dds, cau_door *door, cau_dds_client *client,
+                           const void *sample);
+void cau_dds_take_energize(cau_dds *dds, cau_door *door, cau_dds_client *client,
+                           const void *sample);
+
+// ---- states.c
+void cau_dds_publish(cau_dds_session *session, const cau_hosted_tool *tools, int32_t count,
+                     uint64_t tick, double time_s);

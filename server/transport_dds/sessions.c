@@ -1,0 +1,133 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Follows the hub's sessions and their tools: opens and closes what each has on the wire.
+#include <stdlib.h>
+#include <string.h>
+
+#include "transport_dds/internal.h"
+
+static cau_dds_session *find_session(cau_dds *dds, const cau_hosted *hosted)
+{
+	cau_dds_session *session = dds->sessions;
+	while (session && session->hosted != hosted)
+		session = session->next;
+	return session;
+}
+
+static void ros_name(char name[CAU_NAME_BYTES], const char *from)
+{
+	snprintf(name, CAU_NAME_BYTES, "%s", from);
+	for (char *c = name; *c; c++)
+		if (*c == '-')
+			*c = '_';
+}
+
+static bool name_taken(const cau_dds *dds, const char *name)
+{
+	for (const cau_dds_session *s = dds->sessions; s; s = s->next)
+		if (s->has_ros_name && strcmp(s->ros_name, name) == 0)
+			return true;
+	return false;
+}
+
+// The hub's visitor: keeps what is new in the list, not opened yet.
+static void note_session(void *user, cau_hosted *hosted)
+{
+	cau_dds *dds = user;
+	cau_dds_session *session = find_session(dds, hosted);
+	if (!session && (session = calloc(1, sizeof *session))) {
+		session->hosted = cau_hosted_share(hosted);
+		ros_name(session->ros_name, cau_hosted_id(hosted));
+		session->has_ros_name = !name_taken(dds, session->ros_name);
+		session->next = dds->sessions;
+		dds->sessions = session;
+	}
+	if (session)
+		session->seen = true;
+}
+
+static void forget_session(cau_dds *dds, cau_dds_session *session)
+{
+	cau_dds_drop_hands(dds, session, NULL);
+	cau_dds_close_session(dds, session);
+	cau_hosted_release(session->hosted);
+	free(session);
+}
+
+static cau_dds_tool *find_tool(cau_dds_session *session, const char *name)
+{
+	for (int i = 0; i < CAU_MAX_TOOLS; i++)
+		if (session->tools[i].used && strcmp(session->tools[i].name, name) == 0)
+			return &session->tools[i];
+	return NULL;
+}
+
+static void add_tool(cau_dds *dds, cau_dds_session *session, const char name[CAU_NAME_BYTES])
+{
+	for (int i = 0; i < CAU_MAX_TOOLS; i++) {
+		cau_dds_tool *tool = &session->tools[i];
+		if (tool->used)
+			continue;
+		*tool = (cau_dds_tool){.used = true, .seen = true};
+		memcpy(tool->name, name, sizeof tool->name);
+		cau_dds_open_tool(dds, session, tool);
+		return;
+	}
+}
+
+static void follow_tools(cau_dds *dds, cau_dds_session *session, const cau_hosted_tool *tools,
+                         int32_t count)
+{
+	for (int i = 0; i < CAU_MAX_TOOLS; i++)
+		session->tools[i].seen = false;
+	for (int32_t i = 0; i < count; i++) {
+		cau_dds_tool *known = find_tool(session, tools[i].state.name);
+		if (known)
+			known->seen = true;
+	}
+	for (int i = 0; i < CAU_MAX_TOOLS; i++)
+		if (session->tools[i].used && !session->tools[i].seen) {
+			cau_dds_drop_hands(dds, session, session->tools[i].name);
+			cau_dds_close_tool(dds, &session->tools[i]);
+		}
+	for (int32_t i = 0; i < count; i++)
+		if (!find_tool(session, tools[i].state.name))
+			add_tool(dds, session, tools[i].state.name);
+}
+
+static void follow_session(cau_dds *dds, cau_dds_session *session)
+{
+	cau_hosted_tool tools[CAU_MAX_TOOLS];
+	uint64_t tick;
+	double time_s;
+	if (!session->subscriber && cau_dds_open_session(dds, session))
+		return;
+	int32_t count = cau_hosted_tools(session->hosted, tools, &tick, &time_s);
+	follow_tools(dds, session, tools, count);
+	cau_dds_publish(session, tools, count, tick, time_s);
+}
+
+void cau_dds_follow(cau_dds *dds)
+{
+	for (cau_dds_session *s = dds->sessions; s; s = s->next)
+		s->seen = false;
+	cau_hub_each(dds->hub, note_session, dds);
+	for (cau_dds_session **link = &dds->sessions; *link;) {
+		cau_dds_session *session = *link;
+		if (session->seen) {
+			follow_session(dds, session);
+			link = &session->next;
+		} else {
+			*link = session->next;
+			forget_session(dds, session);
+		}
+	}
+}
+
+void cau_dds_close_sessions(cau_dds *dds)
+{
+	cau_dds_prune(dds, 0, true);
+	for (cau_dds_session *next; dds->sessions; dds->sessions = next) {
+		next = dds->sessions->next;
+		forget_session(dds, dds->sessions);
+	}
+}

@@ -1,0 +1,72 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// What the server says of tools: cautery/tool_state, measured_cp and measured_cf.
+#include <string.h>
+
+#include "cautery.h"
+#include "ros2.h"
+#include "transport_dds/internal.h"
+
+static char world_frame[] = "world";
+
+static void publish_state(const cau_dds_session *session, const cau_hosted_tool *tool,
+                          uint64_t tick, double time_s)
+{
+	const cau_tool_state *state = &tool->state;
+	cautery_ToolState sample = {
+		.tick = tick,
+		.time_s = time_s,
+		.sequence_number = state->sequence,
+		.jaw = state->jaw,
+		.tip_temperature_c = state->tip_temperature_c,
+		.energy_j = state->energy_j,
+		.touched_layers = (uint32_t)state->touched_layers,
+		.contact_vertices = (uint32_t)state->contact_vertices,
+		.grasped_vertices = (uint32_t)state->grasped_vertices,
+		.driver = tool->driver.client,
+		.energized = state->energized,
+		.grasping = state->grasping,
+		.energy_off = (cautery_EnergyOff)tool->energy_off,
+	};
+	snprintf(sample.session, sizeof sample.session, "%s", cau_hosted_id(session->hosted));
+	snprintf(sample.tool, sizeof sample.tool, "%s", state->name);
+	snprintf(sample.driver_name, sizeof sample.driver_name, "%s", tool->driver.name);
+	memcpy(sample.position_m, state->pose.position_m, sizeof sample.position_m);
+	memcpy(sample.rotation, state->pose.rotation, sizeof sample.rotation);
+	memcpy(sample.force_n, state->force_n, sizeof sample.force_n);
+	memcpy(sample.torque_nm, state->torque_nm, sizeof sample.torque_nm);
+	dds_write(session->state_writer, &sample);
+}
+
+static void publish_measured(const cau_dds_tool *wire, const cau_tool_state *state)
+{
+	int64_t now_us = cau_wall_us();
+	const double *p = state->pose.position_m, *q = state->pose.rotation, *f = state->force_n,
+				 *t = state->torque_nm;
+	std_msgs_msg_dds__Header_ header = {
+		{(int32_t)(now_us / 1000000), (uint32_t)(now_us % 1000000) * 1000}, world_frame};
+	geometry_msgs_msg_dds__PoseStamped_ pose = {
+		header, {{p[0], p[1], p[2]}, {.x_ = q[1], .y_ = q[2], .z_ = q[3], .w_ = q[0]}}};
+	geometry_msgs_msg_dds__WrenchStamped_ force = {header,
+	                                               {{f[0], f[1], f[2]}, {t[0], t[1], t[2]}}};
+	dds_write(wire->pose_writer, &pose);
+	dds_write(wire->force_writer, &force);
+}
+
+static const cau_dds_tool *wire_of(const cau_dds_session *session, const char *name)
+{
+	for (int i = 0; i < CAU_MAX_TOOLS; i++)
+		if (session->tools[i].used && strcmp(session->tools[i].name, name) == 0)
+			return &session->tools[i];
+	return NULL;
+}
+
+void cau_dds_publish(cau_dds_session *session, const cau_hosted_tool *tools, int32_t count,
+                     uint64_t tick, double time_s)
+{
+	for (int32_t i = 0; i < count; i++) {
+		const cau_dds_tool *wire = wire_of(session, tools[i].state.name);
+		publish_state(session, &tools[i], tick, time_s);
+		if (wire && wire->pose_writer > 0)
+			publish_measured(wire, &tools[i].state);
+	}
+}

@@ -1,0 +1,176 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// The transport's life and its thread.
+#include <stdlib.h>
+#include <string.h>
+
+#include "cautery.h"
+#include "transport_dds/internal.h"
+#include "transport_dds/loopback.h"
+
+enum { TAKEN_MOST = 16, TRIGGERS_MOST = 64, CONFIG_BYTES = CAU_CONFIG_TEXT_BYTES + 16 };
+
+// ---- the sink; from any thread
+// ----------------------------------------------------------------------
+static void wake(cau_dds *dds, atomic_bool *why)
+{
+	if (!atomic_exchange(why, true) && dds->wake > 0)
+		dds_set_guardcondition(dds->wake, true);
+}
+
+static void on_notify(void *user, cau_audience audience, cau_buffer *text)
+{
+	cau_dds *dds = user;
+	cau_buffer_release(text);
+	if (audience.kind != CAU_AUDIENCE_CLIENT)
+		wake(dds, &dds->sessions_changed);
+}
+
+static void on_frames(void *user)
+{
+	(void)user; // frames are not published on DDS
+}
+
+static void on_sliced(void *user)
+{
+	cau_dds *dds = user;
+	wake(dds, &dds->sliced);
+}
+
+// ---- samples
+// -----------------------------------------------------------------------------------------
+static void serve(cau_dds *dds, cau_door *door)
+{
+	static void (*const takers[])(cau_dds *, cau_door *, cau_dds_client *, const void *) = {
+		[DOOR_NATIVE] = cau_dds_take_command,
+		[DOOR_SERVO_CP] = cau_dds_take_servo_cp,
+		[DOOR_SERVO_JP] = cau_dds_take_servo_jp,
+		[DOOR_ENERGIZE] = cau_dds_take_energize,
+	};
+	void *samples[TAKEN_MOST] = {NULL};
+	dds_sample_info_t infos[TAKEN_MOST];
+	dds_subscription_matched_status_t matched;
+	dds_return_t count = dds_take(door->reader, samples, infos, TAKEN_MOST, TAKEN_MOST);
+	for (dds_return_t i = 0; i < count; i++) {
+		if (!infos[i].valid_data)
+			continue;
+		cau_dds_client *client = cau_dds_client_of(dds, door, infos[i].publication_handle);
+		if (client)
+			takers[door->kind](dds, door, client, samples[i]);
+	}
+	if (count > 0)
+		dds_return_loan(door->reader, samples, count);
+	dds_get_subscription_matched_status(door->reader, &matched);
+	if (matched.current_count_change || matched.total_count_change)
+		cau_dds_prune(dds, door->reader, false);
+}
+
+static void *run(void *argument)
+{
+	cau_dds *dds = argument;
+	dds_attach_t triggers[TRIGGERS_MOST];
+	while (!dds->ending) {
+		dds_return_t count = dds_waitset_wait(dds->waitset, triggers, TRIGGERS_MOST, DDS_INFINITY);
+		for (dds_return_t i = 0; i < count && i < TRIGGERS_MOST; i++)
+			if (triggers[i])
+				serve(dds, (cau_door *)triggers[i]);
+		dds_set_guardcondition(dds->wake, false);
+		bool changed = atomic_exchange(&dds->sessions_changed, false);
+		bool sliced = atomic_exchange(&dds->sliced, false); // both are taken, whichever is set
+		if (changed || sliced)
+			cau_dds_follow(dds);
+	}
+	cau_dds_close_sessions(dds);
+	return NULL;
+}
+
+// ---- life
+// --------------------------------------------------------------------------------------------
+static cau_status fail(cau_error *error, const char *what, dds_return_t code)
+{
+	return cau_fail(error, CAU_IO, "dds", "%s: %s", what, dds_strretcode(code));
+}
+
+static cau_status open_domain(cau_dds *dds, cau_error *error)
+{
+	const cau_config *config = dds->config;
+	char given[CONFIG_BYTES];
+	snprintf(given, sizeof given, "file://%s", config->dds_config);
+	dds->domain = dds_create_domain((dds_domainid_t)config->dds_domain,
+	                                *config->dds_config ? given : cau_dds_loopback);
+	if (dds->domain < 0)
+		return fail(error, "no domain", dds->domain);
+	dds->participant = dds_create_participant((dds_domainid_t)config->dds_domain, NULL, NULL);
+	return dds->participant < 0 ? fail(error, "no participant", dds->participant) : CAU_OK;
+}
+
+static cau_status open_entities(cau_dds *dds, cau_error *error)
+{
+	dds_entity_t p = dds->participant;
+	dds->subscriber = dds_create_subscriber(p, NULL, NULL);
+	dds->publisher = dds_create_publisher(p, NULL, NULL);
+	dds->command_topic =
+		dds_create_topic(p, &cautery_ToolCommand_desc, "cautery/tool_command", NULL, NULL);
+	dds->state_topic =
+		dds_create_topic(p, &cautery_ToolState_desc, "cautery/tool_state", NULL, NULL);
+	dds->waitset = dds_create_waitset(p);
+	dds->wake = dds_create_guardcondition(p);
+	const dds_entity_t made[] = {dds->subscriber,  dds->publisher, dds->command_topic,
+	                             dds->state_topic, dds->waitset,   dds->wake};
+	for (size_t i = 0; i < sizeof made / sizeof made[0]; i++)
+		if (made[i] < 0)
+			return fail(error, "no entity", made[i]);
+	dds_return_t code = dds_waitset_attach(dds->waitset, dds->wake, 0);
+	return code ? fail(error, "no waitset", code) : CAU_OK;
+}
+
+cau_status cau_dds_create(cau_dds **made, const cau_config *config, cau_hub *hub, cau_error *error)
+{
+	*made = NULL;
+	cau_dds *dds = calloc(1, sizeof *dds);
+	if (!dds)
+		return cau_fail(error, CAU_NO_MEMORY, "dds", "no memory for the DDS transport");
+	dds->config = config;
+	dds->hub = hub;
+	cau_status status = open_domain(dds, error);
+	if (!status)
+		status = open_entities(dds, error);
+	if (status) {
+		cau_dds_destroy(dds);
+		return status;
+	}
+	cau_hub_add_sink(hub, &(cau_sink){dds, on_notify, on_frames, on_sliced});
+	*made = dds;
+	return CAU_OK;
+}
+
+cau_status cau_dds_start(cau_dds *dds, cau_error *error)
+{
+	wake(dds, &dds->sessions_changed);
+	dds->started = pthread_create(&dds->thread, NULL, run, dds) == 0;
+	if (!dds->started)
+		return cau_fail(error, CAU_NO_MEMORY, "dds", "no thread");
+	cau_log(CAU_LOG_NOTICE, NULL, "dds_open", "domain=%lld config=\"%s\"",
+	        (long long)dds->config->dds_domain,
+	        *dds->config->dds_config ? dds->config->dds_config : "loopback");
+	return CAU_OK;
+}
+
+void cau_dds_stop(cau_dds *dds)
+{
+	if (!dds || !dds->started)
+		return;
+	dds->ending = true;
+	dds_set_guardcondition(dds->wake, true);
+	pthread_join(dds->thread, NULL);
+	dds->started = false;
+}
+
+void cau_dds_destroy(cau_dds *dds)
+{
+	if (!dds)
+		return;
+	cau_dds_stop(dds);
+	if (dds->domain > 0)
+		dds_delete(dds->domain);
+	free(dds);
+}

@@ -1,0 +1,170 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Who writes: publication handles become clients of the hub, and clients have hands on tools.
+#include <math.h>
+#include <string.h>
+
+#include "transport_dds/internal.h"
+
+// Bounds on a declared deadline, s.
+static const double deadline_least_s = 0.02, deadline_most_s = 1;
+
+static double deadline_of(const cau_dds *dds, const dds_qos_t *qos)
+{
+	dds_duration_t deadline = DDS_INFINITY;
+	if (!dds_qget_deadline(qos, &deadline) || deadline == DDS_INFINITY)
+		return dds->config->dds_deadline_s;
+	return fmax(deadline_least_s, fmin(deadline_most_s, 1e-9 * (double)deadline));
+}
+
+static cau_dds_client *find_client(cau_dds *dds, uint64_t identity, bool native)
+{
+	for (int i = 0; i < CLIENTS_MOST; i++)
+		if (dds->clients[i].identity == identity && dds->clients[i].native == native)
+			return &dds->clients[i];
+	return NULL;
+}
+
+static void write_guid(char text[33], const dds_guid_t *guid)
+{
+	for (size_t i = 0; i < sizeof guid->v; i++)
+		snprintf(text + 2 * i, 3, "%02x", guid->v[i]);
+}
+
+static cau_dds_client *add_client(cau_dds *dds, uint64_t identity, bool native,
+                                  const dds_builtintopic_endpoint_t *writer)
+{
+	cau_dds_client *client = find_client(dds, 0, false);
+	cau_client made = {
+		.asker = {.role = CAU_ROLE_OPERATE, .deadline_s = deadline_of(dds, writer->qos)},
+		.connection = ++dds->last_connection};
+	char guid[33];
+	uint64_t replaced;
+	write_guid(guid, native ? &writer->key : &writer->participant_key);
+	snprintf(made.asker.name, sizeof made.asker.name, "%s %.32s", native ? "dds" : "ros", guid);
+	snprintf(made.asker.client_id, sizeof made.asker.client_id, "dds-%s", guid);
+	if (!client || !cau_hub_attach(dds->hub, &made, NULL, &replaced))
+		return NULL;
+	*client = (cau_dds_client){
+		.identity = identity, .native = native, .connection = made.connection, .asker = made.asker};
+	cau_log(CAU_LOG_INFO, NULL, "dds_client", "client=%u name=\"%s\" deadline_s=%.3f",
+	        made.asker.client, made.asker.name, made.asker.deadline_s);
+	return client;
+}
+
+static cau_dds_writer *find_writer(cau_dds *dds, dds_entity_t reader, dds_instance_handle_t handle)
+{
+	for (int i = 0; i < WRITERS_MOST; i++)
+		if (dds->writers[i].client && dds->writers[i].reader == reader &&
+		    dds->writers[i].handle == handle)
+			return &dds->writers[i];
+	return NULL;
+}
+
+static cau_dds_writer *free_writer(cau_dds *dds)
+{
+	for (int i = 0; i < WRITERS_MOST; i++)
+		if (!dds->writers[i].client)
+			return &dds->writers[i];
+	return NULL;
+}
+
+cau_dds_client *cau_dds_client_of(cau_dds *dds, const cau_door *door, dds_instance_handle_t handle)
+{
+	cau_dds_writer *writer = find_writer(dds, door->reader, handle);
+	if (writer)
+		return writer->client;
+	dds_builtintopic_endpoint_t *endpoint = dds_get_matched_publication_data(door->reader, handle);
+	writer = free_writer(dds);
+	if (!endpoint || !writer) {
+		if (endpoint)
+			dds_builtintopic_free_endpoint(endpoint);
+		return NULL;
+	}
+	bool native = door->kind == DOOR_NATIVE;
+	uint64_t identity = native ? handle : endpoint->participant_instance_handle;
+	cau_dds_client *client = find_client(dds, identity, native);
+	if (!client)
+		client = add_client(dds, identity, native, endpoint);
+	dds_builtintopic_free_endpoint(endpoint);
+	if (client) {
+		*writer = (cau_dds_writer){door->reader, handle, client};
+		client->writers++;
+	}
+	return client;
+}
+
+// ---- going
+// ---------------------------------------------------------------------------------------------
+static void drop_hand(cau_dds_hand *hand)
+{
+	cau_hosted_tool tool;
+	bool drives = cau_hosted_find_tool(hand->session->hosted, hand->tool, &tool) &&
+	              tool.driver.client == hand->client->asker.client;
+	if (drives || hand->claim_until_s > 0)
+		cau_dds_hand_over(hand, NULL);
+	*hand = (cau_dds_hand){0};
+}
+
+static void drop_client(cau_dds *dds, cau_dds_client *client)
+{
+	cau_log(CAU_LOG_INFO, NULL, "dds_client_gone", "client=%u name=\"%s\"", client->asker.client,
+	        client->asker.name);
+	cau_hub_detach(dds->hub, client->asker.client, client->connection);
+	for (int i = 0; i < HANDS_MOST; i++)
+		if (dds->hands[i].client == client)
+			drop_hand(&dds->hands[i]);
+	*client = (cau_dds_client){0};
+}
+
+static bool still_matches(const cau_dds_writer *writer)
+{
+	dds_builtintopic_endpoint_t *endpoint =
+		dds_get_matched_publication_data(writer->reader, writer->handle);
+	if (endpoint)
+		dds_builtintopic_free_endpoint(endpoint);
+	return endpoint != NULL;
+}
+
+void cau_dds_prune(cau_dds *dds, dds_entity_t reader, bool all)
+{
+	for (int i = 0; i < WRITERS_MOST; i++) {
+		cau_dds_writer *writer = &dds->writers[i];
+		if (!writer->client || (!all && writer->reader != reader) ||
+		    (!all && still_matches(writer)))
+			continue;
+		cau_dds_client *client = writer->client;
+		writer->client = NULL;
+		if (--client->writers == 0)
+			drop_client(dds, client);
+	}
+}
+
+// ---- hands
+// ---------------------------------------------------------------------------------------------
+cau_dds_hand *cau_dds_hand_of(cau_dds *dds, cau_dds_client *client, cau_dds_session *session,
+                              const char *tool)
+{
+	cau_dds_hand *free_hand = NULL;
+	for (int i = 0; i < HANDS_MOST; i++) {
+		cau_dds_hand *hand = &dds->hands[i];
+		if (!hand->client)
+			free_hand = free_hand ? free_hand : hand;
+		else if (hand->client == client && hand->session == session &&
+		         strcmp(hand->tool, tool) == 0)
+			return hand;
+	}
+	if (free_hand) {
+		*free_hand = (cau_dds_hand){.client = client, .session = session, .jaw = 1};
+		snprintf(free_hand->tool, sizeof free_hand->tool, "%s", tool);
+	}
+	return free_hand;
+}
+
+void cau_dds_drop_hands(cau_dds *dds, const cau_dds_session *session, const char *tool)
+{
+	for (int i = 0; i < HANDS_MOST; i++) {
+		cau_dds_hand *hand = &dds->hands[i];
+		if (hand->client && hand->session == session && (!tool || strcmp(hand->tool, tool) == 0))
+			*hand = (cau_dds_hand){0};
+	}
+}

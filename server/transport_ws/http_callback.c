@@ -1,0 +1,55 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include <string.h>
+
+#include "log/log.h"
+#include "transport_ws/internal.h"
+
+// Answers an upgrade request that is refused. Above 0: we have answered.
+static int confirm_upgrade(cau_network *network, struct lws *wsi)
+{
+	const char *name, *reason;
+	cau_http_body body = {0};
+	unsigned status = cau_handshake_check(network, wsi, &name, &reason);
+	if (!status)
+		return 0;
+	network->counts.refused_handshakes++;
+	cau_log(CAU_LOG_INFO, NULL, "handshake_refused", "status=%u error=%s", status, name);
+	if (cau_http_answer_reason(wsi, &body, status, name, reason))
+		return -1;
+	cau_http_answer_continue(wsi, &body);
+	cau_http_body_finish(&body);
+	return 1;
+}
+
+static void close_all(cau_network *network)
+{
+	for (cau_connection *c = network->connections; c; c = c->next)
+		cau_connection_close(c, network->ending_code, NULL);
+}
+
+int cau_http_callback(struct lws *wsi, enum lws_callback_reasons reason, void *user, void *in,
+                      size_t bytes)
+{
+	cau_network *network = cau_network_of(wsi);
+	cau_http_body *body = user;
+	switch (reason) {
+	case LWS_CALLBACK_HTTP:
+		return cau_http_serve(network, wsi, body, in);
+	case LWS_CALLBACK_HTTP_WRITEABLE:
+		return cau_http_answer_continue(wsi, body);
+	case LWS_CALLBACK_CLOSED_HTTP:
+		if (body)
+			cau_http_body_finish(body);
+		return 0;
+	case LWS_CALLBACK_HTTP_CONFIRM_UPGRADE:
+		return confirm_upgrade(network, wsi);
+	case LWS_CALLBACK_EVENT_WAIT_CANCELLED:
+		if (network->ending)
+			close_all(network);
+		else if (atomic_exchange(&network->woken, false))
+			network->def.handler.woken(network->def.handler.user);
+		return 0;
+	default:
+		return lws_callback_http_dummy(wsi, reason, NULL, in, bytes);
+	}
+}

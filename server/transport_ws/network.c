@@ -1,0 +1,150 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "transport_ws/network.h"
+
+#include <string.h>
+#include <unistd.h>
+
+#include "clock/clock.h"
+#include "log/log.h"
+#include "transport_ws/internal.h"
+
+enum { TICK_MS = 100 };
+
+static void log_library(int level, const char *line)
+{
+	cau_log(level == LLL_ERR ? CAU_LOG_ERROR : CAU_LOG_WARNING, NULL, "libwebsockets",
+	        "text=\"%.*s\"", (int)strcspn(line, "\n"), line);
+}
+
+static void set_protocols(cau_network *network)
+{
+	network->protocols[0] = (struct lws_protocols){.name = "http",
+	                                               .callback = cau_http_callback,
+	                                               .per_session_data_size = sizeof(cau_http_body)};
+	network->protocols[1] =
+		(struct lws_protocols){.name = CAU_SUBPROTOCOL,
+	                           .callback = cau_ws_callback,
+	                           .per_session_data_size = sizeof(cau_connection *)};
+	network->protocols[2] =
+		(struct lws_protocols){.name = "first-frame", .callback = cau_first_frame_callback};
+}
+
+static cau_status open_context(cau_network *network, cau_error *error)
+{
+	cau_config *config = network->def.config;
+	network->validity.secs_since_valid_ping = (uint16_t)fmax(1, config->ping_s);
+	network->validity.secs_since_valid_hangup = (uint16_t)fmax(3, 3 * config->ping_s);
+	struct lws_context_creation_info info = {
+		.port = config->port ? (int)config->port : 0,
+		.iface = config->listen,
+		.protocols = network->protocols,
+		.gid = -1,
+		.uid = -1,
+		.user = network,
+		.retry_and_idle_policy = &network->validity,
+		.options = LWS_SERVER_OPTION_VALIDATE_UTF8 | LWS_SERVER_OPTION_FAIL_UPON_UNABLE_TO_BIND |
+	               LWS_SERVER_OPTION_EXPLICIT_VHOSTS,
+	};
+	lws_set_log_level(LLL_ERR | LLL_WARN, log_library);
+	network->context = lws_create_context(&info);
+	if (!network->context)
+		return cau_fail(error, CAU_IO, NULL, "libwebsockets did not start");
+	info.vhost_name = "default";
+	network->vhost = lws_create_vhost(network->context, &info);
+	if (!network->vhost)
+		return cau_fail(error, CAU_IO, "port", "cannot listen on %.60s port %lld", config->listen,
+		                (long long)config->port);
+	config->port = lws_get_vhost_listen_port(network->vhost);
+	if (!cau_first_frame_open(network))
+		return cau_fail(error, CAU_IO, NULL, "no epoll descriptor");
+	return CAU_OK;
+}
+
+cau_status cau_network_create(cau_network **made, const cau_network_def *def, cau_error *error)
+{
+	*made = NULL;
+	cau_network *network = calloc(1, sizeof *network);
+	if (!network)
+		return cau_fail(error, CAU_NO_MEMORY, NULL, "no memory for the network");
+	network->def = *def;
+	network->first_frames = -1;
+	set_protocols(network);
+	cau_status status = open_context(network, error);
+	if (status)
+		cau_network_destroy(network);
+	else
+		*made = network;
+	return status;
+}
+
+static void tick(lws_sorted_usec_list_t *sul)
+{
+	cau_network *network = lws_container_of(sul, cau_network, sul);
+	network->def.handler.tick(network->def.handler.user);
+	lws_sul_schedule(network->context, 0, &network->sul, tick, TICK_MS * LWS_US_PER_MS);
+}
+
+static void *serve(void *argument)
+{
+	cau_network *network = argument;
+	lws_sul_schedule(network->context, 0, &network->sul, tick, TICK_MS * LWS_US_PER_MS);
+	while (!network->ending ||
+	       (network->connections && cau_monotonic_s() < network->ending_until_s))
+		if (lws_service(network->context, 0) < 0)
+			break;
+	lws_sul_schedule(network->context, 0, &network->sul, NULL, LWS_SET_TIMER_USEC_CANCEL);
+	return NULL;
+}
+
+cau_status cau_network_start(cau_network *network, cau_error *error)
+{
+	network->started = pthread_create(&network->thread, NULL, serve, network) == 0;
+	return network->started ? CAU_OK : cau_fail(error, CAU_NO_MEMORY, NULL, "no network thread");
+}
+
+void cau_network_wake(cau_network *network)
+{
+	if (!atomic_exchange(&network->woken, true))
+		lws_cancel_service(network->context);
+}
+
+void cau_network_stop(cau_network *network, cau_close_code code, double seconds)
+{
+	if (!network->started)
+		return;
+	network->ending_code = code;
+	network->ending_until_s = cau_monotonic_s() + seconds;
+	network->ending = true;
+	lws_cancel_service(network->context);
+	pthread_join(network->thread, NULL);
+	network->started = false;
+}
+
+void cau_network_destroy(cau_network *network)
+{
+	if (!network)
+		return;
+	if (network->context)
+		lws_context_destroy(network->context);
+	if (network->first_frames >= 0)
+		close(network->first_frames);
+	free(network);
+}
+
+cau_connection *cau_network_first(cau_network *network)
+{
+	return network->connections;
+}
+
+cau_connection *cau_network_find(cau_network *network, uint64_t id)
+{
+	cau_connection *c = network->connections;
+	while (c && c->id != id)
+		c = c->next;
+	return c;
+}
+
+cau_network_counts cau_network_count(cau_network *network)
+{
+	return network->counts;
+}

@@ -1,0 +1,91 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "watchdog/watchdog.h"
+
+#include <math.h>
+#include <pthread.h>
+#include <stdbool.h>
+#include <stdlib.h>
+
+#include "clock/clock.h"
+
+struct cau_watchdog {
+	pthread_t thread;
+	pthread_mutex_t mutex;
+	pthread_cond_t changed;
+	bool started, woken, ending;
+	double (*look)(void *user, double now_s);
+	void *user;
+};
+
+static void wait_until(cau_watchdog *w, double look_s)
+{
+	struct timespec until = cau_timespec(isinf(look_s) ? 0 : look_s);
+	while (!w->woken && !w->ending) {
+		if (isinf(look_s))
+			pthread_cond_wait(&w->changed, &w->mutex);
+		else if (pthread_cond_timedwait(&w->changed, &w->mutex, &until))
+			break;
+	}
+	w->woken = false;
+}
+
+static void *watch(void *argument)
+{
+	cau_watchdog *w = argument;
+	pthread_mutex_lock(&w->mutex);
+	while (!w->ending) {
+		pthread_mutex_unlock(&w->mutex);
+		double look_s = w->look(w->user, cau_monotonic_s());
+		pthread_mutex_lock(&w->mutex);
+		wait_until(w, look_s);
+	}
+	pthread_mutex_unlock(&w->mutex);
+	return NULL;
+}
+
+cau_status cau_watchdog_create(cau_watchdog **made, double (*look)(void *user, double now_s),
+                               void *user, cau_error *error)
+{
+	*made = NULL;
+	cau_watchdog *w = calloc(1, sizeof *w);
+	if (!w)
+		return cau_fail(error, CAU_NO_MEMORY, NULL, "no memory for the watchdog");
+	pthread_condattr_t monotonic;
+	pthread_condattr_init(&monotonic);
+	pthread_condattr_setclock(&monotonic, CLOCK_MONOTONIC);
+	pthread_mutex_init(&w->mutex, NULL);
+	pthread_cond_init(&w->changed, &monotonic);
+	pthread_condattr_destroy(&monotonic);
+	w->look = look;
+	w->user = user;
+	w->started = pthread_create(&w->thread, NULL, watch, w) == 0;
+	if (!w->started) {
+		cau_watchdog_destroy(w);
+		return cau_fail(error, CAU_NO_MEMORY, NULL, "no watchdog thread");
+	}
+	*made = w;
+	return CAU_OK;
+}
+
+void cau_watchdog_destroy(cau_watchdog *w)
+{
+	if (!w)
+		return;
+	pthread_mutex_lock(&w->mutex);
+	w->ending = true;
+	pthread_cond_broadcast(&w->changed);
+	pthread_mutex_unlock(&w->mutex);
+	if (w->started)
+		pthread_join(w->thread, NULL);
+	pthread_cond_destroy(&w->changed);
+	pthread_mutex_destroy(&w->mutex);
+	free(w);
+}
+
+void cau_watchdog_wake(cau_watchdog *w)
+{
+	pthread_mutex_lock(&w->mutex);
+	w->woken = true;
+	pthread_cond_signal(&w->changed);
+	pthread_mutex_unlock(&w->mutex);
+}

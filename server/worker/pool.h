@@ -1,0 +1,40 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Worker threads that run tasks: one task on one worker at a time, of the tasks that are due the
+// one with the earliest deadline first. A task that is not due costs nothing.
+#pragma once
+
+#include <stdbool.h>
+#include <stdint.h>
+
+#include "cautery/status.h"
+
+typedef struct cau_worker_pool cau_worker_pool;
+
+// When a task wants to run next, on the monotonic clock.
+typedef struct cau_due {
+	double due_s;      // not before; INFINITY: when woken
+	double deadline_s; // orders the tasks that are due
+} cau_due;
+
+typedef struct cau_task {
+	cau_due (*run)(struct cau_task *task); // one slice of work, some milliseconds
+	// The pool's own:
+	cau_due next;
+	bool running, woken;
+	int32_t index;
+} cau_task;
+
+// `task_capacity` bounds the tasks at once. Threads run at `nice` (0 to 19).
+cau_status cau_worker_pool_create(cau_worker_pool **pool, int32_t threads, int32_t task_capacity,
+                                  int32_t nice, cau_error *error);
+// Ends after each worker's present slice. Tasks are the caller's. Takes NULL.
+void cau_worker_pool_destroy(cau_worker_pool *pool);
+
+// Adds a task, due at once. False if the pool is full.
+bool cau_worker_pool_add(cau_worker_pool *pool, cau_task *task);
+// Takes a task out and waits until no worker is inside it. Not to be called from its own slice.
+void cau_worker_pool_remove(cau_worker_pool *pool, cau_task *task);
+// Makes a task due now; if it is running, it runs once more. From any thread.
+void cau_worker_pool_wake(cau_worker_pool *pool, cau_task *task);
+// Tasks that are running or due.
+int32_t cau_worker_pool_busy(cau_worker_pool *pool);

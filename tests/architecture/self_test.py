@@ -1,0 +1,181 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Shows that each architecture test fails on a violation of its rule, and passes without one."""
+
+import os
+import shutil
+import subprocess
+import tempfile
+import unittest
+
+import formatting
+import includes
+import layout
+import symbols
+import text_rules
+
+
+class Tree(unittest.TestCase):
+    def setUp(self):
+        self.folder = tempfile.TemporaryDirectory()
+        self.root = self.folder.name
+        self.addCleanup(self.folder.cleanup)
+
+    def write(self, name, text):
+        path = os.path.join(self.root, name)
+        os.makedirs(os.path.dirname(path), exist_ok=True)
+        with open(path, "w", encoding="utf-8") as file:
+            file.write(text)
+        return path
+
+
+class Layout(unittest.TestCase):
+    def test_rooms_and_dotfiles_pass(self):
+        self.assertEqual(layout.violations(["core/a.c", "README.md", ".clang-format"]), [])
+
+    def test_a_stranger_is_named(self):
+        self.assertEqual(len(layout.violations(["utils/a.c", "notes.md", "core/a.c"])), 2)
+
+
+class TextRules(Tree):
+    LICENCE = "// SPDX-License-Identifier: GPL-3.0-or-later\n"
+
+    def found(self, name, text):
+        self.write(name, text)
+        return text_rules.violations(self.root, [name])
+
+    def test_clean_file_passes(self):
+        self.assertEqual(self.found("core/a.c", self.LICENCE + "int a; // /networks/x todo-list\n"), [])
+
+    def test_licence_line(self):
+        for name in ("a.c", "a.h", "a.ts", "a.sh", "a.py"):
+            self.assertEqual(len(self.found(name, "x\n")), 1, name)
+        self.assertEqual(len(self.found("run", "#!/bin/sh\ntrue\n")), 1)
+        self.assertEqual(self.found("run", "#!/bin/sh\n# " + self.LICENCE[3:]), [])
+
+    def test_leftovers(self):
+        for word in ("TO" "DO", "FIX" "ME", "XX" "X"):
+            self.assertEqual(len(self.found("a.md", f"see {word}: later\n")), 1, word)
+
+    def test_machine_paths(self):
+        for path in ("/wo" "rk/main", "/ro" "ot/.ssh", "/home/" "ann/src"):
+            self.assertEqual(len(self.found("a.md", f"in {path}\n")), 1, path)
+
+    def test_registry_hosts(self):
+        self.assertEqual(len(self.found("package-lock.json", "https://registry.np" "mjs.org/x")), 1)
+
+
+@unittest.skipUnless(shutil.which("clang-format"), "clang-format is not installed")
+class Formatting(Tree):
+    def test_a_crooked_file_differs_from_its_layout(self):
+        self.write(".clang-format", "BasedOnStyle: LLVM\n")
+        for text, same in (("int a;\n", True), ("int   a ;\n", False)):
+            self.write("a.c", text)
+            self.assertEqual(formatting.violations(self.root, ["a.c"]) == [], same)
+
+
+class Includes(Tree):
+    FILES = {
+        "core/types/cautery/status.h": "",
+        "core/include/cautery/session.h": "#include <cautery/status.h>\n",
+        "core/mesh/mesh.h": "",
+        "core/solve/factor.c": '#include "mesh/mesh.h"\n#include <cholmod.h>\n',
+        "protocol/include/cautery/frame.h": '#include "cautery/status.h"\n',
+        "protocol/json/scan.h": "",
+        "protocol/json/scan.c": '#include "scan.h"\n#include "json/scan.h"\n#include <cjson/cJSON.h>\n',
+        "clients/c/client.c": "#include <cautery/frame.h>\n#include <libwebsockets.h>\n",
+        "server/main.c": '#include <cautery/frame.h>\n#include <cautery/session.h>\n',
+    }
+
+    def found(self, name=None, text=""):
+        files = dict(self.FILES)
+        if name:
+            files[name] = text
+        for path, content in files.items():
+            self.write(path, content)
+        return includes.violations(self.root, sorted(files))
+
+    def test_clean_tree_passes(self):
+        self.assertEqual(self.found(), [])
+
+    def test_each_wrong_include_is_found(self):
+        wrong = (
+            ("core/solve/system.c", "#include <cholmod.h>\n"),
+            ("core/solve/system.c", "#include <suitesparse/cholmod.h>\n"),
+            ("core/mesh/a.c", "#include <cautery/frame.h>\n"),
+            ("core/mesh/a.c", '#include "json/scan.h"\n'),
+            ("core/mesh/a.c", '#include "../../protocol/json/scan.h"\n'),
+            ("core/mesh/a.c", '  #  include "cJSON.h"\n'),
+            ("core/mesh/a.c", "#include <time.h>\n"),
+            ("core/mesh/a.c", "#include <sys/socket.h>\n"),
+            ("protocol/json/a.c", "#include <cautery/session.h>\n"),
+            ("protocol/json/a.c", '#include "mesh/mesh.h"\n'),
+            ("protocol/json/a.c", "#include <libwebsockets.h>\n"),
+            ("server/a.c", "#include <cjson/cJSON.h>\n"),
+            ("clients/c/a.c", "#include <cautery/session.h>\n"),
+            ("clients/c/a.c", '#include "json/scan.h"\n'),
+            ("clients/c/a.c", '#include "server/x.h"\n#include "core/mesh/mesh.h"\n'),
+        )
+        for name, text in wrong:
+            with self.subTest(name=name, text=text):
+                self.assertEqual(len(self.found(name, text)), 1)
+
+    def test_the_shared_types_stay_small(self):
+        self.assertEqual(len(self.found("core/types/cautery/a.c", "")), 1)
+        self.assertEqual(len(self.found("core/types/cautery/a.h", "#include <sys/stat.h>\n")), 1)
+        many = [f"core/types/cautery/{i}.h" for i in range(9)]
+        for name in many:
+            self.write(name, "")
+        self.assertEqual(len(includes.shared_type_violations(self.root, many)), 1)
+
+
+class Symbols(Tree):
+    def compiled(self, source, text):
+        path = self.write(f"{source.split('/')[0]}/CMakeFiles/t.dir/{source.split('/', 1)[1]}", text)
+        subprocess.run(["cc", "-w", "-O1", "-c", path, "-o", path + ".o"], check=True)
+        return source.split("/")[0], path + ".o"
+
+    def found(self, *sources):
+        return symbols.violations([self.compiled(*source) for source in sources])
+
+    @staticmethod
+    def call(function):
+        return f"void {function}(void);\nvoid cau_f(void) {{ {function}(); }}\n"
+
+    def test_allowed_needs_pass(self):
+        for source, function in (("core/solve/factor.c", "cholmod_solve2"), ("core/mesh/file.c", "fopen"),
+                                 ("core/base/pool.c", "pthread_create"), ("protocol/json.c", "cJSON_Delete"),
+                                 ("server/ws.c", "lws_service"), ("server/clock.c", "clock_gettime")):
+            with self.subTest(source=source):
+                self.assertEqual(self.found((source, self.call(function))), [])
+
+    def test_each_wrong_need_is_found(self):
+        for source, function in (("core/solve/system.c", "cholmod_solve2"), ("server/a.c", "cholmod_start"),
+                                 ("core/mesh/a.c", "cJSON_Parse"), ("server/a.c", "cJSON_Parse"),
+                                 ("protocol/a.c", "lws_write"), ("core/a.c", "dds_write"),
+                                 ("core/heat/a.c", "socket"), ("core/heat/a.c", "connect"),
+                                 ("core/heat/a.c", "clock_gettime"), ("core/heat/a.c", "time"),
+                                 ("core/heat/a.c", "fopen"), ("core/heat/a.c", "fopen64"),
+                                 ("core/heat/a.c", "pthread_create"), ("core/heat/a.c", "__printf_chk"),
+                                 ("core/heat/a.c", "puts"), ("core/heat/a.c", "exit"),
+                                 ("core/heat/a.c", "rand"), ("protocol/a.c", "fopen"),
+                                 ("protocol/a.c", "getenv")):
+            with self.subTest(source=source, function=function):
+                self.assertEqual(len(self.found((source, self.call(function)))), 1)
+
+    def test_a_weak_need_counts(self):
+        text = "__attribute__((weak)) void dds_write(void);\nvoid cau_f(void) { if (dds_write) dds_write(); }\n"
+        self.assertEqual(len(self.found(("core/a.c", text))), 1)
+
+    def test_doors_between_rooms(self):
+        core = ("core/step.c", "void cau_step(void) {}\n")
+        use = "void cau_step(void);\nvoid {0}(void) {{ cau_step(); }}\n"
+        self.assertEqual(self.found(core, ("server/a.c", use.format("cau_a"))), [])
+        self.assertEqual(len(self.found(core, ("protocol/a.c", use.format("cau_a")))), 1)
+        self.assertEqual(len(self.found(core, ("clients/a.c", use.format("cau_a")))), 1)
+
+    def test_exported_names(self):
+        self.assertEqual(len(self.found(("core/a.c", "void helper(void) {}\n"))), 1)
+
+
+if __name__ == "__main__":
+    unittest.main()

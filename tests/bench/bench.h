@@ -1,0 +1,66 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// cautery-bench: what is measured and how (see the folder's README).
+#pragma once
+
+#include <stdbool.h>
+
+#include "cautery/session.h"
+
+typedef struct bench_options {
+	const char *scene, *scenes_directory;
+	int32_t threads, iterations, steps;
+	int solver, precision; // -1: the scene's
+	bool cut, error, scaling, json;
+	const char *instruction_set;
+} bench_options;
+
+typedef struct bench_timing {
+	double median_ms, p99_ms, steps_per_s;
+	double stage_ms[CAU_STAGE_COUNT]; // medians
+} bench_timing;
+
+double bench_now_s(void);
+// Median and p99 of `count` values; sorts them.
+double bench_quantile(double *values, int32_t count, double quantile);
+
+// Reads the scene by name or path and lays the options over it. NULL and a line on standard error
+// if not.
+cau_scene_def *bench_scene(const bench_options *options);
+cau_session *bench_session(const cau_scene_def *scene, const bench_options *options,
+                           int32_t threads);
+void bench_submit(cau_session *session, const cau_command *command);
+
+// steps.c: plain steps with heat and contact on. Returns 0, or 1 after a line on standard error.
+typedef struct bench_steps_result {
+	bench_timing timing;
+	double frame_over_cholmod, cholmod_ms, allocations_per_step, bytes_session;
+	int32_t vertices, tetrahedra, triangles, contacts;
+	uint64_t hash;
+} bench_steps_result;
+int bench_steps(const bench_options *options, bench_steps_result *result);
+
+// cut.c: an energized tool is drawn across the scene.
+typedef struct bench_cut_result {
+	double plain_median_ms, cut_p99_ms, cut_p99_over_plain, deferred_max_s;
+	int32_t elements_removed, cutting_steps, refactorisations;
+} bench_cut_result;
+int bench_cut(const bench_options *options, bench_cut_result *result);
+
+// error.c: error of K iterations against the converged step, under the scene's pull.
+typedef struct bench_error_result {
+	double error_at_k, error_max, ms_to_1pct;
+	int32_t iterations_to_1pct;
+} bench_error_result;
+int bench_error(const bench_options *options, bench_error_result *result);
+
+// scaling.c: step time against size, the slab grown in its plane.
+typedef struct bench_scaling_result {
+	int32_t count;
+	int32_t tetrahedra[4];
+	double ms[4];
+	double exponent;
+} bench_scaling_result;
+int bench_scaling(const bench_options *options, bench_scaling_result *result);
+
+// allocation.c: calls of malloc, calloc, realloc, aligned_alloc by the whole program so far.
+uint64_t bench_allocations(void);

@@ -1,0 +1,96 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+#include <time.h>
+
+#include "bench/bench.h"
+#include "cautery/scene_json.h"
+
+double bench_now_s(void)
+{
+	struct timespec now;
+	clock_gettime(CLOCK_MONOTONIC, &now);
+	return (double)now.tv_sec + 1e-9 * (double)now.tv_nsec;
+}
+
+static int compare(const void *a, const void *b)
+{
+	double x = *(const double *)a, y = *(const double *)b;
+	return (x > y) - (x < y);
+}
+
+double bench_quantile(double *values, int32_t count, double quantile)
+{
+	if (count <= 0)
+		return 0;
+	qsort(values, (size_t)count, sizeof *values, compare);
+	int32_t at = (int32_t)(quantile * (count - 1) + 0.5);
+	return values[at];
+}
+
+static char *read_file(const char *path, size_t *bytes)
+{
+	FILE *file = fopen(path, "rb");
+	if (!file)
+		return NULL;
+	char *text = NULL;
+	if (!fseek(file, 0, SEEK_END)) {
+		long size = ftell(file);
+		rewind(file);
+		text = size >= 0 ? malloc((size_t)size + 1) : NULL;
+		*bytes = text ? fread(text, 1, (size_t)size, file) : 0;
+	}
+	fclose(file);
+	return text;
+}
+
+cau_scene_def *bench_scene(const bench_options *options)
+{
+	char path[512];
+	if (strchr(options->scene, '/') || strchr(options->scene, '.'))
+		snprintf(path, sizeof path, "%s", options->scene);
+	else
+		snprintf(path, sizeof path, "%s/%s.json", options->scenes_directory, options->scene);
+	size_t bytes = 0;
+	char *text = read_file(path, &bytes);
+	cau_scene_def *scene = calloc(1, sizeof *scene);
+	cau_error error = {0};
+	if (!text || !scene || cau_scene_from_json(path, text, bytes, scene, &error)) {
+		fprintf(stderr, "cautery-bench: %s: %s %s\n", path, error.path,
+		        text ? error.reason : "cannot be read");
+		free(scene);
+		free(text);
+		return NULL;
+	}
+	free(text);
+	scene->iterations = options->iterations;
+	if (options->solver >= 0)
+		scene->solver = options->solver;
+	if (options->precision >= 0)
+		scene->precision = options->precision;
+	return scene;
+}
+
+cau_session *bench_session(const cau_scene_def *scene, const bench_options *options,
+                           int32_t threads)
+{
+	cau_session_def def = cau_default_session_def();
+	def.scene = scene;
+	def.thread_count = threads;
+	def.instruction_set = options->instruction_set;
+	cau_session *session = NULL;
+	cau_error error = {0};
+	if (cau_session_create(&def, &session, &error))
+		fprintf(stderr, "cautery-bench: %s: %s %s\n", options->scene, error.path, error.reason);
+	return session;
+}
+
+void bench_submit(cau_session *session, const cau_command *command)
+{
+	cau_error error = {0};
+	if (cau_session_submit(session, command, &error)) {
+		fprintf(stderr, "cautery-bench: %s %s\n", error.path, error.reason);
+		exit(1);
+	}
+}

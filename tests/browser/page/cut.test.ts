@@ -1,0 +1,90 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Join the demo, drag the hook across the fascia with energy on, see faces go; fork; rewind; whole again.
+import type { Browser } from 'playwright-core';
+
+import { Daemon } from './daemon';
+import { colourDistance, launch, ViewerPage } from './viewer_page';
+
+const FACES = 6000; // of deploy/scenes/fascia.json
+const HOT_C = 900;
+/** Tissue and drape differ by about 130 of 441; drawing, light and antialiasing by less than 15. */
+const ANOTHER_COLOUR = 60;
+
+describe('a cut in the demo', () => {
+  const daemon = new Daemon(['--demo', 'fascia']);
+  let browser: Browser;
+  let viewer: ViewerPage;
+
+  beforeAll(async () => {
+    await daemon.start();
+    browser = await launch();
+    viewer = await ViewerPage.open(browser, daemon.url, {}, 'no');
+    await viewer.live('d1-fascia');
+  });
+  afterAll(async () => {
+    await browser.close();
+    await daemon.end();
+  });
+
+  it('greets with three lines that go away for good', async () => {
+    const hint = viewer.page.locator('#hint');
+    expect(await hint.locator('> p').count()).toBe(3);
+    await hint.getByRole('button', { name: 'Understood' }).click();
+    expect(await hint.isVisible()).toBe(false);
+    expect(await viewer.page.evaluate(() => localStorage.getItem('hint'))).toBe('seen');
+  });
+
+  it('parts the fascia where the hook is dragged, in the model and in the picture', async () => {
+    expect(await viewer.faces()).toBe(FACES);
+    const whole = await viewer.colourAt([0, 0, 0]);
+    await viewer.heatTool(HOT_C);
+    await viewer.grab([-0.02, 0, 0]);
+    await viewer.cut(0, 0, -0.02, 0.02, 10);
+    const left = await viewer.faces();
+    expect(left).toBeLessThan(FACES - 20);
+    await viewer.page.keyboard.down('KeyS'); // the hook out of the picture's middle
+    await viewer.until(() => window.cautery.tip[2] > 0.02, null, 'the hook is lifted');
+    await viewer.page.keyboard.up('KeyS');
+    await viewer.screenshot('fascia-cut');
+    expect(colourDistance(await viewer.colourAt([0, 0, 0]), whole)).toBeGreaterThan(ANOTHER_COLOUR);
+  });
+
+  it('marks the cut in the timeline', async () => {
+    await viewer.until(() => document.querySelector('#time .mark.cut') !== null, null, 'a cut is marked');
+  });
+
+  it('forks: the new session has the cut', async () => {
+    const left = await viewer.faces();
+    await viewer.page.getByRole('tab', { name: 'Sessions' }).click();
+    await viewer.page.getByLabel('Name of the fork').fill('twin');
+    await viewer.page.getByRole('button', { name: 'Fork this session' }).click();
+    await viewer.live('d1-twin');
+    expect(await viewer.faces()).toBe(left);
+  });
+
+  it('rewinds the first session: its tissue is whole again', async () => {
+    const cut = await viewer.colourAt([0.01, 0, 0]);
+    await viewer.page.getByRole('button', { name: 'd1-fascia', exact: true }).click();
+    await viewer.live('d1-fascia');
+    const { epoch } = await viewer.state();
+    await viewer.page.locator('#tick').focus();
+    await viewer.page.keyboard.press('Home');
+    await viewer.page.locator('#rewind').click();
+    await viewer.until((before) => window.cautery.epoch !== before, epoch, 'another epoch');
+    await viewer.until((count) => Object.values(window.cautery.drawnFaces).reduce((a, b) => a + b, 0) === count, FACES, 'whole again');
+    expect((await viewer.state()).energized).toBe(false);
+    await viewer.drawn();
+    expect(colourDistance(await viewer.colourAt([0.01, 0, 0]), cut)).toBeGreaterThan(ANOTHER_COLOUR);
+  });
+
+  it('leaves the fork cut', async () => {
+    await viewer.page.getByRole('button', { name: 'd1-twin', exact: true }).click();
+    await viewer.live('d1-twin');
+    expect(await viewer.faces()).toBeLessThan(FACES);
+  });
+
+  it('never broke the daemon’s headers and never left its host', () => {
+    expect(viewer.complaints).toEqual([]);
+    expect([...viewer.hosts]).toEqual([`127.0.0.1:${daemon.port}`]);
+  });
+});

@@ -1,0 +1,94 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Two pages on one session agree; only the driver's controls are live; others can ask; the page that
+// goes out of sight loses its energy; a killed daemon comes back and so do the pages.
+import type { Browser } from 'playwright-core';
+
+import { Daemon } from './daemon';
+import { launch, ViewerPage } from './viewer_page';
+
+const HOT_C = 900;
+
+describe('two pages on one session', () => {
+  const daemon = new Daemon(['--demo', 'fascia']);
+  let browser: Browser;
+  let driver: ViewerPage;
+  let watcher: ViewerPage;
+
+  beforeAll(async () => {
+    await daemon.start();
+    browser = await launch();
+    driver = await ViewerPage.open(browser, daemon.url);
+    await driver.live('d1-fascia');
+    watcher = await ViewerPage.open(browser, `${daemon.url}?session=d1-fascia`);
+    await watcher.live('d1-fascia');
+  });
+  afterAll(async () => {
+    await browser.close();
+    await daemon.end();
+  });
+
+  it('lets only the driver heat', async () => {
+    await driver.page.bringToFront();
+    await driver.heatTool(HOT_C);
+    await driver.grab([0, 0, 0]);
+    expect(await driver.page.locator('#energy').isEnabled()).toBe(true);
+    expect(await watcher.page.locator('#energy').isDisabled()).toBe(true);
+    expect((await watcher.state()).driving).toBe(false);
+  });
+
+  it('agrees on what is cut and where the tool is', async () => {
+    await driver.cut(0, 0, 0, 0.012, 4);
+    await driver.page.getByRole('button', { name: 'Pause' }).click();
+    for (const page of [driver, watcher]) await page.until(() => window.cautery.paused, null, 'paused');
+    const { tick } = await driver.state();
+    await watcher.until((wanted) => window.cautery.tick === wanted, tick, 'the same tick');
+    const [one, other] = [await driver.state(), await watcher.state()];
+    expect(other.drawnFaces).toEqual(one.drawnFaces);
+    expect(other.tip).toEqual(one.tip);
+    expect(other.epoch).toBe(one.epoch);
+    await driver.page.getByRole('button', { name: 'Resume' }).click();
+    await driver.until(() => !window.cautery.paused, null, 'running');
+  });
+
+  it('asks the driver, who hands the tool over', async () => {
+    await watcher.page.getByRole('tab', { name: 'Tools' }).click();
+    await watcher.page.getByRole('button', { name: 'Ask its driver' }).click();
+    await driver.page.getByRole('button', { name: 'Hand over' }).click();
+    await watcher.until(() => window.cautery.driving, null, 'the watcher drives');
+    await driver.until(() => !window.cautery.driving, null, 'the driver no longer does');
+  });
+
+  it('cuts energy when the page loses the focus', async () => {
+    await watcher.page.bringToFront();
+    await watcher.grab([-0.02, 0.01, 0]);
+    await watcher.page.keyboard.down('Space');
+    await watcher.until(() => window.cautery.energized, null, 'energy is on');
+    await watcher.page.evaluate(() => window.dispatchEvent(new Event('blur')));
+    await watcher.until(() => !window.cautery.energized, null, 'energy is off');
+    await watcher.page.keyboard.up('Space');
+    await watcher.page.mouse.up();
+    expect(await watcher.page.locator('#notices').textContent()).toContain('Energy is off');
+  });
+
+  it('says that the daemon is lost, and comes back to the same tissue', async () => {
+    await watcher.page.getByRole('button', { name: 'Pause' }).click();
+    for (const page of [driver, watcher]) await page.until(() => window.cautery.paused, null, 'paused');
+    const { tick } = await watcher.state();
+    await driver.until((wanted) => window.cautery.tick === wanted, tick, 'the same tick');
+    // Frames may run ahead of the store; the notification is sent when the pause is in it.
+    await driver.until(() => document.querySelector('.session.here small')?.textContent?.includes('paused') === true, null, 'the pause is stored');
+    const before = await driver.state();
+    await daemon.kill();
+    await driver.until(() => window.cautery.link === 'lost', null, 'lost');
+    expect(await driver.page.locator('#link').textContent()).toContain('No connection');
+    await daemon.start();
+    for (const page of [driver, watcher]) {
+      await page.until((epoch) => window.cautery.link === 'online' && window.cautery.epoch !== epoch, before.epoch, 'a new epoch');
+      const after = await page.state();
+      expect(after.tick).toBe(before.tick);
+      expect(after.drawnFaces).toEqual(before.drawnFaces);
+      expect(after.tip).toEqual(before.tip);
+      expect(after.energized).toBe(false);
+    }
+  });
+});

@@ -1,0 +1,158 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// A page of the viewer in Chromium, under the daemon's own headers, and what hands do to it.
+import { mkdirSync } from 'node:fs';
+import { join } from 'node:path';
+
+import { chromium, type Browser, type BrowserContextOptions, type Page } from 'playwright-core';
+
+import type { Inspection } from '../../../clients/web/src/main';
+
+declare global {
+  interface Window {
+    cautery: Inspection;
+  }
+}
+
+const FLAGS = [
+  '--no-sandbox', '--use-angle=swiftshader', '--enable-unsafe-swiftshader', '--disable-quic', '--no-first-run',
+  '--disable-background-networking', '--disable-component-update', '--disable-sync',
+];
+const PATIENCE_MS = 60_000; // two cores may be busy with other tests
+
+export function launch(): Promise<Browser> {
+  return chromium.launch({ executablePath: '/usr/bin/chromium', headless: true, args: FLAGS });
+}
+
+export class ViewerPage {
+  /** console errors, uncaught errors and failed requests */
+  readonly complaints: string[] = [];
+  readonly hosts = new Set<string>();
+
+  private constructor(readonly page: Page) {}
+
+  static async open(browser: Browser, url: string, options: BrowserContextOptions = {}, hint = 'seen'): Promise<ViewerPage> {
+    const context = await browser.newContext({ viewport: { width: 1100, height: 720 }, colorScheme: 'dark', ...options });
+    const page = await context.newPage();
+    const viewer = new ViewerPage(page);
+    page.on('console', (message) => {
+      if (message.type() === 'error') viewer.complaints.push(message.text());
+    });
+    page.on('pageerror', (error) => viewer.complaints.push(String(error)));
+    page.on('request', (request) => viewer.hosts.add(new URL(request.url()).host));
+    page.on('websocket', (socket) => viewer.hosts.add(new URL(socket.url()).host));
+    await page.addInitScript((seen) => localStorage.setItem('hint', seen), hint);
+    await page.goto(url);
+    return viewer;
+  }
+
+  async close(): Promise<void> {
+    await this.page.context().close();
+  }
+
+  /** Asks once per animation frame: the page's headers forbid what Playwright's own waiting would evaluate. */
+  async until<A>(condition: (argument: A) => boolean, argument: A, what: string): Promise<void> {
+    const end = Date.now() + PATIENCE_MS;
+    while (!(await this.page.evaluate(condition as never, argument))) {
+      if (Date.now() > end) throw new Error(`never came true: ${what}; ${JSON.stringify(await this.state())}`);
+      await this.page.evaluate(() => new Promise(requestAnimationFrame));
+    }
+  }
+
+  state(): Promise<Omit<Inspection, 'project'>> {
+    return this.page.evaluate(() => JSON.parse(JSON.stringify(window.cautery)) as Omit<Inspection, 'project'>);
+  }
+
+  async faces(): Promise<number> {
+    return Object.values((await this.state()).drawnFaces).reduce((sum, count) => sum + count, 0);
+  }
+
+  /** Frames of a session are drawn. */
+  async live(session: string): Promise<void> {
+    await this.until((wanted) => window.cautery.session === wanted && window.cautery.tick > 0, session, `${session} is live`);
+    await this.drawn();
+  }
+
+  /** The newest frame is in the picture. */
+  async drawn(): Promise<void> {
+    const { picturesDrawn } = await this.state();
+    await this.until((count) => window.cautery.idle || window.cautery.picturesDrawn > count + 1, picturesDrawn, 'a new picture');
+  }
+
+  project(point: [number, number, number]): Promise<{ x: number; y: number }> {
+    return this.page.evaluate((p) => window.cautery.project(p), point);
+  }
+
+  /** Presses on a point of the tissue, which takes a free tool, until the tip is there. */
+  async grab(point: [number, number, number]): Promise<void> {
+    const { x, y } = await this.project(point);
+    await this.page.mouse.move(x, y);
+    await this.page.mouse.down();
+    await this.until(() => window.cautery.driving, null, 'the tool is taken');
+    await this.page.mouse.move(x + 1, y);
+    await this.until(
+      ([px, py]) => Math.hypot(window.cautery.tip[0] - px, window.cautery.tip[1] - py) < 0.003,
+      point,
+      'the tip is where the hand is',
+    );
+  }
+
+  /** Leads the tool along x with energy on, onwards as soon as a part of the way is cut. */
+  async cut(y: number, z: number, from: number, to: number, stepsTo: number): Promise<void> {
+    await this.page.keyboard.down('Space');
+    await this.until(() => window.cautery.energized, null, 'energy is on');
+    for (let i = 1; i <= stepsTo; i++) {
+      const before = await this.faces();
+      const at = await this.project([from + ((to - from) * i) / stepsTo, y, z]);
+      await this.page.mouse.move(at.x, at.y);
+      await this.until(
+        (count) => Object.values(window.cautery.drawnFaces).reduce((sum, n) => sum + n, 0) !== count,
+        before,
+        `faces go at part ${i} of the way`,
+      );
+    }
+    await this.page.keyboard.up('Space');
+    await this.page.mouse.up();
+    await this.until(() => !window.cautery.energized, null, 'energy is off');
+  }
+
+  /** Takes the tool and makes it hotter: a test that waits for tissue to take heat up would only wait. */
+  async heatTool(celsius: number): Promise<void> {
+    const { page } = this;
+    await page.getByRole('tab', { name: 'Tools' }).click();
+    await page.locator('#take').click();
+    await this.until(() => window.cautery.driving, null, 'the tool is taken');
+    await page.locator('#panel-tools input[name=temperature_c]').fill(String(celsius));
+    await page.locator('#panel-tools button', { hasText: 'Apply' }).click();
+    await this.until((wanted) => window.cautery.tool?.temperature_c === wanted, celsius, 'the daemon has the temperature');
+    await page.getByRole('tab', { name: 'Sessions' }).click();
+  }
+
+  async screenshot(name: string): Promise<void> {
+    const folder = process.env['CAUTERY_SCREENSHOTS'] ?? '/tmp/cautery-screenshots';
+    mkdirSync(folder, { recursive: true });
+    await this.page.screenshot({ path: join(folder, `${name}.png`) });
+  }
+
+  /** Mean colour of a square of the page, 0 to 255. */
+  async colourAt(point: [number, number, number], half = 5): Promise<[number, number, number]> {
+    const { x, y } = await this.project(point);
+    const clip = { x: Math.round(x) - half, y: Math.round(y) - half, width: 2 * half, height: 2 * half };
+    const png = (await this.page.screenshot({ clip })).toString('base64');
+    return this.page.evaluate(async (data) => {
+      const image = new Image();
+      image.src = `data:image/png;base64,${data}`;
+      await image.decode();
+      const canvas = new OffscreenCanvas(image.width, image.height);
+      const context = canvas.getContext('2d')!;
+      context.drawImage(image, 0, 0);
+      const { data: bytes } = context.getImageData(0, 0, image.width, image.height);
+      const sum = [0, 0, 0];
+      for (let i = 0; i < bytes.length; i++) if (i % 4 < 3) sum[i % 4] += bytes[i];
+      return sum.map((value) => (4 * value) / bytes.length) as [number, number, number];
+    }, png);
+  }
+}
+
+export function colourDistance(a: readonly number[], b: readonly number[]): number {
+  return Math.hypot(...a.map((value, i) => value - b[i]));
+}

@@ -1,0 +1,37 @@
+#!/usr/bin/env bash
+# SPDX-License-Identifier: GPL-3.0-or-later
+# One stage of the viewer's tests: run_viewer_tests.sh types|lint|unit|build|browser
+# Exit code 77: skipped, with the reason. ctest sets the environment (tests/browser/CMakeLists.txt).
+set -euo pipefail
+
+web=$(cd "$(dirname "${BASH_SOURCE[0]}")/../../clients/web" && pwd)
+cd "$web"
+
+skip() {
+	echo "skipped: $*"
+	exit 77
+}
+
+command -v npm >/dev/null || skip "npm is not installed"
+[ -d node_modules/vite ] || skip "no packages in clients/web/node_modules (npm ci there installs them)"
+
+case ${1:-} in
+types) exec npm run --silent types ;;
+lint) exec npm run --silent lint ;;
+build) exec npm run --silent build ;;
+unit)
+	mkdir -p "$CAUTERY_FRAMES"
+	"$CAUTERY_WRITE_FRAMES" "$CAUTERY_FRAMES"
+	exec npm run --silent unit
+	;;
+browser)
+	[ -x /usr/bin/chromium ] || skip "no /usr/bin/chromium"
+	[ -x "${CAUTERYD:-}" ] || skip "the daemon is not built here"
+	mkdir -p "$CAUTERY_SCREENSHOTS"
+	exec nice npm run --silent browser
+	;;
+*)
+	echo "usage: run_viewer_tests.sh types|lint|unit|build|browser" >&2
+	exit 2
+	;;
+esac

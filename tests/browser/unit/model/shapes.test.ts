@@ -1,0 +1,94 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+import { colourAt } from '../../../../clients/web/src/model/colour_maps';
+import { fibreFrame, materialCoordinates } from '../../../../clients/web/src/model/fibres';
+import { pick } from '../../../../clients/web/src/model/pick';
+import { samplesCsv } from '../../../../clients/web/src/model/samples';
+import { hasHeat, hasJaws, toolParts } from '../../../../clients/web/src/model/tool_parts';
+import { TOOL_SHAPES, type LayerDescription } from '../../../../clients/web/src/wire/messages.gen';
+
+const EXACT = 1e-9; // m: sums of a few doubles
+
+describe('tool parts', () => {
+  it.each(TOOL_SHAPES)('%s: hot parts end at the tip, a cold shaft leads up', (shape) => {
+    const parts = toolParts({ name: 'it', shape, hot_radius_m: 0.002, tip_length_m: 0.01 });
+    expect(parts.some((part) => part.hot)).toBe(hasHeat(shape));
+    expect(parts.some((part) => part.jaw !== undefined)).toBe(hasJaws(shape));
+    const shaft = parts.at(-1)!;
+    expect(shaft.hot).toBe(false);
+    expect(shaft.solid === 'capsule' && shaft.to[2]).toBeGreaterThan(0.1);
+  });
+
+  it('has the core’s hook: foot about the axis, heel of a quarter, neck to the shaft', () => {
+    const [foot, heel, neck, shaft] = toolParts({ name: 'hook', shape: 'hook', hot_radius_m: 0.001, tip_length_m: 0.008, shaft_radius_m: 0.002 });
+    expect(foot).toMatchObject({ from: [-0.002, 0, 0], to: [0.004, 0, 0], radius: 0.001 });
+    expect(heel).toMatchObject({ center: [-0.002, 0, 0.002], bend: 0.002 });
+    expect(neck).toMatchObject({ from: [-0.004, 0, 0.004], radius: 0.001 });
+    // the shaft's surface begins one shaft radius below the neck's end
+    if (neck.solid !== 'capsule' || shaft.solid !== 'capsule') throw new Error('not capsules');
+    expect(Math.abs(shaft.from[2] - neck.to[2])).toBeLessThan(EXACT);
+  });
+});
+
+describe('picking', () => {
+  const position = Float32Array.from([0, 0, 0, 1, 0, 0, 0, 1, 0, 0, 0, -1, 1, 0, -1, 0, 1, -1]);
+  const near = Uint32Array.from([0, 1, 2]);
+  const far = Uint32Array.from([3, 5, 4]);
+
+  it('finds the nearest of several batches, from either side', () => {
+    expect(pick([0.2, 0.2, 5], [0, 0, -1], position, [far, near])).toEqual({ distance: 5, batch: 1, vertex: 0 });
+    expect(pick([0.2, 0.2, -5], [0, 0, 1], position, [far, near])).toMatchObject({ distance: 4, batch: 0 });
+  });
+
+  it('sees through what is hidden and misses what is beside', () => {
+    expect(pick([0.2, 0.2, 5], [0, 0, -1], position, [far, null])).toMatchObject({ distance: 6, batch: 0 });
+    expect(pick([0.9, 0.9, 5], [0, 0, -1], position, [far, near])).toBeNull();
+    expect(pick([0.2, 0.2, 5], [0, 0, 1], position, [far, near])).toBeNull();
+  });
+});
+
+describe('fibres', () => {
+  const layers: LayerDescription[] = [{ name: 'sheet', kind: 'fascia', first_face: 0, face_count: 1, element_count: 1 }];
+  const topology = { faces: Int32Array.from([0, 1, 2]), faceLayers: Int32Array.from([0]), rest: new Int32Array(9) };
+  const rest = Float32Array.from([0, 0, 0, 0.1, 0, 0, 0, 0.1, 0]);
+
+  it('makes three directions at right angles', () => {
+    for (const fibre of [[1, 0, 0], [0, 0, 2], [1, 2, 3], [0, 0, 0]] as [number, number, number][]) {
+      const [a, b, c] = fibreFrame(fibre);
+      for (const [u, v] of [[a, b], [b, c], [a, c]]) expect(u[0] * v[0] + u[1] * v[1] + u[2] * v[2]).toBeCloseTo(0, 12);
+      expect(Math.hypot(...a)).toBeCloseTo(1, 12);
+    }
+  });
+
+  it('goes along the layer’s direction without texture', () => {
+    const scene = { name: 's', layers: [{ kind: 'fascia' as const, name: 'sheet', fibre: [0, 1, 0] as [number, number, number] }] };
+    const material = materialCoordinates({ ...topology, texture: null }, rest, layers, scene);
+    expect(material[6]).toBeCloseTo(0.1, 7);
+    expect(material[3]).toBeCloseTo(0, 7);
+  });
+
+  it('goes along the texture where there is one, in metres', () => {
+    const texture = Float32Array.from([0, 0, 0, 2, -2, 0]); // turned by a right angle, 2 units for 0.1 m
+    const material = materialCoordinates({ ...topology, texture }, rest, layers, { name: 's' });
+    expect([...material.subarray(3, 5)].map((v) => Number(v.toFixed(6)))).toEqual([0, 0.1]);
+    expect([...material.subarray(6, 8)].map((v) => Number(v.toFixed(6)))).toEqual([-0.1, 0]);
+  });
+});
+
+describe('what people save and see', () => {
+  it('writes samples as CSV, empty where statistics are missing', () => {
+    const sample = { atS: 1.5, tick: 9, latencyMs: 2, bytes: 100, decodeMs: 0.1, statistics: null, forceN: 0.5, energyJ: 3 };
+    const [head, row, end] = samplesCsv([sample]).split('\n');
+    expect(head.split(',').slice(0, 4)).toEqual(['time_s', 'tick', 'latency_ms', 'frame_bytes']);
+    expect(row.split(',').slice(0, 8)).toEqual(['1.5', '9', '2', '100', '0.1', '0.5', '3', '']);
+    expect(row.split(',')).toHaveLength(head.split(',').length);
+    expect(end).toBe('');
+  });
+
+  it('has a colour map that only gets lighter', () => {
+    const light = Array.from({ length: 64 }, (_, i) => {
+      const [r, g, b] = colourAt(i / 63);
+      return 0.2126 * r + 0.7152 * g + 0.0722 * b;
+    });
+    light.slice(1).forEach((value, i) => expect(value).toBeGreaterThan(light[i]));
+  });
+});

@@ -1,0 +1,69 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Frames of the C encoder (write_frames) against what the C decoder made of them, bit for bit:
+// meshoptimizer's codec, all widths and references, 24 frames in a chain.
+import { existsSync, readFileSync } from 'node:fs';
+import { join } from 'node:path';
+
+import { FrameDecoder } from '../../../../clients/web/src/wire/decoder';
+import { decoderReady } from '../../../../clients/web/src/wire/elements';
+import { decodeTopology } from '../../../../clients/web/src/wire/topology';
+
+const folder = process.env['CAUTERY_FRAMES'];
+const COLUMNS = 40;
+const ROWS = 25;
+const FRAMES = 24;
+const SHAPE = {
+  session_number: 3,
+  profile: 1,
+  vertex_count: COLUMNS * ROWS,
+  face_count: 2 * (COLUMNS - 1) * (ROWS - 1),
+};
+
+function read(kind: string, number: number): Uint8Array {
+  return new Uint8Array(readFileSync(join(folder ?? '', `${kind}-${String(number).padStart(2, '0')}.bin`)));
+}
+
+function expectState(decoder: FrameDecoder, number: number): void {
+  const bytes = read('state', number);
+  const view = new DataView(bytes.buffer, bytes.byteOffset);
+  const { state } = decoder;
+  expect(state.epoch).toBe(view.getBigUint64(0, true));
+  expect(state.sequence).toBe(Number(view.getBigUint64(8, true)));
+  expect(state.tick).toBe(Number(view.getBigUint64(16, true)));
+  let offset = 24;
+  for (const array of [state.quantised, state.mask, state.exposure, state.charring, state.stress]) {
+    const wanted = bytes.slice(offset, offset + array.byteLength);
+    expect(Buffer.compare(new Uint8Array(array.buffer), wanted), `array at ${offset} of frame ${number}`).toBe(0);
+    offset += array.byteLength;
+  }
+  expect(offset).toBe(bytes.byteLength);
+}
+
+describe.skipIf(folder === undefined || !existsSync(join(folder, 'frame-00.bin')))('frames of the C encoder', () => {
+  beforeAll(async () => decoderReady);
+
+  it('makes the same state after every frame', () => {
+    const decoder = new FrameDecoder(SHAPE);
+    for (let i = 0; i < FRAMES; i++) {
+      expect(decoder.decode(read('frame', i)).kind).toBe('applied');
+      expectState(decoder, i);
+    }
+    expect(decoder.state.tools.map((tool) => tool.name)).toEqual(['hook', 'left-grasper']);
+    expect(decoder.state.statistics).toMatchObject({ iterations: 10, contacts: FRAMES - 1 });
+    expect(decoder.state.statistics?.stageS.slice(0, 2)).toEqual([0.25, 0.5]);
+  });
+
+  it('makes the state of the chain from one key frame', () => {
+    const decoder = new FrameDecoder(SHAPE);
+    expect(decoder.decode(read('key', FRAMES - 1))).toMatchObject({ kind: 'applied', key: true });
+    expectState(decoder, FRAMES - 1);
+  });
+
+  it('reads the topology', () => {
+    const topology = decodeTopology(SHAPE, read('topology', 0));
+    expect([...topology.faces.subarray(0, 6)]).toEqual([0, 1, 2, 7, 8, 9]);
+    expect([...topology.faceLayers.subarray(0, 4)]).toEqual([0, 1, 2, 0]);
+    expect([...topology.texture!.subarray(6, 12)]).toEqual([0.25, -0, 0.25, -0.5, 0.25, -1]);
+    expect(topology.rest[3]).toBe(40);
+  });
+});

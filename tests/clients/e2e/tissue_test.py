@@ -1,0 +1,104 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""The clients' programs against the real daemon: tissue is cut, meshes are uploaded."""
+
+import json
+import os
+import unittest
+
+import programs
+
+
+def sheet(cells, size):
+    """A flat square sheet as .obj with texture coordinates."""
+    side = cells + 1
+    lines = [f"v {size * (i % side) / cells} {size * (i // side) / cells} 0" for i in range(side * side)]
+    lines += [f"vt {(i % side) / cells} {(i // side) / cells}" for i in range(side * side)]
+    for y in range(cells):
+        for x in range(cells):
+            a = y * side + x + 1
+            b, c, d = a + 1, a + side + 1, a + side
+            lines += [f"f {a}/{a} {b}/{b} {c}/{c}", f"f {a}/{a} {c}/{c} {d}/{d}"]
+    return "\n".join(lines) + "\n"
+
+
+class Tissue(programs.Case):
+    real = True
+
+    def test_the_script_of_a_scene_cuts_it(self):
+        session = self.create("fascia")
+        with open(os.path.join(os.environ["SCENES"], "scripts", "fascia-cut.jsonl"),
+                  encoding="utf-8") as lines:
+            first = [line for line in lines if json.loads(line)["tick"] <= 420]
+        result = self.json("run", session, self.path("cut.jsonl", "".join(first)))
+        self.assertEqual(result["refused"], 0)
+        self.assertGreater(result["faces_gone"], 0)
+        self.assertGreater(result["edges_parted"], 0)
+        self.assertGreaterEqual(self.json("watch", session, "--seconds", 0.2)["edges_parted"],
+                                result["edges_parted"])
+
+    def test_the_teaching_client_cuts(self):
+        out, _ = self.program("cautery-teaching", self.daemon.url)
+        gone = [int(line.split(" faces gone")[0].split()[-1]) for line in out.splitlines()
+                if "faces gone" in line]
+        self.assertEqual(gone[0], 0)
+        self.assertGreater(gone[-1], 0)
+        self.assertEqual(gone, sorted(gone))
+        self.assertIn("energy on", out)
+
+    def test_a_mesh_is_uploaded(self):
+        file = self.path("Left Knee.obj", sheet(12, 60))
+        session = self.create("--mesh", file, "--unit-m", 0.001)
+        info = self.json("info", session)
+        self.assertEqual(info["summary"]["scene"], "left-knee")
+        self.assertEqual(info["summary"]["vertex_count"], 169)
+        self.assertEqual(info["triangle_count"], 288)
+        self.assertEqual([d["tool"] for d in info["drivers"]], ["ball"])
+        self.assertAlmostEqual(info["definition"]["tools"][0]["position_m"][0], 0.03, places=4)
+        self.assertEqual(len(self.json("ls")["sessions"]), 1)  # the one that only measured is gone
+
+    def test_a_scene_file_brings_its_mesh(self):
+        self.path("flat.obj", sheet(4, 0.05))
+        scene = {"name": "flat", "meshes": [{"source": "file", "name": "flat", "file": "flat.obj"}],
+                 "layers": [{"kind": "fascia", "name": "fascia", "mesh": "flat"}],
+                 "pins": [{"kind": "rim", "layer": "fascia"}]}
+        session = self.create("--definition", self.path("flat.json", json.dumps(scene)))
+        self.assertEqual(self.json("info", session)["summary"]["vertex_count"], 25)
+
+    def test_a_bad_mesh_is_refused(self):
+        file = self.path("bad.obj", "v 0 0 0\nv 1 0 0\nv 2 0 0\nf 1 2 3\n")
+        _, told = self.cautery("create", "--mesh", file, code=1)
+        self.assertIn("mesh", told)
+
+
+class Tools(programs.Case):
+    real = True
+    settings = {"browser_deadline_s": 1}  # longer than this process can be kept waiting
+
+    def test_actions(self):
+        session = self.create("fascia")
+        out, _ = self.cautery("tool", session, "needle", "add", "capsule", "move", 0, 0, 0.001, "on",
+                              "wait", 2.5, "line", 0.02, 0, 0.001, 0.1, "off", "give")
+        self.assertEqual(out.count("tick"), 5)
+        events = self.json("timeline", session)["events"]
+        kinds = [e["kind"] for e in events if e.get("tool") == "needle"]
+        for kind in ("tool_added", "energy_on", "energy_off"):
+            self.assertIn(kind, kinds)
+        self.assertNotIn("watchdog", kinds)  # heartbeats kept the energy on beyond the deadline
+        tools = {d["tool"]: d for d in self.json("info", session)["drivers"]}
+        self.assertEqual(tools["needle"]["client"], 0)
+        self.assertFalse(tools["needle"]["energized"])
+        moved = [t for t in self.json("watch", session, "--seconds", 0.3)["tools"]
+                 if t["tool"] == "needle"][0]
+        self.assertAlmostEqual(moved["position_m"][0], 0.02, places=6)  # single precision
+
+    def test_mistakes(self):
+        session = self.create("fascia")
+        self.assertIn("no action", self.cautery("tool", session, "hook", "fly", code=2)[1])
+        self.assertIn("3 numbers", self.cautery("tool", session, "hook", "move", 1, 2, code=2)[1])
+        self.assertIn("shape", self.cautery("tool", session, "a", "add", "spoon", code=2)[1])
+        self.assertIn("is no name", self.cautery("tool", session, "A B", "on", code=2)[1])
+        self.assertIn("params.tool", self.cautery("tool", session, "nobody", "off", code=1)[1])
+
+
+if __name__ == "__main__":
+    unittest.main()

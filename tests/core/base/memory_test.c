@@ -1,0 +1,71 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "base/memory.h"
+
+#include <setjmp.h>
+#include <stdarg.h>
+#include <stddef.h>
+#include <stdint.h>
+#include <string.h>
+
+#include <cmocka.h>
+
+enum { ALIGNMENT = 64 };
+
+static void test_arrays_are_zeroed_aligned_and_padded(void **state)
+{
+	(void)state;
+	static const size_t counts[] = {0, 1, 7, 63, 64, 65, 1000};
+	cau_arena arena = {0};
+	unsigned char *array[7];
+	for (size_t k = 0; k < 7; ++k) {
+		array[k] = cau_arena_array(&arena, counts[k], 3);
+		assert_non_null(array[k]);
+		assert_int_equal((uintptr_t)array[k] % ALIGNMENT, 0);
+		for (size_t i = 0; i < 3 * counts[k] + ALIGNMENT; ++i)
+			assert_int_equal(array[k][i], 0);
+		memset(array[k], (int)k + 1, 3 * counts[k] + ALIGNMENT); // the padding is the caller's too
+	}
+	for (size_t k = 0; k < 7; ++k) // and no array reaches into another
+		for (size_t i = 0; i < 3 * counts[k] + ALIGNMENT; ++i)
+			assert_int_equal(array[k][i], k + 1);
+	assert_true(arena.byte_count >= 3 * 1200);
+	cau_arena_finish(&arena);
+	assert_int_equal(arena.byte_count, 0);
+	assert_null(arena.blocks);
+	cau_arena_finish(&arena);
+}
+
+static void test_sizes_that_overflow_are_refused(void **state)
+{
+	(void)state;
+	cau_arena arena = {0};
+	assert_null(cau_arena_array(&arena, SIZE_MAX, 2));
+	assert_null(cau_arena_array(&arena, SIZE_MAX / 4 + 1, 4));
+	assert_null(cau_arena_array(&arena, SIZE_MAX / 16, 16));
+	assert_null(cau_arena_array(&arena, SIZE_MAX - 8, 1));
+	assert_null(cau_arena_copy(&arena, &arena, SIZE_MAX, 8));
+	assert_int_equal(arena.byte_count, 0);
+	cau_arena_finish(&arena);
+}
+
+static void test_copy(void **state)
+{
+	(void)state;
+	static const int32_t source[5] = {3, 1, 4, 1, 5};
+	cau_arena arena = {0};
+	int32_t *copy = cau_arena_copy(&arena, source, 5, sizeof *source);
+	assert_memory_equal(copy, source, sizeof source);
+	assert_int_equal(copy[5], 0);
+	assert_non_null(cau_arena_copy(&arena, NULL, 0, 8));
+	cau_arena_finish(&arena);
+}
+
+int main(void)
+{
+	const struct CMUnitTest tests[] = {
+		cmocka_unit_test(test_arrays_are_zeroed_aligned_and_padded),
+		cmocka_unit_test(test_sizes_that_overflow_are_refused),
+		cmocka_unit_test(test_copy),
+	};
+	return cmocka_run_group_tests(tests, NULL, NULL);
+}

@@ -1,0 +1,98 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Every part once, whatever the number of threads, over very many loops.
+#include "base/pool.h"
+
+#include <setjmp.h>
+#include <stdarg.h>
+#include <stddef.h>
+#include <stdint.h>
+#include <string.h>
+
+#include <cmocka.h>
+
+enum { LOOPS = 100000, PARTS = 300, MANY_PARTS = 65535 };
+
+typedef struct tally {
+	int32_t count[MANY_PARTS];
+} tally;
+
+static void count_part(void *context, int32_t index)
+{
+	tally *work = context;
+	work->count[index]++; // parts have their own cell: no lock is needed if each runs once
+}
+
+static void test_every_part_once(void **state)
+{
+	(void)state;
+	static const int32_t threads[] = {1, 2, 3, 7, 16};
+	static const int32_t parts[] = {0, 1, 2, 3, 5, 16, 63, PARTS};
+	static tally work;
+	for (size_t t = 0; t < sizeof threads / sizeof *threads; ++t) {
+		cau_pool *pool = cau_pool_create(threads[t]);
+		assert_non_null(pool);
+		assert_int_equal(cau_pool_thread_count(pool), threads[t]);
+		for (size_t k = 0; k < sizeof parts / sizeof *parts; ++k) {
+			memset(&work, 0, sizeof work);
+			for (int32_t loop = 1; loop <= 50; ++loop) {
+				cau_pool_run(pool, parts[k], count_part, &work);
+				for (int32_t i = 0; i < PARTS + 1; ++i)
+					assert_int_equal(work.count[i], i < parts[k] ? loop : 0);
+			}
+		}
+		cau_pool_destroy(pool);
+	}
+}
+
+static void test_the_most_parts(void **state)
+{
+	(void)state;
+	static tally work;
+	memset(&work, 0, sizeof work);
+	cau_pool *pool = cau_pool_create(2);
+	cau_pool_run(pool, MANY_PARTS, count_part, &work);
+	for (int32_t i = 0; i < MANY_PARTS; ++i)
+		assert_int_equal(work.count[i], 1);
+	cau_pool_destroy(pool);
+}
+
+// What one loop wrote, the next one reads in other parts: a sum handed round.
+typedef struct chain {
+	int64_t value[2][4];
+	int32_t from;
+} chain;
+
+static void hand_on(void *context, int32_t index)
+{
+	chain *work = context;
+	work->value[!work->from][index] = work->value[work->from][(index + 1) % 4] + index;
+}
+
+static void test_loops_follow_each_other(void **state)
+{
+	(void)state;
+	static const int32_t threads[] = {2, 3};
+	for (size_t t = 0; t < 2; ++t) {
+		chain work = {0}, expected = {0};
+		cau_pool *pool = cau_pool_create(threads[t]);
+		for (int32_t loop = 0; loop < LOOPS; ++loop) {
+			work.from = expected.from = loop & 1;
+			cau_pool_run(pool, 4, hand_on, &work);
+			for (int32_t i = 0; i < 4; ++i)
+				hand_on(&expected, i);
+		}
+		assert_memory_equal(work.value, expected.value, sizeof work.value);
+		cau_pool_destroy(pool);
+	}
+	cau_pool_destroy(NULL);
+}
+
+int main(void)
+{
+	const struct CMUnitTest tests[] = {
+		cmocka_unit_test(test_every_part_once),
+		cmocka_unit_test(test_the_most_parts),
+		cmocka_unit_test(test_loops_follow_each_other),
+	};
+	return cmocka_run_group_tests(tests, NULL, NULL);
+}

@@ -1,0 +1,88 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Records and shares of work: every one once.
+#include <string.h>
+
+#include "core/dissect/cutting.h"
+
+static void make(rig *r, int precision)
+{
+	rig_begin(r);
+	r->scene->precision = precision;
+	add_all_layers(r);
+	rig_build(r, NULL, 1);
+}
+
+// Each record of an element stands in the list of its vertex, once, ascending; no other does.
+static void test_every_record_is_summed_once(void **state)
+{
+	(void)state;
+	rig r;
+	make(&r, CAU_PRECISION_DOUBLE);
+	const cau_elements *e = &r.solver.elements;
+	const cau_incidence *incidence = &r.solver.slots.incidence;
+	int32_t *vertex_of = cau_arena_array(&r.arena, (size_t)e->record_count, sizeof(int32_t));
+	memset(vertex_of, -1, (size_t)e->record_count * sizeof(int32_t));
+	for (int32_t v = 0; v < r.tissue.vertex_count; ++v)
+		for (int32_t k = incidence->first[v]; k < incidence->first[v + 1]; ++k) {
+			assert_true(k == incidence->first[v] ||
+			            incidence->record[k] > incidence->record[k - 1]);
+			assert_int_equal(vertex_of[incidence->record[k]], -1);
+			vertex_of[incidence->record[k]] = v;
+		}
+	const int64_t first[] = {e->sheet_record, e->fat_record, e->link_record, e->hinge_record};
+	int32_t named = 0;
+	for (int kind = 0; kind < CAU_ELEMENT_KINDS; ++kind)
+		for (int32_t i = 0; i < cau_tissue_element_count(&r.tissue, kind); ++i) {
+			cau_element_map map;
+			cau_tissue_element_map(&r.tissue, kind, i, &map);
+			int32_t slot = r.solver.slots.slot_of[kind][i];
+			for (int k = 0; k < map.vertex_count; ++k, ++named)
+				assert_int_equal(vertex_of[first[kind] + (int64_t)map.vertex_count * slot + k],
+				                 map.vertex[k]);
+		}
+	assert_int_equal(incidence->first[r.tissue.vertex_count], named);
+	rig_finish(&r);
+}
+
+// The shares of the local step cover every batch of every set once, within one group.
+static void test_work_covers_everything_once(void **state)
+{
+	(void)state;
+	rig r;
+	make(&r, CAU_PRECISION_DOUBLE);
+	const cau_elements *e = &r.solver.elements;
+	int32_t covered[4] = {0};
+	uint8_t seen[4][4096] = {{0}};
+	for (int32_t w = 0; w < r.solver.slots.work_count; ++w) {
+		const cau_local_work *work = &r.solver.slots.work[w];
+		assert_int_equal(work->first % CAU_BATCH, 0);
+		assert_int_equal(work->last % CAU_BATCH, 0);
+		covered[work->kind] += work->last - work->first;
+		for (int32_t s = work->first; s < work->last; s += CAU_BATCH)
+			assert_int_equal(seen[work->kind][s / CAU_BATCH]++, 0);
+		if (work->kind == CAU_WORK_FAT) {
+			const cau_fat_group *group = &e->fat.group[work->group];
+			assert_true(work->first >= group->first_slot &&
+			            work->last <= group->first_slot + group->slot_count);
+		} else if (work->kind == CAU_WORK_SHEET) {
+			const cau_sheet_group *group = &e->sheet.group[work->group];
+			assert_true(work->first >= group->first_slot &&
+			            work->last <= group->first_slot + group->slot_count);
+		}
+	}
+	assert_int_equal(covered[CAU_WORK_SHEET], e->sheet.slot_count);
+	assert_int_equal(covered[CAU_WORK_FAT], e->fat.slot_count);
+	assert_int_equal(covered[CAU_WORK_LINK], e->link.slot_count);
+	assert_int_equal(covered[CAU_WORK_HINGE], e->hinge.slot_count);
+	assert_int_equal(e->sheet.group_count, 2); // membrane and fascia have laws of their own
+	rig_finish(&r);
+}
+
+int main(void)
+{
+	const struct CMUnitTest tests[] = {
+		cmocka_unit_test(test_every_record_is_summed_once),
+		cmocka_unit_test(test_work_covers_everything_once),
+	};
+	return cmocka_run_group_tests(tests, NULL, NULL);
+}

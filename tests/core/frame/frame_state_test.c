@@ -1,0 +1,135 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// What a frame tells a viewer against everything counted anew.
+#include <stdlib.h>
+#include <string.h>
+
+#include "core/dissect/cutting.h"
+#include "frame/frame_state.h"
+
+typedef struct framed {
+	rig r;
+	cau_frame_state frame;
+} framed;
+
+static void make(framed *f)
+{
+	memset(f, 0, sizeof *f);
+	rig_begin(&f->r);
+	add_all_layers(&f->r);
+	rig_build(&f->r, NULL, 1);
+	assert_int_equal(cau_frame_create(&f->frame, &f->r.tissue, &f->r.dissection, &f->r.arena, NULL),
+	                 CAU_OK);
+}
+
+static int32_t words(const framed *f)
+{
+	return (f->r.tissue.faces.face_count + 31) / 32;
+}
+
+static void test_a_new_frame_tells_everything(void **state)
+{
+	(void)state;
+	framed f;
+	make(&f);
+	assert_int_equal(f.frame.moved_count, f.r.tissue.vertex_count);
+	assert_int_equal(f.frame.mask_changed_count, words(&f));
+	rig_finish(&f.r);
+}
+
+static void test_moved_vertices(void **state)
+{
+	(void)state;
+	framed f;
+	make(&f);
+	double *x = f.r.solver.position;
+	const int32_t moved[] = {0, 5, 6, 100};
+	for (int k = 0; k < 4; ++k)
+		x[3 * moved[k] + k % 3] += 1e-9;
+	cau_frame_update(&f.frame, &f.r.dissection, f.r.tissue.rest, x);
+	assert_int_equal(f.frame.moved_count, 4);
+	assert_memory_equal(f.frame.moved, moved, sizeof moved);
+	cau_frame_update(&f.frame, &f.r.dissection, x, x);
+	assert_int_equal(f.frame.moved_count, 0);
+	assert_int_equal(f.frame.mask_changed_count, 0);
+	rig_finish(&f.r);
+}
+
+static void test_mask_and_visible_vertices_after_cuts(void **state)
+{
+	(void)state;
+	framed f;
+	make(&f);
+	const cau_tissue *t = &f.r.tissue;
+	uint64_t random = 191;
+	uint32_t *known = cau_arena_array(&f.r.arena, (size_t)words(&f), sizeof *known);
+	memcpy(known, f.r.dissection.face_mask, (size_t)words(&f) * sizeof *known);
+	int32_t changes = 0;
+	for (int tick = 0; tick < 20; ++tick) {
+		cut_random_edges(&f.r, &random, 1 + tick);
+		cau_frame_update(&f.frame, &f.r.dissection, t->rest, t->rest);
+		for (int32_t k = 0; k < f.frame.mask_changed_count; ++k) { // a viewer follows by the words
+			int32_t w = f.frame.mask_changed[k];
+			assert_true(!k || w > f.frame.mask_changed[k - 1]);
+			assert_true(known[w] != f.r.dissection.face_mask[w]);
+			known[w] = f.r.dissection.face_mask[w];
+			changes++;
+		}
+		assert_memory_equal(known, f.r.dissection.face_mask, (size_t)words(&f) * sizeof *known);
+	}
+	assert_true(changes > 20);
+	uint8_t *visible = cau_arena_array(&f.r.arena, (size_t)t->vertex_count, 1);
+	for (int32_t face = 0; face < t->faces.face_count; ++face)
+		for (int i = 0; i < 3 && !(known[face >> 5] >> (face & 31) & 1); ++i)
+			visible[t->faces.vertex[3 * face + i]] = 1;
+	assert_memory_equal(f.frame.vertex_visible, visible, (size_t)t->vertex_count);
+	rig_finish(&f.r);
+}
+
+// The largest exposure over ignition of a vertex's edges; a rebuild finds the same.
+static void test_exposure_of_vertices(void **state)
+{
+	(void)state;
+	framed f;
+	make(&f);
+	const cau_tissue *t = &f.r.tissue;
+	uint64_t random = 192;
+	float *expected = cau_arena_array(&f.r.arena, (size_t)t->vertex_count, sizeof *expected);
+	for (int tick = 0; tick < 4; ++tick) {
+		cau_dissection_begin(&f.r.dissection);
+		for (int k = 0; k < 30; ++k)
+			expose_by_hand(&f.r.dissection,
+			               (int32_t)random_between(&random, 0, t->edges.edge_count),
+			               random_between(&random, 0, 300) * (1 + tick));
+		cau_frame_update(&f.frame, &f.r.dissection, t->rest, t->rest);
+		for (int32_t k = 0; k < f.r.dissection.touched_count; ++k) {
+			int32_t edge = f.r.dissection.touched[k];
+			float value = (float)cau_dissection_char(&f.r.dissection, edge);
+			for (int i = 0; i < 2; ++i) {
+				float *at = &expected[t->edges.vertex[2 * edge + i]];
+				*at = value > *at ? value : *at;
+			}
+		}
+		assert_memory_equal(f.frame.exposure, expected, (size_t)t->vertex_count * sizeof(float));
+	}
+	int32_t charred = 0;
+	for (int32_t v = 0; v < t->vertex_count; ++v) {
+		assert_true(expected[v] >= 0 && expected[v] <= 1);
+		charred += expected[v] > 0;
+	}
+	assert_true(charred > 50);
+	cau_frame_rebuild(&f.frame, &f.r.dissection);
+	for (int32_t v = 0; v < t->vertex_count; ++v) // expose_by_hand may have set an edge back
+		assert_true(f.frame.exposure[v] <= expected[v]);
+	rig_finish(&f.r);
+}
+
+int main(void)
+{
+	const struct CMUnitTest tests[] = {
+		cmocka_unit_test(test_a_new_frame_tells_everything),
+		cmocka_unit_test(test_moved_vertices),
+		cmocka_unit_test(test_mask_and_visible_vertices_after_cuts),
+		cmocka_unit_test(test_exposure_of_vertices),
+	};
+	return cmocka_run_group_tests(tests, NULL, NULL);
+}

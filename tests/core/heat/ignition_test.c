@@ -1,0 +1,74 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Ignition temperatures drawn at random: their statistics, their cut, and that they depend on the
+// seed, the layer and the edge alone.
+#include <setjmp.h>
+#include <stdarg.h>
+#include <stddef.h>
+#include <stdint.h>
+
+#include <cmocka.h>
+
+#include "core/tool/tools.h"
+#include "heat/exposure.h"
+
+enum { DRAWS = 100000 };
+static const double MEAN_C = 172, SPREAD_C = 17; // fascia
+
+static void test_statistics(void **state)
+{
+	(void)state;
+	// A wrong draw has a chance of 1e-6 within five standard errors; the cut takes 0.2 % of the
+	// spread.
+	const double error = SPREAD_C / sqrt(DRAWS);
+	double sum = 0, squares = 0, product = 0, previous = 0, beyond = 0;
+	for (int32_t edge = 0; edge < DRAWS; ++edge) {
+		double g = (cau_ignition_of(MEAN_C, SPREAD_C, 7, 2, edge) - MEAN_C) / SPREAD_C;
+		sum += g;
+		squares += g * g;
+		product += g * previous;
+		previous = g;
+		beyond += fabs(g) > 1.959964;
+		assert_true(fabs(g) <= 3 + 1e-12);
+	}
+	assert_near(sum / DRAWS * SPREAD_C, 0, 5 * error);
+	assert_near(sqrt(squares / DRAWS) * SPREAD_C, SPREAD_C, 5 * error / sqrt(2) + 0.002 * SPREAD_C);
+	assert_near(product / DRAWS, 0, 5 / sqrt(DRAWS));                 // neighbours are unrelated
+	assert_near(beyond / DRAWS, 0.05, 5 * sqrt(0.05 * 0.95 / DRAWS)); // normal, not merely spread
+}
+
+static void test_depends_on_its_arguments_alone(void **state)
+{
+	(void)state;
+	double first = cau_ignition_of(MEAN_C, SPREAD_C, 7, 2, 100);
+	cau_ignition_of(MEAN_C, SPREAD_C, 8, 3, 101);
+	assert_true(cau_ignition_of(MEAN_C, SPREAD_C, 7, 2, 100) == first);
+	assert_true(cau_ignition_of(MEAN_C, SPREAD_C, 8, 2, 100) != first);
+	assert_true(cau_ignition_of(MEAN_C, SPREAD_C, 7, 3, 100) != first);
+	assert_true(cau_ignition_of(MEAN_C, SPREAD_C, 7, 2, 101) != first);
+	assert_true(cau_ignition_of(MEAN_C, SPREAD_C, 7, 100, 2) != first);
+	assert_true(cau_ignition_of(MEAN_C, 0, 7, 2, 100) == MEAN_C);
+}
+
+static void test_cut(void **state)
+{
+	(void)state;
+	int at_floor = 0, at_cut = 0;
+	for (int32_t edge = 0; edge < DRAWS; ++edge) {
+		double wide = cau_ignition_of(MEAN_C, 10 * MEAN_C, 7, 0, edge);
+		assert_true(wide >= 0.1 * MEAN_C);
+		at_floor += wide == 0.1 * MEAN_C;
+		at_cut += wide == MEAN_C + 3 * (10 * MEAN_C);
+	}
+	assert_true(at_floor > DRAWS / 3); // both limits are reached, and rarely the upper one
+	assert_true(at_cut > 0 && at_cut < DRAWS / 300);
+}
+
+int main(void)
+{
+	const struct CMUnitTest tests[] = {
+		cmocka_unit_test(test_statistics),
+		cmocka_unit_test(test_depends_on_its_arguments_alone),
+		cmocka_unit_test(test_cut),
+	};
+	return cmocka_run_group_tests(tests, NULL, NULL);
+}

@@ -1,0 +1,218 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "mesh_text.h"
+
+#include <math.h>
+
+#include "mesh/mesh_memory.h"
+
+// A mesh with these arrays (copied), regions 10, 11, ... and 20, 21, ...
+static cau_mesh copy_of(int32_t vertices, const double *position, int32_t triangles,
+                        const int32_t *triangle, int32_t tetrahedra, const int32_t *tetrahedron)
+{
+	cau_mesh mesh;
+	assert_int_equal(cau_mesh_reserve(&mesh, vertices, triangles, tetrahedra, triangles > 0, NULL),
+	                 CAU_OK);
+	memcpy(mesh.position, position, 3 * (size_t)vertices * sizeof *position);
+	for (int32_t i = 0; i < 3 * triangles; i++)
+		mesh.triangle[i] = triangle[i];
+	for (int32_t i = 0; i < 4 * tetrahedra; i++)
+		mesh.tetrahedron[i] = tetrahedron[i];
+	for (int32_t i = 0; i < triangles; i++)
+		mesh.triangle_region[i] = 10 + i;
+	for (int32_t i = 0; i < tetrahedra; i++)
+		mesh.tetrahedron_region[i] = 20 + i;
+	for (int32_t i = 0; i < 6 * triangles; i++)
+		mesh.texture[i] = i;
+	return mesh;
+}
+
+static const double square[] = {0, 0, 0, 1, 0, 0, 1, 1, 0, 0, 1, 0};
+
+static void a_clean_mesh_stays_as_it_is(void **state)
+{
+	(void)state;
+	cau_mesh_def def = fixture_def(5, 4, 3);
+	cau_mesh mesh, same;
+	cau_mesh_report report;
+	assert_int_equal(cau_mesh_make_slab(&def, &mesh, NULL), CAU_OK);
+	assert_int_equal(cau_mesh_make_slab(&def, &same, NULL), CAU_OK);
+	assert_int_equal(cau_mesh_clean(&mesh, &report, NULL), CAU_OK);
+	assert_memory_equal(&report, (&(cau_mesh_report){0}), sizeof report);
+	assert_int_equal(mesh.vertex_count, same.vertex_count);
+	assert_memory_equal(mesh.position, same.position,
+	                    3 * (size_t)same.vertex_count * sizeof(double));
+	assert_memory_equal(mesh.tetrahedron, same.tetrahedron,
+	                    4 * (size_t)same.tetrahedron_count * sizeof(int32_t));
+	cau_mesh_finish(&mesh);
+	cau_mesh_finish(&same);
+}
+
+// Two triangles of a square that do not share vertices, one of them 1e-10 away, and two idle ones.
+static void unused_and_duplicate_vertices_go(void **state)
+{
+	(void)state;
+	const double position[] = {9, 9, 9, 0, 0, 0, 1, 0, 0, 1,     1, 0,
+	                           7, 7, 7, 1, 1, 0, 0, 1, 0, 1e-10, 0, 0};
+	cau_mesh mesh = copy_of(8, position, 2, (int32_t[]){1, 2, 3, 7, 5, 6}, 0, NULL);
+	cau_mesh_report report;
+	assert_int_equal(cau_mesh_clean(&mesh, &report, NULL), CAU_OK);
+	assert_int_equal(report.unused_vertices, 2);
+	assert_int_equal(report.duplicate_vertices, 2);
+	assert_int_equal(mesh.vertex_count, 4);
+	assert_memory_equal(mesh.position, square, sizeof square);
+	assert_memory_equal(mesh.triangle, ((int32_t[]){0, 1, 2, 0, 2, 3}), 6 * sizeof(int32_t));
+	cau_mesh_finish(&mesh);
+}
+
+static void vertices_a_little_farther_stay(void **state)
+{
+	(void)state;
+	const double position[] = {0, 0, 0, 1, 0, 0, 1, 1, 0, 0, 1, 0, 2e-9, 0, 0};
+	cau_mesh mesh = copy_of(5, position, 2, (int32_t[]){0, 1, 2, 4, 2, 3}, 0, NULL);
+	cau_mesh_report report;
+	assert_int_equal(cau_mesh_clean(&mesh, &report, NULL), CAU_OK);
+	assert_int_equal(report.duplicate_vertices, 0); // 1e-9 of the diagonal sqrt(2)
+	assert_int_equal(mesh.vertex_count, 5);
+	cau_mesh_finish(&mesh);
+}
+
+// Whatever the place of two vertices within the cells of the hash.
+static void vertices_merge_across_cells(void **state)
+{
+	(void)state;
+	for (int i = 0; i < 200; i++) {
+		double x = 0.5 + 1e-10 * i;
+		const double position[] = {0, 0,         0,         1,         0, 0, x, x,
+		                           x, x + 8e-10, x - 8e-10, x + 8e-10, 0, 1, 1};
+		cau_mesh mesh = copy_of(5, position, 2, (int32_t[]){0, 1, 2, 3, 4, 0}, 0, NULL);
+		cau_mesh_report report;
+		assert_int_equal(cau_mesh_clean(&mesh, &report, NULL), CAU_OK);
+		assert_int_equal(report.duplicate_vertices, 1); // 1.39e-9 apart, the limit is 1.73e-9
+		cau_mesh_finish(&mesh);
+	}
+}
+
+static void inverted_tetrahedra_are_turned(void **state)
+{
+	(void)state;
+	const double position[] = {0, 0, 0, 1, 0, 0, 0, 1, 0, 0, 0, 1, 1, 1, 1};
+	cau_mesh mesh = copy_of(5, position, 0, NULL, 2, (int32_t[]){0, 2, 1, 3, 1, 2, 3, 4});
+	cau_mesh_report report;
+	assert_int_equal(cau_mesh_clean(&mesh, &report, NULL), CAU_OK);
+	assert_int_equal(report.inverted_tetrahedra, 1);
+	for (int t = 0; t < 2; t++)
+		assert_true(fixture_volume6(mesh.position, mesh.tetrahedron + 4 * t) > 0.5);
+	assert_int_equal(mesh.tetrahedron_region[0], 20);
+	cau_mesh_finish(&mesh);
+}
+
+static void repeated_elements_go_with_what_belongs_to_them(void **state)
+{
+	(void)state;
+	const double position[] = {0, 0, 0, 1, 0, 0, 0, 1, 0, 0, 0, 1, 1, 1, 1};
+	cau_mesh mesh = copy_of(5, position, 3, (int32_t[]){0, 1, 2, 2, 1, 0, 1, 2, 3}, 3,
+	                        (int32_t[]){0, 1, 2, 3, 3, 0, 2, 1, 1, 2, 3, 4});
+	cau_mesh_report report;
+	assert_int_equal(cau_mesh_clean(&mesh, &report, NULL), CAU_OK);
+	assert_int_equal(report.duplicate_elements, 2);
+	assert_int_equal(mesh.triangle_count, 2);
+	assert_memory_equal(mesh.triangle, ((int32_t[]){0, 1, 2, 1, 2, 3}), 6 * sizeof(int32_t));
+	assert_int_equal(mesh.triangle_region[0], 10);
+	assert_int_equal(mesh.triangle_region[1], 12);
+	assert_true(mesh.texture[0] == 0 && mesh.texture[6] == 12 && mesh.texture[11] == 17);
+	assert_int_equal(mesh.tetrahedron_count, 2);
+	assert_int_equal(mesh.tetrahedron_region[1], 22);
+	cau_mesh_finish(&mesh);
+}
+
+static void refuse(cau_mesh mesh, const char *part)
+{
+	cau_error error = {0};
+	assert_int_equal(cau_mesh_clean(&mesh, NULL, &error), CAU_BAD_MESH);
+	if (!strstr(error.reason, part))
+		fail_msg("'%s' lacks '%s'", error.reason, part);
+	cau_mesh_finish(&mesh);
+}
+
+static void degenerate_triangles_are_named(void **state)
+{
+	(void)state;
+	double position[] = {0, 0, 0, 1, 0, 0, 1, 1, 0, 0, 1, 0, 2, 0, 0, 0, 5e-10, 0};
+	int32_t good_then[] = {0, 1, 2, 0, 1, 4};
+	refuse(copy_of(6, position, 2, good_then, 0, NULL),
+	       "triangle 1 (counted from 0) is degenerate");
+	refuse(copy_of(6, position, 1, (int32_t[]){2, 1, 1}, 0, NULL),
+	       "triangle 0 (counted from 0) is degenerate: two of its corners coincide");
+	refuse(copy_of(6, position, 2, (int32_t[]){0, 1, 2, 0, 5, 2}, 0, NULL),
+	       "triangle 1 (counted from 0) is degenerate: two of its corners coincide");
+	position[13] = 3e-6; // a height of 1.5e-6 / 2 of the longest edge
+	refuse(copy_of(6, position, 2, good_then, 0, NULL), "its height is 7.5e-07");
+}
+
+// The measure is relative: thin is refused at every size, small is not thin.
+static void the_measure_does_not_depend_on_size(void **state)
+{
+	(void)state;
+	for (double size = 1e-8; size < 1e6; size *= 10) {
+		double position[] = {0, 0, 0, size, 0, 0, 0, size, 0, 0, 0, size};
+		cau_mesh mesh = copy_of(4, position, 1, (int32_t[]){0, 1, 2}, 1, (int32_t[]){0, 1, 2, 3});
+		assert_int_equal(cau_mesh_clean(&mesh, NULL, NULL), CAU_OK);
+		cau_mesh_finish(&mesh);
+		position[11] = 1e-8 * size;
+		refuse(copy_of(4, position, 0, NULL, 1, (int32_t[]){0, 1, 2, 3}),
+		       "tetrahedron 0 (counted from 0) is degenerate: six volumes are 3.5e-09");
+	}
+}
+
+static void degenerate_tetrahedra_are_named(void **state)
+{
+	(void)state;
+	const double position[] = {0, 0, 0, 1, 0, 0, 0, 1, 0, 0, 0, 1, 1, 1, 0};
+	refuse(copy_of(5, position, 0, NULL, 2, (int32_t[]){0, 1, 2, 3, 0, 1, 2, 4}),
+	       "tetrahedron 1 (counted from 0) is degenerate: six volumes are 0 ");
+	refuse(copy_of(5, position, 0, NULL, 1, (int32_t[]){0, 1, 2, 0}),
+	       "two of its corners coincide");
+}
+
+static void impossible_numbers_are_refused(void **state)
+{
+	(void)state;
+	const int32_t triangle[] = {0, 1, 2};
+	double position[] = {0, 0, 0, 1, 0, 0, 1, 1, 0};
+	refuse((cau_mesh){0}, "no triangles and no tetrahedra");
+	refuse(copy_of(3, position, 1, (int32_t[]){0, 1, 3}, 0, NULL), "triangle 0 names vertex 3");
+	refuse(copy_of(3, position, 0, NULL, 1, (int32_t[]){0, 1, 2, -1}),
+	       "tetrahedron 0 names vertex");
+	cau_mesh mesh = copy_of(3, position, 1, triangle, 0, NULL);
+	mesh.texture[3] = NAN;
+	refuse(mesh, "triangle 0: a texture coordinate is not finite");
+	position[4] = INFINITY;
+	refuse(copy_of(3, position, 1, triangle, 0, NULL), "vertex 1: its y is not finite");
+	position[4] = 1e300;
+	refuse(copy_of(3, position, 1, triangle, 0, NULL), "is its unit right?");
+	position[4] = 2e6;
+	refuse(copy_of(3, position, 1, triangle, 0, NULL), "is its unit right?");
+	const double far[] = {3e6, 0, 0, 3e6 + 1, 0, 0, 3e6, 1, 0};
+	refuse(copy_of(3, far, 1, triangle, 0, NULL), "3e+06 m from the origin");
+	const double tiny[] = {0, 0, 0, 1e-10, 0, 0, 0, 1e-10, 0};
+	refuse(copy_of(3, tiny, 1, triangle, 0, NULL), "is its unit right?");
+	const double point[] = {1, 2, 3, 1, 2, 3, 1, 2, 3};
+	refuse(copy_of(3, point, 1, triangle, 0, NULL), "all vertices lie on one point");
+}
+
+int main(void)
+{
+	const struct CMUnitTest tests[] = {
+		cmocka_unit_test(a_clean_mesh_stays_as_it_is),
+		cmocka_unit_test(unused_and_duplicate_vertices_go),
+		cmocka_unit_test(vertices_a_little_farther_stay),
+		cmocka_unit_test(vertices_merge_across_cells),
+		cmocka_unit_test(inverted_tetrahedra_are_turned),
+		cmocka_unit_test(repeated_elements_go_with_what_belongs_to_them),
+		cmocka_unit_test(degenerate_triangles_are_named),
+		cmocka_unit_test(the_measure_does_not_depend_on_size),
+		cmocka_unit_test(degenerate_tetrahedra_are_named),
+		cmocka_unit_test(impossible_numbers_are_refused),
+	};
+	return cmocka_run_group_tests(tests, NULL, NULL);
+}

@@ -1,0 +1,296 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Snapshots: a session that is stopped, written, read and continued has the same bits as one that
+// was never stopped; damage is refused and changes nothing.
+#include "core/session/busy_scene.h"
+
+#include <stdio.h>
+
+#include "session/session_internal.h"
+
+typedef struct unbroken_run {
+	uint64_t hash[BUSY_TICKS + 1]; // before each tick and at the end
+	int waiting[BUSY_TICKS + 1];   // removed elements that the factor still held
+	int making[BUSY_TICKS + 1];    // a factor was being made
+	stage_bytes shot[BUSY_TICKS + 1];
+} unbroken_run;
+
+static unbroken_run *run;
+
+static int make_run(void **state)
+{
+	(void)state;
+	cau_scene_def *scene = busy_scene();
+	cau_session *session = stage_open(scene, 1);
+	run = calloc(1, sizeof *run);
+	for (int tick = 0; tick <= BUSY_TICKS; ++tick) {
+		run->hash[tick] = cau_session_hash(session);
+		run->waiting[tick] = session->update.waiting_count;
+		run->making[tick] = session->update.making;
+		run->shot[tick] = stage_snapshot(session);
+		if (tick < BUSY_TICKS)
+			busy_run(session, 1);
+	}
+	cau_session_destroy(session);
+	free(scene);
+	return 0;
+}
+
+static int drop_run(void **state)
+{
+	(void)state;
+	for (int tick = 0; tick <= BUSY_TICKS; ++tick)
+		free(run->shot[tick].bytes);
+	free(run);
+	return 0;
+}
+
+static void restore(cau_session *session, const stage_bytes *shot)
+{
+	cau_error error = {0};
+	bool exact = false;
+	if (cau_session_restore(session, shot->bytes, shot->count, &exact, &error))
+		fail_msg("%s", error.reason);
+	assert_true(exact);
+}
+
+static void expect_the_same(cau_session *session, int from, int to)
+{
+	for (int tick = from; tick <= to; ++tick) {
+		if (cau_session_hash(session) != run->hash[tick])
+			fail_msg("restored at tick %d, the state differs at tick %d", from, tick);
+		if (tick < to)
+			busy_run(session, 1);
+	}
+}
+
+// The first tick at or after `from` with something waiting, and a factor in the making or not.
+static int tick_with(int from, int making)
+{
+	for (int tick = from; tick < BUSY_TICKS; ++tick)
+		if (run->waiting[tick] && run->making[tick] == making)
+			return tick;
+	return -1;
+}
+
+// What the other tests stand on: they would prove little if nothing were going on.
+static void the_run_is_busy(void **state)
+{
+	(void)state;
+	cau_scene_def *scene = busy_scene();
+	cau_session *session = stage_open(scene, 1);
+	restore(session, &run->shot[BUSY_TICKS]);
+	cau_frame frame = stage_frame(session);
+	assert_true(frame.statistics.elements_removed > 500);
+	assert_true(frame.statistics.refactorisations >= 3);
+	assert_true(tick_with(0, 1) > 0);
+	int downdated = 0, grasped = 0, charred = 0;
+	for (int tick = 0; tick < BUSY_TICKS; ++tick) {
+		restore(session, &run->shot[tick]);
+		downdated += stage_frame(session).statistics.factor_operations > 0;
+		grasped += stage_tool(session, "jaws")->grasped_vertices > 0;
+		charred += session->shrink.active_count > 0;
+	}
+	assert_true(downdated > 5);
+	assert_true(grasped > 20);
+	assert_true(charred > 20);
+	cau_session_destroy(session);
+	free(scene);
+}
+
+static void restored_into_a_fresh_session(void **state)
+{
+	(void)state;
+	int ticks[] = {0, 1, 17, tick_with(10, 1), tick_with(40, 1), tick_with(60, 1) + 1, 80};
+	for (size_t k = 0; k < sizeof ticks / sizeof *ticks; ++k) {
+		cau_scene_def *scene = busy_scene();
+		cau_session *session = stage_open(scene, 1 + (int32_t)k % 3);
+		restore(session, &run->shot[ticks[k]]);
+		expect_the_same(session, ticks[k], ticks[k] + 25 < BUSY_TICKS ? ticks[k] + 25 : BUSY_TICKS);
+		cau_session_destroy(session);
+		free(scene);
+	}
+}
+
+static void restored_into_the_same_session(void **state)
+{
+	(void)state;
+	int back = tick_with(40, 1);
+	cau_scene_def *scene = busy_scene();
+	cau_session *session = stage_open(scene, 1);
+	busy_run(session, 60);
+	restore(session, &run->shot[back]); // rewind
+	expect_the_same(session, back, back + 10);
+	restore(session, &run->shot[back + 4]); // and forward and back again
+	restore(session, &run->shot[5]);
+	expect_the_same(session, 5, BUSY_TICKS);
+	cau_session_destroy(session);
+	free(scene);
+}
+
+// A snapshot of what a snapshot gave is the snapshot.
+static void written_again_it_is_the_same(void **state)
+{
+	(void)state;
+	int tick = tick_with(40, 1);
+	cau_scene_def *scene = busy_scene();
+	cau_session *session = stage_open(scene, 1);
+	restore(session, &run->shot[tick]);
+	stage_bytes again = stage_snapshot(session);
+	assert_int_equal(again.count, run->shot[tick].count);
+	assert_memory_equal(again.bytes, run->shot[tick].bytes, again.count);
+	free(again.bytes);
+	cau_session_destroy(session);
+	free(scene);
+}
+
+// Commands for later ticks, pins and materials set on the way are part of the state.
+static void queued_commands_pins_and_materials(void **state)
+{
+	(void)state;
+	const double least[3] = {-0.1, -0.1, -0.0021}, most[3] = {0.1, -0.01, 0.0021};
+	cau_scene_def *scene = busy_scene();
+	cau_session *session = stage_open(scene, 1), *other = stage_open(scene, 2);
+	busy_run(session, 20);
+	cau_command pin, material, later;
+	cau_default_command(&pin, CAU_COMMAND_PIN);
+	pin.as.selection = stage_box(least, most);
+	stage_submit(session, &pin);
+	cau_default_command(&material, CAU_COMMAND_SET_MATERIAL);
+	material.as.material.kind = CAU_LAYER_FAT;
+	strcpy(material.as.material.layer, "fat");
+	material.as.material.fat.young_modulus_pa = 9000;
+	stage_submit(session, &material);
+	cau_default_command(&later, CAU_COMMAND_SET_GRAVITY);
+	later.tick = 33;
+	later.as.gravity_m_s2[1] = 5;
+	stage_submit(session, &later);
+	busy_run(session, 5);
+	stage_bytes shot = stage_snapshot(session);
+	restore(other, &shot);
+	for (int tick = 0; tick < 25; ++tick) {
+		busy_run(session, 1);
+		busy_run(other, 1);
+		if (cau_session_hash(session) != cau_session_hash(other))
+			fail_msg("they differ %d ticks later", tick + 1);
+	}
+	free(shot.bytes);
+	cau_session_destroy(session);
+	cau_session_destroy(other);
+	free(scene);
+}
+
+// ---- damage
+// --------------------------------------------------------------------------------------
+typedef struct victim {
+	cau_session *session;
+	uint64_t hash;
+} victim;
+
+static void expect_refusal(const victim *v, const void *bytes, size_t count, const char *what,
+                           size_t where)
+{
+	void *copy = malloc(count ? count : 1); // so that a sanitizer sees a read past the end
+	assert_non_null(copy);
+	memcpy(copy, bytes, count);
+	cau_error error = {0};
+	bool exact;
+	cau_status status = cau_session_restore(v->session, copy, count, &exact, &error);
+	free(copy);
+	if (status != CAU_CORRUPT || !error.reason[0])
+		fail_msg("%s at byte %zu gave %s", what, where, cau_status_name(status));
+	if (cau_session_hash(v->session) != v->hash)
+		fail_msg("%s at byte %zu changed the session", what, where);
+}
+
+static void damage_is_refused(void **state)
+{
+	(void)state;
+	cau_scene_def *scene = busy_scene();
+	victim v = {.session = stage_open(scene, 1)};
+	busy_run(v.session, 30);
+	v.hash = cau_session_hash(v.session);
+	const stage_bytes *shot = &run->shot[50];
+	unsigned char *bytes = malloc(shot->count + 8);
+	assert_non_null(bytes);
+	memcpy(bytes, shot->bytes, shot->count);
+	const size_t dense = 512; // every byte of the header, then a sample
+	for (size_t at = 0; at < shot->count; at += at < dense ? 1 : shot->count / 150) {
+		unsigned char flip = (unsigned char)(1u << at % 8);
+		bytes[at] ^= flip;
+		expect_refusal(&v, bytes, shot->count, "a flipped bit", at);
+		bytes[at] ^= flip;
+	}
+	for (size_t count = 0; count < shot->count; count += count < dense ? 7 : shot->count / 40)
+		expect_refusal(&v, bytes, count, "an end", count);
+	memset(bytes + shot->count, 0, 8);
+	expect_refusal(&v, bytes, shot->count + 8, "more bytes", shot->count);
+	expect_refusal(&v, "", 0, "nothing", 0);
+	// and the session goes on as if nothing had been tried
+	expect_the_same(v.session, 30, 40);
+	free(bytes);
+	cau_session_destroy(v.session);
+	free(scene);
+}
+
+// The same mesh in another scene is another tissue.
+static void another_definition_is_refused(void **state)
+{
+	(void)state;
+	for (int what = 0; what < 5; ++what) {
+		cau_scene_def *scene = busy_scene();
+		switch (what) {
+		case 0:
+			scene->step_s /= 2;
+			break;
+		case 1:
+			scene->iterations++;
+			break;
+		case 2:
+			scene->seed++;
+			break;
+		case 3:
+			scene->layers[1].fat[0].density_kg_m3 *= 2;
+			break;
+		default:
+			scene->layers[0].fibre[1] = 1;
+			scene->meshes[0].texture_turn_rad = 0.3;
+			break;
+		}
+		victim v = {.session = stage_open(scene, 1)};
+		v.hash = cau_session_hash(v.session);
+		expect_refusal(&v, run->shot[50].bytes, run->shot[50].count, "another scene", (size_t)what);
+		cau_session_destroy(v.session);
+		free(scene);
+	}
+}
+
+static void a_small_buffer_is_refused(void **state)
+{
+	(void)state;
+	cau_scene_def *scene = busy_scene();
+	cau_session *session = stage_open(scene, 1);
+	size_t needed = cau_session_snapshot_bytes(session), count = 0;
+	unsigned char *bytes = malloc(needed - 1);
+	assert_non_null(bytes);
+	cau_error error = {0};
+	assert_int_equal(cau_session_snapshot(session, bytes, needed - 1, &count, &error), CAU_LIMIT);
+	assert_true(error.reason[0]);
+	free(bytes);
+	cau_session_destroy(session);
+	free(scene);
+}
+
+int main(void)
+{
+	const struct CMUnitTest tests[] = {
+		cmocka_unit_test(the_run_is_busy),
+		cmocka_unit_test(restored_into_a_fresh_session),
+		cmocka_unit_test(restored_into_the_same_session),
+		cmocka_unit_test(written_again_it_is_the_same),
+		cmocka_unit_test(queued_commands_pins_and_materials),
+		cmocka_unit_test(damage_is_refused),
+		cmocka_unit_test(another_definition_is_refused),
+		cmocka_unit_test(a_small_buffer_is_refused),
+	};
+	return cmocka_run_group_tests(tests, make_run, drop_run);
+}

@@ -1,0 +1,353 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Tools that touch (physics.md, section 7): nothing is inside them, friction keeps to its cone,
+// forces balance, jaws hold up to their slip force; and no pull of theirs breaks a scene.
+#include "core/session/stage.h"
+
+#include <stdio.h>
+
+#include "session/session_internal.h"
+#include "tool/tool_shape.h"
+
+// Vertices end a step this far inside a pushing tool at most: ten iterations at 2 cm/s.
+static const double penetration_m = 2e-5;
+static const double cone_tolerance = 1e-6; // rounding, relative to the normal force
+static const double weight_tolerance = 0.01;
+static const double bounded_m = 0.3; // a pull of 0.1 m on a scene of 0.12 m
+
+// ---- pushing
+// -------------------------------------------------------------------------------------
+static cau_scene_def *block_scene(double friction)
+{
+	const double size[3] = {0.04, 0.04, 0.016}, least[3] = {-1, -1, -0.0161},
+				 most[3] = {1, 1, -0.0159};
+	const int32_t cells[3] = {16, 16, 6};
+	cau_scene_def *scene = stage_scene(CAU_PRECISION_SINGLE);
+	stage_add_slab(scene, "fat", size, cells);
+	stage_pin_box(scene, least, most);
+	cau_tool_def *ball = stage_add_tool(scene, "ball", CAU_TOOL_SPHERE, 0, 0, 0.0065);
+	ball->hot_radius_m = 0.006;
+	ball->friction = friction;
+	return scene;
+}
+
+static double deepest(const cau_session *session, const char *tool)
+{
+	const cau_tool_state *state = stage_tool(session, tool);
+	cau_frame frame = stage_frame(session);
+	double depth = 0;
+	for (size_t v = 0; v < (size_t)session->tissue.vertex_count; ++v)
+		if (!session->fixed[v])
+			depth = fmax(depth, -cau_tool_distance_at(&state->definition, &state->pose, state->jaw,
+			                                          CAU_PART_BOTH,
+			                                          cau_vec3_of(frame.position + 3 * v), NULL));
+	return depth;
+}
+
+static void nothing_is_inside_a_cold_tool(void **state)
+{
+	(void)state;
+	cau_scene_def *scene = block_scene(0.2);
+	cau_session *session = stage_open(scene, 1);
+	double worst = 0;
+	for (int tick = 0; tick < 120; ++tick) { // 4 mm in, then along, at 2 cm/s
+		double in = fmin(tick, 14) * 0.02 / 60, along = fmax(tick - 20, 0) * 0.006 / 60;
+		stage_move(session, "ball", along, 0, 0.0065 - in);
+		stage_step(session, 1);
+		worst = fmax(worst, deepest(session, "ball"));
+	}
+	print_message("deepest vertex %.2g m inside\n", worst);
+	assert_true(stage_tool(session, "ball")->contact_vertices > 5);
+	assert_true(worst <= penetration_m);
+	cau_session_destroy(session);
+	free(scene);
+}
+
+static void friction_keeps_to_its_cone(void **state)
+{
+	(void)state;
+	const double friction[] = {0, 0.3};
+	double sideways[2];
+	for (int k = 0; k < 2; ++k) {
+		cau_scene_def *scene = block_scene(friction[k]);
+		cau_session *session = stage_open(scene, 1);
+		for (int tick = 0; tick < 80; ++tick) {
+			stage_move(session, "ball", fmax(tick - 20, 0) * 0.006 / 60, 0,
+			           0.0065 - fmin(tick, 10) * 0.0003);
+			stage_step(session, 1);
+			for (int32_t i = 0; i < session->contact.row_count; ++i) {
+				const cau_contact_row *row = &session->contact.row[i];
+				cau_vec3 r = cau_vec3_of(row->reaction), n = cau_vec3_of(row->normal);
+				double normal = cau_dot(r, n), along = cau_length(cau_add_scaled(r, -normal, n));
+				assert_true(normal >= -1e-12); // N: never pulls, but for rounding
+				assert_true(along <= friction[k] * normal + cone_tolerance * fabs(normal));
+			}
+		}
+		sideways[k] = -stage_tool(session, "ball")->raw_force_n[0];
+		assert_true(stage_tool(session, "ball")->raw_force_n[2] > 0);
+		cau_session_destroy(session);
+		free(scene);
+	}
+	print_message("dragging costs %.3g N without friction, %.3g N with\n", sideways[0],
+	              sideways[1]);
+	assert_true(sideways[1] > 1.5 * fmax(sideways[0], 0));
+}
+
+// Energized surfaces do not push: tissue must be where it can burn.
+static void an_energized_ball_does_not_push(void **state)
+{
+	(void)state;
+	cau_scene_def *scene = block_scene(0.2);
+	cau_session *session = stage_open(scene, 1);
+	stage_energize(session, "ball", 1);
+	stage_move(session, "ball", 0, 0, 0.003);
+	stage_step(session, 20);
+	assert_int_equal(stage_tool(session, "ball")->contact_vertices, 0);
+	assert_true(deepest(session, "ball") > 0.001);
+	cau_session_destroy(session);
+	free(scene);
+}
+
+// ---- a block of tissue lying on a tool
+// -------------------------------------------------------------
+static cau_scene_def *resting_scene(void)
+{
+	const double size[3] = {0.01, 0.01, 0.004};
+	const int32_t cells[3] = {4, 4, 2};
+	cau_scene_def *scene = stage_scene(CAU_PRECISION_DOUBLE);
+	cau_default_gravity(scene->gravity_m_s2);
+	scene->damping_per_s = 2;
+	scene->iterations = 50;
+	cau_layer_def *fat = stage_add_slab(scene, "block", size, cells);
+	fat->fat[0].young_modulus_pa = 50000;
+	stage_mesh_of(scene, fat)->translate_m[2] = 0.0041;
+	cau_tool_def *table = stage_add_tool(scene, "table", CAU_TOOL_SPHERE, 0, 0, -0.05);
+	table->hot_radius_m = 0.05; // its top is at z = 0, the shaft below
+	table->grid_step_m = 0.01;
+	table->pose.rotation[0] = 0;
+	table->pose.rotation[1] = 1;
+	table->friction = 0.3;
+	return scene;
+}
+
+static double centre_x(const cau_session *session)
+{
+	cau_frame frame = stage_frame(session);
+	double sum = 0;
+	for (size_t v = 0; v < (size_t)session->tissue.vertex_count; ++v)
+		sum += frame.position[3 * v] / session->tissue.vertex_count;
+	return sum;
+}
+
+static void the_tool_feels_the_weight_on_it(void **state)
+{
+	(void)state;
+	cau_scene_def *scene = resting_scene();
+	cau_session *session = stage_open(scene, 1);
+	stage_step(session, 240);
+	double weight = 0;
+	for (int32_t v = 0; v < session->tissue.vertex_count; ++v)
+		weight += 9.81 * session->tissue.mass[v];
+	const cau_tool_state *table = stage_tool(session, "table");
+	print_message("a weight of %.5g N is felt as %.5g N, filtered %.5g N\n", weight,
+	              -table->raw_force_n[2], -table->force_n[2]);
+	assert_true(fabs(-table->raw_force_n[2] - weight) <= weight_tolerance * weight);
+	assert_true(fabs(-table->force_n[2] - weight) <= weight_tolerance * weight);
+	cau_session_destroy(session);
+	free(scene);
+}
+
+// Gravity tilts: below the friction angle the block stays, above it goes.
+static void it_sticks_and_slips(void **state)
+{
+	(void)state;
+	const double slope[] = {0.15, 0.6};
+	double way[2];
+	for (int k = 0; k < 2; ++k) {
+		cau_scene_def *scene = resting_scene();
+		cau_session *session = stage_open(scene, 1);
+		stage_step(session, 120);
+		double before = centre_x(session);
+		stage_gravity(session, 9.81 * slope[k], 0, -9.81);
+		stage_step(session, 30);
+		way[k] = centre_x(session) - before;
+		cau_session_destroy(session);
+		free(scene);
+	}
+	print_message("friction 0.3: at a slope of 0.15 it goes %.2g m, at 0.6 %.2g m\n", way[0],
+	              way[1]);
+	assert_true(fabs(way[0]) < 1e-3); // it leans, as elastic tissue does
+	// a = g (0.6 - 0.3) for half a second is 0.37 m; a round table lets go sooner
+	assert_true(way[1] > 0.05);
+}
+
+// ---- grasping
+// ------------------------------------------------------------------------------------
+static cau_scene_def *strip_scene(double slip_force_n)
+{
+	const double least[3] = {-0.1, -0.1, -0.1}, most[3] = {-0.0299, 0.1, 0.1};
+	cau_scene_def *scene = stage_scene(CAU_PRECISION_SINGLE);
+	stage_add_sheet(scene, "strip", 0.06, 0.01, 30, 5)->sheet[0].limit_stiffness_pa = 1e5;
+	stage_pin_box(scene, least, most);
+	cau_tool_def *jaws = stage_add_tool(scene, "jaws", CAU_TOOL_GRASPER, 0.024, 0, 0);
+	jaws->pose.rotation[0] = sqrt(0.5);
+	jaws->pose.rotation[2] = sqrt(0.5);
+	jaws->slip_force_n = slip_force_n;
+	return scene;
+}
+
+static void draw_jaws(cau_session *session, const cau_scene_def *scene, double x)
+{
+	cau_pose pose = scene->tools[0].pose;
+	pose.position_m[0] += x;
+	stage_turn(session, "jaws", &pose);
+	stage_step(session, 1);
+}
+
+static void jaws_hold_up_to_their_slip_force(void **state)
+{
+	(void)state;
+	const double slip = 0.02;
+	cau_scene_def *scene = strip_scene(slip);
+	cau_session *session = stage_open(scene, 1);
+	stage_grasp(session, "jaws");
+	stage_step(session, 5);
+	int32_t held = stage_tool(session, "jaws")->grasped_vertices;
+	assert_true(held > 5);
+	double most = 0;
+	for (int tick = 0; tick < 240; ++tick) {
+		int32_t before = stage_tool(session, "jaws")->grasped_vertices;
+		draw_jaws(session, scene, tick * 2e-4);
+		const cau_tool_state *jaws = stage_tool(session, "jaws");
+		double pull = cau_length(cau_vec3_of(jaws->raw_force_n));
+		most = fmax(most, pull);
+		// the attachments, and what the closed jaws push at their edge
+		assert_true(pull <= slip * before * 1.5 + 1e-3);
+	}
+	print_message("%d vertices held, most pull %.3g N of %.3g N, %d held after 48 mm\n", held, most,
+	              slip * held, stage_tool(session, "jaws")->grasped_vertices);
+	assert_true(most > 0.3 * slip * held);
+	assert_int_equal(stage_tool(session, "jaws")->grasped_vertices, 0);
+	assert_true(stage_tool(session, "jaws")->grasping); // empty jaws, still closed
+	cau_session_destroy(session);
+	free(scene);
+}
+
+static void jaws_hold_what_pulls_less(void **state)
+{
+	(void)state;
+	cau_scene_def *scene = strip_scene(1000);
+	cau_session *session = stage_open(scene, 1);
+	stage_grasp(session, "jaws");
+	stage_step(session, 5);
+	int32_t held = stage_tool(session, "jaws")->grasped_vertices;
+	for (int tick = 0; tick < 60; ++tick)
+		draw_jaws(session, scene, tick * 2e-4);
+	stage_step(session, 120);
+	const cau_tool_state *jaws = stage_tool(session, "jaws");
+	assert_int_equal(jaws->grasped_vertices, held);
+	assert_true(jaws->raw_force_n[0] < -0.01); // the strip pulls back
+	assert_true(jaws->force_n[0] <= 0 &&
+	            cau_length(cau_vec3_of(jaws->force_n)) <= jaws->definition.force_max_n);
+	cau_session_destroy(session);
+	free(scene);
+}
+
+static void empty_jaws_say_so(void **state)
+{
+	(void)state;
+	cau_scene_def *scene = strip_scene(2);
+	scene->tools[0].pose.position_m[2] = 0.05;
+	cau_session *session = stage_open(scene, 1);
+	stage_grasp(session, "jaws");
+	stage_step(session, 3);
+	const cau_tool_state *jaws = stage_tool(session, "jaws");
+	assert_true(jaws->grasping);
+	assert_int_equal(jaws->grasped_vertices, 0);
+	assert_true(cau_length(cau_vec3_of(jaws->raw_force_n)) == 0);
+	cau_session_destroy(session);
+	free(scene);
+}
+
+// ---- any pull a grasper can make
+// -----------------------------------------------------------------
+static double farthest(const cau_session *session, int32_t *inverted)
+{
+	cau_session_info info = stage_info(session);
+	cau_frame frame = stage_frame(session);
+	for (int32_t i = 0; i < 3 * info.vertex_count; ++i)
+		assert_true(isfinite(frame.position[i]));
+	*inverted = frame.statistics.inverted > *inverted ? frame.statistics.inverted : *inverted;
+	return stage_farthest(&frame, info.rest_position, info.vertex_count);
+}
+
+static void pull_every_way(const char *name, double top_m, double slip_force_n)
+{
+	static const double ways[][3] = {{0, 0, 0.1},  {0.1, 0, 0},  {-0.1, 0, 0},      {0, 0.1, 0},
+	                                 {0, -0.1, 0}, {0, 0, -0.1}, {0.06, 0.06, 0.06}};
+	cau_scene_def *scene = stage_scene_named(name);
+	cau_tool_def *jaws =
+		stage_add_tool(scene, "jaws", CAU_TOOL_GRASPER, 0.01, 0.005, top_m - 0.004);
+	jaws->max_speed_m_s = 5; // the fastest that any scene may have
+	jaws->slip_force_n = slip_force_n;
+	jaws->grasp_stiffness_n_m = slip_force_n > 100 ? 1e4 : 200;
+	cau_session *session = stage_open(scene, 2);
+	for (size_t w = 0; w < sizeof ways / sizeof *ways; ++w) {
+		const double *at = jaws->pose.position_m;
+		int32_t inverted = 0, held;
+		stage_move(session, "jaws", at[0], at[1], at[2]);
+		stage_step(session, 20);
+		stage_grasp(session, "jaws");
+		stage_step(session, 1);
+		held = stage_tool(session, "jaws")->grasped_vertices;
+		assert_true(held > 0);
+		stage_move(session, "jaws", at[0] + ways[w][0], at[1] + ways[w][1], at[2] + ways[w][2]);
+		double far = 0;
+		for (int tick = 0; tick < 20; ++tick) {
+			stage_step(session, 1);
+			far = fmax(far, farthest(session, &inverted));
+		}
+		stage_release(session, "jaws");
+		stage_move(session, "jaws", at[0], at[1], 0.2);
+		stage_step(session, 30);
+		int32_t left = 0;
+		farthest(session, &left);
+		print_message("%s, way %zu: %d held, %.3f m, %d inverted, %d after\n", name, w, held, far,
+		              inverted, left);
+		assert_true(far < bounded_m);
+		assert_true(left <= inverted / 10); // recovered, or about to be
+	}
+	stage_step(session, 60);
+	assert_int_equal(stage_frame(session).statistics.inverted, 0);
+	cau_session_destroy(session);
+	free(scene);
+}
+
+static void fat_survives_any_pull(void **state)
+{
+	(void)state;
+	pull_every_way("fat-neohookean", 0, 2);
+	pull_every_way("fat-neohookean", 0, 1000); // jaws that never slip
+}
+
+static void layers_survive_any_pull(void **state)
+{
+	(void)state;
+	pull_every_way("layers", 0.002, 1000);
+}
+
+int main(void)
+{
+	const struct CMUnitTest tests[] = {
+		cmocka_unit_test(nothing_is_inside_a_cold_tool),
+		cmocka_unit_test(friction_keeps_to_its_cone),
+		cmocka_unit_test(an_energized_ball_does_not_push),
+		cmocka_unit_test(the_tool_feels_the_weight_on_it),
+		cmocka_unit_test(it_sticks_and_slips),
+		cmocka_unit_test(jaws_hold_up_to_their_slip_force),
+		cmocka_unit_test(jaws_hold_what_pulls_less),
+		cmocka_unit_test(empty_jaws_say_so),
+		cmocka_unit_test(fat_survives_any_pull),
+		cmocka_unit_test(layers_survive_any_pull),
+	};
+	return cmocka_run_group_tests(tests, NULL, NULL);
+}

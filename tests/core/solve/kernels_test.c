@@ -1,0 +1,279 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// What every law must hold: its gradient is its energy's, it neither pushes nor turns an element as
+// a whole, it is silent at rest and once removed, and precisions and instruction sets agree.
+#include <string.h>
+
+#include "core/rig/law_scenes.h"
+
+// Central differences of step h: truncation h^2 relative, rounding 1e-16 E / (h |g|), both about
+// 1e-9 for these meshes at h = 1e-5 of their thickness.
+static const double DIFFERENCE_STEP_M = 1e-7;
+static const double DIFFERENCE_TOLERANCE = 1e-6;
+// Sums of a few products: about twenty roundings of the largest term, which may be ten times the
+// result.
+static const double BALANCE_DOUBLE = 1e-13;
+static const double TORQUE_DOUBLE = 1e-11;
+// One rounding to float of D_m^-1, u and the material, worth 6e-8 each, amplified by strains of
+// about a tenth (stress is a difference of terms ten times its size).
+static const double PRECISION_TOLERANCE = 2e-5;
+// Fused multiply-add changes single roundings.
+static const double TIER_DOUBLE = 1e-12, TIER_SINGLE = 1e-5;
+
+static const double STRAIN = 0.12, NOISE_M = 5e-4;
+
+typedef struct deformed {
+	rig r;
+	double *x, *gradient;
+	size_t reals;
+	double energy;
+} deformed;
+
+static void make_deformed(deformed *d, const law_scene *law, int precision, const char *tier)
+{
+	uint64_t random = 11;
+	double a[3][3];
+	rig_begin(&d->r);
+	d->r.scene->precision = precision;
+	law->add(&d->r);
+	rig_build(&d->r, tier, 1);
+	d->reals = 3 * (size_t)d->r.tissue.vertex_count;
+	d->x = cau_arena_array(&d->r.arena, d->reals, sizeof(double));
+	d->gradient = cau_arena_array(&d->r.arena, d->reals, sizeof(double));
+	rig_random_gradient(&random, STRAIN, a);
+	rig_deform(&d->r, a, NOISE_M, &random, d->x);
+	d->energy = rig_local(&d->r, d->x, d->gradient);
+}
+
+static void test_gradient_is_that_of_the_energy(void **state)
+{
+	(void)state;
+	for (int k = 0; k < LAW_SCENES; ++k) {
+		if (!law_scenes[k].has_energy)
+			continue;
+		deformed d;
+		make_deformed(&d, &law_scenes[k], CAU_PRECISION_DOUBLE, NULL);
+		double *numeric = cau_arena_array(&d.r.arena, d.reals, sizeof(double));
+		for (size_t i = 0; i < d.reals; ++i) {
+			double at = d.x[i];
+			d.x[i] = at + DIFFERENCE_STEP_M;
+			double above = rig_local(&d.r, d.x, NULL);
+			d.x[i] = at - DIFFERENCE_STEP_M;
+			numeric[i] = (above - rig_local(&d.r, d.x, NULL)) / (2 * DIFFERENCE_STEP_M);
+			d.x[i] = at;
+		}
+		double off = rig_difference(d.gradient, numeric, d.reals);
+		if (!(off < DIFFERENCE_TOLERANCE))
+			fail_msg("%s: gradient is off by %g", law_scenes[k].name, off);
+		assert_true(k == 0 || d.energy > 0);
+		rig_finish(&d.r);
+	}
+}
+
+// Sum of an element's records and of their moments, relative to the sums of sizes.
+static void element_balance(const rig *r, const double *x, int32_t *const *vertex, int vertices,
+                            int64_t first_record, int32_t slot, double *force, double *torque)
+{
+	double sum[3] = {0}, moment[3] = {0}, size = 0, arm_size = 0;
+	for (int i = 0; i < vertices; ++i) {
+		double g[3], arm[3];
+		for (int c = 0; c < 3; ++c) {
+			g[c] = cau_real_get(r->solver.elements.gradient, 0,
+			                    4 * (first_record + (int64_t)vertices * slot + i) + c);
+			arm[c] = x[3 * vertex[i][slot] + c] - x[3 * vertex[0][slot] + c];
+			sum[c] += g[c];
+		}
+		for (int c = 0; c < 3; ++c)
+			moment[c] += arm[(c + 1) % 3] * g[(c + 2) % 3] - arm[(c + 2) % 3] * g[(c + 1) % 3];
+		double length = sqrt(g[0] * g[0] + g[1] * g[1] + g[2] * g[2]);
+		size += length;
+		arm_size += length * sqrt(arm[0] * arm[0] + arm[1] * arm[1] + arm[2] * arm[2]);
+	}
+	for (int c = 0; c < 3; ++c) {
+		*force = fmax(*force, size > 0 ? fabs(sum[c]) / size : 0);
+		*torque = fmax(*torque, arm_size > 0 ? fabs(moment[c]) / arm_size : 0);
+	}
+}
+
+static void test_no_law_pushes_or_turns_an_element(void **state)
+{
+	(void)state;
+	for (int k = 0; k < LAW_SCENES; ++k)
+		for (int diagonal = 0; diagonal < 2; ++diagonal) {
+			deformed d;
+			make_deformed(&d, &law_scenes[k], CAU_PRECISION_DOUBLE, NULL);
+			d.r.solver.diagonal = diagonal;
+			rig_local(&d.r, d.x, d.gradient);
+			const cau_elements *e = &d.r.solver.elements;
+			double force = 0, torque = 0;
+			for (int32_t s = 0; s < e->sheet.slot_count; ++s)
+				element_balance(&d.r, d.x, e->sheet.vertex, 3, e->sheet_record, s, &force, &torque);
+			for (int32_t s = 0; s < e->fat.slot_count; ++s)
+				element_balance(&d.r, d.x, e->fat.vertex, 4, e->fat_record, s, &force, &torque);
+			for (int32_t s = 0; s < e->link.slot_count; ++s)
+				element_balance(&d.r, d.x, e->link.vertex, 2, e->link_record, s, &force, &torque);
+			for (int32_t s = 0; s < e->hinge.slot_count; ++s)
+				element_balance(&d.r, d.x, e->hinge.vertex, 4, e->hinge_record, s, &force, &torque);
+			if (!(force < BALANCE_DOUBLE) || !(torque < TORQUE_DOUBLE))
+				fail_msg("%s: force %g, torque %g", law_scenes[k].name, force, torque);
+			rig_finish(&d.r);
+		}
+}
+
+// Rest is exactly silent where the law's target is the rest shape.
+static void test_rest_is_exactly_silent(void **state)
+{
+	(void)state;
+	for (int k = 0; k < LAW_SCENES; ++k)
+		for (int mode = 0; mode < 4; ++mode) {
+			rig r;
+			rig_begin(&r);
+			r.scene->precision = mode & 1 ? CAU_PRECISION_SINGLE : CAU_PRECISION_DOUBLE;
+			law_scenes[k].add(&r);
+			for (int i = 0; i < 6; ++i) {
+				if (i < 3)
+					r.scene->layers[0].sheet[0].target[i] = i < 2;
+				r.scene->layers[0].fat[0].target[i] = i < 3;
+			}
+			rig_build(&r, NULL, 1);
+			r.solver.diagonal = mode >> 1;
+			size_t reals = 3 * (size_t)r.tissue.vertex_count;
+			double *gradient = cau_arena_array(&r.arena, reals, sizeof(double));
+			double energy = rig_local(&r, r.tissue.rest, gradient);
+			for (size_t i = 0; i < reals; ++i)
+				if (gradient[i] != 0)
+					fail_msg("%s, mode %d: gradient %g at rest", law_scenes[k].name, mode,
+					         gradient[i]);
+			assert_true(energy == 0);
+			rig_finish(&r);
+		}
+}
+
+static void test_removed_elements_are_silent(void **state)
+{
+	(void)state;
+	for (int k = 0; k < LAW_SCENES; ++k) {
+		deformed d;
+		make_deformed(&d, &law_scenes[k], CAU_PRECISION_DOUBLE, NULL);
+		for (int kind = 0; kind < CAU_ELEMENT_KINDS; ++kind)
+			for (int32_t e = 0; e < cau_tissue_element_count(&d.r.tissue, kind); ++e)
+				rig_remove(&d.r, kind, e, 0);
+		for (int diagonal = 0; diagonal < 2; ++diagonal) {
+			d.r.solver.diagonal = diagonal;
+			assert_true(rig_local(&d.r, d.x, d.gradient) == 0);
+			for (size_t i = 0; i < d.reals; ++i)
+				assert_true(d.gradient[i] == 0);
+		}
+		rig_finish(&d.r);
+	}
+}
+
+// The gradient without one element is the old one less that element's share.
+static void test_one_removed_leaves_the_others(void **state)
+{
+	(void)state;
+	deformed d;
+	make_deformed(&d, &law_scenes[4], CAU_PRECISION_DOUBLE, NULL);
+	enum { GONE = 5 };
+	const cau_elements *e = &d.r.solver.elements;
+	int32_t slot = d.r.solver.slots.slot_of[CAU_ELEMENT_TETRAHEDRON][GONE];
+	for (int i = 0; i < 4; ++i)
+		for (int c = 0; c < 3; ++c)
+			d.gradient[3 * e->fat.vertex[i][slot] + c] -=
+				cau_real_get(e->gradient, 0, 4 * (e->fat_record + 4 * (int64_t)slot + i) + c);
+	rig_remove(&d.r, CAU_ELEMENT_TETRAHEDRON, GONE, 0);
+	double *after = cau_arena_array(&d.r.arena, d.reals, sizeof(double));
+	rig_local(&d.r, d.x, after);
+	assert_true(rig_difference(after, d.gradient, d.reals) < BALANCE_DOUBLE);
+	rig_finish(&d.r);
+}
+
+static void compare(const law_scene *law, deformed *a, deformed *b, double tolerance,
+                    const char *what)
+{
+	for (int diagonal = 0; diagonal < 2; ++diagonal) {
+		a->r.solver.diagonal = b->r.solver.diagonal = diagonal;
+		a->energy = rig_local(&a->r, a->x, a->gradient);
+		b->energy = rig_local(&b->r, b->x, b->gradient);
+		double off = rig_difference(a->gradient, b->gradient, a->reals);
+		if (!(off < tolerance) || !(fabs(a->energy - b->energy) <= tolerance * b->energy))
+			fail_msg("%s, %s: gradients differ by %g, energies %g and %g", law->name, what, off,
+			         a->energy, b->energy);
+	}
+}
+
+static void test_single_agrees_with_double(void **state)
+{
+	(void)state;
+	for (int k = 0; k < LAW_SCENES; ++k) {
+		deformed a, b;
+		make_deformed(&a, &law_scenes[k], CAU_PRECISION_SINGLE, NULL);
+		make_deformed(&b, &law_scenes[k], CAU_PRECISION_DOUBLE, NULL);
+		compare(&law_scenes[k], &a, &b, PRECISION_TOLERANCE, "single");
+		rig_finish(&a.r);
+		rig_finish(&b.r);
+	}
+}
+
+static void test_every_instruction_set_agrees(void **state)
+{
+	(void)state;
+	static const char *const tiers[] = {"avx2", "avx512"};
+	for (int k = 0; k < LAW_SCENES; ++k)
+		for (int t = 0; t < 2; ++t)
+			for (int single = 0; single < 2; ++single) {
+				if (strcmp(cau_kernels_choose(single, tiers[t])->instruction_set, tiers[t]) != 0)
+					continue; // this processor has it not
+				int precision = single ? CAU_PRECISION_SINGLE : CAU_PRECISION_DOUBLE;
+				deformed a, b;
+				make_deformed(&a, &law_scenes[k], precision, tiers[t]);
+				make_deformed(&b, &law_scenes[k], precision, "baseline");
+				assert_string_equal(b.r.solver.kernels->instruction_set, "baseline");
+				compare(&law_scenes[k], &a, &b, single ? TIER_SINGLE : TIER_DOUBLE, tiers[t]);
+				rig_finish(&a.r);
+				rig_finish(&b.r);
+			}
+}
+
+static void test_dot_and_add_scaled(void **state)
+{
+	(void)state;
+	enum { MOST = 4099 };
+	static double x[MOST], y[MOST];
+	static float fx[MOST], fy[MOST];
+	uint64_t random = 5;
+	for (int i = 0; i < MOST; ++i) {
+		fx[i] = (float)(x[i] = (float)random_between(&random, -1, 1));
+		fy[i] = (float)(y[i] = (float)random_between(&random, -1, 1));
+	}
+	static const int counts[] = {0, 1, 7, 16, 1023, 1024, 1025, MOST};
+	// Strips of 64 float additions: 64 x 6e-8 of the sum of sizes at most.
+	static const double DOT_SINGLE = 4e-6, DOT_DOUBLE = 1e-14;
+	for (size_t k = 0; k < sizeof counts / sizeof *counts; ++k) {
+		double exact = 0, size = 0;
+		for (int i = 0; i < counts[k]; ++i) {
+			exact += x[i] * y[i];
+			size += fabs(x[i] * y[i]);
+		}
+		assert_near(cau_kernels_choose(0, NULL)->dot(x, y, counts[k]), exact, DOT_DOUBLE * size);
+		assert_near(cau_kernels_choose(1, NULL)->dot(fx, fy, counts[k]), exact, DOT_SINGLE * size);
+	}
+	double expected = y[MOST - 1] + 0.5 * x[MOST - 1];
+	cau_kernels_choose(0, NULL)->add_scaled(y, 0.5, x, MOST);
+	cau_kernels_choose(1, NULL)->add_scaled(fy, 0.5, fx, MOST);
+	assert_true(y[MOST - 1] == expected && fy[MOST - 1] == (float)expected);
+}
+
+int main(void)
+{
+	const struct CMUnitTest tests[] = {
+		cmocka_unit_test(test_gradient_is_that_of_the_energy),
+		cmocka_unit_test(test_no_law_pushes_or_turns_an_element),
+		cmocka_unit_test(test_rest_is_exactly_silent),
+		cmocka_unit_test(test_removed_elements_are_silent),
+		cmocka_unit_test(test_one_removed_leaves_the_others),
+		cmocka_unit_test(test_single_agrees_with_double),
+		cmocka_unit_test(test_every_instruction_set_agrees),
+		cmocka_unit_test(test_dot_and_add_scaled),
+	};
+	return cmocka_run_group_tests(tests, NULL, NULL);
+}

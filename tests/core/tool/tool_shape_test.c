@@ -1,0 +1,384 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Every shape and part: signed, 1-Lipschitz, with the gradient of central differences; bounds that
+// hold the part; segments against dense sampling; what lies between the jaws.
+#include "tool/tool_shape.h"
+
+#include <setjmp.h>
+#include <stdarg.h>
+#include <stddef.h>
+#include <stdint.h>
+
+#include <cmocka.h>
+
+#include "core/tool/tools.h"
+
+enum { POINTS = 2000 };
+
+static const double BOX_M = 0.015;      // half the box of random points: holds the hot parts
+static const double ROUNDING_M = 1e-14; // of distances near 0.1 m
+static const double JAWS[] = {0, 0.3, 1};
+
+typedef void (*check)(const cau_tool_def *tool, double jaw, cau_tool_part part);
+
+// Three sets of sizes: the defaults, a fine tool, and one that is wider than long.
+static void for_every_part(check check_part)
+{
+	static const double sizes[][3] = {{3e-3, 8e-3, 2.5e-3}, {4e-4, 1e-2, 2e-3}, {6e-3, 4e-3, 5e-3}};
+	for (int shape = 0; shape < CAU_TOOL_SHAPE_COUNT; ++shape)
+		for (int size = 0; size < 3; ++size)
+			for (int j = 0; j < 3; ++j)
+				for (int part = CAU_PART_HOT; part <= CAU_PART_BOTH; ++part) {
+					cau_tool_def tool = tool_with_defaults(shape);
+					tool.hot_radius_m = sizes[size][0];
+					tool.tip_length_m = sizes[size][1];
+					tool.shaft_radius_m = sizes[size][2];
+					check_part(&tool, JAWS[j], (cau_tool_part)part);
+				}
+}
+
+static int lacks(const cau_tool_def *tool, cau_tool_part part)
+{
+	return tool->shape == CAU_TOOL_GRASPER && part == CAU_PART_HOT;
+}
+
+static void check_lipschitz(const cau_tool_def *tool, double jaw, cau_tool_part part)
+{
+	if (lacks(tool, part))
+		return;
+	uint64_t random = 5;
+	for (int i = 0; i < POINTS; ++i) {
+		double reach = i % 2 ? BOX_M : BOX_M / 100; // far and near pairs
+		cau_vec3 a = random_point(&random, BOX_M);
+		cau_vec3 b = cau_add(a, random_point(&random, reach));
+		double change = cau_tool_distance(tool, jaw, part, a, NULL) -
+		                cau_tool_distance(tool, jaw, part, b, NULL);
+		assert_true(fabs(change) <= cau_length(cau_sub(a, b)) + ROUNDING_M);
+	}
+}
+
+static void test_lipschitz(void **state)
+{
+	(void)state;
+	for_every_part(check_lipschitz);
+}
+
+// Central differences of step h; near a crease (where they are not unit) there is no gradient to
+// match.
+static void check_gradient(const cau_tool_def *tool, double jaw, cau_tool_part part)
+{
+	static const double H_M = 1e-7;
+	// Truncation is h^2 / (3 R^2) with R the distance to a core, at least 1e-5 m at the points kept
+	// below; rounding is 1e-17 / h.
+	static const double TOLERANCE = 1e-4;
+	if (lacks(tool, part))
+		return;
+	uint64_t random = 7;
+	int compared = 0;
+	for (int i = 0; i < POINTS; ++i) {
+		cau_vec3 p = random_point(&random, BOX_M), g, difference;
+		double *out[3] = {&difference.x, &difference.y, &difference.z};
+		cau_tool_distance(tool, jaw, part, p, &g);
+		assert_near(cau_length(g), 1, 1e-12);
+		for (int axis = 0; axis < 3; ++axis) {
+			double step[3] = {0};
+			step[axis] = H_M;
+			cau_vec3 h = cau_vec3_of(step);
+			*out[axis] = (cau_tool_distance(tool, jaw, part, cau_add(p, h), NULL) -
+			              cau_tool_distance(tool, jaw, part, cau_sub(p, h), NULL)) /
+			             (2 * H_M);
+		}
+		if (fabs(cau_length(difference) - 1) > TOLERANCE)
+			continue;
+		assert_true(cau_length(cau_sub(difference, g)) < TOLERANCE * 2);
+		++compared;
+	}
+	assert_true(compared > POINTS * 99 / 100); // creases are thin
+}
+
+static void test_gradient(void **state)
+{
+	(void)state;
+	for_every_part(check_gradient);
+}
+
+// Outside and inside: from a point outside, the way against the gradient by the distance ends on
+// the surface of a solid; no point of the part is outside its bound.
+static void check_surface_and_bound(const cau_tool_def *tool, double jaw, cau_tool_part part)
+{
+	if (lacks(tool, part))
+		return;
+	cau_vec3 center;
+	double radius;
+	cau_tool_bound(tool, part, &center, &radius);
+	uint64_t random = 9;
+	int inside = 0, outside = 0;
+	for (int i = 0; i < POINTS; ++i) {
+		cau_vec3 g, p = random_point(&random, i % 2 ? BOX_M : 2 * tool->hot_radius_m);
+		double d = cau_tool_distance(tool, jaw, part, p, &g);
+		inside += d < 0;
+		outside += d > 0;
+		double to_bound = cau_length(cau_sub(p, center)) - radius;
+		assert_true(d >= to_bound - ROUNDING_M);
+		if (d > 0) {
+			cau_vec3 foot = cau_add_scaled(p, -d, g);
+			assert_near(cau_tool_distance(tool, jaw, part, foot, NULL), 0, 1e-12);
+		}
+	}
+	assert_true(outside > 0);
+	if (part != CAU_PART_COLD)
+		assert_true(inside > 0);
+}
+
+static void test_surface_and_bound(void **state)
+{
+	(void)state;
+	for_every_part(check_surface_and_bound);
+}
+
+// The cold part leaves the surface of the hot part free: nowhere is a point inside both.
+static void check_not_covered(const cau_tool_def *tool, double jaw, cau_tool_part part)
+{
+	if (part != CAU_PART_BOTH || lacks(tool, CAU_PART_HOT))
+		return;
+	if (tool->tip_length_m < 2 * tool->hot_radius_m)
+		return; // jaws wider than long turn into the shaft
+	uint64_t random = 13;
+	for (int i = 0; i < POINTS; ++i) {
+		cau_vec3 p = random_point(&random, BOX_M);
+		double hot = cau_tool_distance(tool, jaw, CAU_PART_HOT, p, NULL);
+		double cold = cau_tool_distance(tool, jaw, CAU_PART_COLD, p, NULL);
+		assert_true(hot + cold > -ROUNDING_M);
+	}
+}
+
+static void test_hot_is_not_covered(void **state)
+{
+	(void)state;
+	for_every_part(check_not_covered);
+}
+
+static void test_tip_is_hot(void **state)
+{
+	(void)state;
+	for (int shape = 0; shape < CAU_TOOL_GRASPER; ++shape) {
+		cau_tool_def tool = tool_with_defaults(shape);
+		double d = cau_tool_distance(&tool, 0, CAU_PART_HOT, (cau_vec3){0, 0, 0}, NULL);
+		if (shape == CAU_TOOL_BIPOLAR) // between the closed plates
+			assert_near(d, 0, ROUNDING_M);
+		else
+			assert_near(d, -cau_tool_thinnest_hot_m(&tool), ROUNDING_M);
+	}
+}
+
+// Points that lie on the surfaces which README.md describes, for r 3 mm, L 8 mm, s 2.5 mm, t 1.2 mm
+// (grasper 1 mm), with the normal there.
+static void test_known_surfaces(void **state)
+{
+	(void)state;
+	static const double SQUARE = 0.70710678118654752;
+	static const struct {
+		int shape;
+		cau_tool_part part;
+		double jaw;
+		cau_vec3 point, normal;
+	} known[] = {
+		{CAU_TOOL_SPHERE, CAU_PART_HOT, 0, {0, -3e-3, 0}, {0, -1, 0}},
+		{CAU_TOOL_SPHERE, CAU_PART_COLD, 0, {0, 0, 3e-3}, {0, 0, -1}},
+		{CAU_TOOL_SPHERE, CAU_PART_COLD, 0, {2.5e-3, 0, 50e-3}, {1, 0, 0}},
+		{CAU_TOOL_SPHERE, CAU_PART_COLD, 0, {0, 0, 123e-3}, {0, 0, 1}},
+		{CAU_TOOL_CAPSULE, CAU_PART_HOT, 0, {0, 0, -3e-3}, {0, 0, -1}},
+		{CAU_TOOL_CAPSULE, CAU_PART_HOT, 0, {0, 3e-3, 7e-3}, {0, 1, 0}},
+		{CAU_TOOL_HOOK, CAU_PART_HOT, 0, {7e-3, 0, 0}, {1, 0, 0}},
+		{CAU_TOOL_HOOK, CAU_PART_HOT, 0, {-1e-3, 0, -3e-3}, {0, 0, -1}},
+		{CAU_TOOL_HOOK, CAU_PART_HOT, 0, {-7e-3, 0, 2e-3}, {-1, 0, 0}},
+		{CAU_TOOL_HOOK,
+	     CAU_PART_HOT,
+	     0,
+	     {-2e-3 - 5e-3 * SQUARE, 0, 2e-3 - 5e-3 * SQUARE},
+	     {-SQUARE, 0, -SQUARE}},
+		{CAU_TOOL_HOOK, CAU_PART_COLD, 0, {-4e-3, 0, 5e-3}, {0, 0, -1}}, // the neck, on the heel
+		{CAU_TOOL_SPATULA, CAU_PART_HOT, 0, {3e-3, 0, 4e-3}, {1, 0, 0}},
+		{CAU_TOOL_SPATULA, CAU_PART_HOT, 0, {1e-3, 1.2e-3, 4e-3}, {0, 1, 0}},
+		{CAU_TOOL_SPATULA, CAU_PART_HOT, 0, {1e-3, 0, -1.2e-3}, {0, 0, -1}},
+		{CAU_TOOL_BIPOLAR, CAU_PART_HOT, 0, {2.4e-3, 0, 2e-3}, {1, 0, 0}},
+		{CAU_TOOL_BIPOLAR, CAU_PART_HOT, 0, {-1.2e-3, 0, -1.2e-3}, {0, 0, -1}},
+		{CAU_TOOL_BIPOLAR, CAU_PART_COLD, 0, {-4.8e-3, 0, 2e-3}, {-1, 0, 0}},
+		{CAU_TOOL_SHEARS, CAU_PART_HOT, 1, {-3e-3, 0, 2e-3}, {-1, 0, 0}},
+		{CAU_TOOL_SHEARS, CAU_PART_COLD, 0, {3e-3, 0, 4e-3}, {-1, 0, 0}},
+		{CAU_TOOL_SHEARS, CAU_PART_COLD, 0, {5.4e-3, 0, 4e-3}, {1, 0, 0}},
+		{CAU_TOOL_GRASPER, CAU_PART_COLD, 0, {-2e-3, 0, 2e-3}, {-1, 0, 0}},
+		{CAU_TOOL_GRASPER, CAU_PART_COLD, 0, {1e-3, 2.5e-3, 2e-3}, {0, 1, 0}},
+	};
+	for (size_t i = 0; i < sizeof known / sizeof *known; ++i) {
+		cau_tool_def tool = tool_with_defaults(known[i].shape);
+		cau_vec3 g, outside = cau_add_scaled(known[i].point, 1e-4, known[i].normal);
+		double jaw = known[i].jaw;
+		double d = cau_tool_distance(&tool, jaw, known[i].part, known[i].point, NULL);
+		assert_near(d, 0, ROUNDING_M);
+		d = cau_tool_distance(&tool, jaw, known[i].part, outside, &g);
+		assert_near(d, 1e-4, ROUNDING_M);
+		assert_near(cau_dot(g, known[i].normal), 1, 1e-9);
+	}
+}
+
+// Opening turns the jaws about the hinge at z = L: the middle of a face, at an arm of 4 mm, moves
+// so.
+static void test_jaws_open(void **state)
+{
+	(void)state;
+	for (int shape = CAU_TOOL_BIPOLAR; shape <= CAU_TOOL_GRASPER; ++shape) {
+		cau_tool_def tool = tool_with_defaults(shape);
+		int shears = shape == CAU_TOOL_SHEARS;
+		cau_tool_part part = shape == CAU_TOOL_BIPOLAR ? CAU_PART_HOT : CAU_PART_COLD;
+		double face = shears ? tool.hot_radius_m : 0, arm = 4e-3;
+		double angle = 0.5 * tool.jaw_open_rad / (shears ? 1 : 2);
+		cau_vec3 point = {face * cos(angle) + arm * sin(angle), 0,
+		                  tool.tip_length_m - arm * cos(angle) + face * sin(angle)};
+		cau_vec3 g;
+		assert_near(cau_tool_distance(&tool, 0.5, part, point, &g), 0, ROUNDING_M);
+		assert_near(g.x, -cos(angle), 1e-9);
+		assert_near(g.z, -sin(angle), 1e-9);
+		point.x = -point.x; // the other jaw is the mirror image; shears have a blade there
+		double mirrored = cau_tool_distance(&tool, 0.5, part, point, NULL);
+		assert_true(shears ? mirrored > 1e-3 : fabs(mirrored) < ROUNDING_M);
+	}
+}
+
+static void test_a_part_that_lacks_is_nowhere(void **state)
+{
+	(void)state;
+	cau_tool_def tool = tool_with_defaults(CAU_TOOL_GRASPER);
+	cau_vec3 origin = {0, 0, 0}, g;
+	assert_true(isinf(cau_tool_distance(&tool, 0, CAU_PART_HOT, origin, &g)));
+	assert_true(isinf(cau_tool_thinnest_hot_m(&tool)));
+	assert_false(cau_tool_meets_segment(&tool, 0, CAU_PART_HOT, origin, (cau_vec3){1e-3, 0, 0}));
+	assert_true(cau_tool_meets_segment(&tool, 0, CAU_PART_COLD, origin, (cau_vec3){1e-3, 0, 0}));
+}
+
+static void test_world_frame(void **state)
+{
+	(void)state;
+	cau_tool_def tool = tool_with_defaults(CAU_TOOL_HOOK);
+	cau_pose pose = pose_turned((cau_vec3){0.2, -0.1, 0.4}, (cau_vec3){1, 2, 3}, 0.8);
+	uint64_t random = 3;
+	for (int i = 0; i < 200; ++i) {
+		cau_vec3 local = random_point(&random, BOX_M), g, g_world;
+		cau_vec3 world = cau_pose_to_world(&pose, local);
+		double d = cau_tool_distance(&tool, 0, CAU_PART_BOTH, local, &g);
+		double d_world = cau_tool_distance_at(&tool, &pose, 0, CAU_PART_BOTH, world, &g_world);
+		assert_near(d, d_world, 1e-13);
+		// The gradient turns by about 1e-16 m / 1e-4 m between the two ways of rounding.
+		assert_true(cau_length(cau_sub(cau_rotate(pose.rotation, g), g_world)) < 1e-9);
+	}
+}
+
+// Sampled at a spacing of `gap` a segment's least distance is known to gap / 2.
+static void check_segments(const cau_tool_def *tool, double jaw, cau_tool_part part)
+{
+	enum { SEGMENTS = 400, SAMPLES = 300 };
+	static const double EXACT_M = 1e-6;
+	if (lacks(tool, part))
+		return;
+	uint64_t random = 17;
+	int met = 0, missed = 0;
+	for (int i = 0; i < SEGMENTS; ++i) {
+		// Far and long, far and short, and about the tip.
+		cau_vec3 a = random_point(&random, i % 3 == 2 ? tool->hot_radius_m : BOX_M);
+		cau_vec3 b = cau_add(a, random_point(&random, i % 3 ? BOX_M / 10 : BOX_M));
+		double gap = cau_length(cau_sub(b, a)) / SAMPLES, least = INFINITY;
+		for (int k = 0; k <= SAMPLES; ++k) {
+			cau_vec3 p = cau_add_scaled(a, (double)k / SAMPLES, cau_sub(b, a));
+			least = fmin(least, cau_tool_distance(tool, jaw, part, p, NULL));
+		}
+		int meets = cau_tool_meets_segment(tool, jaw, part, a, b);
+		if (least <= 0)
+			assert_true(meets);
+		if (least > EXACT_M + gap / 2)
+			assert_false(meets);
+		met += meets;
+		missed += !meets;
+	}
+	assert_true(met > 0 && missed > 0);
+}
+
+static void test_segments_against_sampling(void **state)
+{
+	(void)state;
+	for_every_part(check_segments);
+}
+
+// Known answers at and around the 1e-6 m that is promised.
+static void test_segment_is_exact(void **state)
+{
+	(void)state;
+	cau_tool_def tool = tool_with_defaults(CAU_TOOL_SPHERE);
+	double r = tool.hot_radius_m;
+	for (int i = 0; i < 3; ++i) {
+		double y = r + (double[]){-1e-6, 0.5e-6, 2e-6}[i];
+		cau_vec3 a = {-0.01, y, 0}, b = {0.013, y, 0};
+		assert_int_equal(cau_tool_meets_segment(&tool, 0, CAU_PART_HOT, a, b), i < 2);
+	}
+	cau_vec3 inside = {1e-4, 0, 0}; // wholly inside, and of no length
+	assert_true(cau_tool_meets_segment(&tool, 0, CAU_PART_HOT, (cau_vec3){0, 0, 0}, inside));
+	assert_true(cau_tool_meets_segment(&tool, 0, CAU_PART_HOT, inside, inside));
+	cau_vec3 outside = {1, 0, 0};
+	assert_false(cau_tool_meets_segment(&tool, 0, CAU_PART_HOT, outside, outside));
+	cau_vec3 nowhere = {NAN, 0, 0};
+	assert_false(cau_tool_meets_segment(&tool, 0, CAU_PART_HOT, nowhere, inside));
+}
+
+static void test_between_jaws(void **state)
+{
+	(void)state;
+	static const int shapes[] = {CAU_TOOL_BIPOLAR, CAU_TOOL_SHEARS, CAU_TOOL_GRASPER};
+	for (int i = 0; i < 3; ++i) {
+		cau_tool_def tool = tool_with_defaults(shapes[i]);
+		int shears = shapes[i] == CAU_TOOL_SHEARS;
+		double face = shears ? tool.hot_radius_m : 0;
+		double low = shears ? 0 : -tool.jaw_open_rad / 2;
+		double high = shears ? tool.jaw_open_rad : tool.jaw_open_rad / 2;
+		// Points at half the jaws' length below the hinge, on the faces and half way between.
+		double arm = tool.tip_length_m / 2, previous = -2, coordinate;
+		for (int k = 0; k <= 4; ++k) {
+			double angle = low + (high - low) * k / 4;
+			cau_vec3 p = {face * cos(angle) + arm * sin(angle), 0,
+			              tool.tip_length_m - arm * cos(angle) + face * sin(angle)};
+			assert_true(cau_tool_between_jaws(&tool, 1, p, &coordinate));
+			assert_true(coordinate > previous);
+			if (k == 0 || k == 4)
+				assert_near(coordinate, k ? 1 : -1, 0.1);
+			if (k == 2 && !shears) // the hinge of shears is not where their faces' planes meet
+				assert_near(coordinate, 0, 1e-12);
+			previous = coordinate;
+			p.y = 0.01; // beside the jaws
+			assert_false(cau_tool_between_jaws(&tool, 1, p, &coordinate));
+		}
+		cau_vec3 above = {face, 0, tool.tip_length_m + 1e-3}, below = {face, 0, -3e-3};
+		assert_false(cau_tool_between_jaws(&tool, 1, above, NULL));
+		assert_false(cau_tool_between_jaws(&tool, 1, below, NULL));
+		cau_vec3 pressed = {face, 0, 1e-3}, beside = {face + 5e-3, 0, 1e-3};
+		assert_true(cau_tool_between_jaws(&tool, 0, pressed, NULL)); // closed on it
+		assert_false(cau_tool_between_jaws(&tool, 0, beside, NULL));
+	}
+	cau_tool_def hook = tool_with_defaults(CAU_TOOL_HOOK);
+	assert_false(cau_tool_between_jaws(&hook, 1, (cau_vec3){0, 0, 0}, NULL));
+}
+
+int main(void)
+{
+	const struct CMUnitTest tests[] = {
+		cmocka_unit_test(test_lipschitz),
+		cmocka_unit_test(test_gradient),
+		cmocka_unit_test(test_surface_and_bound),
+		cmocka_unit_test(test_hot_is_not_covered),
+		cmocka_unit_test(test_tip_is_hot),
+		cmocka_unit_test(test_known_surfaces),
+		cmocka_unit_test(test_jaws_open),
+		cmocka_unit_test(test_a_part_that_lacks_is_nowhere),
+		cmocka_unit_test(test_world_frame),
+		cmocka_unit_test(test_segments_against_sampling),
+		cmocka_unit_test(test_segment_is_exact),
+		cmocka_unit_test(test_between_jaws),
+	};
+	return cmocka_run_group_tests(tests, NULL, NULL);
+}

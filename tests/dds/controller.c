@@ -1,0 +1,323 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// A robot controller for the tests: a plain Cyclone DDS program that knows the IDL and nothing else
+// of the server.
+//
+//     controller DOMAIN SESSION TOOL native|ros DEADLINE_MS    (0: declares none)
+//
+// It writes 100 times a second. Lines on standard input tell it what:
+//     aim X Y Z      m: goes there at 0.2 m/s        energy 0|1       the level it writes
+//     grasp 0|1      the level it writes             write on|off     silent, but alive
+//     once WHAT      one bad sample: nan back stale leap session long
+//     flood COUNT    so many NaN samples at once     state            prints the newest tool state,
+//     soon
+// On standard output it tells, one JSON object a line: matched, silent, state, changed.
+#include <dds/dds.h>
+#include <math.h>
+#include <poll.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+#include <time.h>
+#include <unistd.h>
+
+#include "cautery.h"
+#include "ros2.h"
+
+#define PERIOD_S 0.01
+#define SPEED_M_S 0.2
+
+enum { LINE_BYTES = 256, NAME_BYTES = 49 };
+
+typedef struct controller {
+	char session[NAME_BYTES], tool[NAME_BYTES];
+	bool ros, writing, energy, grasp, has_state, matched, state_asked;
+	uint64_t sequence;
+	double position_m[3], aim_m[3];
+	double last_write_s;
+	dds_entity_t participant, publisher, command, pose, level, state_reader;
+	cautery_ToolState state;
+} controller;
+
+static double clock_s(clockid_t clock)
+{
+	struct timespec now;
+	clock_gettime(clock, &now);
+	return (double)now.tv_sec + 1e-9 * (double)now.tv_nsec;
+}
+
+static dds_entity_t checked(dds_entity_t entity)
+{
+	if (entity < 0) {
+		fprintf(stderr, "controller: %s\n", dds_strretcode(entity));
+		exit(1);
+	}
+	return entity;
+}
+
+// ---- the wire
+// ------------------------------------------------------------------------------------------
+static dds_entity_t ros_writer(controller *c, const char *name, const dds_topic_descriptor_t *type)
+{
+	char topic[3 * NAME_BYTES];
+	snprintf(topic, sizeof topic, "rt/%.48s/%.48s/%s", c->session, c->tool, name);
+	for (char *at = topic; *at; at++)
+		if (*at == '-')
+			*at = '_';
+	dds_qos_t *qos = dds_create_qos(); // ROS 2's default
+	dds_qset_reliability(qos, DDS_RELIABILITY_RELIABLE, DDS_MSECS(100));
+	dds_qset_history(qos, DDS_HISTORY_KEEP_LAST, 10);
+	dds_entity_t made = checked(dds_create_topic(c->participant, type, topic, NULL, NULL));
+	made = checked(dds_create_writer(c->participant, made, qos, NULL));
+	dds_delete_qos(qos);
+	return made;
+}
+
+static void open_native(controller *c, dds_entity_t publisher, int deadline_ms)
+{
+	dds_qos_t *qos = dds_create_qos();
+	dds_qset_reliability(qos, DDS_RELIABILITY_RELIABLE, DDS_MSECS(100));
+	dds_qset_history(qos, DDS_HISTORY_KEEP_LAST, 1);
+	dds_qset_liveliness(qos, DDS_LIVELINESS_MANUAL_BY_TOPIC, DDS_MSECS(500));
+	if (deadline_ms)
+		dds_qset_deadline(qos, DDS_MSECS(deadline_ms));
+	dds_entity_t topic = checked(dds_create_topic(c->participant, &cautery_ToolCommand_desc,
+	                                              "cautery/tool_command", NULL, NULL));
+	c->command = checked(dds_create_writer(publisher, topic, qos, NULL));
+	dds_delete_qos(qos);
+}
+
+static void open_state(controller *c, const dds_qos_t *partition)
+{
+	dds_qos_t *qos = dds_create_qos();
+	dds_qset_reliability(qos, DDS_RELIABILITY_RELIABLE, DDS_MSECS(100));
+	dds_qset_durability(qos, DDS_DURABILITY_TRANSIENT_LOCAL);
+	dds_entity_t topic = checked(dds_create_topic(c->participant, &cautery_ToolState_desc,
+	                                              "cautery/tool_state", NULL, NULL));
+	dds_entity_t subscriber = checked(dds_create_subscriber(c->participant, partition, NULL));
+	c->state_reader = checked(dds_create_reader(subscriber, topic, qos, NULL));
+	dds_delete_qos(qos);
+}
+
+static void open_wire(controller *c, uint32_t domain, int deadline_ms)
+{
+	dds_qos_t *partition = dds_create_qos();
+	dds_qset_partition1(partition, c->session);
+	c->participant = checked(dds_create_participant(domain, NULL, NULL));
+	if (c->ros) {
+		c->pose = ros_writer(c, "servo_cp", &geometry_msgs_msg_dds__PoseStamped__desc);
+		c->level = ros_writer(c, "energize", &sensor_msgs_msg_dds__Joy__desc);
+	} else {
+		open_native(c, checked(dds_create_publisher(c->participant, partition, NULL)), deadline_ms);
+	}
+	open_state(c, partition);
+	dds_delete_qos(partition);
+}
+
+static bool is_matched(dds_entity_t writer)
+{
+	dds_publication_matched_status_t status;
+	return !dds_get_publication_matched_status(writer, &status) && status.current_count > 0;
+}
+
+// ---- writing
+// ------------------------------------------------------------------------------------------
+static void write_native(controller *c, cautery_ToolCommand *sample)
+{
+	memcpy(sample->tool, c->tool, sizeof c->tool);
+	sample->rotation[0] = 1;
+	sample->jaw = 1;
+	sample->energy = c->energy;
+	sample->grasp = c->grasp;
+	checked(dds_write(c->command, sample));
+}
+
+static cautery_ToolCommand command_now(controller *c)
+{
+	cautery_ToolCommand sample = {.sequence_number = ++c->sequence,
+	                              .source_time_ns = (int64_t)(1e9 * clock_s(CLOCK_REALTIME))};
+	memcpy(sample.session, c->session, sizeof c->session);
+	memcpy(sample.position_m, c->position_m, sizeof sample.position_m);
+	return sample;
+}
+
+static void write_ros_pose(controller *c, const double p[3])
+{
+	char frame[] = "";
+	geometry_msgs_msg_dds__PoseStamped_ sample = {{{0, 0}, frame}, {{p[0], p[1], p[2]}, {.w_ = 1}}};
+	checked(dds_write(c->pose, &sample));
+}
+
+static void write_ros_level(controller *c)
+{
+	char frame[] = "";
+	int32_t button = c->energy;
+	sensor_msgs_msg_dds__Joy_ sample = {.header_ = {{0, 0}, frame},
+	                                    .buttons_ = {1, 1, &button, false}};
+	checked(dds_write(c->level, &sample));
+}
+
+static void go_on(controller *c)
+{
+	double away[3], distance = 0;
+	for (int i = 0; i < 3; i++) {
+		away[i] = c->aim_m[i] - c->position_m[i];
+		distance += away[i] * away[i];
+	}
+	distance = sqrt(distance);
+	double share = distance > SPEED_M_S * PERIOD_S ? SPEED_M_S * PERIOD_S / distance : 1;
+	for (int i = 0; i < 3; i++)
+		c->position_m[i] += share * away[i];
+}
+
+static void write_good(controller *c)
+{
+	go_on(c);
+	if (c->ros) {
+		write_ros_pose(c, c->position_m);
+		write_ros_level(c);
+	} else {
+		cautery_ToolCommand sample = command_now(c);
+		write_native(c, &sample);
+	}
+	c->last_write_s = clock_s(CLOCK_MONOTONIC);
+}
+
+static void write_bad(controller *c, const char *what)
+{
+	cautery_ToolCommand sample = command_now(c);
+	if (strcmp(what, "nan") == 0)
+		sample.position_m[1] = NAN;
+	else if (strcmp(what, "leap") == 0)
+		sample.position_m[0] += 0.4;
+	else if (strcmp(what, "stale") == 0)
+		sample.source_time_ns -= 2000000000;
+	else if (strcmp(what, "back") == 0)
+		sample.sequence_number = 1;
+	else if (strcmp(what, "session") == 0)
+		snprintf(sample.session, sizeof sample.session, "d1-other");
+	if (c->ros)
+		write_ros_pose(c, sample.position_m);
+	else
+		write_native(c, &sample);
+}
+
+// ---- telling and being told
+// ---------------------------------------------------------------------------
+static void tell_state(const controller *c, const char *event)
+{
+	const cautery_ToolState *s = &c->state;
+	printf("{\"event\":\"%s\",\"has\":%s,\"tick\":%llu,\"sequence\":%llu,"
+	       "\"position_m\":[%.6f,%.6f,%.6f],\"energized\":%s,\"energy_off\":%d,\"driver\":%u,"
+	       "\"driver_name\":\"%s\",\"grasping\":%s}\n",
+	       event, c->has_state ? "true" : "false", (unsigned long long)s->tick,
+	       (unsigned long long)s->sequence_number, s->position_m[0], s->position_m[1],
+	       s->position_m[2], s->energized ? "true" : "false", (int)s->energy_off, s->driver,
+	       s->driver_name, s->grasping ? "true" : "false");
+}
+
+static void read_state(controller *c)
+{
+	void *samples[8] = {NULL};
+	dds_sample_info_t infos[8];
+	int count = dds_take(c->state_reader, samples, infos, 8, 8);
+	for (int i = 0; i < count; i++) {
+		const cautery_ToolState *s = samples[i];
+		if (!infos[i].valid_data || strcmp(s->tool, c->tool) != 0)
+			continue;
+		bool changed = !c->has_state || s->energized != c->state.energized ||
+		               s->driver != c->state.driver || s->grasping != c->state.grasping;
+		c->state = *s;
+		c->has_state = true;
+		if (changed)
+			tell_state(c, "changed");
+	}
+	if (count > 0)
+		dds_return_loan(c->state_reader, samples, count);
+}
+
+static void obey(controller *c, const char *line)
+{
+	char word[16] = "", value[16] = "";
+	if (sscanf(line, "aim %lf %lf %lf", &c->aim_m[0], &c->aim_m[1], &c->aim_m[2]) == 3)
+		return;
+	if (sscanf(line, "%15s %15s", word, value) < 1)
+		return;
+	bool on = strcmp(value, "1") == 0 || strcmp(value, "on") == 0;
+	if (strcmp(word, "energy") == 0)
+		c->energy = on;
+	else if (strcmp(word, "grasp") == 0)
+		c->grasp = on;
+	else if (strcmp(word, "once") == 0)
+		write_bad(c, value);
+	else if (strcmp(word, "state") == 0)
+		c->state_asked = true;
+	for (int i = 0; strcmp(word, "flood") == 0 && i < atoi(value); i++)
+		write_bad(c, "nan");
+	if (strcmp(word, "write") != 0)
+		return;
+	c->writing = on;
+	if (!on)
+		printf("{\"event\":\"silent\",\"last_us\":%.0f}\n", 1e6 * c->last_write_s);
+}
+
+// Takes whole lines from standard input; false at its end.
+static bool listen_to(controller *c, char *kept, size_t *kept_bytes)
+{
+	ssize_t got = read(STDIN_FILENO, kept + *kept_bytes, LINE_BYTES - 1 - *kept_bytes);
+	if (got <= 0)
+		return false;
+	*kept_bytes += (size_t)got;
+	kept[*kept_bytes] = 0;
+	for (char *end; (end = strchr(kept, '\n'));) {
+		*end = 0;
+		obey(c, kept);
+		*kept_bytes -= (size_t)(end + 1 - kept);
+		memmove(kept, end + 1, *kept_bytes + 1);
+	}
+	return *kept_bytes < LINE_BYTES - 1;
+}
+
+static void run(controller *c)
+{
+	char kept[LINE_BYTES];
+	size_t kept_bytes = 0;
+	double next_s = clock_s(CLOCK_MONOTONIC);
+	struct pollfd input = {.fd = STDIN_FILENO, .events = POLLIN};
+	for (;;) {
+		double wait_s = fmax(0, next_s - clock_s(CLOCK_MONOTONIC));
+		struct timespec patience = {0, (long)(1e9 * fmin(wait_s, 0.5))};
+		if (ppoll(&input, 1, &patience, NULL) > 0 && !listen_to(c, kept, &kept_bytes))
+			return;
+		read_state(c);
+		if (clock_s(CLOCK_MONOTONIC) < next_s)
+			continue;
+		next_s += PERIOD_S;
+		if (c->state_asked)
+			tell_state(c, "state");
+		c->state_asked = false;
+		if (!c->matched && is_matched(c->ros ? c->pose : c->command) &&
+		    (!c->ros || is_matched(c->level)) && c->has_state) {
+			c->matched = true;
+			printf("{\"event\":\"matched\"}\n");
+		}
+		if (c->writing && c->matched)
+			write_good(c);
+	}
+}
+
+int main(int argument_count, char **arguments)
+{
+	controller c = {.position_m = {0, 0, 0.02}, .aim_m = {0, 0, 0.02}};
+	if (argument_count != 6) {
+		fprintf(stderr, "usage: controller DOMAIN SESSION TOOL native|ros DEADLINE_MS\n");
+		return 2;
+	}
+	setvbuf(stdout, NULL, _IOLBF, 0);
+	snprintf(c.session, sizeof c.session, "%s", arguments[2]);
+	snprintf(c.tool, sizeof c.tool, "%s", arguments[3]);
+	c.ros = strcmp(arguments[4], "ros") == 0;
+	open_wire(&c, (uint32_t)atoi(arguments[1]), atoi(arguments[5]));
+	run(&c);
+	dds_delete(c.participant);
+	return 0;
+}

@@ -1,0 +1,203 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Robot controllers on DDS: they drive, they share tools with browsers, they fall silent.
+import assert from 'node:assert/strict';
+import { spawnSync } from 'node:child_process';
+import { after, before, test } from 'node:test';
+import { Daemon } from './wire/daemon.mjs';
+import { AT_REST, smallSession } from './wire/scene.mjs';
+import { Controller } from './controller.mjs';
+
+const DOMAIN = 60 + (process.pid % 100); // tests that run beside this one have another
+// What a native writer declares, and what holds for those that declare none.
+const DEADLINE_S = { native: 0.1, ros: 0.2 };
+// One tick, and what a loaded machine may take to run it and to bring the frame here.
+const TICK_S = 1 / 60, SLACK_S = 0.1;
+// The tool lags behind its aim while it moves; at rest it is there to the quantum of float32.
+const AT_AIM_M = 1e-4;
+const TRIALS = Number(process.env.DDS_TRIALS ?? 5);
+
+let daemon;
+before(async () => {
+	daemon = await Daemon.start({ settings: { dds: true, dds_domain: DOMAIN, dds_deadline_s: DEADLINE_S.ros } });
+});
+after(() => daemon.end());
+
+const hook = (session) => ({ session, tool: 'hook' });
+const controller = (session, via = 'native') =>
+	Controller.start({ domain: DOMAIN, session, tool: 'hook', via, deadline: via === 'ros' ? 0 : DEADLINE_S.native });
+const far = (a, b) => Math.hypot(a[0] - b[0], a[1] - b[1], a[2] - b[2]);
+
+// A session, a browser in it and its stream, for one test.
+async function watched(t, name) {
+	const client = await daemon.connect({ hello: { client: 'admin' } });
+	const session = await smallSession(client, name);
+	t.after(async () => {
+		await client.call('session.destroy', { session });
+		await client.close();
+	});
+	return { client, session, stream: await client.join(session) };
+}
+
+async function writing(session, via) {
+	const robot = await controller(session, via);
+	robot.tell('write on');
+	await robot.until((s) => s.driver_name.startsWith(via === 'ros' ? 'ros ' : 'dds '));
+	return robot;
+}
+
+async function energized({ client, session, stream }, via) {
+	const robot = await writing(session, via);
+	robot.tell('energy 1');
+	await client.until(() => stream.tools[0].energized, 'energy on');
+	return robot;
+}
+
+for (const via of ['native', 'ros'])
+	test(`a ${via} writer drives a tool, and a browser does not at the same time`, async (t) => {
+		const { client, session, stream } = await watched(t, `drives-${via}`);
+		const robot = await writing(session, via);
+		const aim = [0.01, -0.005, 0.015];
+		robot.tell(`aim ${aim.join(' ')}`);
+		await client.until(() => far(stream.tools[0].position, aim) < AT_AIM_M, 'the pose in a frame');
+		const state = await robot.state();
+		assert.ok(far(state.position_m, aim) < AT_AIM_M, `tool_state says ${state.position_m}`);
+		assert.ok(state.sequence > 0);
+		const { drivers } = await client.call('session.describe', { session });
+		assert.equal(drivers[0].client, state.driver);
+
+		const operator = await daemon.connect({ hello: { role: 'operate', client: 'operator' } });
+		await assert.rejects(operator.call('tool.take_over', hook(session)), { code: -32043 });
+		await assert.rejects(operator.call('tool.move', { ...hook(session), position_m: [0, 0, 0.05], rotation: AT_REST }),
+			{ code: -32045 });
+		await operator.close();
+		await robot.end();
+		await client.until(() => stream.tools[0].driver === 0, 'nobody drives it');
+	});
+
+test('a writer does not move a tool that a browser drives, until it is given up', async (t) => {
+	const { client, session, stream } = await watched(t, 'browser');
+	await client.call('tool.take_over', hook(session));
+	const place = stream.tools[0].position;
+	const robot = await controller(session);
+	const refused = await daemon.metric('session_refused_total', session);
+	robot.tell('aim 0.02 0.02 0.02');
+	robot.tell('write on');
+	await daemon.log(new RegExp(`session=${session} event=dds_refused .*admin drives it`));
+	assert.ok(await daemon.metric('session_refused_total', session) > refused);
+	assert.equal(stream.tools[0].driver, client.hello.client);
+	assert.deepEqual(stream.tools[0].position, place);
+	await client.call('tool.hand_over', hook(session));
+	await robot.until((s) => s.driver_name.startsWith('dds '));
+	await robot.end();
+});
+
+// The time from the last sample to the frame that shows energy off, in the server's own clock.
+async function offAfter({ client, stream }, last_us) {
+	await client.until(() => !stream.tools[0].energized, 'energy off');
+	assert.equal(stream.tools[0].energyOff, 'watchdog');
+	return (stream.published - last_us) / 1e6;
+}
+
+const inTime = (seconds, deadline) =>
+	assert.ok(seconds <= deadline + TICK_S + SLACK_S, `off after ${seconds.toFixed(4)} s`);
+
+for (const via of ['native', 'ros'])
+	test(`energy of a silent ${via} writer that is alive goes off, and stays off until enabled`, async (t) => {
+		const seen = await watched(t, `silent-${via}`);
+		const { client, stream } = seen;
+		const robot = await energized(seen, via);
+		const times = [];
+		for (let trial = 0; trial < TRIALS; trial++) {
+			times.push(await offAfter(seen, (await robot.ask('write off', 'silent')).last_us));
+			inTime(times.at(-1), DEADLINE_S[via]);
+			// It still says that energy is on, and that is not an enable.
+			robot.tell('write on');
+			const from = (await robot.state()).sequence;
+			await robot.until((s) => s.sequence > from + 20);
+			assert.equal((await robot.state()).energized, false);
+			robot.tell('energy 0');
+			await robot.until((s) => s.sequence > from + 40);
+			robot.tell('energy 1');
+			await client.until(() => stream.tools[0].energized, 'energy on again');
+		}
+		t.diagnostic(`off after ${times.map((s) => s.toFixed(3)).join(' ')} s`);
+		await robot.end();
+	});
+
+test('energy of a killed writer goes off', async (t) => {
+	const seen = await watched(t, 'killed');
+	const { client, session, stream } = seen;
+	const times = [];
+	for (let trial = 0; trial < TRIALS; trial++) {
+		const robot = await controller(session);
+		robot.tell('write on');
+		// The one before is dead: its role goes to the next writer, its energy does not.
+		await robot.until((s) => s.driver_name.startsWith('dds ') && s.driver !== robot.firstDriver);
+		robot.tell('energy 1');
+		await client.until(() => stream.tools[0].energized, 'energy on');
+		const killed_us = Number(process.hrtime.bigint() / 1000n);
+		await robot.kill();
+		times.push(await offAfter(seen, killed_us));
+		inTime(times.at(-1), DEADLINE_S.native);
+	}
+	t.diagnostic(`off after ${times.map((s) => s.toFixed(3)).join(' ')} s`);
+});
+
+test('a standby gets the tool of a silent driver, energy off', async (t) => {
+	const seen = await watched(t, 'standby');
+	const { client, session, stream } = seen;
+	const robot = await energized(seen, 'native');
+	const first = stream.tools[0].driver;
+	const standby = await controller(session);
+	standby.tell('energy 1');
+	standby.tell('write on');
+	await daemon.log(new RegExp(`session=${session} event=dds_refused .*drives it`));
+	assert.equal(stream.tools[0].driver, first);
+	const { last_us } = await robot.ask('write off', 'silent');
+	await client.until(() => stream.tools[0].driver !== first, 'the standby drives');
+	assert.ok((stream.published - last_us) / 1e6 <= DEADLINE_S.native + 2 * TICK_S + SLACK_S);
+	assert.equal(stream.tools[0].energized, false);
+	const from = (await standby.state()).sequence;
+	await standby.until((s) => s.sequence > from + 20);
+	assert.equal((await standby.state()).energized, false);
+	await robot.end();
+	await standby.end();
+});
+
+for (const [via, bad] of [['native', ['nan', 'back', 'stale', 'leap', 'session']], ['ros', ['nan', 'leap']]])
+	test(`bad samples of a ${via} writer are counted and move nothing`, async (t) => {
+		const { client, session, stream } = await watched(t, `bad-${via}`);
+		const robot = await writing(session, via);
+		await client.until(() => far(stream.tools[0].position, [0, 0, 0.02]) < AT_AIM_M, 'it is there');
+		for (const what of bad) {
+			const refused = await daemon.metric('session_refused_total', session);
+			const from = (await robot.state()).sequence;
+			robot.tell(`once ${what}`);
+			await robot.until((s) => s.sequence > from + 10);
+			assert.equal(await daemon.metric('session_refused_total', session), refused + 1, what);
+			assert.ok(far(stream.tools[0].position, [0, 0, 0.02]) < AT_AIM_M, what);
+		}
+		await robot.end();
+	});
+
+test('a flood of bad samples is counted, and the driver goes on', async (t) => {
+	const seen = await watched(t, 'flood');
+	const { session, stream } = seen;
+	const robot = await energized(seen, 'native');
+	const refused = await daemon.metric('session_refused_total', session);
+	const from = (await robot.state()).sequence;
+	const aim = [0.01, 0, 0.015];
+	robot.tell('flood 5000');
+	robot.tell(`aim ${aim.join(' ')}`);
+	await seen.client.until(() => far(stream.tools[0].position, aim) < AT_AIM_M, 'the pose in a frame');
+	assert.ok((await robot.state()).sequence > from + 5000);
+	assert.ok(await daemon.metric('session_refused_total', session) > refused);
+	assert.equal(stream.tools[0].energized, true);
+	await robot.end();
+});
+
+test('without being told so, DDS does not leave loopback', () => {
+	const ended = spawnSync(process.env.CAUTERYD, ['--dds', '--dds-config', '/network.xml'], { encoding: 'utf8' });
+	assert.equal(ended.status, 2);
+	assert.match(ended.stderr, /path="dds_config" .*dds_network/);
+});

@@ -1,0 +1,75 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// cautery-robot against the real daemon.
+import assert from 'node:assert/strict';
+import { spawn } from 'node:child_process';
+import { after, before, test } from 'node:test';
+import { Daemon } from './wire/daemon.mjs';
+import { smallSession } from './wire/scene.mjs';
+
+const DOMAIN = 160 + (process.pid % 50); // tests that run beside this one have another
+
+let daemon;
+before(async () => {
+	daemon = await Daemon.start({ settings: { dds: true, dds_domain: DOMAIN } });
+});
+after(() => daemon.end());
+
+// Runs the robot; `done` resolves to its exit code and the JSON line that it prints in the end.
+function robot(session, ...flags) {
+	const child = spawn(process.env.ROBOT, ['--domain', String(DOMAIN), '--json', ...flags, session, 'hook'],
+		{ stdio: ['ignore', 'pipe', 'inherit'], env: { ...process.env, CYCLONEDDS_URI: process.env.LOOPBACK } });
+	let text = '';
+	child.stdout.on('data', (part) => (text += part));
+	const done = new Promise((resolve) => child.on('close', (code) => {
+		const last = text.trim().split('\n').at(-1);
+		resolve({ code, report: last.startsWith('{') ? JSON.parse(last) : null });
+	}));
+	return { child, done };
+}
+
+async function watched(t, name) {
+	const client = await daemon.connect({ hello: { client: 'watcher' } });
+	const session = await smallSession(client, name);
+	t.after(async () => {
+		await client.call('session.destroy', { session });
+		await client.close();
+	});
+	return { client, session, stream: await client.join(session) };
+}
+
+test('a robot cuts along a line at 1 kHz, and a browser sees it', async (t) => {
+	const { client, session, stream } = await watched(t, 'cut');
+	const { done } = robot(session, '--energy', '--from=-0.02,0,0.001', '--to=0.02,0,0.001', '--speed', '0.05');
+	await client.until(() => stream.tools[0].energized, 'energy on');
+	await client.until(() => stream.mask.some((word) => word !== 0), 'faces gone');
+	const { code, report } = await done;
+	assert.equal(code, 0);
+	assert.equal(report.lost, null);
+	assert.ok(report.commands > 500, `${report.commands} commands`);
+	assert.ok(report.latency_count > 20, `${report.latency_count} states of its own commands`);
+	await client.until(() => !stream.tools[0].energized && stream.tools[0].driver === 0, 'it let go');
+	assert.equal(stream.tools[0].energyOff, 'commanded');
+	t.diagnostic(`command to state p50 ${report.latency_p50_s} s, p99 ${report.latency_p99_s} s`);
+});
+
+test('a standby holds the tool of a killed robot, energy off', async (t) => {
+	const { client, session, stream } = await watched(t, 'standby');
+	const first = robot(session, '--energy', '--from=0,0,0.02', '--dwell', '60');
+	await client.until(() => stream.tools[0].energized, 'energy on');
+	const driver = stream.tools[0].driver;
+	const standby = robot(session, '--standby', '--energy');
+	await daemon.log(new RegExp(`session=${session} event=dds_refused .*drives it`));
+	assert.equal(stream.tools[0].driver, driver);
+	first.child.kill('SIGKILL');
+	await client.until(() => stream.tools[0].driver !== driver && stream.tools[0].driver !== 0, 'the standby drives');
+	assert.equal(stream.tools[0].energized, false);
+	standby.child.kill('SIGTERM');
+	const { code, report } = await standby.done;
+	assert.equal(code, 0);
+	assert.equal(report.took_over, true);
+	assert.equal(stream.tools[0].energized, false);
+});
+
+test('a robot says so when there is no such tool', async () => {
+	assert.equal((await robot('d1-nowhere').done).code, 3);
+});

@@ -1,0 +1,214 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// What was acknowledged is there after kill -9, in order, and the state equals a replay.
+import assert from 'node:assert/strict';
+import { spawnSync } from 'node:child_process';
+import { readFileSync, rmSync, writeFileSync } from 'node:fs';
+import { join } from 'node:path';
+import { test } from 'node:test';
+import { Daemon } from './wire/daemon.mjs';
+import { AT_REST, cutMiddle, smallScene, smallSession } from './wire/scene.mjs';
+
+const parse = (bytes) => bytes.toString().split('\n').filter(Boolean).map((line) => JSON.parse(line));
+
+// E2E_KILLS repeats it, each time at another moment of the cut.
+const kills = Number(process.env.E2E_KILLS ?? 1);
+for (let round = 0; round < kills; round++)
+	test(`kill -9 during a cut: every acknowledged request is there, and the hash is that of a replay (${round})`, async () => {
+		let daemon = await Daemon.start({ settings: { checkpoint_s: 0.3 } });
+		const client = await daemon.connect({ hello: { client_id: 'surgeon' } });
+		const definition = await smallScene(client);
+		const session = await smallSession(client, 'killed');
+		const stream = await client.join(session);
+		await client.call('tool.take_over', { session, tool: 'hook' });
+		await client.call('tool.move', { session, tool: 'hook', position_m: [-0.02, 0, 0.001], rotation: AT_REST });
+		await client.call('tool.energize', { session, tool: 'hook', energized: true });
+		const acknowledged = [];
+		let stop = false;
+		const driving = (async () => {
+			for (let i = 1; !stop; i++) {
+				const params = {
+					session, tool: 'hook', position_m: [-0.02 + 0.0004 * (i % 100), 0, 0.001], rotation: AT_REST,
+					sequence: i, client_sequence: i,
+				};
+				const answer = await client.call('tool.move', params).catch(() => null);
+				if (!answer)
+					return;
+				acknowledged.push({ params, answer });
+			}
+		})();
+		await client.until(() => stream.removed() > 4 && acknowledged.length > 40 + (7 * round) % 53, 'a cut under way', 40);
+		const epoch = stream.epoch;
+		await daemon.kill();
+		stop = true;
+		await driving;
+
+		daemon = await Daemon.start({ folder: daemon.folder });
+		const again = await daemon.connect({ hello: { client_id: 'surgeon' } });
+		await again.call('session.pause', { session });
+		const after = await again.join(session);
+		assert.notEqual(after.epoch, epoch);
+		assert.ok(after.removed() > 0, 'the cut is there');
+		assert.equal(after.tools[0].energized, false);
+
+		// In the log, in order, at their ticks.
+		const log = parse(await again.file('session.log', { session }));
+		const moves = log.filter((c) => c.command === 'tool.move' && c.sequence > 0);
+		acknowledged.forEach(({ params, answer }, i) => {
+			assert.equal(moves[i].sequence, params.sequence);
+			assert.equal(moves[i].tick, answer.tick);
+			assert.deepEqual(moves[i].position_m, params.position_m);
+		});
+
+		// A request sent again acts once and gets its first answer.
+		const last = acknowledged.at(-1);
+		assert.deepEqual(await again.call('tool.move', last.params), last.answer);
+		assert.equal(parse(await again.file('session.log', { session })).length, log.length);
+
+		// An unbroken replay of the log makes the same state.
+		const snapshot = await again.call('session.snapshot', { session, name: 'resumed' });
+		const scene = join(daemon.folder, 'scene.json'), script = join(daemon.folder, 'script.jsonl');
+		writeFileSync(scene, JSON.stringify(definition));
+		writeFileSync(script, await again.file('session.log', { session }));
+		const run = spawnSync(process.env.CAUTERY_SIM,
+			['--scene', scene, '--script', script, '--seconds', String(snapshot.tick * definition.step_s), '--json'], { encoding: 'utf8' });
+		assert.equal(run.status, 0, run.stderr);
+		assert.equal(JSON.parse(run.stdout.trim().split('\n').at(-1)).hash, snapshot.hash);
+		await again.close();
+		await daemon.end();
+	});
+
+test('a create sent again makes one session', async () => {
+	let daemon = await Daemon.start();
+	const client = await daemon.connect({ hello: { client_id: 'maker' } });
+	const params = { scene: 'fascia', client_sequence: 9, paused: true };
+	const [first, second] = await Promise.all([
+		client.call('session.create', params), client.call('session.create', params)]);
+	assert.equal(first.summary.session, second.summary.session);
+	await daemon.kill();
+	daemon = await Daemon.start({ folder: daemon.folder });
+	const again = await daemon.connect({ hello: { client_id: 'maker' } });
+	const third = await again.call('session.create', params);
+	assert.equal(third.summary.session, first.summary.session);
+	assert.equal((await again.call('session.list')).sessions.length, 1);
+	const gone = { session: first.summary.session, client_sequence: 10 };
+	await again.call('session.destroy', gone);
+	assert.deepEqual(await again.call('session.destroy', gone), {});
+	await assert.rejects(again.call('session.destroy', { ...gone, client_sequence: 11 }), { code: -32040 });
+	await again.close();
+	await daemon.end();
+});
+
+test('SIGTERM drains: checkpoint, close code, exit 0; the next start goes on there', async () => {
+	let daemon = await Daemon.start();
+	const client = await daemon.connect();
+	const session = await smallSession(client, 'drained', { paused: true });
+	const { tick } = await cutMiddle(client, session, 80);
+	const { hash } = await client.call('session.snapshot', { session, name: 'before' });
+	const ended = daemon.stop();
+	assert.equal((await client.closed).code, 1001);
+	assert.deepEqual(await ended, { code: 0, signal: null });
+	daemon = await Daemon.start({ folder: daemon.folder });
+	const again = await daemon.connect();
+	const { sessions } = await again.call('session.list');
+	assert.equal(sessions[0].state, 'paused');
+	assert.equal(sessions[0].tick, tick);
+	// Energy goes off at the restart, which is a change; the snapshot of before is whole.
+	const back = await again.call('session.restore', { session, name: 'before' });
+	assert.equal(back.tick, tick);
+	assert.ok(back.exact);
+	await again.call('session.rewind', { session, tick });
+	assert.match(hash, /^[0-9a-f]{16}$/);
+	await again.close();
+	await daemon.end();
+});
+
+test('rewinding and cutting again the same way makes the same state', async () => {
+	const daemon = await Daemon.start();
+	const client = await daemon.connect();
+	const session = await smallSession(client, 'twice', { paused: true });
+	await cutMiddle(client, session, 60);
+	const first = await client.call('session.snapshot', { session, name: 'first' });
+	const back = await client.call('session.rewind', { session, tick: 0 });
+	assert.equal(back.branch, 1);
+	await cutMiddle(client, session, 60);
+	const second = await client.call('session.snapshot', { session, name: 'second' });
+	assert.equal(second.tick, first.tick);
+	assert.equal(second.hash, first.hash);
+	await client.close();
+	await daemon.end();
+});
+
+test('a fork goes on from the state, on its own, energy off', async () => {
+	const daemon = await Daemon.start();
+	const client = await daemon.connect();
+	const session = await smallSession(client, 'parent', { paused: true });
+	const { tick } = await cutMiddle(client, session, 60);
+	const made = await client.call('session.fork', { session, name: 'child', paused: true });
+	const child = made.summary.session;
+	assert.equal(made.summary.tick, tick);
+	const before = await client.join(session, { rate_hz: 1000 }), now = await client.join(child, { rate_hz: 1000 });
+	assert.deepEqual(now.mask, before.mask);
+	assert.deepEqual(now.quantised, before.quantised);
+	assert.equal(before.tools[0].energized, true);
+	await client.call('session.step', { session: child, ticks: 1 });
+	await client.until(() => now.tick === tick + 1, 'a step of the child');
+	assert.equal(now.tools[0].energized, false);
+	assert.equal(now.tools[0].driver, 0);
+	assert.equal(before.tick, tick);
+	const past = await client.call('session.fork', { session, name: 'past', tick: 10, paused: true });
+	assert.equal(past.summary.tick, 10);
+	await client.close();
+	await daemon.end();
+});
+
+for (const [what, spoil] of [
+	['foreign', () => Buffer.from('this is no database at all, but somebody\'s letter\n'.repeat(50))],
+	['damaged', (bytes) => Buffer.concat([bytes.subarray(0, 100), Buffer.alloc(bytes.length - 100, 0x5a)])],
+])
+	test(`a ${what} store is refused with the reason and left untouched`, async () => {
+		const daemon = await Daemon.start();
+		const client = await daemon.connect();
+		await smallSession(client, 'some', { paused: true });
+		await daemon.stop();
+		const file = join(daemon.folder, 'store.db');
+		const spoilt = spoil(readFileSync(file));
+		writeFileSync(file, spoilt);
+		for (const tail of ['-wal', '-shm'])
+			rmSync(file + tail, { force: true });
+		await assert.rejects(Daemon.start({ folder: daemon.folder }), (error) =>
+			error.code === 1 && /event=start_failed .*reason="[^"]+"/.test(error.message));
+		assert.deepEqual(readFileSync(file), spoilt);
+		rmSync(daemon.folder, { recursive: true });
+	});
+
+test('a store without room refuses requests, the session goes on, and it recovers', async () => {
+	let daemon = await Daemon.start();
+	const client = await daemon.connect();
+	const session = await smallSession(client, 'full');
+	const stream = await client.join(session);
+	const limit = (bytes) =>
+		assert.equal(spawnSync('prlimit', ['--pid', String(daemon.process.pid), `--fsize=${bytes}:unlimited`]).status, 0);
+	const gravity = (z) => client.call('gravity.set', { session, gravity_m_s2: [0, 0, z] });
+	await gravity(-1);
+	limit(1024);
+	// The first one meets the failure itself, later ones are refused at once.
+	await assert.rejects(gravity(-2), { code: -32048 });
+	await assert.rejects(gravity(-3), { code: -32048 });
+	await assert.rejects(client.call('session.create', { scene: 'fascia' }), { code: -32048 });
+	assert.equal((await daemon.get('/readyz')).status, 503);
+	const { tick } = stream;
+	await client.until(() => stream.tick > tick + 20, 'the session goes on');
+	limit('unlimited');
+	await daemon.ready();
+	const last = await gravity(-4);
+	await daemon.kill();
+	daemon = await Daemon.start({ folder: daemon.folder });
+	const again = await daemon.connect();
+	await again.call('session.pause', { session });
+	const log = parse(await again.file('session.log', { session }));
+	const kept = log.filter((c) => c.command === 'gravity.set').map((c) => c.gravity_m_s2[2]);
+	assert.ok(kept.includes(-1) && kept.includes(-4), kept.join(' '));
+	assert.ok((await again.call('session.list')).sessions[0].tick >= last.tick);
+	await again.close();
+	await daemon.end();
+});

@@ -1,0 +1,130 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// What the door lets pass and what not; the daemon goes on in every case.
+import assert from 'node:assert/strict';
+import net from 'node:net';
+import { after, before, test } from 'node:test';
+import { Client } from './wire/client.mjs';
+import { Daemon } from './wire/daemon.mjs';
+
+let daemon;
+before(async () => {
+	daemon = await Daemon.start({ settings: { hello_timeout_s: 0.4 } });
+});
+after(() => daemon.end());
+
+function request(change = {}) {
+	const headers = {
+		Host: `127.0.0.1:${daemon.port}`, Upgrade: 'websocket', Connection: 'Upgrade',
+		'Sec-WebSocket-Key': 'dGhlIHNhbXBsZSBub25jZQ==', 'Sec-WebSocket-Version': '13',
+		'Sec-WebSocket-Protocol': 'cautery.v1', ...change.headers,
+	};
+	const lines = Object.entries(headers).filter(([, v]) => v !== null).map(([k, v]) => `${k}: ${v}`);
+	return `GET ${change.path ?? '/v1'} HTTP/1.1\r\n${lines.join('\r\n')}\r\n\r\n`;
+}
+
+// Sends bytes over a plain socket; `then` may send more once the head of the answer is there.
+function raw(text, then) {
+	return new Promise((resolve, reject) => {
+		const socket = net.connect(daemon.port, '127.0.0.1');
+		let answer = Buffer.alloc(0), started = false;
+		const finish = () => resolve(answer);
+		socket.on('error', reject).on('close', finish);
+		socket.on('data', (data) => {
+			answer = Buffer.concat([answer, data]);
+			const head = answer.indexOf('\r\n\r\n');
+			if (head < 0)
+				return;
+			if (!answer.toString('latin1', 0, 12).includes('101')) {
+				const length = /content-length: (\d+)/i.exec(answer.toString('latin1', 0, head));
+				if (length && answer.length >= head + 4 + Number(length[1]))
+					socket.destroy();
+			} else if (answer[head + 4] === 0x88) {
+				socket.destroy();
+			} else if (!started) {
+				started = true;
+				then?.(socket);
+			}
+		});
+		socket.write(text);
+	});
+}
+
+const status = (answer) => Number(answer.toString('latin1', 9, 12));
+const closeCode = (answer) => {
+	const frame = answer.subarray(answer.indexOf('\r\n\r\n') + 4);
+	assert.equal(frame[0], 0x88, 'a close frame');
+	return frame.readUInt16BE(2);
+};
+
+async function stillServes() {
+	const client = await daemon.connect();
+	await client.call('session.list');
+	await client.close();
+}
+
+for (const [what, change, expected] of [
+	['no subprotocol', { headers: { 'Sec-WebSocket-Protocol': null } }, 400],
+	['another subprotocol', { headers: { 'Sec-WebSocket-Protocol': 'chat, cautery.v2' } }, 400],
+	['an old version', { headers: { 'Sec-WebSocket-Version': '8' } }, 426],
+	['no version', { headers: { 'Sec-WebSocket-Version': null } }, 426],
+	['a foreign Origin', { headers: { Origin: 'https://evil.example' } }, 403],
+	['a null Origin', { headers: { Origin: 'null' } }, 403],
+	['a foreign Host', { headers: { Host: 'evil.example' } }, 421],
+	['the right Host on another port', { headers: { Host: '127.0.0.1:1' } }, 421],
+	['another path', { path: '/v2' }, 404],
+])
+	test(`the handshake is refused: ${what}`, async () => {
+		const answer = await raw(request(change));
+		assert.equal(status(answer), expected, answer.toString());
+		assert.match(answer.toString(), /"reason": "[^"]+"/);
+		await stillServes();
+	});
+
+for (const [what, change] of [
+	['no Origin', {}],
+	['the own Origin', () => ({ headers: { Origin: `http://127.0.0.1:${daemon.port}` } })],
+	['one of several subprotocols', { headers: { 'Sec-WebSocket-Protocol': 'chat, cautery.v1' } }],
+])
+	test(`the handshake passes: ${what}`, async () => {
+		const made = typeof change === 'function' ? change() : change;
+		const answer = await raw(request(made), (socket) => socket.end());
+		assert.equal(status(answer), 101, answer.toString());
+	});
+
+test('plain HTTP is checked for Host and Origin too', async () => {
+	assert.equal((await daemon.get('/api/sessions', { host: 'evil.example' })).status, 421);
+	assert.equal((await daemon.get('/api/sessions', { origin: 'https://evil.example' })).status, 403);
+	assert.equal((await daemon.get('/v1')).status, 426);
+});
+
+test('an unmasked first frame closes the connection with 1002', async () => {
+	const hello = Buffer.from('{"jsonrpc":"2.0","id":1,"method":"hello","params":{"version":1,"client":"x"}}');
+	const frame = Buffer.concat([Buffer.from([0x81, hello.length]), hello]);
+	const answer = await raw(request(), (socket) => socket.write(frame));
+	assert.equal(closeCode(answer), 1002);
+	await stillServes();
+});
+
+test('without hello the connection closes with 4001', async () => {
+	const client = new Client(daemon.url());
+	await client.opened;
+	const { code } = await client.closed;
+	assert.equal(code, 4001);
+});
+
+test('nothing is served before hello', async () => {
+	const client = new Client(daemon.url());
+	await client.opened;
+	await assert.rejects(client.call('session.list'), { code: -32041 });
+	await client.call('hello', { version: 1, client: 'late' });
+	await client.call('session.list');
+	await client.close();
+});
+
+test('bytes that are no HTTP do not disturb', async () => {
+	const socket = net.connect(daemon.port, '127.0.0.1');
+	const closed = new Promise((resolve) => socket.on('close', resolve).on('error', resolve));
+	socket.resume().end(Buffer.from(Array.from({ length: 4000 }, (_, i) => (i * 97 + 13) & 255)));
+	await closed;
+	await stillServes();
+});

@@ -1,0 +1,187 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// The methods that the other tests do not go through.
+import assert from 'node:assert/strict';
+import { after, before, test } from 'node:test';
+import { Daemon } from './wire/daemon.mjs';
+import { AT_REST, cutMiddle, smallScene, smallSession } from './wire/scene.mjs';
+
+let daemon, client;
+before(async () => {
+	daemon = await Daemon.start({ settings: { max_sessions: 12 } });
+	client = await daemon.connect();
+});
+after(() => daemon.end());
+
+test('scenes are listed and told whole', async () => {
+	const { scenes } = await client.call('scene.list');
+	const names = scenes.map((s) => s.name);
+	assert.ok(['fascia', 'fat', 'layers'].every((n) => names.includes(n)), names.join(' '));
+	assert.deepEqual(names, [...names].sort());
+	const { definition } = await client.call('scene.get', { scene: 'fascia' });
+	assert.equal(definition.step_s, 1 / 60);
+	await assert.rejects(client.call('scene.get', { scene: 'nothing' }), { code: -32005 });
+});
+
+test('a session is created, listed, described and destroyed; everybody is told', async () => {
+	const other = await daemon.connect();
+	const made = await client.call('session.create', { name: 'told', scene: 'fascia', paused: true });
+	assert.equal(made.summary.session, 'd1-told');
+	assert.equal(made.layers[0].name, 'fascia');
+	assert.equal(made.drivers[0].tool, 'hook');
+	await other.until(() => other.notice('session.changed', (p) => p.change === 'created'), 'the news');
+	assert.ok((await other.call('session.list')).sessions.some((s) => s.session === 'd1-told'));
+	const described = await other.call('session.describe', { session: 'd1-told' });
+	assert.deepEqual(described.definition, made.definition);
+	await assert.rejects(client.call('session.create', { name: 'told', scene: 'fascia' }), { code: -32006 });
+	await client.call('session.destroy', { session: 'd1-told' });
+	await other.until(() => other.notice('session.changed', (p) => p.change === 'destroyed'), 'the end');
+	await assert.rejects(other.call('session.describe', { session: 'd1-told' }), { code: -32040 });
+	await other.close();
+});
+
+test('the URL\'s session is meant when a message names none', async () => {
+	const session = await smallSession(client, 'url', { paused: true });
+	const own = await daemon.connect({ session });
+	assert.equal((await own.call('session.describe')).summary.session, session);
+	assert.deepEqual(await own.call('session.step', { ticks: 3 }), { tick: 3 });
+	await own.call('session.destroy');
+	await own.close();
+});
+
+test('pause, step, resume, speed, reset', async () => {
+	const session = await smallSession(client, 'time');
+	const stream = await client.join(session);
+	await assert.rejects(client.call('session.step', { session }), { code: -32004 });
+	assert.equal((await client.call('session.pause', { session })).state, 'paused');
+	const { tick } = await client.call('session.step', { session, ticks: 7 });
+	await client.until(() => stream.tick === tick && stream.flags & 1, 'the paused frame');
+	await client.call('session.speed', { session, speed: 5 });
+	assert.equal((await client.call('session.resume', { session })).speed, 5);
+	const from = stream.tick, started = performance.now();
+	await client.until(() => stream.tick >= from + 300, 'five seconds at five-fold speed');
+	const seconds = (performance.now() - started) / 1000;
+	assert.ok(seconds > 0.8 && (seconds < 2 || process.env.E2E_SLOW === '1'), `${seconds} s`);
+	const back = await client.call('session.reset', { session });
+	assert.equal(back.tick, 0);
+	await client.call('session.destroy', { session });
+});
+
+test('tools are added, configured, driven and removed', async () => {
+	const session = await smallSession(client, 'tools', { paused: true });
+	const stream = await client.join(session, { rate_hz: 1000 });
+	await client.call('tool.add', { session, name: 'grip', shape: 'grasper', position_m: [0, 0, 0.02], rotation: AT_REST });
+	await client.call('session.step', { session, ticks: 1 });
+	const grip = await client.until(() => stream.tools.find((t) => t.name === 'grip'), 'the tool');
+	assert.equal(grip.driver, client.hello.client);
+	await client.call('tool.configure', { session, tool: 'grip', shape: 'grasper', tip_length_m: 0.01 });
+	await client.call('tool.grasp', { session, tool: 'grip' });
+	await client.call('session.step', { session, ticks: 1 });
+	await client.until(() => stream.tools.find((t) => t.name === 'grip')?.grasping, 'closed jaws');
+	await client.call('tool.release', { session, tool: 'grip' });
+	await client.call('tool.remove', { session, tool: 'grip' });
+	await client.call('session.step', { session, ticks: 1 });
+	await client.until(() => stream.tools.length === 1, 'no more');
+	await assert.rejects(client.call('tool.move', { session, tool: 'grip', position_m: [0, 0, 0], rotation: AT_REST }),
+		{ code: -32005 });
+	await client.call('session.destroy', { session });
+});
+
+test('pins, forces, gravity and materials act on the tissue', async () => {
+	const session = await smallSession(client, 'tissue', { paused: true });
+	const stream = await client.join(session, { rate_hz: 1000 });
+	const middle = { kind: 'sphere', center_m: [0, 0, 0], radius_m: 0.01 };
+	await client.call('force.set', { session, selection: middle, force_n: [0, 0, 0.05] });
+	await client.call('session.step', { session, ticks: 30 });
+	const highest = () => Math.max(...Array.from({ length: stream.description.vertex_count }, (_, v) => stream.position(v)[2]));
+	await client.until(() => stream.tick === 30, 'the pull');
+	const pulled = highest();
+	assert.ok(pulled > 5e-4, `${pulled} m`);
+	await client.call('pin', { session, selection: middle });
+	await client.call('force.set', { session, selection: middle, force_n: [0, 0, 0] });
+	await client.call('session.step', { session, ticks: 30 });
+	await client.until(() => stream.tick === 60, 'held');
+	assert.ok(Math.abs(highest() - pulled) < 2e-3, 'the pin holds');
+	await client.call('unpin', { session, selection: middle });
+	await client.call('gravity.set', { session, gravity_m_s2: [0, 0, -20] });
+	await client.call('session.step', { session, ticks: 60 });
+	await client.until(() => stream.tick === 120, 'let go');
+	assert.ok(highest() < pulled / 2, 'it falls back');
+	const { definition } = await client.call('session.describe', { session });
+	assert.deepEqual(definition.gravity_m_s2, [0, 0, -20]);
+	await client.call('material.set', { session, layer: 'fascia', kind: 'fascia', thickness_m: 1e-3 });
+	await client.call('session.step', { session, ticks: 1 });
+	await client.call('session.destroy', { session });
+});
+
+test('snapshots are named, and restored on another branch', async () => {
+	const session = await smallSession(client, 'named', { paused: true });
+	await client.call('session.step', { session, ticks: 5 });
+	const first = await client.call('session.snapshot', { session, name: 'five' });
+	await client.call('session.step', { session, ticks: 5 });
+	await assert.rejects(client.call('session.snapshot', { session, name: 'five' }), { code: -32006 });
+	await client.call('session.rewind', { session, tick: 2 });
+	const back = await client.call('session.restore', { session, name: 'five' });
+	assert.equal(back.tick, 5);
+	const again = await client.call('session.snapshot', { session, name: 'again' });
+	assert.equal(again.hash, first.hash);
+	await assert.rejects(client.call('session.restore', { session, name: 'six' }), { code: -32005 });
+	await assert.rejects(client.call('session.rewind', { session, tick: 1000 }), { code: -32602 });
+	await client.call('session.destroy', { session });
+});
+
+test('the timeline tells of cuts and energy, and exports are files', async () => {
+	const session = await smallSession(client, 'files', { paused: true });
+	const { tick } = await cutMiddle(client, session, 60);
+	const timeline = await client.call('session.timeline', { session });
+	const kinds = timeline.events.map((e) => e.kind);
+	assert.equal(timeline.tick, tick);
+	assert.ok(['created', 'driver', 'energy_on', 'cut'].every((k) => kinds.includes(k)), kinds.join(' '));
+	const vtu = (await client.file('session.export', { session, format: 'vtu' })).toString();
+	assert.match(vtu, /<VTKFile type="UnstructuredGrid"/);
+	assert.equal(vtu.split('NumberOfPoints="')[1].split('"')[0], String(25 * 21));
+	const lines = (await client.file('session.log', { session })).toString().trim().split('\n').map(JSON.parse);
+	assert.deepEqual(lines.map((l) => l.command), ['tool.move', 'tool.energize', 'tool.move']);
+	await client.call('session.destroy', { session });
+});
+
+test('a mesh is uploaded in chunks and becomes a session, which outlives the daemon', async () => {
+	const own = await Daemon.start();
+	const maker = await own.connect();
+	const side = 12, text = [];
+	for (let y = 0; y <= side; y++)
+		for (let x = 0; x <= side; x++)
+			text.push(`v ${(x / side - 0.5) * 100} ${(y / side - 0.5) * 100} 0`);
+	for (let y = 0; y < side; y++)
+		for (let x = 0; x < side; x++) {
+			const a = y * (side + 1) + x + 1, b = a + 1, c = b + side + 1, d = a + side + 1;
+			text.push(`f ${a} ${b} ${c}`, `f ${a} ${c} ${d}`);
+		}
+	const definition = await smallScene(maker);
+	const uploaded = await maker.upload('patch', 'patch.obj', Buffer.from(text.join('\n')), 1000);
+	definition.meshes[0] = { name: definition.meshes[0].name, source: 'bytes', file: uploaded.file, unit_m: 0.001 };
+	const made = await maker.call('session.create', { name: 'patch', definition, paused: true });
+	assert.equal(made.summary.vertex_count, 169);
+	assert.equal(made.triangle_count, 288);
+	await maker.call('session.step', { session: 'd1-patch', ticks: 10 });
+	const { hash } = await maker.call('session.snapshot', { session: 'd1-patch', name: 'ten' });
+	await own.kill();
+	const next = await Daemon.start({ folder: own.folder });
+	const again = await next.connect();
+	await again.call('session.restore', { session: 'd1-patch', name: 'ten' });
+	assert.equal((await again.call('session.snapshot', { session: 'd1-patch' })).hash, hash);
+	await again.close();
+	await next.end();
+});
+
+test('limits are answered: sessions, names, profiles', async () => {
+	await assert.rejects(client.call('session.create', { name: 'x'.repeat(48), scene: 'fascia' }), { code: -32602 });
+	await assert.rejects(client.call('session.create', { name: 'Bad', scene: 'fascia' }), { code: -32602 });
+	await assert.rejects(client.call('session.create', {}), { code: -32602 });
+	const made = [];
+	for (let i = 0; i < 14; i++)
+		made.push(await smallSession(client, `many-${i}`, { paused: true }).catch((error) => error));
+	const refused = made.filter((m) => m instanceof Error);
+	assert.ok(refused.length === 2 && refused.every((e) => e.code === -32007), 'the limit is told');
+	for (const session of made.filter((m) => typeof m === 'string'))
+		await client.call('session.destroy', { session });
+});

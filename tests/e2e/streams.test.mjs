@@ -1,0 +1,138 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Frames, decoded as protocol/README.md says, against what the server exports.
+import assert from 'node:assert/strict';
+import { after, before, test } from 'node:test';
+import { Daemon } from './wire/daemon.mjs';
+import { cutMiddle, smallSession } from './wire/scene.mjs';
+
+let daemon;
+before(async () => {
+	daemon = await Daemon.start();
+});
+after(() => daemon.end());
+
+function readObj(bytes) {
+	const vertices = [], faces = new Set();
+	for (const line of bytes.toString().split('\n')) {
+		const parts = line.split(' ');
+		if (parts[0] === 'v')
+			vertices.push(parts.slice(1).map(Number));
+		else if (parts[0] === 'f')
+			faces.add(parts.slice(1).map((v) => Number(v) - 1).join(' '));
+	}
+	return { vertices, faces };
+}
+
+// Positions of drawn vertices are sent exactly to half a step (plus the export's nine digits);
+// the mask must be the very same.
+async function compare(client, session, stream) {
+	const { vertices, faces } = readObj(await client.file('session.export', { session, format: 'obj' }));
+	const bound = 0.5001 * stream.description.step_m + 1e-9;
+	const drawn = new Set();
+	assert.equal(vertices.length, stream.description.vertex_count);
+	for (let f = 0; f < stream.description.face_count; f++) {
+		const corners = [...stream.faces.subarray(3 * f, 3 * f + 3)];
+		if (!stream.isRemoved(f))
+			corners.forEach((v) => drawn.add(v));
+		assert.equal(faces.has(corners.join(' ')), !stream.isRemoved(f), `face ${f}`);
+	}
+	for (const v of drawn)
+		stream.position(v).forEach((value, c) =>
+			assert.ok(Math.abs(value - vertices[v][c]) <= bound, `vertex ${v}: ${value} ${vertices[v][c]}`));
+	return drawn.size;
+}
+
+test('after a cut of many deltas, positions and mask are the export\'s', async () => {
+	const client = await daemon.connect();
+	const session = await smallSession(client, 'cut', { paused: true });
+	const stream = await client.join(session, { rate_hz: 1000 });
+	const { tick } = await cutMiddle(client, session, 200);
+	await client.until(() => stream.tick === tick, 'the last frame');
+	assert.ok(stream.counts.delta > 50, `${stream.counts.delta} deltas`);
+	assert.ok(stream.removed() > 0, 'faces were removed');
+	assert.ok(await compare(client, session, stream) > 300);
+	assert.equal(stream.counts.skipped, 0);
+	await client.close();
+});
+
+test('a late joiner holds the same as one who was there', async () => {
+	const first = await daemon.connect();
+	const session = await smallSession(first, 'late', { paused: true });
+	const early = await first.join(session, { rate_hz: 1000 });
+	const { tick } = await cutMiddle(first, session, 60);
+	await first.until(() => early.tick === tick, 'the last frame');
+	const second = await daemon.connect();
+	const late = await second.join(session, { rate_hz: 1000 });
+	assert.equal(late.tick, tick);
+	assert.deepEqual(late.mask, early.mask);
+	assert.equal(await compare(second, session, late), await compare(first, session, early));
+	await Promise.all([first.close(), second.close()]);
+});
+
+test('after a gap the client asks for a key frame and is whole again', async () => {
+	const client = await daemon.connect();
+	const session = await smallSession(client, 'gap');
+	const stream = await client.join(session);
+	await client.until(() => stream.counts.delta > 5, 'deltas');
+	const take = stream.take.bind(stream);
+	let lost = 0;
+	stream.take = (bytes) => (lost++ < 1 ? 'skipped' : take(bytes)); // one frame never arrives
+	await client.until(() => stream.counts.skipped > 2, 'deltas that do not fit');
+	const keys = stream.counts.key;
+	await client.call('stream.key_frame', { session });
+	await client.until(() => stream.counts.key > keys, 'a key frame');
+	const { skipped, delta } = stream.counts;
+	await client.until(() => stream.counts.delta > delta + 5, 'deltas after it');
+	assert.equal(stream.counts.skipped, skipped);
+	await client.call('session.pause', { session });
+	const { tick } = await client.call('session.step', { session, ticks: 1 });
+	await client.until(() => stream.tick === tick, 'the last frame');
+	await compare(client, session, stream);
+	await client.close();
+});
+
+test('a rewind changes the epoch, and no frame of the old one is taken after it', async () => {
+	const client = await daemon.connect();
+	const session = await smallSession(client, 'rewind', { paused: true });
+	const stream = await client.join(session, { rate_hz: 1000 });
+	const cut = await cutMiddle(client, session, 100);
+	await client.until(() => stream.tick === cut.tick, 'the cut');
+	const removed = stream.removed(), epoch = stream.epoch, seen = [];
+	client.onFrame = (s, kind) => seen.push([s.epoch, kind, s.tick]);
+	const back = await client.call('session.rewind', { session, tick: 20 });
+	await client.until(() => stream.tick === 20, 'the state of tick 20');
+	assert.notEqual(stream.epoch, epoch);
+	assert.equal(stream.epoch.toString(16).padStart(16, '0'), back.epoch);
+	assert.ok(back.exact);
+	assert.ok(removed > 0);
+	assert.equal(stream.removed(), 0);
+	const turn = seen.findIndex(([e]) => e !== epoch);
+	assert.ok(seen[turn][1] === 'key' && seen.slice(turn).every(([e]) => e === stream.epoch));
+	await compare(client, session, stream);
+	await client.close();
+});
+
+test('profiles: rate, channels and step are what was asked for', async () => {
+	const client = await daemon.connect(), other = await daemon.connect();
+	const session = await smallSession(client, 'profiles');
+	const coarse = await client.join(session, { rate_hz: 10, step_m: 1e-3, channels: ['positions', 'mask'] });
+	const fine = await other.join(session, { rate_hz: 60, step_m: 1e-6, channels: ['positions', 'mask', 'tools', 'statistics', 'stress'] });
+	assert.equal(coarse.description.rate_hz, 10);
+	assert.equal(fine.description.step_m, 1e-6);
+	await other.until(() => fine.counts.delta >= 60, 'a second of frames');
+	assert.ok(coarse.counts.delta <= 20 && coarse.counts.delta >= 5, `${coarse.counts.delta} at 10 Hz`);
+	assert.equal(coarse.tools.length, 0);
+	assert.equal(fine.tools[0].name, 'hook');
+	await Promise.all([client.close(), other.close()]);
+});
+
+test('after leaving no frame comes', async () => {
+	const client = await daemon.connect();
+	const session = await smallSession(client, 'leave');
+	const stream = await client.join(session);
+	await client.call('session.leave', { session });
+	const { delta } = stream.counts;
+	await client.call('session.pause', { session }); // an order of the session later
+	assert.equal(stream.counts.delta, delta);
+	await client.close();
+});

@@ -1,0 +1,61 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "json/utf8.h"
+
+#include <setjmp.h>
+#include <stdarg.h>
+#include <stddef.h>
+#include <stdint.h>
+
+#include <cmocka.h>
+
+// Every code point there is reads back with the length it was written with.
+static void every_code_point_is_valid(void **state)
+{
+	(void)state;
+	for (unsigned code = 0; code <= 0x10FFFF; code++) {
+		char text[4];
+		if (code >= 0xD800 && code <= 0xDFFF)
+			continue;
+		size_t length = cau_utf8_encode(code, text);
+		assert_int_equal(cau_utf8_length(text, length), length);
+		assert_int_equal(cau_utf8_length(text, length - 1), 0);
+	}
+}
+
+static void surrogates_and_beyond_are_not(void **state)
+{
+	(void)state;
+	for (unsigned code = 0xD800; code <= 0xDFFF; code++) {
+		char text[4];
+		assert_int_equal(cau_utf8_length(text, cau_utf8_encode(code, text)), 0);
+	}
+	for (unsigned code = 0x110000; code < 0x1FFFFF; code += 0xFFF) {
+		char text[4];
+		assert_int_equal(cau_utf8_length(text, cau_utf8_encode(code, text)), 0);
+	}
+}
+
+// Two bytes have 2^16 forms, of which 128 x 256 start with an ASCII character and 30 x 64 are
+// pairs.
+static void counts_of_short_forms(void **state)
+{
+	(void)state;
+	int ones = 0, twos = 0;
+	for (int i = 0; i < 65536; i++) {
+		char text[2] = {(char)(i >> 8), (char)(i & 255)};
+		ones += cau_utf8_length(text, 2) == 1;
+		twos += cau_utf8_length(text, 2) == 2;
+	}
+	assert_int_equal(ones, 128 * 256);
+	assert_int_equal(twos, 30 * 64);
+}
+
+int main(void)
+{
+	const struct CMUnitTest tests[] = {
+		cmocka_unit_test(every_code_point_is_valid),
+		cmocka_unit_test(surrogates_and_beyond_are_not),
+		cmocka_unit_test(counts_of_short_forms),
+	};
+	return cmocka_run_group_tests(tests, NULL, NULL);
+}

@@ -1,0 +1,122 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "protocol/wire/chain.h"
+
+#include <math.h>
+#include <setjmp.h>
+#include <stdarg.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include <cmocka.h>
+
+// Half a step, and the last bits of the multiplication by 1 / step.
+static const double round_off_m = 0.5 * 5e-5 + 1e-12;
+
+cau_frame_decoder *chain_new_decoder(const cau_stream_def *def)
+{
+	size_t bytes = cau_frame_decoder_bytes(def);
+	cau_frame_decoder *decoder;
+	assert_int_equal(cau_frame_decoder_init(malloc(bytes), bytes, def, &decoder, NULL), CAU_OK);
+	return decoder;
+}
+
+void chain_init(chain *made, int32_t columns, int32_t rows)
+{
+	tissue_init(&made->tissue, columns, rows);
+	made->def = tissue_stream_def(&made->tissue);
+	size_t bytes = cau_frame_encoder_bytes(&made->def);
+	assert_int_equal(
+		cau_frame_encoder_init(malloc(bytes), bytes, &made->def, CHAIN_EPOCH, &made->encoder, NULL),
+		CAU_OK);
+	made->decoder = chain_new_decoder(&made->def);
+	made->capacity = cau_frame_bytes_max(&made->def);
+	made->bytes = malloc(made->capacity);
+	made->byte_count = 0;
+}
+
+void chain_finish(chain *made)
+{
+	tissue_finish(&made->tissue);
+	free(made->encoder);
+	free(made->decoder);
+	free(made->bytes);
+}
+
+void chain_encode(chain *of)
+{
+	cau_stream_sample sample = tissue_sample(&of->tissue);
+	assert_int_equal(
+		cau_frame_encode(of->encoder, &sample, of->bytes, of->capacity, &of->byte_count, NULL),
+		CAU_OK);
+}
+
+void chain_pass(chain *of)
+{
+	chain_encode(of);
+	cau_error error = {0};
+	if (cau_frame_decode(of->decoder, of->bytes, of->byte_count, &error))
+		fail_msg("%s: %s", error.path, error.reason);
+}
+
+static void assert_tools_equal(const cau_stream_tool *a, const cau_stream_tool *b)
+{
+	assert_string_equal(a->name, b->name);
+	assert_int_equal(a->shape, b->shape);
+	assert_true(a->sequence == b->sequence && a->driver == b->driver);
+	assert_true(a->energized == b->energized && a->grasping == b->grasping &&
+	            a->frozen == b->frozen);
+	assert_int_equal(a->energy_off, b->energy_off);
+	assert_int_equal(a->contact_vertices, b->contact_vertices);
+	for (int i = 0; i < 3; i++) {
+		assert_true((float)a->pose.position_m[i] == (float)b->pose.position_m[i]);
+		assert_true((float)a->force_n[i] == (float)b->force_n[i]);
+		assert_true((float)a->torque_nm[i] == (float)b->torque_nm[i]);
+	}
+	assert_true((float)a->tip_temperature_c == (float)b->tip_temperature_c);
+}
+
+// Half a step, and a little for the last bits of single precision.
+static bool is_rounded(uint32_t steps, float value, double step)
+{
+	return fabs(steps * step - (double)value) <= 0.5001 * step;
+}
+
+void chain_assert_holds(const cau_frame_decoder *decoder, const tissue *shown)
+{
+	const cau_stream_state *state = cau_frame_decoder_state(decoder);
+	cau_stream_sample sample = tissue_sample(shown);
+	double *position = malloc(sizeof(double) * 3 * (size_t)shown->vertex_count);
+	cau_frame_decoder_position(decoder, position);
+	assert_true(state->synced && state->tick == sample.tick && state->time_s == sample.time_s);
+	for (int32_t v = 0; v < shown->vertex_count; v++) {
+		if (!shown->visible[v])
+			continue;
+		for (int i = 0; i < 3; i++)
+			assert_true(fabs(position[3 * v + i] - shown->position[3 * v + i]) <= round_off_m);
+		assert_true(is_rounded(state->exposure[v], shown->exposure[v], 1.0 / 255.0));
+		assert_true(is_rounded(state->charring[v], shown->charring[v], 1.0 / 255.0));
+		assert_true(is_rounded(state->stress[v], shown->stress[v], 10.0));
+	}
+	assert_memory_equal(state->face_mask, shown->mask, 4 * (size_t)((shown->face_count + 31) / 32));
+	assert_int_equal(state->tool_count, sample.tool_count);
+	for (int32_t i = 0; i < sample.tool_count; i++)
+		assert_tools_equal(&state->tools[i], &sample.tools[i]);
+	assert_memory_equal(&state->statistics, &shown->statistics, sizeof state->statistics);
+	free(position);
+}
+
+void chain_assert_same(const cau_frame_decoder *a, const cau_frame_decoder *b)
+{
+	const cau_stream_state *x = cau_frame_decoder_state(a), *y = cau_frame_decoder_state(b);
+	const cau_stream_def *def = cau_frame_decoder_def(a);
+	size_t vertices = (size_t)def->vertex_count;
+	assert_true(x->epoch == y->epoch && x->sequence == y->sequence && x->tick == y->tick);
+	assert_memory_equal(x->quantised, y->quantised, 12 * vertices);
+	assert_memory_equal(x->face_mask, y->face_mask, 4 * (size_t)((def->face_count + 31) / 32));
+	assert_memory_equal(x->exposure, y->exposure, 4 * vertices);
+	assert_memory_equal(x->charring, y->charring, 4 * vertices);
+	assert_memory_equal(x->stress, y->stress, 4 * vertices);
+	assert_int_equal(x->tool_count, y->tool_count);
+	for (int32_t i = 0; i < x->tool_count; i++)
+		assert_tools_equal(&x->tools[i], &y->tools[i]);
+}

@@ -1,0 +1,207 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "cautery/frame_codec.h"
+
+#include <math.h>
+#include <setjmp.h>
+#include <stdarg.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include <cmocka.h>
+
+#include "protocol/wire/chain.h"
+
+enum { ROUND_FRAMES = 120 };
+
+static void test_deltas_follow_the_tissue(void **unused)
+{
+	(void)unused;
+	const double speeds[] = {0.002, 0.2, 30.0, 4000.0}; // m/s: numbers of 1, 1, 2 and 4 bytes
+	for (size_t s = 0; s < sizeof speeds / sizeof *speeds; s++) {
+		chain of;
+		chain_init(&of, 23, 17);
+		for (int32_t tick = 0; tick < ROUND_FRAMES; tick++) {
+			tissue_move(&of.tissue, tick, speeds[s]);
+			chain_pass(&of);
+			assert_int_equal(of.bytes[5], tick == 0 ? CAU_FRAME_KEY : CAU_FRAME_DELTA);
+			chain_assert_holds(of.decoder, &of.tissue);
+		}
+		chain_finish(&of);
+	}
+}
+
+static void test_hidden_vertices_wait_until_they_are_seen(void **unused)
+{
+	(void)unused;
+	chain of;
+	chain_init(&of, 12, 9);
+	srand(5);
+	int32_t hidden_carried = 0;
+	for (int32_t tick = 0; tick < ROUND_FRAMES; tick++) {
+		tissue_move(&of.tissue, tick, 0.05);
+		for (int32_t v = 0; v < of.tissue.vertex_count; v++)
+			of.tissue.visible[v] = tick == 0 || rand() % 4 > 0;
+		int32_t before[3];
+		memcpy(before, cau_frame_decoder_state(of.decoder)->quantised, sizeof before);
+		chain_pass(&of);
+		chain_assert_holds(of.decoder, &of.tissue);
+		if (!of.tissue.visible[0]) {
+			assert_memory_equal(before, cau_frame_decoder_state(of.decoder)->quantised,
+			                    sizeof before);
+			hidden_carried++;
+		}
+	}
+	assert_true(hidden_carried > 0);
+	chain_finish(&of);
+}
+
+static void test_key_frame_equals_the_chain(void **unused)
+{
+	(void)unused;
+	chain of;
+	chain_init(&of, 14, 11);
+	uint8_t *key = malloc(of.capacity);
+	for (int32_t tick = 0; tick < 40; tick++) {
+		tissue_move(&of.tissue, tick, 0.1);
+		of.tissue.visible[(tick * 7) % of.tissue.vertex_count] = 0;
+		chain_pass(&of);
+		size_t key_bytes;
+		assert_int_equal(cau_frame_encode_key(of.encoder, key, of.capacity, &key_bytes, NULL),
+		                 CAU_OK);
+		cau_frame_decoder *late = chain_new_decoder(&of.def);
+		assert_int_equal(cau_frame_decode(late, key, key_bytes, NULL), CAU_OK);
+		chain_assert_same(of.decoder, late);
+		for (int32_t later = 1; later <= 3; later++) { // and both go on alike
+			tissue_move(&of.tissue, ++tick, 0.1);
+			chain_pass(&of);
+			assert_int_equal(cau_frame_decode(late, of.bytes, of.byte_count, NULL), CAU_OK);
+			chain_assert_same(of.decoder, late);
+		}
+		free(late);
+	}
+	free(key);
+	chain_finish(&of);
+}
+
+static void test_a_still_tissue_costs_next_to_nothing(void **unused)
+{
+	(void)unused;
+	chain of;
+	chain_init(&of, 30, 30);
+	chain_pass(&of);
+	chain_pass(&of);
+	size_t records = 2 * 8 + 84 + 88; // one tool and the statistics
+	assert_int_equal(of.byte_count, CAU_FRAME_HEADER_BYTES + records);
+	assert_int_equal(cau_frame_decoder_state(of.decoder)->moved_count, 0);
+	chain_finish(&of);
+}
+
+static void test_errors_never_add_up(void **unused)
+{
+	(void)unused;
+	chain of;
+	chain_init(&of, 8, 8);
+	for (int32_t tick = 0; tick < 3000;
+	     tick++) { // 50 s at a crawl: under a tenth of a step a frame
+		tissue_move(&of.tissue, tick, 0.0002);
+		chain_pass(&of);
+	}
+	chain_assert_holds(of.decoder, &of.tissue);
+	chain_finish(&of);
+}
+
+static void test_a_new_epoch_starts_with_a_key_frame(void **unused)
+{
+	(void)unused;
+	chain of;
+	chain_init(&of, 6, 6);
+	tissue_move(&of.tissue, 30, 0.05);
+	chain_pass(&of);
+	tissue_move(&of.tissue, 31, 0.05);
+	chain_encode(&of); // on its way when the session is rewound
+	uint8_t *late = malloc(of.byte_count);
+	size_t late_bytes = of.byte_count;
+	memcpy(late, of.bytes, late_bytes);
+	cau_frame_encoder_restart(of.encoder, CHAIN_EPOCH + 1);
+	tissue_move(&of.tissue, 2, 0.05);
+	chain_pass(&of);
+	assert_int_equal(of.bytes[5], CAU_FRAME_KEY);
+	assert_true(cau_frame_decoder_state(of.decoder)->epoch == CHAIN_EPOCH + 1);
+	assert_int_equal(cau_frame_decode(of.decoder, late, late_bytes, NULL), CAU_BAD_STATE);
+	chain_assert_holds(of.decoder, &of.tissue);
+	free(late);
+	chain_finish(&of);
+}
+
+static void test_scalars_saturate(void **unused)
+{
+	(void)unused;
+	chain of;
+	chain_init(&of, 6, 6);
+	of.tissue.exposure[0] = 3.0f;
+	of.tissue.exposure[1] = -1.0f;
+	of.tissue.exposure[2] = NAN;
+	of.tissue.stress[0] = 1e30f;
+	chain_encode(&of);
+	assert_int_equal(cau_frame_decode(of.decoder, of.bytes, of.byte_count, NULL), CAU_OK);
+	const cau_stream_state *state = cau_frame_decoder_state(of.decoder);
+	assert_int_equal(state->exposure[0], 255);
+	assert_int_equal(state->exposure[1], 0);
+	assert_int_equal(state->exposure[2], 0);
+	assert_int_equal(state->stress[0], 65535);
+	chain_finish(&of);
+}
+
+static void test_a_stream_carries_its_channels_alone(void **unused)
+{
+	(void)unused;
+	for (uint32_t channels = 0; channels <= CAU_CHANNEL_ALL; channels++) {
+		tissue still;
+		tissue_init(&still, 5, 5);
+		cau_stream_def def = tissue_stream_def(&still);
+		def.channels = channels;
+		size_t bytes = cau_frame_encoder_bytes(&def), capacity = cau_frame_bytes_max(&def), count;
+		cau_frame_encoder *encoder;
+		assert_int_equal(
+			cau_frame_encoder_init(malloc(bytes), bytes, &def, CHAIN_EPOCH, &encoder, NULL),
+			CAU_OK);
+		cau_frame_decoder *decoder = chain_new_decoder(&def);
+		uint8_t *frame = malloc(capacity);
+		cau_stream_sample sample = {
+			.time_s = 0.5,
+			.position = channels & CAU_CHANNEL_POSITIONS ? still.position : NULL,
+			.face_mask = channels & CAU_CHANNEL_MASK ? still.mask : NULL,
+			.exposure = channels & CAU_CHANNEL_EXPOSURE ? still.exposure : NULL,
+			.charring = channels & CAU_CHANNEL_CHARRING ? still.charring : NULL,
+			.stress = channels & CAU_CHANNEL_STRESS ? still.stress : NULL,
+			.tool_count = 1,
+			.tools = still.tools,
+			.statistics = &still.statistics};
+		for (int frames = 0; frames < 3; frames++) {
+			assert_int_equal(cau_frame_encode(encoder, &sample, frame, capacity, &count, NULL),
+			                 CAU_OK);
+			assert_int_equal(cau_frame_decode(decoder, frame, count, NULL), CAU_OK);
+		}
+		assert_int_equal(cau_frame_decoder_state(decoder)->tool_count,
+		                 channels & CAU_CHANNEL_TOOLS ? 1 : 0);
+		free(encoder);
+		free(decoder);
+		free(frame);
+		tissue_finish(&still);
+	}
+}
+
+int main(void)
+{
+	const struct CMUnitTest tests[] = {
+		cmocka_unit_test(test_deltas_follow_the_tissue),
+		cmocka_unit_test(test_hidden_vertices_wait_until_they_are_seen),
+		cmocka_unit_test(test_key_frame_equals_the_chain),
+		cmocka_unit_test(test_a_still_tissue_costs_next_to_nothing),
+		cmocka_unit_test(test_errors_never_add_up),
+		cmocka_unit_test(test_a_new_epoch_starts_with_a_key_frame),
+		cmocka_unit_test(test_scalars_saturate),
+		cmocka_unit_test(test_a_stream_carries_its_channels_alone),
+	};
+	return cmocka_run_group_tests(tests, NULL, NULL);
+}

@@ -1,0 +1,124 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "protocol/wire/tissue.h"
+
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+enum { WORD_FACES = 32 };
+
+void tissue_init(tissue *made, int32_t columns, int32_t rows)
+{
+	int32_t vertices = columns * rows;
+	int32_t faces = 2 * (columns - 1) * (rows - 1);
+	*made = (tissue){
+		.columns = columns,
+		.rows = rows,
+		.vertex_count = vertices,
+		.face_count = faces,
+		.position = calloc((size_t)vertices * 3, sizeof(double)),
+		.visible = calloc((size_t)vertices, 1),
+		.mask = calloc((size_t)(faces + WORD_FACES - 1) / WORD_FACES, sizeof(uint32_t)),
+		.exposure = calloc((size_t)vertices, sizeof(float)),
+		.charring = calloc((size_t)vertices, sizeof(float)),
+		.stress = calloc((size_t)vertices, sizeof(float)),
+	};
+	memset(made->visible, 1, (size_t)vertices);
+	tissue_move(made, 0, 0.0);
+}
+
+void tissue_finish(tissue *made)
+{
+	free(made->position);
+	free(made->visible);
+	free(made->mask);
+	free(made->exposure);
+	free(made->charring);
+	free(made->stress);
+	*made = (tissue){0};
+}
+
+static void move_vertex(tissue *moved, int32_t vertex, double time_s, double speed_m_s)
+{
+	double x = 0.002 * (vertex % moved->columns), y = 0.002 * (vertex / moved->columns);
+	double turn = 6.283 * 0.7, reach = speed_m_s / turn, noise = 0.01 * reach;
+	double *at = &moved->position[3 * (size_t)vertex];
+	at[0] =
+		x + reach * sin(turn * time_s + 20 * x + 9 * y) + noise * sin(100 * time_s + 37.7 * vertex);
+	at[1] = y + reach * cos(turn * time_s + 14 * y);
+	at[2] = reach * sin(turn * time_s + 250 * x * y + 30 * x) +
+	        noise * sin(90 * time_s + 17.7 * vertex);
+}
+
+static void move_tool(cau_stream_tool *tool, const char *name, int shape, int32_t tick)
+{
+	*tool = (cau_stream_tool){
+		.shape = shape,
+		.pose = {.position_m = {0.0005 * tick, 0.01, 0.002}, .rotation = {1.0, 0.0, 0.0, 0.0}},
+		.jaw = 0.25,
+		.force_n = {0.1, -0.2, 0.0625 * (tick % 5)},
+		.torque_nm = {0.0, 0.001, -0.002},
+		.tip_temperature_c = 37.0 + tick,
+		.energy_j = 0.5 * tick,
+		.sequence = 1000u + (uint64_t)tick,
+		.driver = 7,
+		.energized = tick % 2 == 1,
+		.energy_off = CAU_ENERGY_OFF_COMMANDED,
+		.contact_vertices = 12,
+		.touched_layers = 1,
+	};
+	strcpy(tool->name, name);
+}
+
+void tissue_move(tissue *moved, int32_t tick, double speed_m_s)
+{
+	double time_s = tick / 60.0;
+	moved->tick = tick;
+	for (int32_t vertex = 0; vertex < moved->vertex_count; vertex++) {
+		move_vertex(moved, vertex, time_s, speed_m_s);
+		bool near_cut =
+			vertex / moved->columns == moved->rows / 2 && vertex % moved->columns < tick;
+		moved->exposure[vertex] = near_cut ? 0.9f : 0.001f * (float)(tick % 100);
+		moved->charring[vertex] = near_cut ? 0.5f : 0.0f;
+		moved->stress[vertex] = (float)(1000.0 + 500.0 * sin(time_s + 0.1 * vertex));
+	}
+	int32_t row_faces = 2 * (moved->columns - 1), first = row_faces * (moved->rows / 2);
+	for (int32_t face = first; face < first + tick && face < first + row_faces; face++)
+		moved->mask[face / WORD_FACES] |= 1u << face % WORD_FACES;
+	move_tool(&moved->tools[0], "hook", CAU_TOOL_HOOK, tick);
+	move_tool(&moved->tools[1], "left-grasper", CAU_TOOL_GRASPER, tick);
+	moved->statistics = (cau_stream_statistics){.realtime_factor = 1.0f,
+	                                            .step_cost_s = 0.002f,
+	                                            .stage_s = {0.25f, 0.5f},
+	                                            .iterations = 10,
+	                                            .contacts = (uint32_t)tick};
+}
+
+cau_stream_def tissue_stream_def(const tissue *of)
+{
+	cau_stream_def def = cau_default_stream_def();
+	def.session = 3;
+	def.profile = 1;
+	def.channels = CAU_CHANNEL_ALL;
+	def.vertex_count = of->vertex_count;
+	def.face_count = of->face_count;
+	return def;
+}
+
+cau_stream_sample tissue_sample(const tissue *of)
+{
+	return (cau_stream_sample){
+		.tick = (uint64_t)of->tick,
+		.time_s = of->tick / 60.0,
+		.published_us = 1000000u + 16667u * (uint64_t)of->tick,
+		.position = of->position,
+		.vertex_visible = of->visible,
+		.face_mask = of->mask,
+		.exposure = of->exposure,
+		.charring = of->charring,
+		.stress = of->stress,
+		.tool_count = of->tick < 8 ? 1 : 2,
+		.tools = of->tools,
+		.statistics = &of->statistics,
+	};
+}

@@ -1,0 +1,30 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// A make-believe tissue for tests of streams: a grid in smooth motion with a little noise, a cut
+// that runs across it, exposure that rises along the cut, one or two tools. The same in every run.
+#pragma once
+
+#include "cautery/stream.h"
+
+typedef struct tissue {
+	int32_t columns, rows;
+	int32_t vertex_count, face_count, tick;
+	double *position;
+	uint8_t *visible;
+	uint32_t *mask;
+	float *exposure;
+	float *charring;
+	float *stress;
+	cau_stream_tool tools[2];
+	cau_stream_statistics statistics;
+} tissue;
+
+// Heap arrays; NULL members after tissue_finish.
+void tissue_init(tissue *made, int32_t columns, int32_t rows);
+void tissue_finish(tissue *made);
+
+// Moves everything to `tick` at 60 ticks a second; `speed_m_s` is the largest speed of a vertex.
+void tissue_move(tissue *moved, int32_t tick, double speed_m_s);
+
+// A stream over it with all channels, and the sample of its present state, borrowed.
+cau_stream_def tissue_stream_def(const tissue *of);
+cau_stream_sample tissue_sample(const tissue *of);

@@ -1,0 +1,45 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// A finite-element reference case: mesh, material, supports and the equilibrium to compare with.
+// Format and definitions: README.md beside this file.
+#pragma once
+
+#include <stdint.h>
+
+#include "cautery/scene.h"
+#include "cautery/status.h"
+
+typedef struct cau_reference_case {
+	char name[CAU_NAME_BYTES];
+	int model; // CAU_MODEL_STVK or CAU_MODEL_NEOHOOKEAN
+	double young_modulus_pa;
+	double poisson_ratio;
+	double density_kg_m3;
+	double gravity_m_s2[3];
+	double sphere_center_m[3]; // at its last place
+	double sphere_radius_m;    // 0: no sphere
+	double residual;           // of the reference itself, relative
+	double measure;            // N or m: block pull, tip deflection, indentation force
+	double measure_converged;  // the same on a converged mesh
+	double reaction_n[3];      // of the fixed vertices on the body, summed; likewise the next two
+	double hold_n[3];          // of the prescribed vertices
+	double contact_n[3];       // of the sphere
+	int32_t vertex_count;
+	int32_t tetrahedron_count;
+	int32_t fixed_count;
+	int32_t prescribed_count;
+	int32_t contact_count;
+	double *position;        // m, (vertex_count x 3), at rest
+	int32_t *tetrahedron;    // vertices, (tetrahedron_count x 4), positive volume
+	int32_t *fixed;          // vertices, (fixed_count)
+	int32_t *prescribed;     // vertices, (prescribed_count)
+	double *prescribed_move; // m, (prescribed_count x 3)
+	int32_t *contact;        // vertices on the sphere, (contact_count)
+	double *contact_force_n; // normal force of the sphere on each, (contact_count)
+	double *displacement;    // m, (vertex_count x 3): the solution
+} cau_reference_case;
+
+// Reads a case file. The caller finishes *reference, on failure too.
+// Errors: CAU_IO, CAU_BAD_SYNTAX naming the section, CAU_BAD_VALUE for a vertex out of range.
+cau_status cau_reference_case_read(const char *path, cau_reference_case *reference,
+                                   cau_error *error);
+void cau_reference_case_finish(cau_reference_case *reference); // a zeroed one is fine

@@ -1,0 +1,22 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// The closed form of one element stretched along one axis with its sides free: F = diag(s, l, l).
+#pragma once
+
+#include <stdint.h>
+
+#include "cautery/status.h"
+
+typedef struct cau_reference_uniaxial {
+	int model; // CAU_MODEL_STVK or CAU_MODEL_NEOHOOKEAN
+	double young_modulus_pa;
+	double poisson_ratio;
+	double stretch;         // s
+	double lateral_stretch; // l
+	double stress_pa;       // first Piola-Kirchhoff, along the axis; the lateral one is zero
+} cau_reference_uniaxial;
+
+// Reads uniaxial.txt into at most `capacity` rows.
+// Errors: CAU_IO, CAU_BAD_SYNTAX naming the row, CAU_LIMIT if there are more rows.
+cau_status cau_reference_uniaxial_read(const char *path, int32_t capacity,
+                                       cau_reference_uniaxial *rows, int32_t *row_count,
+                                       cau_error *error);

@@ -1,0 +1,101 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "log/log.h"
+
+#include <fcntl.h>
+#include <setjmp.h>
+#include <stdarg.h>
+#include <stddef.h>
+#include <stdlib.h>
+#include <string.h>
+#include <unistd.h>
+
+#include <cmocka.h>
+
+// What one call writes to standard error.
+static char *written(void (*call)(void))
+{
+	static char text[4096];
+	char file[] = "/tmp/cautery-log-XXXXXX";
+	int descriptor = mkstemp(file), kept = dup(STDERR_FILENO);
+	dup2(descriptor, STDERR_FILENO);
+	call();
+	dup2(kept, STDERR_FILENO);
+	ssize_t bytes = pread(descriptor, text, sizeof text - 1, 0);
+	text[bytes > 0 ? bytes : 0] = 0;
+	close(descriptor);
+	close(kept);
+	unlink(file);
+	return text;
+}
+
+static void one(void)
+{
+	cau_log(CAU_LOG_WARNING, "d1-knee", "tool_cut", "tool=%s", "hook");
+}
+
+static void nasty(void)
+{
+	cau_log(CAU_LOG_INFO, NULL, "hello", "name=\"%s\"", "a\nlevel=error\x1b[2J");
+}
+
+static void endless(void)
+{
+	char name[3000];
+	memset(name, 'x', sizeof name - 1);
+	name[sizeof name - 1] = 0;
+	cau_log(CAU_LOG_INFO, NULL, "long", "name=%s", name);
+}
+
+static void quiet(void)
+{
+	cau_log(CAU_LOG_DEBUG, NULL, "detail", "a=%d", 1);
+}
+
+static void a_line_has_level_time_session_and_event(void **state)
+{
+	(void)state;
+	unsetenv("JOURNAL_STREAM");
+	const char *line = written(one);
+	assert_int_equal(strncmp(line, "warning 20", 10), 0);
+	assert_non_null(strstr(line, "Z session=d1-knee event=tool_cut tool=hook\n"));
+}
+
+static void under_journald_a_line_starts_with_its_priority(void **state)
+{
+	(void)state;
+	setenv("JOURNAL_STREAM", "1:2", 1);
+	assert_int_equal(strncmp(written(one), "<4>warning", 10), 0);
+	unsetenv("JOURNAL_STREAM");
+}
+
+static void what_clients_send_cannot_forge_lines(void **state)
+{
+	(void)state;
+	const char *line = written(nasty);
+	assert_ptr_equal(strchr(line, '\n'), line + strlen(line) - 1);
+	assert_null(strchr(line, '\x1b'));
+	line = written(endless);
+	assert_true(strlen(line) <= 1024);
+	assert_ptr_equal(strchr(line, '\n'), line + strlen(line) - 1);
+}
+
+static void levels_below_the_least_are_left_out(void **state)
+{
+	(void)state;
+	assert_string_equal(written(quiet), "");
+	assert_true(cau_log_set_level("debug"));
+	assert_true(strlen(written(quiet)) > 0);
+	assert_false(cau_log_set_level("chatty"));
+	assert_true(cau_log_set_level("info"));
+}
+
+int main(void)
+{
+	const struct CMUnitTest tests[] = {
+		cmocka_unit_test(a_line_has_level_time_session_and_event),
+		cmocka_unit_test(under_journald_a_line_starts_with_its_priority),
+		cmocka_unit_test(what_clients_send_cannot_forge_lines),
+		cmocka_unit_test(levels_below_the_least_are_left_out),
+	};
+	return cmocka_run_group_tests(tests, NULL, NULL);
+}

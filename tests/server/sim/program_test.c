@@ -1,0 +1,138 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// The program as its users have it, on the real core: exit codes, output, and one hash however it
+// is run. The first argument is the program.
+#include "sim_fixture.h"
+
+#include <sys/wait.h>
+
+static const char *program;
+
+// Runs the program with these arguments; its standard output goes to `output`. Returns its exit
+// code.
+static int run_program(const char *arguments, char *output, size_t bytes)
+{
+	char command[1024];
+	snprintf(command, sizeof command, "%s --scenes %s %s 2>%s", program, CAU_TEST_SCENES, arguments,
+	         fixture_path("complaints"));
+	FILE *pipe = popen(command, "r");
+	assert_non_null(pipe);
+	size_t used = fread(output, 1, bytes - 1, pipe);
+	output[used] = 0;
+	int status = pclose(pipe);
+	assert_true(WIFEXITED(status));
+	return WEXITSTATUS(status);
+}
+
+static void exit_codes_are_as_documented(void **state)
+{
+	(void)state;
+	char output[4096];
+	fixture_write(fixture_path("bad.jsonl"), "{\"command\":\"nope\"}\n");
+	fixture_write(fixture_path("late.jsonl"), // the second finds its tool gone at their tick
+	              "{\"command\":\"tool.remove\",\"tool\":\"needle\",\"tick\":3}\n"
+	              "{\"command\":\"tool.energize\",\"tool\":\"needle\",\"tick\":3,"
+	              "\"energized\":true}\n");
+	char script[512], late[512], csv[512];
+	snprintf(script, sizeof script, "--scene patterns --script %s", fixture_path("bad.jsonl"));
+	snprintf(late, sizeof late, "--scene patterns --script %s", fixture_path("late.jsonl"));
+	snprintf(csv, sizeof csv, "--scene patterns --seconds 0.1 --csv /nowhere/at/all.csv");
+	const struct {
+		const char *arguments;
+		int code;
+	} cases[] = {
+		{"--help", 0},
+		{"--scene patterns --seconds 0.1", 0},
+		{csv, 1},
+		{"", 2},
+		{"--scene patterns --threads 99", 2},
+		{"--scene patterns --no-such-option", 2},
+		{"--scene no-such-scene", 3},
+		{script, 3},
+		{late, 4},
+	};
+	for (size_t i = 0; i < sizeof cases / sizeof *cases; i++) {
+		int code = run_program(cases[i].arguments, output, sizeof output);
+		if (code != cases[i].code)
+			fail_msg("%s: exit code %d, not %d", cases[i].arguments, code, cases[i].code);
+	}
+}
+
+// The hash in the JSON object that is the last line of output.
+static void read_hash(const char *arguments, char hash[17])
+{
+	char output[8192];
+	assert_int_equal(run_program(arguments, output, sizeof output), 0);
+	const char *line = strrchr(output, '{');
+	assert_non_null(line);
+	const char *place = strstr(line, "\"hash\":\"");
+	assert_non_null(place);
+	snprintf(hash, 17, "%s", place + strlen("\"hash\":\""));
+	assert_int_equal(strlen(hash), 16);
+	assert_int_equal(strspn(hash, "0123456789abcdef"), 16);
+}
+
+static void expect_one_hash(const char *scene, const char *seconds, const char *snapshots[3])
+{
+	char arguments[256], first[17], other[17];
+	snprintf(arguments, sizeof arguments, "--scene %s --cut --seconds %s --json", scene, seconds);
+	read_hash(arguments, first);
+	for (int i = 0; i < 4; i++) {
+		if (i < 3)
+			snprintf(arguments, sizeof arguments,
+			         "--scene %s --cut --seconds %s --json --threads %d --snapshot-at %s", scene,
+			         seconds, 1 + i % 2, snapshots[i]);
+		else
+			snprintf(arguments, sizeof arguments,
+			         "--scene %s --cut --seconds %s --json --threads 2", scene, seconds);
+		read_hash(arguments, other);
+		if (strcmp(first, other) != 0)
+			fail_msg("%s: %s, not %s", arguments, other, first);
+	}
+}
+
+// Before, while and after edges part (the needle is hot from 1.0 s and at the tissue from 1.5 s
+// on).
+static void one_hash_over_threads_and_snapshots(void **state)
+{
+	(void)state;
+	expect_one_hash("patterns", "12", (const char *[]){"0", "400", "650"});
+	expect_one_hash("fascia", "5", (const char *[]){"30", "240", "270"});
+}
+
+static void the_cut_parts_tissue(void **state)
+{
+	(void)state;
+	char output[8192];
+	assert_int_equal(run_program("--scene fascia --cut --seconds 8 --json", output, sizeof output),
+	                 0);
+	const char *place = strstr(output, "\"elements_removed\":");
+	assert_non_null(place);
+	assert_true(atoi(place + strlen("\"elements_removed\":")) > 0);
+}
+
+static void print_cut_is_the_kept_script(void **state)
+{
+	(void)state;
+	static char output[1 << 18];
+	size_t bytes;
+	assert_int_equal(run_program("--scene layers --print-cut", output, sizeof output), 0);
+	char *kept = fixture_read(CAU_TEST_SCENES "/scripts/layers-cut.jsonl", &bytes);
+	assert_string_equal(output, kept);
+	free(kept);
+}
+
+int main(int argument_count, char **arguments)
+{
+	const struct CMUnitTest tests[] = {
+		cmocka_unit_test(exit_codes_are_as_documented),
+		cmocka_unit_test(print_cut_is_the_kept_script),
+		cmocka_unit_test(the_cut_parts_tissue),
+		cmocka_unit_test(one_hash_over_threads_and_snapshots),
+	};
+	if (argument_count < 2) {
+		fputs("the program to test is the first argument\n", stderr);
+		return 1;
+	}
+	program = arguments[1];
+	return cmocka_run_group_tests(tests, NULL, fixture_remove);
+}

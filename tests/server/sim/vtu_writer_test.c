@@ -1,0 +1,100 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "sim/vtu_writer.h"
+
+#include "sim_fixture.h"
+
+typedef struct data {
+	const char *at;
+	uint64_t bytes;
+} data;
+
+// The bytes of the array of that name, by its offset in the appended block.
+static data find_array(const char *text, size_t bytes, const char *name)
+{
+	char attribute[64];
+	uint64_t offset;
+	snprintf(attribute, sizeof attribute, "Name=\"%s\"", name);
+	const char *place = strstr(text, attribute);
+	assert_non_null(place);
+	place = strstr(place, "offset=\"");
+	assert_non_null(place);
+	assert_int_equal(sscanf(place, "offset=\"%lu\"", &offset), 1);
+	const char *block = strstr(text, "encoding=\"raw\">\n_");
+	assert_non_null(block);
+	block += strlen("encoding=\"raw\">\n_");
+	data found;
+	memcpy(&found.bytes, block + offset, sizeof found.bytes);
+	found.at = block + offset + sizeof found.bytes;
+	assert_true((size_t)(found.at - text) + found.bytes <= bytes);
+	return found;
+}
+
+static void a_file_holds_the_drawn_tissue(void **state)
+{
+	(void)state;
+	cau_scene_def *scene = fixture_scene();
+	cau_session_def def = cau_default_session_def();
+	cau_session *session;
+	cau_session_info info;
+	cau_frame frame;
+	cau_error error = {0};
+	sim_vtu vtu;
+	size_t bytes;
+	def.scene = scene;
+	assert_int_equal(cau_session_create(&def, &session, &error), CAU_OK);
+	cau_session_describe(session, &info);
+	assert_int_equal(sim_vtu_begin(fixture_path("vtu"), &vtu, &error), CAU_OK);
+	assert_int_equal(sim_vtu_write(&vtu, session, &error), CAU_OK);
+	cau_session_frame(session, &frame);
+
+	char *text = fixture_read(fixture_path("vtu/tissue-00000000.vtu"), &bytes);
+	char counts[96];
+	snprintf(counts, sizeof counts, "NumberOfPoints=\"%d\" NumberOfCells=\"%d\"", info.vertex_count,
+	         info.face_count);
+	assert_non_null(strstr(text, counts));
+	data position = find_array(text, bytes, "position_m");
+	assert_int_equal(position.bytes, 24 * (size_t)info.vertex_count);
+	assert_memory_equal(position.at, frame.position, position.bytes);
+	data corner = find_array(text, bytes, "connectivity"), end = find_array(text, bytes, "offsets");
+	data type = find_array(text, bytes, "types");
+	assert_int_equal(corner.bytes, 24 * (size_t)info.face_count);
+	for (int32_t i = 0; i < info.face_count; i++) {
+		int64_t vertex[3], last;
+		memcpy(vertex, corner.at + 24 * (size_t)i, sizeof vertex);
+		memcpy(&last, end.at + 8 * (size_t)i, sizeof last);
+		for (int k = 0; k < 3; k++)
+			assert_int_equal(vertex[k], info.face[3 * i + k]);
+		assert_int_equal(last, 3 * (i + 1));
+		assert_int_equal(type.at[i], 5); // VTK_TRIANGLE
+	}
+	free(text);
+
+	for (int i = 0; i < 60; i++)
+		assert_int_equal(cau_session_step(session, &error), CAU_OK);
+	assert_int_equal(sim_vtu_write(&vtu, session, &error), CAU_OK);
+	assert_int_equal(sim_vtu_finish(&vtu, &error), CAU_OK);
+	text = fixture_read(fixture_path("vtu/cautery.pvd"), &bytes);
+	assert_non_null(strstr(text, "<DataSet timestep=\"0\" file=\"tissue-00000000.vtu\"/>"));
+	assert_non_null(strstr(text, "<DataSet timestep=\"1\" file=\"tissue-00000060.vtu\"/>"));
+	free(text);
+	cau_session_destroy(session);
+	free(scene);
+}
+
+static void a_folder_that_cannot_be_is_an_error(void **state)
+{
+	(void)state;
+	sim_vtu vtu;
+	cau_error error = {0};
+	assert_int_equal(sim_vtu_begin("/nowhere/at/all", &vtu, &error), CAU_IO);
+	assert_string_equal(error.file, "/nowhere/at/all");
+}
+
+int main(void)
+{
+	const struct CMUnitTest tests[] = {
+		cmocka_unit_test(a_file_holds_the_drawn_tissue),
+		cmocka_unit_test(a_folder_that_cannot_be_is_an_error),
+	};
+	return cmocka_run_group_tests(tests, NULL, fixture_remove);
+}

@@ -1,0 +1,82 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// One process per store, and one store per process.
+#include "store_fixture.h"
+
+#include <signal.h>
+#include <string.h>
+#include <sys/wait.h>
+#include <unistd.h>
+
+#define TEST(name) cmocka_unit_test_setup_teardown(name, fixture_setup, fixture_teardown)
+
+static void a_second_open_in_the_process_is_refused(void **state)
+{
+	struct fixture *fixture = *state;
+	cau_store *second = NULL;
+	cau_error error = {0};
+	char pid[32];
+	cau_store *store = open_store(&fixture->config);
+	assert_int_equal(cau_store_open(&fixture->config, &second, &error), CAU_BAD_STATE);
+	snprintf(pid, sizeof pid, "process %ld", (long)getpid());
+	assert_non_null(strstr(error.reason, pid));
+	// The first has lost nothing by that.
+	assert_int_equal(write_batch(store, session_batch("knee"), NULL), CAU_OK);
+	cau_store_close(store);
+	cau_store_close(open_store(&fixture->config));
+}
+
+static void another_name_of_the_file_is_the_same_store(void **state)
+{
+	struct fixture *fixture = *state;
+	cau_store *second = NULL;
+	char name[256];
+	cau_store *store = open_store(&fixture->config);
+	snprintf(name, sizeof name, "%s/alias.db", fixture->folder);
+	assert_int_equal(symlink(fixture->path, name), 0);
+	cau_store_config config = fixture->config;
+	config.path = name;
+	assert_int_equal(cau_store_open(&config, &second, NULL), CAU_BAD_STATE);
+	cau_store_close(store);
+}
+
+// Opens the store, says so with one byte, and waits to be killed.
+static _Noreturn void hold_store(const cau_store_config *config, int ready)
+{
+	cau_store *store;
+	if (cau_store_open(config, &store, NULL) == CAU_OK && write(ready, "!", 1) == 1)
+		pause();
+	_exit(1);
+}
+
+static void another_process_is_refused_until_the_holder_dies(void **state)
+{
+	struct fixture *fixture = *state;
+	cau_store *store = NULL;
+	cau_error error = {0};
+	char byte, pid[32];
+	int ready[2];
+	assert_int_equal(pipe(ready), 0);
+	pid_t child = fork();
+	assert_true(child >= 0);
+	if (child == 0)
+		hold_store(&fixture->config, ready[1]);
+	close(ready[1]);
+	assert_int_equal(read(ready[0], &byte, 1), 1);
+	assert_int_equal(cau_store_open(&fixture->config, &store, &error), CAU_BAD_STATE);
+	snprintf(pid, sizeof pid, "process %ld", (long)child);
+	assert_non_null(strstr(error.reason, pid));
+	assert_int_equal(kill(child, SIGKILL), 0);
+	assert_int_equal(waitpid(child, NULL, 0), child);
+	cau_store_close(open_store(&fixture->config));
+	close(ready[0]);
+}
+
+int main(void)
+{
+	const struct CMUnitTest tests[] = {
+		TEST(a_second_open_in_the_process_is_refused),
+		TEST(another_name_of_the_file_is_the_same_store),
+		TEST(another_process_is_refused_until_the_holder_dies),
+	};
+	return cmocka_run_group_tests(tests, NULL, NULL);
+}

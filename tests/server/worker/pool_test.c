@@ -1,0 +1,180 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "worker/pool.h"
+
+#include <math.h>
+#include <pthread.h>
+#include <sched.h>
+#include <setjmp.h>
+#include <stdarg.h>
+#include <stdatomic.h>
+#include <stddef.h>
+
+#include <cmocka.h>
+
+#include "clock/clock.h"
+
+// A task that counts its slices, notes when two run at once, and tells when it has run enough.
+typedef struct counting {
+	cau_task task; // first
+	atomic_int inside, slices, overlaps;
+	int wanted;
+	double period_s;
+	pthread_mutex_t mutex;
+	pthread_cond_t done;
+} counting;
+
+static cau_due count(cau_task *task)
+{
+	counting *c = (counting *)task;
+	if (atomic_fetch_add(&c->inside, 1))
+		c->overlaps++;
+	for (volatile int i = 0; i < 20000; i++)
+		;
+	c->inside--;
+	pthread_mutex_lock(&c->mutex);
+	if (++c->slices >= c->wanted)
+		pthread_cond_signal(&c->done);
+	pthread_mutex_unlock(&c->mutex);
+	double next_s = cau_monotonic_s() + c->period_s;
+	return (cau_due){next_s, next_s};
+}
+
+static void prepare(counting *c, int wanted, double period_s)
+{
+	*c = (counting){.task.run = count, .wanted = wanted, .period_s = period_s};
+	pthread_mutex_init(&c->mutex, NULL);
+	pthread_cond_init(&c->done, NULL);
+}
+
+static void await(counting *c)
+{
+	pthread_mutex_lock(&c->mutex);
+	while (c->slices < c->wanted)
+		pthread_cond_wait(&c->done, &c->mutex);
+	pthread_mutex_unlock(&c->mutex);
+}
+
+static void a_task_is_on_one_worker_at_a_time(void **state)
+{
+	(void)state;
+	cau_worker_pool *pool;
+	counting tasks[3];
+	assert_int_equal(cau_worker_pool_create(&pool, 4, 3, 0, NULL), CAU_OK);
+	for (int i = 0; i < 3; i++) {
+		prepare(&tasks[i], 300, 0);
+		assert_true(cau_worker_pool_add(pool, &tasks[i].task));
+	}
+	for (int i = 0; i < 3; i++)
+		for (int wakes = 0; wakes < 300; wakes++)
+			cau_worker_pool_wake(pool, &tasks[i].task);
+	for (int i = 0; i < 3; i++) {
+		await(&tasks[i]);
+		cau_worker_pool_remove(pool, &tasks[i].task);
+		assert_int_equal(tasks[i].overlaps, 0);
+		assert_int_equal(tasks[i].inside, 0);
+	}
+	cau_worker_pool_destroy(pool);
+}
+
+static void a_sleeping_task_runs_when_woken_only(void **state)
+{
+	(void)state;
+	cau_worker_pool *pool;
+	counting sleeper, clock;
+	assert_int_equal(cau_worker_pool_create(&pool, 1, 2, 0, NULL), CAU_OK);
+	prepare(&sleeper, 1, INFINITY);
+	prepare(&clock, 20, 0.001);
+	assert_true(cau_worker_pool_add(pool, &sleeper.task));
+	await(&sleeper);
+	assert_true(cau_worker_pool_add(pool, &clock.task));
+	await(&clock);
+	assert_int_equal(sleeper.slices, 1);
+	sleeper.wanted = 2;
+	cau_worker_pool_wake(pool, &sleeper.task);
+	await(&sleeper);
+	assert_int_equal(sleeper.slices, 2);
+	cau_worker_pool_remove(pool, &sleeper.task);
+	cau_worker_pool_remove(pool, &clock.task);
+	cau_worker_pool_destroy(pool);
+}
+
+// First sleeps until `due_s`, then notes its turn.
+static atomic_int turns;
+typedef struct ordered {
+	cau_task task; // first
+	double due_s, deadline_s;
+	atomic_int slices, turn;
+} ordered;
+
+static cau_due take_turn(cau_task *task)
+{
+	ordered *o = (ordered *)task;
+	if (o->slices++ == 0)
+		return (cau_due){o->due_s, o->deadline_s};
+	o->turn = ++turns;
+	return (cau_due){INFINITY, INFINITY};
+}
+
+// Keeps the one worker until all the others are due.
+static cau_due hold(cau_task *task)
+{
+	ordered *o = (ordered *)task;
+	while (cau_monotonic_s() < o->due_s)
+		;
+	return (cau_due){INFINITY, INFINITY};
+}
+
+static void the_earliest_deadline_goes_first(void **state)
+{
+	(void)state;
+	enum { TASKS = 4 };
+	cau_worker_pool *pool;
+	double due_s = cau_monotonic_s() + 0.05;
+	ordered tasks[TASKS], holder = {.task.run = hold, .due_s = due_s + 0.01};
+	assert_int_equal(cau_worker_pool_create(&pool, 1, TASKS + 1, 0, NULL), CAU_OK);
+	for (int i = 0; i < TASKS; i++) {
+		tasks[i] =
+			(ordered){.task.run = take_turn, .due_s = due_s, .deadline_s = due_s + TASKS - i};
+		assert_true(cau_worker_pool_add(pool, &tasks[i].task));
+	}
+	while (cau_worker_pool_busy(pool))
+		sched_yield();
+	assert_true(cau_worker_pool_add(pool, &holder.task));
+	while (turns < TASKS)
+		sched_yield();
+	for (int i = 0; i < TASKS; i++) {
+		assert_int_equal(tasks[i].turn, TASKS - i);
+		cau_worker_pool_remove(pool, &tasks[i].task);
+	}
+	cau_worker_pool_remove(pool, &holder.task);
+	cau_worker_pool_destroy(pool);
+}
+
+static void a_full_pool_says_so(void **state)
+{
+	(void)state;
+	cau_worker_pool *pool;
+	counting tasks[2];
+	assert_int_equal(cau_worker_pool_create(&pool, 1, 1, 0, NULL), CAU_OK);
+	prepare(&tasks[0], 1, INFINITY);
+	prepare(&tasks[1], 1, INFINITY);
+	assert_true(cau_worker_pool_add(pool, &tasks[0].task));
+	assert_false(cau_worker_pool_add(pool, &tasks[1].task));
+	cau_worker_pool_remove(pool, &tasks[0].task);
+	assert_true(cau_worker_pool_add(pool, &tasks[1].task));
+	await(&tasks[1]);
+	cau_worker_pool_remove(pool, &tasks[1].task);
+	cau_worker_pool_destroy(pool);
+	cau_worker_pool_destroy(NULL);
+}
+
+int main(void)
+{
+	const struct CMUnitTest tests[] = {
+		cmocka_unit_test(a_task_is_on_one_worker_at_a_time),
+		cmocka_unit_test(a_sleeping_task_runs_when_woken_only),
+		cmocka_unit_test(the_earliest_deadline_goes_first),
+		cmocka_unit_test(a_full_pool_says_so),
+	};
+	return cmocka_run_group_tests(tests, NULL, NULL);
+}
