@@ -25,8 +25,8 @@
 static const double cut_from_m[3] = {-0.01, 0.0, 0.0};
 static const double cut_to_m[3] = {0.01, 0.0, 0.0};
 static const double cut_speed_m_s = 0.004;
-static const double dwell_s = 3.0;           // an edge inside this hook parts after 2.35 s
-static const double move_every_s = 1.0 / 60; // a pose for every tick of the session
+static const double dwell_s = 3.0; // an edge inside this hook parts after 2.35 s
+static const double wait_s = 0.1;  // at most, for a frame
 static const double report_every_s = 0.5;
 
 static const char tool_name[] = "hook"; // that the scene has
@@ -113,28 +113,30 @@ static cau_status energize(lesson *l, int32_t on, cau_error *error)
 	return status;
 }
 
-// Goes from one point to another in `seconds`. Everything else (frames in, heartbeats out) happens
-// inside cau_loop_wait.
+// Goes from one point to another in `seconds` of the tissue's time, a pose for every frame that
+// comes. On a busy server the tissue's time runs behind ours, and a cut by our clock would be too
+// fast to burn. Everything else (frames in, heartbeats out) happens inside cau_loop_wait.
 static cau_status draw(lesson *l, const double from_m[3], const double to_m[3], double seconds,
                        cau_error *error)
 {
-	double start_s = cau_client_now(), due_s = start_s;
-	for (double now_s; (now_s = cau_client_now()) < start_s + seconds;) {
+	const cau_stream_state *state = l->stream->state;
+	double start_s = state->time_s, last_s = -1;
+	while (state->time_s < start_s + seconds) {
 		if (cau_client_get_condition(l->client) != CAU_CLIENT_READY) {
 			*error = *cau_client_trouble(l->client);
 			return CAU_IO;
 		}
-		if (now_s >= due_s) {
-			double share = (now_s - start_s) / seconds, position_m[3];
+		if (state->time_s != last_s) {
+			double share = (state->time_s - start_s) / seconds, position_m[3];
+			last_s = state->time_s;
 			for (int a = 0; a < 3; a++)
 				position_m[a] = from_m[a] + share * (to_m[a] - from_m[a]);
 			cau_status status = move(l, position_m, error);
 			if (status)
 				return status;
-			due_s += move_every_s;
 		}
 		report(l);
-		cau_loop_wait(l->loop, fmax(0, due_s - cau_client_now()));
+		cau_loop_wait(l->loop, wait_s);
 	}
 	return CAU_OK;
 }

@@ -2,6 +2,7 @@
 // Trusses that tie a sheet to the layer under it (section 5.2, last paragraph): from each vertex of
 // the upper layer to the nearest vertices of the lower one within reach. Several to a vertex, so
 // that they resist shear as well.
+#include <math.h>
 #include <stdlib.h>
 #include <string.h>
 
@@ -23,7 +24,8 @@ static void mark_layer(const cau_tissue *tissue, int32_t layer_index, uint8_t *m
 		mark[tissue->tetrahedron[i]] = 1;
 }
 
-// A vertex of the lower layer; these are sorted by x, so that a search looks at a slice only.
+// A vertex of the lower layer; these are sorted by x, so that a search goes outwards from its own x
+// and ends where x alone is too far.
 typedef struct candidate {
 	double x;
 	int32_t vertex;
@@ -62,9 +64,13 @@ static int32_t nearest(const cau_tissue *tissue, int32_t from, const candidate *
 	double distance[MAX_PER_VERTEX];
 	int32_t count = 0;
 	cau_vec3 x = cau_vec3_of(tissue->rest + 3 * (size_t)from);
-	for (int32_t i = first_at_or_after(lower, lower_count, x.x - reach);
-	     i < lower_count && lower[i].x <= x.x + reach; ++i) {
-		int32_t vertex = lower[i].vertex;
+	int32_t right = first_at_or_after(lower, lower_count, x.x), left = right - 1;
+	for (;;) {
+		double ahead = right < lower_count ? lower[right].x - x.x : INFINITY;
+		double behind = left >= 0 ? x.x - lower[left].x : INFINITY;
+		if (fmin(ahead, behind) > (count == most ? distance[count - 1] : reach))
+			return count;
+		int32_t vertex = ahead <= behind ? lower[right++].vertex : lower[left--].vertex;
 		double d = cau_length(cau_sub(cau_vec3_of(tissue->rest + 3 * (size_t)vertex), x));
 		if (vertex == from || d > reach ||
 		    (count == most && !is_nearer(d, vertex, distance[count - 1], found[count - 1])))
@@ -77,7 +83,6 @@ static int32_t nearest(const cau_tissue *tissue, int32_t from, const candidate *
 		distance[k] = d;
 		found[k] = vertex;
 	}
-	return count;
 }
 
 static cau_status link_layers(cau_tissue *tissue, int32_t index, uint8_t *mark, candidate *lower,

@@ -315,6 +315,36 @@ static void links_without_length(void **state)
 	free(scene);
 }
 
+// Ten layers of eight trusses a vertex, with a reach over the whole sheet: the search and the step
+// stay bounded, and pulled trusses hold the sheets together.
+static void a_million_links(void **state)
+{
+	(void)state;
+	enum { CELLS = 113, TIES = 10 };
+	cau_scene_def *scene = stage_scene(CAU_PRECISION_SINGLE);
+	cau_default_gravity(scene->gravity_m_s2);
+	cau_layer_def *upper = stage_add_sheet(scene, "upper", 0.1, 0.1, CELLS, CELLS);
+	stage_mesh_of(scene, upper)->translate_m[2] = 0.001;
+	stage_add_sheet(scene, "lower", 0.1, 0.1, CELLS, CELLS);
+	for (int k = 0; k < TIES; ++k) {
+		char name[16];
+		snprintf(name, sizeof name, "ties-%d", k);
+		cau_link_material *link = &stage_add_links(scene, name, "upper", "lower")->link;
+		link->per_vertex = 8;
+		link->reach_m = 0.1;
+	}
+	const double least[3] = {-1, -1, 0.0009}, most[3] = {1, 1, 0.0011};
+	stage_pin_box(scene, least, most);
+	cau_session *session = stage_open(scene, 2);
+	cau_session_info info = stage_info(session);
+	assert_true(info.link_count >= 1000000);
+	stage_step(session, 3);
+	cau_frame frame = stage_frame(session);
+	assert_true(stage_farthest(&frame, info.rest_position, info.vertex_count) < 0.0005);
+	cau_session_destroy(session);
+	free(scene);
+}
+
 int main(void)
 {
 	const struct CMUnitTest tests[] = {
@@ -328,6 +358,7 @@ int main(void)
 		cmocka_unit_test(bad_meshes),
 		cmocka_unit_test(degenerate_texture),
 		cmocka_unit_test(links_without_length),
+		cmocka_unit_test(a_million_links),
 	};
 	return cmocka_run_group_tests(tests, NULL, NULL);
 }

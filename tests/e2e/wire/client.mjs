@@ -4,6 +4,9 @@ import WebSocket from 'ws';
 import { createHash } from 'node:crypto';
 import { Decoder, header } from './decoder.mjs';
 
+// Far beyond what any step needs; only failing tests reach it.
+export const PATIENCE_S = process.env.E2E_SLOW === '1' ? 200 : 20;
+
 export class RpcError extends Error {
 	constructor(error) {
 		super(`${error.code} ${error.data?.status} ${error.data?.path ?? ''}: ${error.data?.reason}`);
@@ -103,7 +106,7 @@ export class Client {
 	}
 
 	// Resolves when `condition` is true; it is looked at after every message.
-	until(condition, what, seconds = 20) {
+	until(condition, what, seconds = PATIENCE_S) {
 		return new Promise((resolve, reject) => {
 			const timer = setTimeout(() => reject(new Error(`did not happen: ${what}`)), seconds * 1000);
 			this.waiters.push({

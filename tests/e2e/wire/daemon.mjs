@@ -7,7 +7,7 @@ import { tmpdir } from 'node:os';
 import { join } from 'node:path';
 import { createInterface } from 'node:readline';
 import http from 'node:http';
-import { Client } from './client.mjs';
+import { Client, PATIENCE_S } from './client.mjs';
 
 export class Daemon {
 	static async start({ folder, settings = {}, program = process.env.CAUTERYD } = {}) {
@@ -41,7 +41,7 @@ export class Daemon {
 	}
 
 	// The first log line, past or coming, that matches.
-	log(pattern, seconds = 20) {
+	log(pattern, seconds = PATIENCE_S) {
 		const past = this.lines.find((line) => pattern.test(line));
 		if (past)
 			return Promise.resolve(past);
