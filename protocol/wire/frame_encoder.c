@@ -1,28 +1,12 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "cautery/frame_codec.h"
+#include "wire/frame_encoder.h"
 
 #include <math.h>
 #include <string.h>
 
-#include "wire/arrays.h"
 #include "wire/bytes.h"
 #include "wire/header.h"
 #include "wire/records.h"
-
-typedef struct tool_set {
-	int32_t count;
-	cau_stream_tool tools[CAU_MAX_TOOLS];
-} tool_set;
-
-struct cau_frame_encoder {
-	cau_stream_def def;
-	cau_frame_header header;     // of the last frame
-	uint32_t *held[ARRAY_COUNT]; // what decoders in step hold
-	uint32_t *next[ARRAY_COUNT]; // what they hold after the frame being made
-	tool_set tools;
-	cau_stream_statistics statistics;
-	uint8_t *scratch;
-};
 
 size_t cau_frame_bytes_max(const cau_stream_def *def)
 {
@@ -197,16 +181,21 @@ static cau_status take_arrays(cau_frame_encoder *encoder, const cau_stream_sampl
 	return CAU_OK;
 }
 
+bool cau_tool_sets_differ(const cau_tool_set *set, const cau_stream_tool *tools, int32_t count)
+{
+	bool differ = set->count != count;
+	for (int32_t i = 0; i < count && !differ; i++)
+		differ = tools[i].shape != set->tools[i].shape ||
+		         strncmp(tools[i].name, set->tools[i].name, sizeof tools[i].name) != 0;
+	return differ;
+}
+
 static bool take_tools(cau_frame_encoder *encoder, const cau_stream_sample *sample)
 {
-	tool_set *held = &encoder->tools;
-	bool renamed = held->count != sample->tool_count;
-	for (int32_t i = 0; i < sample->tool_count; i++) {
-		const cau_stream_tool *tool = &sample->tools[i];
-		renamed = renamed || tool->shape != held->tools[i].shape ||
-		          strncmp(tool->name, held->tools[i].name, sizeof tool->name) != 0;
-		held->tools[i] = *tool;
-	}
+	cau_tool_set *held = &encoder->tools;
+	bool renamed = cau_tool_sets_differ(held, sample->tools, sample->tool_count);
+	for (int32_t i = 0; i < sample->tool_count; i++)
+		held->tools[i] = sample->tools[i];
 	held->count = sample->tool_count;
 	return renamed;
 }
@@ -249,14 +238,15 @@ static void write_key_arrays(const cau_frame_encoder *encoder, frame_writer *wri
 	}
 }
 
-// From `next`, which has become what is held, back to the arrays before it.
-static void write_delta_arrays(const cau_frame_encoder *encoder, frame_writer *writer)
+// From the arrays of `base` to what is held.
+static void write_delta_arrays(const cau_frame_encoder *encoder, uint32_t *const base[ARRAY_COUNT],
+                               frame_writer *writer)
 {
 	for (int channel = 0; channel < ARRAY_COUNT; channel++) {
 		array_shape shape = cau_array_shape_of(&encoder->def, channel);
 		bool mask = channel == CAU_CHANNEL_INDEX_MASK;
 		elements_source source = {.now = encoder->held[channel],
-		                          .held = encoder->next[channel],
+		                          .held = base[channel],
 		                          .count = shape.count,
 		                          .components = shape.components,
 		                          .reference = mask ? ELEMENTS_NONE : ELEMENTS_HELD};
@@ -270,7 +260,7 @@ static void write_delta_arrays(const cau_frame_encoder *encoder, frame_writer *w
 
 static void write_records(const cau_frame_encoder *encoder, frame_writer *writer, bool names)
 {
-	const tool_set *set = &encoder->tools;
+	const cau_tool_set *set = &encoder->tools;
 	if (wants(encoder, CAU_CHANNEL_TOOLS)) {
 		if (names)
 			end_section(writer, CAU_SECTION_TOOL_NAMES,
@@ -283,19 +273,20 @@ static void write_records(const cau_frame_encoder *encoder, frame_writer *writer
 		            cau_statistics_write(section_payload(writer), &encoder->statistics));
 }
 
-static size_t end_frame(const cau_frame_encoder *encoder, frame_writer *writer, cau_frame_kind kind)
+static size_t end_frame(const cau_frame_encoder *encoder, frame_writer *writer, cau_frame_kind kind,
+                        uint64_t base_sequence)
 {
 	cau_frame_header header = encoder->header;
 	header.kind = (uint8_t)kind;
 	header.byte_count = (uint32_t)(writer->at - writer->start);
-	header.base_sequence = header.sequence - (kind == CAU_FRAME_DELTA);
+	header.base_sequence = base_sequence;
 	header.section_count = writer->section_count;
 	cau_frame_header_write(writer->start, &header);
 	return header.byte_count;
 }
 
-static cau_status check_capacity(const cau_frame_encoder *encoder, size_t capacity,
-                                 cau_error *error)
+cau_status cau_encoder_check_capacity(const cau_frame_encoder *encoder, size_t capacity,
+                                      cau_error *error)
 {
 	size_t needed = cau_frame_bytes_max(&encoder->def);
 	return capacity >= needed
@@ -314,15 +305,16 @@ static size_t write_key(const cau_frame_encoder *encoder, void *bytes)
 	frame_writer writer = begin_frame(bytes);
 	write_key_arrays(encoder, &writer);
 	write_records(encoder, &writer, true);
-	return end_frame(encoder, &writer, CAU_FRAME_KEY);
+	return end_frame(encoder, &writer, CAU_FRAME_KEY, encoder->header.sequence);
 }
 
-static size_t write_delta(const cau_frame_encoder *encoder, bool names, void *bytes)
+size_t cau_encoder_write_delta(const cau_frame_encoder *encoder, uint32_t *const base[ARRAY_COUNT],
+                               uint64_t base_sequence, bool names, void *bytes)
 {
 	frame_writer writer = begin_frame(bytes);
-	write_delta_arrays(encoder, &writer);
+	write_delta_arrays(encoder, base, &writer);
 	write_records(encoder, &writer, names);
-	return end_frame(encoder, &writer, CAU_FRAME_DELTA);
+	return end_frame(encoder, &writer, CAU_FRAME_DELTA, base_sequence);
 }
 
 static void advance(cau_frame_encoder *encoder, const cau_stream_sample *sample)
@@ -344,7 +336,7 @@ static void advance(cau_frame_encoder *encoder, const cau_stream_sample *sample)
 cau_status cau_frame_encode(cau_frame_encoder *encoder, const cau_stream_sample *sample,
                             void *bytes, size_t capacity, size_t *byte_count, cau_error *error)
 {
-	cau_status status = check_capacity(encoder, capacity, error);
+	cau_status status = cau_encoder_check_capacity(encoder, capacity, error);
 	if (!status)
 		status = check_sample(encoder, sample, error);
 	if (!status)
@@ -354,14 +346,17 @@ cau_status cau_frame_encode(cau_frame_encoder *encoder, const cau_stream_sample 
 	bool first = encoder->header.sequence == 0;
 	bool renamed = take_tools(encoder, sample);
 	advance(encoder, sample);
-	*byte_count = first ? write_key(encoder, bytes) : write_delta(encoder, renamed, bytes);
+	// `next` has become what is held, and what was held before is in its place.
+	*byte_count = first ? write_key(encoder, bytes)
+	                    : cau_encoder_write_delta(encoder, encoder->next,
+	                                              encoder->header.sequence - 1, renamed, bytes);
 	return CAU_OK;
 }
 
 cau_status cau_frame_encode_key(const cau_frame_encoder *encoder, void *bytes, size_t capacity,
                                 size_t *byte_count, cau_error *error)
 {
-	cau_status status = check_capacity(encoder, capacity, error);
+	cau_status status = cau_encoder_check_capacity(encoder, capacity, error);
 	if (status)
 		return status;
 	if (encoder->header.sequence == 0)

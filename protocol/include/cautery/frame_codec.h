@@ -110,6 +110,26 @@ cau_status cau_frame_encode_key(const cau_frame_encoder *encoder, void *bytes, s
 uint64_t cau_frame_encoder_epoch(const cau_frame_encoder *encoder);
 uint64_t cau_frame_encoder_sequence(const cau_frame_encoder *encoder); // 0 before the first frame
 
+// ---- half rate ----------------------------------------------------------------------------------
+// Follows an encoder and makes deltas over two of its frames, in the same chain: a decoder goes
+// over from one kind to the other at any frame of even sequence, and holds the same state there.
+typedef struct cau_frame_thinner cau_frame_thinner;
+enum { CAU_FRAME_THINNING = 2 };
+
+size_t cau_frame_thinner_bytes(const cau_stream_def *def);
+// Makes a thinner in `storage`, which it keeps; so it does the encoder. Errors: CAU_LIMIT (storage
+// too small).
+cau_status cau_frame_thinner_init(void *storage, size_t storage_bytes,
+                                  const cau_frame_encoder *encoder, cau_frame_thinner **thinner,
+                                  cau_error *error);
+
+// After a cau_frame_encode: at an even sequence, writes the delta from the sequence before the last
+// one to the present state. *byte_count is 0 if there is none: at an odd sequence, and the first
+// time after a pause or in an epoch, when the state is only kept. Errors: CAU_LIMIT (capacity below
+// cau_frame_bytes_max).
+cau_status cau_frame_thin(cau_frame_thinner *thinner, void *bytes, size_t capacity,
+                          size_t *byte_count, cau_error *error);
+
 // ---- decoder ------------------------------------------------------------------------------------
 typedef struct cau_frame_decoder cau_frame_decoder;
 

@@ -1,0 +1,34 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// The encoder's insides, for what makes other frames of its states.
+#pragma once
+
+#include <stdbool.h>
+
+#include "cautery/frame_codec.h"
+#include "wire/arrays.h"
+
+typedef struct cau_tool_set {
+	int32_t count;
+	cau_stream_tool tools[CAU_MAX_TOOLS];
+} cau_tool_set;
+
+struct cau_frame_encoder {
+	cau_stream_def def;
+	cau_frame_header header;     // of the last frame
+	uint32_t *held[ARRAY_COUNT]; // what decoders in step hold
+	uint32_t *next[ARRAY_COUNT]; // what they hold after the frame being made
+	cau_tool_set tools;
+	cau_stream_statistics statistics;
+	uint8_t *scratch;
+};
+
+// Whether decoders that know the tools of `set` need the names of these.
+bool cau_tool_sets_differ(const cau_tool_set *set, const cau_stream_tool *tools, int32_t count);
+
+cau_status cau_encoder_check_capacity(const cau_frame_encoder *encoder, size_t capacity,
+                                      cau_error *error);
+
+// Writes the delta from the arrays of `base`, the state with that sequence, to what is held.
+// Returns its bytes.
+size_t cau_encoder_write_delta(const cau_frame_encoder *encoder, uint32_t *const base[ARRAY_COUNT],
+                               uint64_t base_sequence, bool names, void *bytes);

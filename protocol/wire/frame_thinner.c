@@ -1,0 +1,74 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include <string.h>
+
+#include "wire/frame_encoder.h"
+
+struct cau_frame_thinner {
+	const cau_frame_encoder *encoder;
+	uint64_t epoch, sequence; // of the state that is kept; epoch 0: none
+	uint32_t *base[ARRAY_COUNT];
+	cau_tool_set tools; // their names
+};
+
+static size_t struct_bytes(void)
+{
+	return (sizeof(cau_frame_thinner) + 15) & ~(size_t)15;
+}
+
+size_t cau_frame_thinner_bytes(const cau_stream_def *def)
+{
+	return struct_bytes() + sizeof(uint32_t) * cau_arrays_words(def);
+}
+
+cau_status cau_frame_thinner_init(void *storage, size_t storage_bytes,
+                                  const cau_frame_encoder *encoder, cau_frame_thinner **thinner,
+                                  cau_error *error)
+{
+	size_t needed = cau_frame_thinner_bytes(&encoder->def);
+	if (storage_bytes < needed)
+		return cau_fail(error, CAU_LIMIT, NULL, "the thinner needs %zu bytes", needed);
+	cau_frame_thinner *made = storage;
+	*made = (cau_frame_thinner){.encoder = encoder};
+	uint32_t *words = (uint32_t *)(void *)((uint8_t *)storage + struct_bytes());
+	for (int channel = 0; channel < ARRAY_COUNT; channel++) {
+		array_shape shape = cau_array_shape_of(&encoder->def, channel);
+		made->base[channel] = words;
+		words += shape.count * shape.components;
+	}
+	*thinner = made;
+	return CAU_OK;
+}
+
+static void keep(cau_frame_thinner *thinner)
+{
+	const cau_frame_encoder *encoder = thinner->encoder;
+	thinner->epoch = encoder->header.epoch;
+	thinner->sequence = encoder->header.sequence;
+	thinner->tools = encoder->tools;
+	for (int channel = 0; channel < ARRAY_COUNT; channel++) {
+		array_shape shape = cau_array_shape_of(&encoder->def, channel);
+		memcpy(thinner->base[channel], encoder->held[channel],
+		       sizeof(uint32_t) * shape.count * shape.components);
+	}
+}
+
+cau_status cau_frame_thin(cau_frame_thinner *thinner, void *bytes, size_t capacity,
+                          size_t *byte_count, cau_error *error)
+{
+	const cau_frame_encoder *encoder = thinner->encoder;
+	uint64_t sequence = encoder->header.sequence;
+	*byte_count = 0;
+	cau_status status = cau_encoder_check_capacity(encoder, capacity, error);
+	if (status || sequence == 0 || sequence % CAU_FRAME_THINNING)
+		return status;
+	bool follows = thinner->epoch == encoder->header.epoch &&
+	               thinner->sequence + CAU_FRAME_THINNING == sequence;
+	if (follows) {
+		bool names =
+			cau_tool_sets_differ(&thinner->tools, encoder->tools.tools, encoder->tools.count);
+		*byte_count =
+			cau_encoder_write_delta(encoder, thinner->base, thinner->sequence, names, bytes);
+	}
+	keep(thinner);
+	return CAU_OK;
+}
