@@ -136,6 +136,8 @@ void cau_hosted_count(cau_hosted *h, cau_hosted_counts *counts)
 {
 	pthread_mutex_lock(&h->mutex);
 	*counts = h->counts;
+	for (int i = 0; i < CAU_STREAM_PROFILES_MAX; i++)
+		counts->half_rate += h->streams[i].half.subscribers;
 	pthread_mutex_unlock(&h->mutex);
 }
 

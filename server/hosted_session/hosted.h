@@ -95,11 +95,10 @@ typedef struct cau_subscriber {
 	bool topology_sent, has_key, wants_key, acknowledges;
 	uint64_t epoch, sequence; // of the last frame sent
 	double key_asked_s;       // a key frame at most once a second
-	double key_pause_s;       // twice that for one that keeps falling behind
 	double waiting_since_s;   // frames are there and it takes none; 0: not so
-	double fallen_s;
-	int32_t falls;
-	size_t in_flight; // bytes sent and not acknowledged
+	bool half;                // it keeps falling behind: every second frame (half_rate.c)
+	int32_t falls, steady;    // falls of late; frames taken since the last one
+	size_t in_flight;         // bytes sent and not acknowledged
 	struct {
 		uint64_t sequence;
 		size_t bytes;
@@ -127,5 +126,6 @@ typedef struct cau_hosted_counts {
 	uint64_t steps, frames, frame_bytes, key_frames, commands, motions, refused, watchdog_cuts;
 	double step_seconds; // spent in steps
 	double realtime_factor;
+	int32_t half_rate; // subscribers at half rate
 } cau_hosted_counts;
 void cau_hosted_count(cau_hosted *hosted, cau_hosted_counts *counts);

@@ -42,18 +42,28 @@ typedef struct cau_ring_frame {
 	cau_buffer *buffer;
 } cau_ring_frame;
 
+// The stream for those that keep falling behind: every second frame of the same chain.
+typedef struct cau_half_lane {
+	int32_t subscribers;              // mutex
+	cau_ring_frame ring[RING_FRAMES]; // mutex, by half the sequence modulo RING_FRAMES
+	void *storage;                    // worker, like what follows; NULL until somebody needs it
+	cau_frame_thinner *thinner;
+} cau_half_lane;
+
 typedef struct cau_stream {
 	bool used;                        // slot taken; changed by the worker under the mutex
 	int32_t subscribers;              // mutex
 	bool key_wanted;                  // mutex
 	uint64_t epoch;                   // mutex: of what is in the ring
 	uint64_t newest;                  // mutex: sequence
+	double newest_s;                  // mutex: when it came
 	cau_ring_frame ring[RING_FRAMES]; // mutex, by sequence modulo RING_FRAMES
 	cau_ring_frame key;               // mutex
-	cau_buffer *topology;             // mutex
-	cau_stream_def def;               // worker
-	double rate_hz, next_s;           // worker
-	void *storage, *scratch;          // worker
+	cau_half_lane half;
+	cau_buffer *topology;    // mutex
+	cau_stream_def def;      // worker
+	double rate_hz, next_s;  // worker
+	void *storage, *scratch; // worker
 	size_t scratch_bytes;
 	cau_frame_encoder *encoder; // worker
 } cau_stream;
@@ -215,6 +225,18 @@ void cau_streams_publish(cau_hosted *h, double now_s); // frames that are due
 void cau_streams_restart(cau_hosted *h);               // a new epoch
 void cau_streams_destroy(cau_hosted *h);
 void cau_apply_join(cau_hosted *h, cau_order *order);
+cau_buffer *cau_stream_take(const cau_stream *stream, size_t bytes); // copies them from the scratch
+
+// ---- half_rate.c
+void cau_half_publish(cau_hosted *h, cau_stream *stream); // after each frame of the stream
+void cau_half_clear(cau_stream *stream);                  // the rest under the mutex
+void cau_half_finish(cau_stream *stream);
+// The delta that the subscriber needs next, which may be gone; NULL: it waits for the one after.
+const cau_ring_frame *cau_half_choose(const cau_stream *stream, const cau_subscriber *sub,
+                                      double now_s);
+void cau_half_fallen(cau_hosted *h, cau_stream *stream, cau_subscriber *sub);
+void cau_half_steady(cau_hosted *h, cau_stream *stream, cau_subscriber *sub);
+void cau_half_leave(cau_stream *stream, const cau_subscriber *sub);
 
 // ---- record.c: the store
 cau_store_batch *cau_record_batch(cau_hosted *h); // of this slice; NULL if memory ran out

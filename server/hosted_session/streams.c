@@ -24,6 +24,7 @@ static void clear_ring(cau_stream *stream)
 	for (int i = 0; i < RING_FRAMES; i++)
 		cau_buffer_release(stream->ring[i].buffer);
 	cau_buffer_release(stream->key.buffer);
+	cau_half_clear(stream);
 	memset(stream->ring, 0, sizeof stream->ring);
 	stream->key = (cau_ring_frame){0};
 	stream->newest = 0;
@@ -48,6 +49,7 @@ void cau_streams_restart(cau_hosted *h)
 static void close_stream(cau_stream *stream)
 {
 	clear_ring(stream);
+	cau_half_finish(stream);
 	cau_buffer_release(stream->topology);
 	free(stream->storage);
 	free(stream->scratch);
@@ -115,8 +117,7 @@ static cau_stream_statistics fill_statistics(const cau_hosted *h, const cau_stat
 	return to;
 }
 
-// A buffer of just the encoded bytes.
-static cau_buffer *trimmed(const cau_stream *stream, size_t bytes)
+cau_buffer *cau_stream_take(const cau_stream *stream, size_t bytes)
 {
 	cau_buffer *buffer = cau_buffer_create(bytes, true);
 	if (buffer)
@@ -131,6 +132,7 @@ static void put_delta(cau_hosted *h, cau_stream *stream, cau_buffer *buffer, uin
 	cau_buffer_release(slot->buffer);
 	*slot = (cau_ring_frame){sequence, buffer};
 	stream->newest = sequence;
+	stream->newest_s = cau_monotonic_s();
 	h->counts.frames++;
 	h->counts.frame_bytes += buffer->byte_count;
 	pthread_mutex_unlock(&h->mutex);
@@ -142,6 +144,7 @@ static void put_key(cau_hosted *h, cau_stream *stream, cau_buffer *buffer, uint6
 	cau_buffer_release(stream->key.buffer);
 	stream->key = (cau_ring_frame){sequence, buffer};
 	stream->newest = sequence;
+	stream->newest_s = cau_monotonic_s();
 	stream->key_wanted = false;
 	h->counts.key_frames++;
 	pthread_mutex_unlock(&h->mutex);
@@ -167,7 +170,7 @@ static bool publish_frame(cau_hosted *h, cau_stream *stream, const cau_stream_sa
 		encoding_failed(h, stream, &error);
 		return false;
 	}
-	cau_buffer *buffer = trimmed(stream, bytes);
+	cau_buffer *buffer = cau_stream_take(stream, bytes);
 	uint64_t sequence = cau_frame_encoder_sequence(stream->encoder);
 	if (!buffer)
 		return false;
@@ -187,7 +190,7 @@ static void publish_key(cau_hosted *h, cau_stream *stream)
 		encoding_failed(h, stream, &error);
 		return;
 	}
-	cau_buffer *buffer = trimmed(stream, bytes);
+	cau_buffer *buffer = cau_stream_take(stream, bytes);
 	if (buffer)
 		put_key(h, stream, buffer, cau_frame_encoder_sequence(stream->encoder));
 }
@@ -245,6 +248,8 @@ static bool serve_stream(cau_hosted *h, cau_stream *stream, published *p, bool *
 		*filled = true;
 		stream->next_s = fmax(stream->next_s + 1 / stream->rate_hz, now_s);
 		due = publish_frame(h, stream, &p->sample);
+		if (due)
+			cau_half_publish(h, stream);
 	}
 	if (key)
 		publish_key(h, stream);

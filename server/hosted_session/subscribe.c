@@ -2,10 +2,7 @@
 // What a subscriber gets next; on the transport's thread.
 #include "hosted_session/internal.h"
 
-// ---------------------------------------------------------------------
-enum { FALLS_TOLERATED = 3 };
-#define KEY_PAUSE_S 1.0
-#define FALLS_WITHIN_S 10.0
+#define KEY_PAUSE_S 1.0 // between key frames of one client
 
 static cau_buffer *take_frame(cau_subscriber *sub, const cau_stream *stream,
                               const cau_ring_frame *frame)
@@ -20,15 +17,6 @@ static cau_buffer *take_frame(cau_subscriber *sub, const cau_stream *stream,
 	return cau_buffer_share(frame->buffer);
 }
 
-static void fall(cau_subscriber *sub, double now_s)
-{
-	if (now_s - sub->fallen_s > FALLS_WITHIN_S)
-		sub->falls = 0;
-	sub->fallen_s = now_s;
-	sub->wants_key = true;
-	sub->key_pause_s = ++sub->falls > FALLS_TOLERATED ? 2 * KEY_PAUSE_S : KEY_PAUSE_S;
-}
-
 // The key frame, if the deltas after it are still there; otherwise a new one is ordered.
 static cau_buffer *next_key(cau_stream *stream, cau_subscriber *sub, double now_s, bool *wake)
 {
@@ -37,24 +25,30 @@ static cau_buffer *next_key(cau_stream *stream, cau_subscriber *sub, double now_
 		!sub->has_key || sub->epoch != stream->epoch || stream->key.sequence > sub->sequence;
 	if (whole && newer)
 		return take_frame(sub, stream, &stream->key);
-	if (now_s - sub->key_asked_s >= sub->key_pause_s) {
+	if (now_s - sub->key_asked_s >= KEY_PAUSE_S) {
 		sub->key_asked_s = now_s;
 		stream->key_wanted = *wake = true;
 	}
 	return NULL;
 }
 
-static cau_buffer *next_delta(cau_stream *stream, cau_subscriber *sub, double now_s, size_t bound)
+static cau_buffer *next_delta(cau_hosted *h, cau_stream *stream, cau_subscriber *sub, double now_s,
+                              size_t bound)
 {
-	const cau_ring_frame *frame = &stream->ring[(sub->sequence + 1) % RING_FRAMES];
 	if (sub->sequence >= stream->newest)
 		return NULL;
-	if (frame->sequence != sub->sequence + 1 || !frame->buffer) {
-		fall(sub, now_s);
+	const cau_ring_frame *frame = cau_half_choose(stream, sub, now_s);
+	if (!frame)
+		return NULL;
+	uint64_t over = frame->sequence - sub->sequence;
+	if (!frame->buffer || over == 0 || over > CAU_FRAME_THINNING) { // it has left the ring
+		sub->wants_key = true;
+		cau_half_fallen(h, stream, sub);
 		return NULL;
 	}
 	if (sub->acknowledges && sub->in_flight > bound)
 		return NULL;
+	cau_half_steady(h, stream, sub);
 	return take_frame(sub, stream, frame);
 }
 
@@ -72,7 +66,7 @@ cau_buffer *cau_hosted_next_frame(cau_hosted *h, cau_subscriber *sub, double now
 		if (sub->epoch != stream->epoch)
 			sub->wants_key = true;
 		if (!sub->wants_key)
-			buffer = next_delta(stream, sub, now_s, bound);
+			buffer = next_delta(h, stream, sub, now_s, bound);
 		if (sub->wants_key && !(sub->acknowledges && sub->in_flight > bound))
 			buffer = next_key(stream, sub, now_s, &wake);
 	}
@@ -108,5 +102,6 @@ void cau_hosted_leave(cau_hosted *h, const cau_subscriber *sub)
 {
 	pthread_mutex_lock(&h->mutex);
 	h->streams[sub->stream].subscribers--;
+	cau_half_leave(&h->streams[sub->stream], sub);
 	pthread_mutex_unlock(&h->mutex);
 }

@@ -150,6 +150,7 @@ static void write_session_metrics(void *user, cau_hosted *hosted)
 		{"session_refused_total", (double)c.refused},
 		{"session_watchdog_cuts_total", (double)c.watchdog_cuts},
 		{"session_subscribers", (double)s.subscriber_count},
+		{"session_subscribers_half_rate", c.half_rate},
 		{"session_paused", s.state == CAU_SESSION_PAUSED},
 		{"session_faulted", s.state == CAU_SESSION_FAULTED},
 	};

@@ -1,0 +1,118 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// A subscriber that keeps falling behind gets every second frame. All such of a profile share one
+// delta over two frames; it belongs to the same chain, so they come and go without a key frame.
+#include <stdlib.h>
+
+#include "hosted_session/internal.h"
+
+enum {
+	FALLS_TOLERATED = 3,
+	STEADY_FRAMES = 600, // without a fall: the falls before are forgotten
+};
+#define ALONE_S 0.25 // a single last frame is sent after this, since none may follow it
+
+static size_t slot_of(uint64_t sequence)
+{
+	return sequence / CAU_FRAME_THINNING % RING_FRAMES;
+}
+
+static bool is_wanted(cau_hosted *h, const cau_stream *stream)
+{
+	pthread_mutex_lock(&h->mutex);
+	bool wanted = stream->half.subscribers > 0;
+	pthread_mutex_unlock(&h->mutex);
+	return wanted;
+}
+
+static cau_status open_lane(cau_stream *stream, cau_error *error)
+{
+	cau_half_lane *lane = &stream->half;
+	size_t bytes = cau_frame_thinner_bytes(&stream->def);
+	lane->storage = malloc(bytes);
+	if (!lane->storage)
+		return cau_fail(error, CAU_NO_MEMORY, NULL, "no memory for a stream at half rate");
+	return cau_frame_thinner_init(lane->storage, bytes, stream->encoder, &lane->thinner, error);
+}
+
+void cau_half_publish(cau_hosted *h, cau_stream *stream)
+{
+	cau_error error = {0};
+	size_t bytes = 0;
+	if (!is_wanted(h, stream))
+		return;
+	cau_status status = stream->half.storage ? CAU_OK : open_lane(stream, &error);
+	if (!status)
+		status = cau_frame_thin(stream->half.thinner, stream->scratch, stream->scratch_bytes,
+		                        &bytes, &error);
+	if (status) // they go on with single frames
+		cau_log(CAU_LOG_ERROR, h->id, "half_rate_failed", "reason=\"%s\"", error.reason);
+	cau_buffer *buffer = bytes ? cau_stream_take(stream, bytes) : NULL;
+	if (!buffer)
+		return;
+	uint64_t sequence = cau_frame_encoder_sequence(stream->encoder);
+	pthread_mutex_lock(&h->mutex);
+	cau_ring_frame *slot = &stream->half.ring[slot_of(sequence)];
+	cau_buffer_release(slot->buffer);
+	*slot = (cau_ring_frame){sequence, buffer};
+	pthread_mutex_unlock(&h->mutex);
+}
+
+void cau_half_clear(cau_stream *stream)
+{
+	for (int i = 0; i < RING_FRAMES; i++) {
+		cau_buffer_release(stream->half.ring[i].buffer);
+		stream->half.ring[i] = (cau_ring_frame){0};
+	}
+}
+
+void cau_half_finish(cau_stream *stream)
+{
+	cau_half_clear(stream);
+	free(stream->half.storage);
+}
+
+const cau_ring_frame *cau_half_choose(const cau_stream *stream, const cau_subscriber *sub,
+                                      double now_s)
+{
+	const cau_ring_frame *single = &stream->ring[(sub->sequence + 1) % RING_FRAMES];
+	uint64_t next = sub->sequence + CAU_FRAME_THINNING;
+	if (!sub->half || sub->sequence % CAU_FRAME_THINNING)
+		return single;
+	const cau_ring_frame *twice = &stream->half.ring[slot_of(next)];
+	if (twice->buffer && twice->sequence == next)
+		return twice;
+	bool comes = stream->newest < next && now_s - stream->newest_s < ALONE_S;
+	return comes ? NULL : single;
+}
+
+static void change(cau_hosted *h, cau_stream *stream, cau_subscriber *sub, bool half)
+{
+	sub->half = half;
+	stream->half.subscribers += half ? 1 : -1;
+	cau_log(CAU_LOG_INFO, h->id, half ? "half_rate" : "full_rate", "profile=%u subscribers=%d",
+	        stream->def.profile, stream->half.subscribers);
+}
+
+void cau_half_fallen(cau_hosted *h, cau_stream *stream, cau_subscriber *sub)
+{
+	sub->steady = 0;
+	if (!sub->half && ++sub->falls > FALLS_TOLERATED)
+		change(h, stream, sub, true);
+}
+
+void cau_half_steady(cau_hosted *h, cau_stream *stream, cau_subscriber *sub)
+{
+	if (++sub->steady < STEADY_FRAMES)
+		return;
+	sub->steady = 0;
+	sub->falls = 0;
+	if (!sub->half)
+		return;
+	change(h, stream, sub, false);
+	sub->falls = FALLS_TOLERATED; // on trial
+}
+
+void cau_half_leave(cau_stream *stream, const cau_subscriber *sub)
+{
+	stream->half.subscribers -= sub->half;
+}

@@ -1,0 +1,324 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// What subscribers get of a stream whose frames are put there by hand, at times of the test's own.
+#include <setjmp.h>
+#include <stdarg.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include <cmocka.h>
+
+#include "hosted_session/internal.h"
+
+enum { VERTICES = 60, FACES = 64, BOUND = 4000, TOLERATED = 3, STEADY = 600 };
+
+typedef struct scene {
+	cau_config config;
+	cau_surroundings around;
+	cau_hosted *h;
+	cau_stream *stream;
+	double position[3 * VERTICES], now_s;
+	uint32_t mask[(FACES + 31) / 32];
+	uint64_t tick;
+	cau_frame_decoder *decoder;
+} scene;
+
+// ---- a stream without a session -----------------------------------------------------------------
+static void open_stream(scene *s)
+{
+	cau_stream *stream = s->stream = &s->h->streams[0];
+	cau_stream_def def = cau_default_stream_def();
+	def.vertex_count = VERTICES;
+	def.face_count = FACES;
+	def.channels = CAU_CHANNEL_POSITIONS | CAU_CHANNEL_MASK;
+	*stream = (cau_stream){.used = true, .epoch = 7, .rate_hz = 60, .def = def, .subscribers = 1};
+	size_t bytes = cau_frame_encoder_bytes(&def);
+	stream->scratch_bytes = cau_frame_bytes_max(&def);
+	stream->storage = malloc(bytes);
+	stream->scratch = malloc(stream->scratch_bytes);
+	stream->topology = cau_buffer_create(1, true);
+	assert_int_equal(
+		cau_frame_encoder_init(stream->storage, bytes, &def, 7, &stream->encoder, NULL), CAU_OK);
+	bytes = cau_frame_decoder_bytes(&def);
+	assert_int_equal(cau_frame_decoder_init(malloc(bytes), bytes, &def, &s->decoder, NULL), CAU_OK);
+}
+
+static void scene_init(scene *s)
+{
+	*s = (scene){.now_s = 100};
+	cau_config_default(&s->config);
+	s->config.subscriber_bytes = BOUND;
+	s->around.config = &s->config;
+	s->h = calloc(1, sizeof *s->h);
+	pthread_mutex_init(&s->h->mutex, NULL);
+	s->h->around = &s->around;
+	assert_int_equal(cau_worker_pool_create(&s->around.pool, 1, 4, 0, NULL), CAU_OK);
+	snprintf(s->h->id, sizeof s->h->id, "d1-test");
+	open_stream(s);
+}
+
+static void scene_finish(scene *s)
+{
+	cau_worker_pool_destroy(s->around.pool);
+	cau_streams_destroy(s->h);
+	pthread_mutex_destroy(&s->h->mutex);
+	free(s->decoder);
+	free(s->h);
+}
+
+static void put(cau_ring_frame *slot, uint64_t sequence, cau_buffer *buffer)
+{
+	cau_buffer_release(slot->buffer);
+	*slot = (cau_ring_frame){sequence, buffer};
+}
+
+// The next frame, as streams.c publishes it, and a key frame if one is wanted.
+static void publish(scene *s)
+{
+	cau_stream *stream = s->stream;
+	size_t bytes;
+	for (int i = 0; i < 3 * VERTICES; i++)
+		s->position[i] = 0.001 * (double)((s->tick * 7 + (uint64_t)i * 13) % 101);
+	cau_stream_sample sample = {
+		.tick = ++s->tick, .position = s->position, .face_mask = s->mask, .time_s = 0};
+	assert_int_equal(cau_frame_encode(stream->encoder, &sample, stream->scratch,
+	                                  stream->scratch_bytes, &bytes, NULL),
+	                 CAU_OK);
+	uint64_t sequence = cau_frame_encoder_sequence(stream->encoder);
+	cau_buffer *buffer = cau_stream_take(stream, bytes);
+	put(sequence == 1 ? &stream->key : &stream->ring[sequence % RING_FRAMES], sequence, buffer);
+	stream->newest = sequence;
+	stream->newest_s = s->now_s;
+	cau_half_publish(s->h, stream);
+	if (!stream->key_wanted)
+		return;
+	stream->key_wanted = false;
+	assert_int_equal(
+		cau_frame_encode_key(stream->encoder, stream->scratch, stream->scratch_bytes, &bytes, NULL),
+		CAU_OK);
+	put(&stream->key, sequence, cau_stream_take(stream, bytes));
+}
+
+// Takes what the subscriber gets now; the frame's header, sequence 0 if there is none.
+static cau_frame_header take(scene *s, cau_subscriber *sub)
+{
+	cau_frame_header header = {0};
+	cau_error error = {0};
+	cau_buffer *frame = cau_hosted_next_frame(s->h, sub, s->now_s);
+	if (!frame)
+		return header;
+	if (frame != s->stream->topology) {
+		assert_int_equal(
+			cau_frame_header_read(cau_buffer_bytes(frame), frame->byte_count, &header, NULL),
+			CAU_OK);
+		if (cau_frame_decode(s->decoder, cau_buffer_bytes(frame), frame->byte_count, &error))
+			fail_msg("sequence %llu: %s", (unsigned long long)header.sequence, error.reason);
+	}
+	cau_buffer_release(frame);
+	return header;
+}
+
+// The decoder, which took every frame that came, holds the newest state.
+static void assert_newest(const scene *s)
+{
+	const cau_stream_state *state = cau_frame_decoder_state(s->decoder);
+	double held[3 * VERTICES];
+	cau_frame_decoder_position(s->decoder, held);
+	assert_int_equal(state->tick, s->tick);
+	for (int i = 0; i < 3 * VERTICES; i++)
+		assert_true(held[i] > s->position[i] - 2.6e-5 && held[i] < s->position[i] + 2.6e-5);
+}
+
+static cau_subscriber join(scene *s)
+{
+	cau_subscriber sub = {.key_asked_s = -1};
+	publish(s);
+	take(s, &sub); // the topology
+	assert_int_equal(take(s, &sub).kind, CAU_FRAME_KEY);
+	return sub;
+}
+
+// Takes nothing until the next delta has left the ring, then goes on with a key frame.
+static void fall(scene *s, cau_subscriber *sub)
+{
+	for (int i = 0; i < 3 * RING_FRAMES; i++)
+		publish(s);
+	assert_int_equal(take(s, sub).sequence, 0);
+	assert_true(sub->wants_key);
+	s->now_s += 2; // key frames come once a second at most
+	take(s, sub);
+	publish(s);
+	assert_int_equal(take(s, sub).kind, CAU_FRAME_KEY);
+}
+
+static cau_subscriber slowed(scene *s)
+{
+	cau_subscriber sub = join(s);
+	for (int i = 0; i <= TOLERATED; i++) {
+		assert_false(sub.half);
+		fall(s, &sub);
+	}
+	assert_true(sub.half);
+	return sub;
+}
+
+// ---- tests --------------------------------------------------------------------------------------
+static void test_every_frame_in_order(void **unused)
+{
+	(void)unused;
+	scene s;
+	scene_init(&s);
+	cau_subscriber sub = join(&s);
+	for (uint64_t i = 2; i < 50; i++) {
+		publish(&s);
+		cau_frame_header header = take(&s, &sub);
+		assert_true(header.sequence == i && header.base_sequence == i - 1);
+		assert_int_equal(take(&s, &sub).sequence, 0);
+	}
+	assert_newest(&s);
+	scene_finish(&s);
+}
+
+static void test_beyond_the_bound_nothing_is_sent_until_it_acknowledges(void **unused)
+{
+	(void)unused;
+	scene s;
+	scene_init(&s);
+	cau_subscriber sub = join(&s);
+	cau_hosted_acknowledge(s.h, &sub, 7, 1);
+	uint64_t last = 1;
+	for (int i = 0; i < 4 * RING_FRAMES; i++) {
+		publish(&s);
+		uint64_t sequence = take(&s, &sub).sequence;
+		last = sequence ? sequence : last;
+	}
+	assert_true(last < s.stream->newest && sub.in_flight > BOUND);
+	assert_true(sub.in_flight < BOUND + s.stream->scratch_bytes);
+	cau_hosted_acknowledge(s.h, &sub, 7, last);
+	take(&s, &sub);
+	publish(&s);
+	assert_int_equal(take(&s, &sub).kind, CAU_FRAME_KEY);
+	assert_newest(&s);
+	scene_finish(&s);
+}
+
+static void test_one_that_keeps_falling_goes_to_half_rate(void **unused)
+{
+	(void)unused;
+	scene s;
+	scene_init(&s);
+	cau_subscriber sub = slowed(&s);
+	int32_t twice = 0, once = 0;
+	for (int i = 0; i < 40; i++) {
+		publish(&s);
+		cau_frame_header header = take(&s, &sub);
+		twice += header.sequence && header.sequence == header.base_sequence + 2;
+		once += header.sequence && header.sequence == header.base_sequence + 1;
+	}
+	assert_true(twice >= 18 && once <= 3); // single ones lead to the first thin frame
+	if (s.stream->newest % 2) {
+		publish(&s);
+		take(&s, &sub);
+	}
+	assert_newest(&s);
+	scene_finish(&s);
+}
+
+static void test_others_keep_the_full_rate(void **unused)
+{
+	(void)unused;
+	scene s;
+	scene_init(&s);
+	cau_subscriber slow = slowed(&s);
+	cau_frame_decoder *of_slow = s.decoder;
+	size_t bytes = cau_frame_decoder_bytes(&s.stream->def);
+	assert_int_equal(cau_frame_decoder_init(malloc(bytes), bytes, &s.stream->def, &s.decoder, NULL),
+	                 CAU_OK);
+	cau_subscriber quick = {.key_asked_s = -1};
+	take(&s, &quick);
+	if (!take(&s, &quick).sequence) {
+		publish(&s);
+		take(&s, &quick);
+	}
+	for (int i = 0; i < 20; i++) {
+		publish(&s);
+		assert_int_equal(take(&s, &quick).base_sequence, s.stream->newest - 1);
+	}
+	assert_newest(&s);
+	free(of_slow);
+	cau_hosted_counts counts;
+	cau_hosted_count(s.h, &counts);
+	assert_int_equal(counts.half_rate, 1);
+	cau_hosted_leave(s.h, &slow);
+	cau_hosted_count(s.h, &counts);
+	assert_int_equal(counts.half_rate, 0);
+	scene_finish(&s);
+}
+
+static void test_a_last_single_frame_is_not_kept_back(void **unused)
+{
+	(void)unused;
+	scene s;
+	scene_init(&s);
+	cau_subscriber sub = slowed(&s);
+	do {
+		publish(&s);
+		take(&s, &sub);
+	} while (s.stream->newest % 2 || s.stream->newest != sub.sequence);
+	publish(&s); // the last one, say of a pause
+	assert_int_equal(take(&s, &sub).sequence, 0);
+	s.now_s += 0.3;
+	assert_int_equal(take(&s, &sub).sequence, s.stream->newest);
+	assert_newest(&s);
+	scene_finish(&s);
+}
+
+static void test_one_that_keeps_up_comes_back_on_trial(void **unused)
+{
+	(void)unused;
+	scene s;
+	scene_init(&s);
+	cau_subscriber sub = slowed(&s);
+	for (int i = 0; i < 2 * STEADY + 4; i++) {
+		publish(&s);
+		take(&s, &sub);
+	}
+	assert_false(sub.half);
+	publish(&s);
+	while (take(&s, &sub).sequence)
+		;
+	assert_newest(&s);
+	fall(&s, &sub); // once is enough now
+	assert_true(sub.half);
+	scene_finish(&s);
+}
+
+static void test_falls_are_forgotten_in_time(void **unused)
+{
+	(void)unused;
+	scene s;
+	scene_init(&s);
+	cau_subscriber sub = join(&s);
+	for (int i = 0; i < 3 * TOLERATED; i++) {
+		fall(&s, &sub);
+		for (int k = 0; k < STEADY; k++) {
+			publish(&s);
+			take(&s, &sub);
+		}
+	}
+	assert_false(sub.half);
+	scene_finish(&s);
+}
+
+int main(void)
+{
+	const struct CMUnitTest tests[] = {
+		cmocka_unit_test(test_every_frame_in_order),
+		cmocka_unit_test(test_beyond_the_bound_nothing_is_sent_until_it_acknowledges),
+		cmocka_unit_test(test_one_that_keeps_falling_goes_to_half_rate),
+		cmocka_unit_test(test_others_keep_the_full_rate),
+		cmocka_unit_test(test_a_last_single_frame_is_not_kept_back),
+		cmocka_unit_test(test_one_that_keeps_up_comes_back_on_trial),
+		cmocka_unit_test(test_falls_are_forgotten_in_time),
+	};
+	return cmocka_run_group_tests(tests, NULL, NULL);
+}
