@@ -129,8 +129,10 @@ static cau_status read_call(rpc_document *document, cau_rpc_message *message, ca
 		refuse(fault, CAU_RPC_NO_MEMORY, "", "no memory to read the request");
 		return CAU_NO_MEMORY;
 	}
+	if (cJSON_IsArray(document->params))
+		return refuse(fault, CAU_RPC_BAD_VALUE, "params", "params go by name");
 	if (!cJSON_IsObject(document->params))
-		return refuse(fault, CAU_RPC_BAD_VALUE, "params", "not an object");
+		return refuse(fault, CAU_RPC_INVALID_REQUEST, "params", "neither object nor array");
 	if (cau_method_describe(message->method)->command < 0)
 		return CAU_OK;
 	return take_command_apart(document, method->valuestring, fault);

@@ -129,6 +129,9 @@ void cau_hosted_summary(cau_hosted *h, cau_wire_session_summary *summary)
 {
 	pthread_mutex_lock(&h->mutex);
 	*summary = h->summary;
+	summary->subscriber_count = 0; // changes without a slice
+	for (int i = 0; i < CAU_STREAM_PROFILES_MAX; i++)
+		summary->subscriber_count += h->streams[i].subscribers;
 	pthread_mutex_unlock(&h->mutex);
 }
 

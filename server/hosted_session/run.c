@@ -47,8 +47,6 @@ void cau_hosted_publish_summary(cau_hosted *h)
 	memcpy(now.scene, h->scene->name, sizeof now.scene);
 	snprintf(now.fault, sizeof now.fault, "%.319s", h->fault);
 	pthread_mutex_lock(&h->mutex);
-	for (int32_t i = 0; i < CAU_STREAM_PROFILES_MAX; i++)
-		now.subscriber_count += h->streams[i].subscribers;
 	h->summary = now;
 	h->counts.realtime_factor = h->realtime_factor;
 	pthread_mutex_unlock(&h->mutex);

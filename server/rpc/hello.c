@@ -26,6 +26,8 @@ static void fill_limits(const cau_config *config, cau_wire_limits *limits)
 	                            .sessions_max = config->max_sessions,
 	                            .subscribers_max = config->max_connections,
 	                            .profiles_max = CAU_STREAM_PROFILES_MAX,
+	                            .has_streams_max = true,
+	                            .streams_max = STREAMS_OF_PEER,
 	                            .tools_max = CAU_MAX_TOOLS,
 	                            .requests_per_s_max = config->max_requests_per_s,
 	                            .motions_per_s_max = config->max_requests_per_s,

@@ -62,6 +62,7 @@ typedef struct cau_post {
 	struct cau_post *next;
 	enum { POST_ANSWER, POST_NOTICE } kind;
 	uint64_t connection;   // ANSWER
+	cau_rpc_id id;         // ANSWER
 	cau_audience audience; // NOTICE
 	cau_buffer *text;
 	cau_buffer *file; // ANSWER, may be NULL
@@ -122,6 +123,8 @@ void cau_call_submit(const cau_call *call, cau_order *order);
 // ---- streams
 cau_buffer *cau_peer_next_frame(cau_peer *peer);
 bool cau_peer_has_frames(const cau_peer *peer);
+// Whether it may join this session: it has a stream of it, which goes, or fewer than it may.
+bool cau_peer_has_room(cau_peer *peer, const cau_hosted *hosted);
 void cau_peer_join(cau_peer *peer, cau_hosted *hosted, int32_t stream); // takes the reference
 void cau_peer_watch_slowness(cau_peer *peer, double now_s);
 

@@ -85,6 +85,7 @@ void cau_service_answer(void *user, const cau_reply *reply, const cau_outcome *o
 		return;
 	post->kind = POST_ANSWER;
 	post->connection = reply->connection;
+	post->id = reply->id;
 	post->text = outcome->error ? fault_text(&reply->id, outcome)
 	                            : with_id(outcome->text, outcome->text_bytes, &reply->id);
 	if (!outcome->error && outcome->file)
@@ -129,9 +130,26 @@ static void send_file(cau_peer *peer, cau_post *post)
 	cau_connection_close(peer->connection, CAU_CLOSE_RATE, "too many exports at once");
 }
 
+// A join that the connection has no room for is refused after all.
+static void refuse_join(cau_peer *peer, cau_post *post)
+{
+	cau_error error = {0};
+	cau_rpc_fault fault;
+	cau_fail(&error, CAU_LIMIT, "", "the connection has %d streams: leave one, or open another",
+	         STREAMS_OF_PEER);
+	cau_rpc_fault_of_error(&fault, &error);
+	cau_peer_fault(peer, &post->id, &fault);
+	cau_hosted_leave(post->joined, &(cau_subscriber){.stream = post->stream});
+	cau_hosted_release(post->joined);
+}
+
 static void deliver_answer(cau_service *service, cau_post *post)
 {
 	cau_connection *connection = cau_network_find(service->network, post->connection);
+	if (post->joined && connection && !cau_peer_has_room(cau_peer_of(connection), post->joined)) {
+		refuse_join(cau_peer_of(connection), post);
+		return;
+	}
 	if (connection && post->text) {
 		cau_connection_send(connection, post->text);
 		post->text = NULL;

@@ -42,18 +42,18 @@ void cau_call_join(cau_call *call)
 	cau_call_submit(call, order);
 }
 
+bool cau_peer_has_room(cau_peer *peer, const cau_hosted *hosted)
+{
+	return find(peer, hosted) || find(peer, NULL);
+}
+
 void cau_peer_join(cau_peer *peer, cau_hosted *hosted, int32_t stream)
 {
 	cau_subscription *slot = find(peer, hosted);
 	if (slot)
 		close_subscription(slot);
-	slot = find(peer, NULL);
-	if (!slot) {
-		cau_hosted_leave(hosted, &(cau_subscriber){.stream = stream});
-		cau_hosted_release(hosted);
-		cau_connection_close(peer->connection, CAU_CLOSE_RATE, "too many streams of a connection");
-		return;
-	}
+	else
+		slot = find(peer, NULL); // there is room
 	*slot = (cau_subscription){hosted, {.stream = stream, .key_asked_s = -INFINITY}};
 	cau_connection_want_frame(peer->connection);
 }

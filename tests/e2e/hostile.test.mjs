@@ -69,6 +69,8 @@ for (const [what, text] of [
 	['an id of null', list('{}', 'null')],
 	['a fractional id', list('{}', '1.5')],
 	['an unknown member', '{"jsonrpc":"2.0","id":7,"method":"session.list","extra":1}'],
+	['params that are a number', list('5')],
+	['params that are null', list('null')],
 	['no version', '{"id":7,"method":"session.list"}'],
 ])
 	test(`not a request: ${what}`, async () => {

@@ -173,6 +173,26 @@ test('a mesh is uploaded in chunks and becomes a session, which outlives the dae
 	await next.end();
 });
 
+test('a connection joins eight streams; the ninth is refused, and leaving one makes room', async (t) => {
+	const own = await Daemon.start();
+	t.after(() => own.end());
+	const viewer = await own.connect();
+	const sessions = [];
+	for (let i = 0; i < 9; i++)
+		sessions.push(await smallSession(viewer, `stream-${i}`, { cells: [4, 4], paused: true }));
+	assert.equal(viewer.hello.limits.streams_max, 8);
+	for (const session of sessions.slice(0, 8))
+		await viewer.join(session);
+	await viewer.join(sessions[0], { rate_hz: 5 }); // again: it takes the place of the one before
+	await assert.rejects(viewer.join(sessions[8]), (error) =>
+		error.code === -32007 && /8 streams/.test(error.data.reason));
+	await viewer.call('session.leave', { session: sessions[3] });
+	await viewer.join(sessions[8]);
+	const { sessions: listed } = await viewer.call('session.list');
+	assert.deepEqual(listed.map((s) => s.subscriber_count).sort().join(''), '011111111');
+	await viewer.close();
+});
+
 test('limits are answered: sessions, names, profiles', async () => {
 	await assert.rejects(client.call('session.create', { name: 'x'.repeat(48), scene: 'fascia' }), { code: -32602 });
 	await assert.rejects(client.call('session.create', { name: 'Bad', scene: 'fascia' }), { code: -32602 });

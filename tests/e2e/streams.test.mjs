@@ -3,7 +3,8 @@
 import assert from 'node:assert/strict';
 import { after, before, test } from 'node:test';
 import { Daemon } from './wire/daemon.mjs';
-import { cutMiddle, smallSession } from './wire/scene.mjs';
+import { header } from './wire/decoder.mjs';
+import { AT_REST, cutMiddle, smallSession } from './wire/scene.mjs';
 
 let daemon;
 before(async () => {
@@ -135,4 +136,49 @@ test('after leaving no frame comes', async () => {
 	await client.call('session.pause', { session }); // an order of the session later
 	assert.equal(stream.counts.delta, delta);
 	await client.close();
+});
+
+// Falls behind by acknowledging nothing until its next delta is gone, which the other one's stream
+// of the same profile shows; four times.
+async function fallBehind(client, stream, other, seen, acknowledge) {
+	for (let i = 0; i < 4; i++) {
+		acknowledge();
+		await other.until(() => seen.sequence > stream.sequence + 17n, 'frames that it misses');
+		const { key } = stream.counts;
+		acknowledge();
+		await client.until(() => stream.counts.key > key, 'a key frame');
+	}
+}
+
+test('one that keeps falling behind gets every second frame, and holds the same state', async (t) => {
+	const own = await Daemon.start({ settings: { subscriber_bytes: 16384 } });
+	t.after(() => own.end());
+	const other = await own.connect(), client = await own.connect();
+	const session = await smallSession(other, 'half');
+	const seen = await other.join(session), stream = await client.join(session);
+	await other.call('tool.take_over', { session, tool: 'hook' });
+	let turn = 0; // motion, so that frames are not small
+	const wave = setInterval(() => other.notify('tool.move', {
+		session, tool: 'hook', position_m: [0.02 * Math.sin(turn += 0.1), 0, -0.002], rotation: AT_REST,
+	}), 16);
+	t.after(() => clearInterval(wave));
+	const acknowledge = () => client.notify('stream.ack', {
+		session, epoch: stream.epoch.toString(16).padStart(16, '0'), sequence: Number(stream.sequence),
+	});
+	await fallBehind(client, stream, other, seen, acknowledge);
+	await own.log(/session=d1-half event=half_rate/);
+	assert.equal(await own.metric('session_subscribers_half_rate', session), 1);
+	let twice = 0;
+	client.onFrame = (_, kind, data) => {
+		const { sequence, base } = header(data);
+		twice += kind === 'delta' && sequence === base + 2n;
+		acknowledge();
+	};
+	await client.until(() => twice > 20, 'deltas over two frames');
+	await client.call('session.pause', { session });
+	const { tick } = await client.call('session.step', { session, ticks: 3 });
+	await client.until(() => stream.tick === tick, 'the last frame');
+	await compare(client, session, stream);
+	assert.equal(stream.counts.skipped + seen.counts.skipped, 0);
+	await Promise.all([client.close(), other.close()]);
 });

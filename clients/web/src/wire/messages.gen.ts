@@ -38,6 +38,8 @@ export interface Limits {
   subscribers_max: number;
   /** different stream profiles of a session (1 to 4) */
   profiles_max: number;
+  /** streams of a connection (1 to 64) */
+  streams_max?: number;
   /** tools of a session (1 to 8) */
   tools_max: number;
   /** requests of a connection (1 to 9007199254740991 1/s) */
@@ -721,6 +723,8 @@ export interface FasciaRegion {
   ignition_c?: number;
   /** standard deviation over edges, drawn by seed (0 to 500 degC) */
   ignition_spread_c?: number;
+  /** width of bundles that part alike; 0: each edge (0 to 0.1 m) */
+  ignition_bundle_m?: number;
   /** xi of eq. 20 (0 to 1000 1/s) */
   absorption_per_s?: number;
 }
@@ -761,6 +765,8 @@ export interface FasciaLayer {
   ignition_c?: number;
   /** standard deviation over edges, drawn by seed (0 to 500 degC) */
   ignition_spread_c?: number;
+  /** width of bundles that part alike; 0: each edge (0 to 0.1 m) */
+  ignition_bundle_m?: number;
   /** xi of eq. 20 (0 to 1000 1/s) */
   absorption_per_s?: number;
   /** what differs in regions of the mesh file */
@@ -797,6 +803,8 @@ export interface MembraneRegion {
   ignition_c?: number;
   /** standard deviation over edges, drawn by seed (0 to 500 degC) */
   ignition_spread_c?: number;
+  /** width of bundles that part alike; 0: each edge (0 to 0.1 m) */
+  ignition_bundle_m?: number;
   /** xi of eq. 20 (0 to 1000 1/s) */
   absorption_per_s?: number;
 }
@@ -839,6 +847,8 @@ export interface MembraneLayer {
   ignition_c?: number;
   /** standard deviation over edges, drawn by seed (0 to 500 degC) */
   ignition_spread_c?: number;
+  /** width of bundles that part alike; 0: each edge (0 to 0.1 m) */
+  ignition_bundle_m?: number;
   /** xi of eq. 20 (0 to 1000 1/s) */
   absorption_per_s?: number;
   /** what differs in regions of the mesh file */
@@ -881,6 +891,8 @@ export interface FatRegion {
   ignition_c?: number;
   /** standard deviation over edges, drawn by seed (0 to 500 degC) */
   ignition_spread_c?: number;
+  /** width of bundles that part alike; 0: each edge (0 to 0.1 m) */
+  ignition_bundle_m?: number;
   /** xi of eq. 20 (0 to 1000 1/s) */
   absorption_per_s?: number;
 }
@@ -927,6 +939,8 @@ export interface FatLayer {
   ignition_c?: number;
   /** standard deviation over edges, drawn by seed (0 to 500 degC) */
   ignition_spread_c?: number;
+  /** width of bundles that part alike; 0: each edge (0 to 0.1 m) */
+  ignition_bundle_m?: number;
   /** xi of eq. 20 (0 to 1000 1/s) */
   absorption_per_s?: number;
   /** what differs in regions of the mesh file */
@@ -955,6 +969,8 @@ export interface LinksLayer {
   ignition_c?: number;
   /** standard deviation over edges, drawn by seed (0 to 500 degC) */
   ignition_spread_c?: number;
+  /** width of bundles that part alike; 0: each edge (0 to 0.1 m) */
+  ignition_bundle_m?: number;
   /** xi of eq. 20 (0 to 1000 1/s) */
   absorption_per_s?: number;
 }
@@ -1248,6 +1264,8 @@ export interface MaterialSetFascia {
   ignition_c?: number;
   /** standard deviation over edges, drawn by seed (0 to 500 degC) */
   ignition_spread_c?: number;
+  /** width of bundles that part alike; 0: each edge (0 to 0.1 m) */
+  ignition_bundle_m?: number;
   /** xi of eq. 20 (0 to 1000 1/s) */
   absorption_per_s?: number;
 }
@@ -1294,6 +1312,8 @@ export interface MaterialSetMembrane {
   ignition_c?: number;
   /** standard deviation over edges, drawn by seed (0 to 500 degC) */
   ignition_spread_c?: number;
+  /** width of bundles that part alike; 0: each edge (0 to 0.1 m) */
+  ignition_bundle_m?: number;
   /** xi of eq. 20 (0 to 1000 1/s) */
   absorption_per_s?: number;
 }
@@ -1346,6 +1366,8 @@ export interface MaterialSetFat {
   ignition_c?: number;
   /** standard deviation over edges, drawn by seed (0 to 500 degC) */
   ignition_spread_c?: number;
+  /** width of bundles that part alike; 0: each edge (0 to 0.1 m) */
+  ignition_bundle_m?: number;
   /** xi of eq. 20 (0 to 1000 1/s) */
   absorption_per_s?: number;
 }
@@ -1376,6 +1398,8 @@ export interface MaterialSetLinks {
   ignition_c?: number;
   /** standard deviation over edges, drawn by seed (0 to 500 degC) */
   ignition_spread_c?: number;
+  /** width of bundles that part alike; 0: each edge (0 to 0.1 m) */
+  ignition_bundle_m?: number;
   /** xi of eq. 20 (0 to 1000 1/s) */
   absorption_per_s?: number;
 }
@@ -1690,6 +1714,8 @@ export const PARAMETERS = {
       meaning: "an edge parts when its exposure exceeds this" },
     { name: 'ignition_spread_c', unit: 'degC', least: 0, most: 500, default: 0,
       meaning: "standard deviation over edges, drawn by seed" },
+    { name: 'ignition_bundle_m', unit: 'm', least: 0, most: 0.1, default: 0,
+      meaning: "width of bundles that part alike; 0: each edge" },
     { name: 'absorption_per_s', unit: '1/s', least: 0, most: 1000, default: 0.4,
       meaning: "xi of eq. 20" },
   ],
@@ -1708,6 +1734,8 @@ export const PARAMETERS = {
       meaning: "an edge parts when its exposure exceeds this" },
     { name: 'ignition_spread_c', unit: 'degC', least: 0, most: 500, default: 0,
       meaning: "standard deviation over edges, drawn by seed" },
+    { name: 'ignition_bundle_m', unit: 'm', least: 0, most: 0.1, default: 0,
+      meaning: "width of bundles that part alike; 0: each edge" },
     { name: 'absorption_per_s', unit: '1/s', least: 0, most: 1000, default: 0.4,
       meaning: "xi of eq. 20" },
   ],
@@ -1730,6 +1758,8 @@ export const PARAMETERS = {
       meaning: "an edge parts when its exposure exceeds this" },
     { name: 'ignition_spread_c', unit: 'degC', least: 0, most: 500, default: 0,
       meaning: "standard deviation over edges, drawn by seed" },
+    { name: 'ignition_bundle_m', unit: 'm', least: 0, most: 0.1, default: 0,
+      meaning: "width of bundles that part alike; 0: each edge" },
     { name: 'absorption_per_s', unit: '1/s', least: 0, most: 1000, default: 0.4,
       meaning: "xi of eq. 20" },
   ],
@@ -1746,6 +1776,8 @@ export const PARAMETERS = {
       meaning: "an edge parts when its exposure exceeds this" },
     { name: 'ignition_spread_c', unit: 'degC', least: 0, most: 500, default: 0,
       meaning: "standard deviation over edges, drawn by seed" },
+    { name: 'ignition_bundle_m', unit: 'm', least: 0, most: 0.1, default: 0,
+      meaning: "width of bundles that part alike; 0: each edge" },
     { name: 'absorption_per_s', unit: '1/s', least: 0, most: 1000, default: 0.4,
       meaning: "xi of eq. 20" },
   ],
