@@ -1,33 +1,14 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include <math.h>
 
+#include "base/symmetric.h"
+
 #define CAU_SINGLE 0
 #include "constraint/polar.h"
 
-enum { SWEEPS = 12 };
-
-// One Jacobi rotation of the symmetric s (3x3) in the plane (p, r); v collects the eigenvectors
-// (columns).
-static void rotate(double s[3][3], double v[3][3], int p, int r)
+static double dot(const double a[3], const double b[3])
 {
-	if (s[p][r] == 0)
-		return;
-	double theta = (s[r][r] - s[p][p]) / (2 * s[p][r]);
-	double t = (theta < 0 ? -1 : 1) / (fabs(theta) + sqrt(theta * theta + 1));
-	double c = 1 / sqrt(t * t + 1), n = t * c;
-	for (int k = 0; k < 3; ++k) {
-		double a = s[k][p], b = s[k][r];
-		s[k][p] = c * a - n * b;
-		s[k][r] = n * a + c * b;
-	}
-	for (int k = 0; k < 3; ++k) {
-		double a = s[p][k], b = s[r][k];
-		s[p][k] = c * a - n * b;
-		s[r][k] = n * a + c * b;
-		a = v[k][p], b = v[k][r];
-		v[k][p] = c * a - n * b;
-		v[k][r] = n * a + c * b;
-	}
+	return a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
 }
 
 static void cross(const double a[3], const double b[3], double out[3])
@@ -39,7 +20,7 @@ static void cross(const double a[3], const double b[3], double out[3])
 
 static double normalise(double a[3])
 {
-	double length = sqrt(a[0] * a[0] + a[1] * a[1] + a[2] * a[2]);
+	double length = sqrt(dot(a, a));
 	for (int i = 0; i < 3 && length > 0; ++i)
 		a[i] /= length;
 	return length;
@@ -70,20 +51,15 @@ static void quaternion_of(double r[3][3], double q[4])
 void cau_polar_robust(const double a[9], double q[4])
 {
 	// Eigenvectors of A^T A, largest first.
-	double s[3][3], v[3][3] = {{1, 0, 0}, {0, 1, 0}, {0, 0, 1}};
-	for (int i = 0; i < 3; ++i)
-		for (int j = 0; j < 3; ++j)
-			s[i][j] =
-				a[3 * i] * a[3 * j] + a[3 * i + 1] * a[3 * j + 1] + a[3 * i + 2] * a[3 * j + 2];
-	for (int sweep = 0; sweep < SWEEPS; ++sweep) {
-		rotate(s, v, 0, 1);
-		rotate(s, v, 0, 2);
-		rotate(s, v, 1, 2);
-	}
+	const double *c0 = a, *c1 = a + 3, *c2 = a + 6;
+	const double metric[6] = {dot(c0, c0), dot(c1, c1), dot(c2, c2),
+	                          dot(c0, c1), dot(c0, c2), dot(c1, c2)};
+	double value[3], v[3][3];
+	cau_symmetric_eigen3(metric, value, v);
 	int order[3] = {0, 1, 2};
 	for (int i = 0; i < 2; ++i)
 		for (int j = 0; j < 2 - i; ++j)
-			if (s[order[j]][order[j]] < s[order[j + 1]][order[j + 1]]) {
+			if (value[order[j]] < value[order[j + 1]]) {
 				int swap = order[j];
 				order[j] = order[j + 1], order[j + 1] = swap;
 			}
@@ -99,7 +75,7 @@ void cau_polar_robust(const double a[9], double q[4])
 	}
 	if (!(length[1] > 1e-6 * length[0]) || !(length[0] > 1e-6))
 		return; // two singular values vanish, or all: keep the last rotation
-	double along = left[0][0] * left[1][0] + left[0][1] * left[1][1] + left[0][2] * left[1][2];
+	double along = dot(left[0], left[1]);
 	for (int k = 0; k < 3; ++k)
 		left[1][k] -= along * left[0][k];
 	normalise(left[1]);
