@@ -112,34 +112,44 @@ static cau_status apply_to_tool(cau_session *session, const cau_command *command
 	}
 }
 
+// Where the region's material stands; the first, which is the default, if the region has none.
+static int32_t find_material(const cau_layer_def *def, bool fat, int32_t region)
+{
+	for (int32_t m = 0; m < def->material_count; m++)
+		if ((fat ? def->fat[m].region : def->sheet[m].region) == region)
+			return m;
+	return 0;
+}
+
+bool cau_layer_take_material(cau_layer_def *def, const cau_command *command)
+{
+	bool fat = def->kind == CAU_LAYER_FAT, links = def->kind == CAU_LAYER_LINKS;
+	int given = command->as.material.kind;
+	if (fat != (given == CAU_LAYER_FAT) || links != (given == CAU_LAYER_LINKS))
+		return false;
+	if (fat)
+		def->fat[find_material(def, fat, command->as.material.fat.region)] =
+			command->as.material.fat;
+	else if (links)
+		def->link = command->as.material.link;
+	else
+		def->sheet[find_material(def, fat, command->as.material.sheet.region)] =
+			command->as.material.sheet;
+	return true;
+}
+
 static cau_status set_material(cau_session *session, const cau_command *command, cau_error *error)
 {
 	int32_t index = cau_tissue_find_layer(&session->tissue, command->as.material.layer);
 	if (index < 0)
 		return cau_fail(error, CAU_NOT_FOUND, "layer", "there is no layer \"%s\"",
 		                command->as.material.layer);
-	cau_layer_def *def = &session->tissue.layer[index].def;
-	int fat = def->kind == CAU_LAYER_FAT, links = def->kind == CAU_LAYER_LINKS;
-	int given = command->as.material.kind;
-	if (fat != (given == CAU_LAYER_FAT) || links != (given == CAU_LAYER_LINKS))
+	cau_layer_def changed = session->tissue.layer[index].def;
+	if (!cau_layer_take_material(&changed, command))
 		return cau_fail(error, CAU_BAD_VALUE, "kind", "layer \"%s\" is of another kind of tissue",
-		                def->name);
+		                changed.name);
 	cau_matrix_update_stop(&session->update); // the factor in the making reads the materials
-	int32_t m = 0;
-	if (fat) {
-		while (m + 1 < def->material_count && def->fat[m].region != command->as.material.fat.region)
-			m++;
-		m = def->fat[m].region == command->as.material.fat.region ? m : 0;
-		def->fat[m] = command->as.material.fat;
-	} else if (links) {
-		def->link = command->as.material.link;
-	} else {
-		while (m + 1 < def->material_count &&
-		       def->sheet[m].region != command->as.material.sheet.region)
-			m++;
-		m = def->sheet[m].region == command->as.material.sheet.region ? m : 0;
-		def->sheet[m] = command->as.material.sheet;
-	}
+	session->tissue.layer[index].def = changed;
 	cau_elements_set_materials(&session->solver.elements, &session->solver.slots, &session->tissue,
 	                           session->dissection.alive.element, session->shrink.shrunk);
 	session->solver.conservative =

@@ -83,6 +83,8 @@ struct cau_session {
 
 // command.c: applies the queued commands that are due.
 cau_status cau_session_apply_commands(cau_session *session, cau_error *error);
+// Puts the material of a SET_MATERIAL into the layer; false: it is of another kind of tissue.
+bool cau_layer_take_material(cau_layer_def *def, const cau_command *command);
 // tool_motion.c: tools follow their drivers, within their speed limits.
 void cau_session_move_tools(cau_session *session);
 cau_status cau_session_add_tool(cau_session *session, const cau_tool_def *def, cau_error *error);

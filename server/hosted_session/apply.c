@@ -36,26 +36,6 @@ static cau_status check_driver(cau_hosted *h, const cau_order *order, int32_t *c
 	return cau_fail(error, CAU_BAD_STATE, "params.tool", "%s drives it", drive->driver.name);
 }
 
-static void keep_material(cau_hosted *h, const cau_command *command)
-{
-	for (int32_t i = 0; i < h->present->layer_count; i++) {
-		cau_layer_def *layer = &h->present->layers[i];
-		if (strcmp(layer->name, command->as.material.layer) != 0)
-			continue;
-		if (layer->kind == CAU_LAYER_LINKS)
-			layer->link = command->as.material.link;
-		for (int32_t m = 0; m < layer->material_count; m++) {
-			bool fat = layer->kind == CAU_LAYER_FAT;
-			int32_t wanted =
-				fat ? command->as.material.fat.region : command->as.material.sheet.region;
-			if (fat && (layer->fat[m].region == wanted || layer->material_count == 1))
-				layer->fat[m] = command->as.material.fat;
-			else if (!fat && (layer->sheet[m].region == wanted || layer->material_count == 1))
-				layer->sheet[m] = command->as.material.sheet;
-		}
-	}
-}
-
 static void take_energy(cau_hosted *h, const cau_order *order, cau_drive *drive)
 {
 	bool on = order->as.command.as.energized;
@@ -102,11 +82,7 @@ static void take_effect(cau_hosted *h, const cau_order *order)
 		drive->frozen = false;
 		break;
 	case CAU_COMMAND_SET_GRAVITY:
-		memcpy(h->present->gravity_m_s2, command->as.gravity_m_s2, sizeof h->present->gravity_m_s2);
-		cau_answer_changed(h, CAU_CHANGE_TISSUE, order->asker.name);
-		break;
 	case CAU_COMMAND_SET_MATERIAL:
-		keep_material(h, command);
 		cau_answer_changed(h, CAU_CHANGE_TISSUE, order->asker.name);
 		break;
 	default:

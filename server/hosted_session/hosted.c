@@ -18,7 +18,6 @@ cau_status cau_hosted_create(cau_hosted **made, const cau_surroundings *around,
 		free(h);
 		return cau_fail(error, CAU_NO_MEMORY, NULL, "no memory for a session");
 	}
-	*h->present = *def->scene;
 	h->task.run = cau_hosted_run;
 	h->references = 1;
 	h->around = around;

@@ -169,7 +169,6 @@ void cau_back_arrived(cau_hosted *h, cau_order *order)
 	if (h->state == CAU_SESSION_FAULTED)
 		h->state = CAU_SESSION_PAUSED;
 	h->fault[0] = 0;
-	*h->present = *h->scene;
 	open_branch(h);
 	cau_event_add(h, event, NULL, order->asker.name, 0, NULL);
 	cau_record_checkpoint(h, NULL, NULL);

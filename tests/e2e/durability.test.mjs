@@ -98,6 +98,36 @@ test('a create sent again makes one session', async () => {
 	await daemon.end();
 });
 
+test('gravity and materials are described as they are, after kill -9, a rewind and in a fork', async (t) => {
+	let daemon = await Daemon.start();
+	t.after(() => daemon.end());
+	let client = await daemon.connect();
+	const session = await smallSession(client, 'changed', { paused: true });
+	const inForce = async (id = session) => {
+		const { definition } = await client.call('session.describe', { session: id });
+		return [definition.gravity_m_s2[2], definition.layers[0].thickness_m];
+	};
+	const [, thickness] = await inForce();
+	await client.call('session.step', { session, ticks: 5 });
+	await client.call('gravity.set', { session, gravity_m_s2: [0, 0, -2] });
+	await client.call('material.set', { session, layer: 'fascia', kind: 'fascia', thickness_m: 2e-3 });
+	assert.deepEqual(await inForce(), [-2, 2e-3]);
+	await client.call('session.step', { session, ticks: 5 });
+	await client.call('gravity.set', { session, gravity_m_s2: [0, 0, -3] }); // at the last tick of the log
+	await daemon.kill();
+	daemon = await Daemon.start({ folder: daemon.folder });
+	client = await daemon.connect();
+	assert.deepEqual(await inForce(), [-3, 2e-3]);
+	await client.call('session.step', { session, ticks: 1 });
+	const { summary } = await client.call('session.fork', { session, name: 'child', paused: true });
+	await client.call('session.rewind', { session, tick: 8 });
+	assert.deepEqual(await inForce(), [-2, 2e-3]);
+	await client.call('session.rewind', { session, tick: 2 });
+	assert.deepEqual(await inForce(), [-9.81, thickness]);
+	assert.deepEqual(await inForce(summary.session), [-3, 2e-3]);
+	await client.close();
+});
+
 test('SIGTERM drains: checkpoint, close code, exit 0; the next start goes on there', async () => {
 	let daemon = await Daemon.start();
 	const client = await daemon.connect();

@@ -95,6 +95,10 @@ typedef struct cau_session_info {
 
 void cau_session_describe(const cau_session *session, cau_session_info *info);
 
+// Brings `scene`, a copy of the definition, up to date with what commands have changed: gravity and
+// materials, as they are in force once the queued commands have acted.
+void cau_session_present(const cau_session *session, cau_scene_def *scene);
+
 // ---- what a tick made ---------------------------------------------------------------------------
 typedef struct cau_tool_state {
 	char name[CAU_NAME_BYTES];

@@ -291,6 +291,15 @@ void cau_session_set_clock(cau_session *s, double (*now_s)(void))
 	(void)s, (void)now_s;
 }
 
+void cau_session_present(const cau_session *s, cau_scene_def *scene)
+{
+	memcpy(scene->gravity_m_s2, s->state.gravity, sizeof scene->gravity_m_s2);
+	for (int32_t i = 0; i < s->state.queued; i++)
+		if (s->state.queue[i].kind == CAU_COMMAND_SET_GRAVITY)
+			memcpy(scene->gravity_m_s2, s->state.queue[i].as.gravity_m_s2,
+			       sizeof scene->gravity_m_s2);
+}
+
 void cau_session_set_stress(cau_session *s, bool on)
 {
 	(void)s, (void)on;
