@@ -1,0 +1,44 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// The protocol's decoder for a program in C++: what the header of a frame on DDS tells, in, and
+// what the bytes hold, out.
+#pragma once
+
+#include <stddef.h>
+#include <stdint.h>
+
+#ifdef __cplusplus
+extern "C" {
+#endif
+
+// As cautery::StreamDescription, with the session's number.
+typedef struct frames_description {
+	uint32_t session_number;
+	uint16_t profile;
+	uint32_t channels;
+	int32_t vertex_count, face_count;
+	double origin_m[3], step_m, stress_step_pa;
+} frames_description;
+
+typedef struct frames_decoder frames_decoder;
+
+// NULL: no such stream, or no memory.
+frames_decoder *frames_create(const frames_description *description);
+void frames_destroy(frames_decoder *decoder);
+
+// A key frame or a delta. NULL: taken; else why not, valid until the next call.
+const char *frames_take(frames_decoder *decoder, const void *bytes, size_t byte_count);
+// A topology. As frames_take.
+const char *frames_take_topology(frames_decoder *decoder, const void *bytes, size_t byte_count);
+
+// What is held; 0 and NULL before the first key frame.
+uint64_t frames_epoch(const frames_decoder *decoder);
+uint64_t frames_sequence(const frames_decoder *decoder);
+uint64_t frames_tick(const frames_decoder *decoder);
+int32_t frames_gone_faces(const frames_decoder *decoder);
+const int32_t *frames_quantised(const frames_decoder *decoder); // (vertex_count x 3)
+// The largest vertex index of the topology's faces; -1 before it.
+int32_t frames_last_vertex(const frames_decoder *decoder);
+
+#ifdef __cplusplus
+}
+#endif

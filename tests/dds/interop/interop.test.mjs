@@ -1,0 +1,69 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// A robot on another vendor's DDS drives a tool of the real daemon, over native topics and over those
+// of ROS 2.
+import assert from 'node:assert/strict';
+import { after, before, test } from 'node:test';
+import { Daemon } from './wire/daemon.mjs';
+import { smallSession } from './wire/scene.mjs';
+import { Program } from './program.mjs';
+
+const DOMAIN = Number(process.env.DDS_DOMAIN ?? 10 + (process.pid % 20)); // of this program alone
+const DEADLINE_MS = 500;                // generous: this test is not about being late
+const AT_AIM_M = 1e-4;                  // the quantum of float32 in frames, and the last of the way
+
+let daemon;
+before(async () => {
+	daemon = await Daemon.start({ settings: { dds: true, dds_domain: DOMAIN, dds_deadline_s: DEADLINE_MS / 1000 } });
+});
+after(() => daemon.end());
+
+const far = (a, b) => Math.hypot(a[0] - b[0], a[1] - b[1], a[2] - b[2]);
+
+async function watched(t, name) {
+	const client = await daemon.connect({ hello: { client: 'watcher' } });
+	const session = await smallSession(client, name);
+	t.after(async () => {
+		await client.call('session.destroy', { session }).catch(() => {}); // a test may have done it
+		await client.close();
+	});
+	return { client, session, stream: await client.join(session) };
+}
+
+async function robot(t, session, via) {
+	const made = new Program(process.env.INTEROP_ROBOT, [DOMAIN, session, 'hook', via, DEADLINE_MS],
+		{ environment: { FASTRTPS_DEFAULT_PROFILES_FILE: process.env.PROFILE } });
+	t.after(() => made.end());
+	await made.event((e) => e.event === 'matched', 'matched');
+	return made;
+}
+
+for (const via of ['native', 'ros'])
+	test(`Fast DDS drives over ${via} topics and reads the tool's state`, async (t) => {
+		const { client, session, stream } = await watched(t, `fast-${via}`);
+		const made = await robot(t, session, via);
+		made.tell('write on');
+		const { native: driven } = await made.until(({ native }) => native.driver_name.startsWith(via === 'ros' ? 'ros ' : 'dds '));
+		assert.equal(stream.tools[0].driver, driven.driver);
+
+		const aim = [0.01, -0.005, 0.015];
+		made.tell(`aim ${aim.join(' ')}`);
+		await client.until(() => far(stream.tools[0].position, aim) < AT_AIM_M, 'the pose in a frame');
+		const { cp, cf } = await made.until(({ native, cp }) =>
+			far(native.position_m, aim) < AT_AIM_M && far(cp.position_m, aim) < AT_AIM_M);
+		assert.equal(cp.frame_id, 'world');
+		assert.ok(cf.count > 0);
+
+		// Into the tissue: both topics tell a force.
+		made.tell('aim 0 0 -0.002');
+		await made.until(({ native, cf }) => far(cf.force_n, [0, 0, 0]) > 0.001 && far(native.force_n, [0, 0, 0]) > 0.001);
+
+		made.tell('energy 1');
+		await client.until(() => stream.tools[0].energized, 'energy on');
+		await made.until(({ native }) => native.energized);
+		made.tell('energy 0');
+		const { native: off } = await made.until(({ native }) => !native.energized);
+		assert.equal(off.energy_off, 1, 'commanded');
+
+		assert.equal((await made.end()).code, 0);
+		await client.until(() => stream.tools[0].driver === 0, 'nobody drives it');
+	});

@@ -1,0 +1,63 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// A program that is told by lines on its standard input and tells by JSON objects, one a line.
+import { spawn } from 'node:child_process';
+import { createInterface } from 'node:readline';
+import { PATIENCE_S } from './wire/client.mjs';
+
+export class Program {
+	// `environment` is added to this process's; `wrap` are words before the command.
+	constructor(command, words, { environment = {}, wrap = [] } = {}) {
+		const [file, ...rest] = [...wrap, command, ...words.map(String)];
+		this.waiters = [];
+		this.process = spawn(file, rest,
+			{ stdio: ['pipe', 'pipe', 'inherit'], env: { ...process.env, ...environment } });
+		this.process.stdin.on('error', () => {}); // it is gone: what waits for it will say so
+		this.exited = new Promise((resolve) => this.process.on('exit', (code, signal) => {
+			this.waiters.forEach((w) => w.reject(new Error(`it ended (${code ?? signal}) before: ${w.what}`)));
+			resolve({ code, signal });
+		}));
+		createInterface({ input: this.process.stdout }).on('line', (line) => this.onLine(JSON.parse(line)));
+	}
+
+	onLine(event) {
+		this.waiters = this.waiters.filter((w) => !(w.match(event) && (w.resolve(event), true)));
+	}
+
+	tell(line) {
+		this.process.stdin.write(`${line}\n`);
+	}
+
+	event(match, what, seconds = PATIENCE_S) {
+		return new Promise((resolve, reject) => {
+			const timer = setTimeout(() => reject(new Error(`it never told: ${what}`)), seconds * 1000);
+			const settle = (how) => (value) => (clearTimeout(timer), how(value));
+			this.waiters.push({ match, what, resolve: settle(resolve), reject: settle(reject) });
+		});
+	}
+
+	ask(line, event = line) {
+		const answer = this.event((e) => e.event === event, event);
+		this.tell(line);
+		return answer;
+	}
+
+	// The first answer to `line`, asked again and again, that is so.
+	async until(condition, line = 'state', seconds = PATIENCE_S) {
+		const end = Date.now() + seconds * 1000;
+		let answer;
+		while (Date.now() < end)
+			if (condition(answer = await this.ask(line)))
+				return answer;
+		throw new Error(`never: ${condition}; at last ${JSON.stringify(answer)}`);
+	}
+
+	end() {
+		this.process.stdin.end();
+		return this.exited;
+	}
+
+	kill(signal = 'SIGKILL') {
+		this.process.kill(signal);
+		return this.exited;
+	}
+}
