@@ -47,11 +47,22 @@ typedef struct bench_cut_result {
 int bench_cut(const bench_options *options, bench_cut_result *result);
 
 // error.c: error of K iterations against the converged step, under the scene's pull.
+enum { BENCH_CURVE = 9 };
 typedef struct bench_error_result {
 	double error_at_k, error_max, ms_to_1pct;
 	int32_t iterations_to_1pct;
+	int32_t curve_iterations[BENCH_CURVE]; // mean error and median time of steps of so many
+	double curve_error[BENCH_CURVE], curve_ms[BENCH_CURVE];
 } bench_error_result;
 int bench_error(const bench_options *options, bench_error_result *result);
+
+// limit.c: the time that moving its bytes through one core would take a step, if nothing else did.
+typedef struct bench_limit_result {
+	double bytes_step;    // that the arrays of K iterations hold, counted once a pass
+	double bandwidth_b_s; // of reading a block of one iteration's size over and over, one core
+	double limit_ms;      // bytes_step / bandwidth_b_s / threads
+} bench_limit_result;
+int bench_limit(const bench_options *options, bench_limit_result *result);
 
 // scaling.c: step time against size, the slab grown in its plane.
 typedef struct bench_scaling_result {

@@ -11,8 +11,14 @@
 #include "bench/bench.h"
 #include "session/session_internal.h"
 
-enum { CONVERGED_ITERATIONS = 1000, SAMPLES = 10 };
+enum { CONVERGED_ITERATIONS = 1000, SAMPLES = 10, MOST_SAMPLES = 64 };
 static const double converged_residual = 1e-11;
+static const int32_t curve_iterations[BENCH_CURVE] = {1, 2, 3, 5, 7, 10, 15, 20, 30};
+
+typedef struct error_curve {
+	int32_t count;
+	double error[BENCH_CURVE], ms[BENCH_CURVE][MOST_SAMPLES];
+} error_curve;
 
 typedef struct pull_run {
 	const cau_scene_def *scene;
@@ -117,13 +123,33 @@ static double step_error(pull_run *pull, cau_session *trial, const cau_session *
 	return moved > 0 ? mass_distance(exact, trial->position, exact->position) / moved : 0;
 }
 
+// One sample of error against time: steps of several numbers of iterations from one state.
+static void sample_curve(pull_run *pull, cau_session *trial, const cau_session *state,
+                         const cau_session *exact, double share, error_curve *curve)
+{
+	for (int i = 0; i < BENCH_CURVE && curve->count < MOST_SAMPLES; ++i)
+		curve->error[i] += step_error(pull, trial, state, exact, share, curve_iterations[i],
+		                              &curve->ms[i][curve->count]);
+	curve->count++;
+}
+
+static void finish_curve(error_curve *curve, bench_error_result *result)
+{
+	for (int i = 0; i < BENCH_CURVE; ++i) {
+		result->curve_iterations[i] = curve_iterations[i];
+		result->curve_error[i] = curve->error[i] / fmax(curve->count, 1);
+		result->curve_ms[i] = bench_quantile(curve->ms[i], curve->count, 0.5);
+	}
+}
+
 static void measure(const bench_options *options, pull_run *pull, cau_session *state,
                     cau_session *trial, cau_session *exact, bench_error_result *result)
 {
 	int32_t ticks = (int32_t)(pull->scene->pull.duration_s / pull->scene->step_s + 0.5);
 	int32_t samples = 0, every = ticks / SAMPLES > 0 ? ticks / SAMPLES : 1;
-	double sum = 0, first_ms[64] = {0};
+	double sum = 0, first_ms[MOST_SAMPLES] = {0};
 	int32_t reach = 0;
+	error_curve curve = {0};
 	for (int32_t t = 1; t <= ticks; ++t) {
 		double share = (double)t / ticks, ms;
 		if (t % every == 0) {
@@ -134,10 +160,11 @@ static void measure(const bench_options *options, pull_run *pull, cau_session *s
 			sum += error;
 			samples++;
 			result->error_max = fmax(result->error_max, error);
+			sample_curve(pull, trial, state, exact, share, &curve);
 			int32_t k = 1;
 			while (k < 64 && step_error(pull, trial, state, exact, share, k, &ms) > 0.01)
 				k++;
-			first_ms[samples % 64] = ms;
+			first_ms[samples % MOST_SAMPLES] = ms;
 			reach = k > reach ? k : reach;
 		}
 		drive(pull, state, share);
@@ -146,6 +173,7 @@ static void measure(const bench_options *options, pull_run *pull, cau_session *s
 	result->error_at_k = samples ? sum / samples : 0;
 	result->iterations_to_1pct = reach;
 	result->ms_to_1pct = bench_quantile(first_ms + 1, samples < 63 ? samples : 63, 0.5);
+	finish_curve(&curve, result);
 }
 
 int bench_error(const bench_options *options, bench_error_result *result)

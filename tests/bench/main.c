@@ -162,6 +162,21 @@ static void print_error(const bench_options *options, const bench_error_result *
 	                       "\"ms_to_1pct\":%.6g"
 	                     : "  error %.4g at K (worst %.4g); %d iterations, %.3f ms to 1 %%\n",
 	       result->error_at_k, result->error_max, result->iterations_to_1pct, result->ms_to_1pct);
+	if (options->json)
+		fputs(",\"error_curve\":[", stdout);
+	for (int i = 0; i < BENCH_CURVE; ++i)
+		printf(options->json ? "%s{\"iterations\":%d,\"error\":%.6g,\"ms\":%.6g}"
+		                     : "%s  %3d iterations: error %.4g, %.3f ms",
+		       i ? options->json ? "," : "\n" : "", result->curve_iterations[i],
+		       result->curve_error[i], result->curve_ms[i]);
+	fputs(options->json ? "]" : "\n", stdout);
+}
+
+static void print_limit(const bench_options *options, const bench_limit_result *result)
+{
+	printf(options->json ? "\"bytes_step\":%.0f,\"bandwidth_b_s\":%.4g,\"limit_ms\":%.6g"
+	                     : "  moves %.0f bytes a step; at %.3g B/s a core: %.3f ms\n",
+	       result->bytes_step, result->bandwidth_b_s, result->limit_ms);
 }
 
 static void print_scaling(const bench_options *options, const bench_scaling_result *result)
@@ -181,7 +196,9 @@ int main(int argc, char **argv)
 	bench_cut_result cut;
 	bench_error_result error;
 	bench_scaling_result scaling;
-	if (bench_steps(&options, &steps) || (options.cut && bench_cut(&options, &cut)) ||
+	bench_limit_result limit;
+	if (bench_steps(&options, &steps) || bench_limit(&options, &limit) ||
+	    (options.cut && bench_cut(&options, &cut)) ||
 	    (options.error && bench_error(&options, &error)) ||
 	    (options.scaling && bench_scaling(&options, &scaling)))
 		return 1;
@@ -189,6 +206,8 @@ int main(int argc, char **argv)
 		printf("{\"scene\":\"%s\",\"threads\":%d,\"iterations\":%d,", options.scene,
 		       options.threads, options.iterations);
 	print_steps(&options, &steps);
+	fputs(options.json ? "," : "", stdout);
+	print_limit(&options, &limit);
 	if (options.cut) {
 		fputs(options.json ? "," : "", stdout);
 		print_cut(&options, &cut);

@@ -23,6 +23,7 @@ def sheet(cells, size):
 
 class Tissue(programs.Case):
     real = True
+    settings = {"browser_deadline_s": 10}  # longer than a loaded machine keeps a driver waiting
 
     def test_the_script_of_a_scene_cuts_it(self):
         session = self.create("fascia")

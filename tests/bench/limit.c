@@ -1,0 +1,95 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// How fast a step could be if only its bytes counted: what K iterations read and write, each array
+// once a pass, over the rate at which one core reads a block of that size again and again (so from
+// the cache that would hold it).
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "bench/bench.h"
+#include "session/session_internal.h"
+
+enum { PASSES = 40, RUNS = 5 };
+
+// Reals an element of each kind reads and writes in one evaluation, its records' way to the
+// vertices included (constraint/elements.h), and its indices.
+enum {
+	SHEET_REALS = 4 + 6 + 1 + 3 + 2 * 6 + 2 * 12,
+	FAT_REALS = 9 + 1 + 2 * 16,
+	FAT_LIMIT_REALS = 1 + 6 + 2 * 4,
+	FAT_PLASTIC_REALS = 6,
+	LINK_REALS = 3 + 1 + 1 + 2 * 8,
+	HINGE_REALS = 4 + 3 + 1 + 1 + 2 * 16,
+	RECORD_INDEX_BYTES = 4,
+};
+
+static double bytes_of_elements(const cau_elements *e)
+{
+	double real_bytes = (double)cau_real_bytes(e->single), limited = 0, flowed = 0;
+	for (int32_t b = 0; b < e->fat.slot_count / CAU_BATCH; ++b) {
+		limited += e->fat.limited[b] * CAU_BATCH;
+		flowed += e->fat.flowed[b] * CAU_BATCH;
+	}
+	double reals = (double)e->sheet.slot_count * SHEET_REALS +
+	               (double)e->fat.slot_count * FAT_REALS + limited * FAT_LIMIT_REALS +
+	               flowed * FAT_PLASTIC_REALS + (double)e->link.slot_count * LINK_REALS +
+	               (double)e->hinge.slot_count * HINGE_REALS;
+	double indices = 3.0 * e->sheet.slot_count + 4.0 * e->fat.slot_count +
+	                 2.0 * e->link.slot_count + 4.0 * e->hinge.slot_count;
+	return reals * real_bytes + indices * (sizeof(int32_t) + RECORD_INDEX_BYTES);
+}
+
+// Both sweeps read their panels once; right-hand sides and permutations are small beside them.
+static double bytes_of_solve(const cau_step_solver *solver)
+{
+	return solver->diagonal ? 0
+	                        : 2.0 * (double)solver->sweep.panel_reals *
+	                              (double)cau_real_bytes(solver->sweep.single);
+}
+
+// Position, its start, prediction and step in double; displacement, gradient, increments and the
+// window of the acceleration (a column each of df and h) in real.
+static double bytes_of_vertices(const cau_step_solver *solver)
+{
+	double doubles = 5 * 3, reals = 4 * (6 + 3 * CAU_ANDERSON_WINDOW);
+	return solver->tissue->vertex_count *
+	       (doubles * sizeof(double) + reals * (double)cau_real_bytes(solver->elements.single));
+}
+
+// Bytes per second of one core's reads, the best of a few runs.
+static double bandwidth(const cau_step_solver *solver, double bytes)
+{
+	size_t half = (size_t)bytes / 2 / 64 * 64;
+	int64_t n = (int64_t)(half / cau_real_bytes(solver->elements.single));
+	char *block = aligned_alloc(64, 2 * half);
+	double best = 0;
+	memset(block, 0, 2 * half);
+	for (int run = 0; run < RUNS; ++run) {
+		double start = bench_now_s();
+		for (int pass = 0; pass < PASSES; ++pass)
+			solver->kernels->dot(block, block + half, n);
+		best = fmax(best, PASSES * 2.0 * (double)half / (bench_now_s() - start));
+	}
+	free(block);
+	return best;
+}
+
+int bench_limit(const bench_options *options, bench_limit_result *result)
+{
+	memset(result, 0, sizeof *result);
+	cau_scene_def *scene = bench_scene(options);
+	if (!scene)
+		return 1;
+	cau_session *session = bench_session(scene, options, 1);
+	free(scene);
+	if (!session)
+		return 1;
+	const cau_step_solver *solver = &session->solver;
+	double bytes =
+		bytes_of_elements(&solver->elements) + bytes_of_solve(solver) + bytes_of_vertices(solver);
+	result->bytes_step = bytes * options->iterations;
+	result->bandwidth_b_s = bandwidth(solver, bytes);
+	result->limit_ms = 1e3 * result->bytes_step / result->bandwidth_b_s / options->threads;
+	cau_session_destroy(session);
+	return 0;
+}
