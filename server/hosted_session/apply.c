@@ -145,9 +145,15 @@ static void apply_command(cau_hosted *h, cau_order *order)
 // True if this is a request sent again, and answered or set aside.
 static bool was_resent(cau_hosted *h, cau_order *order)
 {
-	cau_status status = cau_record_resend(h, order);
+	cau_error error = {0};
+	cau_status status = cau_record_resend(h, order, &error);
 	if (status == CAU_OK) {
 		free(order);
+		return true;
+	}
+	if (status == CAU_ALREADY_EXISTS) {
+		snprintf(error.path, sizeof error.path, "params.client_sequence");
+		cau_answer_fail(order, &error, CAU_RPC_SEQUENCE_PAST);
 		return true;
 	}
 	if (status != CAU_BAD_STATE)

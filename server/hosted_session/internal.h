@@ -14,7 +14,7 @@
 
 enum {
 	RING_FRAMES = 16,  // deltas kept for subscribers that are a little behind
-	EVENT_COUNT = 512, // kept in memory for session.timeline
+	EVENT_COUNT = 512, // of the timeline kept in memory
 	SNAPSHOT_COUNT = 64,
 	CUT_MERGE_TICKS = 30, // cuts of neighbouring ticks are one event
 };
@@ -140,8 +140,10 @@ struct cau_hosted {
 	bool dirty; // streams must show a change that no step made
 	cau_named_snapshot snapshots[SNAPSHOT_COUNT];
 	int32_t snapshot_count;
-	cau_wire_timeline_event events[EVENT_COUNT]; // ring
+	cau_wire_timeline_event events[EVENT_COUNT]; // ring, of the present line
 	uint64_t event_count;
+	bool events_older;    // the store has some from before
+	bool cut_open;        // the newest event is a cut that may grow; nobody knows of it yet
 	cau_order *postponed; // resends whose first is not committed yet
 
 	pthread_mutex_t mutex;
@@ -252,8 +254,8 @@ void cau_record_event(cau_hosted *h, const cau_wire_timeline_event *event, cau_l
 void cau_record_reply(cau_hosted *h, const cau_reply *reply, char *text, size_t text_bytes);
 void cau_record_commit(cau_hosted *h); // submits the slice's batch
 // The stored answer of a resent request: CAU_OK (answered), CAU_NOT_FOUND (act), CAU_BAD_STATE
-// (wait).
-cau_status cau_record_resend(cau_hosted *h, const cau_order *order);
+// (wait), CAU_ALREADY_EXISTS (acted upon, and the answer is not kept any more).
+cau_status cau_record_resend(cau_hosted *h, const cau_order *order, cau_error *error);
 
 // ---- answer.c
 // Writes a result as a whole JSON-RPC answer with the id 0; malloc'ed, NULL on failure.
@@ -270,6 +272,9 @@ char *cau_answer_description(cau_hosted *h, cau_method method, size_t *bytes, ca
 // ---- event.c
 void cau_event_add(cau_hosted *h, int kind, const char *tool, const char *client, int64_t count,
                    const char *detail);
+void cau_event_end_cut(cau_hosted *h); // before a session rests or goes elsewhere
+void cau_event_settle(cau_hosted *h);  // after each step
+void cau_events_load(cau_hosted *h);   // from the store: of the present branch up to the tick
 void cau_apply_timeline(cau_hosted *h, cau_order *order);
 
 // ---- export.c

@@ -117,19 +117,25 @@ void cau_record_event(cau_hosted *h, const cau_wire_timeline_event *event, cau_l
 		CAU_EVENT_TABLE(X)
 #undef X
 	};
-	char text[640];
+	char text[4096]; // the longest detail, every byte escaped
 	cau_error error = {0};
 	cau_store_batch *batch = cau_record_batch(h);
-	snprintf(text, sizeof text, "tool=%s client=%s count=%lld %s", event->tool, event->client,
-	         (long long)event->count, event->detail);
+	cau_wire_event_notice notice = {.event = *event};
+	cau_rpc_buffer out = {text, sizeof text - 1, 0};
+	memcpy(notice.session, h->id, sizeof notice.session);
+	cau_status status = cau_rpc_write_notification(&out, CAU_METHOD_EVENT, &notice, &error);
+	text[status ? 0 : out.bytes] = 0;
 	cau_store_event row = {.session = h->id,
-	                       .tick = h->tick,
+	                       .branch = h->branch,
+	                       .tick = (uint64_t)event->tick,
 	                       .level = (int32_t)level,
 	                       .kind = kinds[event->kind],
 	                       .text = text};
 	cau_log(level, h->id, kinds[event->kind], "tick=%llu tool=%s client=\"%s\" detail=\"%s\"",
-	        (unsigned long long)h->tick, event->tool, event->client, event->detail);
-	if (batch && cau_store_put_event(batch, &row, &error))
+	        (unsigned long long)event->tick, event->tool, event->client, event->detail);
+	if (!status && batch)
+		status = cau_store_put_event(batch, &row, &error);
+	if (status)
 		gap(h, &error);
 }
 
@@ -242,10 +248,11 @@ static cau_status send_again(void *user, const cau_store_answer *answer)
 	return CAU_OK;
 }
 
-cau_status cau_record_resend(cau_hosted *h, const cau_order *order)
+cau_status cau_record_resend(cau_hosted *h, const cau_order *order, cau_error *error)
 {
 	if (!order->client_sequence)
 		return CAU_NOT_FOUND;
 	return cau_store_read_answer(h->around->store, order->asker.client_id,
-	                             (uint64_t)order->client_sequence, send_again, (void *)order, NULL);
+	                             (uint64_t)order->client_sequence, send_again, (void *)order,
+	                             error);
 }

@@ -158,6 +158,7 @@ static void step(cau_hosted *h)
 	h->tick++;
 	cau_session_frame(h->core, &frame);
 	note_cut(h, &frame);
+	cau_event_settle(h);
 	note_refusals(h, &frame);
 	pthread_mutex_lock(&h->mutex);
 	h->counts.steps++;
@@ -192,6 +193,7 @@ static void run_stepping(cau_hosted *h)
 		cau_wire_tick_result result = {(int64_t)h->tick, 0};
 		cau_order *order = h->stepping;
 		h->stepping = NULL;
+		cau_event_end_cut(h);
 		h->dirty = true; // the last state is shown, whatever the streams' rates
 		cau_record_checkpoint(h, NULL, NULL);
 		cau_answer_changed(h, CAU_CHANGE_STEPPED, order->asker.name);
@@ -203,12 +205,15 @@ static void checkpoint_if_due(cau_hosted *h, double now_s)
 {
 	bool due = h->state == CAU_SESSION_RUNNING && h->tick != h->checkpoint_tick &&
 	           now_s - h->checkpoint_s >= h->around->config->checkpoint_s;
+	if (due)
+		cau_event_end_cut(h);
 	if (due || h->checkpoint_wanted)
 		cau_record_checkpoint(h, NULL, NULL);
 }
 
 static void drain(cau_hosted *h)
 {
+	cau_event_end_cut(h);
 	if (h->core && !h->starting && h->tick != h->checkpoint_tick)
 		cau_record_checkpoint(h, NULL, NULL);
 	cau_record_commit(h);

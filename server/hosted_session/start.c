@@ -58,15 +58,19 @@ static void answer_creator(cau_hosted *h)
 	cau_record_reply(h, &asked.reply, text, bytes);
 }
 
-// Named snapshots, and the tick where the session began.
-static cau_status take_event(void *user, const cau_store_event *event)
+static cau_status take_beginning(void *user, const cau_store_event *event)
 {
 	cau_hosted *h = user;
-	if (strcmp(event->kind, "created") == 0)
-		h->first_tick = event->tick;
+	h->first_tick = event->tick;
+	return CAU_OK;
+}
+
+static cau_status take_snapshot(void *user, const cau_store_event *event)
+{
+	cau_hosted *h = user;
 	cau_named_snapshot *made = &h->snapshots[h->snapshot_count];
 	long long branch;
-	const char *at = strcmp(event->kind, "snapshot") == 0 ? strstr(event->text, "name=") : NULL;
+	const char *at = strstr(event->text, "name="); // in its detail
 	if (!at || h->snapshot_count == SNAPSHOT_COUNT ||
 	    sscanf(at, "name=%48s branch=%lld", made->name, &branch) != 2)
 		return CAU_OK;
@@ -86,12 +90,14 @@ static cau_status count_branch(void *user, const cau_store_branch *branch)
 
 static cau_status resume_from_store(cau_hosted *h, cau_error *error)
 {
-	enum { EVENTS_READ = 4096 };
 	cau_store *store = h->around->store;
 	h->branch = h->origin.branch;
 	cau_status status = cau_store_read_branches(store, h->id, count_branch, h, error);
 	if (!status)
-		status = cau_store_read_events(store, h->id, EVENTS_READ, take_event, h, error);
+		status = cau_store_read_events(store, h->id, "created", 1, take_beginning, h, error);
+	if (!status)
+		status = cau_store_read_events(store, h->id, "snapshot", SNAPSHOT_COUNT, take_snapshot, h,
+		                               error);
 	if (!status)
 		status = cau_replay_begin(h, h->id, h->branch, UINT64_MAX, NULL, error);
 	return status;
@@ -130,6 +136,16 @@ void cau_hosted_start(cau_hosted *h)
 		cau_hosted_started(h);
 }
 
+// What was seen after the tick that the store leads to has not come about.
+static void go_on_from_events(cau_hosted *h)
+{
+	cau_error error = {0};
+	cau_store_batch *batch = cau_record_batch(h);
+	if (!batch || cau_store_forget_events(batch, h->id, h->branch, h->tick, &error))
+		cau_log(CAU_LOG_ERROR, h->id, "events_not_forgotten", "reason=\"%s\"", error.reason);
+	cau_events_load(h);
+}
+
 void cau_hosted_started(cau_hosted *h)
 {
 	bool restarted = h->origin.kind == CAU_ORIGIN_STORE;
@@ -145,6 +161,8 @@ void cau_hosted_started(cau_hosted *h)
 		for (size_t i = 0; i < h->replay.count; i++)
 			h->logged_order += h->replay.commands[i].tick == h->tick;
 	}
+	if (restarted)
+		go_on_from_events(h);
 	cau_record_checkpoint(h, NULL, NULL);
 	cau_drive_match_tools(h, restarted ? "the daemon was restarted" : "a new session");
 	cau_streams_restart(h);

@@ -26,6 +26,7 @@ void cau_apply_pause(cau_hosted *h, cau_order *order)
 	if (h->state == CAU_SESSION_RUNNING) {
 		h->state = CAU_SESSION_PAUSED;
 		h->realtime_factor = 0;
+		cau_event_end_cut(h);
 		cau_record_state(h);
 		cau_record_checkpoint(h, NULL, NULL);
 	}
@@ -129,6 +130,7 @@ void cau_apply_back(cau_hosted *h, cau_order *order)
 		return;
 	}
 	// The log up to here must be in the store before it is read.
+	cau_event_end_cut(h);
 	cau_record_commit(h);
 	cau_store_flush(h->around->store);
 	if (cau_replay_begin(h, h->id, branch, tick, order, &error)) {
@@ -169,6 +171,7 @@ void cau_back_arrived(cau_hosted *h, cau_order *order)
 	if (h->state == CAU_SESSION_FAULTED)
 		h->state = CAU_SESSION_PAUSED;
 	h->fault[0] = 0;
+	cau_events_load(h);
 	open_branch(h);
 	cau_event_add(h, event, NULL, order->asker.name, 0, NULL);
 	cau_record_checkpoint(h, NULL, NULL);

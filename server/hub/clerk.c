@@ -121,8 +121,9 @@ static void compare_maker(void *user, cau_hosted *hosted)
 		search->found = true;
 }
 
-// CAU_OK: answered from the store; CAU_BAD_STATE: its first is being worked on; else: act.
-static cau_status resent(cau_hub *hub, cau_creation *creation)
+// CAU_OK: answered from the store; CAU_BAD_STATE: its first is being worked on; CAU_ALREADY_EXISTS:
+// acted upon, and the answer is not kept any more; else: act.
+static cau_status resent(cau_hub *hub, cau_creation *creation, cau_error *error)
 {
 	being_made search = {creation, false};
 	if (!creation->client_sequence)
@@ -131,7 +132,8 @@ static cau_status resent(cau_hub *hub, cau_creation *creation)
 	if (search.found)
 		return CAU_BAD_STATE;
 	return cau_store_read_answer(hub->def.store, creation->asker.client_id,
-	                             (uint64_t)creation->client_sequence, answer_again, creation, NULL);
+	                             (uint64_t)creation->client_sequence, answer_again, creation,
+	                             error);
 }
 
 static void act(cau_hub *hub, cau_creation *creation)
@@ -159,12 +161,18 @@ cau_due cau_clerk_run(cau_task *task)
 	cau_creation *creation = take(hub);
 	if (!creation)
 		return (cau_due){INFINITY, INFINITY};
-	if (resent(hub, creation) == CAU_BAD_STATE) {
+	cau_error error = {0};
+	cau_status status = resent(hub, creation, &error);
+	if (status == CAU_BAD_STATE) {
 		cau_hub_submit_creation(hub, creation);
 		return (cau_due){now_s + AGAIN_S, now_s + AGAIN_S};
 	}
-	if (resent(hub, creation) != CAU_OK)
+	if (status == CAU_ALREADY_EXISTS) {
+		snprintf(error.path, sizeof error.path, "params.client_sequence");
+		cau_reply_fail(&creation->reply, &error, CAU_RPC_SEQUENCE_PAST);
+	} else if (status != CAU_OK) {
 		act(hub, creation);
+	}
 	cau_creation_free(creation);
 	return (cau_due){0, now_s};
 }

@@ -262,6 +262,7 @@ cau_status cau_store_put_event(cau_store_batch *batch, const cau_store_event *ev
 	const char *session = empty_as_null(event->session);
 	TRY(check_text("session", session, false, error));
 	TRY(check_text("kind", event->kind, true, error));
+	TRY(check_branch("branch", event->branch, 0, error));
 	TRY(check_count("tick", event->tick, error));
 	if (!event->text)
 		return cau_fail(error, CAU_BAD_VALUE, "text", "is missing");
@@ -277,6 +278,21 @@ cau_status cau_store_put_event(cau_store_batch *batch, const cau_store_event *ev
 	copy->session = copy_text(&at, session);
 	copy->kind = copy_text(&at, event->kind);
 	copy->text = copy_text(&at, event->text);
+	return CAU_OK;
+}
+
+cau_status cau_store_forget_events(cau_store_batch *batch, const char *session, int64_t branch,
+                                   uint64_t tick, cau_error *error)
+{
+	TRY(check_text("session", session, true, error));
+	TRY(check_branch("branch", branch, 0, error));
+	TRY(check_count("tick", tick, error));
+	struct record *record = append(batch, RECORD_EVENTS_FORGET, text_bytes(session), error);
+	if (!record)
+		return CAU_NO_MEMORY;
+	unsigned char *at = record->storage;
+	record->as.event =
+		(cau_store_event){.session = copy_text(&at, session), .branch = branch, .tick = tick};
 	return CAU_OK;
 }
 

@@ -13,6 +13,7 @@ enum record_kind {
 	RECORD_ANSWER,
 	RECORD_CHECKPOINT,
 	RECORD_EVENT,
+	RECORD_EVENTS_FORGET, // as.event: session, branch, tick
 	RECORD_BRANCH,
 };
 

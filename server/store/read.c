@@ -5,7 +5,7 @@
 #include <string.h>
 
 #include "fault.h"
-#include "store_state.h"
+#include "read.h"
 
 enum {
 	PIECE_ROWS = 256,      // commands read at once
@@ -14,15 +14,14 @@ enum {
 };
 
 // ---- small pieces ---------------------------------------------------------------------
-static cau_status prepare(cau_store *store, const char *sql, sqlite3_stmt **statement,
-                          cau_error *error)
+cau_status cau_store_prepare(cau_store *store, const char *sql, sqlite3_stmt **statement,
+                             cau_error *error)
 {
 	int code = sqlite3_prepare_v2(store->reading, sql, -1, statement, NULL);
 	return code ? cau_store_fault(store->reading, code, "reading", error) : CAU_OK;
 }
 
-// Advances to the next row. CAU_NOT_FOUND (without a report) at the end.
-static cau_status next_row(cau_store *store, sqlite3_stmt *statement, cau_error *error)
+cau_status cau_store_next_row(cau_store *store, sqlite3_stmt *statement, cau_error *error)
 {
 	int code = sqlite3_step(statement);
 	if (code == SQLITE_ROW)
@@ -31,7 +30,7 @@ static cau_status next_row(cau_store *store, sqlite3_stmt *statement, cau_error 
 	                           : cau_store_fault(store->reading, code, "reading", error);
 }
 
-static cau_status end_is_fine(cau_status status)
+cau_status cau_store_end_is_fine(cau_status status)
 {
 	return status == CAU_NOT_FOUND ? CAU_OK : status;
 }
@@ -43,19 +42,19 @@ static cau_store_bytes column_blob(sqlite3_stmt *statement, int column)
 	return blob;
 }
 
-static const char *column_text(sqlite3_stmt *statement, int column)
+const char *cau_store_column_text(sqlite3_stmt *statement, int column)
 {
 	return (const char *)sqlite3_column_text(statement, column);
 }
 
-static cau_status find_session(cau_store *store, const char *id, int64_t *key, cau_error *error)
+cau_status cau_store_find_session(cau_store *store, const char *id, int64_t *key, cau_error *error)
 {
 	sqlite3_stmt *statement = NULL;
-	cau_status status =
-		prepare(store, "SELECT key FROM sessions WHERE id = ?1 AND deleted = 0", &statement, error);
+	cau_status status = cau_store_prepare(
+		store, "SELECT key FROM sessions WHERE id = ?1 AND deleted = 0", &statement, error);
 	if (!status) {
 		sqlite3_bind_text(statement, 1, id, -1, SQLITE_STATIC);
-		status = next_row(store, statement, error);
+		status = cau_store_next_row(store, statement, error);
 	}
 	if (!status)
 		*key = sqlite3_column_int64(statement, 0);
@@ -68,9 +67,9 @@ static cau_status find_session(cau_store *store, const char *id, int64_t *key, c
 // ---- sessions -------------------------------------------------------------------------
 static void fill_session(sqlite3_stmt *statement, cau_store_session *session)
 {
-	session->id = column_text(statement, 0);
-	session->name = column_text(statement, 1);
-	session->state = column_text(statement, 2);
+	session->id = cau_store_column_text(statement, 0);
+	session->name = cau_store_column_text(statement, 1);
+	session->state = cau_store_column_text(statement, 2);
 	session->branch = sqlite3_column_int64(statement, 3);
 	session->created_ms = sqlite3_column_int64(statement, 4);
 	session->definition = column_blob(statement, 5);
@@ -83,18 +82,19 @@ cau_status cau_store_read_sessions(cau_store *store, cau_store_visit_session vis
 	sqlite3_stmt *statement = NULL;
 	cau_store_session session;
 	pthread_mutex_lock(&store->reading_mutex);
-	cau_status status = prepare(store,
-	                            "SELECT id, name, state, branch, created_ms, definition, x''"
-	                            " FROM sessions WHERE deleted = 0 ORDER BY key",
-	                            &statement, error);
+	cau_status status =
+		cau_store_prepare(store,
+	                      "SELECT id, name, state, branch, created_ms, definition, x''"
+	                      " FROM sessions WHERE deleted = 0 ORDER BY key",
+	                      &statement, error);
 	cau_status visited = CAU_OK;
-	while (!status && !visited && !(status = next_row(store, statement, error))) {
+	while (!status && !visited && !(status = cau_store_next_row(store, statement, error))) {
 		fill_session(statement, &session);
 		visited = visit(user, &session);
 	}
 	sqlite3_finalize(statement);
 	pthread_mutex_unlock(&store->reading_mutex);
-	return visited ? visited : end_is_fine(status);
+	return visited ? visited : cau_store_end_is_fine(status);
 }
 
 cau_status cau_store_read_session(cau_store *store, const char *id, cau_store_visit_session visit,
@@ -103,13 +103,14 @@ cau_status cau_store_read_session(cau_store *store, const char *id, cau_store_vi
 	sqlite3_stmt *statement = NULL;
 	cau_store_session session;
 	pthread_mutex_lock(&store->reading_mutex);
-	cau_status status = prepare(store,
-	                            "SELECT id, name, state, branch, created_ms, definition, mesh"
-	                            " FROM sessions WHERE id = ?1 AND deleted = 0",
-	                            &statement, error);
+	cau_status status =
+		cau_store_prepare(store,
+	                      "SELECT id, name, state, branch, created_ms, definition, mesh"
+	                      " FROM sessions WHERE id = ?1 AND deleted = 0",
+	                      &statement, error);
 	if (!status) {
 		sqlite3_bind_text(statement, 1, id, -1, SQLITE_STATIC);
-		status = next_row(store, statement, error);
+		status = cau_store_next_row(store, statement, error);
 		if (status == CAU_NOT_FOUND)
 			cau_fail(error, status, "session", "no session '%s'", id);
 	}
@@ -122,7 +123,7 @@ cau_status cau_store_read_session(cau_store *store, const char *id, cau_store_vi
 	return status;
 }
 
-// ---- branches, events, clients --------------------------------------------------------
+// ---- branches, clients --------------------------------------------------------
 cau_status cau_store_read_branches(cau_store *store, const char *session,
                                    cau_store_visit_branch visit, void *user, cau_error *error)
 {
@@ -130,16 +131,16 @@ cau_status cau_store_read_branches(cau_store *store, const char *session,
 	int64_t key;
 	cau_status visited = CAU_OK;
 	pthread_mutex_lock(&store->reading_mutex);
-	cau_status status = find_session(store, session, &key, error);
+	cau_status status = cau_store_find_session(store, session, &key, error);
 	cau_status found = status;
 	if (!status)
-		status = prepare(store,
-		                 "SELECT branch, parent, fork_tick, opened_ms, left_ms, end_tick"
-		                 " FROM branches WHERE session = ?1 ORDER BY branch",
-		                 &statement, error);
+		status = cau_store_prepare(store,
+		                           "SELECT branch, parent, fork_tick, opened_ms, left_ms, end_tick"
+		                           " FROM branches WHERE session = ?1 ORDER BY branch",
+		                           &statement, error);
 	if (!status)
 		sqlite3_bind_int64(statement, 1, key);
-	while (!status && !visited && !(status = next_row(store, statement, error))) {
+	while (!status && !visited && !(status = cau_store_next_row(store, statement, error))) {
 		cau_store_branch branch = {
 			.session = session,
 			.branch = sqlite3_column_int64(statement, 0),
@@ -153,41 +154,7 @@ cau_status cau_store_read_branches(cau_store *store, const char *session,
 	}
 	sqlite3_finalize(statement);
 	pthread_mutex_unlock(&store->reading_mutex);
-	return found ? found : visited ? visited : end_is_fine(status);
-}
-
-cau_status cau_store_read_events(cau_store *store, const char *session, int32_t count,
-                                 cau_store_visit_event visit, void *user, cau_error *error)
-{
-	sqlite3_stmt *statement = NULL;
-	int64_t key = 0;
-	cau_status visited = CAU_OK;
-	pthread_mutex_lock(&store->reading_mutex);
-	cau_status status = session ? find_session(store, session, &key, error) : CAU_OK;
-	cau_status found = status;
-	if (!status)
-		status = prepare(store,
-		                 "SELECT tick, level, kind, text, time_ms FROM events WHERE session = ?1"
-		                 " ORDER BY key DESC LIMIT ?2",
-		                 &statement, error);
-	if (!status) {
-		sqlite3_bind_int64(statement, 1, key);
-		sqlite3_bind_int64(statement, 2, count > 0 ? count : 0);
-	}
-	while (!status && !visited && !(status = next_row(store, statement, error))) {
-		cau_store_event event = {
-			.session = session,
-			.tick = (uint64_t)sqlite3_column_int64(statement, 0),
-			.level = sqlite3_column_int(statement, 1),
-			.kind = column_text(statement, 2),
-			.text = column_text(statement, 3),
-			.time_ms = sqlite3_column_int64(statement, 4),
-		};
-		visited = visit(user, &event);
-	}
-	sqlite3_finalize(statement);
-	pthread_mutex_unlock(&store->reading_mutex);
-	return found ? found : visited ? visited : end_is_fine(status);
+	return found ? found : visited ? visited : cau_store_end_is_fine(status);
 }
 
 cau_status cau_store_read_clients(cau_store *store, const char *session,
@@ -197,42 +164,35 @@ cau_status cau_store_read_clients(cau_store *store, const char *session,
 	int64_t key;
 	cau_status visited = CAU_OK;
 	pthread_mutex_lock(&store->reading_mutex);
-	cau_status status = find_session(store, session, &key, error);
+	cau_status status = cau_store_find_session(store, session, &key, error);
 	cau_status found = status;
 	if (!status)
-		status = prepare(store,
-		                 "SELECT client, sequence FROM clients WHERE session = ?1 ORDER BY client",
-		                 &statement, error);
+		status = cau_store_prepare(
+			store, "SELECT client, sequence FROM clients WHERE session = ?1 ORDER BY client",
+			&statement, error);
 	if (!status)
 		sqlite3_bind_int64(statement, 1, key);
-	while (!status && !visited && !(status = next_row(store, statement, error)))
-		visited =
-			visit(user, column_text(statement, 0), (uint64_t)sqlite3_column_int64(statement, 1));
+	while (!status && !visited && !(status = cau_store_next_row(store, statement, error)))
+		visited = visit(user, cau_store_column_text(statement, 0),
+		                (uint64_t)sqlite3_column_int64(statement, 1));
 	sqlite3_finalize(statement);
 	pthread_mutex_unlock(&store->reading_mutex);
-	return found ? found : visited ? visited : end_is_fine(status);
+	return found ? found : visited ? visited : cau_store_end_is_fine(status);
 }
 
 // ---- what a branch sees ---------------------------------------------------------------
-// A stretch of the line from a branch to the root: the branch, and where the next one forks from
-// it.
-struct stretch {
-	int64_t branch;
-	int64_t from_tick, before_tick;
-};
-
 // The branch's parent (-1: none) and fork tick. CAU_NOT_FOUND.
 static cau_status find_branch(cau_store *store, int64_t key, int64_t branch, int64_t *parent,
                               int64_t *fork_tick, cau_error *error)
 {
 	sqlite3_stmt *statement = NULL;
-	cau_status status =
-		prepare(store, "SELECT parent, fork_tick FROM branches WHERE session = ?1 AND branch = ?2",
-	            &statement, error);
+	cau_status status = cau_store_prepare(
+		store, "SELECT parent, fork_tick FROM branches WHERE session = ?1 AND branch = ?2",
+		&statement, error);
 	if (!status) {
 		sqlite3_bind_int64(statement, 1, key);
 		sqlite3_bind_int64(statement, 2, branch);
-		status = next_row(store, statement, error);
+		status = cau_store_next_row(store, statement, error);
 	}
 	if (status == CAU_NOT_FOUND)
 		cau_fail(error, status, "branch", "no branch %lld", (long long)branch);
@@ -244,10 +204,8 @@ static cau_status find_branch(cau_store *store, int64_t key, int64_t branch, int
 	return status;
 }
 
-// Fills *line (free()d by the caller) from the branch up to the root, each stretch later than the
-// next.
-static cau_status find_line(cau_store *store, int64_t key, int64_t branch, struct stretch **line,
-                            int *count, cau_error *error)
+cau_status cau_store_find_line(cau_store *store, int64_t key, int64_t branch,
+                               struct cau_store_stretch **line, int *count, cau_error *error)
 {
 	int64_t before_tick = INT64_MAX, parent = -1;
 	int capacity = 0;
@@ -258,12 +216,12 @@ static cau_status find_line(cau_store *store, int64_t key, int64_t branch, struc
 			return cau_fail(error, CAU_CORRUPT, NULL, "branches form a circle");
 		if (*count == capacity) {
 			capacity = capacity ? 2 * capacity : 16;
-			struct stretch *grown = realloc(*line, (size_t)capacity * sizeof **line);
+			struct cau_store_stretch *grown = realloc(*line, (size_t)capacity * sizeof **line);
 			if (!grown)
 				return cau_fail(error, CAU_NO_MEMORY, NULL, "%d branches", capacity);
 			*line = grown;
 		}
-		struct stretch *stretch = &(*line)[*count];
+		struct cau_store_stretch *stretch = &(*line)[*count];
 		cau_status status = find_branch(store, key, branch, &parent, &stretch->from_tick, error);
 		if (status)
 			return status;
@@ -280,19 +238,19 @@ cau_status cau_store_read_checkpoint(cau_store *store, const char *session, int6
                                      cau_error *error)
 {
 	sqlite3_stmt *statement = NULL;
-	struct stretch *line = NULL;
+	struct cau_store_stretch *line = NULL;
 	int count = 0;
 	int64_t key, newest = tick < INT64_MAX ? (int64_t)tick : INT64_MAX;
 	cau_store_checkpoint checkpoint = {.session = session};
 	pthread_mutex_lock(&store->reading_mutex);
-	cau_status status = find_session(store, session, &key, error);
+	cau_status status = cau_store_find_session(store, session, &key, error);
 	if (!status)
-		status = find_line(store, key, branch, &line, &count, error);
+		status = cau_store_find_line(store, key, branch, &line, &count, error);
 	if (!status)
-		status = prepare(store,
-		                 "SELECT tick, hash, snapshot FROM checkpoints WHERE session = ?1"
-		                 " AND branch = ?2 AND tick <= ?3 ORDER BY tick DESC LIMIT 1",
-		                 &statement, error);
+		status = cau_store_prepare(store,
+		                           "SELECT tick, hash, snapshot FROM checkpoints WHERE session = ?1"
+		                           " AND branch = ?2 AND tick <= ?3 ORDER BY tick DESC LIMIT 1",
+		                           &statement, error);
 	if (status)
 		goto out;
 	status = CAU_NOT_FOUND;
@@ -304,7 +262,7 @@ cau_status cau_store_read_checkpoint(cau_store *store, const char *session, int6
 		sqlite3_bind_int64(statement, 1, key);
 		sqlite3_bind_int64(statement, 2, line[i].branch);
 		sqlite3_bind_int64(statement, 3, newest);
-		status = next_row(store, statement, error);
+		status = cau_store_next_row(store, statement, error);
 	}
 	if (status == CAU_NOT_FOUND)
 		cau_fail(error, status, "tick", "no checkpoint at or before tick %llu",
@@ -331,23 +289,23 @@ struct cursor {
 // Copies one piece of a stretch into `piece` and moves the cursor behind it. *more: there may be
 // another.
 static cau_status read_piece(cau_store *store, int64_t key, const char *session,
-                             const struct stretch *stretch, struct cursor *cursor,
+                             const struct cau_store_stretch *stretch, struct cursor *cursor,
                              cau_store_batch *piece, bool *more, cau_error *error)
 {
 	sqlite3_stmt *statement = NULL;
 	int rows = 0;
-	cau_status status = prepare(store,
-	                            "SELECT tick, position, kind, client, sequence, payload"
-	                            " FROM commands WHERE session = ?1 AND branch = ?2"
-	                            " AND (tick, position) >= (?3, ?4) AND tick < ?5"
-	                            " ORDER BY tick, position LIMIT 256",
-	                            &statement, error);
+	cau_status status = cau_store_prepare(store,
+	                                      "SELECT tick, position, kind, client, sequence, payload"
+	                                      " FROM commands WHERE session = ?1 AND branch = ?2"
+	                                      " AND (tick, position) >= (?3, ?4) AND tick < ?5"
+	                                      " ORDER BY tick, position LIMIT 256",
+	                                      &statement, error);
 	const int64_t parameter[] = {key, stretch->branch, cursor->tick, cursor->position,
 	                             stretch->before_tick};
 	for (int i = 0; !status && i < 5; i++)
 		sqlite3_bind_int64(statement, i + 1, parameter[i]);
 	while (!status && cau_store_batch_bytes(piece) < PIECE_BYTES) {
-		status = next_row(store, statement, error);
+		status = cau_store_next_row(store, statement, error);
 		if (status)
 			break;
 		cau_store_command command = {
@@ -356,7 +314,7 @@ static cau_status read_piece(cau_store *store, int64_t key, const char *session,
 			.tick = (uint64_t)sqlite3_column_int64(statement, 0),
 			.order = (uint32_t)sqlite3_column_int64(statement, 1),
 			.kind = sqlite3_column_int(statement, 2),
-			.client = column_text(statement, 3),
+			.client = cau_store_column_text(statement, 3),
 			.sequence = (uint64_t)sqlite3_column_int64(statement, 4),
 			.payload = column_blob(statement, 5),
 		};
@@ -367,12 +325,12 @@ static cau_status read_piece(cau_store *store, int64_t key, const char *session,
 	}
 	*more = status != CAU_NOT_FOUND || rows == PIECE_ROWS;
 	sqlite3_finalize(statement);
-	return end_is_fine(status);
+	return cau_store_end_is_fine(status);
 }
 
 static cau_status read_stretch(cau_store *store, int64_t key, const char *session,
-                               const struct stretch *stretch, cau_store_visit_command visit,
-                               void *user, cau_error *error)
+                               const struct cau_store_stretch *stretch,
+                               cau_store_visit_command visit, void *user, cau_error *error)
 {
 	struct cursor cursor = {stretch->from_tick, 0};
 	cau_status status = CAU_OK;
@@ -394,15 +352,15 @@ cau_status cau_store_read_log(cau_store *store, const char *session, int64_t bra
                               uint64_t from_tick, uint64_t before_tick,
                               cau_store_visit_command visit, void *user, cau_error *error)
 {
-	struct stretch *line = NULL;
+	struct cau_store_stretch *line = NULL;
 	int count = 0;
 	int64_t key;
 	int64_t from = from_tick < INT64_MAX ? (int64_t)from_tick : INT64_MAX;
 	int64_t before = before_tick < INT64_MAX ? (int64_t)before_tick : INT64_MAX;
 	pthread_mutex_lock(&store->reading_mutex);
-	cau_status status = find_session(store, session, &key, error);
+	cau_status status = cau_store_find_session(store, session, &key, error);
 	if (!status)
-		status = find_line(store, key, branch, &line, &count, error);
+		status = cau_store_find_line(store, key, branch, &line, &count, error);
 	pthread_mutex_unlock(&store->reading_mutex);
 	for (int i = count - 1; i >= 0 && !status; i--) {
 		if (line[i].from_tick < from)
@@ -441,6 +399,29 @@ static bool is_pending(cau_store *store, const char *client, uint64_t sequence)
 	return pending;
 }
 
+// Why there is no answer: CAU_NOT_FOUND or CAU_ALREADY_EXISTS.
+static cau_status look_for_forgotten(cau_store *store, const char *client, uint64_t sequence,
+                                     cau_error *error)
+{
+	sqlite3_stmt *statement = NULL;
+	cau_status status = cau_store_prepare(
+		store, "SELECT 1 FROM forgotten WHERE client = ?1 AND sequence >= ?2", &statement, error);
+	if (!status) {
+		sqlite3_bind_text(statement, 1, client, -1, SQLITE_STATIC);
+		sqlite3_bind_int64(statement, 2, (int64_t)sequence);
+		status = cau_store_next_row(store, statement, error);
+	}
+	sqlite3_finalize(statement);
+	if (status == CAU_NOT_FOUND)
+		return cau_fail(error, status, "sequence", "no answer to request %llu of '%s'",
+		                (unsigned long long)sequence, client);
+	if (status)
+		return status;
+	return cau_fail(error, CAU_ALREADY_EXISTS, "sequence",
+	                "the answer to request %llu of '%s' is not kept any more",
+	                (unsigned long long)sequence, client);
+}
+
 cau_status cau_store_read_answer(cau_store *store, const char *client, uint64_t sequence,
                                  cau_store_visit_answer visit, void *user, cau_error *error)
 {
@@ -450,22 +431,21 @@ cau_status cau_store_read_answer(cau_store *store, const char *client, uint64_t 
 		return cau_fail(error, CAU_BAD_STATE, "sequence", "request %llu is being stored",
 		                (unsigned long long)sequence);
 	pthread_mutex_lock(&store->reading_mutex);
-	cau_status status =
-		prepare(store, "SELECT session, result FROM answers WHERE client = ?1 AND sequence = ?2",
-	            &statement, error);
+	cau_status status = cau_store_prepare(
+		store, "SELECT session, result FROM answers WHERE client = ?1 AND sequence = ?2",
+		&statement, error);
 	if (!status) {
 		sqlite3_bind_text(statement, 1, client, -1, SQLITE_STATIC);
 		sqlite3_bind_int64(statement, 2, (int64_t)sequence);
-		status = next_row(store, statement, error);
+		status = cau_store_next_row(store, statement, error);
 	}
 	if (status == CAU_NOT_FOUND)
-		cau_fail(error, status, "sequence", "no answer to request %llu of '%s'",
-		         (unsigned long long)sequence, client);
+		status = look_for_forgotten(store, client, sequence, error);
 	if (!status) {
 		cau_store_answer answer = {
 			.client = client,
 			.sequence = sequence,
-			.session = column_text(statement, 0),
+			.session = cau_store_column_text(statement, 0),
 			.result = column_blob(statement, 1),
 		};
 		status = visit(user, &answer);

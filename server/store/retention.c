@@ -201,6 +201,28 @@ static cau_status remove_old(sqlite3 *database, const char *sql, int64_t before_
 	return status;
 }
 
+#define OLD_ANSWERS "FROM answers WHERE time_ms < ?1 ORDER BY time_ms " STEP
+
+// What is forgotten is remembered as such, so that a late resend does not act again.
+static cau_status forget_answers(sqlite3 *database, int64_t before_ms, int64_t *rows,
+                                 cau_error *error)
+{
+	struct outcome noted;
+	cau_status status =
+		run(database,
+	        "INSERT INTO forgotten SELECT client, max(sequence), max(time_ms)"
+	        " FROM (SELECT client, sequence, time_ms " OLD_ANSWERS ") WHERE true GROUP BY client"
+	        " ON CONFLICT(client) DO UPDATE SET sequence = max(sequence, excluded.sequence),"
+	        " time_ms = max(time_ms, excluded.time_ms)",
+	        &before_ms, &noted, error);
+	if (status)
+		return status;
+	return remove_old(database,
+	                  "DELETE FROM answers WHERE (client, sequence) IN"
+	                  " (SELECT client, sequence " OLD_ANSWERS ")",
+	                  before_ms, rows, error);
+}
+
 static cau_status step(sqlite3 *database, const cau_store_config *config, int64_t *rows,
                        cau_error *error)
 {
@@ -211,10 +233,12 @@ static cau_status step(sqlite3 *database, const cau_store_config *config, int64_
 	if (!status && !*rows)
 		status = shrink_biggest(database, config->retention_bytes, rows, error);
 	if (!status && !*rows)
+		status = forget_answers(database, now_ms - config->answer_age_ms, rows, error);
+	if (!status && !*rows)
 		status = remove_old(database,
-		                    "DELETE FROM answers WHERE (client, sequence) IN (SELECT client,"
-		                    " sequence FROM answers WHERE time_ms < ?1 ORDER BY time_ms " STEP ")",
-		                    now_ms - config->answer_age_ms, rows, error);
+		                    "DELETE FROM forgotten WHERE client IN (SELECT client FROM forgotten"
+		                    " WHERE time_ms < ?1 " STEP ")",
+		                    now_ms - config->event_age_ms, rows, error);
 	// Events are written in the order of time, near enough: only the oldest keys need a look.
 	if (!status && !*rows)
 		status = remove_old(database,

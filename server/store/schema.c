@@ -48,4 +48,13 @@ static const char second_step[] =
 	"INSERT INTO clients SELECT session, client, max(sequence) FROM commands"
 	" WHERE client IS NOT NULL GROUP BY session, client;";
 
-const char *const cau_store_schema_steps[CAU_STORE_SCHEMA_VERSION] = {first_step, second_step};
+// Events belong to branches. forgotten: the newest sequence of a client whose answer has been
+// removed by age; what is not newer and has no answer has been acted upon.
+static const char third_step[] =
+	"ALTER TABLE events ADD COLUMN branch INTEGER NOT NULL DEFAULT 0;"
+	"CREATE TABLE forgotten(client TEXT PRIMARY KEY, sequence INTEGER NOT NULL,"
+	" time_ms INTEGER NOT NULL) WITHOUT ROWID;"
+	"CREATE INDEX forgotten_by_time ON forgotten(time_ms);";
+
+const char *const cau_store_schema_steps[CAU_STORE_SCHEMA_VERSION] = {first_step, second_step,
+                                                                      third_step};

@@ -163,6 +163,7 @@ cau_status cau_store_put_checkpoint(cau_store_batch *batch, const cau_store_chec
 
 typedef struct cau_store_event {
 	const char *session; // NULL: the daemon's own
+	int64_t branch;      // of the session
 	uint64_t tick;
 	int32_t level;    // the daemon's scale
 	const char *kind; // "watchdog_cut", ...
@@ -171,6 +172,9 @@ typedef struct cau_store_event {
 } cau_store_event;
 cau_status cau_store_put_event(cau_store_batch *batch, const cau_store_event *event,
                                cau_error *error);
+// Takes back a branch's events after `tick`: a session that was resumed there has not seen them.
+cau_status cau_store_forget_events(cau_store_batch *batch, const char *session, int64_t branch,
+                                   uint64_t tick, cau_error *error);
 
 typedef struct cau_store_branch {
 	const char *session;
@@ -240,10 +244,18 @@ cau_status cau_store_read_log(cau_store *store, const char *session, int64_t bra
                               uint64_t from_tick, uint64_t before_tick,
                               cau_store_visit_command visit, void *user, cau_error *error);
 
-// Events of one session (NULL: the daemon's own), newest first, at most `count`.
+// Events of one session (NULL: the daemon's own), of one kind (NULL: any), newest first, at most
+// `count`.
 typedef cau_status (*cau_store_visit_event)(void *user, const cau_store_event *event);
-cau_status cau_store_read_events(cau_store *store, const char *session, int32_t count,
-                                 cau_store_visit_event visit, void *user, cau_error *error);
+cau_status cau_store_read_events(cau_store *store, const char *session, const char *kind,
+                                 int32_t count, cau_store_visit_event visit, void *user,
+                                 cau_error *error);
+
+// The events that the branch sees with from_tick <= tick <= to_tick, newest first, at most `count`.
+// Of an older branch it sees those up to its fork tick, that tick's among them.
+cau_status cau_store_read_timeline(cau_store *store, const char *session, int64_t branch,
+                                   uint64_t from_tick, uint64_t to_tick, int32_t count,
+                                   cau_store_visit_event visit, void *user, cau_error *error);
 
 // Clients that ever had a request recorded in this session, with the highest sequence.
 typedef cau_status (*cau_store_visit_client)(void *user, const char *client, uint64_t sequence);
@@ -253,6 +265,7 @@ cau_status cau_store_read_clients(cau_store *store, const char *session,
 // The recorded answer to a client's request, for a resend. `visit` is called on CAU_OK only.
 //   CAU_NOT_FOUND  never recorded: act on it
 //   CAU_BAD_STATE  submitted and not yet committed: its callback will bring the answer
+//   CAU_ALREADY_EXISTS  recorded once, or older than one that was, and not kept any more
 // A request that the daemon holds but has not submitted yet is the daemon's to remember.
 typedef cau_status (*cau_store_visit_answer)(void *user, const cau_store_answer *answer);
 cau_status cau_store_read_answer(cau_store *store, const char *client, uint64_t sequence,

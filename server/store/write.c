@@ -25,8 +25,9 @@
 	X(FIND_CHECKPOINT, "SELECT bytes FROM checkpoints"                                             \
 	                   " WHERE session = ?1 AND branch = ?2 AND tick = ?3")                        \
 	X(ADD_CHECKPOINT, "INSERT OR REPLACE INTO checkpoints VALUES(?1, ?2, ?3, ?4, ?5, ?6)")         \
-	X(ADD_EVENT, "INSERT INTO events(session, tick, level, time_ms, kind, text)"                   \
-	             " VALUES(?1, ?2, ?3, ?4, ?5, ?6)")
+	X(ADD_EVENT, "INSERT INTO events(session, tick, level, time_ms, kind, text, branch)"           \
+	             " VALUES(?1, ?2, ?3, ?4, ?5, ?6, ?7)")                                            \
+	X(FORGET_EVENTS, "DELETE FROM events WHERE session = ?1 AND branch = ?2 AND tick > ?3")
 
 enum statement_index {
 #define X(name, sql) name,
@@ -307,7 +308,22 @@ static cau_status apply_event(struct cau_store_writer *writer, const cau_store_e
 	sqlite3_bind_int64(statement, 4, event->time_ms ? event->time_ms : now_ms);
 	bind_text(statement, 5, event->kind);
 	bind_text(statement, 6, event->text);
+	sqlite3_bind_int64(statement, 7, event->branch);
 	return run(writer, ADD_EVENT, "an event", error);
+}
+
+static cau_status apply_forget(struct cau_store_writer *writer, const cau_store_event *after,
+                               cau_error *error)
+{
+	int64_t key;
+	cau_status status = find_session(writer, after->session, &key, error);
+	if (status)
+		return status;
+	sqlite3_stmt *statement = writer->statement[FORGET_EVENTS];
+	sqlite3_bind_int64(statement, 1, key);
+	sqlite3_bind_int64(statement, 2, after->branch);
+	bind_count(statement, 3, after->tick);
+	return run(writer, FORGET_EVENTS, "events", error);
 }
 
 // Goes up from *parent until the branch that owns the states up to fork_tick.
@@ -376,6 +392,8 @@ cau_status cau_store_writer_apply(struct cau_store_writer *writer, const struct 
 		return apply_checkpoint(writer, &record->as.checkpoint, error);
 	case RECORD_EVENT:
 		return apply_event(writer, &record->as.event, now_ms, error);
+	case RECORD_EVENTS_FORGET:
+		return apply_forget(writer, &record->as.event, error);
 	case RECORD_BRANCH:
 		return apply_branch(writer, &record->as.branch, now_ms, error);
 	}

@@ -128,6 +128,76 @@ test('gravity and materials are described as they are, after kill -9, a rewind a
 	await client.close();
 });
 
+test('the timeline outlives kill -9, follows a rewind, and is whole beyond what is in memory', async (t) => {
+	let daemon = await Daemon.start();
+	t.after(() => daemon.end());
+	let client = await daemon.connect();
+	const session = await smallSession(client, 'told', { paused: true });
+	const { tick } = await cutMiddle(client, session, 60);
+	const events = async (params = {}) => (await client.call('session.timeline', { session, ...params })).events;
+	const told = await events();
+	for (const kind of ['created', 'driver', 'energy_on', 'cut'])
+		assert.ok(told.some((e) => e.kind === kind), kind);
+	await daemon.kill();
+	daemon = await Daemon.start({ folder: daemon.folder });
+	client = await daemon.connect();
+	const after = await events();
+	assert.deepEqual(after.slice(0, told.length), told);
+	assert.deepEqual(after.slice(told.length).map((e) => [e.kind, e.tick]), [['energy_off', tick]]);
+
+	// Back before the cut its events are gone; they are still those of the branch that was left.
+	const cut = told.find((e) => e.kind === 'cut');
+	await client.call('session.snapshot', { session, name: 'cut' });
+	await client.call('session.rewind', { session, tick: cut.tick - 1 });
+	const before = told.filter((e) => e.tick < cut.tick), back = await events();
+	assert.deepEqual(back.slice(0, before.length), before);
+	assert.deepEqual(back.slice(before.length).map((e) => e.kind), ['rewind', 'energy_off']);
+	await client.call('session.restore', { session, name: 'cut' });
+	assert.deepEqual((await events()).slice(0, told.length), told);
+
+	// More than memory holds.
+	await client.call('tool.take_over', { session, tool: 'hook' });
+	for (let i = 0; i < 700; i += 100)
+		await Promise.all(Array.from({ length: 100 }, (_, k) =>
+			client.call('tool.energize', { session, tool: 'hook', energized: k % 2 === 0 })));
+	const whole = await events({ count: 4096 });
+	assert.ok(whole.length > 700, `${whole.length} events`);
+	assert.deepEqual(whole.slice(0, told.length), told);
+	assert.deepEqual(await events({ count: 100 }), whole.slice(-100));
+	assert.deepEqual(await events({ count: 4096, from_tick: tick }), whole.filter((e) => e.tick >= tick));
+	await daemon.kill();
+	daemon = await Daemon.start({ folder: daemon.folder });
+	client = await daemon.connect();
+	assert.deepEqual((await events({ count: 4096 })).slice(0, whole.length), whole);
+	await client.close();
+});
+
+test('a request whose answer is not kept any more is refused, and does not act again', async (t) => {
+	let daemon = await Daemon.start();
+	t.after(() => daemon.end());
+	const options = { hello: { client_id: 'late' } };
+	let client = await daemon.connect(options);
+	const session = await smallSession(client, 'late', { paused: true, client_sequence: 1 });
+	const step = { session, ticks: 5, client_sequence: 2 };
+	assert.deepEqual(await client.call('session.step', step), { tick: 5 });
+	await daemon.stop();
+	// As if the answers had been kept for long enough.
+	const aged = spawnSync('python3', ['-c', `import sqlite3, sys
+store = sqlite3.connect(sys.argv[1])
+store.execute("INSERT INTO forgotten SELECT client, max(sequence), 0 FROM answers GROUP BY client")
+store.execute("DELETE FROM answers")
+store.commit()`, join(daemon.folder, 'store.db')], { encoding: 'utf8' });
+	assert.equal(aged.status, 0, aged.stderr);
+	daemon = await Daemon.start({ folder: daemon.folder });
+	client = await daemon.connect(options);
+	const past = (error) => error.code === -32049 && error.data.path === 'params.client_sequence';
+	await assert.rejects(client.call('session.step', step), past);
+	await assert.rejects(client.call('session.create', { scene: 'fascia', client_sequence: 1 }), past);
+	assert.equal((await client.call('session.list')).sessions.length, 1);
+	assert.deepEqual(await client.call('session.step', { ...step, client_sequence: 3 }), { tick: 10 });
+	await client.close();
+});
+
 test('SIGTERM drains: checkpoint, close code, exit 0; the next start goes on there', async () => {
 	let daemon = await Daemon.start();
 	const client = await daemon.connect();

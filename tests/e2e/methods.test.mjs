@@ -124,6 +124,17 @@ test('snapshots are named, and restored on another branch', async () => {
 	assert.equal(back.tick, 5);
 	const again = await client.call('session.snapshot', { session, name: 'again' });
 	assert.equal(again.hash, first.hash);
+	// After a command of this very tick the state is the log's: nothing is stored for the snapshot.
+	await client.call('tool.take_over', { session, tool: 'hook' });
+	await client.call('tool.move', { session, tool: 'hook', position_m: [0.01, 0, 0.02], rotation: AT_REST });
+	const between = await client.call('session.snapshot', { session, name: 'between' });
+	assert.equal(between.byte_count, 0);
+	assert.equal(between.hash, first.hash);
+	await client.call('session.step', { session, ticks: 5 });
+	assert.equal((await client.call('session.restore', { session, name: 'between' })).tick, 5);
+	const reached = await client.call('session.snapshot', { session, name: 'reached' });
+	assert.equal(reached.hash, first.hash);
+	assert.ok(reached.byte_count > 0);
 	await assert.rejects(client.call('session.restore', { session, name: 'six' }), { code: -32005 });
 	await assert.rejects(client.call('session.rewind', { session, tick: 1000 }), { code: -32602 });
 	await client.call('session.destroy', { session });

@@ -389,11 +389,72 @@ static void events_come_newest_first(void **state)
 	for (size_t i = 0; i < sizeof events / sizeof *events; i++)
 		assert_int_equal(cau_store_put_event(batch, &events[i], NULL), CAU_OK);
 	assert_int_equal(write_batch(store, batch, NULL), CAU_OK);
-	assert_int_equal(cau_store_read_events(store, "knee", 2, see_event, text, NULL), CAU_OK);
+	assert_int_equal(cau_store_read_events(store, "knee", NULL, 2, see_event, text, NULL), CAU_OK);
 	assert_string_equal(text, "3:1:pin:d 2:1:pin:b ");
 	text[0] = 0;
-	assert_int_equal(cau_store_read_events(store, NULL, 10, see_event, text, NULL), CAU_OK);
+	assert_int_equal(cau_store_read_events(store, "knee", "cut", 9, see_event, text, NULL), CAU_OK);
+	assert_string_equal(text, "1:2:cut:{\"tool\":1} ");
+	text[0] = 0;
+	assert_int_equal(cau_store_read_events(store, NULL, NULL, 10, see_event, text, NULL), CAU_OK);
 	assert_string_equal(text, "0:3:start:c ");
+	cau_store_close(store);
+}
+
+static void put_branch(cau_store *store, int64_t branch, int64_t parent, uint64_t fork_tick)
+{
+	cau_store_batch *batch = cau_store_batch_create();
+	cau_store_branch row = {
+		.session = "knee", .branch = branch, .parent = parent, .fork_tick = fork_tick};
+	assert_int_equal(cau_store_put_branch(batch, &row, NULL), CAU_OK);
+	assert_int_equal(write_batch(store, batch, NULL), CAU_OK);
+}
+
+static void put_events(cau_store *store, int64_t branch, uint64_t first, uint64_t last)
+{
+	cau_store_batch *batch = cau_store_batch_create();
+	for (uint64_t tick = first; tick <= last; tick++) {
+		cau_store_event event = {.session = "knee",
+		                         .branch = branch,
+		                         .tick = tick,
+		                         .kind = "cut",
+		                         .text = (const char *[]){"a", "b", "c"}[branch]};
+		assert_int_equal(cau_store_put_event(batch, &event, NULL), CAU_OK);
+	}
+	assert_int_equal(write_batch(store, batch, NULL), CAU_OK);
+}
+
+static void expect_timeline(cau_store *store, int64_t branch, uint64_t from_tick, uint64_t to_tick,
+                            int32_t count, const char *expected)
+{
+	char text[256] = "";
+	assert_int_equal(cau_store_read_timeline(store, "knee", branch, from_tick, to_tick, count,
+	                                         see_event, text, NULL),
+	                 CAU_OK);
+	assert_string_equal(text, expected);
+}
+
+static void a_branch_sees_the_events_of_its_line(void **state)
+{
+	cau_store *store = open_with_knee(state);
+	put_events(store, 0, 1, 5);
+	put_branch(store, 1, 0, 3);
+	put_events(store, 1, 3, 4);
+	put_branch(store, 2, 1, 2); // its parent is branch 0, which owns that tick
+	put_events(store, 2, 7, 7);
+	const char *whole = "5:0:cut:a 4:0:cut:a 3:0:cut:a 2:0:cut:a 1:0:cut:a ";
+	expect_timeline(store, 0, 0, UINT64_MAX, 99, whole);
+	expect_timeline(store, 1, 0, UINT64_MAX, 99,
+	                "4:0:cut:b 3:0:cut:b 3:0:cut:a 2:0:cut:a 1:0:cut:a ");
+	expect_timeline(store, 2, 0, UINT64_MAX, 99, "7:0:cut:c 2:0:cut:a 1:0:cut:a ");
+	expect_timeline(store, 1, 2, 3, 99, "3:0:cut:b 3:0:cut:a 2:0:cut:a ");
+	expect_timeline(store, 1, 0, UINT64_MAX, 3, "4:0:cut:b 3:0:cut:b 3:0:cut:a ");
+	cau_store_batch *batch = cau_store_batch_create();
+	assert_int_equal(cau_store_forget_events(batch, "knee", 0, 4, NULL), CAU_OK);
+	assert_int_equal(write_batch(store, batch, NULL), CAU_OK);
+	expect_timeline(store, 0, 0, UINT64_MAX, 99, whole + strlen("5:0:cut:a "));
+	expect_timeline(store, 2, 7, UINT64_MAX, 99, "7:0:cut:c ");
+	assert_int_equal(cau_store_read_timeline(store, "knee", 9, 0, 9, 9, see_event, NULL, NULL),
+	                 CAU_NOT_FOUND);
 	cau_store_close(store);
 }
 
@@ -410,6 +471,7 @@ int main(void)
 		TEST(a_long_log_is_read_in_pieces_and_whole),
 		TEST(a_visitor_can_stop_and_order_within_a_tick_holds),
 		TEST(events_come_newest_first),
+		TEST(a_branch_sees_the_events_of_its_line),
 	};
 	return cmocka_run_group_tests(tests, NULL, NULL);
 }

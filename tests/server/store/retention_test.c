@@ -249,16 +249,28 @@ static void old_answers_and_events_go(void **state)
 	}
 	store = retire(fixture, store, &removal); // 40 h after the first, 20 h after the second
 	assert_int_equal(cau_store_read_answer(store, "c", 0, ignore_answer, NULL, NULL),
-	                 CAU_NOT_FOUND);
+	                 CAU_ALREADY_EXISTS); // it must not act again
 	assert_int_equal(cau_store_read_answer(store, "c", 1, ignore_answer, NULL, NULL), CAU_OK);
+	assert_int_equal(cau_store_read_answer(store, "c", 2, ignore_answer, NULL, NULL),
+	                 CAU_NOT_FOUND);
+	assert_int_equal(cau_store_read_answer(store, "d", 0, ignore_answer, NULL, NULL),
+	                 CAU_NOT_FOUND);
 	int events = 0;
-	assert_int_equal(cau_store_read_events(store, "knee", 10, count_event, &events, NULL), CAU_OK);
+	assert_int_equal(cau_store_read_events(store, "knee", NULL, 10, count_event, &events, NULL),
+	                 CAU_OK);
 	assert_int_equal(events, 2);
 	clock_ms = start_ms + 30 * 24 * hour_ms + 1;
 	store = retire(fixture, store, &removal);
 	events = 0;
-	assert_int_equal(cau_store_read_events(store, "knee", 10, count_event, &events, NULL), CAU_OK);
+	assert_int_equal(cau_store_read_events(store, "knee", NULL, 10, count_event, &events, NULL),
+	                 CAU_OK);
 	assert_int_equal(events, 1);
+	assert_int_equal(cau_store_read_answer(store, "c", 1, ignore_answer, NULL, NULL),
+	                 CAU_ALREADY_EXISTS);
+	clock_ms += 60 * 24 * hour_ms; // in the end that is forgotten too
+	store = retire(fixture, store, &removal);
+	assert_int_equal(cau_store_read_answer(store, "c", 1, ignore_answer, NULL, NULL),
+	                 CAU_NOT_FOUND);
 	cau_store_close(store);
 }
 

@@ -288,7 +288,7 @@ export interface SnapshotResult {
   tick: number;
   /** of the whole state */
   hash: string;
-  /** stored (0 to 9007199254740991 B) */
+  /** stored for it; 0: an earlier checkpoint and the log lead there (0 to 9007199254740991 B) */
   byte_count: number;
 }
 
@@ -392,7 +392,7 @@ export interface Timeline {
   oldest_tick: number;
   /** number of the present branch (0 to 9007199254740991) */
   branch: number;
-  /** oldest first; cuts of neighbouring ticks are merged */
+  /** oldest first; cuts within 30 ticks are one */
   events: TimelineEvent[];
 }
 
