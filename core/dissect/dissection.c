@@ -229,15 +229,30 @@ static void remove_primitive(cau_dissection *dissection, int primitive, int32_t 
 		remove_hinges(dissection, index);
 }
 
+static double ignition_in_bundles(const cau_dissection *dissection, const cau_heat_material *heat,
+                                  int32_t layer, int32_t edge)
+{
+	const cau_tissue *tissue = dissection->tissue;
+	const int32_t *ends = tissue->edges.vertex + 2 * (size_t)edge;
+	cau_vec3 a = cau_vec3_of(tissue->rest + 3 * (size_t)ends[0]);
+	cau_vec3 b = cau_vec3_of(tissue->rest + 3 * (size_t)ends[1]);
+	cau_vec3 fibre = cau_unit_or(cau_vec3_of(tissue->layer[layer].def.fibre), (cau_vec3){1, 0, 0});
+	return cau_ignition_in_bundles(heat->ignition_c, heat->ignition_spread_c, dissection->seed,
+	                               layer, cau_scale(0.5, cau_add(a, b)), fibre,
+	                               heat->ignition_bundle_m);
+}
+
 // Ignition of an edge in the layer of one of its primitives: exposure is compared as xi times the
 // integral.
 static int ignites(const cau_dissection *dissection, int primitive, int32_t index, int32_t edge)
 {
 	const cau_heat_material *heat = heat_of(dissection->tissue, primitive, index);
 	int32_t layer = layer_of(dissection->tissue, primitive, index);
-	return heat->absorption_per_s * dissection->exposure[edge] >
-	       cau_ignition_of(heat->ignition_c, heat->ignition_spread_c, dissection->seed, layer,
-	                       edge);
+	double ignition = heat->ignition_bundle_m > 0
+	                      ? ignition_in_bundles(dissection, heat, layer, edge)
+	                      : cau_ignition_of(heat->ignition_c, heat->ignition_spread_c,
+	                                        dissection->seed, layer, edge);
+	return heat->absorption_per_s * dissection->exposure[edge] > ignition;
 }
 
 // Layers in which the edge parts now, as bits; those in which it has parted are left out.

@@ -20,3 +20,9 @@ int cau_exposure_parts(const cau_tool_def *tool, const cau_pose *from, const cau
 // Ignition temperature of edge `edge` in layer `layer`: mean + spread * g, g standard normal (cut
 // off at 3), drawn from (seed, layer, edge) alone; never below a tenth of the mean.
 double cau_ignition_of(double mean_c, double spread_c, uint64_t seed, int32_t layer, int32_t edge);
+
+// The same where fibres part in bundles: g is a smooth normal field over rest space, drawn from
+// (seed, layer, place) alone. It changes over bundle_m (> 0) across `fibre` (unit) and over eight
+// times that along it. `place`: middle of the edge at rest, m.
+double cau_ignition_in_bundles(double mean_c, double spread_c, uint64_t seed, int32_t layer,
+                               cau_vec3 place, cau_vec3 fibre, double bundle_m);

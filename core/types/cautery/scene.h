@@ -75,6 +75,7 @@ typedef struct cau_mesh_def {
 #define CAU_HEAT_TABLE(X)                                                                          \
 	X(ignition_c, 172.0, 1.0, 2000.0, "degC", "an edge parts when its exposure exceeds this")      \
 	X(ignition_spread_c, 0.0, 0.0, 500.0, "degC", "standard deviation over edges, drawn by seed")  \
+	X(ignition_bundle_m, 0.0, 0.0, 0.1, "m", "width of bundles that part alike; 0: each edge")     \
 	X(absorption_per_s, 0.4, 0.0, 1000.0, "1/s", "xi of eq. 20")
 
 #define CAU_SHEET_TABLE(X)                                                                         \

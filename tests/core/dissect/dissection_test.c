@@ -182,6 +182,40 @@ static void test_each_layer_has_its_own_ignition(void **state)
 	rig_finish(&r);
 }
 
+// Where the material has bundles, the middle of an edge at rest says when it parts.
+static void test_bundles_part_by_place(void **state)
+{
+	(void)state;
+	rig r;
+	make(&r);
+	enum { FASCIA = 2 };
+	cau_tissue_layer *fascia = &r.tissue.layer[FASCIA];
+	cau_heat_material *heat = &fascia->def.sheet[0].heat;
+	heat->ignition_spread_c = 30;
+	heat->ignition_bundle_m = 0.01;
+	const cau_vec3 fibre = {1, 0, 0}; // the layer's default
+	for (int32_t k = 0; k < 3 * fascia->triangle_count; k += 7) {
+		const int32_t *v = r.tissue.triangle + 3 * (fascia->first_triangle + k / 3);
+		int32_t a = v[k % 3], b = v[(k + 1) % 3];
+		int32_t edge = cau_edge_table_find(&r.tissue.edges, a, b);
+		if (r.dissection.parted[edge])
+			continue;
+		cau_vec3 middle = cau_scale(0.5, cau_add(cau_vec3_of(r.tissue.rest + 3 * (size_t)a),
+		                                         cau_vec3_of(r.tissue.rest + 3 * (size_t)b)));
+		double at = cau_ignition_in_bundles(heat->ignition_c, 30, r.dissection.seed, FASCIA, middle,
+		                                    fibre, 0.01) /
+		            heat->absorption_per_s;
+		for (int above = 0; above < 2; ++above) {
+			uint32_t layers = 0;
+			cau_dissection_begin(&r.dissection);
+			expose_by_hand(&r.dissection, edge, (above ? 1.01 : 0.99) * at);
+			cau_dissection_part(&r.dissection, &layers);
+			assert_int_equal(r.dissection.parted[edge], above ? 1 << FASCIA : 0);
+		}
+	}
+	rig_finish(&r);
+}
+
 // The membrane burnt off, the fat's surface shows; the tetrahedron burnt off, the face under it.
 static void test_what_lies_under_shows(void **state)
 {
@@ -252,6 +286,7 @@ int main(void)
 		cmocka_unit_test(test_counts_after_random_cuts),
 		cmocka_unit_test(test_recount_gives_the_same),
 		cmocka_unit_test(test_each_layer_has_its_own_ignition),
+		cmocka_unit_test(test_bundles_part_by_place),
 		cmocka_unit_test(test_what_lies_under_shows),
 		cmocka_unit_test(test_exposure_by_a_tool),
 	};

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Ignition temperatures drawn at random: their statistics, their cut, and that they depend on the
-// seed, the layer and the edge alone.
+// seed, the layer and the edge alone; in bundles, on the place instead of the edge.
 #include <setjmp.h>
 #include <stdarg.h>
 #include <stddef.h>
@@ -63,12 +63,76 @@ static void test_cut(void **state)
 	assert_true(at_cut > 0 && at_cut < DRAWS / 300);
 }
 
+// ---- bundles
+static const double BUNDLE_M = 0.003;
+
+// The draw of layer 2 at a place, with fibres along `fibre`.
+static double bundle_draw(uint64_t seed, cau_vec3 place, cau_vec3 fibre)
+{
+	return (cau_ignition_in_bundles(MEAN_C, SPREAD_C, seed, 2, place, fibre, BUNDLE_M) - MEAN_C) /
+	       SPREAD_C;
+}
+
+static void test_bundles_are_normal_everywhere(void **state)
+{
+	(void)state;
+	// One place, many seeds: in the middle of a cell of the lattice as on its corner.
+	const cau_vec3 places[] = {{0, 0, 0}, {0.0131, -0.0447, 0.0029}, {0.0015, 0.0015, 0.0015}};
+	for (size_t k = 0; k < sizeof places / sizeof *places; ++k) {
+		double sum = 0, squares = 0;
+		for (uint64_t seed = 0; seed < DRAWS; ++seed) {
+			double g = bundle_draw(seed, places[k], (cau_vec3){0, 1, 0});
+			sum += g;
+			squares += g * g;
+			assert_true(fabs(g) <= 3 + 1e-12);
+		}
+		assert_near(sum / DRAWS, 0, 5 / sqrt(DRAWS));
+		assert_near(sqrt(squares / DRAWS), 1, 5 / sqrt(2 * (double)DRAWS) + 0.002);
+	}
+}
+
+// Mean product of draws at two places a way apart.
+static double likeness(cau_vec3 way, cau_vec3 fibre)
+{
+	double product = 0;
+	for (uint64_t seed = 0; seed < DRAWS; ++seed) {
+		cau_vec3 from = {0.0007, -0.0161, 0.0022};
+		product += bundle_draw(seed, from, fibre) * bundle_draw(seed, cau_add(from, way), fibre);
+	}
+	return product / DRAWS;
+}
+
+static void test_bundles_run_along_the_fibres(void **state)
+{
+	(void)state;
+	const cau_vec3 x = {1, 0, 0}, y = {0, 1, 0}, aside = {BUNDLE_M, 0, 0};
+	assert_true(likeness(aside, x) > 0.9); // an eighth of a bundle's length
+	assert_true(likeness(aside, y) < 0.6); // its whole width
+	assert_near(likeness(cau_scale(3, aside), y), 0, 5 / sqrt(DRAWS));
+	assert_near(likeness(cau_scale(24, aside), x), 0, 5 / sqrt(DRAWS));
+}
+
+static void test_bundles_depend_on_seed_layer_and_place(void **state)
+{
+	(void)state;
+	const cau_vec3 place = {0.01, 0.02, 0.03}, fibre = {1, 0, 0};
+	double first = cau_ignition_in_bundles(MEAN_C, SPREAD_C, 7, 2, place, fibre, BUNDLE_M);
+	assert_true(cau_ignition_in_bundles(MEAN_C, SPREAD_C, 7, 2, place, fibre, BUNDLE_M) == first);
+	assert_true(cau_ignition_in_bundles(MEAN_C, SPREAD_C, 8, 2, place, fibre, BUNDLE_M) != first);
+	assert_true(cau_ignition_in_bundles(MEAN_C, SPREAD_C, 7, 3, place, fibre, BUNDLE_M) != first);
+	assert_true(cau_ignition_in_bundles(MEAN_C, 0, 7, 2, place, fibre, BUNDLE_M) == MEAN_C);
+	assert_true(cau_ignition_in_bundles(MEAN_C, 1e6, 7, 2, place, fibre, BUNDLE_M) >= 0.1 * MEAN_C);
+}
+
 int main(void)
 {
 	const struct CMUnitTest tests[] = {
 		cmocka_unit_test(test_statistics),
 		cmocka_unit_test(test_depends_on_its_arguments_alone),
 		cmocka_unit_test(test_cut),
+		cmocka_unit_test(test_bundles_are_normal_everywhere),
+		cmocka_unit_test(test_bundles_run_along_the_fibres),
+		cmocka_unit_test(test_bundles_depend_on_seed_layer_and_place),
 	};
 	return cmocka_run_group_tests(tests, NULL, NULL);
 }
