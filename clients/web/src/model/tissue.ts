@@ -5,6 +5,7 @@
 import type { Changes, StreamState } from '../wire/decoder';
 import type { LayerDescription } from '../wire/messages.gen';
 import type { Topology } from '../wire/topology';
+import { Fringe } from './fringe';
 import { makeVertexFaces, markInnerFaces, type VertexFaces } from './topology_tables';
 
 export interface Batch {
@@ -22,6 +23,8 @@ export interface TissueSource {
   stepM: number;
   layers: readonly LayerDescription[];
   topology: Topology;
+  /** material coordinates, m (vertices x 3) */
+  material: Float32Array;
 }
 
 /** Bytes of each vertex in `burn`: heat exposure, charring, cut rim, stress over stressScale. */
@@ -38,6 +41,8 @@ export class Tissue {
   stressScale = 1;
   /** drawn faces of each batch; made anew where changed */
   readonly drawnIndex: Uint32Array[];
+  /** what hangs off the rims of each batch; null where it is no sheet */
+  readonly fringes: (Fringe | null)[];
   private readonly vertexFaces: VertexFaces;
   private readonly batchOfFace: Int32Array;
   private readonly hidden: Uint8Array;
@@ -58,6 +63,7 @@ export class Tissue {
     this.faceMark = new Int32Array(faceCount);
     this.batches = makeBatches(source);
     this.drawnIndex = this.batches.map(() => new Uint32Array(0));
+    this.fringes = this.batches.map((batch) => this.makeFringe(batch));
     this.batchOfFace = new Int32Array(faceCount);
     this.batches.forEach((batch, b) => {
       for (const face of batch.faces) this.batchOfFace[face] = b;
@@ -72,7 +78,10 @@ export class Tissue {
     this.updatePositions(state.quantised, changes, touched);
     this.updateNormals(touched);
     if (changes.scalars) this.updateBurn(state);
-    for (const batch of changedBatches) this.updateIndex(batch);
+    for (const batch of changedBatches) {
+      this.updateIndex(batch);
+      this.fringes[batch]?.rebuild();
+    }
     return [...changedBatches];
   }
 
@@ -84,6 +93,14 @@ export class Tissue {
       counts[name] = this.drawnIndex[b].length / 3;
     });
     return counts;
+  }
+
+  private makeFringe(batch: Batch): Fringe | null {
+    if (batch.kind !== 'fascia' && batch.kind !== 'membrane') return null;
+    const { position, normal, burn, hidden } = this;
+    const { topology, material, vertexCount } = this.source;
+    const source = { faces: topology.faces, material, position, normal, burn, burnBytes: BURN_BYTES, hidden };
+    return new Fringe(source, batch.faces, vertexCount);
   }
 
   private touchFace(face: number, touched: number[]): void {

@@ -17,6 +17,24 @@ void main() {
   gl_Position = projectionMatrix * viewMatrix * vec4(position, 1.0);
 }`;
 
+export const FRINGE_VERTEX = /* glsl */ `
+in vec3 material;
+in vec2 heat;
+in float tip;
+out vec3 vWorld;
+out vec3 vNormal;
+out vec4 vBurn;
+out vec3 vMaterial;
+out float vTip;
+void main() {
+  vWorld = position;
+  vNormal = normal;
+  vBurn = vec4(heat, 1.0, 0.0);
+  vMaterial = material;
+  vTip = tip;
+  gl_Position = projectionMatrix * viewMatrix * vec4(position, 1.0);
+}`;
+
 const COMMON = /* glsl */ `
 precision highp float;
 precision highp sampler3D;
@@ -90,16 +108,17 @@ vec3 shade(Surface s, vec3 view) {
   return colour;
 }
 
-// Heat first dries and blanches, then browns, then chars.
-void burnt(inout Surface s, float blotch) {
+// Heat first dries and blanches, then browns; where it goes on, blotches and streaks of char. What a
+// tissue is browned to is its own: collagen to tan, fat to amber.
+void burnt(inout Surface s, vec3 browned, float blotch) {
   // Heat made every rim: what is left of a parted edge is burnt even where its own nodes took up less.
-  float e = max(vBurn.x, 0.95 * vBurn.z * vBurn.z);
-  e += 0.25 * (blotch - 0.5) * smoothstep(0.05, 0.3, e);
-  s.colour = mix(s.colour, vec3(0.80, 0.66, 0.50), 0.65 * smoothstep(0.25, 0.65, e));
-  s.colour = mix(s.colour, vec3(0.22, 0.095, 0.035), 0.9 * smoothstep(0.55, 0.95, e));
-  float c = clamp(vBurn.y * (0.6 + 0.9 * blotch), 0.0, 1.0);
-  s.colour = mix(s.colour, vec3(0.018, 0.013, 0.011), smoothstep(0.15, 0.75, c));
-  s.wet *= 1.0 - 0.85 * smoothstep(0.3, 0.8, e);
+  float e = max(vBurn.x, 0.9 * vBurn.z * vBurn.z);
+  e += 0.3 * (blotch - 0.5) * smoothstep(0.05, 0.3, e);
+  s.colour = mix(s.colour, vec3(0.74, 0.60, 0.45), 0.45 * smoothstep(0.12, 0.45, e));
+  s.colour = mix(s.colour, browned, 0.85 * smoothstep(0.45, 0.9, e));
+  float c = clamp(vBurn.y + 0.45 * vBurn.z, 0.0, 1.3) * (0.1 + 1.4 * blotch);
+  s.colour = mix(s.colour, vec3(0.045, 0.026, 0.017), 0.92 * smoothstep(0.80, 1.20, c));
+  s.wet *= 1.0 - 0.55 * smoothstep(0.3, 0.8, e);
   s.alpha = mix(s.alpha, 1.0, smoothstep(0.3, 0.7, e));
 }
 
@@ -121,29 +140,64 @@ void finish(Surface s, vec3 view) {
 }
 `;
 
+// A pearly sheet of collagen: pale bundles that wander, thinner and glassier between them, where what
+// lies below shows through, with a few fine vessels.
+const FASCIA_LOOK = /* glsl */ `
+Surface fascia(vec3 normal, vec3 view, vec3 m, out float fibre, out float blotch) {
+  float wander = n(m * 11.0);
+  vec3 along = m + vec3(0.0, 0.0035 * (wander - 0.5), 0.0);
+  float bundle = n(vec3(16.0 * along.x + 41.0 * along.y, 170.0 * along.yz));
+  float strand = n(vec3(34.0 * along.x + 97.0 * along.y, 760.0 * along.yz) + 0.37);
+  float crossing = n(vec3(m.y * 30.0 + m.x * 22.0, (m.x - 0.6 * m.y) * 300.0, m.z * 90.0));
+  blotch = n(m * 34.0);
+  fibre = 0.5 * bundle + 0.5 * strand;
+  float weave = 0.44 * bundle + 0.26 * strand + 0.14 * crossing + 0.16 * blotch;
+  float dense = smoothstep(0.32, 0.68, weave);
+  Surface s;
+  s.normal = bend(normal, weave, 0.00007);
+  s.colour = mix(vec3(0.56, 0.28, 0.23), vec3(0.78, 0.61, 0.54), dense);
+  s.colour = mix(s.colour, vec3(0.60, 0.22, 0.19), 0.30 * smoothstep(0.50, 0.72, blotch));
+  float vessel = abs(n(m * vec3(13.0, 17.0, 15.0) + 0.31) - 0.5);
+  s.colour = mix(s.colour, vec3(0.50, 0.07, 0.08), 0.55 * smoothstep(0.011, 0.002, vessel));
+  float grazing = 1.0 - abs(dot(normal, view));
+  s.alpha = clamp(mix(0.60, 0.90, dense) + 0.5 * grazing * grazing, 0.0, 1.0);
+  s.gloss = 60.0;
+  s.wet = 0.38;
+  return s;
+}
+const vec3 TAN = vec3(0.40, 0.235, 0.115);
+`;
+
 const FASCIA = /* glsl */ `
 void main() {
   vec3 view = normalize(cameraPosition - vWorld);
   vec3 normal = normalize(vNormal);
   if (dot(normal, view) < 0.0) normal = -normal;
-  // Bundles wander a little, and a second, fainter family crosses them. The shear hides the period.
-  float wander = n(vMaterial * 11.0);
-  vec3 along = vMaterial + vec3(0.0, 0.0035 * (wander - 0.5), 0.0);
-  float fibre = n(vec3(16.0 * along.x + 41.0 * along.y, 240.0 * along.yz));
-  float strand = n(vec3(34.0 * along.x + 97.0 * along.y, 760.0 * along.yz) + 0.37);
-  float crossing = n(vec3(vMaterial.y * 30.0 + vMaterial.x * 22.0, (vMaterial.x - 0.6 * vMaterial.y) * 300.0, vMaterial.z * 90.0));
-  float blotch = n(vMaterial * 34.0);
-  fray(0.55 * strand + 0.45 * fibre);
-  float weave = 0.42 * fibre + 0.30 * strand + 0.14 * crossing + 0.14 * blotch;
-  Surface s;
-  s.normal = bend(normal, weave, 0.00016);
-  s.colour = mix(vec3(0.50, 0.235, 0.195), vec3(0.72, 0.50, 0.43), smoothstep(0.30, 0.70, weave));
-  s.colour = mix(s.colour, vec3(0.50, 0.13, 0.11), 0.35 * smoothstep(0.52, 0.72, blotch));
-  float grazing = 1.0 - abs(dot(normal, view));
-  s.alpha = clamp(mix(0.62, 0.93, smoothstep(0.3, 0.7, weave)) + 0.5 * grazing * grazing, 0.0, 1.0);
-  s.gloss = 42.0;
-  s.wet = 0.20;
-  burnt(s, blotch);
+  float fibre, blotch;
+  Surface s = fascia(normal, view, vMaterial, fibre, blotch);
+  fray(fibre);
+  burnt(s, TAN, 0.6 * fibre + 0.4 * blotch);
+  finish(s, view);
+}`;
+
+// Torn fibres beyond a rim: fewer the further out, each ending in a point, browned from the tip.
+const FRINGE = /* glsl */ `
+in float vTip;
+void main() {
+  vec3 view = normalize(cameraPosition - vWorld);
+  vec3 normal = normalize(vNormal);
+  if (dot(normal, view) < 0.0) normal = -normal;
+  vec3 wave = vMaterial + 0.0005 * vTip * (vec3(n(vMaterial * 90.0), n(vMaterial * 90.0 + 0.4), 0.5) - 0.5);
+  float coarse = n(wave * 330.0 + 0.71);
+  float fine = n(wave * 900.0 + 0.13);
+  float thread = 0.62 * coarse + 0.38 * fine;
+  if (thread < 0.36 + 0.26 * vTip) discard;
+  float fibre, blotch;
+  Surface s = fascia(normal, view, wave, fibre, blotch);
+  s.colour *= 0.75 + 0.5 * fine;
+  s.alpha = 1.0;
+  s.wet = 0.1;
+  burnt(s, TAN, 0.35 + 0.3 * vTip + 0.35 * fine);
   finish(s, view);
 }`;
 
@@ -164,7 +218,7 @@ void main() {
   s.alpha = 1.0;
   s.gloss = 90.0;
   s.wet = 0.62;
-  burnt(s, film);
+  burnt(s, vec3(0.46, 0.215, 0.065), 0.5 * film + 0.5 * n(vMaterial * 70.0));
   finish(s, view);
 }`;
 
@@ -183,7 +237,7 @@ void main() {
   s.alpha = 1.0;
   s.gloss = 45.0;
   s.wet = 0.35;
-  burnt(s, grain);
+  burnt(s, vec3(0.56, 0.27, 0.06), 0.5 * grain + 0.5 * n(vMaterial * 60.0 + 0.5));
   finish(s, view);
 }`;
 
@@ -203,12 +257,13 @@ void main() {
   s.alpha = 1.0;
   s.gloss = 60.0;
   s.wet = 0.5;
-  burnt(s, grain);
+  burnt(s, vec3(0.42, 0.20, 0.05), 0.5 * grain + 0.5 * n(vMaterial * 60.0 + 0.5));
   finish(s, view);
 }`;
 
 export const FRAGMENTS = {
-  fascia: COMMON + FASCIA,
+  fascia: COMMON + FASCIA_LOOK + FASCIA,
+  fringe: COMMON + FASCIA_LOOK + FRINGE,
   membrane: COMMON + MEMBRANE,
   fat: COMMON + FAT,
   bared: COMMON + BARED,

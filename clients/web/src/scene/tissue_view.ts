@@ -21,6 +21,7 @@ import { colourRow } from '../model/colour_maps';
 import { BURN_BYTES } from '../model/tissue';
 import type { Frame, Joined } from '../wire/worker_messages';
 import { makeNoise } from './noise';
+import { FringeView } from './fringe_view';
 import { FRAGMENTS, VERTEX, type SurfaceKind } from './tissue_shader';
 
 export const CAPSULES_MAX = 8;
@@ -80,6 +81,7 @@ export class TissueView {
   private readonly normal: BufferAttribute;
   private readonly burn: BufferAttribute;
   private readonly meshes: Mesh<BufferGeometry, ShaderMaterial>[];
+  private readonly fringes: (FringeView | null)[];
 
   constructor(
     readonly joined: Joined,
@@ -105,6 +107,8 @@ export class TissueView {
       this.group.add(mesh);
       return mesh;
     });
+    this.fringes = joined.batches.map(({ kind }) => (kind === 'fascia' || kind === 'membrane' ? new FringeView(shared) : null));
+    for (const fringe of this.fringes) if (fringe) this.group.add(fringe.mesh);
   }
 
   /** Takes a frame over; returns the arrays that were drawn before, to be given back. */
@@ -119,17 +123,21 @@ export class TissueView {
     this.burn.array = frame.buffers.burn;
     for (const attribute of [this.position, this.normal, this.burn]) attribute.needsUpdate = true;
     for (const { batch, index } of frame.drawn) this.setIndex(batch, index);
+    for (const { batch, ...shape } of frame.fringes) this.fringes[batch]?.take(shape);
     return before;
   }
 
   showLayer(layer: string, visible: boolean): void {
     this.joined.batches.forEach((batch, b) => {
-      if (batch.layer === layer) this.meshes[b].visible = visible;
+      if (batch.layer !== layer) return;
+      this.meshes[b].visible = visible;
+      this.fringes[b]?.show(visible);
     });
   }
 
   setWireframe(wireframe: boolean): void {
     for (const mesh of this.meshes) mesh.material.wireframe = wireframe;
+    for (const fringe of this.fringes) fringe?.setWireframe(wireframe);
   }
 
   /** Indices of what can be seen, for picking. */
@@ -142,6 +150,7 @@ export class TissueView {
       mesh.geometry.dispose();
       mesh.material.dispose();
     }
+    for (const fringe of this.fringes) fringe?.dispose();
   }
 
   private setIndex(batch: number, index: Uint32Array): void {

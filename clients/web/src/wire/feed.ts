@@ -14,6 +14,7 @@ export class Feed {
   readonly joined: Joined;
   private readonly tissue: Tissue;
   private readonly stale = new Set<number>();
+  private readonly fringed = new Set<number>();
   private spare: FrameBuffers | null;
   private newest: StreamState | null = null;
   private changed = true;
@@ -26,9 +27,9 @@ export class Feed {
   ) {
     const { vertex_count: vertexCount, face_count: faceCount, origin_m: originM, step_m: stepM } = stream;
     const { layers } = description;
-    this.tissue = new Tissue({ vertexCount, faceCount, originM, stepM, layers, topology });
     const rest = Float32Array.from(topology.rest, (value, i) => originM[i % 3] + stepM * value);
     const material = materialCoordinates(topology, rest, layers, description.definition);
+    this.tissue = new Tissue({ vertexCount, faceCount, originM, stepM, layers, topology, material });
     const batches = this.tissue.batches.map(({ faces, ...batch }) => ({ ...batch, faceCount: faces.length }));
     this.joined = { description, stream, batches, rest, material };
     this.spare = {
@@ -62,6 +63,7 @@ export class Feed {
     const drawn = [...this.stale].map((batch) => ({ batch, index: tissue.drawnIndex[batch] }));
     this.stale.clear();
     const { samples, changed } = this;
+    const fringes = changed ? this.fringes() : [];
     this.samples = [];
     this.changed = false;
     return {
@@ -75,6 +77,7 @@ export class Feed {
       changed,
       buffers,
       drawn,
+      fringes,
       drawnFaces: tissue.drawnFaceCounts(),
       stressScalePa: tissue.stressScale * this.stream.stress_step_pa,
       tools: state.tools,
@@ -82,5 +85,15 @@ export class Feed {
       framesDecoded,
       framesSkipped,
     };
+  }
+
+  /** Of all batches that have a rim, or had one when they were last handed over. */
+  private fringes(): Frame['fringes'] {
+    return this.tissue.fringes.flatMap((fringe, batch) => {
+      if (!fringe || (fringe.rimVertexCount === 0 && !this.fringed.has(batch))) return [];
+      if (fringe.rimVertexCount === 0) this.fringed.delete(batch);
+      else this.fringed.add(batch);
+      return [{ batch, ...fringe.shape() }];
+    });
   }
 }

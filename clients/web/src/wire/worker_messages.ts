@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // What page and worker say to each other.
+import type { FringeShape } from '../model/fringe';
 import type { Batch } from '../model/tissue';
 import type { LinkState } from './connection';
 import type { Pushes, Requests, Notices, SessionDescription, SessionJoin, StreamDescription } from './messages.gen';
@@ -62,6 +63,8 @@ export interface Frame {
   buffers: FrameBuffers;
   /** index of drawn faces by batch, where they changed since the last frame that was handed over */
   drawn: { batch: number; index: Uint32Array }[];
+  /** torn fibres at the rims of cut sheets, by batch; changed: those that have or had any */
+  fringes: ({ batch: number } & FringeShape)[];
   drawnFaces: Record<string, number>;
   stressScalePa: number;
   tools: ToolState[];

@@ -24,6 +24,7 @@ function makeTissue(faces: number[][], layers: LayerDescription[]): { tissue: Ti
   const topology = { faces: Int32Array.from(faces.flat()), faceLayers: new Int32Array(faces.length), texture: null, rest: new Int32Array(15) };
   const tissue = new Tissue({
     vertexCount: POINTS.length, faceCount: faces.length, originM: [1, 0, 0], stepM: STEP_M, layers, topology,
+    material: Float32Array.from(POINTS.flat(), (value) => STEP_M * value),
   });
   const scalar = (): Int32Array => new Int32Array(POINTS.length);
   const state = {
