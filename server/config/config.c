@@ -128,9 +128,10 @@ static cau_status check_together(const cau_config *config, cau_error *error)
 		return cau_fail(error, CAU_BAD_VALUE, "listen",
 		                "%.60s is not loopback: that needs a file of tokens (--tokens)",
 		                config->listen);
-	if (*config->dds_config && !config->dds_network)
-		return cau_fail(error, CAU_BAD_VALUE, "dds_config",
-		                "may leave loopback without DDS Security: that needs dds_network");
+	if (*config->dds_config && !*config->dds_security && !config->dds_network)
+		return cau_fail(
+			error, CAU_BAD_VALUE, "dds_config",
+			"may leave loopback: that needs dds_security, or dds_network to do without");
 	return CAU_OK;
 }
 

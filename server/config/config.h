@@ -49,6 +49,7 @@ enum { CAU_CONFIG_TEXT_BYTES = 512 };
 	SWITCH(dds, false, "open the DDS transport")                                                   \
 	INTEGER(dds_domain, 0, 0, 230, "DDS domain")                                                   \
 	TEXT(dds_config, "", "file of Cyclone DDS settings; empty: loopback only")                     \
+	TEXT(dds_security, "", "folder of this daemon's DDS identity; empty: no DDS Security")         \
 	SWITCH(dds_network, false, "let dds_config take DDS off loopback without DDS Security")        \
 	REAL(dds_deadline_s, 0.25, 0.02, 1, "silence to energy off of a DDS driver without deadline")
 

@@ -5,7 +5,9 @@
 
 #include "cautery.h"
 #include "transport_dds/internal.h"
+#include "transport_dds/local.h"
 #include "transport_dds/loopback.h"
+#include "transport_dds/security.h"
 
 enum { TAKEN_MOST = 16, TRIGGERS_MOST = 64, CONFIG_BYTES = CAU_CONFIG_TEXT_BYTES + 16 };
 
@@ -99,8 +101,19 @@ static cau_status open_domain(cau_dds *dds, cau_error *error)
 	                                *config->dds_config ? given : cau_dds_loopback);
 	if (dds->domain < 0)
 		return fail(error, "no domain", dds->domain);
-	dds->participant = dds_create_participant((dds_domainid_t)config->dds_domain, NULL, NULL);
-	return dds->participant < 0 ? fail(error, "no participant", dds->participant) : CAU_OK;
+	dds_qos_t *qos = dds_create_qos();
+	cau_status status = *config->dds_config ? CAU_OK : cau_dds_stay_local(error);
+	if (!status)
+		status = cau_dds_secure(qos, config, error);
+	if (!status)
+		dds->participant = dds_create_participant((dds_domainid_t)config->dds_domain, qos, NULL);
+	dds_delete_qos(qos);
+	if (!status && dds->participant < 0)
+		return fail(error,
+		            *config->dds_security ? "no participant with this dds_security"
+		                                  : "no participant",
+		            dds->participant);
+	return status;
 }
 
 static cau_status open_entities(cau_dds *dds, cau_error *error)
@@ -149,9 +162,10 @@ cau_status cau_dds_start(cau_dds *dds, cau_error *error)
 	dds->started = pthread_create(&dds->thread, NULL, run, dds) == 0;
 	if (!dds->started)
 		return cau_fail(error, CAU_NO_MEMORY, "dds", "no thread");
-	cau_log(CAU_LOG_NOTICE, NULL, "dds_open", "domain=%lld config=\"%s\"",
+	cau_log(CAU_LOG_NOTICE, NULL, "dds_open", "domain=%lld config=\"%s\" security=\"%s\"",
 	        (long long)dds->config->dds_domain,
-	        *dds->config->dds_config ? dds->config->dds_config : "loopback");
+	        *dds->config->dds_config ? dds->config->dds_config : "loopback",
+	        *dds->config->dds_security ? dds->config->dds_security : "off");
 	return CAU_OK;
 }
 

@@ -1,0 +1,72 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// DDS Security: the daemon's identity, from a folder of files named as in a ROS 2 keystore's
+// enclave, as properties of its participant. Cyclone makes no participant of a broken identity, so
+// one that was given is always in force.
+#include <stdio.h>
+#include <string.h>
+#include <unistd.h>
+
+#include "transport_dds/security.h"
+
+enum { FILE_BYTES = CAU_CONFIG_TEXT_BYTES + 64, PATH_KEPT = 100 };
+
+static const struct {
+	const char *property, *file;
+} identity[] = {
+	{"dds.sec.auth.identity_ca", "identity_ca.cert.pem"},
+	{"dds.sec.auth.identity_certificate", "cert.pem"},
+	{"dds.sec.auth.private_key", "key.pem"},
+	{"dds.sec.access.permissions_ca", "permissions_ca.cert.pem"},
+	{"dds.sec.access.governance", "governance.p7s"},
+	{"dds.sec.access.permissions", "permissions.p7s"},
+};
+
+// Debian keeps the plugins out of the linker's folders; the build has looked where.
+static const struct {
+	const char *name, *path, *function;
+} plugins[] = {
+	{"auth", CAU_DDS_PLUGINS "libdds_security_auth.so", "authentication"},
+	{"access", CAU_DDS_PLUGINS "libdds_security_ac.so", "access_control"},
+	{"crypto", CAU_DDS_PLUGINS "libdds_security_crypto.so", "crypto"},
+};
+
+static void set_plugin(dds_qos_t *qos, const char *name, const char *member, const char *value)
+{
+	char property[64];
+	snprintf(property, sizeof property, "dds.sec.%s.library.%s", name, member);
+	dds_qset_prop(qos, property, value);
+}
+
+static void set_plugins(dds_qos_t *qos)
+{
+	char function[64];
+	for (size_t i = 0; i < sizeof plugins / sizeof plugins[0]; i++) {
+		set_plugin(qos, plugins[i].name, "path", plugins[i].path);
+		snprintf(function, sizeof function, "init_%s", plugins[i].function);
+		set_plugin(qos, plugins[i].name, "init", function);
+		snprintf(function, sizeof function, "finalize_%s", plugins[i].function);
+		set_plugin(qos, plugins[i].name, "finalize", function);
+	}
+}
+
+static cau_status set_identity(dds_qos_t *qos, const char *folder, cau_error *error)
+{
+	for (size_t i = 0; i < sizeof identity / sizeof identity[0]; i++) {
+		char uri[FILE_BYTES];
+		snprintf(uri, sizeof uri, "file:%s/%s", folder, identity[i].file);
+		const char *path = uri + strlen("file:");
+		if (access(path, R_OK) != 0)
+			return cau_fail(error, CAU_NOT_FOUND, "dds_security", "cannot read %s in %.*s",
+			                identity[i].file, PATH_KEPT, folder);
+		dds_qset_prop(qos, identity[i].property, uri);
+	}
+	return CAU_OK;
+}
+
+cau_status cau_dds_secure(dds_qos_t *qos, const cau_config *config, cau_error *error)
+{
+	if (!*config->dds_security)
+		return CAU_OK;
+	set_plugins(qos);
+	return set_identity(qos, config->dds_security, error);
+}

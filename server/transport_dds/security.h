@@ -1,0 +1,11 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// DDS Security for the daemon's participant.
+#pragma once
+
+#include <dds/dds.h>
+
+#include "config/config.h"
+
+// Adds the identity in the folder config->dds_security to the participant's QoS; nothing if that is
+// empty. CAU_NOT_FOUND: a file of it cannot be read.
+cau_status cau_dds_secure(dds_qos_t *qos, const cau_config *config, cau_error *error);
