@@ -106,24 +106,32 @@ INLINE vreal v_sqrt(vreal a)
 #endif
 }
 
-// Sum of the lanes in double, in lane order by halves: the same on every tier.
+// Sums in double: lanes are widened and folded to eight partial sums, these are added up at the end
+// by halves. The same on every tier.
+typedef double vsum __attribute__((vector_size(64)));
+INLINE vsum v_widen(vreal a)
+{
+#if CAU_SINGLE
+	typedef float half_lanes __attribute__((vector_size(32)));
+	union {
+		vreal whole;
+		half_lanes half[2];
+	} u = {a};
+	return __builtin_convertvector(u.half[0], vsum) + __builtin_convertvector(u.half[1], vsum);
+#else
+	return (vsum)a;
+#endif
+}
+INLINE double v_total(vsum a)
+{
+	for (int width = 4; width; width /= 2)
+		for (int l = 0; l < width; ++l)
+			a[l] += a[l + width];
+	return a[0];
+}
 INLINE double v_sum(vreal a)
 {
-#if CAU_SINGLE && defined(__AVX512F__)
-	__m512d lane = _mm512_add_pd(_mm512_cvtps_pd(_mm512_castps512_ps256((__m512)a)),
-	                             _mm512_cvtps_pd(_mm512_extractf32x8_ps((__m512)a, 1)));
-	__m256d four = _mm256_add_pd(_mm512_castpd512_pd256(lane), _mm512_extractf64x4_pd(lane, 1));
-	__m128d two = _mm_add_pd(_mm256_castpd256_pd128(four), _mm256_extractf128_pd(four, 1));
-	return two[0] + two[1];
-#else
-	double lane[LANES];
-	for (int l = 0; l < LANES; ++l)
-		lane[l] = (double)a[l];
-	for (int width = LANES / 2; width; width /= 2)
-		for (int l = 0; l < width; ++l)
-			lane[l] += lane[l + width];
-	return lane[0];
-#endif
+	return v_total(v_widen(a));
 }
 
 // ---- three-vectors and small matrices of lanes
@@ -234,10 +242,17 @@ INLINE sym3 m3_transpose_times(m3 a, m3 b)
 	              v3_dot(a.c[0], b.c[1]), v3_dot(a.c[0], b.c[2]), v3_dot(a.c[1], b.c[2])};
 }
 
-// ---- vertices: four reals each (x, y, z, unused), gathered and scattered by lane
-// -------------------- v3_gather reads one vertex of every lane; v3_scatter writes one, lane l at
-// to + l * stride reals. In float on AVX, four vertices are transposed at a time inside each
-// 128-bit part of a vector: part j of row k is vertex 4 j + k.
+// ---- vertices: four reals each (x, y, z, unused)
+// v3_gather reads one vertex of every lane; v3_add_to adds to one of every lane, lane by lane, so
+// that lanes may name the same one. In float on AVX, four vertices are transposed at a time inside
+// each 128-bit part of a vector: part j of row k is vertex 4 j + k.
+#if CAU_SINGLE && defined(__AVX2__)
+INLINE void vertex_add(real *field, int32_t vertex, __m128 a)
+{
+	real *at = field + 4 * (int64_t)vertex;
+	_mm_store_ps(at, _mm_add_ps(_mm_load_ps(at), a));
+}
+#endif
 #if CAU_SINGLE && defined(__AVX512F__)
 typedef __m512 vertex_row;
 INLINE vertex_row vertex_row_load(const real *field, const int32_t *vertex, int k)
@@ -247,12 +262,12 @@ INLINE vertex_row vertex_row_load(const real *field, const int32_t *vertex, int 
 	row = _mm512_insertf32x4(row, _mm_load_ps(field + 4 * (int64_t)vertex[8 + k]), 2);
 	return _mm512_insertf32x4(row, _mm_load_ps(field + 4 * (int64_t)vertex[12 + k]), 3);
 }
-INLINE void vertex_row_store(real *to, int32_t stride, int k, vertex_row row)
+INLINE void vertex_row_add(real *field, const int32_t *vertex, int k, vertex_row row)
 {
-	_mm_store_ps(to + (int64_t)k * stride, _mm512_castps512_ps128(row));
-	_mm_store_ps(to + (int64_t)(4 + k) * stride, _mm512_extractf32x4_ps(row, 1));
-	_mm_store_ps(to + (int64_t)(8 + k) * stride, _mm512_extractf32x4_ps(row, 2));
-	_mm_store_ps(to + (int64_t)(12 + k) * stride, _mm512_extractf32x4_ps(row, 3));
+	vertex_add(field, vertex[k], _mm512_castps512_ps128(row));
+	vertex_add(field, vertex[4 + k], _mm512_extractf32x4_ps(row, 1));
+	vertex_add(field, vertex[8 + k], _mm512_extractf32x4_ps(row, 2));
+	vertex_add(field, vertex[12 + k], _mm512_extractf32x4_ps(row, 3));
 }
 #define ROW_LOW(a, b) _mm512_unpacklo_ps(a, b)
 #define ROW_HIGH(a, b) _mm512_unpackhi_ps(a, b)
@@ -270,16 +285,16 @@ INLINE v3 v3_gather(const real *field, const int32_t *vertex)
 	return (v3){(vreal)PAIR_LOW(xy01, xy23), (vreal)PAIR_HIGH(xy01, xy23),
 	            (vreal)PAIR_LOW(z01, z23)};
 }
-INLINE void v3_scatter(real *to, int32_t stride, v3 a)
+INLINE void v3_add_to(real *field, const int32_t *vertex, v3 a)
 {
 	vertex_row x = (vertex_row)a.x, y = (vertex_row)a.y, z = (vertex_row)a.z,
 			   none = _mm512_setzero_ps();
 	vertex_row xy_low = ROW_LOW(x, y), xy_high = ROW_HIGH(x, y);
 	vertex_row z_low = ROW_LOW(z, none), z_high = ROW_HIGH(z, none);
-	vertex_row_store(to, stride, 0, PAIR_LOW(xy_low, z_low));
-	vertex_row_store(to, stride, 1, PAIR_HIGH(xy_low, z_low));
-	vertex_row_store(to, stride, 2, PAIR_LOW(xy_high, z_high));
-	vertex_row_store(to, stride, 3, PAIR_HIGH(xy_high, z_high));
+	vertex_row_add(field, vertex, 0, PAIR_LOW(xy_low, z_low));
+	vertex_row_add(field, vertex, 1, PAIR_HIGH(xy_low, z_low));
+	vertex_row_add(field, vertex, 2, PAIR_LOW(xy_high, z_high));
+	vertex_row_add(field, vertex, 3, PAIR_HIGH(xy_high, z_high));
 }
 #elif CAU_SINGLE && defined(__AVX2__)
 typedef __m256 vertex_row;
@@ -288,10 +303,10 @@ INLINE vertex_row vertex_row_load(const real *field, const int32_t *vertex, int 
 	__m256 row = _mm256_castps128_ps256(_mm_load_ps(field + 4 * (int64_t)vertex[k]));
 	return _mm256_insertf128_ps(row, _mm_load_ps(field + 4 * (int64_t)vertex[4 + k]), 1);
 }
-INLINE void vertex_row_store(real *to, int32_t stride, int k, vertex_row row)
+INLINE void vertex_row_add(real *field, const int32_t *vertex, int k, vertex_row row)
 {
-	_mm_store_ps(to + (int64_t)k * stride, _mm256_castps256_ps128(row));
-	_mm_store_ps(to + (int64_t)(4 + k) * stride, _mm256_extractf128_ps(row, 1));
+	vertex_add(field, vertex[k], _mm256_castps256_ps128(row));
+	vertex_add(field, vertex[4 + k], _mm256_extractf128_ps(row, 1));
 }
 #define ROW_LOW(a, b) _mm256_unpacklo_ps(a, b)
 #define ROW_HIGH(a, b) _mm256_unpackhi_ps(a, b)
@@ -318,18 +333,18 @@ INLINE v3 v3_gather(const real *field, const int32_t *vertex)
 	}
 	return (v3){x.whole, y.whole, z.whole};
 }
-INLINE void v3_scatter(real *to, int32_t stride, v3 a)
+INLINE void v3_add_to(real *field, const int32_t *vertex, v3 a)
 {
 	vector_halves x = {a.x}, y = {a.y}, z = {a.z};
 	for (int h = 0; h < 2; ++h) {
-		real *at = to + 8 * (int64_t)h * stride;
+		const int32_t *at = vertex + 8 * h;
 		vertex_row none = _mm256_setzero_ps();
 		vertex_row xy_low = ROW_LOW(x.half[h], y.half[h]), xy_high = ROW_HIGH(x.half[h], y.half[h]);
 		vertex_row z_low = ROW_LOW(z.half[h], none), z_high = ROW_HIGH(z.half[h], none);
-		vertex_row_store(at, stride, 0, PAIR_LOW(xy_low, z_low));
-		vertex_row_store(at, stride, 1, PAIR_HIGH(xy_low, z_low));
-		vertex_row_store(at, stride, 2, PAIR_LOW(xy_high, z_high));
-		vertex_row_store(at, stride, 3, PAIR_HIGH(xy_high, z_high));
+		vertex_row_add(field, at, 0, PAIR_LOW(xy_low, z_low));
+		vertex_row_add(field, at, 1, PAIR_HIGH(xy_low, z_low));
+		vertex_row_add(field, at, 2, PAIR_LOW(xy_high, z_high));
+		vertex_row_add(field, at, 3, PAIR_HIGH(xy_high, z_high));
 	}
 }
 #else
@@ -344,14 +359,13 @@ INLINE v3 v3_gather(const real *field, const int32_t *vertex)
 	}
 	return out;
 }
-INLINE void v3_scatter(real *to, int32_t stride, v3 a)
+INLINE void v3_add_to(real *field, const int32_t *vertex, v3 a)
 {
 	for (int l = 0; l < LANES; ++l) {
-		real *at = to + (int64_t)l * stride;
-		at[0] = a.x[l];
-		at[1] = a.y[l];
-		at[2] = a.z[l];
-		at[3] = 0;
+		real *at = field + 4 * (int64_t)vertex[l];
+		at[0] += a.x[l];
+		at[1] += a.y[l];
+		at[2] += a.z[l];
 	}
 }
 #endif

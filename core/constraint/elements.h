@@ -5,9 +5,10 @@
 // has weight 0 and vertex 0. Arrays marked `real` are float or double, as the session's precision
 // says. A removed element keeps its slot with weight 0.
 //
-// Each slot writes the gradient of its energy (N) on its vertices to `gradient`, four reals a
-// vertex (x, y, z, 0): (slot_count x vertices x 4). Vertices sum them up in a fixed order
-// (vertex_sum.h).
+// The local step is done in shares of consecutive slots. A share has a record for each vertex of
+// its elements, four reals (x, y, z, 0), and adds the gradients of their energies (N) up there,
+// slot by slot; vertices then sum their records, in share order. So the sums do not depend on who
+// runs which share, and what a share writes stays in the nearest cache.
 #pragma once
 
 #include <stdint.h>
@@ -45,6 +46,7 @@ typedef struct cau_sheet_set {
 	int32_t slot_count, group_count;
 	cau_sheet_group *group;
 	int32_t *vertex[3];   // (slot_count)
+	int32_t *record[3];   // (slot_count): where the gradient on that vertex is added
 	void *dm_inverse[4];  // real, 1/m: row-major D_m'^-1
 	void *rest[6];        // real: columns of F_0 = F at rest
 	void *weight;         // real, N m: k x area x thickness; 0 once removed
@@ -57,7 +59,7 @@ typedef struct cau_sheet_set {
 typedef struct cau_fat_set {
 	int32_t slot_count, group_count;
 	cau_fat_group *group;
-	int32_t *vertex[4];
+	int32_t *vertex[4], *record[4];
 	void *dm_inverse[9]; // real, 1/m: row-major
 	void *volume;        // real, m^3; 0 once removed
 	void *
@@ -74,7 +76,7 @@ typedef struct cau_fat_set {
 // Trusses (section 5.2, last paragraph).
 typedef struct cau_link_set {
 	int32_t slot_count;
-	int32_t *vertex[2];
+	int32_t *vertex[2], *record[2];
 	void *rest[3];     // real, m: edge vector at rest
 	void *rest_length; // real, m
 	void *weight;      // real, N/m: E A / L; 0 once removed
@@ -83,7 +85,7 @@ typedef struct cau_link_set {
 // Bending: e = sum of c_i x_i over the four vertices of two triangles that share an edge.
 typedef struct cau_hinge_set {
 	int32_t slot_count;
-	int32_t *vertex[4];
+	int32_t *vertex[4], *record[4];
 	void *coefficient[4]; // real: c_i, sum 0
 	void *rest[3];        // real, m: e at rest
 	void *rest_length;    // real, m: |e| at rest
@@ -96,12 +98,9 @@ typedef struct cau_elements {
 	cau_fat_set fat;
 	cau_link_set link;
 	cau_hinge_set hinge;
-	// Gradient records, (record_count x 4 reals): sheets, fat, links, hinges one after the other.
-	void *gradient; // real
-	int64_t sheet_record, fat_record, link_record, hinge_record, record_count;
-	// Energy of each batch, J, in the same order.
-	double *energy;
-	int32_t sheet_batch, fat_batch, link_batch, hinge_batch, batch_count;
+	void *gradient; // real: the records, (record_count x 4)
+	int32_t record_count;
+	double *energy; // J, of each share
 } cau_elements;
 
 static inline double cau_real_get(const void *array, int single, int64_t index)

@@ -4,10 +4,10 @@
 
 #include "constraint/elements_make.h"
 
+enum { CAU_SHARE = 16 * CAU_BATCH }; // slots in a share of the local step, at most
+
 // elements_records.c, in this order, once the sets are made
-cau_status cau_elements_make_records(cau_elements *elements, cau_arena *arena, cau_error *error);
-cau_status cau_elements_make_work(const cau_elements *elements, cau_element_slots *slots,
+cau_status cau_elements_make_work(cau_elements *elements, cau_element_slots *slots,
                                   cau_arena *arena, cau_error *error);
-cau_status cau_elements_make_incidence(const cau_tissue *tissue, const cau_elements *elements,
-                                       cau_element_slots *slots, cau_arena *arena,
-                                       cau_error *error);
+cau_status cau_elements_make_records(const cau_tissue *tissue, cau_elements *elements,
+                                     cau_element_slots *slots, cau_arena *arena, cau_error *error);

@@ -58,6 +58,17 @@ static int32_t place(const group_key *keys, int32_t count, int32_t *first_slot)
 	return slots;
 }
 
+// Where in its group the k-th of `count` elements goes. Neighbours in the mesh follow each other
+// and share vertices: in each whole share they are dealt to the batches in turn, so that the lanes
+// of one batch rarely add to one record, which each would have to wait for.
+static int32_t spread(int32_t k, int32_t count)
+{
+	int32_t share = k / CAU_SHARE * CAU_SHARE, batches = CAU_SHARE / CAU_BATCH;
+	if (share + CAU_SHARE > count)
+		return k;
+	return share + (k - share) % batches * CAU_BATCH + (k - share) / batches;
+}
+
 static cau_status make_maps(cau_element_slots *slots, int kind, int32_t element_count,
                             int32_t slot_count, cau_arena *arena, cau_error *error)
 {
@@ -107,6 +118,7 @@ static cau_status make_sheets(const cau_tissue *tissue, int single, cau_arena *a
 	if (status)
 		return status;
 	if (!set->group || !index_arrays(arena, set->vertex, 3, set->slot_count) ||
+	    !index_arrays(arena, set->record, 3, set->slot_count) ||
 	    !arrays(arena, set->dm_inverse, 4, set->slot_count, single) ||
 	    !arrays(arena, set->rest, 6, set->slot_count, single) ||
 	    !arrays(arena, &set->weight, 1, set->slot_count, single) ||
@@ -119,11 +131,12 @@ static cau_status make_sheets(const cau_tissue *tissue, int single, cau_arena *a
 		                                  .slot_count = pad(keys[g].count),
 		                                  .layer = keys[g].layer,
 		                                  .material = keys[g].material};
-		int32_t slot = first[g];
+		int32_t done = 0;
 		for (int32_t t = 0; t < tissue->triangle_count; ++t) {
 			if (tissue->triangle_layer[t] != keys[g].layer ||
 			    tissue->triangle_material[t] != keys[g].material)
 				continue;
+			int32_t slot = first[g] + spread(done++, keys[g].count);
 			assign(slots, CAU_ELEMENT_TRIANGLE, t, slot);
 			cau_element_map map;
 			cau_tissue_element_map(tissue, CAU_ELEMENT_TRIANGLE, t, &map);
@@ -138,7 +151,6 @@ static cau_status make_sheets(const cau_tissue *tissue, int single, cau_arena *a
 				cau_real_set(set->polar[i], single, slot, axis);
 			}
 			cau_real_set(set->position_scale, single, slot, cau_element_map_scale(&map));
-			slot++;
 		}
 	}
 	return CAU_OK;
@@ -161,6 +173,7 @@ static cau_status make_fat(const cau_tissue *tissue, int single, cau_arena *aren
 		return status;
 	if (!set->group || !set->limited || !set->flowed ||
 	    !index_arrays(arena, set->vertex, 4, set->slot_count) ||
+	    !index_arrays(arena, set->record, 4, set->slot_count) ||
 	    !arrays(arena, set->dm_inverse, 9, set->slot_count, single) ||
 	    !arrays(arena, &set->volume, 1, set->slot_count, single) ||
 	    !arrays(arena, &set->limit_weight, 1, set->slot_count, single) ||
@@ -175,11 +188,12 @@ static cau_status make_fat(const cau_tissue *tissue, int single, cau_arena *aren
 		                                .slot_count = pad(keys[g].count),
 		                                .layer = keys[g].layer,
 		                                .material = keys[g].material};
-		int32_t slot = first[g];
+		int32_t done = 0;
 		for (int32_t t = 0; t < tissue->tetrahedron_count; ++t) {
 			if (tissue->tetrahedron_layer[t] != keys[g].layer ||
 			    tissue->tetrahedron_material[t] != keys[g].material)
 				continue;
+			int32_t slot = first[g] + spread(done++, keys[g].count);
 			assign(slots, CAU_ELEMENT_TETRAHEDRON, t, slot);
 			cau_element_map map;
 			cau_tissue_element_map(tissue, CAU_ELEMENT_TETRAHEDRON, t, &map);
@@ -190,7 +204,6 @@ static cau_status make_fat(const cau_tissue *tissue, int single, cau_arena *aren
 				             tissue->tetrahedron_dm_inverse[9 * (size_t)t + (size_t)i]);
 			}
 			cau_real_set(set->position_scale, single, slot, cau_element_map_scale(&map));
-			slot++;
 		}
 	}
 	for (int32_t s = 0; s < set->slot_count; ++s) {
@@ -221,6 +234,7 @@ static cau_status make_links(const cau_tissue *tissue, int single, cau_arena *ar
 	if (status)
 		return status;
 	if (!index_arrays(arena, set->vertex, 2, set->slot_count) ||
+	    !index_arrays(arena, set->record, 2, set->slot_count) ||
 	    !arrays(arena, set->rest, 3, set->slot_count, single) ||
 	    !arrays(arena, &set->rest_length, 1, set->slot_count, single) ||
 	    !arrays(arena, &set->weight, 1, set->slot_count, single))
@@ -250,6 +264,7 @@ static cau_status make_hinges(const cau_tissue *tissue, int single, cau_arena *a
 	if (status)
 		return status;
 	if (!index_arrays(arena, set->vertex, 4, set->slot_count) ||
+	    !index_arrays(arena, set->record, 4, set->slot_count) ||
 	    !arrays(arena, set->coefficient, 4, set->slot_count, single) ||
 	    !arrays(arena, set->rest, 3, set->slot_count, single) ||
 	    !arrays(arena, &set->rest_length, 1, set->slot_count, single) ||
@@ -293,10 +308,8 @@ cau_status cau_elements_make(const cau_tissue *tissue, int single, cau_arena *ar
 	if (!status)
 		status = make_hinges(tissue, single, arena, elements, slots, error);
 	if (!status)
-		status = cau_elements_make_records(elements, arena, error);
-	if (!status)
 		status = cau_elements_make_work(elements, slots, arena, error);
 	if (!status)
-		status = cau_elements_make_incidence(tissue, elements, slots, arena, error);
+		status = cau_elements_make_records(tissue, elements, slots, arena, error);
 	return status;
 }

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Gradient records, the local step's shares, and which records each vertex sums.
-#include "constraint/elements_internal.h"
+// The local step's shares, the records they write, and which records each vertex sums.
+#include <string.h>
 
-enum { WORK_BATCHES = 16 }; // batches in one share of the local step
+#include "constraint/elements_internal.h"
 
 static cau_status no_memory(cau_error *error)
 {
@@ -11,21 +11,26 @@ static cau_status no_memory(cau_error *error)
 
 static void add_work(cau_element_slots *slots, int kind, int32_t group, int32_t first, int32_t last)
 {
-	for (int32_t at = first; at < last; at += WORK_BATCHES * CAU_BATCH) {
-		int32_t end = at + WORK_BATCHES * CAU_BATCH;
-		slots->work[slots->work_count++] =
-			(cau_local_work){kind, group, at, end < last ? end : last};
+	for (int32_t at = first; at < last; at += CAU_SHARE) {
+		int32_t end = at + CAU_SHARE, number = slots->work_count++;
+		slots->work[number] = (cau_local_work){.number = number,
+		                                       .kind = kind,
+		                                       .group = group,
+		                                       .first = at,
+		                                       .last = end < last ? end : last};
 	}
 }
 
-cau_status cau_elements_make_work(const cau_elements *elements, cau_element_slots *slots,
+cau_status cau_elements_make_work(cau_elements *elements, cau_element_slots *slots,
                                   cau_arena *arena, cau_error *error)
 {
-	int32_t share = WORK_BATCHES * CAU_BATCH;
-	int32_t most = elements->batch_count * CAU_BATCH / share + elements->sheet.group_count +
-	               elements->fat.group_count + 2;
+	int32_t slot_count = elements->sheet.slot_count + elements->fat.slot_count +
+	                     elements->link.slot_count + elements->hinge.slot_count;
+	int32_t most =
+		slot_count / CAU_SHARE + elements->sheet.group_count + elements->fat.group_count + 2;
 	slots->work = cau_arena_array(arena, (size_t)most, sizeof *slots->work);
-	if (!slots->work)
+	elements->energy = cau_arena_array(arena, (size_t)most, sizeof *elements->energy);
+	if (!slots->work || !elements->energy)
 		return no_memory(error);
 	for (int32_t g = 0; g < elements->fat.group_count; ++g) {
 		const cau_fat_group *group = &elements->fat.group[g];
@@ -41,86 +46,106 @@ cau_status cau_elements_make_work(const cau_elements *elements, cau_element_slot
 	return CAU_OK;
 }
 
-// Calls visit(context, vertex, record) for every record of a real element, sheets, fat, links,
-// hinges.
-typedef struct record_range {
-	int32_t *const *vertex;
+// ---- records
+typedef struct share_elements {
+	int32_t *const *vertex, *const *record;
 	const int32_t *element_at;
-	int32_t vertices, slots;
-	int64_t record;
-} record_range;
+	int32_t vertices;
+} share_elements;
 
-static void ranges_of(const cau_elements *elements, const cau_element_slots *slots,
-                      record_range range[CAU_ELEMENT_KINDS])
+static share_elements elements_of(const cau_elements *elements, const cau_element_slots *slots,
+                                  const cau_local_work *work)
 {
-	range[CAU_ELEMENT_TRIANGLE] =
-		(record_range){elements->sheet.vertex, slots->element_at[CAU_ELEMENT_TRIANGLE], 3,
-	                   elements->sheet.slot_count, elements->sheet_record};
-	range[CAU_ELEMENT_TETRAHEDRON] =
-		(record_range){elements->fat.vertex, slots->element_at[CAU_ELEMENT_TETRAHEDRON], 4,
-	                   elements->fat.slot_count, elements->fat_record};
-	range[CAU_ELEMENT_LINK] =
-		(record_range){elements->link.vertex, slots->element_at[CAU_ELEMENT_LINK], 2,
-	                   elements->link.slot_count, elements->link_record};
-	range[CAU_ELEMENT_HINGE] =
-		(record_range){elements->hinge.vertex, slots->element_at[CAU_ELEMENT_HINGE], 4,
-	                   elements->hinge.slot_count, elements->hinge_record};
+	switch (work->kind) {
+	case CAU_WORK_SHEET:
+		return (share_elements){elements->sheet.vertex, elements->sheet.record,
+		                        slots->element_at[CAU_ELEMENT_TRIANGLE], 3};
+	case CAU_WORK_FAT:
+		return (share_elements){elements->fat.vertex, elements->fat.record,
+		                        slots->element_at[CAU_ELEMENT_TETRAHEDRON], 4};
+	case CAU_WORK_LINK:
+		return (share_elements){elements->link.vertex, elements->link.record,
+		                        slots->element_at[CAU_ELEMENT_LINK], 2};
+	default:
+		return (share_elements){elements->hinge.vertex, elements->hinge.record,
+		                        slots->element_at[CAU_ELEMENT_HINGE], 4};
+	}
 }
 
-cau_status cau_elements_make_incidence(const cau_tissue *tissue, const cau_elements *elements,
-                                       cau_element_slots *slots, cau_arena *arena, cau_error *error)
+// Numbers the share's records from `next` on, a vertex each as they come; `last_record` (by vertex)
+// holds the last record that each vertex got. The first belongs to padding and to no vertex.
+static int32_t number_records(const share_elements *share, cau_local_work *work, int32_t next,
+                              int32_t *last_record)
+{
+	work->first_record = next++;
+	for (int32_t s = work->first; s < work->last; ++s)
+		for (int i = 0; i < share->vertices; ++i) {
+			int32_t *last = &last_record[share->vertex[i][s]];
+			if (share->element_at[s] < 0) {
+				share->record[i][s] = work->first_record;
+				continue;
+			}
+			if (*last < work->first_record)
+				*last = next++;
+			share->record[i][s] = *last;
+		}
+	work->record_count = next - work->first_record;
+	return next;
+}
+
+// Lists for each vertex its records: counts first, then cursors, in place.
+static cau_status list_records(const cau_tissue *tissue, const cau_elements *elements,
+                               cau_element_slots *slots, cau_arena *arena, int32_t *last_record)
 {
 	cau_incidence *incidence = &slots->incidence;
-	record_range range[CAU_ELEMENT_KINDS];
-	ranges_of(elements, slots, range);
 	size_t n = (size_t)tissue->vertex_count;
 	incidence->first = cau_arena_array(arena, n + 2, sizeof(int32_t));
 	incidence->record = cau_arena_array(arena, (size_t)elements->record_count, sizeof(int32_t));
 	if (!incidence->first || !incidence->record)
-		return no_memory(error);
-	int32_t *place = incidence->first + 1; // counts, then cursors, in place
+		return CAU_NO_MEMORY;
+	int32_t *place = incidence->first + 1;
 	for (int pass = 0; pass < 2; ++pass) {
-		for (int kind = 0; kind < CAU_ELEMENT_KINDS; ++kind)
-			for (int32_t s = 0; s < range[kind].slots; ++s)
-				for (int i = 0; i < range[kind].vertices && range[kind].element_at[s] >= 0; ++i) {
-					int32_t v = range[kind].vertex[i][s];
+		memset(last_record, -1, n * sizeof *last_record);
+		for (int32_t w = 0; w < slots->work_count; ++w) {
+			const cau_local_work *work = &slots->work[w];
+			share_elements share = elements_of(elements, slots, work);
+			for (int32_t s = work->first; s < work->last; ++s)
+				for (int i = 0; i < share.vertices && share.element_at[s] >= 0; ++i) {
+					int32_t v = share.vertex[i][s], record = share.record[i][s];
+					if (last_record[v] == record)
+						continue;
+					last_record[v] = record;
 					if (!pass)
 						place[v + 1]++;
 					else
-						incidence->record[place[v]++] =
-							(int32_t)(range[kind].record + (int64_t)range[kind].vertices * s + i);
+						incidence->record[place[v]++] = record;
 				}
+		}
 		for (int32_t v = 0; !pass && v < tissue->vertex_count; ++v)
 			place[v + 1] += place[v];
 	}
 	return CAU_OK;
 }
 
-cau_status cau_elements_make_records(cau_elements *elements, cau_arena *arena, cau_error *error)
+cau_status cau_elements_make_records(const cau_tissue *tissue, cau_elements *elements,
+                                     cau_element_slots *slots, cau_arena *arena, cau_error *error)
 {
-	int64_t records = 0;
-	elements->sheet_record = records;
-	records += 3 * (int64_t)elements->sheet.slot_count;
-	elements->fat_record = records;
-	records += 4 * (int64_t)elements->fat.slot_count;
-	elements->link_record = records;
-	records += 2 * (int64_t)elements->link.slot_count;
-	elements->hinge_record = records;
-	records += 4 * (int64_t)elements->hinge.slot_count;
-	elements->record_count = records;
-	int32_t batches = 0;
-	elements->sheet_batch = batches;
-	batches += elements->sheet.slot_count / CAU_BATCH;
-	elements->fat_batch = batches;
-	batches += elements->fat.slot_count / CAU_BATCH;
-	elements->link_batch = batches;
-	batches += elements->link.slot_count / CAU_BATCH;
-	elements->hinge_batch = batches;
-	batches += elements->hinge.slot_count / CAU_BATCH;
-	elements->batch_count = batches;
-	elements->gradient =
-		cau_arena_array(arena, 4 * (size_t)records, cau_real_bytes(elements->single));
-	elements->energy = cau_arena_array(arena, (size_t)batches, sizeof(double));
-	return elements->gradient && elements->energy && records < INT32_MAX ? CAU_OK
-	                                                                     : no_memory(error);
+	cau_arena scratch = {0};
+	size_t n = (size_t)tissue->vertex_count;
+	int32_t *last_record = cau_arena_array(&scratch, n, sizeof *last_record);
+	cau_status status = last_record ? CAU_OK : CAU_NO_MEMORY;
+	if (!status) {
+		memset(last_record, -1, n * sizeof *last_record);
+		for (int32_t w = 0; w < slots->work_count; ++w) {
+			share_elements share = elements_of(elements, slots, &slots->work[w]);
+			elements->record_count =
+				number_records(&share, &slots->work[w], elements->record_count, last_record);
+		}
+		elements->gradient = cau_arena_array(arena, 4 * (size_t)elements->record_count,
+		                                     cau_real_bytes(elements->single));
+		status = elements->gradient ? list_records(tissue, elements, slots, arena, last_record)
+		                            : CAU_NO_MEMORY;
+	}
+	cau_arena_finish(&scratch);
+	return status ? no_memory(error) : CAU_OK;
 }

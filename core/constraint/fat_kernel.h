@@ -96,9 +96,9 @@ INLINE m3 fat_limit_residual(const cau_fat_group *group, m3 f, sym3 root, rotati
 	return diagonal ? m3_scale(diagonal_scale_fat(r, dm_inverse, g2), r) : r;
 }
 
-// One lane group: returns the sum of energies (J) and writes the gradient on the four vertices.
-INLINE double fat_lanes(const cau_fat_set *set, const cau_fat_group *group, int32_t slot,
-                        const real *displacement, int limited, int diagonal, real *record)
+// One lane group: returns the energies (J) and adds the gradient on the four vertices.
+INLINE vreal fat_lanes(const cau_fat_set *set, const cau_fat_group *group, int32_t slot,
+                       const real *displacement, int limited, int diagonal, real *records)
 {
 	v3 u0 = v3_gather(displacement, set->vertex[0] + slot);
 	v3 d[3];
@@ -128,12 +128,12 @@ INLINE double fat_lanes(const cau_fat_set *set, const cau_fat_group *group, int3
 		p = m3_scale(diagonal_scale_fat(r, m, g2), p);
 	}
 	m3 stress = m3_scale(volume, p); // N m
-	double energy = v_sum(volume * density);
+	vreal energy = volume * density;
 	if (limited) {
 		vreal w = v_load(set->limit_weight, slot);
 		m3 r = fat_limit_residual(group, f, sym3_load(set->target, slot), &polar, m, g2, diagonal);
 		stress = m3_add_scaled(stress, w, r);
-		energy += 0.5 * v_sum(w * m3_dot(r, r));
+		energy += (real)0.5 * w * m3_dot(r, r);
 	}
 	if (rotated)
 		rotation_store(set->polar, slot, limited ? polar : energy_polar);
@@ -141,23 +141,21 @@ INLINE double fat_lanes(const cau_fat_set *set, const cau_fat_group *group, int3
 	for (int i = 0; i < 3; ++i) {
 		v3 g = m3_apply(stress, (v3){m[3 * i], m[3 * i + 1], m[3 * i + 2]});
 		sum = v3_add(sum, g);
-		v3_scatter(record + 4 * (i + 1), 16, g);
+		v3_add_to(records, set->record[i + 1] + slot, g);
 	}
-	v3_scatter(record, 16, v3_sub(v3_zero(), sum));
+	v3_add_to(records, set->record[0] + slot, v3_sub(v3_zero(), sum));
 	return energy;
 }
 
-// Slots [first, last) of one group. `displacement` is u = x - X, m, (vertex_count x 4).
-static void fat_kernel(const cau_elements *elements, const cau_fat_group *group, int32_t first,
-                       int32_t last, const real *displacement, int diagonal)
+// Slots [first, last) of one group: returns their energy, J. `displacement` is u = x - X, m,
+// (vertex_count x 4).
+static double fat_kernel(const cau_elements *elements, const cau_fat_group *group, int32_t first,
+                         int32_t last, const real *displacement, int diagonal)
 {
 	const cau_fat_set *set = &elements->fat;
-	real *out = (real *)elements->gradient + 4 * elements->fat_record;
-	for (int32_t batch = first / CAU_BATCH; batch < last / CAU_BATCH; ++batch) {
-		double energy = 0;
-		for (int32_t slot = batch * CAU_BATCH; slot < (batch + 1) * CAU_BATCH; slot += LANES)
-			energy += fat_lanes(set, group, slot, displacement, set->limited[batch], diagonal,
-			                    out + 16 * (int64_t)slot);
-		elements->energy[elements->fat_batch + batch] = energy;
-	}
+	vsum energy = {0};
+	for (int32_t slot = first; slot < last; slot += LANES)
+		energy += v_widen(fat_lanes(set, group, slot, displacement, set->limited[slot / CAU_BATCH],
+		                            diagonal, elements->gradient));
+	return v_total(energy);
 }

@@ -16,55 +16,50 @@ INLINE v3 length_residual(v3 rest, v3 d, vreal rest_length)
 	return v3_select(rest_length > v_set(0), v3_scale(step, e), d);
 }
 
+// Slots [first, last): both return their energy, J.
 // Position scale of the diagonal system for a rank-1 element: |G|^2 / vertices x |R|^2 / |R G^T|^2
 // is 1 / vertices whatever G is.
-static void link_kernel(const cau_elements *elements, int32_t first, int32_t last,
-                        const real *displacement, int diagonal)
+static double link_kernel(const cau_elements *elements, int32_t first, int32_t last,
+                          const real *displacement, int diagonal)
 {
 	const cau_link_set *set = &elements->link;
-	real *out = (real *)elements->gradient + 4 * elements->link_record;
 	real scale = diagonal ? (real)0.5 : 1;
-	for (int32_t batch = first / CAU_BATCH; batch < last / CAU_BATCH; ++batch) {
-		double energy = 0;
-		for (int32_t slot = batch * CAU_BATCH; slot < (batch + 1) * CAU_BATCH; slot += LANES) {
-			v3 d = v3_sub(v3_gather(displacement, set->vertex[1] + slot),
-			              v3_gather(displacement, set->vertex[0] + slot));
-			v3 rest = {v_load(set->rest[0], slot), v_load(set->rest[1], slot),
-			           v_load(set->rest[2], slot)};
-			v3 r = length_residual(rest, d, v_load(set->rest_length, slot));
-			vreal w = v_load(set->weight, slot);
-			energy += 0.5 * v_sum(w * v3_dot(r, r));
-			v3 g = v3_scale(scale * w, r);
-			v3_scatter(out + 8 * (int64_t)slot, 8, v3_sub(v3_zero(), g));
-			v3_scatter(out + 8 * (int64_t)slot + 4, 8, g);
-		}
-		elements->energy[elements->link_batch + batch] = energy;
+	vsum energy = {0};
+	for (int32_t slot = first; slot < last; slot += LANES) {
+		v3 d = v3_sub(v3_gather(displacement, set->vertex[1] + slot),
+		              v3_gather(displacement, set->vertex[0] + slot));
+		v3 rest = {v_load(set->rest[0], slot), v_load(set->rest[1], slot),
+		           v_load(set->rest[2], slot)};
+		v3 r = length_residual(rest, d, v_load(set->rest_length, slot));
+		vreal w = v_load(set->weight, slot);
+		energy += v_widen(w * v3_dot(r, r));
+		v3 g = v3_scale(scale * w, r);
+		v3_add_to(elements->gradient, set->record[0] + slot, v3_sub(v3_zero(), g));
+		v3_add_to(elements->gradient, set->record[1] + slot, g);
 	}
+	return 0.5 * v_total(energy);
 }
 
-static void hinge_kernel(const cau_elements *elements, int32_t first, int32_t last,
-                         const real *displacement, int diagonal)
+static double hinge_kernel(const cau_elements *elements, int32_t first, int32_t last,
+                           const real *displacement, int diagonal)
 {
 	const cau_hinge_set *set = &elements->hinge;
-	real *out = (real *)elements->gradient + 4 * elements->hinge_record;
 	real scale = diagonal ? (real)0.25 : 1;
-	for (int32_t batch = first / CAU_BATCH; batch < last / CAU_BATCH; ++batch) {
-		double energy = 0;
-		for (int32_t slot = batch * CAU_BATCH; slot < (batch + 1) * CAU_BATCH; slot += LANES) {
-			vreal c[4];
-			v3 d = v3_zero();
-			for (int i = 0; i < 4; ++i) {
-				c[i] = v_load(set->coefficient[i], slot);
-				d = v3_add_scaled(d, c[i], v3_gather(displacement, set->vertex[i] + slot));
-			}
-			v3 rest = {v_load(set->rest[0], slot), v_load(set->rest[1], slot),
-			           v_load(set->rest[2], slot)};
-			v3 r = length_residual(rest, d, v_load(set->rest_length, slot));
-			vreal w = v_load(set->weight, slot);
-			energy += 0.5 * v_sum(w * v3_dot(r, r));
-			for (int i = 0; i < 4; ++i)
-				v3_scatter(out + 16 * (int64_t)slot + 4 * i, 16, v3_scale(scale * w * c[i], r));
+	vsum energy = {0};
+	for (int32_t slot = first; slot < last; slot += LANES) {
+		vreal c[4];
+		v3 d = v3_zero();
+		for (int i = 0; i < 4; ++i) {
+			c[i] = v_load(set->coefficient[i], slot);
+			d = v3_add_scaled(d, c[i], v3_gather(displacement, set->vertex[i] + slot));
 		}
-		elements->energy[elements->hinge_batch + batch] = energy;
+		v3 rest = {v_load(set->rest[0], slot), v_load(set->rest[1], slot),
+		           v_load(set->rest[2], slot)};
+		v3 r = length_residual(rest, d, v_load(set->rest_length, slot));
+		vreal w = v_load(set->weight, slot);
+		energy += v_widen(w * v3_dot(r, r));
+		for (int i = 0; i < 4; ++i)
+			v3_add_to(elements->gradient, set->record[i] + slot, v3_scale(scale * w * c[i], r));
 	}
+	return 0.5 * v_total(energy);
 }

@@ -59,57 +59,53 @@ INLINE sheet_gradient sheet_residual(const cau_sheet_group *group, sheet_gradien
 	return r;
 }
 
-// Slots [first, last) of one group. `displacement` is u = x - X, m, (vertex_count x 4).
-static void sheet_kernel(const cau_elements *elements, const cau_sheet_group *group, int32_t first,
-                         int32_t last, const real *displacement, int diagonal)
+// Slots [first, last) of one group: returns their energy, J. `displacement` is u = x - X, m,
+// (vertex_count x 4).
+static double sheet_kernel(const cau_elements *elements, const cau_sheet_group *group,
+                           int32_t first, int32_t last, const real *displacement, int diagonal)
 {
 	const cau_sheet_set *set = &elements->sheet;
-	real *out = (real *)elements->gradient + 4 * elements->sheet_record;
-	for (int32_t batch = first / CAU_BATCH; batch < last / CAU_BATCH; ++batch) {
-		double energy = 0;
-		for (int32_t slot = batch * CAU_BATCH; slot < (batch + 1) * CAU_BATCH; slot += LANES) {
-			v3 u0 = v3_gather(displacement, set->vertex[0] + slot);
-			v3 d1 = v3_sub(v3_gather(displacement, set->vertex[1] + slot), u0);
-			v3 d2 = v3_sub(v3_gather(displacement, set->vertex[2] + slot), u0);
-			vreal m[4];
-			for (int i = 0; i < 4; ++i)
-				m[i] = v_load(set->dm_inverse[i], slot);
-			v3 h[2] = {v3_add_scaled(v3_scale(m[0], d1), m[2], d2),
-			           v3_add_scaled(v3_scale(m[1], d1), m[3], d2)};
-			v3 f0[2];
-			sheet_gradient polar;
-			for (int a = 0; a < 2; ++a) {
-				f0[a] = (v3){v_load(set->rest[3 * a], slot), v_load(set->rest[3 * a + 1], slot),
-				             v_load(set->rest[3 * a + 2], slot)};
-				polar.c[a] =
-					(v3){v_load(set->polar[3 * a], slot), v_load(set->polar[3 * a + 1], slot),
-				         v_load(set->polar[3 * a + 2], slot)};
-			}
-			sym2 k = sheet_metric_above_identity(f0, h);
-			k.a00 += 1;
-			k.a11 += 1;
-			sheet_gradient f = {{v3_add(f0[0], h[0]), v3_add(f0[1], h[1])}};
-			sym2 root = {v_load(set->target[0], slot), v_load(set->target[1], slot),
-			             v_load(set->target[2], slot)};
-			vreal g2 = diagonal ? v_load(set->position_scale, slot) : v_set(0);
-			sheet_gradient r = sheet_residual(group, f, k, root, &polar, m, g2, diagonal);
-			vreal w = v_load(set->weight, slot);
-			energy += v_sum(w * (v3_dot(r.c[0], r.c[0]) + v3_dot(r.c[1], r.c[1])));
-			// gradient on the vertices: w R D_m'^-T
-			v3 s0 = v3_scale(w, r.c[0]), s1 = v3_scale(w, r.c[1]);
-			v3 g1 = v3_add_scaled(v3_scale(m[0], s0), m[1], s1);
-			v3 g2v = v3_add_scaled(v3_scale(m[2], s0), m[3], s1);
-			v3 g0 = v3_sub(v3_sub(v3_zero(), g1), g2v);
-			real *record = out + 12 * (int64_t)slot;
-			v3_scatter(record, 12, g0);
-			v3_scatter(record + 4, 12, g1);
-			v3_scatter(record + 8, 12, g2v);
-			for (int a = 0; a < 2; ++a) {
-				v_store(set->polar[3 * a], slot, polar.c[a].x);
-				v_store(set->polar[3 * a + 1], slot, polar.c[a].y);
-				v_store(set->polar[3 * a + 2], slot, polar.c[a].z);
-			}
+	vsum energy = {0};
+	for (int32_t slot = first; slot < last; slot += LANES) {
+		v3 u0 = v3_gather(displacement, set->vertex[0] + slot);
+		v3 d1 = v3_sub(v3_gather(displacement, set->vertex[1] + slot), u0);
+		v3 d2 = v3_sub(v3_gather(displacement, set->vertex[2] + slot), u0);
+		vreal m[4];
+		for (int i = 0; i < 4; ++i)
+			m[i] = v_load(set->dm_inverse[i], slot);
+		v3 h[2] = {v3_add_scaled(v3_scale(m[0], d1), m[2], d2),
+		           v3_add_scaled(v3_scale(m[1], d1), m[3], d2)};
+		v3 f0[2];
+		sheet_gradient polar;
+		for (int a = 0; a < 2; ++a) {
+			f0[a] = (v3){v_load(set->rest[3 * a], slot), v_load(set->rest[3 * a + 1], slot),
+			             v_load(set->rest[3 * a + 2], slot)};
+			polar.c[a] = (v3){v_load(set->polar[3 * a], slot), v_load(set->polar[3 * a + 1], slot),
+			                  v_load(set->polar[3 * a + 2], slot)};
 		}
-		elements->energy[elements->sheet_batch + batch] = 0.5 * energy;
+		sym2 k = sheet_metric_above_identity(f0, h);
+		k.a00 += 1;
+		k.a11 += 1;
+		sheet_gradient f = {{v3_add(f0[0], h[0]), v3_add(f0[1], h[1])}};
+		sym2 root = {v_load(set->target[0], slot), v_load(set->target[1], slot),
+		             v_load(set->target[2], slot)};
+		vreal g2 = diagonal ? v_load(set->position_scale, slot) : v_set(0);
+		sheet_gradient r = sheet_residual(group, f, k, root, &polar, m, g2, diagonal);
+		vreal w = v_load(set->weight, slot);
+		energy += v_widen(w * (v3_dot(r.c[0], r.c[0]) + v3_dot(r.c[1], r.c[1])));
+		// gradient on the vertices: w R D_m'^-T
+		v3 s0 = v3_scale(w, r.c[0]), s1 = v3_scale(w, r.c[1]);
+		v3 g1 = v3_add_scaled(v3_scale(m[0], s0), m[1], s1);
+		v3 g2v = v3_add_scaled(v3_scale(m[2], s0), m[3], s1);
+		v3 g0 = v3_sub(v3_sub(v3_zero(), g1), g2v);
+		v3_add_to(elements->gradient, set->record[0] + slot, g0);
+		v3_add_to(elements->gradient, set->record[1] + slot, g1);
+		v3_add_to(elements->gradient, set->record[2] + slot, g2v);
+		for (int a = 0; a < 2; ++a) {
+			v_store(set->polar[3 * a], slot, polar.c[a].x);
+			v_store(set->polar[3 * a + 1], slot, polar.c[a].y);
+			v_store(set->polar[3 * a + 2], slot, polar.c[a].z);
+		}
 	}
+	return 0.5 * v_total(energy);
 }

@@ -84,8 +84,8 @@ static double add_drag(cau_step_solver *solver)
 double cau_solver_elastic_energy(const cau_step_solver *solver)
 {
 	double energy = 0;
-	for (int32_t b = 0; b < solver->elements.batch_count; ++b)
-		energy += solver->elements.energy[b];
+	for (int32_t w = 0; w < solver->slots.work_count; ++w)
+		energy += solver->elements.energy[w];
 	return energy;
 }
 

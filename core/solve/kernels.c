@@ -3,6 +3,8 @@
 // CAU_ISA the instruction set's name.
 #include "solve/kernels.h"
 
+#include <string.h>
+
 #include "constraint/fat_kernel.h"
 #include "constraint/link_kernel.h"
 #include "constraint/plasticity_kernel.h"
@@ -14,20 +16,23 @@ typedef real vertex_reals __attribute__((vector_size(4 * sizeof(real)), may_alia
 static void local(const cau_elements *elements, const cau_local_work *work,
                   const void *displacement, int diagonal)
 {
+	memset((vertex_reals *)elements->gradient + work->first_record, 0,
+	       (size_t)work->record_count * sizeof(vertex_reals));
+	double *energy = &elements->energy[work->number];
 	switch (work->kind) {
 	case CAU_WORK_SHEET:
-		sheet_kernel(elements, &elements->sheet.group[work->group], work->first, work->last,
-		             displacement, diagonal);
+		*energy = sheet_kernel(elements, &elements->sheet.group[work->group], work->first,
+		                       work->last, displacement, diagonal);
 		break;
 	case CAU_WORK_FAT:
-		fat_kernel(elements, &elements->fat.group[work->group], work->first, work->last,
-		           displacement, diagonal);
+		*energy = fat_kernel(elements, &elements->fat.group[work->group], work->first, work->last,
+		                     displacement, diagonal);
 		break;
 	case CAU_WORK_LINK:
-		link_kernel(elements, work->first, work->last, displacement, diagonal);
+		*energy = link_kernel(elements, work->first, work->last, displacement, diagonal);
 		break;
 	default:
-		hinge_kernel(elements, work->first, work->last, displacement, diagonal);
+		*energy = hinge_kernel(elements, work->first, work->last, displacement, diagonal);
 		break;
 	}
 }

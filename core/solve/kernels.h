@@ -5,7 +5,8 @@
 #include "constraint/elements.h"
 #include "solve/sweep.h"
 
-// A share of the local step: slots [first, last) of one group, whole batches.
+// A share of the local step: slots [first, last) of one group, whole batches, and the records that
+// it alone writes.
 typedef enum cau_work_kind {
 	CAU_WORK_SHEET,
 	CAU_WORK_FAT,
@@ -14,10 +15,11 @@ typedef enum cau_work_kind {
 } cau_work_kind;
 
 typedef struct cau_local_work {
-	int32_t kind, group, first, last;
+	int32_t number, kind, group, first, last;
+	int32_t first_record, record_count;
 } cau_local_work;
 
-// For each vertex the gradient records of its elements: record[first[v] .. first[v + 1]),
+// For each vertex its records, one a share that has it: record[first[v] .. first[v + 1]),
 // ascending.
 typedef struct cau_incidence {
 	int32_t *first; // (vertex_count + 1)
@@ -30,8 +32,7 @@ typedef struct cau_kernels {
 	const char *instruction_set;
 	int single;
 
-	// Gradient records (N) and batch energies (J) of the elements in `work`, at displacement u
-	// (real, m).
+	// Records (N) and energy (J) of the elements in `work`, at displacement u (real, m).
 	void (*local)(const cau_elements *elements, const cau_local_work *work,
 	              const void *displacement, int diagonal);
 	// After a step: plastic flow; returns the number of inverted tetrahedra.

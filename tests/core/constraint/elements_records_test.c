@@ -12,7 +12,19 @@ static void make(rig *r, int precision)
 	rig_build(r, NULL, 1);
 }
 
-// Each record of an element stands in the list of its vertex, once, ascending; no other does.
+// The records of one kind's elements, by slot.
+static int32_t *const *records_of(const cau_elements *e, int kind)
+{
+	int32_t *const *of[CAU_ELEMENT_KINDS];
+	of[CAU_ELEMENT_TRIANGLE] = e->sheet.record;
+	of[CAU_ELEMENT_TETRAHEDRON] = e->fat.record;
+	of[CAU_ELEMENT_LINK] = e->link.record;
+	of[CAU_ELEMENT_HINGE] = e->hinge.record;
+	return of[kind];
+}
+
+// Each vertex of an element has a record, of its own vertex, which that vertex sums once; what no
+// vertex sums no element has.
 static void test_every_record_is_summed_once(void **state)
 {
 	(void)state;
@@ -21,6 +33,7 @@ static void test_every_record_is_summed_once(void **state)
 	const cau_elements *e = &r.solver.elements;
 	const cau_incidence *incidence = &r.solver.slots.incidence;
 	int32_t *vertex_of = cau_arena_array(&r.arena, (size_t)e->record_count, sizeof(int32_t));
+	uint8_t *used = cau_arena_array(&r.arena, (size_t)e->record_count, 1);
 	memset(vertex_of, -1, (size_t)e->record_count * sizeof(int32_t));
 	for (int32_t v = 0; v < r.tissue.vertex_count; ++v)
 		for (int32_t k = incidence->first[v]; k < incidence->first[v + 1]; ++k) {
@@ -29,18 +42,47 @@ static void test_every_record_is_summed_once(void **state)
 			assert_int_equal(vertex_of[incidence->record[k]], -1);
 			vertex_of[incidence->record[k]] = v;
 		}
-	const int64_t first[] = {e->sheet_record, e->fat_record, e->link_record, e->hinge_record};
-	int32_t named = 0;
 	for (int kind = 0; kind < CAU_ELEMENT_KINDS; ++kind)
 		for (int32_t i = 0; i < cau_tissue_element_count(&r.tissue, kind); ++i) {
 			cau_element_map map;
 			cau_tissue_element_map(&r.tissue, kind, i, &map);
 			int32_t slot = r.solver.slots.slot_of[kind][i];
-			for (int k = 0; k < map.vertex_count; ++k, ++named)
-				assert_int_equal(vertex_of[first[kind] + (int64_t)map.vertex_count * slot + k],
-				                 map.vertex[k]);
+			for (int k = 0; k < map.vertex_count; ++k) {
+				int32_t record = records_of(e, kind)[k][slot];
+				assert_int_equal(vertex_of[record], map.vertex[k]);
+				used[record] = 1;
+			}
 		}
-	assert_int_equal(incidence->first[r.tissue.vertex_count], named);
+	for (int32_t k = 0; k < e->record_count; ++k)
+		assert_int_equal(used[k], vertex_of[k] >= 0);
+	rig_finish(&r);
+}
+
+// A share writes the records of its own range only, and the ranges do not meet.
+static void test_shares_write_apart(void **state)
+{
+	(void)state;
+	rig r;
+	make(&r, CAU_PRECISION_DOUBLE);
+	const cau_elements *e = &r.solver.elements;
+	static const int kind_of[] = {[CAU_WORK_SHEET] = CAU_ELEMENT_TRIANGLE,
+	                              [CAU_WORK_FAT] = CAU_ELEMENT_TETRAHEDRON,
+	                              [CAU_WORK_LINK] = CAU_ELEMENT_LINK,
+	                              [CAU_WORK_HINGE] = CAU_ELEMENT_HINGE};
+	static const int vertices[] = {
+		[CAU_WORK_SHEET] = 3, [CAU_WORK_FAT] = 4, [CAU_WORK_LINK] = 2, [CAU_WORK_HINGE] = 4};
+	int32_t next = 0;
+	for (int32_t w = 0; w < r.solver.slots.work_count; ++w) {
+		const cau_local_work *work = &r.solver.slots.work[w];
+		assert_int_equal(work->first_record, next);
+		next += work->record_count;
+		for (int32_t s = work->first; s < work->last; ++s) // padding too
+			for (int i = 0; i < vertices[work->kind]; ++i) {
+				int32_t record = records_of(e, kind_of[work->kind])[i][s];
+				assert_true(record >= work->first_record && record < next);
+			}
+	}
+	assert_int_equal(next, e->record_count);
 	rig_finish(&r);
 }
 
@@ -82,6 +124,7 @@ int main(void)
 {
 	const struct CMUnitTest tests[] = {
 		cmocka_unit_test(test_every_record_is_summed_once),
+		cmocka_unit_test(test_shares_write_apart),
 		cmocka_unit_test(test_work_covers_everything_once),
 	};
 	return cmocka_run_group_tests(tests, NULL, NULL);

@@ -7,22 +7,6 @@
 
 static const double FORCE_TOLERANCE = 1e-11; // a dozen roundings of a length's small difference
 
-static double kind_energy(const cau_elements *e, int32_t first, int32_t last)
-{
-	double energy = 0;
-	for (int32_t b = first; b < last; ++b)
-		energy += e->energy[b];
-	return energy;
-}
-
-static void records(const rig *r, int64_t first, int vertices, int32_t slot, double *out)
-{
-	for (int i = 0; i < vertices; ++i)
-		for (int c = 0; c < 3; ++c)
-			out[3 * i + c] = cau_real_get(r->solver.elements.gradient, 0,
-			                              4 * (first + (int64_t)vertices * slot + i) + c);
-}
-
 static void test_links_are_springs(void **state)
 {
 	(void)state;
@@ -36,7 +20,7 @@ static void test_links_are_springs(void **state)
 	rig_random_gradient(&random, 0.3, a);
 	rig_deform(&r, a, 2e-3, &random, x);
 	rig_local(&r, x, NULL);
-	const cau_elements *e = &r.solver.elements;
+	double energy = rig_energy_of(&r, CAU_WORK_LINK);
 	for (int32_t k = 0; k < r.tissue.link_count; ++k) {
 		const int32_t *v = r.tissue.link + 2 * k;
 		cau_vec3 along = cau_sub(cau_vec3_of(x + 3 * v[1]), cau_vec3_of(x + 3 * v[0]));
@@ -46,11 +30,10 @@ static void test_links_are_springs(void **state)
 		cau_vec3 force = cau_scale(w * longer / length, along);
 		const double expected[6] = {-force.x, -force.y, -force.z, force.x, force.y, force.z};
 		expected_energy += w * longer * longer / 2;
-		records(&r, e->link_record, 2, k, got);
+		rig_element_gradient(&r, CAU_ELEMENT_LINK, k, got);
 		assert_true(rig_difference(got, expected, 6) < FORCE_TOLERANCE);
 	}
-	assert_near(kind_energy(e, e->link_batch, e->hinge_batch), expected_energy,
-	            FORCE_TOLERANCE * expected_energy);
+	assert_near(energy, expected_energy, FORCE_TOLERANCE * expected_energy);
 	rig_finish(&r);
 }
 
@@ -89,7 +72,6 @@ static void test_hinges_keep_their_bend(void **state)
 			law_add_roof(&r);
 		r.scene->layers[0].sheet[0].limit = CAU_LIMIT_NONE;
 		rig_build(&r, NULL, 1);
-		const cau_elements *e = &r.solver.elements;
 		uint64_t random = 182;
 		double a[3][3], *x = r.solver.position, expected = 0;
 		mat_rotation((double[]){1, -1, 2}, 2.1, a);
@@ -111,7 +93,7 @@ static void test_hinges_keep_their_bend(void **state)
 			expected += r.tissue.hinge_weight[h] * more * more / 2;
 		}
 		assert_true(bent > 0);
-		assert_near(kind_energy(e, e->hinge_batch, e->batch_count), expected, 1e-10 * expected);
+		assert_near(rig_energy_of(&r, CAU_WORK_HINGE), expected, 1e-10 * expected);
 		assert_true(turned < 1e-20 * bent + 1e-22);
 		rig_finish(&r);
 	}
@@ -147,7 +129,7 @@ static void test_hinges_in_the_diagonal_system(void **state)
 		double omega = r.tissue.hinge_weight[h] * squares / 4;
 		for (int i = 0; i < 12; ++i)
 			expected[i] = omega * more * k[i / 3] / squares * e[i % 3] / length;
-		records(&r, r.solver.elements.hinge_record, 4, h, got);
+		rig_element_gradient(&r, CAU_ELEMENT_HINGE, h, got);
 		assert_true(rig_difference(got, expected, 12) < FORCE_TOLERANCE);
 	}
 	rig_finish(&r);

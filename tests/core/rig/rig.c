@@ -191,6 +191,63 @@ double rig_local(rig *r, const double *x, double *gradient)
 	return cau_solver_elastic_energy(solver);
 }
 
+double rig_energy_of(const rig *r, int work_kind)
+{
+	double energy = 0;
+	for (int32_t w = 0; w < r->solver.slots.work_count; ++w)
+		if (r->solver.slots.work[w].kind == work_kind)
+			energy += r->solver.elements.energy[w];
+	return energy;
+}
+
+// What the kernels weight an element of a kind with, and where they add its gradient up.
+typedef struct weights_of {
+	void *weight[2]; // real
+	int count, work_kind, vertices;
+	int32_t *const *record;
+} weights_of;
+
+static weights_of weights(const cau_elements *e, int kind)
+{
+	switch (kind) {
+	case CAU_ELEMENT_TRIANGLE:
+		return (weights_of){{e->sheet.weight}, 1, CAU_WORK_SHEET, 3, e->sheet.record};
+	case CAU_ELEMENT_TETRAHEDRON:
+		return (weights_of){
+			{e->fat.volume, e->fat.limit_weight}, 2, CAU_WORK_FAT, 4, e->fat.record};
+	case CAU_ELEMENT_LINK:
+		return (weights_of){{e->link.weight}, 1, CAU_WORK_LINK, 2, e->link.record};
+	default:
+		return (weights_of){{e->hinge.weight}, 1, CAU_WORK_HINGE, 4, e->hinge.record};
+	}
+}
+
+void rig_element_gradient(rig *r, int kind, int32_t slot, double *gradient)
+{
+	cau_step_solver *solver = &r->solver;
+	const cau_elements *e = &solver->elements;
+	weights_of w = weights(e, kind);
+	const cau_local_work *work = solver->slots.work;
+	while (work->kind != w.work_kind || slot < work->first || slot >= work->last)
+		work++;
+	double kept[2][4096];
+	assert_true(work->last - work->first <= 4096);
+	for (int k = 0; k < w.count; ++k)
+		for (int32_t s = work->first; s < work->last; ++s) {
+			kept[k][s - work->first] = cau_real_get(w.weight[k], e->single, s);
+			if (s != slot)
+				cau_real_set(w.weight[k], e->single, s, 0);
+		}
+	solver->kernels->local(e, work, solver->displacement, solver->diagonal);
+	for (int i = 0; i < w.vertices; ++i)
+		for (int c = 0; c < 3; ++c)
+			gradient[3 * i + c] =
+				cau_real_get(e->gradient, e->single, 4 * (int64_t)w.record[i][slot] + c);
+	for (int k = 0; k < w.count; ++k)
+		for (int32_t s = work->first; s < work->last; ++s)
+			cau_real_set(w.weight[k], e->single, s, kept[k][s - work->first]);
+}
+
 void rig_remove(rig *r, int kind, int32_t element, uint64_t tick)
 {
 	r->dissection.alive.element[kind][element] = 0;

@@ -56,6 +56,13 @@ void rig_finish(rig *r);
 // gradient (N, n x 3) as the kernels give it.
 double rig_local(rig *r, const double *x, double *gradient);
 
+// Energy (J) of the elements of one work kind (CAU_WORK_*) at the last rig_local.
+double rig_energy_of(const rig *r, int work_kind);
+
+// Gradient (N) of one element's energy on its vertices (vertices x 3) at the displacement of the
+// last rig_local, by the kernels: the other elements of its share are silenced meanwhile.
+void rig_element_gradient(rig *r, int kind, int32_t slot, double *gradient);
+
 // Takes the element out of dissection, laws and factor's books, as a cut does.
 void rig_remove(rig *r, int kind, int32_t element, uint64_t tick);
 
