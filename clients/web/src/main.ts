@@ -20,9 +20,6 @@ import type { Tool } from './wire/messages.gen';
 
 const model = new Model();
 const viewport = new Viewport(byId<HTMLCanvasElement>('picture'));
-/** milliseconds of the page's own work in the last animation frame, drawing left out */
-let workMs = 0;
-let takeMs = 0;
 
 const link: Link = new Link({
   state: (state) => {
@@ -36,11 +33,9 @@ const link: Link = new Link({
   },
   notJoined: (session, message) => model.notice('error', `${session} cannot be watched: ${message}`),
   frame: (frame) => {
-    const started = performance.now();
     const buffers = viewport.takeFrame(frame);
     model.setFrame(frame);
     link.giveBack(buffers ?? frame.buffers);
-    takeMs += performance.now() - started;
   },
   push: (method, params) => control.push(method, params),
   file: (name, mediaType, bytes, sound) => {
@@ -81,11 +76,8 @@ connect();
 new ResizeObserver(() => viewport.resize()).observe(viewport.canvas);
 
 function animate(): void {
-  const started = performance.now();
   keys.advance();
   viewport.poseTools(hand.advance());
-  workMs = performance.now() - started + takeMs;
-  takeMs = 0;
   viewport.draw();
   requestAnimationFrame(animate);
 }
@@ -104,15 +96,17 @@ export interface Inspection {
   driving: boolean;
   energized: boolean;
   tip: readonly number[];
+  /** of the tool in hand: 0 closed, 1 open; whether it holds tissue */
+  jaw: number;
+  grasping: boolean;
   /** definition of the tool in hand */
   tool: Tool | null;
-  workMs: number;
-  drawMs: number;
   pictureMs: number;
   picturesDrawn: number;
   /** nothing is left to draw */
   idle: boolean;
-  latencyMs: number;
+  /** of recent frames: published to decoded */
+  latenciesMs(): number[];
   project(point: readonly [number, number, number]): { x: number; y: number };
 }
 
@@ -128,13 +122,13 @@ const inspection: Inspection = {
   get driving() { return model.driving; },
   get energized() { return model.toolState?.energized ?? false; },
   get tip() { return model.toolState?.positionM ?? []; },
+  get jaw() { return model.toolState?.jaw ?? 1; },
+  get grasping() { return model.toolState?.grasping ?? false; },
   get tool() { return model.tool; },
-  get workMs() { return workMs; },
-  get drawMs() { return viewport.drawMs; },
   get pictureMs() { return viewport.pictureMs; },
   get picturesDrawn() { return viewport.picturesDrawn; },
   get idle() { return viewport.idle; },
-  get latencyMs() { return model.samples.at(-1)?.latencyMs ?? 0; },
+  latenciesMs: () => model.samples.map((sample) => sample.latencyMs),
   project: (point) => viewport.project(point),
 };
 Object.assign(window, { cautery: inspection });

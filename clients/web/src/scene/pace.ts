@@ -6,7 +6,7 @@
 const SLOW_MS = 50;
 const QUICK_MS = 12;
 const STEPS = [1, 0.75, 0.55, 0.4]; // of the screen's resolution
-const PATIENCE = 12; // pictures before the resolution changes
+const PATIENCE = 12; // pictures before the resolution changes; one that is far too slow counts as several
 
 export class Pace {
   private fence: WebGLSync | null = null;
@@ -42,7 +42,7 @@ export class Pace {
   }
 
   private adapt(): void {
-    this.slow = this.pictureMs > SLOW_MS ? this.slow + 1 : 0;
+    this.slow = this.pictureMs > SLOW_MS ? this.slow + Math.min(this.pictureMs / SLOW_MS, 4) : 0;
     this.quick = this.pictureMs < QUICK_MS ? this.quick + 1 : 0;
     if (this.slow >= PATIENCE && this.level < STEPS.length - 1) this.change(1);
     // Going back up waits ten times as long: a picture that flickers between two sharpnesses is worse.

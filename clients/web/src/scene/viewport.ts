@@ -36,8 +36,6 @@ export class Viewport {
   readonly orbit = new Orbit();
   readonly renderer: WebGLRenderer;
   tissue: TissueView | null = null;
-  /** milliseconds that the page's thread spent on the last picture */
-  drawMs = 0;
   picturesDrawn = 0;
   private readonly pace: Pace;
   /** of moving pictures, from pace */
@@ -169,7 +167,6 @@ export class Viewport {
     if (this.sharp) this.setScale(this.scale);
     this.render();
     this.pace.drawn(now);
-    this.drawMs = performance.now() - now;
   }
 
   /** Nothing is left to draw, and what is drawn is sharp. */

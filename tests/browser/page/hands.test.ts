@@ -1,0 +1,190 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Hands other than a mouse: fingers, a gamepad, keys; and a page out of sight, which loses its energy.
+import type { Browser, CDPSession } from 'playwright-core';
+
+import { Daemon } from './daemon';
+import { launch, ViewerPage } from './viewer_page';
+
+const TABLET = { viewport: { width: 900, height: 700 }, hasTouch: true };
+const NEAR_M = 0.004;
+const LIFT_M = 0.002; // of a pinch, which asks for more
+const RIGHT_TRIGGER = 7;
+const A = 0;
+
+interface Finger {
+  x: number;
+  y: number;
+  id: number;
+}
+
+/** A gamepad with the standard mapping that tests hold. */
+function holdGamepad(): void {
+  const pad = {
+    id: 'test', index: 0, connected: true, mapping: 'standard', timestamp: 0,
+    axes: [0, 0, 0, 0], buttons: Array.from({ length: 17 }, () => ({ pressed: false, touched: false, value: 0 })),
+  };
+  Object.assign(window, { testPad: pad });
+  navigator.getGamepads = () => [pad as unknown as Gamepad];
+}
+
+async function setPad(viewer: ViewerPage, axes: number[], buttons: readonly number[]): Promise<void> {
+  await viewer.page.evaluate(
+    ([stick, held]) => {
+      const pad = (window as unknown as { testPad: { axes: number[]; buttons: { pressed: boolean; value: number }[] } }).testPad;
+      pad.axes = stick;
+      pad.buttons.forEach((button, i) => Object.assign(button, { pressed: held.includes(i), value: held.includes(i) ? 1 : 0 }));
+    },
+    [axes, [...buttons]] as const,
+  );
+}
+
+describe('hands', () => {
+  const daemon = new Daemon(['--demo', 'fascia']);
+  let browser: Browser;
+  let viewer: ViewerPage;
+  let fingers: CDPSession;
+
+  const touch = async (type: 'touchStart' | 'touchMove' | 'touchEnd', touchPoints: Finger[]): Promise<void> => {
+    await fingers.send('Input.dispatchTouchEvent', { type, touchPoints });
+  };
+  const letGo = async (): Promise<void> => {
+    await viewer.page.getByRole('tab', { name: 'Tools' }).click();
+    await viewer.page.locator('#give').click();
+    await viewer.until(() => !window.cautery.driving, null, 'the tool is free');
+  };
+
+  beforeAll(async () => {
+    await daemon.start();
+    browser = await launch();
+    viewer = await ViewerPage.open(browser, daemon.url, TABLET);
+    await viewer.live('d1-fascia');
+    fingers = await viewer.page.context().newCDPSession(viewer.page);
+  });
+  afterAll(async () => {
+    await browser.close();
+    await daemon.end();
+  });
+
+  it('a finger leads the tool, which follows', async () => {
+    const from = await viewer.project([-0.02, 0, 0]);
+    const to = await viewer.project([0.02, 0.01, 0]);
+    await touch('touchStart', [{ ...from, id: 1 }]);
+    await viewer.until(() => window.cautery.driving, null, 'the tool is taken');
+    await touch('touchMove', [{ ...to, id: 1 }]);
+    await viewer.until(
+      ([x, y, near]) => Math.hypot(window.cautery.tip[0] - x, window.cautery.tip[1] - y) < near,
+      [0.02, 0.01, NEAR_M] as const,
+      'the tip is under the finger',
+    );
+    await touch('touchEnd', []);
+  });
+
+  it('two fingers that close lift it, and that open press it down', async () => {
+    const { x, y } = await viewer.project([0, 0, 0]);
+    const pinch = async (from: number, to: number): Promise<void> => {
+      const pair = (half: number): Finger[] => [{ x: x - half, y, id: 1 }, { x: x + half, y, id: 2 }];
+      await touch('touchStart', [pair(from)[0]]);
+      await touch('touchStart', pair(from));
+      await touch('touchMove', pair(to));
+      await touch('touchEnd', []);
+    };
+    // The first of the two fingers may lead the tool to its place: depth is told from there on.
+    await pinch(250, 250);
+    const height = async (): Promise<number> => (await viewer.state()).tip[2];
+    const before = await height();
+    await pinch(250, 30);
+    await viewer.until((low) => window.cautery.tip[2] > low, before + LIFT_M, 'the tool is lifted');
+    const lifted = await height();
+    await pinch(30, 250);
+    await viewer.until((high) => window.cautery.tip[2] < high, lifted - LIFT_M, 'the tool is lower');
+  });
+
+  it('the Energy button heats while a finger holds it', async () => {
+    const box = (await viewer.page.locator('#energy').boundingBox())!;
+    const at = { x: box.x + box.width / 2, y: box.y + box.height / 2, id: 3 };
+    await touch('touchStart', [at]);
+    await viewer.until(() => window.cautery.energized, null, 'energy is on');
+    await touch('touchEnd', []);
+    await viewer.until(() => !window.cautery.energized, null, 'energy is off');
+    await letGo();
+  });
+});
+
+describe('hands that need a page in front', () => {
+  const daemon = new Daemon(['--demo', 'fascia']);
+  let browser: Browser;
+  let viewer: ViewerPage;
+
+  beforeAll(async () => {
+    await daemon.start();
+    browser = await launch();
+    viewer = await ViewerPage.open(browser, daemon.url);
+    await viewer.live('d1-fascia');
+    await viewer.page.evaluate(holdGamepad);
+    await viewer.page.getByRole('tab', { name: 'Tools' }).click();
+    await viewer.page.locator('#take').click();
+    await viewer.until(() => window.cautery.driving, null, 'the tool is taken');
+  });
+  afterAll(async () => {
+    await browser.close();
+    await daemon.end();
+  });
+
+  it('a gamepad moves the tool and heats with its trigger', async () => {
+    const [x] = (await viewer.state()).tip;
+    await setPad(viewer, [1, 0, 0, 0], []);
+    await viewer.until((from) => window.cautery.tip[0] > from, x + 0.01, 'the stick moves it to the right');
+    await setPad(viewer, [0, 0, 0, 0], [RIGHT_TRIGGER]);
+    await viewer.until(() => window.cautery.energized, null, 'energy is on');
+    await setPad(viewer, [0, 0, 0, 0], []);
+    await viewer.until(() => !window.cautery.energized, null, 'energy is off');
+  });
+
+  it('a gamepad closes and opens a grasper', async () => {
+    const { page } = viewer;
+    await page.getByText('Another tool').click();
+    await page.locator('#panel-tools details').getByRole('button', { name: 'Add', exact: true }).click();
+    await viewer.until(() => window.cautery.tool?.name === 'grasper' && window.cautery.driving, null, 'a grasper is in hand');
+    const { jaw: open } = await viewer.state();
+    await setPad(viewer, [0, 0, 0, 0], [A]);
+    await viewer.until((before) => window.cautery.jaw < before, open, 'it closes');
+    await setPad(viewer, [0, 0, 0, 0], []);
+    await page.locator('#held').selectOption('hook');
+    await viewer.until(() => window.cautery.tool?.name === 'hook' && window.cautery.driving, null, 'the hook is in hand');
+  });
+
+  it('keys move, turn and heat, and the page says where the tool is', async () => {
+    const { page } = viewer;
+    await page.locator('#picture').focus();
+    const before = (await viewer.state()).tip;
+    await page.keyboard.down('ArrowLeft');
+    await viewer.until((from) => window.cautery.tip[0] < from, before[0] - 0.01, 'the key moves it to the left');
+    await page.keyboard.up('ArrowLeft');
+    await page.keyboard.down('Space');
+    await viewer.until(() => window.cautery.energized, null, 'energy is on');
+    await page.keyboard.up('Space');
+    await viewer.until(() => !window.cautery.energized, null, 'energy is off');
+    await viewer.until(() => /hook at .* mm/.test(document.querySelector('#reading')?.textContent ?? ''), null, 'the reading tells it');
+  });
+
+  it('a page that is hidden loses its energy, which does not come back by itself', async () => {
+    const { page } = viewer;
+    await page.locator('#picture').focus();
+    await page.keyboard.down('Space');
+    await viewer.until(() => window.cautery.energized, null, 'energy is on');
+    await page.evaluate(() => {
+      Object.defineProperty(document, 'hidden', { configurable: true, get: () => true });
+      document.dispatchEvent(new Event('visibilitychange'));
+    });
+    await viewer.until(() => !window.cautery.energized, null, 'energy is off');
+    expect(await page.locator('#notices').textContent()).toContain('Energy is off');
+    await page.evaluate(() => {
+      Reflect.deleteProperty(document, 'hidden');
+      document.dispatchEvent(new Event('visibilitychange'));
+    });
+    const { tick } = await viewer.state();
+    await viewer.until((later) => window.cautery.tick > later, tick + 30, 'half a second later');
+    expect((await viewer.state()).energized).toBe(false);
+    await page.keyboard.up('Space');
+  });
+});
