@@ -11,67 +11,49 @@
 // negative.
 typedef struct mix {
 	cau_step_solver *solver;
-	int32_t count, newest;
 	double weight[CAU_ANDERSON_WINDOW];
 } mix;
 
-static size_t chunk_reals(const cau_step_solver *solver, int32_t chunk, size_t *first)
+static int64_t chunk_reals(const cau_step_solver *solver, int32_t chunk, int64_t *first)
 {
-	size_t total = 4 * (size_t)solver->tissue->vertex_count;
-	*first = 4 * (size_t)chunk * CAU_VERTEX_CHUNK;
-	size_t count = 4 * CAU_VERTEX_CHUNK;
+	int64_t total = 4 * (int64_t)solver->tissue->vertex_count, count = 4 * CAU_VERTEX_CHUNK;
+	*first = chunk * count;
 	return *first + count > total ? total - *first : count;
-}
-
-static void *at(const cau_step_solver *solver, void *array, size_t real_index)
-{
-	return (char *)array + real_index * cau_real_bytes(solver->elements.single);
 }
 
 void cau_anderson_start(cau_step_solver *solver)
 {
-	solver->anderson_count = 0;
-	solver->anderson_next = 0;
+	solver->history.count = 0;
+	solver->history.newest = -1;
 }
 
-// df = f - f_last, dg = g - g_last, h = step + df, and the products df_j . dg of all columns.
-static void difference_part(void *context, int32_t chunk)
+static void column_part(void *context, int32_t chunk)
 {
-	mix *work = context;
-	cau_step_solver *solver = work->solver;
-	const cau_kernels *k = solver->kernels;
-	size_t first, n = chunk_reals(solver, chunk, &first);
-	size_t bytes = n * cau_real_bytes(solver->elements.single);
-	void *df = at(solver, solver->anderson_df[work->newest], first);
-	void *h = at(solver, solver->anderson_h[work->newest], first);
-	void *dg = at(solver, solver->difference, first);
-	memcpy(df, at(solver, solver->increment, first), bytes);
-	k->add_scaled(df, -1, at(solver, solver->last_increment, first), (int64_t)n);
-	memcpy(h, at(solver, solver->trial_increment, first), bytes);
-	k->add_scaled(h, 1, df, (int64_t)n);
-	memcpy(dg, at(solver, solver->gradient, first), bytes);
-	k->add_scaled(dg, -1, at(solver, solver->last_gradient, first), (int64_t)n);
-	double *dot = solver->chunk_dot + (size_t)chunk * (2 * CAU_ANDERSON_WINDOW);
-	for (int32_t j = 0; j < work->count; ++j) {
-		const void *column = at(solver, solver->anderson_df[j], first);
-		dot[j] = -k->dot(column, dg, (int64_t)n);
-		dot[CAU_ANDERSON_WINDOW + j] =
-			-k->dot(column, at(solver, solver->gradient, first), (int64_t)n);
-	}
+	const mix *work = context;
+	const cau_step_solver *solver = work->solver;
+	int64_t first, n = chunk_reals(solver, chunk, &first);
+	solver->kernels->add_column(&solver->history, first, n,
+	                            solver->chunk_dot + (size_t)chunk * (2 * CAU_ANDERSON_WINDOW));
 }
 
-// trial = f - sum of weight_j h_j
 static void combine_part(void *context, int32_t chunk)
 {
-	mix *work = context;
-	cau_step_solver *solver = work->solver;
-	size_t first, n = chunk_reals(solver, chunk, &first);
-	void *trial = at(solver, solver->trial_increment, first);
-	memcpy(trial, at(solver, solver->increment, first),
-	       n * cau_real_bytes(solver->elements.single));
-	for (int32_t j = 0; j < work->count; ++j)
-		solver->kernels->add_scaled(trial, -work->weight[j],
-		                            at(solver, solver->anderson_h[j], first), (int64_t)n);
+	const mix *work = context;
+	const cau_step_solver *solver = work->solver;
+	int64_t first, n = chunk_reals(solver, chunk, &first);
+	solver->kernels->combine(&solver->history, first, n, work->weight);
+}
+
+static void keep_part(void *context, int32_t chunk)
+{
+	const mix *work = context;
+	const cau_history *history = &work->solver->history;
+	int64_t first, n = chunk_reals(work->solver, chunk, &first);
+	size_t real = cau_real_bytes(work->solver->elements.single), at = (size_t)first * real;
+	memcpy((char *)history->last_increment + at, (const char *)history->increment + at,
+	       (size_t)n * real);
+	memcpy((char *)history->last_gradient + at, (const char *)history->gradient + at,
+	       (size_t)n * real);
 }
 
 // Solves the small symmetric system by Gaussian elimination with diagonal pivots; columns that add
@@ -103,38 +85,37 @@ static void least_squares(double a[CAU_ANDERSON_WINDOW][CAU_ANDERSON_WINDOW],
 	}
 }
 
+// The newest column and its products with all, summed in chunk order; then the weights.
+static void weigh(mix *work)
+{
+	cau_step_solver *solver = work->solver;
+	cau_history *history = &solver->history;
+	history->newest = (history->newest + 1) % CAU_ANDERSON_WINDOW;
+	if (history->count < CAU_ANDERSON_WINDOW)
+		history->count++;
+	cau_pool_run(solver->pool, solver->chunk_count, column_part, work);
+	double b[CAU_ANDERSON_WINDOW] = {0}, a[CAU_ANDERSON_WINDOW][CAU_ANDERSON_WINDOW];
+	for (int32_t j = 0; j < history->count; ++j) {
+		double product = 0;
+		for (int32_t c = 0; c < solver->chunk_count; ++c) {
+			const double *dot = solver->chunk_dot + (size_t)c * (2 * CAU_ANDERSON_WINDOW);
+			product += dot[j];
+			b[j] += dot[CAU_ANDERSON_WINDOW + j];
+		}
+		solver->anderson_product[history->newest][j] = product;
+		solver->anderson_product[j][history->newest] = product;
+	}
+	memcpy(a, solver->anderson_product, sizeof a);
+	least_squares(a, b, history->count, work->weight);
+}
+
 int cau_anderson_mix(cau_step_solver *solver, int32_t iteration)
 {
 	mix work = {.solver = solver};
-	if (iteration > 0) {
-		work.newest = solver->anderson_next;
-		solver->anderson_next = (solver->anderson_next + 1) % CAU_ANDERSON_WINDOW;
-		if (solver->anderson_count < CAU_ANDERSON_WINDOW)
-			solver->anderson_count++;
-		work.count = solver->anderson_count;
-		cau_pool_run(solver->pool, solver->chunk_count, difference_part, &work);
-		double b[CAU_ANDERSON_WINDOW] = {0}, a[CAU_ANDERSON_WINDOW][CAU_ANDERSON_WINDOW];
-		for (int32_t j = 0; j < work.count; ++j) {
-			double product = 0;
-			for (int32_t c = 0; c < solver->chunk_count; ++c) {
-				const double *dot = solver->chunk_dot + (size_t)c * (2 * CAU_ANDERSON_WINDOW);
-				product += dot[j];
-				b[j] += dot[CAU_ANDERSON_WINDOW + j];
-			}
-			solver->anderson_product[work.newest][j] = product;
-			solver->anderson_product[j][work.newest] = product;
-		}
-		memcpy(a, solver->anderson_product, sizeof a);
-		least_squares(a, b, work.count, work.weight);
-	}
+	if (iteration > 0)
+		weigh(&work);
+	else
+		cau_pool_run(solver->pool, solver->chunk_count, keep_part, &work);
 	cau_pool_run(solver->pool, solver->chunk_count, combine_part, &work);
-	return work.count > 0;
-}
-
-void cau_anderson_accept(cau_step_solver *solver)
-{
-	size_t bytes =
-		4 * (size_t)solver->tissue->vertex_count * cau_real_bytes(solver->elements.single);
-	memcpy(solver->last_increment, solver->increment, bytes);
-	memcpy(solver->last_gradient, solver->gradient, bytes);
+	return solver->history.count > 0;
 }

@@ -160,7 +160,6 @@ cau_status cau_solver_run(cau_step_solver *solver, cau_error *error)
 			cau_anderson_start(solver); // the history misleads: forget it
 		last = norm;
 		int accelerated = cau_anderson_mix(solver, steps++);
-		cau_anderson_accept(solver);
 		memcpy(solver->position_before, solver->position, bytes);
 		if (!solver->conservative && k + 1 == solver->iterations) { // nothing to compare with
 			move_to(solver, 1);

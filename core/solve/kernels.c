@@ -73,12 +73,13 @@ static void backward(const cau_sweep *sweep, int32_t supernode, void *const rhs[
 	sweep_backward_node(sweep, &sweep->supernode[supernode], b, work);
 }
 
+enum { STRIP = 64 * LANES }; // reals summed at once: few enough that float sums stay accurate
+
 static double dot(const void *a, const void *b, int64_t n)
 {
 	const real *x = a, *y = b;
 	double total = 0;
 	int64_t i = 0;
-	enum { STRIP = 64 * LANES }; // short enough that float sums stay accurate
 	for (; i + STRIP <= n; i += STRIP) {
 		vreal strip = v_set(0);
 		for (int k = 0; k < STRIP; k += LANES)
@@ -97,6 +98,65 @@ static void add_scaled(void *y, double s, const void *x, int64_t n)
 	real scale = (real)s;
 	for (int64_t i = 0; i < n; ++i)
 		out[i] += scale * in[i];
+}
+
+// One strip of add_column: dot[j] and dot[window + j] lose df_j . (g - g_last) and df_j . g.
+INLINE void add_strip(const cau_history *history, int64_t at, int32_t n, double *dot)
+{
+	real dg[STRIP] __attribute__((aligned(64))) = {0};
+	const real *f = (const real *)history->increment + at,
+			   *g = (const real *)history->gradient + at;
+	real *f_last = (real *)history->last_increment + at,
+		 *g_last = (real *)history->last_gradient + at;
+	const real *step = (const real *)history->step + at;
+	real *df = (real *)history->df[history->newest] + at,
+		 *h = (real *)history->h[history->newest] + at;
+	for (int32_t k = 0; k < n; ++k) {
+		real d = f[k] - f_last[k];
+		df[k] = d;
+		h[k] = step[k] + d;
+		dg[k] = g[k] - g_last[k];
+		f_last[k] = f[k];
+		g_last[k] = g[k];
+	}
+	for (int32_t j = 0; j < history->count; ++j) {
+		const real *column = (const real *)history->df[j] + at;
+		vreal with_dg = v_set(0), with_g = v_set(0);
+		int32_t k = 0;
+		for (; k + LANES <= n; k += LANES) {
+			vreal c = v_load(column, k);
+			with_dg += c * v_load(dg, k);
+			with_g += c * v_load(g, k);
+		}
+		double tail_dg = 0, tail_g = 0;
+		for (; k < n; ++k) {
+			tail_dg += (double)column[k] * (double)dg[k];
+			tail_g += (double)column[k] * (double)g[k];
+		}
+		dot[j] -= v_sum(with_dg) + tail_dg;
+		dot[CAU_ANDERSON_WINDOW + j] -= v_sum(with_g) + tail_g;
+	}
+}
+
+static void add_column(const cau_history *history, int64_t first, int64_t n, double *dot)
+{
+	for (int32_t j = 0; j < 2 * CAU_ANDERSON_WINDOW; ++j)
+		dot[j] = 0;
+	for (int64_t at = 0; at < n; at += STRIP)
+		add_strip(history, first + at, (int32_t)(n - at < STRIP ? n - at : STRIP), dot);
+}
+
+static void combine(const cau_history *history, int64_t first, int64_t n, const double *weight)
+{
+	const real *f = (const real *)history->increment + first;
+	real *step = (real *)history->step + first;
+	memcpy(step, f, (size_t)n * sizeof *step);
+	for (int32_t j = 0; j < history->count; ++j) {
+		const real *h = (const real *)history->h[j] + first;
+		real w = (real)weight[j];
+		for (int64_t k = 0; k < n; ++k)
+			step[k] -= w * h[k];
+	}
 }
 
 static void spread(void *increment, const void *column, const double force[3], int32_t first,
@@ -121,4 +181,6 @@ const cau_kernels CAU_TABLE = {
 	.dot = dot,
 	.spread = spread,
 	.add_scaled = add_scaled,
+	.add_column = add_column,
+	.combine = combine,
 };

@@ -26,6 +26,17 @@ typedef struct cau_incidence {
 	int32_t *record;
 } cau_incidence;
 
+enum { CAU_ANDERSON_WINDOW = 5 };
+
+// Increments f = -A^-1 g of an accelerated iteration, their gradients g, and the columns of the
+// last ones: df = f - f_last and h = step + df.
+typedef struct cau_history {
+	const void *increment, *gradient; // real: f, g
+	void *last_increment, *last_gradient, *step;
+	void *df[CAU_ANDERSON_WINDOW], *h[CAU_ANDERSON_WINDOW];
+	int32_t count, newest; // columns in use; the one to be made
+} cau_history;
+
 // Arrays marked `real` hold four reals a vertex (x, y, z, 0), float or double as the table's name
 // says.
 typedef struct cau_kernels {
@@ -53,6 +64,10 @@ typedef struct cau_kernels {
 	               int32_t last);
 	// y += s x over n reals
 	void (*add_scaled)(void *y, double s, const void *x, int64_t n);
+	// Anderson acceleration over n reals from `first` on (anderson.c): a new column from the last
+	// two iterations, its products with all, and the step that the weights make.
+	void (*add_column)(const cau_history *history, int64_t first, int64_t n, double *dot);
+	void (*combine)(const cau_history *history, int64_t first, int64_t n, const double *weight);
 } cau_kernels;
 
 // The best table this processor runs, not above `ceiling` ("baseline", "avx2", "avx512"; NULL: no

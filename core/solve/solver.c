@@ -38,18 +38,22 @@ int cau_solver_is_conservative(const cau_tissue *tissue, int diagonal)
 static cau_status allocate_vectors(cau_step_solver *solver, cau_arena *arena, cau_error *error)
 {
 	size_t n = (size_t)solver->tissue->vertex_count, size = cau_real_bytes(solver->elements.single);
-	void **vectors[] = {&solver->displacement,    &solver->gradient,       &solver->increment,
-	                    &solver->trial_increment, &solver->last_increment, &solver->last_gradient,
-	                    &solver->difference};
+	cau_history *history = &solver->history;
+	void **vectors[] = {&solver->displacement,    &solver->gradient,
+	                    &solver->increment,       &solver->trial_increment,
+	                    &history->last_increment, &history->last_gradient};
 	for (size_t i = 0; i < sizeof vectors / sizeof *vectors; ++i)
 		if (!(*vectors[i] = cau_arena_array(arena, 4 * n, size)))
 			return no_memory(error);
 	for (int j = 0; j < CAU_ANDERSON_WINDOW; ++j) {
-		solver->anderson_df[j] = cau_arena_array(arena, 4 * n, size);
-		solver->anderson_h[j] = cau_arena_array(arena, 4 * n, size);
-		if (!solver->anderson_df[j] || !solver->anderson_h[j])
+		history->df[j] = cau_arena_array(arena, 4 * n, size);
+		history->h[j] = cau_arena_array(arena, 4 * n, size);
+		if (!history->df[j] || !history->h[j])
 			return no_memory(error);
 	}
+	history->increment = solver->increment;
+	history->gradient = solver->gradient;
+	history->step = solver->trial_increment;
 	solver->chunk_count = (solver->tissue->vertex_count + CAU_VERTEX_CHUNK - 1) / CAU_VERTEX_CHUNK;
 	solver->chunk_energy = cau_arena_array(arena, (size_t)solver->chunk_count, sizeof(double));
 	solver->chunk_dot = cau_arena_array(

@@ -14,7 +14,6 @@
 #include "solve/system.h"
 
 enum {
-	CAU_ANDERSON_WINDOW = 5,
 	CAU_MAX_BACKTRACKS = 8,
 	CAU_VERTEX_CHUNK = 256, // vertices in one share of a vertex loop
 };
@@ -59,14 +58,12 @@ typedef struct cau_step_solver {
 	void *gradient;        // real: grad of eq. 4
 	void *increment;       // real: d = -A^-1 grad
 	void *trial_increment; // real: the step that is taken
-	void *anderson_df[CAU_ANDERSON_WINDOW], *anderson_h[CAU_ANDERSON_WINDOW];
-	void *last_increment, *last_gradient, *difference;                 // real
+	cau_history history;   // its step is trial_increment
 	double anderson_product[CAU_ANDERSON_WINDOW][CAU_ANDERSON_WINDOW]; // df_i . A df_j
-	int32_t anderson_count, anderson_next;
-	void *sweep_work[CAU_SWEEP_TASKS + 1]; // real
-	double *chunk_energy;                  // (chunk_count)
-	double *chunk_dot;                     // (chunk_count x 2 CAU_ANDERSON_WINDOW)
-	double *position_before;               // (n x 3)
+	void *sweep_work[CAU_SWEEP_TASKS + 1];                             // real
+	double *chunk_energy;                                              // (chunk_count)
+	double *chunk_dot;       // (chunk_count x 2 CAU_ANDERSON_WINDOW)
+	double *position_before; // (n x 3)
 	int32_t chunk_count;
 
 	double (*now_s)(void); // NULL: no timing
@@ -106,4 +103,3 @@ void cau_solver_apply_inverse(cau_step_solver *solver, const void *in, void *out
 // anderson.c: trial_increment from increment and the history of this step.
 void cau_anderson_start(cau_step_solver *solver);
 int cau_anderson_mix(cau_step_solver *solver, int32_t iteration);
-void cau_anderson_accept(cau_step_solver *solver);
