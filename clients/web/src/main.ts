@@ -1,5 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // The page: makes the rooms and ties them together.
+import { Box3 } from 'three';
+
 import { Keys } from './hands/keys';
 import { Pointer } from './hands/pointer';
 import { ToolHand } from './hands/tool_hand';
@@ -16,7 +18,7 @@ import { toolsPanel } from './panels/tools';
 import { viewPanel } from './panels/view';
 import { Viewport } from './scene/viewport';
 import { Link } from './wire/link';
-import type { Tool } from './wire/messages.gen';
+import type { Layer, Tool } from './wire/messages.gen';
 
 const model = new Model();
 const viewport = new Viewport(byId<HTMLCanvasElement>('picture'));
@@ -107,6 +109,10 @@ export interface Inspection {
   idle: boolean;
   /** of recent frames: published to decoded */
   latenciesMs(): number[];
+  /** definition of a layer as the daemon last told it */
+  layer(name: string): Layer | null;
+  /** least and largest x, y, z of the tissue, m */
+  extent(): { least: number[]; most: number[] };
   project(point: readonly [number, number, number]): { x: number; y: number };
 }
 
@@ -129,6 +135,11 @@ const inspection: Inspection = {
   get picturesDrawn() { return viewport.picturesDrawn; },
   get idle() { return viewport.idle; },
   latenciesMs: () => model.samples.map((sample) => sample.latencyMs),
+  layer: (name) => model.joined?.description.definition.layers?.find((layer) => layer.name === name) ?? null,
+  extent: () => {
+    const { min, max } = new Box3().setFromArray(viewport.tissue?.position.array ?? []);
+    return { least: min.toArray(), most: max.toArray() };
+  },
   project: (point) => viewport.project(point),
 };
 Object.assign(window, { cautery: inspection });

@@ -1,8 +1,10 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Materials per layer: the numbers of the protocol's tables with units and ranges.
+// Materials per layer and region: the protocol's numbers with units and ranges; gravity; pins and forces.
 import type { Control } from '../model/control';
 import { PARAMETERS, type Layer, type MaterialSet } from '../wire/messages.gen';
 import { attempt, element, field, problemPlace } from './dom';
+import { forcesSection } from './forces';
+import { limitInputs } from './limits';
 import { parameterInputs } from './parameters';
 import type { Panel } from './tabs';
 
@@ -13,33 +15,41 @@ function materialOf(layer: Layer): Record<string, unknown> {
   return Object.fromEntries(Object.entries(layer).filter(([name]) => !LAYER_ONLY.includes(name)));
 }
 
-function layerForm(control: Control, layer: Layer): HTMLElement {
+/** A layer's default material, or that of a region of its mesh file, which has the default's where it says nothing. */
+interface Material {
+  layer: Layer;
+  region: number | null;
+  values: Record<string, unknown>;
+}
+
+function materialsOf(layer: Layer): Material[] {
+  const values = materialOf(layer);
+  const regions = 'regions' in layer ? layer.regions ?? [] : [];
+  return [
+    { layer, region: null, values },
+    ...regions.map(({ region, ...own }) => ({ layer, region, values: { ...values, ...own } })),
+  ];
+}
+
+function materialForm(control: Control, { layer, region, values }: Material): HTMLElement {
   const problem = problemPlace();
   const inputs = parameterInputs(PARAMETERS[layer.kind]);
-  inputs.show({ ...layer });
-  const shrink = 'shrink' in layer ? layer.shrink ?? [] : [];
-  const shrinks = shrink.map((value, i) =>
-    element('input', { type: 'number', min: '0.001', max: '10', step: 'any', value: String(value), name: `shrink-${i}` }),
-  );
+  const limits = limitInputs(layer.kind);
+  inputs.show(values);
+  limits.show(values);
   const apply = element('button', { type: 'submit', disabled: !control.model.mayOperate }, 'Apply');
-  const form = element(
-    'form',
-    { class: 'form' },
-    ...inputs.fields,
-    ...shrinks.map((input, i) => field(`Shrink ${'xyz'[i]}`, input, '', 'squared stretch of cut rims; 1: none')),
-    apply,
-    problem,
-  );
+  const form = element('form', { class: 'form' }, ...inputs.fields, ...limits.fields, apply, problem);
   form.addEventListener('submit', (event) => {
     event.preventDefault();
     const work = async (): Promise<void> => {
-      const given = shrinks.length > 0 ? { shrink: shrinks.map((input) => input.valueAsNumber) } : {};
-      const material = { ...materialOf(layer), ...inputs.read(), ...given };
-      await control.setMaterial({ ...material, kind: layer.kind, layer: layer.name } as MaterialSet);
+      const material = { ...values, ...inputs.read(), ...limits.read() };
+      const where = region === null ? {} : { region };
+      await control.setMaterial({ ...material, ...where, kind: layer.kind, layer: layer.name } as MaterialSet);
     };
     void attempt(problem, work, apply);
   });
-  return element('details', { class: 'section', open: true }, element('summary', {}, `${layer.name} (${layer.kind})`), form);
+  const words = region === null ? `${layer.name} (${layer.kind})` : `${layer.name}, region ${region}`;
+  return element('details', { class: 'section', open: region === null }, element('summary', {}, words), form);
 }
 
 function gravityForm(control: Control): HTMLElement {
@@ -58,17 +68,29 @@ function gravityForm(control: Control): HTMLElement {
   return element('details', { class: 'section' }, element('summary', {}, 'Gravity'), form);
 }
 
+/** New forms for old ones, with the same ones open and the focus on the same control. */
+function replaceForms(place: HTMLElement, forms: HTMLElement[]): void {
+  const controls = (): HTMLElement[] => [...place.querySelectorAll<HTMLElement>('summary, input, select, button')];
+  const focused = controls().findIndex((control) => control === document.activeElement);
+  const open = new Map([...place.querySelectorAll('details')].map((details) => [details.firstChild?.textContent, details.open]));
+  place.replaceChildren(...forms);
+  for (const details of place.querySelectorAll('details')) details.open = open.get(details.firstChild?.textContent) ?? details.open;
+  controls()[focused]?.focus();
+}
+
 export function materialsPanel(control: Control): Panel {
   const { model } = control;
-  const body = element('div');
+  const changing = element('div');
+  const body = element('div', {}, changing, forcesSection(control));
   let shown = '';
   const show = (): void => {
     const layers = model.joined?.description.definition.layers ?? [];
     const now = JSON.stringify([model.session, layers, model.mayOperate]);
     if (now === shown) return;
     shown = now;
-    body.replaceChildren(...layers.map((layer) => layerForm(control, layer)), gravityForm(control));
-    if (layers.length === 0) body.replaceChildren(element('p', { class: 'about' }, 'Join a session to see its materials.'));
+    const forms = [...layers.flatMap(materialsOf).map((material) => materialForm(control, material)), gravityForm(control)];
+    replaceForms(changing, forms);
+    if (layers.length === 0) changing.replaceChildren(element('p', { class: 'about' }, 'Join a session to see its materials.'));
   };
   model.on('joined', show);
   model.on('tools', show);

@@ -4,11 +4,12 @@ import type { Control } from '../model/control';
 import type { Link } from '../wire/link';
 import type { Scene, SessionSummary } from '../wire/messages.gen';
 import { attempt, button, element, field, problemPlace, save } from './dom';
+import { NAME_PATTERN } from './names';
+import { snapshotSection } from './snapshots';
 import type { Panel } from './tabs';
 import { uploadForm } from './upload';
 
 const REFRESH_MS = 5000; // of states and counts, while the list is looked at
-const NAME_PATTERN = '[a-z][a-z0-9]*([_\\-][a-z0-9]+)*';
 
 function row(control: Control, summary: SessionSummary, problem: HTMLElement): HTMLElement {
   const here = summary.session === control.model.session;
@@ -146,6 +147,7 @@ export function sessionsPanel(control: Control, link: Link): Panel {
     list,
     about,
     forkAndFiles(control, problem),
+    snapshotSection(control),
     createForm(control, problem),
     uploadForm(control, link),
   );

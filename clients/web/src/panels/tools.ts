@@ -4,6 +4,7 @@ import type { ToolHand } from '../hands/tool_hand';
 import type { Control } from '../model/control';
 import { PARAMETERS, TOOL_SHAPES, type Tool } from '../wire/messages.gen';
 import { attempt, button, element, field, problemPlace, short } from './dom';
+import { NAME_PATTERN } from './names';
 import { parameterInputs } from './parameters';
 import type { Panel } from './tabs';
 
@@ -85,7 +86,7 @@ function editForm(control: Control, problem: HTMLElement): { form: HTMLElement; 
 function addForm(control: Control): HTMLElement {
   const { model } = control;
   const problem = problemPlace();
-  const name = element('input', { name: 'tool', required: true, maxLength: 48, pattern: '[a-z][a-z0-9]*([_\\-][a-z0-9]+)*', value: 'grasper', autocomplete: 'off' });
+  const name = element('input', { name: 'tool', required: true, maxLength: 48, pattern: NAME_PATTERN, value: 'grasper', autocomplete: 'off' });
   const shape = shapeSelect();
   shape.value = 'grasper';
   shape.addEventListener('change', () => (name.value = shape.value));

@@ -1,0 +1,135 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Vertices held where they are or let go, and outer forces on them.
+import type { Control } from '../model/control';
+import type { Selection } from '../wire/messages.gen';
+import { attempt, button, element, field, problemPlace } from './dom';
+
+type Vector = [number, number, number];
+
+const KINDS: readonly (readonly [Selection['kind'], string])[] = [
+  ['sphere', 'in a sphere'],
+  ['nearest', 'nearest to a place'],
+  ['box', 'in a box'],
+  ['rim', 'on the rim of a layer'],
+];
+const MM = 1000;
+const FORCE_N_MAX = 10;
+
+/** Three numbers in a row, under one label; in millimetres where `scale` says so. */
+function vectorField(label: string, name: string, unit: string, most: number): { row: HTMLElement; read(): Vector; show(values: Vector): void } {
+  const inputs = ['x', 'y', 'z'].map((axis) =>
+    element('input', {
+      type: 'number', name: `${name}-${axis}`, value: '0', step: 'any', min: String(-most), max: String(most), aria: { label: `${label} ${axis}` },
+    }),
+  );
+  const row = element('div', { class: 'field vector' }, element('span', {}, label), element('div', {}, ...inputs), element('small', {}, unit));
+  return {
+    row,
+    read() {
+      const values = inputs.map((input) => input.valueAsNumber);
+      if (values.some((value) => !(Math.abs(value) <= most))) throw new Error(`${label} must be three numbers from ${-most} to ${most} ${unit}`);
+      return values as Vector;
+    },
+    show(values) {
+      inputs.forEach((input, i) => (input.value = String(Number(values[i].toFixed(2)))));
+    },
+  };
+}
+
+const metres = (millimetres: Vector): Vector => millimetres.map((value) => value / MM) as Vector;
+
+/** A choice of vertices by where they are at rest. */
+function selectionFields(control: Control): { fields: HTMLElement[]; read(): Selection; refresh(): void } {
+  const { model } = control;
+  const kind = element('select', { name: 'selection' }, ...KINDS.map(([value, words]) => element('option', { value }, words)));
+  const layer = element('select', { name: 'selection-layer' });
+  const center = vectorField('Place', 'center', 'mm', 1e5);
+  const radius = element('input', { type: 'number', name: 'radius', value: '5', min: '0', max: '100000', step: 'any' });
+  const radiusField = field('Radius', radius, 'mm');
+  const least = vectorField('From', 'least', 'mm', 1e5);
+  const most = vectorField('To', 'most', 'mm', 1e5);
+  const atTip = button('Place at the tool’s tip', () => {
+    const tip = model.toolState?.positionM;
+    if (tip) center.show(tip.map((value) => value * MM) as Vector);
+  });
+  const show = (): void => {
+    const placed = kind.value === 'sphere' || kind.value === 'nearest';
+    center.row.hidden = atTip.hidden = !placed;
+    radiusField.hidden = kind.value !== 'sphere';
+    least.row.hidden = most.row.hidden = kind.value !== 'box';
+  };
+  kind.addEventListener('change', show);
+  show();
+  return {
+    fields: [field('Vertices', kind), field('Of layer', layer), center.row, atTip, radiusField, least.row, most.row],
+    refresh() {
+      const before = layer.value;
+      const names = model.joined?.description.layers.filter(({ kind: of }) => of !== 'links').map(({ name }) => name) ?? [];
+      layer.replaceChildren(element('option', { value: '' }, 'any'), ...names.map((value) => element('option', { value }, value)));
+      layer.value = names.includes(before) ? before : '';
+    },
+    read() {
+      const of = layer.value === '' ? {} : { layer: layer.value };
+      switch (kind.value as Selection['kind']) {
+        case 'rim':
+          if (layer.value === '') throw new Error('a rim needs its layer');
+          return { kind: 'rim', ...of };
+        case 'box':
+          return { kind: 'box', least_m: metres(least.read()), most_m: metres(most.read()), ...of };
+        case 'nearest':
+          return { kind: 'nearest', center_m: metres(center.read()), ...of };
+        case 'sphere':
+          return { kind: 'sphere', center_m: metres(center.read()), radius_m: radius.valueAsNumber / MM, ...of };
+      }
+    },
+  };
+}
+
+export function forcesSection(control: Control): HTMLElement {
+  const { model } = control;
+  const problem = problemPlace();
+  const said = element('p', { class: 'about', aria: { role: 'status' } });
+  const selection = selectionFields(control);
+  const force = vectorField('Force on each', 'force', 'N', FORCE_N_MAX);
+  const doing = (words: string, told: string, work: () => Promise<unknown>): HTMLButtonElement => {
+    const press = button(words, () => {
+      said.textContent = '';
+      void attempt(problem, work, press).then((done) => {
+        if (done !== null) said.textContent = told;
+      });
+    });
+    return press;
+  };
+  const buttons = [
+    doing('Pin', 'Held where they are.', () => control.call('pin', { selection: selection.read() })),
+    doing('Unpin', 'Let go.', () => control.call('unpin', { selection: selection.read() })),
+    doing('Apply the force', 'The force acts until it is changed.', () =>
+      control.call('force.set', { selection: selection.read(), force_n: force.read() })),
+    doing('No force', 'No force acts on them.', () => control.call('force.set', { selection: selection.read(), force_n: [0, 0, 0] })),
+  ];
+  const refresh = (): void => {
+    for (const one of buttons) one.disabled = !model.mayOperate || model.joined === null;
+  };
+  model.on('link', refresh);
+  model.on('joined', () => {
+    selection.refresh();
+    refresh();
+  });
+  refresh();
+  const [pin, unpin, push, none] = buttons;
+  return element(
+    'details',
+    { class: 'section', id: 'forces' },
+    element('summary', {}, 'Pins and forces'),
+    element(
+      'div',
+      { class: 'form' },
+      ...selection.fields,
+      element('div', { class: 'buttons' }, pin, unpin),
+      force.row,
+      element('div', { class: 'buttons' }, push, none),
+      said,
+      problem,
+    ),
+  );
+}

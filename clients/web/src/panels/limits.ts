@@ -1,0 +1,111 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// What a material has besides its plain numbers: models and limits to choose from, and values for each
+// direction of the material.
+import type { Layer } from '../wire/messages.gen';
+import { element, field } from './dom';
+
+type Kind = Layer['kind'];
+type Values = Readonly<Record<string, unknown>>;
+
+interface Choice {
+  name: string;
+  words: string;
+  options: readonly string[];
+  default: string;
+}
+
+interface Directions {
+  name: string;
+  words: string;
+  entries: readonly string[];
+  default: readonly number[];
+  least: number;
+  most: number;
+  /** shown only with this limit */
+  when?: 'target' | 'range';
+}
+
+const LIMIT: Omit<Choice, 'default'> = { name: 'limit', words: 'Strain limit', options: ['none', 'target', 'range'] };
+const PROJECTION: Choice = {
+  name: 'projection', words: 'Projection', options: ['closed_form', 'linearised'], default: 'closed_form',
+};
+const SHEET: Choice[] = [{ ...LIMIT, default: 'target' }, PROJECTION];
+const FAT: Choice[] = [
+  { name: 'model', words: 'Model', options: ['neohookean', 'corotated', 'stvk', 'energy'], default: 'neohookean' },
+  { ...LIMIT, default: 'none' },
+  PROJECTION,
+];
+const CHOICES: Readonly<Record<Kind, readonly Choice[]>> = { fascia: SHEET, membrane: SHEET, fat: FAT, links: [] };
+
+const AXES = ['along fibres', 'across', 'through'];
+const SHEAR = ['shear', 'shear, through along', 'shear, through across'];
+
+function directions(count: 2 | 3): readonly Directions[] {
+  const axes = AXES.slice(0, count);
+  const same = (value: number): number[] => axes.map(() => value);
+  const shears = SHEAR.slice(0, count === 2 ? 1 : 3);
+  return [
+    { name: 'target', words: 'Target', entries: [...axes, ...shears], default: [...same(1), ...shears.map(() => 0)], least: -100, most: 100, when: 'target' },
+    { name: 'strain_min', words: 'Least strain', entries: axes, default: same(-0.1), least: -0.99, most: 0, when: 'range' },
+    { name: 'strain_max', words: 'Largest strain', entries: axes, default: same(0.1), least: 0, most: 100, when: 'range' },
+    { name: 'shrink', words: 'Shrink', entries: axes.map((_, i) => 'xyz'[i]), default: same(1), least: 0.001, most: 10 },
+  ];
+}
+const DIRECTIONS: Readonly<Record<Kind, readonly Directions[]>> = {
+  fascia: directions(2), membrane: directions(2), fat: directions(3), links: [],
+};
+
+export interface LimitInputs {
+  fields: HTMLElement[];
+  /** all members; throws a sentence if one is out of range */
+  read(): Record<string, string | number[]>;
+  show(values: Values): void;
+}
+
+export function limitInputs(kind: Kind): LimitInputs {
+  const choices = CHOICES[kind].map((choice) => {
+    const select = element('select', { name: choice.name }, ...choice.options.map((value) => element('option', { value }, value.replace('_', ' '))));
+    return { choice, select, label: field(choice.words, select) };
+  });
+  const vectors = DIRECTIONS[kind].map((vector) => {
+    const inputs = vector.entries.map((entry) =>
+      element('input', {
+        type: 'number', name: `${vector.name}-${entry.replaceAll(/[ ,]+/g, '-')}`, step: 'any', min: String(vector.least), max: String(vector.most),
+      }),
+    );
+    const title = vector.name === 'shrink' ? 'squared stretch of cut rims; 1: none' : vector.name === 'target' ? 'of F^T F: a squared stretch' : '';
+    return { vector, inputs, labels: inputs.map((input, i) => field(`${vector.words} ${vector.entries[i]}`, input, '', title)) };
+  });
+  const limit = choices.find(({ choice }) => choice.name === 'limit');
+  const hide = (): void => {
+    for (const { vector, labels } of vectors)
+      for (const label of labels) label.hidden = vector.when !== undefined && limit?.select.value !== vector.when;
+  };
+  limit?.select.addEventListener('change', hide);
+  return {
+    fields: [...choices.map(({ label }) => label), ...vectors.flatMap(({ labels }) => labels)],
+    show(values) {
+      for (const { choice, select } of choices) {
+        const value = values[choice.name];
+        select.value = typeof value === 'string' ? value : choice.default;
+      }
+      for (const { vector, inputs } of vectors) {
+        const given = values[vector.name];
+        const shown = Array.isArray(given) ? (given as number[]) : vector.default;
+        inputs.forEach((input, i) => (input.value = String(shown[i])));
+      }
+      hide();
+    },
+    read() {
+      const values: Record<string, string | number[]> = {};
+      for (const { choice, select } of choices) values[choice.name] = select.value;
+      for (const { vector, inputs } of vectors) {
+        const { name, words, least, most } = vector;
+        const given = inputs.map((input) => input.valueAsNumber);
+        if (given.some((value) => !(value >= least && value <= most))) throw new Error(`${words} must be numbers from ${least} to ${most}`);
+        values[name] = given;
+      }
+      return values;
+    },
+  };
+}

@@ -1,0 +1,67 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Snapshots: the state under a name, and back to it.
+import type { Control } from '../model/control';
+import { attempt, button, element, field, problemPlace } from './dom';
+import { NAME_PATTERN } from './names';
+
+/** Names in the timeline's words: `name=half-way branch=1 ...`. */
+function namesIn(control: Control): string[] {
+  const events = control.model.timeline?.events ?? [];
+  return events.filter(({ kind }) => kind === 'snapshot').flatMap(({ detail }) => /^name=(\S+)/.exec(detail ?? '')?.[1] ?? []);
+}
+
+export function snapshotSection(control: Control): HTMLElement {
+  const { model } = control;
+  const problem = problemPlace();
+  const said = element('p', { class: 'about', aria: { role: 'status' } });
+  const name = element('input', {
+    name: 'snapshot', pattern: NAME_PATTERN, maxLength: 48, autocomplete: 'off', placeholder: 'chosen by the daemon',
+  });
+  const known = element('datalist', { id: 'snapshots' });
+  name.setAttribute('list', known.id);
+  /** those of other branches are not in the timeline, but can be gone back to */
+  let taken: string[] = [];
+  const showKnown = (): void => {
+    taken = [...new Set([...taken, ...namesIn(control)])];
+    known.replaceChildren(...taken.map((value) => element('option', { value })));
+  };
+  const take = element('button', { type: 'submit' }, 'Take a snapshot');
+  const back = button('Go back to it', () => {
+    const work = async (): Promise<void> => {
+      if (name.value === '') throw new Error('name the snapshot to go back to');
+      const { tick } = await control.call('session.restore', { name: name.value });
+      said.textContent = `Back at ${name.value}, tick ${tick}; energy is off.`;
+      await control.loadTimeline();
+    };
+    void attempt(problem, work, back);
+  }, { id: 'restore' });
+  const form = element('form', { class: 'form' }, field('Name', name), known, element('div', { class: 'buttons' }, take, back), said, problem);
+  form.addEventListener('submit', (event) => {
+    event.preventDefault();
+    const work = async (): Promise<void> => {
+      const made = await control.call('session.snapshot', name.value === '' ? {} : { name: name.value });
+      taken.push(made.name);
+      name.value = made.name;
+      said.textContent = `${made.name} holds tick ${made.tick}.`;
+      showKnown();
+    };
+    void attempt(problem, work, take);
+  });
+  const refresh = (): void => {
+    for (const one of [take, back]) one.disabled = model.joined === null || !model.mayOperate;
+  };
+  model.on('timeline', showKnown);
+  model.on('link', refresh);
+  let session: string | null = null;
+  model.on('joined', () => {
+    if (model.session !== session) {
+      session = model.session;
+      taken = [];
+      said.textContent = '';
+      showKnown();
+    }
+    refresh();
+  });
+  refresh();
+  return element('details', { class: 'section', id: 'snapshot' }, element('summary', {}, 'Snapshots'), form);
+}

@@ -1,0 +1,91 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// What the panels change reaches the tissue: forces, pins, limits for each direction, snapshots. And what
+// is refused is said where it was asked.
+import type { Browser, Locator } from 'playwright-core';
+
+import { Daemon } from './daemon';
+import { launch, ViewerPage } from './viewer_page';
+
+const LIFTED_M = 0.003;
+
+describe('panels', () => {
+  const daemon = new Daemon(['--demo', 'fascia']);
+  let browser: Browser;
+  let viewer: ViewerPage;
+  let forces: Locator;
+
+  beforeAll(async () => {
+    await daemon.start();
+    browser = await launch();
+    viewer = await ViewerPage.open(browser, daemon.url);
+    await viewer.live('d1-fascia');
+    forces = viewer.page.locator('#forces');
+  });
+  afterAll(async () => {
+    await browser.close();
+    await daemon.end();
+  });
+
+  it('keeps the state under a name', async () => {
+    const { page } = viewer;
+    await page.locator('#snapshot > summary').click();
+    await page.locator('#snapshot input').fill('flat');
+    await page.getByRole('button', { name: 'Take a snapshot' }).click();
+    await page.locator('#snapshot [role=status]').getByText('flat holds tick').waitFor();
+  });
+
+  it('applies a force to the vertex nearest to a place', async () => {
+    const { page } = viewer;
+    await page.getByRole('tab', { name: 'Materials' }).click();
+    await forces.locator('summary').click();
+    await forces.locator('select[name=selection]').selectOption('nearest');
+    await forces.getByLabel('Force on each z').fill('5');
+    await forces.getByRole('button', { name: 'Apply the force' }).click();
+    await viewer.until((high) => window.cautery.extent().most[2] > high, LIFTED_M, 'the sheet is lifted');
+    await forces.getByRole('button', { name: 'No force' }).click();
+    await viewer.until((high) => window.cautery.extent().most[2] < high, LIFTED_M, 'the sheet sinks back');
+  });
+
+  it('lets a rim go that was pinned', async () => {
+    const { least } = await viewer.page.evaluate(() => window.cautery.extent());
+    await forces.locator('select[name=selection]').selectOption('rim');
+    await forces.getByRole('button', { name: 'Unpin' }).click();
+    await forces.locator('.problem').getByText('a rim needs its layer').waitFor();
+    await forces.locator('select[name=selection-layer]').selectOption('fascia');
+    await forces.getByRole('button', { name: 'Unpin' }).click();
+    await viewer.until((edge) => window.cautery.extent().least[0] > edge, least[0] + LIFTED_M, 'the taut sheet shrinks');
+    await viewer.page.getByRole('button', { name: 'Pause' }).click();
+    await viewer.until(() => window.cautery.paused, null, 'paused');
+  });
+
+  it('goes back to what was kept', async () => {
+    const { page } = viewer;
+    const { epoch } = await viewer.state();
+    await page.getByRole('tab', { name: 'Sessions' }).click();
+    await page.locator('#restore').click();
+    await page.locator('#snapshot [role=status]').getByText('Back at flat').waitFor();
+    await viewer.until((before) => window.cautery.epoch !== before, epoch, 'another epoch');
+    await viewer.until(([edge]) => window.cautery.extent().least[0] < edge, [-0.0595], 'the sheet is as wide as it was');
+    await page.locator('#snapshot input').fill('never-taken');
+    await page.locator('#restore').click();
+    await page.locator('#snapshot .problem').waitFor({ state: 'visible' });
+    expect(await page.locator('#snapshot .problem').textContent()).toMatch(/\w+ \w+/);
+  });
+
+  it('sets limits for each direction of the material', async () => {
+    const { page } = viewer;
+    await page.getByRole('tab', { name: 'Materials' }).click();
+    const form = page.locator('#panel-materials form').first();
+    expect(await form.getByLabel('Least strain across').isVisible()).toBe(false);
+    await form.getByLabel('Target along fibres').fill('0.5');
+    await form.getByRole('button', { name: 'Apply' }).click();
+    await viewer.until(() => JSON.stringify(window.cautery.layer('fascia')).includes('"target":[0.5,'), null, 'the daemon has the target');
+    expect(await form.getByLabel('Target along fibres').inputValue()).toBe('0.5');
+    await form.getByLabel('Target along fibres').fill('-3');
+    await form.getByRole('button', { name: 'Apply' }).click();
+    await form.locator('.problem').waitFor({ state: 'visible' });
+    await form.getByLabel('Strain limit').selectOption('range');
+    expect(await form.getByLabel('Least strain across').isVisible()).toBe(true);
+    expect(await form.getByLabel('Target along fibres').isVisible()).toBe(false);
+  });
+});
