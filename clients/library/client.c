@@ -108,10 +108,19 @@ static void retry(lws_sorted_usec_list_t *timer)
 	connect_now(lws_container_of(timer, cau_client, retry));
 }
 
+// Five heartbeats go into the silence after which the server cuts energy: on a busy machine some
+// come late, and the server takes some late.
+static lws_usec_t tick_us(const cau_client *client)
+{
+	const double share = 5, least_us = 10000;
+	double wanted_us = 1e6 * client->server.limits.heartbeat_s / share;
+	return (lws_usec_t)fmin(CAU_CLIENT_TICK_US, fmax(least_us, wanted_us));
+}
+
 static void tick(lws_sorted_usec_list_t *timer)
 {
 	cau_client *client = lws_container_of(timer, cau_client, tick);
-	lws_sul_schedule(client->loop->context, 0, &client->tick, tick, CAU_CLIENT_TICK_US);
+	lws_sul_schedule(client->loop->context, 0, &client->tick, tick, tick_us(client));
 	if (client->keep_alive)
 		cau_client_notify(client, CAU_METHOD_HEARTBEAT, &(cau_wire_heartbeat){.visible = true},
 		                  NULL);
@@ -130,7 +139,7 @@ void cau_client_greeted(cau_client *client)
 	client->attempts = 0;
 	client->connections++;
 	lws_sul_cancel(&client->deadline);
-	lws_sul_schedule(client->loop->context, 0, &client->tick, tick, CAU_CLIENT_TICK_US);
+	lws_sul_schedule(client->loop->context, 0, &client->tick, tick, tick_us(client));
 	client->condition = CAU_CLIENT_READY;
 	cau_streams_rejoin(client);
 	cau_calls_resend(client);

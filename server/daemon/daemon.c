@@ -16,10 +16,10 @@
 #include "transport_ws/network.h"
 #include "watchdog/watchdog.h"
 #include "worker/pool.h"
+#include "worker/priority.h"
 
 enum {
-	WORKER_NICE = 5, // below network and watchdog
-	CLOSING_S = 2,   // for connections to take their close frames
+	CLOSING_S = 2, // for connections to take their close frames
 	REAP_MS = 250,
 };
 
@@ -79,7 +79,7 @@ static cau_status open_hub(cau_daemon *daemon, cau_error *error)
 	long cores = sysconf(_SC_NPROCESSORS_ONLN);
 	int32_t workers = config->workers ? (int32_t)config->workers : cores > 0 ? (int32_t)cores : 1;
 	cau_status status = cau_worker_pool_create(
-		&daemon->pool, workers, 2 * (int32_t)config->max_sessions + 1, WORKER_NICE, error);
+		&daemon->pool, workers, 2 * (int32_t)config->max_sessions + 1, CAU_NICE_LAST, error);
 	cau_hub_def def = {.config = config,
 	                   .store = daemon->store,
 	                   .pool = daemon->pool,

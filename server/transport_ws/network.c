@@ -7,6 +7,7 @@
 #include "clock/clock.h"
 #include "log/log.h"
 #include "transport_ws/internal.h"
+#include "worker/priority.h"
 
 enum { TICK_MS = 100 };
 
@@ -87,6 +88,7 @@ static void tick(lws_sorted_usec_list_t *sul)
 static void *serve(void *argument)
 {
 	cau_network *network = argument;
+	cau_thread_set_nice(CAU_NICE_FIRST);
 	lws_sul_schedule(network->context, 0, &network->sul, tick, TICK_MS * LWS_US_PER_MS);
 	while (!network->ending ||
 	       (network->connections && cau_monotonic_s() < network->ending_until_s))

@@ -7,6 +7,7 @@
 #include <stdlib.h>
 
 #include "clock/clock.h"
+#include "worker/priority.h"
 
 struct cau_watchdog {
 	pthread_t thread;
@@ -32,6 +33,7 @@ static void wait_until(cau_watchdog *w, double look_s)
 static void *watch(void *argument)
 {
 	cau_watchdog *w = argument;
+	cau_thread_set_nice(CAU_NICE_FIRST);
 	pthread_mutex_lock(&w->mutex);
 	while (!w->ending) {
 		pthread_mutex_unlock(&w->mutex);

@@ -4,10 +4,9 @@
 #include <math.h>
 #include <pthread.h>
 #include <stdlib.h>
-#include <sys/resource.h>
-#include <unistd.h>
 
 #include "clock/clock.h"
+#include "worker/priority.h"
 
 struct cau_worker_pool {
 	pthread_mutex_t mutex;
@@ -68,7 +67,7 @@ static void *work(void *argument)
 {
 	cau_worker_pool *pool = argument;
 	// Without the right to it the thread stays at the process's priority, which is no fault.
-	setpriority(PRIO_PROCESS, (id_t)gettid(), pool->nice);
+	cau_thread_set_nice(pool->nice);
 	pthread_mutex_lock(&pool->mutex);
 	while (!pool->ending) {
 		double wake_s;

@@ -1,0 +1,19 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// How the daemon's threads stand to each other when processors are short: the network and the
+// watchdog before everything, workers last.
+#pragma once
+
+#include <sys/resource.h>
+#include <sys/types.h>
+#include <unistd.h>
+
+enum {
+	CAU_NICE_FIRST = -5, // where the system lets us: CAP_SYS_NICE, or LimitNICE of the service
+	CAU_NICE_LAST = 5,
+};
+
+// Of the calling thread; stays as it is where the system does not let us.
+static inline void cau_thread_set_nice(int nice)
+{
+	setpriority(PRIO_PROCESS, (id_t)gettid(), nice);
+}
