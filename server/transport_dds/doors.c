@@ -2,16 +2,39 @@
 // Readers and writers of sessions and tools, with their QoS.
 #include <string.h>
 
-#include "cautery.h"
 #include "ros2.h"
 #include "transport_dds/internal.h"
 
-enum { NATIVE_KEPT = 16, ROS2_KEPT = 10 };
+enum { NATIVE_KEPT = 16, ROS2_KEPT = 10, DELTAS_KEPT = 16 };
 
+cau_status cau_dds_open_topics(cau_dds *dds, cau_error *error)
+{
+	static const struct {
+		const char *name;
+		const dds_topic_descriptor_t *type;
+	} topics[TOPIC_COUNT] = {
+		[TOPIC_COMMAND] = {"cautery/tool_command", &cautery_ToolCommand_desc},
+		[TOPIC_STATE] = {"cautery/tool_state", &cautery_ToolState_desc},
+		[TOPIC_STATUS] = {"cautery/session_status", &cautery_SessionStatus_desc},
+		[TOPIC_TOPOLOGY] = {"cautery/topology", &cautery_Frame_desc},
+		[TOPIC_KEY_FRAME] = {"cautery/key_frame", &cautery_Frame_desc},
+		[TOPIC_DELTA] = {"cautery/delta", &cautery_Frame_desc},
+	};
+	for (int i = 0; i < TOPIC_COUNT; i++) {
+		dds->topics[i] =
+			dds_create_topic(dds->participant, topics[i].type, topics[i].name, NULL, NULL);
+		if (dds->topics[i] < 0)
+			return cau_fail(error, CAU_IO, "dds", "no topic %s: %s", topics[i].name,
+			                dds_strretcode(dds->topics[i]));
+	}
+	return CAU_OK;
+}
+
+// A writer of ours waits for no reader: what it has no room for is lost, and mended.
 static dds_qos_t *reliable_qos(int32_t kept)
 {
 	dds_qos_t *qos = dds_create_qos();
-	dds_qset_reliability(qos, DDS_RELIABILITY_RELIABLE, DDS_MSECS(100));
+	dds_qset_reliability(qos, DDS_RELIABILITY_RELIABLE, 0);
 	dds_qset_durability(qos, DDS_DURABILITY_VOLATILE);
 	dds_qset_ownership(qos, DDS_OWNERSHIP_SHARED);
 	dds_qset_history(qos, DDS_HISTORY_KEEP_LAST, kept);
@@ -45,22 +68,49 @@ static void close_door(cau_dds *dds, cau_door *door)
 	*door = (cau_door){0};
 }
 
+static void open_writers(cau_dds *dds, cau_dds_session *session)
+{
+	cau_dds_stream *stream = &session->stream;
+	dds_qos_t *kept = reliable_qos(1), *chain = reliable_qos(DELTAS_KEPT);
+	dds_qset_durability(kept, DDS_DURABILITY_TRANSIENT_LOCAL);
+	const struct {
+		dds_entity_t *writer;
+		cau_topic topic;
+		const dds_qos_t *qos;
+		bool watched; // whoever reads it is looked at
+	} writers[] = {
+		{&session->state_writer, TOPIC_STATE, kept, false},
+		{&session->status_writer, TOPIC_STATUS, kept, false},
+		{&stream->topology_writer, TOPIC_TOPOLOGY, kept, true},
+		{&stream->key_writer, TOPIC_KEY_FRAME, kept, true},
+		{&stream->delta_writer, TOPIC_DELTA, chain, true},
+	};
+	for (size_t i = 0; i < sizeof writers / sizeof writers[0]; i++) {
+		dds_entity_t made = dds_create_writer(session->publisher, dds->topics[writers[i].topic],
+		                                      writers[i].qos, NULL);
+		if (made > 0 && writers[i].watched) {
+			dds_set_status_mask(made, DDS_PUBLICATION_MATCHED_STATUS);
+			dds_waitset_attach(dds->waitset, made, 0);
+		}
+		*writers[i].writer = made;
+	}
+	dds_delete_qos(kept);
+	dds_delete_qos(chain);
+}
+
 cau_status cau_dds_open_session(cau_dds *dds, cau_dds_session *session)
 {
 	const char *id = cau_hosted_id(session->hosted);
-	dds_qos_t *partition = dds_create_qos(), *taken = reliable_qos(NATIVE_KEPT),
-			  *given = reliable_qos(1);
+	dds_qos_t *partition = dds_create_qos(), *taken = reliable_qos(NATIVE_KEPT);
 	dds_qset_partition1(partition, id);
-	dds_qset_durability(given, DDS_DURABILITY_TRANSIENT_LOCAL);
 	session->subscriber = dds_create_subscriber(dds->participant, partition, NULL);
 	session->publisher = dds_create_publisher(dds->participant, partition, NULL);
 	session->native =
-		(cau_door){.kind = DOOR_NATIVE, .topic = dds->command_topic, .session = session};
+		(cau_door){.kind = DOOR_NATIVE, .topic = dds->topics[TOPIC_COMMAND], .session = session};
 	bool done = open_door(dds, &session->native, session->subscriber, taken);
-	session->state_writer = dds_create_writer(session->publisher, dds->state_topic, given, NULL);
+	open_writers(dds, session);
 	dds_delete_qos(partition);
 	dds_delete_qos(taken);
-	dds_delete_qos(given);
 	if (!session->has_ros_name)
 		cau_log(CAU_LOG_WARNING, id, "dds_name_taken",
 		        "name=%s reason=\"another session has it: no ROS 2 topics\"", session->ros_name);
@@ -74,6 +124,7 @@ void cau_dds_close_session(cau_dds *dds, cau_dds_session *session)
 		if (session->tools[i].used)
 			cau_dds_close_tool(dds, &session->tools[i]);
 	close_door(dds, &session->native);
+	cau_dds_leave_frames(session);
 	if (session->subscriber > 0)
 		dds_delete(session->subscriber);
 	if (session->publisher > 0)

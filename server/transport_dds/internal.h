@@ -1,11 +1,14 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// What the files of this room share. All but the wake-up is the transport's own thread's.
+// What the files of this room share. All but the wake-up and the mailbox is the transport's own
+// thread's.
 #pragma once
 
 #include <dds/dds.h>
 #include <pthread.h>
 #include <stdatomic.h>
 
+#include "cautery.h"
+#include "cautery/messages.h"
 #include "clock/clock.h"
 #include "hosted_session/tools.h"
 #include "log/log.h"
@@ -18,6 +21,17 @@ enum {
 	HANDS_MOST = 512,
 	TOPIC_BYTES = 2 * CAU_NAME_BYTES + 32,
 };
+
+// Native topics, opened once for the participant; doors.c has their names.
+typedef enum cau_topic {
+	TOPIC_COMMAND,
+	TOPIC_STATE,
+	TOPIC_STATUS,
+	TOPIC_TOPOLOGY,
+	TOPIC_KEY_FRAME,
+	TOPIC_DELTA,
+	TOPIC_COUNT
+} cau_topic;
 
 typedef enum cau_door_kind {
 	DOOR_NATIVE,   // cautery/tool_command
@@ -44,6 +58,28 @@ typedef struct cau_dds_tool {
 	dds_entity_t force_topic, force_writer; // measured_cf
 } cau_dds_tool;
 
+// A session's frames; frames.c. Joined while somebody reads them.
+typedef struct cau_dds_stream {
+	dds_entity_t topology_writer, key_writer, delta_writer;
+	uint32_t readers; // of the three together
+	uint64_t ticket;  // of a join on its way; 0: none
+	double retry_s;   // not before this, after a join that was refused
+	bool joined;
+	cau_wire_stream_description description;
+	cau_subscriber chain; // every delta, and key frames that mend the chain
+	cau_subscriber keys;  // key frames beside it
+	bool key_wanted;      // by a new reader or on request
+	double key_due_s;
+	uint64_t key_epoch, key_sequence; // of the last key frame written
+} cau_dds_stream;
+
+// What was last said of a session; status.c.
+typedef struct cau_dds_status {
+	cau_wire_session_summary summary;
+	cau_hosted_counts counts;
+	double written_s; // 0: never
+} cau_dds_status;
+
 typedef struct cau_dds_session {
 	struct cau_dds_session *next;
 	cau_hosted *hosted; // shared
@@ -52,7 +88,11 @@ typedef struct cau_dds_session {
 	bool has_ros_name;
 	dds_entity_t subscriber, publisher; // of its partition
 	cau_door native;
-	dds_entity_t state_writer;
+	dds_entity_t state_writer, status_writer;
+	cau_hosted_tool states[CAU_MAX_TOOLS]; // as they were last written
+	uint64_t states_tick;
+	cau_dds_stream stream;
+	cau_dds_status status;
 	cau_dds_tool tools[CAU_MAX_TOOLS];
 	// refusals, logged once a second
 	int64_t refused;
@@ -86,27 +126,59 @@ typedef struct cau_dds_hand {
 	bool grasp_asked;
 } cau_dds_hand;
 
+// An answer on its way from a worker or the store's thread; mailbox.c.
+typedef struct cau_dds_post {
+	struct cau_dds_post *next;
+	uint64_t ticket; // whose answer
+	cau_method method;
+	bool failed;
+	int32_t code; // of the failure: CAU_RPC_*; 0: the status's own
+	cau_error error;
+	size_t text_bytes;
+	cau_hosted *joined; // shared, may be NULL
+	int32_t stream;
+	char text[]; // the whole JSON-RPC answer
+} cau_dds_post;
+
 struct cau_dds {
 	const cau_config *config;
 	cau_hub *hub;
 	dds_entity_t domain, participant, subscriber, publisher; // of the default partition
-	dds_entity_t command_topic, state_topic;
+	dds_entity_t topics[TOPIC_COUNT];
 	dds_entity_t waitset, wake;
 	pthread_t thread;
 	bool started;
-	atomic_bool ending, sessions_changed, sliced;
-	uint64_t last_connection;
+	atomic_bool ending, sessions_changed, sliced, answered;
+	pthread_mutex_t mutex; // guards the posts
+	cau_dds_post *first, *last;
+	uint64_t last_connection, last_ticket;
 	cau_dds_session *sessions;
 	cau_dds_client clients[CLIENTS_MOST];
 	cau_dds_writer writers[WRITERS_MOST];
 	cau_dds_hand hands[HANDS_MOST];
 };
 
+// ---- transport.c: makes the thread look again, for the reason `why`; any thread
+void cau_dds_wake(cau_dds *dds, atomic_bool *why);
+
 // ---- sessions.c: follows the hub
 void cau_dds_follow(cau_dds *dds);
+// What is due by the clock, and what the mailbox brought. Returns when to look again, INFINITY:
+// when something happens.
+double cau_dds_serve(cau_dds *dds);
 void cau_dds_close_sessions(cau_dds *dds);
 
+// ---- mailbox.c: answers from other threads
+// A reply that comes back as a post with a ticket of its own.
+cau_reply cau_dds_reply(cau_dds *dds, cau_method method);
+// The next post, for the caller to free with cau_dds_post_free; NULL: none.
+cau_dds_post *cau_dds_next_post(cau_dds *dds);
+void cau_dds_post_free(cau_dds_post *post);
+// Fills the C type of the method's result from a post that did not fail.
+cau_status cau_dds_post_result(const cau_dds_post *post, void *result, cau_error *error);
+
 // ---- doors.c: readers and writers
+cau_status cau_dds_open_topics(cau_dds *dds, cau_error *error);
 cau_status cau_dds_open_session(cau_dds *dds, cau_dds_session *session);
 void cau_dds_close_session(cau_dds *dds, cau_dds_session *session);
 void cau_dds_open_tool(cau_dds *dds, cau_dds_session *session, cau_dds_tool *tool);
@@ -142,5 +214,19 @@ void cau_dds_take_energize(cau_dds *dds, cau_door *door, cau_dds_client *client,
                            const void *sample);
 
 // ---- states.c
+// Writes the states of tools that are not as they were last written.
 void cau_dds_publish(cau_dds_session *session, const cau_hosted_tool *tools, int32_t count,
                      uint64_t tick, double time_s);
+
+// ---- status.c
+// Writes the status if it changed. Returns when to look again.
+double cau_dds_publish_status(cau_dds_session *session, double now_s);
+void cau_dds_fill_status(cautery_SessionStatus *status, const cau_wire_session_summary *summary,
+                         uint32_t number, const cau_hosted_counts *counts);
+
+// ---- frames.c
+// Joins, leaves, writes what is new. Returns when to look again.
+double cau_dds_serve_frames(cau_dds *dds, cau_dds_session *session, double now_s);
+// A post with the ticket of the session's join; takes what it joined.
+void cau_dds_joined(cau_dds_session *session, cau_dds_post *post);
+void cau_dds_leave_frames(cau_dds_session *session);

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Follows the hub's sessions and their tools: opens and closes what each has on the wire.
+#include <math.h>
 #include <stdlib.h>
 #include <string.h>
 
@@ -121,6 +122,29 @@ void cau_dds_follow(cau_dds *dds)
 			forget_session(dds, session);
 		}
 	}
+}
+
+static void deliver(cau_dds *dds, cau_dds_post *post)
+{
+	for (cau_dds_session *s = dds->sessions; s; s = s->next)
+		if (s->stream.ticket == post->ticket)
+			cau_dds_joined(s, post);
+}
+
+double cau_dds_serve(cau_dds *dds)
+{
+	double look_s = INFINITY, now_s = cau_monotonic_s();
+	for (cau_dds_post *post; (post = cau_dds_next_post(dds));) {
+		deliver(dds, post);
+		cau_dds_post_free(post);
+	}
+	for (cau_dds_session *s = dds->sessions; s; s = s->next) {
+		if (!s->subscriber)
+			continue;
+		look_s = fmin(look_s, cau_dds_publish_status(s, now_s));
+		look_s = fmin(look_s, cau_dds_serve_frames(dds, s, now_s));
+	}
+	return look_s;
 }
 
 void cau_dds_close_sessions(cau_dds *dds)

@@ -2,7 +2,6 @@
 // What the server says of tools: cautery/tool_state, measured_cp and measured_cf.
 #include <string.h>
 
-#include "cautery.h"
 #include "ros2.h"
 #include "transport_dds/internal.h"
 
@@ -65,8 +64,13 @@ void cau_dds_publish(cau_dds_session *session, const cau_hosted_tool *tools, int
 {
 	for (int32_t i = 0; i < count; i++) {
 		const cau_dds_tool *wire = wire_of(session, tools[i].state.name);
+		if (session->states_tick == tick &&
+		    memcmp(&session->states[i], &tools[i], sizeof *tools) == 0)
+			continue; // padding may differ: then it is written once more
+		session->states[i] = tools[i];
 		publish_state(session, &tools[i], tick, time_s);
 		if (wire && wire->pose_writer > 0)
 			publish_measured(wire, &tools[i].state);
 	}
+	session->states_tick = tick;
 }

@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // The transport's life and its thread.
+#include <math.h>
 #include <stdlib.h>
 #include <string.h>
 
-#include "cautery.h"
 #include "transport_dds/internal.h"
 #include "transport_dds/local.h"
 #include "transport_dds/loopback.h"
@@ -13,7 +13,7 @@ enum { TAKEN_MOST = 16, TRIGGERS_MOST = 64, CONFIG_BYTES = CAU_CONFIG_TEXT_BYTES
 
 // ---- the sink; from any thread
 // ----------------------------------------------------------------------
-static void wake(cau_dds *dds, atomic_bool *why)
+void cau_dds_wake(cau_dds *dds, atomic_bool *why)
 {
 	if (!atomic_exchange(why, true) && dds->wake > 0)
 		dds_set_guardcondition(dds->wake, true);
@@ -24,18 +24,18 @@ static void on_notify(void *user, cau_audience audience, cau_buffer *text)
 	cau_dds *dds = user;
 	cau_buffer_release(text);
 	if (audience.kind != CAU_AUDIENCE_CLIENT)
-		wake(dds, &dds->sessions_changed);
+		cau_dds_wake(dds, &dds->sessions_changed);
 }
 
 static void on_frames(void *user)
 {
-	(void)user; // frames are not published on DDS
+	(void)user; // a slice that made frames ends soon, and on_sliced tells
 }
 
 static void on_sliced(void *user)
 {
 	cau_dds *dds = user;
-	wake(dds, &dds->sliced);
+	cau_dds_wake(dds, &dds->sliced);
 }
 
 // ---- samples
@@ -66,12 +66,21 @@ static void serve(cau_dds *dds, cau_door *door)
 		cau_dds_prune(dds, door->reader, false);
 }
 
+static dds_duration_t patience(double look_s)
+{
+	if (isinf(look_s))
+		return DDS_INFINITY;
+	return (dds_duration_t)(1e9 * fmax(0, look_s - cau_monotonic_s()));
+}
+
 static void *run(void *argument)
 {
 	cau_dds *dds = argument;
 	dds_attach_t triggers[TRIGGERS_MOST];
+	double look_s = 0;
 	while (!dds->ending) {
-		dds_return_t count = dds_waitset_wait(dds->waitset, triggers, TRIGGERS_MOST, DDS_INFINITY);
+		dds_return_t count =
+			dds_waitset_wait(dds->waitset, triggers, TRIGGERS_MOST, patience(look_s));
 		for (dds_return_t i = 0; i < count && i < TRIGGERS_MOST; i++)
 			if (triggers[i])
 				serve(dds, (cau_door *)triggers[i]);
@@ -80,6 +89,8 @@ static void *run(void *argument)
 		bool sliced = atomic_exchange(&dds->sliced, false); // both are taken, whichever is set
 		if (changed || sliced)
 			cau_dds_follow(dds);
+		dds->answered = false;
+		look_s = cau_dds_serve(dds);
 	}
 	cau_dds_close_sessions(dds);
 	return NULL;
@@ -121,19 +132,14 @@ static cau_status open_entities(cau_dds *dds, cau_error *error)
 	dds_entity_t p = dds->participant;
 	dds->subscriber = dds_create_subscriber(p, NULL, NULL);
 	dds->publisher = dds_create_publisher(p, NULL, NULL);
-	dds->command_topic =
-		dds_create_topic(p, &cautery_ToolCommand_desc, "cautery/tool_command", NULL, NULL);
-	dds->state_topic =
-		dds_create_topic(p, &cautery_ToolState_desc, "cautery/tool_state", NULL, NULL);
 	dds->waitset = dds_create_waitset(p);
 	dds->wake = dds_create_guardcondition(p);
-	const dds_entity_t made[] = {dds->subscriber,  dds->publisher, dds->command_topic,
-	                             dds->state_topic, dds->waitset,   dds->wake};
+	const dds_entity_t made[] = {dds->subscriber, dds->publisher, dds->waitset, dds->wake};
 	for (size_t i = 0; i < sizeof made / sizeof made[0]; i++)
 		if (made[i] < 0)
 			return fail(error, "no entity", made[i]);
 	dds_return_t code = dds_waitset_attach(dds->waitset, dds->wake, 0);
-	return code ? fail(error, "no waitset", code) : CAU_OK;
+	return code ? fail(error, "no waitset", code) : cau_dds_open_topics(dds, error);
 }
 
 cau_status cau_dds_create(cau_dds **made, const cau_config *config, cau_hub *hub, cau_error *error)
@@ -144,6 +150,7 @@ cau_status cau_dds_create(cau_dds **made, const cau_config *config, cau_hub *hub
 		return cau_fail(error, CAU_NO_MEMORY, "dds", "no memory for the DDS transport");
 	dds->config = config;
 	dds->hub = hub;
+	pthread_mutex_init(&dds->mutex, NULL);
 	cau_status status = open_domain(dds, error);
 	if (!status)
 		status = open_entities(dds, error);
@@ -158,7 +165,7 @@ cau_status cau_dds_create(cau_dds **made, const cau_config *config, cau_hub *hub
 
 cau_status cau_dds_start(cau_dds *dds, cau_error *error)
 {
-	wake(dds, &dds->sessions_changed);
+	cau_dds_wake(dds, &dds->sessions_changed);
 	dds->started = pthread_create(&dds->thread, NULL, run, dds) == 0;
 	if (!dds->started)
 		return cau_fail(error, CAU_NO_MEMORY, "dds", "no thread");
@@ -186,5 +193,8 @@ void cau_dds_destroy(cau_dds *dds)
 	cau_dds_stop(dds);
 	if (dds->domain > 0)
 		dds_delete(dds->domain);
+	for (cau_dds_post *post; (post = cau_dds_next_post(dds));)
+		cau_dds_post_free(post);
+	pthread_mutex_destroy(&dds->mutex);
 	free(dds);
 }

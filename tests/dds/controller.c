@@ -13,20 +13,17 @@
 // On standard output it tells, one JSON object a line: matched, silent, state, changed.
 #include <dds/dds.h>
 #include <math.h>
-#include <poll.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 #include <time.h>
-#include <unistd.h>
 
 #include "cautery.h"
+#include "console.h"
 #include "ros2.h"
 
 #define PERIOD_S 0.01
 #define SPEED_M_S 0.2
-
-enum { LINE_BYTES = 256, NAME_BYTES = 49 };
 
 typedef struct controller {
 	char session[NAME_BYTES], tool[NAME_BYTES];
@@ -37,22 +34,6 @@ typedef struct controller {
 	dds_entity_t participant, publisher, command, pose, level, state_reader;
 	cautery_ToolState state;
 } controller;
-
-static double clock_s(clockid_t clock)
-{
-	struct timespec now;
-	clock_gettime(clock, &now);
-	return (double)now.tv_sec + 1e-9 * (double)now.tv_nsec;
-}
-
-static dds_entity_t checked(dds_entity_t entity)
-{
-	if (entity < 0) {
-		fprintf(stderr, "controller: %s\n", dds_strretcode(entity));
-		exit(1);
-	}
-	return entity;
-}
 
 // ---- the wire
 // ------------------------------------------------------------------------------------------
@@ -86,31 +67,18 @@ static void open_native(controller *c, dds_entity_t publisher, int deadline_ms)
 	dds_delete_qos(qos);
 }
 
-static void open_state(controller *c, const dds_qos_t *partition)
-{
-	dds_qos_t *qos = dds_create_qos();
-	dds_qset_reliability(qos, DDS_RELIABILITY_RELIABLE, DDS_MSECS(100));
-	dds_qset_durability(qos, DDS_DURABILITY_TRANSIENT_LOCAL);
-	dds_entity_t topic = checked(dds_create_topic(c->participant, &cautery_ToolState_desc,
-	                                              "cautery/tool_state", NULL, NULL));
-	dds_entity_t subscriber = checked(dds_create_subscriber(c->participant, partition, NULL));
-	c->state_reader = checked(dds_create_reader(subscriber, topic, qos, NULL));
-	dds_delete_qos(qos);
-}
-
 static void open_wire(controller *c, uint32_t domain, int deadline_ms)
 {
-	dds_qos_t *partition = dds_create_qos();
-	dds_qset_partition1(partition, c->session);
 	c->participant = checked(dds_create_participant(domain, NULL, NULL));
 	if (c->ros) {
 		c->pose = ros_writer(c, "servo_cp", &geometry_msgs_msg_dds__PoseStamped__desc);
 		c->level = ros_writer(c, "energize", &sensor_msgs_msg_dds__Joy__desc);
 	} else {
-		open_native(c, checked(dds_create_publisher(c->participant, partition, NULL)), deadline_ms);
+		open_native(c, publisher_of(c->participant, c->session), deadline_ms);
 	}
-	open_state(c, partition);
-	dds_delete_qos(partition);
+	c->state_reader =
+		native_reader(subscriber_of(c->participant, c->session), &cautery_ToolState_desc,
+	                  "cautery/tool_state", DDS_DURABILITY_TRANSIENT_LOCAL, 1);
 }
 
 static bool is_matched(dds_entity_t writer)
@@ -235,8 +203,9 @@ static void read_state(controller *c)
 		dds_return_loan(c->state_reader, samples, count);
 }
 
-static void obey(controller *c, const char *line)
+static void obey(void *user, const char *line)
 {
+	controller *c = user;
 	char word[16] = "", value[16] = "";
 	if (sscanf(line, "aim %lf %lf %lf", &c->aim_m[0], &c->aim_m[1], &c->aim_m[2]) == 3)
 		return;
@@ -260,34 +229,11 @@ static void obey(controller *c, const char *line)
 		printf("{\"event\":\"silent\",\"last_us\":%.0f}\n", 1e6 * c->last_write_s);
 }
 
-// Takes whole lines from standard input; false at its end.
-static bool listen_to(controller *c, char *kept, size_t *kept_bytes)
-{
-	ssize_t got = read(STDIN_FILENO, kept + *kept_bytes, LINE_BYTES - 1 - *kept_bytes);
-	if (got <= 0)
-		return false;
-	*kept_bytes += (size_t)got;
-	kept[*kept_bytes] = 0;
-	for (char *end; (end = strchr(kept, '\n'));) {
-		*end = 0;
-		obey(c, kept);
-		*kept_bytes -= (size_t)(end + 1 - kept);
-		memmove(kept, end + 1, *kept_bytes + 1);
-	}
-	return *kept_bytes < LINE_BYTES - 1;
-}
-
 static void run(controller *c)
 {
-	char kept[LINE_BYTES];
-	size_t kept_bytes = 0;
+	console input = {.kept_bytes = 0};
 	double next_s = clock_s(CLOCK_MONOTONIC);
-	struct pollfd input = {.fd = STDIN_FILENO, .events = POLLIN};
-	for (;;) {
-		double wait_s = fmax(0, next_s - clock_s(CLOCK_MONOTONIC));
-		struct timespec patience = {0, (long)(1e9 * fmin(wait_s, 0.5))};
-		if (ppoll(&input, 1, &patience, NULL) > 0 && !listen_to(c, kept, &kept_bytes))
-			return;
+	while (console_listen(&input, next_s - clock_s(CLOCK_MONOTONIC), obey, c)) {
 		read_state(c);
 		if (clock_s(CLOCK_MONOTONIC) < next_s)
 			continue;

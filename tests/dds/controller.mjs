@@ -4,13 +4,22 @@ import { spawn } from 'node:child_process';
 import { createInterface } from 'node:readline';
 
 export class Controller {
+	static alive = new Set();
+
+	// For the end of a test, however it ended.
+	static killAll() {
+		return Promise.all([...Controller.alive].map((robot) => robot.kill()));
+	}
+
 	static async start({ domain, session, tool, via, deadline }) {
 		const robot = new Controller();
+		Controller.alive.add(robot);
 		robot.waiters = [];
 		robot.process = spawn(process.env.CONTROLLER,
 			[domain, session, tool, via, Math.round(1000 * deadline)].map(String),
 			{ stdio: ['pipe', 'pipe', 'inherit'], env: { ...process.env, CYCLONEDDS_URI: process.env.LOOPBACK } });
 		robot.exited = new Promise((resolve) => robot.process.on('exit', resolve));
+		robot.exited.then(() => Controller.alive.delete(robot));
 		createInterface({ input: robot.process.stdout }).on('line', (line) => robot.onLine(JSON.parse(line)));
 		await robot.event((e) => e.event === 'matched', 'matched');
 		robot.firstDriver = (await robot.state()).driver;

@@ -1,0 +1,88 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// What workers and the store's thread answer waits here for the transport's thread.
+#include <stdlib.h>
+#include <string.h>
+
+#include "cautery/rpc.h"
+#include "transport_dds/internal.h"
+
+static void put(cau_dds *dds, cau_dds_post *post)
+{
+	pthread_mutex_lock(&dds->mutex);
+	if (dds->last)
+		dds->last->next = post;
+	else
+		dds->first = post;
+	dds->last = post;
+	pthread_mutex_unlock(&dds->mutex);
+	cau_dds_wake(dds, &dds->answered);
+}
+
+static void on_answer(void *user, const cau_reply *reply, const cau_outcome *outcome)
+{
+	size_t bytes = outcome->error ? 0 : outcome->text_bytes;
+	cau_dds_post *post = calloc(1, sizeof *post + bytes);
+	if (!post) {
+		cau_log(CAU_LOG_ERROR, NULL, "dds_answer_lost", "reason=\"no memory\"");
+		if (outcome->joined)
+			cau_hosted_leave(outcome->joined, &(cau_subscriber){.stream = outcome->stream});
+		return;
+	}
+	post->ticket = reply->connection;
+	post->method = reply->method;
+	post->failed = outcome->error != NULL;
+	if (outcome->error) {
+		post->error = *outcome->error;
+		post->code = outcome->code;
+	} else {
+		memcpy(post->text, outcome->text, bytes);
+		post->text_bytes = bytes;
+		post->stream = outcome->stream;
+		if (outcome->joined)
+			post->joined = cau_hosted_share(outcome->joined);
+	}
+	put(user, post);
+}
+
+cau_reply cau_dds_reply(cau_dds *dds, cau_method method)
+{
+	return (cau_reply){.answer = on_answer,
+	                   .user = dds,
+	                   .connection = ++dds->last_ticket,
+	                   .id = {.kind = CAU_RPC_ID_NUMBER},
+	                   .method = method};
+}
+
+cau_dds_post *cau_dds_next_post(cau_dds *dds)
+{
+	pthread_mutex_lock(&dds->mutex);
+	cau_dds_post *post = dds->first;
+	if (post)
+		dds->first = post->next;
+	if (!dds->first)
+		dds->last = NULL;
+	pthread_mutex_unlock(&dds->mutex);
+	return post;
+}
+
+void cau_dds_post_free(cau_dds_post *post)
+{
+	if (post->joined) { // nobody took it
+		cau_hosted_leave(post->joined, &(cau_subscriber){.stream = post->stream});
+		cau_hosted_release(post->joined);
+	}
+	free(post);
+}
+
+cau_status cau_dds_post_result(const cau_dds_post *post, void *result, cau_error *error)
+{
+	cau_rpc_message message = {0};
+	cau_rpc_fault fault = {0};
+	cau_status status =
+		cau_rpc_read(post->text, post->text_bytes, post->text_bytes, &message, &fault);
+	if (status)
+		return cau_fail(error, status, fault.path, "%s", fault.reason);
+	status = cau_rpc_result(&message, post->method, result, error);
+	cau_rpc_finish(&message);
+	return status;
+}
