@@ -26,6 +26,15 @@ INLINE m3 rotation_matrix(rotation_lanes q)
 	             {2 * (xz + wy), 2 * (yz - wx), 1 - 2 * (xx + yy)}}};
 }
 
+// 1/sqrt(n) of a number near one; two terms serve where they leave less than half a rounding.
+INLINE vreal inverse_root_near_one(vreal n)
+{
+	vreal e = n - 1;
+	if (CAU_SINGLE && !v_any(v_abs(e) > v_set((real)4e-3)))
+		return 1 - e * ((real)0.5 - (real)0.375 * e);
+	return 1 / v_sqrt(n);
+}
+
 // q (1, w/2), made unit again.
 INLINE rotation_lanes rotation_turn(rotation_lanes q, v3 w)
 {
@@ -33,7 +42,7 @@ INLINE rotation_lanes rotation_turn(rotation_lanes q, v3 w)
 	rotation_lanes p = {
 		q.w - q.x * h.x - q.y * h.y - q.z * h.z, q.x + q.w * h.x + q.y * h.z - q.z * h.y,
 		q.y + q.w * h.y + q.z * h.x - q.x * h.z, q.z + q.w * h.z + q.x * h.y - q.y * h.x};
-	vreal scale = 1 / v_sqrt(p.w * p.w + p.x * p.x + p.y * p.y + p.z * p.z);
+	vreal scale = inverse_root_near_one(p.w * p.w + p.x * p.x + p.y * p.y + p.z * p.z);
 	return (rotation_lanes){p.w * scale, p.x * scale, p.y * scale, p.z * scale};
 }
 
@@ -64,9 +73,10 @@ static __attribute__((noinline)) void polar_lanes(m3 a, vmask which, rotation_la
 // return. Exactly kept where S is symmetric.
 INLINE m3 polar_rotation(m3 a, rotation_lanes *q)
 {
-	vreal size2 = m3_dot(a, a), size = v_sqrt(size2);
-	vreal floor = (real)1e-4 * size * size2;
-	vmask robust = ~(m3_determinant(a) > floor);
+	vreal size2 = m3_dot(a, a);
+	vreal floor2 = (real)1e-8 * size2 * size2 * size2; // of a determinant, squared
+	vreal volume = m3_determinant(a);
+	vmask robust = ~((volume > v_set(0)) & (volume * volume > floor2));
 	for (int step = 0; step < POLAR_STEPS; ++step) {
 		m3 r = rotation_matrix(*q);
 		vreal s00 = v3_dot(r.c[0], a.c[0]), s11 = v3_dot(r.c[1], a.c[1]),
@@ -81,7 +91,7 @@ INLINE m3 polar_rotation(m3 a, rotation_lanes *q)
 		vreal c00 = m11 * m22 - m12 * m12, c11 = m00 * m22 - m02 * m02, c22 = m00 * m11 - m01 * m01;
 		vreal c01 = m02 * m12 - m01 * m22, c02 = m01 * m12 - m02 * m11, c12 = m01 * m02 - m00 * m12;
 		vreal det = m00 * c00 + m01 * c01 + m02 * c02;
-		robust |= ~((det > floor) & (c22 > v_set(0)) & (m00 > v_set(0)));
+		robust |= ~((det > v_set(0)) & (det * det > floor2) & (c22 > v_set(0)) & (m00 > v_set(0)));
 		vreal inverse = 1 / v_select(robust, v_set(1), det);
 		v3 w = {inverse * (c00 * axial.x + c01 * axial.y + c02 * axial.z),
 		        inverse * (c01 * axial.x + c11 * axial.y + c12 * axial.z),

@@ -18,11 +18,11 @@ typedef struct move {
 	double scale;
 } move;
 
-// position = position_before + scale * trial_increment
+// position = position_before + scale * trial_increment, and the displacement of that
 static void move_part(void *context, int32_t chunk)
 {
 	const move *work = context;
-	const cau_step_solver *solver = work->solver;
+	cau_step_solver *solver = work->solver;
 	int32_t first = chunk * CAU_VERTEX_CHUNK, last = first + CAU_VERTEX_CHUNK;
 	if (last > solver->tissue->vertex_count)
 		last = solver->tissue->vertex_count;
@@ -39,6 +39,7 @@ static void move_part(void *context, int32_t chunk)
 			for (int c = 0; c < 3; ++c)
 				x[3 * v + c] = before[3 * v + c] + work->scale * d[4 * v + c];
 	}
+	cau_solver_displace_chunk(solver, chunk);
 }
 
 static void move_to(cau_step_solver *solver, double scale)
@@ -49,7 +50,7 @@ static void move_to(cau_step_solver *solver, double scale)
 static double evaluate_at(cau_step_solver *solver, double scale)
 {
 	move_to(solver, scale);
-	return cau_solver_evaluate(solver);
+	return cau_solver_evaluate_displaced(solver);
 }
 
 static void scale_trial(cau_step_solver *solver, double scale)

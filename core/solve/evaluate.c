@@ -3,9 +3,8 @@
 #include "base/vector.h"
 #include "solve/solver.h"
 
-static void displacement_part(void *context, int32_t chunk)
+void cau_solver_displace_chunk(cau_step_solver *solver, int32_t chunk)
 {
-	cau_step_solver *solver = context;
 	int32_t first = chunk * CAU_VERTEX_CHUNK, last = first + CAU_VERTEX_CHUNK;
 	if (last > solver->tissue->vertex_count)
 		last = solver->tissue->vertex_count;
@@ -21,6 +20,11 @@ static void displacement_part(void *context, int32_t chunk)
 			for (int c = 0; c < 3; ++c)
 				u[4 * v + c] = x[3 * v + c] - rest[3 * v + c];
 	}
+}
+
+static void displacement_part(void *context, int32_t chunk)
+{
+	cau_solver_displace_chunk(context, chunk);
 }
 
 static void local_part(void *context, int32_t index)
@@ -96,9 +100,14 @@ void cau_solver_displace(cau_step_solver *solver)
 
 double cau_solver_evaluate(cau_step_solver *solver)
 {
+	cau_solver_displace(solver);
+	return cau_solver_evaluate_displaced(solver);
+}
+
+double cau_solver_evaluate_displaced(cau_step_solver *solver)
+{
 	double start = solver->now_s ? solver->now_s() : 0;
 	// local step: every element projected, its gradient recorded
-	cau_solver_displace(solver);
 	cau_pool_run(solver->pool, solver->slots.work_count, local_part, solver);
 	// sums over each vertex's records, plus inertia and drag
 	cau_pool_run(solver->pool, solver->chunk_count, vertex_part, solver);

@@ -92,8 +92,10 @@ cau_status cau_solver_run(cau_step_solver *solver, cau_error *error);
 // -------------------------------------------------------------------- evaluate.c: gradient and
 // objective (J, in double, fixed order) of eq. 4 at the present position.
 double cau_solver_evaluate(cau_step_solver *solver);
-// The displacements alone, for those who need no gradient.
+// The displacements alone, of all vertices or of one share of them; and the rest.
 void cau_solver_displace(cau_step_solver *solver);
+void cau_solver_displace_chunk(cau_step_solver *solver, int32_t chunk);
+double cau_solver_evaluate_displaced(cau_step_solver *solver);
 // Sum of elements' energies of the last evaluation, J.
 double cau_solver_elastic_energy(const cau_step_solver *solver);
 // global.c: increment = -A^-1 gradient, with unilateral constraints if there are any.

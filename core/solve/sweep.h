@@ -20,7 +20,7 @@
 #include "base/pool.h"
 #include "solve/factor.h"
 
-enum { CAU_SWEEP_TASKS = 16 };
+enum { CAU_SWEEP_TASKS = 8 }; // more leave more above them, for one thread
 
 typedef struct cau_supernode {
 	int32_t first, columns;    // its columns
