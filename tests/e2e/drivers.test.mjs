@@ -5,18 +5,17 @@ import { after, before, test } from 'node:test';
 import { Daemon } from './wire/daemon.mjs';
 import { AT_REST, smallSession } from './wire/scene.mjs';
 
-const DEADLINE_S = 0.25;
-// One tick, and what a loaded machine may take to run it and to bring the frame here.
-const TICK_S = 1 / 60, SLACK_S = process.env.E2E_SLOW === '1' ? 2 : 0.1;
+const slow = process.env.E2E_SLOW === '1';
 
+// The watchdog of most tests is patient: this process must not be kept waiting for longer than that.
 let daemon, admin;
 before(async () => {
-	daemon = await Daemon.start({ settings: { browser_deadline_s: DEADLINE_S, resume_s: 1.5 } });
+	daemon = await Daemon.start({ settings: { resume_s: slow ? 20 : 3 } });
 	admin = await daemon.connect();
 });
 after(() => daemon.end());
 
-const operator = () => daemon.connect({ hello: { role: 'operate', client: 'operator' } });
+const operator = (of = daemon) => of.connect({ hello: { role: 'operate', client: 'operator' } });
 const hook = (session) => ({ session, tool: 'hook' });
 const move = (client, session, x = 0, sequence = 0) =>
 	client.notify('tool.move', { ...hook(session), position_m: [x, 0, 0.02], rotation: AT_REST, sequence });
@@ -25,6 +24,7 @@ const move = (client, session, x = 0, sequence = 0) =>
 function drive(client, session) {
 	let sequence = 0;
 	const timer = setInterval(() => move(client, session, 0.001 * (sequence % 10), ++sequence), 16);
+	timer.unref(); // a test that fails must not keep the process
 	return () => clearInterval(timer);
 }
 
@@ -81,42 +81,53 @@ test('anybody who may operate turns energy off, and a driver hands over', async 
 	await Promise.all([first.close(), second.close()]);
 });
 
-test('silence cuts energy within the watchdog and a tick; it stays off until enabled', async () => {
-	const client = await operator();
+// How quickly it goes off, to the millisecond and for every way to fall silent, is watchdog.test.mjs.
+test('after silence energy is off, and stays off until it is enabled', async (t) => {
+	const strict = await Daemon.start({ settings: { browser_deadline_s: slow ? 2.5 : 0.25 } });
+	t.after(() => strict.end());
+	const client = await operator(strict);
 	const session = await smallSession(client, 'silent');
 	const { stream, stop } = await energized(client, session);
 	stop();
-	const silent = performance.now();
 	await client.until(() => !stream.tools[0].energized, 'energy off');
-	const took = (performance.now() - silent) / 1000;
-	// The last motion left up to one sending period before the silence began.
-	assert.ok(took > DEADLINE_S - 0.05 && took < DEADLINE_S + TICK_S + SLACK_S, `${took} s`);
 	assert.equal(stream.tools[0].energyOff, 'watchdog');
 	assert.ok(stream.tools[0].frozen);
-	await daemon.log(/session=d1-silent event=watchdog tick=\d+ tool=hook/);
+	await strict.log(/session=d1-silent event=watchdog tick=\d+ tool=hook/);
 	move(client, session, 0.01, 500);
 	await client.until(() => stream.tools[0].sequence === 500, 'motion again');
 	assert.equal(stream.tools[0].energized, false);
 	assert.equal(stream.tools[0].frozen, false);
+	const seen = client.until(() => stream.tools[0].energized, 'energy on again');
 	await client.call('tool.energize', { ...hook(session), energized: true });
-	await client.until(() => stream.tools[0].energized, 'energy on again');
+	await seen;
 	await client.close();
 });
 
-test('heartbeats keep energy on while the hand rests; a hidden page cuts it at once', async () => {
+test('heartbeats keep energy on while the hand rests', async (t) => {
+	const deadline = slow ? 10 : 1; // longer than this process can be kept waiting
+	const strict = await Daemon.start({ settings: { browser_deadline_s: deadline } });
+	t.after(() => strict.end());
+	const client = await operator(strict);
+	const session = await smallSession(client, 'resting');
+	const { stream, stop } = await energized(client, session);
+	stop();
+	const beat = setInterval(() => client.notify('heartbeat', { visible: true }), 80);
+	t.after(() => clearInterval(beat));
+	const published = stream.published;
+	await client.until(() => stream.published > published + 2e6 * deadline, 'twice the deadline');
+	assert.ok(stream.tools[0].energized);
+	await client.close();
+});
+
+test('a hidden page cuts energy at once', async () => {
 	const client = await operator();
 	const session = await smallSession(client, 'hidden');
 	const { stream, stop } = await energized(client, session);
 	stop();
-	const beat = setInterval(() => client.notify('heartbeat', { visible: true }), 80);
-	const tick = stream.tick;
-	await client.until(() => stream.tick > tick + 60, 'a second');
-	assert.ok(stream.tools[0].energized);
-	clearInterval(beat);
-	const hidden = performance.now();
 	client.notify('heartbeat', { visible: false });
-	await client.until(() => !stream.tools[0].energized, 'energy off');
-	assert.ok((performance.now() - hidden) / 1000 < 2 * TICK_S + SLACK_S);
+	await client.until(() => !stream.tools[0].energized, 'energy off, long before the deadline of ten seconds');
+	assert.equal(stream.tools[0].energyOff, 'watchdog');
+	await daemon.log(/session=d1-hidden event=watchdog .*its page is hidden/);
 	await client.close();
 });
 
@@ -169,12 +180,13 @@ test('motion of a tick is coalesced, and the newest counts', async () => {
 	const session = await smallSession(client, 'coalesced');
 	const stream = await client.join(session);
 	await client.call('tool.take_over', hook(session));
-	const before = await daemon.metric('session_motions_total', session);
+	const before = await daemon.metric('session_motions_total', session), tick = stream.tick;
 	for (let i = 1; i <= 500; i++)
 		move(client, session, 0.01, i);
 	await client.until(() => stream.tools[0].sequence === 500, 'the newest');
 	const applied = await daemon.metric('session_motions_total', session) - before;
-	assert.ok(applied >= 1 && applied < 50, `${applied} of 500 applied`);
+	const ticks = stream.tick - tick;
+	assert.ok(applied >= 1 && applied <= ticks + 2 && applied < 500, `${applied} of 500 applied in ${ticks} ticks`);
 	await client.close();
 });
 

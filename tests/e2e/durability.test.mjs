@@ -36,7 +36,7 @@ for (let round = 0; round < kills; round++)
 				acknowledged.push({ params, answer });
 			}
 		})();
-		await client.until(() => stream.removed() > 4 && acknowledged.length > 40 + (7 * round) % 53, 'a cut under way', 40);
+		await client.until(() => stream.removed() > 4 && acknowledged.length > 40 + (7 * round) % 53, 'a cut under way');
 		const epoch = stream.epoch;
 		await daemon.kill();
 		stop = true;

@@ -8,7 +8,7 @@ import { Daemon } from './wire/daemon.mjs';
 
 let daemon;
 before(async () => {
-	daemon = await Daemon.start({ settings: { hello_timeout_s: 0.4 } });
+	daemon = await Daemon.start({ settings: { hello_timeout_s: process.env.E2E_SLOW === '1' ? 15 : 2 } });
 });
 after(() => daemon.end());
 

@@ -8,7 +8,7 @@ import { smallSession } from './wire/scene.mjs';
 
 let daemon, bystander, stream, client, session;
 before(async () => {
-	daemon = await Daemon.start();
+	daemon = await Daemon.start({ settings: { max_requests_per_s: 200 } }); // which any build reads in a second
 	bystander = await daemon.connect();
 	session = await smallSession(bystander, 'watched');
 	stream = await bystander.join(session);

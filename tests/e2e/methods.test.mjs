@@ -60,7 +60,7 @@ test('pause, step, resume, speed, reset', async () => {
 	const from = stream.tick, started = performance.now();
 	await client.until(() => stream.tick >= from + 300, 'five seconds at five-fold speed');
 	const seconds = (performance.now() - started) / 1000;
-	assert.ok(seconds > 0.8 && (seconds < 2 || process.env.E2E_SLOW === '1'), `${seconds} s`);
+	assert.ok(seconds > 0.8 && (seconds < 4 || process.env.E2E_SLOW === '1'), `${seconds} s`);
 	const back = await client.call('session.reset', { session });
 	assert.equal(back.tick, 0);
 	await client.call('session.destroy', { session });
