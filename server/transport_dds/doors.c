@@ -160,6 +160,34 @@ static dds_entity_t ros_topic(cau_dds *dds, const char *prefix, const char *name
 	return dds_create_topic(dds->participant, type, topic, NULL, NULL);
 }
 
+static void open_ros_writers(cau_dds *dds, cau_dds_tool *tool, const char *prefix,
+                             const dds_qos_t *qos)
+{
+	dds_qos_t *latched = reliable_qos(1); // late joiners want it, CRTK's clients ask for it
+	dds_qset_durability(latched, DDS_DURABILITY_TRANSIENT_LOCAL);
+	const struct {
+		dds_entity_t *topic, *writer;
+		const char *name;
+		const dds_topic_descriptor_t *type;
+		const dds_qos_t *qos;
+	} writers[] = {
+		{&tool->pose_topic, &tool->pose_writer, "measured_cp",
+	     &geometry_msgs_msg_dds__PoseStamped__desc, qos},
+		{&tool->force_topic, &tool->force_writer, "measured_cf",
+	     &geometry_msgs_msg_dds__WrenchStamped__desc, qos},
+		{&tool->jaw_topic, &tool->jaw_writer, "jaw/measured_js",
+	     &sensor_msgs_msg_dds__JointState__desc, qos},
+		{&tool->operating_topic, &tool->operating_writer, "operating_state",
+	     &crtk_msgs_msg_dds__OperatingState__desc, latched},
+	};
+	for (size_t i = 0; i < sizeof writers / sizeof writers[0]; i++) {
+		*writers[i].topic = ros_topic(dds, prefix, writers[i].name, writers[i].type);
+		*writers[i].writer =
+			dds_create_writer(dds->publisher, *writers[i].topic, writers[i].qos, NULL);
+	}
+	dds_delete_qos(latched);
+}
+
 void cau_dds_open_tool(cau_dds *dds, cau_dds_session *session, cau_dds_tool *tool)
 {
 	char name[CAU_NAME_BYTES], prefix[2 * CAU_NAME_BYTES];
@@ -181,6 +209,8 @@ void cau_dds_open_tool(cau_dds *dds, cau_dds_session *session, cau_dds_tool *too
 		{&tool->servo_cp, DOOR_SERVO_CP, "servo_cp", &geometry_msgs_msg_dds__PoseStamped__desc},
 		{&tool->servo_jp, DOOR_SERVO_JP, "jaw/servo_jp", &sensor_msgs_msg_dds__JointState__desc},
 		{&tool->energize, DOOR_ENERGIZE, "energize", &sensor_msgs_msg_dds__Joy__desc},
+		{&tool->state_command, DOOR_STATE_COMMAND, "state_command",
+	     &crtk_msgs_msg_dds__StringStamped__desc},
 	};
 	dds_qos_t *qos = reliable_qos(ROS2_KEPT);
 	for (size_t i = 0; i < sizeof doors / sizeof doors[0]; i++) {
@@ -189,12 +219,7 @@ void cau_dds_open_tool(cau_dds *dds, cau_dds_session *session, cau_dds_tool *too
 		doors[i].door->topic = ros_topic(dds, prefix, doors[i].name, doors[i].type);
 		open_door(dds, doors[i].door, dds->subscriber, qos);
 	}
-	tool->pose_topic =
-		ros_topic(dds, prefix, "measured_cp", &geometry_msgs_msg_dds__PoseStamped__desc);
-	tool->force_topic =
-		ros_topic(dds, prefix, "measured_cf", &geometry_msgs_msg_dds__WrenchStamped__desc);
-	tool->pose_writer = dds_create_writer(dds->publisher, tool->pose_topic, qos, NULL);
-	tool->force_writer = dds_create_writer(dds->publisher, tool->force_topic, qos, NULL);
+	open_ros_writers(dds, tool, prefix, qos);
 	dds_delete_qos(qos);
 }
 
@@ -203,8 +228,10 @@ void cau_dds_close_tool(cau_dds *dds, cau_dds_tool *tool)
 	close_door(dds, &tool->servo_cp);
 	close_door(dds, &tool->servo_jp);
 	close_door(dds, &tool->energize);
-	const dds_entity_t made[] = {tool->pose_writer, tool->force_writer, tool->pose_topic,
-	                             tool->force_topic};
+	close_door(dds, &tool->state_command);
+	const dds_entity_t made[] = {tool->pose_writer,      tool->force_writer,   tool->jaw_writer,
+	                             tool->operating_writer, tool->pose_topic,     tool->force_topic,
+	                             tool->jaw_topic,        tool->operating_topic};
 	for (size_t i = 0; i < sizeof made / sizeof made[0]; i++)
 		if (made[i] > 0)
 			dds_delete(made[i]);

@@ -156,6 +156,8 @@ bool cau_dds_move(cau_dds *dds, cau_dds_hand *hand, cau_pose pose, double jaw, u
 	cau_status status = cau_motion_check_pose(&pose, jaw, &error);
 	if (!status && !cau_hosted_find_tool(hosted, hand->tool, &tool))
 		status = cau_fail(&error, CAU_NOT_FOUND, "tool", "there is no such tool");
+	if (!status)
+		status = cau_dds_check_ready(hand->session, hand->tool, &error);
 	if (!status && !drives(dds, hand, &tool, now_s, &error))
 		status = error.status;
 	if (!status)
@@ -195,12 +197,14 @@ void cau_dds_energy(cau_dds *dds, cau_dds_hand *hand, bool level)
 				!command(hand, CAU_COMMAND_TOOL_ENERGIZE, CAU_METHOD_TOOL_ENERGIZE, false);
 		return;
 	}
+	cau_error error = {0};
 	if (!hand->energy_ready)
 		return;
-	if (!may_drive(hand)) {
-		cau_error error = {0};
+	cau_status status = cau_dds_check_ready(hand->session, hand->tool, &error);
+	if (!status && !may_drive(hand))
+		status = cau_fail(&error, CAU_BAD_STATE, "tool", "energy is for who drives the tool");
+	if (status) {
 		hand->energy_ready = false;
-		cau_fail(&error, CAU_BAD_STATE, "tool", "energy is for who drives the tool");
 		cau_dds_refuse(hand->session, hand->tool, hand->client, hand->past.sequence, &error);
 		return;
 	}
@@ -216,4 +220,40 @@ void cau_dds_grasp(cau_dds_hand *hand, bool level)
 	                   : command(hand, CAU_COMMAND_TOOL_RELEASE, CAU_METHOD_TOOL_RELEASE, false);
 	if (asked)
 		hand->grasp_asked = level;
+}
+
+// ---- CRTK's states
+// ---------------------------------------------------------------------------------
+static void stay(const cau_dds_hand *hand, const cau_tool_state *state)
+{
+	submit_move(hand, &state->pose, state->jaw, hand->past.sequence);
+}
+
+void cau_dds_stop_tool(cau_dds *dds, cau_dds_session *session, const char *name,
+                       const cau_dds_client *client)
+{
+	cau_hosted_tool tool;
+	cau_dds_hand asking = {.client = (cau_dds_client *)client, .session = session};
+	snprintf(asking.tool, sizeof asking.tool, "%s", name);
+	if (!cau_hosted_find_tool(session->hosted, name, &tool))
+		return;
+	if (tool.energized)
+		command(&asking, CAU_COMMAND_TOOL_ENERGIZE, CAU_METHOD_TOOL_ENERGIZE, false);
+	for (int i = 0; i < HANDS_MOST; i++) {
+		cau_dds_hand *hand = &dds->hands[i];
+		if (!hand->client || hand->session != session || strcmp(hand->tool, name) != 0)
+			continue;
+		if (tool.driver.client == hand->client->asker.client)
+			stay(hand, &tool.state);
+		hand->past.has_pose = hand->energy_ready = hand->energy_asked = false;
+	}
+}
+
+void cau_dds_restart_tool(cau_dds *dds, const cau_dds_session *session, const char *name)
+{
+	for (int i = 0; i < HANDS_MOST; i++) {
+		cau_dds_hand *hand = &dds->hands[i];
+		if (hand->client && hand->session == session && strcmp(hand->tool, name) == 0)
+			hand->past.pose_s = cau_monotonic_s();
+	}
 }

@@ -38,6 +38,7 @@ typedef enum cau_door_kind {
 	DOOR_SERVO_CP, // rt/SESSION/TOOL/...
 	DOOR_SERVO_JP,
 	DOOR_ENERGIZE,
+	DOOR_STATE_COMMAND,
 } cau_door_kind;
 
 struct cau_dds_session;
@@ -50,12 +51,30 @@ typedef struct cau_door {
 	char tool[CAU_NAME_BYTES];
 } cau_door;
 
+typedef enum cau_dds_operating_state {
+	OPERATING_NOTHING, // told: nothing yet
+	OPERATING_DISABLED,
+	OPERATING_ENABLED,
+	OPERATING_PAUSED,
+	OPERATING_FAULT,
+} cau_dds_operating_state;
+
+// As CRTK has it; operating.c.
+typedef struct cau_dds_operating {
+	cau_dds_operating_state state;
+	bool unhomed;
+} cau_dds_operating;
+
 typedef struct cau_dds_tool {
 	bool used, seen;
 	char name[CAU_NAME_BYTES];
-	cau_door servo_cp, servo_jp, energize;  // closed where the ROS 2 name is taken
-	dds_entity_t pose_topic, pose_writer;   // measured_cp
-	dds_entity_t force_topic, force_writer; // measured_cf
+	// closed where the ROS 2 name is taken
+	cau_door servo_cp, servo_jp, energize, state_command;
+	dds_entity_t pose_topic, pose_writer;           // measured_cp
+	dds_entity_t force_topic, force_writer;         // measured_cf
+	dds_entity_t jaw_topic, jaw_writer;             // jaw/measured_js
+	dds_entity_t operating_topic, operating_writer; // operating_state
+	cau_dds_operating operating, operating_told;
 } cau_dds_tool;
 
 // A session's frames; frames.c. Joined while somebody reads them.
@@ -167,6 +186,7 @@ void cau_dds_follow(cau_dds *dds);
 // when something happens.
 double cau_dds_serve(cau_dds *dds);
 void cau_dds_close_sessions(cau_dds *dds);
+cau_dds_tool *cau_dds_find_tool(const cau_dds_session *session, const char *name); // NULL: none
 
 // ---- mailbox.c: answers from other threads
 // A reply that comes back as a post with a ticket of its own.
@@ -201,6 +221,12 @@ void cau_dds_energy(cau_dds *dds, cau_dds_hand *hand, bool level);
 void cau_dds_grasp(cau_dds_hand *hand, bool level);
 // Gives up the tool of a hand, through the queue: to nobody, or to `to`.
 bool cau_dds_hand_over(cau_dds_hand *hand, const cau_asker *to);
+// Energy off by order of `client`; if somebody drives the tool over DDS it stays where it is, and
+// wants a level that falls and rises before energy comes on.
+void cau_dds_stop_tool(cau_dds *dds, cau_dds_session *session, const char *tool,
+                       const cau_dds_client *client);
+// The tool may be moved again: its driver is not called silent for the time when it could not.
+void cau_dds_restart_tool(cau_dds *dds, const cau_dds_session *session, const char *tool);
 void cau_dds_refuse(cau_dds_session *session, const char *tool, const cau_dds_client *client,
                     uint64_t sequence, const cau_error *error);
 
@@ -212,6 +238,13 @@ void cau_dds_take_servo_jp(cau_dds *dds, cau_door *door, cau_dds_client *client,
                            const void *sample);
 void cau_dds_take_energize(cau_dds *dds, cau_door *door, cau_dds_client *client,
                            const void *sample);
+
+// ---- operating.c
+void cau_dds_take_state_command(cau_dds *dds, cau_door *door, cau_dds_client *client,
+                                const void *sample);
+// Whether CRTK's state lets the tool be moved and energized.
+cau_status cau_dds_check_ready(const cau_dds_session *session, const char *tool, cau_error *error);
+void cau_dds_publish_operating(cau_dds_session *session);
 
 // ---- states.c
 // Writes the states of tools that are not as they were last written.

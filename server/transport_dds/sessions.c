@@ -54,11 +54,11 @@ static void forget_session(cau_dds *dds, cau_dds_session *session)
 	free(session);
 }
 
-static cau_dds_tool *find_tool(cau_dds_session *session, const char *name)
+cau_dds_tool *cau_dds_find_tool(const cau_dds_session *session, const char *name)
 {
 	for (int i = 0; i < CAU_MAX_TOOLS; i++)
 		if (session->tools[i].used && strcmp(session->tools[i].name, name) == 0)
-			return &session->tools[i];
+			return (cau_dds_tool *)&session->tools[i];
 	return NULL;
 }
 
@@ -68,7 +68,7 @@ static void add_tool(cau_dds *dds, cau_dds_session *session, const char name[CAU
 		cau_dds_tool *tool = &session->tools[i];
 		if (tool->used)
 			continue;
-		*tool = (cau_dds_tool){.used = true, .seen = true};
+		*tool = (cau_dds_tool){.used = true, .seen = true, .operating = {OPERATING_ENABLED}};
 		memcpy(tool->name, name, sizeof tool->name);
 		cau_dds_open_tool(dds, session, tool);
 		return;
@@ -81,7 +81,7 @@ static void follow_tools(cau_dds *dds, cau_dds_session *session, const cau_hoste
 	for (int i = 0; i < CAU_MAX_TOOLS; i++)
 		session->tools[i].seen = false;
 	for (int32_t i = 0; i < count; i++) {
-		cau_dds_tool *known = find_tool(session, tools[i].state.name);
+		cau_dds_tool *known = cau_dds_find_tool(session, tools[i].state.name);
 		if (known)
 			known->seen = true;
 	}
@@ -91,7 +91,7 @@ static void follow_tools(cau_dds *dds, cau_dds_session *session, const cau_hoste
 			cau_dds_close_tool(dds, &session->tools[i]);
 		}
 	for (int32_t i = 0; i < count; i++)
-		if (!find_tool(session, tools[i].state.name))
+		if (!cau_dds_find_tool(session, tools[i].state.name))
 			add_tool(dds, session, tools[i].state.name);
 }
 
@@ -105,6 +105,7 @@ static void follow_session(cau_dds *dds, cau_dds_session *session)
 	int32_t count = cau_hosted_tools(session->hosted, tools, &tick, &time_s);
 	follow_tools(dds, session, tools, count);
 	cau_dds_publish(session, tools, count, tick, time_s);
+	cau_dds_publish_operating(session);
 }
 
 void cau_dds_follow(cau_dds *dds)

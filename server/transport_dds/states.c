@@ -1,11 +1,12 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// What the server says of tools: cautery/tool_state, measured_cp and measured_cf.
+// What the server says of tools: cautery/tool_state, measured_cp, measured_cf, jaw/measured_js.
 #include <string.h>
 
 #include "ros2.h"
 #include "transport_dds/internal.h"
 
-static char world_frame[] = "world";
+static char world_frame[] = "world", jaw_text[] = "jaw";
+static char *jaw_name = jaw_text;
 
 static void publish_state(const cau_dds_session *session, const cau_hosted_tool *tool,
                           uint64_t tick, double time_s)
@@ -49,21 +50,18 @@ static void publish_measured(const cau_dds_tool *wire, const cau_tool_state *sta
 	                                               {{f[0], f[1], f[2]}, {t[0], t[1], t[2]}}};
 	dds_write(wire->pose_writer, &pose);
 	dds_write(wire->force_writer, &force);
-}
-
-static const cau_dds_tool *wire_of(const cau_dds_session *session, const char *name)
-{
-	for (int i = 0; i < CAU_MAX_TOOLS; i++)
-		if (session->tools[i].used && strcmp(session->tools[i].name, name) == 0)
-			return &session->tools[i];
-	return NULL;
+	double angle_rad = state->jaw * state->definition.jaw_open_rad;
+	sensor_msgs_msg_dds__JointState_ jaw = {.header_ = header,
+	                                        .name_ = {1, 1, &jaw_name, false},
+	                                        .position_ = {1, 1, &angle_rad, false}};
+	dds_write(wire->jaw_writer, &jaw);
 }
 
 void cau_dds_publish(cau_dds_session *session, const cau_hosted_tool *tools, int32_t count,
                      uint64_t tick, double time_s)
 {
 	for (int32_t i = 0; i < count; i++) {
-		const cau_dds_tool *wire = wire_of(session, tools[i].state.name);
+		const cau_dds_tool *wire = cau_dds_find_tool(session, tools[i].state.name);
 		if (session->states_tick == tick &&
 		    memcmp(&session->states[i], &tools[i], sizeof *tools) == 0)
 			continue; // padding may differ: then it is written once more

@@ -47,6 +47,7 @@ static void serve(cau_dds *dds, cau_door *door)
 		[DOOR_SERVO_CP] = cau_dds_take_servo_cp,
 		[DOOR_SERVO_JP] = cau_dds_take_servo_jp,
 		[DOOR_ENERGIZE] = cau_dds_take_energize,
+		[DOOR_STATE_COMMAND] = cau_dds_take_state_command,
 	};
 	void *samples[TAKEN_MOST] = {NULL};
 	dds_sample_info_t infos[TAKEN_MOST];

@@ -10,7 +10,10 @@
 //     once WHAT      one bad sample: nan back stale leap session long
 //     flood COUNT    so many NaN samples at once     state            prints the newest tool state,
 //     soon
-// On standard output it tells, one JSON object a line: matched, silent, state, changed.
+// and by way of ros:
+//     command WORD   a state_command                  jaw RAD          a jaw/servo_jp
+//     crtk           prints the operating state, the jaw and the pose as ROS 2's topics tell them
+// On standard output it tells, one JSON object a line: matched, silent, state, changed, crtk.
 #include <dds/dds.h>
 #include <math.h>
 #include <stdio.h>
@@ -20,6 +23,7 @@
 
 #include "cautery.h"
 #include "console.h"
+#include "crtk.h"
 #include "ros2.h"
 
 #define PERIOD_S 0.01
@@ -33,22 +37,17 @@ typedef struct controller {
 	double last_write_s;
 	dds_entity_t participant, publisher, command, pose, level, state_reader;
 	cautery_ToolState state;
+	crtk crtk; // ros
+	bool crtk_asked;
 } controller;
 
 // ---- the wire
 // ------------------------------------------------------------------------------------------
 static dds_entity_t ros_writer(controller *c, const char *name, const dds_topic_descriptor_t *type)
 {
-	char topic[3 * NAME_BYTES];
-	snprintf(topic, sizeof topic, "rt/%.48s/%.48s/%s", c->session, c->tool, name);
-	for (char *at = topic; *at; at++)
-		if (*at == '-')
-			*at = '_';
-	dds_qos_t *qos = dds_create_qos(); // ROS 2's default
-	dds_qset_reliability(qos, DDS_RELIABILITY_RELIABLE, DDS_MSECS(100));
-	dds_qset_history(qos, DDS_HISTORY_KEEP_LAST, 10);
-	dds_entity_t made = checked(dds_create_topic(c->participant, type, topic, NULL, NULL));
-	made = checked(dds_create_writer(c->participant, made, qos, NULL));
+	dds_qos_t *qos = ros_qos(false);
+	dds_entity_t topic = ros_topic(c->participant, c->session, c->tool, name, type);
+	dds_entity_t made = checked(dds_create_writer(c->participant, topic, qos, NULL));
 	dds_delete_qos(qos);
 	return made;
 }
@@ -73,6 +72,7 @@ static void open_wire(controller *c, uint32_t domain, int deadline_ms)
 	if (c->ros) {
 		c->pose = ros_writer(c, "servo_cp", &geometry_msgs_msg_dds__PoseStamped__desc);
 		c->level = ros_writer(c, "energize", &sensor_msgs_msg_dds__Joy__desc);
+		crtk_open(&c->crtk, c->participant, c->session, c->tool);
 	} else {
 		open_native(c, publisher_of(c->participant, c->session), deadline_ms);
 	}
@@ -220,6 +220,12 @@ static void obey(void *user, const char *line)
 		write_bad(c, value);
 	else if (strcmp(word, "state") == 0)
 		c->state_asked = true;
+	else if (strcmp(word, "crtk") == 0)
+		c->crtk_asked = true;
+	else if (strcmp(word, "command") == 0)
+		crtk_command(&c->crtk, value);
+	else if (strcmp(word, "jaw") == 0)
+		crtk_jaw(&c->crtk, atof(value));
 	for (int i = 0; strcmp(word, "flood") == 0 && i < atoi(value); i++)
 		write_bad(c, "nan");
 	if (strcmp(word, "write") != 0)
@@ -235,14 +241,18 @@ static void run(controller *c)
 	double next_s = clock_s(CLOCK_MONOTONIC);
 	while (console_listen(&input, next_s - clock_s(CLOCK_MONOTONIC), obey, c)) {
 		read_state(c);
+		if (c->ros)
+			crtk_read(&c->crtk);
 		if (clock_s(CLOCK_MONOTONIC) < next_s)
 			continue;
 		next_s += PERIOD_S;
 		if (c->state_asked)
 			tell_state(c, "state");
-		c->state_asked = false;
+		if (c->crtk_asked)
+			crtk_tell(&c->crtk);
+		c->state_asked = c->crtk_asked = false;
 		if (!c->matched && is_matched(c->ros ? c->pose : c->command) &&
-		    (!c->ros || is_matched(c->level)) && c->has_state) {
+		    (!c->ros || (is_matched(c->level) && crtk_matched(&c->crtk))) && c->has_state) {
 			c->matched = true;
 			printf("{\"event\":\"matched\"}\n");
 		}

@@ -11,7 +11,7 @@ export class Controller {
 		return Promise.all([...Controller.alive].map((robot) => robot.kill()));
 	}
 
-	static async start({ domain, session, tool, via, deadline }) {
+	static async start({ domain, session, tool, via, deadline = 0 }) {
 		const robot = new Controller();
 		Controller.alive.add(robot);
 		robot.waiters = [];
@@ -49,6 +49,19 @@ export class Controller {
 
 	state() {
 		return this.ask('state', 'state');
+	}
+
+	crtk() {
+		return this.ask('crtk', 'crtk');
+	}
+
+	// The first word of the operating state that is so.
+	async untilCrtk(condition, seconds = 20) {
+		const end = Date.now() + seconds * 1000;
+		for (let told; Date.now() < end;)
+			if (condition(told = await this.crtk()))
+				return told;
+		throw new Error(`CRTK never told: ${condition}`);
 	}
 
 	// The first state, asked for again and again, that is so.

@@ -1,0 +1,134 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "crtk.h"
+
+#include <stdio.h>
+#include <string.h>
+
+#include "console.h"
+#include "ros2.h"
+
+enum { TAKEN_MOST = 16 };
+
+dds_entity_t ros_topic(dds_entity_t participant, const char *session, const char *tool,
+                       const char *name, const dds_topic_descriptor_t *type)
+{
+	char topic[3 * NAME_BYTES];
+	snprintf(topic, sizeof topic, "rt/%.48s/%.48s/%s", session, tool, name);
+	for (char *at = topic; *at; at++)
+		if (*at == '-')
+			*at = '_';
+	return checked(dds_create_topic(participant, type, topic, NULL, NULL));
+}
+
+dds_qos_t *ros_qos(bool latched)
+{
+	dds_qos_t *qos = dds_create_qos();
+	dds_qset_reliability(qos, DDS_RELIABILITY_RELIABLE, DDS_MSECS(100));
+	dds_qset_history(qos, DDS_HISTORY_KEEP_LAST, 10);
+	if (latched)
+		dds_qset_durability(qos, DDS_DURABILITY_TRANSIENT_LOCAL);
+	return qos;
+}
+
+void crtk_open(crtk *c, dds_entity_t participant, const char *session, const char *tool)
+{
+	dds_qos_t *qos = ros_qos(false), *latched = ros_qos(true);
+	const struct {
+		dds_entity_t *made;
+		const char *name;
+		const dds_topic_descriptor_t *type;
+		bool writes, latched;
+	} ends[] = {
+		{&c->command_writer, "state_command", &crtk_msgs_msg_dds__StringStamped__desc, true, false},
+		{&c->jaw_writer, "jaw/servo_jp", &sensor_msgs_msg_dds__JointState__desc, true, false},
+		{&c->state_reader, "operating_state", &crtk_msgs_msg_dds__OperatingState__desc, false,
+	     true},
+		{&c->jaw_reader, "jaw/measured_js", &sensor_msgs_msg_dds__JointState__desc, false, false},
+		{&c->pose_reader, "measured_cp", &geometry_msgs_msg_dds__PoseStamped__desc, false, false},
+	};
+	for (size_t i = 0; i < sizeof ends / sizeof ends[0]; i++) {
+		dds_entity_t topic = ros_topic(participant, session, tool, ends[i].name, ends[i].type);
+		const dds_qos_t *with = ends[i].latched ? latched : qos;
+		*ends[i].made = checked(ends[i].writes ? dds_create_writer(participant, topic, with, NULL)
+		                                       : dds_create_reader(participant, topic, with, NULL));
+	}
+	dds_delete_qos(qos);
+	dds_delete_qos(latched);
+}
+
+bool crtk_matched(const crtk *c)
+{
+	dds_publication_matched_status_t command, jaw;
+	return !dds_get_publication_matched_status(c->command_writer, &command) &&
+	       !dds_get_publication_matched_status(c->jaw_writer, &jaw) && command.current_count > 0 &&
+	       jaw.current_count > 0 && c->states > 0 && c->poses > 0;
+}
+
+static void take_state(crtk *c, const void *sample)
+{
+	const crtk_msgs_msg_dds__OperatingState_ *state = sample;
+	snprintf(c->state, sizeof c->state, "%s", state->state_);
+	c->homed = state->is_homed_;
+	c->busy = state->is_busy_;
+	c->states++;
+}
+
+static void take_jaw(crtk *c, const void *sample)
+{
+	const sensor_msgs_msg_dds__JointState_ *jaw = sample;
+	if (jaw->position_._length == 1 && jaw->name_._length == 1)
+		c->jaw_rad = jaw->position_._buffer[0];
+}
+
+static void take_pose(crtk *c, const void *sample)
+{
+	const geometry_msgs_msg_dds__Point_ *p =
+		&((const geometry_msgs_msg_dds__PoseStamped_ *)sample)->pose_.position_;
+	c->position_m[0] = p->x_;
+	c->position_m[1] = p->y_;
+	c->position_m[2] = p->z_;
+	c->poses++;
+}
+
+static void read_all(crtk *c, dds_entity_t reader, void (*take)(crtk *c, const void *sample))
+{
+	void *samples[TAKEN_MOST] = {NULL};
+	dds_sample_info_t infos[TAKEN_MOST];
+	int count = dds_take(reader, samples, infos, TAKEN_MOST, TAKEN_MOST);
+	for (int i = 0; i < count; i++)
+		if (infos[i].valid_data)
+			take(c, samples[i]);
+	if (count > 0)
+		dds_return_loan(reader, samples, count);
+}
+
+void crtk_read(crtk *c)
+{
+	read_all(c, c->state_reader, take_state);
+	read_all(c, c->jaw_reader, take_jaw);
+	read_all(c, c->pose_reader, take_pose);
+}
+
+void crtk_command(const crtk *c, const char *word)
+{
+	char frame[] = "", text[32];
+	snprintf(text, sizeof text, "%s", word);
+	crtk_msgs_msg_dds__StringStamped_ sample = {{{0, 0}, frame}, text};
+	checked(dds_write(c->command_writer, &sample));
+}
+
+void crtk_jaw(const crtk *c, double angle_rad)
+{
+	char frame[] = "";
+	sensor_msgs_msg_dds__JointState_ sample = {.header_ = {{0, 0}, frame},
+	                                           .position_ = {1, 1, &angle_rad, false}};
+	checked(dds_write(c->jaw_writer, &sample));
+}
+
+void crtk_tell(const crtk *c)
+{
+	printf("{\"event\":\"crtk\",\"state\":\"%s\",\"homed\":%s,\"busy\":%s,\"states\":%d,"
+	       "\"jaw_rad\":%.6f,\"position_m\":[%.6f,%.6f,%.6f]}\n",
+	       c->state, c->homed ? "true" : "false", c->busy ? "true" : "false", c->states, c->jaw_rad,
+	       c->position_m[0], c->position_m[1], c->position_m[2]);
+}

@@ -1,0 +1,27 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// The controller's side of CRTK's states and of the jaw.
+#pragma once
+
+#include <dds/dds.h>
+#include <stdbool.h>
+
+typedef struct crtk {
+	dds_entity_t command_writer, jaw_writer, state_reader, jaw_reader, pose_reader;
+	char state[16];
+	bool homed, busy;
+	int states, poses; // samples that came
+	double jaw_rad, position_m[3];
+} crtk;
+
+// A topic of ROS 2: rt/SESSION/TOOL/NAME, each `-` a `_`.
+dds_entity_t ros_topic(dds_entity_t participant, const char *session, const char *tool,
+                       const char *name, const dds_topic_descriptor_t *type);
+// ROS 2's default; `latched` as CRTK's clients ask for operating_state.
+dds_qos_t *ros_qos(bool latched);
+
+void crtk_open(crtk *c, dds_entity_t participant, const char *session, const char *tool);
+bool crtk_matched(const crtk *c);
+void crtk_read(crtk *c);
+void crtk_command(const crtk *c, const char *word);
+void crtk_jaw(const crtk *c, double angle_rad);
+void crtk_tell(const crtk *c);

@@ -1,0 +1,157 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// CRTK's operating states and the jaw, as a ROS 2 controller meets them.
+import assert from 'node:assert/strict';
+import { after, before, test } from 'node:test';
+import { Controller } from './controller.mjs';
+import { DOMAIN } from './domain.mjs';
+import { Daemon } from './wire/daemon.mjs';
+import { smallScene } from './wire/scene.mjs';
+
+const AT_AIM_M = 1e-4, JAW_OPEN_RAD = 0.5;
+
+let daemon;
+before(async () => {
+	daemon = await Daemon.start({ settings: { dds: true, dds_domain: DOMAIN, dds_deadline_s: 1 } });
+});
+after(() => daemon.end());
+
+const far = (a, b) => Math.hypot(a[0] - b[0], a[1] - b[1], a[2] - b[2]);
+
+// A session with one grasper, and a ROS 2 controller that drives it.
+async function driven(t, name) {
+	const client = await daemon.connect({ hello: { client: 'admin' } });
+	const definition = await smallScene(client);
+	Object.assign(definition.tools[0], { name: 'grasper', shape: 'grasper', jaw_open_rad: JAW_OPEN_RAD });
+	const session = (await client.call('session.create', { name, definition })).summary.session;
+	t.after(async () => {
+		await Controller.killAll();
+		await client.call('session.destroy', { session });
+		await client.close();
+	});
+	const stream = await client.join(session);
+	const robot = await controller(session);
+	robot.tell('write on');
+	await robot.until((s) => s.driver_name.startsWith('ros '));
+	return { client, session, stream, robot };
+}
+
+const controller = (session) => Controller.start({ domain: DOMAIN, session, tool: 'grasper', via: 'ros' });
+
+async function energize({ client, stream, robot }) {
+	robot.tell('energy 0');
+	const { sequence } = await robot.state();
+	await robot.until((s) => s.sequence > sequence + 2);
+	robot.tell('energy 1');
+	await client.until(() => stream.tools[0].energized, 'energy on');
+}
+
+// It has written some more, and nothing came of it.
+async function refuses({ session, stream, robot }, aim) {
+	const refused = await daemon.metric('session_refused_total', session);
+	const from = stream.tools[0].position;
+	robot.tell(`aim ${aim.join(' ')}`);
+	while (await daemon.metric('session_refused_total', session) < refused + 20)
+		await robot.state();
+	assert.ok(far(stream.tools[0].position, from) < AT_AIM_M);
+	assert.equal(stream.tools[0].energized, false);
+}
+
+// One sample of a writer that is silent otherwise.
+async function refusesOne(session, robot, line) {
+	let refused = await daemon.metric('session_refused_total', session);
+	for (let last = -1; last !== refused; refused = await daemon.metric('session_refused_total', session)) {
+		last = refused;
+		await robot.state(); // what was on its way is in
+	}
+	robot.tell(line);
+	while (await daemon.metric('session_refused_total', session) === refused)
+		await robot.state();
+	assert.equal(await daemon.metric('session_refused_total', session), refused + 1);
+}
+
+async function follows({ client, stream, robot }, aim) {
+	robot.tell(`aim ${aim.join(' ')}`);
+	await client.until(() => far(stream.tools[0].position, aim) < AT_AIM_M, 'it follows');
+}
+
+test('the operating state is there for who comes late, enabled and homed', async (t) => {
+	const { robot } = await driven(t, 'first');
+	const told = await robot.crtk();
+	assert.deepEqual([told.state, told.homed, told.busy], ['ENABLED', true, false]);
+});
+
+for (const [stop, state, go] of [['pause', 'PAUSED', 'resume'], ['disable', 'DISABLED', 'enable']])
+	test(`${stop} stops the tool and its energy, ${go} lets it move, energy wants its own enable`, async (t) => {
+		const seen = await driven(t, stop);
+		const { client, stream, robot } = seen;
+		await follows(seen, [0.01, 0, 0.02]);
+		await energize(seen);
+		robot.tell(`command ${stop}`);
+		await client.until(() => !stream.tools[0].energized, 'energy off');
+		assert.equal(stream.tools[0].energyOff, 'commanded');
+		await robot.untilCrtk((c) => c.state === state);
+		await refuses(seen, [-0.01, 0, 0.02]);
+		robot.tell(`command ${go}`);
+		await robot.untilCrtk((c) => c.state === 'ENABLED');
+		await follows(seen, [-0.01, 0.01, 0.02]);
+		assert.equal(stream.tools[0].energized, false); // the level was 1 all the time
+		await energize(seen);
+	});
+
+test('unhome and home; commands without a transition change nothing, unknown ones are refused', async (t) => {
+	const seen = await driven(t, 'homing');
+	const { session, robot } = seen;
+	robot.tell('command unhome');
+	await robot.untilCrtk((c) => c.state === 'ENABLED' && !c.homed);
+	await refuses(seen, [-0.01, 0, 0.02]);
+	robot.tell('command home');
+	await robot.untilCrtk((c) => c.homed);
+	await follows(seen, [0, 0.01, 0.02]);
+
+	robot.tell('write off');
+	await refusesOne(session, robot, 'command dance');
+	robot.tell('command resume');
+	robot.tell('command enable');
+	robot.tell('command disable');
+	await robot.untilCrtk((c) => c.state === 'DISABLED');
+	robot.tell('command pause');
+	robot.tell('command resume');
+	robot.tell('command enable');
+	await robot.untilCrtk((c) => c.state === 'ENABLED');
+	assert.equal((await robot.crtk()).states, 5); // what had no transition was not told
+});
+
+test('a stranger may stop a tool that another drives, and not set it going', async (t) => {
+	const seen = await driven(t, 'stranger');
+	const { session, robot } = seen;
+	const stranger = await controller(session);
+	stranger.tell('command pause');
+	await robot.untilCrtk((c) => c.state === 'PAUSED');
+	robot.tell('write off');
+	await refusesOne(session, stranger, 'command resume');
+	assert.equal((await robot.crtk()).state, 'PAUSED');
+	robot.tell('write on');
+	robot.tell('command resume');
+	await stranger.untilCrtk((c) => c.state === 'ENABLED');
+	await follows(seen, [0, 0.01, 0.02]);
+});
+
+test('a paused session is told as paused tools', async (t) => {
+	const { client, session, robot } = await driven(t, 'stands');
+	await client.call('session.pause', { session });
+	await robot.untilCrtk((c) => c.state === 'PAUSED');
+	await client.call('session.resume', { session });
+	await robot.untilCrtk((c) => c.state === 'ENABLED');
+});
+
+test('the jaw goes where servo_jp says, and measured_js and measured_cp tell', async (t) => {
+	const seen = await driven(t, 'jaw');
+	const { session, robot } = seen;
+	const aim = [0.01, -0.01, 0.02];
+	await follows(seen, aim);
+	robot.tell('jaw 0.2');
+	const told = await robot.untilCrtk((c) => Math.abs(c.jaw_rad - 0.2) < 1e-5);
+	assert.ok(far(told.position_m, aim) < AT_AIM_M);
+	await refusesOne(session, robot, 'jaw 0.6');
+	assert.ok(Math.abs((await robot.crtk()).jaw_rad - 0.2) < 1e-5);
+});
