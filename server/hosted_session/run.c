@@ -272,7 +272,7 @@ static cau_due when(cau_hosted *h)
 		return (cau_due){0, now_s + 0.1}; // those at wall rate go first
 	if (h->state == CAU_SESSION_RUNNING)
 		return (cau_due){h->next_step_s, h->next_step_s + h->info.step_s / h->speed};
-	return (cau_due){has_orders(h) ? 0 : INFINITY, now_s + 0.1};
+	return (cau_due){has_orders(h) || h->dirty ? 0 : INFINITY, now_s + 0.1};
 }
 
 cau_due cau_hosted_run(cau_task *task)
