@@ -5,10 +5,16 @@
 #include <sched.h>
 #include <stdatomic.h>
 #include <stdlib.h>
+#include <sys/resource.h>
 
 // Loops follow each other within microseconds during a step, so helpers spin for a while before
 // they sleep; between steps they sleep.
-enum { SPINS = 20000, MAX_THREADS = 16 };
+enum { FEW_SPINS = 200, SPINS = 20000, MAX_THREADS = 16 };
+
+// On a machine that others use too, a helper may lose its core in the middle of a part, and the
+// caller waits for as long as the scheduler pleases, hundreds of times a step. So after such a wait
+// the caller works alone for a while, twice as long each time that it happens again soon.
+enum { LEAST_ALONE = 256, MOST_ALONE = 16384, CALM = 4096 }; // loops
 
 struct cau_pool {
 	int32_t thread_count;
@@ -21,6 +27,8 @@ struct cau_pool {
 	_Atomic uint64_t ticket;
 	_Atomic int32_t parts_left;
 	_Atomic int32_t sleepers;
+	int32_t alone, next_alone, calm; // the caller's: loops left to do alone; the next such count;
+	                                 // loops since the last wait
 	atomic_bool stop;
 	pthread_mutex_t lock;
 	pthread_cond_t wake;
@@ -89,6 +97,7 @@ cau_pool *cau_pool_create(int32_t thread_count)
 	pthread_mutex_init(&pool->lock, NULL);
 	pthread_cond_init(&pool->wake, NULL);
 	pool->thread_count = 1;
+	pool->next_alone = LEAST_ALONE;
 	if (thread_count > MAX_THREADS)
 		thread_count = MAX_THREADS;
 	while (pool->thread_count < thread_count) {
@@ -119,12 +128,47 @@ int32_t cau_pool_thread_count(const cau_pool *pool)
 	return pool->thread_count;
 }
 
+// How often this thread lost its core against its will.
+static long preemptions(void)
+{
+	struct rusage usage;
+	return getrusage(RUSAGE_THREAD, &usage) ? 0 : usage.ru_nivcsw;
+}
+
+// Waits for the parts that helpers hold. Returns whether someone else's work was in the way.
+static int wait_long(cau_pool *pool)
+{
+	long before = preemptions();
+	int spins = 0;
+	for (; atomic_load(&pool->parts_left); ++spins) {
+		if (spins < SPINS)
+			relax();
+		else
+			sched_yield();
+	}
+	return spins > SPINS || preemptions() != before;
+}
+
+static void wait_for_helpers(cau_pool *pool)
+{
+	for (int spins = 0; spins < FEW_SPINS && atomic_load(&pool->parts_left); ++spins)
+		relax();
+	if (atomic_load(&pool->parts_left) && wait_long(pool)) {
+		pool->alone = pool->next_alone;
+		pool->next_alone = pool->next_alone < MOST_ALONE ? 2 * pool->next_alone : MOST_ALONE;
+		pool->calm = 0;
+	} else if (++pool->calm == CALM) {
+		pool->next_alone = LEAST_ALONE;
+	}
+}
+
 void cau_pool_run(cau_pool *pool, int32_t part_count, void (*part)(void *context, int32_t index),
                   void *context)
 {
-	if (pool->thread_count == 1 || part_count <= 1) {
+	if (pool->thread_count == 1 || part_count <= 1 || pool->alone > 0) {
 		for (int32_t i = 0; i < part_count; ++i)
 			part(context, i);
+		pool->alone -= pool->alone > 0 && part_count > 1;
 		return;
 	}
 	pool->part = part;
@@ -138,10 +182,5 @@ void cau_pool_run(cau_pool *pool, int32_t part_count, void (*part)(void *context
 		pthread_mutex_unlock(&pool->lock);
 	}
 	run_parts(pool);
-	for (int spins = 0; atomic_load(&pool->parts_left); ++spins) {
-		if (spins < SPINS)
-			relax();
-		else
-			sched_yield();
-	}
+	wait_for_helpers(pool);
 }

@@ -2,11 +2,15 @@
 // Every part once, whatever the number of threads, over very many loops.
 #include "base/pool.h"
 
+#include <pthread.h>
+#include <sched.h>
 #include <setjmp.h>
 #include <stdarg.h>
+#include <stdatomic.h>
 #include <stddef.h>
 #include <stdint.h>
 #include <string.h>
+#include <time.h>
 
 #include <cmocka.h>
 
@@ -87,12 +91,52 @@ static void test_loops_follow_each_other(void **state)
 	cau_pool_destroy(NULL);
 }
 
+// A helper that loses its core in the middle of a part, as on a machine that others use.
+typedef struct stall {
+	pthread_t caller;
+	_Atomic int stalled, by_helpers;
+} stall;
+
+static void stall_once(void *context, int32_t index)
+{
+	stall *work = context;
+	(void)index;
+	if (pthread_equal(pthread_self(), work->caller)) {
+		for (int i = 0; i < 1000 && !atomic_load(&work->stalled); ++i)
+			sched_yield(); // so that the helper gets a part
+		return;
+	}
+	atomic_fetch_add(&work->by_helpers, 1);
+	if (!atomic_exchange(&work->stalled, 1))
+		nanosleep(&(struct timespec){.tv_nsec = 50000000}, NULL); // the stall itself
+}
+
+// After such a wait the caller does some hundred loops alone, then shares them again.
+static void test_a_stalled_helper_is_left_out_for_a_while(void **state)
+{
+	(void)state;
+	stall work = {.caller = pthread_self()};
+	cau_pool *pool = cau_pool_create(2);
+	for (int loop = 0; loop < 100000 && !work.stalled; ++loop)
+		cau_pool_run(pool, 4, stall_once, &work);
+	assert_int_equal(work.stalled, 1);
+	atomic_store(&work.by_helpers, 0);
+	for (int loop = 0; loop < 200; ++loop)
+		cau_pool_run(pool, 4, stall_once, &work);
+	assert_int_equal(work.by_helpers, 0);
+	for (int loop = 0; loop < 1000000 && !work.by_helpers; ++loop)
+		cau_pool_run(pool, 4, stall_once, &work);
+	assert_true(work.by_helpers > 0);
+	cau_pool_destroy(pool);
+}
+
 int main(void)
 {
 	const struct CMUnitTest tests[] = {
 		cmocka_unit_test(test_every_part_once),
 		cmocka_unit_test(test_the_most_parts),
 		cmocka_unit_test(test_loops_follow_each_other),
+		cmocka_unit_test(test_a_stalled_helper_is_left_out_for_a_while),
 	};
 	return cmocka_run_group_tests(tests, NULL, NULL);
 }
