@@ -1,6 +1,7 @@
 #!/usr/bin/env bash
 # SPDX-License-Identifier: GPL-3.0-or-later
-# One stage of the viewer's tests: run_viewer_tests.sh types|lint|unit|build|browser
+# One stage of the viewer's tests: run_viewer_tests.sh types|lint|unit|build|browser; or `pictures`, which
+# makes clients/web/pictures anew from those of the browser tests that take them.
 # Exit code 77: skipped, with the reason. ctest sets the environment (tests/browser/CMakeLists.txt).
 set -euo pipefail
 
@@ -24,14 +25,21 @@ unit)
 	"$CAUTERY_WRITE_FRAMES" "$CAUTERY_FRAMES"
 	exec npm run --silent unit
 	;;
-browser)
+browser | pictures)
 	[ -x /usr/bin/chromium ] || skip "no /usr/bin/chromium"
 	[ -x "${CAUTERYD:-}" ] || skip "the daemon is not built here"
 	mkdir -p "$CAUTERY_SCREENSHOTS"
-	exec nice npm run --silent browser
+	if [ "$1" = browser ]; then
+		exec nice npm run --silent browser
+	fi
+	npm run --silent build
+	npm run --silent browser -- layers manners
+	for picture in pictures/*.png; do
+		cp "$CAUTERY_SCREENSHOTS/$(basename "$picture")" pictures/
+	done
 	;;
 *)
-	echo "usage: run_viewer_tests.sh types|lint|unit|build|browser" >&2
+	echo "usage: run_viewer_tests.sh types|lint|unit|build|browser|pictures" >&2
 	exit 2
 	;;
 esac

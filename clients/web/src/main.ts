@@ -111,6 +111,8 @@ export interface Inspection {
   latenciesMs(): number[];
   /** definition of a layer as the daemon last told it */
   layer(name: string): Layer | null;
+  /** whether tissue of a layer is drawn over a point of the ground */
+  drawnAt(layer: string, x: number, y: number): boolean;
   /** least and largest x, y, z of the tissue, m */
   extent(): { least: number[]; most: number[] };
   project(point: readonly [number, number, number]): { x: number; y: number };
@@ -136,6 +138,7 @@ const inspection: Inspection = {
   get idle() { return viewport.idle; },
   latenciesMs: () => model.samples.map((sample) => sample.latencyMs),
   layer: (name) => model.joined?.description.definition.layers?.find((layer) => layer.name === name) ?? null,
+  drawnAt: (layer, x, y) => viewport.tissue?.covers(layer, x, y) ?? false,
   extent: () => {
     const { min, max } = new Box3().setFromArray(viewport.tissue?.position.array ?? []);
     return { least: min.toArray(), most: max.toArray() };

@@ -45,7 +45,6 @@ describe('a cut in the demo', () => {
     await viewer.page.keyboard.down('KeyS'); // the hook out of the picture's middle
     await viewer.until(() => window.cautery.tip[2] > 0.02, null, 'the hook is lifted');
     await viewer.page.keyboard.up('KeyS');
-    await viewer.screenshot('fascia-cut');
     expect(colourDistance(await viewer.colourAt([0, 0, 0]), whole)).toBeGreaterThan(ANOTHER_COLOUR);
   });
 

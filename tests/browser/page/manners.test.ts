@@ -14,8 +14,14 @@ import { launch, ViewerPage } from './viewer_page';
 
 const TABS = ['Sessions', 'Tools', 'Materials', 'View', 'Plots'];
 const BUNDLE_BYTES_MAX = 1_000_000; // compressed
+const LAYOUT_SHIFT_MAX = 0.1; // "good" by the web's own measure, web.dev/cls
 const PHONE = { viewport: { width: 390, height: 780 }, hasTouch: true, isMobile: true };
 const distribution = fileURLToPath(new URL('../../../clients/web/dist', import.meta.url));
+
+/** All that a panel can show is shown. */
+async function openAll(viewer: ViewerPage): Promise<void> {
+  await viewer.page.evaluate(() => document.querySelectorAll('details').forEach((details) => (details.open = true)));
+}
 
 async function seriousFaults(viewer: ViewerPage): Promise<string[]> {
   const { violations } = await new AxeBuilder({ page: viewer.page }).analyze();
@@ -31,6 +37,11 @@ describe('manners', () => {
   beforeAll(async () => {
     await daemon.start();
     browser = await launch();
+    const first = await ViewerPage.open(browser, daemon.url);
+    await first.live('d1-layers');
+    await first.page.getByRole('button', { name: 'Pause' }).click(); // the processor is the browser's from here on
+    await first.until(() => window.cautery.paused, null, 'paused');
+    await first.close();
   });
   afterAll(async () => {
     await browser.close();
@@ -46,10 +57,35 @@ describe('manners', () => {
     await viewer.live('d1-layers');
     for (const tab of name === 'on a phone' ? ['Sessions', 'Tools'] : TABS) {
       await viewer.page.getByRole('tab', { name: tab }).click();
+      await openAll(viewer);
       expect(await seriousFaults(viewer), tab).toEqual([]);
     }
-    await viewer.page.getByRole('tab', { name: 'Sessions' }).click();
-    await viewer.screenshot(`layers-${name.replaceAll(' ', '-')}`);
+    await viewer.close();
+  });
+
+  it('does not jump about while it comes up', async () => {
+    const viewer = await ViewerPage.open(browser, daemon.url, {}, 'no');
+    await viewer.live('d1-layers');
+    const shift = await viewer.page.evaluate(
+      () =>
+        new Promise<number>((resolve) => {
+          let sum = 0;
+          const add = (entries: PerformanceEntry[]): void => {
+            for (const entry of entries) sum += (entry as PerformanceEntry & { value: number }).value;
+          };
+          const observer = new PerformanceObserver((list) => add(list.getEntries()));
+          observer.observe({ type: 'layout-shift', buffered: true });
+          requestAnimationFrame(() =>
+            requestAnimationFrame(() => {
+              add(observer.takeRecords());
+              resolve(sum);
+            }),
+          );
+        }),
+    );
+    const paint = await viewer.page.evaluate(() => performance.getEntriesByName('first-contentful-paint')[0].startTime);
+    process.stdout.write(`first paint after ${paint.toFixed(0)} ms, layout shift ${shift.toFixed(3)}\n`);
+    expect(shift).toBeLessThan(LAYOUT_SHIFT_MAX);
     await viewer.close();
   });
 
@@ -60,6 +96,8 @@ describe('manners', () => {
     expect(overflow).toBeLessThanOrEqual(0);
     const picture = await viewer.page.locator('#picture').boundingBox();
     expect(picture?.height).toBeGreaterThan(250);
+    await viewer.until(() => window.cautery.idle, null, 'the sharp picture');
+    await viewer.screenshot('layers-on-a-phone');
     await viewer.close();
   });
 
@@ -68,6 +106,7 @@ describe('manners', () => {
     await viewer.live('d1-layers');
     for (const tab of TABS) {
       await viewer.page.getByRole('tab', { name: tab }).click();
+      await openAll(viewer);
       const unreachable = await viewer.page.evaluate(() =>
         [...document.querySelectorAll<HTMLElement>('button, input, select, summary, canvas#picture')]
           .filter((control) => control.checkVisibility() && control.tabIndex < 0 && control.getAttribute('role') !== 'tab')

@@ -17,6 +17,7 @@ const FLAGS = [
   '--no-sandbox', '--use-angle=swiftshader', '--enable-unsafe-swiftshader', '--disable-quic', '--no-first-run',
   '--disable-background-networking', '--disable-component-update', '--disable-sync',
 ];
+const PART_S = 0.25; // of a way drawn
 const PATIENCE_MS = 60_000; // two cores may be busy with other tests
 
 export function launch(): Promise<Browser> {
@@ -113,6 +114,31 @@ export class ViewerPage {
     await this.page.keyboard.up('Space');
     await this.page.mouse.up();
     await this.until(() => !window.cautery.energized, null, 'energy is off');
+  }
+
+  /** Leads the tool along x with energy on, at a pace of simulated time, so that load changes nothing. */
+  async draw(y: number, z: number, from: number, to: number, seconds: number): Promise<void> {
+    const parts = Math.ceil(seconds / PART_S);
+    await this.page.keyboard.down('Space');
+    await this.until(() => window.cautery.energized, null, 'energy is on');
+    const { tick: first } = await this.state();
+    for (let i = 1; i <= parts; i++) {
+      const at = await this.project([from + ((to - from) * i) / parts, y, z]);
+      await this.page.mouse.move(at.x, at.y);
+      await this.until((tick) => window.cautery.tick >= tick, first + Math.round((60 * seconds * i) / parts), `part ${i} of the way`);
+    }
+    await this.page.keyboard.up('Space');
+    await this.page.mouse.up();
+    await this.until(() => !window.cautery.energized, null, 'energy is off');
+  }
+
+  /** Turns the wheel with Ctrl: nearer by some notches. */
+  async zoom(notches: number): Promise<void> {
+    const { picturesDrawn } = await this.state();
+    await this.page.keyboard.down('Control');
+    for (let i = 0; i < notches; i++) await this.page.mouse.wheel(0, -100);
+    await this.page.keyboard.up('Control');
+    await this.until((before) => window.cautery.picturesDrawn > before && window.cautery.idle, picturesDrawn, 'the nearer picture');
   }
 
   /** Takes the tool and makes it hotter: a test that waits for tissue to take heat up would only wait. */

@@ -4,9 +4,9 @@
 
 /** Floats of a record: position, material coordinates, normal, heat exposure, charring, 0 root or 1 tip. */
 export const FRINGE_FLOATS = 12;
-const LONGEST_M = 0.0028;
+const LONGEST_M = 0.003;
 /** of fibres beside which the cut ran, over those that it crossed */
-const SHORTEST = 0.35;
+const SHORTEST = 0.55;
 const SAG = 0.35; // of tips, over their length
 
 /** Arrays of the tissue that a fringe reads; only `position`, `normal`, `burn` and `hidden` change. */
@@ -68,7 +68,7 @@ export class Fringe {
     vertexCount: number,
   ) {
     this.neighbours = makeNeighbours(source.faces, layerFaces, vertexCount);
-    this.length = Math.min(this.meanSide(), LONGEST_M);
+    this.length = Math.min(1.3 * this.meanSide(), LONGEST_M);
   }
 
   get rimVertexCount(): number {

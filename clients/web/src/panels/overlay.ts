@@ -52,6 +52,17 @@ function askToken(connect: (token?: string) => void): void {
   dialog.showModal();
 }
 
+const MOUSE_HINT = [
+  'Drag on the tissue to lead the hook over it.',
+  'Hold Space, or the Energy button, to cut with heat.',
+  'Right drag turns the view; the timeline below takes you back.',
+];
+const FINGER_HINT = [
+  'Drag on the tissue to lead the hook; pinch for depth.',
+  'Hold the Energy button with another finger to cut.',
+  'Two fingers turn the view; the timeline takes you back.',
+];
+
 export function showHint(): void {
   const hint = byId('hint');
   const open = (): void => {
@@ -60,9 +71,7 @@ export function showHint(): void {
       localStorage.setItem('hint', 'seen');
     });
     hint.replaceChildren(
-      element('p', {}, 'Drag on the tissue to lead the hook over it.'),
-      element('p', {}, 'Hold Space, or the Energy button, to cut with heat.'),
-      element('p', {}, 'Right drag turns the view; the timeline below takes you back.'),
+      ...(window.matchMedia('(pointer: coarse)').matches ? FINGER_HINT : MOUSE_HINT).map((words) => element('p', {}, words)),
       element('details', {}, element('summary', {}, 'All keys'), element('dl', {}, ...KEY_HELP.flatMap(([key, what]) => [element('dt', {}, key), element('dd', {}, what)]))),
       close,
     );

@@ -155,12 +155,12 @@ Surface fascia(vec3 normal, vec3 view, vec3 m, out float fibre, out float blotch
   float dense = smoothstep(0.32, 0.68, weave);
   Surface s;
   s.normal = bend(normal, weave, 0.00007);
-  s.colour = mix(vec3(0.56, 0.28, 0.23), vec3(0.78, 0.61, 0.54), dense);
+  s.colour = mix(vec3(0.64, 0.37, 0.31), vec3(0.80, 0.63, 0.55), dense);
   s.colour = mix(s.colour, vec3(0.60, 0.22, 0.19), 0.30 * smoothstep(0.50, 0.72, blotch));
   float vessel = abs(n(m * vec3(13.0, 17.0, 15.0) + 0.31) - 0.5);
   s.colour = mix(s.colour, vec3(0.50, 0.07, 0.08), 0.55 * smoothstep(0.011, 0.002, vessel));
   float grazing = 1.0 - abs(dot(normal, view));
-  s.alpha = clamp(mix(0.60, 0.90, dense) + 0.5 * grazing * grazing, 0.0, 1.0);
+  s.alpha = clamp(mix(0.70, 0.92, dense) + 0.5 * grazing * grazing, 0.0, 1.0);
   s.gloss = 60.0;
   s.wet = 0.38;
   return s;
@@ -218,7 +218,7 @@ void main() {
   s.alpha = 1.0;
   s.gloss = 90.0;
   s.wet = 0.62;
-  burnt(s, vec3(0.46, 0.215, 0.065), 0.5 * film + 0.5 * n(vMaterial * 70.0));
+  burnt(s, vec3(0.46, 0.185, 0.07), 0.5 * film + 0.5 * n(vMaterial * 70.0));
   finish(s, view);
 }`;
 
@@ -237,7 +237,7 @@ void main() {
   s.alpha = 1.0;
   s.gloss = 45.0;
   s.wet = 0.35;
-  burnt(s, vec3(0.56, 0.27, 0.06), 0.5 * grain + 0.5 * n(vMaterial * 60.0 + 0.5));
+  burnt(s, vec3(0.54, 0.235, 0.065), 0.5 * grain + 0.5 * n(vMaterial * 60.0 + 0.5));
   finish(s, view);
 }`;
 

@@ -145,6 +145,17 @@ export class TissueView {
     return this.indices.map((index, b) => (this.meshes[b].visible ? index : null));
   }
 
+  /** Whether a drawn face of a layer lies over or under a point of the ground. */
+  covers(layer: string, x: number, y: number): boolean {
+    const at = this.position.array as Float32Array;
+    return this.joined.batches.some((batch, b) => {
+      const index = this.indices[b];
+      if (batch.layer !== layer || batch.bared || !index) return false;
+      for (let i = 0; i < index.length; i += 3) if (insideOf(at, index, i, x, y)) return true;
+      return false;
+    });
+  }
+
   dispose(): void {
     for (const mesh of this.meshes) {
       mesh.geometry.dispose();
@@ -168,3 +179,13 @@ export class TissueView {
   }
 }
 
+/** Whether a point is inside a triangle seen along z. */
+function insideOf(at: Float32Array, index: Uint32Array, first: number, x: number, y: number): boolean {
+  let turns = 0;
+  for (let c = 0; c < 3; c++) {
+    const a = 3 * index[first + c];
+    const b = 3 * index[first + ((c + 1) % 3)];
+    turns += Math.sign((at[b] - at[a]) * (y - at[a + 1]) - (at[b + 1] - at[a + 1]) * (x - at[a]));
+  }
+  return Math.abs(turns) === 3;
+}
