@@ -6,11 +6,16 @@ import { mkdtempSync, rmSync } from 'node:fs';
 import { tmpdir } from 'node:os';
 import { join } from 'node:path';
 import { createInterface } from 'node:readline';
+import { after } from 'node:test';
 import http from 'node:http';
 import { Client, PATIENCE_S } from './client.mjs';
 
+// A test that fails leaves its daemon running, which would keep this process until its time is over.
+const running = new Set();
+after(() => running.forEach((daemon) => daemon.kill()));
+
 export class Daemon {
-	static async start({ folder, settings = {}, program = process.env.CAUTERYD } = {}) {
+	static async start({ folder, settings = {}, program = process.env.CAUTERYD, environment: added = {} } = {}) {
 		const daemon = new Daemon();
 		daemon.folder = folder ?? mkdtempSync(join(tmpdir(), 'cautery-e2e-'));
 		daemon.lines = [];
@@ -19,9 +24,12 @@ export class Daemon {
 		const all = { browser_deadline_s: 10, port: 0, store: join(daemon.folder, 'store.db'), scenes: process.env.SCENES, ...settings };
 		const flags = Object.entries(all).map(([name, value]) => `--${name.replaceAll('_', '-')}=${value}`);
 		const environment = Object.fromEntries(Object.entries(process.env).filter(([k]) => !k.startsWith('CAUTERY')));
+		Object.assign(environment, added);
 		daemon.process = spawn(program, ['--json', ...flags],
 			{ stdio: ['ignore', 'pipe', 'pipe'], env: environment });
 		daemon.exited = new Promise((resolve) => daemon.process.on('exit', (code, signal) => resolve({ code, signal })));
+		running.add(daemon);
+		daemon.exited.then(() => running.delete(daemon));
 		createInterface({ input: daemon.process.stderr }).on('line', (line) => daemon.onLine(line));
 		const ready = new Promise((resolve) =>
 			createInterface({ input: daemon.process.stdout }).once('line', (line) => resolve(JSON.parse(line))));

@@ -28,6 +28,7 @@ export class Driver {
 				session, tool: 'hook', position_m: [0.001 * (this.sequence % 10), 0, 0.02], rotation: AT_REST, sequence: ++this.sequence,
 			});
 		}, PERIOD_MS);
+		this.timer.unref(); // a test that fails must not keep the process
 	}
 
 	rest() {
