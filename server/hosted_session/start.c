@@ -65,18 +65,31 @@ static cau_status take_beginning(void *user, const cau_store_event *event)
 	return CAU_OK;
 }
 
+// "name=five branch=0", somewhere in the event's detail.
+static bool read_snapshot(const char *text, cau_named_snapshot *made)
+{
+	static const char name[] = "name=", branch[] = " branch=";
+	const char *at = strstr(text, name), *end = at ? strstr(at, branch) : NULL;
+	if (!end)
+		return false;
+	at += strlen(name);
+	size_t bytes = (size_t)(end - at);
+	if (bytes >= sizeof made->name)
+		return false;
+	memcpy(made->name, at, bytes);
+	made->name[bytes] = 0;
+	made->branch = strtoll(end + strlen(branch), NULL, 10);
+	return true;
+}
+
 static cau_status take_snapshot(void *user, const cau_store_event *event)
 {
 	cau_hosted *h = user;
 	cau_named_snapshot *made = &h->snapshots[h->snapshot_count];
-	long long branch;
-	const char *at = strstr(event->text, "name="); // in its detail
-	if (!at || h->snapshot_count == SNAPSHOT_COUNT ||
-	    sscanf(at, "name=%48s branch=%lld", made->name, &branch) != 2)
-		return CAU_OK;
-	made->branch = branch;
-	made->tick = event->tick;
-	h->snapshot_count++;
+	if (h->snapshot_count < SNAPSHOT_COUNT && read_snapshot(event->text, made)) {
+		made->tick = event->tick;
+		h->snapshot_count++;
+	}
 	return CAU_OK;
 }
 

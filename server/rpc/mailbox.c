@@ -21,8 +21,9 @@ static void put(cau_service *service, cau_post *post)
 		cau_network_wake(service->network);
 }
 
-static void write_id(char text[ID_BYTES], const cau_rpc_id *id)
+static size_t write_id(char text[ID_BYTES], const cau_rpc_id *id)
 {
+	size_t bytes = 0;
 	cau_json_writer writer;
 	cau_json_begin(&writer, text, ID_BYTES, 0);
 	if (id->kind == CAU_RPC_ID_NUMBER)
@@ -31,7 +32,8 @@ static void write_id(char text[ID_BYTES], const cau_rpc_id *id)
 		cau_json_string(&writer, NULL, id->text);
 	else
 		cau_json_null(&writer, NULL);
-	cau_json_end(&writer, NULL, NULL);
+	cau_json_end(&writer, &bytes, NULL);
+	return bytes;
 }
 
 // Answers are made, and stored, with the id 0; here each asker's own goes in.
@@ -42,10 +44,9 @@ static cau_buffer *with_id(const char *text, size_t bytes, const cau_rpc_id *id)
 	const char *found = memmem(text, bytes, member, sizeof member - 1);
 	if (!found)
 		return NULL;
-	write_id(own, id);
+	size_t own_bytes = write_id(own, id);
 	size_t head = (size_t)(found - text) + sizeof member - 1;
 	size_t skipped = head + strcspn(text + head, ",");
-	size_t own_bytes = strlen(own);
 	cau_buffer *buffer = cau_buffer_create(head + own_bytes + bytes - skipped, false);
 	if (!buffer)
 		return NULL;
