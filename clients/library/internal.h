@@ -11,7 +11,8 @@
 enum {
 	CAU_CLIENT_TEXT_MAX = 64 << 20,  // of a text message from the server
 	CAU_CLIENT_BINARY_MAX = 1 << 30, // of a frame or chunk
-	CAU_CLIENT_TICK_US = 100000,     // at most between heartbeats, acknowledgements, calls for key frames
+	CAU_CLIENT_TICK_US =
+		100000, // at most between heartbeats, acknowledgements, calls for key frames
 	CAU_CLIENT_CLOSE_WAIT_US = 1000000,
 };
 
