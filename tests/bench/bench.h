@@ -50,6 +50,7 @@ int bench_cut(const bench_options *options, bench_cut_result *result);
 enum { BENCH_CURVE = 9 };
 typedef struct bench_error_result {
 	double error_at_k, error_max, ms_to_1pct;
+	double reference_residual; // worst of the converged steps
 	int32_t iterations_to_1pct;
 	int32_t curve_iterations[BENCH_CURVE]; // mean error and median time of steps of so many
 	double curve_error[BENCH_CURVE], curve_ms[BENCH_CURVE];

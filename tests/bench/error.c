@@ -11,7 +11,12 @@
 #include "bench/bench.h"
 #include "session/session_internal.h"
 
-enum { CONVERGED_ITERATIONS = 1000, SAMPLES = 10, MOST_SAMPLES = 64 };
+enum {
+	CONVERGED_ITERATIONS = 1000,
+	CONVERGED_DIAGONAL = 10000, // it takes hundreds for each halving
+	SAMPLES = 10,
+	MOST_SAMPLES = 64
+};
 static const double converged_residual = 1e-11;
 static const int32_t curve_iterations[BENCH_CURVE] = {1, 2, 3, 5, 7, 10, 15, 20, 30};
 
@@ -156,6 +161,7 @@ static void measure(const bench_options *options, pull_run *pull, cau_session *s
 			copy_state(exact, state);
 			drive(pull, exact, share);
 			cau_session_step(exact, NULL);
+			result->reference_residual = fmax(result->reference_residual, exact->solver.residual);
 			double error = step_error(pull, trial, state, exact, share, options->iterations, &ms);
 			sum += error;
 			samples++;
@@ -192,7 +198,8 @@ int bench_error(const bench_options *options, bench_error_result *result)
 	state = pinned_session(scene, options);
 	trial = pinned_session(scene, options);
 	scene->precision = CAU_PRECISION_DOUBLE;
-	scene->iterations = CONVERGED_ITERATIONS;
+	scene->iterations =
+		scene->solver == CAU_SOLVER_DIAGONAL ? CONVERGED_DIAGONAL : CONVERGED_ITERATIONS;
 	scene->tolerance = converged_residual;
 	exact = pinned_session(scene, options);
 	if (!state || !trial || !exact)

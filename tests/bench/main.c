@@ -159,9 +159,11 @@ static void print_cut(const bench_options *options, const bench_cut_result *resu
 static void print_error(const bench_options *options, const bench_error_result *result)
 {
 	printf(options->json ? "\"error_at_K\":%.6g,\"error_max\":%.6g,\"iterations_to_1pct\":%d,"
-	                       "\"ms_to_1pct\":%.6g"
-	                     : "  error %.4g at K (worst %.4g); %d iterations, %.3f ms to 1 %%\n",
-	       result->error_at_k, result->error_max, result->iterations_to_1pct, result->ms_to_1pct);
+	                       "\"ms_to_1pct\":%.6g,\"reference_residual\":%.3g"
+	                     : "  error %.4g at K (worst %.4g); %d iterations, %.3f ms to 1 %%; the "
+	                       "reference's residual is %.2g\n",
+	       result->error_at_k, result->error_max, result->iterations_to_1pct, result->ms_to_1pct,
+	       result->reference_residual);
 	if (options->json)
 		fputs(",\"error_curve\":[", stdout);
 	for (int i = 0; i < BENCH_CURVE; ++i)

@@ -1,0 +1,154 @@
+#!/usr/bin/env python3
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Measures with cautery-bench and writes this folder's README.md and its two plots anew.
+
+Usage: tests/bench/page.py [--program build/bin/cautery-bench] [--steps 300]
+
+Takes about ten minutes. Run it on a machine that does nothing else. Needs gnuplot for the plots.
+"""
+
+import argparse
+import json
+import os
+import shutil
+import subprocess
+import sys
+
+FOLDER = os.path.dirname(os.path.abspath(__file__))
+ROOT = os.path.dirname(os.path.dirname(FOLDER))
+SCENES = ("fascia", "fat", "fat-neohookean", "layers")
+PULLED = ("fascia", "fat", "fat-neohookean")
+STAGES = ("predict", "local", "global", "contact", "heat", "dissect", "frame")
+
+
+class Bench:
+    def __init__(self, program, steps):
+        self.program, self.steps = program, steps
+
+    def run(self, scene, threads=1, solver=None, *options):
+        command = [self.program, "--scene", scene, "--threads", str(threads), "--steps",
+                   str(self.steps), "--json", *options]
+        command += ["--solver", solver] if solver else []
+        print(" ".join(command[1:]), file=sys.stderr)
+        answer = subprocess.run(command, check=True, stdout=subprocess.PIPE, text=True)
+        return json.loads(answer.stdout.splitlines()[-1])
+
+
+def table(head, rows):
+    lines = ["| " + " | ".join(head) + " |", "|---" * len(head) + "|"]
+    return "\n".join(lines + ["| " + " | ".join(row) + " |" for row in rows])
+
+
+def ms(value):
+    return f"{value:.3f}" if value < 10 else f"{value:.1f}"
+
+
+def percent(value):
+    return f"{100 * value:.2g} %"
+
+
+def step_table(bench):
+    head = ["scene", "T", "steps/s", "median", "p99", *STAGES, "limit", "x K solves", "MiB", "allocations"]
+    rows = []
+    for scene in SCENES:
+        for threads in (1, 2):
+            r = bench.run(scene, threads)
+            rows.append([f"`{scene}`", str(threads), f"{r['steps_per_s']:.0f}", ms(r["ms_median"]),
+                         ms(r["ms_p99"]), *(ms(r["stages"][s]) for s in STAGES), ms(r["limit_ms"]),
+                         f"{r['frame_over_cholmod']:.2f}", f"{r['bytes_session'] / 2**20:.0f}",
+                         f"{r['allocations_per_step']:g}"])
+    return table(head, rows), r["bandwidth_b_s"]
+
+
+def error_table(bench):
+    head = ["scene", "system", "error at K = 10", "worst", "iterations to 1 %", "ms to 1 %",
+            "reference's residual"]
+    rows, curves = [], []
+    for solver, scenes in (("cholesky", PULLED), ("diagonal", ("fascia", "fat"))):
+        for scene in scenes:
+            r = bench.run(scene, 1, solver, "--error")
+            curves.append((f"{scene}, {solver}", r["error_curve"]))
+            reached = r["iterations_to_1pct"] < 64
+            rows.append([f"`{scene}`", solver, percent(r["error_at_K"]), percent(r["error_max"]),
+                         str(r["iterations_to_1pct"]) if reached else "more than 63",
+                         ms(r["ms_to_1pct"]) if reached else "-",
+                         f"{r['reference_residual']:.0e}"])
+    return table(head, rows), curves
+
+
+def cut_table(bench):
+    head = ["scene", "T", "plain median", "cutting p99", "ratio", "elements removed", "cutting steps",
+            "new factors", "longest wait"]
+    rows = []
+    for scene in ("fascia", "fat", "fat-neohookean"):
+        for threads in (1, 2):
+            r = bench.run(scene, threads, None, "--cut")
+            rows.append([f"`{scene}`", str(threads), ms(r["plain_ms"]), ms(r["cut_p99_ms"]),
+                         f"{r['cut_p99_over_plain']:.2f}", str(r["elements_removed"]),
+                         str(r["cutting_steps"]), str(r["refactorisations"]),
+                         f"{1e3 * r['deferred_max_s']:.0f} ms"])
+    return table(head, rows)
+
+
+def scaling_table(bench):
+    head = ["scene", "elements and ms", "exponent"]
+    rows, sizes = [], []
+    for scene in ("fat", "fat-neohookean"):
+        r = bench.run(scene, 1, None, "--scaling")
+        sizes.append((scene, r["scaling"]))
+        points = ", ".join(f"{p['elements']}: {ms(p['ms'])}" for p in r["scaling"])
+        rows.append([f"`{scene}`", points, f"{r['scaling_exponent']:.2f}"])
+    return table(head, rows), sizes
+
+
+def plot(name, title, x_label, y_label, series):
+    """A log-log plot of [(label, [(x, y)])] as FOLDER/name."""
+    blocks, clauses = [], []
+    for index, (label, points) in enumerate(series):
+        blocks.append(f"$d{index} << END\n" + "\n".join(f"{x} {y}" for x, y in points) + "\nEND")
+        clauses.append(f'$d{index} with linespoints linewidth 2 title "{label}"')
+    script = "\n".join([
+        'set terminal svg size 720,440 font "sans-serif,13" background "white"',
+        f'set output "{os.path.join(FOLDER, name)}"',
+        f'set title "{title}"', f'set xlabel "{x_label}"', f'set ylabel "{y_label}"',
+        'set logscale xy', 'set grid', 'set key outside right', 'set format y "%g"',
+        'set format x "%g"', *blocks, "plot " + ", ".join(clauses)])
+    subprocess.run(["gnuplot"], input=script, text=True, check=True)
+
+
+def machine():
+    with open("/proc/cpuinfo", encoding="utf-8") as lines:
+        model = next((l.split(":")[1].strip() for l in lines if l.startswith("model name")), "unknown")
+    return f"{model}, {os.cpu_count()} cores"
+
+
+def main():
+    arguments = argparse.ArgumentParser(description=__doc__.splitlines()[0])
+    arguments.add_argument("--program", default=os.path.join(ROOT, "build/bin/cautery-bench"))
+    arguments.add_argument("--steps", type=int, default=300)
+    options = arguments.parse_args()
+    if not shutil.which("gnuplot"):
+        sys.exit("page.py: gnuplot is missing: apt-get install gnuplot-nox")
+    if not os.path.exists(options.program):
+        sys.exit(f"page.py: {options.program} is missing: build the release preset first")
+    bench = Bench(options.program, options.steps)
+    steps, bandwidth = step_table(bench)
+    errors, curves = error_table(bench)
+    cuts = cut_table(bench)
+    scaling, sizes = scaling_table(bench)
+    plot("error-against-time.svg", "Error of a step against its time, one core", "ms", "error",
+         [(label, [(p["ms"], p["error"]) for p in curve]) for label, curve in curves])
+    plot("time-against-size.svg", "Time of a step against size, one core", "tetrahedra", "ms",
+         [(label, [(p["elements"], p["ms"]) for p in points]) for label, points in sizes])
+    with open(os.path.join(FOLDER, "page.md.in"), encoding="utf-8") as file:
+        page = file.read()
+    values = {"machine": machine(), "steps": steps, "errors": errors, "cuts": cuts,
+              "scaling": scaling, "bandwidth": f"{bandwidth / 1e9:.0f}"}
+    for name, value in values.items():
+        page = page.replace(f"@{name}@", value)
+    with open(os.path.join(FOLDER, "README.md"), "w", encoding="utf-8") as file:
+        file.write(page)
+
+
+if __name__ == "__main__":
+    main()
