@@ -5,6 +5,7 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "cautery/message_choices.h"
 #include "config/setting.h"
 
 void cau_config_default(cau_config *config)
@@ -122,6 +123,13 @@ static bool is_loopback(const char *address)
 	       strcmp(address, "localhost") == 0;
 }
 
+static bool is_role(const char *word)
+{
+#define X(code, name) || strcmp(word, name) == 0
+	return false CAU_ROLE_TABLE(X);
+#undef X
+}
+
 static cau_status check_together(const cau_config *config, cau_error *error)
 {
 	if (!is_loopback(config->listen) && !*config->tokens)
@@ -132,6 +140,9 @@ static cau_status check_together(const cau_config *config, cau_error *error)
 		return cau_fail(
 			error, CAU_BAD_VALUE, "dds_config",
 			"may leave loopback: that needs dds_security, or dds_network to do without");
+	if (!is_role(config->dds_role))
+		return cau_fail(error, CAU_BAD_VALUE, "dds_role", "%.60s is not view, operate or admin",
+		                config->dds_role);
 	return CAU_OK;
 }
 

@@ -5,7 +5,7 @@
 #include "ros2.h"
 #include "transport_dds/internal.h"
 
-enum { NATIVE_KEPT = 16, ROS2_KEPT = 10, DELTAS_KEPT = 16 };
+enum { NATIVE_KEPT = 16, ROS2_KEPT = 10, DELTAS_KEPT = 16, REQUESTS_KEPT = 256, REPLIES_KEPT = 16 };
 
 cau_status cau_dds_open_topics(cau_dds *dds, cau_error *error)
 {
@@ -19,6 +19,8 @@ cau_status cau_dds_open_topics(cau_dds *dds, cau_error *error)
 		[TOPIC_TOPOLOGY] = {"cautery/topology", &cautery_Frame_desc},
 		[TOPIC_KEY_FRAME] = {"cautery/key_frame", &cautery_Frame_desc},
 		[TOPIC_DELTA] = {"cautery/delta", &cautery_Frame_desc},
+		[TOPIC_REQUEST] = {"cautery/session_request", &cautery_SessionRequest_desc},
+		[TOPIC_REPLY] = {"cautery/session_reply", &cautery_SessionReply_desc},
 	};
 	for (int i = 0; i < TOPIC_COUNT; i++) {
 		dds->topics[i] =
@@ -45,8 +47,8 @@ static bool open_door(cau_dds *dds, cau_door *door, dds_entity_t subscriber, con
 {
 	door->reader = dds_create_reader(subscriber, door->topic, qos, NULL);
 	if (door->reader < 0) {
-		cau_log(CAU_LOG_ERROR, cau_hosted_id(door->session->hosted), "dds_no_reader",
-		        "tool=%s reason=\"%s\"", door->tool, dds_strretcode(door->reader));
+		cau_log(CAU_LOG_ERROR, door->session ? cau_hosted_id(door->session->hosted) : NULL,
+		        "dds_no_reader", "tool=%s reason=\"%s\"", door->tool, dds_strretcode(door->reader));
 		door->reader = 0;
 		return false;
 	}
@@ -66,6 +68,29 @@ static void close_door(cau_dds *dds, cau_door *door)
 	if (door->topic > 0 && door->kind != DOOR_NATIVE)
 		dds_delete(door->topic);
 	*door = (cau_door){0};
+}
+
+// Replies are kept for a requester whose reader is found after its request was.
+cau_status cau_dds_open_control(cau_dds *dds, cau_error *error)
+{
+	dds_qos_t *partition = dds_create_qos(), *taken = reliable_qos(REQUESTS_KEPT),
+			  *kept = reliable_qos(REPLIES_KEPT);
+	dds_qset_partition1(partition, "cautery");
+	dds_qset_durability(kept, DDS_DURABILITY_TRANSIENT_LOCAL);
+	dds_qset_durability_service(kept, 0, DDS_HISTORY_KEEP_LAST, REPLIES_KEPT, DDS_LENGTH_UNLIMITED,
+	                            DDS_LENGTH_UNLIMITED, DDS_LENGTH_UNLIMITED);
+	dds->control_subscriber = dds_create_subscriber(dds->participant, partition, NULL);
+	dds->control_publisher = dds_create_publisher(dds->participant, partition, NULL);
+	dds->reply_writer =
+		dds_create_writer(dds->control_publisher, dds->topics[TOPIC_REPLY], kept, NULL);
+	dds->request = (cau_door){.kind = DOOR_REQUEST, .topic = dds->topics[TOPIC_REQUEST]};
+	bool done = open_door(dds, &dds->request, dds->control_subscriber, taken);
+	dds_delete_qos(partition);
+	dds_delete_qos(taken);
+	dds_delete_qos(kept);
+	return done && dds->reply_writer > 0
+	           ? CAU_OK
+	           : cau_fail(error, CAU_IO, "dds", "no session_request or session_reply");
 }
 
 static void open_writers(cau_dds *dds, cau_dds_session *session)

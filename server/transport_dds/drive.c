@@ -156,6 +156,8 @@ bool cau_dds_move(cau_dds *dds, cau_dds_hand *hand, cau_pose pose, double jaw, u
 	cau_status status = cau_motion_check_pose(&pose, jaw, &error);
 	if (!status && !cau_hosted_find_tool(hosted, hand->tool, &tool))
 		status = cau_fail(&error, CAU_NOT_FOUND, "tool", "there is no such tool");
+	if (!status && hand->client->asker.role < CAU_ROLE_OPERATE)
+		status = cau_fail(&error, CAU_BAD_STATE, "", "the role does not allow this");
 	if (!status)
 		status = cau_dds_check_ready(hand->session, hand->tool, &error);
 	if (!status && !drives(dds, hand, &tool, now_s, &error))

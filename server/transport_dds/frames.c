@@ -87,12 +87,12 @@ static void want_key(cau_dds_stream *stream)
 	const cau_subscriber *chain = &stream->chain;
 	stream->keys = (cau_subscriber){.stream = chain->stream,
 	                                .topology_sent = true,
-	                                .has_key = true,
+	                                .has_key = !stream->key_forced,
 	                                .wants_key = true,
 	                                .epoch = chain->epoch,
 	                                .sequence = chain->sequence - 1, // this state's or a newer
 	                                .key_asked_s = -INFINITY};
-	stream->key_wanted = false;
+	stream->key_wanted = stream->key_forced = false;
 }
 
 static double write_new(cau_dds_session *session, double now_s)
@@ -167,7 +167,7 @@ void cau_dds_joined(cau_dds_session *session, cau_dds_post *post)
 	stream->joined = true;
 	stream->chain = (cau_subscriber){.stream = post->stream, .key_asked_s = -INFINITY};
 	stream->keys = (cau_subscriber){0};
-	stream->key_wanted = false; // the chain begins with one
+	stream->key_wanted = stream->key_forced = false; // the chain begins with one
 	stream->key_epoch = stream->key_sequence = 0;
 }
 

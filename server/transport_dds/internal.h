@@ -19,6 +19,7 @@ enum {
 	CLIENTS_MOST = 128,
 	WRITERS_MOST = 512,
 	HANDS_MOST = 512,
+	REQUESTS_MOST = 256, // that wait for their answer
 	TOPIC_BYTES = 2 * CAU_NAME_BYTES + 32,
 };
 
@@ -30,6 +31,8 @@ typedef enum cau_topic {
 	TOPIC_TOPOLOGY,
 	TOPIC_KEY_FRAME,
 	TOPIC_DELTA,
+	TOPIC_REQUEST,
+	TOPIC_REPLY,
 	TOPIC_COUNT
 } cau_topic;
 
@@ -39,6 +42,7 @@ typedef enum cau_door_kind {
 	DOOR_SERVO_JP,
 	DOOR_ENERGIZE,
 	DOOR_STATE_COMMAND,
+	DOOR_REQUEST, // cautery/session_request; of no session
 } cau_door_kind;
 
 struct cau_dds_session;
@@ -88,6 +92,7 @@ typedef struct cau_dds_stream {
 	cau_subscriber chain; // every delta, and key frames that mend the chain
 	cau_subscriber keys;  // key frames beside it
 	bool key_wanted;      // by a new reader or on request
+	bool key_forced;      // even if the newest is out already
 	double key_due_s;
 	uint64_t key_epoch, key_sequence; // of the last key frame written
 } cau_dds_stream;
@@ -122,6 +127,8 @@ typedef struct cau_dds_session {
 typedef struct cau_dds_client {
 	uint64_t identity; // of the publication (native) or participant (ROS 2); 0: free
 	bool native;
+	uint64_t participant;
+	dds_guid_t guid; // native: of the writer
 	int32_t writers;
 	uint64_t connection; // for the hub
 	cau_asker asker;
@@ -159,11 +166,25 @@ typedef struct cau_dds_post {
 	char text[]; // the whole JSON-RPC answer
 } cau_dds_post;
 
+// A request that waits for its answer; replies.c.
+typedef struct cau_dds_request {
+	bool used;
+	uint64_t ticket; // of the answer; 0: answered at once
+	dds_guid_t writer;
+	uint64_t number;
+	cautery_SessionOperation operation;
+	char session[CAU_NAME_BYTES];
+} cau_dds_request;
+
 struct cau_dds {
 	const cau_config *config;
 	cau_hub *hub;
 	dds_entity_t domain, participant, subscriber, publisher; // of the default partition
 	dds_entity_t topics[TOPIC_COUNT];
+	cau_role role; // of every participant
+	dds_entity_t control_subscriber, control_publisher, reply_writer;
+	cau_door request;
+	cau_dds_request requests[REQUESTS_MOST];
 	dds_entity_t waitset, wake;
 	pthread_t thread;
 	bool started;
@@ -199,6 +220,7 @@ cau_status cau_dds_post_result(const cau_dds_post *post, void *result, cau_error
 
 // ---- doors.c: readers and writers
 cau_status cau_dds_open_topics(cau_dds *dds, cau_error *error);
+cau_status cau_dds_open_control(cau_dds *dds, cau_error *error);
 cau_status cau_dds_open_session(cau_dds *dds, cau_dds_session *session);
 void cau_dds_close_session(cau_dds *dds, cau_dds_session *session);
 void cau_dds_open_tool(cau_dds *dds, cau_dds_session *session, cau_dds_tool *tool);
@@ -207,6 +229,10 @@ void cau_dds_close_tool(cau_dds *dds, cau_dds_tool *tool);
 // ---- writers.c: who writes
 // The client behind a sample, or NULL: its writer is gone or there are too many.
 cau_dds_client *cau_dds_client_of(cau_dds *dds, const cau_door *door, dds_instance_handle_t handle);
+// The client of the requester's participant that drives by the writer `guid` of the session's
+// cautery/tool_command; all 0: by the tool's ROS 2 topics. NULL: there is none.
+cau_dds_client *cau_dds_find_driver(cau_dds *dds, const cau_dds_client *requester,
+                                    const char *session, const char *tool, const uint8_t guid[16]);
 // Forgets writers that no longer match the reader, and clients without writers.
 void cau_dds_prune(cau_dds *dds, dds_entity_t reader, bool all);
 // NULL: too many.
@@ -238,6 +264,23 @@ void cau_dds_take_servo_jp(cau_dds *dds, cau_door *door, cau_dds_client *client,
                            const void *sample);
 void cau_dds_take_energize(cau_dds *dds, cau_door *door, cau_dds_client *client,
                            const void *sample);
+
+// ---- control.c
+void cau_dds_take_request(cau_dds *dds, cau_door *door, cau_dds_client *client, const void *sample);
+
+// ---- replies.c: each but the first two answers the request and forgets it
+cau_dds_request cau_dds_describe_request(const cau_dds_client *client,
+                                         const cautery_SessionRequest *sample);
+cau_dds_request *cau_dds_keep_request(cau_dds *dds, const cau_dds_client *client,
+                                      const cautery_SessionRequest *sample); // NULL: too many
+void cau_dds_reply_fail(cau_dds *dds, cau_dds_request *request, const cau_error *error,
+                        int32_t code);
+void cau_dds_reply_join(cau_dds *dds, cau_dds_request *request,
+                        const cau_wire_session_summary *summary);
+void cau_dds_reply_list(cau_dds *dds, cau_dds_request *request);
+void cau_dds_reply_post(cau_dds *dds, const cau_dds_post *post);
+// The requester is gone: its replies are kept for nobody.
+void cau_dds_forget_replies(cau_dds *dds, const cau_dds_client *client);
 
 // ---- operating.c
 void cau_dds_take_state_command(cau_dds *dds, cau_door *door, cau_dds_client *client,

@@ -121,6 +121,8 @@ static cau_status check_asker(const cau_door *door, const cau_dds_client *client
                               cau_error *error)
 {
 	cau_hosted_tool tool;
+	if (client->asker.role < CAU_ROLE_OPERATE)
+		return cau_fail(error, CAU_BAD_STATE, "", "the role does not allow this");
 	bool stops = command == DISABLE || command == PAUSE || command == UNHOME;
 	if (stops || !cau_hosted_find_tool(door->session->hosted, door->tool, &tool) ||
 	    !tool.driver.client || tool.driver.client == client->asker.client)

@@ -128,8 +128,9 @@ void cau_dds_follow(cau_dds *dds)
 static void deliver(cau_dds *dds, cau_dds_post *post)
 {
 	for (cau_dds_session *s = dds->sessions; s; s = s->next)
-		if (s->stream.ticket == post->ticket)
+		if (s->stream.ticket == post->ticket) // tickets are never 0
 			cau_dds_joined(s, post);
+	cau_dds_reply_post(dds, post);
 }
 
 double cau_dds_serve(cau_dds *dds)

@@ -5,6 +5,7 @@
 #include <string.h>
 
 #include "transport_dds/internal.h"
+#include "transport_dds/leave.h"
 #include "transport_dds/local.h"
 #include "transport_dds/loopback.h"
 #include "transport_dds/security.h"
@@ -48,6 +49,7 @@ static void serve(cau_dds *dds, cau_door *door)
 		[DOOR_SERVO_JP] = cau_dds_take_servo_jp,
 		[DOOR_ENERGIZE] = cau_dds_take_energize,
 		[DOOR_STATE_COMMAND] = cau_dds_take_state_command,
+		[DOOR_REQUEST] = cau_dds_take_request,
 	};
 	void *samples[TAKEN_MOST] = {NULL};
 	dds_sample_info_t infos[TAKEN_MOST];
@@ -140,7 +142,21 @@ static cau_status open_entities(cau_dds *dds, cau_error *error)
 		if (made[i] < 0)
 			return fail(error, "no entity", made[i]);
 	dds_return_t code = dds_waitset_attach(dds->waitset, dds->wake, 0);
-	return code ? fail(error, "no waitset", code) : cau_dds_open_topics(dds, error);
+	return code ? fail(error, "no waitset", code) : CAU_OK;
+}
+
+// One of the words that the settings allow.
+static cau_role read_role(const char *word)
+{
+	static const char *const words[CAU_ROLE_COUNT] = {
+#define X(code, name) [CAU_ROLE_##code] = (name),
+		CAU_ROLE_TABLE(X)
+#undef X
+	};
+	int role = CAU_ROLE_COUNT - 1;
+	while (role > 0 && strcmp(words[role], word) != 0)
+		role--;
+	return (cau_role)role;
 }
 
 cau_status cau_dds_create(cau_dds **made, const cau_config *config, cau_hub *hub, cau_error *error)
@@ -151,10 +167,15 @@ cau_status cau_dds_create(cau_dds **made, const cau_config *config, cau_hub *hub
 		return cau_fail(error, CAU_NO_MEMORY, "dds", "no memory for the DDS transport");
 	dds->config = config;
 	dds->hub = hub;
+	dds->role = read_role(config->dds_role);
 	pthread_mutex_init(&dds->mutex, NULL);
 	cau_status status = open_domain(dds, error);
 	if (!status)
 		status = open_entities(dds, error);
+	if (!status)
+		status = cau_dds_open_topics(dds, error);
+	if (!status)
+		status = cau_dds_open_control(dds, error);
 	if (status) {
 		cau_dds_destroy(dds);
 		return status;
@@ -193,7 +214,7 @@ void cau_dds_destroy(cau_dds *dds)
 		return;
 	cau_dds_stop(dds);
 	if (dds->domain > 0)
-		dds_delete(dds->domain);
+		cau_dds_leave(dds->domain);
 	for (cau_dds_post *post; (post = cau_dds_next_post(dds));)
 		cau_dds_post_free(post);
 	pthread_mutex_destroy(&dds->mutex);

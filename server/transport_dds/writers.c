@@ -34,9 +34,8 @@ static cau_dds_client *add_client(cau_dds *dds, uint64_t identity, bool native,
                                   const dds_builtintopic_endpoint_t *writer)
 {
 	cau_dds_client *client = find_client(dds, 0, false);
-	cau_client made = {
-		.asker = {.role = CAU_ROLE_OPERATE, .deadline_s = deadline_of(dds, writer->qos)},
-		.connection = ++dds->last_connection};
+	cau_client made = {.asker = {.role = dds->role, .deadline_s = deadline_of(dds, writer->qos)},
+	                   .connection = ++dds->last_connection};
 	char guid[33];
 	uint64_t replaced;
 	write_guid(guid, native ? &writer->key : &writer->participant_key);
@@ -44,8 +43,12 @@ static cau_dds_client *add_client(cau_dds *dds, uint64_t identity, bool native,
 	snprintf(made.asker.client_id, sizeof made.asker.client_id, "dds-%s", guid);
 	if (!client || !cau_hub_attach(dds->hub, &made, NULL, &replaced))
 		return NULL;
-	*client = (cau_dds_client){
-		.identity = identity, .native = native, .connection = made.connection, .asker = made.asker};
+	*client = (cau_dds_client){.identity = identity,
+	                           .native = native,
+	                           .participant = writer->participant_instance_handle,
+	                           .guid = writer->key,
+	                           .connection = made.connection,
+	                           .asker = made.asker};
 	cau_log(CAU_LOG_INFO, NULL, "dds_client", "client=%u name=\"%s\" deadline_s=%.3f",
 	        made.asker.client, made.asker.name, made.asker.deadline_s);
 	return client;
@@ -80,7 +83,7 @@ cau_dds_client *cau_dds_client_of(cau_dds *dds, const cau_door *door, dds_instan
 			dds_builtintopic_free_endpoint(endpoint);
 		return NULL;
 	}
-	bool native = door->kind == DOOR_NATIVE;
+	bool native = door->kind == DOOR_NATIVE || door->kind == DOOR_REQUEST;
 	uint64_t identity = native ? handle : endpoint->participant_instance_handle;
 	cau_dds_client *client = find_client(dds, identity, native);
 	if (!client)
@@ -91,6 +94,50 @@ cau_dds_client *cau_dds_client_of(cau_dds *dds, const cau_door *door, dds_instan
 		client->writers++;
 	}
 	return client;
+}
+
+// ---- who is meant
+// ----------------------------------------------------------------------------------------
+static bool is_meant(const dds_builtintopic_endpoint_t *writer, uint64_t participant,
+                     const uint8_t guid[16])
+{
+	static const uint8_t nobody[16];
+	bool any = memcmp(guid, nobody, sizeof nobody) == 0;
+	return writer->participant_instance_handle == participant &&
+	       (any || memcmp(writer->key.v, guid, sizeof writer->key.v) == 0);
+}
+
+static cau_dds_client *find_behind(cau_dds *dds, const cau_door *door, uint64_t participant,
+                                   const uint8_t guid[16])
+{
+	dds_instance_handle_t handles[WRITERS_MOST];
+	dds_return_t count =
+		door->reader > 0 ? dds_get_matched_publications(door->reader, handles, WRITERS_MOST) : 0;
+	for (dds_return_t i = 0; i < count && i < WRITERS_MOST; i++) {
+		dds_builtintopic_endpoint_t *writer =
+			dds_get_matched_publication_data(door->reader, handles[i]);
+		bool meant = writer && is_meant(writer, participant, guid);
+		if (writer)
+			dds_builtintopic_free_endpoint(writer);
+		if (meant)
+			return cau_dds_client_of(dds, door, handles[i]);
+	}
+	return NULL;
+}
+
+cau_dds_client *cau_dds_find_driver(cau_dds *dds, const cau_dds_client *requester, const char *id,
+                                    const char *tool_name, const uint8_t guid[16])
+{
+	static const uint8_t nobody[16];
+	cau_dds_session *session = dds->sessions;
+	while (session && strcmp(cau_hosted_id(session->hosted), id) != 0)
+		session = session->next;
+	if (!session)
+		return NULL;
+	if (memcmp(guid, nobody, sizeof nobody) != 0)
+		return find_behind(dds, &session->native, requester->participant, guid);
+	const cau_dds_tool *tool = cau_dds_find_tool(session, tool_name);
+	return tool ? find_behind(dds, &tool->servo_cp, requester->participant, guid) : NULL;
 }
 
 // ---- going
@@ -113,6 +160,7 @@ static void drop_client(cau_dds *dds, cau_dds_client *client)
 	for (int i = 0; i < HANDS_MOST; i++)
 		if (dds->hands[i].client == client)
 			drop_hand(&dds->hands[i]);
+	cau_dds_forget_replies(dds, client);
 	*client = (cau_dds_client){0};
 }
 

@@ -1,0 +1,264 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// cautery/session_request: from samples to the same orders and creations that JSON-RPC makes.
+#include <stdlib.h>
+#include <string.h>
+
+#include "cautery/rpc.h"
+#include "transport_dds/internal.h"
+
+enum { CHECK_BYTES = 2048 };
+
+typedef struct asked {
+	cau_dds *dds;
+	cau_dds_request *request; // who waits for the answer
+	cau_dds_client *client;   // who asks
+	const cautery_SessionRequest *sample;
+	const cau_method_info *method;
+	cau_asker asker;
+} asked;
+
+static const cau_method methods[] = {
+	[cautery_LIST] = CAU_METHOD_SESSION_LIST,        [cautery_CREATE] = CAU_METHOD_SESSION_CREATE,
+	[cautery_JOIN] = CAU_METHOD_SESSION_JOIN,        [cautery_DESTROY] = CAU_METHOD_SESSION_DESTROY,
+	[cautery_PAUSE] = CAU_METHOD_SESSION_PAUSE,      [cautery_RESUME] = CAU_METHOD_SESSION_RESUME,
+	[cautery_FORK] = CAU_METHOD_SESSION_FORK,        [cautery_REWIND] = CAU_METHOD_SESSION_REWIND,
+	[cautery_TAKE_OVER] = CAU_METHOD_TOOL_TAKE_OVER,
+};
+
+// Checks params by the tables of JSON-RPC: writing them refuses what reading would.
+static cau_status check_params(cau_method method, const void *params, cau_error *error)
+{
+	char text[CHECK_BYTES];
+	return cau_rpc_write_request(&(cau_rpc_buffer){text, sizeof text, 0}, 1, method, params, error);
+}
+
+// ---- orders
+// --------------------------------------------------------------------------------------------
+static cau_status read_change(asked *a, cau_order *order, cau_error *error)
+{
+	cau_wire_session_change params = {.client_sequence = order->client_sequence,
+	                                  .has_client_sequence = true};
+	(void)a;
+	return check_params(order->reply.method, &params, error);
+}
+
+static cau_status read_fork(asked *a, cau_order *order, cau_error *error)
+{
+	cau_wire_session_fork params = {.client_sequence = order->client_sequence,
+	                                .has_client_sequence = true,
+	                                .has_name = *a->sample->name != 0,
+	                                .has_tick = a->sample->has_tick,
+	                                .tick = (int64_t)a->sample->tick,
+	                                .paused = a->sample->paused};
+	memcpy(params.name, a->sample->name, sizeof params.name);
+	memcpy(order->as.fork.name, a->sample->name, sizeof order->as.fork.name);
+	order->as.fork.has_tick = a->sample->has_tick;
+	order->as.fork.tick = a->sample->tick;
+	order->as.fork.paused = a->sample->paused;
+	return check_params(order->reply.method, &params, error);
+}
+
+static cau_status read_rewind(asked *a, cau_order *order, cau_error *error)
+{
+	cau_wire_session_rewind params = {.client_sequence = order->client_sequence,
+	                                  .has_client_sequence = true,
+	                                  .tick = (int64_t)a->sample->tick};
+	order->as.tick = a->sample->tick;
+	if (!a->sample->has_tick)
+		return cau_fail(error, CAU_BAD_VALUE, "has_tick", "must be true: to which tick?");
+	return check_params(order->reply.method, &params, error);
+}
+
+static cau_status read_take_over(asked *a, cau_order *order, cau_error *error)
+{
+	cau_wire_tool_ref params = {.client_sequence = order->client_sequence,
+	                            .has_client_sequence = true};
+	memcpy(params.tool, a->sample->tool, sizeof params.tool);
+	memcpy(order->as.tool.tool, a->sample->tool, sizeof order->as.tool.tool);
+	cau_status status = check_params(order->reply.method, &params, error);
+	if (status)
+		return status;
+	const cau_dds_client *driver = cau_dds_find_driver(a->dds, a->client, a->sample->session,
+	                                                   a->sample->tool, a->sample->driver);
+	if (!driver)
+		return cau_fail(error, CAU_NOT_FOUND, "driver",
+		                "the participant has no such writer in this session");
+	order->asker.client = driver->asker.client;
+	order->asker.deadline_s = driver->asker.deadline_s;
+	memcpy(order->asker.name, driver->asker.name, sizeof order->asker.name);
+	return CAU_OK;
+}
+
+static const struct {
+	cau_order_kind kind;
+	cau_status (*read)(asked *a, cau_order *order, cau_error *error); // NULL: no order
+} orders[] = {
+	[cautery_LIST] = {0},
+	[cautery_CREATE] = {0},
+	[cautery_JOIN] = {0},
+	[cautery_DESTROY] = {CAU_ORDER_DESTROY, read_change},
+	[cautery_PAUSE] = {CAU_ORDER_PAUSE, read_change},
+	[cautery_RESUME] = {CAU_ORDER_RESUME, read_change},
+	[cautery_FORK] = {CAU_ORDER_FORK, read_fork},
+	[cautery_REWIND] = {CAU_ORDER_REWIND, read_rewind},
+	[cautery_TAKE_OVER] = {CAU_ORDER_TAKE_OVER, read_take_over},
+};
+
+// Looks for the stored answer of a request sent again whose session is gone since.
+static cau_status look_up(const asked *a, cau_reply reply, cau_error *error)
+{
+	cau_creation *lookup = a->method->changes ? calloc(1, sizeof *lookup) : NULL;
+	if (!lookup)
+		return cau_fail(error, CAU_NOT_FOUND, "session", "this daemon does not have `%.48s`",
+		                a->sample->session);
+	lookup->kind = CAU_CREATION_ANSWER;
+	lookup->asker = a->asker;
+	lookup->client_sequence = (int64_t)a->sample->number;
+	lookup->reply = reply;
+	cau_hub_submit_creation(a->dds->hub, lookup);
+	return CAU_OK;
+}
+
+static cau_status submit(asked *a, cau_hosted *hosted, cau_reply reply, int32_t *code,
+                         cau_error *error)
+{
+	cau_order *order = calloc(1, sizeof *order);
+	if (!order)
+		return cau_fail(error, CAU_NO_MEMORY, "", "no memory for the request");
+	order->kind = orders[a->sample->operation].kind;
+	order->asker = a->asker;
+	order->client_sequence = (int64_t)a->sample->number;
+	order->reply = reply;
+	cau_status status = orders[a->sample->operation].read(a, order, error);
+	if (!status && (status = cau_hosted_submit(hosted, order, error)) == CAU_IO)
+		*code = CAU_RPC_STORE_FULL;
+	if (status)
+		free(order);
+	return status;
+}
+
+static cau_status order_session(asked *a, cau_reply reply, int32_t *code, cau_error *error)
+{
+	cau_hosted *hosted = cau_hub_find(a->dds->hub, a->sample->session);
+	if (!hosted) {
+		*code = CAU_RPC_NOT_HERE;
+		return look_up(a, reply, error);
+	}
+	cau_status status = submit(a, hosted, reply, code, error);
+	cau_hosted_release(hosted);
+	return status;
+}
+
+// ---- what needs no order
+// ---------------------------------------------------------------------------
+static cau_status create(asked *a, cau_reply reply, cau_error *error)
+{
+	cau_wire_session_create params = {.has_client_sequence = true,
+	                                  .client_sequence = (int64_t)a->sample->number,
+	                                  .has_name = *a->sample->name != 0,
+	                                  .has_scene = true};
+	memcpy(params.name, a->sample->name, sizeof params.name);
+	memcpy(params.scene, a->sample->scene, sizeof params.scene);
+	cau_status status = check_params(CAU_METHOD_SESSION_CREATE, &params, error);
+	if (status)
+		return status;
+	const cau_scene_def *scene = cau_scenes_find(cau_hub_scenes(a->dds->hub), a->sample->scene);
+	if (!scene)
+		return cau_fail(error, CAU_NOT_FOUND, "scene", "there is no scene `%.48s`",
+		                a->sample->scene);
+	cau_creation *creation = calloc(1, sizeof *creation);
+	if (!creation || !(creation->scene = malloc(sizeof *scene))) {
+		free(creation);
+		return cau_fail(error, CAU_NO_MEMORY, "", "no memory for a scene");
+	}
+	*creation->scene = *scene;
+	memcpy(creation->name, a->sample->name, sizeof creation->name);
+	creation->paused = a->sample->paused;
+	creation->asker = a->asker;
+	creation->client_sequence = params.client_sequence;
+	creation->reply = reply;
+	status = cau_meshes_pack(creation->scene, &creation->meshes, &creation->mesh_bytes, error);
+	if (!status) {
+		cau_hub_submit_creation(a->dds->hub, creation);
+		return CAU_OK;
+	}
+	free(creation->scene);
+	free(creation);
+	return status;
+}
+
+// The frames are there for everybody who reads them: a key frame is all there is to ask for.
+static cau_status join(const asked *a, int32_t *code, cau_error *error)
+{
+	cau_wire_session_summary summary;
+	for (cau_dds_session *s = a->dds->sessions; s; s = s->next)
+		if (strcmp(cau_hosted_id(s->hosted), a->sample->session) == 0) {
+			s->stream.key_wanted = s->stream.key_forced = true;
+			cau_hosted_summary(s->hosted, &summary);
+			cau_dds_reply_join(a->dds, a->request, &summary);
+			return CAU_OK;
+		}
+	*code = CAU_RPC_NOT_HERE;
+	return cau_fail(error, CAU_NOT_FOUND, "session", "this daemon does not have `%.48s`",
+	                a->sample->session);
+}
+
+// ---- asking
+// --------------------------------------------------------------------------------------------
+static cau_status serve(asked *a, int32_t *code, cau_error *error)
+{
+	cautery_SessionOperation operation = a->sample->operation;
+	if (a->asker.role < a->method->role) {
+		*code = CAU_RPC_FORBIDDEN;
+		return cau_fail(error, CAU_BAD_STATE, "", "the role does not allow this");
+	}
+	if (operation == cautery_LIST) {
+		cau_dds_reply_list(a->dds, a->request);
+		return CAU_OK;
+	}
+	if (operation == cautery_JOIN)
+		return join(a, code, error);
+	cau_reply reply = cau_dds_reply(a->dds, methods[operation]);
+	a->request->ticket = reply.connection;
+	return operation == cautery_CREATE ? create(a, reply, error)
+	                                   : order_session(a, reply, code, error);
+}
+
+// Several daemons may hear a request: it is for the one whose label begins the session's id.
+static bool is_ours(const cau_dds *dds, const cautery_SessionRequest *sample)
+{
+	const char *label = dds->config->label;
+	size_t length = strlen(label);
+	if (sample->operation == cautery_LIST || sample->operation == cautery_CREATE)
+		return !*sample->session || strcmp(sample->session, label) == 0;
+	return strncmp(sample->session, label, length) == 0 && sample->session[length] == '-';
+}
+
+void cau_dds_take_request(cau_dds *dds, cau_door *door, cau_dds_client *client, const void *taken)
+{
+	const cautery_SessionRequest *sample = taken;
+	cau_error error = {0};
+	int32_t code = 0;
+	(void)door;
+	bool known = (size_t)sample->operation < sizeof methods / sizeof methods[0];
+	if (!known || !is_ours(dds, sample))
+		return;
+	cau_dds_request unkept, *request = cau_dds_keep_request(dds, client, sample);
+	asked a = {.dds = dds,
+	           .request = request ? request : &unkept,
+	           .client = client,
+	           .sample = sample,
+	           .method = cau_method_describe(methods[sample->operation]),
+	           .asker = client->asker};
+	if (*sample->client_id)
+		memcpy(a.asker.client_id, sample->client_id, sizeof a.asker.client_id);
+	cau_status status = CAU_OK;
+	if (!request) {
+		unkept = cau_dds_describe_request(client, sample);
+		status = cau_fail(&error, CAU_LIMIT, "", "too many requests wait for their answer");
+	} else {
+		status = serve(&a, &code, &error);
+	}
+	if (status)
+		cau_dds_reply_fail(dds, a.request, &error, code);
+}

@@ -1,0 +1,194 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Asks for sessions over DDS, for the tests.
+//
+//     requester DOMAIN DAEMONS     (matched, once it has found so many)
+//
+// Lines on standard input:
+//     request NUMBER OPERATION [MEMBER=VALUE...]   OPERATION as in the IDL; members of text, tick,
+//                                                  paused; driver=writer: the writer below
+//     writer SESSION     opens a writer of cautery/tool_command there
+//     move TOOL X Y Z    writes one command with it
+// On standard output it tells, one JSON object a line: matched, reply (its own only).
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "cautery.h"
+#include "console.h"
+
+#define PERIOD_S 0.01
+
+enum { TAKEN_MOST = 16 };
+
+typedef struct requester {
+	dds_entity_t participant, writer, reader, command;
+	dds_guid_t guid;
+	char session[NAME_BYTES]; // of the command writer
+	uint64_t sequence;
+	uint32_t daemons;
+	bool matched;
+} requester;
+
+static const char *const operations[] = {"LIST",   "CREATE", "JOIN",   "DESTROY",  "PAUSE",
+                                         "RESUME", "FORK",   "REWIND", "TAKE_OVER"};
+
+static void set_member(const requester *r, cautery_SessionRequest *sample, const char *word)
+{
+	dds_guid_t guid;
+	const struct {
+		const char *name;
+		char *text;
+		size_t bytes;
+	} texts[] = {{"session=", sample->session, sizeof sample->session},
+	             {"name=", sample->name, sizeof sample->name},
+	             {"scene=", sample->scene, sizeof sample->scene},
+	             {"tool=", sample->tool, sizeof sample->tool},
+	             {"client_id=", sample->client_id, sizeof sample->client_id}};
+	for (size_t i = 0; i < sizeof texts / sizeof texts[0]; i++)
+		if (strncmp(word, texts[i].name, strlen(texts[i].name)) == 0)
+			snprintf(texts[i].text, texts[i].bytes, "%s", word + strlen(texts[i].name));
+	if (sscanf(word, "tick=%lu", &sample->tick) == 1)
+		sample->has_tick = true;
+	if (strcmp(word, "paused=1") == 0)
+		sample->paused = true;
+	if (strcmp(word, "driver=writer") == 0 && !dds_get_guid(r->command, &guid))
+		memcpy(sample->driver, guid.v, sizeof sample->driver);
+}
+
+static void request(requester *r, char *words)
+{
+	cautery_SessionRequest sample = {0};
+	char *rest = NULL, *word = strtok_r(words, " ", &rest);
+	sample.number = word ? strtoull(word, NULL, 10) : 0;
+	word = strtok_r(NULL, " ", &rest);
+	for (size_t i = 0; word && i < sizeof operations / sizeof operations[0]; i++)
+		if (strcmp(word, operations[i]) == 0)
+			sample.operation = (cautery_SessionOperation)i;
+	while ((word = strtok_r(NULL, " ", &rest)))
+		set_member(r, &sample, word);
+	checked(dds_write(r->writer, &sample));
+}
+
+static void open_writer(requester *r, const char *session)
+{
+	dds_qos_t *qos = dds_create_qos();
+	dds_qset_reliability(qos, DDS_RELIABILITY_RELIABLE, DDS_MSECS(100));
+	snprintf(r->session, sizeof r->session, "%.48s", session);
+	dds_entity_t topic = checked(dds_create_topic(r->participant, &cautery_ToolCommand_desc,
+	                                              "cautery/tool_command", NULL, NULL));
+	r->command =
+		checked(dds_create_writer(publisher_of(r->participant, session), topic, qos, NULL));
+	dds_delete_qos(qos);
+	dds_publication_matched_status_t matched = {0};
+	while (matched.current_count == 0) {
+		checked(dds_get_publication_matched_status(r->command, &matched));
+		dds_sleepfor(DDS_MSECS(5));
+	}
+	printf("{\"event\":\"opened\"}\n");
+}
+
+static void move(requester *r, const char *line)
+{
+	cautery_ToolCommand sample = {.sequence_number = ++r->sequence,
+	                              .source_time_ns = (int64_t)(1e9 * clock_s(CLOCK_REALTIME)),
+	                              .rotation = {1},
+	                              .jaw = 1};
+	memcpy(sample.session, r->session, sizeof sample.session);
+	if (sscanf(line, "%48s %lf %lf %lf", sample.tool, &sample.position_m[0], &sample.position_m[1],
+	           &sample.position_m[2]) == 4)
+		checked(dds_write(r->command, &sample));
+}
+
+static void obey(void *user, const char *line)
+{
+	char words[LINE_BYTES];
+	snprintf(words, sizeof words, "%s", line);
+	if (strncmp(words, "request ", 8) == 0)
+		request(user, words + 8);
+	else if (strncmp(words, "writer ", 7) == 0)
+		open_writer(user, words + 7);
+	else if (strncmp(words, "move ", 5) == 0)
+		move(user, words + 5);
+}
+
+// The text as it may stand in a JSON string of a test.
+static const char *quoted(const char *text, char room[LINE_BYTES])
+{
+	snprintf(room, LINE_BYTES, "%s", text);
+	for (char *at = room; *at; at++)
+		if (*at == '"' || *at == '\\')
+			*at = '\'';
+	return room;
+}
+
+static void tell_reply(const cautery_SessionReply *reply)
+{
+	char reason[LINE_BYTES];
+	printf("{\"event\":\"reply\",\"number\":%llu,\"operation\":\"%s\",\"code\":%d,"
+	       "\"status\":\"%s\",\"path\":\"%s\",\"reason\":\"%s\",\"session\":\"%s\",\"tick\":%llu,"
+	       "\"epoch\":\"%016llx\",\"driver\":%u,\"sessions\":[",
+	       (unsigned long long)reply->number, operations[reply->operation], reply->code,
+	       reply->status, reply->path, quoted(reply->reason, reason), reply->session,
+	       (unsigned long long)reply->tick, (unsigned long long)reply->epoch, reply->driver);
+	for (uint32_t i = 0; i < reply->sessions._length; i++) {
+		const cautery_SessionStatus *s = &reply->sessions._buffer[i];
+		printf("%s{\"session\":\"%s\",\"scene\":\"%s\",\"state\":%d,\"vertex_count\":%u}",
+		       i ? "," : "", s->session, s->scene, (int)s->state, s->vertex_count);
+	}
+	printf("]}\n");
+}
+
+static void read_replies(requester *r)
+{
+	void *samples[TAKEN_MOST] = {NULL};
+	dds_sample_info_t infos[TAKEN_MOST];
+	int count = dds_take(r->reader, samples, infos, TAKEN_MOST, TAKEN_MOST);
+	for (int i = 0; i < count; i++) {
+		const cautery_SessionReply *reply = samples[i];
+		if (infos[i].valid_data && memcmp(reply->writer, r->guid.v, sizeof reply->writer) == 0)
+			tell_reply(reply);
+	}
+	if (count > 0)
+		dds_return_loan(r->reader, samples, count);
+}
+
+static void tell_matched(requester *r)
+{
+	dds_publication_matched_status_t out = {0};
+	dds_subscription_matched_status_t in = {0};
+	checked(dds_get_publication_matched_status(r->writer, &out));
+	checked(dds_get_subscription_matched_status(r->reader, &in));
+	r->matched = out.current_count >= r->daemons && in.current_count >= r->daemons;
+	if (r->matched)
+		printf("{\"event\":\"matched\"}\n");
+}
+
+int main(int argument_count, char **arguments)
+{
+	requester r = {0};
+	console c = {.kept_bytes = 0};
+	if (argument_count != 3) {
+		fprintf(stderr, "usage: requester DOMAIN DAEMONS\n");
+		return 2;
+	}
+	r.daemons = (uint32_t)atoi(arguments[2]);
+	setvbuf(stdout, NULL, _IOLBF, 0);
+	r.participant = checked(dds_create_participant((uint32_t)atoi(arguments[1]), NULL, NULL));
+	r.reader = native_reader(subscriber_of(r.participant, "cautery"), &cautery_SessionReply_desc,
+	                         "cautery/session_reply", DDS_DURABILITY_TRANSIENT_LOCAL, 64);
+	dds_qos_t *qos = dds_create_qos();
+	dds_qset_reliability(qos, DDS_RELIABILITY_RELIABLE, DDS_MSECS(100));
+	dds_qset_history(qos, DDS_HISTORY_KEEP_LAST, 64);
+	dds_entity_t topic = checked(dds_create_topic(r.participant, &cautery_SessionRequest_desc,
+	                                              "cautery/session_request", NULL, NULL));
+	r.writer = checked(dds_create_writer(publisher_of(r.participant, "cautery"), topic, qos, NULL));
+	dds_delete_qos(qos);
+	checked(dds_get_guid(r.writer, &r.guid));
+	while (console_listen(&c, PERIOD_S, obey, &r)) {
+		if (!r.matched)
+			tell_matched(&r);
+		read_replies(&r);
+	}
+	dds_delete(r.participant);
+	return 0;
+}
