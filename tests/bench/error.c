@@ -198,12 +198,13 @@ int bench_error(const bench_options *options, bench_error_result *result)
 	state = pinned_session(scene, options);
 	trial = pinned_session(scene, options);
 	scene->precision = CAU_PRECISION_DOUBLE;
-	scene->iterations =
-		scene->solver == CAU_SOLVER_DIAGONAL ? CONVERGED_DIAGONAL : CONVERGED_ITERATIONS;
+	scene->iterations = CONVERGED_ITERATIONS;
 	scene->tolerance = converged_residual;
 	exact = pinned_session(scene, options);
 	if (!state || !trial || !exact)
 		goto done;
+	if (exact->solver.diagonal)
+		exact->solver.iterations = CONVERGED_DIAGONAL;
 	choose(&pull, state);
 	measure(options, &pull, state, trial, exact, result);
 	failed = 0;
