@@ -111,15 +111,23 @@ static void write_store(cau_service *service, FILE *out)
 	metric(out, "store_database_bytes", "gauge", "Size of the store", (double)m.database_bytes);
 }
 
+// The second number of statm; 0 if it cannot be read.
+static long resident_pages(void)
+{
+	char line[128] = "", *resident = line;
+	FILE *statm = fopen("/proc/self/statm", "r");
+	if (!statm)
+		return 0;
+	if (fgets(line, sizeof line, statm))
+		strtol(line, &resident, 10);
+	fclose(statm);
+	return strtol(resident, NULL, 10);
+}
+
 static void write_process(FILE *out)
 {
 	struct rusage usage;
-	long pages = 0;
-	FILE *statm = fopen("/proc/self/statm", "r");
-	if (statm && fscanf(statm, "%*d %ld", &pages) != 1)
-		pages = 0;
-	if (statm)
-		fclose(statm);
+	long pages = resident_pages();
 	getrusage(RUSAGE_SELF, &usage);
 	metric(out, "resident_bytes", "gauge", "Resident memory",
 	       (double)pages * (double)sysconf(_SC_PAGESIZE));
