@@ -14,8 +14,17 @@ import { smallSession } from './wire/scene.mjs';
 
 const slow = process.env.E2E_SLOW === '1', trials = Number(process.env.E2E_SILENCES ?? 3);
 const DEADLINE_S = slow ? 2.5 : 0.25, TICK_S = 1 / 60;
-// What a machine that is busy with other work may take to wake a thread.
+// What a machine may take to wake the threads that it takes.
 const SLACK_S = slow ? 3 : 0.1;
+
+// On a busy machine all threads wake late: how late, a timer of this process shows.
+let lateness = 0;
+const PERIOD_MS = 5;
+let due = now() + PERIOD_MS / 1000;
+setInterval(() => {
+	lateness = Math.max(lateness, now() - due);
+	due = now() + PERIOD_MS / 1000;
+}, PERIOD_MS).unref();
 
 let daemon, watcher;
 before(async () => {
@@ -29,6 +38,7 @@ async function measure(name, { energize, fail, recover = () => {} }) {
 	const session = await smallSession(watcher, name);
 	const stream = await watcher.join(session, { rate_hz: 1000, channels: ['mask', 'tools'] });
 	const took = [];
+	lateness = 0;
 	for (let i = 0; i < trials; i++) {
 		await energize(session);
 		await watcher.until(() => stream.tools[0].energized, 'energy on');
@@ -47,8 +57,9 @@ async function measure(name, { energize, fail, recover = () => {} }) {
 
 function check(t, took, most_s) {
 	const ms = (share) => (1000 * took[Math.min(took.length - 1, Math.floor(share * took.length))]).toFixed(1);
-	t.diagnostic(`${took.length} trials: p50 ${ms(0.5)} ms, p99 ${ms(0.99)} ms, p100 ${ms(1)} ms`);
-	assert.ok(took.at(-1) <= most_s + TICK_S + SLACK_S, `off after ${took.at(-1)} s`);
+	t.diagnostic(`${took.length} trials: p50 ${ms(0.5)} ms, p99 ${ms(0.99)} ms, p100 ${ms(1)} ms; `
+		+ `timers up to ${(1000 * lateness).toFixed(1)} ms late`);
+	assert.ok(took.at(-1) <= most_s + TICK_S + SLACK_S + 2 * lateness, `off after ${took.at(-1)} s`);
 }
 
 // One client that drives, stops driving, and drives again.
