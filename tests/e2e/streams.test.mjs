@@ -158,7 +158,6 @@ async function fallBehind(client, stream, other, seen, acknowledge) {
 
 test('one that keeps falling behind gets every second frame, and holds the same state', async (t) => {
 	const own = await Daemon.start({ settings: { subscriber_bytes: 16384 } });
-	t.after(() => own.end());
 	const other = await own.connect(), client = await own.connect();
 	const session = await smallSession(other, 'half');
 	const seen = await other.join(session), stream = await client.join(session);
@@ -167,7 +166,10 @@ test('one that keeps falling behind gets every second frame, and holds the same 
 	const wave = setInterval(() => other.notify('tool.move', {
 		session, tool: 'hook', position_m: [0.02 * Math.sin(turn += 0.1), 0, -0.002], rotation: AT_REST,
 	}), 16);
-	t.after(() => clearInterval(wave));
+	t.after(() => {
+		clearInterval(wave);
+		return own.end();
+	});
 	const acknowledge = () => client.notify('stream.ack', {
 		session, epoch: stream.epoch.toString(16).padStart(16, '0'), sequence: Number(stream.sequence),
 	});

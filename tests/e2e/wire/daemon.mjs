@@ -10,9 +10,13 @@ import { after } from 'node:test';
 import http from 'node:http';
 import { Client, PATIENCE_S } from './client.mjs';
 
-// A test that fails leaves its daemon running, which would keep this process until its time is over.
+// A test that fails leaves its daemon running, perhaps a timer or a connection too: nothing of that may
+// keep this process until its time is over.
 const running = new Set();
-after(() => running.forEach((daemon) => daemon.kill()));
+after(async () => {
+	await Promise.all([...running].map((daemon) => daemon.stop()));
+	setTimeout(() => process.exit(), 30000).unref();
+});
 
 export class Daemon {
 	static async start({ folder, settings = {}, program = process.env.CAUTERYD, environment: added = {} } = {}) {
