@@ -16,11 +16,11 @@ typedef struct control {
 	const robot_options *options;
 	const robot_trajectory *trajectory;
 	robot_report *report;
-	robot_pose first; // where the tool was
+	robot_pose first; // where the tool was when it became ours
 	double approach_s;
-	double along_s;    // on the trajectory
-	double back_off_m; // along the shaft
-	double begun_s, following_s;
+	double along_s;                         // on the trajectory
+	double back_off_m;                      // along the shaft
+	double begun_s, driving_s, following_s; // since when; 0: not yet
 } control;
 
 static robot_pose pose_of(const cautery_ToolState *state)
@@ -75,10 +75,12 @@ static bool heed_force(control *c, double period_s)
 static robot_pose next_pose(control *c, double now_s, double period_s, bool *energy)
 {
 	robot_pose start = robot_trajectory_at(c->trajectory, 0);
-	double since_s = now_s - c->begun_s;
+	double since_s = now_s - c->driving_s;
 	*energy = false;
+	if (c->driving_s == 0)
+		return pose_of(&c->link->state);
 	if (c->options->standby)
-		return robot_link_drives(c->link) ? c->first : pose_of(&c->link->state);
+		return c->first;
 	if (since_s < c->approach_s)
 		return robot_pose_between(&c->first, &start, since_s / c->approach_s);
 	if (c->following_s == 0)
@@ -93,7 +95,7 @@ static robot_pose next_pose(control *c, double now_s, double period_s, bool *ene
 
 static const char *why_lost(const control *c, double now_s, bool energy)
 {
-	if (c->options->standby || now_s - c->begun_s < ANSWER_S)
+	if (c->options->standby || (c->driving_s == 0 && now_s - c->begun_s < ANSWER_S))
 		return NULL;
 	if (!robot_link_drives(c->link))
 		return "another drives the tool";
@@ -110,12 +112,13 @@ static bool is_over(const control *c, double now_s)
 	return !options->standby && c->along_s >= robot_trajectory_seconds(c->trajectory);
 }
 
-static void begin(control *c)
+// The tool is ours: its way begins where it is, energy off.
+static void begin_to_drive(control *c, double now_s)
 {
 	robot_pose start = robot_trajectory_at(c->trajectory, 0);
 	c->first = pose_of(&c->link->state);
 	c->approach_s = fmax(LEAST_APPROACH_S, distance(&c->first, &start) / c->options->speed_m_s);
-	c->begun_s = robot_monotonic_s();
+	c->driving_s = now_s;
 }
 
 void robot_control(robot_link *link, const robot_options *options,
@@ -124,17 +127,16 @@ void robot_control(robot_link *link, const robot_options *options,
 {
 	control c = {.link = link, .options = options, .trajectory = trajectory, .report = report};
 	*report = (robot_report){0};
-	begin(&c);
+	c.begun_s = robot_monotonic_s();
 	double period_s = 1 / options->rate_hz, due_s = c.begun_s + period_s, now_s = c.begun_s;
-	bool energy = false, drove = false;
+	bool energy = false;
 	while (!*stop && !report->lost && !is_over(&c, now_s)) {
 		sleep_until(due_s);
 		now_s = robot_monotonic_s();
 		robot_histogram_add(&report->jitter, now_s - due_s);
 		robot_link_read(link);
-		if (options->standby && robot_link_drives(link) && !drove)
-			c.first = pose_of(&link->state);
-		drove = drove || robot_link_drives(link);
+		if (c.driving_s == 0 && robot_link_drives(link))
+			begin_to_drive(&c, now_s);
 		robot_pose pose = next_pose(&c, now_s, period_s, &energy);
 		report->commands += robot_link_write(link, &pose, energy);
 		report->lost = why_lost(&c, now_s, energy);
@@ -145,6 +147,6 @@ void robot_control(robot_link *link, const robot_options *options,
 		robot_pose rest = pose_of(&link->state);
 		robot_link_write(link, &rest, false);
 	}
-	report->took_over = options->standby && drove;
+	report->took_over = options->standby && c.driving_s > 0;
 	report->seconds = now_s - c.begun_s;
 }

@@ -48,6 +48,8 @@ static int drive(const robot_options *options, const robot_trajectory *trajector
 		robot_link_close(&link);
 		return EXIT_NO_TOOL;
 	}
+	printf("writes as \"%s\"\n", link.name); // what the server calls it
+	fflush(stdout);
 	robot_control(&link, options, trajectory, &stop, &report);
 	printf("%.1f s, %llu commands, %llu periods missed; force at most %.2f N\n", report.seconds,
 	       (unsigned long long)report.commands, (unsigned long long)report.missed,

@@ -4,10 +4,10 @@
 import assert from 'node:assert/strict';
 import { after, before, test } from 'node:test';
 import { Daemon } from './wire/daemon.mjs';
-import { smallSession } from './wire/scene.mjs';
+import { cutMiddle, smallSession } from './wire/scene.mjs';
+import { DOMAIN } from './domain.mjs';
 import { Program } from './program.mjs';
 
-const DOMAIN = Number(process.env.DDS_DOMAIN ?? 10 + (process.pid % 20)); // of this program alone
 const DEADLINE_MS = 500;                // generous: this test is not about being late
 const AT_AIM_M = 1e-4;                  // the quantum of float32 in frames, and the last of the way
 
@@ -67,3 +67,43 @@ for (const via of ['native', 'ros'])
 		assert.equal((await made.end()).code, 0);
 		await client.until(() => stream.tools[0].driver === 0, 'nobody drives it');
 	});
+
+// Vertices of drawn faces: what else a stream says of the others is out of date.
+function drawnVertices(stream) {
+	const drawn = new Set();
+	for (let face = 0; 3 * face < stream.faces.length; face++)
+		if (!stream.isRemoved(face))
+			for (let corner = 0; corner < 3; corner++)
+				drawn.add(stream.faces[3 * face + corner]);
+	return [...drawn];
+}
+
+test('Fast DDS decodes topology, key frames and deltas to what a browser sees', async (t) => {
+	const { client, session, stream } = await watched(t, 'fast-frames');
+	await client.call('session.pause', { session });
+	await cutMiddle(client, session);
+	await client.call('session.resume', { session });
+	await client.until(() => stream.removed() > 0, 'faces gone');
+	// It comes late: key frame and topology wait for it, and deltas follow.
+	const made = await robot(t, session, 'native');
+	await made.until(({ stream: s }) => s.gone > 0 && s.applied > 30);
+	const { status } = await made.until(({ status: s }) => s.session === session && s.tick > 0);
+	assert.equal(status.vertices, stream.rest.length / 3);
+	assert.equal(status.state, 1, 'running');
+
+	const { tick } = await client.call('session.pause', { session });
+	await client.until(() => stream.tick >= tick, 'the last frame before the pause');
+	const { stream: seen } = await made.until(({ stream: s }) => s.tick >= tick);
+	assert.equal(seen.refused, 0, seen.reason);
+	assert.ok(seen.topologies >= 1 && seen.keys >= 1);
+	assert.equal(seen.last_vertex, Math.max(...stream.faces));
+	assert.equal(seen.gone, stream.removed());
+	const held = await made.ask('positions');
+	assert.equal(held.tick, stream.tick);
+	for (const vertex of drawnVertices(stream))
+		for (let i = 3 * vertex; i < 3 * vertex + 3; i++)
+			assert.equal(held.quantised[i], stream.quantised[i], `vertex ${vertex}`);
+
+	await client.call('session.destroy', { session });
+	await made.until(({ status: s }) => s.gone); // nobody writes it any more
+});

@@ -1,0 +1,28 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "transport_dds/leave.h"
+
+#include <pthread.h>
+#include <stdint.h>
+
+#include "clock/clock.h"
+#include "log/log.h"
+
+#define LEAVE_S 2
+
+static void *leave(void *domain)
+{
+	dds_delete((dds_entity_t)(intptr_t)domain);
+	return NULL;
+}
+
+void cau_dds_leave(dds_entity_t domain)
+{
+	pthread_t thread;
+	struct timespec until = cau_timespec(cau_monotonic_s() + LEAVE_S);
+	if (pthread_create(&thread, NULL, leave, (void *)(intptr_t)domain) != 0) {
+		dds_delete(domain);
+	} else if (pthread_clockjoin_np(thread, NULL, CLOCK_MONOTONIC, &until) != 0) {
+		pthread_detach(thread);
+		cau_log(CAU_LOG_WARNING, NULL, "dds_not_left", "reason=\"its interface is gone\"");
+	}
+}

@@ -1,0 +1,312 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Every way in which a robot can fail while its energy is on: killed, hung, hung while a standby
+// writes, cut off from the network, and a clock that jumps, its own or the server's. Energy is off
+// within its deadline and a tick. Many times over with DDS_TRIALS.
+import assert from 'node:assert/strict';
+import { execFileSync, spawn } from 'node:child_process';
+import { mkdtempSync, openSync, rmSync, writeSync } from 'node:fs';
+import { tmpdir } from 'node:os';
+import { dirname, join } from 'node:path';
+import { createInterface } from 'node:readline';
+import { after, before, test } from 'node:test';
+import { fileURLToPath } from 'node:url';
+import { Daemon } from './wire/daemon.mjs';
+import { smallSession } from './wire/scene.mjs';
+import { CYCLONE, DOMAIN } from './domain.mjs';
+
+const TRIALS = Number(process.env.DDS_TRIALS ?? 3);
+// Declared by the robots. One that is scheduled late by less than this is not cut before it fails.
+const DEADLINE_S = Number(process.env.DDS_DEADLINE_S ?? 0.5);
+const TICK_S = 1 / 60, PERIOD_S = 1e-3; // of the session, of the robot's commands
+// What a loaded machine may take beyond, to run the watchdog and the step and to make the frame; and
+// what it was late to run this very program.
+const SLACK_S = Number(process.env.DDS_SLACK_S ?? 0.1), LOOK_MS = 5;
+const NETWORK = join(dirname(fileURLToPath(process.env.LOOPBACK)), 'network.xml');
+const folder = mkdtempSync(join(tmpdir(), 'cautery-failures-'));
+const now_us = () => Number(process.hrtime.bigint() / 1000n);
+
+after(() => rmSync(folder, { recursive: true }));
+
+// A file whose number, while a program has it as its clock, shifts that clock.
+class Clock {
+	constructor(name) {
+		this.file = join(folder, name);
+		this.descriptor = openSync(this.file, 'w+');
+		this.shift(0);
+	}
+
+	shift(seconds) {
+		const bytes = Buffer.alloc(8);
+		bytes.writeBigInt64LE(BigInt(Math.round(seconds * 1e9)));
+		writeSync(this.descriptor, bytes, 0, 8, 0);
+	}
+
+	get environment() {
+		return { CLOCK_SHIFT: this.file, LD_PRELOAD: process.env.CLOCK_LIBRARY };
+	}
+}
+
+const serverClock = new Clock('server'), robotClock = new Clock('robot');
+
+// cautery-robot, holding the hook above the tissue.
+class Robot {
+	constructor(session, { standby = false, environment = CYCLONE, wrap = [] } = {}) {
+		const words = [...wrap, process.env.ROBOT, '--domain', String(DOMAIN), '--deadline', String(DEADLINE_S),
+			...(standby ? ['--standby'] : ['--energy', '--dwell', '600']), session, 'hook'];
+		this.process = spawn(words[0], words.slice(1),
+			{ stdio: ['ignore', 'pipe', 'inherit'], env: { ...process.env, ...robotClock.environment, ...environment } });
+		this.exited = new Promise((resolve) => this.process.on('exit', resolve));
+		this.name = new Promise((resolve, reject) => {
+			this.exited.then((code) => reject(new Error(`the robot ended (${code})`)));
+			createInterface({ input: this.process.stdout }).on('line', (line) => resolve(/^writes as "(.*)"$/.exec(line)?.[1]));
+		});
+	}
+
+	signal(name) {
+		this.process.kill(name);
+	}
+
+	end() {
+		this.process.kill('SIGKILL'); // a stopped one too
+		return this.exited;
+	}
+}
+
+async function start(t, settings = {}, options = {}) {
+	const daemon = await Daemon.start({ settings: { dds: true, dds_domain: DOMAIN, ...settings }, ...options });
+	t.after(() => daemon.end());
+	return daemon;
+}
+
+async function watched(t, daemon, name) {
+	const client = await daemon.connect({ hello: { client: 'watcher' } });
+	const session = await smallSession(client, name);
+	t.after(() => client.close());
+	return { daemon, client, session, stream: await client.join(session) };
+}
+
+// How late this program was run at the worst since reset().
+class Lateness {
+	constructor() {
+		this.reset();
+		this.timer = setInterval(() => this.look(), LOOK_MS);
+	}
+
+	look() {
+		const at_us = now_us();
+		this.worst_s = Math.max(this.worst_s, (at_us - this.last_us) / 1e6 - LOOK_MS / 1e3);
+		this.last_us = at_us;
+	}
+
+	reset() {
+		this.worst_s = 0;
+		this.last_us = now_us();
+	}
+}
+
+const lateness = new Lateness();
+after(() => clearInterval(lateness.timer));
+
+// One trial: a robot drives with energy on, `fail` makes it fail. Resolves when energy is off, to what
+// that took at most: from before the moment of failing.
+async function trial({ client, session, stream }, fail, { prepare, ...options } = {}) {
+	const robot = new Robot(session, options);
+	try {
+		const name = await robot.name;
+		await client.until(() => stream.tools[0].energized, 'energy on');
+		await prepare?.(robot);
+		const { drivers } = await client.call('session.describe', { session });
+		assert.equal(drivers[0].name, name);
+		assert.ok(stream.tools[0].energized, 'energy is on until the robot fails');
+		const before_us = now_us();
+		fail(robot);
+		const after_us = now_us();
+		lateness.reset();
+		await client.until(() => !stream.tools[0].energized, 'energy off');
+		assert.ok(stream.published > before_us, 'energy was on until the robot failed');
+		lateness.look();
+		inTime((stream.published - after_us) / 1e6, DEADLINE_S + TICK_S, 'energy off');
+		return { off_s: (stream.published - before_us) / 1e6 + PERIOD_S, why: stream.tools[0].energyOff, after_us };
+	} finally {
+		await robot.end();
+	}
+}
+
+function inTime(seconds, limit_s, what) {
+	assert.ok(seconds <= limit_s + SLACK_S + lateness.worst_s,
+		`${what} ${seconds} s after it failed; this program ran up to ${lateness.worst_s} s late`);
+}
+
+function report(t, what, times) {
+	const sorted = [...times].sort((a, b) => a - b);
+	const at = (share) => `${(1e3 * sorted[Math.ceil(share * sorted.length) - 1]).toFixed(1)} ms`;
+	t.diagnostic(`${what}: ${times.length} times; p50 ${at(0.5)}, p99 ${at(0.99)}, p100 ${at(1)}; `
+		+ `deadline and tick ${(1e3 * (DEADLINE_S + TICK_S)).toFixed(1)} ms`);
+}
+
+// `one` resolves to a trial's outcome.
+async function trials(t, one, why = ['watchdog']) {
+	const times = [];
+	for (let i = 0; i < TRIALS; i++) {
+		const outcome = await one(i);
+		assert.ok(why.includes(outcome.why), outcome.why);
+		times.push(outcome.off_s);
+	}
+	report(t, 'energy off', times);
+}
+
+test('a robot that is killed', async (t) => {
+	const seen = await watched(t, await start(t), 'killed');
+	await trials(t, () => trial(seen, (robot) => robot.signal('SIGKILL')));
+});
+
+test('a robot that hangs, alive', async (t) => {
+	const seen = await watched(t, await start(t), 'hung');
+	await trials(t, () => trial(seen, (robot) => robot.signal('SIGSTOP')));
+});
+
+test('a robot that hangs while a standby writes: that one drives in time, energy off', async (t) => {
+	const daemon = await start(t);
+	const seen = await watched(t, daemon, 'standby');
+	const { client, stream, session } = seen;
+	const driven = [];
+	await trials(t, async () => {
+		let standby, name;
+		try {
+			const outcome = await trial(seen, (robot) => robot.signal('SIGSTOP'), {
+				prepare: async () => {
+					standby = new Robot(session, { standby: true });
+					name = await standby.name; // it writes, and is refused: the other one drives
+					await daemon.log(new RegExp(` event=dds_client .*name="${name}"`));
+				},
+			});
+			await client.until(() => client.notice('tool.driver_changed', ({ driver }) => driver.name === name), 'it drives');
+			driven.push((now_us() - outcome.after_us) / 1e6);
+			lateness.look();
+			inTime(driven.at(-1), DEADLINE_S + 2 * TICK_S, 'it drives');
+			assert.equal(stream.tools[0].energized, false);
+			return outcome;
+		} finally {
+			await standby?.end();
+		}
+	}, ['watchdog', 'taken_over']);
+	report(t, 'the standby drives', driven);
+});
+
+// Forward and back, by much and by little.
+const JUMPS_S = [3600, -3600, 2, -2];
+
+test("a robot whose clock jumps", async (t) => {
+	const seen = await watched(t, await start(t), 'robot-clock');
+	await trials(t, async (i) => {
+		const outcome = await trial(seen, () => robotClock.shift(JUMPS_S[i % JUMPS_S.length]));
+		robotClock.shift(0);
+		return outcome;
+	});
+});
+
+test("the server's clock jumps", async (t) => {
+	const seen = await watched(t, await start(t, {}, { environment: serverClock.environment }), 'server-clock');
+	await trials(t, async (i) => {
+		const outcome = await trial(seen, () => serverClock.shift(JUMPS_S[i % JUMPS_S.length]));
+		serverClock.shift(0);
+		return outcome;
+	});
+});
+
+// ---- a network of two machines, in the test's own one
+
+class Network {
+	static async make() {
+		if (!process.env.OWN_NETWORK)
+			return null;
+		const network = new Network();
+		network.robots = spawn('unshare', ['--net', 'sh', '-c', 'echo; exec sleep infinity'],
+			{ stdio: ['ignore', 'pipe', 'inherit'] });
+		await new Promise((resolve) => network.robots.stdout.once('data', resolve));
+		network.wrap = ['nsenter', `--net=/proc/${network.robots.pid}/ns/net`];
+		network.ip('link', 'add', 'near', 'type', 'veth', 'peer', 'name', 'far', 'netns', String(network.robots.pid));
+		network.ip('address', 'add', '10.77.0.1/24', 'dev', 'near');
+		network.there('ip', 'address', 'add', '10.77.0.2/24', 'dev', 'far');
+		network.there('ip', 'link', 'set', 'far', 'up');
+		network.join();
+		return network;
+	}
+
+	ip(...words) {
+		execFileSync('ip', words);
+	}
+
+	there(...words) {
+		return execFileSync(this.wrap[0], [...this.wrap.slice(1), ...words], { encoding: 'utf8' });
+	}
+
+	cut() {
+		this.ip('link', 'set', 'near', 'down');
+	}
+
+	join() {
+		this.ip('link', 'set', 'near', 'up');
+	}
+
+	end() {
+		this.ip('link', 'delete', 'near');
+		this.robots.kill();
+	}
+}
+
+const NO_NETWORK = 'this system allows no network of the test\'s own';
+const ON_NETWORK = { dds_config: NETWORK, dds_network: true };
+
+test('a robot that the network loses', async (t) => {
+	const network = await Network.make();
+	if (!network)
+		return t.skip(NO_NETWORK);
+	const daemon = await start(t, ON_NETWORK);
+	const seen = await watched(t, daemon, 'network');
+	const there = { wrap: network.wrap, environment: { CYCLONEDDS_URI: `file://${NETWORK}` } };
+	await trials(t, async () => {
+		const outcome = await trial(seen, () => network.cut(), there);
+		network.join();
+		return outcome;
+	});
+	// The interface itself goes: the daemon ends all the same.
+	network.end();
+	await seen.client.close();
+	assert.deepEqual(await daemon.end(), { code: 0, signal: null });
+});
+
+// 'refused' by the other side's kernel, since nothing there hears this machine, or 'silence'.
+const KNOCK = `
+import socket, sys
+knocking = socket.socket(socket.AF_INET, socket.SOCK_DGRAM)
+knocking.settimeout(0.5)
+knocking.connect(("10.77.0.1", int(sys.argv[1])))
+try:
+    knocking.send(b"knock")
+    knocking.recv(1)
+except ConnectionRefusedError:
+    print("refused")
+except TimeoutError:
+    print("silence")
+`;
+
+// What this machine's programs receive on, other than on loopback addresses.
+const udpPorts = () => execFileSync('ss', ['-Hlun'], { encoding: 'utf8' }).trim().split('\n')
+	.map((line) => line.split(/\s+/)[3]).filter((address) => !address.startsWith('127.'))
+	.map((address) => address.split(':').at(-1));
+
+test('other machines reach the ports of DDS only where it may leave this one', async (t) => {
+	const network = await Network.make();
+	if (!network)
+		return t.skip(NO_NETWORK);
+	t.after(() => network.end());
+	for (const [settings, answer] of [[{}, 'refused'], [ON_NETWORK, 'silence']]) {
+		const daemon = await start(t, settings);
+		const ports = udpPorts();
+		assert.ok(ports.length >= 2, 'discovery and data');
+		for (const port of ports)
+			assert.equal(network.there('python3', '-c', KNOCK, port).trim(), answer);
+		await daemon.end();
+	}
+});

@@ -1,0 +1,123 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// DDS Security: who has no identity of the domain's authority, or not the permission, neither joins nor
+// drives; who has both does.
+import assert from 'node:assert/strict';
+import { execFileSync, spawnSync } from 'node:child_process';
+import { copyFileSync, cpSync, mkdtempSync, rmSync } from 'node:fs';
+import { tmpdir } from 'node:os';
+import { dirname, join } from 'node:path';
+import { after, before, test } from 'node:test';
+import { fileURLToPath } from 'node:url';
+import { Daemon } from './wire/daemon.mjs';
+import { smallSession } from './wire/scene.mjs';
+import { DOMAIN } from './domain.mjs';
+import { Program } from './program.mjs';
+
+const LOOPBACK = process.env.LOOPBACK;
+const MAKE = join(dirname(fileURLToPath(LOOPBACK)), 'security', 'make.sh');
+const DEADLINE_MS = 500; // generous: this test is not about being late
+
+const folder = mkdtempSync(join(tmpdir(), 'cautery-keys-'));
+const enclave = (name, store = 'keys') => join(folder, store, 'enclaves', name);
+const make = (store, ...words) => execFileSync(MAKE, [join(folder, store), ...words], { stdio: 'pipe' });
+
+let daemon;
+before(async () => {
+	make('keys');
+	make('keys', '--session', 'd1-theirs', 'controller', 'guest');
+	make('others', 'controller', 'stranger');
+	daemon = await Daemon.start({ settings: { dds: true, dds_domain: DOMAIN, dds_security: enclave('daemon') } });
+});
+after(async () => {
+	await daemon?.end();
+	rmSync(folder, { recursive: true });
+});
+
+// A controller with this identity, or with none.
+function controller(t, session, identity) {
+	const uri = identity ? `${LOOPBACK},file://${identity}/cyclonedds.xml` : LOOPBACK;
+	const robot = new Program(process.env.CONTROLLER, [DOMAIN, session, 'hook', 'native', DEADLINE_MS],
+		{ environment: { CYCLONEDDS_URI: uri } });
+	t.after(() => robot.end());
+	return robot;
+}
+
+async function watched(t, name) {
+	const client = await daemon.connect({ hello: { client: 'watcher' } });
+	const session = await smallSession(client, name);
+	t.after(async () => {
+		await client.call('session.destroy', { session });
+		await client.close();
+	});
+	return { client, session, stream: await client.join(session) };
+}
+
+async function drives(robot, { client, stream }) {
+	await robot.event((e) => e.event === 'matched', 'matched');
+	robot.tell('write on');
+	await client.until(() => stream.tools[0].driver !== 0, 'it drives');
+	robot.tell('energy 1');
+	await client.until(() => stream.tools[0].energized, 'energy on');
+}
+
+test('only who has an identity of this authority joins and drives', async (t) => {
+	const seen = await watched(t, 'ours');
+	// They come first, and have all the time that it takes the other.
+	const outsiders = [null, enclave('stranger', 'others')].map((identity) => {
+		const robot = controller(t, seen.session, identity);
+		robot.event((e) => e.event === 'matched', 'matched').then(() => (robot.joined = true), () => {});
+		robot.tell('write on');
+		robot.tell('energy 1');
+		return robot;
+	});
+	for (const robot of outsiders)
+		assert.equal((await robot.ask('state')).has, false);
+	const ours = controller(t, seen.session, enclave('controller'));
+	await drives(ours, seen);
+	for (const robot of outsiders) {
+		assert.equal((await robot.ask('state')).has, false, 'it sees no state');
+		assert.ok(!robot.joined, 'it found nobody to write to');
+	}
+	const { drivers } = await seen.client.call('session.describe', { session: seen.session });
+	assert.equal(drivers[0].name, (await ours.ask('state')).driver_name);
+	assert.equal(daemon.lines.filter((line) => / event=dds_client /.test(line)).length, 1);
+});
+
+test('an identity does what its permissions say', async (t) => {
+	const mine = await watched(t, 'mine'), theirs = await watched(t, 'theirs');
+	for (const identity of ['viewer', 'guest'])
+		assert.notEqual((await controller(t, mine.session, enclave(identity)).exited).code, 0,
+			`${identity} may not write commands here`);
+	await drives(controller(t, theirs.session, enclave('guest')), theirs);
+	assert.equal(mine.stream.tools[0].driver, 0);
+});
+
+const start = (...flags) => spawnSync(process.env.CAUTERYD,
+	['--port', '0', '--store', join(folder, 'start.db'), '--scenes', process.env.SCENES, '--dds', '--dds-domain', DOMAIN,
+		...flags].map(String), { encoding: 'utf8', timeout: 60e3 });
+
+test('the daemon says what is wrong with its DDS settings, and does not start', () => {
+	const network = start('--dds-config', fileURLToPath(LOOPBACK));
+	assert.equal(network.status, 2);
+	assert.match(network.stderr, /path="dds_config" .*needs dds_security, or dds_network/);
+
+	const nowhere = start('--dds-security', join(folder, 'nowhere'));
+	assert.equal(nowhere.status, 1);
+	assert.match(nowhere.stderr, /path="dds_security" .*cannot read identity_ca.cert.pem/);
+
+	cpSync(enclave('daemon'), enclave('mixed'), { recursive: true });
+	copyFileSync(join(enclave('stranger', 'others'), 'cert.pem'), join(enclave('mixed'), 'cert.pem'));
+	const mixed = start('--dds-security', enclave('mixed'));
+	assert.equal(mixed.status, 1);
+	assert.match(mixed.stderr, /no participant with this dds_security/);
+});
+
+test('with an identity a configuration of the network is taken without further words', async () => {
+	const other = await Daemon.start({
+		settings: {
+			dds: true, dds_domain: DOMAIN, dds_security: enclave('daemon'), dds_config: fileURLToPath(LOOPBACK),
+		},
+	});
+	await other.log(/ event=dds_open .*security="[^"]*enclaves\/daemon"/);
+	await other.end();
+});
