@@ -59,7 +59,7 @@ static void retreat(robot_pose *pose, double by_m)
 // True if the force lets the tool go on; steps the way back otherwise.
 static bool heed_force(control *c, double period_s)
 {
-	const double *f = c->link->state.force_n;
+	const double *f = c->link->force_n;
 	double force_n = sqrt(f[0] * f[0] + f[1] * f[1] + f[2] * f[2]);
 	double limit_n = c->options->force_limit_n;
 	bool high = limit_n > 0 && force_n > limit_n;

@@ -4,6 +4,8 @@
 #include <string.h>
 #include <time.h>
 
+#include "ros2.h"
+
 enum { TAKEN_MOST = 32 };
 
 double robot_monotonic_s(void)
@@ -51,6 +53,24 @@ static dds_entity_t open_reader(robot_link *link, const dds_qos_t *partition)
 	return made;
 }
 
+// rt/SESSION/TOOL/measured_cf, with ROS 2's names and its default QoS.
+static dds_entity_t open_force_reader(robot_link *link)
+{
+	char name[sizeof link->command.session + sizeof link->command.tool + 32];
+	snprintf(name, sizeof name, "rt/%s/%s/measured_cf", link->command.session, link->command.tool);
+	for (char *letter = name; *letter; letter++)
+		if (*letter == '-')
+			*letter = '_';
+	dds_qos_t *qos = dds_create_qos();
+	dds_qset_reliability(qos, DDS_RELIABILITY_RELIABLE, DDS_MSECS(10));
+	dds_qset_history(qos, DDS_HISTORY_KEEP_LAST, 10);
+	dds_entity_t topic = dds_create_topic(
+		link->participant, &geometry_msgs_msg_dds__WrenchStamped__desc, name, NULL, NULL);
+	dds_entity_t made = dds_create_reader(link->participant, topic, qos, NULL);
+	dds_delete_qos(qos);
+	return made;
+}
+
 static void write_name(robot_link *link)
 {
 	dds_guid_t guid;
@@ -71,13 +91,16 @@ bool robot_link_open(robot_link *link, const robot_options *options, FILE *error
 	dds_qset_partition1(partition, options->session);
 	link->writer = open_writer(link, partition, options->deadline_s);
 	link->reader = open_reader(link, partition);
+	link->force_reader = open_force_reader(link);
 	dds_delete_qos(partition);
 	link->waitset = dds_create_waitset(link->participant);
-	if (link->writer < 0 || link->reader < 0 || link->waitset < 0) {
-		fprintf(errors, "cautery-robot: DDS: %s\n",
-		        dds_strretcode(link->participant < 0 ? link->participant : link->writer));
-		return false;
-	}
+	const dds_entity_t made[] = {link->participant, link->writer, link->reader, link->force_reader,
+	                             link->waitset};
+	for (size_t i = 0; i < sizeof made / sizeof made[0]; i++)
+		if (made[i] < 0) {
+			fprintf(errors, "cautery-robot: DDS: %s\n", dds_strretcode(made[i]));
+			return false;
+		}
 	write_name(link);
 	dds_set_status_mask(link->writer, DDS_PUBLICATION_MATCHED_STATUS);
 	dds_set_status_mask(link->reader, DDS_DATA_AVAILABLE_STATUS);
@@ -122,6 +145,23 @@ static void take_state(robot_link *link, const cautery_ToolState *state)
 		robot_histogram_add(&link->latency, robot_monotonic_s() - link->sent_s[shown % ROBOT_SENT]);
 }
 
+static void take_force(robot_link *link)
+{
+	void *samples[TAKEN_MOST] = {NULL};
+	dds_sample_info_t infos[TAKEN_MOST];
+	dds_return_t count = dds_take(link->force_reader, samples, infos, TAKEN_MOST, TAKEN_MOST);
+	for (dds_return_t i = 0; i < count; i++) {
+		const geometry_msgs_msg_dds__WrenchStamped_ *sample = samples[i];
+		if (!infos[i].valid_data)
+			continue;
+		const geometry_msgs_msg_dds__Vector3_ *force = &sample->wrench_.force_;
+		memcpy(link->force_n, (double[3]){force->x_, force->y_, force->z_}, sizeof link->force_n);
+		link->has_force = true;
+	}
+	if (count > 0)
+		dds_return_loan(link->force_reader, samples, count);
+}
+
 void robot_link_read(robot_link *link)
 {
 	void *samples[TAKEN_MOST] = {NULL};
@@ -134,6 +174,9 @@ void robot_link_read(robot_link *link)
 	}
 	if (count > 0)
 		dds_return_loan(link->reader, samples, count);
+	take_force(link);
+	if (!link->has_force)
+		memcpy(link->force_n, link->state.force_n, sizeof link->force_n);
 }
 
 bool robot_link_write(robot_link *link, const robot_pose *pose, bool energy)

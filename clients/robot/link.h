@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The robot's side of the wire: one writer of tool commands, one reader of tool states.
+// The robot's side of the wire: a writer of tool commands, readers of tool states and of the force
+// that CRTK's measured_cf tells.
 #pragma once
 
 #include <dds/dds.h>
@@ -12,10 +13,12 @@
 enum { ROBOT_SENT = 8192 };
 
 typedef struct robot_link {
-	dds_entity_t participant, writer, reader, waitset;
+	dds_entity_t participant, writer, reader, force_reader, waitset;
 	cautery_ToolCommand command; // the last one written
 	cautery_ToolState state;     // the newest
 	bool has_state;
+	double force_n[3];         // the newest measured_cf; the state's where there is none
+	bool has_force;            // measured_cf has come
 	char name[65];             // as the server calls this writer
 	double sent_s[ROBOT_SENT]; // by sequence number modulo ROBOT_SENT
 	robot_histogram latency;   // from writing the command that a state shows to its coming

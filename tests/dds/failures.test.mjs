@@ -126,7 +126,10 @@ async function trial({ client, session, stream }, fail, { prepare, ...options } 
 		assert.ok(stream.published > before_us, 'energy was on until the robot failed');
 		lateness.look();
 		inTime((stream.published - after_us) / 1e6, DEADLINE_S + TICK_S, 'energy off');
-		return { off_s: (stream.published - before_us) / 1e6 + PERIOD_S, why: stream.tools[0].energyOff, after_us };
+		return {
+			off_s: (stream.published - before_us) / 1e6 + PERIOD_S, why: stream.tools[0].energyOff, after_us,
+			late_s: lateness.worst_s,
+		};
 	} finally {
 		await robot.end();
 	}
@@ -146,13 +149,17 @@ function report(t, what, times) {
 
 // `one` resolves to a trial's outcome.
 async function trials(t, one, why = ['watchdog']) {
-	const times = [];
+	const times = [], over = [];
 	for (let i = 0; i < TRIALS; i++) {
 		const outcome = await one(i);
 		assert.ok(why.includes(outcome.why), outcome.why);
 		times.push(outcome.off_s);
+		if (outcome.off_s > DEADLINE_S + TICK_S)
+			over.push(`${(1e3 * outcome.off_s).toFixed(1)} (${(1e3 * outcome.late_s).toFixed(1)})`);
 	}
 	report(t, 'energy off', times);
+	if (over.length)
+		t.diagnostic(`beyond that, ms (and how late this program ran the while): ${over.join(', ')}`);
 }
 
 test('a robot that is killed', async (t) => {

@@ -5,8 +5,14 @@ import { spawn } from 'node:child_process';
 import { after, before, test } from 'node:test';
 import { Daemon } from './wire/daemon.mjs';
 import { smallSession } from './wire/scene.mjs';
+import { DOMAIN } from './domain.mjs';
 
-const DOMAIN = 160 + (process.pid % 50); // tests that run beside this one have another
+const DEADLINE_S = 0.5; // a loaded machine may run a robot late
+const TICK_S = 1 / 60;
+// What a command may take to show in the state, beyond the tick that it waits for; told of a machine
+// that ran the robot itself on time.
+const LATENCY_S = 0.003, ON_TIME_S = 0.001;
+const SECONDS = Number(process.env.ROBOT_SECONDS ?? 5); // of the session that must not be lost
 
 let daemon;
 before(async () => {
@@ -16,7 +22,8 @@ after(() => daemon.end());
 
 // Runs the robot; `done` resolves to its exit code and the JSON line that it prints in the end.
 function robot(session, ...flags) {
-	const child = spawn(process.env.ROBOT, ['--domain', String(DOMAIN), '--json', ...flags, session, 'hook'],
+	const child = spawn(process.env.ROBOT,
+		['--domain', String(DOMAIN), '--deadline', String(DEADLINE_S), '--json', ...flags, session, 'hook'],
 		{ stdio: ['ignore', 'pipe', 'inherit'], env: { ...process.env, CYCLONEDDS_URI: process.env.LOOPBACK } });
 	let text = '';
 	child.stdout.on('data', (part) => (text += part));
@@ -72,4 +79,30 @@ test('a standby holds the tool of a killed robot, energy off', async (t) => {
 
 test('a robot says so when there is no such tool', async () => {
 	assert.equal((await robot('d1-nowhere').done).code, 3);
+});
+
+test('a robot backs off from too much force', async (t) => {
+	const into = ['--from=0,0,0.005', '--to=0,0,-0.008', '--speed', '0.02', '--seconds', '6'];
+	const blind = await robot((await watched(t, 'blind')).session, ...into).done;
+	const most_n = blind.report.force_most_n;
+	assert.ok(most_n > 0.1, `${most_n} N`);
+	const { report } = await robot((await watched(t, 'feels')).session, ...into, '--force-limit', String(most_n / 4)).done;
+	assert.ok(report.backed_off_m > 0);
+	assert.ok(report.force_most_n < 0.7 * most_n, `${report.force_most_n} N, and ${most_n} N without a limit`);
+});
+
+test(`a robot at 1 kHz keeps its session for ${SECONDS} s`, async (t) => {
+	const { client, session, stream } = await watched(t, 'long');
+	const { done } = robot(session, '--energy', '--from=0,0,0.02', '--dwell', String(2 * SECONDS), '--seconds', String(SECONDS));
+	await client.until(() => stream.tools[0].energized, 'energy on');
+	const { code, report } = await done;
+	assert.equal(code, 0);
+	assert.equal(report.lost, null);
+	assert.equal(await daemon.metric('session_watchdog_cuts_total', session), 0);
+	t.diagnostic(`command to state p50 ${report.latency_p50_s} s, p99 ${report.latency_p99_s} s; `
+		+ `woke late p99 ${report.jitter_p99_s} s, most ${report.jitter_most_s} s; ${report.missed} of ${report.commands} missed`);
+	if (report.jitter_p99_s < ON_TIME_S)
+		assert.ok(report.latency_p99_s <= TICK_S + LATENCY_S, `p99 ${report.latency_p99_s} s`);
+	else
+		t.diagnostic('the machine ran the robot late: the latency says nothing of the server');
 });
