@@ -33,14 +33,16 @@ after(async () => {
 	rmSync(folder, { recursive: true });
 });
 
-// A controller with this identity, or with none.
-function controller(t, session, identity) {
+// A program with this identity, or with none.
+function secured(t, identity, program, words) {
 	const uri = identity ? `${LOOPBACK},file://${identity}/cyclonedds.xml` : LOOPBACK;
-	const robot = new Program(process.env.CONTROLLER, [DOMAIN, session, 'hook', 'native', DEADLINE_MS],
-		{ environment: { CYCLONEDDS_URI: uri } });
-	t.after(() => robot.end());
-	return robot;
+	const made = new Program(program, words, { environment: { CYCLONEDDS_URI: uri } });
+	t.after(() => made.end());
+	return made;
 }
+
+const controller = (t, session, identity) =>
+	secured(t, identity, process.env.CONTROLLER, [DOMAIN, session, 'hook', 'native', DEADLINE_MS]);
 
 async function watched(t, name) {
 	const client = await daemon.connect({ hello: { client: 'watcher' } });
@@ -90,6 +92,18 @@ test('an identity does what its permissions say', async (t) => {
 			`${identity} may not write commands here`);
 	await drives(controller(t, theirs.session, enclave('guest')), theirs);
 	assert.equal(mine.stream.tools[0].driver, 0);
+	// Requests may name any session: they are for controllers of all.
+	for (const identity of ['viewer', 'guest'])
+		assert.notEqual((await secured(t, enclave(identity), process.env.REQUESTER, [DOMAIN, 1]).exited).code, 0);
+	const asker = secured(t, enclave('controller'), process.env.REQUESTER, [DOMAIN, 1]);
+	await asker.event((e) => e.event === 'matched', 'matched');
+	const reply = asker.event((e) => e.event === 'reply', 'a reply');
+	asker.tell('request 1 LIST');
+	assert.equal((await reply).code, 0);
+	// A viewer reads: status, key frame and deltas.
+	const viewer = secured(t, enclave('viewer'), process.env.OBSERVER, [DOMAIN, theirs.session]);
+	await viewer.event((e) => e.event === 'status', 'a status');
+	await viewer.until((s) => s.deltas > 0);
 });
 
 const start = (...flags) => spawnSync(process.env.CAUTERYD,

@@ -12,7 +12,8 @@ none named it makes three: `daemon daemon`, `controller controller` and `viewer 
 that has none yet it first makes the authority: two self-signed certificates, one that vouches for
 identities and one that signs governance and permissions.
 
-  --session ID   controllers and viewers made now may reach this session alone
+  --session ID   controllers and viewers made now may reach this session alone, and controllers may
+                 not ask for sessions
   --days N       how long certificates and permissions hold (default 365)
   --plugins DIR  where Cyclone's security plugins are (default: searched for)
   --help         this text
@@ -54,6 +55,10 @@ done
 [ ${#words[@]} -ge 1 ] || fail "needs FOLDER; see --help"
 [[ $session =~ ^(\*|[a-z][a-z0-9]*([_-][a-z0-9]+)*)$ ]] || fail "'$session' is no session's id"
 [[ $days =~ ^[1-9][0-9]{0,4}$ ]] || fail "'$days' is no number of days"
+
+# Requests are in the partition `cautery`, and name any session.
+control=cautery
+[ "$session" = '*' ] || control=$session
 
 here=$(cd "$(dirname "${BASH_SOURCE[0]}")" && pwd)
 folder=${words[0]}
@@ -104,7 +109,7 @@ sign() {
 fill() {
 	sed -e "s|@NAME@|$2|g" -e "s|@SUBJECT@|CN=$2,O=Cautery|g" \
 		-e "s|@NOT_BEFORE@|$not_before|g" -e "s|@NOT_AFTER@|$not_after|g" \
-		-e "s|@SESSION@|$session|g" -e "s|@ROS_SESSION@|${session//-/_}|g" \
+		-e "s|@CONTROL@|$control|g" -e "s|@SESSION@|$session|g" -e "s|@ROS_SESSION@|${session//-/_}|g" \
 		-e "s|@PLUGINS@|$plugins|g" -e "s|@ENCLAVE@|$folder/enclaves/$2|g" "$1" >"$3"
 }
 
