@@ -150,6 +150,11 @@ void cau_dds_close_session(cau_dds *dds, cau_dds_session *session)
 			cau_dds_close_tool(dds, &session->tools[i]);
 	close_door(dds, &session->native);
 	cau_dds_leave_frames(session);
+	// Readers of other vendors do not take the end of its writer for the instance's own.
+	cautery_SessionStatus gone = {0};
+	snprintf(gone.session, sizeof gone.session, "%s", cau_hosted_id(session->hosted));
+	if (session->status_writer > 0)
+		dds_dispose(session->status_writer, &gone);
 	if (session->subscriber > 0)
 		dds_delete(session->subscriber);
 	if (session->publisher > 0)

@@ -105,5 +105,5 @@ test('Fast DDS decodes topology, key frames and deltas to what a browser sees', 
 			assert.equal(held.quantised[i], stream.quantised[i], `vertex ${vertex}`);
 
 	await client.call('session.destroy', { session });
-	await made.until(({ status: s }) => s.gone); // nobody writes it any more
+	await made.until(({ status: s }) => s.gone); // disposed
 });

@@ -127,6 +127,7 @@ class Robot
 		each_sample<cautery::SessionStatus>(
 			status_reader,
 			[this](const cautery::SessionStatus &sample, const fast::SampleInfo &info) {
+				gone = info.instance_state == fast::NOT_ALIVE_DISPOSED_INSTANCE_STATE;
 				if (info.valid_data)
 					status = sample;
 			});
@@ -142,10 +143,6 @@ class Robot
 				force_count += info.valid_data;
 				force = sample;
 			});
-		fast::SubscriptionMatchedStatus matched_status;
-		status_reader->get_subscription_matched_status(matched_status);
-		had_writer = had_writer || matched_status.current_count > 0;
-		gone = had_writer && matched_status.current_count == 0;
 		stream.read();
 	}
 
@@ -270,7 +267,7 @@ class Robot
 	geometry::PoseStamped_ pose;
 	geometry::WrenchStamped_ force;
 	int state_count = 0, pose_count = 0, force_count = 0;
-	bool matched = false, writing = false, energy = false, had_writer = false, gone = false;
+	bool matched = false, writing = false, energy = false, gone = false;
 	double position_m[3] = {0, 0, 0.02}, aim_m[3] = {0, 0, 0.02};
 	uint64_t sequence = 0;
 	std::string heard;
