@@ -140,8 +140,9 @@ void robot_control(robot_link *link, const robot_options *options,
 		robot_pose pose = next_pose(&c, now_s, period_s, &energy);
 		report->commands += robot_link_write(link, &pose, energy);
 		report->lost = why_lost(&c, now_s, energy);
-		for (due_s += period_s; due_s <= now_s; due_s += period_s)
-			report->missed++;
+		double missed = floor(fmax(0, now_s - due_s) / period_s);
+		report->missed += (uint64_t)missed;
+		due_s += (missed + 1) * period_s;
 	}
 	if (link->has_state) { // the last word: energy off, where it is
 		robot_pose rest = pose_of(&link->state);
