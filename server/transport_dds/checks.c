@@ -15,6 +15,9 @@ cau_status cau_motion_check_order(const cau_motion_past *past, uint64_t sequence
 		return cau_fail(error, CAU_BAD_VALUE, "sequence_number",
 		                "%llu does not go up: the last was %llu", (unsigned long long)sequence,
 		                (unsigned long long)past->sequence);
+	if (sequence > CAU_MOTION_SEQUENCE_MOST)
+		return cau_fail(error, CAU_BAD_VALUE, "sequence_number", "%llu is beyond 2^53",
+		                (unsigned long long)sequence);
 	if (source_time_ns < past->source_time_ns)
 		return cau_fail(error, CAU_BAD_VALUE, "source_time_ns", "goes back by %.6f s",
 		                1e-9 * ((double)past->source_time_ns - (double)source_time_ns));

@@ -21,7 +21,11 @@ typedef struct cau_motion_past {
 // Grace for jitter on the way: what a tool may do in this time is no leap.
 #define CAU_MOTION_GRACE_S 0.05
 
-// The sequence goes up, the source time does not go back and is within `limit_s` of now_ns.
+// Beyond this a sequence number could not be told in JSON.
+#define CAU_MOTION_SEQUENCE_MOST 9007199254740991u // 2^53 - 1
+
+// The sequence goes up, to at most CAU_MOTION_SEQUENCE_MOST, the source time does not go back and
+// is within `limit_s` of now_ns.
 cau_status cau_motion_check_order(const cau_motion_past *past, uint64_t sequence,
                                   int64_t source_time_ns, int64_t now_ns, double limit_s,
                                   cau_error *error);

@@ -224,6 +224,17 @@ static cau_status serve(asked *a, int32_t *code, cau_error *error)
 	                                   : order_session(a, reply, code, error);
 }
 
+// Whether the requester stays within what a WebSocket connection may send in a second.
+static bool is_too_fast(const cau_dds *dds, cau_dds_client *client)
+{
+	double now_s = cau_monotonic_s();
+	if (now_s - client->requests_s >= 1) {
+		client->requests_s = now_s;
+		client->requests = 0;
+	}
+	return ++client->requests > dds->config->max_requests_per_s;
+}
+
 // Several daemons may hear a request: it is for the one whose label begins the session's id.
 static bool is_ours(const cau_dds *dds, const cautery_SessionRequest *sample)
 {
@@ -256,6 +267,9 @@ void cau_dds_take_request(cau_dds *dds, cau_door *door, cau_dds_client *client, 
 	if (!request) {
 		unkept = cau_dds_describe_request(client, sample);
 		status = cau_fail(&error, CAU_LIMIT, "", "too many requests wait for their answer");
+	} else if (is_too_fast(dds, client)) {
+		code = CAU_RPC_RATE;
+		status = cau_fail(&error, CAU_LIMIT, "", "too many requests a second");
 	} else {
 		status = serve(&a, &code, &error);
 	}

@@ -5,7 +5,13 @@
 #include "ros2.h"
 #include "transport_dds/internal.h"
 
-enum { NATIVE_KEPT = 16, ROS2_KEPT = 10, DELTAS_KEPT = 16, REQUESTS_KEPT = 256, REPLIES_KEPT = 16 };
+enum {
+	NATIVE_KEPT = 256,
+	ROS2_KEPT = 10,
+	DELTAS_KEPT = 16,
+	REQUESTS_KEPT = 256,
+	REPLIES_KEPT = 256
+};
 
 cau_status cau_dds_open_topics(cau_dds *dds, cau_error *error)
 {
@@ -52,8 +58,11 @@ static bool open_door(cau_dds *dds, cau_door *door, dds_entity_t subscriber, con
 		door->reader = 0;
 		return false;
 	}
-	dds_set_status_mask(door->reader, DDS_DATA_AVAILABLE_STATUS | DDS_SUBSCRIPTION_MATCHED_STATUS);
+	dds_set_status_mask(door->reader,
+	                    DDS_SUBSCRIPTION_MATCHED_STATUS | DDS_LIVELINESS_CHANGED_STATUS);
 	dds_waitset_attach(dds->waitset, door->reader, (dds_attach_t)door);
+	door->samples = dds_create_readcondition(door->reader, DDS_ANY_STATE);
+	dds_waitset_attach(dds->waitset, door->samples, (dds_attach_t)door);
 	return true;
 }
 
@@ -61,6 +70,7 @@ static void close_door(cau_dds *dds, cau_door *door)
 {
 	dds_entity_t reader = door->reader;
 	if (reader > 0) {
+		dds_waitset_detach(dds->waitset, door->samples);
 		dds_waitset_detach(dds->waitset, reader);
 		dds_delete(reader);
 		cau_dds_prune(dds, reader, false);

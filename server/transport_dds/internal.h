@@ -51,6 +51,7 @@ struct cau_dds_session;
 typedef struct cau_door {
 	cau_door_kind kind;
 	dds_entity_t topic, reader; // 0: closed; the native topic is the participant's
+	dds_entity_t samples;       // the condition that some are there to take
 	struct cau_dds_session *session;
 	char tool[CAU_NAME_BYTES];
 } cau_door;
@@ -131,6 +132,8 @@ typedef struct cau_dds_client {
 	dds_guid_t guid; // native: of the writer
 	int32_t writers;
 	uint64_t connection; // for the hub
+	double requests_s;   // the second in which so many requests came
+	int64_t requests;
 	cau_asker asker;
 } cau_dds_client;
 
@@ -235,6 +238,9 @@ cau_dds_client *cau_dds_find_driver(cau_dds *dds, const cau_dds_client *requeste
                                     const char *session, const char *tool, const uint8_t guid[16]);
 // Forgets writers that no longer match the reader, and clients without writers.
 void cau_dds_prune(cau_dds *dds, dds_entity_t reader, bool all);
+// The writer did not assert its liveliness within the lease that it offers: energy off, and its
+// client gives up what it drives. It may claim tools again when it writes again.
+void cau_dds_give_up(cau_dds *dds, dds_entity_t reader, dds_instance_handle_t writer);
 // NULL: too many.
 cau_dds_hand *cau_dds_hand_of(cau_dds *dds, cau_dds_client *client, cau_dds_session *session,
                               const char *tool);

@@ -64,6 +64,10 @@ static void serve(cau_dds *dds, cau_door *door)
 	}
 	if (count > 0)
 		dds_return_loan(door->reader, samples, count);
+	dds_liveliness_changed_status_t alive;
+	if (!dds_get_liveliness_changed_status(door->reader, &alive) &&
+	    alive.not_alive_count_change > 0)
+		cau_dds_give_up(dds, door->reader, alive.last_publication_handle);
 	dds_get_subscription_matched_status(door->reader, &matched);
 	if (matched.current_count_change || matched.total_count_change)
 		cau_dds_prune(dds, door->reader, false);

@@ -152,6 +152,21 @@ static void drop_hand(cau_dds_hand *hand)
 	*hand = (cau_dds_hand){0};
 }
 
+void cau_dds_give_up(cau_dds *dds, dds_entity_t reader, dds_instance_handle_t handle)
+{
+	const cau_dds_writer *writer = find_writer(dds, reader, handle);
+	if (!writer)
+		return;
+	for (int i = 0; i < HANDS_MOST; i++) {
+		cau_dds_hand *hand = &dds->hands[i];
+		if (hand->client != writer->client)
+			continue;
+		cau_hosted_cut(hand->session->hosted, hand->client->asker.client,
+		               "its writer is not alive");
+		drop_hand(hand);
+	}
+}
+
 static void drop_client(cau_dds *dds, cau_dds_client *client)
 {
 	cau_log(CAU_LOG_INFO, NULL, "dds_client_gone", "client=%u name=\"%s\"", client->asker.client,

@@ -160,13 +160,16 @@ test('TAKE_OVER gives a tool to a writer of the same participant; from its drive
 	assert.deepEqual([refused.code, refused.status], [-32043, 'forbidden']);
 });
 
-test('the role that the settings give binds every operation', async (t) => {
-	const viewed = await Daemon.start({ settings: { dds: true, dds_domain: DOMAIN, label: 'd9', dds_role: 'view' } });
+test('the role that the settings give binds every operation, and their rate', async (t) => {
+	const viewed = await Daemon.start({ settings: { dds: true, dds_domain: DOMAIN, label: 'd9', dds_role: 'view', max_requests_per_s: 50 } });
 	t.after(() => viewed.end());
 	const requester = await Requester.start(t, 2);
 	const made = await requester.request('CREATE', { scene: 'fascia', session: 'd9' });
 	assert.deepEqual([made.code, made.status], [-32043, 'forbidden']);
 	assert.deepEqual((await requester.done('LIST', { session: 'd9' })).sessions, []);
+	// And so does the rate that they allow.
+	const many = await Promise.all(Array.from({ length: 60 }, () => requester.request('LIST', { session: 'd9' })));
+	assert.deepEqual([...new Set(many.map((reply) => reply.status))].sort(), ['', 'rate']);
 	const wrong = spawnSync(process.env.CAUTERYD, ['--dds', '--dds-role', 'king'], { encoding: 'utf8' });
 	assert.equal(wrong.status, 2);
 	assert.match(wrong.stderr, /path="dds_role"/);

@@ -7,9 +7,9 @@
 // It writes 100 times a second. Lines on standard input tell it what:
 //     aim X Y Z      m: goes there at 0.2 m/s        energy 0|1       the level it writes
 //     grasp 0|1      the level it writes             write on|off     silent, but alive
-//     once WHAT      one bad sample: nan back stale leap session long
-//     flood COUNT    so many NaN samples at once     state            prints the newest tool state,
-//     soon
+//     once WHAT      one bad sample: nan infinite back huge stale leap session
+//     flood COUNT    so many NaN samples at once     storm RATE       so many bad samples a second
+//     state          prints the newest tool state, soon
 // and by way of ros:
 //     command WORD   a state_command                  jaw RAD          a jaw/servo_jp
 //     crtk           prints the operating state, the jaw and the pose as ROS 2's topics tell them
@@ -27,6 +27,7 @@
 #include "ros2.h"
 
 #define PERIOD_S 0.01
+#define STORM_PERIOD_S 0.001
 #define SPEED_M_S 0.2
 
 typedef struct controller {
@@ -39,6 +40,8 @@ typedef struct controller {
 	cautery_ToolState state;
 	crtk crtk; // ros
 	bool crtk_asked;
+	double storm_hz; // 0: writes good samples if any
+	uint64_t stormed;
 } controller;
 
 // ---- the wire
@@ -161,6 +164,10 @@ static void write_bad(controller *c, const char *what)
 		sample.source_time_ns -= 2000000000;
 	else if (strcmp(what, "back") == 0)
 		sample.sequence_number = 1;
+	else if (strcmp(what, "huge") == 0)
+		sample.sequence_number = UINT64_MAX;
+	else if (strcmp(what, "infinite") == 0)
+		sample.position_m[2] = INFINITY;
 	else if (strcmp(what, "session") == 0)
 		snprintf(sample.session, sizeof sample.session, "d1-other");
 	if (c->ros)
@@ -169,18 +176,26 @@ static void write_bad(controller *c, const char *what)
 		write_native(c, &sample);
 }
 
+// A millisecond's share of a storm.
+static void write_storm(controller *c)
+{
+	static const char *const kinds[] = {"nan", "huge", "session"};
+	for (int left = (int)(c->storm_hz * STORM_PERIOD_S); left > 0; left--)
+		write_bad(c, kinds[c->stormed++ % 3]);
+}
+
 // ---- telling and being told
 // ---------------------------------------------------------------------------
 static void tell_state(const controller *c, const char *event)
 {
 	const cautery_ToolState *s = &c->state;
-	printf("{\"event\":\"%s\",\"has\":%s,\"tick\":%llu,\"sequence\":%llu,"
+	printf("{\"event\":\"%s\",\"has\":%s,\"stormed\":%llu,\"tick\":%llu,\"sequence\":%llu,"
 	       "\"position_m\":[%.6f,%.6f,%.6f],\"energized\":%s,\"energy_off\":%d,\"driver\":%u,"
 	       "\"driver_name\":\"%s\",\"grasping\":%s}\n",
-	       event, c->has_state ? "true" : "false", (unsigned long long)s->tick,
-	       (unsigned long long)s->sequence_number, s->position_m[0], s->position_m[1],
-	       s->position_m[2], s->energized ? "true" : "false", (int)s->energy_off, s->driver,
-	       s->driver_name, s->grasping ? "true" : "false");
+	       event, c->has_state ? "true" : "false", (unsigned long long)c->stormed,
+	       (unsigned long long)s->tick, (unsigned long long)s->sequence_number, s->position_m[0],
+	       s->position_m[1], s->position_m[2], s->energized ? "true" : "false", (int)s->energy_off,
+	       s->driver, s->driver_name, s->grasping ? "true" : "false");
 }
 
 static void read_state(controller *c)
@@ -222,6 +237,8 @@ static void obey(void *user, const char *line)
 		c->state_asked = true;
 	else if (strcmp(word, "crtk") == 0)
 		c->crtk_asked = true;
+	else if (strcmp(word, "storm") == 0)
+		c->storm_hz = atof(value);
 	else if (strcmp(word, "command") == 0)
 		crtk_command(&c->crtk, value);
 	else if (strcmp(word, "jaw") == 0)
@@ -245,7 +262,7 @@ static void run(controller *c)
 			crtk_read(&c->crtk);
 		if (clock_s(CLOCK_MONOTONIC) < next_s)
 			continue;
-		next_s += PERIOD_S;
+		next_s += c->storm_hz > 0 ? STORM_PERIOD_S : PERIOD_S;
 		if (c->state_asked)
 			tell_state(c, "state");
 		if (c->crtk_asked)
@@ -256,7 +273,9 @@ static void run(controller *c)
 			c->matched = true;
 			printf("{\"event\":\"matched\"}\n");
 		}
-		if (c->writing && c->matched)
+		if (c->storm_hz > 0)
+			write_storm(c);
+		else if (c->writing && c->matched)
 			write_good(c);
 	}
 }

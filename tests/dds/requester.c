@@ -18,7 +18,7 @@
 
 #define PERIOD_S 0.01
 
-enum { TAKEN_MOST = 16 };
+enum { TAKEN_MOST = 16, KEPT = 256 };
 
 typedef struct requester {
 	dds_entity_t participant, writer, reader, command;
@@ -175,10 +175,10 @@ int main(int argument_count, char **arguments)
 	setvbuf(stdout, NULL, _IOLBF, 0);
 	r.participant = checked(dds_create_participant((uint32_t)atoi(arguments[1]), NULL, NULL));
 	r.reader = native_reader(subscriber_of(r.participant, "cautery"), &cautery_SessionReply_desc,
-	                         "cautery/session_reply", DDS_DURABILITY_TRANSIENT_LOCAL, 64);
+	                         "cautery/session_reply", DDS_DURABILITY_TRANSIENT_LOCAL, KEPT);
 	dds_qos_t *qos = dds_create_qos();
 	dds_qset_reliability(qos, DDS_RELIABILITY_RELIABLE, DDS_MSECS(100));
-	dds_qset_history(qos, DDS_HISTORY_KEEP_LAST, 64);
+	dds_qset_history(qos, DDS_HISTORY_KEEP_LAST, KEPT);
 	dds_entity_t topic = checked(dds_create_topic(r.participant, &cautery_SessionRequest_desc,
 	                                              "cautery/session_request", NULL, NULL));
 	r.writer = checked(dds_create_writer(publisher_of(r.participant, "cautery"), topic, qos, NULL));

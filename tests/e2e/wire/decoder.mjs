@@ -210,9 +210,11 @@ export class Decoder {
 			this.names = toolNames(payload);
 		else if (type === 7)
 			this.tools = toolRecords(payload, this.names);
-		else if (type === 8)
-			this.realtimeFactor = new DataView(payload.buffer, payload.byteOffset).getFloat32(0, true);
-		else {
+		else if (type === 8) {
+			const view = new DataView(payload.buffer, payload.byteOffset);
+			this.realtimeFactor = view.getFloat32(0, true);
+			this.stepCost = view.getFloat32(4, true);
+		} else {
 			const arrays = {
 				2: this.mask, 3: this.exposure, 4: this.charring, 5: this.stress,
 				16: this.faces, 17: this.faceLayers, 18: this.texture, 19: this.rest,

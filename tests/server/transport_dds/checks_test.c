@@ -33,9 +33,11 @@ static void sequences_go_up(void **state)
 {
 	(void)state;
 	order(8, NOW_NS, NULL);
-	order(UINT64_MAX, NOW_NS, NULL);
 	order(7, NOW_NS, "sequence_number");
 	order(0, NOW_NS, "sequence_number");
+	order(CAU_MOTION_SEQUENCE_MOST, NOW_NS, NULL);
+	order(CAU_MOTION_SEQUENCE_MOST + 1, NOW_NS, "sequence_number");
+	order(UINT64_MAX, NOW_NS, "sequence_number");
 }
 
 static void times_are_near_and_go_on(void **state)

@@ -1,0 +1,77 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Storms of bad samples: counted and refused, and the simulation does not feel them.
+import assert from 'node:assert/strict';
+import { after, before, test } from 'node:test';
+import { Controller } from './controller.mjs';
+import { DOMAIN } from './domain.mjs';
+import { Daemon } from './wire/daemon.mjs';
+import { smallSession } from './wire/scene.mjs';
+
+const STORM_HZ = 10000;
+// Quiet and storm take turns, and the best window of each counts: what else runs on the machine
+// spoils windows of both.
+const TURNS = 5, WINDOW_STEPS = 60;
+// The storm's own two programs and the transport take time from the step's processor.
+const RATIO_MOST = 2, SLACK_S = 0.001;
+const AT_AIM_M = 1e-4;
+
+let daemon;
+before(async () => {
+	daemon = await Daemon.start({ settings: { dds: true, dds_domain: DOMAIN, dds_deadline_s: 1 } });
+});
+after(() => daemon.end());
+
+const controller = (session, via) => Controller.start({ domain: DOMAIN, session, tool: 'hook', via, deadline: 1 });
+const far = (a, b) => Math.hypot(a[0] - b[0], a[1] - b[1], a[2] - b[2]);
+
+const quantile = (values, share) => values.toSorted((a, b) => a - b)[Math.floor(share * (values.length - 1))];
+
+// Costs of the next steps, s, as the frames tell them.
+async function costs(client, stream) {
+	const seen = [];
+	client.onFrame = () => seen.push(stream.stepCost);
+	await client.until(() => seen.length >= WINDOW_STEPS, 'a window of steps');
+	client.onFrame = null;
+	return quantile(seen, 0.99);
+}
+
+for (const via of ['native', 'ros'])
+	test(`a ${via} storm of bad samples at ${STORM_HZ} a second is counted, and the step costs what it did`, async (t) => {
+		const client = await daemon.connect({ hello: { client: 'admin' } });
+		const session = await smallSession(client, `storm-${via}`);
+		t.after(async () => {
+			await Controller.killAll();
+			await client.call('session.destroy', { session });
+			await client.close();
+		});
+		const stream = await client.join(session, { channels: ['tools', 'statistics'] });
+		const driver = await controller(session, via);
+		driver.tell('write on');
+		await driver.until((s) => s.driver_name.startsWith(via === 'ros' ? 'ros ' : 'dds '));
+		const driving = stream.tools[0].driver;
+		const stranger = await controller(session, via);
+
+		const quiet = [], stormy = [];
+		const before = await daemon.metric('session_refused_total', session);
+		for (let turn = 0; turn < TURNS; turn++) {
+			quiet.push(await costs(client, stream));
+			stranger.tell(`storm ${STORM_HZ}`);
+			stormy.push(await costs(client, stream));
+			stranger.tell('storm 0');
+			await stranger.state();
+		}
+		const { stormed } = await stranger.state();
+		const refused = await daemon.metric('session_refused_total', session) - before;
+		const [a, b] = [Math.min(...quiet), Math.min(...stormy)];
+		t.diagnostic(`step p99 ${(1e3 * a).toFixed(3)} ms quiet, ${(1e3 * b).toFixed(3)} ms in the storm; ` +
+			`${stormed} bad samples, ${refused} refused`);
+		assert.ok(stormed > 1000, `${stormed} samples`);
+		assert.ok(refused > stormed / 10 && refused <= stormed + 10, `${refused} of ${stormed} refused`);
+		assert.ok(b <= RATIO_MOST * a + SLACK_S, `${b} s, ${a} s when quiet`);
+
+		// The driver has its tool all along, and still moves it.
+		assert.equal(stream.tools[0].driver, driving);
+		const aim = [0.01, 0.01, 0.02];
+		driver.tell(`aim ${aim.join(' ')}`);
+		await client.until(() => far(stream.tools[0].position, aim) < AT_AIM_M, 'it follows');
+	});
