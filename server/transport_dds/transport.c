@@ -10,7 +10,7 @@
 #include "transport_dds/loopback.h"
 #include "transport_dds/security.h"
 
-enum { TAKEN_MOST = 16, TRIGGERS_MOST = 64, CONFIG_BYTES = CAU_CONFIG_TEXT_BYTES + 16 };
+enum { TAKEN_MOST = 16, TRIGGERS_MOST = 64, CONFIG_BYTES = 4096 };
 
 // ---- the sink; from any thread
 // ----------------------------------------------------------------------
@@ -110,13 +110,20 @@ static cau_status fail(cau_error *error, const char *what, dds_return_t code)
 	return cau_fail(error, CAU_IO, "dds", "%s: %s", what, dds_strretcode(code));
 }
 
+// Closing a session's writers must not wait for a dead reader's acknowledgements.
+static const char no_linger[] =
+	"<CycloneDDS><Domain Id=\"any\"><Internal>"
+	"<WriterLingerDuration>0 s</WriterLingerDuration></Internal></Domain></CycloneDDS>";
+
 static cau_status open_domain(cau_dds *dds, cau_error *error)
 {
 	const cau_config *config = dds->config;
 	char given[CONFIG_BYTES];
-	snprintf(given, sizeof given, "file://%s", config->dds_config);
-	dds->domain = dds_create_domain((dds_domainid_t)config->dds_domain,
-	                                *config->dds_config ? given : cau_dds_loopback);
+	if (*config->dds_config)
+		snprintf(given, sizeof given, "file://%s,%s", config->dds_config, no_linger);
+	else
+		snprintf(given, sizeof given, "%s,%s", cau_dds_loopback, no_linger);
+	dds->domain = dds_create_domain((dds_domainid_t)config->dds_domain, given);
 	if (dds->domain < 0)
 		return fail(error, "no domain", dds->domain);
 	dds_qos_t *qos = dds_create_qos();
