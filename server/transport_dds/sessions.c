@@ -68,7 +68,8 @@ static void add_tool(cau_dds *dds, cau_dds_session *session, const char name[CAU
 		cau_dds_tool *tool = &session->tools[i];
 		if (tool->used)
 			continue;
-		*tool = (cau_dds_tool){.used = true, .seen = true, .operating = {.state = OPERATING_ENABLED}};
+		*tool =
+			(cau_dds_tool){.used = true, .seen = true, .operating = {.state = OPERATING_ENABLED}};
 		memcpy(tool->name, name, sizeof tool->name);
 		cau_dds_open_tool(dds, session, tool);
 		return;
