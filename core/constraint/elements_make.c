@@ -109,7 +109,7 @@ static cau_status make_sheets(const cau_tissue *tissue, int single, cau_arena *a
 {
 	cau_sheet_set *set = &elements->sheet;
 	group_key keys[CAU_MAX_GROUPS];
-	int32_t first[CAU_MAX_GROUPS];
+	int32_t first[CAU_MAX_GROUPS] = {0};
 	set->group_count = count_groups(tissue, CAU_ELEMENT_TRIANGLE, keys);
 	set->slot_count = place(keys, set->group_count, first);
 	set->group = cau_arena_array(arena, (size_t)set->group_count, sizeof *set->group);
@@ -161,7 +161,7 @@ static cau_status make_fat(const cau_tissue *tissue, int single, cau_arena *aren
 {
 	cau_fat_set *set = &elements->fat;
 	group_key keys[CAU_MAX_GROUPS];
-	int32_t first[CAU_MAX_GROUPS];
+	int32_t first[CAU_MAX_GROUPS] = {0};
 	set->group_count = count_groups(tissue, CAU_ELEMENT_TETRAHEDRON, keys);
 	set->slot_count = place(keys, set->group_count, first);
 	set->group = cau_arena_array(arena, (size_t)set->group_count, sizeof *set->group);

@@ -29,9 +29,11 @@ INLINE m3 rotation_matrix(rotation_lanes q)
 // 1/sqrt(n) of a number near one; two terms serve where they leave less than half a rounding.
 INLINE vreal inverse_root_near_one(vreal n)
 {
+#if CAU_SINGLE
 	vreal e = n - 1;
-	if (CAU_SINGLE && !v_any(v_abs(e) > v_set((real)4e-3)))
+	if (!v_any(v_abs(e) > v_set((real)4e-3)))
 		return 1 - e * ((real)0.5 - (real)0.375 * e);
+#endif
 	return 1 / v_sqrt(n);
 }
 

@@ -61,14 +61,14 @@ static int is_nearer(double distance, int32_t vertex, double than, int32_t than_
 static int32_t nearest(const cau_tissue *tissue, int32_t from, const candidate *lower,
                        int32_t lower_count, double reach, int32_t most, int32_t *found)
 {
-	double distance[MAX_PER_VERTEX];
+	double distance[MAX_PER_VERTEX] = {0};
 	int32_t count = 0;
 	cau_vec3 x = cau_vec3_of(tissue->rest + 3 * (size_t)from);
 	int32_t right = first_at_or_after(lower, lower_count, x.x), left = right - 1;
 	for (;;) {
 		double ahead = right < lower_count ? lower[right].x - x.x : INFINITY;
 		double behind = left >= 0 ? x.x - lower[left].x : INFINITY;
-		if (fmin(ahead, behind) > (count == most ? distance[count - 1] : reach))
+		if (fmin(ahead, behind) > (count && count == most ? distance[count - 1] : reach))
 			return count;
 		int32_t vertex = ahead <= behind ? lower[right++].vertex : lower[left--].vertex;
 		double d = cau_length(cau_sub(cau_vec3_of(tissue->rest + 3 * (size_t)vertex), x));
