@@ -20,8 +20,11 @@ cau_status cau_frame_create(cau_frame_state *frame, const cau_tissue *tissue,
 	frame->exposure = cau_arena_array(arena, n, sizeof(float));
 	frame->stress = cau_arena_array(arena, n, sizeof(float));
 	frame->stress_weight = cau_arena_array(arena, n, sizeof(float));
+	frame->temperature = cau_arena_array(arena, n, sizeof(float));
+	frame->heated = cau_arena_array(arena, n, sizeof(int32_t));
 	if (!frame->moved || !frame->mask_changed || !frame->mask_before || !frame->vertex_visible ||
-	    !frame->vertex_faces || !frame->exposure || !frame->stress || !frame->stress_weight)
+	    !frame->vertex_faces || !frame->exposure || !frame->stress || !frame->stress_weight ||
+	    !frame->temperature || !frame->heated)
 		return cau_fail(error, CAU_NO_MEMORY, NULL, "no memory for frames");
 	cau_frame_rebuild(frame, dissection);
 	return CAU_OK;

@@ -5,6 +5,7 @@
 
 #include "constraint/elements_make.h"
 #include "dissect/dissection.h"
+#include "dissect/near.h"
 
 typedef struct cau_frame_state {
 	int32_t moved_count, mask_changed_count;
@@ -16,6 +17,10 @@ typedef struct cau_frame_state {
 	float *exposure;         // (vertex_count)
 	float *stress;           // (vertex_count)
 	float *stress_weight;    // (vertex_count)
+	float ambient_c;         // of the body
+	float *temperature;      // degC, (vertex_count)
+	int32_t heated_count;    // vertices away from ambient
+	int32_t *heated;         // (vertex_count)
 } cau_frame_state;
 
 cau_status cau_frame_create(cau_frame_state *frame, const cau_tissue *tissue,
@@ -31,3 +36,12 @@ void cau_frame_rebuild(cau_frame_state *frame, const cau_dissection *dissection)
 // Von Mises stress of the fat, volume weighted at the vertices, Pa.
 void cau_frame_stress(cau_frame_state *frame, const cau_tissue *tissue,
                       const cau_dissection *dissection, const double *position);
+
+// Temperature at the vertices, degC: all of them to ambient, once; then in each tick those that
+// were heated back to ambient, and for each tool what its grid says at the vertices inside it.
+// Where several grids reach, the value furthest from ambient stands. `near` holds boxes fitted to
+// `position`; the cost of a tick is that of the blocks' boxes and of the vertices in the grids.
+void cau_frame_cool(cau_frame_state *frame, const cau_tissue *tissue, double ambient_c);
+void cau_frame_cool_heated(cau_frame_state *frame);
+void cau_frame_heat(cau_frame_state *frame, const cau_near *near, const cau_heat_grid *grid,
+                    const double *position);

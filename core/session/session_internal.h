@@ -78,7 +78,7 @@ struct cau_session {
 	double (*now_s)(void);
 	double stage_s[CAU_STAGE_COUNT];
 	double stage_start;
-	bool stress_on;
+	bool stress_on, temperature_on;
 };
 
 // command.c: applies the queued commands that are due.
@@ -106,6 +106,9 @@ cau_status cau_session_set_pins(cau_session *session, const cau_selection *selec
 // Analyses and factors the system anew; `permutation` as in cau_factor_create.
 cau_status cau_session_rebuild_system(cau_session *session, const int32_t *permutation,
                                       cau_error *error);
+// view.c: temperature of the vertices after a tick; everything anew after a restore.
+void cau_session_show_temperature(cau_session *session);
+void cau_session_renew_temperature(cau_session *session);
 // view.c: layer and texture of the faces.
 cau_status cau_session_make_faces(cau_session *session, cau_error *error);
 // drive.c: pinned vertices go where the caller wants them in this tick.

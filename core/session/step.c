@@ -148,6 +148,7 @@ cau_status cau_session_step(cau_session *session, cau_error *error)
 	if (session->stress_on)
 		cau_frame_stress(&session->frame, &session->tissue, &session->dissection,
 		                 session->position);
+	cau_session_show_temperature(session); // view.c
 	cau_session_stage_end(session, CAU_STAGE_FRAME);
 	session->tick++;
 	return CAU_OK;

@@ -142,6 +142,7 @@ void cau_session_frame(const cau_session *session, cau_frame *frame)
 		.vertex_visible = session->frame.vertex_visible,
 		.exposure = session->frame.exposure,
 		.stress = session->stress_on ? session->frame.stress : NULL,
+		.temperature = session->temperature_on ? session->frame.temperature : NULL,
 		.tool_count = session->tool_count,
 		.tools = session->tool_view,
 		.refusal_count = session->refusal_count,
@@ -160,6 +161,37 @@ void cau_session_set_clock(cau_session *session, double (*now_s)(void))
 void cau_session_set_stress(cau_session *session, bool on)
 {
 	session->stress_on = on;
+}
+
+static void heat_vertices(cau_session *session)
+{
+	for (int32_t i = 0; i < session->tool_count; ++i)
+		cau_frame_heat(&session->frame, &session->near, &session->tool[i].grid, session->position);
+}
+
+void cau_session_show_temperature(cau_session *session)
+{
+	if (!session->temperature_on)
+		return;
+	cau_frame_cool_heated(&session->frame);
+	heat_vertices(session);
+}
+
+void cau_session_renew_temperature(cau_session *session)
+{
+	if (!session->temperature_on)
+		return;
+	cau_frame_cool(&session->frame, &session->tissue, session->scene->ambient_c);
+	cau_near_refit(&session->near, session->position);
+	heat_vertices(session);
+}
+
+void cau_session_set_temperature(cau_session *session, bool on)
+{
+	bool renew = on && !session->temperature_on;
+	session->temperature_on = on;
+	if (renew)
+		cau_session_renew_temperature(session);
 }
 
 void cau_session_alive(const cau_session *session, const uint8_t **tetrahedron,

@@ -166,6 +166,8 @@ typedef struct cau_frame {
 	const uint8_t *vertex_visible; // (vertex_count): 1 if on a drawn face
 	const float *exposure; // (vertex_count): largest exposure / ignition of its edges, 0 to 1
 	const float *stress;   // Pa, (vertex_count): von Mises, volume weighted; NULL unless asked for
+	const float *temperature; // degC, (vertex_count): the tools' heat at each vertex, elsewhere the
+	                          // scene's ambient_c; NULL unless asked for
 	int32_t tool_count;
 	const cau_tool_state *tools;
 	int32_t refusal_count; // commands refused at their tick in this step
@@ -179,6 +181,8 @@ void cau_session_frame(const cau_session *session, cau_frame *frame);
 void cau_session_set_clock(cau_session *session, double (*now_s)(void));
 // Switches the stress channel (off by default).
 void cau_session_set_stress(cau_session *session, bool on);
+// Switches the temperature channel (off by default); switched on, it is there at once.
+void cau_session_set_temperature(cau_session *session, bool on);
 
 // Elements alive, as bytes 0/1, (tetrahedron_count), (triangle_count), (link_count): for export.
 void cau_session_alive(const cau_session *session, const uint8_t **tetrahedron,
