@@ -143,6 +143,9 @@ static cau_status check_together(const cau_config *config, cau_error *error)
 	if (!is_role(config->dds_role))
 		return cau_fail(error, CAU_BAD_VALUE, "dds_role", "%.60s is not view, operate or admin",
 		                config->dds_role);
+	if (*config->dds_roles && !*config->dds_security)
+		return cau_fail(error, CAU_BAD_VALUE, "dds_roles",
+		                "is for identities: that needs dds_security");
 	return CAU_OK;
 }
 

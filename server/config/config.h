@@ -51,7 +51,8 @@ enum { CAU_CONFIG_TEXT_BYTES = 512 };
 	TEXT(dds_config, "", "file of Cyclone DDS settings; empty: loopback only")                     \
 	TEXT(dds_security, "", "folder of this daemon's DDS identity; empty: no DDS Security")         \
 	SWITCH(dds_network, false, "let dds_config take DDS off loopback without DDS Security")        \
-	TEXT(dds_role, "operate", "role of every DDS participant: view, operate or admin")             \
+	TEXT(dds_role, "operate", "role of DDS participants: view, operate or admin")                  \
+	TEXT(dds_roles, "", "file of roles, `ROLE SUBJECT` a line, for identities of DDS Security")    \
 	REAL(dds_deadline_s, 0.25, 0.02, 1, "silence to energy off of a DDS driver without deadline")
 
 #define CAU_CONFIG_TEXT(name, default_, meaning) char name[CAU_CONFIG_TEXT_BYTES];

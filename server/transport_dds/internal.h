@@ -14,6 +14,7 @@
 #include "log/log.h"
 #include "transport_dds/checks.h"
 #include "transport_dds/dds_transport.h"
+#include "transport_dds/roles.h"
 
 enum {
 	CLIENTS_MOST = 128,
@@ -184,7 +185,7 @@ struct cau_dds {
 	cau_hub *hub;
 	dds_entity_t domain, participant, subscriber, publisher; // of the default partition
 	dds_entity_t topics[TOPIC_COUNT];
-	cau_role role; // of every participant
+	cau_dds_roles roles;
 	dds_entity_t control_subscriber, control_publisher, reply_writer;
 	cau_door request;
 	cau_dds_request requests[REQUESTS_MOST];

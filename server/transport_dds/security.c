@@ -6,6 +6,7 @@
 #include <string.h>
 #include <unistd.h>
 
+#include "dds_identity/identity.h"
 #include "transport_dds/security.h"
 
 enum { FILE_BYTES = CAU_CONFIG_TEXT_BYTES + 64, PATH_KEPT = 100 };
@@ -25,7 +26,6 @@ static const struct {
 static const struct {
 	const char *name, *path, *function;
 } plugins[] = {
-	{"auth", CAU_DDS_PLUGINS "libdds_security_auth.so", "authentication"},
 	{"access", CAU_DDS_PLUGINS "libdds_security_ac.so", "access_control"},
 	{"crypto", CAU_DDS_PLUGINS "libdds_security_crypto.so", "crypto"},
 };
@@ -35,6 +35,14 @@ static void set_plugin(dds_qos_t *qos, const char *name, const char *member, con
 	char property[64];
 	snprintf(property, sizeof property, "dds.sec.%s.library.%s", name, member);
 	dds_qset_prop(qos, property, value);
+}
+
+// Authentication is Cyclone's too, within a plugin of ours that notes who was authenticated.
+static void set_authentication(dds_qos_t *qos, const char *library)
+{
+	set_plugin(qos, "auth", "path", library);
+	set_plugin(qos, "auth", "init", "cau_dds_identity_init");
+	set_plugin(qos, "auth", "finalize", "cau_dds_identity_finalize");
 }
 
 static void set_plugins(dds_qos_t *qos)
@@ -67,6 +75,10 @@ cau_status cau_dds_secure(dds_qos_t *qos, const cau_config *config, cau_error *e
 {
 	if (!*config->dds_security)
 		return CAU_OK;
+	const char *library = cau_dds_identity_library();
+	if (!library)
+		return cau_fail(error, CAU_NOT_FOUND, "dds_security", "no library of DDS identities");
+	set_authentication(qos, library);
 	set_plugins(qos);
 	return set_identity(qos, config->dds_security, error);
 }

@@ -156,20 +156,6 @@ static cau_status open_entities(cau_dds *dds, cau_error *error)
 	return code ? fail(error, "no waitset", code) : CAU_OK;
 }
 
-// One of the words that the settings allow.
-static cau_role read_role(const char *word)
-{
-	static const char *const words[CAU_ROLE_COUNT] = {
-#define X(code, name) [CAU_ROLE_##code] = (name),
-		CAU_ROLE_TABLE(X)
-#undef X
-	};
-	int role = CAU_ROLE_COUNT - 1;
-	while (role > 0 && strcmp(words[role], word) != 0)
-		role--;
-	return (cau_role)role;
-}
-
 cau_status cau_dds_create(cau_dds **made, const cau_config *config, cau_hub *hub, cau_error *error)
 {
 	*made = NULL;
@@ -178,9 +164,10 @@ cau_status cau_dds_create(cau_dds **made, const cau_config *config, cau_hub *hub
 		return cau_fail(error, CAU_NO_MEMORY, "dds", "no memory for the DDS transport");
 	dds->config = config;
 	dds->hub = hub;
-	dds->role = read_role(config->dds_role);
 	pthread_mutex_init(&dds->mutex, NULL);
-	cau_status status = open_domain(dds, error);
+	cau_status status = cau_dds_roles_read(&dds->roles, config, error);
+	if (!status)
+		status = open_domain(dds, error);
 	if (!status)
 		status = open_entities(dds, error);
 	if (!status)

@@ -30,11 +30,23 @@ static void write_guid(char text[33], const dds_guid_t *guid)
 		snprintf(text + 2 * i, 3, "%02x", guid->v[i]);
 }
 
+// The role of a writer's participant, by the name that it has proved.
+static cau_role role_of(const cau_dds *dds, const dds_builtintopic_endpoint_t *writer,
+                        char subject[CAU_DDS_SUBJECT_BYTES])
+{
+	bool proved = cau_dds_identity_find(writer->participant_key.v, subject);
+	if (!proved)
+		*subject = 0;
+	return cau_dds_roles_find(&dds->roles, proved ? subject : NULL);
+}
+
 static cau_dds_client *add_client(cau_dds *dds, uint64_t identity, bool native,
                                   const dds_builtintopic_endpoint_t *writer)
 {
 	cau_dds_client *client = find_client(dds, 0, false);
-	cau_client made = {.asker = {.role = dds->role, .deadline_s = deadline_of(dds, writer->qos)},
+	char subject[CAU_DDS_SUBJECT_BYTES];
+	cau_client made = {.asker = {.role = role_of(dds, writer, subject),
+	                             .deadline_s = deadline_of(dds, writer->qos)},
 	                   .connection = ++dds->last_connection};
 	char guid[33];
 	uint64_t replaced;
@@ -49,8 +61,9 @@ static cau_dds_client *add_client(cau_dds *dds, uint64_t identity, bool native,
 	                           .guid = writer->key,
 	                           .connection = made.connection,
 	                           .asker = made.asker};
-	cau_log(CAU_LOG_INFO, NULL, "dds_client", "client=%u name=\"%s\" deadline_s=%.3f",
-	        made.asker.client, made.asker.name, made.asker.deadline_s);
+	cau_log(CAU_LOG_INFO, NULL, "dds_client",
+	        "client=%u name=\"%s\" deadline_s=%.3f role=%s subject=\"%s\"", made.asker.client,
+	        made.asker.name, made.asker.deadline_s, cau_dds_role_word(made.asker.role), subject);
 	return client;
 }
 

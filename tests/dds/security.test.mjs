@@ -3,7 +3,7 @@
 // drives; who has both does.
 import assert from 'node:assert/strict';
 import { execFileSync, spawnSync } from 'node:child_process';
-import { copyFileSync, cpSync, mkdtempSync, rmSync } from 'node:fs';
+import { chmodSync, copyFileSync, cpSync, mkdtempSync, rmSync, writeFileSync } from 'node:fs';
 import { tmpdir } from 'node:os';
 import { dirname, join } from 'node:path';
 import { after, before, test } from 'node:test';
@@ -21,12 +21,20 @@ const folder = mkdtempSync(join(tmpdir(), 'cautery-keys-'));
 const enclave = (name, store = 'keys') => join(folder, store, 'enclaves', name);
 const make = (store, ...words) => execFileSync(MAKE, [join(folder, store), ...words], { stdio: 'pipe' });
 
+const ROLES = { looker: 'view', worker: 'operate', chief: 'admin' };
+const rolesFile = (name, text) => {
+	writeFileSync(join(folder, name), text, { mode: 0o644 });
+	return join(folder, name);
+};
+
 let daemon;
 before(async () => {
 	make('keys');
+	make('keys', ...Object.keys(ROLES).flatMap((name) => ['controller', name]));
+	const roles = rolesFile('roles', Object.entries(ROLES).map(([name, role]) => `${role} CN=${name},O=Cautery\n`).join(''));
 	make('keys', '--session', 'd1-theirs', 'controller', 'guest');
 	make('others', 'controller', 'stranger');
-	daemon = await Daemon.start({ settings: { dds: true, dds_domain: DOMAIN, dds_security: enclave('daemon') } });
+	daemon = await Daemon.start({ settings: { dds: true, dds_domain: DOMAIN, dds_security: enclave('daemon'), dds_roles: roles } });
 });
 after(async () => {
 	await daemon?.end();
@@ -106,6 +114,53 @@ test('an identity does what its permissions say', async (t) => {
 	await viewer.until((s) => s.deltas > 0);
 });
 
+const requester = async (t, identity) => {
+	const asker = secured(t, enclave(identity), process.env.REQUESTER, [DOMAIN, 1]);
+	await asker.event((e) => e.event === 'matched', 'matched');
+	let number = 0;
+	asker.request = (operation, members = '') => {
+		const reply = asker.event((e) => e.event === 'reply', `a reply to ${operation}`);
+		asker.tell(`request ${++number} ${operation} ${members}`);
+		return reply;
+	};
+	return asker;
+};
+
+test('an identity has the role that the file gives it: one that may view reads, and moves nothing', async (t) => {
+	const seen = await watched(t, 'looked-at');
+	const looker = controller(t, seen.session, enclave('looker'));
+	await looker.event((e) => e.event === 'matched', 'matched');
+	looker.tell('energy 1');
+	looker.tell('write on');
+	await daemon.log(/ event=dds_refused .*the role does not allow this/);
+	await daemon.log(/ event=dds_client .*role=view subject="CN=looker,O=Cautery"/);
+	assert.equal((await looker.ask('state')).has, true, 'it sees the state');
+	const observer = secured(t, enclave('looker'), process.env.OBSERVER, [DOMAIN, seen.session]);
+	await observer.event((e) => e.event === 'status', 'a status');
+	await observer.until((s) => s.deltas > 0 && s.refused === 0);
+	const asker = await requester(t, 'looker');
+	assert.equal((await asker.request('LIST')).code, 0);
+	assert.equal((await asker.request('PAUSE', `session=${seen.session}`)).status, 'forbidden');
+	assert.equal(seen.stream.tools[0].driver, 0);
+	// While it goes on writing, one that may operate drives.
+	await drives(controller(t, seen.session, enclave('worker')), seen);
+	await daemon.log(/ event=dds_client .*role=operate subject="CN=worker,O=Cautery"/);
+});
+
+test('only an identity with the role admin takes a tool from its driver', async (t) => {
+	const seen = await watched(t, 'taken');
+	const tool = { session: seen.session, tool: 'hook' };
+	await seen.client.call('tool.take_over', tool);
+	const take = `session=${seen.session} tool=hook driver=writer`;
+	for (const name of ['worker', 'chief']) {
+		const asker = await requester(t, name);
+		asker.tell(`writer ${seen.session}`);
+		await asker.event((e) => e.event === 'opened', 'a writer');
+		assert.equal((await asker.request('TAKE_OVER', take)).status, name === 'chief' ? '' : 'forbidden');
+	}
+	await seen.client.until(() => seen.stream.tools[0].driver !== seen.client.hello.client, 'the chief drives');
+});
+
 const start = (...flags) => spawnSync(process.env.CAUTERYD,
 	['--port', '0', '--store', join(folder, 'start.db'), '--scenes', process.env.SCENES, '--dds', '--dds-domain', DOMAIN,
 		...flags].map(String), { encoding: 'utf8', timeout: 60e3 });
@@ -124,6 +179,23 @@ test('the daemon says what is wrong with its DDS settings, and does not start', 
 	const mixed = start('--dds-security', enclave('mixed'));
 	assert.equal(mixed.status, 1);
 	assert.match(mixed.stderr, /no participant with this dds_security/);
+});
+
+test('the daemon says what is wrong with a file of roles, and does not start', () => {
+	const refuses = (text, reason) => {
+		const { status, stderr } = start('--dds-security', enclave('daemon'), '--dds-roles', rolesFile('wrong', text));
+		assert.equal(status, 1, stderr);
+		assert.match(stderr, reason);
+	};
+	refuses('king CN=worker,O=Cautery\n', /path="dds_roles" .*line 1: roles are view, operate, admin/);
+	refuses('# theirs\n\noperate worker\n', /line 3 is not `ROLE SUBJECT`/);
+	refuses('view CN=a\nadmin CN=a\n', /line 2: CN=a has a role already/);
+	const open = rolesFile('open', 'view CN=a\n');
+	chmodSync(open, 0o666);
+	assert.match(start('--dds-security', enclave('daemon'), '--dds-roles', open).stderr, /can be written by others/);
+	const alone = start('--dds-roles', open);
+	assert.equal(alone.status, 2);
+	assert.match(alone.stderr, /path="dds_roles" .*needs dds_security/);
 });
 
 test('with an identity a configuration of the network is taken without further words', async () => {
