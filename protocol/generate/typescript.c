@@ -160,9 +160,11 @@ static void write_lists(FILE *out)
 #define X(code, number, name) fprintf(out, "  %s: %d,\n", name, number);
 	CAU_SECTION_TABLE(X)
 #undef X
-	fputs("} as const;\n\n/** Words that frames tell by their number. */\nexport const TOOL_SHAPES "
-	      "= [",
-	      out);
+	fprintf(out,
+	        "} as const;\n\n/** A temperature in degC is leastC + stepC times what is sent. */\n"
+	        "export const TEMPERATURE = { leastC: %g, stepC: %g } as const;\n",
+	        CAU_TEMPERATURE_LEAST_C, CAU_TEMPERATURE_STEP_C);
+	fputs("\n/** Words that frames tell by their number. */\nexport const TOOL_SHAPES = [", out);
 #define X(code, name) fprintf(out, "'%s', ", name);
 	CAU_TOOL_SHAPE_TABLE(X)
 	fputs("] as const;\nexport const ENERGY_OFF_REASONS = [", out);

@@ -38,17 +38,18 @@ cau_status cau_frame_decoder_init(void *storage, size_t storage_bytes, const cau
 	*made = (cau_frame_decoder){.def = *def};
 	uint32_t *words = (uint32_t *)(void *)((uint8_t *)storage + struct_bytes());
 	memset(words, 0, 4 * cau_arrays_words(def));
-	for (int channel = 0; channel < ARRAY_COUNT; channel++) {
-		array_shape shape = cau_array_shape_of(def, channel);
-		made->arrays[channel] = words;
+	for (int array = 0; array < ARRAY_COUNT; array++) {
+		array_shape shape = cau_array_shape_of(def, array);
+		made->arrays[array] = words;
 		words += shape.count * shape.components;
 	}
 	made->scratch = (uint8_t *)words;
-	made->state.quantised = (const int32_t *)made->arrays[CAU_CHANNEL_INDEX_POSITIONS];
-	made->state.face_mask = made->arrays[CAU_CHANNEL_INDEX_MASK];
-	made->state.exposure = made->arrays[CAU_CHANNEL_INDEX_EXPOSURE];
-	made->state.charring = made->arrays[CAU_CHANNEL_INDEX_CHARRING];
-	made->state.stress = made->arrays[CAU_CHANNEL_INDEX_STRESS];
+	made->state.quantised = (const int32_t *)made->arrays[ARRAY_POSITIONS];
+	made->state.face_mask = made->arrays[ARRAY_MASK];
+	made->state.exposure = made->arrays[ARRAY_EXPOSURE];
+	made->state.charring = made->arrays[ARRAY_CHARRING];
+	made->state.stress = made->arrays[ARRAY_STRESS];
+	made->state.temperature = made->arrays[ARRAY_TEMPERATURE];
 	made->state.tools = made->tools;
 	*decoder = made;
 	return CAU_OK;
@@ -113,23 +114,23 @@ static void forget(cau_frame_decoder *decoder)
 	decoder->state.statistics = (cau_stream_statistics){0};
 }
 
-static const char *read_array(cau_frame_decoder *decoder, const section_cursor *cursor, bool key)
+static const char *read_array(cau_frame_decoder *decoder, const section_cursor *cursor, int array,
+                              bool key)
 {
-	int channel = cursor->type - 1;
-	array_shape shape = cau_array_shape_of(&decoder->def, channel);
-	elements_target target = {.values = decoder->arrays[channel],
+	array_shape shape = cau_array_shape_of(&decoder->def, array);
+	elements_target target = {.values = decoder->arrays[array],
 	                          .count = shape.count,
 	                          .components = shape.components,
 	                          .bias = shape.bias,
 	                          .most = shape.most,
 	                          .may_refer_to_held = !key,
-	                          .all = key && channel == CAU_CHANNEL_INDEX_POSITIONS};
+	                          .all = key && array == ARRAY_POSITIONS};
 	size_t count;
 	const char *wrong = cau_elements_decode(cursor->payload, cursor->payload_bytes, &target,
 	                                        decoder->scratch, &count);
-	if (!wrong && channel == CAU_CHANNEL_INDEX_POSITIONS)
+	if (!wrong && array == ARRAY_POSITIONS)
 		decoder->state.moved_count = (int32_t)count;
-	if (!wrong && channel == CAU_CHANNEL_INDEX_MASK)
+	if (!wrong && array == ARRAY_MASK)
 		decoder->state.mask_changed_count = (int32_t)count;
 	return wrong;
 }
@@ -139,8 +140,11 @@ static const char *read_section(cau_frame_decoder *decoder, const section_cursor
 {
 	cau_stream_state *state = &decoder->state;
 	uint32_t channels = decoder->def.channels;
-	if (cursor->type <= ARRAY_COUNT)
-		return channels & 1u << (cursor->type - 1) ? read_array(decoder, cursor, key) : NULL;
+	int array = cau_array_of_section(cursor->type);
+	if (array < ARRAY_COUNT)
+		return channels & (uint32_t)cau_array_channel[array]
+		           ? read_array(decoder, cursor, array, key)
+		           : NULL;
 	if (cursor->type == CAU_SECTION_TOOL_NAMES && channels & CAU_CHANNEL_TOOLS)
 		return cau_tool_names_read(cursor->payload, cursor->payload_bytes, decoder->tools,
 		                           &state->tool_count);

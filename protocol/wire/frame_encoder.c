@@ -11,8 +11,8 @@
 size_t cau_frame_bytes_max(const cau_stream_def *def)
 {
 	size_t bytes = CAU_FRAME_HEADER_BYTES;
-	for (int channel = 0; channel < ARRAY_COUNT; channel++) {
-		array_shape shape = cau_array_shape_of(def, channel);
+	for (int array = 0; array < ARRAY_COUNT; array++) {
+		array_shape shape = cau_array_shape_of(def, array);
 		bytes += CAU_FRAME_SECTION_BYTES + cau_elements_bytes_max(shape.count, shape.components);
 	}
 	return bytes + (size_t)3 * CAU_FRAME_SECTION_BYTES + TOOL_NAMES_BYTES_MAX +
@@ -44,10 +44,10 @@ cau_status cau_frame_encoder_init(void *storage, size_t storage_bytes, const cau
 	cau_frame_encoder *made = storage;
 	*made = (cau_frame_encoder){.def = *def};
 	uint32_t *words = (uint32_t *)(void *)((uint8_t *)storage + struct_bytes());
-	for (int channel = 0; channel < ARRAY_COUNT; channel++) {
-		array_shape shape = cau_array_shape_of(def, channel);
-		made->held[channel] = words;
-		made->next[channel] = words + shape.count * shape.components;
+	for (int array = 0; array < ARRAY_COUNT; array++) {
+		array_shape shape = cau_array_shape_of(def, array);
+		made->held[array] = words;
+		made->next[array] = words + shape.count * shape.components;
 		words += 2 * shape.count * shape.components;
 	}
 	made->scratch = (uint8_t *)words;
@@ -93,6 +93,7 @@ static cau_status check_sample(const cau_frame_encoder *encoder, const cau_strea
 		{CAU_CHANNEL_CHARRING, sample->charring, "charring"},
 		{CAU_CHANNEL_STRESS, sample->stress, "stress"},
 		{CAU_CHANNEL_STATISTICS, sample->statistics, "statistics"},
+		{CAU_CHANNEL_TEMPERATURE, sample->temperature, "temperature"},
 	};
 	for (size_t i = 0; i < sizeof needed / sizeof *needed; i++) {
 		if (wants(encoder, needed[i].channel) && !needed[i].array)
@@ -123,8 +124,8 @@ static cau_status quantise_positions(cau_frame_encoder *encoder, const cau_strea
                                      cau_error *error)
 {
 	const cau_stream_def *def = &encoder->def;
-	uint32_t *next = encoder->next[CAU_CHANNEL_INDEX_POSITIONS];
-	const uint32_t *held = encoder->held[CAU_CHANNEL_INDEX_POSITIONS];
+	uint32_t *next = encoder->next[ARRAY_POSITIONS];
+	const uint32_t *held = encoder->held[ARRAY_POSITIONS];
 	double steps_per_m = 1.0 / def->step_m;
 	for (int32_t vertex = 0; vertex < def->vertex_count; vertex++) {
 		size_t first = 3 * (size_t)vertex;
@@ -144,18 +145,39 @@ static cau_status quantise_positions(cau_frame_encoder *encoder, const cau_strea
 	return CAU_OK;
 }
 
-// Nearest whole number of 1/scale, saturated; what is not a number becomes 0.
+// How a scalar is told: in steps from its least value, `most` of them at most.
+typedef struct scalar_scale {
+	double least, steps_per_unit, most;
+} scalar_scale;
+
+// The nearest step, saturated; what is not a number becomes 0.
 static void quantise_scalar(cau_frame_encoder *encoder, const cau_stream_sample *sample,
-                            int channel, const float *values, double scale, double most)
+                            array_index array, const float *values, scalar_scale scale)
 {
-	uint32_t *next = encoder->next[channel];
+	uint32_t *next = encoder->next[array];
 	for (int32_t vertex = 0; vertex < encoder->def.vertex_count; vertex++) {
-		double steps = (double)values[vertex] * scale;
+		double steps = ((double)values[vertex] - scale.least) * scale.steps_per_unit;
 		steps = steps > 0.0 ? steps : 0.0;
-		steps = steps < most ? steps : most;
-		next[vertex] = is_kept(encoder, sample, vertex) ? encoder->held[channel][vertex]
+		steps = steps < scale.most ? steps : scale.most;
+		next[vertex] = is_kept(encoder, sample, vertex) ? encoder->held[array][vertex]
 		                                                : (uint32_t)lrint(steps);
 	}
+}
+
+static void take_scalars(cau_frame_encoder *encoder, const cau_stream_sample *sample)
+{
+	const scalar_scale share = {0.0, 255.0, 255.0};
+	const scalar_scale stress = {0.0, 1.0 / encoder->def.stress_step_pa, 65535.0};
+	const scalar_scale temperature = {CAU_TEMPERATURE_LEAST_C, 1.0 / CAU_TEMPERATURE_STEP_C,
+	                                  65535.0};
+	if (wants(encoder, CAU_CHANNEL_EXPOSURE))
+		quantise_scalar(encoder, sample, ARRAY_EXPOSURE, sample->exposure, share);
+	if (wants(encoder, CAU_CHANNEL_CHARRING))
+		quantise_scalar(encoder, sample, ARRAY_CHARRING, sample->charring, share);
+	if (wants(encoder, CAU_CHANNEL_STRESS))
+		quantise_scalar(encoder, sample, ARRAY_STRESS, sample->stress, stress);
+	if (wants(encoder, CAU_CHANNEL_TEMPERATURE))
+		quantise_scalar(encoder, sample, ARRAY_TEMPERATURE, sample->temperature, temperature);
 }
 
 static cau_status take_arrays(cau_frame_encoder *encoder, const cau_stream_sample *sample,
@@ -167,17 +189,9 @@ static cau_status take_arrays(cau_frame_encoder *encoder, const cau_stream_sampl
 			return status;
 	}
 	if (wants(encoder, CAU_CHANNEL_MASK))
-		memcpy(encoder->next[CAU_CHANNEL_INDEX_MASK], sample->face_mask,
-		       4 * cau_array_shape_of(&encoder->def, CAU_CHANNEL_INDEX_MASK).count);
-	if (wants(encoder, CAU_CHANNEL_EXPOSURE))
-		quantise_scalar(encoder, sample, CAU_CHANNEL_INDEX_EXPOSURE, sample->exposure, 255.0,
-		                255.0);
-	if (wants(encoder, CAU_CHANNEL_CHARRING))
-		quantise_scalar(encoder, sample, CAU_CHANNEL_INDEX_CHARRING, sample->charring, 255.0,
-		                255.0);
-	if (wants(encoder, CAU_CHANNEL_STRESS))
-		quantise_scalar(encoder, sample, CAU_CHANNEL_INDEX_STRESS, sample->stress,
-		                1.0 / encoder->def.stress_step_pa, 65535.0);
+		memcpy(encoder->next[ARRAY_MASK], sample->face_mask,
+		       4 * cau_array_shape_of(&encoder->def, ARRAY_MASK).count);
+	take_scalars(encoder, sample);
 	return CAU_OK;
 }
 
@@ -221,32 +235,40 @@ static void end_section(frame_writer *writer, cau_section type, size_t payload_b
 	writer->section_count++;
 }
 
-static void write_key_arrays(const cau_frame_encoder *encoder, frame_writer *writer)
+// Arrays whose sections come before the records, and those that come after them.
+typedef struct array_range {
+	int first, end;
+} array_range;
+static const array_range before_records = {0, ARRAY_TEMPERATURE};
+static const array_range after_records = {ARRAY_TEMPERATURE, ARRAY_COUNT};
+
+static void write_key_arrays(const cau_frame_encoder *encoder, array_range range,
+                             frame_writer *writer)
 {
-	for (int channel = 0; channel < ARRAY_COUNT; channel++) {
-		array_shape shape = cau_array_shape_of(&encoder->def, channel);
-		bool positions = channel == CAU_CHANNEL_INDEX_POSITIONS;
-		if (!wants(encoder, (cau_channel)(1 << channel)))
+	for (int array = range.first; array < range.end; array++) {
+		array_shape shape = cau_array_shape_of(&encoder->def, array);
+		bool positions = array == ARRAY_POSITIONS;
+		if (!wants(encoder, cau_array_channel[array]))
 			continue;
-		elements_source source = {.now = encoder->held[channel],
+		elements_source source = {.now = encoder->held[array],
 		                          .count = shape.count,
 		                          .components = shape.components,
 		                          .reference = positions ? ELEMENTS_PREVIOUS : ELEMENTS_NONE,
 		                          .all = positions};
-		end_section(writer, (cau_section)(channel + 1),
+		end_section(writer, cau_array_section[array],
 		            cau_elements_encode(&source, encoder->scratch, section_payload(writer), NULL));
 	}
 }
 
 // From the arrays of `base` to what is held.
-static void write_delta_arrays(const cau_frame_encoder *encoder, uint32_t *const base[ARRAY_COUNT],
-                               frame_writer *writer)
+static void write_delta_arrays(const cau_frame_encoder *encoder, array_range range,
+                               uint32_t *const base[ARRAY_COUNT], frame_writer *writer)
 {
-	for (int channel = 0; channel < ARRAY_COUNT; channel++) {
-		array_shape shape = cau_array_shape_of(&encoder->def, channel);
-		bool mask = channel == CAU_CHANNEL_INDEX_MASK;
-		elements_source source = {.now = encoder->held[channel],
-		                          .held = base[channel],
+	for (int array = range.first; array < range.end; array++) {
+		array_shape shape = cau_array_shape_of(&encoder->def, array);
+		bool mask = array == ARRAY_MASK;
+		elements_source source = {.now = encoder->held[array],
+		                          .held = base[array],
 		                          .count = shape.count,
 		                          .components = shape.components,
 		                          .reference = mask ? ELEMENTS_NONE : ELEMENTS_HELD};
@@ -254,7 +276,7 @@ static void write_delta_arrays(const cau_frame_encoder *encoder, uint32_t *const
 		size_t bytes =
 			cau_elements_encode(&source, encoder->scratch, section_payload(writer), &written);
 		if (written > 0)
-			end_section(writer, (cau_section)(channel + 1), bytes);
+			end_section(writer, cau_array_section[array], bytes);
 	}
 }
 
@@ -303,8 +325,9 @@ static frame_writer begin_frame(void *bytes)
 static size_t write_key(const cau_frame_encoder *encoder, void *bytes)
 {
 	frame_writer writer = begin_frame(bytes);
-	write_key_arrays(encoder, &writer);
+	write_key_arrays(encoder, before_records, &writer);
 	write_records(encoder, &writer, true);
+	write_key_arrays(encoder, after_records, &writer);
 	return end_frame(encoder, &writer, CAU_FRAME_KEY, encoder->header.sequence);
 }
 
@@ -312,17 +335,18 @@ size_t cau_encoder_write_delta(const cau_frame_encoder *encoder, uint32_t *const
                                uint64_t base_sequence, bool names, void *bytes)
 {
 	frame_writer writer = begin_frame(bytes);
-	write_delta_arrays(encoder, base, &writer);
+	write_delta_arrays(encoder, before_records, base, &writer);
 	write_records(encoder, &writer, names);
+	write_delta_arrays(encoder, after_records, base, &writer);
 	return end_frame(encoder, &writer, CAU_FRAME_DELTA, base_sequence);
 }
 
 static void advance(cau_frame_encoder *encoder, const cau_stream_sample *sample)
 {
-	for (int channel = 0; channel < ARRAY_COUNT; channel++) {
-		uint32_t *before = encoder->held[channel];
-		encoder->held[channel] = encoder->next[channel];
-		encoder->next[channel] = before;
+	for (int array = 0; array < ARRAY_COUNT; array++) {
+		uint32_t *before = encoder->held[array];
+		encoder->held[array] = encoder->next[array];
+		encoder->next[array] = before;
 	}
 	encoder->header.sequence++;
 	encoder->header.tick = sample->tick;

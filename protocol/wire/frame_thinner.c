@@ -30,9 +30,9 @@ cau_status cau_frame_thinner_init(void *storage, size_t storage_bytes,
 	cau_frame_thinner *made = storage;
 	*made = (cau_frame_thinner){.encoder = encoder};
 	uint32_t *words = (uint32_t *)(void *)((uint8_t *)storage + struct_bytes());
-	for (int channel = 0; channel < ARRAY_COUNT; channel++) {
-		array_shape shape = cau_array_shape_of(&encoder->def, channel);
-		made->base[channel] = words;
+	for (int array = 0; array < ARRAY_COUNT; array++) {
+		array_shape shape = cau_array_shape_of(&encoder->def, array);
+		made->base[array] = words;
 		words += shape.count * shape.components;
 	}
 	*thinner = made;
@@ -45,9 +45,9 @@ static void keep(cau_frame_thinner *thinner)
 	thinner->epoch = encoder->header.epoch;
 	thinner->sequence = encoder->header.sequence;
 	thinner->tools = encoder->tools;
-	for (int channel = 0; channel < ARRAY_COUNT; channel++) {
-		array_shape shape = cau_array_shape_of(&encoder->def, channel);
-		memcpy(thinner->base[channel], encoder->held[channel],
+	for (int array = 0; array < ARRAY_COUNT; array++) {
+		array_shape shape = cau_array_shape_of(&encoder->def, array);
+		memcpy(thinner->base[array], encoder->held[array],
 		       sizeof(uint32_t) * shape.count * shape.components);
 	}
 }

@@ -6,7 +6,8 @@
 cau_stream_def cau_default_stream_def(void)
 {
 	return (cau_stream_def){
-		.channels = CAU_CHANNEL_ALL & ~(uint32_t)(CAU_CHANNEL_STRESS | CAU_CHANNEL_STATISTICS),
+		.channels = CAU_CHANNEL_ALL & ~(uint32_t)(CAU_CHANNEL_STRESS | CAU_CHANNEL_STATISTICS |
+	                                              CAU_CHANNEL_TEMPERATURE),
 		.step_m = 5e-5,
 		.stress_step_pa = 10.0,
 	};

@@ -219,6 +219,7 @@ static void fill_sample(cau_hosted *h, published *p)
 		.exposure = p->frame.exposure,
 		.charring = p->frame.exposure,
 		.stress = p->frame.stress,
+		.temperature = p->frame.temperature,
 		.tool_count = p->frame.tool_count,
 		.tools = p->tools,
 		.statistics = &p->statistics,
@@ -389,6 +390,8 @@ void cau_apply_join(cau_hosted *h, cau_order *order)
 	cau_stream *stream = NULL;
 	if (order->as.join.channels & CAU_CHANNEL_STRESS)
 		cau_session_set_stress(h->core, true);
+	if (order->as.join.channels & CAU_CHANNEL_TEMPERATURE)
+		cau_session_set_temperature(h->core, true);
 	if (take_stream(h, order, &stream, &error)) {
 		cau_answer_fail(order, &error, 0);
 		return;

@@ -70,6 +70,7 @@ static int write_state(const char *folder, int number, const cau_frame_decoder *
 		{state->exposure, 4 * vertices},
 		{state->charring, 4 * vertices},
 		{state->stress, 4 * vertices},
+		{state->temperature, 4 * vertices},
 	};
 	int failed = 0;
 	for (size_t i = 0; i < sizeof parts / sizeof parts[0] && !failed; i++)

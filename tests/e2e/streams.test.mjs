@@ -133,6 +133,39 @@ test('profiles: rate, channels and step are what was asked for', async () => {
 	await Promise.all([client.close(), other.close()]);
 });
 
+const celsius = (stream, vertex) => stream.temperature[vertex] / 4 - 20;
+
+function drawnVertices(stream) {
+	const drawn = new Set();
+	for (let f = 0; f < stream.description.face_count; f++)
+		if (!stream.isRemoved(f))
+			stream.faces.subarray(3 * f, 3 * f + 3).forEach((v) => drawn.add(v));
+	return [...drawn];
+}
+
+test('temperature is high at the hot tool and the body\'s elsewhere, for late joiners too', async () => {
+	const client = await daemon.connect(), other = await daemon.connect();
+	const session = await smallSession(client, 'heat', { paused: true });
+	const params = { rate_hz: 1000, channels: ['positions', 'mask', 'tools', 'temperature'] };
+	const stream = await client.join(session, params); // nothing has been stepped yet
+	const all = [...stream.temperature.keys()];
+	assert.ok(all.every((v) => celsius(stream, v) === 37));
+	const cut = await cutMiddle(client, session, 60);
+	await client.until(() => stream.tick === cut.tick, 'the cut');
+	const tip = stream.tools[0].position, drawn = drawnVertices(stream);
+	const far = drawn.filter((v) => Math.hypot(...stream.position(v).map((x, c) => x - tip[c])) > 0.03);
+	assert.ok(far.length > 200 && far.every((v) => celsius(stream, v) === 37));
+	const hottest = Math.max(...drawn.map((v) => celsius(stream, v)));
+	assert.ok(hottest > 60 && hottest <= 170, `${hottest} degC`);
+	const late = await other.join(session, params);
+	assert.deepEqual(late.temperature, stream.temperature);
+	const { epoch } = stream;
+	await client.call('session.rewind', { session, tick: 0 });
+	await client.until(() => stream.epoch !== epoch, 'the state of tick 0');
+	assert.ok(all.every((v) => celsius(stream, v) === 37));
+	await Promise.all([client.close(), other.close()]);
+});
+
 test('after leaving no frame comes', async () => {
 	const client = await daemon.connect();
 	const session = await smallSession(client, 'leave');

@@ -45,6 +45,7 @@ typedef enum cau_frame_kind {
 	X(TOOL_NAMES, 6, "tool_names")                                                                 \
 	X(TOOLS, 7, "tools")                                                                           \
 	X(STATISTICS, 8, "statistics")                                                                 \
+	X(TEMPERATURE, 9, "temperature")                                                               \
 	X(FACES, 16, "faces")                                                                          \
 	X(FACE_LAYERS, 17, "face_layers")                                                              \
 	X(TEXTURE, 18, "texture")                                                                      \

@@ -13,13 +13,14 @@
 
 // Channels that a subscriber chooses: code, wire name. The order gives the bits.
 #define CAU_CHANNEL_TABLE(X)                                                                       \
-	X(POSITIONS, "positions")   /* vertex positions; in a delta the moved and visible ones */      \
-	X(MASK, "mask")             /* bits of faces that are not drawn */                             \
-	X(EXPOSURE, "exposure")     /* heat exposure over ignition of each vertex, 0 to 1 in 1/255 */  \
-	X(CHARRING, "charring")     /* char of each vertex, 0 to 1 in 1/255 */                         \
-	X(STRESS, "stress")         /* von Mises stress of each vertex in steps of stress_step_pa */   \
-	X(TOOLS, "tools")           /* pose, driver, force, temperature and energy of every tool */    \
-	X(STATISTICS, "statistics") /* cost and condition of the last step */
+	X(POSITIONS, "positions")     /* vertex positions; in a delta the moved and visible ones */    \
+	X(MASK, "mask")               /* bits of faces that are not drawn */                           \
+	X(EXPOSURE, "exposure")       /* exposure over ignition of each vertex, 0 to 1 in 1/255 */     \
+	X(CHARRING, "charring")       /* char of each vertex, 0 to 1 in 1/255 */                       \
+	X(STRESS, "stress")           /* von Mises stress of each vertex in steps of stress_step_pa */ \
+	X(TOOLS, "tools")             /* pose, driver, force, temperature and energy of every tool */  \
+	X(STATISTICS, "statistics")   /* cost and condition of the last step */                        \
+	X(TEMPERATURE, "temperature") /* of each vertex, in steps from CAU_TEMPERATURE_LEAST_C */
 
 #define X(code, name) CAU_CHANNEL_INDEX_##code,
 typedef enum cau_channel_index { CAU_CHANNEL_TABLE(X) CAU_CHANNEL_COUNT } cau_channel_index;
@@ -35,6 +36,11 @@ enum {
 	CAU_STREAM_ELEMENTS_MAX = 1 << 24, // vertices, and faces
 	CAU_STREAM_STAGES = 8,             // of a step, see CAU_STAGE_TABLE in the README
 };
+
+// A temperature in degC is CAU_TEMPERATURE_LEAST_C + CAU_TEMPERATURE_STEP_C times what is sent,
+// which saturates at 0 and 65535: below the coldest body and above any tool.
+#define CAU_TEMPERATURE_LEAST_C (-20.0)
+#define CAU_TEMPERATURE_STEP_C 0.25
 
 // Flags in a frame's header
 enum {
@@ -54,7 +60,8 @@ typedef struct cau_stream_def {
 	double stress_step_pa; // 1e-3 to 1e9; stress saturates at 65535 steps
 } cau_stream_def;
 
-// All channels but stress and statistics, 0.05 mm, 10 Pa, origin 0; counts and numbers zero.
+// All channels but stress, statistics and temperature, 0.05 mm, 10 Pa, origin 0; counts and numbers
+// zero.
 cau_stream_def cau_default_stream_def(void);
 cau_status cau_stream_def_check(const cau_stream_def *def, cau_error *error);
 
@@ -111,6 +118,7 @@ typedef struct cau_stream_sample {
 	const float *exposure;         // (vertex_count), 0 to 1
 	const float *charring;         // (vertex_count), 0 to 1
 	const float *stress;           // Pa, (vertex_count)
+	const float *temperature;      // degC, (vertex_count)
 	int32_t tool_count;            // at most CAU_MAX_TOOLS
 	const cau_stream_tool *tools;
 	const cau_stream_statistics *statistics;
@@ -125,13 +133,14 @@ typedef struct cau_stream_state {
 	double time_s;
 	uint64_t published_us;
 	uint16_t flags;
-	const int32_t *quantised;   // steps from the origin, (vertex_count x 3)
-	const uint32_t *face_mask;  // ((face_count + 31) / 32)
-	const uint32_t *exposure;   // (vertex_count), 255: 1
-	const uint32_t *charring;   // (vertex_count), 255: 1
-	const uint32_t *stress;     // stress_step_pa, (vertex_count)
-	int32_t moved_count;        // vertices that the last frame carried
-	int32_t mask_changed_count; // mask words that the last frame carried
+	const int32_t *quantised;    // steps from the origin, (vertex_count x 3)
+	const uint32_t *face_mask;   // ((face_count + 31) / 32)
+	const uint32_t *exposure;    // (vertex_count), 255: 1
+	const uint32_t *charring;    // (vertex_count), 255: 1
+	const uint32_t *stress;      // stress_step_pa, (vertex_count)
+	const uint32_t *temperature; // CAU_TEMPERATURE_STEP_C, (vertex_count)
+	int32_t moved_count;         // vertices that the last frame carried
+	int32_t mask_changed_count;  // mask words that the last frame carried
 	int32_t tool_count;
 	const cau_stream_tool *tools;
 	cau_stream_statistics statistics;

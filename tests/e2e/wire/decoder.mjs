@@ -162,6 +162,7 @@ export class Decoder {
 		this.exposure = new Uint8Array(vertices);
 		this.charring = new Uint8Array(vertices);
 		this.stress = new Uint16Array(vertices);
+		this.temperature = new Uint16Array(vertices);
 		this.faces = new Int32Array(3 * faces);
 		this.faceLayers = new Uint8Array(faces);
 		this.texture = new Uint32Array(6 * faces);
@@ -187,7 +188,7 @@ export class Decoder {
 			(!this.synced || head.epoch !== this.epoch || head.base !== this.sequence))
 			return 'skipped';
 		if (head.kind === KEY) {
-			for (const array of [this.quantised, this.mask, this.exposure, this.charring, this.stress])
+			for (const array of [this.quantised, this.mask, this.exposure, this.charring, this.stress, this.temperature])
 				array.fill(0);
 			this.names = [];
 		}
@@ -216,7 +217,7 @@ export class Decoder {
 			this.stepCost = view.getFloat32(4, true);
 		} else {
 			const arrays = {
-				2: this.mask, 3: this.exposure, 4: this.charring, 5: this.stress,
+				2: this.mask, 3: this.exposure, 4: this.charring, 5: this.stress, 9: this.temperature,
 				16: this.faces, 17: this.faceLayers, 18: this.texture, 19: this.rest,
 			};
 			if (arrays[type])

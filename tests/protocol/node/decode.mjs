@@ -199,6 +199,7 @@ export class StreamDecoder {
     this.exposure = new Int32Array(vertexCount);
     this.charring = new Int32Array(vertexCount);
     this.stress = new Int32Array(vertexCount);
+    this.temperature = new Int32Array(vertexCount);
     this.toolNames = [];
     this.tools = [];
     this.codings = new Set();
@@ -219,7 +220,8 @@ export class StreamDecoder {
 
   readSection({ type, payload }, isDelta) {
     const arrays = [null, this.quantised, this.mask, this.exposure, this.charring, this.stress];
-    if (type <= 5) {
+    arrays[9] = this.temperature;
+    if (arrays[type]) {
       const count = readElements(payload, arrays[type], type === 1 ? 3 : 1, isDelta);
       if (!isDelta && type === 1 && count * 3 !== this.quantised.length) fail('a key frame lacks positions');
       this.widths.add(payload[0]);
@@ -239,7 +241,7 @@ export class StreamDecoder {
     const header = readHeader(bytes);
     this.checkPlace(header);
     if (header.kind === KEY) {
-      for (const array of [this.quantised, this.mask, this.exposure, this.charring, this.stress]) array.fill(0);
+      for (const array of [this.quantised, this.mask, this.exposure, this.charring, this.stress, this.temperature]) array.fill(0);
       this.toolNames = [];
       this.tools = [];
     }

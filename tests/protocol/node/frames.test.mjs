@@ -27,7 +27,7 @@ function compareState(decoder, state) {
   assert.equal(Number(decoder.sequence), state.sequence);
   assert.equal(Number(decoder.tick), state.tick);
   assert.equal(decoder.time, state.time);
-  for (const key of ['quantised', 'mask', 'exposure', 'charring', 'stress'])
+  for (const key of ['quantised', 'mask', 'exposure', 'charring', 'stress', 'temperature'])
     assert.deepEqual(decoder[key], Int32Array.from(state[key], (value) => value | 0), key);
   assert.equal(decoder.statistics.iterations, state.iterations);
   assert.equal(decoder.statistics.contacts, state.contacts);

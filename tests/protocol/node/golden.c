@@ -100,6 +100,7 @@ static void write_state(FILE *out, const cau_frame_decoder *decoder)
 	write_unsigned(out, "exposure", state->exposure, vertices);
 	write_unsigned(out, "charring", state->charring, vertices);
 	write_unsigned(out, "stress", state->stress, vertices);
+	write_unsigned(out, "temperature", state->temperature, vertices);
 	fprintf(out, ",\"iterations\":%u,\"contacts\":%u,\"tools\":[", state->statistics.iterations,
 	        state->statistics.contacts);
 	for (int32_t i = 0; i < state->tool_count; i++) {

@@ -96,6 +96,7 @@ void chain_assert_holds(const cau_frame_decoder *decoder, const tissue *shown)
 		assert_true(is_rounded(state->exposure[v], shown->exposure[v], 1.0 / 255.0));
 		assert_true(is_rounded(state->charring[v], shown->charring[v], 1.0 / 255.0));
 		assert_true(is_rounded(state->stress[v], shown->stress[v], 10.0));
+		assert_true(is_rounded(state->temperature[v], shown->temperature[v] + 20.0f, 0.25));
 	}
 	assert_memory_equal(state->face_mask, shown->mask, 4 * (size_t)((shown->face_count + 31) / 32));
 	assert_int_equal(state->tool_count, sample.tool_count);
@@ -116,6 +117,7 @@ void chain_assert_same(const cau_frame_decoder *a, const cau_frame_decoder *b)
 	assert_memory_equal(x->exposure, y->exposure, 4 * vertices);
 	assert_memory_equal(x->charring, y->charring, 4 * vertices);
 	assert_memory_equal(x->stress, y->stress, 4 * vertices);
+	assert_memory_equal(x->temperature, y->temperature, 4 * vertices);
 	assert_int_equal(x->tool_count, y->tool_count);
 	for (int32_t i = 0; i < x->tool_count; i++)
 		assert_tools_equal(&x->tools[i], &y->tools[i]);

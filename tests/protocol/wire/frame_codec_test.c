@@ -142,6 +142,12 @@ static void test_scalars_saturate(void **unused)
 	of.tissue.exposure[1] = -1.0f;
 	of.tissue.exposure[2] = NAN;
 	of.tissue.stress[0] = 1e30f;
+	of.tissue.temperature[0] = -20.2f;
+	of.tissue.temperature[1] = -19.7f;
+	of.tissue.temperature[2] = 37.0f;
+	of.tissue.temperature[3] = 170.1f;
+	of.tissue.temperature[4] = 1e6f;
+	of.tissue.temperature[5] = NAN;
 	chain_encode(&of);
 	assert_int_equal(cau_frame_decode(of.decoder, of.bytes, of.byte_count, NULL), CAU_OK);
 	const cau_stream_state *state = cau_frame_decoder_state(of.decoder);
@@ -149,6 +155,8 @@ static void test_scalars_saturate(void **unused)
 	assert_int_equal(state->exposure[1], 0);
 	assert_int_equal(state->exposure[2], 0);
 	assert_int_equal(state->stress[0], 65535);
+	const uint32_t temperature[] = {0, 1, 228, 760, 65535, 0}; // quarters of a degree from -20
+	assert_memory_equal(state->temperature, temperature, sizeof temperature);
 	chain_finish(&of);
 }
 
@@ -174,6 +182,7 @@ static void test_a_stream_carries_its_channels_alone(void **unused)
 			.exposure = channels & CAU_CHANNEL_EXPOSURE ? still.exposure : NULL,
 			.charring = channels & CAU_CHANNEL_CHARRING ? still.charring : NULL,
 			.stress = channels & CAU_CHANNEL_STRESS ? still.stress : NULL,
+			.temperature = channels & CAU_CHANNEL_TEMPERATURE ? still.temperature : NULL,
 			.tool_count = 1,
 			.tools = still.tools,
 			.statistics = &still.statistics};

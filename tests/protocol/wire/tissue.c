@@ -22,6 +22,7 @@ void tissue_init(tissue *made, int32_t columns, int32_t rows)
 		.exposure = calloc((size_t)vertices, sizeof(float)),
 		.charring = calloc((size_t)vertices, sizeof(float)),
 		.stress = calloc((size_t)vertices, sizeof(float)),
+		.temperature = calloc((size_t)vertices, sizeof(float)),
 	};
 	memset(made->visible, 1, (size_t)vertices);
 	tissue_move(made, 0, 0.0);
@@ -35,6 +36,7 @@ void tissue_finish(tissue *made)
 	free(made->exposure);
 	free(made->charring);
 	free(made->stress);
+	free(made->temperature);
 	*made = (tissue){0};
 }
 
@@ -48,6 +50,14 @@ static void move_vertex(tissue *moved, int32_t vertex, double time_s, double spe
 	at[1] = y + reach * cos(turn * time_s + 14 * y);
 	at[2] = reach * sin(turn * time_s + 250 * x * y + 30 * x) +
 	        noise * sin(90 * time_s + 17.7 * vertex);
+}
+
+// The body's, and around the cut's end, which goes a column a tick, that of a hook.
+static float temperature_at(const tissue *of, int32_t vertex, int32_t tick)
+{
+	int32_t across = vertex / of->columns - of->rows / 2, along = vertex % of->columns - tick;
+	int32_t squared = across * across + along * along;
+	return squared < 9 ? 170.0f - 14.8f * (float)squared : 37.0f;
 }
 
 static void move_tool(cau_stream_tool *tool, const char *name, int shape, int32_t tick)
@@ -81,6 +91,7 @@ void tissue_move(tissue *moved, int32_t tick, double speed_m_s)
 		moved->exposure[vertex] = near_cut ? 0.9f : 0.001f * (float)(tick % 100);
 		moved->charring[vertex] = near_cut ? 0.5f : 0.0f;
 		moved->stress[vertex] = (float)(1000.0 + 500.0 * sin(time_s + 0.1 * vertex));
+		moved->temperature[vertex] = temperature_at(moved, vertex, tick);
 	}
 	int32_t row_faces = 2 * (moved->columns - 1), first = row_faces * (moved->rows / 2);
 	for (int32_t face = first; face < first + tick && face < first + row_faces; face++)
@@ -117,6 +128,7 @@ cau_stream_sample tissue_sample(const tissue *of)
 		.exposure = of->exposure,
 		.charring = of->charring,
 		.stress = of->stress,
+		.temperature = of->temperature,
 		.tool_count = of->tick < 8 ? 1 : 2,
 		.tools = of->tools,
 		.statistics = &of->statistics,

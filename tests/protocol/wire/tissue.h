@@ -14,6 +14,7 @@ typedef struct tissue {
 	float *exposure;
 	float *charring;
 	float *stress;
+	float *temperature;
 	cau_stream_tool tools[2];
 	cau_stream_statistics statistics;
 } tissue;

@@ -47,6 +47,8 @@ struct cau_session {
 	uint8_t visible[VERTICES], alive[FACES];
 	cau_error refusals[QUEUE];
 	int32_t refusal_count;
+	bool temperature_on;
+	float temperature[VERTICES];
 };
 
 cau_session_def cau_default_session_def(void)
@@ -281,6 +283,7 @@ void cau_session_frame(const cau_session *s, cau_frame *frame)
 	                     .mask_changed = s->mask_changed,
 	                     .vertex_visible = s->visible,
 	                     .exposure = s->state.exposure,
+	                     .temperature = s->temperature_on ? s->temperature : NULL,
 	                     .tool_count = s->state.tool_count,
 	                     .tools = s->state.tools,
 	                     .statistics = {.elements_removed = s->state.removed}};
@@ -298,6 +301,13 @@ void cau_session_present(const cau_session *s, cau_scene_def *scene)
 		if (s->state.queue[i].kind == CAU_COMMAND_SET_GRAVITY)
 			memcpy(scene->gravity_m_s2, s->state.queue[i].as.gravity_m_s2,
 			       sizeof scene->gravity_m_s2);
+}
+
+void cau_session_set_temperature(cau_session *s, bool on)
+{
+	s->temperature_on = on;
+	for (int32_t v = 0; v < VERTICES; v++)
+		s->temperature[v] = 37;
 }
 
 void cau_session_set_stress(cau_session *s, bool on)

@@ -408,8 +408,8 @@ export interface SessionJoin {
   session?: string;
   /** frames a wall second at most; 60 by default (0.1 to 1000 1/s) */
   rate_hz?: number;
-  /** all but stress and statistics by default */
-  channels?: ('positions' | 'mask' | 'exposure' | 'charring' | 'stress' | 'tools' | 'statistics')[];
+  /** all but stress, statistics and temperature by default */
+  channels?: ('positions' | 'mask' | 'exposure' | 'charring' | 'stress' | 'tools' | 'statistics' | 'temperature')[];
   /** quantisation wanted; the server may choose a finer one; 5e-5 by default (1e-07 to 0.001 m) */
   step_m?: number;
 }
@@ -427,7 +427,7 @@ export interface StreamDescription {
   /** granted (0.1 to 1000 1/s) */
   rate_hz: number;
   /** granted */
-  channels: ('positions' | 'mask' | 'exposure' | 'charring' | 'stress' | 'tools' | 'statistics')[];
+  channels: ('positions' | 'mask' | 'exposure' | 'charring' | 'stress' | 'tools' | 'statistics' | 'temperature')[];
   /** of positions and scalars (0 to 16777216) */
   vertex_count: number;
   /** of mask and topology (0 to 16777216) */
@@ -1634,11 +1634,15 @@ export const SECTION = {
   tool_names: 6,
   tools: 7,
   statistics: 8,
+  temperature: 9,
   faces: 16,
   face_layers: 17,
   texture: 18,
   rest: 19,
 } as const;
+
+/** A temperature in degC is leastC + stepC times what is sent. */
+export const TEMPERATURE = { leastC: -20, stepC: 0.25 } as const;
 
 /** Words that frames tell by their number. */
 export const TOOL_SHAPES = ['sphere', 'capsule', 'hook', 'spatula', 'bipolar', 'shears', 'grasper', ] as const;
