@@ -73,3 +73,10 @@ void cau_hosted_refuse(cau_hosted *h, const char *tool, const cau_asker *asker, 
 	order.as.command.sequence = sequence;
 	cau_drive_refuse(h, &order, error);
 }
+
+void cau_hosted_count_refused(cau_hosted *h, uint64_t count)
+{
+	pthread_mutex_lock(&h->mutex);
+	h->counts.refused += count;
+	pthread_mutex_unlock(&h->mutex);
+}

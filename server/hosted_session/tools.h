@@ -23,3 +23,5 @@ void cau_hosted_feed_tool(cau_hosted *hosted, uint32_t client, const char *tool)
 // Counts motion that a transport refused before it became an order.
 void cau_hosted_refuse(cau_hosted *hosted, const char *tool, const cau_asker *asker,
                        uint64_t sequence, const cau_error *error);
+// Counts motion that a transport dropped unread: of no tool and of nobody known.
+void cau_hosted_count_refused(cau_hosted *hosted, uint64_t count);

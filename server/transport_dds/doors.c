@@ -19,7 +19,6 @@ cau_status cau_dds_open_topics(cau_dds *dds, cau_error *error)
 		const char *name;
 		const dds_topic_descriptor_t *type;
 	} topics[TOPIC_COUNT] = {
-		[TOPIC_COMMAND] = {"cautery/tool_command", &cautery_ToolCommand_desc},
 		[TOPIC_STATE] = {"cautery/tool_state", &cautery_ToolState_desc},
 		[TOPIC_STATUS] = {"cautery/session_status", &cautery_SessionStatus_desc},
 		[TOPIC_TOPOLOGY] = {"cautery/topology", &cautery_Frame_desc},
@@ -75,7 +74,7 @@ static void close_door(cau_dds *dds, cau_door *door)
 		dds_delete(reader);
 		cau_dds_prune(dds, reader, false);
 	}
-	if (door->topic > 0 && door->kind != DOOR_NATIVE)
+	if (door->topic > 0)
 		dds_delete(door->topic);
 	*door = (cau_door){0};
 }
@@ -133,19 +132,36 @@ static void open_writers(cau_dds *dds, cau_dds_session *session)
 	dds_delete_qos(chain);
 }
 
+static bool admit(const void *sample, void *keys)
+{
+	const cautery_ToolCommand *command = sample;
+	return cau_dds_keys_admit(keys, command->session, command->tool);
+}
+
+static bool open_native(cau_dds *dds, cau_dds_session *session)
+{
+	dds_qos_t *taken = reliable_qos(NATIVE_KEPT);
+	const struct dds_topic_filter filter = {
+		DDS_TOPIC_FILTER_SAMPLE_ARG, {.sample_arg = admit}, &session->keys};
+	dds_entity_t topic = dds_create_topic(dds->participant, &cautery_ToolCommand_desc,
+	                                      "cautery/tool_command", NULL, NULL);
+	session->native = (cau_door){.kind = DOOR_NATIVE, .topic = topic, .session = session};
+	bool done = topic > 0 && !dds_set_topic_filter_extended(topic, &filter) &&
+	            open_door(dds, &session->native, session->subscriber, taken);
+	dds_delete_qos(taken);
+	return done;
+}
+
 cau_status cau_dds_open_session(cau_dds *dds, cau_dds_session *session)
 {
 	const char *id = cau_hosted_id(session->hosted);
-	dds_qos_t *partition = dds_create_qos(), *taken = reliable_qos(NATIVE_KEPT);
+	dds_qos_t *partition = dds_create_qos();
 	dds_qset_partition1(partition, id);
 	session->subscriber = dds_create_subscriber(dds->participant, partition, NULL);
 	session->publisher = dds_create_publisher(dds->participant, partition, NULL);
-	session->native =
-		(cau_door){.kind = DOOR_NATIVE, .topic = dds->topics[TOPIC_COMMAND], .session = session};
-	bool done = open_door(dds, &session->native, session->subscriber, taken);
+	bool done = open_native(dds, session);
 	open_writers(dds, session);
 	dds_delete_qos(partition);
-	dds_delete_qos(taken);
 	if (!session->has_ros_name)
 		cau_log(CAU_LOG_WARNING, id, "dds_name_taken",
 		        "name=%s reason=\"another session has it: no ROS 2 topics\"", session->ros_name);

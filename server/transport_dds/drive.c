@@ -9,19 +9,37 @@
 #define CLAIM_S 0.1       // a claim in the queue is not repeated for this
 #define REFUSALS_TOLD_S 1 // between log lines
 
-void cau_dds_refuse(cau_dds_session *session, const char *tool, const cau_dds_client *client,
-                    uint64_t sequence, const cau_error *error)
+static void tell_refused(cau_dds_session *session, const char *tool, const char *client,
+                         const cau_error *error)
 {
 	double now_s = cau_monotonic_s();
-	cau_hosted_refuse(session->hosted, tool, &client->asker, sequence, error);
-	session->refused++;
 	if (now_s - session->refused_told_s < REFUSALS_TOLD_S)
 		return;
 	cau_log(CAU_LOG_INFO, cau_hosted_id(session->hosted), "dds_refused",
 	        "count=%lld tool=%s client=\"%s\" path=%s reason=\"%s\"", (long long)session->refused,
-	        tool, client->asker.name, error->path, error->reason);
+	        tool, client, error->path, error->reason);
 	session->refused = 0;
 	session->refused_told_s = now_s;
+}
+
+void cau_dds_refuse(cau_dds_session *session, const char *tool, const cau_dds_client *client,
+                    uint64_t sequence, const cau_error *error)
+{
+	cau_hosted_refuse(session->hosted, tool, &client->asker, sequence, error);
+	session->refused++;
+	tell_refused(session, tool, client->asker.name, error);
+}
+
+void cau_dds_count_dropped(cau_dds_session *session)
+{
+	cau_error error = {0};
+	uint64_t dropped = cau_dds_keys_take_dropped(&session->keys);
+	if (!dropped)
+		return;
+	cau_hosted_count_refused(session->hosted, dropped);
+	session->refused += (int64_t)dropped;
+	cau_fail(&error, CAU_LIMIT, "tool", "too many keys that are no tool of the session");
+	tell_refused(session, "", "", &error);
 }
 
 // ---- orders

@@ -14,6 +14,7 @@
 #include "log/log.h"
 #include "transport_dds/checks.h"
 #include "transport_dds/dds_transport.h"
+#include "transport_dds/keys.h"
 #include "transport_dds/roles.h"
 
 enum {
@@ -24,9 +25,9 @@ enum {
 	TOPIC_BYTES = 2 * CAU_NAME_BYTES + 32,
 };
 
-// Native topics, opened once for the participant; doors.c has their names.
+// Native topics, opened once for the participant; doors.c has their names. cautery/tool_command is
+// opened once for each session, since a topic has one filter.
 typedef enum cau_topic {
-	TOPIC_COMMAND,
 	TOPIC_STATE,
 	TOPIC_STATUS,
 	TOPIC_TOPOLOGY,
@@ -51,7 +52,7 @@ struct cau_dds_session;
 // A reader. `tool` is empty for DOOR_NATIVE, whose samples name theirs.
 typedef struct cau_door {
 	cau_door_kind kind;
-	dds_entity_t topic, reader; // 0: closed; the native topic is the participant's
+	dds_entity_t topic, reader; // 0: closed
 	dds_entity_t samples;       // the condition that some are there to take
 	struct cau_dds_session *session;
 	char tool[CAU_NAME_BYTES];
@@ -114,6 +115,7 @@ typedef struct cau_dds_session {
 	bool has_ros_name;
 	dds_entity_t subscriber, publisher; // of its partition
 	cau_door native;
+	cau_dds_keys keys; // what the native door lets in
 	dds_entity_t state_writer, status_writer;
 	cau_hosted_tool states[CAU_MAX_TOOLS]; // as they were last written
 	uint64_t states_tick;
@@ -207,8 +209,7 @@ void cau_dds_wake(cau_dds *dds, atomic_bool *why);
 
 // ---- sessions.c: follows the hub
 void cau_dds_follow(cau_dds *dds);
-// What is due by the clock, and what the mailbox brought. Returns when to look again, INFINITY:
-// when something happens.
+// What is due by the clock, and what the mailbox brought. Returns when to look again.
 double cau_dds_serve(cau_dds *dds);
 void cau_dds_close_sessions(cau_dds *dds);
 cau_dds_tool *cau_dds_find_tool(const cau_dds_session *session, const char *name); // NULL: none
@@ -262,6 +263,8 @@ void cau_dds_stop_tool(cau_dds *dds, cau_dds_session *session, const char *tool,
 void cau_dds_restart_tool(cau_dds *dds, const cau_dds_session *session, const char *tool);
 void cau_dds_refuse(cau_dds_session *session, const char *tool, const cau_dds_client *client,
                     uint64_t sequence, const cau_error *error);
+// Counts what the native door did not let in.
+void cau_dds_count_dropped(cau_dds_session *session);
 
 // ---- native.c, ros2.c: samples
 void cau_dds_take_command(cau_dds *dds, cau_door *door, cau_dds_client *client, const void *sample);

@@ -10,6 +10,8 @@ static cau_status check(const cau_door *door, const cau_dds_hand *hand,
 {
 	if (strcmp(sample->session, cau_hosted_id(door->session->hosted)) != 0)
 		return cau_fail(error, CAU_BAD_VALUE, "session", "is not that of the partition");
+	if (!cau_dds_find_tool(door->session, sample->tool))
+		return cau_fail(error, CAU_NOT_FOUND, "tool", "there is no such tool");
 	if (!hand)
 		return cau_fail(error, CAU_LIMIT, "tool", "too many drivers");
 	return cau_motion_check_order(&hand->past, sample->sequence_number, sample->source_time_ns,
@@ -22,7 +24,8 @@ void cau_dds_take_command(cau_dds *dds, cau_door *door, cau_dds_client *client, 
 	cau_error error = {0};
 	cau_pose pose;
 	cau_dds_hand *hand = NULL;
-	if (strcmp(sample->session, cau_hosted_id(door->session->hosted)) == 0)
+	if (strcmp(sample->session, cau_hosted_id(door->session->hosted)) == 0 &&
+	    cau_dds_find_tool(door->session, sample->tool)) // made-up names get no hand
 		hand = cau_dds_hand_of(dds, client, door->session, sample->tool);
 	if (check(door, hand, sample, &error)) {
 		cau_dds_refuse(door->session, sample->tool, client, sample->sequence_number, &error);

@@ -6,6 +6,8 @@
 
 #include "transport_dds/internal.h"
 
+#define LOOK_EVERY_S 1 // what readers have dropped wakes nobody
+
 static cau_dds_session *find_session(cau_dds *dds, const cau_hosted *hosted)
 {
 	cau_dds_session *session = dds->sessions;
@@ -37,6 +39,7 @@ static void note_session(void *user, cau_hosted *hosted)
 	cau_dds_session *session = find_session(dds, hosted);
 	if (!session && (session = calloc(1, sizeof *session))) {
 		session->hosted = cau_hosted_share(hosted);
+		cau_dds_keys_init(&session->keys, cau_hosted_id(hosted));
 		ros_name(session->ros_name, cau_hosted_id(hosted));
 		session->has_ros_name = !name_taken(dds, session->ros_name);
 		session->next = dds->sessions;
@@ -50,6 +53,7 @@ static void forget_session(cau_dds *dds, cau_dds_session *session)
 {
 	cau_dds_drop_hands(dds, session, NULL);
 	cau_dds_close_session(dds, session);
+	cau_dds_keys_finish(&session->keys);
 	cau_hosted_release(session->hosted);
 	free(session);
 }
@@ -76,6 +80,16 @@ static void add_tool(cau_dds *dds, cau_dds_session *session, const char name[CAU
 	}
 }
 
+static void let_tools_in(cau_dds_session *session)
+{
+	const char *names[CAU_MAX_TOOLS];
+	int count = 0;
+	for (int i = 0; i < CAU_MAX_TOOLS; i++)
+		if (session->tools[i].used)
+			names[count++] = session->tools[i].name;
+	cau_dds_keys_set_tools(&session->keys, names, count);
+}
+
 static void follow_tools(cau_dds *dds, cau_dds_session *session, const cau_hosted_tool *tools,
                          int32_t count)
 {
@@ -94,6 +108,7 @@ static void follow_tools(cau_dds *dds, cau_dds_session *session, const cau_hoste
 	for (int32_t i = 0; i < count; i++)
 		if (!cau_dds_find_tool(session, tools[i].state.name))
 			add_tool(dds, session, tools[i].state.name);
+	let_tools_in(session);
 }
 
 static void follow_session(cau_dds *dds, cau_dds_session *session)
@@ -136,7 +151,7 @@ static void deliver(cau_dds *dds, cau_dds_post *post)
 
 double cau_dds_serve(cau_dds *dds)
 {
-	double look_s = INFINITY, now_s = cau_monotonic_s();
+	double now_s = cau_monotonic_s(), look_s = now_s + LOOK_EVERY_S;
 	for (cau_dds_post *post; (post = cau_dds_next_post(dds));) {
 		deliver(dds, post);
 		cau_dds_post_free(post);
@@ -144,6 +159,7 @@ double cau_dds_serve(cau_dds *dds)
 	for (cau_dds_session *s = dds->sessions; s; s = s->next) {
 		if (!s->subscriber)
 			continue;
+		cau_dds_count_dropped(s);
 		look_s = fmin(look_s, cau_dds_publish_status(s, now_s));
 		look_s = fmin(look_s, cau_dds_serve_frames(dds, s, now_s));
 	}

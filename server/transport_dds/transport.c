@@ -75,8 +75,6 @@ static void serve(cau_dds *dds, cau_door *door)
 
 static dds_duration_t patience(double look_s)
 {
-	if (isinf(look_s))
-		return DDS_INFINITY;
 	return (dds_duration_t)(1e9 * fmax(0, look_s - cau_monotonic_s()));
 }
 

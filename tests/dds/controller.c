@@ -9,11 +9,13 @@
 //     grasp 0|1      the level it writes             write on|off     silent, but alive
 //     once WHAT      one bad sample: nan infinite back huge stale leap session
 //     flood COUNT    so many NaN samples at once     storm RATE       so many bad samples a second
+//     strangers COUNT  so many samples, each of another made-up tool or session
 //     state          prints the newest tool state, soon
 // and by way of ros:
 //     command WORD   a state_command                  jaw RAD          a jaw/servo_jp
 //     crtk           prints the operating state, the jaw and the pose as ROS 2's topics tell them
-// On standard output it tells, one JSON object a line: matched, silent, state, changed, crtk.
+// On standard output it tells, one JSON object a line: matched, silent, strangers (all are
+// written), state, changed, crtk.
 #include <dds/dds.h>
 #include <math.h>
 #include <stdio.h>
@@ -30,6 +32,8 @@
 #define STORM_PERIOD_S 0.001
 #define SPEED_M_S 0.2
 
+enum { STRANGERS_SHARE = 500 }; // of one period
+
 typedef struct controller {
 	char session[NAME_BYTES], tool[NAME_BYTES];
 	bool ros, writing, energy, grasp, has_state, matched, state_asked;
@@ -42,6 +46,7 @@ typedef struct controller {
 	bool crtk_asked;
 	double storm_hz; // 0: writes good samples if any
 	uint64_t stormed;
+	long strangers, made_up; // to be written yet; written so far
 } controller;
 
 // ---- the wire
@@ -184,6 +189,24 @@ static void write_storm(controller *c)
 		write_bad(c, kinds[c->stormed++ % 3]);
 }
 
+// A share of the strangers; what the writer has no room for waits.
+static void write_strangers(controller *c)
+{
+	for (int left = STRANGERS_SHARE; left > 0 && c->strangers > 0; left--) {
+		cautery_ToolCommand sample = command_now(c);
+		char *name = c->made_up % 2 ? sample.tool : sample.session;
+		memcpy(sample.tool, c->tool, sizeof c->tool);
+		snprintf(name, NAME_BYTES, "made-up-%ld", c->made_up);
+		dds_return_t code = dds_write(c->command, &sample);
+		if (code == DDS_RETCODE_TIMEOUT)
+			return;
+		checked(code);
+		c->made_up++;
+		if (--c->strangers == 0)
+			printf("{\"event\":\"strangers\"}\n");
+	}
+}
+
 // ---- telling and being told
 // ---------------------------------------------------------------------------
 static void tell_state(const controller *c, const char *event)
@@ -239,6 +262,8 @@ static void obey(void *user, const char *line)
 		c->crtk_asked = true;
 	else if (strcmp(word, "storm") == 0)
 		c->storm_hz = atof(value);
+	else if (strcmp(word, "strangers") == 0)
+		c->strangers = atol(value);
 	else if (strcmp(word, "command") == 0)
 		crtk_command(&c->crtk, value);
 	else if (strcmp(word, "jaw") == 0)
@@ -262,6 +287,7 @@ static void run(controller *c)
 			crtk_read(&c->crtk);
 		if (clock_s(CLOCK_MONOTONIC) < next_s)
 			continue;
+		write_strangers(c);
 		next_s += c->storm_hz > 0 ? STORM_PERIOD_S : PERIOD_S;
 		if (c->state_asked)
 			tell_state(c, "state");

@@ -41,8 +41,8 @@ export class Controller {
 		});
 	}
 
-	ask(line, event) {
-		const answer = this.event((e) => e.event === event, event);
+	ask(line, event, seconds) {
+		const answer = this.event((e) => e.event === event, event, seconds);
 		this.tell(line);
 		return answer;
 	}

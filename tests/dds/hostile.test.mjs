@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Storms of bad samples: counted and refused, and the simulation does not feel them.
 import assert from 'node:assert/strict';
+import { readFileSync } from 'node:fs';
 import { after, before, test } from 'node:test';
 import { Controller } from './controller.mjs';
 import { DOMAIN } from './domain.mjs';
@@ -14,6 +15,10 @@ const TURNS = 5, WINDOW_STEPS = 60;
 // The storm's own two programs and the transport take time from the step's processor.
 const RATIO_MOST = 2, SLACK_S = 0.001;
 const AT_AIM_M = 1e-4;
+// An instance in Cyclone's tables takes some hundred bytes: so many would take tens of megabytes. With
+// a sanitizer memory that was given back stays in quarantine, so that its size says nothing.
+const SLOW = Boolean(process.env.E2E_SLOW);
+const MADE_UP_KEYS = SLOW ? 5000 : 100000, GROWTH_MOST_BYTES = 16e6;
 
 let daemon;
 before(async () => {
@@ -75,3 +80,39 @@ for (const via of ['native', 'ros'])
 		driver.tell(`aim ${aim.join(' ')}`);
 		await client.until(() => far(stream.tools[0].position, aim) < AT_AIM_M, 'it follows');
 	});
+
+const residentBytes = (process) =>
+	1024 * Number(/VmRSS:\s*(\d+)/.exec(readFileSync(`/proc/${process.pid}/status`, 'utf8'))[1]);
+
+test(`${MADE_UP_KEYS} made-up keys are counted and take no memory, and the driver goes on`, async (t) => {
+	const client = await daemon.connect({ hello: { client: 'admin' } });
+	const session = await smallSession(client, 'strangers');
+	t.after(async () => {
+		await Controller.killAll();
+		await client.call('session.destroy', { session });
+		await client.close();
+	});
+	const stream = await client.join(session);
+	const driver = await controller(session, 'native');
+	driver.tell('write on');
+	await driver.until((s) => s.driver_name.startsWith('dds '));
+	const driving = stream.tools[0].driver;
+	const stranger = await controller(session, 'native');
+	const refused = await daemon.metric('session_refused_total', session);
+	const some = MADE_UP_KEYS / 10; // after these every buffer on the way has its size
+	await stranger.ask(`strangers ${some}`, 'strangers');
+	const before = residentBytes(daemon.process);
+	await stranger.ask(`strangers ${MADE_UP_KEYS - some}`, 'strangers', 120);
+	const aim = [0.01, 0.01, 0.02];
+	driver.tell(`aim ${aim.join(' ')}`);
+	await client.until(() => far(stream.tools[0].position, aim) < AT_AIM_M, 'it follows');
+	while (await daemon.metric('session_refused_total', session) < refused + MADE_UP_KEYS)
+		await stranger.state();
+	const grown = residentBytes(daemon.process) - before;
+	t.diagnostic(`${(before / 1e6).toFixed(1)} MB, grown by ${(grown / 1e6).toFixed(1)} MB`);
+	assert.equal(await daemon.metric('session_refused_total', session), refused + MADE_UP_KEYS);
+	await daemon.log(new RegExp(`session=${session} event=dds_refused .*too many keys that are no tool`));
+	if (!SLOW)
+		assert.ok(grown < GROWTH_MOST_BYTES, `${grown} bytes`);
+	assert.equal(stream.tools[0].driver, driving);
+});
