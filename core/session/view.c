@@ -49,39 +49,6 @@ void cau_session_describe(const cau_session *session, cau_session_info *info)
 	describe_layers(session, info);
 }
 
-static cau_layer_def *find_layer(cau_scene_def *scene, const char *name)
-{
-	for (int32_t i = 0; i < scene->layer_count; ++i)
-		if (strcmp(scene->layers[i].name, name) == 0)
-			return &scene->layers[i];
-	return NULL;
-}
-
-void cau_session_present(const cau_session *session, cau_scene_def *scene)
-{
-	const cau_tissue *tissue = &session->tissue;
-	memcpy(scene->gravity_m_s2, session->scene->gravity_m_s2, sizeof scene->gravity_m_s2);
-	for (int32_t i = 0; i < tissue->layer_count; ++i) {
-		const cau_layer_def *now = &tissue->layer[i].def;
-		cau_layer_def *layer = find_layer(scene, now->name);
-		if (!layer)
-			continue;
-		memcpy(layer->sheet, now->sheet, sizeof layer->sheet);
-		memcpy(layer->fat, now->fat, sizeof layer->fat);
-		layer->link = now->link;
-	}
-	for (int32_t k = 0; k < session->command_count; ++k) {
-		const cau_command *command = &session->command[k];
-		if (command->kind == CAU_COMMAND_SET_GRAVITY)
-			memcpy(scene->gravity_m_s2, command->as.gravity_m_s2, sizeof scene->gravity_m_s2);
-		cau_layer_def *layer = command->kind == CAU_COMMAND_SET_MATERIAL
-		                           ? find_layer(scene, command->as.material.layer)
-		                           : NULL;
-		if (layer)
-			cau_layer_take_material(layer, command);
-	}
-}
-
 // Layer and texture of every face; fat faces take the layer of their first owner.
 cau_status cau_session_make_faces(cau_session *session, cau_error *error)
 {

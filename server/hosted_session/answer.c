@@ -99,21 +99,6 @@ static void describe_layers(const cau_hosted *h, cau_wire_layer_description *lay
 	}
 }
 
-// The scene with gravity, materials and tools as they are now.
-static void take_present(cau_hosted *h)
-{
-	cau_frame frame;
-	*h->present = *h->scene;
-	cau_session_present(h->core, h->present);
-	cau_session_frame(h->core, &frame);
-	h->present->tool_count = frame.tool_count;
-	for (int32_t i = 0; i < frame.tool_count; i++) {
-		h->present->tools[i] = frame.tools[i].definition;
-		memcpy(h->present->tools[i].name, frame.tools[i].name, sizeof h->present->tools[i].name);
-		h->present->tools[i].pose = frame.tools[i].pose;
-	}
-}
-
 char *cau_answer_description(cau_hosted *h, cau_method method, size_t *bytes, cau_error *error)
 {
 	cau_wire_layer_description layers[CAU_MAX_LAYERS];
@@ -135,7 +120,8 @@ char *cau_answer_description(cau_hosted *h, cau_method method, size_t *bytes, ca
 	for (int32_t i = 0; i < h->drive_count; i++)
 		cau_drive_describe(&h->drives[i], &drivers[i]);
 	pthread_mutex_unlock(&h->mutex);
-	take_present(h);
+	*h->present = *h->scene;
+	cau_session_present(h->core, h->present);
 	return cau_answer_text(method, &result, bytes, error);
 }
 

@@ -75,6 +75,9 @@ static void take_effect(cau_hosted *h, const cau_order *order)
 		cau_drive_remove(h, command->tool);
 		cau_answer_changed(h, CAU_CHANGE_TOOLS, order->asker.name);
 		break;
+	case CAU_COMMAND_TOOL_CONFIGURE:
+		cau_answer_changed(h, CAU_CHANGE_TOOLS, order->asker.name);
+		break;
 	case CAU_COMMAND_TOOL_ENERGIZE:
 		take_energy(h, order, drive);
 		break;

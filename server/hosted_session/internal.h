@@ -107,7 +107,7 @@ struct cau_hosted {
 
 	// worker
 	cau_scene_def *scene;   // as it was made
-	cau_scene_def *present; // room for a description: with the tools, gravity and materials of now
+	cau_scene_def *present; // room for a description
 	void *meshes;
 	size_t mesh_bytes;
 	cau_hosted_origin origin;

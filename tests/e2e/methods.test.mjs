@@ -48,6 +48,23 @@ test('the URL\'s session is meant when a message names none', async () => {
 	await own.close();
 });
 
+test('a tool that is changed is told at once, to everybody, while the session is paused', async () => {
+	const session = await smallSession(client, 'changed', { paused: true });
+	const other = await daemon.connect();
+	await other.join(session);
+	const { definition: { tools: [{ name, ...tool }] } } = await client.call('session.describe', { session });
+	delete tool.position_m;
+	delete tool.rotation;
+	await client.call('tool.configure', { ...tool, session, tool: name, temperature_c: 432 });
+	await other.until(() => other.notice('session.changed', (p) => p.summary.session === session && p.change === 'tools'), 'the news');
+	for (const one of [client, other]) {
+		const { definition } = await one.call('session.describe', { session });
+		assert.equal(definition.tools[0].temperature_c, 432);
+	}
+	await client.call('session.destroy', { session });
+	await other.close();
+});
+
 test('pause, step, resume, speed, reset', async () => {
 	const session = await smallSession(client, 'time');
 	const stream = await client.join(session);

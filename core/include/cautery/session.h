@@ -95,8 +95,9 @@ typedef struct cau_session_info {
 
 void cau_session_describe(const cau_session *session, cau_session_info *info);
 
-// Brings `scene`, a copy of the definition, up to date with what commands have changed: gravity and
-// materials, as they are in force once the queued commands have acted.
+// Brings `scene`, a copy of the definition, up to date with what commands have changed: gravity,
+// materials and tools, as they are in force once the queued commands have acted. Tools stand where
+// they are at this tick.
 void cau_session_present(const cau_session *session, cau_scene_def *scene);
 
 // ---- what a tick made ---------------------------------------------------------------------------

@@ -7,6 +7,7 @@ import { Daemon } from './daemon';
 import { launch, ViewerPage } from './viewer_page';
 
 const HOT_C = 900;
+const HOTTER_C = 950;
 
 describe('two pages on one session', () => {
   const daemon = new Daemon(['--demo', 'fascia']);
@@ -27,9 +28,18 @@ describe('two pages on one session', () => {
     await daemon.end();
   });
 
-  it('lets only the driver heat', async () => {
+  it('keeps what one is typing while the driver changes the tool', async () => {
     await driver.page.bringToFront();
     await driver.heatTool(HOT_C);
+    await watcher.page.getByRole('tab', { name: 'Tools' }).click();
+    await watcher.toolInput('friction').fill('0.35');
+    await driver.setTool('temperature_c', HOTTER_C);
+    await watcher.until((wanted) => window.cautery.tool?.temperature_c === wanted, HOTTER_C, 'the watcher knows');
+    expect(await watcher.toolInput('temperature_c').inputValue()).toBe(String(HOTTER_C));
+    expect(await watcher.toolInput('friction').inputValue()).toBe('0.35');
+  });
+
+  it('lets only the driver heat', async () => {
     await driver.grab([0, 0, 0]);
     expect(await driver.page.locator('#energy').isEnabled()).toBe(true);
     expect(await watcher.page.locator('#energy').isDisabled()).toBe(true);
@@ -75,8 +85,8 @@ describe('two pages on one session', () => {
     for (const page of [driver, watcher]) await page.until(() => window.cautery.paused, null, 'paused');
     const { tick } = await watcher.state();
     await driver.until((wanted) => window.cautery.tick === wanted, tick, 'the same tick');
-    // Frames may run ahead of the store; the notification is sent when the pause is in it.
-    await driver.until(() => document.querySelector('.session.here small')?.textContent?.includes('paused') === true, null, 'the pause is stored');
+    // Frames may run ahead of the store; the answer to the button's request comes when the pause is in it.
+    await watcher.until(() => document.querySelector('[aria-busy=true]') === null, null, 'the pause is stored');
     const before = await driver.state();
     await daemon.kill();
     await driver.until(() => window.cautery.link === 'lost', null, 'lost');

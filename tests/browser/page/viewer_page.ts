@@ -3,7 +3,7 @@
 import { mkdirSync } from 'node:fs';
 import { join } from 'node:path';
 
-import { chromium, type Browser, type BrowserContextOptions, type Page } from 'playwright-core';
+import { chromium, type Browser, type BrowserContextOptions, type Locator, type Page } from 'playwright-core';
 
 import type { Inspection } from '../../../clients/web/src/main';
 
@@ -53,9 +53,15 @@ export class ViewerPage {
   async until<A>(condition: (argument: A) => boolean, argument: A, what: string): Promise<void> {
     const end = Date.now() + PATIENCE_MS;
     while (!(await this.page.evaluate(condition as never, argument))) {
-      if (Date.now() > end) throw new Error(`never came true: ${what}; ${JSON.stringify(await this.state())}`);
+      if (Date.now() > end) throw new Error(`never came true: ${what}; ${await this.problems()}${JSON.stringify(await this.state())}`);
       await this.page.evaluate(() => new Promise(requestAnimationFrame));
     }
+  }
+
+  /** What the page says went wrong. */
+  async problems(): Promise<string> {
+    const said = await this.page.locator('.problem:visible, #notices:visible').allTextContents();
+    return said.filter((words) => words !== '').map((words) => `${words}; `).join('');
   }
 
   state(): Promise<Omit<Inspection, 'project'>> {
@@ -124,16 +130,26 @@ export class ViewerPage {
     await this.until((before) => window.cautery.picturesDrawn > before && window.cautery.idle, picturesDrawn, 'the nearer picture');
   }
 
-  /** Takes the tool and makes it hotter: a test that waits for tissue to take heat up would only wait. */
-  async heatTool(celsius: number): Promise<void> {
+  toolInput(name: string): Locator {
+    return this.page.locator(`#panel-tools input[name=${name}]`);
+  }
+
+  /** Gives the tool, which this page drives, another number. */
+  async setTool(name: 'temperature_c' | 'friction', value: number): Promise<void> {
     const { page } = this;
     await page.getByRole('tab', { name: 'Tools' }).click();
-    await page.locator('#take').click();
-    await this.until(() => window.cautery.driving, null, 'the tool is taken');
-    await page.locator('#panel-tools input[name=temperature_c]').fill(String(celsius));
+    await this.toolInput(name).fill(String(value));
     await page.locator('#panel-tools button', { hasText: 'Apply' }).click();
-    await this.until((wanted) => window.cautery.tool?.temperature_c === wanted, celsius, 'the daemon has the temperature');
+    await this.until(([member, wanted]) => window.cautery.tool?.[member] === wanted, [name, value] as const, `the daemon has ${name}`);
     await page.getByRole('tab', { name: 'Sessions' }).click();
+  }
+
+  /** Takes the tool and makes it hotter: a test that waits for tissue to take heat up would only wait. */
+  async heatTool(celsius: number): Promise<void> {
+    await this.page.getByRole('tab', { name: 'Tools' }).click();
+    await this.page.locator('#take').click();
+    await this.until(() => window.cautery.driving, null, 'the tool is taken');
+    await this.setTool('temperature_c', celsius);
   }
 
   async screenshot(name: string): Promise<void> {
@@ -142,26 +158,31 @@ export class ViewerPage {
     await this.page.screenshot({ path: join(folder, `${name}.png`) });
   }
 
-  /** Mean colour of a square of the page, 0 to 255. */
-  async colourAt(point: [number, number, number], half = 5): Promise<[number, number, number]> {
-    const { x, y } = await this.project(point);
-    const clip = { x: Math.round(x) - half, y: Math.round(y) - half, width: 2 * half, height: 2 * half };
-    const png = (await this.page.screenshot({ clip })).toString('base64');
-    return this.page.evaluate(async (data) => {
+  /** Mean colours, 0 to 255, of small squares of the page at points of the tissue, all of one picture. */
+  async coloursAt(points: readonly [number, number, number][], half = 2): Promise<Colour[]> {
+    const places = await Promise.all(points.map((point) => this.project(point)));
+    const png = (await this.page.screenshot()).toString('base64');
+    return this.page.evaluate(async ({ data, places, half }) => {
       const image = new Image();
       image.src = `data:image/png;base64,${data}`;
       await image.decode();
       const canvas = new OffscreenCanvas(image.width, image.height);
-      const context = canvas.getContext('2d')!;
+      const context = canvas.getContext('2d', { willReadFrequently: true })!;
       context.drawImage(image, 0, 0);
-      const { data: bytes } = context.getImageData(0, 0, image.width, image.height);
-      const sum = [0, 0, 0];
-      for (let i = 0; i < bytes.length; i++) if (i % 4 < 3) sum[i % 4] += bytes[i];
-      return sum.map((value) => (4 * value) / bytes.length) as [number, number, number];
-    }, png);
+      return places.map(({ x, y }) => {
+        const { data: bytes } = context.getImageData(Math.round(x) - half, Math.round(y) - half, 2 * half, 2 * half);
+        const sum = [0, 0, 0];
+        for (let i = 0; i < bytes.length; i++) if (i % 4 < 3) sum[i % 4] += bytes[i];
+        return sum.map((value) => (4 * value) / bytes.length) as [number, number, number];
+      });
+    }, { data: png, places, half });
   }
 }
 
-export function colourDistance(a: readonly number[], b: readonly number[]): number {
-  return Math.hypot(...a.map((value, i) => value - b[i]));
+export type Colour = [number, number, number];
+
+/** Share of the colours that another picture has differently. */
+export function shareChanged(before: readonly Colour[], after: readonly Colour[], distance: number): number {
+  const changed = before.filter((colour, i) => Math.hypot(...colour.map((value, c) => value - after[i][c])) > distance);
+  return changed.length / before.length;
 }

@@ -442,55 +442,6 @@ static void pinned_on_the_way(void **state)
 	free(scene);
 }
 
-static double thickness_of(const cau_session *session, const cau_scene_def *scene,
-                           double *gravity_z)
-{
-	static cau_scene_def present; // too big for a stack
-	present = *scene;
-	cau_session_present(session, &present);
-	*gravity_z = present.gravity_m_s2[2];
-	assert_string_equal(present.layers[0].name, "fascia");
-	return present.layers[0].sheet[0].thickness_m;
-}
-
-// The definition as it is: queued changes count, and a snapshot brings back those that it has.
-static void gravity_and_materials_of_now(void **state)
-{
-	(void)state;
-	cau_scene_def *scene = small_scene();
-	cau_session *session = stage_open(scene, 1), *other = stage_open(scene, 1);
-	double z, before = thickness_of(session, scene, &z);
-	assert_true(z == scene->gravity_m_s2[2] && before == scene->layers[0].sheet[0].thickness_m);
-	cau_command material = command_of(CAU_COMMAND_SET_MATERIAL);
-	cau_command gravity = command_of(CAU_COMMAND_SET_GRAVITY);
-	material.as.material.sheet = scene->layers[0].sheet[0];
-	material.as.material.sheet.thickness_m = 2 * before;
-	gravity.as.gravity_m_s2[2] = -3;
-	stage_submit(session, &material);
-	stage_submit(session, &gravity);
-	assert_true(thickness_of(session, scene, &z) == 2 * before && z == -3);
-	stage_step(session, 1);
-	assert_true(thickness_of(session, scene, &z) == 2 * before && z == -3);
-
-	size_t capacity = cau_session_snapshot_bytes(session), bytes;
-	void *snapshot = malloc(capacity);
-	bool exact;
-	assert_int_equal(cau_session_snapshot(session, snapshot, capacity, &bytes, NULL), CAU_OK);
-	assert_true(thickness_of(other, scene, &z) == before);
-	assert_int_equal(cau_session_restore(other, snapshot, bytes, &exact, NULL), CAU_OK);
-	assert_true(thickness_of(other, scene, &z) == 2 * before && z == -3);
-
-	// One of another kind of tissue is refused at its tick, and does not show before.
-	material.as.material.kind = CAU_LAYER_FAT;
-	cau_default_fat_material(&material.as.material.fat);
-	stage_submit(session, &material);
-	assert_true(thickness_of(session, scene, &z) == 2 * before);
-	free(snapshot);
-	cau_session_destroy(session);
-	cau_session_destroy(other);
-	free(scene);
-}
-
 int main(void)
 {
 	const struct CMUnitTest tests[] = {
@@ -505,7 +456,6 @@ int main(void)
 		cmocka_unit_test(only_pinned_vertices_are_driven),
 		cmocka_unit_test(pinned_on_the_way),
 		cmocka_unit_test(pinning_does_not_grow_the_session),
-		cmocka_unit_test(gravity_and_materials_of_now),
 	};
 	return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -162,6 +162,8 @@ static void apply(cau_session *s, const cau_command *c)
 		state->tools[i].tip_temperature_c = c->as.energized ? 170 : 37;
 	} else if (c->kind == CAU_COMMAND_TOOL_GRASP || c->kind == CAU_COMMAND_TOOL_RELEASE) {
 		state->tools[i].grasping = c->kind == CAU_COMMAND_TOOL_GRASP;
+	} else if (c->kind == CAU_COMMAND_TOOL_CONFIGURE) {
+		state->tools[i].definition = c->as.definition;
 	} else if (c->kind == CAU_COMMAND_TOOL_REMOVE) {
 		for (int32_t j = i; j + 1 < state->tool_count; j++) {
 			state->tools[j] = state->tools[j + 1];
@@ -294,9 +296,17 @@ void cau_session_set_clock(cau_session *s, double (*now_s)(void))
 	(void)s, (void)now_s;
 }
 
+// Of what is queued, gravity only.
 void cau_session_present(const cau_session *s, cau_scene_def *scene)
 {
 	memcpy(scene->gravity_m_s2, s->state.gravity, sizeof scene->gravity_m_s2);
+	scene->tool_count = s->state.tool_count;
+	for (int32_t i = 0; i < s->state.tool_count; i++) {
+		const cau_tool_state *tool = &s->state.tools[i];
+		scene->tools[i] = tool->definition;
+		memcpy(scene->tools[i].name, tool->name, sizeof tool->name);
+		scene->tools[i].pose = tool->pose;
+	}
 	for (int32_t i = 0; i < s->state.queued; i++)
 		if (s->state.queue[i].kind == CAU_COMMAND_SET_GRAVITY)
 			memcpy(scene->gravity_m_s2, s->state.queue[i].as.gravity_m_s2,

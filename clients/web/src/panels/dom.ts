@@ -41,10 +41,16 @@ function sentence(error: unknown): string {
   return member === '' ? words : `${member}: ${words}`;
 }
 
-/** Runs work; on failure its words stand in `place` until the next attempt. */
+function mark(busy: HTMLButtonElement | undefined, working: boolean): void {
+  if (!busy) return;
+  busy.disabled = working;
+  busy.ariaBusy = String(working);
+}
+
+/** Runs work, `busy` being marked so meanwhile; on failure its words stand in `place` until the next attempt. */
 export async function attempt<T>(place: HTMLElement, work: () => Promise<T>, busy?: HTMLButtonElement): Promise<T | null> {
   place.hidden = true;
-  if (busy) busy.disabled = true;
+  mark(busy, true);
   try {
     return await work();
   } catch (error) {
@@ -52,7 +58,7 @@ export async function attempt<T>(place: HTMLElement, work: () => Promise<T>, bus
     place.hidden = false;
     return null;
   } finally {
-    if (busy) busy.disabled = false;
+    mark(busy, false);
   }
 }
 

@@ -7,7 +7,10 @@ export interface ParameterInputs {
   fields: HTMLElement[];
   /** members that differ from what was shown; throws a sentence if one is out of range */
   read(): Record<string, number>;
+  /** what is in force; a number that somebody has typed and not applied yet stays */
   show(values: Readonly<Record<string, unknown>>): void;
+  /** forgets what was typed */
+  clear(): void;
 }
 
 function words(name: string): string {
@@ -23,15 +26,20 @@ export function parameterInputs(parameters: readonly Parameter[]): ParameterInpu
     const input = element('input', { type: 'number', name: parameter.name, min: String(least), max: String(most), step: 'any' });
     const title = `${parameter.meaning}; ${short(least)} to ${short(most)}`;
     const unit = UNITS[parameter.unit] ?? parameter.unit;
-    return { parameter, input, label: field(words(parameter.name), input, unit, title) };
+    return { parameter, input, label: field(words(parameter.name), input, unit, title), shown: '' };
   });
   return {
     fields: inputs.map(({ label }) => label),
     show(values) {
-      for (const { parameter, input } of inputs) {
-        const value = values[parameter.name];
-        input.value = String(typeof value === 'number' ? value : parameter.default);
+      for (const one of inputs) {
+        const value = values[one.parameter.name];
+        const next = String(typeof value === 'number' ? value : one.parameter.default);
+        if (one.input.value === one.shown) one.input.value = next;
+        one.shown = next;
       }
+    },
+    clear() {
+      for (const one of inputs) one.input.value = one.shown = '';
     },
     read() {
       const values: Record<string, number> = {};

@@ -59,28 +59,33 @@ function editForm(control: Control, problem: HTMLElement): { form: HTMLElement; 
   const apply = element('button', { type: 'submit' }, 'Apply');
   const remove = button('Remove', () => void attempt(problem, () => control.removeTool(model.selectedTool ?? ''), remove));
   const form = element('form', { class: 'form' }, field('Shape', shape), ...sizes.fields, element('div', { class: 'buttons' }, apply, remove));
-  let shown = '';
+  let shown: Tool | null = null;
+  const forget = (): void => {
+    shown = null;
+    sizes.clear();
+  };
   form.addEventListener('submit', (event) => {
     event.preventDefault();
     const work = async (): Promise<void> => {
       if (!model.tool) throw new Error('choose a tool first');
-      await control.configureTool({ ...model.tool, ...sizes.read(), shape: shape.value as Tool['shape'] });
+      const wanted = { ...model.tool, ...sizes.read(), shape: shape.value as Tool['shape'] };
+      await control.configureTool(wanted);
+      forget();
+      refresh();
     };
     void attempt(problem, work, apply);
   });
-  return {
-    form,
-    refresh: () => {
-      const { tool } = model;
-      form.hidden = !tool;
-      apply.disabled = remove.disabled = !model.driving;
-      const now = JSON.stringify(tool);
-      if (!tool || now === shown) return;
-      shown = now;
-      shape.value = tool.shape;
-      sizes.show({ ...tool });
-    },
+  const refresh = (): void => {
+    const { tool } = model;
+    form.hidden = !tool;
+    apply.disabled = remove.disabled = !model.driving;
+    if (!tool) return;
+    if (tool.name !== shown?.name) forget();
+    if (tool.shape !== shown?.shape) shape.value = tool.shape;
+    sizes.show({ ...tool });
+    shown = tool;
   };
+  return { form, refresh };
 }
 
 function addForm(control: Control): HTMLElement {

@@ -1,8 +1,9 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // How the picture is drawn: layers, wireframe, scalars as colour with a legend, force, light or dark.
 import type { Control } from '../model/control';
-import { colourAt } from '../model/colour_maps';
+import { colourAt, MAP_OF, type ColourMap, type Scalar } from '../model/colour_maps';
 import type { ViewOptions, Viewport } from '../scene/viewport';
+import type { Frame } from '../wire/worker_messages';
 import { attempt, button, byId, element, field, problemPlace, save, short } from './dom';
 import type { Panel } from './tabs';
 
@@ -11,7 +12,14 @@ const COLOURINGS: readonly (readonly [ViewOptions['colouring'], string])[] = [
   ['exposure', 'heat exposure'],
   ['charring', 'char'],
   ['stress', 'stress'],
+  ['temperature', 'temperature'],
 ];
+const TITLES: Readonly<Record<Scalar, string>> = {
+  exposure: 'Heat exposure over ignition',
+  charring: 'Char',
+  stress: 'Von Mises stress',
+  temperature: 'Temperature',
+};
 
 function check(words: string, name: string, change: (on: boolean) => void, checked = false): HTMLElement {
   const box = element('input', { type: 'checkbox', name, checked });
@@ -19,34 +27,47 @@ function check(words: string, name: string, change: (on: boolean) => void, check
   return element('label', { class: 'check' }, box, words);
 }
 
-function legendCanvas(): HTMLCanvasElement {
-  const canvas = element('canvas', { width: 128, height: 1, aria: { hidden: 'true' } });
+function paint(canvas: HTMLCanvasElement, map: ColourMap): void {
   const context = canvas.getContext('2d');
-  for (let i = 0; context && i < 128; i++) {
-    context.fillStyle = `rgb(${colourAt(i / 127).join()})`;
+  const { width } = canvas;
+  for (let i = 0; context && i < width; i++) {
+    context.fillStyle = `rgb(${colourAt(map, i / (width - 1)).join()})`;
     context.fillRect(i, 0, 1, 1);
   }
-  return canvas;
+}
+
+/** What the ends of the colours stand for. */
+function endsOf(scalar: Scalar, frame: Frame | null): readonly [string, string] {
+  if (scalar === 'stress') return ['0', `${short(frame?.stressScalePa ?? 0, 2)} Pa`];
+  if (scalar !== 'temperature') return ['0', '1'];
+  const range = frame?.temperatureRangeC;
+  return range ? [`${range[0].toFixed(0)} °C`, `${range[1].toFixed(0)} °C`] : ['not told', ''];
 }
 
 function legend(control: Control, options: () => ViewOptions): () => void {
   const place = byId('legend');
   const title = element('span');
-  const least = element('small', {}, '0');
-  const most = element('small');
-  place.append(title, legendCanvas(), element('div', { class: 'ends' }, least, most));
-  const refresh = (): void => {
-    const { colouring } = options();
-    place.hidden = colouring === 'tissue';
-    title.textContent = colouring === 'exposure' ? 'Heat exposure over ignition' : colouring === 'charring' ? 'Char' : 'Von Mises stress';
-    const scale = control.model.frame?.stressScalePa ?? 0;
-    const text = colouring === 'stress' ? `${short(scale, 2)} Pa` : '1';
-    if (most.textContent !== text) most.textContent = text;
+  const colours = element('canvas', { width: 128, height: 1, aria: { hidden: 'true' } });
+  const places = [element('small'), element('small')] as const;
+  place.append(title, colours, element('div', { class: 'ends' }, ...places));
+  const tellEnds = (scalar: Scalar): void => {
+    const ends = endsOf(scalar, control.model.frame);
+    places.forEach((end, i) => {
+      if (end.textContent !== ends[i]) end.textContent = ends[i];
+    });
   };
   control.model.on('frame', () => {
-    if (options().colouring === 'stress') refresh();
+    const { colouring } = options();
+    if (colouring !== 'tissue') tellEnds(colouring);
   });
-  return refresh;
+  return () => {
+    const { colouring } = options();
+    place.hidden = colouring === 'tissue';
+    if (colouring === 'tissue') return;
+    title.textContent = TITLES[colouring];
+    paint(colours, MAP_OF[colouring]);
+    tellEnds(colouring);
+  };
 }
 
 function themes(viewport: Viewport): HTMLElement {
@@ -78,7 +99,7 @@ export function viewPanel(control: Control, viewport: Viewport): Panel {
   const set = (change: Partial<ViewOptions>): void => {
     options = { ...options, ...change };
     viewport.setOptions(options);
-    control.setStress(options.colouring === 'stress');
+    control.show(options.colouring === 'stress' || options.colouring === 'temperature' ? options.colouring : null);
     refreshLegend();
   };
   const colouring = element('select', { name: 'colouring', id: 'colouring' }, ...COLOURINGS.map(([value, words]) => element('option', { value }, words)));
