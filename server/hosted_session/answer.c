@@ -7,12 +7,12 @@
 
 enum { FIRST_BYTES = 4096 };
 
-static const cau_rpc_id id_zero = {.kind = CAU_RPC_ID_NUMBER, .number = 0};
-
 char *cau_answer_text(cau_method method, const void *result, size_t *bytes, cau_error *error)
 {
 	cau_rpc_buffer out = {.capacity = FIRST_BYTES};
+	cau_rpc_id id = {.kind = CAU_RPC_ID_TEXT};
 	cau_status status = CAU_LIMIT;
+	snprintf(id.text, sizeof id.text, "%s", cau_method_describe(method)->name);
 	for (int attempt = 0; attempt < 2 && status == CAU_LIMIT; attempt++) {
 		char *grown = realloc(out.buffer, out.capacity);
 		if (!grown) {
@@ -20,7 +20,7 @@ char *cau_answer_text(cau_method method, const void *result, size_t *bytes, cau_
 			break;
 		}
 		out.buffer = grown;
-		status = cau_rpc_write_result(&out, &id_zero, method, result, error);
+		status = cau_rpc_write_result(&out, &id, method, result, error);
 		if (status == CAU_LIMIT)
 			out.capacity = out.bytes + 1;
 	}

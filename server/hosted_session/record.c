@@ -5,6 +5,7 @@
 
 #include "cautery/command_json.h"
 #include "hosted_session/internal.h"
+#include "hub/resend.h"
 
 cau_store_batch *cau_record_batch(cau_hosted *h)
 {
@@ -243,8 +244,7 @@ void cau_record_commit(cau_hosted *h)
 static cau_status send_again(void *user, const cau_store_answer *answer)
 {
 	const cau_order *order = user;
-	cau_outcome outcome = {.text = answer->result.data, .text_bytes = answer->result.bytes};
-	cau_reply_answer(&order->reply, &outcome);
+	cau_resend_answer(&order->reply, answer->result.data, answer->result.bytes);
 	return CAU_OK;
 }
 

@@ -5,6 +5,7 @@
 #include <string.h>
 
 #include "hub/internal.h"
+#include "hub/resend.h"
 
 #define AGAIN_S 0.02 // for a resend whose first is on its way
 
@@ -103,8 +104,7 @@ cau_status cau_clerk_make(cau_hub *hub, cau_creation *creation, const char *id, 
 static cau_status answer_again(void *user, const cau_store_answer *answer)
 {
 	const cau_creation *creation = user;
-	cau_outcome outcome = {.text = answer->result.data, .text_bytes = answer->result.bytes};
-	cau_reply_answer(&creation->reply, &outcome);
+	cau_resend_answer(&creation->reply, answer->result.data, answer->result.bytes);
 	return CAU_OK;
 }
 

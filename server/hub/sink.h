@@ -26,7 +26,7 @@ typedef struct cau_audience {
 typedef struct cau_outcome {
 	const cau_error *error; // NULL: done
 	int32_t code;           // of the error: CAU_RPC_*; 0: the status's own
-	const char *text;       // done: the whole JSON-RPC answer with the id 0
+	const char *text;       // done: the whole JSON-RPC answer; its id is its method's name
 	size_t text_bytes;
 	cau_buffer *file;   // of an export; shared, the sink takes its own reference
 	uint32_t transfer;  // the file's number in chunks

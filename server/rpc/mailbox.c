@@ -36,7 +36,7 @@ static size_t write_id(char text[ID_BYTES], const cau_rpc_id *id)
 	return bytes;
 }
 
-// Answers are made, and stored, with the id 0; here each asker's own goes in.
+// Answers are made, and stored, with their method's name as id; here each asker's own goes in.
 static cau_buffer *with_id(const char *text, size_t bytes, const cau_rpc_id *id)
 {
 	static const char member[] = "\"id\":";

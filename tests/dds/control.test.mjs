@@ -30,7 +30,8 @@ class Requester extends Program {
 		super.onLine(event);
 	}
 
-	request(operation, members = {}, number = ++this.number) {
+	request(operation, members = {}, number = this.number + 1) {
+		this.number = number;
 		const words = Object.entries(members).map(([name, value]) => `${name}=${value}`);
 		const reply = this.event((e) => e.event === 'reply' && e.number === number, `a reply to ${operation}`);
 		this.tell(`request ${number} ${operation} ${words.join(' ')}`);
@@ -128,6 +129,26 @@ test('a request sent again gets its first answer, of a client that comes back to
 	await later.done('DESTROY', { session: first.session, client_id: 'lasting' }, 8);
 	await later.done('DESTROY', { session: first.session, client_id: 'lasting' }, 8);
 	assert.deepEqual((await client.call('session.list')).sessions, []);
+});
+
+test('a number that was another operation\'s is a conflict, and does nothing', async (t) => {
+	const requester = await Requester.start(t);
+	const { session } = await requester.done('CREATE', { scene: 'fascia', name: 'conflict' }, 1);
+	await requester.done('PAUSE', { session }, 2);
+	const conflicts = async (operation, members, number, method) => {
+		const reply = await requester.request(operation, members, number);
+		assert.deepEqual([reply.operation, reply.code, reply.status, reply.path],
+			[operation, -32050, 'sequence_conflict', 'number'], reply.reason);
+		assert.match(reply.reason, new RegExp(method));
+	};
+	await conflicts('RESUME', { session }, 2, 'session.pause');
+	await conflicts('DESTROY', { session }, 2, 'session.pause');
+	await conflicts('CREATE', { scene: 'fascia', name: 'other' }, 2, 'session.pause');
+	await conflicts('FORK', { session, name: 'other' }, 1, 'session.create');
+	assert.equal((await describe(session)).state, 'paused');
+	assert.deepEqual((await client.call('session.list')).sessions.map((s) => s.session), [session]);
+	await requester.done('DESTROY', { session }, 3);
+	await conflicts('PAUSE', { session }, 3, 'session.destroy'); // the session is gone
 });
 
 test('JOIN brings a key frame, where nothing moves too', async (t) => {

@@ -90,6 +90,8 @@ test('a create sent again makes one session', async () => {
 	const third = await again.call('session.create', params);
 	assert.equal(third.summary.session, first.summary.session);
 	assert.equal((await again.call('session.list')).sessions.length, 1);
+	await assert.rejects(again.call('session.pause', { session: first.summary.session, client_sequence: 9 }),
+		{ code: -32050 }); // 9 belongs to the create
 	const gone = { session: first.summary.session, client_sequence: 10 };
 	await again.call('session.destroy', gone);
 	assert.deepEqual(await again.call('session.destroy', gone), {});

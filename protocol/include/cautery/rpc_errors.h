@@ -32,7 +32,9 @@
 	X(-32047, DRAINING, "draining", "the server is shutting down")                                 \
 	X(-32048, STORE_FULL, "store_full", "the store has no room")                                   \
 	X(-32049, SEQUENCE_PAST, "sequence_past",                                                      \
-	  "the answer to this client_sequence is no longer kept")
+	  "the answer to this client_sequence is no longer kept")                                      \
+	X(-32050, SEQUENCE_CONFLICT, "sequence_conflict",                                              \
+	  "this client_sequence belongs to another method")
 
 typedef enum cau_rpc_error_code {
 #define X(number, code, word, sentence) CAU_RPC_##code = (number),

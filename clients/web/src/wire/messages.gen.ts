@@ -1601,6 +1601,7 @@ export const ERROR_CODES = {
   draining: -32047,
   store_full: -32048,
   sequence_past: -32049,
+  sequence_conflict: -32050,
 } as const;
 export type ErrorStatus = keyof typeof ERROR_CODES;
 

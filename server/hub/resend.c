@@ -1,0 +1,33 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "hub/resend.h"
+
+#include <string.h>
+
+// The method whose name is the answer's id; empty: stored by a version that named none.
+static void read_method(const char *text, size_t bytes, char name[CAU_RPC_ID_BYTES])
+{
+	static const char before[] = "\"id\":\"";
+	const char *found = memmem(text, bytes, before, sizeof before - 1);
+	size_t length = 0;
+	if (found) {
+		const char *from = found + sizeof before - 1;
+		const char *end = memchr(from, '"', bytes - (size_t)(from - text));
+		length = end && end - from < CAU_RPC_ID_BYTES ? (size_t)(end - from) : 0;
+		memcpy(name, from, length);
+	}
+	name[length] = 0;
+}
+
+void cau_resend_answer(const cau_reply *reply, const char *text, size_t text_bytes)
+{
+	char method[CAU_RPC_ID_BYTES];
+	cau_outcome outcome = {.text = text, .text_bytes = text_bytes};
+	read_method(text, text_bytes, method);
+	if (!*method || strcmp(method, cau_method_describe(reply->method)->name) == 0) {
+		cau_reply_answer(reply, &outcome);
+		return;
+	}
+	cau_error error = {0};
+	cau_fail(&error, CAU_ALREADY_EXISTS, "params.client_sequence", "belongs to a `%s`", method);
+	cau_reply_fail(reply, &error, CAU_RPC_SEQUENCE_CONFLICT);
+}
