@@ -22,6 +22,9 @@ static const struct {
 	{"dds.sec.access.permissions", "permissions.p7s"},
 };
 
+// Certificates that the authority has taken back; where there is such a list.
+static const char revoked_property[] = "org.eclipse.cyclonedds.sec.auth.crl", revoked[] = "crl.pem";
+
 // Debian keeps the plugins out of the linker's folders; the build has looked where.
 static const struct {
 	const char *name, *path, *function;
@@ -68,6 +71,11 @@ static cau_status set_identity(dds_qos_t *qos, const char *folder, cau_error *er
 			                identity[i].file, PATH_KEPT, folder);
 		dds_qset_prop(qos, identity[i].property, uri);
 	}
+	char uri[FILE_BYTES];
+	snprintf(uri, sizeof uri, "file:%s/%s", folder, revoked);
+	if (access(uri + strlen("file:"), F_OK) ==
+	    0) // one that cannot be read is no reason to go without
+		dds_qset_prop(qos, revoked_property, uri);
 	return CAU_OK;
 }
 

@@ -3,7 +3,7 @@
 // drives; who has both does.
 import assert from 'node:assert/strict';
 import { execFileSync, spawnSync } from 'node:child_process';
-import { chmodSync, copyFileSync, cpSync, mkdtempSync, rmSync, writeFileSync } from 'node:fs';
+import { chmodSync, copyFileSync, cpSync, mkdtempSync, readFileSync, rmSync, writeFileSync } from 'node:fs';
 import { tmpdir } from 'node:os';
 import { dirname, join } from 'node:path';
 import { after, before, test } from 'node:test';
@@ -179,6 +179,34 @@ test('the daemon says what is wrong with its DDS settings, and does not start', 
 	const mixed = start('--dds-security', enclave('mixed'));
 	assert.equal(mixed.status, 1);
 	assert.match(mixed.stderr, /no participant with this dds_security/);
+});
+
+test('an identity that was taken back is let in no more', async (t) => {
+	make('lists', 'daemon', 'daemon', 'controller', 'leaver', 'controller', 'stayer');
+	// Its own list is the old one: what it says of itself must not count.
+	const leaver = join(folder, 'leaver-before'), settings = join(leaver, 'cyclonedds.xml');
+	cpSync(enclave('leaver', 'lists'), leaver, { recursive: true });
+	writeFileSync(settings, readFileSync(settings, 'utf8').replaceAll(enclave('leaver', 'lists'), leaver));
+	make('lists', '--revoke', 'leaver');
+	assert.throws(() => make('lists', '--revoke', 'leaver'), /[Aa]lready revoked/);
+
+	const strict = await Daemon.start({
+		settings: { dds: true, dds_domain: DOMAIN, label: 'd3', dds_security: enclave('daemon', 'lists') },
+	});
+	t.after(() => strict.end());
+	const client = await strict.connect({ hello: { client: 'watcher' } });
+	t.after(() => client.close());
+	const session = await smallSession(client, 'list');
+	const seen = { client, session, stream: await client.join(session) };
+	const left = controller(t, session, leaver);
+	left.event((e) => e.event === 'matched', 'matched').then(() => (left.joined = true), () => {});
+	left.tell('write on');
+	assert.equal((await left.ask('state')).has, false);
+	await drives(controller(t, session, enclave('stayer', 'lists')), seen);
+	assert.equal((await left.ask('state')).has, false, 'it sees no state');
+	assert.ok(!left.joined, 'it found nobody to write to');
+	// With the new list it sees itself that it may not.
+	assert.notEqual((await controller(t, session, enclave('leaver', 'lists')).exited).code, 0);
 });
 
 test('the daemon says what is wrong with a file of roles, and does not start', () => {

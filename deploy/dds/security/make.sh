@@ -6,12 +6,16 @@ set -euo pipefail
 usage() {
 	cat <<'END'
 Usage: deploy/dds/security/make.sh [options] FOLDER [ROLE NAME]...
+       deploy/dds/security/make.sh --revoke NAME FOLDER
 
 Makes the identities NAME, each with the permissions of its ROLE: daemon, controller or viewer. With
 none named it makes three: `daemon daemon`, `controller controller` and `viewer viewer`. In a FOLDER
 that has none yet it first makes the authority: two self-signed certificates, one that vouches for
 identities and one that signs governance and permissions.
 
+  --revoke NAME  takes the identity NAME back: puts it on the list of revoked certificates, crl.pem,
+                 that lies in FOLDER/public, and copies the list into every folder of enclaves. Who
+                 starts with the new list lets the identity in no more
   --session ID   controllers and viewers made now may reach this session alone, and controllers may
                  not ask for sessions
   --days N       how long certificates and permissions hold (default 365)
@@ -20,6 +24,7 @@ identities and one that signs governance and permissions.
 
 FOLDER/enclaves/NAME/ then holds, named as in a keystore of ROS 2 (SROS2):
   identity_ca.cert.pem permissions_ca.cert.pem cert.pem key.pem governance.p7s permissions.p7s
+  crl.pem
   cyclonedds.xml   for Cyclone programs, beside the configuration of the network:
                    CYCLONEDDS_URI=file://.../network.xml,file://FOLDER/enclaves/NAME/cyclonedds.xml
 cauteryd takes the folder: --dds-security FOLDER/enclaves/daemon --dds-config .../network.xml
@@ -35,10 +40,10 @@ fail() {
 	exit 2
 }
 
-session='*' days=365 plugins='' words=()
+session='*' days=365 plugins='' revoke='' words=()
 while [ $# -gt 0 ]; do
 	case $1 in
-	--session | --days | --plugins)
+	--session | --days | --plugins | --revoke)
 		[ $# -gt 1 ] || fail "$1 needs a value"
 		declare "${1#--}=$2"
 		shift
@@ -63,7 +68,10 @@ control=cautery
 here=$(cd "$(dirname "${BASH_SOURCE[0]}")" && pwd)
 folder=${words[0]}
 identities=("${words[@]:1}")
-if [ ${#identities[@]} -eq 0 ]; then
+if [ -n "$revoke" ]; then
+	[ ${#identities[@]} -eq 0 ] || fail "--revoke takes FOLDER alone"
+	[ -e "$folder/enclaves/$revoke/cert.pem" ] || fail "$folder has no identity '$revoke'"
+elif [ ${#identities[@]} -eq 0 ]; then
 	identities=(daemon daemon controller controller viewer viewer)
 fi
 [ $((${#identities[@]} % 2)) -eq 0 ] || fail "each identity needs a role and a name"
@@ -105,6 +113,24 @@ sign() {
 		-inkey "$folder/private/permissions_ca.key.pem"
 }
 
+# list_revoked [CERTIFICATE]: writes the list anew, with this one added, and copies it to everybody. It
+# holds longer than any certificate: who has an expired list lets nobody in.
+list_revoked() {
+	local private=$folder/private enclave
+	local as_authority=(openssl ca -config "$private/revoked.cnf"
+		-keyfile "$private/identity_ca.key.pem" -cert "$folder/public/identity_ca.cert.pem")
+	touch "$private/revoked.txt"
+	printf '[ca]\ndefault_ca = list\n[list]\ndatabase = %s\ndefault_md = sha256\n' \
+		"$private/revoked.txt" >"$private/revoked.cnf"
+	if [ $# -gt 0 ]; then
+		"${as_authority[@]}" -revoke "$1" 2>"$private/revoked.log" || fail "$(<"$private/revoked.log")"
+	fi
+	"${as_authority[@]}" -gencrl -crldays 36500 -out "$folder/public/crl.pem" 2>/dev/null
+	for enclave in "$folder"/enclaves/*/; do
+		[ ! -e "$enclave/cert.pem" ] || cp "$folder/public/crl.pem" "$enclave/"
+	done
+}
+
 # fill TEMPLATE NAME TO
 fill() {
 	sed -e "s|@NAME@|$2|g" -e "s|@SUBJECT@|CN=$2,O=Cautery|g" \
@@ -129,10 +155,10 @@ identity() {
 	fill "$here/permissions-$role.xml" "$name" "$work/permissions"
 	sign "$work/permissions" "$enclave/permissions.p7s"
 	cp "$folder/public/governance.p7s" "$folder/public/identity_ca.cert.pem" \
-		"$folder/public/permissions_ca.cert.pem" "$enclave/"
+		"$folder/public/permissions_ca.cert.pem" "$folder/public/crl.pem" "$enclave/"
 	fill "$here/cyclonedds.xml" "$name" "$enclave/cyclonedds.xml"
 	rm -r "$work"
-	echo "$enclave: $role"
+	echo "$enclave: $role CN=$name,O=Cautery"
 }
 
 authority identity_ca 'identities'
@@ -140,6 +166,12 @@ authority permissions_ca 'permissions'
 if [ ! -e "$folder/public/governance.p7s" ]; then
 	sign "$here/governance.xml" "$folder/public/governance.p7s"
 fi
+if [ -n "$revoke" ]; then
+	list_revoked "$folder/enclaves/$revoke/cert.pem"
+	echo "$folder/public/crl.pem: without CN=$revoke,O=Cautery"
+	exit 0
+fi
+[ -e "$folder/public/crl.pem" ] || list_revoked
 for ((i = 0; i < ${#identities[@]}; i += 2)); do
 	identity "${identities[i]}" "${identities[i + 1]}"
 done
