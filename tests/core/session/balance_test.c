@@ -15,7 +15,6 @@ static const double fall_tolerance_double = 1e-9, fall_tolerance_single = 1e-5;
 enum { CONVERGED = 300 };
 
 // ---- every law
-// -------------------------------------------------------------------------------------
 typedef struct law {
 	int kind, model, limit, projection;
 } law;
@@ -111,7 +110,6 @@ static void every_law_of_sheets_is_balanced(void **state)
 }
 
 // ---- momentum
-// --------------------------------------------------------------------------------------
 static cau_scene_def *free_layers(int precision)
 {
 	const double size[3] = {0.04, 0.03, 0.01};
@@ -160,7 +158,6 @@ static void a_free_body_keeps_its_momentum(void **state)
 }
 
 // ---- rest and fall
-// ---------------------------------------------------------------------------------
 static void check_rest(int precision)
 {
 	cau_scene_def *scene = free_layers(precision);

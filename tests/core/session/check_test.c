@@ -7,39 +7,17 @@
 
 #include "session/session_internal.h"
 
-static const double absurd[] = {NAN, INFINITY, -INFINITY, 1e300, -1e300};
-enum { ABSURD_COUNT = sizeof absurd / sizeof *absurd };
-
-static cau_scene_def *small_scene(void)
-{
-	const double size[3] = {0.04, 0.03, 0.01}, least[3] = {-1, -1, -0.0101},
-				 most[3] = {1, 1, -0.0099};
-	const int32_t cells[3] = {6, 5, 2};
-	cau_scene_def *scene = stage_scene(CAU_PRECISION_SINGLE);
-	cau_default_gravity(scene->gravity_m_s2);
-	cau_layer_def *fascia = stage_add_sheet(scene, "fascia", 0.04, 0.03, 8, 6);
-	stage_mesh_of(scene, fascia)->translate_m[2] = 0.002;
-	stage_add_slab(scene, "fat", size, cells);
-	stage_add_membrane(scene, "membrane", "fat");
-	stage_add_links(scene, "links", "fascia", "membrane");
-	stage_pin_box(scene, least, most);
-	stage_add_tool(scene, "hook", CAU_TOOL_HOOK, 0, 0, 0.03);
-	stage_add_tool(scene, "jaws", CAU_TOOL_GRASPER, 0.01, 0, 0.02);
-	return scene;
-}
-
 // ---- scenes
-// --------------------------------------------------------------------------------------
 static void expect_refused_field(cau_scene_def *scene, double *field, const char *path)
 {
 	double before = *field;
-	for (int k = 0; k < ABSURD_COUNT; ++k) {
-		*field = absurd[k];
+	for (int k = 0; k < STAGE_ABSURD_COUNT; ++k) {
+		*field = stage_absurd[k];
 		cau_error error = {0};
 		cau_status status = cau_scene_check(scene, &error);
 		if (status != CAU_BAD_VALUE || !strstr(error.path, path) || !error.reason[0])
-			fail_msg("%s = %g gave %s at \"%s\": %s", path, absurd[k], cau_status_name(status),
-			         error.path, error.reason);
+			fail_msg("%s = %g gave %s at \"%s\": %s", path, stage_absurd[k],
+			         cau_status_name(status), error.path, error.reason);
 		stage_refuse(scene, CAU_BAD_VALUE, &error);
 	}
 	*field = before;
@@ -50,7 +28,7 @@ static void expect_refused_field(cau_scene_def *scene, double *field, const char
 static void absurd_numbers_in_scenes(void **state)
 {
 	(void)state;
-	cau_scene_def *scene = small_scene();
+	cau_scene_def *scene = stage_layered();
 #define CHECK(field, default_, least, most, unit, meaning)                                         \
 	expect_refused_field(scene, &object->field, #field);
 	{
@@ -106,23 +84,23 @@ static void absurd_generated_meshes(void **state)
 {
 	(void)state;
 	cau_error error;
-	for (int k = 0; k < ABSURD_COUNT; ++k)
+	for (int k = 0; k < STAGE_ABSURD_COUNT; ++k)
 		for (int c = 0; c < 3; ++c) {
-			cau_scene_def *scene = small_scene();
-			scene->meshes[1].size_m[c] = absurd[k];
+			cau_scene_def *scene = stage_layered();
+			scene->meshes[1].size_m[c] = stage_absurd[k];
 			cau_session_def def = cau_default_session_def();
 			def.scene = scene;
 			cau_session *session = NULL;
 			error = (cau_error){0};
 			assert_int_not_equal(cau_session_create(&def, &session, &error), CAU_OK);
 			if (!strstr(error.path, "meshes[1]") || !error.reason[0])
-				fail_msg("size %g: path \"%s\", reason \"%s\"", absurd[k], error.path,
+				fail_msg("size %g: path \"%s\", reason \"%s\"", stage_absurd[k], error.path,
 				         error.reason);
 			free(scene);
 		}
 	const int32_t cells[] = {0, -1, INT32_MAX, INT32_MIN, 1000000};
 	for (size_t k = 0; k < sizeof cells / sizeof *cells; ++k) {
-		cau_scene_def *scene = small_scene();
+		cau_scene_def *scene = stage_layered();
 		scene->meshes[1].cells[1] = cells[k];
 		cau_session_def def = cau_default_session_def();
 		def.scene = scene;
@@ -140,7 +118,7 @@ static void time_steps_of_zero_and_of_a_year(void **state)
 	(void)state;
 	const double steps[] = {0, -1.0 / 60, 365.25 * 86400, 1e-9};
 	for (size_t k = 0; k < sizeof steps / sizeof *steps; ++k) {
-		cau_scene_def *scene = small_scene();
+		cau_scene_def *scene = stage_layered();
 		cau_error error;
 		scene->step_s = steps[k];
 		stage_refuse(scene, CAU_BAD_VALUE, &error);
@@ -153,7 +131,7 @@ static void materials_outside_their_theory(void **state)
 {
 	(void)state;
 	cau_error error;
-	cau_scene_def *scene = small_scene();
+	cau_scene_def *scene = stage_layered();
 	scene->layers[1].fat[0].poisson_ratio = 0.4501;
 	stage_refuse(scene, CAU_BAD_VALUE, &error);
 	assert_string_equal(error.path, "layers[1].poisson_ratio");
@@ -177,7 +155,7 @@ static void names_and_references(void **state)
 {
 	(void)state;
 	cau_error error;
-	cau_scene_def *scene = small_scene();
+	cau_scene_def *scene = stage_layered();
 	strcpy(scene->layers[2].of, "nothing");
 	stage_refuse(scene, CAU_NOT_FOUND, &error);
 	assert_string_equal(error.path, "layers[2].of");
@@ -205,7 +183,7 @@ static void a_pin_that_holds_nothing(void **state)
 {
 	(void)state;
 	const double least[3] = {5, 5, 5}, most[3] = {6, 6, 6};
-	cau_scene_def *scene = small_scene();
+	cau_scene_def *scene = stage_layered();
 	cau_error error;
 	stage_pin_box(scene, least, most);
 	stage_refuse(scene, CAU_BAD_VALUE, &error);
@@ -216,7 +194,7 @@ static void a_pin_that_holds_nothing(void **state)
 static void everything_pinned_and_let_go(void **state)
 {
 	(void)state;
-	cau_scene_def *scene = small_scene();
+	cau_scene_def *scene = stage_layered();
 	scene->pins[0] = stage_everything();
 	cau_session *session = stage_open(scene, 1);
 	stage_step(session, 5);
@@ -236,7 +214,6 @@ static void everything_pinned_and_let_go(void **state)
 }
 
 // ---- meshes
-// --------------------------------------------------------------------------------------
 static void open_mesh(const char *name, const char *text, int kind, cau_status expected,
                       cau_error *error)
 {
@@ -298,7 +275,7 @@ static void degenerate_texture(void **state)
 static void links_without_length(void **state)
 {
 	(void)state;
-	cau_scene_def *scene = small_scene();
+	cau_scene_def *scene = stage_layered();
 	scene->meshes[0].translate_m[2] = 0;
 	scene->meshes[0].cells[0] = 6;
 	scene->meshes[0].cells[1] = 5; // the slab's own cells: vertices coincide

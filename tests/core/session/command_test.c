@@ -7,50 +7,19 @@
 
 #include "session/session_internal.h"
 
-static const double absurd[] = {NAN, INFINITY, -INFINITY, 1e300, -1e300};
-enum { ABSURD_COUNT = sizeof absurd / sizeof *absurd };
 // Strays are stopped at 200 times the size of all tissue, here 5 to 8 cm.
 static const double bounded_m = 16;
-
-static cau_scene_def *small_scene(void)
-{
-	const double size[3] = {0.04, 0.03, 0.01}, least[3] = {-1, -1, -0.0101},
-				 most[3] = {1, 1, -0.0099};
-	const int32_t cells[3] = {6, 5, 2};
-	cau_scene_def *scene = stage_scene(CAU_PRECISION_SINGLE);
-	cau_default_gravity(scene->gravity_m_s2);
-	cau_layer_def *fascia = stage_add_sheet(scene, "fascia", 0.04, 0.03, 8, 6);
-	stage_mesh_of(scene, fascia)->translate_m[2] = 0.002;
-	stage_add_slab(scene, "fat", size, cells);
-	stage_add_membrane(scene, "membrane", "fat");
-	stage_add_links(scene, "links", "fascia", "membrane");
-	stage_pin_box(scene, least, most);
-	stage_add_tool(scene, "hook", CAU_TOOL_HOOK, 0, 0, 0.03);
-	stage_add_tool(scene, "jaws", CAU_TOOL_GRASPER, 0.01, 0, 0.02);
-	return scene;
-}
-
-static cau_command command_of(int kind)
-{
-	cau_command command;
-	cau_default_command(&command, kind);
-	strcpy(command.tool, "hook");
-	strcpy(command.as.material.layer, kind == CAU_COMMAND_SET_MATERIAL ? "fascia" : "");
-	if (kind == CAU_COMMAND_TOOL_ADD || kind == CAU_COMMAND_TOOL_CONFIGURE)
-		strcpy(command.as.definition.name, "other");
-	return command;
-}
 
 static void expect_refused(cau_session *session, cau_command *command, double *field,
                            const char *what)
 {
 	double before = *field;
-	for (int k = 0; k < ABSURD_COUNT; ++k) {
-		*field = absurd[k];
+	for (int k = 0; k < STAGE_ABSURD_COUNT; ++k) {
+		*field = stage_absurd[k];
 		cau_error error = {0};
 		cau_status status = cau_session_submit(session, command, &error);
 		if (status != CAU_BAD_VALUE || !error.path[0] || !error.reason[0])
-			fail_msg("%s = %g gave %s at \"%s\"", what, absurd[k], cau_status_name(status),
+			fail_msg("%s = %g gave %s at \"%s\"", what, stage_absurd[k], cau_status_name(status),
 			         error.path);
 	}
 	*field = before;
@@ -59,23 +28,23 @@ static void expect_refused(cau_session *session, cau_command *command, double *f
 static void absurd_numbers_in_commands(void **state)
 {
 	(void)state;
-	cau_scene_def *scene = small_scene();
+	cau_scene_def *scene = stage_layered();
 	cau_session *session = stage_open(scene, 1);
 #define CHECK(field, default_, least, most, unit, meaning)                                         \
 	expect_refused(session, &command, &object->field, #field);
 	for (int kind = CAU_COMMAND_TOOL_ADD; kind <= CAU_COMMAND_TOOL_CONFIGURE; kind += 2) {
-		cau_command command = command_of(kind);
+		cau_command command = stage_command(kind);
 		cau_tool_def *object = &command.as.definition;
 		CAU_TOOL_TABLE(CHECK)
 	}
-	cau_command move = command_of(CAU_COMMAND_TOOL_MOVE);
+	cau_command move = stage_command(CAU_COMMAND_TOOL_MOVE);
 	for (int c = 0; c < 4; ++c) {
 		expect_refused(session, &move, &move.as.move.pose.rotation[c], "rotation");
 		expect_refused(session, &move, &move.as.move.pose.position_m[c % 3], "position_m");
 	}
 	expect_refused(session, &move, &move.as.move.jaw, "jaw");
-	cau_command gravity = command_of(CAU_COMMAND_SET_GRAVITY);
-	cau_command force = command_of(CAU_COMMAND_SET_FORCE), pin = command_of(CAU_COMMAND_PIN);
+	cau_command gravity = stage_command(CAU_COMMAND_SET_GRAVITY);
+	cau_command force = stage_command(CAU_COMMAND_SET_FORCE), pin = stage_command(CAU_COMMAND_PIN);
 	force.as.force.selection = pin.as.selection = stage_everything();
 	for (int c = 0; c < 3; ++c) {
 		expect_refused(session, &gravity, &gravity.as.gravity_m_s2[c], "gravity_m_s2");
@@ -86,18 +55,18 @@ static void absurd_numbers_in_commands(void **state)
 	}
 	expect_refused(session, &pin, &pin.as.selection.radius_m, "radius_m");
 	{
-		cau_command command = command_of(CAU_COMMAND_SET_MATERIAL);
+		cau_command command = stage_command(CAU_COMMAND_SET_MATERIAL);
 		cau_sheet_material *object = &command.as.material.sheet;
 		CAU_SHEET_TABLE(CHECK)
 	}
 	{
-		cau_command command = command_of(CAU_COMMAND_SET_MATERIAL);
+		cau_command command = stage_command(CAU_COMMAND_SET_MATERIAL);
 		command.as.material.kind = CAU_LAYER_FAT;
 		cau_fat_material *object = &command.as.material.fat;
 		CAU_FAT_TABLE(CHECK)
 	}
 #undef CHECK
-	cau_command nothing = command_of(CAU_COMMAND_PIN);
+	cau_command nothing = stage_command(CAU_COMMAND_PIN);
 	nothing.kind = CAU_COMMAND_COUNT;
 	cau_error error = {0};
 	assert_int_equal(cau_session_submit(session, &nothing, &error), CAU_BAD_VALUE);
@@ -125,28 +94,28 @@ static void what_only_the_tick_can_tell(void **state)
 {
 	(void)state;
 	const double least[3] = {5, 5, 5}, most[3] = {6, 6, 6};
-	cau_scene_def *scene = small_scene();
+	cau_scene_def *scene = stage_layered();
 	cau_session *session = stage_open(scene, 1);
 	for (int kind = CAU_COMMAND_TOOL_REMOVE; kind <= CAU_COMMAND_TOOL_RELEASE; ++kind) {
-		cau_command command = command_of(kind);
+		cau_command command = stage_command(kind);
 		strcpy(command.tool, "nobody");
 		expect_refusal_at_tick(session, command, CAU_NOT_FOUND);
 	}
-	expect_refusal_at_tick(session, command_of(CAU_COMMAND_TOOL_GRASP), CAU_BAD_STATE); // a hook
-	cau_command add = command_of(CAU_COMMAND_TOOL_ADD);
+	expect_refusal_at_tick(session, stage_command(CAU_COMMAND_TOOL_GRASP), CAU_BAD_STATE); // a hook
+	cau_command add = stage_command(CAU_COMMAND_TOOL_ADD);
 	strcpy(add.as.definition.name, "jaws");
 	expect_refusal_at_tick(session, add, CAU_ALREADY_EXISTS);
-	cau_command pin = command_of(CAU_COMMAND_PIN), force = command_of(CAU_COMMAND_SET_FORCE);
+	cau_command pin = stage_command(CAU_COMMAND_PIN), force = stage_command(CAU_COMMAND_SET_FORCE);
 	pin.as.selection = force.as.force.selection = stage_box(least, most);
 	expect_refusal_at_tick(session, pin, CAU_NOT_FOUND);
 	expect_refusal_at_tick(session, force, CAU_NOT_FOUND);
-	cau_command material = command_of(CAU_COMMAND_SET_MATERIAL);
+	cau_command material = stage_command(CAU_COMMAND_SET_MATERIAL);
 	strcpy(material.as.material.layer, "fat"); // a sheet's material
 	expect_refusal_at_tick(session, material, CAU_BAD_VALUE);
 	strcpy(material.as.material.layer, "nobody");
 	expect_refusal_at_tick(session, material, CAU_NOT_FOUND);
 	for (int k = 0; k < CAU_MAX_TOOLS - 2; ++k) {
-		add = command_of(CAU_COMMAND_TOOL_ADD);
+		add = stage_command(CAU_COMMAND_TOOL_ADD);
 		snprintf(add.as.definition.name, sizeof add.as.definition.name, "extra%d", k);
 		stage_submit(session, &add);
 	}
@@ -163,11 +132,11 @@ static void what_only_the_tick_can_tell(void **state)
 static void a_million_commands(void **state)
 {
 	(void)state;
-	cau_scene_def *scene = small_scene();
+	cau_scene_def *scene = stage_layered();
 	cau_session *session = stage_open(scene, 1);
 	int taken = 0, refused = 0;
 	for (int k = 0; k < 1000000; ++k) {
-		cau_command move = command_of(CAU_COMMAND_TOOL_MOVE);
+		cau_command move = stage_command(CAU_COMMAND_TOOL_MOVE);
 		cau_error error = {0};
 		cau_status status = cau_session_submit(session, &move, &error);
 		taken += status == CAU_OK;
@@ -176,7 +145,7 @@ static void a_million_commands(void **state)
 	assert_int_equal(taken, cau_default_session_def().command_capacity);
 	assert_int_equal(taken + refused, 1000000);
 	stage_step(session, 1);
-	cau_command move = command_of(CAU_COMMAND_TOOL_MOVE);
+	cau_command move = stage_command(CAU_COMMAND_TOOL_MOVE);
 	stage_submit(session, &move); // there is room again
 	cau_session_destroy(session);
 	free(scene);
@@ -186,10 +155,10 @@ static void a_million_commands(void **state)
 static void many_refusals_in_a_tick(void **state)
 {
 	(void)state;
-	cau_scene_def *scene = small_scene();
+	cau_scene_def *scene = stage_layered();
 	cau_session *session = stage_open(scene, 1);
 	for (int k = 0; k < 500; ++k) {
-		cau_command grasp = command_of(CAU_COMMAND_TOOL_GRASP);
+		cau_command grasp = stage_command(CAU_COMMAND_TOOL_GRASP);
 		stage_submit(session, &grasp);
 	}
 	stage_step(session, 1);
@@ -199,7 +168,6 @@ static void many_refusals_in_a_tick(void **state)
 }
 
 // ---- extremes
-// ------------------------------------------------------------------------------------
 static double farthest(const cau_session *session)
 {
 	cau_session_info info = stage_info(session);
@@ -230,7 +198,7 @@ static void huge_forces_and_gravity(void **state)
 {
 	(void)state;
 	for (int what = 0; what < 4; ++what) {
-		cau_scene_def *scene = small_scene();
+		cau_scene_def *scene = stage_layered();
 		cau_session *session = stage_open(scene, 1);
 		const double least[3] = {-1, -1, -0.009}, most[3] = {1, 1, 1};
 		if (what < 2)
@@ -282,7 +250,7 @@ static void what_falls_for_ever_is_stopped(void **state)
 static void a_tool_that_leaps(void **state)
 {
 	(void)state;
-	cau_scene_def *scene = small_scene();
+	cau_scene_def *scene = stage_layered();
 	cau_session *session = stage_open(scene, 1);
 	cau_session_info info = stage_info(session);
 	for (int leap = 0; leap < 6; ++leap) {
@@ -309,11 +277,10 @@ static void a_tool_that_leaps(void **state)
 }
 
 // ---- faults
-// --------------------------------------------------------------------------------------
 static void a_faulted_session_waits_for_a_snapshot(void **state)
 {
 	(void)state;
-	cau_scene_def *scene = small_scene();
+	cau_scene_def *scene = stage_layered();
 	cau_session *session = stage_open(scene, 1), *other = stage_open(scene, 1);
 	stage_step(session, 10);
 	stage_bytes shot = stage_snapshot(session);
@@ -343,11 +310,10 @@ static void a_faulted_session_waits_for_a_snapshot(void **state)
 }
 
 // ---- supports that move
-// --------------------------------------------------------------------------
 static void only_pinned_vertices_are_driven(void **state)
 {
 	(void)state;
-	cau_scene_def *scene = small_scene();
+	cau_scene_def *scene = stage_layered();
 	cau_session *session = stage_open(scene, 1);
 	cau_session_info info = stage_info(session);
 	cau_error error = {0};
@@ -360,8 +326,8 @@ static void only_pinned_vertices_are_driven(void **state)
 	for (int k = 0; k < 3; ++k)
 		assert_int_equal(cau_session_drive(session, 1, &beyond[k], at, &error), CAU_BAD_VALUE);
 	assert_int_equal(cau_session_drive(session, -1, &pinned, at, &error), CAU_BAD_VALUE);
-	for (int k = 0; k < ABSURD_COUNT; ++k) {
-		double absurd_place[3] = {0, absurd[k], 0};
+	for (int k = 0; k < STAGE_ABSURD_COUNT; ++k) {
+		double absurd_place[3] = {0, stage_absurd[k], 0};
 		assert_int_equal(cau_session_drive(session, 1, &pinned, absurd_place, &error),
 		                 CAU_BAD_VALUE);
 	}
@@ -383,7 +349,7 @@ static void only_pinned_vertices_are_driven(void **state)
 static void pinning_does_not_grow_the_session(void **state)
 {
 	(void)state;
-	cau_scene_def *scene = small_scene();
+	cau_scene_def *scene = stage_layered();
 	cau_session *session = stage_open(scene, 1);
 	size_t once = 0;
 	for (int k = 0; k < 20; ++k) {
@@ -406,7 +372,7 @@ static void pinning_does_not_grow_the_session(void **state)
 static void pinned_on_the_way(void **state)
 {
 	(void)state;
-	cau_scene_def *scene = small_scene();
+	cau_scene_def *scene = stage_layered();
 	cau_session *session = stage_open(scene, 1);
 	cau_session_info info = stage_info(session);
 	size_t bytes = 3 * (size_t)info.vertex_count * sizeof(double);

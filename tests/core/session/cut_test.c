@@ -13,7 +13,6 @@ static const double condition_tolerance = 1e-13;
 static const double fall_tolerance = 0.02;
 
 // ---- the books
-// -----------------------------------------------------------------------------------
 static void *copy_of(const void *array, size_t bytes)
 {
 	void *copy = malloc(bytes + 1);
@@ -86,7 +85,6 @@ static void shares_are_counts_of_whole_edges(void **state)
 }
 
 // ---- the system
-// ----------------------------------------------------------------------------------
 static void settle_factor(cau_session *session)
 {
 	stage_move(session, "hook", 0, 0, 0.2);
@@ -143,7 +141,6 @@ static void the_system_equals_a_reassembly(void **state)
 }
 
 // ---- vertices without elements
-// -------------------------------------------------------------------
 static void isolated_vertices_are_frozen(void **state)
 {
 	(void)state;
@@ -170,7 +167,6 @@ static void isolated_vertices_are_frozen(void **state)
 }
 
 // ---- a strip, pinned at one end, cut through in the middle
-// ------------------------------------------
 enum { STRIP_TICKS = 90, CUT_TICKS = 30 };
 
 static cau_scene_def *strip_scene(void)
@@ -308,7 +304,6 @@ static void burnt_out_of_the_jaws(void **state)
 }
 
 // ---- layers
-// --------------------------------------------------------------------------------------
 // A needle between fascia and fat parts the links and nothing else; then the fascia comes off.
 static void links_part_and_fascia_comes_off(void **state)
 {

@@ -12,15 +12,6 @@ static cau_scene_def *sheet_scene(void)
 	return scene;
 }
 
-static cau_command command_of(int kind)
-{
-	cau_command command;
-	cau_default_command(&command, kind);
-	strcpy(command.tool, "hook");
-	strcpy(command.as.material.layer, kind == CAU_COMMAND_SET_MATERIAL ? "fascia" : "");
-	return command;
-}
-
 static double thickness_of(const cau_session *session, const cau_scene_def *scene,
                            double *gravity_z)
 {
@@ -39,8 +30,8 @@ static void gravity_and_materials_of_now(void **state)
 	cau_session *session = stage_open(scene, 1), *other = stage_open(scene, 1);
 	double z, before = thickness_of(session, scene, &z);
 	assert_true(z == scene->gravity_m_s2[2] && before == scene->layers[0].sheet[0].thickness_m);
-	cau_command material = command_of(CAU_COMMAND_SET_MATERIAL);
-	cau_command gravity = command_of(CAU_COMMAND_SET_GRAVITY);
+	cau_command material = stage_command(CAU_COMMAND_SET_MATERIAL);
+	cau_command gravity = stage_command(CAU_COMMAND_SET_GRAVITY);
 	material.as.material.sheet = scene->layers[0].sheet[0];
 	material.as.material.sheet.thickness_m = 2 * before;
 	gravity.as.gravity_m_s2[2] = -3;
@@ -83,9 +74,9 @@ static void tools_of_now(void **state)
 	(void)state;
 	cau_scene_def *scene = sheet_scene();
 	cau_session *session = stage_open(scene, 1);
-	cau_command configure = command_of(CAU_COMMAND_TOOL_CONFIGURE);
-	cau_command remove = command_of(CAU_COMMAND_TOOL_REMOVE);
-	cau_command add = command_of(CAU_COMMAND_TOOL_ADD);
+	cau_command configure = stage_command(CAU_COMMAND_TOOL_CONFIGURE);
+	cau_command remove = stage_command(CAU_COMMAND_TOOL_REMOVE);
+	cau_command add = stage_command(CAU_COMMAND_TOOL_ADD);
 	configure.as.definition = scene->tools[0];
 	configure.as.definition.temperature_c = 900;
 	configure.as.definition.pose.position_m[2] = 0.5; // a pose is for moving, not for this

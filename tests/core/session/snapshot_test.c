@@ -180,7 +180,6 @@ static void queued_commands_pins_and_materials(void **state)
 }
 
 // ---- damage
-// --------------------------------------------------------------------------------------
 typedef struct victim {
 	cau_session *session;
 	uint64_t hash;

@@ -6,6 +6,8 @@
 
 #include "cautery/scene_json.h"
 
+const double stage_absurd[STAGE_ABSURD_COUNT] = {NAN, INFINITY, -INFINITY, 1e300, -1e300};
+
 static const double all_of_it_m = 100; // farther than any scene reaches
 
 static void expect_ok(cau_status status, const cau_error *error)
@@ -15,7 +17,6 @@ static void expect_ok(cau_status status, const cau_error *error)
 }
 
 // ---- scenes
-// --------------------------------------------------------------------------------------
 cau_scene_def *stage_scene(int precision)
 {
 	cau_scene_def *scene = malloc(sizeof *scene);
@@ -112,6 +113,24 @@ cau_mesh_def *stage_mesh_of(cau_scene_def *scene, const cau_layer_def *layer)
 	return NULL;
 }
 
+cau_scene_def *stage_layered(void)
+{
+	const double size[3] = {0.04, 0.03, 0.01}, least[3] = {-1, -1, -0.0101},
+				 most[3] = {1, 1, -0.0099};
+	const int32_t cells[3] = {6, 5, 2};
+	cau_scene_def *scene = stage_scene(CAU_PRECISION_SINGLE);
+	cau_default_gravity(scene->gravity_m_s2);
+	cau_layer_def *fascia = stage_add_sheet(scene, "fascia", 0.04, 0.03, 8, 6);
+	stage_mesh_of(scene, fascia)->translate_m[2] = 0.002;
+	stage_add_slab(scene, "fat", size, cells);
+	stage_add_membrane(scene, "membrane", "fat");
+	stage_add_links(scene, "links", "fascia", "membrane");
+	stage_pin_box(scene, least, most);
+	stage_add_tool(scene, "hook", CAU_TOOL_HOOK, 0, 0, 0.03);
+	stage_add_tool(scene, "jaws", CAU_TOOL_GRASPER, 0.01, 0, 0.02);
+	return scene;
+}
+
 cau_selection stage_box(const double least_m[3], const double most_m[3])
 {
 	cau_selection box;
@@ -148,7 +167,6 @@ cau_tool_def *stage_add_tool(cau_scene_def *scene, const char *name, int shape, 
 }
 
 // ---- sessions
-// ------------------------------------------------------------------------------------
 cau_session *stage_open(const cau_scene_def *scene, int32_t threads)
 {
 	cau_session_def def = cau_default_session_def();
@@ -212,7 +230,17 @@ const cau_tool_state *stage_tool(const cau_session *session, const char *name)
 }
 
 // ---- commands
-// ------------------------------------------------------------------------------------
+cau_command stage_command(int kind)
+{
+	cau_command command;
+	cau_default_command(&command, kind);
+	strcpy(command.tool, "hook");
+	strcpy(command.as.material.layer, kind == CAU_COMMAND_SET_MATERIAL ? "fascia" : "");
+	if (kind == CAU_COMMAND_TOOL_ADD || kind == CAU_COMMAND_TOOL_CONFIGURE)
+		strcpy(command.as.definition.name, "other");
+	return command;
+}
+
 void stage_submit(cau_session *session, const cau_command *command)
 {
 	cau_error error = {0};
@@ -314,7 +342,6 @@ void stage_cut_tick(cau_session *session, const cau_cut_def *cut, const cau_pose
 }
 
 // ---- numbers
-// -------------------------------------------------------------------------------------
 double stage_mean_edge_m(const cau_session_info *info)
 {
 	double sum = 0;

@@ -18,8 +18,13 @@
 #include "base/vector.h"
 #include "cautery/session.h"
 
+// Numbers that no field takes.
+extern const double stage_absurd[];
+enum { STAGE_ABSURD_COUNT = 5 };
+
 // ---- scenes: on the heap, the caller frees them with free()
-// -------------------------------------- Empty: no gravity, one tick 1/60 s, the precision given.
+
+// Empty: no gravity, one tick 1/60 s, the precision given.
 cau_scene_def *stage_scene(int precision);
 // deploy/scenes/NAME.json.
 cau_scene_def *stage_scene_named(const char *name);
@@ -36,11 +41,13 @@ cau_mesh_def *stage_mesh_of(cau_scene_def *scene, const cau_layer_def *layer);
 void stage_pin_box(cau_scene_def *scene, const double least_m[3], const double most_m[3]);
 cau_tool_def *stage_add_tool(cau_scene_def *scene, const char *name, int shape, double x, double y,
                              double z);
+// Fascia linked to the membrane of a slab of fat, its floor pinned; `hook` and the grasper `jaws`
+// above.
+cau_scene_def *stage_layered(void);
 cau_selection stage_box(const double least_m[3], const double most_m[3]);
 cau_selection stage_everything(void);
 
 // ---- sessions
-// ------------------------------------------------------------------------------------
 cau_session *stage_open(const cau_scene_def *scene, int32_t threads);
 // The creation is refused with this status; *error says why.
 void stage_refuse(const cau_scene_def *scene, cau_status status, cau_error *error);
@@ -51,7 +58,8 @@ cau_balance stage_balance(cau_session *session);
 const cau_tool_state *stage_tool(const cau_session *session, const char *name); // of a fresh frame
 
 // ---- commands, for the next tick
-// -----------------------------------------------------------------
+// With defaults, about the tool `hook` or the layer `fascia`.
+cau_command stage_command(int kind);
 void stage_submit(cau_session *session, const cau_command *command);
 void stage_move(cau_session *session, const char *tool, double x, double y, double z);
 void stage_turn(cau_session *session, const char *tool, const cau_pose *pose);
@@ -67,7 +75,6 @@ void stage_cut_tick(cau_session *session, const cau_cut_def *cut, const cau_pose
 int stage_cut_ticks(const cau_cut_def *cut, double step_s);
 
 // ---- numbers
-// -------------------------------------------------------------------------------------
 double stage_mean_edge_m(const cau_session_info *info);
 // Largest distance (m) of a vertex of the frame from `from` (m, n x 3).
 double stage_farthest(const cau_frame *frame, const double *from, int32_t vertex_count);

@@ -15,7 +15,6 @@ static const double weight_tolerance = 0.01;
 static const double bounded_m = 0.3; // a pull of 0.1 m on a scene of 0.12 m
 
 // ---- pushing
-// -------------------------------------------------------------------------------------
 static cau_scene_def *block_scene(double friction)
 {
 	const double size[3] = {0.04, 0.04, 0.016}, least[3] = {-1, -1, -0.0161},
@@ -108,7 +107,6 @@ static void an_energized_ball_does_not_push(void **state)
 }
 
 // ---- a block of tissue lying on a tool
-// -------------------------------------------------------------
 static cau_scene_def *resting_scene(void)
 {
 	const double size[3] = {0.01, 0.01, 0.004};
@@ -181,7 +179,6 @@ static void it_sticks_and_slips(void **state)
 }
 
 // ---- grasping
-// ------------------------------------------------------------------------------------
 static cau_scene_def *strip_scene(double slip_force_n)
 {
 	const double least[3] = {-0.1, -0.1, -0.1}, most[3] = {-0.0299, 0.1, 0.1};
@@ -269,7 +266,6 @@ static void empty_jaws_say_so(void **state)
 }
 
 // ---- any pull a grasper can make
-// -----------------------------------------------------------------
 static double farthest(const cau_session *session, int32_t *inverted)
 {
 	cau_session_info info = stage_info(session);
