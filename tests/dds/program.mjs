@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// A program that is told by lines on its standard input and tells by JSON objects, one a line.
+// A program that is told by lines on its standard input and tells by JSON objects, one a line. What else
+// stands there, such as the log of Fast DDS, is passed on.
 import { spawn } from 'node:child_process';
 import { createInterface } from 'node:readline';
 import { PATIENCE_S } from './wire/client.mjs';
@@ -16,7 +17,8 @@ export class Program {
 			this.waiters.forEach((w) => w.reject(new Error(`it ended (${code ?? signal}) before: ${w.what}`)));
 			resolve({ code, signal });
 		}));
-		createInterface({ input: this.process.stdout }).on('line', (line) => this.onLine(JSON.parse(line)));
+		createInterface({ input: this.process.stdout }).on('line', (line) =>
+			line.startsWith('{') ? this.onLine(JSON.parse(line)) : console.error(line));
 	}
 
 	onLine(event) {

@@ -27,6 +27,7 @@ FOLDER/enclaves/NAME/ then holds, named as in a keystore of ROS 2 (SROS2):
   crl.pem
   cyclonedds.xml   for Cyclone programs, beside the configuration of the network:
                    CYCLONEDDS_URI=file://.../network.xml,file://FOLDER/enclaves/NAME/cyclonedds.xml
+  loopback-fastdds.xml   for Fast DDS programs on one machine: FASTRTPS_DEFAULT_PROFILES_FILE names it
 cauteryd takes the folder: --dds-security FOLDER/enclaves/daemon --dds-config .../network.xml
 
 FOLDER/private/ holds the authority's keys: keep it off the machines that only take part. The
@@ -157,6 +158,10 @@ identity() {
 	cp "$folder/public/governance.p7s" "$folder/public/identity_ca.cert.pem" \
 		"$folder/public/permissions_ca.cert.pem" "$folder/public/crl.pem" "$enclave/"
 	fill "$here/cyclonedds.xml" "$name" "$enclave/cyclonedds.xml"
+	fill "$here/fastdds-properties.xml" "$name" "$work/properties"
+	awk -v properties="$work/properties" \
+		'/<\/rtps>/ { while ((getline line <properties) > 0) print line } { print }' \
+		"$here/../loopback-fastdds.xml" >"$enclave/loopback-fastdds.xml"
 	rm -r "$work"
 	echo "$enclave: $role CN=$name,O=Cautery"
 }
