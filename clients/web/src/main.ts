@@ -113,6 +113,8 @@ export interface Inspection {
   layer(name: string): Layer | null;
   /** whether tissue of a layer is drawn over a point of the ground */
   drawnAt(layer: string, x: number, y: number): boolean;
+  /** degC at the vertex nearest to a point, as its colour tells it; null where temperature is not shown */
+  temperatureAt(point: readonly [number, number, number]): number | null;
   /** least and largest x, y, z of the tissue, m */
   extent(): { least: number[]; most: number[] };
   project(point: readonly [number, number, number]): { x: number; y: number };
@@ -139,6 +141,10 @@ const inspection: Inspection = {
   latenciesMs: () => model.samples.map((sample) => sample.latencyMs),
   layer: (name) => model.joined?.description.definition.layers?.find((layer) => layer.name === name) ?? null,
   drawnAt: (layer, x, y) => viewport.tissue?.covers(layer, x, y) ?? false,
+  temperatureAt: (point) => {
+    const range = model.frame?.temperatureRangeC;
+    return range && viewport.tissue ? range[0] + viewport.tissue.scalarAt(point) * (range[1] - range[0]) : null;
+  },
   extent: () => {
     const { min, max } = new Box3().setFromArray(viewport.tissue?.position.array ?? []);
     return { least: min.toArray(), most: max.toArray() };

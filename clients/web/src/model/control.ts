@@ -6,6 +6,8 @@ import type { Channels } from '../wire/worker_messages';
 import type { Model } from './model';
 
 const CHANNELS: Channels = ['positions', 'mask', 'exposure', 'charring', 'tools', 'statistics'];
+/** Channels that cost the daemon work of their own: joined only while they are shown. */
+export type ExtraChannel = 'stress' | 'temperature';
 const OFF_WORDS: Readonly<Record<string, string>> = {
   watchdog: 'no sign of life came from its driver in time',
   taken_over: 'somebody else took the tool over',
@@ -13,7 +15,7 @@ const OFF_WORDS: Readonly<Record<string, string>> = {
 };
 
 export class Control {
-  private withStress = false;
+  private extra: ExtraChannel | null = null;
 
   constructor(
     readonly model: Model,
@@ -36,13 +38,13 @@ export class Control {
     const { model } = this;
     model.session = session;
     if (session === null) model.setJoined(null);
-    this.link.watch(session, this.withStress ? [...CHANNELS, 'stress'] : CHANNELS);
+    this.link.watch(session, this.extra ? [...CHANNELS, this.extra] : CHANNELS);
     model.emit('sessions', model.sessions);
   }
 
-  setStress(wanted: boolean): void {
-    if (wanted === this.withStress) return;
-    this.withStress = wanted;
+  show(extra: ExtraChannel | null): void {
+    if (extra === this.extra) return;
+    this.extra = extra;
     if (this.model.session !== null) this.watch(this.model.session);
   }
 

@@ -2,8 +2,8 @@
 // What hangs off the rims of a cut sheet: a band of torn fibres, as long as the sheet's faces are wide,
 // from each rim outwards. The shader leaves single fibres of it. Only sight: nothing of it is in the daemon.
 
-/** Floats of a record: position, material coordinates, normal, heat exposure, charring, 0 root or 1 tip. */
-export const FRINGE_FLOATS = 12;
+/** Floats of a record: position, material coordinates, normal, heat exposure, charring, scalar, 0 root or 1 tip. */
+export const FRINGE_FLOATS = 13;
 const LONGEST_M = 0.003;
 /** of fibres beside which the cut ran, over those that it crossed */
 const SHORTEST = 0.55;
@@ -123,7 +123,8 @@ export class Fringe {
         records[at + 2] -= tip * SAG * reach;
         records[at + 9] = burn[burnBytes * vertex] / 255;
         records[at + 10] = burn[burnBytes * vertex + 1] / 255;
-        records[at + 11] = tip;
+        records[at + 11] = burn[burnBytes * vertex + burnBytes - 1] / 255;
+        records[at + 12] = tip;
       }
     });
     return { records, index: this.index };

@@ -3,7 +3,7 @@
 // faces in batches. Brought up to date from a stream's state; only what moved is worked on.
 // Lives in the worker and knows no renderer.
 import type { Changes, StreamState } from '../wire/decoder';
-import type { LayerDescription } from '../wire/messages.gen';
+import { TEMPERATURE, type LayerDescription } from '../wire/messages.gen';
 import type { Topology } from '../wire/topology';
 import { Fringe } from './fringe';
 import { makeVertexFaces, markInnerFaces, type VertexFaces } from './topology_tables';
@@ -23,14 +23,17 @@ export interface TissueSource {
   stepM: number;
   layers: readonly LayerDescription[];
   topology: Topology;
+  /** what the stream brings beside exposure and charring */
+  scalar: 'stress' | 'temperature';
   /** material coordinates, m (vertices x 3) */
   material: Float32Array;
 }
 
-/** Bytes of each vertex in `burn`: heat exposure, charring, cut rim, stress over stressScale. */
+/** Bytes of each vertex in `burn`: heat exposure, charring, cut rim, the stream's scalar over its range. */
 export const BURN_BYTES = 4;
 const RIM = 2;
-const STRESS = 3;
+export const SCALAR = 3;
+const BOILING_C = 100;
 
 export class Tissue {
   readonly batches: Batch[];
@@ -39,6 +42,8 @@ export class Tissue {
   readonly burn: Uint8Array;
   /** largest stress seen so far, in steps of the stream; 255 in burn */
   stressScale = 1;
+  /** what 0 and 255 are in burn, degC: least and largest temperature seen so far, and boiling water's */
+  readonly temperatureRangeC: [number, number] = [BOILING_C, BOILING_C];
   /** drawn faces of each batch; made anew where changed */
   readonly drawnIndex: Uint32Array[];
   /** what hangs off the rims of each batch; null where it is no sheet */
@@ -199,13 +204,33 @@ export class Tissue {
 
   private updateBurn(state: StreamState): void {
     const { burn } = this;
-    const { exposure, charring, stress } = state;
-    for (const value of stress) if (value > this.stressScale) this.stressScale = value;
-    const perStep = 255 / this.stressScale;
+    const { exposure, charring } = state;
     for (let v = 0; v < exposure.length; v++) {
       burn[BURN_BYTES * v] = Math.min(exposure[v], 255);
       burn[BURN_BYTES * v + 1] = Math.min(charring[v], 255);
-      burn[BURN_BYTES * v + STRESS] = stress[v] * perStep;
+    }
+    if (this.source.scalar === 'temperature') this.updateTemperature(state.temperature);
+    else this.updateStress(state.stress);
+  }
+
+  private updateStress(stress: Int32Array): void {
+    for (const value of stress) if (value > this.stressScale) this.stressScale = value;
+    const perStep = 255 / this.stressScale;
+    for (let v = 0; v < stress.length; v++) this.burn[BURN_BYTES * v + SCALAR] = stress[v] * perStep;
+  }
+
+  private updateTemperature(temperature: Int32Array): void {
+    const { leastC, stepC } = TEMPERATURE;
+    const range = this.temperatureRangeC;
+    for (const value of temperature) {
+      const celsius = leastC + stepC * value;
+      if (celsius < range[0]) range[0] = celsius;
+      if (celsius > range[1]) range[1] = celsius;
+    }
+    const perDegree = 255 / Math.max(range[1] - range[0], stepC);
+    for (let v = 0; v < temperature.length; v++) {
+      const above = leastC + stepC * temperature[v] - range[0];
+      this.burn[BURN_BYTES * v + SCALAR] = Math.round(above * perDegree);
     }
   }
 

@@ -16,7 +16,7 @@ import { FRINGE_FLOATS, type FringeShape } from '../model/fringe';
 import { FRAGMENTS, FRINGE_VERTEX } from './tissue_shader';
 import type { SharedUniforms } from './tissue_view';
 
-const ATTRIBUTES = [['position', 3, 0], ['material', 3, 3], ['normal', 3, 6], ['heat', 2, 9], ['tip', 1, 11]] as const;
+const ATTRIBUTES = [['position', 3, 0], ['material', 3, 3], ['normal', 3, 6], ['heat', 3, 9], ['tip', 1, 12]] as const;
 const GROWTH = 1.5; // of the arrays on the card, so that a cut does not make them anew with every face
 
 export class FringeView {

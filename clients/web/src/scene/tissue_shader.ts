@@ -19,7 +19,7 @@ void main() {
 
 export const FRINGE_VERTEX = /* glsl */ `
 in vec3 material;
-in vec2 heat;
+in vec3 heat;
 in float tip;
 out vec3 vWorld;
 out vec3 vNormal;
@@ -29,7 +29,7 @@ out float vTip;
 void main() {
   vWorld = position;
   vNormal = normal;
-  vBurn = vec4(heat, 1.0, 0.0);
+  vBurn = vec4(heat.xy, 1.0, heat.z);
   vMaterial = material;
   vTip = tip;
   gl_Position = projectionMatrix * viewMatrix * vec4(position, 1.0);
@@ -101,7 +101,7 @@ vec3 shade(Surface s, vec3 view) {
   float shine = pow(max(dot(s.normal, halfway), 0.0), s.gloss);
   float rim = pow(1.0 - max(dot(s.normal, view), 0.0), 4.0);
   colour += (shadow * shine * s.wet + rim * 0.10 * s.wet * sky) * vec3(1.0, 0.97, 0.93);
-  for (int i = 0; i < 4; i++) {
+  for (int i = 0; i < 4 && mapChannel < 0; i++) { // over a colour that tells a number a glow would tell another
     vec3 away = vWorld - glow[i].xyz;
     colour += glow[i].w * exp(-dot(away, away) / 2.2e-5) * vec3(0.9, 0.28, 0.06) * (0.25 + s.colour);
   }
@@ -131,7 +131,8 @@ void finish(Surface s, vec3 view) {
   vec3 colour;
   if (mapChannel < 0) colour = shade(s, view);
   else {
-    s.colour = pow(texture(colourMap, vec2(vBurn[mapChannel], 0.5)).rgb, vec3(2.2));
+    // As bright under the lamp as in the legend: more would bleach what tells a number.
+    s.colour = 0.75 * pow(texture(colourMap, vec2(vBurn[mapChannel], 0.5)).rgb, vec3(2.2));
     s.wet = 0.05;
     s.alpha = 1.0;
     colour = shade(s, view);

@@ -17,8 +17,8 @@ import {
   type IUniform,
 } from 'three';
 
-import { colourRow } from '../model/colour_maps';
-import { BURN_BYTES } from '../model/tissue';
+import { colourRow, type ColourMap } from '../model/colour_maps';
+import { BURN_BYTES, SCALAR } from '../model/tissue';
 import type { Frame, Joined } from '../wire/worker_messages';
 import { makeNoise } from './noise';
 import { FringeView } from './fringe_view';
@@ -40,8 +40,8 @@ export interface SharedUniforms {
   glow: IUniform<Vector4[]>;
 }
 
-function mapTexture(): DataTexture {
-  const texture = new DataTexture(colourRow(256), 256, 1);
+export function mapTexture(map: ColourMap): DataTexture {
+  const texture = new DataTexture(colourRow(map, 256), 256, 1);
   texture.minFilter = texture.magFilter = LinearFilter;
   texture.wrapS = texture.wrapT = ClampToEdgeWrapping;
   texture.needsUpdate = true;
@@ -51,7 +51,7 @@ function mapTexture(): DataTexture {
 export function makeSharedUniforms(): SharedUniforms {
   return {
     noise: { value: makeNoise() },
-    colourMap: { value: mapTexture() },
+    colourMap: { value: mapTexture('cividis') },
     mapChannel: { value: -1 },
     light: { value: new Vector3(0, 0, 1) },
     ambient: { value: 0.42 },
@@ -154,6 +154,20 @@ export class TissueView {
       for (let i = 0; i < index.length; i += 3) if (insideOf(at, index, i, x, y)) return true;
       return false;
     });
+  }
+
+  /** The stream's scalar over its range, 0 to 1, at the vertex nearest to a point. */
+  scalarAt(point: readonly [number, number, number]): number {
+    const at = this.position.array as Float32Array;
+    let nearest = 0;
+    let least = Infinity;
+    for (let v = 0; 3 * v < at.length; v++) {
+      const away = Math.hypot(at[3 * v] - point[0], at[3 * v + 1] - point[1], at[3 * v + 2] - point[2]);
+      if (away >= least) continue;
+      least = away;
+      nearest = v;
+    }
+    return this.burn.array[BURN_BYTES * nearest + SCALAR] / 255;
   }
 
   dispose(): void {

@@ -2,6 +2,8 @@
 // The picture: tissue, instruments, drape, smoke. Draws only when something changed.
 import { ArrowHelper, Box3, Color, Scene, Vector3, WebGLRenderer, type IUniform } from 'three';
 
+import { MAP_OF, type Scalar } from '../model/colour_maps';
+import { SCALAR } from '../model/tissue';
 import type { Tool } from '../wire/messages.gen';
 import type { ToolState } from '../wire/records';
 import type { Frame, FrameBuffers, Joined } from '../wire/worker_messages';
@@ -10,14 +12,14 @@ import { Orbit } from './orbit';
 import { Pace } from './pace';
 import { placeShadows } from './shadows';
 import { Smoke } from './smoke';
-import { makeSharedUniforms, TissueView } from './tissue_view';
+import { makeSharedUniforms, mapTexture, TissueView } from './tissue_view';
 import { ToolView } from './tool_view';
 
 export interface ViewOptions {
   wireframe: boolean;
   hiddenLayers: ReadonlySet<string>;
   /** as tissue, or a scalar as colour */
-  colouring: 'tissue' | 'exposure' | 'charring' | 'stress';
+  colouring: 'tissue' | Scalar;
   forceArrow: boolean;
 }
 
@@ -27,7 +29,7 @@ export interface Pose {
   jaw: number;
 }
 
-const CHANNELS = { tissue: -1, exposure: 0, charring: 1, stress: 3 } as const;
+const CHANNELS = { tissue: -1, exposure: 0, charring: 1, stress: SCALAR, temperature: SCALAR } as const;
 const METRES_PER_NEWTON = 0.02;
 const BODY_TEMPERATURE_C = 37;
 const SHARPEN_MS = 300;
@@ -45,6 +47,7 @@ export class Viewport {
   private changedAt = 0;
   private readonly scene = new Scene();
   private readonly shared = makeSharedUniforms();
+  private readonly colourMaps = { cividis: this.shared.colourMap.value, heat: mapTexture('heat') };
   private readonly tools = new Map<string, ToolView>();
   private readonly smoke = new Smoke();
   private readonly arrow = new ArrowHelper(new Vector3(0, 0, 1), new Vector3(), 0.01, 0xf5b301);
@@ -135,6 +138,7 @@ export class Viewport {
   setOptions(options: ViewOptions): void {
     this.options = options;
     this.shared.mapChannel.value = CHANNELS[options.colouring];
+    if (options.colouring !== 'tissue') this.shared.colourMap.value = this.colourMaps[MAP_OF[options.colouring]];
     this.tissue?.setWireframe(options.wireframe);
     for (const batch of this.tissue?.joined.batches ?? [])
       this.tissue?.showLayer(batch.layer, !options.hiddenLayers.has(batch.layer));

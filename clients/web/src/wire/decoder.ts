@@ -32,6 +32,8 @@ export interface StreamState {
   charring: Int32Array;
   /** (vertices), stress_step_pa */
   stress: Int32Array;
+  /** (vertices), TEMPERATURE.stepC from TEMPERATURE.leastC */
+  temperature: Int32Array;
   tools: ToolState[];
   statistics: Statistics | null;
 }
@@ -52,6 +54,7 @@ const SCALARS = [
   [SECTION.exposure, 'exposure'],
   [SECTION.charring, 'charring'],
   [SECTION.stress, 'stress'],
+  [SECTION.temperature, 'temperature'],
 ] as const;
 
 export class FrameDecoder {
@@ -74,6 +77,7 @@ export class FrameDecoder {
       exposure: scalar(),
       charring: scalar(),
       stress: scalar(),
+      temperature: scalar(),
       tools: [],
       statistics: null,
     };
@@ -141,7 +145,7 @@ export class FrameDecoder {
   /** What a key frame leaves out is zero. */
   private clear(): void {
     const { state } = this;
-    for (const array of [state.mask, state.exposure, state.charring, state.stress]) array.fill(0);
+    for (const array of [state.mask, state.exposure, state.charring, state.stress, state.temperature]) array.fill(0);
     state.tools = [];
     state.statistics = null;
     this.names = [];

@@ -29,7 +29,8 @@ export class Feed {
     const { layers } = description;
     const rest = Float32Array.from(topology.rest, (value, i) => originM[i % 3] + stepM * value);
     const material = materialCoordinates(topology, rest, layers, description.definition);
-    this.tissue = new Tissue({ vertexCount, faceCount, originM, stepM, layers, topology, material });
+    const scalar = stream.channels.includes('temperature') ? 'temperature' : 'stress';
+    this.tissue = new Tissue({ vertexCount, faceCount, originM, stepM, layers, topology, scalar, material });
     const batches = this.tissue.batches.map(({ faces, ...batch }) => ({ ...batch, faceCount: faces.length }));
     this.joined = { description, stream, batches, rest, material };
     this.spare = {
@@ -80,6 +81,7 @@ export class Feed {
       fringes,
       drawnFaces: tissue.drawnFaceCounts(),
       stressScalePa: tissue.stressScale * this.stream.stress_step_pa,
+      temperatureRangeC: this.stream.channels.includes('temperature') ? [...tissue.temperatureRangeC] : null,
       tools: state.tools,
       samples,
       framesDecoded,

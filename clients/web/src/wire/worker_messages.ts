@@ -67,6 +67,8 @@ export interface Frame {
   fringes: ({ batch: number } & FringeShape)[];
   drawnFaces: Record<string, number>;
   stressScalePa: number;
+  /** of the colours, degC; null where the stream has no temperature */
+  temperatureRangeC: readonly [number, number] | null;
   tools: ToolState[];
   samples: Sample[];
   framesDecoded: number;

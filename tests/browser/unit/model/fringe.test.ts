@@ -40,7 +40,7 @@ describe('the fringe of a cut', () => {
   it('hangs off both lips of a gap, out of the sheet', () => {
     const { fringe, hidden, burn } = strip();
     hidden.fill(1, 2, 6); // the two squares in the middle
-    burn[4 * 2] = 255;
+    burn.set([255, 0, 0, 51], 4 * 2);
     fringe.rebuild();
     const { records, index } = fringe.shape();
     expect(fringe.rimVertexCount).toBe(4); // two on each lip
@@ -51,11 +51,13 @@ describe('the fringe of a cut', () => {
       expect(Math.abs(root[0] - (left ? SIDE_M : 3 * SIDE_M))).toBeLessThan(SINGLE);
       expect((tip[0] - root[0]) * (left ? 1 : -1)).toBeGreaterThan(0);
       expect(Math.hypot(tip[0] - root[0], tip[1] - root[1])).toBeLessThan(1.5 * SIDE_M);
-      expect([root[11], tip[11]]).toEqual([0, 1]);
+      expect([root[12], tip[12]]).toEqual([0, 1]);
       expect([...tip.subarray(3, 9)]).toEqual([...root.subarray(3, 9)]); // fibres run straight out
     }
     const exposed = Array.from({ length: 4 }, (_, i) => record(records, 2 * i)[9]);
     expect(exposed.filter((exposure) => exposure === 1)).toHaveLength(1);
+    const scalars = Array.from({ length: 8 }, (_, i) => record(records, i)[11]); // of roots and tips
+    expect(scalars.filter((scalar) => Math.abs(scalar - 0.2) < SINGLE)).toHaveLength(2);
   });
 
   it('goes when what was hidden comes back', () => {

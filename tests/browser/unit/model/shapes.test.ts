@@ -1,5 +1,4 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-import { colourAt } from '../../../../clients/web/src/model/colour_maps';
 import { fibreFrame, materialCoordinates } from '../../../../clients/web/src/model/fibres';
 import { pick } from '../../../../clients/web/src/model/pick';
 import { samplesCsv } from '../../../../clients/web/src/model/samples';
@@ -82,13 +81,5 @@ describe('what people save and see', () => {
     expect(row.split(',').slice(0, 8)).toEqual(['1.5', '9', '2', '100', '0.1', '0.5', '3', '']);
     expect(row.split(',')).toHaveLength(head.split(',').length);
     expect(end).toBe('');
-  });
-
-  it('has a colour map that only gets lighter', () => {
-    const light = Array.from({ length: 64 }, (_, i) => {
-      const [r, g, b] = colourAt(i / 63);
-      return 0.2126 * r + 0.7152 * g + 0.0722 * b;
-    });
-    light.slice(1).forEach((value, i) => expect(value).toBeGreaterThan(light[i]));
   });
 });

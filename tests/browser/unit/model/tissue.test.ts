@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-import { Tissue } from '../../../../clients/web/src/model/tissue';
+import { Tissue, type TissueSource } from '../../../../clients/web/src/model/tissue';
 import type { Changes, StreamState } from '../../../../clients/web/src/wire/decoder';
 import type { LayerDescription } from '../../../../clients/web/src/wire/messages.gen';
 
@@ -20,15 +20,15 @@ function layer(name: string, kind: LayerDescription['kind'], first: number, coun
   return { name, kind, first_face: first, face_count: count, element_count: count };
 }
 
-function makeTissue(faces: number[][], layers: LayerDescription[]): { tissue: Tissue; state: StreamState } {
+function makeTissue(faces: number[][], layers: LayerDescription[], shown: TissueSource['scalar'] = 'stress'): { tissue: Tissue; state: StreamState } {
   const topology = { faces: Int32Array.from(faces.flat()), faceLayers: new Int32Array(faces.length), texture: null, rest: new Int32Array(15) };
   const tissue = new Tissue({
-    vertexCount: POINTS.length, faceCount: faces.length, originM: [1, 0, 0], stepM: STEP_M, layers, topology,
+    vertexCount: POINTS.length, faceCount: faces.length, originM: [1, 0, 0], stepM: STEP_M, layers, topology, scalar: shown,
     material: Float32Array.from(POINTS.flat(), (value) => STEP_M * value),
   });
   const scalar = (): Int32Array => new Int32Array(POINTS.length);
   const state = {
-    quantised: Int32Array.from(POINTS.flat()), mask: new Int32Array(1), exposure: scalar(), charring: scalar(), stress: scalar(),
+    quantised: Int32Array.from(POINTS.flat()), mask: new Int32Array(1), exposure: scalar(), charring: scalar(), stress: scalar(), temperature: scalar(),
   } as unknown as StreamState;
   return { tissue, state };
 }
@@ -107,5 +107,26 @@ describe('tissue', () => {
     expect(tissue.stressScale).toBe(1000);
     expect([...tissue.burn.subarray(0, 2)]).toEqual([255, 0]);
     expect([tissue.burn[7], tissue.burn[11]]).toEqual([127, 255]);
+  });
+
+  it('scales temperature from the least seen to the largest, or to boiling water', () => {
+    const { tissue, state } = makeTissue(FAT, [layer('fat', 'fat', 0, 7)], 'temperature');
+    const steps = (celsius: number): number => (celsius + 20) / 0.25; // protocol/README.md
+    const scalars = (): number[] => POINTS.map((_, v) => tissue.burn[4 * v + 3]);
+    state.stress.fill(1000); // not shown
+    state.temperature.fill(steps(37));
+    tissue.update(state, WHOLE);
+    expect(tissue.temperatureRangeC).toEqual([37, 100]);
+    expect(scalars()).toEqual([0, 0, 0, 0, 0]);
+    state.temperature.set([steps(100), steps(68.5)], 1);
+    tissue.update(state, WHOLE);
+    expect(scalars()).toEqual([0, 255, 128, 0, 0]);
+    state.temperature.set([steps(170), steps(12)], 3);
+    tissue.update(state, WHOLE);
+    expect(tissue.temperatureRangeC).toEqual([12, 170]);
+    expect(scalars()).toEqual([37, 100, 68.5, 170, 12].map((celsius) => Math.round((255 * (celsius - 12)) / 158)));
+    state.temperature.fill(steps(37)); // cooled: the colours keep their meaning
+    tissue.update(state, WHOLE);
+    expect(tissue.temperatureRangeC).toEqual([12, 170]);
   });
 });

@@ -31,7 +31,7 @@ function expectState(decoder: FrameDecoder, number: number): void {
   expect(state.sequence).toBe(Number(view.getBigUint64(8, true)));
   expect(state.tick).toBe(Number(view.getBigUint64(16, true)));
   let offset = 24;
-  for (const array of [state.quantised, state.mask, state.exposure, state.charring, state.stress]) {
+  for (const array of [state.quantised, state.mask, state.exposure, state.charring, state.stress, state.temperature]) {
     const wanted = bytes.slice(offset, offset + array.byteLength);
     expect(Buffer.compare(new Uint8Array(array.buffer), wanted), `array at ${offset} of frame ${number}`).toBe(0);
     offset += array.byteLength;

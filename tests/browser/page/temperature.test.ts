@@ -1,0 +1,109 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Temperature as colour: hot around the energized hook, the body's elsewhere, in the model and in the
+// picture, with a legend that tells the range; and no longer asked for once it is not shown.
+import AxeBuilder from '@axe-core/playwright';
+import type { Browser } from 'playwright-core';
+
+import { Daemon } from './daemon';
+import { launch, ViewerPage, type Colour } from './viewer_page';
+
+type Point = [number, number, number];
+
+const BODY_C = 37; // ambient_c of deploy/scenes/fascia.json, by default
+const SHADE_C = 0.6; // what the picture tells apart: a 255th of the range from body to hook
+const HOT_C = 70;
+/** Places in front of the hook's foot, which hides none of them: towards the camera, and along it. */
+const FRONT_M = [0.0035, 0.0045, 0.0055];
+const ALONG_M = [-0.003, -0.002, -0.001, 0, 0.001, 0.002, 0.003];
+const FAR: Point[] = [[-0.045, 0.035, 0], [0.045, 0.035, 0], [0.045, -0.035, 0], [-0.045, -0.035, 0], [0.045, 0, 0]];
+/** Green that red has before it, over red: none in the body's pale yellow, 0.4 in the orange of half the range. */
+const RED = 0.25;
+const PALE = 0.1;
+
+const redness = ([r, g]: Colour): number => (r - g) / Math.max(r, 1);
+const median = (values: readonly number[]): number => [...values].sort((a, b) => a - b)[Math.floor(values.length / 2)];
+
+describe('temperature as colour', () => {
+  const daemon = new Daemon(['--demo', 'fascia']);
+  let browser: Browser;
+  let viewer: ViewerPage;
+
+  beforeAll(async () => {
+    await daemon.start();
+    browser = await launch();
+    viewer = await ViewerPage.open(browser, daemon.url);
+    await viewer.live('d1-fascia');
+  });
+  afterAll(async () => {
+    await browser.close();
+    await daemon.end();
+  });
+
+  const temperatures = (points: readonly Point[]): Promise<(number | null)[]> =>
+    viewer.page.evaluate((all) => all.map((point) => window.cautery.temperatureAt(point)), [...points]);
+
+  it('is the body’s while nothing heats', async () => {
+    const { page } = viewer;
+    expect(await temperatures(FAR)).toEqual(FAR.map(() => null));
+    await page.getByRole('tab', { name: 'View' }).click();
+    await page.locator('#colouring').selectOption('temperature');
+    await viewer.until(() => window.cautery.temperatureAt([0, 0, 0]) !== null, null, 'the stream brings temperature');
+    for (const celsius of await temperatures([[0, 0, 0], ...FAR])) expect(celsius).toBe(BODY_C);
+    expect(await page.locator('#legend > span').textContent()).toBe('Temperature');
+    await viewer.until(
+      () => [...document.querySelectorAll('#legend small')].map((end) => end.textContent).join() === '37 °C,100 °C',
+      null,
+      'the legend tells the body’s temperature and boiling water’s',
+    );
+  });
+
+  it('is high around the energized hook and the body’s far away, in the model and in the picture', async () => {
+    const { page } = viewer;
+    await viewer.grab([0, 0, 0]);
+    await page.mouse.up(); // or the hook would follow to the button below
+    await page.keyboard.down('Space');
+    await viewer.until(
+      ([hot, reach]) => {
+        const [x, y] = window.cautery.tip;
+        return (window.cautery.temperatureAt([x, y - reach, 0]) ?? 0) > hot;
+      },
+      [HOT_C, FRONT_M[0]] as const,
+      'tissue in front of the hook is hot',
+    );
+    await page.getByRole('button', { name: 'Pause' }).click(); // the heat stays where it is
+    await viewer.until(() => window.cautery.paused, null, 'paused');
+    await page.locator('#picture').focus();
+    await page.keyboard.up('Space');
+    await viewer.drawn();
+    await viewer.until(() => window.cautery.idle, null, 'the picture of it');
+
+    const [x, y] = (await viewer.state()).tip;
+    const front = FRONT_M.flatMap((reach) => ALONG_M.map((along): Point => [x + along, y - reach, 0]));
+    const near = await temperatures(front);
+    const hot = front.filter((_, i) => (near[i] ?? 0) > HOT_C);
+    const colours = await viewer.coloursAt([...hot, ...FAR]);
+    await viewer.screenshot('temperature');
+    expect(hot.length).toBeGreaterThan(5);
+    for (const celsius of await temperatures(FAR)) expect(Math.abs((celsius ?? 0) - BODY_C)).toBeLessThan(SHADE_C);
+    expect(median(colours.slice(0, hot.length).map(redness))).toBeGreaterThan(RED);
+    expect(Math.max(...colours.slice(hot.length).map(redness))).toBeLessThan(PALE);
+  });
+
+  it('tells the range in the legend, which assistive programs can read', async () => {
+    const { page } = viewer;
+    const [least, most] = await page.locator('#legend small').allTextContents();
+    expect(least).toBe('37 °C');
+    expect(most).toMatch(/^\d+ °C$/);
+    expect(parseFloat(most)).toBeGreaterThanOrEqual(HOT_C);
+    expect(parseFloat(most)).toBeLessThanOrEqual(170); // of the hook
+    const { violations } = await new AxeBuilder({ page }).analyze();
+    expect(violations.filter(({ impact }) => impact === 'serious' || impact === 'critical').map(({ id }) => id)).toEqual([]);
+  });
+
+  it('is not asked for once tissue is shown as tissue', async () => {
+    await viewer.page.locator('#colouring').selectOption('tissue');
+    await viewer.until(() => window.cautery.temperatureAt([0, 0, 0]) === null, null, 'the stream without temperature');
+    expect(await viewer.page.locator('#legend').isVisible()).toBe(false);
+    expect(viewer.complaints).toEqual([]);
+  });
+});
