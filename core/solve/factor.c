@@ -116,25 +116,6 @@ void cau_factor_destroy(cau_factor *factor)
 	free(factor);
 }
 
-cau_status cau_factor_clone(const cau_factor *factor, cau_factor **out, cau_error *error)
-{
-	cau_factor *clone = NULL;
-	cau_status status = create_empty(&clone, error);
-	if (status)
-		return status;
-	clone->l = cholmod_copy_factor(factor->l, &clone->common);
-	if (!clone->l)
-		status = cau_fail(error, CAU_NO_MEMORY, NULL, "no memory for a second factor");
-	if (!status)
-		status = finish_analysis(clone, error);
-	if (status) {
-		cau_factor_destroy(clone);
-		return status;
-	}
-	*out = clone;
-	return CAU_OK;
-}
-
 cau_status cau_factor_refactor(cau_factor *factor, const cau_matrix *matrix, cau_error *error)
 {
 	cholmod_sparse a = view_of(matrix);

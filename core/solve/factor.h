@@ -25,11 +25,8 @@ cau_status cau_factor_create(cau_factor **factor, const cau_matrix *matrix,
                              const int32_t *permutation, cau_error *error);
 void cau_factor_destroy(cau_factor *factor); // takes NULL
 
-// A factor of the same pattern and order, without values: cau_factor_refactor fills it, on any
-// thread.
-cau_status cau_factor_clone(const cau_factor *factor, cau_factor **clone, cau_error *error);
-
 // Numeric factorisation anew with the same pattern: canonical, its bits depend on the values alone.
+// On any thread; the order may be read meanwhile, nothing else.
 cau_status cau_factor_refactor(cau_factor *factor, const cau_matrix *matrix, cau_error *error);
 
 // A <- A + C C^T (add) or A - C C^T, C of `columns` sparse columns in the matrix's own row numbers:

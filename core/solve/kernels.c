@@ -9,6 +9,7 @@
 #include "constraint/link_kernel.h"
 #include "constraint/plasticity_kernel.h"
 #include "constraint/sheet_kernel.h"
+#include "solve/pack_kernel.h"
 #include "solve/sweep_kernel.h"
 
 typedef real vertex_reals __attribute__((vector_size(4 * sizeof(real)), may_alias));
@@ -71,6 +72,13 @@ static void backward(const cau_sweep *sweep, int32_t supernode, void *const rhs[
 {
 	real *const b[3] = {rhs[0], rhs[1], rhs[2]};
 	sweep_backward_node(sweep, &sweep->supernode[supernode], b, work);
+}
+
+static void pack(const cau_supernode *node, const double *block, const double *w,
+                 void *forward_panel, void *backward_panel)
+{
+	pack_node(node, block, w, (real *)forward_panel + node->forward,
+	          (real *)backward_panel + node->backward);
 }
 
 enum { STRIP = 64 * LANES }; // reals summed at once: few enough that float sums stay accurate
@@ -178,6 +186,7 @@ const cau_kernels CAU_TABLE = {
 	.sum = sum,
 	.forward = forward,
 	.backward = backward,
+	.pack = pack,
 	.dot = dot,
 	.spread = spread,
 	.add_scaled = add_scaled,

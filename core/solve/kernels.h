@@ -57,6 +57,10 @@ typedef struct cau_kernels {
 	void (*forward)(const cau_sweep *sweep, int32_t supernode, void *const rhs[3],
 	                void *const above[3], void *work);
 	void (*backward)(const cau_sweep *sweep, int32_t supernode, void *const rhs[3], void *work);
+	// W of one supernode into its places in the panels (real), from its diagonal block L_s (columns
+	// x columns) and [I; L_r] (columns x padded_rows), by columns.
+	void (*pack)(const cau_supernode *node, const double *block, const double *w, void *forward,
+	             void *backward);
 	// Dot product in double of n reals, in a fixed order.
 	double (*dot)(const void *a, const void *b, int64_t n);
 	// increment[v] += column[v] * force for v in [first, last); column is real, one a vertex.

@@ -48,26 +48,16 @@ cau_status cau_matrix_update_create(cau_matrix_update *update, cau_step_solver *
 	if (solver->diagonal)
 		return CAU_OK;
 	update->least_pivot_bound = least_mass_pivot(solver);
-	size_t entries = (size_t)solver->system.matrix.first[solver->system.row_count];
 	update->touched = cau_arena_array(arena, (size_t)solver->sweep.supernode_count, 1);
-	update->next_value = cau_arena_array(arena, entries, sizeof(double));
-	update->next_scratch =
-		cau_arena_array(arena, (size_t)cau_sweep_scratch_count(&solver->sweep), sizeof(double));
 	update->background = cau_background_create();
-	if (!update->touched || !update->next_value || !update->next_scratch || !update->background)
-		return no_memory(error);
-	cau_status status = cau_sweep_create_panels(&solver->sweep, arena, &update->next_panels, error);
-	if (!status)
-		status = cau_factor_clone(solver->factor, &update->next_factor, error);
-	return status;
+	return update->touched && update->background ? CAU_OK : no_memory(error);
 }
 
 void cau_matrix_update_finish(cau_matrix_update *update)
 {
 	cau_background_destroy(update->background);
-	cau_factor_destroy(update->next_factor);
+	cau_sweep_finish_panels(&update->next_panels);
 	update->background = NULL;
-	update->next_factor = NULL;
 }
 
 // The diagonal bounds drag in char, so it must not count what is gone (never less than the mass).
@@ -139,11 +129,12 @@ cau_status cau_matrix_update_downdate(cau_matrix_update *update, const cau_waiti
 	return status;
 }
 
-void cau_matrix_update_pack(cau_matrix_update *update)
+double cau_matrix_update_pack(cau_matrix_update *update)
 {
-	cau_sweep_pack(&update->solver->sweep, update->solver->factor, update->touched);
+	double least = cau_sweep_pack(&update->solver->sweep, update->solver->factor, update->touched);
 	memset(update->touched, 0, (size_t)update->solver->sweep.supernode_count);
 	update->solver->factor_version++;
+	return least;
 }
 
 static void note_operations(cau_matrix_update *update, const cau_waiting *list, int32_t count)
@@ -154,8 +145,10 @@ static void note_operations(cau_matrix_update *update, const cau_waiting *list, 
 	update->group_count++;
 }
 
-// A few exact downdates, the oldest first, then the touched part of the packed factor anew.
-static cau_status downdate(cau_matrix_update *update, uint64_t tick, cau_error *error)
+// A few exact downdates, the oldest first, then the touched part of the packed factor anew. *least
+// is the least pivot that they changed.
+static cau_status downdate(cau_matrix_update *update, uint64_t tick, double *least,
+                           cau_error *error)
 {
 	cau_status status = CAU_OK;
 	int32_t done = 0;
@@ -167,8 +160,7 @@ static cau_status downdate(cau_matrix_update *update, uint64_t tick, cau_error *
 		done += taken;
 	}
 	forget_waiting(update, done, tick);
-	if (done)
-		cau_matrix_update_pack(update);
+	*least = done ? cau_matrix_update_pack(update) : INFINITY;
 	return status;
 }
 
@@ -179,17 +171,24 @@ static void make_next(void *context)
 	cau_step_solver *solver = update->solver;
 	cau_alive alive;
 	memcpy(alive.element, update->next_canonical, sizeof alive.element);
-	cau_matrix matrix = solver->system.matrix;
-	matrix.value = update->next_value;
-	cau_system_assemble(&solver->system, solver->tissue, &alive, solver->step_s, matrix.value);
-	update->next_status = cau_factor_refactor(update->next_factor, &matrix, NULL);
-	if (!update->next_status)
-		cau_sweep_pack_panels(&solver->sweep, &update->next_panels, update->next_factor,
-		                      update->next_scratch);
+	const cau_matrix *matrix = &solver->system.matrix;
+	cau_system_assemble(&solver->system, solver->tissue, &alive, solver->step_s, matrix->value);
+	update->next_status = cau_factor_refactor(solver->factor, matrix, NULL);
+	if (!update->next_status &&
+	    (update->next_panels.forward ||
+	     !cau_sweep_create_panels(&solver->sweep, &update->next_panels, NULL)))
+		cau_sweep_pack_panels(&solver->sweep, &update->next_panels, solver->factor);
+}
+
+static void release_panels(void *context)
+{
+	cau_matrix_update *update = context;
+	cau_sweep_finish_panels(&update->next_panels);
 }
 
 void cau_matrix_update_start(cau_matrix_update *update, uint64_t swap_tick)
 {
+	cau_background_wait(update->background); // for the release of old panels
 	update->making = 1;
 	update->swap_tick = swap_tick;
 	cau_background_start(update->background, make_next, update);
@@ -202,10 +201,10 @@ static cau_status swap(cau_matrix_update *update, uint64_t tick, cau_error *erro
 	if (update->next_status)
 		return cau_fail(error, update->next_status, NULL, "the system could not be factored anew");
 	cau_step_solver *solver = update->solver;
-	cau_factor *old = solver->factor;
-	solver->factor = update->next_factor;
-	update->next_factor = old;
-	cau_sweep_swap_panels(&solver->sweep, &update->next_panels);
+	if (update->next_panels.forward)
+		cau_sweep_swap_panels(&solver->sweep, &update->next_panels);
+	else
+		cau_sweep_pack(&solver->sweep, solver->factor, NULL);
 	solver->factor_version++;
 	for (int kind = 0; kind < CAU_ELEMENT_KINDS; ++kind) {
 		uint8_t *canonical = update->canonical[kind];
@@ -230,40 +229,57 @@ static int32_t tick_capacity(void)
 	return CAU_DOWNDATES_PER_TICK * (CAU_UPDATE_RANK / 3);
 }
 
-cau_status cau_matrix_update_advance(cau_matrix_update *update, const cau_alive *alive,
-                                     uint64_t tick, cau_error *error)
+static void advance_diagonal(cau_matrix_update *update, const cau_alive *alive)
 {
 	cau_step_solver *solver = update->solver;
-	if (solver->diagonal) {
-		if (update->waiting_count) {
-			cau_system_assemble_diagonal(&solver->system, solver->tissue, alive, solver->step_s);
-			solver->factor_version++;
-		}
-		update->waiting_count = 0;
-		return CAU_OK;
-	}
-	cau_status status = CAU_OK;
-	if (update->making && tick >= update->swap_tick)
-		status = swap(update, tick, error);
-	if (status || update->making || !update->waiting_count)
-		return status;
+	if (!update->waiting_count)
+		return;
+	cau_system_assemble_diagonal(&solver->system, solver->tissue, alive, solver->step_s);
+	solver->factor_version++;
+	update->waiting_count = 0;
+}
+
+// Downdates what waits, or starts a new factor when that is too much.
+static cau_status serve(cau_matrix_update *update, const cau_alive *alive, uint64_t tick,
+                        cau_error *error)
+{
 	int worn = update->operation_count + update->waiting_count > CAU_DOWNDATES_AT_MOST;
 	if (update->waiting_count <= tick_capacity() && !worn) {
-		status = downdate(update, tick, error);
-		if (status || cau_factor_least_pivot(solver->factor) >= update->least_pivot_bound)
+		double least;
+		cau_status status = downdate(update, tick, &least, error);
+		if (status || least >= update->least_pivot_bound)
 			return status;
 		return cau_matrix_update_refactor(update, alive, error);
 	}
 	update->waiting_at_start = update->waiting_count;
-	copy_alive(update->next_canonical, alive, solver->tissue);
+	copy_alive(update->next_canonical, alive, update->solver->tissue);
 	cau_matrix_update_start(update, tick + swap_delay(update));
 	return CAU_OK;
 }
 
+cau_status cau_matrix_update_advance(cau_matrix_update *update, const cau_alive *alive,
+                                     uint64_t tick, cau_error *error)
+{
+	if (update->solver->diagonal) {
+		advance_diagonal(update, alive);
+		return CAU_OK;
+	}
+	cau_status status = CAU_OK;
+	int due = update->making && tick >= update->swap_tick;
+	if (due)
+		status = swap(update, tick, error);
+	if (!status && !update->making && update->waiting_count)
+		status = serve(update, alive, tick, error);
+	if (due && !update->making) // another making would use the old panels
+		cau_background_start(update->background, release_panels, update);
+	return status;
+}
+
 void cau_matrix_update_stop(cau_matrix_update *update)
 {
-	if (update->making)
+	if (update->background)
 		cau_background_wait(update->background);
+	cau_sweep_finish_panels(&update->next_panels);
 	update->making = 0;
 }
 

@@ -3,7 +3,10 @@
 //
 // A removed element stays in the factor without force until it is taken out: a few a tick by exact
 // downdates; when more wait than that can serve, a whole new factor is made on another thread and
-// swapped in a fixed number of ticks later, so that every replay swaps at the same tick.
+// swapped in a fixed number of ticks later, so that every replay swaps at the same tick. The new
+// factor is made in the old one's place, since nothing but its order is read meanwhile: the steps
+// go on with the packed one. Its panels are there from the start of the making to just after the
+// swap.
 #pragma once
 
 #include "base/background.h"
@@ -37,9 +40,7 @@ typedef struct cau_matrix_update {
 	int32_t waiting_at_start; // the first of `waiting` that it takes care of
 	uint8_t *next_canonical[CAU_ELEMENT_KINDS];
 	cau_background *background;
-	cau_factor *next_factor;
-	cau_sweep_panels next_panels;
-	double *next_value, *next_scratch;
+	cau_sweep_panels next_panels; // empty if there was no memory: packed at the swap then
 	cau_status next_status;
 	uint8_t *touched; // (supernode_count)
 	double least_pivot_bound;
@@ -61,16 +62,17 @@ cau_status cau_matrix_update_advance(cau_matrix_update *update, const cau_alive 
                                      uint64_t tick, cau_error *error);
 
 // Takes as many elements of `list` out of the factor as one update of rank 8 holds; *taken of them.
-// The packed factor is refreshed by cau_matrix_update_pack.
+// The packed factor is refreshed by cau_matrix_update_pack, which returns the least pivot of what
+// it packed.
 cau_status cau_matrix_update_downdate(cau_matrix_update *update, const cau_waiting *list,
                                       int32_t count, int32_t *taken, cau_error *error);
-void cau_matrix_update_pack(cau_matrix_update *update);
+double cau_matrix_update_pack(cau_matrix_update *update);
 
 // Starts making the factor of next_canonical, to be swapped in at swap_tick.
 void cau_matrix_update_start(cau_matrix_update *update, uint64_t swap_tick);
 
 // Waits for the factor in the making and forgets it: before what it reads (materials, pins, the
-// live elements it stands for) changes.
+// live elements it stands for) changes. The factor must be made anew then.
 void cau_matrix_update_stop(cau_matrix_update *update);
 
 // Factors anew at once (materials or pins changed, restore): nothing waits afterwards.

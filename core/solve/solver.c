@@ -108,8 +108,7 @@ cau_status cau_solver_factor(cau_step_solver *solver, const cau_alive *alive,
 	cau_status status =
 		cau_factor_create(&solver->factor, &solver->system.matrix, permutation, error);
 	if (!status)
-		status =
-			cau_sweep_create(&solver->sweep, arena, solver->factor, solver->elements.single, error);
+		status = cau_sweep_create(&solver->sweep, arena, solver->factor, solver->kernels, error);
 	if (!status)
 		status = allocate_sweep_work(solver, arena, error);
 	return status;
@@ -117,6 +116,7 @@ cau_status cau_solver_factor(cau_step_solver *solver, const cau_alive *alive,
 
 void cau_solver_finish(cau_step_solver *solver)
 {
+	cau_sweep_finish(&solver->sweep);
 	cau_factor_destroy(solver->factor);
 	solver->factor = NULL;
 }

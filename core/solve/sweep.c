@@ -3,11 +3,10 @@
 
 #include <string.h>
 
-#include "constraint/elements.h"
+#include "solve/kernels.h"
 
 enum {
-	LEAF_COLUMNS = 48,  // subtrees up to this size become one dense block (32 to 64 measured best)
-	NODE_COLUMNS = 128, // no supernode is wider
+	LEAF_COLUMNS = 48, // subtrees up to this size become one dense block (32 to 64 measured best)
 	PAD = 16,
 };
 
@@ -66,7 +65,7 @@ static int32_t column_count(const cau_factor *factor, int32_t j)
 static int worth_merging(int64_t columns, int64_t rows, int64_t entries)
 {
 	int64_t area = columns * (columns + 1) / 2 + columns * rows;
-	return columns <= NODE_COLUMNS && (area - entries) * 5 <= area;
+	return columns <= CAU_NODE_COLUMNS && (area - entries) * 5 <= area;
 }
 
 // Shapes the supernodes: leaf subtrees whole, then chains of columns with the same rows, then
@@ -229,16 +228,6 @@ static cau_status no_memory(cau_error *error)
 	return cau_fail(error, CAU_NO_MEMORY, NULL, "no memory for the packed factor");
 }
 
-cau_status cau_sweep_create_panels(const cau_sweep *sweep, cau_arena *arena,
-                                   cau_sweep_panels *panels, cau_error *error)
-{
-	size_t size = cau_real_bytes(sweep->single);
-	panels->forward = cau_arena_array(arena, (size_t)sweep->panel_reals, size);
-	panels->backward = cau_arena_array(arena, (size_t)sweep->panel_reals, size);
-	panels->d_inverse = cau_arena_array(arena, (size_t)sweep->n, size);
-	return panels->forward && panels->backward && panels->d_inverse ? CAU_OK : no_memory(error);
-}
-
 static cau_status shape_supernodes(cau_sweep *sweep, cau_arena *arena, const cau_factor *factor,
                                    cau_arena *scratch, cau_error *error)
 {
@@ -280,10 +269,18 @@ static cau_status shape_supernodes(cau_sweep *sweep, cau_arena *arena, const cau
 	return CAU_OK;
 }
 
-cau_status cau_sweep_create(cau_sweep *sweep, cau_arena *arena, const cau_factor *factor,
-                            int single, cau_error *error)
+// What packing one supernode takes: row places, its columns, its diagonal block.
+static size_t scratch_count(const cau_sweep *sweep)
 {
-	*sweep = (cau_sweep){.single = single, .n = cau_factor_size(factor)};
+	return (size_t)sweep->n +
+	       (size_t)CAU_NODE_COLUMNS * ((size_t)sweep->max_rows + CAU_NODE_COLUMNS);
+}
+
+cau_status cau_sweep_create(cau_sweep *sweep, cau_arena *arena, const cau_factor *factor,
+                            const cau_kernels *kernels, cau_error *error)
+{
+	*sweep =
+		(cau_sweep){.single = kernels->single, .kernels = kernels, .n = cau_factor_size(factor)};
 	cau_arena scratch = {0};
 	cau_status status = shape_supernodes(sweep, arena, factor, &scratch, error);
 	size_t nodes = (size_t)sweep->supernode_count, n = (size_t)sweep->n;
@@ -299,15 +296,14 @@ cau_status cau_sweep_create(cau_sweep *sweep, cau_arena *arena, const cau_factor
 		name_top_rows(sweep, top_number);
 		sweep->padded_n = pad(sweep->n);
 		sweep->padded_top = pad(sweep->top_count);
-		size_t size = cau_real_bytes(single);
-		cau_sweep_panels panels;
-		status = cau_sweep_create_panels(sweep, arena, &panels, error);
+		size_t size = cau_real_bytes(sweep->single);
+		cau_sweep_panels panels = {0};
+		status = cau_sweep_create_panels(sweep, &panels, error);
 		cau_sweep_swap_panels(sweep, &panels);
 		sweep->rhs = cau_arena_array(arena, 3 * (size_t)sweep->padded_n, size);
 		sweep->above =
 			cau_arena_array(arena, (size_t)sweep->task_count * 3 * (size_t)sweep->padded_top, size);
-		sweep->scratch =
-			cau_arena_array(arena, (size_t)cau_sweep_scratch_count(sweep), sizeof(double));
+		sweep->scratch = cau_arena_array(arena, scratch_count(sweep), sizeof(double));
 		if (!status && (!sweep->rhs || !sweep->above || !sweep->scratch))
 			status = no_memory(error);
 	}
@@ -317,95 +313,7 @@ cau_status cau_sweep_create(cau_sweep *sweep, cau_arena *arena, const cau_factor
 	return status;
 }
 
-void cau_sweep_swap_panels(cau_sweep *sweep, cau_sweep_panels *panels)
+void cau_sweep_finish(cau_sweep *sweep)
 {
-	cau_sweep_panels old = {sweep->forward, sweep->backward, sweep->d_inverse};
-	sweep->forward = panels->forward;
-	sweep->backward = panels->backward;
-	sweep->d_inverse = panels->d_inverse;
-	*panels = old;
-}
-
-int64_t cau_sweep_scratch_count(const cau_sweep *sweep)
-{
-	return (int64_t)NODE_COLUMNS * (sweep->max_rows + NODE_COLUMNS) + sweep->n;
-}
-
-// Dense W of one supernode in double, by columns with stride columns + rows: first L, then L_s^-1
-// in place of the diagonal block and L_r L_s^-1 below.
-static void dense_panel(const cau_sweep *sweep, const cau_supernode *node, const cau_factor *factor,
-                        cau_sweep_panels *panels, double *w, double *place)
-{
-	int32_t columns = node->columns, stride = columns + node->rows;
-	int32_t *row_place = (int32_t *)place;
-	for (int32_t i = 0; i < node->rows; ++i)
-		row_place[sweep->row_global[node->row + i]] = columns + i;
-	memset(w, 0, (size_t)columns * (size_t)stride * sizeof *w);
-	for (int32_t j = 0; j < columns; ++j) {
-		const int32_t *row;
-		const double *value;
-		double pivot;
-		int32_t count = cau_factor_column(factor, node->first + j, &row, &value, &pivot);
-		cau_real_set(panels->d_inverse, sweep->single, node->first + j, 1 / pivot);
-		double *column = w + (int64_t)j * stride;
-		column[j] = 1;
-		for (int32_t k = 0; k < count; ++k) {
-			int32_t local = row[k] - node->first;
-			column[local < columns ? local : row_place[row[k]]] = value[k];
-		}
-	}
-	// Column j of W = column j of L minus the later columns of W weighted by L's entries in j: from
-	// the last column back, W_j = L_j - sum over i > j of L_ij W_i for the rows below; and for the
-	// inverse block W_j = e_j - sum L_ij W_i.
-	for (int32_t j = columns - 1; j >= 0; --j) {
-		double *column = w + (int64_t)j * stride;
-		double weight[NODE_COLUMNS];
-		for (int32_t i = j + 1; i < columns; ++i) {
-			weight[i] = column[i];
-			column[i] = 0;
-		}
-		for (int32_t i = j + 1; i < columns; ++i) {
-			const double *later = w + (int64_t)i * stride;
-			for (int32_t r = i; weight[i] != 0 && r < stride; ++r)
-				column[r] -= weight[i] * later[r];
-		}
-	}
-}
-
-static void pack_node(const cau_sweep *sweep, const cau_supernode *node, const cau_factor *factor,
-                      cau_sweep_panels *panels, double *scratch)
-{
-	double *w = scratch + sweep->n;
-	int32_t columns = node->columns, stride = columns + node->rows;
-	dense_panel(sweep, node, factor, panels, w, scratch);
-	for (int32_t j = 0; j < columns; ++j)
-		for (int32_t r = 0; r < stride; ++r) {
-			double value = w[(int64_t)j * stride + r];
-			cau_real_set(panels->forward, sweep->single,
-			             node->forward + (int64_t)j * node->padded_rows + r, value);
-			cau_real_set(panels->backward, sweep->single,
-			             node->backward + (int64_t)r * node->padded_columns + j, value);
-		}
-}
-
-void cau_sweep_pack_panels(const cau_sweep *sweep, cau_sweep_panels *panels,
-                           const cau_factor *factor, double *scratch)
-{
-	for (int32_t s = 0; s < sweep->supernode_count; ++s)
-		pack_node(sweep, &sweep->supernode[s], factor, panels, scratch);
-}
-
-void cau_sweep_pack(cau_sweep *sweep, const cau_factor *factor, const uint8_t *touched)
-{
-	cau_sweep_panels panels = {sweep->forward, sweep->backward, sweep->d_inverse};
-	for (int32_t s = 0; s < sweep->supernode_count; ++s)
-		if (!touched || touched[s])
-			pack_node(sweep, &sweep->supernode[s], factor, &panels, sweep->scratch);
-}
-
-void cau_sweep_mark_path(const cau_sweep *sweep, int32_t column, uint8_t *touched)
-{
-	for (int32_t s = sweep->column_node[column]; s >= 0 && !touched[s];
-	     s = sweep->supernode[s].parent)
-		touched[s] = 1;
+	cau_arena_finish(&sweep->panel_arena);
 }

@@ -20,7 +20,12 @@
 #include "base/pool.h"
 #include "solve/factor.h"
 
-enum { CAU_SWEEP_TASKS = 8 }; // more leave more above them, for one thread
+enum {
+	CAU_SWEEP_TASKS = 8,    // more leave more above them, for one thread
+	CAU_NODE_COLUMNS = 128, // no supernode is wider
+};
+
+struct cau_kernels;
 
 typedef struct cau_supernode {
 	int32_t first, columns;    // its columns
@@ -34,6 +39,7 @@ typedef struct cau_supernode {
 
 typedef struct cau_sweep {
 	int single;
+	const struct cau_kernels *kernels;
 	int32_t n, supernode_count, row_count, top_count, task_count;
 	cau_supernode *supernode;
 	int32_t *
@@ -45,33 +51,38 @@ typedef struct cau_sweep {
 	int32_t *top_node; // supernodes above the tasks, ascending
 	int32_t top_node_count;
 	int32_t max_rows, max_columns; // padded, of a supernode
+	cau_arena panel_arena;         // owns the next three
 	void *forward, *backward;      // real panels
 	void *d_inverse;               // real (n)
 	void *rhs;                     // real (3 x padded n): the vectors, permuted
 	void *above;                   // real (task_count x 3 x padded top_count)
 	int64_t panel_reals;
 	int32_t padded_n, padded_top;
-	double *scratch; // for packing one supernode
+	double *scratch; // for packing one supernode, see sweep_pack.c
 } cau_sweep;
 
-// Lays the panels out for the factor's pattern. CAU_NO_MEMORY is the only failure.
+// Lays the panels out for the factor's pattern and packs them. CAU_NO_MEMORY is the only failure;
+// the caller finishes it, on failure too.
 cau_status cau_sweep_create(cau_sweep *sweep, cau_arena *arena, const cau_factor *factor,
-                            int single, cau_error *error);
+                            const struct cau_kernels *kernels, cau_error *error);
+void cau_sweep_finish(cau_sweep *sweep);
 
+// ---- sweep_pack.c: the factor's values in the panels
 // A second set of panels of the same layout, for a factor that is being made in the background.
 typedef struct cau_sweep_panels {
+	cau_arena arena; // owns the next three
 	void *forward, *backward, *d_inverse;
 } cau_sweep_panels;
-cau_status cau_sweep_create_panels(const cau_sweep *sweep, cau_arena *arena,
-                                   cau_sweep_panels *panels, cau_error *error);
+cau_status cau_sweep_create_panels(const cau_sweep *sweep, cau_sweep_panels *panels,
+                                   cau_error *error);
+void cau_sweep_finish_panels(cau_sweep_panels *panels);
 void cau_sweep_swap_panels(cau_sweep *sweep, cau_sweep_panels *panels);
 
 // Packs supernodes from the factor's values: all, or those marked in touched (supernode_count
-// bytes).
-void cau_sweep_pack(cau_sweep *sweep, const cau_factor *factor, const uint8_t *touched);
+// bytes). Returns the least pivot among their columns. One thread at a time: there is one scratch.
+double cau_sweep_pack(const cau_sweep *sweep, const cau_factor *factor, const uint8_t *touched);
 void cau_sweep_pack_panels(const cau_sweep *sweep, cau_sweep_panels *panels,
-                           const cau_factor *factor, double *scratch);
-int64_t cau_sweep_scratch_count(const cau_sweep *sweep);
+                           const cau_factor *factor);
 
 // Marks the supernodes on the path from column `column` to the root.
 void cau_sweep_mark_path(const cau_sweep *sweep, int32_t column, uint8_t *touched);

@@ -167,8 +167,8 @@ static double column_sum(const cau_factor *factor)
 	return sum;
 }
 
-// A factor made anew depends on the values alone: bit for bit the same after any history, with the
-// order given back, and in a clone.
+// A factor made anew depends on the values alone: bit for bit the same after any history, and with
+// the order given back.
 static void test_a_new_factor_has_no_memory(void **state)
 {
 	(void)state;
@@ -181,10 +181,7 @@ static void test_a_new_factor_has_no_memory(void **state)
 	assert_true(column_sum(r.solver.factor) != first);
 	assert_int_equal(cau_factor_refactor(r.solver.factor, &system->matrix, NULL), CAU_OK);
 	assert_true(column_sum(r.solver.factor) == first);
-	cau_factor *clone = NULL, *given = NULL;
-	assert_int_equal(cau_factor_clone(r.solver.factor, &clone, NULL), CAU_OK);
-	assert_int_equal(cau_factor_refactor(clone, &system->matrix, NULL), CAU_OK);
-	assert_true(column_sum(clone) == first);
+	cau_factor *given = NULL;
 	const int32_t *order = cau_factor_permutation(r.solver.factor);
 	assert_int_equal(cau_factor_create(&given, &system->matrix, order, NULL), CAU_OK);
 	assert_memory_equal(cau_factor_permutation(given), order,
@@ -192,7 +189,6 @@ static void test_a_new_factor_has_no_memory(void **state)
 	assert_true(column_sum(given) == first);
 	for (int32_t k = 0; k < system->row_count; ++k)
 		assert_int_equal(cau_factor_places(given)[order[k]], k);
-	cau_factor_destroy(clone);
 	cau_factor_destroy(given);
 	rig_finish(&r);
 }

@@ -114,8 +114,29 @@ static void test_a_burst_swaps_in_a_new_factor(void **state)
 		assert_int_equal(c.r.update.waiting_count, 0);
 		solve_by_sweep(&c.r, c.load, c.solution);
 		assert_memory_equal(c.solution, fresh, c.reals * sizeof(double));
+		cau_background_wait(c.r.update.background);
+		assert_null(c.r.update.next_panels.forward); // the second set is gone again
 		rig_finish(&c.r);
 	}
+}
+
+// Without memory for a second set of panels the swap packs in place: the same bits.
+static void test_a_swap_without_a_second_set(void **state)
+{
+	(void)state;
+	cutter c;
+	make(&c, SLAB, CAU_PRECISION_SINGLE, 1, 1.0 / 60);
+	double *fresh = cau_arena_array(&c.r.arena, c.reals, sizeof(double));
+	assert_int_equal(cut(&c, 300), 300);
+	solve_fresh(&c, CAU_PRECISION_SINGLE, SLAB, fresh);
+	cau_background_wait(c.r.update.background);
+	assert_non_null(c.r.update.next_panels.forward);
+	cau_sweep_finish_panels(&c.r.update.next_panels);
+	cut(&c, 0);
+	assert_int_equal(c.r.update.refactorisations, 1);
+	solve_by_sweep(&c.r, c.load, c.solution);
+	assert_memory_equal(c.solution, fresh, c.reals * sizeof(double));
+	rig_finish(&c.r);
 }
 
 // What is cut while a factor is being made is served after the swap, by downdates or another one.
@@ -253,6 +274,7 @@ int main(void)
 	const struct CMUnitTest tests[] = {
 		cmocka_unit_test(test_a_few_are_downdated_at_once),
 		cmocka_unit_test(test_a_burst_swaps_in_a_new_factor),
+		cmocka_unit_test(test_a_swap_without_a_second_set),
 		cmocka_unit_test(test_cuts_during_the_making_are_not_lost),
 		cmocka_unit_test(test_no_element_waits_long),
 		cmocka_unit_test(test_a_worn_factor_is_replaced),

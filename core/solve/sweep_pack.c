@@ -1,0 +1,114 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// The factor's values in the panels of the sweeps: supernode by supernode, so that a downdate
+// renews only those on the paths that it changed.
+#include <math.h>
+#include <string.h>
+
+#include "solve/kernels.h"
+
+cau_status cau_sweep_create_panels(const cau_sweep *sweep, cau_sweep_panels *panels,
+                                   cau_error *error)
+{
+	size_t size = cau_real_bytes(sweep->single), reals = (size_t)sweep->panel_reals;
+	panels->forward = cau_arena_array(&panels->arena, reals, size);
+	panels->backward = cau_arena_array(&panels->arena, reals, size);
+	panels->d_inverse = cau_arena_array(&panels->arena, (size_t)sweep->n, size);
+	if (panels->forward && panels->backward && panels->d_inverse)
+		return CAU_OK;
+	cau_sweep_finish_panels(panels);
+	return cau_fail(error, CAU_NO_MEMORY, NULL, "no memory for the packed factor");
+}
+
+void cau_sweep_finish_panels(cau_sweep_panels *panels)
+{
+	cau_arena_finish(&panels->arena);
+	panels->forward = panels->backward = panels->d_inverse = NULL;
+}
+
+static cau_sweep_panels panels_of(const cau_sweep *sweep)
+{
+	return (cau_sweep_panels){sweep->panel_arena, sweep->forward, sweep->backward,
+	                          sweep->d_inverse};
+}
+
+void cau_sweep_swap_panels(cau_sweep *sweep, cau_sweep_panels *panels)
+{
+	cau_sweep_panels old = panels_of(sweep);
+	sweep->panel_arena = panels->arena;
+	sweep->forward = panels->forward;
+	sweep->backward = panels->backward;
+	sweep->d_inverse = panels->d_inverse;
+	*panels = old;
+}
+
+// A supernode's part of the factor, dense, in double, by columns: the diagonal block L_s below its
+// unit diagonal, and [I; L_r], whose padded rows are zero. Returns the least pivot.
+typedef struct dense_node {
+	double *block; // (columns x columns)
+	double *w;     // (columns x padded_rows)
+} dense_node;
+
+static double gather(const cau_sweep *sweep, const cau_supernode *node, const cau_factor *factor,
+                     void *d_inverse, dense_node *dense)
+{
+	int32_t columns = node->columns, stride = node->padded_rows;
+	int32_t *row_place = (int32_t *)sweep->scratch;
+	dense->block = sweep->scratch + sweep->n;
+	dense->w = dense->block + (int64_t)columns * columns;
+	double least = INFINITY;
+	for (int32_t i = 0; i < node->rows; ++i)
+		row_place[sweep->row_global[node->row + i]] = columns + i;
+	memset(dense->block, 0, (size_t)columns * (size_t)(columns + stride) * sizeof(double));
+	for (int32_t j = 0; j < columns; ++j) {
+		const int32_t *row;
+		const double *value;
+		double pivot, *block = dense->block + (int64_t)j * columns,
+					  *w = dense->w + (int64_t)j * stride;
+		int32_t count = cau_factor_column(factor, node->first + j, &row, &value, &pivot);
+		cau_real_set(d_inverse, sweep->single, node->first + j, 1 / pivot);
+		least = fmin(least, pivot);
+		w[j] = 1;
+		for (int32_t k = 0; k < count; ++k) {
+			int32_t local = row[k] - node->first;
+			if (local < columns)
+				block[local] = value[k];
+			else
+				w[row_place[row[k]]] = value[k];
+		}
+	}
+	return least;
+}
+
+static double pack_node(const cau_sweep *sweep, int32_t supernode, const cau_factor *factor,
+                        const cau_sweep_panels *panels)
+{
+	const cau_supernode *node = &sweep->supernode[supernode];
+	dense_node dense;
+	double least = gather(sweep, node, factor, panels->d_inverse, &dense);
+	sweep->kernels->pack(node, dense.block, dense.w, panels->forward, panels->backward);
+	return least;
+}
+
+void cau_sweep_pack_panels(const cau_sweep *sweep, cau_sweep_panels *panels,
+                           const cau_factor *factor)
+{
+	for (int32_t s = 0; s < sweep->supernode_count; ++s)
+		pack_node(sweep, s, factor, panels);
+}
+
+double cau_sweep_pack(const cau_sweep *sweep, const cau_factor *factor, const uint8_t *touched)
+{
+	cau_sweep_panels panels = panels_of(sweep);
+	double least = INFINITY;
+	for (int32_t s = 0; s < sweep->supernode_count; ++s)
+		if (!touched || touched[s])
+			least = fmin(least, pack_node(sweep, s, factor, &panels));
+	return least;
+}
+
+void cau_sweep_mark_path(const cau_sweep *sweep, int32_t column, uint8_t *touched)
+{
+	for (int32_t s = sweep->column_node[column]; s >= 0 && !touched[s];
+	     s = sweep->supernode[s].parent)
+		touched[s] = 1;
+}
