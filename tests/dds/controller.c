@@ -7,7 +7,9 @@
 // It writes 100 times a second. Lines on standard input tell it what:
 //     aim X Y Z      m: goes there at 0.2 m/s        energy 0|1       the level it writes
 //     grasp 0|1      the level it writes             write on|off     silent, but alive
-//     once WHAT      one bad sample: nan infinite back huge stale leap session
+//     once WHAT      one bad sample: nan infinite back huge stale leap session; or a good one:
+//     lift,
+//                    1 mm higher
 //     flood COUNT    so many NaN samples at once     storm RATE       so many bad samples a second
 //     strangers COUNT  so many samples, each of another made-up tool or session
 //     state          prints the newest tool state, soon
@@ -26,11 +28,13 @@
 #include "cautery.h"
 #include "console.h"
 #include "crtk.h"
+#include "link.h"
 #include "ros2.h"
 
 #define PERIOD_S 0.01
 #define STORM_PERIOD_S 0.001
 #define SPEED_M_S 0.2
+#define LIFT_M 0.001
 
 enum { STRANGERS_SHARE = 500 }; // of one period
 
@@ -62,15 +66,11 @@ static dds_entity_t ros_writer(controller *c, const char *name, const dds_topic_
 
 static void open_native(controller *c, dds_entity_t publisher, int deadline_ms)
 {
-	dds_qos_t *qos = dds_create_qos();
-	dds_qset_reliability(qos, DDS_RELIABILITY_RELIABLE, DDS_MSECS(100));
-	dds_qset_history(qos, DDS_HISTORY_KEEP_LAST, 1);
+	dds_qos_t *qos = reliable_qos(1);
 	dds_qset_liveliness(qos, DDS_LIVELINESS_MANUAL_BY_TOPIC, DDS_MSECS(500));
 	if (deadline_ms)
 		dds_qset_deadline(qos, DDS_MSECS(deadline_ms));
-	dds_entity_t topic = checked(dds_create_topic(c->participant, &cautery_ToolCommand_desc,
-	                                              "cautery/tool_command", NULL, NULL));
-	c->command = checked(dds_create_writer(publisher, topic, qos, NULL));
+	c->command = native_writer(publisher, &cautery_ToolCommand_desc, "cautery/tool_command", qos);
 	dds_delete_qos(qos);
 }
 
@@ -158,10 +158,12 @@ static void write_good(controller *c)
 	c->last_write_s = clock_s(CLOCK_MONOTONIC);
 }
 
-static void write_bad(controller *c, const char *what)
+static void write_once(controller *c, const char *what)
 {
 	cautery_ToolCommand sample = command_now(c);
-	if (strcmp(what, "nan") == 0)
+	if (strcmp(what, "lift") == 0)
+		sample.position_m[2] = c->position_m[2] += LIFT_M;
+	else if (strcmp(what, "nan") == 0)
 		sample.position_m[1] = NAN;
 	else if (strcmp(what, "leap") == 0)
 		sample.position_m[0] += 0.4;
@@ -186,7 +188,7 @@ static void write_storm(controller *c)
 {
 	static const char *const kinds[] = {"nan", "huge", "session"};
 	for (int left = (int)(c->storm_hz * STORM_PERIOD_S); left > 0; left--)
-		write_bad(c, kinds[c->stormed++ % 3]);
+		write_once(c, kinds[c->stormed++ % 3]);
 }
 
 // A share of the strangers; what the writer has no room for waits.
@@ -221,24 +223,18 @@ static void tell_state(const controller *c, const char *event)
 	       s->driver, s->driver_name, s->grasping ? "true" : "false");
 }
 
-static void read_state(controller *c)
+static void take_state(void *user, const void *sample)
 {
-	void *samples[8] = {NULL};
-	dds_sample_info_t infos[8];
-	int count = dds_take(c->state_reader, samples, infos, 8, 8);
-	for (int i = 0; i < count; i++) {
-		const cautery_ToolState *s = samples[i];
-		if (!infos[i].valid_data || strcmp(s->tool, c->tool) != 0)
-			continue;
-		bool changed = !c->has_state || s->energized != c->state.energized ||
-		               s->driver != c->state.driver || s->grasping != c->state.grasping;
-		c->state = *s;
-		c->has_state = true;
-		if (changed)
-			tell_state(c, "changed");
-	}
-	if (count > 0)
-		dds_return_loan(c->state_reader, samples, count);
+	controller *c = user;
+	const cautery_ToolState *s = sample;
+	if (strcmp(s->tool, c->tool) != 0)
+		return;
+	bool changed = !c->has_state || s->energized != c->state.energized ||
+	               s->driver != c->state.driver || s->grasping != c->state.grasping;
+	c->state = *s;
+	c->has_state = true;
+	if (changed)
+		tell_state(c, "changed");
 }
 
 static void obey(void *user, const char *line)
@@ -255,7 +251,7 @@ static void obey(void *user, const char *line)
 	else if (strcmp(word, "grasp") == 0)
 		c->grasp = on;
 	else if (strcmp(word, "once") == 0)
-		write_bad(c, value);
+		write_once(c, value);
 	else if (strcmp(word, "state") == 0)
 		c->state_asked = true;
 	else if (strcmp(word, "crtk") == 0)
@@ -269,7 +265,7 @@ static void obey(void *user, const char *line)
 	else if (strcmp(word, "jaw") == 0)
 		crtk_jaw(&c->crtk, atof(value));
 	for (int i = 0; strcmp(word, "flood") == 0 && i < atoi(value); i++)
-		write_bad(c, "nan");
+		write_once(c, "nan");
 	if (strcmp(word, "write") != 0)
 		return;
 	c->writing = on;
@@ -282,7 +278,7 @@ static void run(controller *c)
 	console input = {.kept_bytes = 0};
 	double next_s = clock_s(CLOCK_MONOTONIC);
 	while (console_listen(&input, next_s - clock_s(CLOCK_MONOTONIC), obey, c)) {
-		read_state(c);
+		take_each(c->state_reader, take_state, c);
 		if (c->ros)
 			crtk_read(&c->crtk);
 		if (clock_s(CLOCK_MONOTONIC) < next_s)

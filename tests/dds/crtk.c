@@ -4,10 +4,8 @@
 #include <stdio.h>
 #include <string.h>
 
-#include "console.h"
+#include "link.h"
 #include "ros2.h"
-
-enum { TAKEN_MOST = 16 };
 
 dds_entity_t ros_topic(dds_entity_t participant, const char *session, const char *tool,
                        const char *name, const dds_topic_descriptor_t *type)
@@ -22,9 +20,7 @@ dds_entity_t ros_topic(dds_entity_t participant, const char *session, const char
 
 dds_qos_t *ros_qos(bool latched)
 {
-	dds_qos_t *qos = dds_create_qos();
-	dds_qset_reliability(qos, DDS_RELIABILITY_RELIABLE, DDS_MSECS(100));
-	dds_qset_history(qos, DDS_HISTORY_KEEP_LAST, 10);
+	dds_qos_t *qos = reliable_qos(10);
 	if (latched)
 		dds_qset_durability(qos, DDS_DURABILITY_TRANSIENT_LOCAL);
 	return qos;
@@ -64,8 +60,9 @@ bool crtk_matched(const crtk *c)
 	       jaw.current_count > 0 && c->states > 0 && c->poses > 0;
 }
 
-static void take_state(crtk *c, const void *sample)
+static void take_state(void *user, const void *sample)
 {
+	crtk *c = user;
 	const crtk_msgs_msg_dds__OperatingState_ *state = sample;
 	snprintf(c->state, sizeof c->state, "%s", state->state_);
 	c->homed = state->is_homed_;
@@ -73,15 +70,17 @@ static void take_state(crtk *c, const void *sample)
 	c->states++;
 }
 
-static void take_jaw(crtk *c, const void *sample)
+static void take_jaw(void *user, const void *sample)
 {
+	crtk *c = user;
 	const sensor_msgs_msg_dds__JointState_ *jaw = sample;
 	if (jaw->position_._length == 1 && jaw->name_._length == 1)
 		c->jaw_rad = jaw->position_._buffer[0];
 }
 
-static void take_pose(crtk *c, const void *sample)
+static void take_pose(void *user, const void *sample)
 {
+	crtk *c = user;
 	const geometry_msgs_msg_dds__Point_ *p =
 		&((const geometry_msgs_msg_dds__PoseStamped_ *)sample)->pose_.position_;
 	c->position_m[0] = p->x_;
@@ -90,23 +89,11 @@ static void take_pose(crtk *c, const void *sample)
 	c->poses++;
 }
 
-static void read_all(crtk *c, dds_entity_t reader, void (*take)(crtk *c, const void *sample))
-{
-	void *samples[TAKEN_MOST] = {NULL};
-	dds_sample_info_t infos[TAKEN_MOST];
-	int count = dds_take(reader, samples, infos, TAKEN_MOST, TAKEN_MOST);
-	for (int i = 0; i < count; i++)
-		if (infos[i].valid_data)
-			take(c, samples[i]);
-	if (count > 0)
-		dds_return_loan(reader, samples, count);
-}
-
 void crtk_read(crtk *c)
 {
-	read_all(c, c->state_reader, take_state);
-	read_all(c, c->jaw_reader, take_jaw);
-	read_all(c, c->pose_reader, take_pose);
+	take_each(c->state_reader, take_state, c);
+	take_each(c->jaw_reader, take_jaw, c);
+	take_each(c->pose_reader, take_pose, c);
 }
 
 void crtk_command(const crtk *c, const char *word)

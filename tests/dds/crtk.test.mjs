@@ -6,16 +6,15 @@ import { Controller } from './controller.mjs';
 import { DOMAIN } from './domain.mjs';
 import { Daemon } from './wire/daemon.mjs';
 import { smallScene } from './wire/scene.mjs';
+import { far } from './watch.mjs';
 
-const AT_AIM_M = 1e-4, JAW_OPEN_RAD = 0.5;
+const AT_AIM_M = 1e-4, JAW_OPEN_RAD = 0.5, LIFT_M = 1e-3;
 
 let daemon;
 before(async () => {
 	daemon = await Daemon.start({ settings: { dds: true, dds_domain: DOMAIN, dds_deadline_s: 1 } });
 });
 after(() => daemon.end());
-
-const far = (a, b) => Math.hypot(a[0] - b[0], a[1] - b[1], a[2] - b[2]);
 
 // A session with one grasper, and a ROS 2 controller that drives it.
 async function driven(t, name) {
@@ -57,13 +56,17 @@ async function refuses({ session, stream, robot }, aim) {
 	assert.equal(stream.tools[0].energized, false);
 }
 
-// One sample of a writer that is silent otherwise.
+// Silent from now on, and all that it wrote has been taken: what it writes last moves the tool.
+async function fallSilent(robot) {
+	const { position_m: [, , z] } = await robot.crtk();
+	robot.tell('write off');
+	robot.tell('once lift');
+	await robot.until((s) => Math.abs(s.position_m[2] - (z + LIFT_M)) < AT_AIM_M);
+}
+
+// One sample, while nothing else that would be refused is on its way.
 async function refusesOne(session, robot, line) {
-	let refused = await daemon.metric('session_refused_total', session);
-	for (let last = -1; last !== refused; refused = await daemon.metric('session_refused_total', session)) {
-		last = refused;
-		await robot.state(); // what was on its way is in
-	}
+	const refused = await daemon.metric('session_refused_total', session);
 	robot.tell(line);
 	while (await daemon.metric('session_refused_total', session) === refused)
 		await robot.state();
@@ -128,9 +131,10 @@ test('a stranger may stop a tool that another drives, and not set it going', asy
 	const seen = await driven(t, 'stranger');
 	const { session, robot } = seen;
 	const stranger = await controller(session);
+	await follows(seen, [0, 0, 0.02]);
+	await fallSilent(robot);
 	stranger.tell('command pause');
 	await robot.untilCrtk((c) => c.state === 'PAUSED');
-	robot.tell('write off');
 	await refusesOne(session, stranger, 'command resume');
 	assert.equal((await robot.crtk()).state, 'PAUSED');
 	robot.tell('write on');

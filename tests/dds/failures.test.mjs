@@ -11,8 +11,8 @@ import { createInterface } from 'node:readline';
 import { after, before, test } from 'node:test';
 import { fileURLToPath } from 'node:url';
 import { Daemon } from './wire/daemon.mjs';
-import { smallSession } from './wire/scene.mjs';
 import { CYCLONE, DOMAIN } from './domain.mjs';
+import { watchSession } from './watch.mjs';
 
 const TRIALS = Number(process.env.DDS_TRIALS ?? 3);
 // Declared by the robots. One that is scheduled late by less than this is not cut before it fails.
@@ -78,12 +78,7 @@ async function start(t, settings = {}, options = {}) {
 	return daemon;
 }
 
-async function watched(t, daemon, name) {
-	const client = await daemon.connect({ hello: { client: 'watcher' } });
-	const session = await smallSession(client, name);
-	t.after(() => client.close());
-	return { daemon, client, session, stream: await client.join(session) };
-}
+const watched = async (t, daemon, name) => ({ daemon, ...await watchSession(t, daemon, name) });
 
 // How late this program was run at the worst since reset().
 class Lateness {

@@ -6,6 +6,7 @@ import { DOMAIN } from './domain.mjs';
 import { Observer, stateHash, topologyHash } from './observer.mjs';
 import { Daemon } from './wire/daemon.mjs';
 import { AT_REST, cutMiddle, smallSession } from './wire/scene.mjs';
+import { watchSession } from './watch.mjs';
 
 let daemon;
 before(async () => {
@@ -15,19 +16,13 @@ after(() => daemon.end());
 
 // A session, a browser in it and its stream, for one test; and what observes it on DDS.
 async function watched(t, name, options) {
-	const client = await daemon.connect({ hello: { client: 'admin' } });
-	const session = await smallSession(client, name, options);
 	const observers = [];
+	const seen = await watchSession(t, daemon, name, { options, first: () => Promise.all(observers.map((o) => o.kill())) });
 	const observe = () => {
-		observers.push(new Observer(session));
+		observers.push(new Observer(seen.session));
 		return observers.at(-1);
 	};
-	t.after(async () => {
-		await Promise.all(observers.map((o) => o.kill()));
-		await client.call('session.destroy', { session }).catch(() => {});
-		await client.close();
-	});
-	return { client, session, stream: await client.join(session), observe };
+	return { ...seen, observe };
 }
 
 // Both hold the same frame, and the same state with it.

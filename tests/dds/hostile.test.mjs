@@ -6,7 +6,7 @@ import { after, before, test } from 'node:test';
 import { Controller } from './controller.mjs';
 import { DOMAIN } from './domain.mjs';
 import { Daemon } from './wire/daemon.mjs';
-import { smallSession } from './wire/scene.mjs';
+import { far, watchSession } from './watch.mjs';
 
 const STORM_HZ = 10000;
 // Quiet and storm take turns, and the best window of each counts: what else runs on the machine
@@ -26,8 +26,8 @@ before(async () => {
 });
 after(() => daemon.end());
 
+const watched = (t, name) => watchSession(t, daemon, name, { first: () => Controller.killAll() });
 const controller = (session, via) => Controller.start({ domain: DOMAIN, session, tool: 'hook', via, deadline: 1 });
-const far = (a, b) => Math.hypot(a[0] - b[0], a[1] - b[1], a[2] - b[2]);
 
 const quantile = (values, share) => values.toSorted((a, b) => a - b)[Math.floor(share * (values.length - 1))];
 
@@ -42,13 +42,7 @@ async function costs(client, stream) {
 
 for (const via of ['native', 'ros'])
 	test(`a ${via} storm of bad samples at ${STORM_HZ} a second is counted, and the step costs what it did`, async (t) => {
-		const client = await daemon.connect({ hello: { client: 'admin' } });
-		const session = await smallSession(client, `storm-${via}`);
-		t.after(async () => {
-			await Controller.killAll();
-			await client.call('session.destroy', { session });
-			await client.close();
-		});
+		const { client, session } = await watched(t, `storm-${via}`);
 		const stream = await client.join(session, { channels: ['tools', 'statistics'] });
 		const driver = await controller(session, via);
 		driver.tell('write on');
@@ -85,14 +79,7 @@ const residentBytes = (process) =>
 	1024 * Number(/VmRSS:\s*(\d+)/.exec(readFileSync(`/proc/${process.pid}/status`, 'utf8'))[1]);
 
 test(`${MADE_UP_KEYS} made-up keys are counted and take no memory, and the driver goes on`, async (t) => {
-	const client = await daemon.connect({ hello: { client: 'admin' } });
-	const session = await smallSession(client, 'strangers');
-	t.after(async () => {
-		await Controller.killAll();
-		await client.call('session.destroy', { session });
-		await client.close();
-	});
-	const stream = await client.join(session);
+	const { client, session, stream } = await watched(t, 'strangers');
 	const driver = await controller(session, 'native');
 	driver.tell('write on');
 	await driver.until((s) => s.driver_name.startsWith('dds '));

@@ -14,6 +14,7 @@
 #include "cautery/frame_codec.h"
 #include "cautery/topology_codec.h"
 #include "console.h"
+#include "link.h"
 
 #define PERIOD_S 0.01
 
@@ -153,8 +154,10 @@ static void take_topology(observer *o, const cautery_Frame *frame)
 	free(scratch);
 }
 
-static void take_frame(observer *o, const cautery_Frame *frame)
+static void take_frame(void *user, const void *sample)
 {
+	observer *o = user;
+	const cautery_Frame *frame = sample;
 	if (strcmp(frame->session, o->session) != 0) {
 		o->foreign++;
 		return;
@@ -170,18 +173,6 @@ static void take_frame(observer *o, const cautery_Frame *frame)
 
 // ---- reading
 // ----------------------------------------------------------------------------------------------
-static void read_frames(observer *o, dds_entity_t reader)
-{
-	void *samples[TAKEN_MOST] = {NULL};
-	dds_sample_info_t infos[TAKEN_MOST];
-	int count = dds_take(reader, samples, infos, TAKEN_MOST, TAKEN_MOST);
-	for (int i = 0; i < count; i++)
-		if (infos[i].valid_data)
-			take_frame(o, samples[i]);
-	if (count > 0)
-		dds_return_loan(reader, samples, count);
-}
-
 static void tell_status(const cautery_SessionStatus *s)
 {
 	static const char *const states[] = {"starting", "running", "paused", "faulted"};
@@ -264,9 +255,9 @@ int main(int argument_count, char **arguments)
 			continue;
 		next_s = clock_s(CLOCK_MONOTONIC) + PERIOD_S;
 		read_status(&o);
-		read_frames(&o, o.topology_reader);
-		read_frames(&o, o.key_reader);
-		read_frames(&o, o.delta_reader);
+		take_each(o.topology_reader, take_frame, &o);
+		take_each(o.key_reader, take_frame, &o);
+		take_each(o.delta_reader, take_frame, &o);
 		if (o.state_asked)
 			tell_state(&o);
 		o.state_asked = false;

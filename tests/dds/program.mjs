@@ -37,8 +37,8 @@ export class Program {
 		});
 	}
 
-	ask(line, event = line) {
-		const answer = this.event((e) => e.event === event, event);
+	ask(line, event = line, seconds = PATIENCE_S) {
+		const answer = this.event((e) => e.event === event, event, seconds);
 		this.tell(line);
 		return answer;
 	}

@@ -15,10 +15,11 @@
 
 #include "cautery.h"
 #include "console.h"
+#include "link.h"
 
 #define PERIOD_S 0.01
 
-enum { TAKEN_MOST = 16, KEPT = 256 };
+enum { KEPT = 256 };
 
 typedef struct requester {
 	dds_entity_t participant, writer, reader, command;
@@ -71,13 +72,10 @@ static void request(requester *r, char *words)
 
 static void open_writer(requester *r, const char *session)
 {
-	dds_qos_t *qos = dds_create_qos();
-	dds_qset_reliability(qos, DDS_RELIABILITY_RELIABLE, DDS_MSECS(100));
+	dds_qos_t *qos = reliable_qos(1);
 	snprintf(r->session, sizeof r->session, "%.48s", session);
-	dds_entity_t topic = checked(dds_create_topic(r->participant, &cautery_ToolCommand_desc,
-	                                              "cautery/tool_command", NULL, NULL));
-	r->command =
-		checked(dds_create_writer(publisher_of(r->participant, session), topic, qos, NULL));
+	r->command = native_writer(publisher_of(r->participant, session), &cautery_ToolCommand_desc,
+	                           "cautery/tool_command", qos);
 	dds_delete_qos(qos);
 	dds_publication_matched_status_t matched = {0};
 	while (matched.current_count == 0) {
@@ -138,18 +136,12 @@ static void tell_reply(const cautery_SessionReply *reply)
 	printf("]}\n");
 }
 
-static void read_replies(requester *r)
+static void take_reply(void *user, const void *sample)
 {
-	void *samples[TAKEN_MOST] = {NULL};
-	dds_sample_info_t infos[TAKEN_MOST];
-	int count = dds_take(r->reader, samples, infos, TAKEN_MOST, TAKEN_MOST);
-	for (int i = 0; i < count; i++) {
-		const cautery_SessionReply *reply = samples[i];
-		if (infos[i].valid_data && memcmp(reply->writer, r->guid.v, sizeof reply->writer) == 0)
-			tell_reply(reply);
-	}
-	if (count > 0)
-		dds_return_loan(r->reader, samples, count);
+	const requester *r = user;
+	const cautery_SessionReply *reply = sample;
+	if (memcmp(reply->writer, r->guid.v, sizeof reply->writer) == 0)
+		tell_reply(reply);
 }
 
 static void tell_matched(requester *r)
@@ -176,18 +168,15 @@ int main(int argument_count, char **arguments)
 	r.participant = checked(dds_create_participant((uint32_t)atoi(arguments[1]), NULL, NULL));
 	r.reader = native_reader(subscriber_of(r.participant, "cautery"), &cautery_SessionReply_desc,
 	                         "cautery/session_reply", DDS_DURABILITY_TRANSIENT_LOCAL, KEPT);
-	dds_qos_t *qos = dds_create_qos();
-	dds_qset_reliability(qos, DDS_RELIABILITY_RELIABLE, DDS_MSECS(100));
-	dds_qset_history(qos, DDS_HISTORY_KEEP_LAST, KEPT);
-	dds_entity_t topic = checked(dds_create_topic(r.participant, &cautery_SessionRequest_desc,
-	                                              "cautery/session_request", NULL, NULL));
-	r.writer = checked(dds_create_writer(publisher_of(r.participant, "cautery"), topic, qos, NULL));
+	dds_qos_t *qos = reliable_qos(KEPT);
+	r.writer = native_writer(publisher_of(r.participant, "cautery"), &cautery_SessionRequest_desc,
+	                         "cautery/session_request", qos);
 	dds_delete_qos(qos);
 	checked(dds_get_guid(r.writer, &r.guid));
 	while (console_listen(&c, PERIOD_S, obey, &r)) {
 		if (!r.matched)
 			tell_matched(&r);
-		read_replies(&r);
+		take_each(r.reader, take_reply, &r);
 	}
 	dds_delete(r.participant);
 	return 0;

@@ -3,12 +3,14 @@
 import assert from 'node:assert/strict';
 import { spawn } from 'node:child_process';
 import { after, before, test } from 'node:test';
+import { PATIENCE_S } from './wire/client.mjs';
 import { Daemon } from './wire/daemon.mjs';
-import { smallSession } from './wire/scene.mjs';
 import { DOMAIN } from './domain.mjs';
+import { watchSession } from './watch.mjs';
 
 const DEADLINE_S = 0.5; // a loaded machine may run a robot late
 const TICK_S = 1 / 60;
+const INTO_S = 5; // into the tissue, and to rest there
 // What a command may take to show in the state, beyond the tick that it waits for; told of a machine
 // that ran the robot itself on time.
 const LATENCY_S = 0.003, ON_TIME_S = 0.001;
@@ -34,15 +36,7 @@ function robot(session, ...flags) {
 	return { child, done };
 }
 
-async function watched(t, name) {
-	const client = await daemon.connect({ hello: { client: 'watcher' } });
-	const session = await smallSession(client, name);
-	t.after(async () => {
-		await client.call('session.destroy', { session });
-		await client.close();
-	});
-	return { client, session, stream: await client.join(session) };
-}
+const watched = (t, name) => watchSession(t, daemon, name);
 
 test('a robot cuts along a line at 1 kHz, and a browser sees it', async (t) => {
 	const { client, session, stream } = await watched(t, 'cut');
@@ -81,12 +75,22 @@ test('a robot says so when there is no such tool', async () => {
 	assert.equal((await robot('d1-nowhere').done).code, 3);
 });
 
+// Goes into the tissue and stays there; its report, after so many ticks of the session as it takes to get
+// there: a busy machine simulates late.
+async function into(t, name, ...flags) {
+	const { client, session, stream } = await watched(t, name);
+	const { child, done } = robot(session, '--from=0,0,0.005', '--to=0,0,-0.008', '--speed', '0.02', '--seconds', '600', ...flags);
+	await client.until(() => stream.tools[0].driver !== 0, 'it drives');
+	const ticks = stream.tick + INTO_S / TICK_S;
+	await client.until(() => stream.tick >= ticks, 'it is there', 5 * PATIENCE_S);
+	child.kill('SIGINT');
+	return (await done).report;
+}
+
 test('a robot backs off from too much force', async (t) => {
-	const into = ['--from=0,0,0.005', '--to=0,0,-0.008', '--speed', '0.02', '--seconds', '6'];
-	const blind = await robot((await watched(t, 'blind')).session, ...into).done;
-	const most_n = blind.report.force_most_n;
+	const { force_most_n: most_n } = await into(t, 'blind');
 	assert.ok(most_n > 0.1, `${most_n} N`);
-	const { report } = await robot((await watched(t, 'feels')).session, ...into, '--force-limit', String(most_n / 4)).done;
+	const report = await into(t, 'feels', '--force-limit', String(most_n / 4));
 	assert.ok(report.backed_off_m > 0);
 	assert.ok(report.force_most_n < 0.7 * most_n, `${report.force_most_n} N, and ${most_n} N without a limit`);
 });

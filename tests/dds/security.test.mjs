@@ -9,9 +9,9 @@ import { dirname, join } from 'node:path';
 import { after, before, test } from 'node:test';
 import { fileURLToPath } from 'node:url';
 import { Daemon } from './wire/daemon.mjs';
-import { smallSession } from './wire/scene.mjs';
 import { DOMAIN } from './domain.mjs';
 import { Program } from './program.mjs';
+import { watchSession } from './watch.mjs';
 
 const LOOPBACK = process.env.LOOPBACK;
 const MAKE = join(dirname(fileURLToPath(LOOPBACK)), 'security', 'make.sh');
@@ -52,15 +52,7 @@ function secured(t, identity, program, words) {
 const controller = (t, session, identity) =>
 	secured(t, identity, process.env.CONTROLLER, [DOMAIN, session, 'hook', 'native', DEADLINE_MS]);
 
-async function watched(t, name) {
-	const client = await daemon.connect({ hello: { client: 'watcher' } });
-	const session = await smallSession(client, name);
-	t.after(async () => {
-		await client.call('session.destroy', { session });
-		await client.close();
-	});
-	return { client, session, stream: await client.join(session) };
-}
+const watched = (t, name) => watchSession(t, daemon, name);
 
 async function drives(robot, { client, stream }) {
 	await robot.event((e) => e.event === 'matched', 'matched');
@@ -194,10 +186,7 @@ test('an identity that was taken back is let in no more', async (t) => {
 		settings: { dds: true, dds_domain: DOMAIN, label: 'd3', dds_security: enclave('daemon', 'lists') },
 	});
 	t.after(() => strict.end());
-	const client = await strict.connect({ hello: { client: 'watcher' } });
-	t.after(() => client.close());
-	const session = await smallSession(client, 'list');
-	const seen = { client, session, stream: await client.join(session) };
+	const seen = await watchSession(t, strict, 'list'), { session } = seen;
 	const left = controller(t, session, leaver);
 	left.event((e) => e.event === 'matched', 'matched').then(() => (left.joined = true), () => {});
 	left.tell('write on');

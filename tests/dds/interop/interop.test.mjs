@@ -4,9 +4,10 @@
 import assert from 'node:assert/strict';
 import { after, before, test } from 'node:test';
 import { Daemon } from './wire/daemon.mjs';
-import { cutMiddle, smallSession } from './wire/scene.mjs';
+import { cutMiddle } from './wire/scene.mjs';
 import { DOMAIN } from './domain.mjs';
 import { Program } from './program.mjs';
+import { far, watchSession } from './watch.mjs';
 
 const DEADLINE_MS = 500;                // generous: this test is not about being late
 const AT_AIM_M = 1e-4;                  // the quantum of float32 in frames, and the last of the way
@@ -17,17 +18,7 @@ before(async () => {
 });
 after(() => daemon.end());
 
-const far = (a, b) => Math.hypot(a[0] - b[0], a[1] - b[1], a[2] - b[2]);
-
-async function watched(t, name) {
-	const client = await daemon.connect({ hello: { client: 'watcher' } });
-	const session = await smallSession(client, name);
-	t.after(async () => {
-		await client.call('session.destroy', { session }).catch(() => {}); // a test may have done it
-		await client.close();
-	});
-	return { client, session, stream: await client.join(session) };
-}
+const watched = (t, name) => watchSession(t, daemon, name);
 
 async function robot(t, session, via) {
 	const made = new Program(process.env.INTEROP_ROBOT, [DOMAIN, session, 'hook', via, DEADLINE_MS],

@@ -8,9 +8,9 @@ import { tmpdir } from 'node:os';
 import { dirname, join } from 'node:path';
 import { after, before, test } from 'node:test';
 import { Daemon } from './wire/daemon.mjs';
-import { smallSession } from './wire/scene.mjs';
 import { DOMAIN } from './domain.mjs';
 import { Program } from './program.mjs';
+import { far, watchSession } from './watch.mjs';
 
 const DEADLINE_MS = 500; // generous: this test is not about being late
 const AT_AIM_M = 1e-4;
@@ -31,17 +31,7 @@ after(async () => {
 	rmSync(folder, { recursive: true });
 });
 
-const far = (a, b) => Math.hypot(a[0] - b[0], a[1] - b[1], a[2] - b[2]);
-
-async function watched(t, name) {
-	const client = await daemon.connect({ hello: { client: 'watcher' } });
-	const session = await smallSession(client, name);
-	t.after(async () => {
-		await client.call('session.destroy', { session });
-		await client.close();
-	});
-	return { client, session, stream: await client.join(session) };
-}
+const watched = (t, name) => watchSession(t, daemon, name);
 
 // A robot with this identity, or with none.
 function robot(t, session, via, identity) {

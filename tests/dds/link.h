@@ -1,0 +1,22 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// What the test's programs have on the wire: plain Cyclone DDS entities.
+#pragma once
+
+#include <dds/dds.h>
+
+enum { NAME_BYTES = 49 };
+
+// The entity, or the program's end with the reason on standard error.
+dds_entity_t checked(dds_entity_t entity);
+// A subscriber or publisher of one partition.
+dds_entity_t subscriber_of(dds_entity_t participant, const char *partition);
+dds_entity_t publisher_of(dds_entity_t participant, const char *partition);
+// Reliable, the newest `kept` of an instance; for the caller to delete.
+dds_qos_t *reliable_qos(int kept);
+// A reader or writer of a native topic.
+dds_entity_t native_reader(dds_entity_t subscriber, const dds_topic_descriptor_t *type,
+                           const char *topic, dds_durability_kind_t durability, int kept);
+dds_entity_t native_writer(dds_entity_t publisher, const dds_topic_descriptor_t *type,
+                           const char *topic, const dds_qos_t *qos);
+// Takes what waits, some at a time, and hands each valid sample to `take`.
+void take_each(dds_entity_t reader, void (*take)(void *user, const void *sample), void *user);
