@@ -7,13 +7,25 @@
 
 static const double ramp_s = 0.2;
 
+// All elements, or an eighth of them where that is plenty.
+static int32_t most_active(const cau_tissue *tissue)
+{
+	int32_t all = tissue->triangle_count + tissue->tetrahedron_count;
+	int32_t share = all / CAU_SHRINKING_SHARE;
+	if (share < CAU_SHRINKING_LEAST)
+		return all < CAU_SHRINKING_LEAST ? all : CAU_SHRINKING_LEAST;
+	return share;
+}
+
 cau_status cau_shrink_create(cau_shrink *shrink, const cau_tissue *tissue, cau_arena *arena,
                              cau_error *error)
 {
 	size_t triangles = (size_t)tissue->triangle_count, fat = (size_t)tissue->tetrahedron_count;
 	shrink->shrunk[0] = cau_arena_array(arena, triangles, 1);
 	shrink->shrunk[1] = cau_arena_array(arena, fat, 1);
-	shrink->active = cau_arena_array(arena, triangles + fat, sizeof *shrink->active);
+	shrink->active_capacity = most_active(tissue);
+	shrink->active =
+		cau_arena_array(arena, (size_t)shrink->active_capacity, sizeof *shrink->active);
 	shrink->active_count = 0;
 	if (!shrink->shrunk[0] || !shrink->shrunk[1] || !shrink->active)
 		return cau_fail(error, CAU_NO_MEMORY, NULL, "no memory for shrinkage");
@@ -169,7 +181,7 @@ typedef struct expose {
 	const cau_tool_def *tool;
 	const cau_pose *pose;
 	double jaw;
-	const cau_elements *elements;
+	cau_elements *elements;
 	const cau_element_slots *slots;
 } expose;
 
@@ -192,7 +204,10 @@ static void start_shrinking(const expose *work, int kind, int32_t element, cau_v
 	if (!shrinks)
 		return;
 	work->shrink->shrunk[kind][element] = 1;
-	work->shrink->active[work->shrink->active_count++] = shrinking;
+	if (work->shrink->active_count < work->shrink->active_capacity)
+		work->shrink->active[work->shrink->active_count++] = shrinking;
+	else
+		cau_elements_set_target(work->elements, work->slots, tissue, kind, element, shrinking.to);
 }
 
 static void expose_triangle(const expose *work, int32_t triangle)
@@ -229,7 +244,7 @@ static void expose_tetrahedron(const expose *work, int32_t tetrahedron)
 
 void cau_shrink_expose(cau_shrink *shrink, const cau_dissection *dissection, int32_t first,
                        const double *position, const cau_tool_def *tool, const cau_pose *pose,
-                       double jaw, const cau_elements *elements, const cau_element_slots *slots)
+                       double jaw, cau_elements *elements, const cau_element_slots *slots)
 {
 	expose work = {shrink, dissection, position, tool, pose, jaw, elements, slots};
 	for (int32_t k = first; k < dissection->removed_count; ++k) {

@@ -11,10 +11,15 @@ typedef struct cau_shrinking { // an element on its way to its target
 	double age_s;
 } cau_shrinking;
 
+// A cut lays bare a strip at a time, and each element is on its way for 0.2 s: an eighth of all is
+// far more than that, and small tissues have room for all. What finds no room arrives at once.
+enum { CAU_SHRINKING_LEAST = 1024, CAU_SHRINKING_SHARE = 8 };
+
 typedef struct cau_shrink {
-	uint8_t *shrunk[2];    // by triangle, by tetrahedron: has its target, once for ever
-	int32_t active_count;  // on their way
-	cau_shrinking *active; // (triangle_count + tetrahedron_count)
+	uint8_t *shrunk[2];   // by triangle, by tetrahedron: has its target, once for ever
+	int32_t active_count; // on their way
+	int32_t active_capacity;
+	cau_shrinking *active; // (active_capacity)
 } cau_shrink;
 
 cau_status cau_shrink_create(cau_shrink *shrink, const cau_tissue *tissue, cau_arena *arena,
@@ -25,7 +30,7 @@ cau_status cau_shrink_create(cau_shrink *shrink, const cau_tissue *tissue, cau_a
 // normalised F^T N_c with N_c the gradient of the hot part's signed distance at the contact point.
 void cau_shrink_expose(cau_shrink *shrink, const cau_dissection *dissection, int32_t first,
                        const double *position, const cau_tool_def *tool, const cau_pose *pose,
-                       double jaw, const cau_elements *elements, const cau_element_slots *slots);
+                       double jaw, cau_elements *elements, const cau_element_slots *slots);
 
 // Moves the targets on by one tick; they arrive after 0.2 s.
 void cau_shrink_advance(cau_shrink *shrink, const cau_tissue *tissue, double step_s,

@@ -20,27 +20,26 @@ static const int8_t ends_of[CAU_PRIMITIVE_KINDS][6][2] = {
 
 typedef struct kind_rows {
 	int32_t count;
-	const int32_t *corner;  // (count x corners_of)
-	int32_t **edge_of_slot; // in the table, (count x slots_of)
+	const int32_t *corner; // (count x corners_of)
 } kind_rows;
 
-static kind_rows rows_of(const cau_primitives *p, cau_edge_table *table, int kind)
+static kind_rows rows_of(const cau_primitives *p, int kind)
 {
 	switch (kind) {
 	case CAU_PRIMITIVE_TRIANGLE:
-		return (kind_rows){p->triangle_count, p->triangle, &table->triangle_edge};
+		return (kind_rows){p->triangle_count, p->triangle};
 	case CAU_PRIMITIVE_TETRAHEDRON:
-		return (kind_rows){p->tetrahedron_count, p->tetrahedron, &table->tetrahedron_edge};
+		return (kind_rows){p->tetrahedron_count, p->tetrahedron};
 	default:
-		return (kind_rows){p->link_count, p->link, &table->link_edge};
+		return (kind_rows){p->link_count, p->link};
 	}
 }
 
 // Writes the ends (a < b) of every slot, (slot_count x 2).
-static void fill_slots(const cau_primitives *primitives, cau_edge_table *table, int32_t *end)
+static void fill_slots(const cau_primitives *primitives, int32_t *end)
 {
 	for (int kind = 0; kind < CAU_PRIMITIVE_KINDS; kind++) {
-		kind_rows rows = rows_of(primitives, table, kind);
+		kind_rows rows = rows_of(primitives, kind);
 		const int32_t *corner = rows.corner;
 		for (int32_t i = 0; i < rows.count; i++, corner += corners_of[kind])
 			for (int s = 0; s < slots_of[kind]; s++, end += 2) {
@@ -100,17 +99,17 @@ static bool fill_sharers(cau_edge_table *table, int kind, const int32_t *edge_of
 	return true;
 }
 
-// Hands each kind its part of edge_of_slot and its sharers.
+// Each kind's sharers from its part of edge_of_slot; the triangles, which come first, keep theirs.
 static bool fill_kinds(const cau_primitives *primitives, const int32_t *edge_of_slot,
                        cau_edge_table *table)
 {
+	size_t triangle_slots = 3 * (size_t)primitives->triangle_count;
+	table->triangle_edge = cau_mesh_array(triangle_slots, sizeof *table->triangle_edge);
+	if (!table->triangle_edge)
+		return false;
+	memcpy(table->triangle_edge, edge_of_slot, triangle_slots * sizeof *edge_of_slot);
 	for (int kind = 0; kind < CAU_PRIMITIVE_KINDS; kind++) {
-		kind_rows rows = rows_of(primitives, table, kind);
-		int32_t slot_count = rows.count * slots_of[kind];
-		*rows.edge_of_slot = cau_mesh_array((size_t)slot_count, sizeof **rows.edge_of_slot);
-		if (!*rows.edge_of_slot)
-			return false;
-		memcpy(*rows.edge_of_slot, edge_of_slot, (size_t)slot_count * sizeof *edge_of_slot);
+		int32_t slot_count = rows_of(primitives, kind).count * slots_of[kind];
 		if (!fill_sharers(table, kind, edge_of_slot, slot_count))
 			return false;
 		edge_of_slot += slot_count;
@@ -199,7 +198,7 @@ cau_status cau_edge_table_make(const cau_primitives *primitives, const int32_t *
 	int32_t *edge_of_slot = cau_mesh_array((size_t)slot_count, sizeof *edge_of_slot);
 	bool done = end && order && edge_of_slot;
 	if (done) {
-		fill_slots(primitives, table, end);
+		fill_slots(primitives, end);
 		done = cau_index_sort(end, 2, slot_count, primitives->vertex_count, order) &&
 		       number_edges(end, order, slot_count, edge_of_slot, table) &&
 		       fill_kinds(primitives, edge_of_slot, table) &&
@@ -222,8 +221,6 @@ void cau_edge_table_finish(cau_edge_table *table)
 		free(table->sharer[kind]);
 	}
 	free(table->triangle_edge);
-	free(table->tetrahedron_edge);
-	free(table->link_edge);
 	free(table->hinge_edge);
 	free(table->hinge_triangle);
 	*table = (cau_edge_table){0};

@@ -31,12 +31,10 @@ typedef struct cau_edge_table {
 	int32_t *vertex;                     // (edge_count x 2)
 	int32_t *first[CAU_PRIMITIVE_KINDS]; // (edge_count + 1)
 	int32_t *sharer[CAU_PRIMITIVE_KINDS];
-	int32_t *triangle_edge;    // (triangle_count x 3): edges 01, 12, 20
-	int32_t *tetrahedron_edge; // (tetrahedron_count x 6): edges 01, 02, 03, 12, 13, 23
-	int32_t *link_edge;        // (link_count)
-	int32_t hinge_count;       // edges that exactly two triangles of the same layer share
-	int32_t *hinge_edge;       // (hinge_count)
-	int32_t *hinge_triangle;   // (hinge_count x 2)
+	int32_t *triangle_edge;  // (triangle_count x 3): edges 01, 12, 20
+	int32_t hinge_count;     // edges that exactly two triangles of the same layer share
+	int32_t *hinge_edge;     // (hinge_count)
+	int32_t *hinge_triangle; // (hinge_count x 2)
 } cau_edge_table;
 
 // Builds the table. `triangle_layer` (triangle_count) says which triangles may form hinges

@@ -215,6 +215,9 @@ static void lay_out(cau_sweep *sweep)
 		node->backward = backward;
 		forward += (int64_t)node->padded_rows * node->columns;
 		backward += (int64_t)node->padded_columns * rows;
+		int64_t dense = (int64_t)node->columns * (node->columns + node->padded_rows);
+		if (dense > sweep->max_dense)
+			sweep->max_dense = dense;
 		if (node->padded_rows > sweep->max_rows)
 			sweep->max_rows = node->padded_rows;
 		if (node->padded_columns > sweep->max_columns)
@@ -269,13 +272,6 @@ static cau_status shape_supernodes(cau_sweep *sweep, cau_arena *arena, const cau
 	return CAU_OK;
 }
 
-// What packing one supernode takes: row places, its columns, its diagonal block.
-static size_t scratch_count(const cau_sweep *sweep)
-{
-	return (size_t)sweep->n +
-	       (size_t)CAU_NODE_COLUMNS * ((size_t)sweep->max_rows + CAU_NODE_COLUMNS);
-}
-
 cau_status cau_sweep_create(cau_sweep *sweep, cau_arena *arena, const cau_factor *factor,
                             const cau_kernels *kernels, cau_error *error)
 {
@@ -303,7 +299,8 @@ cau_status cau_sweep_create(cau_sweep *sweep, cau_arena *arena, const cau_factor
 		sweep->rhs = cau_arena_array(arena, 3 * (size_t)sweep->padded_n, size);
 		sweep->above =
 			cau_arena_array(arena, (size_t)sweep->task_count * 3 * (size_t)sweep->padded_top, size);
-		sweep->scratch = cau_arena_array(arena, scratch_count(sweep), sizeof(double));
+		sweep->scratch = cau_arena_array(arena, (size_t)sweep->padded_n + (size_t)sweep->max_dense,
+		                                 sizeof(double));
 		if (!status && (!sweep->rhs || !sweep->above || !sweep->scratch))
 			status = no_memory(error);
 	}

@@ -51,6 +51,7 @@ typedef struct cau_sweep {
 	int32_t *top_node; // supernodes above the tasks, ascending
 	int32_t top_node_count;
 	int32_t max_rows, max_columns; // padded, of a supernode
+	int64_t max_dense;             // doubles that packing a supernode takes, see sweep_pack.c
 	cau_arena panel_arena;         // owns the next three
 	void *forward, *backward;      // real panels
 	void *d_inverse;               // real (n)

@@ -258,6 +258,35 @@ static void test_set_once(void **state)
 	}
 }
 
+// Elements that find no room on the way are at their targets at once.
+static void test_no_room(void **state)
+{
+	(void)state;
+	for (int fat = 0; fat < 2; ++fat) {
+		burnt roomy, full;
+		make(&roomy, fat, 1);
+		make(&full, fat, 1);
+		full.r.shrink.active_capacity = 1;
+		burn(&roomy);
+		burn(&full);
+		int kind = fat ? CAU_ELEMENT_TETRAHEDRON : CAU_ELEMENT_TRIANGLE;
+		assert_true(roomy.r.shrink.active_count > 2);
+		assert_int_equal(full.r.shrink.active_count, 1);
+		for (int32_t k = 0; k < roomy.r.shrink.active_count; ++k) {
+			const cau_shrinking *there = &roomy.r.shrink.active[k];
+			double root[6];
+			cau_elements_target(&full.r.solver.elements, &full.r.solver.slots, kind, there->element,
+			                    root);
+			const double *expected = k ? there->to : there->from;
+			for (int i = 0; i < (fat ? 6 : 3); ++i)
+				assert_near(root[i], expected[i], TARGET_TOLERANCE);
+			assert_true(full.r.shrink.shrunk[kind][there->element]);
+		}
+		rig_finish(&roomy.r);
+		rig_finish(&full.r);
+	}
+}
+
 int main(void)
 {
 	const struct CMUnitTest tests[] = {
@@ -266,6 +295,7 @@ int main(void)
 		cmocka_unit_test(test_tetrahedra_by_hand),
 		cmocka_unit_test(test_ramp),
 		cmocka_unit_test(test_set_once),
+		cmocka_unit_test(test_no_room),
 	};
 	return cmocka_run_group_tests(tests, NULL, NULL);
 }
