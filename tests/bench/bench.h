@@ -8,7 +8,7 @@
 
 typedef struct bench_options {
 	const char *scene, *scenes_directory;
-	int32_t threads, iterations, steps;
+	int32_t threads, iterations, steps, repeat;
 	int solver, precision; // -1: the scene's
 	bool cut, error, scaling, json;
 	const char *instruction_set;
@@ -41,7 +41,7 @@ int bench_steps(const bench_options *options, bench_steps_result *result);
 
 // cut.c: an energized tool is drawn across the scene.
 typedef struct bench_cut_result {
-	double plain_median_ms, cut_p99_ms, cut_p99_over_plain, deferred_max_s;
+	double plain_median_ms, plain_p99_ms, cut_p99_ms, cut_p99_over_plain, deferred_max_s;
 	int32_t elements_removed, cutting_steps, refactorisations;
 } bench_cut_result;
 int bench_cut(const bench_options *options, bench_cut_result *result);
