@@ -3,48 +3,11 @@
 import assert from 'node:assert/strict';
 import { spawnSync } from 'node:child_process';
 import { after, before, test } from 'node:test';
-import { CYCLONE, DOMAIN } from './domain.mjs';
+import { DOMAIN } from './domain.mjs';
 import { Observer } from './observer.mjs';
-import { Program } from './program.mjs';
+import { Requester } from './requester.mjs';
 import { Daemon } from './wire/daemon.mjs';
 import { smallSession } from './wire/scene.mjs';
-
-class Requester extends Program {
-	constructor(daemons) {
-		super(process.env.REQUESTER, [DOMAIN, daemons], { environment: CYCLONE });
-		this.number = 0;
-		this.replies = [];
-	}
-
-	// Resolves once it has found so many daemons.
-	static async start(t, daemons = 1) {
-		const requester = new Requester(daemons);
-		t.after(() => requester.kill());
-		await requester.event((e) => e.event === 'matched', 'matched');
-		return requester;
-	}
-
-	onLine(event) {
-		if (event.event === 'reply')
-			this.replies.push(event);
-		super.onLine(event);
-	}
-
-	request(operation, members = {}, number = this.number + 1) {
-		this.number = number;
-		const words = Object.entries(members).map(([name, value]) => `${name}=${value}`);
-		const reply = this.event((e) => e.event === 'reply' && e.number === number, `a reply to ${operation}`);
-		this.tell(`request ${number} ${operation} ${words.join(' ')}`);
-		return reply;
-	}
-
-	async done(operation, members, number) {
-		const reply = await this.request(operation, members, number);
-		assert.deepEqual([reply.code, reply.reason], [0, '']);
-		assert.equal(reply.operation, operation);
-		return reply;
-	}
-}
 
 let daemon, client;
 before(async () => {
@@ -170,14 +133,14 @@ test('TAKE_OVER gives a tool to a writer of the same participant; from its drive
 	const session = await smallSession(client, 'tool'), tool = 'hook';
 	t.after(() => client.call('session.destroy', { session }));
 	const stream = await client.join(session);
-	requester.tell(`writer ${session}`);
-	await requester.event((e) => e.event === 'opened', 'a writer');
-	const { driver } = await requester.done('TAKE_OVER', { session, tool, driver: 'writer' });
+	await requester.open(session);
+	const { driver, reason } = await requester.takeOver(session, tool);
+	assert.equal(reason, '');
 	await client.until(() => stream.tools[0].driver === driver, 'it drives');
 	requester.tell('move hook 0 0.01 0.03');
 	await client.until(() => Math.abs(stream.tools[0].position[2] - 0.03) < 1e-4, 'it moves');
 	await client.call('tool.take_over', { session, tool });
-	const refused = await requester.request('TAKE_OVER', { session, tool, driver: 'writer' });
+	const refused = await requester.takeOver(session, tool);
 	assert.deepEqual([refused.code, refused.status], [-32043, 'forbidden']);
 });
 

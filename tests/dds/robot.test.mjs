@@ -10,7 +10,7 @@ import { watchSession } from './watch.mjs';
 
 const DEADLINE_S = 0.5; // a loaded machine may run a robot late
 const TICK_S = 1 / 60;
-const INTO_S = 5; // into the tissue, and to rest there
+const AFTER_TICKS = 60, RISE_M = 2e-4;
 // What a command may take to show in the state, beyond the tick that it waits for; told of a machine
 // that ran the robot itself on time.
 const LATENCY_S = 0.003, ON_TIME_S = 0.001;
@@ -75,22 +75,24 @@ test('a robot says so when there is no such tool', async () => {
 	assert.equal((await robot('d1-nowhere').done).code, 3);
 });
 
-// Goes into the tissue and stays there; its report, after so many ticks of the session as it takes to get
-// there: a busy machine simulates late.
-async function into(t, name, ...flags) {
+// Goes into the tissue, and on for a while when its tool is so; its report. Timed by the session: a busy
+// machine simulates late.
+async function into(t, name, isSo, ...flags) {
 	const { client, session, stream } = await watched(t, name);
 	const { child, done } = robot(session, '--from=0,0,0.005', '--to=0,0,-0.008', '--speed', '0.02', '--seconds', '600', ...flags);
-	await client.until(() => stream.tools[0].driver !== 0, 'it drives');
-	const ticks = stream.tick + INTO_S / TICK_S;
-	await client.until(() => stream.tick >= ticks, 'it is there', 5 * PATIENCE_S);
+	await client.until(() => isSo(stream.tools[0]), 'it is there', 3 * PATIENCE_S);
+	const ticks = stream.tick + AFTER_TICKS;
+	await client.until(() => stream.tick >= ticks, 'a while');
 	child.kill('SIGINT');
 	return (await done).report;
 }
 
 test('a robot backs off from too much force', async (t) => {
-	const { force_most_n: most_n } = await into(t, 'blind');
+	const { force_most_n: most_n } = await into(t, 'blind', (tool) => tool.position[2] < -0.0075);
 	assert.ok(most_n > 0.1, `${most_n} N`);
-	const report = await into(t, 'feels', '--force-limit', String(most_n / 4));
+	let lowest = Infinity;
+	const rises = ({ position: [, , z] }) => z > (lowest = Math.min(lowest, z)) + RISE_M;
+	const report = await into(t, 'feels', rises, '--force-limit', String(most_n / 4));
 	assert.ok(report.backed_off_m > 0);
 	assert.ok(report.force_most_n < 0.7 * most_n, `${report.force_most_n} N, and ${most_n} N without a limit`);
 });

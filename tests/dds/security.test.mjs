@@ -11,6 +11,7 @@ import { fileURLToPath } from 'node:url';
 import { Daemon } from './wire/daemon.mjs';
 import { DOMAIN } from './domain.mjs';
 import { Program } from './program.mjs';
+import { Requester } from './requester.mjs';
 import { watchSession } from './watch.mjs';
 
 const LOOPBACK = process.env.LOOPBACK;
@@ -41,10 +42,12 @@ after(async () => {
 	rmSync(folder, { recursive: true });
 });
 
-// A program with this identity, or with none.
+// What a program finds in its environment with this identity, or with none.
+const settings = (identity) =>
+	({ CYCLONEDDS_URI: identity ? `${LOOPBACK},file://${identity}/cyclonedds.xml` : LOOPBACK });
+
 function secured(t, identity, program, words) {
-	const uri = identity ? `${LOOPBACK},file://${identity}/cyclonedds.xml` : LOOPBACK;
-	const made = new Program(program, words, { environment: { CYCLONEDDS_URI: uri } });
+	const made = new Program(program, words, { environment: settings(identity) });
 	t.after(() => made.end());
 	return made;
 }
@@ -95,28 +98,14 @@ test('an identity does what its permissions say', async (t) => {
 	// Requests may name any session: they are for controllers of all.
 	for (const identity of ['viewer', 'guest'])
 		assert.notEqual((await secured(t, enclave(identity), process.env.REQUESTER, [DOMAIN, 1]).exited).code, 0);
-	const asker = secured(t, enclave('controller'), process.env.REQUESTER, [DOMAIN, 1]);
-	await asker.event((e) => e.event === 'matched', 'matched');
-	const reply = asker.event((e) => e.event === 'reply', 'a reply');
-	asker.tell('request 1 LIST');
-	assert.equal((await reply).code, 0);
+	await (await requester(t, 'controller')).done('LIST');
 	// A viewer reads: status, key frame and deltas.
 	const viewer = secured(t, enclave('viewer'), process.env.OBSERVER, [DOMAIN, theirs.session]);
 	await viewer.event((e) => e.event === 'status', 'a status');
 	await viewer.until((s) => s.deltas > 0);
 });
 
-const requester = async (t, identity) => {
-	const asker = secured(t, enclave(identity), process.env.REQUESTER, [DOMAIN, 1]);
-	await asker.event((e) => e.event === 'matched', 'matched');
-	let number = 0;
-	asker.request = (operation, members = '') => {
-		const reply = asker.event((e) => e.event === 'reply', `a reply to ${operation}`);
-		asker.tell(`request ${++number} ${operation} ${members}`);
-		return reply;
-	};
-	return asker;
-};
+const requester = (t, identity) => Requester.start(t, 1, settings(enclave(identity)));
 
 test('an identity has the role that the file gives it: one that may view reads, and moves nothing', async (t) => {
 	const seen = await watched(t, 'looked-at');
@@ -132,7 +121,7 @@ test('an identity has the role that the file gives it: one that may view reads, 
 	await observer.until((s) => s.deltas > 0 && s.refused === 0);
 	const asker = await requester(t, 'looker');
 	assert.equal((await asker.request('LIST')).code, 0);
-	assert.equal((await asker.request('PAUSE', `session=${seen.session}`)).status, 'forbidden');
+	assert.equal((await asker.request('PAUSE', { session: seen.session })).status, 'forbidden');
 	assert.equal(seen.stream.tools[0].driver, 0);
 	// While it goes on writing, one that may operate drives.
 	await drives(controller(t, seen.session, enclave('worker')), seen);
@@ -143,12 +132,10 @@ test('only an identity with the role admin takes a tool from its driver', async 
 	const seen = await watched(t, 'taken');
 	const tool = { session: seen.session, tool: 'hook' };
 	await seen.client.call('tool.take_over', tool);
-	const take = `session=${seen.session} tool=hook driver=writer`;
 	for (const name of ['worker', 'chief']) {
 		const asker = await requester(t, name);
-		asker.tell(`writer ${seen.session}`);
-		await asker.event((e) => e.event === 'opened', 'a writer');
-		assert.equal((await asker.request('TAKE_OVER', take)).status, name === 'chief' ? '' : 'forbidden');
+		await asker.open(seen.session);
+		assert.equal((await asker.takeOver(seen.session, 'hook')).status, name === 'chief' ? '' : 'forbidden');
 	}
 	await seen.client.until(() => seen.stream.tools[0].driver !== seen.client.hello.client, 'the chief drives');
 });
@@ -176,9 +163,9 @@ test('the daemon says what is wrong with its DDS settings, and does not start', 
 test('an identity that was taken back is let in no more', async (t) => {
 	make('lists', 'daemon', 'daemon', 'controller', 'leaver', 'controller', 'stayer');
 	// Its own list is the old one: what it says of itself must not count.
-	const leaver = join(folder, 'leaver-before'), settings = join(leaver, 'cyclonedds.xml');
+	const leaver = join(folder, 'leaver-before'), its = join(leaver, 'cyclonedds.xml');
 	cpSync(enclave('leaver', 'lists'), leaver, { recursive: true });
-	writeFileSync(settings, readFileSync(settings, 'utf8').replaceAll(enclave('leaver', 'lists'), leaver));
+	writeFileSync(its, readFileSync(its, 'utf8').replaceAll(enclave('leaver', 'lists'), leaver));
 	make('lists', '--revoke', 'leaver');
 	assert.throws(() => make('lists', '--revoke', 'leaver'), /[Aa]lready revoked/);
 
