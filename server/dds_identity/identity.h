@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Who is behind a participant, as DDS Security has proved it: the subject name of its certificate.
 //
-// Cyclone tells an application no more of a remote participant than its GUID, and that a
-// participant chooses itself. So this is an authentication plugin around Cyclone's own, which does
-// all the work: it only notes whose certificate the handshake with which participant has proved. A
-// shared library, since Cyclone loads plugins from one; the daemon links it and asks.
+// Cyclone tells an application no more of a remote participant than its GUID. So this is an
+// authentication plugin around Cyclone's own, which does all the work: it only notes whose
+// certificate the handshake with which participant has proved. A shared library, since Cyclone
+// loads plugins from one; the daemon links it and asks.
 #pragma once
 
 #include <stdbool.h>
