@@ -173,7 +173,7 @@ if [ ! -e "$folder/public/governance.p7s" ]; then
 fi
 if [ -n "$revoke" ]; then
 	list_revoked "$folder/enclaves/$revoke/cert.pem"
-	echo "$folder/public/crl.pem: without CN=$revoke,O=Cautery"
+	echo "$folder/public/crl.pem: CN=$revoke,O=Cautery is taken back"
 	exit 0
 fi
 [ -e "$folder/public/crl.pem" ] || list_revoked
