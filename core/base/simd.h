@@ -1,34 +1,59 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Vectors of lanes for the element kernels, in GCC and Clang vector extensions. A kernel file is
 // compiled once per precision and instruction set: CAU_SINGLE is 1 or 0, the compiler's flags say
-// the rest. A batch always has CAU_LANES elements, so data are laid out alike on every tier.
+// the rest. A vector is as wide as the tier's registers, and a batch (CAU_BATCH slots) is a whole
+// number of vectors on every tier, so data are laid out alike.
 #pragma once
 
 #include <math.h>
 #include <stdint.h>
-#if defined(__AVX2__) || defined(__AVX512F__)
+#if defined(__SSE2__)
 #include <immintrin.h>
+#endif
+
+#if defined(__AVX512F__)
+enum { VECTOR_BYTES = 64 };
+#elif defined(__AVX2__)
+enum { VECTOR_BYTES = 32 };
+#else
+enum { VECTOR_BYTES = 16 };
 #endif
 
 #if CAU_SINGLE
 typedef float real;
 typedef int32_t real_bits;
-enum { LANES = 16 };
 #define REAL_TINY 1e-30f
 #define REAL_EPSILON 1.2e-7f
 #else
 typedef double real;
 typedef int64_t real_bits;
-enum { LANES = 8 };
 #define REAL_TINY 1e-290
 #define REAL_EPSILON 2.3e-16
 #endif
+enum { LANES = VECTOR_BYTES / sizeof(real) };
 
-typedef real vreal __attribute__((vector_size(64), may_alias));
-typedef real_bits vmask __attribute__((vector_size(64), may_alias));
-typedef real vreal_memory __attribute__((vector_size(64), may_alias, aligned(4)));
+typedef real vreal __attribute__((vector_size(VECTOR_BYTES), may_alias));
+typedef real_bits vmask __attribute__((vector_size(VECTOR_BYTES), may_alias));
+typedef real vreal_memory __attribute__((vector_size(VECTOR_BYTES), may_alias, aligned(4)));
 
 #define INLINE static inline __attribute__((always_inline))
+
+// The intrinsic of this tier and precision, where there is one.
+#if defined(__AVX512F__)
+#define V_PREFIX(name) _mm512_##name
+#define V_INTEGER(a) ((__m512i)(a))
+#elif defined(__AVX2__)
+#define V_PREFIX(name) _mm256_##name
+#define V_INTEGER(a) ((__m256i)(a))
+#elif defined(__SSE2__)
+#define V_PREFIX(name) _mm_##name
+#define V_INTEGER(a) ((__m128i)(a))
+#endif
+#if defined(__SSE2__) && CAU_SINGLE
+#define V_CALL(name, ...) ((vreal)V_PREFIX(name##_ps)(__VA_ARGS__))
+#elif defined(__SSE2__)
+#define V_CALL(name, ...) ((vreal)V_PREFIX(name##_pd)(__VA_ARGS__))
+#endif
 
 INLINE vreal v_set(real a)
 {
@@ -42,17 +67,31 @@ INLINE void v_store(void *to, int32_t slot, vreal a)
 {
 	*(vreal_memory *)((real *)to + slot) = a;
 }
+// What was loaded before and is needed again is read again after this. Of the twenty arrays of an
+// element the compiler would keep every value on the stack; a read costs less than that write.
+INLINE void v_forget(void)
+{
+	__asm__ volatile("" ::: "memory");
+}
 INLINE vreal v_select(vmask m, vreal yes, vreal no)
 {
 	return (vreal)((m & (vmask)yes) | (~m & (vmask)no));
 }
 INLINE vreal v_max(vreal a, vreal b)
 {
+#if defined(__SSE2__)
+	return V_CALL(max, a, b);
+#else
 	return v_select(a > b, a, b);
+#endif
 }
 INLINE vreal v_min(vreal a, vreal b)
 {
+#if defined(__SSE2__)
+	return V_CALL(min, a, b);
+#else
 	return v_select(a < b, a, b);
+#endif
 }
 INLINE vreal v_abs(vreal a)
 {
@@ -65,14 +104,11 @@ INLINE vreal v_clamp(vreal a, real least, real most)
 INLINE int v_any(vmask m)
 {
 #if defined(__AVX512F__)
-	return _mm512_test_epi32_mask((__m512i)m, (__m512i)m) != 0;
+	return _mm512_test_epi32_mask(V_INTEGER(m), V_INTEGER(m)) != 0;
 #elif defined(__AVX2__)
-	union {
-		vmask v;
-		__m256i half[2];
-	} u = {m};
-	__m256i either = _mm256_or_si256(u.half[0], u.half[1]);
-	return !_mm256_testz_si256(either, either);
+	return !_mm256_testz_si256(V_INTEGER(m), V_INTEGER(m));
+#elif defined(__SSE2__)
+	return _mm_movemask_epi8(V_INTEGER(m)) != 0;
 #else
 	real_bits any = 0;
 	for (int l = 0; l < LANES; ++l)
@@ -82,18 +118,8 @@ INLINE int v_any(vmask m)
 }
 INLINE vreal v_sqrt(vreal a)
 {
-#if CAU_SINGLE && defined(__AVX512F__)
-	return (vreal)_mm512_sqrt_ps((__m512)a);
-#elif !CAU_SINGLE && defined(__AVX512F__)
-	return (vreal)_mm512_sqrt_pd((__m512d)a);
-#elif CAU_SINGLE && defined(__AVX2__)
-	union {
-		vreal v;
-		__m256 half[2];
-	} u = {a};
-	u.half[0] = _mm256_sqrt_ps(u.half[0]);
-	u.half[1] = _mm256_sqrt_ps(u.half[1]);
-	return u.v;
+#if defined(__SSE2__)
+	return V_CALL(sqrt, a);
 #else
 	vreal root;
 	for (int l = 0; l < LANES; ++l)
@@ -106,13 +132,14 @@ INLINE vreal v_sqrt(vreal a)
 #endif
 }
 
-// Sums in double: lanes are widened and folded to eight partial sums, these are added up at the end
-// by halves. The same on every tier.
-typedef double vsum __attribute__((vector_size(64)));
+// Sums in double: lanes are widened, two halves of floats folded to one, and added up at the end by
+// halves.
+enum { SUM_LANES = VECTOR_BYTES / sizeof(double) };
+typedef double vsum __attribute__((vector_size(VECTOR_BYTES)));
 INLINE vsum v_widen(vreal a)
 {
 #if CAU_SINGLE
-	typedef float half_lanes __attribute__((vector_size(32)));
+	typedef float half_lanes __attribute__((vector_size(VECTOR_BYTES / 2)));
 	union {
 		vreal whole;
 		half_lanes half[2];
@@ -124,7 +151,7 @@ INLINE vsum v_widen(vreal a)
 }
 INLINE double v_total(vsum a)
 {
-	for (int width = 4; width; width /= 2)
+	for (int width = SUM_LANES / 2; width; width /= 2)
 		for (int l = 0; l < width; ++l)
 			a[l] += a[l + width];
 	return a[0];
@@ -244,128 +271,93 @@ INLINE sym3 m3_transpose_times(m3 a, m3 b)
 
 // ---- vertices: four reals each (x, y, z, unused)
 // v3_gather reads one vertex of every lane; v3_add_to adds to one of every lane, lane by lane, so
-// that lanes may name the same one. In float on AVX, four vertices are transposed at a time inside
-// each 128-bit part of a vector: part j of row k is vertex 4 j + k.
-#if CAU_SINGLE && defined(__AVX2__)
-INLINE void vertex_add(real *field, int32_t vertex, __m128 a)
+// that lanes may name the same one. `at` (LANES) says where in `field` each starts, in reals. In
+// float, four vertices are transposed at a time inside each 128-bit part of a vector: part j of row
+// k is vertex 4 j + k.
+#if CAU_SINGLE && defined(__SSE2__)
+enum { PARTS = LANES / 4 };
+INLINE vreal vertex_row_load(const real *field, const int32_t *at, int k)
 {
-	real *at = field + 4 * (int64_t)vertex;
-	_mm_store_ps(at, _mm_add_ps(_mm_load_ps(at), a));
-}
+#define PART(j) _mm_load_ps(field + at[4 * (j) + k])
+#if defined(__AVX512F__)
+	__m512 row = _mm512_castps128_ps512(PART(0));
+	row = _mm512_insertf32x4(row, PART(1), 1);
+	row = _mm512_insertf32x4(row, PART(2), 2);
+	return (vreal)_mm512_insertf32x4(row, PART(3), 3);
+#elif defined(__AVX2__)
+	return (vreal)_mm256_insertf128_ps(_mm256_castps128_ps256(PART(0)), PART(1), 1);
+#else
+	return (vreal)PART(0);
 #endif
-#if CAU_SINGLE && defined(__AVX512F__)
-typedef __m512 vertex_row;
-INLINE vertex_row vertex_row_load(const real *field, const int32_t *vertex, int k)
-{
-	__m512 row = _mm512_castps128_ps512(_mm_load_ps(field + 4 * (int64_t)vertex[k]));
-	row = _mm512_insertf32x4(row, _mm_load_ps(field + 4 * (int64_t)vertex[4 + k]), 1);
-	row = _mm512_insertf32x4(row, _mm_load_ps(field + 4 * (int64_t)vertex[8 + k]), 2);
-	return _mm512_insertf32x4(row, _mm_load_ps(field + 4 * (int64_t)vertex[12 + k]), 3);
+#undef PART
 }
-INLINE void vertex_row_add(real *field, const int32_t *vertex, int k, vertex_row row)
+INLINE void vertex_row_add(real *field, const int32_t *at, int k, vreal row)
 {
-	vertex_add(field, vertex[k], _mm512_castps512_ps128(row));
-	vertex_add(field, vertex[4 + k], _mm512_extractf32x4_ps(row, 1));
-	vertex_add(field, vertex[8 + k], _mm512_extractf32x4_ps(row, 2));
-	vertex_add(field, vertex[12 + k], _mm512_extractf32x4_ps(row, 3));
-}
-#define ROW_LOW(a, b) _mm512_unpacklo_ps(a, b)
-#define ROW_HIGH(a, b) _mm512_unpackhi_ps(a, b)
-#define PAIR_LOW(a, b)                                                                             \
-	_mm512_castpd_ps(_mm512_unpacklo_pd(_mm512_castps_pd(a), _mm512_castps_pd(b)))
-#define PAIR_HIGH(a, b)                                                                            \
-	_mm512_castpd_ps(_mm512_unpackhi_pd(_mm512_castps_pd(a), _mm512_castps_pd(b)))
-
-INLINE v3 v3_gather(const real *field, const int32_t *vertex)
-{
-	vertex_row r0 = vertex_row_load(field, vertex, 0), r1 = vertex_row_load(field, vertex, 1);
-	vertex_row r2 = vertex_row_load(field, vertex, 2), r3 = vertex_row_load(field, vertex, 3);
-	vertex_row xy01 = ROW_LOW(r0, r1), z01 = ROW_HIGH(r0, r1);
-	vertex_row xy23 = ROW_LOW(r2, r3), z23 = ROW_HIGH(r2, r3);
-	return (v3){(vreal)PAIR_LOW(xy01, xy23), (vreal)PAIR_HIGH(xy01, xy23),
-	            (vreal)PAIR_LOW(z01, z23)};
-}
-INLINE void v3_add_to(real *field, const int32_t *vertex, v3 a)
-{
-	vertex_row x = (vertex_row)a.x, y = (vertex_row)a.y, z = (vertex_row)a.z,
-			   none = _mm512_setzero_ps();
-	vertex_row xy_low = ROW_LOW(x, y), xy_high = ROW_HIGH(x, y);
-	vertex_row z_low = ROW_LOW(z, none), z_high = ROW_HIGH(z, none);
-	vertex_row_add(field, vertex, 0, PAIR_LOW(xy_low, z_low));
-	vertex_row_add(field, vertex, 1, PAIR_HIGH(xy_low, z_low));
-	vertex_row_add(field, vertex, 2, PAIR_LOW(xy_high, z_high));
-	vertex_row_add(field, vertex, 3, PAIR_HIGH(xy_high, z_high));
-}
-#elif CAU_SINGLE && defined(__AVX2__)
-typedef __m256 vertex_row;
-INLINE vertex_row vertex_row_load(const real *field, const int32_t *vertex, int k)
-{
-	__m256 row = _mm256_castps128_ps256(_mm_load_ps(field + 4 * (int64_t)vertex[k]));
-	return _mm256_insertf128_ps(row, _mm_load_ps(field + 4 * (int64_t)vertex[4 + k]), 1);
-}
-INLINE void vertex_row_add(real *field, const int32_t *vertex, int k, vertex_row row)
-{
-	vertex_add(field, vertex[k], _mm256_castps256_ps128(row));
-	vertex_add(field, vertex[4 + k], _mm256_extractf128_ps(row, 1));
-}
-#define ROW_LOW(a, b) _mm256_unpacklo_ps(a, b)
-#define ROW_HIGH(a, b) _mm256_unpackhi_ps(a, b)
-#define PAIR_LOW(a, b)                                                                             \
-	_mm256_castpd_ps(_mm256_unpacklo_pd(_mm256_castps_pd(a), _mm256_castps_pd(b)))
-#define PAIR_HIGH(a, b)                                                                            \
-	_mm256_castpd_ps(_mm256_unpackhi_pd(_mm256_castps_pd(a), _mm256_castps_pd(b)))
-typedef union vector_halves {
-	vreal whole;
-	__m256 half[2];
-} vector_halves;
-
-INLINE v3 v3_gather(const real *field, const int32_t *vertex)
-{
-	vector_halves x, y, z;
-	for (int h = 0; h < 2; ++h) {
-		const int32_t *v = vertex + 8 * h;
-		vertex_row r0 = vertex_row_load(field, v, 0), r1 = vertex_row_load(field, v, 1);
-		vertex_row r2 = vertex_row_load(field, v, 2), r3 = vertex_row_load(field, v, 3);
-		vertex_row xy01 = ROW_LOW(r0, r1), xy23 = ROW_LOW(r2, r3);
-		x.half[h] = PAIR_LOW(xy01, xy23);
-		y.half[h] = PAIR_HIGH(xy01, xy23);
-		z.half[h] = PAIR_LOW(ROW_HIGH(r0, r1), ROW_HIGH(r2, r3));
+	union {
+		vreal whole;
+		__m128 part[PARTS];
+	} u = {row};
+	for (int j = 0; j < PARTS; ++j) {
+		real *vertex = field + at[4 * j + k];
+		_mm_store_ps(vertex, _mm_add_ps(_mm_load_ps(vertex), u.part[j]));
 	}
-	return (v3){x.whole, y.whole, z.whole};
 }
-INLINE void v3_add_to(real *field, const int32_t *vertex, v3 a)
+// The low (high) halves of each part of a and b, by single reals and by pairs.
+INLINE vreal row_low(vreal a, vreal b)
 {
-	vector_halves x = {a.x}, y = {a.y}, z = {a.z};
-	for (int h = 0; h < 2; ++h) {
-		const int32_t *at = vertex + 8 * h;
-		vertex_row none = _mm256_setzero_ps();
-		vertex_row xy_low = ROW_LOW(x.half[h], y.half[h]), xy_high = ROW_HIGH(x.half[h], y.half[h]);
-		vertex_row z_low = ROW_LOW(z.half[h], none), z_high = ROW_HIGH(z.half[h], none);
-		vertex_row_add(field, at, 0, PAIR_LOW(xy_low, z_low));
-		vertex_row_add(field, at, 1, PAIR_HIGH(xy_low, z_low));
-		vertex_row_add(field, at, 2, PAIR_LOW(xy_high, z_high));
-		vertex_row_add(field, at, 3, PAIR_HIGH(xy_high, z_high));
-	}
+	return V_CALL(unpacklo, a, b);
+}
+INLINE vreal row_high(vreal a, vreal b)
+{
+	return V_CALL(unpackhi, a, b);
+}
+INLINE vreal pair_low(vreal a, vreal b)
+{
+	return (vreal)V_PREFIX(castpd_ps)(
+		V_PREFIX(unpacklo_pd)(V_PREFIX(castps_pd)(a), V_PREFIX(castps_pd)(b)));
+}
+INLINE vreal pair_high(vreal a, vreal b)
+{
+	return (vreal)V_PREFIX(castpd_ps)(
+		V_PREFIX(unpackhi_pd)(V_PREFIX(castps_pd)(a), V_PREFIX(castps_pd)(b)));
+}
+INLINE v3 v3_gather(const real *field, const int32_t *at)
+{
+	vreal r0 = vertex_row_load(field, at, 0), r1 = vertex_row_load(field, at, 1);
+	vreal r2 = vertex_row_load(field, at, 2), r3 = vertex_row_load(field, at, 3);
+	vreal xy01 = row_low(r0, r1), xy23 = row_low(r2, r3);
+	return (v3){pair_low(xy01, xy23), pair_high(xy01, xy23),
+	            pair_low(row_high(r0, r1), row_high(r2, r3))};
+}
+INLINE void v3_add_to(real *field, const int32_t *at, v3 a)
+{
+	vreal none = v_set(0);
+	vreal xy_low = row_low(a.x, a.y), xy_high = row_high(a.x, a.y);
+	vreal z_low = row_low(a.z, none), z_high = row_high(a.z, none);
+	vertex_row_add(field, at, 0, pair_low(xy_low, z_low));
+	vertex_row_add(field, at, 1, pair_high(xy_low, z_low));
+	vertex_row_add(field, at, 2, pair_low(xy_high, z_high));
+	vertex_row_add(field, at, 3, pair_high(xy_high, z_high));
 }
 #else
-INLINE v3 v3_gather(const real *field, const int32_t *vertex)
+INLINE v3 v3_gather(const real *field, const int32_t *at)
 {
 	v3 out = v3_zero();
 	for (int l = 0; l < LANES; ++l) {
-		const real *at = field + 4 * (int64_t)vertex[l];
-		out.x[l] = at[0];
-		out.y[l] = at[1];
-		out.z[l] = at[2];
+		const real *vertex = field + at[l];
+		out.x[l] = vertex[0];
+		out.y[l] = vertex[1];
+		out.z[l] = vertex[2];
 	}
 	return out;
 }
-INLINE void v3_add_to(real *field, const int32_t *vertex, v3 a)
+INLINE void v3_add_to(real *field, const int32_t *at, v3 a)
 {
 	for (int l = 0; l < LANES; ++l) {
-		real *at = field + 4 * (int64_t)vertex[l];
-		at[0] += a.x[l];
-		at[1] += a.y[l];
-		at[2] += a.z[l];
+		real *vertex = field + at[l];
+		vertex[0] += a.x[l];
+		vertex[1] += a.y[l];
+		vertex[2] += a.z[l];
 	}
 }
 #endif

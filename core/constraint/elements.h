@@ -45,21 +45,21 @@ typedef struct cau_fat_group {
 typedef struct cau_sheet_set {
 	int32_t slot_count, group_count;
 	cau_sheet_group *group;
-	int32_t *vertex[3];   // (slot_count)
-	int32_t *record[3];   // (slot_count): where the gradient on that vertex is added
-	void *dm_inverse[4];  // real, 1/m: row-major D_m'^-1
-	void *rest[6];        // real: columns of F_0 = F at rest
-	void *weight;         // real, N m: k x area x thickness; 0 once removed
-	void *target[3];      // real: T^(1/2): 00, 11, 01
-	void *polar[6];       // real: Q of the last evaluation, kept where F loses rank
-	void *position_scale; // real, m^2: |G|^2 of the element, for the diagonal system
+	int32_t *vertex_at[3]; // (slot_count): 4 x vertex, where its displacement starts
+	int32_t *record_at[3]; // (slot_count): 4 x record, where the gradient on it is added
+	void *dm_inverse[4];   // real, 1/m: row-major D_m'^-1
+	void *rest[6];         // real: columns of F_0 = F at rest
+	void *weight;          // real, N m: k x area x thickness; 0 once removed
+	void *target[3];       // real: T^(1/2): 00, 11, 01
+	void *polar[6];        // real: Q of the last evaluation, kept where F loses rank
+	void *position_scale;  // real, m^2: |G|^2 of the element, for the diagonal system
 } cau_sheet_set;
 
 // Fat. F = I + [du_1 du_2 du_3] D_m^-1, world axes.
 typedef struct cau_fat_set {
 	int32_t slot_count, group_count;
 	cau_fat_group *group;
-	int32_t *vertex[4], *record[4];
+	int32_t *vertex_at[4], *record_at[4];
 	void *dm_inverse[9]; // real, 1/m: row-major
 	void *volume;        // real, m^3; 0 once removed
 	void *
@@ -76,7 +76,7 @@ typedef struct cau_fat_set {
 // Trusses (section 5.2, last paragraph).
 typedef struct cau_link_set {
 	int32_t slot_count;
-	int32_t *vertex[2], *record[2];
+	int32_t *vertex_at[2], *record_at[2];
 	void *rest[3];     // real, m: edge vector at rest
 	void *rest_length; // real, m
 	void *weight;      // real, N/m: E A / L; 0 once removed
@@ -85,7 +85,7 @@ typedef struct cau_link_set {
 // Bending: e = sum of c_i x_i over the four vertices of two triangles that share an edge.
 typedef struct cau_hinge_set {
 	int32_t slot_count;
-	int32_t *vertex[4], *record[4];
+	int32_t *vertex_at[4], *record_at[4];
 	void *coefficient[4]; // real: c_i, sum 0
 	void *rest[3];        // real, m: e at rest
 	void *rest_length;    // real, m: |e| at rest

@@ -117,8 +117,8 @@ static cau_status make_sheets(const cau_tissue *tissue, int single, cau_arena *a
 	                              set->slot_count, arena, error);
 	if (status)
 		return status;
-	if (!set->group || !index_arrays(arena, set->vertex, 3, set->slot_count) ||
-	    !index_arrays(arena, set->record, 3, set->slot_count) ||
+	if (!set->group || !index_arrays(arena, set->vertex_at, 3, set->slot_count) ||
+	    !index_arrays(arena, set->record_at, 3, set->slot_count) ||
 	    !arrays(arena, set->dm_inverse, 4, set->slot_count, single) ||
 	    !arrays(arena, set->rest, 6, set->slot_count, single) ||
 	    !arrays(arena, &set->weight, 1, set->slot_count, single) ||
@@ -141,7 +141,7 @@ static cau_status make_sheets(const cau_tissue *tissue, int single, cau_arena *a
 			cau_element_map map;
 			cau_tissue_element_map(tissue, CAU_ELEMENT_TRIANGLE, t, &map);
 			for (int i = 0; i < 3; ++i)
-				set->vertex[i][slot] = map.vertex[i];
+				set->vertex_at[i][slot] = 4 * map.vertex[i];
 			for (int i = 0; i < 4; ++i)
 				cau_real_set(set->dm_inverse[i], single, slot,
 				             tissue->triangle_dm_inverse[4 * (size_t)t + (size_t)i]);
@@ -172,8 +172,8 @@ static cau_status make_fat(const cau_tissue *tissue, int single, cau_arena *aren
 	if (status)
 		return status;
 	if (!set->group || !set->limited || !set->flowed ||
-	    !index_arrays(arena, set->vertex, 4, set->slot_count) ||
-	    !index_arrays(arena, set->record, 4, set->slot_count) ||
+	    !index_arrays(arena, set->vertex_at, 4, set->slot_count) ||
+	    !index_arrays(arena, set->record_at, 4, set->slot_count) ||
 	    !arrays(arena, set->dm_inverse, 9, set->slot_count, single) ||
 	    !arrays(arena, &set->volume, 1, set->slot_count, single) ||
 	    !arrays(arena, &set->limit_weight, 1, set->slot_count, single) ||
@@ -198,7 +198,7 @@ static cau_status make_fat(const cau_tissue *tissue, int single, cau_arena *aren
 			cau_element_map map;
 			cau_tissue_element_map(tissue, CAU_ELEMENT_TETRAHEDRON, t, &map);
 			for (int i = 0; i < 4; ++i)
-				set->vertex[i][slot] = map.vertex[i];
+				set->vertex_at[i][slot] = 4 * map.vertex[i];
 			for (int i = 0; i < 9; ++i) {
 				cau_real_set(set->dm_inverse[i], single, slot,
 				             tissue->tetrahedron_dm_inverse[9 * (size_t)t + (size_t)i]);
@@ -233,8 +233,8 @@ static cau_status make_links(const cau_tissue *tissue, int single, cau_arena *ar
 		make_maps(slots, CAU_ELEMENT_LINK, tissue->link_count, set->slot_count, arena, error);
 	if (status)
 		return status;
-	if (!index_arrays(arena, set->vertex, 2, set->slot_count) ||
-	    !index_arrays(arena, set->record, 2, set->slot_count) ||
+	if (!index_arrays(arena, set->vertex_at, 2, set->slot_count) ||
+	    !index_arrays(arena, set->record_at, 2, set->slot_count) ||
 	    !arrays(arena, set->rest, 3, set->slot_count, single) ||
 	    !arrays(arena, &set->rest_length, 1, set->slot_count, single) ||
 	    !arrays(arena, &set->weight, 1, set->slot_count, single))
@@ -246,7 +246,7 @@ static cau_status make_links(const cau_tissue *tissue, int single, cau_arena *ar
 		rest_combination(tissue, &map, rest);
 		assign(slots, CAU_ELEMENT_LINK, k, k);
 		for (int i = 0; i < 2; ++i)
-			set->vertex[i][k] = map.vertex[i];
+			set->vertex_at[i][k] = 4 * map.vertex[i];
 		for (int c = 0; c < 3; ++c)
 			cau_real_set(set->rest[c], single, k, rest[c]);
 		cau_real_set(set->rest_length, single, k, tissue->link_length[k]);
@@ -263,8 +263,8 @@ static cau_status make_hinges(const cau_tissue *tissue, int single, cau_arena *a
 		make_maps(slots, CAU_ELEMENT_HINGE, tissue->hinge_count, set->slot_count, arena, error);
 	if (status)
 		return status;
-	if (!index_arrays(arena, set->vertex, 4, set->slot_count) ||
-	    !index_arrays(arena, set->record, 4, set->slot_count) ||
+	if (!index_arrays(arena, set->vertex_at, 4, set->slot_count) ||
+	    !index_arrays(arena, set->record_at, 4, set->slot_count) ||
 	    !arrays(arena, set->coefficient, 4, set->slot_count, single) ||
 	    !arrays(arena, set->rest, 3, set->slot_count, single) ||
 	    !arrays(arena, &set->rest_length, 1, set->slot_count, single) ||
@@ -277,7 +277,7 @@ static cau_status make_hinges(const cau_tissue *tissue, int single, cau_arena *a
 		rest_combination(tissue, &map, rest);
 		assign(slots, CAU_ELEMENT_HINGE, k, k);
 		for (int i = 0; i < 4; ++i) {
-			set->vertex[i][k] = map.vertex[i];
+			set->vertex_at[i][k] = 4 * map.vertex[i];
 			cau_real_set(set->coefficient[i], single, k, map.coefficient[0][i]);
 		}
 		double length = sqrt(rest[0] * rest[0] + rest[1] * rest[1] + rest[2] * rest[2]);

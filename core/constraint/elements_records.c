@@ -48,7 +48,7 @@ cau_status cau_elements_make_work(cau_elements *elements, cau_element_slots *slo
 
 // ---- records
 typedef struct share_elements {
-	int32_t *const *vertex, *const *record;
+	int32_t *const *vertex_at, *const *record_at;
 	const int32_t *element_at;
 	int32_t vertices;
 } share_elements;
@@ -58,16 +58,16 @@ static share_elements elements_of(const cau_elements *elements, const cau_elemen
 {
 	switch (work->kind) {
 	case CAU_WORK_SHEET:
-		return (share_elements){elements->sheet.vertex, elements->sheet.record,
+		return (share_elements){elements->sheet.vertex_at, elements->sheet.record_at,
 		                        slots->element_at[CAU_ELEMENT_TRIANGLE], 3};
 	case CAU_WORK_FAT:
-		return (share_elements){elements->fat.vertex, elements->fat.record,
+		return (share_elements){elements->fat.vertex_at, elements->fat.record_at,
 		                        slots->element_at[CAU_ELEMENT_TETRAHEDRON], 4};
 	case CAU_WORK_LINK:
-		return (share_elements){elements->link.vertex, elements->link.record,
+		return (share_elements){elements->link.vertex_at, elements->link.record_at,
 		                        slots->element_at[CAU_ELEMENT_LINK], 2};
 	default:
-		return (share_elements){elements->hinge.vertex, elements->hinge.record,
+		return (share_elements){elements->hinge.vertex_at, elements->hinge.record_at,
 		                        slots->element_at[CAU_ELEMENT_HINGE], 4};
 	}
 }
@@ -80,14 +80,14 @@ static int32_t number_records(const share_elements *share, cau_local_work *work,
 	work->first_record = next++;
 	for (int32_t s = work->first; s < work->last; ++s)
 		for (int i = 0; i < share->vertices; ++i) {
-			int32_t *last = &last_record[share->vertex[i][s]];
+			int32_t *last = &last_record[share->vertex_at[i][s] / 4];
 			if (share->element_at[s] < 0) {
-				share->record[i][s] = work->first_record;
+				share->record_at[i][s] = 4 * work->first_record;
 				continue;
 			}
 			if (*last < work->first_record)
 				*last = next++;
-			share->record[i][s] = *last;
+			share->record_at[i][s] = 4 * *last;
 		}
 	work->record_count = next - work->first_record;
 	return next;
@@ -111,7 +111,7 @@ static cau_status list_records(const cau_tissue *tissue, const cau_elements *ele
 			share_elements share = elements_of(elements, slots, work);
 			for (int32_t s = work->first; s < work->last; ++s)
 				for (int i = 0; i < share.vertices && share.element_at[s] >= 0; ++i) {
-					int32_t v = share.vertex[i][s], record = share.record[i][s];
+					int32_t v = share.vertex_at[i][s] / 4, record = share.record_at[i][s] / 4;
 					if (last_record[v] == record)
 						continue;
 					last_record[v] = record;

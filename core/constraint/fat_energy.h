@@ -90,12 +90,12 @@ INLINE m3 corotated_stress(m3 f, rotation_lanes *q, real mu, real lambda, vreal 
 	return m3_add_scaled(m3_scale(2 * v_set(mu), stretch), lambda * trace, rotation);
 }
 
-// The printed energy constraint C = Psi (eq. 14-17) projected in F: dF = -Psi P / |P|^2. The
-// residual is Psi P / |P|^2; 0/0 at rest is guarded relative to the stiffness.
-INLINE m3 energy_residual(m3 f, m3 h, real mu, real lambda, vreal *density)
+// The printed energy constraint C = Psi (eq. 14-17) projected in F: dF = -Psi P / |P|^2. Its stress
+// in the system is `stiffness` (Pa) times Psi P / |P|^2; 0/0 at rest is guarded relative to that.
+INLINE m3 energy_stress(m3 f, m3 h, real mu, real lambda, real stiffness, vreal *density)
 {
 	m3 p = stvk_stress(f, h, mu, lambda, density);
 	real least = (real)1e-10 * (2 * mu + 3 * lambda); // stress at a strain of 1e-10
-	vreal step = *density / (m3_dot(p, p) + least * least);
+	vreal step = stiffness * *density / (m3_dot(p, p) + least * least);
 	return m3_scale(step, p);
 }

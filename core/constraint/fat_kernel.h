@@ -37,7 +37,7 @@ INLINE m3 fat_energy_stress(const cau_fat_group *group, m3 f, m3 h, rotation_lan
 	case CAU_MODEL_COROTATED:
 		return corotated_stress(f, polar, mu, lambda, density);
 	case CAU_MODEL_ENERGY:
-		return m3_scale(v_set((real)group->stiffness), energy_residual(f, h, mu, lambda, density));
+		return energy_stress(f, h, mu, lambda, (real)group->stiffness, density);
 	default:
 		return neohookean_stress(f, h, mu, lambda, density);
 	}
@@ -55,11 +55,21 @@ INLINE m3 fat_plastic_energy_stress(const cau_fat_group *group, m3 h, sym3 z, ro
 	return m3_add(p, m3_times_sym(p, z));
 }
 
+// R scaled to the printed position projection, for the diagonal system.
+INLINE vreal fat_position_scale(const cau_fat_set *set, int32_t slot, m3 r)
+{
+	vreal m[9];
+	for (int i = 0; i < 9; ++i)
+		m[i] = v_load(set->dm_inverse[i], slot);
+	return diagonal_scale_fat(r, m, v_load(set->position_scale, slot));
+}
+
 // Residual of the strain limit (dimensionless). Slots without a target (00 = 0) follow the range,
 // if any.
-INLINE m3 fat_limit_residual(const cau_fat_group *group, m3 f, sym3 root, rotation_lanes *polar,
-                             const vreal dm_inverse[9], vreal g2, int diagonal)
+INLINE m3 fat_limit_residual(const cau_fat_set *set, const cau_fat_group *group, int32_t slot, m3 f,
+                             rotation_lanes *polar, int diagonal)
 {
+	sym3 root = sym3_load(set->target, slot);
 	if (group->limit == CAU_LIMIT_TARGET && group->projection == CAU_PROJECTION_LINEARISED) {
 		m3 rows = {{{root.a00, root.a01, root.a02},
 		            {root.a01, root.a11, root.a12},
@@ -67,7 +77,7 @@ INLINE m3 fat_limit_residual(const cau_fat_group *group, m3 f, sym3 root, rotati
 		m3 part[6], r = {{v3_zero(), v3_zero(), v3_zero()}};
 		fat_linearised_residuals(f, m3_transpose_times(rows, rows), part);
 		for (int i = 0; i < 6; ++i) {
-			vreal s = diagonal ? diagonal_scale_fat(part[i], dm_inverse, g2) : v_set(1);
+			vreal s = diagonal ? fat_position_scale(set, slot, part[i]) : v_set(1);
 			r = m3_add_scaled(r, s, part[i]);
 		}
 		return r;
@@ -75,7 +85,7 @@ INLINE m3 fat_limit_residual(const cau_fat_group *group, m3 f, sym3 root, rotati
 	vmask targeted = root.a00 > v_set(0), idle = ~targeted;
 	if (group->limit == CAU_LIMIT_TARGET) { // every slot has a target, padding too
 		m3 r = fat_target_residual(f, root, polar);
-		return diagonal ? m3_scale(diagonal_scale_fat(r, dm_inverse, g2), r) : r;
+		return diagonal ? m3_scale(fat_position_scale(set, slot, r), r) : r;
 	}
 	vreal one = v_set(1), zero = v_set(0);
 	sym3 used = {v_select(targeted, root.a00, one),  v_select(targeted, root.a11, one),
@@ -93,31 +103,57 @@ INLINE m3 fat_limit_residual(const cau_fat_group *group, m3 f, sym3 root, rotati
 	}
 	m3 r = fat_target_residual(f, used, polar);
 	r = m3_select(idle, (m3){{v3_zero(), v3_zero(), v3_zero()}}, r);
-	return diagonal ? m3_scale(diagonal_scale_fat(r, dm_inverse, g2), r) : r;
+	return diagonal ? m3_scale(fat_position_scale(set, slot, r), r) : r;
 }
 
-// One lane group: returns the energies (J) and adds the gradient on the four vertices.
+// H = F - I.
+INLINE m3 fat_displacement_gradient(const cau_fat_set *set, int32_t slot, const real *displacement)
+{
+	v3 u0 = v3_gather(displacement, set->vertex_at[0] + slot);
+	m3 h;
+	for (int i = 0; i < 3; ++i) {
+		v3 d = v3_sub(v3_gather(displacement, set->vertex_at[i + 1] + slot), u0);
+		for (int c = 0; c < 3; ++c) {
+			vreal m = v_load(set->dm_inverse[3 * i + c], slot);
+			h.c[c] = i ? v3_add_scaled(h.c[c], m, d) : v3_scale(m, d);
+		}
+	}
+	return h;
+}
+
+// Adds the gradient on the four vertices: stress (N m) times D_m^-T, and what balances it.
+INLINE void fat_add_gradient(const cau_fat_set *set, int32_t slot, m3 stress, real *records)
+{
+	v3 sum = v3_zero();
+	for (int i = 0; i < 3; ++i) {
+		v3 g = v3_scale(v_load(set->dm_inverse[3 * i], slot), stress.c[0]);
+		for (int c = 1; c < 3; ++c)
+			g = v3_add_scaled(g, v_load(set->dm_inverse[3 * i + c], slot), stress.c[c]);
+		sum = v3_sub(sum, g);
+		v3_add_to(records, set->record_at[i + 1] + slot, g);
+	}
+	v3_add_to(records, set->record_at[0] + slot, sum);
+}
+
+// One vector of slots: returns the energies (J) and adds the gradient on the four vertices. The
+// limit comes first: its rotation needs the most registers.
 INLINE vreal fat_lanes(const cau_fat_set *set, const cau_fat_group *group, int32_t slot,
                        const real *displacement, int limited, int diagonal, real *records)
 {
-	v3 u0 = v3_gather(displacement, set->vertex[0] + slot);
-	v3 d[3];
-	for (int i = 0; i < 3; ++i)
-		d[i] = v3_sub(v3_gather(displacement, set->vertex[i + 1] + slot), u0);
-	vreal m[9];
-	for (int i = 0; i < 9; ++i)
-		m[i] = v_load(set->dm_inverse[i], slot);
-	m3 h;
-	for (int c = 0; c < 3; ++c)
-		h.c[c] = v3_add_scaled(v3_add_scaled(v3_scale(m[c], d[0]), m[3 + c], d[1]), m[6 + c], d[2]);
-	m3 f = m3_add(m3_identity(), h);
-	vreal volume = v_load(set->volume, slot);
-	vreal g2 = diagonal ? v_load(set->position_scale, slot) : v_set(0);
+	m3 h = fat_displacement_gradient(set, slot, displacement);
+	v_forget();
+	m3 f = m3_add(m3_identity(), h), stress = {{v3_zero(), v3_zero(), v3_zero()}};
 	rotation_lanes polar = {v_set(1), v_set(0), v_set(0), v_set(0)};
 	int rotated = limited || group->model == CAU_MODEL_COROTATED;
 	if (rotated)
 		polar = rotation_load(set->polar, slot);
-	vreal density;
+	vreal energy = v_set(0), density, volume = v_load(set->volume, slot);
+	if (limited) {
+		vreal w = v_load(set->limit_weight, slot);
+		m3 r = fat_limit_residual(set, group, slot, f, &polar, diagonal);
+		stress = m3_scale(w, r); // N m
+		energy = (real)0.5 * w * m3_dot(r, r);
+	}
 	rotation_lanes energy_polar = polar;
 	m3 p = group->plastic && set->flowed[slot / CAU_BATCH]
 	           ? fat_plastic_energy_stress(group, h, sym3_load(set->plastic, slot), &energy_polar,
@@ -125,26 +161,14 @@ INLINE vreal fat_lanes(const cau_fat_set *set, const cau_fat_group *group, int32
 	           : fat_energy_stress(group, f, h, &energy_polar, &density);
 	if (diagonal) {
 		m3 r = m3_scale(v_set((real)(1 / group->stiffness)), p);
-		p = m3_scale(diagonal_scale_fat(r, m, g2), p);
-	}
-	m3 stress = m3_scale(volume, p); // N m
-	vreal energy = volume * density;
-	if (limited) {
-		vreal w = v_load(set->limit_weight, slot);
-		m3 r = fat_limit_residual(group, f, sym3_load(set->target, slot), &polar, m, g2, diagonal);
-		stress = m3_add_scaled(stress, w, r);
-		energy += (real)0.5 * w * m3_dot(r, r);
+		p = m3_scale(fat_position_scale(set, slot, r), p);
 	}
 	if (rotated)
 		rotation_store(set->polar, slot, limited ? polar : energy_polar);
-	v3 sum = v3_zero();
-	for (int i = 0; i < 3; ++i) {
-		v3 g = m3_apply(stress, (v3){m[3 * i], m[3 * i + 1], m[3 * i + 2]});
-		sum = v3_add(sum, g);
-		v3_add_to(records, set->record[i + 1] + slot, g);
-	}
-	v3_add_to(records, set->record[0] + slot, v3_sub(v3_zero(), sum));
-	return energy;
+	stress = m3_add_scaled(stress, volume, p);
+	v_forget();
+	fat_add_gradient(set, slot, stress, records);
+	return energy + volume * density;
 }
 
 // Slots [first, last) of one group: returns their energy, J. `displacement` is u = x - X, m,

@@ -61,10 +61,10 @@ static int32_t settle_kernel(const cau_elements *elements, const cau_fat_group *
 	const cau_fat_set *set = &elements->fat;
 	int32_t inverted = 0;
 	for (int32_t slot = first; slot < last; slot += LANES) {
-		v3 u0 = v3_gather(displacement, set->vertex[0] + slot);
+		v3 u0 = v3_gather(displacement, set->vertex_at[0] + slot);
 		v3 d[3];
 		for (int i = 0; i < 3; ++i)
-			d[i] = v3_sub(v3_gather(displacement, set->vertex[i + 1] + slot), u0);
+			d[i] = v3_sub(v3_gather(displacement, set->vertex_at[i + 1] + slot), u0);
 		vreal m[9];
 		for (int i = 0; i < 9; ++i)
 			m[i] = v_load(set->dm_inverse[i], slot);

@@ -67,9 +67,9 @@ static double sheet_kernel(const cau_elements *elements, const cau_sheet_group *
 	const cau_sheet_set *set = &elements->sheet;
 	vsum energy = {0};
 	for (int32_t slot = first; slot < last; slot += LANES) {
-		v3 u0 = v3_gather(displacement, set->vertex[0] + slot);
-		v3 d1 = v3_sub(v3_gather(displacement, set->vertex[1] + slot), u0);
-		v3 d2 = v3_sub(v3_gather(displacement, set->vertex[2] + slot), u0);
+		v3 u0 = v3_gather(displacement, set->vertex_at[0] + slot);
+		v3 d1 = v3_sub(v3_gather(displacement, set->vertex_at[1] + slot), u0);
+		v3 d2 = v3_sub(v3_gather(displacement, set->vertex_at[2] + slot), u0);
 		vreal m[4];
 		for (int i = 0; i < 4; ++i)
 			m[i] = v_load(set->dm_inverse[i], slot);
@@ -98,9 +98,9 @@ static double sheet_kernel(const cau_elements *elements, const cau_sheet_group *
 		v3 g1 = v3_add_scaled(v3_scale(m[0], s0), m[1], s1);
 		v3 g2v = v3_add_scaled(v3_scale(m[2], s0), m[3], s1);
 		v3 g0 = v3_sub(v3_sub(v3_zero(), g1), g2v);
-		v3_add_to(elements->gradient, set->record[0] + slot, g0);
-		v3_add_to(elements->gradient, set->record[1] + slot, g1);
-		v3_add_to(elements->gradient, set->record[2] + slot, g2v);
+		v3_add_to(elements->gradient, set->record_at[0] + slot, g0);
+		v3_add_to(elements->gradient, set->record_at[1] + slot, g1);
+		v3_add_to(elements->gradient, set->record_at[2] + slot, g2v);
 		for (int a = 0; a < 2; ++a) {
 			v_store(set->polar[3 * a], slot, polar.c[a].x);
 			v_store(set->polar[3 * a + 1], slot, polar.c[a].y);

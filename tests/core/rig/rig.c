@@ -204,21 +204,21 @@ double rig_energy_of(const rig *r, int work_kind)
 typedef struct weights_of {
 	void *weight[2]; // real
 	int count, work_kind, vertices;
-	int32_t *const *record;
+	int32_t *const *record_at;
 } weights_of;
 
 static weights_of weights(const cau_elements *e, int kind)
 {
 	switch (kind) {
 	case CAU_ELEMENT_TRIANGLE:
-		return (weights_of){{e->sheet.weight}, 1, CAU_WORK_SHEET, 3, e->sheet.record};
+		return (weights_of){{e->sheet.weight}, 1, CAU_WORK_SHEET, 3, e->sheet.record_at};
 	case CAU_ELEMENT_TETRAHEDRON:
 		return (weights_of){
-			{e->fat.volume, e->fat.limit_weight}, 2, CAU_WORK_FAT, 4, e->fat.record};
+			{e->fat.volume, e->fat.limit_weight}, 2, CAU_WORK_FAT, 4, e->fat.record_at};
 	case CAU_ELEMENT_LINK:
-		return (weights_of){{e->link.weight}, 1, CAU_WORK_LINK, 2, e->link.record};
+		return (weights_of){{e->link.weight}, 1, CAU_WORK_LINK, 2, e->link.record_at};
 	default:
-		return (weights_of){{e->hinge.weight}, 1, CAU_WORK_HINGE, 4, e->hinge.record};
+		return (weights_of){{e->hinge.weight}, 1, CAU_WORK_HINGE, 4, e->hinge.record_at};
 	}
 }
 
@@ -241,8 +241,7 @@ void rig_element_gradient(rig *r, int kind, int32_t slot, double *gradient)
 	solver->kernels->local(e, work, solver->displacement, solver->diagonal);
 	for (int i = 0; i < w.vertices; ++i)
 		for (int c = 0; c < 3; ++c)
-			gradient[3 * i + c] =
-				cau_real_get(e->gradient, e->single, 4 * (int64_t)w.record[i][slot] + c);
+			gradient[3 * i + c] = cau_real_get(e->gradient, e->single, w.record_at[i][slot] + c);
 	for (int k = 0; k < w.count; ++k)
 		for (int32_t s = work->first; s < work->last; ++s)
 			cau_real_set(w.weight[k], e->single, s, kept[k][s - work->first]);

@@ -70,8 +70,8 @@ static void test_gradient_is_that_of_the_energy(void **state)
 }
 
 // Sum of an element's gradient over its vertices and of its moments, relative to the sums of sizes.
-static void element_balance(rig *r, const double *x, int32_t *const *vertex, int vertices, int kind,
-                            int32_t slot, double *force, double *torque)
+static void element_balance(rig *r, const double *x, int32_t *const *vertex_at, int vertices,
+                            int kind, int32_t slot, double *force, double *torque)
 {
 	double sum[3] = {0}, moment[3] = {0}, size = 0, arm_size = 0, gradient[12];
 	rig_element_gradient(r, kind, slot, gradient);
@@ -79,7 +79,7 @@ static void element_balance(rig *r, const double *x, int32_t *const *vertex, int
 		double g[3], arm[3];
 		for (int c = 0; c < 3; ++c) {
 			g[c] = gradient[3 * i + c];
-			arm[c] = x[3 * vertex[i][slot] + c] - x[3 * vertex[0][slot] + c];
+			arm[c] = x[3 * (vertex_at[i][slot] / 4) + c] - x[3 * (vertex_at[0][slot] / 4) + c];
 			sum[c] += g[c];
 		}
 		for (int c = 0; c < 3; ++c)
@@ -106,15 +106,16 @@ static void test_no_law_pushes_or_turns_an_element(void **state)
 			const cau_elements *e = &d.r.solver.elements;
 			double force = 0, torque = 0;
 			for (int32_t s = 0; s < e->sheet.slot_count; ++s)
-				element_balance(&d.r, d.x, e->sheet.vertex, 3, CAU_ELEMENT_TRIANGLE, s, &force,
+				element_balance(&d.r, d.x, e->sheet.vertex_at, 3, CAU_ELEMENT_TRIANGLE, s, &force,
 				                &torque);
 			for (int32_t s = 0; s < e->fat.slot_count; ++s)
-				element_balance(&d.r, d.x, e->fat.vertex, 4, CAU_ELEMENT_TETRAHEDRON, s, &force,
+				element_balance(&d.r, d.x, e->fat.vertex_at, 4, CAU_ELEMENT_TETRAHEDRON, s, &force,
 				                &torque);
 			for (int32_t s = 0; s < e->link.slot_count; ++s)
-				element_balance(&d.r, d.x, e->link.vertex, 2, CAU_ELEMENT_LINK, s, &force, &torque);
+				element_balance(&d.r, d.x, e->link.vertex_at, 2, CAU_ELEMENT_LINK, s, &force,
+				                &torque);
 			for (int32_t s = 0; s < e->hinge.slot_count; ++s)
-				element_balance(&d.r, d.x, e->hinge.vertex, 4, CAU_ELEMENT_HINGE, s, &force,
+				element_balance(&d.r, d.x, e->hinge.vertex_at, 4, CAU_ELEMENT_HINGE, s, &force,
 				                &torque);
 			if (!(force < BALANCE_DOUBLE) || !(torque < TORQUE_DOUBLE))
 				fail_msg("%s: force %g, torque %g", law_scenes[k].name, force, torque);
@@ -182,7 +183,7 @@ static void test_one_removed_leaves_the_others(void **state)
 	double share[12];
 	rig_element_gradient(&d.r, CAU_ELEMENT_TETRAHEDRON, slot, share);
 	for (int i = 0; i < 12; ++i)
-		d.gradient[3 * e->fat.vertex[i / 3][slot] + i % 3] -= share[i];
+		d.gradient[3 * (e->fat.vertex_at[i / 3][slot] / 4) + i % 3] -= share[i];
 	rig_remove(&d.r, CAU_ELEMENT_TETRAHEDRON, GONE, 0);
 	double *after = cau_arena_array(&d.r.arena, d.reals, sizeof(double));
 	rig_local(&d.r, d.x, after);
