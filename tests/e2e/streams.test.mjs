@@ -135,7 +135,7 @@ test('profiles: rate, channels and step are what was asked for', async () => {
 
 const celsius = (stream, vertex) => stream.temperature[vertex] / 4 - 20;
 
-// The small scene of tissue that takes any heat, its hook energized on it for half a second.
+// The small scene of tissue that takes any heat, its hook energized on it for ten ticks.
 async function heated(client, name, joined) {
 	const definition = await smallScene(client);
 	Object.assign(definition.layers[0], { ignition_c: 2000, absorption_per_s: 0.4 });
@@ -146,7 +146,7 @@ async function heated(client, name, joined) {
 	await client.call('tool.move', { ...tool, position_m: [-0.02, 0, 0.001], rotation: AT_REST });
 	await client.call('session.step', { session, ticks: 30 });
 	await client.call('tool.energize', { ...tool, energized: true });
-	const { tick } = await client.call('session.step', { session, ticks: 30 });
+	const { tick } = await client.call('session.step', { session, ticks: 10 });
 	await client.until(() => stream.tick === tick, 'the last frame');
 	return { session, stream };
 }
