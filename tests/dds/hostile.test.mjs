@@ -46,8 +46,7 @@ for (const via of ['native', 'ros'])
 		const stream = await client.join(session, { channels: ['tools', 'statistics'] });
 		const driver = await controller(session, via);
 		driver.tell('write on');
-		await driver.until((s) => s.driver_name.startsWith(via === 'ros' ? 'ros ' : 'dds '));
-		const driving = stream.tools[0].driver;
+		const { driver: driving } = await driver.until((s) => s.driver_name.startsWith(via === 'ros' ? 'ros ' : 'dds '));
 		const stranger = await controller(session, via);
 
 		const quiet = [], stormy = [];
@@ -82,8 +81,7 @@ test(`${MADE_UP_KEYS} made-up keys are counted and take no memory, and the drive
 	const { client, session, stream } = await watched(t, 'strangers');
 	const driver = await controller(session, 'native');
 	driver.tell('write on');
-	await driver.until((s) => s.driver_name.startsWith('dds '));
-	const driving = stream.tools[0].driver;
+	const { driver: driving } = await driver.until((s) => s.driver_name.startsWith('dds '));
 	const stranger = await controller(session, 'native');
 	const refused = await daemon.metric('session_refused_total', session);
 	const some = MADE_UP_KEYS / 10; // after these every buffer on the way has its size

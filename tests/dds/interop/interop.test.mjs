@@ -34,7 +34,7 @@ for (const via of ['native', 'ros'])
 		const made = await robot(t, session, via);
 		made.tell('write on');
 		const { native: driven } = await made.until(({ native }) => native.driver_name.startsWith(via === 'ros' ? 'ros ' : 'dds '));
-		assert.equal(stream.tools[0].driver, driven.driver);
+		await client.until(() => stream.tools[0].driver === driven.driver, 'a frame tells it too');
 
 		const aim = [0.01, -0.005, 0.015];
 		made.tell(`aim ${aim.join(' ')}`);
