@@ -312,5 +312,5 @@ cau_status cau_sweep_create(cau_sweep *sweep, cau_arena *arena, const cau_factor
 
 void cau_sweep_finish(cau_sweep *sweep)
 {
-	cau_arena_finish(&sweep->panel_arena);
+	cau_pages_give_back(&sweep->pages);
 }

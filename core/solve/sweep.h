@@ -17,6 +17,7 @@
 #include <stdint.h>
 
 #include "base/memory.h"
+#include "base/pages.h"
 #include "base/pool.h"
 #include "solve/factor.h"
 
@@ -52,7 +53,7 @@ typedef struct cau_sweep {
 	int32_t top_node_count;
 	int32_t max_rows, max_columns; // padded, of a supernode
 	int64_t max_dense;             // doubles that packing a supernode takes, see sweep_pack.c
-	cau_arena panel_arena;         // owns the next three
+	cau_pages pages;               // of the next three
 	void *forward, *backward;      // real panels
 	void *d_inverse;               // real (n)
 	void *rhs;                     // real (3 x padded n): the vectors, permuted
@@ -71,7 +72,7 @@ void cau_sweep_finish(cau_sweep *sweep);
 // ---- sweep_pack.c: the factor's values in the panels
 // A second set of panels of the same layout, for a factor that is being made in the background.
 typedef struct cau_sweep_panels {
-	cau_arena arena; // owns the next three
+	cau_pages pages; // of the next three
 	void *forward, *backward, *d_inverse;
 } cau_sweep_panels;
 cau_status cau_sweep_create_panels(const cau_sweep *sweep, cau_sweep_panels *panels,

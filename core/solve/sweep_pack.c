@@ -9,32 +9,31 @@
 cau_status cau_sweep_create_panels(const cau_sweep *sweep, cau_sweep_panels *panels,
                                    cau_error *error)
 {
-	size_t size = cau_real_bytes(sweep->single), reals = (size_t)sweep->panel_reals;
-	panels->forward = cau_arena_array(&panels->arena, reals, size);
-	panels->backward = cau_arena_array(&panels->arena, reals, size);
-	panels->d_inverse = cau_arena_array(&panels->arena, (size_t)sweep->n, size);
-	if (panels->forward && panels->backward && panels->d_inverse)
-		return CAU_OK;
-	cau_sweep_finish_panels(panels);
-	return cau_fail(error, CAU_NO_MEMORY, NULL, "no memory for the packed factor");
+	size_t size = cau_real_bytes(sweep->single), panel = (size_t)sweep->panel_reals * size;
+	*panels = (cau_sweep_panels){0};
+	if (!cau_pages_take(&panels->pages, 2 * panel + (size_t)sweep->padded_n * size))
+		return cau_fail(error, CAU_NO_MEMORY, NULL, "no memory for the packed factor");
+	panels->forward = panels->pages.start;
+	panels->backward = (char *)panels->forward + panel; // whole lanes, so aligned to them
+	panels->d_inverse = (char *)panels->backward + panel;
+	return CAU_OK;
 }
 
 void cau_sweep_finish_panels(cau_sweep_panels *panels)
 {
-	cau_arena_finish(&panels->arena);
-	panels->forward = panels->backward = panels->d_inverse = NULL;
+	cau_pages_give_back(&panels->pages);
+	*panels = (cau_sweep_panels){0};
 }
 
 static cau_sweep_panels panels_of(const cau_sweep *sweep)
 {
-	return (cau_sweep_panels){sweep->panel_arena, sweep->forward, sweep->backward,
-	                          sweep->d_inverse};
+	return (cau_sweep_panels){sweep->pages, sweep->forward, sweep->backward, sweep->d_inverse};
 }
 
 void cau_sweep_swap_panels(cau_sweep *sweep, cau_sweep_panels *panels)
 {
 	cau_sweep_panels old = panels_of(sweep);
-	sweep->panel_arena = panels->arena;
+	sweep->pages = panels->pages;
 	sweep->forward = panels->forward;
 	sweep->backward = panels->backward;
 	sweep->d_inverse = panels->d_inverse;

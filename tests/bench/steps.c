@@ -6,6 +6,7 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "base/pages.h"
 #include "bench/bench.h"
 #include "session/session_internal.h"
 
@@ -132,13 +133,15 @@ int bench_steps(const bench_options *options, bench_steps_result *result)
 	if (!scene)
 		return 1;
 	struct mallinfo2 heap_before = mallinfo2();
+	size_t pages_before = cau_pages_held();
 	cau_session *session = bench_session(scene, options, options->threads);
 	struct mallinfo2 heap_after = mallinfo2();
 	free(scene);
 	if (!session)
 		return 1;
 	result->bytes_session = (double)(heap_after.uordblks + heap_after.hblkhd) -
-	                        (double)(heap_before.uordblks + heap_before.hblkhd);
+	                        (double)(heap_before.uordblks + heap_before.hblkhd) +
+	                        (double)(cau_pages_held() - pages_before);
 	result->vertices = session->tissue.vertex_count;
 	result->tetrahedra = session->tissue.tetrahedron_count;
 	result->triangles = session->tissue.triangle_count;

@@ -1,0 +1,33 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "base/pages.h"
+
+#include <stdatomic.h>
+#include <sys/mman.h>
+
+static atomic_size_t held;
+
+int cau_pages_take(cau_pages *pages, size_t byte_count)
+{
+	*pages = (cau_pages){0};
+	void *start =
+		mmap(NULL, byte_count, PROT_READ | PROT_WRITE, MAP_PRIVATE | MAP_ANONYMOUS, -1, 0);
+	if (start == MAP_FAILED)
+		return 0;
+	*pages = (cau_pages){start, byte_count};
+	atomic_fetch_add(&held, byte_count);
+	return 1;
+}
+
+void cau_pages_give_back(cau_pages *pages)
+{
+	if (!pages->start)
+		return;
+	munmap(pages->start, pages->byte_count);
+	atomic_fetch_sub(&held, pages->byte_count);
+	*pages = (cau_pages){0};
+}
+
+size_t cau_pages_held(void)
+{
+	return atomic_load(&held);
+}
