@@ -257,12 +257,11 @@ static cau_status check_header(const cau_session *session, const snapshot_header
 		return corrupt(error, "it is of another tissue");
 	if (header->tool_count < 0 || header->tool_count > CAU_MAX_TOOLS || header->command_count < 0 ||
 	    header->command_count > session->command_capacity || header->active_count < 0 ||
-	    header->active_count > session->shrink.active_capacity ||
-	    header->waiting_count < 0 || header->waiting_count > update->waiting_capacity ||
-	    header->operation_count < 0 || header->operation_count > CAU_DOWNDATES_AT_MOST ||
-	    header->column_count < 0 || header->column_count > CAU_MAX_CONTACTS ||
-	    header->waiting_at_start < 0 || header->row_count < 0 ||
-	    header->row_count > header->vertex_count)
+	    header->active_count > session->shrink.active_capacity || header->waiting_count < 0 ||
+	    header->waiting_count > update->waiting_capacity || header->operation_count < 0 ||
+	    header->operation_count > CAU_DOWNDATES_AT_MOST || header->column_count < 0 ||
+	    header->column_count > CAU_MAX_CONTACTS || header->waiting_at_start < 0 ||
+	    header->row_count < 0 || header->row_count > header->vertex_count)
 		return corrupt(error, "a count is out of its range");
 	if (header->payload_bytes != payload_bytes)
 		return corrupt(error, "bytes are missing");
