@@ -34,12 +34,18 @@ void cau_dds_count_dropped(cau_dds_session *session)
 {
 	cau_error error = {0};
 	uint64_t dropped = cau_dds_keys_take_dropped(&session->keys);
-	if (!dropped)
+	if (dropped) {
+		cau_hosted_count_refused(session->hosted, dropped);
+		session->refused += (int64_t)dropped;
+		session->drops_untold = true;
+	}
+	if (!session->drops_untold || session->refused == 0) { // told with others' refusals
+		session->drops_untold = false;
 		return;
-	cau_hosted_count_refused(session->hosted, dropped);
-	session->refused += (int64_t)dropped;
+	}
 	cau_fail(&error, CAU_LIMIT, "tool", "too many keys that are no tool of the session");
 	tell_refused(session, "", "", &error);
+	session->drops_untold = session->refused > 0;
 }
 
 // ---- orders

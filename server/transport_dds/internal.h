@@ -124,6 +124,7 @@ typedef struct cau_dds_session {
 	cau_dds_tool tools[CAU_MAX_TOOLS];
 	// refusals, logged once a second
 	int64_t refused;
+	bool drops_untold; // some of them were dropped, and nothing else may come to tell it
 	double refused_told_s;
 } cau_dds_session;
 

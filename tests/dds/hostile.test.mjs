@@ -65,7 +65,8 @@ for (const via of ['native', 'ros'])
 			`${stormed} bad samples, ${refused} refused`);
 		assert.ok(stormed > 1000, `${stormed} samples`);
 		assert.ok(refused > stormed / 10 && refused <= stormed + 10, `${refused} of ${stormed} refused`);
-		assert.ok(b <= RATIO_MOST * a + SLACK_S, `${b} s, ${a} s when quiet`);
+		if (!SLOW)
+			assert.ok(b <= RATIO_MOST * a + SLACK_S, `${b} s, ${a} s when quiet`);
 
 		// The driver has its tool all along, and still moves it.
 		assert.equal(stream.tools[0].driver, driving);
