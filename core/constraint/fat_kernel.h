@@ -142,30 +142,30 @@ INLINE vreal fat_lanes(const cau_fat_set *set, const cau_fat_group *group, int32
 {
 	m3 h = fat_displacement_gradient(set, slot, displacement);
 	v_forget();
-	m3 f = m3_add(m3_identity(), h), stress = {{v3_zero(), v3_zero(), v3_zero()}};
+	m3 f = m3_add(m3_identity(), h), r = {{v3_zero(), v3_zero(), v3_zero()}};
 	rotation_lanes polar = {v_set(1), v_set(0), v_set(0), v_set(0)};
-	int rotated = limited || group->model == CAU_MODEL_COROTATED;
-	if (rotated)
+	if (limited || group->model == CAU_MODEL_COROTATED)
 		polar = rotation_load(set->polar, slot);
 	vreal energy = v_set(0), density, volume = v_load(set->volume, slot);
 	if (limited) {
 		vreal w = v_load(set->limit_weight, slot);
-		m3 r = fat_limit_residual(set, group, slot, f, &polar, diagonal);
-		stress = m3_scale(w, r); // N m
+		r = fat_limit_residual(set, group, slot, f, &polar, diagonal);
+		rotation_store(set->polar, slot, polar);
 		energy = (real)0.5 * w * m3_dot(r, r);
 	}
-	rotation_lanes energy_polar = polar;
-	m3 p = group->plastic && set->flowed[slot / CAU_BATCH]
-	           ? fat_plastic_energy_stress(group, h, sym3_load(set->plastic, slot), &energy_polar,
-	                                       &density)
-	           : fat_energy_stress(group, f, h, &energy_polar, &density);
+	m3 p =
+		group->plastic && set->flowed[slot / CAU_BATCH]
+			? fat_plastic_energy_stress(group, h, sym3_load(set->plastic, slot), &polar, &density)
+			: fat_energy_stress(group, f, h, &polar, &density);
+	if (!limited && group->model == CAU_MODEL_COROTATED)
+		rotation_store(set->polar, slot, polar);
 	if (diagonal) {
-		m3 r = m3_scale(v_set((real)(1 / group->stiffness)), p);
-		p = m3_scale(fat_position_scale(set, slot, r), p);
+		m3 e = m3_scale(v_set((real)(1 / group->stiffness)), p);
+		p = m3_scale(fat_position_scale(set, slot, e), p);
 	}
-	if (rotated)
-		rotation_store(set->polar, slot, limited ? polar : energy_polar);
-	stress = m3_add_scaled(stress, volume, p);
+	m3 stress = m3_scale(volume, p); // N m
+	if (limited)
+		stress = m3_add_scaled(stress, v_load(set->limit_weight, slot), r);
 	v_forget();
 	fat_add_gradient(set, slot, stress, records);
 	return energy + volume * density;
