@@ -33,8 +33,9 @@ int cau_contact_add(cau_contact_set *set, const cau_contact_row *row)
 }
 
 // ---- columns of A^-1
-// ------------------------------------------------------------------------------------ Solves for
-// up to three columns at once, one unit load in each of x, y and z, and enters them in S.
+
+// Solves for up to three columns at once, one unit load in each of x, y and z, and enters them in
+// S.
 static void make_columns(cau_contact_set *set, cau_step_solver *solver, const int32_t *place,
                          int32_t count)
 {

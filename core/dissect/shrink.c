@@ -56,8 +56,8 @@ static contact_frame contact_of(cau_vec3 centroid, const cau_tool_def *tool, con
 }
 
 // ---- triangles
-// ---------------------------------------------------------------------------------------- Columns
-// f_1, f_2 of F.
+
+// Columns f_1, f_2 of F.
 static void triangle_gradient(const cau_tissue *tissue, const double *position, int32_t triangle,
                               cau_vec3 f[2])
 {

@@ -155,8 +155,8 @@ void cau_session_find_contacts(cau_session *session)
 }
 
 // ---- after the solve
-// ------------------------------------------------------------------------------------ An
-// attachment at its slip force gives way: its anchor follows the vertex so far that the force
+
+// An attachment at its slip force gives way: its anchor follows the vertex so far that the force
 // stays; past the length of the jaws it is lost.
 static void slip(cau_tool *tool, const cau_contact_row *row, const double *position)
 {

@@ -90,8 +90,9 @@ static void forget_waiting(cau_matrix_update *update, int32_t count, uint64_t ti
 }
 
 // ---- exact downdates
-// ---------------------------------------------------------------------------------- Takes the
-// columns of as many elements as one update of rank 8 holds, from waiting[from]. Returns how many.
+
+// Takes the columns of as many elements as one update of rank 8 holds, from waiting[from]. Returns
+// how many.
 static int32_t fill_update(const cau_matrix_update *update, const cau_waiting *list, int32_t count,
                            int32_t *columns, int32_t *first, int32_t *row, double *value)
 {

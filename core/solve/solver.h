@@ -89,8 +89,8 @@ int cau_solver_is_conservative(const cau_tissue *tissue, int diagonal);
 cau_status cau_solver_run(cau_step_solver *solver, cau_error *error);
 
 // ---- stages, in files of their own
-// -------------------------------------------------------------------- evaluate.c: gradient and
-// objective (J, in double, fixed order) of eq. 4 at the present position.
+
+// evaluate.c: gradient and objective (J, in double, fixed order) of eq. 4 at the present position.
 double cau_solver_evaluate(cau_step_solver *solver);
 // The displacements alone, of all vertices or of one share of them; and the rest.
 void cau_solver_displace(cau_step_solver *solver);

@@ -78,7 +78,6 @@ const type *model_find(const model *of, const char *name)
 }
 
 // ---- records of scenes and commands
-// ---------------------------------------------------------------
 
 static property_kind kind_of_field(const cau_field *field)
 {
@@ -327,7 +326,6 @@ static void add_commands(model *to)
 }
 
 // ---- objects of messages.def
-// ----------------------------------------------------------------------
 
 static const property_kind kinds[] = {
 	[CAU_WIRE_TYPE_FLAG] = PROPERTY_FLAG,       [CAU_WIRE_TYPE_INTEGER] = PROPERTY_INTEGER,

@@ -215,7 +215,6 @@ static bool take_tools(cau_frame_encoder *encoder, const cau_stream_sample *samp
 }
 
 // ---- writing frames
-// -------------------------------------------------------------------------------
 
 typedef struct frame_writer {
 	uint8_t *start;

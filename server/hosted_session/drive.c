@@ -166,7 +166,6 @@ void cau_drive_match_tools(cau_hosted *h, const char *cause)
 }
 
 // ---- from any thread
-// -------------------------------------------------------------------------------
 void cau_hosted_feed(cau_hosted *h, uint32_t client)
 {
 	double now_s = cau_monotonic_s();
@@ -238,7 +237,6 @@ double cau_hosted_watch(cau_hosted *h, double now_s)
 }
 
 // ---- orders
-// ------------------------------------------------------------------------------------------
 static cau_drive *drive_of_order(cau_hosted *h, cau_order *order)
 {
 	cau_drive *drive = cau_drive_find(h, order->as.tool.tool);
@@ -323,7 +321,6 @@ void cau_apply_request_takeover(cau_hosted *h, cau_order *order)
 }
 
 // ---- refused motion
-// ----------------------------------------------------------------------------------
 void cau_drive_refuse(cau_hosted *h, const cau_order *order, const cau_error *error)
 {
 	pthread_mutex_lock(&h->mutex);

@@ -144,8 +144,8 @@ void cau_hosted_count(cau_hosted *h, cau_hosted_counts *counts)
 }
 
 // ---- the queue
-// --------------------------------------------------------------------------------------- The
-// newest waiting order about the same tool, if that is motion of the same driver: then nothing
+
+// The newest waiting order about the same tool, if that is motion of the same driver: then nothing
 // stands between the two, and the newer pose counts.
 static cau_order *superseded(cau_hosted *h, const cau_order *order)
 {

@@ -75,8 +75,8 @@ void cau_hosted_summary(cau_hosted *hosted, cau_wire_session_summary *summary);
 cau_status cau_hosted_submit(cau_hosted *hosted, cau_order *order, cau_error *error);
 
 // ---- drivers
-// ------------------------------------------------------------------------------------- A sign of
-// life of a client: its tools' watchdogs start anew.
+
+// A sign of life of a client: its tools' watchdogs start anew.
 void cau_hosted_feed(cau_hosted *hosted, uint32_t client);
 // The client is gone or looks away: energy off at the next tick border, tools stay where they are.
 // `tell` names the reason in events.
@@ -88,8 +88,8 @@ void cau_hosted_forget_client(cau_hosted *hosted, uint32_t client);
 double cau_hosted_watch(cau_hosted *hosted, double now_s);
 
 // ---- streams
-// ------------------------------------------------------------------------------------- One stream
-// of one connection; zeroed but for `stream` at the start.
+
+// One stream of one connection; zeroed but for `stream` at the start.
 typedef struct cau_subscriber {
 	int32_t stream;
 	bool topology_sent, has_key, wants_key, acknowledges;
@@ -115,8 +115,8 @@ bool cau_hosted_has_frame(cau_hosted *hosted, const cau_subscriber *subscriber);
 void cau_hosted_leave(cau_hosted *hosted, const cau_subscriber *subscriber);
 
 // ---- for the daemon
-// ------------------------------------------------------------------------------ The store was full
-// and is not any more: the log has a gap that only a checkpoint closes.
+
+// The store was full and is not any more: the log has a gap that only a checkpoint closes.
 void cau_hosted_want_checkpoint(cau_hosted *hosted);
 // Stops time, cuts energy, writes a checkpoint. cau_hosted_drained tells when that is done.
 void cau_hosted_drain(cau_hosted *hosted);

@@ -53,7 +53,6 @@ void cau_hosted_publish_summary(cau_hosted *h)
 }
 
 // ---- orders
-// ----------------------------------------------------------------------------------------
 static cau_order *take_orders(cau_hosted *h)
 {
 	pthread_mutex_lock(&h->mutex);
@@ -110,7 +109,6 @@ static void apply_orders(cau_hosted *h)
 }
 
 // ---- time
-// ------------------------------------------------------------------------------------------
 static void note_cut(cau_hosted *h, const cau_frame *frame)
 {
 	int32_t removed = frame->statistics.elements_removed - h->elements_removed;

@@ -63,7 +63,6 @@ void cau_streams_destroy(cau_hosted *h)
 }
 
 // ---- publishing
-// ------------------------------------------------------------------------------------
 static void fill_tools(cau_hosted *h, const cau_frame *frame, cau_stream_tool *tools)
 {
 	pthread_mutex_lock(&h->mutex);
@@ -269,7 +268,6 @@ void cau_streams_publish(cau_hosted *h, double now_s)
 }
 
 // ---- joining
-// ----------------------------------------------------------------------------------------
 static cau_stream *find_stream(cau_hosted *h, const cau_order *order)
 {
 	cau_stream *nearest = NULL;

@@ -178,7 +178,6 @@ cau_due cau_clerk_run(cau_task *task)
 }
 
 // ---- forks
-// -------------------------------------------------------------------------------------------
 void cau_clerk_fork(void *user, cau_hosted *source, const cau_order *order, uint64_t tick)
 {
 	cau_hub *hub = user;

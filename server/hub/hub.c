@@ -8,7 +8,6 @@
 #include "hub/internal.h"
 
 // ---- sinks
-// -----------------------------------------------------------------------------------------
 static void notify_all(void *user, cau_audience audience, cau_buffer *text)
 {
 	cau_hub *hub = user;
@@ -45,7 +44,6 @@ void cau_hub_add_sink(cau_hub *hub, const cau_sink *sink)
 }
 
 // ---- life
-// ------------------------------------------------------------------------------------------
 cau_status cau_hub_create(cau_hub **made, const cau_hub_def *def, cau_error *error)
 {
 	*made = NULL;
@@ -99,7 +97,6 @@ const cau_scenes *cau_hub_scenes(const cau_hub *hub)
 }
 
 // ---- sessions
-// ----------------------------------------------------------------------------------------
 cau_hosted *cau_hub_find(cau_hub *hub, const char *id)
 {
 	cau_hosted *found = NULL;

@@ -35,7 +35,6 @@ cau_status cau_hub_resume(cau_hub *hub, cau_error *error);
 const cau_scenes *cau_hub_scenes(const cau_hub *hub);
 
 // ---- clients
-// -------------------------------------------------------------------------------------
 enum { CAU_RESUME_BYTES = 33 };
 
 typedef struct cau_client {
@@ -59,8 +58,8 @@ void cau_hub_heartbeat(cau_hub *hub, uint32_t number, bool visible);
 bool cau_hub_find_client(cau_hub *hub, uint32_t number, cau_asker *asker);
 
 // ---- sessions
-// ------------------------------------------------------------------------------------ Shared for
-// the caller, or NULL.
+
+// Shared for the caller, or NULL.
 cau_hosted *cau_hub_find(cau_hub *hub, const char *id);
 cau_hosted *cau_hub_find_number(cau_hub *hub, uint32_t number);
 // Visits every session; the visitor must not call the hub.
@@ -95,8 +94,8 @@ cau_status cau_meshes_unpack(cau_scene_def *scene, const void *meshes, size_t by
                              cau_error *error);
 
 // ---- for the daemon
-// ------------------------------------------------------------------------------ Cuts silent
-// drivers' energy; the time to look again, INFINITY if nothing is energized.
+
+// Cuts silent drivers' energy; the time to look again, INFINITY if nothing is energized.
 double cau_hub_watch(cau_hub *hub, double now_s);
 // Forgets lost clients and ended sessions. Waits for a worker's slice: not from one.
 void cau_hub_reap(cau_hub *hub);

@@ -119,7 +119,6 @@ void cau_service_frames(void *user)
 }
 
 // ---- on the network thread
-// -------------------------------------------------------------------------
 static void send_file(cau_peer *peer, cau_post *post)
 {
 	for (int i = 0; i < FILES_OF_PEER; i++)

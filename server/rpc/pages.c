@@ -62,7 +62,6 @@ static unsigned write_sessions(cau_service *service, FILE *out)
 }
 
 // ---- metrics
-// -----------------------------------------------------------------------------------------
 static void metric(FILE *out, const char *name, const char *type, const char *help, double value)
 {
 	fprintf(out, "# HELP cautery_%s %s\n# TYPE cautery_%s %s\ncautery_%s %.17g\n", name, help, name,

@@ -52,7 +52,6 @@ static cau_call_handler *const handlers[CAU_METHOD_COUNT] = {
 };
 
 // ---- messages
-// ----------------------------------------------------------------------------------------
 static void refuse(const cau_call *call, cau_status status, int32_t code, const char *reason)
 {
 	cau_error error = {0};
@@ -117,7 +116,6 @@ static void on_binary(void *user, cau_connection *connection, const void *bytes,
 }
 
 // ---- connections
-// -------------------------------------------------------------------------------------
 static bool on_opened(void *user, cau_connection *connection, const char *session)
 {
 	cau_peer *peer = calloc(1, sizeof *peer);
@@ -183,7 +181,6 @@ static void on_tick(void *user)
 }
 
 // ---- life
-// --------------------------------------------------------------------------------------------
 cau_status cau_service_create(cau_service **made, const cau_config *config, const cau_auth *auth,
                               cau_hub *hub, cau_store *store, cau_error *error)
 {

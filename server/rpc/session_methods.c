@@ -5,7 +5,6 @@
 #include "rpc/internal.h"
 
 // ---- session.list
-// ------------------------------------------------------------------------------------
 static void list_one(void *user, cau_hosted *hosted)
 {
 	cau_wire_list *list = user;
@@ -38,7 +37,6 @@ void cau_call_session_list(cau_call *call)
 }
 
 // ---- session.create
-// ----------------------------------------------------------------------------------
 static cau_status choose_scene(cau_peer *peer, const cau_wire_session_create *params,
                                cau_scene_def *scene, cau_error *error)
 {
@@ -107,7 +105,6 @@ void cau_call_session_create(cau_call *call)
 }
 
 // ---- everything that is one order
-// --------------------------------------------------------------------
 static cau_status read_step(const cau_rpc_message *message, cau_order *order, cau_error *error)
 {
 	cau_wire_session_step params = {0};

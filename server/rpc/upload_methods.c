@@ -164,7 +164,6 @@ cau_status cau_peer_fill_meshes(cau_peer *peer, cau_scene_def *scene, cau_error 
 }
 
 // ---- out
-// ---------------------------------------------------------------------------------------------
 cau_buffer *cau_peer_next_chunk(cau_peer *peer)
 {
 	for (int i = 0; i < FILES_OF_PEER; i++) {

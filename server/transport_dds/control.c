@@ -33,7 +33,6 @@ static cau_status check_params(cau_method method, const void *params, cau_error 
 }
 
 // ---- orders
-// --------------------------------------------------------------------------------------------
 static cau_status read_change(asked *a, cau_order *order, cau_error *error)
 {
 	cau_wire_session_change params = {.client_sequence = order->client_sequence,
@@ -150,7 +149,6 @@ static cau_status order_session(asked *a, cau_reply reply, int32_t *code, cau_er
 }
 
 // ---- what needs no order
-// ---------------------------------------------------------------------------
 static cau_status create(asked *a, cau_reply reply, cau_error *error)
 {
 	cau_wire_session_create params = {.has_client_sequence = true,
@@ -204,7 +202,6 @@ static cau_status join(const asked *a, int32_t *code, cau_error *error)
 }
 
 // ---- asking
-// --------------------------------------------------------------------------------------------
 static cau_status serve(asked *a, int32_t *code, cau_error *error)
 {
 	cautery_SessionOperation operation = a->sample->operation;

@@ -188,7 +188,6 @@ void cau_dds_close_session(cau_dds *dds, cau_dds_session *session)
 }
 
 // ---- ROS 2
-// ---------------------------------------------------------------------------------------------
 static bool ros_tool_name(const cau_dds_session *session, const cau_dds_tool *tool,
                           char name[CAU_NAME_BYTES])
 {

@@ -49,7 +49,6 @@ void cau_dds_count_dropped(cau_dds_session *session)
 }
 
 // ---- orders
-// --------------------------------------------------------------------------------------------
 static bool submit(const cau_dds_hand *hand, cau_order *order)
 {
 	cau_error error = {0};
@@ -101,7 +100,6 @@ bool cau_dds_hand_over(cau_dds_hand *hand, const cau_asker *to)
 }
 
 // ---- the driver
-// ----------------------------------------------------------------------------------------
 // The hand of a client of ours that drives this tool and has been silent for its deadline.
 static cau_dds_hand *silent_driver(cau_dds *dds, const cau_dds_hand *hand, uint32_t driver,
                                    double now_s)
@@ -204,7 +202,6 @@ bool cau_dds_move(cau_dds *dds, cau_dds_hand *hand, cau_pose pose, double jaw, u
 }
 
 // ---- levels
-// --------------------------------------------------------------------------------------------
 static bool may_drive(const cau_dds_hand *hand)
 {
 	cau_hosted_tool tool;
@@ -249,7 +246,6 @@ void cau_dds_grasp(cau_dds_hand *hand, bool level)
 }
 
 // ---- CRTK's states
-// ---------------------------------------------------------------------------------
 static void stay(const cau_dds_hand *hand, const cau_tool_state *state)
 {
 	submit_move(hand, &state->pose, state->jaw, hand->past.sequence);

@@ -15,7 +15,6 @@
 #define RETRY_S 1.0
 
 // ---- writing
-// ---------------------------------------------------------------------------------------
 static cautery_Frame describe(const cau_dds_session *session, const cau_frame_header *header)
 {
 	const cau_wire_stream_description *d = &session->stream.description;
@@ -116,7 +115,6 @@ static double write_new(cau_dds_session *session, double now_s)
 }
 
 // ---- joining and leaving
-// ---------------------------------------------------------------------------
 static void count_readers(cau_dds_stream *stream)
 {
 	const dds_entity_t writers[] = {stream->topology_writer, stream->key_writer,

@@ -111,7 +111,6 @@ void cau_dds_reply_list(cau_dds *dds, cau_dds_request *request)
 }
 
 // ---- from posts
-// ------------------------------------------------------------------------------------
 static cau_status fill_made(const cau_dds_post *post, cautery_SessionReply *reply,
                             cautery_SessionStatus *made, cau_error *error)
 {

@@ -13,7 +13,6 @@
 enum { TAKEN_MOST = 16, TRIGGERS_MOST = 64, CONFIG_BYTES = 4096 };
 
 // ---- the sink; from any thread
-// ----------------------------------------------------------------------
 void cau_dds_wake(cau_dds *dds, atomic_bool *why)
 {
 	if (!atomic_exchange(why, true) && dds->wake > 0)
@@ -40,7 +39,6 @@ static void on_sliced(void *user)
 }
 
 // ---- samples
-// -----------------------------------------------------------------------------------------
 static void serve(cau_dds *dds, cau_door *door)
 {
 	static void (*const takers[])(cau_dds *, cau_door *, cau_dds_client *, const void *) = {
@@ -102,7 +100,6 @@ static void *run(void *argument)
 }
 
 // ---- life
-// --------------------------------------------------------------------------------------------
 static cau_status fail(cau_error *error, const char *what, dds_return_t code)
 {
 	return cau_fail(error, CAU_IO, "dds", "%s: %s", what, dds_strretcode(code));

@@ -110,7 +110,6 @@ cau_dds_client *cau_dds_client_of(cau_dds *dds, const cau_door *door, dds_instan
 }
 
 // ---- who is meant
-// ----------------------------------------------------------------------------------------
 static bool is_meant(const dds_builtintopic_endpoint_t *writer, uint64_t participant,
                      const uint8_t guid[16])
 {
@@ -154,7 +153,6 @@ cau_dds_client *cau_dds_find_driver(cau_dds *dds, const cau_dds_client *requeste
 }
 
 // ---- going
-// ---------------------------------------------------------------------------------------------
 static void drop_hand(cau_dds_hand *hand)
 {
 	cau_hosted_tool tool;
@@ -216,7 +214,6 @@ void cau_dds_prune(cau_dds *dds, dds_entity_t reader, bool all)
 }
 
 // ---- hands
-// ---------------------------------------------------------------------------------------------
 cau_dds_hand *cau_dds_hand_of(cau_dds *dds, cau_dds_client *client, cau_dds_session *session,
                               const char *tool)
 {

@@ -54,7 +54,6 @@ typedef struct controller {
 } controller;
 
 // ---- the wire
-// ------------------------------------------------------------------------------------------
 static dds_entity_t ros_writer(controller *c, const char *name, const dds_topic_descriptor_t *type)
 {
 	dds_qos_t *qos = ros_qos(false);
@@ -96,7 +95,6 @@ static bool is_matched(dds_entity_t writer)
 }
 
 // ---- writing
-// ------------------------------------------------------------------------------------------
 static void write_native(controller *c, cautery_ToolCommand *sample)
 {
 	memcpy(sample->tool, c->tool, sizeof c->tool);
@@ -210,7 +208,6 @@ static void write_strangers(controller *c)
 }
 
 // ---- telling and being told
-// ---------------------------------------------------------------------------
 static void tell_state(const controller *c, const char *event)
 {
 	const cautery_ToolState *s = &c->state;

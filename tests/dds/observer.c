@@ -39,7 +39,6 @@ typedef struct observer {
 } observer;
 
 // ---- decoding
-// ----------------------------------------------------------------------------------------------
 static uint32_t hashed(uint32_t hash, const void *bytes, size_t count)
 {
 	for (size_t i = 0; i < count; i++)
@@ -172,7 +171,6 @@ static void take_frame(void *user, const void *sample)
 }
 
 // ---- reading
-// ----------------------------------------------------------------------------------------------
 static void tell_status(const cautery_SessionStatus *s)
 {
 	static const char *const states[] = {"starting", "running", "paused", "faulted"};

@@ -190,9 +190,9 @@ void cau_session_alive(const cau_session *session, const uint8_t **tetrahedron,
                        const uint8_t **triangle, const uint8_t **link);
 
 // ---- snapshots
-// ------------------------------------------------------------------------------------ The whole
-// state at a tick border, queued commands among it, tagged with version, instruction set and a hash
-// of the definition. Restoring and stepping gives the same bits as never having stopped.
+
+// The whole state at a tick border, queued commands among it, tagged with version, instruction set
+// and a hash of the definition. Restoring and stepping gives the same bits as never having stopped.
 size_t cau_session_snapshot_bytes(const cau_session *session); // an upper bound
 cau_status cau_session_snapshot(const cau_session *session, void *bytes, size_t capacity,
                                 size_t *byte_count, cau_error *error);

@@ -41,7 +41,6 @@ static void write_bytes(const char *name, const void *bytes, size_t count)
 }
 
 // ---- expected states
-// ------------------------------------------------------------------------------
 
 static void write_signed(FILE *out, const char *key, const int32_t *value, size_t count)
 {
@@ -111,7 +110,6 @@ static void write_state(FILE *out, const cau_frame_decoder *decoder)
 }
 
 // ---- streams
-// --------------------------------------------------------------------------------------
 
 typedef struct recording {
 	FILE *manifest;
@@ -232,7 +230,6 @@ static void write_streams(void)
 }
 
 // ---- topology and chunks
-// --------------------------------------------------------------------------
 
 static void fill_faces(const tissue *of, int32_t *face, uint8_t *layer, float *texture)
 {
@@ -287,7 +284,6 @@ static void write_topology(void)
 }
 
 // ---- messages
-// -------------------------------------------------------------------------------------
 
 static void write_line(FILE *out, const char *message, cau_status status,
                        const cau_rpc_buffer *text)

@@ -18,7 +18,6 @@ static cau_status read(const char *text, cau_rpc_message *message, cau_rpc_fault
 }
 
 // ---- what is refused before any method sees it
-// ----------------------------------------------------
 
 typedef struct refusal {
 	const char *text;
@@ -105,7 +104,6 @@ static void test_depth_and_size_are_bounded(void **unused)
 }
 
 // ---- params
-// ---------------------------------------------------------------------------------------
 
 typedef struct bad_params {
 	const char *method;
@@ -190,7 +188,6 @@ static void test_optional_members_say_whether_they_are_there(void **unused)
 }
 
 // ---- commands
-// -------------------------------------------------------------------------------------
 
 static void test_methods_of_commands_bear_their_names(void **unused)
 {
@@ -324,7 +321,6 @@ static void test_bad_envelopes_are_refused(void **unused)
 }
 
 // ---- errors and newer servers
-// -----------------------------------------------------------------------
 
 static void test_errors_round_trip(void **unused)
 {
