@@ -106,9 +106,10 @@ cau_status cau_session_set_pins(cau_session *session, const cau_selection *selec
 // Analyses and factors the system anew; `permutation` as in cau_factor_create.
 cau_status cau_session_rebuild_system(cau_session *session, const int32_t *permutation,
                                       cau_error *error);
-// view.c: temperature of the vertices after a tick; everything anew after a restore.
-void cau_session_show_temperature(cau_session *session);
-void cau_session_renew_temperature(cau_session *session);
+// view.c: stress and temperature of the vertices, where switched on, after a tick; all of it anew
+// after a restore.
+void cau_session_show_scalars(cau_session *session);
+void cau_session_renew_scalars(cau_session *session);
 // view.c: layer and texture of the faces.
 cau_status cau_session_make_faces(cau_session *session, cau_error *error);
 // drive.c: pinned vertices go where the caller wants them in this tick.

@@ -403,7 +403,7 @@ cau_status cau_session_restore(cau_session *session, const void *bytes, size_t b
 		session->contact.row_count = session->refusal_count = 0;
 		status = replay_factor(session, &header, error);
 		cau_frame_rebuild(&session->frame, &session->dissection);
-		cau_session_renew_temperature(session);
+		cau_session_renew_scalars(session);
 	}
 	if (status) // half restored: say so instead of going on
 		session->faulted = true;

@@ -145,10 +145,7 @@ cau_status cau_session_step(cau_session *session, cau_error *error)
 		return fault(session, status);
 	cau_frame_update(&session->frame, &session->dissection, session->position_start,
 	                 session->position); // frame/frame_state.c
-	if (session->stress_on)
-		cau_frame_stress(&session->frame, &session->tissue, &session->dissection,
-		                 session->position);
-	cau_session_show_temperature(session); // view.c
+	cau_session_show_scalars(session);   // view.c
 	cau_session_stage_end(session, CAU_STAGE_FRAME);
 	session->tick++;
 	return CAU_OK;

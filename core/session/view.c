@@ -125,9 +125,9 @@ void cau_session_set_clock(cau_session *session, double (*now_s)(void))
 	session->now_s = session->solver.now_s = now_s;
 }
 
-void cau_session_set_stress(cau_session *session, bool on)
+static void show_stress(cau_session *session)
 {
-	session->stress_on = on;
+	cau_frame_stress(&session->frame, &session->tissue, &session->dissection, session->position);
 }
 
 static void heat_vertices(cau_session *session)
@@ -136,29 +136,43 @@ static void heat_vertices(cau_session *session)
 		cau_frame_heat(&session->frame, &session->near, &session->tool[i].grid, session->position);
 }
 
-void cau_session_show_temperature(cau_session *session)
+static void renew_temperature(cau_session *session)
 {
+	cau_frame_cool(&session->frame, &session->tissue, session->scene->ambient_c);
+	cau_near_refit(&session->near, session->position);
+	heat_vertices(session);
+}
+
+void cau_session_show_scalars(cau_session *session)
+{
+	if (session->stress_on)
+		show_stress(session);
 	if (!session->temperature_on)
 		return;
 	cau_frame_cool_heated(&session->frame);
 	heat_vertices(session);
 }
 
-void cau_session_renew_temperature(cau_session *session)
+void cau_session_renew_scalars(cau_session *session)
 {
-	if (!session->temperature_on)
-		return;
-	cau_frame_cool(&session->frame, &session->tissue, session->scene->ambient_c);
-	cau_near_refit(&session->near, session->position);
-	heat_vertices(session);
+	if (session->stress_on)
+		show_stress(session);
+	if (session->temperature_on)
+		renew_temperature(session);
+}
+
+void cau_session_set_stress(cau_session *session, bool on)
+{
+	if (on && !session->stress_on)
+		show_stress(session);
+	session->stress_on = on;
 }
 
 void cau_session_set_temperature(cau_session *session, bool on)
 {
-	bool renew = on && !session->temperature_on;
+	if (on && !session->temperature_on)
+		renew_temperature(session);
 	session->temperature_on = on;
-	if (renew)
-		cau_session_renew_temperature(session);
 }
 
 void cau_session_alive(const cau_session *session, const uint8_t **tetrahedron,

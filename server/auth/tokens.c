@@ -5,6 +5,7 @@
 #include <sys/stat.h>
 
 #include "auth/auth.h"
+#include "config/role.h"
 
 enum { MAX_TOKENS = 256, TOKEN_BYTES = 129, LEAST_TOKEN_BYTES = 16 };
 
@@ -20,32 +21,18 @@ struct cau_auth {
 	token tokens[MAX_TOKENS];
 };
 
-static const char *const role_names[] = {
-#define X(code, name) name,
-	CAU_ROLE_TABLE(X)
-#undef X
-};
-
-static int role_named(const char *name)
-{
-	for (int i = 0; i < CAU_ROLE_COUNT; i++)
-		if (strcmp(name, role_names[i]) == 0)
-			return i;
-	return -1;
-}
-
 static cau_status read_line(cau_auth *auth, char *line, int number, cau_error *error)
 {
-	char role[16], text[TOKEN_BYTES + 1], more[2];
+	char word[16], text[TOKEN_BYTES + 1], more[2];
+	cau_role role;
 	line[strcspn(line, "#\r\n")] = 0;
-	int fields = sscanf(line, "%15s %129s %1s", role, text, more);
+	int fields = sscanf(line, "%15s %129s %1s", word, text, more);
 	if (fields <= 0)
 		return CAU_OK;
 	if (fields != 2)
 		return cau_fail(error, CAU_BAD_SYNTAX, "tokens", "line %d is not `ROLE TOKEN`", number);
 	size_t bytes = strlen(text);
-	int wanted = role_named(role);
-	if (wanted < 0)
+	if (!cau_role_read(word, &role))
 		return cau_fail(error, CAU_BAD_VALUE, "tokens", "line %d: roles are view, operate, admin",
 		                number);
 	if (bytes < LEAST_TOKEN_BYTES || bytes >= TOKEN_BYTES)
@@ -56,7 +43,7 @@ static cau_status read_line(cau_auth *auth, char *line, int number, cau_error *e
 	token *made = &auth->tokens[auth->count++];
 	memcpy(made->text, text, bytes + 1);
 	made->bytes = bytes;
-	made->role = (cau_role)wanted;
+	made->role = role;
 	return CAU_OK;
 }
 

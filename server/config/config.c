@@ -5,7 +5,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "cautery/message_choices.h"
+#include "config/role.h"
 #include "config/setting.h"
 
 void cau_config_default(cau_config *config)
@@ -123,13 +123,6 @@ static bool is_loopback(const char *address)
 	       strcmp(address, "localhost") == 0;
 }
 
-static bool is_role(const char *word)
-{
-#define X(code, name) || strcmp(word, name) == 0
-	return false CAU_ROLE_TABLE(X);
-#undef X
-}
-
 static cau_status check_together(const cau_config *config, cau_error *error)
 {
 	if (!is_loopback(config->listen) && !*config->tokens)
@@ -140,7 +133,7 @@ static cau_status check_together(const cau_config *config, cau_error *error)
 		return cau_fail(
 			error, CAU_BAD_VALUE, "dds_config",
 			"may leave loopback: that needs dds_security, or dds_network to do without");
-	if (!is_role(config->dds_role))
+	if (!cau_role_read(config->dds_role, &(cau_role){0}))
 		return cau_fail(error, CAU_BAD_VALUE, "dds_role", "%.60s is not view, operate or admin",
 		                config->dds_role);
 	if (*config->dds_roles && !*config->dds_security)

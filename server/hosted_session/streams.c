@@ -256,10 +256,24 @@ static bool serve_stream(cau_hosted *h, cau_stream *stream, published *p, bool *
 	return due || key;
 }
 
+// What costs the core work of its own is made as long as somebody watches it.
+static void follow_channels(cau_hosted *h)
+{
+	uint32_t channels = 0;
+	pthread_mutex_lock(&h->mutex);
+	for (int i = 0; i < CAU_STREAM_PROFILES_MAX; i++)
+		if (h->streams[i].used && h->streams[i].subscribers > 0)
+			channels |= h->streams[i].def.channels;
+	pthread_mutex_unlock(&h->mutex);
+	cau_session_set_stress(h->core, (channels & CAU_CHANNEL_STRESS) != 0);
+	cau_session_set_temperature(h->core, (channels & CAU_CHANNEL_TEMPERATURE) != 0);
+}
+
 void cau_streams_publish(cau_hosted *h, double now_s)
 {
 	published p;
 	bool filled = false, any = false;
+	follow_channels(h);
 	for (int i = 0; i < CAU_STREAM_PROFILES_MAX; i++)
 		any = serve_stream(h, &h->streams[i], &p, &filled, now_s) || any;
 	h->dirty = false;
@@ -386,10 +400,6 @@ void cau_apply_join(cau_hosted *h, cau_order *order)
 {
 	cau_error error = {0};
 	cau_stream *stream = NULL;
-	if (order->as.join.channels & CAU_CHANNEL_STRESS)
-		cau_session_set_stress(h->core, true);
-	if (order->as.join.channels & CAU_CHANNEL_TEMPERATURE)
-		cau_session_set_temperature(h->core, true);
 	if (take_stream(h, order, &stream, &error)) {
 		cau_answer_fail(order, &error, 0);
 		return;

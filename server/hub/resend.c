@@ -6,14 +6,14 @@
 // The method whose name is the answer's id; empty: stored by a version that named none.
 static void read_method(const char *text, size_t bytes, char name[CAU_RPC_ID_BYTES])
 {
-	static const char before[] = "\"id\":\"";
-	const char *found = memmem(text, bytes, before, sizeof before - 1);
-	size_t length = 0;
-	if (found) {
-		const char *from = found + sizeof before - 1;
-		const char *end = memchr(from, '"', bytes - (size_t)(from - text));
-		length = end && end - from < CAU_RPC_ID_BYTES ? (size_t)(end - from) : 0;
-		memcpy(name, from, length);
+	static const char before[] = "{\"jsonrpc\":\"2.0\",\"id\":\"";
+	size_t length = 0, skipped = sizeof before - 1;
+	if (bytes > skipped && memcmp(text, before, skipped) == 0) {
+		const char *end = memchr(text + skipped, '"', bytes - skipped);
+		length = end ? (size_t)(end - text) - skipped : 0;
+		if (length >= CAU_RPC_ID_BYTES)
+			length = 0;
+		memcpy(name, text + skipped, length);
 	}
 	name[length] = 0;
 }

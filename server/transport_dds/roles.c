@@ -5,30 +5,11 @@
 #include <string.h>
 #include <sys/stat.h>
 
+#include "config/role.h"
+
 enum { LINE_BYTES = 512 };
 
 static const char spaces[] = " \t\r\n";
-
-static const char *const words[CAU_ROLE_COUNT] = {
-#define X(code, name) [CAU_ROLE_##code] = (name),
-	CAU_ROLE_TABLE(X)
-#undef X
-};
-
-const char *cau_dds_role_word(cau_role role)
-{
-	return words[role];
-}
-
-static bool read_role(const char *word, size_t bytes, cau_role *role)
-{
-	for (int i = 0; i < CAU_ROLE_COUNT; i++)
-		if (strlen(words[i]) == bytes && strncmp(words[i], word, bytes) == 0) {
-			*role = (cau_role)i;
-			return true;
-		}
-	return false;
-}
 
 static cau_status add(cau_dds_roles *roles, cau_role role, const char *subject, int number,
                       cau_error *error)
@@ -55,9 +36,10 @@ static cau_status read_line(cau_dds_roles *roles, char *line, int number, cau_er
 	size_t word_bytes = strcspn(word, spaces);
 	char *subject = word + word_bytes + strspn(word + word_bytes, spaces);
 	size_t bytes = strlen(subject);
+	word[word_bytes] = 0;
 	while (bytes > 0 && strchr(spaces, subject[bytes - 1]))
 		subject[--bytes] = 0;
-	if (!read_role(word, word_bytes, &role))
+	if (!cau_role_read(word, &role))
 		return cau_fail(error, CAU_BAD_VALUE, "dds_roles",
 		                "line %d: roles are view, operate, admin", number);
 	if (!strchr(subject, '=') || bytes >= CAU_DDS_SUBJECT_BYTES)
@@ -92,7 +74,7 @@ static cau_status read_file(cau_dds_roles *roles, const char *file, cau_error *e
 cau_status cau_dds_roles_read(cau_dds_roles *roles, const cau_config *config, cau_error *error)
 {
 	*roles = (cau_dds_roles){.named = *config->dds_roles != 0};
-	if (!read_role(config->dds_role, strlen(config->dds_role), &roles->role_else))
+	if (!cau_role_read(config->dds_role, &roles->role_else))
 		return cau_fail(error, CAU_BAD_VALUE, "dds_role", "is no role");
 	return roles->named ? read_file(roles, config->dds_roles, error) : CAU_OK;
 }

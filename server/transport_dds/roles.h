@@ -24,7 +24,5 @@ typedef struct cau_dds_roles {
 // twice.
 cau_status cau_dds_roles_read(cau_dds_roles *roles, const cau_config *config, cau_error *error);
 
-const char *cau_dds_role_word(cau_role role);
-
 // The role of who has proved this subject name; NULL: of who has proved none.
 cau_role cau_dds_roles_find(const cau_dds_roles *roles, const char *subject);

@@ -3,6 +3,7 @@
 #include <math.h>
 #include <string.h>
 
+#include "config/role.h"
 #include "transport_dds/internal.h"
 
 // Bounds on a declared deadline, s.
@@ -63,7 +64,7 @@ static cau_dds_client *add_client(cau_dds *dds, uint64_t identity, bool native,
 	                           .asker = made.asker};
 	cau_log(CAU_LOG_INFO, NULL, "dds_client",
 	        "client=%u name=\"%s\" deadline_s=%.3f role=%s subject=\"%s\"", made.asker.client,
-	        made.asker.name, made.asker.deadline_s, cau_dds_role_word(made.asker.role), subject);
+	        made.asker.name, made.asker.deadline_s, cau_role_word(made.asker.role), subject);
 	return client;
 }
 

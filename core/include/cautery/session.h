@@ -180,9 +180,9 @@ void cau_session_frame(const cau_session *session, cau_frame *frame);
 
 // Switches stage timing (off by default; needs a clock that the caller gives, in seconds).
 void cau_session_set_clock(cau_session *session, double (*now_s)(void));
-// Switches the stress channel (off by default).
+// Switch the stress and the temperature channel (off by default); switched on, a channel is there
+// at once, without a step.
 void cau_session_set_stress(cau_session *session, bool on);
-// Switches the temperature channel (off by default); switched on, it is there at once.
 void cau_session_set_temperature(cau_session *session, bool on);
 
 // Elements alive, as bytes 0/1, (tetrahedron_count), (triangle_count), (link_count): for export.

@@ -1,0 +1,75 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// What streams ask of the core: channels that cost it work of their own, as long as somebody
+// watches.
+#include <setjmp.h>
+#include <stdarg.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include <cmocka.h>
+
+#include "cautery/defaults.h"
+#include "hosted_session/internal.h"
+
+static void no_frames(void *user)
+{
+	(void)user;
+}
+
+static void open_stream(cau_hosted *h)
+{
+	cau_session_info info;
+	cau_session_describe(h->core, &info);
+	cau_stream_def def = cau_default_stream_def();
+	def.vertex_count = info.vertex_count;
+	def.face_count = info.face_count;
+	def.channels = CAU_CHANNEL_POSITIONS | CAU_CHANNEL_TEMPERATURE;
+	cau_stream *stream = &h->streams[0];
+	*stream = (cau_stream){.used = true, .epoch = 7, .rate_hz = 60, .def = def};
+	size_t bytes = cau_frame_encoder_bytes(&def);
+	stream->scratch_bytes = cau_frame_bytes_max(&def);
+	stream->storage = malloc(bytes);
+	stream->scratch = malloc(stream->scratch_bytes);
+	assert_int_equal(
+		cau_frame_encoder_init(stream->storage, bytes, &def, 7, &stream->encoder, NULL), CAU_OK);
+}
+
+static bool makes_temperature(cau_hosted *h, int32_t subscribers)
+{
+	cau_frame frame;
+	h->streams[0].subscribers = subscribers;
+	cau_streams_publish(h, 100);
+	cau_session_frame(h->core, &frame);
+	return frame.temperature != NULL;
+}
+
+static void temperature_is_made_while_it_is_watched(void **state)
+{
+	(void)state;
+	cau_scene_def *scene = malloc(sizeof *scene);
+	cau_hosted *h = calloc(1, sizeof *h);
+	cau_surroundings around = {.sink.frames = no_frames};
+	cau_session_def def = cau_default_session_def();
+	cau_default_scene_def(scene);
+	scene->layer_count = 1;
+	def.scene = scene;
+	assert_int_equal(cau_session_create(&def, &h->core, NULL), CAU_OK);
+	pthread_mutex_init(&h->mutex, NULL);
+	h->around = &around;
+	open_stream(h);
+	assert_false(makes_temperature(h, 0));
+	assert_true(makes_temperature(h, 1));
+	assert_true(makes_temperature(h, 2));
+	assert_false(makes_temperature(h, 0));
+	cau_streams_destroy(h);
+	cau_session_destroy(h->core);
+	pthread_mutex_destroy(&h->mutex);
+	free(h);
+	free(scene);
+}
+
+int main(void)
+{
+	const struct CMUnitTest tests[] = {cmocka_unit_test(temperature_is_made_while_it_is_watched)};
+	return cmocka_run_group_tests(tests, NULL, NULL);
+}
