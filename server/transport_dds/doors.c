@@ -105,8 +105,11 @@ cau_status cau_dds_open_control(cau_dds *dds, cau_error *error)
 static void open_writers(cau_dds *dds, cau_dds_session *session)
 {
 	cau_dds_stream *stream = &session->stream;
-	dds_qos_t *kept = reliable_qos(1), *chain = reliable_qos(DELTAS_KEPT);
+	dds_qos_t *kept = reliable_qos(1), *last = reliable_qos(1), *chain = reliable_qos(DELTAS_KEPT);
 	dds_qset_durability(kept, DDS_DURABILITY_TRANSIENT_LOCAL);
+	dds_qset_durability(last, DDS_DURABILITY_TRANSIENT_LOCAL);
+	// It outlives its session: by then another one may have the name.
+	dds_qset_writer_data_lifecycle(last, false);
 	const struct {
 		dds_entity_t *writer;
 		cau_topic topic;
@@ -114,7 +117,7 @@ static void open_writers(cau_dds *dds, cau_dds_session *session)
 		bool watched; // whoever reads it is looked at
 	} writers[] = {
 		{&session->state_writer, TOPIC_STATE, kept, false},
-		{&session->status_writer, TOPIC_STATUS, kept, false},
+		{&session->status_writer, TOPIC_STATUS, last, false},
 		{&stream->topology_writer, TOPIC_TOPOLOGY, kept, true},
 		{&stream->key_writer, TOPIC_KEY_FRAME, kept, true},
 		{&stream->delta_writer, TOPIC_DELTA, chain, true},
@@ -129,6 +132,7 @@ static void open_writers(cau_dds *dds, cau_dds_session *session)
 		*writers[i].writer = made;
 	}
 	dds_delete_qos(kept);
+	dds_delete_qos(last);
 	dds_delete_qos(chain);
 }
 
@@ -169,6 +173,21 @@ cau_status cau_dds_open_session(cau_dds *dds, cau_dds_session *session)
 	return done ? CAU_OK : CAU_IO;
 }
 
+static void close_writers(cau_dds *dds, cau_dds_session *session)
+{
+	// Readers of other vendors do not take the end of its writer for the instance's own.
+	cautery_SessionStatus gone = {0};
+	snprintf(gone.session, sizeof gone.session, "%s", cau_hosted_id(session->hosted));
+	if (session->status_writer > 0)
+		dds_dispose(session->status_writer, &gone);
+	const dds_entity_t at_once[] = {session->state_writer, session->stream.topology_writer,
+	                                session->stream.key_writer, session->stream.delta_writer};
+	for (size_t i = 0; i < sizeof at_once / sizeof at_once[0]; i++)
+		if (at_once[i] > 0)
+			dds_delete(at_once[i]);
+	cau_dds_bid_farewell(dds, session->publisher, session->status_writer);
+}
+
 void cau_dds_close_session(cau_dds *dds, cau_dds_session *session)
 {
 	for (int i = 0; i < CAU_MAX_TOOLS; i++)
@@ -176,15 +195,10 @@ void cau_dds_close_session(cau_dds *dds, cau_dds_session *session)
 			cau_dds_close_tool(dds, &session->tools[i]);
 	close_door(dds, &session->native);
 	cau_dds_leave_frames(session);
-	// Readers of other vendors do not take the end of its writer for the instance's own.
-	cautery_SessionStatus gone = {0};
-	snprintf(gone.session, sizeof gone.session, "%s", cau_hosted_id(session->hosted));
-	if (session->status_writer > 0)
-		dds_dispose(session->status_writer, &gone);
 	if (session->subscriber > 0)
 		dds_delete(session->subscriber);
 	if (session->publisher > 0)
-		dds_delete(session->publisher);
+		close_writers(dds, session);
 }
 
 // ---- ROS 2

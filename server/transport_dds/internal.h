@@ -183,6 +183,13 @@ typedef struct cau_dds_request {
 	char session[CAU_NAME_BYTES];
 } cau_dds_request;
 
+// The writer of a session that has ended, and its publisher; farewells.c.
+typedef struct cau_dds_farewell {
+	struct cau_dds_farewell *next;
+	dds_entity_t publisher, writer;
+	double until_s;
+} cau_dds_farewell;
+
 struct cau_dds {
 	const cau_config *config;
 	cau_hub *hub;
@@ -200,6 +207,7 @@ struct cau_dds {
 	cau_dds_post *first, *last;
 	uint64_t last_connection, last_ticket;
 	cau_dds_session *sessions;
+	cau_dds_farewell *farewells;
 	cau_dds_client clients[CLIENTS_MOST];
 	cau_dds_writer writers[WRITERS_MOST];
 	cau_dds_hand hands[HANDS_MOST];
@@ -231,6 +239,14 @@ cau_status cau_dds_open_session(cau_dds *dds, cau_dds_session *session);
 void cau_dds_close_session(cau_dds *dds, cau_dds_session *session);
 void cau_dds_open_tool(cau_dds *dds, cau_dds_session *session, cau_dds_tool *tool);
 void cau_dds_close_tool(cau_dds *dds, cau_dds_tool *tool);
+
+// ---- farewells.c: last samples on their way
+// Takes `publisher`, which goes once the readers of its `writer` have what that wrote last.
+void cau_dds_bid_farewell(cau_dds *dds, dds_entity_t publisher, dds_entity_t writer);
+// Deletes those that are done. Returns when to look again.
+double cau_dds_end_farewells(cau_dds *dds, double now_s);
+// Waits for all of them: two seconds at most.
+void cau_dds_await_farewells(cau_dds *dds);
 
 // ---- writers.c: who writes
 // The client behind a sample, or NULL: its writer is gone or there are too many.
@@ -304,6 +320,8 @@ void cau_dds_publish_operating(cau_dds_session *session);
 // Writes the states of tools that are not as they were last written.
 void cau_dds_publish(cau_dds_session *session, const cau_hosted_tool *tools, int32_t count,
                      uint64_t tick, double time_s);
+// Disposes the state of a tool that is removed.
+void cau_dds_unpublish(const cau_dds_session *session, const char *tool);
 
 // ---- status.c
 // Writes the status if it changed. Returns when to look again.

@@ -103,6 +103,7 @@ static void follow_tools(cau_dds *dds, cau_dds_session *session, const cau_hoste
 	for (int i = 0; i < CAU_MAX_TOOLS; i++)
 		if (session->tools[i].used && !session->tools[i].seen) {
 			cau_dds_drop_hands(dds, session, session->tools[i].name);
+			cau_dds_unpublish(session, session->tools[i].name);
 			cau_dds_close_tool(dds, &session->tools[i]);
 		}
 	for (int32_t i = 0; i < count; i++)
@@ -163,7 +164,7 @@ double cau_dds_serve(cau_dds *dds)
 		look_s = fmin(look_s, cau_dds_publish_status(s, now_s));
 		look_s = fmin(look_s, cau_dds_serve_frames(dds, s, now_s));
 	}
-	return look_s;
+	return fmin(look_s, cau_dds_end_farewells(dds, now_s));
 }
 
 void cau_dds_close_sessions(cau_dds *dds)
@@ -173,4 +174,5 @@ void cau_dds_close_sessions(cau_dds *dds)
 		next = dds->sessions->next;
 		forget_session(dds, dds->sessions);
 	}
+	cau_dds_await_farewells(dds);
 }

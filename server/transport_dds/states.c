@@ -57,6 +57,14 @@ static void publish_measured(const cau_dds_tool *wire, const cau_tool_state *sta
 	dds_write(wire->jaw_writer, &jaw);
 }
 
+void cau_dds_unpublish(const cau_dds_session *session, const char *tool)
+{
+	cautery_ToolState gone = {0};
+	snprintf(gone.session, sizeof gone.session, "%s", cau_hosted_id(session->hosted));
+	snprintf(gone.tool, sizeof gone.tool, "%s", tool);
+	dds_dispose(session->state_writer, &gone);
+}
+
 void cau_dds_publish(cau_dds_session *session, const cau_hosted_tool *tools, int32_t count,
                      uint64_t tick, double time_s)
 {

@@ -3,6 +3,7 @@
 // of ROS 2.
 import assert from 'node:assert/strict';
 import { after, before, test } from 'node:test';
+import { setTimeout } from 'node:timers/promises';
 import { Daemon } from './wire/daemon.mjs';
 import { cutMiddle } from './wire/scene.mjs';
 import { DOMAIN } from './domain.mjs';
@@ -10,6 +11,7 @@ import { Program } from './program.mjs';
 import { far, watchSession } from './watch.mjs';
 
 const DEADLINE_MS = 500;                // generous: this test is not about being late
+const BUSY_MS = 300;                    // longer than the daemon takes to let the session go
 const AT_AIM_M = 1e-4;                  // the quantum of float32 in frames, and the last of the way
 
 let daemon;
@@ -95,6 +97,14 @@ test('Fast DDS decodes topology, key frames and deltas to what a browser sees', 
 		for (let i = 3 * vertex; i < 3 * vertex + 3; i++)
 			assert.equal(held.quantised[i], stream.quantised[i], `vertex ${vertex}`);
 
+	await client.call('tool.remove', { session, tool: 'hook' });
+	await client.call('session.step', { session });
+	await made.until(({ native }) => native.removed);
+
+	// It hears that the session is gone though it is busy just then.
+	made.process.kill('SIGSTOP');
 	await client.call('session.destroy', { session });
+	await setTimeout(BUSY_MS);
+	made.process.kill('SIGCONT');
 	await made.until(({ status: s }) => s.gone); // disposed
 });

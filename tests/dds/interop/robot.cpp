@@ -119,6 +119,7 @@ class Robot
 	{
 		each_sample<cautery::ToolState>(
 			state_reader, [this](const cautery::ToolState &sample, const fast::SampleInfo &info) {
+				removed = info.instance_state == fast::NOT_ALIVE_DISPOSED_INSTANCE_STATE;
 				if (info.valid_data && sample.tool().to_string() == options.tool) {
 					state = sample;
 					state_count++;
@@ -202,12 +203,14 @@ class Robot
 		const auto &f = force.wrench_().force_();
 		std::printf("{\"event\":\"state\",\"native\":{\"count\":%d,\"tick\":%llu,\"sequence\":%llu,"
 		            "\"position_m\":[%.6f,%.6f,%.6f],\"force_n\":[%.6g,%.6g,%.6g],"
-		            "\"energized\":%s,\"energy_off\":%d,\"driver\":%u,\"driver_name\":\"%s\"},",
+		            "\"energized\":%s,\"energy_off\":%d,\"driver\":%u,\"driver_name\":\"%s\","
+		            "\"removed\":%s},",
 		            state_count, static_cast<unsigned long long>(state.tick()),
 		            static_cast<unsigned long long>(state.sequence_number()), p[0], p[1], p[2],
 		            state.force_n()[0], state.force_n()[1], state.force_n()[2],
 		            state.energized() ? "true" : "false", static_cast<int>(state.energy_off()),
-		            state.driver(), state.driver_name().to_string().c_str());
+		            state.driver(), state.driver_name().to_string().c_str(),
+		            removed ? "true" : "false");
 		std::printf("\"cp\":{\"count\":%d,\"position_m\":[%.6f,%.6f,%.6f],\"frame_id\":\"%s\"},"
 		            "\"cf\":{\"count\":%d,\"force_n\":[%.6g,%.6g,%.6g]},"
 		            "\"status\":{\"session\":\"%s\",\"state\":%d,\"tick\":%llu,"
@@ -267,7 +270,7 @@ class Robot
 	geometry::PoseStamped_ pose;
 	geometry::WrenchStamped_ force;
 	int state_count = 0, pose_count = 0, force_count = 0;
-	bool matched = false, writing = false, energy = false, gone = false;
+	bool matched = false, writing = false, energy = false, gone = false, removed = false;
 	double position_m[3] = {0, 0, 0.02}, aim_m[3] = {0, 0, 0.02};
 	uint64_t sequence = 0;
 	std::string heard;

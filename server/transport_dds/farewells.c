@@ -1,0 +1,47 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// The last word of sessions that have ended. A writer that is deleted resends nothing: a reader
+// that was busy just then would never hear that the session is gone. So the writer stays until
+// every reader has acknowledged, or for two seconds, without anybody waiting for it.
+#include <math.h>
+#include <stdlib.h>
+#include <time.h>
+
+#include "transport_dds/internal.h"
+
+#define FAREWELL_S 2 // what a reader that hangs costs
+#define LOOK_EVERY_S 0.01
+
+void cau_dds_bid_farewell(cau_dds *dds, dds_entity_t publisher, dds_entity_t writer)
+{
+	cau_dds_farewell *farewell = malloc(sizeof *farewell);
+	if (!farewell) {
+		dds_delete(publisher);
+		return;
+	}
+	*farewell =
+		(cau_dds_farewell){dds->farewells, publisher, writer, cau_monotonic_s() + FAREWELL_S};
+	dds->farewells = farewell;
+}
+
+double cau_dds_end_farewells(cau_dds *dds, double now_s)
+{
+	for (cau_dds_farewell **link = &dds->farewells; *link;) {
+		cau_dds_farewell *farewell = *link;
+		if (now_s < farewell->until_s &&
+		    dds_wait_for_acks(farewell->writer, 0) == DDS_RETCODE_TIMEOUT) {
+			link = &farewell->next;
+			continue;
+		}
+		*link = farewell->next;
+		dds_delete(farewell->publisher);
+		free(farewell);
+	}
+	return dds->farewells ? now_s + LOOK_EVERY_S : INFINITY;
+}
+
+void cau_dds_await_farewells(cau_dds *dds)
+{
+	const struct timespec pause = {.tv_nsec = (long)(1e9 * LOOK_EVERY_S)};
+	while (cau_dds_end_farewells(dds, cau_monotonic_s()) < INFINITY)
+		nanosleep(&pause, NULL);
+}
