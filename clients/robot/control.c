@@ -3,6 +3,7 @@
 
 #include <errno.h>
 #include <math.h>
+#include <stdio.h>
 #include <string.h>
 #include <time.h>
 
@@ -119,6 +120,8 @@ static void begin_to_drive(control *c, double now_s)
 	c->first = pose_of(&c->link->state);
 	c->approach_s = fmax(LEAST_APPROACH_S, distance(&c->first, &start) / c->options->speed_m_s);
 	c->driving_s = now_s;
+	printf("drives\n");
+	fflush(stdout);
 }
 
 void robot_control(robot_link *link, const robot_options *options,

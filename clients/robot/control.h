@@ -16,6 +16,7 @@ typedef struct robot_report {
 } robot_report;
 
 // Runs until the trajectory or `seconds` are over, the tool is lost, or *stop is set.
+// Prints `drives` to standard output when the tool becomes its own.
 void robot_control(robot_link *link, const robot_options *options,
                    const robot_trajectory *trajectory, const volatile int *stop,
                    robot_report *report);

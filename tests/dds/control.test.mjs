@@ -6,6 +6,7 @@ import { after, before, test } from 'node:test';
 import { DOMAIN } from './domain.mjs';
 import { Observer } from './observer.mjs';
 import { Requester } from './requester.mjs';
+import { PATIENCE_S } from './wire/client.mjs';
 import { Daemon } from './wire/daemon.mjs';
 import { smallSession } from './wire/scene.mjs';
 
@@ -137,8 +138,11 @@ test('TAKE_OVER gives a tool to a writer of the same participant; from its drive
 	const { driver, reason } = await requester.takeOver(session, tool);
 	assert.equal(reason, '');
 	await client.until(() => stream.tools[0].driver === driver, 'it drives');
-	requester.tell('move hook 0 0.01 0.03');
+	// Again and again, as a controller does: a command that comes late is refused.
+	const moving = setInterval(() => requester.tell('move hook 0 0.01 0.03'), 20);
+	t.after(() => clearInterval(moving));
 	await client.until(() => Math.abs(stream.tools[0].position[2] - 0.03) < 1e-4, 'it moves');
+	clearInterval(moving);
 	await client.call('tool.take_over', { session, tool });
 	const refused = await requester.takeOver(session, tool);
 	assert.deepEqual([refused.code, refused.status], [-32043, 'forbidden']);
@@ -152,8 +156,12 @@ test('the role that the settings give binds every operation, and their rate', as
 	assert.deepEqual([made.code, made.status], [-32043, 'forbidden']);
 	assert.deepEqual((await requester.done('LIST', { session: 'd9' })).sessions, []);
 	// And so does the rate that they allow.
-	const many = await Promise.all(Array.from({ length: 60 }, () => requester.request('LIST', { session: 'd9' })));
-	assert.deepEqual([...new Set(many.map((reply) => reply.status))].sort(), ['', 'rate']);
+	const told = new Set();
+	for (const end = Date.now() + 1000 * PATIENCE_S; !told.has('rate') && Date.now() < end;) {
+		const many = Array.from({ length: 60 }, () => requester.request('LIST', { session: 'd9' }));
+		(await Promise.all(many)).forEach((reply) => told.add(reply.status));
+	}
+	assert.deepEqual([...told].sort(), ['', 'rate']);
 	const wrong = spawnSync(process.env.CAUTERYD, ['--dds', '--dds-role', 'king'], { encoding: 'utf8' });
 	assert.equal(wrong.status, 2);
 	assert.match(wrong.stderr, /path="dds_role"/);

@@ -157,8 +157,7 @@ test('the jaw goes where servo_jp says, and measured_js and measured_cp tell', a
 	const aim = [0.01, -0.01, 0.02];
 	await follows(seen, aim);
 	robot.tell('jaw 0.2');
-	const told = await robot.untilCrtk((c) => Math.abs(c.jaw_rad - 0.2) < 1e-5);
-	assert.ok(far(told.position_m, aim) < AT_AIM_M);
+	await robot.untilCrtk((c) => Math.abs(c.jaw_rad - 0.2) < 1e-5 && far(c.position_m, aim) < AT_AIM_M);
 	await refusesOne(session, robot, 'jaw 0.6');
 	assert.ok(Math.abs((await robot.crtk()).jaw_rad - 0.2) < 1e-5);
 });

@@ -7,14 +7,18 @@ import { Daemon } from './wire/daemon.mjs';
 import { AT_REST, smallSession } from './wire/scene.mjs';
 import { Controller } from './controller.mjs';
 import { DOMAIN } from './domain.mjs';
+import { lateness, now_us } from './lateness.mjs';
 import { far, watchSession } from './watch.mjs';
 
 // What a native writer declares, and what holds for those that declare none.
 const DEADLINE_S = { native: 0.1, ros: 0.2 };
-// One tick, and what a loaded machine may take to run it and to bring the frame here.
+// One tick, and what a loaded machine may take to run it and to bring the frame here; and what it was
+// late to run this very program.
 const TICK_S = 1 / 60, SLACK_S = 0.1;
 // The tool lags behind its aim while it moves; at rest it is there to the quantum of float32.
 const AT_AIM_M = 1e-4;
+// Of a driver beside a standby, which has its tool as soon as it is late for once: less than its lease.
+const STANDBY_DEADLINE_S = 0.4;
 // The liveliness that the controller's native writer offers, and what Cyclone gives participants.
 const LEASE_S = 0.5, PARTICIPANT_LEASE_S = 10;
 const TRIALS = Number(process.env.DDS_TRIALS ?? 5);
@@ -99,12 +103,14 @@ test('a writer does not move a tool that a browser drives, until it is given up'
 // The time from the last sample to the frame that shows energy off, in the server's own clock.
 async function offAfter({ client, stream }, last_us) {
 	await client.until(() => !stream.tools[0].energized, 'energy off');
+	lateness.look();
 	assert.equal(stream.tools[0].energyOff, 'watchdog');
 	return (stream.published - last_us) / 1e6;
 }
 
-const inTime = (seconds, deadline) =>
-	assert.ok(seconds <= deadline + TICK_S + SLACK_S, `off after ${seconds.toFixed(4)} s`);
+const inTime = (seconds, deadline, ticks = 1) =>
+	assert.ok(seconds <= deadline + ticks * TICK_S + SLACK_S + lateness.worst_s,
+		`off after ${seconds.toFixed(4)} s; this program ran up to ${lateness.worst_s} s late`);
 
 for (const via of ['native', 'ros'])
 	test(`energy of a silent ${via} writer that is alive goes off, and stays off until enabled`, async (t) => {
@@ -112,6 +118,7 @@ for (const via of ['native', 'ros'])
 		const robot = await energized(seen, via);
 		const times = [];
 		for (let trial = 0; trial < TRIALS; trial++) {
+			lateness.reset();
 			times.push(await offAfter(seen, (await robot.ask('write off', 'silent')).last_us));
 			inTime(times.at(-1), DEADLINE_S[via]);
 			// It still says that energy is on, and that is not an enable.
@@ -135,7 +142,8 @@ test('energy of a killed writer goes off', async (t) => {
 		// The one before is dead: its role goes to the next writer, its energy does not.
 		await robot.until((s) => s.driver_name.startsWith('dds ') && s.driver !== robot.firstDriver);
 		await turnOn(seen, robot);
-		const killed_us = Number(process.hrtime.bigint() / 1000n);
+		lateness.reset();
+		const killed_us = now_us();
 		await robot.kill();
 		times.push(await offAfter(seen, killed_us));
 		inTime(times.at(-1), DEADLINE_S.native);
@@ -164,16 +172,18 @@ test('a killed writer is believed dead: who may operate gets its tool, long befo
 test('a standby gets the tool of a silent driver, energy off', async (t) => {
 	const seen = await watched(t, 'standby');
 	const { client, session, stream } = seen;
-	const robot = await energized(seen, 'native');
+	const robot = await energized(seen, 'native', STANDBY_DEADLINE_S);
 	const first = stream.tools[0].driver;
 	const standby = await controller(session);
 	standby.tell('energy 1');
 	standby.tell('write on');
 	await daemon.log(new RegExp(`session=${session} event=dds_refused .*drives it`));
 	assert.equal(stream.tools[0].driver, first);
+	lateness.reset();
 	const { last_us } = await robot.ask('write off', 'silent');
 	await client.until(() => stream.tools[0].driver !== first, 'the standby drives');
-	assert.ok((stream.published - last_us) / 1e6 <= DEADLINE_S.native + 2 * TICK_S + SLACK_S);
+	lateness.look();
+	inTime((stream.published - last_us) / 1e6, STANDBY_DEADLINE_S, 2);
 	assert.equal(stream.tools[0].energized, false);
 	const from = (await standby.state()).sequence;
 	await standby.until((s) => s.sequence > from + 20);

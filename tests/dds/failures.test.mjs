@@ -12,6 +12,7 @@ import { after, before, test } from 'node:test';
 import { fileURLToPath } from 'node:url';
 import { Daemon } from './wire/daemon.mjs';
 import { CYCLONE, DOMAIN } from './domain.mjs';
+import { lateness, now_us } from './lateness.mjs';
 import { watchSession } from './watch.mjs';
 
 const TRIALS = Number(process.env.DDS_TRIALS ?? 3);
@@ -20,10 +21,9 @@ const DEADLINE_S = Number(process.env.DDS_DEADLINE_S ?? 0.5);
 const TICK_S = 1 / 60, PERIOD_S = 1e-3; // of the session, of the robot's commands
 // What a loaded machine may take beyond, to run the watchdog and the step and to make the frame; and
 // what it was late to run this very program.
-const SLACK_S = Number(process.env.DDS_SLACK_S ?? 0.1), LOOK_MS = 5;
+const SLACK_S = Number(process.env.DDS_SLACK_S ?? 0.1);
 const NETWORK = join(dirname(fileURLToPath(process.env.LOOPBACK)), 'network.xml');
 const folder = mkdtempSync(join(tmpdir(), 'cautery-failures-'));
-const now_us = () => Number(process.hrtime.bigint() / 1000n);
 
 after(() => rmSync(folder, { recursive: true }));
 
@@ -79,28 +79,6 @@ async function start(t, settings = {}, options = {}) {
 }
 
 const watched = async (t, daemon, name) => ({ daemon, ...await watchSession(t, daemon, name) });
-
-// How late this program was run at the worst since reset().
-class Lateness {
-	constructor() {
-		this.reset();
-		this.timer = setInterval(() => this.look(), LOOK_MS);
-	}
-
-	look() {
-		const at_us = now_us();
-		this.worst_s = Math.max(this.worst_s, (at_us - this.last_us) / 1e6 - LOOK_MS / 1e3);
-		this.last_us = at_us;
-	}
-
-	reset() {
-		this.worst_s = 0;
-		this.last_us = now_us();
-	}
-}
-
-const lateness = new Lateness();
-after(() => clearInterval(lateness.timer));
 
 // One trial: a robot drives with energy on, `fail` makes it fail. Resolves when energy is off, to what
 // that took: at most from a period before it was made to fail, at least from when it had failed.

@@ -2,6 +2,7 @@
 // cautery-robot against the real daemon.
 import assert from 'node:assert/strict';
 import { spawn } from 'node:child_process';
+import { createInterface } from 'node:readline';
 import { after, before, test } from 'node:test';
 import { PATIENCE_S } from './wire/client.mjs';
 import { Daemon } from './wire/daemon.mjs';
@@ -22,18 +23,21 @@ before(async () => {
 });
 after(() => daemon.end());
 
-// Runs the robot; `done` resolves to its exit code and the JSON line that it prints in the end.
+// Runs the robot; `drives` resolves when it says so, `done` to its exit code and the JSON line that it
+// prints in the end.
 function robot(session, ...flags) {
 	const child = spawn(process.env.ROBOT,
 		['--domain', String(DOMAIN), '--deadline', String(DEADLINE_S), '--json', ...flags, session, 'hook'],
 		{ stdio: ['ignore', 'pipe', 'inherit'], env: { ...process.env, CYCLONEDDS_URI: process.env.LOOPBACK } });
 	let text = '';
 	child.stdout.on('data', (part) => (text += part));
+	const drives = new Promise((resolve) =>
+		createInterface({ input: child.stdout }).on('line', (line) => line === 'drives' && resolve()));
 	const done = new Promise((resolve) => child.on('close', (code) => {
 		const last = text.trim().split('\n').at(-1);
 		resolve({ code, report: last.startsWith('{') ? JSON.parse(last) : null });
 	}));
-	return { child, done };
+	return { child, drives, done };
 }
 
 const watched = (t, name) => watchSession(t, daemon, name);
@@ -64,6 +68,7 @@ test('a standby holds the tool of a killed robot, energy off', async (t) => {
 	first.child.kill('SIGKILL');
 	await client.until(() => stream.tools[0].driver !== driver && stream.tools[0].driver !== 0, 'the standby drives');
 	assert.equal(stream.tools[0].energized, false);
+	await standby.drives; // it hears a little later than a frame tells
 	standby.child.kill('SIGTERM');
 	const { code, report } = await standby.done;
 	assert.equal(code, 0);

@@ -124,7 +124,7 @@ class Scripts(programs.Case):
 class Streams(programs.Case):
     def test_watch_tells_the_same_as_text_and_json(self):
         session = self.create("fascia")
-        out, _ = self.cautery("watch", session, "--seconds", 1, "--rate", 5)
+        out, _ = self.cautery("watch", session, "--seconds", 2, "--rate", 5)
         self.assertGreaterEqual(len(out.splitlines()), 4)
         for word in ("tick", "rate", "moved", "gone", "parted"):
             self.assertIn(word, out.splitlines()[0])
