@@ -98,55 +98,65 @@ static void a_sleeping_task_runs_when_woken_only(void **state)
 	cau_worker_pool_destroy(pool);
 }
 
-// First sleeps until `due_s`, then notes its turn.
+// Sleeps for a moment, and again, until the worker has been held; then notes its turn.
+#define MOMENT_S 0.001
 static atomic_int turns;
+static atomic_bool was_held;
 typedef struct ordered {
 	cau_task task; // first
 	double due_s, deadline_s;
-	atomic_int slices, turn;
+	int turn;
 } ordered;
 
 static cau_due take_turn(cau_task *task)
 {
 	ordered *o = (ordered *)task;
-	if (o->slices++ == 0)
-		return (cau_due){o->due_s, o->deadline_s};
-	o->turn = ++turns;
-	return (cau_due){INFINITY, INFINITY};
+	if (was_held) {
+		o->turn = turns + 1;
+		turns++;
+		return (cau_due){INFINITY, INFINITY};
+	}
+	o->due_s = cau_monotonic_s() + MOMENT_S;
+	return (cau_due){o->due_s, o->deadline_s};
 }
+
+enum { TASKS = 4 };
+typedef struct holder {
+	cau_task task; // first
+	const ordered *tasks;
+} holder;
 
 // Keeps the one worker until all the others are due.
 static cau_due hold(cau_task *task)
 {
-	ordered *o = (ordered *)task;
-	while (cau_monotonic_s() < o->due_s)
-		;
+	const holder *h = (const holder *)task;
+	for (int i = 0; i < TASKS; i++)
+		while (cau_monotonic_s() <= h->tasks[i].due_s)
+			;
+	was_held = true;
 	return (cau_due){INFINITY, INFINITY};
 }
 
 static void the_earliest_deadline_goes_first(void **state)
 {
 	(void)state;
-	enum { TASKS = 4 };
 	cau_worker_pool *pool;
-	double due_s = cau_monotonic_s() + 0.05;
-	ordered tasks[TASKS], holder = {.task.run = hold, .due_s = due_s + 0.01};
+	double now_s = cau_monotonic_s();
+	ordered tasks[TASKS];
+	holder holding = {.task.run = hold, .tasks = tasks};
 	assert_int_equal(cau_worker_pool_create(&pool, 1, TASKS + 1, 0, NULL), CAU_OK);
 	for (int i = 0; i < TASKS; i++) {
-		tasks[i] =
-			(ordered){.task.run = take_turn, .due_s = due_s, .deadline_s = due_s + TASKS - i};
+		tasks[i] = (ordered){.task.run = take_turn, .deadline_s = now_s + TASKS - i};
 		assert_true(cau_worker_pool_add(pool, &tasks[i].task));
 	}
-	while (cau_worker_pool_busy(pool))
-		sched_yield();
-	assert_true(cau_worker_pool_add(pool, &holder.task));
-	while (turns < TASKS)
+	assert_true(cau_worker_pool_add(pool, &holding.task));
+	while (turns < TASKS || cau_worker_pool_busy(pool))
 		sched_yield();
 	for (int i = 0; i < TASKS; i++) {
 		assert_int_equal(tasks[i].turn, TASKS - i);
 		cau_worker_pool_remove(pool, &tasks[i].task);
 	}
-	cau_worker_pool_remove(pool, &holder.task);
+	cau_worker_pool_remove(pool, &holding.task);
 	cau_worker_pool_destroy(pool);
 }
 
