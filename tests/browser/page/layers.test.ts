@@ -12,6 +12,7 @@ const SESSION = 'd1-layers';
 const RATE_HZ = 60;
 const DRAWN = 240; // ticks in which the hook is drawn along the cut
 const FRAMES = 300;
+const SPEED = 0.25; // of the session while it is recorded: who misses sixteen frames has a gap
 const WORK_MS_MAX = 4; // of the page's main thread for a frame of the stream
 /** A page that takes a tenth longer than a frame lasts is 500 ms behind after these frames. */
 const BEHIND_MS_MAX = 400;
@@ -33,6 +34,7 @@ function cutting(): Command {
   return (tick, call) => {
     if (first === null) {
       first = tick;
+      call('session.speed', { session: SESSION, speed: SPEED });
       call('tool.take_over', tool);
       call('tool.configure', { ...tool, shape: 'hook', temperature_c: HOT_C });
       call('tool.energize', energize(true));
