@@ -67,6 +67,26 @@ INLINE void v_store(void *to, int32_t slot, vreal a)
 {
 	*(vreal_memory *)((real *)to + slot) = a;
 }
+// What is read far more often than it is written, and need not be exact: in single precision, whole
+// steps of a scale that is kept beside it.
+#if CAU_SINGLE
+typedef int16_t stored_real;
+enum { STORED_MOST = INT16_MAX };
+typedef stored_real stored_lanes
+	__attribute__((vector_size(LANES * sizeof(int16_t)), may_alias, aligned(2)));
+INLINE vreal v_load_stored(const stored_real *from)
+{
+	return __builtin_convertvector(__builtin_convertvector(*(const stored_lanes *)from, vmask),
+	                               vreal);
+}
+#else
+typedef real stored_real;
+enum { STORED_MOST = 0 }; // as it is
+INLINE vreal v_load_stored(const stored_real *from)
+{
+	return v_load(from, 0);
+}
+#endif
 // What was loaded before and is needed again is read again after this. Of the twenty arrays of an
 // element the compiler would keep every value on the stack; a read costs less than that write.
 INLINE void v_forget(void)

@@ -60,25 +60,22 @@ static void sum(const cau_elements *elements, const cau_incidence *incidence, in
 	}
 }
 
-static void forward(const cau_sweep *sweep, int32_t supernode, void *const rhs[3],
-                    void *const above[3], void *work)
+static void forward(const cau_sweep *sweep, int32_t supernode)
 {
-	real *const b[3] = {rhs[0], rhs[1], rhs[2]};
-	real *const up[3] = {above[0], above[1], above[2]};
-	sweep_forward_node(sweep, &sweep->supernode[supernode], b, up, work);
+	sweep_forward_node(sweep, &sweep->supernode[supernode]);
 }
 
-static void backward(const cau_sweep *sweep, int32_t supernode, void *const rhs[3], void *work)
+static void backward(const cau_sweep *sweep, int32_t supernode)
 {
-	real *const b[3] = {rhs[0], rhs[1], rhs[2]};
-	sweep_backward_node(sweep, &sweep->supernode[supernode], b, work);
+	sweep_backward_node(sweep, &sweep->supernode[supernode]);
 }
 
-static void pack(const cau_supernode *node, const double *block, const double *w,
-                 void *forward_panel, void *backward_panel)
+static void pack(const cau_supernode *node, const double *block, double *w,
+                 const cau_sweep_panels *panels)
 {
-	pack_node(node, block, w, (real *)forward_panel + node->forward,
-	          (real *)backward_panel + node->backward);
+	pack_node(node, block, w, (stored_real *)panels->forward + node->forward,
+	          (stored_real *)panels->backward + node->backward,
+	          (real *)panels->scale + node->first);
 }
 
 enum { STRIP = 64 * LANES }; // reals summed at once: few enough that float sums stay accurate
@@ -181,6 +178,7 @@ extern const cau_kernels CAU_TABLE;
 const cau_kernels CAU_TABLE = {
 	.instruction_set = CAU_ISA,
 	.single = CAU_SINGLE,
+	.stored_bytes = sizeof(stored_real),
 	.local = local,
 	.settle = settle,
 	.sum = sum,

@@ -42,6 +42,7 @@ typedef struct cau_history {
 typedef struct cau_kernels {
 	const char *instruction_set;
 	int single;
+	int stored_bytes; // of an entry of the sweep's panels: 2 or 8
 
 	// Records (N) and energy (J) of the elements in `work`, at displacement u (real, m).
 	void (*local)(const cau_elements *elements, const cau_local_work *work,
@@ -52,15 +53,13 @@ typedef struct cau_kernels {
 	// gradient[v] = sum of v's records, in their order, for v in [first, last).
 	void (*sum)(const cau_elements *elements, const cau_incidence *incidence, int32_t first,
 	            int32_t last, void *gradient);
-	// One node of a sweep: rhs and above are three real arrays each; work has room for
-	// 3 x (max_rows + max_columns) reals.
-	void (*forward)(const cau_sweep *sweep, int32_t supernode, void *const rhs[3],
-	                void *const above[3], void *work);
-	void (*backward)(const cau_sweep *sweep, int32_t supernode, void *const rhs[3], void *work);
-	// W of one supernode into its places in the panels (real), from its diagonal block L_s (columns
-	// x columns) and [I; L_r] (columns x padded_rows), by columns.
-	void (*pack)(const cau_supernode *node, const double *block, const double *w, void *forward,
-	             void *backward);
+	// One supernode of a sweep, on the sweep's field.
+	void (*forward)(const cau_sweep *sweep, int32_t supernode);
+	void (*backward)(const cau_sweep *sweep, int32_t supernode);
+	// W' of one supernode into its places in the panels, from its diagonal block L_s (columns x
+	// columns) and [-I; L_r] (columns x padded_rows), by columns; w is used up.
+	void (*pack)(const cau_supernode *node, const double *block, double *w,
+	             const cau_sweep_panels *panels);
 	// Dot product in double of n reals, in a fixed order.
 	double (*dot)(const void *a, const void *b, int64_t n);
 	// increment[v] += column[v] * force for v in [first, last); column is real, one a vertex.

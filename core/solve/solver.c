@@ -64,18 +64,6 @@ static cau_status allocate_vectors(cau_step_solver *solver, cau_arena *arena, ca
 	return CAU_OK;
 }
 
-static cau_status allocate_sweep_work(cau_step_solver *solver, cau_arena *arena, cau_error *error)
-{
-	size_t count = 3 * ((size_t)solver->sweep.max_rows + (size_t)solver->sweep.max_columns);
-	for (int i = 0; i <= CAU_SWEEP_TASKS; ++i) {
-		solver->sweep_work[i] =
-			cau_arena_array(arena, count, cau_real_bytes(solver->elements.single));
-		if (!solver->sweep_work[i])
-			return no_memory(error);
-	}
-	return CAU_OK;
-}
-
 cau_status cau_solver_create(cau_step_solver *solver, const cau_scene_def *scene,
                              const cau_tissue *tissue, cau_arena *arena, cau_error *error)
 {
@@ -107,11 +95,8 @@ cau_status cau_solver_factor(cau_step_solver *solver, const cau_alive *alive,
 	                    solver->system.matrix.value);
 	cau_status status =
 		cau_factor_create(&solver->factor, &solver->system.matrix, permutation, error);
-	if (!status)
-		status = cau_sweep_create(&solver->sweep, arena, solver->factor, solver->kernels, error);
-	if (!status)
-		status = allocate_sweep_work(solver, arena, error);
-	return status;
+	return status ? status
+	              : cau_sweep_create(&solver->sweep, arena, solver->factor, solver->kernels, error);
 }
 
 void cau_solver_finish(cau_step_solver *solver)

@@ -60,7 +60,6 @@ typedef struct cau_step_solver {
 	void *trial_increment; // real: the step that is taken
 	cau_history history;   // its step is trial_increment
 	double anderson_product[CAU_ANDERSON_WINDOW][CAU_ANDERSON_WINDOW]; // df_i . A df_j
-	void *sweep_work[CAU_SWEEP_TASKS + 1];                             // real
 	double *chunk_energy;                                              // (chunk_count)
 	double *chunk_dot;       // (chunk_count x 2 CAU_ANDERSON_WINDOW)
 	double *position_before; // (n x 3)

@@ -177,8 +177,8 @@ static void link_tree(cau_sweep *sweep, int64_t *work, int32_t *first)
 	choose_tasks(sweep, work, first);
 }
 
-// Numbers the columns above the tasks and renames the rows that tasks have among them.
-static void name_top_rows(cau_sweep *sweep, int32_t *top_number)
+// Numbers the columns above the tasks.
+static void number_top(cau_sweep *sweep, int32_t *top_number)
 {
 	for (int32_t s = 0; s < sweep->supernode_count; ++s) {
 		const cau_supernode *node = &sweep->supernode[s];
@@ -190,16 +190,36 @@ static void name_top_rows(cau_sweep *sweep, int32_t *top_number)
 			sweep->top_column[sweep->top_count++] = node->first + j;
 		}
 	}
+	sweep->padded_n = pad(sweep->n);
+	sweep->padded_top = pad(sweep->top_count);
+}
+
+int32_t cau_sweep_task_place(const cau_sweep *sweep, int32_t task)
+{
+	return sweep->padded_n + task * (sweep->padded_top + 1);
+}
+
+// Where each supernode's columns and rows stand in the field.
+static void name_places(cau_sweep *sweep, const int32_t *top_number)
+{
 	for (int32_t s = 0; s < sweep->supernode_count; ++s) {
 		cau_supernode *node = &sweep->supernode[s];
-		node->inner_rows = node->rows;
+		int32_t task = node->task, own = node->columns;
+		int32_t sums = task < 0 ? 0 : cau_sweep_task_place(sweep, task);
+		node->spare = 4 * (task < 0 ? cau_sweep_task_place(sweep, sweep->task_count)
+		                            : sums + sweep->padded_top);
+		int32_t *forward = sweep->forward_place + node->place,
+				*backward = sweep->backward_place + node->place;
+		for (int32_t i = 0; i < own; ++i)
+			forward[i] = backward[i] = 4 * (node->first + i);
 		for (int32_t i = 0; i < node->rows; ++i) {
 			int32_t row = sweep->row_global[node->row + i];
-			int above = node->task >= 0 && sweep->supernode[sweep->column_node[row]].task < 0;
-			if (above && i < node->inner_rows)
-				node->inner_rows = i;
-			sweep->row_index[node->row + i] = above ? top_number[row] : row;
+			int above = task >= 0 && sweep->supernode[sweep->column_node[row]].task < 0;
+			backward[own + i] = 4 * row;
+			forward[own + i] = 4 * (above ? sums + top_number[row] : row);
 		}
+		for (int32_t i = own + node->rows; i < node->padded_rows; ++i)
+			forward[i] = backward[i] = node->spare;
 	}
 }
 
@@ -211,6 +231,8 @@ static void lay_out(cau_sweep *sweep)
 		int32_t rows = node->columns + node->rows;
 		node->padded_rows = pad(rows);
 		node->padded_columns = pad(node->columns);
+		node->place = sweep->place_count;
+		sweep->place_count += node->padded_rows;
 		node->forward = forward;
 		node->backward = backward;
 		forward += (int64_t)node->padded_rows * node->columns;
@@ -218,12 +240,8 @@ static void lay_out(cau_sweep *sweep)
 		int64_t dense = (int64_t)node->columns * (node->columns + node->padded_rows);
 		if (dense > sweep->max_dense)
 			sweep->max_dense = dense;
-		if (node->padded_rows > sweep->max_rows)
-			sweep->max_rows = node->padded_rows;
-		if (node->padded_columns > sweep->max_columns)
-			sweep->max_columns = node->padded_columns;
 	}
-	sweep->panel_reals = forward > backward ? forward : backward;
+	sweep->panel_entries = forward > backward ? forward : backward;
 }
 
 static cau_status no_memory(cau_error *error)
@@ -257,9 +275,8 @@ static cau_status shape_supernodes(cau_sweep *sweep, cau_arena *arena, const cau
 		for (int32_t j = 0; j < node->columns; ++j)
 			sweep->column_node[node->first + j] = s;
 	}
-	sweep->row_index = cau_arena_array(arena, (size_t)sweep->row_count, sizeof(int32_t));
 	sweep->row_global = cau_arena_array(arena, (size_t)sweep->row_count, sizeof(int32_t));
-	if (!sweep->row_index || !sweep->row_global)
+	if (!sweep->row_global)
 		return no_memory(error);
 	memset(mark, -1, n * sizeof *mark);
 	for (int32_t s = 0; s < sweep->supernode_count; ++s) {
@@ -269,7 +286,9 @@ static cau_status shape_supernodes(cau_sweep *sweep, cau_arena *arena, const cau
 		sort_rows(row, node->rows);
 	}
 	lay_out(sweep);
-	return CAU_OK;
+	sweep->forward_place = cau_arena_array(arena, (size_t)sweep->place_count, sizeof(int32_t));
+	sweep->backward_place = cau_arena_array(arena, (size_t)sweep->place_count, sizeof(int32_t));
+	return sweep->forward_place && sweep->backward_place ? CAU_OK : no_memory(error);
 }
 
 cau_status cau_sweep_create(cau_sweep *sweep, cau_arena *arena, const cau_factor *factor,
@@ -289,19 +308,17 @@ cau_status cau_sweep_create(cau_sweep *sweep, cau_arena *arena, const cau_factor
 		status = no_memory(error);
 	if (!status) {
 		link_tree(sweep, work, first);
-		name_top_rows(sweep, top_number);
-		sweep->padded_n = pad(sweep->n);
-		sweep->padded_top = pad(sweep->top_count);
+		number_top(sweep, top_number);
+		name_places(sweep, top_number);
 		size_t size = cau_real_bytes(sweep->single);
 		cau_sweep_panels panels = {0};
 		status = cau_sweep_create_panels(sweep, &panels, error);
 		cau_sweep_swap_panels(sweep, &panels);
-		sweep->rhs = cau_arena_array(arena, 3 * (size_t)sweep->padded_n, size);
-		sweep->above =
-			cau_arena_array(arena, (size_t)sweep->task_count * 3 * (size_t)sweep->padded_top, size);
+		int32_t places = cau_sweep_task_place(sweep, sweep->task_count) + 1;
+		sweep->field = cau_arena_array(arena, 4 * (size_t)places, size);
 		sweep->scratch = cau_arena_array(arena, (size_t)sweep->padded_n + (size_t)sweep->max_dense,
 		                                 sizeof(double));
-		if (!status && (!sweep->rhs || !sweep->above || !sweep->scratch))
+		if (!status && (!sweep->field || !sweep->scratch))
 			status = no_memory(error);
 	}
 	if (!status)

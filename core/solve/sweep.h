@@ -3,15 +3,20 @@
 //
 // Columns are grouped in supernodes; whole leaf subtrees of the elimination tree are merged into
 // one dense block. With L_s the unit lower diagonal block of a supernode of c columns and L_r its
-// rows below, the panel W = [L_s^-1; L_r L_s^-1] serves both sweeps as one dense product, for three
-// right-hand sides:
+// rows below, the panel W' = [I - L_s^-1; L_r L_s^-1] serves both sweeps as one dense product, for
+// the three coordinates:
 //
-//     forward   y_s = L_s^-1 b_s,  b_r -= L_r y_s          ->  [y_s; t] = W b_s, b_r -= t
-//     backward  x_s = L_s^-T (D^-1 y_s - L_r^T x_r)        ->  x_s = W^T [D^-1 y_s; -x_r]
+//     forward   y_s = L_s^-1 b_s,  b_r -= L_r y_s          ->  [b_s; b_r] -= W' b_s
+//     backward  x_s = L_s^-T (D^-1 y_s - L_r^T x_r)        ->  x_s = D^-1 y_s - W'^T [D^-1 y_s;
+//     x_r]
 //
-// W is kept twice: by columns for the forward sweep, by rows for the backward one, so that neither
-// needs horizontal sums. Disjoint subtrees are tasks with accumulators of their own for the rows
-// above them, added in task order: the result does not depend on how many threads run the tasks.
+// W' is kept twice: by columns for the forward sweep, by rows for the backward one, so that neither
+// needs horizontal sums. In single precision its entries are sixteen bits, whole steps of a scale
+// that each column has: what the sweeps cost is reading the panels. Both read the same rounded W',
+// so what they apply is symmetric and positive definite whatever the rounding, A^-1 but for some
+// 1e-5; the iteration takes increments by it, and each takes up the error of the last. Disjoint
+// subtrees are tasks with sums of their own for the rows above them, added in task order: the
+// result does not depend on how many threads run the tasks.
 #pragma once
 
 #include <stdint.h>
@@ -29,36 +34,46 @@ enum {
 struct cau_kernels;
 
 typedef struct cau_supernode {
-	int32_t first, columns;    // its columns
-	int32_t row, rows;         // its rows below: row_index[row .. row + rows), ascending
-	int32_t inner_rows;        // of these, rows inside its task's subtree; the others are above
-	int32_t task;              // or -1: above all tasks
-	int32_t parent;            // supernode of the first row below, or -1
-	int64_t forward, backward; // offsets of W in the panels, in reals
+	int32_t first, columns;              // its columns
+	int32_t row, rows;                   // its rows below: row_global[row .. row + rows), ascending
+	int32_t place;                       // of its places' lists: [place .. place + padded_rows)
+	int32_t spare;                       // a place that nobody reads, for padded rows and columns
+	int32_t task;                        // or -1: above all tasks
+	int32_t parent;                      // supernode of the first row below, or -1
+	int64_t forward, backward;           // offsets of W' in the panels, in entries
 	int32_t padded_rows, padded_columns; // multiples of the lanes
 } cau_supernode;
+
+// The factor's values: those in use, or a second set of the same layout, for a factor that is being
+// made in the background.
+typedef struct cau_sweep_panels {
+	cau_pages pages; // of the next four
+	void *forward, *backward, *d_inverse, *scale;
+} cau_sweep_panels;
 
 typedef struct cau_sweep {
 	int single;
 	const struct cau_kernels *kernels;
 	int32_t n, supernode_count, row_count, top_count, task_count;
 	cau_supernode *supernode;
-	int32_t *
-		row_index; // (row_count), permuted numbers; rows above a task as numbers among the top rows
-	int32_t *row_global;  // (row_count), permuted numbers always
+	int32_t *row_global; // (row_count), permuted numbers
+	// (place_count): where a supernode's columns and rows stand in the field, in reals; what the
+	// forward sweep adds to rows above its task goes to the task's sums
+	int32_t *forward_place, *backward_place;
+	int32_t place_count;
 	int32_t *column_node; // (n): supernode of a column
 	int32_t *top_column;  // (top_count): permuted number of each top row
 	int32_t task_first[CAU_SWEEP_TASKS], task_last[CAU_SWEEP_TASKS]; // supernodes [first, last)
 	int32_t *top_node; // supernodes above the tasks, ascending
 	int32_t top_node_count;
-	int32_t max_rows, max_columns; // padded, of a supernode
-	int64_t max_dense;             // doubles that packing a supernode takes, see sweep_pack.c
-	cau_pages pages;               // of the next three
-	void *forward, *backward;      // real panels
-	void *d_inverse;               // real (n)
-	void *rhs;                     // real (3 x padded n): the vectors, permuted
-	void *above;                   // real (task_count x 3 x padded top_count)
-	int64_t panel_reals;
+	int64_t max_dense;        // doubles that packing a supernode takes, see sweep_pack.c
+	cau_pages pages;          // of the next four
+	void *forward, *backward; // the panels, entries of kernels->stored_bytes
+	void *d_inverse, *scale;  // real (padded_n): D^-1, and what a step in the column is
+	// Four reals a place (x, y, z, 0): the vectors, permuted (padded_n), then each task's sums for
+	// the rows above it and its spare place (padded_top + 1), then that of the top supernodes.
+	void *field;
+	int64_t panel_entries;
 	int32_t padded_n, padded_top;
 	double *scratch; // for packing one supernode, see sweep_pack.c
 } cau_sweep;
@@ -69,12 +84,10 @@ cau_status cau_sweep_create(cau_sweep *sweep, cau_arena *arena, const cau_factor
                             const struct cau_kernels *kernels, cau_error *error);
 void cau_sweep_finish(cau_sweep *sweep);
 
+// The place of the task's first sum; of task_count: the last spare place.
+int32_t cau_sweep_task_place(const cau_sweep *sweep, int32_t task);
+
 // ---- sweep_pack.c: the factor's values in the panels
-// A second set of panels of the same layout, for a factor that is being made in the background.
-typedef struct cau_sweep_panels {
-	cau_pages pages; // of the next three
-	void *forward, *backward, *d_inverse;
-} cau_sweep_panels;
 cau_status cau_sweep_create_panels(const cau_sweep *sweep, cau_sweep_panels *panels,
                                    cau_error *error);
 void cau_sweep_finish_panels(cau_sweep_panels *panels);

@@ -1,88 +1,146 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The dense products of sweep.h, for three right-hand sides at once.
+// The dense products of sweep.h, for the three coordinates at once. A vector's lanes are rows of a
+// panel by columns (forward), columns of one by rows (backward).
 #pragma once
 
 #include "base/simd.h"
 #include "solve/sweep.h"
 
 enum {
-	SWEEP_BLOCK = 4
-}; // vectors of rows (or columns) worked on together, to share the broadcasts
+	SWEEP_BLOCK = 4, // vectors worked on together, to share what is broadcast
+	SWEEP_STEP = SWEEP_BLOCK * LANES,
+};
 
-// out (3 x stride) = W b for rows [block, block + vectors * LANES) of a panel by columns.
-INLINE void panel_rows(const real *panel, int32_t padded_rows, int32_t columns, const real *b[3],
-                       int32_t row, int vectors, real *out, int32_t stride)
+// sum[k] += panel[k] * at, of one column (forward) or row (backward), vectors [first, last).
+INLINE void sweep_add(v3 sum[SWEEP_BLOCK], const stored_real *panel, const real *at, int first,
+                      int last)
 {
-	vreal sum[3][SWEEP_BLOCK];
-	for (int c = 0; c < 3; ++c)
-		for (int k = 0; k < vectors; ++k)
-			sum[c][k] = v_set(0);
-	for (int32_t j = 0; j < columns; ++j) {
-		const real *column = panel + (int64_t)j * padded_rows + row;
-		vreal x = v_set(b[0][j]), y = v_set(b[1][j]), z = v_set(b[2][j]);
-		for (int k = 0; k < vectors; ++k) {
-			vreal w = v_load(column, k * LANES);
-			sum[0][k] += w * x;
-			sum[1][k] += w * y;
-			sum[2][k] += w * z;
-		}
+	vreal x = v_set(at[0]), y = v_set(at[1]), z = v_set(at[2]);
+	for (int k = first; k < last; ++k) {
+		vreal w = v_load_stored(panel + k * LANES);
+		sum[k].x += w * x;
+		sum[k].y += w * y;
+		sum[k].z += w * z;
 	}
-	for (int c = 0; c < 3; ++c)
-		for (int k = 0; k < vectors; ++k)
-			v_store(out + (int64_t)c * stride + row, k * LANES, sum[c][k]);
 }
 
-static void panel_multiply(const real *panel, int32_t padded_rows, int32_t columns,
-                           const real *b[3], real *out, int32_t stride)
+INLINE void sweep_subtract(real *field, const int32_t *place, v3 sum)
 {
+	v3_add_to(field, place, (v3){-sum.x, -sum.y, -sum.z});
+}
+
+INLINE int32_t least(int32_t a, int32_t b)
+{
+	return a < b ? a : b;
+}
+
+// Rows [row, row + vectors x LANES) take W' y off. Vector k of rows of the diagonal block has
+// nothing from its own last column on.
+INLINE void forward_rows(const cau_sweep *sweep, const cau_supernode *node, const real *b,
+                         int32_t row, int vectors)
+{
+	const int32_t stride = node->padded_rows, columns = node->columns;
+	const stored_real *panel = (const stored_real *)sweep->forward + node->forward + row;
+	v3 sum[SWEEP_BLOCK];
+	for (int k = 0; k < vectors; ++k)
+		sum[k] = v3_zero();
+	int32_t j = 0;
+#define COLUMNS_OF(k)                                                                              \
+	for (int32_t end = least(columns, row + ((k) + 1) * LANES); (k) < vectors && j < end; ++j)     \
+		sweep_add(sum, panel + (int64_t)j * stride, b + 4 * j, k, vectors);
+	COLUMNS_OF(0)
+	COLUMNS_OF(1)
+	COLUMNS_OF(2)
+	COLUMNS_OF(3)
+#undef COLUMNS_OF
+	const int32_t *place = sweep->forward_place + node->place + row;
+	for (int k = 0; k < vectors; ++k)
+		sweep_subtract(sweep->field, place + k * LANES, sum[k]);
+}
+
+// The supernode's part of the forward sweep.
+static void sweep_forward_node(const cau_sweep *sweep, const cau_supernode *node)
+{
+	const real *scale = (const real *)sweep->scale + node->first;
+	const real *own = (const real *)sweep->field + 4 * (int64_t)node->first;
+	real b[4 * CAU_NODE_COLUMNS] __attribute__((aligned(64)));
+	for (int32_t j = 0; j < node->columns; ++j)
+		for (int c = 0; c < 4; ++c)
+			b[4 * j + c] = scale[j] * own[4 * (int64_t)j + c];
 	int32_t row = 0;
-	for (; row + SWEEP_BLOCK * LANES <= padded_rows; row += SWEEP_BLOCK * LANES)
-		panel_rows(panel, padded_rows, columns, b, row, SWEEP_BLOCK, out, stride);
-	for (; row < padded_rows; row += LANES)
-		panel_rows(panel, padded_rows, columns, b, row, 1, out, stride);
-}
-
-// The supernode's part of the forward sweep. `above` holds the task's sums for the rows above it
-// (NULL for supernodes above the tasks). `work` has 3 x max_rows reals.
-static void sweep_forward_node(const cau_sweep *sweep, const cau_supernode *node,
-                               real *const rhs[3], real *const above[3], real *work)
-{
-	const real *b[3] = {rhs[0] + node->first, rhs[1] + node->first, rhs[2] + node->first};
-	int32_t stride = sweep->max_rows;
-	panel_multiply((const real *)sweep->forward + node->forward, node->padded_rows, node->columns,
-	               b, work, stride);
-	const int32_t *row = sweep->row_index + node->row;
-	for (int c = 0; c < 3; ++c) {
-		const real *out = work + (int64_t)c * stride;
-		for (int32_t i = 0; i < node->columns; ++i)
-			rhs[c][node->first + i] = out[i];
-		out += node->columns;
-		for (int32_t i = 0; i < node->inner_rows; ++i)
-			rhs[c][row[i]] -= out[i];
-		for (int32_t i = node->inner_rows; i < node->rows; ++i)
-			above[c][row[i]] += out[i];
+	for (; row + SWEEP_STEP <= node->padded_rows; row += SWEEP_STEP)
+		forward_rows(sweep, node, b, row, SWEEP_BLOCK);
+	switch ((node->padded_rows - row) / LANES) {
+	case 3:
+		forward_rows(sweep, node, b, row, 3);
+		break;
+	case 2:
+		forward_rows(sweep, node, b, row, 2);
+		break;
+	case 1:
+		forward_rows(sweep, node, b, row, 1);
+		break;
+	default:
+		break;
 	}
 }
 
-// The supernode's part of the backward sweep: rhs holds y on entry of its columns, x on return.
-static void sweep_backward_node(const cau_sweep *sweep, const cau_supernode *node,
-                                real *const rhs[3], real *work)
+// Columns [column, column + vectors x LANES) take W'^T [D^-1 y; x] off. Vector k has nothing before
+// its own first row.
+INLINE void backward_columns(const cau_sweep *sweep, const cau_supernode *node, int32_t column,
+                             int vectors)
 {
-	const int32_t *row = sweep->row_global + node->row;
+	const int32_t stride = node->padded_columns, rows = node->columns + node->rows;
+	const int32_t *from = sweep->backward_place + node->place;
+	const stored_real *panel = (const stored_real *)sweep->backward + node->backward + column;
+	real *field = sweep->field;
+	v3 sum[SWEEP_BLOCK];
+	for (int k = 0; k < vectors; ++k)
+		sum[k] = v3_zero();
+	int32_t i = column;
+#define ROWS_OF(k)                                                                                 \
+	for (int32_t end = (k) + 1 < vectors ? least(rows, column + ((k) + 1) * LANES) : rows;         \
+	     (k) < vectors && i < end; ++i)                                                            \
+		sweep_add(sum, panel + (int64_t)i * stride, field + from[i], 0, (k) + 1);
+	ROWS_OF(0)
+	ROWS_OF(1)
+	ROWS_OF(2)
+	ROWS_OF(3)
+#undef ROWS_OF
+	const real *scale = (const real *)sweep->scale + node->first + column;
+	for (int k = 0; k < vectors; ++k) {
+		int32_t place[LANES];
+		for (int l = 0; l < LANES; ++l) {
+			int32_t c = column + k * LANES + l;
+			place[l] = c < node->columns ? 4 * (node->first + c) : node->spare;
+		}
+		sweep_subtract(field, place, v3_scale(v_load(scale, k * LANES), sum[k]));
+	}
+}
+
+// The supernode's part of the backward sweep: its columns hold y on entry, x on return. A block
+// reads rows from its own first on, and writes its columns: the blocks after it do not read those.
+static void sweep_backward_node(const cau_sweep *sweep, const cau_supernode *node)
+{
 	const real *d = (const real *)sweep->d_inverse + node->first;
-	int32_t stride = sweep->max_rows, rows = node->columns + node->rows;
-	for (int c = 0; c < 3; ++c) {
-		real *in = work + (int64_t)c * stride;
-		for (int32_t i = 0; i < node->columns; ++i)
-			in[i] = d[i] * rhs[c][node->first + i];
-		for (int32_t i = 0; i < node->rows; ++i)
-			in[node->columns + i] = -rhs[c][row[i]];
+	real *own = (real *)sweep->field + 4 * (int64_t)node->first;
+	for (int32_t i = 0; i < node->columns; ++i)
+		for (int c = 0; c < 4; ++c)
+			own[4 * (int64_t)i + c] *= d[i];
+	int32_t column = 0;
+	for (; column + SWEEP_STEP <= node->padded_columns; column += SWEEP_STEP)
+		backward_columns(sweep, node, column, SWEEP_BLOCK);
+	switch ((node->padded_columns - column) / LANES) {
+	case 3:
+		backward_columns(sweep, node, column, 3);
+		break;
+	case 2:
+		backward_columns(sweep, node, column, 2);
+		break;
+	case 1:
+		backward_columns(sweep, node, column, 1);
+		break;
+	default:
+		break;
 	}
-	const real *b[3] = {work, work + stride, work + 2 * (int64_t)stride};
-	real *out = work + 3 * (int64_t)stride;
-	panel_multiply((const real *)sweep->backward + node->backward, node->padded_columns, rows, b,
-	               out, sweep->max_columns);
-	for (int c = 0; c < 3; ++c)
-		for (int32_t i = 0; i < node->columns; ++i)
-			rhs[c][node->first + i] = out[(int64_t)c * sweep->max_columns + i];
 }

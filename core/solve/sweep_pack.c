@@ -9,13 +9,15 @@
 cau_status cau_sweep_create_panels(const cau_sweep *sweep, cau_sweep_panels *panels,
                                    cau_error *error)
 {
-	size_t size = cau_real_bytes(sweep->single), panel = (size_t)sweep->panel_reals * size;
+	size_t size = cau_real_bytes(sweep->single);
+	size_t panel = (size_t)sweep->panel_entries * (size_t)sweep->kernels->stored_bytes;
 	*panels = (cau_sweep_panels){0};
-	if (!cau_pages_take(&panels->pages, 2 * panel + (size_t)sweep->padded_n * size))
+	if (!cau_pages_take(&panels->pages, 2 * panel + 2 * (size_t)sweep->padded_n * size))
 		return cau_fail(error, CAU_NO_MEMORY, NULL, "no memory for the packed factor");
 	panels->forward = panels->pages.start;
 	panels->backward = (char *)panels->forward + panel; // whole lanes, so aligned to them
 	panels->d_inverse = (char *)panels->backward + panel;
+	panels->scale = (char *)panels->d_inverse + (size_t)sweep->padded_n * size;
 	return CAU_OK;
 }
 
@@ -27,7 +29,8 @@ void cau_sweep_finish_panels(cau_sweep_panels *panels)
 
 static cau_sweep_panels panels_of(const cau_sweep *sweep)
 {
-	return (cau_sweep_panels){sweep->pages, sweep->forward, sweep->backward, sweep->d_inverse};
+	return (cau_sweep_panels){sweep->pages, sweep->forward, sweep->backward, sweep->d_inverse,
+	                          sweep->scale};
 }
 
 void cau_sweep_swap_panels(cau_sweep *sweep, cau_sweep_panels *panels)
@@ -37,11 +40,12 @@ void cau_sweep_swap_panels(cau_sweep *sweep, cau_sweep_panels *panels)
 	sweep->forward = panels->forward;
 	sweep->backward = panels->backward;
 	sweep->d_inverse = panels->d_inverse;
+	sweep->scale = panels->scale;
 	*panels = old;
 }
 
 // A supernode's part of the factor, dense, in double, by columns: the diagonal block L_s below its
-// unit diagonal, and [I; L_r], whose padded rows are zero. Returns the least pivot.
+// unit diagonal, and [-I; L_r], whose padded rows are zero. Returns the least pivot.
 typedef struct dense_node {
 	double *block; // (columns x columns)
 	double *w;     // (columns x padded_rows)
@@ -66,7 +70,7 @@ static double gather(const cau_sweep *sweep, const cau_supernode *node, const ca
 		int32_t count = cau_factor_column(factor, node->first + j, &row, &value, &pivot);
 		cau_real_set(d_inverse, sweep->single, node->first + j, 1 / pivot);
 		least = fmin(least, pivot);
-		w[j] = 1;
+		w[j] = -1;
 		for (int32_t k = 0; k < count; ++k) {
 			int32_t local = row[k] - node->first;
 			if (local < columns)
@@ -84,7 +88,7 @@ static double pack_node(const cau_sweep *sweep, int32_t supernode, const cau_fac
 	const cau_supernode *node = &sweep->supernode[supernode];
 	dense_node dense;
 	double least = gather(sweep, node, factor, panels->d_inverse, &dense);
-	sweep->kernels->pack(node, dense.block, dense.w, panels->forward, panels->backward);
+	sweep->kernels->pack(node, dense.block, dense.w, panels);
 	return least;
 }
 

@@ -50,9 +50,9 @@ static double bytes_of_elements(const cau_elements *e)
 // Both sweeps read their panels once; right-hand sides and permutations are small beside them.
 static double bytes_of_solve(const cau_step_solver *solver)
 {
-	return solver->diagonal ? 0
-	                        : 2.0 * (double)solver->sweep.panel_reals *
-	                              (double)cau_real_bytes(solver->sweep.single);
+	return solver->diagonal
+	           ? 0
+	           : 2.0 * (double)solver->sweep.panel_entries * (double)solver->kernels->stored_bytes;
 }
 
 // Position, its start, prediction and step in double; displacement, gradient, increments and the
