@@ -104,7 +104,7 @@ test('after silence energy is off, and stays off until it is enabled', async (t)
 });
 
 test('heartbeats keep energy on while the hand rests', async (t) => {
-	const deadline = slow ? 10 : 1; // longer than this process can be kept waiting
+	const deadline = slow ? 10 : 2; // longer than this process can be kept waiting
 	const strict = await Daemon.start({ settings: { browser_deadline_s: deadline } });
 	t.after(() => strict.end());
 	const client = await operator(strict);

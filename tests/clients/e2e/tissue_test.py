@@ -73,12 +73,12 @@ class Tissue(programs.Case):
 
 class Tools(programs.Case):
     real = True
-    settings = {"browser_deadline_s": 1}  # longer than this process can be kept waiting
+    settings = {"browser_deadline_s": 2}  # longer than this process can be kept waiting
 
     def test_actions(self):
         session = self.create("fascia")
         out, _ = self.cautery("tool", session, "needle", "add", "capsule", "move", 0, 0, 0.001, "on",
-                              "wait", 2.5, "line", 0.02, 0, 0.001, 0.1, "off", "give")
+                              "wait", 5, "line", 0.02, 0, 0.001, 0.1, "off", "give")
         self.assertEqual(out.count("tick"), 5)
         events = self.json("timeline", session)["events"]
         kinds = [e["kind"] for e in events if e.get("tool") == "needle"]
