@@ -34,25 +34,30 @@ INLINE int32_t least(int32_t a, int32_t b)
 	return a < b ? a : b;
 }
 
-// Rows [row, row + vectors x LANES) take W' y off. Vector k of rows of the diagonal block has
-// nothing from its own last column on.
+// Columns [j, that of the last row of vector k]: there vectors from k on have entries. Returns the
+// next column.
+INLINE int32_t forward_columns(v3 sum[SWEEP_BLOCK], const stored_real *panel,
+                               const cau_supernode *node, const real *b, int32_t row, int32_t j,
+                               int k, int vectors)
+{
+	int32_t end = k < vectors ? least(node->columns, row + (k + 1) * LANES) : j;
+	for (; j < end; ++j)
+		sweep_add(sum, panel + (int64_t)j * node->padded_rows, b + 4 * j, k, vectors);
+	return j;
+}
+
+// Rows [row, row + vectors x LANES) take W' y off; b is y in steps of the columns' scales.
 INLINE void forward_rows(const cau_sweep *sweep, const cau_supernode *node, const real *b,
                          int32_t row, int vectors)
 {
-	const int32_t stride = node->padded_rows, columns = node->columns;
 	const stored_real *panel = (const stored_real *)sweep->forward + node->forward + row;
 	v3 sum[SWEEP_BLOCK];
 	for (int k = 0; k < vectors; ++k)
 		sum[k] = v3_zero();
-	int32_t j = 0;
-#define COLUMNS_OF(k)                                                                              \
-	for (int32_t end = least(columns, row + ((k) + 1) * LANES); (k) < vectors && j < end; ++j)     \
-		sweep_add(sum, panel + (int64_t)j * stride, b + 4 * j, k, vectors);
-	COLUMNS_OF(0)
-	COLUMNS_OF(1)
-	COLUMNS_OF(2)
-	COLUMNS_OF(3)
-#undef COLUMNS_OF
+	int32_t j = forward_columns(sum, panel, node, b, row, 0, 0, vectors);
+	j = forward_columns(sum, panel, node, b, row, j, 1, vectors);
+	j = forward_columns(sum, panel, node, b, row, j, 2, vectors);
+	forward_columns(sum, panel, node, b, row, j, 3, vectors);
 	const int32_t *place = sweep->forward_place + node->place + row;
 	for (int k = 0; k < vectors; ++k)
 		sweep_subtract(sweep->field, place + k * LANES, sum[k]);
@@ -85,28 +90,31 @@ static void sweep_forward_node(const cau_sweep *sweep, const cau_supernode *node
 	}
 }
 
-// Columns [column, column + vectors x LANES) take W'^T [D^-1 y; x] off. Vector k has nothing before
-// its own first row.
+// Rows [i, the last where the vectors after k have nothing yet]. Returns the next row.
+INLINE int32_t backward_rows(v3 sum[SWEEP_BLOCK], const cau_sweep *sweep, const cau_supernode *node,
+                             int32_t column, int32_t i, int k, int vectors)
+{
+	const int32_t rows = node->columns + node->rows;
+	const int32_t *place = sweep->backward_place + node->place;
+	const stored_real *panel = (const stored_real *)sweep->backward + node->backward + column;
+	int32_t end = k + 1 < vectors ? least(rows, column + (k + 1) * LANES) : rows;
+	for (; k < vectors && i < end; ++i)
+		sweep_add(sum, panel + (int64_t)i * node->padded_columns,
+		          (const real *)sweep->field + place[i], 0, k + 1);
+	return i;
+}
+
+// Columns [column, column + vectors x LANES) take W'^T [D^-1 y; x] off.
 INLINE void backward_columns(const cau_sweep *sweep, const cau_supernode *node, int32_t column,
                              int vectors)
 {
-	const int32_t stride = node->padded_columns, rows = node->columns + node->rows;
-	const int32_t *from = sweep->backward_place + node->place;
-	const stored_real *panel = (const stored_real *)sweep->backward + node->backward + column;
-	real *field = sweep->field;
 	v3 sum[SWEEP_BLOCK];
 	for (int k = 0; k < vectors; ++k)
 		sum[k] = v3_zero();
-	int32_t i = column;
-#define ROWS_OF(k)                                                                                 \
-	for (int32_t end = (k) + 1 < vectors ? least(rows, column + ((k) + 1) * LANES) : rows;         \
-	     (k) < vectors && i < end; ++i)                                                            \
-		sweep_add(sum, panel + (int64_t)i * stride, field + from[i], 0, (k) + 1);
-	ROWS_OF(0)
-	ROWS_OF(1)
-	ROWS_OF(2)
-	ROWS_OF(3)
-#undef ROWS_OF
+	int32_t i = backward_rows(sum, sweep, node, column, column, 0, vectors);
+	i = backward_rows(sum, sweep, node, column, i, 1, vectors);
+	i = backward_rows(sum, sweep, node, column, i, 2, vectors);
+	backward_rows(sum, sweep, node, column, i, 3, vectors);
 	const real *scale = (const real *)sweep->scale + node->first + column;
 	for (int k = 0; k < vectors; ++k) {
 		int32_t place[LANES];
@@ -114,7 +122,7 @@ INLINE void backward_columns(const cau_sweep *sweep, const cau_supernode *node, 
 			int32_t c = column + k * LANES + l;
 			place[l] = c < node->columns ? 4 * (node->first + c) : node->spare;
 		}
-		sweep_subtract(field, place, v3_scale(v_load(scale, k * LANES), sum[k]));
+		sweep_subtract(sweep->field, place, v3_scale(v_load(scale, k * LANES), sum[k]));
 	}
 }
 
