@@ -102,7 +102,7 @@ static void pack_node(const cau_supernode *node, const double *block, double *w,
 	pack_multiply(node, block, w, inverse);
 	for (int32_t j = 0; j < columns; ++j) {
 		scale[j] = STORED_MOST ? (real)(inverse[j] / STORED_MOST) : 1;
-		inverse[j] = inverse[j] > 0 ? STORED_MOST / inverse[j] : 0;
+		inverse[j] = inverse[j] > REAL_TINY ? STORED_MOST / inverse[j] : 0;
 	}
 	for (int32_t row = 0; row < rows; row += PACK_ROWS) {
 		int32_t last = row + PACK_ROWS < columns ? row + PACK_ROWS : columns;

@@ -190,7 +190,7 @@ static void number_top(cau_sweep *sweep, int32_t *top_number)
 			sweep->top_column[sweep->top_count++] = node->first + j;
 		}
 	}
-	sweep->padded_n = pad(sweep->n);
+	sweep->padded_n = pad(sweep->n) + PAD; // vectors begin at any column
 	sweep->padded_top = pad(sweep->top_count);
 }
 

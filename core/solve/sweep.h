@@ -6,9 +6,8 @@
 // rows below, the panel W' = [I - L_s^-1; L_r L_s^-1] serves both sweeps as one dense product, for
 // the three coordinates:
 //
-//     forward   y_s = L_s^-1 b_s,  b_r -= L_r y_s          ->  [b_s; b_r] -= W' b_s
-//     backward  x_s = L_s^-T (D^-1 y_s - L_r^T x_r)        ->  x_s = D^-1 y_s - W'^T [D^-1 y_s;
-//     x_r]
+//     forward   y_s = L_s^-1 b_s,  b_r -= L_r y_s     ->  [b_s; b_r] -= W' b_s
+//     backward  x_s = L_s^-T (D^-1 y_s - L_r^T x_r)   ->  x_s = z - W'^T [z; x_r],  z = D^-1 y_s
 //
 // W' is kept twice: by columns for the forward sweep, by rows for the backward one, so that neither
 // needs horizontal sums. In single precision its entries are sixteen bits, whole steps of a scale
