@@ -12,8 +12,8 @@
 // W' is kept twice: by columns for the forward sweep, by rows for the backward one, so that neither
 // needs horizontal sums. In single precision its entries are sixteen bits, whole steps of a scale
 // that each column has: what the sweeps cost is reading the panels. Both read the same rounded W',
-// so what they apply is symmetric and positive definite whatever the rounding, A^-1 but for some
-// 1e-5; the iteration takes increments by it, and each takes up the error of the last. Disjoint
+// so what they apply is symmetric and positive definite whatever the rounding, A^-1 within
+// 1e-4; the iteration takes increments by it, and each takes up the error of the last. Disjoint
 // subtrees are tasks with sums of their own for the rows above them, added in task order: the
 // result does not depend on how many threads run the tasks.
 #pragma once

@@ -47,7 +47,8 @@ static double bytes_of_elements(const cau_elements *e)
 	return reals * real_bytes + indices * sizeof(int32_t);
 }
 
-// Both sweeps read their panels once; right-hand sides and permutations are small beside them.
+// Both sweeps read their panels once, but for the zeros above diagonal blocks; right-hand sides and
+// permutations are small beside them.
 static double bytes_of_solve(const cau_step_solver *solver)
 {
 	return solver->diagonal
