@@ -21,9 +21,11 @@ struct cau_pool {
 	pthread_t threads[MAX_THREADS];
 	void (*part)(void *context, int32_t index);
 	void *context;
-	// One word holds the loop's generation (32 bits), its part count (16) and the next part to
-	// claim (16): a claim is one exchange, so a late helper can never take a part of a loop it did
-	// not see. `part` and `context` are read only after a claim, while the loop cannot end.
+	// One word holds the loop's generation (32 bits) and the parts that nobody has claimed, from
+	// the first (low 16 bits) to behind the last (the next 16): a claim is one exchange, so a late
+	// helper can never take a part of a loop it did not see. `part` and `context` are read only
+	// after a claim, while the loop cannot end. The caller claims from the front and helpers from
+	// the back, so that in loop after loop the same data are in the same core's cache.
 	_Atomic uint64_t ticket;
 	_Atomic int32_t parts_left;
 	_Atomic int32_t sleepers;
@@ -46,16 +48,17 @@ static uint32_t generation_of(uint64_t ticket)
 	return (uint32_t)(ticket >> 32);
 }
 
-static void run_parts(cau_pool *pool)
+static void run_parts(cau_pool *pool, int from_front)
 {
 	uint64_t ticket = atomic_load(&pool->ticket);
 	for (;;) {
-		uint32_t index = ticket & 0xffff;
-		if (index >= ((ticket >> 16) & 0xffff))
+		int32_t first = ticket & 0xffff, end = (ticket >> 16) & 0xffff;
+		if (first >= end)
 			return;
-		if (!atomic_compare_exchange_weak(&pool->ticket, &ticket, ticket + 1))
+		uint64_t claimed = from_front ? ticket + 1 : ticket - (1u << 16);
+		if (!atomic_compare_exchange_weak(&pool->ticket, &ticket, claimed))
 			continue;
-		pool->part(pool->context, (int32_t)index);
+		pool->part(pool->context, from_front ? first : end - 1);
 		atomic_fetch_sub(&pool->parts_left, 1);
 		ticket = atomic_load(&pool->ticket);
 	}
@@ -84,7 +87,7 @@ static void *helper(void *argument)
 				sleep_until_changed(pool, seen);
 		}
 		seen = generation_of(atomic_load(&pool->ticket));
-		run_parts(pool);
+		run_parts(pool, 0);
 	}
 	return NULL;
 }
@@ -181,6 +184,6 @@ void cau_pool_run(cau_pool *pool, int32_t part_count, void (*part)(void *context
 		pthread_cond_broadcast(&pool->wake);
 		pthread_mutex_unlock(&pool->lock);
 	}
-	run_parts(pool);
+	run_parts(pool, 1);
 	wait_for_helpers(pool);
 }

@@ -106,52 +106,49 @@ INLINE m3 fat_limit_residual(const cau_fat_set *set, const cau_fat_group *group,
 	return diagonal ? m3_scale(fat_position_scale(set, slot, r), r) : r;
 }
 
-// H = F - I.
-INLINE m3 fat_displacement_gradient(const cau_fat_set *set, int32_t slot, const real *displacement)
+// What both tetrahedra of a pair have: the first vertex of their face, the edges from it to the
+// others.
+typedef struct fat_face {
+	v3 origin, edge[2];
+} fat_face;
+
+INLINE fat_face fat_face_gather(const cau_fat_set *set, int32_t slot, const real *displacement)
 {
-	v3 u0 = v3_gather(displacement, set->vertex_at[0] + slot);
+	fat_face face = {.origin = v3_gather(displacement, set->vertex_at[0] + slot)};
+	for (int i = 0; i < 2; ++i)
+		face.edge[i] = v3_sub(v3_gather(displacement, set->vertex_at[i + 1] + slot), face.origin);
+	return face;
+}
+
+// H = F - I of the tetrahedron on `face` whose apex is the slot's.
+INLINE m3 fat_displacement_gradient(const cau_fat_set *set, int32_t slot, const fat_face *face,
+                                    const real *displacement)
+{
+	v3 to_apex = v3_sub(v3_gather(displacement, set->vertex_at[3] + slot), face->origin);
 	m3 h;
-	for (int i = 0; i < 3; ++i) {
-		v3 d = v3_sub(v3_gather(displacement, set->vertex_at[i + 1] + slot), u0);
-		for (int c = 0; c < 3; ++c) {
-			vreal m = v_load(set->dm_inverse[3 * i + c], slot);
-			h.c[c] = i ? v3_add_scaled(h.c[c], m, d) : v3_scale(m, d);
-		}
+	for (int c = 0; c < 3; ++c) {
+		h.c[c] = v3_scale(v_load(set->dm_inverse[c], slot), face->edge[0]);
+		h.c[c] = v3_add_scaled(h.c[c], v_load(set->dm_inverse[3 + c], slot), face->edge[1]);
+		h.c[c] = v3_add_scaled(h.c[c], v_load(set->dm_inverse[6 + c], slot), to_apex);
 	}
 	return h;
 }
 
-// Adds the gradient on the four vertices: stress (N m) times D_m^-T, and what balances it.
-INLINE void fat_add_gradient(const cau_fat_set *set, int32_t slot, m3 stress, real *records)
+// Stress (Pa m^3 = N m) in F = I + H; adds the energies (J).
+INLINE m3 fat_stress(const cau_fat_set *set, const cau_fat_group *group, int32_t slot, m3 h,
+                     int diagonal, vreal *energy)
 {
-	v3 sum = v3_zero();
-	for (int i = 0; i < 3; ++i) {
-		v3 g = v3_scale(v_load(set->dm_inverse[3 * i], slot), stress.c[0]);
-		for (int c = 1; c < 3; ++c)
-			g = v3_add_scaled(g, v_load(set->dm_inverse[3 * i + c], slot), stress.c[c]);
-		sum = v3_sub(sum, g);
-		v3_add_to(records, set->record_at[i + 1] + slot, g);
-	}
-	v3_add_to(records, set->record_at[0] + slot, sum);
-}
-
-// One vector of slots: returns the energies (J) and adds the gradient on the four vertices. The
-// limit comes first: its rotation needs the most registers.
-INLINE vreal fat_lanes(const cau_fat_set *set, const cau_fat_group *group, int32_t slot,
-                       const real *displacement, int limited, int diagonal, real *records)
-{
-	m3 h = fat_displacement_gradient(set, slot, displacement);
-	v_forget();
+	int limited = set->limited[slot / CAU_BATCH];
 	m3 f = m3_add(m3_identity(), h), r = {{v3_zero(), v3_zero(), v3_zero()}};
 	rotation_lanes polar = {v_set(1), v_set(0), v_set(0), v_set(0)};
 	if (limited || group->model == CAU_MODEL_COROTATED)
 		polar = rotation_load(set->polar, slot);
-	vreal energy = v_set(0), density, volume = v_load(set->volume, slot);
-	if (limited) {
+	vreal density, volume = v_load(set->volume, slot);
+	if (limited) { // first: its rotation needs the most registers
 		vreal w = v_load(set->limit_weight, slot);
 		r = fat_limit_residual(set, group, slot, f, &polar, diagonal);
 		rotation_store(set->polar, slot, polar);
-		energy = (real)0.5 * w * m3_dot(r, r);
+		*energy += (real)0.5 * w * m3_dot(r, r);
 	}
 	m3 p =
 		group->plastic && set->flowed[slot / CAU_BATCH]
@@ -159,16 +156,50 @@ INLINE vreal fat_lanes(const cau_fat_set *set, const cau_fat_group *group, int32
 			: fat_energy_stress(group, f, h, &polar, &density);
 	if (!limited && group->model == CAU_MODEL_COROTATED)
 		rotation_store(set->polar, slot, polar);
+	*energy += volume * density;
 	if (diagonal) {
 		m3 e = m3_scale(v_set((real)(1 / group->stiffness)), p);
 		p = m3_scale(fat_position_scale(set, slot, e), p);
 	}
-	m3 stress = m3_scale(volume, p); // N m
-	if (limited)
-		stress = m3_add_scaled(stress, v_load(set->limit_weight, slot), r);
-	v_forget();
-	fat_add_gradient(set, slot, stress, records);
-	return energy + volume * density;
+	m3 stress = m3_scale(volume, p);
+	return limited ? m3_add_scaled(stress, v_load(set->limit_weight, slot), r) : stress;
+}
+
+// The gradient on vertex i + 1 of four: stress (N m) times row i of D_m^-1.
+INLINE v3 fat_vertex_gradient(const cau_fat_set *set, int32_t slot, m3 stress, int i)
+{
+	v3 g = v3_scale(v_load(set->dm_inverse[3 * i], slot), stress.c[0]);
+	for (int c = 1; c < 3; ++c)
+		g = v3_add_scaled(g, v_load(set->dm_inverse[3 * i + c], slot), stress.c[c]);
+	return g;
+}
+
+// One vector of pairs, whose second halves are a batch behind their first: returns the energies (J)
+// and adds the gradient on their five vertices.
+INLINE vreal fat_pairs(const cau_fat_set *set, const cau_fat_group *group, int32_t slot,
+                       const real *displacement, int diagonal, real *records)
+{
+	fat_face face = fat_face_gather(set, slot, displacement);
+	v3 on_face[3] = {v3_zero(), v3_zero(), v3_zero()};
+	vreal energy = v_set(0);
+#pragma GCC unroll 1
+	for (int32_t half = slot; half <= slot + CAU_BATCH; half += CAU_BATCH) {
+		m3 h = fat_displacement_gradient(set, half, &face, displacement);
+		v_forget();
+		m3 stress = fat_stress(set, group, half, h, diagonal, &energy);
+		v_forget();
+		v3 apex = fat_vertex_gradient(set, half, stress, 2);
+		v3_add_to(records, set->record_at[3] + half, apex);
+		on_face[0] = v3_sub(on_face[0], apex);
+		for (int i = 0; i < 2; ++i) {
+			v3 g = fat_vertex_gradient(set, half, stress, i);
+			on_face[i + 1] = v3_add(on_face[i + 1], g);
+			on_face[0] = v3_sub(on_face[0], g);
+		}
+	}
+	for (int i = 0; i < 3; ++i)
+		v3_add_to(records, set->record_at[i] + slot, on_face[i]);
+	return energy;
 }
 
 // Slots [first, last) of one group: returns their energy, J. `displacement` is u = x - X, m,
@@ -176,10 +207,10 @@ INLINE vreal fat_lanes(const cau_fat_set *set, const cau_fat_group *group, int32
 static double fat_kernel(const cau_elements *elements, const cau_fat_group *group, int32_t first,
                          int32_t last, const real *displacement, int diagonal)
 {
-	const cau_fat_set *set = &elements->fat;
 	vsum energy = {0};
-	for (int32_t slot = first; slot < last; slot += LANES)
-		energy += v_widen(fat_lanes(set, group, slot, displacement, set->limited[slot / CAU_BATCH],
-		                            diagonal, elements->gradient));
+	for (int32_t batch = first; batch < last; batch += 2 * CAU_BATCH)
+		for (int32_t slot = batch; slot < batch + CAU_BATCH; slot += LANES)
+			energy += v_widen(
+				fat_pairs(&elements->fat, group, slot, displacement, diagonal, elements->gradient));
 	return v_total(energy);
 }

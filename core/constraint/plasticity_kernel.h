@@ -61,17 +61,8 @@ static int32_t settle_kernel(const cau_elements *elements, const cau_fat_group *
 	const cau_fat_set *set = &elements->fat;
 	int32_t inverted = 0;
 	for (int32_t slot = first; slot < last; slot += LANES) {
-		v3 u0 = v3_gather(displacement, set->vertex_at[0] + slot);
-		v3 d[3];
-		for (int i = 0; i < 3; ++i)
-			d[i] = v3_sub(v3_gather(displacement, set->vertex_at[i + 1] + slot), u0);
-		vreal m[9];
-		for (int i = 0; i < 9; ++i)
-			m[i] = v_load(set->dm_inverse[i], slot);
-		m3 h;
-		for (int c = 0; c < 3; ++c)
-			h.c[c] =
-				v3_add_scaled(v3_add_scaled(v3_scale(m[c], d[0]), m[3 + c], d[1]), m[6 + c], d[2]);
+		fat_face face = fat_face_gather(set, slot, displacement);
+		m3 h = fat_displacement_gradient(set, slot, &face, displacement);
 		vreal det = m3_determinant(m3_add(m3_identity(), h));
 		vmask bad = (det <= v_set(0)) & (v_load(set->volume, slot) > v_set(0));
 		for (int l = 0; l < LANES; ++l)

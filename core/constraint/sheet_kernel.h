@@ -59,53 +59,103 @@ INLINE sheet_gradient sheet_residual(const cau_sheet_group *group, sheet_gradien
 	return r;
 }
 
+// What both triangles of a pair have: their edge's first vertex and the way to its second.
+typedef struct sheet_edge {
+	v3 origin, along;
+} sheet_edge;
+
+INLINE sheet_edge sheet_edge_gather(const cau_sheet_set *set, int32_t slot,
+                                    const real *displacement)
+{
+	v3 origin = v3_gather(displacement, set->vertex_at[0] + slot);
+	return (sheet_edge){origin, v3_sub(v3_gather(displacement, set->vertex_at[1] + slot), origin)};
+}
+
+// H = F - F_0 of the triangle on `edge` whose apex is the slot's.
+INLINE sheet_gradient sheet_displacement_gradient(const cau_sheet_set *set, int32_t slot,
+                                                  const sheet_edge *edge, const real *displacement)
+{
+	v3 to_apex = v3_sub(v3_gather(displacement, set->vertex_at[2] + slot), edge->origin);
+	sheet_gradient h;
+	for (int c = 0; c < 2; ++c)
+		h.c[c] = v3_add_scaled(v3_scale(v_load(set->dm_inverse[c], slot), edge->along),
+		                       v_load(set->dm_inverse[2 + c], slot), to_apex);
+	return h;
+}
+
+// w R in F = F_0 + H (N m); adds twice the energy (J).
+INLINE sheet_gradient sheet_stress(const cau_sheet_set *set, const cau_sheet_group *group,
+                                   int32_t slot, sheet_gradient h, int diagonal, vreal *energy)
+{
+	v3 f0[2];
+	vreal m[4];
+	sheet_gradient polar;
+	for (int i = 0; i < 4; ++i)
+		m[i] = v_load(set->dm_inverse[i], slot);
+	for (int a = 0; a < 2; ++a) {
+		f0[a] = (v3){v_load(set->rest[3 * a], slot), v_load(set->rest[3 * a + 1], slot),
+		             v_load(set->rest[3 * a + 2], slot)};
+		polar.c[a] = (v3){v_load(set->polar[3 * a], slot), v_load(set->polar[3 * a + 1], slot),
+		                  v_load(set->polar[3 * a + 2], slot)};
+	}
+	sym2 k = sheet_metric_above_identity(f0, h.c);
+	k.a00 += 1;
+	k.a11 += 1;
+	sheet_gradient f = {{v3_add(f0[0], h.c[0]), v3_add(f0[1], h.c[1])}};
+	sym2 root = {v_load(set->target[0], slot), v_load(set->target[1], slot),
+	             v_load(set->target[2], slot)};
+	vreal g2 = diagonal ? v_load(set->position_scale, slot) : v_set(0);
+	sheet_gradient r = sheet_residual(group, f, k, root, &polar, m, g2, diagonal);
+	for (int a = 0; a < 2; ++a) {
+		v_store(set->polar[3 * a], slot, polar.c[a].x);
+		v_store(set->polar[3 * a + 1], slot, polar.c[a].y);
+		v_store(set->polar[3 * a + 2], slot, polar.c[a].z);
+	}
+	vreal w = v_load(set->weight, slot);
+	*energy += w * (v3_dot(r.c[0], r.c[0]) + v3_dot(r.c[1], r.c[1]));
+	return (sheet_gradient){{v3_scale(w, r.c[0]), v3_scale(w, r.c[1])}};
+}
+
+// The gradient on vertex i + 1 of three: stress (N m) times row i of D_m'^-1.
+INLINE v3 sheet_vertex_gradient(const cau_sheet_set *set, int32_t slot, sheet_gradient stress,
+                                int i)
+{
+	return v3_add_scaled(v3_scale(v_load(set->dm_inverse[2 * i], slot), stress.c[0]),
+	                     v_load(set->dm_inverse[2 * i + 1], slot), stress.c[1]);
+}
+
+// One vector of pairs, whose second halves are a batch behind their first: returns twice the
+// energies (J) and adds the gradient on their four vertices.
+INLINE vreal sheet_pairs(const cau_sheet_set *set, const cau_sheet_group *group, int32_t slot,
+                         const real *displacement, int diagonal, real *records)
+{
+	sheet_edge edge = sheet_edge_gather(set, slot, displacement);
+	v3 on_edge[2] = {v3_zero(), v3_zero()};
+	vreal energy = v_set(0);
+#pragma GCC unroll 1
+	for (int32_t half = slot; half <= slot + CAU_BATCH; half += CAU_BATCH) {
+		sheet_gradient h = sheet_displacement_gradient(set, half, &edge, displacement);
+		sheet_gradient stress = sheet_stress(set, group, half, h, diagonal, &energy);
+		v3 apex = sheet_vertex_gradient(set, half, stress, 1);
+		v3 second = sheet_vertex_gradient(set, half, stress, 0);
+		v3_add_to(records, set->record_at[2] + half, apex);
+		on_edge[1] = v3_add(on_edge[1], second);
+		on_edge[0] = v3_sub(v3_sub(on_edge[0], apex), second);
+	}
+	for (int i = 0; i < 2; ++i)
+		v3_add_to(records, set->record_at[i] + slot, on_edge[i]);
+	return energy;
+}
+
 // Slots [first, last) of one group: returns their energy, J. `displacement` is u = x - X, m,
 // (vertex_count x 4).
 static double sheet_kernel(const cau_elements *elements, const cau_sheet_group *group,
                            int32_t first, int32_t last, const real *displacement, int diagonal)
 {
-	const cau_sheet_set *set = &elements->sheet;
 	vsum energy = {0};
-	for (int32_t slot = first; slot < last; slot += LANES) {
-		v3 u0 = v3_gather(displacement, set->vertex_at[0] + slot);
-		v3 d1 = v3_sub(v3_gather(displacement, set->vertex_at[1] + slot), u0);
-		v3 d2 = v3_sub(v3_gather(displacement, set->vertex_at[2] + slot), u0);
-		vreal m[4];
-		for (int i = 0; i < 4; ++i)
-			m[i] = v_load(set->dm_inverse[i], slot);
-		v3 h[2] = {v3_add_scaled(v3_scale(m[0], d1), m[2], d2),
-		           v3_add_scaled(v3_scale(m[1], d1), m[3], d2)};
-		v3 f0[2];
-		sheet_gradient polar;
-		for (int a = 0; a < 2; ++a) {
-			f0[a] = (v3){v_load(set->rest[3 * a], slot), v_load(set->rest[3 * a + 1], slot),
-			             v_load(set->rest[3 * a + 2], slot)};
-			polar.c[a] = (v3){v_load(set->polar[3 * a], slot), v_load(set->polar[3 * a + 1], slot),
-			                  v_load(set->polar[3 * a + 2], slot)};
-		}
-		sym2 k = sheet_metric_above_identity(f0, h);
-		k.a00 += 1;
-		k.a11 += 1;
-		sheet_gradient f = {{v3_add(f0[0], h[0]), v3_add(f0[1], h[1])}};
-		sym2 root = {v_load(set->target[0], slot), v_load(set->target[1], slot),
-		             v_load(set->target[2], slot)};
-		vreal g2 = diagonal ? v_load(set->position_scale, slot) : v_set(0);
-		sheet_gradient r = sheet_residual(group, f, k, root, &polar, m, g2, diagonal);
-		vreal w = v_load(set->weight, slot);
-		energy += v_widen(w * (v3_dot(r.c[0], r.c[0]) + v3_dot(r.c[1], r.c[1])));
-		// gradient on the vertices: w R D_m'^-T
-		v3 s0 = v3_scale(w, r.c[0]), s1 = v3_scale(w, r.c[1]);
-		v3 g1 = v3_add_scaled(v3_scale(m[0], s0), m[1], s1);
-		v3 g2v = v3_add_scaled(v3_scale(m[2], s0), m[3], s1);
-		v3 g0 = v3_sub(v3_sub(v3_zero(), g1), g2v);
-		v3_add_to(elements->gradient, set->record_at[0] + slot, g0);
-		v3_add_to(elements->gradient, set->record_at[1] + slot, g1);
-		v3_add_to(elements->gradient, set->record_at[2] + slot, g2v);
-		for (int a = 0; a < 2; ++a) {
-			v_store(set->polar[3 * a], slot, polar.c[a].x);
-			v_store(set->polar[3 * a + 1], slot, polar.c[a].y);
-			v_store(set->polar[3 * a + 2], slot, polar.c[a].z);
-		}
-	}
+	for (int32_t batch = first; batch < last; batch += 2 * CAU_BATCH)
+		for (int32_t slot = batch; slot < batch + CAU_BATCH; slot += LANES)
+			energy += v_widen(sheet_pairs(&elements->sheet, group, slot, displacement, diagonal,
+			                              elements->gradient));
 	return 0.5 * v_total(energy);
 }

@@ -20,6 +20,7 @@ cau_status cau_session_rebuild_system(cau_session *session, const int32_t *permu
 	// a pinned vertex has no row any more, and nothing writes its part of these from now on
 	size_t vector = 4 * (size_t)session->tissue.vertex_count;
 	memset(solver->increment, 0, vector * cau_real_bytes(solver->elements.single));
+	memset(solver->history.last_increment, 0, vector * cau_real_bytes(solver->elements.single));
 	memset(session->contact.solution, 0, vector * cau_real_bytes(solver->elements.single));
 	// the last rebuilt system goes: however often pins change, a session holds two at most
 	cau_arena *arena = &session->rebuilt_arena;

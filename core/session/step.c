@@ -2,6 +2,7 @@
 // One tick. cau_session_step is the table of contents; each line names the stage and where its
 // equations live.
 #include <math.h>
+#include <stdatomic.h>
 #include <string.h>
 
 #include "session/session_internal.h"
@@ -49,14 +50,27 @@ static void update_velocities(cau_session *session)
 		}
 }
 
+typedef struct settling {
+	const cau_step_solver *solver;
+	_Atomic int32_t inverted;
+} settling;
+
+static void settle_part(void *context, int32_t index)
+{
+	settling *work = context;
+	const cau_step_solver *solver = work->solver;
+	atomic_fetch_add(&work->inverted,
+	                 solver->kernels->settle(&solver->elements, &solver->slots.work[index],
+	                                         solver->displacement));
+}
+
 // Plastic flow and the count of inverted tetrahedra (plasticity_kernel.h).
 void cau_session_settle(cau_session *session)
 {
 	const cau_step_solver *solver = &session->solver;
-	session->inverted = 0;
-	for (int32_t w = 0; w < solver->slots.work_count; ++w)
-		session->inverted += solver->kernels->settle(&solver->elements, &solver->slots.work[w],
-		                                             solver->displacement);
+	settling work = {.solver = solver};
+	cau_pool_run(solver->pool, solver->slots.work_count, settle_part, &work);
+	session->inverted = work.inverted;
 }
 
 // Vertices whose last element is gone keep their row and stay where they are.

@@ -44,18 +44,6 @@ static void combine_part(void *context, int32_t chunk)
 	solver->kernels->combine(&solver->history, first, n, work->weight);
 }
 
-static void keep_part(void *context, int32_t chunk)
-{
-	const mix *work = context;
-	const cau_history *history = &work->solver->history;
-	int64_t first, n = chunk_reals(work->solver, chunk, &first);
-	size_t real = cau_real_bytes(work->solver->elements.single), at = (size_t)first * real;
-	memcpy((char *)history->last_increment + at, (const char *)history->increment + at,
-	       (size_t)n * real);
-	memcpy((char *)history->last_gradient + at, (const char *)history->gradient + at,
-	       (size_t)n * real);
-}
-
 // Solves the small symmetric system by Gaussian elimination with diagonal pivots; columns that add
 // nothing new (pivot below 1e-8 of their own size) get no weight.
 static void least_squares(double a[CAU_ANDERSON_WINDOW][CAU_ANDERSON_WINDOW],
@@ -112,10 +100,23 @@ static void weigh(mix *work)
 int cau_anderson_mix(cau_step_solver *solver, int32_t iteration)
 {
 	mix work = {.solver = solver};
+	solver->history.increment = solver->increment;
+	solver->history.gradient = solver->gradient;
 	if (iteration > 0)
 		weigh(&work);
-	else
-		cau_pool_run(solver->pool, solver->chunk_count, keep_part, &work);
 	cau_pool_run(solver->pool, solver->chunk_count, combine_part, &work);
 	return solver->history.count > 0;
+}
+
+static void swap(void **a, void **b)
+{
+	void *kept = *a;
+	*a = *b;
+	*b = kept;
+}
+
+void cau_anderson_keep(cau_step_solver *solver)
+{
+	swap(&solver->increment, &solver->history.last_increment);
+	swap(&solver->gradient, &solver->history.last_gradient);
 }

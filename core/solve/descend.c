@@ -16,6 +16,7 @@ static double objective_noise(const cau_step_solver *solver)
 typedef struct move {
 	cau_step_solver *solver;
 	double scale;
+	int leave; // the present position becomes position_before
 } move;
 
 // position = position_before + scale * trial_increment, and the displacement of that
@@ -26,8 +27,9 @@ static void move_part(void *context, int32_t chunk)
 	int32_t first = chunk * CAU_VERTEX_CHUNK, last = first + CAU_VERTEX_CHUNK;
 	if (last > solver->tissue->vertex_count)
 		last = solver->tissue->vertex_count;
-	const double *before = solver->position_before;
-	double *x = solver->position;
+	double *before = solver->position_before, *x = solver->position;
+	if (work->leave)
+		memcpy(before + 3 * first, x + 3 * first, 3 * (size_t)(last - first) * sizeof *x);
 	if (solver->elements.single) {
 		const float *d = solver->trial_increment;
 		for (int32_t v = first; v < last; ++v)
@@ -42,15 +44,14 @@ static void move_part(void *context, int32_t chunk)
 	cau_solver_displace_chunk(solver, chunk);
 }
 
-static void move_to(cau_step_solver *solver, double scale)
+static void leave(cau_step_solver *solver)
 {
-	cau_pool_run(solver->pool, solver->chunk_count, move_part, &(move){solver, scale});
+	cau_pool_run(solver->pool, solver->chunk_count, move_part, &(move){solver, 1, 1});
 }
 
-static double evaluate_at(cau_step_solver *solver, double scale)
+static void move_to(cau_step_solver *solver, double scale)
 {
-	move_to(solver, scale);
-	return cau_solver_evaluate_displaced(solver);
+	cau_pool_run(solver->pool, solver->chunk_count, move_part, &(move){solver, scale, 0});
 }
 
 static void scale_trial(cau_step_solver *solver, double scale)
@@ -61,7 +62,7 @@ static void scale_trial(cau_step_solver *solver, double scale)
 
 static void use_plain_step(cau_step_solver *solver)
 {
-	memcpy(solver->trial_increment, solver->increment,
+	memcpy(solver->trial_increment, solver->history.last_increment,
 	       4 * (size_t)solver->tissue->vertex_count * cau_real_bytes(solver->elements.single));
 }
 
@@ -85,8 +86,9 @@ static int take_step(cau_step_solver *solver, int accelerated, double slope, dou
 	if (solver->contact)
 		bound += cau_contact_work(solver->contact, solver);
 	double scale = 1;
+	leave(solver);
 	for (int tries = 0; tries <= CAU_MAX_BACKTRACKS; ++tries) {
-		double value = evaluate_at(solver, scale);
+		double value = cau_solver_evaluate_displaced(solver);
 		if (isfinite(value) && (!solver->conservative || value <= bound)) {
 			*objective = value;
 			if (scale != 1)
@@ -100,8 +102,9 @@ static int take_step(cau_step_solver *solver, int accelerated, double slope, dou
 		} else {
 			scale = shorter(scale, *objective, value, slope);
 		}
+		move_to(solver, tries < CAU_MAX_BACKTRACKS ? scale : 0);
 	}
-	*objective = evaluate_at(solver, 0);
+	*objective = cau_solver_evaluate_displaced(solver);
 	return 0;
 }
 
@@ -129,16 +132,29 @@ static int go_back(cau_step_solver *solver, double *objective)
 	return 0;
 }
 
-static double step_norm(const cau_step_solver *solver)
+static void norm_part(void *context, int32_t chunk)
 {
-	double product = solver->kernels->dot(solver->increment, solver->gradient,
-	                                      4 * (int64_t)solver->tissue->vertex_count);
+	const cau_step_solver *solver = context;
+	size_t real = cau_real_bytes(solver->elements.single);
+	int64_t first = 4 * (int64_t)chunk * CAU_VERTEX_CHUNK, n = 4 * (int64_t)CAU_VERTEX_CHUNK;
+	if (first + n > 4 * (int64_t)solver->tissue->vertex_count)
+		n = 4 * (int64_t)solver->tissue->vertex_count - first;
+	solver->chunk_dot[chunk] =
+		solver->kernels->dot((const char *)solver->increment + (size_t)first * real,
+	                         (const char *)solver->gradient + (size_t)first * real, n);
+}
+
+static double step_norm(cau_step_solver *solver)
+{
+	double product = 0;
+	cau_pool_run(solver->pool, solver->chunk_count, norm_part, solver);
+	for (int32_t chunk = 0; chunk < solver->chunk_count; ++chunk)
+		product += solver->chunk_dot[chunk];
 	return sqrt(fmax(-product, 0));
 }
 
 cau_status cau_solver_run(cau_step_solver *solver, cau_error *error)
 {
-	size_t bytes = 3 * (size_t)solver->tissue->vertex_count * sizeof(double);
 	solver->iterations_done = solver->backtracks = 0;
 	solver->local_s = solver->contact_s = 0;
 	solver->residual = 0;
@@ -161,11 +177,11 @@ cau_status cau_solver_run(cau_step_solver *solver, cau_error *error)
 			cau_anderson_start(solver); // the history misleads: forget it
 		last = norm;
 		int accelerated = cau_anderson_mix(solver, steps++);
-		memcpy(solver->position_before, solver->position, bytes);
 		if (!solver->conservative && k + 1 == solver->iterations) { // nothing to compare with
-			move_to(solver, 1);
+			leave(solver);
 			break;
 		}
+		cau_anderson_keep(solver);
 		int taken = take_step(solver, accelerated, -norm * norm, &objective);
 		int back = !k && solver->backtracks && go_back(solver, &objective);
 		if (!taken && !back)

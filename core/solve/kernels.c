@@ -110,10 +110,10 @@ INLINE void add_strip(const cau_history *history, int64_t at, int32_t n, double 
 {
 	real dg[STRIP] __attribute__((aligned(64))) = {0};
 	const real *f = (const real *)history->increment + at,
-			   *g = (const real *)history->gradient + at;
-	real *f_last = (real *)history->last_increment + at,
-		 *g_last = (real *)history->last_gradient + at;
-	const real *step = (const real *)history->step + at;
+			   *g = (const real *)history->gradient + at,
+			   *f_last = (const real *)history->last_increment + at,
+			   *g_last = (const real *)history->last_gradient + at,
+			   *step = (const real *)history->step + at;
 	real *df = (real *)history->df[history->newest] + at,
 		 *h = (real *)history->h[history->newest] + at;
 	for (int32_t k = 0; k < n; ++k) {
@@ -121,8 +121,6 @@ INLINE void add_strip(const cau_history *history, int64_t at, int32_t n, double 
 		df[k] = d;
 		h[k] = step[k] + d;
 		dg[k] = g[k] - g_last[k];
-		f_last[k] = f[k];
-		g_last[k] = g[k];
 	}
 	for (int32_t j = 0; j < history->count; ++j) {
 		const real *column = (const real *)history->df[j] + at;

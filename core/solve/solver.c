@@ -51,8 +51,6 @@ static cau_status allocate_vectors(cau_step_solver *solver, cau_arena *arena, ca
 		if (!history->df[j] || !history->h[j])
 			return no_memory(error);
 	}
-	history->increment = solver->increment;
-	history->gradient = solver->gradient;
 	history->step = solver->trial_increment;
 	solver->chunk_count = (solver->tissue->vertex_count + CAU_VERTEX_CHUNK - 1) / CAU_VERTEX_CHUNK;
 	solver->chunk_energy = cau_arena_array(arena, (size_t)solver->chunk_count, sizeof(double));

@@ -51,10 +51,39 @@ static void test_slots_and_elements_are_one_to_one(void **state)
 	rig_finish(&r);
 }
 
+// A pair's second half is a batch behind its first, which the kernel asks for what both share.
+static void test_pairs_share_all_but_their_apex(void **state)
+{
+	(void)state;
+	static const int kinds[] = {CAU_ELEMENT_TRIANGLE, CAU_ELEMENT_TETRAHEDRON};
+	rig r;
+	make(&r, CAU_PRECISION_SINGLE);
+	const cau_elements *e = &r.solver.elements;
+	for (int k = 0; k < 2; ++k) {
+		int32_t *const *vertex_at = k ? e->fat.vertex_at : e->sheet.vertex_at;
+		int32_t *const *record_at = k ? e->fat.record_at : e->sheet.record_at;
+		const int32_t *element_at = r.solver.slots.element_at[kinds[k]];
+		int apex = k ? 3 : 2;
+		assert_int_equal(slot_count(e, kinds[k]) % (2 * CAU_BATCH), 0);
+		for (int32_t s = 0; s < slot_count(e, kinds[k]); ++s) {
+			if (s % (2 * CAU_BATCH) >= CAU_BATCH || element_at[s + CAU_BATCH] < 0)
+				continue;
+			assert_true(element_at[s] >= 0); // one that is alone is the first
+			for (int i = 0; i < apex; ++i) {
+				assert_int_equal(vertex_at[i][s], vertex_at[i][s + CAU_BATCH]);
+				assert_int_equal(record_at[i][s], record_at[i][s + CAU_BATCH]);
+			}
+			assert_int_not_equal(vertex_at[apex][s], vertex_at[apex][s + CAU_BATCH]);
+		}
+	}
+	rig_finish(&r);
+}
+
 int main(void)
 {
 	const struct CMUnitTest tests[] = {
 		cmocka_unit_test(test_slots_and_elements_are_one_to_one),
+		cmocka_unit_test(test_pairs_share_all_but_their_apex),
 	};
 	return cmocka_run_group_tests(tests, NULL, NULL);
 }
