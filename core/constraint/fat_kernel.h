@@ -93,8 +93,9 @@ INLINE m3 fat_limit_residual(const cau_fat_set *set, const cau_fat_group *group,
 	             v_select(targeted, root.a02, zero), v_select(targeted, root.a12, zero)};
 	if (group->limit == CAU_LIMIT_RANGE && v_any(~targeted)) {
 		vmask inside;
-		sym3 range = sym3_sqrt(fat_range_metric(m3_transpose_times(f, f), group->stretch_min,
-		                                        group->stretch_max, group->shear_max, &inside));
+		sym3 unused, metric = fat_range_metric(m3_transpose_times(f, f), group->stretch_min,
+		                                       group->stretch_max, group->shear_max, &inside);
+		sym3 range = sym3_sqrt(metric, &unused);
 		used = (sym3){
 			v_select(targeted, used.a00, range.a00), v_select(targeted, used.a11, range.a11),
 			v_select(targeted, used.a22, range.a22), v_select(targeted, used.a01, range.a01),

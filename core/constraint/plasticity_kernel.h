@@ -39,7 +39,8 @@ INLINE sym3 plastic_map(sym3 p)
 	vreal size = sym3_norm(p), most = v_set((real)0.45);
 	vreal s = 2 * v_select(size > most, most / size, v_set(1));
 	sym3 c = {1 + s * p.a00, 1 + s * p.a11, 1 + s * p.a22, s * p.a01, s * p.a02, s * p.a12};
-	sym3 z = sym3_inverse(sym3_sqrt(c));
+	sym3 z;
+	sym3_sqrt(c, &z);
 	z.a00 -= 1, z.a11 -= 1, z.a22 -= 1;
 	return z;
 }

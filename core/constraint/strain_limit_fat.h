@@ -40,17 +40,29 @@ INLINE sym3 sym3_mean(sym3 a, sym3 b)
 	              h * (a.a01 + b.a01), h * (a.a02 + b.a02), h * (a.a12 + b.a12)};
 }
 
-// Square root of a symmetric positive definite 3x3 by the Denman-Beavers iteration.
-INLINE sym3 sym3_sqrt(sym3 a)
+// Largest entry of a - b.
+INLINE vreal sym3_distance(sym3 a, sym3 b)
+{
+	vreal most = v_max(v_abs(a.a00 - b.a00), v_max(v_abs(a.a11 - b.a11), v_abs(a.a22 - b.a22)));
+	return v_max(most,
+	             v_max(v_abs(a.a01 - b.a01), v_max(v_abs(a.a02 - b.a02), v_abs(a.a12 - b.a12))));
+}
+
+// Square root of a symmetric positive definite 3x3, and its inverse, by the Denman-Beavers
+// iteration. It converges quadratically: a step that is small leaves nothing to do.
+INLINE sym3 sym3_sqrt(sym3 a, sym3 *inverse)
 {
 	enum { STEPS = 10 };
-	vreal one = v_set(1), zero = v_set(0);
+	const real small = CAU_SINGLE ? (real)1e-4 : (real)1e-9;
+	vreal one = v_set(1), zero = v_set(0), moved = one;
 	sym3 y = a, z = {one, one, one, zero, zero, zero};
-	for (int i = 0; i < STEPS; ++i) {
+	for (int i = 0; i < STEPS && v_any(moved > small * (y.a00 + y.a11 + y.a22)); ++i) {
 		sym3 next = sym3_mean(y, sym3_inverse(z));
 		z = sym3_mean(z, sym3_inverse(y));
+		moved = sym3_distance(next, y);
 		y = next;
 	}
+	*inverse = z;
 	return y;
 }
 

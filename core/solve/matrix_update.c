@@ -6,6 +6,8 @@
 
 static const double swap_after_s = 1.0 / 60.0; // between starting a new factor and using it
 
+enum { PER_UPDATE = CAU_UPDATE_RANK / 3 }; // elements that an update holds for certain
+
 static cau_status no_memory(cau_error *error)
 {
 	return cau_fail(error, CAU_NO_MEMORY, NULL, "no memory to keep the factor in step with cuts");
@@ -146,6 +148,16 @@ static void note_operations(cau_matrix_update *update, const cau_waiting *list, 
 	update->group_count++;
 }
 
+// Half of what waits, so that a tick that parts many elements shares them with the next; all that a
+// tick can do when the oldest has waited long enough.
+static int updates_due(const cau_matrix_update *update, uint64_t tick)
+{
+	int32_t half = (update->waiting_count + 1) / 2, due = (half + PER_UPDATE - 1) / PER_UPDATE;
+	if (due > CAU_MOST_UPDATES || tick - update->waiting[0].tick >= CAU_WAITING_TICKS)
+		return CAU_MOST_UPDATES;
+	return due < CAU_LEAST_UPDATES ? CAU_LEAST_UPDATES : due;
+}
+
 // A few exact downdates, the oldest first, then the touched part of the packed factor anew. *least
 // is the least pivot that they changed.
 static cau_status downdate(cau_matrix_update *update, uint64_t tick, double *least,
@@ -153,7 +165,8 @@ static cau_status downdate(cau_matrix_update *update, uint64_t tick, double *lea
 {
 	cau_status status = CAU_OK;
 	int32_t done = 0;
-	for (int i = 0; i < CAU_DOWNDATES_PER_TICK && done < update->waiting_count && !status; ++i) {
+	int updates = updates_due(update, tick);
+	for (int i = 0; i < updates && done < update->waiting_count && !status; ++i) {
 		int32_t taken = 0;
 		status = cau_matrix_update_downdate(update, update->waiting + done,
 		                                    update->waiting_count - done, &taken, error);
@@ -224,10 +237,10 @@ static uint64_t swap_delay(const cau_matrix_update *update)
 	return ticks < 1 ? 1 : (uint64_t)(ticks + 0.5);
 }
 
-// Elements that a tick takes out for certain: of tetrahedra (rank 3) an update holds two.
-static int32_t tick_capacity(void)
+// More than two ticks take out for certain.
+static int too_many(const cau_matrix_update *update)
 {
-	return CAU_DOWNDATES_PER_TICK * (CAU_UPDATE_RANK / 3);
+	return update->waiting_count > 2 * CAU_MOST_UPDATES * PER_UPDATE;
 }
 
 static void advance_diagonal(cau_matrix_update *update, const cau_alive *alive)
@@ -245,7 +258,7 @@ static cau_status serve(cau_matrix_update *update, const cau_alive *alive, uint6
                         cau_error *error)
 {
 	int worn = update->operation_count + update->waiting_count > CAU_DOWNDATES_AT_MOST;
-	if (update->waiting_count <= tick_capacity() && !worn) {
+	if (!too_many(update) && !worn) {
 		double least;
 		cau_status status = downdate(update, tick, &least, error);
 		if (status || least >= update->least_pivot_bound)

@@ -13,7 +13,9 @@
 #include "solve/solver.h"
 
 enum {
-	CAU_DOWNDATES_PER_TICK = 6,   // updates of rank 8 at most
+	CAU_LEAST_UPDATES = 2, // of rank 8 in a tick, while anything waits
+	CAU_MOST_UPDATES = 6,
+	CAU_WAITING_TICKS = 2,        // what has waited for so long is taken out
 	CAU_DOWNDATES_AT_MOST = 2000, // elements, then a canonical factorisation
 };
 
