@@ -70,12 +70,10 @@ static void backward(const cau_sweep *sweep, int32_t supernode)
 	sweep_backward_node(sweep, &sweep->supernode[supernode]);
 }
 
-static void pack(const cau_supernode *node, const double *block, double *w,
-                 const cau_sweep_panels *panels)
+static double pack(const cau_sweep *sweep, int32_t supernode, const cau_factor *factor,
+                   const cau_sweep_panels *panels)
 {
-	pack_node(node, block, w, (stored_real *)panels->forward + node->forward,
-	          (stored_real *)panels->backward + node->backward,
-	          (real *)panels->scale + node->first);
+	return pack_node(sweep, &sweep->supernode[supernode], factor, panels);
 }
 
 enum { STRIP = 64 * LANES }; // reals summed at once: few enough that float sums stay accurate

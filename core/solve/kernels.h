@@ -56,10 +56,9 @@ typedef struct cau_kernels {
 	// One supernode of a sweep, on the sweep's field.
 	void (*forward)(const cau_sweep *sweep, int32_t supernode);
 	void (*backward)(const cau_sweep *sweep, int32_t supernode);
-	// W' of one supernode into its places in the panels, from its diagonal block L_s (columns x
-	// columns) and [-I; L_r] (columns x padded_rows), by columns; w is used up.
-	void (*pack)(const cau_supernode *node, const double *block, double *w,
-	             const cau_sweep_panels *panels);
+	// One supernode of the factor into the panels; returns its least pivot. One thread at a time.
+	double (*pack)(const cau_sweep *sweep, int32_t supernode, const cau_factor *factor,
+	               const cau_sweep_panels *panels);
 	// Dot product in double of n reals, in a fixed order.
 	double (*dot)(const void *a, const void *b, int64_t n);
 	// increment[v] += column[v] * force for v in [first, last); column is real, one a vertex.

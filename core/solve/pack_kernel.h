@@ -1,65 +1,121 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// W' = [I - L_s^-1; L_r L_s^-1] of sweep.h from [-I; L_r] and L_s, in double, sixteen rows at a
-// time:
+// One supernode's part of the factor into the panels of sweep.h: W' = [I - L_s^-1; L_r L_s^-1] from
+// [-I; L_r] and L_s, sixteen rows at a time:
 //
 //     column j of W = column j of [-I; L_r] - sum over i > j of L_ij (column i of W)
 //
-// but for the diagonal of -L_s^-1, which I takes away.
-// from the last column back. Rows do not depend on each other, so sixteen of all columns stay in
-// the nearest cache until they are done.
+// from the last column back, but for the diagonal of -L_s^-1, which I takes away. Rows do not
+// depend on each other, so sixteen of all columns stay in the nearest cache until they are done.
 #pragma once
 
 #include "base/simd.h"
 #include "solve/sweep.h"
 
-enum { PACK_ROWS = 16, PACK_VECTORS = 2 };
+enum { PACK_ROWS = 16, PACK_VECTORS = PACK_ROWS / LANES, PACK_COLUMNS = 4 };
 
-typedef double vdouble __attribute__((vector_size(8 * PACK_ROWS / PACK_VECTORS), may_alias));
+typedef struct pack_rows {
+	vreal v[PACK_VECTORS];
+} pack_rows;
 
-// Columns [0, last) of the sixteen rows in x, two columns at a time; the later ones are zero there.
-INLINE void pack_solve(const double *block, int32_t columns, int32_t last,
-                       vdouble (*x)[PACK_VECTORS])
+// The supernode's columns, dense, by columns: the diagonal block L_s below its unit diagonal
+// (columns x columns), and [-I; L_r] (columns x padded_rows), whose padded rows are zero.
+typedef struct pack_dense {
+	real *block, *w;
+} pack_dense;
+
+// Reads them from the factor into the sweep's scratch; returns the least pivot.
+static double pack_gather(const cau_sweep *sweep, const cau_supernode *node,
+                          const cau_factor *factor, real *d_inverse, pack_dense *dense)
 {
-	for (int32_t j = last - 1 - last % 2; j > 0; j -= 2) {
-		const double *right = block + (int64_t)j * columns, *left = right - columns;
-		vdouble a = x[j][0], b = x[j][1], c = x[j - 1][0], d = x[j - 1][1];
-		for (int32_t i = j + 1; i < last; ++i) {
-			a -= right[i] * x[i][0];
-			b -= right[i] * x[i][1];
-			c -= left[i] * x[i][0];
-			d -= left[i] * x[i][1];
+	int32_t columns = node->columns, stride = node->padded_rows;
+	int32_t *row_place = sweep->row_place;
+	dense->block = sweep->dense;
+	dense->w = dense->block + (int64_t)columns * columns;
+	double least = INFINITY;
+	for (int32_t i = 0; i < node->rows; ++i)
+		row_place[sweep->row_global[node->row + i]] = columns + i;
+	memset(dense->block, 0, (size_t)columns * (size_t)(columns + stride) * sizeof(real));
+	for (int32_t j = 0; j < columns; ++j) {
+		const int32_t *row;
+		const double *value;
+		double pivot;
+		real *block = dense->block + (int64_t)j * columns, *w = dense->w + (int64_t)j * stride;
+		int32_t count = cau_factor_column(factor, node->first + j, &row, &value, &pivot);
+		d_inverse[node->first + j] = (real)(1 / pivot);
+		least = fmin(least, pivot);
+		w[j] = -1;
+		for (int32_t k = 0; k < count; ++k) {
+			int32_t local = row[k] - node->first;
+			if (local < columns)
+				block[local] = (real)value[k];
+			else
+				w[row_place[row[k]]] = (real)value[k];
 		}
-		x[j][0] = a;
-		x[j][1] = b;
-		x[j - 1][0] = c - left[j] * a;
-		x[j - 1][1] = d - left[j] * b;
+	}
+	return least;
+}
+
+// Columns last_of - count + 1 to last_of of sixteen rows; those after them, before `last`, are
+// done.
+INLINE void pack_columns(const real *block, int32_t columns, int32_t last, int32_t last_of,
+                         int count, pack_rows *x)
+{
+	pack_rows sum[PACK_COLUMNS];
+	for (int k = 0; k < count; ++k)
+		sum[k] = x[last_of - k];
+	for (int32_t i = last_of + 1; i < last; ++i)
+		for (int k = 0; k < count; ++k)
+			for (int v = 0; v < PACK_VECTORS; ++v)
+				sum[k].v[v] -= block[(int64_t)(last_of - k) * columns + i] * x[i].v[v];
+	for (int k = 0; k < count; ++k) {
+		x[last_of - k] = sum[k];
+		for (int m = k + 1; m < count; ++m)
+			for (int v = 0; v < PACK_VECTORS; ++v)
+				sum[m].v[v] -= block[(int64_t)(last_of - m) * columns + last_of - k] * sum[k].v[v];
 	}
 }
 
-enum { PACK_LANES = PACK_ROWS / PACK_VECTORS };
-typedef int64_t vdouble_mask __attribute__((vector_size(8 * PACK_LANES)));
-
-INLINE vdouble pack_larger(vdouble a, vdouble b)
+// W' in the place of w. Returns each column's largest entry.
+static void pack_multiply(const cau_supernode *node, const pack_dense *dense, real *largest)
 {
-	vdouble size = (vdouble)((vdouble_mask)b & INT64_MAX);
-	vdouble_mask m = a > size;
-	return (vdouble)((m & (vdouble_mask)a) | (~m & (vdouble_mask)size));
+	pack_rows x[CAU_NODE_COLUMNS];
+	vreal most[CAU_NODE_COLUMNS];
+	int32_t columns = node->columns, rows = columns + node->rows;
+	for (int32_t j = 0; j < columns; ++j)
+		most[j] = v_set(0);
+	for (int32_t row = 0; row < rows; row += PACK_ROWS) {
+		int32_t last = row + PACK_ROWS < columns ? row + PACK_ROWS : columns, j = last - 1;
+		for (int32_t k = 0; k < last; ++k)
+			memcpy(&x[k], dense->w + (int64_t)k * node->padded_rows + row, sizeof x[k]);
+		for (; (j + 1) % PACK_COLUMNS; --j)
+			pack_columns(dense->block, columns, last, j, 1, x);
+		for (; j > 0; j -= PACK_COLUMNS)
+			pack_columns(dense->block, columns, last, j, PACK_COLUMNS, x);
+		for (int32_t k = row; k < last; ++k)
+			((real *)&x[k])[k - row] = 0;
+		for (int32_t k = 0; k < last; ++k) {
+			for (int v = 0; v < PACK_VECTORS; ++v)
+				most[k] = v_max(most[k], v_abs(x[k].v[v]));
+			memcpy(dense->w + (int64_t)k * node->padded_rows + row, &x[k], sizeof x[k]);
+		}
+	}
+	for (int32_t j = 0; j < columns; ++j) {
+		largest[j] = 0;
+		for (int l = 0; l < LANES; ++l)
+			largest[j] = most[j][l] > largest[j] ? most[j][l] : largest[j];
+	}
 }
 
-// Entries of W' as they are stored: all of a column by one scale, its largest entry over
+// Sixteen entries of W' as they are stored: all of a column by one scale, its largest entry over
 // STORED_MOST.
-INLINE void pack_store(const double *in, double inverse_scale, stored_real *out)
+INLINE void pack_store(const real *in, real inverse_scale, stored_real *out)
 {
 #if CAU_SINGLE
-	typedef int32_t vint __attribute__((vector_size(4 * PACK_LANES)));
-	typedef int16_t vshort __attribute__((vector_size(2 * PACK_LANES), may_alias, aligned(2)));
-	const vint zero = {0};
+	const real up = STORED_MOST + 1.5f; // positive, and half a step more: truncation rounds
 	for (int v = 0; v < PACK_VECTORS; ++v) {
-		vdouble x;
-		memcpy(&x, in + v * PACK_LANES, sizeof x);
-		vdouble steps = x * inverse_scale + (STORED_MOST + 1.5); // rounds
-		vint whole = __builtin_convertvector(steps, vint) - (zero + (STORED_MOST + 1));
-		*(vshort *)(out + v * PACK_LANES) = __builtin_convertvector(whole, vshort);
+		vmask whole = __builtin_convertvector(v_load(in, v * LANES) * inverse_scale + up, vmask);
+		*(stored_lanes *)(out + v * LANES) =
+			__builtin_convertvector(whole - (STORED_MOST + 1), stored_lanes);
 	}
 #else
 	(void)inverse_scale;
@@ -67,48 +123,27 @@ INLINE void pack_store(const double *in, double inverse_scale, stored_real *out)
 #endif
 }
 
-// W' in double, in the place of w. Returns each column's largest entry.
-static void pack_multiply(const cau_supernode *node, const double *block, double *w,
-                          double *largest)
-{
-	vdouble x[CAU_NODE_COLUMNS][PACK_VECTORS], most[CAU_NODE_COLUMNS] = {{0}};
-	int32_t columns = node->columns, rows = columns + node->rows;
-	for (int32_t row = 0; row < rows; row += PACK_ROWS) {
-		int32_t last = row + PACK_ROWS < columns ? row + PACK_ROWS : columns;
-		for (int32_t j = 0; j < last; ++j)
-			memcpy(x[j], w + (int64_t)j * node->padded_rows + row, sizeof x[j]);
-		pack_solve(block, columns, last, x);
-		for (int32_t j = row; j < last; ++j)
-			((double *)x[j])[j - row] = 0;
-		for (int32_t j = 0; j < last; ++j) {
-			most[j] = pack_larger(pack_larger(most[j], x[j][0]), x[j][1]);
-			memcpy(w + (int64_t)j * node->padded_rows + row, x[j], sizeof x[j]);
-		}
-	}
-	for (int32_t j = 0; j < columns; ++j) {
-		largest[j] = 0;
-		for (int l = 0; l < PACK_LANES; ++l)
-			largest[j] = most[j][l] > largest[j] ? most[j][l] : largest[j];
-	}
-}
-
 // What W' has on and above its diagonal block's diagonal, and in padded rows, is zero in the panels
-// from the start and stays so.
-static void pack_node(const cau_supernode *node, const double *block, double *w,
-                      stored_real *forward, stored_real *backward, real *scale)
+// from the start and stays so. Returns the least pivot.
+static double pack_node(const cau_sweep *sweep, const cau_supernode *node, const cau_factor *factor,
+                        const cau_sweep_panels *panels)
 {
-	double inverse[CAU_NODE_COLUMNS];
+	stored_real *forward = (stored_real *)panels->forward + node->forward;
+	stored_real *backward = (stored_real *)panels->backward + node->backward;
+	real inverse[CAU_NODE_COLUMNS], *scale = (real *)panels->scale + node->first;
 	int32_t columns = node->columns, rows = columns + node->rows;
-	pack_multiply(node, block, w, inverse);
+	pack_dense dense;
+	double least = pack_gather(sweep, node, factor, panels->d_inverse, &dense);
+	pack_multiply(node, &dense, inverse);
 	for (int32_t j = 0; j < columns; ++j) {
-		scale[j] = STORED_MOST ? (real)(inverse[j] / STORED_MOST) : 1;
+		scale[j] = STORED_MOST ? inverse[j] / STORED_MOST : 1;
 		inverse[j] = inverse[j] > REAL_TINY ? STORED_MOST / inverse[j] : 0;
 	}
 	for (int32_t row = 0; row < rows; row += PACK_ROWS) {
 		int32_t last = row + PACK_ROWS < columns ? row + PACK_ROWS : columns;
 		int32_t count = row + PACK_ROWS < rows ? PACK_ROWS : rows - row;
 		for (int32_t j = 0; j < last; ++j)
-			pack_store(w + (int64_t)j * node->padded_rows + row, inverse[j],
+			pack_store(dense.w + (int64_t)j * node->padded_rows + row, inverse[j],
 			           forward + (int64_t)j * node->padded_rows + row);
 		for (int32_t r = 0; r < count; ++r) {
 			stored_real *out = backward + (int64_t)(row + r) * node->padded_columns;
@@ -117,4 +152,5 @@ static void pack_node(const cau_supernode *node, const double *block, double *w,
 				out[j] = in[(int64_t)j * node->padded_rows];
 		}
 	}
+	return least;
 }

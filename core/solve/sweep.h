@@ -65,7 +65,6 @@ typedef struct cau_sweep {
 	int32_t task_first[CAU_SWEEP_TASKS], task_last[CAU_SWEEP_TASKS]; // supernodes [first, last)
 	int32_t *top_node; // supernodes above the tasks, ascending
 	int32_t top_node_count;
-	int64_t max_dense;        // doubles that packing a supernode takes, see sweep_pack.c
 	cau_pages pages;          // of the next four
 	void *forward, *backward; // the panels, entries of kernels->stored_bytes
 	void *d_inverse, *scale;  // real (padded_n): D^-1, and what a step in the column is
@@ -74,7 +73,9 @@ typedef struct cau_sweep {
 	void *field;
 	int64_t panel_entries;
 	int32_t padded_n, padded_top;
-	double *scratch; // for packing one supernode, see sweep_pack.c
+	int64_t max_dense;  // reals that packing a supernode takes
+	void *dense;        // real (max_dense), for packing one supernode
+	int32_t *row_place; // (n): likewise
 } cau_sweep;
 
 // Lays the panels out for the factor's pattern and packs them. CAU_NO_MEMORY is the only failure;

@@ -44,59 +44,11 @@ void cau_sweep_swap_panels(cau_sweep *sweep, cau_sweep_panels *panels)
 	*panels = old;
 }
 
-// A supernode's part of the factor, dense, in double, by columns: the diagonal block L_s below its
-// unit diagonal, and [-I; L_r], whose padded rows are zero. Returns the least pivot.
-typedef struct dense_node {
-	double *block; // (columns x columns)
-	double *w;     // (columns x padded_rows)
-} dense_node;
-
-static double gather(const cau_sweep *sweep, const cau_supernode *node, const cau_factor *factor,
-                     void *d_inverse, dense_node *dense)
-{
-	int32_t columns = node->columns, stride = node->padded_rows;
-	int32_t *row_place = (int32_t *)sweep->scratch;
-	dense->block = sweep->scratch + sweep->n;
-	dense->w = dense->block + (int64_t)columns * columns;
-	double least = INFINITY;
-	for (int32_t i = 0; i < node->rows; ++i)
-		row_place[sweep->row_global[node->row + i]] = columns + i;
-	memset(dense->block, 0, (size_t)columns * (size_t)(columns + stride) * sizeof(double));
-	for (int32_t j = 0; j < columns; ++j) {
-		const int32_t *row;
-		const double *value;
-		double pivot, *block = dense->block + (int64_t)j * columns,
-					  *w = dense->w + (int64_t)j * stride;
-		int32_t count = cau_factor_column(factor, node->first + j, &row, &value, &pivot);
-		cau_real_set(d_inverse, sweep->single, node->first + j, 1 / pivot);
-		least = fmin(least, pivot);
-		w[j] = -1;
-		for (int32_t k = 0; k < count; ++k) {
-			int32_t local = row[k] - node->first;
-			if (local < columns)
-				block[local] = value[k];
-			else
-				w[row_place[row[k]]] = value[k];
-		}
-	}
-	return least;
-}
-
-static double pack_node(const cau_sweep *sweep, int32_t supernode, const cau_factor *factor,
-                        const cau_sweep_panels *panels)
-{
-	const cau_supernode *node = &sweep->supernode[supernode];
-	dense_node dense;
-	double least = gather(sweep, node, factor, panels->d_inverse, &dense);
-	sweep->kernels->pack(node, dense.block, dense.w, panels);
-	return least;
-}
-
 void cau_sweep_pack_panels(const cau_sweep *sweep, cau_sweep_panels *panels,
                            const cau_factor *factor)
 {
 	for (int32_t s = 0; s < sweep->supernode_count; ++s)
-		pack_node(sweep, s, factor, panels);
+		sweep->kernels->pack(sweep, s, factor, panels);
 }
 
 double cau_sweep_pack(const cau_sweep *sweep, const cau_factor *factor, const uint8_t *touched)
@@ -105,7 +57,7 @@ double cau_sweep_pack(const cau_sweep *sweep, const cau_factor *factor, const ui
 	double least = INFINITY;
 	for (int32_t s = 0; s < sweep->supernode_count; ++s)
 		if (!touched || touched[s])
-			least = fmin(least, pack_node(sweep, s, factor, &panels));
+			least = fmin(least, sweep->kernels->pack(sweep, s, factor, &panels));
 	return least;
 }
 
