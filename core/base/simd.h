@@ -67,6 +67,11 @@ INLINE void v_store(void *to, int32_t slot, vreal a)
 {
 	*(vreal_memory *)((real *)to + slot) = a;
 }
+// A batch's part of an array, for soon.
+INLINE void v_prefetch(const void *array, int32_t slot)
+{
+	__builtin_prefetch((const real *)array + slot);
+}
 // What is read far more often than it is written, and need not be exact: in single precision, whole
 // steps of a scale that is kept beside it.
 #if CAU_SINGLE

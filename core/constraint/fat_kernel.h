@@ -203,15 +203,40 @@ INLINE vreal fat_pairs(const cau_fat_set *set, const cau_fat_group *group, int32
 	return energy;
 }
 
+// Asks for what the next pairs are made of: the arrays are more than processors follow by
+// themselves.
+INLINE void fat_prefetch(const cau_fat_set *set, int32_t slot)
+{
+	for (int32_t half = slot; half <= slot + CAU_BATCH; half += CAU_BATCH) {
+		for (int i = 0; i < 9; ++i)
+			v_prefetch(set->dm_inverse[i], half);
+		v_prefetch(set->volume, half);
+		for (int i = half == slot ? 0 : 3; i < 4; ++i) {
+			v_prefetch(set->vertex_at[i], half);
+			v_prefetch(set->record_at[i], half);
+		}
+		if (!set->limited[half / CAU_BATCH])
+			continue;
+		v_prefetch(set->limit_weight, half);
+		for (int i = 0; i < 6; ++i)
+			v_prefetch(set->target[i], half);
+		for (int i = 0; i < 4; ++i)
+			v_prefetch(set->polar[i], half);
+	}
+}
+
 // Slots [first, last) of one group: returns their energy, J. `displacement` is u = x - X, m,
 // (vertex_count x 4).
 static double fat_kernel(const cau_elements *elements, const cau_fat_group *group, int32_t first,
                          int32_t last, const real *displacement, int diagonal)
 {
 	vsum energy = {0};
-	for (int32_t batch = first; batch < last; batch += 2 * CAU_BATCH)
+	for (int32_t batch = first; batch < last; batch += 2 * CAU_BATCH) {
+		if (batch + 2 * CAU_BATCH < last)
+			fat_prefetch(&elements->fat, batch + 2 * CAU_BATCH);
 		for (int32_t slot = batch; slot < batch + CAU_BATCH; slot += LANES)
 			energy += v_widen(
 				fat_pairs(&elements->fat, group, slot, displacement, diagonal, elements->gradient));
+	}
 	return v_total(energy);
 }

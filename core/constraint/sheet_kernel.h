@@ -147,15 +147,38 @@ INLINE vreal sheet_pairs(const cau_sheet_set *set, const cau_sheet_group *group,
 	return energy;
 }
 
+// Asks for what the next pairs are made of, as fat_prefetch does.
+INLINE void sheet_prefetch(const cau_sheet_set *set, int32_t slot)
+{
+	for (int32_t half = slot; half <= slot + CAU_BATCH; half += CAU_BATCH) {
+		for (int i = 0; i < 4; ++i)
+			v_prefetch(set->dm_inverse[i], half);
+		for (int i = 0; i < 6; ++i) {
+			v_prefetch(set->rest[i], half);
+			v_prefetch(set->polar[i], half);
+		}
+		for (int i = 0; i < 3; ++i)
+			v_prefetch(set->target[i], half);
+		v_prefetch(set->weight, half);
+		for (int i = half == slot ? 0 : 2; i < 3; ++i) {
+			v_prefetch(set->vertex_at[i], half);
+			v_prefetch(set->record_at[i], half);
+		}
+	}
+}
+
 // Slots [first, last) of one group: returns their energy, J. `displacement` is u = x - X, m,
 // (vertex_count x 4).
 static double sheet_kernel(const cau_elements *elements, const cau_sheet_group *group,
                            int32_t first, int32_t last, const real *displacement, int diagonal)
 {
 	vsum energy = {0};
-	for (int32_t batch = first; batch < last; batch += 2 * CAU_BATCH)
+	for (int32_t batch = first; batch < last; batch += 2 * CAU_BATCH) {
+		if (batch + 2 * CAU_BATCH < last)
+			sheet_prefetch(&elements->sheet, batch + 2 * CAU_BATCH);
 		for (int32_t slot = batch; slot < batch + CAU_BATCH; slot += LANES)
 			energy += v_widen(sheet_pairs(&elements->sheet, group, slot, displacement, diagonal,
 			                              elements->gradient));
+	}
 	return 0.5 * v_total(energy);
 }

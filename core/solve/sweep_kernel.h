@@ -9,7 +9,17 @@
 enum {
 	SWEEP_BLOCK = 4, // vectors worked on together, to share what is broadcast
 	SWEEP_STEP = SWEEP_BLOCK * LANES,
+	SWEEP_AHEAD = 16, // columns or rows that are asked for early
 };
+
+// Asks for a panel's column (forward) or row (backward) that comes later: they are too far apart
+// for processors to see them coming.
+INLINE void sweep_prefetch(const stored_real *panel, int vectors)
+{
+	enum { LINE = 64 / sizeof(stored_real), STEP = LANES < LINE ? LINE : LANES };
+	for (int k = 0; k < vectors * LANES; k += STEP)
+		__builtin_prefetch(panel + k);
+}
 
 // sum[k] += panel[k] * at, of one column (forward) or row (backward), vectors [first, last).
 INLINE void sweep_add(v3 sum[SWEEP_BLOCK], const stored_real *panel, const real *at, int first,
@@ -41,8 +51,10 @@ INLINE int32_t forward_columns(v3 sum[SWEEP_BLOCK], const stored_real *panel,
                                int k, int vectors)
 {
 	int32_t end = k < vectors ? least(node->columns, row + (k + 1) * LANES) : j;
-	for (; j < end; ++j)
+	for (; j < end; ++j) {
+		sweep_prefetch(panel + (int64_t)(j + SWEEP_AHEAD) * node->padded_rows, vectors);
 		sweep_add(sum, panel + (int64_t)j * node->padded_rows, b + 4 * j, k, vectors);
+	}
 	return j;
 }
 
@@ -98,9 +110,11 @@ INLINE int32_t backward_rows(v3 sum[SWEEP_BLOCK], const cau_sweep *sweep, const 
 	const int32_t *place = sweep->backward_place + node->place;
 	const stored_real *panel = (const stored_real *)sweep->backward + node->backward + column;
 	int32_t end = k + 1 < vectors ? least(rows, column + (k + 1) * LANES) : rows;
-	for (; k < vectors && i < end; ++i)
+	for (; k < vectors && i < end; ++i) {
+		sweep_prefetch(panel + (int64_t)(i + SWEEP_AHEAD) * node->padded_columns, vectors);
 		sweep_add(sum, panel + (int64_t)i * node->padded_columns,
 		          (const real *)sweep->field + place[i], 0, k + 1);
+	}
 	return i;
 }
 
