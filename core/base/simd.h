@@ -57,7 +57,11 @@ typedef real vreal_memory __attribute__((vector_size(VECTOR_BYTES), may_alias, a
 
 INLINE vreal v_set(real a)
 {
+#if defined(__SSE2__)
+	return V_CALL(set1, a);
+#else
 	return (vreal){0} + a;
+#endif
 }
 INLINE vreal v_load(const void *from, int32_t slot)
 {
@@ -81,8 +85,14 @@ typedef stored_real stored_lanes
 	__attribute__((vector_size(LANES * sizeof(int16_t)), may_alias, aligned(2)));
 INLINE vreal v_load_stored(const stored_real *from)
 {
+#if defined(__AVX512F__)
+	return (vreal)_mm512_cvtepi32_ps(_mm512_cvtepi16_epi32(_mm256_loadu_si256((const void *)from)));
+#elif defined(__AVX2__)
+	return (vreal)_mm256_cvtepi32_ps(_mm256_cvtepi16_epi32(_mm_loadu_si128((const void *)from)));
+#else
 	return __builtin_convertvector(__builtin_convertvector(*(const stored_lanes *)from, vmask),
 	                               vreal);
+#endif
 }
 #else
 typedef real stored_real;
