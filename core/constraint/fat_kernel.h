@@ -232,7 +232,7 @@ static double fat_kernel(const cau_elements *elements, const cau_fat_group *grou
 {
 	vsum energy = {0};
 	for (int32_t batch = first; batch < last; batch += 2 * CAU_BATCH) {
-		if (batch + 2 * CAU_BATCH < last)
+		if (batch + 2 * CAU_BATCH < group->first_slot + group->slot_count)
 			fat_prefetch(&elements->fat, batch + 2 * CAU_BATCH);
 		for (int32_t slot = batch; slot < batch + CAU_BATCH; slot += LANES)
 			energy += v_widen(

@@ -174,7 +174,7 @@ static double sheet_kernel(const cau_elements *elements, const cau_sheet_group *
 {
 	vsum energy = {0};
 	for (int32_t batch = first; batch < last; batch += 2 * CAU_BATCH) {
-		if (batch + 2 * CAU_BATCH < last)
+		if (batch + 2 * CAU_BATCH < group->first_slot + group->slot_count)
 			sheet_prefetch(&elements->sheet, batch + 2 * CAU_BATCH);
 		for (int32_t slot = batch; slot < batch + CAU_BATCH; slot += LANES)
 			energy += v_widen(sheet_pairs(&elements->sheet, group, slot, displacement, diagonal,

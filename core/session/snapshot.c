@@ -340,7 +340,7 @@ static cau_status replay_factor(cau_session *session, const snapshot_header *hea
 	}
 	memset(update->touched, 0, (size_t)solver->sweep.supernode_count);
 	if (!status)
-		cau_sweep_pack(&solver->sweep, solver->factor, NULL);
+		cau_sweep_pack(&solver->sweep, solver->factor);
 	if (!status && header->making)
 		cau_matrix_update_start(update, header->swap_tick);
 	return status;

@@ -71,9 +71,9 @@ static void backward(const cau_sweep *sweep, int32_t supernode)
 }
 
 static double pack(const cau_sweep *sweep, int32_t supernode, const cau_factor *factor,
-                   const cau_sweep_panels *panels)
+                   const cau_sweep_panels *panels, int32_t part)
 {
-	return pack_node(sweep, &sweep->supernode[supernode], factor, panels);
+	return pack_node(sweep, &sweep->supernode[supernode], factor, panels, part);
 }
 
 enum { STRIP = 64 * LANES }; // reals summed at once: few enough that float sums stay accurate

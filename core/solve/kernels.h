@@ -56,9 +56,10 @@ typedef struct cau_kernels {
 	// One supernode of a sweep, on the sweep's field.
 	void (*forward)(const cau_sweep *sweep, int32_t supernode);
 	void (*backward)(const cau_sweep *sweep, int32_t supernode);
-	// One supernode of the factor into the panels; returns its least pivot. One thread at a time.
+	// One supernode of the factor into the panels; returns its least pivot. `part` (below
+	// CAU_PACK_PARTS) says which scratch is used: one thread at a time for each.
 	double (*pack)(const cau_sweep *sweep, int32_t supernode, const cau_factor *factor,
-	               const cau_sweep_panels *panels);
+	               const cau_sweep_panels *panels, int32_t part);
 	// Dot product in double of n reals, in a fixed order.
 	double (*dot)(const void *a, const void *b, int64_t n);
 	// increment[v] += column[v] * force for v in [first, last); column is real, one a vertex.

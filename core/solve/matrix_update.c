@@ -134,8 +134,9 @@ cau_status cau_matrix_update_downdate(cau_matrix_update *update, const cau_waiti
 
 double cau_matrix_update_pack(cau_matrix_update *update)
 {
-	double least = cau_sweep_pack(&update->solver->sweep, update->solver->factor, update->touched);
-	memset(update->touched, 0, (size_t)update->solver->sweep.supernode_count);
+	const cau_step_solver *solver = update->solver;
+	double least =
+		cau_sweep_pack_touched(&solver->sweep, solver->factor, update->touched, solver->pool);
 	update->solver->factor_version++;
 	return least;
 }
@@ -218,7 +219,7 @@ static cau_status swap(cau_matrix_update *update, uint64_t tick, cau_error *erro
 	if (update->next_panels.forward)
 		cau_sweep_swap_panels(&solver->sweep, &update->next_panels);
 	else
-		cau_sweep_pack(&solver->sweep, solver->factor, NULL);
+		cau_sweep_pack(&solver->sweep, solver->factor);
 	solver->factor_version++;
 	for (int kind = 0; kind < CAU_ELEMENT_KINDS; ++kind) {
 		uint8_t *canonical = update->canonical[kind];
@@ -313,7 +314,7 @@ cau_status cau_matrix_update_refactor(cau_matrix_update *update, const cau_alive
 	                    solver->system.matrix.value);
 	cau_status status = cau_factor_refactor(solver->factor, &solver->system.matrix, error);
 	if (!status)
-		cau_sweep_pack(&solver->sweep, solver->factor, NULL);
+		cau_sweep_pack(&solver->sweep, solver->factor);
 	update->refactorisations++;
 	return status;
 }

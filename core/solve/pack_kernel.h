@@ -25,11 +25,12 @@ typedef struct pack_dense {
 
 // Reads them from the factor into the sweep's scratch; returns the least pivot.
 static double pack_gather(const cau_sweep *sweep, const cau_supernode *node,
-                          const cau_factor *factor, real *d_inverse, pack_dense *dense)
+                          const cau_factor *factor, real *d_inverse, int32_t part,
+                          pack_dense *dense)
 {
 	int32_t columns = node->columns, stride = node->padded_rows;
-	int32_t *row_place = sweep->row_place;
-	dense->block = sweep->dense;
+	int32_t *row_place = sweep->row_place + (int64_t)part * sweep->n;
+	dense->block = (real *)sweep->dense + part * sweep->max_dense;
 	dense->w = dense->block + (int64_t)columns * columns;
 	double least = INFINITY;
 	for (int32_t i = 0; i < node->rows; ++i)
@@ -126,14 +127,14 @@ INLINE void pack_store(const real *in, real inverse_scale, stored_real *out)
 // What W' has on and above its diagonal block's diagonal, and in padded rows, is zero in the panels
 // from the start and stays so. Returns the least pivot.
 static double pack_node(const cau_sweep *sweep, const cau_supernode *node, const cau_factor *factor,
-                        const cau_sweep_panels *panels)
+                        const cau_sweep_panels *panels, int32_t part)
 {
 	stored_real *forward = (stored_real *)panels->forward + node->forward;
 	stored_real *backward = (stored_real *)panels->backward + node->backward;
 	real inverse[CAU_NODE_COLUMNS], *scale = (real *)panels->scale + node->first;
 	int32_t columns = node->columns, rows = columns + node->rows;
 	pack_dense dense;
-	double least = pack_gather(sweep, node, factor, panels->d_inverse, &dense);
+	double least = pack_gather(sweep, node, factor, panels->d_inverse, part, &dense);
 	pack_multiply(node, &dense, inverse);
 	for (int32_t j = 0; j < columns; ++j) {
 		scale[j] = STORED_MOST ? inverse[j] / STORED_MOST : 1;

@@ -316,13 +316,13 @@ cau_status cau_sweep_create(cau_sweep *sweep, cau_arena *arena, const cau_factor
 		cau_sweep_swap_panels(sweep, &panels);
 		int32_t places = cau_sweep_task_place(sweep, sweep->task_count) + 1;
 		sweep->field = cau_arena_array(arena, 4 * (size_t)places, size);
-		sweep->dense = cau_arena_array(arena, (size_t)sweep->max_dense, size);
-		sweep->row_place = cau_arena_array(arena, n, sizeof(int32_t));
+		sweep->dense = cau_arena_array(arena, CAU_PACK_PARTS * (size_t)sweep->max_dense, size);
+		sweep->row_place = cau_arena_array(arena, CAU_PACK_PARTS * n, sizeof(int32_t));
 		if (!status && (!sweep->field || !sweep->dense || !sweep->row_place))
 			status = no_memory(error);
 	}
 	if (!status)
-		cau_sweep_pack(sweep, factor, NULL);
+		cau_sweep_pack(sweep, factor);
 	cau_arena_finish(&scratch);
 	return status;
 }

@@ -28,6 +28,7 @@
 enum {
 	CAU_SWEEP_TASKS = 8,    // more leave more above them, for one thread
 	CAU_NODE_COLUMNS = 128, // no supernode is wider
+	CAU_PACK_PARTS = 2,     // threads that renew supernodes together
 };
 
 struct cau_kernels;
@@ -74,8 +75,8 @@ typedef struct cau_sweep {
 	int64_t panel_entries;
 	int32_t padded_n, padded_top;
 	int64_t max_dense;  // reals that packing a supernode takes
-	void *dense;        // real (max_dense), for packing one supernode
-	int32_t *row_place; // (n): likewise
+	void *dense;        // real (CAU_PACK_PARTS x max_dense), for packing a supernode
+	int32_t *row_place; // (CAU_PACK_PARTS x n): likewise
 } cau_sweep;
 
 // Lays the panels out for the factor's pattern and packs them. CAU_NO_MEMORY is the only failure;
@@ -93,11 +94,14 @@ cau_status cau_sweep_create_panels(const cau_sweep *sweep, cau_sweep_panels *pan
 void cau_sweep_finish_panels(cau_sweep_panels *panels);
 void cau_sweep_swap_panels(cau_sweep *sweep, cau_sweep_panels *panels);
 
-// Packs supernodes from the factor's values: all, or those marked in touched (supernode_count
-// bytes). Returns the least pivot among their columns. One thread at a time: there is one scratch.
-double cau_sweep_pack(const cau_sweep *sweep, const cau_factor *factor, const uint8_t *touched);
+// Packs all supernodes from the factor's values. One thread at a time: they share the scratch.
+void cau_sweep_pack(const cau_sweep *sweep, const cau_factor *factor);
 void cau_sweep_pack_panels(const cau_sweep *sweep, cau_sweep_panels *panels,
                            const cau_factor *factor);
+// Packs those marked in touched (supernode_count bytes), and takes the marks away. Returns the
+// least pivot among their columns.
+double cau_sweep_pack_touched(const cau_sweep *sweep, const cau_factor *factor, uint8_t *touched,
+                              cau_pool *pool);
 
 // Marks the supernodes on the path from column `column` to the root.
 void cau_sweep_mark_path(const cau_sweep *sweep, int32_t column, uint8_t *touched);

@@ -48,16 +48,60 @@ void cau_sweep_pack_panels(const cau_sweep *sweep, cau_sweep_panels *panels,
                            const cau_factor *factor)
 {
 	for (int32_t s = 0; s < sweep->supernode_count; ++s)
-		sweep->kernels->pack(sweep, s, factor, panels);
+		sweep->kernels->pack(sweep, s, factor, panels, 0);
 }
 
-double cau_sweep_pack(const cau_sweep *sweep, const cau_factor *factor, const uint8_t *touched)
+void cau_sweep_pack(const cau_sweep *sweep, const cau_factor *factor)
 {
 	cau_sweep_panels panels = panels_of(sweep);
+	cau_sweep_pack_panels(sweep, &panels, factor);
+}
+
+typedef struct packing {
+	const cau_sweep *sweep;
+	const cau_factor *factor;
+	uint8_t *touched; // 1 + the part that packs it
+	double least[CAU_PACK_PARTS];
+} packing;
+
+// Each goes to the part that has less to do so far; the largest, which are last, come first.
+static void share_out(const packing *work)
+{
+	int64_t load[CAU_PACK_PARTS] = {0};
+	for (int32_t s = work->sweep->supernode_count - 1; s >= 0; --s) {
+		const cau_supernode *node = &work->sweep->supernode[s];
+		int part = 0;
+		if (!work->touched[s])
+			continue;
+		for (int k = 1; k < CAU_PACK_PARTS; ++k)
+			part = load[k] < load[part] ? k : part;
+		load[part] += (int64_t)node->columns * node->columns * (node->columns + node->rows);
+		work->touched[s] = (uint8_t)(1 + part);
+	}
+}
+
+static void pack_part(void *context, int32_t part)
+{
+	packing *work = context;
+	cau_sweep_panels panels = panels_of(work->sweep);
+	work->least[part] = INFINITY;
+	for (int32_t s = 0; s < work->sweep->supernode_count; ++s)
+		if (work->touched[s] == 1 + part)
+			work->least[part] =
+				fmin(work->least[part],
+			         work->sweep->kernels->pack(work->sweep, s, work->factor, &panels, part));
+}
+
+double cau_sweep_pack_touched(const cau_sweep *sweep, const cau_factor *factor, uint8_t *touched,
+                              cau_pool *pool)
+{
+	packing work = {.sweep = sweep, .factor = factor, .touched = touched};
+	share_out(&work);
+	cau_pool_run(pool, CAU_PACK_PARTS, pack_part, &work);
+	memset(touched, 0, (size_t)sweep->supernode_count);
 	double least = INFINITY;
-	for (int32_t s = 0; s < sweep->supernode_count; ++s)
-		if (!touched || touched[s])
-			least = fmin(least, sweep->kernels->pack(sweep, s, factor, &panels));
+	for (int part = 0; part < CAU_PACK_PARTS; ++part)
+		least = fmin(least, work.least[part]);
 	return least;
 }
 

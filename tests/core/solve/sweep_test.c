@@ -157,7 +157,7 @@ static void test_partial_packing_is_full_packing(void **state)
 			void *backward = cau_arena_copy(&r.arena, sweep->backward, panel, 1);
 			void *pivots = cau_arena_copy(&r.arena, sweep->d_inverse, (size_t)sweep->n, size);
 			void *scale = cau_arena_copy(&r.arena, sweep->scale, (size_t)sweep->n, size);
-			cau_sweep_pack(sweep, r.solver.factor, NULL);
+			cau_sweep_pack(sweep, r.solver.factor);
 			assert_memory_equal(sweep->forward, forward, panel);
 			assert_memory_equal(sweep->backward, backward, panel);
 			assert_memory_equal(sweep->d_inverse, pivots, (size_t)sweep->n * size);
