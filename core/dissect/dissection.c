@@ -171,6 +171,15 @@ static double heat_taken(const cau_dissection *dissection, int32_t edge, double 
 	return gain * absorption * heat_capacity * mass / 12;
 }
 
+// Whether a sphere can reach the segment at all: most edges of a near block are out of it, and the
+// temperature at their ends need not be looked up.
+static int in_reach(cau_vec3 a, cau_vec3 b, cau_vec3 center, double radius)
+{
+	cau_vec3 along = cau_sub(b, a), off = cau_sub(cau_add(a, b), cau_add(center, center));
+	double twice = 2 * (radius + 1e-6) + cau_length(along); // a micrometre for rounding
+	return cau_dot(off, off) <= twice * twice;
+}
+
 double cau_dissection_expose(cau_dissection *dissection, const cau_near *near,
                              const double *position, const cau_heat_grid *grid,
                              const cau_tool_def *tool, const cau_pose *pose, double jaw,
@@ -180,15 +189,17 @@ double cau_dissection_expose(cau_dissection *dissection, const cau_near *near,
 	double radius, taken = 0;
 	cau_tool_bound(tool, CAU_PART_HOT, &center, &radius);
 	center = cau_pose_to_world(pose, center);
-	for (int32_t b = 0; b < near->block_count; ++b) {
-		if (!cau_box_meets(&near->edge_box[b], center, radius))
+	for (int32_t block = 0; block < near->block_count; ++block) {
+		if (!cau_box_meets(&near->edge_box[block], center, radius))
 			continue;
-		for (int32_t k = near->edge_first[b]; k < near->edge_first[b + 1]; ++k) {
+		for (int32_t k = near->edge_first[block]; k < near->edge_first[block + 1]; ++k) {
 			int32_t edge = near->edge[k];
 			const int32_t *v = dissection->tissue->edges.vertex + 2 * (size_t)edge;
-			double gain =
-				cau_exposure_gain(grid, tool, pose, jaw, cau_vec3_of(position + 3 * (size_t)v[0]),
-			                      cau_vec3_of(position + 3 * (size_t)v[1]), 1, duration_s);
+			cau_vec3 a = cau_vec3_of(position + 3 * (size_t)v[0]);
+			cau_vec3 b = cau_vec3_of(position + 3 * (size_t)v[1]);
+			if (!in_reach(a, b, center, radius))
+				continue;
+			double gain = cau_exposure_gain(grid, tool, pose, jaw, a, b, 1, duration_s);
 			if (gain <= 0 || !edge_lives(dissection, edge))
 				continue;
 			dissection->exposure[edge] += gain;
