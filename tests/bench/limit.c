@@ -12,8 +12,8 @@
 enum { PASSES = 40, RUNS = 5 };
 
 // Reals and indices that an element of each kind reads and writes in one evaluation
-// (constraint/elements.h). Records stay in the nearest cache while they are added to; they count as
-// they are written and summed.
+// (constraint/elements.h); what a pair shares is read once. Records stay in the nearest cache while
+// they are added to; they count as they are written and summed.
 enum {
 	SHEET_REALS = 4 + 6 + 1 + 3 + 2 * 6,
 	FAT_REALS = 9 + 1,
@@ -22,8 +22,8 @@ enum {
 	LINK_REALS = 3 + 1 + 1,
 	HINGE_REALS = 4 + 3 + 1 + 1,
 	RECORD_REALS = 2 * 4,
-	SHEET_INDICES = 2 * 3,
-	FAT_INDICES = 2 * 4,
+	SHEET_INDICES = 2 * (2 + 2) / 2,
+	FAT_INDICES = 2 * (3 + 2) / 2,
 	LINK_INDICES = 2 * 2,
 	HINGE_INDICES = 2 * 4,
 };
