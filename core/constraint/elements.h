@@ -5,6 +5,10 @@
 // has weight 0 and vertex 0. Arrays marked `real` are float or double, as the session's precision
 // says. A removed element keeps its slot with weight 0.
 //
+// Triangles and tetrahedra come in pairs that share an edge or a face (pairs.h): one in a batch of
+// even number, its partner in the same lane of the next. They have their vertices in one order, the
+// apex last; D_m is made of that order.
+//
 // The local step is done in shares of consecutive slots. A share has a record for each vertex of
 // its elements, four reals (x, y, z, 0), and adds the gradients of their energies (N) up there,
 // slot by slot; vertices then sum their records, in share order. So the sums do not depend on who

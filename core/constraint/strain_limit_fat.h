@@ -54,13 +54,14 @@ INLINE sym3 sym3_sqrt(sym3 a, sym3 *inverse)
 {
 	enum { STEPS = 10 };
 	const real small = CAU_SINGLE ? (real)1e-4 : (real)1e-9;
-	vreal one = v_set(1), zero = v_set(0), moved = one;
+	vreal one = v_set(1), zero = v_set(0);
 	sym3 y = a, z = {one, one, one, zero, zero, zero};
-	for (int i = 0; i < STEPS && v_any(moved > small * (y.a00 + y.a11 + y.a22)); ++i) {
-		sym3 next = sym3_mean(y, sym3_inverse(z));
-		z = sym3_mean(z, sym3_inverse(y));
-		moved = sym3_distance(next, y);
-		y = next;
+	for (int i = 0; i < STEPS; ++i) {
+		sym3 last = y;
+		y = sym3_mean(y, sym3_inverse(z));
+		z = sym3_mean(z, sym3_inverse(last));
+		if (!v_any(sym3_distance(y, last) > small * (y.a00 + y.a11 + y.a22)))
+			break;
 	}
 	*inverse = z;
 	return y;

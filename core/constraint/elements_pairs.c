@@ -1,0 +1,241 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Triangles and tetrahedra in their slots, pair by pair (pairs.h).
+#include "constraint/elements_internal.h"
+#include "constraint/pairs.h"
+#include "solve/system.h"
+
+static cau_status no_memory(cau_error *error)
+{
+	return cau_fail(error, CAU_NO_MEMORY, NULL, "no memory for the elements");
+}
+
+// ---- groups: elements of one layer and material, in element order
+typedef struct group_key {
+	int32_t layer, material;
+} group_key;
+
+static int32_t layer_of(const cau_tissue *tissue, int kind, int32_t element)
+{
+	return kind == CAU_ELEMENT_TRIANGLE ? tissue->triangle_layer[element]
+	                                    : tissue->tetrahedron_layer[element];
+}
+
+static int32_t material_of(const cau_tissue *tissue, int kind, int32_t element)
+{
+	return kind == CAU_ELEMENT_TRIANGLE ? tissue->triangle_material[element]
+	                                    : tissue->tetrahedron_material[element];
+}
+
+static int32_t count_groups(const cau_tissue *tissue, int kind, group_key *keys)
+{
+	int32_t count = 0;
+	for (int32_t e = 0; e < cau_tissue_element_count(tissue, kind); ++e) {
+		int32_t layer = layer_of(tissue, kind, e), material = material_of(tissue, kind, e), g = 0;
+		while (g < count && (keys[g].layer != layer || keys[g].material != material))
+			g++;
+		if (g == count)
+			keys[count++] = (group_key){layer, material};
+	}
+	return count;
+}
+
+// Where the first of the k-th pair goes in a group of `slots`; the second is a batch behind it.
+// Neighbours in the mesh follow each other and share vertices: in each whole share they are dealt
+// to the batches in turn, so that the lanes of one batch rarely add to one record, which each would
+// have to wait for.
+static int32_t pair_slot(int32_t k, int32_t slots)
+{
+	enum { PAIRS = CAU_SHARE / 2, BATCHES = PAIRS / CAU_BATCH };
+	int32_t share = k / PAIRS, in_share = k % PAIRS;
+	int32_t batch = in_share / CAU_BATCH, lane = in_share % CAU_BATCH;
+	if ((share + 1) * CAU_SHARE <= slots) {
+		batch = in_share % BATCHES;
+		lane = in_share / BATCHES;
+	}
+	return share * CAU_SHARE + batch * 2 * CAU_BATCH + lane;
+}
+
+typedef struct pair_maker {
+	const cau_tissue *tissue;
+	cau_elements *elements;
+	cau_element_slots *slots;
+	int kind;
+	int32_t *partner; // by element
+	void (*fill)(const struct pair_maker *maker, int32_t element, int32_t slot, const int *order);
+} pair_maker;
+
+// Gives every pair of the group its slots.
+static void place_pairs(const pair_maker *maker, const group_key *key, int32_t first_slot,
+                        int32_t slot_count)
+{
+	int32_t done = 0, count = cau_tissue_element_count(maker->tissue, maker->kind);
+	for (int32_t e = 0; e < count; ++e) {
+		if (layer_of(maker->tissue, maker->kind, e) != key->layer ||
+		    material_of(maker->tissue, maker->kind, e) != key->material ||
+		    (maker->partner[e] >= 0 && maker->partner[e] < e))
+			continue;
+		int32_t slot = first_slot + pair_slot(done++, slot_count);
+		const int32_t half[2] = {e, maker->partner[e]};
+		for (int h = 0; h < 2 && half[h] >= 0; ++h, slot += CAU_BATCH) {
+			int order[4];
+			cau_pair_order(maker->tissue, maker->kind, e, maker->partner[e], half[h], order);
+			cau_elements_assign(maker->slots, maker->kind, half[h], slot);
+			maker->fill(maker, half[h], slot, order);
+		}
+	}
+}
+
+static cau_status make_sheet_arrays(int single, cau_arena *arena, cau_sheet_set *set,
+                                    cau_error *error)
+{
+	if (!cau_index_arrays(arena, set->vertex_at, 3, set->slot_count) ||
+	    !cau_index_arrays(arena, set->record_at, 3, set->slot_count) ||
+	    !cau_real_arrays(arena, set->dm_inverse, 4, set->slot_count, single) ||
+	    !cau_real_arrays(arena, set->rest, 6, set->slot_count, single) ||
+	    !cau_real_arrays(arena, &set->weight, 1, set->slot_count, single) ||
+	    !cau_real_arrays(arena, set->target, 3, set->slot_count, single) ||
+	    !cau_real_arrays(arena, set->polar, 6, set->slot_count, single) ||
+	    !cau_real_arrays(arena, &set->position_scale, 1, set->slot_count, single))
+		return no_memory(error);
+	return CAU_OK;
+}
+
+static void fill_sheet_slot(const pair_maker *maker, int32_t triangle, int32_t slot,
+                            const int *order)
+{
+	cau_sheet_set *set = &maker->elements->sheet;
+	int single = maker->elements->single;
+	cau_element_map map;
+	cau_tissue_element_map(maker->tissue, CAU_ELEMENT_TRIANGLE, triangle, &map);
+	for (int i = 0; i < 3; ++i)
+		set->vertex_at[i][slot] = 4 * map.vertex[order[i]];
+	for (int i = 0; i < 4; ++i)
+		cau_real_set(set->dm_inverse[i], single, slot, map.coefficient[i % 2][order[i / 2 + 1]]);
+	for (int i = 0; i < 6; ++i) {
+		double axis = maker->tissue->triangle_frame[6 * (size_t)triangle + (size_t)i];
+		cau_real_set(set->rest[i], single, slot, axis);
+		cau_real_set(set->polar[i], single, slot, axis);
+	}
+	cau_real_set(set->position_scale, single, slot, cau_element_map_scale(&map));
+}
+
+static cau_status make_fat_arrays(int single, cau_arena *arena, cau_fat_set *set, cau_error *error)
+{
+	set->limited = cau_arena_array(arena, (size_t)(set->slot_count / CAU_BATCH), 1);
+	set->flowed = cau_arena_array(arena, (size_t)(set->slot_count / CAU_BATCH), 1);
+	if (!set->limited || !set->flowed ||
+	    !cau_index_arrays(arena, set->vertex_at, 4, set->slot_count) ||
+	    !cau_index_arrays(arena, set->record_at, 4, set->slot_count) ||
+	    !cau_real_arrays(arena, set->dm_inverse, 9, set->slot_count, single) ||
+	    !cau_real_arrays(arena, &set->volume, 1, set->slot_count, single) ||
+	    !cau_real_arrays(arena, &set->limit_weight, 1, set->slot_count, single) ||
+	    !cau_real_arrays(arena, set->target, 6, set->slot_count, single) ||
+	    !cau_real_arrays(arena, set->polar, 4, set->slot_count, single) ||
+	    !cau_real_arrays(arena, set->plastic, 6, set->slot_count, single) ||
+	    !cau_real_arrays(arena, set->plastic_strain, 6, set->slot_count, single) ||
+	    !cau_real_arrays(arena, &set->position_scale, 1, set->slot_count, single))
+		return no_memory(error);
+	for (int32_t s = 0; s < set->slot_count; ++s) {
+		cau_real_set(set->polar[0], single, s, 1);
+		for (int i = 0; i < 3; ++i) // padding has the identity for a target
+			cau_real_set(set->target[i], single, s, 1);
+	}
+	return CAU_OK;
+}
+
+static void fill_fat_slot(const pair_maker *maker, int32_t tetrahedron, int32_t slot,
+                          const int *order)
+{
+	cau_fat_set *set = &maker->elements->fat;
+	int single = maker->elements->single;
+	cau_element_map map;
+	cau_tissue_element_map(maker->tissue, CAU_ELEMENT_TETRAHEDRON, tetrahedron, &map);
+	for (int i = 0; i < 4; ++i)
+		set->vertex_at[i][slot] = 4 * map.vertex[order[i]];
+	for (int i = 0; i < 9; ++i)
+		cau_real_set(set->dm_inverse[i], single, slot, map.coefficient[i % 3][order[i / 3 + 1]]);
+	cau_real_set(set->position_scale, single, slot, cau_element_map_scale(&map));
+}
+
+// The groups of one kind, their elements paired; returns the slots they take.
+static int32_t pair_groups(const pair_maker *maker, const group_key *keys, int32_t count,
+                           int32_t *slot_count)
+{
+	int32_t total = 0;
+	for (int32_t g = 0; g < count; ++g) {
+		slot_count[g] =
+			2 * cau_slots_padded(cau_pair_elements(maker->tissue, maker->kind, keys[g].layer,
+		                                           keys[g].material, maker->partner));
+		total += slot_count[g];
+	}
+	return total;
+}
+
+static cau_status make_sheets(pair_maker *maker, cau_arena *arena, cau_error *error)
+{
+	cau_sheet_set *set = &maker->elements->sheet;
+	group_key keys[CAU_MAX_GROUPS];
+	int32_t slots[CAU_MAX_GROUPS], first = 0;
+	maker->kind = CAU_ELEMENT_TRIANGLE;
+	maker->fill = fill_sheet_slot;
+	set->group_count = count_groups(maker->tissue, maker->kind, keys);
+	set->slot_count = pair_groups(maker, keys, set->group_count, slots);
+	set->group = cau_arena_array(arena, (size_t)set->group_count, sizeof *set->group);
+	cau_status status = set->group ? CAU_OK : no_memory(error);
+	if (!status)
+		status = cau_elements_make_maps(maker->slots, maker->kind, maker->tissue->triangle_count,
+		                                set->slot_count, arena, error);
+	if (!status)
+		status = make_sheet_arrays(maker->elements->single, arena, set, error);
+	for (int32_t g = 0; !status && g < set->group_count; first += slots[g++]) {
+		set->group[g] = (cau_sheet_group){.first_slot = first,
+		                                  .slot_count = slots[g],
+		                                  .layer = keys[g].layer,
+		                                  .material = keys[g].material};
+		place_pairs(maker, &keys[g], first, slots[g]);
+	}
+	return status;
+}
+
+static cau_status make_fat(pair_maker *maker, cau_arena *arena, cau_error *error)
+{
+	cau_fat_set *set = &maker->elements->fat;
+	group_key keys[CAU_MAX_GROUPS];
+	int32_t slots[CAU_MAX_GROUPS], first = 0;
+	maker->kind = CAU_ELEMENT_TETRAHEDRON;
+	maker->fill = fill_fat_slot;
+	set->group_count = count_groups(maker->tissue, maker->kind, keys);
+	set->slot_count = pair_groups(maker, keys, set->group_count, slots);
+	set->group = cau_arena_array(arena, (size_t)set->group_count, sizeof *set->group);
+	cau_status status = set->group ? CAU_OK : no_memory(error);
+	if (!status)
+		status = cau_elements_make_maps(maker->slots, maker->kind, maker->tissue->tetrahedron_count,
+		                                set->slot_count, arena, error);
+	if (!status)
+		status = make_fat_arrays(maker->elements->single, arena, set, error);
+	for (int32_t g = 0; !status && g < set->group_count; first += slots[g++]) {
+		set->group[g] = (cau_fat_group){.first_slot = first,
+		                                .slot_count = slots[g],
+		                                .layer = keys[g].layer,
+		                                .material = keys[g].material};
+		place_pairs(maker, &keys[g], first, slots[g]);
+	}
+	return status;
+}
+
+cau_status cau_elements_make_pairs(const cau_tissue *tissue, cau_elements *elements,
+                                   cau_element_slots *slots, cau_arena *arena, cau_error *error)
+{
+	cau_arena scratch = {0};
+	int32_t most = tissue->triangle_count > tissue->tetrahedron_count ? tissue->triangle_count
+	                                                                  : tissue->tetrahedron_count;
+	pair_maker maker = {.tissue = tissue, .elements = elements, .slots = slots};
+	maker.partner = cau_arena_array(&scratch, (size_t)most, sizeof *maker.partner);
+	cau_status status = maker.partner ? CAU_OK : no_memory(error);
+	if (!status)
+		status = make_sheets(&maker, arena, error);
+	if (!status)
+		status = make_fat(&maker, arena, error);
+	cau_arena_finish(&scratch);
+	return status;
+}
