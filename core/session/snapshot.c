@@ -12,7 +12,7 @@
 #include "session/session_internal.h"
 
 static const char magic[8] = "CAUSNAP";
-enum { VERSION = 1 };
+enum { VERSION = 2 }; // 2: elements stand in pairs
 
 typedef struct snapshot_header {
 	char magic[8];
