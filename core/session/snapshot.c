@@ -9,10 +9,10 @@
 #include <string.h>
 
 #include "base/hash.h"
-#include "session/session_internal.h"
+#include "session/snapshot_archive.h"
 
 static const char magic[8] = "CAUSNAP";
-enum { VERSION = 2 }; // 2: elements stand in pairs
+enum { VERSION = 3 }; // elements by number; version 1, by slot, is still read
 
 typedef struct snapshot_header {
 	char magic[8];
@@ -33,47 +33,11 @@ typedef struct snapshot_header {
 	double gravity_m_s2[3];
 } snapshot_header;
 
-typedef struct snapshot_archive {
-	unsigned char *bytes; // NULL: only counts
-	size_t at, capacity;
-	int reading;
-} snapshot_archive;
-
-static void pass(snapshot_archive *archive, void *data, size_t bytes)
-{
-	if (archive->bytes && archive->at + bytes <= archive->capacity && bytes) {
-		if (archive->reading)
-			memcpy(data, archive->bytes + archive->at, bytes);
-		else
-			memcpy(archive->bytes + archive->at, data, bytes);
-	}
-	archive->at += bytes;
-}
-
 static void pass_arrays(snapshot_archive *archive, void *const *arrays, int count, int32_t slots,
                         int single)
 {
 	for (int i = 0; i < count; ++i)
-		pass(archive, arrays[i], (size_t)slots * cau_real_bytes(single));
-}
-
-static void pass_elements(snapshot_archive *archive, cau_session *session)
-{
-	cau_elements *elements = &session->solver.elements;
-	int single = elements->single;
-	pass_arrays(archive, &elements->sheet.weight, 1, elements->sheet.slot_count, single);
-	pass_arrays(archive, elements->sheet.target, 3, elements->sheet.slot_count, single);
-	pass_arrays(archive, elements->sheet.polar, 6, elements->sheet.slot_count, single);
-	pass_arrays(archive, &elements->fat.volume, 1, elements->fat.slot_count, single);
-	pass_arrays(archive, &elements->fat.limit_weight, 1, elements->fat.slot_count, single);
-	pass_arrays(archive, elements->fat.target, 6, elements->fat.slot_count, single);
-	pass_arrays(archive, elements->fat.polar, 4, elements->fat.slot_count, single);
-	pass_arrays(archive, elements->fat.plastic, 6, elements->fat.slot_count, single);
-	pass_arrays(archive, elements->fat.plastic_strain, 6, elements->fat.slot_count, single);
-	pass(archive, elements->fat.limited, (size_t)(elements->fat.slot_count / CAU_BATCH));
-	pass(archive, elements->fat.flowed, (size_t)(elements->fat.slot_count / CAU_BATCH));
-	pass_arrays(archive, &elements->link.weight, 1, elements->link.slot_count, single);
-	pass_arrays(archive, &elements->hinge.weight, 1, elements->hinge.slot_count, single);
+		snapshot_pass(archive, arrays[i], (size_t)slots * cau_real_bytes(single));
 }
 
 // Columns of A^-1 that contacts keep: they lag behind cuts, so they cannot be made again.
@@ -88,62 +52,66 @@ static void pass_columns(snapshot_archive *archive, cau_session *session)
 	cau_contact_set *set = &session->contact;
 	int32_t count = kept_columns(session);
 	int single = session->solver.elements.single;
-	pass(archive, set->column_vertex, (size_t)count * sizeof *set->column_vertex);
-	pass(archive, set->column_version, (size_t)count * sizeof *set->column_version);
+	snapshot_pass(archive, set->column_vertex, (size_t)count * sizeof *set->column_vertex);
+	snapshot_pass(archive, set->column_version, (size_t)count * sizeof *set->column_version);
 	pass_arrays(archive, set->column, count, session->tissue.vertex_count, single);
 	for (int32_t i = 0; i < count; ++i)
-		pass(archive, set->inverse + (size_t)i * CAU_MAX_CONTACTS,
-		     (size_t)count * sizeof *set->inverse);
+		snapshot_pass(archive, set->inverse + (size_t)i * CAU_MAX_CONTACTS,
+		              (size_t)count * sizeof *set->inverse);
 }
 
 static void pass_update(snapshot_archive *archive, cau_session *session)
 {
 	cau_matrix_update *update = &session->update;
-	pass(archive, update->waiting, (size_t)update->waiting_count * sizeof *update->waiting);
-	pass(archive, update->operation, (size_t)update->operation_count * sizeof *update->operation);
+	snapshot_pass(archive, update->waiting,
+	              (size_t)update->waiting_count * sizeof *update->waiting);
+	snapshot_pass(archive, update->operation,
+	              (size_t)update->operation_count * sizeof *update->operation);
 	for (int kind = 0; kind < CAU_ELEMENT_KINDS; ++kind) {
 		size_t count = (size_t)cau_tissue_element_count(&session->tissue, kind);
-		pass(archive, update->canonical[kind], count);
-		pass(archive, update->next_canonical[kind], count);
+		snapshot_pass(archive, update->canonical[kind], count);
+		snapshot_pass(archive, update->next_canonical[kind], count);
 	}
 }
 
 static void pass_tool(snapshot_archive *archive, cau_tool *tool)
 {
 	cau_heat_grid grid = tool->grid;
-	pass(archive, &tool->state, sizeof tool->state);
-	pass(archive, &tool->target, sizeof tool->target);
-	pass(archive, &tool->jaw_target, sizeof tool->jaw_target);
-	pass(archive, &tool->pose_before, sizeof tool->pose_before);
-	pass(archive, &tool->grasp_count, sizeof tool->grasp_count);
-	pass(archive, tool->grasp, sizeof tool->grasp);
-	pass(archive, tool->grid.origin, sizeof tool->grid.origin);
+	snapshot_pass(archive, &tool->state, sizeof tool->state);
+	snapshot_pass(archive, &tool->target, sizeof tool->target);
+	snapshot_pass(archive, &tool->jaw_target, sizeof tool->jaw_target);
+	snapshot_pass(archive, &tool->pose_before, sizeof tool->pose_before);
+	snapshot_pass(archive, &tool->grasp_count, sizeof tool->grasp_count);
+	snapshot_pass(archive, tool->grasp, sizeof tool->grasp);
+	snapshot_pass(archive, tool->grid.origin, sizeof tool->grid.origin);
 	size_t nodes = (size_t)grid.nodes * (size_t)grid.nodes * (size_t)grid.nodes;
-	pass(archive, tool->grid.temperature, nodes * sizeof *tool->grid.temperature);
+	snapshot_pass(archive, tool->grid.temperature, nodes * sizeof *tool->grid.temperature);
 }
 
 // Everything but the tools and what decides the system's shape, which restoring needs first.
-static void pass_state(snapshot_archive *archive, cau_session *session)
+static cau_status pass_state(snapshot_archive *archive, cau_session *session, cau_error *error)
 {
 	size_t n = (size_t)session->tissue.vertex_count,
 		   edges = (size_t)session->tissue.edges.edge_count;
-	pass(archive, session->position, 3 * n * sizeof(double));
-	pass(archive, session->velocity, 3 * n * sizeof(double));
-	pass(archive, session->external, 3 * n * sizeof(double));
-	pass(archive, session->fixed, n);
-	pass(archive, session->solver.system.diagonal, n * sizeof(double));
-	pass(archive, session->dissection.exposure, edges * sizeof(double));
-	pass(archive, session->dissection.parted, edges * sizeof(uint16_t));
-	pass(archive, session->shrink.shrunk[0], (size_t)session->tissue.triangle_count);
-	pass(archive, session->shrink.shrunk[1], (size_t)session->tissue.tetrahedron_count);
-	pass(archive, session->shrink.active,
-	     (size_t)session->shrink.active_count * sizeof *session->shrink.active);
-	pass(archive, session->command, (size_t)session->command_count * sizeof *session->command);
+	snapshot_pass(archive, session->position, 3 * n * sizeof(double));
+	snapshot_pass(archive, session->velocity, 3 * n * sizeof(double));
+	snapshot_pass(archive, session->external, 3 * n * sizeof(double));
+	snapshot_pass(archive, session->fixed, n);
+	snapshot_pass(archive, session->solver.system.diagonal, n * sizeof(double));
+	snapshot_pass(archive, session->dissection.exposure, edges * sizeof(double));
+	snapshot_pass(archive, session->dissection.parted, edges * sizeof(uint16_t));
+	snapshot_pass(archive, session->shrink.shrunk[0], (size_t)session->tissue.triangle_count);
+	snapshot_pass(archive, session->shrink.shrunk[1], (size_t)session->tissue.tetrahedron_count);
+	snapshot_pass(archive, session->shrink.active,
+	              (size_t)session->shrink.active_count * sizeof *session->shrink.active);
+	snapshot_pass(archive, session->command,
+	              (size_t)session->command_count * sizeof *session->command);
 	for (int32_t i = 0; i < session->tissue.layer_count; ++i)
-		pass(archive, &session->tissue.layer[i].def, sizeof session->tissue.layer[i].def);
-	pass_elements(archive, session);
+		snapshot_pass(archive, &session->tissue.layer[i].def, sizeof session->tissue.layer[i].def);
+	cau_status status = cau_snapshot_pass_elements(archive, session, error);
 	pass_update(archive, session);
 	pass_columns(archive, session);
+	return status;
 }
 
 static uint64_t build_hash(void)
@@ -200,18 +168,18 @@ static uint64_t hash_of(const snapshot_header *header, const unsigned char *payl
 
 static void write_payload(cau_session *session, snapshot_archive *archive)
 {
-	pass(archive, session->pinned, (size_t)session->tissue.vertex_count);
+	snapshot_pass(archive, session->pinned, (size_t)session->tissue.vertex_count);
 	if (session->solver.factor)
-		pass(archive, (void *)(uintptr_t)cau_factor_permutation(session->solver.factor),
-		     (size_t)session->solver.system.row_count * sizeof(int32_t));
+		snapshot_pass(archive, (void *)(uintptr_t)cau_factor_permutation(session->solver.factor),
+		              (size_t)session->solver.system.row_count * sizeof(int32_t));
 	for (int32_t i = 0; i < session->tool_count; ++i)
 		pass_tool(archive, &session->tool[i]);
-	pass_state(archive, session);
+	pass_state(archive, session, NULL); // writing does not fail
 }
 
 size_t cau_session_snapshot_bytes(const cau_session *session)
 {
-	snapshot_archive archive = {0};
+	snapshot_archive archive = {.version = VERSION};
 	write_payload((cau_session *)(uintptr_t)session, &archive); // only counts
 	return sizeof(snapshot_header) + archive.at;
 }
@@ -226,7 +194,8 @@ cau_status cau_session_snapshot(const cau_session *session, void *bytes, size_t 
 	snapshot_header header;
 	fill_header(session, &header);
 	snapshot_archive archive = {.bytes = (unsigned char *)bytes + sizeof header,
-	                            .capacity = capacity - sizeof header};
+	                            .capacity = capacity - sizeof header,
+	                            .version = VERSION};
 	write_payload((cau_session *)(uintptr_t)session, &archive);
 	header.payload_bytes = archive.at;
 	header.hash = hash_of(&header, archive.bytes, archive.at);
@@ -247,8 +216,12 @@ static cau_status check_header(const cau_session *session, const snapshot_header
 	const cau_matrix_update *update = &session->update;
 	if (memcmp(header->magic, magic, sizeof magic) != 0)
 		return corrupt(error, "it does not begin like one");
-	if (header->version != VERSION)
-		return corrupt(error, "it is of another version");
+	if (header->version != 1 && header->version != VERSION)
+		return cau_fail(
+			error, CAU_CORRUPT, NULL,
+			"the snapshot is of version %u and this build reads 1 and %u: restore it with "
+			"the build that wrote it",
+			(unsigned)header->version, (unsigned)VERSION);
 	if (header->single != (uint32_t)session->solver.elements.single)
 		return corrupt(error, "it is of another precision");
 	if (header->definition_hash != session->definition_hash ||
@@ -280,7 +253,7 @@ static cau_status restore_tools(cau_session *session, const snapshot_header *hea
 		memset(tool, 0, sizeof *tool);
 		cau_tool_state state;
 		snapshot_archive ahead = *archive;
-		pass(&ahead, &state, sizeof state);
+		snapshot_pass(&ahead, &state, sizeof state);
 		cau_status status =
 			cau_heat_grid_create(&tool->grid, &state.definition, session->scene->ambient_c,
 		                         session->solver.step_s, &state.pose, error);
@@ -357,8 +330,8 @@ static cau_status restore_system(cau_session *session, const snapshot_header *he
 		status = cau_fail(error, CAU_NO_MEMORY, NULL, "no memory to restore");
 		goto done;
 	}
-	pass(archive, pinned, n);
-	pass(archive, permutation, (size_t)header->row_count * sizeof *permutation);
+	snapshot_pass(archive, pinned, n);
+	snapshot_pass(archive, permutation, (size_t)header->row_count * sizeof *permutation);
 	const cau_factor *factor = session->solver.factor;
 	int32_t rows = factor ? session->solver.system.row_count : 0; // none after a failed rebuild
 	int same = !memcmp(pinned, session->pinned, n) && rows == header->row_count &&
@@ -385,14 +358,15 @@ cau_status cau_session_restore(cau_session *session, const void *bytes, size_t b
 	cau_status status = check_header(session, &header, payload, payload_bytes, error);
 	if (status)
 		return status;
-	snapshot_archive archive = {.bytes = payload, .capacity = payload_bytes, .reading = 1};
+	snapshot_archive archive = {
+		.bytes = payload, .capacity = payload_bytes, .reading = 1, .version = header.version};
 	cau_matrix_update_stop(&session->update);
 	status = restore_system(session, &header, &archive, error);
 	if (!status)
 		status = restore_tools(session, &header, &archive, error);
 	if (!status) {
 		restore_counts(session, &header);
-		pass_state(&archive, session);
+		status = pass_state(&archive, session, error);
 		cau_elements_set_laws(&session->solver.elements, &session->tissue);
 		session->solver.conservative =
 			cau_solver_is_conservative(&session->tissue, session->solver.diagonal);
@@ -401,14 +375,15 @@ cau_status cau_session_restore(cau_session *session, const void *bytes, size_t b
 		session->dissection.edges_parted = header.edges_parted;
 		session->dissection.elements_removed = header.elements_removed;
 		session->contact.row_count = session->refusal_count = 0;
-		status = replay_factor(session, &header, error);
+		if (!status)
+			status = replay_factor(session, &header, error);
 		cau_frame_rebuild(&session->frame, &session->dissection);
 		cau_session_renew_scalars(session);
 	}
 	if (status) // half restored: say so instead of going on
 		session->faulted = true;
 	if (exact)
-		*exact = header.build == build_hash() &&
+		*exact = header.version == VERSION && header.build == build_hash() &&
 		         !strncmp(header.instruction_set, session->solver.kernels->instruction_set,
 		                  sizeof header.instruction_set);
 	return status;
