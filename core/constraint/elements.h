@@ -40,6 +40,7 @@ typedef struct cau_fat_group {
 	double mu, lambda;      // Pa, of the energy as it is evaluated
 	double stiffness;       // Pa: k of the energy's share of A
 	double limit_stiffness; // Pa
+	double target[6];       // TARGET: T^(1/2) of slots that have none of their own
 	double stretch_min[3], stretch_max[3];
 	double shear_max;
 	double yield_strain, plastic_strain_max;
@@ -72,8 +73,9 @@ typedef struct cau_fat_set {
 	void *polar[4];   // real: rotation of the limit, or of corotated fat: w, x, y, z
 	void *plastic[6]; // real: C_p^(-1/2) - I
 	void *plastic_strain[6]; // real: e_p, with C_p = I + 2 e_p
-	uint8_t *limited; // (slot_count / CAU_BATCH): some slot of the batch has limit_weight > 0
-	uint8_t *flowed;  // likewise: some slot has plastic strain
+	uint8_t *limited;  // (slot_count / CAU_BATCH): some slot of the batch has limit_weight > 0
+	uint8_t *targeted; // likewise: some slot's target is not its group's
+	uint8_t *flowed;   // likewise: some slot has plastic strain
 	void *position_scale;
 } cau_fat_set;
 

@@ -18,31 +18,6 @@ static void set_sheet_law(cau_sheet_group *group, const cau_sheet_material *mate
 	group->shear_max = material->shear_max;
 }
 
-static void set_fat_law(cau_fat_group *group, const cau_fat_material *material)
-{
-	double lambda, mu;
-	cau_fat_lame(material, &lambda, &mu);
-	group->model = material->model;
-	group->limit = material->limit;
-	group->projection = material->projection;
-	group->plastic = material->plastic_strain_max > 0;
-	group->stiffness = 2 * mu + 3 * lambda;
-	group->mu = mu;
-	group->lambda = lambda;
-	if (material->model == CAU_MODEL_NEOHOOKEAN) { // Lame reparametrisation [Smith et al. 2018]
-		group->mu = 4.0 / 3.0 * mu;
-		group->lambda = lambda + 5.0 / 6.0 * mu;
-	}
-	group->limit_stiffness = material->limit_stiffness_pa;
-	for (int a = 0; a < 3; ++a) {
-		group->stretch_min[a] = 1 + material->strain_min[a];
-		group->stretch_max[a] = 1 + material->strain_max[a];
-	}
-	group->shear_max = material->shear_max;
-	group->yield_strain = material->yield_strain;
-	group->plastic_strain_max = material->plastic_strain_max;
-}
-
 // Material axes of fat: the fibre direction first, the others completed; rows of the rotation.
 static void fat_axes(const double fibre[3], double axes[3][3])
 {
@@ -67,6 +42,45 @@ static void to_world(const double s[6], double axes[3][3], double out[6])
 			for (int j = 0; j < 3; ++j)
 				out[k] += axes[i][row[k]] * full[i][j] * axes[j][column[k]];
 	}
+}
+
+// T^(1/2) in world axes; 0 without a target.
+static void fat_target_root(const cau_fat_material *material, const double fibre[3], double root[6])
+{
+	double axes[3][3], world[6];
+	memset(root, 0, 6 * sizeof *root);
+	if (material->limit != CAU_LIMIT_TARGET)
+		return;
+	fat_axes(fibre, axes);
+	to_world(material->target, axes, world);
+	cau_symmetric_power3(world, 0.5, 0, root);
+}
+
+static void set_fat_law(cau_fat_group *group, const cau_fat_material *material,
+                        const double fibre[3])
+{
+	double lambda, mu;
+	cau_fat_lame(material, &lambda, &mu);
+	group->model = material->model;
+	group->limit = material->limit;
+	group->projection = material->projection;
+	group->plastic = material->plastic_strain_max > 0;
+	group->stiffness = 2 * mu + 3 * lambda;
+	group->mu = mu;
+	group->lambda = lambda;
+	if (material->model == CAU_MODEL_NEOHOOKEAN) { // Lame reparametrisation [Smith et al. 2018]
+		group->mu = 4.0 / 3.0 * mu;
+		group->lambda = lambda + 5.0 / 6.0 * mu;
+	}
+	group->limit_stiffness = material->limit_stiffness_pa;
+	fat_target_root(material, fibre, group->target);
+	for (int a = 0; a < 3; ++a) {
+		group->stretch_min[a] = 1 + material->strain_min[a];
+		group->stretch_max[a] = 1 + material->strain_max[a];
+	}
+	group->shear_max = material->shear_max;
+	group->yield_strain = material->yield_strain;
+	group->plastic_strain_max = material->plastic_strain_max;
 }
 
 static void set_sheet_slot(cau_sheet_set *set, int single, int32_t slot, const cau_tissue *tissue,
@@ -97,12 +111,8 @@ static void set_fat_slot(cau_fat_set *set, int single, int32_t slot, const cau_t
 	set->limited[slot / CAU_BATCH] |= (uint8_t)limited;
 	if (keep_target)
 		return;
-	double root[6] = {0}, axes[3][3], world[6];
-	if (material->limit == CAU_LIMIT_TARGET) {
-		fat_axes(tissue->layer[tissue->tetrahedron_layer[element]].def.fibre, axes);
-		to_world(material->target, axes, world);
-		cau_symmetric_power3(world, 0.5, 0, root);
-	}
+	double root[6];
+	fat_target_root(material, tissue->layer[tissue->tetrahedron_layer[element]].def.fibre, root);
 	for (int i = 0; i < 6; ++i)
 		cau_real_set(set->target[i], single, slot, root[i]);
 }
@@ -145,7 +155,7 @@ void cau_elements_set_target(cau_elements *elements, const cau_element_slots *sl
 	double stiffness = cau_tetrahedron_material(tissue, element)->limit_stiffness_pa;
 	cau_real_set(elements->fat.limit_weight, single, slot,
 	             stiffness * cau_real_get(elements->fat.volume, single, slot));
-	elements->fat.limited[slot / CAU_BATCH] = 1;
+	elements->fat.limited[slot / CAU_BATCH] = elements->fat.targeted[slot / CAU_BATCH] = 1;
 }
 
 void cau_elements_target(const cau_elements *elements, const cau_element_slots *slots, int kind,
@@ -167,7 +177,30 @@ void cau_elements_set_laws(cau_elements *elements, const cau_tissue *tissue)
 	}
 	for (int32_t g = 0; g < elements->fat.group_count; ++g) {
 		cau_fat_group *group = &elements->fat.group[g];
-		set_fat_law(group, &tissue->layer[group->layer].def.fat[group->material]);
+		const cau_layer_def *layer = &tissue->layer[group->layer].def;
+		set_fat_law(group, &layer->fat[group->material], layer->fibre);
+	}
+}
+
+static int has_target(const cau_fat_set *set, int single, int32_t slot, const double root[6])
+{
+	for (int i = 0; i < 6; ++i) {
+		double common = single ? (double)(float)root[i] : root[i];
+		if (cau_real_get(set->target[i], single, slot) != common)
+			return 0;
+	}
+	return 1;
+}
+
+void cau_elements_mark_targets(cau_elements *elements, const cau_element_slots *slots)
+{
+	cau_fat_set *set = &elements->fat;
+	memset(set->targeted, 0, (size_t)(set->slot_count / CAU_BATCH));
+	for (int32_t g = 0; g < set->group_count; ++g) {
+		const cau_fat_group *group = &set->group[g];
+		for (int32_t s = group->first_slot; s < group->first_slot + group->slot_count; ++s)
+			set->targeted[s / CAU_BATCH] |= slots->element_at[CAU_ELEMENT_TETRAHEDRON][s] >= 0 &&
+			                                !has_target(set, elements->single, s, group->target);
 	}
 }
 
@@ -184,6 +217,7 @@ void cau_elements_set_materials(cau_elements *elements, const cau_element_slots 
 	for (int32_t t = 0; t < tissue->tetrahedron_count; ++t)
 		set_fat_slot(&elements->fat, single, slots->slot_of[CAU_ELEMENT_TETRAHEDRON][t], tissue, t,
 		             alive[CAU_ELEMENT_TETRAHEDRON][t], shrunk[CAU_ELEMENT_TETRAHEDRON][t]);
+	cau_elements_mark_targets(elements, slots);
 	cau_element_map map;
 	for (int32_t k = 0; k < tissue->link_count; ++k) {
 		cau_tissue_element_map(tissue, CAU_ELEMENT_LINK, k, &map);

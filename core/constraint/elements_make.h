@@ -33,6 +33,9 @@ void cau_elements_target(const cau_elements *elements, const cau_element_slots *
 // Sets the groups' laws from the tissue's materials; slots keep their weights and targets.
 void cau_elements_set_laws(cau_elements *elements, const cau_tissue *tissue);
 
+// Marks batches whose targets are not their group's (`targeted`), after laws or targets changed.
+void cau_elements_mark_targets(cau_elements *elements, const cau_element_slots *slots);
+
 // Sets weights and laws anew from the tissue's materials, keeping removed elements removed
 // (`alive`) and shrunk targets (`shrunk`: bytes by triangle and tetrahedron).
 void cau_elements_set_materials(cau_elements *elements, const cau_element_slots *slots,

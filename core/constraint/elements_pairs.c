@@ -122,8 +122,9 @@ static void fill_sheet_slot(const pair_maker *maker, int32_t triangle, int32_t s
 static cau_status make_fat_arrays(int single, cau_arena *arena, cau_fat_set *set, cau_error *error)
 {
 	set->limited = cau_arena_array(arena, (size_t)(set->slot_count / CAU_BATCH), 1);
+	set->targeted = cau_arena_array(arena, (size_t)(set->slot_count / CAU_BATCH), 1);
 	set->flowed = cau_arena_array(arena, (size_t)(set->slot_count / CAU_BATCH), 1);
-	if (!set->limited || !set->flowed ||
+	if (!set->limited || !set->targeted || !set->flowed ||
 	    !cau_index_arrays(arena, set->vertex_at, 4, set->slot_count) ||
 	    !cau_index_arrays(arena, set->record_at, 4, set->slot_count) ||
 	    !cau_real_arrays(arena, set->dm_inverse, 9, set->slot_count, single) ||

@@ -66,10 +66,10 @@ INLINE vreal fat_position_scale(const cau_fat_set *set, int32_t slot, m3 r)
 
 // Residual of the strain limit (dimensionless). Slots without a target (00 = 0) follow the range,
 // if any.
-INLINE m3 fat_limit_residual(const cau_fat_set *set, const cau_fat_group *group, int32_t slot, m3 f,
-                             rotation_lanes *polar, int diagonal)
+INLINE m3 fat_limit_residual(const cau_fat_set *set, const cau_fat_group *group, int32_t slot,
+                             sym3 common, m3 f, rotation_lanes *polar, int diagonal)
 {
-	sym3 root = sym3_load(set->target, slot);
+	sym3 root = set->targeted[slot / CAU_BATCH] ? sym3_load(set->target, slot) : common;
 	if (group->limit == CAU_LIMIT_TARGET && group->projection == CAU_PROJECTION_LINEARISED) {
 		m3 rows = {{{root.a00, root.a01, root.a02},
 		            {root.a01, root.a11, root.a12},
@@ -135,9 +135,17 @@ INLINE m3 fat_displacement_gradient(const cau_fat_set *set, int32_t slot, const 
 	return h;
 }
 
-// Stress (Pa m^3 = N m) in F = I + H; adds the energies (J).
-INLINE m3 fat_stress(const cau_fat_set *set, const cau_fat_group *group, int32_t slot, m3 h,
-                     int diagonal, vreal *energy)
+// N m. A limit of the law's acts on every slot; shrinkage alone, on those that have shrunk.
+INLINE vreal fat_limit_weight(const cau_fat_set *set, const cau_fat_group *group, int32_t slot)
+{
+	if (group->limit == CAU_LIMIT_NONE)
+		return v_load(set->limit_weight, slot);
+	return (real)group->limit_stiffness * v_load(set->volume, slot);
+}
+
+// Stress (Pa m^3 = N m) in F = I + H; adds the energies (J). `common`: the group's target.
+INLINE m3 fat_stress(const cau_fat_set *set, const cau_fat_group *group, int32_t slot, sym3 common,
+                     m3 h, int diagonal, vreal *energy)
 {
 	int limited = set->limited[slot / CAU_BATCH];
 	m3 f = m3_add(m3_identity(), h), r = {{v3_zero(), v3_zero(), v3_zero()}};
@@ -146,8 +154,8 @@ INLINE m3 fat_stress(const cau_fat_set *set, const cau_fat_group *group, int32_t
 		polar = rotation_load(set->polar, slot);
 	vreal density, volume = v_load(set->volume, slot);
 	if (limited) { // first: its rotation needs the most registers
-		vreal w = v_load(set->limit_weight, slot);
-		r = fat_limit_residual(set, group, slot, f, &polar, diagonal);
+		vreal w = fat_limit_weight(set, group, slot);
+		r = fat_limit_residual(set, group, slot, common, f, &polar, diagonal);
 		rotation_store(set->polar, slot, polar);
 		*energy += (real)0.5 * w * m3_dot(r, r);
 	}
@@ -163,7 +171,7 @@ INLINE m3 fat_stress(const cau_fat_set *set, const cau_fat_group *group, int32_t
 		p = m3_scale(fat_position_scale(set, slot, e), p);
 	}
 	m3 stress = m3_scale(volume, p);
-	return limited ? m3_add_scaled(stress, v_load(set->limit_weight, slot), r) : stress;
+	return limited ? m3_add_scaled(stress, fat_limit_weight(set, group, slot), r) : stress;
 }
 
 // The gradient on vertex i + 1 of four: stress (N m) times row i of D_m^-1.
@@ -178,7 +186,7 @@ INLINE v3 fat_vertex_gradient(const cau_fat_set *set, int32_t slot, m3 stress, i
 // One vector of pairs, whose second halves are a batch behind their first: returns the energies (J)
 // and adds the gradient on their five vertices.
 INLINE vreal fat_pairs(const cau_fat_set *set, const cau_fat_group *group, int32_t slot,
-                       const real *displacement, int diagonal, real *records)
+                       sym3 common, const real *displacement, int diagonal, real *records)
 {
 	fat_face face = fat_face_gather(set, slot, displacement);
 	v3 on_face[3] = {v3_zero(), v3_zero(), v3_zero()};
@@ -187,7 +195,7 @@ INLINE vreal fat_pairs(const cau_fat_set *set, const cau_fat_group *group, int32
 	for (int32_t half = slot; half <= slot + CAU_BATCH; half += CAU_BATCH) {
 		m3 h = fat_displacement_gradient(set, half, &face, displacement);
 		v_forget();
-		m3 stress = fat_stress(set, group, half, h, diagonal, &energy);
+		m3 stress = fat_stress(set, group, half, common, h, diagonal, &energy);
 		v_forget();
 		v3 apex = fat_vertex_gradient(set, half, stress, 2);
 		v3_add_to(records, set->record_at[3] + half, apex);
@@ -205,7 +213,7 @@ INLINE vreal fat_pairs(const cau_fat_set *set, const cau_fat_group *group, int32
 
 // Asks for what the next pairs are made of: the arrays are more than processors follow by
 // themselves.
-INLINE void fat_prefetch(const cau_fat_set *set, int32_t slot)
+INLINE void fat_prefetch(const cau_fat_set *set, const cau_fat_group *group, int32_t slot)
 {
 	for (int32_t half = slot; half <= slot + CAU_BATCH; half += CAU_BATCH) {
 		for (int i = 0; i < 9; ++i)
@@ -217,8 +225,9 @@ INLINE void fat_prefetch(const cau_fat_set *set, int32_t slot)
 		}
 		if (!set->limited[half / CAU_BATCH])
 			continue;
-		v_prefetch(set->limit_weight, half);
-		for (int i = 0; i < 6; ++i)
+		if (group->limit == CAU_LIMIT_NONE)
+			v_prefetch(set->limit_weight, half);
+		for (int i = 0; i < 6 && set->targeted[half / CAU_BATCH]; ++i)
 			v_prefetch(set->target[i], half);
 		for (int i = 0; i < 4; ++i)
 			v_prefetch(set->polar[i], half);
@@ -231,12 +240,15 @@ static double fat_kernel(const cau_elements *elements, const cau_fat_group *grou
                          int32_t last, const real *displacement, int diagonal)
 {
 	vsum energy = {0};
+	sym3 common = {v_set((real)group->target[0]), v_set((real)group->target[1]),
+	               v_set((real)group->target[2]), v_set((real)group->target[3]),
+	               v_set((real)group->target[4]), v_set((real)group->target[5])};
 	for (int32_t batch = first; batch < last; batch += 2 * CAU_BATCH) {
 		if (batch + 2 * CAU_BATCH < group->first_slot + group->slot_count)
-			fat_prefetch(&elements->fat, batch + 2 * CAU_BATCH);
+			fat_prefetch(&elements->fat, group, batch + 2 * CAU_BATCH);
 		for (int32_t slot = batch; slot < batch + CAU_BATCH; slot += LANES)
-			energy += v_widen(
-				fat_pairs(&elements->fat, group, slot, displacement, diagonal, elements->gradient));
+			energy += v_widen(fat_pairs(&elements->fat, group, slot, common, displacement, diagonal,
+			                            elements->gradient));
 	}
 	return v_total(energy);
 }

@@ -368,6 +368,7 @@ cau_status cau_session_restore(cau_session *session, const void *bytes, size_t b
 		restore_counts(session, &header);
 		status = pass_state(&archive, session, error);
 		cau_elements_set_laws(&session->solver.elements, &session->tissue);
+		cau_elements_mark_targets(&session->solver.elements, &session->solver.slots);
 		session->solver.conservative =
 			cau_solver_is_conservative(&session->tissue, session->solver.diagonal);
 		cau_dissection_begin(&session->dissection);
