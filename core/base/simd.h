@@ -306,14 +306,19 @@ INLINE sym3 m3_transpose_times(m3 a, m3 b)
 
 // ---- vertices: four reals each (x, y, z, unused)
 // v3_gather reads one vertex of every lane; v3_add_to adds to one of every lane, lane by lane, so
-// that lanes may name the same one. `at` (LANES) says where in `field` each starts, in reals. In
+// that lanes may name the same one. `at` (LANES) says where in `field` each starts, in reals: in
+// sixteen bits, or `wide`. In
 // float, four vertices are transposed at a time inside each 128-bit part of a vector: part j of row
 // k is vertex 4 j + k.
+INLINE int32_t place_of(const void *at, int wide, int lane)
+{
+	return wide ? ((const int32_t *)at)[lane] : ((const uint16_t *)at)[lane];
+}
 #if CAU_SINGLE && defined(__SSE2__)
 enum { PARTS = LANES / 4 };
-INLINE vreal vertex_row_load(const real *field, const int32_t *at, int k)
+INLINE vreal vertex_row_load(const real *field, const uint16_t *at, int k)
 {
-#define PART(j) _mm_load_ps(field + at[4 * (j) + k])
+#define PART(j) _mm_load_ps(field + place_of(at, 0, 4 * (j) + k))
 #if defined(__AVX512F__)
 	__m512 row = _mm512_castps128_ps512(PART(0));
 	row = _mm512_insertf32x4(row, PART(1), 1);
@@ -326,14 +331,14 @@ INLINE vreal vertex_row_load(const real *field, const int32_t *at, int k)
 #endif
 #undef PART
 }
-INLINE void vertex_row_add(real *field, const int32_t *at, int k, vreal row)
+INLINE void vertex_row_add(real *field, const void *at, int wide, int k, vreal row)
 {
 	union {
 		vreal whole;
 		__m128 part[PARTS];
 	} u = {row};
 	for (int j = 0; j < PARTS; ++j) {
-		real *vertex = field + at[4 * j + k];
+		real *vertex = field + place_of(at, wide, 4 * j + k);
 		_mm_store_ps(vertex, _mm_add_ps(_mm_load_ps(vertex), u.part[j]));
 	}
 }
@@ -356,7 +361,7 @@ INLINE vreal pair_high(vreal a, vreal b)
 	return (vreal)V_PREFIX(castpd_ps)(
 		V_PREFIX(unpackhi_pd)(V_PREFIX(castps_pd)(a), V_PREFIX(castps_pd)(b)));
 }
-INLINE v3 v3_gather(const real *field, const int32_t *at)
+INLINE v3 v3_gather(const real *field, const uint16_t *at)
 {
 	vreal r0 = vertex_row_load(field, at, 0), r1 = vertex_row_load(field, at, 1);
 	vreal r2 = vertex_row_load(field, at, 2), r3 = vertex_row_load(field, at, 3);
@@ -364,18 +369,18 @@ INLINE v3 v3_gather(const real *field, const int32_t *at)
 	return (v3){pair_low(xy01, xy23), pair_high(xy01, xy23),
 	            pair_low(row_high(r0, r1), row_high(r2, r3))};
 }
-INLINE void v3_add_to(real *field, const int32_t *at, v3 a)
+INLINE void v3_add_at(real *field, const void *at, int wide, v3 a)
 {
 	vreal none = v_set(0);
 	vreal xy_low = row_low(a.x, a.y), xy_high = row_high(a.x, a.y);
 	vreal z_low = row_low(a.z, none), z_high = row_high(a.z, none);
-	vertex_row_add(field, at, 0, pair_low(xy_low, z_low));
-	vertex_row_add(field, at, 1, pair_high(xy_low, z_low));
-	vertex_row_add(field, at, 2, pair_low(xy_high, z_high));
-	vertex_row_add(field, at, 3, pair_high(xy_high, z_high));
+	vertex_row_add(field, at, wide, 0, pair_low(xy_low, z_low));
+	vertex_row_add(field, at, wide, 1, pair_high(xy_low, z_low));
+	vertex_row_add(field, at, wide, 2, pair_low(xy_high, z_high));
+	vertex_row_add(field, at, wide, 3, pair_high(xy_high, z_high));
 }
 #else
-INLINE v3 v3_gather(const real *field, const int32_t *at)
+INLINE v3 v3_gather(const real *field, const uint16_t *at)
 {
 	v3 out = v3_zero();
 	for (int l = 0; l < LANES; ++l) {
@@ -386,13 +391,21 @@ INLINE v3 v3_gather(const real *field, const int32_t *at)
 	}
 	return out;
 }
-INLINE void v3_add_to(real *field, const int32_t *at, v3 a)
+INLINE void v3_add_at(real *field, const void *at, int wide, v3 a)
 {
 	for (int l = 0; l < LANES; ++l) {
-		real *vertex = field + at[l];
+		real *vertex = field + place_of(at, wide, l);
 		vertex[0] += a.x[l];
 		vertex[1] += a.y[l];
 		vertex[2] += a.z[l];
 	}
 }
 #endif
+INLINE void v3_add_to(real *field, const uint16_t *at, v3 a)
+{
+	v3_add_at(field, at, 0, a);
+}
+INLINE void v3_add_to_wide(real *field, const int32_t *at, v3 a)
+{
+	v3_add_at(field, at, 1, a);
+}

@@ -10,9 +10,10 @@
 // apex last; D_m is made of that order.
 //
 // The local step is done in shares of consecutive slots. A share has a record for each vertex of
-// its elements, four reals (x, y, z, 0), and adds the gradients of their energies (N) up there,
-// slot by slot; vertices then sum their records, in share order. So the sums do not depend on who
-// runs which share, and what a share writes stays in the nearest cache.
+// its elements, four reals (x, y, z, 0): it takes their displacements there first, and adds the
+// gradients of its elements' energies (N) up there, slot by slot; vertices then sum their records,
+// in share order. So the sums do not depend on who runs which share, what a share reads and writes
+// again and again stays in the nearest cache, and an element names its vertices in sixteen bits.
 #pragma once
 
 #include <stdint.h>
@@ -21,6 +22,8 @@
 
 enum {
 	CAU_BATCH = 16, // slots in a batch of every set: a multiple of the lanes of each precision
+	CAU_SHARE = 16 * CAU_BATCH,            // slots in a share of the local step, at most
+	CAU_SHARE_RECORDS = 1 + 4 * CAU_SHARE, // its records, at most: the first is padding's
 	CAU_MAX_GROUPS = CAU_MAX_LAYERS * CAU_MAX_MATERIALS,
 };
 
@@ -50,21 +53,20 @@ typedef struct cau_fat_group {
 typedef struct cau_sheet_set {
 	int32_t slot_count, group_count;
 	cau_sheet_group *group;
-	int32_t *vertex_at[3]; // (slot_count): 4 x vertex, where its displacement starts
-	int32_t *record_at[3]; // (slot_count): 4 x record, where the gradient on it is added
-	void *dm_inverse[4];   // real, 1/m: row-major D_m'^-1
-	void *rest[6];         // real: columns of F_0 = F at rest
-	void *weight;          // real, N m: k x area x thickness; 0 once removed
-	void *target[3];       // real: T^(1/2): 00, 11, 01
-	void *polar[6];        // real: Q of the last evaluation, kept where F loses rank
-	void *position_scale;  // real, m^2: |G|^2 of the element, for the diagonal system
+	uint16_t *record_at[3]; // (slot_count): 4 x its vertex's record, from the share's first on
+	void *dm_inverse[4];    // real, 1/m: row-major D_m'^-1
+	void *rest[6];          // real: columns of F_0 = F at rest
+	void *weight;           // real, N m: k x area x thickness; 0 once removed
+	void *target[3];        // real: T^(1/2): 00, 11, 01
+	void *polar[6];         // real: Q of the last evaluation, kept where F loses rank
+	void *position_scale;   // real, m^2: |G|^2 of the element, for the diagonal system
 } cau_sheet_set;
 
 // Fat. F = I + [du_1 du_2 du_3] D_m^-1, world axes.
 typedef struct cau_fat_set {
 	int32_t slot_count, group_count;
 	cau_fat_group *group;
-	int32_t *vertex_at[4], *record_at[4];
+	uint16_t *record_at[4];
 	void *dm_inverse[9]; // real, 1/m: row-major
 	void *volume;        // real, m^3; 0 once removed
 	void *
@@ -82,7 +84,7 @@ typedef struct cau_fat_set {
 // Trusses (section 5.2, last paragraph).
 typedef struct cau_link_set {
 	int32_t slot_count;
-	int32_t *vertex_at[2], *record_at[2];
+	uint16_t *record_at[2];
 	void *rest[3];     // real, m: edge vector at rest
 	void *rest_length; // real, m
 	void *weight;      // real, N/m: E A / L; 0 once removed
@@ -91,7 +93,7 @@ typedef struct cau_link_set {
 // Bending: e = sum of c_i x_i over the four vertices of two triangles that share an edge.
 typedef struct cau_hinge_set {
 	int32_t slot_count;
-	int32_t *vertex_at[4], *record_at[4];
+	uint16_t *record_at[4];
 	void *coefficient[4]; // real: c_i, sum 0
 	void *rest[3];        // real, m: e at rest
 	void *rest_length;    // real, m: |e| at rest
@@ -106,7 +108,8 @@ typedef struct cau_elements {
 	cau_hinge_set hinge;
 	void *gradient; // real: the records, (record_count x 4)
 	int32_t record_count;
-	double *energy; // J, of each share
+	int32_t *record_vertex; // 4 x vertex of each; of padding's, 0
+	double *energy;         // J, of each share
 } cau_elements;
 
 static inline double cau_real_get(const void *array, int single, int64_t index)

@@ -36,10 +36,19 @@ int cau_real_arrays(cau_arena *arena, void **array, int count, int32_t slots, in
 	return 1;
 }
 
-int cau_index_arrays(cau_arena *arena, int32_t **array, int count, int32_t slots)
+int cau_index_arrays(cau_arena *arena, uint16_t **array, int count, int32_t slots)
 {
 	for (int i = 0; i < count; ++i)
-		if (!(array[i] = cau_arena_array(arena, (size_t)slots, sizeof(int32_t))))
+		if (!(array[i] = cau_arena_array(arena, (size_t)slots, sizeof(uint16_t))))
+			return 0;
+	return 1;
+}
+
+int cau_slot_vertices_make(cau_slot_vertices *vertices, int kind, int count, int32_t slots)
+{
+	int32_t **at = vertices->at[kind];
+	for (int i = 0; i < count; ++i)
+		if (!(at[i] = cau_arena_array(&vertices->arena, (size_t)slots, sizeof(int32_t))))
 			return 0;
 	return 1;
 }
@@ -55,7 +64,8 @@ static void rest_combination(const cau_tissue *tissue, const cau_element_map *ma
 }
 
 static cau_status make_links(const cau_tissue *tissue, int single, cau_arena *arena,
-                             cau_elements *elements, cau_element_slots *slots, cau_error *error)
+                             cau_elements *elements, cau_element_slots *slots,
+                             cau_slot_vertices *vertices, cau_error *error)
 {
 	cau_link_set *set = &elements->link;
 	set->slot_count = cau_slots_padded(tissue->link_count);
@@ -63,7 +73,7 @@ static cau_status make_links(const cau_tissue *tissue, int single, cau_arena *ar
 	                                           set->slot_count, arena, error);
 	if (status)
 		return status;
-	if (!cau_index_arrays(arena, set->vertex_at, 2, set->slot_count) ||
+	if (!cau_slot_vertices_make(vertices, CAU_ELEMENT_LINK, 2, set->slot_count) ||
 	    !cau_index_arrays(arena, set->record_at, 2, set->slot_count) ||
 	    !cau_real_arrays(arena, set->rest, 3, set->slot_count, single) ||
 	    !cau_real_arrays(arena, &set->rest_length, 1, set->slot_count, single) ||
@@ -76,7 +86,7 @@ static cau_status make_links(const cau_tissue *tissue, int single, cau_arena *ar
 		rest_combination(tissue, &map, rest);
 		cau_elements_assign(slots, CAU_ELEMENT_LINK, k, k);
 		for (int i = 0; i < 2; ++i)
-			set->vertex_at[i][k] = 4 * map.vertex[i];
+			vertices->at[CAU_ELEMENT_LINK][i][k] = map.vertex[i];
 		for (int c = 0; c < 3; ++c)
 			cau_real_set(set->rest[c], single, k, rest[c]);
 		cau_real_set(set->rest_length, single, k, tissue->link_length[k]);
@@ -85,7 +95,8 @@ static cau_status make_links(const cau_tissue *tissue, int single, cau_arena *ar
 }
 
 static cau_status make_hinges(const cau_tissue *tissue, int single, cau_arena *arena,
-                              cau_elements *elements, cau_element_slots *slots, cau_error *error)
+                              cau_elements *elements, cau_element_slots *slots,
+                              cau_slot_vertices *vertices, cau_error *error)
 {
 	cau_hinge_set *set = &elements->hinge;
 	set->slot_count = cau_slots_padded(tissue->hinge_count);
@@ -93,7 +104,7 @@ static cau_status make_hinges(const cau_tissue *tissue, int single, cau_arena *a
 	                                           set->slot_count, arena, error);
 	if (status)
 		return status;
-	if (!cau_index_arrays(arena, set->vertex_at, 4, set->slot_count) ||
+	if (!cau_slot_vertices_make(vertices, CAU_ELEMENT_HINGE, 4, set->slot_count) ||
 	    !cau_index_arrays(arena, set->record_at, 4, set->slot_count) ||
 	    !cau_real_arrays(arena, set->coefficient, 4, set->slot_count, single) ||
 	    !cau_real_arrays(arena, set->rest, 3, set->slot_count, single) ||
@@ -107,7 +118,7 @@ static cau_status make_hinges(const cau_tissue *tissue, int single, cau_arena *a
 		rest_combination(tissue, &map, rest);
 		cau_elements_assign(slots, CAU_ELEMENT_HINGE, k, k);
 		for (int i = 0; i < 4; ++i) {
-			set->vertex_at[i][k] = 4 * map.vertex[i];
+			vertices->at[CAU_ELEMENT_HINGE][i][k] = map.vertex[i];
 			cau_real_set(set->coefficient[i], single, k, map.coefficient[0][i]);
 		}
 		double length = sqrt(rest[0] * rest[0] + rest[1] * rest[1] + rest[2] * rest[2]);
@@ -127,17 +138,19 @@ static cau_status make_hinges(const cau_tissue *tissue, int single, cau_arena *a
 cau_status cau_elements_make(const cau_tissue *tissue, int single, cau_arena *arena,
                              cau_elements *elements, cau_element_slots *slots, cau_error *error)
 {
+	cau_slot_vertices vertices = {0};
 	memset(elements, 0, sizeof *elements);
 	memset(slots, 0, sizeof *slots);
 	elements->single = single;
-	cau_status status = cau_elements_make_pairs(tissue, elements, slots, arena, error);
+	cau_status status = cau_elements_make_pairs(tissue, elements, slots, &vertices, arena, error);
 	if (!status)
-		status = make_links(tissue, single, arena, elements, slots, error);
+		status = make_links(tissue, single, arena, elements, slots, &vertices, error);
 	if (!status)
-		status = make_hinges(tissue, single, arena, elements, slots, error);
+		status = make_hinges(tissue, single, arena, elements, slots, &vertices, error);
 	if (!status)
 		status = cau_elements_make_work(elements, slots, arena, error);
 	if (!status)
-		status = cau_elements_make_records(tissue, elements, slots, arena, error);
+		status = cau_elements_make_records(tissue, elements, slots, &vertices, arena, error);
+	cau_arena_finish(&vertices.arena);
 	return status;
 }

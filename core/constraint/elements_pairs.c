@@ -59,6 +59,7 @@ typedef struct pair_maker {
 	const cau_tissue *tissue;
 	cau_elements *elements;
 	cau_element_slots *slots;
+	cau_slot_vertices *vertices;
 	int kind;
 	int32_t *partner; // by element
 	void (*fill)(const struct pair_maker *maker, int32_t element, int32_t slot, const int *order);
@@ -85,10 +86,11 @@ static void place_pairs(const pair_maker *maker, const group_key *key, int32_t f
 	}
 }
 
-static cau_status make_sheet_arrays(int single, cau_arena *arena, cau_sheet_set *set,
-                                    cau_error *error)
+static cau_status make_sheet_arrays(const pair_maker *maker, cau_arena *arena, cau_error *error)
 {
-	if (!cau_index_arrays(arena, set->vertex_at, 3, set->slot_count) ||
+	cau_sheet_set *set = &maker->elements->sheet;
+	int single = maker->elements->single;
+	if (!cau_slot_vertices_make(maker->vertices, maker->kind, 3, set->slot_count) ||
 	    !cau_index_arrays(arena, set->record_at, 3, set->slot_count) ||
 	    !cau_real_arrays(arena, set->dm_inverse, 4, set->slot_count, single) ||
 	    !cau_real_arrays(arena, set->rest, 6, set->slot_count, single) ||
@@ -108,7 +110,7 @@ static void fill_sheet_slot(const pair_maker *maker, int32_t triangle, int32_t s
 	cau_element_map map;
 	cau_tissue_element_map(maker->tissue, CAU_ELEMENT_TRIANGLE, triangle, &map);
 	for (int i = 0; i < 3; ++i)
-		set->vertex_at[i][slot] = 4 * map.vertex[order[i]];
+		maker->vertices->at[maker->kind][i][slot] = map.vertex[order[i]];
 	for (int i = 0; i < 4; ++i)
 		cau_real_set(set->dm_inverse[i], single, slot, map.coefficient[i % 2][order[i / 2 + 1]]);
 	for (int i = 0; i < 6; ++i) {
@@ -119,13 +121,15 @@ static void fill_sheet_slot(const pair_maker *maker, int32_t triangle, int32_t s
 	cau_real_set(set->position_scale, single, slot, cau_element_map_scale(&map));
 }
 
-static cau_status make_fat_arrays(int single, cau_arena *arena, cau_fat_set *set, cau_error *error)
+static cau_status make_fat_arrays(const pair_maker *maker, cau_arena *arena, cau_error *error)
 {
+	cau_fat_set *set = &maker->elements->fat;
+	int single = maker->elements->single;
 	set->limited = cau_arena_array(arena, (size_t)(set->slot_count / CAU_BATCH), 1);
 	set->targeted = cau_arena_array(arena, (size_t)(set->slot_count / CAU_BATCH), 1);
 	set->flowed = cau_arena_array(arena, (size_t)(set->slot_count / CAU_BATCH), 1);
 	if (!set->limited || !set->targeted || !set->flowed ||
-	    !cau_index_arrays(arena, set->vertex_at, 4, set->slot_count) ||
+	    !cau_slot_vertices_make(maker->vertices, maker->kind, 4, set->slot_count) ||
 	    !cau_index_arrays(arena, set->record_at, 4, set->slot_count) ||
 	    !cau_real_arrays(arena, set->dm_inverse, 9, set->slot_count, single) ||
 	    !cau_real_arrays(arena, &set->volume, 1, set->slot_count, single) ||
@@ -152,7 +156,7 @@ static void fill_fat_slot(const pair_maker *maker, int32_t tetrahedron, int32_t 
 	cau_element_map map;
 	cau_tissue_element_map(maker->tissue, CAU_ELEMENT_TETRAHEDRON, tetrahedron, &map);
 	for (int i = 0; i < 4; ++i)
-		set->vertex_at[i][slot] = 4 * map.vertex[order[i]];
+		maker->vertices->at[maker->kind][i][slot] = map.vertex[order[i]];
 	for (int i = 0; i < 9; ++i)
 		cau_real_set(set->dm_inverse[i], single, slot, map.coefficient[i % 3][order[i / 3 + 1]]);
 	cau_real_set(set->position_scale, single, slot, cau_element_map_scale(&map));
@@ -187,7 +191,7 @@ static cau_status make_sheets(pair_maker *maker, cau_arena *arena, cau_error *er
 		status = cau_elements_make_maps(maker->slots, maker->kind, maker->tissue->triangle_count,
 		                                set->slot_count, arena, error);
 	if (!status)
-		status = make_sheet_arrays(maker->elements->single, arena, set, error);
+		status = make_sheet_arrays(maker, arena, error);
 	for (int32_t g = 0; !status && g < set->group_count; first += slots[g++]) {
 		set->group[g] = (cau_sheet_group){.first_slot = first,
 		                                  .slot_count = slots[g],
@@ -213,7 +217,7 @@ static cau_status make_fat(pair_maker *maker, cau_arena *arena, cau_error *error
 		status = cau_elements_make_maps(maker->slots, maker->kind, maker->tissue->tetrahedron_count,
 		                                set->slot_count, arena, error);
 	if (!status)
-		status = make_fat_arrays(maker->elements->single, arena, set, error);
+		status = make_fat_arrays(maker, arena, error);
 	for (int32_t g = 0; !status && g < set->group_count; first += slots[g++]) {
 		set->group[g] = (cau_fat_group){.first_slot = first,
 		                                .slot_count = slots[g],
@@ -225,12 +229,14 @@ static cau_status make_fat(pair_maker *maker, cau_arena *arena, cau_error *error
 }
 
 cau_status cau_elements_make_pairs(const cau_tissue *tissue, cau_elements *elements,
-                                   cau_element_slots *slots, cau_arena *arena, cau_error *error)
+                                   cau_element_slots *slots, cau_slot_vertices *vertices,
+                                   cau_arena *arena, cau_error *error)
 {
 	cau_arena scratch = {0};
 	int32_t most = tissue->triangle_count > tissue->tetrahedron_count ? tissue->triangle_count
 	                                                                  : tissue->tetrahedron_count;
-	pair_maker maker = {.tissue = tissue, .elements = elements, .slots = slots};
+	pair_maker maker = {
+		.tissue = tissue, .elements = elements, .slots = slots, .vertices = vertices};
 	maker.partner = cau_arena_array(&scratch, (size_t)most, sizeof *maker.partner);
 	cau_status status = maker.partner ? CAU_OK : no_memory(error);
 	if (!status)

@@ -34,42 +34,35 @@ cau_status cau_elements_make_work(cau_elements *elements, cau_element_slots *slo
 		return no_memory(error);
 	for (int32_t g = 0; g < elements->fat.group_count; ++g) {
 		const cau_fat_group *group = &elements->fat.group[g];
-		add_work(slots, CAU_WORK_FAT, g, group->first_slot, group->first_slot + group->slot_count);
+		add_work(slots, CAU_ELEMENT_TETRAHEDRON, g, group->first_slot,
+		         group->first_slot + group->slot_count);
 	}
 	for (int32_t g = 0; g < elements->sheet.group_count; ++g) {
 		const cau_sheet_group *group = &elements->sheet.group[g];
-		add_work(slots, CAU_WORK_SHEET, g, group->first_slot,
+		add_work(slots, CAU_ELEMENT_TRIANGLE, g, group->first_slot,
 		         group->first_slot + group->slot_count);
 	}
-	add_work(slots, CAU_WORK_LINK, 0, 0, elements->link.slot_count);
-	add_work(slots, CAU_WORK_HINGE, 0, 0, elements->hinge.slot_count);
+	add_work(slots, CAU_ELEMENT_LINK, 0, 0, elements->link.slot_count);
+	add_work(slots, CAU_ELEMENT_HINGE, 0, 0, elements->hinge.slot_count);
 	return CAU_OK;
 }
 
 // ---- records
 typedef struct share_elements {
-	int32_t *const *vertex_at, *const *record_at;
+	uint16_t *const *record_at;
+	int32_t *const *vertex_at; // vertex, by slot
 	const int32_t *element_at;
-	int32_t vertices;
+	int vertices;
 } share_elements;
 
 static share_elements elements_of(const cau_elements *elements, const cau_element_slots *slots,
-                                  const cau_local_work *work)
+                                  const cau_slot_vertices *vertices, int kind)
 {
-	switch (work->kind) {
-	case CAU_WORK_SHEET:
-		return (share_elements){elements->sheet.vertex_at, elements->sheet.record_at,
-		                        slots->element_at[CAU_ELEMENT_TRIANGLE], 3};
-	case CAU_WORK_FAT:
-		return (share_elements){elements->fat.vertex_at, elements->fat.record_at,
-		                        slots->element_at[CAU_ELEMENT_TETRAHEDRON], 4};
-	case CAU_WORK_LINK:
-		return (share_elements){elements->link.vertex_at, elements->link.record_at,
-		                        slots->element_at[CAU_ELEMENT_LINK], 2};
-	default:
-		return (share_elements){elements->hinge.vertex_at, elements->hinge.record_at,
-		                        slots->element_at[CAU_ELEMENT_HINGE], 4};
-	}
+	uint16_t *const *record_at[] = {elements->sheet.record_at, elements->fat.record_at,
+	                                elements->link.record_at, elements->hinge.record_at};
+	static const int count[] = {3, 4, 2, 4};
+	return (share_elements){record_at[kind], vertices->at[kind], slots->element_at[kind],
+	                        count[kind]};
 }
 
 // Numbers the share's records from `next` on, a vertex each as they come; `last_record` (by vertex)
@@ -80,72 +73,76 @@ static int32_t number_records(const share_elements *share, cau_local_work *work,
 	work->first_record = next++;
 	for (int32_t s = work->first; s < work->last; ++s)
 		for (int i = 0; i < share->vertices; ++i) {
-			int32_t *last = &last_record[share->vertex_at[i][s] / 4];
+			int32_t *last = &last_record[share->vertex_at[i][s]];
 			if (share->element_at[s] < 0) {
-				share->record_at[i][s] = 4 * work->first_record;
+				share->record_at[i][s] = 0;
 				continue;
 			}
 			if (*last < work->first_record)
 				*last = next++;
-			share->record_at[i][s] = 4 * *last;
+			share->record_at[i][s] = (uint16_t)(4 * (*last - work->first_record));
 		}
 	work->record_count = next - work->first_record;
 	return next;
 }
 
-// Lists for each vertex its records: counts first, then cursors, in place.
-static cau_status list_records(const cau_tissue *tissue, const cau_elements *elements,
-                               cau_element_slots *slots, cau_arena *arena, int32_t *last_record)
+static void name_vertices(const share_elements *share, const cau_local_work *work,
+                          int32_t *record_vertex)
 {
-	cau_incidence *incidence = &slots->incidence;
-	size_t n = (size_t)tissue->vertex_count;
-	incidence->first = cau_arena_array(arena, n + 2, sizeof(int32_t));
-	incidence->record = cau_arena_array(arena, (size_t)elements->record_count, sizeof(int32_t));
-	if (!incidence->first || !incidence->record)
-		return CAU_NO_MEMORY;
+	for (int32_t s = work->first; s < work->last; ++s)
+		for (int i = 0; i < share->vertices && share->element_at[s] >= 0; ++i)
+			record_vertex[work->first_record + share->record_at[i][s] / 4] =
+				4 * share->vertex_at[i][s];
+}
+
+// Lists for each vertex its records: counts first, then cursors, in place.
+static void list_records(const cau_elements *elements, const cau_element_slots *slots,
+                         int32_t vertex_count, cau_incidence *incidence)
+{
 	int32_t *place = incidence->first + 1;
 	for (int pass = 0; pass < 2; ++pass) {
-		memset(last_record, -1, n * sizeof *last_record);
-		for (int32_t w = 0; w < slots->work_count; ++w) {
-			const cau_local_work *work = &slots->work[w];
-			share_elements share = elements_of(elements, slots, work);
-			for (int32_t s = work->first; s < work->last; ++s)
-				for (int i = 0; i < share.vertices && share.element_at[s] >= 0; ++i) {
-					int32_t v = share.vertex_at[i][s] / 4, record = share.record_at[i][s] / 4;
-					if (last_record[v] == record)
-						continue;
-					last_record[v] = record;
-					if (!pass)
-						place[v + 1]++;
-					else
-						incidence->record[place[v]++] = record;
-				}
-		}
-		for (int32_t v = 0; !pass && v < tissue->vertex_count; ++v)
+		for (int32_t w = 0; w < slots->work_count; ++w)
+			for (int32_t k = 1; k < slots->work[w].record_count; ++k) { // 0: padding's
+				int32_t record = slots->work[w].first_record + k;
+				int32_t v = elements->record_vertex[record] / 4;
+				if (!pass)
+					place[v + 1]++;
+				else
+					incidence->record[place[v]++] = record;
+			}
+		for (int32_t v = 0; !pass && v < vertex_count; ++v)
 			place[v + 1] += place[v];
 	}
-	return CAU_OK;
 }
 
 cau_status cau_elements_make_records(const cau_tissue *tissue, cau_elements *elements,
-                                     cau_element_slots *slots, cau_arena *arena, cau_error *error)
+                                     cau_element_slots *slots, const cau_slot_vertices *vertices,
+                                     cau_arena *arena, cau_error *error)
 {
 	cau_arena scratch = {0};
+	cau_incidence *incidence = &slots->incidence;
 	size_t n = (size_t)tissue->vertex_count;
 	int32_t *last_record = cau_arena_array(&scratch, n, sizeof *last_record);
-	cau_status status = last_record ? CAU_OK : CAU_NO_MEMORY;
-	if (!status) {
-		memset(last_record, -1, n * sizeof *last_record);
-		for (int32_t w = 0; w < slots->work_count; ++w) {
-			share_elements share = elements_of(elements, slots, &slots->work[w]);
-			elements->record_count =
-				number_records(&share, &slots->work[w], elements->record_count, last_record);
-		}
-		elements->gradient = cau_arena_array(arena, 4 * (size_t)elements->record_count,
-		                                     cau_real_bytes(elements->single));
-		status = elements->gradient ? list_records(tissue, elements, slots, arena, last_record)
-		                            : CAU_NO_MEMORY;
+	if (!last_record)
+		return no_memory(error);
+	memset(last_record, -1, n * sizeof *last_record);
+	for (int32_t w = 0; w < slots->work_count; ++w) {
+		share_elements share = elements_of(elements, slots, vertices, slots->work[w].kind);
+		elements->record_count =
+			number_records(&share, &slots->work[w], elements->record_count, last_record);
 	}
 	cau_arena_finish(&scratch);
-	return status ? no_memory(error) : CAU_OK;
+	size_t count = (size_t)elements->record_count;
+	elements->gradient = cau_arena_array(arena, 4 * count, cau_real_bytes(elements->single));
+	elements->record_vertex = cau_arena_array(arena, count, sizeof(int32_t));
+	incidence->first = cau_arena_array(arena, n + 2, sizeof(int32_t));
+	incidence->record = cau_arena_array(arena, count, sizeof(int32_t));
+	if (!elements->gradient || !elements->record_vertex || !incidence->first || !incidence->record)
+		return no_memory(error);
+	for (int32_t w = 0; w < slots->work_count; ++w) {
+		share_elements share = elements_of(elements, slots, vertices, slots->work[w].kind);
+		name_vertices(&share, &slots->work[w], elements->record_vertex);
+	}
+	list_records(elements, slots, tissue->vertex_count, incidence);
+	return CAU_OK;
 }

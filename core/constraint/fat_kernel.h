@@ -115,9 +115,9 @@ typedef struct fat_face {
 
 INLINE fat_face fat_face_gather(const cau_fat_set *set, int32_t slot, const real *displacement)
 {
-	fat_face face = {.origin = v3_gather(displacement, set->vertex_at[0] + slot)};
+	fat_face face = {.origin = v3_gather(displacement, set->record_at[0] + slot)};
 	for (int i = 0; i < 2; ++i)
-		face.edge[i] = v3_sub(v3_gather(displacement, set->vertex_at[i + 1] + slot), face.origin);
+		face.edge[i] = v3_sub(v3_gather(displacement, set->record_at[i + 1] + slot), face.origin);
 	return face;
 }
 
@@ -125,7 +125,7 @@ INLINE fat_face fat_face_gather(const cau_fat_set *set, int32_t slot, const real
 INLINE m3 fat_displacement_gradient(const cau_fat_set *set, int32_t slot, const fat_face *face,
                                     const real *displacement)
 {
-	v3 to_apex = v3_sub(v3_gather(displacement, set->vertex_at[3] + slot), face->origin);
+	v3 to_apex = v3_sub(v3_gather(displacement, set->record_at[3] + slot), face->origin);
 	m3 h;
 	for (int c = 0; c < 3; ++c) {
 		h.c[c] = v3_scale(v_load(set->dm_inverse[c], slot), face->edge[0]);
@@ -220,8 +220,7 @@ INLINE void fat_prefetch(const cau_fat_set *set, const cau_fat_group *group, int
 			v_prefetch(set->dm_inverse[i], half);
 		v_prefetch(set->volume, half);
 		for (int i = half == slot ? 0 : 3; i < 4; ++i) {
-			v_prefetch(set->vertex_at[i], half);
-			v_prefetch(set->record_at[i], half);
+			__builtin_prefetch(set->record_at[i] + half);
 		}
 		if (!set->limited[half / CAU_BATCH])
 			continue;
@@ -235,9 +234,9 @@ INLINE void fat_prefetch(const cau_fat_set *set, const cau_fat_group *group, int
 }
 
 // Slots [first, last) of one group: returns their energy, J. `displacement` is u = x - X, m,
-// (vertex_count x 4).
+// of the share's records, `records` where the gradients on them are added up.
 static double fat_kernel(const cau_elements *elements, const cau_fat_group *group, int32_t first,
-                         int32_t last, const real *displacement, int diagonal)
+                         int32_t last, const real *displacement, real *records, int diagonal)
 {
 	vsum energy = {0};
 	sym3 common = {v_set((real)group->target[0]), v_set((real)group->target[1]),
@@ -247,8 +246,8 @@ static double fat_kernel(const cau_elements *elements, const cau_fat_group *grou
 		if (batch + 2 * CAU_BATCH < group->first_slot + group->slot_count)
 			fat_prefetch(&elements->fat, group, batch + 2 * CAU_BATCH);
 		for (int32_t slot = batch; slot < batch + CAU_BATCH; slot += LANES)
-			energy += v_widen(fat_pairs(&elements->fat, group, slot, common, displacement, diagonal,
-			                            elements->gradient));
+			energy += v_widen(
+				fat_pairs(&elements->fat, group, slot, common, displacement, diagonal, records));
 	}
 	return v_total(energy);
 }

@@ -67,15 +67,15 @@ typedef struct sheet_edge {
 INLINE sheet_edge sheet_edge_gather(const cau_sheet_set *set, int32_t slot,
                                     const real *displacement)
 {
-	v3 origin = v3_gather(displacement, set->vertex_at[0] + slot);
-	return (sheet_edge){origin, v3_sub(v3_gather(displacement, set->vertex_at[1] + slot), origin)};
+	v3 origin = v3_gather(displacement, set->record_at[0] + slot);
+	return (sheet_edge){origin, v3_sub(v3_gather(displacement, set->record_at[1] + slot), origin)};
 }
 
 // H = F - F_0 of the triangle on `edge` whose apex is the slot's.
 INLINE sheet_gradient sheet_displacement_gradient(const cau_sheet_set *set, int32_t slot,
                                                   const sheet_edge *edge, const real *displacement)
 {
-	v3 to_apex = v3_sub(v3_gather(displacement, set->vertex_at[2] + slot), edge->origin);
+	v3 to_apex = v3_sub(v3_gather(displacement, set->record_at[2] + slot), edge->origin);
 	sheet_gradient h;
 	for (int c = 0; c < 2; ++c)
 		h.c[c] = v3_add_scaled(v3_scale(v_load(set->dm_inverse[c], slot), edge->along),
@@ -161,24 +161,24 @@ INLINE void sheet_prefetch(const cau_sheet_set *set, int32_t slot)
 			v_prefetch(set->target[i], half);
 		v_prefetch(set->weight, half);
 		for (int i = half == slot ? 0 : 2; i < 3; ++i) {
-			v_prefetch(set->vertex_at[i], half);
-			v_prefetch(set->record_at[i], half);
+			__builtin_prefetch(set->record_at[i] + half);
 		}
 	}
 }
 
 // Slots [first, last) of one group: returns their energy, J. `displacement` is u = x - X, m,
-// (vertex_count x 4).
+// of the share's records, `records` where the gradients on them are added up.
 static double sheet_kernel(const cau_elements *elements, const cau_sheet_group *group,
-                           int32_t first, int32_t last, const real *displacement, int diagonal)
+                           int32_t first, int32_t last, const real *displacement, real *records,
+                           int diagonal)
 {
 	vsum energy = {0};
 	for (int32_t batch = first; batch < last; batch += 2 * CAU_BATCH) {
 		if (batch + 2 * CAU_BATCH < group->first_slot + group->slot_count)
 			sheet_prefetch(&elements->sheet, batch + 2 * CAU_BATCH);
 		for (int32_t slot = batch; slot < batch + CAU_BATCH; slot += LANES)
-			energy += v_widen(sheet_pairs(&elements->sheet, group, slot, displacement, diagonal,
-			                              elements->gradient));
+			energy += v_widen(
+				sheet_pairs(&elements->sheet, group, slot, displacement, diagonal, records));
 	}
 	return 0.5 * v_total(energy);
 }

@@ -14,26 +14,37 @@
 
 typedef real vertex_reals __attribute__((vector_size(4 * sizeof(real)), may_alias));
 
+// Displacements (real, m) of the share's records.
+INLINE void take_displacement(const cau_elements *elements, const cau_local_work *work,
+                              const real *displacement, real *taken)
+{
+	const int32_t *vertex = elements->record_vertex + work->first_record;
+	for (int32_t r = 0; r < work->record_count; ++r)
+		((vertex_reals *)taken)[r] = *(const vertex_reals *)(displacement + vertex[r]);
+}
+
 static void local(const cau_elements *elements, const cau_local_work *work,
                   const void *displacement, int diagonal)
 {
-	memset((vertex_reals *)elements->gradient + work->first_record, 0,
-	       (size_t)work->record_count * sizeof(vertex_reals));
+	real taken[4 * CAU_SHARE_RECORDS] __attribute__((aligned(64)));
+	real *records = (real *)elements->gradient + 4 * (int64_t)work->first_record;
 	double *energy = &elements->energy[work->number];
+	take_displacement(elements, work, displacement, taken);
+	memset(records, 0, (size_t)work->record_count * sizeof(vertex_reals));
 	switch (work->kind) {
-	case CAU_WORK_SHEET:
+	case CAU_ELEMENT_TRIANGLE:
 		*energy = sheet_kernel(elements, &elements->sheet.group[work->group], work->first,
-		                       work->last, displacement, diagonal);
+		                       work->last, taken, records, diagonal);
 		break;
-	case CAU_WORK_FAT:
+	case CAU_ELEMENT_TETRAHEDRON:
 		*energy = fat_kernel(elements, &elements->fat.group[work->group], work->first, work->last,
-		                     displacement, diagonal);
+		                     taken, records, diagonal);
 		break;
-	case CAU_WORK_LINK:
-		*energy = link_kernel(elements, work->first, work->last, displacement, diagonal);
+	case CAU_ELEMENT_LINK:
+		*energy = link_kernel(elements, work->first, work->last, taken, records, diagonal);
 		break;
 	default:
-		*energy = hinge_kernel(elements, work->first, work->last, displacement, diagonal);
+		*energy = hinge_kernel(elements, work->first, work->last, taken, records, diagonal);
 		break;
 	}
 }
@@ -41,10 +52,12 @@ static void local(const cau_elements *elements, const cau_local_work *work,
 static int32_t settle(const cau_elements *elements, const cau_local_work *work,
                       const void *displacement)
 {
-	if (work->kind != CAU_WORK_FAT)
+	if (work->kind != CAU_ELEMENT_TETRAHEDRON)
 		return 0;
+	real taken[4 * CAU_SHARE_RECORDS] __attribute__((aligned(64)));
+	take_displacement(elements, work, displacement, taken);
 	return settle_kernel(elements, &elements->fat.group[work->group], work->first, work->last,
-	                     displacement);
+	                     taken);
 }
 
 static void sum(const cau_elements *elements, const cau_incidence *incidence, int32_t first,

@@ -4,18 +4,12 @@
 
 #include "constraint/elements.h"
 #include "solve/sweep.h"
+#include "tissue/tissue.h"
 
 // A share of the local step: slots [first, last) of one group, whole batches, and the records that
 // it alone writes.
-typedef enum cau_work_kind {
-	CAU_WORK_SHEET,
-	CAU_WORK_FAT,
-	CAU_WORK_LINK,
-	CAU_WORK_HINGE,
-} cau_work_kind;
-
 typedef struct cau_local_work {
-	int32_t number, kind, group, first, last;
+	int32_t number, kind, group, first, last; // kind: CAU_ELEMENT_*
 	int32_t first_record, record_count;
 } cau_local_work;
 

@@ -36,7 +36,7 @@ INLINE void sweep_add(v3 sum[SWEEP_BLOCK], const stored_real *panel, const real 
 
 INLINE void sweep_subtract(real *field, const int32_t *place, v3 sum)
 {
-	v3_add_to(field, place, (v3){-sum.x, -sum.y, -sum.z});
+	v3_add_to_wide(field, place, (v3){-sum.x, -sum.y, -sum.z});
 }
 
 INLINE int32_t least(int32_t a, int32_t b)

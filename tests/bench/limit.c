@@ -17,34 +17,43 @@ enum { PASSES = 40, RUNS = 5 };
 enum {
 	SHEET_REALS = 4 + 6 + 1 + 3 + 2 * 6,
 	FAT_REALS = 9 + 1,
-	FAT_LIMIT_REALS = 1 + 6 + 2 * 4,
+	FAT_LIMIT_REALS = 2 * 4,
+	FAT_TARGET_REALS = 6,
+	FAT_SHRUNK_REALS = 1, // its limit's weight, where no other limit is
 	FAT_PLASTIC_REALS = 6,
 	LINK_REALS = 3 + 1 + 1,
 	HINGE_REALS = 4 + 3 + 1 + 1,
 	RECORD_REALS = 2 * 4,
-	SHEET_INDICES = 2 * (2 + 2) / 2,
-	FAT_INDICES = 2 * (3 + 2) / 2,
-	LINK_INDICES = 2 * 2,
-	HINGE_INDICES = 2 * 4,
+	SHEET_INDICES = 4 / 2,
+	LINK_INDICES = 2,
+	HINGE_INDICES = 4,
 };
+static const double FAT_INDICES = 5 / 2.0;
 
 static double bytes_of_elements(const cau_elements *e)
 {
-	double real_bytes = (double)cau_real_bytes(e->single), limited = 0, flowed = 0;
-	for (int32_t b = 0; b < e->fat.slot_count / CAU_BATCH; ++b) {
-		limited += e->fat.limited[b] * CAU_BATCH;
-		flowed += e->fat.flowed[b] * CAU_BATCH;
+	double real_bytes = (double)cau_real_bytes(e->single), fat_reals = 0;
+	for (int32_t g = 0; g < e->fat.group_count; ++g) {
+		const cau_fat_group *group = &e->fat.group[g];
+		int32_t first = group->first_slot / CAU_BATCH;
+		for (int32_t b = first; b < first + group->slot_count / CAU_BATCH; ++b) {
+			int limited = e->fat.limited[b];
+			fat_reals += CAU_BATCH * (FAT_REALS + limited * FAT_LIMIT_REALS +
+			                          limited * e->fat.targeted[b] * FAT_TARGET_REALS +
+			                          limited * !group->limit * FAT_SHRUNK_REALS +
+			                          e->fat.flowed[b] * FAT_PLASTIC_REALS);
+		}
 	}
-	double reals = (double)e->sheet.slot_count * SHEET_REALS +
-	               (double)e->fat.slot_count * FAT_REALS + limited * FAT_LIMIT_REALS +
-	               flowed * FAT_PLASTIC_REALS + (double)e->link.slot_count * LINK_REALS +
+	double reals = (double)e->sheet.slot_count * SHEET_REALS + fat_reals +
+	               (double)e->link.slot_count * LINK_REALS +
 	               (double)e->hinge.slot_count * HINGE_REALS +
 	               (double)e->record_count * RECORD_REALS;
-	double indices = (double)e->sheet.slot_count * SHEET_INDICES +
-	                 (double)e->fat.slot_count * FAT_INDICES +
-	                 (double)e->link.slot_count * LINK_INDICES +
-	                 (double)e->hinge.slot_count * HINGE_INDICES + e->record_count;
-	return reals * real_bytes + indices * sizeof(int32_t);
+	double places =
+		(double)e->sheet.slot_count * SHEET_INDICES + (double)e->fat.slot_count * FAT_INDICES +
+		(double)e->link.slot_count * LINK_INDICES + (double)e->hinge.slot_count * HINGE_INDICES;
+	// a record's vertex is named to take its displacement, a vertex's record to sum it
+	double names = 2.0 * e->record_count;
+	return reals * real_bytes + places * sizeof(uint16_t) + names * sizeof(int32_t);
 }
 
 // Both sweeps read their panels once, but for the zeros above diagonal blocks; right-hand sides and

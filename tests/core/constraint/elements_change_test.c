@@ -41,6 +41,11 @@ static void test_targets_are_set_and_read(void **state)
 			r.tissue.tetrahedron_volume[9] * r.tissue.layer[0].def.fat[0].limit_stiffness_pa;
 		assert_near(cau_real_get(e->fat.limit_weight, e->single, slot), expected, 1e-7 * expected);
 		assert_int_equal(e->fat.limited[slot / CAU_BATCH], 1);
+		for (int32_t b = 0; b < e->fat.slot_count / CAU_BATCH; ++b)
+			assert_int_equal(e->fat.targeted[b], b == slot / CAU_BATCH);
+		cau_elements_mark_targets(e, &r.solver.slots); // as a snapshot's targets are
+		for (int32_t b = 0; b < e->fat.slot_count / CAU_BATCH; ++b)
+			assert_int_equal(e->fat.targeted[b], b == slot / CAU_BATCH);
 		rig_finish(&r);
 	}
 }

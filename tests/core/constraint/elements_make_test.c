@@ -60,8 +60,6 @@ static void test_pairs_share_all_but_their_apex(void **state)
 	make(&r, CAU_PRECISION_SINGLE);
 	const cau_elements *e = &r.solver.elements;
 	for (int k = 0; k < 2; ++k) {
-		int32_t *const *vertex_at = k ? e->fat.vertex_at : e->sheet.vertex_at;
-		int32_t *const *record_at = k ? e->fat.record_at : e->sheet.record_at;
 		const int32_t *element_at = r.solver.slots.element_at[kinds[k]];
 		int apex = k ? 3 : 2;
 		assert_int_equal(slot_count(e, kinds[k]) % (2 * CAU_BATCH), 0);
@@ -70,10 +68,13 @@ static void test_pairs_share_all_but_their_apex(void **state)
 				continue;
 			assert_true(element_at[s] >= 0); // one that is alone is the first
 			for (int i = 0; i < apex; ++i) {
-				assert_int_equal(vertex_at[i][s], vertex_at[i][s + CAU_BATCH]);
-				assert_int_equal(record_at[i][s], record_at[i][s + CAU_BATCH]);
+				assert_int_equal(rig_vertex(&r, kinds[k], s, i),
+				                 rig_vertex(&r, kinds[k], s + CAU_BATCH, i));
+				assert_int_equal(rig_record(&r, kinds[k], s, i),
+				                 rig_record(&r, kinds[k], s + CAU_BATCH, i));
 			}
-			assert_int_not_equal(vertex_at[apex][s], vertex_at[apex][s + CAU_BATCH]);
+			assert_int_not_equal(rig_vertex(&r, kinds[k], s, apex),
+			                     rig_vertex(&r, kinds[k], s + CAU_BATCH, apex));
 		}
 	}
 	rig_finish(&r);

@@ -12,17 +12,6 @@ static void make(rig *r, int precision)
 	rig_build(r, NULL, 1);
 }
 
-// The records of one kind's elements, by slot.
-static int32_t *const *records_of(const cau_elements *e, int kind)
-{
-	int32_t *const *of[CAU_ELEMENT_KINDS];
-	of[CAU_ELEMENT_TRIANGLE] = e->sheet.record_at;
-	of[CAU_ELEMENT_TETRAHEDRON] = e->fat.record_at;
-	of[CAU_ELEMENT_LINK] = e->link.record_at;
-	of[CAU_ELEMENT_HINGE] = e->hinge.record_at;
-	return of[kind];
-}
-
 // Each vertex of an element has a record, of its own vertex, which that vertex sums once; what no
 // vertex sums no element has.
 static void test_every_record_is_summed_once(void **state)
@@ -48,10 +37,11 @@ static void test_every_record_is_summed_once(void **state)
 			cau_tissue_element_map(&r.tissue, kind, i, &map);
 			int32_t slot = r.solver.slots.slot_of[kind][i], found = 0;
 			for (int k = 0; k < map.vertex_count; ++k) {
-				int32_t record = records_of(e, kind)[k][slot] / 4;
+				int32_t record = rig_record(&r, kind, slot, k);
 				for (int own = 0; own < map.vertex_count; ++own) // in its pair's order
 					if (vertex_of[record] == map.vertex[own])
 						found |= 1 << own;
+				assert_int_equal(4 * vertex_of[record], e->record_vertex[record]);
 				used[record] = 1;
 			}
 			assert_int_equal(found, (1 << map.vertex_count) - 1);
@@ -68,20 +58,14 @@ static void test_shares_write_apart(void **state)
 	rig r;
 	make(&r, CAU_PRECISION_DOUBLE);
 	const cau_elements *e = &r.solver.elements;
-	static const int kind_of[] = {[CAU_WORK_SHEET] = CAU_ELEMENT_TRIANGLE,
-	                              [CAU_WORK_FAT] = CAU_ELEMENT_TETRAHEDRON,
-	                              [CAU_WORK_LINK] = CAU_ELEMENT_LINK,
-	                              [CAU_WORK_HINGE] = CAU_ELEMENT_HINGE};
-	static const int vertices[] = {
-		[CAU_WORK_SHEET] = 3, [CAU_WORK_FAT] = 4, [CAU_WORK_LINK] = 2, [CAU_WORK_HINGE] = 4};
 	int32_t next = 0;
 	for (int32_t w = 0; w < r.solver.slots.work_count; ++w) {
 		const cau_local_work *work = &r.solver.slots.work[w];
 		assert_int_equal(work->first_record, next);
 		next += work->record_count;
 		for (int32_t s = work->first; s < work->last; ++s) // padding too
-			for (int i = 0; i < vertices[work->kind]; ++i) {
-				int32_t record = records_of(e, kind_of[work->kind])[i][s] / 4;
+			for (int i = 0; i < rig_vertex_count(work->kind); ++i) {
+				int32_t record = rig_record(&r, work->kind, s, i);
 				assert_true(record >= work->first_record && record < next);
 			}
 	}
@@ -105,20 +89,20 @@ static void test_work_covers_everything_once(void **state)
 		covered[work->kind] += work->last - work->first;
 		for (int32_t s = work->first; s < work->last; s += CAU_BATCH)
 			assert_int_equal(seen[work->kind][s / CAU_BATCH]++, 0);
-		if (work->kind == CAU_WORK_FAT) {
+		if (work->kind == CAU_ELEMENT_TETRAHEDRON) {
 			const cau_fat_group *group = &e->fat.group[work->group];
 			assert_true(work->first >= group->first_slot &&
 			            work->last <= group->first_slot + group->slot_count);
-		} else if (work->kind == CAU_WORK_SHEET) {
+		} else if (work->kind == CAU_ELEMENT_TRIANGLE) {
 			const cau_sheet_group *group = &e->sheet.group[work->group];
 			assert_true(work->first >= group->first_slot &&
 			            work->last <= group->first_slot + group->slot_count);
 		}
 	}
-	assert_int_equal(covered[CAU_WORK_SHEET], e->sheet.slot_count);
-	assert_int_equal(covered[CAU_WORK_FAT], e->fat.slot_count);
-	assert_int_equal(covered[CAU_WORK_LINK], e->link.slot_count);
-	assert_int_equal(covered[CAU_WORK_HINGE], e->hinge.slot_count);
+	assert_int_equal(covered[CAU_ELEMENT_TRIANGLE], e->sheet.slot_count);
+	assert_int_equal(covered[CAU_ELEMENT_TETRAHEDRON], e->fat.slot_count);
+	assert_int_equal(covered[CAU_ELEMENT_LINK], e->link.slot_count);
+	assert_int_equal(covered[CAU_ELEMENT_HINGE], e->hinge.slot_count);
 	assert_int_equal(e->sheet.group_count, 2); // membrane and fascia have laws of their own
 	rig_finish(&r);
 }

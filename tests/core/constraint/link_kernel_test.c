@@ -20,7 +20,7 @@ static void test_links_are_springs(void **state)
 	rig_random_gradient(&random, 0.3, a);
 	rig_deform(&r, a, 2e-3, &random, x);
 	rig_local(&r, x, NULL);
-	double energy = rig_energy_of(&r, CAU_WORK_LINK);
+	double energy = rig_energy_of(&r, CAU_ELEMENT_LINK);
 	for (int32_t k = 0; k < r.tissue.link_count; ++k) {
 		const int32_t *v = r.tissue.link + 2 * k;
 		cau_vec3 along = cau_sub(cau_vec3_of(x + 3 * v[1]), cau_vec3_of(x + 3 * v[0]));
@@ -93,7 +93,7 @@ static void test_hinges_keep_their_bend(void **state)
 			expected += r.tissue.hinge_weight[h] * more * more / 2;
 		}
 		assert_true(bent > 0);
-		assert_near(rig_energy_of(&r, CAU_WORK_HINGE), expected, 1e-10 * expected);
+		assert_near(rig_energy_of(&r, CAU_ELEMENT_HINGE), expected, 1e-10 * expected);
 		assert_true(turned < 1e-20 * bent + 1e-22);
 		rig_finish(&r);
 	}

@@ -203,23 +203,47 @@ double rig_energy_of(const rig *r, int work_kind)
 // What the kernels weight an element of a kind with, and where they add its gradient up.
 typedef struct weights_of {
 	void *weight[2]; // real
-	int count, work_kind, vertices;
-	int32_t *const *record_at;
+	int count;
+	uint16_t *const *record_at;
 } weights_of;
 
 static weights_of weights(const cau_elements *e, int kind)
 {
 	switch (kind) {
 	case CAU_ELEMENT_TRIANGLE:
-		return (weights_of){{e->sheet.weight}, 1, CAU_WORK_SHEET, 3, e->sheet.record_at};
+		return (weights_of){{e->sheet.weight}, 1, e->sheet.record_at};
 	case CAU_ELEMENT_TETRAHEDRON:
-		return (weights_of){
-			{e->fat.volume, e->fat.limit_weight}, 2, CAU_WORK_FAT, 4, e->fat.record_at};
+		return (weights_of){{e->fat.volume, e->fat.limit_weight}, 2, e->fat.record_at};
 	case CAU_ELEMENT_LINK:
-		return (weights_of){{e->link.weight}, 1, CAU_WORK_LINK, 2, e->link.record_at};
+		return (weights_of){{e->link.weight}, 1, e->link.record_at};
 	default:
-		return (weights_of){{e->hinge.weight}, 1, CAU_WORK_HINGE, 4, e->hinge.record_at};
+		return (weights_of){{e->hinge.weight}, 1, e->hinge.record_at};
 	}
+}
+
+static const cau_local_work *share_of(const rig *r, int kind, int32_t slot)
+{
+	const cau_local_work *work = r->solver.slots.work;
+	while (work->kind != kind || slot < work->first || slot >= work->last)
+		work++;
+	return work;
+}
+
+int32_t rig_record(const rig *r, int kind, int32_t slot, int i)
+{
+	return share_of(r, kind, slot)->first_record +
+	       weights(&r->solver.elements, kind).record_at[i][slot] / 4;
+}
+
+int32_t rig_vertex(const rig *r, int kind, int32_t slot, int i)
+{
+	return r->solver.elements.record_vertex[rig_record(r, kind, slot, i)] / 4;
+}
+
+int rig_vertex_count(int kind)
+{
+	static const int count[] = {3, 4, 2, 4};
+	return count[kind];
 }
 
 void rig_element_gradient(rig *r, int kind, int32_t slot, double *gradient)
@@ -227,9 +251,7 @@ void rig_element_gradient(rig *r, int kind, int32_t slot, double *gradient)
 	cau_step_solver *solver = &r->solver;
 	const cau_elements *e = &solver->elements;
 	weights_of w = weights(e, kind);
-	const cau_local_work *work = solver->slots.work;
-	while (work->kind != w.work_kind || slot < work->first || slot >= work->last)
-		work++;
+	const cau_local_work *work = share_of(r, kind, slot);
 	double kept[2][4096];
 	assert_true(work->last - work->first <= 4096);
 	for (int k = 0; k < w.count; ++k)
@@ -239,9 +261,10 @@ void rig_element_gradient(rig *r, int kind, int32_t slot, double *gradient)
 				cau_real_set(w.weight[k], e->single, s, 0);
 		}
 	solver->kernels->local(e, work, solver->displacement, solver->diagonal);
-	for (int i = 0; i < w.vertices; ++i)
+	for (int i = 0; i < rig_vertex_count(kind); ++i)
 		for (int c = 0; c < 3; ++c)
-			gradient[3 * i + c] = cau_real_get(e->gradient, e->single, w.record_at[i][slot] + c);
+			gradient[3 * i + c] =
+				cau_real_get(e->gradient, e->single, 4 * rig_record(r, kind, slot, i) + c);
 	for (int k = 0; k < w.count; ++k)
 		for (int32_t s = work->first; s < work->last; ++s)
 			cau_real_set(w.weight[k], e->single, s, kept[k][s - work->first]);

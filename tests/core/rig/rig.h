@@ -60,6 +60,10 @@ double rig_local(rig *r, const double *x, double *gradient);
 double rig_energy_of(const rig *r, int work_kind);
 
 // Gradient (N) of one element's energy on its vertices (vertices x 3) at the displacement of the
+// Of the i-th of an element's vertices: its record, the vertex.
+int32_t rig_record(const rig *r, int kind, int32_t slot, int i);
+int32_t rig_vertex(const rig *r, int kind, int32_t slot, int i);
+int rig_vertex_count(int kind);
 // last rig_local, by the kernels: the other elements of its share are silenced meanwhile.
 void rig_element_gradient(rig *r, int kind, int32_t slot, double *gradient);
 

@@ -70,16 +70,17 @@ static void test_gradient_is_that_of_the_energy(void **state)
 }
 
 // Sum of an element's gradient over its vertices and of its moments, relative to the sums of sizes.
-static void element_balance(rig *r, const double *x, int32_t *const *vertex_at, int vertices,
-                            int kind, int32_t slot, double *force, double *torque)
+static void element_balance(rig *r, const double *x, int kind, int32_t slot, double *force,
+                            double *torque)
 {
+	int32_t first = rig_vertex(r, kind, slot, 0);
 	double sum[3] = {0}, moment[3] = {0}, size = 0, arm_size = 0, gradient[12];
 	rig_element_gradient(r, kind, slot, gradient);
-	for (int i = 0; i < vertices; ++i) {
+	for (int i = 0; i < rig_vertex_count(kind); ++i) {
 		double g[3], arm[3];
 		for (int c = 0; c < 3; ++c) {
 			g[c] = gradient[3 * i + c];
-			arm[c] = x[3 * (vertex_at[i][slot] / 4) + c] - x[3 * (vertex_at[0][slot] / 4) + c];
+			arm[c] = x[3 * rig_vertex(r, kind, slot, i) + c] - x[3 * first + c];
 			sum[c] += g[c];
 		}
 		for (int c = 0; c < 3; ++c)
@@ -106,17 +107,13 @@ static void test_no_law_pushes_or_turns_an_element(void **state)
 			const cau_elements *e = &d.r.solver.elements;
 			double force = 0, torque = 0;
 			for (int32_t s = 0; s < e->sheet.slot_count; ++s)
-				element_balance(&d.r, d.x, e->sheet.vertex_at, 3, CAU_ELEMENT_TRIANGLE, s, &force,
-				                &torque);
+				element_balance(&d.r, d.x, CAU_ELEMENT_TRIANGLE, s, &force, &torque);
 			for (int32_t s = 0; s < e->fat.slot_count; ++s)
-				element_balance(&d.r, d.x, e->fat.vertex_at, 4, CAU_ELEMENT_TETRAHEDRON, s, &force,
-				                &torque);
+				element_balance(&d.r, d.x, CAU_ELEMENT_TETRAHEDRON, s, &force, &torque);
 			for (int32_t s = 0; s < e->link.slot_count; ++s)
-				element_balance(&d.r, d.x, e->link.vertex_at, 2, CAU_ELEMENT_LINK, s, &force,
-				                &torque);
+				element_balance(&d.r, d.x, CAU_ELEMENT_LINK, s, &force, &torque);
 			for (int32_t s = 0; s < e->hinge.slot_count; ++s)
-				element_balance(&d.r, d.x, e->hinge.vertex_at, 4, CAU_ELEMENT_HINGE, s, &force,
-				                &torque);
+				element_balance(&d.r, d.x, CAU_ELEMENT_HINGE, s, &force, &torque);
 			if (!(force < BALANCE_DOUBLE) || !(torque < TORQUE_DOUBLE))
 				fail_msg("%s: force %g, torque %g", law_scenes[k].name, force, torque);
 			rig_finish(&d.r);
@@ -178,12 +175,11 @@ static void test_one_removed_leaves_the_others(void **state)
 	deformed d;
 	make_deformed(&d, &law_scenes[4], CAU_PRECISION_DOUBLE, NULL);
 	enum { GONE = 5 };
-	const cau_elements *e = &d.r.solver.elements;
 	int32_t slot = d.r.solver.slots.slot_of[CAU_ELEMENT_TETRAHEDRON][GONE];
 	double share[12];
 	rig_element_gradient(&d.r, CAU_ELEMENT_TETRAHEDRON, slot, share);
 	for (int i = 0; i < 12; ++i)
-		d.gradient[3 * (e->fat.vertex_at[i / 3][slot] / 4) + i % 3] -= share[i];
+		d.gradient[3 * rig_vertex(&d.r, CAU_ELEMENT_TETRAHEDRON, slot, i / 3) + i % 3] -= share[i];
 	rig_remove(&d.r, CAU_ELEMENT_TETRAHEDRON, GONE, 0);
 	double *after = cau_arena_array(&d.r.arena, d.reals, sizeof(double));
 	rig_local(&d.r, d.x, after);
