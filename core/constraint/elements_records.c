@@ -136,7 +136,7 @@ cau_status cau_elements_make_records(const cau_tissue *tissue, cau_elements *ele
 	elements->gradient = cau_arena_array(arena, 4 * count, cau_real_bytes(elements->single));
 	elements->record_vertex = cau_arena_array(arena, count, sizeof(int32_t));
 	incidence->first = cau_arena_array(arena, n + 2, sizeof(int32_t));
-	incidence->record = cau_arena_array(arena, count, sizeof(int32_t));
+	incidence->record = cau_arena_array(arena, count + CAU_RECORDS_AHEAD, sizeof(int32_t));
 	if (!elements->gradient || !elements->record_vertex || !incidence->first || !incidence->record)
 		return no_memory(error);
 	for (int32_t w = 0; w < slots->work_count; ++w) {

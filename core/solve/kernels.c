@@ -63,12 +63,17 @@ static int32_t settle(const cau_elements *elements, const cau_local_work *work,
 static void sum(const cau_elements *elements, const cau_incidence *incidence, int32_t first,
                 int32_t last, void *gradient)
 {
+	enum { NEAR = (1 << 20) / sizeof(vertex_reals) };
 	const vertex_reals *record = elements->gradient;
+	int far = elements->record_count > NEAR; // more than the nearer caches keep
 	vertex_reals *out = gradient;
 	for (int32_t v = first; v < last; ++v) {
 		vertex_reals total = {0};
-		for (int32_t k = incidence->first[v]; k < incidence->first[v + 1]; ++k)
+		for (int32_t k = incidence->first[v]; k < incidence->first[v + 1]; ++k) {
+			if (far)
+				__builtin_prefetch(record + incidence->record[k + CAU_RECORDS_AHEAD]);
 			total += record[incidence->record[k]];
+		}
 		out[v] = total;
 	}
 }

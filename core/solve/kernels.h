@@ -16,11 +16,11 @@ typedef struct cau_local_work {
 // For each vertex its records, one a share that has it: record[first[v] .. first[v + 1]),
 // ascending.
 typedef struct cau_incidence {
-	int32_t *first; // (vertex_count + 1)
-	int32_t *record;
+	int32_t *first;  // (vertex_count + 1)
+	int32_t *record; // and CAU_RECORDS_AHEAD more, 0, which may be asked for early
 } cau_incidence;
 
-enum { CAU_ANDERSON_WINDOW = 5 };
+enum { CAU_RECORDS_AHEAD = 32, CAU_ANDERSON_WINDOW = 5 };
 
 // Increments f = -A^-1 g of an accelerated iteration, their gradients g, and the columns of the
 // last ones: df = f - f_last and h = step + df.
