@@ -87,7 +87,7 @@ def cut_table(bench):
     rows = []
     for scene in ("fascia", "fat", "fat-neohookean"):
         for threads in (1, 2):
-            r = bench.run(scene, threads, None, "--cut", "--repeat", "3")
+            r = bench.run(scene, threads, None, "--cut", "--repeat", "5")
             rows.append([f"`{scene}`", str(threads), ms(r["plain_ms"]), ms(r["plain_p99_ms"]),
                          ms(r["cut_p99_ms"]),
                          f"{r['cut_p99_over_plain']:.2f}", str(r["elements_removed"]),
@@ -100,7 +100,7 @@ def scaling_table(bench):
     head = ["scene", "elements and ms", "exponent"]
     rows, sizes = [], []
     for scene in ("fat", "fat-neohookean"):
-        r = bench.run(scene, 1, None, "--scaling")
+        r = bench.run(scene, 1, None, "--scaling", "--repeat", "3")
         sizes.append((scene, r["scaling"]))
         points = ", ".join(f"{p['elements']}: {ms(p['ms'])}" for p in r["scaling"])
         rows.append([f"`{scene}`", points, f"{r['scaling_exponent']:.2f}"])
