@@ -88,6 +88,35 @@ static void test_a_few_are_downdated_at_once(void **state)
 	rig_finish(&c.r);
 }
 
+// A tick that parts more than a few shares them with the next ones; all are out two ticks later,
+// and the factor is then the fresh one's.
+static void test_more_are_shared_with_the_next_ticks(void **state)
+{
+	(void)state;
+	cutter c;
+	make(&c, SLAB, CAU_PRECISION_DOUBLE, 1, 1.0 / 60);
+	double *fresh = cau_arena_array(&c.r.arena, c.reals, sizeof(double));
+	for (int round = 0; round < 3; ++round) {
+		cut(&c, 12);
+		assert_in_range(c.r.update.waiting_count, 1, 6);
+		cut(&c, 0);
+		assert_in_range(c.r.update.waiting_count, 0, 2);
+		cut(&c, 0);
+		assert_int_equal(c.r.update.waiting_count, 0);
+		solve_by_sweep(&c.r, c.load, c.solution);
+		solve_fresh(&c, CAU_PRECISION_DOUBLE, SLAB, fresh);
+		assert_true(rig_difference(c.solution, fresh, c.reals) < DOWNDATE_TOLERANCE);
+	}
+	for (int tick = 0; tick < 10; ++tick) // as much again and again
+		cut(&c, 8);
+	cut(&c, 0);
+	cut(&c, 0);
+	assert_int_equal(c.r.update.waiting_count, 0);
+	assert_int_equal(c.r.update.refactorisations, 0);
+	assert_in_range(c.r.update.longest_wait, 1, 2);
+	rig_finish(&c.r);
+}
+
 // A burst is left to a new factor: it comes one sixtieth of a second later, not before, and is then
 // the fresh one to the last bit.
 static void test_a_burst_swaps_in_a_new_factor(void **state)
@@ -273,6 +302,7 @@ int main(void)
 {
 	const struct CMUnitTest tests[] = {
 		cmocka_unit_test(test_a_few_are_downdated_at_once),
+		cmocka_unit_test(test_more_are_shared_with_the_next_ticks),
 		cmocka_unit_test(test_a_burst_swaps_in_a_new_factor),
 		cmocka_unit_test(test_a_swap_without_a_second_set),
 		cmocka_unit_test(test_cuts_during_the_making_are_not_lost),
