@@ -32,6 +32,8 @@ void cau_rpc_fault_of_error(cau_rpc_fault *fault, const cau_error *error)
 
 // ---- the envelope -------------------------------------------------------------------------------
 
+static const double whole_most = 9007199254740991.0; // 2^53 - 1: up to here doubles count
+
 static bool read_id(const cJSON *value, cau_rpc_id *id)
 {
 	*id = (cau_rpc_id){.kind = CAU_RPC_ID_NONE};
@@ -40,7 +42,8 @@ static bool read_id(const cJSON *value, cau_rpc_id *id)
 		snprintf(id->text, sizeof id->text, "%s", value->valuestring);
 		return true;
 	}
-	if (cJSON_IsNumber(value) && value->valuedouble == trunc(value->valuedouble)) {
+	if (cJSON_IsNumber(value) && value->valuedouble == trunc(value->valuedouble) &&
+	    fabs(value->valuedouble) <= whole_most) {
 		id->kind = CAU_RPC_ID_NUMBER;
 		id->number = (int64_t)value->valuedouble;
 		return true;
@@ -69,7 +72,7 @@ static cau_status read_frame(const cJSON *root, cau_rpc_message *message, cau_rp
 	                 (cau_value_member(root, "result") || cau_value_member(root, "error"));
 	if (id && !read_id(id, &message->id) && !(is_answer && cJSON_IsNull(id)))
 		return refuse(fault, CAU_RPC_INVALID_REQUEST, "id",
-		              "neither text of at most 64 bytes nor a whole number");
+		              "neither text of at most 64 bytes nor a whole number below 2^53");
 	const cJSON *version = cau_value_member(root, "jsonrpc");
 	if (!cJSON_IsString(version) || strcmp(version->valuestring, "2.0") != 0)
 		return refuse(fault, CAU_RPC_INVALID_REQUEST, "jsonrpc", "not \"2.0\"");
@@ -249,7 +252,7 @@ cau_status cau_rpc_envelope_read(const cau_rpc_message *message, cau_rpc_envelop
 	cau_reader_leave(&reader, mark);
 	mark = cau_reader_enter(&reader, "client_sequence", 0);
 	if (sequence)
-		envelope->client_sequence = cau_read_integer(&reader, sequence, 1, ((int64_t)1 << 53) - 1);
+		envelope->client_sequence = cau_read_integer(&reader, sequence, 1, (int64_t)whole_most);
 	cau_reader_leave(&reader, mark);
 	return reader.status;
 }

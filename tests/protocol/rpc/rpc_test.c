@@ -49,6 +49,9 @@ static const refusal refusals[] = {
 	{CALL "\"id\":1,\"method\":5}", CAU_RPC_INVALID_REQUEST, "method", CAU_RPC_REQUEST},
 	{CALL "\"id\":null,\"method\":\"hello\"}", CAU_RPC_INVALID_REQUEST, "id", CAU_RPC_REQUEST},
 	{CALL "\"id\":1.5,\"method\":\"hello\"}", CAU_RPC_INVALID_REQUEST, "id", CAU_RPC_REQUEST},
+	{CALL "\"id\":1222222222222222222222.1,\"method\":\"hello\"}", CAU_RPC_INVALID_REQUEST, "id",
+     CAU_RPC_REQUEST},
+	{CALL "\"id\":-1e300,\"method\":\"hello\"}", CAU_RPC_INVALID_REQUEST, "id", CAU_RPC_REQUEST},
 	{CALL "\"id\":{},\"method\":\"hello\"}", CAU_RPC_INVALID_REQUEST, "id", CAU_RPC_REQUEST},
 	{CALL "\"id\":\"0123456789012345678901234567890123456789012345678901234567890123x\","
           "\"method\":\"hello\"}",
