@@ -7,6 +7,7 @@ import { launch, ViewerPage } from './viewer_page';
 
 const TABLET = { viewport: { width: 900, height: 700 }, hasTouch: true };
 const NEAR_M = 0.004;
+const REST_M = 1e-5; // no further in a quarter of a second
 const LIFT_M = 0.006; // of a pinch, which asks for 10 mm
 const LOWER_M = 0.002;
 const RIGHT_TRIGGER = 7;
@@ -91,7 +92,14 @@ describe('hands', () => {
     };
     // The first of the two fingers may lead the tool to its place: depth is told from there on.
     await pinch(250, 250);
-    const height = async (): Promise<number> => (await viewer.state()).tip[2];
+    const height = async (): Promise<number> => {
+      for (let last = NaN; ; ) { // once it has come to where the finger led it
+        const { tip } = await viewer.state();
+        if (Math.abs(tip[2] - last) < REST_M) return tip[2];
+        last = tip[2];
+        await new Promise((resolve) => setTimeout(resolve, 250));
+      }
+    };
     const before = await height();
     await pinch(250, 30);
     await viewer.until((low) => window.cautery.tip[2] > low, before + LIFT_M, 'the tool is lifted');
