@@ -306,10 +306,9 @@ INLINE sym3 m3_transpose_times(m3 a, m3 b)
 
 // ---- vertices: four reals each (x, y, z, unused)
 // v3_gather reads one vertex of every lane; v3_add_to adds to one of every lane, lane by lane, so
-// that lanes may name the same one. `at` (LANES) says where in `field` each starts, in reals: in
-// sixteen bits, or `wide`. In
-// float, four vertices are transposed at a time inside each 128-bit part of a vector: part j of row
-// k is vertex 4 j + k.
+// that lanes may name the same one. `at` (LANES) says where in `field` each starts, in reals, in
+// sixteen bits or `wide`. In float, four vertices are transposed at a time inside each 128-bit part
+// of a vector: part j of row k is vertex 4 j + k.
 INLINE int32_t place_of(const void *at, int wide, int lane)
 {
 	return wide ? ((const int32_t *)at)[lane] : ((const uint16_t *)at)[lane];

@@ -10,10 +10,11 @@
 // apex last; D_m is made of that order.
 //
 // The local step is done in shares of consecutive slots. A share has a record for each vertex of
-// its elements, four reals (x, y, z, 0): it takes their displacements there first, and adds the
-// gradients of its elements' energies (N) up there, slot by slot; vertices then sum their records,
-// in share order. So the sums do not depend on who runs which share, what a share reads and writes
-// again and again stays in the nearest cache, and an element names its vertices in sixteen bits.
+// its elements, four reals (x, y, z, 0), in which it adds the gradients of their energies (N) up,
+// slot by slot; vertices then sum their records, in share order. Before that it copies the
+// vertices' displacements, in the order of its records, onto the stack. So the sums do not depend
+// on who runs which share, what a share reads and writes again and again stays in the nearest
+// cache, and an element names its vertices in sixteen bits.
 #pragma once
 
 #include <stdint.h>
@@ -69,11 +70,12 @@ typedef struct cau_fat_set {
 	uint16_t *record_at[4];
 	void *dm_inverse[9]; // real, 1/m: row-major
 	void *volume;        // real, m^3; 0 once removed
-	void *
-		limit_weight; // real, N m: limit stiffness x volume where a limit or shrinkage acts, else 0
-	void *target[6];  // real: T^(1/2): 00, 11, 22, 01, 02, 12
-	void *polar[4];   // real: rotation of the limit, or of corotated fat: w, x, y, z
-	void *plastic[6]; // real: C_p^(-1/2) - I
+	// real, N m: limit stiffness x volume where a limit or shrinkage acts, else 0. Kernels read it
+	// only where shrinkage alone acts: a limit of the law's has every slot's volume.
+	void *limit_weight;
+	void *target[6];         // real: T^(1/2): 00, 11, 22, 01, 02, 12
+	void *polar[4];          // real: rotation of the limit, or of corotated fat: w, x, y, z
+	void *plastic[6];        // real: C_p^(-1/2) - I
 	void *plastic_strain[6]; // real: e_p, with C_p = I + 2 e_p
 	uint8_t *limited;  // (slot_count / CAU_BATCH): some slot of the batch has limit_weight > 0
 	uint8_t *targeted; // likewise: some slot's target is not its group's

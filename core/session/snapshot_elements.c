@@ -21,6 +21,10 @@ static void pass_slots(snapshot_archive *archive, void *const *arrays, int count
                        const element_order *order, int single)
 {
 	size_t size = cau_real_bytes(single);
+	if (!archive->bytes) {
+		archive->at += (size_t)count * (size_t)order->count * size;
+		return;
+	}
 	for (int i = 0; i < count; ++i)
 		for (int32_t k = 0; k < order->count; ++k) {
 			int32_t element = element_of(order, k);

@@ -7,7 +7,8 @@ import { launch, ViewerPage } from './viewer_page';
 
 const TABLET = { viewport: { width: 900, height: 700 }, hasTouch: true };
 const NEAR_M = 0.004;
-const REST_M = 1e-5; // no further in a quarter of a second
+const REST_M = 1e-5; // a tool that is led moves further than this in REST_TICKS
+const REST_TICKS = 15;
 const LIFT_M = 0.006; // of a pinch, which asks for 10 mm
 const LOWER_M = 0.002;
 const RIGHT_TRIGGER = 7;
@@ -94,10 +95,10 @@ describe('hands', () => {
     await pinch(250, 250);
     const height = async (): Promise<number> => {
       for (let last = NaN; ; ) { // once it has come to where the finger led it
-        const { tip } = await viewer.state();
+        const { tip, tick } = await viewer.state();
         if (Math.abs(tip[2] - last) < REST_M) return tip[2];
         last = tip[2];
-        await new Promise((resolve) => setTimeout(resolve, 250));
+        await viewer.until((then) => window.cautery.tick >= then, tick + REST_TICKS, 'ticks go by');
       }
     };
     const before = await height();

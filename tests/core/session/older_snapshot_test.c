@@ -13,7 +13,8 @@ static void hot(cau_heat_material *heat)
 	heat->absorption_per_s = 8; // parts within ticks instead of seconds
 }
 
-// More than 256 elements of each kind, so that version 1 dealt them to batches, and some left over.
+// As it was when the snapshot was written, so not shared with busy_scene.h, which may change. More
+// than 256 elements of each kind, so that version 1 dealt them to batches, and some left over.
 static cau_scene_def *small_scene(void)
 {
 	const double size[3] = {0.03, 0.03, 0.008};
