@@ -315,9 +315,9 @@ INLINE int32_t place_of(const void *at, int wide, int lane)
 }
 #if CAU_SINGLE && defined(__SSE2__)
 enum { PARTS = LANES / 4 };
-INLINE vreal vertex_row_load(const real *field, const uint16_t *at, int k)
+INLINE vreal vertex_row_load(const real *field, const void *at, int wide, int k)
 {
-#define PART(j) _mm_load_ps(field + place_of(at, 0, 4 * (j) + k))
+#define PART(j) _mm_load_ps(field + place_of(at, wide, 4 * (j) + k))
 #if defined(__AVX512F__)
 	__m512 row = _mm512_castps128_ps512(PART(0));
 	row = _mm512_insertf32x4(row, PART(1), 1);
@@ -360,10 +360,10 @@ INLINE vreal pair_high(vreal a, vreal b)
 	return (vreal)V_PREFIX(castpd_ps)(
 		V_PREFIX(unpackhi_pd)(V_PREFIX(castps_pd)(a), V_PREFIX(castps_pd)(b)));
 }
-INLINE v3 v3_gather(const real *field, const uint16_t *at)
+INLINE v3 v3_gather_at(const real *field, const void *at, int wide)
 {
-	vreal r0 = vertex_row_load(field, at, 0), r1 = vertex_row_load(field, at, 1);
-	vreal r2 = vertex_row_load(field, at, 2), r3 = vertex_row_load(field, at, 3);
+	vreal r0 = vertex_row_load(field, at, wide, 0), r1 = vertex_row_load(field, at, wide, 1);
+	vreal r2 = vertex_row_load(field, at, wide, 2), r3 = vertex_row_load(field, at, wide, 3);
 	vreal xy01 = row_low(r0, r1), xy23 = row_low(r2, r3);
 	return (v3){pair_low(xy01, xy23), pair_high(xy01, xy23),
 	            pair_low(row_high(r0, r1), row_high(r2, r3))};
@@ -378,12 +378,27 @@ INLINE void v3_add_at(real *field, const void *at, int wide, v3 a)
 	vertex_row_add(field, at, wide, 2, pair_low(xy_high, z_high));
 	vertex_row_add(field, at, wide, 3, pair_high(xy_high, z_high));
 }
+// vertex -= s times the sum over all lanes
+INLINE void v3_subtract_total(real *vertex, real s, v3 a)
+{
+	vreal none = v_set(0);
+	vreal xy = row_low(a.x, a.y) + row_high(a.x, a.y);
+	vreal z = row_low(a.z, none) + row_high(a.z, none);
+	union {
+		vreal whole;
+		__m128 part[PARTS];
+	} u = {pair_low(xy, z) + pair_high(xy, z)};
+	__m128 total = u.part[0];
+	for (int j = 1; j < PARTS; ++j)
+		total = _mm_add_ps(total, u.part[j]);
+	_mm_store_ps(vertex, _mm_sub_ps(_mm_load_ps(vertex), _mm_mul_ps(_mm_set1_ps(s), total)));
+}
 #else
-INLINE v3 v3_gather(const real *field, const uint16_t *at)
+INLINE v3 v3_gather_at(const real *field, const void *at, int wide)
 {
 	v3 out = v3_zero();
 	for (int l = 0; l < LANES; ++l) {
-		const real *vertex = field + at[l];
+		const real *vertex = field + place_of(at, wide, l);
 		out.x[l] = vertex[0];
 		out.y[l] = vertex[1];
 		out.z[l] = vertex[2];
@@ -399,7 +414,27 @@ INLINE void v3_add_at(real *field, const void *at, int wide, v3 a)
 		vertex[2] += a.z[l];
 	}
 }
+INLINE void v3_subtract_total(real *vertex, real s, v3 a)
+{
+	for (int width = LANES / 2; width; width /= 2)
+		for (int l = 0; l < width; ++l) {
+			a.x[l] += a.x[l + width];
+			a.y[l] += a.y[l + width];
+			a.z[l] += a.z[l + width];
+		}
+	vertex[0] -= s * a.x[0];
+	vertex[1] -= s * a.y[0];
+	vertex[2] -= s * a.z[0];
+}
 #endif
+INLINE v3 v3_gather(const real *field, const uint16_t *at)
+{
+	return v3_gather_at(field, at, 0);
+}
+INLINE v3 v3_gather_wide(const real *field, const int32_t *at)
+{
+	return v3_gather_at(field, at, 1);
+}
 INLINE void v3_add_to(real *field, const uint16_t *at, v3 a)
 {
 	v3_add_at(field, at, 0, a);

@@ -190,7 +190,7 @@ static void make_next(void *context)
 	cau_system_assemble(&solver->system, solver->tissue, &alive, solver->step_s, matrix->value);
 	update->next_status = cau_factor_refactor(solver->factor, matrix, NULL);
 	if (!update->next_status &&
-	    (update->next_panels.forward ||
+	    (update->next_panels.panel ||
 	     !cau_sweep_create_panels(&solver->sweep, &update->next_panels, NULL)))
 		cau_sweep_pack_panels(&solver->sweep, &update->next_panels, solver->factor);
 }
@@ -216,7 +216,7 @@ static cau_status swap(cau_matrix_update *update, uint64_t tick, cau_error *erro
 	if (update->next_status)
 		return cau_fail(error, update->next_status, NULL, "the system could not be factored anew");
 	cau_step_solver *solver = update->solver;
-	if (update->next_panels.forward)
+	if (update->next_panels.panel)
 		cau_sweep_swap_panels(&solver->sweep, &update->next_panels);
 	else
 		cau_sweep_pack(&solver->sweep, solver->factor);

@@ -129,8 +129,7 @@ INLINE void pack_store(const real *in, real inverse_scale, stored_real *out)
 static double pack_node(const cau_sweep *sweep, const cau_supernode *node, const cau_factor *factor,
                         const cau_sweep_panels *panels, int32_t part)
 {
-	stored_real *forward = (stored_real *)panels->forward + node->forward;
-	stored_real *backward = (stored_real *)panels->backward + node->backward;
+	stored_real *panel = (stored_real *)panels->panel + node->panel;
 	real inverse[CAU_NODE_COLUMNS], *scale = (real *)panels->scale + node->first;
 	int32_t columns = node->columns, rows = columns + node->rows;
 	pack_dense dense;
@@ -142,16 +141,9 @@ static double pack_node(const cau_sweep *sweep, const cau_supernode *node, const
 	}
 	for (int32_t row = 0; row < rows; row += PACK_ROWS) {
 		int32_t last = row + PACK_ROWS < columns ? row + PACK_ROWS : columns;
-		int32_t count = row + PACK_ROWS < rows ? PACK_ROWS : rows - row;
 		for (int32_t j = 0; j < last; ++j)
 			pack_store(dense.w + (int64_t)j * node->padded_rows + row, inverse[j],
-			           forward + (int64_t)j * node->padded_rows + row);
-		for (int32_t r = 0; r < count; ++r) {
-			stored_real *out = backward + (int64_t)(row + r) * node->padded_columns;
-			const stored_real *in = forward + row + r;
-			for (int32_t j = 0; j < last; ++j)
-				out[j] = in[(int64_t)j * node->padded_rows];
-		}
+			           panel + (int64_t)j * node->padded_rows + row);
 	}
 	return least;
 }

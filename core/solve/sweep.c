@@ -218,30 +218,27 @@ static void name_places(cau_sweep *sweep, const int32_t *top_number)
 			backward[own + i] = 4 * row;
 			forward[own + i] = 4 * (above ? sums + top_number[row] : row);
 		}
-		for (int32_t i = own + node->rows; i < node->padded_rows; ++i)
-			forward[i] = backward[i] = node->spare;
+		for (int32_t i = own + node->rows; i < node->padded_rows; ++i) { // W' has zeros there
+			forward[i] = node->spare;
+			backward[i] = 4 * node->first;
+		}
 	}
 }
 
 static void lay_out(cau_sweep *sweep)
 {
-	int64_t forward = 0, backward = 0;
 	for (int32_t s = 0; s < sweep->supernode_count; ++s) {
 		cau_supernode *node = &sweep->supernode[s];
 		int32_t rows = node->columns + node->rows;
 		node->padded_rows = pad(rows);
-		node->padded_columns = pad(node->columns);
 		node->place = sweep->place_count;
 		sweep->place_count += node->padded_rows;
-		node->forward = forward;
-		node->backward = backward;
-		forward += (int64_t)node->padded_rows * node->columns;
-		backward += (int64_t)node->padded_columns * rows;
+		node->panel = sweep->panel_entries;
+		sweep->panel_entries += (int64_t)node->padded_rows * node->columns;
 		int64_t dense = (int64_t)node->columns * (node->columns + node->padded_rows);
 		if (dense > sweep->max_dense)
 			sweep->max_dense = dense;
 	}
-	sweep->panel_entries = forward > backward ? forward : backward;
 }
 
 static cau_status no_memory(cau_error *error)

@@ -9,13 +9,13 @@
 //     forward   y_s = L_s^-1 b_s,  b_r -= L_r y_s     ->  [b_s; b_r] -= W' b_s
 //     backward  x_s = L_s^-T (D^-1 y_s - L_r^T x_r)   ->  x_s = z - W'^T [z; x_r],  z = D^-1 y_s
 //
-// W' is kept twice: by columns for the forward sweep, by rows for the backward one, so that neither
-// needs horizontal sums. In single precision its entries are sixteen bits, whole steps of a scale
-// that each column has: what the sweeps cost is reading the panels. Both read the same rounded W',
-// so what they apply is symmetric and positive definite whatever the rounding, A^-1 within
-// 1e-4; the iteration takes increments by it, and each takes up the error of the last. Disjoint
-// subtrees are tasks with sums of their own for the rows above them, added in task order: the
-// result does not depend on how many threads run the tasks.
+// W' is kept once, by columns, whose rows are lanes; in the backward sweep each column then sums
+// its lanes up, which costs less than reading a second copy. In single precision its entries are
+// sixteen bits, whole steps of a scale that each column has: what the sweeps cost is reading the
+// panels. Both read the same rounded W', so what they apply is symmetric and positive definite
+// whatever the rounding, A^-1 within 1e-4; the iteration takes increments by it, and each takes up
+// the error of the last. Disjoint subtrees are tasks with sums of their own for the rows above
+// them, added in task order: the result does not depend on how many threads run the tasks.
 #pragma once
 
 #include <stdint.h>
@@ -34,21 +34,21 @@ enum {
 struct cau_kernels;
 
 typedef struct cau_supernode {
-	int32_t first, columns;              // its columns
-	int32_t row, rows;                   // its rows below: row_global[row .. row + rows), ascending
-	int32_t place;                       // of its places' lists: [place .. place + padded_rows)
-	int32_t spare;                       // a place that nobody reads, for padded rows and columns
-	int32_t task;                        // or -1: above all tasks
-	int32_t parent;                      // supernode of the first row below, or -1
-	int64_t forward, backward;           // offsets of W' in the panels, in entries
-	int32_t padded_rows, padded_columns; // multiples of the lanes
+	int32_t first, columns; // its columns
+	int32_t row, rows;      // its rows below: row_global[row .. row + rows), ascending
+	int32_t place;          // of its places' lists: [place .. place + padded_rows)
+	int32_t spare;          // a place that nobody reads, for padded rows
+	int32_t task;           // or -1: above all tasks
+	int32_t parent;         // supernode of the first row below, or -1
+	int64_t panel;          // offset of W' in the panels, in entries
+	int32_t padded_rows;    // a multiple of the lanes
 } cau_supernode;
 
 // The factor's values: those in use, or a second set of the same layout, for a factor that is being
 // made in the background.
 typedef struct cau_sweep_panels {
-	cau_pages pages; // of the next four
-	void *forward, *backward, *d_inverse, *scale;
+	cau_pages pages; // of the next three
+	void *panel, *d_inverse, *scale;
 } cau_sweep_panels;
 
 typedef struct cau_sweep {
@@ -66,9 +66,9 @@ typedef struct cau_sweep {
 	int32_t task_first[CAU_SWEEP_TASKS], task_last[CAU_SWEEP_TASKS]; // supernodes [first, last)
 	int32_t *top_node; // supernodes above the tasks, ascending
 	int32_t top_node_count;
-	cau_pages pages;          // of the next four
-	void *forward, *backward; // the panels, entries of kernels->stored_bytes
-	void *d_inverse, *scale;  // real (padded_n): D^-1, and what a step in the column is
+	cau_pages pages;         // of the next three
+	void *panel;             // the panels, entries of kernels->stored_bytes
+	void *d_inverse, *scale; // real (padded_n): D^-1, and what a step in the column is
 	// Four reals a place (x, y, z, 0): the vectors, permuted (padded_n), then each task's sums for
 	// the rows above it and its spare place (padded_top + 1), then that of the top supernodes.
 	void *field;

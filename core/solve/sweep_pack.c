@@ -12,11 +12,10 @@ cau_status cau_sweep_create_panels(const cau_sweep *sweep, cau_sweep_panels *pan
 	size_t size = cau_real_bytes(sweep->single);
 	size_t panel = (size_t)sweep->panel_entries * (size_t)sweep->kernels->stored_bytes;
 	*panels = (cau_sweep_panels){0};
-	if (!cau_pages_take(&panels->pages, 2 * panel + 2 * (size_t)sweep->padded_n * size))
+	if (!cau_pages_take(&panels->pages, panel + 2 * (size_t)sweep->padded_n * size))
 		return cau_fail(error, CAU_NO_MEMORY, NULL, "no memory for the packed factor");
-	panels->forward = panels->pages.start;
-	panels->backward = (char *)panels->forward + panel; // whole lanes, so aligned to them
-	panels->d_inverse = (char *)panels->backward + panel;
+	panels->panel = panels->pages.start;
+	panels->d_inverse = (char *)panels->panel + panel; // whole lanes, so aligned to them
 	panels->scale = (char *)panels->d_inverse + (size_t)sweep->padded_n * size;
 	return CAU_OK;
 }
@@ -29,16 +28,14 @@ void cau_sweep_finish_panels(cau_sweep_panels *panels)
 
 static cau_sweep_panels panels_of(const cau_sweep *sweep)
 {
-	return (cau_sweep_panels){sweep->pages, sweep->forward, sweep->backward, sweep->d_inverse,
-	                          sweep->scale};
+	return (cau_sweep_panels){sweep->pages, sweep->panel, sweep->d_inverse, sweep->scale};
 }
 
 void cau_sweep_swap_panels(cau_sweep *sweep, cau_sweep_panels *panels)
 {
 	cau_sweep_panels old = panels_of(sweep);
 	sweep->pages = panels->pages;
-	sweep->forward = panels->forward;
-	sweep->backward = panels->backward;
+	sweep->panel = panels->panel;
 	sweep->d_inverse = panels->d_inverse;
 	sweep->scale = panels->scale;
 	*panels = old;

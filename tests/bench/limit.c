@@ -56,7 +56,7 @@ static double bytes_of_elements(const cau_elements *e)
 	return reals * real_bytes + places * sizeof(uint16_t) + names * sizeof(int32_t);
 }
 
-// Both sweeps read their panels once, but for the zeros above diagonal blocks; right-hand sides and
+// Both sweeps read the panels once, but for the zeros above diagonal blocks; right-hand sides and
 // permutations are small beside them.
 static double bytes_of_solve(const cau_step_solver *solver)
 {

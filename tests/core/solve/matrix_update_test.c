@@ -144,7 +144,7 @@ static void test_a_burst_swaps_in_a_new_factor(void **state)
 		solve_by_sweep(&c.r, c.load, c.solution);
 		assert_memory_equal(c.solution, fresh, c.reals * sizeof(double));
 		cau_background_wait(c.r.update.background);
-		assert_null(c.r.update.next_panels.forward); // the second set is gone again
+		assert_null(c.r.update.next_panels.panel); // the second set is gone again
 		rig_finish(&c.r);
 	}
 }
@@ -159,7 +159,7 @@ static void test_a_swap_without_a_second_set(void **state)
 	assert_int_equal(cut(&c, 300), 300);
 	solve_fresh(&c, CAU_PRECISION_SINGLE, SLAB, fresh);
 	cau_background_wait(c.r.update.background);
-	assert_non_null(c.r.update.next_panels.forward);
+	assert_non_null(c.r.update.next_panels.panel);
 	cau_sweep_finish_panels(&c.r.update.next_panels);
 	cut(&c, 0);
 	assert_int_equal(c.r.update.refactorisations, 1);

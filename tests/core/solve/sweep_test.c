@@ -153,13 +153,11 @@ static void test_partial_packing_is_full_packing(void **state)
 			for (uint64_t tick = 0; tick < 12; ++tick)
 				cut_some(&r, tick, 6);
 			assert_true(r.update.operation_count > 10);
-			void *forward = cau_arena_copy(&r.arena, sweep->forward, panel, 1);
-			void *backward = cau_arena_copy(&r.arena, sweep->backward, panel, 1);
+			void *panels = cau_arena_copy(&r.arena, sweep->panel, panel, 1);
 			void *pivots = cau_arena_copy(&r.arena, sweep->d_inverse, (size_t)sweep->n, size);
 			void *scale = cau_arena_copy(&r.arena, sweep->scale, (size_t)sweep->n, size);
 			cau_sweep_pack(sweep, r.solver.factor);
-			assert_memory_equal(sweep->forward, forward, panel);
-			assert_memory_equal(sweep->backward, backward, panel);
+			assert_memory_equal(sweep->panel, panels, panel);
 			assert_memory_equal(sweep->d_inverse, pivots, (size_t)sweep->n * size);
 			assert_memory_equal(sweep->scale, scale, (size_t)sweep->n * size);
 			rig_finish(&r);
