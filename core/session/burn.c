@@ -30,7 +30,8 @@ static void take_out(cau_session *session, int32_t first)
 		const cau_removed *removed = &session->dissection.removed[k];
 		cau_elements_remove(&session->solver.elements, &session->solver.slots, removed->kind,
 		                    removed->element);
-		cau_matrix_update_remove(&session->update, removed->kind, removed->element, session->tick);
+		cau_matrix_update_remove(&session->update, removed->kind, removed->element,
+		                         session->tick + 1);
 	}
 }
 

@@ -87,11 +87,26 @@ static void freeze_isolated(cau_session *session)
 	cau_session_drop_frozen_grasps(session);
 }
 
+// The first local step; beside it, what the last ticks cut leaves the factor (section 7.2).
+static cau_status begin_solve(cau_session *session, cau_error *error)
+{
+	cau_matrix_update *update = &session->update;
+	const cau_alive *alive = &session->dissection.alive;
+	session->solver.contact = session->contact.row_count ? &session->contact : NULL;
+	cau_status status = cau_matrix_update_begin(update, alive, session->tick, error);
+	cau_session_stage_end(session, CAU_STAGE_DISSECT);
+	if (status)
+		return status;
+	cau_solver_begin(&session->solver, cau_matrix_update_take_out, update);
+	cau_session_stage_end(session, CAU_STAGE_GLOBAL);
+	status = cau_matrix_update_end(update, alive, session->tick, error);
+	cau_session_stage_end(session, CAU_STAGE_DISSECT);
+	return status;
+}
+
 static cau_status solve(cau_session *session, cau_error *error)
 {
-	cau_step_solver *solver = &session->solver;
-	solver->contact = session->contact.row_count ? &session->contact : NULL;
-	cau_status status = cau_solver_run(solver, error);
+	cau_status status = cau_solver_descend(&session->solver, error);
 	for (int32_t i = 0; i < 3 * session->tissue.vertex_count && !status; ++i)
 		if (!isfinite(session->position[i]))
 			status = cau_fail(error, CAU_NUMERICAL, NULL, "vertex %d left the numbers at tick %llu",
@@ -141,6 +156,8 @@ cau_status cau_session_step(cau_session *session, cau_error *error)
 	cau_session_find_contacts(session); // touch.c
 	cau_session_stage_end(session, CAU_STAGE_PREDICT);
 	if (!status)
+		status = begin_solve(session, error); // above; solve/matrix_update.c
+	if (!status)
 		status = solve(session, error); // eq. 6 and 7: solve/descend.c
 	if (status)
 		return fault(session, status);
@@ -152,11 +169,7 @@ cau_status cau_session_step(cau_session *session, cau_error *error)
 	cau_session_stage_end(session, CAU_STAGE_HEAT);
 	freeze_isolated(session);
 	cau_session_stop_strays(session); // stray.c
-	status = cau_matrix_update_advance(&session->update, &session->dissection.alive, session->tick,
-	                                   error); // section 7.2: solve/matrix_update.c
 	cau_session_stage_end(session, CAU_STAGE_DISSECT);
-	if (status)
-		return fault(session, status);
 	cau_frame_update(&session->frame, &session->dissection, session->position_start,
 	                 session->position); // frame/frame_state.c
 	cau_session_show_scalars(session);   // view.c

@@ -153,12 +153,28 @@ static double step_norm(cau_step_solver *solver)
 	return sqrt(fmax(-product, 0));
 }
 
-cau_status cau_solver_run(cau_step_solver *solver, cau_error *error)
+static void nothing(void *context)
+{
+	(void)context;
+}
+
+void cau_solver_begin(cau_step_solver *solver, void (*meanwhile)(void *context), void *context)
 {
 	solver->iterations_done = solver->backtracks = 0;
 	solver->local_s = solver->contact_s = 0;
 	solver->residual = 0;
-	double objective = cau_solver_evaluate(solver), first = 0, last = 0;
+	solver->objective = cau_solver_evaluate_beside(solver, meanwhile, context);
+}
+
+cau_status cau_solver_run(cau_step_solver *solver, cau_error *error)
+{
+	cau_solver_begin(solver, nothing, NULL);
+	return cau_solver_descend(solver, error);
+}
+
+cau_status cau_solver_descend(cau_step_solver *solver, cau_error *error)
+{
+	double objective = solver->objective, first = 0, last = 0;
 	int32_t steps = 0; // since the guess
 	cau_anderson_start(solver);
 	for (int32_t k = 0; k < solver->iterations; ++k) {

@@ -104,11 +104,25 @@ double cau_solver_evaluate(cau_step_solver *solver)
 	return cau_solver_evaluate_displaced(solver);
 }
 
-double cau_solver_evaluate_displaced(cau_step_solver *solver)
+// The local step with something else as its first part, which the caller of the pool takes.
+typedef struct shared_local {
+	cau_step_solver *solver;
+	void (*meanwhile)(void *context);
+	void *context;
+} shared_local;
+
+static void shared_local_part(void *context, int32_t index)
 {
-	double start = solver->now_s ? solver->now_s() : 0;
-	// local step: every element projected, its gradient recorded
-	cau_pool_run(solver->pool, solver->slots.work_count, local_part, solver);
+	const shared_local *work = context;
+	if (index)
+		local_part(work->solver, index - 1);
+	else
+		work->meanwhile(work->context);
+}
+
+// The rest, after the local step that began at `start` seconds.
+static double gather(cau_step_solver *solver, double start)
+{
 	// sums over each vertex's records, plus inertia and drag
 	cau_pool_run(solver->pool, solver->chunk_count, vertex_part, solver);
 	double energy = cau_solver_elastic_energy(solver);
@@ -118,4 +132,22 @@ double cau_solver_evaluate_displaced(cau_step_solver *solver)
 	if (solver->now_s)
 		solver->local_s += solver->now_s() - start;
 	return energy;
+}
+
+double cau_solver_evaluate_displaced(cau_step_solver *solver)
+{
+	double start = solver->now_s ? solver->now_s() : 0;
+	// local step: every element projected, its gradient recorded
+	cau_pool_run(solver->pool, solver->slots.work_count, local_part, solver);
+	return gather(solver, start);
+}
+
+double cau_solver_evaluate_beside(cau_step_solver *solver, void (*meanwhile)(void *context),
+                                  void *context)
+{
+	shared_local work = {solver, meanwhile, context};
+	cau_solver_displace(solver);
+	double start = solver->now_s ? solver->now_s() : 0;
+	cau_pool_run(solver->pool, solver->slots.work_count + 1, shared_local_part, &work);
+	return gather(solver, start);
 }

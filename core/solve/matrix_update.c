@@ -159,24 +159,39 @@ static int updates_due(const cau_matrix_update *update, uint64_t tick)
 	return due < CAU_LEAST_UPDATES ? CAU_LEAST_UPDATES : due;
 }
 
-// A few exact downdates, the oldest first, then the touched part of the packed factor anew. *least
-// is the least pivot that they changed.
-static cau_status downdate(cau_matrix_update *update, uint64_t tick, double *least,
-                           cau_error *error)
+// A few exact downdates, the oldest first.
+void cau_matrix_update_take_out(void *context)
 {
-	cau_status status = CAU_OK;
-	int32_t done = 0;
-	int updates = updates_due(update, tick);
-	for (int i = 0; i < updates && done < update->waiting_count && !status; ++i) {
+	cau_matrix_update *update = context;
+	update->due_status = CAU_OK;
+	update->done = 0;
+	for (int i = 0; i < update->updates_due && update->done < update->waiting_count; ++i) {
+		const cau_waiting *list = update->waiting + update->done;
 		int32_t taken = 0;
-		status = cau_matrix_update_downdate(update, update->waiting + done,
-		                                    update->waiting_count - done, &taken, error);
-		note_operations(update, update->waiting + done, taken);
-		done += taken;
+		update->due_status = cau_matrix_update_downdate(
+			update, list, update->waiting_count - update->done, &taken, &update->due_error);
+		if (update->due_status)
+			return;
+		note_operations(update, list, taken);
+		update->done += taken;
 	}
-	forget_waiting(update, done, tick);
-	*least = done ? cau_matrix_update_pack(update) : INFINITY;
-	return status;
+}
+
+cau_status cau_matrix_update_end(cau_matrix_update *update, const cau_alive *alive, uint64_t tick,
+                                 cau_error *error)
+{
+	if (!update->updates_due)
+		return CAU_OK;
+	if (update->due_status) {
+		if (error)
+			*error = update->due_error;
+		return update->due_status;
+	}
+	forget_waiting(update, update->done, tick);
+	update->updates_due = 0;
+	if (!update->done || cau_matrix_update_pack(update) >= update->least_pivot_bound)
+		return CAU_OK;
+	return cau_matrix_update_refactor(update, alive, error);
 }
 
 // ---- a new factor in the background
@@ -254,27 +269,23 @@ static void advance_diagonal(cau_matrix_update *update, const cau_alive *alive)
 	update->waiting_count = 0;
 }
 
-// Downdates what waits, or starts a new factor when that is too much.
-static cau_status serve(cau_matrix_update *update, const cau_alive *alive, uint64_t tick,
-                        cau_error *error)
+// Chooses how much of what waits is taken out, or starts a new factor when that is too much.
+static void serve(cau_matrix_update *update, const cau_alive *alive, uint64_t tick)
 {
 	int worn = update->operation_count + update->waiting_count > CAU_DOWNDATES_AT_MOST;
 	if (!too_many(update) && !worn) {
-		double least;
-		cau_status status = downdate(update, tick, &least, error);
-		if (status || least >= update->least_pivot_bound)
-			return status;
-		return cau_matrix_update_refactor(update, alive, error);
+		update->updates_due = updates_due(update, tick);
+		return;
 	}
 	update->waiting_at_start = update->waiting_count;
 	copy_alive(update->next_canonical, alive, update->solver->tissue);
 	cau_matrix_update_start(update, tick + swap_delay(update));
-	return CAU_OK;
 }
 
-cau_status cau_matrix_update_advance(cau_matrix_update *update, const cau_alive *alive,
-                                     uint64_t tick, cau_error *error)
+cau_status cau_matrix_update_begin(cau_matrix_update *update, const cau_alive *alive, uint64_t tick,
+                                   cau_error *error)
 {
+	update->updates_due = 0;
 	if (update->solver->diagonal) {
 		advance_diagonal(update, alive);
 		return CAU_OK;
@@ -284,10 +295,20 @@ cau_status cau_matrix_update_advance(cau_matrix_update *update, const cau_alive 
 	if (due)
 		status = swap(update, tick, error);
 	if (!status && !update->making && update->waiting_count)
-		status = serve(update, alive, tick, error);
+		serve(update, alive, tick);
 	if (due && !update->making) // another making would use the old panels
 		cau_background_start(update->background, release_panels, update);
 	return status;
+}
+
+cau_status cau_matrix_update_advance(cau_matrix_update *update, const cau_alive *alive,
+                                     uint64_t tick, cau_error *error)
+{
+	cau_status status = cau_matrix_update_begin(update, alive, tick, error);
+	if (status)
+		return status;
+	cau_matrix_update_take_out(update);
+	return cau_matrix_update_end(update, alive, tick, error);
 }
 
 void cau_matrix_update_stop(cau_matrix_update *update)

@@ -21,7 +21,7 @@ enum {
 
 typedef struct cau_waiting {
 	int32_t kind, element;
-	uint64_t tick; // of removal
+	uint64_t tick; // the first without it
 } cau_waiting;
 
 typedef struct cau_operation { // an element taken out of the factor
@@ -44,6 +44,11 @@ typedef struct cau_matrix_update {
 	cau_background *background;
 	cau_sweep_panels next_panels; // empty if there was no memory: packed at the swap then
 	cau_status next_status;
+	// What is taken out in this tick.
+	int updates_due;
+	int32_t done; // elements
+	cau_status due_status;
+	cau_error due_error;
 	uint8_t *touched; // (supernode_count)
 	double least_pivot_bound;
 	int32_t refactorisations;
@@ -55,11 +60,18 @@ cau_status cau_matrix_update_create(cau_matrix_update *update, cau_step_solver *
                                     const cau_alive *alive, cau_arena *arena, cau_error *error);
 void cau_matrix_update_finish(cau_matrix_update *update);
 
-// Notes a removal; the element has left the local step already.
+// Notes a removal; `tick` is the first whose local step is without the element.
 void cau_matrix_update_remove(cau_matrix_update *update, int kind, int32_t element, uint64_t tick);
 
-// Once a tick, after cuts: downdates, starts or swaps factors. CAU_NUMERICAL if a factorisation
-// fails.
+// Once a tick, before its first global step, in three: _begin starts or swaps factors, or chooses
+// what is taken out; _take_out (of a cau_matrix_update) does the downdates, and may run beside a
+// local step; _end packs what they changed. CAU_NUMERICAL if a factorisation fails.
+cau_status cau_matrix_update_begin(cau_matrix_update *update, const cau_alive *alive, uint64_t tick,
+                                   cau_error *error);
+void cau_matrix_update_take_out(void *update);
+cau_status cau_matrix_update_end(cau_matrix_update *update, const cau_alive *alive, uint64_t tick,
+                                 cau_error *error);
+// All three.
 cau_status cau_matrix_update_advance(cau_matrix_update *update, const cau_alive *alive,
                                      uint64_t tick, cau_error *error);
 

@@ -67,6 +67,7 @@ typedef struct cau_step_solver {
 
 	double (*now_s)(void); // NULL: no timing
 
+	double objective; // of the guess, once the step has begun
 	// Of the last step.
 	double local_s, contact_s;
 	int32_t iterations_done, backtracks;
@@ -86,11 +87,17 @@ int cau_solver_is_conservative(const cau_tissue *tissue, int diagonal);
 
 // Solves the step from the guess in solver->position. CAU_NUMERICAL if the state is not finite.
 cau_status cau_solver_run(cau_step_solver *solver, cau_error *error);
+// The same in two: the first local step, beside which one thread does `meanwhile`, and the rest.
+void cau_solver_begin(cau_step_solver *solver, void (*meanwhile)(void *context), void *context);
+cau_status cau_solver_descend(cau_step_solver *solver, cau_error *error);
 
 // ---- stages, in files of their own
 
 // evaluate.c: gradient and objective (J, in double, fixed order) of eq. 4 at the present position.
 double cau_solver_evaluate(cau_step_solver *solver);
+// Likewise, while one thread does `meanwhile`, which may change neither position nor elements.
+double cau_solver_evaluate_beside(cau_step_solver *solver, void (*meanwhile)(void *context),
+                                  void *context);
 // The displacements alone, of all vertices or of one share of them; and the rest.
 void cau_solver_displace(cau_step_solver *solver);
 void cau_solver_displace_chunk(cau_step_solver *solver, int32_t chunk);

@@ -1,8 +1,9 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // The cutting run: the scene's tool dwells, then is drawn across at the scene's speed with its
-// energy on, however many steps that takes. Cutting steps are those that removed an element or
-// still had one to take out of the factor. Repeated runs are the same to the last bit: the least
-// time of a step is nearest to its own cost, the rest is what the machine did beside it.
+// energy on, however many steps that takes. Cutting steps are those that removed an element, and
+// those before or after which one was to be taken out of the factor. Repeated runs are the same to
+// the last bit: the least time of a step is nearest to its own cost, the rest is what the machine
+// did beside it.
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
@@ -88,17 +89,18 @@ static int draw(const cut_run *run, cut_times *times, bench_cut_result *result)
 		keep_least(&times->plain[i], ms);
 	}
 	energize(run);
-	int32_t dwell = (int32_t)(run->scene->cut.dwell_s / run->step_s), removed = 0;
+	int32_t dwell = (int32_t)(run->scene->cut.dwell_s / run->step_s), removed = 0, waiting = 0;
 	for (int32_t i = -dwell; i < times->drawn_count && !failed; ++i) {
 		if (i >= 0)
 			move_to(run, (double)i / times->drawn_count);
 		failed = step(run, &ms, &frame);
 		if (i >= 0) {
 			keep_least(&times->drawn[i], ms);
-			times->cuts[i] = frame.statistics.elements_removed > removed ||
+			times->cuts[i] = frame.statistics.elements_removed > removed || waiting > 0 ||
 			                 frame.statistics.pending_downdates > 0;
 		}
 		removed = frame.statistics.elements_removed;
+		waiting = frame.statistics.pending_downdates;
 	}
 	result->elements_removed = removed;
 	result->deferred_max_s = frame.statistics.deferred_max_s;

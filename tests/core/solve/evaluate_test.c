@@ -90,12 +90,39 @@ static void test_threads_change_nothing(void **state)
 	}
 }
 
+// What one thread does beside the first local step of a tick is done once, and the result is that
+// of the local step alone.
+static void count(void *context)
+{
+	++*(int *)context; // by one thread: no other part touches it
+}
+
+static void test_other_work_may_be_done_beside(void **state)
+{
+	(void)state;
+	static const int32_t threads[] = {1, 2, 3, 7};
+	for (size_t k = 0; k < sizeof threads / sizeof *threads; ++k) {
+		rig r;
+		make(&r, threads[k]);
+		size_t reals = 4 * (size_t)r.tissue.vertex_count;
+		size_t bytes = reals * cau_real_bytes(r.solver.elements.single);
+		double value = cau_solver_evaluate(&r.solver);
+		void *gradient = cau_arena_copy(&r.arena, r.solver.gradient, bytes, 1);
+		int done = 0;
+		assert_true(cau_solver_evaluate_beside(&r.solver, count, &done) == value);
+		assert_memory_equal(r.solver.gradient, gradient, bytes);
+		assert_int_equal(done, 1);
+		rig_finish(&r);
+	}
+}
+
 int main(void)
 {
 	const struct CMUnitTest tests[] = {
 		cmocka_unit_test(test_gradient_is_that_of_the_objective),
 		cmocka_unit_test(test_inertia_and_drag_by_hand),
 		cmocka_unit_test(test_threads_change_nothing),
+		cmocka_unit_test(test_other_work_may_be_done_beside),
 	};
 	return cmocka_run_group_tests(tests, NULL, NULL);
 }
