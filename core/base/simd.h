@@ -76,32 +76,22 @@ INLINE void v_prefetch(const void *array, int32_t slot)
 {
 	__builtin_prefetch((const real *)array + slot);
 }
-// What is read far more often than it is written, and need not be exact: in single precision, whole
-// steps of a scale that is kept beside it.
-#if CAU_SINGLE
-typedef int16_t stored_real;
-enum { STORED_MOST = INT16_MAX };
-typedef stored_real stored_lanes
+// What is read far more often than it is written, and need not be exact: whole steps of a scale
+// that is kept beside it.
+enum { NARROW_MOST = INT16_MAX };
+typedef int16_t narrow_lanes
 	__attribute__((vector_size(LANES * sizeof(int16_t)), may_alias, aligned(2)));
-INLINE vreal v_load_stored(const stored_real *from)
+INLINE vreal v_load_narrow(const int16_t *from)
 {
-#if defined(__AVX512F__)
+#if defined(__AVX512F__) && CAU_SINGLE
 	return (vreal)_mm512_cvtepi32_ps(_mm512_cvtepi16_epi32(_mm256_loadu_si256((const void *)from)));
-#elif defined(__AVX2__)
+#elif defined(__AVX2__) && CAU_SINGLE
 	return (vreal)_mm256_cvtepi32_ps(_mm256_cvtepi16_epi32(_mm_loadu_si128((const void *)from)));
 #else
-	return __builtin_convertvector(__builtin_convertvector(*(const stored_lanes *)from, vmask),
+	return __builtin_convertvector(__builtin_convertvector(*(const narrow_lanes *)from, vmask),
 	                               vreal);
 #endif
 }
-#else
-typedef real stored_real;
-enum { STORED_MOST = 0 }; // as it is
-INLINE vreal v_load_stored(const stored_real *from)
-{
-	return v_load(from, 0);
-}
-#endif
 // What was loaded before and is needed again is read again after this. Of the twenty arrays of an
 // element the compiler would keep every value on the stack; a read costs less than that write.
 INLINE void v_forget(void)

@@ -80,12 +80,20 @@ static void sum(const cau_elements *elements, const cau_incidence *incidence, in
 
 static void forward(const cau_sweep *sweep, int32_t supernode)
 {
-	sweep_forward_node(sweep, &sweep->supernode[supernode]);
+	const cau_supernode *node = &sweep->supernode[supernode];
+	if (CAU_SINGLE && sweep->narrow)
+		sweep_forward_node(sweep, node, 1);
+	else
+		sweep_forward_node(sweep, node, 0);
 }
 
 static void backward(const cau_sweep *sweep, int32_t supernode)
 {
-	sweep_backward_node(sweep, &sweep->supernode[supernode]);
+	const cau_supernode *node = &sweep->supernode[supernode];
+	if (CAU_SINGLE && sweep->narrow)
+		sweep_backward_node(sweep, node, 1);
+	else
+		sweep_backward_node(sweep, node, 0);
 }
 
 static double pack(const cau_sweep *sweep, int32_t supernode, const cau_factor *factor,
@@ -192,7 +200,6 @@ extern const cau_kernels CAU_TABLE;
 const cau_kernels CAU_TABLE = {
 	.instruction_set = CAU_ISA,
 	.single = CAU_SINGLE,
-	.stored_bytes = sizeof(stored_real),
 	.local = local,
 	.settle = settle,
 	.sum = sum,

@@ -36,7 +36,6 @@ typedef struct cau_history {
 typedef struct cau_kernels {
 	const char *instruction_set;
 	int single;
-	int stored_bytes; // of an entry of the sweep's panels: 2 or 8
 
 	// Records (N) and energy (J) of the elements in `work`, at displacement u (real, m).
 	void (*local)(const cau_elements *elements, const cau_local_work *work,

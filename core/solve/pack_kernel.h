@@ -107,21 +107,21 @@ static void pack_multiply(const cau_supernode *node, const pack_dense *dense, re
 	}
 }
 
-// Sixteen entries of W' as they are stored: all of a column by one scale, its largest entry over
-// STORED_MOST.
-INLINE void pack_store(const real *in, real inverse_scale, stored_real *out)
+// Sixteen entries of W' as they are stored: narrow ones of a column by one scale, its largest entry
+// over NARROW_MOST.
+INLINE void pack_store(const real *in, real inverse_scale, void *out, int narrow)
 {
-#if CAU_SINGLE
-	const real up = STORED_MOST + 1.5f; // positive, and half a step more: truncation rounds
+	const real up = NARROW_MOST + (real)1.5; // positive, and half a step more: truncation rounds
 	for (int v = 0; v < PACK_VECTORS; ++v) {
-		vmask whole = __builtin_convertvector(v_load(in, v * LANES) * inverse_scale + up, vmask);
-		*(stored_lanes *)(out + v * LANES) =
-			__builtin_convertvector(whole - (STORED_MOST + 1), stored_lanes);
+		vreal w = v_load(in, v * LANES);
+		if (narrow) {
+			vmask whole = __builtin_convertvector(w * inverse_scale + up, vmask);
+			((narrow_lanes *)out)[v] =
+				__builtin_convertvector(whole - (NARROW_MOST + 1), narrow_lanes);
+		} else {
+			v_store(out, v * LANES, w);
+		}
 	}
-#else
-	(void)inverse_scale;
-	memcpy(out, in, PACK_ROWS * sizeof *out);
-#endif
 }
 
 // What W' has on and above its diagonal block's diagonal, and in padded rows, is zero in the panels
@@ -129,21 +129,24 @@ INLINE void pack_store(const real *in, real inverse_scale, stored_real *out)
 static double pack_node(const cau_sweep *sweep, const cau_supernode *node, const cau_factor *factor,
                         const cau_sweep_panels *panels, int32_t part)
 {
-	stored_real *panel = (stored_real *)panels->panel + node->panel;
+	int narrow = sweep->narrow;
+	char *panel = (char *)panels->panel + (size_t)node->panel * cau_sweep_entry_bytes(sweep);
 	real inverse[CAU_NODE_COLUMNS], *scale = (real *)panels->scale + node->first;
 	int32_t columns = node->columns, rows = columns + node->rows;
 	pack_dense dense;
 	double least = pack_gather(sweep, node, factor, panels->d_inverse, part, &dense);
 	pack_multiply(node, &dense, inverse);
 	for (int32_t j = 0; j < columns; ++j) {
-		scale[j] = STORED_MOST ? inverse[j] / STORED_MOST : 1;
-		inverse[j] = inverse[j] > REAL_TINY ? STORED_MOST / inverse[j] : 0;
+		scale[j] = narrow ? inverse[j] / NARROW_MOST : 1;
+		inverse[j] = inverse[j] > REAL_TINY ? NARROW_MOST / inverse[j] : 0;
 	}
 	for (int32_t row = 0; row < rows; row += PACK_ROWS) {
 		int32_t last = row + PACK_ROWS < columns ? row + PACK_ROWS : columns;
-		for (int32_t j = 0; j < last; ++j)
-			pack_store(dense.w + (int64_t)j * node->padded_rows + row, inverse[j],
-			           panel + (int64_t)j * node->padded_rows + row);
+		for (int32_t j = 0; j < last; ++j) {
+			int64_t entry = (int64_t)j * node->padded_rows + row;
+			pack_store(dense.w + entry, inverse[j],
+			           panel + (size_t)entry * cau_sweep_entry_bytes(sweep), narrow);
+		}
 	}
 	return least;
 }

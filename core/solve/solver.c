@@ -71,6 +71,7 @@ cau_status cau_solver_create(cau_step_solver *solver, const cau_scene_def *scene
 	solver->tolerance = scene->tolerance;
 	solver->step_s = scene->step_s;
 	solver->diagonal = scene->solver == CAU_SOLVER_DIAGONAL;
+	solver->whole_panels = CAU_WHOLE_PANELS;
 	solver->conservative = cau_solver_is_conservative(tissue, solver->diagonal);
 	cau_status status =
 		cau_elements_make(tissue, single, arena, &solver->elements, &solver->slots, error);
@@ -94,7 +95,8 @@ cau_status cau_solver_factor(cau_step_solver *solver, const cau_alive *alive,
 	cau_status status =
 		cau_factor_create(&solver->factor, &solver->system.matrix, permutation, error);
 	return status ? status
-	              : cau_sweep_create(&solver->sweep, arena, solver->factor, solver->kernels, error);
+	              : cau_sweep_create(&solver->sweep, arena, solver->factor, solver->kernels,
+	                                 solver->whole_panels, error);
 }
 
 void cau_solver_finish(cau_step_solver *solver)

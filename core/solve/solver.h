@@ -37,6 +37,7 @@ typedef struct cau_step_solver {
 	cau_system system;
 	cau_factor *factor;
 	cau_sweep sweep;
+	int64_t whole_panels;    // bytes: larger panels of single precision are narrow
 	uint64_t factor_version; // counts every change of the factor
 	uint64_t factor_epoch;   // counts those that leave nothing of the old one
 

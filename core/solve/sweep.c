@@ -194,6 +194,11 @@ static void number_top(cau_sweep *sweep, int32_t *top_number)
 	sweep->padded_top = pad(sweep->top_count);
 }
 
+size_t cau_sweep_entry_bytes(const cau_sweep *sweep)
+{
+	return sweep->narrow ? sizeof(int16_t) : cau_real_bytes(sweep->single);
+}
+
 int32_t cau_sweep_task_place(const cau_sweep *sweep, int32_t task)
 {
 	return sweep->padded_n + task * (sweep->padded_top + 1);
@@ -289,7 +294,7 @@ static cau_status shape_supernodes(cau_sweep *sweep, cau_arena *arena, const cau
 }
 
 cau_status cau_sweep_create(cau_sweep *sweep, cau_arena *arena, const cau_factor *factor,
-                            const cau_kernels *kernels, cau_error *error)
+                            const cau_kernels *kernels, int64_t whole_panels, cau_error *error)
 {
 	*sweep =
 		(cau_sweep){.single = kernels->single, .kernels = kernels, .n = cau_factor_size(factor)};
@@ -304,6 +309,8 @@ cau_status cau_sweep_create(cau_sweep *sweep, cau_arena *arena, const cau_factor
 	if (!status && (!work || !first || !top_number || !sweep->top_node || !sweep->top_column))
 		status = no_memory(error);
 	if (!status) {
+		sweep->narrow =
+			sweep->single && sweep->panel_entries * (int64_t)sizeof(float) > whole_panels;
 		link_tree(sweep, work, first);
 		number_top(sweep, top_number);
 		name_places(sweep, top_number);

@@ -10,12 +10,13 @@
 //     backward  x_s = L_s^-T (D^-1 y_s - L_r^T x_r)   ->  x_s = z - W'^T [z; x_r],  z = D^-1 y_s
 //
 // W' is kept once, by columns, whose rows are lanes; in the backward sweep each column then sums
-// its lanes up, which costs less than reading a second copy. In single precision its entries are
-// sixteen bits, whole steps of a scale that each column has: what the sweeps cost is reading the
-// panels. Both read the same rounded W', so what they apply is symmetric and positive definite
-// whatever the rounding, A^-1 within 1e-4; the iteration takes increments by it, and each takes up
-// the error of the last. Disjoint subtrees are tasks with sums of their own for the rows above
-// them, added in task order: the result does not depend on how many threads run the tasks.
+// its lanes up, which costs less than reading a second copy. Where precision is single and the
+// panels are too large for a core's own cache, its entries are narrow: sixteen bits, whole steps of
+// a scale that each column has, since what the sweeps cost then is reading them. Both read the same
+// rounded W', so what they apply is symmetric and positive definite whatever the rounding, A^-1
+// within 1e-4; the iteration takes increments by it, and each takes up the error of the last.
+// Disjoint subtrees are tasks with sums of their own for the rows above them, added in task order:
+// the result does not depend on how many threads run the tasks.
 #pragma once
 
 #include <stdint.h>
@@ -26,9 +27,10 @@
 #include "solve/factor.h"
 
 enum {
-	CAU_SWEEP_TASKS = 8,    // more leave more above them, for one thread
-	CAU_NODE_COLUMNS = 128, // no supernode is wider
-	CAU_PACK_PARTS = 2,     // threads that renew supernodes together
+	CAU_SWEEP_TASKS = 8,        // more leave more above them, for one thread
+	CAU_NODE_COLUMNS = 128,     // no supernode is wider
+	CAU_PACK_PARTS = 2,         // threads that renew supernodes together
+	CAU_WHOLE_PANELS = 1 << 20, // bytes: a core's own cache; larger ones are narrow
 };
 
 struct cau_kernels;
@@ -52,7 +54,7 @@ typedef struct cau_sweep_panels {
 } cau_sweep_panels;
 
 typedef struct cau_sweep {
-	int single;
+	int single, narrow;
 	const struct cau_kernels *kernels;
 	int32_t n, supernode_count, row_count, top_count, task_count;
 	cau_supernode *supernode;
@@ -67,7 +69,7 @@ typedef struct cau_sweep {
 	int32_t *top_node; // supernodes above the tasks, ascending
 	int32_t top_node_count;
 	cau_pages pages;         // of the next three
-	void *panel;             // the panels, entries of kernels->stored_bytes
+	void *panel;             // the panels
 	void *d_inverse, *scale; // real (padded_n): D^-1, and what a step in the column is
 	// Four reals a place (x, y, z, 0): the vectors, permuted (padded_n), then each task's sums for
 	// the rows above it and its spare place (padded_top + 1), then that of the top supernodes.
@@ -79,11 +81,16 @@ typedef struct cau_sweep {
 	int32_t *row_place; // (CAU_PACK_PARTS x n): likewise
 } cau_sweep;
 
-// Lays the panels out for the factor's pattern and packs them. CAU_NO_MEMORY is the only failure;
+// Lays the panels out for the factor's pattern and packs them; those of single precision with more
+// than `whole_panels` bytes are narrow. CAU_NO_MEMORY is the only failure;
 // the caller finishes it, on failure too.
 cau_status cau_sweep_create(cau_sweep *sweep, cau_arena *arena, const cau_factor *factor,
-                            const struct cau_kernels *kernels, cau_error *error);
+                            const struct cau_kernels *kernels, int64_t whole_panels,
+                            cau_error *error);
 void cau_sweep_finish(cau_sweep *sweep);
+
+// Of an entry of the panels.
+size_t cau_sweep_entry_bytes(const cau_sweep *sweep);
 
 // The place of the task's first sum; of task_count: the last spare place.
 int32_t cau_sweep_task_place(const cau_sweep *sweep, int32_t task);

@@ -10,7 +10,7 @@ cau_status cau_sweep_create_panels(const cau_sweep *sweep, cau_sweep_panels *pan
                                    cau_error *error)
 {
 	size_t size = cau_real_bytes(sweep->single);
-	size_t panel = (size_t)sweep->panel_entries * (size_t)sweep->kernels->stored_bytes;
+	size_t panel = (size_t)sweep->panel_entries * cau_sweep_entry_bytes(sweep);
 	*panels = (cau_sweep_panels){0};
 	if (!cau_pages_take(&panels->pages, panel + 2 * (size_t)sweep->padded_n * size))
 		return cau_fail(error, CAU_NO_MEMORY, NULL, "no memory for the packed factor");

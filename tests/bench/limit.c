@@ -60,9 +60,9 @@ static double bytes_of_elements(const cau_elements *e)
 // permutations are small beside them.
 static double bytes_of_solve(const cau_step_solver *solver)
 {
-	return solver->diagonal
-	           ? 0
-	           : 2.0 * (double)solver->sweep.panel_entries * (double)solver->kernels->stored_bytes;
+	return solver->diagonal ? 0
+	                        : 2.0 * (double)solver->sweep.panel_entries *
+	                              (double)cau_sweep_entry_bytes(&solver->sweep);
 }
 
 // Position, its start, prediction and step in double; displacement, gradient, increments and the
