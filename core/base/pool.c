@@ -1,24 +1,22 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "base/pool.h"
 
-#include <math.h>
 #include <pthread.h>
 #include <sched.h>
 #include <stdatomic.h>
 #include <stdlib.h>
 #include <sys/resource.h>
-#include <time.h>
 
 // Loops follow each other within microseconds during a step, so helpers spin for a while before
 // they sleep; between steps they sleep.
 enum { FEW_SPINS = 200, SPINS = 20000, MAX_THREADS = 16 };
 
 // On a machine that others use too, a helper may lose its core in the middle of a part, and the
-// caller waits for as long as the scheduler pleases, hundreds of times a second. So after such a
-// wait the caller works alone for a while, twice as long each time that it happens again soon. It
-// is time that counts, not loops: those of a large session are a hundred times longer than those of
-// a small one.
-static const double least_alone_s = 0.005, most_alone_s = 0.32, calm_s = 0.1;
+// caller waits for as long as the scheduler pleases, hundreds of times a step. So after such a wait
+// the caller works alone for a while, twice as long each time that it happens again soon. Parts say
+// how long, some milliseconds at least: they take a few microseconds, while loops take a hundred
+// times longer in a large session than in a small one.
+enum { LEAST_ALONE = 1 << 12, MOST_ALONE = 1 << 18, CALM = 1 << 16 }; // parts
 
 struct cau_pool {
 	int32_t thread_count;
@@ -33,20 +31,12 @@ struct cau_pool {
 	_Atomic uint64_t ticket;
 	_Atomic int32_t parts_left;
 	_Atomic int32_t sleepers;
-	// The caller's, in monotonic time: until when it works alone (0: it does not), until when it
-	// last did, and for how long it would next.
-	double alone_until_s, last_alone_s, next_alone_s;
+	int32_t alone, next_alone, calm; // the caller's: parts left to do alone; the next such count;
+	                                 // parts since the last wait
 	atomic_bool stop;
 	pthread_mutex_t lock;
 	pthread_cond_t wake;
 };
-
-static double now_s(void)
-{
-	struct timespec now;
-	clock_gettime(CLOCK_MONOTONIC, &now);
-	return (double)now.tv_sec + 1e-9 * (double)now.tv_nsec;
-}
 
 static void relax(void)
 {
@@ -112,7 +102,7 @@ cau_pool *cau_pool_create(int32_t thread_count)
 	pthread_mutex_init(&pool->lock, NULL);
 	pthread_cond_init(&pool->wake, NULL);
 	pool->thread_count = 1;
-	pool->next_alone_s = least_alone_s;
+	pool->next_alone = LEAST_ALONE;
 	if (thread_count > MAX_THREADS)
 		thread_count = MAX_THREADS;
 	while (pool->thread_count < thread_count) {
@@ -164,36 +154,28 @@ static int wait_long(cau_pool *pool)
 	return spins > SPINS || preemptions() != before;
 }
 
-static void leave_out(cau_pool *pool)
-{
-	double now = now_s();
-	if (now - pool->last_alone_s > calm_s)
-		pool->next_alone_s = least_alone_s;
-	pool->alone_until_s = pool->last_alone_s = now + pool->next_alone_s;
-	pool->next_alone_s = fmin(2 * pool->next_alone_s, most_alone_s);
-}
-
-static void wait_for_helpers(cau_pool *pool)
+static void wait_for_helpers(cau_pool *pool, int32_t part_count)
 {
 	for (int spins = 0; spins < FEW_SPINS && atomic_load(&pool->parts_left); ++spins)
 		relax();
-	if (atomic_load(&pool->parts_left) && wait_long(pool))
-		leave_out(pool);
-}
-
-static int is_alone(cau_pool *pool)
-{
-	if (pool->alone_until_s > 0 && now_s() >= pool->alone_until_s)
-		pool->alone_until_s = 0;
-	return pool->alone_until_s > 0;
+	if (atomic_load(&pool->parts_left) && wait_long(pool)) {
+		pool->alone = pool->next_alone;
+		pool->next_alone = pool->next_alone < MOST_ALONE ? 2 * pool->next_alone : MOST_ALONE;
+		pool->calm = 0;
+	} else if (pool->calm < CALM) {
+		pool->calm += part_count;
+		if (pool->calm >= CALM)
+			pool->next_alone = LEAST_ALONE;
+	}
 }
 
 void cau_pool_run(cau_pool *pool, int32_t part_count, void (*part)(void *context, int32_t index),
                   void *context)
 {
-	if (pool->thread_count == 1 || part_count <= 1 || is_alone(pool)) {
+	if (pool->thread_count == 1 || part_count <= 1 || pool->alone > 0) {
 		for (int32_t i = 0; i < part_count; ++i)
 			part(context, i);
+		pool->alone -= pool->alone > 0 ? part_count : 0;
 		return;
 	}
 	pool->part = part;
@@ -207,5 +189,5 @@ void cau_pool_run(cau_pool *pool, int32_t part_count, void (*part)(void *context
 		pthread_mutex_unlock(&pool->lock);
 	}
 	run_parts(pool, 1);
-	wait_for_helpers(pool);
+	wait_for_helpers(pool, part_count);
 }
