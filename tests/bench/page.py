@@ -82,7 +82,7 @@ def error_table(bench):
 
 
 def cut_round(bench):
-    return {(scene, threads): bench.run(scene, threads, None, "--cut", "--repeat", "3")
+    return {(scene, threads): bench.run(scene, threads, None, "--cut", "--repeat", "5")
             for scene in PULLED for threads in (1, 2)}
 
 
