@@ -130,6 +130,35 @@ static void test_a_stalled_helper_is_left_out_for_a_while(void **state)
 	cau_pool_destroy(pool);
 }
 
+// The helper must get a part, or the test's time runs out.
+static void wait_for_a_helper(void *context, int32_t index)
+{
+	stall *work = context;
+	(void)index;
+	if (!pthread_equal(pthread_self(), work->caller))
+		atomic_fetch_add(&work->by_helpers, 1);
+	while (!atomic_load(&work->by_helpers))
+		sched_yield();
+}
+
+// However many parts a loop has, it is as many of them that the caller does alone: a large session,
+// whose loops are long, shares them again after a few.
+static void test_long_loops_are_shared_again_as_soon(void **state)
+{
+	(void)state;
+	stall work = {.caller = pthread_self()};
+	cau_pool *pool = cau_pool_create(2);
+	for (int loop = 0; loop < 100000 && !work.stalled; ++loop)
+		cau_pool_run(pool, 4, stall_once, &work);
+	assert_int_equal(work.stalled, 1);
+	for (int loop = 0; loop < 5; ++loop)
+		cau_pool_run(pool, 65535, stall_once, &work);
+	atomic_store(&work.by_helpers, 0);
+	cau_pool_run(pool, 4, wait_for_a_helper, &work);
+	assert_true(work.by_helpers > 0);
+	cau_pool_destroy(pool);
+}
+
 int main(void)
 {
 	const struct CMUnitTest tests[] = {
@@ -137,6 +166,7 @@ int main(void)
 		cmocka_unit_test(test_the_most_parts),
 		cmocka_unit_test(test_loops_follow_each_other),
 		cmocka_unit_test(test_a_stalled_helper_is_left_out_for_a_while),
+		cmocka_unit_test(test_long_loops_are_shared_again_as_soon),
 	};
 	return cmocka_run_group_tests(tests, NULL, NULL);
 }
