@@ -301,16 +301,6 @@ cau_status cau_matrix_update_begin(cau_matrix_update *update, const cau_alive *a
 	return status;
 }
 
-cau_status cau_matrix_update_advance(cau_matrix_update *update, const cau_alive *alive,
-                                     uint64_t tick, cau_error *error)
-{
-	cau_status status = cau_matrix_update_begin(update, alive, tick, error);
-	if (status)
-		return status;
-	cau_matrix_update_take_out(update);
-	return cau_matrix_update_end(update, alive, tick, error);
-}
-
 void cau_matrix_update_stop(cau_matrix_update *update)
 {
 	if (update->background)

@@ -71,9 +71,6 @@ cau_status cau_matrix_update_begin(cau_matrix_update *update, const cau_alive *a
 void cau_matrix_update_take_out(void *update);
 cau_status cau_matrix_update_end(cau_matrix_update *update, const cau_alive *alive, uint64_t tick,
                                  cau_error *error);
-// All three.
-cau_status cau_matrix_update_advance(cau_matrix_update *update, const cau_alive *alive,
-                                     uint64_t tick, cau_error *error);
 
 // Takes as many elements of `list` out of the factor as one update of rank 8 holds; *taken of them.
 // The packed factor is refreshed by cau_matrix_update_pack, which returns the least pivot of what

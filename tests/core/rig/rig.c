@@ -278,6 +278,15 @@ void rig_remove(rig *r, int kind, int32_t element, uint64_t tick)
 		cau_matrix_update_remove(&r->update, kind, element, tick);
 }
 
+void rig_update_factor(rig *r, uint64_t tick)
+{
+	cau_error error = {0};
+	const cau_alive *alive = &r->dissection.alive;
+	expect_ok(cau_matrix_update_begin(&r->update, alive, tick, &error), &error);
+	cau_matrix_update_take_out(&r->update);
+	expect_ok(cau_matrix_update_end(&r->update, alive, tick, &error), &error);
+}
+
 void rig_deform(const rig *r, double a[3][3], double noise_m, uint64_t *random, double *x)
 {
 	for (int32_t v = 0; v < r->tissue.vertex_count; ++v) {

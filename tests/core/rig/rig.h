@@ -70,6 +70,9 @@ void rig_element_gradient(rig *r, int kind, int32_t slot, double *gradient);
 // Takes the element out of dissection, laws and factor's books, as a cut does.
 void rig_remove(rig *r, int kind, int32_t element, uint64_t tick);
 
+// A tick of the factor's books, without a step.
+void rig_update_factor(rig *r, uint64_t tick);
+
 // Rest positions carried along by x -> A x and moved by noise (m) in each coordinate.
 void rig_deform(const rig *r, double a[3][3], double noise_m, uint64_t *random, double *x);
 
