@@ -362,6 +362,15 @@ static cau_status open_stream(cau_hosted *h, int slot, const cau_order *order, c
 	return CAU_OK;
 }
 
+// Nothing was published while nobody watched: what the ring still holds is of another time.
+static void wake_stream(cau_hosted *h, cau_stream *stream)
+{
+	cau_buffer_release(stream->key.buffer);
+	stream->key = (cau_ring_frame){0};
+	stream->key_wanted = true;
+	h->dirty = true;
+}
+
 // A stream that fits, opened if need be; the subscriber is counted already when it returns.
 static cau_status take_stream(cau_hosted *h, const cau_order *order, cau_stream **taken,
                               cau_error *error)
@@ -372,9 +381,9 @@ static cau_status take_stream(cau_hosted *h, const cau_order *order, cau_stream 
 	for (int i = 0; i < CAU_STREAM_PROFILES_MAX; i++)
 		subscribers += h->streams[i].subscribers;
 	cau_stream *stream = find_stream(h, order);
-	if (stream)
-		stream->subscribers++;
-	else
+	if (stream && stream->subscribers++ == 0)
+		wake_stream(h, stream);
+	if (!stream)
 		while (h->streams[slot].used && h->streams[slot].subscribers)
 			slot++;
 	pthread_mutex_unlock(&h->mutex);
