@@ -55,6 +55,11 @@ cau_hosted *cau_hosted_share(cau_hosted *hosted);
 void cau_hosted_release(cau_hosted *hosted); // takes NULL
 // Takes the session out of the pool. Not from a worker.
 void cau_hosted_stop(cau_hosted *hosted);
+// Logs that a session of the store could not be brought up, why, and what to do.
+void cau_hosted_tell_not_resumed(const char *id, cau_status status, const cau_error *error);
+
+// The CAU_RPC_* of a batch that the store did not commit; 0: the status's own.
+int32_t cau_hosted_commit_code(cau_status status);
 
 const char *cau_hosted_id(const cau_hosted *hosted);
 uint32_t cau_hosted_number(const cau_hosted *hosted);

@@ -169,7 +169,7 @@ static cau_pending *reversed(cau_pending *list)
 	return turned;
 }
 
-static int32_t code_of(cau_status status)
+int32_t cau_hosted_commit_code(cau_status status)
 {
 	return status == CAU_IO || status == CAU_LIMIT ? CAU_RPC_STORE_FULL : 0;
 }
@@ -182,7 +182,7 @@ static void answer_all(cau_pending *list, cau_status status, const char *reason)
 		next = list->next;
 		cau_outcome outcome = {.text = list->text, .text_bytes = list->text_bytes};
 		if (status)
-			outcome = (cau_outcome){.error = &error, .code = code_of(status)};
+			outcome = (cau_outcome){.error = &error, .code = cau_hosted_commit_code(status)};
 		cau_reply_answer(&list->reply, &outcome);
 		free(list->text);
 		free(list);

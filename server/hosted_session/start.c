@@ -116,10 +116,21 @@ static cau_status resume_from_store(cau_hosted *h, cau_error *error)
 	return status;
 }
 
+void cau_hosted_tell_not_resumed(const char *id, cau_status status, const cau_error *error)
+{
+	cau_log(CAU_LOG_ERROR, id, "not_resumed",
+	        "status=%s path=%s reason=\"%s\" remedy=\"it stays in the store; `cautery rm %s` "
+	        "removes it\"",
+	        cau_status_name(status), error->path, error->reason, id);
+}
+
 static void fail_start(cau_hosted *h, const cau_error *error)
 {
-	cau_log(CAU_LOG_ERROR, h->id, "start_failed", "status=%s path=%s reason=\"%s\"",
-	        cau_status_name(error->status), error->path, error->reason);
+	if (h->origin.kind == CAU_ORIGIN_STORE)
+		cau_hosted_tell_not_resumed(h->id, error->status, error);
+	else
+		cau_log(CAU_LOG_ERROR, h->id, "start_failed", "status=%s path=%s reason=\"%s\"",
+		        cau_status_name(error->status), error->path, error->reason);
 	cau_store_batch_destroy(h->batch);
 	h->batch = NULL;
 	cau_reply_fail(&h->creator_reply, error, 0);

@@ -29,6 +29,22 @@ void cau_hub_submit_creation(cau_hub *hub, cau_creation *creation)
 	cau_worker_pool_wake(hub->def.pool, &hub->clerk);
 }
 
+bool cau_hub_submit_missing(cau_hub *hub, const char *id, const cau_asker *asker,
+                            int64_t client_sequence, const cau_reply *reply)
+{
+	bool sought = client_sequence || reply->method == CAU_METHOD_SESSION_DESTROY;
+	cau_creation *creation = sought ? calloc(1, sizeof *creation) : NULL;
+	if (!creation)
+		return false;
+	creation->kind = CAU_CREATION_MISSING;
+	snprintf(creation->name, sizeof creation->name, "%s", id);
+	creation->asker = *asker;
+	creation->client_sequence = client_sequence;
+	creation->reply = *reply;
+	cau_hub_submit_creation(hub, creation);
+	return true;
+}
+
 static cau_creation *take(cau_hub *hub)
 {
 	pthread_mutex_lock(&hub->clerk_mutex);
@@ -141,7 +157,12 @@ static void act(cau_hub *hub, cau_creation *creation)
 	cau_error error = {0};
 	char id[CAU_NAME_BYTES];
 	cau_status status;
-	if (creation->kind == CAU_CREATION_ANSWER) {
+	if (creation->kind == CAU_CREATION_MISSING &&
+	    creation->reply.method == CAU_METHOD_SESSION_DESTROY) {
+		cau_clerk_discard(hub, creation);
+		return;
+	}
+	if (creation->kind == CAU_CREATION_MISSING) {
 		cau_fail(&error, CAU_NOT_FOUND, "params.session", "this daemon does not have the session");
 		cau_reply_fail(&creation->reply, &error, CAU_RPC_NOT_HERE);
 		return;

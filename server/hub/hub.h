@@ -71,7 +71,7 @@ typedef struct cau_creation {
 	struct cau_creation *next;
 	enum {
 		CAU_CREATION_SESSION,
-		CAU_CREATION_ANSWER, // only look for the stored answer: the session is not here (any more)
+		CAU_CREATION_MISSING, // see cau_hub_submit_missing; `name` is the session's id
 	} kind;
 	char name[CAU_NAME_BYTES]; // "": made up
 	cau_scene_def *scene;      // malloc'ed, taken
@@ -86,6 +86,11 @@ typedef struct cau_creation {
 
 // Takes the creation, which is malloc'ed.
 void cau_hub_submit_creation(cau_hub *hub, cau_creation *creation);
+// A request that changes session `id`, which is not here: it may be a resend whose answer is in the
+// store (0: has no sequence), or be to destroy a session that is in the store only, because it
+// could not be brought up. Answered through `reply` if true; false: there is nothing to look for.
+bool cau_hub_submit_missing(cau_hub *hub, const char *id, const cau_asker *asker,
+                            int64_t client_sequence, const cau_reply *reply);
 
 // Packs the bytes of a scene's uploaded meshes into one allocation and points the scene there;
 // *meshes is NULL if it has none. And back, after reading both from the store.

@@ -71,8 +71,7 @@ static void resume_one(cau_hub *hub, const char *id)
 		status = cau_clerk_make(hub, creation, id, &error);
 	}
 	if (status)
-		cau_log(CAU_LOG_ERROR, id, "not_resumed", "status=%s reason=\"%s\"",
-		        cau_status_name(status), error.reason);
+		cau_hosted_tell_not_resumed(id, status, &error);
 	if (creation)
 		cau_creation_free(creation);
 }

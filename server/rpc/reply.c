@@ -90,17 +90,12 @@ cau_hosted *cau_call_session(const cau_call *call)
 	cau_hosted *hosted = cau_hub_find(call->peer->service->hub, id);
 	if (hosted)
 		return hosted;
-	cau_creation *lookup = NULL;
-	if (call->method->changes && call->envelope.has_client_sequence)
-		lookup = calloc(1, sizeof *lookup);
-	if (lookup) { // it may be a request sent again whose session is gone since
-		lookup->kind = CAU_CREATION_ANSWER;
-		lookup->asker = call->peer->client.asker;
-		lookup->client_sequence = call->envelope.client_sequence;
-		lookup->reply = cau_call_reply(call);
-		cau_hub_submit_creation(call->peer->service->hub, lookup);
+	int64_t sequence = call->envelope.has_client_sequence ? call->envelope.client_sequence : 0;
+	cau_reply reply = cau_call_reply(call);
+	if (call->method->changes &&
+	    cau_hub_submit_missing(call->peer->service->hub, id, &call->peer->client.asker, sequence,
+	                           &reply))
 		return NULL;
-	}
 	cau_fail(&error, CAU_NOT_FOUND, "params.session", "this daemon does not have `%.48s`", id);
 	cau_call_fail(call, &error, CAU_RPC_NOT_HERE);
 	return NULL;

@@ -103,19 +103,14 @@ static const struct {
 	[cautery_TAKE_OVER] = {CAU_ORDER_TAKE_OVER, read_take_over},
 };
 
-// Looks for the stored answer of a request sent again whose session is gone since.
+// It may have been answered before its session was destroyed, or destroy one of the store only.
 static cau_status look_up(const asked *a, cau_reply reply, cau_error *error)
 {
-	cau_creation *lookup = a->method->changes ? calloc(1, sizeof *lookup) : NULL;
-	if (!lookup)
-		return cau_fail(error, CAU_NOT_FOUND, "session", "this daemon does not have `%.48s`",
-		                a->sample->session);
-	lookup->kind = CAU_CREATION_ANSWER;
-	lookup->asker = a->asker;
-	lookup->client_sequence = (int64_t)a->sample->number;
-	lookup->reply = reply;
-	cau_hub_submit_creation(a->dds->hub, lookup);
-	return CAU_OK;
+	if (a->method->changes && cau_hub_submit_missing(a->dds->hub, a->sample->session, &a->asker,
+	                                                 (int64_t)a->sample->number, &reply))
+		return CAU_OK;
+	return cau_fail(error, CAU_NOT_FOUND, "session", "this daemon does not have `%.48s`",
+	                a->sample->session);
 }
 
 static cau_status submit(asked *a, cau_hosted *hosted, cau_reply reply, int32_t *code,

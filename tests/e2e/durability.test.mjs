@@ -10,6 +10,17 @@ import { AT_REST, cutMiddle, smallScene, smallSession } from './wire/scene.mjs';
 
 const parse = (bytes) => bytes.toString().split('\n').filter(Boolean).map((line) => JSON.parse(line));
 
+// Changes the store of a daemon that is not running.
+function editStore(daemon, ...statements) {
+	const script = `import sqlite3, sys
+store = sqlite3.connect(sys.argv[1])
+for statement in sys.argv[2:]:
+    store.execute(statement)
+store.commit()`;
+	const edited = spawnSync('python3', ['-c', script, join(daemon.folder, 'store.db'), ...statements], { encoding: 'utf8' });
+	assert.equal(edited.status, 0, edited.stderr);
+}
+
 // E2E_KILLS repeats it, each time at another moment of the cut.
 const kills = Number(process.env.E2E_KILLS ?? 1);
 for (let round = 0; round < kills; round++)
@@ -184,12 +195,8 @@ test('a request whose answer is not kept any more is refused, and does not act a
 	assert.deepEqual(await client.call('session.step', step), { tick: 5 });
 	await daemon.stop();
 	// As if the answers had been kept for long enough.
-	const aged = spawnSync('python3', ['-c', `import sqlite3, sys
-store = sqlite3.connect(sys.argv[1])
-store.execute("INSERT INTO forgotten SELECT client, max(sequence), 0 FROM answers GROUP BY client")
-store.execute("DELETE FROM answers")
-store.commit()`, join(daemon.folder, 'store.db')], { encoding: 'utf8' });
-	assert.equal(aged.status, 0, aged.stderr);
+	editStore(daemon, 'INSERT INTO forgotten SELECT client, max(sequence), 0 FROM answers GROUP BY client',
+		'DELETE FROM answers');
 	daemon = await Daemon.start({ folder: daemon.folder });
 	client = await daemon.connect(options);
 	const past = (error) => error.code === -32049 && error.data.path === 'params.client_sequence';
@@ -197,6 +204,36 @@ store.commit()`, join(daemon.folder, 'store.db')], { encoding: 'utf8' });
 	await assert.rejects(client.call('session.create', { scene: 'fascia', client_sequence: 1 }), past);
 	assert.equal((await client.call('session.list')).sessions.length, 1);
 	assert.deepEqual(await client.call('session.step', { ...step, client_sequence: 3 }), { tick: 10 });
+	await client.close();
+});
+
+test('a session that cannot be brought up is left in the store until somebody destroys it', async (t) => {
+	let daemon = await Daemon.start();
+	t.after(() => daemon.end());
+	let client = await daemon.connect();
+	const well = await smallSession(client, 'well'), broken = await smallSession(client, 'broken');
+	await daemon.stop();
+	editStore(daemon, `UPDATE sessions SET definition = '{"layers": 7}' WHERE id = 'd1-broken'`);
+	for (let start = 0; start < 2; start++) { // left alone, it is still there
+		daemon = await Daemon.start({ folder: daemon.folder });
+		await daemon.log(/session=d1-broken event=not_resumed .*cautery rm d1-broken/);
+		if (start === 0)
+			await daemon.stop();
+	}
+	client = await daemon.connect({ hello: { client_id: 'keeper' } });
+	const listed = async () => (await client.call('session.list')).sessions.map((s) => s.session);
+	assert.deepEqual(await listed(), [well]);
+	const gone = { session: broken, client_sequence: 1 };
+	await assert.rejects(client.call('session.pause', { session: broken }), { code: -32040 });
+	await client.call('session.destroy', gone);
+	await client.call('session.destroy', gone); // its answer is kept
+	await assert.rejects(client.call('session.destroy', { session: broken }), { code: -32040 });
+	await daemon.stop();
+	daemon = await Daemon.start({ folder: daemon.folder });
+	client = await daemon.connect();
+	assert.deepEqual(await listed(), [well]);
+	assert.doesNotMatch(daemon.lines.join('\n'), /not_resumed/);
+	await smallSession(client, 'broken'); // the name is free
 	await client.close();
 });
 

@@ -1464,7 +1464,7 @@ export interface Requests {
   'session.speed': { params: SessionSpeed; result: SessionSummary };
   /** back to tick 0; a new branch */
   'session.reset': { params: SessionChange; result: Restored };
-  /** ends it and removes it from the store */
+  /** ends it and removes it from the store, also one that the daemon could not bring up */
   'session.destroy': { params: SessionChange; result: Nothing };
   /** a new session from this state, energy off */
   'session.fork': { params: SessionFork; result: SessionDescription };
