@@ -14,7 +14,7 @@ typedef enum cli_exit {
 	CLI_USAGE = 2,      // arguments
 	CLI_CONNECTION = 3, // no server, no answer in time, connection lost
 	CLI_FILE = 4,       // a file here cannot be read or written, or does not hold what it should
-	CLI_INCOMPLETE = 5, // some commands of a script were refused, or it was interrupted
+	CLI_INCOMPLETE = 5, // a script was refused in part, lost its energy, or was interrupted
 } cli_exit;
 
 enum { CLI_ARGUMENTS_MAX = 128, CLI_OPTIONS_MAX = 8 };

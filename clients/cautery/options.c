@@ -95,7 +95,7 @@ void cli_help(const cli *c)
 	print_options(c->out, common, sizeof common / sizeof *common);
 	fputs("\nExit code: 0 done; 1 the server refused, or the session is faulted or gone;\n"
 	      "2 arguments; 3 no server, no answer or connection lost; 4 a file here;\n"
-	      "5 some commands of a script were refused, or it was interrupted.\n",
+	      "5 a script was refused in part, lost its energy, or was interrupted.\n",
 	      c->out);
 }
 

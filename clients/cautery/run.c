@@ -40,7 +40,7 @@ struct runner {
 	sent *sent;
 	uint64_t base_tick, epoch;
 	cli_faces faces;
-	int32_t next, answered, refused, late;
+	int32_t next, answered, refused, late, watchdog_cuts;
 	bool lost; // the first refusal that was none of the server's ended it
 };
 
@@ -120,6 +120,29 @@ static void take_answer(void *user, const cau_rpc_message *answer, const cau_err
 	if (r->refused++ < TOLD_MAX)
 		cli_complain(r->c, "line %d: %s%s%s", s->line, error->path, *error->path ? ": " : "",
 		             error->reason);
+}
+
+static bool uses_tool(const runner *r, const char *tool)
+{
+	for (int32_t i = 0; i < r->count; i++)
+		if (strcmp(r->lines[i].command.tool, tool) == 0)
+			return true;
+	return false;
+}
+
+// From then on the script's motion goes on without energy: its user must know.
+static void take_notification(void *user, cau_client *client, const cau_rpc_message *message)
+{
+	runner *r = user;
+	cau_wire_event_notice notice = {0};
+	(void)client;
+	if (message->method != CAU_METHOD_EVENT || cau_rpc_params(message, &notice, NULL) ||
+	    notice.event.kind != CAU_EVENT_WATCHDOG || strcmp(notice.session, r->c->session) != 0 ||
+	    !uses_tool(r, notice.event.tool))
+		return;
+	r->watchdog_cuts++;
+	cli_complain(r->c, "tick %lld: the watchdog cut the energy of `%s`: %s",
+	             (long long)notice.event.tick, notice.event.tool, notice.event.detail);
 }
 
 // Sends what is due within the lead. The script's own sequence is kept, else lines are counted.
@@ -205,7 +228,7 @@ static cli_exit play(runner *r)
 		             reason ? reason : "interrupted");
 		return reason ? CLI_REFUSED : CLI_INCOMPLETE;
 	}
-	return r->refused ? CLI_INCOMPLETE : CLI_DONE;
+	return r->refused || r->watchdog_cuts ? CLI_INCOMPLETE : CLI_DONE;
 }
 
 static void print_end(runner *r)
@@ -215,9 +238,10 @@ static void print_end(runner *r)
 	if (r->c->json)
 		fprintf(r->c->out,
 		        "{\"session\": \"%s\", \"commands\": %d, \"sent\": %d, \"refused\": %d, "
-		        "\"late\": %d, \"first_tick\": %llu, \"last_tick\": %llu, \"faces_gone\": %lld, "
+		        "\"late\": %d, \"watchdog_cuts\": %d, \"first_tick\": %llu, \"last_tick\": %llu, "
+		        "\"faces_gone\": %lld, "
 		        "\"edges_parted\": %u, \"elements_removed\": %u}\n",
-		        r->c->session, r->count, r->next, r->refused, r->late,
+		        r->c->session, r->count, r->next, r->refused, r->late, r->watchdog_cuts,
 		        (unsigned long long)r->base_tick, (unsigned long long)state->tick,
 		        (long long)r->faces.gone, state->statistics.edges_parted,
 		        state->statistics.elements_removed);
@@ -256,6 +280,8 @@ static cli_exit run(cli *c)
 	if (read_script(&r, c->arguments[c->argument_count - 1]))
 		code = cli_fail_file(c);
 	cli_watch_signals();
+	c->def.user = &r;
+	c->def.on_notification = take_notification;
 	if (!code)
 		code = cli_connect(c);
 	if (!code)
@@ -274,7 +300,8 @@ const cli_command cli_run = {
 	.summary = "runs a script of commands at their ticks, counted from now",
 	.help = "SCRIPT has one command as JSON on each line, as deploy/scenes/scripts and\n"
 			"`cautery log` have them; - reads standard input. Tools that the script uses are\n"
-			"taken over first. late counts commands that reached the server after their tick.\n",
+			"taken over first. late counts commands that reached the server after their tick,\n"
+			"watchdog_cuts how often it was silent so long that its energy was cut.\n",
 	.least = 1,
 	.most = 1,
 	.session_optional = true,

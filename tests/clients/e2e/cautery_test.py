@@ -5,6 +5,7 @@ import json
 import os
 import signal
 import subprocess
+import time
 import unittest
 
 import programs
@@ -119,6 +120,31 @@ class Scripts(programs.Case):
         session = self.create("fascia", "--paused")
         file = self.path("one.jsonl", script(move(1, 0)))
         self.assertIn("paused", self.cautery("run", session, file, code=1)[1])
+
+
+class Silence(programs.Case):
+    settings = {"browser_deadline_s": 1}
+
+    def test_a_script_that_lost_its_energy_says_so(self):
+        session = self.create("fascia")
+        file = self.path("held.jsonl", script(move(1, -0.02), energize(2, True), move(200, 0.02)))
+        running = subprocess.Popen(
+            [os.path.join(programs.PROGRAMS, "cautery"), "run", session, file, "--json", "--url",
+             self.daemon.url], stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True)
+        self.await_event(session, "energy_on")
+        running.send_signal(signal.SIGSTOP)  # no sign of life any more, as from a laptop that sleeps
+        self.await_event(session, "watchdog")
+        running.send_signal(signal.SIGCONT)
+        out, told = running.communicate(timeout=programs.PATIENCE_S)
+        self.assertEqual(running.returncode, 5, told)
+        self.assertEqual(json.loads(out.splitlines()[-1])["watchdog_cuts"], 1)
+        self.assertIn("the watchdog cut the energy of `hook`", told)
+
+    def await_event(self, session, kind):
+        deadline = time.monotonic() + programs.PATIENCE_S
+        while kind not in [e["kind"] for e in self.json("timeline", session)["events"]]:
+            self.assertLess(time.monotonic(), deadline, kind)
+            time.sleep(0.05)
 
 
 class Streams(programs.Case):
