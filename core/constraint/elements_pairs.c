@@ -9,10 +9,23 @@ static cau_status no_memory(cau_error *error)
 	return cau_fail(error, CAU_NO_MEMORY, NULL, "no memory for the elements");
 }
 
-// ---- groups: elements of one layer and material, in element order
-typedef struct group_key {
-	int32_t layer, material;
-} group_key;
+// Elements of one layer and material, which get a range of slots.
+typedef struct group_plan {
+	int32_t layer, material, first_slot, slot_count;
+} group_plan;
+
+typedef struct pair_maker {
+	const cau_tissue *tissue;
+	cau_elements *elements;
+	cau_element_slots *slots;
+	cau_slot_vertices *vertices;
+	int32_t *partner; // by element
+
+	int kind; // of the elements that are being placed, as what follows
+	group_plan group[CAU_MAX_GROUPS];
+	int32_t group_count, slot_count;
+	void (*fill)(const struct pair_maker *maker, int32_t element, int32_t slot, const int *order);
+} pair_maker;
 
 static int32_t layer_of(const cau_tissue *tissue, int kind, int32_t element)
 {
@@ -26,17 +39,37 @@ static int32_t material_of(const cau_tissue *tissue, int kind, int32_t element)
 	                                    : tissue->tetrahedron_material[element];
 }
 
-static int32_t count_groups(const cau_tissue *tissue, int kind, group_key *keys)
+// In the order of their first elements.
+static void find_groups(pair_maker *maker)
 {
-	int32_t count = 0;
-	for (int32_t e = 0; e < cau_tissue_element_count(tissue, kind); ++e) {
-		int32_t layer = layer_of(tissue, kind, e), material = material_of(tissue, kind, e), g = 0;
-		while (g < count && (keys[g].layer != layer || keys[g].material != material))
+	maker->group_count = 0;
+	for (int32_t e = 0; e < cau_tissue_element_count(maker->tissue, maker->kind); ++e) {
+		int32_t layer = layer_of(maker->tissue, maker->kind, e);
+		int32_t material = material_of(maker->tissue, maker->kind, e), g = 0;
+		while (g < maker->group_count &&
+		       (maker->group[g].layer != layer || maker->group[g].material != material))
 			g++;
-		if (g == count)
-			keys[count++] = (group_key){layer, material};
+		if (g == maker->group_count)
+			maker->group[maker->group_count++] = (group_plan){layer, material, 0, 0};
 	}
-	return count;
+}
+
+// Finds the groups of `kind`, pairs their elements, and says which slots they get.
+static cau_status plan_groups(pair_maker *maker, int kind, cau_arena *arena, cau_error *error)
+{
+	maker->kind = kind;
+	maker->slot_count = 0;
+	find_groups(maker);
+	for (int32_t g = 0; g < maker->group_count; ++g) {
+		group_plan *group = &maker->group[g];
+		group->first_slot = maker->slot_count;
+		group->slot_count =
+			2 * cau_slots_padded(cau_pair_elements(maker->tissue, kind, group->layer,
+		                                           group->material, maker->partner));
+		maker->slot_count += group->slot_count;
+	}
+	return cau_elements_make_maps(maker->slots, kind, cau_tissue_element_count(maker->tissue, kind),
+	                              maker->slot_count, arena, error);
 }
 
 // Where the first of the k-th pair goes in a group of `slots`; the second is a batch behind it.
@@ -55,27 +88,15 @@ static int32_t pair_slot(int32_t k, int32_t slots)
 	return share * CAU_SHARE + batch * 2 * CAU_BATCH + lane;
 }
 
-typedef struct pair_maker {
-	const cau_tissue *tissue;
-	cau_elements *elements;
-	cau_element_slots *slots;
-	cau_slot_vertices *vertices;
-	int kind;
-	int32_t *partner; // by element
-	void (*fill)(const struct pair_maker *maker, int32_t element, int32_t slot, const int *order);
-} pair_maker;
-
-// Gives every pair of the group its slots.
-static void place_pairs(const pair_maker *maker, const group_key *key, int32_t first_slot,
-                        int32_t slot_count)
+static void place_pairs(const pair_maker *maker, const group_plan *group)
 {
 	int32_t done = 0, count = cau_tissue_element_count(maker->tissue, maker->kind);
 	for (int32_t e = 0; e < count; ++e) {
-		if (layer_of(maker->tissue, maker->kind, e) != key->layer ||
-		    material_of(maker->tissue, maker->kind, e) != key->material ||
+		if (layer_of(maker->tissue, maker->kind, e) != group->layer ||
+		    material_of(maker->tissue, maker->kind, e) != group->material ||
 		    (maker->partner[e] >= 0 && maker->partner[e] < e))
 			continue;
-		int32_t slot = first_slot + pair_slot(done++, slot_count);
+		int32_t slot = group->first_slot + pair_slot(done++, group->slot_count);
 		const int32_t half[2] = {e, maker->partner[e]};
 		for (int h = 0; h < 2 && half[h] >= 0; ++h, slot += CAU_BATCH) {
 			int order[4];
@@ -162,42 +183,23 @@ static void fill_fat_slot(const pair_maker *maker, int32_t tetrahedron, int32_t 
 	cau_real_set(set->position_scale, single, slot, cau_element_map_scale(&map));
 }
 
-// The groups of one kind, their elements paired; returns the slots they take.
-static int32_t pair_groups(const pair_maker *maker, const group_key *keys, int32_t count,
-                           int32_t *slot_count)
-{
-	int32_t total = 0;
-	for (int32_t g = 0; g < count; ++g) {
-		slot_count[g] =
-			2 * cau_slots_padded(cau_pair_elements(maker->tissue, maker->kind, keys[g].layer,
-		                                           keys[g].material, maker->partner));
-		total += slot_count[g];
-	}
-	return total;
-}
-
 static cau_status make_sheets(pair_maker *maker, cau_arena *arena, cau_error *error)
 {
 	cau_sheet_set *set = &maker->elements->sheet;
-	group_key keys[CAU_MAX_GROUPS];
-	int32_t slots[CAU_MAX_GROUPS], first = 0;
-	maker->kind = CAU_ELEMENT_TRIANGLE;
-	maker->fill = fill_sheet_slot;
-	set->group_count = count_groups(maker->tissue, maker->kind, keys);
-	set->slot_count = pair_groups(maker, keys, set->group_count, slots);
+	cau_status status = plan_groups(maker, CAU_ELEMENT_TRIANGLE, arena, error);
+	set->slot_count = maker->slot_count;
+	set->group_count = maker->group_count;
 	set->group = cau_arena_array(arena, (size_t)set->group_count, sizeof *set->group);
-	cau_status status = set->group ? CAU_OK : no_memory(error);
 	if (!status)
-		status = cau_elements_make_maps(maker->slots, maker->kind, maker->tissue->triangle_count,
-		                                set->slot_count, arena, error);
-	if (!status)
-		status = make_sheet_arrays(maker, arena, error);
-	for (int32_t g = 0; !status && g < set->group_count; first += slots[g++]) {
-		set->group[g] = (cau_sheet_group){.first_slot = first,
-		                                  .slot_count = slots[g],
-		                                  .layer = keys[g].layer,
-		                                  .material = keys[g].material};
-		place_pairs(maker, &keys[g], first, slots[g]);
+		status = set->group ? make_sheet_arrays(maker, arena, error) : no_memory(error);
+	maker->fill = fill_sheet_slot;
+	for (int32_t g = 0; !status && g < set->group_count; ++g) {
+		const group_plan *plan = &maker->group[g];
+		set->group[g] = (cau_sheet_group){.first_slot = plan->first_slot,
+		                                  .slot_count = plan->slot_count,
+		                                  .layer = plan->layer,
+		                                  .material = plan->material};
+		place_pairs(maker, plan);
 	}
 	return status;
 }
@@ -205,25 +207,20 @@ static cau_status make_sheets(pair_maker *maker, cau_arena *arena, cau_error *er
 static cau_status make_fat(pair_maker *maker, cau_arena *arena, cau_error *error)
 {
 	cau_fat_set *set = &maker->elements->fat;
-	group_key keys[CAU_MAX_GROUPS];
-	int32_t slots[CAU_MAX_GROUPS], first = 0;
-	maker->kind = CAU_ELEMENT_TETRAHEDRON;
-	maker->fill = fill_fat_slot;
-	set->group_count = count_groups(maker->tissue, maker->kind, keys);
-	set->slot_count = pair_groups(maker, keys, set->group_count, slots);
+	cau_status status = plan_groups(maker, CAU_ELEMENT_TETRAHEDRON, arena, error);
+	set->slot_count = maker->slot_count;
+	set->group_count = maker->group_count;
 	set->group = cau_arena_array(arena, (size_t)set->group_count, sizeof *set->group);
-	cau_status status = set->group ? CAU_OK : no_memory(error);
 	if (!status)
-		status = cau_elements_make_maps(maker->slots, maker->kind, maker->tissue->tetrahedron_count,
-		                                set->slot_count, arena, error);
-	if (!status)
-		status = make_fat_arrays(maker, arena, error);
-	for (int32_t g = 0; !status && g < set->group_count; first += slots[g++]) {
-		set->group[g] = (cau_fat_group){.first_slot = first,
-		                                .slot_count = slots[g],
-		                                .layer = keys[g].layer,
-		                                .material = keys[g].material};
-		place_pairs(maker, &keys[g], first, slots[g]);
+		status = set->group ? make_fat_arrays(maker, arena, error) : no_memory(error);
+	maker->fill = fill_fat_slot;
+	for (int32_t g = 0; !status && g < set->group_count; ++g) {
+		const group_plan *plan = &maker->group[g];
+		set->group[g] = (cau_fat_group){.first_slot = plan->first_slot,
+		                                .slot_count = plan->slot_count,
+		                                .layer = plan->layer,
+		                                .material = plan->material};
+		place_pairs(maker, plan);
 	}
 	return status;
 }
