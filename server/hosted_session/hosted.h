@@ -58,6 +58,9 @@ void cau_hosted_stop(cau_hosted *hosted);
 // Logs that a session of the store could not be brought up, why, and what to do.
 void cau_hosted_tell_not_resumed(const char *id, cau_status status, const cau_error *error);
 
+// Writes a result as a whole JSON-RPC answer whose id is the method's name; malloc'ed, NULL on
+// failure.
+char *cau_answer_text(cau_method method, const void *result, size_t *bytes, cau_error *error);
 // The CAU_RPC_* of a batch that the store did not commit; 0: the status's own.
 int32_t cau_hosted_commit_code(cau_status status);
 

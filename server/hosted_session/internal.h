@@ -258,9 +258,6 @@ void cau_record_commit(cau_hosted *h); // submits the slice's batch
 cau_status cau_record_resend(cau_hosted *h, const cau_order *order, cau_error *error);
 
 // ---- answer.c
-// Writes a result as a whole JSON-RPC answer whose id is the method's name; malloc'ed, NULL on
-// failure.
-char *cau_answer_text(cau_method method, const void *result, size_t *bytes, cau_error *error);
 // Answers at once, or after the commit if the method changes something. Takes the order.
 void cau_answer_order(cau_hosted *h, cau_order *order, const void *result);
 void cau_answer_fail(cau_order *order, const cau_error *error, int32_t code);

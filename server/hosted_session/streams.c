@@ -381,9 +381,11 @@ static cau_status take_stream(cau_hosted *h, const cau_order *order, cau_stream 
 	for (int i = 0; i < CAU_STREAM_PROFILES_MAX; i++)
 		subscribers += h->streams[i].subscribers;
 	cau_stream *stream = find_stream(h, order);
-	if (stream && stream->subscribers++ == 0)
+	if (stream && stream->subscribers == 0)
 		wake_stream(h, stream);
-	if (!stream)
+	if (stream)
+		stream->subscribers++;
+	else
 		while (h->streams[slot].used && h->streams[slot].subscribers)
 			slot++;
 	pthread_mutex_unlock(&h->mutex);

@@ -152,19 +152,31 @@ static cau_status resent(cau_hub *hub, cau_creation *creation, cau_error *error)
 	                             error);
 }
 
+void cau_clerk_answer_missing(const cau_reply *reply, const char *id)
+{
+	cau_error error = {0};
+	cau_fail(&error, CAU_NOT_FOUND, "params.session", "this daemon does not have `%.48s`", id);
+	cau_reply_fail(reply, &error, CAU_RPC_NOT_HERE);
+}
+
+// A session that was made since the request came is not what it meant.
+static void act_on_missing(cau_hub *hub, const cau_creation *asked)
+{
+	cau_hosted *made = cau_hub_find(hub, asked->name);
+	if (!made && asked->reply.method == CAU_METHOD_SESSION_DESTROY)
+		cau_clerk_discard(hub, asked);
+	else
+		cau_clerk_answer_missing(&asked->reply, asked->name);
+	cau_hosted_release(made);
+}
+
 static void act(cau_hub *hub, cau_creation *creation)
 {
 	cau_error error = {0};
 	char id[CAU_NAME_BYTES];
 	cau_status status;
-	if (creation->kind == CAU_CREATION_MISSING &&
-	    creation->reply.method == CAU_METHOD_SESSION_DESTROY) {
-		cau_clerk_discard(hub, creation);
-		return;
-	}
 	if (creation->kind == CAU_CREATION_MISSING) {
-		cau_fail(&error, CAU_NOT_FOUND, "params.session", "this daemon does not have the session");
-		cau_reply_fail(&creation->reply, &error, CAU_RPC_NOT_HERE);
+		act_on_missing(hub, creation);
 		return;
 	}
 	do

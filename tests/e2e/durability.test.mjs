@@ -237,6 +237,32 @@ test('a session that cannot be brought up is left in the store until somebody de
 	await client.close();
 });
 
+// The destruction is read before the session is there, as a rule, and acted upon when its first rows are
+// stored, since others are made in between. Whichever came first: it is gone everywhere or nowhere.
+test('a session destroyed before it was made is not taken out of the store under it', async (t) => {
+	let daemon = await Daemon.start();
+	t.after(() => daemon.end());
+	let client = await daemon.connect();
+	const definition = await smallScene(client, [4, 4]);
+	const create = (name) => client.call('session.create', { name, definition, paused: true });
+	const before = Array.from({ length: 12 }, (_, i) => create(`before-${i}`)), early = create('early');
+	const after = Array.from({ length: 12 }, (_, i) => create(`after-${i}`));
+	const listed = async () => (await client.call('session.list')).sessions.map((s) => s.session);
+	const destroyed = await client.call('session.destroy', { session: 'd1-early' }).then(() => true, ({ code }) => {
+		assert.equal(code, -32040);
+		return false;
+	});
+	await Promise.allSettled([...before, early, ...after]);
+	const there = await listed();
+	assert.equal(there.length, 24 + !destroyed);
+	assert.equal(there.includes('d1-early'), !destroyed);
+	await daemon.stop();
+	daemon = await Daemon.start({ folder: daemon.folder });
+	client = await daemon.connect();
+	assert.deepEqual(await listed(), there);
+	await client.close();
+});
+
 test('SIGTERM drains: checkpoint, close code, exit 0; the next start goes on there', async () => {
 	let daemon = await Daemon.start();
 	const client = await daemon.connect();

@@ -48,9 +48,9 @@ test('after a cut of many deltas, positions and mask are the export\'s', async (
 	const client = await daemon.connect();
 	const session = await smallSession(client, 'cut', { paused: true });
 	const stream = await client.join(session, { rate_hz: 1000 });
-	const { tick } = await cutMiddle(client, session, 200);
+	const { tick } = await cutMiddle(client, session, 400); // frames come every millisecond at most, ticks may be faster
 	await client.until(() => stream.tick === tick, 'the last frame');
-	assert.ok(stream.counts.delta > 20, `${stream.counts.delta} deltas`);
+	assert.ok(stream.counts.delta > 50, `${stream.counts.delta} deltas`);
 	assert.ok(stream.removed() > 0, 'faces were removed');
 	assert.ok(await compare(client, session, stream) > 300);
 	assert.equal(stream.counts.skipped, 0);

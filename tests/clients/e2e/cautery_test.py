@@ -144,7 +144,7 @@ class Silence(programs.Case):
         deadline = time.monotonic() + programs.PATIENCE_S
         while kind not in [e["kind"] for e in self.json("timeline", session)["events"]]:
             self.assertLess(time.monotonic(), deadline, kind)
-            time.sleep(0.05)
+            time.sleep(0.05)  # before it is asked again
 
 
 class Streams(programs.Case):

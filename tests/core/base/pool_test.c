@@ -111,16 +111,22 @@ static void stall_once(void *context, int32_t index)
 		nanosleep(&(struct timespec){.tv_nsec = 50000000}, NULL); // the stall itself
 }
 
+// Loops until the helper has stalled in one: the caller works alone from there.
+static void run_into_a_stall(cau_pool *pool, stall *work)
+{
+	for (int loop = 0; loop < 100000 && !work->stalled; ++loop)
+		cau_pool_run(pool, 4, stall_once, work);
+	assert_int_equal(work->stalled, 1);
+	atomic_store(&work->by_helpers, 0);
+}
+
 // After such a wait the caller does some thousand parts alone, then shares them again.
 static void test_a_stalled_helper_is_left_out_for_a_while(void **state)
 {
 	(void)state;
 	stall work = {.caller = pthread_self()};
 	cau_pool *pool = cau_pool_create(2);
-	for (int loop = 0; loop < 100000 && !work.stalled; ++loop)
-		cau_pool_run(pool, 4, stall_once, &work);
-	assert_int_equal(work.stalled, 1);
-	atomic_store(&work.by_helpers, 0);
+	run_into_a_stall(pool, &work);
 	for (int loop = 0; loop < 1000; ++loop)
 		cau_pool_run(pool, 4, stall_once, &work);
 	assert_int_equal(work.by_helpers, 0);
@@ -130,9 +136,9 @@ static void test_a_stalled_helper_is_left_out_for_a_while(void **state)
 	cau_pool_destroy(pool);
 }
 
-// The caller waits in its first part until the helper has had one, or for `PATIENCE_MS`: the helper
-// of a loop that is shared may need that long for a core.
-enum { PATIENCE_MS = 100, LONG_LOOPS = 50 };
+// The caller sleeps in its first part until the helper has had one, or for `PATIENCE_MS`: the
+// helper of a loop that is shared may need that long for a core.
+enum { PATIENCE_MS = 500, LONG_LOOPS = 6 };
 
 static void wait_for_a_helper(void *context, int32_t index)
 {
@@ -145,17 +151,14 @@ static void wait_for_a_helper(void *context, int32_t index)
 }
 
 // However many parts a loop has, it is as many of them that the caller does alone: a large session,
-// whose loops are long, shares them again after a few. Were loops counted instead, fifty would not
-// do; another stall on the way may add four.
+// whose loops are long, shares them again within the six. Were loops counted instead, thousands
+// would not do.
 static void test_long_loops_are_shared_again_as_soon(void **state)
 {
 	(void)state;
 	stall work = {.caller = pthread_self()};
 	cau_pool *pool = cau_pool_create(2);
-	for (int loop = 0; loop < 100000 && !work.stalled; ++loop)
-		cau_pool_run(pool, 4, stall_once, &work);
-	assert_int_equal(work.stalled, 1);
-	atomic_store(&work.by_helpers, 0);
+	run_into_a_stall(pool, &work);
 	for (int loop = 0; loop < LONG_LOOPS && !work.by_helpers; ++loop)
 		cau_pool_run(pool, MANY_PARTS, wait_for_a_helper, &work);
 	assert_true(work.by_helpers > 0);
