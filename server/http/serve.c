@@ -39,17 +39,19 @@ static int serve_page(cau_network *network, struct lws *wsi, cau_http_body *body
 		                          .extra_value = "Bearer"};
 		return cau_http_answer_start(wsi, body, &denied);
 	}
-	char *text = NULL;
-	size_t bytes = 0;
-	const cau_network_handler *handler = &network->def.handler;
-	unsigned status = handler->page(handler->user, path, &text, &bytes);
-	bool metrics = strcmp(path, "/metrics") == 0;
-	cau_http_answer answer = {.status = status,
-	                          .content_type = metrics ? "text/plain; version=0.0.4; charset=utf-8"
-	                                                  : "application/json",
-	                          .bytes = text,
-	                          .byte_count = bytes,
-	                          .owned = text};
+	// A header that is longer than ours asks for more than the pages come in.
+	char accept[HEADER_BYTES];
+	if (!cau_request_header(wsi, WSI_TOKEN_HTTP_ACCEPT, accept, sizeof accept))
+		accept[0] = 0;
+	cau_page page = {.path = path, .accept = accept};
+	network->def.handler.page(network->def.handler.user, &page);
+	cau_http_answer answer = {.status = page.status,
+	                          .content_type = page.content_type,
+	                          .extra_name = "vary:",
+	                          .extra_value = "accept",
+	                          .bytes = page.body,
+	                          .byte_count = page.bytes,
+	                          .owned = page.body};
 	return cau_http_answer_start(wsi, body, &answer);
 }
 

@@ -8,6 +8,7 @@
 #include "cautery/chunk_codec.h"
 #include "clock/clock.h"
 #include "log/log.h"
+#include "metrics/exposition.h"
 #include "rpc/service.h"
 
 enum {
@@ -136,7 +137,10 @@ cau_status cau_peer_fill_meshes(cau_peer *peer, cau_scene_def *scene, cau_error 
 void cau_upload_finish(cau_upload *upload);
 
 // ---- pages.c
-unsigned cau_service_page(void *user, const char *path, char **body, size_t *bytes);
+void cau_service_page(void *user, cau_page *page);
+
+// ---- metrics.c: writes the whole of /metrics; returns the HTTP status
+unsigned cau_service_metrics(cau_service *service, cau_metrics_format format, FILE *out);
 
 static inline cau_peer *cau_peer_of(cau_connection *connection)
 {

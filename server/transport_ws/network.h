@@ -11,6 +11,16 @@
 
 typedef struct cau_network cau_network;
 
+// A page that is made when it is asked for.
+typedef struct cau_page {
+	const char *path;         // of the request, like `accept`
+	const char *accept;       // its Accept header; "": none
+	unsigned status;          // the rest is the answer: HTTP's status,
+	const char *content_type; // static
+	char *body;               // malloc'ed, NULL if memory ran out
+	size_t bytes;
+} cau_page;
+
 // What serves the requests, called on the network thread.
 typedef struct cau_network_handler {
 	void *user;
@@ -21,11 +31,9 @@ typedef struct cau_network_handler {
 	void (*closed)(void *user, cau_connection *connection);
 	// The next frame that this connection should get now, or NULL; the caller releases it.
 	cau_buffer *(*next_frame)(void *user, cau_connection *connection);
-	void (*woken)(void *user); // after cau_network_wake
-	void (*tick)(void *user);  // about every 100 ms while there are connections
-	// Fills a JSON or text body for /healthz, /readyz, /metrics, /api/sessions: malloc'ed, *bytes
-	// long. Returns the HTTP status.
-	unsigned (*page)(void *user, const char *path, char **body, size_t *bytes);
+	void (*woken)(void *user);                // after cau_network_wake
+	void (*tick)(void *user);                 // about every 100 ms while there are connections
+	void (*page)(void *user, cau_page *page); // /healthz, /readyz, /metrics, /api/sessions
 } cau_network_handler;
 
 typedef struct cau_network_def {
