@@ -36,6 +36,7 @@ typedef struct bench_steps_result {
 	double frame_over_cholmod, cholmod_ms, allocations_per_step, bytes_session;
 	int32_t vertices, tetrahedra, triangles, contacts;
 	uint64_t hash;
+	char instruction_set[16]; // that the session ran on
 } bench_steps_result;
 int bench_steps(const bench_options *options, bench_steps_result *result);
 

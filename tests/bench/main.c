@@ -3,8 +3,10 @@
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
+#include <unistd.h>
 
 #include "bench/bench.h"
+#include "bench/machine.h"
 
 static const char help[] =
 	"cautery-bench: measures steps of a scene\n"
@@ -23,7 +25,9 @@ static const char help[] =
 	"  --error             error of K iterations against the converged step under the scene's "
 	"pull\n"
 	"  --scaling           step time against size\n"
-	"  --json              the last line of standard output is one JSON object\n"
+	"  --json              the last line of standard output is one JSON object; its `machine` "
+	"says\n"
+	"                      on what it was measured, and what else that machine did meanwhile\n"
 	"\n"
 	"Exit codes: 0 measured, 1 the scene could not be run, 2 the arguments are wrong.\n";
 
@@ -198,14 +202,29 @@ static void print_scaling(const bench_options *options, const bench_scaling_resu
 	printf(options->json ? "]" : "\n");
 }
 
+static void print_machine(const bench_options *options, const bench_steps_result *result,
+                          const bench_cpu_time *before)
+{
+	bench_machine machine;
+	bench_cpu_time after;
+	bench_machine_read("", &machine);
+	bench_cpu_time_read("", &after);
+	bench_disturbance disturbance =
+		bench_disturbance_between(before, &after, (double)sysconf(_SC_CLK_TCK));
+	(options->json ? bench_machine_write_json
+	               : bench_machine_write)(stdout, &machine, result->instruction_set, &disturbance);
+}
+
 int main(int argc, char **argv)
 {
 	bench_options options = parse(argc, argv);
+	bench_cpu_time before;
 	bench_steps_result steps;
 	bench_cut_result cut;
 	bench_error_result error;
 	bench_scaling_result scaling;
 	bench_limit_result limit;
+	bench_cpu_time_read("", &before);
 	if (bench_steps(&options, &steps) || bench_limit(&options, &limit) ||
 	    (options.cut && bench_cut(&options, &cut)) ||
 	    (options.error && bench_error(&options, &error)) ||
@@ -229,6 +248,8 @@ int main(int argc, char **argv)
 		fputs(options.json ? "," : "", stdout);
 		print_scaling(&options, &scaling);
 	}
+	fputs(options.json ? "," : "", stdout);
+	print_machine(&options, &steps, &before);
 	puts(options.json ? "}" : "");
 	return 0;
 }

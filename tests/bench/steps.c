@@ -153,6 +153,8 @@ int bench_steps(const bench_options *options, bench_steps_result *result)
 		result->frame_over_cholmod =
 			result->timing.median_ms / (options->iterations * result->cholmod_ms);
 	result->hash = cau_session_hash(session);
+	snprintf(result->instruction_set, sizeof result->instruction_set, "%s",
+	         session->solver.kernels->instruction_set);
 	cau_session_destroy(session);
 	return failed;
 }
