@@ -21,7 +21,7 @@ enum { CAU_CONFIG_TEXT_BYTES = 512 };
 	TEXT(store, "cautery.db", "file of the store")                                                 \
 	TEXT(scenes, "", "folder of named scenes; empty: the installed one")                           \
 	TEXT(viewer, "", "folder of viewer files to serve; empty: a plain page")                       \
-	TEXT(label, "d1", "this daemon's label, first part of its sessions' ids")                      \
+	TEXT(label, "d1", "this daemon's label, first part of its sessions' ids; no `-`")              \
 	TEXT(demo, "", "scene of which a session exists at start, made if the store has none")         \
 	TEXT(tokens, "", "file of tokens, one `ROLE TOKEN` a line; empty: loopback is admin")          \
 	TEXT(hosts, "", "more accepted Host names, separated by commas")                               \

@@ -143,14 +143,27 @@ static cau_status settle_label(struct cau_store *store, cau_error *error)
 	return code ? cau_store_fault(store->writing, code, "the label", error) : CAU_OK;
 }
 
+// Ids of sessions are LABEL-NAME: where the label ends must be plain, and ROS 2's names, which know
+// no `-`, must not make one of two. A store that has such a label already keeps it.
+static cau_status check_new_label(const char *label, cau_error *error)
+{
+	if (label && strchr(label, '-'))
+		return cau_fail(error, CAU_BAD_VALUE, "label",
+		                "`%.48s` has a `-`, which a new store's label may not have", label);
+	return CAU_OK;
+}
+
 // The lock is held: makes or checks the file, opens the connections, migrates.
 static cau_status open_database(struct cau_store *store, cau_error *error)
 {
 	enum cau_store_found found;
 	int64_t page_bytes = 0;
 	cau_status status = cau_store_probe(store->path, store->config.label, &found, error);
-	if (!status && found == CAU_STORE_ABSENT)
-		status = cau_store_file_create(store->path, error);
+	if (!status && found == CAU_STORE_ABSENT) {
+		status = check_new_label(store->config.label, error);
+		if (!status)
+			status = cau_store_file_create(store->path, error);
+	}
 	if (!status)
 		status = cau_store_file_open(store->path, store->config.wal_bytes, &store->writing, error);
 	if (status)

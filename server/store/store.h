@@ -57,7 +57,8 @@ const char *cau_store_state_name(cau_store_state state);
 // ---- life -----------------------------------------------------------------------------
 typedef struct cau_store_config {
 	const char *path;         // the database; "-wal", "-shm" and "-lock" files stand beside it
-	const char *label;        // the daemon's label; NULL takes the stored one; another is refused
+	const char *label;        // the daemon's label; NULL takes the stored one; another is refused,
+	                          // and one with a `-` in a new store
 	int32_t commit_delay_ms;  // 0 to 10: how long a batch may wait for company
 	int32_t queue_batches;    // bound on batches not yet answered
 	size_t queue_bytes;       // bound on their bytes

@@ -252,6 +252,21 @@ static void the_label_is_kept_and_guarded(void **state)
 	cau_store_close(store);
 }
 
+static void a_new_store_takes_no_label_with_a_dash(void **state)
+{
+	struct fixture *fixture = *state;
+	fixture->config.label = "or-1";
+	expect_refusal(fixture, CAU_BAD_VALUE, "`or-1` has a `-`");
+	// One that has such a label from before opens with it.
+	fixture->config.label = "or1";
+	make_store(fixture);
+	execute(fixture->path, "UPDATE meta SET value = 'or-1' WHERE name = 'label'");
+	fixture->config.label = "or-1";
+	cau_store *store = open_store(&fixture->config);
+	assert_string_equal(cau_store_label(store), "or-1");
+	cau_store_close(store);
+}
+
 static void bad_configurations_are_refused(void **state)
 {
 	struct fixture *fixture = *state;
@@ -292,6 +307,7 @@ int main(void)
 		TEST(a_store_without_a_table_is_refused),
 		TEST(a_lone_log_and_a_journal_are_refused),
 		TEST(the_label_is_kept_and_guarded),
+		TEST(a_new_store_takes_no_label_with_a_dash),
 		TEST(bad_configurations_are_refused),
 		TEST(a_clean_close_leaves_one_file),
 	};
