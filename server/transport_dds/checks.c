@@ -8,17 +8,20 @@
 static const double unit_tolerance = 0.01; // of a quaternion's length: float32 on the way
 
 cau_status cau_motion_check_order(const cau_motion_past *past, uint64_t sequence,
-                                  int64_t source_time_ns, int64_t now_ns, double limit_s,
-                                  cau_error *error)
+                                  int64_t source_time_ns, int64_t now_ns, double now_s,
+                                  double limit_s, cau_error *error)
 {
-	if (sequence <= past->sequence)
+	bool anew = now_s - past->pose_s > limit_s;
+	if (anew && sequence == 0)
+		return cau_fail(error, CAU_BAD_VALUE, "sequence_number", "0 is none: it counts from 1");
+	if (!anew && sequence <= past->sequence)
 		return cau_fail(error, CAU_BAD_VALUE, "sequence_number",
 		                "%llu does not go up: the last was %llu", (unsigned long long)sequence,
 		                (unsigned long long)past->sequence);
 	if (sequence > CAU_MOTION_SEQUENCE_MOST)
 		return cau_fail(error, CAU_BAD_VALUE, "sequence_number", "%llu is beyond 2^53",
 		                (unsigned long long)sequence);
-	if (source_time_ns < past->source_time_ns)
+	if (!anew && source_time_ns < past->source_time_ns)
 		return cau_fail(error, CAU_BAD_VALUE, "source_time_ns", "goes back by %.6f s",
 		                1e-9 * ((double)past->source_time_ns - (double)source_time_ns));
 	double age_s = 1e-9 * ((double)now_ns - (double)source_time_ns);

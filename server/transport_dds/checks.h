@@ -25,10 +25,12 @@ typedef struct cau_motion_past {
 #define CAU_MOTION_SEQUENCE_MOST 9007199254740991u // 2^53 - 1
 
 // The sequence goes up, to at most CAU_MOTION_SEQUENCE_MOST, the source time does not go back and
-// is within `limit_s` of now_ns.
+// is within `limit_s` of now_ns. Who had nothing accepted for `limit_s`, its deadline, may begin
+// anew: its energy is off by then, and a count or clock that went back (an hour, say) is not to
+// lock it out until it is where it was. now_s is monotonic.
 cau_status cau_motion_check_order(const cau_motion_past *past, uint64_t sequence,
-                                  int64_t source_time_ns, int64_t now_ns, double limit_s,
-                                  cau_error *error);
+                                  int64_t source_time_ns, int64_t now_ns, double now_s,
+                                  double limit_s, cau_error *error);
 // All finite; the rotation a unit quaternion within 1 %, which is then made one exactly; the jaw
 // from 0 to 1.
 cau_status cau_motion_check_pose(cau_pose *pose, double jaw, cau_error *error);

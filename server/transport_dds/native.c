@@ -15,7 +15,8 @@ static cau_status check(const cau_door *door, const cau_dds_hand *hand,
 	if (!hand)
 		return cau_fail(error, CAU_LIMIT, "tool", "too many drivers");
 	return cau_motion_check_order(&hand->past, sample->sequence_number, sample->source_time_ns,
-	                              1000 * cau_wall_us(), hand->client->asker.deadline_s, error);
+	                              1000 * cau_wall_us(), cau_monotonic_s(),
+	                              hand->client->asker.deadline_s, error);
 }
 
 void cau_dds_take_command(cau_dds *dds, cau_door *door, cau_dds_client *client, const void *taken)

@@ -111,8 +111,18 @@ void cau_dds_reply_list(cau_dds *dds, cau_dds_request *request)
 }
 
 // ---- from posts
-static cau_status fill_made(const cau_dds_post *post, cautery_SessionReply *reply,
-                            cautery_SessionStatus *made, cau_error *error)
+// The number by which frames name a session; 0: it is gone again.
+static uint32_t number_of(const cau_dds *dds, const char *id)
+{
+	cau_hosted *hosted = cau_hub_find(dds->hub, id);
+	uint32_t number = hosted ? cau_hosted_number(hosted) : 0;
+	cau_hosted_release(hosted);
+	return number;
+}
+
+static cau_status fill_made(const cau_dds *dds, const cau_dds_post *post,
+                            cautery_SessionReply *reply, cautery_SessionStatus *made,
+                            cau_error *error)
 {
 	cau_wire_layer_description layers[CAU_MAX_LAYERS];
 	cau_wire_driver drivers[CAU_MAX_TOOLS];
@@ -121,7 +131,8 @@ static cau_status fill_made(const cau_dds_post *post, cautery_SessionReply *repl
 	cau_status status = cau_dds_post_result(post, &result, error);
 	if (status)
 		return status;
-	cau_dds_fill_status(made, &result.summary, 0, &(cau_hosted_counts){0});
+	cau_dds_fill_status(made, &result.summary, number_of(dds, result.summary.session),
+	                    &(cau_hosted_counts){0});
 	memcpy(reply->session, result.summary.session, sizeof reply->session);
 	reply->tick = (uint64_t)result.summary.tick;
 	reply->epoch = result.summary.epoch;
@@ -130,7 +141,7 @@ static cau_status fill_made(const cau_dds_post *post, cautery_SessionReply *repl
 	return CAU_OK;
 }
 
-static cau_status fill(const cau_dds_post *post, cautery_SessionReply *reply,
+static cau_status fill(const cau_dds *dds, const cau_dds_post *post, cautery_SessionReply *reply,
                        cautery_SessionStatus *made, cau_error *error)
 {
 	cau_wire_session_summary summary = {0};
@@ -140,7 +151,7 @@ static cau_status fill(const cau_dds_post *post, cautery_SessionReply *reply,
 	switch (post->method) {
 	case CAU_METHOD_SESSION_CREATE:
 	case CAU_METHOD_SESSION_FORK:
-		return fill_made(post, reply, made, error);
+		return fill_made(dds, post, reply, made, error);
 	case CAU_METHOD_SESSION_PAUSE:
 	case CAU_METHOD_SESSION_RESUME:
 		status = cau_dds_post_result(post, &summary, error);
@@ -174,7 +185,7 @@ void cau_dds_reply_post(cau_dds *dds, const cau_dds_post *post)
 	cautery_SessionReply reply = begin(request);
 	if (post->failed)
 		cau_dds_reply_fail(dds, request, &post->error, post->code);
-	else if (fill(post, &reply, &made, &error))
+	else if (fill(dds, post, &reply, &made, &error))
 		cau_dds_reply_fail(dds, request, &error, CAU_RPC_INTERNAL);
 	else
 		finish(dds, request, &reply);

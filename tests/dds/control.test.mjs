@@ -28,6 +28,9 @@ test('a session is made, paused, resumed, forked, rewound, listed and destroyed'
 	assert.equal(made.session, 'd1-made');
 	assert.equal(made.epoch, (await describe('d1-made')).epoch);
 	assert.deepEqual(made.sessions.map((s) => [s.session, s.scene]), [['d1-made', 'fascia']]);
+	const numberOf = async (id) => (await requester.done('LIST')).sessions.find((s) => s.session === id).number;
+	assert.ok(made.sessions[0].number > 0);
+	assert.equal(made.sessions[0].number, await numberOf('d1-made'));
 	const session = made.session;
 
 	const paused = await requester.done('PAUSE', { session });
@@ -38,6 +41,7 @@ test('a session is made, paused, resumed, forked, rewound, listed and destroyed'
 	const forked = await requester.done('FORK', { session, name: 'forked', tick: 3, paused: 1 });
 	assert.equal(forked.session, 'd1-forked');
 	assert.deepEqual(await describe('d1-forked').then((s) => [s.state, s.tick]), ['paused', 3]);
+	assert.equal(forked.sessions[0].number, await numberOf('d1-forked'));
 
 	const rewound = await requester.done('REWIND', { session, tick: 2 });
 	assert.equal(rewound.tick, 2);

@@ -13,7 +13,8 @@ import { fileURLToPath } from 'node:url';
 import { Daemon } from './wire/daemon.mjs';
 import { CYCLONE, DOMAIN } from './domain.mjs';
 import { lateness, now_us } from './lateness.mjs';
-import { watchSession } from './watch.mjs';
+import { Program } from './program.mjs';
+import { far, watchSession } from './watch.mjs';
 
 const TRIALS = Number(process.env.DDS_TRIALS ?? 3);
 // Declared by the robots. One that is scheduled late by less than this is not cut before it fails.
@@ -22,6 +23,7 @@ const TICK_S = 1 / 60, PERIOD_S = 1e-3; // of the session, of the robot's comman
 // What a loaded machine may take beyond, to run the watchdog and the step and to make the frame; and
 // what it was late to run this very program.
 const SLACK_S = Number(process.env.DDS_SLACK_S ?? 0.1);
+const AT_AIM_M = 1e-4; // the quantum of float32 in frames, and the last of the way
 const NETWORK = join(dirname(fileURLToPath(process.env.LOOPBACK)), 'network.xml');
 const folder = mkdtempSync(join(tmpdir(), 'cautery-failures-'));
 
@@ -192,6 +194,23 @@ test("the server's clock jumps", async (t) => {
 		serverClock.shift(0);
 		return outcome;
 	});
+});
+
+test('the clock of the machine steps back an hour: its robot drives on after a deadline', async (t) => {
+	const clock = new Clock('machine');
+	const { client, session, stream } = await watched(t, await start(t, {}, { environment: clock.environment }), 'machine-clock');
+	const robot = new Program(process.env.CONTROLLER, [DOMAIN, session, 'hook', 'native', 1000 * DEADLINE_S],
+		{ environment: { ...CYCLONE, ...clock.environment } });
+	t.after(() => robot.kill());
+	await robot.event((e) => e.event === 'matched', 'matched');
+	robot.tell('write on');
+	await robot.until((s) => s.driver_name.startsWith('dds '));
+	const aims = [[0.01, 0, 0.02], [0, 0.01, 0.02], [0, 0, 0.03]];
+	for (const [i, aim] of aims.entries()) {
+		clock.shift(-3600 * i);
+		robot.tell(`aim ${aim.join(' ')}`);
+		await client.until(() => far(stream.tools[0].position, aim) < AT_AIM_M, `it follows at ${-i} h`);
+	}
 });
 
 // ---- a network of two machines, in the test's own one

@@ -130,8 +130,10 @@ static void tell_reply(const cautery_SessionReply *reply)
 	       (unsigned long long)reply->tick, (unsigned long long)reply->epoch, reply->driver);
 	for (uint32_t i = 0; i < reply->sessions._length; i++) {
 		const cautery_SessionStatus *s = &reply->sessions._buffer[i];
-		printf("%s{\"session\":\"%s\",\"scene\":\"%s\",\"state\":%d,\"vertex_count\":%u}",
-		       i ? "," : "", s->session, s->scene, (int)s->state, s->vertex_count);
+		printf("%s{\"session\":\"%s\",\"number\":%u,\"scene\":\"%s\",\"state\":%d,\"vertex_count\":"
+		       "%u}",
+		       i ? "," : "", s->session, s->session_number, s->scene, (int)s->state,
+		       s->vertex_count);
 	}
 	printf("]}\n");
 }

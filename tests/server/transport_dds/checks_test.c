@@ -12,6 +12,7 @@
 #define LIMIT_S 0.1
 #define NOW_NS 1700000000000000000LL
 #define MS 1000000LL
+#define HOUR_NS (3600 * 1000 * MS)
 
 static const cau_motion_past past = {.sequence = 7,
                                      .source_time_ns = NOW_NS - 10 * MS,
@@ -23,8 +24,8 @@ static const cau_tool_def tool = {.max_speed_m_s = 0.5, .max_turn_rad_s = 12};
 static void order(uint64_t sequence, int64_t source_time_ns, const char *path)
 {
 	cau_error error = {0};
-	cau_status status =
-		cau_motion_check_order(&past, sequence, source_time_ns, NOW_NS, LIMIT_S, &error);
+	cau_status status = cau_motion_check_order(&past, sequence, source_time_ns, NOW_NS,
+	                                           past.pose_s + 0.01, LIMIT_S, &error);
 	assert_int_equal(status, path ? CAU_BAD_VALUE : CAU_OK);
 	assert_string_equal(error.path, path ? path : "");
 }
@@ -53,7 +54,35 @@ static void times_are_near_and_go_on(void **state)
 	cau_motion_past none = {0};
 	cau_error error = {0};
 	int64_t old = NOW_NS - 101 * MS;
-	assert_int_equal(cau_motion_check_order(&none, 1, old, NOW_NS, LIMIT_S, &error), CAU_BAD_VALUE);
+	assert_int_equal(cau_motion_check_order(&none, 1, old, NOW_NS, 50, LIMIT_S, &error),
+	                 CAU_BAD_VALUE);
+}
+
+// Both clocks step back an hour, and the count with them if it is made of the time: refused until
+// the deadline is over, and not for an hour.
+static void a_step_back_locks_out_for_a_deadline_only(void **state)
+{
+	(void)state;
+	cau_error error = {0};
+	const struct {
+		uint64_t sequence;
+		int64_t source_time_ns, now_ns;
+		double after_s;
+		cau_status status;
+	} cases[] = {
+		{8, NOW_NS - HOUR_NS, NOW_NS - HOUR_NS, 0.9 * LIMIT_S, CAU_BAD_VALUE},
+		{8, NOW_NS - HOUR_NS, NOW_NS - HOUR_NS, 1.1 * LIMIT_S, CAU_OK},
+		{1, NOW_NS, NOW_NS, 0.9 * LIMIT_S, CAU_BAD_VALUE},
+		{1, NOW_NS, NOW_NS, 1.1 * LIMIT_S, CAU_OK},
+		{0, NOW_NS, NOW_NS, 1.1 * LIMIT_S, CAU_BAD_VALUE},
+		{UINT64_MAX, NOW_NS, NOW_NS, 1.1 * LIMIT_S, CAU_BAD_VALUE},
+		{8, NOW_NS - HOUR_NS, NOW_NS, 1.1 * LIMIT_S, CAU_BAD_VALUE}, // one clock alone: stale
+	};
+	for (size_t i = 0; i < sizeof cases / sizeof cases[0]; i++)
+		assert_int_equal(cau_motion_check_order(&past, cases[i].sequence, cases[i].source_time_ns,
+		                                        cases[i].now_ns, past.pose_s + cases[i].after_s,
+		                                        LIMIT_S, &error),
+		                 cases[i].status);
 }
 
 static void poses_are_finite_and_rotations_unit(void **state)
@@ -125,6 +154,7 @@ int main(void)
 	const struct CMUnitTest tests[] = {
 		cmocka_unit_test(sequences_go_up),
 		cmocka_unit_test(times_are_near_and_go_on),
+		cmocka_unit_test(a_step_back_locks_out_for_a_deadline_only),
 		cmocka_unit_test(poses_are_finite_and_rotations_unit),
 		cmocka_unit_test(jaws_are_within_their_range),
 		cmocka_unit_test(leaps_are_refused),
