@@ -36,6 +36,13 @@ enum { CAU_CONFIG_TEXT_BYTES = 512 };
 	INTEGER(max_upload_bytes, 67108864, 1024, 1073741824, "largest uploaded mesh")                 \
 	INTEGER(max_requests_per_s, 2000, 1, 1000000, "messages of one client in a second")            \
 	INTEGER(queue_commands, 256, 8, 65536, "commands that wait for a session's tick border")       \
+	INTEGER(queue_reads, 64, 8, 65536, "requests that only read, waiting for a session")           \
+	INTEGER(quota_connection, 120, 1, 1000000, "expensive requests a minute of one connection")    \
+	INTEGER(quota_address, 600, 1, 1000000, "expensive requests a minute of one address")          \
+	INTEGER(quota_view, 300, 1, 1000000, "expensive requests a minute of all viewers")             \
+	INTEGER(quota_operate, 1200, 1, 1000000, "expensive requests a minute of all operators")       \
+	INTEGER(quota_admin, 1200, 1, 1000000, "expensive requests a minute of all admins")            \
+	INTEGER(quota_all, 2400, 1, 1000000, "expensive requests a minute in all")                     \
 	INTEGER(subscriber_bytes, 196608, 16384, 16777216, "frames in flight to one subscriber")       \
 	REAL(hello_timeout_s, 5, 0.05, 60, "a connection without hello is closed after this")          \
 	REAL(browser_deadline_s, 0.25, 0.02, 10, "silence of a browser's driver to energy off")        \

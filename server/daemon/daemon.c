@@ -7,6 +7,7 @@
 #include <unistd.h>
 
 #include "auth/auth.h"
+#include "builder/builder.h"
 #include "clock/clock.h"
 #include "http/static_files.h"
 #include "hub/hub.h"
@@ -30,6 +31,7 @@ struct cau_daemon {
 	cau_scenes *scenes;
 	cau_store *store;
 	cau_worker_pool *pool;
+	cau_builder *builder;
 	cau_hub *hub;
 	cau_watchdog *watchdog;
 	cau_service *service;
@@ -80,9 +82,12 @@ static cau_status open_hub(cau_daemon *daemon, cau_error *error)
 	int32_t workers = config->workers ? (int32_t)config->workers : cores > 0 ? (int32_t)cores : 1;
 	cau_status status = cau_worker_pool_create(
 		&daemon->pool, workers, 2 * (int32_t)config->max_sessions + 1, CAU_NICE_LAST, error);
+	if (!status)
+		status = cau_builder_create(&daemon->builder, CAU_NICE_BUILDER, error);
 	cau_hub_def def = {.config = config,
 	                   .store = daemon->store,
 	                   .pool = daemon->pool,
+	                   .builder = daemon->builder,
 	                   .scenes = daemon->scenes,
 	                   .armed = on_armed,
 	                   .user = daemon};
@@ -181,11 +186,14 @@ void cau_daemon_stop(cau_daemon *daemon)
 		cau_hub_drain(daemon->hub, daemon->config->drain_s);
 	if (daemon->network)
 		cau_network_stop(daemon->network, CAU_CLOSE_DRAINING, CLOSING_S);
+	if (daemon->builder)
+		cau_builder_stop(daemon->builder);
 	cau_watchdog_destroy(daemon->watchdog);
 	if (daemon->service)
 		cau_service_set_network(daemon->service, NULL);
 	cau_network_destroy(daemon->network);
 	cau_hub_destroy(daemon->hub);
+	cau_builder_destroy(daemon->builder);
 	cau_dds_destroy(daemon->dds);
 	cau_service_destroy(daemon->service);
 	cau_worker_pool_destroy(daemon->pool);

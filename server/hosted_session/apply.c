@@ -184,11 +184,6 @@ void cau_hosted_apply(cau_hosted *h, cau_order *order)
 		[CAU_ORDER_TAKE_OVER] = cau_apply_take_over,
 		[CAU_ORDER_HAND_OVER] = cau_apply_hand_over,
 		[CAU_ORDER_REQUEST_TAKEOVER] = cau_apply_request_takeover,
-		[CAU_ORDER_DESCRIBE] = cau_answer_describe,
-		[CAU_ORDER_TIMELINE] = cau_apply_timeline,
-		[CAU_ORDER_EXPORT] = cau_apply_export,
-		[CAU_ORDER_LOG] = cau_apply_log,
-		[CAU_ORDER_JOIN] = cau_apply_join,
 	};
 	if (!was_resent(h, order))
 		handlers[order->kind](h, order);

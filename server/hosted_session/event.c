@@ -6,6 +6,8 @@
 
 #include "hosted_session/internal.h"
 
+#define READ_EXPECTED_S 0.02 // for a page of the timeline out of the store
+
 static cau_wire_timeline_event *newest(cau_hosted *h)
 {
 	return h->event_count ? &h->events[(h->event_count - 1) % EVENT_COUNT] : NULL;
@@ -93,10 +95,12 @@ static cau_status take_event(void *user, const cau_store_event *row)
 	return CAU_OK;
 }
 
-static cau_status read_page(cau_hosted *h, uint64_t from_tick, page *taken, cau_error *error)
+// The newest on the branch's line from `from_tick` up to `to_tick`.
+static cau_status read_page(const cau_hosted *h, int64_t branch, uint64_t from_tick,
+                            uint64_t to_tick, page *taken, cau_error *error)
 {
-	cau_status status = cau_store_read_timeline(h->around->store, h->id, h->branch, from_tick,
-	                                            h->tick, taken->capacity, take_event, taken, error);
+	cau_status status = cau_store_read_timeline(h->around->store, h->id, branch, from_tick, to_tick,
+	                                            taken->capacity, take_event, taken, error);
 	for (int32_t i = 0; i < taken->count / 2; i++) {
 		cau_wire_timeline_event swapped = taken->events[i];
 		taken->events[i] = taken->events[taken->count - 1 - i];
@@ -110,7 +114,7 @@ void cau_events_load(cau_hosted *h)
 	cau_error error = {0};
 	page taken = {h->events, 0, EVENT_COUNT};
 	h->cut_open = false;
-	if (read_page(h, 0, &taken, &error))
+	if (read_page(h, h->branch, 0, h->tick, &taken, &error))
 		cau_log(CAU_LOG_ERROR, h->id, "events_not_read", "reason=\"%s\"", error.reason);
 	h->event_count = (uint64_t)taken.count;
 	h->events_older = taken.count == EVENT_COUNT;
@@ -138,34 +142,72 @@ static void copy_newest(const cau_hosted *h, uint64_t from_tick, page *taken)
 	}
 }
 
-static cau_status find_events(cau_hosted *h, uint64_t from_tick, page *taken, cau_error *error)
+static void answer_page(const cau_read_job *job, cau_wire_timeline_event *events, int32_t count)
 {
-	if (in_memory(h, from_tick, (uint64_t)taken->capacity)) {
-		copy_newest(h, from_tick, taken);
-		return CAU_OK;
-	}
-	cau_event_end_cut(h);
-	cau_record_commit(h);
-	cau_store_flush(h->around->store);
-	return read_page(h, from_tick, taken, error);
+	const cau_reply *reply = &job->order->reply;
+	cau_error error = {0};
+	cau_outcome outcome = {0};
+	cau_wire_timeline result = {.tick = (int64_t)job->tick,
+	                            .oldest_tick = (int64_t)job->oldest_tick,
+	                            .branch = job->branch,
+	                            .events = {events, count, count}};
+	char *text = cau_answer_text(reply->method, &result, &outcome.text_bytes, &error);
+	outcome.text = text;
+	outcome.error = text ? NULL : &error;
+	cau_reply_answer(reply, &outcome);
+	free(text);
+}
+
+// On the builder: what memory does not hold any more.
+static void answer_from_store(cau_read_job *job)
+{
+	cau_error error = {0};
+	page *taken = job->copy;
+	cau_store_flush(job->hosted->around->store);
+	if (read_page(job->hosted, job->branch, job->order->as.timeline.from_tick, job->tick, taken,
+	              &error))
+		cau_reply_fail(&job->order->reply, &error, 0);
+	else
+		answer_page(job, taken->events, taken->count);
+}
+
+static void free_page(void *pointer)
+{
+	page *taken = pointer;
+	free(taken->events);
+	free(taken);
+}
+
+static page *make_page(int32_t capacity)
+{
+	page *made = malloc(sizeof *made);
+	if (made)
+		*made = (page){calloc((size_t)capacity, sizeof *made->events), 0, capacity};
+	if (made && made->events)
+		return made;
+	free(made);
+	return NULL;
 }
 
 void cau_apply_timeline(cau_hosted *h, cau_order *order)
 {
 	cau_error error = {0};
-	int32_t wanted = order->as.timeline.count;
-	page taken = {malloc((size_t)wanted * sizeof *taken.events), 0, wanted};
-	cau_status status = taken.events
-	                        ? find_events(h, order->as.timeline.from_tick, &taken, &error)
-	                        : cau_fail(&error, CAU_NO_MEMORY, "", "no memory for the timeline");
-	if (status) {
+	uint64_t from_tick = order->as.timeline.from_tick;
+	page *taken = make_page(order->as.timeline.count);
+	if (!taken) {
+		cau_fail(&error, CAU_NO_MEMORY, "", "no memory for the timeline");
 		cau_answer_fail(order, &error, 0);
-	} else {
-		cau_wire_timeline result = {.tick = (int64_t)h->tick,
-		                            .oldest_tick = (int64_t)h->oldest_tick,
-		                            .branch = h->branch,
-		                            .events = {taken.events, taken.count, wanted}};
-		cau_answer_order(h, order, &result);
+		return;
 	}
-	free(taken.events);
+	if (!in_memory(h, from_tick, (uint64_t)taken->capacity)) {
+		cau_event_end_cut(h);
+		cau_reads_hand_over(h, order, answer_from_store, taken, free_page, READ_EXPECTED_S);
+		return;
+	}
+	copy_newest(h, from_tick, taken);
+	cau_read_job now = {
+		.order = order, .tick = h->tick, .oldest_tick = h->oldest_tick, .branch = h->branch};
+	answer_page(&now, taken->events, taken->count);
+	free_page(taken);
+	free(order);
 }

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Files made of a session: the tissue for other programs, the log as a script.
+// Files made of a session: the tissue for other programs, the log as a script. The worker copies
+// what steps change, at a tick border; the builder writes the file of the copy.
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
@@ -8,53 +9,114 @@
 #include "cautery/command_json.h"
 #include "hosted_session/internal.h"
 
+#define LINE_S 1e-6        // what a line of such a file takes, about
+#define LOG_EXPECTED_S 0.1 // nobody knows how long a log is before it is read
+
 static atomic_uint last_transfer;
 
 // Answers with the transfer and hands the file to the transport, which sends it in chunks.
-static void answer_file(cau_hosted *h, cau_order *order, const char *bytes, size_t byte_count,
+static void answer_file(const cau_read_job *job, const char *bytes, size_t byte_count,
                         const char *ending, const char *media_type)
 {
+	const cau_reply *reply = &job->order->reply;
 	cau_error error = {0};
 	cau_buffer *file = cau_buffer_create(byte_count, true);
 	cau_wire_transfer result = {.transfer = ++last_transfer, .byte_count = (int64_t)byte_count};
 	cau_outcome outcome = {.file = file, .transfer = (uint32_t)result.transfer};
 	char *text = NULL;
-	snprintf(result.file_name, sizeof result.file_name, "%s-%llu.%s", h->id,
-	         (unsigned long long)h->tick, ending);
+	snprintf(result.file_name, sizeof result.file_name, "%s-%llu.%s", job->hosted->id,
+	         (unsigned long long)job->tick, ending);
 	snprintf(result.media_type, sizeof result.media_type, "%s", media_type);
 	if (file && cau_sha256(bytes, byte_count, result.sha256)) {
 		memcpy(cau_buffer_bytes(file), bytes, byte_count);
-		text = cau_answer_text(order->reply.method, &result, &outcome.text_bytes, &error);
+		text = cau_answer_text(reply->method, &result, &outcome.text_bytes, &error);
 	} else {
 		cau_fail(&error, CAU_NO_MEMORY, "", "no memory for the file");
 	}
 	outcome.text = text;
 	outcome.error = text ? NULL : &error;
-	cau_reply_answer(&order->reply, &outcome);
+	cau_reply_answer(reply, &outcome);
 	cau_buffer_release(file);
 	free(text);
-	free(order);
 }
 
-static bool is_drawn(const cau_frame *frame, int32_t face)
+static void fail(const cau_reply *reply, cau_status status, const char *reason)
 {
-	return !(frame->face_mask[face / 32] >> (face % 32) & 1);
+	cau_error error = {0};
+	cau_fail(&error, status, "", "%s", reason);
+	cau_reply_fail(reply, &error, 0);
 }
 
-static void write_obj(const cau_hosted *h, const cau_frame *frame, FILE *stream)
+// ---- the copy
+// What a file shows of a tick.
+typedef struct tissue_copy {
+	double *position; // m, (vertex_count x 3)
+	float *exposure;  // (vertex_count)
+	uint32_t *mask;   // ((face_count + 31) / 32)
+	uint8_t *alive;   // (tetrahedron_count)
+} tissue_copy;
+
+static void *copy_of(const void *source, size_t bytes)
 {
-	fprintf(stream, "# %s at tick %llu, metres\n", h->id, (unsigned long long)frame->tick);
-	for (int32_t v = 0; v < h->info.vertex_count; v++)
-		fprintf(stream, "v %.9g %.9g %.9g\n", frame->position[3 * v], frame->position[3 * v + 1],
-		        frame->position[3 * v + 2]);
-	for (int32_t layer = 0; layer < h->info.layer_count; layer++) {
-		const cau_session_layer *part = &h->info.layers[layer];
+	void *copy = malloc(bytes + 1);
+	if (copy && bytes)
+		memcpy(copy, source, bytes);
+	return copy;
+}
+
+static void free_copy(void *pointer)
+{
+	tissue_copy *copy = pointer;
+	free(copy->position);
+	free(copy->exposure);
+	free(copy->mask);
+	free(copy->alive);
+	free(copy);
+}
+
+static tissue_copy *copy_tissue(const cau_hosted *h)
+{
+	size_t vertices = (size_t)h->info.vertex_count;
+	size_t words = ((size_t)h->info.face_count + 31) / 32;
+	const uint8_t *tetrahedron, *triangle, *link;
+	cau_frame frame;
+	tissue_copy *copy = calloc(1, sizeof *copy);
+	if (!copy)
+		return NULL;
+	cau_session_frame(h->core, &frame);
+	cau_session_alive(h->core, &tetrahedron, &triangle, &link);
+	copy->position = copy_of(frame.position, vertices * 3 * sizeof(double));
+	copy->exposure = copy_of(frame.exposure, vertices * sizeof(float));
+	copy->mask = copy_of(frame.face_mask, words * sizeof(uint32_t));
+	copy->alive = copy_of(tetrahedron, (size_t)h->info.tetrahedron_count);
+	if (copy->position && copy->exposure && copy->mask && copy->alive)
+		return copy;
+	free_copy(copy);
+	return NULL;
+}
+
+// ---- the file. `info` is the same for a session's whole life, so any thread may read it.
+static bool is_drawn(const tissue_copy *copy, int32_t face)
+{
+	return !(copy->mask[face / 32] >> (face % 32) & 1);
+}
+
+static void write_obj(const cau_read_job *job, FILE *stream)
+{
+	const cau_session_info *info = &job->hosted->info;
+	const tissue_copy *copy = job->copy;
+	fprintf(stream, "# %s at tick %llu, metres\n", job->hosted->id, (unsigned long long)job->tick);
+	for (int32_t v = 0; v < info->vertex_count; v++)
+		fprintf(stream, "v %.9g %.9g %.9g\n", copy->position[3 * v], copy->position[3 * v + 1],
+		        copy->position[3 * v + 2]);
+	for (int32_t layer = 0; layer < info->layer_count; layer++) {
+		const cau_session_layer *part = &info->layers[layer];
 		if (part->face_count)
 			fprintf(stream, "g %s\n", part->name);
 		for (int32_t f = part->first_face; f < part->first_face + part->face_count; f++)
-			if (is_drawn(frame, f))
-				fprintf(stream, "f %d %d %d\n", h->info.face[3 * f] + 1,
-				        h->info.face[3 * f + 1] + 1, h->info.face[3 * f + 2] + 1);
+			if (is_drawn(copy, f))
+				fprintf(stream, "f %d %d %d\n", info->face[3 * f] + 1, info->face[3 * f + 1] + 1,
+				        info->face[3 * f + 2] + 1);
 	}
 }
 
@@ -64,27 +126,26 @@ typedef struct cells {
 	int32_t count;
 } cells;
 
-static bool is_sheet_face(const cau_hosted *h, int32_t face)
+static bool is_sheet_face(const cau_session_info *info, int32_t face)
 {
-	return h->info.layers[h->info.face_layer[face]].kind != CAU_LAYER_FAT;
+	return info->layers[info->face_layer[face]].kind != CAU_LAYER_FAT;
 }
 
-static bool collect_cells(const cau_hosted *h, const cau_frame *frame, cells *out)
+static bool collect_cells(const cau_read_job *job, cells *out)
 {
-	const uint8_t *tetrahedron, *triangle, *link;
-	size_t most = (size_t)h->info.tetrahedron_count + (size_t)h->info.face_count + 1;
-	cau_session_alive(h->core, &tetrahedron, &triangle, &link);
+	const cau_session_info *info = &job->hosted->info;
+	const tissue_copy *copy = job->copy;
+	size_t most = (size_t)info->tetrahedron_count + (size_t)info->face_count + 1;
 	out->vertex = malloc(most * 4 * sizeof *out->vertex);
 	if (!out->vertex)
 		return false;
-	for (int32_t i = 0; i < h->info.tetrahedron_count; i++)
-		if (tetrahedron[i])
-			memcpy(&out->vertex[4 * out->count++], &h->info.tetrahedron[4 * i],
-			       4 * sizeof(int32_t));
-	for (int32_t f = 0; f < h->info.face_count; f++) {
-		if (!is_drawn(frame, f) || !is_sheet_face(h, f))
+	for (int32_t i = 0; i < info->tetrahedron_count; i++)
+		if (copy->alive[i])
+			memcpy(&out->vertex[4 * out->count++], &info->tetrahedron[4 * i], 4 * sizeof(int32_t));
+	for (int32_t f = 0; f < info->face_count; f++) {
+		if (!is_drawn(copy, f) || !is_sheet_face(info, f))
 			continue;
-		memcpy(&out->vertex[4 * out->count], &h->info.face[3 * f], 3 * sizeof(int32_t));
+		memcpy(&out->vertex[4 * out->count], &info->face[3 * f], 3 * sizeof(int32_t));
 		out->vertex[4 * out->count++ + 3] = -1;
 	}
 	return true;
@@ -97,17 +158,19 @@ static void write_array(FILE *stream, const char *type, const char *name, int co
 	        type, name, components);
 }
 
-static void write_points(const cau_hosted *h, const cau_frame *frame, FILE *stream)
+static void write_points(const cau_read_job *job, FILE *stream)
 {
+	const cau_session_info *info = &job->hosted->info;
+	const tissue_copy *copy = job->copy;
 	fputs("<Points>\n", stream);
 	write_array(stream, "Float64", "position_m", 3);
-	for (int32_t v = 0; v < h->info.vertex_count; v++)
-		fprintf(stream, "%.9g %.9g %.9g\n", frame->position[3 * v], frame->position[3 * v + 1],
-		        frame->position[3 * v + 2]);
+	for (int32_t v = 0; v < info->vertex_count; v++)
+		fprintf(stream, "%.9g %.9g %.9g\n", copy->position[3 * v], copy->position[3 * v + 1],
+		        copy->position[3 * v + 2]);
 	fputs("</DataArray>\n</Points>\n<PointData>\n", stream);
 	write_array(stream, "Float32", "exposure", 1);
-	for (int32_t v = 0; v < h->info.vertex_count; v++)
-		fprintf(stream, "%.6g\n", (double)frame->exposure[v]);
+	for (int32_t v = 0; v < info->vertex_count; v++)
+		fprintf(stream, "%.6g\n", (double)copy->exposure[v]);
 	fputs("</DataArray>\n</PointData>\n", stream);
 }
 
@@ -131,50 +194,53 @@ static void write_cells(const cells *list, FILE *stream)
 	fputs("</DataArray>\n</Cells>\n", stream);
 }
 
-static void write_vtu(const cau_hosted *h, const cau_frame *frame, const cells *list, FILE *stream)
+static void write_vtu(const cau_read_job *job, const cells *list, FILE *stream)
 {
 	fprintf(stream,
 	        "<?xml version=\"1.0\"?>\n<VTKFile type=\"UnstructuredGrid\" version=\"0.1\" "
 	        "byte_order=\"LittleEndian\">\n<UnstructuredGrid>\n<Piece NumberOfPoints=\"%d\" "
 	        "NumberOfCells=\"%d\">\n",
-	        h->info.vertex_count, list->count);
-	write_points(h, frame, stream);
+	        job->hosted->info.vertex_count, list->count);
+	write_points(job, stream);
 	write_cells(list, stream);
 	fputs("</Piece>\n</UnstructuredGrid>\n</VTKFile>\n", stream);
 }
 
-static void fail(cau_order *order, cau_status status, const char *reason)
-{
-	cau_error error = {0};
-	cau_fail(&error, status, "", "%s", reason);
-	cau_answer_fail(order, &error, 0);
-}
-
-void cau_apply_export(cau_hosted *h, cau_order *order)
+static void make_tissue_file(cau_read_job *job)
 {
 	char *bytes = NULL;
 	size_t count = 0;
-	cau_frame frame;
 	cells list = {0};
-	bool vtu = order->as.format == CAU_EXPORT_VTU;
+	bool vtu = job->order->as.format == CAU_EXPORT_VTU;
 	FILE *stream = open_memstream(&bytes, &count);
-	cau_session_frame(h->core, &frame);
-	bool done = stream && (!vtu || collect_cells(h, &frame, &list));
+	bool done = stream && (!vtu || collect_cells(job, &list));
 	if (done && vtu)
-		write_vtu(h, &frame, &list, stream);
+		write_vtu(job, &list, stream);
 	else if (done)
-		write_obj(h, &frame, stream);
+		write_obj(job, stream);
 	if (stream)
 		done = fclose(stream) == 0 && done;
 	if (done)
-		answer_file(h, order, bytes, count, vtu ? "vtu" : "obj",
-		            vtu ? "application/xml" : "model/obj");
+		answer_file(job, bytes, count, vtu ? "vtu" : "obj", vtu ? "application/xml" : "model/obj");
 	else
-		fail(order, CAU_NO_MEMORY, "no memory for the file");
+		fail(&job->order->reply, CAU_NO_MEMORY, "no memory for the file");
 	free(list.vertex);
 	free(bytes);
 }
 
+void cau_apply_export(cau_hosted *h, cau_order *order)
+{
+	tissue_copy *copy = copy_tissue(h);
+	if (!copy) {
+		fail(&order->reply, CAU_NO_MEMORY, "no memory for the file");
+		free(order);
+		return;
+	}
+	double lines = (double)h->info.vertex_count + h->info.face_count + h->info.tetrahedron_count;
+	cau_reads_hand_over(h, order, make_tissue_file, copy, free_copy, LINE_S * lines);
+}
+
+// ---- the log
 static cau_status write_line(void *user, const cau_store_command *row)
 {
 	char json[CAU_COMMAND_JSON_MAX_BYTES];
@@ -192,24 +258,29 @@ static cau_status write_line(void *user, const cau_store_command *row)
 	return status;
 }
 
-void cau_apply_log(cau_hosted *h, cau_order *order)
+static void make_log_file(cau_read_job *job)
 {
 	char *bytes = NULL;
 	size_t count = 0;
 	cau_error error = {.reason = "no memory for the log"};
-	uint64_t to = order->as.log.to_tick < h->tick ? order->as.log.to_tick : h->tick;
+	cau_store *store = job->hosted->around->store;
+	uint64_t to = job->order->as.log.to_tick < job->tick ? job->order->as.log.to_tick : job->tick;
 	FILE *stream = open_memstream(&bytes, &count);
-	cau_record_commit(h);
-	cau_store_flush(h->around->store);
-	cau_status status =
-		stream ? cau_store_read_log(h->around->store, h->id, h->branch, order->as.log.from_tick,
-	                                to + 1, write_line, stream, &error)
-			   : CAU_NO_MEMORY;
+	cau_store_flush(store);
+	cau_status status = stream ? cau_store_read_log(store, job->hosted->id, job->branch,
+	                                                job->order->as.log.from_tick, to + 1,
+	                                                write_line, stream, &error)
+	                           : CAU_NO_MEMORY;
 	if (stream && fclose(stream))
 		status = CAU_NO_MEMORY;
 	if (status)
-		fail(order, status, error.reason);
+		fail(&job->order->reply, status, error.reason);
 	else
-		answer_file(h, order, bytes, count, "jsonl", "application/jsonl");
+		answer_file(job, bytes, count, "jsonl", "application/jsonl");
 	free(bytes);
+}
+
+void cau_apply_log(cau_hosted *h, cau_order *order)
+{
+	cau_reads_hand_over(h, order, make_log_file, NULL, NULL, LOG_EXPECTED_S);
 }

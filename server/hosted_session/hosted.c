@@ -67,6 +67,7 @@ void cau_hosted_release(cau_hosted *h)
 	if (!h || atomic_fetch_sub(&h->references, 1) != 1)
 		return;
 	free_orders(h->first);
+	free_orders(h->reads);
 	free_orders(h->postponed);
 	if (h->stepping)
 		free_orders(h->stepping);
@@ -191,6 +192,8 @@ cau_status cau_hosted_submit(cau_hosted *h, cau_order *order, cau_error *error)
 {
 	if (h->ended)
 		return cau_fail(error, CAU_NOT_FOUND, "params.session", "the session is destroyed");
+	if (cau_reads_are(order))
+		return cau_reads_submit(h, order, error);
 	if (h->drain_wanted && changes(order))
 		return cau_fail(error, CAU_BAD_STATE, "", "the daemon is ending");
 	if (changes(order) && !store_takes(h, error)) {

@@ -4,6 +4,7 @@
 // a step or a disk.
 #pragma once
 
+#include "builder/builder.h"
 #include "cautery/scene.h"
 #include "config/config.h"
 #include "hosted_session/order.h"
@@ -15,6 +16,7 @@ typedef struct cau_surroundings {
 	const cau_config *config;
 	cau_store *store;
 	cau_worker_pool *pool;
+	cau_builder *builder;
 	cau_sink sink;
 	// Energy came on somewhere: the watchdog must look at its times again.
 	void (*armed)(void *user);

@@ -149,6 +149,8 @@ struct cau_hosted {
 	pthread_mutex_t mutex;
 	cau_order *first, *last;
 	int32_t queued;
+	cau_order *reads; // reads.c
+	int32_t read_count;
 	cau_drive drives[CAU_MAX_TOOLS];
 	int32_t drive_count;
 	cau_stream streams[CAU_STREAM_PROFILES_MAX];
@@ -160,6 +162,7 @@ struct cau_hosted {
 	cau_hosted_counts counts;
 	atomic_bool unanswered; // its making is not with the store yet
 	atomic_bool ended, starting, checkpoint_wanted, drain_wanted, drained;
+	atomic_int files;           // of this session that the builder makes
 	atomic_int commits;         // on their way to the disk
 	atomic_bool commit_awaited; // wake the task when none is
 };
@@ -256,6 +259,32 @@ void cau_record_commit(cau_hosted *h); // submits the slice's batch
 // The stored answer of a resent request: CAU_OK (answered), CAU_NOT_FOUND (act), CAU_BAD_STATE
 // (wait), CAU_ALREADY_EXISTS (acted upon, and the answer is not kept any more).
 cau_status cau_record_resend(cau_hosted *h, const cau_order *order, cau_error *error);
+
+// ---- reads.c: requests that only read
+bool cau_reads_are(const cau_order *order);
+// Like cau_hosted_submit, for those.
+cau_status cau_reads_submit(cau_hosted *h, cau_order *order, cau_error *error);
+// How many wait. Noted before a slice takes the drivers' queue, so that each is served after all
+// commands that came before it.
+int32_t cau_reads_note(cau_hosted *h);
+// Serves some of the `noted` oldest.
+void cau_reads_serve(cau_hosted *h, int32_t noted);
+bool cau_reads_wait(cau_hosted *h); // some can be served now
+
+// What the builder needs for an answer; its thread must look at nothing of the session that steps
+// change.
+typedef struct cau_read_job {
+	cau_hosted *hosted;
+	cau_order *order;
+	uint64_t tick, oldest_tick; // of the slice that handed it over
+	int64_t branch;
+	void *copy;
+} cau_read_job;
+typedef void cau_read_work(cau_read_job *job); // answers the order, which is not its to free
+// Leaves an order to the builder, whose thread does `work` and then, also without having done it,
+// `finish` (may be NULL) with the copy. Takes order and copy.
+void cau_reads_hand_over(cau_hosted *h, cau_order *order, cau_read_work *work, void *copy,
+                         void (*finish)(void *copy), double expected_s);
 
 // ---- answer.c
 // Answers at once, or after the commit if the method changes something. Takes the order.

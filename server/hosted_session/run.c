@@ -242,6 +242,7 @@ static void go_on_replaying(cau_hosted *h)
 
 static void serve(cau_hosted *h, double now_s)
 {
+	int32_t reads = cau_reads_note(h);
 	cau_drive_apply_cuts(h);
 	apply_orders(h);
 	if (h->ended || h->replay.active)
@@ -251,6 +252,7 @@ static void serve(cau_hosted *h, double now_s)
 	cau_drive_tell_refusals(h, now_s);
 	cau_streams_publish(h, cau_monotonic_s());
 	checkpoint_if_due(h, now_s);
+	cau_reads_serve(h, reads);
 }
 
 static bool has_orders(cau_hosted *h)
@@ -270,7 +272,8 @@ static cau_due when(cau_hosted *h)
 		return (cau_due){0, now_s + 0.1}; // those at wall rate go first
 	if (h->state == CAU_SESSION_RUNNING)
 		return (cau_due){h->next_step_s, h->next_step_s + h->info.step_s / h->speed};
-	return (cau_due){has_orders(h) || h->dirty ? 0 : INFINITY, now_s + 0.1};
+	bool wanted = has_orders(h) || cau_reads_wait(h) || h->dirty;
+	return (cau_due){wanted ? 0 : INFINITY, now_s + 0.1};
 }
 
 cau_due cau_hosted_run(cau_task *task)

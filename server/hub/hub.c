@@ -48,9 +48,15 @@ cau_status cau_hub_create(cau_hub **made, const cau_hub_def *def, cau_error *err
 {
 	*made = NULL;
 	cau_hub *hub = calloc(1, sizeof *hub);
-	if (hub)
+	if (hub) {
 		hub->sessions = calloc(SLOTS(def->config), sizeof(cau_hosted *));
-	if (!hub || !hub->sessions) {
+		hub->quota = cau_quota_create(def->config);
+	}
+	if (!hub || !hub->sessions || !hub->quota) {
+		if (hub) {
+			cau_quota_destroy(hub->quota);
+			free(hub->sessions);
+		}
 		free(hub);
 		return cau_fail(error, CAU_NO_MEMORY, NULL, "no memory for the hub");
 	}
@@ -58,6 +64,7 @@ cau_status cau_hub_create(cau_hub **made, const cau_hub_def *def, cau_error *err
 	hub->around = (cau_surroundings){.config = def->config,
 	                                 .store = def->store,
 	                                 .pool = def->pool,
+	                                 .builder = def->builder,
 	                                 .sink = {hub, notify_all, frames_all, sliced_all},
 	                                 .armed = armed,
 	                                 .fork = cau_clerk_fork,
@@ -86,6 +93,7 @@ void cau_hub_destroy(cau_hub *hub)
 	}
 	pthread_mutex_destroy(&hub->mutex);
 	pthread_mutex_destroy(&hub->clerk_mutex);
+	cau_quota_destroy(hub->quota);
 	free(hub->sessions);
 	free(hub->clients);
 	free(hub);
@@ -94,6 +102,27 @@ void cau_hub_destroy(cau_hub *hub)
 const cau_scenes *cau_hub_scenes(const cau_hub *hub)
 {
 	return hub->def.scenes;
+}
+
+cau_quota *cau_hub_quota(cau_hub *hub)
+{
+	return hub->quota;
+}
+
+bool cau_hub_is_expensive(cau_method method)
+{
+	switch (method) {
+	case CAU_METHOD_SESSION_CREATE:
+	case CAU_METHOD_SESSION_FORK:
+	case CAU_METHOD_SESSION_RESET:
+	case CAU_METHOD_SESSION_RESTORE:
+	case CAU_METHOD_SESSION_REWIND:
+	case CAU_METHOD_SESSION_EXPORT:
+	case CAU_METHOD_SESSION_LOG:
+		return true;
+	default:
+		return false;
+	}
 }
 
 // ---- sessions

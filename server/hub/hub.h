@@ -11,6 +11,7 @@
 #include "cautery/messages.h"
 #include "config/config.h"
 #include "hosted_session/hosted.h"
+#include "hub/quota.h"
 #include "hub/scenes.h"
 
 typedef struct cau_hub cau_hub;
@@ -19,6 +20,7 @@ typedef struct cau_hub_def {
 	const cau_config *config; // borrowed, like all here
 	cau_store *store;
 	cau_worker_pool *pool;
+	cau_builder *builder;
 	const cau_scenes *scenes;
 	void (*armed)(void *user); // energy came on: cau_hub_watch is to be called again
 	void *user;
@@ -33,6 +35,10 @@ void cau_hub_add_sink(cau_hub *hub, const cau_sink *sink);
 // Resumes the store's sessions; reads the store. Then makes the demo if the settings want one.
 cau_status cau_hub_resume(cau_hub *hub, cau_error *error);
 const cau_scenes *cau_hub_scenes(const cau_hub *hub);
+// What transports ask before they pass on a request that costs much.
+cau_quota *cau_hub_quota(cau_hub *hub);
+// Whether a method's requests cost much: sessions made, states sought, files.
+bool cau_hub_is_expensive(cau_method method);
 
 // ---- clients
 enum { CAU_RESUME_BYTES = 33 };

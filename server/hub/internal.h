@@ -15,6 +15,7 @@ enum { MOST_SINKS = 4 };
 
 struct cau_hub {
 	cau_hub_def def;
+	cau_quota *quota;
 	cau_surroundings around;
 	cau_sink sinks[MOST_SINKS];
 	int sink_count;

@@ -56,6 +56,8 @@ typedef struct cau_peer {
 	cau_upload uploads[UPLOADS_OF_PEER];
 	uint32_t last_transfer;
 	cau_outgoing files[FILES_OF_PEER];
+	int files_asked; // and not announced yet
+	cau_allowance allowance;
 } cau_peer;
 
 // From other threads to the network thread.
@@ -64,6 +66,7 @@ typedef struct cau_post {
 	enum { POST_ANSWER, POST_NOTICE } kind;
 	uint64_t connection;   // ANSWER
 	cau_rpc_id id;         // ANSWER
+	cau_method method;     // ANSWER
 	cau_audience audience; // NOTICE
 	cau_buffer *text;
 	cau_buffer *file; // ANSWER, may be NULL
@@ -118,8 +121,8 @@ cau_call_handler cau_call_upload_begin, cau_call_upload_end;
 cau_hosted *cau_call_session(const cau_call *call);
 // A zeroed order of the call's client.
 cau_order *cau_call_order(const cau_call *call, cau_order_kind kind);
-// Submits to the call's session; takes the order.
-void cau_call_submit(const cau_call *call, cau_order *order);
+// Submits to the call's session; takes the order. False: refused, and answered.
+bool cau_call_submit(const cau_call *call, cau_order *order);
 
 // ---- streams
 cau_buffer *cau_peer_next_frame(cau_peer *peer);
@@ -129,7 +132,10 @@ bool cau_peer_has_room(cau_peer *peer, const cau_hosted *hosted);
 void cau_peer_join(cau_peer *peer, cau_hosted *hosted, int32_t stream); // takes the reference
 void cau_peer_watch_slowness(cau_peer *peer, double now_s);
 
-// ---- uploads
+// ---- files
+// Whether the connection may have one more file under way.
+bool cau_peer_has_room_for_file(const cau_peer *peer);
+bool cau_method_makes_file(cau_method method);
 void cau_peer_chunk(cau_peer *peer, const void *bytes, size_t byte_count);
 cau_buffer *cau_peer_next_chunk(cau_peer *peer);
 // Points the scene's meshes of source bytes at this connection's uploads.

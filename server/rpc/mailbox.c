@@ -87,6 +87,7 @@ void cau_service_answer(void *user, const cau_reply *reply, const cau_outcome *o
 	post->kind = POST_ANSWER;
 	post->connection = reply->connection;
 	post->id = reply->id;
+	post->method = reply->method;
 	post->text = outcome->error ? fault_text(&reply->id, outcome)
 	                            : with_id(outcome->text, outcome->text_bytes, &reply->id);
 	if (!outcome->error && outcome->file)
@@ -119,15 +120,15 @@ void cau_service_frames(void *user)
 }
 
 // ---- on the network thread
+// There is a place: cau_peer_has_room_for_file saw to it when the file was asked for.
 static void send_file(cau_peer *peer, cau_post *post)
 {
-	for (int i = 0; i < FILES_OF_PEER; i++)
-		if (!peer->files[i].file) {
-			peer->files[i] = (cau_outgoing){post->file, post->transfer, 0};
-			post->file = NULL;
-			return;
-		}
-	cau_connection_close(peer->connection, CAU_CLOSE_RATE, "too many exports at once");
+	int i = 0;
+	while (i < FILES_OF_PEER - 1 && peer->files[i].file)
+		i++;
+	cau_buffer_release(peer->files[i].file);
+	peer->files[i] = (cau_outgoing){post->file, post->transfer, 0};
+	post->file = NULL;
 }
 
 // A join that the connection has no room for is refused after all.
@@ -150,6 +151,8 @@ static void deliver_answer(cau_service *service, cau_post *post)
 		refuse_join(cau_peer_of(connection), post);
 		return;
 	}
+	if (connection && cau_method_makes_file(post->method))
+		cau_peer_of(connection)->files_asked--;
 	if (connection && post->text) {
 		cau_connection_send(connection, post->text);
 		post->text = NULL;

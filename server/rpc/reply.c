@@ -118,13 +118,13 @@ cau_order *cau_call_order(const cau_call *call, cau_order_kind kind)
 	return order;
 }
 
-void cau_call_submit(const cau_call *call, cau_order *order)
+bool cau_call_submit(const cau_call *call, cau_order *order)
 {
 	cau_error error = {0};
 	cau_hosted *hosted = cau_call_session(call);
 	if (!hosted) {
 		free(order);
-		return;
+		return false;
 	}
 	cau_status status = cau_hosted_submit(hosted, order, &error);
 	if (status) {
@@ -132,4 +132,5 @@ void cau_call_submit(const cau_call *call, cau_order *order)
 		cau_call_fail(call, &error, status == CAU_IO ? CAU_RPC_STORE_FULL : 0);
 	}
 	cau_hosted_release(hosted);
+	return !status;
 }

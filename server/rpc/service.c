@@ -59,6 +59,29 @@ static void refuse(const cau_call *call, cau_status status, int32_t code, const 
 	cau_call_fail(call, &error, code);
 }
 
+// Requests that cost much are for those who have some of their allowances left.
+static bool afford(const cau_call *call)
+{
+	cau_peer *peer = call->peer;
+	cau_error error = {0};
+	if (!cau_hub_is_expensive(call->message->method))
+		return true;
+	if (cau_method_makes_file(call->message->method) && !cau_peer_has_room_for_file(peer)) {
+		cau_fail(&error, CAU_LIMIT, "",
+		         "%d files of this connection are under way, as many as may be: try again when one "
+		         "has come",
+		         FILES_OF_PEER);
+		cau_call_fail(call, &error, 0);
+		return false;
+	}
+	if (!cau_quota_take(cau_hub_quota(peer->service->hub), &peer->allowance,
+	                    peer->connection->address, peer->client.asker.role, cau_monotonic_s(),
+	                    &error))
+		return true;
+	cau_call_fail(call, &error, CAU_RPC_RATE);
+	return false;
+}
+
 // Whether the call may go on; answers it if not.
 static bool admit(cau_call *call)
 {
@@ -76,7 +99,7 @@ static bool admit(cau_call *call)
 	else if (!hello && cau_rpc_envelope_read(call->message, &call->envelope, &error))
 		cau_call_fail(call, &error, 0);
 	else
-		return true;
+		return hello || afford(call);
 	return false;
 }
 

@@ -231,5 +231,7 @@ void cau_call_session_order(cau_call *call)
 		free(order);
 		return;
 	}
-	cau_call_submit(call, order);
+	bool file = cau_method_makes_file(call->message->method) && order->reply.answer;
+	if (cau_call_submit(call, order))
+		call->peer->files_asked += file;
 }

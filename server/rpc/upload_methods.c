@@ -164,6 +164,19 @@ cau_status cau_peer_fill_meshes(cau_peer *peer, cau_scene_def *scene, cau_error 
 }
 
 // ---- out
+bool cau_method_makes_file(cau_method method)
+{
+	return method == CAU_METHOD_SESSION_EXPORT || method == CAU_METHOD_SESSION_LOG;
+}
+
+bool cau_peer_has_room_for_file(const cau_peer *peer)
+{
+	int under_way = peer->files_asked;
+	for (int i = 0; i < FILES_OF_PEER; i++)
+		under_way += peer->files[i].file != NULL;
+	return under_way < FILES_OF_PEER;
+}
+
 cau_buffer *cau_peer_next_chunk(cau_peer *peer)
 {
 	for (int i = 0; i < FILES_OF_PEER; i++) {

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Synchronous reads on a connection of their own: in WAL they neither wait for commits nor hold
-// them up.
+// Synchronous reads on connections of their own: in WAL they neither wait for commits nor hold
+// them up. Stored answers have one for themselves: a worker that looks for one does not wait for
+// the builder's log.
 #include <stdlib.h>
 #include <string.h>
 
@@ -399,17 +400,33 @@ static bool is_pending(cau_store *store, const char *client, uint64_t sequence)
 	return pending;
 }
 
+static cau_status prepare_answer(cau_store *store, const char *sql, sqlite3_stmt **statement,
+                                 cau_error *error)
+{
+	int code = sqlite3_prepare_v2(store->answers, sql, -1, statement, NULL);
+	return code ? cau_store_fault(store->answers, code, "reading", error) : CAU_OK;
+}
+
+static cau_status next_answer(cau_store *store, sqlite3_stmt *statement, cau_error *error)
+{
+	int code = sqlite3_step(statement);
+	if (code == SQLITE_ROW)
+		return CAU_OK;
+	return code == SQLITE_DONE ? CAU_NOT_FOUND
+	                           : cau_store_fault(store->answers, code, "reading", error);
+}
+
 // Why there is no answer: CAU_NOT_FOUND or CAU_ALREADY_EXISTS.
 static cau_status look_for_forgotten(cau_store *store, const char *client, uint64_t sequence,
                                      cau_error *error)
 {
 	sqlite3_stmt *statement = NULL;
-	cau_status status = cau_store_prepare(
+	cau_status status = prepare_answer(
 		store, "SELECT 1 FROM forgotten WHERE client = ?1 AND sequence >= ?2", &statement, error);
 	if (!status) {
 		sqlite3_bind_text(statement, 1, client, -1, SQLITE_STATIC);
 		sqlite3_bind_int64(statement, 2, (int64_t)sequence);
-		status = cau_store_next_row(store, statement, error);
+		status = next_answer(store, statement, error);
 	}
 	sqlite3_finalize(statement);
 	if (status == CAU_NOT_FOUND)
@@ -430,14 +447,14 @@ cau_status cau_store_read_answer(cau_store *store, const char *client, uint64_t 
 	if (is_pending(store, client, sequence))
 		return cau_fail(error, CAU_BAD_STATE, "sequence", "request %llu is being stored",
 		                (unsigned long long)sequence);
-	pthread_mutex_lock(&store->reading_mutex);
-	cau_status status = cau_store_prepare(
+	pthread_mutex_lock(&store->answers_mutex);
+	cau_status status = prepare_answer(
 		store, "SELECT session, result FROM answers WHERE client = ?1 AND sequence = ?2",
 		&statement, error);
 	if (!status) {
 		sqlite3_bind_text(statement, 1, client, -1, SQLITE_STATIC);
 		sqlite3_bind_int64(statement, 2, (int64_t)sequence);
-		status = cau_store_next_row(store, statement, error);
+		status = next_answer(store, statement, error);
 	}
 	if (status == CAU_NOT_FOUND)
 		status = look_for_forgotten(store, client, sequence, error);
@@ -451,6 +468,6 @@ cau_status cau_store_read_answer(cau_store *store, const char *client, uint64_t 
 		status = visit(user, &answer);
 	}
 	sqlite3_finalize(statement);
-	pthread_mutex_unlock(&store->reading_mutex);
+	pthread_mutex_unlock(&store->answers_mutex);
 	return status;
 }

@@ -184,6 +184,8 @@ static cau_status open_database(struct cau_store *store, cau_error *error)
 	if (!status)
 		status = cau_store_file_open_reader(store->path, &store->reading, error);
 	if (!status)
+		status = cau_store_file_open_reader(store->path, &store->answers, error);
+	if (!status)
 		status = cau_store_file_open(store->path, store->config.wal_bytes, &store->folding, error);
 	return status;
 }
@@ -192,6 +194,7 @@ static void close_database(struct cau_store *store)
 {
 	cau_store_writer_finish(&store->writer);
 	sqlite3_close(store->reading);
+	sqlite3_close(store->answers);
 	sqlite3_close(store->folding);
 	sqlite3_close(store->writing); // the last connection folds the log and removes it
 	cau_store_lock_release(&store->lock);
@@ -207,6 +210,7 @@ static void init_locks(struct cau_store *store)
 	pthread_cond_init(&store->answer, NULL);
 	pthread_mutex_init(&store->mutex, NULL);
 	pthread_mutex_init(&store->reading_mutex, NULL);
+	pthread_mutex_init(&store->answers_mutex, NULL);
 }
 
 static void destroy(struct cau_store *store)
@@ -216,6 +220,7 @@ static void destroy(struct cau_store *store)
 	pthread_cond_destroy(&store->answer);
 	pthread_mutex_destroy(&store->mutex);
 	pthread_mutex_destroy(&store->reading_mutex);
+	pthread_mutex_destroy(&store->answers_mutex);
 	free(store);
 }
 

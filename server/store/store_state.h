@@ -37,6 +37,8 @@ struct cau_store {
 
 	pthread_mutex_t reading_mutex; // guards reading
 	sqlite3 *reading;
+	pthread_mutex_t answers_mutex; // guards answers
+	sqlite3 *answers;              // whoever looks for one waits for no long reading
 
 	pthread_mutex_t mutex;                // guards all that follows
 	pthread_cond_t work;                  // a batch, a flush, a close

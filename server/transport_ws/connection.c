@@ -83,6 +83,7 @@ static int opened(cau_network *network, struct lws *wsi, cau_connection **slot)
 	c->descriptor = lws_get_socket_fd(wsi);
 	c->opened_s = c->last_taken_s = c->rate_start_s = cau_monotonic_s();
 	set_socket(c->descriptor);
+	lws_get_peer_simple(wsi, c->address, sizeof c->address);
 	link_in(network, c);
 	*slot = c;
 	const char *asked = lws_get_urlarg_by_name(wsi, "session=", session, sizeof session);

@@ -13,6 +13,7 @@ struct lws;
 typedef struct cau_network cau_network;
 
 enum {
+	CAU_ADDRESS_BYTES = 64,
 	CAU_CLOSE_REASON_BYTES = 124,     // RFC 6455 allows 123 and this a zero
 	CAU_CONTROL_BYTES_MAX = 16 << 20, // replies that wait for one connection; more closes it
 };
@@ -27,6 +28,7 @@ typedef struct cau_connection {
 	bool served;           // hello was answered: the hello timeout is off
 	bool first_frame_seen; // and it was masked
 	int descriptor;
+	char address[CAU_ADDRESS_BYTES]; // the peer's, as text; "" if nobody knows it
 
 	// the message that is coming in
 	unsigned char *message; // malloc'ed

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // How the daemon's threads stand to each other when processors are short: the network and the
-// watchdog before everything, workers last.
+// watchdog before everything, workers last, and the builder behind them.
 #pragma once
 
 #include <sys/resource.h>
@@ -10,6 +10,7 @@
 enum {
 	CAU_NICE_FIRST = -5, // where the system lets us: CAP_SYS_NICE, or LimitNICE of the service
 	CAU_NICE_LAST = 5,
+	CAU_NICE_BUILDER = 19, // what builds and makes files takes what workers leave
 };
 
 // Of the calling thread; stays as it is where the system does not let us.

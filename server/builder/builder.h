@@ -1,0 +1,37 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Work that takes long and that no session's pace may wait for: sessions are built here, states
+// read back from the store, files made. Done at the system's lowest priority, one job after the
+// other, so that it gets what workers leave.
+//
+// There are two lanes, each a thread: jobs that are expected to be short do not stand behind a
+// large tissue, whose stages (CHOLMOD, METIS) nobody can interrupt.
+#pragma once
+
+#include <stdbool.h>
+
+#include "cautery/status.h"
+
+typedef struct cau_builder cau_builder;
+
+typedef struct cau_job {
+	void (*run)(struct cau_job *job);  // on a builder's thread, whole; the job is its own to free
+	void (*drop)(struct cau_job *job); // instead, if the builder ends first; likewise
+	double expected_s;                 // about how long it takes; orders the jobs
+	// The builder's own:
+	struct cau_job *next;
+	double rank;
+} cau_job;
+
+// Jobs expected to last longer than this have a lane of their own, s.
+#define CAU_BUILDER_SHORT_S 0.5
+
+// Threads run at `nice` (0 to 19).
+cau_status cau_builder_create(cau_builder **builder, int nice, cau_error *error);
+// From any thread; takes the job. After cau_builder_stop it is dropped on the spot.
+void cau_builder_submit(cau_builder *builder, cau_job *job);
+// Drops what waits, and returns when the jobs under way have ended.
+void cau_builder_stop(cau_builder *builder);
+// After cau_builder_stop, when nobody submits any more. Takes NULL.
+void cau_builder_destroy(cau_builder *builder);
+// Jobs that wait or are under way.
+int cau_builder_busy(cau_builder *builder);

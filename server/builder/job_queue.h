@@ -1,0 +1,16 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// The order of the builder's jobs: the shortest first, and none starves. A job is overtaken only by
+// jobs that come within CAU_JOB_PATIENCE times its own length after it.
+#pragma once
+
+#include "builder/builder.h"
+
+enum { CAU_JOB_PATIENCE = 4 };
+
+typedef struct cau_job_queue {
+	cau_job *first; // by rank
+	int count;
+} cau_job_queue;
+
+void cau_job_queue_put(cau_job_queue *queue, cau_job *job, double now_s);
+cau_job *cau_job_queue_take(cau_job_queue *queue); // NULL: empty

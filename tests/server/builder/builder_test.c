@@ -1,0 +1,145 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "builder/builder.h"
+
+#include <pthread.h>
+#include <setjmp.h>
+#include <stdarg.h>
+#include <stddef.h>
+#include <string.h>
+#include <sys/resource.h>
+#include <unistd.h>
+
+#include <cmocka.h>
+
+enum { NICE = 12 };
+
+// What the jobs of a test tell each other.
+typedef struct board {
+	pthread_mutex_t mutex;
+	pthread_cond_t changed;
+	char order[16]; // names of the jobs that ran
+	int dropped, nice;
+	bool open; // the gate that held jobs wait at
+} board;
+
+typedef struct named {
+	cau_job job; // first
+	char name;
+	bool held; // runs until the gate is open
+	board *board;
+} named;
+
+static void run(cau_job *job)
+{
+	named *n = (named *)job;
+	board *b = n->board;
+	pthread_mutex_lock(&b->mutex);
+	b->order[strlen(b->order)] = n->name;
+	b->nice = getpriority(PRIO_PROCESS, (id_t)gettid());
+	pthread_cond_broadcast(&b->changed);
+	while (n->held && !b->open)
+		pthread_cond_wait(&b->changed, &b->mutex);
+	pthread_mutex_unlock(&b->mutex);
+}
+
+static void drop(cau_job *job)
+{
+	((named *)job)->board->dropped++;
+}
+
+static void set_up(board *b)
+{
+	*b = (board){0};
+	pthread_mutex_init(&b->mutex, NULL);
+	pthread_cond_init(&b->changed, NULL);
+}
+
+static named make(board *b, char name, double expected_s, bool held)
+{
+	return (named){.job = {.run = run, .drop = drop, .expected_s = expected_s},
+	               .name = name,
+	               .held = held,
+	               .board = b};
+}
+
+static void await(board *b, size_t count)
+{
+	pthread_mutex_lock(&b->mutex);
+	while (strlen(b->order) < count)
+		pthread_cond_wait(&b->changed, &b->mutex);
+	pthread_mutex_unlock(&b->mutex);
+}
+
+static void open_gate(board *b)
+{
+	pthread_mutex_lock(&b->mutex);
+	b->open = true;
+	pthread_cond_broadcast(&b->changed);
+	pthread_mutex_unlock(&b->mutex);
+}
+
+static void waiting_jobs_go_by_length(void **state)
+{
+	(void)state;
+	board b;
+	cau_builder *builder;
+	set_up(&b);
+	assert_int_equal(cau_builder_create(&builder, NICE, NULL), CAU_OK);
+	named first = make(&b, 'f', 0.1, true);
+	named slow = make(&b, 's', 0.4, false), quick = make(&b, 'q', 0.01, false);
+	cau_builder_submit(builder, &first.job);
+	await(&b, 1);
+	cau_builder_submit(builder, &slow.job);
+	cau_builder_submit(builder, &quick.job);
+	assert_int_equal(cau_builder_busy(builder), 3);
+	open_gate(&b);
+	await(&b, 3);
+	assert_string_equal(b.order, "fqs");
+	assert_int_equal(b.nice, NICE);
+	cau_builder_stop(builder);
+	cau_builder_destroy(builder);
+}
+
+static void a_short_job_does_not_stand_behind_a_long_one(void **state)
+{
+	(void)state;
+	board b;
+	cau_builder *builder;
+	set_up(&b);
+	assert_int_equal(cau_builder_create(&builder, NICE, NULL), CAU_OK);
+	named giant = make(&b, 'g', 60, true), small = make(&b, 's', 0.05, false);
+	cau_builder_submit(builder, &giant.job);
+	await(&b, 1);
+	cau_builder_submit(builder, &small.job);
+	await(&b, 2); // while the giant is under way
+	assert_string_equal(b.order, "gs");
+	open_gate(&b);
+	cau_builder_stop(builder);
+	cau_builder_destroy(builder);
+}
+
+static void what_waits_at_the_end_is_dropped(void **state)
+{
+	(void)state;
+	board b;
+	cau_builder *builder;
+	set_up(&b);
+	assert_int_equal(cau_builder_create(&builder, NICE, NULL), CAU_OK);
+	cau_builder_stop(builder);
+	named late = make(&b, 'l', 0.1, false);
+	cau_builder_submit(builder, &late.job);
+	assert_int_equal(b.dropped, 1);
+	assert_string_equal(b.order, "");
+	cau_builder_destroy(builder);
+	cau_builder_destroy(NULL);
+}
+
+int main(void)
+{
+	const struct CMUnitTest tests[] = {
+		cmocka_unit_test(waiting_jobs_go_by_length),
+		cmocka_unit_test(a_short_job_does_not_stand_behind_a_long_one),
+		cmocka_unit_test(what_waits_at_the_end_is_dropped),
+	};
+	return cmocka_run_group_tests(tests, NULL, NULL);
+}
