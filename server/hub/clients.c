@@ -8,13 +8,28 @@
 
 enum { CLIENTS_MOST = 1 << 20 };
 
-static void make_token(char token[CAU_RESUME_BYTES])
+// Fresh random bytes in hex at every call: what one client may see of another, as its client_id,
+// must tell nothing of that one's token.
+static bool make_random(char hex[CAU_RESUME_BYTES])
 {
 	unsigned char bytes[(CAU_RESUME_BYTES - 1) / 2];
 	if (getrandom(bytes, sizeof bytes, 0) != sizeof bytes)
-		memset(bytes, 0, sizeof bytes); // a token of zeros resumes nothing, see find_token
+		return false;
 	for (size_t i = 0; i < sizeof bytes; i++)
-		snprintf(token + 2 * i, 3, "%02x", bytes[i]);
+		snprintf(hex + 2 * i, 3, "%02x", bytes[i]);
+	return true;
+}
+
+// A client that says no id gets one, so that its requests can be told from those of others.
+static bool fill_client_id(cau_asker *asker)
+{
+	char hex[CAU_RESUME_BYTES];
+	if (*asker->client_id)
+		return true;
+	if (!make_random(hex))
+		return false;
+	snprintf(asker->client_id, sizeof asker->client_id, "made-%s", hex);
+	return true;
 }
 
 static cau_client *find_number(cau_hub *hub, uint32_t number)
@@ -27,7 +42,7 @@ static cau_client *find_number(cau_hub *hub, uint32_t number)
 
 static cau_client *find_token(cau_hub *hub, const char *token)
 {
-	if (!token || strspn(token, "0") == strlen(token))
+	if (!token || !*token)
 		return NULL;
 	for (int32_t i = 0; i < hub->client_count; i++)
 		if (strcmp(hub->clients[i].resume, token) == 0)
@@ -48,8 +63,21 @@ static cau_client *add_client(cau_hub *hub)
 		hub->client_capacity = capacity;
 	}
 	cau_client *client = &hub->clients[hub->client_count++];
-	*client = (cau_client){.asker.client = ++hub->last_client};
+	*client = (cau_client){.asker.client = ++hub->last_client, .lost = true}; // until it is taken
 	return client;
+}
+
+// Puts `client` where it was known before, or in a place that was just made.
+static bool take_place(cau_client *client, cau_client *kept)
+{
+	client->asker.client = kept->asker.client;
+	if (!*client->asker.client_id)
+		memcpy(client->asker.client_id, kept->asker.client_id, sizeof kept->asker.client_id);
+	if (!make_random(client->resume) || !fill_client_id(&client->asker))
+		return false;
+	client->lost = false;
+	*kept = *client;
+	return true;
 }
 
 bool cau_hub_attach(cau_hub *hub, cau_client *client, const char *resume, uint64_t *replaced)
@@ -61,19 +89,9 @@ bool cau_hub_attach(cau_hub *hub, cau_client *client, const char *resume, uint64
 		*replaced = kept->connection;
 	else if (!kept)
 		kept = add_client(hub);
-	if (kept) {
-		client->asker.client = kept->asker.client;
-		make_token(client->resume);
-		if (!*client->asker.client_id && *kept->asker.client_id)
-			memcpy(client->asker.client_id, kept->asker.client_id, sizeof kept->asker.client_id);
-		if (!*client->asker.client_id)
-			snprintf(client->asker.client_id, sizeof client->asker.client_id, "made-%s",
-			         client->resume);
-		client->lost = false;
-		*kept = *client;
-	}
+	bool attached = kept && take_place(client, kept);
 	pthread_mutex_unlock(&hub->mutex);
-	return kept != NULL;
+	return attached;
 }
 
 typedef struct cut {

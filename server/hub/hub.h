@@ -54,7 +54,7 @@ typedef struct cau_client {
 // Registers a client: fills its number, a client_id if it has none, and its token for resuming.
 // `resume` (may be NULL) is the token of an earlier one: if that is still kept its number and tools
 // become this client's, and *replaced is its connection (0: it was lost already).
-// False: too many clients.
+// False: too many clients, or the system has no random bytes.
 bool cau_hub_attach(cau_hub *hub, cau_client *client, const char *resume, uint64_t *replaced);
 // The connection is gone: energy off at once; tools are kept for `resume_s`.
 void cau_hub_detach(cau_hub *hub, uint32_t number, uint64_t connection);

@@ -1,0 +1,121 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// What a client is given: a number, a client_id that others may see, a secret that nobody else may.
+#include "hub/hub.h"
+
+#include <setjmp.h>
+#include <stdarg.h>
+#include <stddef.h>
+#include <stdlib.h>
+#include <string.h>
+#include <unistd.h>
+
+#include <cmocka.h>
+
+enum {
+	CLIENTS = 100,
+	// Of two random texts of 32 hex digits twelve in a row agree by chance once in 10^11.
+	SHARED_DIGITS = 12,
+};
+
+static char folder[] = "/tmp/cautery-clients-XXXXXX", file[64];
+static cau_config config;
+static cau_store *store;
+static cau_worker_pool *pool;
+static cau_hub *hub;
+
+static int open_hub(void **state)
+{
+	(void)state;
+	cau_store_config of_store = cau_store_default_config();
+	cau_config_default(&config);
+	if (!mkdtemp(folder))
+		return -1;
+	snprintf(file, sizeof file, "%s/store.db", folder);
+	of_store.path = file;
+	if (cau_store_open(&of_store, &store, NULL) || cau_worker_pool_create(&pool, 1, 1, 0, NULL))
+		return -1;
+	cau_hub_def def = {.config = &config, .store = store, .pool = pool};
+	return cau_hub_create(&hub, &def, NULL) ? -1 : 0;
+}
+
+static int close_hub(void **state)
+{
+	(void)state;
+	cau_hub_destroy(hub);
+	cau_worker_pool_destroy(pool);
+	cau_store_close(store);
+	unlink(file);
+	return rmdir(folder);
+}
+
+static cau_client attach(const char *client_id, const char *resume)
+{
+	uint64_t replaced;
+	cau_client client = {0};
+	strcpy(client.asker.client_id, client_id);
+	assert_true(cau_hub_attach(hub, &client, resume, &replaced));
+	return client;
+}
+
+// Whether any SHARED_DIGITS of the secret stand in the text.
+static bool tells_of(const char *text, const char *secret)
+{
+	char part[SHARED_DIGITS + 1] = {0};
+	for (size_t i = 0; i + SHARED_DIGITS <= strlen(secret); i++) {
+		memcpy(part, secret + i, SHARED_DIGITS);
+		if (strstr(text, part))
+			return true;
+	}
+	return false;
+}
+
+static void a_made_client_id_tells_nothing_of_the_secret(void **state)
+{
+	(void)state;
+	for (int i = 0; i < CLIENTS; i++) {
+		cau_client made = attach("", NULL);
+		assert_int_equal(strlen(made.resume), CAU_RESUME_BYTES - 1);
+		assert_true(strncmp(made.asker.client_id, "made-", 5) == 0);
+		assert_false(tells_of(made.asker.client_id, made.resume));
+	}
+}
+
+static void no_two_clients_are_given_the_same(void **state)
+{
+	(void)state;
+	cau_client one = attach("", NULL), other = attach("", NULL);
+	assert_string_not_equal(one.asker.client_id, other.asker.client_id);
+	assert_string_not_equal(one.resume, other.resume);
+	assert_int_not_equal(one.asker.client, other.asker.client);
+}
+
+static void who_resumes_keeps_number_and_id_and_gets_another_secret(void **state)
+{
+	(void)state;
+	cau_client first = attach("", NULL);
+	cau_client again = attach("", first.resume);
+	assert_int_equal(again.asker.client, first.asker.client);
+	assert_string_equal(again.asker.client_id, first.asker.client_id);
+	assert_string_not_equal(again.resume, first.resume);
+	assert_false(tells_of(again.asker.client_id, again.resume));
+	assert_int_not_equal(attach("", first.resume).asker.client, first.asker.client);
+}
+
+static void a_client_id_that_is_said_stays(void **state)
+{
+	(void)state;
+	cau_client client = attach("surgeon", NULL);
+	assert_string_equal(client.asker.client_id, "surgeon");
+	assert_int_not_equal(attach("", "").asker.client, client.asker.client);
+}
+
+int main(void)
+{
+	const struct CMUnitTest tests[] = {
+		cmocka_unit_test(a_made_client_id_tells_nothing_of_the_secret),
+		cmocka_unit_test(no_two_clients_are_given_the_same),
+		cmocka_unit_test(who_resumes_keeps_number_and_id_and_gets_another_secret),
+		cmocka_unit_test(a_client_id_that_is_said_stays),
+	};
+	return cmocka_run_group_tests(tests, open_hub, close_hub);
+}
