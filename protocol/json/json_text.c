@@ -9,7 +9,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "json/utf8.h"
+#include "cautery/utf8.h"
 
 typedef struct level {
 	bool object;

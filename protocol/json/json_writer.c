@@ -7,7 +7,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "json/utf8.h"
+#include "cautery/utf8.h"
 
 static const double integer_bound = 9007199254740992.0; // 2^53
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "json/utf8.h"
+#include "cautery/utf8.h"
 
 // The second byte is what tells overlong forms, surrogates and codes beyond U+10FFFF (RFC 3629, 4).
 static void second_byte_range(unsigned char first, unsigned char *least, unsigned char *most)
@@ -8,24 +8,38 @@ static void second_byte_range(unsigned char first, unsigned char *least, unsigne
 	*most = first == 0xED ? 0x9F : first == 0xF4 ? 0x8F : 0xBF;
 }
 
+// What the first byte says of the character's length; 0: no character starts with it.
+static size_t told_length(unsigned char first)
+{
+	if (first < 0x80)
+		return 1;
+	return first < 0xC2 ? 0 : first < 0xE0 ? 2 : first < 0xF0 ? 3 : first < 0xF5 ? 4 : 0;
+}
+
+// Whether the bytes behind the first one are such as may follow it.
+static bool may_follow(const unsigned char *at, size_t bytes)
+{
+	unsigned char least, most;
+	second_byte_range(at[0], &least, &most);
+	if (bytes > 1 && (at[1] < least || at[1] > most))
+		return false;
+	for (size_t i = 2; i < bytes; i++)
+		if ((at[i] & 0xC0) != 0x80)
+			return false;
+	return true;
+}
+
 size_t cau_utf8_length(const char *text, size_t bytes)
 {
 	const unsigned char *at = (const unsigned char *)text;
-	if (bytes == 0)
-		return 0;
-	if (at[0] < 0x80)
-		return 1;
-	size_t length = at[0] < 0xC2 ? 0 : at[0] < 0xE0 ? 2 : at[0] < 0xF0 ? 3 : at[0] < 0xF5 ? 4 : 0;
-	if (length == 0 || length > bytes)
-		return 0;
-	unsigned char least, most;
-	second_byte_range(at[0], &least, &most);
-	if (at[1] < least || at[1] > most)
-		return 0;
-	for (size_t i = 2; i < length; i++)
-		if ((at[i] & 0xC0) != 0x80)
-			return 0;
-	return length;
+	size_t length = bytes ? told_length(at[0]) : 0;
+	return length <= bytes && length && may_follow(at, length) ? length : 0;
+}
+
+bool cau_utf8_is_start(const char *text, size_t bytes)
+{
+	const unsigned char *at = (const unsigned char *)text;
+	return bytes < told_length(at[0]) && may_follow(at, bytes);
 }
 
 size_t cau_utf8_encode(unsigned code, char out[4])

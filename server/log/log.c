@@ -8,7 +8,7 @@
 #include <time.h>
 #include <unistd.h>
 
-enum { LINE_BYTES = 1024 };
+#include "log/line.h"
 
 static const struct {
 	const char *name;
@@ -31,7 +31,7 @@ bool cau_log_set_level(const char *name)
 	return false;
 }
 
-static size_t write_head(char *line, cau_log_level level, const char *session, const char *event)
+static void write_head(cau_log_line *line, cau_log_level level)
 {
 	struct timespec now;
 	struct tm utc;
@@ -41,32 +41,29 @@ static size_t write_head(char *line, cau_log_level level, const char *session, c
 	strftime(stamp, sizeof stamp, "%Y-%m-%dT%H:%M:%S", &utc);
 	if (getenv("JOURNAL_STREAM"))
 		snprintf(prefix, sizeof prefix, "<%d>", levels[level].priority);
-	int length = snprintf(line, LINE_BYTES, "%s%s %s.%03ldZ session=%.64s event=%.64s", prefix,
-	                      levels[level].name, stamp, now.tv_nsec / 1000000,
-	                      session && *session ? session : "-", event);
-	return (size_t)length;
+	line->bytes = (size_t)snprintf(line->text, sizeof line->text, "%s%s %s.%03ldZ", prefix,
+	                               levels[level].name, stamp, now.tv_nsec / 1000000);
+}
+
+static void add(cau_log_line *line, const char *key, const char *value)
+{
+	cau_log_line_add(line, key, strlen(key), value, strlen(value), false);
 }
 
 void cau_log(cau_log_level level, const char *session, const char *event, const char *format, ...)
 {
 	if (level < least_level)
 		return;
-	char line[LINE_BYTES];
-	size_t length = write_head(line, level, session, event);
-	if (*format) {
-		line[length++] = ' ';
-		va_list arguments;
-		va_start(arguments, format);
-		int added = vsnprintf(line + length, sizeof line - length - 1, format, arguments);
-		va_end(arguments);
-		size_t room = sizeof line - length - 2;
-		length += added < 0 ? 0 : (size_t)added < room ? (size_t)added : room;
-	}
-	for (size_t i = 0; i < length; i++)
-		if ((unsigned char)line[i] < 0x20 || line[i] == 0x7f)
-			line[i] = '?';
-	line[length++] = '\n';
+	cau_log_line line = {.bytes = 0};
+	write_head(&line, level);
+	add(&line, "session", session && *session ? session : "-");
+	add(&line, "event", event);
+	va_list arguments;
+	va_start(arguments, format);
+	cau_log_line_print(&line, format, arguments);
+	va_end(arguments);
+	line.text[line.bytes++] = '\n';
 	// A log that cannot be written has nowhere to be reported.
-	if (write(STDERR_FILENO, line, length) < 0)
+	if (write(STDERR_FILENO, line.text, line.bytes) < 0)
 		return;
 }

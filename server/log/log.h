@@ -24,7 +24,7 @@ typedef enum cau_log_level {
 // Sets the least level logged; false if there is no such level. Call before threads start.
 bool cau_log_set_level(const char *name);
 
-// Logs one line. `session` may be NULL. `format` makes the `key=value` tail and may be empty; bytes
-// that could break the line (control characters) are replaced.
+// Logs one line. `session` may be NULL. `format` is the `key=value` tail and may be empty; what is
+// printed into its values is quoted and escaped where it must be, see line.h.
 __attribute__((format(printf, 4, 5))) void cau_log(cau_log_level level, const char *session,
                                                    const char *event, const char *format, ...);

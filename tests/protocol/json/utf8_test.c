@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "json/utf8.h"
+#include "cautery/utf8.h"
 
 #include <setjmp.h>
 #include <stdarg.h>
@@ -19,6 +19,9 @@ static void every_code_point_is_valid(void **state)
 		size_t length = cau_utf8_encode(code, text);
 		assert_int_equal(cau_utf8_length(text, length), length);
 		assert_int_equal(cau_utf8_length(text, length - 1), 0);
+		for (size_t bytes = 1; bytes < length; bytes++)
+			assert_true(cau_utf8_is_start(text, bytes));
+		assert_false(cau_utf8_is_start(text, length));
 	}
 }
 
@@ -28,6 +31,7 @@ static void surrogates_and_beyond_are_not(void **state)
 	for (unsigned code = 0xD800; code <= 0xDFFF; code++) {
 		char text[4];
 		assert_int_equal(cau_utf8_length(text, cau_utf8_encode(code, text)), 0);
+		assert_false(cau_utf8_is_start(text, 2)); // known by its second byte already
 	}
 	for (unsigned code = 0x110000; code < 0x1FFFFF; code += 0xFFF) {
 		char text[4];
@@ -50,12 +54,25 @@ static void counts_of_short_forms(void **state)
 	assert_int_equal(twos, 30 * 64);
 }
 
+// 30 first bytes of pairs, 16 of triples, 5 of fours; nothing else starts a longer character.
+static void a_start_is_a_first_byte_of_a_longer_one(void **state)
+{
+	(void)state;
+	int starts = 0;
+	for (int i = 0; i < 256; i++) {
+		char text[1] = {(char)i};
+		starts += cau_utf8_is_start(text, 1);
+	}
+	assert_int_equal(starts, 30 + 16 + 5);
+}
+
 int main(void)
 {
 	const struct CMUnitTest tests[] = {
 		cmocka_unit_test(every_code_point_is_valid),
 		cmocka_unit_test(surrogates_and_beyond_are_not),
 		cmocka_unit_test(counts_of_short_forms),
+		cmocka_unit_test(a_start_is_a_first_byte_of_a_longer_one),
 	};
 	return cmocka_run_group_tests(tests, NULL, NULL);
 }

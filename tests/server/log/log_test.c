@@ -11,6 +11,8 @@
 
 #include <cmocka.h>
 
+#include "line_parser.h"
+
 // What one call writes to standard error.
 static char *written(void (*call)(void))
 {
@@ -35,7 +37,8 @@ static void one(void)
 
 static void nasty(void)
 {
-	cau_log(CAU_LOG_INFO, NULL, "hello", "name=\"%s\"", "a\nlevel=error\x1b[2J");
+	cau_log(CAU_LOG_INFO, "d1-x event=y", "hello", "name=\"%s\" path=%s",
+	        "a\" role=\"admin\nlevel=error\x1b[2J", "a b=c");
 }
 
 static void endless(void)
@@ -72,8 +75,16 @@ static void what_clients_send_cannot_forge_lines(void **state)
 {
 	(void)state;
 	const char *line = written(nasty);
+	line_fields fields;
 	assert_ptr_equal(strchr(line, '\n'), line + strlen(line) - 1);
 	assert_null(strchr(line, '\x1b'));
+	const char *tail = strstr(line, "Z ") + 2; // behind level and time
+	assert_true(line_parse(tail, strlen(tail) - 1, &fields));
+	assert_int_equal(fields.count, 4);
+	assert_string_equal(fields.fields[0].value, "d1-x event=y");
+	assert_string_equal(fields.fields[1].value, "hello");
+	assert_string_equal(fields.fields[2].value, "a\" role=\"admin\nlevel=error\x1b[2J");
+	assert_string_equal(fields.fields[3].value, "a b=c");
 	line = written(endless);
 	assert_true(strlen(line) <= 1024);
 	assert_ptr_equal(strchr(line, '\n'), line + strlen(line) - 1);

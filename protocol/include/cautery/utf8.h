@@ -2,10 +2,14 @@
 // UTF-8 as RFC 3629 has it: no overlong forms, no surrogates, nothing beyond U+10FFFF.
 #pragma once
 
+#include <stdbool.h>
 #include <stddef.h>
 
 // Bytes of the valid character at the start of `text` (1 to 4), or 0 if there is none.
 size_t cau_utf8_length(const char *text, size_t bytes);
+
+// Whether `text` (at least one byte) is the start of a valid character whose rest is still to come.
+bool cau_utf8_is_start(const char *text, size_t bytes);
 
 // Writes `code` (not a surrogate, at most 0x10FFFF) into out[4]; returns how many bytes.
 size_t cau_utf8_encode(unsigned code, char out[4]);

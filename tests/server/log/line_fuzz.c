@@ -1,0 +1,34 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Whatever a value holds, the line reads back as the fields that were written.
+#include "log/line.h"
+
+#include <stdlib.h>
+#include <string.h>
+
+#include "fuzz/fuzz_target.h"
+#include "line_parser.h"
+
+static void check(const line_field *field, const uint8_t *data, size_t size)
+{
+	static const char more[] = "...";
+	size_t kept = field->value_bytes;
+	if (kept == size && memcmp(field->value, data, size) == 0)
+		return;
+	if (kept < sizeof more - 1 || kept - (sizeof more - 1) > size ||
+	    memcmp(field->value, data, kept - (sizeof more - 1)) != 0 ||
+	    memcmp(field->value + kept - (sizeof more - 1), more, sizeof more - 1) != 0)
+		abort();
+}
+
+int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size)
+{
+	cau_log_line line = {.bytes = 0};
+	line_fields fields;
+	cau_log_line_add(&line, "event", 5, "hello", 5, false);
+	cau_log_line_add(&line, "name", 4, (const char *)data, size, size % 2);
+	cau_log_line_add(&line, "role", 4, "view", 4, false);
+	if (!line_parse(line.text, line.bytes, &fields) || fields.count != 3)
+		abort();
+	check(&fields.fields[1], data, size);
+	return 0;
+}
