@@ -132,8 +132,9 @@ static void read_field(cau_reader *reader, const cJSON *value, const cau_wire_fi
 	}
 }
 
-static void refuse_others(cau_reader *reader, const cJSON *value, const cau_wire_shape *shape)
+void cau_refuse_unknown(cau_reader *reader, const cJSON *value, cau_wire_object object)
 {
+	const cau_wire_shape *shape = &cau_wire_shapes[object];
 	const char *names[CAU_WIRE_FIELDS_MAX];
 	for (int32_t i = 0; i < shape->field_count; i++)
 		names[i] = shape->fields[i].name;
@@ -147,7 +148,7 @@ void cau_read_message(cau_reader *reader, const cJSON *value, cau_wire_object ob
 	if (!cau_read_object(reader, value))
 		return;
 	if (strict)
-		refuse_others(reader, value, shape);
+		cau_refuse_unknown(reader, value, object);
 	for (int32_t i = 0; i < shape->field_count; i++) {
 		const cau_wire_field *field = &shape->fields[i];
 		const cJSON *member = cau_value_member(value, field->name);

@@ -234,6 +234,17 @@ cau_status cau_rpc_params(const cau_rpc_message *message, void *params, cau_erro
 	return reader.status;
 }
 
+cau_status cau_rpc_params_known(const cau_rpc_message *message, cau_error *error)
+{
+	const rpc_document *document = message->document;
+	const cau_method_info *info = cau_method_describe(message->method);
+	cau_reader reader;
+	cau_reader_begin(&reader, "params", error);
+	if (info->command < 0)
+		cau_refuse_unknown(&reader, document->params, info->params);
+	return reader.status;
+}
+
 cau_status cau_rpc_envelope_read(const cau_rpc_message *message, cau_rpc_envelope *envelope,
                                  cau_error *error)
 {

@@ -96,7 +96,8 @@ static bool admit(cau_call *call)
 		refuse(call, CAU_BAD_STATE, CAU_RPC_FORBIDDEN, "the role does not allow this");
 	else if (!handlers[call->message->method])
 		refuse(call, CAU_BAD_VALUE, CAU_RPC_METHOD_NOT_FOUND, "only the server sends this");
-	else if (!hello && cau_rpc_envelope_read(call->message, &call->envelope, &error))
+	else if (cau_rpc_params_known(call->message, &error) ||
+	         (!hello && cau_rpc_envelope_read(call->message, &call->envelope, &error)))
 		cau_call_fail(call, &error, 0);
 	else
 		return hello || afford(call);

@@ -1,14 +1,19 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Messages that are wrong: each gets a clear answer, and the daemon and other clients go on.
 import assert from 'node:assert/strict';
+import { readFileSync } from 'node:fs';
 import { after, before, beforeEach, afterEach, test } from 'node:test';
-import { chunk } from './wire/client.mjs';
+import { Client, chunk } from './wire/client.mjs';
 import { Daemon } from './wire/daemon.mjs';
 import { smallSession } from './wire/scene.mjs';
 
+const asyncapi = JSON.parse(readFileSync(process.env.ASYNCAPI));
+
 let daemon, bystander, stream, client, session;
 before(async () => {
-	daemon = await Daemon.start({ settings: { max_requests_per_s: 200 } }); // which any build reads in a second
+	// Messages as many as any build reads in a second; no allowance for creations, which are tried by dozens.
+	const allowances = ['connection', 'address', 'admin', 'all'].map((whose) => [`quota_${whose}`, 1000000]);
+	daemon = await Daemon.start({ settings: { max_requests_per_s: 200, ...Object.fromEntries(allowances) } });
 	bystander = await daemon.connect();
 	session = await smallSession(bystander, 'watched');
 	stream = await bystander.join(session);
@@ -97,8 +102,90 @@ test('a rotation that is none names the member', () =>
 		session, tool: 'hook', position_m: [0, 0, 0], rotation: [2, 0, 0, 0],
 	}), (error) => error.code === -32602 && error.data.path.startsWith('params.rotation')));
 
-test('an unknown member is refused', () =>
-	assert.rejects(client.call('session.describe', { session, verbose: true }), { code: -32602 }));
+// ---- unknown members ---------------------------------------------------------------------------
+const STRANGER = 'zz_stranger';
+
+// What clients may send, by the generated page: the method and whether it may be a request.
+const methods = Object.values(asyncapi.operations).filter((o) => o.action === 'receive').map((o) => {
+	const name = o.messages[0].$ref.split('/').at(-1);
+	const { payload } = asyncapi.components.messages[name];
+	return { method: payload.properties.method?.const, answered: Boolean(payload.properties.id) };
+}).filter((m) => m.method);
+
+// Which members there are hangs on what is read before them.
+const kinds = { 'material.set': { kind: 'fascia' } };
+
+test('an unknown member is refused by every method', async () => {
+	assert.ok(methods.length > 40, `${methods.length} methods`);
+	const within = await daemon.connect({ session }); // so that no method misses its session
+	for (const { method, answered } of methods.filter((m) => m.answered && m.method !== 'hello'))
+		await assert.rejects(within.call(method, { ...kinds[method], [STRANGER]: 1 }), (error) =>
+			error.code === -32602 && error.data.path === `params.${STRANGER}`, `${method} took it`);
+	await within.close();
+	const { stray } = await greetWith({ version: 1, client: 'x', [STRANGER]: 1 });
+	assert.equal(stray.error.code, -32602);
+	assert.equal(stray.error.data.path, `params.${STRANGER}`);
+});
+
+// A connection that says this hello; resolves once it was answered.
+async function greetWith(params) {
+	const stranger = new Client(daemon.url());
+	await stranger.opened;
+	stranger.send({ jsonrpc: '2.0', id: 'h', method: 'hello', params });
+	await stranger.until(() => stranger.stray, 'an answer to hello');
+	stranger.terminate();
+	return stranger;
+}
+
+test('a notification with an unknown member does nothing', async () => {
+	const own = await daemon.connect();
+	const watched = await own.join(session);
+	const applied = () => watched.tools[0].sequence;
+	const move = { session, tool: 'hook', position_m: [0, 0, 0.05], rotation: [1, 0, 0, 0] };
+	own.notify('tool.move', { ...move, sequence: 900, [STRANGER]: 1 });
+	await own.call('session.list');
+	const { tick } = watched;
+	await own.until(() => watched.tick > tick + 3, 'frames after it');
+	assert.notEqual(Number(applied()), 900);
+	await own.close();
+});
+
+// Every object of a value, as a function that puts the stranger there and one that takes it out.
+function* objectsOf(value, path = '') {
+	if (!value || typeof value !== 'object')
+		return;
+	if (!Array.isArray(value))
+		yield { path: `${path}.${STRANGER}`, object: value };
+	for (const [key, inner] of Object.entries(value))
+		yield* objectsOf(inner, Array.isArray(value) ? `${path}[${key}]` : `${path}.${key}`);
+}
+
+test('an unknown member is refused in every object of a definition', async () => {
+	const { scenes } = await client.call('scene.list');
+	let objects = 0;
+	for (const { name } of scenes) {
+		const { definition } = await client.call('scene.get', { scene: name });
+		for (const { path, object } of objectsOf(definition)) {
+			object[STRANGER] = 1;
+			await assert.rejects(client.call('session.create', { definition }), (error) =>
+				error.code === -32602 && error.data.path === `params.definition${path}`, `${name}${path} was taken`);
+			delete object[STRANGER];
+			objects++;
+		}
+	}
+	assert.ok(objects > 30, `${objects} objects`);
+});
+
+test('an unknown member is refused in a command\'s objects', async () => {
+	const selection = { kind: 'vertices', vertices: [1] };
+	for (const [method, params] of [
+		['pin', { session, selection: { kind: 'sphere', center_m: [0, 0, 0], radius_m: 0.001, [STRANGER]: 1 } }],
+		['unpin', { session, selection: { ...selection, [STRANGER]: 1 } }],
+		['force.set', { session, force_n: [0, 0, 0], selection: { ...selection, [STRANGER]: 1 } }],
+	])
+		await assert.rejects(client.call(method, params), (error) =>
+			error.code === -32602 && error.data.path.startsWith('params.'), method);
+});
 
 test('a session that is not here', () =>
 	assert.rejects(client.call('session.describe', { session: 'd1-nowhere' }), { code: -32040 }));

@@ -60,6 +60,10 @@ void cau_rpc_finish(cau_rpc_message *message); // may be called twice
 // scenes that it borrows. Error paths start with "params".
 cau_status cau_rpc_params(const cau_rpc_message *message, void *params, cau_error *error);
 
+// Refuses members of params that the method does not have: for methods whose handlers have nothing
+// to read there. A command's are checked by cau_rpc_command.
+cau_status cau_rpc_params_known(const cau_rpc_message *message, cau_error *error);
+
 // Members that methods share.
 typedef struct cau_rpc_envelope {
 	bool has_session;

@@ -190,6 +190,27 @@ static void test_optional_members_say_whether_they_are_there(void **unused)
 	cau_rpc_finish(&message);
 }
 
+static void test_unknown_params_are_refused_without_reading_the_others(void **unused)
+{
+	(void)unused;
+	for (int m = 0; m < CAU_METHOD_COUNT; m++) {
+		const cau_method_info *info = cau_method_describe((cau_method)m);
+		bool without_id = info->form == CAU_FORM_NOTICE || info->form == CAU_FORM_PUSH;
+		char text[256];
+		cau_rpc_message message;
+		cau_rpc_fault fault;
+		cau_error error = {0};
+		if (info->command >= 0)
+			continue;
+		snprintf(text, sizeof text, CALL "%s\"method\":\"%s\",\"params\":{\"stranger\":1}}",
+		         without_id ? "" : "\"id\":1,", info->name);
+		assert_int_equal(read(text, &message, &fault), CAU_OK);
+		assert_int_equal(cau_rpc_params_known(&message, &error), CAU_BAD_VALUE);
+		assert_string_equal(error.path, "params.stranger");
+		cau_rpc_finish(&message);
+	}
+}
+
 // ---- commands
 
 static void test_methods_of_commands_bear_their_names(void **unused)
@@ -387,6 +408,7 @@ int main(void)
 		cmocka_unit_test(test_depth_and_size_are_bounded),
 		cmocka_unit_test(test_params_are_checked_with_their_path),
 		cmocka_unit_test(test_optional_members_say_whether_they_are_there),
+		cmocka_unit_test(test_unknown_params_are_refused_without_reading_the_others),
 		cmocka_unit_test(test_methods_of_commands_bear_their_names),
 		cmocka_unit_test(test_commands_round_trip_with_their_envelope),
 		cmocka_unit_test(test_motion_is_a_notification_or_a_request),
