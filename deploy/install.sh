@@ -1,22 +1,7 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-# What deploy/test.sh and deploy/run.sh share; to be sourced with bash from the source folder.
-# Expects: $script, the caller's name for messages; $logs, a folder; $install, yes or no.
+# How deploy/test.sh and deploy/run.sh install packages; to be sourced with bash from the source
+# folder, after progress.sh. Expects: $script, the caller's name for messages; $install, yes or no.
 # shellcheck shell=bash disable=SC2154
-
-heading() {
-	printf '== [%d:%02d] %s\n' $((SECONDS / 60)) $((SECONDS % 60)) "$*"
-}
-
-# quietly LOG COMMAND...: the output goes to a log, and its end to the terminal on failure.
-quietly() {
-	local log=$logs/$1.log
-	shift
-	if ! "$@" >"$log" 2>&1; then
-		tail -n 60 "$log" >&2
-		echo "$script: failed: $* (all of it: $log)" >&2
-		exit 1
-	fi
-}
 
 # listed_packages SECTION...: names under these headings of deploy/packages.txt, or under all.
 listed_packages() {
@@ -34,14 +19,19 @@ missing_packages() {
 			sed -n 's/^.i *|//p' | tr -s ', ' '\n' | sort -u)
 }
 
-# install_packages SECTION...: installs what is missing, or says so and ends if $install is no.
+# install_packages SECTION...: installs what is missing, or says so and ends if $install is no. Those
+# under `optional` are installed likewise, and nobody has to have them.
 install_packages() {
 	if ! command -v dpkg-query >/dev/null; then
 		echo "$script: no dpkg here: install what deploy/packages.txt lists by hand" >&2
 		return
 	fi
 	local missing as_root=()
-	mapfile -t missing < <(missing_packages "$@")
+	if [ "$install" = no ]; then
+		mapfile -t missing < <(missing_packages "$@" | grep -vxFf <(listed_packages optional))
+	else
+		mapfile -t missing < <(missing_packages ${1:+"$@" optional})
+	fi
 	if [ ${#missing[@]} -eq 0 ]; then
 		return
 	fi
@@ -59,8 +49,8 @@ install_packages() {
 	heading "installing ${missing[*]}"
 	local apt=("${as_root[@]}" env DEBIAN_FRONTEND=noninteractive
 		apt-get -q -y -o DPkg::Lock::Timeout=600 --no-install-recommends)
-	quietly apt-update "${apt[@]}" update
-	quietly apt-install "${apt[@]}" install "${missing[@]}"
+	watched apt-update "${apt[@]}" update
+	watched apt-install "${apt[@]}" install "${missing[@]}"
 }
 
 # install_npm_packages FOLDER...: what each folder's lock file names, where it is not there yet. Not by
@@ -77,7 +67,7 @@ install_npm_packages() {
 			continue
 		fi
 		heading "npm packages of $folder"
-		quietly "npm-$(basename "$folder")" npm install --no-save --prefix "$folder"
+		watched "npm-$(basename "$folder")" npm install --no-save --prefix "$folder"
 		touch "$folder/node_modules/.package-lock.json"
 	done
 }

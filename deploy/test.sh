@@ -8,6 +8,7 @@ exec </dev/null
 usage() {
 	cat <<'END'
 Usage: deploy/test.sh [--fast | --full | --long] [--no-install]
+       deploy/test.sh --only REGEX [--preset NAME] [--no-install]
 
   (nothing)     the Release suite, browser tests included; address and undefined-behaviour
                 sanitizers over the unit and e2e tests; 10 s of fuzzing for each parser
@@ -15,6 +16,8 @@ Usage: deploy/test.sh [--fast | --full | --long] [--no-install]
   --full        adds the thread sanitizer over the unit, determinism and e2e tests, clang-tidy,
                 tests labelled full, the whole tree built with clang; 60 s of fuzzing
   --long        as --full, with tests labelled long, and 600 s of fuzzing
+  --only REGEX  the tests whose names match, in one tree: builds what these run and nothing else
+  --preset NAME with --only: the tree of this preset instead of release's (asan-ubsan, tsan, dev)
   --no-install  fail if a package of deploy/packages.txt is missing, instead of installing it
   --help        this text
 
@@ -26,20 +29,31 @@ END
 
 level=default
 install=yes
-for argument in "$@"; do
-	case $argument in
-	--fast | --full | --long) level=${argument#--} ;;
+only=
+only_preset=release
+while [ $# -gt 0 ]; do
+	case $1 in
+	--fast | --full | --long) level=${1#--} ;;
 	--no-install) install=no ;;
+	--only | --preset)
+		if [ -z "${2:-}" ]; then
+			echo "deploy/test.sh: $1 wants a value" >&2
+			exit 2
+		fi
+		[ "$1" = --only ] && only=$2 || only_preset=$2
+		shift
+		;;
 	--help | -h)
 		usage
 		exit 0
 		;;
 	*)
-		echo "deploy/test.sh: unknown option '$argument'" >&2
+		echo "deploy/test.sh: unknown option '$1'" >&2
 		usage >&2
 		exit 2
 		;;
 	esac
+	shift
 done
 
 source_folder=$(cd "$(dirname "${BASH_SOURCE[0]}")/.." && pwd)
@@ -63,15 +77,49 @@ export UBSAN_OPTIONS=${UBSAN_OPTIONS:-print_stacktrace=1}
 export TSAN_OPTIONS=${TSAN_OPTIONS:-second_deadlock_stack=1}
 
 script=deploy/test.sh
+. deploy/progress.sh
 . deploy/install.sh
+. deploy/trees.sh
 
-# build PRESET TARGET CONFIGURE_ARGUMENTS...: the folder is the preset's.
+# tree_of PRESET: its folder, as CMakePresets.json has it.
+tree_of() {
+	case $1 in
+	release) echo build ;;
+	asan-ubsan) echo build-asan ;;
+	*) echo "build-$1" ;;
+	esac
+}
+
+# configure PRESET CONFIGURE_ARGUMENTS...
+configure() {
+	local preset=$1
+	shift
+	fresh_where_needed "$(tree_of "$preset")"
+	watched "configure-$preset" cmake --preset "$preset" "${fresh[@]}" "$@"
+}
+
+# build PRESET TARGET CONFIGURE_ARGUMENTS...
 build() {
 	local preset=$1 target=$2
 	shift 2
 	heading "build: $preset"
-	quietly "configure-$preset" cmake --preset "$preset" "$@"
-	quietly "build-$preset" cmake --build --preset "$preset" --target "$target" --parallel "$jobs"
+	configure "$preset" "$@"
+	watched "build-$preset" cmake --build --preset "$preset" --target "$target" --parallel "$jobs"
+}
+
+# test_only: what --only says.
+test_only() {
+	local tree programs
+	tree=$(tree_of "$only_preset")
+	heading "build in $tree what the tests '$only' run"
+	configure "$only_preset"
+	mapfile -t programs < <(python3 deploy/programs_of_tests.py "$tree" "$only")
+	if [ ${#programs[@]} -gt 0 ]; then
+		watched "build-$only_preset" cmake --build "$tree" --target "${programs[@]}" --parallel "$jobs"
+	fi
+	heading "tests"
+	exec ctest --test-dir "$tree" -R "$only" --parallel "$jobs" --output-on-failure \
+		--no-label-summary --no-tests=error
 }
 
 # collect NAME TREE LABELS WITHOUT TIMEOUT_FACTOR: adds a tree's tests to the suite.
@@ -96,7 +144,9 @@ install_packages
 if [ "$install" = yes ]; then
 	install_npm_packages clients/web
 fi
-export CMAKE_GENERATOR=${CMAKE_GENERATOR:-Ninja}
+if [ -n "$only" ]; then
+	test_only
+fi
 rm -rf "$suite"
 
 build release all -DCAUTERY_LONG=$long
