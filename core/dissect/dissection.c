@@ -307,7 +307,7 @@ void cau_dissection_part(cau_dissection *dissection, uint32_t *layers)
 		part_edge(dissection, dissection->touched[k], layers);
 }
 
-double cau_dissection_char(const cau_dissection *dissection, int32_t edge)
+double cau_dissection_heated(const cau_dissection *dissection, int32_t edge)
 {
 	const cau_edge_table *edges = &dissection->tissue->edges;
 	double most = 0;

@@ -57,4 +57,4 @@ void cau_dissection_part(cau_dissection *dissection, uint32_t *layers);
 void cau_dissection_recount(cau_dissection *dissection);
 
 // Largest exposure / ignition over the layers of an edge, 0 to 1.
-double cau_dissection_char(const cau_dissection *dissection, int32_t edge);
+double cau_dissection_heated(const cau_dissection *dissection, int32_t edge);

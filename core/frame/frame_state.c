@@ -18,14 +18,21 @@ cau_status cau_frame_create(cau_frame_state *frame, const cau_tissue *tissue,
 	frame->vertex_visible = cau_arena_array(arena, n, 1);
 	frame->vertex_faces = cau_arena_array(arena, n, sizeof(int32_t));
 	frame->exposure = cau_arena_array(arena, n, sizeof(float));
+	frame->edge_burnt = cau_arena_array(arena, (size_t)tissue->edges.edge_count, 1);
+	frame->burnt_edges = cau_arena_array(arena, n, sizeof(int32_t));
+	frame->vertex_edges = cau_arena_array(arena, n, sizeof(int32_t));
+	frame->charring = cau_arena_array(arena, n, sizeof(float));
 	frame->stress = cau_arena_array(arena, n, sizeof(float));
 	frame->stress_weight = cau_arena_array(arena, n, sizeof(float));
 	frame->temperature = cau_arena_array(arena, n, sizeof(float));
 	frame->heated = cau_arena_array(arena, n, sizeof(int32_t));
 	if (!frame->moved || !frame->mask_changed || !frame->mask_before || !frame->vertex_visible ||
-	    !frame->vertex_faces || !frame->exposure || !frame->stress || !frame->stress_weight ||
+	    !frame->vertex_faces || !frame->exposure || !frame->edge_burnt || !frame->burnt_edges ||
+	    !frame->vertex_edges || !frame->charring || !frame->stress || !frame->stress_weight ||
 	    !frame->temperature || !frame->heated)
 		return cau_fail(error, CAU_NO_MEMORY, NULL, "no memory for frames");
+	for (int32_t k = 0; k < 2 * tissue->edges.edge_count; ++k)
+		frame->vertex_edges[tissue->edges.vertex[k]]++;
 	cau_frame_rebuild(frame, dissection);
 	return CAU_OK;
 }
@@ -57,10 +64,22 @@ static void update_mask(cau_frame_state *frame, const cau_dissection *dissection
 
 static void expose_edge(cau_frame_state *frame, const cau_dissection *dissection, int32_t edge)
 {
-	float value = (float)cau_dissection_char(dissection, edge);
+	float value = (float)cau_dissection_heated(dissection, edge);
 	for (int i = 0; i < 2; ++i) {
 		int32_t v = dissection->tissue->edges.vertex[2 * (size_t)edge + (size_t)i];
 		frame->exposure[v] = value > frame->exposure[v] ? value : frame->exposure[v];
+	}
+}
+
+// Counts an edge that has parted, in whichever layer, once at both its ends.
+static void char_edge(cau_frame_state *frame, const cau_dissection *dissection, int32_t edge)
+{
+	if (!dissection->parted[edge] || frame->edge_burnt[edge])
+		return;
+	frame->edge_burnt[edge] = 1;
+	for (int i = 0; i < 2; ++i) {
+		int32_t v = dissection->tissue->edges.vertex[2 * (size_t)edge + (size_t)i];
+		frame->charring[v] = (float)++frame->burnt_edges[v] / (float)frame->vertex_edges[v];
 	}
 }
 
@@ -72,8 +91,10 @@ void cau_frame_update(cau_frame_state *frame, const cau_dissection *dissection, 
 		if (from[3 * v] != to[3 * v] || from[3 * v + 1] != to[3 * v + 1] ||
 		    from[3 * v + 2] != to[3 * v + 2])
 			frame->moved[frame->moved_count++] = v;
-	for (int32_t k = 0; k < dissection->touched_count; ++k)
+	for (int32_t k = 0; k < dissection->touched_count; ++k) { // others do not part in this tick
 		expose_edge(frame, dissection, dissection->touched[k]);
+		char_edge(frame, dissection, dissection->touched[k]);
+	}
 	update_mask(frame, dissection);
 }
 
@@ -83,6 +104,9 @@ void cau_frame_rebuild(cau_frame_state *frame, const cau_dissection *dissection)
 	size_t n = (size_t)tissue->vertex_count;
 	memset(frame->vertex_faces, 0, n * sizeof *frame->vertex_faces);
 	memset(frame->exposure, 0, n * sizeof *frame->exposure);
+	memset(frame->edge_burnt, 0, (size_t)tissue->edges.edge_count);
+	memset(frame->burnt_edges, 0, n * sizeof *frame->burnt_edges);
+	memset(frame->charring, 0, n * sizeof *frame->charring);
 	for (int32_t f = 0; f < tissue->faces.face_count; ++f)
 		if (!(dissection->face_mask[f >> 5] >> (f & 31) & 1))
 			for (int i = 0; i < 3; ++i)
@@ -92,9 +116,11 @@ void cau_frame_rebuild(cau_frame_state *frame, const cau_dissection *dissection)
 		frame->moved[v] = v;
 		frame->vertex_visible[v] = frame->vertex_faces[v] > 0;
 	}
-	for (int32_t e = 0; e < tissue->edges.edge_count; ++e)
+	for (int32_t e = 0; e < tissue->edges.edge_count; ++e) {
 		if (dissection->exposure[e] > 0)
 			expose_edge(frame, dissection, e);
+		char_edge(frame, dissection, e);
+	}
 	frame->mask_changed_count = word_count(tissue);
 	for (int32_t w = 0; w < word_count(tissue); ++w) {
 		frame->mask_changed[w] = w;

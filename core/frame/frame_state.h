@@ -15,6 +15,10 @@ typedef struct cau_frame_state {
 	uint8_t *vertex_visible; // (vertex_count)
 	int32_t *vertex_faces;   // (vertex_count): drawn faces at the vertex
 	float *exposure;         // (vertex_count)
+	uint8_t *edge_burnt;     // (edge_count): counted in burnt_edges
+	int32_t *burnt_edges;    // (vertex_count): edges at the vertex that have parted in some layer
+	int32_t *vertex_edges;   // (vertex_count): edges at the vertex
+	float *charring;         // (vertex_count): burnt_edges over vertex_edges
 	float *stress;           // (vertex_count)
 	float *stress_weight;    // (vertex_count)
 	float ambient_c;         // of the body

@@ -108,6 +108,7 @@ void cau_session_frame(const cau_session *session, cau_frame *frame)
 		.mask_changed = session->frame.mask_changed,
 		.vertex_visible = session->frame.vertex_visible,
 		.exposure = session->frame.exposure,
+		.charring = session->frame.charring,
 		.stress = session->stress_on ? session->frame.stress : NULL,
 		.temperature = session->temperature_on ? session->frame.temperature : NULL,
 		.tool_count = session->tool_count,

@@ -112,12 +112,14 @@ static cau_status check_sample(const cau_frame_encoder *encoder, const cau_strea
 	           : cau_fail(error, CAU_NUMERICAL, "time_s", "the time is not finite");
 }
 
-// In the epoch's first frame hidden vertices are sent too: there is nothing yet to keep for them.
+// Vertices that no drawn face uses are not told anew: nobody sees them, and of fat they are most.
+// In the epoch's first frame they are, since there is nothing yet to keep for them; and always in a
+// stream without the mask, whose readers cannot know which vertices those are.
 static bool is_kept(const cau_frame_encoder *encoder, const cau_stream_sample *sample,
                     int32_t vertex)
 {
-	return encoder->header.sequence > 0 && sample->vertex_visible &&
-	       !sample->vertex_visible[vertex];
+	return encoder->header.sequence > 0 && wants(encoder, CAU_CHANNEL_MASK) &&
+	       sample->vertex_visible && !sample->vertex_visible[vertex];
 }
 
 static cau_status quantise_positions(cau_frame_encoder *encoder, const cau_stream_sample *sample,

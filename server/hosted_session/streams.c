@@ -216,7 +216,7 @@ static void fill_sample(cau_hosted *h, published *p)
 		.vertex_visible = p->frame.vertex_visible,
 		.face_mask = p->frame.face_mask,
 		.exposure = p->frame.exposure,
-		.charring = p->frame.exposure,
+		.charring = p->frame.charring,
 		.stress = p->frame.stress,
 		.temperature = p->frame.temperature,
 		.tool_count = p->frame.tool_count,

@@ -166,6 +166,7 @@ typedef struct cau_frame {
 	const int32_t *mask_changed;   // ascending
 	const uint8_t *vertex_visible; // (vertex_count): 1 if on a drawn face
 	const float *exposure; // (vertex_count): largest exposure / ignition of its edges, 0 to 1
+	const float *charring; // (vertex_count): share of its edges that have parted, 0 to 1
 	const float *stress;   // Pa, (vertex_count): von Mises, volume weighted; NULL unless asked for
 	const float *temperature; // degC, (vertex_count): the tools' heat at each vertex, elsewhere the
 	                          // scene's ambient_c; NULL unless asked for

@@ -13,10 +13,10 @@
 
 // Channels that a subscriber chooses: code, wire name. The order gives the bits.
 #define CAU_CHANNEL_TABLE(X)                                                                       \
-	X(POSITIONS, "positions")     /* vertex positions; in a delta the moved and visible ones */    \
+	X(POSITIONS, "positions")     /* vertex positions; of hidden ones see cau_stream_state */      \
 	X(MASK, "mask")               /* bits of faces that are not drawn */                           \
 	X(EXPOSURE, "exposure")       /* exposure over ignition of each vertex, 0 to 1 in 1/255 */     \
-	X(CHARRING, "charring")       /* char of each vertex, 0 to 1 in 1/255 */                       \
+	X(CHARRING, "charring")       /* share of each vertex's edges burnt through, in 1/255 */       \
 	X(STRESS, "stress")           /* von Mises stress of each vertex in steps of stress_step_pa */ \
 	X(TOOLS, "tools")             /* pose, driver, force, temperature and energy of every tool */  \
 	X(STATISTICS, "statistics")   /* cost and condition of the last step */                        \
@@ -115,8 +115,8 @@ typedef struct cau_stream_sample {
 	const double *position;        // m, (vertex_count x 3)
 	const uint8_t *vertex_visible; // (vertex_count), 1: on a drawn face; NULL: all are
 	const uint32_t *face_mask;     // ((face_count + 31) / 32), a set bit: not drawn
-	const float *exposure;         // (vertex_count), 0 to 1
-	const float *charring;         // (vertex_count), 0 to 1
+	const float *exposure;         // (vertex_count), 0 to 1: heat taken up over ignition
+	const float *charring;         // (vertex_count), 0 to 1: share of its edges burnt through
 	const float *stress;           // Pa, (vertex_count)
 	const float *temperature;      // degC, (vertex_count)
 	int32_t tool_count;            // at most CAU_MAX_TOOLS
@@ -124,7 +124,11 @@ typedef struct cau_stream_sample {
 	const cau_stream_statistics *statistics;
 } cau_stream_sample;
 
-// What a decoder holds; borrowed, valid until the next decode.
+// What a decoder holds; borrowed, valid until the next decode. Positions and scalars are those of
+// `tick` at every vertex of a face that is drawn (its bit in face_mask is clear), the first time
+// with the frame that draws it. At a vertex that no drawn face uses they are of the last frame
+// in which it was on one, or of the epoch's first. In a stream without the mask they are of `tick`
+// at every vertex.
 typedef struct cau_stream_state {
 	bool synced; // false: nothing to draw yet, or damaged: a key frame is needed
 	uint64_t epoch;

@@ -177,7 +177,7 @@ static void test_each_layer_has_its_own_ignition(void **state)
 		assert_int_equal(layers, k ? expected[k] & ~expected[k - 1] : 0);
 		assert_counts(&r);
 		double charred = fmin(1, exposure[k] / fat_at); // the first layer to go shows most
-		assert_near(cau_dissection_char(&r.dissection, edge), charred, 1e-12);
+		assert_near(cau_dissection_heated(&r.dissection, edge), charred, 1e-12);
 	}
 	rig_finish(&r);
 }

@@ -103,7 +103,7 @@ static void test_exposure_of_vertices(void **state)
 		cau_frame_update(&f.frame, &f.r.dissection, t->rest, t->rest);
 		for (int32_t k = 0; k < f.r.dissection.touched_count; ++k) {
 			int32_t edge = f.r.dissection.touched[k];
-			float value = (float)cau_dissection_char(&f.r.dissection, edge);
+			float value = (float)cau_dissection_heated(&f.r.dissection, edge);
 			for (int i = 0; i < 2; ++i) {
 				float *at = &expected[t->edges.vertex[2 * edge + i]];
 				*at = value > *at ? value : *at;
@@ -123,6 +123,64 @@ static void test_exposure_of_vertices(void **state)
 	rig_finish(&f.r);
 }
 
+// Of each vertex's edges those that have parted, in one layer or several; counted anew from all
+// edges.
+static void test_charring_is_the_share_of_parted_edges(void **state)
+{
+	(void)state;
+	framed f;
+	make(&f);
+	const cau_tissue *t = &f.r.tissue;
+	const cau_dissection *d = &f.r.dissection;
+	size_t n = (size_t)t->vertex_count;
+	uint64_t random = 193;
+	int32_t *edges = cau_arena_array(&f.r.arena, n, sizeof *edges);
+	int32_t *parted = cau_arena_array(&f.r.arena, n, sizeof *parted);
+	int32_t between = 0; // values that are neither 0 nor 1
+	for (int tick = 0; tick < 20; ++tick) {
+		cut_random_edges(&f.r, &random, 1 + tick);
+		cau_frame_update(&f.frame, d, t->rest, t->rest);
+		memset(edges, 0, n * sizeof *edges);
+		memset(parted, 0, n * sizeof *parted);
+		for (int32_t k = 0; k < 2 * t->edges.edge_count; ++k) {
+			edges[t->edges.vertex[k]]++;
+			parted[t->edges.vertex[k]] += d->parted[k / 2] != 0;
+		}
+		for (int32_t v = 0; v < t->vertex_count; ++v) {
+			assert_true(f.frame.charring[v] == (float)parted[v] / (float)edges[v]);
+			between += parted[v] > 0 && parted[v] < edges[v];
+		}
+	}
+	assert_true(between > 100);
+	float *before = cau_arena_array(&f.r.arena, n, sizeof *before);
+	memcpy(before, f.frame.charring, n * sizeof *before);
+	cau_frame_rebuild(&f.frame, d); // as a restore does
+	assert_memory_equal(f.frame.charring, before, n * sizeof *before);
+	rig_finish(&f.r);
+}
+
+// Heat that parts nothing exposes, and chars nothing.
+static void test_heat_below_ignition_chars_nothing(void **state)
+{
+	(void)state;
+	framed f;
+	make(&f);
+	uint32_t layers = 0;
+	cau_dissection_begin(&f.r.dissection);
+	for (int32_t edge = 0; edge < f.r.tissue.edges.edge_count; edge += 3)
+		expose_by_hand(&f.r.dissection, edge, 1);
+	cau_dissection_part(&f.r.dissection, &layers);
+	cau_frame_update(&f.frame, &f.r.dissection, f.r.tissue.rest, f.r.tissue.rest);
+	assert_int_equal(layers, 0);
+	int32_t exposed = 0;
+	for (int32_t v = 0; v < f.r.tissue.vertex_count; ++v) {
+		exposed += f.frame.exposure[v] > 0;
+		assert_true(f.frame.charring[v] == 0);
+	}
+	assert_true(exposed > 50);
+	rig_finish(&f.r);
+}
+
 int main(void)
 {
 	const struct CMUnitTest tests[] = {
@@ -130,6 +188,8 @@ int main(void)
 		cmocka_unit_test(test_moved_vertices),
 		cmocka_unit_test(test_mask_and_visible_vertices_after_cuts),
 		cmocka_unit_test(test_exposure_of_vertices),
+		cmocka_unit_test(test_charring_is_the_share_of_parted_edges),
+		cmocka_unit_test(test_heat_below_ignition_chars_nothing),
 	};
 	return cmocka_run_group_tests(tests, NULL, NULL);
 }

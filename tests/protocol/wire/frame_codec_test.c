@@ -55,6 +55,69 @@ static void test_hidden_vertices_wait_until_they_are_seen(void **unused)
 	chain_finish(&of);
 }
 
+// A face below others is drawn when these are cut away: what moved while it was hidden comes with
+// the frame that draws it, to those of full rate, of half rate, and to a late joiner.
+static void test_a_face_that_is_laid_open_comes_with_its_vertices(void **unused)
+{
+	(void)unused;
+	enum { LAID_OPEN = 20 }; // an even number of frames, where half rate has a state
+	chain of;
+	chain_init(&of, 12, 9);
+	size_t bytes = cau_frame_thinner_bytes(&of.def);
+	cau_frame_thinner *thinner;
+	assert_int_equal(cau_frame_thinner_init(malloc(bytes), bytes, of.encoder, &thinner, NULL),
+	                 CAU_OK);
+	cau_frame_decoder *half = chain_new_decoder(&of.def), *late = chain_new_decoder(&of.def);
+	uint8_t *other = malloc(of.capacity);
+	for (int32_t tick = 1; tick <= LAID_OPEN; tick++) {
+		tissue_move(&of.tissue, tick, 0.3);
+		memset(of.tissue.visible, tick == LAID_OPEN, 20);
+		of.tissue.mask[0] = tick == LAID_OPEN ? 0 : 0xff;
+		chain_pass(&of);
+		assert_int_equal(cau_frame_thin(thinner, other, of.capacity, &bytes, NULL), CAU_OK);
+		if (tick == 4) // joins at an even sequence, while they are hidden
+			assert_int_equal(cau_frame_encode_key(of.encoder, other, of.capacity, &bytes, NULL),
+			                 CAU_OK);
+		if (tick >= 4 && bytes)
+			assert_int_equal(cau_frame_decode(half, other, bytes, NULL), CAU_OK);
+	}
+	chain_assert_holds(of.decoder, &of.tissue);
+	chain_assert_holds(half, &of.tissue);
+	assert_int_equal(cau_frame_encode_key(of.encoder, other, of.capacity, &bytes, NULL), CAU_OK);
+	assert_int_equal(cau_frame_decode(late, other, bytes, NULL), CAU_OK);
+	chain_assert_holds(late, &of.tissue);
+	free(thinner);
+	free(half);
+	free(late);
+	free(other);
+	chain_finish(&of);
+}
+
+// Who has no mask cannot know what is hidden: it gets every vertex.
+static void test_without_the_mask_nothing_is_stale(void **unused)
+{
+	(void)unused;
+	chain of;
+	chain_init(&of, 12, 9);
+	of.def.channels = CAU_CHANNEL_POSITIONS | CAU_CHANNEL_EXPOSURE;
+	assert_int_equal(cau_frame_encoder_init(of.encoder, cau_frame_encoder_bytes(&of.def), &of.def,
+	                                        CHAIN_EPOCH, &of.encoder, NULL),
+	                 CAU_OK);
+	cau_frame_decoder *decoder = chain_new_decoder(&of.def);
+	double position[3 * 12 * 9];
+	memset(of.tissue.visible, 0, 12 * 9);
+	for (int32_t tick = 0; tick < 10; tick++) {
+		tissue_move(&of.tissue, tick, 0.3);
+		chain_encode(&of);
+		assert_int_equal(cau_frame_decode(decoder, of.bytes, of.byte_count, NULL), CAU_OK);
+		cau_frame_decoder_position(decoder, position);
+		for (int32_t i = 0; i < 3 * 12 * 9; i++)
+			assert_true(fabs(position[i] - of.tissue.position[i]) <= 0.5001 * of.def.step_m);
+	}
+	free(decoder);
+	chain_finish(&of);
+}
+
 static void test_key_frame_equals_the_chain(void **unused)
 {
 	(void)unused;
@@ -205,6 +268,8 @@ int main(void)
 	const struct CMUnitTest tests[] = {
 		cmocka_unit_test(test_deltas_follow_the_tissue),
 		cmocka_unit_test(test_hidden_vertices_wait_until_they_are_seen),
+		cmocka_unit_test(test_a_face_that_is_laid_open_comes_with_its_vertices),
+		cmocka_unit_test(test_without_the_mask_nothing_is_stale),
 		cmocka_unit_test(test_key_frame_equals_the_chain),
 		cmocka_unit_test(test_a_still_tissue_costs_next_to_nothing),
 		cmocka_unit_test(test_errors_never_add_up),

@@ -25,7 +25,7 @@ typedef struct fake_state { // all that a snapshot holds
 	double gravity[3];
 	double position[VERTICES * 3];
 	uint32_t mask[WORDS];
-	float exposure[VERTICES];
+	float exposure[VERTICES], charring[VERTICES];
 	int32_t removed;
 	int32_t tool_count;
 	cau_tool_state tools[CAU_MAX_TOOLS];
@@ -213,6 +213,7 @@ static void cut(cau_session *s, const cau_tool_state *tool)
 		s->state.mask[f / 32] |= 1u << (f % 32);
 		s->state.removed++;
 		s->state.exposure[s->face[3 * f]] = 1;
+		s->state.charring[s->face[3 * f]] = 0.5f;
 	}
 }
 
@@ -285,6 +286,7 @@ void cau_session_frame(const cau_session *s, cau_frame *frame)
 	                     .mask_changed = s->mask_changed,
 	                     .vertex_visible = s->visible,
 	                     .exposure = s->state.exposure,
+	                     .charring = s->state.charring,
 	                     .temperature = s->temperature_on ? s->temperature : NULL,
 	                     .tool_count = s->state.tool_count,
 	                     .tools = s->state.tools,

@@ -16,7 +16,7 @@ const COLOURINGS: readonly (readonly [ViewOptions['colouring'], string])[] = [
 ];
 const TITLES: Readonly<Record<Scalar, string>> = {
   exposure: 'Heat exposure over ignition',
-  charring: 'Char',
+  charring: 'Char: share of edges burnt through',
   stress: 'Von Mises stress',
   temperature: 'Temperature',
 };

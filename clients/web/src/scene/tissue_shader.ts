@@ -108,15 +108,16 @@ vec3 shade(Surface s, vec3 view) {
   return colour;
 }
 
-// Heat first dries and blanches, then browns; where it goes on, blotches and streaks of char. What a
-// tissue is browned to is its own: collagen to tan, fat to amber.
+// Heat first dries and blanches, then browns; where it has burnt edges through, blotches and streaks of
+// char. What a tissue is browned to is its own: collagen to tan, fat to amber.
 void burnt(inout Surface s, vec3 browned, float blotch) {
   // Heat made every rim: what is left of a parted edge is burnt even where its own nodes took up less.
   float e = max(vBurn.x, 0.9 * vBurn.z * vBurn.z);
   e += 0.3 * (blotch - 0.5) * smoothstep(0.05, 0.3, e);
   s.colour = mix(s.colour, vec3(0.74, 0.60, 0.45), 0.45 * smoothstep(0.12, 0.45, e));
   s.colour = mix(s.colour, browned, 0.85 * smoothstep(0.45, 0.9, e));
-  float c = clamp(vBurn.y + 0.45 * vBurn.z, 0.0, 1.3) * (0.1 + 1.4 * blotch);
+  // On the wall of a cut a third to a half of a vertex's edges are gone: that is as black as it gets.
+  float c = clamp(min(2.0 * vBurn.y, 1.0) + 0.45 * vBurn.z, 0.0, 1.3) * (0.1 + 1.4 * blotch);
   s.colour = mix(s.colour, vec3(0.045, 0.026, 0.017), 0.92 * smoothstep(0.80, 1.20, c));
   s.wet *= 1.0 - 0.55 * smoothstep(0.3, 0.8, e);
   s.alpha = mix(s.alpha, 1.0, smoothstep(0.3, 0.7, e));

@@ -22,13 +22,13 @@ export interface StreamState {
   publishedUs: number;
   paused: boolean;
   faulted: boolean;
-  /** steps from the origin (vertices x 3) */
+  /** steps from the origin (vertices x 3); like the scalars, of this tick where a drawn face uses the vertex */
   quantised: Int32Array;
   /** words of 32 faces; a set bit: not drawn */
   mask: Int32Array;
-  /** (vertices), 255 = 1 */
+  /** heat taken up over ignition (vertices), 255 = 1 */
   exposure: Int32Array;
-  /** (vertices), 255 = 1 */
+  /** share of the vertex's edges burnt through (vertices), 255 = 1 */
   charring: Int32Array;
   /** (vertices), stress_step_pa */
   stress: Int32Array;
