@@ -49,9 +49,9 @@ enum { CAU_CONFIG_TEXT_BYTES = 512 };
 	REAL(resume_s, 10, 0, 600, "a lost connection's driver role is kept for this")                 \
 	REAL(ping_s, 10, 0.5, 3600, "a silent connection is pinged after this, hung up after three")   \
 	REAL(slow_close_s, 30, 1, 3600, "a subscriber that takes no frame for this is closed")         \
-	REAL(checkpoint_s, 10, 0.1, 3600, "wall time between checkpoints of a running session")        \
-	REAL(retention_h, 24, 0.01, 8760, "old branches and checkpoints are kept for this")            \
-	INTEGER(retention_bytes, 1073741824, 1048576, 1099511627776, "and up to this, a session")      \
+	REAL(checkpoint_s, 10, 0.1, 3600, "between checkpoints of a session that somebody drives")     \
+	REAL(retention_h, 24, 0.01, 8760, "what a rewind left behind is kept for this")                \
+	INTEGER(retention_bytes, 1073741824, 1048576, 1099511627776, "most of a session in the store") \
 	REAL(drain_s, 10, 0.1, 600, "longest wait for checkpoints when told to end")                   \
 	SWITCH(dds, false, "open the DDS transport")                                                   \
 	INTEGER(dds_domain, 0, 0, 230, "DDS domain")                                                   \

@@ -142,13 +142,26 @@ static void copy_newest(const cau_hosted *h, uint64_t from_tick, page *taken)
 	}
 }
 
+// From where on every tick can be reached. What lies in a gap that the store does not know yet is
+// not.
+static uint64_t find_oldest_tick(const cau_read_job *job)
+{
+	cau_hosted *h = job->hosted;
+	cau_error error = {0};
+	uint64_t tick = job->tick;
+	if (h->lost_from == UINT64_MAX &&
+	    cau_store_read_oldest_tick(h->around->store, h->id, job->branch, &tick, &error))
+		cau_log(CAU_LOG_DEBUG, h->id, "no_oldest_tick", "reason=\"%s\"", error.reason);
+	return tick;
+}
+
 static void answer_page(const cau_read_job *job, cau_wire_timeline_event *events, int32_t count)
 {
 	const cau_reply *reply = &job->order->reply;
 	cau_error error = {0};
 	cau_outcome outcome = {0};
 	cau_wire_timeline result = {.tick = (int64_t)job->tick,
-	                            .oldest_tick = (int64_t)job->oldest_tick,
+	                            .oldest_tick = (int64_t)find_oldest_tick(job),
 	                            .branch = job->branch,
 	                            .events = {events, count, count}};
 	char *text = cau_answer_text(reply->method, &result, &outcome.text_bytes, &error);
@@ -205,8 +218,7 @@ void cau_apply_timeline(cau_hosted *h, cau_order *order)
 		return;
 	}
 	copy_newest(h, from_tick, taken);
-	cau_read_job now = {
-		.order = order, .tick = h->tick, .oldest_tick = h->oldest_tick, .branch = h->branch};
+	cau_read_job now = {.hosted = h, .order = order, .tick = h->tick, .branch = h->branch};
 	answer_page(&now, taken->events, taken->count);
 	free_page(taken);
 	free(order);

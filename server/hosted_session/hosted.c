@@ -34,6 +34,7 @@ cau_status cau_hosted_create(cau_hosted **made, const cau_surroundings *around,
 	h->speed = 1;
 	h->next_branch = 1;
 	h->state = CAU_SESSION_STARTING;
+	h->lost_from = h->batch_lost = UINT64_MAX;
 	h->starting = h->unanswered = true;
 	pthread_mutex_init(&h->mutex, NULL);
 	cau_hosted_publish_summary(h);

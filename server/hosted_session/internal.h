@@ -119,7 +119,7 @@ struct cau_hosted {
 	int state; // CAU_SESSION_*
 	bool pause_at_start;
 	char fault[320];
-	uint64_t tick, first_tick, oldest_tick;
+	uint64_t tick, first_tick;
 	int64_t branch, next_branch;
 	uint64_t logged_tick; // of the last log entry
 	uint32_t logged_order;
@@ -129,8 +129,12 @@ struct cau_hosted {
 	cau_order *stepping; // answered when steps_left is 0
 	cau_replay replay;
 	cau_store_batch *batch; // of this slice; NULL: nothing to write
+	uint64_t batch_tick;    // when it was begun
+	uint64_t batch_lost;    // a log that is lost from here on ends with this batch's checkpoint
 	cau_pending *pending;   // answers that wait for it
 	double checkpoint_s;
+	bool touched;              // since then by commands or cuts
+	int32_t quiet_checkpoints; // in a row, each before which nothing happened
 	uint64_t checkpoint_tick;
 	double window_s; // realtime_factor's window
 	uint64_t window_tick;
@@ -160,6 +164,8 @@ struct cau_hosted {
 	double tools_time_s;
 	cau_wire_session_summary summary;
 	cau_hosted_counts counts;
+	// The store lacks commands from this tick on, until a checkpoint is stored; UINT64_MAX: none.
+	_Atomic uint64_t lost_from;
 	atomic_bool unanswered; // its making is not with the store yet
 	atomic_bool ended, starting, checkpoint_wanted, drain_wanted, drained;
 	atomic_int files;           // of this session that the builder makes
@@ -252,6 +258,8 @@ void cau_record_command(cau_hosted *h, const cau_command *command, const cau_ord
 void cau_record_answer(cau_hosted *h, const cau_order *order, const char *text, size_t text_bytes);
 void cau_record_state(cau_hosted *h);
 void cau_record_checkpoint(cau_hosted *h, uint64_t *hash, size_t *bytes);
+// Has the store keep the state of this tick, and its events.
+void cau_record_mark(cau_hosted *h);
 void cau_record_event(cau_hosted *h, const cau_wire_timeline_event *event, cau_log_level level);
 // Answers once what is recorded so far is on the disk. Takes `text`.
 void cau_record_reply(cau_hosted *h, const cau_reply *reply, char *text, size_t text_bytes);
@@ -276,7 +284,7 @@ bool cau_reads_wait(cau_hosted *h); // some can be served now
 typedef struct cau_read_job {
 	cau_hosted *hosted;
 	cau_order *order;
-	uint64_t tick, oldest_tick; // of the slice that handed it over
+	uint64_t tick; // of the slice that handed it over
 	int64_t branch;
 	void *copy;
 } cau_read_job;

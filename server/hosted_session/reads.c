@@ -184,7 +184,6 @@ void cau_reads_hand_over(cau_hosted *h, cau_order *order, cau_read_work *work, v
 	               .read = {.hosted = cau_hosted_share(h),
 	                        .order = order,
 	                        .tick = h->tick,
-	                        .oldest_tick = h->oldest_tick,
 	                        .branch = h->branch,
 	                        .copy = copy},
 	               .work = work,

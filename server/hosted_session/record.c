@@ -9,17 +9,27 @@
 
 cau_store_batch *cau_record_batch(cau_hosted *h)
 {
-	if (!h->batch)
+	if (!h->batch) {
 		h->batch = cau_store_batch_create();
+		h->batch_tick = h->tick;
+	}
 	return h->batch;
 }
 
-// A log that misses something is only good again from the next checkpoint on.
+// A log that misses something is only good again from the next checkpoint on. Any thread.
+static void lose(cau_hosted *h, uint64_t from_tick)
+{
+	uint64_t known = h->lost_from;
+	while (from_tick < known && !atomic_compare_exchange_weak(&h->lost_from, &known, from_tick))
+		;
+	h->checkpoint_wanted = true;
+}
+
 static void gap(cau_hosted *h, const cau_error *error)
 {
 	cau_log(CAU_LOG_ERROR, h->id, "store_refused", "status=%s reason=\"%s\"",
 	        cau_status_name(error->status), error->reason);
-	h->checkpoint_wanted = true;
+	lose(h, h->batch && h->batch_tick < h->tick ? h->batch_tick : h->tick);
 }
 
 void cau_record_command(cau_hosted *h, const cau_command *command, const cau_order *order,
@@ -32,6 +42,7 @@ void cau_record_command(cau_hosted *h, const cau_command *command, const cau_ord
 	if (h->logged_tick != h->tick)
 		h->logged_order = 0;
 	h->logged_tick = h->tick;
+	h->touched = true;
 	cau_store_command row = {.session = h->id,
 	                         .branch = h->branch,
 	                         .tick = h->tick,
@@ -78,6 +89,28 @@ static bool is_past_commands(const cau_hosted *h)
 	return h->logged_tick == h->tick && h->logged_order > 0;
 }
 
+// What was lost ends with the checkpoint of this tick, in the same batch: nobody is led through it.
+static cau_status end_gap(cau_hosted *h, cau_store_batch *batch, cau_error *error)
+{
+	uint64_t from = atomic_exchange(&h->lost_from, UINT64_MAX);
+	cau_store_gap row = {
+		.session = h->id, .branch = h->branch, .from_tick = from, .before_tick = h->tick};
+	cau_status status = from < h->tick ? cau_store_put_gap(batch, &row, error) : CAU_OK;
+	if (status)
+		lose(h, from);
+	else if (from < h->batch_lost)
+		h->batch_lost = from; // lost again if the batch is
+	return status;
+}
+
+void cau_record_mark(cau_hosted *h)
+{
+	cau_error error = {0};
+	cau_store_batch *batch = cau_record_batch(h);
+	if (!batch || cau_store_put_mark(batch, h->id, h->branch, h->tick, &error))
+		cau_log(CAU_LOG_ERROR, h->id, "mark_lost", "reason=\"%s\"", error.reason);
+}
+
 void cau_record_checkpoint(cau_hosted *h, uint64_t *hash, size_t *bytes)
 {
 	if (is_past_commands(h)) {
@@ -99,10 +132,12 @@ void cau_record_checkpoint(cau_hosted *h, uint64_t *hash, size_t *bytes)
 	if (!status)
 		status = cau_store_put_checkpoint(batch, &row, &error);
 	free(snapshot);
+	h->checkpoint_wanted = false;
+	if (!status)
+		status = end_gap(h, batch, &error);
 	if (status)
 		gap(h, &error);
-	else
-		h->checkpoint_wanted = false;
+	h->touched = false;
 	h->checkpoint_s = cau_monotonic_s();
 	h->checkpoint_tick = h->tick;
 	if (hash)
@@ -155,7 +190,8 @@ void cau_record_reply(cau_hosted *h, const cau_reply *reply, char *text, size_t 
 typedef struct commit {
 	cau_hosted *hosted;
 	cau_pending *pending;
-	bool making; // the session's first rows: without them there is no session
+	uint64_t from_tick; // what is lost if it fails
+	bool making;        // the session's first rows: without them there is no session
 } commit;
 
 static cau_pending *reversed(cau_pending *list)
@@ -196,7 +232,7 @@ static void committed(void *user, cau_status status, const char *reason)
 	if (status) {
 		cau_log(CAU_LOG_ERROR, done->hosted->id, "commit_failed", "status=%s reason=\"%s\"",
 		        cau_status_name(status), reason);
-		done->hosted->checkpoint_wanted = true;
+		lose(done->hosted, done->from_tick);
 		done->hosted->ended = done->hosted->ended || done->making;
 	}
 	answer_all(done->pending, status, reason);
@@ -223,13 +259,15 @@ void cau_record_commit(cau_hosted *h)
 	commit *travelling = malloc(sizeof *travelling);
 	cau_status status = CAU_NO_MEMORY;
 	if (travelling) {
-		*travelling = (commit){cau_hosted_share(h), pending, is_being_made(h)};
+		uint64_t from = h->batch_tick < h->batch_lost ? h->batch_tick : h->batch_lost;
+		*travelling = (commit){cau_hosted_share(h), pending, from, is_being_made(h)};
 		atomic_fetch_add(&h->commits, 1);
 		status = cau_store_submit(h->around->store, h->batch, committed, travelling, &error);
 	}
 	if (status) {
-		cau_store_batch_destroy(h->batch);
 		gap(h, &error);
+		lose(h, h->batch_lost);
+		cau_store_batch_destroy(h->batch);
 		answer_all(pending, status, error.reason);
 		h->ended = h->ended || is_being_made(h);
 		if (travelling) {
@@ -239,6 +277,7 @@ void cau_record_commit(cau_hosted *h)
 		free(travelling);
 	}
 	h->batch = NULL;
+	h->batch_lost = UINT64_MAX;
 }
 
 static cau_status send_again(void *user, const cau_store_answer *answer)

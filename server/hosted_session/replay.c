@@ -58,6 +58,11 @@ cau_status cau_replay_begin(cau_hosted *h, const char *session, int64_t branch, 
 	if (!status)
 		status = cau_store_read_log(store, session, branch, taken.tick, before, take_command,
 		                            replay, error);
+	// Asked last: retention may have taken some of it meanwhile.
+	if (!to_end && (!status || status == CAU_NOT_FOUND)) {
+		cau_status reached = cau_store_check_reach(store, session, branch, tick, error);
+		status = reached ? reached : status;
+	}
 	if (!status)
 		status = cau_session_restore(h->core, taken.bytes, taken.byte_count, &replay->exact, error);
 	free(taken.bytes);

@@ -10,6 +10,10 @@
 #define FACTOR_WINDOW_S 1.0   // realtime_factor is over this
 #define STEPPING_SLICE_S 0.01 // session.step runs so long before others get the worker
 
+enum {
+	QUIET_DOUBLINGS = 6
+}; // an untouched session has a checkpoint every 64 checkpoint_s at least
+
 void cau_hosted_set_fault(cau_hosted *h, const cau_error *error)
 {
 	cau_wire_session_faulted params = {.tick = (int64_t)h->tick};
@@ -115,6 +119,7 @@ static void note_cut(cau_hosted *h, const cau_frame *frame)
 	h->elements_removed = frame->statistics.elements_removed;
 	if (removed <= 0)
 		return;
+	h->touched = true;
 	const cau_drive *cutter = NULL;
 	for (int32_t i = 0; i < h->drive_count; i++)
 		if (h->drives[i].energized)
@@ -199,14 +204,42 @@ static void run_stepping(cau_hosted *h)
 	}
 }
 
+// Whether something happened since the last checkpoint that a restart would have to replay, or that
+// a crash would take back: commands, energy, cuts.
+static bool is_quiet(cau_hosted *h)
+{
+	bool lit = false;
+	for (int32_t i = 0; i < h->drive_count; i++)
+		lit |= h->drives[i].energized;
+	return !lit && !h->touched;
+}
+
+static bool store_is_ready(cau_hosted *h)
+{
+	cau_store_health health;
+	cau_store_get_health(h->around->store, &health);
+	return health.state == CAU_STORE_READY;
+}
+
+// A checkpoint ends what a restart would have to replay. With nothing to replay each comes twice as
+// late as the one before: a crash of a session that nobody touches takes it back by no more than
+// the time that it was left alone.
 static void checkpoint_if_due(cau_hosted *h, double now_s)
 {
+	bool quiet = is_quiet(h);
+	int32_t doublings = quiet ? h->quiet_checkpoints : 0;
+	double pause_s = ldexp(h->around->config->checkpoint_s, doublings);
 	bool due = h->state == CAU_SESSION_RUNNING && h->tick != h->checkpoint_tick &&
-	           now_s - h->checkpoint_s >= h->around->config->checkpoint_s;
-	if (due)
+	           now_s - h->checkpoint_s >= pause_s;
+	// A store without room is not tried: once it has room again it asks for a checkpoint.
+	if ((due || h->checkpoint_wanted) && store_is_ready(h)) {
 		cau_event_end_cut(h);
-	if (due || h->checkpoint_wanted)
 		cau_record_checkpoint(h, NULL, NULL);
+	}
+	if (!quiet)
+		h->quiet_checkpoints = 0;
+	else if (due && h->quiet_checkpoints < QUIET_DOUBLINGS)
+		h->quiet_checkpoints++;
 }
 
 static void drain(cau_hosted *h)

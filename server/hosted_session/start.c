@@ -177,7 +177,6 @@ void cau_hosted_started(cau_hosted *h)
 		h->state = h->pause_at_start ? CAU_SESSION_PAUSED : CAU_SESSION_RUNNING;
 	if (!restarted)
 		h->first_tick = h->tick;
-	h->oldest_tick = h->first_tick;
 	h->logged_tick = UINT64_MAX;
 	if (restarted && h->replay.count) { // go on counting within the last tick of the log
 		h->logged_tick = h->tick;
@@ -188,6 +187,8 @@ void cau_hosted_started(cau_hosted *h)
 	if (restarted)
 		go_on_from_events(h);
 	cau_record_checkpoint(h, NULL, NULL);
+	if (!restarted)
+		cau_record_mark(h);
 	cau_drive_match_tools(h, restarted ? "the daemon was restarted" : "a new session");
 	cau_streams_restart(h);
 	h->next_step_s = h->window_s = cau_monotonic_s();

@@ -104,8 +104,30 @@ void cau_apply_snapshot(cau_hosted *h, cau_order *order)
 	result.byte_count = (int64_t)bytes;
 	snprintf(detail, sizeof detail, "name=%s branch=%lld hash=%016llx", made->name,
 	         (long long)h->branch, (unsigned long long)result.hash);
+	cau_record_mark(h);
 	cau_event_add(h, CAU_EVENT_SNAPSHOT, NULL, order->asker.name, 0, detail);
 	cau_answer_order(h, order, &result);
+}
+
+// Before the past is read, all of it must be in the store. What the store lacks is told to it by
+// the checkpoint that ends it; until then nobody goes there. False: the order is answered.
+static bool store_past(cau_hosted *h, cau_order *order, int64_t branch, uint64_t tick)
+{
+	cau_error error = {0};
+	if (h->lost_from != UINT64_MAX)
+		cau_record_checkpoint(h, NULL, NULL);
+	cau_record_commit(h);
+	cau_store_flush(h->around->store);
+	cau_status status = CAU_OK;
+	if (branch == h->branch && tick > h->lost_from)
+		status = cau_fail(&error, CAU_BAD_VALUE, "params.tick",
+		                  "what happened from tick %llu on could not be stored",
+		                  (unsigned long long)h->lost_from);
+	if (!status)
+		status = cau_store_check_reach(h->around->store, h->id, branch, tick, &error);
+	if (status)
+		cau_answer_fail(order, &error, 0);
+	return !status;
 }
 
 void cau_apply_back(cau_hosted *h, cau_order *order)
@@ -121,18 +143,17 @@ void cau_apply_back(cau_hosted *h, cau_order *order)
 		}
 		branch = snapshot->branch;
 		tick = snapshot->tick;
-	} else if (tick > h->tick || tick < h->oldest_tick) {
-		fail(order, CAU_BAD_VALUE, "params.tick", "not between the oldest tick and the present");
+	} else if (tick > h->tick) {
+		fail(order, CAU_BAD_VALUE, "params.tick", "beyond the present");
 		return;
 	}
 	if (h->steps_left) {
 		fail(order, CAU_BAD_STATE, "", "the session is being stepped");
 		return;
 	}
-	// The log up to here must be in the store before it is read.
 	cau_event_end_cut(h);
-	cau_record_commit(h);
-	cau_store_flush(h->around->store);
+	if (!store_past(h, order, branch, tick))
+		return;
 	if (cau_replay_begin(h, h->id, branch, tick, order, &error)) {
 		cau_answer_fail(order, &error, 0);
 		return;
@@ -189,14 +210,14 @@ void cau_back_arrived(cau_hosted *h, cau_order *order)
 void cau_apply_fork(cau_hosted *h, cau_order *order)
 {
 	uint64_t tick = order->as.fork.has_tick ? order->as.fork.tick : h->tick;
-	if (tick > h->tick || tick < h->oldest_tick) {
-		fail(order, CAU_BAD_VALUE, "params.tick", "not between the oldest tick and the present");
+	if (tick > h->tick) {
+		fail(order, CAU_BAD_VALUE, "params.tick", "beyond the present");
 		return;
 	}
 	if (tick == h->tick)
 		cau_record_checkpoint(h, NULL, NULL);
-	cau_record_commit(h);
-	cau_store_flush(h->around->store);
+	if (!store_past(h, order, h->branch, tick))
+		return;
 	h->around->fork(h->around->user, h, order, tick);
 	free(order);
 }

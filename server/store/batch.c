@@ -313,3 +313,34 @@ cau_status cau_store_put_branch(cau_store_batch *batch, const cau_store_branch *
 	copy->session = copy_text(&at, branch->session);
 	return CAU_OK;
 }
+
+static cau_status append_gap(cau_store_batch *batch, enum record_kind kind,
+                             const cau_store_gap *gap, cau_error *error)
+{
+	TRY(check_text("session", gap->session, true, error));
+	TRY(check_branch("branch", gap->branch, 0, error));
+	TRY(check_count("tick", gap->from_tick, error));
+	TRY(check_count("tick", gap->before_tick, error));
+	struct record *record = append(batch, kind, text_bytes(gap->session), error);
+	if (!record)
+		return CAU_NO_MEMORY;
+	unsigned char *at = record->storage;
+	record->as.gap = *gap;
+	record->as.gap.session = copy_text(&at, gap->session);
+	return CAU_OK;
+}
+
+cau_status cau_store_put_mark(cau_store_batch *batch, const char *session, int64_t branch,
+                              uint64_t tick, cau_error *error)
+{
+	cau_store_gap mark = {.session = session, .branch = branch, .from_tick = tick};
+	return append_gap(batch, RECORD_MARK, &mark, error);
+}
+
+cau_status cau_store_put_gap(cau_store_batch *batch, const cau_store_gap *gap, cau_error *error)
+{
+	if (gap->from_tick >= gap->before_tick)
+		return cau_fail(error, CAU_BAD_VALUE, "before_tick", "a gap from tick %llu before %llu",
+		                (unsigned long long)gap->from_tick, (unsigned long long)gap->before_tick);
+	return append_gap(batch, RECORD_GAP, gap, error);
+}

@@ -15,6 +15,8 @@ enum record_kind {
 	RECORD_EVENT,
 	RECORD_EVENTS_FORGET, // as.event: session, branch, tick
 	RECORD_BRANCH,
+	RECORD_MARK, // as.gap: session, branch, from_tick
+	RECORD_GAP,
 };
 
 struct record {
@@ -27,6 +29,7 @@ struct record {
 		cau_store_checkpoint checkpoint;
 		cau_store_event event;
 		cau_store_branch branch;
+		cau_store_gap gap;
 	} as; // its pointers lead into storage
 	unsigned char storage[];
 };

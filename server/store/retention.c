@@ -1,17 +1,21 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // What may go: sessions that were deleted; of a branch that was left, what no other branch was
-// forked from; checkpoints of a session that is too big, but for its newest two; old answers and
-// events. Logs of the lines that are kept never go: without them nothing could be replayed.
+// forked from; of the present line, checkpoints that stand close for their age (course.h), and the
+// oldest log of a session that is too big; old answers and events. Marked states stay.
 //
-// A branch loses its newest ticks first, so that what is left of it is always a whole beginning.
+// A branch that was left loses its newest ticks first, so that what is left of it is always a whole
+// beginning. The present line loses its log from the oldest on, as gaps that are told.
 #include "retention.h"
 
+#include <stdbool.h>
+
+#include "course.h"
 #include "fault.h"
 
 enum {
 	ROWS_A_STEP = 256,
-	CHECKPOINTS_KEPT = 2,
-	ROW_BYTES = 64, // as write.c counts a command
+	ROW_BYTES = 64,            // as write.c counts a command
+	LEAST_SPACING_TICKS = 600, // thinning does not look closer: 10 s at 60 Hz, replayed in 3
 };
 
 // What a statement gave: rows, the sum and the least of its columns, and its last row.
@@ -19,7 +23,7 @@ struct outcome {
 	int64_t rows;
 	int64_t sum;      // of column 0
 	int64_t least;    // of column 1
-	int64_t value[3]; // of the last row
+	int64_t value[4]; // of the last row
 };
 
 // Runs one statement with as many integers as it has parameters.
@@ -34,7 +38,7 @@ static cau_status run(sqlite3 *database, const char *sql, const int64_t *paramet
 	while (!code && (code = sqlite3_step(statement)) == SQLITE_ROW) {
 		code = SQLITE_OK;
 		outcome->rows++;
-		for (int i = 0; i < sqlite3_column_count(statement) && i < 3; i++)
+		for (int i = 0; i < sqlite3_column_count(statement) && i < 4; i++)
 			outcome->value[i] = sqlite3_column_int64(statement, i);
 		outcome->sum += outcome->value[0];
 		if (outcome->value[1] < outcome->least)
@@ -62,6 +66,8 @@ static cau_status remove_deleted(sqlite3 *database, int64_t *rows, cau_error *er
 		"DELETE FROM events WHERE key IN (SELECT key FROM events WHERE session = ?1 " STEP ")",
 		"DELETE FROM clients WHERE session = ?1 AND client IN"
 		" (SELECT client FROM clients WHERE session = ?1 " STEP ")",
+		"DELETE FROM marks WHERE session = ?1",
+		"DELETE FROM gaps WHERE session = ?1",
 		"DELETE FROM branches WHERE session = ?1 AND branch IN"
 		" (SELECT branch FROM branches WHERE session = ?1 " STEP ")",
 		"DELETE FROM sessions WHERE key = ?1",
@@ -130,8 +136,10 @@ static cau_status trim_branch(sqlite3 *database, int64_t session, int64_t branch
 // session ?2 or, if that is 0, of any.
 #define LEFT_BRANCH                                                                                \
 	"SELECT session, branch, keep FROM (SELECT session, branch, end_tick, left_ms,"                \
-	" coalesce((SELECT max(fork_tick) FROM branches AS child WHERE child.session = parent.session" \
-	"  AND child.parent = parent.branch), -1) AS keep"                                             \
+	" max(coalesce((SELECT max(fork_tick) FROM branches AS child"                                  \
+	"  WHERE child.session = parent.session AND child.parent = parent.branch), -1),"               \
+	"  coalesce((SELECT max(tick) FROM marks WHERE marks.session = parent.session"                 \
+	"   AND marks.branch = parent.branch), -1)) AS keep"                                           \
 	" FROM branches AS parent WHERE left_ms > 0 AND left_ms <= ?1 AND ?2 IN (0, session))"         \
 	" WHERE end_tick > keep ORDER BY left_ms, branch LIMIT 1"
 
@@ -150,45 +158,196 @@ static cau_status trim_left(sqlite3 *database, int64_t left_before_ms, int64_t s
 	return status;
 }
 
-// ---- too big --------------------------------------------------------------------------
-static cau_status thin_checkpoints(sqlite3 *database, int64_t session, int64_t *rows,
-                                   cau_error *error)
+// ---- checkpoints and log of the present line ------------------------------------------
+// The present line of a session, and what is kept of it.
+struct present {
+	int64_t session, branch;
+	int64_t bytes; // of the whole session
+	struct cau_store_course course;
+};
+
+static cau_status drop_point(sqlite3 *database, int64_t session,
+                             const struct cau_store_point *point, int64_t *rows, cau_error *error)
 {
-	struct outcome oldest, removed;
+	struct outcome removed;
 	cau_status status =
-		run(database, "SELECT count(*), branch, min(tick) FROM checkpoints WHERE session = ?1",
-	        (const int64_t[]){session}, &oldest, error);
-	if (status || oldest.value[0] <= CHECKPOINTS_KEPT)
+		run(database,
+	        "DELETE FROM checkpoints WHERE session = ?1 AND branch = ?2 AND tick = ?3"
+	        " RETURNING bytes",
+	        (const int64_t[]){session, point->branch, point->tick}, &removed, error);
+	if (status)
 		return status;
-	int64_t branch = oldest.value[1];
+	*rows += removed.rows;
+	return shrink_branch(database, session, point->branch, removed.sum, INT64_MAX, error);
+}
+
+// A segment of the line leads from the checkpoint at ?3 to the next, at ?4.
+#define SEGMENT_HAS_LOG                                                                            \
+	CAU_STORE_LINE "SELECT 1 FROM line CROSS JOIN commands AS k ON k.session = ?1"                 \
+				   " AND k.branch = line.branch AND k.tick >= max(?3, line.from_tick)"             \
+				   " AND k.tick < min(?4, line.before_tick) LIMIT 1"
+
+// A state that must stay and has no checkpoint of its own, or where another line that is kept
+// leaves this one.
+#define SEGMENT_IS_NEEDED                                                                          \
+	CAU_STORE_LINE "SELECT 1 FROM line CROSS JOIN marks AS m ON m.session = ?1"                    \
+				   " AND m.branch = line.branch AND m.tick > ?3 AND m.tick < ?4"                   \
+				   " AND m.tick <= line.before_tick UNION ALL"                                     \
+				   " SELECT 1 FROM line CROSS JOIN branches AS b ON b.session = ?1"                \
+				   " AND b.parent = line.branch AND b.fork_tick > ?3 AND b.fork_tick < ?4"         \
+				   " AND b.fork_tick <= line.before_tick"                                          \
+				   " AND b.branch NOT IN (SELECT branch FROM line) LIMIT 1"
+
+static cau_status may_lose_log(sqlite3 *database, const int64_t segment[4], bool *may,
+                               cau_error *error)
+{
+	struct outcome log, need;
+	cau_status status = run(database, SEGMENT_HAS_LOG, segment, &log, error);
+	if (!status)
+		status = run(database, SEGMENT_IS_NEEDED, segment, &need, error);
+	*may = !status && log.rows && !need.rows;
+	return status;
+}
+
+// Notes the segment as a gap, so that from this transaction on nobody goes there; its commands go
+// in the next steps. It lengthens the gap before it, and the checkpoint between the two goes.
+static cau_status open_gap(sqlite3 *database, const struct present *present, int index,
+                           int64_t *rows, cau_error *error)
+{
+	const struct cau_store_course *course = &present->course;
+	const struct cau_store_point *from = &course->point[index];
+	const int64_t segment[] = {present->session, present->branch, from->tick, from[1].tick};
+	struct outcome done;
+	bool follows = false;
+	for (int i = 0; i < course->hole_count; i++)
+		follows |= course->hole[i].before_tick == from->tick;
+	// A gap that ends where this one begins grows instead.
+	cau_status status = run(
+		database,
+		CAU_STORE_LINE "INSERT INTO gaps SELECT ?1, branch,"
+					   " coalesce((SELECT g.from_tick FROM gaps AS g WHERE g.session = ?1"
+					   "  AND g.branch = line.branch AND g.before_tick = max(?3, line.from_tick)"
+					   "  AND g.trimmed = 1), max(?3, line.from_tick)),"
+					   " min(?4, line.before_tick), 1 FROM line"
+					   " WHERE line.from_tick < ?4 AND line.before_tick > ?3"
+					   " ON CONFLICT(session, branch, from_tick) DO UPDATE"
+					   " SET before_tick = max(before_tick, excluded.before_tick), trimmed = 1",
+		segment, &done, error);
+	*rows += !status;
+	if (!status && follows && index > 0 && !from->marked)
+		status = drop_point(database, present->session, from, rows, error);
+	return status;
+}
+
+// The oldest stretch of log goes, from one checkpoint to the next: never from the newest but one
+// on.
+static cau_status trim_log(sqlite3 *database, const struct present *present, int64_t *rows,
+                           cau_error *error)
+{
+	const struct cau_store_course *course = &present->course;
+	for (int i = 0; i + 2 < course->point_count; i++) {
+		const struct cau_store_point *from = &course->point[i];
+		bool may, covered = false;
+		for (int k = 0; k < course->hole_count; k++)
+			covered |= course->hole[k].from_tick <= from->tick &&
+			           course->hole[k].before_tick >= from[1].tick;
+		if (covered || from->tick == from[1].tick)
+			continue;
+		const int64_t segment[] = {present->session, present->branch, from->tick, from[1].tick};
+		cau_status status = may_lose_log(database, segment, &may, error);
+		if (status)
+			return status;
+		if (may)
+			return open_gap(database, present, i, rows, error);
+	}
+	return CAU_OK;
+}
+
+static int64_t point_bytes(const struct cau_store_course *course)
+{
+	int64_t bytes = 0;
+	for (int i = 0; i < course->point_count; i++)
+		bytes += course->point[i].bytes;
+	return bytes;
+}
+
+// Too big: first what was left, then checkpoints while they have more than half of the limit, then
+// the oldest log.
+static cau_status shrink(sqlite3 *database, const struct present *present, int64_t limit,
+                         int64_t *rows, cau_error *error)
+{
+	cau_status status = trim_left(database, INT64_MAX, present->session, rows, error);
+	if (status || *rows)
+		return status;
+	int dropped = cau_store_course_coarsen(&present->course, LEAST_SPACING_TICKS);
+	if (dropped >= 0 && point_bytes(&present->course) > limit / 2)
+		return drop_point(database, present->session, &present->course.point[dropped], rows, error);
+	status = trim_log(database, present, rows, error);
+	if (!status && !*rows && dropped >= 0)
+		status =
+			drop_point(database, present->session, &present->course.point[dropped], rows, error);
+	return status;
+}
+
+static cau_status thin_session(sqlite3 *database, struct present *present, int64_t limit,
+                               int64_t *rows, cau_error *error)
+{
+	cau_status status =
+		cau_store_course_read(database, present->session, present->branch, &present->course, error);
+	int dropped = status ? -1 : cau_store_course_thin(&present->course, LEAST_SPACING_TICKS);
+	if (dropped >= 0)
+		status =
+			drop_point(database, present->session, &present->course.point[dropped], rows, error);
+	else if (!status && present->bytes > limit)
+		status = shrink(database, present, limit, rows, error);
+	cau_store_course_finish(&present->course);
+	return status;
+}
+
+// Sessions are tried in order until one can be made smaller.
+static cau_status thin_sessions(sqlite3 *database, int64_t limit, int64_t *rows, cau_error *error)
+{
+	struct outcome found;
+	for (int64_t after = 0; !*rows;) {
+		cau_status status =
+			run(database,
+		        "SELECT s.key, s.branch, (SELECT sum(bytes) FROM branches WHERE session = s.key)"
+		        " FROM sessions AS s WHERE s.deleted = 0 AND s.key > ?1 ORDER BY s.key LIMIT 1",
+		        &after, &found, error);
+		if (status || !found.rows)
+			return status;
+		struct present present = {found.value[0], found.value[1], found.value[2], {0}};
+		after = present.session;
+		status = thin_session(database, &present, limit, rows, error);
+		if (status)
+			return status;
+	}
+	return CAU_OK;
+}
+
+// A step of what trim_log has begun.
+static cau_status empty_gaps(sqlite3 *database, int64_t *rows, cau_error *error)
+{
+	struct outcome gap, removed;
+	cau_status status = run(
+		database,
+		"SELECT session, branch, from_tick, before_tick FROM gaps AS g WHERE trimmed = 1"
+		" AND EXISTS(SELECT 1 FROM commands AS k WHERE k.session = g.session"
+		"  AND k.branch = g.branch AND k.tick >= g.from_tick AND k.tick < g.before_tick) LIMIT 1",
+		NULL, &gap, error);
+	if (status || !gap.rows)
+		return status;
 	status = run(database,
-	             "DELETE FROM checkpoints WHERE session = ?1 AND branch = ?2 AND tick = ?3"
-	             " RETURNING bytes",
-	             (const int64_t[]){session, branch, oldest.value[2]}, &removed, error);
+	             "DELETE FROM commands WHERE session = ?1 AND branch = ?2 AND (tick, position) IN"
+	             " (SELECT tick, position FROM commands WHERE session = ?1 AND branch = ?2"
+	             "  AND tick >= ?3 AND tick < ?4 ORDER BY tick, position " STEP ")"
+	             " RETURNING length(payload), tick",
+	             gap.value, &removed, error);
 	if (status)
 		return status;
 	*rows = removed.rows;
-	return shrink_branch(database, session, branch, removed.sum, INT64_MAX, error);
-}
-
-static cau_status shrink_biggest(sqlite3 *database, int64_t limit, int64_t *rows, cau_error *error)
-{
-	struct outcome found;
-	int64_t after = 0; // sessions are tried in order until one can be made smaller
-	for (;;) {
-		cau_status status = run(database,
-		                        "SELECT session FROM branches WHERE session > ?2 GROUP BY session"
-		                        " HAVING sum(bytes) > ?1 ORDER BY session LIMIT 1",
-		                        (const int64_t[]){limit, after}, &found, error);
-		if (status || !found.rows)
-			return status;
-		after = found.value[0];
-		status = trim_left(database, INT64_MAX, after, rows, error);
-		if (!status && !*rows)
-			status = thin_checkpoints(database, after, rows, error);
-		if (status || *rows)
-			return status;
-	}
+	return shrink_branch(database, gap.value[0], gap.value[1],
+	                     removed.sum + removed.rows * ROW_BYTES, INT64_MAX, error);
 }
 
 // ---- old answers and events -----------------------------------------------------------
@@ -231,7 +390,9 @@ static cau_status step(sqlite3 *database, const cau_store_config *config, int64_
 	if (!status && !*rows)
 		status = trim_left(database, now_ms - config->retention_age_ms, 0, rows, error);
 	if (!status && !*rows)
-		status = shrink_biggest(database, config->retention_bytes, rows, error);
+		status = empty_gaps(database, rows, error);
+	if (!status && !*rows)
+		status = thin_sessions(database, config->retention_bytes, rows, error);
 	if (!status && !*rows)
 		status = forget_answers(database, now_ms - config->answer_age_ms, rows, error);
 	if (!status && !*rows)
@@ -243,7 +404,9 @@ static cau_status step(sqlite3 *database, const cau_store_config *config, int64_
 	if (!status && !*rows)
 		status = remove_old(database,
 		                    "DELETE FROM events WHERE key IN (SELECT key FROM (SELECT key, time_ms"
-		                    " FROM events ORDER BY key " STEP ") WHERE time_ms < ?1)",
+		                    " FROM events AS e WHERE NOT EXISTS(SELECT 1 FROM marks AS m"
+		                    "  WHERE m.session = e.session AND m.branch = e.branch"
+		                    "  AND m.tick = e.tick) ORDER BY key " STEP ") WHERE time_ms < ?1)",
 		                    now_ms - config->event_age_ms, rows, error);
 	return status;
 }

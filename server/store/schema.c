@@ -56,5 +56,17 @@ static const char third_step[] =
 	" time_ms INTEGER NOT NULL) WITHOUT ROWID;"
 	"CREATE INDEX forgotten_by_time ON forgotten(time_ms);";
 
+// marks: states that retention keeps. The first state and the named ones of older stores are known
+// from their events. gaps: the commands of a branch with from_tick <= tick < before_tick are
+// missing, because retention took them (trimmed) or because they could not be stored.
+static const char fourth_step[] =
+	"CREATE TABLE marks(session INTEGER NOT NULL, branch INTEGER NOT NULL,"
+	" tick INTEGER NOT NULL, PRIMARY KEY(session, branch, tick)) WITHOUT ROWID;"
+	"INSERT OR IGNORE INTO marks SELECT session, branch, tick FROM events"
+	" WHERE session > 0 AND kind IN ('created', 'snapshot');"
+	"CREATE TABLE gaps(session INTEGER NOT NULL, branch INTEGER NOT NULL,"
+	" from_tick INTEGER NOT NULL, before_tick INTEGER NOT NULL, trimmed INTEGER NOT NULL,"
+	" PRIMARY KEY(session, branch, from_tick)) WITHOUT ROWID;";
+
 const char *const cau_store_schema_steps[CAU_STORE_SCHEMA_VERSION] = {first_step, second_step,
-                                                                      third_step};
+                                                                      third_step, fourth_step};

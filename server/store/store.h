@@ -193,6 +193,21 @@ typedef struct cau_store_branch {
 cau_status cau_store_put_branch(cau_store_batch *batch, const cau_store_branch *branch,
                                 cau_error *error);
 
+// The state at this tick stays as long as the session, on a branch that has been left too, and so
+// do the events of that tick. The session's first checkpoint stays without a mark.
+cau_status cau_store_put_mark(cau_store_batch *batch, const char *session, int64_t branch,
+                              uint64_t tick, cau_error *error);
+
+// The branch's log lacks commands with from_tick <= tick < before_tick: no state after the first of
+// these ticks and before the last can be reached but by a checkpoint there.
+typedef struct cau_store_gap {
+	const char *session;
+	int64_t branch;
+	uint64_t from_tick, before_tick;
+} cau_store_gap;
+// To be told with the checkpoint that ends it, at before_tick.
+cau_status cau_store_put_gap(cau_store_batch *batch, const cau_store_gap *gap, cau_error *error);
+
 // ---- writing: submission --------------------------------------------------------------
 // Called once per accepted batch, on the store's thread, without locks held, in the order of
 // submission. CAU_OK: the batch is on the disk, and no crash or power cut undoes it. Else nothing
@@ -244,6 +259,16 @@ typedef cau_status (*cau_store_visit_command)(void *user, const cau_store_comman
 cau_status cau_store_read_log(cau_store *store, const char *session, int64_t branch,
                               uint64_t from_tick, uint64_t before_tick,
                               cau_store_visit_command visit, void *user, cau_error *error);
+
+// Whether the state at `tick`, as the branch sees it, can be reached from a checkpoint by a log
+// that is whole. CAU_BAD_VALUE (path "params.tick") names what can be reached. To be asked after
+// the checkpoint and the log were read: then nothing that was missing passes unnoticed.
+cau_status cau_store_check_reach(cau_store *store, const char *session, int64_t branch,
+                                 uint64_t tick, cau_error *error);
+// The first tick from which on every state can be reached, up to the branch's end. CAU_NOT_FOUND if
+// it has no checkpoint.
+cau_status cau_store_read_oldest_tick(cau_store *store, const char *session, int64_t branch,
+                                      uint64_t *tick, cau_error *error);
 
 // Events of one session (NULL: the daemon's own), of one kind (NULL: any), newest first, at most
 // `count`.

@@ -27,7 +27,11 @@
 	X(ADD_CHECKPOINT, "INSERT OR REPLACE INTO checkpoints VALUES(?1, ?2, ?3, ?4, ?5, ?6)")         \
 	X(ADD_EVENT, "INSERT INTO events(session, tick, level, time_ms, kind, text, branch)"           \
 	             " VALUES(?1, ?2, ?3, ?4, ?5, ?6, ?7)")                                            \
-	X(FORGET_EVENTS, "DELETE FROM events WHERE session = ?1 AND branch = ?2 AND tick > ?3")
+	X(FORGET_EVENTS, "DELETE FROM events WHERE session = ?1 AND branch = ?2 AND tick > ?3")        \
+	X(ADD_MARK, "INSERT OR IGNORE INTO marks VALUES(?1, ?2, ?3)")                                  \
+	X(ADD_GAP,                                                                                     \
+	  "INSERT INTO gaps VALUES(?1, ?2, ?3, ?4, 0) ON CONFLICT(session, branch, from_tick)"         \
+	  " DO UPDATE SET before_tick = max(before_tick, excluded.before_tick)")
 
 enum statement_index {
 #define X(name, sql) name,
@@ -326,6 +330,24 @@ static cau_status apply_forget(struct cau_store_writer *writer, const cau_store_
 	return run(writer, FORGET_EVENTS, "events", error);
 }
 
+static cau_status apply_gap(struct cau_store_writer *writer, const struct record *record,
+                            cau_error *error)
+{
+	const cau_store_gap *gap = &record->as.gap;
+	enum statement_index index = record->kind == RECORD_GAP ? ADD_GAP : ADD_MARK;
+	sqlite3_stmt *statement = writer->statement[index];
+	int64_t key;
+	cau_status status = find_session(writer, gap->session, &key, error);
+	if (status)
+		return status;
+	sqlite3_bind_int64(statement, 1, key);
+	sqlite3_bind_int64(statement, 2, gap->branch);
+	bind_count(statement, 3, gap->from_tick);
+	if (index == ADD_GAP)
+		bind_count(statement, 4, gap->before_tick);
+	return run(writer, index, index == ADD_GAP ? "a gap" : "a mark", error);
+}
+
 // Goes up from *parent until the branch that owns the states up to fork_tick.
 static cau_status find_owner(struct cau_store_writer *writer, int64_t key, uint64_t fork_tick,
                              int64_t *parent, cau_error *error)
@@ -396,6 +418,9 @@ cau_status cau_store_writer_apply(struct cau_store_writer *writer, const struct 
 		return apply_forget(writer, &record->as.event, error);
 	case RECORD_BRANCH:
 		return apply_branch(writer, &record->as.branch, now_ms, error);
+	case RECORD_MARK:
+	case RECORD_GAP:
+		return apply_gap(writer, record, error);
 	}
 	return cau_fail(error, CAU_BAD_VALUE, NULL, "a record of unknown kind");
 }

@@ -6,7 +6,7 @@
 
 #include "batch.h"
 
-enum { CAU_STORE_STATEMENTS = 16 };
+enum { CAU_STORE_STATEMENTS = 18 };
 
 struct cau_store_writer {
 	sqlite3 *database; // borrowed

@@ -346,6 +346,86 @@ for (const [what, spoil] of [
 		rmSync(daemon.folder, { recursive: true });
 	});
 
+const gapNamed = (error) => error.code === -32602 && error.data.path === 'params.tick' &&
+	/can be reached: \d/.test(error.data.reason);
+
+// Rows of the store of a daemon that is not running.
+function queryStore(daemon, query) {
+	const script = `import json, sqlite3, sys
+print(json.dumps(sqlite3.connect(sys.argv[1]).execute(sys.argv[2]).fetchall()))`;
+	const answer = spawnSync('python3', ['-c', script, join(daemon.folder, 'store.db'), query], { encoding: 'utf8' });
+	assert.equal(answer.status, 0, answer.stderr);
+	return JSON.parse(answer.stdout);
+}
+
+test('beyond its budget a session loses the middle of its past, never its beginning, and says so', async () => {
+	let daemon = await Daemon.start({ settings: { retention_bytes: 1048576, checkpoint_s: 0.1 } });
+	let client = await daemon.connect();
+	const { summary: { session } } = await client.call('session.create', { scene: 'fascia', name: 'long', paused: true });
+	await client.call('tool.take_over', { session, tool: 'hook' });
+	const beginning = await client.call('session.snapshot', { session, name: 'beginning' });
+	const timeline = () => client.call('session.timeline', { session });
+	// Retention looks every ten seconds; the session goes on until it has begun.
+	let middle;
+	for (let i = 0, until = Date.now() + 60000; !((await timeline()).oldest_tick > 0 && i > 8); i++) {
+		assert.ok(Date.now() < until, 'retention did nothing');
+		await client.call('tool.move', { session, tool: 'hook', position_m: [0.0001 * (i % 100), 0, 0.01], rotation: AT_REST });
+		await client.call('session.step', { session, ticks: 20 });
+		if (i === 4)
+			middle = await client.call('session.snapshot', { session, name: 'middle' });
+	}
+	const check = async () => {
+		const { oldest_tick, tick } = await timeline();
+		await assert.rejects(client.call('session.rewind', { session, tick: oldest_tick - 1 }), gapNamed);
+		await assert.rejects(client.call('session.fork', { session, name: 'no', tick: oldest_tick - 1 }), gapNamed);
+		const back = await client.call('session.rewind', { session, tick: oldest_tick });
+		assert.equal(back.tick, oldest_tick);
+		assert.ok(tick >= oldest_tick);
+		for (const { name, hash } of [{ name: 'middle', hash: middle.hash }, { name: 'beginning', hash: beginning.hash }]) {
+			await client.call('session.restore', { session, name });
+			const again = await client.call('session.snapshot', { session });
+			assert.equal(again.hash, hash, name);
+		}
+		assert.equal((await client.call('session.reset', { session })).tick, 0);
+		assert.equal((await client.call('session.snapshot', { session })).hash, beginning.hash);
+	};
+	await client.call('session.fork', { session, name: 'begun', tick: 0, paused: true });
+	await check();
+	// Off the beginning too, on another branch, after a crash.
+	await client.call('session.step', { session, ticks: 30 });
+	await daemon.kill();
+	daemon = await Daemon.start({ folder: daemon.folder, settings: { retention_bytes: 1048576 } });
+	client = await daemon.connect();
+	assert.equal((await timeline()).oldest_tick, 0);
+	await client.call('session.restore', { session, name: 'middle' });
+	assert.equal((await client.call('session.reset', { session })).tick, 0);
+	await client.close();
+	await daemon.end();
+});
+
+test('a session that nobody touches is written ever more rarely, a paused one not at all', async () => {
+	const daemon = await Daemon.start({ settings: { checkpoint_s: 0.1 } });
+	const client = await daemon.connect();
+	const idle = await smallSession(client, 'idle'), driven = await smallSession(client, 'driven');
+	const paused = await smallSession(client, 'paused', { paused: true });
+	const stream = await client.join(driven);
+	await client.call('tool.take_over', { session: driven, tool: 'hook' });
+	for (let i = 0; stream.tick < 180; i++) { // three seconds
+		await client.call('tool.move', { session: driven, tool: 'hook', position_m: [0.0001 * (i % 100), 0, 0.01], rotation: AT_REST });
+		const { tick } = stream;
+		await client.until(() => stream.tick > tick, 'the next frame');
+	}
+	await client.close();
+	await daemon.kill();
+	const written = Object.fromEntries(queryStore(daemon,
+		'SELECT id, count(*) FROM checkpoints JOIN sessions ON key = session GROUP BY id'));
+	// 0.1, 0.3, 0.7, 1.5 and 3.1 s after the first; were the machine slow, one or two more.
+	assert.ok(written[idle] >= 3 && written[idle] <= 8, JSON.stringify(written));
+	assert.ok(written[driven] > 2 * written[idle], JSON.stringify(written));
+	assert.equal(written[paused], 1);
+	rmSync(daemon.folder, { recursive: true });
+});
+
 test('a store without room refuses requests, the session goes on, and it recovers', async () => {
 	let daemon = await Daemon.start();
 	const client = await daemon.connect();
@@ -366,14 +446,23 @@ test('a store without room refuses requests, the session goes on, and it recover
 	limit('unlimited');
 	await daemon.ready();
 	const last = await gravity(-4);
+	// What could not be stored is a gap that nobody is led through.
+	const refused = (who) => assert.rejects(who.call('session.rewind', { session, tick: tick + 10 }), gapNamed);
+	await refused(client);
+	await assert.rejects(client.call('session.fork', { session, name: 'no', tick: tick + 10 }), gapNamed);
 	await daemon.kill();
 	daemon = await Daemon.start({ folder: daemon.folder });
 	const again = await daemon.connect();
 	await again.call('session.pause', { session });
+	await refused(again);
+	const { oldest_tick } = await again.call('session.timeline', { session });
+	assert.ok(oldest_tick > tick + 10, 'the gap is behind what is always reached');
 	const log = parse(await again.file('session.log', { session }));
 	const kept = log.filter((c) => c.command === 'gravity.set').map((c) => c.gravity_m_s2[2]);
 	assert.ok(kept.includes(-1) && kept.includes(-4), kept.join(' '));
 	assert.ok((await again.call('session.list')).sessions[0].tick >= last.tick);
+	await again.call('session.rewind', { session, tick: oldest_tick });
+	await again.call('session.reset', { session });
 	await again.close();
 	await daemon.end();
 });

@@ -8,6 +8,7 @@
 #include <string.h>
 
 #include "store/clock.h"
+#include "store/fault.h"
 #include "store/file.h"
 #include "store/retention.h"
 
@@ -174,38 +175,58 @@ static void a_branch_without_children_goes_altogether(void **state)
 	cau_store_close(store);
 }
 
-static void a_big_session_loses_left_branches_then_old_checkpoints(void **state)
+// ---- the present line -----------------------------------------------------------------
+static bool is_reached(cau_store *store, int64_t branch, uint64_t tick)
+{
+	return cau_store_check_reach(store, "knee", branch, tick, NULL) == CAU_OK;
+}
+
+// What can be reached, told by what is there: with a command at every tick, a state is reached if
+// the commands from the newest checkpoint on are all there.
+static bool can_be_replayed(cau_store *store, int64_t branch, uint64_t tick)
+{
+	static uint64_t ticks[20000];
+	int64_t from = newest_checkpoint(store, branch, tick);
+	return from >= 0 && read_ticks(store, "knee", branch, (uint64_t)from, tick, ticks, 20000) ==
+	                        (int)tick - (int)from;
+}
+
+// Every tick up to `end` that is said to be reached can be replayed, and the other way round; from
+// the oldest tick on all are.
+static void check_what_is_said(cau_store *store, int64_t branch, uint64_t end, uint64_t stride)
+{
+	uint64_t oldest;
+	assert_int_equal(cau_store_read_oldest_tick(store, "knee", branch, &oldest, NULL), CAU_OK);
+	for (uint64_t tick = 0; tick <= end; tick += stride) {
+		if (is_reached(store, branch, tick) != can_be_replayed(store, branch, tick))
+			fail_msg("tick %d of branch %d", (int)tick, (int)branch);
+		assert_true(tick < oldest || is_reached(store, branch, tick));
+	}
+	assert_true(oldest == 0 || !is_reached(store, branch, oldest - 1));
+}
+
+static void a_big_session_loses_left_branches_first(void **state)
 {
 	struct fixture *fixture = *state;
 	struct removal removal;
-	fixture->config.retention_bytes = 450000; // four of the test's checkpoints
+	fixture->config.retention_bytes = 900000; // eight checkpoints of the test's, and some log
 	cau_store *store = open_with_knee(fixture);
-	log_ticks(store, 0, 0, 100);
-	for (uint64_t tick = 10; tick <= 60; tick += 10)
-		put_checkpoint(store, 0, tick);
-	assert_int_equal(open_branch(store, 1, 0, 30), CAU_OK);
+	log_ticks(store, 0, 0, 60);
+	for (uint64_t tick = 0; tick < 6; tick++)
+		put_checkpoint(store, 0, 1000 * tick);
+	assert_int_equal(open_branch(store, 1, 0, 3000), CAU_OK);
+	for (uint64_t tick = 3; tick < 7; tick++)
+		put_checkpoint(store, 1, 1000 * tick);
 	store = retire(fixture, store, &removal);
-	// Two of the left branch's own checkpoints (40 to 60) make room enough.
-	assert_int_equal(removal.rows, 2);
-	assert_int_equal(newest_checkpoint(store, 0, 100), 40);
-	assert_int_equal(newest_checkpoint(store, 1, 100), 30);
-	assert_int_equal(newest_checkpoint(store, 1, 19), 10);
-	assert_int_equal(count_log(store, 0), 100);
-	assert_int_equal(count_log(store, 1), 30);
-
-	log_ticks(store, 1, 30, 200);
-	for (uint64_t tick = 40; tick <= 100; tick += 10)
-		put_checkpoint(store, 1, tick);
-	store = retire(fixture, store, &removal);
-	assert_int_equal(newest_checkpoint(store, 1, 1000), 100);
-	assert_int_equal(newest_checkpoint(store, 1, 60), -1); // the oldest went
-	assert_int_equal(newest_checkpoint(store, 1, 75), 70);
-	assert_int_equal(count_log(store, 0), 30);  // and all that was left behind
-	assert_int_equal(count_log(store, 1), 200); // the log never
+	assert_int_equal(removal.rows, 2); // 5000 and 4000 of the left branch made room enough
+	assert_int_equal(newest_checkpoint(store, 0, 10000), 3000);
+	assert_int_equal(newest_checkpoint(store, 1, 2999), 2000);
+	assert_int_equal(newest_checkpoint(store, 1, 10000), 6000);
+	assert_int_equal(count_log(store, 0), 60);
 	cau_store_close(store);
 }
 
-static void the_newest_two_checkpoints_stay_whatever_the_limit(void **state)
+static void the_first_checkpoint_and_the_newest_two_stay_whatever_the_limit(void **state)
 {
 	struct fixture *fixture = *state;
 	struct removal removal;
@@ -214,22 +235,190 @@ static void the_newest_two_checkpoints_stay_whatever_the_limit(void **state)
 	for (uint64_t tick = 10; tick <= 50; tick += 10)
 		put_checkpoint(store, 0, tick);
 	store = retire(fixture, store, &removal);
-	assert_int_equal(removal.rows, 3);
-	assert_int_equal(newest_checkpoint(store, 0, 45), 40);
-	assert_int_equal(newest_checkpoint(store, 0, 39), -1);
+	assert_int_equal(removal.rows, 2);
+	assert_int_equal(newest_checkpoint(store, 0, 100), 50);
+	assert_int_equal(newest_checkpoint(store, 0, 49), 40);
+	assert_int_equal(newest_checkpoint(store, 0, 39), 10);
 	cau_store_close(store);
 }
 
-static cau_status ignore_answer(void *user, const cau_store_answer *answer)
+// Forty times back and on again, each time from where the last came to. Reset means tick 0.
+static void whatever_was_rewound_tick_0_can_be_reached(void **state)
 {
-	(void)user, (void)answer;
-	return CAU_OK;
+	struct fixture *fixture = *state;
+	struct removal removal;
+	fixture->config.retention_bytes = 500000;
+	cau_store *store = open_with_knee(fixture);
+	uint64_t tick = 0;
+	put_checkpoint(store, 0, 0);
+	for (int64_t branch = 0; branch < 40; branch++) {
+		log_ticks(store, branch, tick, tick + 100);
+		put_checkpoint(store, branch, tick + 50);
+		tick += 80;
+		assert_int_equal(open_branch(store, branch + 1, branch, tick), CAU_OK);
+		put_checkpoint(store, branch + 1, tick);
+		if (branch % 8 == 7) {
+			store = retire(fixture, store, &removal);
+			check_what_is_said(store, branch + 1, tick, 7);
+		}
+		assert_true(is_reached(store, branch + 1, 0));
+		assert_true(is_reached(store, branch + 1, tick));
+	}
+	assert_int_equal(open_branch(store, 41, 40, 0), CAU_OK);
+	put_checkpoint(store, 41, 0);
+	clock_ms = start_ms + 25 * hour_ms;
+	store = retire(fixture, store, &removal);
+	assert_int_equal(newest_checkpoint(store, 0, 0), 0);
+	assert_int_equal(count_branches(store), 2); // what came of the rest is gone
+	check_what_is_said(store, 41, 0, 1);
+	cau_store_close(store);
+}
+
+static void put_mark(cau_store *store, int64_t branch, uint64_t tick)
+{
+	cau_store_batch *batch = cau_store_batch_create();
+	cau_store_event event = {
+		.session = "knee", .branch = branch, .tick = tick, .kind = "snapshot", .text = "named"};
+	assert_int_equal(cau_store_put_event(batch, &event, NULL), CAU_OK);
+	assert_int_equal(cau_store_put_mark(batch, "knee", branch, tick, NULL), CAU_OK);
+	assert_int_equal(write_batch(store, batch, NULL), CAU_OK);
 }
 
 static cau_status count_event(void *user, const cau_store_event *event)
 {
 	(void)event;
 	++*(int *)user;
+	return CAU_OK;
+}
+
+// One with a checkpoint of its own, one that the log leads to, on a branch that was left long ago.
+static void marked_states_and_their_events_stay(void **state)
+{
+	struct fixture *fixture = *state;
+	struct removal removal;
+	int events = 0;
+	fixture->config.retention_bytes = 0;
+	cau_store *store = open_with_knee(fixture);
+	for (uint64_t tick = 0; tick < 1000; tick += 100) {
+		log_ticks(store, 0, tick, tick + 100);
+		put_checkpoint(store, 0, tick);
+	}
+	put_mark(store, 0, 300);
+	put_mark(store, 0, 650);
+	assert_int_equal(open_branch(store, 1, 0, 200), CAU_OK);
+	log_ticks(store, 1, 200, 900);
+	for (uint64_t tick = 200; tick < 900; tick += 100)
+		put_checkpoint(store, 1, tick);
+	clock_ms = start_ms + 100 * 24 * hour_ms;
+	store = retire(fixture, store, &removal);
+	assert_int_equal(newest_checkpoint(store, 0, 300), 300);
+	assert_true(can_be_replayed(store, 0, 300));
+	assert_true(can_be_replayed(store, 0, 650));
+	check_what_is_said(store, 0, 650, 5);
+	check_what_is_said(store, 1, 900, 5);
+	assert_int_equal(cau_store_read_events(store, "knee", NULL, 10, count_event, &events, NULL),
+	                 CAU_OK);
+	assert_int_equal(events, 2);
+	cau_store_close(store);
+}
+
+// The log is more than the limit. What goes is told after every step, each of which is a
+// transaction: a crash between two leaves nothing untrue.
+static void a_log_beyond_the_limit_goes_as_a_gap_that_is_told(void **state)
+{
+	struct fixture *fixture = *state;
+	const uint64_t end = 12000;
+	cau_error error = {0};
+	sqlite3 *database;
+	int64_t rows = 1;
+	fixture->config.retention_bytes = 1000000;
+	cau_store *store = open_with_knee(fixture);
+	for (uint64_t tick = 0; tick < end; tick += 1000) {
+		put_checkpoint(store, 0, tick);
+		log_ticks(store, 0, tick, tick + 1000);
+	}
+	assert_int_equal(cau_store_file_open(fixture->path, 1 << 20, &database, NULL), CAU_OK);
+	for (int step = 0; rows; step++) {
+		assert_int_equal(cau_store_retention_step(database, &fixture->config, &rows, &error),
+		                 CAU_OK);
+		for (uint64_t tick = 0; step % 4 == 0 && tick <= end; tick += 333)
+			assert_true(!is_reached(store, 0, tick) || can_be_replayed(store, 0, tick));
+	}
+	sqlite3_close(database);
+	check_what_is_said(store, 0, end, 37);
+
+	uint64_t oldest;
+	assert_int_equal(cau_store_read_oldest_tick(store, "knee", 0, &oldest, NULL), CAU_OK);
+	assert_in_range(oldest, 1000, 11000);
+	assert_int_equal(cau_store_check_reach(store, "knee", 0, 500, &error), CAU_BAD_VALUE);
+	char reached[64];
+	snprintf(reached, sizeof reached, "can be reached: 0, %d on", (int)oldest);
+	assert_non_null(strstr(error.reason, reached));
+	assert_string_equal(error.path, "params.tick");
+	cau_store_close(store);
+}
+
+static void what_could_not_be_stored_is_a_gap(void **state)
+{
+	cau_error error = {0};
+	cau_store *store = open_with_knee(*state);
+	put_checkpoint(store, 0, 0);
+	log_ticks(store, 0, 0, 100);
+	cau_store_batch *batch = cau_store_batch_create();
+	cau_store_gap gap = {.session = "knee", .from_tick = 100, .before_tick = 140};
+	assert_int_equal(cau_store_put_gap(batch, &gap, NULL), CAU_OK);
+	gap.before_tick = 100;
+	assert_int_equal(cau_store_put_gap(batch, &gap, NULL), CAU_BAD_VALUE);
+	assert_int_equal(write_batch(store, batch, NULL), CAU_OK);
+	put_checkpoint(store, 0, 140);
+	log_ticks(store, 0, 140, 200);
+	check_what_is_said(store, 0, 200, 1);
+	assert_int_equal(cau_store_check_reach(store, "knee", 0, 120, &error), CAU_BAD_VALUE);
+	assert_non_null(strstr(error.reason, "can be reached: 0 to 100, 140 on"));
+	// The checkpoint that ends it stays, close as it stands.
+	struct removal removal;
+	put_checkpoint(store, 0, 100000);
+	put_checkpoint(store, 0, 100001);
+	store = retire(*state, store, &removal);
+	assert_int_equal(removal.rows, 0);
+	assert_int_equal(newest_checkpoint(store, 0, 200), 140);
+	cau_store_close(store);
+}
+
+// Sixty hours that nobody touches: the daemon comes to one checkpoint in 256 checkpoint_s, here
+// 153,600 ticks. README.md states the bounds.
+static void an_untouched_weekend_is_small(void **state)
+{
+	static const uint64_t cadence = 153600, end = 60ull * 3600 * 60;
+	struct fixture *fixture = *state;
+	cau_error error = {0};
+	int64_t rows, count, pages;
+	sqlite3 *database;
+	cau_store *store = open_with_knee(fixture);
+	assert_int_equal(cau_store_file_open(fixture->path, 1 << 20, &database, NULL), CAU_OK);
+	for (uint64_t tick = 0; tick <= end; tick += cadence) {
+		put_checkpoint(store, 0, tick);
+		do
+			assert_int_equal(cau_store_retention_step(database, &fixture->config, &rows, &error),
+			                 CAU_OK);
+		while (rows);
+		assert_true(is_reached(store, 0, tick / 2) && is_reached(store, 0, 0));
+	}
+	assert_int_equal(cau_store_integer(database, "SELECT count(*) FROM checkpoints", &count, NULL),
+	                 CAU_OK);
+	assert_int_equal(cau_store_integer(database, "PRAGMA page_count", &pages, NULL), CAU_OK);
+	print_message("%d checkpoints of %d written, %d pages\n", (int)count, (int)(end / cadence) + 1,
+	              (int)pages);
+	assert_in_range(count, 3, 40);
+	assert_in_range(pages * 4096, 1, 41 * 105000); // of 100 kB each: freed pages were used again
+	sqlite3_close(database);
+	cau_store_close(store);
+}
+
+// ---- answers and events ---------------------------------------------------------------
+static cau_status ignore_answer(void *user, const cau_store_answer *answer)
+{
+	(void)user, (void)answer;
 	return CAU_OK;
 }
 
@@ -306,8 +495,13 @@ int main(void)
 	const struct CMUnitTest tests[] = {
 		TEST(a_left_branch_goes_after_its_time_and_no_sooner),
 		TEST(a_branch_without_children_goes_altogether),
-		TEST(a_big_session_loses_left_branches_then_old_checkpoints),
-		TEST(the_newest_two_checkpoints_stay_whatever_the_limit),
+		TEST(a_big_session_loses_left_branches_first),
+		TEST(the_first_checkpoint_and_the_newest_two_stay_whatever_the_limit),
+		TEST(whatever_was_rewound_tick_0_can_be_reached),
+		TEST(marked_states_and_their_events_stay),
+		TEST(a_log_beyond_the_limit_goes_as_a_gap_that_is_told),
+		TEST(what_could_not_be_stored_is_a_gap),
+		TEST(an_untouched_weekend_is_small),
 		TEST(old_answers_and_events_go),
 		TEST(the_thread_removes_a_deleted_session),
 	};

@@ -308,7 +308,7 @@ export interface SessionRewind {
   session?: string;
   /** see session_change (1 to 9007199254740991) */
   client_sequence?: number;
-  /** at or after the timeline's oldest_tick (0 to 9007199254740991) */
+  /** the timeline's oldest_tick or later, or what a refusal names (0 to 9007199254740991) */
   tick: number;
 }
 
@@ -388,7 +388,7 @@ export interface TimelineEvent {
 export interface Timeline {
   /** the present (0 to 9007199254740991) */
   tick: number;
-  /** of session.rewind (0 to 9007199254740991) */
+  /** from here on every tick can be reached (0 to 9007199254740991) */
   oldest_tick: number;
   /** number of the present branch (0 to 9007199254740991) */
   branch: number;

@@ -1,0 +1,172 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "course.h"
+
+#include <stdlib.h>
+
+#include "fault.h"
+
+enum {
+	AGE_SHARE = 4,   // neighbours stand apart by at most this part of their age
+	NEWEST_KEPT = 2, // checkpoints that never go: if one cannot be restored, the one before can
+};
+
+// ---- reading --------------------------------------------------------------------------
+// Makes room for one more element of `size` bytes in an array that is full at powers of two.
+static void *grow(void *array, int count, size_t size)
+{
+	bool full = (count & (count - 1)) == 0;
+	return full ? realloc(array, (count ? 2 * (size_t)count : 1) * size) : array;
+}
+
+static bool add_point(struct cau_store_course *course, sqlite3_stmt *statement)
+{
+	void *grown = grow(course->point, course->point_count, sizeof *course->point);
+	if (!grown)
+		return false;
+	course->point = grown;
+	course->point[course->point_count++] = (struct cau_store_point){
+		.branch = sqlite3_column_int64(statement, 0),
+		.tick = sqlite3_column_int64(statement, 1),
+		.bytes = sqlite3_column_int64(statement, 2),
+		.marked = sqlite3_column_int(statement, 3) != 0,
+	};
+	return true;
+}
+
+static bool add_hole(struct cau_store_course *course, sqlite3_stmt *statement)
+{
+	void *grown = grow(course->hole, course->hole_count, sizeof *course->hole);
+	if (!grown)
+		return false;
+	course->hole = grown;
+	course->hole[course->hole_count++] = (struct cau_store_hole){
+		.from_tick = sqlite3_column_int64(statement, 0),
+		.before_tick = sqlite3_column_int64(statement, 1),
+	};
+	return true;
+}
+
+static cau_status collect(sqlite3 *database, const char *sql, int64_t session, int64_t branch,
+                          bool (*add)(struct cau_store_course *, sqlite3_stmt *),
+                          struct cau_store_course *course, cau_error *error)
+{
+	sqlite3_stmt *statement = NULL;
+	cau_status status = CAU_OK;
+	int code = sqlite3_prepare_v2(database, sql, -1, &statement, NULL);
+	if (!code)
+		code = sqlite3_bind_int64(statement, 1, session);
+	if (!code)
+		code = sqlite3_bind_int64(statement, 2, branch);
+	while (!code && !status && (code = sqlite3_step(statement)) == SQLITE_ROW) {
+		code = SQLITE_OK;
+		if (!add(course, statement))
+			status = cau_fail(error, CAU_NO_MEMORY, NULL, "reading a session's checkpoints");
+	}
+	if (!status && code != SQLITE_DONE)
+		status = cau_store_fault(database, code, "reading checkpoints", error);
+	sqlite3_finalize(statement);
+	return status;
+}
+
+// Holes after checkpoints: one that is made meanwhile is seen, and at worst hides a checkpoint.
+cau_status cau_store_course_read(sqlite3 *database, int64_t session, int64_t branch,
+                                 struct cau_store_course *course, cau_error *error)
+{
+	cau_status status =
+		collect(database,
+	            CAU_STORE_LINE "SELECT c.branch, c.tick, c.bytes,"
+	                           " EXISTS(SELECT 1 FROM marks AS m WHERE m.session = ?1"
+	                           "  AND m.branch = c.branch AND m.tick = c.tick)"
+	                           " FROM line CROSS JOIN checkpoints AS c ON c.session = ?1"
+	                           " AND c.branch = line.branch AND c.tick <= line.before_tick"
+	                           " ORDER BY c.tick, line.depth DESC",
+	            session, branch, add_point, course, error);
+	if (status)
+		return status;
+	return collect(database,
+	               CAU_STORE_LINE
+	               "SELECT g.from_tick, min(g.before_tick, line.before_tick)"
+	               " FROM line CROSS JOIN gaps AS g ON g.session = ?1 AND g.branch = line.branch"
+	               " AND g.from_tick < line.before_tick ORDER BY 1",
+	               session, branch, add_hole, course, error);
+}
+
+void cau_store_course_finish(struct cau_store_course *course)
+{
+	free(course->point);
+	free(course->hole);
+	*course = (struct cau_store_course){0};
+}
+
+// ---- what can be reached --------------------------------------------------------------
+// Where the way that begins at a checkpoint's tick ends: at the first hole that is not behind it.
+static int64_t end_of_way(const struct cau_store_course *course, int64_t tick)
+{
+	for (int i = 0; i < course->hole_count; i++)
+		if (course->hole[i].before_tick > tick)
+			return course->hole[i].from_tick > tick ? course->hole[i].from_tick : tick;
+	return INT64_MAX;
+}
+
+bool cau_store_course_range(const struct cau_store_course *course, int64_t after,
+                            struct cau_store_range *range)
+{
+	for (int i = 0; i < course->point_count; i++) {
+		int64_t tick = course->point[i].tick;
+		*range = (struct cau_store_range){tick, end_of_way(course, tick)};
+		if (range->to_tick > after)
+			return true;
+	}
+	return false;
+}
+
+// ---- what may go ----------------------------------------------------------------------
+// Without the checkpoint at its end, what follows a hole could not be reached.
+static bool ends_a_hole(const struct cau_store_course *course, int64_t tick)
+{
+	for (int i = 0; i < course->hole_count; i++)
+		if (course->hole[i].before_tick == tick)
+			return true;
+	return false;
+}
+
+static bool may_go(const struct cau_store_course *course, int index)
+{
+	const struct cau_store_point *point = &course->point[index];
+	return index > 0 && index < course->point_count - NEWEST_KEPT && !point->marked &&
+	       !ends_a_hole(course, point->tick);
+}
+
+// How far its neighbours stand apart, and how old the later one is.
+static int64_t span_around(const struct cau_store_course *course, int index, int64_t *age)
+{
+	const struct cau_store_point *point = course->point;
+	*age = point[course->point_count - 1].tick - point[index + 1].tick;
+	return point[index + 1].tick - point[index - 1].tick;
+}
+
+int cau_store_course_thin(const struct cau_store_course *course, int64_t spacing)
+{
+	for (int i = 1; i < course->point_count - NEWEST_KEPT; i++) {
+		int64_t age, span = span_around(course, i, &age);
+		int64_t most = age / AGE_SHARE > spacing ? age / AGE_SHARE : spacing;
+		if (span <= most && may_go(course, i))
+			return i;
+	}
+	return -1;
+}
+
+int cau_store_course_coarsen(const struct cau_store_course *course, int64_t spacing)
+{
+	int least = -1;
+	double least_ratio = 0;
+	for (int i = 1; i < course->point_count - NEWEST_KEPT; i++) {
+		int64_t age, span = span_around(course, i, &age);
+		double ratio = (double)span / (double)(age + spacing);
+		if (may_go(course, i) && (least < 0 || ratio < least_ratio)) {
+			least = i;
+			least_ratio = ratio;
+		}
+	}
+	return least;
+}
