@@ -2,10 +2,13 @@
 import { fileURLToPath } from 'node:url';
 import { defineConfig } from 'vitest/config';
 
+const here = (path: string): string => fileURLToPath(new URL(path, import.meta.url));
+
 export default defineConfig({
+  resolve: { alias: { three: here('./node_modules/three/build/three.module.js') } },
   test: {
     globals: true,
-    dir: fileURLToPath(new URL('../../tests/browser/unit', import.meta.url)),
+    dir: here('../../tests/browser/unit'),
     include: ['**/*.test.ts'],
     pool: 'forks',
     poolOptions: { forks: { maxForks: 1 } },

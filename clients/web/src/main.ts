@@ -7,10 +7,13 @@ import { Pointer } from './hands/pointer';
 import { ToolHand } from './hands/tool_hand';
 import { Control } from './model/control';
 import { Model } from './model/model';
+import { clientWords } from './model/person';
 import { byId } from './panels/dom';
 import { materialsPanel } from './panels/materials';
-import { showHandles, showHint, showLink, showNotices, showReading } from './panels/overlay';
+import { showHandles } from './panels/handles';
+import { showHint, showLink, showNotices, showReading } from './panels/overlay';
 import { plotsPanel } from './panels/plots';
+import { showSaid } from './panels/said';
 import { saveReceived, sessionsPanel } from './panels/sessions';
 import { makeTabs } from './panels/tabs';
 import { timeBar } from './panels/time';
@@ -58,6 +61,7 @@ model.on('joined', (joined) => {
 makeTabs([sessionsPanel(control, link), toolsPanel(control, hand), materialsPanel(control), viewPanel(control, viewport), plotsPanel(model)]);
 timeBar(control);
 showHandles(control, hand, pointer);
+const placeSaid = showSaid(model, viewport, pointer);
 showNotices(control);
 showReading(control);
 showHint();
@@ -68,7 +72,7 @@ function connect(token?: string): void {
   const wanted = new URLSearchParams(window.location.search).get('session');
   url.search = wanted === null ? '' : `session=${encodeURIComponent(wanted)}`;
   url.hash = '';
-  link.connect(url.href, token);
+  link.connect(url.href, clientWords(__VIEWER_VERSION__), token);
   const session = model.session ?? wanted;
   if (session !== null) control.watch(session);
 }
@@ -80,7 +84,9 @@ new ResizeObserver(() => viewport.resize()).observe(viewport.canvas);
 function animate(): void {
   keys.advance();
   viewport.poseTools(hand.advance());
+  viewport.showWay(hand.energy.alive ? hand.way.rest() : []);
   viewport.draw();
+  placeSaid();
   requestAnimationFrame(animate);
 }
 requestAnimationFrame(animate);

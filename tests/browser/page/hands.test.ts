@@ -3,6 +3,7 @@
 import type { Browser, CDPSession } from 'playwright-core';
 
 import { Daemon } from './daemon';
+import { A, holdGamepad, RIGHT_TRIGGER, setPad } from './gamepad';
 import { launch, ViewerPage } from './viewer_page';
 
 const TABLET = { viewport: { width: 900, height: 700 }, hasTouch: true };
@@ -11,34 +12,11 @@ const REST_M = 1e-5; // a tool that is led moves further than this in REST_TICKS
 const REST_TICKS = 15;
 const LIFT_M = 0.006; // of a pinch, which asks for 10 mm
 const LOWER_M = 0.002;
-const RIGHT_TRIGGER = 7;
-const A = 0;
 
 interface Finger {
   x: number;
   y: number;
   id: number;
-}
-
-/** A gamepad with the standard mapping that tests hold. */
-function holdGamepad(): void {
-  const pad = {
-    id: 'test', index: 0, connected: true, mapping: 'standard', timestamp: 0,
-    axes: [0, 0, 0, 0], buttons: Array.from({ length: 17 }, () => ({ pressed: false, touched: false, value: 0 })),
-  };
-  Object.assign(window, { testPad: pad });
-  navigator.getGamepads = () => [pad as unknown as Gamepad];
-}
-
-async function setPad(viewer: ViewerPage, axes: number[], buttons: readonly number[]): Promise<void> {
-  await viewer.page.evaluate(
-    ([stick, held]) => {
-      const pad = (window as unknown as { testPad: { axes: number[]; buttons: { pressed: boolean; value: number }[] } }).testPad;
-      pad.axes = stick;
-      pad.buttons.forEach((button, i) => Object.assign(button, { pressed: held.includes(i), value: held.includes(i) ? 1 : 0 }));
-    },
-    [axes, [...buttons]] as const,
-  );
 }
 
 describe('hands', () => {
@@ -185,7 +163,7 @@ describe('hands that need a page in front', () => {
     const said = await page.evaluate(() => {
       Object.defineProperty(document, 'hidden', { configurable: true, get: () => true });
       document.dispatchEvent(new Event('visibilitychange'));
-      return document.querySelector('#notices')?.textContent; // for some seconds
+      return document.querySelector('#said')?.textContent; // for some seconds
     });
     expect(said).toContain('Energy is off');
     await viewer.until(() => !window.cautery.energized, null, 'energy is off');

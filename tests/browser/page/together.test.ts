@@ -8,6 +8,7 @@ import { launch, ViewerPage } from './viewer_page';
 
 const HOT_C = 900;
 const HOTTER_C = 950;
+const NEAR_PX = 120; // of words that are read without looking elsewhere
 
 describe('two pages on one session', () => {
   const daemon = new Daemon(['--demo', 'fascia']);
@@ -46,6 +47,21 @@ describe('two pages on one session', () => {
     expect((await watcher.state()).driving).toBe(false);
   });
 
+  it('says at the tool who has it, by a name of their own, and offers to ask', async () => {
+    const { page } = watcher;
+    const at = await watcher.project([0.01, 0.01, 0]);
+    await page.mouse.move(at.x, at.y);
+    await page.mouse.down();
+    await watcher.until(() => /^[A-Z][a-z]+ \d\d is using the hook\./.test(document.querySelector('#said')?.textContent ?? ''), null, 'who has it');
+    const box = (await page.locator('#said').boundingBox())!;
+    expect(Math.abs(box.y + box.height / 2 - at.y)).toBeLessThan(NEAR_PX);
+    expect(await page.locator('#said button').textContent()).toContain('Ask');
+    await page.mouse.up();
+    const names = await Promise.all([driver, watcher].map(({ page: of }) => of.evaluate(() => sessionStorage.getItem('guest'))));
+    expect(names[0]).not.toBe(names[1]);
+    expect(await page.locator('#said').textContent()).toContain(names[0]);
+  });
+
   it('agrees on what is cut and where the tool is', async () => {
     await driver.cut(0, 0, 0, 0.012, 4);
     await driver.page.getByRole('button', { name: 'Pause' }).click();
@@ -75,7 +91,7 @@ describe('two pages on one session', () => {
     await watcher.until(() => window.cautery.energized, null, 'energy is on');
     const said = await watcher.page.evaluate(() => {
       window.dispatchEvent(new Event('blur'));
-      return document.querySelector('#notices')?.textContent; // for some seconds
+      return document.querySelector('#said')?.textContent; // for some seconds
     });
     expect(said).toContain('Energy is off');
     await watcher.until(() => !window.cautery.energized, null, 'energy is off');

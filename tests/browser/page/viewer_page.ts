@@ -102,19 +102,21 @@ export class ViewerPage {
     );
   }
 
-  /** Leads the tool along x with energy on, onwards as soon as a part of the way is cut. */
+  /** Leads the tool along x with energy on, onwards as soon as a part of the way is cut and gone. */
   async cut(y: number, z: number, from: number, to: number, stepsTo: number): Promise<void> {
     await this.page.keyboard.down('Space');
     await this.until(() => window.cautery.energized, null, 'energy is on');
     for (let i = 1; i <= stepsTo; i++) {
       const before = await this.faces();
-      const at = await this.project([from + ((to - from) * i) / stepsTo, y, z]);
+      const x = from + ((to - from) * i) / stepsTo;
+      const at = await this.project([x, y, z]);
       await this.page.mouse.move(at.x, at.y);
       await this.until(
         (count) => Object.values(window.cautery.drawnFaces).reduce((sum, n) => sum + n, 0) !== count,
         before,
         `faces go at part ${i} of the way`,
       );
+      await this.until((there) => Math.abs(window.cautery.tip[0] - there) < 0.002, x, `the hot tool has gone part ${i} of the way`);
     }
     await this.page.keyboard.up('Space');
     await this.page.mouse.up();

@@ -1,18 +1,20 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Keys while the picture has the focus, and a gamepad. What they do stands in KEY_HELP.
+// Keys while the picture or nothing has the focus, and a gamepad. What they do stands in KEY_HELP.
 import type { Viewport } from '../scene/viewport';
 import type { ToolHand } from './tool_hand';
 
 export const KEY_HELP: readonly (readonly [string, string])[] = [
-  ['Drag', 'move the tool'],
+  ['Mouse', 'leads the tool over the tissue'],
+  ['Press and drag', 'cut: energy while held'],
+  ['Arrows', 'lead the tool'],
   ['Space', 'energy while held'],
-  ['Wheel', 'depth'],
-  ['Arrows, W S', 'move the tool; W deeper, S nearer'],
+  ['Wheel, W S', 'depth; W deeper, S nearer'],
   ['Q E, R F', 'turn the tool, tilt it'],
   ['G', 'grasp or let go'],
   ['Right drag, Shift + drag', 'turn or move the camera'],
   ['Ctrl + wheel, + −', 'zoom'],
   ['H', 'camera home'],
+  ['Gamepad', 'sticks lead, right trigger cuts, A grasps'],
 ];
 
 const SPEED_M_S = 0.03;
@@ -37,8 +39,10 @@ export class Keys {
     private readonly hand: ToolHand,
     private readonly grasping: () => boolean,
   ) {
-    canvas.addEventListener('keydown', (event) => this.press(event));
-    canvas.addEventListener('keyup', (event) => this.release(event));
+    // A page that has just come up has the focus nowhere: keys work there too.
+    const meant = (event: KeyboardEvent): boolean => event.target === canvas || event.target === document.body;
+    window.addEventListener('keydown', (event) => meant(event) && this.press(event));
+    window.addEventListener('keyup', (event) => this.release(event));
     canvas.addEventListener('blur', () => this.letGo());
     window.addEventListener('blur', () => this.letGo());
   }
@@ -78,10 +82,11 @@ export class Keys {
     const stick = (i: number): number => (Math.abs(pad.axes[i]) > STICK_REST ? pad.axes[i] : 0);
     this.apply(stick(0) * step, -stick(1) * step, stick(3) * step, stick(2) * turn, 0);
     const energy = pad.buttons[7].value > 0.5;
-    if (energy !== this.padEnergy) this.hand.energize(energy);
+    if (energy && !this.padEnergy) this.hand.hold('trigger');
+    else if (!energy && this.padEnergy) this.hand.letGo('trigger');
     this.padEnergy = energy;
     const grasp = pad.buttons[0].pressed;
-    if (grasp && !this.padGrasp) this.hand.grasp(!this.grasping());
+    if (grasp && !this.padGrasp) this.hand.jaws.grasp(!this.grasping());
     this.padGrasp = grasp;
   }
 
@@ -92,9 +97,9 @@ export class Keys {
     } else if (event.repeat) {
       if (event.code !== 'Space') return;
     } else if (event.code === 'Space') {
-      this.hand.energize(true);
+      this.hand.hold('space');
     } else if (event.code === 'KeyG') {
-      this.hand.grasp(!this.grasping());
+      this.hand.jaws.grasp(!this.grasping());
     } else if (event.code === 'KeyH') {
       this.viewport.orbit.reset();
       this.viewport.invalidate();
@@ -106,11 +111,11 @@ export class Keys {
 
   private release(event: KeyboardEvent): void {
     this.down.delete(event.code);
-    if (event.code === 'Space') this.hand.energize(false);
+    if (event.code === 'Space') this.hand.letGo('space');
   }
 
   private letGo(): void {
     this.down.clear();
-    this.hand.energize(false);
+    this.hand.letGo('space');
   }
 }

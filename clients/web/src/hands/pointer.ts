@@ -1,8 +1,12 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Mouse, pen and fingers on the picture. One pointer moves the tool (or turns the camera), the right
-// button turns it, the middle one or Shift moves it; two fingers turn, pinch for depth or zoom.
+// Mouse, pen and fingers on the picture. A mouse leads the tool by hovering; what is pressed on the tissue
+// works there. Beside the tissue a press turns the camera, as the right button does everywhere; the middle
+// one or Shift moves it; two fingers turn, pinch for depth or zoom.
 import type { Viewport } from '../scene/viewport';
 import type { ToolHand } from './tool_hand';
+
+/** What a press on the tissue does. */
+export type Press = 'work' | 'move' | 'look';
 
 interface Finger {
   x: number;
@@ -16,12 +20,16 @@ const WHEEL_DEPTH_M = 0.0005; // a notch
 const WHEEL_ZOOM = 1.1;
 const NOTCH = 100; // deltaY of one
 const PINCH_DEPTH_M = 0.02; // for a pinch over the picture's height
+/** A second finger may still come, and then nothing is to burn. */
+const FINGER_MS = 120;
 
 export class Pointer {
-  /** one pointer turns the camera instead of moving the tool */
-  cameraMode = false;
+  press: Press = 'work';
+  /** the last place of a pointer in the page, CSS pixels; null: there was none yet */
+  last: { x: number; y: number } | null = null;
   private readonly fingers = new Map<number, Finger>();
   private drag: Drag = 'none';
+  private soon: ReturnType<typeof setTimeout> | undefined;
 
   constructor(
     private readonly canvas: HTMLCanvasElement,
@@ -30,35 +38,51 @@ export class Pointer {
   ) {
     canvas.addEventListener('pointerdown', (event) => this.down(event));
     canvas.addEventListener('pointermove', (event) => this.move(event));
-    for (const end of ['pointerup', 'pointercancel'] as const) canvas.addEventListener(end, (event) => this.up(event));
+    for (const end of ['pointerup', 'pointercancel', 'lostpointercapture'] as const) canvas.addEventListener(end, (event) => this.up(event));
     canvas.addEventListener('wheel', (event) => this.wheel(event), { passive: false });
     canvas.addEventListener('contextmenu', (event) => event.preventDefault());
+    window.addEventListener('blur', () => this.letGo());
   }
 
   private down(event: PointerEvent): void {
     this.canvas.focus({ preventScroll: true });
     this.canvas.setPointerCapture(event.pointerId);
     this.fingers.set(event.pointerId, { x: event.clientX, y: event.clientY });
+    this.last = { x: event.clientX, y: event.clientY };
     if (this.fingers.size > 1) {
-      this.drag = 'none';
+      this.letGo();
       return;
     }
-    const right = event.button === 2;
-    const middle = event.button === 1 || event.shiftKey;
-    this.drag = middle ? 'pan' : right || this.cameraMode ? 'turn' : 'tool';
-    if (this.drag === 'tool' && !this.point(event)) this.drag = 'turn';
+    this.drag = this.dragOf(event);
+    if (this.drag !== 'tool') return;
+    const { x, y } = this.place(event);
+    if (!this.hand.pointAt(x, y)) this.drag = 'none';
+    else if (this.press !== 'work') return;
+    else if (event.pointerType === 'touch') this.soon = setTimeout(() => this.hand.hold('pointer'), FINGER_MS);
+    else this.hand.hold('pointer');
+  }
+
+  private dragOf(event: PointerEvent): Drag {
+    if (event.button === 1 || event.shiftKey) return 'pan';
+    const { x, y } = this.place(event);
+    return event.button === 2 || this.press === 'look' || !this.hand.overTissue(x, y) ? 'turn' : 'tool';
   }
 
   private move(event: PointerEvent): void {
+    this.last = { x: event.clientX, y: event.clientY };
     const finger = this.fingers.get(event.pointerId);
-    if (!finger) return;
+    if (!finger) {
+      const { x, y } = this.place(event);
+      if (event.pointerType !== 'touch' && this.press !== 'look' && this.fingers.size === 0) this.hand.hover(x, y);
+      return;
+    }
     const height = this.canvas.clientHeight;
     const dx = (event.clientX - finger.x) / height;
     const dy = (event.clientY - finger.y) / height;
     if (this.fingers.size === 2) {
       this.twoFingers(finger, dx, dy);
     } else if (this.drag === 'tool') {
-      this.point(event);
+      this.lead(event);
     } else if (this.drag === 'turn') {
       this.viewport.orbit.turn(-TURN_RAD * dx, TURN_RAD * dy);
     } else if (this.drag === 'pan') {
@@ -71,7 +95,23 @@ export class Pointer {
 
   private up(event: PointerEvent): void {
     this.fingers.delete(event.pointerId);
+    this.letGo();
     if (this.fingers.size === 0) this.drag = 'none';
+  }
+
+  private letGo(): void {
+    clearTimeout(this.soon);
+    this.hand.letGo('pointer');
+    this.drag = 'none';
+  }
+
+  /** Every place that the pointer passed since the last event counts: a browser gathers them. */
+  private lead(event: PointerEvent): void {
+    const passed = event.getCoalescedEvents();
+    for (const one of passed.length > 0 ? passed : [event]) {
+      const { x, y } = this.place(one);
+      this.hand.pointAt(x, y);
+    }
   }
 
   /** Each finger's share of the common motion turns; its share of the pinch is depth or zoom. */
@@ -82,22 +122,25 @@ export class Pointer {
     const before = Math.hypot(moving.x - other.x, moving.y - other.y);
     const after = Math.hypot(moving.x + dx * height - other.x, moving.y + dy * height - other.y);
     this.viewport.orbit.turn((-TURN_RAD * dx) / 2, (TURN_RAD * dy) / 2);
-    if (this.cameraMode) this.viewport.orbit.zoom(before / Math.max(after, 1));
-    else this.hand.nudge(0, 0, (-PINCH_DEPTH_M * (after - before)) / height);
+    if (this.leadsTool) this.hand.nudge(0, 0, (-PINCH_DEPTH_M * (after - before)) / height);
+    else this.viewport.orbit.zoom(before / Math.max(after, 1));
   }
 
   private wheel(event: WheelEvent): void {
     event.preventDefault();
     const notches = Math.min(Math.max(event.deltaY / NOTCH, -3), 3);
-    if (this.cameraMode || event.ctrlKey || event.shiftKey) this.viewport.orbit.zoom(WHEEL_ZOOM ** notches);
+    if (!this.leadsTool || event.ctrlKey || event.shiftKey) this.viewport.orbit.zoom(WHEEL_ZOOM ** notches);
     else this.hand.nudge(0, 0, WHEEL_DEPTH_M * notches);
     this.viewport.invalidate();
   }
 
-  private point(event: PointerEvent): boolean {
+  /** Depth is of a tool in hand; without one the same motion is the camera's. */
+  private get leadsTool(): boolean {
+    return this.press !== 'look' && this.hand.driving;
+  }
+
+  private place(event: PointerEvent): { x: number; y: number } {
     const box = this.canvas.getBoundingClientRect();
-    const x = (2 * (event.clientX - box.left)) / box.width - 1;
-    const y = 1 - (2 * (event.clientY - box.top)) / box.height;
-    return this.hand.pointAt(x, y);
+    return { x: (2 * (event.clientX - box.left)) / box.width - 1, y: 1 - (2 * (event.clientY - box.top)) / box.height };
   }
 }

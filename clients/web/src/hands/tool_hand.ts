@@ -1,85 +1,147 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The hand on the chosen tool: where it wants the tip (local echo), what the daemon is told of it, and
-// energy that is on only while it is held.
+// The hand on the chosen tool. Whatever points (mouse, finger, keys, stick) aims at a place of the
+// tissue; the tool hovers over it, and while something is held it goes down to it and works: heat where
+// the shape has heat, jaws where it has only those. Using a free tool takes it.
 import { Quaternion, Vector3 } from 'three';
 
-import { hasHeat, hasJaws } from '../model/tool_parts';
+import { hasHeat, toolSizes } from '../model/tool_parts';
 import type { Control } from '../model/control';
 import type { Model } from '../model/model';
 import type { Pose, Viewport } from '../scene/viewport';
-import { pick } from '../model/pick';
-import { PARAMETERS } from '../wire/messages.gen';
+import { Aim } from './aim';
+import { CuttingPace } from './cutting_pace';
+import { Depths } from './depth';
+import { Energy, type Held } from './energy';
+import { Jaws } from './jaws';
+import { Motion, type Wanted } from './motion';
+import { Presence } from './presence';
+import { Taking } from './taking';
+import { Way } from './way';
 
 export type Guide = 'surface' | 'plane';
 
 const ECHO_MS = 400; // after this without a motion the server's pose is drawn
-const HEARTBEAT_MS = 100;
-const IDLE_HEARTBEAT_MS = 1000;
-const SEND_MS = 1000 / 120;
+const HOVER_M = 0.003; // between tissue and the hot part of a tool that does not work
+const ARRIVED_M = 0.001;
 
 export class ToolHand {
   /** over the surface, or in the plane of the picture through the tip */
   guide: Guide = 'surface';
-  /** m above (positive) or in the surface, towards the eye */
-  depthM = 0.002;
-  energyHeld = false;
-  private wanted: { position: Vector3; rotation: Quaternion; jaw: number } | null = null;
-  private shown = new Vector3();
+  readonly depths = new Depths();
+  readonly energy: Energy;
+  readonly jaws: Jaws;
+  readonly way = new Way();
+  private readonly motion: Motion;
+  private readonly taking: Taking;
+  private readonly places: Aim;
+  private readonly pace: CuttingPace;
+  private wanted: Wanted | null = null;
+  /** the place of the tissue that is aimed at; null: where the tool is */
+  private aim: Vector3 | null = null;
+  /** where the hand pointed while the tool was still being taken */
+  private pointed: { x: number; y: number } | null = null;
   private movedAt = -Infinity;
-  private sentAt = -Infinity;
-  private unsent = false;
   private sequence = 0;
   private lastAdvance = performance.now();
-  private lastHeartbeat = 0;
   private tool: string | null = null;
-  private taking = false;
+  private driven = false;
+  /** where a cut begins, until the tool is there */
+  private cutFrom: Vector3 | null = null;
 
   constructor(
     private readonly model: Model,
-    private readonly control: Control,
+    control: Control,
     private readonly viewport: Viewport,
   ) {
+    const sequence = (): number => ++this.sequence;
+    this.energy = new Energy(model, control, sequence);
+    this.jaws = new Jaws(model, control, sequence);
+    this.motion = new Motion(control, sequence);
+    this.taking = new Taking(model, control);
+    this.places = new Aim(viewport);
+    this.pace = new CuttingPace(model);
     model.on('tools', () => this.follow());
-    setInterval(() => this.heartbeat(), HEARTBEAT_MS);
-    document.addEventListener('visibilitychange', () => document.hidden && this.hide());
-    window.addEventListener('blur', () => this.hide());
-    window.addEventListener('focus', () => this.control.link.heartbeat(true));
+    new Presence(control.link, () => this.energy.wanted, () => this.hide());
+  }
+
+  get driving(): boolean {
+    return this.model.driving;
   }
 
   get mayHeat(): boolean {
     return this.model.driving && this.model.tool !== null && hasHeat(this.model.tool.shape);
   }
 
-  get mayGrasp(): boolean {
-    return this.model.driving && this.model.tool !== null && hasJaws(this.model.tool.shape);
+  /** Whether using the chosen tool moves it: it is this page's, or nobody's. */
+  get usable(): boolean {
+    return this.model.mayOperate && this.tool !== null && (this.model.driving || this.model.driver === null);
   }
 
-  /** Points at a place of the picture, both from -1 to 1. True if the tool goes there, or soon will. */
+  /** m, below the surface */
+  get depthM(): number {
+    return this.depths.of(this.tool);
+  }
+
+  /** Whether tissue is drawn at a place of the picture, both coordinates from -1 to 1. */
+  overTissue(x: number, y: number): boolean {
+    return this.places.onSurface(x, y) !== null;
+  }
+
+  /** Leads a tool that is this page's to a place of the picture. Beside the tissue it stays. */
+  hover(x: number, y: number): void {
+    if (this.model.driving && this.begin() && this.overTissue(x, y)) this.aimAt(x, y);
+  }
+
+  /** Points at a place of the picture: takes a free tool, and leads it there. False: it may not. */
   pointAt(x: number, y: number): boolean {
-    if (!this.begin()) return this.takeUp();
-    const wanted = this.wanted!;
-    const { camera } = this.viewport.orbit;
-    const origin = new Vector3().setFromMatrixPosition(camera.matrixWorld);
-    const direction = new Vector3(x, y, 0.5).unproject(camera).sub(origin).normalize();
-    const towardsEye = this.viewport.orbit.axes().z;
-    const place = this.guide === 'surface' ? this.onSurface(origin, direction) : null;
-    if (place) {
-      wanted.position.copy(place).addScaledVector(towardsEye, this.depthM);
-    } else {
-      const along = wanted.position.clone().sub(origin).dot(towardsEye) / direction.dot(towardsEye);
-      wanted.position.copy(origin).addScaledVector(direction, along);
+    if (!this.begin()) {
+      this.pointed = { x, y };
+      return this.taking.use();
     }
-    this.moved();
+    this.aimAt(x, y);
     return true;
+  }
+
+  /** Something is pressed and held that makes the tool work. */
+  hold(by: Held): void {
+    const working = this.energy.wanted && this.energy.alive;
+    this.energy.hold(by);
+    if (!this.model.driving) {
+      if (!this.taking.use()) this.energy.release(by);
+    } else if (!working) {
+      this.work(true);
+    }
+  }
+
+  letGo(by: Held): void {
+    const worked = this.energy.wanted;
+    this.energy.release(by);
+    if (worked && !this.energy.wanted) this.rest();
   }
 
   /** Moves by metres to the picture's right, up, and towards the eye. */
   nudge(right: number, up: number, nearer: number): void {
-    if (!this.begin()) return;
+    if (!this.begin()) {
+      this.taking.use();
+      return;
+    }
     const { x, y, z } = this.viewport.orbit.axes();
-    this.wanted!.position.addScaledVector(x, right).addScaledVector(y, up).addScaledVector(z, nearer);
-    this.depthM += nearer;
-    this.moved();
+    if (this.guide === 'plane') {
+      this.moveTo(this.wanted!.position.clone().addScaledVector(x, right).addScaledVector(y, up).addScaledVector(z, nearer));
+      return;
+    }
+    this.depths.change(this.tool!, -nearer);
+    if (nearer !== 0) this.model.emit('tools', undefined);
+    const aim = this.aim ?? this.places.under(this.wanted!.position);
+    const at = this.viewport.orbit.picturePlace(aim.clone().addScaledVector(x, right).addScaledVector(y, up));
+    this.aimAt(at.x, at.y);
+  }
+
+  resetDepth(): void {
+    if (this.tool === null) return;
+    this.depths.reset(this.tool);
+    this.nudge(0, 0, 0);
+    this.model.emit('tools', undefined);
   }
 
   turn(aboutShaft: number, tilt: number): void {
@@ -97,128 +159,146 @@ export class ToolHand {
     this.moved();
   }
 
-  energize(on: boolean): void {
-    if (on === this.energyHeld || (on && !this.mayHeat)) return;
-    this.energyHeld = on;
-    const tool = this.tool;
-    if (tool === null) return;
-    this.sequence++;
-    this.say(this.control.call('tool.energize', { tool, sequence: this.sequence, energized: on }));
-    this.model.emit('tools', undefined);
-  }
-
-  grasp(closed: boolean): void {
-    if (!this.mayGrasp || this.tool === null) return;
-    this.sequence++;
-    const method = closed ? 'tool.grasp' : 'tool.release';
-    this.say(this.control.call(method, { tool: this.tool, sequence: this.sequence }));
-  }
-
   /** Poses to draw instead of the server's, and motion to the daemon; once per animation frame. */
   advance(): ReadonlyMap<string, Pose> {
     const now = performance.now();
     const seconds = Math.min((now - this.lastAdvance) / 1000, 0.1);
     this.lastAdvance = now;
-    this.sendMotion(now);
     const poses = new Map<string, Pose>();
     if (!this.wanted || this.tool === null || !this.model.driving) return poses;
-    const state = this.model.toolState;
-    if (now - this.movedAt > ECHO_MS) {
-      if (state) this.shown.set(...state.positionM);
-      return poses;
-    }
-    const speed = this.model.tool?.max_speed_m_s ?? PARAMETERS.tool.find((p) => p.name === 'max_speed_m_s')!.default;
-    const way = this.wanted.position.clone().sub(this.shown);
-    this.shown.addScaledVector(way, Math.min(1, (speed * seconds) / Math.max(way.length(), 1e-9)));
+    this.goOn(seconds);
+    this.motion.send(now, this.tool, this.wanted);
+    if (this.way.empty) this.jaws.arrived(this.wanted.position);
+    if (now - this.movedAt > ECHO_MS) return poses;
+    const { position, jaw } = this.wanted;
     const { x, y, z, w } = this.wanted.rotation;
-    poses.set(this.tool, { positionM: this.shown.toArray(), rotation: [w, x, y, z], jaw: this.wanted.jaw });
+    poses.set(this.tool, { positionM: position.toArray(), rotation: [w, x, y, z], jaw });
     return poses;
   }
 
-  /** Becomes the driver of a tool that nobody drives. */
-  private takeUp(): boolean {
-    const { tool, model } = this;
-    if (this.taking) return true;
-    if (tool === null || !model.mayOperate || model.drivers.get(tool)?.client !== 0) return false;
-    this.taking = true;
-    this.say(this.control.takeOver(tool).finally(() => (this.taking = false)));
-    return true;
+  /** Goes along the way: as fast as the tool may, while it cuts as fast as heat parts tissue. */
+  private goOn(seconds: number): void {
+    const { way, wanted } = this;
+    if (!wanted) return;
+    if (this.energy.wanted && !this.energy.alive && this.mayHeat) way.clear(); // what went dark does not go on
+    if (way.empty) return;
+    const fastest = toolSizes(this.model.tool!).maxSpeed * seconds;
+    const cutting = this.energy.alive && this.cutBegun(wanted.position);
+    const metres = cutting ? Math.min(this.pace.take(), fastest) : fastest;
+    way.follow(wanted.position, metres);
+    this.moved();
+  }
+
+  /** A tool that comes from far away comes fast; it is slow from where the cut begins. */
+  private cutBegun(position: Vector3): boolean {
+    if (this.cutFrom && position.distanceTo(this.cutFrom) < ARRIVED_M) this.cutFrom = null;
+    return this.cutFrom === null;
+  }
+  private work(fresh: boolean): void {
+    if (this.tool === null || !this.begin()) return;
+    if (this.mayHeat) this.energy.enable(this.tool, fresh);
+    this.jaws.press();
+    this.lower();
+  }
+
+  /** What was held is let go of: the rest of the way is dropped, and the tool rises. */
+  private rest(): void {
+    this.jaws.letGo();
+    this.cutFrom = null;
+    this.way.clear();
+    if (this.wanted && this.guide === 'surface') this.rise();
+    this.viewport.invalidate();
+  }
+
+  /** Down to where it works, straight. */
+  private lower(): void {
+    if (!this.wanted || this.guide === 'plane') return;
+    const aim = this.aim ?? this.places.under(this.wanted.position);
+    this.aim = aim;
+    this.cutFrom = this.over(aim);
+    this.moveTo(this.cutFrom, true);
+  }
+
+  /** Up from where it is now, which may be behind where the hand is. */
+  private rise(): void {
+    const { z } = this.viewport.orbit.axes();
+    this.aim = this.wanted!.position.clone().addScaledVector(z, this.depthM);
+    this.moveTo(this.over(this.aim), true);
+  }
+
+  private aimAt(x: number, y: number): void {
+    const place = this.guide === 'surface' ? this.places.onSurface(x, y) : null;
+    const through = this.guide === 'surface' ? (this.aim ?? this.wanted!.position) : this.wanted!.position;
+    this.aim = place ?? this.places.inPlane(x, y, through);
+    this.moveTo(this.guide === 'surface' ? this.over(this.aim) : this.aim);
+  }
+
+  /** Where the tip is for a place that is aimed at: in it while the tool works, else over it. */
+  private over(aim: Vector3): Vector3 {
+    const { hot, shaft } = toolSizes(this.model.tool!);
+    const heats = hasHeat(this.model.tool!.shape);
+    const works = heats ? this.energy.alive : this.energy.wanted;
+    const hover = works ? 0 : HOVER_M + (heats ? hot : shaft);
+    return aim.clone().addScaledVector(this.viewport.orbit.axes().z, hover - this.depthM);
+  }
+
+  private moveTo(position: Vector3, straight = false): void {
+    if (this.energy.alive && !straight) this.way.append(position);
+    else this.way.to(position);
+    this.movedAt = performance.now();
   }
 
   /** Takes the tool's present pose up, if this page may move it. */
   private begin(): boolean {
     const state = this.model.toolState;
     if (!this.model.driving || !state) return false;
-    if (this.wanted && performance.now() - this.movedAt < ECHO_MS) return true;
+    if (this.wanted && (!this.way.empty || performance.now() - this.movedAt < ECHO_MS)) return true;
     const [w, x, y, z] = state.rotation;
     this.wanted = { position: new Vector3(...state.positionM), rotation: new Quaternion(x, y, z, w), jaw: state.jaw };
-    this.shown.copy(this.wanted.position);
     this.sequence = Math.max(this.sequence, state.sequence);
     return true;
   }
 
   private moved(): void {
     this.movedAt = performance.now();
-    this.unsent = true;
-  }
-
-  private onSurface(origin: Vector3, direction: Vector3): Vector3 | null {
-    const { tissue } = this.viewport;
-    if (!tissue) return null;
-    const position = tissue.position.array as Float32Array;
-    const hit = pick(origin.toArray(), direction.toArray(), position, tissue.visibleIndices());
-    return hit && origin.clone().addScaledVector(direction, hit.distance);
-  }
-
-  private sendMotion(now: number): void {
-    if (!this.unsent || !this.wanted || this.tool === null || now - this.sentAt < SEND_MS || !this.model.driving) return;
-    this.unsent = false;
-    this.sentAt = now;
-    const { position, rotation, jaw } = this.wanted;
-    this.control.link.notify('tool.move', {
-      ...this.control.here(),
-      tool: this.tool,
-      sequence: ++this.sequence,
-      position_m: position.toArray(),
-      rotation: [rotation.w, rotation.x, rotation.y, rotation.z],
-      jaw,
-    });
-  }
-
-  private heartbeat(): void {
-    if (document.hidden || !document.hasFocus()) return;
-    const now = performance.now();
-    if (!this.energyHeld && now - this.lastHeartbeat < IDLE_HEARTBEAT_MS) return;
-    this.lastHeartbeat = now;
-    this.control.link.heartbeat(true);
+    this.motion.unsent = true;
   }
 
   /** The page is out of sight or out of hand: energy goes off here and at the daemon. */
   private hide(): void {
-    this.control.link.heartbeat(false);
-    if (!this.energyHeld) return;
-    this.energize(false);
-    this.model.notice('warning', 'Energy is off: the page lost the focus.');
+    const lit = this.energy.releaseAll();
+    this.rest();
+    if (lit) this.model.say('warning', 'Energy is off: the page lost the focus. Press again.');
   }
 
   private follow(): void {
     if (this.tool !== this.model.selectedTool) {
-      if (this.energyHeld) this.energize(false);
+      this.energy.releaseAll();
       this.tool = this.model.selectedTool;
-      this.wanted = null;
+      this.drop();
       this.sequence = 0;
+      this.driven = false;
     }
-    if (!this.model.driving) {
-      this.wanted = null;
-      this.energyHeld = false;
-    }
+    const { driving } = this.model;
+    if (driving === this.driven) return;
+    this.driven = driving;
+    if (driving) this.taken();
+    else this.drop();
   }
 
-  private say(work: Promise<unknown>): void {
-    work.catch((error: unknown) => {
-      this.energyHeld = false;
-      this.model.notice('error', error instanceof Error ? error.message : String(error));
-      this.model.emit('tools', undefined);
-    });
+  /** The tool has come into this hand: it begins at the surface, where the hand points. */
+  private taken(): void {
+    this.depths.reset(this.tool!);
+    const { pointed } = this;
+    this.pointed = null;
+    if (!this.begin()) return;
+    if (pointed) this.aimAt(pointed.x, pointed.y);
+    if (this.energy.wanted) this.work(false);
+    this.model.emit('tools', undefined);
+  }
+
+  private drop(): void {
+    this.wanted = this.aim = this.cutFrom = null;
+    this.way.clear();
   }
 }

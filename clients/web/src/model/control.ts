@@ -2,18 +2,13 @@
 // Between model and daemon: what the user wants done, and what the daemon pushes.
 import type { Link } from '../wire/link';
 import type { MaterialSet, Pushes, Requests, Scene, SessionDescription, Tool } from '../wire/messages.gen';
+import { nameOf } from './person';
 import type { Channels } from '../wire/worker_messages';
 import type { Model } from './model';
 
 const CHANNELS: Channels = ['positions', 'mask', 'exposure', 'charring', 'tools', 'statistics'];
 /** Channels that cost the daemon work of their own: joined only while they are shown. */
 export type ExtraChannel = 'stress' | 'temperature';
-const OFF_WORDS: Readonly<Record<string, string>> = {
-  watchdog: 'no sign of life came from its driver in time',
-  taken_over: 'somebody else took the tool over',
-  restored: 'the session went back or was restarted',
-};
-
 export class Control {
   private extra: ExtraChannel | null = null;
 
@@ -154,13 +149,11 @@ export class Control {
     },
     'tool.driver_changed': ({ session, driver }) => {
       if (session !== this.model.session) return;
-      const before = this.model.drivers.get(driver.tool);
+      const drove = this.model.drives(driver.tool);
       this.model.setDriver(driver);
-      const words = driver.energized ? undefined : OFF_WORDS[driver.energy_off];
-      if (before?.energized && words) this.model.notice('warning', `Energy of ${driver.tool} is off: ${words}.`);
+      if (drove && driver.client !== 0 && !this.model.drives(driver.tool)) this.model.say('info', `${nameOf(driver)} uses the ${driver.tool} now.`);
     },
-    'tool.refused': ({ tool, count, reason }) =>
-      this.model.notice('warning', `${count === 1 ? 'A command' : `${count} commands`} to ${tool} refused: ${reason}`),
+    'tool.refused': ({ tool, reason }) => this.model.say('warning', `The ${tool} does not follow: ${reason}.`),
     'takeover.requested': (params) => this.model.setTakeover(params),
     'event': (params) => {
       if (params.session === this.model.session) this.model.addEvent(params);

@@ -25,12 +25,21 @@ export interface Events {
   timeline: Timeline | null;
   takeover: TakeoverRequested | null;
   notice: Notice;
+  said: Said;
+  unsaid: string;
 }
 
 /** Something to tell the user in words. */
 export interface Notice {
   kind: 'info' | 'warning' | 'error';
   words: string;
+}
+
+/** Words at the tool itself, where the eye is. */
+export interface Said extends Notice {
+  /** stays until it is taken back under this key; without one it goes by itself */
+  key?: string;
+  action?: { words: string; press: () => void };
 }
 
 type Listener<T> = (value: T) => void;
@@ -68,6 +77,15 @@ export class Model {
     this.emit('notice', { kind, words });
   }
 
+  /** Says something at the tool; under a key it stays until `unsay`. */
+  say(kind: Notice['kind'], words: string, more: Pick<Said, 'key' | 'action'> = {}): void {
+    this.emit('said', { kind, words, ...more });
+  }
+
+  unsay(key: string): void {
+    this.emit('unsaid', key);
+  }
+
   get summary(): SessionSummary | null {
     return this.sessions.find((summary) => summary.session === this.session) ?? null;
   }
@@ -91,8 +109,19 @@ export class Model {
 
   /** Whether this page drives the chosen tool. */
   get driving(): boolean {
-    const driver = this.selectedTool === null ? undefined : this.drivers.get(this.selectedTool);
+    return this.selectedTool !== null && this.drives(this.selectedTool);
+  }
+
+  /** Whether this page drives a tool. */
+  drives(tool: string): boolean {
+    const driver = this.drivers.get(tool);
     return this.mayOperate && driver !== undefined && driver.client === this.hello?.client;
+  }
+
+  /** Who drives the chosen tool; null: nobody. */
+  get driver(): Driver | null {
+    const driver = this.selectedTool === null ? undefined : this.drivers.get(this.selectedTool);
+    return driver && driver.client !== 0 ? driver : null;
   }
 
   setLink(link: LinkState): void {

@@ -23,6 +23,8 @@ export interface ToolSizes {
   shaft: number;
   shaftLength: number;
   jawOpen: number;
+  /** m/s */
+  maxSpeed: number;
 }
 
 function size(tool: Tool, name: string): number {
@@ -37,6 +39,7 @@ export function toolSizes(tool: Tool): ToolSizes {
     shaft: size(tool, 'shaft_radius_m'),
     shaftLength: size(tool, 'shaft_length_m'),
     jawOpen: size(tool, 'jaw_open_rad'),
+    maxSpeed: size(tool, 'max_speed_m_s'),
   };
 }
 

@@ -1,9 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// What lies over the picture: connection, first-run hint, messages, the tool's buttons, requests of
-// others, and the reading that screen readers hear.
-import type { Pointer } from '../hands/pointer';
+// What lies over the picture: connection, help, messages, requests of others, and the reading that
+// screen readers hear.
 import { KEY_HELP } from '../hands/keys';
-import type { ToolHand } from '../hands/tool_hand';
+import { nameOf } from '../model/person';
 import type { Control } from '../model/control';
 import type { LinkState } from '../wire/connection';
 import type { Notice } from '../model/model';
@@ -100,48 +99,8 @@ export function showNotices(control: Control): void {
     const give = button('Hand over', () => {
       void attempt(problem, () => control.handOver(asked.tool, asked.client), give).then((given) => given === null || done());
     });
-    const words = `${asked.name || `Client ${asked.client}`} asks for ${asked.tool}.`;
+    const words = `${nameOf(asked)} asks for the ${asked.tool}.`;
     place.append(element('div', { class: 'notice info asked' }, element('span', {}, words), give, button('Keep it', done), problem));
-  });
-}
-
-/** Buttons for hands without a keyboard: hold for energy, grasp, nearer and deeper, camera. */
-export function showHandles(control: Control, hand: ToolHand, pointer: Pointer): void {
-  const { model } = control;
-  const energy = button('Energy', () => undefined, { id: 'energy', class: 'energy', aria: { pressed: 'false' }, title: 'Hold' });
-  energy.addEventListener('pointerdown', (event) => {
-    energy.setPointerCapture(event.pointerId);
-    hand.energize(true);
-  });
-  for (const end of ['pointerup', 'pointercancel', 'blur'] as const) energy.addEventListener(end, () => hand.energize(false));
-  energy.addEventListener('keydown', (event) => {
-    if ((event.code === 'Space' || event.code === 'Enter') && !event.repeat) hand.energize(true);
-  });
-  energy.addEventListener('keyup', () => hand.energize(false));
-  energy.addEventListener('contextmenu', (event) => event.preventDefault());
-  const grasp = button('Grasp', () => hand.grasp(model.toolState?.grasping !== true), { id: 'grasp', aria: { pressed: 'false' } });
-  const nearer = button('Nearer', () => hand.nudge(0, 0, 0.001));
-  const deeper = button('Deeper', () => hand.nudge(0, 0, -0.001));
-  const camera = button('Camera', () => {
-    pointer.cameraMode = !pointer.cameraMode;
-    camera.setAttribute('aria-pressed', String(pointer.cameraMode));
-  }, { aria: { pressed: 'false' }, title: 'Drag turns the view instead of moving the tool' });
-  byId('handles').append(energy, grasp, nearer, deeper, camera);
-  const refresh = (): void => {
-    const free = model.drivers.get(model.selectedTool ?? '')?.client === 0;
-    energy.disabled = !hand.mayHeat;
-    energy.title = hand.mayHeat ? 'Hold for energy (Space)' : free ? 'Drag on the tissue to take the tool first' : 'Only the driver may';
-    grasp.hidden = !hand.mayGrasp;
-    for (const one of [nearer, deeper]) one.disabled = !model.driving;
-  };
-  model.on('tools', refresh);
-  refresh();
-  model.on('frame', () => {
-    const state = model.toolState;
-    const on = String(state?.energized === true);
-    if (energy.getAttribute('aria-pressed') !== on) energy.setAttribute('aria-pressed', on);
-    const grasps = String(state?.grasping === true);
-    if (grasp.getAttribute('aria-pressed') !== grasps) grasp.setAttribute('aria-pressed', grasps);
   });
 }
 

@@ -2,6 +2,7 @@
 // Tools: which one the hand holds, who drives it, its shape and sizes, new ones.
 import type { ToolHand } from '../hands/tool_hand';
 import type { Control } from '../model/control';
+import { nameOf } from '../model/person';
 import { PARAMETERS, TOOL_SHAPES, type Tool } from '../wire/messages.gen';
 import { attempt, button, element, field, problemPlace, short } from './dom';
 import { NAME_PATTERN } from './names';
@@ -26,7 +27,7 @@ function driverWords(control: Control, tool: string): string {
   const driver = control.model.drivers.get(tool);
   if (!driver || driver.client === 0) return 'nobody drives it';
   if (driver.client === control.model.hello?.client) return 'you drive it';
-  return `driven by ${driver.name || `client ${driver.client}`}`;
+  return `${nameOf(driver)} drives it`;
 }
 
 function drivingButtons(control: Control, problem: HTMLElement): { place: HTMLElement; refresh(): void } {
@@ -126,7 +127,7 @@ export function toolsPanel(control: Control, hand: ToolHand): Panel {
   model.on('tools', () => {
     choose.replaceChildren(...model.tools.map((tool) => element('option', { value: tool.name }, tool.name)));
     choose.value = model.selectedTool ?? '';
-    jawField.hidden = !hand.mayGrasp;
+    jawField.hidden = !hand.jaws.usable;
     driving.refresh();
     edit.refresh();
   });

@@ -62,6 +62,18 @@ export class Orbit {
     return { x, y, z };
   }
 
+  /** From the eye through a place of the picture, both coordinates from -1 to 1. */
+  ray(x: number, y: number): { origin: Vector3; direction: Vector3 } {
+    const origin = new Vector3().setFromMatrixPosition(this.camera.matrixWorld);
+    return { origin, direction: new Vector3(x, y, 0.5).unproject(this.camera).sub(origin).normalize() };
+  }
+
+  /** Where a point is in the picture, both coordinates from -1 to 1. */
+  picturePlace(point: Vector3): { x: number; y: number } {
+    const { x, y } = point.clone().project(this.camera);
+    return { x, y };
+  }
+
   resize(width: number, height: number): void {
     const aspect = width / Math.max(height, 1);
     this.camera.aspect = aspect;

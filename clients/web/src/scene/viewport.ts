@@ -14,6 +14,7 @@ import { placeShadows } from './shadows';
 import { Smoke } from './smoke';
 import { makeSharedUniforms, mapTexture, TissueView } from './tissue_view';
 import { ToolView } from './tool_view';
+import { WayView } from './way_view';
 
 export interface ViewOptions {
   wireframe: boolean;
@@ -51,6 +52,7 @@ export class Viewport {
   private readonly tools = new Map<string, ToolView>();
   private readonly smoke = new Smoke();
   private readonly arrow = new ArrowHelper(new Vector3(0, 0, 1), new Vector3(), 0.01, 0xf5b301);
+  private readonly way = new WayView();
   private readonly drape: Drape;
   private readonly background: IUniform<Color> = { value: new Color() };
   private options: ViewOptions = { wireframe: false, hiddenLayers: new Set(), colouring: 'tissue', forceArrow: false };
@@ -66,7 +68,7 @@ export class Viewport {
     });
     this.drape = new Drape(this.background);
     this.arrow.visible = false;
-    this.scene.add(this.drape.mesh, this.smoke.points, this.arrow);
+    this.scene.add(this.drape.mesh, this.smoke.points, this.arrow, this.way.points);
     this.setTheme(true);
   }
 
@@ -133,6 +135,11 @@ export class Viewport {
     if (!changed) return;
     placeShadows(this.shared, this.states, this.tools, (state) => this.heatOf(state));
     this.invalidate();
+  }
+
+  /** The rest of the way that a tool has still to go. */
+  showWay(way: readonly Vector3[]): void {
+    if (this.way.show(way)) this.invalidate();
   }
 
   setOptions(options: ViewOptions): void {

@@ -31,9 +31,8 @@ export class Link {
   }
 
   /** A new connection, under a new identity: answers of an earlier one are of no use to it. */
-  connect(url: string, token?: string): void {
+  connect(url: string, client: string, token?: string): void {
     const clientId = Array.from(crypto.getRandomValues(new Uint8Array(12)), (b) => b.toString(16).padStart(2, '0')).join('');
-    const client = `viewer ${__VIEWER_VERSION__}`;
     this.send({ type: 'connect', url, client, clientId, ...(token === undefined ? {} : { token }) });
   }
 

@@ -1,0 +1,51 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Jaws: closed and opened by a command that lasts, or closed as long as something is held, once the tool
+// is where it was led.
+import { Vector3 } from 'three';
+
+import type { Control } from '../model/control';
+import type { Model } from '../model/model';
+import { hasJaws } from '../model/tool_parts';
+
+const ARRIVED_M = 0.001;
+
+export class Jaws {
+  /** closed by what is held, or to be closed when the tool is there */
+  private pressed: 'no' | 'soon' | 'yes' = 'no';
+
+  constructor(
+    private readonly model: Model,
+    private readonly control: Control,
+    private readonly sequence: () => number,
+  ) {}
+
+  get usable(): boolean {
+    return this.model.driving && this.model.tool !== null && hasJaws(this.model.tool.shape);
+  }
+
+  grasp(closed: boolean): void {
+    const { model } = this;
+    if (!this.usable || model.selectedTool === null) return;
+    const method = closed ? 'tool.grasp' : 'tool.release';
+    this.control
+      .call(method, { tool: model.selectedTool, sequence: this.sequence() })
+      .catch((error: unknown) => model.say('error', error instanceof Error ? error.message : String(error)));
+  }
+
+  press(): void {
+    if (this.usable && this.model.toolState?.grasping === false && this.pressed === 'no') this.pressed = 'soon';
+  }
+
+  letGo(): void {
+    if (this.pressed === 'yes') this.grasp(false);
+    this.pressed = 'no';
+  }
+
+  /** The hand has led the tool here; jaws that wait for it close. */
+  arrived(position: Vector3): void {
+    const state = this.model.toolState;
+    if (this.pressed !== 'soon' || !state || position.distanceTo(new Vector3(...state.positionM)) > ARRIVED_M) return;
+    this.pressed = 'yes';
+    this.grasp(true);
+  }
+}

@@ -1,0 +1,68 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Taking a tool by using it, and saying at once, where the hand is, why it does not move.
+import type { Control } from '../model/control';
+import type { Model } from '../model/model';
+import { nameOf } from '../model/person';
+
+const KEY = 'driver';
+const TOLD_MS = 4000; // keys and sticks ask sixty times a second
+
+export class Taking {
+  private busy = false;
+  private toldAt = -Infinity;
+
+  constructor(
+    private readonly model: Model,
+    private readonly control: Control,
+  ) {
+    model.on('tools', () => {
+      if (model.driving || !model.driver) model.unsay(KEY);
+    });
+  }
+
+  /** Becomes the driver of the chosen tool if nobody is. False: it cannot be used, and why has been said. */
+  use(): boolean {
+    const { model } = this;
+    if (this.busy || model.driving) return true;
+    const tool = model.selectedTool;
+    const why = this.obstacle();
+    if (why !== null || tool === null) {
+      if (why !== null) this.refuse(why);
+      return false;
+    }
+    this.busy = true;
+    this.control
+      .takeOver(tool)
+      .catch((error: unknown) => this.refuse(`The ${tool} could not be taken: ${error instanceof Error ? error.message : String(error)}.`))
+      .finally(() => (this.busy = false));
+    return true;
+  }
+
+  private obstacle(): string | null {
+    const { model } = this;
+    if (model.link.state !== 'online') return 'There is no connection: the tool cannot be moved.';
+    if (!model.mayOperate) return 'You are looking on: your token does not let you use the tools.';
+    if (!model.joined) return null; // the picture says what it waits for
+    if (model.tools.length === 0) return 'This session has no tools.';
+    return model.driver ? `${nameOf(model.driver)} is using the ${model.driver.tool}.` : null;
+  }
+
+  private refuse(why: string): void {
+    const { model, control } = this;
+    const now = performance.now();
+    if (now - this.toldAt < TOLD_MS) return;
+    this.toldAt = now;
+    const { driver } = model;
+    if (!driver || !model.mayOperate) {
+      model.say('warning', why);
+      return;
+    }
+    const ask = (): void => {
+      control.ask(driver.tool).then(
+        () => model.say('info', `${nameOf(driver)} has been asked for the ${driver.tool}.`),
+        (error: unknown) => model.say('error', error instanceof Error ? error.message : String(error)),
+      );
+    };
+    model.say('warning', why, { action: { words: `Ask ${nameOf(driver)} for it`, press: ask } });
+  }
+}

@@ -1,0 +1,92 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// The tool's buttons over the picture: what a press on the tissue does, energy while held, jaws, depth.
+import { depthWords } from '../hands/depth';
+import type { Pointer, Press } from '../hands/pointer';
+import type { ToolHand } from '../hands/tool_hand';
+import type { Control } from '../model/control';
+import { hasHeat, hasJaws } from '../model/tool_parts';
+import { button, byId, element } from './dom';
+
+const DEPTH_STEP_M = 0.001;
+const PRESSES: readonly (readonly [Press, string, string])[] = [
+  ['work', 'Cut', 'A press on the tissue cuts as long as it lasts'],
+  ['move', 'Move', 'A press on the tissue leads the tool there without energy'],
+  ['look', 'Look', 'A drag turns the view; the tool stays'],
+];
+
+function pressChoice(control: Control, pointer: Pointer): HTMLElement {
+  const group = element('div', { class: 'choice', aria: { role: 'group', label: 'What a press on the tissue does' } });
+  const buttons = PRESSES.map(([press, words, title]) => {
+    const choose = button(words, () => {
+      pointer.press = press;
+      for (const other of buttons) other.setAttribute('aria-pressed', String(other === choose));
+    }, { title, data: { press }, aria: { pressed: String(press === pointer.press) } });
+    return choose;
+  });
+  group.append(...buttons);
+  control.model.on('tools', () => {
+    const { tool } = control.model;
+    const words = !tool || hasHeat(tool.shape) ? 'Cut' : 'Grasp';
+    if (buttons[0].textContent !== words) buttons[0].textContent = words;
+  });
+  return group;
+}
+
+function energyButton(control: Control, hand: ToolHand): HTMLButtonElement {
+  const { model } = control;
+  const energy = button('Energy', () => undefined, { id: 'energy', class: 'energy', aria: { pressed: 'false' } });
+  energy.addEventListener('pointerdown', (event) => {
+    energy.setPointerCapture(event.pointerId);
+    hand.hold('button');
+  });
+  for (const end of ['pointerup', 'pointercancel', 'lostpointercapture', 'blur'] as const) energy.addEventListener(end, () => hand.letGo('button'));
+  energy.addEventListener('keydown', (event) => {
+    if ((event.code === 'Space' || event.code === 'Enter') && !event.repeat) hand.hold('button');
+  });
+  energy.addEventListener('keyup', () => hand.letGo('button'));
+  energy.addEventListener('contextmenu', (event) => event.preventDefault());
+  model.on('tools', () => {
+    energy.hidden = model.tool !== null && !hasHeat(model.tool.shape);
+    energy.disabled = !hand.usable;
+    energy.title = hand.usable ? 'Hold for energy (Space)' : 'Only who uses the tool may';
+  });
+  model.on('frame', () => {
+    const on = model.toolState?.energized === true;
+    if (energy.getAttribute('aria-pressed') === String(on)) return;
+    energy.setAttribute('aria-pressed', String(on));
+    energy.textContent = on ? 'Energy on' : 'Energy';
+    byId('picture').parentElement?.classList.toggle('hot', on);
+  });
+  return energy;
+}
+
+function depthGroup(control: Control, hand: ToolHand): HTMLElement {
+  const { model } = control;
+  const nearer = button('−', () => hand.nudge(0, 0, DEPTH_STEP_M), { aria: { label: 'Nearer' }, title: 'Nearer (S)' });
+  const deeper = button('+', () => hand.nudge(0, 0, -DEPTH_STEP_M), { aria: { label: 'Deeper' }, title: 'Deeper (W)' });
+  const depth = button('', () => hand.resetDepth(), { id: 'depth', title: 'How deep the tool works; press for: at the surface' });
+  const refresh = (): void => {
+    const words = depthWords(hand.depthM);
+    depth.textContent = words;
+    depth.setAttribute('aria-label', `Depth: ${words}. Press for: at the surface.`);
+    for (const one of [nearer, depth, deeper]) one.disabled = !model.driving;
+  };
+  model.on('tools', refresh);
+  refresh();
+  return element('div', { class: 'choice', aria: { role: 'group', label: 'Depth' } }, nearer, depth, deeper);
+}
+
+export function showHandles(control: Control, hand: ToolHand, pointer: Pointer): void {
+  const { model } = control;
+  const grasp = button('Grasp', () => hand.jaws.grasp(model.toolState?.grasping !== true), { id: 'grasp', aria: { pressed: 'false' } });
+  byId('handles').append(pressChoice(control, pointer), energyButton(control, hand), grasp, depthGroup(control, hand));
+  model.on('tools', () => {
+    grasp.hidden = !model.tool || !hasJaws(model.tool.shape);
+    grasp.disabled = !hand.jaws.usable;
+  });
+  model.on('frame', () => {
+    const grasps = String(model.toolState?.grasping === true);
+    if (grasp.getAttribute('aria-pressed') !== grasps) grasp.setAttribute('aria-pressed', grasps);
+  });
+  model.emit('tools', undefined);
+}

@@ -1,0 +1,51 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Words at the tool, or where somebody points: why it does not move, why it went dark, what brings it back.
+import type { Pointer } from '../hands/pointer';
+import type { Model, Said } from '../model/model';
+import type { Viewport } from '../scene/viewport';
+import { button, byId, element } from './dom';
+
+const SHOWN_MS = 5000;
+const LINES_MAX = 3;
+const AWAY_PX = 26; // from the tip, so that a finger or the tool does not cover the words
+const MARGIN_PX = 8;
+
+/** Returns what places the words anew; called once per animation frame. */
+export function showSaid(model: Model, viewport: Viewport, pointer: Pointer): () => void {
+  const place = byId('said');
+  const lines = new Map<string, HTMLElement>();
+  let transient = 0;
+  const remove = (key: string): void => {
+    lines.get(key)?.remove();
+    lines.delete(key);
+  };
+  const add = ({ kind, words, key, action }: Said): void => {
+    for (const [other, line] of lines) if (line.dataset['words'] === words) remove(other);
+    const name = key ?? `transient ${transient++}`;
+    remove(name);
+    const line = element('p', { class: `said-line ${kind}`, data: { words } }, words);
+    if (action) {
+      line.append(button(action.words, () => {
+        remove(name);
+        action.press();
+      }));
+    }
+    lines.set(name, line);
+    place.append(line);
+    for (const old of [...lines.keys()].slice(0, -LINES_MAX)) remove(old);
+    if (key === undefined) setTimeout(() => lines.get(name) === line && remove(name), action ? 2 * SHOWN_MS : SHOWN_MS);
+  };
+  model.on('said', add);
+  model.on('unsaid', remove);
+  return () => {
+    if (lines.size === 0) return;
+    const picture = viewport.canvas.getBoundingClientRect();
+    const tip = model.driving ? model.toolState?.positionM : undefined;
+    const at = tip ? viewport.project(tip) : (pointer.last ?? { x: picture.left + picture.width / 2, y: picture.top + picture.height / 3 });
+    const { width, height } = place.getBoundingClientRect();
+    const x = Math.min(Math.max(at.x - picture.left - width / 2, MARGIN_PX), Math.max(picture.width - width - MARGIN_PX, MARGIN_PX));
+    const above = at.y - picture.top - height - AWAY_PX;
+    const y = Math.min(above >= MARGIN_PX ? above : at.y - picture.top + 2 * AWAY_PX, picture.height - height - MARGIN_PX);
+    place.style.transform = `translate(${x.toFixed(0)}px, ${Math.max(y, MARGIN_PX).toFixed(0)}px)`;
+  };
+}

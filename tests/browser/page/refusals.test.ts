@@ -1,0 +1,50 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// What does not happen is said at once, where the eye is: at the tool.
+import type { Browser } from 'playwright-core';
+
+import { Daemon } from './daemon';
+import { launch, ViewerPage } from './viewer_page';
+
+const DEADLINE_S = 1;
+const BUSY_MS = 2000;
+
+describe('energy that a busy machine cuts', () => {
+  const daemon = new Daemon(['--demo', 'fascia', '--browser-deadline-s', String(DEADLINE_S)]);
+  let browser: Browser;
+  let viewer: ViewerPage;
+
+  beforeAll(async () => {
+    await daemon.start();
+    browser = await launch();
+    viewer = await ViewerPage.open(browser, daemon.url);
+    await viewer.live('d1-fascia');
+  });
+  afterAll(async () => {
+    await browser.close();
+    await daemon.end();
+  });
+
+  it('is not dark without a word: what held it is named, and a fresh press brings it back', async () => {
+    const { page } = viewer;
+    await page.keyboard.down('Space');
+    await viewer.until(() => window.cautery.energized, null, 'energy is on');
+    await page.evaluate((ms) => {
+      const end = performance.now() + ms;
+      while (performance.now() < end); // the page hangs, with the key held
+    }, BUSY_MS);
+    await viewer.until(() => document.querySelector('#said')?.textContent?.includes('Energy is off') === true, null, 'it is said');
+    const said = await page.locator('#said').textContent();
+    expect(said).toContain('heard nothing from this page in time');
+    expect(said).toContain('Let go of Space and press it again.');
+    expect((await viewer.state()).energized).toBe(false);
+    const { tick } = await viewer.state();
+    await viewer.until((later) => window.cautery.tick > later, tick + 60, 'a second later');
+    expect(await page.locator('#said').textContent()).toContain('Energy is off'); // as long as the key is held
+    await page.keyboard.up('Space');
+    expect(await page.locator('#said').textContent()).not.toContain('Energy is off');
+    await page.keyboard.down('Space');
+    await viewer.until(() => window.cautery.energized, null, 'energy is on again');
+    await page.keyboard.up('Space');
+    await viewer.until(() => !window.cautery.energized, null, 'energy is off');
+  });
+});

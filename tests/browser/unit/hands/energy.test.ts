@@ -1,0 +1,158 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Energy that is held and cut by somebody else is said at once, with what brings it back; it comes back by
+// a fresh press alone, and letting go never switches off what somebody else has on.
+import { Energy } from '../../../../clients/web/src/hands/energy';
+import type { Control } from '../../../../clients/web/src/model/control';
+import { Model, type Said } from '../../../../clients/web/src/model/model';
+import type { EnergyOff, ToolState } from '../../../../clients/web/src/wire/records';
+import type { Frame } from '../../../../clients/web/src/wire/worker_messages';
+
+const ME = 7;
+
+interface Told {
+  energized: boolean;
+  answer(tick: number): void;
+  refuse(words: string): void;
+}
+
+/** A model and a control of which only what energy uses is there. */
+class Bench {
+  readonly model = new Model();
+  readonly told: Told[] = [];
+  readonly said = new Map<string, string>();
+  readonly energy: Energy;
+
+  constructor() {
+    const { model } = this;
+    model.hello = { client: ME, role: 'operate' } as Model['hello'];
+    model.link = { state: 'online', hello: model.hello!, again: false };
+    model.selectedTool = 'hook';
+    this.driver(ME);
+    model.on('said', ({ key, words }: Said) => this.said.set(key ?? '', words));
+    model.on('unsaid', (key) => this.said.delete(key));
+    const call = (_method: string, { energized }: { energized: boolean }): Promise<unknown> =>
+      new Promise((resolve, reject) => {
+        this.told.push({ energized, answer: (tick) => resolve({ tick }), refuse: (words) => reject(new Error(words)) });
+      });
+    this.energy = new Energy(model, { call } as unknown as Control, () => 1);
+  }
+
+  driver(client: number): void {
+    this.model.drivers.set('hook', { tool: 'hook', client, name: 'Birch 27, viewer 0.1.0', energized: false, energy_off: 'commanded' });
+    this.model.emit('tools', undefined);
+  }
+
+  press(by: 'space' | 'trigger' | 'pointer' = 'space'): void {
+    this.energy.hold(by);
+    this.energy.enable('hook', true);
+  }
+
+  frame(tick: number, energized: boolean, energyOff: EnergyOff = 'commanded', more: Partial<Frame> = {}): void {
+    const tool = { name: 'hook', energized, energyOff } as ToolState;
+    const frame = { epoch: 'e', tick, paused: false, tools: [tool], samples: [], ...more } as unknown as Frame;
+    this.model.frame = frame;
+    this.model.emit('frame', frame);
+  }
+
+  /** Pressed at tick 10, answered, on. */
+  async lit(by: 'space' | 'trigger' | 'pointer' = 'space'): Promise<void> {
+    this.frame(10, false);
+    this.press(by);
+    this.told[0].answer(11);
+    await Promise.resolve();
+    this.frame(12, true);
+    expect(this.energy.alive).toBe(true);
+    expect(this.said.size).toBe(0);
+  }
+}
+
+describe('energy that is held', () => {
+  it.each([
+    ['space', 'Let go of Space and press it again.'],
+    ['trigger', 'Let go of the trigger and pull it again.'],
+    ['pointer', 'Lift and press again.'],
+  ] as const)('cut by the watchdog while %s is down: said with the next frame, with what brings it back', async (by, again) => {
+    const bench = new Bench();
+    await bench.lit(by);
+    bench.frame(40, false, 'watchdog');
+    expect(bench.said.get('energy')).toContain('Energy is off: the simulation heard nothing from this page in time');
+    expect(bench.said.get('energy')).toContain(again);
+    expect(bench.energy.alive).toBe(false);
+    bench.energy.enable('hook', false); // a key that goes on being held brings nothing back
+    expect(bench.told.length).toBe(1);
+    bench.energy.release(by);
+    expect(bench.said.size).toBe(0);
+    bench.press(by);
+    expect(bench.energy.alive).toBe(true);
+  });
+
+  it('cut before it ever came on is said too', async () => {
+    const bench = new Bench();
+    bench.frame(10, false, 'never_enabled');
+    bench.press();
+    bench.told[0].answer(11);
+    await Promise.resolve();
+    bench.frame(11, false, 'never_enabled'); // the border where it takes effect: the step comes after it
+    expect(bench.said.size).toBe(0);
+    bench.frame(12, false, 'never_enabled');
+    expect(bench.said.get('energy')).toContain('before it came on');
+  });
+
+  it('refused is said in the daemon’s words', async () => {
+    const bench = new Bench();
+    bench.press();
+    bench.told[0].refuse('the store is full');
+    await new Promise((resolve) => setTimeout(resolve));
+    expect(bench.said.get('energy')).toBe('Energy is off: the store is full. Let go of Space and press it again.');
+  });
+
+  it('a late answer to an earlier press does not count', async () => {
+    const bench = new Bench();
+    bench.frame(10, false);
+    bench.press();
+    bench.energy.release('space');
+    bench.press();
+    bench.told[0].answer(11);
+    await Promise.resolve();
+    bench.frame(12, false);
+    expect(bench.energy.alive).toBe(true);
+    expect(bench.said.size).toBe(0);
+  });
+
+  it.each([
+    ['paused', 13, { paused: true }, 'the session is paused'],
+    ['rewound', 3, { epoch: 'f' }, 'went back in time'],
+  ] as const)('%s: says so', async (_name, tick, more, words) => {
+    const bench = new Bench();
+    await bench.lit();
+    bench.frame(tick, false, 'restored', more);
+    expect(bench.said.get('energy')).toContain(words);
+  });
+
+  it('taken over: says by whom, and letting go leaves the other’s energy on', async () => {
+    const bench = new Bench();
+    await bench.lit();
+    bench.driver(ME + 1);
+    expect(bench.said.get('energy')).toContain('Birch 27 took the tool over');
+    bench.energy.release('space');
+    expect(bench.told.length).toBe(1);
+  });
+
+  it('a lost connection is said', async () => {
+    const bench = new Bench();
+    await bench.lit();
+    bench.model.setLink({ state: 'lost', words: 'gone', retryInS: 1 });
+    expect(bench.said.get('energy')).toContain('the connection was lost');
+  });
+
+  it('stays on until the last of two holds ends', async () => {
+    const bench = new Bench();
+    await bench.lit();
+    bench.energy.hold('pointer');
+    bench.energy.release('space');
+    expect(bench.energy.alive).toBe(true);
+    bench.energy.release('pointer');
+    expect(bench.told.at(-1)?.energized).toBe(false);
+    expect(bench.energy.alive).toBe(false);
+  });
+});
