@@ -3,6 +3,7 @@
 
 #include <errno.h>
 #include <fcntl.h>
+#include <pthread.h>
 #include <stdbool.h>
 #include <string.h>
 #include <sys/file.h>
@@ -39,7 +40,7 @@ static void write_holder(int descriptor)
 
 cau_status cau_store_lock_take(struct cau_store_lock *lock, const char *path, cau_error *error)
 {
-	lock->descriptor = -1;
+	lock->descriptor = lock->database = -1;
 	int length = snprintf(lock->path, sizeof lock->path, "%s-lock", path);
 	if ((size_t)length >= sizeof lock->path)
 		return cau_fail(error, CAU_BAD_VALUE, NULL, "the path is too long");
@@ -65,8 +66,88 @@ cau_status cau_store_lock_take(struct cau_store_lock *lock, const char *path, ca
 	}
 }
 
+// ---- the database itself --------------------------------------------------------------
+// Far from the bytes that SQLite locks (at 1 GB) and from any that a database will have.
+static const off_t lock_at = (off_t)1 << 62;
+
+// The databases that this process holds. A descriptor of one of them must not even be opened to
+// try: closing it again would drop SQLite's locks on it.
+static pthread_mutex_t held_mutex = PTHREAD_MUTEX_INITIALIZER;
+static struct cau_store_lock *held;
+
+// Called with the mutex held.
+static bool is_held_here(const struct stat *file)
+{
+	for (const struct cau_store_lock *lock = held; lock; lock = lock->next)
+		if (lock->device == file->st_dev && lock->inode == file->st_ino)
+			return true;
+	return false;
+}
+
+// A lock of the open file description (not of the process, as SQLite's are): those of two openings
+// exclude each other, and the kernel drops it with its holder, however that ends.
+static cau_status lock_file(int descriptor, cau_error *error)
+{
+	struct flock whole = {.l_type = F_WRLCK, .l_whence = SEEK_SET, .l_start = lock_at, .l_len = 1};
+	if (fcntl(descriptor, F_OFD_SETLK, &whole) == 0)
+		return CAU_OK;
+	if (errno == EAGAIN || errno == EACCES)
+		return cau_fail(error, CAU_BAD_STATE, NULL,
+		                "in use by another process under another name (a hard link, or a mount)");
+	return cau_fail(error, CAU_IO, NULL, "cannot lock it: %s", strerrordesc_np(errno));
+}
+
+// Called with the mutex held.
+static cau_status hold(struct cau_store_lock *lock, const char *path, cau_error *error)
+{
+	struct stat file;
+	if (stat(path, &file) || !S_ISREG(file.st_mode))
+		return CAU_OK; // none yet, or nothing that the probe would take
+	if (is_held_here(&file))
+		return cau_fail(error, CAU_BAD_STATE, NULL, "in use by this process under another name");
+	int descriptor = open(path, O_RDWR | O_CLOEXEC);
+	if (descriptor < 0)
+		return CAU_OK; // not to be written by us: what opens it for writing says why
+	cau_status status = lock_file(descriptor, error);
+	if (status) {
+		close(descriptor);
+		return status;
+	}
+	lock->database = descriptor;
+	lock->device = file.st_dev;
+	lock->inode = file.st_ino;
+	lock->next = held;
+	held = lock;
+	return CAU_OK;
+}
+
+cau_status cau_store_lock_database(struct cau_store_lock *lock, const char *path, cau_error *error)
+{
+	cau_status status = CAU_OK;
+	pthread_mutex_lock(&held_mutex);
+	if (lock->database < 0)
+		status = hold(lock, path, error);
+	pthread_mutex_unlock(&held_mutex);
+	return status;
+}
+
+static void let_go_of_database(struct cau_store_lock *lock)
+{
+	if (lock->database < 0)
+		return;
+	pthread_mutex_lock(&held_mutex);
+	struct cau_store_lock **place = &held;
+	while (*place != lock)
+		place = &(*place)->next;
+	*place = lock->next;
+	pthread_mutex_unlock(&held_mutex);
+	close(lock->database);
+	lock->database = -1;
+}
+
 void cau_store_lock_release(struct cau_store_lock *lock)
 {
+	let_go_of_database(lock);
 	if (lock->descriptor < 0)
 		return;
 	unlink(lock->path);

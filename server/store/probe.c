@@ -106,7 +106,40 @@ static cau_status check_label(sqlite3 *database, const char *label, cau_error *e
 	return status;
 }
 
-static cau_status check_content(sqlite3 *database, const char *label, cau_error *error)
+static bool is_same_file(const char *path, const char *suffix, const char *other)
+{
+	char name[4096], other_name[4096];
+	struct stat file, other_file;
+	snprintf(name, sizeof name, "%s%s", path, suffix);
+	snprintf(other_name, sizeof other_name, "%s%s", other, suffix);
+	return stat(name, &file) == 0 && stat(other_name, &other_file) == 0 &&
+	       file.st_dev == other_file.st_dev && file.st_ino == other_file.st_ino;
+}
+
+// After a crash, what was committed last is in a write-ahead log beside the name that the file was
+// opened by. Under another name (a hard link) it would be missing, and the log would spoil the file
+// the next time that it is opened by the first.
+static cau_status check_path(sqlite3 *database, const char *path, cau_error *error)
+{
+	sqlite3_stmt *statement = NULL;
+	cau_status status = CAU_OK;
+	int code = sqlite3_prepare_v2(database, "SELECT value FROM meta WHERE name = 'path'", -1,
+	                              &statement, NULL);
+	if (!code)
+		code = sqlite3_step(statement);
+	const char *noted = code == SQLITE_ROW ? (const char *)sqlite3_column_text(statement, 0) : NULL;
+	if (code != SQLITE_ROW && code != SQLITE_DONE)
+		status = cau_store_fault(database, code, "reading its path", error);
+	else if (noted && is_same_file(path, "", noted) && beside_bytes(noted, "-wal") > 0 &&
+	         !is_same_file(path, "-wal", noted))
+		status = cau_fail(error, CAU_BAD_STATE, NULL,
+		                  "its write-ahead log stands beside another name of it: open %s", noted);
+	sqlite3_finalize(statement);
+	return status;
+}
+
+static cau_status check_content(sqlite3 *database, const char *path, const char *label,
+                                cau_error *error)
 {
 	int64_t version;
 	cau_status status = cau_store_integer(database, "PRAGMA user_version", &version, error);
@@ -116,6 +149,8 @@ static cau_status check_content(sqlite3 *database, const char *label, cau_error 
 		status = check_pages(database, error);
 	if (!status && version > 0 && label)
 		status = check_label(database, label, error);
+	if (!status && version > 0)
+		status = check_path(database, path, error);
 	if (!status && version == CAU_STORE_SCHEMA_VERSION) {
 		struct cau_store_writer writer;
 		status = cau_store_writer_init(&writer, database, error);
@@ -142,7 +177,7 @@ static cau_status check_database(const char *path, const char *label, cau_error 
 	int code = sqlite3_open_v2(name, &database,
 	                           SQLITE_OPEN_READONLY | SQLITE_OPEN_URI | SQLITE_OPEN_NOMUTEX, NULL);
 	cau_status status = code ? cau_store_fault(database, code, "opening it", error)
-	                         : check_content(database, label, error);
+	                         : check_content(database, path, label, error);
 	sqlite3_close(database);
 	if (with_log && !had_index) {
 		snprintf(name, sizeof name, "%s-shm", path);

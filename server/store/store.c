@@ -143,6 +143,22 @@ static cau_status settle_label(struct cau_store *store, cau_error *error)
 	return code ? cau_store_fault(store->writing, code, "the label", error) : CAU_OK;
 }
 
+// The name under which the write-ahead log stands, for one who comes after a crash by another name.
+static cau_status note_path(struct cau_store *store, cau_error *error)
+{
+	sqlite3_stmt *statement = NULL;
+	int code = sqlite3_prepare_v2(store->writing,
+	                              "INSERT INTO meta VALUES('path', ?1) ON CONFLICT(name) DO UPDATE"
+	                              " SET value = excluded.value WHERE value <> excluded.value",
+	                              -1, &statement, NULL);
+	if (!code)
+		code = sqlite3_bind_text(statement, 1, store->path, -1, SQLITE_STATIC);
+	if (!code)
+		sqlite3_step(statement);
+	code = code ? code : sqlite3_finalize(statement);
+	return code ? cau_store_fault(store->writing, code, "the path", error) : CAU_OK;
+}
+
 // Ids of sessions are LABEL-NAME: where the label ends must be plain, and ROS 2's names, which know
 // no `-`, must not make one of two. A store that has such a label already keeps it.
 static cau_status check_new_label(const char *label, cau_error *error)
@@ -158,11 +174,15 @@ static cau_status open_database(struct cau_store *store, cau_error *error)
 {
 	enum cau_store_found found;
 	int64_t page_bytes = 0;
-	cau_status status = cau_store_probe(store->path, store->config.label, &found, error);
+	cau_status status = cau_store_lock_database(&store->lock, store->path, error);
+	if (!status)
+		status = cau_store_probe(store->path, store->config.label, &found, error);
 	if (!status && found == CAU_STORE_ABSENT) {
 		status = check_new_label(store->config.label, error);
 		if (!status)
 			status = cau_store_file_create(store->path, error);
+		if (!status)
+			status = cau_store_lock_database(&store->lock, store->path, error);
 	}
 	if (!status)
 		status = cau_store_file_open(store->path, store->config.wal_bytes, &store->writing, error);
@@ -172,6 +192,8 @@ static cau_status open_database(struct cau_store *store, cau_error *error)
 	status = cau_store_migrate(store->writing, error);
 	if (!status)
 		status = settle_label(store, error);
+	if (!status)
+		status = note_path(store, error);
 	if (!status)
 		status = cau_store_integer(store->writing, "PRAGMA page_size", &page_bytes, error);
 	store->page_bytes = (size_t)page_bytes;
@@ -248,7 +270,7 @@ cau_status cau_store_open(const cau_store_config *config, cau_store **out, cau_e
 	if (!store)
 		return cau_fail(error, CAU_NO_MEMORY, NULL, "opening the store");
 	store->config = *config;
-	store->lock.descriptor = -1;
+	store->lock.descriptor = store->lock.database = -1;
 	if (!store->config.wall_clock_ms)
 		store->config.wall_clock_ms = system_clock_ms;
 	init_locks(store);

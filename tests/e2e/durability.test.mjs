@@ -2,7 +2,7 @@
 // What was acknowledged is there after kill -9, in order, and the state equals a replay.
 import assert from 'node:assert/strict';
 import { spawnSync } from 'node:child_process';
-import { readFileSync, rmSync, writeFileSync } from 'node:fs';
+import { linkSync, readFileSync, rmSync, symlinkSync, writeFileSync } from 'node:fs';
 import { join } from 'node:path';
 import { test } from 'node:test';
 import { Daemon } from './wire/daemon.mjs';
@@ -348,6 +348,27 @@ for (const [what, spoil] of [
 
 const gapNamed = (error) => error.code === -32602 && error.data.path === 'params.tick' &&
 	/can be reached: \d/.test(error.data.reason);
+
+test('a second daemon on the same store is refused, by whatever name it comes', async () => {
+	const daemon = await Daemon.start();
+	const client = await daemon.connect();
+	const session = await smallSession(client, 'mine', { paused: true });
+	const names = ['link.db', 'symbolic.db'];
+	linkSync(join(daemon.folder, 'store.db'), join(daemon.folder, names[0]));
+	symlinkSync('store.db', join(daemon.folder, names[1]));
+	const refused = (name) => assert.rejects(Daemon.start({ settings: { store: join(daemon.folder, name) } }),
+		(error) => error.code === 1 && /event=start_failed .*reason="[^"]*(in use by|another name)/.test(error.message));
+	for (const name of ['store.db', ...names])
+		await refused(name);
+	await client.call('session.step', { session, ticks: 3 });
+	await daemon.kill();
+	await refused('link.db'); // what was committed last is in the log of the other name
+	const again = await Daemon.start({ folder: daemon.folder });
+	const other = await again.connect();
+	assert.equal((await other.call('session.list')).sessions[0].tick, 3);
+	await other.close();
+	await again.end();
+});
 
 // Rows of the store of a daemon that is not running.
 function queryStore(daemon, query) {

@@ -39,6 +39,30 @@ static void another_name_of_the_file_is_the_same_store(void **state)
 	cau_store_close(store);
 }
 
+static void a_hard_link_is_the_same_store(void **state)
+{
+	struct fixture *fixture = *state;
+	cau_store *second = NULL;
+	cau_error error = {0};
+	char name[256];
+	cau_store *store = open_store(&fixture->config);
+	snprintf(name, sizeof name, "%s/link.db", fixture->folder);
+	assert_int_equal(link(fixture->path, name), 0);
+	cau_store_config config = fixture->config;
+	config.path = name;
+	assert_int_equal(cau_store_open(&config, &second, &error), CAU_BAD_STATE);
+	assert_non_null(strstr(error.reason, "another name"));
+	// The first has lost nothing by that: SQLite's locks, for one.
+	assert_int_equal(write_batch(store, session_batch("knee"), NULL), CAU_OK);
+	cau_store_close(store);
+	// Closed in order, the file is whole and has no log: any name will do.
+	store = open_store(&config);
+	assert_int_equal(write_batch(store, session_batch("knee"), NULL), CAU_ALREADY_EXISTS);
+	assert_int_equal(cau_store_open(&fixture->config, &second, NULL), CAU_BAD_STATE);
+	cau_store_close(store);
+	cau_store_close(open_store(&fixture->config));
+}
+
 // Opens the store, says so with one byte, and waits to be killed.
 static _Noreturn void hold_store(const cau_store_config *config, int ready)
 {
@@ -71,12 +95,62 @@ static void another_process_is_refused_until_the_holder_dies(void **state)
 	close(ready[0]);
 }
 
+// Writes a session, says so with one byte, and waits to be killed.
+static _Noreturn void write_and_hold(const cau_store_config *config, int ready)
+{
+	cau_store *store;
+	if (cau_store_open(config, &store, NULL) == CAU_OK &&
+	    write_batch(store, session_batch("knee"), NULL) == CAU_OK && write(ready, "!", 1) == 1)
+		pause();
+	_exit(1);
+}
+
+// The killed one's last commits are in the log beside its name of the file. By the link they would
+// be lost, and by the first name the log would then spoil the file.
+static void
+a_hard_link_is_refused_while_another_process_lives_and_while_its_log_is_needed(void **state)
+{
+	struct fixture *fixture = *state;
+	cau_store *store = NULL;
+	cau_error error = {0};
+	char byte, name[256];
+	int ready[2];
+	snprintf(name, sizeof name, "%s/link.db", fixture->folder);
+	cau_store_config config = fixture->config;
+	config.path = name;
+	cau_store_close(open_store(&fixture->config));
+	assert_int_equal(link(fixture->path, name), 0);
+	assert_int_equal(pipe(ready), 0);
+	pid_t child = fork();
+	assert_true(child >= 0);
+	if (child == 0)
+		write_and_hold(&fixture->config, ready[1]);
+	close(ready[1]);
+	assert_int_equal(read(ready[0], &byte, 1), 1);
+	assert_int_equal(cau_store_open(&config, &store, &error), CAU_BAD_STATE);
+	assert_non_null(strstr(error.reason, "another process"));
+
+	assert_int_equal(kill(child, SIGKILL), 0);
+	assert_int_equal(waitpid(child, NULL, 0), child);
+	assert_int_equal(cau_store_open(&config, &store, &error), CAU_BAD_STATE);
+	assert_non_null(strstr(error.reason, fixture->path));
+	store = open_store(&fixture->config); // by its own name, at once, with all that was committed
+	assert_int_equal(write_batch(store, session_batch("knee"), NULL), CAU_ALREADY_EXISTS);
+	cau_store_close(store);
+	store = open_store(&config);
+	assert_int_equal(write_batch(store, session_batch("knee"), NULL), CAU_ALREADY_EXISTS);
+	cau_store_close(store);
+	close(ready[0]);
+}
+
 int main(void)
 {
 	const struct CMUnitTest tests[] = {
 		TEST(a_second_open_in_the_process_is_refused),
 		TEST(another_name_of_the_file_is_the_same_store),
+		TEST(a_hard_link_is_the_same_store),
 		TEST(another_process_is_refused_until_the_holder_dies),
+		TEST(a_hard_link_is_refused_while_another_process_lives_and_while_its_log_is_needed),
 	};
 	return cmocka_run_group_tests(tests, NULL, NULL);
 }
