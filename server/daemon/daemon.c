@@ -58,8 +58,8 @@ static void on_store_state(void *user, cau_store_state state, const char *reason
 	cau_daemon *daemon = user;
 	cau_log(state == CAU_STORE_READY ? CAU_LOG_NOTICE : CAU_LOG_ERROR, NULL, "store_state",
 	        "state=%s reason=\"%s\"", cau_store_state_name(state), reason);
-	if (state == CAU_STORE_READY && daemon->hub)
-		cau_hub_want_checkpoints(daemon->hub);
+	if (daemon->hub)
+		cau_hub_store_takes(daemon->hub, state == CAU_STORE_READY, reason);
 }
 
 static cau_status open_store(cau_daemon *daemon, cau_error *error)

@@ -102,13 +102,14 @@ static void describe_layers(const cau_hosted *h, cau_wire_layer_description *lay
 char *cau_answer_description(cau_hosted *h, cau_method method, size_t *bytes, cau_error *error)
 {
 	cau_wire_layer_description layers[CAU_MAX_LAYERS];
+	cau_drive drives[CAU_MAX_TOOLS];
 	cau_wire_driver drivers[CAU_MAX_TOOLS];
 	cau_wire_session_description result = {
 		.triangle_count = h->info.triangle_count,
 		.tetrahedron_count = h->info.tetrahedron_count,
 		.link_count = h->info.link_count,
 		.layers = {layers, h->info.layer_count, CAU_MAX_LAYERS},
-		.drivers = {drivers, h->drive_count, CAU_MAX_TOOLS},
+		.drivers = {drivers, 0, CAU_MAX_TOOLS},
 		.definition = h->present,
 	};
 	cau_hosted_publish_summary(h);
@@ -116,10 +117,9 @@ char *cau_answer_description(cau_hosted *h, cau_method method, size_t *bytes, ca
 	snprintf(result.description, sizeof result.description, "%s", h->info.description);
 	snprintf(result.instruction_set, sizeof result.instruction_set, "%s", h->info.instruction_set);
 	describe_layers(h, layers);
-	pthread_mutex_lock(&h->mutex);
-	for (int32_t i = 0; i < h->drive_count; i++)
-		cau_drive_describe(&h->drives[i], &drivers[i]);
-	pthread_mutex_unlock(&h->mutex);
+	result.drivers.count = cau_decide_drives(h, drives);
+	for (int32_t i = 0; i < result.drivers.count; i++)
+		cau_drive_describe(&drives[i], &drivers[i]);
 	*h->present = *h->scene;
 	cau_session_present(h->core, h->present);
 	return cau_answer_text(method, &result, bytes, error);

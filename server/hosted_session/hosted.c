@@ -7,14 +7,28 @@
 
 #include "hosted_session/internal.h"
 
+// The store tells of changes only.
+static void note_store(cau_hosted *h)
+{
+	cau_store_health health;
+	cau_store_get_health(h->around->store, &health);
+	if (health.state != CAU_STORE_READY)
+		cau_hosted_store_takes(h, false, health.reason);
+}
+
 cau_status cau_hosted_create(cau_hosted **made, const cau_surroundings *around,
                              const cau_hosted_def *def, cau_error *error)
 {
 	cau_hosted *h = calloc(1, sizeof *h);
 	*made = NULL;
-	if (h)
+	int32_t orders = (int32_t)around->config->queue_commands;
+	if (h) {
 		h->present = malloc(sizeof *h->present);
-	if (!h || !h->present) {
+		h->logic = malloc(cau_logic_bytes(orders));
+	}
+	if (!h || !h->present || !h->logic) {
+		free(h ? h->present : NULL);
+		free(h ? h->logic : NULL);
 		free(h);
 		return cau_fail(error, CAU_NO_MEMORY, NULL, "no memory for a session");
 	}
@@ -31,12 +45,13 @@ cau_status cau_hosted_create(cau_hosted **made, const cau_surroundings *around,
 	h->creator_sequence = def->client_sequence;
 	h->creator_reply = def->reply;
 	h->pause_at_start = def->paused;
-	h->speed = 1;
 	h->next_branch = 1;
-	h->state = CAU_SESSION_STARTING;
 	h->lost_from = h->batch_lost = UINT64_MAX;
 	h->starting = h->unanswered = true;
 	pthread_mutex_init(&h->mutex, NULL);
+	pthread_mutex_init(&h->deciding, NULL);
+	cau_logic_init(h->logic, orders);
+	h->logic->step_s = h->scene->step_s;
 	cau_hosted_publish_summary(h);
 	if (!cau_worker_pool_add(around->pool, &h->task)) {
 		h->scene = NULL; // stays the caller's
@@ -44,6 +59,7 @@ cau_status cau_hosted_create(cau_hosted **made, const cau_surroundings *around,
 		cau_hosted_release(h);
 		return cau_fail(error, CAU_LIMIT, NULL, "the daemon has as many sessions as it may");
 	}
+	note_store(h);
 	*made = h;
 	return CAU_OK;
 }
@@ -54,31 +70,38 @@ cau_hosted *cau_hosted_share(cau_hosted *h)
 	return h;
 }
 
-static void free_orders(cau_order *orders)
+static void refuse_order(cau_order *order)
 {
 	cau_error error = {.status = CAU_NOT_FOUND, .reason = "the session is gone"};
-	for (cau_order *next; orders; orders = next) {
-		next = orders->next;
-		cau_answer_fail(orders, &error, CAU_RPC_NOT_HERE);
-	}
+	cau_answer_fail(order, &error, CAU_RPC_NOT_HERE);
+}
+
+static void refuse_ticket(uint64_t ticket)
+{
+	refuse_order((cau_order *)(uintptr_t)ticket);
 }
 
 void cau_hosted_release(cau_hosted *h)
 {
 	if (!h || atomic_fetch_sub(&h->references, 1) != 1)
 		return;
-	free_orders(h->first);
-	free_orders(h->reads);
-	free_orders(h->postponed);
-	if (h->stepping)
-		free_orders(h->stepping);
+	for (int32_t i = 0; i < h->logic->count; i++)
+		refuse_ticket(h->logic->waiting[i].asked.ticket);
+	if (h->logic->stepping)
+		refuse_ticket(h->logic->stepping);
+	for (cau_order *next; h->reads; h->reads = next) {
+		next = h->reads->next;
+		refuse_order(h->reads);
+	}
 	if (h->replay.order)
-		free_orders(h->replay.order);
+		refuse_order(h->replay.order);
 	cau_replay_finish(&h->replay);
 	cau_streams_destroy(h);
 	cau_store_batch_destroy(h->batch);
 	cau_session_destroy(h->core);
 	pthread_mutex_destroy(&h->mutex);
+	pthread_mutex_destroy(&h->deciding);
+	free(h->logic);
 	free(h->scene);
 	free(h->present);
 	free(h->meshes);
@@ -145,86 +168,6 @@ void cau_hosted_count(cau_hosted *h, cau_hosted_counts *counts)
 	pthread_mutex_unlock(&h->mutex);
 }
 
-// ---- the queue
-
-// The newest waiting order about the same tool, if that is motion of the same driver: then nothing
-// stands between the two, and the newer pose counts.
-static cau_order *superseded(cau_hosted *h, const cau_order *order)
-{
-	cau_order *found = NULL;
-	for (cau_order *o = h->first; o; o = o->next) {
-		bool same =
-			o->kind == CAU_ORDER_COMMAND && strcmp(o->as.command.tool, order->as.command.tool) == 0;
-		if (same || o->kind != CAU_ORDER_COMMAND)
-			found = same && o->motion && o->asker.client == order->asker.client ? o : NULL;
-	}
-	return found;
-}
-
-static bool store_takes(cau_hosted *h, cau_error *error)
-{
-	cau_store_health health;
-	cau_store_get_health(h->around->store, &health);
-	if (health.state == CAU_STORE_READY)
-		return true;
-	cau_fail(error, CAU_IO, "", "the store is %s: %s", cau_store_state_name(health.state),
-	         health.reason);
-	return false;
-}
-
-static void append(cau_hosted *h, cau_order *order)
-{
-	order->next = NULL;
-	if (h->last)
-		h->last->next = order;
-	else
-		h->first = order;
-	h->last = order;
-	h->queued++;
-}
-
-static bool changes(const cau_order *order)
-{
-	const cau_method_info *method = cau_method_describe(order->reply.method);
-	return order->motion || !method || method->changes;
-}
-
-cau_status cau_hosted_submit(cau_hosted *h, cau_order *order, cau_error *error)
-{
-	if (h->ended)
-		return cau_fail(error, CAU_NOT_FOUND, "params.session", "the session is destroyed");
-	if (cau_reads_are(order))
-		return cau_reads_submit(h, order, error);
-	if (h->drain_wanted && changes(order))
-		return cau_fail(error, CAU_BAD_STATE, "", "the daemon is ending");
-	if (changes(order) && !store_takes(h, error)) {
-		if (order->motion)
-			cau_drive_refuse(h, order, error);
-		return CAU_IO;
-	}
-	pthread_mutex_lock(&h->mutex);
-	cau_order *older = order->motion ? superseded(h, order) : NULL;
-	bool full = !older && h->queued >= h->around->config->queue_commands;
-	if (older)
-		older->as.command = order->as.command;
-	else if (!full)
-		append(h, order);
-	// Motion of a running session waits for the tick border that comes anyway.
-	bool wake = !order->motion || h->summary.state != CAU_SESSION_RUNNING;
-	pthread_mutex_unlock(&h->mutex);
-	if (full) {
-		cau_fail(error, CAU_LIMIT, "", "the session's queue is full (setting queue_commands)");
-		if (order->motion)
-			cau_drive_refuse(h, order, error);
-		return CAU_LIMIT;
-	}
-	if (older)
-		free(order);
-	if (wake)
-		cau_worker_pool_wake(h->around->pool, &h->task);
-	return CAU_OK;
-}
-
 void cau_hosted_want_checkpoint(cau_hosted *h)
 {
 	h->checkpoint_wanted = true;
@@ -234,6 +177,7 @@ void cau_hosted_want_checkpoint(cau_hosted *h)
 void cau_hosted_drain(cau_hosted *h)
 {
 	h->drain_wanted = true;
+	cau_decide(h, &(cau_logic_event){.kind = CAU_LOGIC_DRAIN, .time_s = cau_monotonic_s()});
 	cau_worker_pool_wake(h->around->pool, &h->task);
 }
 

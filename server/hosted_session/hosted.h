@@ -88,11 +88,13 @@ cau_status cau_hosted_submit(cau_hosted *hosted, cau_order *order, cau_error *er
 
 // A sign of life of a client: its tools' watchdogs start anew.
 void cau_hosted_feed(cau_hosted *hosted, uint32_t client);
-// The client is gone or looks away: energy off at the next tick border, tools stay where they are.
-// `tell` names the reason in events.
+// The client is gone or looks away: no tick that begins from now on is computed with its energy,
+// and everybody is told now; its tools stay where they are. `tell` names the reason in events.
 void cau_hosted_cut(cau_hosted *hosted, uint32_t client, const char *tell);
 // The client will not come back: its tools have no driver any more.
 void cau_hosted_forget_client(cau_hosted *hosted, uint32_t client);
+// The store has room again, or has none: energy goes off, and comes on only when it has.
+void cau_hosted_store_takes(cau_hosted *hosted, bool takes, const char *reason);
 // Cuts the energy of drivers that are silent for too long. Returns the time when it must look
 // again, INFINITY if nothing is energized.
 double cau_hosted_watch(cau_hosted *hosted, double now_s);

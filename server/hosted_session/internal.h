@@ -11,6 +11,7 @@
 #include "clock/clock.h"
 #include "hosted_session/hosted.h"
 #include "log/log.h"
+#include "session/logic.h"
 
 enum {
 	RING_FRAMES = 16,  // deltas kept for subscribers that are a little behind
@@ -19,23 +20,15 @@ enum {
 	CUT_MERGE_TICKS = 30, // cuts of neighbouring ticks are one event
 };
 
-// A tool and who drives it.
-typedef struct cau_drive {
-	char tool[CAU_NAME_BYTES];
-	cau_asker driver; // client 0: nobody
-	double last_s;    // the driver's last sign of life
-	bool energized;   // the watchdog looks only at these
-	bool frozen;
-	bool cut_wanted; // by the watchdog or a transport; done at the next tick border
-	char cut_cause[32];
-	int energy_off; // CAU_ENERGY_OFF_*
-	// refused motion, told once a second
-	int64_t refused;
-	double refused_told_s;
-	uint32_t refused_client;
-	uint64_t refused_sequence;
-	cau_error refused_error;
-} cau_drive;
+// Refused motion of a tool, told once a second.
+typedef struct cau_refused_motion {
+	char tool[CAU_NAME_BYTES]; // "": the place is free
+	int64_t count;
+	double told_s;
+	uint32_t client;
+	uint64_t sequence; // of the newest
+	cau_error error;
+} cau_refused_motion;
 
 typedef struct cau_ring_frame {
 	uint64_t sequence;
@@ -116,17 +109,12 @@ struct cau_hosted {
 	cau_reply creator_reply;
 	cau_session *core;
 	cau_session_info info;
-	int state; // CAU_SESSION_*
 	bool pause_at_start;
-	char fault[320];
 	uint64_t tick, first_tick;
 	int64_t branch, next_branch;
 	uint64_t logged_tick; // of the last log entry
 	uint32_t logged_order;
 	uint64_t epoch;
-	double speed, next_step_s;
-	int64_t steps_left;
-	cau_order *stepping; // answered when steps_left is 0
 	cau_replay replay;
 	cau_store_batch *batch; // of this slice; NULL: nothing to write
 	uint64_t batch_tick;    // when it was begun
@@ -141,22 +129,22 @@ struct cau_hosted {
 	double step_cost_s, realtime_factor;
 	int32_t elements_removed;
 	uint32_t refused_commands;
-	bool dirty; // streams must show a change that no step made
 	cau_named_snapshot snapshots[SNAPSHOT_COUNT];
 	int32_t snapshot_count;
 	cau_wire_timeline_event events[EVENT_COUNT]; // ring, of the present line
 	uint64_t event_count;
-	bool events_older;    // the store has some from before
-	bool cut_open;        // the newest event is a cut that may grow; nobody knows of it yet
-	cau_order *postponed; // resends whose first is not committed yet
+	bool events_older; // the store has some from before
+	bool cut_open;     // the newest event is a cut that may grow; nobody knows of it yet
+
+	// What is decided. Its lock is held for moments, never across the core, and inside no other
+	// lock of the session; what clients are told of a decision is told under it, in its order.
+	pthread_mutex_t deciding;
+	cau_logic *logic; // orders are its tickets
 
 	pthread_mutex_t mutex;
-	cau_order *first, *last;
-	int32_t queued;
 	cau_order *reads; // reads.c
 	int32_t read_count;
-	cau_drive drives[CAU_MAX_TOOLS];
-	int32_t drive_count;
+	cau_refused_motion refused[CAU_MAX_TOOLS];
 	cau_stream streams[CAU_STREAM_PROFILES_MAX];
 	cau_tool_state tools[CAU_MAX_TOOLS]; // of the newest tick, for transports
 	int32_t tool_count;
@@ -168,14 +156,16 @@ struct cau_hosted {
 	_Atomic uint64_t lost_from;
 	atomic_bool unanswered; // its making is not with the store yet
 	atomic_bool ended, starting, checkpoint_wanted, drain_wanted, drained;
-	atomic_int files;           // of this session that the builder makes
-	atomic_int commits;         // on their way to the disk
-	atomic_bool commit_awaited; // wake the task when none is
+	atomic_bool dirty;  // streams must show a change that no step made
+	atomic_int files;   // of this session that the builder makes
+	atomic_int commits; // on their way to the disk
 };
 
 // ---- run.c
 cau_due cau_hosted_run(cau_task *task);
-void cau_hosted_set_fault(cau_hosted *h, const cau_error *error);
+// Numerical trouble outside a step. The session is faulted; everybody is told.
+void cau_hosted_fault(cau_hosted *h, const cau_error *error);
+void cau_hosted_tell_fault(cau_hosted *h, const cau_error *error);
 void cau_hosted_publish_summary(cau_hosted *h);
 
 // ---- tools.c
@@ -194,39 +184,50 @@ cau_status cau_replay_begin(cau_hosted *h, const char *session, int64_t branch, 
 bool cau_replay_slice(cau_hosted *h);
 void cau_replay_finish(cau_replay *replay);
 
-// ---- apply.c: what each order does. Takes the order.
-void cau_hosted_apply(cau_hosted *h, cau_order *order);
+// ---- decide.c: the door to the session's decisions, from any thread
+// Takes one event, and does what it leads to but for what is the worker's.
+void cau_decide(cau_hosted *h, const cau_logic_event *event);
+// What the worker is to do now, and what came of it.
+void cau_decide_next(cau_hosted *h, cau_action *action);
+void cau_decide_done(cau_hosted *h, cau_outcome_kind outcome);
+void cau_decide_stepped(cau_hosted *h, const char *fault);
+// The core is at a state with these tools: after a start, rewind, reset or restore.
+void cau_decide_arrived(cau_hosted *h, int state, const char *cause);
+// A copy of a tool's drive. False: there is none.
+bool cau_decide_find(cau_hosted *h, const char *tool, cau_drive *drive);
+// Copies of all, at most CAU_MAX_TOOLS.
+int32_t cau_decide_drives(cau_hosted *h, cau_drive *drives);
+// CAU_SESSION_*. On the session's worker, which alone changes it.
+static inline int cau_decided_state(const cau_hosted *h)
+{
+	return h->logic->state;
+}
+
+// ---- apply.c: what each order does. Takes the order if it is done or answered.
+cau_outcome_kind cau_hosted_apply(cau_hosted *h, cau_order *order, const cau_action *action);
+// Looks whether the order was sent before; answers it if so.
+cau_outcome_kind cau_hosted_look(cau_hosted *h, cau_order *order);
+void cau_hosted_refuse_order(cau_hosted *h, cau_order *order, const cau_action *action);
 // A command of the daemon's own: submitted to the core and logged for nobody.
 void cau_hosted_command(cau_hosted *h, const cau_command *command);
 
 // ---- time.c: orders about time and history
-void cau_apply_pause(cau_hosted *h, cau_order *order);
-void cau_apply_resume(cau_hosted *h, cau_order *order);
-void cau_apply_step(cau_hosted *h, cau_order *order);
-void cau_apply_speed(cau_hosted *h, cau_order *order);
-void cau_apply_back(cau_hosted *h, cau_order *order); // rewind, reset, restore
-void cau_apply_snapshot(cau_hosted *h, cau_order *order);
-void cau_apply_fork(cau_hosted *h, cau_order *order);
-void cau_apply_destroy(cau_hosted *h, cau_order *order);
+typedef cau_outcome_kind cau_applied(cau_hosted *h, cau_order *order, const cau_action *action);
+cau_applied cau_apply_pause; // `order` NULL: it was answered when it came
+cau_applied cau_apply_resume, cau_apply_step, cau_apply_speed;
+cau_applied cau_apply_back; // rewind, reset, restore
+cau_applied cau_apply_snapshot, cau_apply_fork, cau_apply_destroy;
+// session.step has made its ticks, or the session faulted within them.
+void cau_time_stepped(cau_hosted *h, cau_order *order, bool failed);
 // After the replay of a rewind, reset or restore.
 void cau_back_arrived(cau_hosted *h, cau_order *order);
 
-// ---- drive.c
-cau_drive *cau_drive_find(cau_hosted *h, const char *tool); // worker, or under the mutex
-void cau_drive_add(cau_hosted *h, const char *tool, const cau_asker *driver);
-void cau_drive_remove(cau_hosted *h, const char *tool);
-// Follows the core's tools: after a restore.
-void cau_drive_match_tools(cau_hosted *h, const char *client_cause);
-// Does the cuts that the watchdog and the transports asked for.
-void cau_drive_apply_cuts(cau_hosted *h);
-// Energy off and the tool frozen, now, by the daemon itself.
-void cau_drive_cut(cau_hosted *h, cau_drive *drive, int energy_off, const char *cause);
-void cau_drive_cut_all(cau_hosted *h, int energy_off, const char *cause);
+// ---- drive.c: what the core, the log and clients are told of drivers and energy
+// Energy off and the tool where it is, as was decided.
+void cau_drive_do_cut(cau_hosted *h, const cau_action *action);
 void cau_drive_tell(cau_hosted *h, const cau_drive *drive); // tool.driver_changed
 void cau_drive_describe(const cau_drive *drive, cau_wire_driver *driver);
-void cau_apply_take_over(cau_hosted *h, cau_order *order);
-void cau_apply_hand_over(cau_hosted *h, cau_order *order);
-void cau_apply_request_takeover(cau_hosted *h, cau_order *order);
+cau_applied cau_apply_drive, cau_apply_request_takeover;
 // Counts a refused motion; told once a second by cau_drive_tell_refusals.
 void cau_drive_refuse(cau_hosted *h, const cau_order *order, const cau_error *error);
 void cau_drive_tell_refusals(cau_hosted *h, double now_s);

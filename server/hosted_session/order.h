@@ -6,6 +6,7 @@
 #include "cautery/command.h"
 #include "cautery/messages.h"
 #include "hub/sink.h"
+#include "session/asker.h"
 
 typedef enum cau_order_kind {
 	CAU_ORDER_COMMAND, // as.command
@@ -28,15 +29,6 @@ typedef enum cau_order_kind {
 	CAU_ORDER_LOG,      // as.log
 	CAU_ORDER_JOIN,     // as.join
 } cau_order_kind;
-
-// Who asks.
-typedef struct cau_asker {
-	uint32_t client; // the number in frames; 0: nobody
-	char name[65];
-	char client_id[65];
-	cau_role role;
-	double deadline_s; // silence after which its energy is cut
-} cau_asker;
 
 typedef struct cau_order {
 	struct cau_order *next;

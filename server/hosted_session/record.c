@@ -77,7 +77,7 @@ void cau_record_state(cau_hosted *h)
 {
 	cau_error error = {0};
 	cau_store_batch *batch = cau_record_batch(h);
-	const char *state = h->state == CAU_SESSION_RUNNING ? "running" : "paused";
+	const char *state = cau_decided_state(h) == CAU_SESSION_RUNNING ? "running" : "paused";
 	if (batch && cau_store_put_session_state(batch, h->id, state, &error))
 		gap(h, &error);
 }
@@ -236,8 +236,12 @@ static void committed(void *user, cau_status status, const char *reason)
 		done->hosted->ended = done->hosted->ended || done->making;
 	}
 	answer_all(done->pending, status, reason);
-	if (atomic_fetch_sub(&done->hosted->commits, 1) == 1 && done->hosted->commit_awaited)
-		cau_worker_pool_wake(done->hosted->around->pool, &done->hosted->task);
+	if (atomic_fetch_sub(&done->hosted->commits, 1) == 1) {
+		cau_decide(done->hosted,
+		           &(cau_logic_event){.kind = CAU_LOGIC_COMMITTED, .time_s = cau_monotonic_s()});
+		if (done->hosted->drain_wanted)
+			cau_worker_pool_wake(done->hosted->around->pool, &done->hosted->task);
+	}
 	cau_hosted_release(done->hosted);
 	free(done);
 }

@@ -93,7 +93,7 @@ bool cau_replay_slice(cau_hosted *h)
 	while (h->tick < h->replay.until) {
 		submit_due(h);
 		if (cau_session_step(h->core, &error)) {
-			cau_hosted_set_fault(h, &error);
+			cau_hosted_fault(h, &error);
 			return false;
 		}
 		h->tick++;

@@ -6,7 +6,6 @@
 
 #include "hosted_session/internal.h"
 
-#define BEHIND_MOST_S 0.25    // more than this behind the wall is given up, not caught up
 #define FACTOR_WINDOW_S 1.0   // realtime_factor is over this
 #define STEPPING_SLICE_S 0.01 // session.step runs so long before others get the worker
 
@@ -14,102 +13,47 @@ enum {
 	QUIET_DOUBLINGS = 6
 }; // an untouched session has a checkpoint every 64 checkpoint_s at least
 
-void cau_hosted_set_fault(cau_hosted *h, const cau_error *error)
+void cau_hosted_tell_fault(cau_hosted *h, const cau_error *error)
 {
 	cau_wire_session_faulted params = {.tick = (int64_t)h->tick};
-	h->state = CAU_SESSION_FAULTED;
-	h->steps_left = 0;
-	snprintf(h->fault, sizeof h->fault, "%s", error->reason);
 	snprintf(params.session, sizeof params.session, "%s", h->id);
 	snprintf(params.reason, sizeof params.reason, "%.319s", error->reason);
-	cau_event_add(h, CAU_EVENT_FAULT, NULL, NULL, 0, h->fault);
+	cau_event_add(h, CAU_EVENT_FAULT, NULL, NULL, 0, error->reason);
 	cau_answer_notify(h, (cau_audience){CAU_AUDIENCE_SESSION, h->number},
 	                  CAU_METHOD_SESSION_FAULTED, &params);
 	h->dirty = true;
-	if (h->stepping) {
-		cau_answer_fail(h->stepping, error, CAU_RPC_FAULTED);
-		h->stepping = NULL;
-	}
+}
+
+void cau_hosted_fault(cau_hosted *h, const cau_error *error)
+{
+	cau_decide(h, &(cau_logic_event){.kind = CAU_LOGIC_FAULT,
+	                                 .time_s = cau_monotonic_s(),
+	                                 .cause = error->reason});
+	cau_hosted_tell_fault(h, error);
 }
 
 void cau_hosted_publish_summary(cau_hosted *h)
 {
 	cau_wire_session_summary now = {
-		.state = h->starting ? CAU_SESSION_STARTING : h->state,
+		.state = h->starting ? CAU_SESSION_STARTING : cau_decided_state(h),
 		.tick = (int64_t)h->tick,
 		.time_s = (double)h->tick * h->scene->step_s,
 		.step_s = h->scene->step_s,
-		.speed = h->speed,
+		.speed = h->logic->speed,
 		.realtime_factor = h->realtime_factor,
 		.vertex_count = h->info.vertex_count,
 		.face_count = h->info.face_count,
-		.tool_count = h->drive_count,
+		.tool_count = h->logic->drive_count,
 		.epoch = h->epoch,
-		.has_fault = h->state == CAU_SESSION_FAULTED && *h->fault,
+		.has_fault = cau_decided_state(h) == CAU_SESSION_FAULTED && *h->logic->fault,
 	};
 	memcpy(now.session, h->id, sizeof now.session);
 	memcpy(now.scene, h->scene->name, sizeof now.scene);
-	snprintf(now.fault, sizeof now.fault, "%.319s", h->fault);
+	snprintf(now.fault, sizeof now.fault, "%.319s", h->logic->fault);
 	pthread_mutex_lock(&h->mutex);
 	h->summary = now;
 	h->counts.realtime_factor = h->realtime_factor;
 	pthread_mutex_unlock(&h->mutex);
-}
-
-// ---- orders
-static cau_order *take_orders(cau_hosted *h)
-{
-	pthread_mutex_lock(&h->mutex);
-	cau_order *orders = h->first;
-	h->first = h->last = NULL;
-	h->queued = 0;
-	pthread_mutex_unlock(&h->mutex);
-	return orders;
-}
-
-static void put_back(cau_hosted *h, cau_order *orders)
-{
-	cau_order *last = orders;
-	int32_t count = 1;
-	for (; last->next; last = last->next)
-		count++;
-	pthread_mutex_lock(&h->mutex);
-	last->next = h->first;
-	h->first = orders;
-	if (!h->last)
-		h->last = last;
-	h->queued += count;
-	pthread_mutex_unlock(&h->mutex);
-}
-
-static void refuse_all(cau_order *orders)
-{
-	cau_error error = {.status = CAU_NOT_FOUND, .reason = "the session is destroyed"};
-	for (cau_order *next; orders; orders = next) {
-		next = orders->next;
-		cau_answer_fail(orders, &error, CAU_RPC_NOT_HERE);
-	}
-}
-
-static void apply_orders(cau_hosted *h)
-{
-	cau_order *again = h->postponed;
-	if (again && h->commits == 0) {
-		h->postponed = NULL;
-		h->commit_awaited = false;
-		put_back(h, again);
-	}
-	cau_order *orders = take_orders(h);
-	while (orders && !h->replay.active && !h->ended) {
-		cau_order *order = orders;
-		orders = order->next;
-		order->next = NULL;
-		cau_hosted_apply(h, order);
-	}
-	if (orders && h->ended)
-		refuse_all(orders);
-	else if (orders)
-		put_back(h, orders);
 }
 
 // ---- time
@@ -119,11 +63,13 @@ static void note_cut(cau_hosted *h, const cau_frame *frame)
 	h->elements_removed = frame->statistics.elements_removed;
 	if (removed <= 0)
 		return;
+	cau_drive drives[CAU_MAX_TOOLS];
 	h->touched = true;
 	const cau_drive *cutter = NULL;
-	for (int32_t i = 0; i < h->drive_count; i++)
-		if (h->drives[i].energized)
-			cutter = &h->drives[i];
+	int32_t count = cau_decide_drives(h, drives);
+	for (int32_t i = 0; i < count; i++)
+		if (drives[i].lit)
+			cutter = &drives[i];
 	cau_event_add(h, CAU_EVENT_CUT, cutter ? cutter->tool : NULL,
 	              cutter ? cutter->driver.name : NULL, removed, NULL);
 }
@@ -154,11 +100,12 @@ static void step(cau_hosted *h)
 	double began_s = cau_monotonic_s();
 	cau_status status = cau_session_step(h->core, &error);
 	h->step_cost_s = cau_monotonic_s() - began_s;
+	h->tick += !status;
+	cau_decide_stepped(h, status ? error.reason : NULL);
 	if (status) {
-		cau_hosted_set_fault(h, &error);
+		cau_hosted_tell_fault(h, &error);
 		return;
 	}
-	h->tick++;
 	cau_session_frame(h->core, &frame);
 	note_cut(h, &frame);
 	cau_event_settle(h);
@@ -169,38 +116,66 @@ static void step(cau_hosted *h)
 	pthread_mutex_unlock(&h->mutex);
 }
 
-static void run_clock(cau_hosted *h, double now_s)
+// ---- what is to be done now
+static cau_outcome_kind act(cau_hosted *h, const cau_action *action)
 {
-	if (h->state != CAU_SESSION_RUNNING || now_s < h->next_step_s)
-		return;
-	double period_s = h->info.step_s / h->speed;
-	h->next_step_s += period_s;
-	if (now_s - h->next_step_s > fmax(BEHIND_MOST_S, period_s))
-		h->next_step_s = now_s;
-	step(h);
-	measure_factor(h, cau_monotonic_s());
+	cau_order *order = (cau_order *)(uintptr_t)action->ticket;
+	switch (action->act) {
+	case CAU_ACT_REFUSE:
+		cau_hosted_refuse_order(h, order, action);
+		return CAU_DONE;
+	case CAU_ACT_LOOK:
+		return cau_hosted_look(h, order);
+	case CAU_ACT_ORDER:
+		return cau_hosted_apply(h, order, action);
+	case CAU_ACT_CUT:
+		cau_drive_do_cut(h, action);
+		return CAU_DONE;
+	case CAU_ACT_PAUSE:
+		return cau_apply_pause(h, NULL, action);
+	case CAU_ACT_STEPPED:
+	case CAU_ACT_STEP_FAILED:
+		cau_time_stepped(h, order, action->act == CAU_ACT_STEP_FAILED);
+		return CAU_DONE;
+	case CAU_ACT_NOTHING:
+	case CAU_ACT_STEP:
+		break;
+	}
+	return CAU_DONE;
 }
 
-// session.step: as fast as it goes, a border for orders and cuts after each slice.
-static void run_stepping(cau_hosted *h)
+// A resend whose first was committed while it was looked for must not wait for a commit to come.
+static void note_commits(cau_hosted *h)
 {
+	if (h->commits == 0)
+		cau_decide(h, &(cau_logic_event){.kind = CAU_LOGIC_COMMITTED, .time_s = cau_monotonic_s()});
+}
+
+// Does what is decided, until a tick of the clock is over or nothing is left. session.step goes as
+// fast as it can, with a border for orders and cuts before each tick.
+static void act_until_tick(cau_hosted *h)
+{
+	cau_action action;
 	double end_s = cau_monotonic_s() + STEPPING_SLICE_S;
-	while (h->steps_left > 0 && h->state == CAU_SESSION_PAUSED) {
-		h->steps_left--;
-		step(h);
-		cau_streams_publish(h, cau_monotonic_s());
-		if (cau_monotonic_s() >= end_s)
-			break;
-	}
-	if (h->steps_left == 0 && h->stepping) {
-		cau_wire_tick_result result = {(int64_t)h->tick, 0};
-		cau_order *order = h->stepping;
-		h->stepping = NULL;
-		cau_event_end_cut(h);
-		h->dirty = true; // the last state is shown, whatever the streams' rates
-		cau_record_checkpoint(h, NULL, NULL);
-		cau_answer_changed(h, CAU_CHANGE_STEPPED, order->asker.name);
-		cau_answer_order(h, order, &result);
+	while (!h->ended && !h->replay.active) {
+		cau_decide_next(h, &action);
+		if (action.act == CAU_ACT_NOTHING)
+			return;
+		if (action.act == CAU_ACT_STEP) {
+			step(h);
+			if (cau_decided_state(h) == CAU_SESSION_RUNNING) {
+				measure_factor(h, cau_monotonic_s());
+				return;
+			}
+			cau_streams_publish(h, cau_monotonic_s());
+			if (cau_monotonic_s() >= end_s)
+				return;
+			continue;
+		}
+		cau_outcome_kind outcome = act(h, &action);
+		cau_decide_done(h, outcome);
+		if (outcome == CAU_POSTPONED)
+			note_commits(h);
 	}
 }
 
@@ -208,9 +183,11 @@ static void run_stepping(cau_hosted *h)
 // a crash would take back: commands, energy, cuts.
 static bool is_quiet(cau_hosted *h)
 {
+	cau_drive drives[CAU_MAX_TOOLS];
+	int32_t count = cau_decide_drives(h, drives);
 	bool lit = false;
-	for (int32_t i = 0; i < h->drive_count; i++)
-		lit |= h->drives[i].energized;
+	for (int32_t i = 0; i < count; i++)
+		lit |= drives[i].lit;
 	return !lit && !h->touched;
 }
 
@@ -229,7 +206,7 @@ static void checkpoint_if_due(cau_hosted *h, double now_s)
 	bool quiet = is_quiet(h);
 	int32_t doublings = quiet ? h->quiet_checkpoints : 0;
 	double pause_s = ldexp(h->around->config->checkpoint_s, doublings);
-	bool due = h->state == CAU_SESSION_RUNNING && h->tick != h->checkpoint_tick &&
+	bool due = cau_decided_state(h) == CAU_SESSION_RUNNING && h->tick != h->checkpoint_tick &&
 	           now_s - h->checkpoint_s >= pause_s;
 	// A store without room is not tried: once it has room again it asks for a checkpoint.
 	if ((due || h->checkpoint_wanted) && store_is_ready(h)) {
@@ -248,7 +225,6 @@ static void drain(cau_hosted *h)
 	if (h->core && !h->starting && h->tick != h->checkpoint_tick)
 		cau_record_checkpoint(h, NULL, NULL);
 	cau_record_commit(h);
-	h->commit_awaited = true;
 	if (h->commits == 0)
 		h->drained = true;
 }
@@ -263,9 +239,9 @@ static void go_on_replaying(cau_hosted *h)
 	h->elements_removed = frame.statistics.elements_removed;
 	if (!order) {
 		cau_hosted_started(h);
-	} else if (h->state == CAU_SESSION_FAULTED && h->tick < h->replay.until) {
+	} else if (cau_decided_state(h) == CAU_SESSION_FAULTED && h->tick < h->replay.until) {
 		cau_error error = {.status = CAU_FAULTED};
-		snprintf(error.reason, sizeof error.reason, "%s", h->fault);
+		snprintf(error.reason, sizeof error.reason, "%s", h->logic->fault);
 		cau_answer_fail(order, &error, 0);
 	} else {
 		cau_back_arrived(h, order);
@@ -276,24 +252,13 @@ static void go_on_replaying(cau_hosted *h)
 static void serve(cau_hosted *h, double now_s)
 {
 	int32_t reads = cau_reads_note(h);
-	cau_drive_apply_cuts(h);
-	apply_orders(h);
+	act_until_tick(h);
 	if (h->ended || h->replay.active)
 		return;
-	run_clock(h, now_s);
-	run_stepping(h);
 	cau_drive_tell_refusals(h, now_s);
 	cau_streams_publish(h, cau_monotonic_s());
 	checkpoint_if_due(h, now_s);
 	cau_reads_serve(h, reads);
-}
-
-static bool has_orders(cau_hosted *h)
-{
-	pthread_mutex_lock(&h->mutex);
-	bool any = h->first != NULL;
-	pthread_mutex_unlock(&h->mutex);
-	return any;
 }
 
 static cau_due when(cau_hosted *h)
@@ -301,12 +266,15 @@ static cau_due when(cau_hosted *h)
 	double now_s = cau_monotonic_s();
 	if (h->ended || h->drain_wanted)
 		return (cau_due){INFINITY, INFINITY};
-	if (h->starting || h->replay.active || h->steps_left)
+	if (h->starting || h->replay.active)
 		return (cau_due){0, now_s + 0.1}; // those at wall rate go first
-	if (h->state == CAU_SESSION_RUNNING)
-		return (cau_due){h->next_step_s, h->next_step_s + h->info.step_s / h->speed};
-	bool wanted = has_orders(h) || cau_reads_wait(h) || h->dirty;
-	return (cau_due){wanted ? 0 : INFINITY, now_s + 0.1};
+	pthread_mutex_lock(&h->deciding);
+	double due_s = cau_logic_due_s(h->logic), tick_s = h->logic->next_step_s;
+	double period_s = h->logic->step_s / h->logic->speed;
+	pthread_mutex_unlock(&h->deciding);
+	if (cau_decided_state(h) == CAU_SESSION_RUNNING)
+		return (cau_due){fmin(due_s, tick_s), tick_s + period_s};
+	return (cau_due){cau_reads_wait(h) || h->dirty ? 0 : due_s, now_s + 0.1};
 }
 
 cau_due cau_hosted_run(cau_task *task)

@@ -173,8 +173,9 @@ static void go_on_from_events(cau_hosted *h)
 void cau_hosted_started(cau_hosted *h)
 {
 	bool restarted = h->origin.kind == CAU_ORIGIN_STORE;
-	if (h->state != CAU_SESSION_FAULTED)
-		h->state = h->pause_at_start ? CAU_SESSION_PAUSED : CAU_SESSION_RUNNING;
+	int state = h->pause_at_start ? CAU_SESSION_PAUSED : CAU_SESSION_RUNNING;
+	if (cau_decided_state(h) == CAU_SESSION_FAULTED)
+		state = CAU_SESSION_FAULTED;
 	if (!restarted)
 		h->first_tick = h->tick;
 	h->logged_tick = UINT64_MAX;
@@ -189,9 +190,9 @@ void cau_hosted_started(cau_hosted *h)
 	cau_record_checkpoint(h, NULL, NULL);
 	if (!restarted)
 		cau_record_mark(h);
-	cau_drive_match_tools(h, restarted ? "the daemon was restarted" : "a new session");
+	cau_decide_arrived(h, state, restarted ? "the daemon was restarted" : "a new session");
 	cau_streams_restart(h);
-	h->next_step_s = h->window_s = cau_monotonic_s();
+	h->window_s = cau_monotonic_s();
 	h->window_tick = h->tick;
 	h->starting = false;
 	if (restarted)

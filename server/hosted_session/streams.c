@@ -65,10 +65,10 @@ void cau_streams_destroy(cau_hosted *h)
 // ---- publishing
 static void fill_tools(cau_hosted *h, const cau_frame *frame, cau_stream_tool *tools)
 {
-	pthread_mutex_lock(&h->mutex);
 	for (int32_t i = 0; i < frame->tool_count; i++) {
 		const cau_tool_state *from = &frame->tools[i];
-		const cau_drive *drive = cau_drive_find(h, from->name);
+		cau_drive drive = {.energy_off = CAU_ENERGY_OFF_NEVER_ENABLED};
+		bool known = cau_decide_find(h, from->name, &drive);
 		cau_stream_tool *to = &tools[i];
 		*to = (cau_stream_tool){
 			.shape = from->definition.shape,
@@ -77,11 +77,11 @@ static void fill_tools(cau_hosted *h, const cau_frame *frame, cau_stream_tool *t
 			.tip_temperature_c = from->tip_temperature_c,
 			.energy_j = from->energy_j,
 			.sequence = from->sequence,
-			.driver = drive ? drive->driver.client : 0,
-			.energized = from->energized && (!drive || drive->energized),
+			.driver = drive.driver.client,
+			.energized = from->energized && (!known || drive.enabled),
 			.grasping = from->grasping,
-			.frozen = drive && drive->frozen,
-			.energy_off = (uint8_t)(drive ? drive->energy_off : CAU_ENERGY_OFF_NEVER_ENABLED),
+			.frozen = drive.frozen,
+			.energy_off = (uint8_t)drive.energy_off,
 			.grasped_vertices = (uint16_t)fmin(from->grasped_vertices, UINT16_MAX),
 			.contact_vertices = (uint16_t)fmin(from->contact_vertices, UINT16_MAX),
 			.touched_layers = (uint16_t)from->touched_layers,
@@ -90,7 +90,6 @@ static void fill_tools(cau_hosted *h, const cau_frame *frame, cau_stream_tool *t
 		memcpy(to->force_n, from->force_n, sizeof to->force_n);
 		memcpy(to->torque_nm, from->torque_nm, sizeof to->torque_nm);
 	}
-	pthread_mutex_unlock(&h->mutex);
 }
 
 static cau_stream_statistics fill_statistics(const cau_hosted *h, const cau_statistics *from)
@@ -151,8 +150,8 @@ static void put_key(cau_hosted *h, cau_stream *stream, cau_buffer *buffer, uint6
 
 static void encoding_failed(cau_hosted *h, cau_stream *stream, const cau_error *error)
 {
-	if (h->state != CAU_SESSION_FAULTED)
-		cau_hosted_set_fault(h, error);
+	if (cau_decided_state(h) != CAU_SESSION_FAULTED)
+		cau_hosted_fault(h, error);
 	pthread_mutex_lock(&h->mutex);
 	stream->key_wanted = false;
 	pthread_mutex_unlock(&h->mutex);
@@ -203,6 +202,7 @@ typedef struct published {
 
 static void fill_sample(cau_hosted *h, published *p)
 {
+	int state = cau_decided_state(h);
 	cau_session_frame(h->core, &p->frame);
 	fill_tools(h, &p->frame, p->tools);
 	p->statistics = fill_statistics(h, &p->frame.statistics);
@@ -210,8 +210,8 @@ static void fill_sample(cau_hosted *h, published *p)
 		.tick = p->frame.tick,
 		.time_s = p->frame.time_s,
 		.published_us = (uint64_t)(cau_monotonic_s() * 1e6),
-		.flags = (uint16_t)((h->state == CAU_SESSION_PAUSED ? CAU_FRAME_PAUSED : 0) |
-	                        (h->state == CAU_SESSION_FAULTED ? CAU_FRAME_FAULTED : 0)),
+		.flags = (uint16_t)((state == CAU_SESSION_PAUSED ? CAU_FRAME_PAUSED : 0) |
+	                        (state == CAU_SESSION_FAULTED ? CAU_FRAME_FAULTED : 0)),
 		.position = p->frame.position,
 		.vertex_visible = p->frame.vertex_visible,
 		.face_mask = p->frame.face_mask,
@@ -229,7 +229,7 @@ static bool is_due(const cau_hosted *h, const cau_stream *stream, double now_s)
 {
 	if (h->dirty || cau_frame_encoder_sequence(stream->encoder) == 0)
 		return true;
-	bool moving = h->state == CAU_SESSION_RUNNING || h->steps_left;
+	bool moving = cau_decided_state(h) == CAU_SESSION_RUNNING || h->logic->steps_left;
 	return moving && now_s >= stream->next_s - DUE_EARLY / stream->rate_hz;
 }
 

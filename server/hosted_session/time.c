@@ -13,63 +13,70 @@ static void answer_summary(cau_hosted *h, cau_order *order, int change)
 	cau_answer_order(h, order, &summary);
 }
 
-static void fail(cau_order *order, cau_status status, const char *path, const char *reason)
+static cau_outcome_kind fail(cau_order *order, cau_status status, const char *path,
+                             const char *reason)
 {
 	cau_error error = {0};
 	cau_fail(&error, status, path, "%s", reason);
 	cau_answer_fail(order, &error, 0);
+	return CAU_NOT_DONE;
 }
 
-void cau_apply_pause(cau_hosted *h, cau_order *order)
+cau_outcome_kind cau_apply_pause(cau_hosted *h, cau_order *order, const cau_action *action)
 {
-	cau_drive_cut_all(h, CAU_ENERGY_OFF_COMMANDED, "paused");
-	if (h->state == CAU_SESSION_RUNNING) {
-		h->state = CAU_SESSION_PAUSED;
+	if (action->changed) {
 		h->realtime_factor = 0;
 		cau_event_end_cut(h);
 		cau_record_state(h);
 		cau_record_checkpoint(h, NULL, NULL);
 	}
 	h->dirty = true;
-	answer_summary(h, order, CAU_CHANGE_PAUSED);
+	if (order)
+		answer_summary(h, order, CAU_CHANGE_PAUSED);
+	else
+		cau_answer_changed(h, CAU_CHANGE_PAUSED, NULL);
+	return CAU_DONE;
 }
 
-void cau_apply_resume(cau_hosted *h, cau_order *order)
+cau_outcome_kind cau_apply_resume(cau_hosted *h, cau_order *order, const cau_action *action)
 {
-	if (h->state == CAU_SESSION_FAULTED) {
-		fail(order, CAU_FAULTED, "", h->fault);
-		return;
-	}
-	if (h->steps_left) {
-		fail(order, CAU_BAD_STATE, "", "the session is being stepped");
-		return;
-	}
-	if (h->state == CAU_SESSION_PAUSED) {
-		h->state = CAU_SESSION_RUNNING;
-		h->next_step_s = h->window_s = cau_monotonic_s();
+	if (action->changed) {
+		h->window_s = cau_monotonic_s();
 		h->window_tick = h->tick;
 		cau_record_state(h);
 	}
 	answer_summary(h, order, CAU_CHANGE_RESUMED);
+	return CAU_DONE;
 }
 
-void cau_apply_step(cau_hosted *h, cau_order *order)
+// The ticks are made one by one, and the order is answered after the last: cau_time_stepped.
+cau_outcome_kind cau_apply_step(cau_hosted *h, cau_order *order, const cau_action *action)
 {
-	if (h->state == CAU_SESSION_FAULTED)
-		fail(order, CAU_FAULTED, "", h->fault);
-	else if (h->state != CAU_SESSION_PAUSED || h->steps_left)
-		fail(order, CAU_BAD_STATE, "", "only a paused session is stepped, once at a time");
-	else {
-		h->steps_left = order->as.ticks;
-		h->stepping = order;
+	(void)h, (void)order, (void)action;
+	return CAU_DONE;
+}
+
+void cau_time_stepped(cau_hosted *h, cau_order *order, bool failed)
+{
+	cau_wire_tick_result result = {(int64_t)h->tick, 0};
+	cau_error error = {0};
+	if (failed) {
+		cau_fail(&error, CAU_FAULTED, "", "%s", h->logic->fault);
+		cau_answer_fail(order, &error, CAU_RPC_FAULTED);
+		return;
 	}
+	cau_event_end_cut(h);
+	h->dirty = true; // the last state is shown, whatever the streams' rates
+	cau_record_checkpoint(h, NULL, NULL);
+	cau_answer_changed(h, CAU_CHANGE_STEPPED, order->asker.name);
+	cau_answer_order(h, order, &result);
 }
 
-void cau_apply_speed(cau_hosted *h, cau_order *order)
+cau_outcome_kind cau_apply_speed(cau_hosted *h, cau_order *order, const cau_action *action)
 {
-	h->speed = order->as.speed;
-	h->next_step_s = cau_monotonic_s();
+	(void)action;
 	answer_summary(h, order, CAU_CHANGE_SPEED);
+	return CAU_DONE;
 }
 
 static const cau_named_snapshot *find_snapshot(const cau_hosted *h, const char *name)
@@ -80,8 +87,9 @@ static const cau_named_snapshot *find_snapshot(const cau_hosted *h, const char *
 	return NULL;
 }
 
-void cau_apply_snapshot(cau_hosted *h, cau_order *order)
+cau_outcome_kind cau_apply_snapshot(cau_hosted *h, cau_order *order, const cau_action *action)
 {
+	(void)action;
 	cau_wire_snapshot_result result = {.tick = (int64_t)h->tick};
 	char detail[128];
 	size_t bytes = 0;
@@ -89,12 +97,10 @@ void cau_apply_snapshot(cau_hosted *h, cau_order *order)
 		snprintf(order->as.name, sizeof order->as.name, "tick-%llu-%lld",
 		         (unsigned long long)h->tick, (long long)h->branch);
 	if (find_snapshot(h, order->as.name)) {
-		fail(order, CAU_ALREADY_EXISTS, "params.name", "a snapshot has this name");
-		return;
+		return fail(order, CAU_ALREADY_EXISTS, "params.name", "a snapshot has this name");
 	}
 	if (h->snapshot_count == SNAPSHOT_COUNT) {
-		fail(order, CAU_LIMIT, "params.name", "the session has 64 snapshots");
-		return;
+		return fail(order, CAU_LIMIT, "params.name", "the session has 64 snapshots");
 	}
 	cau_record_checkpoint(h, &result.hash, &bytes);
 	cau_named_snapshot *made = &h->snapshots[h->snapshot_count++];
@@ -107,6 +113,7 @@ void cau_apply_snapshot(cau_hosted *h, cau_order *order)
 	cau_record_mark(h);
 	cau_event_add(h, CAU_EVENT_SNAPSHOT, NULL, order->asker.name, 0, detail);
 	cau_answer_order(h, order, &result);
+	return CAU_DONE;
 }
 
 // Before the past is read, all of it must be in the store. What the store lacks is told to it by
@@ -130,35 +137,30 @@ static bool store_past(cau_hosted *h, cau_order *order, int64_t branch, uint64_t
 	return !status;
 }
 
-void cau_apply_back(cau_hosted *h, cau_order *order)
+cau_outcome_kind cau_apply_back(cau_hosted *h, cau_order *order, const cau_action *action)
 {
+	(void)action;
 	cau_error error = {0};
 	int64_t branch = h->branch;
 	uint64_t tick = order->kind == CAU_ORDER_RESET ? h->first_tick : order->as.tick;
 	if (order->kind == CAU_ORDER_RESTORE) {
 		const cau_named_snapshot *snapshot = find_snapshot(h, order->as.name);
-		if (!snapshot) {
-			fail(order, CAU_NOT_FOUND, "params.name", "no snapshot has this name");
-			return;
-		}
+		if (!snapshot)
+			return fail(order, CAU_NOT_FOUND, "params.name", "no snapshot has this name");
 		branch = snapshot->branch;
 		tick = snapshot->tick;
 	} else if (tick > h->tick) {
-		fail(order, CAU_BAD_VALUE, "params.tick", "beyond the present");
-		return;
-	}
-	if (h->steps_left) {
-		fail(order, CAU_BAD_STATE, "", "the session is being stepped");
-		return;
+		return fail(order, CAU_BAD_VALUE, "params.tick", "beyond the present");
 	}
 	cau_event_end_cut(h);
 	if (!store_past(h, order, branch, tick))
-		return;
+		return CAU_NOT_DONE;
 	if (cau_replay_begin(h, h->id, branch, tick, order, &error)) {
 		cau_answer_fail(order, &error, 0);
-		return;
+		return CAU_NOT_DONE;
 	}
 	h->branch = branch;
+	return CAU_DONE;
 }
 
 static int change_of(cau_order_kind kind, int *event)
@@ -189,17 +191,16 @@ void cau_back_arrived(cau_hosted *h, cau_order *order)
 {
 	int event;
 	int change = change_of(order->kind, &event);
-	if (h->state == CAU_SESSION_FAULTED)
-		h->state = CAU_SESSION_PAUSED;
-	h->fault[0] = 0;
+	int state = cau_decided_state(h);
 	cau_events_load(h);
 	open_branch(h);
 	cau_event_add(h, event, NULL, order->asker.name, 0, NULL);
 	cau_record_checkpoint(h, NULL, NULL);
-	cau_drive_match_tools(h, "the session went back");
+	cau_decide_arrived(h, state == CAU_SESSION_FAULTED ? CAU_SESSION_PAUSED : state,
+	                   "the session went back");
 	cau_streams_restart(h);
 	cau_record_state(h);
-	h->next_step_s = h->window_s = cau_monotonic_s();
+	h->window_s = cau_monotonic_s();
 	h->window_tick = h->tick;
 	cau_wire_restored result = {
 		.tick = (int64_t)h->tick, .epoch = h->epoch, .branch = h->branch, .exact = h->replay.exact};
@@ -207,33 +208,35 @@ void cau_back_arrived(cau_hosted *h, cau_order *order)
 	cau_answer_order(h, order, &result);
 }
 
-void cau_apply_fork(cau_hosted *h, cau_order *order)
+cau_outcome_kind cau_apply_fork(cau_hosted *h, cau_order *order, const cau_action *action)
 {
+	(void)action;
 	uint64_t tick = order->as.fork.has_tick ? order->as.fork.tick : h->tick;
-	if (tick > h->tick) {
-		fail(order, CAU_BAD_VALUE, "params.tick", "beyond the present");
-		return;
-	}
+	if (tick > h->tick)
+		return fail(order, CAU_BAD_VALUE, "params.tick", "beyond the present");
 	if (tick == h->tick)
 		cau_record_checkpoint(h, NULL, NULL);
 	if (!store_past(h, order, h->branch, tick))
-		return;
+		return CAU_NOT_DONE;
 	h->around->fork(h->around->user, h, order, tick);
 	free(order);
+	return CAU_DONE;
 }
 
-void cau_apply_destroy(cau_hosted *h, cau_order *order)
+cau_outcome_kind cau_apply_destroy(cau_hosted *h, cau_order *order, const cau_action *action)
 {
+	(void)action;
 	cau_error error = {0};
 	cau_wire_nothing result = {0};
 	cau_store_batch *batch = cau_record_batch(h);
 	if (!batch || cau_store_delete_session(batch, h->id, &error)) {
 		cau_fail(&error, CAU_NO_MEMORY, "", "no memory to destroy it");
 		cau_answer_fail(order, &error, 0);
-		return;
+		return CAU_NOT_DONE;
 	}
 	cau_answer_changed(h, CAU_CHANGE_DESTROYED, order->asker.name);
 	cau_log(CAU_LOG_INFO, h->id, "destroyed", "client=\"%s\"", order->asker.name);
 	cau_answer_order(h, order, &result);
 	h->ended = true;
+	return CAU_DONE;
 }

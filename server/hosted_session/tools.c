@@ -19,50 +19,45 @@ void cau_hosted_publish_tools(cau_hosted *h)
 	pthread_mutex_unlock(&h->mutex);
 }
 
-// Under the mutex.
 static void copy_tool(cau_hosted *h, const cau_tool_state *state, cau_hosted_tool *tool)
 {
 	*tool = (cau_hosted_tool){.state = *state, .energy_off = CAU_ENERGY_OFF_NEVER_ENABLED};
-	const cau_drive *drive = cau_drive_find(h, state->name);
-	if (!drive)
+	cau_drive drive;
+	if (!cau_decide_find(h, state->name, &drive))
 		return;
-	tool->driver = drive->driver;
-	tool->energized = drive->energized;
-	tool->energy_off = drive->energy_off;
+	tool->driver = drive.driver;
+	tool->energized = drive.enabled;
+	tool->energy_off = drive.energy_off;
 }
 
 int32_t cau_hosted_tools(cau_hosted *h, cau_hosted_tool *tools, uint64_t *tick, double *time_s)
 {
+	cau_tool_state states[CAU_MAX_TOOLS];
 	pthread_mutex_lock(&h->mutex);
 	int32_t count = h->tool_count;
-	for (int32_t i = 0; i < count; i++)
-		copy_tool(h, &h->tools[i], &tools[i]);
+	memcpy(states, h->tools, (size_t)count * sizeof *states);
 	*tick = h->tools_tick;
 	*time_s = h->tools_time_s;
 	pthread_mutex_unlock(&h->mutex);
+	for (int32_t i = 0; i < count; i++)
+		copy_tool(h, &states[i], &tools[i]);
 	return count;
 }
 
 bool cau_hosted_find_tool(cau_hosted *h, const char *name, cau_hosted_tool *tool)
 {
+	cau_tool_state state;
 	bool found = false;
 	pthread_mutex_lock(&h->mutex);
 	for (int32_t i = 0; i < h->tool_count && !found; i++)
 		if (strcmp(h->tools[i].name, name) == 0) {
-			copy_tool(h, &h->tools[i], tool);
+			state = h->tools[i];
 			found = true;
 		}
 	pthread_mutex_unlock(&h->mutex);
+	if (found)
+		copy_tool(h, &state, tool);
 	return found;
-}
-
-void cau_hosted_feed_tool(cau_hosted *h, uint32_t client, const char *tool)
-{
-	pthread_mutex_lock(&h->mutex);
-	cau_drive *drive = cau_drive_find(h, tool);
-	if (drive && drive->driver.client == client)
-		drive->last_s = cau_monotonic_s();
-	pthread_mutex_unlock(&h->mutex);
 }
 
 void cau_hosted_refuse(cau_hosted *h, const char *tool, const cau_asker *asker, uint64_t sequence,

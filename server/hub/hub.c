@@ -243,15 +243,22 @@ bool cau_hub_ready(cau_hub *hub)
 	return !starting;
 }
 
-static void want_checkpoint(void *user, cau_hosted *hosted)
+typedef struct store_news {
+	bool takes;
+	const char *reason;
+} store_news;
+
+static void tell_store(void *user, cau_hosted *hosted)
 {
-	(void)user;
-	cau_hosted_want_checkpoint(hosted);
+	const store_news *news = user;
+	cau_hosted_store_takes(hosted, news->takes, news->reason);
+	if (news->takes)
+		cau_hosted_want_checkpoint(hosted);
 }
 
-void cau_hub_want_checkpoints(cau_hub *hub)
+void cau_hub_store_takes(cau_hub *hub, bool takes, const char *reason)
 {
-	cau_hub_each(hub, want_checkpoint, NULL);
+	cau_hub_each(hub, tell_store, &(store_news){takes, reason});
 }
 
 static void drain_one(void *user, cau_hosted *hosted)

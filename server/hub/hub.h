@@ -112,7 +112,7 @@ double cau_hub_watch(cau_hub *hub, double now_s);
 void cau_hub_reap(cau_hub *hub);
 // True once every session of the store has been brought up.
 bool cau_hub_ready(cau_hub *hub);
-// The store has room again.
-void cau_hub_want_checkpoints(cau_hub *hub);
+// The store has room again, or has none any more. From the store's thread.
+void cau_hub_store_takes(cau_hub *hub, bool takes, const char *reason);
 // Checkpoints all sessions; returns when they are on the disk or the time is over.
 void cau_hub_drain(cau_hub *hub, double seconds);

@@ -54,7 +54,10 @@ static void temperature_is_made_while_it_is_watched(void **state)
 	scene->layer_count = 1;
 	def.scene = scene;
 	assert_int_equal(cau_session_create(&def, &h->core, NULL), CAU_OK);
+	h->logic = malloc(cau_logic_bytes(8));
+	cau_logic_init(h->logic, 8);
 	pthread_mutex_init(&h->mutex, NULL);
+	pthread_mutex_init(&h->deciding, NULL);
 	h->around = &around;
 	open_stream(h);
 	assert_false(makes_temperature(h, 0));
@@ -64,6 +67,8 @@ static void temperature_is_made_while_it_is_watched(void **state)
 	cau_streams_destroy(h);
 	cau_session_destroy(h->core);
 	pthread_mutex_destroy(&h->mutex);
+	pthread_mutex_destroy(&h->deciding);
+	free(h->logic);
 	free(h);
 	free(scene);
 }

@@ -164,6 +164,8 @@ export interface SessionSummary {
   epoch: string;
   /** why it is faulted */
   fault?: string;
+  /** false, in an answer to session.pause: the store had no room; it pauses all the same */
+  stored?: boolean;
 }
 
 /** all sessions of the daemon */
@@ -478,6 +480,8 @@ export interface CommandResult {
   tick: number;
   /** as given (0 to 9007199254740991) */
   sequence: number;
+  /** false: the store had no room; energy is off all the same */
+  stored?: boolean;
 }
 
 /** announces a mesh file */

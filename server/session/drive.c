@@ -1,0 +1,328 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Who drives which tool, and when it is dark.
+//
+// A tool is lit by one thing, an enable of its driver that counts, and dark by everything else.
+// Every cut notes its moment in the tool. An enable counts if it came in after that; so one that
+// waited in the queue while its driver fell silent, looked away or was taken over never lights
+// anything. What the core was told (`lit`) follows what is decided (`enabled`): while they differ
+// the worker's next act is the cut.
+#include <math.h>
+#include <stdio.h>
+
+#include "cautery/rpc_errors.h"
+#include "session/internal.h"
+
+cau_drive *cau_drive_find(cau_logic *logic, const char *tool)
+{
+	for (int32_t i = 0; i < logic->drive_count; i++)
+		if (strcmp(logic->drives[i].tool, tool) == 0)
+			return &logic->drives[i];
+	return NULL;
+}
+
+const cau_drive *cau_logic_drive(const cau_logic *logic, const char *tool)
+{
+	for (int32_t i = 0; i < logic->drive_count; i++)
+		if (strcmp(logic->drives[i].tool, tool) == 0)
+			return &logic->drives[i];
+	return NULL;
+}
+
+// ---- cuts ---------------------------------------------------------------------------------------
+
+void cau_drive_cut(cau_drive *drive, uint64_t moment, int energy_off, const char *cause,
+                   cau_effects *effects)
+{
+	if (moment > drive->cut_moment)
+		drive->cut_moment = moment;
+	drive->cut_off = energy_off;
+	drive->by_order = false;
+	snprintf(drive->cut_cause, sizeof drive->cut_cause, "%s", cause);
+	if (drive->lit)
+		cau_effect_wake(effects);
+	// Whoever turns energy off still holds the tool; whoever loses it does not.
+	if (drive->lit && energy_off != CAU_ENERGY_OFF_COMMANDED)
+		drive->freeze = true;
+	if (!drive->enabled)
+		return;
+	drive->enabled = false;
+	drive->energy_off = energy_off;
+	cau_effect_tell(effects, drive);
+}
+
+void cau_drive_cut_lit(cau_logic *logic, uint64_t moment, int energy_off, const char *cause,
+                       cau_effects *effects)
+{
+	for (int32_t i = 0; i < logic->drive_count; i++)
+		cau_drive_cut(&logic->drives[i], moment, energy_off, cause, effects);
+}
+
+// A tool whose driver is lost stays where it is, lit or not.
+static void cut_lost(cau_logic *logic, cau_drive *drive, const char *cause, cau_effects *effects)
+{
+	cau_drive_cut(drive, logic->moment, CAU_ENERGY_OFF_WATCHDOG, cause, effects);
+	drive->freeze = true;
+	cau_effect_wake(effects);
+}
+
+void cau_drive_cut_client(cau_logic *logic, uint32_t client, const char *cause,
+                          cau_effects *effects)
+{
+	for (int32_t i = 0; i < logic->drive_count; i++)
+		if (client && logic->drives[i].driver.client == client)
+			cut_lost(logic, &logic->drives[i], cause, effects);
+}
+
+static double silent_from_s(const cau_drive *drive)
+{
+	return drive->alive_s + drive->driver.deadline_s;
+}
+
+void cau_drive_cut_silent(cau_logic *logic, double now_s, cau_effects *effects)
+{
+	for (int32_t i = 0; i < logic->drive_count; i++) {
+		cau_drive *drive = &logic->drives[i];
+		if (drive->enabled && silent_from_s(drive) <= now_s)
+			cut_lost(logic, drive, "its driver is silent",
+			         effects); // the silence cut of the watchdog
+	}
+}
+
+double cau_logic_look_s(const cau_logic *logic)
+{
+	double look_s = INFINITY;
+	for (int32_t i = 0; i < logic->drive_count; i++)
+		if (logic->drives[i].enabled)
+			look_s = fmin(look_s, silent_from_s(&logic->drives[i]));
+	return look_s;
+}
+
+void cau_drive_forget(cau_logic *logic, uint32_t client, cau_effects *effects)
+{
+	for (int32_t i = 0; i < logic->drive_count; i++) {
+		cau_drive *drive = &logic->drives[i];
+		if (!client || drive->driver.client != client)
+			continue;
+		cut_lost(logic, drive, "its driver is gone", effects);
+		drive->driver = (cau_asker){0};
+		cau_effect_tell(effects, drive);
+	}
+}
+
+void cau_drive_alive(cau_logic *logic, uint32_t client, const char *tool, double time_s)
+{
+	for (int32_t i = 0; i < logic->drive_count; i++) {
+		cau_drive *drive = &logic->drives[i];
+		if (client && drive->driver.client == client && (!*tool || strcmp(drive->tool, tool) == 0))
+			drive->alive_s = fmax(drive->alive_s, time_s);
+	}
+}
+
+// ---- what the core is told ----------------------------------------------------------------------
+
+static bool is_to_cut(const cau_drive *drive, bool forced)
+{
+	return drive->freeze || (drive->lit && !drive->enabled && (forced || !drive->by_order));
+}
+
+bool cau_drive_is_to_cut(const cau_logic *logic)
+{
+	for (int32_t i = 0; i < logic->drive_count; i++)
+		if (is_to_cut(&logic->drives[i], true))
+			return true;
+	return false;
+}
+
+bool cau_drive_next_cut(cau_logic *logic, bool forced, cau_action *action)
+{
+	for (int32_t i = 0; i < logic->drive_count; i++) {
+		cau_drive *drive = &logic->drives[i];
+		if (!is_to_cut(drive, forced))
+			continue;
+		*action = (cau_action){
+			.act = CAU_ACT_CUT, .was_lit = drive->lit && !drive->enabled, .drive = *drive};
+		memcpy(logic->cutting, drive->tool, sizeof logic->cutting);
+		drive->freeze = false; // one asked for meanwhile is another
+		return true;
+	}
+	return false;
+}
+
+void cau_drive_cut_done(cau_logic *logic, cau_effects *effects)
+{
+	cau_drive *drive = cau_drive_find(logic, logic->cutting);
+	assert(drive); // tools come and go by the worker's own acts
+	drive->frozen = drive->cut_off == CAU_ENERGY_OFF_WATCHDOG;
+	if (!drive->lit || drive->enabled)
+		return;
+	drive->lit = false;
+	if (drive->energy_off == drive->cut_off)
+		return;
+	drive->energy_off = drive->cut_off; // it was cut before its enable had arrived in the core
+	cau_effect_tell(effects, drive);
+}
+
+// The order that was to tell the core will not: the worker does.
+void cau_drive_cut_itself(cau_logic *logic, const char *tool)
+{
+	cau_drive *drive = cau_drive_find(logic, tool);
+	if (drive)
+		drive->by_order = false;
+}
+
+// ---- who may ------------------------------------------------------------------------------------
+
+static bool refuse(cau_action *action, cau_status status, int32_t code, const char *reason)
+{
+	action->act = CAU_ACT_REFUSE;
+	action->code = code;
+	cau_fail(&action->error, status, "params.tool", "%s", reason);
+	return false;
+}
+
+static bool refuse_stranger(const cau_drive *drive, cau_action *action)
+{
+	char reason[160];
+	if (!drive->driver.client)
+		return refuse(action, CAU_BAD_STATE, CAU_RPC_NOT_DRIVER,
+		              "nobody drives it: tool.take_over comes first");
+	snprintf(reason, sizeof reason, "%s drives it", drive->driver.name);
+	return refuse(action, CAU_BAD_STATE, CAU_RPC_NOT_DRIVER, reason);
+}
+
+static bool allows_enable(const cau_logic *logic, const cau_drive *drive, const cau_waiting *order,
+                          cau_action *action)
+{
+	char reason[160];
+	double alive_s = fmax(drive->alive_s, order->alive_s);
+	if (!logic->store_takes) {
+		snprintf(reason, sizeof reason, "the store has no room: %.120s", logic->store_reason);
+		return refuse(action, CAU_IO, CAU_RPC_STORE_FULL, reason);
+	}
+	// One that is followed by its own off is taken, so that both are answered and logged in order;
+	// it enables nothing, and the off follows it into the core before a tick begins.
+	bool overtaken = order->moment <= drive->cut_moment && !drive->by_order;
+	if (order->cut_moment || overtaken) {
+		snprintf(reason, sizeof reason, "its energy was cut after this was asked: %s",
+		         *drive->cut_cause ? drive->cut_cause : "its driver was away");
+		return refuse(action, CAU_BAD_STATE, 0, reason);
+	}
+	if (alive_s + drive->driver.deadline_s <= logic->now_s)
+		return refuse(action, CAU_BAD_STATE, 0, "its driver has been silent since");
+	return true;
+}
+
+static bool allows_take_over(const cau_drive *drive, const cau_asked *asked, cau_action *action)
+{
+	char reason[160];
+	uint32_t driver = drive->driver.client;
+	if (!driver || driver == asked->asker.client || asked->asker.role == CAU_ROLE_ADMIN)
+		return true;
+	snprintf(reason, sizeof reason, "%s drives it; only an admin takes it over",
+	         drive->driver.name);
+	return refuse(action, CAU_BAD_STATE, CAU_RPC_FORBIDDEN, reason);
+}
+
+bool cau_drive_allows(cau_logic *logic, const cau_waiting *order, cau_action *action)
+{
+	const cau_asked *asked = &order->asked;
+	const cau_drive *drive = cau_drive_find(logic, asked->tool);
+	char reason[160];
+	if (!drive) {
+		snprintf(reason, sizeof reason, "no tool `%s` in this session", asked->tool);
+		return refuse(action, CAU_NOT_FOUND, 0, reason);
+	}
+	bool drives = drive->driver.client && drive->driver.client == asked->asker.client;
+	switch (asked->ask) {
+	case CAU_ASK_TOOL_KEEP:
+	case CAU_ASK_TOOL_REMOVE:
+		return drives || !drive->driver.client || refuse_stranger(drive, action);
+	case CAU_ASK_TOOL_USE:
+	case CAU_ASK_MOTION:
+		return drives || refuse_stranger(drive, action);
+	case CAU_ASK_ENERGY_ON:
+		return drives ? allows_enable(logic, drive, order, action) : refuse_stranger(drive, action);
+	case CAU_ASK_TAKE_OVER:
+		return allows_take_over(drive, asked, action);
+	case CAU_ASK_HAND_OVER:
+		return drives ||
+		       refuse(action, CAU_BAD_STATE, CAU_RPC_NOT_DRIVER, "only its driver gives it up");
+	default: // off, and questions: anybody who may operate
+		return true;
+	}
+}
+
+// ---- changes ------------------------------------------------------------------------------------
+
+bool cau_drive_change(cau_drive *drive, const cau_waiting *order, const cau_asker *to,
+                      cau_effects *effects)
+{
+	cau_drive_cut(drive, order->moment, CAU_ENERGY_OFF_TAKEN_OVER, "another driver", effects);
+	if (drive->lit)
+		return false;
+	drive->driver = *to;
+	drive->alive_s = order->alive_s;
+	cau_effect_tell(effects, drive);
+	return true;
+}
+
+void cau_drive_enabled(cau_drive *drive, const cau_waiting *order, cau_effects *effects)
+{
+	drive->lit = true;
+	drive->alive_s = fmax(drive->alive_s, order->alive_s);
+	bool counts = !order->cut_moment && order->moment > drive->cut_moment &&
+	              drive->driver.client == order->asked.asker.client;
+	if (!counts || drive->enabled)
+		return; // cut while the core took it: the cut is the worker's next act
+	drive->enabled = true;
+	drive->frozen = drive->freeze = false;
+	cau_effect_tell(effects, drive);
+	cau_effect_armed(effects);
+}
+
+void cau_drive_add(cau_logic *logic, const cau_waiting *order)
+{
+	if (logic->drive_count == CAU_MAX_TOOLS)
+		return; // the core takes no more either
+	cau_drive *made = &logic->drives[logic->drive_count++];
+	*made = (cau_drive){.alive_s = order->alive_s,
+	                    .energy_off = CAU_ENERGY_OFF_NEVER_ENABLED,
+	                    .cut_off = CAU_ENERGY_OFF_NEVER_ENABLED,
+	                    .cut_moment = order->cut_moment};
+	memcpy(made->tool, order->asked.tool, sizeof made->tool);
+	if (!order->gone)
+		made->driver = order->asked.asker;
+}
+
+void cau_drive_remove(cau_logic *logic, const char *tool)
+{
+	cau_drive *gone = cau_drive_find(logic, tool);
+	if (!gone)
+		return;
+	size_t after = (size_t)(&logic->drives[logic->drive_count] - (gone + 1));
+	memmove(gone, gone + 1, after * sizeof *gone);
+	logic->drive_count--;
+}
+
+// One entry for each tool that is there; drivers stay with tools of the same name. All are dark,
+// and what the state that was gone to has lit is cut before its first tick.
+void cau_drive_match(cau_logic *logic, const cau_logic_event *event)
+{
+	cau_drive old[CAU_MAX_TOOLS];
+	int32_t old_count = logic->drive_count;
+	memcpy(old, logic->drives, sizeof old);
+	assert(event->tool_count <= CAU_MAX_TOOLS);
+	logic->drive_count = event->tool_count;
+	for (int32_t i = 0; i < event->tool_count; i++) {
+		cau_drive *made = &logic->drives[i];
+		*made = (cau_drive){.energy_off = CAU_ENERGY_OFF_NEVER_ENABLED};
+		for (int32_t j = 0; j < old_count; j++)
+			if (strcmp(old[j].tool, event->tools[i].name) == 0)
+				*made = old[j];
+		memcpy(made->tool, event->tools[i].name, sizeof made->tool);
+		made->enabled = made->frozen = made->by_order = false;
+		made->lit = made->freeze = event->tools[i].lit;
+		made->cut_off = CAU_ENERGY_OFF_RESTORED;
+		snprintf(made->cut_cause, sizeof made->cut_cause, "%s", event->cause ? event->cause : "");
+	}
+}

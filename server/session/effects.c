@@ -1,0 +1,43 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "session/internal.h"
+
+cau_effect *cau_effect_add(cau_effects *effects, cau_effect_kind kind, uint64_t ticket)
+{
+	assert(effects->count < CAU_EFFECTS_MOST); // see CAU_EFFECTS_MOST for why it has room
+	cau_effect *made = &effects->list[effects->count++];
+	made->kind = kind;
+	made->ticket = ticket;
+	made->code = 0;
+	return made;
+}
+
+// Once for each event is enough: a later telling of the same tool takes the place of the earlier.
+void cau_effect_tell(cau_effects *effects, const cau_drive *drive)
+{
+	for (int32_t i = 0; i < effects->count; i++) {
+		cau_effect *told = &effects->list[i];
+		if (told->kind == CAU_EFFECT_TELL && strcmp(told->drive.tool, drive->tool) == 0) {
+			told->drive = *drive;
+			return;
+		}
+	}
+	cau_effect_add(effects, CAU_EFFECT_TELL, 0)->drive = *drive;
+}
+
+static void add_once(cau_effects *effects, cau_effect_kind kind)
+{
+	for (int32_t i = 0; i < effects->count; i++)
+		if (effects->list[i].kind == kind)
+			return;
+	cau_effect_add(effects, kind, 0);
+}
+
+void cau_effect_wake(cau_effects *effects)
+{
+	add_once(effects, CAU_EFFECT_WAKE);
+}
+
+void cau_effect_armed(cau_effects *effects)
+{
+	add_once(effects, CAU_EFFECT_ARMED);
+}

@@ -1,0 +1,67 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// What the files of this room share. Arrows: logic.c -> queue.c, time.c -> drive.c -> effects.c.
+#pragma once
+
+#include <assert.h>
+#include <string.h>
+
+#include "session/logic.h"
+
+// ---- effects.c: what others must be told
+void cau_effect_tell(cau_effects *effects, const cau_drive *drive);
+void cau_effect_wake(cau_effects *effects);
+void cau_effect_armed(cau_effects *effects);
+cau_effect *cau_effect_add(cau_effects *effects, cau_effect_kind kind, uint64_t ticket);
+
+// ---- drive.c
+cau_drive *cau_drive_find(cau_logic *logic, const char *tool);
+// Dark from now on, for every enable asked before `moment`.
+void cau_drive_cut(cau_drive *drive, uint64_t moment, int energy_off, const char *cause,
+                   cau_effects *effects);
+void cau_drive_cut_lit(cau_logic *logic, uint64_t moment, int energy_off, const char *cause,
+                       cau_effects *effects);
+void cau_drive_cut_client(cau_logic *logic, uint32_t client, const char *cause,
+                          cau_effects *effects);
+void cau_drive_cut_silent(cau_logic *logic, double now_s, cau_effects *effects);
+void cau_drive_forget(cau_logic *logic, uint32_t client, cau_effects *effects);
+void cau_drive_alive(cau_logic *logic, uint32_t client, const char *tool, double time_s);
+void cau_drive_match(cau_logic *logic, const cau_logic_event *event);
+// The next cut that the core must be told; false: none. `forced`: of those too whose own order
+// waits.
+bool cau_drive_next_cut(cau_logic *logic, bool forced, cau_action *action);
+void cau_drive_cut_done(cau_logic *logic, cau_effects *effects);
+void cau_drive_cut_itself(cau_logic *logic, const char *tool);
+bool cau_drive_is_to_cut(const cau_logic *logic);
+// Whether the order may do what it asks with its tool; false after filling the action's refusal.
+bool cau_drive_allows(cau_logic *logic, const cau_waiting *order, cau_action *action);
+// Another drives, or nobody. False: it is lit, and its cut comes first.
+bool cau_drive_change(cau_drive *drive, const cau_waiting *order, const cau_asker *to,
+                      cau_effects *effects);
+void cau_drive_enabled(cau_drive *drive, const cau_waiting *order, cau_effects *effects);
+void cau_drive_add(cau_logic *logic, const cau_waiting *order);
+void cau_drive_remove(cau_logic *logic, const char *tool);
+
+// ---- queue.c
+void cau_queue_take(cau_logic *logic, const cau_asked *asked, cau_effects *effects);
+void cau_queue_alive(cau_logic *logic, uint32_t client, double time_s);
+void cau_queue_cut(cau_logic *logic, uint32_t client); // its enables do not count any more
+void cau_queue_forget(cau_logic *logic, uint32_t client);
+void cau_queue_committed(cau_logic *logic, cau_effects *effects);
+// The first that may be served at this border, or NULL.
+cau_waiting *cau_queue_head(cau_logic *logic);
+cau_waiting *cau_queue_find(cau_logic *logic, uint64_t ticket);
+const cau_waiting *cau_queue_find_ask(const cau_logic *logic, cau_ask ask);
+void cau_queue_remove(cau_logic *logic, cau_waiting *order);
+bool cau_queue_is_due(const cau_logic *logic);
+
+// ---- time.c
+// True if a tick may begin now, by the clock or by session.step.
+bool cau_time_is_due(const cau_logic *logic, double now_s);
+void cau_time_begin_tick(cau_logic *logic, double now_s);
+void cau_time_end_tick(cau_logic *logic);
+// Orders about time; false after filling the action's refusal.
+bool cau_time_resume(cau_logic *logic, double now_s, cau_action *action);
+bool cau_time_step(cau_logic *logic, const cau_asked *asked, cau_action *action);
+bool cau_time_go(const cau_logic *logic, cau_action *action);
+void cau_time_speed(cau_logic *logic, double speed, double now_s);
+double cau_time_due_s(const cau_logic *logic);

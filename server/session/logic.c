@@ -1,0 +1,398 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// The session's decisions, one event after the other, and the worker's acts, one at a time.
+#include "session/logic.h"
+
+#include <math.h>
+#include <stdio.h>
+
+#include "cautery/rpc_errors.h"
+#include "session/internal.h"
+
+size_t cau_logic_bytes(int32_t capacity)
+{
+	return sizeof(cau_logic) + (size_t)capacity * sizeof(cau_waiting);
+}
+
+void cau_logic_init(cau_logic *logic, int32_t capacity)
+{
+	memset(logic, 0, sizeof *logic); // padding too: two that are equal compare equal
+	logic->capacity = capacity;
+	logic->state = CAU_SESSION_STARTING;
+	logic->speed = 1;
+	logic->step_s = 1.0 / 60;
+	logic->store_takes = true;
+}
+
+// ---- events -------------------------------------------------------------------------------------
+
+static void take_store(cau_logic *logic, const cau_logic_event *event, cau_effects *effects)
+{
+	logic->store_takes = event->store_takes;
+	snprintf(logic->store_reason, sizeof logic->store_reason, "%s",
+	         event->cause ? event->cause : "");
+	if (!event->store_takes) // nobody could steer what burns
+		cau_drive_cut_lit(logic, logic->moment, CAU_ENERGY_OFF_WATCHDOG, "the store has no room",
+		                  effects);
+}
+
+static void take_arrival(cau_logic *logic, const cau_logic_event *event, cau_effects *effects)
+{
+	cau_drive_match(logic, event);
+	logic->state = event->state;
+	logic->tick = event->tick;
+	logic->step_s = event->step_s;
+	logic->next_step_s = event->time_s;
+	logic->going = false;
+	for (int32_t i = 0; i < logic->drive_count; i++)
+		cau_effect_tell(effects, &logic->drives[i]);
+	cau_effect_wake(effects);
+}
+
+static void fault(cau_logic *logic, const char *reason, cau_effects *effects)
+{
+	logic->state = CAU_SESSION_FAULTED;
+	logic->steps_left = 0;
+	snprintf(logic->fault, sizeof logic->fault, "%s", reason);
+	cau_drive_cut_lit(logic, logic->moment, CAU_ENERGY_OFF_WATCHDOG, "the session is faulted",
+	                  effects);
+}
+
+void cau_logic_take(cau_logic *logic, const cau_logic_event *event, cau_effects *effects)
+{
+	const char *tool = event->tool ? event->tool : "", *cause = event->cause ? event->cause : "";
+	effects->count = 0;
+	logic->moment++;
+	logic->now_s = fmax(logic->now_s, event->time_s);
+	switch (event->kind) {
+	case CAU_LOGIC_ORDER:
+		cau_queue_take(logic, event->asked, effects);
+		break;
+	case CAU_LOGIC_ALIVE:
+		cau_drive_alive(logic, event->client, tool, event->time_s);
+		cau_queue_alive(logic, event->client, event->time_s);
+		break;
+	case CAU_LOGIC_AWAY:
+		cau_drive_cut_client(logic, event->client, cause, effects);
+		cau_queue_cut(logic, event->client);
+		break;
+	case CAU_LOGIC_FORGET:
+		cau_drive_forget(logic, event->client, effects);
+		cau_queue_cut(logic, event->client);
+		cau_queue_forget(logic, event->client);
+		break;
+	case CAU_LOGIC_TIME:
+		cau_drive_cut_silent(logic, event->time_s, effects);
+		break;
+	case CAU_LOGIC_STORE:
+		take_store(logic, event, effects);
+		break;
+	case CAU_LOGIC_COMMITTED:
+		cau_queue_committed(logic, effects);
+		break;
+	case CAU_LOGIC_ARRIVED:
+		take_arrival(logic, event, effects);
+		break;
+	case CAU_LOGIC_FAULT:
+		logic->going = false;
+		fault(logic, cause, effects);
+		break;
+	case CAU_LOGIC_DRAIN:
+		logic->draining = true;
+		cau_drive_cut_lit(logic, logic->moment, CAU_ENERGY_OFF_WATCHDOG, "the daemon is ending",
+		                  effects);
+		cau_effect_wake(effects);
+		break;
+	case CAU_LOGIC_END:
+		logic->ended = true;
+		cau_effect_wake(effects);
+		break;
+	case CAU_LOGIC_EVENT_COUNT:
+		assert(false);
+	}
+}
+
+// ---- what the worker does now -------------------------------------------------------------------
+
+static bool refuse(cau_action *action, cau_status status, int32_t code, const char *path,
+                   const char *reason)
+{
+	action->act = CAU_ACT_REFUSE;
+	action->code = code;
+	cau_fail(&action->error, status, path, "%s", reason);
+	return false;
+}
+
+static bool needs_sound_core(cau_ask ask)
+{
+	return ask == CAU_ASK_TISSUE || ask == CAU_ASK_TOOL_ADD || ask == CAU_ASK_TOOL_KEEP ||
+	       ask == CAU_ASK_TOOL_REMOVE || ask == CAU_ASK_TOOL_USE || ask == CAU_ASK_MOTION ||
+	       ask == CAU_ASK_ENERGY_ON;
+}
+
+static bool is_about_tool(cau_ask ask)
+{
+	return ask >= CAU_ASK_TOOL_KEEP && ask <= CAU_ASK_REQUEST_TAKEOVER;
+}
+
+// Energy goes first, by its own act; the order stays where it is until the tools are dark.
+static bool pause(cau_logic *logic, const cau_waiting *order, cau_action *action,
+                  cau_effects *effects)
+{
+	cau_drive_cut_lit(logic, order->moment, CAU_ENERGY_OFF_COMMANDED, "paused", effects);
+	if (cau_drive_next_cut(logic, true, action))
+		return false;
+	action->changed = logic->state == CAU_SESSION_RUNNING;
+	if (action->changed)
+		logic->state = CAU_SESSION_PAUSED;
+	return true;
+}
+
+// One that was asked for at this tick has not darkened the tool yet; any other did when it came.
+static void turn_off(cau_logic *logic, const cau_waiting *order, cau_effects *effects)
+{
+	cau_drive *drive = cau_drive_find(logic, order->asked.tool);
+	if (drive->cut_moment < order->moment)
+		cau_drive_cut(drive, order->moment, CAU_ENERGY_OFF_COMMANDED, "turned off", effects);
+}
+
+static bool change_driver(cau_logic *logic, const cau_waiting *order, cau_action *action,
+                          cau_effects *effects)
+{
+	const cau_asked *asked = &order->asked;
+	cau_drive *drive = cau_drive_find(logic, asked->tool);
+	bool takes = asked->ask == CAU_ASK_TAKE_OVER;
+	cau_asker to = takes || !order->to_gone ? takes ? asked->asker : asked->to : (cau_asker){0};
+	if (takes && order->gone)
+		return refuse(action, CAU_BAD_STATE, 0, "", "who asked for it is gone");
+	action->changed = drive->driver.client != to.client;
+	if (action->changed && !cau_drive_change(drive, order, &to, effects))
+		return !cau_drive_next_cut(logic, true, action); // false: there is a cut, see its `lit`
+	action->drive = *drive;
+	return true;
+}
+
+// Fills the action with what is to be done about the order. True: the order itself, which is served
+// now. False: something that comes before it, or its refusal.
+static bool decide(cau_logic *logic, const cau_waiting *order, cau_action *action,
+                   cau_effects *effects)
+{
+	const cau_asked *asked = &order->asked;
+	action->act = CAU_ACT_ORDER;
+	if (logic->ended)
+		return refuse(action, CAU_NOT_FOUND, CAU_RPC_NOT_HERE, "params.session",
+		              "the session is destroyed");
+	if (asked->numbered && !order->looked) {
+		action->act = CAU_ACT_LOOK;
+		return false;
+	}
+	if (is_about_tool(asked->ask) && !cau_drive_allows(logic, order, action))
+		return false;
+	if (logic->state == CAU_SESSION_FAULTED && needs_sound_core(asked->ask))
+		return refuse(action, CAU_FAULTED, 0, "", logic->fault);
+	const cau_drive *drive = cau_logic_drive(logic, asked->tool);
+	action->was_lit = drive && drive->lit;
+	switch (asked->ask) {
+	case CAU_ASK_TAKE_OVER:
+	case CAU_ASK_HAND_OVER:
+		return change_driver(logic, order, action, effects);
+	case CAU_ASK_ENERGY_OFF:
+		turn_off(logic, order, effects);
+		return true;
+	case CAU_ASK_PAUSE:
+		return pause(logic, order, action, effects);
+	case CAU_ASK_RESUME:
+		return cau_time_resume(logic, logic->now_s, action);
+	case CAU_ASK_STEP:
+		return cau_time_step(logic, asked, action);
+	case CAU_ASK_GO:
+		return cau_time_go(logic, action);
+	case CAU_ASK_SPEED:
+		cau_time_speed(logic, asked->speed, logic->now_s);
+		return true;
+	default:
+		return true;
+	}
+}
+
+static void serve(cau_logic *logic, cau_waiting *order)
+{
+	logic->serving = *order;
+	cau_queue_remove(logic, order);
+}
+
+// One order of this border. False: there is none.
+static bool next_order(cau_logic *logic, cau_action *action, cau_effects *effects)
+{
+	cau_waiting *order = cau_queue_head(logic);
+	if (!order)
+		return false;
+	action->ticket = order->asked.ticket;
+	action->motion = order->asked.ask == CAU_ASK_MOTION;
+	if (decide(logic, order, action, effects) || action->act == CAU_ACT_REFUSE)
+		serve(logic, order);
+	else if (action->act == CAU_ACT_LOOK)
+		logic->serving = *order; // it stays in the queue meanwhile
+	return true;
+}
+
+static bool next_tick(cau_logic *logic, double now_s, cau_action *action, cau_effects *effects)
+{
+	if (!cau_time_is_due(logic, now_s))
+		return false;
+	cau_drive_cut_silent(logic, now_s, effects);
+	if (cau_drive_next_cut(logic, true, action))
+		return true;
+	const cau_waiting *waits = cau_queue_find_ask(logic, CAU_ASK_PAUSE);
+	if (waits) { // it came while this border was served: no tick begins after it
+		logic->border_moment = waits->moment;
+		return next_order(logic, action, effects);
+	}
+	cau_time_begin_tick(logic, now_s);
+	logic->border = false;
+	action->act = CAU_ACT_STEP;
+	return true;
+}
+
+static bool next_end_of_steps(cau_logic *logic, cau_action *action)
+{
+	bool faulted = logic->state == CAU_SESSION_FAULTED || logic->ended;
+	if (!logic->stepping || (logic->steps_left && !faulted))
+		return false;
+	action->act = faulted ? CAU_ACT_STEP_FAILED : CAU_ACT_STEPPED;
+	action->ticket = logic->stepping;
+	logic->stepping = 0;
+	return true;
+}
+
+// An order to pause that found no room and was answered when it came.
+static bool next_wanted_pause(cau_logic *logic, cau_action *action, cau_effects *effects)
+{
+	const cau_waiting wanted = {.moment = logic->moment};
+	if (!logic->pause_wanted)
+		return false;
+	action->act = CAU_ACT_PAUSE;
+	if (pause(logic, &wanted, action, effects))
+		logic->pause_wanted = false;
+	return true;
+}
+
+// The order of these lines is the rule: cuts before orders, orders before the tick.
+static bool next_act(cau_logic *logic, double now_s, cau_action *action, cau_effects *effects)
+{
+	if (logic->ended)
+		return next_end_of_steps(logic, action) || next_order(logic, action, effects);
+	if (logic->state == CAU_SESSION_STARTING || logic->going)
+		return false;
+	return cau_drive_next_cut(logic, logic->state == CAU_SESSION_FAULTED, action) ||
+	       next_wanted_pause(logic, action, effects) || next_end_of_steps(logic, action) ||
+	       next_order(logic, action, effects) || next_tick(logic, now_s, action, effects);
+}
+
+void cau_logic_next(cau_logic *logic, double now_s, cau_action *action, cau_effects *effects)
+{
+	assert(logic->acting == CAU_ACT_NOTHING);
+	effects->count = 0;
+	*action = (cau_action){.act = CAU_ACT_NOTHING};
+	logic->moment++;
+	logic->now_s = fmax(logic->now_s, now_s);
+	if (!logic->border)
+		logic->border_moment = logic->moment;
+	logic->border = true;
+	if (!next_act(logic, now_s, action, effects))
+		logic->border = false;
+	logic->acting = action->act;
+}
+
+// ---- what came of it ----------------------------------------------------------------------------
+
+static void looked(cau_logic *logic, cau_outcome_kind outcome)
+{
+	cau_waiting *order = cau_queue_find(logic, logic->serving.asked.ticket);
+	assert(order); // only the worker takes orders out
+	if (outcome == CAU_DONE)
+		order->looked = true;
+	else if (outcome == CAU_POSTPONED)
+		order->postponed = true;
+	else
+		cau_queue_remove(logic, order);
+}
+
+static void take_effect(cau_logic *logic, cau_effects *effects)
+{
+	const cau_waiting *order = &logic->serving;
+	cau_drive *drive = cau_drive_find(logic, order->asked.tool);
+	switch (order->asked.ask) {
+	case CAU_ASK_TOOL_ADD:
+		cau_drive_add(logic, order);
+		break;
+	case CAU_ASK_TOOL_REMOVE:
+		cau_drive_remove(logic, order->asked.tool);
+		break;
+	case CAU_ASK_TOOL_USE:
+	case CAU_ASK_MOTION:
+		drive->frozen = false;
+		break;
+	case CAU_ASK_ENERGY_ON:
+		cau_drive_enabled(drive, order, effects);
+		break;
+	case CAU_ASK_ENERGY_OFF:
+		drive->lit = false;
+		break;
+	case CAU_ASK_GO:
+		logic->going = true;
+		cau_drive_cut_lit(logic, order->moment, CAU_ENERGY_OFF_RESTORED, "the session went back",
+		                  effects);
+		break;
+	case CAU_ASK_DESTROY:
+		logic->ended = true;
+		cau_drive_cut_lit(logic, logic->moment, CAU_ENERGY_OFF_COMMANDED, "destroyed", effects);
+		break;
+	default:
+		break;
+	}
+}
+
+void cau_logic_done(cau_logic *logic, double now_s, cau_outcome_kind outcome, cau_effects *effects)
+{
+	cau_act act = logic->acting;
+	effects->count = 0;
+	logic->moment++;
+	logic->now_s = fmax(logic->now_s, now_s);
+	assert(act != CAU_ACT_NOTHING && act != CAU_ACT_STEP);
+	if (act == CAU_ACT_LOOK)
+		looked(logic, outcome);
+	else if (act == CAU_ACT_CUT)
+		cau_drive_cut_done(logic, effects);
+	else if (act == CAU_ACT_ORDER && outcome == CAU_DONE)
+		take_effect(logic, effects);
+	if (outcome != CAU_DONE && logic->serving.asked.ask == CAU_ASK_ENERGY_OFF)
+		cau_drive_cut_itself(logic, logic->serving.asked.tool);
+	memset(&logic->serving, 0, sizeof logic->serving);
+	logic->acting = CAU_ACT_NOTHING;
+}
+
+void cau_logic_stepped(cau_logic *logic, double now_s, const char *reason, cau_effects *effects)
+{
+	assert(logic->acting == CAU_ACT_STEP);
+	effects->count = 0;
+	logic->moment++;
+	logic->now_s = fmax(logic->now_s, now_s);
+	if (reason)
+		fault(logic, reason, effects);
+	else
+		cau_time_end_tick(logic);
+	logic->acting = CAU_ACT_NOTHING;
+}
+
+double cau_logic_due_s(const cau_logic *logic)
+{
+	if (logic->ended)
+		return logic->count || logic->stepping ? 0 : INFINITY;
+	if (logic->draining)
+		return INFINITY;
+	if (logic->going || logic->state == CAU_SESSION_STARTING)
+		return 0;
+	if (logic->pause_wanted || cau_drive_is_to_cut(logic) || cau_queue_is_due(logic))
+		return 0;
+	return cau_time_due_s(logic);
+}

@@ -1,0 +1,239 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Orders that wait for a tick border, in the order in which they came.
+//
+// What comes in is refused here for want of room alone (queue, store, the session's end). Energy
+// off and pause never are: there is a place for off in each tool and for pause in the session.
+// Signs of life, looking away and departures concern what waits as well as what is.
+#include <math.h>
+#include <stdio.h>
+
+#include "cautery/rpc_errors.h"
+#include "session/internal.h"
+
+// ---- the list -----------------------------------------------------------------------------------
+
+// Energy that is asked for at a later tick waits here, not in the core: it must be dark then if its
+// driver is lost before.
+static bool is_for_later(const cau_logic *logic, const cau_asked *asked)
+{
+	bool energy = asked->ask == CAU_ASK_ENERGY_ON || asked->ask == CAU_ASK_ENERGY_OFF;
+	return energy && asked->tick > logic->tick && !logic->ended;
+}
+
+static bool is_ready(const cau_logic *logic, const cau_waiting *order)
+{
+	return !order->postponed && !is_for_later(logic, &order->asked);
+}
+
+cau_waiting *cau_queue_head(cau_logic *logic)
+{
+	for (int32_t i = 0; i < logic->count; i++) {
+		cau_waiting *order = &logic->waiting[i];
+		if (is_ready(logic, order))
+			return order->moment <= logic->border_moment || logic->ended ? order : NULL;
+	}
+	return NULL;
+}
+
+cau_waiting *cau_queue_find(cau_logic *logic, uint64_t ticket)
+{
+	for (int32_t i = 0; i < logic->count; i++)
+		if (logic->waiting[i].asked.ticket == ticket)
+			return &logic->waiting[i];
+	return NULL;
+}
+
+const cau_waiting *cau_queue_find_ask(const cau_logic *logic, cau_ask ask)
+{
+	for (int32_t i = 0; i < logic->count; i++)
+		if (logic->waiting[i].asked.ask == ask && is_ready(logic, &logic->waiting[i]))
+			return &logic->waiting[i];
+	return NULL;
+}
+
+void cau_queue_remove(cau_logic *logic, cau_waiting *order)
+{
+	assert(order >= logic->waiting && order < logic->waiting + logic->count);
+	size_t after = (size_t)(logic->waiting + logic->count - (order + 1));
+	memmove(order, order + 1, after * sizeof *order);
+	logic->count--;
+}
+
+int32_t cau_logic_waiting(const cau_logic *logic)
+{
+	return logic->count;
+}
+
+// Motion of a running session waits for the border that comes anyway.
+bool cau_queue_is_due(const cau_logic *logic)
+{
+	bool running = logic->state == CAU_SESSION_RUNNING;
+	for (int32_t i = 0; i < logic->count; i++) {
+		const cau_waiting *order = &logic->waiting[i];
+		if (is_ready(logic, order) && !(running && order->asked.ask == CAU_ASK_MOTION))
+			return true;
+	}
+	return false;
+}
+
+// ---- what concerns those that wait --------------------------------------------------------------
+
+void cau_queue_alive(cau_logic *logic, uint32_t client, double time_s)
+{
+	for (int32_t i = 0; i < logic->count; i++)
+		if (logic->waiting[i].asked.asker.client == client)
+			logic->waiting[i].alive_s = fmax(logic->waiting[i].alive_s, time_s);
+	if (logic->serving.asked.asker.client == client)
+		logic->serving.alive_s = fmax(logic->serving.alive_s, time_s);
+}
+
+static void cut_order(cau_logic *logic, cau_waiting *order, uint32_t client)
+{
+	if (order->asked.asker.client == client)
+		order->cut_moment = logic->moment;
+}
+
+void cau_queue_cut(cau_logic *logic, uint32_t client)
+{
+	for (int32_t i = 0; i < logic->count; i++)
+		cut_order(logic, &logic->waiting[i], client);
+	cut_order(logic, &logic->serving, client);
+}
+
+static void forget_order(cau_waiting *order, uint32_t client)
+{
+	order->gone = order->gone || order->asked.asker.client == client;
+	order->to_gone = order->to_gone || order->asked.to.client == client;
+}
+
+void cau_queue_forget(cau_logic *logic, uint32_t client)
+{
+	for (int32_t i = 0; i < logic->count; i++)
+		forget_order(&logic->waiting[i], client);
+	forget_order(&logic->serving, client);
+}
+
+// A tool that is still to be added is dark for whoever asked to light it before.
+static void cut_coming(cau_logic *logic, cau_waiting *order, const char *tool)
+{
+	if (order->asked.ask == CAU_ASK_TOOL_ADD && strcmp(order->asked.tool, tool) == 0)
+		order->cut_moment = logic->moment;
+}
+
+void cau_queue_committed(cau_logic *logic, cau_effects *effects)
+{
+	for (int32_t i = 0; i < logic->count; i++)
+		if (logic->waiting[i].postponed) {
+			logic->waiting[i].postponed = false;
+			cau_effect_wake(effects);
+		}
+}
+
+// ---- coming in ----------------------------------------------------------------------------------
+
+// Why there is no room for it; CAU_OK: there is.
+static cau_status no_room(const cau_logic *logic, int32_t *code, cau_error *error)
+{
+	*code = 0;
+	if (logic->draining)
+		return cau_fail(error, CAU_BAD_STATE, "", "the daemon is ending");
+	if (!logic->store_takes) {
+		*code = CAU_RPC_STORE_FULL;
+		return cau_fail(error, CAU_IO, "", "the store has no room: %s", logic->store_reason);
+	}
+	if (logic->count >= logic->capacity)
+		return cau_fail(error, CAU_LIMIT, "",
+		                "the session's queue is full (setting queue_commands)");
+	return CAU_OK;
+}
+
+static void refuse(cau_effects *effects, uint64_t ticket, const cau_error *error, int32_t code)
+{
+	cau_effect *effect = cau_effect_add(effects, CAU_EFFECT_REFUSE, ticket);
+	effect->error = *error;
+	effect->code = code;
+}
+
+// Energy is off from this moment on, whatever becomes of the order itself.
+static void turn_off(cau_logic *logic, const cau_asked *asked, bool queued, cau_effects *effects)
+{
+	char cause[CAU_CAUSE_BYTES];
+	cau_drive *drive = cau_drive_find(logic, asked->tool);
+	snprintf(cause, sizeof cause, "turned off by %.24s", asked->asker.name);
+	if (drive) {
+		cau_drive_cut(drive, logic->moment, CAU_ENERGY_OFF_COMMANDED, cause, effects);
+		drive->by_order = queued;
+	}
+	for (int32_t i = 0; i < logic->count; i++)
+		cut_coming(logic, &logic->waiting[i], asked->tool);
+	cut_coming(logic, &logic->serving, asked->tool);
+}
+
+// True if it needs no place in the queue: it was done, or its place is elsewhere.
+static bool take_without_room(cau_logic *logic, const cau_asked *asked, cau_effects *effects)
+{
+	if (asked->ask == CAU_ASK_PAUSE)
+		logic->pause_wanted = true;
+	else if (asked->ask != CAU_ASK_ENERGY_OFF)
+		return false;
+	cau_effect_add(effects, CAU_EFFECT_UNSTORED, asked->ticket);
+	cau_effect_wake(effects);
+	return true;
+}
+
+// The newest order that bears upon the tool, if that is motion of the same driver: then nothing
+// stands between the two, and the newer pose counts.
+static cau_waiting *superseded(cau_logic *logic, const cau_asked *asked)
+{
+	cau_waiting *found = NULL;
+	for (int32_t i = 0; i < logic->count; i++) {
+		cau_waiting *order = &logic->waiting[i];
+		bool same = strcmp(order->asked.tool, asked->tool) == 0;
+		bool apart = order->asked.ask == CAU_ASK_TISSUE || (*order->asked.tool && !same);
+		if (!apart)
+			found = same && order->asked.ask == CAU_ASK_MOTION &&
+			                order->asked.asker.client == asked->asker.client
+			            ? order
+			            : NULL;
+	}
+	return found;
+}
+
+static void append(cau_logic *logic, const cau_asked *asked)
+{
+	assert(logic->count < logic->capacity);
+	logic->waiting[logic->count++] =
+		(cau_waiting){.asked = *asked, .moment = logic->moment, .alive_s = logic->now_s};
+}
+
+void cau_queue_take(cau_logic *logic, const cau_asked *asked, cau_effects *effects)
+{
+	cau_error error = {0};
+	int32_t code;
+	if (logic->ended) {
+		cau_fail(&error, CAU_NOT_FOUND, "params.session", "the session is destroyed");
+		refuse(effects, asked->ticket, &error, CAU_RPC_NOT_HERE);
+		return;
+	}
+	cau_waiting *older = asked->ask == CAU_ASK_MOTION ? superseded(logic, asked) : NULL;
+	cau_status status = no_room(logic, &code, &error);
+	if (asked->ask == CAU_ASK_ENERGY_OFF && (status || !is_for_later(logic, asked)))
+		turn_off(logic, asked, !status, effects);
+	if (status && take_without_room(logic, asked, effects))
+		return;
+	if (status == CAU_LIMIT && older)
+		status = CAU_OK;
+	if (status) {
+		refuse(effects, asked->ticket, &error, code);
+		return;
+	}
+	if (older) {
+		cau_effect_add(effects, CAU_EFFECT_REPLACED, older->asked.ticket);
+		older->asked = *asked;
+		older->alive_s = logic->now_s;
+		return;
+	}
+	append(logic, asked);
+	if (asked->ask != CAU_ASK_MOTION || logic->state != CAU_SESSION_RUNNING)
+		cau_effect_wake(effects);
+}
