@@ -45,6 +45,15 @@ static cli_exit upload_meshes(cli *c, cau_scene_def *scene)
 	return code;
 }
 
+// The session has its copies. A server that knows no such request forgets them a moment later, with
+// the connection.
+static void discard_meshes(cli *c, const cau_scene_def *scene)
+{
+	for (int32_t i = 0; i < scene->mesh_count; i++)
+		if (scene->meshes[i].source == CAU_MESH_BYTES)
+			cau_client_discard_upload(c->client, scene->meshes[i].name, NULL);
+}
+
 static cli_exit read_scene(cli *c, const char *file, cau_scene_def *scene)
 {
 	char *text;
@@ -121,7 +130,7 @@ static cli_exit make_mesh_scene(cli *c, const char *file, cau_scene_def *scene,
 		code = measure(c, scene, d, least_m, most_m);
 	if (code)
 		return code;
-	scene->meshes[0] = uploaded; // the upload is kept until the connection closes
+	scene->meshes[0] = uploaded; // it is kept until it is discarded
 	cli_mesh_scene_end(scene, least_m, most_m);
 	return CLI_DONE;
 }
@@ -166,8 +175,11 @@ static cli_exit run(cli *c)
 	cli_exit code = scene && d.definition ? cli_connect(c) : CLI_CONNECTION;
 	if (!code)
 		code = fill_params(c, &params, scene, &d);
-	if (!code)
+	if (!code) {
 		code = create(c, &params, &d);
+		if (params.has_definition)
+			discard_meshes(c, scene);
+	}
 	if (!code && c->json)
 		cli_print_result(c, CAU_METHOD_SESSION_CREATE, &d);
 	else if (!code)

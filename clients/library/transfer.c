@@ -73,6 +73,13 @@ cau_status cau_client_upload(cau_client *client, const char *name, const char *f
 	return status;
 }
 
+cau_status cau_client_discard_upload(cau_client *client, const char *name, cau_error *error)
+{
+	cau_wire_upload_discard params = {0};
+	snprintf(params.name, sizeof params.name, "%s", name);
+	return cau_client_call(client, CAU_METHOD_UPLOAD_DISCARD, &params, NULL, error);
+}
+
 // ---- from the server ---------------------------------------------------------------------------
 typedef struct downloading {
 	cau_client_incoming incoming;

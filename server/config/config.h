@@ -34,6 +34,9 @@ enum { CAU_CONFIG_TEXT_BYTES = 512 };
 	INTEGER(max_subscribers, 128, 1, 4096, "streams of one session at once")                       \
 	INTEGER(max_message_bytes, 1048576, 4096, 67108864, "largest message of a client")             \
 	INTEGER(max_upload_bytes, 67108864, 1024, 1073741824, "largest uploaded mesh")                 \
+	INTEGER(max_connection_upload_bytes, 134217728, 65536, 17179869184,                            \
+	        "one connection's uploads")                                                            \
+	INTEGER(max_all_upload_bytes, 536870912, 65536, 1099511627776, "all connections' uploads")     \
 	INTEGER(max_requests_per_s, 2000, 1, 1000000, "messages of one client in a second")            \
 	INTEGER(queue_commands, 256, 8, 65536, "commands that wait for a session's tick border")       \
 	INTEGER(queue_reads, 64, 8, 65536, "requests that only read, waiting for a session")           \

@@ -22,6 +22,8 @@ static void fill_limits(const cau_config *config, cau_wire_limits *limits)
 {
 	*limits = (cau_wire_limits){.message_bytes_max = config->max_message_bytes,
 	                            .upload_bytes_max = config->max_upload_bytes,
+	                            .has_uploads_bytes_max = true,
+	                            .uploads_bytes_max = config->max_connection_upload_bytes,
 	                            .chunk_bytes_max = CAU_CHUNK_BYTES_MAX,
 	                            .sessions_max = config->max_sessions,
 	                            .subscribers_max = config->max_connections,

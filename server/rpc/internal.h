@@ -10,10 +10,10 @@
 #include "log/log.h"
 #include "metrics/exposition.h"
 #include "rpc/service.h"
+#include "rpc/uploads.h"
 
 enum {
 	STREAMS_OF_PEER = 8,
-	UPLOADS_OF_PEER = 8,
 	FILES_OF_PEER = 4,
 	MALFORMED_MOST = 16, // messages that are no JSON-RPC, before the connection is closed
 };
@@ -23,17 +23,6 @@ typedef struct cau_subscription {
 	cau_hosted *hosted; // shared; NULL: free
 	cau_subscriber subscriber;
 } cau_subscription;
-
-// A file that comes in.
-typedef struct cau_upload {
-	uint32_t transfer; // 0: free
-	char name[CAU_NAME_BYTES];
-	char file_name[129];
-	unsigned char *bytes;
-	size_t byte_count, received;
-	bool complete;
-	char trouble[160]; // what ended it early; told by upload.end
-} cau_upload;
 
 // A file that goes out, in chunks.
 typedef struct cau_outgoing {
@@ -53,8 +42,7 @@ typedef struct cau_peer {
 	int64_t motions;
 	cau_subscription streams[STREAMS_OF_PEER];
 	int next_stream; // round robin
-	cau_upload uploads[UPLOADS_OF_PEER];
-	uint32_t last_transfer;
+	cau_uploads uploads;
 	cau_outgoing files[FILES_OF_PEER];
 	int files_asked; // and not announced yet
 	cau_allowance allowance;
@@ -86,6 +74,7 @@ struct cau_service {
 	pthread_mutex_t mutex; // guards the posts
 	cau_post *first, *last;
 	uint64_t requests, errors;
+	cau_upload_total uploads; // the network thread's
 };
 
 // One request on its way through the handlers.
@@ -101,6 +90,8 @@ void cau_call_fail(const cau_call *call, const cau_error *error, int32_t code);
 void cau_call_result(const cau_call *call, const void *result);
 cau_reply cau_call_reply(const cau_call *call); // for answers that come later
 void cau_peer_fault(cau_peer *peer, const cau_rpc_id *id, const cau_rpc_fault *fault);
+// Counts a message that was none; MALFORMED_MOST of them close the connection.
+void cau_peer_malformed(cau_peer *peer);
 
 // ---- mailbox.c
 void cau_service_answer(void *user, const cau_reply *reply, const cau_outcome *outcome);
@@ -115,7 +106,7 @@ cau_call_handler cau_call_scene_list, cau_call_scene_get;
 cau_call_handler cau_call_session_list, cau_call_session_create, cau_call_session_order;
 cau_call_handler cau_call_command, cau_call_tool_order;
 cau_call_handler cau_call_join, cau_call_leave, cau_call_key_frame, cau_call_ack;
-cau_call_handler cau_call_upload_begin, cau_call_upload_end;
+cau_call_handler cau_call_upload_begin, cau_call_upload_end, cau_call_upload_discard;
 
 // The session of a call, shared, or NULL after a failure that is answered.
 cau_hosted *cau_call_session(const cau_call *call);
@@ -140,7 +131,6 @@ void cau_peer_chunk(cau_peer *peer, const void *bytes, size_t byte_count);
 cau_buffer *cau_peer_next_chunk(cau_peer *peer);
 // Points the scene's meshes of source bytes at this connection's uploads.
 cau_status cau_peer_fill_meshes(cau_peer *peer, cau_scene_def *scene, cau_error *error);
-void cau_upload_finish(cau_upload *upload);
 
 // ---- pages.c
 void cau_service_page(void *user, cau_page *page);

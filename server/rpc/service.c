@@ -49,6 +49,7 @@ static cau_call_handler *const handlers[CAU_METHOD_COUNT] = {
 	[CAU_METHOD_SET_FORCE] = cau_call_command,
 	[CAU_METHOD_UPLOAD_BEGIN] = cau_call_upload_begin,
 	[CAU_METHOD_UPLOAD_END] = cau_call_upload_end,
+	[CAU_METHOD_UPLOAD_DISCARD] = cau_call_upload_discard,
 };
 
 // ---- messages
@@ -104,13 +105,19 @@ static bool admit(cau_call *call)
 	return false;
 }
 
-static void malformed(cau_peer *peer, const cau_rpc_message *message, const cau_rpc_fault *fault)
+void cau_peer_malformed(cau_peer *peer)
+{
+	if (++peer->malformed >= MALFORMED_MOST)
+		cau_connection_close(peer->connection, CAU_CLOSE_GARBAGE, NULL);
+}
+
+static void refuse_message(cau_peer *peer, const cau_rpc_message *message,
+                           const cau_rpc_fault *fault)
 {
 	if (message->kind != CAU_RPC_NOTIFICATION)
 		cau_peer_fault(peer, &message->id, fault);
-	bool garbage = fault->code == CAU_RPC_PARSE || fault->code == CAU_RPC_INVALID_REQUEST;
-	if (garbage && ++peer->malformed >= MALFORMED_MOST)
-		cau_connection_close(peer->connection, CAU_CLOSE_GARBAGE, NULL);
+	if (fault->code == CAU_RPC_PARSE || fault->code == CAU_RPC_INVALID_REQUEST)
+		cau_peer_malformed(peer);
 }
 
 static void on_text(void *user, cau_connection *connection, const char *text, size_t bytes)
@@ -121,7 +128,7 @@ static void on_text(void *user, cau_connection *connection, const char *text, si
 	cau_rpc_fault fault = {0};
 	service->requests++;
 	if (cau_rpc_read(text, bytes, (size_t)service->config->max_message_bytes, &message, &fault)) {
-		malformed(peer, &message, &fault);
+		refuse_message(peer, &message, &fault);
 		return;
 	}
 	cau_call call = {.peer = peer, .message = &message};
@@ -163,8 +170,7 @@ static void on_closed(void *user, cau_connection *connection)
 			cau_hosted_leave(peer->streams[i].hosted, &peer->streams[i].subscriber);
 			cau_hosted_release(peer->streams[i].hosted);
 		}
-	for (int i = 0; i < UPLOADS_OF_PEER; i++)
-		cau_upload_finish(&peer->uploads[i]);
+	cau_uploads_drop_all(&peer->uploads, &service->uploads);
 	for (int i = 0; i < FILES_OF_PEER; i++)
 		cau_buffer_release(peer->files[i].file);
 	if (peer->greeted)

@@ -3,66 +3,18 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "buffer/sha256.h"
 #include "rpc/internal.h"
-
-void cau_upload_finish(cau_upload *upload)
-{
-	free(upload->bytes);
-	*upload = (cau_upload){0};
-}
-
-static cau_upload *find_transfer(cau_peer *peer, uint32_t transfer)
-{
-	for (int i = 0; i < UPLOADS_OF_PEER; i++)
-		if (peer->uploads[i].transfer == transfer)
-			return &peer->uploads[i];
-	return NULL;
-}
-
-static cau_upload *find_name(cau_peer *peer, const char *name)
-{
-	for (int i = 0; i < UPLOADS_OF_PEER; i++)
-		if (peer->uploads[i].transfer && strcmp(peer->uploads[i].name, name) == 0)
-			return &peer->uploads[i];
-	return NULL;
-}
-
-static cau_status begin(cau_peer *peer, const cau_wire_upload_begin *params, cau_upload **made,
-                        cau_error *error)
-{
-	int64_t most = peer->service->config->max_upload_bytes, held = 0;
-	for (int i = 0; i < UPLOADS_OF_PEER; i++)
-		held += (int64_t)peer->uploads[i].byte_count;
-	if (params->byte_count > most - held)
-		return cau_fail(error, CAU_LIMIT, "params.byte_count",
-		                "a connection's uploads hold at most %lld bytes (setting max_upload_bytes)",
-		                (long long)most);
-	if (find_name(peer, params->name))
-		return cau_fail(error, CAU_ALREADY_EXISTS, "params.name", "an upload has this name");
-	cau_upload *upload = find_transfer(peer, 0);
-	if (!upload)
-		return cau_fail(error, CAU_LIMIT, "", "a connection has at most %d uploads",
-		                UPLOADS_OF_PEER);
-	upload->bytes = malloc((size_t)params->byte_count);
-	if (!upload->bytes)
-		return cau_fail(error, CAU_NO_MEMORY, "", "no memory for the upload");
-	upload->transfer = ++peer->last_transfer;
-	upload->byte_count = (size_t)params->byte_count;
-	memcpy(upload->name, params->name, sizeof upload->name);
-	memcpy(upload->file_name, params->file_name, sizeof upload->file_name);
-	*made = upload;
-	return CAU_OK;
-}
 
 void cau_call_upload_begin(cau_call *call)
 {
 	cau_error error = {0};
 	cau_wire_upload_begin params = {0};
 	cau_upload *upload = NULL;
+	const cau_service *service = call->peer->service;
 	cau_status status = cau_rpc_params(call->message, &params, &error);
 	if (!status)
-		status = begin(call->peer, &params, &upload, &error);
+		status = cau_uploads_begin(&call->peer->uploads, &call->peer->service->uploads,
+		                           service->config, &params, &upload, &error);
 	if (status) {
 		cau_call_fail(call, &error, 0);
 		return;
@@ -72,55 +24,47 @@ void cau_call_upload_begin(cau_call *call)
 	cau_call_result(call, &result);
 }
 
-static void spoil(cau_upload *upload, const char *trouble)
+// There is no request that this would answer, so the id is null; like other messages that are none,
+// too many of them close the connection.
+static void refuse_before_hello(cau_peer *peer)
 {
-	snprintf(upload->trouble, sizeof upload->trouble, "%s", trouble);
-	free(upload->bytes);
-	upload->bytes = NULL;
-	upload->byte_count = 0;
+	cau_rpc_fault fault;
+	cau_rpc_fault_of_code(&fault, CAU_RPC_HELLO_REQUIRED, "the first message must be hello");
+	cau_peer_fault(peer, &(cau_rpc_id){.kind = CAU_RPC_ID_NONE}, &fault);
+	cau_peer_malformed(peer);
 }
 
 void cau_peer_chunk(cau_peer *peer, const void *bytes, size_t byte_count)
 {
 	cau_chunk chunk;
+	if (!peer->greeted) {
+		refuse_before_hello(peer);
+		return;
+	}
 	cau_status status = cau_chunk_read(bytes, byte_count, &chunk, NULL);
-	if (status || !peer->greeted) {
+	if (status) {
 		cau_connection_close(peer->connection,
 		                     status == CAU_LIMIT ? CAU_CLOSE_TOO_BIG : CAU_CLOSE_UNSUPPORTED, NULL);
 		return;
 	}
-	cau_upload *upload = chunk.transfer ? find_transfer(peer, chunk.transfer) : NULL;
-	if (!upload || !upload->bytes)
-		return; // an upload that ended; upload.end says why
-	if (chunk.offset != upload->received)
-		spoil(upload, "a chunk came out of order");
-	else if (chunk.byte_count > upload->byte_count - upload->received)
-		spoil(upload, "more bytes came than upload.begin announced");
-	else {
-		memcpy(upload->bytes + upload->received, chunk.data, chunk.byte_count);
-		upload->received += chunk.byte_count;
-	}
+	cau_upload *upload = cau_uploads_find_transfer(&peer->uploads, chunk.transfer);
+	if (upload) // else of one that was discarded or replaced on the way
+		cau_upload_take(upload, chunk.offset, chunk.data, chunk.byte_count);
 }
 
+// What fails its check is gone; the client begins anew.
 static cau_status end(cau_peer *peer, const cau_wire_upload_end *params, cau_upload **ended,
                       cau_error *error)
 {
-	char sha256[CAU_SHA256_TEXT_BYTES] = "";
-	cau_upload *upload = find_transfer(peer, (uint32_t)params->transfer);
-	*ended = upload;
-	if (!upload || !params->transfer)
+	cau_upload *upload = cau_uploads_find_transfer(&peer->uploads, (uint32_t)params->transfer);
+	if (!upload)
 		return cau_fail(error, CAU_NOT_FOUND, "params.transfer", "no such upload");
-	if (*upload->trouble)
-		return cau_fail(error, CAU_BAD_VALUE, "params.transfer", "%s", upload->trouble);
-	if (upload->received != upload->byte_count)
-		return cau_fail(error, CAU_BAD_VALUE, "params.transfer",
-		                "%zu bytes came of the %zu announced", upload->received,
-		                upload->byte_count);
-	if (!cau_sha256(upload->bytes, upload->byte_count, sha256) ||
-	    strcmp(sha256, params->sha256) != 0)
-		return cau_fail(error, CAU_BAD_VALUE, "params.sha256", "what came has another hash");
-	upload->complete = true;
-	return CAU_OK;
+	cau_status status = cau_upload_check(upload, params->sha256, error);
+	upload->complete = !status;
+	*ended = upload;
+	if (status)
+		cau_uploads_drop(&peer->uploads, &peer->service->uploads, upload);
+	return status;
 }
 
 void cau_call_upload_end(cau_call *call)
@@ -129,11 +73,8 @@ void cau_call_upload_end(cau_call *call)
 	cau_wire_upload_end params = {0};
 	cau_upload *upload = NULL;
 	cau_status status = cau_rpc_params(call->message, &params, &error);
-	if (!status) {
+	if (!status)
 		status = end(call->peer, &params, &upload, &error);
-		if (status && upload)
-			cau_upload_finish(upload);
-	}
 	if (status) {
 		cau_call_fail(call, &error, 0);
 		return;
@@ -145,6 +86,28 @@ void cau_call_upload_end(cau_call *call)
 	cau_call_result(call, &result);
 }
 
+void cau_call_upload_discard(cau_call *call)
+{
+	cau_error error = {0};
+	cau_wire_upload_discard params = {0};
+	cau_wire_nothing result = {0};
+	cau_peer *peer = call->peer;
+	cau_upload *upload = NULL;
+	cau_status status = cau_rpc_params(call->message, &params, &error);
+	if (!status) {
+		upload = cau_uploads_find(&peer->uploads, params.name);
+		if (!upload)
+			status = cau_fail(&error, CAU_NOT_FOUND, "params.name",
+			                  "no upload of this connection is named `%.48s`", params.name);
+	}
+	if (status) {
+		cau_call_fail(call, &error, 0);
+		return;
+	}
+	cau_uploads_drop(&peer->uploads, &peer->service->uploads, upload);
+	cau_call_result(call, &result);
+}
+
 cau_status cau_peer_fill_meshes(cau_peer *peer, cau_scene_def *scene, cau_error *error)
 {
 	for (int32_t i = 0; i < scene->mesh_count; i++) {
@@ -153,7 +116,7 @@ cau_status cau_peer_fill_meshes(cau_peer *peer, cau_scene_def *scene, cau_error 
 		if (mesh->source != CAU_MESH_BYTES)
 			continue;
 		snprintf(name, sizeof name, "%.*s", (int)strcspn(mesh->file, "."), mesh->file);
-		const cau_upload *upload = find_name(peer, name);
+		const cau_upload *upload = cau_uploads_find(&peer->uploads, name);
 		if (!upload || !upload->complete)
 			return cau_fail(error, CAU_NOT_FOUND, "params.definition.meshes",
 			                "no upload of this connection is named `%.48s`", name);

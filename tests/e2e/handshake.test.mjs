@@ -3,7 +3,7 @@
 import assert from 'node:assert/strict';
 import net from 'node:net';
 import { after, before, test } from 'node:test';
-import { Client } from './wire/client.mjs';
+import { Client, chunk } from './wire/client.mjs';
 import { Daemon } from './wire/daemon.mjs';
 
 let daemon;
@@ -119,6 +119,25 @@ test('nothing is served before hello', async () => {
 	await client.call('hello', { version: 1, client: 'late' });
 	await client.call('session.list');
 	await client.close();
+});
+
+test('a binary message before hello gets hello_required, and too many of them the end', async () => {
+	for (const bytes of [Buffer.from('CAUC and more'), Buffer.alloc(0), chunk(1, 0, Buffer.alloc(10))]) {
+		const client = new Client(daemon.url());
+		await client.opened;
+		client.socket.send(bytes);
+		const answer = await client.until(() => client.stray, 'an answer');
+		assert.equal(answer.id, null);
+		assert.equal(answer.error.code, -32041);
+		assert.equal(answer.error.data.status, 'hello_required');
+		await client.call('hello', { version: 1, client: 'late' });
+		await client.close();
+	}
+	const client = new Client(daemon.url());
+	await client.opened;
+	for (let i = 0; i < 16; i++)
+		client.socket.send(Buffer.from('CAUC'));
+	assert.equal((await client.closed).code, 4008);
 });
 
 test('bytes that are no HTTP do not disturb', async () => {

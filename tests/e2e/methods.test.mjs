@@ -2,6 +2,7 @@
 // The methods that the other tests do not go through.
 import assert from 'node:assert/strict';
 import { after, before, test } from 'node:test';
+import { chunk } from './wire/client.mjs';
 import { Daemon } from './wire/daemon.mjs';
 import { AT_REST, cutMiddle, smallScene, smallSession } from './wire/scene.mjs';
 
@@ -199,6 +200,94 @@ test('a mesh is uploaded in chunks and becomes a session, which outlives the dae
 	assert.equal((await again.call('session.snapshot', { session: 'd1-patch' })).hash, hash);
 	await again.close();
 	await next.end();
+});
+
+// A flat sheet of two triangles a cell.
+function sheetText(side) {
+	const text = [];
+	for (let y = 0; y <= side; y++)
+		for (let x = 0; x <= side; x++)
+			text.push(`v ${(x / side - 0.5) * 100} ${(y / side - 0.5) * 100} 0`);
+	for (let y = 0; y < side; y++)
+		for (let x = 0; x < side; x++) {
+			const a = y * (side + 1) + x + 1, b = a + 1, c = b + side + 1, d = a + side + 1;
+			text.push(`f ${a} ${b} ${c}`, `f ${a} ${c} ${d}`);
+		}
+	return Buffer.from(text.join('\n'));
+}
+
+const withMesh = (definition, file) => ({
+	...definition,
+	meshes: [{ name: definition.meshes[0].name, source: 'bytes', file, unit_m: 0.001 }],
+});
+
+test('many attempts at a mesh do not use up a connection', async (t) => {
+	const own = await Daemon.start();
+	t.after(() => own.end());
+	const maker = await own.connect();
+	const definition = await smallScene(maker);
+	for (let i = 0; i < 20; i++) {
+		const broken = await maker.upload('knee', 'knee.obj', Buffer.from(`v 0 0 ${i}\nf 1 2 3\n`));
+		await assert.rejects(maker.call('session.create', { definition: withMesh(definition, broken.file) }));
+		if (i % 2)
+			await maker.call('upload.discard', { name: 'knee' }); // else the next one takes its place
+	}
+	for (let i = 0; i < 20; i++)
+		await maker.upload(`other-${i}`, 'other.obj', Buffer.from('v 0 0 0\n'));
+	const sound = await maker.upload('knee', 'knee.obj', sheetText(6), 100);
+	const made = await maker.call('session.create', { definition: withMesh(definition, sound.file), paused: true });
+	assert.equal(made.summary.vertex_count, 49);
+	await maker.close();
+});
+
+test('the second upload of a name is the one that counts, and a session keeps what it was made of', async (t) => {
+	const own = await Daemon.start();
+	t.after(() => own.end());
+	const maker = await own.connect();
+	const definition = await smallScene(maker);
+	const create = async (file) => (await maker.call('session.create', { definition: withMesh(definition, file), paused: true })).summary;
+	const first = await maker.upload('knee', 'knee.obj', sheetText(6));
+	const early = await create(first.file);
+	const second = await maker.upload('knee', 'knee.obj', sheetText(8));
+	assert.equal((await create(second.file)).vertex_count, 81);
+	// One that is still coming is replaced as well, and what still comes for it is dropped.
+	const cutShort = await maker.call('upload.begin', { name: 'knee', file_name: 'knee.obj', byte_count: 1000 });
+	const third = await maker.upload('knee', 'knee.obj', sheetText(4));
+	maker.socket.send(chunk(cutShort.transfer, 0, Buffer.alloc(1000)));
+	await assert.rejects(maker.call('upload.end', { transfer: cutShort.transfer, sha256: '0'.repeat(64) }), { code: -32005 });
+	assert.equal((await create(third.file)).vertex_count, 25);
+	await maker.call('upload.discard', { name: 'knee' });
+	await assert.rejects(create(third.file), (error) => /no upload of this connection is named `knee`/.test(error.data.reason));
+	await assert.rejects(maker.call('upload.discard', { name: 'knee' }), (error) => error.data.path === 'params.name');
+	await maker.call('session.step', { session: early.session, ticks: 2 });
+	await maker.close();
+});
+
+test('uploads are bounded by bytes: of a connection, and of all; a connection that ends gives its own back', async (t) => {
+	const settings = { max_upload_bytes: 300000, max_connection_upload_bytes: 400000, max_all_upload_bytes: 700000 };
+	const own = await Daemon.start({ settings });
+	t.after(() => own.end());
+	const [one, other] = [await own.connect(), await own.connect()];
+	const begin = (client, name, bytes) => client.call('upload.begin', { name, file_name: 'm.obj', byte_count: bytes });
+	const beyond = (setting) => (error) => error.code === -32007 && error.data.reason.includes(`setting ${setting})`) &&
+		error.data.reason.includes(String(settings[setting]));
+	assert.equal(one.hello.limits.uploads_bytes_max, 400000);
+	await assert.rejects(begin(one, 'a', 300001), beyond('max_upload_bytes'));
+	await begin(one, 'a', 300000);
+	await assert.rejects(begin(one, 'b', 100001), beyond('max_connection_upload_bytes'));
+	await begin(one, 'a', 250000); // in its place
+	await begin(one, 'b', 150000);
+	await begin(other, 'a', 290000);
+	await assert.rejects(begin(other, 'b', 20000), beyond('max_all_upload_bytes')); // counts for 65,536
+	await one.call('upload.discard', { name: 'b' });
+	await begin(other, 'b', 20000);
+	await assert.rejects(begin(other, 'c', 100000), beyond('max_connection_upload_bytes'));
+	const third = await own.connect();
+	await assert.rejects(begin(third, 'a', 300000), beyond('max_all_upload_bytes'));
+	await one.close();
+	await begin(third, 'a', 300000);
+	await third.close();
+	await other.close();
 });
 
 test('a connection joins eight streams; the ninth is refused, and leaving one makes room', async (t) => {

@@ -184,10 +184,14 @@ int64_t cau_client_faces_drawn(const cau_client_stream *stream);
 // ---- files -------------------------------------------------------------------------------------
 typedef void cau_client_progress(void *user, uint64_t done, uint64_t total); // bytes
 
-// Sends a mesh file; result->file is what a mesh of source bytes says. `progress` may be NULL.
+// Sends a mesh file; result->file is what a mesh of source bytes says. It takes the place of an
+// earlier one of this name. `progress` may be NULL.
 cau_status cau_client_upload(cau_client *client, const char *name, const char *file_name,
                              const void *bytes, size_t byte_count, cau_client_progress *progress,
                              void *user, cau_wire_upload_result *result, cau_error *error);
+
+// Tells the server that an upload is not needed any more. Sessions that were made of it stay.
+cau_status cau_client_discard_upload(cau_client *client, const char *name, cau_error *error);
 
 // session.export or session.log: asks, receives and checks the hash. The caller frees *bytes.
 // Errors: those of cau_client_call; CAU_CORRUPT (another hash, a gap), CAU_LIMIT, CAU_NO_MEMORY.

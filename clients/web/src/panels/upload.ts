@@ -10,6 +10,8 @@ const MESH_KINDS: readonly (readonly [MeshKind, string])[] = [
   ['fascia', 'fascia (triangles)'],
 ];
 
+const UPLOAD_NAME = 'mesh';
+
 export function uploadForm(control: Control, link: Link): HTMLElement {
   const { model } = control;
   const problem = problemPlace();
@@ -22,15 +24,20 @@ export function uploadForm(control: Control, link: Link): HTMLElement {
     const obj = file.files?.[0]?.name.endsWith('.obj') === true;
     kind.value = obj ? 'fascia' : 'fat';
   });
-  let uploads = 0; // each has a name of its own: the daemon keeps what no session took
   const work = async (): Promise<void> => {
     const mesh = file.files?.[0];
     if (!mesh) throw new Error('choose a mesh file first');
     bar.hidden = false;
     bar.value = 0;
     try {
-      const uploaded = await link.upload(`mesh-${++uploads}`, mesh, (sent, total) => (bar.value = sent / total));
-      await control.create({ definition: sceneOfMesh(uploaded.file, kind.value as MeshKind, size.valueAsNumber) });
+      const uploaded = await link.upload(UPLOAD_NAME, mesh, (sent, total) => (bar.value = sent / total));
+      try {
+        await control.create({ definition: sceneOfMesh(uploaded.file, kind.value as MeshKind, size.valueAsNumber) });
+      } finally {
+        // The session has its own copy, and another attempt sends the file again. If this is lost, the
+        // next upload takes the place of this one, and the last goes with the connection.
+        link.call('upload.discard', { name: UPLOAD_NAME }).catch(() => undefined);
+      }
     } finally {
       bar.hidden = true;
     }

@@ -30,6 +30,8 @@ export interface Limits {
   message_bytes_max: number;
   /** of one upload (0 to 9007199254740991 B) */
   upload_bytes_max: number;
+  /** of all uploads of the connection; one below 64 KiB counts for that (0 to 9007199254740991 B) */
+  uploads_bytes_max?: number;
   /** of data in one binary chunk (1 to 9007199254740991 B) */
   chunk_bytes_max: number;
   /** sessions of the daemon (0 to 9007199254740991) */
@@ -484,7 +486,7 @@ export interface CommandResult {
   stored?: boolean;
 }
 
-/** announces a mesh file */
+/** announces a mesh file; takes the place of an upload of the same name, whole or not */
 export interface UploadBegin {
   /** for scenes: meshes[].file of source bytes, with file_name's ending */
   name: string;
@@ -510,7 +512,13 @@ export interface UploadEnd {
   sha256: string;
 }
 
-/** the file is kept until the connection closes or a session takes it */
+/** an upload is not needed any more */
+export interface UploadDiscard {
+  /** as in upload.begin; it may be whole or still coming */
+  name: string;
+}
+
+/** the file is kept until it is discarded, another takes its name, or the connection closes */
 export interface UploadResult {
   /** as given */
   name: string;
@@ -1520,6 +1528,8 @@ export interface Requests {
   'upload.begin': { params: UploadBegin; result: UploadBeginResult };
   /** checks its length and hash */
   'upload.end': { params: UploadEnd; result: UploadResult };
+  /** forgets it; sessions made of it stay */
+  'upload.discard': { params: UploadDiscard; result: Nothing };
 }
 
 /** Notifications from the client. */
