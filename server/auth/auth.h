@@ -5,6 +5,7 @@
 
 #include <stdbool.h>
 #include <stddef.h>
+#include <stdint.h>
 
 #include "cautery/message_choices.h"
 #include "cautery/status.h"
@@ -16,10 +17,19 @@ typedef struct cau_auth cau_auth;
 // tokens of 16 to 128 printable characters. A file that others than its owner can read is refused.
 cau_status cau_auth_create(cau_auth **auth, const cau_config *config, cau_error *error);
 void cau_auth_destroy(cau_auth *auth); // takes NULL
+// Reads the file of tokens anew. On failure the tokens stay as they were; the error says which line
+// of which file is wrong. Any thread, like all functions below.
+cau_status cau_auth_reload(cau_auth *auth, const cau_config *config, cau_error *error);
 
 // The role of a token (not zero-ended); false if it has none. Without a file of tokens everyone is
 // admin, with or without a token. Takes the same time for every wrong token of a length.
 bool cau_auth_role(const cau_auth *auth, const char *token, size_t bytes, cau_role *role);
+
+// What a connection remembers of the token that it came with: a number that no other token gets.
+// 0: the token has no role.
+uint64_t cau_auth_grant(const cau_auth *auth, const char *token, size_t bytes);
+// The role that the token behind a grant has now; false if it has been taken back.
+bool cau_auth_grant_role(const cau_auth *auth, uint64_t grant, cau_role *role);
 
 // Whether requests must carry a token.
 bool cau_auth_required(const cau_auth *auth);

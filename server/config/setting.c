@@ -94,3 +94,19 @@ cau_status cau_setting_store(const setting *s, cau_config *config, const char *t
 	}
 	return CAU_BAD_VALUE;
 }
+
+bool cau_setting_same(const setting *s, const cau_config *a, const cau_config *b)
+{
+	const char *in_a = (const char *)a + s->offset, *in_b = (const char *)b + s->offset;
+	switch (s->kind) {
+	case SETTING_TEXT:
+		return strcmp(in_a, in_b) == 0;
+	case SETTING_INTEGER:
+		return *(const int64_t *)(const void *)in_a == *(const int64_t *)(const void *)in_b;
+	case SETTING_REAL:
+		return *(const double *)(const void *)in_a == *(const double *)(const void *)in_b;
+	case SETTING_SWITCH:
+		return *(const bool *)in_a == *(const bool *)in_b;
+	}
+	return false;
+}

@@ -28,6 +28,9 @@ extern const size_t cau_setting_count;
 // NULL if there is none. Takes both spellings, `max_sessions` and `max-sessions`.
 const setting *cau_setting_find(const char *name);
 
+// Whether both have the same value of it.
+bool cau_setting_same(const setting *setting, const cau_config *a, const cau_config *b);
+
 // Checks and stores one value.
 cau_status cau_setting_store(const setting *setting, cau_config *config, const char *text,
                              cau_error *error);

@@ -163,15 +163,40 @@ cau_status cau_daemon_start(cau_daemon **made, cau_config *config, cau_error *er
 int cau_daemon_wait(cau_daemon *daemon, const sigset_t *signals, int *signal_number)
 {
 	struct timespec patience = {0, REAP_MS * 1000000L};
-	int got = sigtimedwait(signals, NULL, &patience);
+	siginfo_t info;
+	int got = sigtimedwait(signals, &info, &patience);
+	bool terminal_gone = got == SIGHUP && info.si_code == SI_KERNEL;
 	if (got > 0)
-		*signal_number = got;
+		*signal_number = terminal_gone ? SIGTERM : got;
 	cau_hub_reap(daemon->hub);
 	unsigned long ticks = cau_service_ticks(daemon->service);
 	if (ticks != daemon->ticks_seen)
 		sd_notify(0, "WATCHDOG=1");
 	daemon->ticks_seen = ticks;
 	return 0;
+}
+
+static bool reloaded(const char *setting, cau_status status, const cau_error *error)
+{
+	if (status)
+		cau_log(CAU_LOG_ERROR, NULL, "reload_failed",
+		        "setting=%s status=%s file=\"%s\" reason=\"%s\" kept=true", setting,
+		        cau_status_name(status), error->file, error->reason);
+	return !status;
+}
+
+void cau_daemon_reload(cau_daemon *daemon)
+{
+	cau_error error = {0};
+	const cau_config *config = daemon->config;
+	bool tokens = false;
+	sd_notifyf(0, "RELOADING=1\nMONOTONIC_USEC=%lld", (long long)(cau_monotonic_s() * 1e6));
+	if (*config->tokens)
+		tokens = reloaded("tokens", cau_auth_reload(daemon->auth, config, &error), &error);
+	if (tokens)
+		cau_service_check_tokens(daemon->service);
+	cau_log(CAU_LOG_NOTICE, NULL, "reloaded", "tokens=%d", tokens);
+	sd_notify(0, "READY=1");
 }
 
 void cau_daemon_stop(cau_daemon *daemon)

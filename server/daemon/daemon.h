@@ -12,8 +12,13 @@ typedef struct cau_daemon cau_daemon;
 // Opens what the settings say, resumes what the store holds, listens. `config` is borrowed; its
 // port becomes the real one.
 cau_status cau_daemon_start(cau_daemon **daemon, cau_config *config, cau_error *error);
-// Waits for one of the signals, telling systemd meanwhile that all threads live. Non-zero: the
-// daemon cannot go on.
+// Waits for one of the signals, telling systemd meanwhile that all threads live. A hang-up of the
+// terminal is told as SIGTERM, one that a program sent as SIGHUP. Non-zero: the daemon cannot go
+// on.
 int cau_daemon_wait(cau_daemon *daemon, const sigset_t *signals, int *signal_number);
+// Reads the file of tokens anew. If it is wrong that is logged, with the line, and what it said
+// before stays. Connections whose token was taken back, or has a lesser role now, are closed,
+// energy off; nobody else notices.
+void cau_daemon_reload(cau_daemon *daemon);
 // Checkpoints every session, closes connections with a reason, ends the threads, frees all.
 void cau_daemon_stop(cau_daemon *daemon);

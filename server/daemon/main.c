@@ -7,6 +7,7 @@
 #include <unistd.h>
 
 #include "config/config.h"
+#include "config/setting.h"
 #include "daemon/daemon.h"
 #include "log/log.h"
 
@@ -18,6 +19,7 @@ static void block_signals(sigset_t *signals)
 	sigemptyset(signals);
 	sigaddset(signals, SIGTERM);
 	sigaddset(signals, SIGINT);
+	sigaddset(signals, SIGHUP);
 	pthread_sigmask(SIG_BLOCK, signals, NULL); // every thread made later inherits it
 	signal(SIGPIPE, SIG_IGN);
 	signal(SIGXFSZ, SIG_IGN); // a file that may not grow is the store's to answer
@@ -38,7 +40,38 @@ static void print_ready(const cau_config *config)
 	fflush(stdout);
 }
 
-static int run(cau_config *config, bool json)
+// What the program was called with, and what that made of the settings at the start.
+typedef struct call {
+	int argument_count;
+	char **arguments;
+	cau_config settings;
+} call;
+
+// Of the settings the level of the log follows at once; others that have changed in the file need a
+// restart, which is said.
+static void reload_settings(call *called)
+{
+	cau_config now;
+	cau_config_request request;
+	cau_error error = {0};
+	cau_status status =
+		cau_config_load(&now, &request, called->argument_count, called->arguments, environ, &error);
+	if (!status && !cau_log_set_level(now.log_level))
+		status = cau_fail(&error, CAU_BAD_VALUE, "log_level", "there is no level `%.20s`",
+		                  now.log_level);
+	if (status) {
+		cau_log(CAU_LOG_ERROR, NULL, "reload_failed",
+		        "setting=%s status=%s file=\"%s\" reason=\"%s\" kept=true", error.path,
+		        cau_status_name(status), error.file, error.reason);
+		return;
+	}
+	for (size_t i = 0; i < cau_setting_count; i++)
+		if (strcmp(cau_settings[i].name, "log_level") != 0 &&
+		    !cau_setting_same(&cau_settings[i], &called->settings, &now))
+			cau_log(CAU_LOG_WARNING, NULL, "needs_restart", "setting=%s", cau_settings[i].name);
+}
+
+static int run(cau_config *config, bool json, call *called)
 {
 	sigset_t signals;
 	cau_error error = {0};
@@ -49,9 +82,15 @@ static int run(cau_config *config, bool json)
 	if (json)
 		print_ready(config);
 	int signal_number = 0;
-	while (signal_number != SIGTERM && signal_number != SIGINT)
+	while (signal_number != SIGTERM && signal_number != SIGINT) {
+		signal_number = 0;
 		if (cau_daemon_wait(daemon, &signals, &signal_number))
 			break;
+		if (signal_number == SIGHUP) {
+			reload_settings(called);
+			cau_daemon_reload(daemon);
+		}
+	}
 	cau_log(CAU_LOG_NOTICE, NULL, "ending", "signal=%d", signal_number);
 	cau_daemon_stop(daemon);
 	cau_log(CAU_LOG_NOTICE, NULL, "ended", "pid=%d", getpid());
@@ -84,5 +123,6 @@ int main(int argument_count, char **arguments)
 		fail("bad_settings", &error);
 		return EXIT_USAGE;
 	}
-	return run(&config, request.json);
+	call called = {argument_count, arguments, config};
+	return run(&config, request.json, &called);
 }

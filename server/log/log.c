@@ -2,6 +2,7 @@
 #include "log/log.h"
 
 #include <stdarg.h>
+#include <stdatomic.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
@@ -19,13 +20,13 @@ static const struct {
 #undef X
 };
 
-static cau_log_level least_level = CAU_LOG_INFO;
+static atomic_int least_level = CAU_LOG_INFO;
 
 bool cau_log_set_level(const char *name)
 {
 	for (int i = 0; i < CAU_LOG_LEVEL_COUNT; i++)
 		if (strcmp(levels[i].name, name) == 0) {
-			least_level = (cau_log_level)i;
+			least_level = i;
 			return true;
 		}
 	return false;
@@ -52,7 +53,7 @@ static void add(cau_log_line *line, const char *key, const char *value)
 
 void cau_log(cau_log_level level, const char *session, const char *event, const char *format, ...)
 {
-	if (level < least_level)
+	if ((int)level < least_level)
 		return;
 	cau_log_line line = {.bytes = 0};
 	write_head(&line, level);

@@ -21,7 +21,7 @@ typedef enum cau_log_level {
 		CAU_LOG_LEVEL_COUNT
 } cau_log_level;
 
-// Sets the least level logged; false if there is no such level. Call before threads start.
+// Sets the least level logged; false if there is no such level. Any thread.
 bool cau_log_set_level(const char *name);
 
 // Logs one line. `session` may be NULL. `format` is the `key=value` tail and may be empty; what is

@@ -87,6 +87,7 @@ void cau_call_hello(cau_call *call)
 		refuse(call, CAU_RPC_UNAUTHORIZED, CAU_CLOSE_UNAUTHORIZED, "the token is not known");
 		return;
 	}
+	peer->grant = cau_auth_grant(service->auth, params.token, strlen(params.token));
 	cau_asker *asker = &peer->client.asker;
 	asker->role = params.has_role && params.role < (int32_t)role ? (cau_role)params.role : role;
 	asker->deadline_s = service->config->browser_deadline_s;

@@ -35,7 +35,8 @@ typedef struct cau_outgoing {
 typedef struct cau_peer {
 	cau_service *service;
 	cau_connection *connection;
-	bool greeted; // hello was answered
+	bool greeted;   // hello was answered
+	uint64_t grant; // of the token that it came with
 	cau_client client;
 	char session[CAU_NAME_BYTES]; // of the URL
 	int malformed;
@@ -69,7 +70,7 @@ struct cau_service {
 	cau_hub *hub;
 	cau_store *store;
 	cau_network *network;
-	atomic_bool draining, frames_waiting;
+	atomic_bool draining, frames_waiting, tokens_changed;
 	atomic_ulong ticks;
 	pthread_mutex_t mutex; // guards the posts
 	cau_post *first, *last;

@@ -192,9 +192,43 @@ static void want_frames(cau_service *service)
 			cau_connection_want_frame(c);
 }
 
+// Energy goes off at once, not when the peer has read the close frame. Its tools are kept for it as
+// after any lost connection: who gets a new token may come back to them.
+static void revoke(cau_service *service, cau_peer *peer, const char *reason)
+{
+	cau_hub_detach(service->hub, peer->client.asker.client, peer->connection->id);
+	peer->greeted = false;
+	cau_log(CAU_LOG_NOTICE, NULL, "token_revoked", "connection=%llu client=%u reason=\"%s\"",
+	        (unsigned long long)peer->connection->id, peer->client.asker.client, reason);
+	cau_connection_close(peer->connection, CAU_CLOSE_UNAUTHORIZED, reason);
+}
+
+static void check_tokens(cau_service *service)
+{
+	for (cau_connection *c = cau_network_first(service->network); c; c = c->next) {
+		cau_peer *peer = cau_peer_of(c);
+		cau_role role;
+		if (!peer->greeted)
+			continue;
+		if (!cau_auth_grant_role(service->auth, peer->grant, &role))
+			revoke(service, peer, "the token was taken back");
+		else if (role < peer->client.asker.role)
+			revoke(service, peer, "the token's role is less than it was: connect again");
+	}
+}
+
+void cau_service_check_tokens(cau_service *service)
+{
+	service->tokens_changed = true;
+	if (service->network)
+		cau_network_wake(service->network);
+}
+
 static void on_woken(void *user)
 {
 	cau_service *service = user;
+	if (atomic_exchange(&service->tokens_changed, false))
+		check_tokens(service);
 	cau_service_read_posts(service);
 	if (atomic_exchange(&service->frames_waiting, false))
 		want_frames(service);

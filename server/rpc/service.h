@@ -17,6 +17,9 @@ void cau_service_destroy(cau_service *service);
 
 // What the network calls.
 cau_network_handler cau_service_handler(cau_service *service);
+// Soon, on the network thread: closes connections whose token was taken back, or has a lesser role
+// than they have. Any thread.
+void cau_service_check_tokens(cau_service *service);
 // Once the network exists.
 void cau_service_set_network(cau_service *service, cau_network *network);
 // Counts up while the network thread lives, ten times a second.

@@ -4,6 +4,7 @@
 #include <setjmp.h>
 #include <stdarg.h>
 #include <stddef.h>
+#include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 #include <sys/stat.h>
@@ -116,6 +117,103 @@ static void without_tokens_everybody_is_admin(void **state)
 	cau_auth_destroy(auth);
 }
 
+static char reload_file[64];
+static cau_config reload_config;
+
+static void write_tokens(const char *text, mode_t mode)
+{
+	FILE *file = fopen(reload_file, "w");
+	assert_non_null(file);
+	fputs(text, file);
+	assert_int_equal(fclose(file), 0);
+	assert_int_equal(chmod(reload_file, mode), 0);
+}
+
+static int begin_reload(void **state)
+{
+	strcpy(reload_file, "/tmp/cautery-tokens-XXXXXX");
+	close(mkstemp(reload_file));
+	reload_config = settings();
+	cau_config_set(&reload_config, "tokens", reload_file, NULL);
+	write_tokens("admin 0123456789abcdef\noperate fedcba9876543210\n", 0600);
+	return cau_auth_create((cau_auth **)state, &reload_config, NULL);
+}
+
+static int end_reload(void **state)
+{
+	cau_auth_destroy(*state);
+	return unlink(reload_file);
+}
+
+// A grant lives as long as its token is in the file, whatever its line and role.
+static void a_grant_follows_its_token(void **state)
+{
+	cau_auth *auth = *state;
+	cau_role role;
+	uint64_t first = cau_auth_grant(auth, "0123456789abcdef", 16);
+	uint64_t second = cau_auth_grant(auth, "fedcba9876543210", 16);
+	assert_true(first && second && first != second);
+	assert_int_equal(cau_auth_grant(auth, "fedcba9876543211", 16), 0);
+	write_tokens("# turned\nview fedcba9876543210\nadmin newnewnewnewnewnew\n", 0600);
+	assert_int_equal(cau_auth_reload(auth, &reload_config, NULL), CAU_OK);
+	assert_false(cau_auth_grant_role(auth, first, &role));
+	assert_true(cau_auth_grant_role(auth, second, &role) && role == CAU_ROLE_VIEW);
+	assert_false(cau_auth_grant_role(auth, 0, &role));
+	assert_false(cau_auth_role(auth, "0123456789abcdef", 16, &role));
+	write_tokens("admin 0123456789abcdef\n", 0600); // given anew: whoever had it before is gone
+	assert_int_equal(cau_auth_reload(auth, &reload_config, NULL), CAU_OK);
+	assert_false(cau_auth_grant_role(auth, first, &role));
+	assert_true(cau_auth_grant(auth, "0123456789abcdef", 16) > second);
+}
+
+// Whatever is wrong with the file, the tokens stay, and the error says where it is.
+static void a_broken_file_changes_nothing(void **state)
+{
+	cau_auth *auth = *state;
+	char long_line[600];
+	memset(long_line, '#', sizeof long_line);
+	long_line[sizeof long_line - 1] = 0;
+	const struct {
+		const char *text;
+		mode_t mode;
+		const char *reason;
+	} broken[] = {
+		{"admin 0123456789abcdef\n\nroot fedcba9876543210\n", 0600, "line 3"},
+		{"view aaaaaaaaaaaaaaaa\nview short\n", 0600, "line 2"},
+		{"view\n", 0600, "line 1"},
+		{long_line, 0600, "line 1 is too long"},
+		{"# none\n", 0600, "has no token"},
+		{"", 0600, "has no token"},
+		{"view aaaaaaaaaaaaaaaa\n", 0640, "open to others"},
+	};
+	for (size_t i = 0; i < sizeof broken / sizeof broken[0]; i++) {
+		cau_error error = {0};
+		write_tokens(broken[i].text, broken[i].mode);
+		assert_int_not_equal(cau_auth_reload(auth, &reload_config, &error), CAU_OK);
+		assert_non_null(strstr(error.reason, broken[i].reason));
+		assert_string_equal(error.file, reload_file);
+		assert_true(role_is(auth, "0123456789abcdef", CAU_ROLE_ADMIN));
+		assert_true(role_is(auth, "fedcba9876543210", CAU_ROLE_OPERATE));
+	}
+	cau_config elsewhere = reload_config;
+	cau_config_set(&elsewhere, "tokens", "/nowhere/tokens", NULL);
+	assert_int_equal(cau_auth_reload(auth, &elsewhere, NULL), CAU_IO);
+	assert_true(role_is(auth, "0123456789abcdef", CAU_ROLE_ADMIN));
+}
+
+static void without_tokens_a_grant_is_everybodys(void **state)
+{
+	(void)state;
+	cau_auth *auth;
+	cau_role role;
+	cau_config config = settings();
+	assert_int_equal(cau_auth_create(&auth, &config, NULL), CAU_OK);
+	uint64_t grant = cau_auth_grant(auth, "", 0);
+	assert_int_equal(cau_auth_reload(auth, &config, NULL), CAU_OK);
+	assert_true(cau_auth_grant_role(auth, grant, &role) && role == CAU_ROLE_ADMIN);
+	cau_auth_destroy(auth);
+}
+
 int main(void)
 {
 	const struct CMUnitTest tests[] = {
@@ -124,6 +222,9 @@ int main(void)
 		cmocka_unit_test(tokens_have_roles),
 		cmocka_unit_test(wrong_token_files_are_refused),
 		cmocka_unit_test(without_tokens_everybody_is_admin),
+		cmocka_unit_test_setup_teardown(a_grant_follows_its_token, begin_reload, end_reload),
+		cmocka_unit_test_setup_teardown(a_broken_file_changes_nothing, begin_reload, end_reload),
+		cmocka_unit_test(without_tokens_a_grant_is_everybodys),
 	};
 	return cmocka_run_group_tests(tests, NULL, NULL);
 }
