@@ -10,12 +10,28 @@ enum { RECEIVE_BYTES = 65536 };
 
 #define SUBPROTOCOL "cautery.v1"
 
-static void not_opened(cau_client *client, const char *in, size_t bytes)
+// What an HTTP answer that is no upgrade says: its status, and the reason that the daemon gives in
+// a header, since libwebsockets shows no body of such an answer. False if there was none.
+static bool read_refusal(struct lws *wsi, char *text, size_t bytes)
 {
-	char reason[320];
-	snprintf(reason, sizeof reason, "no connection to %.160s port %d: %.*s", client->url.host,
-	         client->url.port, in && bytes < 120 ? (int)bytes : 16,
-	         in && bytes < 120 ? in : "nothing answered");
+	static const char header[] = "cautery-reason:";
+	char reason[200];
+	unsigned status = wsi ? lws_http_client_http_response(wsi) : 0;
+	if (status < 200) // none, or an upgrade
+		return false;
+	if (lws_hdr_custom_copy(wsi, reason, sizeof reason, header, sizeof header - 1) <= 0)
+		snprintf(reason, sizeof reason, "no reason given; is this a cauteryd?");
+	snprintf(text, bytes, "it answered HTTP %u: %s", status, reason);
+	return true;
+}
+
+static void not_opened(cau_client *client, struct lws *wsi, const char *in, size_t bytes)
+{
+	char reason[480], why[260] = "nothing answered";
+	if (!read_refusal(wsi, why, sizeof why) && in && bytes < 120)
+		snprintf(why, sizeof why, "%.*s", (int)bytes, in);
+	snprintf(reason, sizeof reason, "no connection to %.160s port %d: %s", client->url.host,
+	         client->url.port, why);
 	client->wsi = NULL;
 	cau_client_lost(client, reason);
 }
@@ -43,7 +59,7 @@ void cau_socket_open(cau_client *client)
 	client->close_reason[0] = 0;
 	client->wsi = lws_client_connect_via_info(&info);
 	if (!client->wsi && client->condition == CAU_CLIENT_CONNECTING)
-		not_opened(client, NULL, 0);
+		not_opened(client, NULL, NULL, 0);
 }
 
 void cau_socket_cut(cau_client *client)
@@ -168,7 +184,7 @@ static int on_event(struct lws *wsi, enum lws_callback_reasons reason, void *use
 		cau_client_opened(client);
 		return 0;
 	case LWS_CALLBACK_CLIENT_CONNECTION_ERROR:
-		not_opened(client, in, bytes);
+		not_opened(client, wsi, in, bytes);
 		return 0;
 	case LWS_CALLBACK_CLIENT_RECEIVE:
 		return receive(client, in, bytes);

@@ -10,14 +10,51 @@
 enum { HEAD_BYTES = 2048, CHUNK_BYTES = 16384 };
 
 static const char content_security_policy[] =
-	"default-src 'none'; script-src 'self' 'wasm-unsafe-eval'; worker-src 'self'; "
-	"connect-src 'self'; img-src 'self' data: blob:; style-src 'self'; font-src 'self'; "
+	"default-src 'none'; script-src 'self' 'wasm-unsafe-eval'; worker-src "
+	"'self'; "
+	"connect-src 'self'; img-src 'self' data: blob:; style-src 'self'; "
+	"font-src 'self'; "
 	"base-uri 'none'; frame-ancestors 'none'";
 
 typedef struct head {
 	unsigned char bytes[LWS_PRE + HEAD_BYTES];
 	unsigned char *at, *end;
 } head;
+
+// RFC 9110's words for what this daemon answers. libwebsockets leaves some out,
+// and answers an upgrade in HTTP/1.0, since it has not read the version by
+// then.
+static const char *phrase_of(unsigned status)
+{
+	static const struct {
+		unsigned status;
+		const char *phrase;
+	} phrases[] = {
+		{200, "OK"},
+		{304, "Not Modified"},
+		{400, "Bad Request"},
+		{401, "Unauthorized"},
+		{403, "Forbidden"},
+		{404, "Not Found"},
+		{405, "Method Not Allowed"},
+		{406, "Not Acceptable"},
+		{421, "Misdirected Request"},
+		{426, "Upgrade Required"},
+		{503, "Service Unavailable"},
+	};
+	for (size_t i = 0; i < sizeof phrases / sizeof *phrases; i++)
+		if (phrases[i].status == status)
+			return phrases[i].phrase;
+	return "Unknown";
+}
+
+static int add_status(struct lws *wsi, head *h, unsigned status)
+{
+	char line[80];
+	int bytes = snprintf(line, sizeof line, "HTTP/1.1 %u %s", status, phrase_of(status));
+	return lws_add_http_header_by_name(wsi, NULL, (const unsigned char *)line, bytes, &h->at,
+	                                   h->end);
+}
 
 static int add(struct lws *wsi, head *h, const char *name, const char *value)
 {
@@ -40,6 +77,10 @@ static int add_all(struct lws *wsi, head *h, const cau_http_answer *answer)
 		{"cross-origin-resource-policy:", "same-origin"},
 		{"content-encoding:", answer->content_encoding},
 		{answer->extra_name, answer->extra_value},
+		{"cautery-reason:", answer->reason},
+		{"upgrade:", answer->status == 426 ? "websocket" : NULL},
+		{"sec-websocket-version:", answer->status == 426 ? "13" : NULL},
+		{"connection:", answer->last ? (answer->status == 426 ? "upgrade, close" : "close") : NULL},
 	};
 	for (size_t i = 0; i < sizeof headers / sizeof headers[0]; i++)
 		if (headers[i].name && headers[i].value && add(wsi, h, headers[i].name, headers[i].value))
@@ -55,7 +96,7 @@ int cau_http_answer_start(struct lws *wsi, cau_http_body *body, const cau_http_a
 	cau_http_body_finish(body);
 	bool head_only = lws_hdr_total_length(wsi, WSI_TOKEN_HEAD_URI) > 0;
 	*body = (cau_http_body){answer->bytes, head_only ? 0 : answer->byte_count, 0, answer->owned};
-	if (lws_add_http_header_status(wsi, answer->status, &h.at, h.end) || add_all(wsi, &h, answer) ||
+	if (add_status(wsi, &h, answer->status) || add_all(wsi, &h, answer) ||
 	    lws_add_http_header_content_length(wsi, answer->byte_count, &h.at, h.end) ||
 	    lws_finalize_write_http_header(wsi, h.bytes + LWS_PRE, &h.at, h.end))
 		return -1;
@@ -80,16 +121,25 @@ int cau_http_answer_continue(struct lws *wsi, cau_http_body *body)
 	return lws_http_transaction_completed(wsi) ? -1 : 0;
 }
 
-int cau_http_answer_reason(struct lws *wsi, cau_http_body *body, unsigned status, const char *name,
-                           const char *reason)
+int cau_http_answer_refusal(struct lws *wsi, cau_http_body *body, const cau_http_refusal *refusal,
+                            bool last)
 {
-	char *text = malloc(512);
+	enum { TEXT_BYTES = 1024 };
+	char *text = malloc(TEXT_BYTES);
 	if (!text)
 		return -1;
+	// All of it are the program's own words: nothing that would have to be
+	// escaped.
 	int length =
-		snprintf(text, 512, "{\"error\": \"%.60s\", \"reason\": \"%.400s\"}\n", name, reason);
-	cau_http_answer answer = {.status = status,
+		snprintf(text, TEXT_BYTES,
+	             "{\"status\": %u, \"error\": \"%s\", \"where\": "
+	             "\"%s\", \"reason\": \"%s\", "
+	             "\"remedy\": \"%s\"}\n",
+	             refusal->status, refusal->name, refusal->where, refusal->reason, refusal->remedy);
+	cau_http_answer answer = {.status = refusal->status,
 	                          .content_type = "application/json",
+	                          .reason = refusal->reason,
+	                          .last = last,
 	                          .bytes = text,
 	                          .byte_count = (size_t)length,
 	                          .owned = text};

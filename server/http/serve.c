@@ -77,19 +77,25 @@ static int serve_file(struct lws *wsi, cau_http_body *body, const cau_static_fil
 
 int cau_http_serve(cau_network *network, struct lws *wsi, cau_http_body *body, const char *path)
 {
-	const char *name, *reason;
-	unsigned refused = cau_request_check(network, wsi, &name, &reason);
-	if (refused)
-		return cau_http_answer_reason(wsi, body, refused, name, reason);
+	static const cau_http_refusal bad_method = {405, "bad_method", "the method",
+	                                            "only GET and HEAD are served", "use GET"};
+	static const cau_http_refusal no_upgrade = {426, "bad_handshake", "the path",
+	                                            "this is for WebSocket",
+	                                            "connect with a WebSocket client"};
+	static const cau_http_refusal not_found = {404, "not_found", "the path",
+	                                           "nothing has this path", "see the page at /"};
+	cau_http_refusal refusal = cau_request_check(network, wsi);
+	if (refusal.status)
+		return cau_http_answer_refusal(wsi, body, &refusal, false);
 	if (lws_hdr_total_length(wsi, WSI_TOKEN_GET_URI) <= 0 &&
 	    lws_hdr_total_length(wsi, WSI_TOKEN_HEAD_URI) <= 0)
-		return cau_http_answer_reason(wsi, body, 405, "bad_method", "only GET and HEAD are served");
+		return cau_http_answer_refusal(wsi, body, &bad_method, false);
 	if (is_page(path))
 		return serve_page(network, wsi, body, path);
 	if (strcmp(path, CAU_WS_PATH) == 0)
-		return cau_http_answer_reason(wsi, body, 426, "bad_handshake", "this is for WebSocket");
+		return cau_http_answer_refusal(wsi, body, &no_upgrade, false);
 	const cau_static_file *file = cau_static_files_find(network->def.files, path);
 	if (!file)
-		return cau_http_answer_reason(wsi, body, 404, "not_found", "nothing has this path");
+		return cau_http_answer_refusal(wsi, body, &not_found, false);
 	return serve_file(wsi, body, file);
 }

@@ -8,6 +8,7 @@
 
 #include "buffer/buffer.h"
 #include "cautery/rpc_errors.h"
+#include "transport_ws/frame_reader.h"
 
 struct lws;
 typedef struct cau_network cau_network;
@@ -18,6 +19,14 @@ enum {
 	CAU_CONTROL_BYTES_MAX = 16 << 20, // replies that wait for one connection; more closes it
 };
 
+// Who reads the socket, see input.c.
+typedef enum cau_reading {
+	CAU_READING_HELD, // nobody, while the handshake is answered
+	CAU_READING_LIBRARY,
+	CAU_READING_OURS,
+	CAU_READING_ENDED,
+} cau_reading;
+
 typedef struct cau_connection {
 	uint64_t id; // never used again
 	cau_network *network;
@@ -25,30 +34,41 @@ typedef struct cau_connection {
 	struct cau_connection *previous, *next;
 	void *peer; // the handler's own
 	double opened_s, last_taken_s;
-	bool served;           // hello was answered: the hello timeout is off
-	bool first_frame_seen; // and it was masked
+	bool served; // hello was answered: the hello timeout is off
 	int descriptor;
 	char address[CAU_ADDRESS_BYTES]; // the peer's, as text; "" if nobody knows it
 
-	// the message that is coming in
-	unsigned char *message; // malloc'ed
-	size_t message_bytes, message_capacity;
-	// messages of the present second
+	// what comes in
+	cau_reading reading;
+	cau_frame_reader reader;
+	double heard_s; // when something came last
+	// messages, control frames and short fragments of the present second
 	double rate_start_s;
 	int64_t rate_count;
 
-	// what goes out: replies first, then frames
+	// what goes out: an answer to a ping, then replies, then frames
+	bool pong_due;
+	unsigned char pong[CAU_CONTROL_FRAME_BYTES];
+	size_t pong_bytes;
 	cau_buffer *control_first, *control_last;
 	size_t control_bytes;
-	int closing;     // a close code, 0 while open
-	bool close_sent; // what still comes in is read and dropped until the peer has closed
+
+	// how it ends, see closing.c
+	int closing; // a close code, 0 while open
 	char closing_reason[CAU_CLOSE_REASON_BYTES];
+	bool close_sent; // what still comes in is read and dropped until the peer has
+	                 // ended
+	bool peer_ended; // it sends no more
+	bool left;       // the handler has been told; the connection is among the lingering
+	                 // ones
+	bool resetting;
 } cau_connection;
 
-// Queues a text message; takes the buffer. A connection whose replies pile up beyond
-// CAU_CONTROL_BYTES_MAX is closed.
+// Queues a text message; takes the buffer. A connection whose replies pile up
+// beyond CAU_CONTROL_BYTES_MAX is closed.
 void cau_connection_send(cau_connection *connection, cau_buffer *buffer);
 // Asks for next_frame to be called when the socket can take more.
 void cau_connection_want_frame(cau_connection *connection);
-// Sends what is queued, then closes. The first reason stands; NULL is the code's own.
+// Sends what is queued, then closes; the handler hears of the end a moment
+// later, not from within. The first reason stands; NULL is the code's own.
 void cau_connection_close(cau_connection *connection, cau_close_code code, const char *reason);

@@ -1,7 +1,10 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// libwebsockets lets pass what RFC 6455 and our rules forbid: a missing subprotocol, other
-// versions, any Origin and Host. This is the door.
+// libwebsockets lets pass what RFC 6455 and our rules forbid (a missing
+// subprotocol, other versions, any Origin and Host), and ends without an answer
+// what it cannot use (no key, no Connection). This is the door: whoever is
+// refused is told what, where, and what to do.
 #include <string.h>
+#include <strings.h>
 
 #include "transport_ws/internal.h"
 
@@ -14,67 +17,112 @@ bool cau_request_header(struct lws *wsi, enum lws_token_indexes token, char *tex
 	return lws_hdr_copy(wsi, text, (int)capacity, token) > 0;
 }
 
-unsigned cau_request_check(cau_network *network, struct lws *wsi, const char **name,
-                           const char **reason)
+cau_http_refusal cau_request_check(cau_network *network, struct lws *wsi)
 {
+	static const cau_http_refusal served = {0};
+	static const cau_http_refusal bad_host = {
+		421, "bad_host", "Host", "the Host header does not name this daemon (setting hosts)",
+		"use an address that the daemon listens on, or add the name to its "
+		"setting hosts"};
+	static const cau_http_refusal bad_origin = {
+		403, "bad_origin", "Origin",
+		"pages of this Origin may not use this daemon (setting origins)",
+		"open the daemon's own page, or add the page's Origin to its setting "
+		"origins"};
 	char host[HEADER_BYTES], origin[HEADER_BYTES];
 	const cau_config *config = network->def.config;
 	if (!cau_request_header(wsi, WSI_TOKEN_HOST, host, sizeof host) ||
-	    !cau_auth_host_allowed(config, host)) {
-		*name = "bad_host";
-		*reason = "the Host header does not name this daemon (setting hosts)";
-		return 421;
-	}
+	    !cau_auth_host_allowed(config, host))
+		return bad_host;
 	bool present = lws_hdr_total_length(wsi, WSI_TOKEN_ORIGIN) > 0;
 	if (present && (!cau_request_header(wsi, WSI_TOKEN_ORIGIN, origin, sizeof origin) ||
-	                !cau_auth_origin_allowed(config, origin, host))) {
-		*name = "bad_origin";
-		*reason = "pages of this Origin may not use this daemon (setting origins)";
-		return 403;
-	}
-	return 0;
+	                !cau_auth_origin_allowed(config, origin, host)))
+		return bad_origin;
+	return served;
 }
 
-// Whether the comma-separated list offers our subprotocol.
-static bool offers_subprotocol(const char *list)
+// Whether the comma-separated list names `wanted`, in any case.
+static bool names(const char *list, const char *wanted)
 {
-	size_t length = strlen(CAU_SUBPROTOCOL);
+	size_t length = strlen(wanted);
 	while (*list) {
 		list += strspn(list, " ,\t");
 		size_t item = strcspn(list, " ,\t");
-		if (item == length && strncmp(list, CAU_SUBPROTOCOL, length) == 0)
+		if (item == length && strncasecmp(list, wanted, length) == 0)
 			return true;
 		list += item;
 	}
 	return false;
 }
 
-unsigned cau_handshake_check(cau_network *network, struct lws *wsi, const char **name,
-                             const char **reason)
+// ---- what an upgrade must bring
+static bool has_path(struct lws *wsi)
 {
 	char text[HEADER_BYTES];
-	unsigned status = cau_request_check(network, wsi, name, reason);
-	if (status)
-		return status;
-	*name = "bad_handshake";
-	if (!cau_request_header(wsi, WSI_TOKEN_GET_URI, text, sizeof text) ||
-	    strcmp(text, CAU_WS_PATH) != 0) {
-		*reason = "WebSocket is at " CAU_WS_PATH;
-		return 404;
-	}
-	if (!cau_request_header(wsi, WSI_TOKEN_VERSION, text, sizeof text) || strcmp(text, "13") != 0) {
-		*reason = "Sec-WebSocket-Version must be 13";
-		return 426;
-	}
-	if (!cau_request_header(wsi, WSI_TOKEN_PROTOCOL, text, sizeof text) ||
-	    !offers_subprotocol(text)) {
-		*reason = "Sec-WebSocket-Protocol must offer " CAU_SUBPROTOCOL;
-		return 400;
-	}
-	if (network->counts.connections >= (uint64_t)network->def.config->max_connections) {
-		*name = "limit";
-		*reason = "too many connections (setting max_connections)";
-		return 503;
-	}
-	return 0;
+	return cau_request_header(wsi, WSI_TOKEN_GET_URI, text, sizeof text) &&
+	       strcmp(text, CAU_WS_PATH) == 0;
+}
+
+static bool has_upgrade(struct lws *wsi)
+{
+	char upgrade[HEADER_BYTES], connection[HEADER_BYTES];
+	return cau_request_header(wsi, WSI_TOKEN_UPGRADE, upgrade, sizeof upgrade) &&
+	       names(upgrade, "websocket") &&
+	       cau_request_header(wsi, WSI_TOKEN_CONNECTION, connection, sizeof connection) &&
+	       names(connection, "upgrade");
+}
+
+static bool has_version(struct lws *wsi)
+{
+	char text[HEADER_BYTES];
+	return cau_request_header(wsi, WSI_TOKEN_VERSION, text, sizeof text) && strcmp(text, "13") == 0;
+}
+
+// 16 bytes in base 64: 22 digits and two signs of filling.
+static bool has_key(struct lws *wsi)
+{
+	static const char digits[] = "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789+/";
+	char text[HEADER_BYTES];
+	return cau_request_header(wsi, WSI_TOKEN_KEY, text, sizeof text) && strlen(text) == 24 &&
+	       strspn(text, digits) == 22 && strcmp(text + 22, "==") == 0;
+}
+
+// A longer list of subprotocols than this libwebsockets does not read.
+static bool has_subprotocol(struct lws *wsi)
+{
+	enum { LIST_BYTES = 128 };
+	char text[LIST_BYTES];
+	return cau_request_header(wsi, WSI_TOKEN_PROTOCOL, text, sizeof text - 1) &&
+	       names(text, CAU_SUBPROTOCOL);
+}
+
+cau_http_refusal cau_handshake_check(cau_network *network, struct lws *wsi)
+{
+	static const struct {
+		bool (*passes)(struct lws *wsi);
+		cau_http_refusal refusal;
+	} checks[] = {
+		{has_path,
+	     {404, "bad_handshake", "the path", "WebSocket is at " CAU_WS_PATH,
+	      "connect to " CAU_WS_PATH ", with ?session=ID or without"}},
+		{has_version,
+	     {426, "bad_handshake", "Sec-WebSocket-Version", "Sec-WebSocket-Version must be 13",
+	      "use a client that speaks RFC 6455"}},
+		{has_upgrade,
+	     {400, "bad_handshake", "Connection and Upgrade",
+	      "Connection must say upgrade, and Upgrade websocket",
+	      "let proxies between pass both headers on"}},
+		{has_key,
+	     {400, "bad_handshake", "Sec-WebSocket-Key",
+	      "Sec-WebSocket-Key must be 16 bytes in base 64", "use a client that speaks RFC 6455"}},
+		{has_subprotocol,
+	     {400, "bad_handshake", "Sec-WebSocket-Protocol",
+	      "Sec-WebSocket-Protocol must offer " CAU_SUBPROTOCOL " among at most 126 bytes",
+	      "offer the subprotocol " CAU_SUBPROTOCOL}},
+	};
+	cau_http_refusal refusal = cau_request_check(network, wsi);
+	for (size_t i = 0; i < sizeof checks / sizeof *checks && !refusal.status; i++)
+		if (!checks[i].passes(wsi))
+			refusal = checks[i].refusal;
+	return refusal;
 }

@@ -4,21 +4,20 @@
 #include "log/log.h"
 #include "transport_ws/internal.h"
 
-// Answers an upgrade request that is refused. Above 0: we have answered.
+// Below 0: the upgrade was refused, and the connection ends behind the answer.
 static int confirm_upgrade(cau_network *network, struct lws *wsi)
 {
-	const char *name, *reason;
 	cau_http_body body = {0};
-	unsigned status = cau_handshake_check(network, wsi, &name, &reason);
-	if (!status)
+	cau_http_refusal refusal = cau_handshake_check(network, wsi);
+	if (!refusal.status)
 		return 0;
 	network->counts.refused_handshakes++;
-	cau_log(CAU_LOG_INFO, NULL, "handshake_refused", "status=%u error=%s", status, name);
-	if (cau_http_answer_reason(wsi, &body, status, name, reason))
-		return -1;
-	cau_http_answer_continue(wsi, &body);
+	cau_log(CAU_LOG_INFO, NULL, "handshake_refused", "status=%u error=%s reason=\"%s\"",
+	        refusal.status, refusal.name, refusal.reason);
+	if (!cau_http_answer_refusal(wsi, &body, &refusal, true))
+		cau_http_answer_continue(wsi, &body);
 	cau_http_body_finish(&body);
-	return 1;
+	return -1;
 }
 
 static void close_all(cau_network *network)

@@ -15,7 +15,8 @@
 
 enum {
 	HEADER_BYTES = 512,
-	NOTSENT_LOWAT_BYTES = 16384, // see first_frame.c's neighbour `opened` for the reason
+	NOTSENT_LOWAT_BYTES = 16384, // see set_socket in connection.c
+	CAU_CLOSE_FRAME_BYTES = 4 + CAU_CLOSE_REASON_BYTES,
 };
 
 struct cau_network {
@@ -29,19 +30,18 @@ struct cau_network {
 	atomic_bool woken, ending;
 	cau_close_code ending_code;
 	double ending_until_s, ticked_s;
-	int first_frames; // epoll descriptor, see first_frame.c
+	int input; // epoll descriptor, see input.c
 	uint64_t last_id;
-	cau_connection *connections;
+	cau_connection *connections; // open ones
+	cau_connection *lingering;   // ending ones, which the handler has left
 	cau_network_counts counts;
 	lws_sorted_usec_list_t sul;
 };
 
-// Checks an upgrade request. Returns 0, or an HTTP status with the reason.
-unsigned cau_handshake_check(cau_network *network, struct lws *wsi, const char **name,
-                             const char **reason);
-// Host and Origin of any request. Returns 0, or an HTTP status with the reason.
-unsigned cau_request_check(cau_network *network, struct lws *wsi, const char **name,
-                           const char **reason);
+// Checks an upgrade request. Status 0: it may go on.
+cau_http_refusal cau_handshake_check(cau_network *network, struct lws *wsi);
+// Host and Origin of any request. Status 0: they are fine.
+cau_http_refusal cau_request_check(cau_network *network, struct lws *wsi);
 // Copies a header; false if it is absent or too long.
 bool cau_request_header(struct lws *wsi, enum lws_token_indexes token, char *text, size_t capacity);
 
@@ -50,13 +50,37 @@ int cau_http_callback(struct lws *wsi, enum lws_callback_reasons reason, void *u
                       size_t bytes);
 int cau_ws_callback(struct lws *wsi, enum lws_callback_reasons reason, void *user, void *in,
                     size_t bytes);
-int cau_first_frame_callback(struct lws *wsi, enum lws_callback_reasons reason, void *user,
-                             void *in, size_t bytes);
+int cau_input_callback(struct lws *wsi, enum lws_callback_reasons reason, void *user, void *in,
+                       size_t bytes);
 
-// Watches a new connection's socket for the start of its first frame, see first_frame.c.
-bool cau_first_frame_open(cau_network *network);
-bool cau_first_frame_watch(cau_connection *connection);
-void cau_first_frame_forget(cau_connection *connection);
+// ---- input.c
+bool cau_input_open(cau_network *network);
+bool cau_input_begin(cau_connection *connection);
+// Twice, from callbacks in which the socket can be written; false if the
+// connection must end.
+bool cau_input_take_over(cau_connection *connection);
+void cau_input_end(cau_connection *connection);
+
+// ---- connection.c
+void cau_connection_pong(cau_connection *connection, const void *payload, size_t bytes);
+
+// ---- closing.c
+void cau_connection_link(cau_connection **first, cau_connection *connection);
+void cau_connection_unlink(cau_connection **first, cau_connection *connection);
+// Tells the handler that the connection has ended, once.
+void cau_connection_leave(cau_connection *connection);
+// Its close frame has come; code 0: without one.
+void cau_connection_closed_by_peer(cau_connection *connection, int code);
+// It has shut its side of the socket, or is gone.
+void cau_connection_ended_by_peer(cau_connection *connection);
+void cau_connection_timer(cau_connection *connection);
+// Goes on with the end when the socket can be written. Returns what the
+// callback returns.
+int cau_connection_write_close(cau_connection *connection);
+// libwebsockets is about to end the connection.
+void cau_connection_dropped(cau_connection *connection);
+// Closes one that has not been heard of for long.
+void cau_connection_watch(cau_connection *connection, double now_s);
 
 // Serves a plain HTTP request.
 int cau_http_serve(cau_network *network, struct lws *wsi, cau_http_body *body, const char *path);

@@ -26,15 +26,16 @@ static void set_protocols(cau_network *network)
 		(struct lws_protocols){.name = CAU_SUBPROTOCOL,
 	                           .callback = cau_ws_callback,
 	                           .per_session_data_size = sizeof(cau_connection *)};
-	network->protocols[2] =
-		(struct lws_protocols){.name = "first-frame", .callback = cau_first_frame_callback};
+	network->protocols[2] = (struct lws_protocols){.name = "input", .callback = cau_input_callback};
 }
 
 static cau_status open_context(cau_network *network, cau_error *error)
 {
 	cau_config *config = network->def.config;
 	network->validity.secs_since_valid_ping = (uint16_t)fmax(1, config->ping_s);
-	network->validity.secs_since_valid_hangup = (uint16_t)fmax(3, 3 * config->ping_s);
+	// A connection that is not heard of is closed with a code before (closing.c);
+	// this is for one that sends and answers no ping.
+	network->validity.secs_since_valid_hangup = (uint16_t)fmax(6, 3 * config->ping_s + 3);
 	struct lws_context_creation_info info = {
 		.port = config->port ? (int)config->port : 0,
 		.iface = config->listen,
@@ -43,8 +44,7 @@ static cau_status open_context(cau_network *network, cau_error *error)
 		.uid = -1,
 		.user = network,
 		.retry_and_idle_policy = &network->validity,
-		.options = LWS_SERVER_OPTION_VALIDATE_UTF8 | LWS_SERVER_OPTION_FAIL_UPON_UNABLE_TO_BIND |
-	               LWS_SERVER_OPTION_EXPLICIT_VHOSTS,
+		.options = LWS_SERVER_OPTION_FAIL_UPON_UNABLE_TO_BIND | LWS_SERVER_OPTION_EXPLICIT_VHOSTS,
 	};
 	lws_set_log_level(LLL_ERR | LLL_WARN, log_library);
 	network->context = lws_create_context(&info);
@@ -56,7 +56,7 @@ static cau_status open_context(cau_network *network, cau_error *error)
 		return cau_fail(error, CAU_IO, "port", "cannot listen on %.60s port %lld", config->listen,
 		                (long long)config->port);
 	config->port = lws_get_vhost_listen_port(network->vhost);
-	if (!cau_first_frame_open(network))
+	if (!cau_input_open(network))
 		return cau_fail(error, CAU_IO, NULL, "no epoll descriptor");
 	return CAU_OK;
 }
@@ -68,7 +68,7 @@ cau_status cau_network_create(cau_network **made, const cau_network_def *def, ca
 	if (!network)
 		return cau_fail(error, CAU_NO_MEMORY, NULL, "no memory for the network");
 	network->def = *def;
-	network->first_frames = -1;
+	network->input = -1;
 	set_protocols(network);
 	cau_status status = open_context(network, error);
 	if (status)
@@ -81,7 +81,10 @@ cau_status cau_network_create(cau_network **made, const cau_network_def *def, ca
 static void tick(lws_sorted_usec_list_t *sul)
 {
 	cau_network *network = lws_container_of(sul, cau_network, sul);
+	double now_s = cau_monotonic_s();
 	network->def.handler.tick(network->def.handler.user);
+	for (cau_connection *c = network->connections; c; c = c->next)
+		cau_connection_watch(c, now_s);
 	lws_sul_schedule(network->context, 0, &network->sul, tick, TICK_MS * LWS_US_PER_MS);
 }
 
@@ -90,8 +93,8 @@ static void *serve(void *argument)
 	cau_network *network = argument;
 	cau_thread_set_nice(CAU_NICE_FIRST);
 	lws_sul_schedule(network->context, 0, &network->sul, tick, TICK_MS * LWS_US_PER_MS);
-	while (!network->ending ||
-	       (network->connections && cau_monotonic_s() < network->ending_until_s))
+	while (!network->ending || ((network->connections || network->lingering) &&
+	                            cau_monotonic_s() < network->ending_until_s))
 		if (lws_service(network->context, 0) < 0)
 			break;
 	lws_sul_schedule(network->context, 0, &network->sul, NULL, LWS_SET_TIMER_USEC_CANCEL);
@@ -128,8 +131,8 @@ void cau_network_destroy(cau_network *network)
 		return;
 	if (network->context)
 		lws_context_destroy(network->context);
-	if (network->first_frames >= 0)
-		close(network->first_frames);
+	if (network->input >= 0)
+		close(network->input);
 	free(network);
 }
 

@@ -49,6 +49,9 @@ function raw(text, then) {
 	});
 }
 
+const PHRASES = {
+	400: 'Bad Request', 403: 'Forbidden', 404: 'Not Found', 421: 'Misdirected Request', 426: 'Upgrade Required',
+};
 const status = (answer) => Number(answer.toString('latin1', 9, 12));
 const closeCode = (answer) => {
 	const frame = answer.subarray(answer.indexOf('\r\n\r\n') + 4);
@@ -72,11 +75,28 @@ for (const [what, change, expected] of [
 	['a foreign Host', { headers: { Host: 'evil.example' } }, 421],
 	['the right Host on another port', { headers: { Host: '127.0.0.1:1' } }, 421],
 	['another path', { path: '/v2' }, 404],
+	['no key', { headers: { 'Sec-WebSocket-Key': null } }, 400],
+	['a key of another length', { headers: { 'Sec-WebSocket-Key': 'c2hvcnQ=' } }, 400],
+	['a key that is no base 64', { headers: { 'Sec-WebSocket-Key': '************************' } }, 400],
+	['no Connection', { headers: { Connection: null } }, 400],
+	['a Connection that keeps alive only', { headers: { Connection: 'keep-alive' } }, 400],
+	['more subprotocols than are read', { headers: { 'Sec-WebSocket-Protocol': `${'x'.repeat(200)}, cautery.v1` } }, 400],
 ])
 	test(`the handshake is refused: ${what}`, async () => {
 		const answer = await raw(request(change));
 		assert.equal(status(answer), expected, answer.toString());
-		assert.match(answer.toString(), /"reason": "[^"]+"/);
+		const [head, body] = answer.toString().split('\r\n\r\n');
+		assert.match(head, new RegExp(`^HTTP/1\\.1 ${expected} ${PHRASES[expected]}\r\n`));
+		assert.match(head, /\r\nconnection: [a-z, ]*close/i);
+		const told = JSON.parse(body);
+		assert.equal(told.status, expected);
+		for (const member of ['error', 'where', 'reason', 'remedy'])
+			assert.match(told[member], /^\w.+$/, `${member} of ${body}`);
+		assert.match(head, new RegExp(`\r\ncautery-reason: ${told.reason.replace(/[()?]/g, '\\$&')}(\r\n|$)`));
+		if (expected === 426) {
+			assert.match(head, /\r\nupgrade: websocket/i);
+			assert.match(head, /\r\nsec-websocket-version: 13/i);
+		}
 		await stillServes();
 	});
 

@@ -1,0 +1,176 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// How connections end. Whoever decides it, the handler is told at once, a close
+// frame goes out behind what was queued, our side of the socket is shut behind
+// that, and what the peer still sends is read and dropped until it shuts its
+// own. A peer that does not do so within CLOSE_WITHIN_S, or is one of more than
+// LINGERING_MOST, is reset: no socket of a closed connection stays.
+#include <netinet/in.h>
+#include <string.h>
+#include <sys/socket.h>
+
+#include "clock/clock.h"
+#include "log/log.h"
+#include "transport_ws/internal.h"
+
+enum {
+	CLOSE_WITHIN_S = 2, // a round trip around the world and a busy peer
+	LINGERING_MOST = 64,
+	UNHEARD_PINGS = 3,
+	CLOSE_FRAME = 0x88,
+	CODE_BYTES = 2,
+};
+
+// ---- lists: open connections are the handler's to see, ending ones are not
+void cau_connection_link(cau_connection **first, cau_connection *c)
+{
+	c->previous = NULL;
+	c->next = *first;
+	if (c->next)
+		c->next->previous = c;
+	*first = c;
+}
+
+void cau_connection_unlink(cau_connection **first, cau_connection *c)
+{
+	if (c->previous)
+		c->previous->next = c->next;
+	else
+		*first = c->next;
+	if (c->next)
+		c->next->previous = c->previous;
+}
+
+// Resets the connection by and by: nothing is delivered any more, nothing stays
+// in the kernel.
+static void reset(cau_connection *c)
+{
+	c->resetting = true;
+	struct linger at_once = {.l_onoff = 1, .l_linger = 0};
+	setsockopt(c->descriptor, SOL_SOCKET, SO_LINGER, &at_once, sizeof at_once);
+	lws_set_timeout(c->wsi, PENDING_TIMEOUT_USER_REASON_BASE, LWS_TO_KILL_ASYNC);
+}
+
+static void bound_lingering(cau_network *network)
+{
+	cau_connection *oldest = NULL;
+	int count = 0;
+	for (cau_connection *c = network->lingering; c; c = c->next) {
+		oldest = c->resetting ? oldest : c; // new ones come first
+		count += !c->resetting;
+	}
+	if (count > LINGERING_MOST)
+		reset(oldest);
+}
+
+void cau_connection_leave(cau_connection *c)
+{
+	cau_network *network = c->network;
+	if (c->left)
+		return;
+	c->left = true;
+	network->def.handler.closed(network->def.handler.user, c);
+	cau_connection_unlink(&network->connections, c);
+	cau_connection_link(&network->lingering, c);
+	network->counts.connections--;
+	bound_lingering(network);
+}
+
+// ---- reasons
+// The handler may be in the middle of this connection, so it is told by the
+// timer, a moment later.
+static void begin_closing(cau_connection *c, int code, const char *reason)
+{
+	c->closing = code;
+	snprintf(c->closing_reason, sizeof c->closing_reason, "%s", reason);
+	cau_log(CAU_LOG_INFO, NULL, "connection_closing", "connection=%llu code=%d reason=\"%s\"",
+	        (unsigned long long)c->id, c->closing, c->closing_reason);
+	lws_set_timer_usecs(c->wsi, 1);
+	lws_callback_on_writable(c->wsi);
+}
+
+void cau_connection_close(cau_connection *c, cau_close_code code, const char *reason)
+{
+	if (c->closing)
+		return;
+	if (code == CAU_CLOSE_TOO_SLOW)
+		c->network->counts.closed_slow++;
+	else if (code != CAU_CLOSE_DONE && code != CAU_CLOSE_DRAINING)
+		c->network->counts.closed_errors++;
+	begin_closing(c, (int)code, reason ? reason : cau_close_reason(code));
+}
+
+void cau_connection_closed_by_peer(cau_connection *c, int code)
+{
+	c->peer_ended = true; // it sends nothing after its close frame
+	if (!c->closing)
+		begin_closing(c, code ? code : CAU_CLOSE_DONE, "");
+}
+
+void cau_connection_ended_by_peer(cau_connection *c)
+{
+	c->peer_ended = true;
+	cau_input_end(c); // else its end would be told again and again
+	if (!c->closing)
+		begin_closing(c, CAU_CLOSE_DONE, "");
+	lws_callback_on_writable(c->wsi);
+}
+
+void cau_connection_timer(cau_connection *c)
+{
+	if (c->closing && c->left) {
+		reset(c);
+	} else if (c->closing) {
+		cau_connection_leave(c);
+		lws_set_timer_usecs(c->wsi, CLOSE_WITHIN_S * LWS_US_PER_SEC);
+	} else if (!c->served) {
+		cau_connection_close(c, CAU_CLOSE_NO_HELLO, NULL);
+	}
+}
+
+// ---- the close frame
+static size_t write_close_frame(const cau_connection *c, unsigned char *at)
+{
+	size_t reason_bytes = strlen(c->closing_reason);
+	at[0] = CLOSE_FRAME;
+	at[1] = (unsigned char)(CODE_BYTES + reason_bytes);
+	at[2] = (unsigned char)(c->closing >> 8);
+	at[3] = (unsigned char)(c->closing & 255);
+	memcpy(at + 4, c->closing_reason, reason_bytes);
+	return 4 + reason_bytes;
+}
+
+// By hand: libwebsockets would close the socket right behind its own, and with
+// input unread the kernel then resets the connection before the peer has seen
+// the code. It calls again when the frame is with the kernel.
+int cau_connection_write_close(cau_connection *c)
+{
+	unsigned char frame[LWS_PRE + CAU_CLOSE_FRAME_BYTES];
+	if (c->close_sent) {
+		shutdown(c->descriptor, SHUT_WR);
+		return c->peer_ended ? -1 : 0;
+	}
+	c->close_sent = true;
+	size_t bytes = write_close_frame(c, frame + LWS_PRE);
+	lws_callback_on_writable(c->wsi);
+	return lws_write(c->wsi, frame + LWS_PRE, bytes, LWS_WRITE_RAW) < 0 ? -1 : 0;
+}
+
+// libwebsockets ends a connection that it still read itself: what came behind
+// the request broke the protocol. The socket takes so few bytes at once.
+void cau_connection_dropped(cau_connection *c)
+{
+	unsigned char frame[CAU_CLOSE_FRAME_BYTES];
+	if (c->reading >= CAU_READING_OURS || c->close_sent)
+		return;
+	cau_connection_close(c, CAU_CLOSE_PROTOCOL, "data before the handshake was answered");
+	c->close_sent = true;
+	size_t bytes = write_close_frame(c, frame);
+	if (send(c->descriptor, frame, bytes, MSG_DONTWAIT | MSG_NOSIGNAL) < 0)
+		return; // the peer is gone
+}
+
+void cau_connection_watch(cau_connection *c, double now_s)
+{
+	if (now_s - c->heard_s > UNHEARD_PINGS * c->network->def.config->ping_s)
+		cau_connection_close(c, CAU_CLOSE_NO_ANSWER, NULL);
+}
