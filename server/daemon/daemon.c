@@ -132,6 +132,8 @@ static cau_status open_all(cau_daemon *daemon, cau_error *error)
 		status = open_network(daemon, error);
 	if (!status && config->dds)
 		status = cau_dds_create(&daemon->dds, config, daemon->hub, error);
+	if (daemon->dds)
+		cau_service_add_metrics(daemon->service, cau_dds_write_metrics, daemon->dds);
 	if (!status)
 		status = cau_hub_resume(daemon->hub, error);
 	if (!status)

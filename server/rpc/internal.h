@@ -76,6 +76,8 @@ struct cau_service {
 	cau_post *first, *last;
 	uint64_t requests, errors;
 	cau_upload_total uploads; // the network thread's
+	void (*write_more_metrics)(void *user, FILE *out, cau_metrics_format format); // may be NULL
+	void *more_metrics_user;
 };
 
 // One request on its way through the handlers.

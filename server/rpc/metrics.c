@@ -183,6 +183,8 @@ unsigned cau_service_metrics(cau_service *service, cau_metrics_format format, FI
 	write_network(service, &to);
 	write_store(service, &to);
 	write_process(&to);
+	if (service->write_more_metrics)
+		service->write_more_metrics(service->more_metrics_user, out, format);
 	write_rows(&to, &taken);
 	cau_metrics_end(out, format);
 	free(taken.rows);

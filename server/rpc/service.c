@@ -299,6 +299,14 @@ unsigned long cau_service_ticks(cau_service *service)
 	return service->ticks;
 }
 
+void cau_service_add_metrics(cau_service *service,
+                             void (*write)(void *user, FILE *out, cau_metrics_format format),
+                             void *user)
+{
+	service->write_more_metrics = write;
+	service->more_metrics_user = user;
+}
+
 void cau_service_drain(cau_service *service)
 {
 	service->draining = true;

@@ -5,6 +5,7 @@
 
 #include "auth/auth.h"
 #include "hub/hub.h"
+#include "metrics/exposition.h"
 #include "transport_ws/network.h"
 
 typedef struct cau_service cau_service;
@@ -22,6 +23,10 @@ cau_network_handler cau_service_handler(cau_service *service);
 void cau_service_check_tokens(cau_service *service);
 // Once the network exists.
 void cau_service_set_network(cau_service *service, cau_network *network);
+// More for /metrics, written on the network thread; `user` outlives the network.
+void cau_service_add_metrics(cau_service *service,
+                             void (*write)(void *user, FILE *out, cau_metrics_format format),
+                             void *user);
 // Counts up while the network thread lives, ten times a second.
 unsigned long cau_service_ticks(cau_service *service);
 // From now on requests are answered with `draining`.

@@ -11,7 +11,7 @@ enum { CHECK_BYTES = 2048 };
 typedef struct asked {
 	cau_dds *dds;
 	cau_dds_request *request; // who waits for the answer
-	cau_dds_client *client;   // who asks
+	cau_dds_writer *writer;   // who asks
 	const cautery_SessionRequest *sample;
 	const cau_method_info *method;
 	cau_asker asker;
@@ -68,6 +68,31 @@ static cau_status read_rewind(asked *a, cau_order *order, cau_error *error)
 	return check_params(order->reply.method, &params, error);
 }
 
+// The client that drives by the named writer of the session's cautery/tool_command, or, with none
+// named, by the tool's ROS 2 topics; of the requester's participant.
+static const cau_dds_client *find_driver(const asked *a, cau_error *error)
+{
+	static const uint8_t nobody[16];
+	bool native = memcmp(a->sample->driver, nobody, sizeof nobody) != 0;
+	cau_dds_session *session = a->dds->sessions;
+	while (session && strcmp(cau_hosted_id(session->hosted), a->sample->session) != 0)
+		session = session->next;
+	const cau_dds_tool *tool = session ? cau_dds_find_tool(session, a->sample->tool) : NULL;
+	const cau_door *door = native ? (session ? &session->native : NULL)
+	                       : tool ? &tool->servo_cp
+	                              : NULL;
+	cau_dds_writer *writer =
+		door && door->reader > 0
+			? cau_dds_find_writer(a->dds, door, a->writer->participant, a->sample->driver)
+			: NULL;
+	if (!writer) {
+		cau_fail(error, CAU_NOT_FOUND, "driver",
+		         "the participant has no such writer in this session");
+		return NULL;
+	}
+	return cau_dds_admit(a->dds, writer, true, error);
+}
+
 static cau_status read_take_over(asked *a, cau_order *order, cau_error *error)
 {
 	cau_wire_tool_ref params = {.client_sequence = order->client_sequence,
@@ -77,11 +102,9 @@ static cau_status read_take_over(asked *a, cau_order *order, cau_error *error)
 	cau_status status = check_params(order->reply.method, &params, error);
 	if (status)
 		return status;
-	const cau_dds_client *driver = cau_dds_find_driver(a->dds, a->client, a->sample->session,
-	                                                   a->sample->tool, a->sample->driver);
+	const cau_dds_client *driver = find_driver(a, error);
 	if (!driver)
-		return cau_fail(error, CAU_NOT_FOUND, "driver",
-		                "the participant has no such writer in this session");
+		return error->status;
 	order->asker.client = driver->asker.client;
 	order->asker.deadline_s = driver->asker.deadline_s;
 	memcpy(order->asker.name, driver->asker.name, sizeof order->asker.name);
@@ -217,14 +240,14 @@ static cau_status serve(asked *a, int32_t *code, cau_error *error)
 }
 
 // Whether the requester stays within what a WebSocket connection may send in a second.
-static bool is_too_fast(const cau_dds *dds, cau_dds_client *client)
+static bool is_too_fast(const cau_dds *dds, cau_dds_writer *writer)
 {
 	double now_s = cau_monotonic_s();
-	if (now_s - client->requests_s >= 1) {
-		client->requests_s = now_s;
-		client->requests = 0;
+	if (now_s - writer->requests_s >= 1) {
+		writer->requests_s = now_s;
+		writer->requests = 0;
 	}
-	return ++client->requests > dds->config->max_requests_per_s;
+	return ++writer->requests > dds->config->max_requests_per_s;
 }
 
 // Several daemons may hear a request: it is for the one whose label begins the session's id.
@@ -237,7 +260,7 @@ static bool is_ours(const cau_dds *dds, const cautery_SessionRequest *sample)
 	return strncmp(sample->session, label, length) == 0 && sample->session[length] == '-';
 }
 
-void cau_dds_take_request(cau_dds *dds, cau_door *door, cau_dds_client *client, const void *taken)
+void cau_dds_take_request(cau_dds *dds, cau_door *door, cau_dds_writer *writer, const void *taken)
 {
 	const cautery_SessionRequest *sample = taken;
 	cau_error error = {0};
@@ -246,20 +269,21 @@ void cau_dds_take_request(cau_dds *dds, cau_door *door, cau_dds_client *client, 
 	bool known = (size_t)sample->operation < sizeof methods / sizeof methods[0];
 	if (!known || !is_ours(dds, sample))
 		return;
-	cau_dds_request unkept, *request = cau_dds_keep_request(dds, client, sample);
+	cau_dds_request unkept, *request = cau_dds_keep_request(dds, writer, sample);
 	asked a = {.dds = dds,
 	           .request = request ? request : &unkept,
-	           .client = client,
+	           .writer = writer,
 	           .sample = sample,
 	           .method = cau_method_describe(methods[sample->operation]),
-	           .asker = client->asker};
+	           .asker = writer->asker};
 	if (*sample->client_id)
 		memcpy(a.asker.client_id, sample->client_id, sizeof a.asker.client_id);
+	cau_dds_bind_client_id(a.asker.client_id, writer->subject);
 	cau_status status = CAU_OK;
 	if (!request) {
-		unkept = cau_dds_describe_request(client, sample);
+		unkept = cau_dds_describe_request(writer, sample);
 		status = cau_fail(&error, CAU_LIMIT, "", "too many requests wait for their answer");
-	} else if (is_too_fast(dds, client)) {
+	} else if (is_too_fast(dds, writer)) {
 		code = CAU_RPC_RATE;
 		status = cau_fail(&error, CAU_LIMIT, "", "too many requests a second");
 	} else {

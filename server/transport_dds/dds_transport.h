@@ -4,6 +4,7 @@
 #pragma once
 
 #include "hub/hub.h"
+#include "metrics/exposition.h"
 
 typedef struct cau_dds cau_dds;
 
@@ -13,5 +14,7 @@ cau_status cau_dds_create(cau_dds **dds, const cau_config *config, cau_hub *hub,
 cau_status cau_dds_start(cau_dds *dds, cau_error *error);
 // Ends the thread and closes everything on the wire; sessions may go on. Takes NULL.
 void cau_dds_stop(cau_dds *dds);
+// Its part of /metrics; `dds` is the transport. Any thread.
+void cau_dds_write_metrics(void *dds, FILE *out, cau_metrics_format format);
 // After the hub's sessions are gone. Takes NULL.
 void cau_dds_destroy(cau_dds *dds);

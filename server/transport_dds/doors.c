@@ -50,7 +50,9 @@ static dds_qos_t *reliable_qos(int32_t kept)
 
 static bool open_door(cau_dds *dds, cau_door *door, dds_entity_t subscriber, const dds_qos_t *qos)
 {
-	door->reader = dds_create_reader(subscriber, door->topic, qos, NULL);
+	dds_listener_t *listener = cau_dds_listen_to_liveliness(dds);
+	door->reader = dds_create_reader(subscriber, door->topic, qos, listener);
+	dds_delete_listener(listener);
 	if (door->reader < 0) {
 		cau_log(CAU_LOG_ERROR, door->session ? cau_hosted_id(door->session->hosted) : NULL,
 		        "dds_no_reader", "tool=%s reason=\"%s\"", door->tool, dds_strretcode(door->reader));

@@ -18,10 +18,9 @@
 #include "transport_dds/roles.h"
 
 enum {
-	CLIENTS_MOST = 128,
-	WRITERS_MOST = 512,
-	HANDS_MOST = 512,
-	REQUESTS_MOST = 256, // that wait for their answer
+	WRITER_BUCKETS = 1024,
+	REQUESTS_MOST = 256,       // that wait for their answer
+	REQUESTS_OF_ONE_MOST = 64, // of one participant
 	TOPIC_BYTES = 2 * CAU_NAME_BYTES + 32,
 };
 
@@ -82,6 +81,8 @@ typedef struct cau_dds_tool {
 	dds_entity_t jaw_topic, jaw_writer;             // jaw/measured_js
 	dds_entity_t operating_topic, operating_writer; // operating_state
 	cau_dds_operating operating, operating_told;
+	struct cau_dds_hand *hands;
+	int hand_count;
 } cau_dds_tool;
 
 // A session's frames; frames.c. Joined while somebody reads them.
@@ -128,36 +129,65 @@ typedef struct cau_dds_session {
 	double refused_told_s;
 } cau_dds_session;
 
-// A driver as the hub knows it.
+// Who has a place: a client of the hub. Native writers are one each, those of ROS 2 one for their
+// participant. places.c.
 typedef struct cau_dds_client {
-	uint64_t identity; // of the publication (native) or participant (ROS 2); 0: free
+	struct cau_dds_client *next;
+	uint64_t identity; // of the publication (native) or participant (ROS 2)
 	bool native;
 	uint64_t participant;
-	dds_guid_t guid; // native: of the writer
-	int32_t writers;
-	uint64_t connection; // for the hub
-	double requests_s;   // the second in which so many requests came
-	int64_t requests;
+	char subject[CAU_DDS_SUBJECT_BYTES]; // that it has proved; "": none
+	int32_t writers;                     // matched ones that are its own
+	bool accepted;                       // a motion of it was
+	uint64_t connection;                 // for the hub
 	cau_asker asker;
+	struct cau_dds_hand *hands;
 } cau_dds_client;
 
+// One writer of one reader; writers.c.
 typedef struct cau_dds_writer {
+	struct cau_dds_writer *next; // in its bucket
 	dds_entity_t reader;
 	dds_instance_handle_t handle;
-	cau_dds_client *client; // NULL: free
+	bool native, reliable;
+	uint64_t identity, participant; // as in its client
+	dds_guid_t guid;
+	char subject[CAU_DDS_SUBJECT_BYTES];
+	cau_asker asker;        // without a number; that is its client's
+	cau_dds_client *client; // NULL: it has no place
+	double retry_s;         // it was denied one, until this
+	double requests_s;      // the second in which so many requests came
+	int64_t requests;
 } cau_dds_writer;
+
+// A writer that stopped being alive.
+typedef struct cau_dds_silenced {
+	struct cau_dds_silenced *next;
+	dds_entity_t reader;
+	dds_instance_handle_t handle;
+} cau_dds_silenced;
 
 // A client's hold on one tool.
 typedef struct cau_dds_hand {
-	cau_dds_client *client; // NULL: free
+	struct cau_dds_hand *next;     // on this tool
+	struct cau_dds_hand *next_own; // of this client
+	cau_dds_client *client;
 	cau_dds_session *session;
-	char tool[CAU_NAME_BYTES];
+	cau_dds_tool *tool;
 	cau_motion_past past;
 	double jaw;
 	double claim_until_s;            // its claim waits in the session's queue
 	bool energy_ready, energy_asked; // the level was 0; energy was asked for
 	bool grasp_asked;
 } cau_dds_hand;
+
+// A motion that a writer asks for.
+typedef struct cau_dds_motion {
+	cau_pose pose;
+	double jaw;
+	uint64_t sequence;
+	int64_t source_time_ns; // 0: unknown
+} cau_dds_motion;
 
 // An answer on its way from a worker or the store's thread; mailbox.c.
 typedef struct cau_dds_post {
@@ -178,6 +208,7 @@ typedef struct cau_dds_request {
 	bool used;
 	uint64_t ticket; // of the answer; 0: answered at once
 	dds_guid_t writer;
+	uint64_t participant; // its handle
 	uint64_t number;
 	cautery_SessionOperation operation;
 	char session[CAU_NAME_BYTES];
@@ -202,15 +233,21 @@ struct cau_dds {
 	dds_entity_t waitset, wake;
 	pthread_t thread;
 	bool started;
-	atomic_bool ending, sessions_changed, sliced, answered;
-	pthread_mutex_t mutex; // guards the posts
+	atomic_bool ending, sessions_changed, sliced, answered, fell_silent;
+	pthread_mutex_t mutex; // guards the posts and who fell silent
 	cau_dds_post *first, *last;
+	cau_dds_silenced *silenced;
 	uint64_t last_connection, last_ticket;
 	cau_dds_session *sessions;
 	cau_dds_farewell *farewells;
-	cau_dds_client clients[CLIENTS_MOST];
-	cau_dds_writer writers[WRITERS_MOST];
-	cau_dds_hand hands[HANDS_MOST];
+	cau_dds_client *clients; // the newest first
+	cau_dds_writer *writers[WRITER_BUCKETS];
+	uint64_t denials; // of places, since they were last told of
+	double denials_told_s, onlookers_told_s;
+	int onlookers_told; // since then
+	struct {
+		atomic_ullong clients, denied, evicted;
+	} counts;
 };
 
 // ---- transport.c: makes the thread look again, for the reason `why`; any thread
@@ -249,56 +286,77 @@ double cau_dds_end_farewells(cau_dds *dds, double now_s);
 void cau_dds_await_farewells(cau_dds *dds);
 
 // ---- writers.c: who writes
-// The client behind a sample, or NULL: its writer is gone or there are too many.
-cau_dds_client *cau_dds_client_of(cau_dds *dds, const cau_door *door, dds_instance_handle_t handle);
-// The client of the requester's participant that drives by the writer `guid` of the session's
-// cautery/tool_command; all 0: by the tool's ROS 2 topics. NULL: there is none.
-cau_dds_client *cau_dds_find_driver(cau_dds *dds, const cau_dds_client *requester,
-                                    const char *session, const char *tool, const uint8_t guid[16]);
+// The writer behind a sample, or NULL: it is gone, or memory ran out.
+cau_dds_writer *cau_dds_writer_of(cau_dds *dds, const cau_door *door, dds_instance_handle_t handle);
+// The writer with this GUID (all 0: any) of a participant, among those that the door has matched.
+cau_dds_writer *cau_dds_find_writer(cau_dds *dds, const cau_door *door, uint64_t participant,
+                                    const uint8_t guid[16]);
+// Its client, or itself while it has no place.
+const cau_asker *cau_dds_asker_of(const cau_dds_writer *writer);
 // Forgets writers that no longer match the reader, and clients without writers.
 void cau_dds_prune(cau_dds *dds, dds_entity_t reader, bool all);
-// The writer did not assert its liveliness within the lease that it offers: energy off, and its
-// client gives up what it drives. It may claim tools again when it writes again.
-void cau_dds_give_up(cau_dds *dds, dds_entity_t reader, dds_instance_handle_t writer);
-// NULL: too many.
-cau_dds_hand *cau_dds_hand_of(cau_dds *dds, cau_dds_client *client, cau_dds_session *session,
-                              const char *tool);
-void cau_dds_drop_hands(cau_dds *dds, const cau_dds_session *session, const char *tool);
+// The client goes: its writers are nobody's.
+void cau_dds_forget_client(cau_dds *dds, const cau_dds_client *client);
+// For a reader: notes each writer that stops being alive. The caller deletes the listener.
+dds_listener_t *cau_dds_listen_to_liveliness(cau_dds *dds);
+// Those that were noted did not assert their liveliness within the lease that they offer: energy
+// off, and their clients give up what they drive. They may claim tools again when they write again.
+void cau_dds_end_silenced(cau_dds *dds);
+
+// ---- places.c: who may drive
+// Makes the writer one of the client whose it is, if that has a place.
+void cau_dds_join_place(cau_dds *dds, cau_dds_writer *writer);
+// The writer is gone; so is its client if it was the last.
+void cau_dds_leave_place(cau_dds *dds, cau_dds_writer *writer);
+// The writer's client; makes one by the quotas. Who `drives_now` gets a place in any case, if need
+// be that of somebody who drives nothing. CAU_LIMIT (NULL): it got none, which is counted and
+// logged.
+cau_dds_client *cau_dds_admit(cau_dds *dds, cau_dds_writer *writer, bool drives_now,
+                              cau_error *error);
+void cau_dds_give_up(cau_dds_client *client);
+// NULL: it has none.
+cau_dds_hand *cau_dds_find_hand(const cau_dds_client *client, const cau_dds_tool *tool);
+// The same, made if it has none; as cau_dds_admit.
+cau_dds_hand *cau_dds_take_hand(cau_dds *dds, cau_dds_writer *writer, cau_dds_session *session,
+                                cau_dds_tool *tool, bool drives_now, cau_error *error);
+// The tool is gone.
+void cau_dds_drop_hands(cau_dds_tool *tool);
 
 // ---- drive.c: orders
-// Checks and submits a motion; feeds the watchdog if all is well. False: refused, and counted.
-bool cau_dds_move(cau_dds *dds, cau_dds_hand *hand, cau_pose pose, double jaw, uint64_t sequence);
-void cau_dds_energy(cau_dds *dds, cau_dds_hand *hand, bool level);
+cau_status cau_dds_check_role(const cau_dds_writer *writer, cau_error *error);
+// Checks and submits a motion; feeds the watchdog if all is well. NULL: refused, and counted.
+cau_dds_hand *cau_dds_move(cau_dds *dds, const cau_door *door, cau_dds_tool *tool,
+                           cau_dds_writer *writer, cau_dds_motion motion);
+void cau_dds_energy(cau_dds_hand *hand, const cau_dds_writer *writer, bool level);
 void cau_dds_grasp(cau_dds_hand *hand, bool level);
 // Gives up the tool of a hand, through the queue: to nobody, or to `to`.
 bool cau_dds_hand_over(cau_dds_hand *hand, const cau_asker *to);
-// Energy off by order of `client`; if somebody drives the tool over DDS it stays where it is, and
-// wants a level that falls and rises before energy comes on.
-void cau_dds_stop_tool(cau_dds *dds, cau_dds_session *session, const char *tool,
-                       const cau_dds_client *client);
+// Energy off by order of `by`; if somebody drives the tool over DDS it stays where it is, and wants
+// a level that falls and rises before energy comes on.
+void cau_dds_stop_tool(cau_dds_session *session, cau_dds_tool *tool, const cau_asker *by);
 // The tool may be moved again: its driver is not called silent for the time when it could not.
-void cau_dds_restart_tool(cau_dds *dds, const cau_dds_session *session, const char *tool);
-void cau_dds_refuse(cau_dds_session *session, const char *tool, const cau_dds_client *client,
+void cau_dds_restart_tool(cau_dds_tool *tool);
+void cau_dds_refuse(cau_dds_session *session, const char *tool, const cau_dds_writer *writer,
                     uint64_t sequence, const cau_error *error);
 // Counts what the native door did not let in.
 void cau_dds_count_dropped(cau_dds_session *session);
 
 // ---- native.c, ros2.c: samples
-void cau_dds_take_command(cau_dds *dds, cau_door *door, cau_dds_client *client, const void *sample);
-void cau_dds_take_servo_cp(cau_dds *dds, cau_door *door, cau_dds_client *client,
+void cau_dds_take_command(cau_dds *dds, cau_door *door, cau_dds_writer *writer, const void *sample);
+void cau_dds_take_servo_cp(cau_dds *dds, cau_door *door, cau_dds_writer *writer,
                            const void *sample);
-void cau_dds_take_servo_jp(cau_dds *dds, cau_door *door, cau_dds_client *client,
+void cau_dds_take_servo_jp(cau_dds *dds, cau_door *door, cau_dds_writer *writer,
                            const void *sample);
-void cau_dds_take_energize(cau_dds *dds, cau_door *door, cau_dds_client *client,
+void cau_dds_take_energize(cau_dds *dds, cau_door *door, cau_dds_writer *writer,
                            const void *sample);
 
 // ---- control.c
-void cau_dds_take_request(cau_dds *dds, cau_door *door, cau_dds_client *client, const void *sample);
+void cau_dds_take_request(cau_dds *dds, cau_door *door, cau_dds_writer *writer, const void *sample);
 
 // ---- replies.c: each but the first two answers the request and forgets it
-cau_dds_request cau_dds_describe_request(const cau_dds_client *client,
+cau_dds_request cau_dds_describe_request(const cau_dds_writer *writer,
                                          const cautery_SessionRequest *sample);
-cau_dds_request *cau_dds_keep_request(cau_dds *dds, const cau_dds_client *client,
+cau_dds_request *cau_dds_keep_request(cau_dds *dds, const cau_dds_writer *writer,
                                       const cautery_SessionRequest *sample); // NULL: too many
 void cau_dds_reply_fail(cau_dds *dds, cau_dds_request *request, const cau_error *error,
                         int32_t code);
@@ -307,10 +365,10 @@ void cau_dds_reply_join(cau_dds *dds, cau_dds_request *request,
 void cau_dds_reply_list(cau_dds *dds, cau_dds_request *request);
 void cau_dds_reply_post(cau_dds *dds, const cau_dds_post *post);
 // The requester is gone: its replies are kept for nobody.
-void cau_dds_forget_replies(cau_dds *dds, const cau_dds_client *client);
+void cau_dds_forget_replies(cau_dds *dds, const dds_guid_t *writer);
 
 // ---- operating.c
-void cau_dds_take_state_command(cau_dds *dds, cau_door *door, cau_dds_client *client,
+void cau_dds_take_state_command(cau_dds *dds, cau_door *door, cau_dds_writer *writer,
                                 const void *sample);
 // Whether CRTK's state lets the tool be moved and energized.
 cau_status cau_dds_check_ready(const cau_dds_session *session, const char *tool, cau_error *error);

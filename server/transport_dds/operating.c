@@ -115,22 +115,24 @@ static bool is_ready(const cau_dds_operating *now)
 }
 
 // Whoever stops a tool may; whoever sets it going again must drive it, or nobody does.
-static cau_status check_asker(const cau_door *door, const cau_dds_client *client, word command,
+static cau_status check_asker(const cau_door *door, const cau_dds_writer *writer, word command,
                               cau_error *error)
 {
 	cau_hosted_tool tool;
-	if (client->asker.role < CAU_ROLE_OPERATE)
-		return cau_fail(error, CAU_BAD_STATE, "", "the role does not allow this");
+	cau_status status = cau_dds_check_role(writer, error);
+	if (status)
+		return status;
 	bool stops = command == DISABLE || command == PAUSE || command == UNHOME;
 	if (stops || !cau_hosted_find_tool(door->session->hosted, door->tool, &tool) ||
-	    !tool.driver.client || tool.driver.client == client->asker.client)
+	    !tool.driver.client || tool.driver.client == cau_dds_asker_of(writer)->client)
 		return CAU_OK;
 	return cau_fail(error, CAU_BAD_STATE, "tool", "%s drives it", tool.driver.name);
 }
 
-void cau_dds_take_state_command(cau_dds *dds, cau_door *door, cau_dds_client *client,
+void cau_dds_take_state_command(cau_dds *dds, cau_door *door, cau_dds_writer *writer,
                                 const void *taken)
 {
+	(void)dds;
 	const crtk_msgs_msg_dds__StringStamped_ *sample = taken;
 	cau_dds_tool *tool = cau_dds_find_tool(door->session, door->tool);
 	cau_error error = {0};
@@ -142,19 +144,19 @@ void cau_dds_take_state_command(cau_dds *dds, cau_door *door, cau_dds_client *cl
 		status = cau_fail(&error, CAU_BAD_VALUE, "string", "CRTK has no command `%.32s`",
 		                  sample->string_ ? sample->string_ : "");
 	else
-		status = check_asker(door, client, command, &error);
+		status = check_asker(door, writer, command, &error);
 	if (status) {
-		cau_dds_refuse(door->session, door->tool, client, 0, &error);
+		cau_dds_refuse(door->session, door->tool, writer, 0, &error);
 		return;
 	}
 	bool was_ready = is_ready(&tool->operating);
 	tool->operating = after(tool->operating, command);
 	cau_log(CAU_LOG_INFO, cau_hosted_id(door->session->hosted), "dds_operating",
 	        "tool=%s command=%s state=%s homed=%d client=\"%s\"", door->tool, sample->string_,
-	        state_names[tool->operating.state], !tool->operating.unhomed, client->asker.name);
+	        state_names[tool->operating.state], !tool->operating.unhomed, writer->asker.name);
 	if (was_ready && !is_ready(&tool->operating))
-		cau_dds_stop_tool(dds, door->session, door->tool, client);
+		cau_dds_stop_tool(door->session, tool, cau_dds_asker_of(writer));
 	else if (!was_ready && is_ready(&tool->operating))
-		cau_dds_restart_tool(dds, door->session, door->tool);
+		cau_dds_restart_tool(tool);
 	cau_dds_publish_operating(door->session);
 }

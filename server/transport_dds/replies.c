@@ -6,26 +6,34 @@
 #include "cautery/rpc.h"
 #include "transport_dds/internal.h"
 
-cau_dds_request cau_dds_describe_request(const cau_dds_client *client,
+cau_dds_request cau_dds_describe_request(const cau_dds_writer *writer,
                                          const cautery_SessionRequest *sample)
 {
 	cau_dds_request request = {.used = true,
-	                           .writer = client->guid,
+	                           .writer = writer->guid,
+	                           .participant = writer->participant,
 	                           .number = sample->number,
 	                           .operation = sample->operation};
 	memcpy(request.session, sample->session, sizeof request.session);
 	return request;
 }
 
-cau_dds_request *cau_dds_keep_request(cau_dds *dds, const cau_dds_client *client,
+cau_dds_request *cau_dds_keep_request(cau_dds *dds, const cau_dds_writer *writer,
                                       const cautery_SessionRequest *sample)
 {
-	for (int i = 0; i < REQUESTS_MOST; i++)
-		if (!dds->requests[i].used) {
-			dds->requests[i] = cau_dds_describe_request(client, sample);
-			return &dds->requests[i];
-		}
-	return NULL;
+	cau_dds_request *unused = NULL;
+	int own = 0;
+	for (int i = 0; i < REQUESTS_MOST; i++) {
+		cau_dds_request *request = &dds->requests[i];
+		if (!request->used)
+			unused = request;
+		else if (request->participant == writer->participant)
+			own++;
+	}
+	if (!unused || own >= REQUESTS_OF_ONE_MOST)
+		return NULL;
+	*unused = cau_dds_describe_request(writer, sample);
+	return unused;
 }
 
 static cautery_SessionReply begin(const cau_dds_request *request)
@@ -191,9 +199,9 @@ void cau_dds_reply_post(cau_dds *dds, const cau_dds_post *post)
 		finish(dds, request, &reply);
 }
 
-void cau_dds_forget_replies(cau_dds *dds, const cau_dds_client *client)
+void cau_dds_forget_replies(cau_dds *dds, const dds_guid_t *writer)
 {
 	cautery_SessionReply key = {0};
-	memcpy(key.writer, client->guid.v, sizeof key.writer);
+	memcpy(key.writer, writer->v, sizeof key.writer);
 	dds_unregister_instance(dds->reply_writer, &key);
 }

@@ -6,54 +6,74 @@
 
 #include "transport_dds/internal.h"
 
-static cau_dds_hand *hand_of(cau_dds *dds, cau_door *door, cau_dds_client *client)
+// To a pose, with the jaw as it was asked for last.
+static void move(cau_dds *dds, const cau_door *door, cau_dds_tool *tool, cau_dds_writer *writer,
+                 const cau_pose *pose)
 {
-	cau_error error = {0};
-	cau_dds_hand *hand = cau_dds_hand_of(dds, client, door->session, door->tool);
-	if (!hand) {
-		cau_fail(&error, CAU_LIMIT, "tool", "too many drivers");
-		cau_dds_refuse(door->session, door->tool, client, 0, &error);
-	}
-	return hand;
+	const cau_dds_hand *hand = cau_dds_find_hand(writer->client, tool);
+	cau_dds_move(dds, door, tool, writer,
+	             (cau_dds_motion){.pose = *pose,
+	                              .jaw = hand ? hand->jaw : 1,
+	                              .sequence = hand ? hand->past.sequence + 1 : 1});
 }
 
-void cau_dds_take_servo_cp(cau_dds *dds, cau_door *door, cau_dds_client *client, const void *taken)
+void cau_dds_take_servo_cp(cau_dds *dds, cau_door *door, cau_dds_writer *writer, const void *taken)
 {
 	const geometry_msgs_msg_dds__PoseStamped_ *sample = taken;
 	const geometry_msgs_msg_dds__Point_ *p = &sample->pose_.position_;
 	const geometry_msgs_msg_dds__Quaternion_ *q = &sample->pose_.orientation_;
 	cau_pose pose = {{p->x_, p->y_, p->z_}, {q->w_, q->x_, q->y_, q->z_}};
-	cau_dds_hand *hand = hand_of(dds, door, client);
-	if (hand)
-		cau_dds_move(dds, hand, pose, hand->jaw, hand->past.sequence + 1);
+	cau_dds_tool *tool = cau_dds_find_tool(door->session, door->tool);
+	if (tool)
+		move(dds, door, tool, writer, &pose);
+}
+
+static cau_status check_jaw(const cau_hosted_tool *tool,
+                            const sensor_msgs_msg_dds__JointState_ *sample, double *jaw,
+                            cau_error *error)
+{
+	double angle_rad = sample->position_._length ? sample->position_._buffer[0] : NAN;
+	double open_rad = tool->state.definition.jaw_open_rad;
+	if (!(angle_rad >= 0 && angle_rad <= open_rad))
+		return cau_fail(error, CAU_BAD_VALUE, "position", "%g rad is not within 0 to %g", angle_rad,
+		                open_rad);
+	*jaw = angle_rad / open_rad;
+	return CAU_OK;
 }
 
 // The jaw moves with the pose: with the last one at once, else with the first that comes.
-void cau_dds_take_servo_jp(cau_dds *dds, cau_door *door, cau_dds_client *client, const void *taken)
+void cau_dds_take_servo_jp(cau_dds *dds, cau_door *door, cau_dds_writer *writer, const void *taken)
 {
-	const sensor_msgs_msg_dds__JointState_ *sample = taken;
-	cau_hosted_tool tool;
+	cau_hosted_tool state;
 	cau_error error = {0};
-	cau_dds_hand *hand = hand_of(dds, door, client);
-	if (!hand || !cau_hosted_find_tool(door->session->hosted, door->tool, &tool))
+	double jaw = 1;
+	cau_dds_hand *hand = NULL;
+	cau_dds_tool *tool = cau_dds_find_tool(door->session, door->tool);
+	if (!tool || !cau_hosted_find_tool(door->session->hosted, door->tool, &state))
 		return;
-	double angle_rad = sample->position_._length ? sample->position_._buffer[0] : NAN;
-	double open_rad = tool.state.definition.jaw_open_rad;
-	if (!(angle_rad >= 0 && angle_rad <= open_rad)) {
-		cau_fail(&error, CAU_BAD_VALUE, "position", "%g rad is not within 0 to %g", angle_rad,
-		         open_rad);
-		cau_dds_refuse(door->session, door->tool, client, hand->past.sequence, &error);
+	cau_status status = check_jaw(&state, taken, &jaw, &error);
+	if (!status)
+		status = cau_dds_check_role(writer, &error);
+	if (!status && !(hand = cau_dds_take_hand(dds, writer, door->session, tool, false, &error)))
+		status = error.status;
+	if (status) {
+		hand = cau_dds_find_hand(writer->client, tool);
+		cau_dds_refuse(door->session, door->tool, writer, hand ? hand->past.sequence : 0, &error);
 		return;
 	}
-	hand->jaw = angle_rad / open_rad;
+	hand->jaw = jaw;
 	if (hand->past.has_pose)
-		cau_dds_move(dds, hand, hand->past.pose, hand->jaw, hand->past.sequence + 1);
+		move(dds, door, tool, writer, &hand->past.pose);
 }
 
-void cau_dds_take_energize(cau_dds *dds, cau_door *door, cau_dds_client *client, const void *taken)
+// Of who has not moved the tool a level says nothing: energy wants one that rises while it drives.
+void cau_dds_take_energize(cau_dds *dds, cau_door *door, cau_dds_writer *writer, const void *taken)
 {
 	const sensor_msgs_msg_dds__Joy_ *sample = taken;
-	cau_dds_hand *hand = hand_of(dds, door, client);
+	const cau_dds_tool *tool = cau_dds_find_tool(door->session, door->tool);
+	cau_dds_hand *hand = tool ? cau_dds_find_hand(writer->client, tool) : NULL;
+	(void)dds;
 	if (hand) // no button is a button let go
-		cau_dds_energy(dds, hand, sample->buttons_._length > 0 && sample->buttons_._buffer[0] > 0);
+		cau_dds_energy(hand, writer,
+		               sample->buttons_._length > 0 && sample->buttons_._buffer[0] > 0);
 }

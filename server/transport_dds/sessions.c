@@ -51,7 +51,8 @@ static void note_session(void *user, cau_hosted *hosted)
 
 static void forget_session(cau_dds *dds, cau_dds_session *session)
 {
-	cau_dds_drop_hands(dds, session, NULL);
+	for (int i = 0; i < CAU_MAX_TOOLS; i++)
+		cau_dds_drop_hands(&session->tools[i]);
 	cau_dds_close_session(dds, session);
 	cau_dds_keys_finish(&session->keys);
 	cau_hosted_release(session->hosted);
@@ -102,7 +103,7 @@ static void follow_tools(cau_dds *dds, cau_dds_session *session, const cau_hoste
 	}
 	for (int i = 0; i < CAU_MAX_TOOLS; i++)
 		if (session->tools[i].used && !session->tools[i].seen) {
-			cau_dds_drop_hands(dds, session, session->tools[i].name);
+			cau_dds_drop_hands(&session->tools[i]);
 			cau_dds_unpublish(session, session->tools[i].name);
 			cau_dds_close_tool(dds, &session->tools[i]);
 		}

@@ -41,7 +41,7 @@ static void on_sliced(void *user)
 // ---- samples
 static void serve(cau_dds *dds, cau_door *door)
 {
-	static void (*const takers[])(cau_dds *, cau_door *, cau_dds_client *, const void *) = {
+	static void (*const takers[])(cau_dds *, cau_door *, cau_dds_writer *, const void *) = {
 		[DOOR_NATIVE] = cau_dds_take_command,
 		[DOOR_SERVO_CP] = cau_dds_take_servo_cp,
 		[DOOR_SERVO_JP] = cau_dds_take_servo_jp,
@@ -56,16 +56,12 @@ static void serve(cau_dds *dds, cau_door *door)
 	for (dds_return_t i = 0; i < count; i++) {
 		if (!infos[i].valid_data)
 			continue;
-		cau_dds_client *client = cau_dds_client_of(dds, door, infos[i].publication_handle);
-		if (client)
-			takers[door->kind](dds, door, client, samples[i]);
+		cau_dds_writer *writer = cau_dds_writer_of(dds, door, infos[i].publication_handle);
+		if (writer)
+			takers[door->kind](dds, door, writer, samples[i]);
 	}
 	if (count > 0)
 		dds_return_loan(door->reader, samples, count);
-	dds_liveliness_changed_status_t alive;
-	if (!dds_get_liveliness_changed_status(door->reader, &alive) &&
-	    alive.not_alive_count_change > 0)
-		cau_dds_give_up(dds, door->reader, alive.last_publication_handle);
 	dds_get_subscription_matched_status(door->reader, &matched);
 	if (matched.current_count_change || matched.total_count_change)
 		cau_dds_prune(dds, door->reader, false);
@@ -92,11 +88,34 @@ static void *run(void *argument)
 		bool sliced = atomic_exchange(&dds->sliced, false); // both are taken, whichever is set
 		if (changed || sliced)
 			cau_dds_follow(dds);
+		if (atomic_exchange(&dds->fell_silent, false))
+			cau_dds_end_silenced(dds);
 		dds->answered = false;
 		look_s = cau_dds_serve(dds);
 	}
 	cau_dds_close_sessions(dds);
 	return NULL;
+}
+
+// ---- metrics
+void cau_dds_write_metrics(void *user, FILE *out, cau_metrics_format format)
+{
+	cau_dds *dds = user;
+	const struct {
+		cau_metric_family family;
+		double value;
+	} rows[] = {
+		{{"dds_clients", CAU_METRIC_GAUGE, "", "Drivers on DDS that have a place"},
+	     (double)dds->counts.clients},
+		{{"dds_places_denied", CAU_METRIC_COUNTER, "", "Times a writer on DDS got no place"},
+	     (double)dds->counts.denied},
+		{{"dds_places_evicted", CAU_METRIC_COUNTER, "", "Idle clients on DDS that made way"},
+	     (double)dds->counts.evicted},
+	};
+	for (size_t i = 0; i < sizeof rows / sizeof rows[0]; i++) {
+		cau_metrics_begin(out, format, &rows[i].family);
+		cau_metrics_sample(out, format, &rows[i].family, NULL, NULL, rows[i].value);
+	}
 }
 
 // ---- life
@@ -210,6 +229,7 @@ void cau_dds_destroy(cau_dds *dds)
 		cau_dds_leave(dds->domain);
 	for (cau_dds_post *post; (post = cau_dds_next_post(dds));)
 		cau_dds_post_free(post);
+	cau_dds_end_silenced(dds);
 	pthread_mutex_destroy(&dds->mutex);
 	free(dds);
 }

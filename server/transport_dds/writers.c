@@ -1,10 +1,15 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Who writes: publication handles become clients of the hub, and clients have hands on tools.
+// Who writes: one record for each writer that a reader of ours has met, as long as it is matched.
+// A record is no place: it costs less than what Cyclone keeps of the same writer. Places, which are
+// few, are places.c's.
 #include <math.h>
+#include <stdlib.h>
 #include <string.h>
 
 #include "config/role.h"
 #include "transport_dds/internal.h"
+
+enum { ONLOOKERS_TOLD_MOST = 16 }; // log lines a second
 
 // Bounds on a declared deadline, s.
 static const double deadline_least_s = 0.02, deadline_most_s = 1;
@@ -17,12 +22,10 @@ static double deadline_of(const cau_dds *dds, const dds_qos_t *qos)
 	return fmax(deadline_least_s, fmin(deadline_most_s, 1e-9 * (double)deadline));
 }
 
-static cau_dds_client *find_client(cau_dds *dds, uint64_t identity, bool native)
+static bool is_reliable(const dds_qos_t *qos)
 {
-	for (int i = 0; i < CLIENTS_MOST; i++)
-		if (dds->clients[i].identity == identity && dds->clients[i].native == native)
-			return &dds->clients[i];
-	return NULL;
+	dds_reliability_kind_t kind = DDS_RELIABILITY_BEST_EFFORT;
+	return dds_qget_reliability(qos, &kind, NULL) && kind == DDS_RELIABILITY_RELIABLE;
 }
 
 static void write_guid(char text[33], const dds_guid_t *guid)
@@ -31,86 +34,113 @@ static void write_guid(char text[33], const dds_guid_t *guid)
 		snprintf(text + 2 * i, 3, "%02x", guid->v[i]);
 }
 
-// The role of a writer's participant, by the name that it has proved.
-static cau_role role_of(const cau_dds *dds, const dds_builtintopic_endpoint_t *writer,
-                        char subject[CAU_DDS_SUBJECT_BYTES])
+static cau_dds_writer **bucket_of(cau_dds *dds, dds_entity_t reader, dds_instance_handle_t handle)
 {
-	bool proved = cau_dds_identity_find(writer->participant_key.v, subject);
-	if (!proved)
-		*subject = 0;
-	return cau_dds_roles_find(&dds->roles, proved ? subject : NULL);
-}
-
-static cau_dds_client *add_client(cau_dds *dds, uint64_t identity, bool native,
-                                  const dds_builtintopic_endpoint_t *writer)
-{
-	cau_dds_client *client = find_client(dds, 0, false);
-	char subject[CAU_DDS_SUBJECT_BYTES];
-	cau_client made = {.asker = {.role = role_of(dds, writer, subject),
-	                             .deadline_s = deadline_of(dds, writer->qos)},
-	                   .connection = ++dds->last_connection};
-	char guid[33];
-	uint64_t replaced;
-	write_guid(guid, native ? &writer->key : &writer->participant_key);
-	snprintf(made.asker.name, sizeof made.asker.name, "%s %.32s", native ? "dds" : "ros", guid);
-	snprintf(made.asker.client_id, sizeof made.asker.client_id, "dds-%s", guid);
-	if (!client || !cau_hub_attach(dds->hub, &made, NULL, &replaced))
-		return NULL;
-	*client = (cau_dds_client){.identity = identity,
-	                           .native = native,
-	                           .participant = writer->participant_instance_handle,
-	                           .guid = writer->key,
-	                           .connection = made.connection,
-	                           .asker = made.asker};
-	cau_log(CAU_LOG_INFO, NULL, "dds_client",
-	        "client=%u name=\"%s\" deadline_s=%.3f role=%s subject=\"%s\"", made.asker.client,
-	        made.asker.name, made.asker.deadline_s, cau_role_word(made.asker.role), subject);
-	return client;
+	uint64_t mixed = (handle ^ (uint64_t)(uint32_t)reader * 2654435761u) * 0x9e3779b97f4a7c15u;
+	return &dds->writers[mixed % WRITER_BUCKETS];
 }
 
 static cau_dds_writer *find_writer(cau_dds *dds, dds_entity_t reader, dds_instance_handle_t handle)
 {
-	for (int i = 0; i < WRITERS_MOST; i++)
-		if (dds->writers[i].client && dds->writers[i].reader == reader &&
-		    dds->writers[i].handle == handle)
-			return &dds->writers[i];
-	return NULL;
+	cau_dds_writer *writer = *bucket_of(dds, reader, handle);
+	while (writer && (writer->reader != reader || writer->handle != handle))
+		writer = writer->next;
+	return writer;
 }
 
-static cau_dds_writer *free_writer(cau_dds *dds)
+// By the name that its participant has proved.
+static void describe_asker(const cau_dds *dds, cau_dds_writer *writer,
+                           const dds_builtintopic_endpoint_t *endpoint)
 {
-	for (int i = 0; i < WRITERS_MOST; i++)
-		if (!dds->writers[i].client)
-			return &dds->writers[i];
-	return NULL;
+	char guid[33];
+	cau_asker *asker = &writer->asker;
+	bool proved = cau_dds_identity_find(endpoint->participant_key.v, writer->subject);
+	if (!proved)
+		*writer->subject = 0;
+	asker->role = cau_dds_roles_find(&dds->roles, proved ? writer->subject : NULL);
+	asker->deadline_s = deadline_of(dds, endpoint->qos);
+	write_guid(guid, writer->native ? &endpoint->key : &endpoint->participant_key);
+	snprintf(asker->name, sizeof asker->name, "%s %.32s", writer->native ? "dds" : "ros", guid);
+	snprintf(asker->client_id, sizeof asker->client_id, "dds-%s", guid);
 }
 
-cau_dds_client *cau_dds_client_of(cau_dds *dds, const cau_door *door, dds_instance_handle_t handle)
+// Who may not drive never gets a place, whose log line would name it: it is named here.
+static void tell_onlooker(cau_dds *dds, const cau_dds_writer *writer)
+{
+	double now_s = cau_monotonic_s();
+	if (now_s - dds->onlookers_told_s >= 1) {
+		dds->onlookers_told_s = now_s;
+		dds->onlookers_told = 0;
+	}
+	if (dds->onlookers_told++ < ONLOOKERS_TOLD_MOST)
+		cau_log(CAU_LOG_INFO, NULL, "dds_client", "client=0 name=\"%s\" role=%s subject=\"%s\"",
+		        writer->asker.name, cau_role_word(writer->asker.role), writer->subject);
+}
+
+static cau_dds_writer *add_writer(cau_dds *dds, const cau_door *door, dds_instance_handle_t handle)
+{
+	dds_builtintopic_endpoint_t *endpoint = dds_get_matched_publication_data(door->reader, handle);
+	cau_dds_writer *made = endpoint ? calloc(1, sizeof *made) : NULL;
+	if (made) {
+		cau_dds_writer **bucket = bucket_of(dds, door->reader, handle);
+		made->next = *bucket;
+		made->reader = door->reader;
+		made->handle = handle;
+		made->native = door->kind == DOOR_NATIVE || door->kind == DOOR_REQUEST;
+		made->reliable = is_reliable(endpoint->qos);
+		made->participant = endpoint->participant_instance_handle;
+		made->identity = made->native ? handle : made->participant;
+		made->guid = endpoint->key;
+		describe_asker(dds, made, endpoint);
+		*bucket = made;
+		if (made->asker.role < CAU_ROLE_OPERATE)
+			tell_onlooker(dds, made);
+	}
+	if (endpoint)
+		dds_builtintopic_free_endpoint(endpoint);
+	return made;
+}
+
+cau_dds_writer *cau_dds_writer_of(cau_dds *dds, const cau_door *door, dds_instance_handle_t handle)
 {
 	cau_dds_writer *writer = find_writer(dds, door->reader, handle);
-	if (writer)
-		return writer->client;
-	dds_builtintopic_endpoint_t *endpoint = dds_get_matched_publication_data(door->reader, handle);
-	writer = free_writer(dds);
-	if (!endpoint || !writer) {
-		if (endpoint)
-			dds_builtintopic_free_endpoint(endpoint);
-		return NULL;
-	}
-	bool native = door->kind == DOOR_NATIVE || door->kind == DOOR_REQUEST;
-	uint64_t identity = native ? handle : endpoint->participant_instance_handle;
-	cau_dds_client *client = find_client(dds, identity, native);
-	if (!client)
-		client = add_client(dds, identity, native, endpoint);
-	dds_builtintopic_free_endpoint(endpoint);
-	if (client) {
-		*writer = (cau_dds_writer){door->reader, handle, client};
-		client->writers++;
-	}
-	return client;
+	if (!writer)
+		writer = add_writer(dds, door, handle);
+	if (writer && !writer->client)
+		cau_dds_join_place(dds, writer);
+	return writer;
 }
 
-// ---- who is meant
+const cau_asker *cau_dds_asker_of(const cau_dds_writer *writer)
+{
+	return writer->client ? &writer->client->asker : &writer->asker;
+}
+
+// ---- who is matched
+
+// The writers that the reader has matched, in order; to be freed, NULL: none.
+static dds_instance_handle_t *matched_of(dds_entity_t reader, size_t *count)
+{
+	dds_instance_handle_t *handles = NULL;
+	dds_return_t there = dds_get_matched_publications(reader, NULL, 0);
+	*count = 0;
+	for (size_t room = 0; there > 0 && room < (size_t)there;) { // more may come meanwhile
+		room = (size_t)there;
+		free(handles);
+		handles = malloc(room * sizeof *handles);
+		there = handles ? dds_get_matched_publications(reader, handles, room) : 0;
+		*count = there > 0 && (size_t)there < room ? (size_t)there : there > 0 ? room : 0;
+	}
+	return handles;
+}
+
+static int by_handle(const void *a, const void *b)
+{
+	dds_instance_handle_t x = *(const dds_instance_handle_t *)a,
+						  y = *(const dds_instance_handle_t *)b;
+	return (x > y) - (x < y);
+}
+
 static bool is_meant(const dds_builtintopic_endpoint_t *writer, uint64_t participant,
                      const uint8_t guid[16])
 {
@@ -120,125 +150,101 @@ static bool is_meant(const dds_builtintopic_endpoint_t *writer, uint64_t partici
 	       (any || memcmp(writer->key.v, guid, sizeof writer->key.v) == 0);
 }
 
-static cau_dds_client *find_behind(cau_dds *dds, const cau_door *door, uint64_t participant,
-                                   const uint8_t guid[16])
+cau_dds_writer *cau_dds_find_writer(cau_dds *dds, const cau_door *door, uint64_t participant,
+                                    const uint8_t guid[16])
 {
-	dds_instance_handle_t handles[WRITERS_MOST];
-	dds_return_t count =
-		door->reader > 0 ? dds_get_matched_publications(door->reader, handles, WRITERS_MOST) : 0;
-	for (dds_return_t i = 0; i < count && i < WRITERS_MOST; i++) {
+	size_t count;
+	dds_instance_handle_t found = 0, *handles = matched_of(door->reader, &count);
+	for (size_t i = 0; i < count && !found; i++) {
 		dds_builtintopic_endpoint_t *writer =
 			dds_get_matched_publication_data(door->reader, handles[i]);
-		bool meant = writer && is_meant(writer, participant, guid);
+		if (writer && is_meant(writer, participant, guid))
+			found = handles[i];
 		if (writer)
 			dds_builtintopic_free_endpoint(writer);
-		if (meant)
-			return cau_dds_client_of(dds, door, handles[i]);
 	}
-	return NULL;
-}
-
-cau_dds_client *cau_dds_find_driver(cau_dds *dds, const cau_dds_client *requester, const char *id,
-                                    const char *tool_name, const uint8_t guid[16])
-{
-	static const uint8_t nobody[16];
-	cau_dds_session *session = dds->sessions;
-	while (session && strcmp(cau_hosted_id(session->hosted), id) != 0)
-		session = session->next;
-	if (!session)
-		return NULL;
-	if (memcmp(guid, nobody, sizeof nobody) != 0)
-		return find_behind(dds, &session->native, requester->participant, guid);
-	const cau_dds_tool *tool = cau_dds_find_tool(session, tool_name);
-	return tool ? find_behind(dds, &tool->servo_cp, requester->participant, guid) : NULL;
+	free(handles);
+	return found ? cau_dds_writer_of(dds, door, found) : NULL;
 }
 
 // ---- going
-static void drop_hand(cau_dds_hand *hand)
+static void drop_writer(cau_dds *dds, cau_dds_writer *writer)
 {
-	cau_hosted_tool tool;
-	bool drives = cau_hosted_find_tool(hand->session->hosted, hand->tool, &tool) &&
-	              tool.driver.client == hand->client->asker.client;
-	if (drives || hand->claim_until_s > 0)
-		cau_dds_hand_over(hand, NULL);
-	*hand = (cau_dds_hand){0};
-}
-
-void cau_dds_give_up(cau_dds *dds, dds_entity_t reader, dds_instance_handle_t handle)
-{
-	const cau_dds_writer *writer = find_writer(dds, reader, handle);
-	if (!writer)
-		return;
-	for (int i = 0; i < HANDS_MOST; i++) {
-		cau_dds_hand *hand = &dds->hands[i];
-		if (hand->client != writer->client)
-			continue;
-		cau_hosted_cut(hand->session->hosted, hand->client->asker.client,
-		               "its writer is not alive");
-		drop_hand(hand);
-	}
-}
-
-static void drop_client(cau_dds *dds, cau_dds_client *client)
-{
-	cau_log(CAU_LOG_INFO, NULL, "dds_client_gone", "client=%u name=\"%s\"", client->asker.client,
-	        client->asker.name);
-	cau_hub_detach(dds->hub, client->asker.client, client->connection);
-	for (int i = 0; i < HANDS_MOST; i++)
-		if (dds->hands[i].client == client)
-			drop_hand(&dds->hands[i]);
-	cau_dds_forget_replies(dds, client);
-	*client = (cau_dds_client){0};
-}
-
-static bool still_matches(const cau_dds_writer *writer)
-{
-	dds_builtintopic_endpoint_t *endpoint =
-		dds_get_matched_publication_data(writer->reader, writer->handle);
-	if (endpoint)
-		dds_builtintopic_free_endpoint(endpoint);
-	return endpoint != NULL;
+	if (writer->reader == dds->request.reader)
+		cau_dds_forget_replies(dds, &writer->guid);
+	cau_dds_leave_place(dds, writer);
+	free(writer);
 }
 
 void cau_dds_prune(cau_dds *dds, dds_entity_t reader, bool all)
 {
-	for (int i = 0; i < WRITERS_MOST; i++) {
-		cau_dds_writer *writer = &dds->writers[i];
-		if (!writer->client || (!all && writer->reader != reader) ||
-		    (!all && still_matches(writer)))
-			continue;
-		cau_dds_client *client = writer->client;
-		writer->client = NULL;
-		if (--client->writers == 0)
-			drop_client(dds, client);
-	}
+	size_t count = 0;
+	dds_instance_handle_t *matched = all ? NULL : matched_of(reader, &count);
+	if (count)
+		qsort(matched, count, sizeof *matched, by_handle);
+	for (int i = 0; i < WRITER_BUCKETS; i++)
+		for (cau_dds_writer **link = &dds->writers[i]; *link;) {
+			cau_dds_writer *writer = *link;
+			bool stays =
+				!all &&
+				(writer->reader != reader ||
+			     (count && bsearch(&writer->handle, matched, count, sizeof *matched, by_handle)));
+			if (stays) {
+				link = &writer->next;
+			} else {
+				*link = writer->next;
+				drop_writer(dds, writer);
+			}
+		}
+	free(matched);
 }
 
-// ---- hands
-cau_dds_hand *cau_dds_hand_of(cau_dds *dds, cau_dds_client *client, cau_dds_session *session,
-                              const char *tool)
+void cau_dds_forget_client(cau_dds *dds, const cau_dds_client *client)
 {
-	cau_dds_hand *free_hand = NULL;
-	for (int i = 0; i < HANDS_MOST; i++) {
-		cau_dds_hand *hand = &dds->hands[i];
-		if (!hand->client)
-			free_hand = free_hand ? free_hand : hand;
-		else if (hand->client == client && hand->session == session &&
-		         strcmp(hand->tool, tool) == 0)
-			return hand;
-	}
-	if (free_hand) {
-		*free_hand = (cau_dds_hand){.client = client, .session = session, .jaw = 1};
-		snprintf(free_hand->tool, sizeof free_hand->tool, "%s", tool);
-	}
-	return free_hand;
+	for (int i = 0; i < WRITER_BUCKETS; i++)
+		for (cau_dds_writer *writer = dds->writers[i]; writer; writer = writer->next)
+			if (writer->client == client)
+				writer->client = NULL;
 }
 
-void cau_dds_drop_hands(cau_dds *dds, const cau_dds_session *session, const char *tool)
+// ---- liveliness
+// On Cyclone's threads: each writer that stops being alive is noted, since the status tells but the
+// last one of several.
+static void on_liveliness(dds_entity_t reader, const dds_liveliness_changed_status_t status,
+                          void *user)
 {
-	for (int i = 0; i < HANDS_MOST; i++) {
-		cau_dds_hand *hand = &dds->hands[i];
-		if (hand->client && hand->session == session && (!tool || strcmp(hand->tool, tool) == 0))
-			*hand = (cau_dds_hand){0};
+	cau_dds *dds = user;
+	if (status.not_alive_count_change <= 0)
+		return;
+	cau_dds_silenced *noted = malloc(sizeof *noted);
+	if (!noted)
+		return; // the watchdog cuts its energy all the same
+	*noted = (cau_dds_silenced){.reader = reader, .handle = status.last_publication_handle};
+	pthread_mutex_lock(&dds->mutex);
+	noted->next = dds->silenced;
+	dds->silenced = noted;
+	pthread_mutex_unlock(&dds->mutex);
+	cau_dds_wake(dds, &dds->fell_silent);
+}
+
+dds_listener_t *cau_dds_listen_to_liveliness(cau_dds *dds)
+{
+	dds_listener_t *made = dds_create_listener(dds);
+	dds_lset_liveliness_changed(made, on_liveliness);
+	return made;
+}
+
+void cau_dds_end_silenced(cau_dds *dds)
+{
+	pthread_mutex_lock(&dds->mutex);
+	cau_dds_silenced *next, *first = dds->silenced;
+	dds->silenced = NULL;
+	pthread_mutex_unlock(&dds->mutex);
+	for (; first; first = next) {
+		next = first->next;
+		const cau_dds_writer *writer = find_writer(dds, first->reader, first->handle);
+		if (writer && writer->client)
+			cau_dds_give_up(writer->client);
+		free(first);
 	}
 }

@@ -140,6 +140,27 @@ test('only an identity with the role admin takes a tool from its driver', async 
 	await seen.client.until(() => seen.stream.tools[0].driver !== seen.client.hello.client, 'the chief drives');
 });
 
+test("one identity does not get another's answers under its client_id", async (t) => {
+	const asked = { scene: 'fascia', client_id: 'lasting' };
+	const [chief, worker] = [await requester(t, 'chief'), await requester(t, 'worker')];
+	const made = await chief.done('CREATE', { ...asked, name: 'of-chief' }, 1);
+	assert.equal((await (await requester(t, 'chief')).done('CREATE', { ...asked, name: 'of-chief' }, 1)).session, made.session);
+	const own = await worker.done('CREATE', { ...asked, name: 'of-worker' }, 1);
+	assert.equal(own.session, 'd1-of-worker');
+	for (const { session } of [made, own])
+		await chief.done('DESTROY', { session }, chief.number + 1);
+});
+
+test('a guest with many writers in its session takes the places of nobody', async (t) => {
+	const theirs = await watched(t, 'theirs'), mine = await watched(t, 'mine');
+	const crowd = secured(t, enclave('guest'), process.env.CROWD, [DOMAIN, theirs.session, 200, DEADLINE_MS, 'hook']);
+	await crowd.event((e) => e.event === 'matched', 'matched');
+	crowd.tell('write good');
+	await theirs.client.until(() => theirs.stream.tools[0].driver !== 0, 'one of them drives');
+	await daemon.log(/ event=dds_no_place .*subject="CN=guest,O=Cautery"/);
+	await drives(controller(t, mine.session, enclave('worker')), mine);
+});
+
 const start = (...flags) => spawnSync(process.env.CAUTERYD,
 	['--port', '0', '--store', join(folder, 'start.db'), '--scenes', process.env.SCENES, '--dds', '--dds-domain', DOMAIN,
 		...flags].map(String), { encoding: 'utf8', timeout: 60e3 });

@@ -1,0 +1,261 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Who has a place: as a client of the hub, and with a hand on a tool. A place is taken by a valid
+// sample of somebody who may drive. There is room for a driver of every tool that the sessions may
+// have, whatever others do: who drives nothing has but a few places, and makes way for who would.
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "config/role.h"
+#include "transport_dds/internal.h"
+
+enum {
+	// Clients of one participant, and of one identity, that drive nothing.
+	IDLE_OF_ONE_MOST = 64,
+	// Clients beyond one for each tool, for those that stand by.
+	CLIENTS_BESIDE_DRIVERS = 1024,
+	HANDS_OF_TOOL_MOST = 32,
+};
+
+#define DENIED_S 0.5       // a writer without a place does not ask for one again before
+#define DENIALS_TOLD_S 10. // between log lines
+
+// ---- who drives
+static bool drives(const cau_dds_hand *hand)
+{
+	cau_hosted_tool tool;
+	return cau_monotonic_s() < hand->claim_until_s ||
+	       (cau_hosted_find_tool(hand->session->hosted, hand->tool->name, &tool) &&
+	        tool.driver.client == hand->client->asker.client);
+}
+
+static bool is_idle(const cau_dds_client *client)
+{
+	for (const cau_dds_hand *hand = client->hands; hand; hand = hand->next_own)
+		if (drives(hand))
+			return false;
+	return true;
+}
+
+// ---- clients
+static cau_dds_client *find_client(cau_dds *dds, const cau_dds_writer *writer)
+{
+	cau_dds_client *client = dds->clients;
+	while (client && (client->identity != writer->identity || client->native != writer->native))
+		client = client->next;
+	return client;
+}
+
+void cau_dds_join_place(cau_dds *dds, cau_dds_writer *writer)
+{
+	writer->client = find_client(dds, writer);
+	if (writer->client)
+		writer->client->writers++;
+}
+
+static cau_dds_client *add_client(cau_dds *dds, cau_dds_writer *writer, cau_error *error)
+{
+	cau_dds_client *client = calloc(1, sizeof *client);
+	cau_client made = {.asker = writer->asker, .connection = ++dds->last_connection};
+	uint64_t replaced;
+	if (!client || !cau_hub_attach(dds->hub, &made, NULL, &replaced)) {
+		free(client);
+		cau_fail(error, CAU_NO_MEMORY, "", "no memory for a client");
+		return NULL;
+	}
+	*client = (cau_dds_client){.next = dds->clients,
+	                           .identity = writer->identity,
+	                           .native = writer->native,
+	                           .participant = writer->participant,
+	                           .connection = made.connection,
+	                           .asker = made.asker};
+	memcpy(client->subject, writer->subject, sizeof client->subject);
+	dds->clients = client;
+	dds->counts.clients++;
+	cau_dds_join_place(dds, writer);
+	cau_log(CAU_LOG_INFO, NULL, "dds_client",
+	        "client=%u name=\"%s\" deadline_s=%.3f role=%s subject=\"%s\"", made.asker.client,
+	        made.asker.name, made.asker.deadline_s, cau_role_word(made.asker.role),
+	        writer->subject);
+	return client;
+}
+
+static void unlink_hand(cau_dds_hand *hand)
+{
+	cau_dds_hand **own = &hand->client->hands, **link = &hand->tool->hands;
+	while (*own != hand)
+		own = &(*own)->next_own;
+	*own = hand->next_own;
+	while (*link != hand)
+		link = &(*link)->next;
+	*link = hand->next;
+	hand->tool->hand_count--;
+	free(hand);
+}
+
+static void drop_hand(cau_dds_hand *hand)
+{
+	if (hand->claim_until_s > 0 || drives(hand))
+		cau_dds_hand_over(hand, NULL);
+	unlink_hand(hand);
+}
+
+static void drop_client(cau_dds *dds, cau_dds_client *client)
+{
+	cau_log(CAU_LOG_INFO, NULL, "dds_client_gone", "client=%u name=\"%s\"", client->asker.client,
+	        client->asker.name);
+	cau_hub_detach(dds->hub, client->asker.client, client->connection);
+	while (client->hands)
+		drop_hand(client->hands);
+	cau_dds_client **link = &dds->clients;
+	while (*link != client)
+		link = &(*link)->next;
+	*link = client->next;
+	dds->counts.clients--;
+	free(client);
+}
+
+void cau_dds_leave_place(cau_dds *dds, cau_dds_writer *writer)
+{
+	cau_dds_client *client = writer->client;
+	writer->client = NULL;
+	if (client && --client->writers == 0)
+		drop_client(dds, client);
+}
+
+void cau_dds_give_up(cau_dds_client *client)
+{
+	while (client->hands) {
+		cau_hosted_cut(client->hands->session->hosted, client->asker.client,
+		               "its writer is not alive");
+		drop_hand(client->hands);
+	}
+}
+
+// ---- quotas
+static bool is_same(const cau_dds_client *client, const cau_dds_writer *writer)
+{
+	return client->participant == writer->participant ||
+	       (*writer->subject && strcmp(client->subject, writer->subject) == 0);
+}
+
+static cau_status check_quota(cau_dds *dds, const cau_dds_writer *writer, cau_error *error)
+{
+	int idle = 0;
+	for (const cau_dds_client *client = dds->clients; client; client = client->next)
+		if (is_same(client, writer) && is_idle(client) && ++idle == IDLE_OF_ONE_MOST)
+			return cau_fail(error, CAU_LIMIT, "",
+			                "its participant or identity has %d clients that drive nothing", idle);
+	if (dds->counts.clients >=
+	    (uint64_t)dds->config->max_sessions * CAU_MAX_TOOLS + CLIENTS_BESIDE_DRIVERS)
+		return cau_fail(error, CAU_LIMIT, "", "there are too many clients");
+	return CAU_OK;
+}
+
+// Who makes way: of those that drive nothing one that never had a motion accepted, else the first
+// come. `of`: only one of the same participant or identity; NULL: any.
+static cau_dds_client *find_idle(cau_dds *dds, const cau_dds_writer *of)
+{
+	cau_dds_client *found = NULL;
+	for (cau_dds_client *client = dds->clients; client; client = client->next) // the newest first
+		if ((!of || is_same(client, of)) && (!found || found->accepted || !client->accepted) &&
+		    is_idle(client))
+			found = client;
+	return found;
+}
+
+static void evict(cau_dds *dds, cau_dds_client *client)
+{
+	dds->counts.evicted++;
+	cau_dds_forget_client(dds, client);
+	drop_client(dds, client);
+}
+
+static cau_status deny(cau_dds *dds, cau_dds_writer *writer, cau_error *error)
+{
+	double now_s = cau_monotonic_s();
+	writer->retry_s = now_s + DENIED_S;
+	dds->counts.denied++;
+	dds->denials++;
+	if (now_s - dds->denials_told_s < DENIALS_TOLD_S)
+		return CAU_LIMIT;
+	cau_log(CAU_LOG_WARNING, NULL, "dds_no_place",
+	        "count=%llu client=\"%s\" subject=\"%s\" reason=\"%s\"",
+	        (unsigned long long)dds->denials, writer->asker.name, writer->subject, error->reason);
+	dds->denials = 0;
+	dds->denials_told_s = now_s;
+	return CAU_LIMIT;
+}
+
+cau_dds_client *cau_dds_admit(cau_dds *dds, cau_dds_writer *writer, bool drives_now,
+                              cau_error *error)
+{
+	if (writer->client)
+		return writer->client;
+	if (!drives_now && cau_monotonic_s() < writer->retry_s) {
+		cau_fail(error, CAU_LIMIT, "", "it has no place among those that stand by");
+		return NULL;
+	}
+	if (check_quota(dds, writer, error)) {
+		cau_dds_client *idle = drives_now ? find_idle(dds, writer) : NULL;
+		if (drives_now && !idle)
+			idle = find_idle(dds, NULL);
+		if (!idle) {
+			deny(dds, writer, error);
+			return NULL;
+		}
+		evict(dds, idle);
+	}
+	return add_client(dds, writer, error);
+}
+
+// ---- hands
+cau_dds_hand *cau_dds_find_hand(const cau_dds_client *client, const cau_dds_tool *tool)
+{
+	cau_dds_hand *hand = client ? tool->hands : NULL;
+	while (hand && hand->client != client)
+		hand = hand->next;
+	return hand;
+}
+
+static bool evict_hand(cau_dds_tool *tool)
+{
+	cau_dds_hand *found = NULL;
+	for (cau_dds_hand *hand = tool->hands; hand; hand = hand->next)
+		if ((!found || found->past.has_pose || !hand->past.has_pose) && !drives(hand))
+			found = hand;
+	if (found)
+		unlink_hand(found);
+	return found != NULL;
+}
+
+cau_dds_hand *cau_dds_take_hand(cau_dds *dds, cau_dds_writer *writer, cau_dds_session *session,
+                                cau_dds_tool *tool, bool drives_now, cau_error *error)
+{
+	cau_dds_client *client = cau_dds_admit(dds, writer, drives_now, error);
+	cau_dds_hand *hand = cau_dds_find_hand(client, tool);
+	if (!client || hand)
+		return hand;
+	bool room = tool->hand_count < HANDS_OF_TOOL_MOST || (drives_now && evict_hand(tool));
+	hand = room ? calloc(1, sizeof *hand) : NULL;
+	if (!hand) {
+		cau_fail(error, CAU_LIMIT, "tool", "%d writers stand by for it", HANDS_OF_TOOL_MOST);
+		deny(dds, writer, error);
+		return NULL;
+	}
+	*hand = (cau_dds_hand){.next = tool->hands,
+	                       .next_own = client->hands,
+	                       .client = client,
+	                       .session = session,
+	                       .tool = tool,
+	                       .jaw = 1};
+	tool->hands = client->hands = hand;
+	tool->hand_count++;
+	return hand;
+}
+
+void cau_dds_drop_hands(cau_dds_tool *tool)
+{
+	while (tool->hands)
+		unlink_hand(tool->hands);
+}
