@@ -295,6 +295,6 @@ cau_due cau_hosted_run(cau_task *task)
 		h->unanswered = false;
 	cau_hosted_publish_summary(h);
 	cau_hosted_publish_tools(h);
-	h->around->sink.sliced(h->around->sink.user);
+	h->around->sink.sliced(h->around->sink.user, h->number);
 	return when(h);
 }

@@ -23,12 +23,12 @@ static void frames_all(void *user)
 		hub->sinks[i].frames(hub->sinks[i].user);
 }
 
-static void sliced_all(void *user)
+static void sliced_all(void *user, uint32_t session)
 {
 	cau_hub *hub = user;
 	for (int i = 0; i < hub->sink_count; i++)
 		if (hub->sinks[i].sliced)
-			hub->sinks[i].sliced(hub->sinks[i].user);
+			hub->sinks[i].sliced(hub->sinks[i].user, session);
 }
 
 static void armed(void *user)

@@ -49,8 +49,8 @@ typedef struct cau_sink {
 	void (*notify)(void *user, cau_audience audience, cau_buffer *text);
 	// Streams have new frames.
 	void (*frames)(void *user);
-	// Slices of sessions are over: their tools may be elsewhere. May be NULL.
-	void (*sliced)(void *user);
+	// A slice of the session with this number is over: its tools may be elsewhere. May be NULL.
+	void (*sliced)(void *user, uint32_t session);
 } cau_sink;
 
 static inline void cau_reply_answer(const cau_reply *reply, const cau_outcome *outcome)

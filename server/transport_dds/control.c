@@ -210,6 +210,7 @@ static cau_status join(const asked *a, int32_t *code, cau_error *error)
 	for (cau_dds_session *s = a->dds->sessions; s; s = s->next)
 		if (strcmp(cau_hosted_id(s->hosted), a->sample->session) == 0) {
 			s->stream.key_wanted = s->stream.key_forced = true;
+			s->look_s = 0;
 			cau_hosted_summary(s->hosted, &summary);
 			cau_dds_reply_join(a->dds, a->request, &summary);
 			return CAU_OK;

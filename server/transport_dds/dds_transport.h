@@ -8,6 +8,9 @@
 
 typedef struct cau_dds cau_dds;
 
+// Of the transport's own thread, as the system shows it.
+#define CAU_DDS_THREAD_NAME "cautery-dds"
+
 // Opens the domain and adds a sink to the hub: before sessions exist. CAU_UNSUPPORTED in a build
 // without DDS. `config` and `hub` are borrowed.
 cau_status cau_dds_create(cau_dds **dds, const cau_config *config, cau_hub *hub, cau_error *error);

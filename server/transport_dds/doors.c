@@ -113,26 +113,21 @@ static void open_writers(cau_dds *dds, cau_dds_session *session)
 	// It outlives its session: by then another one may have the name.
 	dds_qset_writer_data_lifecycle(last, false);
 	const struct {
-		dds_entity_t *writer;
+		cau_dds_outlet *outlet;
 		cau_topic topic;
 		const dds_qos_t *qos;
-		bool watched; // whoever reads it is looked at
-	} writers[] = {
-		{&session->state_writer, TOPIC_STATE, kept, false},
-		{&session->status_writer, TOPIC_STATUS, last, false},
-		{&stream->topology_writer, TOPIC_TOPOLOGY, kept, true},
-		{&stream->key_writer, TOPIC_KEY_FRAME, kept, true},
-		{&stream->delta_writer, TOPIC_DELTA, chain, true},
+	} outlets[] = {
+		{&session->state, TOPIC_STATE, kept},
+		{&stream->topology, TOPIC_TOPOLOGY, kept},
+		{&stream->key, TOPIC_KEY_FRAME, kept},
+		{&stream->delta, TOPIC_DELTA, chain},
 	};
-	for (size_t i = 0; i < sizeof writers / sizeof writers[0]; i++) {
-		dds_entity_t made = dds_create_writer(session->publisher, dds->topics[writers[i].topic],
-		                                      writers[i].qos, NULL);
-		if (made > 0 && writers[i].watched) {
-			dds_set_status_mask(made, DDS_PUBLICATION_MATCHED_STATUS);
-			dds_waitset_attach(dds->waitset, made, 0);
-		}
-		*writers[i].writer = made;
-	}
+	uint32_t number = cau_hosted_number(session->hosted);
+	for (size_t i = 0; i < sizeof outlets / sizeof outlets[0]; i++)
+		cau_dds_open_outlet(dds, outlets[i].outlet, number, session->publisher,
+		                    dds->topics[outlets[i].topic], outlets[i].qos);
+	session->status_writer =
+		dds_create_writer(session->publisher, dds->topics[TOPIC_STATUS], last, NULL);
 	dds_delete_qos(kept);
 	dds_delete_qos(last);
 	dds_delete_qos(chain);
@@ -182,11 +177,10 @@ static void close_writers(cau_dds *dds, cau_dds_session *session)
 	snprintf(gone.session, sizeof gone.session, "%s", cau_hosted_id(session->hosted));
 	if (session->status_writer > 0)
 		dds_dispose(session->status_writer, &gone);
-	const dds_entity_t at_once[] = {session->state_writer, session->stream.topology_writer,
-	                                session->stream.key_writer, session->stream.delta_writer};
+	cau_dds_outlet *at_once[] = {&session->state, &session->stream.topology, &session->stream.key,
+	                             &session->stream.delta};
 	for (size_t i = 0; i < sizeof at_once / sizeof at_once[0]; i++)
-		if (at_once[i] > 0)
-			dds_delete(at_once[i]);
+		cau_dds_close_outlet(at_once[i]);
 	cau_dds_bid_farewell(dds, session->publisher, session->status_writer);
 }
 
@@ -231,31 +225,31 @@ static dds_entity_t ros_topic(cau_dds *dds, const char *prefix, const char *name
 	return dds_create_topic(dds->participant, type, topic, NULL, NULL);
 }
 
-static void open_ros_writers(cau_dds *dds, cau_dds_tool *tool, const char *prefix,
+static void open_ros_writers(cau_dds *dds, uint32_t session, cau_dds_tool *tool, const char *prefix,
                              const dds_qos_t *qos)
 {
-	dds_qos_t *latched = reliable_qos(1); // late joiners want it, CRTK's clients ask for it
-	dds_qset_durability(latched, DDS_DURABILITY_TRANSIENT_LOCAL);
 	const struct {
-		dds_entity_t *topic, *writer;
+		dds_entity_t *topic;
+		cau_dds_outlet *outlet;
 		const char *name;
 		const dds_topic_descriptor_t *type;
-		const dds_qos_t *qos;
-	} writers[] = {
-		{&tool->pose_topic, &tool->pose_writer, "measured_cp",
-	     &geometry_msgs_msg_dds__PoseStamped__desc, qos},
-		{&tool->force_topic, &tool->force_writer, "measured_cf",
-	     &geometry_msgs_msg_dds__WrenchStamped__desc, qos},
-		{&tool->jaw_topic, &tool->jaw_writer, "jaw/measured_js",
-	     &sensor_msgs_msg_dds__JointState__desc, qos},
-		{&tool->operating_topic, &tool->operating_writer, "operating_state",
-	     &crtk_msgs_msg_dds__OperatingState__desc, latched},
+	} outlets[] = {
+		{&tool->pose_topic, &tool->pose, "measured_cp", &geometry_msgs_msg_dds__PoseStamped__desc},
+		{&tool->force_topic, &tool->force, "measured_cf",
+	     &geometry_msgs_msg_dds__WrenchStamped__desc},
+		{&tool->jaw_topic, &tool->jaw, "jaw/measured_js", &sensor_msgs_msg_dds__JointState__desc},
 	};
-	for (size_t i = 0; i < sizeof writers / sizeof writers[0]; i++) {
-		*writers[i].topic = ros_topic(dds, prefix, writers[i].name, writers[i].type);
-		*writers[i].writer =
-			dds_create_writer(dds->publisher, *writers[i].topic, writers[i].qos, NULL);
+	for (size_t i = 0; i < sizeof outlets / sizeof outlets[0]; i++) {
+		*outlets[i].topic = ros_topic(dds, prefix, outlets[i].name, outlets[i].type);
+		cau_dds_open_outlet(dds, outlets[i].outlet, session, dds->publisher, *outlets[i].topic,
+		                    qos);
 	}
+	dds_qos_t *latched = reliable_qos(1); // late joiners want it, CRTK's clients ask for it
+	dds_qset_durability(latched, DDS_DURABILITY_TRANSIENT_LOCAL);
+	tool->operating_topic =
+		ros_topic(dds, prefix, "operating_state", &crtk_msgs_msg_dds__OperatingState__desc);
+	tool->operating_writer =
+		dds_create_writer(dds->publisher, tool->operating_topic, latched, NULL);
 	dds_delete_qos(latched);
 }
 
@@ -290,7 +284,7 @@ void cau_dds_open_tool(cau_dds *dds, cau_dds_session *session, cau_dds_tool *too
 		doors[i].door->topic = ros_topic(dds, prefix, doors[i].name, doors[i].type);
 		open_door(dds, doors[i].door, dds->subscriber, qos);
 	}
-	open_ros_writers(dds, tool, prefix, qos);
+	open_ros_writers(dds, cau_hosted_number(session->hosted), tool, prefix, qos);
 	dds_delete_qos(qos);
 }
 
@@ -300,9 +294,11 @@ void cau_dds_close_tool(cau_dds *dds, cau_dds_tool *tool)
 	close_door(dds, &tool->servo_jp);
 	close_door(dds, &tool->energize);
 	close_door(dds, &tool->state_command);
-	const dds_entity_t made[] = {tool->pose_writer,      tool->force_writer,   tool->jaw_writer,
-	                             tool->operating_writer, tool->pose_topic,     tool->force_topic,
-	                             tool->jaw_topic,        tool->operating_topic};
+	cau_dds_close_outlet(&tool->pose);
+	cau_dds_close_outlet(&tool->force);
+	cau_dds_close_outlet(&tool->jaw);
+	const dds_entity_t made[] = {tool->operating_writer, tool->pose_topic, tool->force_topic,
+	                             tool->jaw_topic, tool->operating_topic};
 	for (size_t i = 0; i < sizeof made / sizeof made[0]; i++)
 		if (made[i] > 0)
 			dds_delete(made[i]);

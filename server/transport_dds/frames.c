@@ -43,9 +43,9 @@ static cautery_Frame describe(const cau_dds_session *session, const cau_frame_he
 
 static dds_entity_t writer_of(const cau_dds_stream *stream, cautery_FrameKind kind)
 {
-	return kind == cautery_KEY_FRAME ? stream->key_writer
-	       : kind == cautery_DELTA   ? stream->delta_writer
-	                                 : stream->topology_writer;
+	return kind == cautery_KEY_FRAME ? stream->key.writer
+	       : kind == cautery_DELTA   ? stream->delta.writer
+	                                 : stream->topology.writer;
 }
 
 // Takes the frame. One that the writer does not take is mended by the next key frame.
@@ -115,19 +115,16 @@ static double write_new(cau_dds_session *session, double now_s)
 }
 
 // ---- joining and leaving
-static void count_readers(cau_dds_stream *stream)
+// Notes newcomers too, who have only what was kept.
+static bool has_readers(cau_dds_stream *stream)
 {
-	const dds_entity_t writers[] = {stream->topology_writer, stream->key_writer,
-	                                stream->delta_writer};
-	stream->readers = 0;
-	for (size_t i = 0; i < sizeof writers / sizeof writers[0]; i++) {
-		dds_publication_matched_status_t matched = {0};
-		if (dds_get_publication_matched_status(writers[i], &matched))
-			continue;
-		stream->readers += matched.current_count;
-		if (matched.total_count_change > 0)
-			stream->key_wanted = true; // the newcomer has only what was kept
+	cau_dds_outlet *outlets[] = {&stream->topology, &stream->key, &stream->delta};
+	bool any = false;
+	for (size_t i = 0; i < sizeof outlets / sizeof outlets[0]; i++) {
+		stream->key_wanted |= cau_dds_take_newcomers(outlets[i]);
+		any |= cau_dds_is_read(outlets[i]);
 	}
+	return any;
 }
 
 static void join(cau_dds *dds, cau_dds_session *session, double now_s)
@@ -179,16 +176,15 @@ void cau_dds_leave_frames(cau_dds_session *session)
 	// What was kept would mislead who comes later: the next stream may be another one.
 	cautery_Frame key = {0};
 	snprintf(key.session, sizeof key.session, "%s", cau_hosted_id(session->hosted));
-	dds_dispose(stream->topology_writer, &key);
-	dds_dispose(stream->key_writer, &key);
-	dds_dispose(stream->delta_writer, &key);
+	dds_dispose(stream->topology.writer, &key);
+	dds_dispose(stream->key.writer, &key);
+	dds_dispose(stream->delta.writer, &key);
 }
 
 double cau_dds_serve_frames(cau_dds *dds, cau_dds_session *session, double now_s)
 {
 	cau_dds_stream *stream = &session->stream;
-	count_readers(stream);
-	if (!stream->readers) {
+	if (!has_readers(stream)) {
 		cau_dds_leave_frames(session);
 		return INFINITY;
 	}

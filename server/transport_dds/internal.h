@@ -65,6 +65,21 @@ typedef enum cau_dds_operating_state {
 	OPERATING_FAULT,
 } cau_dds_operating_state;
 
+// A writer of ours of which it is known who reads it; outlets.c.
+typedef struct cau_dds_outlet {
+	struct cau_dds *dds;
+	uint32_t session; // its number
+	dds_entity_t writer;
+	atomic_uint readers;   // matched now
+	atomic_bool newcomers; // some came, and have not got what stands
+} cau_dds_outlet;
+
+// A set of sessions, by their numbers modulo its size: with two of one bit both are meant.
+enum { BITS_WORDS = 32, BITS_MOST = 64 * BITS_WORDS };
+typedef struct cau_dds_bits {
+	atomic_ullong words[BITS_WORDS];
+} cau_dds_bits;
+
 // As CRTK has it; operating.c.
 typedef struct cau_dds_operating {
 	cau_dds_operating_state state;
@@ -76,9 +91,8 @@ typedef struct cau_dds_tool {
 	char name[CAU_NAME_BYTES];
 	// closed where the ROS 2 name is taken
 	cau_door servo_cp, servo_jp, energize, state_command;
-	dds_entity_t pose_topic, pose_writer;           // measured_cp
-	dds_entity_t force_topic, force_writer;         // measured_cf
-	dds_entity_t jaw_topic, jaw_writer;             // jaw/measured_js
+	dds_entity_t pose_topic, force_topic, jaw_topic;
+	cau_dds_outlet pose, force, jaw;                // measured_cp, measured_cf, jaw/measured_js
 	dds_entity_t operating_topic, operating_writer; // operating_state
 	cau_dds_operating operating, operating_told;
 	struct cau_dds_hand *hands;
@@ -87,10 +101,9 @@ typedef struct cau_dds_tool {
 
 // A session's frames; frames.c. Joined while somebody reads them.
 typedef struct cau_dds_stream {
-	dds_entity_t topology_writer, key_writer, delta_writer;
-	uint32_t readers; // of the three together
-	uint64_t ticket;  // of a join on its way; 0: none
-	double retry_s;   // not before this, after a join that was refused
+	cau_dds_outlet topology, key, delta;
+	uint64_t ticket; // of a join on its way; 0: none
+	double retry_s;  // not before this, after a join that was refused
 	bool joined;
 	cau_wire_stream_description description;
 	cau_subscriber chain; // every delta, and key frames that mend the chain
@@ -117,9 +130,13 @@ typedef struct cau_dds_session {
 	dds_entity_t subscriber, publisher; // of its partition
 	cau_door native;
 	cau_dds_keys keys; // what the native door lets in
-	dds_entity_t state_writer, status_writer;
-	cau_hosted_tool states[CAU_MAX_TOOLS]; // as they were last written
+	dds_entity_t status_writer;
+	cau_dds_outlet state;
+	cau_hosted_tool states[CAU_MAX_TOOLS]; // as they were last seen
 	uint64_t states_tick;
+	double states_s;  // when they were last written for nobody
+	bool states_owed; // they have changed since
+	double look_s;    // when to look at it again, whether it had a slice or not
 	cau_dds_stream stream;
 	cau_dds_status status;
 	cau_dds_tool tools[CAU_MAX_TOOLS];
@@ -234,7 +251,8 @@ struct cau_dds {
 	pthread_t thread;
 	bool started;
 	atomic_bool ending, sessions_changed, sliced, answered, fell_silent;
-	pthread_mutex_t mutex; // guards the posts and who fell silent
+	cau_dds_bits marked, read; // sessions to be followed; sessions that somebody reads
+	pthread_mutex_t mutex;     // guards the posts and who fell silent
 	cau_dds_post *first, *last;
 	cau_dds_silenced *silenced;
 	uint64_t last_connection, last_ticket;
@@ -253,9 +271,27 @@ struct cau_dds {
 // ---- transport.c: makes the thread look again, for the reason `why`; any thread
 void cau_dds_wake(cau_dds *dds, atomic_bool *why);
 
+// Makes it look at this session; any thread
+void cau_dds_mark(cau_dds *dds, uint32_t session);
+
+// ---- outlets.c: who reads
+void cau_dds_set_bit(cau_dds_bits *bits, uint32_t session);
+bool cau_dds_has_bit(const cau_dds_bits *bits, uint32_t session);
+// Empties `bits` into `taken`.
+void cau_dds_take_bits(cau_dds_bits *bits, cau_dds_bits *taken);
+// Opens a writer; the outlet stays where it is until that is deleted. False: it could not.
+bool cau_dds_open_outlet(cau_dds *dds, cau_dds_outlet *outlet, uint32_t session,
+                         dds_entity_t publisher, dds_entity_t topic, const dds_qos_t *qos);
+void cau_dds_close_outlet(cau_dds_outlet *outlet);
+bool cau_dds_is_read(const cau_dds_outlet *outlet);
+// Whether somebody new reads it, since this was last asked.
+bool cau_dds_take_newcomers(cau_dds_outlet *outlet);
+
 // ---- sessions.c: follows the hub
-void cau_dds_follow(cau_dds *dds);
-// What is due by the clock, and what the mailbox brought. Returns when to look again.
+// Takes up sessions that are new, and lets go those that are gone.
+void cau_dds_list_sessions(cau_dds *dds);
+// Sessions that had a slice, what is due by the clock, and what the mailbox brought. Returns when
+// to look again.
 double cau_dds_serve(cau_dds *dds);
 void cau_dds_close_sessions(cau_dds *dds);
 cau_dds_tool *cau_dds_find_tool(const cau_dds_session *session, const char *name); // NULL: none
@@ -375,9 +411,12 @@ cau_status cau_dds_check_ready(const cau_dds_session *session, const char *tool,
 void cau_dds_publish_operating(cau_dds_session *session);
 
 // ---- states.c
-// Writes the states of tools that are not as they were last written.
+// Writes the states of tools that have changed, and those that newcomers have not got. What nobody
+// reads is kept for late joiners, a second old at most.
 void cau_dds_publish(cau_dds_session *session, const cau_hosted_tool *tools, int32_t count,
-                     uint64_t tick, double time_s);
+                     uint64_t tick, double time_s, double now_s);
+// When they are to be looked at again.
+double cau_dds_states_due(const cau_dds_session *session);
 // Disposes the state of a tool that is removed.
 void cau_dds_unpublish(const cau_dds_session *session, const char *tool);
 

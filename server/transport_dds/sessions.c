@@ -6,7 +6,8 @@
 
 #include "transport_dds/internal.h"
 
-#define LOOK_EVERY_S 1 // what readers have dropped wakes nobody
+#define LOOK_EVERY_S 1    // what readers have dropped wakes nobody
+#define UNREAD_LOOK_S 0.1 // at sessions that had a slice and that nobody reads
 
 static cau_dds_session *find_session(cau_dds *dds, const cau_hosted *hosted)
 {
@@ -113,20 +114,18 @@ static void follow_tools(cau_dds *dds, cau_dds_session *session, const cau_hoste
 	let_tools_in(session);
 }
 
-static void follow_session(cau_dds *dds, cau_dds_session *session)
+static void follow_session(cau_dds *dds, cau_dds_session *session, double now_s)
 {
 	cau_hosted_tool tools[CAU_MAX_TOOLS];
 	uint64_t tick;
 	double time_s;
-	if (!session->subscriber && cau_dds_open_session(dds, session))
-		return;
 	int32_t count = cau_hosted_tools(session->hosted, tools, &tick, &time_s);
 	follow_tools(dds, session, tools, count);
-	cau_dds_publish(session, tools, count, tick, time_s);
+	cau_dds_publish(session, tools, count, tick, time_s, now_s);
 	cau_dds_publish_operating(session);
 }
 
-void cau_dds_follow(cau_dds *dds)
+void cau_dds_list_sessions(cau_dds *dds)
 {
 	for (cau_dds_session *s = dds->sessions; s; s = s->next)
 		s->seen = false;
@@ -134,7 +133,8 @@ void cau_dds_follow(cau_dds *dds)
 	for (cau_dds_session **link = &dds->sessions; *link;) {
 		cau_dds_session *session = *link;
 		if (session->seen) {
-			follow_session(dds, session);
+			if (!session->subscriber)
+				cau_dds_open_session(dds, session);
 			link = &session->next;
 		} else {
 			*link = session->next;
@@ -146,24 +146,63 @@ void cau_dds_follow(cau_dds *dds)
 static void deliver(cau_dds *dds, cau_dds_post *post)
 {
 	for (cau_dds_session *s = dds->sessions; s; s = s->next)
-		if (s->stream.ticket == post->ticket) // tickets are never 0
+		if (s->stream.ticket == post->ticket) { // tickets are never 0
 			cau_dds_joined(s, post);
+			s->look_s = 0;
+		}
 	cau_dds_reply_post(dds, post);
+}
+
+static bool is_session_read(const cau_dds_session *session)
+{
+	const cau_dds_stream *stream = &session->stream;
+	bool any = cau_dds_is_read(&session->state) || cau_dds_is_read(&stream->topology) ||
+	           cau_dds_is_read(&stream->key) || cau_dds_is_read(&stream->delta);
+	for (int i = 0; i < CAU_MAX_TOOLS && !any; i++) {
+		const cau_dds_tool *tool = &session->tools[i];
+		any = cau_dds_is_read(&tool->pose) || cau_dds_is_read(&tool->force) ||
+		      cau_dds_is_read(&tool->jaw);
+	}
+	return any;
+}
+
+// Returns when to look at the session again.
+static double serve_session(cau_dds *dds, cau_dds_session *session, double now_s)
+{
+	follow_session(dds, session, now_s);
+	cau_dds_count_dropped(session);
+	double look_s = fmin(now_s + LOOK_EVERY_S, cau_dds_states_due(session));
+	look_s = fmin(look_s, cau_dds_publish_status(session, now_s));
+	return fmin(look_s, cau_dds_serve_frames(dds, session, now_s));
+}
+
+// Whoever reads a session is told of it at once; of others the thread need not hear at each slice.
+static void note_read(cau_dds *dds)
+{
+	cau_dds_bits read = {0};
+	for (const cau_dds_session *s = dds->sessions; s; s = s->next)
+		if (is_session_read(s))
+			cau_dds_set_bit(&read, cau_hosted_number(s->hosted));
+	for (int i = 0; i < BITS_WORDS; i++)
+		atomic_store(&dds->read.words[i], read.words[i]);
 }
 
 double cau_dds_serve(cau_dds *dds)
 {
-	double now_s = cau_monotonic_s(), look_s = now_s + LOOK_EVERY_S;
+	double now_s = cau_monotonic_s(), look_s = now_s + UNREAD_LOOK_S;
+	cau_dds_bits marked;
 	for (cau_dds_post *post; (post = cau_dds_next_post(dds));) {
 		deliver(dds, post);
 		cau_dds_post_free(post);
 	}
+	note_read(dds); // before the marks are taken: a slice that did not wake the thread left one
+	cau_dds_take_bits(&dds->marked, &marked);
 	for (cau_dds_session *s = dds->sessions; s; s = s->next) {
 		if (!s->subscriber)
 			continue;
-		cau_dds_count_dropped(s);
-		look_s = fmin(look_s, cau_dds_publish_status(s, now_s));
-		look_s = fmin(look_s, cau_dds_serve_frames(dds, s, now_s));
+		if (now_s >= s->look_s || cau_dds_has_bit(&marked, cau_hosted_number(s->hosted)))
+			s->look_s = serve_session(dds, s, now_s);
+		look_s = fmin(look_s, s->look_s);
 	}
 	return fmin(look_s, cau_dds_end_farewells(dds, now_s));
 }

@@ -1,9 +1,12 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // What the server says of tools: cautery/tool_state, measured_cp, measured_cf, jaw/measured_js.
+#include <math.h>
 #include <string.h>
 
 #include "ros2.h"
 #include "transport_dds/internal.h"
+
+#define UNREAD_PERIOD_S 1.0 // between writes for nobody
 
 static char world_frame[] = "world", jaw_text[] = "jaw";
 static char *jaw_name = jaw_text;
@@ -34,27 +37,45 @@ static void publish_state(const cau_dds_session *session, const cau_hosted_tool 
 	memcpy(sample.rotation, state->pose.rotation, sizeof sample.rotation);
 	memcpy(sample.force_n, state->force_n, sizeof sample.force_n);
 	memcpy(sample.torque_nm, state->torque_nm, sizeof sample.torque_nm);
-	dds_write(session->state_writer, &sample);
+	dds_write(session->state.writer, &sample);
 }
 
-static void publish_measured(const cau_dds_tool *wire, const cau_tool_state *state)
+static std_msgs_msg_dds__Header_ header_now(void)
 {
 	int64_t now_us = cau_wall_us();
+	return (std_msgs_msg_dds__Header_){
+		{(int32_t)(now_us / 1000000), (uint32_t)(now_us % 1000000) * 1000}, world_frame};
+}
+
+// Whether what the outlet tells is to be written now.
+static bool is_due(cau_dds_outlet *outlet, bool changed)
+{
+	if (outlet->writer <= 0 || !cau_dds_is_read(outlet))
+		return false;
+	return cau_dds_take_newcomers(outlet) || changed;
+}
+
+static void publish_measured(cau_dds_tool *wire, const cau_tool_state *state, bool changed)
+{
 	const double *p = state->pose.position_m, *q = state->pose.rotation, *f = state->force_n,
 				 *t = state->torque_nm;
-	std_msgs_msg_dds__Header_ header = {
-		{(int32_t)(now_us / 1000000), (uint32_t)(now_us % 1000000) * 1000}, world_frame};
-	geometry_msgs_msg_dds__PoseStamped_ pose = {
-		header, {{p[0], p[1], p[2]}, {.x_ = q[1], .y_ = q[2], .z_ = q[3], .w_ = q[0]}}};
-	geometry_msgs_msg_dds__WrenchStamped_ force = {header,
-	                                               {{f[0], f[1], f[2]}, {t[0], t[1], t[2]}}};
-	dds_write(wire->pose_writer, &pose);
-	dds_write(wire->force_writer, &force);
-	double angle_rad = state->jaw * state->definition.jaw_open_rad;
-	sensor_msgs_msg_dds__JointState_ jaw = {.header_ = header,
-	                                        .name_ = {1, 1, &jaw_name, false},
-	                                        .position_ = {1, 1, &angle_rad, false}};
-	dds_write(wire->jaw_writer, &jaw);
+	if (is_due(&wire->pose, changed)) {
+		geometry_msgs_msg_dds__PoseStamped_ pose = {
+			header_now(), {{p[0], p[1], p[2]}, {.x_ = q[1], .y_ = q[2], .z_ = q[3], .w_ = q[0]}}};
+		dds_write(wire->pose.writer, &pose);
+	}
+	if (is_due(&wire->force, changed)) {
+		geometry_msgs_msg_dds__WrenchStamped_ force = {header_now(),
+		                                               {{f[0], f[1], f[2]}, {t[0], t[1], t[2]}}};
+		dds_write(wire->force.writer, &force);
+	}
+	if (is_due(&wire->jaw, changed)) {
+		double angle_rad = state->jaw * state->definition.jaw_open_rad;
+		sensor_msgs_msg_dds__JointState_ jaw = {.header_ = header_now(),
+		                                        .name_ = {1, 1, &jaw_name, false},
+		                                        .position_ = {1, 1, &angle_rad, false}};
+		dds_write(wire->jaw.writer, &jaw);
+	}
 }
 
 void cau_dds_unpublish(const cau_dds_session *session, const char *tool)
@@ -62,21 +83,42 @@ void cau_dds_unpublish(const cau_dds_session *session, const char *tool)
 	cautery_ToolState gone = {0};
 	snprintf(gone.session, sizeof gone.session, "%s", cau_hosted_id(session->hosted));
 	snprintf(gone.tool, sizeof gone.tool, "%s", tool);
-	dds_dispose(session->state_writer, &gone);
+	dds_dispose(session->state.writer, &gone);
+}
+
+// What a late joiner must not be told of wrongly, not for a second.
+static bool is_news(const cau_hosted_tool *was, const cau_hosted_tool *now)
+{
+	return was->driver.client != now->driver.client || was->energized != now->energized ||
+	       was->energy_off != now->energy_off || strcmp(was->state.name, now->state.name) != 0;
+}
+
+double cau_dds_states_due(const cau_dds_session *session)
+{
+	return session->states_owed ? session->states_s + UNREAD_PERIOD_S : INFINITY;
 }
 
 void cau_dds_publish(cau_dds_session *session, const cau_hosted_tool *tools, int32_t count,
-                     uint64_t tick, double time_s)
+                     uint64_t tick, double time_s, double now_s)
 {
+	bool is_read = cau_dds_is_read(&session->state);
+	bool all = cau_dds_take_newcomers(&session->state) || now_s >= cau_dds_states_due(session);
+	if (all) {
+		session->states_owed = false;
+		session->states_s = now_s;
+	}
 	for (int32_t i = 0; i < count; i++) {
-		const cau_dds_tool *wire = cau_dds_find_tool(session, tools[i].state.name);
-		if (session->states_tick == tick &&
-		    memcmp(&session->states[i], &tools[i], sizeof *tools) == 0)
-			continue; // padding may differ: then it is written once more
-		session->states[i] = tools[i];
-		publish_state(session, &tools[i], tick, time_s);
-		if (wire && wire->pose_writer > 0)
-			publish_measured(wire, &tools[i].state);
+		cau_hosted_tool *last = &session->states[i];
+		cau_dds_tool *wire = cau_dds_find_tool(session, tools[i].state.name);
+		// Padding may differ: then it is written once more.
+		bool changed = session->states_tick != tick || memcmp(last, &tools[i], sizeof *last) != 0;
+		if (all || (changed && (is_read || is_news(last, &tools[i]))))
+			publish_state(session, &tools[i], tick, time_s);
+		else
+			session->states_owed |= changed;
+		*last = tools[i];
+		if (wire)
+			publish_measured(wire, &tools[i].state, changed);
 	}
 	session->states_tick = tick;
 }

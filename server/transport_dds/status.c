@@ -6,6 +6,7 @@
 #include "transport_dds/internal.h"
 
 #define PERIOD_S 0.1
+#define UNREAD_PERIOD_S 1.0 // for who comes late
 
 void cau_dds_fill_status(cautery_SessionStatus *status, const cau_wire_session_summary *summary,
                          uint32_t number, const cau_hosted_counts *counts)
@@ -48,6 +49,13 @@ static bool counts_differ(const cau_hosted_counts *was, const cau_hosted_counts 
 	       was->refused != now->refused || was->watchdog_cuts != now->watchdog_cuts;
 }
 
+static double period_of(dds_entity_t writer)
+{
+	dds_publication_matched_status_t matched = {0};
+	dds_get_publication_matched_status(writer, &matched);
+	return matched.current_count ? PERIOD_S : UNREAD_PERIOD_S;
+}
+
 double cau_dds_publish_status(cau_dds_session *session, double now_s)
 {
 	cau_dds_status *last = &session->status;
@@ -64,8 +72,9 @@ double cau_dds_publish_status(cau_dds_session *session, double now_s)
 	               counts_differ(&last->counts, &counts);
 	if (!differs)
 		return INFINITY;
-	if (!news && now_s < last->written_s + PERIOD_S)
-		return last->written_s + PERIOD_S;
+	double due_s = last->written_s + period_of(session->status_writer);
+	if (!news && now_s < due_s)
+		return due_s;
 	cau_dds_fill_status(&sample, &summary, cau_hosted_number(session->hosted), &counts);
 	dds_write(session->status_writer, &sample);
 	*last = (cau_dds_status){summary, counts, now_s};

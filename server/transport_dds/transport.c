@@ -19,11 +19,19 @@ void cau_dds_wake(cau_dds *dds, atomic_bool *why)
 		dds_set_guardcondition(dds->wake, true);
 }
 
+void cau_dds_mark(cau_dds *dds, uint32_t session)
+{
+	cau_dds_set_bit(&dds->marked, session);
+	cau_dds_wake(dds, &dds->sliced);
+}
+
 static void on_notify(void *user, cau_audience audience, cau_buffer *text)
 {
 	cau_dds *dds = user;
 	cau_buffer_release(text);
-	if (audience.kind != CAU_AUDIENCE_CLIENT)
+	if (audience.kind == CAU_AUDIENCE_SESSION)
+		cau_dds_mark(dds, (uint32_t)audience.id);
+	else if (audience.kind == CAU_AUDIENCE_EVERYBODY)
 		cau_dds_wake(dds, &dds->sessions_changed);
 }
 
@@ -32,10 +40,13 @@ static void on_frames(void *user)
 	(void)user; // a slice that made frames ends soon, and on_sliced tells
 }
 
-static void on_sliced(void *user)
+// What nobody reads can wait until the thread looks anyway.
+static void on_sliced(void *user, uint32_t session)
 {
 	cau_dds *dds = user;
-	cau_dds_wake(dds, &dds->sliced);
+	cau_dds_set_bit(&dds->marked, session);
+	if (cau_dds_has_bit(&dds->read, session))
+		cau_dds_wake(dds, &dds->sliced);
 }
 
 // ---- samples
@@ -75,6 +86,7 @@ static dds_duration_t patience(double look_s)
 static void *run(void *argument)
 {
 	cau_dds *dds = argument;
+	pthread_setname_np(pthread_self(), CAU_DDS_THREAD_NAME);
 	dds_attach_t triggers[TRIGGERS_MOST];
 	double look_s = 0;
 	while (!dds->ending) {
@@ -84,10 +96,9 @@ static void *run(void *argument)
 			if (triggers[i])
 				serve(dds, (cau_door *)triggers[i]);
 		dds_set_guardcondition(dds->wake, false);
-		bool changed = atomic_exchange(&dds->sessions_changed, false);
-		bool sliced = atomic_exchange(&dds->sliced, false); // both are taken, whichever is set
-		if (changed || sliced)
-			cau_dds_follow(dds);
+		dds->sliced = false;
+		if (atomic_exchange(&dds->sessions_changed, false))
+			cau_dds_list_sessions(dds);
 		if (atomic_exchange(&dds->fell_silent, false))
 			cau_dds_end_silenced(dds);
 		dds->answered = false;

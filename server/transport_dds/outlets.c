@@ -1,0 +1,66 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Who reads: writers of ours that know whether somebody is there, so that nothing is written for
+// nobody, and sets of sessions that workers and Cyclone's threads mark without a lock.
+#include "transport_dds/internal.h"
+
+// ---- sets of sessions
+void cau_dds_set_bit(cau_dds_bits *bits, uint32_t session)
+{
+	uint32_t bit = session % BITS_MOST;
+	atomic_fetch_or(&bits->words[bit / 64], 1ull << bit % 64);
+}
+
+bool cau_dds_has_bit(const cau_dds_bits *bits, uint32_t session)
+{
+	uint32_t bit = session % BITS_MOST;
+	return atomic_load(&bits->words[bit / 64]) >> bit % 64 & 1;
+}
+
+void cau_dds_take_bits(cau_dds_bits *bits, cau_dds_bits *taken)
+{
+	for (int i = 0; i < BITS_WORDS; i++)
+		atomic_store(&taken->words[i], atomic_exchange(&bits->words[i], 0));
+}
+
+// ---- writers
+// On Cyclone's threads.
+static void on_matched(dds_entity_t writer, const dds_publication_matched_status_t status,
+                       void *user)
+{
+	cau_dds_outlet *outlet = user;
+	(void)writer;
+	atomic_store(&outlet->readers, status.current_count);
+	if (status.total_count_change > 0)
+		atomic_store(&outlet->newcomers, true);
+	cau_dds_mark(outlet->dds, outlet->session);
+}
+
+bool cau_dds_open_outlet(cau_dds *dds, cau_dds_outlet *outlet, uint32_t session,
+                         dds_entity_t publisher, dds_entity_t topic, const dds_qos_t *qos)
+{
+	dds_listener_t *listener = dds_create_listener(outlet);
+	dds_lset_publication_matched(listener, on_matched);
+	outlet->dds = dds;
+	outlet->session = session;
+	outlet->writer = dds_create_writer(publisher, topic, qos, listener);
+	dds_delete_listener(listener);
+	return outlet->writer > 0;
+}
+
+void cau_dds_close_outlet(cau_dds_outlet *outlet)
+{
+	if (outlet->writer > 0)
+		dds_delete(outlet->writer); // which waits for on_matched
+	outlet->writer = 0;
+	outlet->readers = 0;
+}
+
+bool cau_dds_is_read(const cau_dds_outlet *outlet)
+{
+	return atomic_load(&outlet->readers) > 0;
+}
+
+bool cau_dds_take_newcomers(cau_dds_outlet *outlet)
+{
+	return atomic_exchange(&outlet->newcomers, false);
+}

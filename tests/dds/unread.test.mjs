@@ -1,0 +1,65 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// What nobody reads costs next to nothing, and who comes late is told how things stand.
+import assert from 'node:assert/strict';
+import { readFileSync, readdirSync } from 'node:fs';
+import { after, before, test } from 'node:test';
+import { setTimeout } from 'node:timers/promises';
+import { Controller } from './controller.mjs';
+import { DOMAIN } from './domain.mjs';
+import { Daemon } from './wire/daemon.mjs';
+import { AT_REST, smallScene } from './wire/scene.mjs';
+
+const SESSIONS = 16, TOOLS = 8, WINDOW_MS = 2000;
+// Of the daemon's processor time, the steps of so small sessions among it: 45 % where every state is
+// written for nobody and every session looked at after each slice of any.
+const SHARE_MOST = 0.1;
+const TICKS_PER_S = 100; // of /proc's times
+
+let daemon, client;
+before(async () => {
+	daemon = await Daemon.start({ settings: { dds: true, dds_domain: DOMAIN } });
+	client = await daemon.connect({ hello: { client: 'admin' } });
+});
+after(async () => {
+	await Controller.killAll();
+	await client.close();
+	await daemon.end();
+});
+
+// Processor seconds of the transport's thread and of all.
+function used() {
+	const folder = `/proc/${daemon.process.pid}/task`;
+	const of = (task) => {
+		const stat = readFileSync(`${folder}/${task}/stat`, 'utf8');
+		const [user, system] = stat.slice(stat.lastIndexOf(')') + 2).split(' ').slice(11, 13).map(Number);
+		return { name: /\((.*)\)/.exec(stat)[1], seconds: (user + system) / TICKS_PER_S };
+	};
+	const threads = readdirSync(folder).map(of);
+	const sum = (some) => some.reduce((total, thread) => total + thread.seconds, 0);
+	return { dds: sum(threads.filter(({ name }) => name === 'cautery-dds')), all: sum(threads) };
+}
+
+test(`${SESSIONS} sessions with ${TOOLS} tools and no reader: the transport takes little of the daemon's time`, async (t) => {
+	const definition = await smallScene(client, [4, 4]);
+	for (let i = 0; i < SESSIONS; i++) {
+		const { summary: { session } } = await client.call('session.create', { name: `unread${i}`, definition });
+		for (let tool = 1; tool < TOOLS; tool++)
+			await client.call('tool.add', { session, name: `t${tool}`, shape: 'grasper', position_m: [0, 0, 0.02], rotation: AT_REST });
+	}
+	const before = used();
+	await setTimeout(WINDOW_MS); // the window that is measured
+	const now = used();
+	const share = (now.dds - before.dds) / (now.all - before.all);
+	t.diagnostic(`${(100 * share).toFixed(1)} % of ${(now.all - before.all).toFixed(2)} s`);
+	assert.ok(share <= SHARE_MOST, `${share} of the daemon's time`);
+});
+
+test('who comes late is told the state as it is, though nobody read it before', async () => {
+	const session = 'd1-unread0';
+	const { tick } = await client.call('session.pause', { session });
+	const robot = await Controller.start({ domain: DOMAIN, session, tool: 'hook', via: 'ros' });
+	const state = await robot.until((s) => s.tick === tick);
+	assert.equal(state.energized, false);
+	await client.call('session.resume', { session });
+	await robot.until((s) => s.tick > tick);
+});
