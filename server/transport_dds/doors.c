@@ -67,6 +67,19 @@ static bool open_door(cau_dds *dds, cau_door *door, dds_entity_t subscriber, con
 	return true;
 }
 
+void cau_dds_open_loose(cau_dds *dds, cau_door *loose, const cau_door *reliable)
+{
+	dds_qos_t *qos = reliable_qos(ROS2_KEPT);
+	dds_qset_reliability(qos, DDS_RELIABILITY_BEST_EFFORT, 0);
+	*loose = (cau_door){.kind = reliable->kind,
+	                    .best_effort = true,
+	                    .topic = reliable->topic,
+	                    .session = reliable->session};
+	memcpy(loose->tool, reliable->tool, sizeof loose->tool);
+	open_door(dds, loose, dds->subscriber, qos);
+	dds_delete_qos(qos);
+}
+
 static void close_door(cau_dds *dds, cau_door *door)
 {
 	dds_entity_t reader = door->reader;
@@ -76,7 +89,7 @@ static void close_door(cau_dds *dds, cau_door *door)
 		dds_delete(reader);
 		cau_dds_prune(dds, reader, false);
 	}
-	if (door->topic > 0)
+	if (door->topic > 0 && !door->best_effort) // else it is the reliable door's
 		dds_delete(door->topic);
 	*door = (cau_door){0};
 }
@@ -161,6 +174,7 @@ cau_status cau_dds_open_session(cau_dds *dds, cau_dds_session *session)
 	session->subscriber = dds_create_subscriber(dds->participant, partition, NULL);
 	session->publisher = dds_create_publisher(dds->participant, partition, NULL);
 	bool done = open_native(dds, session);
+	dds->ends_changed = true;
 	open_writers(dds, session);
 	dds_delete_qos(partition);
 	if (!session->has_ros_name)
@@ -265,6 +279,7 @@ void cau_dds_open_tool(cau_dds *dds, cau_dds_session *session, cau_dds_tool *too
 		return;
 	}
 	snprintf(prefix, sizeof prefix, "%.48s/%.48s", session->ros_name, name);
+	dds->ends_changed = true;
 	const struct {
 		cau_door *door;
 		cau_door_kind kind;
@@ -290,6 +305,8 @@ void cau_dds_open_tool(cau_dds *dds, cau_dds_session *session, cau_dds_tool *too
 
 void cau_dds_close_tool(cau_dds *dds, cau_dds_tool *tool)
 {
+	close_door(dds, &tool->loose_cp);
+	close_door(dds, &tool->loose_jp);
 	close_door(dds, &tool->servo_cp);
 	close_door(dds, &tool->servo_jp);
 	close_door(dds, &tool->energize);

@@ -51,6 +51,7 @@ struct cau_dds_session;
 // A reader. `tool` is empty for DOOR_NATIVE, whose samples name theirs.
 typedef struct cau_door {
 	cau_door_kind kind;
+	bool best_effort; // beside a reliable one of the same topic, whose writers it leaves to that
 	dds_entity_t topic, reader; // 0: closed
 	dds_entity_t samples;       // the condition that some are there to take
 	struct cau_dds_session *session;
@@ -91,6 +92,7 @@ typedef struct cau_dds_tool {
 	char name[CAU_NAME_BYTES];
 	// closed where the ROS 2 name is taken
 	cau_door servo_cp, servo_jp, energize, state_command;
+	cau_door loose_cp, loose_jp; // of best effort; open once such a writer is there
 	dds_entity_t pose_topic, force_topic, jaw_topic;
 	cau_dds_outlet pose, force, jaw;                // measured_cp, measured_cf, jaw/measured_js
 	dds_entity_t operating_topic, operating_writer; // operating_state
@@ -184,6 +186,17 @@ typedef struct cau_dds_silenced {
 	dds_instance_handle_t handle;
 } cau_dds_silenced;
 
+// A reader or writer of somebody else's, of a topic that may be one of ours; peers.c.
+typedef struct cau_dds_peer {
+	struct cau_dds_peer *next;
+	dds_instance_handle_t handle;
+	bool writes;
+	bool told; // that it is incompatible
+	dds_guid_t participant;
+	char *topic, *type; // malloc'ed
+	dds_qos_t *qos;     // its own
+} cau_dds_peer;
+
 // A client's hold on one tool.
 typedef struct cau_dds_hand {
 	struct cau_dds_hand *next;     // on this tool
@@ -250,7 +263,7 @@ struct cau_dds {
 	dds_entity_t waitset, wake;
 	pthread_t thread;
 	bool started;
-	atomic_bool ending, sessions_changed, sliced, answered, fell_silent;
+	atomic_bool ending, sessions_changed, sliced, answered, fell_silent, peers_changed;
 	cau_dds_bits marked, read; // sessions to be followed; sessions that somebody reads
 	pthread_mutex_t mutex;     // guards the posts and who fell silent
 	cau_dds_post *first, *last;
@@ -258,13 +271,18 @@ struct cau_dds {
 	uint64_t last_connection, last_ticket;
 	cau_dds_session *sessions;
 	cau_dds_farewell *farewells;
+	dds_entity_t peer_writers, peer_readers; // who is in the domain, as DDS tells
+	cau_dds_peer *peers;
+	bool ends_changed;   // there are new readers and writers of ours
+	double peers_told_s; // the second in which so many were told
+	int peers_told;
 	cau_dds_client *clients; // the newest first
 	cau_dds_writer *writers[WRITER_BUCKETS];
 	uint64_t denials; // of places, since they were last told of
 	double denials_told_s, onlookers_told_s;
 	int onlookers_told; // since then
 	struct {
-		atomic_ullong clients, denied, evicted;
+		atomic_ullong clients, denied, evicted, incompatible;
 	} counts;
 };
 
@@ -312,6 +330,16 @@ cau_status cau_dds_open_session(cau_dds *dds, cau_dds_session *session);
 void cau_dds_close_session(cau_dds *dds, cau_dds_session *session);
 void cau_dds_open_tool(cau_dds *dds, cau_dds_session *session, cau_dds_tool *tool);
 void cau_dds_close_tool(cau_dds *dds, cau_dds_tool *tool);
+
+// A reader of best effort beside the door `reliable` of this tool.
+void cau_dds_open_loose(cau_dds *dds, cau_door *loose, const cau_door *reliable);
+
+// ---- peers.c: who is in the domain
+cau_status cau_dds_watch_peers(cau_dds *dds, cau_error *error);
+// Looks at who came, and at all when there are new ends of ours: opens doors of best effort, tells
+// once of each that cannot be matched.
+void cau_dds_look_at_peers(cau_dds *dds);
+void cau_dds_forget_peers(cau_dds *dds);
 
 // ---- farewells.c: last samples on their way
 // Takes `publisher`, which goes once the readers of its `writer` have what that wrote last.

@@ -68,7 +68,7 @@ static void serve(cau_dds *dds, cau_door *door)
 		if (!infos[i].valid_data)
 			continue;
 		cau_dds_writer *writer = cau_dds_writer_of(dds, door, infos[i].publication_handle);
-		if (writer)
+		if (writer && !(door->best_effort && writer->reliable))
 			takers[door->kind](dds, door, writer, samples[i]);
 	}
 	if (count > 0)
@@ -103,6 +103,7 @@ static void *run(void *argument)
 			cau_dds_end_silenced(dds);
 		dds->answered = false;
 		look_s = cau_dds_serve(dds);
+		cau_dds_look_at_peers(dds);
 	}
 	cau_dds_close_sessions(dds);
 	return NULL;
@@ -122,6 +123,9 @@ void cau_dds_write_metrics(void *user, FILE *out, cau_metrics_format format)
 	     (double)dds->counts.denied},
 		{{"dds_places_evicted", CAU_METRIC_COUNTER, "", "Idle clients on DDS that made way"},
 	     (double)dds->counts.evicted},
+		{{"dds_peers_incompatible", CAU_METRIC_COUNTER, "",
+	      "Readers and writers of others on our topics that DDS cannot match"},
+	     (double)dds->counts.incompatible},
 	};
 	for (size_t i = 0; i < sizeof rows / sizeof rows[0]; i++) {
 		cau_metrics_begin(out, format, &rows[i].family);
@@ -199,6 +203,8 @@ cau_status cau_dds_create(cau_dds **made, const cau_config *config, cau_hub *hub
 		status = cau_dds_open_topics(dds, error);
 	if (!status)
 		status = cau_dds_open_control(dds, error);
+	if (!status)
+		status = cau_dds_watch_peers(dds, error);
 	if (status) {
 		cau_dds_destroy(dds);
 		return status;
@@ -241,6 +247,7 @@ void cau_dds_destroy(cau_dds *dds)
 	for (cau_dds_post *post; (post = cau_dds_next_post(dds));)
 		cau_dds_post_free(post);
 	cau_dds_end_silenced(dds);
+	cau_dds_forget_peers(dds);
 	pthread_mutex_destroy(&dds->mutex);
 	free(dds);
 }

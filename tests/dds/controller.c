@@ -2,7 +2,11 @@
 // A robot controller for the tests: a plain Cyclone DDS program that knows the IDL and nothing else
 // of the server.
 //
-//     controller DOMAIN SESSION TOOL native|ros DEADLINE_MS    (0: declares none)
+//     controller DOMAIN SESSION TOOL native|ros|sensor|loose|mistyped DEADLINE_MS    (0: declares
+//     none)
+//
+// ros and on are ROS 2's topics: sensor writes poses with best effort, as its sensor data is; loose
+// writes the level of energy so too; mistyped writes poses to the topic of energy.
 //
 // It writes 100 times a second. Lines on standard input tell it what:
 //     aim X Y Z      m: goes there at 0.2 m/s        energy 0|1       the level it writes
@@ -40,7 +44,7 @@ enum { STRANGERS_SHARE = 500 }; // of one period
 
 typedef struct controller {
 	char session[NAME_BYTES], tool[NAME_BYTES];
-	bool ros, writing, energy, grasp, has_state, matched, state_asked;
+	bool ros, sensor, loose, mistyped, writing, energy, grasp, has_state, matched, state_asked;
 	uint64_t sequence;
 	double position_m[3], aim_m[3];
 	double last_write_s;
@@ -54,9 +58,12 @@ typedef struct controller {
 } controller;
 
 // ---- the wire
-static dds_entity_t ros_writer(controller *c, const char *name, const dds_topic_descriptor_t *type)
+static dds_entity_t ros_writer(controller *c, const char *name, const dds_topic_descriptor_t *type,
+                               bool best_effort)
 {
 	dds_qos_t *qos = ros_qos(false);
+	if (best_effort)
+		dds_qset_reliability(qos, DDS_RELIABILITY_BEST_EFFORT, 0);
 	dds_entity_t topic = ros_topic(c->participant, c->session, c->tool, name, type);
 	dds_entity_t made = checked(dds_create_writer(c->participant, topic, qos, NULL));
 	dds_delete_qos(qos);
@@ -77,8 +84,10 @@ static void open_wire(controller *c, uint32_t domain, int deadline_ms)
 {
 	c->participant = checked(dds_create_participant(domain, NULL, NULL));
 	if (c->ros) {
-		c->pose = ros_writer(c, "servo_cp", &geometry_msgs_msg_dds__PoseStamped__desc);
-		c->level = ros_writer(c, "energize", &sensor_msgs_msg_dds__Joy__desc);
+		c->pose = ros_writer(c, c->mistyped ? "energize" : "servo_cp",
+		                     &geometry_msgs_msg_dds__PoseStamped__desc, c->sensor);
+		if (!c->mistyped)
+			c->level = ros_writer(c, "energize", &sensor_msgs_msg_dds__Joy__desc, c->loose);
 		crtk_open(&c->crtk, c->participant, c->session, c->tool);
 	} else {
 		open_native(c, publisher_of(c->participant, c->session), deadline_ms);
@@ -303,13 +312,17 @@ int main(int argument_count, char **arguments)
 {
 	controller c = {.position_m = {0, 0, 0.02}, .aim_m = {0, 0, 0.02}};
 	if (argument_count != 6) {
-		fprintf(stderr, "usage: controller DOMAIN SESSION TOOL native|ros DEADLINE_MS\n");
+		fprintf(stderr, "usage: controller DOMAIN SESSION TOOL native|ros|sensor|loose|mistyped "
+		                "DEADLINE_MS\n");
 		return 2;
 	}
 	setvbuf(stdout, NULL, _IOLBF, 0);
 	snprintf(c.session, sizeof c.session, "%s", arguments[2]);
 	snprintf(c.tool, sizeof c.tool, "%s", arguments[3]);
-	c.ros = strcmp(arguments[4], "ros") == 0;
+	c.sensor = strcmp(arguments[4], "sensor") == 0;
+	c.loose = strcmp(arguments[4], "loose") == 0;
+	c.mistyped = strcmp(arguments[4], "mistyped") == 0;
+	c.ros = strcmp(arguments[4], "native") != 0;
 	open_wire(&c, (uint32_t)atoi(arguments[1]), atoi(arguments[5]));
 	run(&c);
 	dds_delete(c.participant);

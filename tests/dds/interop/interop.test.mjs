@@ -30,12 +30,12 @@ async function robot(t, session, via) {
 	return made;
 }
 
-for (const via of ['native', 'ros'])
+for (const via of ['native', 'ros', 'sensor'])
 	test(`Fast DDS drives over ${via} topics and reads the tool's state`, async (t) => {
 		const { client, session, stream } = await watched(t, `fast-${via}`);
 		const made = await robot(t, session, via);
 		made.tell('write on');
-		const { native: driven } = await made.until(({ native }) => native.driver_name.startsWith(via === 'ros' ? 'ros ' : 'dds '));
+		const { native: driven } = await made.until(({ native }) => native.driver_name.startsWith(via === 'native' ? 'dds ' : 'ros '));
 		await client.until(() => stream.tools[0].driver === driven.driver, 'a frame tells it too');
 
 		const aim = [0.01, -0.005, 0.015];

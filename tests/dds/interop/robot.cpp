@@ -2,7 +2,8 @@
 // A robot controller of another vendor's making: Fast DDS, what fastddsgen made of the IDL, and
 // nothing of the server.
 //
-//     interop_robot DOMAIN SESSION TOOL native|ros DEADLINE_MS
+//     interop_robot DOMAIN SESSION TOOL native|ros|sensor DEADLINE_MS    (sensor: as ros, with
+//     poses of best effort, as sensor data is there)
 //
 // It writes 100 times a second. Lines on standard input tell it what:
 //     aim X Y Z      m: goes there at 0.2 m/s     energy 0|1       the level it writes
@@ -27,7 +28,7 @@ static constexpr double PERIOD_S = 0.01, SPEED_M_S = 0.2;
 struct Options {
 	unsigned domain;
 	std::string session, tool;
-	bool ros;
+	bool ros, sensor;
 	int deadline_ms;
 };
 
@@ -95,7 +96,10 @@ class Robot
 		fast::Topic *pose =
 			wire.topic<geometry::PoseStamped_PubSubType>(ros_name(options, "servo_cp"));
 		fast::Topic *level = wire.topic<sensor::Joy_PubSubType>(ros_name(options, "energize"));
-		pose_writer = checked(wire.publisher->create_datawriter(pose, ros_writer_qos()), "writer");
+		fast::DataWriterQos pose_qos = ros_writer_qos();
+		if (options.sensor)
+			pose_qos.reliability().kind = fast::BEST_EFFORT_RELIABILITY_QOS;
+		pose_writer = checked(wire.publisher->create_datawriter(pose, pose_qos), "writer");
 		level_writer =
 			checked(wire.publisher->create_datawriter(level, ros_writer_qos()), "writer");
 	}
@@ -279,12 +283,17 @@ class Robot
 int main(int argument_count, char **arguments)
 {
 	if (argument_count != 6) {
-		std::fprintf(stderr, "usage: interop_robot DOMAIN SESSION TOOL native|ros DEADLINE_MS\n");
+		std::fprintf(stderr,
+		             "usage: interop_robot DOMAIN SESSION TOOL native|ros|sensor DEADLINE_MS\n");
 		return 2;
 	}
 	std::setvbuf(stdout, nullptr, _IOLBF, 0);
-	Options options = {static_cast<unsigned>(std::atoi(arguments[1])), arguments[2], arguments[3],
-	                   std::string(arguments[4]) == "ros", std::atoi(arguments[5])};
+	Options options = {static_cast<unsigned>(std::atoi(arguments[1])),
+	                   arguments[2],
+	                   arguments[3],
+	                   std::string(arguments[4]) != "native",
+	                   std::string(arguments[4]) == "sensor",
+	                   std::atoi(arguments[5])};
 	Robot robot(options);
 	robot.run();
 	return 0;

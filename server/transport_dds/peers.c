@@ -1,0 +1,277 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Who is in the domain: readers and writers of others that want our topics. DDS matches those that
+// are compatible and is silent about the rest, which would look like a robot that does nothing:
+// each of them is logged and counted, once. Writers of motion that are but best effort, as sensor
+// data is in ROS 2, get a reader of their own kind.
+#include <fnmatch.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "transport_dds/compatible.h"
+#include "transport_dds/internal.h"
+
+enum { TAKEN_AT_ONCE = 32, TYPE_BYTES = 256, PEERS_TOLD_MOST = 16 }; // log lines a second
+
+// What of ours a peer could be matched with.
+typedef struct end {
+	dds_entity_t entity; // 0: nothing
+	const cau_door *door;
+	cau_door *loose; // of the same topic; NULL: there can be none
+	const char *session;
+} end;
+
+// ---- which end of ours
+static bool is_in_partition(const dds_qos_t *qos, const char *partition)
+{
+	uint32_t count = 0;
+	char **names = NULL;
+	bool in = false;
+	if (!dds_qget_partition(qos, &count, &names) || count == 0)
+		return !*partition;
+	for (uint32_t i = 0; i < count; i++) {
+		in = in || fnmatch(names[i], partition, 0) == 0;
+		dds_free(names[i]);
+	}
+	dds_free(names);
+	return in;
+}
+
+static end find_native(cau_dds *dds, const cau_dds_peer *peer)
+{
+	static const char prefix[] = "cautery/";
+	const char *leaf = peer->topic + sizeof prefix - 1;
+	if (strcmp(leaf, "session_request") == 0)
+		return (end){.entity = peer->writes ? dds->request.reader : 0};
+	if (strcmp(leaf, "session_reply") == 0)
+		return (end){.entity = peer->writes ? 0 : dds->reply_writer};
+	for (cau_dds_session *s = dds->sessions; s; s = s->next) {
+		const char *id = cau_hosted_id(s->hosted);
+		if (!is_in_partition(peer->qos, id))
+			continue;
+		if (peer->writes)
+			return (end){.entity = strcmp(leaf, "tool_command") ? 0 : s->native.reader,
+			             .door = &s->native,
+			             .session = id};
+		const struct {
+			const char *name;
+			dds_entity_t writer;
+		} writers[] = {{"tool_state", s->state.writer},
+		               {"session_status", s->status_writer},
+		               {"topology", s->stream.topology.writer},
+		               {"key_frame", s->stream.key.writer},
+		               {"delta", s->stream.delta.writer}};
+		for (size_t i = 0; i < sizeof writers / sizeof writers[0]; i++)
+			if (strcmp(leaf, writers[i].name) == 0)
+				return (end){.entity = writers[i].writer, .session = id};
+	}
+	return (end){0};
+}
+
+static end find_in_tool(const cau_dds_session *session, cau_dds_tool *tool, const char *topic,
+                        bool peer_writes)
+{
+	const struct {
+		dds_entity_t topic, entity;
+		bool reads;
+		const cau_door *door;
+		cau_door *loose;
+	} ends[] = {
+		{tool->servo_cp.topic, tool->servo_cp.reader, true, &tool->servo_cp, &tool->loose_cp},
+		{tool->servo_jp.topic, tool->servo_jp.reader, true, &tool->servo_jp, &tool->loose_jp},
+		{tool->energize.topic, tool->energize.reader, true, &tool->energize, NULL},
+		{tool->state_command.topic, tool->state_command.reader, true, &tool->state_command, NULL},
+		{tool->pose_topic, tool->pose.writer, false, NULL, NULL},
+		{tool->force_topic, tool->force.writer, false, NULL, NULL},
+		{tool->jaw_topic, tool->jaw.writer, false, NULL, NULL},
+		{tool->operating_topic, tool->operating_writer, false, NULL, NULL},
+	};
+	char name[TOPIC_BYTES];
+	for (size_t i = 0; i < sizeof ends / sizeof ends[0]; i++)
+		if (ends[i].reads == peer_writes && ends[i].entity > 0 && ends[i].topic > 0 &&
+		    dds_get_name(ends[i].topic, name, sizeof name) > 0 && strcmp(name, topic) == 0)
+			return (end){ends[i].entity, ends[i].door, ends[i].loose,
+			             cau_hosted_id(session->hosted)};
+	return (end){0};
+}
+
+static end find_end(cau_dds *dds, const cau_dds_peer *peer)
+{
+	end found = {0};
+	if (peer->topic[0] == 'c')
+		return find_native(dds, peer);
+	if (!is_in_partition(peer->qos, ""))
+		return found;
+	const char *name = peer->topic + sizeof "rt/" - 1;
+	for (cau_dds_session *s = dds->sessions; s && !found.entity; s = s->next) {
+		size_t bytes = strlen(s->ros_name);
+		if (!s->has_ros_name || strncmp(name, s->ros_name, bytes) != 0 || name[bytes] != '/')
+			continue;
+		for (int i = 0; i < CAU_MAX_TOOLS && !found.entity; i++)
+			if (s->tools[i].used)
+				found = find_in_tool(s, &s->tools[i], peer->topic, peer->writes);
+	}
+	return found;
+}
+
+// ---- what is wrong with it
+
+// NULL: nothing. The names of types are all that a type is matched by.
+static const char *find_mismatch(const cau_dds_peer *peer, const end *ours)
+{
+	char type[TYPE_BYTES] = "";
+	dds_entity_t topic = dds_get_topic(ours->entity);
+	dds_qos_t *qos = dds_create_qos();
+	const char *wrong = NULL;
+	if (topic > 0 && dds_get_type_name(topic, type, sizeof type) > 0 &&
+	    strcmp(type, peer->type) != 0)
+		wrong = "type";
+	else if (dds_get_qos(ours->entity, qos) == DDS_RETCODE_OK)
+		wrong = peer->writes ? cau_dds_mismatch(peer->qos, qos) : cau_dds_mismatch(qos, peer->qos);
+	dds_delete_qos(qos);
+	return wrong;
+}
+
+static void tell(cau_dds *dds, cau_dds_peer *peer, const end *ours, const char *wrong)
+{
+	double now_s = cau_monotonic_s();
+	char participant[2 * sizeof peer->participant.v + 1];
+	peer->told = true;
+	dds->counts.incompatible++;
+	if (now_s - dds->peers_told_s >= 1) {
+		dds->peers_told_s = now_s;
+		dds->peers_told = 0;
+	}
+	if (dds->peers_told++ >= PEERS_TOLD_MOST)
+		return;
+	for (size_t i = 0; i < sizeof peer->participant.v; i++)
+		snprintf(participant + 2 * i, 3, "%02x", peer->participant.v[i]);
+	cau_log(CAU_LOG_WARNING, ours->session, "dds_incompatible",
+	        "participant=%s topic=\"%.160s\" end=%s policy=%s type=\"%.100s\"", participant,
+	        peer->topic, peer->writes ? "writer" : "reader", wrong, peer->type);
+}
+
+static void look_at(cau_dds *dds, cau_dds_peer *peer)
+{
+	end ours = peer->told ? (end){0} : find_end(dds, peer);
+	const char *wrong = ours.entity > 0 ? find_mismatch(peer, &ours) : NULL;
+	if (!wrong)
+		return;
+	if (ours.loose && strcmp(wrong, "reliability") == 0) {
+		if (!ours.loose->reader)
+			cau_dds_open_loose(dds, ours.loose, ours.door);
+	} else {
+		tell(dds, peer, &ours, wrong);
+	}
+}
+
+// ---- who is there
+static void free_peer(cau_dds_peer *peer)
+{
+	free(peer->topic);
+	free(peer->type);
+	dds_delete_qos(peer->qos);
+	free(peer);
+}
+
+static void forget_peer(cau_dds *dds, dds_instance_handle_t handle)
+{
+	for (cau_dds_peer **link = &dds->peers; *link; link = &(*link)->next)
+		if ((*link)->handle == handle) {
+			cau_dds_peer *gone = *link;
+			*link = gone->next;
+			free_peer(gone);
+			return;
+		}
+}
+
+static bool concerns_us(const cau_dds *dds, const dds_builtintopic_endpoint_t *endpoint)
+{
+	dds_guid_t own;
+	return endpoint->topic_name && endpoint->type_name &&
+	       (strncmp(endpoint->topic_name, "cautery/", 8) == 0 ||
+	        strncmp(endpoint->topic_name, "rt/", 3) == 0) &&
+	       !dds_get_guid(dds->participant, &own) &&
+	       memcmp(own.v, endpoint->participant_key.v, sizeof own.v) != 0;
+}
+
+static void meet_peer(cau_dds *dds, const dds_builtintopic_endpoint_t *endpoint,
+                      dds_instance_handle_t handle, bool writes)
+{
+	cau_dds_peer *peer = concerns_us(dds, endpoint) ? calloc(1, sizeof *peer) : NULL;
+	if (!peer)
+		return;
+	*peer = (cau_dds_peer){.next = dds->peers,
+	                       .handle = handle,
+	                       .writes = writes,
+	                       .participant = endpoint->participant_key,
+	                       .topic = strdup(endpoint->topic_name),
+	                       .type = strdup(endpoint->type_name),
+	                       .qos = dds_create_qos()};
+	if (!peer->topic || !peer->type || !peer->qos ||
+	    dds_copy_qos(peer->qos, endpoint->qos) != DDS_RETCODE_OK) {
+		free_peer(peer);
+		return;
+	}
+	dds->peers = peer;
+	look_at(dds, peer);
+}
+
+static void take_peers(cau_dds *dds, dds_entity_t reader, bool writes)
+{
+	void *samples[TAKEN_AT_ONCE];
+	dds_sample_info_t infos[TAKEN_AT_ONCE];
+	dds_return_t count;
+	do {
+		samples[0] = NULL;
+		count = dds_take(reader, samples, infos, TAKEN_AT_ONCE, TAKEN_AT_ONCE);
+		for (dds_return_t i = 0; i < count; i++) {
+			forget_peer(dds, infos[i].instance_handle);
+			if (infos[i].valid_data && infos[i].instance_state == DDS_ALIVE_INSTANCE_STATE)
+				meet_peer(dds, samples[i], infos[i].instance_handle, writes);
+		}
+		if (count > 0)
+			dds_return_loan(reader, samples, count);
+	} while (count == TAKEN_AT_ONCE);
+}
+
+void cau_dds_look_at_peers(cau_dds *dds)
+{
+	if (atomic_exchange(&dds->peers_changed, false)) {
+		take_peers(dds, dds->peer_writers, true);
+		take_peers(dds, dds->peer_readers, false);
+	}
+	if (!dds->ends_changed)
+		return;
+	dds->ends_changed = false;
+	for (cau_dds_peer *peer = dds->peers; peer; peer = peer->next)
+		look_at(dds, peer);
+}
+
+static void on_peers(dds_entity_t reader, void *user)
+{
+	cau_dds *dds = user;
+	(void)reader;
+	cau_dds_wake(dds, &dds->peers_changed);
+}
+
+cau_status cau_dds_watch_peers(cau_dds *dds, cau_error *error)
+{
+	dds_listener_t *listener = dds_create_listener(dds);
+	dds_lset_data_available(listener, on_peers);
+	dds->peer_writers =
+		dds_create_reader(dds->participant, DDS_BUILTIN_TOPIC_DCPSPUBLICATION, NULL, listener);
+	dds->peer_readers =
+		dds_create_reader(dds->participant, DDS_BUILTIN_TOPIC_DCPSSUBSCRIPTION, NULL, listener);
+	dds_delete_listener(listener);
+	return dds->peer_writers > 0 && dds->peer_readers > 0
+	           ? CAU_OK
+	           : cau_fail(error, CAU_IO, "dds", "no readers of who is in the domain");
+}
+
+void cau_dds_forget_peers(cau_dds *dds)
+{
+	for (cau_dds_peer *next; dds->peers; dds->peers = next) {
+		next = dds->peers->next;
+		free_peer(dds->peers);
+	}
+}
