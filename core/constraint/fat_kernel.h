@@ -64,46 +64,60 @@ INLINE vreal fat_position_scale(const cau_fat_set *set, int32_t slot, m3 r)
 	return diagonal_scale_fat(r, m, v_load(set->position_scale, slot));
 }
 
-// Residual of the strain limit (dimensionless). Slots without a target (00 = 0) follow the range,
-// if any.
-INLINE m3 fat_limit_residual(const cau_fat_set *set, const cau_fat_group *group, int32_t slot,
-                             sym3 common, m3 f, rotation_lanes *polar, int diagonal)
+// Eq. 13 in F. In the diagonal system each constraint has its own step.
+INLINE m3 fat_linearised_residual(const cau_fat_set *set, int32_t slot, sym3 root, m3 f,
+                                  int diagonal)
 {
-	sym3 root = set->targeted[slot / CAU_BATCH] ? sym3_load(set->target, slot) : common;
-	if (group->limit == CAU_LIMIT_TARGET && group->projection == CAU_PROJECTION_LINEARISED) {
-		m3 rows = {{{root.a00, root.a01, root.a02},
-		            {root.a01, root.a11, root.a12},
-		            {root.a02, root.a12, root.a22}}};
-		m3 part[6], r = {{v3_zero(), v3_zero(), v3_zero()}};
-		fat_linearised_residuals(f, m3_transpose_times(rows, rows), part);
-		for (int i = 0; i < 6; ++i) {
-			vreal s = diagonal ? fat_position_scale(set, slot, part[i]) : v_set(1);
-			r = m3_add_scaled(r, s, part[i]);
-		}
-		return r;
+	m3 rows = {{{root.a00, root.a01, root.a02},
+	            {root.a01, root.a11, root.a12},
+	            {root.a02, root.a12, root.a22}}};
+	m3 part[6], r = {{v3_zero(), v3_zero(), v3_zero()}};
+	fat_linearised_residuals(f, m3_transpose_times(rows, rows), part);
+	for (int i = 0; i < 6; ++i) {
+		vreal s = diagonal ? fat_position_scale(set, slot, part[i]) : v_set(1);
+		r = m3_add_scaled(r, s, part[i]);
 	}
-	vmask targeted = root.a00 > v_set(0), idle = ~targeted;
-	if (group->limit == CAU_LIMIT_TARGET) { // every slot has a target, padding too
-		m3 r = fat_target_residual(f, root, polar);
-		return diagonal ? m3_scale(fat_position_scale(set, slot, r), r) : r;
-	}
+	return r;
+}
+
+// Slots that have shrunk, in a group whose law has no target, follow their own; the others (00 = 0)
+// have R = 0.
+INLINE m3 fat_shrunk_residual(sym3 root, m3 f, rotation_lanes *polar)
+{
+	vmask targeted = root.a00 > v_set(0);
 	vreal one = v_set(1), zero = v_set(0);
 	sym3 used = {v_select(targeted, root.a00, one),  v_select(targeted, root.a11, one),
 	             v_select(targeted, root.a22, one),  v_select(targeted, root.a01, zero),
 	             v_select(targeted, root.a02, zero), v_select(targeted, root.a12, zero)};
-	if (group->limit == CAU_LIMIT_RANGE && v_any(~targeted)) {
-		vmask inside;
-		sym3 unused, metric = fat_range_metric(m3_transpose_times(f, f), group->stretch_min,
-		                                       group->stretch_max, group->shear_max, &inside);
-		sym3 range = sym3_sqrt(metric, &unused);
-		used = (sym3){
-			v_select(targeted, used.a00, range.a00), v_select(targeted, used.a11, range.a11),
-			v_select(targeted, used.a22, range.a22), v_select(targeted, used.a01, range.a01),
-			v_select(targeted, used.a02, range.a02), v_select(targeted, used.a12, range.a12)};
-		idle = ~targeted & inside;
-	}
 	m3 r = fat_target_residual(f, used, polar);
-	r = m3_select(idle, (m3){{v3_zero(), v3_zero(), v3_zero()}}, r);
+	return m3_select(~targeted, (m3){{v3_zero(), v3_zero(), v3_zero()}}, r);
+}
+
+// RANGE. *extra is what the squared distances of the range are beyond |R|^2.
+INLINE m3 fat_ranged_residual(const cau_fat_group *group, sym3 root, m3 f, rotation_lanes *polar,
+                              vreal *extra)
+{
+	vmask targeted = root.a00 > v_set(0);
+	vreal squared;
+	m3 r =
+		fat_range_residual(f, group->stretch_min, group->stretch_max, group->shear_max, &squared);
+	*extra = v_select(targeted, v_set(0), squared - m3_dot(r, r));
+	return v_any(targeted) ? m3_select(targeted, fat_shrunk_residual(root, f, polar), r) : r;
+}
+
+// Residual of the strain limit (dimensionless); its energy is w/2 (|R|^2 + *extra).
+INLINE m3 fat_limit_residual(const cau_fat_set *set, const cau_fat_group *group, int32_t slot,
+                             sym3 common, m3 f, rotation_lanes *polar, int diagonal, vreal *extra)
+{
+	sym3 root = set->targeted[slot / CAU_BATCH] ? sym3_load(set->target, slot) : common;
+	if (group->limit == CAU_LIMIT_TARGET && group->projection == CAU_PROJECTION_LINEARISED)
+		return fat_linearised_residual(set, slot, root, f, diagonal);
+	if (group->limit == CAU_LIMIT_TARGET) { // every slot has a target, padding too
+		m3 r = fat_target_residual(f, root, polar);
+		return diagonal ? m3_scale(fat_position_scale(set, slot, r), r) : r;
+	}
+	m3 r = group->limit == CAU_LIMIT_RANGE ? fat_ranged_residual(group, root, f, polar, extra)
+	                                       : fat_shrunk_residual(root, f, polar);
 	return diagonal ? m3_scale(fat_position_scale(set, slot, r), r) : r;
 }
 
@@ -155,9 +169,12 @@ INLINE m3 fat_stress(const cau_fat_set *set, const cau_fat_group *group, int32_t
 	vreal density, volume = v_load(set->volume, slot);
 	if (limited) { // first: its rotation needs the most registers
 		vreal w = fat_limit_weight(set, group, slot);
-		r = fat_limit_residual(set, group, slot, common, f, &polar, diagonal);
+		vreal extra = v_set(0);
+		r = fat_limit_residual(set, group, slot, common, f, &polar, diagonal, &extra);
 		rotation_store(set->polar, slot, polar);
 		*energy += (real)0.5 * w * m3_dot(r, r);
+		if (group->limit == CAU_LIMIT_RANGE)
+			*energy += (real)0.5 * w * extra;
 	}
 	m3 p =
 		group->plastic && set->flowed[slot / CAU_BATCH]

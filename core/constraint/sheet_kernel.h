@@ -14,48 +14,51 @@ INLINE sym2 sheet_metric_above_identity(const v3 f0[2], const v3 h[2])
 	              v3_dot(f0[0], h[1]) + v3_dot(f0[1], h[0]) + v3_dot(h[0], h[1])};
 }
 
-// Residual R of the triangle's law; `polar` is updated. For a linearised law in the diagonal system
-// each constraint has its own step, so `scale` (set to 1 otherwise) is applied here.
+// Eq. 13 in F. In the diagonal system each constraint has its own step.
+INLINE sheet_gradient sheet_linearised_residual(sheet_gradient f, sym2 k, sym2 target_root,
+                                                const vreal dm_inverse[4], vreal g2, int diagonal)
+{
+	vreal one = v_set(1);
+	sym2 target = sym2_sandwich(target_root, (sym2){one, one, v_set(0)});
+	sheet_gradient part[3], r = {{v3_zero(), v3_zero()}};
+	sheet_linearised_residuals(f, k, target, part);
+	for (int i = 0; i < 3; ++i) {
+		vreal s = diagonal ? diagonal_scale_sheet(part[i].c, dm_inverse, g2) : one;
+		r.c[0] = v3_add_scaled(r.c[0], s, part[i].c[0]);
+		r.c[1] = v3_add_scaled(r.c[1], s, part[i].c[1]);
+	}
+	return r;
+}
+
+// Residual R of the triangle's law and twice its energy over w; `polar` is updated. Slots without a
+// target (00 = 0) follow the range, if any. In the diagonal system R is scaled here.
 INLINE sheet_gradient sheet_residual(const cau_sheet_group *group, sheet_gradient f, sym2 k,
                                      sym2 target_root, sheet_gradient *polar,
-                                     const vreal dm_inverse[4], vreal g2, int diagonal)
+                                     const vreal dm_inverse[4], vreal g2, int diagonal,
+                                     vreal *squared)
 {
-	sheet_gradient r;
 	vmask targeted = target_root.a00 > v_set(0);
+	sheet_gradient r, range = {{v3_zero(), v3_zero()}};
+	vreal range_squared = v_set(0);
 	if (group->limit == CAU_LIMIT_TARGET && group->projection == CAU_PROJECTION_LINEARISED) {
-		vreal one = v_set(1);
-		sym2 target = sym2_sandwich(target_root, (sym2){one, one, v_set(0)});
-		sheet_gradient part[3];
-		sheet_linearised_residuals(f, k, target, part);
-		r = (sheet_gradient){{v3_zero(), v3_zero()}};
-		for (int i = 0; i < 3; ++i) {
-			vreal s = diagonal ? diagonal_scale_sheet(part[i].c, dm_inverse, g2) : one;
-			r.c[0] = v3_add_scaled(r.c[0], s, part[i].c[0]);
-			r.c[1] = v3_add_scaled(r.c[1], s, part[i].c[1]);
-		}
+		r = sheet_linearised_residual(f, k, target_root, dm_inverse, g2, diagonal);
+		*squared = v3_dot(r.c[0], r.c[0]) + v3_dot(r.c[1], r.c[1]);
 		return r;
 	}
-	sym2 root = target_root;
-	vmask idle = ~targeted;
-	if (group->limit == CAU_LIMIT_RANGE) {
-		vreal unused;
-		vmask inside;
-		sym2 range = sym2_sqrt(sheet_range_metric(k, group->stretch_min, group->stretch_max,
-		                                          group->shear_max, &inside),
-		                       &unused);
-		root =
-			(sym2){v_select(targeted, root.a00, range.a00), v_select(targeted, root.a11, range.a11),
-		           v_select(targeted, root.a01, range.a01)};
-		idle = ~targeted & inside;
-	}
-	r = sheet_target_residual(f, k, root, polar);
+	if (group->limit == CAU_LIMIT_RANGE)
+		range = sheet_range_residual(f, k, group->stretch_min, group->stretch_max, group->shear_max,
+		                             &range_squared);
+	r = sheet_target_residual(f, k, target_root, polar);
 	for (int a = 0; a < 2; ++a)
-		r.c[a] = v3_select(idle, v3_zero(), r.c[a]);
+		r.c[a] = v3_select(targeted, r.c[a], range.c[a]);
 	if (diagonal) {
 		vreal s = diagonal_scale_sheet(r.c, dm_inverse, g2);
 		r.c[0] = v3_scale(s, r.c[0]);
 		r.c[1] = v3_scale(s, r.c[1]);
 	}
+	*squared = v3_dot(r.c[0], r.c[0]) + v3_dot(r.c[1], r.c[1]);
+	if (group->limit == CAU_LIMIT_RANGE)
+		*squared = v_select(targeted, *squared, range_squared);
 	return r;
 }
 
@@ -105,14 +108,15 @@ INLINE sheet_gradient sheet_stress(const cau_sheet_set *set, const cau_sheet_gro
 	sym2 root = {v_load(set->target[0], slot), v_load(set->target[1], slot),
 	             v_load(set->target[2], slot)};
 	vreal g2 = diagonal ? v_load(set->position_scale, slot) : v_set(0);
-	sheet_gradient r = sheet_residual(group, f, k, root, &polar, m, g2, diagonal);
+	vreal squared;
+	sheet_gradient r = sheet_residual(group, f, k, root, &polar, m, g2, diagonal, &squared);
 	for (int a = 0; a < 2; ++a) {
 		v_store(set->polar[3 * a], slot, polar.c[a].x);
 		v_store(set->polar[3 * a + 1], slot, polar.c[a].y);
 		v_store(set->polar[3 * a + 2], slot, polar.c[a].z);
 	}
 	vreal w = v_load(set->weight, slot);
-	*energy += w * (v3_dot(r.c[0], r.c[0]) + v3_dot(r.c[1], r.c[1]));
+	*energy += w * squared;
 	return (sheet_gradient){{v3_scale(w, r.c[0]), v3_scale(w, r.c[1])}};
 }
 

@@ -3,6 +3,7 @@
 #pragma once
 
 #include "constraint/polar.h"
+#include "constraint/strain_range.h"
 
 // Targets mostly lie along the axes: then a third of the products do.
 INLINE int sym3_is_diagonal(sym3 s)
@@ -67,28 +68,23 @@ INLINE sym3 sym3_sqrt(sym3 a, sym3 *inverse)
 	return y;
 }
 
-// RANGE as a metric, like sheet_range_metric. Shear is clamped by at most 0.49 so that K' stays
-// positive definite (strict diagonal dominance of the correlations).
-INLINE sym3 fat_range_metric(sym3 k, const double stretch_min[3], const double stretch_max[3],
-                             double shear_max, vmask *inside)
+// RANGE, like sheet_range_residual, of three stretches and three shears.
+INLINE m3 fat_range_residual(m3 f, const double stretch_min[3], const double stretch_max[3],
+                             double shear_max, vreal *squared)
 {
-	vreal s[3] = {v_sqrt(v_max(k.a00, v_set(REAL_TINY))), v_sqrt(v_max(k.a11, v_set(REAL_TINY))),
-	              v_sqrt(v_max(k.a22, v_set(REAL_TINY)))};
-	vreal t[3];
-	*inside = v_set(0) <= v_set(1); // all lanes
+	m3 r = {{v3_zero(), v3_zero(), v3_zero()}};
+	vreal length2[3];
+	*squared = v_set(0);
 	for (int a = 0; a < 3; ++a) {
-		t[a] = v_clamp(s[a], (real)stretch_min[a], (real)stretch_max[a]);
-		*inside &= s[a] == t[a];
+		length2[a] = v3_dot(f.c[a], f.c[a]);
+		*squared += range_stretch(f.c[a], length2[a], stretch_min[a], stretch_max[a], &r.c[a]);
 	}
-	real limit = (real)(shear_max < 0.49 ? shear_max : 0.49);
-	vreal c[3] = {k.a01 / (s[0] * s[1]), k.a02 / (s[0] * s[2]), k.a12 / (s[1] * s[2])};
-	vreal n[3];
 	for (int a = 0; a < 3; ++a) {
-		n[a] = v_clamp(c[a], -limit, limit);
-		*inside &= c[a] == n[a];
+		int b = (a + 1) % 3;
+		sym2 k = {length2[a], length2[b], v3_dot(f.c[a], f.c[b])};
+		*squared += range_shear(f.c[a], f.c[b], k, shear_max, &r.c[a], &r.c[b]);
 	}
-	return (sym3){t[0] * t[0],        t[1] * t[1],        t[2] * t[2],
-	              n[0] * t[0] * t[1], n[1] * t[0] * t[2], n[2] * t[1] * t[2]};
+	return r;
 }
 
 // TARGET linearised: the six unordered pairs of eq. 12 on the 3x3 metric, each projected once in F.

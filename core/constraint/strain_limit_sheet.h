@@ -3,7 +3,7 @@
 // R = F - P, so that a triangle's energy is w/2 |R|^2 and its stress w R. Columns f_1, f_2 of F.
 #pragma once
 
-#include "base/simd.h"
+#include "constraint/strain_range.h"
 
 typedef struct sheet_gradient { // F or R, 3 x 2
 	v3 c[2];
@@ -60,20 +60,16 @@ INLINE sheet_gradient sheet_target_residual(sheet_gradient f, sym2 k, sym2 targe
 	return exact;
 }
 
-// RANGE as a metric: K with each stretch clamped to its interval, then |k_12| / sqrt(k_11 k_22) to
-// shear_max. `inside` marks lanes that are changed by neither. With T = this K', the closed form
-// above is the nearest F of that metric, so the residual has no torque.
-INLINE sym2 sheet_range_metric(sym2 k, const double stretch_min[2], const double stretch_max[2],
-                               double shear_max, vmask *inside)
+// RANGE: the residuals of both stretches and of the shear; *squared is their squared distances.
+INLINE sheet_gradient sheet_range_residual(sheet_gradient f, sym2 k, const double stretch_min[2],
+                                           const double stretch_max[2], double shear_max,
+                                           vreal *squared)
 {
-	vreal s1 = v_sqrt(v_max(k.a00, v_set(REAL_TINY)));
-	vreal s2 = v_sqrt(v_max(k.a11, v_set(REAL_TINY)));
-	vreal t1 = v_clamp(s1, (real)stretch_min[0], (real)stretch_max[0]);
-	vreal t2 = v_clamp(s2, (real)stretch_min[1], (real)stretch_max[1]);
-	vreal c = k.a01 / (s1 * s2);
-	vreal c_new = v_clamp(c, (real)-shear_max, (real)shear_max);
-	*inside = (s1 == t1) & (s2 == t2) & (c == c_new);
-	return (sym2){t1 * t1, t2 * t2, c_new * t1 * t2};
+	sheet_gradient r = {{v3_zero(), v3_zero()}};
+	*squared = range_stretch(f.c[0], k.a00, stretch_min[0], stretch_max[0], &r.c[0]);
+	*squared += range_stretch(f.c[1], k.a11, stretch_min[1], stretch_max[1], &r.c[1]);
+	*squared += range_shear(f.c[0], f.c[1], k, shear_max, &r.c[0], &r.c[1]);
+	return r;
 }
 
 // One linearised constraint C of F (eq. 12): dF = -C (dC/dF) / |dC/dF|^2, returned as the residual

@@ -7,12 +7,45 @@
 #include "constraint/contact.h"
 #include "solve/solver.h"
 
-// What rounding can do to the objective, relative to its terms.
-static double objective_noise(const cau_step_solver *solver)
+// What rounding can do to a sum, relative to its terms.
+static double rounding(const cau_step_solver *solver)
 {
-	return (solver->elements.single ? 1e-6 : 1e-13) * fabs(cau_solver_elastic_energy(solver));
+	return solver->elements.single ? 1e-6 : 1e-13;
 }
 
+static double objective_noise(const cau_step_solver *solver)
+{
+	return rounding(solver) * fabs(cau_solver_elastic_energy(solver));
+}
+
+// ---- products of vectors by vertex
+typedef struct product {
+	cau_step_solver *solver;
+	const char *a, *b; // real
+} product;
+
+static void product_part(void *context, int32_t chunk)
+{
+	const product *work = context;
+	const cau_step_solver *solver = work->solver;
+	size_t real = cau_real_bytes(solver->elements.single);
+	int64_t first = 4 * (int64_t)chunk * CAU_VERTEX_CHUNK, n = 4 * (int64_t)CAU_VERTEX_CHUNK;
+	if (first + n > 4 * (int64_t)solver->tissue->vertex_count)
+		n = 4 * (int64_t)solver->tissue->vertex_count - first;
+	solver->chunk_dot[chunk] =
+		solver->kernels->dot(work->a + (size_t)first * real, work->b + (size_t)first * real, n);
+}
+
+static double dot(cau_step_solver *solver, const void *a, const void *b)
+{
+	double sum = 0;
+	cau_pool_run(solver->pool, solver->chunk_count, product_part, &(product){solver, a, b});
+	for (int32_t chunk = 0; chunk < solver->chunk_count; ++chunk)
+		sum += solver->chunk_dot[chunk];
+	return sum;
+}
+
+// ---- steps
 typedef struct move {
 	cau_step_solver *solver;
 	double scale;
@@ -77,19 +110,35 @@ static double shorter(double scale, double before, double after, double slope)
 	return scale * fmin(fmax(bottom, 0.01), 0.5);
 }
 
-// Takes the trial step if it lowers the objective; else the plain step, whose slope is `slope`;
-// else shortens it. Laws without an energy take the first finite step. Returns 0 when nothing
-// helps: the position is as before.
+// Whether the trial step, of which a part `scale` was taken, may stand. Eq. 4 with every element's
+// energy may not rise. Where a law has none (w/2 |R|^2 stands for it), the forces near its fixed
+// point can lead up that: then the work that is done against all forces along the way counts, by
+// the trapezoidal rule between its ends. It is negative for every step that is short enough, and no
+// law's want of an energy leaves the others without a safeguard.
+static int may_stand(cau_step_solver *solver, double scale, double value, double objective,
+                     double noise)
+{
+	if (value <= objective + noise)
+		return 1;
+	if (solver->conservative || !isfinite(value))
+		return 0;
+	double start = dot(solver, solver->history.last_gradient, solver->trial_increment);
+	double end = dot(solver, solver->gradient, solver->trial_increment);
+	return 0.5 * scale * (start + end) <= noise + rounding(solver) * fabs(start);
+}
+
+// Takes the trial step if it may stand; else the plain step, whose slope is `slope`; else shortens
+// it. Returns 0 when nothing helps: the position is as before.
 static int take_step(cau_step_solver *solver, int accelerated, double slope, double *objective)
 {
-	double bound = *objective + objective_noise(solver);
+	double noise = objective_noise(solver);
 	if (solver->contact)
-		bound += cau_contact_work(solver->contact, solver);
+		noise += cau_contact_work(solver->contact, solver);
 	double scale = 1;
 	leave(solver);
 	for (int tries = 0; tries <= CAU_MAX_BACKTRACKS; ++tries) {
 		double value = cau_solver_evaluate_displaced(solver);
-		if (isfinite(value) && (!solver->conservative || value <= bound)) {
+		if (may_stand(solver, scale, value, *objective, noise)) {
 			*objective = value;
 			if (scale != 1)
 				scale_trial(solver, scale);
@@ -115,7 +164,7 @@ static int take_step(cau_step_solver *solver, int accelerated, double slope, dou
 static int go_back(cau_step_solver *solver, double *objective)
 {
 	size_t count = (size_t)solver->tissue->vertex_count;
-	if (!solver->position_start || !solver->conservative)
+	if (!solver->position_start)
 		return 0;
 	memcpy(solver->position_before, solver->position, 3 * count * sizeof(double));
 	for (size_t v = 0; v < count; ++v)
@@ -132,25 +181,17 @@ static int go_back(cau_step_solver *solver, double *objective)
 	return 0;
 }
 
-static void norm_part(void *context, int32_t chunk)
-{
-	const cau_step_solver *solver = context;
-	size_t real = cau_real_bytes(solver->elements.single);
-	int64_t first = 4 * (int64_t)chunk * CAU_VERTEX_CHUNK, n = 4 * (int64_t)CAU_VERTEX_CHUNK;
-	if (first + n > 4 * (int64_t)solver->tissue->vertex_count)
-		n = 4 * (int64_t)solver->tissue->vertex_count - first;
-	solver->chunk_dot[chunk] =
-		solver->kernels->dot((const char *)solver->increment + (size_t)first * real,
-	                         (const char *)solver->gradient + (size_t)first * real, n);
-}
-
 static double step_norm(cau_step_solver *solver)
 {
-	double product = 0;
-	cau_pool_run(solver->pool, solver->chunk_count, norm_part, solver);
-	for (int32_t chunk = 0; chunk < solver->chunk_count; ++chunk)
-		product += solver->chunk_dot[chunk];
-	return sqrt(fmax(-product, 0));
+	return sqrt(fmax(-dot(solver, solver->increment, solver->gradient), 0));
+}
+
+// Where a law has no energy the last step need not be looked at if it is too small to do harm: none
+// was taken back in this tick, and what it promises is far below the energy there is.
+static int is_harmless(const cau_step_solver *solver, double norm, double objective)
+{
+	const double far_below = 0.01;
+	return !solver->conservative && !solver->backtracks && norm * norm <= far_below * objective;
 }
 
 static void nothing(void *context)
@@ -193,7 +234,7 @@ cau_status cau_solver_descend(cau_step_solver *solver, cau_error *error)
 			cau_anderson_start(solver); // the history misleads: forget it
 		last = norm;
 		int accelerated = cau_anderson_mix(solver, steps++);
-		if (!solver->conservative && k + 1 == solver->iterations) { // nothing to compare with
+		if (k + 1 == solver->iterations && is_harmless(solver, norm, objective)) {
 			leave(solver);
 			break;
 		}

@@ -10,28 +10,29 @@ static cau_status no_memory(cau_error *error)
 	return cau_fail(error, CAU_NO_MEMORY, NULL, "no memory for the solver");
 }
 
+static int is_linearised(int limit, int projection)
+{
+	return limit == CAU_LIMIT_TARGET && projection == CAU_PROJECTION_LINEARISED;
+}
+
+static int has_energy(const cau_layer_def *layer, int32_t material)
+{
+	if (layer->kind == CAU_LAYER_FAT) {
+		const cau_fat_material *fat = &layer->fat[material];
+		return fat->model != CAU_MODEL_ENERGY && !is_linearised(fat->limit, fat->projection);
+	}
+	const cau_sheet_material *sheet = &layer->sheet[material];
+	return layer->kind == CAU_LAYER_LINKS || !is_linearised(sheet->limit, sheet->projection);
+}
+
 // Linearised limits and the printed energy constraint are not gradients of any energy; nor is the
 // printed position projection.
 int cau_solver_is_conservative(const cau_tissue *tissue, int diagonal)
 {
-	for (int32_t i = 0; i < tissue->layer_count; ++i) {
-		const cau_layer_def *def = &tissue->layer[i].def;
-		for (int32_t m = 0; m < def->material_count; ++m) {
-			if (def->kind == CAU_LAYER_FAT) {
-				const cau_fat_material *fat = &def->fat[m];
-				if (fat->model == CAU_MODEL_ENERGY || fat->limit == CAU_LIMIT_RANGE ||
-				    (fat->limit == CAU_LIMIT_TARGET &&
-				     fat->projection == CAU_PROJECTION_LINEARISED))
-					return 0;
-			} else if (def->kind != CAU_LAYER_LINKS) {
-				const cau_sheet_material *sheet = &def->sheet[m];
-				if (sheet->limit == CAU_LIMIT_RANGE ||
-				    (sheet->limit == CAU_LIMIT_TARGET &&
-				     sheet->projection == CAU_PROJECTION_LINEARISED))
-					return 0;
-			}
-		}
-	}
+	for (int32_t i = 0; i < tissue->layer_count; ++i)
+		for (int32_t m = 0; m < tissue->layer[i].def.material_count; ++m)
+			if (!has_energy(&tissue->layer[i].def, m))
+				return 0;
 	return !diagonal;
 }
 

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // One time step: the minimum of eq. 4 by alternating a local step (project every element, eq. 6)
 // and a global one (one constant system, eq. 7), as the quasi-Newton iteration x <- x - A^-1 grad
-// E, for increments. Anderson acceleration in the norm of A; backtracking where the laws have an
-// energy.
+// E, for increments. Anderson acceleration in the norm of A; backtracking on eq. 4, and on the work
+// along the step where a law has no energy.
 //
 // Vectors marked `real` hold four reals a vertex (x, y, z, 0), float or double; those marked double
 // hold three.
@@ -42,7 +42,7 @@ typedef struct cau_step_solver {
 	uint64_t factor_epoch;   // counts those that leave nothing of the old one
 
 	int diagonal;     // CAU_SOLVER_DIAGONAL
-	int conservative; // every law is the gradient of an energy: backtracking applies
+	int conservative; // every law is the gradient of an energy
 	int32_t iterations;
 	double tolerance, step_s;
 	const uint8_t *fixed; // (vertex_count): pinned or frozen
@@ -83,7 +83,7 @@ cau_status cau_solver_factor(cau_step_solver *solver, const cau_alive *alive,
                              const int32_t *permutation, cau_arena *arena, cau_error *error);
 void cau_solver_finish(cau_step_solver *solver);
 
-// Whether every law of the tissue is the gradient of an energy, so that backtracking applies.
+// Whether every law of the tissue is the gradient of an energy.
 int cau_solver_is_conservative(const cau_tissue *tissue, int diagonal);
 
 // Solves the step from the guess in solver->position. CAU_NUMERICAL if the state is not finite.
