@@ -131,15 +131,18 @@ static cau_status build(cau_session *session, const cau_session_def *def, cau_er
 	session->solver.kernels =
 		cau_kernels_choose(session->scene->precision == CAU_PRECISION_SINGLE, def->instruction_set);
 	status = cau_tissue_make(session->scene, &session->arena, &session->tissue, error);
-	if (!status)
-		status = allocate_state(session, error);
+	if (status)
+		return status;
+	session->size_m = cau_session_size(session);
+	status = allocate_state(session, error);
 	if (!status)
 		status = make_solver(session, error);
+	if (!status)
+		status = cau_session_make_watch(session, error);
 	if (!status)
 		status = make_rest(session, error);
 	if (status)
 		return status;
-	session->reach_m = cau_session_reach(session);
 	session->definition_hash = hash_definition(session);
 	return status;
 }

@@ -32,6 +32,16 @@ typedef struct cau_tool {
 	cau_grasp grasp[CAU_MAX_GRASPED];
 } cau_tool;
 
+// What possible.c knows of the last look at the edges, and its scratch.
+typedef struct cau_watch {
+	double left_m;        // vertices may still go half as far before an edge can be too long
+	double *farthest2_m2; // by chunk of vertices: square of the farthest move of the tick
+	int32_t *astray;      // by chunk of vertices: one that moved too far, or -1
+	int32_t chunk_count;  // of edges
+	double *room_m;       // by chunk of edges: least length that one may still grow by
+	int32_t *edge;        // by chunk of edges: the one
+} cau_watch;
+
 struct cau_session {
 	cau_arena arena;
 	cau_arena rebuilt_arena; // the system since pins last changed: pins.c
@@ -57,7 +67,8 @@ struct cau_session {
 	uint8_t *chosen;             // (n): scratch of selections
 	cau_drag *drag;              // (n)
 	int32_t inverted, frozen_count;
-	double reach_m;          // a vertex farther from its rest is stopped: stray.c
+	cau_watch watch;
+	double size_m;           // diagonal of the tissue's box at rest
 	int32_t driven_count;    // pinned vertices that the next step moves
 	int32_t *driven;         // (n)
 	double *driven_position; // m, (n x 3), by place in `driven`
@@ -114,9 +125,16 @@ void cau_session_renew_scalars(cau_session *session);
 cau_status cau_session_make_faces(cau_session *session, cau_error *error);
 // drive.c: pinned vertices go where the caller wants them in this tick.
 void cau_session_lead_driven(cau_session *session);
-// stray.c: vertices that have gone too far stop; how far that is.
+// stray.c: vertices that have gone too far stop; the size of all tissue at rest, m.
 void cau_session_stop_strays(cau_session *session);
-double cau_session_reach(const cau_session *session);
+double cau_session_size(const cau_session *session);
+// possible.c: its arrays; refuses a state that no tissue can have (CAU_NUMERICAL, with the tick and
+// the layer), by the vertices' moves and the edges' lengths, and by the count of inverted elements.
+cau_status cau_session_make_watch(cau_session *session, cau_error *error);
+cau_status cau_session_check_motion(cau_session *session, cau_error *error);
+cau_status cau_session_check_inverted(const cau_session *session, cau_error *error);
+// Adds the tick and the layer to the solver's refusal in *error.
+cau_status cau_session_locate(const cau_session *session, cau_error *error);
 // step.c: predicts s of eq. 4; plastic flow after a solve.
 void cau_session_predict(cau_session *session);
 void cau_session_settle(cau_session *session);

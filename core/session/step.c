@@ -106,12 +106,12 @@ static cau_status begin_solve(cau_session *session, cau_error *error)
 
 static cau_status solve(cau_session *session, cau_error *error)
 {
-	cau_status status = cau_solver_descend(&session->solver, error);
-	for (int32_t i = 0; i < 3 * session->tissue.vertex_count && !status; ++i)
-		if (!isfinite(session->position[i]))
-			status = cau_fail(error, CAU_NUMERICAL, NULL, "vertex %d left the numbers at tick %llu",
-			                  i / 3, (unsigned long long)session->tick);
-	return status;
+	cau_error refusal = {0};
+	cau_status status = cau_solver_descend(&session->solver, &refusal);
+	if (!status)
+		return CAU_OK;
+	cau_session_locate(session, &refusal);
+	return cau_fail(error, status, NULL, "%s", refusal.reason);
 }
 
 static void begin_tick(cau_session *session)
@@ -159,10 +159,15 @@ cau_status cau_session_step(cau_session *session, cau_error *error)
 		status = begin_solve(session, error); // above; solve/matrix_update.c
 	if (!status)
 		status = solve(session, error); // eq. 6 and 7: solve/descend.c
+	if (!status)
+		status = cau_session_check_motion(session, error); // possible.c
 	if (status)
 		return fault(session, status);
-	update_velocities(session);       // eq. 2, above
-	cau_session_settle(session);      // plasticity, section 5.2
+	update_velocities(session);                          // eq. 2, above
+	cau_session_settle(session);                         // plasticity, section 5.2
+	status = cau_session_check_inverted(session, error); // possible.c
+	if (status)
+		return fault(session, status);
 	cau_session_read_forces(session); // touch.c
 	end_solve_stages(session);
 	cau_session_burn(session); // eq. 18-21: burn.c

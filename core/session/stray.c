@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// What has been cut free falls for ever, and what is pulled by a thousand newtons flies off. Far
-// away, single precision no longer tells an element's corners apart, and the noise of their energy
-// would drown the objective of all the tissue that is still there. So a vertex that has gone many
-// times the tissue's size is stopped there, like one that has no element left.
+// What has been cut free falls for ever. Far away, single precision no longer tells an element's
+// corners apart, and the noise of their energy would drown the objective of all the tissue that is
+// still there. So a vertex that has gone many times the tissue's size is stopped there, like one
+// that has no element left.
 #include <math.h>
 #include <string.h>
 
@@ -10,7 +10,7 @@
 
 static const double farthest_sizes = 200; // single precision: 1e-5 of the size, far below an edge
 
-double cau_session_reach(const cau_session *session)
+double cau_session_size(const cau_session *session)
 {
 	const double *rest = session->tissue.rest;
 	double squared = 0;
@@ -22,14 +22,15 @@ double cau_session_reach(const cau_session *session)
 		}
 		squared += (most - least) * (most - least);
 	}
-	return farthest_sizes * sqrt(squared);
+	return sqrt(squared);
 }
 
 static void stop(cau_session *session, size_t vertex, cau_vec3 way)
 {
 	double *position = session->position + 3 * vertex;
 	cau_vec3 rest = cau_vec3_of(session->tissue.rest + 3 * vertex);
-	cau_vec3_to(cau_add_scaled(rest, session->reach_m / cau_length(way), way), position);
+	double reach_m = farthest_sizes * session->size_m;
+	cau_vec3_to(cau_add_scaled(rest, reach_m / cau_length(way), way), position);
 	memset(session->velocity + 3 * vertex, 0, 3 * sizeof(double));
 	session->fixed[vertex] = 1;
 	session->frozen_count++;
@@ -38,14 +39,17 @@ static void stop(cau_session *session, size_t vertex, cau_vec3 way)
 void cau_session_stop_strays(cau_session *session)
 {
 	int stopped = 0;
+	double reach_m = farthest_sizes * session->size_m;
 	for (size_t v = 0; v < (size_t)session->tissue.vertex_count; ++v) {
 		cau_vec3 way = cau_sub(cau_vec3_of(session->position + 3 * v),
 		                       cau_vec3_of(session->tissue.rest + 3 * v));
-		if (session->fixed[v] || cau_dot(way, way) <= session->reach_m * session->reach_m)
+		if (session->fixed[v] || cau_dot(way, way) <= reach_m * reach_m)
 			continue;
 		stop(session, v, way);
 		stopped = 1;
 	}
-	if (stopped)
-		cau_session_drop_frozen_grasps(session);
+	if (!stopped)
+		return;
+	session->watch.left_m = 0; // they were moved: the edges are looked at again
+	cau_session_drop_frozen_grasps(session);
 }

@@ -1,0 +1,231 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// States that no tissue can have. A step that ends in one faults its session, with the tick and the
+// layer: shown as if it were tissue it would be worse than no step. The bounds lie far beyond what
+// tissue bears and what any tool or burnt strip does here, so that they tell a solver that has gone
+// astray and forces that nothing could stand, and nothing else:
+//
+// - a vertex flies faster than sound does in tissue. Recoil is a wave, and no wave is faster; a
+//   strip that has burnt through snaps back at some ten metres a second.
+// - a living edge is drawn to fifty times its length and to twice the size of all tissue. Collagen
+//   tears at 1.2 times its length, fat below 3; tissue here does not tear, and what a grasper that
+//   never slips draws out by a decimetre gets forty times as long in a mesh of 2 mm. A finer one
+//   gets longer, a mesh of a few elements larger: hence both.
+// - nine tenths of all tetrahedra are inside out. Half of them were under a grasper that was driven
+//   a decimetre through the floor that they are pinned to, and recovered.
+//
+// Edges are looked at when one may be too long: each look leaves the least distance by which any
+// could yet grow, and the farthest move of each tick eats twice of it.
+#include <math.h>
+#include <string.h>
+
+#include "session/session_internal.h"
+
+static const double fastest_m_s = 1540; // sound in soft tissue
+static const double most_stretch = 50, most_sizes = 2;
+static const double most_inverted = 0.9;
+enum { EDGES_IN_CHUNK = 4096 };
+
+cau_status cau_session_make_watch(cau_session *session, cau_error *error)
+{
+	cau_watch *watch = &session->watch;
+	watch->chunk_count = (session->tissue.edges.edge_count + EDGES_IN_CHUNK - 1) / EDGES_IN_CHUNK;
+	size_t edge_chunks = (size_t)watch->chunk_count;
+	size_t vertex_chunks = (size_t)session->solver.chunk_count;
+	watch->room_m = cau_arena_array(&session->arena, edge_chunks, sizeof(double));
+	watch->edge = cau_arena_array(&session->arena, edge_chunks, sizeof(int32_t));
+	watch->farthest2_m2 = cau_arena_array(&session->arena, vertex_chunks, sizeof(double));
+	watch->astray = cau_arena_array(&session->arena, vertex_chunks, sizeof(int32_t));
+	if ((edge_chunks && (!watch->room_m || !watch->edge)) || !watch->farthest2_m2 || !watch->astray)
+		return cau_fail(error, CAU_NO_MEMORY, NULL, "no memory for a session");
+	return CAU_OK;
+}
+
+static const char *layer_of_vertex(const cau_session *session, int32_t vertex)
+{
+	const cau_tissue *tissue = &session->tissue;
+	for (int32_t i = 0; i < tissue->layer_count; ++i) {
+		const cau_tissue_layer *layer = &tissue->layer[i];
+		if (vertex >= layer->first_vertex && vertex < layer->first_vertex + layer->vertex_count)
+			return layer->def.name;
+	}
+	return "";
+}
+
+static cau_status refuse(const cau_session *session, cau_error *error, const char *layer,
+                         const char *what)
+{
+	return cau_fail(error, CAU_NUMERICAL, NULL, "at tick %llu, in layer \"%s\": %s",
+	                (unsigned long long)session->tick, layer, what);
+}
+
+// ---- the solver's own refusal
+static const char *layer_of_share(const cau_session *session, const cau_local_work *work)
+{
+	const cau_elements *elements = &session->solver.elements;
+	const int32_t *element_at = session->solver.slots.element_at[work->kind];
+	const cau_tissue *tissue = &session->tissue;
+	if (work->kind == CAU_ELEMENT_TETRAHEDRON)
+		return tissue->layer[elements->fat.group[work->group].layer].def.name;
+	if (work->kind == CAU_ELEMENT_TRIANGLE)
+		return tissue->layer[elements->sheet.group[work->group].layer].def.name;
+	if (work->kind == CAU_ELEMENT_LINK)
+		return tissue->layer[tissue->link_layer[element_at[work->first]]].def.name;
+	return layer_of_vertex(session, tissue->hinge_vertex[4 * (size_t)element_at[work->first]]);
+}
+
+// Elements whose energy is no number, else a vertex that is at no place, say where it went wrong.
+cau_status cau_session_locate(const cau_session *session, cau_error *error)
+{
+	char reason[sizeof error->reason];
+	memcpy(reason, error->reason, sizeof reason);
+	for (int32_t w = 0; w < session->solver.slots.work_count; ++w)
+		if (!isfinite(session->solver.elements.energy[w]))
+			return refuse(session, error, layer_of_share(session, &session->solver.slots.work[w]),
+			              reason);
+	int32_t v = 0;
+	for (; v < session->tissue.vertex_count - 1; ++v)
+		if (!isfinite(session->position[3 * v] + session->position[3 * v + 1] +
+		              session->position[3 * v + 2]))
+			break;
+	return refuse(session, error, layer_of_vertex(session, v), reason);
+}
+
+// ---- vertices
+static void motion_part(void *context, int32_t chunk)
+{
+	cau_session *session = context;
+	const double *x = session->position, *start = session->position_start;
+	double most = fastest_m_s * session->solver.step_s, farthest2 = 0;
+	int32_t first = chunk * CAU_VERTEX_CHUNK, last = first + CAU_VERTEX_CHUNK, astray = -1;
+	if (last > session->tissue.vertex_count)
+		last = session->tissue.vertex_count;
+	for (int32_t v = first; v < last; ++v) {
+		double move2 = 0;
+		for (int c = 0; c < 3; ++c)
+			move2 += (x[3 * v + c] - start[3 * v + c]) * (x[3 * v + c] - start[3 * v + c]);
+		farthest2 = move2 > farthest2 ? move2 : farthest2;
+		// true for what is not a number; supports go as fast as they are led
+		if (!(move2 <= most * most) && astray < 0 && !(session->fixed[v] && isfinite(move2)))
+			astray = v;
+	}
+	session->watch.farthest2_m2[chunk] = farthest2;
+	session->watch.astray[chunk] = astray;
+}
+
+static cau_status refuse_vertex(const cau_session *session, int32_t vertex, cau_error *error)
+{
+	char what[128];
+	const double *x = session->position + 3 * (size_t)vertex;
+	const double *start = session->position_start + 3 * (size_t)vertex;
+	double move = cau_length(cau_sub(cau_vec3_of(x), cau_vec3_of(start)));
+	if (isfinite(move))
+		snprintf(what, sizeof what, "vertex %d flies at %.4g m/s, faster than sound in tissue",
+		         vertex, move / session->solver.step_s);
+	else
+		snprintf(what, sizeof what, "vertex %d is at no place that is a number", vertex);
+	return refuse(session, error, layer_of_vertex(session, vertex), what);
+}
+
+// ---- edges
+static double length_m(const double *position, const int32_t *edge)
+{
+	return cau_length(cau_sub(cau_vec3_of(position + 3 * (size_t)edge[1]),
+	                          cau_vec3_of(position + 3 * (size_t)edge[0])));
+}
+
+// The layer of a living element on the edge, or NULL: then it holds nothing.
+static const char *living_layer(const cau_session *session, int32_t edge)
+{
+	static const int kinds[] = {CAU_ELEMENT_TRIANGLE, CAU_ELEMENT_TETRAHEDRON, CAU_ELEMENT_LINK};
+	const cau_tissue *tissue = &session->tissue;
+	const int32_t *layer[] = {tissue->triangle_layer, tissue->tetrahedron_layer,
+	                          tissue->link_layer};
+	for (int k = 0; k < CAU_PRIMITIVE_KINDS; ++k)
+		for (int32_t i = tissue->edges.first[k][edge]; i < tissue->edges.first[k][edge + 1]; ++i) {
+			int32_t element = tissue->edges.sharer[k][i];
+			if (session->dissection.alive.element[kinds[k]][element])
+				return tissue->layer[layer[k][element]].def.name;
+		}
+	return NULL;
+}
+
+static void edge_part(void *context, int32_t chunk)
+{
+	cau_session *session = context;
+	const cau_edge_table *edges = &session->tissue.edges;
+	int32_t first = chunk * EDGES_IN_CHUNK, last = first + EDGES_IN_CHUNK, shortest = -1;
+	double least = INFINITY, whole = most_sizes * session->size_m;
+	if (last > edges->edge_count)
+		last = edges->edge_count;
+	for (int32_t e = first; e < last; ++e) {
+		const int32_t *vertex = edges->vertex + 2 * (size_t)e;
+		double most = fmax(most_stretch * length_m(session->tissue.rest, vertex), whole);
+		double room = most - length_m(session->position, vertex);
+		if (room < least && living_layer(session, e)) {
+			least = room;
+			shortest = e;
+		}
+	}
+	session->watch.room_m[chunk] = least;
+	session->watch.edge[chunk] = shortest;
+}
+
+static cau_status refuse_edge(const cau_session *session, int32_t edge, cau_error *error)
+{
+	char what[128];
+	const int32_t *vertex = session->tissue.edges.vertex + 2 * (size_t)edge;
+	snprintf(what, sizeof what, "the edge of vertices %d and %d is %.4g times its length",
+	         vertex[0], vertex[1],
+	         length_m(session->position, vertex) / length_m(session->tissue.rest, vertex));
+	return refuse(session, error, living_layer(session, edge), what);
+}
+
+static cau_status check_edges(cau_session *session, cau_error *error)
+{
+	cau_watch *watch = &session->watch;
+	int32_t worst = -1;
+	cau_pool_run(session->pool, watch->chunk_count, edge_part, session);
+	watch->left_m = INFINITY;
+	for (int32_t k = 0; k < watch->chunk_count; ++k)
+		if (watch->room_m[k] < watch->left_m) {
+			watch->left_m = watch->room_m[k];
+			worst = watch->edge[k];
+		}
+	return watch->left_m < 0 ? refuse_edge(session, worst, error) : CAU_OK;
+}
+
+cau_status cau_session_check_motion(cau_session *session, cau_error *error)
+{
+	cau_watch *watch = &session->watch;
+	double farthest2 = 0;
+	int32_t chunks = session->solver.chunk_count;
+	cau_pool_run(session->pool, chunks, motion_part, session);
+	for (int32_t k = 0; k < chunks; ++k) {
+		if (watch->astray[k] >= 0)
+			return refuse_vertex(session, watch->astray[k], error);
+		farthest2 = fmax(farthest2, watch->farthest2_m2[k]);
+	}
+	watch->left_m -= 2 * sqrt(farthest2);
+	return watch->left_m > 0 ? CAU_OK : check_edges(session, error);
+}
+
+// ---- tetrahedra
+static const char *layer_of_most_fat(const cau_tissue *tissue)
+{
+	int32_t most = 0;
+	for (int32_t i = 1; i < tissue->layer_count; ++i)
+		if (tissue->layer[i].tetrahedron_count > tissue->layer[most].tetrahedron_count)
+			most = i;
+	return tissue->layer[most].def.name;
+}
+
+cau_status cau_session_check_inverted(const cau_session *session, cau_error *error)
+{
+	char what[128];
+	const cau_tissue *tissue = &session->tissue;
+	if (session->inverted <= most_inverted * tissue->tetrahedron_count)
+		return CAU_OK;
+	snprintf(what, sizeof what, "%d of %d tetrahedra are inside out", session->inverted,
+	         tissue->tetrahedron_count);
+	return refuse(session, error, layer_of_most_fat(tissue), what);
+}
