@@ -29,6 +29,7 @@ void cau_hosted_fault(cau_hosted *h, const cau_error *error)
 	cau_decide(h, &(cau_logic_event){.kind = CAU_LOGIC_FAULT,
 	                                 .time_s = cau_monotonic_s(),
 	                                 .cause = error->reason});
+	h->realtime_factor = 0; // it stands still, as a paused one does
 	cau_hosted_tell_fault(h, error);
 }
 

@@ -106,7 +106,7 @@ static void write_process(const exposition *to)
 	X("session_key_frames", COUNTER, "", "Key frames encoded", c->key_frames)                      \
 	X("session_commands", COUNTER, "", "Commands applied", c->commands)                            \
 	X("session_motions", COUNTER, "", "Tool motions applied", c->motions)                          \
-	X("session_refused", COUNTER, "", "Commands and motions refused", c->refused)                  \
+	X("session_refused", COUNTER, "", "Motions refused, and what DDS did not let in", c->refused)  \
 	X("session_watchdog_cuts", COUNTER, "", "Times a driver's silence cut energy",                 \
 	  c->watchdog_cuts)                                                                            \
 	X("session_subscribers", GAUGE, "", "Streams joined", s->subscriber_count)                     \

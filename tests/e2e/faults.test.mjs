@@ -25,6 +25,10 @@ test('a fault stays in its session, is told, outlives a restart, and a rewind he
 	const { sessions } = await client.call('session.list');
 	assert.equal(sessions.find((s) => s.session === session).state, 'faulted');
 	assert.match(sessions.find((s) => s.session === session).fault, /beyond reason/);
+	// What stands still keeps no pace, whatever it did before.
+	assert.equal(sessions.find((s) => s.session === session).realtime_factor, 0);
+	assert.equal(await daemon.metric('session_realtime_factor', session), 0);
+	assert.equal(await daemon.metric('session_faulted', session), 1);
 	const tick = other.tick;
 	await neighbour.until(() => other.tick > tick + 20, 'the neighbour goes on');
 	const back = await client.call('session.rewind', { session, tick: 5 });
