@@ -191,13 +191,16 @@ void cau_daemon_reload(cau_daemon *daemon)
 {
 	cau_error error = {0};
 	const cau_config *config = daemon->config;
-	bool tokens = false;
+	bool tokens = false, roles = false;
 	sd_notifyf(0, "RELOADING=1\nMONOTONIC_USEC=%lld", (long long)(cau_monotonic_s() * 1e6));
 	if (*config->tokens)
 		tokens = reloaded("tokens", cau_auth_reload(daemon->auth, config, &error), &error);
 	if (tokens)
 		cau_service_check_tokens(daemon->service);
-	cau_log(CAU_LOG_NOTICE, NULL, "reloaded", "tokens=%d", tokens);
+	error = (cau_error){0};
+	if (daemon->dds && *config->dds_roles)
+		roles = reloaded("dds_roles", cau_dds_reload(daemon->dds, &error), &error);
+	cau_log(CAU_LOG_NOTICE, NULL, "reloaded", "tokens=%d dds_roles=%d", tokens, roles);
 	sd_notify(0, "READY=1");
 }
 

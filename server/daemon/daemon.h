@@ -16,9 +16,9 @@ cau_status cau_daemon_start(cau_daemon **daemon, cau_config *config, cau_error *
 // terminal is told as SIGTERM, one that a program sent as SIGHUP. Non-zero: the daemon cannot go
 // on.
 int cau_daemon_wait(cau_daemon *daemon, const sigset_t *signals, int *signal_number);
-// Reads the file of tokens anew. If it is wrong that is logged, with the line, and what it said
-// before stays. Connections whose token was taken back, or has a lesser role now, are closed,
-// energy off; nobody else notices.
+// Reads the files of tokens and of DDS roles anew. One that is wrong is logged, with the line, and
+// what it said before stays. Connections whose token was taken back, or has a lesser role now, are
+// closed, energy off; who has a lesser role on DDS loses its tools; nobody else notices.
 void cau_daemon_reload(cau_daemon *daemon);
 // Checkpoints every session, closes connections with a reason, ends the threads, frees all.
 void cau_daemon_stop(cau_daemon *daemon);

@@ -17,6 +17,12 @@ cau_status cau_dds_start(cau_dds *dds, cau_error *error)
 	return cau_fail(error, CAU_UNSUPPORTED, "dds", "this cauteryd was built without DDS");
 }
 
+cau_status cau_dds_reload(cau_dds *dds, cau_error *error)
+{
+	(void)dds;
+	return cau_fail(error, CAU_UNSUPPORTED, "dds", "this cauteryd was built without DDS");
+}
+
 void cau_dds_stop(cau_dds *dds)
 {
 	(void)dds;

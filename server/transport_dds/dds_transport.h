@@ -15,6 +15,10 @@ typedef struct cau_dds cau_dds;
 // without DDS. `config` and `hub` are borrowed.
 cau_status cau_dds_create(cau_dds **dds, const cau_config *config, cau_hub *hub, cau_error *error);
 cau_status cau_dds_start(cau_dds *dds, cau_error *error);
+// Reads the file of dds_roles anew; on failure roles stay as they were, and the error says which
+// line is wrong. Clients whose role is less than it was lose their tools, energy off, and go on
+// with what they are now. Any thread.
+cau_status cau_dds_reload(cau_dds *dds, cau_error *error);
 // Ends the thread and closes everything on the wire; sessions may go on. Takes NULL.
 void cau_dds_stop(cau_dds *dds);
 // Its part of /metrics; `dds` is the transport. Any thread.

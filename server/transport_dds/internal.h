@@ -257,13 +257,15 @@ struct cau_dds {
 	dds_entity_t domain, participant, subscriber, publisher; // of the default partition
 	dds_entity_t topics[TOPIC_COUNT];
 	cau_dds_roles roles;
+	cau_dds_roles *roles_read; // mutex: to be taken over; NULL: nothing new
 	dds_entity_t control_subscriber, control_publisher, reply_writer;
 	cau_door request;
 	cau_dds_request requests[REQUESTS_MOST];
 	dds_entity_t waitset, wake;
 	pthread_t thread;
 	bool started;
-	atomic_bool ending, sessions_changed, sliced, answered, fell_silent, peers_changed;
+	atomic_bool ending, roles_changed, sessions_changed, sliced, answered, fell_silent,
+		peers_changed;
 	cau_dds_bits marked, read; // sessions to be followed; sessions that somebody reads
 	pthread_mutex_t mutex;     // guards the posts and who fell silent
 	cau_dds_post *first, *last;
@@ -385,6 +387,12 @@ cau_dds_hand *cau_dds_take_hand(cau_dds *dds, cau_dds_writer *writer, cau_dds_se
                                 cau_dds_tool *tool, bool drives_now, cau_error *error);
 // The tool is gone.
 void cau_dds_drop_hands(cau_dds_tool *tool);
+
+// The client loses its place, energy off; its writers may ask for another.
+void cau_dds_end_place(cau_dds *dds, cau_dds_client *client);
+
+// ---- reload.c: takes over roles that were read anew
+void cau_dds_take_roles(cau_dds *dds);
 
 // ---- drive.c: orders
 cau_status cau_dds_check_role(const cau_dds_writer *writer, cau_error *error);

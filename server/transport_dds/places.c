@@ -164,11 +164,16 @@ static cau_dds_client *find_idle(cau_dds *dds, const cau_dds_writer *of)
 	return found;
 }
 
+void cau_dds_end_place(cau_dds *dds, cau_dds_client *client)
+{
+	cau_dds_forget_client(dds, client);
+	drop_client(dds, client);
+}
+
 static void evict(cau_dds *dds, cau_dds_client *client)
 {
 	dds->counts.evicted++;
-	cau_dds_forget_client(dds, client);
-	drop_client(dds, client);
+	cau_dds_end_place(dds, client);
 }
 
 static cau_status deny(cau_dds *dds, cau_dds_writer *writer, cau_error *error)

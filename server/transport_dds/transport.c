@@ -99,6 +99,8 @@ static void *run(void *argument)
 		dds->sliced = false;
 		if (atomic_exchange(&dds->sessions_changed, false))
 			cau_dds_list_sessions(dds);
+		if (atomic_exchange(&dds->roles_changed, false))
+			cau_dds_take_roles(dds);
 		if (atomic_exchange(&dds->fell_silent, false))
 			cau_dds_end_silenced(dds);
 		dds->answered = false;
@@ -249,5 +251,6 @@ void cau_dds_destroy(cau_dds *dds)
 	cau_dds_end_silenced(dds);
 	cau_dds_forget_peers(dds);
 	pthread_mutex_destroy(&dds->mutex);
+	free(dds->roles_read);
 	free(dds);
 }

@@ -206,6 +206,37 @@ test('an identity that was taken back is let in no more', async (t) => {
 	assert.notEqual((await controller(t, session, enclave('leaver', 'lists')).exited).code, 0);
 });
 
+// The daemon's own log line of the end of it.
+async function reload(text) {
+	const seen = daemon.lines.length;
+	rolesFile('roles', text);
+	daemon.process.kill('SIGHUP');
+	while (!daemon.lines.some((line, i) => i >= seen && /event=reloaded/.test(line)))
+		await new Promise((resolve) => daemon.waiters.push({ pattern: /event=reloaded/, resolve }));
+	return daemon.lines.slice(seen);
+}
+
+test('roles are read anew: who may no longer drive stops, energy off, and drives again once it may', async (t) => {
+	const usual = Object.entries(ROLES).map(([name, role]) => `${role} CN=${name},O=Cautery\n`).join('');
+	const seen = await watched(t, 'demoted');
+	const robot = controller(t, seen.session, enclave('worker'));
+	await drives(robot, seen);
+	const broken = await reload(`${usual}king CN=worker,O=Cautery\n`);
+	assert.match(broken.find((line) => /reload_failed/.test(line)), /setting=dds_roles .*line 4/);
+	assert.ok(seen.stream.tools[0].energized, 'a broken file changes nothing');
+	await reload(usual.replace('operate CN=worker', 'view CN=worker'));
+	await seen.client.until(() => !seen.stream.tools[0].energized && seen.stream.tools[0].driver === 0, 'it stops');
+	const refused = await daemon.metric('session_refused_total', seen.session);
+	while (await daemon.metric('session_refused_total', seen.session) < refused + 5)
+		await robot.ask('state');
+	assert.equal(seen.stream.tools[0].driver, 0);
+	robot.tell('energy 0');
+	await reload(usual);
+	await seen.client.until(() => seen.stream.tools[0].driver !== 0, 'it drives again');
+	robot.tell('energy 1');
+	await seen.client.until(() => seen.stream.tools[0].energized, 'energy on again');
+});
+
 test('the daemon says what is wrong with a file of roles, and does not start', () => {
 	const refuses = (text, reason) => {
 		const { status, stderr } = start('--dds-security', enclave('daemon'), '--dds-roles', rolesFile('wrong', text));

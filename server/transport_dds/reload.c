@@ -1,0 +1,66 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Roles of identities that change while the daemon runs: read by whoever tells it to, taken over by
+// the DDS thread, which alone looks at them.
+#include <stdio.h>
+#include <stdlib.h>
+
+#include "config/role.h"
+#include "transport_dds/internal.h"
+
+cau_status cau_dds_reload(cau_dds *dds, cau_error *error)
+{
+	cau_dds_roles *read = malloc(sizeof *read);
+	if (!read)
+		return cau_fail(error, CAU_NO_MEMORY, "dds_roles", "no memory for roles");
+	cau_status status = cau_dds_roles_read(read, dds->config, error);
+	if (status) {
+		if (error)
+			snprintf(error->file, sizeof error->file, "%.255s", dds->config->dds_roles);
+		free(read);
+		return status;
+	}
+	pthread_mutex_lock(&dds->mutex);
+	free(dds->roles_read); // of a moment ago, not taken yet
+	dds->roles_read = read;
+	pthread_mutex_unlock(&dds->mutex);
+	cau_dds_wake(dds, &dds->roles_changed);
+	return CAU_OK;
+}
+
+static cau_role role_of(const cau_dds *dds, const char *subject)
+{
+	return cau_dds_roles_find(&dds->roles, *subject ? subject : NULL);
+}
+
+// Whose role is less gives up its place, energy off, and asks for another with its next sample, as
+// what it is now. Whose role is more keeps it.
+static void follow_role(cau_dds *dds, cau_dds_client *client)
+{
+	cau_role role = role_of(dds, client->subject), before = client->asker.role;
+	if (role == before)
+		return;
+	cau_log(CAU_LOG_NOTICE, NULL, "dds_role_changed", "client=%u subject=\"%s\" before=%s role=%s",
+	        client->asker.client, client->subject, cau_role_word(before), cau_role_word(role));
+	client->asker.role = role;
+	if (role < before)
+		cau_dds_end_place(dds, client);
+}
+
+void cau_dds_take_roles(cau_dds *dds)
+{
+	pthread_mutex_lock(&dds->mutex);
+	cau_dds_roles *read = dds->roles_read;
+	dds->roles_read = NULL;
+	pthread_mutex_unlock(&dds->mutex);
+	if (!read)
+		return;
+	dds->roles = *read;
+	free(read);
+	for (int i = 0; i < WRITER_BUCKETS; i++)
+		for (cau_dds_writer *writer = dds->writers[i]; writer; writer = writer->next)
+			writer->asker.role = role_of(dds, writer->subject);
+	for (cau_dds_client *client = dds->clients, *next; client; client = next) {
+		next = client->next;
+		follow_role(dds, client);
+	}
+}
