@@ -209,7 +209,7 @@ static void describe(const cau_order *order, cau_asked *asked)
 	*asked = (cau_asked){.ticket = (uintptr_t)order,
 	                     .ask = ask_of(order),
 	                     .asker = order->asker,
-	                     .numbered = order->client_sequence != 0};
+	                     .numbered = order->client_sequence && !order->motion};
 	name_tool(order, asked);
 	if (asked->ask == CAU_ASK_ENERGY_ON || asked->ask == CAU_ASK_ENERGY_OFF)
 		asked->tick = order->as.command.tick;

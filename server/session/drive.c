@@ -30,11 +30,8 @@ const cau_drive *cau_logic_drive(const cau_logic *logic, const char *tool)
 
 // ---- cuts ---------------------------------------------------------------------------------------
 
-void cau_drive_cut(cau_drive *drive, uint64_t moment, int energy_off, const char *cause,
-                   cau_effects *effects)
+static void go_dark(cau_drive *drive, int energy_off, const char *cause, cau_effects *effects)
 {
-	if (moment > drive->cut_moment)
-		drive->cut_moment = moment;
 	drive->cut_off = energy_off;
 	drive->by_order = false;
 	snprintf(drive->cut_cause, sizeof drive->cut_cause, "%s", cause);
@@ -50,6 +47,14 @@ void cau_drive_cut(cau_drive *drive, uint64_t moment, int energy_off, const char
 	cau_effect_tell(effects, drive);
 }
 
+void cau_drive_cut(cau_drive *drive, uint64_t moment, int energy_off, const char *cause,
+                   cau_effects *effects)
+{
+	if (moment > drive->cut_moment)
+		drive->cut_moment = moment;
+	go_dark(drive, energy_off, cause, effects);
+}
+
 void cau_drive_cut_lit(cau_logic *logic, uint64_t moment, int energy_off, const char *cause,
                        cau_effects *effects)
 {
@@ -57,10 +62,13 @@ void cau_drive_cut_lit(cau_logic *logic, uint64_t moment, int energy_off, const 
 		cau_drive_cut(&logic->drives[i], moment, energy_off, cause, effects);
 }
 
-// A tool whose driver is lost stays where it is, lit or not.
+// A tool whose driver is lost stays where it is, lit or not. What another asked for who drives it
+// next still counts.
 static void cut_lost(cau_logic *logic, cau_drive *drive, const char *cause, cau_effects *effects)
 {
-	cau_drive_cut(drive, logic->moment, CAU_ENERGY_OFF_WATCHDOG, cause, effects);
+	drive->lost_moment = logic->moment;
+	drive->lost_client = drive->driver.client;
+	go_dark(drive, CAU_ENERGY_OFF_WATCHDOG, cause, effects);
 	drive->freeze = true;
 	cau_effect_wake(effects);
 }
@@ -190,6 +198,14 @@ static bool refuse_stranger(const cau_drive *drive, cau_action *action)
 	return refuse(action, CAU_BAD_STATE, CAU_RPC_NOT_DRIVER, reason);
 }
 
+// Whether nothing that came in after the order darkens what it lights.
+static bool counts(const cau_drive *drive, const cau_waiting *order)
+{
+	bool lost = order->asked.asker.client == drive->lost_client;
+	return !order->cut_moment && order->moment > drive->cut_moment &&
+	       !(lost && order->moment <= drive->lost_moment);
+}
+
 static bool allows_enable(const cau_logic *logic, const cau_drive *drive, const cau_waiting *order,
                           cau_action *action)
 {
@@ -201,8 +217,8 @@ static bool allows_enable(const cau_logic *logic, const cau_drive *drive, const 
 	}
 	// One that is followed by its own off is taken, so that both are answered and logged in order;
 	// it enables nothing, and the off follows it into the core before a tick begins.
-	bool overtaken = order->moment <= drive->cut_moment && !drive->by_order;
-	if (order->cut_moment || overtaken) {
+	bool off_follows = drive->by_order && !order->cut_moment;
+	if (!counts(drive, order) && !off_follows) {
 		snprintf(reason, sizeof reason, "its energy was cut after this was asked: %s",
 		         *drive->cut_cause ? drive->cut_cause : "its driver was away");
 		return refuse(action, CAU_BAD_STATE, 0, reason);
@@ -261,7 +277,8 @@ bool cau_drive_change(cau_drive *drive, const cau_waiting *order, const cau_aske
 	if (drive->lit)
 		return false;
 	drive->driver = *to;
-	drive->alive_s = order->alive_s;
+	// Who is handed a tool has given no sign of life for it yet.
+	drive->alive_s = to->client == order->asked.asker.client ? order->alive_s : 0;
 	cau_effect_tell(effects, drive);
 	return true;
 }
@@ -270,9 +287,8 @@ void cau_drive_enabled(cau_drive *drive, const cau_waiting *order, cau_effects *
 {
 	drive->lit = true;
 	drive->alive_s = fmax(drive->alive_s, order->alive_s);
-	bool counts = !order->cut_moment && order->moment > drive->cut_moment &&
-	              drive->driver.client == order->asked.asker.client;
-	if (!counts || drive->enabled)
+	bool drives = drive->driver.client == order->asked.asker.client;
+	if (!drives || !counts(drive, order) || drive->enabled)
 		return; // cut while the core took it: the cut is the worker's next act
 	drive->enabled = true;
 	drive->frozen = drive->freeze = false;
@@ -288,7 +304,7 @@ void cau_drive_add(cau_logic *logic, const cau_waiting *order)
 	*made = (cau_drive){.alive_s = order->alive_s,
 	                    .energy_off = CAU_ENERGY_OFF_NEVER_ENABLED,
 	                    .cut_off = CAU_ENERGY_OFF_NEVER_ENABLED,
-	                    .cut_moment = order->cut_moment};
+	                    .cut_moment = order->off_moment};
 	memcpy(made->tool, order->asked.tool, sizeof made->tool);
 	if (!order->gone)
 		made->driver = order->asked.asker;

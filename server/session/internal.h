@@ -43,7 +43,7 @@ void cau_drive_remove(cau_logic *logic, const char *tool);
 
 // ---- queue.c
 void cau_queue_take(cau_logic *logic, const cau_asked *asked, cau_effects *effects);
-void cau_queue_alive(cau_logic *logic, uint32_t client, double time_s);
+void cau_queue_alive(cau_logic *logic, uint32_t client, const char *tool, double time_s);
 void cau_queue_cut(cau_logic *logic, uint32_t client); // its enables do not count any more
 void cau_queue_forget(cau_logic *logic, uint32_t client);
 void cau_queue_committed(cau_logic *logic, cau_effects *effects);

@@ -25,6 +25,12 @@ void cau_logic_init(cau_logic *logic, int32_t capacity)
 
 // ---- events -------------------------------------------------------------------------------------
 
+static void take_life(cau_logic *logic, uint32_t client, const char *tool, double time_s)
+{
+	cau_drive_alive(logic, client, tool, time_s);
+	cau_queue_alive(logic, client, tool, time_s);
+}
+
 static void take_store(cau_logic *logic, const cau_logic_event *event, cau_effects *effects)
 {
 	logic->store_takes = event->store_takes;
@@ -65,11 +71,12 @@ void cau_logic_take(cau_logic *logic, const cau_logic_event *event, cau_effects 
 	logic->now_s = fmax(logic->now_s, event->time_s);
 	switch (event->kind) {
 	case CAU_LOGIC_ORDER:
+		if (*event->asked->tool) // any message about a tool is a sign of life
+			take_life(logic, event->asked->asker.client, event->asked->tool, event->time_s);
 		cau_queue_take(logic, event->asked, effects);
 		break;
 	case CAU_LOGIC_ALIVE:
-		cau_drive_alive(logic, event->client, tool, event->time_s);
-		cau_queue_alive(logic, event->client, event->time_s);
+		take_life(logic, event->client, tool, event->time_s);
 		break;
 	case CAU_LOGIC_AWAY:
 		cau_drive_cut_client(logic, event->client, cause, effects);
@@ -267,12 +274,12 @@ static bool next_end_of_steps(cau_logic *logic, cau_action *action)
 // An order to pause that found no room and was answered when it came.
 static bool next_wanted_pause(cau_logic *logic, cau_action *action, cau_effects *effects)
 {
-	const cau_waiting wanted = {.moment = logic->moment};
-	if (!logic->pause_wanted)
+	const cau_waiting wanted = {.moment = logic->pause_moment};
+	if (!logic->pause_moment)
 		return false;
 	action->act = CAU_ACT_PAUSE;
 	if (pause(logic, &wanted, action, effects))
-		logic->pause_wanted = false;
+		logic->pause_moment = 0;
 	return true;
 }
 
@@ -392,7 +399,7 @@ double cau_logic_due_s(const cau_logic *logic)
 		return INFINITY;
 	if (logic->going || logic->state == CAU_SESSION_STARTING)
 		return 0;
-	if (logic->pause_wanted || cau_drive_is_to_cut(logic) || cau_queue_is_due(logic))
+	if (logic->pause_moment || cau_drive_is_to_cut(logic) || cau_queue_is_due(logic))
 		return 0;
 	return cau_time_due_s(logic);
 }

@@ -61,7 +61,7 @@ typedef struct cau_asked {
 	cau_asker to;              // HAND_OVER; client 0: nobody
 	char tool[CAU_NAME_BYTES]; // "" if it is about none
 	uint64_t tick;             // ENERGY_ON, OFF: wanted at this tick border; 0: the next one
-	bool numbered;             // it may be a resend of one that was answered
+	bool numbered;             // it may be a resend of one that was answered; never MOTION
 	int64_t ticks;             // STEP
 	double speed;              // SPEED: simulated over wall time
 } cau_asked;
@@ -70,7 +70,8 @@ typedef struct cau_asked {
 typedef struct cau_waiting {
 	cau_asked asked;
 	uint64_t moment;     // of its coming in
-	uint64_t cut_moment; // newest event since that keeps its asker from enabling; 0: none
+	uint64_t cut_moment; // its asker was lost since: an enable does not count; 0: no
+	uint64_t off_moment; // TOOL_ADD: the newest order since to turn the coming tool off; 0: none
 	double alive_s;      // its asker's newest sign of life
 	bool gone, to_gone;  // the asker, or the one it hands over to, will not come back
 	bool looked;         // it is no resend
@@ -84,15 +85,17 @@ enum { CAU_CAUSE_BYTES = 40 };
 // A tool and who drives it.
 typedef struct cau_drive {
 	char tool[CAU_NAME_BYTES];
-	cau_asker driver; // client 0: nobody
-	double alive_s;   // the driver's last sign of life
-	bool enabled;     // its newest event about energy is an enable that counts
-	bool lit;         // the core was told to heat it
-	bool freeze;      // the tool is to stay where it is, from the next border on
-	bool frozen;      // and does, until its driver moves it
-	bool by_order;    // the newest cut is an order of the queue, which tells the core itself
-	int energy_off;   // CAU_ENERGY_OFF_*: why it is dark; meaningless while enabled
-	uint64_t cut_moment;
+	cau_asker driver;     // client 0: nobody
+	double alive_s;       // the driver's last sign of life
+	bool enabled;         // its newest event about energy is an enable that counts
+	bool lit;             // the core was told to heat it
+	bool freeze;          // the tool is to stay where it is, from the next border on
+	bool frozen;          // and does, until its driver moves it
+	bool by_order;        // the newest cut is an order of the queue, which tells the core itself
+	int energy_off;       // CAU_ENERGY_OFF_*: why it is dark; meaningless while enabled
+	uint64_t cut_moment;  // no enable counts that came before
+	uint64_t lost_moment; // none of this client does that came before
+	uint32_t lost_client;
 	int cut_off; // the newest cut's CAU_ENERGY_OFF_*
 	char cut_cause[CAU_CAUSE_BYTES];
 } cau_drive;
@@ -198,7 +201,8 @@ typedef struct cau_logic {
 	// time
 	int state;  // CAU_SESSION_*
 	bool going; // elsewhere in time: orders wait
-	bool pause_wanted, draining, ended;
+	bool draining, ended;
+	uint64_t pause_moment; // of an order to pause that found no room; 0: none
 	uint64_t tick;
 	double step_s, speed, next_step_s;
 	int64_t steps_left;

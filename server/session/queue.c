@@ -78,13 +78,18 @@ bool cau_queue_is_due(const cau_logic *logic)
 
 // ---- what concerns those that wait --------------------------------------------------------------
 
-void cau_queue_alive(cau_logic *logic, uint32_t client, double time_s)
+static void bring_to_life(cau_waiting *order, uint32_t client, const char *tool, double time_s)
+{
+	bool its_own = order->asked.asker.client == client;
+	if (its_own && (!*tool || strcmp(order->asked.tool, tool) == 0))
+		order->alive_s = fmax(order->alive_s, time_s);
+}
+
+void cau_queue_alive(cau_logic *logic, uint32_t client, const char *tool, double time_s)
 {
 	for (int32_t i = 0; i < logic->count; i++)
-		if (logic->waiting[i].asked.asker.client == client)
-			logic->waiting[i].alive_s = fmax(logic->waiting[i].alive_s, time_s);
-	if (logic->serving.asked.asker.client == client)
-		logic->serving.alive_s = fmax(logic->serving.alive_s, time_s);
+		bring_to_life(&logic->waiting[i], client, tool, time_s);
+	bring_to_life(&logic->serving, client, tool, time_s);
 }
 
 static void cut_order(cau_logic *logic, cau_waiting *order, uint32_t client)
@@ -117,7 +122,7 @@ void cau_queue_forget(cau_logic *logic, uint32_t client)
 static void cut_coming(cau_logic *logic, cau_waiting *order, const char *tool)
 {
 	if (order->asked.ask == CAU_ASK_TOOL_ADD && strcmp(order->asked.tool, tool) == 0)
-		order->cut_moment = logic->moment;
+		order->off_moment = logic->moment;
 }
 
 void cau_queue_committed(cau_logic *logic, cau_effects *effects)
@@ -173,7 +178,7 @@ static void turn_off(cau_logic *logic, const cau_asked *asked, bool queued, cau_
 static bool take_without_room(cau_logic *logic, const cau_asked *asked, cau_effects *effects)
 {
 	if (asked->ask == CAU_ASK_PAUSE)
-		logic->pause_wanted = true;
+		logic->pause_moment = logic->moment;
 	else if (asked->ask != CAU_ASK_ENERGY_OFF)
 		return false;
 	cau_effect_add(effects, CAU_EFFECT_UNSTORED, asked->ticket);

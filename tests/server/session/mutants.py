@@ -1,0 +1,97 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Takes out each rule of a session's decisions, one at a time, and sees the property test fail.
+
+Usage: mutants.py SOURCE_FOLDER COMPILER
+A mutant is a piece of the source and what stands in its place. One that the test lets pass, or whose
+piece is not in the source any more, is a failure of this test.
+"""
+
+import os
+import shutil
+import subprocess
+import sys
+import tempfile
+
+ROOM = "server/session"
+SEQUENCES = "400000"  # the rarest of these is found within a tenth of them
+
+MUTANTS = (
+    ("an enable takes back a cut", "drive.c",
+     "\tif (!drives || !counts(drive, order) || drive->enabled)",
+     "\tif (!drives || drive->enabled)"),
+    ("an enable that a cut has overtaken is taken and enables", "drive.c",
+     "\treturn !order->cut_moment && order->moment > drive->cut_moment &&",
+     "\treturn !order->cut_moment &&"),
+    ("looking away does not reach what waits", "logic.c",
+     "\t\tcau_drive_cut_client(logic, event->client, cause, effects);\n\t\tcau_queue_cut(logic, event->client);",
+     "\t\tcau_drive_cut_client(logic, event->client, cause, effects);"),
+    ("looking away does not darken", "logic.c",
+     "\t\tcau_drive_cut_client(logic, event->client, cause, effects);", ""),
+    ("the watchdog sees no silence", "drive.c",
+     "if (drive->enabled && silent_from_s(drive) <= now_s)", "if (drive->enabled && false)"),
+    ("a silent driver enables", "drive.c",
+     "\tif (alive_s + drive->driver.deadline_s <= logic->now_s)", "\tif (false)"),
+    ("a stranger enables", "drive.c",
+     "\t\treturn drives ? allows_enable(logic, drive, order, action) : refuse_stranger(drive, action);",
+     "\t\treturn allows_enable(logic, drive, order, action);"),
+    ("anybody takes over", "drive.c",
+     "asked->asker.role == CAU_ROLE_ADMIN)\n\t\treturn true;", "true)\n\t\treturn true;"),
+    ("a tool changes hands lit", "drive.c", "\tif (drive->lit)\n\t\treturn false;\n", ""),
+    ("a tick begins before the core is told", "logic.c",
+     "\tcau_drive_cut_silent(logic, now_s, effects);\n\tif (cau_drive_next_cut(logic, true, action))\n\t\treturn true;\n",
+     ""),
+    ("a tick begins while a pause waits", "logic.c", "\tif (waits) {", "\tif (false && waits) {"),
+    ("off waits in the queue", "queue.c", "\t\tturn_off(logic, asked, !status, effects);", "\t\t;"),
+    ("off is refused where there is no room", "queue.c",
+     "\tif (status && take_without_room(logic, asked, effects))\n\t\treturn;\n", ""),
+    ("a full store leaves tools lit", "logic.c", "\tif (!event->store_takes)", "\tif (false)"),
+    ("a pause leaves tools lit", "logic.c",
+     "\tcau_drive_cut_lit(logic, order->moment, CAU_ENERGY_OFF_COMMANDED, \"paused\", effects);", ""),
+    ("what was gone to comes up lit", "drive.c",
+     "\t\tmade->enabled = made->frozen = made->by_order = false;",
+     "\t\tmade->enabled = event->tools[i].lit; made->frozen = made->by_order = false;"),
+    ("the gone drive on", "drive.c", "\t\tdrive->driver = (cau_asker){0};", ""),
+    ("a resend is answered and done", "logic.c",
+     "\telse\n\t\tcau_queue_remove(logic, order);", "\telse\n\t\torder->looked = true;"),
+)
+
+
+def build(folder, root, compiler):
+    sources = [os.path.join(folder, name) for name in sorted(os.listdir(folder)) if name.endswith(".c")]
+    tests = [os.path.join(root, "tests", ROOM, name) for name in ("logic_test.c", "world.c")]
+    program = os.path.join(folder, "mutant")
+    subprocess.run(
+        [compiler, "-O1", "-DNDEBUG", "-D_GNU_SOURCE", "-std=gnu17",
+         "-I" + os.path.dirname(os.path.dirname(folder)) + "/server", "-I" + root + "/core/types",
+         "-I" + root + "/protocol/include", "-I" + root + "/tests", *tests, *sources, "-lm", "-o", program],
+        check=True)
+    return program
+
+
+def survives(root, compiler, mutant):
+    _, name, piece, instead = mutant
+    with tempfile.TemporaryDirectory() as top:
+        folder = os.path.join(top, ROOM)
+        shutil.copytree(os.path.join(root, ROOM), folder)
+        path = os.path.join(folder, name)
+        with open(path, encoding="utf-8") as file:
+            text = file.read()
+        if text.count(piece) != 1:
+            print(f"not in {name} once: {piece!r}")
+            return True
+        with open(path, "w", encoding="utf-8") as file:
+            file.write(text.replace(piece, instead))
+        done = subprocess.run([build(folder, root, compiler), SEQUENCES], capture_output=True, check=False)
+        return done.returncode == 0
+
+
+def main(root, compiler):
+    lived = [mutant[0] for mutant in MUTANTS if survives(root, compiler, mutant)]
+    for name in lived:
+        print(f"nobody noticed: {name}")
+    print(f"{len(MUTANTS) - len(lived)} of {len(MUTANTS)} mutants were noticed")
+    sys.exit(1 if lived else 0)
+
+
+if __name__ == "__main__":
+    main(*sys.argv[1:])

@@ -1,0 +1,68 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// A session's decisions in a world of two tools and three clients: bytes become events, acts and
+// what comes of them, in any interleaving, and after each an oracle is asked whether what happened
+// may happen. The oracle is written from protocol/README.md ("Roles and driving") and keeps its own
+// books; it looks at what the worker is told to do and never into the machine.
+#pragma once
+
+#include <stdbool.h>
+#include <stddef.h>
+#include <stdint.h>
+#include <stdio.h>
+
+#include "session/logic.h"
+
+enum {
+	TOOLS = 2,
+	CLIENTS = 3, // 1 and 2 may operate, 3 is an admin
+	QUEUE = 6,
+	TICKETS = 256,
+};
+
+// What the oracle knows of a tool.
+typedef struct tool_book {
+	bool there, lit; // in the core
+	int driver;      // client; 0: nobody
+	double deadline_s;
+	uint64_t dark;   // coming in of the newest thing that darkens it
+	uint64_t enable; // coming in of the newest enable that the core took
+	int enabler;
+	double alive_s[CLIENTS + 1];
+} tool_book;
+
+typedef struct ticket_book {
+	uint64_t came; // 0: there is none
+	cau_asked asked;
+	int answers;
+	bool kept; // it was not refused when it came in
+} ticket_book;
+
+typedef struct world {
+	cau_logic *logic;
+	cau_action action; // the worker's, until it is done
+	cau_effects effects;
+	double now_s;
+	uint64_t came; // counts what comes in
+	uint64_t away[CLIENTS + 1], gone[CLIENTS + 1];
+	uint64_t paused; // coming in of the newest pause that found no room
+	uint64_t no_store;
+	bool store_takes, working, going, ended;
+	uint64_t tick, going_since;
+	int state;
+	tool_book tools[TOOLS];
+	ticket_book tickets[TICKETS];
+	int ticket_count;
+	uint64_t steps, lit_steps; // how much was seen
+	FILE *script;              // the events in words, or NULL
+	char wrong[200];           // "": nothing
+} world;
+
+world *world_create(void);
+void world_destroy(world *w);
+// As new.
+void world_begin(world *w);
+// Does what `code` means here; does nothing where it means nothing. False: w->wrong says what is
+// wrong.
+bool world_do(world *w, uint32_t code);
+// The session ends, and each order must have had its one answer.
+bool world_end(world *w);
