@@ -4,9 +4,12 @@
 import json
 import os
 import signal
+import socket
 import subprocess
+import threading
 import time
 import unittest
+import urllib.parse
 
 import programs
 
@@ -241,6 +244,48 @@ class Ends(programs.Case):
         self.cautery("ls", "--token", "watcher-token-0123456789", url=daemon.url)
         self.cautery("create", "fascia", "--token", "watcher-token-0123456789", url=daemon.url, code=1)
         self.cautery("create", "fascia", "--token", "master-token-0123456789", url=daemon.url)
+
+
+def pass_on(listening, port):
+    """Passes each connection's request on to the daemon at `port` and its answer back."""
+    while True:
+        try:
+            client, _ = listening.accept()
+        except OSError:
+            return  # closed: the test is over
+        with client, socket.create_connection(("127.0.0.1", port)) as daemon:
+            daemon.sendall(client.recv(65536))
+            for part in iter(lambda: daemon.recv(65536), b""):
+                client.sendall(part)
+
+
+class Refusals(programs.Case):
+    def test_a_refused_handshake_is_shown_with_its_reason(self):
+        # By another port than its own the daemon is not what the Host header names.
+        listening = socket.create_server(("127.0.0.1", 0))
+        self.addCleanup(listening.close)
+        self.addCleanup(listening.shutdown, socket.SHUT_RDWR)
+        port = urllib.parse.urlsplit(self.daemon.url).port
+        threading.Thread(target=pass_on, args=(listening, port), daemon=True).start()
+        url = f"ws://127.0.0.1:{listening.getsockname()[1]}"
+        told = r"it answered HTTP 421: the Host header does not name this daemon \(setting hosts\)"
+        self.assertRegex(self.cautery("ls", url=url, code=3)[1], told)
+        self.assertRegex(self.json("ls", url=url, code=3)["error"]["reason"], told)
+        self.assertRegex(self.program("cautery-load", "--seconds", 1, url=url, code=3)[1], told)
+
+    def test_who_finds_no_room_is_told(self):
+        daemon = programs.Daemon(max_connections=1)
+        self.addCleanup(daemon.stop)
+        self.cautery("create", "fascia", "--name", "full", url=daemon.url)
+        watching = subprocess.Popen([os.path.join(programs.PROGRAMS, "cautery"), "watch", "d1-full",
+                                     "--url", daemon.url], stdout=subprocess.PIPE, text=True)
+        self.addCleanup(watching.stdout.close)
+        self.addCleanup(watching.wait)
+        self.addCleanup(watching.kill)
+        watching.stdout.readline()  # it is connected
+        # The code is not looked at: libwebsockets makes 1002 of 1013, which it does not know.
+        self.assertRegex(self.cautery("ls", url=daemon.url, code=3)[1],
+                         r"too many connections \(setting max_connections\)")
 
 
 class Load(programs.Case):
