@@ -143,9 +143,8 @@ static cau_status draw(lesson *l, const double from_m[3], const double to_m[3], 
 
 // A tool has one driver. Nobody drives those of a new session: whoever asks first gets it.
 //
-//     --> {"jsonrpc": "2.0", "id": 3, "method": "tool.take_over", "params": {"session":
-//     "d1-lesson",
-//          "client_sequence": 2, "tool": "hook"}}
+//     --> {"jsonrpc": "2.0", "id": 3, "method": "tool.take_over",
+//          "params": {"session": "d1-lesson", "client_sequence": 2, "tool": "hook"}}
 static cau_status take_tool(lesson *l, cau_error *error)
 {
 	cau_wire_tool_ref params = {.has_session = true, .has_client_sequence = true};
@@ -203,8 +202,8 @@ static cau_status create_session(lesson *l, cau_error *error)
 	return CAU_OK;
 }
 
-//     --> {"jsonrpc": "2.0", "id": 2, "method": "session.join", "params": {"session":
-//     "d1-fascia-1"}}
+//     --> {"jsonrpc": "2.0", "id": 2, "method": "session.join",
+//          "params": {"session": "d1-fascia-1"}}
 //     <-- {"jsonrpc": "2.0", "id": 2, "result": {"session_number": 1, "vertex_count": 3111,
 //          "step_m": 5e-05, "origin_m": [...], ...}}
 //     <-- binary: the topology (once), a key frame, then deltas

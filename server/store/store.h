@@ -4,13 +4,13 @@
 //
 //     cau_store_config config = cau_store_default_config();
 //     config.path = "/var/lib/cautery/store.db";
-//     if (cau_store_open(&config, &store, &error)) ...            // refuses what is not ours,
-//     untouched cau_store_batch *batch = cau_store_batch_create(); cau_store_put_command(batch,
-//     &command, &error);             // copies if (cau_store_submit(store, batch, on_stored, me,
-//     &error))  // any thread, never waits for the disk
-//         cau_store_batch_destroy(batch);                         // refused: still ours
+//     if (cau_store_open(&config, &store, &error)) ...       // what is not ours is left untouched
+//     cau_store_batch *batch = cau_store_batch_create();
+//     cau_store_put_command(batch, &command, &error);        // copies
+//     if (cau_store_submit(store, batch, on_stored, me, &error)) // any thread, waits for no disk
+//         cau_store_batch_destroy(batch);                    // refused: still ours
 //     ...
-//     cau_store_close(store);                                     // drains
+//     cau_store_close(store);                                // drains
 //
 // Ticks. A checkpoint at tick T is the state at tick T. A command logged at tick T acts between the
 // states at T and T + 1. So the state at T is: the newest checkpoint at C <= T, then the commands

@@ -60,6 +60,14 @@ class TextRules(Tree):
         for path in ("/wo" "rk/main", "/ro" "ot/.ssh", "/home/" "ann/src"):
             self.assertEqual(len(self.found("a.md", f"in {path}\n")), 1, path)
 
+    def test_cited_pages(self):
+        pages = {"core/README.md", "protocol/idl/README.md"}
+        for cited, missing in (("core/README.md, \"Contact\"", 0), ("README.md says", 0), ("physics.md, 4", 1),
+                               ("protocol/idl/README.md", 0), ("protocol/README.md", 1),
+                               ("https://example.org/a.md", 0)):
+            found = text_rules.missing_pages("core/tool/a.c", f"// as {cited}\n", pages)
+            self.assertEqual(len(found), missing, cited)
+
     def test_registry_hosts(self):
         self.assertEqual(len(self.found("package-lock.json", "https://registry.np" "mjs.org/x")), 1)
 
@@ -71,6 +79,18 @@ class Formatting(Tree):
         for text, same in (("int a;\n", True), ("int   a ;\n", False)):
             self.write("a.c", text)
             self.assertEqual(formatting.violations(self.root, ["a.c"]) == [], same)
+
+    def test_tables_in_comments_are_kept_and_prose_is_filled(self):
+        ours = os.path.join(os.path.dirname(__file__), "..", "..", ".clang-format")
+        shutil.copy(ours, os.path.join(self.root, ".clang-format"))
+        table = f"//     tool.move  {'tool ' * 20}\n//     tool.grasp  tool\n".replace(" \n", "\n")
+        for text in (table, table.replace("    ", "  ")):
+            self.write("a.c", text + "int a;\n")
+            self.assertEqual(formatting.violations(self.root, ["a.c"]), [])
+            self.assertEqual(len(formatting.all_wide_examples(self.root, ["a.c"])), 1)
+        self.write("a.c", f"// {'prose ' * 20}end.\nint a;\n")
+        self.assertEqual(len(formatting.violations(self.root, ["a.c"])), 1)
+        self.assertEqual(formatting.wide_examples("a.c", "//     short  line\n"), [])
 
 
 class Includes(Tree):

@@ -12,8 +12,7 @@
 //     aim X Y Z      m: goes there at 0.2 m/s        energy 0|1       the level it writes
 //     grasp 0|1      the level it writes             write on|off     silent, but alive
 //     once WHAT      one bad sample: nan infinite back huge stale leap session; or a good one:
-//     lift,
-//                    1 mm higher
+//                    lift, 1 mm higher
 //     flood COUNT    so many NaN samples at once     storm RATE       so many bad samples a second
 //     strangers COUNT  so many samples, each of another made-up tool or session
 //     state          prints the newest tool state, soon

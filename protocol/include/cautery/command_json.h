@@ -7,9 +7,12 @@
 // Members beside "command", "tick" (0: at once) and "sequence" (0), by command:
 //     tool.add         name, shape, and what else a scene's tool may have
 //     tool.remove      tool
-//     tool.configure   tool, shape, sizes as in a scene's tool: replaces them all, defaults where
-//     absent tool.move        tool, position_m, rotation, jaw (0) tool.energize    tool, energized
-//     (true or false) tool.grasp       tool tool.release     tool pin, unpin       selection
+//     tool.configure   tool, shape, sizes as in a scene's tool: replaces all, defaults where absent
+//     tool.move        tool, position_m, rotation, jaw (0)
+//     tool.energize    tool, energized (true or false)
+//     tool.grasp       tool
+//     tool.release     tool
+//     pin, unpin       selection
 //     material.set     layer, kind (the layer's), region (0), and the members of such a material
 //     gravity.set      gravity_m_s2
 //     force.set        selection, force_n

@@ -7,9 +7,9 @@
 //     cau_frame_encoder *encoder;
 //     cau_frame_encoder_init(malloc(bytes), bytes, &def, random_epoch, &encoder, &error);
 //     each due tick:
-//         cau_frame_encode(encoder, &sample, buffer, capacity, &count, &error);  // to the
-//         subscribers if (someone joined or lost a frame)
-//             cau_frame_encode_key(encoder, buffer, capacity, &count, &error);   // to those
+//         cau_frame_encode(encoder, &sample, buffer, capacity, &count, &error); // to all
+//         if (someone joined or lost a frame)
+//             cau_frame_encode_key(encoder, buffer, capacity, &count, &error);  // to those
 //
 // The encoder keeps what every decoder in step with it holds, in whole steps, so that errors never
 // add up: the key frame at n makes the same state as the chain of deltas up to n.
@@ -143,8 +143,7 @@ cau_status cau_frame_decoder_init(void *storage, size_t storage_bytes, const cau
 //                    is held (path names the field). The state is kept as it was.
 //   CAU_UNSUPPORTED  another version. The state is kept.
 //   CAU_CORRUPT      truncated, indices out of range, damaged sections. If the header was sound,
-//   the
-//                    state is lost (synced is false) until the next key frame.
+//                    the state is lost (synced is false) until the next key frame.
 cau_status cau_frame_decode(cau_frame_decoder *decoder, const void *bytes, size_t byte_count,
                             cau_error *error);
 

@@ -4,8 +4,10 @@
 //
 //     cau_rpc_message message;
 //     cau_rpc_fault fault;
-//     if (cau_rpc_read(text, bytes, limit, &message, &fault)) -> answer cau_rpc_write_error, if it
-//     asks switch (message.method) { case CAU_METHOD_SESSION_STEP: {
+//     if (cau_rpc_read(text, bytes, limit, &message, &fault))
+//         ...                                  // cau_rpc_write_error, if it asks for an answer
+//     switch (message.method) {
+//     case CAU_METHOD_SESSION_STEP: {
 //         cau_wire_session_step params = {0};
 //         status = cau_rpc_params(&message, &params, &error);
 //     ...

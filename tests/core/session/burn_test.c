@@ -167,7 +167,7 @@ static void fascia_parts_after_2_35_s(void **state)
 {
 	(void)state;
 	cut_run run = cut(stage_scene_named("fascia"), 0);
-	expect_parting_after(&run, 160 / (0.4 * 170)); // delta / (xi T), physics.md section 5
+	expect_parting_after(&run, 160 / (0.4 * 170)); // delta / (xi T), eq. 20
 	finish(&run);
 }
 

@@ -1,14 +1,16 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// After any sequence of cuts (physics.md, section 10): the books agree with a recount, the system
-// with a reassembly; what hangs on nothing is frozen, what is held stays held, what is free falls.
+// After any sequence of cuts (core/README.md, "What must hold, whatever the speed"): the books
+// agree with a recount, the system with a reassembly; what hangs on nothing is frozen, what is held
+// stays held, what is free falls.
 #include "core/session/busy_scene.h"
 
 #include <stdio.h>
 
 #include "session/session_internal.h"
 
-static const double system_tolerance = 1e-10; // physics.md, section 10, or 1e-13 of the condition
-static const double condition_tolerance = 1e-13;
+// core/README.md, "What must hold, whatever the speed": whichever of the two is larger.
+static const double system_tolerance = 1e-10;
+static const double condition_tolerance = 1e-13; // of the condition
 // The most that waiting downdates may hold a falling strip back, of the way it has fallen.
 static const double fall_tolerance = 0.02;
 
@@ -236,7 +238,7 @@ static void assert_falls_alike(int fineness, int by_new_factor)
 	assert_true(fallen > 0.5);
 	assert_true(apart <= fall_tolerance * fallen);
 	assert_int_equal(a.statistics.deferred_max_s > 0, by_new_factor);
-	assert_true(a.statistics.deferred_max_s <= 0.05); // measures.md
+	assert_true(a.statistics.deferred_max_s <= 0.05); // core/README.md, "What a cut does"
 	cau_session_destroy(kept);
 	cau_session_destroy(fresh);
 	free(scene);

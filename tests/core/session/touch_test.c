@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Tools that touch (physics.md, section 7): nothing is inside them, friction keeps to its cone,
+// Tools that touch (core/README.md, "Contact"): nothing is inside them, friction keeps to its cone,
 // forces balance, jaws hold up to their slip force.
 #include "core/session/stage.h"
 
