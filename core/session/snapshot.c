@@ -4,7 +4,8 @@
 // A downdated factor differs in its last bits from a fresh one, so a snapshot holds what the factor
 // was made of: the live elements at the last canonical factorisation and the ordered updates since,
 // and likewise the factor in the making. A header with every count and a hash of the rest comes
-// first: a damaged snapshot is refused before anything is touched.
+// first: a damaged snapshot is refused before anything is touched, and so is one whose counts are
+// not those of its bytes.
 #include <stdlib.h>
 #include <string.h>
 
@@ -12,7 +13,10 @@
 #include "session/snapshot_archive.h"
 
 static const char magic[8] = "CAUSNAP";
-enum { VERSION = 3 }; // elements by number; version 1, by slot, is still read
+enum {
+	VERSION = 3,       // elements by number; version 1, by slot, is still read
+	MOST_NODES = 4096, // along a heat grid's side: far more than a tool may have
+};
 
 typedef struct snapshot_header {
 	char magic[8];
@@ -243,6 +247,63 @@ static cau_status check_header(const cau_session *session, const snapshot_header
 	return CAU_OK;
 }
 
+// The counts of a header in place of the session's own, to walk over its payload. The arrays are
+// the session's: the walk only counts.
+static cau_session *imagine(const cau_session *session, const snapshot_header *header)
+{
+	cau_session *imagined = malloc(sizeof *imagined);
+	if (!imagined)
+		return NULL;
+	memcpy(imagined, session, sizeof *imagined);
+	imagined->command_count = header->command_count;
+	imagined->shrink.active_count = header->active_count;
+	imagined->contact.column_count = header->column_count;
+	imagined->contact.epoch = imagined->solver.factor_epoch;
+	imagined->update.waiting_count = header->waiting_count;
+	imagined->update.operation_count = header->operation_count;
+	return imagined;
+}
+
+// Each tool says how large its heat grid is, and so does the header.
+static cau_status check_tools(const snapshot_header *header, const unsigned char *payload,
+                              snapshot_archive *counted, cau_error *error)
+{
+	for (int32_t i = 0; i < header->tool_count; ++i) {
+		cau_tool_state state;
+		if (counted->at + sizeof state > counted->capacity)
+			return corrupt(error, "bytes are missing");
+		memcpy(&state, payload + counted->at, sizeof state);
+		double cells = state.definition.grid_cells; // a whole number of nodes is made of it
+		if (!(cells >= header->grid_nodes[i] && cells < header->grid_nodes[i] + 1.0))
+			return corrupt(error, "a heat grid has another size");
+		cau_tool tool = {.grid.nodes = header->grid_nodes[i]};
+		pass_tool(counted, &tool);
+	}
+	return CAU_OK;
+}
+
+// Whether the payload is what the header says, before anything of the session is touched.
+static cau_status check_payload(const cau_session *session, const snapshot_header *header,
+                                const unsigned char *payload, size_t payload_bytes,
+                                cau_error *error)
+{
+	snapshot_archive counted = {.capacity = payload_bytes, .version = header->version};
+	for (int32_t i = 0; i < header->tool_count; ++i)
+		if (header->grid_nodes[i] < 0 || header->grid_nodes[i] > MOST_NODES)
+			return corrupt(error, "a count is out of its range");
+	cau_session *imagined = imagine(session, header);
+	if (!imagined)
+		return cau_fail(error, CAU_NO_MEMORY, NULL, "no memory to restore");
+	counted.at = (size_t)session->tissue.vertex_count + (size_t)header->row_count * sizeof(int32_t);
+	cau_status status = check_tools(header, payload, &counted, error);
+	if (!status)
+		status = pass_state(&counted, imagined, error);
+	if (!status && counted.at != payload_bytes)
+		status = corrupt(error, "its counts are not those of its bytes");
+	free(imagined);
+	return status;
+}
+
 static cau_status restore_tools(cau_session *session, const snapshot_header *header,
                                 snapshot_archive *archive, cau_error *error)
 {
@@ -260,8 +321,6 @@ static cau_status restore_tools(cau_session *session, const snapshot_header *hea
 		if (status)
 			return status;
 		session->tool_count++;
-		if (tool->grid.nodes != header->grid_nodes[i])
-			return corrupt(error, "a heat grid has another size");
 		pass_tool(archive, tool);
 		cau_heat_grid_survey(&tool->grid);
 	}
@@ -356,6 +415,8 @@ cau_status cau_session_restore(cau_session *session, const void *bytes, size_t b
 	unsigned char *payload = (unsigned char *)(uintptr_t)bytes + sizeof header;
 	size_t payload_bytes = byte_count - sizeof header;
 	cau_status status = check_header(session, &header, payload, payload_bytes, error);
+	if (!status)
+		status = check_payload(session, &header, payload, payload_bytes, error);
 	if (status)
 		return status;
 	snapshot_archive archive = {

@@ -197,8 +197,9 @@ void cau_session_alive(const cau_session *session, const uint8_t **tetrahedron,
 size_t cau_session_snapshot_bytes(const cau_session *session); // an upper bound
 cau_status cau_session_snapshot(const cau_session *session, void *bytes, size_t capacity,
                                 size_t *byte_count, cau_error *error);
-// CAU_CORRUPT leaves the session as it was. *exact is false if another instruction set or build
-// wrote it.
+// CAU_CORRUPT: damaged, of another session or of another version; the session is as it was. After
+// another failure (CAU_NO_MEMORY, CAU_NUMERICAL) it may be half restored and is faulted then, until
+// a restore succeeds. *exact is false if another instruction set or build wrote the snapshot.
 cau_status cau_session_restore(cau_session *session, const void *bytes, size_t byte_count,
                                bool *exact, cau_error *error);
 

@@ -5,6 +5,7 @@
 
 #include <stdio.h>
 
+#include "base/hash.h"
 #include "session/session_internal.h"
 
 typedef struct unbroken_run {
@@ -231,6 +232,63 @@ static void damage_is_refused(void **state)
 	free(scene);
 }
 
+// A header whose counts are not those of its bytes, with a hash that is right: nothing but the
+// counts themselves can tell.
+static void forge(unsigned char *bytes, size_t count, size_t at, int32_t by)
+{
+	enum { HASH_AT = 48, PAYLOAD_BYTES_AT = 56 }; // as snapshot_header has them
+	int32_t value;
+	uint64_t payload_bytes, hash = 0;
+	memcpy(&value, bytes + at, sizeof value);
+	value += by;
+	memcpy(bytes + at, &value, sizeof value);
+	memcpy(&payload_bytes, bytes + PAYLOAD_BYTES_AT, sizeof payload_bytes);
+	memcpy(bytes + HASH_AT, &hash, sizeof hash);
+	size_t header_bytes = count - payload_bytes;
+	hash = cau_hash_bytes(cau_hash_bytes(CAU_HASH_START, bytes, header_bytes), bytes + header_bytes,
+	                      payload_bytes);
+	memcpy(bytes + HASH_AT, &hash, sizeof hash);
+}
+
+static void forged_counts_are_refused_and_change_nothing(void **state)
+{
+	(void)state;
+	static const struct {
+		size_t at;
+		const char *name;
+	} members[] = {{104, "row_count"},
+	               {108, "tool_count"},
+	               {112, "command_count"},
+	               {116, "active_count"},
+	               {120, "column_count"},
+	               {124, "waiting_count"},
+	               {128, "operation_count"},
+	               {164, "grid_nodes of the first"},
+	               {168, "grid_nodes of the second"}};
+	cau_scene_def *scene = busy_scene();
+	victim v = {.session = stage_open(scene, 1)};
+	busy_run(v.session, 30);
+	v.hash = cau_session_hash(v.session);
+	const stage_bytes *shot = &run->shot[50];
+	unsigned char *bytes = malloc(shot->count);
+	assert_non_null(bytes);
+	for (size_t i = 0; i < sizeof members / sizeof *members; ++i)
+		for (int32_t by = -1; by <= 1; by += 2) {
+			memcpy(bytes, shot->bytes, shot->count);
+			forge(bytes, shot->count, members[i].at, by);
+			expect_refusal(&v, bytes, shot->count, members[i].name, members[i].at);
+		}
+	// Only the counts were to blame.
+	memcpy(bytes, shot->bytes, shot->count);
+	forge(bytes, shot->count, 104, 0);
+	expect_the_same(v.session, 30, 40);
+	restore(v.session, &(stage_bytes){bytes, shot->count});
+	expect_the_same(v.session, 50, 55);
+	free(bytes);
+	cau_session_destroy(v.session);
+	free(scene);
+}
+
 // The same mesh in another scene is another tissue.
 static void another_definition_is_refused(void **state)
 {
@@ -288,6 +346,7 @@ int main(void)
 		cmocka_unit_test(written_again_it_is_the_same),
 		cmocka_unit_test(queued_commands_pins_and_materials),
 		cmocka_unit_test(damage_is_refused),
+		cmocka_unit_test(forged_counts_are_refused_and_change_nothing),
 		cmocka_unit_test(another_definition_is_refused),
 		cmocka_unit_test(a_small_buffer_is_refused),
 	};
