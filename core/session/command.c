@@ -154,6 +154,7 @@ static cau_status set_material(cau_session *session, const cau_command *command,
 	                           session->dissection.alive.element, session->shrink.shrunk);
 	session->solver.conservative =
 		cau_solver_is_conservative(&session->tissue, session->solver.diagonal);
+	session->energy.stale = true;
 	return cau_matrix_update_refactor(&session->update, &session->dissection.alive, error);
 }
 

@@ -140,6 +140,8 @@ static cau_status build(cau_session *session, const cau_session_def *def, cau_er
 	if (!status)
 		status = cau_session_make_watch(session, error);
 	if (!status)
+		status = cau_session_make_energy(session, error);
+	if (!status)
 		status = make_rest(session, error);
 	if (status)
 		return status;

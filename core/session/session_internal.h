@@ -32,6 +32,16 @@ typedef struct cau_tool {
 	cau_grasp grasp[CAU_MAX_GRASPED];
 } cau_tool;
 
+// energy.c: what a tick makes out of nothing, and the shares whose laws it changed.
+typedef struct cau_energy {
+	double gain_j;    // of the last tick
+	double elastic_j; // at its start
+	bool stale;       // every share is to be evaluated before the next tick
+	bool marked;      // some are: those that are dirty
+	uint8_t *dirty;   // (work_count)
+	double *sum_j;    // (chunk_count x 3): scratch
+} cau_energy;
+
 // What possible.c knows of the last look at the edges, and its scratch.
 typedef struct cau_watch {
 	double left_m;        // vertices may still go half as far before an edge can be too long
@@ -68,6 +78,7 @@ struct cau_session {
 	cau_drag *drag;              // (n)
 	int32_t inverted, frozen_count;
 	cau_watch watch;
+	cau_energy energy;
 	double size_m;           // diagonal of the tissue's box at rest
 	int32_t driven_count;    // pinned vertices that the next step moves
 	int32_t *driven;         // (n)
@@ -135,6 +146,14 @@ cau_status cau_session_check_motion(cau_session *session, cau_error *error);
 cau_status cau_session_check_inverted(const cau_session *session, cau_error *error);
 // Adds the tick and the layer to the solver's refusal in *error.
 cau_status cau_session_locate(const cau_session *session, cau_error *error);
+// energy.c: its arrays; elastic energy at a tick's start; the balance once it is solved, before
+// velocities follow; marks what the tick has cut or shrinks.
+cau_status cau_session_make_energy(cau_session *session, cau_error *error);
+void cau_session_begin_energy(cau_session *session);
+void cau_session_end_energy(cau_session *session);
+void cau_session_mark_changed(cau_session *session);
+// step.c: what turns a tick's way into the velocity after it, 1/s (eq. 2 and damping).
+double cau_session_velocity_scale(const cau_session *session);
 // step.c: predicts s of eq. 4; plastic flow after a solve.
 void cau_session_predict(cau_session *session);
 void cau_session_settle(cau_session *session);

@@ -438,6 +438,7 @@ cau_status cau_session_restore(cau_session *session, const void *bytes, size_t b
 		session->dissection.elements_removed = header.elements_removed;
 		session->contact.row_count = session->refusal_count = 0;
 		session->watch.left_m = 0;
+		session->energy.stale = true;
 		if (!status)
 			status = replay_factor(session, &header, error);
 		cau_frame_rebuild(&session->frame, &session->dissection);

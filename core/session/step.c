@@ -37,11 +37,16 @@ void cau_session_predict(cau_session *session)
 		}
 }
 
+double cau_session_velocity_scale(const cau_session *session)
+{
+	double dt = session->solver.step_s;
+	return exp(-session->scene->damping_per_s * dt) / dt;
+}
+
 // v = (x - x_t) / dt, damped by exp(-c dt) (eq. 2).
 static void update_velocities(cau_session *session)
 {
-	double dt = session->solver.step_s;
-	double scale = exp(-session->scene->damping_per_s * dt) / dt;
+	double scale = cau_session_velocity_scale(session);
 	for (int32_t v = 0; v < session->tissue.vertex_count; ++v)
 		for (int c = 0; c < 3; ++c) {
 			size_t i = 3 * (size_t)v + (size_t)c;
@@ -150,6 +155,7 @@ cau_status cau_session_step(cau_session *session, cau_error *error)
 	begin_tick(session);
 	cau_status status = cau_session_apply_commands(session, error); // command.c
 	cau_session_move_tools(session);                                // tool_motion.c
+	cau_session_begin_energy(session);                              // energy.c
 	cau_session_stage_end(session, CAU_STAGE_COMMANDS);
 	cau_session_predict(session);       // eq. 4, above
 	cau_session_lead_driven(session);   // drive.c
@@ -163,6 +169,7 @@ cau_status cau_session_step(cau_session *session, cau_error *error)
 		status = cau_session_check_motion(session, error); // possible.c
 	if (status)
 		return fault(session, status);
+	cau_session_end_energy(session);                     // energy.c
 	update_velocities(session);                          // eq. 2, above
 	cau_session_settle(session);                         // plasticity, section 5.2
 	status = cau_session_check_inverted(session, error); // possible.c

@@ -51,5 +51,6 @@ void cau_session_stop_strays(cau_session *session)
 	if (!stopped)
 		return;
 	session->watch.left_m = 0; // they were moved: the edges are looked at again
+	session->energy.stale = true;
 	cau_session_drop_frozen_grasps(session);
 }

@@ -12,9 +12,10 @@ enum {
 	TOOL_FROZEN = 1 << 2,
 	STATISTICS_FLOATS = 2 + CAU_STREAM_STAGES + 2,
 	STATISTICS_COUNTS = 10,
+	STATISTICS_WORDS = STATISTICS_RECORD_BYTES / 4, // floats, counts, and a float
 };
 _Static_assert(sizeof(cau_stream_statistics) == STATISTICS_RECORD_BYTES &&
-                   4 * (STATISTICS_FLOATS + STATISTICS_COUNTS) == STATISTICS_RECORD_BYTES,
+                   STATISTICS_FLOATS + STATISTICS_COUNTS + 1 == STATISTICS_WORDS,
                "the record lists every member of cau_stream_statistics");
 
 size_t cau_tool_names_write(uint8_t *out, const cau_stream_tool *tools, int32_t count)
@@ -155,14 +156,19 @@ const char *cau_tools_read(const uint8_t *payload, size_t bytes, cau_stream_tool
 	return NULL;
 }
 
+static int is_float_word(size_t word)
+{
+	return word < STATISTICS_FLOATS || word >= STATISTICS_FLOATS + STATISTICS_COUNTS;
+}
+
 // A statistic that is not finite (a rate over no time, say) is told as 0.
 size_t cau_statistics_write(uint8_t *out, const cau_stream_statistics *statistics)
 {
-	uint32_t words[STATISTICS_FLOATS + STATISTICS_COUNTS];
+	uint32_t words[STATISTICS_WORDS];
 	memcpy(words, statistics, sizeof words);
-	for (size_t i = 0; i < STATISTICS_FLOATS + STATISTICS_COUNTS; i++) {
+	for (size_t i = 0; i < STATISTICS_WORDS; i++) {
 		store_u32(out + 4 * i, words[i]);
-		if (i < STATISTICS_FLOATS && !isfinite(load_f32(out + 4 * i)))
+		if (is_float_word(i) && !isfinite(load_f32(out + 4 * i)))
 			store_f32(out + 4 * i, 0.0f);
 	}
 	return STATISTICS_RECORD_BYTES;
@@ -171,12 +177,12 @@ size_t cau_statistics_write(uint8_t *out, const cau_stream_statistics *statistic
 const char *cau_statistics_read(const uint8_t *payload, size_t bytes,
                                 cau_stream_statistics *statistics)
 {
-	uint32_t words[STATISTICS_FLOATS + STATISTICS_COUNTS];
-	if (bytes < STATISTICS_RECORD_BYTES)
+	uint32_t words[STATISTICS_WORDS] = {0};
+	if (bytes < STATISTICS_LEAST_BYTES)
 		return "the statistics are too short";
-	for (size_t i = 0; i < STATISTICS_FLOATS + STATISTICS_COUNTS; i++) {
+	for (size_t i = 0; i < STATISTICS_WORDS && 4 * i + 4 <= bytes; i++) {
 		words[i] = load_u32(payload + 4 * i);
-		if (i < STATISTICS_FLOATS && !isfinite(load_f32(payload + 4 * i)))
+		if (is_float_word(i) && !isfinite(load_f32(payload + 4 * i)))
 			return "a statistic is not finite";
 	}
 	memcpy(statistics, words, sizeof words);

@@ -136,7 +136,8 @@ bool cau_hosted_drained(cau_hosted *hosted);
 
 typedef struct cau_hosted_counts {
 	uint64_t steps, frames, frame_bytes, key_frames, commands, motions, refused, watchdog_cuts;
-	double step_seconds; // spent in steps
+	double step_seconds;  // spent in steps
+	double energy_gain_j; // that steps made out of nothing, those that lost some not counted
 	double realtime_factor;
 	int32_t half_rate; // subscribers at half rate
 } cau_hosted_counts;

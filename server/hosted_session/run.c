@@ -114,6 +114,7 @@ static void step(cau_hosted *h)
 	pthread_mutex_lock(&h->mutex);
 	h->counts.steps++;
 	h->counts.step_seconds += h->step_cost_s;
+	h->counts.energy_gain_j += fmax(frame.statistics.energy_gain_j, 0);
 	pthread_mutex_unlock(&h->mutex);
 }
 

@@ -109,6 +109,7 @@ static cau_stream_statistics fill_statistics(const cau_hosted *h, const cau_stat
 		.contacts = (uint32_t)from->contacts,
 		.frozen_vertices = (uint32_t)from->frozen_vertices,
 		.refused_commands = h->refused_commands,
+		.energy_gain_j = (float)from->energy_gain_j,
 	};
 	for (int i = 0; i < CAU_STREAM_STAGES; i++)
 		to.stage_s[i] = (float)from->seconds[i];

@@ -100,6 +100,8 @@ static void write_process(const exposition *to)
 #define SESSION_METRICS(X)                                                                         \
 	X("session_steps", COUNTER, "", "Steps computed", c->steps)                                    \
 	X("session_step_seconds", COUNTER, "seconds", "Wall time spent in steps", c->step_seconds)     \
+	X("session_energy_gain_joules", COUNTER, "joules", "Energy that steps made out of nothing",    \
+	  c->energy_gain_j)                                                                            \
 	X("session_realtime_factor", GAUGE, "", "Simulated over wall time", c->realtime_factor)        \
 	X("session_frames", COUNTER, "", "Delta frames encoded", c->frames)                            \
 	X("session_frame_bytes", COUNTER, "bytes", "Bytes of delta frames", c->frame_bytes)            \

@@ -21,6 +21,7 @@
 	X("factor_operations", PRId32, s->factor_operations)                                           \
 	X("contacts", PRId32, s->contacts)                                                             \
 	X("frozen_vertices", PRId32, s->frozen_vertices)                                               \
+	X("energy_gain_j", ".6g", s->energy_gain_j)                                                    \
 	X("tool_force_max_n", ".6g", largest_force(frame))                                             \
 	X("tip_temperature_max_c", ".6g", hottest_tip(frame))
 

@@ -134,6 +134,12 @@ typedef struct cau_statistics {
 	int32_t factor_operations; // since the last canonical factorisation
 	int32_t contacts;
 	int32_t frozen_vertices;
+	// Energy that the step made out of nothing: kinetic, elastic and gravitational energy at its
+	// end less those at its start, and less the work of tools, led supports and commanded forces.
+	// What cuts, shrinkage and commands change between steps does not count; plastic flow counts as
+	// loss. A converged step reads 0 or less but for rounding (and buckling). 0 where a law has no
+	// energy (linearised limits, model energy, the diagonal system).
+	double energy_gain_j;
 } cau_statistics;
 
 #define CAU_STAGE_TABLE(X)                                                                         \

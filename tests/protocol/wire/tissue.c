@@ -102,7 +102,8 @@ void tissue_move(tissue *moved, int32_t tick, double speed_m_s)
 	                                            .step_cost_s = 0.002f,
 	                                            .stage_s = {0.25f, 0.5f},
 	                                            .iterations = 10,
-	                                            .contacts = (uint32_t)tick};
+	                                            .contacts = (uint32_t)tick,
+	                                            .energy_gain_j = 1e-6f * (float)tick};
 }
 
 cau_stream_def tissue_stream_def(const tissue *of)

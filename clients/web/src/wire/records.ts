@@ -50,10 +50,11 @@ export interface Statistics {
   contacts: number;
   frozenVertices: number;
   refusedCommands: number;
+  energyGainJ: number; // that the last step made out of nothing; 0 from servers that do not tell it
 }
 
 const TOOL_BYTES = 84;
-const STATISTICS_BYTES = 88;
+const STATISTICS_BYTES = 88; // without what servers have added since: energyGainJ
 const TOOLS_MAX = 8;
 
 export function readToolNames(payload: Uint8Array): ToolName[] {
@@ -128,5 +129,6 @@ export function readStatistics(payload: Uint8Array): Statistics {
     contacts: count(7),
     frozenVertices: count(8),
     refusedCommands: count(9),
+    energyGainJ: payload.byteLength >= STATISTICS_BYTES + 4 ? real(22) : 0,
   };
 }

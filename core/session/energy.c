@@ -1,0 +1,205 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// The energy that a tick makes out of nothing: kinetic, elastic and gravitational energy at its end
+// beyond those at its start and the work done on the tissue in it. Implicit Euler loses energy, so
+// a converged step reads zero or less; more is what the iteration has left undone.
+//
+// Work is force times the way of what it acts on: gravity and the forces of commands, reactions of
+// tools, drag in char, and supports that are led. What a tick changes after its solve (elements
+// parted or on their way to shrink) changes the elastic energy without force: the shares of the
+// local step that have such elements are evaluated again where they are, for the next tick to start
+// from. Plastic flow counts as loss. Laws without an energy have none to compare: nothing is told.
+#include <string.h>
+
+#include "session/session_internal.h"
+
+enum { SUMS = 3 }; // of a chunk of vertices: work, kinetic energy before and after
+
+cau_status cau_session_make_energy(cau_session *session, cau_error *error)
+{
+	cau_energy *energy = &session->energy;
+	const cau_step_solver *solver = &session->solver;
+	energy->dirty = cau_arena_array(&session->arena, (size_t)solver->slots.work_count, 1);
+	energy->sum_j =
+		cau_arena_array(&session->arena, SUMS * (size_t)solver->chunk_count, sizeof(double));
+	energy->stale = true;
+	if (!energy->dirty || !energy->sum_j)
+		return cau_fail(error, CAU_NO_MEMORY, NULL, "no memory for a session");
+	return CAU_OK;
+}
+
+// ---- shares whose laws have changed
+
+// The share of a slot: shares of a kind are in the order of their slots.
+static int32_t share_of(const cau_element_slots *slots, int kind, int32_t slot)
+{
+	int32_t least = 0, most = slots->work_count - 1;
+	while (least < most && slots->work[least].kind != kind)
+		least++;
+	while (least < most && slots->work[most].kind != kind)
+		most--;
+	while (least < most) {
+		int32_t middle = least + (most - least) / 2;
+		if (slots->work[middle].last <= slot)
+			least = middle + 1;
+		else
+			most = middle;
+	}
+	return least;
+}
+
+static void mark(cau_session *session, int kind, int32_t element)
+{
+	const cau_element_slots *slots = &session->solver.slots;
+	session->energy.dirty[share_of(slots, kind, slots->slot_of[kind][element])] = 1;
+	session->energy.marked = true;
+}
+
+void cau_session_mark_changed(cau_session *session)
+{
+	for (int32_t k = 0; k < session->dissection.removed_count; ++k)
+		mark(session, session->dissection.removed[k].kind, session->dissection.removed[k].element);
+	if (session->shrink.active_count == session->shrink.active_capacity)
+		session->energy.stale = true; // what found no room has arrived at once
+	for (int32_t k = 0; k < session->shrink.active_count; ++k)
+		mark(session, session->shrink.active[k].kind, session->shrink.active[k].element);
+}
+
+// Rotations that a set keeps from evaluation to evaluation; reading energies may not move them.
+enum { MOST_POLARS = 6 };
+typedef struct kept_polars {
+	int count;
+	void *const *array;
+	double bytes[MOST_POLARS][CAU_SHARE]; // room for either precision
+} kept_polars;
+
+static void keep_polars(const cau_elements *elements, const cau_local_work *work, kept_polars *kept)
+{
+	size_t real = cau_real_bytes(elements->single);
+	kept->array = work->kind == CAU_ELEMENT_TRIANGLE ? elements->sheet.polar : elements->fat.polar;
+	kept->count = work->kind == CAU_ELEMENT_TRIANGLE      ? 6
+	              : work->kind == CAU_ELEMENT_TETRAHEDRON ? 4
+	                                                      : 0;
+	for (int i = 0; i < kept->count; ++i)
+		memcpy(kept->bytes[i], (const char *)kept->array[i] + (size_t)work->first * real,
+		       (size_t)(work->last - work->first) * real);
+}
+
+static void return_polars(const cau_elements *elements, const cau_local_work *work,
+                          const kept_polars *kept)
+{
+	size_t real = cau_real_bytes(elements->single);
+	for (int i = 0; i < kept->count; ++i)
+		memcpy((char *)kept->array[i] + (size_t)work->first * real, kept->bytes[i],
+		       (size_t)(work->last - work->first) * real);
+}
+
+static void share_part(void *context, int32_t index)
+{
+	cau_session *session = context;
+	const cau_step_solver *solver = &session->solver;
+	const cau_local_work *work = &solver->slots.work[index];
+	kept_polars kept;
+	if (!session->energy.stale && !session->energy.dirty[index])
+		return;
+	keep_polars(&solver->elements, work, &kept);
+	solver->kernels->local(&solver->elements, work, solver->displacement, solver->diagonal);
+	return_polars(&solver->elements, work, &kept);
+}
+
+// Elastic energy where the tissue is now, under the laws of now.
+void cau_session_begin_energy(cau_session *session)
+{
+	cau_energy *energy = &session->energy;
+	cau_step_solver *solver = &session->solver;
+	if (!solver->conservative)
+		return;
+	if (energy->stale || energy->marked) {
+		cau_solver_displace(solver);
+		cau_pool_run(session->pool, solver->slots.work_count, share_part, session);
+		memset(energy->dirty, 0, (size_t)solver->slots.work_count);
+	}
+	energy->elastic_j = cau_solver_elastic_energy(solver);
+	energy->stale = energy->marked = false;
+}
+
+// ---- work and motion of a tick, before velocities are brought up to date
+
+// Of a support that was led: the elements' pull on it, against which it went its way.
+static double support_work(const cau_session *session, int32_t vertex, const double move[3])
+{
+	const cau_incidence *incidence = &session->solver.slots.incidence;
+	const cau_elements *elements = &session->solver.elements;
+	double work = 0;
+	for (int32_t k = incidence->first[vertex]; k < incidence->first[vertex + 1]; ++k)
+		for (int c = 0; c < 3; ++c)
+			work += move[c] * cau_real_get(elements->gradient, elements->single,
+			                               4 * (int64_t)incidence->record[k] + c);
+	return work;
+}
+
+static void vertex_part(void *context, int32_t chunk)
+{
+	cau_session *session = context;
+	const cau_step_solver *solver = &session->solver;
+	const double *x = session->position, *start = session->position_start;
+	const double *velocity = session->velocity, *force = session->external;
+	const double *gravity = session->scene->gravity_m_s2;
+	double work = 0, before = 0, after = 0, scale = cau_session_velocity_scale(session);
+	int32_t first = chunk * CAU_VERTEX_CHUNK, last = first + CAU_VERTEX_CHUNK;
+	if (last > session->tissue.vertex_count)
+		last = session->tissue.vertex_count;
+	for (int32_t v = first; v < last; ++v) {
+		double mass = session->tissue.mass[v], move[3], old2 = 0, new2 = 0, along = 0;
+		for (int c = 0; c < 3; ++c) {
+			move[c] = x[3 * v + c] - start[3 * v + c];
+			old2 += velocity[3 * v + c] * velocity[3 * v + c];
+			new2 += move[c] * move[c];
+			along += (mass * gravity[c] + force[3 * v + c]) * move[c];
+		}
+		if (solver->fixed[v]) {
+			work += new2 > 0 ? support_work(session, v, move) : 0;
+			continue;
+		}
+		work += along;
+		before += mass * old2;
+		after += mass * new2;
+	}
+	double *sum = session->energy.sum_j + SUMS * (size_t)chunk;
+	sum[0] = work;
+	sum[1] = before / 2;
+	sum[2] = after * scale * scale / 2;
+}
+
+static double tool_work(const cau_session *session)
+{
+	double work = 0;
+	for (int32_t k = 0; k < session->contact.row_count; ++k) {
+		const cau_contact_row *row = &session->contact.row[k];
+		for (size_t c = 0, at = 3 * (size_t)row->vertex; c < 3; ++c)
+			work +=
+				row->reaction[c] * (session->position[at + c] - session->position_start[at + c]);
+	}
+	for (int32_t k = 0; k < session->solver.drag_count; ++k) {
+		const cau_drag *drag = &session->solver.drag[k];
+		for (size_t c = 0, at = 3 * (size_t)drag->vertex; c < 3; ++c)
+			work -= drag->coefficient * (session->position[at + c] - drag->target[c]) *
+			        (session->position[at + c] - session->position_start[at + c]);
+	}
+	return work;
+}
+
+void cau_session_end_energy(cau_session *session)
+{
+	cau_energy *energy = &session->energy;
+	energy->gain_j = 0;
+	if (!session->solver.conservative)
+		return;
+	cau_pool_run(session->pool, session->solver.chunk_count, vertex_part, session);
+	double elastic_j = cau_solver_elastic_energy(&session->solver);
+	double gain_j = elastic_j - energy->elastic_j - tool_work(session);
+	for (int32_t k = 0; k < session->solver.chunk_count; ++k) {
+		const double *sum = energy->sum_j + SUMS * (size_t)k;
+		gain_j += sum[2] - sum[1] - sum[0];
+	}
+	energy->gain_j = gain_j;
+}
