@@ -5,8 +5,8 @@ import { Program } from './program.mjs';
 
 export class Crowd extends Program {
 	// Resolves once the daemon has been found by all of them.
-	static async start(t, session, count, { lease_ms = 500, tools = ['hook'], environment = CYCLONE } = {}) {
-		const crowd = new Crowd(process.env.CROWD, [DOMAIN, session, count, lease_ms, ...tools], { environment });
+	static async start(t, session, count, { lease_ms = 500, tools = ['hook'], environment = CYCLONE, wrap = [] } = {}) {
+		const crowd = new Crowd(process.env.CROWD, [DOMAIN, session, count, lease_ms, ...tools], { environment, wrap });
 		t.after(() => crowd.kill());
 		await crowd.event((e) => e.event === 'matched', 'matched');
 		return crowd;

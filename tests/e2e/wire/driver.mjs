@@ -11,9 +11,9 @@ export const now = () => Number(process.hrtime.bigint()) / 1e9; // the server's 
 const PERIOD_MS = 16;
 
 export class Driver {
-	static async connect(url) {
+	static async connect(url, options) {
 		const driver = new Driver();
-		driver.client = await Client.connect(url);
+		driver.client = await Client.connect(url, options);
 		driver.sent = []; // when signs of life were sent
 		driver.sequence = 0;
 		return driver;

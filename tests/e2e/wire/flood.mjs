@@ -2,8 +2,10 @@
 // Clients that ask for more than is good for others, in a process of their own, pinned to one core so that
 // what they cost themselves is not taken for what they cost the daemon.
 //
-// As a program: flood.mjs URL VIEWERS PIPELINE METHOD PARAMS... Each viewer keeps PIPELINE requests under
-// way, of the METHODs in turn, and when standard input ends prints {answered, refused: {reason: count}}.
+// As a program: flood.mjs URL SPEC, the JSON of start()'s second argument. Each of the viewers keeps
+// `pipeline` loops going: of requests, in turn; of sessions, created and destroyed; or of fragments
+// without content, which end the connection again and again. When standard input ends it prints
+// {asked, answered, refused: {reason: count}}.
 import { spawn } from 'node:child_process';
 import { cpus } from 'node:os';
 import { createInterface } from 'node:readline';
@@ -11,11 +13,11 @@ import { fileURLToPath, pathToFileURL } from 'node:url';
 import { Client } from './client.mjs';
 
 export class Flood {
-	static async start(url, { viewers = 2, pipeline = 4, role = 'view', requests }) {
+	static async start(url, { what = 'requests', viewers = 2, pipeline = 4, hello = { role: 'view' }, requests, definition }) {
 		const flood = new Flood();
 		const last = String(cpus().length - 1);
 		flood.process = spawn('taskset', ['-c', last, process.execPath, fileURLToPath(import.meta.url), url,
-			JSON.stringify({ viewers, pipeline, role, requests })], { stdio: ['pipe', 'pipe', 'inherit'] });
+			JSON.stringify({ what, viewers, pipeline, hello, requests, definition })], { stdio: ['pipe', 'pipe', 'inherit'] });
 		flood.lines = createInterface({ input: flood.process.stdout })[Symbol.asyncIterator]();
 		await flood.lines.next(); // it floods
 		return flood;
@@ -26,36 +28,75 @@ export class Flood {
 		const { value } = await this.lines.next();
 		return JSON.parse(value);
 	}
+
+	end() {
+		this.process.kill('SIGKILL');
+	}
 }
 
-async function flood(url, { viewers, pipeline, role, requests }) {
-	const told = { answered: 0, refused: {} };
-	let stopping = false;
-	const loop = async (client) => {
-		for (let i = 0; !stopping; i++) {
-			const [method, params] = requests[i % requests.length];
-			try {
-				await client.call(method, params);
-				told.answered++;
-			} catch (error) {
-				const reason = error.data?.reason ?? error.message;
-				told.refused[reason] = (told.refused[reason] ?? 0) + 1;
-			}
-			client.transfers.clear();
-			client.notices.length = 0;
-		}
-	};
-	const loops = [];
+const told = { asked: 0, answered: 0, refused: {} };
+
+function refuse(error) {
+	const reason = (error.data?.reason ?? error.message).replace(/[\d.]+ s$/, 'some s');
+	told.refused[reason] = (told.refused[reason] ?? 0) + 1;
+}
+
+// What came is not looked at.
+async function open(url, hello) {
+	const client = await Client.connect(url, { hello });
+	client.onBinary = () => {};
+	return client;
+}
+
+async function ask(client, method, params) {
+	told.asked++;
+	try {
+		const answer = await client.call(method, params);
+		told.answered++;
+		return answer;
+	} catch (error) {
+		refuse(error);
+		return null;
+	} finally {
+		client.transfers.clear();
+		client.notices.length = 0;
+	}
+}
+
+// Fragments in one go: more than a second's messages of a client.
+const FRAGMENTS = 4000;
+
+// What a loop does in a turn.
+const WAYS = {
+	requests: async ({ client, turn, requests }) => ask(client, ...requests[turn % requests.length]),
+	sessions: async ({ client, definition }) => {
+		const made = await ask(client, 'session.create', { definition });
+		if (made)
+			await ask(client, 'session.destroy', { session: made.summary.session });
+	},
+	fragments: async ({ url, hello }) => {
+		told.asked++;
+		const client = await open(url, hello).catch(refuse);
+		for (let i = 0; client && i < FRAGMENTS; i++)
+			client.socket.send('', { fin: false }, () => {});
+		const closed = await client?.closed;
+		refuse(new Error(`closed ${closed?.code}`));
+	},
+};
+
+async function flood(url, { what, viewers, pipeline, hello, requests, definition }) {
 	for (let v = 0; v < viewers; v++) {
-		const client = await Client.connect(url, { hello: { role } });
-		client.onBinary = () => {}; // what comes is not looked at
+		const client = await open(url, hello);
+		const loop = async () => {
+			for (let turn = 0; ; turn++)
+				await WAYS[what]({ url, hello, client, turn, requests, definition });
+		};
 		for (let p = 0; p < pipeline; p++)
-			loops.push(loop(client));
+			void loop();
 	}
 	console.log('{}');
 	for await (const line of createInterface({ input: process.stdin }))
 		void line;
-	stopping = true;
 	console.log(JSON.stringify(told));
 	process.exit(0);
 }
