@@ -3,6 +3,8 @@
 // the server is tested without physics. An energized tool near a face removes it; positions wave
 // with time and with gravity; everything is a function of the definition and the commands. Linked
 // only in tests.
+#include "fake_session.h"
+
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
@@ -50,6 +52,8 @@ struct cau_session {
 	bool temperature_on;
 	float temperature[VERTICES];
 };
+
+cau_fake_hooks cau_fake_hooks_set;
 
 cau_session_def cau_default_session_def(void)
 {
@@ -130,6 +134,8 @@ static int32_t find_tool(const cau_session *s, const char *name)
 
 cau_status cau_session_submit(cau_session *s, const cau_command *c, cau_error *error)
 {
+	if (cau_fake_hooks_set.submit)
+		cau_fake_hooks_set.submit(c);
 	bool about_tool = c->kind >= CAU_COMMAND_TOOL_REMOVE && c->kind <= CAU_COMMAND_TOOL_RELEASE;
 	if (about_tool && find_tool(s, c->tool) < 0)
 		return cau_fail(error, CAU_NOT_FOUND, "tool", "no tool %s", c->tool);
@@ -237,6 +243,8 @@ cau_status cau_session_step(cau_session *s, cau_error *error)
 		return cau_fail(error, CAU_FAULTED, NULL, "faulted");
 	memcpy(before, s->state.mask, sizeof before);
 	apply_due(s);
+	if (cau_fake_hooks_set.step)
+		cau_fake_hooks_set.step(s);
 	if (s->state.trouble_tick && s->state.tick >= s->state.trouble_tick) {
 		s->state.faulted = true;
 		return cau_fail(error, CAU_NUMERICAL, NULL, "a force beyond reason");

@@ -1,0 +1,15 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// What a test sees and holds up of the double of the core. Set before the first session is made,
+// and left alone until the last is gone; called on the thread that calls the core.
+#pragma once
+
+#include "cautery/session.h"
+
+typedef struct cau_fake_hooks {
+	// The core is about to take this command.
+	void (*submit)(const cau_command *command);
+	// A tick is being computed; the commands that were due are in the tools.
+	void (*step)(const cau_session *session);
+} cau_fake_hooks;
+
+extern cau_fake_hooks cau_fake_hooks_set;
