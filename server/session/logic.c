@@ -277,6 +277,12 @@ static bool next_wanted_pause(cau_logic *logic, cau_action *action, cau_effects 
 	const cau_waiting wanted = {.moment = logic->pause_moment};
 	if (!logic->pause_moment)
 		return false;
+	// What came before it comes first: an older order to resume must not undo it.
+	if (logic->border_moment < logic->pause_moment)
+		logic->border_moment = logic->pause_moment;
+	const cau_waiting *head = cau_queue_head(logic);
+	if (head && head->moment < logic->pause_moment)
+		return false;
 	action->act = CAU_ACT_PAUSE;
 	if (pause(logic, &wanted, action, effects))
 		logic->pause_moment = 0;

@@ -1,0 +1,203 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "server/session/reach_state.h"
+
+#include <assert.h>
+#include <math.h>
+#include <stdio.h>
+#include <string.h>
+
+#include "cautery/status.h"
+
+static_assert(sizeof(reach_state) <= 64, "states are many");
+
+const char *const reach_tool_names[REACH_TOOLS] = {"hook", "jaws"};
+
+cau_asker reach_asker(int client)
+{
+	cau_asker asker = {.client = (uint32_t)client,
+	                   .role = client == REACH_CLIENTS ? CAU_ROLE_ADMIN : CAU_ROLE_OPERATE,
+	                   .deadline_s = REACH_DEADLINE_S};
+	return client ? asker : (cau_asker){0};
+}
+
+int reach_tool_index(const char *name)
+{
+	for (int i = 0; i < REACH_TOOLS; i++)
+		if (strcmp(name, reach_tool_names[i]) == 0)
+			return i;
+	return 0;
+}
+
+bool reach_is_fresh(double alive_s, double now_s)
+{
+	return alive_s + REACH_DEADLINE_S > now_s;
+}
+
+// ---- a machine of a state -----------------------------------------------------------------------
+
+// Orders have even moments, so that a pause can stand between any two.
+static uint64_t moment_of_place(int place)
+{
+	return 2 * (uint64_t)place;
+}
+
+static double alive_of(uint8_t fresh)
+{
+	return fresh ? REACH_NOW_S : 0;
+}
+
+static void decode_order(const reach_order *from, int place, cau_waiting *to)
+{
+	memset(to, 0, sizeof *to);
+	to->asked.ticket = (uint64_t)place;
+	to->asked.ask = (cau_ask)from->ask;
+	to->asked.asker = reach_asker(from->client);
+	to->asked.to = reach_asker(from->to);
+	bool about_tool = from->ask >= CAU_ASK_TOOL_ADD && from->ask <= CAU_ASK_REQUEST_TAKEOVER;
+	if (about_tool)
+		strcpy(to->asked.tool, reach_tool_names[from->tool]);
+	to->moment = moment_of_place(place);
+	to->cut_moment = from->cut ? 2 * (REACH_QUEUE + 2) : 0;
+	to->alive_s = alive_of(from->fresh);
+	to->gone = from->gone;
+	to->to_gone = from->to_gone;
+}
+
+static void decode_tool(const reach_tool *from, int index, cau_drive *to)
+{
+	memset(to, 0, sizeof *to);
+	strcpy(to->tool, reach_tool_names[index]);
+	to->driver = reach_asker(from->driver);
+	to->alive_s = alive_of(from->fresh);
+	to->enabled = from->enabled;
+	to->lit = from->lit;
+	to->freeze = from->freeze;
+	to->by_order = from->by_order;
+	to->cut_moment = moment_of_place(from->cut_place);
+	to->lost_moment = moment_of_place(from->lost_place);
+	to->lost_client = from->lost_client;
+}
+
+void reach_decode(const reach_state *state, cau_logic *logic)
+{
+	cau_logic_init(logic, state->capacity);
+	logic->moment = 2 * (REACH_QUEUE + 2);
+	logic->now_s = REACH_NOW_S;
+	logic->next_step_s = REACH_TICK_S;
+	logic->state = state->state;
+	logic->going = state->going;
+	logic->store_takes = state->store_takes;
+	logic->acting = (cau_act)state->acting;
+	if (state->acting == CAU_ACT_CUT)
+		strcpy(logic->cutting, reach_tool_names[state->cutting]);
+	if (state->pause_place)
+		logic->pause_moment = moment_of_place(state->pause_place - 1) + 1;
+	logic->border = state->border_place > 0;
+	if (logic->border)
+		logic->border_moment = moment_of_place(state->border_place - 1);
+	for (int i = 0; i < state->tool_count; i++)
+		decode_tool(&state->tools[i], i, &logic->drives[i]);
+	logic->drive_count = state->tool_count;
+	if (state->serves)
+		decode_order(&state->orders[0], 1, &logic->serving);
+	for (int i = 0; i < state->count; i++)
+		decode_order(&state->orders[state->serves + i], state->serves + i + 1, &logic->waiting[i]);
+	logic->count = state->count;
+}
+
+// ---- a state of a machine -----------------------------------------------------------------------
+
+static const cau_waiting *order_at(const cau_logic *logic, const reach_state *state, int index)
+{
+	return state->serves && index == 0 ? &logic->serving : &logic->waiting[index - state->serves];
+}
+
+static int order_count(const reach_state *state)
+{
+	return state->serves + state->count;
+}
+
+// What means nothing to this kind of order is left out.
+static void encode_order(const cau_waiting *from, double now_s, reach_order *to)
+{
+	cau_ask ask = from->asked.ask;
+	bool on = ask == CAU_ASK_ENERGY_ON, takes = ask == CAU_ASK_TAKE_OVER;
+	bool hands = ask == CAU_ASK_HAND_OVER;
+	to->ask = (uint8_t)ask;
+	to->client = on || takes || hands ? (uint8_t)from->asked.asker.client : 1;
+	to->tool = (uint8_t)reach_tool_index(from->asked.tool);
+	to->to = (uint8_t)from->asked.to.client;
+	to->fresh = (on || takes) && reach_is_fresh(from->alive_s, now_s);
+	to->cut = on && from->cut_moment;
+	to->gone = takes && from->gone;
+	to->to_gone = hands && from->to_gone;
+}
+
+// The newest of the orders about this tool's energy that came in by `moment`; `lost_client`: of
+// this client's enables alone.
+static uint8_t place_of(const cau_logic *logic, const reach_state *state, const char *tool,
+                        uint64_t moment, uint32_t lost_client)
+{
+	for (int i = order_count(state); i-- > 0;) {
+		const cau_waiting *order = order_at(logic, state, i);
+		cau_ask ask = order->asked.ask;
+		bool bears = lost_client
+		                 ? ask == CAU_ASK_ENERGY_ON && order->asked.asker.client == lost_client
+		                 : ask == CAU_ASK_ENERGY_ON || ask == CAU_ASK_ENERGY_OFF;
+		if (bears && order->moment <= moment && strcmp(order->asked.tool, tool) == 0)
+			return (uint8_t)(i + 1);
+	}
+	return 0;
+}
+
+static void encode_tool(const cau_logic *logic, const cau_drive *from, const reach_state *state,
+                        reach_tool *to)
+{
+	to->driver = (uint8_t)from->driver.client;
+	to->fresh = to->driver && reach_is_fresh(from->alive_s, logic->now_s);
+	to->enabled = from->enabled;
+	to->lit = from->lit;
+	to->freeze = from->freeze;
+	to->by_order = from->by_order;
+	to->cut_place = place_of(logic, state, from->tool, from->cut_moment, 0);
+	if (from->lost_client)
+		to->lost_place = place_of(logic, state, from->tool, from->lost_moment, from->lost_client);
+	to->lost_client = to->lost_place ? (uint8_t)from->lost_client : 0;
+}
+
+static uint8_t orders_until(const cau_logic *logic, const reach_state *state, uint64_t moment)
+{
+	int count = 0;
+	for (int i = 0; i < order_count(state); i++)
+		count += order_at(logic, state, i)->moment <= moment;
+	return (uint8_t)count;
+}
+
+void reach_encode(const cau_logic *logic, const reach_state *books, reach_state *state)
+{
+	memset(state, 0, sizeof *state);
+	state->tool_count = (uint8_t)logic->drive_count;
+	state->capacity = (uint8_t)logic->capacity;
+	state->serves = logic->acting == CAU_ACT_ORDER;
+	state->count = (uint8_t)logic->count;
+	state->state = (uint8_t)logic->state;
+	state->going = logic->going;
+	state->store_takes = logic->store_takes;
+	state->acting = (uint8_t)logic->acting;
+	if (logic->acting == CAU_ACT_CUT)
+		state->cutting = (uint8_t)reach_tool_index(logic->cutting);
+	if (logic->pause_moment)
+		state->pause_place = (uint8_t)(1 + orders_until(logic, state, logic->pause_moment));
+	if (logic->border)
+		state->border_place = (uint8_t)(1 + orders_until(logic, state, logic->border_moment));
+	state->held = books->held;
+	for (int i = 0; i < order_count(state); i++) {
+		encode_order(order_at(logic, state, i), logic->now_s, &state->orders[i]);
+		state->orders[i].overtaken = books->orders[i].overtaken;
+	}
+	for (int i = 0; i < logic->drive_count; i++) {
+		encode_tool(logic, &logic->drives[i], state, &state->tools[i]);
+		state->tools[i].heated = books->tools[i].heated;
+		state->tools[i].wanted = books->tools[i].wanted;
+	}
+}
