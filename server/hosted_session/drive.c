@@ -67,6 +67,11 @@ static void count_cut(cau_hosted *h, const cau_drive *drive)
 	pthread_mutex_unlock(&h->mutex);
 	cau_event_add(h, watchdog ? CAU_EVENT_WATCHDOG : CAU_EVENT_ENERGY_OFF, drive->tool,
 	              drive->driver.name, 0, drive->cut_cause);
+	if (watchdog) // who holds a pedal down must not wonder why nothing burns
+		cau_log(CAU_LOG_WARNING, h->id, "energy_cut",
+		        "tool=%s client=\"%s\" cause=\"%s\" remedy=\"it stays dark until its driver "
+		        "releases and enables it anew\"",
+		        drive->tool, drive->driver.name, drive->cut_cause);
 }
 
 void cau_drive_do_cut(cau_hosted *h, const cau_action *action)
