@@ -75,8 +75,8 @@ static void check_balance(const law *l)
 {
 	cau_scene_def *scene = scene_of_law(l);
 	cau_session *session = stage_open(scene, 1);
-	// Nothing resists in the plane of a sheet without limits: a few ticks later it is drawn out beyond
-	// what any tissue can be, and the session faults, as it should.
+	// Nothing resists in the plane of a sheet without limits: a few ticks later it is drawn out
+	// beyond what any tissue can be, and the session faults, as it should.
 	bool unlimited = l->kind == CAU_LAYER_FASCIA && l->limit == CAU_LIMIT_NONE;
 	strain(session, l->kind == CAU_LAYER_FAT ? 4e-3 : 2e-3, unlimited ? 3 : 40);
 	cau_balance b = stage_balance(session);
