@@ -56,10 +56,10 @@ static double on_look(void *user, double now_s)
 static void on_store_state(void *user, cau_store_state state, const char *reason)
 {
 	cau_daemon *daemon = user;
+	if (daemon->hub) // sessions first: who reads the log may act on it at once
+		cau_hub_store_takes(daemon->hub, state == CAU_STORE_READY, reason);
 	cau_log(state == CAU_STORE_READY ? CAU_LOG_NOTICE : CAU_LOG_ERROR, NULL, "store_state",
 	        "state=%s reason=\"%s\"", cau_store_state_name(state), reason);
-	if (daemon->hub)
-		cau_hub_store_takes(daemon->hub, state == CAU_STORE_READY, reason);
 }
 
 static cau_status open_store(cau_daemon *daemon, cau_error *error)

@@ -130,8 +130,9 @@ test('a full store: energy goes off by itself, off and pause are never refused, 
 	const paused = await client.call('session.pause', { session });
 	assert.deepEqual([paused.state, paused.stored], ['paused', false]);
 	await client.until(() => stream.flags & 1, 'paused');
+	const room = new Promise((resolve) => small.waiters.push({ pattern: /store_state state=ready/, resolve }));
 	rmSync(small.ballast);
-	await small.log(/store_state state=ready/);
+	await room;
 	await client.call('session.resume', { session });
 	await energize(driver, session);
 	assert.equal((await energize(driver, session, false)).stored, undefined);

@@ -54,7 +54,7 @@ test('both formats tell the same families', async () => {
 	const named = [...open.values()].map(({ name, type }) => name + (type === 'counter' ? '_total' : ''));
 	assert.deepEqual([...text.keys()].sort(), named.sort());
 	for (const { name, unit } of open.values())
-		assert.equal(unit, name.match(/_(seconds|bytes)$/)?.[1], name);
+		assert.equal(unit, name.match(/_(seconds|bytes|joules)$/)?.[1], name);
 });
 
 test('while sessions are made and destroyed, each answer is whole and counters only rise', async () => {
