@@ -69,7 +69,7 @@ static void cut_lost(cau_logic *logic, cau_drive *drive, const char *cause, cau_
 	drive->lost_moment = logic->moment;
 	drive->lost_client = drive->driver.client;
 	go_dark(drive, CAU_ENERGY_OFF_WATCHDOG, cause, effects);
-	drive->freeze = true;
+	drive->freeze = drive->frozen = true; // said at once, as the darkness is; the core is told next
 	cau_effect_wake(effects);
 }
 
