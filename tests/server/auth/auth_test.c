@@ -136,7 +136,7 @@ static int begin_reload(void **state)
 	reload_config = settings();
 	cau_config_set(&reload_config, "tokens", reload_file, NULL);
 	write_tokens("admin 0123456789abcdef\noperate fedcba9876543210\n", 0600);
-	return cau_auth_create((cau_auth **)state, &reload_config, NULL);
+	return cau_auth_create((cau_auth **)state, &reload_config, NULL) ? -1 : 0;
 }
 
 static int end_reload(void **state)
