@@ -198,6 +198,8 @@ double cau_dds_serve(cau_dds *dds)
 	note_read(dds); // before the marks are taken: a slice that did not wake the thread left one
 	cau_dds_take_bits(&dds->marked, &marked);
 	for (cau_dds_session *s = dds->sessions; s; s = s->next) {
+		if (cau_hosted_ended(s->hosted)) // listed anew at once, whoever else tells of it
+			cau_dds_wake(dds, &dds->sessions_changed);
 		if (!s->subscriber)
 			continue;
 		if (now_s >= s->look_s || cau_dds_has_bit(&marked, cau_hosted_number(s->hosted)))
