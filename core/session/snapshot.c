@@ -254,6 +254,7 @@ static cau_session *imagine(const cau_session *session, const snapshot_header *h
 	cau_session *imagined = malloc(sizeof *imagined);
 	if (!imagined)
 		return NULL;
+	cau_matrix_update_await(&session->update);
 	memcpy(imagined, session, sizeof *imagined);
 	imagined->command_count = header->command_count;
 	imagined->shrink.active_count = header->active_count;

@@ -301,10 +301,15 @@ cau_status cau_matrix_update_begin(cau_matrix_update *update, const cau_alive *a
 	return status;
 }
 
-void cau_matrix_update_stop(cau_matrix_update *update)
+void cau_matrix_update_await(const cau_matrix_update *update)
 {
 	if (update->background)
 		cau_background_wait(update->background);
+}
+
+void cau_matrix_update_stop(cau_matrix_update *update)
+{
+	cau_matrix_update_await(update);
 	cau_sweep_finish_panels(&update->next_panels);
 	update->making = 0;
 }

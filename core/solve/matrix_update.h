@@ -82,6 +82,10 @@ double cau_matrix_update_pack(cau_matrix_update *update);
 // Starts making the factor of next_canonical, to be swapped in at swap_tick.
 void cau_matrix_update_start(cau_matrix_update *update, uint64_t swap_tick);
 
+// Waits for the factor in the making, which is taken at its tick as ever: before the whole is
+// copied.
+void cau_matrix_update_await(const cau_matrix_update *update);
+
 // Waits for the factor in the making and forgets it: before what it reads (materials, pins, the
 // live elements it stands for) changes. The factor must be made anew then.
 void cau_matrix_update_stop(cau_matrix_update *update);
