@@ -5,7 +5,9 @@ import { defineConfig } from 'vitest/config';
 const here = (path: string): string => fileURLToPath(new URL(path, import.meta.url));
 
 export default defineConfig({
-  resolve: { alias: { three: here('./node_modules/three/build/three.module.js') } },
+  resolve: {
+    alias: [{ find: /^three$/, replacement: here('./node_modules/three/build/three.module.js') }, { find: /^three\//, replacement: here('./node_modules/three/') }],
+  },
   test: {
     globals: true,
     dir: here('../../tests/browser/unit'),

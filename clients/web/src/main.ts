@@ -8,29 +8,38 @@ import { ToolHand } from './hands/tool_hand';
 import { Control } from './model/control';
 import { Model } from './model/model';
 import { clientWords } from './model/person';
+import { keepAddress, readAddress } from './panels/address';
+import { showCue } from './panels/cue';
 import { byId } from './panels/dom';
 import { materialsPanel } from './panels/materials';
 import { showHandles } from './panels/handles';
-import { showHint, showLink, showNotices, showReading } from './panels/overlay';
+import { modeSwitch } from './panels/mode';
+import { operatePanel } from './panels/operate';
+import { showHelp, showLink, showNotices, showReading } from './panels/overlay';
 import { plotsPanel } from './panels/plots';
 import { showSaid } from './panels/said';
 import { saveReceived, sessionsPanel } from './panels/sessions';
 import { makeTabs } from './panels/tabs';
 import { timeBar } from './panels/time';
+import { askForToken } from './panels/token';
 import { toolsPanel } from './panels/tools';
+import { showVeil } from './panels/veil';
 import { viewPanel } from './panels/view';
 import { Viewport } from './scene/viewport';
 import { Link } from './wire/link';
 import type { Layer, Tool } from './wire/messages.gen';
+import { errorWords } from './model/sentences';
 
 const model = new Model();
-const viewport = new Viewport(byId<HTMLCanvasElement>('picture'));
+const viewport = new Viewport(byId<HTMLCanvasElement>('picture'), () => byId('picture').getBoundingClientRect().bottom - byId('handles').getBoundingClientRect().top);
+const address = readAddress();
+viewport.wantedPose = address.camera;
 
 const link: Link = new Link({
   state: (state) => {
     model.setLink(state);
     if (state.state === 'online')
-      control.refresh().catch((error: unknown) => model.notice('error', error instanceof Error ? error.message : String(error)));
+      control.refresh().catch((error: unknown) => model.notice('error', errorWords(error)));
   },
   joined: (joined) => {
     viewport.setSession(joined);
@@ -58,28 +67,39 @@ model.on('joined', (joined) => {
   if (!joined) viewport.setSession(null);
 });
 
-makeTabs([sessionsPanel(control, link), toolsPanel(control, hand), materialsPanel(control), viewPanel(control, viewport), plotsPanel(model)]);
-timeBar(control);
+const tabs = makeTabs([sessionsPanel(control, link), toolsPanel(control, hand), materialsPanel(control), viewPanel(control, viewport), plotsPanel(model)]);
+const tickShown = timeBar(control, address.tick);
 showHandles(control, hand, pointer);
 const placeSaid = showSaid(model, viewport, pointer);
 showNotices(control);
 showReading(control);
-showHint();
+showHelp();
+operatePanel(control, hand, viewport, () => connect(lastToken));
+modeSwitch((mode) => tabs.show(mode === 'research'));
+const placeCue = showCue(control, viewport);
+keepAddress(model, viewport, tickShown);
+
+let lastToken: string | undefined;
 
 function connect(token?: string): void {
+  lastToken = token;
   const url = new URL('./v1', window.location.href);
   url.protocol = url.protocol === 'https:' ? 'wss:' : 'ws:';
-  const wanted = new URLSearchParams(window.location.search).get('session');
+  const wanted = address.session;
   url.search = wanted === null ? '' : `session=${encodeURIComponent(wanted)}`;
   url.hash = '';
   link.connect(url.href, clientWords(__VIEWER_VERSION__), token);
   const session = model.session ?? wanted;
   if (session !== null) control.watch(session);
 }
-showLink(control, connect);
+showLink(control);
+const openToken = askForToken(model, connect);
+showVeil(control, viewport, openToken);
 connect();
 
-new ResizeObserver(() => viewport.resize()).observe(viewport.canvas);
+const sizes = new ResizeObserver(() => viewport.resize());
+sizes.observe(viewport.canvas);
+sizes.observe(byId('handles'));
 
 function animate(): void {
   keys.advance();
@@ -87,6 +107,7 @@ function animate(): void {
   viewport.showWay(hand.energy.alive ? hand.way.rest() : []);
   viewport.draw();
   placeSaid();
+  placeCue();
   requestAnimationFrame(animate);
 }
 requestAnimationFrame(animate);

@@ -21,20 +21,12 @@ describe('a cut in the demo', () => {
   beforeAll(async () => {
     await daemon.start();
     browser = await launch();
-    viewer = await ViewerPage.open(browser, daemon.url, {}, 'no');
+    viewer = await ViewerPage.open(browser, daemon.url);
     await viewer.live('d1-fascia');
   });
   afterAll(async () => {
     await browser.close();
     await daemon.end();
-  });
-
-  it('greets with three lines that go away for good', async () => {
-    const hint = viewer.page.locator('#hint');
-    expect(await hint.locator('> p').count()).toBe(3);
-    await hint.getByRole('button', { name: 'Understood' }).click();
-    expect(await hint.isVisible()).toBe(false);
-    expect(await viewer.page.evaluate(() => localStorage.getItem('hint'))).toBe('seen');
   });
 
   it('parts the fascia where the hook is dragged, in the model and in the picture', async () => {

@@ -30,7 +30,7 @@ describe('hands', () => {
   };
   const letGo = async (): Promise<void> => {
     await viewer.page.getByRole('tab', { name: 'Tools' }).click();
-    await viewer.page.locator('#give').click();
+    await viewer.page.locator('#panel-tools .give').click();
     await viewer.until(() => !window.cautery.driving, null, 'the tool is free');
   };
 
@@ -110,7 +110,7 @@ describe('hands that need a page in front', () => {
     await viewer.live('d1-fascia');
     await viewer.page.evaluate(holdGamepad);
     await viewer.page.getByRole('tab', { name: 'Tools' }).click();
-    await viewer.page.locator('#take').click();
+    await viewer.page.locator('#panel-tools .take').click();
     await viewer.until(() => window.cautery.driving, null, 'the tool is taken');
   });
   afterAll(async () => {

@@ -117,7 +117,7 @@ describe('each input alone takes a free tool, moves it and cuts', () => {
   it.each(INPUTS)('%s', async (name, play) => {
     const daemon = new Daemon(['--demo', 'fascia']);
     await daemon.start();
-    const viewer = await ViewerPage.open(browser, daemon.url, name.includes('finger') ? TABLET : {});
+    const viewer = await ViewerPage.openFirst(browser, daemon.url, name.includes('finger') ? TABLET : {});
     await viewer.live('d1-fascia');
     expect((await viewer.state()).driving).toBe(false);
     const begun = Date.now();

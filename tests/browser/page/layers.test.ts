@@ -138,7 +138,7 @@ describe('the layers scene, cut', () => {
   });
 
   it('gapes, with strands left across it and the fat under it', async () => {
-    const viewer = await ViewerPage.open(browser, daemon.url);
+    const viewer = await ViewerPage.openFirst(browser, daemon.url);
     await viewer.live(SESSION);
     expect((await viewer.state()).drawnFaces['fascia']).toBeLessThan(6000 - 50); // of deploy/scenes/layers.json
     expect((await viewer.state()).drawnFaces['membrane']).toBeGreaterThan(0.8 * 6200);

@@ -26,12 +26,28 @@ describe('panels', () => {
     await daemon.end();
   });
 
+  it('speaks in millimetres, degrees and sentences', async () => {
+    const { page } = viewer;
+    expect(await page.locator('#panel-sessions').textContent()).not.toMatch(/avx|sse|neon|scalar/i);
+    await page.getByLabel('Name of the fork').fill('My knee');
+    await page.getByRole('button', { name: 'Fork this session' }).click();
+    const problem = page.locator('#panel-sessions > .problem');
+    await problem.waitFor({ state: 'visible' });
+    expect(await problem.textContent()).toMatch(/^A name begins with a small letter[^[\]*()]*\.$/);
+    await page.getByLabel('Name of the fork').fill('');
+    await page.getByRole('tab', { name: 'Tools' }).click();
+    expect(await page.getByLabel('Hot radius').inputValue()).toBe('3');
+    expect(await page.getByLabel('Jaw open').inputValue()).toBe('34.3774677');
+    expect(await page.locator('#panel-tools').getByText('mm/s').count()).toBe(1);
+    await page.getByRole('tab', { name: 'Sessions' }).click();
+  });
+
   it('keeps the state under a name', async () => {
     const { page } = viewer;
     await page.locator('#snapshot > summary').click();
     await page.locator('#snapshot input').fill('flat');
     await page.getByRole('button', { name: 'Take a snapshot' }).click();
-    await page.locator('#snapshot [role=status]').getByText('flat holds tick').waitFor();
+    await page.locator('#snapshot [role=status]').getByText(/^flat holds \d+\.\d\d s\.$/).waitFor();
   });
 
   it('applies a force to the vertex nearest to a place', async () => {

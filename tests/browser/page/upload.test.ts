@@ -28,7 +28,7 @@ describe('a mesh of one’s own', () => {
   const give = async (name: string, text: string): Promise<void> => {
     const { page } = viewer;
     await page.locator('#upload input[type=file]').setInputFiles({ name, mimeType: 'text/plain', buffer: Buffer.from(text) });
-    await page.locator('#upload input[name=unit]').fill('0.001');
+    await page.locator('#upload input[name=unit]').fill('1');
     await page.locator('#upload').getByRole('button', { name: 'Upload and create' }).click();
   };
 

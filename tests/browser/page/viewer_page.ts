@@ -30,7 +30,12 @@ export class ViewerPage {
 
   private constructor(readonly page: Page) {}
 
-  static async open(browser: Browser, url: string, options: BrowserContextOptions = {}, hint = 'seen'): Promise<ViewerPage> {
+  /** As it comes up the first time, for trainees; tests of the panels open it for researchers. */
+  static openFirst(browser: Browser, url: string, options: BrowserContextOptions = {}): Promise<ViewerPage> {
+    return ViewerPage.open(browser, url, options, 'operate');
+  }
+
+  static async open(browser: Browser, url: string, options: BrowserContextOptions = {}, mode = 'research'): Promise<ViewerPage> {
     const context = await browser.newContext({ viewport: { width: 1100, height: 720 }, colorScheme: 'dark', ...options });
     const page = await context.newPage();
     const viewer = new ViewerPage(page);
@@ -40,7 +45,7 @@ export class ViewerPage {
     page.on('pageerror', (error) => viewer.complaints.push(String(error)));
     page.on('request', (request) => viewer.hosts.add(new URL(request.url()).host));
     page.on('websocket', (socket) => viewer.hosts.add(new URL(socket.url()).host));
-    await page.addInitScript((seen) => localStorage.setItem('hint', seen), hint);
+    await page.addInitScript((kept) => localStorage.setItem('mode', kept), mode);
     await page.goto(url);
     return viewer;
   }
@@ -149,7 +154,7 @@ export class ViewerPage {
   /** Takes the tool and makes it hotter: a test that waits for tissue to take heat up would only wait. */
   async heatTool(celsius: number): Promise<void> {
     await this.page.getByRole('tab', { name: 'Tools' }).click();
-    await this.page.locator('#take').click();
+    await this.page.locator('#panel-tools .take').click();
     await this.until(() => window.cautery.driving, null, 'the tool is taken');
     await this.setTool('temperature_c', celsius);
   }

@@ -7,6 +7,7 @@ import type { Model } from '../model/model';
 import { nameOf } from '../model/person';
 import type { EnergyOff, ToolState } from '../wire/records';
 import type { Frame } from '../wire/worker_messages';
+import { errorWords } from '../model/sentences';
 
 /** What can be held, and how to hold it anew. */
 export type Held = 'space' | 'button' | 'trigger' | 'pointer';
@@ -23,6 +24,7 @@ const LOST_WORDS: Readonly<Record<EnergyOff, string>> = {
   never_enabled: 'the simulation cut it before it came on',
   commanded: 'somebody switched it off',
 };
+const PAUSED = 'the session is paused';
 const KEY = 'energy';
 
 type State = 'off' | 'asked' | 'on' | 'lost';
@@ -70,6 +72,10 @@ export class Energy {
     this.tool = tool;
     this.since = null;
     this.model.unsay(KEY);
+    if (this.model.frame?.paused) {
+      this.lose(PAUSED);
+      return;
+    }
     const epoch = this.model.frame?.epoch ?? '';
     const enable = ++this.enables;
     this.control.call('tool.energize', { tool, sequence: this.sequence(), energized: true }).then(
@@ -106,7 +112,7 @@ export class Energy {
     // Off is also said after a loss, should an enable still be under way; but never to somebody else's tool.
     if (!this.model.drives(tool)) return;
     this.control.call('tool.energize', { tool, sequence: this.sequence(), energized: false }).catch((error: unknown) => {
-      if (state !== 'lost') this.model.say('warning', `Energy: ${error instanceof Error ? error.message : String(error)}.`);
+      if (state !== 'lost') this.model.say('warning', errorWords(error));
     });
     this.model.emit('tools', undefined);
   }
@@ -117,7 +123,7 @@ export class Energy {
     const state = frame.tools.find(({ name }) => name === this.tool);
     if (frame.epoch !== this.since.epoch) this.lose(LOST_WORDS['restored']);
     else if (state?.energized) this.state = 'on';
-    else if (frame.paused) this.lose('the session is paused');
+    else if (frame.paused) this.lose(PAUSED);
     else if (frame.tick > this.since.tick) this.lose(this.reason(state));
   }
 

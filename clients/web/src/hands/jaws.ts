@@ -6,6 +6,7 @@ import { Vector3 } from 'three';
 import type { Control } from '../model/control';
 import type { Model } from '../model/model';
 import { hasJaws } from '../model/tool_parts';
+import { errorWords } from '../model/sentences';
 
 const ARRIVED_M = 0.001;
 
@@ -29,7 +30,7 @@ export class Jaws {
     const method = closed ? 'tool.grasp' : 'tool.release';
     this.control
       .call(method, { tool: model.selectedTool, sequence: this.sequence() })
-      .catch((error: unknown) => model.say('error', error instanceof Error ? error.message : String(error)));
+      .catch((error: unknown) => model.say('error', errorWords(error)));
   }
 
   press(): void {

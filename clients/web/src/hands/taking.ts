@@ -3,6 +3,7 @@
 import type { Control } from '../model/control';
 import type { Model } from '../model/model';
 import { nameOf } from '../model/person';
+import { errorWords } from '../model/sentences';
 
 const KEY = 'driver';
 const TOLD_MS = 4000; // keys and sticks ask sixty times a second
@@ -33,7 +34,7 @@ export class Taking {
     this.busy = true;
     this.control
       .takeOver(tool)
-      .catch((error: unknown) => this.refuse(`The ${tool} could not be taken: ${error instanceof Error ? error.message : String(error)}.`))
+      .catch((error: unknown) => this.refuse(`The ${tool} could not be taken. ${errorWords(error)}`))
       .finally(() => (this.busy = false));
     return true;
   }
@@ -60,7 +61,7 @@ export class Taking {
     const ask = (): void => {
       control.ask(driver.tool).then(
         () => model.say('info', `${nameOf(driver)} has been asked for the ${driver.tool}.`),
-        (error: unknown) => model.say('error', error instanceof Error ? error.message : String(error)),
+        (error: unknown) => model.say('error', errorWords(error)),
       );
     };
     model.say('warning', why, { action: { words: `Ask ${nameOf(driver)} for it`, press: ask } });

@@ -5,11 +5,14 @@ import type { MaterialSet, Pushes, Requests, Scene, SessionDescription, Tool } f
 import { nameOf } from './person';
 import type { Channels } from '../wire/worker_messages';
 import type { Model } from './model';
+import { errorWords } from './sentences';
 
 const CHANNELS: Channels = ['positions', 'mask', 'exposure', 'charring', 'tools', 'statistics'];
 /** Channels that cost the daemon work of their own: joined only while they are shown. */
 export type ExtraChannel = 'stress' | 'temperature';
 export class Control {
+  /** what the user waits for, in words: "Going back to 12.3 s" */
+  readonly busy: string[] = [];
   private extra: ExtraChannel | null = null;
 
   constructor(
@@ -44,7 +47,7 @@ export class Control {
   }
 
   async create(params: { scene?: string; definition?: Scene; name?: string }): Promise<SessionDescription> {
-    const description = await this.link.call('session.create', params);
+    const description = await this.during('Making the session', this.link.call('session.create', params));
     this.model.putSession(description.summary);
     this.watch(description.summary.session);
     return description;
@@ -52,7 +55,7 @@ export class Control {
 
   async fork(name?: string): Promise<SessionDescription> {
     const params = { ...this.here(), ...(name === undefined || name === '' ? {} : { name }) };
-    const description = await this.link.call('session.fork', params);
+    const description = await this.during('Copying the session', this.link.call('session.fork', params));
     this.model.putSession(description.summary);
     this.watch(description.summary.session);
     return description;
@@ -64,8 +67,18 @@ export class Control {
   }
 
   async rewind(tick: number): Promise<void> {
-    await this.link.call('session.rewind', { ...this.here(), tick });
+    const step = this.model.summary?.step_s ?? 0;
+    await this.during(`Going back to ${(tick * step).toFixed(2)} s`, this.link.call('session.rewind', { ...this.here(), tick }));
     await this.loadTimeline();
+  }
+
+  async reset(): Promise<void> {
+    await this.during('Starting over', this.link.call('session.reset', this.here()));
+  }
+
+  async restore(name: string): Promise<number> {
+    const { tick } = await this.during(`Going back to ${name}`, this.link.call('session.restore', { ...this.here(), name }));
+    return tick;
   }
 
   async loadTimeline(): Promise<void> {
@@ -179,8 +192,17 @@ export class Control {
     this.watch(this.model.sessions.find((other) => other.session !== session)?.session ?? null);
   }
 
+  private async during<T>(words: string, work: Promise<T>): Promise<T> {
+    this.busy.push(words);
+    try {
+      return await work;
+    } finally {
+      this.busy.splice(this.busy.indexOf(words), 1);
+    }
+  }
+
   /** Follow-up questions whose failure only means that the next change asks again. */
   private later(work: Promise<void>): void {
-    work.catch((error: unknown) => this.model.notice('warning', error instanceof Error ? error.message : String(error)));
+    work.catch((error: unknown) => this.model.notice('warning', errorWords(error)));
   }
 }

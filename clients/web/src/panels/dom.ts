@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Elements made short, and work whose failure is told where it was started.
 
+import { errorWords } from '../model/sentences';
+
 type Child = Node | string | null;
 type Props<T extends HTMLElement> = Partial<Omit<T, 'style' | 'dataset'>> & {
   class?: string;
@@ -34,13 +36,6 @@ export function problemPlace(): HTMLParagraphElement {
   return element('p', { class: 'problem', hidden: true, aria: { role: 'alert' } });
 }
 
-function sentence(error: unknown): string {
-  const words = error instanceof Error ? error.message : String(error);
-  const path = error instanceof Error && 'path' in error && typeof error.path === 'string' ? error.path : '';
-  const member = path.replace(/^params\.?/, '');
-  return member === '' ? words : `${member}: ${words}`;
-}
-
 function mark(busy: HTMLButtonElement | undefined, working: boolean): void {
   if (!busy) return;
   busy.disabled = working;
@@ -54,7 +49,7 @@ export async function attempt<T>(place: HTMLElement, work: () => Promise<T>, bus
   try {
     return await work();
   } catch (error) {
-    place.textContent = sentence(error);
+    place.textContent = errorWords(error);
     place.hidden = false;
     return null;
   } finally {

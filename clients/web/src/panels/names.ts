@@ -1,4 +1,12 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Names of sessions, tools and snapshots, for the inputs that take them.
+// Inputs for the names of sessions, tools and snapshots, which say in a sentence what a name may be.
+import { NAME_RULE } from '../model/sentences';
+import { element } from './dom';
 
-export const NAME_PATTERN = '[a-z][a-z0-9]*([_\\-][a-z0-9]+)*';
+const NAME = /^[a-z][a-z0-9]*([_-][a-z0-9]+)*$/;
+
+export function nameInput(props: { name: string; maxLength: number; required?: boolean; value?: string; placeholder?: string }): HTMLInputElement {
+  const input = element('input', { autocomplete: 'off', spellcheck: false, ...props });
+  input.addEventListener('input', () => input.setCustomValidity(input.value === '' || NAME.test(input.value) ? '' : `${NAME_RULE}.`));
+  return input;
+}

@@ -6,7 +6,7 @@ import { nameOf } from '../model/person';
 import type { Control } from '../model/control';
 import type { LinkState } from '../wire/connection';
 import type { Notice } from '../model/model';
-import { attempt, button, byId, element, field, problemPlace } from './dom';
+import { attempt, button, byId, element, problemPlace } from './dom';
 
 const NOTICE_MS = 9000;
 const NOTICES_MAX = 4;
@@ -24,59 +24,40 @@ function linkWords(link: LinkState): string {
   }
 }
 
-export function showLink(control: Control, connect: (token?: string) => void): void {
+export function showLink(control: Control): void {
   const { model } = control;
   const place = byId('link');
   const show = (): void => {
     place.textContent = linkWords(model.link);
     place.className = `link ${model.link.state}`;
-    if (model.link.state === 'refused' && model.link.status === 'unauthorized') askToken(connect);
   };
   model.on('link', show);
   model.on('joined', (joined) => (byId('where').textContent = joined ? joined.description.summary.session : 'no session'));
   show();
 }
 
-function askToken(connect: (token?: string) => void): void {
-  if (document.getElementById('token')) return;
-  const token = element('input', { type: 'password', name: 'token', autocomplete: 'current-password', required: true });
-  const dialog = element('dialog', { id: 'token', aria: { label: 'Access token' } });
-  const form = element('form', { class: 'form', method: 'dialog' }, field('Access token', token), element('button', { type: 'submit' }, 'Connect'));
-  form.addEventListener('submit', () => {
-    dialog.remove();
-    connect(token.value);
-  });
-  dialog.append(element('p', {}, 'This daemon asks for a token. It is kept in this page only.'), form);
-  document.body.append(dialog);
-  dialog.showModal();
-}
-
 const MOUSE_HINT = [
-  'Drag on the tissue to lead the hook over it.',
-  'Hold Space, or the Energy button, to cut with heat.',
-  'Right drag turns the view; the timeline below takes you back.',
+  'Move the mouse over the tissue to lead the tool; press to cut.',
+  'Go slowly: tissue takes a few seconds of heat before it parts.',
+  'Drag beside the tissue to turn the view; the timeline below takes you back.',
 ];
 const FINGER_HINT = [
-  'Drag on the tissue to lead the hook; pinch for depth.',
-  'Hold the Energy button with another finger to cut.',
+  'Touch the tissue to cut; choose Move to lead the tool without heat.',
+  'Go slowly: tissue takes a few seconds of heat before it parts.',
   'Two fingers turn the view; the timeline takes you back.',
 ];
 
-export function showHint(): void {
+/** All that the hands can do, when somebody asks: the cue on the tissue is enough to begin. */
+export function showHelp(): void {
   const hint = byId('hint');
   const open = (): void => {
-    const close = button('Understood', () => {
-      hint.hidden = true;
-      localStorage.setItem('hint', 'seen');
-    });
     hint.replaceChildren(
       ...(window.matchMedia('(pointer: coarse)').matches ? FINGER_HINT : MOUSE_HINT).map((words) => element('p', {}, words)),
       element('details', {}, element('summary', {}, 'All keys'), element('dl', {}, ...KEY_HELP.flatMap(([key, what]) => [element('dt', {}, key), element('dd', {}, what)]))),
-      close,
+      button('Understood', () => (hint.hidden = true)),
     );
-    hint.hidden = false;
+    hint.hidden = !hint.hidden;
   };
-  if (localStorage.getItem('hint') !== 'seen') open();
   document.querySelector('.bar')?.append(button('Help', open, { id: 'help' }));
 }
 

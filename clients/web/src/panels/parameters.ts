@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Numbers of a table as inputs with unit, range and meaning.
+import { memberWords } from '../model/sentences';
 import type { Parameter } from '../wire/messages.gen';
 import { element, field, short } from './dom';
 
@@ -13,27 +14,42 @@ export interface ParameterInputs {
   clear(): void;
 }
 
-function words(name: string): string {
-  const bare = name.replace(/_(m_s|m2_s|m2|m|c|pa|rad_s|rad|per_s|n_m|ns_m|n|nm|kg_m3|s)$/, '');
-  return bare.charAt(0).toUpperCase() + bare.slice(1).replaceAll('_', ' ');
+interface Shown {
+  unit: string;
+  /** shown over told */
+  scale: number;
 }
 
-const UNITS: Readonly<Record<string, string>> = { degC: '°C', 'm^2': 'm²', 'm^2/s': 'm²/s', 'kg/m^3': 'kg/m³', '1': '' };
+/** Lengths in millimetres, angles in degrees; the rest as the daemon has it. */
+const SHOWN: Readonly<Record<string, Shown>> = {
+  'm': { unit: 'mm', scale: 1000 },
+  'm/s': { unit: 'mm/s', scale: 1000 },
+  'm^2': { unit: 'mm²', scale: 1e6 },
+  'm^2/s': { unit: 'mm²/s', scale: 1e6 },
+  'rad': { unit: '°', scale: 180 / Math.PI },
+  'rad/s': { unit: '°/s', scale: 180 / Math.PI },
+  'degC': { unit: '°C', scale: 1 },
+  'kg/m^3': { unit: 'kg/m³', scale: 1 },
+  '1': { unit: '', scale: 1 },
+};
+const DIGITS = 9; // what a number keeps there and back: more than anybody types
+
+const rounded = (value: number): number => Number(value.toPrecision(DIGITS));
 
 export function parameterInputs(parameters: readonly Parameter[]): ParameterInputs {
   const inputs = parameters.map((parameter) => {
-    const { least, most } = parameter;
+    const { unit, scale } = SHOWN[parameter.unit] ?? { unit: parameter.unit, scale: 1 };
+    const [least, most] = [rounded(parameter.least * scale), rounded(parameter.most * scale)];
     const input = element('input', { type: 'number', name: parameter.name, min: String(least), max: String(most), step: 'any' });
     const title = `${parameter.meaning}; ${short(least)} to ${short(most)}`;
-    const unit = UNITS[parameter.unit] ?? parameter.unit;
-    return { parameter, input, label: field(words(parameter.name), input, unit, title), shown: '' };
+    return { parameter, scale, unit, least, most, input, label: field(memberWords(parameter.name), input, unit, title), shown: '' };
   });
   return {
     fields: inputs.map(({ label }) => label),
     show(values) {
       for (const one of inputs) {
         const value = values[one.parameter.name];
-        const next = String(typeof value === 'number' ? value : one.parameter.default);
+        const next = String(rounded(one.scale * (typeof value === 'number' ? value : one.parameter.default)));
         if (one.input.value === one.shown) one.input.value = next;
         one.shown = next;
       }
@@ -43,12 +59,11 @@ export function parameterInputs(parameters: readonly Parameter[]): ParameterInpu
     },
     read() {
       const values: Record<string, number> = {};
-      for (const { parameter, input } of inputs) {
+      for (const { parameter, scale, unit, least, most, input } of inputs) {
         const value = input.valueAsNumber;
-        const { least, most, meaning } = parameter;
         if (!(value >= least && value <= most))
-          throw new Error(`${words(parameter.name)} (${meaning}) must be from ${short(least)} to ${short(most)}`);
-        values[parameter.name] = value;
+          throw new Error(`${memberWords(parameter.name)} (${parameter.meaning}) must be from ${short(least)} to ${short(most)} ${unit}`.trimEnd());
+        values[parameter.name] = Math.min(Math.max(value / scale, parameter.least), parameter.most);
       }
       return values;
     },

@@ -3,8 +3,9 @@
 import type { Control } from '../model/control';
 import type { Link } from '../wire/link';
 import type { Scene, SessionSummary } from '../wire/messages.gen';
+import { ask } from './ask';
 import { attempt, button, element, field, problemPlace, save } from './dom';
-import { NAME_PATTERN } from './names';
+import { nameInput } from './names';
 import { snapshotSection } from './snapshots';
 import type { Panel } from './tabs';
 import { uploadForm } from './upload';
@@ -20,8 +21,10 @@ function row(control: Control, summary: SessionSummary, problem: HTMLElement): H
     aria: here ? { current: 'true' } : {},
   });
   const destroy = button('Destroy', () => {
-    if (!window.confirm(`Destroy ${summary.session} and all that is stored of it?`)) return;
-    void attempt(problem, () => control.destroy(summary.session), destroy);
+    const lost = `Its tissue, its ${summary.time_s.toFixed(1)} s of time, snapshots and script go for good, for everybody.`;
+    void ask(`Destroy ${summary.session}?`, lost, 'Destroy').then((sure) => {
+      if (sure) void attempt(problem, () => control.destroy(summary.session), destroy);
+    });
   });
   destroy.setAttribute('aria-label', `Destroy ${summary.session}`);
   destroy.disabled = !control.model.mayOperate;
@@ -32,7 +35,7 @@ function row(control: Control, summary: SessionSummary, problem: HTMLElement): H
 function createForm(control: Control, problem: HTMLElement): HTMLElement {
   const { model, link } = control;
   const scene = element('select', { name: 'scene' });
-  const name = element('input', { name: 'name', pattern: NAME_PATTERN, maxLength: 40, placeholder: 'chosen by the daemon', autocomplete: 'off' });
+  const name = nameInput({ name: 'name', maxLength: 40, placeholder: 'made up' });
   const iterations = element('input', { type: 'number', name: 'iterations', min: '1', max: '1000', step: '1' });
   const step = element('input', { type: 'number', name: 'step', min: '1', max: '33.3', step: 'any' });
   const gravity = element('input', { type: 'number', name: 'gravity', min: '-100', max: '100', step: 'any' });
@@ -103,7 +106,7 @@ function request(definition: Scene | null, fields: CreateFields): { scene?: stri
 
 function forkAndFiles(control: Control, problem: HTMLElement): HTMLElement {
   const { model } = control;
-  const name = element('input', { name: 'fork', pattern: NAME_PATTERN, maxLength: 40, placeholder: 'name', autocomplete: 'off' });
+  const name = nameInput({ name: 'fork', maxLength: 40, placeholder: 'name' });
   name.setAttribute('aria-label', 'Name of the fork');
   const fork = button('Fork this session', () => void attempt(problem, () => control.fork(name.value), fork), { id: 'fork' });
   const exported = (format: 'vtu' | 'obj'): HTMLButtonElement => {
@@ -137,7 +140,7 @@ export function sessionsPanel(control: Control, link: Link): Panel {
     const description = joined?.description;
     about.textContent = description
       ? `${description.description} ${description.summary.vertex_count} vertices, ${description.triangle_count} triangles, ` +
-        `${description.tetrahedron_count} tetrahedra, ${description.link_count} links; ${description.instruction_set}.`
+        `${description.tetrahedron_count} tetrahedra, ${description.link_count} links.`
       : '';
   });
   const body = element(

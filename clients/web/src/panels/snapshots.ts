@@ -2,7 +2,7 @@
 // Snapshots: the state under a name, and back to it.
 import type { Control } from '../model/control';
 import { attempt, button, element, field, problemPlace } from './dom';
-import { NAME_PATTERN } from './names';
+import { nameInput } from './names';
 
 /** Names in the timeline's words: `name=half-way branch=1 ...`. */
 function namesIn(control: Control): string[] {
@@ -14,13 +14,12 @@ export function snapshotSection(control: Control): HTMLElement {
   const { model } = control;
   const problem = problemPlace();
   const said = element('p', { class: 'about', aria: { role: 'status' } });
-  const name = element('input', {
-    name: 'snapshot', pattern: NAME_PATTERN, maxLength: 48, autocomplete: 'off', placeholder: 'chosen by the daemon',
-  });
+  const name = nameInput({ name: 'snapshot', maxLength: 48, placeholder: 'made up' });
   const known = element('datalist', { id: 'snapshots' });
   name.setAttribute('list', known.id);
   /** those of other branches are not in the timeline, but can be gone back to */
   let taken: string[] = [];
+  const seconds = (tick: number): string => `${(tick * (model.summary?.step_s ?? 0)).toFixed(2)} s`;
   const showKnown = (): void => {
     taken = [...new Set([...taken, ...namesIn(control)])];
     known.replaceChildren(...taken.map((value) => element('option', { value })));
@@ -29,8 +28,8 @@ export function snapshotSection(control: Control): HTMLElement {
   const back = button('Go back to it', () => {
     const work = async (): Promise<void> => {
       if (name.value === '') throw new Error('name the snapshot to go back to');
-      const { tick } = await control.call('session.restore', { name: name.value });
-      said.textContent = `Back at ${name.value}, tick ${tick}; energy is off.`;
+      const tick = await control.restore(name.value);
+      said.textContent = `Back at ${name.value}, ${seconds(tick)}; energy is off.`;
       await control.loadTimeline();
     };
     void attempt(problem, work, back);
@@ -42,7 +41,7 @@ export function snapshotSection(control: Control): HTMLElement {
       const made = await control.call('session.snapshot', name.value === '' ? {} : { name: name.value });
       taken.push(made.name);
       name.value = made.name;
-      said.textContent = `${made.name} holds tick ${made.tick}.`;
+      said.textContent = `${made.name} holds ${seconds(made.tick)}.`;
       showKnown();
     };
     void attempt(problem, work, take);

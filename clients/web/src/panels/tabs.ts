@@ -10,7 +10,8 @@ export interface Panel {
   shown?: (visible: boolean) => void;
 }
 
-export function makeTabs(panels: readonly Panel[]): void {
+/** Returns what shows or hides them all. */
+export function makeTabs(panels: readonly Panel[]): { show(visible: boolean): void } {
   const list = byId('tabs');
   const place = byId('panels');
   const tabs = panels.map((panel) => {
@@ -21,12 +22,15 @@ export function makeTabs(panels: readonly Panel[]): void {
     place.append(panel.body);
     return element('button', { type: 'button', id: `tab-${panel.id}`, aria: { role: 'tab', controls: `panel-${panel.id}` } }, panel.title);
   });
+  let shown = 0;
+  let all = false;
   const show = (chosen: number, focus: boolean): void => {
+    shown = chosen;
     panels.forEach((panel, i) => {
       tabs[i].setAttribute('aria-selected', String(i === chosen));
       tabs[i].tabIndex = i === chosen ? 0 : -1;
       panel.body.hidden = i !== chosen;
-      panel.shown?.(i === chosen);
+      panel.shown?.(all && i === chosen);
     });
     if (focus) tabs[chosen].focus();
   };
@@ -43,4 +47,11 @@ export function makeTabs(panels: readonly Panel[]): void {
     list.append(tab);
   });
   show(0, false);
+  return {
+    show(visible) {
+      all = visible;
+      list.hidden = place.hidden = !visible;
+      show(shown, false);
+    },
+  };
 }

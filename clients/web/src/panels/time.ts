@@ -2,6 +2,7 @@
 // Time: pause, step, speed, and the timeline with its events, along which a session goes back.
 import type { Control } from '../model/control';
 import type { TimelineEvent } from '../wire/messages.gen';
+import { ask } from './ask';
 import { attempt, button, byId, element, problemPlace } from './dom';
 
 const SPEEDS = [0.1, 0.25, 0.5, 1, 2];
@@ -16,6 +17,8 @@ const EVENT_WORDS: Partial<Record<TimelineEvent['kind'], string>> = {
   rewind: 'rewind',
   reset: 'reset',
 };
+
+const research = (): boolean => document.body.dataset['mode'] === 'research';
 
 function marks(events: readonly TimelineEvent[], least: number, most: number): SVGElement {
   const svg = document.createElementNS('http://www.w3.org/2000/svg', 'svg');
@@ -34,19 +37,24 @@ function marks(events: readonly TimelineEvent[], least: number, most: number): S
   return svg;
 }
 
-export function timeBar(control: Control): void {
+/** Returns the tick that the timeline is held at; null while it follows the session. */
+export function timeBar(control: Control, shared: number | null): () => number | null {
   const { model } = control;
   const problem = problemPlace();
   const pause = button('Pause', () => {
     const paused = model.frame?.paused === true;
     void attempt(problem, () => control.call(paused ? 'session.resume' : 'session.pause', {}), pause);
   }, { id: 'pause' });
-  const step = button('Step', () => void attempt(problem, () => control.call('session.step', { ticks: 1 }), step), { id: 'step' });
-  const reset = button('Reset', () => void attempt(problem, () => control.call('session.reset', {}), reset), { id: 'reset', title: 'Back to the start' });
-  const speed = element('select', { name: 'speed', aria: { label: 'Speed' } }, ...SPEEDS.map((s) => element('option', { value: String(s) }, `${s} ×`)));
+  const step = button('Step', () => void attempt(problem, () => control.call('session.step', { ticks: 1 }), step), { id: 'step', class: 'research-only' });
+  const reset = button('Start over', () => {
+    void ask('Start over?', 'The tissue is whole again, for everybody in the session.', 'Start over').then((sure) => {
+      if (sure) void attempt(problem, () => control.reset(), reset);
+    });
+  }, { id: 'reset', title: 'Whole tissue, from the start' });
+  const speed = element('select', { name: 'speed', class: 'research-only', aria: { label: 'Speed' } }, ...SPEEDS.map((s) => element('option', { value: String(s) }, `${s} ×`)));
   speed.value = '1';
   speed.addEventListener('change', () => void attempt(problem, () => control.call('session.speed', { speed: Number(speed.value) })));
-  const slider = element('input', { type: 'range', name: 'tick', id: 'tick', min: '0', max: '1', value: '1', aria: { label: 'Timeline: tick to go back to' } });
+  const slider = element('input', { type: 'range', name: 'tick', id: 'tick', min: '0', max: '1', value: '1', aria: { label: 'Timeline: time to go back to' } });
   const track = element('div', { class: 'track' }, slider);
   const rewind = button('Rewind here', () => void attempt(problem, async () => {
     await control.rewind(slider.valueAsNumber);
@@ -54,10 +62,15 @@ export function timeBar(control: Control): void {
   }, rewind), { id: 'rewind', hidden: true });
   const now = element('output', { class: 'now', id: 'now' });
   let held = false;
+  const seconds = (tick: number): string => `${(tick * (model.summary?.step_s ?? 1 / 60)).toFixed(2)} s`;
+  const tell = (): void => {
+    rewind.textContent = `Go back to ${seconds(slider.valueAsNumber)}`;
+    slider.setAttribute('aria-valuetext', seconds(slider.valueAsNumber));
+  };
   slider.addEventListener('input', () => {
     held = slider.valueAsNumber < Number(slider.max);
     rewind.hidden = !held;
-    rewind.textContent = `Rewind to ${slider.valueAsNumber}`;
+    tell();
   });
   byId('time').append(pause, step, reset, speed, track, rewind, now, problem);
 
@@ -68,6 +81,7 @@ export function timeBar(control: Control): void {
     slider.min = String(least);
     slider.max = String(most);
     if (!held) slider.value = String(most);
+    tell();
     rewind.hidden = !held;
   };
   const drawMarks = (): void => {
@@ -85,12 +99,21 @@ export function timeBar(control: Control): void {
   model.on('joined', (joined) => {
     held = false;
     enable();
-    if (joined) void attempt(problem, () => control.loadTimeline());
+    if (joined) void attempt(problem, () => control.loadTimeline().then(showShared));
   });
+  // A link's moment is offered, not gone to: going back moves everybody in the session.
+  const showShared = (): void => {
+    const tick = shared;
+    shared = null;
+    if (tick === null || tick < Number(slider.min) || tick >= Number(slider.max)) return;
+    held = true;
+    slider.value = String(tick);
+    place();
+  };
   let paused: boolean | null = null;
   model.on('frame', (frame) => {
     const rate = frame.samples.at(-1)?.statistics?.realtimeFactor;
-    const text = `${frame.timeS.toFixed(2)} s · tick ${frame.tick}${frame.faulted ? ' · faulted' : ''}${rate === undefined || frame.paused ? '' : ` · ${rate.toFixed(2)} ×`}`;
+    const text = `${frame.timeS.toFixed(2)} s${frame.faulted ? ' · faulted' : frame.paused ? ' · paused' : ''}${research() ? ` · tick ${frame.tick}` : ''}${rate === undefined || frame.paused || !research() ? '' : ` · ${rate.toFixed(2)} ×`}`;
     if (now.value !== text) now.value = text;
     if (frame.paused !== paused) {
       paused = frame.paused;
@@ -102,4 +125,5 @@ export function timeBar(control: Control): void {
     if (model.timeline && !document.hidden) drawMarks();
   }, REFRESH_MS);
   enable();
+  return () => (held ? slider.valueAsNumber : null);
 }

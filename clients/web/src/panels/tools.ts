@@ -2,10 +2,11 @@
 // Tools: which one the hand holds, who drives it, its shape and sizes, new ones.
 import type { ToolHand } from '../hands/tool_hand';
 import type { Control } from '../model/control';
-import { nameOf } from '../model/person';
 import { PARAMETERS, TOOL_SHAPES, type Tool } from '../wire/messages.gen';
+import { ask } from './ask';
 import { attempt, button, element, field, problemPlace, short } from './dom';
-import { NAME_PATTERN } from './names';
+import { drivingButtons } from './driving';
+import { nameInput } from './names';
 import { parameterInputs } from './parameters';
 import type { Panel } from './tabs';
 
@@ -23,42 +24,17 @@ function shapeSelect(): HTMLSelectElement {
   return element('select', { name: 'shape' }, ...TOOL_SHAPES.map((shape) => element('option', { value: shape }, shape)));
 }
 
-function driverWords(control: Control, tool: string): string {
-  const driver = control.model.drivers.get(tool);
-  if (!driver || driver.client === 0) return 'nobody drives it';
-  if (driver.client === control.model.hello?.client) return 'you drive it';
-  return `${nameOf(driver)} drives it`;
-}
-
-function drivingButtons(control: Control, problem: HTMLElement): { place: HTMLElement; refresh(): void } {
-  const { model } = control;
-  const said = element('p', { class: 'about', aria: { role: 'status' } });
-  const chosen = (): string => model.selectedTool ?? '';
-  const take = button('Take the tool', () => void attempt(problem, () => control.takeOver(chosen()), take), { id: 'take' });
-  const ask = button('Ask its driver', () => {
-    void attempt(problem, () => control.ask(chosen()), ask).then((done) => {
-      if (done !== null) said.textContent = 'Asked. The driver may hand it over.';
-    });
-  });
-  const give = button('Let it go', () => void attempt(problem, () => control.handOver(chosen()), give), { id: 'give' });
-  const refresh = (): void => {
-    const driver = model.drivers.get(chosen());
-    const others = driver !== undefined && driver.client !== 0 && !model.driving;
-    said.textContent = model.tool ? `${model.tool.name}: ${driverWords(control, model.tool.name)}.` : 'This session has no tools.';
-    take.hidden = model.driving || (others && model.hello?.role !== 'admin');
-    ask.hidden = !others;
-    give.hidden = !model.driving;
-    for (const one of [take, ask, give]) one.disabled = !model.mayOperate || !model.tool;
-  };
-  return { place: element('div', {}, said, element('div', { class: 'buttons' }, take, ask, give)), refresh };
-}
-
 function editForm(control: Control, problem: HTMLElement): { form: HTMLElement; refresh(): void } {
   const { model } = control;
   const shape = shapeSelect();
   const sizes = parameterInputs(PARAMETERS.tool.filter((parameter) => SHOWN.includes(parameter.name)));
   const apply = element('button', { type: 'submit' }, 'Apply');
-  const remove = button('Remove', () => void attempt(problem, () => control.removeTool(model.selectedTool ?? ''), remove));
+  const remove = button('Remove', () => {
+    const tool = model.selectedTool ?? '';
+    void ask(`Remove the ${tool}?`, 'It goes for everybody in the session.', 'Remove').then((sure) => {
+      if (sure) void attempt(problem, () => control.removeTool(tool), remove);
+    });
+  });
   const form = element('form', { class: 'form' }, field('Shape', shape), ...sizes.fields, element('div', { class: 'buttons' }, apply, remove));
   let shown: Tool | null = null;
   const forget = (): void => {
@@ -92,7 +68,7 @@ function editForm(control: Control, problem: HTMLElement): { form: HTMLElement; 
 function addForm(control: Control): HTMLElement {
   const { model } = control;
   const problem = problemPlace();
-  const name = element('input', { name: 'tool', required: true, maxLength: 48, pattern: NAME_PATTERN, value: 'grasper', autocomplete: 'off' });
+  const name = nameInput({ name: 'tool', required: true, maxLength: 48, value: 'grasper' });
   const shape = shapeSelect();
   shape.value = 'grasper';
   shape.addEventListener('change', () => (name.value = shape.value));

@@ -17,7 +17,7 @@ export function uploadForm(control: Control, link: Link): HTMLElement {
   const problem = problemPlace();
   const file = element('input', { type: 'file', name: 'mesh', accept: '.msh,.obj,.vtk', required: true });
   const kind = element('select', { name: 'kind' }, ...MESH_KINDS.map(([value, words]) => element('option', { value }, words)));
-  const size = element('input', { type: 'number', name: 'unit', value: '0.01', min: '1e-9', max: '1000', step: 'any', required: true });
+  const size = element('input', { type: 'number', name: 'unit', value: '10', min: '1e-6', max: '1000000', step: 'any', required: true });
   const bar = element('progress', { max: 1, value: 0, hidden: true, aria: { label: 'Upload' } });
   const submit = element('button', { type: 'submit' }, 'Upload and create');
   file.addEventListener('change', () => {
@@ -32,7 +32,7 @@ export function uploadForm(control: Control, link: Link): HTMLElement {
     try {
       const uploaded = await link.upload(UPLOAD_NAME, mesh, (sent, total) => (bar.value = sent / total));
       try {
-        await control.create({ definition: sceneOfMesh(uploaded.file, kind.value as MeshKind, size.valueAsNumber) });
+        await control.create({ definition: sceneOfMesh(uploaded.file, kind.value as MeshKind, size.valueAsNumber / 1000) });
       } finally {
         // The session has its own copy, and another attempt sends the file again. If this is lost, the
         // next upload takes the place of this one, and the last goes with the connection.
@@ -47,7 +47,7 @@ export function uploadForm(control: Control, link: Link): HTMLElement {
     { class: 'form' },
     field('Mesh file', file, '', 'Gmsh .msh, Wavefront .obj or legacy .vtk'),
     field('Tissue', kind),
-    field('One unit is', size, 'm', 'length of the file’s unit: 0.001 for millimetres'),
+    field('One unit is', size, 'mm', 'length of the file’s unit: 1 for millimetres, 1000 for metres'),
     submit,
     bar,
     problem,

@@ -1,10 +1,23 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// A camera that looks at a point and turns around it; z is up.
-import { Box3, PerspectiveCamera, Vector3 } from 'three';
+// A camera that looks at a point and turns around it; z is up. Its home shows everything that was framed,
+// whatever the picture's shape.
+import { PerspectiveCamera, Vector3 } from 'three';
 
-const FIELD_OF_VIEW = 38; // degrees, of the shorter side
+const FIELD_OF_VIEW = 38; // degrees, of the height
 const HOME_ELEVATION = 0.85; // rad
 const STEEPEST = 1.5; // rad above or below the horizon
+const NEAREST_M = 0.01;
+const FARTHEST_M = 5;
+/** Of the picture, on each side of its middle, that what is framed may fill. */
+const FREE = { side: 0.94, top: 0.92, bottom: 0.94 };
+const FITTING_STEPS = 24;
+
+export interface CameraPose {
+  azimuth: number;
+  elevation: number;
+  distance: number;
+  target: readonly [number, number, number];
+}
 
 export class Orbit {
   readonly camera = new PerspectiveCamera(FIELD_OF_VIEW, 1, 0.001, 10);
@@ -12,43 +25,67 @@ export class Orbit {
   private azimuth = -Math.PI / 2;
   private elevation = HOME_ELEVATION;
   private distance = 0.25;
-  private home = { target: new Vector3(), distance: 0.25 };
+  private framed: readonly Vector3[] = [];
+  /** nobody has turned or moved the camera since it was at home */
+  private atHome = true;
+  /** of the picture's height, at its foot, that buttons cover */
+  private covered = 0;
 
   constructor() {
     this.camera.up.set(0, 0, 1);
     this.place();
   }
 
-  /** Looks at the whole of a box, from the surgeon's side. */
-  frame(box: Box3): void {
-    const size = box.getSize(new Vector3());
-    box.getCenter(this.target);
-    this.distance = Math.max(0.66 * Math.max(size.x, 1.35 * size.y, size.z) / Math.tan((FIELD_OF_VIEW * Math.PI) / 360) / 1.25, 0.02);
-    this.home = { target: this.target.clone(), distance: this.distance };
+  /** Looks at all of some points, from the surgeon's side. */
+  frame(points: readonly Vector3[]): void {
+    this.framed = points;
     this.reset();
   }
 
   reset(): void {
-    this.target.copy(this.home.target);
-    this.distance = this.home.distance;
+    this.atHome = true;
     this.azimuth = -Math.PI / 2;
     this.elevation = HOME_ELEVATION;
-    this.place();
+    this.fit();
+  }
+
+  get pose(): CameraPose | null {
+    const { azimuth, elevation, distance, target } = this;
+    return this.atHome ? null : { azimuth, elevation, distance, target: target.toArray() };
+  }
+
+  /** Looks from where a link says. */
+  restore({ azimuth, elevation, distance, target }: CameraPose): void {
+    this.azimuth = azimuth;
+    this.distance = Math.min(Math.max(distance, NEAREST_M), FARTHEST_M);
+    this.target.fromArray([...target]);
+    this.turn(0, elevation - this.elevation);
+  }
+
+  /** Looks straight from above, or along the tissue. */
+  look(elevation: number): void {
+    this.azimuth = -Math.PI / 2;
+    this.elevation = Math.min(Math.max(elevation, -STEEPEST), STEEPEST);
+    this.fit();
+    this.atHome = false;
   }
 
   turn(byAzimuth: number, byElevation: number): void {
+    this.atHome = false;
     this.azimuth += byAzimuth;
     this.elevation = Math.min(Math.max(this.elevation + byElevation, -STEEPEST), STEEPEST);
     this.place();
   }
 
   zoom(factor: number): void {
-    this.distance = Math.min(Math.max(this.distance * factor, 0.01), 5);
+    this.atHome = false;
+    this.distance = Math.min(Math.max(this.distance * factor, NEAREST_M), FARTHEST_M);
     this.place();
   }
 
   /** Moves the target by a share of the picture's height. */
   pan(right: number, up: number): void {
+    this.atHome = false;
     const height = 2 * this.distance * Math.tan((this.camera.fov * Math.PI) / 360);
     const { x, y } = this.axes();
     this.target.addScaledVector(x, -right * height).addScaledVector(y, -up * height);
@@ -74,12 +111,35 @@ export class Orbit {
     return { x, y };
   }
 
-  resize(width: number, height: number): void {
-    const aspect = width / Math.max(height, 1);
-    this.camera.aspect = aspect;
-    const half = Math.tan((FIELD_OF_VIEW * Math.PI) / 360);
-    this.camera.fov = aspect >= 1.2 ? FIELD_OF_VIEW : (Math.atan((half * 1.2) / aspect) * 360) / Math.PI;
+  resize(width: number, height: number, coveredBelow: number): void {
+    this.covered = Math.min(coveredBelow / Math.max(height, 1), 0.5);
+    this.camera.aspect = width / Math.max(height, 1);
     this.camera.updateProjectionMatrix();
+    if (this.atHome) this.fit();
+  }
+
+  /** The distance and the height of the target at which what is framed fills the free part of the picture. */
+  private fit(): void {
+    if (this.framed.length === 0) {
+      this.place();
+      return;
+    }
+    this.target.set(0, 0, 0);
+    for (const point of this.framed) this.target.addScaledVector(point, 1 / this.framed.length);
+    const bottom = FREE.bottom - 2 * this.covered;
+    for (let i = 0; i < FITTING_STEPS; i++) {
+      this.place();
+      const seen = this.framed.map((point) => this.picturePlace(point));
+      const [left, right] = [Math.min(...seen.map(({ x }) => x)), Math.max(...seen.map(({ x }) => x))];
+      const [low, high] = [Math.min(...seen.map(({ y }) => y)), Math.max(...seen.map(({ y }) => y))];
+      const share = Math.max((right - left) / (2 * FREE.side), (high - low) / (FREE.top + bottom));
+      const half = this.distance * Math.tan((FIELD_OF_VIEW * Math.PI) / 360);
+      const { x, y } = this.axes();
+      this.target.addScaledVector(x, ((left + right) / 2) * half * this.camera.aspect);
+      this.target.addScaledVector(y, ((low + high - FREE.top + bottom) / 2) * half);
+      this.distance = Math.min(Math.max(this.distance * share, 2 * NEAREST_M), FARTHEST_M);
+    }
+    this.place();
   }
 
   private place(): void {

@@ -34,6 +34,11 @@ export class Pace {
     return true;
   }
 
+  /** The graphics came back anew: fences of before never come true. */
+  reset(): void {
+    this.fence = null;
+  }
+
   /** After the drawing commands of a picture. */
   drawn(started: number): void {
     this.started = started;

@@ -1,23 +1,9 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // One instrument: its solids from the definition, jaws that turn, metal that glows a little when hot.
-import {
-  BoxGeometry,
-  BufferGeometry,
-  CapsuleGeometry,
-  Color,
-  GLSL3,
-  Group,
-  Mesh,
-  Quaternion,
-  ShaderMaterial,
-  SphereGeometry,
-  TubeGeometry,
-  Vector3,
-  Curve,
-  type IUniform,
-} from 'three';
+import { BufferGeometry, Color, GLSL3, Group, Mesh, ShaderMaterial, Vector3, type IUniform } from 'three';
 
 import { toolParts, toolSizes, type ToolPart } from '../model/tool_parts';
+import { solidGeometry } from './tool_solids';
 import type { Tool } from '../wire/messages.gen';
 
 const VERTEX = /* glsl */ `
@@ -53,59 +39,6 @@ void main() {
   fragment = linearToOutputTexel(vec4(colour, 1.0));
 }`;
 
-class QuarterArc extends Curve<Vector3> {
-  constructor(
-    private readonly center: readonly [number, number, number],
-    private readonly bend: number,
-  ) {
-    super();
-  }
-
-  override getPoint(t: number, target = new Vector3()): Vector3 {
-    const angle = (Math.PI / 2) * t;
-    const [x, y, z] = this.center;
-    return target.set(x - this.bend * Math.sin(angle), y, z - this.bend * Math.cos(angle));
-  }
-}
-
-const Y = new Vector3(0, 1, 0);
-
-function capsule(part: ToolPart & { solid: 'capsule' }): BufferGeometry {
-  const from = new Vector3(...part.from);
-  const along = new Vector3(...part.to).sub(from);
-  const length = along.length();
-  const geometry = length > 0 ? new CapsuleGeometry(part.radius, length, 8, 20) : new SphereGeometry(part.radius, 24, 16);
-  if (length > 0) geometry.applyQuaternion(new Quaternion().setFromUnitVectors(Y, along.clone().normalize()));
-  return geometry.translate(from.x + along.x / 2, from.y + along.y / 2, from.z + along.z / 2);
-}
-
-/** A box whose vertices are pushed onto its rounded hull. */
-function plate(part: ToolPart & { solid: 'plate' }): BufferGeometry {
-  const [least, most] = [new Vector3(...part.least), new Vector3(...part.most)];
-  const size = most.clone().sub(least);
-  const center = least.clone().add(most).multiplyScalar(0.5);
-  const geometry = new BoxGeometry(size.x, size.y, size.z, 6, 6, 12);
-  const core = size.multiplyScalar(0.5).addScalar(-part.rounding).max(new Vector3());
-  const position = geometry.getAttribute('position');
-  const normal = geometry.getAttribute('normal');
-  const at = new Vector3();
-  for (let i = 0; i < position.count; i++) {
-    at.fromBufferAttribute(position, i);
-    const inner = at.clone().clamp(core.clone().negate(), core);
-    const out = at.clone().sub(inner).normalize();
-    at.copy(inner).addScaledVector(out, part.rounding);
-    position.setXYZ(i, at.x, at.y, at.z);
-    normal.setXYZ(i, out.x, out.y, out.z);
-  }
-  return geometry.translate(center.x, center.y, center.z);
-}
-
-function solid(part: ToolPart): BufferGeometry {
-  if (part.solid === 'capsule') return capsule(part);
-  if (part.solid === 'plate') return plate(part);
-  return new TubeGeometry(new QuarterArc(part.center, part.bend), 14, part.radius, 16);
-}
-
 export class ToolView {
   readonly group = new Group();
   private readonly jaws: { pivot: Group; side: number; share: number }[] = [];
@@ -124,7 +57,8 @@ export class ToolView {
     const sleeve = this.makeMaterial(light, new Color(0.035, 0.038, 0.045), 0.12, { value: 0 });
     for (const part of toolParts(definition)) {
       const isShaft = part.solid === 'capsule' && !part.hot && !part.jaw;
-      const mesh = new Mesh(solid(part), part.hot ? hot : isShaft ? sleeve : steel);
+      const mesh = new Mesh(solidGeometry(part), part.hot ? hot : isShaft ? sleeve : steel);
+      mesh.userData['hot'] = part.hot;
       this.place(mesh, part);
     }
   }

@@ -8,7 +8,8 @@ import type { Tool } from '../wire/messages.gen';
 import type { ToolState } from '../wire/records';
 import type { Frame, FrameBuffers, Joined } from '../wire/worker_messages';
 import { Drape } from './drape';
-import { Orbit } from './orbit';
+import { framedPoints } from './framing';
+import { Orbit, type CameraPose } from './orbit';
 import { Pace } from './pace';
 import { placeShadows } from './shadows';
 import { Smoke } from './smoke';
@@ -35,12 +36,22 @@ const METRES_PER_NEWTON = 0.02;
 const BODY_TEMPERATURE_C = 37;
 const SHARPEN_MS = 300;
 
+function makeRenderer(canvas: HTMLCanvasElement): WebGLRenderer | null {
+  try {
+    return new WebGLRenderer({ canvas, antialias: true, powerPreference: 'high-performance' });
+  } catch {
+    return null; // the page says so in its picture's place
+  }
+}
+
 export class Viewport {
   readonly orbit = new Orbit();
-  readonly renderer: WebGLRenderer;
+  /** null: this browser has no WebGL 2; everything but the picture works */
+  private readonly renderer: WebGLRenderer | null;
   tissue: TissueView | null = null;
   picturesDrawn = 0;
-  private readonly pace: Pace;
+  private readonly pace: Pace | null;
+  private contextLost = false;
   /** of moving pictures, from pace */
   private scale = 1;
   /** the picture shown is in full although moving ones are not */
@@ -58,18 +69,39 @@ export class Viewport {
   private options: ViewOptions = { wireframe: false, hiddenLayers: new Set(), colouring: 'tissue', forceArrow: false };
   private states: ToolState[] = [];
   private dirty = true;
+  private framed = false;
+  /** the session that the camera is for: who joins it again finds it where it was */
+  private session: string | null = null;
+  /** a camera to begin with instead of home */
+  wantedPose: CameraPose | null = null;
   private lastDrawn = performance.now();
 
-  constructor(readonly canvas: HTMLCanvasElement) {
-    this.renderer = new WebGLRenderer({ canvas, antialias: true, powerPreference: 'high-performance' });
-    this.pace = new Pace(this.renderer.getContext() as WebGL2RenderingContext, (scale) => {
+  constructor(
+    readonly canvas: HTMLCanvasElement,
+    /** CSS pixels at the picture's foot that buttons cover */
+    private readonly coveredBelow: () => number,
+  ) {
+    this.renderer = makeRenderer(canvas);
+    this.pace = this.renderer && new Pace(this.renderer.getContext() as WebGL2RenderingContext, (scale) => {
       this.scale = scale;
+      this.resize();
+    });
+    canvas.addEventListener('webglcontextlost', () => (this.contextLost = true));
+    canvas.addEventListener('webglcontextrestored', () => {
+      this.contextLost = false;
+      this.pace?.reset();
       this.resize();
     });
     this.drape = new Drape(this.background);
     this.arrow.visible = false;
     this.scene.add(this.drape.mesh, this.smoke.points, this.arrow, this.way.points);
     this.setTheme(true);
+  }
+
+  /** Whether there is anything to draw with. */
+  get graphics(): 'ready' | 'lost' | 'none' {
+    if (!this.renderer) return 'none';
+    return this.contextLost ? 'lost' : 'ready';
   }
 
   setTheme(dark: boolean): void {
@@ -92,7 +124,14 @@ export class Viewport {
     if (joined) {
       this.tissue = new TissueView(joined, this.shared);
       this.scene.add(this.tissue.group);
-      this.frameTissue(joined.rest);
+      this.drape.place(new Box3().setFromArray(joined.rest));
+      this.states = [];
+      const { session } = joined.description.summary;
+      if (session !== this.session) {
+        this.frameTissue();
+        this.framed = false; // once more when it is known where the tools are
+      }
+      this.session = session;
       this.setOptions(this.options);
     }
     this.invalidate();
@@ -120,6 +159,11 @@ export class Viewport {
   /** Draws a frame next; returns arrays to give back. */
   takeFrame(frame: Frame): FrameBuffers | null {
     this.states = frame.tools;
+    if (!this.framed && this.tissue) {
+      this.frameTissue();
+      if (this.wantedPose) this.orbit.restore(this.wantedPose);
+      this.wantedPose = null;
+    }
     if (frame.changed || this.options.forceArrow) this.invalidate();
     return this.tissue ? this.tissue.take(frame) : null;
   }
@@ -157,7 +201,7 @@ export class Viewport {
   }
 
   resize(): void {
-    this.orbit.resize(this.canvas.clientWidth, this.canvas.clientHeight);
+    this.orbit.resize(this.canvas.clientWidth, this.canvas.clientHeight, this.coveredBelow());
     this.setScale(this.scale);
     this.invalidate();
   }
@@ -168,7 +212,7 @@ export class Viewport {
     const seconds = Math.min((now - this.lastDrawn) / 1000, 0.1);
     if (this.smoke.advance(seconds, this.smoking())) this.dirty = true;
     this.lastDrawn = now;
-    if (!this.pace.ready()) return;
+    if (!this.pace || this.contextLost || !this.pace.ready()) return;
     if (!this.dirty) {
       this.sharpen(now);
       return;
@@ -182,7 +226,7 @@ export class Viewport {
 
   /** Nothing is left to draw, and what is drawn is sharp. */
   get idle(): boolean {
-    return !this.dirty && this.pace.ready() && (this.sharp || this.scale === 1);
+    return !this.dirty && this.pace !== null && this.pace.ready() && (this.sharp || this.scale === 1);
   }
 
   /** A picture that stands still is drawn once more in full, however coarse moving ones are. */
@@ -196,21 +240,21 @@ export class Viewport {
   private render(): void {
     this.placeLamp();
     this.placeArrow();
-    this.renderer.render(this.scene, this.orbit.camera);
+    this.renderer?.render(this.scene, this.orbit.camera);
     this.picturesDrawn++;
   }
 
   private setScale(scale: number): void {
     const { clientWidth, clientHeight } = this.canvas;
-    this.renderer.setPixelRatio(Math.min(window.devicePixelRatio, 2) * scale);
-    this.renderer.setSize(clientWidth, clientHeight, false);
+    this.renderer?.setPixelRatio(Math.min(window.devicePixelRatio, 2) * scale);
+    this.renderer?.setSize(clientWidth, clientHeight, false);
     this.smoke.resize(this.canvas.height);
     this.sharp = false;
   }
 
   /** milliseconds that the last picture took to be there */
   get pictureMs(): number {
-    return this.pace.pictureMs;
+    return this.pace?.pictureMs ?? 0;
   }
 
   /** Where a point of the world is in the page, in CSS pixels. */
@@ -222,6 +266,7 @@ export class Viewport {
 
   /** The picture as PNG. */
   async png(): Promise<Blob> {
+    if (this.graphics !== 'ready') throw new Error('there is no picture to save');
     this.setScale(1);
     this.render();
     return new Promise<Blob>((resolve, reject) =>
@@ -229,10 +274,10 @@ export class Viewport {
     ).finally(() => this.resize());
   }
 
-  private frameTissue(rest: Float32Array): void {
-    const box = new Box3().setFromArray(rest);
-    this.orbit.frame(box);
-    this.drape.place(box);
+  private frameTissue(): void {
+    if (!this.tissue) return;
+    this.orbit.frame(framedPoints(this.tissue.joined.rest, this.states));
+    this.framed = true;
   }
 
   /** A lamp beside the camera, above it. */

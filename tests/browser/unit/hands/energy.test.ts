@@ -129,6 +129,14 @@ describe('energy that is held', () => {
     expect(bench.said.get('energy')).toContain(words);
   });
 
+  it('in a paused session is not asked for, and says why', () => {
+    const bench = new Bench();
+    bench.frame(10, false, 'commanded', { paused: true });
+    bench.press('pointer');
+    expect(bench.told.length).toBe(0);
+    expect(bench.said.get('energy')).toBe('Energy is off: the session is paused. Lift and press again.');
+  });
+
   it('taken over: says by whom, and letting go leaves the other’s energy on', async () => {
     const bench = new Bench();
     await bench.lit();

@@ -1,0 +1,31 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// What goes wrong, in sentences for people: no paths of members, no expressions of programs.
+
+export const NAME_RULE = 'A name begins with a small letter and goes on with small letters and digits, with single - or _ between them, as in knee-2';
+const EXPRESSION = '[a-z]'; // the daemon's own rule for names
+const UNIT = /_(m_s|m2_s|m2|m|c|pa|rad_s|rad|per_s|n_m|ns_m|n|nm|kg_m3|s)$/;
+
+/** "hot_radius_m" as people say it: "Hot radius". */
+export function memberWords(name: string): string {
+  const bare = name.replace(UNIT, '');
+  return bare.charAt(0).toUpperCase() + bare.slice(1).replaceAll('_', ' ');
+}
+
+/** With a capital at its beginning and a stop at its end. */
+export function sentence(words: string): string {
+  const begun = words.charAt(0).toUpperCase() + words.slice(1);
+  return /[.!?…]$/.test(begun) ? begun : `${begun}.`;
+}
+
+/** The last member of a path such as params.layers[2].young_modulus_pa. */
+function memberOf(path: string): string {
+  return path.replace(/\[\d+\]/g, '').split('.').filter((member) => member !== 'params').at(-1) ?? '';
+}
+
+export function errorWords(error: unknown): string {
+  const words = error instanceof Error ? error.message : String(error);
+  if (words.includes(EXPRESSION)) return sentence(NAME_RULE);
+  const path = error instanceof Error && 'path' in error && typeof error.path === 'string' ? error.path : '';
+  const member = memberOf(path);
+  return member === '' ? sentence(words) : sentence(`${memberWords(member)}: ${words}`);
+}

@@ -1,0 +1,26 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Asks before something is lost. Who does nothing, or presses Escape, keeps everything.
+import { button, element } from './dom';
+
+export function ask(question: string, consequence: string, yes: string): Promise<boolean> {
+  return new Promise((resolve) => {
+    const dialog = element('dialog', { class: 'ask', aria: { label: question } });
+    const answer = (sure: boolean) => (): void => {
+      dialog.close();
+      dialog.remove();
+      resolve(sure);
+    };
+    const keep = button('Cancel', answer(false), { autofocus: true });
+    dialog.append(
+      element('p', { class: 'question' }, question),
+      element('p', {}, consequence),
+      element('div', { class: 'buttons' }, keep, button(yes, answer(true), { class: 'danger' })),
+    );
+    dialog.addEventListener('cancel', (event) => {
+      event.preventDefault();
+      answer(false)();
+    });
+    document.body.append(dialog);
+    dialog.showModal();
+  });
+}

@@ -1,0 +1,90 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Where to cut first: a ring that pulses on the tissue and a dot that shows the stroke. It is there until
+// somebody has cut, and comes back with tissue that is whole again.
+import { Vector3 } from 'three';
+
+import { pick } from '../model/pick';
+import { hasHeat } from '../model/tool_parts';
+import type { Control } from '../model/control';
+import type { Viewport } from '../scene/viewport';
+import { byId } from './dom';
+
+const REACH = 0.17; // of the tissue's width, to both sides of its middle
+const SVG = 'http://www.w3.org/2000/svg';
+const PROPERTIES = ['fx', 'fy', 'tx', 'ty'] as const;
+
+interface Stroke {
+  from: Vector3;
+  to: Vector3;
+}
+
+/** Across the middle of the tissue, on what is on top there. */
+function strokeOf(viewport: Viewport): Stroke | null {
+  const { tissue } = viewport;
+  if (!tissue) return null;
+  const rest = tissue.joined.rest;
+  const [least, most] = [new Vector3(Infinity, Infinity, Infinity), new Vector3(-Infinity, -Infinity, -Infinity)];
+  for (let i = 0; i < rest.length; i += 3) {
+    const at = new Vector3(rest[i], rest[i + 1], rest[i + 2]);
+    least.min(at);
+    most.max(at);
+  }
+  const [middle, size] = [least.clone().add(most).multiplyScalar(0.5), most.clone().sub(least)];
+  const on = (share: number): Vector3 | null => {
+    const over = new Vector3(middle.x + share * size.x, middle.y, most.z + size.x);
+    const hit = pick(over.toArray(), [0, 0, -1], tissue.position.array as Float32Array, tissue.visibleIndices());
+    return hit && over.setZ(over.z - hit.distance);
+  };
+  const [from, to] = [on(-REACH), on(REACH)];
+  return from && to && { from, to };
+}
+
+function draw(place: HTMLElement): void {
+  const svg = document.createElementNS(SVG, 'svg');
+  svg.setAttribute('aria-hidden', 'true');
+  for (const [tag, name] of [['line', 'stroke'], ['circle', 'ring'], ['circle', 'still'], ['circle', 'runner']] as const) {
+    const shape = document.createElementNS(SVG, tag);
+    shape.setAttribute('class', name);
+    if (tag === 'circle') shape.setAttribute('r', name === 'runner' ? '6' : '11');
+    svg.append(shape);
+  }
+  place.append(svg, Object.assign(document.createElement('p'), { id: 'cue-words' }));
+}
+
+/** Returns what keeps the cue on the tissue; called once per animation frame. */
+export function showCue(control: Control, viewport: Viewport): () => void {
+  const { model } = control;
+  const place = byId('cue');
+  draw(place);
+  const words = place.querySelector('p')!;
+  words.textContent = window.matchMedia('(pointer: coarse)').matches ? 'Touch here and draw slowly' : 'Press here and draw slowly';
+  const line = place.querySelector('line')!;
+  let stroke: Stroke | null = null;
+  let shown = '';
+  const wanted = (): boolean => {
+    const { frame, tool, timeline, joined } = model;
+    if (!frame || !tool || !joined || !timeline || !model.mayOperate || frame.faulted) return false;
+    if (!hasHeat(tool.shape) || (model.driver !== null && !model.driving)) return false;
+    return !frame.tools.some(({ energized }) => energized) && !timeline.events.some(({ kind }) => kind === 'cut');
+  };
+  const refresh = (): void => {
+    const show = wanted();
+    if (show && place.hidden) stroke = strokeOf(viewport);
+    place.hidden = !show || stroke === null;
+  };
+  for (const event of ['frame', 'timeline', 'tools', 'link'] as const) model.on(event, refresh);
+  model.on('joined', () => {
+    stroke = null;
+    place.hidden = true;
+  });
+  return () => {
+    if (place.hidden || !stroke) return;
+    const box = viewport.canvas.getBoundingClientRect();
+    const [from, to] = [viewport.project(stroke.from.toArray()), viewport.project(stroke.to.toArray())];
+    const at = [from.x - box.left, from.y - box.top, to.x - box.left, to.y - box.top].map((value) => value.toFixed(1));
+    if (at.join() === shown) return;
+    shown = at.join();
+    PROPERTIES.forEach((name, i) => place.style.setProperty(`--${name}`, `${at[i]}px`));
+    ['x1', 'y1', 'x2', 'y2'].forEach((name, i) => line.setAttribute(name, at[i]));
+  };
+}

@@ -1,0 +1,35 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Who drives the chosen tool, and taking it, asking for it, letting it go.
+import type { Control } from '../model/control';
+import { nameOf } from '../model/person';
+import { attempt, button, element } from './dom';
+
+function driverWords(control: Control, tool: string): string {
+  const driver = control.model.drivers.get(tool);
+  if (!driver || driver.client === 0) return `The ${tool} is free: use it, and it is yours.`;
+  if (driver.client === control.model.hello?.client) return `You use the ${tool}.`;
+  return `${nameOf(driver)} uses the ${tool}.`;
+}
+
+export function drivingButtons(control: Control, problem: HTMLElement): { place: HTMLElement; refresh(): void } {
+  const { model } = control;
+  const said = element('p', { class: 'about', aria: { role: 'status' } });
+  const chosen = (): string => model.selectedTool ?? '';
+  const take = button('Take the tool', () => void attempt(problem, () => control.takeOver(chosen()), take), { class: 'take' });
+  const ask = button('Ask its driver', () => {
+    void attempt(problem, () => control.ask(chosen()), ask).then((done) => {
+      if (done !== null) said.textContent = 'Asked. The driver may hand it over.';
+    });
+  });
+  const give = button('Let it go', () => void attempt(problem, () => control.handOver(chosen()), give), { class: 'give' });
+  const refresh = (): void => {
+    const driver = model.drivers.get(chosen());
+    const others = driver !== undefined && driver.client !== 0 && !model.driving;
+    said.textContent = model.tool ? driverWords(control, model.tool.name) : 'This session has no tools.';
+    take.hidden = model.driving || (others && model.hello?.role !== 'admin');
+    ask.hidden = !others;
+    give.hidden = !model.driving;
+    for (const one of [take, ask, give]) one.disabled = !model.mayOperate || !model.tool;
+  };
+  return { place: element('div', {}, said, element('div', { class: 'buttons' }, take, ask, give)), refresh };
+}

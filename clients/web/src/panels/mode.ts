@@ -1,0 +1,28 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Operate: instrument, power, time and camera, for who trains. Research: sessions, materials, limits, plots
+// and tables beside them. The choice is kept by the browser.
+import { button, byId } from './dom';
+
+export type Mode = 'operate' | 'research';
+
+const MODES: readonly (readonly [Mode, string, string])[] = [
+  ['operate', 'Operate', 'Instrument, power, time and camera'],
+  ['research', 'Research', 'Sessions, materials, limits and plots besides'],
+];
+const KEPT = 'mode';
+
+export function modeSwitch(changed: (mode: Mode) => void): void {
+  const place = byId('mode');
+  const show = (mode: Mode): void => {
+    document.body.dataset['mode'] = mode;
+    for (const press of place.children) press.setAttribute('aria-pressed', String((press as HTMLElement).dataset['mode'] === mode));
+    changed(mode);
+  };
+  for (const [mode, words, title] of MODES) {
+    place.append(button(words, () => {
+      localStorage.setItem(KEPT, mode);
+      show(mode);
+    }, { title, data: { mode } }));
+  }
+  show(localStorage.getItem(KEPT) === 'research' ? 'research' : 'operate');
+}

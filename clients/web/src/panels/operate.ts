@@ -1,0 +1,115 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// What a trainee needs: instrument, power, camera, and a name for the others. Time is along the foot.
+import type { ToolHand } from '../hands/tool_hand';
+import type { Control } from '../model/control';
+import { NAME_MAX, nameOf, ownName, setOwnName } from '../model/person';
+import { hasHeat } from '../model/tool_parts';
+import type { Viewport } from '../scene/viewport';
+import { PARAMETERS } from '../wire/messages.gen';
+import { attempt, button, byId, element, field, problemPlace } from './dom';
+import { drivingButtons } from './driving';
+
+const POWER_LEAST_C = 60;
+const POWER_MOST_C = 400; // a spark's heat is beyond what tissue shows
+const POWER_STEP_C = 10;
+const FROM_ABOVE = 1.5; // rad
+const ALONG = 0.25;
+
+function instrument(control: Control, problem: HTMLElement): HTMLElement {
+  const { model } = control;
+  const choose = element('select', { name: 'instrument' });
+  choose.addEventListener('change', () => model.selectTool(choose.value));
+  const chosen = field('In hand', choose);
+  const driving = drivingButtons(control, problem);
+  model.on('tools', () => {
+    choose.replaceChildren(...model.tools.map(({ name }) => element('option', { value: name }, name)));
+    choose.value = model.selectedTool ?? '';
+    chosen.hidden = model.tools.length < 2;
+    driving.refresh();
+  });
+  return element('section', { aria: { label: 'Instrument' } }, element('h2', {}, 'Instrument'), chosen, driving.place);
+}
+
+function power(control: Control, hand: ToolHand, problem: HTMLElement): HTMLElement {
+  const { model } = control;
+  const usual = PARAMETERS.tool.find(({ name }) => name === 'temperature_c')!.default;
+  const slider = element('input', {
+    type: 'range', name: 'power', min: String(POWER_LEAST_C), max: String(POWER_MOST_C), step: String(POWER_STEP_C), aria: { label: 'Power: temperature of the tip' },
+  });
+  const shown = element('output', { class: 'now-power' });
+  const tell = (): void => {
+    shown.value = `${slider.value} °C at the tip`;
+  };
+  let held = false;
+  slider.addEventListener('input', () => {
+    held = true;
+    tell();
+  });
+  slider.addEventListener('change', () => {
+    held = false;
+    const { tool } = model;
+    if (tool) void attempt(problem, () => control.configureTool({ ...tool, temperature_c: slider.valueAsNumber }));
+  });
+  const section = element('section', { aria: { label: 'Power' } }, element('h2', {}, 'Power'), slider, shown);
+  model.on('tools', () => {
+    const { tool } = model;
+    section.hidden = !tool || !hasHeat(tool.shape);
+    slider.disabled = !hand.driving;
+    slider.title = hand.driving ? '' : 'Use the instrument first';
+    if (held || !tool) return;
+    slider.value = String(tool.temperature_c ?? usual);
+    tell();
+  });
+  return section;
+}
+
+function camera(viewport: Viewport): HTMLElement {
+  const to = (words: string, move: () => void): HTMLButtonElement =>
+    button(words, () => {
+      move();
+      viewport.invalidate();
+    });
+  const buttons = [
+    to('Home', () => viewport.orbit.reset()),
+    to('From above', () => viewport.orbit.look(FROM_ABOVE)),
+    to('Along', () => viewport.orbit.look(ALONG)),
+    to('Nearer', () => viewport.orbit.zoom(1 / 1.25)),
+    to('Farther', () => viewport.orbit.zoom(1.25)),
+  ];
+  return element('section', { aria: { label: 'Camera' } }, element('h2', {}, 'Camera'), element('div', { class: 'buttons' }, ...buttons));
+}
+
+function person(control: Control, rename: () => void): HTMLElement {
+  const name = element('input', { name: 'person', value: ownName(), maxLength: NAME_MAX, autocomplete: 'off' });
+  name.addEventListener('change', () => {
+    setOwnName(name.value);
+    name.value = ownName();
+    rename();
+  });
+  const others = element('p', { class: 'about' });
+  control.model.on('tools', () => {
+    const named = [...control.model.drivers.values()].filter(({ client, tool }) => client !== 0 && !control.model.drives(tool));
+    others.textContent = named.map((driver) => `${nameOf(driver)} uses the ${driver.tool}.`).join(' ');
+  });
+  return element('section', { aria: { label: 'You' } }, element('h2', {}, 'You'), field('Your name', name, '', 'as the others in the session see it'), others);
+}
+
+function session(control: Control): HTMLElement {
+  const { model } = control;
+  const choose = element('select', { name: 'session', aria: { label: 'Session' } });
+  choose.addEventListener('change', () => control.watch(choose.value));
+  const section = element('section', { aria: { label: 'Session' } }, element('h2', {}, 'Session'), choose);
+  model.on('sessions', (sessions) => {
+    section.hidden = sessions.length < 2;
+    choose.replaceChildren(...sessions.map(({ session: id }) => element('option', { value: id }, id)));
+    choose.value = model.session ?? '';
+  });
+  section.hidden = true;
+  return section;
+}
+
+export function operatePanel(control: Control, hand: ToolHand, viewport: Viewport, rename: () => void): void {
+  const problem = problemPlace();
+  byId('operate').append(problem, session(control), instrument(control, problem), power(control, hand, problem), camera(viewport), person(control, rename));
+  control.model.emit('tools', undefined);
+}

@@ -1,0 +1,52 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Asks for the access token, says what was wrong with it where one types, and can be opened again: whoever
+// closes it is not locked out. Password managers find a name and a password.
+import type { Model } from '../model/model';
+import { button, element, field, problemPlace } from './dom';
+
+/** Returns what opens the dialog. */
+export function askForToken(model: Model, connect: (token: string) => void): () => void {
+  const token = element('input', { type: 'password', name: 'password', id: 'token-input', autocomplete: 'current-password', required: true });
+  const user = element('input', { type: 'text', name: 'username', value: 'cautery', autocomplete: 'username', readOnly: true, class: 'unseen', tabIndex: -1, aria: { hidden: 'true' } });
+  const problem = problemPlace();
+  const submit = element('button', { type: 'submit' }, 'Connect');
+  const form = element('form', { class: 'form' }, user, field('Access token', token), problem, element('div', { class: 'buttons' }, submit, button('Close', () => dialog.close())));
+  const dialog = element('dialog', { id: 'token', class: 'ask', aria: { label: 'Access token' } }, element('p', {}, 'This simulation asks for a token. Whoever runs it has it.'), form);
+  document.body.append(dialog);
+  let given = false;
+  const open = (): void => {
+    if (!dialog.open) dialog.showModal();
+    token.focus();
+  };
+  const busy = (working: boolean): void => {
+    submit.disabled = working;
+    submit.ariaBusy = String(working);
+  };
+  form.addEventListener('submit', (event) => {
+    event.preventDefault();
+    given = true;
+    problem.hidden = true;
+    busy(true);
+    connect(token.value.trim());
+  });
+  model.on('link', (link) => {
+    if (link.state === 'online') {
+      token.value = '';
+      given = false;
+      dialog.close();
+    }
+    if (link.state === 'connecting') return;
+    busy(false);
+    if (link.state === 'lost' && given) say(`There was no answer: ${link.words}. It is tried again by itself.`);
+    if (link.state !== 'refused' || link.status !== 'unauthorized') return;
+    open();
+    if (!given) return;
+    say('This token was not accepted. Look for missing letters, and that it is whole.');
+    token.select();
+  });
+  const say = (words: string): void => {
+    problem.textContent = words;
+    problem.hidden = false;
+  };
+  return open;
+}

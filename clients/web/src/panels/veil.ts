@@ -1,0 +1,81 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Over a picture that is not what it seems: nothing to draw with, nobody to talk to, a session that is being
+// made or brought elsewhere in time, or a daemon that has fallen silent. Words, and that something goes on.
+import type { Control } from '../model/control';
+import type { Viewport } from '../scene/viewport';
+import { button, byId, element } from './dom';
+
+const LOOK_MS = 250;
+const SILENT_MS = 2000; // of a session that runs
+const QUICK_MS = 300; // what is done sooner is not worth words
+
+interface Veil {
+  words: string;
+  /** something is under way */
+  busy: boolean;
+  action?: { words: string; press: () => void };
+}
+
+const RELOAD = { words: 'Reload the page', press: (): void => window.location.reload() };
+
+function graphics(viewport: Viewport): Veil | null {
+  switch (viewport.graphics) {
+    case 'none':
+      return {
+        words: 'This browser offers no WebGL 2, which the picture needs. Turn on hardware acceleration in its settings, or take another browser. Everything but the picture works.',
+        busy: false,
+      };
+    case 'lost':
+      return { words: 'The graphics card has dropped the picture. It is being drawn anew.', busy: true, action: RELOAD };
+    case 'ready':
+      return null;
+  }
+}
+
+function connection({ model }: Control, enterToken: () => void): Veil | null {
+  const { link } = model;
+  if (link.state === 'connecting') return { words: 'Connecting to the simulation…', busy: true };
+  if (link.state === 'lost') return { words: `No connection: ${link.words}. Trying again. What you see is from before.`, busy: true };
+  if (link.state !== 'refused') return null;
+  if (link.status === 'unauthorized') return { words: 'This simulation asks for an access token.', busy: false, action: { words: 'Enter the token', press: enterToken } };
+  return { words: link.words, busy: false, action: RELOAD };
+}
+
+export function showVeil(control: Control, viewport: Viewport, enterToken: () => void): void {
+  const { model } = control;
+  const place = byId('veil');
+  const words = element('p');
+  const bar = element('progress', { aria: { label: 'Under way' } });
+  const action = button('', () => undefined);
+  place.append(element('div', { class: 'veil-card' }, words, bar, action));
+  let framedAt = performance.now();
+  let busySince: number | null = null;
+
+  const waiting = (): Veil | null => {
+    const now = performance.now();
+    if (control.busy.length === 0) busySince = null;
+    else busySince ??= now;
+    if (busySince !== null && now - busySince >= QUICK_MS) return { words: `${control.busy[0]}…`, busy: true };
+    if (model.link.state !== 'online') return null;
+    if (model.session === null) return { words: 'No session is open. Research, Sessions, New session makes one.', busy: false };
+    if (model.summary?.state === 'starting') return { words: `${model.session} is being made: its tissue is put together…`, busy: true };
+    if (model.frame?.session !== model.session) return now - framedAt < QUICK_MS ? null : { words: `Opening ${model.session}…`, busy: true };
+    if (model.frame.paused || model.frame.faulted || document.hidden || now - framedAt < SILENT_MS) return null;
+    return { words: `Nothing new from the simulation for ${((now - framedAt) / 1000).toFixed(0)} s. What you see is from before.`, busy: true };
+  };
+  const show = (): void => {
+    const veil = graphics(viewport) ?? connection(control, enterToken) ?? waiting();
+    place.hidden = veil === null;
+    if (!veil) return;
+    if (words.textContent !== veil.words) words.textContent = veil.words;
+    bar.hidden = !veil.busy;
+    action.hidden = veil.action === undefined;
+    if (!veil.action) return;
+    action.textContent = veil.action.words;
+    action.onclick = veil.action.press;
+  };
+  model.on('frame', () => (framedAt = performance.now()));
+  model.on('joined', () => (framedAt = performance.now()));
+  model.on('link', show);
+  setInterval(show, LOOK_MS);
+}

@@ -1,0 +1,21 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// What the camera's home shows: the tissue, and each tool's tip with a part of its shaft.
+import { Box3, Vector3 } from 'three';
+
+import type { ToolState } from '../wire/records';
+
+const SHAFT_SHOWN = 0.12; // of the tissue's diagonal
+
+export function framedPoints(rest: Float32Array, tools: readonly ToolState[]): Vector3[] {
+  const { min, max } = new Box3().setFromArray(rest);
+  const middle = min.clone().add(max).multiplyScalar(0.5);
+  const reach = max.distanceTo(min);
+  const corners = [0, 1, 2, 3, 4, 5, 6, 7].map(
+    (i) => new Vector3(i & 1 ? max.x : min.x, i & 2 ? max.y : min.y, i & 4 ? max.z : min.z),
+  );
+  const tips = tools
+    .map(({ positionM }) => new Vector3(...positionM))
+    .filter((tip) => tip.distanceTo(middle) < reach) // one that is far away would make the tissue small
+    .flatMap((tip) => [tip, tip.clone().setZ(tip.z + SHAFT_SHOWN * reach)]);
+  return [...corners, ...tips];
+}

@@ -1,0 +1,132 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// A newcomer's first half minute: tissue and tool in the picture, one cue where to cut and nothing else in
+// the way; who follows the cue has cut. What destroys asks first.
+import type { Browser } from 'playwright-core';
+
+import { Daemon } from './daemon';
+import { launch, ViewerPage } from './viewer_page';
+
+const PHONE = { hasTouch: true, isMobile: true };
+const SCREENS = [
+  ['a desktop', 'first-view', { viewport: { width: 1280, height: 800 } }],
+  ['a phone in portrait', 'first-view-on-a-phone', { ...PHONE, viewport: { width: 390, height: 780 } }],
+  ['a phone in landscape', 'first-view-in-landscape', { ...PHONE, viewport: { width: 780, height: 390 } }],
+] as const;
+
+interface Place {
+  x: number;
+  y: number;
+}
+
+/** Corners of the tissue and the tip, and the free part of the picture, in CSS pixels. */
+async function inPicture(viewer: ViewerPage): Promise<{ points: Place[]; free: { left: number; right: number; top: number; bottom: number } }> {
+  const { least, most } = await viewer.page.evaluate(() => window.cautery.extent());
+  const corners = [0, 1, 2, 3].map((i): [number, number, number] => [i & 1 ? most[0] : least[0], i & 2 ? most[1] : least[1], most[2]]);
+  const { tip } = await viewer.state();
+  const points = await Promise.all([...corners, tip as [number, number, number]].map((point) => viewer.project(point)));
+  const box = (await viewer.page.locator('#picture').boundingBox())!;
+  const handles = (await viewer.page.locator('#handles').boundingBox())!;
+  return { points, free: { left: box.x, right: box.x + box.width, top: box.y, bottom: handles.y } };
+}
+
+/** Both ends of the cue's stroke. */
+async function cue(viewer: ViewerPage): Promise<[Place, Place]> {
+  const box = (await viewer.page.locator('#picture').boundingBox())!;
+  const [x1, y1, x2, y2] = await viewer.page.locator('#cue line').evaluate((line) => ['x1', 'y1', 'x2', 'y2'].map((name) => Number(line.getAttribute(name))));
+  return [{ x: box.x + x1, y: box.y + y1 }, { x: box.x + x2, y: box.y + y2 }];
+}
+
+describe('the first view', () => {
+  let browser: Browser;
+
+  beforeAll(async () => {
+    browser = await launch();
+  });
+  afterAll(() => browser.close());
+
+  it.each(SCREENS)('on %s shows where to cut, and who follows it cuts', async (_name, picture, options) => {
+    const daemon = new Daemon(['--demo', 'layers']);
+    await daemon.start();
+    const viewer = await ViewerPage.openFirst(browser, daemon.url, options);
+    const { page } = viewer;
+    await viewer.live('d1-layers');
+    await viewer.until(() => document.querySelector('#cue')?.checkVisibility() === true, null, 'the cue is there');
+    const { points, free } = await inPicture(viewer);
+    for (const { x, y } of points) {
+      expect(x).toBeGreaterThan(free.left);
+      expect(x).toBeLessThan(free.right);
+      expect(y).toBeGreaterThan(free.top);
+      expect(y).toBeLessThan(free.bottom);
+    }
+    const inTheWay = await page.evaluate(() =>
+      [...document.querySelectorAll('#hint, #veil, #said > *, #notices > *, dialog, #tabs')].filter((one) => one.checkVisibility()).map((one) => one.outerHTML),
+    );
+    expect(inTheWay).toEqual([]);
+    await viewer.until(() => window.cautery.idle, null, 'the sharp picture');
+    await viewer.screenshot(picture);
+
+    const faces = await viewer.faces();
+    const [from, to] = await cue(viewer);
+    if ('hasTouch' in options) {
+      const fingers = await page.context().newCDPSession(page);
+      await fingers.send('Input.dispatchTouchEvent', { type: 'touchStart', touchPoints: [{ ...from, id: 1 }] });
+      await viewer.until(() => window.cautery.energized, null, 'the finger heats');
+      await fingers.send('Input.dispatchTouchEvent', { type: 'touchMove', touchPoints: [{ ...to, id: 1 }] });
+    } else {
+      await page.mouse.move(from.x, from.y);
+      await page.mouse.down();
+      await page.mouse.move(to.x, to.y, { steps: 5 });
+    }
+    expect(await page.locator('#cue').isVisible()).toBe(false);
+    await viewer.until((before) => Object.values(window.cautery.drawnFaces).reduce((sum, n) => sum + n, 0) < before, faces, 'faces are gone');
+    await viewer.screenshot(picture.replace('first-view', 'cutting'));
+    if (!('hasTouch' in options)) await page.mouse.up();
+    await viewer.until(() => document.querySelector('#cue')?.checkVisibility() === false, null, 'the cue does not come back');
+    expect(viewer.complaints).toEqual([]);
+    await viewer.close();
+    await daemon.end();
+  });
+});
+
+describe('what destroys', () => {
+  const daemon = new Daemon(['--demo', 'fascia']);
+  let browser: Browser;
+  let viewer: ViewerPage;
+
+  beforeAll(async () => {
+    await daemon.start();
+    browser = await launch();
+    viewer = await ViewerPage.openFirst(browser, daemon.url);
+    await viewer.live('d1-fascia');
+  });
+  afterAll(async () => {
+    await browser.close();
+    await daemon.end();
+  });
+
+  it('asks before it starts over', async () => {
+    const { page } = viewer;
+    const { epoch } = await viewer.state();
+    await page.getByRole('button', { name: 'Start over' }).click();
+    await page.keyboard.press('Escape');
+    expect(await page.locator('dialog[open]').count()).toBe(0);
+    expect((await viewer.state()).epoch).toBe(epoch);
+    await page.getByRole('button', { name: 'Start over' }).click();
+    await page.locator('dialog').getByRole('button', { name: 'Start over' }).click();
+    await viewer.until((before) => window.cautery.epoch !== before, epoch, 'another epoch');
+  });
+
+  it('is out of a trainee’s reach, and asks a researcher', async () => {
+    const { page } = viewer;
+    for (const hidden of ['Step', 'Destroy d1-fascia', 'Fork this session']) expect(await page.getByRole('button', { name: hidden }).isVisible(), hidden).toBe(false);
+    for (const shown of ['Instrument', 'Power', 'Camera']) expect(await page.getByRole('heading', { name: shown }).isVisible(), shown).toBe(true);
+    await page.getByRole('button', { name: 'Research' }).click();
+    await page.getByRole('button', { name: 'Destroy d1-fascia' }).click();
+    await page.getByRole('button', { name: 'Cancel' }).click();
+    expect((await viewer.state()).session).toBe('d1-fascia');
+    await page.getByRole('button', { name: 'Destroy d1-fascia' }).click();
+    await page.locator('dialog').getByRole('button', { name: 'Destroy' }).click();
+    await viewer.until(() => window.cautery.session === null, null, 'it is gone');
+    await page.locator('#veil').getByText('No session is open').waitFor();
+  });
+});

@@ -1,0 +1,170 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// A picture that is not what it seems says so: no WebGL, a lost context, a lost daemon. The address comes
+// back to what was looked at. The token dialog says what is wrong and locks nobody out.
+import { mkdtempSync, rmSync, writeFileSync } from 'node:fs';
+import { tmpdir } from 'node:os';
+import { join } from 'node:path';
+
+import type { Browser } from 'playwright-core';
+
+import { Daemon } from './daemon';
+import { launch, ViewerPage } from './viewer_page';
+
+const veil = (viewer: ViewerPage, words: string): Promise<void> =>
+  viewer.until((wanted) => document.querySelector('#veil')?.textContent?.includes(wanted) === true && document.querySelector('#veil')!.checkVisibility(), words, words);
+const unveiled = (viewer: ViewerPage): Promise<void> =>
+  viewer.until(() => document.querySelector('#veil')?.checkVisibility() === false, null, 'the picture is live again');
+
+/** In the page, before its scripts: a browser without WebGL. */
+function withoutWebGl(): void {
+  // eslint-disable-next-line @typescript-eslint/unbound-method -- called with its canvas below
+  const real = HTMLCanvasElement.prototype.getContext as (this: HTMLCanvasElement, kind: string, ...rest: unknown[]) => unknown;
+  HTMLCanvasElement.prototype.getContext = function (this: HTMLCanvasElement, kind: string, ...rest: unknown[]) {
+    return kind.startsWith('webgl') ? null : real.call(this, kind, ...rest);
+  } as typeof HTMLCanvasElement.prototype.getContext;
+}
+
+describe('a picture that is not live', () => {
+  const daemon = new Daemon(['--demo', 'fascia']);
+  let browser: Browser;
+
+  beforeAll(async () => {
+    await daemon.start();
+    browser = await launch();
+  });
+  afterAll(async () => {
+    await browser.close();
+    await daemon.end();
+  });
+
+  it('without WebGL says so, and everything else works', async () => {
+    const viewer = await ViewerPage.openFirst(browser, daemon.url);
+    await viewer.page.addInitScript(withoutWebGl);
+    await viewer.page.reload();
+    await veil(viewer, 'offers no WebGL 2');
+    await viewer.until(() => window.cautery.tick > 0, null, 'frames come in');
+    await viewer.page.getByRole('button', { name: 'Pause' }).click();
+    await viewer.until(() => window.cautery.paused, null, 'paused');
+    await viewer.page.getByRole('button', { name: 'Resume' }).click();
+    await viewer.until(() => !window.cautery.paused, null, 'running');
+    await viewer.close();
+  });
+
+  it('whose graphics are lost says so, and is drawn again when they are back', async () => {
+    const viewer = await ViewerPage.openFirst(browser, daemon.url);
+    await viewer.live('d1-fascia');
+    const before = await viewer.coloursAt([[0.02, 0.02, 0]]);
+    await viewer.page.evaluate(() => {
+      const loser = document.querySelector<HTMLCanvasElement>('#picture')!.getContext('webgl2')!.getExtension('WEBGL_lose_context')!;
+      Object.assign(window, { loser });
+      loser.loseContext();
+    });
+    await veil(viewer, 'has dropped the picture');
+    await viewer.page.evaluate(() => (window as unknown as { loser: WEBGL_lose_context }).loser.restoreContext());
+    await unveiled(viewer);
+    await viewer.until(() => window.cautery.idle, null, 'drawn again');
+    const [[r, g, b]] = await viewer.coloursAt([[0.02, 0.02, 0]]);
+    expect(Math.hypot(r - before[0][0], g - before[0][1], b - before[0][2])).toBeLessThan(30);
+    await viewer.close();
+  });
+
+  it('of a daemon that is gone says so until it is back', async () => {
+    const viewer = await ViewerPage.openFirst(browser, daemon.url);
+    await viewer.live('d1-fascia');
+    await daemon.kill();
+    await veil(viewer, 'No connection');
+    expect(await viewer.page.locator('#veil progress').isVisible()).toBe(true);
+    await daemon.start();
+    await unveiled(viewer);
+    await viewer.live('d1-fascia');
+    await viewer.close();
+  });
+});
+
+describe('the address', () => {
+  const daemon = new Daemon(['--demo', 'fascia']);
+  let browser: Browser;
+
+  beforeAll(async () => {
+    await daemon.start();
+    browser = await launch();
+  });
+  afterAll(async () => {
+    await browser.close();
+    await daemon.end();
+  });
+
+  it('has session, tick and camera, and comes back to them', async () => {
+    const viewer = await ViewerPage.openFirst(browser, daemon.url);
+    await viewer.live('d1-fascia');
+    await viewer.page.getByRole('button', { name: 'From above' }).click();
+    await viewer.until(() => /session=d1-fascia&tick=\d+&camera=-90.0,85.9,/.test(window.location.search), null, 'the address tells it');
+    const shared = viewer.page.url();
+    const corner = await viewer.project([0.05, 0.03, 0]);
+    await viewer.page.reload();
+    await viewer.live('d1-fascia');
+    await viewer.drawn();
+    const again = await viewer.project([0.05, 0.03, 0]);
+    expect(Math.hypot(again.x - corner.x, again.y - corner.y)).toBeLessThan(2);
+    expect(await viewer.page.locator('#rewind').isVisible()).toBe(false); // loading again is no wish to go back
+
+    const tick = Number(new URL(shared).searchParams.get('tick'));
+    await viewer.until((then) => window.cautery.tick > then + 30, tick, 'time goes on');
+    const other = await ViewerPage.openFirst(browser, shared);
+    await other.live('d1-fascia');
+    const { epoch } = await other.state();
+    await other.until(() => document.querySelector('#rewind')?.checkVisibility() === true, null, 'the moment is offered');
+    expect(await other.page.locator('#rewind').textContent()).toMatch(/^Go back to \d+\.\d\d s$/);
+    expect((await other.state()).epoch).toBe(epoch); // and nobody was moved
+    await other.close();
+    await viewer.close();
+  });
+});
+
+describe('a daemon with tokens', () => {
+  const folder = mkdtempSync(join(tmpdir(), 'cautery-tokens-'));
+  const tokens = join(folder, 'tokens');
+  const daemon = new Daemon(['--demo', 'fascia', '--tokens', tokens]);
+  let browser: Browser;
+  let viewer: ViewerPage;
+
+  beforeAll(async () => {
+    writeFileSync(tokens, 'operate open-sesame-0123456789abcdef\nview only-looking-0123456789abcdef\n', { mode: 0o600 });
+    await daemon.start();
+    browser = await launch();
+    viewer = await ViewerPage.openFirst(browser, daemon.url);
+  });
+  afterAll(async () => {
+    await browser.close();
+    await daemon.end();
+    rmSync(folder, { recursive: true });
+  });
+
+  it('asks for one, can be asked again, and says what is wrong where one types', async () => {
+    const { page } = viewer;
+    const input = page.locator('#token input[type=password]');
+    await input.waitFor();
+    expect(await input.getAttribute('autocomplete')).toBe('current-password');
+    expect(await page.locator('#token input[autocomplete=username]').count()).toBe(1);
+    await page.keyboard.press('Escape');
+    await veil(viewer, 'asks for an access token');
+    await page.getByRole('button', { name: 'Enter the token' }).click();
+    await input.fill('wrong');
+    await page.getByRole('button', { name: 'Connect' }).click();
+    await page.locator('#token .problem').getByText('was not accepted').waitFor();
+    await input.fill('only-looking-0123456789abcdef');
+    await page.getByRole('button', { name: 'Connect' }).click();
+    await viewer.live('d1-fascia');
+    expect(await page.locator('dialog[open]').count()).toBe(0);
+  });
+
+  it('who may only look on is told so where they press', async () => {
+    const at = await viewer.project([0, 0, 0]);
+    await viewer.page.mouse.move(at.x, at.y);
+    await viewer.page.mouse.down();
+    await viewer.until(() => document.querySelector('#said')?.textContent?.includes('You are looking on') === true, null, 'it is said');
+    await viewer.page.mouse.up();
+    expect((await viewer.state()).driving).toBe(false);
+    expect(await viewer.page.locator('#cue').isVisible()).toBe(false);
+  });
+});

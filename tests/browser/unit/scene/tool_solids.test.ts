@@ -1,0 +1,123 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// What is drawn of an instrument is what the core reckons with: every drawn surface lies on or in the
+// core's, and every point of the core's surface is drawn, within a tenth of a millimetre.
+import { spawnSync } from 'node:child_process';
+
+import { Matrix4, Mesh, Triangle, Vector3, type BufferGeometry } from 'three';
+
+import { ToolView } from '../../../../clients/web/src/scene/tool_view';
+import { TOOL_SHAPES, type Tool } from '../../../../clients/web/src/wire/messages.gen';
+
+const NEAR_M = 1e-4;
+const SAMPLES = 250;
+const STEPS = 12; // of a point towards the core's surface, by its distance along the gradient
+const ON_SURFACE_M = 1e-5;
+const NO_AREA_M2 = 1e-16;
+const REACH_M = 0.03; // about the tip: beyond it there is but shaft
+const JAWS = [0, 0.5, 1];
+/** Default instruments, and slim ones. */
+const SIZES: readonly (readonly [number, number, number])[] = [[0.003, 0.008, 0.0025], [0.0008, 0.01, 0.0025], [0.0015, 0.004, 0.001]];
+
+type Sizes = (typeof SIZES)[number];
+interface Told {
+  distance: number;
+  gradient: Vector3;
+}
+
+/** The same numbers in every run (Park and Miller). */
+function makeRandom(): () => number {
+  let state = 1;
+  return () => (state = (state * 48271) % 2147483647) / 2147483647;
+}
+
+function coreDistances(shape: Tool['shape'], [hot, tip, shaft]: Sizes, jaw: number, part: number, points: readonly Vector3[]): Told[] {
+  const program = process.env['CAUTERY_TOOL_DISTANCES'];
+  if (program === undefined) throw new Error('CAUTERY_TOOL_DISTANCES names no program');
+  const head = [TOOL_SHAPES.indexOf(shape), hot, tip, shaft, jaw, part].join(' ');
+  const input = points.map(({ x, y, z }) => `${head} ${x} ${y} ${z}\n`).join('');
+  const { stdout, status } = spawnSync(program, { input, encoding: 'utf8', maxBuffer: 1 << 26 });
+  expect(status).toBe(0);
+  return stdout.trim().split('\n').map((line) => {
+    const [distance, x, y, z] = line.split(' ').map(Number);
+    return { distance, gradient: new Vector3(x, y, z) };
+  });
+}
+
+/** Triangles of the hot or the cold part in the tool's frame. */
+function drawnTriangles(view: ToolView, jaw: number, hot: boolean): Triangle[] {
+  view.set([0, 0, 0], [1, 0, 0, 0], jaw, 0);
+  view.group.updateMatrixWorld(true);
+  const triangles: Triangle[] = [];
+  view.group.traverse((object) => {
+    if (object instanceof Mesh && object.userData['hot'] === hot) add(triangles, object.geometry as BufferGeometry, object.matrixWorld);
+  });
+  return triangles;
+}
+
+function add(triangles: Triangle[], geometry: BufferGeometry, matrix: Matrix4): void {
+  const position = geometry.getAttribute('position');
+  const index = geometry.getIndex()!;
+  const corner = (i: number): Vector3 => new Vector3().fromBufferAttribute(position, index.getX(i)).applyMatrix4(matrix);
+  for (let i = 0; i < index.count; i += 3) {
+    const triangle = new Triangle(corner(i), corner(i + 1), corner(i + 2));
+    if (triangle.getArea() > NO_AREA_M2) triangles.push(triangle); // a plate that is all rounding has a flat of no width
+  }
+}
+
+function sampleDrawn(triangles: readonly Triangle[], random: () => number): Vector3[] {
+  const areas = triangles.map((triangle) => triangle.getArea());
+  const whole = areas.reduce((sum, area) => sum + area, 0);
+  const points: Vector3[] = [];
+  let carried = 0;
+  triangles.forEach(({ a, b, c }, i) => {
+    for (carried += (SAMPLES * areas[i]) / whole; carried >= 1; carried--) {
+      const [u, v] = [random(), random()].sort((one, other) => one - other);
+      points.push(a.clone().multiplyScalar(u).addScaledVector(b, v - u).addScaledVector(c, 1 - v));
+    }
+  });
+  return points;
+}
+
+/** Points of the core's surface near the tip. */
+function sampleCore(distances: (points: readonly Vector3[]) => Told[], random: () => number): Vector3[] {
+  const away = (): number => REACH_M * (2 * random() - 1);
+  let points = Array.from({ length: SAMPLES }, () => new Vector3(away(), away(), away()));
+  for (let i = 0; i < STEPS; i++) {
+    const told = distances(points);
+    points = points.map((point, p) => point.clone().addScaledVector(told[p].gradient, -told[p].distance));
+  }
+  const told = distances(points);
+  return points.filter((point, i) => Math.abs(told[i].distance) < ON_SURFACE_M && point.length() < REACH_M);
+}
+
+function distanceTo(triangles: readonly Triangle[], point: Vector3): number {
+  const nearest = new Vector3();
+  let least = Infinity;
+  for (const triangle of triangles) least = Math.min(least, triangle.closestPointToPoint(point, nearest).distanceToSquared(point));
+  return Math.sqrt(least);
+}
+
+describe.each(TOOL_SHAPES)('the drawn %s', (shape) => {
+  it.each(SIZES)('is the core’s, hot radius %f m, tip %f m, shaft %f m', (...sizes) => {
+    const random = makeRandom();
+    const [hot_radius_m, tip_length_m, shaft_radius_m] = sizes;
+    const view = new ToolView({ name: 'it', shape, hot_radius_m, tip_length_m, shaft_radius_m }, { value: new Vector3() });
+    for (const jaw of ['bipolar', 'shears', 'grasper'].includes(shape) ? JAWS : [1]) {
+      for (const part of [0, 1]) {
+        const triangles = drawnTriangles(view, jaw, part === 0);
+        if (triangles.length === 0) {
+          expect([shape, part]).toEqual(['grasper', 0]);
+          continue;
+        }
+        const distances = (points: readonly Vector3[]): Told[] => coreDistances(shape, sizes, jaw, part, points);
+        const outside = Math.max(...distances(sampleDrawn(triangles, random)).map(({ distance }) => distance));
+        const surface = sampleCore(distances, random);
+        const missing = Math.max(...surface.map((point) => distanceTo(triangles, point)));
+        const where = `jaw ${jaw}, ${part === 0 ? 'hot' : 'cold'}`;
+        expect(surface.length, where).toBeGreaterThan(SAMPLES / 20);
+        expect(outside, `${where}: drawn outside of the core’s`).toBeLessThan(NEAR_M);
+        expect(missing, `${where}: not drawn`).toBeLessThan(NEAR_M);
+      }
+    }
+  });
+});
