@@ -56,6 +56,7 @@ export class Pointer {
     this.drag = this.dragOf(event);
     if (this.drag !== 'tool') return;
     const { x, y } = this.place(event);
+    this.hand.press();
     if (!this.hand.pointAt(x, y)) this.drag = 'none';
     else if (this.press !== 'work') return;
     else if (event.pointerType === 'touch') this.soon = setTimeout(() => this.hand.hold('pointer'), FINGER_MS);

@@ -21,6 +21,7 @@ import { Way } from './way';
 export type Guide = 'surface' | 'plane';
 
 const ECHO_MS = 400; // after this without a motion the server's pose is drawn
+const POINTED_MAX = 400; // as many as a way holds
 const HOVER_M = 0.003; // between tissue and the hot part of a tool that does not work
 const ARRIVED_M = 0.001;
 
@@ -38,8 +39,8 @@ export class ToolHand {
   private wanted: Wanted | null = null;
   /** the place of the tissue that is aimed at; null: where the tool is */
   private aim: Vector3 | null = null;
-  /** where the hand pointed while the tool was still being taken */
-  private pointed: { x: number; y: number } | null = null;
+  /** where the hand pointed while the tool was still being taken, all of it: a cut begins at its beginning */
+  private pointed: { x: number; y: number }[] = [];
   private movedAt = -Infinity;
   private sequence = 0;
   private lastAdvance = performance.now();
@@ -92,10 +93,15 @@ export class ToolHand {
     if (this.model.driving && this.begin() && this.overTissue(x, y)) this.aimAt(x, y);
   }
 
+  /** Something begins to point anew. */
+  press(): void {
+    this.pointed = [];
+  }
+
   /** Points at a place of the picture: takes a free tool, and leads it there. False: it may not. */
   pointAt(x: number, y: number): boolean {
     if (!this.begin()) {
-      this.pointed = { x, y };
+      if (this.pointed.length < POINTED_MAX) this.pointed.push({ x, y });
       return this.taking.use();
     }
     this.aimAt(x, y);
@@ -114,6 +120,7 @@ export class ToolHand {
   }
 
   letGo(by: Held): void {
+    this.pointed = this.pointed.slice(-1); // a tool that is still being taken only comes there
     const worked = this.energy.wanted;
     this.energy.release(by);
     if (worked && !this.energy.wanted) this.rest();
@@ -289,11 +296,12 @@ export class ToolHand {
   /** The tool has come into this hand: it begins at the surface, where the hand points. */
   private taken(): void {
     this.depths.reset(this.tool!);
-    const { pointed } = this;
-    this.pointed = null;
+    const [first, ...rest] = this.pointed;
+    this.pointed = [];
     if (!this.begin()) return;
-    if (pointed) this.aimAt(pointed.x, pointed.y);
+    if (first) this.aimAt(first.x, first.y);
     if (this.energy.wanted) this.work(false);
+    for (const { x, y } of rest) this.aimAt(x, y);
     this.model.emit('tools', undefined);
   }
 
