@@ -26,6 +26,8 @@ export function pick(
 }
 
 const PARALLEL = 1e-18; // m^2: edges of a micrometre seen edge-on
+/** Of an edge, that a triangle reaches beyond itself: rounding (1e-12) must not let a ray through between two. */
+const SEAM = 1e-9;
 
 function meet(
   o: readonly [number, number, number],
@@ -42,9 +44,9 @@ function meet(
   if (Math.abs(determinant) < PARALLEL) return -1;
   const sx = o[0] - p[a], sy = o[1] - p[a + 1], sz = o[2] - p[a + 2];
   const s = (sx * px + sy * py + sz * pz) / determinant;
-  if (s < 0 || s > 1) return -1;
+  if (s < -SEAM || s > 1 + SEAM) return -1;
   const qx = sy * uz - sz * uy, qy = sz * ux - sx * uz, qz = sx * uy - sy * ux;
   const t = (d[0] * qx + d[1] * qy + d[2] * qz) / determinant;
-  if (t < 0 || s + t > 1) return -1;
+  if (t < -SEAM || s + t > 1 + SEAM) return -1;
   return (vx * qx + vy * qy + vz * qz) / determinant;
 }

@@ -43,6 +43,33 @@ describe('picking', () => {
     expect(pick([0.9, 0.9, 5], [0, 0, -1], position, [far, near])).toBeNull();
     expect(pick([0.2, 0.2, 5], [0, 0, 1], position, [far, near])).toBeNull();
   });
+
+  it('lets no ray through between triangles that share an edge', () => {
+    const CELLS = 12;
+    const STEP_M = 0.0017;
+    const at = (i: number): number => (i - CELLS / 2) * STEP_M;
+    const sheet: number[] = [];
+    const index: number[] = [];
+    for (let j = 0; j <= CELLS; j++) for (let i = 0; i <= CELLS; i++) sheet.push(at(i), at(j), 0.0003 * Math.sin(3 * i + 5 * j));
+    for (let j = 0; j < CELLS; j++) {
+      for (let i = 0; i < CELLS; i++) {
+        const a = j * (CELLS + 1) + i;
+        index.push(a, a + 1, a + CELLS + 2, a, a + CELLS + 2, a + CELLS + 1);
+      }
+    }
+    const sheetAt = Float32Array.from(sheet);
+    const eye: [number, number, number] = [0, -0.13, 0.17];
+    let through = 0;
+    for (let v = 0; v < sheetAt.length; v += 3) {
+      if ([0, 1].some((axis) => Math.abs(sheetAt[v + axis]) > (CELLS / 2 - 0.5) * STEP_M)) continue; // the rim
+      for (const share of [0, 0.25, 0.37, 0.5]) { // of the edge to the right
+        const to = eye.map((from, axis) => sheetAt[v + axis] + share * (sheetAt[v + 3 + axis] - sheetAt[v + axis]) - from);
+        const length = Math.hypot(...to);
+        if (!pick(eye, [to[0] / length, to[1] / length, to[2] / length], sheetAt, [Uint32Array.from(index)])) through++;
+      }
+    }
+    expect(through).toBe(0);
+  });
 });
 
 describe('fibres', () => {
