@@ -65,7 +65,7 @@ export class ViewerPage {
 
   /** What the page says went wrong. */
   async problems(): Promise<string> {
-    const said = await this.page.locator('.problem:visible, #notices:visible').allTextContents();
+    const said = await this.page.locator('.problem:visible, #notices:visible, #said:visible').allTextContents();
     return said.filter((words) => words !== '').map((words) => `${words}; `).join('');
   }
 

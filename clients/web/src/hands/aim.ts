@@ -2,20 +2,18 @@
 // Places of the tissue that a place of the picture (both coordinates from -1 to 1) points at.
 import { Vector3 } from 'three';
 
+import { acrossGap } from '../model/gap';
 import { pick } from '../model/pick';
 import type { Viewport } from '../scene/viewport';
 
 export class Aim {
   constructor(private readonly viewport: Viewport) {}
 
-  /** The nearest tissue that is drawn there; null beside it. */
+  /** The nearest tissue that is drawn there, or where it would be if it had no gap there; null beside it. */
   onSurface(x: number, y: number): Vector3 | null {
-    const { tissue, orbit } = this.viewport;
-    if (!tissue) return null;
-    const { origin, direction } = orbit.ray(x, y);
-    const position = tissue.position.array as Float32Array;
-    const hit = pick(origin.toArray(), direction.toArray(), position, tissue.visibleIndices());
-    return hit && origin.addScaledVector(direction, hit.distance);
+    const { origin, direction } = this.viewport.orbit.ray(x, y);
+    const distance = this.meet(origin, direction);
+    return distance === null ? null : origin.addScaledVector(direction, distance);
   }
 
   /** In the plane that faces the eye, through a point. */
@@ -30,11 +28,21 @@ export class Aim {
   under(point: Vector3): Vector3 {
     const { tissue } = this.viewport;
     if (!tissue) return point.clone();
-    const position = tissue.position.array as Float32Array;
-    const hit = pick(point.toArray(), [0, 0, -1], position, tissue.visibleIndices());
-    return hit ? point.clone().setZ(point.z - hit.distance) : nearestVertex(position, point);
+    const distance = this.meet(point, DOWN);
+    return distance === null ? nearestVertex(tissue.position.array as Float32Array, point) : point.clone().setZ(point.z - distance);
+  }
+
+  private meet(origin: Vector3, direction: Vector3): number | null {
+    const { tissue } = this.viewport;
+    if (!tissue) return null;
+    const [from, along] = [origin.toArray(), direction.toArray()];
+    const [position, normal] = [tissue.position.array as Float32Array, tissue.normal.array as Float32Array];
+    const indices = tissue.visibleIndices();
+    return pick(from, along, position, indices)?.distance ?? acrossGap(from, along, position, normal, indices);
   }
 }
+
+const DOWN = new Vector3(0, 0, -1);
 
 function nearestVertex(position: Float32Array, point: Vector3): Vector3 {
   const nearest = point.clone();

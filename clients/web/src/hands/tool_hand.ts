@@ -83,7 +83,7 @@ export class ToolHand {
     return this.depths.of(this.tool);
   }
 
-  /** Whether tissue is drawn at a place of the picture, both coordinates from -1 to 1. */
+  /** Whether a place of the picture is on the tissue, gaps in it included; both coordinates from -1 to 1. */
   overTissue(x: number, y: number): boolean {
     return this.places.onSurface(x, y) !== null;
   }

@@ -78,7 +78,7 @@ export class TissueView {
   readonly group = new Group();
   readonly indices: (Uint32Array | null)[];
   readonly position: BufferAttribute;
-  private readonly normal: BufferAttribute;
+  readonly normal: BufferAttribute;
   private readonly burn: BufferAttribute;
   private readonly meshes: Mesh<BufferGeometry, ShaderMaterial>[];
   private readonly fringes: (FringeView | null)[];

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 import { fibreFrame, materialCoordinates } from '../../../../clients/web/src/model/fibres';
+import { acrossGap } from '../../../../clients/web/src/model/gap';
 import { pick } from '../../../../clients/web/src/model/pick';
 import { samplesCsv } from '../../../../clients/web/src/model/samples';
 import { hasHeat, hasJaws, toolParts } from '../../../../clients/web/src/model/tool_parts';
@@ -69,6 +70,51 @@ describe('picking', () => {
       }
     }
     expect(through).toBe(0);
+  });
+});
+
+describe('gaps', () => {
+  // A sheet in the plane z = 1 mm, tilted or not, with a slit of 8 mm cut out of its middle.
+  const CELL_M = 0.002;
+  const HALF = 15; // cells
+  const sheet = (slope: number): { position: Float32Array; normal: Float32Array; index: Uint32Array } => {
+    const position: number[] = [];
+    const normal: number[] = [];
+    const index: number[] = [];
+    const side = 2 * HALF + 1;
+    for (let j = -HALF; j <= HALF; j++) {
+      for (let i = -HALF; i <= HALF; i++) {
+        position.push(CELL_M * i, CELL_M * j, 0.001 + slope * CELL_M * i);
+        normal.push(slope / Math.hypot(slope, 1), 0, -1 / Math.hypot(slope, 1)); // seen from below
+        if (i === HALF || j === HALF || (Math.abs(j + 0.5) < 2 && Math.abs(i + 0.5) < 6)) continue;
+        const a = (j + HALF) * side + i + HALF;
+        index.push(a, a + 1, a + side + 1, a, a + side + 1, a + side);
+      }
+    }
+    return { position: Float32Array.from(position), normal: Float32Array.from(normal), index: Uint32Array.from(index) };
+  };
+  const down = [0, 0, -1] as const;
+
+  it.each([0, 0.3])('are bridged in the surface of the tissue around, slope %d', (slope) => {
+    const { position, normal, index } = sheet(slope);
+    for (const x of [-0.01, -0.004, 0, 0.006]) {
+      for (const y of [-0.003, 0, 0.003]) {
+        expect(pick([x, y, 0.1], down, position, [index])).toBeNull();
+        const distance = acrossGap([x, y, 0.1], down, position, normal, [index]);
+        expect(0.1 - (distance ?? NaN)).toBeCloseTo(0.001 + slope * x, 4);
+      }
+    }
+  });
+
+  it('are not what lies beside the tissue, nor behind the eye, nor hidden', () => {
+    const { position, normal, index } = sheet(0);
+    for (const beside of [0.0301, 0.032, 0.04, 0.2]) {
+      for (const [x, y] of [[beside, 0], [-beside, 0.01], [0, beside], [beside, beside]]) {
+        expect(acrossGap([x, y, 0.1], down, position, normal, [index])).toBeNull();
+      }
+    }
+    expect(acrossGap([0, 0, -0.1], down, position, normal, [index])).toBeNull();
+    expect(acrossGap([0, 0, 0.1], down, position, normal, [null])).toBeNull();
   });
 });
 

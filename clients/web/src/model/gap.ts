@@ -1,0 +1,79 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Where a ray goes through a gap in the drawn tissue: in the surface that the tissue around it would go on in.
+
+type Vector = readonly [number, number, number];
+
+/** Half of the widest gap that is bridged. */
+const REACH_M = 0.02;
+const SECTORS = 12;
+/** In a row, without tissue in them: there is an edge of the tissue, not a gap. Half a turn has at least these. */
+const OPEN_SECTORS = SECTORS / 2 - 1;
+const NEAREST_M2 = 1e-8; // a vertex on the ray itself does not divide by nothing
+const GRAZING = 0.2; // cosine below which the surface says nothing about the distance
+
+const cross = (a: Vector, b: Vector): Vector => [a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]];
+const dot = (a: Vector, b: Vector): number => a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
+
+function normalised(v: Vector): Vector {
+  const length = Math.hypot(...v);
+  return [v[0] / length, v[1] / length, v[2] / length];
+}
+
+/** Sums over vertices around the ray, each by the fourth power of how near it is. */
+class Around {
+  private weight = 0;
+  private readonly place: [number, number, number] = [0, 0, 0];
+  private readonly normal: [number, number, number] = [0, 0, 0];
+  private readonly seen = new Uint8Array(SECTORS);
+
+  add(right: number, up: number, place: Vector, normal: Vector, side: number): void {
+    const squared = right * right + up * up;
+    const weight = 1 / (squared + NEAREST_M2) ** 2;
+    this.weight += weight;
+    for (let c = 0; c < 3; c++) {
+      this.place[c] += weight * place[c];
+      this.normal[c] += weight * side * normal[c];
+    }
+    this.seen[Math.min(Math.floor((Math.atan2(up, right) / (2 * Math.PI) + 0.5) * SECTORS), SECTORS - 1)] = 1;
+  }
+
+  get surrounds(): boolean {
+    let open = 0;
+    for (let i = 0; i < 2 * SECTORS; i++) {
+      open = this.seen[i % SECTORS] ? 0 : open + 1;
+      if (open >= OPEN_SECTORS) return false;
+    }
+    return true;
+  }
+
+  /** Along the ray, to the surface through what was added. */
+  distance(origin: Vector, direction: Vector): number {
+    const to: Vector = [0, 1, 2].map((c) => this.place[c] / this.weight - origin[c]) as [number, number, number];
+    const facing = dot(this.normal, direction);
+    return Math.abs(facing) < GRAZING * Math.hypot(...this.normal) ? dot(to, direction) : dot(to, this.normal) / facing;
+  }
+}
+
+/** Distance along a ray that meets no tissue, where tissue is all around it; null beside the tissue. */
+export function acrossGap(
+  origin: Vector,
+  direction: Vector,
+  position: Float32Array,
+  normal: Float32Array,
+  indices: readonly (Uint32Array | null)[],
+): number | null {
+  const right = normalised(cross(direction, Math.abs(direction[2]) < 0.9 ? [0, 0, 1] : [1, 0, 0]));
+  const up = cross(right, direction);
+  const around = new Around();
+  for (const index of indices) {
+    for (const v of index ?? []) {
+      const tx = position[3 * v] - origin[0], ty = position[3 * v + 1] - origin[1], tz = position[3 * v + 2] - origin[2];
+      const x = tx * right[0] + ty * right[1] + tz * right[2];
+      const y = tx * up[0] + ty * up[1] + tz * up[2];
+      if (x * x + y * y > REACH_M * REACH_M || tx * direction[0] + ty * direction[1] + tz * direction[2] <= 0) continue;
+      const of: Vector = [normal[3 * v], normal[3 * v + 1], normal[3 * v + 2]];
+      around.add(x, y, [position[3 * v], position[3 * v + 1], position[3 * v + 2]], of, dot(of, direction) > 0 ? -1 : 1);
+    }
+  }
+  return around.surrounds ? around.distance(origin, direction) : null;
+}
