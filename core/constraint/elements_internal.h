@@ -9,7 +9,7 @@ static inline int32_t cau_slots_padded(int32_t count)
 	return (count + CAU_BATCH - 1) / CAU_BATCH * CAU_BATCH;
 }
 
-// elements_make.c: which slot has which element, and arrays by slot; 0 when memory ran out.
+// elements_arrays.c: which slot has which element, and arrays by slot; 0 when memory ran out.
 cau_status cau_elements_make_maps(cau_element_slots *slots, int kind, int32_t element_count,
                                   int32_t slot_count, cau_arena *arena, cau_error *error);
 void cau_elements_assign(cau_element_slots *slots, int kind, int32_t element, int32_t slot);

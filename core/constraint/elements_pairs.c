@@ -2,7 +2,6 @@
 // Triangles and tetrahedra in their slots, pair by pair (pairs.h).
 #include "constraint/elements_internal.h"
 #include "constraint/pairs.h"
-#include "solve/system.h"
 
 static cau_status no_memory(cau_error *error)
 {

@@ -5,11 +5,11 @@
 #include "base/memory.h"
 #include "base/pool.h"
 #include "cautery/session.h"
-#include "constraint/contact.h"
 #include "dissect/dissection.h"
 #include "dissect/shrink.h"
 #include "frame/frame_state.h"
 #include "heat/exposure.h"
+#include "solve/contact.h"
 #include "solve/matrix_update.h"
 #include "solve/solver.h"
 #include "tissue/tissue.h"
@@ -152,10 +152,12 @@ cau_status cau_session_make_energy(cau_session *session, cau_error *error);
 void cau_session_begin_energy(cau_session *session);
 void cau_session_end_energy(cau_session *session);
 void cau_session_mark_changed(cau_session *session);
-// step.c: what turns a tick's way into the velocity after it, 1/s (eq. 2 and damping).
+// motion.c: what turns a tick's way into the velocity after it, 1/s (eq. 2 and damping).
 double cau_session_velocity_scale(const cau_session *session);
-// step.c: predicts s of eq. 4; plastic flow after a solve.
+// motion.c: predicts s of eq. 4 before a solve; velocities after it.
 void cau_session_predict(cau_session *session);
+void cau_session_update_velocities(cau_session *session);
+// step.c: plastic flow after a solve.
 void cau_session_settle(cau_session *session);
 // stage timing
 void cau_session_stage_begin(cau_session *session);

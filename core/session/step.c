@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // One tick. cau_session_step is the table of contents; each line names the stage and where its
 // equations live.
-#include <math.h>
 #include <stdatomic.h>
 #include <string.h>
 
@@ -20,39 +19,6 @@ void cau_session_stage_end(cau_session *session, int stage)
 	double now = session->now_s();
 	session->stage_s[stage] += now - session->stage_start;
 	session->stage_start = now;
-}
-
-// s = x + dt v + dt^2 M^-1 f_ext (eq. 4), and the first guess x + dt v.
-void cau_session_predict(cau_session *session)
-{
-	double dt = session->solver.step_s;
-	const double *gravity = session->scene->gravity_m_s2;
-	for (int32_t v = 0; v < session->tissue.vertex_count; ++v)
-		for (int c = 0; c < 3; ++c) {
-			size_t i = 3 * (size_t)v + (size_t)c;
-			double guess = session->position_start[i] + dt * session->velocity[i];
-			double push = gravity[c] + session->external[i] / session->tissue.mass[v];
-			session->solver.predicted[i] = guess + dt * dt * push;
-			session->position[i] = session->fixed[v] ? session->position_start[i] : guess;
-		}
-}
-
-double cau_session_velocity_scale(const cau_session *session)
-{
-	double dt = session->solver.step_s;
-	return exp(-session->scene->damping_per_s * dt) / dt;
-}
-
-// v = (x - x_t) / dt, damped by exp(-c dt) (eq. 2).
-static void update_velocities(cau_session *session)
-{
-	double scale = cau_session_velocity_scale(session);
-	for (int32_t v = 0; v < session->tissue.vertex_count; ++v)
-		for (int c = 0; c < 3; ++c) {
-			size_t i = 3 * (size_t)v + (size_t)c;
-			session->velocity[i] =
-				session->fixed[v] ? 0 : scale * (session->position[i] - session->position_start[i]);
-		}
 }
 
 typedef struct settling {
@@ -157,7 +123,7 @@ cau_status cau_session_step(cau_session *session, cau_error *error)
 	cau_session_move_tools(session);                                // tool_motion.c
 	cau_session_begin_energy(session);                              // energy.c
 	cau_session_stage_end(session, CAU_STAGE_COMMANDS);
-	cau_session_predict(session);       // eq. 4, above
+	cau_session_predict(session);       // eq. 4: motion.c
 	cau_session_lead_driven(session);   // drive.c
 	cau_session_find_contacts(session); // touch.c
 	cau_session_stage_end(session, CAU_STAGE_PREDICT);
@@ -170,7 +136,7 @@ cau_status cau_session_step(cau_session *session, cau_error *error)
 	if (status)
 		return fault(session, status);
 	cau_session_end_energy(session);                     // energy.c
-	update_velocities(session);                          // eq. 2, above
+	cau_session_update_velocities(session);              // eq. 2: motion.c
 	cau_session_settle(session);                         // plasticity, section 5.2
 	status = cau_session_check_inverted(session, error); // possible.c
 	if (status)

@@ -4,7 +4,7 @@
 #include <math.h>
 #include <string.h>
 
-#include "constraint/contact.h"
+#include "solve/contact.h"
 #include "solve/solver.h"
 
 // What rounding can do to a sum, relative to its terms.

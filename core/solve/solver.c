@@ -3,7 +3,7 @@
 
 #include <string.h>
 
-#include "constraint/contact.h"
+#include "solve/contact.h"
 
 static cau_status no_memory(cau_error *error)
 {

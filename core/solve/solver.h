@@ -107,7 +107,8 @@ double cau_solver_evaluate_displaced(cau_step_solver *solver);
 double cau_solver_elastic_energy(const cau_step_solver *solver);
 // global.c: increment = -A^-1 gradient, with unilateral constraints if there are any.
 void cau_solver_global(cau_step_solver *solver);
-// Plain A^-1 applied: out = A^-1 in (real vectors by vertex; rows of fixed vertices come out zero).
+// inverse.c: plain A^-1 applied: out = A^-1 in (real vectors by vertex; rows of fixed vertices come
+// out zero).
 void cau_solver_apply_inverse(cau_step_solver *solver, const void *in, void *out, double sign);
 // anderson.c: trial_increment from increment and the history of this step. What is mixed is kept,
 // once it is done with, by giving the next increment and gradient other arrays.

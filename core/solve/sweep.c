@@ -194,11 +194,6 @@ static void number_top(cau_sweep *sweep, int32_t *top_number)
 	sweep->padded_top = pad(sweep->top_count);
 }
 
-size_t cau_sweep_entry_bytes(const cau_sweep *sweep)
-{
-	return sweep->narrow ? sizeof(int16_t) : cau_real_bytes(sweep->single);
-}
-
 int32_t cau_sweep_task_place(const cau_sweep *sweep, int32_t task)
 {
 	return sweep->padded_n + task * (sweep->padded_top + 1);

@@ -89,13 +89,13 @@ cau_status cau_sweep_create(cau_sweep *sweep, cau_arena *arena, const cau_factor
                             cau_error *error);
 void cau_sweep_finish(cau_sweep *sweep);
 
-// Of an entry of the panels.
-size_t cau_sweep_entry_bytes(const cau_sweep *sweep);
-
 // The place of the task's first sum; of task_count: the last spare place.
 int32_t cau_sweep_task_place(const cau_sweep *sweep, int32_t task);
 
 // ---- sweep_pack.c: the factor's values in the panels
+// Of an entry of the panels.
+size_t cau_sweep_entry_bytes(const cau_sweep *sweep);
+
 cau_status cau_sweep_create_panels(const cau_sweep *sweep, cau_sweep_panels *panels,
                                    cau_error *error);
 void cau_sweep_finish_panels(cau_sweep_panels *panels);

@@ -6,6 +6,11 @@
 
 #include "solve/kernels.h"
 
+size_t cau_sweep_entry_bytes(const cau_sweep *sweep)
+{
+	return sweep->narrow ? sizeof(int16_t) : cau_real_bytes(sweep->single);
+}
+
 cau_status cau_sweep_create_panels(const cau_sweep *sweep, cau_sweep_panels *panels,
                                    cau_error *error)
 {

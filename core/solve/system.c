@@ -130,15 +130,6 @@ void cau_system_assemble(const cau_system *system, const cau_tissue *tissue, con
 		}
 }
 
-double cau_element_map_scale(const cau_element_map *map)
-{
-	double sum = 0;
-	for (int r = 0; r < map->rank; ++r)
-		for (int i = 0; i < map->vertex_count; ++i)
-			sum += map->coefficient[r][i] * map->coefficient[r][i];
-	return sum / map->vertex_count;
-}
-
 void cau_system_assemble_diagonal(const cau_system *system, const cau_tissue *tissue,
                                   const cau_alive *alive, double step_s)
 {

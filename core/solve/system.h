@@ -31,9 +31,6 @@ void cau_system_assemble(const cau_system *system, const cau_tissue *tissue, con
 void cau_system_assemble_diagonal(const cau_system *system, const cau_tissue *tissue,
                                   const cau_alive *alive, double step_s);
 
-// |G|^2 / vertices of an element, 1/m^2 (1 for links and hinges' own G).
-double cau_element_map_scale(const cau_element_map *map);
-
 // Columns sqrt(w) G^T of an element in row numbers, appended to C at column *columns (see
 // cau_factor_update). Rows of pinned vertices are left out; all-zero columns too.
 void cau_system_columns(const cau_system *system, const cau_element_map *map, int32_t *columns,

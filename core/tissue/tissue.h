@@ -71,6 +71,7 @@ void cau_tissue_finish(cau_tissue *tissue);
 int32_t cau_tissue_select(const cau_tissue *tissue, const cau_selection *selection,
                           uint8_t *chosen);
 
+// materials.c
 int32_t cau_tissue_find_layer(const cau_tissue *tissue, const char *name); // -1: none
 
 // Materials of one element.
@@ -78,7 +79,7 @@ const cau_sheet_material *cau_triangle_material(const cau_tissue *tissue, int32_
 const cau_fat_material *cau_tetrahedron_material(const cau_tissue *tissue, int32_t tetrahedron);
 const cau_heat_material *cau_layer_heat(const cau_tissue_layer *layer, int32_t material);
 
-// Elements as the system sees them: rank-r maps G with weight w.
+// element_map.c: elements as the system sees them: rank-r maps G with weight w.
 typedef enum cau_element_kind {
 	CAU_ELEMENT_TRIANGLE,
 	CAU_ELEMENT_TETRAHEDRON,
@@ -97,6 +98,8 @@ typedef struct cau_element_map {
 int32_t cau_tissue_element_count(const cau_tissue *tissue, int kind);
 void cau_tissue_element_map(const cau_tissue *tissue, int kind, int32_t index,
                             cau_element_map *map);
+// |G|^2 / vertices of an element, 1/m^2 (1 for links and hinges' own G).
+double cau_element_map_scale(const cau_element_map *map);
 
 // Lame's first and second parameters of small strain, Pa.
 void cau_fat_lame(const cau_fat_material *material, double *lambda, double *mu);

@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "constraint/contact.h"
+#include "solve/contact.h"
 
 #include <string.h>
 
-#include "constraint/hold.h"
+#include "solve/hold.h"
 
 cau_status cau_contact_create(cau_contact_set *set, const cau_tissue *tissue, int single,
                               cau_arena *arena, cau_error *error)

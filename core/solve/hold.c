@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "constraint/hold.h"
+#include "solve/hold.h"
 
 static const cau_tool_def *tool_of(const cau_contact_set *set, const cau_contact_row *row)
 {

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Contact and attachment at the solver's fixed point: nothing penetrates, nothing pulls, friction
 // stays in its cone, and the reactions are what the gradient of eq. 4 is balanced by.
-#include "constraint/contact.h"
+#include "solve/contact.h"
 
 #include <stdlib.h>
 #include <string.h>

@@ -4,7 +4,7 @@
 // attachment's own compliance.
 #pragma once
 
-#include "constraint/contact.h"
+#include "solve/contact.h"
 
 // Factors S + 1/k over the attached rows. Called once a step, after the columns are there.
 void cau_hold_prepare(cau_contact_set *set);

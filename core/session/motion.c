@@ -1,0 +1,38 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// How vertices move through a tick: predicted before the solve, their velocities after it.
+#include <math.h>
+
+#include "session/session_internal.h"
+
+// s = x + dt v + dt^2 M^-1 f_ext (eq. 4), and the first guess x + dt v.
+void cau_session_predict(cau_session *session)
+{
+	double dt = session->solver.step_s;
+	const double *gravity = session->scene->gravity_m_s2;
+	for (int32_t v = 0; v < session->tissue.vertex_count; ++v)
+		for (int c = 0; c < 3; ++c) {
+			size_t i = 3 * (size_t)v + (size_t)c;
+			double guess = session->position_start[i] + dt * session->velocity[i];
+			double push = gravity[c] + session->external[i] / session->tissue.mass[v];
+			session->solver.predicted[i] = guess + dt * dt * push;
+			session->position[i] = session->fixed[v] ? session->position_start[i] : guess;
+		}
+}
+
+double cau_session_velocity_scale(const cau_session *session)
+{
+	double dt = session->solver.step_s;
+	return exp(-session->scene->damping_per_s * dt) / dt;
+}
+
+// v = (x - x_t) / dt, damped by exp(-c dt) (eq. 2).
+void cau_session_update_velocities(cau_session *session)
+{
+	double scale = cau_session_velocity_scale(session);
+	for (int32_t v = 0; v < session->tissue.vertex_count; ++v)
+		for (int c = 0; c < 3; ++c) {
+			size_t i = 3 * (size_t)v + (size_t)c;
+			session->velocity[i] =
+				session->fixed[v] ? 0 : scale * (session->position[i] - session->position_start[i]);
+		}
+}

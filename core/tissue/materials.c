@@ -1,0 +1,41 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Layers by name, and the materials of layers and elements.
+#include <string.h>
+
+#include "tissue/tissue.h"
+
+int32_t cau_tissue_find_layer(const cau_tissue *tissue, const char *name)
+{
+	for (int32_t i = 0; i < tissue->layer_count; ++i)
+		if (!strcmp(tissue->layer[i].def.name, name))
+			return i;
+	return -1;
+}
+
+const cau_sheet_material *cau_triangle_material(const cau_tissue *tissue, int32_t triangle)
+{
+	return &tissue->layer[tissue->triangle_layer[triangle]]
+	            .def.sheet[tissue->triangle_material[triangle]];
+}
+
+const cau_fat_material *cau_tetrahedron_material(const cau_tissue *tissue, int32_t tetrahedron)
+{
+	return &tissue->layer[tissue->tetrahedron_layer[tetrahedron]]
+	            .def.fat[tissue->tetrahedron_material[tetrahedron]];
+}
+
+const cau_heat_material *cau_layer_heat(const cau_tissue_layer *layer, int32_t material)
+{
+	if (layer->def.kind == CAU_LAYER_FAT)
+		return &layer->def.fat[material].heat;
+	if (layer->def.kind == CAU_LAYER_LINKS)
+		return &layer->def.link.heat;
+	return &layer->def.sheet[material].heat;
+}
+
+void cau_fat_lame(const cau_fat_material *material, double *lambda, double *mu)
+{
+	double e = material->young_modulus_pa, nu = material->poisson_ratio;
+	*mu = e / (2 * (1 + nu));
+	*lambda = e * nu / ((1 + nu) * (1 - 2 * nu));
+}
