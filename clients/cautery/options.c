@@ -1,7 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // The command line.
-#include <math.h>
-#include <stdarg.h>
 #include <stdlib.h>
 #include <string.h>
 
@@ -15,48 +13,6 @@ static const cli_option common[] = {
 	{"help", NULL, "this text"},
 	{0},
 };
-
-void cli_complain(const cli *c, const char *format, ...)
-{
-	va_list arguments;
-	fprintf(c->complaints, "cautery%s%s: ", c->command ? " " : "",
-	        c->command ? c->command->name : "");
-	va_start(arguments, format);
-	vfprintf(c->complaints, format, arguments);
-	va_end(arguments);
-	fputc('\n', c->complaints);
-}
-
-bool cli_read_number(const cli *c, const char *what, const char *text, double least, double most,
-                     double *value)
-{
-	char *end;
-	*value = strtod(text, &end);
-	if (end != text && !*end && *value >= least && *value <= most)
-		return true;
-	cli_complain(c, "%s wants a number from %g to %g, not \"%s\"", what, least, most, text);
-	return false;
-}
-
-const char *cli_value(const cli *c, const char *option)
-{
-	for (int i = 0; i < CLI_OPTIONS_MAX && c->command->options[i].name; i++)
-		if (strcmp(c->command->options[i].name, option) == 0)
-			return c->values[i];
-	return NULL;
-}
-
-double cli_number(const cli *c, const char *option, double least, double most, double otherwise,
-                  bool *bad)
-{
-	char what[64];
-	double value = otherwise;
-	const char *text = cli_value(c, option);
-	snprintf(what, sizeof what, "--%s", option);
-	if (text && !cli_read_number(c, what, text, least, most, &value))
-		*bad = true;
-	return value;
-}
 
 // ---- help --------------------------------------------------------------------------------------
 static void print_options(FILE *out, const cli_option *options, int count)

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Requests and their answers, and the server's notifications.
+// Requests and their answers; notifications to the server.
 #include <stdlib.h>
 #include <string.h>
 
@@ -223,15 +223,9 @@ static void fail_pending(cau_client_pending *pending, const cau_error *error)
 	free(pending);
 }
 
-static void answered(cau_client *client, const cau_rpc_message *message)
+void cau_calls_answered(cau_client *client, const cau_rpc_message *message)
 {
 	cau_error error = {0};
-	if (message->id.kind != CAU_RPC_ID_NUMBER)
-		return; // to a message that could not be read, or to nobody
-	if (message->id.number == 0 && client->condition == CAU_CLIENT_CONNECTING) {
-		cau_hello_answered(client, message);
-		return;
-	}
 	cau_client_pending *pending = take_pending(client, message->id.number);
 	if (!pending)
 		return; // answered before, on an earlier connection
@@ -244,27 +238,6 @@ static void answered(cau_client *client, const cau_rpc_message *message)
 	if (pending->answer)
 		pending->answer(pending->user, message, NULL);
 	free(pending);
-}
-
-static void notified(cau_client *client, const cau_rpc_message *message)
-{
-	if (message->method == CAU_METHOD_SESSION_CHANGED)
-		cau_streams_changed(client, message);
-	if (client->def.on_notification)
-		client->def.on_notification(client->def.user, client, message);
-}
-
-void cau_text_received(cau_client *client, const char *text, size_t bytes)
-{
-	cau_rpc_message message;
-	cau_rpc_fault fault;
-	if (cau_rpc_read(text, bytes, CAU_CLIENT_TEXT_MAX, &message, &fault))
-		return; // of a later version, perhaps; whoever waits for it times out
-	if (message.kind == CAU_RPC_RESULT || message.kind == CAU_RPC_ERROR)
-		answered(client, &message);
-	else
-		notified(client, &message);
-	cau_rpc_finish(&message);
 }
 
 void cau_calls_lost(cau_client *client, bool all)

@@ -1,13 +1,10 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// A client's life: connecting, losing the connection, coming back.
-#include <math.h>
+// A client's life, from being made to its end.
 #include <stdlib.h>
 #include <string.h>
 
 #include "cautery/name.h"
 #include "library/internal.h"
-
-enum { FIRST_RETRY_US = 100000, LAST_RETRY_US = 2000000 };
 
 cau_client_def cau_default_client_def(void)
 {
@@ -54,18 +51,11 @@ cau_status cau_client_create(cau_loop *loop, const cau_client_def *def, cau_clie
 	return CAU_OK;
 }
 
-static void forget_timers(cau_client *client)
-{
-	lws_sul_cancel(&client->tick);
-	lws_sul_cancel(&client->retry);
-	lws_sul_cancel(&client->deadline);
-}
-
 void cau_client_destroy(cau_client *client)
 {
 	if (!client)
 		return;
-	forget_timers(client);
+	cau_client_forget_timers(client);
 	if (client->wsi) {
 		lws_set_wsi_user(client->wsi, NULL);
 		lws_set_timeout(client->wsi, PENDING_TIMEOUT_USER_REASON_BASE, LWS_TO_KILL_ASYNC);
@@ -79,133 +69,13 @@ void cau_client_destroy(cau_client *client)
 	free(client);
 }
 
-static void set_condition(cau_client *client, cau_client_condition condition)
-{
-	client->condition = condition;
-	if (client->def.on_condition)
-		client->def.on_condition(client->def.user, client, condition);
-}
-
-static void too_late(lws_sorted_usec_list_t *timer)
-{
-	cau_client *client = lws_container_of(timer, cau_client, deadline);
-	snprintf(client->close_reason, sizeof client->close_reason, "no answer to hello within %g s",
-	         client->def.timeout_s);
-	cau_socket_cut(client);
-}
-
-static void connect_now(cau_client *client)
-{
-	client->attempts++;
-	lws_sul_schedule(client->loop->context, 0, &client->deadline, too_late,
-	                 (lws_usec_t)(client->def.timeout_s * 1e6));
-	set_condition(client, CAU_CLIENT_CONNECTING);
-	cau_socket_open(client);
-}
-
-static void retry(lws_sorted_usec_list_t *timer)
-{
-	connect_now(lws_container_of(timer, cau_client, retry));
-}
-
-// Five heartbeats go into the silence after which the server cuts energy: on a busy machine some
-// come late, and the server takes some late.
-static lws_usec_t tick_us(const cau_client *client)
-{
-	const double share = 5, least_us = 10000;
-	double wanted_us = 1e6 * client->server.limits.heartbeat_s / share;
-	return (lws_usec_t)fmin(CAU_CLIENT_TICK_US, fmax(least_us, wanted_us));
-}
-
-static void tick(lws_sorted_usec_list_t *timer)
-{
-	cau_client *client = lws_container_of(timer, cau_client, tick);
-	lws_sul_schedule(client->loop->context, 0, &client->tick, tick, tick_us(client));
-	if (client->keep_alive)
-		cau_client_notify(client, CAU_METHOD_HEARTBEAT, &(cau_wire_heartbeat){.visible = true},
-		                  NULL);
-	cau_streams_tick(client);
-}
-
-void cau_client_opened(cau_client *client)
-{
-	cau_error error = {0};
-	if (cau_hello_send(client, &error))
-		cau_client_refused(client, &error);
-}
-
-void cau_client_greeted(cau_client *client)
-{
-	client->attempts = 0;
-	client->connections++;
-	lws_sul_cancel(&client->deadline);
-	lws_sul_schedule(client->loop->context, 0, &client->tick, tick, tick_us(client));
-	client->condition = CAU_CLIENT_READY;
-	cau_streams_rejoin(client);
-	cau_calls_resend(client);
-	set_condition(client, CAU_CLIENT_READY);
-}
-
-void cau_client_refused(cau_client *client, const cau_error *error)
-{
-	client->trouble = *error;
-	client->closing = true;
-	lws_callback_on_writable(client->wsi);
-}
-
-// Close codes after which coming back would meet the same again.
-static bool is_final(int code)
-{
-	switch (code) {
-	case CAU_CLOSE_DONE:
-	case CAU_CLOSE_PROTOCOL:
-	case CAU_CLOSE_UNSUPPORTED:
-	case CAU_CLOSE_NOT_UTF8:
-	case CAU_CLOSE_TOO_BIG:
-	case CAU_CLOSE_UNAUTHORIZED:
-	case CAU_CLOSE_VERSION:
-	case CAU_CLOSE_RATE:
-	case CAU_CLOSE_RESUMED:
-	case CAU_CLOSE_GARBAGE:
-		return true;
-	default:
-		return false;
-	}
-}
-
-void cau_client_lost(cau_client *client, const char *reason)
-{
-	bool again = client->def.reconnect && client->connections > 0 && !client->closing &&
-	             !is_final(client->close_code);
-	forget_timers(client);
-	cau_outbox_clear(&client->outbox);
-	if (!client->closing || !client->trouble.status)
-		cau_fail(&client->trouble, CAU_IO, NULL, "%s", reason);
-	cau_streams_lost(client);
-	if (again) {
-		double wait_us = fmin(LAST_RETRY_US, FIRST_RETRY_US * exp2(client->attempts));
-		lws_sul_schedule(client->loop->context, 0, &client->retry, retry, (lws_usec_t)wait_us);
-	}
-	client->closing = false;
-	client->condition = again ? CAU_CLIENT_LOST : CAU_CLIENT_CLOSED;
-	cau_calls_lost(client, !again);
-	set_condition(client, client->condition);
-}
-
-bool cau_client_wait_for(cau_client *client, const bool *done, double until_s)
-{
-	for (double now_s; !*done && (now_s = cau_client_now()) < until_s;)
-		cau_loop_wait(client->loop, until_s - now_s);
-	return *done;
-}
-
 void cau_client_start(cau_client *client)
 {
 	if (client->condition != CAU_CLIENT_IDLE && client->condition != CAU_CLIENT_CLOSED)
 		return;
 	client->trouble = (cau_error){0};
 	client->attempts = 0;
-	connect_now(client);
+	cau_client_begin(client);
 }
 
 cau_status cau_client_connect(cau_client *client, cau_error *error)

@@ -29,20 +29,16 @@ cau_status cau_hello_send(cau_client *client, cau_error *error)
 	return status;
 }
 
-void cau_hello_answered(cau_client *client, const cau_rpc_message *message)
+cau_status cau_hello_answered(cau_client *client, const cau_rpc_message *message, cau_error *error)
 {
-	cau_error error = {0};
 	if (message->kind == CAU_RPC_ERROR) {
 		client->fault = message->fault;
-		cau_error_of_fault(&message->fault, &error);
-		cau_client_refused(client, &error);
-		return;
+		cau_error_of_fault(&message->fault, error);
+		return error->status;
 	}
 	cau_wire_hello_result server = {0};
-	if (cau_rpc_result(message, CAU_METHOD_HELLO, &server, &error)) {
-		cau_client_refused(client, &error);
-		return;
-	}
-	client->server = server;
-	cau_client_greeted(client);
+	cau_status status = cau_rpc_result(message, CAU_METHOD_HELLO, &server, error);
+	if (!status)
+		client->server = server;
+	return status;
 }

@@ -8,6 +8,8 @@
 #include "library/outbox.h"
 #include "library/url.h"
 
+#define CAU_CLIENT_SUBPROTOCOL "cautery.v1"
+
 enum {
 	CAU_CLIENT_TEXT_MAX = 64 << 20,  // of a text message from the server
 	CAU_CLIENT_BINARY_MAX = 1 << 30, // of a frame or chunk
@@ -80,26 +82,32 @@ struct cau_client {
 	cau_client_incoming *incoming; // one at a time
 };
 
-// socket.c
-extern const struct lws_protocols cau_client_protocols[];
-void cau_socket_open(cau_client *client);
+// send.c
 void cau_socket_cut(cau_client *client); // by and by; ends in cau_client_lost
 cau_status cau_socket_send(cau_client *client, bool binary, const void *head, size_t head_bytes,
                            const void *body, size_t body_bytes, cau_error *error);
 
-// client.c
+// connection.c
+void cau_client_begin(cau_client *client);
+void cau_client_forget_timers(cau_client *client);
 void cau_client_opened(cau_client *client);
+void cau_client_not_opened(cau_client *client, struct lws *wsi, const char *in, size_t bytes);
 void cau_client_lost(cau_client *client, const char *reason);
 void cau_client_refused(cau_client *client, const cau_error *error); // closes for good
 void cau_client_greeted(cau_client *client);
+
+// wait.c
 bool cau_client_wait_for(cau_client *client, const bool *done, double until_s);
 
 // hello.c
 cau_status cau_hello_send(cau_client *client, cau_error *error);
-void cau_hello_answered(cau_client *client, const cau_rpc_message *message);
+cau_status cau_hello_answered(cau_client *client, const cau_rpc_message *message, cau_error *error);
+
+// receive.c
+void cau_text_received(cau_client *client, const char *text, size_t bytes);
 
 // calls.c
-void cau_text_received(cau_client *client, const char *text, size_t bytes);
+void cau_calls_answered(cau_client *client, const cau_rpc_message *message);
 void cau_calls_lost(cau_client *client, bool all); // fails those that cannot be sent again
 void cau_calls_resend(cau_client *client);
 void cau_error_of_fault(const cau_rpc_fault *fault, cau_error *error);

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The WebSocket: messages put together, messages written, and how it ended.
+// The WebSocket, as libwebsockets tells of it: messages put together, messages written, and how it
+// ended. The event loop, which libwebsockets wants to know that from, is made here.
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
@@ -7,78 +8,6 @@
 #include "library/internal.h"
 
 enum { RECEIVE_BYTES = 65536 };
-
-#define SUBPROTOCOL "cautery.v1"
-
-// What an HTTP answer that is no upgrade says: its status, and the reason that the daemon gives in
-// a header, since libwebsockets shows no body of such an answer. False if there was none.
-static bool read_refusal(struct lws *wsi, char *text, size_t bytes)
-{
-	static const char header[] = "cautery-reason:";
-	char reason[200];
-	unsigned status = wsi ? lws_http_client_http_response(wsi) : 0;
-	if (status < 200) // none, or an upgrade
-		return false;
-	if (lws_hdr_custom_copy(wsi, reason, sizeof reason, header, sizeof header - 1) <= 0)
-		snprintf(reason, sizeof reason, "no reason given; is this a cauteryd?");
-	snprintf(text, bytes, "it answered HTTP %u: %s", status, reason);
-	return true;
-}
-
-static void not_opened(cau_client *client, struct lws *wsi, const char *in, size_t bytes)
-{
-	char reason[480], why[260] = "nothing answered";
-	if (!read_refusal(wsi, why, sizeof why) && in && bytes < 120)
-		snprintf(why, sizeof why, "%.*s", (int)bytes, in);
-	snprintf(reason, sizeof reason, "no connection to %.160s port %d: %s", client->url.host,
-	         client->url.port, why);
-	client->wsi = NULL;
-	cau_client_lost(client, reason);
-}
-
-void cau_socket_open(cau_client *client)
-{
-	char host[280], path[64];
-	bool bare = strchr(client->url.host, ':') == NULL; // no IPv6 address
-	snprintf(host, sizeof host, bare ? "%s:%d" : "[%s]:%d", client->url.host, client->url.port);
-	snprintf(path, sizeof path, *client->session ? "/v1?session=%s" : "/v1", client->session);
-	struct lws_client_connect_info info = {
-		.context = client->loop->context,
-		.address = client->url.host,
-		.port = client->url.port,
-		.ssl_connection = client->url.tls ? LCCSCF_USE_SSL : 0,
-		.path = path,
-		.host = host,
-		.protocol = SUBPROTOCOL,
-		.local_protocol_name = SUBPROTOCOL,
-		.ietf_version_or_minus_one = -1,
-		.alpn = "http/1.1",
-		.userdata = client,
-	};
-	client->close_code = 0;
-	client->close_reason[0] = 0;
-	client->wsi = lws_client_connect_via_info(&info);
-	if (!client->wsi && client->condition == CAU_CLIENT_CONNECTING)
-		not_opened(client, NULL, NULL, 0);
-}
-
-void cau_socket_cut(cau_client *client)
-{
-	if (client->wsi)
-		lws_set_timeout(client->wsi, PENDING_TIMEOUT_USER_REASON_BASE, LWS_TO_KILL_ASYNC);
-}
-
-cau_status cau_socket_send(cau_client *client, bool binary, const void *head, size_t head_bytes,
-                           const void *body, size_t body_bytes, cau_error *error)
-{
-	if (!client->wsi)
-		return cau_fail(error, CAU_IO, NULL, "not connected");
-	cau_status status =
-		cau_outbox_add(&client->outbox, binary, head, head_bytes, body, body_bytes, error);
-	if (!status)
-		lws_callback_on_writable(client->wsi);
-	return status;
-}
 
 static int write_one(cau_client *client)
 {
@@ -184,7 +113,7 @@ static int on_event(struct lws *wsi, enum lws_callback_reasons reason, void *use
 		cau_client_opened(client);
 		return 0;
 	case LWS_CALLBACK_CLIENT_CONNECTION_ERROR:
-		not_opened(client, wsi, in, bytes);
+		cau_client_not_opened(client, wsi, in, bytes);
 		return 0;
 	case LWS_CALLBACK_CLIENT_RECEIVE:
 		return receive(client, in, bytes);
@@ -201,7 +130,28 @@ static int on_event(struct lws *wsi, enum lws_callback_reasons reason, void *use
 	}
 }
 
-const struct lws_protocols cau_client_protocols[] = {
-	{.name = SUBPROTOCOL, .callback = on_event, .rx_buffer_size = RECEIVE_BYTES},
+static const struct lws_protocols protocols[] = {
+	{.name = CAU_CLIENT_SUBPROTOCOL, .callback = on_event, .rx_buffer_size = RECEIVE_BYTES},
 	{0},
 };
+
+cau_status cau_loop_create(cau_loop **loop, cau_error *error)
+{
+	struct lws_context_creation_info info = {
+		.port = CONTEXT_PORT_NO_LISTEN,
+		.protocols = protocols,
+		.options = LWS_SERVER_OPTION_DO_SSL_GLOBAL_INIT,
+		.pt_serv_buf_size = RECEIVE_BYTES,
+		.gid = -1,
+		.uid = -1,
+	};
+	lws_set_log_level(0, NULL); // troubles are told by cau_error
+	*loop = calloc(1, sizeof **loop);
+	if (*loop)
+		(*loop)->context = lws_create_context(&info);
+	if (*loop && (*loop)->context)
+		return CAU_OK;
+	free(*loop);
+	*loop = NULL;
+	return cau_fail(error, CAU_NO_MEMORY, NULL, "no memory for an event loop");
+}

@@ -2,6 +2,13 @@
 // Calls that wait for their answer.
 #include "library/internal.h"
 
+bool cau_client_wait_for(cau_client *client, const bool *done, double until_s)
+{
+	for (double now_s; !*done && (now_s = cau_client_now()) < until_s;)
+		cau_loop_wait(client->loop, until_s - now_s);
+	return *done;
+}
+
 typedef struct waiting {
 	cau_method method;
 	void *result;

@@ -1,0 +1,184 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// A connection of a client: opening it, greeting, losing it, coming back.
+#include <math.h>
+#include <stdio.h>
+#include <string.h>
+
+#include "library/internal.h"
+
+enum { FIRST_RETRY_US = 100000, LAST_RETRY_US = 2000000 };
+
+static void set_condition(cau_client *client, cau_client_condition condition)
+{
+	client->condition = condition;
+	if (client->def.on_condition)
+		client->def.on_condition(client->def.user, client, condition);
+}
+
+void cau_client_forget_timers(cau_client *client)
+{
+	lws_sul_cancel(&client->tick);
+	lws_sul_cancel(&client->retry);
+	lws_sul_cancel(&client->deadline);
+}
+
+// ---- open --------------------------------------------------------------------------------------
+// Five heartbeats go into the silence after which the server cuts energy: on a busy machine some
+// come late, and the server takes some late.
+static lws_usec_t tick_us(const cau_client *client)
+{
+	const double share = 5, least_us = 10000;
+	double wanted_us = 1e6 * client->server.limits.heartbeat_s / share;
+	return (lws_usec_t)fmin(CAU_CLIENT_TICK_US, fmax(least_us, wanted_us));
+}
+
+static void tick(lws_sorted_usec_list_t *timer)
+{
+	cau_client *client = lws_container_of(timer, cau_client, tick);
+	lws_sul_schedule(client->loop->context, 0, &client->tick, tick, tick_us(client));
+	if (client->keep_alive)
+		cau_client_notify(client, CAU_METHOD_HEARTBEAT, &(cau_wire_heartbeat){.visible = true},
+		                  NULL);
+	cau_streams_tick(client);
+}
+
+void cau_client_opened(cau_client *client)
+{
+	cau_error error = {0};
+	if (cau_hello_send(client, &error))
+		cau_client_refused(client, &error);
+}
+
+void cau_client_greeted(cau_client *client)
+{
+	client->attempts = 0;
+	client->connections++;
+	lws_sul_cancel(&client->deadline);
+	lws_sul_schedule(client->loop->context, 0, &client->tick, tick, tick_us(client));
+	client->condition = CAU_CLIENT_READY;
+	cau_streams_rejoin(client);
+	cau_calls_resend(client);
+	set_condition(client, CAU_CLIENT_READY);
+}
+
+void cau_client_refused(cau_client *client, const cau_error *error)
+{
+	client->trouble = *error;
+	client->closing = true;
+	lws_callback_on_writable(client->wsi);
+}
+
+// ---- lost --------------------------------------------------------------------------------------
+static void retry(lws_sorted_usec_list_t *timer)
+{
+	cau_client_begin(lws_container_of(timer, cau_client, retry));
+}
+
+// Close codes after which coming back would meet the same again.
+static bool is_final(int code)
+{
+	switch (code) {
+	case CAU_CLOSE_DONE:
+	case CAU_CLOSE_PROTOCOL:
+	case CAU_CLOSE_UNSUPPORTED:
+	case CAU_CLOSE_NOT_UTF8:
+	case CAU_CLOSE_TOO_BIG:
+	case CAU_CLOSE_UNAUTHORIZED:
+	case CAU_CLOSE_VERSION:
+	case CAU_CLOSE_RATE:
+	case CAU_CLOSE_RESUMED:
+	case CAU_CLOSE_GARBAGE:
+		return true;
+	default:
+		return false;
+	}
+}
+
+void cau_client_lost(cau_client *client, const char *reason)
+{
+	bool again = client->def.reconnect && client->connections > 0 && !client->closing &&
+	             !is_final(client->close_code);
+	cau_client_forget_timers(client);
+	cau_outbox_clear(&client->outbox);
+	if (!client->closing || !client->trouble.status)
+		cau_fail(&client->trouble, CAU_IO, NULL, "%s", reason);
+	cau_streams_lost(client);
+	if (again) {
+		double wait_us = fmin(LAST_RETRY_US, FIRST_RETRY_US * exp2(client->attempts));
+		lws_sul_schedule(client->loop->context, 0, &client->retry, retry, (lws_usec_t)wait_us);
+	}
+	client->closing = false;
+	client->condition = again ? CAU_CLIENT_LOST : CAU_CLIENT_CLOSED;
+	cau_calls_lost(client, !again);
+	set_condition(client, client->condition);
+}
+
+// ---- opening -----------------------------------------------------------------------------------
+// What an HTTP answer that is no upgrade says: its status, and the reason that the daemon gives in
+// a header, since libwebsockets shows no body of such an answer. False if there was none.
+static bool read_refusal(struct lws *wsi, char *text, size_t bytes)
+{
+	static const char header[] = "cautery-reason:";
+	char reason[200];
+	unsigned status = wsi ? lws_http_client_http_response(wsi) : 0;
+	if (status < 200) // none, or an upgrade
+		return false;
+	if (lws_hdr_custom_copy(wsi, reason, sizeof reason, header, sizeof header - 1) <= 0)
+		snprintf(reason, sizeof reason, "no reason given; is this a cauteryd?");
+	snprintf(text, bytes, "it answered HTTP %u: %s", status, reason);
+	return true;
+}
+
+void cau_client_not_opened(cau_client *client, struct lws *wsi, const char *in, size_t bytes)
+{
+	char reason[480], why[260] = "nothing answered";
+	if (!read_refusal(wsi, why, sizeof why) && in && bytes < 120)
+		snprintf(why, sizeof why, "%.*s", (int)bytes, in);
+	snprintf(reason, sizeof reason, "no connection to %.160s port %d: %s", client->url.host,
+	         client->url.port, why);
+	client->wsi = NULL;
+	cau_client_lost(client, reason);
+}
+
+static void open_socket(cau_client *client)
+{
+	char host[280], path[64];
+	bool bare = strchr(client->url.host, ':') == NULL; // no IPv6 address
+	snprintf(host, sizeof host, bare ? "%s:%d" : "[%s]:%d", client->url.host, client->url.port);
+	snprintf(path, sizeof path, *client->session ? "/v1?session=%s" : "/v1", client->session);
+	struct lws_client_connect_info info = {
+		.context = client->loop->context,
+		.address = client->url.host,
+		.port = client->url.port,
+		.ssl_connection = client->url.tls ? LCCSCF_USE_SSL : 0,
+		.path = path,
+		.host = host,
+		.protocol = CAU_CLIENT_SUBPROTOCOL,
+		.local_protocol_name = CAU_CLIENT_SUBPROTOCOL,
+		.ietf_version_or_minus_one = -1,
+		.alpn = "http/1.1",
+		.userdata = client,
+	};
+	client->close_code = 0;
+	client->close_reason[0] = 0;
+	client->wsi = lws_client_connect_via_info(&info);
+	if (!client->wsi && client->condition == CAU_CLIENT_CONNECTING)
+		cau_client_not_opened(client, NULL, NULL, 0);
+}
+
+static void too_late(lws_sorted_usec_list_t *timer)
+{
+	cau_client *client = lws_container_of(timer, cau_client, deadline);
+	snprintf(client->close_reason, sizeof client->close_reason, "no answer to hello within %g s",
+	         client->def.timeout_s);
+	cau_socket_cut(client);
+}
+
+void cau_client_begin(cau_client *client)
+{
+	client->attempts++;
+	lws_sul_schedule(client->loop->context, 0, &client->deadline, too_late,
+	                 (lws_usec_t)(client->def.timeout_s * 1e6));
+	set_condition(client, CAU_CLIENT_CONNECTING);
+	open_socket(client);
+}
