@@ -5,7 +5,7 @@
 
 #include "cautery/command.h"
 #include "cautery/messages.h"
-#include "hub/sink.h"
+#include "hosted_session/sink.h"
 #include "session/asker.h"
 
 typedef enum cau_order_kind {

@@ -5,7 +5,7 @@
 
 #include "cautery/command_json.h"
 #include "hosted_session/internal.h"
-#include "hub/resend.h"
+#include "hosted_session/resend.h"
 
 cau_store_batch *cau_record_batch(cau_hosted *h)
 {

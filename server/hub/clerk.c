@@ -4,8 +4,8 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "hosted_session/resend.h"
 #include "hub/internal.h"
-#include "hub/resend.h"
 
 #define AGAIN_S 0.02 // for a resend whose first is on its way
 
@@ -150,13 +150,6 @@ static cau_status resent(cau_hub *hub, cau_creation *creation, cau_error *error)
 	return cau_store_read_answer(hub->def.store, creation->asker.client_id,
 	                             (uint64_t)creation->client_sequence, answer_again, creation,
 	                             error);
-}
-
-void cau_clerk_answer_missing(const cau_reply *reply, const char *id)
-{
-	cau_error error = {0};
-	cau_fail(&error, CAU_NOT_FOUND, "params.session", "this daemon does not have `%.48s`", id);
-	cau_reply_fail(reply, &error, CAU_RPC_NOT_HERE);
 }
 
 // A session that was made since the request came is not what it meant.

@@ -1,9 +1,17 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Destroys a session that is in the store only: one that could not be brought up.
+// Sessions that the hub does not have: one that is in the store only, since it could not be brought
+// up, is destroyed; of others there is nothing to say.
 #include <stdlib.h>
 #include <string.h>
 
 #include "hub/internal.h"
+
+void cau_clerk_answer_missing(const cau_reply *reply, const char *id)
+{
+	cau_error error = {0};
+	cau_fail(&error, CAU_NOT_FOUND, "params.session", "this daemon does not have `%.48s`", id);
+	cau_reply_fail(reply, &error, CAU_RPC_NOT_HERE);
+}
 
 typedef struct discarding {
 	cau_reply reply;

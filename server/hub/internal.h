@@ -41,8 +41,8 @@ cau_due cau_clerk_run(cau_task *task);
 cau_status cau_clerk_make(cau_hub *hub, cau_creation *creation, const char *id, cau_error *error);
 void cau_clerk_fork(void *user, cau_hosted *source, const cau_order *order, uint64_t tick);
 void cau_creation_free(cau_creation *creation);
-void cau_clerk_answer_missing(const cau_reply *reply, const char *id);
 
 // ---- discard.c
+void cau_clerk_answer_missing(const cau_reply *reply, const char *id);
 // Destroys the session `asked->name` of the store, which is not among the hub's; answers.
 void cau_clerk_discard(cau_hub *hub, const cau_creation *asked);

@@ -100,6 +100,8 @@ void cau_peer_malformed(cau_peer *peer);
 void cau_service_answer(void *user, const cau_reply *reply, const cau_outcome *outcome);
 void cau_service_notify(void *user, cau_audience audience, cau_buffer *text);
 void cau_service_frames(void *user);
+
+// ---- delivery.c
 void cau_service_read_posts(cau_service *service);
 
 // ---- the method families. Each answers the call, now or later.

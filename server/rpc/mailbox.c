@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// What workers and the store's thread have for connections waits here for the network thread.
+// What workers and the store's thread have for connections waits here for the network thread
+// (delivery.c).
 #include <stdlib.h>
 #include <string.h>
 
@@ -117,95 +118,4 @@ void cau_service_frames(void *user)
 	cau_service *service = user;
 	if (!atomic_exchange(&service->frames_waiting, true) && service->network)
 		cau_network_wake(service->network);
-}
-
-// ---- on the network thread
-// There is a place: cau_peer_has_room_for_file saw to it when the file was asked for.
-static void send_file(cau_peer *peer, cau_post *post)
-{
-	int i = 0;
-	while (i < FILES_OF_PEER - 1 && peer->files[i].file)
-		i++;
-	cau_buffer_release(peer->files[i].file);
-	peer->files[i] = (cau_outgoing){post->file, post->transfer, 0};
-	post->file = NULL;
-}
-
-// A join that the connection has no room for is refused after all.
-static void refuse_join(cau_peer *peer, cau_post *post)
-{
-	cau_error error = {0};
-	cau_rpc_fault fault;
-	cau_fail(&error, CAU_LIMIT, "", "the connection has %d streams: leave one, or open another",
-	         STREAMS_OF_PEER);
-	cau_rpc_fault_of_error(&fault, &error);
-	cau_peer_fault(peer, &post->id, &fault);
-	cau_hosted_leave(post->joined, &(cau_subscriber){.stream = post->stream});
-	cau_hosted_release(post->joined);
-}
-
-static void deliver_answer(cau_service *service, cau_post *post)
-{
-	cau_connection *connection = cau_network_find(service->network, post->connection);
-	if (post->joined && connection && !cau_peer_has_room(cau_peer_of(connection), post->joined)) {
-		refuse_join(cau_peer_of(connection), post);
-		return;
-	}
-	if (connection && cau_method_makes_file(post->method))
-		cau_peer_of(connection)->files_asked--;
-	if (connection && post->text) {
-		cau_connection_send(connection, post->text);
-		post->text = NULL;
-		if (post->file)
-			send_file(cau_peer_of(connection), post);
-	}
-	if (post->joined && connection) {
-		cau_peer_join(cau_peer_of(connection), post->joined, post->stream);
-	} else if (post->joined) {
-		cau_hosted_leave(post->joined, &(cau_subscriber){.stream = post->stream});
-		cau_hosted_release(post->joined);
-	}
-}
-
-static bool listens(const cau_peer *peer, cau_audience audience)
-{
-	if (!peer->greeted || audience.kind == CAU_AUDIENCE_EVERYBODY)
-		return peer->greeted;
-	if (audience.kind == CAU_AUDIENCE_CLIENT)
-		return peer->client.asker.client == audience.id;
-	for (int i = 0; i < STREAMS_OF_PEER; i++)
-		if (peer->streams[i].hosted && cau_hosted_number(peer->streams[i].hosted) == audience.id)
-			return true;
-	return false;
-}
-
-// Every listener's queue needs its own node, so notices are copied; they are small.
-static void deliver_notice(cau_service *service, cau_post *post)
-{
-	for (cau_connection *c = cau_network_first(service->network); c; c = c->next) {
-		if (!listens(cau_peer_of(c), post->audience))
-			continue;
-		cau_buffer *copy = cau_buffer_create(post->text->byte_count, false);
-		if (copy)
-			memcpy(cau_buffer_bytes(copy), cau_buffer_bytes(post->text), copy->byte_count);
-		cau_connection_send(c, copy);
-	}
-}
-
-void cau_service_read_posts(cau_service *service)
-{
-	pthread_mutex_lock(&service->mutex);
-	cau_post *post = service->first;
-	service->first = service->last = NULL;
-	pthread_mutex_unlock(&service->mutex);
-	for (cau_post *next; post; post = next) {
-		next = post->next;
-		if (post->kind == POST_ANSWER)
-			deliver_answer(service, post);
-		else
-			deliver_notice(service, post);
-		cau_buffer_release(post->text);
-		cau_buffer_release(post->file);
-		free(post);
-	}
 }

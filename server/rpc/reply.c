@@ -25,6 +25,12 @@ void cau_peer_fault(cau_peer *peer, const cau_rpc_id *id, const cau_rpc_fault *f
 	cau_connection_send(peer->connection, buffer);
 }
 
+void cau_peer_malformed(cau_peer *peer)
+{
+	if (++peer->malformed >= MALFORMED_MOST)
+		cau_connection_close(peer->connection, CAU_CLOSE_GARBAGE, NULL);
+}
+
 void cau_call_fail(const cau_call *call, const cau_error *error, int32_t code)
 {
 	cau_rpc_fault fault;

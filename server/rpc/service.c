@@ -105,12 +105,6 @@ static bool admit(cau_call *call)
 	return false;
 }
 
-void cau_peer_malformed(cau_peer *peer)
-{
-	if (++peer->malformed >= MALFORMED_MOST)
-		cau_connection_close(peer->connection, CAU_CLOSE_GARBAGE, NULL);
-}
-
 static void refuse_message(cau_peer *peer, const cau_rpc_message *message,
                            const cau_rpc_fault *fault)
 {

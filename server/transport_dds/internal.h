@@ -6,6 +6,7 @@
 #include <dds/dds.h>
 #include <pthread.h>
 #include <stdatomic.h>
+#include <string.h>
 
 #include "cautery.h"
 #include "cautery/messages.h"
@@ -288,17 +289,27 @@ struct cau_dds {
 	} counts;
 };
 
-// ---- transport.c: makes the thread look again, for the reason `why`; any thread
+// NULL: it has none of this name.
+static inline cau_dds_tool *cau_dds_find_tool(const cau_dds_session *session, const char *name)
+{
+	for (int i = 0; i < CAU_MAX_TOOLS; i++)
+		if (session->tools[i].used && strcmp(session->tools[i].name, name) == 0)
+			return (cau_dds_tool *)&session->tools[i];
+	return NULL;
+}
+
+// ---- mailbox.c: makes the thread look again, for the reason `why`; any thread
 void cau_dds_wake(cau_dds *dds, atomic_bool *why);
 
 // Makes it look at this session; any thread
 void cau_dds_mark(cau_dds *dds, uint32_t session);
 
-// ---- outlets.c: who reads
 void cau_dds_set_bit(cau_dds_bits *bits, uint32_t session);
 bool cau_dds_has_bit(const cau_dds_bits *bits, uint32_t session);
 // Empties `bits` into `taken`.
 void cau_dds_take_bits(cau_dds_bits *bits, cau_dds_bits *taken);
+
+// ---- outlets.c: who reads
 // Opens a writer; the outlet stays where it is until that is deleted. False: it could not.
 bool cau_dds_open_outlet(cau_dds *dds, cau_dds_outlet *outlet, uint32_t session,
                          dds_entity_t publisher, dds_entity_t topic, const dds_qos_t *qos);
@@ -314,7 +325,6 @@ void cau_dds_list_sessions(cau_dds *dds);
 // to look again.
 double cau_dds_serve(cau_dds *dds);
 void cau_dds_close_sessions(cau_dds *dds);
-cau_dds_tool *cau_dds_find_tool(const cau_dds_session *session, const char *name); // NULL: none
 
 // ---- mailbox.c: answers from other threads
 // A reply that comes back as a post with a ticket of its own.
@@ -357,12 +367,8 @@ cau_dds_writer *cau_dds_writer_of(cau_dds *dds, const cau_door *door, dds_instan
 // The writer with this GUID (all 0: any) of a participant, among those that the door has matched.
 cau_dds_writer *cau_dds_find_writer(cau_dds *dds, const cau_door *door, uint64_t participant,
                                     const uint8_t guid[16]);
-// Its client, or itself while it has no place.
-const cau_asker *cau_dds_asker_of(const cau_dds_writer *writer);
 // Forgets writers that no longer match the reader, and clients without writers.
 void cau_dds_prune(cau_dds *dds, dds_entity_t reader, bool all);
-// The client goes: its writers are nobody's.
-void cau_dds_forget_client(cau_dds *dds, const cau_dds_client *client);
 // For a reader: notes each writer that stops being alive. The caller deletes the listener.
 dds_listener_t *cau_dds_listen_to_liveliness(cau_dds *dds);
 // Those that were noted did not assert their liveliness within the lease that they offer: energy
@@ -370,6 +376,9 @@ dds_listener_t *cau_dds_listen_to_liveliness(cau_dds *dds);
 void cau_dds_end_silenced(cau_dds *dds);
 
 // ---- places.c: who may drive
+cau_status cau_dds_check_role(const cau_dds_writer *writer, cau_error *error);
+// The writer's client, or itself while it has no place.
+const cau_asker *cau_dds_asker_of(const cau_dds_writer *writer);
 // Makes the writer one of the client whose it is, if that has a place.
 void cau_dds_join_place(cau_dds *dds, cau_dds_writer *writer);
 // The writer is gone; so is its client if it was the last.
@@ -394,13 +403,15 @@ void cau_dds_end_place(cau_dds *dds, cau_dds_client *client);
 // ---- reload.c: takes over roles that were read anew
 void cau_dds_take_roles(cau_dds *dds);
 
-// ---- drive.c: orders
-cau_status cau_dds_check_role(const cau_dds_writer *writer, cau_error *error);
-// Checks and submits a motion; feeds the watchdog if all is well. NULL: refused, and counted.
-cau_dds_hand *cau_dds_move(cau_dds *dds, const cau_door *door, cau_dds_tool *tool,
-                           cau_dds_writer *writer, cau_dds_motion motion);
-void cau_dds_energy(cau_dds_hand *hand, const cau_dds_writer *writer, bool level);
-void cau_dds_grasp(cau_dds_hand *hand, bool level);
+// ---- orders.c: orders of a hand
+// Of its client; NULL: memory ran out.
+cau_order *cau_dds_make_order(const cau_dds_hand *hand, cau_order_kind kind, cau_method method);
+// Takes the order; false: the session refused it, which is logged.
+bool cau_dds_submit(const cau_dds_hand *hand, cau_order *order);
+bool cau_dds_order_command(const cau_dds_hand *hand, int kind, cau_method method, bool on);
+// False: the session refused it, and has counted it.
+bool cau_dds_order_move(const cau_dds_hand *hand, const cau_pose *pose, double jaw,
+                        uint64_t sequence);
 // Gives up the tool of a hand, through the queue: to nobody, or to `to`.
 bool cau_dds_hand_over(cau_dds_hand *hand, const cau_asker *to);
 // Energy off by order of `by`; if somebody drives the tool over DDS it stays where it is, and wants
@@ -408,10 +419,19 @@ bool cau_dds_hand_over(cau_dds_hand *hand, const cau_asker *to);
 void cau_dds_stop_tool(cau_dds_session *session, cau_dds_tool *tool, const cau_asker *by);
 // The tool may be moved again: its driver is not called silent for the time when it could not.
 void cau_dds_restart_tool(cau_dds_tool *tool);
+
+// ---- refusals.c
 void cau_dds_refuse(cau_dds_session *session, const char *tool, const cau_dds_writer *writer,
                     uint64_t sequence, const cau_error *error);
 // Counts what the native door did not let in.
 void cau_dds_count_dropped(cau_dds_session *session);
+
+// ---- drive.c: from samples to orders
+// Checks and submits a motion; feeds the watchdog if all is well. NULL: refused, and counted.
+cau_dds_hand *cau_dds_move(cau_dds *dds, const cau_door *door, cau_dds_tool *tool,
+                           cau_dds_writer *writer, cau_dds_motion motion);
+void cau_dds_energy(cau_dds_hand *hand, const cau_dds_writer *writer, bool level);
+void cau_dds_grasp(cau_dds_hand *hand, bool level);
 
 // ---- native.c, ros2.c: samples
 void cau_dds_take_command(cau_dds *dds, cau_door *door, cau_dds_writer *writer, const void *sample);

@@ -1,11 +1,45 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// What workers and the store's thread answer waits here for the transport's thread.
+// What other threads have for the transport's own: that it is to look again, at which sessions, and
+// the answers of workers and of the store's thread.
 #include <stdlib.h>
 #include <string.h>
 
 #include "cautery/rpc.h"
 #include "transport_dds/internal.h"
 
+// ---- looking again; from any thread
+void cau_dds_wake(cau_dds *dds, atomic_bool *why)
+{
+	if (!atomic_exchange(why, true) && dds->wake > 0)
+		dds_set_guardcondition(dds->wake, true);
+}
+
+void cau_dds_mark(cau_dds *dds, uint32_t session)
+{
+	cau_dds_set_bit(&dds->marked, session);
+	cau_dds_wake(dds, &dds->sliced);
+}
+
+// ---- sets of sessions, which are marked without a lock
+void cau_dds_set_bit(cau_dds_bits *bits, uint32_t session)
+{
+	uint32_t bit = session % BITS_MOST;
+	atomic_fetch_or(&bits->words[bit / 64], 1ull << bit % 64);
+}
+
+bool cau_dds_has_bit(const cau_dds_bits *bits, uint32_t session)
+{
+	uint32_t bit = session % BITS_MOST;
+	return atomic_load(&bits->words[bit / 64]) >> bit % 64 & 1;
+}
+
+void cau_dds_take_bits(cau_dds_bits *bits, cau_dds_bits *taken)
+{
+	for (int i = 0; i < BITS_WORDS; i++)
+		atomic_store(&taken->words[i], atomic_exchange(&bits->words[i], 0));
+}
+
+// ---- answers
 static void put(cau_dds *dds, cau_dds_post *post)
 {
 	pthread_mutex_lock(&dds->mutex);

@@ -1,28 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Who reads: writers of ours that know whether somebody is there, so that nothing is written for
-// nobody, and sets of sessions that workers and Cyclone's threads mark without a lock.
+// nobody.
 #include "transport_dds/internal.h"
 
-// ---- sets of sessions
-void cau_dds_set_bit(cau_dds_bits *bits, uint32_t session)
-{
-	uint32_t bit = session % BITS_MOST;
-	atomic_fetch_or(&bits->words[bit / 64], 1ull << bit % 64);
-}
-
-bool cau_dds_has_bit(const cau_dds_bits *bits, uint32_t session)
-{
-	uint32_t bit = session % BITS_MOST;
-	return atomic_load(&bits->words[bit / 64]) >> bit % 64 & 1;
-}
-
-void cau_dds_take_bits(cau_dds_bits *bits, cau_dds_bits *taken)
-{
-	for (int i = 0; i < BITS_WORDS; i++)
-		atomic_store(&taken->words[i], atomic_exchange(&bits->words[i], 0));
-}
-
-// ---- writers
 // On Cyclone's threads.
 static void on_matched(dds_entity_t writer, const dds_publication_matched_status_t status,
                        void *user)

@@ -37,7 +37,19 @@ static bool is_idle(const cau_dds_client *client)
 	return true;
 }
 
+cau_status cau_dds_check_role(const cau_dds_writer *writer, cau_error *error)
+{
+	return writer->asker.role >= CAU_ROLE_OPERATE
+	           ? CAU_OK
+	           : cau_fail(error, CAU_BAD_STATE, "", "the role does not allow this");
+}
+
 // ---- clients
+const cau_asker *cau_dds_asker_of(const cau_dds_writer *writer)
+{
+	return writer->client ? &writer->client->asker : &writer->asker;
+}
+
 static cau_dds_client *find_client(cau_dds *dds, const cau_dds_writer *writer)
 {
 	cau_dds_client *client = dds->clients;
@@ -164,9 +176,18 @@ static cau_dds_client *find_idle(cau_dds *dds, const cau_dds_writer *of)
 	return found;
 }
 
+// Its writers are nobody's.
+static void forget_client(cau_dds *dds, const cau_dds_client *client)
+{
+	for (int i = 0; i < WRITER_BUCKETS; i++)
+		for (cau_dds_writer *writer = dds->writers[i]; writer; writer = writer->next)
+			if (writer->client == client)
+				writer->client = NULL;
+}
+
 void cau_dds_end_place(cau_dds *dds, cau_dds_client *client)
 {
-	cau_dds_forget_client(dds, client);
+	forget_client(dds, client);
 	drop_client(dds, client);
 }
 

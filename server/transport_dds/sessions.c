@@ -60,14 +60,6 @@ static void forget_session(cau_dds *dds, cau_dds_session *session)
 	free(session);
 }
 
-cau_dds_tool *cau_dds_find_tool(const cau_dds_session *session, const char *name)
-{
-	for (int i = 0; i < CAU_MAX_TOOLS; i++)
-		if (session->tools[i].used && strcmp(session->tools[i].name, name) == 0)
-			return (cau_dds_tool *)&session->tools[i];
-	return NULL;
-}
-
 static void add_tool(cau_dds *dds, cau_dds_session *session, const char name[CAU_NAME_BYTES])
 {
 	for (int i = 0; i < CAU_MAX_TOOLS; i++) {

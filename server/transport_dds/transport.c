@@ -13,18 +13,6 @@
 enum { TAKEN_MOST = 16, TRIGGERS_MOST = 64, CONFIG_BYTES = 4096 };
 
 // ---- the sink; from any thread
-void cau_dds_wake(cau_dds *dds, atomic_bool *why)
-{
-	if (!atomic_exchange(why, true) && dds->wake > 0)
-		dds_set_guardcondition(dds->wake, true);
-}
-
-void cau_dds_mark(cau_dds *dds, uint32_t session)
-{
-	cau_dds_set_bit(&dds->marked, session);
-	cau_dds_wake(dds, &dds->sliced);
-}
-
 static void on_notify(void *user, cau_audience audience, cau_buffer *text)
 {
 	cau_dds *dds = user;

@@ -111,11 +111,6 @@ cau_dds_writer *cau_dds_writer_of(cau_dds *dds, const cau_door *door, dds_instan
 	return writer;
 }
 
-const cau_asker *cau_dds_asker_of(const cau_dds_writer *writer)
-{
-	return writer->client ? &writer->client->asker : &writer->asker;
-}
-
 // ---- who is matched
 
 // The writers that the reader has matched, in order; to be freed, NULL: none.
@@ -197,14 +192,6 @@ void cau_dds_prune(cau_dds *dds, dds_entity_t reader, bool all)
 			}
 		}
 	free(matched);
-}
-
-void cau_dds_forget_client(cau_dds *dds, const cau_dds_client *client)
-{
-	for (int i = 0; i < WRITER_BUCKETS; i++)
-		for (cau_dds_writer *writer = dds->writers[i]; writer; writer = writer->next)
-			if (writer->client == client)
-				writer->client = NULL;
 }
 
 // ---- liveliness

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// One connection's beginning and its writing side; input.c reads, closing.c
-// ends.
+// One connection as libwebsockets tells of it: its beginning, what it writes, its end. sending.c
+// queues what is written, reading.c reads, closing.c ends.
 #include "transport_ws/connection.h"
 
 #include <netinet/in.h>
@@ -12,37 +12,6 @@
 #include "transport_ws/internal.h"
 
 enum { PONG_FRAME = 0x8A };
-
-void cau_connection_send(cau_connection *c, cau_buffer *buffer)
-{
-	if (!buffer || c->closing) {
-		cau_buffer_release(buffer);
-		return;
-	}
-	buffer->next = NULL;
-	if (c->control_last)
-		c->control_last->next = buffer;
-	else
-		c->control_first = buffer;
-	c->control_last = buffer;
-	c->control_bytes += buffer->byte_count;
-	if (c->control_bytes > CAU_CONTROL_BYTES_MAX)
-		cau_connection_close(c, CAU_CLOSE_TOO_SLOW, "replies are not being read");
-	lws_callback_on_writable(c->wsi);
-}
-
-void cau_connection_want_frame(cau_connection *c)
-{
-	lws_callback_on_writable(c->wsi);
-}
-
-void cau_connection_pong(cau_connection *c, const void *payload, size_t bytes)
-{
-	c->pong_due = true; // of several pings the last may be answered alone
-	c->pong_bytes = bytes;
-	memcpy(c->pong, payload, bytes);
-	lws_callback_on_writable(c->wsi);
-}
 
 // ---- beginning and end
 // A slow reader must see fresh data: without the low-water mark the kernel

@@ -61,7 +61,7 @@ bool cau_input_begin(cau_connection *connection);
 bool cau_input_take_over(cau_connection *connection);
 void cau_input_end(cau_connection *connection);
 
-// ---- connection.c
+// ---- sending.c
 void cau_connection_pong(cau_connection *connection, const void *payload, size_t bytes);
 
 // ---- closing.c

@@ -7,6 +7,8 @@ import subprocess
 import tempfile
 import unittest
 
+import arrows
+import circles
 import formatting
 import includes
 import layout
@@ -148,12 +150,102 @@ class Includes(Tree):
         self.assertEqual(len(includes.shared_type_violations(self.root, many)), 1)
 
 
-class Symbols(Tree):
+class Compiled(Tree):
     def compiled(self, source, text):
         path = self.write(f"{source.split('/')[0]}/CMakeFiles/t.dir/{source.split('/', 1)[1]}", text)
         subprocess.run(["cc", "-w", "-O1", "-c", path, "-o", path + ".o"], check=True)
         return source.split("/")[0], path + ".o"
 
+    @staticmethod
+    def needing(name, *needed):
+        """A file that defines cau_<name> and calls cau_<needed>."""
+        calls = "".join(f"void cau_{n}(void);\n" for n in needed)
+        return calls + f"void cau_{name}(void) {{ {' '.join(f'cau_{n}();' for n in needed)} }}\n"
+
+
+class Circles(Compiled):
+    def found(self, *sources, allowed=()):
+        return circles.violations([self.compiled(*source) for source in sources], allowed)
+
+    def test_files_above_files_pass(self):
+        top, middle, low = self.needing("a", "b", "c"), self.needing("b", "c"), self.needing("c")
+        self.assertEqual(self.found(("server/x/a.c", top), ("server/x/b.c", middle), ("server/x/c.c", low)), [])
+
+    def test_a_circle_of_files_is_named(self):
+        found = self.found(("server/x/a.c", self.needing("a", "b")), ("server/x/b.c", self.needing("b", "c")),
+                           ("server/x/c.c", self.needing("c", "a")), ("server/x/d.c", self.needing("d", "a")))
+        self.assertEqual(len(found), 1)
+        self.assertIn("server/x: 3 of 4 files", found[0])
+        self.assertIn("a.c needs cau_b of b.c", found[0])
+
+    def test_a_room_on_the_list_must_have_a_circle(self):
+        circle = ("server/x/a.c", self.needing("a", "b")), ("server/x/b.c", self.needing("b", "a"))
+        self.assertEqual(self.found(*circle, allowed={"server/x": "a reason"}), [])
+        found = self.found(("server/x/a.c", self.needing("a")), allowed={"server/x": "a reason"})
+        self.assertEqual(len(found), 1)
+
+    def test_a_circle_of_rooms_is_named(self):
+        found = self.found(("server/x/a.c", self.needing("a", "b")), ("server/y/b.c", self.needing("b")),
+                           ("server/y/c.c", self.needing("c", "d")), ("server/x/d.c", self.needing("d")))
+        self.assertEqual(len(found), 1)
+        self.assertIn("rooms need each other", found[0])
+
+    def test_a_name_that_two_programs_have_is_the_near_one(self):
+        self.assertEqual(self.found(("clients/x/a.c", self.needing("a", "b")), ("clients/x/b.c", self.needing("b")),
+                                    ("clients/y/b.c", self.needing("b", "c")), ("clients/y/c.c", self.needing("c", "a"))),
+                         [])
+
+
+class Arrows(Compiled):
+    LINKS = [("server/low", "cautery_low", ["cautery_types"]), ("server/high", "cautery_high", ["cautery_low"])]
+    PAGE = "| folder | what | knows |\n|---|---|---|\n| `low/` | x | |\n| `high/` | y | `low/` |\n"
+    FILES = {
+        "server/README.md": PAGE,
+        "server/low/low.h": "",
+        "server/low/low.c": '#include "low/low.h"\n',
+        "server/high/high.h": "",
+        "server/high/high.c": '#include "high/high.h"\n#include "low/low.h"\n#include <sys/stat.h>\n',
+    }
+
+    def found(self, files=(), links=None, objects=()):
+        every = {**self.FILES, **dict(files)}
+        for path, content in every.items():
+            self.write(path, content)
+        return arrows.violations(self.root, sorted(every), [self.compiled(*o) for o in objects],
+                                 links or self.LINKS)
+
+    def test_rooms_as_drawn_pass(self):
+        self.assertEqual(self.found(objects=[("server/high/a.c", self.needing("a", "b")),
+                                             ("server/low/b.c", self.needing("b"))]), [])
+
+    def test_an_include_beside_the_link_lines(self):
+        found = self.found({"server/low/low.c": '#include "high/high.h"\n'})
+        self.assertEqual(len(found), 1)
+        self.assertIn("includes from high/", found[0])
+
+    def test_a_call_beside_the_link_lines(self):
+        found = self.found(objects=[("server/low/a.c", self.needing("a", "b")),
+                                    ("server/high/b.c", self.needing("b"))])
+        self.assertEqual(len(found), 1)
+        self.assertIn("calls high/", found[0])
+
+    def test_link_lines_in_a_circle(self):
+        links = [("server/low", "cautery_low", ["cautery_high"]), self.LINKS[1]]
+        page = self.PAGE.replace("x | |", "x | `high/` |")
+        found = self.found({"server/README.md": page}, links)
+        self.assertEqual(len(found), 1)
+        self.assertIn("circle", found[0])
+
+    def test_a_page_that_draws_another_house(self):
+        for page in (self.PAGE.replace("y | `low/` |", "y | |"), self.PAGE.replace("| `low/` | x | |\n", ""),
+                     self.PAGE + "| `gone/` | z | |\n"):
+            self.assertEqual(len(self.found({"server/README.md": page})), 1, page)
+
+    def test_a_folder_without_a_target(self):
+        self.assertEqual(len(self.found({"server/new/new.c": ""})), 1)
+
+
+class Symbols(Compiled):
     def found(self, *sources):
         return symbols.violations([self.compiled(*source) for source in sources])
 

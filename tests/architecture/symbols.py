@@ -1,8 +1,8 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """Which symbols the compiled objects of each room may need. Usage: symbols.py OBJECT_LIST
 
-OBJECT_LIST has one line per object file: room, '|', path. An object's source is read off its path
-(.../<target>.dir/mesh/edge_table.c.o of core is core/mesh/edge_table.c).
+OBJECT_LIST has one line per object file: folder of its target, '|', path. An object's source is read
+off its path (.../<target>.dir/mesh/edge_table.c.o of core is core/mesh/edge_table.c).
 """
 
 import os
@@ -52,20 +52,30 @@ def plain_name(symbol):
     return re.sub(r"^(fopen|open|openat|creat|freopen|tmpfile|mkstemp)64$", r"\1", symbol)
 
 
-def source_of(room, path):
+def source_of(folder, path):
     source = re.sub(r"\.o$", "", path.split(".dir/", 1)[-1])
-    return room + "/" + os.path.normpath(source)
+    return folder + "/" + os.path.normpath(source)
 
 
-def read_symbols(path):
-    """(undefined, defined global) symbol names of one object file."""
-    listing = subprocess.run(["nm", "--format=posix", "--extern-only", path],
+def read_list(path):
+    """(folder, path) of each object on the list, and a sentence for each that is not there."""
+    with open(path, encoding="utf-8") as listing:
+        pairs = [tuple(line.strip().split("|", 1)) for line in listing if "|" in line]
+    return pairs, [f"{name}: not built" for _, name in pairs if not os.path.exists(name)]
+
+
+def read_symbols(paths):
+    """{path: (undefined, defined global) symbol names} of object files."""
+    found = {path: (set(), set()) for path in paths}
+    if not found:
+        return found  # else nm would look for a.out
+    listing = subprocess.run(["nm", "--format=posix", "--extern-only", "--print-file-name", *found],
                              capture_output=True, check=True, text=True).stdout
-    undefined, defined = set(), set()
     for line in listing.splitlines():
-        name, kind = line.split()[:2]
-        (undefined if kind in "Uwv" else defined).add(plain_name(name))
-    return undefined, defined
+        path, rest = line.split(": ", 1)
+        name, kind = rest.split()[:2]
+        found[path][0 if kind in "Uwv" else 1].add(plain_name(name))
+    return found
 
 
 def symbol_violation(room, source, symbol):
@@ -80,11 +90,13 @@ def symbol_violation(room, source, symbol):
 
 
 def violations(objects):
-    """`objects`: (room, path) pairs."""
+    """`objects`: (folder, path) pairs."""
     found, defined_by, needed = [], {}, []
-    for room, path in objects:
-        source = source_of(room, path)
-        undefined, defined = read_symbols(path)
+    symbols_of = read_symbols([path for _, path in objects])
+    for folder, path in objects:
+        source = source_of(folder, path)
+        room = source.split("/")[0]
+        undefined, defined = symbols_of[path]
         for symbol in defined:
             defined_by.setdefault(symbol, room)
             if room in CLOSED_ROOMS and not symbol.startswith(("cau_", "__", "_cau_")):
@@ -103,7 +115,5 @@ def violations(objects):
 
 
 if __name__ == "__main__":
-    with open(sys.argv[1], encoding="utf-8") as listing:
-        pairs = [tuple(line.strip().split("|", 1)) for line in listing if "|" in line]
-    missing = [f"{path}: not built" for _, path in pairs if not os.path.exists(path)]
+    pairs, missing = read_list(sys.argv[1])
     project.finish(missing or violations(pairs), len(pairs))

@@ -2,7 +2,7 @@
 // Answers out of the store, for requests that were sent again.
 #pragma once
 
-#include "hub/sink.h"
+#include "hosted_session/sink.h"
 
 // Hands the stored answer `text` to who asks again. A client's sequence belongs to one method: if
 // the answer is another's the asker gets CAU_RPC_SEQUENCE_CONFLICT.

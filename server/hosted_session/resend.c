@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "hub/resend.h"
+#include "hosted_session/resend.h"
 
 #include <string.h>
 
