@@ -127,6 +127,7 @@ struct cau_hosted {
 	double window_s; // realtime_factor's window
 	uint64_t window_tick;
 	double step_cost_s, realtime_factor;
+	double piece_s; // processor time of the longest step lately, for the pool
 	int32_t elements_removed;
 	uint32_t refused_commands;
 	cau_named_snapshot snapshots[SNAPSHOT_COUNT];

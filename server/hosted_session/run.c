@@ -7,6 +7,7 @@
 #include "hosted_session/internal.h"
 
 #define FACTOR_WINDOW_S 1.0   // realtime_factor is over this
+#define PIECE_KEPT 0.9        // of the longest step, from each to the next
 #define STEPPING_SLICE_S 0.01 // session.step runs so long before others get the worker
 
 enum {
@@ -94,15 +95,23 @@ static void measure_factor(cau_hosted *h, double now_s)
 	h->window_tick = h->tick;
 }
 
+// Tells the pool how long a step may be: the longest lately, forgotten over some ten steps.
+static void expect_piece(cau_hosted *h, double took_s)
+{
+	h->piece_s = fmax(took_s, PIECE_KEPT * h->piece_s);
+	cau_worker_pool_expect(h->around->pool, &h->task, h->piece_s);
+}
+
 static void step(cau_hosted *h)
 {
 	cau_error error = {0};
 	cau_frame frame;
-	double began_s = cau_monotonic_s();
+	double began_s = cau_monotonic_s(), began_cpu_s = cau_thread_cpu_s();
 	cau_status status = cau_session_step(h->core, &error);
 	h->step_cost_s = cau_monotonic_s() - began_s;
 	h->tick += !status;
 	cau_decide_stepped(h, status ? error.reason : NULL);
+	expect_piece(h, cau_thread_cpu_s() - began_cpu_s);
 	if (status) {
 		cau_hosted_tell_fault(h, &error);
 		return;

@@ -10,23 +10,54 @@
 
 struct cau_worker_pool {
 	pthread_mutex_t mutex;
-	pthread_cond_t changed; // tasks or times changed
-	pthread_cond_t left;    // a slice ended
-	bool ending;
+	pthread_cond_t changed;     // tasks or times changed
+	pthread_cond_t left;        // a slice ended
+	bool ending, last_was_long; // of the slices begun
 	int32_t nice;
+	int32_t workers; // threads wanted, all the time; thread_count: made so far
 	int32_t thread_count, task_count, task_capacity;
 	pthread_t *threads;
 	cau_task **tasks;
 };
 
+// A short task that ran this lately will soon want a worker again, whatever it says.
+#define LATELY_S 1.0
+
+static bool is_long(const cau_task *task)
+{
+	return task->piece_s > CAU_SLICE_MOST_S;
+}
+
+// Whether a long task may begin a slice now. Where others are, one worker is kept for them; the
+// only worker is theirs after each long slice.
+static bool long_may_begin(const cau_worker_pool *pool, double now_s)
+{
+	int32_t running = 0;
+	bool others = false, others_due = false;
+	for (int32_t i = 0; i < pool->task_count; i++) {
+		const cau_task *task = pool->tasks[i];
+		if (is_long(task)) {
+			running += task->running;
+			continue;
+		}
+		others_due = others_due || (!task->running && task->next.due_s <= now_s);
+		others =
+			others || task->running || !isinf(task->next.due_s) || now_s - task->ended_s < LATELY_S;
+	}
+	if (pool->workers == 1)
+		return !pool->last_was_long || !others_due;
+	return !others || running < pool->workers - 1;
+}
+
 // The due task with the earliest deadline, or NULL and the time when one becomes due.
 static cau_task *pick(cau_worker_pool *pool, double now_s, double *wake_s)
 {
 	cau_task *best = NULL;
+	bool long_too = long_may_begin(pool, now_s);
 	*wake_s = INFINITY;
 	for (int32_t i = 0; i < pool->task_count; i++) {
 		cau_task *task = pool->tasks[i];
-		if (task->running)
+		if (task->running || task->leaving || (is_long(task) && !long_too))
 			continue;
 		if (task->next.due_s > now_s)
 			*wake_s = fmin(*wake_s, task->next.due_s);
@@ -50,11 +81,16 @@ static void run_slice(cau_worker_pool *pool, cau_task *task)
 {
 	task->running = true;
 	task->woken = false;
+	pool->last_was_long = is_long(task);
 	pthread_mutex_unlock(&pool->mutex);
 	cau_due next = task->run(task);
 	pthread_mutex_lock(&pool->mutex);
 	task->running = false;
 	task->next = next;
+	task->ended_s = cau_monotonic_s();
+	// What became due meanwhile goes first, however far behind a long task is.
+	if (is_long(task))
+		task->next.deadline_s = fmax(next.deadline_s, task->ended_s);
 	if (task->woken && next.due_s > 0)
 		task->next.due_s = 0;
 	if (task->woken && isinf(next.deadline_s))
@@ -96,6 +132,7 @@ cau_status cau_worker_pool_create(cau_worker_pool **made, int32_t threads, int32
 	pthread_cond_init(&pool->left, NULL);
 	pthread_condattr_destroy(&monotonic);
 	pool->nice = nice;
+	pool->workers = threads;
 	pool->task_capacity = task_capacity;
 	pool->threads = calloc((size_t)threads, sizeof *pool->threads);
 	pool->tasks = calloc((size_t)task_capacity, sizeof(cau_task *));
@@ -135,7 +172,8 @@ bool cau_worker_pool_add(cau_worker_pool *pool, cau_task *task)
 	bool fits = pool->task_count < pool->task_capacity;
 	if (fits) {
 		task->next = (cau_due){0, cau_monotonic_s()};
-		task->running = task->woken = false;
+		task->running = task->woken = task->leaving = false;
+		task->ended_s = -INFINITY;
 		task->index = pool->task_count;
 		pool->tasks[pool->task_count++] = task;
 		pthread_cond_signal(&pool->changed);
@@ -147,11 +185,12 @@ bool cau_worker_pool_add(cau_worker_pool *pool, cau_task *task)
 void cau_worker_pool_remove(cau_worker_pool *pool, cau_task *task)
 {
 	pthread_mutex_lock(&pool->mutex);
+	task->leaving = true; // it counts among the running ones until its slice ends
+	while (task->running)
+		pthread_cond_wait(&pool->left, &pool->mutex);
 	cau_task *last = pool->tasks[--pool->task_count];
 	pool->tasks[task->index] = last;
 	last->index = task->index;
-	while (task->running)
-		pthread_cond_wait(&pool->left, &pool->mutex);
 	pthread_mutex_unlock(&pool->mutex);
 }
 
@@ -165,6 +204,13 @@ void cau_worker_pool_wake(cau_worker_pool *pool, cau_task *task)
 		task->next.deadline_s = fmin(task->next.deadline_s, now_s);
 		pthread_cond_signal(&pool->changed);
 	}
+	pthread_mutex_unlock(&pool->mutex);
+}
+
+void cau_worker_pool_expect(cau_worker_pool *pool, cau_task *task, double piece_s)
+{
+	pthread_mutex_lock(&pool->mutex);
+	task->piece_s = piece_s;
 	pthread_mutex_unlock(&pool->mutex);
 }
 

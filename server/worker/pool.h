@@ -1,6 +1,10 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Worker threads that run tasks: one task on one worker at a time, of the tasks that are due the
 // one with the earliest deadline first. A task that is not due costs nothing.
+//
+// A slice is to end within CAU_SLICE_MOST_S, but what cannot be divided may take longer. Tasks of
+// which that is known never hold the last worker while others are there; where there is one worker
+// only, no two slices of such tasks follow each other while others are due.
 #pragma once
 
 #include <stdbool.h>
@@ -16,12 +20,16 @@ typedef struct cau_due {
 	double deadline_s; // orders the tasks that are due
 } cau_due;
 
+#define CAU_SLICE_MOST_S 0.02
+
 typedef struct cau_task {
 	cau_due (*run)(struct cau_task *task); // one slice of work, some milliseconds
+	double piece_s; // set before it is added, later by cau_worker_pool_expect
 	// The pool's own:
 	cau_due next;
-	bool running, woken;
+	bool running, woken, leaving;
 	int32_t index;
+	double ended_s; // the last slice
 } cau_task;
 
 // `task_capacity` bounds the tasks at once. Threads run at `nice` (0 to 19).
@@ -36,5 +44,8 @@ bool cau_worker_pool_add(cau_worker_pool *pool, cau_task *task);
 void cau_worker_pool_remove(cau_worker_pool *pool, cau_task *task);
 // Makes a task due now; if it is running, it runs once more. From any thread.
 void cau_worker_pool_wake(cau_worker_pool *pool, cau_task *task);
+// Tells how long the longest piece of work is that a slice of the task may hold, as lately seen or
+// to be expected. From any thread, within its slice too.
+void cau_worker_pool_expect(cau_worker_pool *pool, cau_task *task, double piece_s);
 // Tasks that are running or due.
 int32_t cau_worker_pool_busy(cau_worker_pool *pool);

@@ -160,6 +160,112 @@ static void the_earliest_deadline_goes_first(void **state)
 	cau_worker_pool_destroy(pool);
 }
 
+// ---- tasks with long pieces
+#define LONG_S (2 * CAU_SLICE_MOST_S)
+enum { LONG_TASKS = 3, MARKS = 64 };
+
+// What the tasks of a test do: who is inside, and the order of the slices.
+static atomic_int long_inside, long_most, marks;
+static char mark[MARKS];
+
+typedef struct marked {
+	cau_task task; // first
+	char name;
+	bool is_long;
+	int yields; // how much time a slice gives the other workers
+} marked;
+
+static cau_due note(cau_task *task)
+{
+	marked *m = (marked *)task;
+	if (m->is_long) {
+		int inside = atomic_fetch_add(&long_inside, 1) + 1;
+		if (inside > long_most)
+			long_most = inside;
+	}
+	for (int i = 0; i < m->yields; i++)
+		sched_yield();
+	int at = atomic_fetch_add(&marks, 1);
+	if (at < MARKS)
+		mark[at] = m->name;
+	long_inside -= m->is_long;
+	return (cau_due){0, cau_monotonic_s()};
+}
+
+static void begin_marking(void)
+{
+	long_inside = long_most = marks = 0;
+}
+
+static void add_marked(cau_worker_pool *pool, marked *m, char name, bool is_long)
+{
+	*m = (marked){.task = {.run = note, .piece_s = is_long ? LONG_S : 0},
+	              .name = name,
+	              .is_long = is_long,
+	              .yields = is_long ? 200 : 1};
+	assert_true(cau_worker_pool_add(pool, &m->task));
+}
+
+// Lets the pool run until `wanted` slices are over, then takes the tasks out, the first one last.
+static void run_marked(cau_worker_pool *pool, marked *tasks, int count, int wanted)
+{
+	while (marks < wanted)
+		sched_yield();
+	for (int i = count; i-- > 0;)
+		cau_worker_pool_remove(pool, &tasks[i].task);
+	cau_worker_pool_destroy(pool);
+}
+
+static void long_tasks_never_hold_the_last_worker(void **state)
+{
+	(void)state;
+	for (int threads = 2; threads <= 4; threads++) {
+		cau_worker_pool *pool;
+		marked tasks[LONG_TASKS + 2];
+		begin_marking();
+		assert_int_equal(cau_worker_pool_create(&pool, threads, LONG_TASKS + 2, 0, NULL), CAU_OK);
+		add_marked(pool, &tasks[0], 's', false);
+		for (int i = 1; i <= LONG_TASKS; i++)
+			add_marked(pool, &tasks[i], 'L', true);
+		run_marked(pool, tasks, LONG_TASKS + 1, 2000);
+		assert_in_range(long_most, 1, threads - 1);
+	}
+}
+
+static void without_others_all_workers_are_theirs(void **state)
+{
+	(void)state;
+	cau_worker_pool *pool;
+	marked tasks[2];
+	begin_marking();
+	assert_int_equal(cau_worker_pool_create(&pool, 2, 2, 0, NULL), CAU_OK);
+	add_marked(pool, &tasks[0], 'L', true);
+	add_marked(pool, &tasks[1], 'M', true);
+	while (long_most < 2) // else this test runs into its time limit
+		sched_yield();
+	run_marked(pool, tasks, 2, 10);
+}
+
+// One worker: after each slice of a long task one of the others that are due.
+static void on_one_worker_they_take_turns(void **state)
+{
+	(void)state;
+	cau_worker_pool *pool;
+	marked tasks[3];
+	begin_marking();
+	assert_int_equal(cau_worker_pool_create(&pool, 1, 3, 0, NULL), CAU_OK);
+	add_marked(pool, &tasks[0], 's', false);
+	add_marked(pool, &tasks[1], 'L', true);
+	add_marked(pool, &tasks[2], 'M', true);
+	run_marked(pool, tasks, 3, MARKS);
+	int of[128] = {0};
+	for (int i = 1; i < MARKS; i++) {
+		assert_false(mark[i] != 's' && mark[i - 1] != 's');
+		of[(int)mark[i]]++;
+	}
+	assert_true(of['L'] > 0 && of['M'] > 0);
+}
+
 static void a_full_pool_says_so(void **state)
 {
 	(void)state;
@@ -184,6 +290,9 @@ int main(void)
 		cmocka_unit_test(a_task_is_on_one_worker_at_a_time),
 		cmocka_unit_test(a_sleeping_task_runs_when_woken_only),
 		cmocka_unit_test(the_earliest_deadline_goes_first),
+		cmocka_unit_test(long_tasks_never_hold_the_last_worker),
+		cmocka_unit_test(without_others_all_workers_are_theirs),
+		cmocka_unit_test(on_one_worker_they_take_turns),
 		cmocka_unit_test(a_full_pool_says_so),
 	};
 	return cmocka_run_group_tests(tests, NULL, NULL);
