@@ -48,7 +48,65 @@ static cau_status allocate_state(cau_session *session, cau_error *error)
 	return CAU_OK;
 }
 
-static cau_status make_solver(cau_session *session, cau_error *error)
+// ---- borders between the stages
+
+// About what a session takes for each vertex and element before its factor's size is known: that of
+// sheets and slabs of 10,000 to 250,000 vertices.
+enum { BYTES_OF_VERTEX = 1000, BYTES_OF_ELEMENT = 400 };
+// CHOLMOD keeps a number of 8 bytes and a row of 4; the packed panels and what else grows with them
+// take about as much again.
+enum { BYTES_OF_FACTOR_ENTRY = 24 };
+
+// What generated meshes come to; those of files are not counted before they are read.
+static cau_build_border foresee(const cau_scene_def *scene)
+{
+	cau_build_border border = {.next = CAU_BUILD_MESH};
+	for (int32_t i = 0; i < scene->mesh_count; ++i) {
+		const cau_mesh_def *mesh = &scene->meshes[i];
+		int64_t x = mesh->cells[0], y = mesh->cells[1], z = mesh->cells[2];
+		if (mesh->source == CAU_MESH_SHEET) {
+			border.vertex_count += (x + 1) * (y + 1);
+			border.element_count += 2 * x * y;
+		} else if (mesh->source == CAU_MESH_SLAB) {
+			border.vertex_count += (x + 1) * (y + 1) * (z + 1);
+			border.element_count += 6 * x * y * z;
+		}
+	}
+	return border;
+}
+
+static int64_t count_elements(const cau_tissue *tissue)
+{
+	int64_t count = 0;
+	for (int kind = 0; kind < CAU_ELEMENT_KINDS; ++kind)
+		count += cau_tissue_element_count(tissue, kind);
+	return count;
+}
+
+static cau_build_border measure(const cau_session *session, cau_build_stage next)
+{
+	cau_build_border border = {.next = next,
+	                           .vertex_count = session->tissue.vertex_count,
+	                           .element_count = count_elements(&session->tissue)};
+	if (session->solver.factor)
+		border.factor_entries = cau_factor_entries(session->solver.factor);
+	return border;
+}
+
+// Asks whoever creates the session whether to go on.
+static cau_status pass_border(const cau_session *session, const cau_session_def *def,
+                              cau_build_border border, cau_error *error)
+{
+	if (border.next <= CAU_BUILD_ORDER)
+		border.bytes = (size_t)(BYTES_OF_VERTEX * border.vertex_count +
+		                        BYTES_OF_ELEMENT * border.element_count);
+	else
+		border.bytes =
+			session->arena.byte_count + (size_t)(BYTES_OF_FACTOR_ENTRY * border.factor_entries);
+	return def->border ? def->border(def->user, &border, error) : CAU_OK;
+}
+
+static cau_status make_solver(cau_session *session, const cau_session_def *def, cau_error *error)
 {
 	cau_arena *arena = &session->arena;
 	cau_step_solver *solver = &session->solver;
@@ -63,7 +121,11 @@ static cau_status make_solver(cau_session *session, cau_error *error)
 		return status;
 	cau_elements_set_materials(&solver->elements, &solver->slots, &session->tissue,
 	                           dissection->alive.element, session->shrink.shrunk);
-	status = cau_solver_factor(solver, &dissection->alive, NULL, arena, error);
+	status = cau_solver_analyse(solver, &dissection->alive, NULL, error);
+	if (!status)
+		status = pass_border(session, def, measure(session, CAU_BUILD_FACTOR), error);
+	if (!status)
+		status = cau_solver_make_factor(solver, arena, error);
 	if (!status)
 		status =
 			cau_matrix_update_create(&session->update, solver, &dissection->alive, arena, error);
@@ -121,6 +183,8 @@ static uint64_t hash_definition(const cau_session *session)
 static cau_status build(cau_session *session, const cau_session_def *def, cau_error *error)
 {
 	cau_status status = cau_scene_check(def->scene, error);
+	if (!status)
+		status = pass_border(session, def, foresee(def->scene), error);
 	if (status)
 		return status;
 	session->scene = cau_arena_copy(&session->arena, def->scene, 1, sizeof *def->scene);
@@ -134,9 +198,13 @@ static cau_status build(cau_session *session, const cau_session_def *def, cau_er
 	if (status)
 		return status;
 	session->size_m = cau_session_size(session);
-	status = allocate_state(session, error);
+	status = pass_border(session, def, measure(session, CAU_BUILD_ORDER), error);
 	if (!status)
-		status = make_solver(session, error);
+		status = allocate_state(session, error);
+	if (!status)
+		status = make_solver(session, def, error);
+	if (!status)
+		status = pass_border(session, def, measure(session, CAU_BUILD_REST), error);
 	if (!status)
 		status = cau_session_make_watch(session, error);
 	if (!status)
@@ -182,6 +250,18 @@ void cau_session_destroy(cau_session *session)
 	cau_arena_finish(&session->rebuilt_arena);
 	cau_arena_finish(&session->arena);
 	free(session);
+}
+
+cau_status cau_session_adopt(cau_session *session, cau_error *error)
+{
+	int32_t thread_count = cau_pool_thread_count(session->pool);
+	cau_pool *pool = thread_count > 1 ? cau_pool_create(thread_count) : session->pool;
+	if (!pool)
+		return no_memory(error);
+	if (pool != session->pool)
+		cau_pool_destroy(session->pool);
+	session->pool = session->solver.pool = pool;
+	return cau_matrix_update_adopt(&session->update, error);
 }
 
 void cau_session_set_threads(cau_session *session, int32_t thread_count)

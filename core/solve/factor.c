@@ -72,34 +72,62 @@ static cau_status finish_analysis(cau_factor *factor, cau_error *error)
 	return CAU_OK;
 }
 
-cau_status cau_factor_create(cau_factor **out, const cau_matrix *matrix, const int32_t *permutation,
-                             cau_error *error)
+// METIS draws from rand, which all threads share; a given order draws nothing, and who gives one
+// does not wait for another's analysis.
+static cholmod_factor *analyse(cau_factor *factor, const cau_matrix *matrix,
+                               const int32_t *permutation)
+{
+	cholmod_sparse a = view_of(matrix);
+	if (permutation)
+		return cholmod_analyze_p(&a, (int *)(uintptr_t)permutation, NULL, 0, &factor->common);
+	pthread_mutex_lock(&analysis_lock);
+	cholmod_factor *l = cholmod_analyze_p(&a, NULL, NULL, 0, &factor->common);
+	pthread_mutex_unlock(&analysis_lock);
+	return l;
+}
+
+cau_status cau_factor_analyse(cau_factor **out, const cau_matrix *matrix,
+                              const int32_t *permutation, cau_error *error)
 {
 	cau_factor *factor = NULL;
 	cau_status status = create_empty(&factor, error);
 	if (status)
 		return status;
-	cholmod_sparse a = view_of(matrix);
 	if (permutation) {
 		factor->common.method[0].ordering = CHOLMOD_GIVEN;
 		factor->common.postorder = 0; // the given order is a postorder already
 	}
-	pthread_mutex_lock(&analysis_lock);
-	factor->l = cholmod_analyze_p(&a, (int *)(uintptr_t)permutation, NULL, 0, &factor->common);
-	pthread_mutex_unlock(&analysis_lock);
+	factor->l = analyse(factor, matrix, permutation);
 	if (!factor->l)
 		status = cau_fail(error, CAU_NO_MEMORY, NULL, "no memory to analyse a system of %d rows",
 		                  matrix->n);
 	if (!status)
 		status = finish_analysis(factor, error);
-	if (!status)
-		status = cau_factor_refactor(factor, matrix, error);
 	if (status) {
 		cau_factor_destroy(factor);
 		return status;
 	}
 	*out = factor;
 	return CAU_OK;
+}
+
+cau_status cau_factor_create(cau_factor **out, const cau_matrix *matrix, const int32_t *permutation,
+                             cau_error *error)
+{
+	cau_status status = cau_factor_analyse(out, matrix, permutation, error);
+	if (status)
+		return status;
+	status = cau_factor_refactor(*out, matrix, error);
+	if (status) {
+		cau_factor_destroy(*out);
+		*out = NULL;
+	}
+	return status;
+}
+
+int64_t cau_factor_entries(const cau_factor *factor)
+{
+	return (int64_t)factor->common.lnz;
 }
 
 void cau_factor_destroy(cau_factor *factor)

@@ -19,10 +19,16 @@ typedef struct cau_matrix {
 	double *value;  // (first[n])
 } cau_matrix;
 
-// Orders and factors `matrix`. `permutation` (n) gives an order to use, NULL asks for one (METIS
-// nested dissection, under a lock: libmetis draws from rand). CAU_NUMERICAL: not positive definite.
+// Orders `matrix` and finds the factor's pattern, without a number. `permutation` (n) gives an
+// order to use, NULL asks for one (METIS nested dissection, under a lock: libmetis draws from
+// rand). cau_factor_refactor comes next.
+cau_status cau_factor_analyse(cau_factor **factor, const cau_matrix *matrix,
+                              const int32_t *permutation, cau_error *error);
+// Both. CAU_NUMERICAL: not positive definite.
 cau_status cau_factor_create(cau_factor **factor, const cau_matrix *matrix,
                              const int32_t *permutation, cau_error *error);
+// Entries of L, the diagonal among them; known once it is analysed.
+int64_t cau_factor_entries(const cau_factor *factor);
 void cau_factor_destroy(cau_factor *factor); // takes NULL
 
 // Numeric factorisation anew with the same pattern: canonical, its bits depend on the values alone.

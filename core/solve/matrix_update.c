@@ -55,6 +55,18 @@ cau_status cau_matrix_update_create(cau_matrix_update *update, cau_step_solver *
 	return update->touched && update->background ? CAU_OK : no_memory(error);
 }
 
+cau_status cau_matrix_update_adopt(cau_matrix_update *update, cau_error *error)
+{
+	if (!update->background)
+		return CAU_OK;
+	cau_background *own = cau_background_create();
+	if (!own)
+		return no_memory(error);
+	cau_background_destroy(update->background); // which ends what it was given
+	update->background = own;
+	return CAU_OK;
+}
+
 void cau_matrix_update_finish(cau_matrix_update *update)
 {
 	cau_background_destroy(update->background);

@@ -58,6 +58,8 @@ typedef struct cau_matrix_update {
 
 cau_status cau_matrix_update_create(cau_matrix_update *update, cau_step_solver *solver,
                                     const cau_alive *alive, cau_arena *arena, cau_error *error);
+// Gives the background thread up for one that the caller is the parent of.
+cau_status cau_matrix_update_adopt(cau_matrix_update *update, cau_error *error);
 void cau_matrix_update_finish(cau_matrix_update *update);
 
 // Notes a removal; `tick` is the first whose local step is without the element.

@@ -83,8 +83,8 @@ cau_status cau_solver_create(cau_step_solver *solver, const cau_scene_def *scene
 	return status;
 }
 
-cau_status cau_solver_factor(cau_step_solver *solver, const cau_alive *alive,
-                             const int32_t *permutation, cau_arena *arena, cau_error *error)
+cau_status cau_solver_analyse(cau_step_solver *solver, const cau_alive *alive,
+                              const int32_t *permutation, cau_error *error)
 {
 	cau_system_assemble_diagonal(&solver->system, solver->tissue, alive, solver->step_s);
 	if (solver->diagonal || !solver->system.row_count) {
@@ -93,11 +93,28 @@ cau_status cau_solver_factor(cau_step_solver *solver, const cau_alive *alive,
 	}
 	cau_system_assemble(&solver->system, solver->tissue, alive, solver->step_s,
 	                    solver->system.matrix.value);
-	cau_status status =
-		cau_factor_create(&solver->factor, &solver->system.matrix, permutation, error);
-	return status ? status
-	              : cau_sweep_create(&solver->sweep, arena, solver->factor, solver->kernels,
-	                                 solver->whole_panels, error);
+	return cau_factor_analyse(&solver->factor, &solver->system.matrix, permutation, error);
+}
+
+cau_status cau_solver_make_factor(cau_step_solver *solver, cau_arena *arena, cau_error *error)
+{
+	if (solver->diagonal)
+		return CAU_OK;
+	cau_status status = cau_factor_refactor(solver->factor, &solver->system.matrix, error);
+	if (status) {
+		cau_factor_destroy(solver->factor);
+		solver->factor = NULL;
+		return status;
+	}
+	return cau_sweep_create(&solver->sweep, arena, solver->factor, solver->kernels,
+	                        solver->whole_panels, error);
+}
+
+cau_status cau_solver_factor(cau_step_solver *solver, const cau_alive *alive,
+                             const int32_t *permutation, cau_arena *arena, cau_error *error)
+{
+	cau_status status = cau_solver_analyse(solver, alive, permutation, error);
+	return status ? status : cau_solver_make_factor(solver, arena, error);
 }
 
 void cau_solver_finish(cau_step_solver *solver)

@@ -78,7 +78,12 @@ typedef struct cau_step_solver {
 // Elements, pattern and vectors. The system is factored by cau_solver_factor once the laws are set.
 cau_status cau_solver_create(cau_step_solver *solver, const cau_scene_def *scene,
                              const cau_tissue *tissue, cau_arena *arena, cau_error *error);
-// Assembles and factors A over the live elements; `permutation` as in cau_factor_create.
+// Assembles and factors A over the live elements; `permutation` as in cau_factor_create. In two:
+// cau_solver_analyse assembles it and finds the factor's pattern (solver->factor stays NULL where
+// none is needed), cau_solver_make_factor makes the numbers.
+cau_status cau_solver_analyse(cau_step_solver *solver, const cau_alive *alive,
+                              const int32_t *permutation, cau_error *error);
+cau_status cau_solver_make_factor(cau_step_solver *solver, cau_arena *arena, cau_error *error);
 cau_status cau_solver_factor(cau_step_solver *solver, const cau_alive *alive,
                              const int32_t *permutation, cau_arena *arena, cau_error *error);
 void cau_solver_finish(cau_step_solver *solver);

@@ -27,10 +27,36 @@
 typedef struct cau_session cau_session;
 
 // ---- definition -------------------------------------------------------------------------------
+// What creating a session comes to, one after the other. None can be interrupted: between two,
+// `border` is asked.
+#define CAU_BUILD_STAGE_TABLE(X)                                                                   \
+	X(MESH, "meshing")     /* meshes, layers, edges */                                             \
+	X(ORDER, "ordering")   /* the system's pattern, its order and the factor's size */             \
+	X(FACTOR, "factoring") /* the factor's numbers */                                              \
+	X(REST, "settling")    /* built-in tension brought to its equilibrium */
+typedef enum cau_build_stage {
+#define X(code, name) CAU_BUILD_##code,
+	CAU_BUILD_STAGE_TABLE(X)
+#undef X
+		CAU_BUILD_STAGE_COUNT
+} cau_build_stage;
+
+// What is known before a stage begins; 0: not yet.
+typedef struct cau_build_border {
+	cau_build_stage next;
+	int64_t vertex_count;
+	int64_t element_count;  // triangles, tetrahedra, links and hinges
+	int64_t factor_entries; // from FACTOR on: what the analysis says
+	size_t bytes; // of memory that the session will take, about: an estimate before FACTOR
+} cau_build_border;
+
 typedef struct cau_session_def {
 	const cau_scene_def *scene; // borrowed during create
 	int32_t thread_count;       // 1 to 16 threads used by step, the caller's among them
 	int32_t command_capacity;   // queued commands; more are refused with CAU_LIMIT
+	// Asked before each stage; anything but CAU_OK ends the creation with that status and *error.
+	cau_status (*border)(void *user, const cau_build_border *border, cau_error *error); // or NULL
+	void *user;
 	const char
 		*instruction_set; // highest tier to use: "baseline", "avx2", "avx512"; NULL: the best
 } cau_session_def;
@@ -47,6 +73,9 @@ cau_status cau_scene_check(const cau_scene_def *scene, cau_error *error);
 cau_status cau_session_create(const cau_session_def *def, cau_session **session, cau_error *error);
 void cau_session_destroy(cau_session *session); // takes NULL
 
+// Makes the session's helper threads anew, children of the caller: they have the priority of who
+// steps it, whoever created it. Waits for what they do.
+cau_status cau_session_adopt(cau_session *session, cau_error *error);
 // Threads that step may use from now on; results do not depend on it.
 void cau_session_set_threads(cau_session *session, int32_t thread_count);
 

@@ -119,6 +119,13 @@ void cau_session_destroy(cau_session *s)
 	free(s);
 }
 
+cau_status cau_session_adopt(cau_session *s, cau_error *error)
+{
+	(void)s;
+	(void)error;
+	return CAU_OK;
+}
+
 void cau_session_set_threads(cau_session *s, int32_t thread_count)
 {
 	(void)s, (void)thread_count;
