@@ -30,6 +30,10 @@ enum { CAU_CONFIG_TEXT_BYTES = 512 };
 	INTEGER(workers, 0, 0, 256, "threads that step sessions; 0: one a core")                       \
 	INTEGER(session_threads, 1, 1, 16, "threads one session's step may use")                       \
 	INTEGER(max_sessions, 64, 1, 4096, "sessions at once")                                         \
+	INTEGER(max_session_vertices, 4000000, 3, 100000000, "vertices of one session")                \
+	INTEGER(max_session_elements, 16000000, 1, 1000000000, "elements of one session")              \
+	INTEGER(max_session_bytes, 4000000000, 1000000, 1000000000000, "memory of one session, about") \
+	INTEGER(max_sessions_bytes, 16000000000, 1000000, 1000000000000, "of all sessions, about")     \
 	INTEGER(max_connections, 1024, 1, 65536, "WebSocket connections at once")                      \
 	INTEGER(max_subscribers, 128, 1, 4096, "streams of one session at once")                       \
 	INTEGER(max_message_bytes, 1048576, 4096, 67108864, "largest message of a client")             \

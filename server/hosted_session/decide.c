@@ -232,6 +232,8 @@ cau_status cau_hosted_submit(cau_hosted *h, cau_order *order, cau_error *error)
 	const cau_effect *own = NULL;
 	if (h->ended)
 		return cau_fail(error, CAU_NOT_FOUND, "params.session", "the session is destroyed");
+	if (cau_building_cancel(h, order))
+		return CAU_OK;
 	if (cau_reads_are(order))
 		return cau_reads_submit(h, order, error);
 	describe(order, &asked);

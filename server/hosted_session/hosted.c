@@ -47,7 +47,7 @@ cau_status cau_hosted_create(cau_hosted **made, const cau_surroundings *around,
 	h->pause_at_start = def->paused;
 	h->next_branch = 1;
 	h->lost_from = h->batch_lost = UINT64_MAX;
-	h->starting = h->unanswered = true;
+	h->starting = h->unanswered = h->away = true;
 	pthread_mutex_init(&h->mutex, NULL);
 	pthread_mutex_init(&h->deciding, NULL);
 	cau_logic_init(h->logic, orders);
@@ -60,6 +60,13 @@ cau_status cau_hosted_create(cau_hosted **made, const cau_surroundings *around,
 		return cau_fail(error, CAU_LIMIT, NULL, "the daemon has as many sessions as it may");
 	}
 	note_store(h);
+	if (cau_building_begin(h, error)) {
+		h->scene = NULL; // stays the caller's
+		h->meshes = NULL;
+		cau_worker_pool_remove(around->pool, &h->task);
+		cau_hosted_release(h);
+		return CAU_NO_MEMORY;
+	}
 	*made = h;
 	return CAU_OK;
 }
@@ -99,6 +106,8 @@ void cau_hosted_release(cau_hosted *h)
 	cau_streams_destroy(h);
 	cau_store_batch_destroy(h->batch);
 	cau_session_destroy(h->core);
+	if (h->memory_held)
+		atomic_fetch_sub(h->around->memory_held, h->memory_held);
 	pthread_mutex_destroy(&h->mutex);
 	pthread_mutex_destroy(&h->deciding);
 	free(h->logic);

@@ -17,6 +17,7 @@ typedef struct cau_surroundings {
 	cau_store *store;
 	cau_worker_pool *pool;
 	cau_builder *builder;
+	_Atomic int64_t *memory_held; // by all sessions, bytes, about
 	cau_sink sink;
 	// Energy came on somewhere: the watchdog must look at its times again.
 	void (*armed)(void *user);
@@ -98,6 +99,10 @@ void cau_hosted_store_takes(cau_hosted *hosted, bool takes, const char *reason);
 // Cuts the energy of drivers that are silent for too long. Returns the time when it must look
 // again, INFINITY if nothing is energized.
 double cau_hosted_watch(cau_hosted *hosted, double now_s);
+
+// The client will not come back: a session that is still built for it ends at the next border of
+// its stages.
+void cau_hosted_abandon(cau_hosted *hosted, uint32_t client);
 
 // ---- streams
 

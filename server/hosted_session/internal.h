@@ -127,7 +127,11 @@ struct cau_hosted {
 	double window_s; // realtime_factor's window
 	uint64_t window_tick;
 	double step_cost_s, realtime_factor;
-	double piece_s; // processor time of the longest step lately, for the pool
+	char stage[32];      // while it is built; else ""
+	int64_t memory_held; // of what all sessions may take
+	bool unwanted;       // it was cancelled
+	bool adopted;        // its threads are the workers'
+	double piece_s;      // processor time of the longest step lately, for the pool
 	int32_t elements_removed;
 	uint32_t refused_commands;
 	cau_named_snapshot snapshots[SNAPSHOT_COUNT];
@@ -143,7 +147,8 @@ struct cau_hosted {
 	cau_logic *logic; // orders are its tickets
 
 	pthread_mutex_t mutex;
-	cau_order *reads; // reads.c
+	cau_order *cancelling; // a session.destroy while it is built
+	cau_order *reads;      // reads.c
 	int32_t read_count;
 	cau_refused_motion refused[CAU_MAX_TOOLS];
 	cau_stream streams[CAU_STREAM_PROFILES_MAX];
@@ -157,9 +162,11 @@ struct cau_hosted {
 	_Atomic uint64_t lost_from;
 	atomic_bool unanswered; // its making is not with the store yet
 	atomic_bool ended, starting, checkpoint_wanted, drain_wanted, drained;
-	atomic_bool dirty;  // streams must show a change that no step made
-	atomic_int files;   // of this session that the builder makes
-	atomic_int commits; // on their way to the disk
+	atomic_bool dirty;     // streams must show a change that no step made
+	atomic_bool away;      // with the builder: no worker touches it
+	atomic_bool abandoned; // its creator is gone
+	atomic_int files;      // of this session that the builder makes
+	atomic_int commits;    // on their way to the disk
 };
 
 // ---- run.c
@@ -168,12 +175,22 @@ cau_due cau_hosted_run(cau_task *task);
 void cau_hosted_fault(cau_hosted *h, const cau_error *error);
 void cau_hosted_tell_fault(cau_hosted *h, const cau_error *error);
 void cau_hosted_publish_summary(cau_hosted *h);
+void cau_hosted_end_slice(cau_hosted *h); // commits, and tells others what they may know
 
 // ---- tools.c
 void cau_hosted_publish_tools(cau_hosted *h); // for other threads to read
 
-// ---- start.c: builds the core, loads the state
+// ---- building.c: the builder's part
+// Leaves a session that was just made to the builder.
+cau_status cau_building_begin(cau_hosted *h, cau_error *error);
+// Between two stages.
+cau_status cau_building_border(void *user, const cau_build_border *border, cau_error *error);
+// Takes the order if it destroys a session that is being built.
+bool cau_building_cancel(cau_hosted *h, cau_order *order);
+
+// ---- start.c: builds the core, loads the state; on the builder
 void cau_hosted_start(cau_hosted *h);
+void cau_hosted_fail_start(cau_hosted *h, const cau_error *error);
 void cau_hosted_started(cau_hosted *h); // after the replay of a start
 
 // ---- replay.c

@@ -49,6 +49,8 @@ void cau_hosted_publish_summary(cau_hosted *h)
 		.epoch = h->epoch,
 		.has_fault = cau_decided_state(h) == CAU_SESSION_FAULTED && *h->logic->fault,
 	};
+	now.has_stage = h->starting && *h->stage;
+	snprintf(now.stage, sizeof now.stage, "%s", h->stage);
 	memcpy(now.session, h->id, sizeof now.session);
 	memcpy(now.scene, h->scene->name, sizeof now.scene);
 	snprintf(now.fault, sizeof now.fault, "%.319s", h->logic->fault);
@@ -288,24 +290,39 @@ static cau_due when(cau_hosted *h)
 	return (cau_due){cau_reads_wait(h) || h->dirty ? 0 : due_s, now_s + 0.1};
 }
 
-cau_due cau_hosted_run(cau_task *task)
+void cau_hosted_end_slice(cau_hosted *h)
 {
-	cau_hosted *h = (cau_hosted *)task;
-	if (h->ended)
-		return (cau_due){INFINITY, INFINITY};
-	if (h->drain_wanted)
-		drain(h);
-	else if (!h->core)
-		cau_hosted_start(h);
-	else if (h->replay.active)
-		go_on_replaying(h);
-	else
-		serve(h, cau_monotonic_s());
 	cau_record_commit(h);
 	if (!h->starting)
 		h->unanswered = false;
 	cau_hosted_publish_summary(h);
 	cau_hosted_publish_tools(h);
 	h->around->sink.sliced(h->around->sink.user, h->number);
+}
+
+// The builder made the core, and its threads have the builder's priority: they become a worker's.
+static void adopt(cau_hosted *h)
+{
+	cau_error error = {0};
+	if (h->adopted)
+		return;
+	h->adopted = true;
+	if (cau_session_adopt(h->core, &error))
+		cau_log(CAU_LOG_WARNING, h->id, "threads_not_adopted", "reason=\"%s\"", error.reason);
+}
+
+cau_due cau_hosted_run(cau_task *task)
+{
+	cau_hosted *h = (cau_hosted *)task;
+	if (h->ended || h->away)
+		return (cau_due){INFINITY, INFINITY};
+	adopt(h);
+	if (h->drain_wanted)
+		drain(h);
+	else if (h->replay.active)
+		go_on_replaying(h);
+	else
+		serve(h, cau_monotonic_s());
+	cau_hosted_end_slice(h);
 	return when(h);
 }

@@ -11,6 +11,8 @@ static cau_status build(cau_hosted *h, cau_error *error)
 	cau_session_def def = cau_default_session_def();
 	def.scene = h->scene;
 	def.thread_count = (int32_t)h->around->config->session_threads;
+	def.border = cau_building_border;
+	def.user = h;
 	cau_status status = cau_session_create(&def, &h->core, error);
 	if (status)
 		return status;
@@ -124,9 +126,11 @@ void cau_hosted_tell_not_resumed(const char *id, cau_status status, const cau_er
 	        cau_status_name(status), error->path, error->reason, id);
 }
 
-static void fail_start(cau_hosted *h, const cau_error *error)
+void cau_hosted_fail_start(cau_hosted *h, const cau_error *error)
 {
-	if (h->origin.kind == CAU_ORIGIN_STORE)
+	if (h->unwanted)
+		cau_log(CAU_LOG_NOTICE, h->id, "build_ended", "reason=\"%s\"", error->reason);
+	else if (h->origin.kind == CAU_ORIGIN_STORE)
 		cau_hosted_tell_not_resumed(h->id, error->status, error);
 	else
 		cau_log(CAU_LOG_ERROR, h->id, "start_failed", "status=%s path=%s reason=\"%s\"",
@@ -151,7 +155,7 @@ void cau_hosted_start(cau_hosted *h)
 	if (!status && h->origin.kind != CAU_ORIGIN_STORE)
 		status = record_session(h, &error);
 	if (status) {
-		fail_start(h, &error);
+		cau_hosted_fail_start(h, &error);
 		return;
 	}
 	cau_log(CAU_LOG_INFO, h->id, "built", "seconds=%.3f vertices=%d", cau_monotonic_s() - began_s,
@@ -194,6 +198,7 @@ void cau_hosted_started(cau_hosted *h)
 	cau_streams_restart(h);
 	h->window_s = cau_monotonic_s();
 	h->window_tick = h->tick;
+	h->stage[0] = 0;
 	h->starting = false;
 	if (restarted)
 		cau_log(CAU_LOG_NOTICE, h->id, "resumed", "tick=%llu exact=%d", (unsigned long long)h->tick,

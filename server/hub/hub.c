@@ -65,6 +65,7 @@ cau_status cau_hub_create(cau_hub **made, const cau_hub_def *def, cau_error *err
 	                                 .store = def->store,
 	                                 .pool = def->pool,
 	                                 .builder = def->builder,
+	                                 .memory_held = &hub->memory_held,
 	                                 .sink = {hub, notify_all, frames_all, sliced_all},
 	                                 .armed = armed,
 	                                 .fork = cau_clerk_fork,
@@ -157,6 +158,7 @@ static uint32_t take_lost_client(cau_hub *hub, double now_s)
 
 static void forget(void *user, cau_hosted *hosted)
 {
+	cau_hosted_abandon(hosted, *(uint32_t *)user);
 	cau_hosted_forget_client(hosted, *(uint32_t *)user);
 }
 

@@ -16,6 +16,7 @@ enum { MOST_SINKS = 4 };
 struct cau_hub {
 	cau_hub_def def;
 	cau_quota *quota;
+	_Atomic int64_t memory_held; // by all sessions, bytes, about
 	cau_surroundings around;
 	cau_sink sinks[MOST_SINKS];
 	int sink_count;

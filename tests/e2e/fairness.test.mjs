@@ -2,6 +2,8 @@
 // Nobody takes the machine from the others: a driven session keeps its pace, and its driver is never
 // refused, whatever viewers ask for and whoever makes large sessions.
 import assert from 'node:assert/strict';
+import { readFileSync } from 'node:fs';
+import { join } from 'node:path';
 import { test } from 'node:test';
 import { RpcError } from './wire/client.mjs';
 import { Daemon } from './wire/daemon.mjs';
@@ -99,4 +101,66 @@ test('reads see every command that was sent before them', async () => {
 		assert.deepEqual(described.definition.gravity_m_s2, gravity_m_s2);
 	}
 	await daemon.end();
+});
+
+// ---- what is built
+const sheet = (name, cells) => {
+	const scene = JSON.parse(readFileSync(join(process.env.SCENES, 'fascia.json'), 'utf8'));
+	scene.name = name;
+	scene.meshes[0].cells = [cells, cells];
+	return scene;
+};
+
+test('large sessions are built beside a driven one, tell how far they are, and can be cancelled', { skip: sanitized }, async (t) => {
+	const daemon = await Daemon.start({ settings: UNBOUNDED });
+	const session = await driven(daemon, 'knee');
+	const maker = await daemon.connect(), other = await daemon.connect();
+	const made = ['one', 'two'].map((name) =>
+		maker.call('session.create', { name, definition: sheet(name, 500) }).catch((error) => error));
+	await daemon.log(/building.*stage=ordering/);
+	const { factor, refused } = await pace(session, SECONDS);
+	t.diagnostic(`${factor.toFixed(3)} of real time while two sheets of 251,001 vertices are built`);
+	assert.deepEqual(refused, []);
+	assert.ok(factor >= 0.9, `${factor} of real time`);
+	const { sessions } = await other.call('session.list');
+	const starting = sessions.filter(({ state }) => state === 'starting');
+	assert.equal(starting.length, 2);
+	assert.ok(starting.some(({ stage }) => ['meshing', 'ordering', 'factoring', 'settling'].includes(stage)), JSON.stringify(starting));
+	// a small one does not stand behind the giants
+	await other.call('session.create', { name: 'small', scene: 'fascia', paused: true });
+	assert.equal((await other.call('session.list')).sessions.filter(({ state }) => state === 'starting').length, 2);
+	await Promise.all(['d1-one', 'd1-two'].map((name) => other.call('session.destroy', { session: name })));
+	for (const error of await Promise.all(made))
+		assert.match(error.message, /destroyed while it was built, before (meshing|ordering|factoring|settling)/);
+	assert.equal((await other.call('session.list')).sessions.length, 2);
+	session.driver.rest();
+	await daemon.end();
+});
+
+test('a session beyond a limit is refused by name before its numbers are made', async () => {
+	const settings = { max_session_vertices: 5000, max_session_elements: 9000, max_session_bytes: 30000000, max_sessions_bytes: 40000000 };
+	const daemon = await Daemon.start({ settings });
+	const client = await daemon.connect();
+	const refusal = (cells, pattern) => assert.rejects(
+		client.call('session.create', { definition: sheet('large', cells) }), pattern);
+	await refusal(100, /10201 vertices; a session may have 5000 \(setting max_session_vertices\)/);
+	await refusal(69, /9522 elements; a session may have 9000 \(setting max_session_elements\)/);
+	const made = [];
+	await assert.rejects(async () => {
+		for (let i = 0; i < 30; i++)
+			made.push(await client.call('session.create', { definition: sheet('small', 30), paused: true }));
+	}, /MB of memory, all sessions then \d+ MB; they may take 40 MB \(setting max_sessions_bytes\)/);
+	assert.ok(made.length > 1, 'some fit');
+	await client.call('session.destroy', { session: made[0].summary.session });
+	await daemon.log(/destroyed/);
+	assert.ok(!daemon.lines.some((line) => /stage=factoring vertices=10201/.test(line)));
+	await daemon.end();
+});
+
+test('what is still built is given up when the daemon ends', async () => {
+	const daemon = await Daemon.start();
+	const client = await daemon.connect();
+	client.call('session.create', { name: 'large', definition: sheet('large', 200) }).catch(() => {});
+	await daemon.log(/building.*stage=meshing/);
+	assert.equal((await daemon.end()).code, 0);
 });

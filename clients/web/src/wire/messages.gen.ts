@@ -168,6 +168,8 @@ export interface SessionSummary {
   fault?: string;
   /** false, in an answer to session.pause: the store had no room; it pauses all the same */
   stored?: boolean;
+  /** while it is starting: what the builder does (meshing, ordering, factoring, settling, replaying) */
+  stage?: string;
 }
 
 /** all sessions of the daemon */
