@@ -92,7 +92,8 @@ static cau_status check_wanted(cau_hosted *h, const char *next, cau_error *error
 	pthread_mutex_unlock(&h->mutex);
 	h->unwanted = destroyed || h->abandoned || h->drain_wanted;
 	if (destroyed)
-		return cau_fail(error, CAU_BAD_STATE, "", "destroyed while it was built, before %s", next);
+		return cau_fail(error, CAU_BAD_STATE, "",
+		                "the session was destroyed while it was being built, before %s", next);
 	if (h->abandoned)
 		return cau_fail(error, CAU_BAD_STATE, "", "its creator is gone; it ended before %s", next);
 	if (h->drain_wanted)
@@ -146,7 +147,7 @@ void cau_hosted_abandon(cau_hosted *h, uint32_t client)
 		h->abandoned = true;
 }
 
-// The session is gone: what the store has of it goes too.
+// The session is gone: what the store has of it goes too, in the slice that ends with this.
 static void answer_cancelled(cau_hosted *h, cau_order *order)
 {
 	cau_error error = {0};
@@ -159,8 +160,9 @@ static void answer_cancelled(cau_hosted *h, cau_order *order)
 			return;
 		}
 	}
+	cau_answer_changed(h, CAU_CHANGE_DESTROYED, order->asker.name); // it was listed as starting
+	cau_log(CAU_LOG_INFO, h->id, "destroyed", "client=\"%s\"", order->asker.name);
 	cau_answer_order(h, order, &result);
-	cau_record_commit(h);
 }
 
 // ---- the job
@@ -169,7 +171,27 @@ typedef struct building {
 	cau_hosted *hosted;
 } building;
 
-// Back to the workers, unless it has ended.
+// From here on it is the workers', and a session.destroy waits in the queue. Returns the one that
+// came before.
+static cau_order *give_back(cau_hosted *h)
+{
+	pthread_mutex_lock(&h->mutex);
+	h->away = false;
+	cau_order *cancelling = h->cancelling;
+	h->cancelling = NULL;
+	pthread_mutex_unlock(&h->mutex);
+	return cancelling;
+}
+
+// No worker runs a session that has ended: its last slice is the builder's.
+static void come_to_an_end(cau_hosted *h)
+{
+	cau_order *cancelling = give_back(h);
+	if (cancelling)
+		answer_cancelled(h, cancelling);
+	cau_hosted_end_slice(h);
+}
+
 static void come_back(cau_hosted *h)
 {
 	cau_error error = {0};
@@ -177,21 +199,18 @@ static void come_back(cau_hosted *h)
 		snprintf(h->stage, sizeof h->stage, "replaying");
 	cau_hosted_end_slice(h);
 	cau_worker_pool_expect(h->around->pool, &h->task, STEPPED_VERTEX_S * h->info.vertex_count);
-	pthread_mutex_lock(&h->mutex);
-	h->away = false;
-	cau_order *cancelling = h->cancelling;
-	h->cancelling = NULL;
-	pthread_mutex_unlock(&h->mutex);
-	if (cancelling && h->ended)
-		answer_cancelled(h, cancelling);
-	else if (cancelling && cau_hosted_submit(h, cancelling, &error)) // it came too late
+	cau_order *cancelling = give_back(h);
+	if (cancelling && cau_hosted_submit(h, cancelling, &error)) // it came after the last border
 		cau_answer_fail(cancelling, &error, 0);
 	cau_worker_pool_wake(h->around->pool, &h->task);
 }
 
 static void end(building *b)
 {
-	come_back(b->hosted);
+	if (b->hosted->ended)
+		come_to_an_end(b->hosted);
+	else
+		come_back(b->hosted);
 	cau_hosted_release(b->hosted);
 	free(b);
 }

@@ -137,9 +137,9 @@ void cau_hosted_fail_start(cau_hosted *h, const cau_error *error)
 		        cau_status_name(error->status), error->path, error->reason);
 	cau_store_batch_destroy(h->batch);
 	h->batch = NULL;
-	cau_reply_fail(&h->creator_reply, error, 0);
 	h->starting = false;
-	h->ended = true;
+	h->ended = true; // whoever reads the answer finds its name free
+	cau_reply_fail(&h->creator_reply, error, 0);
 }
 
 void cau_hosted_start(cau_hosted *h)

@@ -21,6 +21,19 @@ store.commit()`;
 	assert.equal(edited.status, 0, edited.stderr);
 }
 
+// The sessions in the store of a daemon that is not running, after a look that no rows are of others.
+function storedSessions(daemon) {
+	const script = `import json, sqlite3, sys
+store = sqlite3.connect(sys.argv[1])
+for table in ('checkpoints', 'branches', 'marks', 'commands'):
+    strange = store.execute(f'SELECT count(*) FROM {table} WHERE session NOT IN (SELECT key FROM sessions)').fetchone()
+    assert strange == (0,), (table, strange)
+print(json.dumps([row[0] for row in store.execute('SELECT id FROM sessions WHERE deleted = 0 ORDER BY id')]))`;
+	const read = spawnSync('python3', ['-c', script, join(daemon.folder, 'store.db')], { encoding: 'utf8' });
+	assert.equal(read.status, 0, read.stderr);
+	return JSON.parse(read.stdout);
+}
+
 // E2E_KILLS repeats it, each time at another moment of the cut.
 const kills = Number(process.env.E2E_KILLS ?? 1);
 for (let round = 0; round < kills; round++)
@@ -237,26 +250,44 @@ test('a session that cannot be brought up is left in the store until somebody de
 	await client.close();
 });
 
-// The destruction is read before the session is there, as a rule, and acted upon when its first rows are
-// stored, since others are made in between. Whichever came first: it is gone everywhere or nowhere.
-test('a session destroyed before it was made is not taken out of the store under it', async (t) => {
+// The destruction is read while the session is not there yet, or is being built, which it ends, or just after.
+// Whichever it was: the session is gone everywhere or nowhere, and one of its name made since keeps its rows.
+test('a session destroyed before it was made leaves nothing, and what is made since stays', async (t) => {
 	let daemon = await Daemon.start();
 	t.after(() => daemon.end());
 	let client = await daemon.connect();
-	const definition = await smallScene(client, [4, 4]);
-	const create = (name) => client.call('session.create', { name, definition, paused: true });
+	const definition = await smallScene(client, [4, 4]), large = await smallScene(client, [150, 150]);
+	const create = (name, scene = definition) =>
+		client.call('session.create', { name, definition: scene, paused: true }).then(() => null, (error) => error);
+	const destroy = (session) => client.call('session.destroy', { session }).then(() => null, (error) => error);
+	const listed = async () => (await client.call('session.list')).sessions.map((s) => s.session).sort();
+	const cancelled = /the session was destroyed while it was being built, before (meshing|ordering|factoring|settling)/;
 	const before = Array.from({ length: 12 }, (_, i) => create(`before-${i}`)), early = create('early');
 	const after = Array.from({ length: 12 }, (_, i) => create(`after-${i}`));
-	const listed = async () => (await client.call('session.list')).sessions.map((s) => s.session);
-	const destroyed = await client.call('session.destroy', { session: 'd1-early' }).then(() => true, ({ code }) => {
-		assert.equal(code, -32040);
-		return false;
-	});
-	await Promise.allSettled([...before, early, ...after]);
+	const refused = await destroy('d1-early');
+	if (refused) // it came before the session
+		assert.equal(refused.code, -32040);
+	const refusals = await Promise.all([...before, ...after]), made = await early;
+	assert.deepEqual(refusals.filter(Boolean), []);
+	if (made)
+		assert.match(made.message, cancelled);
+	assert.ok(!(refused && made), 'who was not there to be destroyed is made');
+	assert.equal((await listed()).includes('d1-early'), !!refused);
+
+	// surely while it is being built, by two at once; its name is free as soon as it is answered
+	const late = create('late', large);
+	await daemon.log(/session=d1-late event=building .*stage=(ordering|factoring)/);
+	const twice = await Promise.all([destroy('d1-late'), destroy('d1-late')]);
+	assert.match((await late).message, cancelled);
+	assert.equal(twice[0], null);
+	assert.equal(twice[1].code, -32040);
+	assert.ok(!(await listed()).includes('d1-late'));
+	assert.equal(await create('late'), null);
 	const there = await listed();
-	assert.equal(there.length, 24 + !destroyed);
-	assert.equal(there.includes('d1-early'), !destroyed);
+	assert.equal(there.length, 25 + !!refused);
+	assert.ok(there.includes('d1-late'));
 	await daemon.stop();
+	assert.deepEqual(storedSessions(daemon), there);
 	daemon = await Daemon.start({ folder: daemon.folder });
 	client = await daemon.connect();
 	assert.deepEqual(await listed(), there);

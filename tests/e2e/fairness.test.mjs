@@ -131,7 +131,7 @@ test('large sessions are built beside a driven one, tell how far they are, and c
 	assert.equal((await other.call('session.list')).sessions.filter(({ state }) => state === 'starting').length, 2);
 	await Promise.all(['d1-one', 'd1-two'].map((name) => other.call('session.destroy', { session: name })));
 	for (const error of await Promise.all(made))
-		assert.match(error.message, /destroyed while it was built, before (meshing|ordering|factoring|settling)/);
+		assert.match(error.message, /destroyed while it was being built, before (meshing|ordering|factoring|settling)/);
 	assert.equal((await other.call('session.list')).sessions.length, 2);
 	session.driver.rest();
 	await daemon.end();
