@@ -85,11 +85,52 @@ static cau_status check_limits(cau_hosted *h, const cau_build_border *border, ca
 }
 
 // ---- borders
-static cau_status check_wanted(cau_hosted *h, const char *next, cau_error *error)
+static void append(cau_order **list, cau_order *order)
+{
+	while (*list)
+		list = &(*list)->next;
+	order->next = NULL;
+	*list = order;
+}
+
+static cau_order *take_cancelling(cau_hosted *h)
 {
 	pthread_mutex_lock(&h->mutex);
-	bool destroyed = h->cancelling != NULL;
+	cau_order *taken = h->cancelling;
+	h->cancelling = NULL;
 	pthread_mutex_unlock(&h->mutex);
+	return taken;
+}
+
+// False: it is the workers' by now.
+static bool keep_cancelling(cau_hosted *h, cau_order *order)
+{
+	pthread_mutex_lock(&h->mutex);
+	bool kept = h->away;
+	if (kept)
+		append(&h->cancelling, order);
+	pthread_mutex_unlock(&h->mutex);
+	return kept;
+}
+
+// Whether somebody destroys it. An order that was sent before destroyed another session of this
+// name, and gets its answer again.
+static bool is_destroyed(cau_hosted *h)
+{
+	for (cau_order *order = take_cancelling(h), *next; order; order = next) {
+		next = order->next;
+		cau_outcome_kind looked = cau_hosted_look(h, order);
+		if (looked == CAU_POSTPONED) // its first is not on the disk yet
+			keep_cancelling(h, order);
+		else if (looked == CAU_DONE)
+			append(&h->destroyers, order);
+	}
+	return h->destroyers != NULL;
+}
+
+static cau_status check_wanted(cau_hosted *h, const char *next, cau_error *error)
+{
+	bool destroyed = is_destroyed(h);
 	h->unwanted = destroyed || h->abandoned || h->drain_wanted;
 	if (destroyed)
 		return cau_fail(error, CAU_BAD_STATE, "",
@@ -126,18 +167,14 @@ cau_status cau_building_border(void *user, const cau_build_border *border, cau_e
 // ---- cancelling
 bool cau_building_cancel(cau_hosted *h, cau_order *order)
 {
-	bool taken = false;
+	char name[sizeof order->asker.name];
 	if (order->kind != CAU_ORDER_DESTROY || !h->away || !h->starting)
 		return false;
-	pthread_mutex_lock(&h->mutex);
-	if (!h->cancelling && h->away) {
-		h->cancelling = order;
-		taken = true;
-	}
-	pthread_mutex_unlock(&h->mutex);
+	memcpy(name, order->asker.name, sizeof name); // the order may be answered before this returns
+	bool taken = keep_cancelling(h, order);
 	if (taken)
 		cau_log(CAU_LOG_INFO, h->id, "cancelled",
-		        "client=\"%s\" reason=\"it ends when its present stage does\"", order->asker.name);
+		        "client=\"%s\" reason=\"it ends when its present stage does\"", name);
 	return taken;
 }
 
@@ -171,7 +208,7 @@ typedef struct building {
 	cau_hosted *hosted;
 } building;
 
-// From here on it is the workers', and a session.destroy waits in the queue. Returns the one that
+// From here on it is the workers', and a session.destroy waits in the queue. Returns those that
 // came before.
 static cau_order *give_back(cau_hosted *h)
 {
@@ -183,12 +220,49 @@ static cau_order *give_back(cau_hosted *h)
 	return cancelling;
 }
 
+static bool is_resend(const cau_order *order, const cau_order *first)
+{
+	return order->client_sequence && order->client_sequence == first->client_sequence &&
+	       strcmp(order->asker.client_id, first->asker.client_id) == 0;
+}
+
+// Sent twice while it was built: the answer is stored once.
+static void answer_resend(cau_hosted *h, cau_order *order)
+{
+	cau_error error = {0};
+	size_t bytes = 0;
+	char *text = cau_answer_text(order->reply.method, &(cau_wire_nothing){0}, &bytes, &error);
+	if (text)
+		cau_record_reply(h, &order->reply, text, bytes);
+	else
+		cau_reply_fail(&order->reply, &error, CAU_RPC_INTERNAL);
+	free(order);
+}
+
+// The first destroyed it; to the others but its resends there is no such session any more.
+static void answer_destroyers(cau_hosted *h)
+{
+	cau_order *first = h->destroyers;
+	for (cau_order *order = first->next, *next; order; order = next) {
+		next = order->next;
+		if (is_resend(order, first))
+			answer_resend(h, order);
+		else
+			cau_hosted_refuse_gone(order);
+	}
+	answer_cancelled(h, first);
+	h->destroyers = NULL;
+}
+
 // No worker runs a session that has ended: its last slice is the builder's.
 static void come_to_an_end(cau_hosted *h)
 {
-	cau_order *cancelling = give_back(h);
-	if (cancelling)
-		answer_cancelled(h, cancelling);
+	if (is_destroyed(h))
+		answer_destroyers(h);
+	for (cau_order *late = give_back(h), *next; late; late = next) {
+		next = late->next;
+		cau_hosted_refuse_gone(late);
+	}
 	cau_hosted_end_slice(h);
 }
 
@@ -199,9 +273,11 @@ static void come_back(cau_hosted *h)
 		snprintf(h->stage, sizeof h->stage, "replaying");
 	cau_hosted_end_slice(h);
 	cau_worker_pool_expect(h->around->pool, &h->task, STEPPED_VERTEX_S * h->info.vertex_count);
-	cau_order *cancelling = give_back(h);
-	if (cancelling && cau_hosted_submit(h, cancelling, &error)) // it came after the last border
-		cau_answer_fail(cancelling, &error, 0);
+	for (cau_order *late = give_back(h), *next; late; late = next) { // after the last border
+		next = late->next;
+		if (cau_hosted_submit(h, late, &error))
+			cau_answer_fail(late, &error, 0);
+	}
 	cau_worker_pool_wake(h->around->pool, &h->task);
 }
 

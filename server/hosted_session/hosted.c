@@ -77,7 +77,7 @@ cau_hosted *cau_hosted_share(cau_hosted *h)
 	return h;
 }
 
-static void refuse_order(cau_order *order)
+void cau_hosted_refuse_gone(cau_order *order)
 {
 	cau_error error = {.status = CAU_NOT_FOUND, .reason = "the session is gone"};
 	cau_answer_fail(order, &error, CAU_RPC_NOT_HERE);
@@ -85,7 +85,7 @@ static void refuse_order(cau_order *order)
 
 static void refuse_ticket(uint64_t ticket)
 {
-	refuse_order((cau_order *)(uintptr_t)ticket);
+	cau_hosted_refuse_gone((cau_order *)(uintptr_t)ticket);
 }
 
 void cau_hosted_release(cau_hosted *h)
@@ -98,10 +98,10 @@ void cau_hosted_release(cau_hosted *h)
 		refuse_ticket(h->logic->stepping);
 	for (cau_order *next; h->reads; h->reads = next) {
 		next = h->reads->next;
-		refuse_order(h->reads);
+		cau_hosted_refuse_gone(h->reads);
 	}
 	if (h->replay.order)
-		refuse_order(h->replay.order);
+		cau_hosted_refuse_gone(h->replay.order);
 	cau_replay_finish(&h->replay);
 	cau_streams_destroy(h);
 	cau_store_batch_destroy(h->batch);

@@ -127,11 +127,12 @@ struct cau_hosted {
 	double window_s; // realtime_factor's window
 	uint64_t window_tick;
 	double step_cost_s, realtime_factor;
-	char stage[32];      // while it is built; else ""
-	int64_t memory_held; // of what all sessions may take
-	bool unwanted;       // it was cancelled
-	bool adopted;        // its threads are the workers'
-	double piece_s;      // processor time of the longest step lately, for the pool
+	char stage[32];        // while it is built; else ""
+	int64_t memory_held;   // of what all sessions may take
+	cau_order *destroyers; // those of them that are no resends, in their order
+	bool unwanted;         // it was cancelled
+	bool adopted;          // its threads are the workers'
+	double piece_s;        // processor time of the longest step lately, for the pool
 	int32_t elements_removed;
 	uint32_t refused_commands;
 	cau_named_snapshot snapshots[SNAPSHOT_COUNT];
@@ -147,7 +148,7 @@ struct cau_hosted {
 	cau_logic *logic; // orders are its tickets
 
 	pthread_mutex_t mutex;
-	cau_order *cancelling; // a session.destroy while it is built
+	cau_order *cancelling; // session.destroy while it is built
 	cau_order *reads;      // reads.c
 	int32_t read_count;
 	cau_refused_motion refused[CAU_MAX_TOOLS];
@@ -168,6 +169,9 @@ struct cau_hosted {
 	atomic_int files;      // of this session that the builder makes
 	atomic_int commits;    // on their way to the disk
 };
+
+// ---- hosted.c
+void cau_hosted_refuse_gone(cau_order *order); // there is no session for it any more
 
 // ---- run.c
 cau_due cau_hosted_run(cau_task *task);

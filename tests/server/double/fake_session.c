@@ -94,10 +94,35 @@ static void add_tool(cau_session *s, const cau_tool_def *definition)
 	tool->tip_temperature_c = 37;
 }
 
+static void come_to(cau_build_stage next)
+{
+	if (cau_fake_hooks_set.build)
+		cau_fake_hooks_set.build(next);
+}
+
+// The borders of the core's stages, with what this sheet would take.
+static cau_status pass_borders(const cau_session_def *def, cau_error *error)
+{
+	cau_status status = CAU_OK;
+	for (int next = 0; next < CAU_BUILD_STAGE_COUNT && !status; next++) {
+		come_to((cau_build_stage)next);
+		cau_build_border border = {.next = (cau_build_stage)next,
+		                           .vertex_count = VERTICES,
+		                           .element_count = FACES,
+		                           .bytes = sizeof(cau_session)};
+		status = def->border ? def->border(def->user, &border, error) : CAU_OK;
+	}
+	if (!status)
+		come_to(CAU_BUILD_STAGE_COUNT);
+	return status;
+}
+
 cau_status cau_session_create(const cau_session_def *def, cau_session **made, cau_error *error)
 {
 	cau_status status = cau_scene_check(def->scene, error);
 	*made = NULL;
+	if (!status)
+		status = pass_borders(def, error);
 	if (status)
 		return status;
 	cau_session *s = calloc(1, sizeof *s);

@@ -6,6 +6,8 @@
 #include "cautery/session.h"
 
 typedef struct cau_fake_hooks {
+	// The creation comes to the border before this stage; CAU_BUILD_STAGE_COUNT: it has ended.
+	void (*build)(cau_build_stage next);
 	// The core is about to take this command.
 	void (*submit)(const cau_command *command);
 	// A tick is being computed; the commands that were due are in the tools.

@@ -62,7 +62,7 @@ static struct {
 	char folder[40], file[64];
 	cau_config config;
 	cau_store *store;
-	cau_builder *builder;
+	_Atomic int64_t memory_held;
 	cau_surroundings around;
 	_Atomic(cau_hosted *) h;
 	request requests[REQUESTS];
@@ -381,6 +381,7 @@ static void open_surroundings(void)
 	assert_int_equal(cau_store_open(&of_store, &t.store, NULL), CAU_OK);
 	t.around = (cau_surroundings){.config = &t.config,
 	                              .store = t.store,
+	                              .memory_held = &t.memory_held,
 	                              .armed = see_armed,
 	                              .sink = {NULL, notify, see_frames, see_slice}};
 	assert_int_equal(cau_worker_pool_create(&t.around.pool, 2, 4, 0, NULL), CAU_OK);
@@ -398,7 +399,7 @@ static int begin(void **state)
 	pthread_barrier_init(&t.met, NULL, 2);
 	pthread_barrier_init(&t.over, NULL, 2);
 	cau_log_set_level("error");
-	cau_fake_hooks_set = (cau_fake_hooks){see_submit, see_step};
+	cau_fake_hooks_set = (cau_fake_hooks){.submit = see_submit, .step = see_step};
 	open_surroundings();
 	t.request_count = t.in_flight[0] = 1;
 	cau_hosted_def def = {
