@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // A session that is being built, and what reaches it meanwhile: it is destroyed, destroyed again,
-// forgotten, too large, or the daemon ends. The double's creation stands still at any border between
-// two stages until the test has done what it wants to.
+// forgotten, too large, or the daemon ends. The double's creation stands still at any border
+// between two stages until the test has done what it wants to.
 #include <setjmp.h>
 #include <stdarg.h>
 #include <stdlib.h>
