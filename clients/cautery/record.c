@@ -81,7 +81,7 @@ static cli_exit run(cli *c)
 	double seconds = cli_number(c, "seconds", 0.1, 86400, 10, &bad);
 	double rate_hz = cli_number(c, "rate", 0.1, 1000, 60, &bad);
 	cau_wire_session_join join = {.has_rate_hz = true, .rate_hz = rate_hz, .has_channels = true};
-	join.channels = CAU_CHANNEL_ALL & ~(CAU_CHANNEL_STRESS | CAU_CHANNEL_TEMPERATURE);
+	join.channels = CAU_CHANNELS_BY_DEFAULT | CAU_CHANNEL_STATISTICS;
 	if (bad)
 		return CLI_USAGE;
 	const char *file = c->arguments[c->argument_count - 1];

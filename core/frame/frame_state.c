@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "frame/frame_state.h"
 
+#include <stdbool.h>
 #include <string.h>
 
 static int32_t word_count(const cau_tissue *tissue)
@@ -17,19 +18,19 @@ cau_status cau_frame_create(cau_frame_state *frame, const cau_tissue *tissue,
 	frame->mask_before = cau_arena_array(arena, words, sizeof(uint32_t));
 	frame->vertex_visible = cau_arena_array(arena, n, 1);
 	frame->vertex_faces = cau_arena_array(arena, n, sizeof(int32_t));
-	frame->exposure = cau_arena_array(arena, n, sizeof(float));
 	frame->edge_burnt = cau_arena_array(arena, (size_t)tissue->edges.edge_count, 1);
 	frame->burnt_edges = cau_arena_array(arena, n, sizeof(int32_t));
 	frame->vertex_edges = cau_arena_array(arena, n, sizeof(int32_t));
-	frame->charring = cau_arena_array(arena, n, sizeof(float));
-	frame->stress = cau_arena_array(arena, n, sizeof(float));
 	frame->stress_weight = cau_arena_array(arena, n, sizeof(float));
-	frame->temperature = cau_arena_array(arena, n, sizeof(float));
 	frame->heated = cau_arena_array(arena, n, sizeof(int32_t));
+	bool has_scalars = true;
+	for (int scalar = 0; scalar < CAU_SCALAR_COUNT; ++scalar) {
+		frame->scalar[scalar] = cau_arena_array(arena, n, sizeof(float));
+		has_scalars &= frame->scalar[scalar] != NULL;
+	}
 	if (!frame->moved || !frame->mask_changed || !frame->mask_before || !frame->vertex_visible ||
-	    !frame->vertex_faces || !frame->exposure || !frame->edge_burnt || !frame->burnt_edges ||
-	    !frame->vertex_edges || !frame->charring || !frame->stress || !frame->stress_weight ||
-	    !frame->temperature || !frame->heated)
+	    !frame->vertex_faces || !frame->edge_burnt || !frame->burnt_edges || !frame->vertex_edges ||
+	    !frame->stress_weight || !frame->heated || !has_scalars)
 		return cau_fail(error, CAU_NO_MEMORY, NULL, "no memory for frames");
 	for (int32_t k = 0; k < 2 * tissue->edges.edge_count; ++k)
 		frame->vertex_edges[tissue->edges.vertex[k]]++;

@@ -3,28 +3,26 @@
 // scalars.
 #pragma once
 
+#include "cautery/channels.h"
 #include "constraint/elements_make.h"
 #include "dissect/dissection.h"
 #include "dissect/near.h"
 
 typedef struct cau_frame_state {
 	int32_t moved_count, mask_changed_count;
-	int32_t *moved;          // (vertex_count)
-	int32_t *mask_changed;   // (mask words)
-	uint32_t *mask_before;   // (mask words)
-	uint8_t *vertex_visible; // (vertex_count)
-	int32_t *vertex_faces;   // (vertex_count): drawn faces at the vertex
-	float *exposure;         // (vertex_count)
-	uint8_t *edge_burnt;     // (edge_count): counted in burnt_edges
-	int32_t *burnt_edges;    // (vertex_count): edges at the vertex that have parted in some layer
-	int32_t *vertex_edges;   // (vertex_count): edges at the vertex
-	float *charring;         // (vertex_count): burnt_edges over vertex_edges
-	float *stress;           // (vertex_count)
-	float *stress_weight;    // (vertex_count)
-	float ambient_c;         // of the body
-	float *temperature;      // degC, (vertex_count)
-	int32_t heated_count;    // vertices away from ambient
-	int32_t *heated;         // (vertex_count)
+	int32_t *moved;            // (vertex_count)
+	int32_t *mask_changed;     // (mask words)
+	uint32_t *mask_before;     // (mask words)
+	uint8_t *vertex_visible;   // (vertex_count)
+	int32_t *vertex_faces;     // (vertex_count): drawn faces at the vertex
+	CAU_SCALAR_MEMBERS(float); // (vertex_count) each
+	uint8_t *edge_burnt;       // (edge_count): counted in burnt_edges
+	int32_t *burnt_edges;      // (vertex_count): edges at the vertex that have parted in some layer
+	int32_t *vertex_edges;     // (vertex_count): edges at the vertex
+	float *stress_weight;      // (vertex_count)
+	float ambient_c;           // of the body
+	int32_t heated_count;      // vertices away from ambient
+	int32_t *heated;           // (vertex_count)
 } cau_frame_state;
 
 cau_status cau_frame_create(cau_frame_state *frame, const cau_tissue *tissue,

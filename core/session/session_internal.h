@@ -100,7 +100,7 @@ struct cau_session {
 	double (*now_s)(void);
 	double stage_s[CAU_STAGE_COUNT];
 	double stage_start;
-	bool stress_on, temperature_on;
+	uint32_t watched; // CAU_CHANNEL_* bits of scalars
 };
 
 // command.c: applies the queued commands that are due.
@@ -128,8 +128,7 @@ cau_status cau_session_set_pins(cau_session *session, const cau_selection *selec
 // Analyses and factors the system anew; `permutation` as in cau_factor_create.
 cau_status cau_session_rebuild_system(cau_session *session, const int32_t *permutation,
                                       cau_error *error);
-// view.c: stress and temperature of the vertices, where switched on, after a tick; all of it anew
-// after a restore.
+// view.c: scalars of the vertices that are watched, after a tick; all of them anew after a restore.
 void cau_session_show_scalars(cau_session *session);
 void cau_session_renew_scalars(cau_session *session);
 // view.c: layer and texture of the faces.

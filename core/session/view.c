@@ -74,6 +74,76 @@ cau_status cau_session_make_faces(cau_session *session, cau_error *error)
 	return CAU_OK;
 }
 
+// ---- scalars of the vertices --------------------------------------------------------------------
+
+static void make_stress(cau_session *session)
+{
+	cau_frame_stress(&session->frame, &session->tissue, &session->dissection, session->position);
+}
+
+static void heat_vertices(cau_session *session)
+{
+	for (int32_t i = 0; i < session->tool_count; ++i)
+		cau_frame_heat(&session->frame, &session->near, &session->tool[i].grid, session->position);
+}
+
+static void make_temperature(cau_session *session)
+{
+	cau_frame_cool(&session->frame, &session->tissue, session->scene->ambient_c);
+	cau_near_refit(&session->near, session->position);
+	heat_vertices(session);
+}
+
+static void follow_temperature(cau_session *session)
+{
+	cau_frame_cool_heated(&session->frame);
+	heat_vertices(session);
+}
+
+// How a scalar is made while somebody watches it: from the state alone, and after a step that
+// followed such a state. A scalar without a row is part of every step (cau_frame_update).
+typedef struct scalar_source {
+	void (*make)(cau_session *session);
+	void (*follow)(cau_session *session);
+} scalar_source;
+
+static const scalar_source sources[CAU_SCALAR_COUNT] = {
+	[CAU_SCALAR_STRESS] = {make_stress, make_stress},
+	[CAU_SCALAR_TEMPERATURE] = {make_temperature, follow_temperature},
+};
+
+static bool is_watched(uint32_t channels, int scalar)
+{
+	return sources[scalar].make && (channels & cau_scalar_channel((cau_scalar)scalar)) != 0;
+}
+
+static bool is_made(const cau_session *session, int scalar)
+{
+	return !sources[scalar].make || is_watched(session->watched, scalar);
+}
+
+void cau_session_show_scalars(cau_session *session)
+{
+	for (int scalar = 0; scalar < CAU_SCALAR_COUNT; ++scalar)
+		if (is_watched(session->watched, scalar))
+			sources[scalar].follow(session);
+}
+
+void cau_session_renew_scalars(cau_session *session)
+{
+	for (int scalar = 0; scalar < CAU_SCALAR_COUNT; ++scalar)
+		if (is_watched(session->watched, scalar))
+			sources[scalar].make(session);
+}
+
+void cau_session_watch(cau_session *session, uint32_t channels)
+{
+	for (int scalar = 0; scalar < CAU_SCALAR_COUNT; ++scalar)
+		if (is_watched(channels & ~session->watched, scalar))
+			sources[scalar].make(session);
+	session->watched = channels;
+}
+
 static void fill_statistics(const cau_session *session, cau_statistics *statistics)
 {
 	const cau_step_solver *solver = &session->solver;
@@ -108,15 +178,13 @@ void cau_session_frame(const cau_session *session, cau_frame *frame)
 		.mask_changed_count = session->frame.mask_changed_count,
 		.mask_changed = session->frame.mask_changed,
 		.vertex_visible = session->frame.vertex_visible,
-		.exposure = session->frame.exposure,
-		.charring = session->frame.charring,
-		.stress = session->stress_on ? session->frame.stress : NULL,
-		.temperature = session->temperature_on ? session->frame.temperature : NULL,
 		.tool_count = session->tool_count,
 		.tools = session->tool_view,
 		.refusal_count = session->refusal_count,
 		.refusals = session->refusal,
 	};
+	for (int scalar = 0; scalar < CAU_SCALAR_COUNT; ++scalar)
+		frame->scalar[scalar] = is_made(session, scalar) ? session->frame.scalar[scalar] : NULL;
 	for (int32_t i = 0; i < session->tool_count; ++i)
 		session->tool_view[i] = session->tool[i].state;
 	fill_statistics(session, &frame->statistics);
@@ -125,56 +193,6 @@ void cau_session_frame(const cau_session *session, cau_frame *frame)
 void cau_session_set_clock(cau_session *session, double (*now_s)(void))
 {
 	session->now_s = session->solver.now_s = now_s;
-}
-
-static void show_stress(cau_session *session)
-{
-	cau_frame_stress(&session->frame, &session->tissue, &session->dissection, session->position);
-}
-
-static void heat_vertices(cau_session *session)
-{
-	for (int32_t i = 0; i < session->tool_count; ++i)
-		cau_frame_heat(&session->frame, &session->near, &session->tool[i].grid, session->position);
-}
-
-static void renew_temperature(cau_session *session)
-{
-	cau_frame_cool(&session->frame, &session->tissue, session->scene->ambient_c);
-	cau_near_refit(&session->near, session->position);
-	heat_vertices(session);
-}
-
-void cau_session_show_scalars(cau_session *session)
-{
-	if (session->stress_on)
-		show_stress(session);
-	if (!session->temperature_on)
-		return;
-	cau_frame_cool_heated(&session->frame);
-	heat_vertices(session);
-}
-
-void cau_session_renew_scalars(cau_session *session)
-{
-	if (session->stress_on)
-		show_stress(session);
-	if (session->temperature_on)
-		renew_temperature(session);
-}
-
-void cau_session_set_stress(cau_session *session, bool on)
-{
-	if (on && !session->stress_on)
-		show_stress(session);
-	session->stress_on = on;
-}
-
-void cau_session_set_temperature(cau_session *session, bool on)
-{
-	if (on && !session->temperature_on)
-		renew_temperature(session);
-	session->temperature_on = on;
 }
 
 void cau_session_alive(const cau_session *session, const uint8_t **tetrahedron,

@@ -350,6 +350,30 @@ static void write_operation(cau_json_writer *writer, const cau_method_info *info
 	cau_json_close(writer);
 }
 
+// What the binary frames say of each channel, for decoders that read tables: an extension.
+static void write_stream_channels(cau_json_writer *writer)
+{
+	cau_json_open(writer, "x-stream-channels", '[');
+	for (int i = 0; i < CAU_CHANNEL_COUNT; i++) {
+		const cau_channel_info *info = cau_channel_describe((cau_channel_index)i);
+		cau_json_open(writer, NULL, '{');
+		cau_json_string(writer, "name", info->name);
+		cau_json_integer(writer, "bit", (int64_t)1 << i);
+		cau_json_integer(writer, "section", info->section);
+		cau_json_bool(writer, "byDefault", info->by_default);
+		cau_json_string(writer, "description", info->meaning);
+		if (info->scalar >= 0) {
+			cau_json_number(writer, "least", info->least);
+			if (info->step > 0)
+				cau_json_number(writer, "step", info->step);
+			cau_json_integer(writer, "most", info->most);
+			cau_json_string(writer, "unit", info->unit);
+		}
+		cau_json_close(writer);
+	}
+	cau_json_close(writer);
+}
+
 static void write_document(cau_json_writer *writer, const model *from)
 {
 	cau_json_open(writer, NULL, '{');
@@ -363,6 +387,7 @@ static void write_document(cau_json_writer *writer, const model *from)
 	cau_json_close(writer);
 	cau_json_string(writer, "defaultContentType", "application/json");
 	write_channel(writer);
+	write_stream_channels(writer);
 	cau_json_open(writer, "operations", '{');
 	for (int i = 0; i < CAU_METHOD_COUNT; i++)
 		write_operation(writer, cau_method_describe((cau_method)i));

@@ -49,5 +49,6 @@ int main(int argument_count, char **arguments)
 	failed |= write_file(arguments[1], "asyncapi.json", asyncapi);
 	failed |= write_file(arguments[1], "messages.md", markdown);
 	failed |= write_file(arguments[1], "examples.md", write_examples);
+	failed |= write_file(arguments[1], "channels.idl", write_idl);
 	return failed;
 }

@@ -2,6 +2,7 @@
 #include <string.h>
 
 #include "cautery/rpc_errors.h"
+#include "cautery/stream.h"
 #include "generate/write.h"
 
 static const char *const role_names[] = {
@@ -124,10 +125,11 @@ static const char *form_name(cau_method_form form)
 
 static void write_methods(FILE *out, const model *from)
 {
-	fputs(
-		"\n## Methods\n\nRole: the least that may call it. A star: it takes `client_sequence`.\n\n"
-		"| method | | params | result | role | meaning |\n|---|---|---|---|---|---|\n",
-		out);
+	fputs("\n## Methods\n\nRole: the least that may call it. A star: it takes `client_sequence`. A "
+	      "dagger: "
+	      "the quotas of expensive requests count it.\n\n"
+	      "| method | | params | result | role | meaning |\n|---|---|---|---|---|---|\n",
+	      out);
 	for (int i = 0; i < CAU_METHOD_COUNT; i++) {
 		const cau_method_info *info = cau_method_describe((cau_method)i);
 		fprintf(out, "| `%s`%s | %s | ", info->name, info->changes ? " \\*" : "",
@@ -155,6 +157,40 @@ static void write_codes(FILE *out)
 #undef X
 }
 
+static void write_quantiser(FILE *out, const cau_channel_info *info)
+{
+	bool plain = strcmp(info->unit, "1") == 0;
+	if (info->scalar < 0)
+		fputs("see the section", out);
+	else if (plain && info->step * info->most == 1.0)
+		fprintf(out, "n / %u", info->most);
+	else if (info->step > 0)
+		fprintf(out, "%.16g + %.16g n%s%s, n at most %u", info->least, info->step, plain ? "" : " ",
+		        plain ? "" : info->unit, info->most);
+	else
+		fprintf(out, "%.16g + `stress_step_pa` n %s, n at most %u", info->least, info->unit,
+		        info->most);
+}
+
+static void write_channels(FILE *out)
+{
+	fputs(
+		"\n## Channels\n\nBit: in a DDS frame's `channels`. Section: in frames. Those marked with "
+		"a star are in a stream that says nothing of channels. A scalar is one number n a vertex, "
+		"in an element section of 1 component; the fourth column tells its value.\n\n"
+		"| channel | bit | section | value of n | meaning |\n|---|---:|---:|---|---|\n",
+		out);
+	for (int i = 0; i < CAU_CHANNEL_COUNT; i++) {
+		const cau_channel_info *info = cau_channel_describe((cau_channel_index)i);
+		fprintf(out, "| `%s`%s | %u | %d | ", info->name, info->by_default ? " \\*" : "", 1u << i,
+		        info->section);
+		write_quantiser(out, info);
+		fputs(" | ", out);
+		write_meaning(out, info->meaning);
+		fputs(" |\n", out);
+	}
+}
+
 void write_markdown(FILE *out, const model *from)
 {
 	fputs("# Messages\n\nGenerated from the message tables in `include/cautery/`; "
@@ -163,6 +199,7 @@ void write_markdown(FILE *out, const model *from)
 	      out);
 	write_methods(out, from);
 	write_codes(out);
+	write_channels(out);
 	fputs("\n## Objects\n", out);
 	for (int i = 0; i < from->type_count; i++)
 		write_type(out, &from->types[i]);

@@ -139,6 +139,25 @@ static void write_methods(FILE *out, const model *from)
 	fputs("]);\n", out);
 }
 
+static void write_scalars(FILE *out)
+{
+	fputs("\n/** Scalars of the vertices: n in a frame stands for least + step n in the unit, n is "
+	      "at "
+	      "most `most`.\n * Step 0: the stream tells it, as stress_step_pa. */\n"
+	      "export const SCALARS = {\n",
+	      out);
+	for (int i = 0; i < CAU_CHANNEL_COUNT; i++) {
+		const cau_channel_info *info = cau_channel_describe((cau_channel_index)i);
+		if (info->scalar >= 0)
+			fprintf(out,
+			        "  /** %s */\n  %s: { section: %d, byDefault: %s, least: %.16g, step: %.16g, "
+			        "most: %u, unit: '%s' },\n",
+			        info->meaning, info->name, info->section, info->by_default ? "true" : "false",
+			        info->least, info->step, info->most, info->unit);
+	}
+	fputs("} as const;\nexport type ScalarName = keyof typeof SCALARS;\n", out);
+}
+
 static void write_lists(FILE *out)
 {
 	fputs("\n/** error.code by error.data.status. */\nexport const ERROR_CODES = {\n", out);
@@ -157,13 +176,15 @@ static void write_lists(FILE *out)
 	CAU_FRAME_KIND_TABLE(X)
 #undef X
 	fputs(" } as const;\nexport const SECTION = {\n", out);
+	for (int i = 0; i < CAU_CHANNEL_COUNT; i++) {
+		const cau_channel_info *info = cau_channel_describe((cau_channel_index)i);
+		fprintf(out, "  %s: %d,\n", info->name, info->section);
+	}
 #define X(code, number, name) fprintf(out, "  %s: %d,\n", name, number);
-	CAU_SECTION_TABLE(X)
+	CAU_OTHER_SECTION_TABLE(X)
 #undef X
-	fprintf(out,
-	        "} as const;\n\n/** A temperature in degC is leastC + stepC times what is sent. */\n"
-	        "export const TEMPERATURE = { leastC: %g, stepC: %g } as const;\n",
-	        CAU_TEMPERATURE_LEAST_C, CAU_TEMPERATURE_STEP_C);
+	fputs("} as const;\n", out);
+	write_scalars(out);
 	fputs("\n/** Words that frames tell by their number. */\nexport const TOOL_SHAPES = [", out);
 #define X(code, name) fprintf(out, "'%s', ", name);
 	CAU_TOOL_SHAPE_TABLE(X)

@@ -10,3 +10,4 @@ void write_typescript(FILE *out, const model *from);
 void write_asyncapi(FILE *out, const model *from);
 void write_markdown(FILE *out, const model *from);
 void write_examples(FILE *out);
+void write_idl(FILE *out);

@@ -1,56 +1,45 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "wire/arrays.h"
 
-const cau_channel cau_array_channel[ARRAY_COUNT] = {
-#define X(code) CAU_CHANNEL_##code,
-	ARRAY_TABLE(X)
-#undef X
-};
+// Positions, mask, tools and statistics have cases of their own here, in encoder and decoder.
+_Static_assert(CAU_CHANNEL_COUNT - CAU_SCALAR_COUNT == 4, "a channel is a scalar or has cases");
 
-const cau_section cau_array_section[ARRAY_COUNT] = {
-#define X(code) CAU_SECTION_##code,
-	ARRAY_TABLE(X)
-#undef X
-};
-
-int cau_array_of_section(int type)
+int cau_channel_of_section(int type)
 {
-	int array = 0;
-	while (array < ARRAY_COUNT && (int)cau_array_section[array] != type)
-		array++;
-	return array;
+	int channel = 0;
+	while (channel < CAU_CHANNEL_COUNT &&
+	       cau_channel_describe((cau_channel_index)channel)->section != type)
+		channel++;
+	return channel;
 }
 
-array_shape cau_array_shape_of(const cau_stream_def *def, int array)
+array_shape cau_array_shape_of(const cau_stream_def *def, int channel)
 {
-	array_shape shape = {.count = (size_t)def->vertex_count, .components = 1, .most = UINT8_MAX};
-	switch (array) {
-	case ARRAY_POSITIONS:
-		shape.components = 3;
-		shape.bias = POSITION_LIMIT;
-		shape.most = 2u * POSITION_LIMIT;
-		break;
-	case ARRAY_MASK:
-		shape.count = ((size_t)def->face_count + 31) / 32;
-		shape.most = UINT32_MAX;
-		break;
-	case ARRAY_STRESS:
-	case ARRAY_TEMPERATURE:
-		shape.most = UINT16_MAX;
-		break;
+	size_t vertices = (size_t)def->vertex_count;
+	const cau_channel_info *info = cau_channel_describe((cau_channel_index)channel);
+	if (!cau_stream_has(def, channel))
+		return (array_shape){.components = 1};
+	if (info->scalar >= 0)
+		return (array_shape){.count = vertices, .components = 1, .most = info->most};
+	switch (channel) {
+	case CAU_CHANNEL_INDEX_POSITIONS:
+		return (array_shape){.count = vertices,
+		                     .components = 3,
+		                     .bias = POSITION_LIMIT,
+		                     .most = 2u * POSITION_LIMIT};
+	case CAU_CHANNEL_INDEX_MASK:
+		return (array_shape){
+			.count = ((size_t)def->face_count + 31) / 32, .components = 1, .most = UINT32_MAX};
 	default:
-		break;
+		return (array_shape){.components = 1};
 	}
-	if (!(def->channels & (uint32_t)cau_array_channel[array]))
-		shape.count = 0;
-	return shape;
 }
 
 size_t cau_arrays_words(const cau_stream_def *def)
 {
 	size_t words = 0;
-	for (int array = 0; array < ARRAY_COUNT; array++) {
-		array_shape shape = cau_array_shape_of(def, array);
+	for (int channel = 0; channel < CAU_CHANNEL_COUNT; channel++) {
+		array_shape shape = cau_array_shape_of(def, channel);
 		words += shape.count * shape.components;
 	}
 	return words;
@@ -59,8 +48,8 @@ size_t cau_arrays_words(const cau_stream_def *def)
 size_t cau_arrays_scratch_bytes(const cau_stream_def *def)
 {
 	size_t most = 4;
-	for (int array = 0; array < ARRAY_COUNT; array++) {
-		array_shape shape = cau_array_shape_of(def, array);
+	for (int channel = 0; channel < CAU_CHANNEL_COUNT; channel++) {
+		array_shape shape = cau_array_shape_of(def, channel);
 		size_t bytes = cau_elements_scratch_bytes(shape.count, shape.components);
 		most = bytes > most ? bytes : most;
 	}

@@ -1,38 +1,29 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The array channels of a stream: what encoder and decoder keep of each as 32-bit words.
+// The channels that are arrays (positions, mask, scalars): what encoder, thinner and decoder keep
+// of each as 32-bit words, by CAU_CHANNEL_INDEX_*. Channels with records have arrays of no
+// elements.
 #pragma once
 
 #include "cautery/frame_codec.h"
 #include "wire/elements.h"
 
-// Channels that are arrays, in the order of their sections.
-#define ARRAY_TABLE(X)                                                                             \
-	X(POSITIONS)                                                                                   \
-	X(MASK)                                                                                        \
-	X(EXPOSURE)                                                                                    \
-	X(CHARRING)                                                                                    \
-	X(STRESS)                                                                                      \
-	X(TEMPERATURE)
-
-#define X(code) ARRAY_##code,
-typedef enum array_index { ARRAY_TABLE(X) ARRAY_COUNT } array_index;
-#undef X
-
 enum { POSITION_LIMIT = 1 << 30 }; // steps from the origin
 
-extern const cau_channel cau_array_channel[ARRAY_COUNT];
-extern const cau_section cau_array_section[ARRAY_COUNT];
+static inline bool cau_stream_has(const cau_stream_def *def, int channel)
+{
+	return def->channels >> channel & 1;
+}
 
-// The array that a section of this type carries, or ARRAY_COUNT.
-int cau_array_of_section(int type);
+// The channel whose section this is, CAU_CHANNEL_INDEX_*, or CAU_CHANNEL_COUNT.
+int cau_channel_of_section(int type);
 
 typedef struct array_shape {
-	size_t count; // elements; 0 if the stream has not this channel
+	size_t count; // elements; 0 if the stream has not this channel, or it is no array
 	uint32_t components;
 	uint32_t bias, most; // of values, see elements_target
 } array_shape;
 
-array_shape cau_array_shape_of(const cau_stream_def *def, int array);
+array_shape cau_array_shape_of(const cau_stream_def *def, int channel);
 
 // Words of all arrays together, and scratch that any of them needs.
 size_t cau_arrays_words(const cau_stream_def *def);

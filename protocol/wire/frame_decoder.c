@@ -10,7 +10,7 @@
 struct cau_frame_decoder {
 	cau_stream_def def;
 	cau_stream_state state;
-	uint32_t *arrays[ARRAY_COUNT];
+	uint32_t *arrays[CAU_CHANNEL_COUNT];
 	cau_stream_tool tools[CAU_MAX_TOOLS];
 	uint8_t *scratch;
 };
@@ -38,18 +38,17 @@ cau_status cau_frame_decoder_init(void *storage, size_t storage_bytes, const cau
 	*made = (cau_frame_decoder){.def = *def};
 	uint32_t *words = (uint32_t *)(void *)((uint8_t *)storage + struct_bytes());
 	memset(words, 0, 4 * cau_arrays_words(def));
-	for (int array = 0; array < ARRAY_COUNT; array++) {
-		array_shape shape = cau_array_shape_of(def, array);
-		made->arrays[array] = words;
+	for (int channel = 0; channel < CAU_CHANNEL_COUNT; channel++) {
+		array_shape shape = cau_array_shape_of(def, channel);
+		int scalar = cau_channel_describe((cau_channel_index)channel)->scalar;
+		made->arrays[channel] = words;
+		if (scalar >= 0)
+			made->state.scalar[scalar] = words;
 		words += shape.count * shape.components;
 	}
 	made->scratch = (uint8_t *)words;
-	made->state.quantised = (const int32_t *)made->arrays[ARRAY_POSITIONS];
-	made->state.face_mask = made->arrays[ARRAY_MASK];
-	made->state.exposure = made->arrays[ARRAY_EXPOSURE];
-	made->state.charring = made->arrays[ARRAY_CHARRING];
-	made->state.stress = made->arrays[ARRAY_STRESS];
-	made->state.temperature = made->arrays[ARRAY_TEMPERATURE];
+	made->state.quantised = (const int32_t *)made->arrays[CAU_CHANNEL_INDEX_POSITIONS];
+	made->state.face_mask = made->arrays[CAU_CHANNEL_INDEX_MASK];
 	made->state.tools = made->tools;
 	*decoder = made;
 	return CAU_OK;
@@ -114,23 +113,23 @@ static void forget(cau_frame_decoder *decoder)
 	decoder->state.statistics = (cau_stream_statistics){0};
 }
 
-static const char *read_array(cau_frame_decoder *decoder, const section_cursor *cursor, int array,
+static const char *read_array(cau_frame_decoder *decoder, const section_cursor *cursor, int channel,
                               bool key)
 {
-	array_shape shape = cau_array_shape_of(&decoder->def, array);
-	elements_target target = {.values = decoder->arrays[array],
+	array_shape shape = cau_array_shape_of(&decoder->def, channel);
+	elements_target target = {.values = decoder->arrays[channel],
 	                          .count = shape.count,
 	                          .components = shape.components,
 	                          .bias = shape.bias,
 	                          .most = shape.most,
 	                          .may_refer_to_held = !key,
-	                          .all = key && array == ARRAY_POSITIONS};
+	                          .all = key && channel == CAU_CHANNEL_INDEX_POSITIONS};
 	size_t count;
 	const char *wrong = cau_elements_decode(cursor->payload, cursor->payload_bytes, &target,
 	                                        decoder->scratch, &count);
-	if (!wrong && array == ARRAY_POSITIONS)
+	if (!wrong && channel == CAU_CHANNEL_INDEX_POSITIONS)
 		decoder->state.moved_count = (int32_t)count;
-	if (!wrong && array == ARRAY_MASK)
+	if (!wrong && channel == CAU_CHANNEL_INDEX_MASK)
 		decoder->state.mask_changed_count = (int32_t)count;
 	return wrong;
 }
@@ -139,21 +138,21 @@ static const char *read_array(cau_frame_decoder *decoder, const section_cursor *
 static const char *read_section(cau_frame_decoder *decoder, const section_cursor *cursor, bool key)
 {
 	cau_stream_state *state = &decoder->state;
-	uint32_t channels = decoder->def.channels;
-	int array = cau_array_of_section(cursor->type);
-	if (array < ARRAY_COUNT)
-		return channels & (uint32_t)cau_array_channel[array]
-		           ? read_array(decoder, cursor, array, key)
-		           : NULL;
-	if (cursor->type == CAU_SECTION_TOOL_NAMES && channels & CAU_CHANNEL_TOOLS)
-		return cau_tool_names_read(cursor->payload, cursor->payload_bytes, decoder->tools,
-		                           &state->tool_count);
-	if (cursor->type == CAU_SECTION_TOOLS && channels & CAU_CHANNEL_TOOLS)
-		return cau_tools_read(cursor->payload, cursor->payload_bytes, decoder->tools,
-		                      state->tool_count);
-	if (cursor->type == CAU_SECTION_STATISTICS && channels & CAU_CHANNEL_STATISTICS)
+	bool names = cursor->type == CAU_SECTION_TOOL_NAMES;
+	int channel = names ? CAU_CHANNEL_INDEX_TOOLS : cau_channel_of_section(cursor->type);
+	if (channel == CAU_CHANNEL_COUNT || !cau_stream_has(&decoder->def, channel))
+		return NULL;
+	switch (channel) {
+	case CAU_CHANNEL_INDEX_TOOLS:
+		return names ? cau_tool_names_read(cursor->payload, cursor->payload_bytes, decoder->tools,
+		                                   &state->tool_count)
+		             : cau_tools_read(cursor->payload, cursor->payload_bytes, decoder->tools,
+		                              state->tool_count);
+	case CAU_CHANNEL_INDEX_STATISTICS:
 		return cau_statistics_read(cursor->payload, cursor->payload_bytes, &state->statistics);
-	return NULL;
+	default:
+		return read_array(decoder, cursor, channel, key);
+	}
 }
 
 static const char *read_sections(cau_frame_decoder *decoder, const void *bytes,

@@ -11,8 +11,8 @@
 size_t cau_frame_bytes_max(const cau_stream_def *def)
 {
 	size_t bytes = CAU_FRAME_HEADER_BYTES;
-	for (int array = 0; array < ARRAY_COUNT; array++) {
-		array_shape shape = cau_array_shape_of(def, array);
+	for (int channel = 0; channel < CAU_CHANNEL_COUNT; channel++) {
+		array_shape shape = cau_array_shape_of(def, channel);
 		bytes += CAU_FRAME_SECTION_BYTES + cau_elements_bytes_max(shape.count, shape.components);
 	}
 	return bytes + (size_t)3 * CAU_FRAME_SECTION_BYTES + TOOL_NAMES_BYTES_MAX +
@@ -44,10 +44,10 @@ cau_status cau_frame_encoder_init(void *storage, size_t storage_bytes, const cau
 	cau_frame_encoder *made = storage;
 	*made = (cau_frame_encoder){.def = *def};
 	uint32_t *words = (uint32_t *)(void *)((uint8_t *)storage + struct_bytes());
-	for (int array = 0; array < ARRAY_COUNT; array++) {
-		array_shape shape = cau_array_shape_of(def, array);
-		made->held[array] = words;
-		made->next[array] = words + shape.count * shape.components;
+	for (int channel = 0; channel < CAU_CHANNEL_COUNT; channel++) {
+		array_shape shape = cau_array_shape_of(def, channel);
+		made->held[channel] = words;
+		made->next[channel] = words + shape.count * shape.components;
 		words += 2 * shape.count * shape.components;
 	}
 	made->scratch = (uint8_t *)words;
@@ -74,30 +74,36 @@ uint64_t cau_frame_encoder_sequence(const cau_frame_encoder *encoder)
 
 // ---- taking a sample ----------------------------------------------------------------------------
 
-static bool wants(const cau_frame_encoder *encoder, cau_channel channel)
+static bool wants(const cau_frame_encoder *encoder, int channel)
 {
-	return (encoder->def.channels & channel) != 0;
+	return cau_stream_has(&encoder->def, channel);
+}
+
+// What the sample has of a channel; NULL: nothing. A sample may have no tools.
+static const void *given(const cau_stream_sample *sample, int channel)
+{
+	switch (channel) {
+	case CAU_CHANNEL_INDEX_POSITIONS:
+		return sample->position;
+	case CAU_CHANNEL_INDEX_MASK:
+		return sample->face_mask;
+	case CAU_CHANNEL_INDEX_TOOLS:
+		return sample;
+	case CAU_CHANNEL_INDEX_STATISTICS:
+		return sample->statistics;
+	default:
+		return sample->scalar[cau_channel_describe((cau_channel_index)channel)->scalar];
+	}
 }
 
 static cau_status check_sample(const cau_frame_encoder *encoder, const cau_stream_sample *sample,
                                cau_error *error)
 {
-	const struct {
-		cau_channel channel;
-		const void *array;
-		const char *name;
-	} needed[] = {
-		{CAU_CHANNEL_POSITIONS, sample->position, "position"},
-		{CAU_CHANNEL_MASK, sample->face_mask, "face_mask"},
-		{CAU_CHANNEL_EXPOSURE, sample->exposure, "exposure"},
-		{CAU_CHANNEL_CHARRING, sample->charring, "charring"},
-		{CAU_CHANNEL_STRESS, sample->stress, "stress"},
-		{CAU_CHANNEL_STATISTICS, sample->statistics, "statistics"},
-		{CAU_CHANNEL_TEMPERATURE, sample->temperature, "temperature"},
-	};
-	for (size_t i = 0; i < sizeof needed / sizeof *needed; i++) {
-		if (wants(encoder, needed[i].channel) && !needed[i].array)
-			return cau_fail(error, CAU_BAD_VALUE, needed[i].name, "the stream has this channel");
+	for (int channel = 0; channel < CAU_CHANNEL_COUNT; channel++) {
+		if (wants(encoder, channel) && !given(sample, channel))
+			return cau_fail(error, CAU_BAD_VALUE,
+			                cau_channel_describe((cau_channel_index)channel)->name,
+			                "the stream has this channel");
 	}
 	if (sample->tool_count < 0 || sample->tool_count > CAU_MAX_TOOLS)
 		return cau_fail(error, CAU_BAD_VALUE, "tool_count", "%d is not within 0 and %d",
@@ -118,7 +124,7 @@ static cau_status check_sample(const cau_frame_encoder *encoder, const cau_strea
 static bool is_kept(const cau_frame_encoder *encoder, const cau_stream_sample *sample,
                     int32_t vertex)
 {
-	return encoder->header.sequence > 0 && wants(encoder, CAU_CHANNEL_MASK) &&
+	return encoder->header.sequence > 0 && wants(encoder, CAU_CHANNEL_INDEX_MASK) &&
 	       sample->vertex_visible && !sample->vertex_visible[vertex];
 }
 
@@ -126,8 +132,8 @@ static cau_status quantise_positions(cau_frame_encoder *encoder, const cau_strea
                                      cau_error *error)
 {
 	const cau_stream_def *def = &encoder->def;
-	uint32_t *next = encoder->next[ARRAY_POSITIONS];
-	const uint32_t *held = encoder->held[ARRAY_POSITIONS];
+	uint32_t *next = encoder->next[CAU_CHANNEL_INDEX_POSITIONS];
+	const uint32_t *held = encoder->held[CAU_CHANNEL_INDEX_POSITIONS];
 	double steps_per_m = 1.0 / def->step_m;
 	for (int32_t vertex = 0; vertex < def->vertex_count; vertex++) {
 		size_t first = 3 * (size_t)vertex;
@@ -147,53 +153,40 @@ static cau_status quantise_positions(cau_frame_encoder *encoder, const cau_strea
 	return CAU_OK;
 }
 
-// How a scalar is told: in steps from its least value, `most` of them at most.
-typedef struct scalar_scale {
-	double least, steps_per_unit, most;
-} scalar_scale;
-
-// The nearest step, saturated; what is not a number becomes 0.
+// Tells a scalar in its steps: the nearest one, saturated; what is not a number becomes 0.
 static void quantise_scalar(cau_frame_encoder *encoder, const cau_stream_sample *sample,
-                            array_index array, const float *values, scalar_scale scale)
+                            cau_channel_index channel)
 {
-	uint32_t *next = encoder->next[array];
+	const cau_channel_info *info = cau_channel_describe(channel);
+	const float *values = sample->scalar[info->scalar];
+	const uint32_t *held = encoder->held[channel];
+	uint32_t *next = encoder->next[channel];
+	double least = info->least, most = info->most;
+	double steps_per_unit = 1.0 / cau_channel_step(&encoder->def, channel);
 	for (int32_t vertex = 0; vertex < encoder->def.vertex_count; vertex++) {
-		double steps = ((double)values[vertex] - scale.least) * scale.steps_per_unit;
+		double steps = ((double)values[vertex] - least) * steps_per_unit;
 		steps = steps > 0.0 ? steps : 0.0;
-		steps = steps < scale.most ? steps : scale.most;
-		next[vertex] = is_kept(encoder, sample, vertex) ? encoder->held[array][vertex]
-		                                                : (uint32_t)lrint(steps);
+		steps = steps < most ? steps : most;
+		next[vertex] = is_kept(encoder, sample, vertex) ? held[vertex] : (uint32_t)lrint(steps);
 	}
-}
-
-static void take_scalars(cau_frame_encoder *encoder, const cau_stream_sample *sample)
-{
-	const scalar_scale share = {0.0, 255.0, 255.0};
-	const scalar_scale stress = {0.0, 1.0 / encoder->def.stress_step_pa, 65535.0};
-	const scalar_scale temperature = {CAU_TEMPERATURE_LEAST_C, 1.0 / CAU_TEMPERATURE_STEP_C,
-	                                  65535.0};
-	if (wants(encoder, CAU_CHANNEL_EXPOSURE))
-		quantise_scalar(encoder, sample, ARRAY_EXPOSURE, sample->exposure, share);
-	if (wants(encoder, CAU_CHANNEL_CHARRING))
-		quantise_scalar(encoder, sample, ARRAY_CHARRING, sample->charring, share);
-	if (wants(encoder, CAU_CHANNEL_STRESS))
-		quantise_scalar(encoder, sample, ARRAY_STRESS, sample->stress, stress);
-	if (wants(encoder, CAU_CHANNEL_TEMPERATURE))
-		quantise_scalar(encoder, sample, ARRAY_TEMPERATURE, sample->temperature, temperature);
 }
 
 static cau_status take_arrays(cau_frame_encoder *encoder, const cau_stream_sample *sample,
                               cau_error *error)
 {
-	if (wants(encoder, CAU_CHANNEL_POSITIONS)) {
+	if (wants(encoder, CAU_CHANNEL_INDEX_POSITIONS)) {
 		cau_status status = quantise_positions(encoder, sample, error);
 		if (status)
 			return status;
 	}
-	if (wants(encoder, CAU_CHANNEL_MASK))
-		memcpy(encoder->next[ARRAY_MASK], sample->face_mask,
-		       4 * cau_array_shape_of(&encoder->def, ARRAY_MASK).count);
-	take_scalars(encoder, sample);
+	if (wants(encoder, CAU_CHANNEL_INDEX_MASK))
+		memcpy(encoder->next[CAU_CHANNEL_INDEX_MASK], sample->face_mask,
+		       4 * cau_array_shape_of(&encoder->def, CAU_CHANNEL_INDEX_MASK).count);
+	for (int channel = 0; channel < CAU_CHANNEL_COUNT; channel++) {
+		if (wants(encoder, channel) &&
+		    cau_channel_describe((cau_channel_index)channel)->scalar >= 0)
+			quantise_scalar(encoder, sample, (cau_channel_index)channel);
+	}
 	return CAU_OK;
 }
 
@@ -236,64 +229,58 @@ static void end_section(frame_writer *writer, cau_section type, size_t payload_b
 	writer->section_count++;
 }
 
-// Arrays whose sections come before the records, and those that come after them.
-typedef struct array_range {
-	int first, end;
-} array_range;
-static const array_range before_records = {0, ARRAY_TEMPERATURE};
-static const array_range after_records = {ARRAY_TEMPERATURE, ARRAY_COUNT};
+// What a frame tells of the state that is held: all of it, or what differs from `base`.
+typedef struct frame_part {
+	uint32_t *const *base; // the arrays of a state, by channel; NULL: all, for a key frame
+	bool names;            // of the tools
+} frame_part;
 
-static void write_key_arrays(const cau_frame_encoder *encoder, array_range range,
-                             frame_writer *writer)
+static void write_array(const cau_frame_encoder *encoder, int channel, frame_part part,
+                        frame_writer *writer)
 {
-	for (int array = range.first; array < range.end; array++) {
-		array_shape shape = cau_array_shape_of(&encoder->def, array);
-		bool positions = array == ARRAY_POSITIONS;
-		if (!wants(encoder, cau_array_channel[array]))
+	array_shape shape = cau_array_shape_of(&encoder->def, channel);
+	bool key = part.base == NULL;
+	bool positions = channel == CAU_CHANNEL_INDEX_POSITIONS;
+	bool mask = channel == CAU_CHANNEL_INDEX_MASK;
+	elements_source source = {.now = encoder->held[channel],
+	                          .held = key ? NULL : part.base[channel],
+	                          .count = shape.count,
+	                          .components = shape.components,
+	                          .reference = ELEMENTS_HELD,
+	                          .all = key && positions};
+	if (key || mask)
+		source.reference = key && positions ? ELEMENTS_PREVIOUS : ELEMENTS_NONE;
+	size_t written;
+	size_t bytes =
+		cau_elements_encode(&source, encoder->scratch, section_payload(writer), &written);
+	if (key || written > 0)
+		end_section(writer, (cau_section)cau_channel_describe((cau_channel_index)channel)->section,
+		            bytes);
+}
+
+static void write_tools(const cau_tool_set *set, bool names, frame_writer *writer)
+{
+	if (names)
+		end_section(writer, CAU_SECTION_TOOL_NAMES,
+		            cau_tool_names_write(section_payload(writer), set->tools, set->count));
+	end_section(writer, CAU_SECTION_TOOLS,
+	            cau_tools_write(section_payload(writer), set->tools, set->count));
+}
+
+// The channels in their order, which is that of their sections.
+static void write_sections(const cau_frame_encoder *encoder, frame_part part, frame_writer *writer)
+{
+	for (int channel = 0; channel < CAU_CHANNEL_COUNT; channel++) {
+		if (!wants(encoder, channel))
 			continue;
-		elements_source source = {.now = encoder->held[array],
-		                          .count = shape.count,
-		                          .components = shape.components,
-		                          .reference = positions ? ELEMENTS_PREVIOUS : ELEMENTS_NONE,
-		                          .all = positions};
-		end_section(writer, cau_array_section[array],
-		            cau_elements_encode(&source, encoder->scratch, section_payload(writer), NULL));
+		if (channel == CAU_CHANNEL_INDEX_TOOLS)
+			write_tools(&encoder->tools, part.names, writer);
+		else if (channel == CAU_CHANNEL_INDEX_STATISTICS)
+			end_section(writer, CAU_SECTION_STATISTICS,
+			            cau_statistics_write(section_payload(writer), &encoder->statistics));
+		else
+			write_array(encoder, channel, part, writer);
 	}
-}
-
-// From the arrays of `base` to what is held.
-static void write_delta_arrays(const cau_frame_encoder *encoder, array_range range,
-                               uint32_t *const base[ARRAY_COUNT], frame_writer *writer)
-{
-	for (int array = range.first; array < range.end; array++) {
-		array_shape shape = cau_array_shape_of(&encoder->def, array);
-		bool mask = array == ARRAY_MASK;
-		elements_source source = {.now = encoder->held[array],
-		                          .held = base[array],
-		                          .count = shape.count,
-		                          .components = shape.components,
-		                          .reference = mask ? ELEMENTS_NONE : ELEMENTS_HELD};
-		size_t written;
-		size_t bytes =
-			cau_elements_encode(&source, encoder->scratch, section_payload(writer), &written);
-		if (written > 0)
-			end_section(writer, cau_array_section[array], bytes);
-	}
-}
-
-static void write_records(const cau_frame_encoder *encoder, frame_writer *writer, bool names)
-{
-	const cau_tool_set *set = &encoder->tools;
-	if (wants(encoder, CAU_CHANNEL_TOOLS)) {
-		if (names)
-			end_section(writer, CAU_SECTION_TOOL_NAMES,
-			            cau_tool_names_write(section_payload(writer), set->tools, set->count));
-		end_section(writer, CAU_SECTION_TOOLS,
-		            cau_tools_write(section_payload(writer), set->tools, set->count));
-	}
-	if (wants(encoder, CAU_CHANNEL_STATISTICS))
-		end_section(writer, CAU_SECTION_STATISTICS,
-		            cau_statistics_write(section_payload(writer), &encoder->statistics));
 }
 
 static size_t end_frame(const cau_frame_encoder *encoder, frame_writer *writer, cau_frame_kind kind,
@@ -326,28 +313,25 @@ static frame_writer begin_frame(void *bytes)
 static size_t write_key(const cau_frame_encoder *encoder, void *bytes)
 {
 	frame_writer writer = begin_frame(bytes);
-	write_key_arrays(encoder, before_records, &writer);
-	write_records(encoder, &writer, true);
-	write_key_arrays(encoder, after_records, &writer);
+	write_sections(encoder, (frame_part){.base = NULL, .names = true}, &writer);
 	return end_frame(encoder, &writer, CAU_FRAME_KEY, encoder->header.sequence);
 }
 
-size_t cau_encoder_write_delta(const cau_frame_encoder *encoder, uint32_t *const base[ARRAY_COUNT],
-                               uint64_t base_sequence, bool names, void *bytes)
+size_t cau_encoder_write_delta(const cau_frame_encoder *encoder,
+                               uint32_t *const base[CAU_CHANNEL_COUNT], uint64_t base_sequence,
+                               bool names, void *bytes)
 {
 	frame_writer writer = begin_frame(bytes);
-	write_delta_arrays(encoder, before_records, base, &writer);
-	write_records(encoder, &writer, names);
-	write_delta_arrays(encoder, after_records, base, &writer);
+	write_sections(encoder, (frame_part){.base = base, .names = names}, &writer);
 	return end_frame(encoder, &writer, CAU_FRAME_DELTA, base_sequence);
 }
 
 static void advance(cau_frame_encoder *encoder, const cau_stream_sample *sample)
 {
-	for (int array = 0; array < ARRAY_COUNT; array++) {
-		uint32_t *before = encoder->held[array];
-		encoder->held[array] = encoder->next[array];
-		encoder->next[array] = before;
+	for (int channel = 0; channel < CAU_CHANNEL_COUNT; channel++) {
+		uint32_t *before = encoder->held[channel];
+		encoder->held[channel] = encoder->next[channel];
+		encoder->next[channel] = before;
 	}
 	encoder->header.sequence++;
 	encoder->header.tick = sample->tick;

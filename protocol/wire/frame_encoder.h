@@ -14,9 +14,9 @@ typedef struct cau_tool_set {
 
 struct cau_frame_encoder {
 	cau_stream_def def;
-	cau_frame_header header;     // of the last frame
-	uint32_t *held[ARRAY_COUNT]; // what decoders in step hold
-	uint32_t *next[ARRAY_COUNT]; // what they hold after the frame being made
+	cau_frame_header header;           // of the last frame
+	uint32_t *held[CAU_CHANNEL_COUNT]; // what decoders in step hold
+	uint32_t *next[CAU_CHANNEL_COUNT]; // what they hold after the frame being made
 	cau_tool_set tools;
 	cau_stream_statistics statistics;
 	uint8_t *scratch;
@@ -30,5 +30,6 @@ cau_status cau_encoder_check_capacity(const cau_frame_encoder *encoder, size_t c
 
 // Writes the delta from the arrays of `base`, the state with that sequence, to what is held.
 // Returns its bytes.
-size_t cau_encoder_write_delta(const cau_frame_encoder *encoder, uint32_t *const base[ARRAY_COUNT],
-                               uint64_t base_sequence, bool names, void *bytes);
+size_t cau_encoder_write_delta(const cau_frame_encoder *encoder,
+                               uint32_t *const base[CAU_CHANNEL_COUNT], uint64_t base_sequence,
+                               bool names, void *bytes);

@@ -6,7 +6,7 @@
 struct cau_frame_thinner {
 	const cau_frame_encoder *encoder;
 	uint64_t epoch, sequence; // of the state that is kept; epoch 0: none
-	uint32_t *base[ARRAY_COUNT];
+	uint32_t *base[CAU_CHANNEL_COUNT];
 	cau_tool_set tools; // their names
 };
 
@@ -30,9 +30,9 @@ cau_status cau_frame_thinner_init(void *storage, size_t storage_bytes,
 	cau_frame_thinner *made = storage;
 	*made = (cau_frame_thinner){.encoder = encoder};
 	uint32_t *words = (uint32_t *)(void *)((uint8_t *)storage + struct_bytes());
-	for (int array = 0; array < ARRAY_COUNT; array++) {
-		array_shape shape = cau_array_shape_of(&encoder->def, array);
-		made->base[array] = words;
+	for (int channel = 0; channel < CAU_CHANNEL_COUNT; channel++) {
+		array_shape shape = cau_array_shape_of(&encoder->def, channel);
+		made->base[channel] = words;
 		words += shape.count * shape.components;
 	}
 	*thinner = made;
@@ -45,9 +45,9 @@ static void keep(cau_frame_thinner *thinner)
 	thinner->epoch = encoder->header.epoch;
 	thinner->sequence = encoder->header.sequence;
 	thinner->tools = encoder->tools;
-	for (int array = 0; array < ARRAY_COUNT; array++) {
-		array_shape shape = cau_array_shape_of(&encoder->def, array);
-		memcpy(thinner->base[array], encoder->held[array],
+	for (int channel = 0; channel < CAU_CHANNEL_COUNT; channel++) {
+		array_shape shape = cau_array_shape_of(&encoder->def, channel);
+		memcpy(thinner->base[channel], encoder->held[channel],
 		       sizeof(uint32_t) * shape.count * shape.components);
 	}
 }

@@ -3,11 +3,48 @@
 
 #include <math.h>
 
+#include "cautery/frame_codec.h"
+
+_Static_assert(CAU_CHANNEL_COUNT <= 31, "a stream's channels are the bits of one word");
+// A client that says nothing of channels gets those that it was written for.
+_Static_assert(CAU_FRAME_VERSION != 1 || CAU_CHANNELS_BY_DEFAULT == 0x2f,
+               "within a version no channel is added to those of a stream by default");
+
+#define OWN(X, code, name_, section_, when, meaning_)                                              \
+	{.name = #name_,                                                                               \
+	 .section = (section_),                                                                        \
+	 .by_default = CAU_##when == CAU_BY_DEFAULT,                                                   \
+	 .scalar = -1,                                                                                 \
+	 .unit = "",                                                                                   \
+	 .meaning = (meaning_)},
+#define SCALAR(X, code, name_, section_, when, least_, step_, most_, unit_, meaning_)              \
+	{.name = #name_,                                                                               \
+	 .section = (section_),                                                                        \
+	 .by_default = CAU_##when == CAU_BY_DEFAULT,                                                   \
+	 .scalar = CAU_SCALAR_##code,                                                                  \
+	 .least = (least_),                                                                            \
+	 .step = (step_),                                                                              \
+	 .most = (most_),                                                                              \
+	 .unit = (unit_),                                                                              \
+	 .meaning = (meaning_)},
+static const cau_channel_info channels[CAU_CHANNEL_COUNT] = {CAU_CHANNEL_ROWS(OWN, SCALAR, )};
+#undef OWN
+#undef SCALAR
+
+const cau_channel_info *cau_channel_describe(cau_channel_index channel)
+{
+	return &channels[channel];
+}
+
+double cau_channel_step(const cau_stream_def *def, cau_channel_index channel)
+{
+	return channels[channel].step > 0 ? channels[channel].step : def->stress_step_pa;
+}
+
 cau_stream_def cau_default_stream_def(void)
 {
 	return (cau_stream_def){
-		.channels = CAU_CHANNEL_ALL & ~(uint32_t)(CAU_CHANNEL_STRESS | CAU_CHANNEL_STATISTICS |
-	                                              CAU_CHANNEL_TEMPERATURE),
+		.channels = CAU_CHANNELS_BY_DEFAULT,
 		.step_m = 5e-5,
 		.stress_step_pa = 10.0,
 	};

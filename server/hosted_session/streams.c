@@ -216,14 +216,11 @@ static void fill_sample(cau_hosted *h, published *p)
 		.position = p->frame.position,
 		.vertex_visible = p->frame.vertex_visible,
 		.face_mask = p->frame.face_mask,
-		.exposure = p->frame.exposure,
-		.charring = p->frame.charring,
-		.stress = p->frame.stress,
-		.temperature = p->frame.temperature,
 		.tool_count = p->frame.tool_count,
 		.tools = p->tools,
 		.statistics = &p->statistics,
 	};
+	memcpy(p->sample.scalar, p->frame.scalar, sizeof p->sample.scalar);
 }
 
 static bool is_due(const cau_hosted *h, const cau_stream *stream, double now_s)
@@ -266,8 +263,7 @@ static void follow_channels(cau_hosted *h)
 		if (h->streams[i].used && h->streams[i].subscribers > 0)
 			channels |= h->streams[i].def.channels;
 	pthread_mutex_unlock(&h->mutex);
-	cau_session_set_stress(h->core, (channels & CAU_CHANNEL_STRESS) != 0);
-	cau_session_set_temperature(h->core, (channels & CAU_CHANNEL_TEMPERATURE) != 0);
+	cau_session_watch(h->core, channels);
 }
 
 void cau_streams_publish(cau_hosted *h, double now_s)

@@ -67,15 +67,13 @@ static int write_state(const char *folder, int number, const cau_frame_decoder *
 		{head, sizeof head},
 		{state->quantised, 12 * vertices},
 		{state->face_mask, 4 * words},
-		{state->exposure, 4 * vertices},
-		{state->charring, 4 * vertices},
-		{state->stress, 4 * vertices},
-		{state->temperature, 4 * vertices},
 	};
 	int failed = 0;
 	for (size_t i = 0; i < sizeof parts / sizeof parts[0] && !failed; i++)
 		failed =
 			write_file(folder, "state", number, parts[i].bytes, parts[i].count, i ? "ab" : "wb");
+	for (int i = 0; i < CAU_SCALAR_COUNT && !failed; i++)
+		failed = write_file(folder, "state", number, state->scalar[i], 4 * vertices, "ab");
 	return failed;
 }
 

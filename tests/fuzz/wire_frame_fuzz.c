@@ -21,9 +21,11 @@ static void check_state(const cau_stream_def *def, const cau_stream_state *state
 {
 	for (int32_t i = 0; i < 3 * def->vertex_count; i++)
 		require(abs(state->quantised[i]) <= 1 << 30);
-	for (int32_t i = 0; i < def->vertex_count; i++)
-		require(state->exposure[i] <= 255 && state->charring[i] <= 255 &&
-		        state->stress[i] <= 65535 && state->temperature[i] <= 65535);
+	for (int channel = 0; channel < CAU_CHANNEL_COUNT; channel++) {
+		const cau_channel_info *info = cau_channel_describe((cau_channel_index)channel);
+		for (int32_t i = 0; info->scalar >= 0 && i < def->vertex_count; i++)
+			require(state->scalar[info->scalar][i] <= info->most);
+	}
 	require(state->tool_count >= 0 && state->tool_count <= CAU_MAX_TOOLS);
 	for (int32_t i = 0; i < state->tool_count; i++)
 		require(cau_name_is_valid(state->tools[i].name));

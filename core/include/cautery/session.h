@@ -18,6 +18,7 @@
 
 #include <stdbool.h>
 
+#include "cautery/channels.h"
 #include "cautery/command.h"
 #include "cautery/defaults.h" // cau_default_*_def(): definitions with every member at its default
 #include "cautery/energy_off.h"
@@ -192,19 +193,16 @@ typedef enum cau_stage {
 typedef struct cau_frame {
 	uint64_t tick;
 	double time_s;
-	const double *position;        // m, (vertex_count x 3)
-	const double *velocity;        // m/s, (vertex_count x 3)
-	int32_t moved_count;           // vertices whose position changed in this step
-	const int32_t *moved;          // (moved_count), ascending
-	const uint32_t *face_mask;     // a set bit: not drawn; ((face_count + 31) / 32 words)
-	int32_t mask_changed_count;    // words that changed in this step
-	const int32_t *mask_changed;   // ascending
-	const uint8_t *vertex_visible; // (vertex_count): 1 if on a drawn face
-	const float *exposure; // (vertex_count): largest exposure / ignition of its edges, 0 to 1
-	const float *charring; // (vertex_count): share of its edges that have parted, 0 to 1
-	const float *stress;   // Pa, (vertex_count): von Mises, volume weighted; NULL unless asked for
-	const float *temperature; // degC, (vertex_count): the tools' heat at each vertex, elsewhere the
-	                          // scene's ambient_c; NULL unless asked for
+	const double *position;          // m, (vertex_count x 3)
+	const double *velocity;          // m/s, (vertex_count x 3)
+	int32_t moved_count;             // vertices whose position changed in this step
+	const int32_t *moved;            // (moved_count), ascending
+	const uint32_t *face_mask;       // a set bit: not drawn; ((face_count + 31) / 32 words)
+	int32_t mask_changed_count;      // words that changed in this step
+	const int32_t *mask_changed;     // ascending
+	const uint8_t *vertex_visible;   // (vertex_count): 1 if on a drawn face
+	CAU_SCALAR_MEMBERS(const float); // (vertex_count) each, in the unit of its row; NULL if nobody
+	                                 // watches it and it costs work of its own
 	int32_t tool_count;
 	const cau_tool_state *tools;
 	int32_t refusal_count; // commands refused at their tick in this step
@@ -216,10 +214,9 @@ void cau_session_frame(const cau_session *session, cau_frame *frame);
 
 // Switches stage timing (off by default; needs a clock that the caller gives, in seconds).
 void cau_session_set_clock(cau_session *session, double (*now_s)(void));
-// Switch the stress and the temperature channel (off by default); switched on, a channel is there
-// at once, without a step.
-void cau_session_set_stress(cau_session *session, bool on);
-void cau_session_set_temperature(cau_session *session, bool on);
+// Says which scalars somebody watches (CAU_CHANNEL_* bits; others do not matter; none at first).
+// Those that cost work of their own are made from now on, at once and after each step.
+void cau_session_watch(cau_session *session, uint32_t channels);
 
 // Elements alive, as bytes 0/1, (tetrahedron_count), (triangle_count), (link_count): for export.
 void cau_session_alive(const cau_session *session, const uint8_t **tetrahedron,

@@ -35,26 +35,19 @@ typedef enum cau_frame_kind {
 #undef X
 } cau_frame_kind;
 
-// code, number, wire name
-#define CAU_SECTION_TABLE(X)                                                                       \
-	X(POSITIONS, 1, "positions")                                                                   \
-	X(MASK, 2, "mask")                                                                             \
-	X(EXPOSURE, 3, "exposure")                                                                     \
-	X(CHARRING, 4, "charring")                                                                     \
-	X(STRESS, 5, "stress")                                                                         \
-	X(TOOL_NAMES, 6, "tool_names")                                                                 \
-	X(TOOLS, 7, "tools")                                                                           \
-	X(STATISTICS, 8, "statistics")                                                                 \
-	X(TEMPERATURE, 9, "temperature")                                                               \
-	X(FACES, 16, "faces")                                                                          \
+// Sections: one for each channel, with the channel's name and number (cautery/channels.h), and
+// these. X(code, number, wire name)
+#define CAU_OTHER_SECTION_TABLE(X)                                                                 \
+	X(TOOL_NAMES, 6, "tool_names") /* of the channel tools */                                      \
+	X(FACES, 16, "faces")          /* the rest: of topology frames */                              \
 	X(FACE_LAYERS, 17, "face_layers")                                                              \
 	X(TEXTURE, 18, "texture")                                                                      \
 	X(REST, 19, "rest")
-typedef enum cau_section {
+#define ROW(X, code, name, section, ...) CAU_SECTION_##code = (section),
 #define X(code, number, name) CAU_SECTION_##code = (number),
-	CAU_SECTION_TABLE(X)
+typedef enum cau_section { CAU_CHANNEL_ROWS(ROW, ROW, ) CAU_OTHER_SECTION_TABLE(X) } cau_section;
+#undef ROW
 #undef X
-} cau_section;
 
 // The fixed start of every frame.
 typedef struct cau_frame_header {

@@ -60,6 +60,9 @@
 	X(DDS, "dds")                                                                                  \
 	X(STORE, "store")
 
+#define CAU_CHANNEL_WORD(X, code, name, ...) X(code, #name)
+#define CAU_CHANNEL_TABLE(X) CAU_CHANNEL_ROWS(CAU_CHANNEL_WORD, CAU_CHANNEL_WORD, X)
+
 // Every choice that a message can name. CHOICE_TABLE(id, table)
 #define CAU_CHOICE_LIST(CHOICE_TABLE)                                                              \
 	CHOICE_TABLE(role, CAU_ROLE_TABLE)                                                             \

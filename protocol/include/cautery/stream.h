@@ -7,40 +7,16 @@
 #include <stddef.h>
 #include <stdint.h>
 
+#include "cautery/channels.h"
 #include "cautery/energy_off.h"
 #include "cautery/scene.h"
 #include "cautery/status.h"
-
-// Channels that a subscriber chooses: code, wire name. The order gives the bits.
-#define CAU_CHANNEL_TABLE(X)                                                                       \
-	X(POSITIONS, "positions")     /* vertex positions; of hidden ones see cau_stream_state */      \
-	X(MASK, "mask")               /* bits of faces that are not drawn */                           \
-	X(EXPOSURE, "exposure")       /* exposure over ignition of each vertex, 0 to 1 in 1/255 */     \
-	X(CHARRING, "charring")       /* share of each vertex's edges burnt through, in 1/255 */       \
-	X(STRESS, "stress")           /* von Mises stress of each vertex in steps of stress_step_pa */ \
-	X(TOOLS, "tools")             /* pose, driver, force, temperature and energy of every tool */  \
-	X(STATISTICS, "statistics")   /* cost and condition of the last step */                        \
-	X(TEMPERATURE, "temperature") /* of each vertex, in steps from CAU_TEMPERATURE_LEAST_C */
-
-#define X(code, name) CAU_CHANNEL_INDEX_##code,
-typedef enum cau_channel_index { CAU_CHANNEL_TABLE(X) CAU_CHANNEL_COUNT } cau_channel_index;
-#undef X
-#define X(code, name) CAU_CHANNEL_##code = 1 << CAU_CHANNEL_INDEX_##code,
-typedef enum cau_channel {
-	CAU_CHANNEL_TABLE(X) CAU_CHANNEL_ALL = (1 << CAU_CHANNEL_COUNT) - 1
-} cau_channel;
-#undef X
 
 enum {
 	CAU_STREAM_PROFILES_MAX = 4,       // of a session
 	CAU_STREAM_ELEMENTS_MAX = 1 << 24, // vertices, and faces
 	CAU_STREAM_STAGES = 8,             // of a step, see CAU_STAGE_TABLE in the README
 };
-
-// A temperature in degC is CAU_TEMPERATURE_LEAST_C + CAU_TEMPERATURE_STEP_C times what is sent,
-// which saturates at 0 and 65535: below the coldest body and above any tool.
-#define CAU_TEMPERATURE_LEAST_C (-20.0)
-#define CAU_TEMPERATURE_STEP_C 0.25
 
 // Flags in a frame's header
 enum {
@@ -60,10 +36,24 @@ typedef struct cau_stream_def {
 	double stress_step_pa; // 1e-3 to 1e9; stress saturates at 65535 steps
 } cau_stream_def;
 
-// All channels but stress, statistics and temperature, 0.05 mm, 10 Pa, origin 0; counts and numbers
-// zero.
+// CAU_CHANNELS_BY_DEFAULT, 0.05 mm, 10 Pa, origin 0; counts and numbers zero.
 cau_stream_def cau_default_stream_def(void);
 cau_status cau_stream_def_check(const cau_stream_def *def, cau_error *error);
+
+// A row of cautery/channels.h.
+typedef struct cau_channel_info {
+	const char *name; // on the wire
+	int section;      // its type in frames
+	bool by_default;
+	int scalar;         // CAU_SCALAR_*, or -1: it has a layout of its own and none of the following
+	double least, step; // in `unit`: n on the wire is least + step n; step 0: the stream tells it
+	uint32_t most;      // the largest n
+	const char *unit, *meaning;
+} cau_channel_info;
+
+const cau_channel_info *cau_channel_describe(cau_channel_index channel);
+// The step of a scalar in such a stream.
+double cau_channel_step(const cau_stream_def *def, cau_channel_index channel);
 
 // One tool as a frame shows it.
 typedef struct cau_stream_tool {
@@ -110,17 +100,14 @@ typedef struct cau_stream_statistics {
 // stream lacks may be NULL.
 typedef struct cau_stream_sample {
 	uint64_t tick;
-	double time_s;                 // simulated
-	uint64_t published_us;         // the server's monotonic clock
-	uint16_t flags;                // CAU_FRAME_*
-	const double *position;        // m, (vertex_count x 3)
-	const uint8_t *vertex_visible; // (vertex_count), 1: on a drawn face; NULL: all are
-	const uint32_t *face_mask;     // ((face_count + 31) / 32), a set bit: not drawn
-	const float *exposure;         // (vertex_count), 0 to 1: heat taken up over ignition
-	const float *charring;         // (vertex_count), 0 to 1: share of its edges burnt through
-	const float *stress;           // Pa, (vertex_count)
-	const float *temperature;      // degC, (vertex_count)
-	int32_t tool_count;            // at most CAU_MAX_TOOLS
+	double time_s;                   // simulated
+	uint64_t published_us;           // the server's monotonic clock
+	uint16_t flags;                  // CAU_FRAME_*
+	const double *position;          // m, (vertex_count x 3)
+	const uint8_t *vertex_visible;   // (vertex_count), 1: on a drawn face; NULL: all are
+	const uint32_t *face_mask;       // ((face_count + 31) / 32), a set bit: not drawn
+	CAU_SCALAR_MEMBERS(const float); // (vertex_count) each, in the unit of its row
+	int32_t tool_count;              // at most CAU_MAX_TOOLS
 	const cau_stream_tool *tools;
 	const cau_stream_statistics *statistics;
 } cau_stream_sample;
@@ -138,14 +125,11 @@ typedef struct cau_stream_state {
 	double time_s;
 	uint64_t published_us;
 	uint16_t flags;
-	const int32_t *quantised;    // steps from the origin, (vertex_count x 3)
-	const uint32_t *face_mask;   // ((face_count + 31) / 32)
-	const uint32_t *exposure;    // (vertex_count), 255: 1
-	const uint32_t *charring;    // (vertex_count), 255: 1
-	const uint32_t *stress;      // stress_step_pa, (vertex_count)
-	const uint32_t *temperature; // CAU_TEMPERATURE_STEP_C, (vertex_count)
-	int32_t moved_count;         // vertices that the last frame carried
-	int32_t mask_changed_count;  // mask words that the last frame carried
+	const int32_t *quantised;           // steps from the origin, (vertex_count x 3)
+	const uint32_t *face_mask;          // ((face_count + 31) / 32)
+	CAU_SCALAR_MEMBERS(const uint32_t); // (vertex_count) each, steps from its least value
+	int32_t moved_count;                // vertices that the last frame carried
+	int32_t mask_changed_count;         // mask words that the last frame carried
 	int32_t tool_count;
 	const cau_stream_tool *tools;
 	cau_stream_statistics statistics;

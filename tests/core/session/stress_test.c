@@ -32,15 +32,15 @@ static void it_is_there_at_once(void **state)
 	(void)state;
 	cau_scene_def *scene = hanging_block();
 	cau_session *always = stage_open(scene, 1), *asked = stage_open(scene, 1);
-	cau_session_set_stress(always, true);
+	cau_session_watch(always, CAU_CHANNEL_STRESS);
 	stage_step(always, TICKS);
 	stage_step(asked, TICKS);
 	assert_null(stage_frame(asked).stress);
-	cau_session_set_stress(asked, true);
+	cau_session_watch(asked, CAU_CHANNEL_STRESS);
 	assert_true(largest(always) > 0);
 	assert_memory_equal(stage_frame(asked).stress, stage_frame(always).stress,
 	                    (size_t)stage_info(asked).vertex_count * sizeof(float));
-	cau_session_set_stress(asked, false);
+	cau_session_watch(asked, 0);
 	assert_null(stage_frame(asked).stress);
 	cau_session_destroy(always);
 	cau_session_destroy(asked);
@@ -52,7 +52,7 @@ static void a_restored_session_shows_its_own(void **state)
 	(void)state;
 	cau_scene_def *scene = hanging_block();
 	cau_session *session = stage_open(scene, 1);
-	cau_session_set_stress(session, true);
+	cau_session_watch(session, CAU_CHANNEL_STRESS);
 	double before = largest(session);
 	stage_bytes start = stage_snapshot(session);
 	stage_force(session, stage_everything(), 0, 0, -0.01);

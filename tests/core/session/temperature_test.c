@@ -45,13 +45,13 @@ static void test_it_is_there_when_asked_for(void **state)
 	cau_session *session = opened(&scene);
 	busy_run(session, TICKS);
 	assert_null(stage_frame(session).temperature);
-	cau_session_set_temperature(session, true); // there at once, without a step
+	cau_session_watch(session, CAU_CHANNEL_TEMPERATURE); // there at once, without a step
 	assert_true(expect_the_grids(session) > 20);
 	for (int tick = 0; tick < 10; ++tick) {
 		busy_run(session, 1);
 		assert_true(expect_the_grids(session) > 20);
 	}
-	cau_session_set_temperature(session, false);
+	cau_session_watch(session, 0);
 	assert_null(stage_frame(session).temperature);
 	finish(session, scene);
 }
@@ -61,7 +61,7 @@ static void test_the_state_does_not_know_of_it(void **state)
 	(void)state;
 	cau_scene_def *scene[2];
 	cau_session *plain = opened(&scene[0]), *shown = opened(&scene[1]);
-	cau_session_set_temperature(shown, true);
+	cau_session_watch(shown, CAU_CHANNEL_TEMPERATURE);
 	assert_int_equal(expect_the_grids(shown), 0);
 	for (int tick = 0; tick < TICKS; ++tick) {
 		busy_run(plain, 1);
@@ -78,7 +78,7 @@ static void test_a_restored_session_shows_its_own(void **state)
 	(void)state;
 	cau_scene_def *scene;
 	cau_session *session = opened(&scene);
-	cau_session_set_temperature(session, true);
+	cau_session_watch(session, CAU_CHANNEL_TEMPERATURE);
 	stage_bytes cold = stage_snapshot(session);
 	busy_run(session, TICKS);
 	stage_bytes hot = stage_snapshot(session);
@@ -101,7 +101,7 @@ static void test_a_step_allocates_nothing_for_it(void **state)
 	stage_add_tool(scene, "ball", CAU_TOOL_SPHERE, 0, 0, 0.005);
 	cau_session *session = stage_open(scene, 1);
 	stage_energize(session, "ball", 1);
-	cau_session_set_temperature(session, true);
+	cau_session_watch(session, CAU_CHANNEL_TEMPERATURE);
 	stage_step(session, 10);
 	struct mallinfo2 before = mallinfo2();
 	stage_step(session, 10);

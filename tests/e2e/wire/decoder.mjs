@@ -1,8 +1,13 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Decodes frames as protocol/README.md describes them, and nothing else.
+// Decodes frames as protocol/README.md describes them, and nothing else; which scalars there are it
+// reads in the machine-readable document.
+import { readFileSync } from 'node:fs';
 import { MeshoptDecoder } from 'meshoptimizer';
 
 await MeshoptDecoder.ready;
+
+const document = JSON.parse(readFileSync(new URL('asyncapi.json', import.meta.url)));
+const SCALARS = document['x-stream-channels'].filter((channel) => 'most' in channel);
 
 const KEY = 1, DELTA = 2, TOPOLOGY = 3;
 const NONE = 0, PREVIOUS = 1, HELD = 2;
@@ -159,10 +164,9 @@ export class Decoder {
 		const vertices = description.vertex_count, faces = description.face_count;
 		this.quantised = new Int32Array(3 * vertices);
 		this.mask = new Uint32Array(Math.ceil(faces / 32));
-		this.exposure = new Uint8Array(vertices);
-		this.charring = new Uint8Array(vertices);
-		this.stress = new Uint16Array(vertices);
-		this.temperature = new Uint16Array(vertices);
+		this.scalars = {}; // by section
+		for (const { name, section, most } of SCALARS)
+			this.scalars[section] = this[name] = most > 255 ? new Uint16Array(vertices) : new Uint8Array(vertices);
 		this.faces = new Int32Array(3 * faces);
 		this.faceLayers = new Uint8Array(faces);
 		this.texture = new Uint32Array(6 * faces);
@@ -188,7 +192,7 @@ export class Decoder {
 			(!this.synced || head.epoch !== this.epoch || head.base !== this.sequence))
 			return 'skipped';
 		if (head.kind === KEY) {
-			for (const array of [this.quantised, this.mask, this.exposure, this.charring, this.stress, this.temperature])
+			for (const array of [this.quantised, this.mask, ...Object.values(this.scalars)])
 				array.fill(0);
 			this.names = [];
 		}
@@ -217,7 +221,7 @@ export class Decoder {
 			this.stepCost = view.getFloat32(4, true);
 		} else {
 			const arrays = {
-				2: this.mask, 3: this.exposure, 4: this.charring, 5: this.stress, 9: this.temperature,
+				2: this.mask, ...this.scalars,
 				16: this.faces, 17: this.faceLayers, 18: this.texture, 19: this.rest,
 			};
 			if (arrays[type])

@@ -3,7 +3,7 @@
 file(MAKE_DIRECTORY "${SCRATCH}")
 execute_process(COMMAND "${GENERATE}" "${SCRATCH}" COMMAND_ERROR_IS_FATAL ANY)
 set(drifted "")
-foreach(file protocol/asyncapi.json protocol/messages.md protocol/examples.md
+foreach(file protocol/asyncapi.json protocol/messages.md protocol/examples.md protocol/idl/channels.idl
     clients/web/src/wire/messages.gen.ts)
   get_filename_component(name "${file}" NAME)
   execute_process(COMMAND "${CMAKE_COMMAND}" -E compare_files "${SCRATCH}/${name}" "${ROOT}/${file}"

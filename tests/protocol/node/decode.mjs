@@ -1,8 +1,13 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// A decoder of frames and topology, written from protocol/README.md alone.
+// A decoder of frames and topology, written from protocol/README.md alone; which scalars there are it
+// reads in the machine-readable document.
 import { MeshoptDecoder } from 'meshoptimizer';
+import { readFileSync } from 'node:fs';
 
 await MeshoptDecoder.ready;
+
+const document = JSON.parse(readFileSync(process.env.CAUTERY_ASYNCAPI, 'utf8'));
+export const SCALARS = document['x-stream-channels'].filter((channel) => 'most' in channel);
 
 export const KEY = 1;
 export const DELTA = 2;
@@ -196,10 +201,8 @@ export class StreamDecoder {
     this.synced = false;
     this.quantised = new Int32Array(3 * vertexCount);
     this.mask = new Int32Array(Math.ceil(faceCount / 32));
-    this.exposure = new Int32Array(vertexCount);
-    this.charring = new Int32Array(vertexCount);
-    this.stress = new Int32Array(vertexCount);
-    this.temperature = new Int32Array(vertexCount);
+    this.arrays = [null, this.quantised, this.mask]; // by section
+    for (const { name, section } of SCALARS) this.arrays[section] = this[name] = new Int32Array(vertexCount);
     this.toolNames = [];
     this.tools = [];
     this.codings = new Set();
@@ -219,10 +222,8 @@ export class StreamDecoder {
   }
 
   readSection({ type, payload }, isDelta) {
-    const arrays = [null, this.quantised, this.mask, this.exposure, this.charring, this.stress];
-    arrays[9] = this.temperature;
-    if (arrays[type]) {
-      const count = readElements(payload, arrays[type], type === 1 ? 3 : 1, isDelta);
+    if (this.arrays[type]) {
+      const count = readElements(payload, this.arrays[type], type === 1 ? 3 : 1, isDelta);
       if (!isDelta && type === 1 && count * 3 !== this.quantised.length) fail('a key frame lacks positions');
       this.widths.add(payload[0]);
       this.codings.add(payload[2]);
@@ -241,7 +242,7 @@ export class StreamDecoder {
     const header = readHeader(bytes);
     this.checkPlace(header);
     if (header.kind === KEY) {
-      for (const array of [this.quantised, this.mask, this.exposure, this.charring, this.stress, this.temperature]) array.fill(0);
+      for (const array of this.arrays) array?.fill(0);
       this.toolNames = [];
       this.tools = [];
     }

@@ -4,7 +4,7 @@ import assert from 'node:assert/strict';
 import { readFileSync } from 'node:fs';
 import { join } from 'node:path';
 import test from 'node:test';
-import { Corrupt, Refused, StreamDecoder, decodeTopology } from './decode.mjs';
+import { Corrupt, Refused, SCALARS, StreamDecoder, decodeTopology } from './decode.mjs';
 
 const folder = process.env.CAUTERY_GOLDEN;
 const read = (name) => new Uint8Array(readFileSync(join(folder, name)));
@@ -27,7 +27,7 @@ function compareState(decoder, state) {
   assert.equal(Number(decoder.sequence), state.sequence);
   assert.equal(Number(decoder.tick), state.tick);
   assert.equal(decoder.time, state.time);
-  for (const key of ['quantised', 'mask', 'exposure', 'charring', 'stress', 'temperature'])
+  for (const key of ['quantised', 'mask', ...SCALARS.map(({ name }) => name)])
     assert.deepEqual(decoder[key], Int32Array.from(state[key], (value) => value | 0), key);
   assert.equal(decoder.statistics.iterations, state.iterations);
   assert.equal(decoder.statistics.contacts, state.contacts);

@@ -96,10 +96,11 @@ static void write_state(FILE *out, const cau_frame_decoder *decoder)
 	        (unsigned long long)state->tick, state->time_s);
 	write_signed(out, "quantised", state->quantised, 3 * vertices);
 	write_unsigned(out, "mask", state->face_mask, ((size_t)def->face_count + 31) / 32);
-	write_unsigned(out, "exposure", state->exposure, vertices);
-	write_unsigned(out, "charring", state->charring, vertices);
-	write_unsigned(out, "stress", state->stress, vertices);
-	write_unsigned(out, "temperature", state->temperature, vertices);
+	for (int i = 0; i < CAU_CHANNEL_COUNT; i++) {
+		const cau_channel_info *info = cau_channel_describe((cau_channel_index)i);
+		if (info->scalar >= 0)
+			write_unsigned(out, info->name, state->scalar[info->scalar], vertices);
+	}
 	fprintf(out, ",\"iterations\":%u,\"contacts\":%u,\"tools\":[", state->statistics.iterations,
 	        state->statistics.contacts);
 	for (int32_t i = 0; i < state->tool_count; i++) {

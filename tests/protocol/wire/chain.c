@@ -76,9 +76,18 @@ static void assert_tools_equal(const cau_stream_tool *a, const cau_stream_tool *
 }
 
 // Half a step, and a little for the last bits of single precision.
-static bool is_rounded(uint32_t steps, float value, double step)
+static void assert_scalars_rounded(const cau_frame_decoder *decoder, const tissue *shown, int32_t v)
 {
-	return fabs(steps * step - (double)value) <= 0.5001 * step;
+	const cau_stream_state *state = cau_frame_decoder_state(decoder);
+	for (int i = 0; i < CAU_CHANNEL_COUNT; i++) {
+		cau_channel_index channel = (cau_channel_index)i;
+		const cau_channel_info *info = cau_channel_describe(channel);
+		if (info->scalar < 0)
+			continue;
+		double step = cau_channel_step(cau_frame_decoder_def(decoder), channel);
+		double told = info->least + step * state->scalar[info->scalar][v];
+		assert_true(fabs(told - (double)shown->scalar[info->scalar][v]) <= 0.5001 * step);
+	}
 }
 
 void chain_assert_holds(const cau_frame_decoder *decoder, const tissue *shown)
@@ -93,10 +102,7 @@ void chain_assert_holds(const cau_frame_decoder *decoder, const tissue *shown)
 			continue;
 		for (int i = 0; i < 3; i++)
 			assert_true(fabs(position[3 * v + i] - shown->position[3 * v + i]) <= round_off_m);
-		assert_true(is_rounded(state->exposure[v], shown->exposure[v], 1.0 / 255.0));
-		assert_true(is_rounded(state->charring[v], shown->charring[v], 1.0 / 255.0));
-		assert_true(is_rounded(state->stress[v], shown->stress[v], 10.0));
-		assert_true(is_rounded(state->temperature[v], shown->temperature[v] + 20.0f, 0.25));
+		assert_scalars_rounded(decoder, shown, v);
 	}
 	assert_memory_equal(state->face_mask, shown->mask, 4 * (size_t)((shown->face_count + 31) / 32));
 	assert_int_equal(state->tool_count, sample.tool_count);
@@ -114,10 +120,8 @@ void chain_assert_same(const cau_frame_decoder *a, const cau_frame_decoder *b)
 	assert_true(x->epoch == y->epoch && x->sequence == y->sequence && x->tick == y->tick);
 	assert_memory_equal(x->quantised, y->quantised, 12 * vertices);
 	assert_memory_equal(x->face_mask, y->face_mask, 4 * (size_t)((def->face_count + 31) / 32));
-	assert_memory_equal(x->exposure, y->exposure, 4 * vertices);
-	assert_memory_equal(x->charring, y->charring, 4 * vertices);
-	assert_memory_equal(x->stress, y->stress, 4 * vertices);
-	assert_memory_equal(x->temperature, y->temperature, 4 * vertices);
+	for (int scalar = 0; scalar < CAU_SCALAR_COUNT; scalar++)
+		assert_memory_equal(x->scalar[scalar], y->scalar[scalar], 4 * vertices);
 	assert_int_equal(x->tool_count, y->tool_count);
 	for (int32_t i = 0; i < x->tool_count; i++)
 		assert_tools_equal(&x->tools[i], &y->tools[i]);

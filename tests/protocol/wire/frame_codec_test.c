@@ -238,17 +238,16 @@ static void test_a_stream_carries_its_channels_alone(void **unused)
 			CAU_OK);
 		cau_frame_decoder *decoder = chain_new_decoder(&def);
 		uint8_t *frame = malloc(capacity);
-		cau_stream_sample sample = {
-			.time_s = 0.5,
-			.position = channels & CAU_CHANNEL_POSITIONS ? still.position : NULL,
-			.face_mask = channels & CAU_CHANNEL_MASK ? still.mask : NULL,
-			.exposure = channels & CAU_CHANNEL_EXPOSURE ? still.exposure : NULL,
-			.charring = channels & CAU_CHANNEL_CHARRING ? still.charring : NULL,
-			.stress = channels & CAU_CHANNEL_STRESS ? still.stress : NULL,
-			.temperature = channels & CAU_CHANNEL_TEMPERATURE ? still.temperature : NULL,
-			.tool_count = 1,
-			.tools = still.tools,
-			.statistics = &still.statistics};
+		cau_stream_sample sample = {.time_s = 0.5,
+		                            .position =
+		                                channels & CAU_CHANNEL_POSITIONS ? still.position : NULL,
+		                            .face_mask = channels & CAU_CHANNEL_MASK ? still.mask : NULL,
+		                            .tool_count = 1,
+		                            .tools = still.tools,
+		                            .statistics = &still.statistics};
+		for (int scalar = 0; scalar < CAU_SCALAR_COUNT; scalar++)
+			if (channels & cau_scalar_channel((cau_scalar)scalar))
+				sample.scalar[scalar] = still.scalar[scalar];
 		for (int frames = 0; frames < 3; frames++) {
 			assert_int_equal(cau_frame_encode(encoder, &sample, frame, capacity, &count, NULL),
 			                 CAU_OK);
@@ -263,9 +262,31 @@ static void test_a_stream_carries_its_channels_alone(void **unused)
 	}
 }
 
+// What the rows of cautery/channels.h must keep to, and the preprocessor does not see.
+static void test_rows_fit_together(void **unused)
+{
+	(void)unused;
+#define X(code, number, name) number,
+	static const int others[] = {CAU_OTHER_SECTION_TABLE(X)};
+#undef X
+	for (int i = 0; i < CAU_CHANNEL_COUNT; i++) {
+		const cau_channel_info *info = cau_channel_describe((cau_channel_index)i);
+		if (i > 0)
+			assert_true(info->section > cau_channel_describe((cau_channel_index)(i - 1))->section);
+		for (size_t k = 0; k < sizeof others / sizeof *others; k++)
+			assert_int_not_equal(info->section, others[k]);
+		if (info->scalar < 0)
+			continue;
+		assert_true(info->most == 255 || info->most == 65535);
+		assert_true(info->step > 0 || i == CAU_CHANNEL_INDEX_STRESS);
+		assert_int_equal(cau_scalar_channel((cau_scalar)info->scalar), 1u << i);
+	}
+}
+
 int main(void)
 {
 	const struct CMUnitTest tests[] = {
+		cmocka_unit_test(test_rows_fit_together),
 		cmocka_unit_test(test_deltas_follow_the_tissue),
 		cmocka_unit_test(test_hidden_vertices_wait_until_they_are_seen),
 		cmocka_unit_test(test_a_face_that_is_laid_open_comes_with_its_vertices),

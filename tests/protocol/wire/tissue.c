@@ -19,11 +19,9 @@ void tissue_init(tissue *made, int32_t columns, int32_t rows)
 		.position = calloc((size_t)vertices * 3, sizeof(double)),
 		.visible = calloc((size_t)vertices, 1),
 		.mask = calloc((size_t)(faces + WORD_FACES - 1) / WORD_FACES, sizeof(uint32_t)),
-		.exposure = calloc((size_t)vertices, sizeof(float)),
-		.charring = calloc((size_t)vertices, sizeof(float)),
-		.stress = calloc((size_t)vertices, sizeof(float)),
-		.temperature = calloc((size_t)vertices, sizeof(float)),
 	};
+	for (int scalar = 0; scalar < CAU_SCALAR_COUNT; scalar++)
+		made->scalar[scalar] = calloc((size_t)vertices, sizeof(float));
 	memset(made->visible, 1, (size_t)vertices);
 	tissue_move(made, 0, 0.0);
 }
@@ -33,10 +31,8 @@ void tissue_finish(tissue *made)
 	free(made->position);
 	free(made->visible);
 	free(made->mask);
-	free(made->exposure);
-	free(made->charring);
-	free(made->stress);
-	free(made->temperature);
+	for (int scalar = 0; scalar < CAU_SCALAR_COUNT; scalar++)
+		free(made->scalar[scalar]);
 	*made = (tissue){0};
 }
 
@@ -58,6 +54,19 @@ static float temperature_at(const tissue *of, int32_t vertex, int32_t tick)
 	int32_t across = vertex / of->columns - of->rows / 2, along = vertex % of->columns - tick;
 	int32_t squared = across * across + along * along;
 	return squared < 9 ? 170.0f - 14.8f * (float)squared : 37.0f;
+}
+
+// A wave, within what every scalar can tell, for those that have no story of their own.
+static void wave_scalars(tissue *moved, int32_t vertex, double time_s)
+{
+	cau_stream_def def = cau_default_stream_def();
+	double steps = 100.0 + 50.0 * sin(time_s + 0.1 * vertex);
+	for (int i = 0; i < CAU_CHANNEL_COUNT; i++) {
+		const cau_channel_info *info = cau_channel_describe((cau_channel_index)i);
+		if (info->scalar >= 0)
+			moved->scalar[info->scalar][vertex] =
+				(float)(info->least + cau_channel_step(&def, (cau_channel_index)i) * steps);
+	}
 }
 
 static void move_tool(cau_stream_tool *tool, const char *name, int shape, int32_t tick)
@@ -86,6 +95,7 @@ void tissue_move(tissue *moved, int32_t tick, double speed_m_s)
 	moved->tick = tick;
 	for (int32_t vertex = 0; vertex < moved->vertex_count; vertex++) {
 		move_vertex(moved, vertex, time_s, speed_m_s);
+		wave_scalars(moved, vertex, time_s);
 		bool near_cut =
 			vertex / moved->columns == moved->rows / 2 && vertex % moved->columns < tick;
 		moved->exposure[vertex] = near_cut ? 0.9f : 0.001f * (float)(tick % 100);
@@ -119,19 +129,18 @@ cau_stream_def tissue_stream_def(const tissue *of)
 
 cau_stream_sample tissue_sample(const tissue *of)
 {
-	return (cau_stream_sample){
+	cau_stream_sample sample = {
 		.tick = (uint64_t)of->tick,
 		.time_s = of->tick / 60.0,
 		.published_us = 1000000u + 16667u * (uint64_t)of->tick,
 		.position = of->position,
 		.vertex_visible = of->visible,
 		.face_mask = of->mask,
-		.exposure = of->exposure,
-		.charring = of->charring,
-		.stress = of->stress,
-		.temperature = of->temperature,
 		.tool_count = of->tick < 8 ? 1 : 2,
 		.tools = of->tools,
 		.statistics = &of->statistics,
 	};
+	for (int scalar = 0; scalar < CAU_SCALAR_COUNT; scalar++)
+		sample.scalar[scalar] = of->scalar[scalar];
+	return sample;
 }

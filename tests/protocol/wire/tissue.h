@@ -11,10 +11,7 @@ typedef struct tissue {
 	double *position;
 	uint8_t *visible;
 	uint32_t *mask;
-	float *exposure;
-	float *charring;
-	float *stress;
-	float *temperature;
+	CAU_SCALAR_MEMBERS(float);
 	cau_stream_tool tools[2];
 	cau_stream_statistics statistics;
 } tissue;

@@ -49,8 +49,8 @@ struct cau_session {
 	uint8_t visible[VERTICES], alive[FACES];
 	cau_error refusals[QUEUE];
 	int32_t refusal_count;
-	bool temperature_on;
-	float temperature[VERTICES];
+	uint32_t watched;
+	float scalar[VERTICES]; // every scalar that is watched
 };
 
 cau_fake_hooks cau_fake_hooks_set;
@@ -325,12 +325,13 @@ void cau_session_frame(const cau_session *s, cau_frame *frame)
 	                     .mask_changed_count = s->mask_changed_count,
 	                     .mask_changed = s->mask_changed,
 	                     .vertex_visible = s->visible,
-	                     .exposure = s->state.exposure,
-	                     .charring = s->state.charring,
-	                     .temperature = s->temperature_on ? s->temperature : NULL,
 	                     .tool_count = s->state.tool_count,
 	                     .tools = s->state.tools,
 	                     .statistics = {.elements_removed = s->state.removed}};
+	for (int i = 0; i < CAU_SCALAR_COUNT; i++)
+		frame->scalar[i] = s->watched & cau_scalar_channel((cau_scalar)i) ? s->scalar : NULL;
+	frame->exposure = s->state.exposure;
+	frame->charring = s->state.charring;
 }
 
 void cau_session_set_clock(cau_session *s, double (*now_s)(void))
@@ -355,16 +356,11 @@ void cau_session_present(const cau_session *s, cau_scene_def *scene)
 			       sizeof scene->gravity_m_s2);
 }
 
-void cau_session_set_temperature(cau_session *s, bool on)
+void cau_session_watch(cau_session *s, uint32_t channels)
 {
-	s->temperature_on = on;
+	s->watched = channels;
 	for (int32_t v = 0; v < VERTICES; v++)
-		s->temperature[v] = 37;
-}
-
-void cau_session_set_stress(cau_session *s, bool on)
-{
-	(void)s, (void)on;
+		s->scalar[v] = 37;
 }
 
 void cau_session_alive(const cau_session *s, const uint8_t **tetrahedron, const uint8_t **triangle,

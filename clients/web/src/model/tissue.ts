@@ -3,7 +3,7 @@
 // faces in batches. Brought up to date from a stream's state; only what moved is worked on.
 // Lives in the worker and knows no renderer.
 import type { Changes, StreamState } from '../wire/decoder';
-import { TEMPERATURE, type LayerDescription } from '../wire/messages.gen';
+import { SCALARS, type LayerDescription } from '../wire/messages.gen';
 import type { Topology } from '../wire/topology';
 import { Fringe } from './fringe';
 import { makeVertexFaces, markInnerFaces, type VertexFaces } from './topology_tables';
@@ -220,7 +220,7 @@ export class Tissue {
   }
 
   private updateTemperature(temperature: Int32Array): void {
-    const { leastC, stepC } = TEMPERATURE;
+    const { least: leastC, step: stepC } = SCALARS.temperature;
     const range = this.temperatureRangeC;
     for (const value of temperature) {
       const celsius = leastC + stepC * value;

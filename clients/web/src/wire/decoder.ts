@@ -2,7 +2,7 @@
 // Holds a stream's state and takes frames into it: the rules of "Streams" in protocol/README.md.
 import { applyElements, type Runs } from './elements';
 import { readHeader, readSections, WireError, type FrameHeader } from './header';
-import { SECTION } from './messages.gen';
+import { SCALARS, SECTION, type ScalarName } from './messages.gen';
 import { readStatistics, readToolNames, readTools, type Statistics, type ToolName, type ToolState } from './records';
 
 export interface StreamShape {
@@ -12,7 +12,10 @@ export interface StreamShape {
   face_count: number;
 }
 
-export interface StreamState {
+/** One number a vertex, in steps as SCALARS tells them, by the scalar's name. */
+export type ScalarArrays = Record<ScalarName, Int32Array>;
+
+export interface StreamState extends ScalarArrays {
   /** false: nothing to draw yet, or damaged; a key frame is needed */
   synced: boolean;
   epoch: bigint;
@@ -26,14 +29,6 @@ export interface StreamState {
   quantised: Int32Array;
   /** words of 32 faces; a set bit: not drawn */
   mask: Int32Array;
-  /** heat taken up over ignition (vertices), 255 = 1 */
-  exposure: Int32Array;
-  /** share of the vertex's edges burnt through (vertices), 255 = 1 */
-  charring: Int32Array;
-  /** (vertices), stress_step_pa */
-  stress: Int32Array;
-  /** (vertices), TEMPERATURE.stepC from TEMPERATURE.leastC */
-  temperature: Int32Array;
   tools: ToolState[];
   statistics: Statistics | null;
 }
@@ -50,20 +45,16 @@ export type Outcome =
   | { kind: 'applied'; key: boolean; changes: Changes }
   | { kind: 'skipped'; reason: string; gap: boolean };
 
-const SCALARS = [
-  [SECTION.exposure, 'exposure'],
-  [SECTION.charring, 'charring'],
-  [SECTION.stress, 'stress'],
-  [SECTION.temperature, 'temperature'],
-] as const;
+const SCALAR_NAMES = Object.keys(SCALARS) as ScalarName[];
 
 export class FrameDecoder {
   readonly state: StreamState;
   private names: ToolName[] = [];
 
   constructor(private readonly shape: StreamShape) {
-    const scalar = (): Int32Array => new Int32Array(shape.vertex_count);
+    const scalars = SCALAR_NAMES.map((name) => [name, new Int32Array(shape.vertex_count)] as const);
     this.state = {
+      ...(Object.fromEntries(scalars) as ScalarArrays),
       synced: false,
       epoch: 0n,
       sequence: 0,
@@ -74,10 +65,6 @@ export class FrameDecoder {
       faulted: false,
       quantised: new Int32Array(3 * shape.vertex_count),
       mask: new Int32Array(Math.ceil(shape.face_count / 32)),
-      exposure: scalar(),
-      charring: scalar(),
-      stress: scalar(),
-      temperature: scalar(),
       tools: [],
       statistics: null,
     };
@@ -124,8 +111,8 @@ export class FrameDecoder {
     if (key) this.requireWhole(changes.moved, positions !== undefined);
     const mask = sections.get(SECTION.mask);
     if (mask) changes.maskWords = applyElements(mask, state.mask, 1, !key);
-    for (const [type, name] of SCALARS) {
-      const payload = sections.get(type);
+    for (const name of SCALAR_NAMES) {
+      const payload = sections.get(SCALARS[name].section);
       if (!payload) continue;
       const runs = applyElements(payload, state[name], 1, !key);
       changes.scalars ||= runs.length > 0;
@@ -145,7 +132,8 @@ export class FrameDecoder {
   /** What a key frame leaves out is zero. */
   private clear(): void {
     const { state } = this;
-    for (const array of [state.mask, state.exposure, state.charring, state.stress, state.temperature]) array.fill(0);
+    state.mask.fill(0);
+    for (const name of SCALAR_NAMES) state[name].fill(0);
     state.tools = [];
     state.statistics = null;
     this.names = [];

@@ -414,7 +414,7 @@ export interface SessionJoin {
   session?: string;
   /** frames a wall second at most; 60 by default (0.1 to 1000 1/s) */
   rate_hz?: number;
-  /** all but stress, statistics and temperature by default */
+  /** by default those that the table of channels marks */
   channels?: ('positions' | 'mask' | 'exposure' | 'charring' | 'stress' | 'tools' | 'statistics' | 'temperature')[];
   /** quantisation wanted; the server may choose a finer one; 5e-5 by default (1e-07 to 0.001 m) */
   step_m?: number;
@@ -1648,18 +1648,29 @@ export const SECTION = {
   exposure: 3,
   charring: 4,
   stress: 5,
-  tool_names: 6,
   tools: 7,
   statistics: 8,
   temperature: 9,
+  tool_names: 6,
   faces: 16,
   face_layers: 17,
   texture: 18,
   rest: 19,
 } as const;
 
-/** A temperature in degC is leastC + stepC times what is sent. */
-export const TEMPERATURE = { leastC: -20, stepC: 0.25 } as const;
+/** Scalars of the vertices: n in a frame stands for least + step n in the unit, n is at most `most`.
+ * Step 0: the stream tells it, as stress_step_pa. */
+export const SCALARS = {
+  /** the largest of the vertex's edges': heat taken up over what ignites it, 0 to 1 */
+  exposure: { section: 3, byDefault: true, least: 0, step: 0.00392156862745098, most: 255, unit: '1' },
+  /** share of the vertex's edges that have parted, 0 to 1 */
+  charring: { section: 4, byDefault: true, least: 0, step: 0.00392156862745098, most: 255, unit: '1' },
+  /** von Mises stress of fat, volume weighted */
+  stress: { section: 5, byDefault: false, least: 0, step: 0, most: 65535, unit: 'Pa' },
+  /** what the tools' heat grids say at the vertex, elsewhere the scene's ambient_c */
+  temperature: { section: 9, byDefault: false, least: -20, step: 0.25, most: 65535, unit: 'degC' },
+} as const;
+export type ScalarName = keyof typeof SCALARS;
 
 /** Words that frames tell by their number. */
 export const TOOL_SHAPES = ['sphere', 'capsule', 'hook', 'spatula', 'bipolar', 'shears', 'grasper', ] as const;

@@ -6,6 +6,7 @@ import { join } from 'node:path';
 
 import { FrameDecoder } from '../../../../clients/web/src/wire/decoder';
 import { decoderReady } from '../../../../clients/web/src/wire/elements';
+import { SCALARS, type ScalarName } from '../../../../clients/web/src/wire/messages.gen';
 import { decodeTopology } from '../../../../clients/web/src/wire/topology';
 
 const folder = process.env['CAUTERY_FRAMES'];
@@ -31,7 +32,8 @@ function expectState(decoder: FrameDecoder, number: number): void {
   expect(state.sequence).toBe(Number(view.getBigUint64(8, true)));
   expect(state.tick).toBe(Number(view.getBigUint64(16, true)));
   let offset = 24;
-  for (const array of [state.quantised, state.mask, state.exposure, state.charring, state.stress, state.temperature]) {
+  const scalars = (Object.keys(SCALARS) as ScalarName[]).map((name) => state[name]);
+  for (const array of [state.quantised, state.mask, ...scalars]) {
     const wanted = bytes.slice(offset, offset + array.byteLength);
     expect(Buffer.compare(new Uint8Array(array.buffer), wanted), `array at ${offset} of frame ${number}`).toBe(0);
     offset += array.byteLength;

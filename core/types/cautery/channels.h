@@ -1,0 +1,84 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// The channels of a stream, one row each. What knows of channels is made of these rows: the words
+// and bits that a subscriber chooses by, the sections of frames, encoder, thinner and decoder, what
+// the core hands over, and what `ninja messages` prints: TypeScript, IDL, JSON and pages. What a
+// new row wants besides is told in protocol/README.md, "Adding a channel".
+//
+//     OWN(X, CODE, name, section, when, meaning)
+//     SCALAR(X, CODE, name, section, when, least, step, most, unit, meaning)
+//
+// OWN is a channel with a layout of its own. A SCALAR is one number a vertex: a float in the core,
+// on the wire the nearest whole number n of steps above `least`, saturated at 0 and `most`.
+//     X        what whoever uses the table hands on to every row; may be empty
+//     CODE     CAU_CHANNEL_<CODE>, its bit; the order of the rows gives the bits, so a new row is
+//              the last
+//     name     the word on the wire; of a scalar also the member of cau_frame and the like
+//     section  its number in frames; ascends from row to row, see CAU_SECTION_* for the others
+//     when     BY_DEFAULT: in a stream that says nothing of channels. ON_REQUEST: only where it is
+//              named. A new row is ON_REQUEST: clients that do not know it must not meet it
+//     least    in `unit`, what n = 0 stands for
+//     step     in `unit`, one step; 0: told by the stream, as stress_step_pa
+//     most     the largest n: 255 or 65535
+#pragma once
+
+#include <stdint.h>
+
+// clang-format off: rows of a table
+#define CAU_CHANNEL_ROWS(OWN, SCALAR, X)                                                           \
+	OWN(X, POSITIONS, positions, 1, BY_DEFAULT, "vertex positions")                                \
+	OWN(X, MASK, mask, 2, BY_DEFAULT, "faces that are not drawn")                                  \
+	SCALAR(X, EXPOSURE, exposure, 3, BY_DEFAULT, 0.0, 1.0 / 255.0, 255, "1",                       \
+	       "the largest of the vertex's edges': heat taken up over what ignites it, 0 to 1")       \
+	SCALAR(X, CHARRING, charring, 4, BY_DEFAULT, 0.0, 1.0 / 255.0, 255, "1",                       \
+	       "share of the vertex's edges that have parted, 0 to 1")                                 \
+	SCALAR(X, STRESS, stress, 5, ON_REQUEST, 0.0, 0.0, 65535, "Pa",                                \
+	       "von Mises stress of fat, volume weighted")                                             \
+	OWN(X, TOOLS, tools, 7, BY_DEFAULT, "pose, driver, force, temperature, energy of every tool")  \
+	OWN(X, STATISTICS, statistics, 8, ON_REQUEST, "cost and condition of the last step")           \
+	SCALAR(X, TEMPERATURE, temperature, 9, ON_REQUEST, -20.0, 0.25, 65535, "degC",                 \
+	       "what the tools' heat grids say at the vertex, elsewhere the scene's ambient_c")        \
+	/* a new row goes above this line */
+// clang-format on
+
+enum { CAU_ON_REQUEST, CAU_BY_DEFAULT };
+
+// For tables of some rows only.
+#define CAU_NO_ROW(...)
+
+// ---- bits ---------------------------------------------------------------------------------------
+#define ROW(X, code, ...) CAU_CHANNEL_INDEX_##code,
+typedef enum cau_channel_index { CAU_CHANNEL_ROWS(ROW, ROW, ) CAU_CHANNEL_COUNT } cau_channel_index;
+#undef ROW
+#define ROW(X, code, ...) CAU_CHANNEL_##code = 1 << CAU_CHANNEL_INDEX_##code,
+typedef enum cau_channel {
+	CAU_CHANNEL_ROWS(ROW, ROW, ) CAU_CHANNEL_ALL = (1 << CAU_CHANNEL_COUNT) - 1
+} cau_channel;
+#undef ROW
+#define ROW(X, code, name, section, when, ...) | CAU_##when << CAU_CHANNEL_INDEX_##code
+enum { CAU_CHANNELS_BY_DEFAULT = 0 CAU_CHANNEL_ROWS(ROW, ROW, ) };
+#undef ROW
+
+// ---- scalars ------------------------------------------------------------------------------------
+#define ROW(X, code, ...) CAU_SCALAR_##code,
+typedef enum cau_scalar { CAU_CHANNEL_ROWS(CAU_NO_ROW, ROW, ) CAU_SCALAR_COUNT } cau_scalar;
+#undef ROW
+
+// Members of a struct that has something of every scalar, (vertex_count) each: x.stress is the same
+// as x.scalar[CAU_SCALAR_STRESS].
+#define CAU_SCALAR_MEMBER(type, code, name, ...) type *name;
+#define CAU_SCALAR_MEMBERS(type)                                                                   \
+	union {                                                                                        \
+		struct {                                                                                   \
+			CAU_CHANNEL_ROWS(CAU_NO_ROW, CAU_SCALAR_MEMBER, type)                                  \
+		};                                                                                         \
+		type *scalar[CAU_SCALAR_COUNT];                                                            \
+	}
+
+// CAU_CHANNEL_* of a scalar.
+static inline uint32_t cau_scalar_channel(cau_scalar scalar)
+{
+#define ROW(X, code, ...) CAU_CHANNEL_##code,
+	static const uint32_t channels[] = {CAU_CHANNEL_ROWS(CAU_NO_ROW, ROW, )};
+#undef ROW
+	return channels[scalar];
+}
