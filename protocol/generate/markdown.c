@@ -132,8 +132,8 @@ static void write_methods(FILE *out, const model *from)
 	      out);
 	for (int i = 0; i < CAU_METHOD_COUNT; i++) {
 		const cau_method_info *info = cau_method_describe((cau_method)i);
-		fprintf(out, "| `%s`%s | %s | ", info->name, info->changes ? " \\*" : "",
-		        form_name(info->form));
+		fprintf(out, "| `%s`%s%s | %s | ", info->name, info->changes ? " \\*" : "",
+		        info->cost == CAU_COST_CHEAP ? "" : " †", form_name(info->form));
 		write_link(out, from->params[i]);
 		fputs(" | ", out);
 		if (from->results[i][0])

@@ -81,27 +81,26 @@ const cau_wire_shape cau_wire_shapes[CAU_WIRE_OBJECT_COUNT] = {
 // ---- methods ------------------------------------------------------------------------------------
 #define CHANGES true
 #define READS false
-#define REQUEST(code, name, params, result, role, effect, meaning)                                 \
-	{name, CAU_FORM_REQUEST, CAU_WIRE_##params, CAU_WIRE_##result, CAU_ROLE_##role, effect,        \
-	 -1,   meaning},
-#define EITHER_WAY(code, name, params, result, role, effect, meaning)                              \
-	{                                                                                              \
-		name,                                                                                      \
-		CAU_FORM_EITHER_WAY,                                                                       \
-		CAU_WIRE_##params,                                                                         \
-		CAU_WIRE_##result,                                                                         \
-		CAU_ROLE_##role,                                                                           \
-		effect,                                                                                    \
-		-1,                                                                                        \
-		meaning},
-#define NOTICE(code, name, params, role, meaning)                                                  \
-	{name, CAU_FORM_NOTICE, CAU_WIRE_##params, CAU_WIRE_nothing, CAU_ROLE_##role, false,           \
-	 -1,   meaning},
+#define CALL(form_, name_, params_, result_, role_, changes_, cost_, command_, meaning_)           \
+	{.name = (name_),                                                                              \
+	 .form = CAU_FORM_##form_,                                                                     \
+	 .params = CAU_WIRE_##params_,                                                                 \
+	 .result = CAU_WIRE_##result_,                                                                 \
+	 .role = CAU_ROLE_##role_,                                                                     \
+	 .changes = (changes_),                                                                        \
+	 .cost = CAU_COST_##cost_,                                                                     \
+	 .command = (command_),                                                                        \
+	 .meaning = (meaning_)},
+#define REQUEST(code, name, params, result, role, effect, cost, handler, meaning)                  \
+	CALL(REQUEST, name, params, result, role, effect, cost, -1, meaning)
+#define EITHER_WAY(code, name, params, result, role, effect, cost, handler, meaning)               \
+	CALL(EITHER_WAY, name, params, result, role, effect, cost, -1, meaning)
+#define NOTICE(code, name, params, role, handler, meaning)                                         \
+	CALL(NOTICE, name, params, nothing, role, false, CHEAP, -1, meaning)
 #define COMMAND(code, name, form, meaning)                                                         \
-	{name, CAU_FORM_##form,    CAU_WIRE_nothing, CAU_WIRE_command_result, CAU_ROLE_OPERATE,        \
-	 true, CAU_COMMAND_##code, meaning},
+	CALL(form, name, nothing, command_result, OPERATE, true, CHEAP, CAU_COMMAND_##code, meaning)
 #define PUSH(code, name, params, meaning)                                                          \
-	{name, CAU_FORM_PUSH, CAU_WIRE_##params, CAU_WIRE_nothing, CAU_ROLE_VIEW, false, -1, meaning},
+	CALL(PUSH, name, params, nothing, VIEW, false, CHEAP, -1, meaning)
 static const cau_method_info methods[CAU_METHOD_COUNT] = {
 #include "cautery/methods.def"
 };

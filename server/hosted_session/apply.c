@@ -96,7 +96,7 @@ static void answer_command(cau_hosted *h, cau_order *order)
 		cau_record_reply(h, &order->reply, text, bytes);
 }
 
-static cau_outcome_kind apply_command(cau_hosted *h, cau_order *order, const cau_action *action)
+cau_outcome_kind cau_apply_command(cau_hosted *h, cau_order *order, const cau_action *action)
 {
 	cau_error error = {0};
 	cau_command *command = &order->as.command;
@@ -137,21 +137,10 @@ cau_outcome_kind cau_hosted_look(cau_hosted *h, cau_order *order)
 
 cau_outcome_kind cau_hosted_apply(cau_hosted *h, cau_order *order, const cau_action *action)
 {
-	static cau_applied *const handlers[] = {
-		[CAU_ORDER_COMMAND] = apply_command,
-		[CAU_ORDER_PAUSE] = cau_apply_pause,
-		[CAU_ORDER_RESUME] = cau_apply_resume,
-		[CAU_ORDER_STEP] = cau_apply_step,
-		[CAU_ORDER_SPEED] = cau_apply_speed,
-		[CAU_ORDER_RESET] = cau_apply_back,
-		[CAU_ORDER_REWIND] = cau_apply_back,
-		[CAU_ORDER_SNAPSHOT] = cau_apply_snapshot,
-		[CAU_ORDER_RESTORE] = cau_apply_back,
-		[CAU_ORDER_FORK] = cau_apply_fork,
-		[CAU_ORDER_DESTROY] = cau_apply_destroy,
-		[CAU_ORDER_TAKE_OVER] = cau_apply_drive,
-		[CAU_ORDER_HAND_OVER] = cau_apply_drive,
-		[CAU_ORDER_REQUEST_TAKEOVER] = cau_apply_request_takeover,
-	};
+#define CHANGE(kind, ask, apply) [CAU_ORDER_##kind] = (apply),
+#define READ(...)
+	static cau_applied *const handlers[CAU_ORDER_COUNT] = {CAU_ORDER_TABLE(CHANGE, READ)};
+#undef CHANGE
+#undef READ
 	return handlers[order->kind](h, order, action);
 }

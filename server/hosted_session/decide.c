@@ -173,21 +173,11 @@ static cau_ask ask_of_command(const cau_order *order)
 
 static cau_ask ask_of(const cau_order *order)
 {
-	static const cau_ask asks[] = {
-		[CAU_ORDER_PAUSE] = CAU_ASK_PAUSE,
-		[CAU_ORDER_RESUME] = CAU_ASK_RESUME,
-		[CAU_ORDER_STEP] = CAU_ASK_STEP,
-		[CAU_ORDER_SPEED] = CAU_ASK_SPEED,
-		[CAU_ORDER_RESET] = CAU_ASK_GO,
-		[CAU_ORDER_REWIND] = CAU_ASK_GO,
-		[CAU_ORDER_SNAPSHOT] = CAU_ASK_HISTORY,
-		[CAU_ORDER_RESTORE] = CAU_ASK_GO,
-		[CAU_ORDER_FORK] = CAU_ASK_HISTORY,
-		[CAU_ORDER_DESTROY] = CAU_ASK_DESTROY,
-		[CAU_ORDER_TAKE_OVER] = CAU_ASK_TAKE_OVER,
-		[CAU_ORDER_HAND_OVER] = CAU_ASK_HAND_OVER,
-		[CAU_ORDER_REQUEST_TAKEOVER] = CAU_ASK_REQUEST_TAKEOVER,
-	};
+#define CHANGE(kind, ask, apply) [CAU_ORDER_##kind] = CAU_ASK_##ask,
+#define READ(...)
+	static const cau_ask asks[CAU_ORDER_COUNT] = {CAU_ORDER_TABLE(CHANGE, READ)};
+#undef CHANGE
+#undef READ
 	return order->kind == CAU_ORDER_COMMAND ? ask_of_command(order) : asks[order->kind];
 }
 

@@ -233,12 +233,17 @@ void cau_hosted_refuse_order(cau_hosted *h, cau_order *order, const cau_action *
 // A command of the daemon's own: submitted to the core and logged for nobody.
 void cau_hosted_command(cau_hosted *h, const cau_command *command);
 
-// ---- time.c: orders about time and history
+// ---- what CAU_ORDER_TABLE names (order.h), in the file that each belongs to. Each takes the
+// order. cau_apply_pause may get none: it was answered when it came.
 typedef cau_outcome_kind cau_applied(cau_hosted *h, cau_order *order, const cau_action *action);
-cau_applied cau_apply_pause; // `order` NULL: it was answered when it came
-cau_applied cau_apply_resume, cau_apply_step, cau_apply_speed;
-cau_applied cau_apply_back; // rewind, reset, restore
-cau_applied cau_apply_snapshot, cau_apply_fork, cau_apply_destroy;
+typedef void cau_served(cau_hosted *h, cau_order *order);
+#define CHANGE(kind, ask, apply) cau_applied apply;
+#define READ(kind, apply) cau_served apply;
+CAU_ORDER_TABLE(CHANGE, READ)
+#undef CHANGE
+#undef READ
+
+// ---- time.c: orders about time and history
 // session.step has made its ticks, or the session faulted within them.
 void cau_time_stepped(cau_hosted *h, cau_order *order, bool failed);
 // After the replay of a rewind, reset or restore.
@@ -249,7 +254,6 @@ void cau_back_arrived(cau_hosted *h, cau_order *order);
 void cau_drive_do_cut(cau_hosted *h, const cau_action *action);
 void cau_drive_tell(cau_hosted *h, const cau_drive *drive); // tool.driver_changed
 void cau_drive_describe(const cau_drive *drive, cau_wire_driver *driver);
-cau_applied cau_apply_drive, cau_apply_request_takeover;
 // Counts a refused motion; told once a second by cau_drive_tell_refusals.
 void cau_drive_refuse(cau_hosted *h, const cau_order *order, const cau_error *error);
 void cau_drive_tell_refusals(cau_hosted *h, double now_s);
@@ -258,7 +262,6 @@ void cau_drive_tell_refusals(cau_hosted *h, double now_s);
 void cau_streams_publish(cau_hosted *h, double now_s); // frames that are due
 void cau_streams_restart(cau_hosted *h);               // a new epoch
 void cau_streams_destroy(cau_hosted *h);
-void cau_apply_join(cau_hosted *h, cau_order *order);
 cau_buffer *cau_stream_take(const cau_stream *stream, size_t bytes); // copies them from the scratch
 
 // ---- half_rate.c
@@ -324,7 +327,6 @@ void cau_answer_fail(cau_order *order, const cau_error *error, int32_t code);
 // Sends a notification.
 void cau_answer_notify(cau_hosted *h, cau_audience audience, cau_method method, const void *params);
 void cau_answer_changed(cau_hosted *h, int change, const char *client);
-void cau_answer_describe(cau_hosted *h, cau_order *order);
 char *cau_answer_description(cau_hosted *h, cau_method method, size_t *bytes, cau_error *error);
 
 // ---- event.c
@@ -333,8 +335,3 @@ void cau_event_add(cau_hosted *h, int kind, const char *tool, const char *client
 void cau_event_end_cut(cau_hosted *h); // before a session rests or goes elsewhere
 void cau_event_settle(cau_hosted *h);  // after each step
 void cau_events_load(cau_hosted *h);   // from the store: of the present branch up to the tick
-void cau_apply_timeline(cau_hosted *h, cau_order *order);
-
-// ---- export.c
-void cau_apply_export(cau_hosted *h, cau_order *order);
-void cau_apply_log(cau_hosted *h, cau_order *order);

@@ -8,27 +8,36 @@
 #include "hosted_session/sink.h"
 #include "session/asker.h"
 
-typedef enum cau_order_kind {
-	CAU_ORDER_COMMAND, // as.command
-	CAU_ORDER_PAUSE,
-	CAU_ORDER_RESUME,
-	CAU_ORDER_STEP,  // as.ticks
-	CAU_ORDER_SPEED, // as.speed
-	CAU_ORDER_RESET,
-	CAU_ORDER_REWIND,   // as.tick
-	CAU_ORDER_SNAPSHOT, // as.name
-	CAU_ORDER_RESTORE,  // as.name
-	CAU_ORDER_FORK,     // as.fork
-	CAU_ORDER_DESTROY,
-	CAU_ORDER_TAKE_OVER,        // as.tool
-	CAU_ORDER_HAND_OVER,        // as.tool
-	CAU_ORDER_REQUEST_TAKEOVER, // as.tool
-	CAU_ORDER_DESCRIBE,
-	CAU_ORDER_TIMELINE, // as.timeline
-	CAU_ORDER_EXPORT,   // as.format
-	CAU_ORDER_LOG,      // as.log
-	CAU_ORDER_JOIN,     // as.join
-} cau_order_kind;
+// Kinds of orders, a row each, and what serves them at a tick border (internal.h).
+//
+//     CHANGE(KIND, ask, apply)  waits in the session's queue. ask: what the decision knows it as,
+//                               CAU_ASK_<ask> of session/logic.h; of a COMMAND it is its command's
+//     READ(KIND, apply)         changes nothing, and waits apart from the drivers (reads.c)
+#define CAU_ORDER_TABLE(CHANGE, READ)                                                              \
+	CHANGE(COMMAND, TISSUE, cau_apply_command) /* as.command */                                    \
+	CHANGE(PAUSE, PAUSE, cau_apply_pause)                                                          \
+	CHANGE(RESUME, RESUME, cau_apply_resume)                                                       \
+	CHANGE(STEP, STEP, cau_apply_step)    /* as.ticks */                                           \
+	CHANGE(SPEED, SPEED, cau_apply_speed) /* as.speed */                                           \
+	CHANGE(RESET, GO, cau_apply_back)                                                              \
+	CHANGE(REWIND, GO, cau_apply_back)            /* as.tick */                                    \
+	CHANGE(SNAPSHOT, HISTORY, cau_apply_snapshot) /* as.name */                                    \
+	CHANGE(RESTORE, GO, cau_apply_back)           /* as.name */                                    \
+	CHANGE(FORK, HISTORY, cau_apply_fork)         /* as.fork */                                    \
+	CHANGE(DESTROY, DESTROY, cau_apply_destroy)                                                    \
+	CHANGE(TAKE_OVER, TAKE_OVER, cau_apply_drive)                          /* as.tool */           \
+	CHANGE(HAND_OVER, HAND_OVER, cau_apply_drive)                          /* as.tool */           \
+	CHANGE(REQUEST_TAKEOVER, REQUEST_TAKEOVER, cau_apply_request_takeover) /* as.tool */           \
+	READ(DESCRIBE, cau_answer_describe)                                                            \
+	READ(TIMELINE, cau_apply_timeline) /* as.timeline */                                           \
+	READ(EXPORT, cau_apply_export)     /* as.format */                                             \
+	READ(LOG, cau_apply_log)           /* as.log */                                                \
+	READ(JOIN, cau_apply_join)         /* as.join */                                               \
+									   /* a new row goes above this line */
+
+#define KIND(kind, ...) CAU_ORDER_##kind,
+typedef enum cau_order_kind { CAU_ORDER_TABLE(KIND, KIND) CAU_ORDER_COUNT } cau_order_kind;
+#undef KIND
 
 typedef struct cau_order {
 	struct cau_order *next;

@@ -15,23 +15,20 @@ enum {
 	CLIENT_SHARE = 4,  // one client has at most this part of the queue
 };
 
+#define CHANGE(...)
+#define READ(kind, apply) [CAU_ORDER_##kind] = (apply),
+static cau_served *const handlers[CAU_ORDER_COUNT] = {CAU_ORDER_TABLE(CHANGE, READ)};
+#undef CHANGE
+#undef READ
+
 bool cau_reads_are(const cau_order *order)
 {
-	switch (order->kind) {
-	case CAU_ORDER_DESCRIBE:
-	case CAU_ORDER_TIMELINE:
-	case CAU_ORDER_EXPORT:
-	case CAU_ORDER_LOG:
-	case CAU_ORDER_JOIN:
-		return true;
-	default:
-		return false;
-	}
+	return handlers[order->kind] != NULL;
 }
 
 static bool makes_file(const cau_order *order)
 {
-	return order->kind == CAU_ORDER_EXPORT || order->kind == CAU_ORDER_LOG;
+	return cau_method_describe(order->reply.method)->cost == CAU_COST_FILE;
 }
 
 static cau_status append(cau_hosted *h, cau_order *order, cau_error *error)
@@ -101,21 +98,11 @@ static cau_order *take(cau_hosted *h, int32_t *noted)
 	return order;
 }
 
-static void serve(cau_hosted *h, cau_order *order)
-{
-	static void (*const handlers[])(cau_hosted *, cau_order *) = {
-		[CAU_ORDER_DESCRIBE] = cau_answer_describe, [CAU_ORDER_TIMELINE] = cau_apply_timeline,
-		[CAU_ORDER_EXPORT] = cau_apply_export,      [CAU_ORDER_LOG] = cau_apply_log,
-		[CAU_ORDER_JOIN] = cau_apply_join,
-	};
-	handlers[order->kind](h, order);
-}
-
 void cau_reads_serve(cau_hosted *h, int32_t noted)
 {
 	double end_s = cau_monotonic_s() + SLICE_S;
 	for (cau_order *order; (order = take(h, &noted));) {
-		serve(h, order);
+		handlers[order->kind](h, order);
 		if (cau_monotonic_s() >= end_s)
 			return;
 	}

@@ -110,22 +110,6 @@ cau_quota *cau_hub_quota(cau_hub *hub)
 	return hub->quota;
 }
 
-bool cau_hub_is_expensive(cau_method method)
-{
-	switch (method) {
-	case CAU_METHOD_SESSION_CREATE:
-	case CAU_METHOD_SESSION_FORK:
-	case CAU_METHOD_SESSION_RESET:
-	case CAU_METHOD_SESSION_RESTORE:
-	case CAU_METHOD_SESSION_REWIND:
-	case CAU_METHOD_SESSION_EXPORT:
-	case CAU_METHOD_SESSION_LOG:
-		return true;
-	default:
-		return false;
-	}
-}
-
 // ---- sessions
 // Takes ended sessions out of the list; they are stopped outside the lock.
 static cau_hosted *take_ended(cau_hub *hub)

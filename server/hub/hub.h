@@ -37,8 +37,6 @@ cau_status cau_hub_resume(cau_hub *hub, cau_error *error);
 const cau_scenes *cau_hub_scenes(const cau_hub *hub);
 // What transports ask before they pass on a request that costs much.
 cau_quota *cau_hub_quota(cau_hub *hub);
-// Whether a method's requests cost much: sessions made, states sought, files.
-bool cau_hub_is_expensive(cau_method method);
 
 // ---- clients
 enum { CAU_RESUME_BYTES = 33 };

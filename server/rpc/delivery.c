@@ -36,7 +36,7 @@ static void deliver_answer(cau_service *service, cau_post *post)
 		refuse_join(cau_peer_of(connection), post);
 		return;
 	}
-	if (connection && cau_method_makes_file(post->method))
+	if (connection && cau_method_describe(post->method)->cost == CAU_COST_FILE)
 		cau_peer_of(connection)->files_asked--;
 	if (connection && post->text) {
 		cau_connection_send(connection, post->text);

@@ -104,21 +104,26 @@ void cau_service_frames(void *user);
 // ---- delivery.c
 void cau_service_read_posts(cau_service *service);
 
-// ---- the method families. Each answers the call, now or later.
+// ---- the handlers that methods.def names, in the files of their families. Each answers the call,
+// now or later.
 typedef void cau_call_handler(cau_call *call);
-cau_call_handler cau_call_hello, cau_call_heartbeat;
-cau_call_handler cau_call_scene_list, cau_call_scene_get;
-cau_call_handler cau_call_session_list, cau_call_session_create, cau_call_session_order;
-cau_call_handler cau_call_command, cau_call_tool_order;
-cau_call_handler cau_call_join, cau_call_leave, cau_call_key_frame, cau_call_ack;
-cau_call_handler cau_call_upload_begin, cau_call_upload_end, cau_call_upload_discard;
+#define REQUEST(code, name, params, result, role, effect, cost, handler, meaning)                  \
+	cau_call_handler cau_call_##handler;
+#define EITHER_WAY(...) REQUEST(__VA_ARGS__)
+#define NOTICE(code, name, params, role, handler, meaning) cau_call_handler cau_call_##handler;
+#define COMMAND(...)
+#define PUSH(...)
+#include "cautery/methods.def"
+cau_call_handler cau_call_command; // of every tissue command
 
 // The session of a call, shared, or NULL after a failure that is answered.
 cau_hosted *cau_call_session(const cau_call *call);
-// A zeroed order of the call's client.
+// A zeroed order of the call's client, or NULL after a failure that is answered.
 cau_order *cau_call_order(const cau_call *call, cau_order_kind kind);
-// Submits to the call's session; takes the order. False: refused, and answered.
-bool cau_call_submit(const cau_call *call, cau_order *order);
+// The same, with the call's params read into `params`, which is zeroed and of the method's type.
+cau_order *cau_call_order_with(const cau_call *call, cau_order_kind kind, void *params);
+// Submits to the call's session; takes the order. A refusal is answered.
+void cau_call_submit(const cau_call *call, cau_order *order);
 
 // ---- streams
 cau_buffer *cau_peer_next_frame(cau_peer *peer);
@@ -131,7 +136,6 @@ void cau_peer_watch_slowness(cau_peer *peer, double now_s);
 // ---- files
 // Whether the connection may have one more file under way.
 bool cau_peer_has_room_for_file(const cau_peer *peer);
-bool cau_method_makes_file(cau_method method);
 void cau_peer_chunk(cau_peer *peer, const void *bytes, size_t byte_count);
 cau_buffer *cau_peer_next_chunk(cau_peer *peer);
 // Points the scene's meshes of source bytes at this connection's uploads.

@@ -124,19 +124,32 @@ cau_order *cau_call_order(const cau_call *call, cau_order_kind kind)
 	return order;
 }
 
-bool cau_call_submit(const cau_call *call, cau_order *order)
+cau_order *cau_call_order_with(const cau_call *call, cau_order_kind kind, void *params)
+{
+	cau_error error = {0};
+	cau_order *order = cau_call_order(call, kind);
+	if (!order || !cau_rpc_params(call->message, params, &error))
+		return order;
+	cau_call_fail(call, &error, 0);
+	free(order);
+	return NULL;
+}
+
+void cau_call_submit(const cau_call *call, cau_order *order)
 {
 	cau_error error = {0};
 	cau_hosted *hosted = cau_call_session(call);
 	if (!hosted) {
 		free(order);
-		return false;
+		return;
 	}
+	bool file = call->method->cost == CAU_COST_FILE && order->reply.answer;
 	cau_status status = cau_hosted_submit(hosted, order, &error);
 	if (status) {
 		free(order);
 		cau_call_fail(call, &error, status == CAU_IO ? CAU_RPC_STORE_FULL : 0);
+	} else {
+		call->peer->files_asked += file;
 	}
 	cau_hosted_release(hosted);
-	return !status;
 }

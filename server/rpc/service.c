@@ -7,49 +7,14 @@
 
 #include "rpc/internal.h"
 
+#define REQUEST(code, name, params, result, role, effect, cost, handler, meaning)                  \
+	[CAU_METHOD_##code] = cau_call_##handler,
+#define EITHER_WAY(...) REQUEST(__VA_ARGS__)
+#define NOTICE(code, name, params, role, handler, meaning) [CAU_METHOD_##code] = cau_call_##handler,
+#define COMMAND(code, ...) [CAU_METHOD_##code] = cau_call_command,
+#define PUSH(...)
 static cau_call_handler *const handlers[CAU_METHOD_COUNT] = {
-	[CAU_METHOD_HELLO] = cau_call_hello,
-	[CAU_METHOD_HEARTBEAT] = cau_call_heartbeat,
-	[CAU_METHOD_SCENE_LIST] = cau_call_scene_list,
-	[CAU_METHOD_SCENE_GET] = cau_call_scene_get,
-	[CAU_METHOD_SESSION_LIST] = cau_call_session_list,
-	[CAU_METHOD_SESSION_CREATE] = cau_call_session_create,
-	[CAU_METHOD_SESSION_DESCRIBE] = cau_call_session_order,
-	[CAU_METHOD_SESSION_JOIN] = cau_call_join,
-	[CAU_METHOD_SESSION_LEAVE] = cau_call_leave,
-	[CAU_METHOD_SESSION_PAUSE] = cau_call_session_order,
-	[CAU_METHOD_SESSION_RESUME] = cau_call_session_order,
-	[CAU_METHOD_SESSION_STEP] = cau_call_session_order,
-	[CAU_METHOD_SESSION_SPEED] = cau_call_session_order,
-	[CAU_METHOD_SESSION_RESET] = cau_call_session_order,
-	[CAU_METHOD_SESSION_DESTROY] = cau_call_session_order,
-	[CAU_METHOD_SESSION_FORK] = cau_call_session_order,
-	[CAU_METHOD_SESSION_SNAPSHOT] = cau_call_session_order,
-	[CAU_METHOD_SESSION_RESTORE] = cau_call_session_order,
-	[CAU_METHOD_SESSION_REWIND] = cau_call_session_order,
-	[CAU_METHOD_SESSION_EXPORT] = cau_call_session_order,
-	[CAU_METHOD_SESSION_LOG] = cau_call_session_order,
-	[CAU_METHOD_SESSION_TIMELINE] = cau_call_session_order,
-	[CAU_METHOD_STREAM_KEY_FRAME] = cau_call_key_frame,
-	[CAU_METHOD_STREAM_ACK] = cau_call_ack,
-	[CAU_METHOD_TOOL_ADD] = cau_call_command,
-	[CAU_METHOD_TOOL_REMOVE] = cau_call_command,
-	[CAU_METHOD_TOOL_CONFIGURE] = cau_call_command,
-	[CAU_METHOD_TOOL_MOVE] = cau_call_command,
-	[CAU_METHOD_TOOL_ENERGIZE] = cau_call_command,
-	[CAU_METHOD_TOOL_GRASP] = cau_call_command,
-	[CAU_METHOD_TOOL_RELEASE] = cau_call_command,
-	[CAU_METHOD_TOOL_TAKE_OVER] = cau_call_tool_order,
-	[CAU_METHOD_TOOL_REQUEST_TAKEOVER] = cau_call_tool_order,
-	[CAU_METHOD_TOOL_HAND_OVER] = cau_call_tool_order,
-	[CAU_METHOD_PIN] = cau_call_command,
-	[CAU_METHOD_UNPIN] = cau_call_command,
-	[CAU_METHOD_SET_MATERIAL] = cau_call_command,
-	[CAU_METHOD_SET_GRAVITY] = cau_call_command,
-	[CAU_METHOD_SET_FORCE] = cau_call_command,
-	[CAU_METHOD_UPLOAD_BEGIN] = cau_call_upload_begin,
-	[CAU_METHOD_UPLOAD_END] = cau_call_upload_end,
-	[CAU_METHOD_UPLOAD_DISCARD] = cau_call_upload_discard,
+#include "cautery/methods.def"
 };
 
 // ---- messages
@@ -65,9 +30,9 @@ static bool afford(const cau_call *call)
 {
 	cau_peer *peer = call->peer;
 	cau_error error = {0};
-	if (!cau_hub_is_expensive(call->message->method))
+	if (call->method->cost == CAU_COST_CHEAP)
 		return true;
-	if (cau_method_makes_file(call->message->method) && !cau_peer_has_room_for_file(peer)) {
+	if (call->method->cost == CAU_COST_FILE && !cau_peer_has_room_for_file(peer)) {
 		cau_fail(&error, CAU_LIMIT, "",
 		         "%d files of this connection are under way, as many as may be: try again when one "
 		         "has come",

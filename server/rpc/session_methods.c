@@ -4,6 +4,8 @@
 
 #include "rpc/internal.h"
 
+enum { TIMELINE_COUNT = 1024 }; // events of an answer that asks for no number of them
+
 // ---- session.list
 static void list_one(void *user, cau_hosted *hosted)
 {
@@ -104,134 +106,133 @@ void cau_call_session_create(cau_call *call)
 	free(creation);
 }
 
-// ---- everything that is one order
-static cau_status read_step(const cau_rpc_message *message, cau_order *order, cau_error *error)
+// ---- everything that is one order of the session
+static void submit(const cau_call *call, cau_order *order)
+{
+	if (order)
+		cau_call_submit(call, order);
+}
+
+// A method whose params are `session` and perhaps `client_sequence`, which the envelope has.
+static void submit_plain(const cau_call *call, cau_order_kind kind)
+{
+	union {
+		cau_wire_session_ref ref;
+		cau_wire_session_change change;
+	} params = {0};
+	submit(call, cau_call_order_with(call, kind, &params));
+}
+
+void cau_call_session_describe(cau_call *call)
+{
+	submit_plain(call, CAU_ORDER_DESCRIBE);
+}
+
+void cau_call_session_pause(cau_call *call)
+{
+	submit_plain(call, CAU_ORDER_PAUSE);
+}
+
+void cau_call_session_resume(cau_call *call)
+{
+	submit_plain(call, CAU_ORDER_RESUME);
+}
+
+void cau_call_session_reset(cau_call *call)
+{
+	submit_plain(call, CAU_ORDER_RESET);
+}
+
+void cau_call_session_destroy(cau_call *call)
+{
+	submit_plain(call, CAU_ORDER_DESTROY);
+}
+
+void cau_call_session_step(cau_call *call)
 {
 	cau_wire_session_step params = {0};
-	cau_status status = cau_rpc_params(message, &params, error);
-	order->as.ticks = params.has_ticks ? params.ticks : 1;
-	return status;
+	cau_order *order = cau_call_order_with(call, CAU_ORDER_STEP, &params);
+	if (order)
+		order->as.ticks = params.has_ticks ? params.ticks : 1;
+	submit(call, order);
 }
 
-static cau_status read_speed(const cau_rpc_message *message, cau_order *order, cau_error *error)
+void cau_call_session_speed(cau_call *call)
 {
 	cau_wire_session_speed params = {0};
-	cau_status status = cau_rpc_params(message, &params, error);
-	order->as.speed = params.speed;
-	return status;
+	cau_order *order = cau_call_order_with(call, CAU_ORDER_SPEED, &params);
+	if (order)
+		order->as.speed = params.speed;
+	submit(call, order);
 }
 
-static cau_status read_rewind(const cau_rpc_message *message, cau_order *order, cau_error *error)
+void cau_call_session_rewind(cau_call *call)
 {
 	cau_wire_session_rewind params = {0};
-	cau_status status = cau_rpc_params(message, &params, error);
-	order->as.tick = (uint64_t)params.tick;
-	return status;
+	cau_order *order = cau_call_order_with(call, CAU_ORDER_REWIND, &params);
+	if (order)
+		order->as.tick = (uint64_t)params.tick;
+	submit(call, order);
 }
 
-static cau_status read_snapshot(const cau_rpc_message *message, cau_order *order, cau_error *error)
+void cau_call_session_snapshot(cau_call *call)
 {
 	cau_wire_session_snapshot params = {0};
-	cau_status status = cau_rpc_params(message, &params, error);
-	memcpy(order->as.name, params.name, sizeof order->as.name);
-	return status;
+	cau_order *order = cau_call_order_with(call, CAU_ORDER_SNAPSHOT, &params);
+	if (order)
+		memcpy(order->as.name, params.name, sizeof order->as.name);
+	submit(call, order);
 }
 
-static cau_status read_restore(const cau_rpc_message *message, cau_order *order, cau_error *error)
+void cau_call_session_restore(cau_call *call)
 {
 	cau_wire_session_restore params = {0};
-	cau_status status = cau_rpc_params(message, &params, error);
-	memcpy(order->as.name, params.name, sizeof order->as.name);
-	return status;
+	cau_order *order = cau_call_order_with(call, CAU_ORDER_RESTORE, &params);
+	if (order)
+		memcpy(order->as.name, params.name, sizeof order->as.name);
+	submit(call, order);
 }
 
-static cau_status read_fork(const cau_rpc_message *message, cau_order *order, cau_error *error)
+void cau_call_session_fork(cau_call *call)
 {
 	cau_wire_session_fork params = {0};
-	cau_status status = cau_rpc_params(message, &params, error);
-	memcpy(order->as.fork.name, params.name, sizeof order->as.fork.name);
-	order->as.fork.has_tick = params.has_tick;
-	order->as.fork.tick = (uint64_t)params.tick;
-	order->as.fork.paused = params.paused;
-	return status;
+	cau_order *order = cau_call_order_with(call, CAU_ORDER_FORK, &params);
+	if (order) {
+		memcpy(order->as.fork.name, params.name, sizeof order->as.fork.name);
+		order->as.fork.has_tick = params.has_tick;
+		order->as.fork.tick = (uint64_t)params.tick;
+		order->as.fork.paused = params.paused;
+	}
+	submit(call, order);
 }
 
-static cau_status read_timeline(const cau_rpc_message *message, cau_order *order, cau_error *error)
+void cau_call_session_timeline(cau_call *call)
 {
 	cau_wire_session_timeline params = {0};
-	cau_status status = cau_rpc_params(message, &params, error);
-	order->as.timeline.from_tick = (uint64_t)params.from_tick;
-	order->as.timeline.count = params.has_count ? (int32_t)params.count : 1024;
-	return status;
+	cau_order *order = cau_call_order_with(call, CAU_ORDER_TIMELINE, &params);
+	if (order) {
+		order->as.timeline.from_tick = (uint64_t)params.from_tick;
+		order->as.timeline.count = params.has_count ? (int32_t)params.count : TIMELINE_COUNT;
+	}
+	submit(call, order);
 }
 
-static cau_status read_export(const cau_rpc_message *message, cau_order *order, cau_error *error)
+void cau_call_session_export(cau_call *call)
 {
 	cau_wire_session_export params = {0};
-	cau_status status = cau_rpc_params(message, &params, error);
-	order->as.format = params.format;
-	return status;
+	cau_order *order = cau_call_order_with(call, CAU_ORDER_EXPORT, &params);
+	if (order)
+		order->as.format = params.format;
+	submit(call, order);
 }
 
-static cau_status read_log(const cau_rpc_message *message, cau_order *order, cau_error *error)
+void cau_call_session_log(cau_call *call)
 {
 	cau_wire_session_log params = {0};
-	cau_status status = cau_rpc_params(message, &params, error);
-	order->as.log.from_tick = (uint64_t)params.from_tick;
-	order->as.log.to_tick = params.has_to_tick ? (uint64_t)params.to_tick : UINT64_MAX;
-	return status;
-}
-
-static cau_status read_change(const cau_rpc_message *message, cau_order *order, cau_error *error)
-{
-	cau_wire_session_change params = {0};
-	(void)order;
-	return cau_rpc_params(message, &params, error);
-}
-
-static cau_status read_ref(const cau_rpc_message *message, cau_order *order, cau_error *error)
-{
-	cau_wire_session_ref params = {0};
-	(void)order;
-	return cau_rpc_params(message, &params, error);
-}
-
-static const struct {
-	cau_method method;
-	cau_order_kind kind;
-	cau_status (*read)(const cau_rpc_message *message, cau_order *order, cau_error *error);
-} orders[] = {
-	{CAU_METHOD_SESSION_DESCRIBE, CAU_ORDER_DESCRIBE, read_ref},
-	{CAU_METHOD_SESSION_PAUSE, CAU_ORDER_PAUSE, read_change},
-	{CAU_METHOD_SESSION_RESUME, CAU_ORDER_RESUME, read_change},
-	{CAU_METHOD_SESSION_STEP, CAU_ORDER_STEP, read_step},
-	{CAU_METHOD_SESSION_SPEED, CAU_ORDER_SPEED, read_speed},
-	{CAU_METHOD_SESSION_RESET, CAU_ORDER_RESET, read_change},
-	{CAU_METHOD_SESSION_DESTROY, CAU_ORDER_DESTROY, read_change},
-	{CAU_METHOD_SESSION_FORK, CAU_ORDER_FORK, read_fork},
-	{CAU_METHOD_SESSION_SNAPSHOT, CAU_ORDER_SNAPSHOT, read_snapshot},
-	{CAU_METHOD_SESSION_RESTORE, CAU_ORDER_RESTORE, read_restore},
-	{CAU_METHOD_SESSION_REWIND, CAU_ORDER_REWIND, read_rewind},
-	{CAU_METHOD_SESSION_EXPORT, CAU_ORDER_EXPORT, read_export},
-	{CAU_METHOD_SESSION_LOG, CAU_ORDER_LOG, read_log},
-	{CAU_METHOD_SESSION_TIMELINE, CAU_ORDER_TIMELINE, read_timeline},
-};
-
-void cau_call_session_order(cau_call *call)
-{
-	cau_error error = {0};
-	size_t i = 0;
-	while (orders[i].method != call->message->method)
-		i++;
-	cau_order *order = cau_call_order(call, orders[i].kind);
-	if (!order)
-		return;
-	if (orders[i].read(call->message, order, &error)) {
-		cau_call_fail(call, &error, 0);
-		free(order);
-		return;
+	cau_order *order = cau_call_order_with(call, CAU_ORDER_LOG, &params);
+	if (order) {
+		order->as.log.from_tick = (uint64_t)params.from_tick;
+		order->as.log.to_tick = params.has_to_tick ? (uint64_t)params.to_tick : UINT64_MAX;
 	}
-	bool file = cau_method_makes_file(call->message->method) && order->reply.answer;
-	if (cau_call_submit(call, order))
-		call->peer->files_asked += file;
+	submit(call, order);
 }

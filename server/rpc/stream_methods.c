@@ -23,19 +23,13 @@ static void close_subscription(cau_subscription *stream)
 	*stream = (cau_subscription){0};
 }
 
-void cau_call_join(cau_call *call)
+void cau_call_session_join(cau_call *call)
 {
-	cau_error error = {0};
 	cau_wire_session_join params = {0};
 	cau_stream_def defaults = cau_default_stream_def();
-	cau_order *order = cau_call_order(call, CAU_ORDER_JOIN);
+	cau_order *order = cau_call_order_with(call, CAU_ORDER_JOIN, &params);
 	if (!order)
 		return;
-	if (cau_rpc_params(call->message, &params, &error)) {
-		cau_call_fail(call, &error, 0);
-		free(order);
-		return;
-	}
 	order->as.join.rate_hz = params.has_rate_hz ? params.rate_hz : 60;
 	order->as.join.step_m = params.has_step_m ? params.step_m : defaults.step_m;
 	order->as.join.channels = params.has_channels ? params.channels : defaults.channels;
@@ -74,7 +68,7 @@ static cau_subscription *subscription_of(cau_call *call)
 	return stream;
 }
 
-void cau_call_leave(cau_call *call)
+void cau_call_session_leave(cau_call *call)
 {
 	cau_wire_nothing result = {0};
 	cau_subscription *stream = subscription_of(call);
@@ -84,7 +78,7 @@ void cau_call_leave(cau_call *call)
 	cau_call_result(call, &result);
 }
 
-void cau_call_key_frame(cau_call *call)
+void cau_call_stream_key_frame(cau_call *call)
 {
 	cau_wire_nothing result = {0};
 	cau_subscription *stream = subscription_of(call);
@@ -96,7 +90,7 @@ void cau_call_key_frame(cau_call *call)
 	cau_call_result(call, &result);
 }
 
-void cau_call_ack(cau_call *call)
+void cau_call_stream_ack(cau_call *call)
 {
 	cau_error error = {0};
 	cau_wire_stream_ack params = {0};

@@ -34,23 +34,34 @@ void cau_call_command(cau_call *call)
 	cau_call_submit(call, order);
 }
 
-static cau_status read_tool(const cau_call *call, cau_order *order, cau_error *error)
+static void submit_about_tool(const cau_call *call, cau_order_kind kind)
 {
 	cau_wire_tool_ref params = {0};
-	cau_status status = cau_rpc_params(call->message, &params, error);
+	cau_order *order = cau_call_order_with(call, kind, &params);
+	if (!order)
+		return;
 	memcpy(order->as.tool.tool, params.tool, sizeof order->as.tool.tool);
-	return status;
+	cau_call_submit(call, order);
 }
 
-static cau_status read_hand_over(const cau_call *call, cau_order *order, cau_error *error)
+void cau_call_tool_take_over(cau_call *call)
 {
-	cau_wire_tool_hand_over params = {0};
+	submit_about_tool(call, CAU_ORDER_TAKE_OVER);
+}
+
+void cau_call_tool_request_takeover(cau_call *call)
+{
+	submit_about_tool(call, CAU_ORDER_REQUEST_TAKEOVER);
+}
+
+// The client that is to have the tool; without one in the params nobody is.
+static cau_status choose_next(const cau_call *call, const cau_wire_tool_hand_over *params,
+                              cau_order *order, cau_error *error)
+{
 	cau_asker to;
-	cau_status status = cau_rpc_params(call->message, &params, error);
-	memcpy(order->as.tool.tool, params.tool, sizeof order->as.tool.tool);
-	if (status || !params.has_client)
-		return status;
-	if (!cau_hub_find_client(call->peer->service->hub, (uint32_t)params.client, &to) ||
+	if (!params->has_client)
+		return CAU_OK;
+	if (!cau_hub_find_client(call->peer->service->hub, (uint32_t)params->client, &to) ||
 	    to.role < CAU_ROLE_OPERATE)
 		return cau_fail(error, CAU_NOT_FOUND, "params.client",
 		                "no such client, or it may not operate");
@@ -61,19 +72,15 @@ static cau_status read_hand_over(const cau_call *call, cau_order *order, cau_err
 	return CAU_OK;
 }
 
-void cau_call_tool_order(cau_call *call)
+void cau_call_tool_hand_over(cau_call *call)
 {
 	cau_error error = {0};
-	cau_method method = call->message->method;
-	cau_order_kind kind = method == CAU_METHOD_TOOL_TAKE_OVER   ? CAU_ORDER_TAKE_OVER
-	                      : method == CAU_METHOD_TOOL_HAND_OVER ? CAU_ORDER_HAND_OVER
-	                                                            : CAU_ORDER_REQUEST_TAKEOVER;
-	cau_order *order = cau_call_order(call, kind);
+	cau_wire_tool_hand_over params = {0};
+	cau_order *order = cau_call_order_with(call, CAU_ORDER_HAND_OVER, &params);
 	if (!order)
 		return;
-	cau_status status = kind == CAU_ORDER_HAND_OVER ? read_hand_over(call, order, &error)
-	                                                : read_tool(call, order, &error);
-	if (status) {
+	memcpy(order->as.tool.tool, params.tool, sizeof order->as.tool.tool);
+	if (choose_next(call, &params, order, &error)) {
 		cau_call_fail(call, &error, 0);
 		free(order);
 		return;

@@ -127,11 +127,6 @@ cau_status cau_peer_fill_meshes(cau_peer *peer, cau_scene_def *scene, cau_error 
 }
 
 // ---- out
-bool cau_method_makes_file(cau_method method)
-{
-	return method == CAU_METHOD_SESSION_EXPORT || method == CAU_METHOD_SESSION_LOG;
-}
-
 bool cau_peer_has_room_for_file(const cau_peer *peer)
 {
 	int under_way = peer->files_asked;

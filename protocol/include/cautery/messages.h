@@ -65,11 +65,11 @@ typedef enum cau_wire_object {
 } cau_wire_object;
 
 typedef enum cau_method {
-#define REQUEST(code, name, params, result, role, effect, meaning) CAU_METHOD_##code,
-#define EITHER_WAY(code, name, params, result, role, effect, meaning) CAU_METHOD_##code,
-#define NOTICE(code, name, params, role, meaning) CAU_METHOD_##code,
-#define COMMAND(code, name, form, meaning) CAU_METHOD_##code,
-#define PUSH(code, name, params, meaning) CAU_METHOD_##code,
+#define REQUEST(code, ...) CAU_METHOD_##code,
+#define EITHER_WAY(code, ...) CAU_METHOD_##code,
+#define NOTICE(code, ...) CAU_METHOD_##code,
+#define COMMAND(code, ...) CAU_METHOD_##code,
+#define PUSH(code, ...) CAU_METHOD_##code,
 #include "cautery/methods.def"
 	CAU_METHOD_COUNT
 } cau_method;
@@ -82,6 +82,12 @@ typedef enum cau_method_form {
 	CAU_FORM_PUSH,       // from the server
 } cau_method_form;
 
+typedef enum cau_method_cost {
+	CAU_COST_CHEAP,
+	CAU_COST_COSTLY, // counted by the quotas of expensive requests
+	CAU_COST_FILE,   // likewise; a file follows the answer
+} cau_method_cost;
+
 typedef struct cau_method_info {
 	const char *name;
 	cau_method_form form;
@@ -89,7 +95,8 @@ typedef struct cau_method_info {
 	cau_wire_object result; // CAU_WIRE_nothing where there is none; commands: command_result
 	cau_role role;          // the least that may call it
 	bool changes;           // stored; client_sequence applies
-	int32_t command;        // CAU_COMMAND_*, to be read with cau_rpc_command; or -1
+	cau_method_cost cost;
+	int32_t command; // CAU_COMMAND_*, to be read with cau_rpc_command; or -1
 	const char *meaning;
 } cau_method_info;
 
