@@ -29,6 +29,7 @@
 	CHANGE(HAND_OVER, HAND_OVER, cau_apply_drive)                          /* as.tool */           \
 	CHANGE(REQUEST_TAKEOVER, REQUEST_TAKEOVER, cau_apply_request_takeover) /* as.tool */           \
 	READ(DESCRIBE, cau_answer_describe)                                                            \
+	READ(SNAPSHOTS, cau_apply_snapshots)                                                           \
 	READ(TIMELINE, cau_apply_timeline) /* as.timeline */                                           \
 	READ(EXPORT, cau_apply_export)     /* as.format */                                             \
 	READ(LOG, cau_apply_log)           /* as.log */                                                \

@@ -116,6 +116,27 @@ cau_outcome_kind cau_apply_snapshot(cau_hosted *h, cau_order *order, const cau_a
 	return CAU_DONE;
 }
 
+static int by_tick(const void *a, const void *b)
+{
+	const cau_wire_named_snapshot *x = a, *y = b;
+	if (x->tick != y->tick)
+		return x->tick < y->tick ? -1 : 1;
+	return strcmp(x->name, y->name);
+}
+
+void cau_apply_snapshots(cau_hosted *h, cau_order *order)
+{
+	cau_wire_named_snapshot named[SNAPSHOT_COUNT];
+	cau_wire_snapshot_list result = {.snapshots = {named, h->snapshot_count, SNAPSHOT_COUNT}};
+	for (int32_t i = 0; i < h->snapshot_count; i++) {
+		const cau_named_snapshot *from = &h->snapshots[i];
+		named[i] = (cau_wire_named_snapshot){.tick = (int64_t)from->tick, .branch = from->branch};
+		memcpy(named[i].name, from->name, sizeof named[i].name);
+	}
+	qsort(named, (size_t)h->snapshot_count, sizeof *named, by_tick);
+	cau_answer_order(h, order, &result);
+}
+
 // Before the past is read, all of it must be in the store. What the store lacks is told to it by
 // the checkpoint that ends it; until then nobody goes there. False: the order is answered.
 static bool store_past(cau_hosted *h, cau_order *order, int64_t branch, uint64_t tick)

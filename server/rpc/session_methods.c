@@ -184,6 +184,11 @@ void cau_call_session_snapshot(cau_call *call)
 	submit(call, order);
 }
 
+void cau_call_session_snapshots(cau_call *call)
+{
+	submit_plain(call, CAU_ORDER_SNAPSHOTS);
+}
+
 void cau_call_session_restore(cau_call *call)
 {
 	cau_wire_session_restore params = {0};

@@ -308,6 +308,7 @@ test('SIGTERM drains: checkpoint, close code, exit 0; the next start goes on the
 	const { sessions } = await again.call('session.list');
 	assert.equal(sessions[0].state, 'paused');
 	assert.equal(sessions[0].tick, tick);
+	assert.deepEqual((await again.call('session.snapshots', { session })).snapshots, [{ name: 'before', tick, branch: 0 }]);
 	// Energy goes off at the restart, which is a change; the snapshot of before is whole.
 	const back = await again.call('session.restore', { session, name: 'before' });
 	assert.equal(back.tick, tick);
@@ -330,6 +331,8 @@ test('rewinding and cutting again the same way makes the same state', async () =
 	const second = await client.call('session.snapshot', { session, name: 'second' });
 	assert.equal(second.tick, first.tick);
 	assert.equal(second.hash, first.hash);
+	const listed = (await client.call('session.snapshots', { session })).snapshots;
+	assert.deepEqual(listed, [{ name: 'first', tick: first.tick, branch: 0 }, { name: 'second', tick: second.tick, branch: 1 }]);
 	await client.close();
 	await daemon.end();
 });

@@ -298,6 +298,22 @@ export interface SnapshotResult {
   byte_count: number;
 }
 
+/** a state with a name */
+export interface NamedSnapshot {
+  /** for session.restore */
+  name: string;
+  /** of the state (0 to 9007199254740991) */
+  tick: number;
+  /** number of the branch that it was taken on (0 to 9007199254740991) */
+  branch: number;
+}
+
+/** the session's states with a name */
+export interface SnapshotList {
+  /** by tick */
+  snapshots: NamedSnapshot[];
+}
+
 /** goes back to a snapshot, energy off; a new branch */
 export interface SessionRestore {
   /** its id; that of the connection's URL by default */
@@ -1484,6 +1500,8 @@ export interface Requests {
   'session.fork': { params: SessionFork; result: SessionDescription };
   /** stores the state under a name */
   'session.snapshot': { params: SessionSnapshot; result: SnapshotResult };
+  /** the states that session.restore can go back to, those of other branches too */
+  'session.snapshots': { params: SessionRef; result: SnapshotList };
   /** back to a snapshot */
   'session.restore': { params: SessionRestore; result: Restored };
   /** back to a tick */
