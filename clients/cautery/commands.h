@@ -16,4 +16,5 @@ extern const cli_command cli_rm;                             // list.c
 extern const cli_command cli_pause, cli_resume, cli_step;    // time.c
 extern const cli_command cli_speed, cli_reset;               // time.c
 extern const cli_command cli_rewind, cli_fork, cli_timeline; // history.c
-extern const cli_command cli_snapshot, cli_restore;          // history.c
+extern const cli_command cli_snapshot, cli_snapshots;        // history.c
+extern const cli_command cli_restore;                        // history.c

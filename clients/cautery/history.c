@@ -78,6 +78,24 @@ static cli_exit run_snapshot(cli *c)
 	return code;
 }
 
+enum { SNAPSHOTS_MAX = 64 }; // of a session
+
+static cli_exit run_snapshots(cli *c)
+{
+	cau_wire_session_ref params = {0};
+	cau_wire_named_snapshot named[SNAPSHOTS_MAX] = {0};
+	cau_wire_snapshot_list list = {.snapshots = {named, 0, SNAPSHOTS_MAX}};
+	cli_exit code = cli_connect(c);
+	if (code)
+		return code;
+	CLI_SESSION_PARAMS(c, &params);
+	code = cli_call(c, CAU_METHOD_SESSION_SNAPSHOTS, &params, &list);
+	for (int32_t i = 0; !code && !c->json && i < list.snapshots.count; i++)
+		fprintf(c->out, "%9lld  %s, branch %lld\n", (long long)named[i].tick, named[i].name,
+		        (long long)named[i].branch);
+	return code;
+}
+
 static cli_exit run_fork(cli *c)
 {
 	cau_wire_layer_description layers[CAU_MAX_LAYERS];
@@ -164,6 +182,12 @@ const cli_command cli_snapshot = {.name = "snapshot",
                                   .session_optional = true,
                                   .options = {{"name", "N", "default: made up by the server"}},
                                   .run = run_snapshot};
+
+const cli_command cli_snapshots = {.name = "snapshots",
+                                   .arguments = "[SESSION]",
+                                   .summary = "lists the states that `restore` goes back to",
+                                   .session_optional = true,
+                                   .run = run_snapshots};
 
 const cli_command cli_restore = {.name = "restore",
                                  .arguments = "[SESSION] NAME",

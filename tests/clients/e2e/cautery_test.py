@@ -56,6 +56,9 @@ class Sessions(programs.Case):
         self.assertEqual(self.json("restore", session, "before")["tick"], 20)
         back = self.json("rewind", session, 10)
         self.assertEqual(back["tick"], 10)
+        named = self.json("snapshots", session)["snapshots"]
+        self.assertEqual(named, [{"name": "before", "tick": 20, "branch": 0}])
+        self.assertIn("20  before, branch 0", self.cautery("snapshots", session)[0])
         kinds = [e["kind"] for e in self.json("timeline", session)["events"]]
         self.assertIn("rewind", kinds)
         fork = self.json("fork", session, "--name", "twin", "--paused")
