@@ -43,18 +43,6 @@ static void note(cau_hosted *h, const cau_order *order, const cau_action *action
 	}
 }
 
-void cau_hosted_command(cau_hosted *h, const cau_command *command)
-{
-	cau_error error = {0};
-	cau_command now = *command;
-	now.tick = h->tick;
-	if (cau_session_submit(h->core, &now, &error))
-		cau_log(CAU_LOG_ERROR, h->id, "command_lost", "tool=%s reason=\"%s\"", now.tool,
-		        error.reason);
-	else
-		cau_record_command(h, &now, NULL, NULL, 0);
-}
-
 static void refuse(cau_hosted *h, cau_order *order, const cau_error *error, int32_t code)
 {
 	h->refused_commands++;
@@ -114,25 +102,6 @@ cau_outcome_kind cau_apply_command(cau_hosted *h, cau_order *order, const cau_ac
 	note(h, order, action);
 	free(order);
 	return CAU_DONE;
-}
-
-cau_outcome_kind cau_hosted_look(cau_hosted *h, cau_order *order)
-{
-	cau_error error = {0};
-	if (h->pending) // its first may be in this very slice's batch
-		cau_record_commit(h);
-	cau_status status = cau_record_resend(h, order, &error);
-	if (status == CAU_BAD_STATE)
-		return CAU_POSTPONED;
-	if (status == CAU_OK) {
-		free(order);
-		return CAU_NOT_DONE;
-	}
-	if (status != CAU_ALREADY_EXISTS)
-		return CAU_DONE;
-	snprintf(error.path, sizeof error.path, "params.client_sequence");
-	cau_answer_fail(order, &error, CAU_RPC_SEQUENCE_PAST);
-	return CAU_NOT_DONE;
 }
 
 cau_outcome_kind cau_hosted_apply(cau_hosted *h, cau_order *order, const cau_action *action)

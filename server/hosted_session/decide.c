@@ -5,7 +5,6 @@
 #include <string.h>
 
 #include "hosted_session/internal.h"
-#include "hosted_session/tools.h"
 
 static cau_order *order_of(uint64_t ticket)
 {
@@ -97,6 +96,20 @@ void cau_decide(cau_hosted *h, const cau_logic_event *event)
 	take(h, event, NULL, &effects, NULL);
 }
 
+cau_status cau_decide_order(cau_hosted *h, cau_order *order, const cau_asked *asked,
+                            cau_error *error)
+{
+	cau_effects effects;
+	const cau_effect *own = NULL;
+	take(h,
+	     &(cau_logic_event){.kind = CAU_LOGIC_ORDER, .time_s = cau_monotonic_s(), .asked = asked},
+	     order, &effects, &own);
+	if (!own)
+		return CAU_OK;
+	*error = own->error;
+	return own->error.status;
+}
+
 // ---- the worker's side --------------------------------------------------------------------------
 
 void cau_decide_next(cau_hosted *h, cau_action *action)
@@ -149,138 +162,6 @@ void cau_decide_arrived(cau_hosted *h, int state, const char *cause)
 }
 
 // ---- from any thread ----------------------------------------------------------------------------
-
-static cau_ask ask_of_command(const cau_order *order)
-{
-	static const cau_ask asks[CAU_COMMAND_COUNT] = {
-		[CAU_COMMAND_TOOL_ADD] = CAU_ASK_TOOL_ADD,
-		[CAU_COMMAND_TOOL_REMOVE] = CAU_ASK_TOOL_REMOVE,
-		[CAU_COMMAND_TOOL_CONFIGURE] = CAU_ASK_TOOL_KEEP,
-		[CAU_COMMAND_TOOL_MOVE] = CAU_ASK_TOOL_USE,
-		[CAU_COMMAND_TOOL_GRASP] = CAU_ASK_TOOL_USE,
-		[CAU_COMMAND_TOOL_RELEASE] = CAU_ASK_TOOL_USE,
-		[CAU_COMMAND_PIN] = CAU_ASK_TISSUE,
-		[CAU_COMMAND_UNPIN] = CAU_ASK_TISSUE,
-		[CAU_COMMAND_SET_MATERIAL] = CAU_ASK_TISSUE,
-		[CAU_COMMAND_SET_GRAVITY] = CAU_ASK_TISSUE,
-		[CAU_COMMAND_SET_FORCE] = CAU_ASK_TISSUE,
-	};
-	const cau_command *command = &order->as.command;
-	if (command->kind == CAU_COMMAND_TOOL_ENERGIZE)
-		return command->as.energized ? CAU_ASK_ENERGY_ON : CAU_ASK_ENERGY_OFF;
-	return order->motion ? CAU_ASK_MOTION : asks[command->kind];
-}
-
-static cau_ask ask_of(const cau_order *order)
-{
-#define CHANGE(kind, ask, apply) [CAU_ORDER_##kind] = CAU_ASK_##ask,
-#define READ(...)
-	static const cau_ask asks[CAU_ORDER_COUNT] = {CAU_ORDER_TABLE(CHANGE, READ)};
-#undef CHANGE
-#undef READ
-	return order->kind == CAU_ORDER_COMMAND ? ask_of_command(order) : asks[order->kind];
-}
-
-static void name_tool(const cau_order *order, cau_asked *asked)
-{
-	const char *tool = "";
-	if (order->kind == CAU_ORDER_COMMAND)
-		tool = order->as.command.kind == CAU_COMMAND_TOOL_ADD ? order->as.command.as.definition.name
-		       : asked->ask == CAU_ASK_TISSUE                 ? ""
-		                                                      : order->as.command.tool;
-	else if (asked->ask >= CAU_ASK_TAKE_OVER && asked->ask <= CAU_ASK_REQUEST_TAKEOVER)
-		tool = order->as.tool.tool;
-	snprintf(asked->tool, sizeof asked->tool, "%s", tool);
-}
-
-// What there is to decide about an order.
-static void describe(const cau_order *order, cau_asked *asked)
-{
-	*asked = (cau_asked){.ticket = (uintptr_t)order,
-	                     .ask = ask_of(order),
-	                     .asker = order->asker,
-	                     .numbered = order->client_sequence && !order->motion};
-	name_tool(order, asked);
-	if (asked->ask == CAU_ASK_ENERGY_ON || asked->ask == CAU_ASK_ENERGY_OFF)
-		asked->tick = order->as.command.tick;
-	if (asked->ask == CAU_ASK_STEP)
-		asked->ticks = order->as.ticks;
-	if (asked->ask == CAU_ASK_SPEED)
-		asked->speed = order->as.speed;
-	if (asked->ask == CAU_ASK_HAND_OVER && order->as.tool.to) {
-		asked->to = (cau_asker){.client = order->as.tool.to,
-		                        .role = order->as.tool.to_role,
-		                        .deadline_s = order->as.tool.to_deadline_s};
-		memcpy(asked->to.name, order->as.tool.to_name, sizeof asked->to.name);
-	}
-}
-
-cau_status cau_hosted_submit(cau_hosted *h, cau_order *order, cau_error *error)
-{
-	cau_asked asked;
-	cau_effects effects;
-	const cau_effect *own = NULL;
-	if (h->ended)
-		return cau_fail(error, CAU_NOT_FOUND, "params.session", "the session is destroyed");
-	if (cau_building_cancel(h, order))
-		return CAU_OK;
-	if (cau_reads_are(order))
-		return cau_reads_submit(h, order, error);
-	describe(order, &asked);
-	take(h,
-	     &(cau_logic_event){.kind = CAU_LOGIC_ORDER, .time_s = cau_monotonic_s(), .asked = &asked},
-	     order, &effects, &own);
-	if (!own)
-		return CAU_OK;
-	*error = own->error;
-	if (order->motion)
-		cau_drive_refuse(h, order, error);
-	return own->error.status;
-}
-
-void cau_hosted_feed(cau_hosted *h, uint32_t client)
-{
-	cau_hosted_feed_tool(h, client, "");
-}
-
-void cau_hosted_feed_tool(cau_hosted *h, uint32_t client, const char *tool)
-{
-	cau_decide(h, &(cau_logic_event){.kind = CAU_LOGIC_ALIVE,
-	                                 .time_s = cau_monotonic_s(),
-	                                 .client = client,
-	                                 .tool = tool});
-}
-
-void cau_hosted_cut(cau_hosted *h, uint32_t client, const char *cause)
-{
-	cau_decide(h, &(cau_logic_event){.kind = CAU_LOGIC_AWAY,
-	                                 .time_s = cau_monotonic_s(),
-	                                 .client = client,
-	                                 .cause = cause});
-}
-
-void cau_hosted_forget_client(cau_hosted *h, uint32_t client)
-{
-	cau_decide(h, &(cau_logic_event){
-					  .kind = CAU_LOGIC_FORGET, .time_s = cau_monotonic_s(), .client = client});
-}
-
-double cau_hosted_watch(cau_hosted *h, double now_s)
-{
-	cau_decide(h, &(cau_logic_event){.kind = CAU_LOGIC_TIME, .time_s = now_s});
-	pthread_mutex_lock(&h->deciding);
-	double look_s = cau_logic_look_s(h->logic);
-	pthread_mutex_unlock(&h->deciding);
-	return look_s;
-}
-
-void cau_hosted_store_takes(cau_hosted *h, bool takes, const char *reason)
-{
-	cau_decide(h, &(cau_logic_event){.kind = CAU_LOGIC_STORE,
-	                                 .time_s = cau_monotonic_s(),
-	                                 .store_takes = takes,
-	                                 .cause = reason});
-}
 
 bool cau_decide_find(cau_hosted *h, const char *tool, cau_drive *drive)
 {

@@ -1,32 +1,10 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// What the core, the log and clients are told of drivers and energy. Who drives and what is lit is
+// What the core and the log are told of drivers and energy. Who drives and what is lit is
 // decided in server/session/drive.c.
 #include <string.h>
 
 #include "cautery/defaults.h"
 #include "hosted_session/internal.h"
-
-enum { REFUSALS_TOLD_EVERY_S = 1 };
-
-void cau_drive_describe(const cau_drive *drive, cau_wire_driver *driver)
-{
-	*driver = (cau_wire_driver){.client = drive->driver.client,
-	                            .energized = drive->enabled,
-	                            .energy_off = drive->energy_off};
-	memcpy(driver->tool, drive->tool, sizeof driver->tool);
-	if (drive->driver.client)
-		snprintf(driver->name, sizeof driver->name, "%s", drive->driver.name);
-}
-
-void cau_drive_tell(cau_hosted *h, const cau_drive *drive)
-{
-	cau_wire_driver_changed params = {0};
-	cau_audience audience = {CAU_AUDIENCE_SESSION, h->number};
-	snprintf(params.session, sizeof params.session, "%s", h->id);
-	cau_drive_describe(drive, &params.driver);
-	cau_answer_notify(h, audience, CAU_METHOD_TOOL_DRIVER_CHANGED, &params);
-	h->dirty = true;
-}
 
 // ---- cuts ---------------------------------------------------------------------------------------
 
@@ -38,13 +16,26 @@ static const cau_tool_state *tool_state(const cau_frame *frame, const char *name
 	return NULL;
 }
 
+// A command of the daemon's own: logged for nobody.
+static void tell_core(cau_hosted *h, const cau_command *command)
+{
+	cau_error error = {0};
+	cau_command now = *command;
+	now.tick = h->tick;
+	if (cau_session_submit(h->core, &now, &error))
+		cau_log(CAU_LOG_ERROR, h->id, "command_lost", "tool=%s reason=\"%s\"", now.tool,
+		        error.reason);
+	else
+		cau_record_command(h, &now, NULL, NULL, 0);
+}
+
 static void energy_off_command(cau_hosted *h, const char *tool)
 {
 	cau_command off;
 	cau_default_command(&off, CAU_COMMAND_TOOL_ENERGIZE);
 	snprintf(off.tool, sizeof off.tool, "%s", tool);
 	off.as.energized = 0;
-	cau_hosted_command(h, &off);
+	tell_core(h, &off);
 }
 
 // The tool's aim becomes where it is.
@@ -56,7 +47,7 @@ static void freeze_command(cau_hosted *h, const cau_tool_state *state)
 	stay.sequence = state->sequence;
 	stay.as.move.pose = state->pose;
 	stay.as.move.jaw = state->jaw;
-	cau_hosted_command(h, &stay);
+	tell_core(h, &stay);
 }
 
 static void count_cut(cau_hosted *h, const cau_drive *drive)
@@ -120,68 +111,4 @@ cau_outcome_kind cau_apply_request_takeover(cau_hosted *h, cau_order *order,
 		                  CAU_METHOD_TAKEOVER_REQUESTED, &params);
 	cau_answer_order(h, order, &result);
 	return CAU_DONE;
-}
-
-// ---- refused motion -----------------------------------------------------------------------------
-
-// The place of this tool, or a free one; NULL: all are others'. Under the mutex.
-static cau_refused_motion *find_place(cau_hosted *h, const char *tool)
-{
-	cau_refused_motion *unused = NULL;
-	for (int32_t i = 0; i < CAU_MAX_TOOLS; i++) {
-		cau_refused_motion *place = &h->refused[i];
-		if (strcmp(place->tool, tool) == 0)
-			return place;
-		if (!place->count)
-			unused = place;
-	}
-	return unused;
-}
-
-void cau_drive_refuse(cau_hosted *h, const cau_order *order, const cau_error *error)
-{
-	pthread_mutex_lock(&h->mutex);
-	h->counts.refused++;
-	cau_refused_motion *place = find_place(h, order->as.command.tool);
-	if (place) {
-		if (strcmp(place->tool, order->as.command.tool) != 0)
-			place->told_s = 0;
-		snprintf(place->tool, sizeof place->tool, "%s", order->as.command.tool);
-		place->count++;
-		place->client = order->asker.client;
-		place->sequence = order->as.command.sequence;
-		place->error = *error;
-	}
-	pthread_mutex_unlock(&h->mutex);
-}
-
-static void tell_refused(cau_hosted *h, const cau_refused_motion *told)
-{
-	cau_wire_tool_refused params = {.count = told->count,
-	                                .sequence = (int64_t)told->sequence,
-	                                .has_path = *told->error.path != 0};
-	snprintf(params.session, sizeof params.session, "%s", h->id);
-	memcpy(params.tool, told->tool, sizeof params.tool);
-	snprintf(params.status, sizeof params.status, "%s", cau_status_name(told->error.status));
-	snprintf(params.path, sizeof params.path, "%s", told->error.path);
-	snprintf(params.reason, sizeof params.reason, "%.319s", told->error.reason);
-	cau_answer_notify(h, (cau_audience){CAU_AUDIENCE_CLIENT, told->client}, CAU_METHOD_TOOL_REFUSED,
-	                  &params);
-}
-
-void cau_drive_tell_refusals(cau_hosted *h, double now_s)
-{
-	for (int32_t i = 0; i < CAU_MAX_TOOLS; i++) {
-		cau_refused_motion *place = &h->refused[i];
-		pthread_mutex_lock(&h->mutex);
-		cau_refused_motion told = *place;
-		bool due = told.count && now_s - told.told_s >= REFUSALS_TOLD_EVERY_S;
-		if (due) {
-			place->count = 0;
-			place->told_s = now_s;
-		}
-		pthread_mutex_unlock(&h->mutex);
-		if (due)
-			tell_refused(h, &told);
-	}
 }

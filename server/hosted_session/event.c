@@ -6,8 +6,6 @@
 
 #include "hosted_session/internal.h"
 
-#define READ_EXPECTED_S 0.02 // for a page of the timeline out of the store
-
 static cau_wire_timeline_event *newest(cau_hosted *h)
 {
 	return h->event_count ? &h->events[(h->event_count - 1) % EVENT_COUNT] : NULL;
@@ -74,15 +72,10 @@ void cau_event_add(cau_hosted *h, int kind, const char *tool, const char *client
 }
 
 // ---- from the store -----------------------------------------------------------------------------
-typedef struct page {
-	cau_wire_timeline_event *events; // newest first while it is read
-	int32_t count, capacity;
-} page;
-
 // The store has the notification's text. What cannot be read is passed over.
 static cau_status take_event(void *user, const cau_store_event *row)
 {
-	page *taken = user;
+	cau_event_page *taken = user;
 	cau_rpc_message message = {0};
 	cau_rpc_fault fault;
 	cau_wire_event_notice params = {0};
@@ -95,9 +88,8 @@ static cau_status take_event(void *user, const cau_store_event *row)
 	return CAU_OK;
 }
 
-// The newest on the branch's line from `from_tick` up to `to_tick`.
-static cau_status read_page(const cau_hosted *h, int64_t branch, uint64_t from_tick,
-                            uint64_t to_tick, page *taken, cau_error *error)
+cau_status cau_events_read(const cau_hosted *h, int64_t branch, uint64_t from_tick,
+                           uint64_t to_tick, cau_event_page *taken, cau_error *error)
 {
 	cau_status status = cau_store_read_timeline(h->around->store, h->id, branch, from_tick, to_tick,
 	                                            taken->capacity, take_event, taken, error);
@@ -112,114 +104,31 @@ static cau_status read_page(const cau_hosted *h, int64_t branch, uint64_t from_t
 void cau_events_load(cau_hosted *h)
 {
 	cau_error error = {0};
-	page taken = {h->events, 0, EVENT_COUNT};
+	cau_event_page taken = {h->events, 0, EVENT_COUNT};
 	h->cut_open = false;
-	if (read_page(h, h->branch, 0, h->tick, &taken, &error))
+	if (cau_events_read(h, h->branch, 0, h->tick, &taken, &error))
 		cau_log(CAU_LOG_ERROR, h->id, "events_not_read", "reason=\"%s\"", error.reason);
 	h->event_count = (uint64_t)taken.count;
 	h->events_older = taken.count == EVENT_COUNT;
 }
 
-// ---- session.timeline ---------------------------------------------------------------------------
-static bool in_memory(const cau_hosted *h, uint64_t from_tick, uint64_t wanted)
+// ---- faults -------------------------------------------------------------------------------------
+void cau_hosted_tell_fault(cau_hosted *h, const cau_error *error)
 {
-	uint64_t kept = h->event_count < EVENT_COUNT ? h->event_count : EVENT_COUNT;
-	if (wanted <= kept || (!h->events_older && h->event_count <= EVENT_COUNT))
-		return true;
-	const cau_wire_timeline_event *oldest = &h->events[(h->event_count - kept) % EVENT_COUNT];
-	return kept && (uint64_t)oldest->tick < from_tick;
+	cau_wire_session_faulted params = {.tick = (int64_t)h->tick};
+	snprintf(params.session, sizeof params.session, "%s", h->id);
+	snprintf(params.reason, sizeof params.reason, "%.319s", error->reason);
+	cau_event_add(h, CAU_EVENT_FAULT, NULL, NULL, 0, error->reason);
+	cau_answer_notify(h, (cau_audience){CAU_AUDIENCE_SESSION, h->number},
+	                  CAU_METHOD_SESSION_FAULTED, &params);
+	h->dirty = true;
 }
 
-static void copy_newest(const cau_hosted *h, uint64_t from_tick, page *taken)
+void cau_hosted_fault(cau_hosted *h, const cau_error *error)
 {
-	uint64_t wanted = (uint64_t)taken->capacity;
-	uint64_t kept = h->event_count < EVENT_COUNT ? h->event_count : EVENT_COUNT;
-	uint64_t from = h->event_count - (wanted < kept ? wanted : kept);
-	for (uint64_t i = from; i < h->event_count; i++) {
-		const cau_wire_timeline_event *event = &h->events[i % EVENT_COUNT];
-		if ((uint64_t)event->tick >= from_tick)
-			taken->events[taken->count++] = *event;
-	}
-}
-
-// From where on every tick can be reached. What lies in a gap that the store does not know yet is
-// not.
-static uint64_t find_oldest_tick(const cau_read_job *job)
-{
-	cau_hosted *h = job->hosted;
-	cau_error error = {0};
-	uint64_t tick = job->tick;
-	if (h->lost_from == UINT64_MAX &&
-	    cau_store_read_oldest_tick(h->around->store, h->id, job->branch, &tick, &error))
-		cau_log(CAU_LOG_DEBUG, h->id, "no_oldest_tick", "reason=\"%s\"", error.reason);
-	return tick;
-}
-
-static void answer_page(const cau_read_job *job, cau_wire_timeline_event *events, int32_t count)
-{
-	const cau_reply *reply = &job->order->reply;
-	cau_error error = {0};
-	cau_outcome outcome = {0};
-	cau_wire_timeline result = {.tick = (int64_t)job->tick,
-	                            .oldest_tick = (int64_t)find_oldest_tick(job),
-	                            .branch = job->branch,
-	                            .events = {events, count, count}};
-	char *text = cau_answer_text(reply->method, &result, &outcome.text_bytes, &error);
-	outcome.text = text;
-	outcome.error = text ? NULL : &error;
-	cau_reply_answer(reply, &outcome);
-	free(text);
-}
-
-// On the builder: what memory does not hold any more.
-static void answer_from_store(cau_read_job *job)
-{
-	cau_error error = {0};
-	page *taken = job->copy;
-	cau_store_flush(job->hosted->around->store);
-	if (read_page(job->hosted, job->branch, job->order->as.timeline.from_tick, job->tick, taken,
-	              &error))
-		cau_reply_fail(&job->order->reply, &error, 0);
-	else
-		answer_page(job, taken->events, taken->count);
-}
-
-static void free_page(void *pointer)
-{
-	page *taken = pointer;
-	free(taken->events);
-	free(taken);
-}
-
-static page *make_page(int32_t capacity)
-{
-	page *made = malloc(sizeof *made);
-	if (made)
-		*made = (page){calloc((size_t)capacity, sizeof *made->events), 0, capacity};
-	if (made && made->events)
-		return made;
-	free(made);
-	return NULL;
-}
-
-void cau_apply_timeline(cau_hosted *h, cau_order *order)
-{
-	cau_error error = {0};
-	uint64_t from_tick = order->as.timeline.from_tick;
-	page *taken = make_page(order->as.timeline.count);
-	if (!taken) {
-		cau_fail(&error, CAU_NO_MEMORY, "", "no memory for the timeline");
-		cau_answer_fail(order, &error, 0);
-		return;
-	}
-	if (!in_memory(h, from_tick, (uint64_t)taken->capacity)) {
-		cau_event_end_cut(h);
-		cau_reads_hand_over(h, order, answer_from_store, taken, free_page, READ_EXPECTED_S);
-		return;
-	}
-	copy_newest(h, from_tick, taken);
-	cau_read_job now = {.hosted = h, .order = order, .tick = h->tick, .branch = h->branch};
-	answer_page(&now, taken->events, taken->count);
-	free_page(taken);
-	free(order);
+	cau_decide(h, &(cau_logic_event){.kind = CAU_LOGIC_FAULT,
+	                                 .time_s = cau_monotonic_s(),
+	                                 .cause = error->reason});
+	h->realtime_factor = 0; // it stands still, as a paused one does
+	cau_hosted_tell_fault(h, error);
 }

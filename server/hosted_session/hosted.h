@@ -9,6 +9,7 @@
 #include "config/config.h"
 #include "hosted_session/order.h"
 #include "store/store.h"
+#include "stream/stream.h"
 #include "worker/pool.h"
 
 // What all sessions share; outlives them.
@@ -106,27 +107,8 @@ void cau_hosted_abandon(cau_hosted *hosted, uint32_t client);
 
 // ---- streams
 
-// One stream of one connection; zeroed but for `stream` at the start.
-typedef struct cau_subscriber {
-	int32_t stream;
-	bool topology_sent, has_key, wants_key, acknowledges;
-	uint64_t epoch, sequence; // of the last frame sent
-	double key_asked_s;       // a key frame at most once a second
-	double waiting_since_s;   // frames are there and it takes none; 0: not so
-	bool half;                // it keeps falling behind: every second frame (half_rate.c)
-	int32_t falls, steady;    // falls of late; frames taken since the last one
-	size_t in_flight;         // bytes sent and not acknowledged
-	struct {
-		uint64_t sequence;
-		size_t bytes;
-	} sent[32]; // by sequence modulo 32
-} cau_subscriber;
-
 // The frame that the subscriber should get now, shared for the caller, or NULL.
 cau_buffer *cau_hosted_next_frame(cau_hosted *hosted, cau_subscriber *subscriber, double now_s);
-// It holds everything up to this frame.
-void cau_hosted_acknowledge(cau_hosted *hosted, cau_subscriber *subscriber, uint64_t epoch,
-                            uint64_t sequence);
 // True if there is something that the subscriber has not got.
 bool cau_hosted_has_frame(cau_hosted *hosted, const cau_subscriber *subscriber);
 void cau_hosted_leave(cau_hosted *hosted, const cau_subscriber *subscriber);

@@ -6,7 +6,6 @@
 #include <pthread.h>
 #include <stdatomic.h>
 
-#include "cautery/frame_codec.h"
 #include "cautery/session.h"
 #include "clock/clock.h"
 #include "hosted_session/hosted.h"
@@ -14,7 +13,6 @@
 #include "session/logic.h"
 
 enum {
-	RING_FRAMES = 16,  // deltas kept for subscribers that are a little behind
 	EVENT_COUNT = 512, // of the timeline kept in memory
 	SNAPSHOT_COUNT = 64,
 	CUT_MERGE_TICKS = 30, // cuts of neighbouring ticks are one event
@@ -29,37 +27,6 @@ typedef struct cau_refused_motion {
 	uint64_t sequence; // of the newest
 	cau_error error;
 } cau_refused_motion;
-
-typedef struct cau_ring_frame {
-	uint64_t sequence;
-	cau_buffer *buffer;
-} cau_ring_frame;
-
-// The stream for those that keep falling behind: every second frame of the same chain.
-typedef struct cau_half_lane {
-	int32_t subscribers;              // mutex
-	cau_ring_frame ring[RING_FRAMES]; // mutex, by half the sequence modulo RING_FRAMES
-	void *storage;                    // worker, like what follows; NULL until somebody needs it
-	cau_frame_thinner *thinner;
-} cau_half_lane;
-
-typedef struct cau_stream {
-	bool used;                        // slot taken; changed by the worker under the mutex
-	int32_t subscribers;              // mutex
-	bool key_wanted;                  // mutex
-	uint64_t epoch;                   // mutex: of what is in the ring
-	uint64_t newest;                  // mutex: sequence
-	double newest_s;                  // mutex: when it came
-	cau_ring_frame ring[RING_FRAMES]; // mutex, by sequence modulo RING_FRAMES
-	cau_ring_frame key;               // mutex
-	cau_half_lane half;
-	cau_buffer *topology;    // mutex
-	cau_stream_def def;      // worker
-	double rate_hz, next_s;  // worker
-	void *storage, *scratch; // worker
-	size_t scratch_bytes;
-	cau_frame_encoder *encoder; // worker
-} cau_stream;
 
 // A command of the log that is being replayed.
 typedef struct cau_replayed {
@@ -147,12 +114,13 @@ struct cau_hosted {
 	pthread_mutex_t deciding;
 	cau_logic *logic; // orders are its tickets
 
+	cau_streams streams; // with a lock of its own
+
 	pthread_mutex_t mutex;
 	cau_order *cancelling; // session.destroy while it is built
 	cau_order *reads;      // reads.c
 	int32_t read_count;
 	cau_refused_motion refused[CAU_MAX_TOOLS];
-	cau_stream streams[CAU_STREAM_PROFILES_MAX];
 	cau_tool_state tools[CAU_MAX_TOOLS]; // of the newest tick, for transports
 	int32_t tool_count;
 	uint64_t tools_tick;
@@ -175,22 +143,28 @@ void cau_hosted_refuse_gone(cau_order *order); // there is no session for it any
 
 // ---- run.c
 cau_due cau_hosted_run(cau_task *task);
-// Numerical trouble outside a step. The session is faulted; everybody is told.
-void cau_hosted_fault(cau_hosted *h, const cau_error *error);
-void cau_hosted_tell_fault(cau_hosted *h, const cau_error *error);
-void cau_hosted_publish_summary(cau_hosted *h);
 void cau_hosted_end_slice(cau_hosted *h); // commits, and tells others what they may know
+
+// ---- summary.c
+void cau_hosted_publish_summary(cau_hosted *h);
 
 // ---- tools.c
 void cau_hosted_publish_tools(cau_hosted *h); // for other threads to read
 
-// ---- building.c: the builder's part
-// Leaves a session that was just made to the builder.
-cau_status cau_building_begin(cau_hosted *h, cau_error *error);
+// ---- building.c: the borders of its stages
 // Between two stages.
 cau_status cau_building_border(void *user, const cau_build_border *border, cau_error *error);
 // Takes the order if it destroys a session that is being built.
 bool cau_building_cancel(cau_hosted *h, cau_order *order);
+// Whether somebody destroys it: h->destroyers.
+bool cau_building_destroyed(cau_hosted *h);
+// From here on it is the workers', and a session.destroy waits in the queue. Returns those that
+// came before.
+cau_order *cau_building_give_back(cau_hosted *h);
+
+// ---- build_job.c
+// Leaves a session that was just made to the builder.
+cau_status cau_building_begin(cau_hosted *h, cau_error *error);
 
 // ---- start.c: builds the core, loads the state; on the builder
 void cau_hosted_start(cau_hosted *h);
@@ -206,9 +180,12 @@ cau_status cau_replay_begin(cau_hosted *h, const char *session, int64_t branch, 
 bool cau_replay_slice(cau_hosted *h);
 void cau_replay_finish(cau_replay *replay);
 
-// ---- decide.c: the door to the session's decisions, from any thread
+// ---- decide.c: the session's decisions, from any thread
 // Takes one event, and does what it leads to but for what is the worker's.
 void cau_decide(cau_hosted *h, const cau_logic_event *event);
+// The same for an order, which is taken on CAU_OK.
+cau_status cau_decide_order(cau_hosted *h, cau_order *order, const cau_asked *asked,
+                            cau_error *error);
 // What the worker is to do now, and what came of it.
 void cau_decide_next(cau_hosted *h, cau_action *action);
 void cau_decide_done(cau_hosted *h, cau_outcome_kind outcome);
@@ -227,11 +204,7 @@ static inline int cau_decided_state(const cau_hosted *h)
 
 // ---- apply.c: what each order does. Takes the order if it is done or answered.
 cau_outcome_kind cau_hosted_apply(cau_hosted *h, cau_order *order, const cau_action *action);
-// Looks whether the order was sent before; answers it if so.
-cau_outcome_kind cau_hosted_look(cau_hosted *h, cau_order *order);
 void cau_hosted_refuse_order(cau_hosted *h, cau_order *order, const cau_action *action);
-// A command of the daemon's own: submitted to the core and logged for nobody.
-void cau_hosted_command(cau_hosted *h, const cau_command *command);
 
 // ---- what CAU_ORDER_TABLE names (order.h), in the file that each belongs to. Each takes the
 // order. cau_apply_pause may get none: it was answered when it came.
@@ -249,31 +222,20 @@ void cau_time_stepped(cau_hosted *h, cau_order *order, bool failed);
 // After the replay of a rewind, reset or restore.
 void cau_back_arrived(cau_hosted *h, cau_order *order);
 
-// ---- drive.c: what the core, the log and clients are told of drivers and energy
-// Energy off and the tool where it is, as was decided.
-void cau_drive_do_cut(cau_hosted *h, const cau_action *action);
+// ---- drivers.c: what clients are told of drivers and energy
 void cau_drive_tell(cau_hosted *h, const cau_drive *drive); // tool.driver_changed
 void cau_drive_describe(const cau_drive *drive, cau_wire_driver *driver);
 // Counts a refused motion; told once a second by cau_drive_tell_refusals.
 void cau_drive_refuse(cau_hosted *h, const cau_order *order, const cau_error *error);
 void cau_drive_tell_refusals(cau_hosted *h, double now_s);
 
-// ---- streams.c (subscribe.c: what a subscriber gets)
-void cau_streams_publish(cau_hosted *h, double now_s); // frames that are due
-void cau_streams_restart(cau_hosted *h);               // a new epoch
-void cau_streams_destroy(cau_hosted *h);
-cau_buffer *cau_stream_take(const cau_stream *stream, size_t bytes); // copies them from the scratch
+// ---- drive.c: what the core and the log are told of them
+// Energy off and the tool where it is, as was decided.
+void cau_drive_do_cut(cau_hosted *h, const cau_action *action);
 
-// ---- half_rate.c
-void cau_half_publish(cau_hosted *h, cau_stream *stream); // after each frame of the stream
-void cau_half_clear(cau_stream *stream);                  // the rest under the mutex
-void cau_half_finish(cau_stream *stream);
-// The delta that the subscriber needs next, which may be gone; NULL: it waits for the one after.
-const cau_ring_frame *cau_half_choose(const cau_stream *stream, const cau_subscriber *sub,
-                                      double now_s);
-void cau_half_fallen(cau_hosted *h, cau_stream *stream, cau_subscriber *sub);
-void cau_half_steady(cau_hosted *h, cau_stream *stream, cau_subscriber *sub);
-void cau_half_leave(cau_stream *stream, const cau_subscriber *sub);
+// ---- frames.c: the session's side of its streams
+void cau_frames_publish(cau_hosted *h, double now_s); // those that are due
+void cau_frames_restart(cau_hosted *h);               // a new epoch
 
 // ---- record.c: the store
 cau_store_batch *cau_record_batch(cau_hosted *h); // of this slice; NULL if memory ran out
@@ -294,17 +256,24 @@ void cau_record_commit(cau_hosted *h); // submits the slice's batch
 // (wait), CAU_ALREADY_EXISTS (acted upon, and the answer is not kept any more).
 cau_status cau_record_resend(cau_hosted *h, const cau_order *order, cau_error *error);
 
-// ---- reads.c: requests that only read
+// ---- read_queue.c: requests that only read
 bool cau_reads_are(const cau_order *order);
+bool cau_reads_make_file(const cau_order *order);
 // Like cau_hosted_submit, for those.
 cau_status cau_reads_submit(cau_hosted *h, cau_order *order, cau_error *error);
 // How many wait. Noted before a slice takes the drivers' queue, so that each is served after all
 // commands that came before it.
 int32_t cau_reads_note(cau_hosted *h);
-// Serves some of the `noted` oldest.
-void cau_reads_serve(cau_hosted *h, int32_t noted);
+// The first of the `*noted` oldest that can be served now, NULL: none; counts down those it looked
+// at.
+cau_order *cau_reads_take(cau_hosted *h, int32_t *noted);
 bool cau_reads_wait(cau_hosted *h); // some can be served now
 
+// ---- reads.c
+// Serves some of the `noted` oldest.
+void cau_reads_serve(cau_hosted *h, int32_t noted);
+
+// ---- read_jobs.c
 // What the builder needs for an answer; its thread must look at nothing of the session that steps
 // change.
 typedef struct cau_read_job {
@@ -321,11 +290,16 @@ void cau_reads_hand_over(cau_hosted *h, cau_order *order, cau_read_work *work, v
                          void (*finish)(void *copy), double expected_s);
 
 // ---- answer.c
-// Answers at once, or after the commit if the method changes something. Takes the order.
-void cau_answer_order(cau_hosted *h, cau_order *order, const void *result);
 void cau_answer_fail(cau_order *order, const cau_error *error, int32_t code);
 // Sends a notification.
 void cau_answer_notify(cau_hosted *h, cau_audience audience, cau_method method, const void *params);
+
+// ---- reply.c
+// Answers at once, or after the commit if the method changes something. Takes the order.
+void cau_answer_order(cau_hosted *h, cau_order *order, const void *result);
+// Looks whether the order was sent before; answers it if so.
+cau_outcome_kind cau_hosted_look(cau_hosted *h, cau_order *order);
+// Tells of a change of the session. `client` may be NULL or "".
 void cau_answer_changed(cau_hosted *h, int change, const char *client);
 char *cau_answer_description(cau_hosted *h, cau_method method, size_t *bytes, cau_error *error);
 
@@ -335,3 +309,13 @@ void cau_event_add(cau_hosted *h, int kind, const char *tool, const char *client
 void cau_event_end_cut(cau_hosted *h); // before a session rests or goes elsewhere
 void cau_event_settle(cau_hosted *h);  // after each step
 void cau_events_load(cau_hosted *h);   // from the store: of the present branch up to the tick
+typedef struct cau_event_page {
+	cau_wire_timeline_event *events; // newest first while it is read
+	int32_t count, capacity;
+} cau_event_page;
+// The newest on the branch's line from `from_tick` up to `to_tick`, the oldest of them first.
+cau_status cau_events_read(const cau_hosted *h, int64_t branch, uint64_t from_tick,
+                           uint64_t to_tick, cau_event_page *taken, cau_error *error);
+// Numerical trouble outside a step. The session is faulted; everybody is told.
+void cau_hosted_fault(cau_hosted *h, const cau_error *error);
+void cau_hosted_tell_fault(cau_hosted *h, const cau_error *error);

@@ -12,7 +12,7 @@
 //
 //     CHANGE(KIND, ask, apply)  waits in the session's queue. ask: what the decision knows it as,
 //                               CAU_ASK_<ask> of session/logic.h; of a COMMAND it is its command's
-//     READ(KIND, apply)         changes nothing, and waits apart from the drivers (reads.c)
+//     READ(KIND, apply)         changes nothing, and waits apart from the drivers (read_queue.c)
 #define CAU_ORDER_TABLE(CHANGE, READ)                                                              \
 	CHANGE(COMMAND, TISSUE, cau_apply_command) /* as.command */                                    \
 	CHANGE(PAUSE, PAUSE, cau_apply_pause)                                                          \

@@ -1,19 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// What only reads a session waits apart from its drivers: it has a queue of its own with a bound of
-// its own, is served after their commands, for a moment in each slice, and leaves what takes long
-// to the builder. So nobody who may merely look can slow a session down or fill its queue.
-#include <stdlib.h>
-#include <string.h>
-
+// Requests that only read, served at the end of a slice.
 #include "hosted_session/internal.h"
 
-#define SLICE_S 0.002        // served in one slice; the last one begun may go beyond it
-#define BORDER_SOON_S 0.0334 // a running session's reads wait for a border that is this near
-
-enum {
-	FILES_AT_ONCE = 2, // of one session with the builder: each holds a copy of its state
-	CLIENT_SHARE = 4,  // one client has at most this part of the queue
-};
+#define SLICE_S 0.002 // served in one slice; the last one begun may go beyond it
 
 #define CHANGE(...)
 #define READ(kind, apply) [CAU_ORDER_##kind] = (apply),
@@ -21,162 +10,12 @@ static cau_served *const handlers[CAU_ORDER_COUNT] = {CAU_ORDER_TABLE(CHANGE, RE
 #undef CHANGE
 #undef READ
 
-bool cau_reads_are(const cau_order *order)
-{
-	return handlers[order->kind] != NULL;
-}
-
-static bool makes_file(const cau_order *order)
-{
-	return cau_method_describe(order->reply.method)->cost == CAU_COST_FILE;
-}
-
-static cau_status append(cau_hosted *h, cau_order *order, cau_error *error)
-{
-	int64_t most = h->around->config->queue_reads, its_own = 0;
-	cau_order **end = &h->reads;
-	for (; *end; end = &(*end)->next)
-		its_own += (*end)->asker.client == order->asker.client;
-	if (h->read_count >= most)
-		return cau_fail(error, CAU_LIMIT, "",
-		                "%lld requests that read this session wait (setting queue_reads): try "
-		                "again in 1 s",
-		                (long long)most);
-	if (its_own >= most / CLIENT_SHARE)
-		return cau_fail(error, CAU_LIMIT, "",
-		                "%lld requests of this client that read the session wait, a quarter of "
-		                "what may (setting queue_reads): try again when one is answered",
-		                (long long)its_own);
-	order->next = NULL;
-	*end = order;
-	h->read_count++;
-	return CAU_OK;
-}
-
-cau_status cau_reads_submit(cau_hosted *h, cau_order *order, cau_error *error)
-{
-	if (!order->reply.answer) { // nobody would hear the answer
-		free(order);
-		return CAU_OK;
-	}
-	pthread_mutex_lock(&h->mutex);
-	cau_status status = append(h, order, error);
-	bool soon = h->summary.state == CAU_SESSION_RUNNING &&
-	            h->summary.step_s <= BORDER_SOON_S * h->summary.speed;
-	pthread_mutex_unlock(&h->mutex);
-	if (!status && !soon)
-		cau_worker_pool_wake(h->around->pool, &h->task);
-	return status;
-}
-
-int32_t cau_reads_note(cau_hosted *h)
-{
-	pthread_mutex_lock(&h->mutex);
-	int32_t count = h->read_count;
-	pthread_mutex_unlock(&h->mutex);
-	return count;
-}
-
-// Takes the first of the `*noted` oldest that can be served now; counts down those it looked at.
-static cau_order *take(cau_hosted *h, int32_t *noted)
-{
-	pthread_mutex_lock(&h->mutex);
-	cau_order **place = &h->reads;
-	int32_t passed = 0;
-	while (*place && passed < *noted && makes_file(*place) && h->files >= FILES_AT_ONCE) {
-		place = &(*place)->next;
-		passed++;
-	}
-	cau_order *order = passed < *noted ? *place : NULL;
-	if (order) {
-		*place = order->next;
-		order->next = NULL;
-		h->read_count--;
-		--*noted;
-	}
-	pthread_mutex_unlock(&h->mutex);
-	return order;
-}
-
 void cau_reads_serve(cau_hosted *h, int32_t noted)
 {
 	double end_s = cau_monotonic_s() + SLICE_S;
-	for (cau_order *order; (order = take(h, &noted));) {
+	for (cau_order *order; (order = cau_reads_take(h, &noted));) {
 		handlers[order->kind](h, order);
 		if (cau_monotonic_s() >= end_s)
 			return;
 	}
-}
-
-bool cau_reads_wait(cau_hosted *h)
-{
-	pthread_mutex_lock(&h->mutex);
-	const cau_order *order = h->reads;
-	while (order && makes_file(order) && h->files >= FILES_AT_ONCE)
-		order = order->next;
-	pthread_mutex_unlock(&h->mutex);
-	return order != NULL;
-}
-
-// ---- those that the builder does ------------------------------------------------------
-typedef struct reading {
-	cau_job job; // first
-	cau_read_job read;
-	cau_read_work *work;
-	void (*finish)(void *copy);
-} reading;
-
-static void end(reading *r)
-{
-	cau_hosted *h = r->read.hosted;
-	if (r->finish)
-		r->finish(r->read.copy);
-	if (makes_file(r->read.order))
-		atomic_fetch_sub(&h->files, 1);
-	free(r->read.order);
-	cau_worker_pool_wake(h->around->pool, &h->task); // others may have waited for this
-	cau_hosted_release(h);
-	free(r);
-}
-
-static void run(cau_job *job)
-{
-	reading *r = (reading *)job;
-	r->work(&r->read);
-	end(r);
-}
-
-static void drop(cau_job *job)
-{
-	reading *r = (reading *)job;
-	cau_error error = {0};
-	cau_fail(&error, CAU_BAD_STATE, "", "the daemon is ending");
-	cau_reply_fail(&r->read.order->reply, &error, CAU_RPC_DRAINING);
-	end(r);
-}
-
-void cau_reads_hand_over(cau_hosted *h, cau_order *order, cau_read_work *work, void *copy,
-                         void (*finish)(void *copy), double expected_s)
-{
-	reading *r = malloc(sizeof *r);
-	if (!r) {
-		cau_error error = {0};
-		cau_fail(&error, CAU_NO_MEMORY, "", "no memory for the answer");
-		if (finish)
-			finish(copy);
-		cau_answer_fail(order, &error, 0);
-		return;
-	}
-	*r = (reading){.job = {.run = run, .drop = drop, .expected_s = expected_s},
-	               .read = {.hosted = cau_hosted_share(h),
-	                        .order = order,
-	                        .tick = h->tick,
-	                        .branch = h->branch,
-	                        .copy = copy},
-	               .work = work,
-	               .finish = finish};
-	if (makes_file(order))
-		atomic_fetch_add(&h->files, 1);
-	cau_record_commit(h); // what the builder reads from the store is on its way there
-	cau_builder_submit(h->around->builder, &r->job);
 }

@@ -14,52 +14,6 @@ enum {
 	QUIET_DOUBLINGS = 6
 }; // an untouched session has a checkpoint every 64 checkpoint_s at least
 
-void cau_hosted_tell_fault(cau_hosted *h, const cau_error *error)
-{
-	cau_wire_session_faulted params = {.tick = (int64_t)h->tick};
-	snprintf(params.session, sizeof params.session, "%s", h->id);
-	snprintf(params.reason, sizeof params.reason, "%.319s", error->reason);
-	cau_event_add(h, CAU_EVENT_FAULT, NULL, NULL, 0, error->reason);
-	cau_answer_notify(h, (cau_audience){CAU_AUDIENCE_SESSION, h->number},
-	                  CAU_METHOD_SESSION_FAULTED, &params);
-	h->dirty = true;
-}
-
-void cau_hosted_fault(cau_hosted *h, const cau_error *error)
-{
-	cau_decide(h, &(cau_logic_event){.kind = CAU_LOGIC_FAULT,
-	                                 .time_s = cau_monotonic_s(),
-	                                 .cause = error->reason});
-	h->realtime_factor = 0; // it stands still, as a paused one does
-	cau_hosted_tell_fault(h, error);
-}
-
-void cau_hosted_publish_summary(cau_hosted *h)
-{
-	cau_wire_session_summary now = {
-		.state = h->starting ? CAU_SESSION_STARTING : cau_decided_state(h),
-		.tick = (int64_t)h->tick,
-		.time_s = (double)h->tick * h->scene->step_s,
-		.step_s = h->scene->step_s,
-		.speed = h->logic->speed,
-		.realtime_factor = h->realtime_factor,
-		.vertex_count = h->info.vertex_count,
-		.face_count = h->info.face_count,
-		.tool_count = h->logic->drive_count,
-		.epoch = h->epoch,
-		.has_fault = cau_decided_state(h) == CAU_SESSION_FAULTED && *h->logic->fault,
-	};
-	now.has_stage = h->starting && *h->stage;
-	snprintf(now.stage, sizeof now.stage, "%s", h->stage);
-	memcpy(now.session, h->id, sizeof now.session);
-	memcpy(now.scene, h->scene->name, sizeof now.scene);
-	snprintf(now.fault, sizeof now.fault, "%.319s", h->logic->fault);
-	pthread_mutex_lock(&h->mutex);
-	h->summary = now;
-	h->counts.realtime_factor = h->realtime_factor;
-	pthread_mutex_unlock(&h->mutex);
-}
-
 // ---- time
 static void note_cut(cau_hosted *h, const cau_frame *frame)
 {
@@ -180,7 +134,7 @@ static void act_until_tick(cau_hosted *h)
 				measure_factor(h, cau_monotonic_s());
 				return;
 			}
-			cau_streams_publish(h, cau_monotonic_s());
+			cau_frames_publish(h, cau_monotonic_s());
 			if (cau_monotonic_s() >= end_s)
 				return;
 			continue;
@@ -269,7 +223,7 @@ static void serve(cau_hosted *h, double now_s)
 	if (h->ended || h->replay.active)
 		return;
 	cau_drive_tell_refusals(h, now_s);
-	cau_streams_publish(h, cau_monotonic_s());
+	cau_frames_publish(h, cau_monotonic_s());
 	checkpoint_if_due(h, now_s);
 	cau_reads_serve(h, reads);
 }

@@ -195,7 +195,7 @@ void cau_hosted_started(cau_hosted *h)
 	if (!restarted)
 		cau_record_mark(h);
 	cau_decide_arrived(h, state, restarted ? "the daemon was restarted" : "a new session");
-	cau_streams_restart(h);
+	cau_frames_restart(h);
 	h->window_s = cau_monotonic_s();
 	h->window_tick = h->tick;
 	h->stage[0] = 0;

@@ -219,7 +219,7 @@ void cau_back_arrived(cau_hosted *h, cau_order *order)
 	cau_record_checkpoint(h, NULL, NULL);
 	cau_decide_arrived(h, state == CAU_SESSION_FAULTED ? CAU_SESSION_PAUSED : state,
 	                   "the session went back");
-	cau_streams_restart(h);
+	cau_frames_restart(h);
 	cau_record_state(h);
 	h->window_s = cau_monotonic_s();
 	h->window_tick = h->tick;

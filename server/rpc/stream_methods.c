@@ -97,8 +97,7 @@ void cau_call_stream_ack(cau_call *call)
 	cau_subscription *stream = subscription_of(call);
 	if (!stream || cau_rpc_params(call->message, &params, &error))
 		return;
-	cau_hosted_acknowledge(stream->hosted, &stream->subscriber, params.epoch,
-	                       (uint64_t)params.sequence);
+	cau_streams_acknowledge(&stream->subscriber, params.epoch, (uint64_t)params.sequence);
 	cau_connection_want_frame(call->peer->connection);
 }
 

@@ -15,9 +15,7 @@ import symbols
 
 # Folders whose files may be in a circle, each with the reason. One that is in none any more is to be
 # taken out.
-ALLOWED = {
-    "server/hosted_session": "its files share one struct, and streams, queue and store are yet to be parted",
-}
+ALLOWED = {}
 
 
 def needs_of(objects):

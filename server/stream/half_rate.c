@@ -3,7 +3,7 @@
 // delta over two frames; it belongs to the same chain, so they come and go without a key frame.
 #include <stdlib.h>
 
-#include "hosted_session/internal.h"
+#include "stream/internal.h"
 
 enum {
 	FALLS_TOLERATED = 3,
@@ -16,11 +16,11 @@ static size_t slot_of(uint64_t sequence)
 	return sequence / CAU_FRAME_THINNING % RING_FRAMES;
 }
 
-static bool is_wanted(cau_hosted *h, const cau_stream *stream)
+static bool is_wanted(cau_streams *streams, const cau_stream *stream)
 {
-	pthread_mutex_lock(&h->mutex);
+	pthread_mutex_lock(&streams->mutex);
 	bool wanted = stream->half.subscribers > 0;
-	pthread_mutex_unlock(&h->mutex);
+	pthread_mutex_unlock(&streams->mutex);
 	return wanted;
 }
 
@@ -34,41 +34,27 @@ static cau_status open_lane(cau_stream *stream, cau_error *error)
 	return cau_frame_thinner_init(lane->storage, bytes, stream->encoder, &lane->thinner, error);
 }
 
-void cau_half_publish(cau_hosted *h, cau_stream *stream)
+void cau_half_publish(cau_streams *streams, cau_stream *stream)
 {
 	cau_error error = {0};
 	size_t bytes = 0;
-	if (!is_wanted(h, stream))
+	if (!is_wanted(streams, stream))
 		return;
 	cau_status status = stream->half.storage ? CAU_OK : open_lane(stream, &error);
 	if (!status)
 		status = cau_frame_thin(stream->half.thinner, stream->scratch, stream->scratch_bytes,
 		                        &bytes, &error);
 	if (status) // they go on with single frames
-		cau_log(CAU_LOG_ERROR, h->id, "half_rate_failed", "reason=\"%s\"", error.reason);
-	cau_buffer *buffer = bytes ? cau_stream_take(stream, bytes) : NULL;
+		cau_log(CAU_LOG_ERROR, streams->id, "half_rate_failed", "reason=\"%s\"", error.reason);
+	cau_buffer *buffer = bytes ? cau_ring_take(stream, bytes) : NULL;
 	if (!buffer)
 		return;
 	uint64_t sequence = cau_frame_encoder_sequence(stream->encoder);
-	pthread_mutex_lock(&h->mutex);
+	pthread_mutex_lock(&streams->mutex);
 	cau_ring_frame *slot = &stream->half.ring[slot_of(sequence)];
 	cau_buffer_release(slot->buffer);
 	*slot = (cau_ring_frame){sequence, buffer};
-	pthread_mutex_unlock(&h->mutex);
-}
-
-void cau_half_clear(cau_stream *stream)
-{
-	for (int i = 0; i < RING_FRAMES; i++) {
-		cau_buffer_release(stream->half.ring[i].buffer);
-		stream->half.ring[i] = (cau_ring_frame){0};
-	}
-}
-
-void cau_half_finish(cau_stream *stream)
-{
-	cau_half_clear(stream);
-	free(stream->half.storage);
+	pthread_mutex_unlock(&streams->mutex);
 }
 
 const cau_ring_frame *cau_half_choose(const cau_stream *stream, const cau_subscriber *sub,
@@ -85,22 +71,22 @@ const cau_ring_frame *cau_half_choose(const cau_stream *stream, const cau_subscr
 	return comes ? NULL : single;
 }
 
-static void change(cau_hosted *h, cau_stream *stream, cau_subscriber *sub, bool half)
+static void change(const cau_streams *streams, cau_stream *stream, cau_subscriber *sub, bool half)
 {
 	sub->half = half;
 	stream->half.subscribers += half ? 1 : -1;
-	cau_log(CAU_LOG_INFO, h->id, half ? "half_rate" : "full_rate", "profile=%u subscribers=%d",
-	        stream->def.profile, stream->half.subscribers);
+	cau_log(CAU_LOG_INFO, streams->id, half ? "half_rate" : "full_rate",
+	        "profile=%u subscribers=%d", stream->def.profile, stream->half.subscribers);
 }
 
-void cau_half_fallen(cau_hosted *h, cau_stream *stream, cau_subscriber *sub)
+void cau_half_fallen(const cau_streams *streams, cau_stream *stream, cau_subscriber *sub)
 {
 	sub->steady = 0;
 	if (!sub->half && ++sub->falls > FALLS_TOLERATED)
-		change(h, stream, sub, true);
+		change(streams, stream, sub, true);
 }
 
-void cau_half_steady(cau_hosted *h, cau_stream *stream, cau_subscriber *sub)
+void cau_half_steady(const cau_streams *streams, cau_stream *stream, cau_subscriber *sub)
 {
 	if (++sub->steady < STEADY_FRAMES)
 		return;
@@ -108,7 +94,7 @@ void cau_half_steady(cau_hosted *h, cau_stream *stream, cau_subscriber *sub)
 	sub->falls = 0;
 	if (!sub->half)
 		return;
-	change(h, stream, sub, false);
+	change(streams, stream, sub, false);
 	sub->falls = FALLS_TOLERATED; // on trial
 }
 

@@ -24,7 +24,7 @@ static void open_stream(cau_hosted *h)
 	def.vertex_count = info.vertex_count;
 	def.face_count = info.face_count;
 	def.channels = CAU_CHANNEL_POSITIONS | CAU_CHANNEL_TEMPERATURE;
-	cau_stream *stream = &h->streams[0];
+	cau_stream *stream = &h->streams.stream[0];
 	*stream = (cau_stream){.used = true, .epoch = 7, .rate_hz = 60, .def = def};
 	size_t bytes = cau_frame_encoder_bytes(&def);
 	stream->scratch_bytes = cau_frame_bytes_max(&def);
@@ -37,8 +37,8 @@ static void open_stream(cau_hosted *h)
 static bool makes_temperature(cau_hosted *h, int32_t subscribers)
 {
 	cau_frame frame;
-	h->streams[0].subscribers = subscribers;
-	cau_streams_publish(h, 100);
+	h->streams.stream[0].subscribers = subscribers;
+	cau_frames_publish(h, 100);
 	cau_session_frame(h->core, &frame);
 	return frame.temperature != NULL;
 }
@@ -57,6 +57,7 @@ static void temperature_is_made_while_it_is_watched(void **state)
 	h->logic = malloc(cau_logic_bytes(8));
 	cau_logic_init(h->logic, 8);
 	pthread_mutex_init(&h->mutex, NULL);
+	cau_streams_init(&h->streams);
 	pthread_mutex_init(&h->deciding, NULL);
 	h->around = &around;
 	open_stream(h);
@@ -64,7 +65,7 @@ static void temperature_is_made_while_it_is_watched(void **state)
 	assert_true(makes_temperature(h, 1));
 	assert_true(makes_temperature(h, 2));
 	assert_false(makes_temperature(h, 0));
-	cau_streams_destroy(h);
+	cau_streams_finish(&h->streams);
 	cau_session_destroy(h->core);
 	pthread_mutex_destroy(&h->mutex);
 	pthread_mutex_destroy(&h->deciding);

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// What a subscriber gets next; on the transport's thread.
-#include "hosted_session/internal.h"
+// What a subscriber gets next; on the thread of its transport.
+#include "stream/internal.h"
 
 #define KEY_PAUSE_S 1.0 // between key frames of one client
 
@@ -11,8 +11,8 @@ static cau_buffer *take_frame(cau_subscriber *sub, const cau_stream *stream,
 	sub->wants_key = false;
 	sub->epoch = stream->epoch;
 	sub->sequence = frame->sequence;
-	sub->sent[frame->sequence % 32].sequence = frame->sequence;
-	sub->sent[frame->sequence % 32].bytes = frame->buffer->byte_count;
+	sub->sent[frame->sequence % SENT_FRAMES].sequence = frame->sequence;
+	sub->sent[frame->sequence % SENT_FRAMES].bytes = frame->buffer->byte_count;
 	sub->in_flight += frame->buffer->byte_count;
 	return cau_buffer_share(frame->buffer);
 }
@@ -32,8 +32,8 @@ static cau_buffer *next_key(cau_stream *stream, cau_subscriber *sub, double now_
 	return NULL;
 }
 
-static cau_buffer *next_delta(cau_hosted *h, cau_stream *stream, cau_subscriber *sub, double now_s,
-                              size_t bound)
+static cau_buffer *next_delta(const cau_streams *streams, cau_stream *stream, cau_subscriber *sub,
+                              double now_s, size_t bound)
 {
 	if (sub->sequence >= stream->newest)
 		return NULL;
@@ -43,22 +43,23 @@ static cau_buffer *next_delta(cau_hosted *h, cau_stream *stream, cau_subscriber 
 	uint64_t over = frame->sequence - sub->sequence;
 	if (!frame->buffer || over == 0 || over > CAU_FRAME_THINNING) { // it has left the ring
 		sub->wants_key = true;
-		cau_half_fallen(h, stream, sub);
+		cau_half_fallen(streams, stream, sub);
 		return NULL;
 	}
 	if (sub->acknowledges && sub->in_flight > bound)
 		return NULL;
-	cau_half_steady(h, stream, sub);
+	cau_half_steady(streams, stream, sub);
 	return take_frame(sub, stream, frame);
 }
 
-cau_buffer *cau_hosted_next_frame(cau_hosted *h, cau_subscriber *sub, double now_s)
+cau_buffer *cau_streams_next_frame(cau_streams *streams, cau_subscriber *sub, double now_s,
+                                   bool *wake)
 {
 	cau_buffer *buffer = NULL;
-	bool wake = false;
-	cau_stream *stream = &h->streams[sub->stream];
-	size_t bound = (size_t)h->around->config->subscriber_bytes;
-	pthread_mutex_lock(&h->mutex);
+	cau_stream *stream = &streams->stream[sub->stream];
+	size_t bound = streams->in_flight_most;
+	*wake = false;
+	pthread_mutex_lock(&streams->mutex);
 	if (!sub->topology_sent) {
 		sub->topology_sent = sub->wants_key = true;
 		buffer = cau_buffer_share(stream->topology);
@@ -66,42 +67,50 @@ cau_buffer *cau_hosted_next_frame(cau_hosted *h, cau_subscriber *sub, double now
 		if (sub->epoch != stream->epoch)
 			sub->wants_key = true;
 		if (!sub->wants_key)
-			buffer = next_delta(h, stream, sub, now_s, bound);
+			buffer = next_delta(streams, stream, sub, now_s, bound);
 		if (sub->wants_key && !(sub->acknowledges && sub->in_flight > bound))
-			buffer = next_key(stream, sub, now_s, &wake);
+			buffer = next_key(stream, sub, now_s, wake);
 	}
-	pthread_mutex_unlock(&h->mutex);
-	if (wake)
-		cau_worker_pool_wake(h->around->pool, &h->task);
+	pthread_mutex_unlock(&streams->mutex);
 	return buffer;
 }
 
-bool cau_hosted_has_frame(cau_hosted *h, const cau_subscriber *sub)
+bool cau_streams_has_frame(cau_streams *streams, const cau_subscriber *sub)
 {
-	const cau_stream *stream = &h->streams[sub->stream];
-	pthread_mutex_lock(&h->mutex);
+	const cau_stream *stream = &streams->stream[sub->stream];
+	pthread_mutex_lock(&streams->mutex);
 	bool behind = !sub->topology_sent || sub->epoch != stream->epoch || sub->wants_key ||
 	              sub->sequence < stream->newest;
-	pthread_mutex_unlock(&h->mutex);
+	pthread_mutex_unlock(&streams->mutex);
 	return behind;
 }
 
-void cau_hosted_acknowledge(cau_hosted *h, cau_subscriber *sub, uint64_t epoch, uint64_t sequence)
+void cau_streams_acknowledge(cau_subscriber *sub, uint64_t epoch, uint64_t sequence)
 {
-	(void)h;
 	if (epoch != sub->epoch || sequence > sub->sequence)
 		return;
 	sub->acknowledges = true;
 	sub->in_flight = 0;
-	for (size_t i = 0; i < 32; i++)
+	for (size_t i = 0; i < SENT_FRAMES; i++)
 		if (sub->sent[i].sequence > sequence && sub->sent[i].sequence <= sub->sequence)
 			sub->in_flight += sub->sent[i].bytes;
 }
 
-void cau_hosted_leave(cau_hosted *h, const cau_subscriber *sub)
+void cau_streams_leave(cau_streams *streams, const cau_subscriber *sub)
 {
-	pthread_mutex_lock(&h->mutex);
-	h->streams[sub->stream].subscribers--;
-	cau_half_leave(&h->streams[sub->stream], sub);
-	pthread_mutex_unlock(&h->mutex);
+	pthread_mutex_lock(&streams->mutex);
+	streams->stream[sub->stream].subscribers--;
+	cau_half_leave(&streams->stream[sub->stream], sub);
+	pthread_mutex_unlock(&streams->mutex);
+}
+
+void cau_streams_count(cau_streams *streams, cau_stream_counts *counts)
+{
+	pthread_mutex_lock(&streams->mutex);
+	*counts = streams->counts;
+	for (int i = 0; i < CAU_STREAM_PROFILES_MAX; i++) {
+		counts->subscribers += streams->stream[i].subscribers;
+		counts->half_rate += streams->stream[i].half.subscribers;
+	}
+	pthread_mutex_unlock(&streams->mutex);
 }

@@ -7,14 +7,12 @@
 
 #include <cmocka.h>
 
-#include "hosted_session/internal.h"
+#include "stream/internal.h"
 
 enum { VERTICES = 60, FACES = 64, BOUND = 4000, TOLERATED = 3, STEADY = 600 };
 
 typedef struct scene {
-	cau_config config;
-	cau_surroundings around;
-	cau_hosted *h;
+	cau_streams streams;
 	cau_stream *stream;
 	double position[3 * VERTICES], now_s;
 	uint32_t mask[(FACES + 31) / 32];
@@ -25,7 +23,7 @@ typedef struct scene {
 // ---- a stream without a session -----------------------------------------------------------------
 static void open_stream(scene *s)
 {
-	cau_stream *stream = s->stream = &s->h->streams[0];
+	cau_stream *stream = s->stream = &s->streams.stream[0];
 	cau_stream_def def = cau_default_stream_def();
 	def.vertex_count = VERTICES;
 	def.face_count = FACES;
@@ -45,24 +43,15 @@ static void open_stream(scene *s)
 static void scene_init(scene *s)
 {
 	*s = (scene){.now_s = 100};
-	cau_config_default(&s->config);
-	s->config.subscriber_bytes = BOUND;
-	s->around.config = &s->config;
-	s->h = calloc(1, sizeof *s->h);
-	pthread_mutex_init(&s->h->mutex, NULL);
-	s->h->around = &s->around;
-	assert_int_equal(cau_worker_pool_create(&s->around.pool, 1, 4, 0, NULL), CAU_OK);
-	snprintf(s->h->id, sizeof s->h->id, "d1-test");
+	s->streams = (cau_streams){.id = "d1-test", .in_flight_most = BOUND};
+	cau_streams_init(&s->streams);
 	open_stream(s);
 }
 
 static void scene_finish(scene *s)
 {
-	cau_worker_pool_destroy(s->around.pool);
-	cau_streams_destroy(s->h);
-	pthread_mutex_destroy(&s->h->mutex);
+	cau_streams_finish(&s->streams);
 	free(s->decoder);
-	free(s->h);
 }
 
 static void put(cau_ring_frame *slot, uint64_t sequence, cau_buffer *buffer)
@@ -71,7 +60,7 @@ static void put(cau_ring_frame *slot, uint64_t sequence, cau_buffer *buffer)
 	*slot = (cau_ring_frame){sequence, buffer};
 }
 
-// The next frame, as streams.c publishes it, and a key frame if one is wanted.
+// The next frame, as publish.c makes it, and a key frame if one is wanted.
 static void publish(scene *s)
 {
 	cau_stream *stream = s->stream;
@@ -84,18 +73,18 @@ static void publish(scene *s)
 	                                  stream->scratch_bytes, &bytes, NULL),
 	                 CAU_OK);
 	uint64_t sequence = cau_frame_encoder_sequence(stream->encoder);
-	cau_buffer *buffer = cau_stream_take(stream, bytes);
+	cau_buffer *buffer = cau_ring_take(stream, bytes);
 	put(sequence == 1 ? &stream->key : &stream->ring[sequence % RING_FRAMES], sequence, buffer);
 	stream->newest = sequence;
 	stream->newest_s = s->now_s;
-	cau_half_publish(s->h, stream);
+	cau_half_publish(&s->streams, stream);
 	if (!stream->key_wanted)
 		return;
 	stream->key_wanted = false;
 	assert_int_equal(
 		cau_frame_encode_key(stream->encoder, stream->scratch, stream->scratch_bytes, &bytes, NULL),
 		CAU_OK);
-	put(&stream->key, sequence, cau_stream_take(stream, bytes));
+	put(&stream->key, sequence, cau_ring_take(stream, bytes));
 }
 
 // Takes what the subscriber gets now; the frame's header, sequence 0 if there is none.
@@ -103,7 +92,10 @@ static cau_frame_header take(scene *s, cau_subscriber *sub)
 {
 	cau_frame_header header = {0};
 	cau_error error = {0};
-	cau_buffer *frame = cau_hosted_next_frame(s->h, sub, s->now_s);
+	bool wake, wanted = s->stream->key_wanted;
+	cau_buffer *frame = cau_streams_next_frame(&s->streams, sub, s->now_s, &wake);
+	if (!wanted)
+		assert_int_equal(wake, s->stream->key_wanted);
 	if (!frame)
 		return header;
 	if (frame != s->stream->topology) {
@@ -184,7 +176,7 @@ static void test_beyond_the_bound_nothing_is_sent_until_it_acknowledges(void **u
 	scene s;
 	scene_init(&s);
 	cau_subscriber sub = join(&s);
-	cau_hosted_acknowledge(s.h, &sub, 7, 1);
+	cau_streams_acknowledge(&sub, 7, 1);
 	uint64_t last = 1;
 	for (int i = 0; i < 4 * RING_FRAMES; i++) {
 		publish(&s);
@@ -193,7 +185,7 @@ static void test_beyond_the_bound_nothing_is_sent_until_it_acknowledges(void **u
 	}
 	assert_true(last < s.stream->newest && sub.in_flight > BOUND);
 	assert_true(sub.in_flight < BOUND + s.stream->scratch_bytes);
-	cau_hosted_acknowledge(s.h, &sub, 7, last);
+	cau_streams_acknowledge(&sub, 7, last);
 	take(&s, &sub);
 	publish(&s);
 	assert_int_equal(take(&s, &sub).kind, CAU_FRAME_KEY);
@@ -245,11 +237,11 @@ static void test_others_keep_the_full_rate(void **unused)
 	}
 	assert_newest(&s);
 	free(of_slow);
-	cau_hosted_counts counts;
-	cau_hosted_count(s.h, &counts);
+	cau_stream_counts counts;
+	cau_streams_count(&s.streams, &counts);
 	assert_int_equal(counts.half_rate, 1);
-	cau_hosted_leave(s.h, &slow);
-	cau_hosted_count(s.h, &counts);
+	cau_streams_leave(&s.streams, &slow);
+	cau_streams_count(&s.streams, &counts);
 	assert_int_equal(counts.half_rate, 0);
 	scene_finish(&s);
 }

@@ -1,0 +1,196 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// The session's side of its streams: what there is to be seen of the core, and who joins.
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "hosted_session/internal.h"
+
+static void fill_tools(cau_hosted *h, const cau_frame *frame, cau_stream_tool *tools)
+{
+	for (int32_t i = 0; i < frame->tool_count; i++) {
+		const cau_tool_state *from = &frame->tools[i];
+		cau_drive drive = {.energy_off = CAU_ENERGY_OFF_NEVER_ENABLED};
+		bool known = cau_decide_find(h, from->name, &drive);
+		cau_stream_tool *to = &tools[i];
+		*to = (cau_stream_tool){
+			.shape = from->definition.shape,
+			.pose = from->pose,
+			.jaw = from->jaw,
+			.tip_temperature_c = from->tip_temperature_c,
+			.energy_j = from->energy_j,
+			.sequence = from->sequence,
+			.driver = drive.driver.client,
+			.energized = from->energized && (!known || drive.enabled),
+			.grasping = from->grasping,
+			.frozen = drive.frozen,
+			.energy_off = (uint8_t)drive.energy_off,
+			.grasped_vertices = (uint16_t)fmin(from->grasped_vertices, UINT16_MAX),
+			.contact_vertices = (uint16_t)fmin(from->contact_vertices, UINT16_MAX),
+			.touched_layers = (uint16_t)from->touched_layers,
+		};
+		memcpy(to->name, from->name, sizeof to->name);
+		memcpy(to->force_n, from->force_n, sizeof to->force_n);
+		memcpy(to->torque_nm, from->torque_nm, sizeof to->torque_nm);
+	}
+}
+
+static cau_stream_statistics fill_statistics(const cau_hosted *h, const cau_statistics *from)
+{
+	cau_stream_statistics to = {
+		.realtime_factor = (float)h->realtime_factor,
+		.step_cost_s = (float)h->step_cost_s,
+		.residual = (float)from->residual,
+		.deferred_max_s = (float)from->deferred_max_s,
+		.iterations = (uint32_t)from->iterations,
+		.backtracks = (uint32_t)from->backtracks,
+		.inverted = (uint32_t)from->inverted,
+		.edges_parted = (uint32_t)from->edges_parted,
+		.elements_removed = (uint32_t)from->elements_removed,
+		.pending_downdates = (uint32_t)from->pending_downdates,
+		.refactorisations = (uint32_t)from->refactorisations,
+		.contacts = (uint32_t)from->contacts,
+		.frozen_vertices = (uint32_t)from->frozen_vertices,
+		.refused_commands = h->refused_commands,
+		.energy_gain_j = (float)from->energy_gain_j,
+	};
+	for (int i = 0; i < CAU_STREAM_STAGES; i++)
+		to.stage_s[i] = (float)from->seconds[i];
+	return to;
+}
+
+typedef struct published {
+	cau_hosted *hosted;
+	cau_frame frame;
+	cau_stream_tool tools[CAU_MAX_TOOLS];
+	cau_stream_statistics statistics;
+	cau_stream_sample sample;
+} published;
+
+static const cau_stream_sample *fill_sample(void *user)
+{
+	published *p = user;
+	cau_hosted *h = p->hosted;
+	int state = cau_decided_state(h);
+	cau_session_frame(h->core, &p->frame);
+	fill_tools(h, &p->frame, p->tools);
+	p->statistics = fill_statistics(h, &p->frame.statistics);
+	p->sample = (cau_stream_sample){
+		.tick = p->frame.tick,
+		.time_s = p->frame.time_s,
+		.published_us = (uint64_t)(cau_monotonic_s() * 1e6),
+		.flags = (uint16_t)((state == CAU_SESSION_PAUSED ? CAU_FRAME_PAUSED : 0) |
+	                        (state == CAU_SESSION_FAULTED ? CAU_FRAME_FAULTED : 0)),
+		.position = p->frame.position,
+		.vertex_visible = p->frame.vertex_visible,
+		.face_mask = p->frame.face_mask,
+		.tool_count = p->frame.tool_count,
+		.tools = p->tools,
+		.statistics = &p->statistics,
+	};
+	memcpy(p->sample.scalar, p->frame.scalar, sizeof p->sample.scalar);
+	return &p->sample;
+}
+
+// What costs the core work of its own is made as long as somebody watches it.
+static void follow_channels(cau_hosted *h)
+{
+	cau_session_watch(h->core, cau_streams_watched(&h->streams));
+}
+
+void cau_frames_publish(cau_hosted *h, double now_s)
+{
+	cau_error error = {0};
+	published p;
+	bool made = false;
+	p.hosted = h;
+	follow_channels(h);
+	cau_stream_moment moment = {
+		.now_s = now_s,
+		.all = atomic_exchange(&h->dirty, false), // what changes from here on is shown next time
+		.moving = cau_decided_state(h) == CAU_SESSION_RUNNING || h->logic->steps_left,
+		.sample = fill_sample,
+		.user = &p,
+	};
+	if (cau_streams_publish(&h->streams, &moment, &made, &error) &&
+	    cau_decided_state(h) != CAU_SESSION_FAULTED)
+		cau_hosted_fault(h, &error);
+	if (made)
+		h->around->sink.frames(h->around->sink.user);
+}
+
+void cau_frames_restart(cau_hosted *h)
+{
+	h->epoch = cau_streams_restart(&h->streams);
+	h->dirty = true;
+}
+
+// ---- subscribers
+static cau_status join(cau_hosted *h, const cau_order *order, const cau_stream **stream,
+                       cau_error *error)
+{
+	const cau_session_info *info = &h->info;
+	bool woken = false;
+	cau_stream_wish wish = {.rate_hz = order->as.join.rate_hz,
+	                        .step_m = order->as.join.step_m,
+	                        .channels = order->as.join.channels};
+	cau_stream_shape shape = {.vertex_count = info->vertex_count,
+	                          .face_count = info->face_count,
+	                          .face = info->face,
+	                          .face_layer = info->face_layer,
+	                          .texture = info->texture,
+	                          .rest_position = info->rest_position};
+	cau_status status = cau_streams_join(&h->streams, &wish, &shape, stream, &woken, error);
+	if (woken)
+		h->dirty = true;
+	return status;
+}
+
+void cau_apply_join(cau_hosted *h, cau_order *order)
+{
+	cau_error error = {0};
+	const cau_stream *stream = NULL;
+	if (join(h, order, &stream, &error)) {
+		cau_answer_fail(order, &error, 0);
+		return;
+	}
+	cau_wire_stream_description result = {.session_number = h->number,
+	                                      .profile = stream->def.profile,
+	                                      .epoch = h->epoch,
+	                                      .rate_hz = stream->rate_hz,
+	                                      .channels = stream->def.channels,
+	                                      .vertex_count = stream->def.vertex_count,
+	                                      .face_count = stream->def.face_count,
+	                                      .step_m = stream->def.step_m,
+	                                      .stress_step_pa = stream->def.stress_step_pa};
+	memcpy(result.session, h->id, sizeof result.session);
+	memcpy(result.origin_m, stream->def.origin_m, sizeof result.origin_m);
+	cau_outcome outcome = {.joined = h, .stream = stream->def.profile};
+	char *text = cau_answer_text(order->reply.method, &result, &outcome.text_bytes, &error);
+	outcome.text = text;
+	outcome.error = text ? NULL : &error;
+	if (!text)
+		cau_hosted_leave(h, &(cau_subscriber){.stream = stream->def.profile});
+	cau_reply_answer(&order->reply, &outcome);
+	free(text);
+	free(order);
+}
+
+cau_buffer *cau_hosted_next_frame(cau_hosted *h, cau_subscriber *sub, double now_s)
+{
+	bool wake;
+	cau_buffer *buffer = cau_streams_next_frame(&h->streams, sub, now_s, &wake);
+	if (wake)
+		cau_worker_pool_wake(h->around->pool, &h->task);
+	return buffer;
+}
+
+bool cau_hosted_has_frame(cau_hosted *h, const cau_subscriber *sub)
+{
+	return cau_streams_has_frame(&h->streams, sub);
+}
+
+void cau_hosted_leave(cau_hosted *h, const cau_subscriber *sub)
+{
+	cau_streams_leave(&h->streams, sub);
+}

@@ -1,0 +1,182 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Which profiles there are: one is opened for the first subscriber whom none fits, and taken over
+// when nobody watches it any more.
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "stream/internal.h"
+
+static void close_stream(cau_stream *stream)
+{
+	cau_ring_clear(stream);
+	cau_buffer_release(stream->topology);
+	free(stream->half.storage);
+	free(stream->storage);
+	free(stream->scratch);
+	*stream = (cau_stream){0};
+}
+
+void cau_streams_init(cau_streams *streams)
+{
+	pthread_mutex_init(&streams->mutex, NULL);
+}
+
+void cau_streams_finish(cau_streams *streams)
+{
+	for (int i = 0; i < CAU_STREAM_PROFILES_MAX; i++)
+		close_stream(&streams->stream[i]);
+	pthread_mutex_destroy(&streams->mutex);
+}
+
+uint32_t cau_streams_watched(cau_streams *streams)
+{
+	uint32_t channels = 0;
+	pthread_mutex_lock(&streams->mutex);
+	for (int i = 0; i < CAU_STREAM_PROFILES_MAX; i++)
+		if (streams->stream[i].used && streams->stream[i].subscribers > 0)
+			channels |= streams->stream[i].def.channels;
+	pthread_mutex_unlock(&streams->mutex);
+	return channels;
+}
+
+// ---- finding
+static cau_stream *find_stream(cau_streams *streams, const cau_stream_wish *wish)
+{
+	cau_stream *nearest = NULL;
+	for (int i = 0; i < CAU_STREAM_PROFILES_MAX; i++) {
+		cau_stream *stream = &streams->stream[i];
+		if (!stream->used)
+			continue;
+		bool fits = stream->def.channels == wish->channels && stream->def.step_m <= wish->step_m;
+		if (fits && stream->rate_hz == wish->rate_hz)
+			return stream;
+		bool nearer = !nearest || fabs(stream->rate_hz - wish->rate_hz) <
+		                              fabs(nearest->rate_hz - wish->rate_hz);
+		if ((stream->def.channels & wish->channels) == wish->channels && nearer)
+			nearest = stream;
+	}
+	for (int i = 0; i < CAU_STREAM_PROFILES_MAX; i++)
+		if (!streams->stream[i].used || streams->stream[i].subscribers == 0)
+			return NULL; // a slot is free
+	return nearest ? nearest : &streams->stream[0];
+}
+
+// Nothing was published while nobody watched: what the ring still holds is of another time.
+static void wake_stream(cau_stream *stream)
+{
+	cau_buffer_release(stream->key.buffer);
+	stream->key = (cau_ring_frame){0};
+	stream->key_wanted = true;
+}
+
+// ---- opening
+static cau_status encode_topology(const cau_streams *streams, cau_stream *stream,
+                                  const cau_stream_shape *shape, cau_error *error)
+{
+	size_t most = cau_topology_bytes_max(&stream->def), bytes = 0;
+	void *scratch = malloc(cau_topology_scratch_bytes(&stream->def));
+	uint8_t *layers = malloc((size_t)shape->face_count + 1);
+	cau_buffer *buffer = cau_buffer_create(most, true);
+	cau_status status = CAU_NO_MEMORY;
+	if (scratch && layers && buffer) {
+		for (int32_t i = 0; i < shape->face_count; i++)
+			layers[i] = (uint8_t)shape->face_layer[i];
+		cau_topology topology = {shape->face, layers, shape->texture, shape->rest_position};
+		status = cau_topology_encode(&stream->def, streams->epoch, &topology, scratch,
+		                             cau_buffer_bytes(buffer), most, &bytes, error);
+	}
+	if (!status) {
+		stream->topology = cau_buffer_create(bytes, true);
+		if (stream->topology)
+			memcpy(cau_buffer_bytes(stream->topology), cau_buffer_bytes(buffer), bytes);
+	}
+	cau_buffer_release(buffer);
+	free(layers);
+	free(scratch);
+	return stream->topology ? CAU_OK : status ? status : CAU_NO_MEMORY;
+}
+
+static cau_status open_stream(cau_streams *streams, int slot, const cau_stream_wish *wish,
+                              const cau_stream_shape *shape, cau_error *error)
+{
+	cau_stream made = {.used = true, .epoch = streams->epoch, .rate_hz = wish->rate_hz};
+	made.def = cau_default_stream_def();
+	made.def.session = streams->session;
+	made.def.profile = (uint16_t)slot;
+	made.def.channels = wish->channels;
+	made.def.vertex_count = shape->vertex_count;
+	made.def.face_count = shape->face_count;
+	made.def.step_m = wish->step_m;
+	size_t bytes = cau_frame_encoder_bytes(&made.def);
+	made.scratch_bytes = cau_frame_bytes_max(&made.def);
+	made.storage = malloc(bytes);
+	made.scratch = malloc(made.scratch_bytes);
+	cau_status status = cau_stream_def_check(&made.def, error);
+	if (!status && (!made.storage || !made.scratch))
+		status = cau_fail(error, CAU_NO_MEMORY, NULL, "no memory for a stream");
+	if (!status)
+		status = cau_frame_encoder_init(made.storage, bytes, &made.def, streams->epoch,
+		                                &made.encoder, error);
+	if (!status)
+		status = encode_topology(streams, &made, shape, error);
+	if (status) {
+		close_stream(&made);
+		return status;
+	}
+	pthread_mutex_lock(&streams->mutex);
+	close_stream(&streams->stream[slot]);
+	streams->stream[slot] = made;
+	pthread_mutex_unlock(&streams->mutex);
+	return CAU_OK;
+}
+
+// ---- joining
+// Counts the subscriber into a stream that fits; NULL: *slot is to be opened for it.
+static cau_stream *take_stream(cau_streams *streams, const cau_stream_wish *wish,
+                               int32_t *subscribers, int *slot, bool *woken)
+{
+	*subscribers = 0;
+	pthread_mutex_lock(&streams->mutex);
+	for (int i = 0; i < CAU_STREAM_PROFILES_MAX; i++)
+		*subscribers += streams->stream[i].subscribers;
+	cau_stream *stream = find_stream(streams, wish);
+	if (stream && stream->subscribers == 0) {
+		wake_stream(stream);
+		*woken = true;
+	}
+	if (stream)
+		stream->subscribers++;
+	else
+		while (streams->stream[*slot].used && streams->stream[*slot].subscribers)
+			++*slot;
+	pthread_mutex_unlock(&streams->mutex);
+	return stream;
+}
+
+cau_status cau_streams_join(cau_streams *streams, const cau_stream_wish *wish,
+                            const cau_stream_shape *shape, const cau_stream **joined, bool *woken,
+                            cau_error *error)
+{
+	int32_t subscribers;
+	int slot = 0;
+	*woken = false;
+	cau_stream *stream = take_stream(streams, wish, &subscribers, &slot, woken);
+	if (subscribers >= streams->subscribers_most) {
+		if (stream)
+			cau_streams_leave(streams,
+			                  &(cau_subscriber){.stream = (int32_t)(stream - streams->stream)});
+		return cau_fail(error, CAU_LIMIT, "", "the session has as many streams as it may");
+	}
+	*joined = stream;
+	if (stream)
+		return CAU_OK;
+	cau_status status = open_stream(streams, slot, wish, shape, error);
+	*joined = &streams->stream[slot];
+	if (!status) {
+		pthread_mutex_lock(&streams->mutex);
+		streams->stream[slot].subscribers = 1;
+		pthread_mutex_unlock(&streams->mutex);
+	}
+	return status;
+}
