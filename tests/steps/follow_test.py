@@ -1,0 +1,114 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""follow.py does what a page says, and nothing that it does not say."""
+
+import os
+import tempfile
+import unittest
+
+import follow
+
+PAGE = """# Page
+
+## Adding a thing
+
+1. The row. In `table.h`, above the line `/* the end */`:
+
+   ```c
+   	ROW(new)
+   ```
+
+2. What makes it. Make `things/new.c`:
+
+   ```c
+   int thing(void)
+   {
+   	return 1;
+   }
+   ```
+
+3. Its place: in `list.txt`, below the line `first`:
+
+   ```
+   second
+   ```
+
+   And in `list.txt`, in place of the line `last`:
+
+   ```
+   third
+   last
+   ```
+
+4. Try it. Run:
+
+   ```sh
+   cat list.txt
+   grep -c ROW table.h
+   ```
+
+## Another
+
+Nothing.
+"""
+
+
+def write(folder, name, text):
+    path = os.path.join(folder, name)
+    os.makedirs(os.path.dirname(path), exist_ok=True)
+    with open(path, "w", encoding="utf-8") as file:
+        file.write(text)
+
+
+def read(folder, name):
+    with open(os.path.join(folder, name), encoding="utf-8") as file:
+        return file.read()
+
+
+class Following(unittest.TestCase):
+    def setUp(self):
+        folder = tempfile.TemporaryDirectory()
+        self.addCleanup(folder.cleanup)
+        self.copy = folder.name
+        write(self.copy, "table.h", "\tROW(old)\n\t/* the end */\n")
+        write(self.copy, "list.txt", "first\n  last\n")
+
+    def follow(self, page):
+        return follow.follow(self.copy, follow.steps_of(follow.section_of(page, "Adding a thing")))
+
+    def refuse(self, page, words):
+        with self.assertRaisesRegex(follow.Wrong, words):
+            self.follow(page)
+
+    def test_every_kind_of_step(self):
+        said = self.follow(PAGE)
+        self.assertEqual(read(self.copy, "table.h"), "\tROW(old)\n\tROW(new)\n\t/* the end */\n")
+        self.assertEqual(read(self.copy, "things/new.c"), "int thing(void)\n{\n\treturn 1;\n}\n")
+        self.assertEqual(read(self.copy, "list.txt"), "first\nsecond\nthird\nlast\n")
+        self.assertEqual(said, "first\nsecond\nthird\nlast\n2\n")
+
+    def test_what_does_not_fit_is_refused(self):
+        self.refuse(PAGE.replace("`first`", "`fist`"), "is there 0 times")
+        self.refuse(PAGE, "is there already")
+        os.remove(os.path.join(self.copy, "things/new.c"))
+        write(self.copy, "list.txt", "first\nfirst\nlast\n")
+        self.refuse(PAGE, "is there 2 times")
+
+    def test_nothing_is_left_to_the_reader(self):
+        self.refuse(PAGE.replace("Make `things/new.c`:", "A new file:"), "without a sentence")
+        self.refuse(PAGE.replace("4. Try it. Run:", "Make `a`:\n\n4. Try it. Run:"), "no block follows")
+        self.refuse(PAGE.replace("## Adding a thing", "## Adding"), "no section")
+        self.refuse("## Adding a thing\n\nThink.\n", "no steps")
+
+    def test_a_script_that_fails_ends_it(self):
+        self.refuse(PAGE.replace("cat list.txt", "false"), "exit code 1")
+
+    def test_changes_are_counted(self):
+        write(self.copy, "kept.txt", "kept\n")
+        before = follow.fingerprints(self.copy)
+        write(self.copy, "build/made.o", "")
+        self.follow(PAGE)
+        self.assertEqual(follow.changed_files(self.copy, before), ["list.txt", "table.h", "things/new.c"])
+
+
+if __name__ == "__main__":
+    unittest.main()
