@@ -1,20 +1,35 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """Makes one ctest suite out of several build trees, so that one ctest run reports on all of them.
 
-Usage: collect_tests.py SUITE NAME TREE LABELS WITHOUT TIMEOUT_FACTOR
+Usage: collect_tests.py SUITE NAME TREE LABELS WITHOUT TIMEOUT_FACTOR [BUILD COMMAND...]
 
-Appends the tests of the build tree TREE whose labels match the regular expression LABELS (all with
-an empty one) and not WITHOUT (none with an empty one) to SUITE/CTestTestfile.cmake, each named
-NAME.<test>, with NAME as a further label and its time limit multiplied by TIMEOUT_FACTOR.
+Appends the tests of the configured build tree TREE whose labels match the regular expression LABELS
+(all with an empty one) and not WITHOUT (none with an empty one) to SUITE/CTestTestfile.cmake, each
+named NAME.<test>, with NAME as a further label and its time limit multiplied by TIMEOUT_FACTOR. With
+a command, building the tree is a test of its own, NAME.build, which the others wait for.
+
+How the tests share the machine. The suite is run with `--parallel 4`, two slots for each of two
+cores. An ordinary test takes two. One that measures times (RUN_SERIAL in its tree) takes three: no
+other test runs beside it, but what needs no particular speed and gives way may, so that the second
+core is not idle: building (one tree at a time), fuzzing and clang-tidy, which take one and are niced.
+Builds come first, then what measures times, then the rest, the longest time limits first.
 """
 
 import json
 import os
+import re
 import subprocess
 import sys
 
 OWN_NAMES = ("DEPENDS", "FIXTURES_SETUP", "FIXTURES_REQUIRED", "FIXTURES_CLEANUP")
+SCHEDULE = ("COST", "PROCESSORS", "RUN_SERIAL")
 DERIVED = ("CONFIGURATIONS",)
+
+ORDINARY_SLOTS, TIMING_SLOTS, FILLER_SLOTS = 2, 3, 1
+FILLER_LABELS = {"fuzz", "tidy"}
+GIVING_WAY = ["nice", "-n", "10"]
+BUILD_COST, TIMING_COST = 1e6, 1e5  # above any time limit, which is the cost of the others
+BUILD_LIMIT_S = 3600
 
 
 def list_tests(tree, labels, without):
@@ -23,6 +38,17 @@ def list_tests(tree, labels, without):
     command += ["--label-exclude", without] if without else []
     answer = subprocess.run(command, cwd=tree, check=True, stdout=subprocess.PIPE)
     return json.loads(answer.stdout)["tests"]
+
+
+def written_commands(tree):
+    """Each test's command as CMake wrote it: ctest tells that of a program which is built, only."""
+    commands = {}
+    for folder, subfolders, files in os.walk(tree):
+        subfolders[:] = [name for name in subfolders if name not in ("CMakeFiles", "node_modules", "suite")]
+        if "CTestTestfile.cmake" in files:
+            with open(os.path.join(folder, "CTestTestfile.cmake"), encoding="utf-8") as file:
+                commands.update(re.findall(r"^add_test\(\[=\[(.*?)\]=\] (.*)\)$", file.read(), re.MULTILINE))
+    return commands
 
 
 def bracket(text):
@@ -51,25 +77,51 @@ def adapt(suite_name, name, value, timeout_factor):
     return value
 
 
-def render(test, suite_name, timeout_factor):
-    if "command" not in test:
-        sys.exit(f"{suite_name}: the program of test {test['name']} is not built")
-    title = bracket(f"{suite_name}.{test['name']}")
-    lines = [f"add_test({title} {' '.join(bracket(part) for part in test['command'])})"]
-    for entry in test["properties"]:
-        if entry["name"] not in DERIVED:
-            value = cmake_value(adapt(suite_name, entry["name"], entry["value"], timeout_factor))
-            lines.append(f"set_tests_properties({title} PROPERTIES {entry['name']} {value})")
+def schedule(properties):
+    """How much of the machine a test takes, and when: further properties."""
+    limit = properties.get("TIMEOUT", 0)
+    if FILLER_LABELS & set(properties.get("LABELS", [])):
+        return {"PROCESSORS": FILLER_SLOTS, "COST": 1}
+    if properties.get("RUN_SERIAL"):
+        return {"PROCESSORS": TIMING_SLOTS, "COST": TIMING_COST + limit}
+    return {"PROCESSORS": ORDINARY_SLOTS, "COST": limit}
+
+
+def define(name, command, properties):
+    lines = [f"add_test({bracket(name)} {command})"]
+    for key, value in properties.items():
+        lines.append(f"set_tests_properties({bracket(name)} PROPERTIES {key} {cmake_value(value)})")
     return "\n".join(lines) + "\n"
 
 
-def main(suite, suite_name, tree, labels, without, timeout_factor):
-    tests = list_tests(tree, labels, without)
+def render(test, command, suite_name, timeout_factor, needs_build):
+    given = {entry["name"]: entry["value"] for entry in test["properties"]}
+    properties = {name: adapt(suite_name, name, value, timeout_factor)
+                  for name, value in given.items() if name not in DERIVED + SCHEDULE}
+    properties.update(schedule(given))
+    if needs_build:
+        properties.setdefault("FIXTURES_REQUIRED", []).append(f"{suite_name}.tree")
+    if properties["PROCESSORS"] == FILLER_SLOTS:
+        command = " ".join([*GIVING_WAY, command])
+    return define(f"{suite_name}.{test['name']}", command, properties)
+
+
+def render_build(suite_name, command):
+    return define(f"{suite_name}.build", " ".join(bracket(part) for part in [*GIVING_WAY, *command]), {
+        "LABELS": [suite_name, "build"], "FIXTURES_SETUP": f"{suite_name}.tree", "RESOURCE_LOCK": "build",
+        "PROCESSORS": FILLER_SLOTS, "COST": BUILD_COST, "TIMEOUT": BUILD_LIMIT_S})
+
+
+def main(suite, suite_name, tree, labels, without, timeout_factor, *build):
+    tests, commands = list_tests(tree, labels, without), written_commands(tree)
     if not tests:
         sys.exit(f"{suite_name}: {tree} has no test with a label that matches '{labels}'")
     os.makedirs(suite, exist_ok=True)
     with open(os.path.join(suite, "CTestTestfile.cmake"), "a", encoding="utf-8") as file:
-        file.writelines(render(test, suite_name, float(timeout_factor)) for test in tests)
+        if build:
+            file.write(render_build(suite_name, build))
+        file.writelines(render(test, commands[test["name"]], suite_name, float(timeout_factor), bool(build))
+                        for test in tests)
 
 
 if __name__ == "__main__":

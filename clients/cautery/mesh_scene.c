@@ -2,6 +2,7 @@
 #include "cautery/mesh_scene.h"
 
 #include <math.h>
+#include <stdio.h>
 #include <string.h>
 
 #include "cautery/defaults.h"
@@ -25,7 +26,7 @@ static void name_after_file(const char *file, char name[CAU_NAME_BYTES])
 		used--;
 	name[used] = 0;
 	if (!used)
-		strcpy(name, "mesh");
+		memcpy(name, "mesh", sizeof "mesh");
 }
 
 cau_status cli_mesh_scene_begin(cau_scene_def *scene, const char *file, double unit_m, bool fat,
@@ -35,22 +36,22 @@ cau_status cli_mesh_scene_begin(cau_scene_def *scene, const char *file, double u
 	name_after_file(file, scene->name);
 	cau_mesh_def *mesh = &scene->meshes[scene->mesh_count++];
 	cau_default_mesh_def(mesh);
-	strcpy(mesh->name, "mesh");
+	snprintf(mesh->name, sizeof mesh->name, "mesh");
 	mesh->source = CAU_MESH_FILE;
 	mesh->unit_m = unit_m;
 	if (strlen(file) >= sizeof mesh->file)
 		return cau_fail(error, CAU_LIMIT, NULL, "a file name of more than %zu bytes",
 		                sizeof mesh->file - 1);
-	strcpy(mesh->file, file);
+	snprintf(mesh->file, sizeof mesh->file, "%s", file);
 	cau_layer_def *layer = &scene->layers[scene->layer_count++];
 	cau_default_layer_def(layer, fat ? CAU_LAYER_FAT : CAU_LAYER_FASCIA);
-	strcpy(layer->name, fat ? "fat" : "fascia");
-	strcpy(layer->mesh, "mesh");
+	snprintf(layer->name, sizeof layer->name, "%s", fat ? "fat" : "fascia");
+	snprintf(layer->mesh, sizeof layer->mesh, "mesh");
 	if (fat) {
 		cau_layer_def *membrane = &scene->layers[scene->layer_count++];
 		cau_default_layer_def(membrane, CAU_LAYER_MEMBRANE);
-		strcpy(membrane->name, "membrane");
-		strcpy(membrane->of, "fat");
+		snprintf(membrane->name, sizeof membrane->name, "membrane");
+		snprintf(membrane->of, sizeof membrane->of, "fat");
 	}
 	return CAU_OK;
 }
@@ -75,7 +76,7 @@ void cli_mesh_scene_end(cau_scene_def *scene, const double least_m[3], const dou
 	bool sheet = scene->layers[0].kind == CAU_LAYER_FASCIA;
 	cau_selection *pin = &scene->pins[scene->pin_count++];
 	cau_default_selection(pin, sheet ? CAU_SELECT_RIM : CAU_SELECT_BOX);
-	strcpy(pin->layer, sheet ? "fascia" : "");
+	snprintf(pin->layer, sizeof pin->layer, "%s", sheet ? "fascia" : "");
 	double margin_m = 1e-3;
 	for (int a = 0; a < 3 && !sheet; a++) {
 		pin->least_m[a] = least_m[a] - margin_m;

@@ -78,7 +78,7 @@ static cau_status read_script(runner *r, const char *file)
 	}
 	if (!status && r->count == 0)
 		status = cau_fail(error, CAU_BAD_VALUE, NULL, "holds no command");
-	if (!status)
+	if (!status && r->count > 0)
 		r->sent = calloc((size_t)r->count, sizeof *r->sent);
 	if (!status && !r->sent)
 		status = cau_fail(error, CAU_NO_MEMORY, NULL, "no memory for the script");

@@ -142,8 +142,8 @@ static cli_exit act_line(hand *h)
 	for (int a = 0; a < 3; a++)
 		length += (to[a] - from[a]) * (to[a] - from[a]);
 	double duration_s = to[3] > 0 ? sqrt(length) / to[3] : 0;
-	for (double t = move_every_s; !code && t < duration_s && !cli_interrupted();
-	     t += move_every_s) {
+	for (int64_t k = 1; !code && (double)k * move_every_s < duration_s && !cli_interrupted(); k++) {
+		double t = (double)k * move_every_s;
 		cau_command command = command_of(h, CAU_COMMAND_TOOL_MOVE);
 		for (int a = 0; a < 3; a++)
 			h->pose.position_m[a] = from[a] + t / duration_s * (to[a] - from[a]);

@@ -16,18 +16,36 @@ enum { PAGE_BYTES_MAX = 1 << 22, WAIT_S = 10 };
 
 static const char metric[] = "\ncautery_resident_bytes ";
 
+enum { CPU_FIELDS = 8 }; // user nice system idle iowait irq softirq steal
+
+// The first line of /proc/stat: `cpu` and at least so many numbers.
+static bool read_fields(const char *line, double field[CPU_FIELDS])
+{
+	const char *at = line + 3;
+	if (strncmp(line, "cpu ", 4) != 0)
+		return false;
+	for (int i = 0; i < CPU_FIELDS; i++) {
+		char *end;
+		field[i] = strtod(at, &end);
+		if (end == at)
+			return false;
+		at = end;
+	}
+	return true;
+}
+
 load_cpu load_cpu_read(void)
 {
 	load_cpu cpu = {0};
-	double field[8] = {0}; // user nice system idle iowait irq softirq steal
+	double field[CPU_FIELDS];
+	char line[512];
 	FILE *file = fopen("/proc/stat", "r");
 	if (!file)
 		return cpu;
-	if (fscanf(file, "cpu %lf %lf %lf %lf %lf %lf %lf %lf", &field[0], &field[1], &field[2],
-	           &field[3], &field[4], &field[5], &field[6], &field[7]) == 8) {
-		for (int i = 0; i < 8; i++)
+	if (fgets(line, sizeof line, file) && read_fields(line, field)) {
+		for (int i = 0; i < CPU_FIELDS; i++)
 			cpu.total += field[i];
-		cpu.steal = field[7];
+		cpu.steal = field[CPU_FIELDS - 1];
 	}
 	fclose(file);
 	return cpu;

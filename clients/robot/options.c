@@ -50,9 +50,14 @@ void robot_options_help(FILE *out)
 
 static bool read_point(double point[3], const char *text)
 {
-	char end;
-	return sscanf(text, "%lf,%lf,%lf%c", &point[0], &point[1], &point[2], &end) == 3 &&
-	       isfinite(point[0]) && isfinite(point[1]) && isfinite(point[2]);
+	for (int i = 0; i < 3; i++) {
+		char *end;
+		point[i] = strtod(text, &end);
+		if (end == text || *end != (i < 2 ? ',' : 0) || !isfinite(point[i]))
+			return false;
+		text = end + 1;
+	}
+	return true;
 }
 
 static bool read_number(double *value, const char *text, double least, double most)

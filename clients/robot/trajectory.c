@@ -3,6 +3,7 @@
 
 #include <math.h>
 #include <stdlib.h>
+#include <string.h>
 
 enum { WAYPOINTS_MOST = 1 << 20 };
 
@@ -32,12 +33,31 @@ static bool normalise(double rotation[4])
 	return squared > 0.25 && isfinite(squared);
 }
 
+// How many numbers a line begins with, up to `most`.
+static int read_numbers(const char *line, double *number, int most)
+{
+	int count = 0;
+	for (; count < most; count++) {
+		char *end;
+		double value = strtod(line, &end);
+		if (end == line)
+			break;
+		number[count] = value;
+		line = end;
+	}
+	return count;
+}
+
 static bool read_line(robot_waypoint *waypoint, const char *line)
 {
+	enum { MOST = 8 }; // time, position, rotation
+	double number[MOST] = {0, 0, 0, 0, 1, 0, 0, 0};
 	double *p = waypoint->pose.position_m, *q = waypoint->pose.rotation;
-	*waypoint = (robot_waypoint){.pose.rotation = {1, 0, 0, 0}};
-	int got = sscanf(line, "%lf %lf %lf %lf %lf %lf %lf %lf", &waypoint->time_s, &p[0], &p[1],
-	                 &p[2], &q[0], &q[1], &q[2], &q[3]);
+	*waypoint = (robot_waypoint){0};
+	int got = read_numbers(line, number, MOST);
+	waypoint->time_s = number[0];
+	memcpy(p, number + 1, 3 * sizeof *p);
+	memcpy(q, number + 4, 4 * sizeof *q);
 	return (got == 4 || got == 8) && isfinite(waypoint->time_s) && isfinite(p[0]) &&
 	       isfinite(p[1]) && isfinite(p[2]) && normalise(q);
 }

@@ -87,7 +87,7 @@ static cau_status move(lesson *l, const double position_m[3], cau_error *error)
 {
 	cau_command command;
 	cau_default_command(&command, CAU_COMMAND_TOOL_MOVE);
-	strcpy(command.tool, tool_name);
+	snprintf(command.tool, sizeof command.tool, "%s", tool_name);
 	command.sequence = ++l->sequence;
 	memcpy(command.as.move.pose.position_m, position_m, 3 * sizeof *position_m);
 	return cau_client_move(l->client, l->session, &command, error);
@@ -104,7 +104,7 @@ static cau_status energize(lesson *l, int32_t on, cau_error *error)
 	cau_command command;
 	cau_wire_command_result result;
 	cau_default_command(&command, CAU_COMMAND_TOOL_ENERGIZE);
-	strcpy(command.tool, tool_name);
+	snprintf(command.tool, sizeof command.tool, "%s", tool_name);
 	command.sequence = ++l->sequence;
 	command.as.energized = on;
 	cau_status status = cau_client_command(l->client, l->session, &command, &result, error);
@@ -148,8 +148,8 @@ static cau_status draw(lesson *l, const double from_m[3], const double to_m[3], 
 static cau_status take_tool(lesson *l, cau_error *error)
 {
 	cau_wire_tool_ref params = {.has_session = true, .has_client_sequence = true};
-	strcpy(params.session, l->session);
-	strcpy(params.tool, tool_name);
+	snprintf(params.session, sizeof params.session, "%s", l->session);
+	snprintf(params.tool, sizeof params.tool, "%s", tool_name);
 	params.client_sequence = cau_client_next_sequence(l->client);
 	return cau_client_call(l->client, CAU_METHOD_TOOL_TAKE_OVER, &params, NULL, error);
 }
@@ -190,12 +190,12 @@ static cau_status create_session(lesson *l, cau_error *error)
 	cau_wire_session_description made = {.layers = {layers, 0, CAU_MAX_LAYERS},
 	                                     .drivers = {drivers, 0, CAU_MAX_TOOLS}};
 	params.client_sequence = cau_client_next_sequence(l->client);
-	strcpy(params.scene, "fascia");
+	snprintf(params.scene, sizeof params.scene, "%s", "fascia");
 	cau_status status =
 		cau_client_call(l->client, CAU_METHOD_SESSION_CREATE, &params, &made, error);
 	if (status)
 		return status;
-	strcpy(l->session, made.summary.session);
+	snprintf(l->session, sizeof l->session, "%s", made.summary.session);
 	printf("session %s: %lld vertices, %lld faces, a tick is %.1f ms\n", l->session,
 	       (long long)made.summary.vertex_count, (long long)made.summary.face_count,
 	       1e3 * made.summary.step_s);
@@ -210,7 +210,7 @@ static cau_status create_session(lesson *l, cau_error *error)
 static cau_status join_session(lesson *l, cau_error *error)
 {
 	cau_wire_session_join params = {.has_session = true};
-	strcpy(params.session, l->session);
+	snprintf(params.session, sizeof params.session, "%s", l->session);
 	cau_status status = cau_client_join(l->client, &params, &l->stream, error);
 	if (!status)
 		l->faces_at_first = cau_client_faces_drawn(l->stream);
@@ -221,7 +221,7 @@ static cau_status join_session(lesson *l, cau_error *error)
 static cau_status remove_session(lesson *l, cau_error *error)
 {
 	cau_wire_session_change params = {.has_session = true, .has_client_sequence = true};
-	strcpy(params.session, l->session);
+	snprintf(params.session, sizeof params.session, "%s", l->session);
 	params.client_sequence = cau_client_next_sequence(l->client);
 	return cau_client_call(l->client, CAU_METHOD_SESSION_DESTROY, &params, NULL, error);
 }

@@ -2,7 +2,8 @@
 #
 # A fuzz target for one parser or decoder; its source defines LLVMFuzzerTestOneInput() and includes
 # "fuzz/fuzz_target.h". SEEDS names a folder of small inputs (optional).
-#   -DCAUTERY_FUZZ=ON  (clang): the test fuzz_NAME mutates the seeds for CAUTERY_FUZZ_SECONDS.
+#   -DCAUTERY_FUZZ=ON  (clang): the test fuzz_NAME mutates the seeds for CAUTERY_FUZZ_SECONDS
+#                      and keeps a minimised corpus in the tree.
 #   otherwise:         the test replay_NAME runs the target over the seeds, the empty input and a
 #                      fixed pseudo-random set, so that every build exercises it.
 set(CAUTERY_FUZZ_SECONDS 10 CACHE STRING "Seconds that each fuzz test runs")
@@ -29,12 +30,10 @@ function(cautery_fuzz)
     return()
   endif()
 
-  set(work "${CMAKE_BINARY_DIR}/fuzz/corpus/${F_NAME}")
-  file(MAKE_DIRECTORY "${work}")
   math(EXPR timeout "${CAUTERY_FUZZ_SECONDS} + 120")
   target_link_options(fuzz_${F_NAME} PRIVATE -fsanitize=fuzzer)
-  add_test(NAME fuzz_${F_NAME} COMMAND fuzz_${F_NAME}
-    -max_total_time=${CAUTERY_FUZZ_SECONDS} -timeout=10 -rss_limit_mb=2048 -max_len=65536
-    -print_final_stats=1 "-artifact_prefix=${CMAKE_BINARY_DIR}/fuzz/${F_NAME}-" "${work}" ${F_SEEDS})
+  add_test(NAME fuzz_${F_NAME} COMMAND "${PROJECT_SOURCE_DIR}/tests/fuzz/fuzz.sh" $<TARGET_FILE:fuzz_${F_NAME}>
+    ${CAUTERY_FUZZ_SECONDS} "${CMAKE_BINARY_DIR}/fuzz/corpus/${F_NAME}"
+    "${CMAKE_BINARY_DIR}/fuzz/${F_NAME}-" ${F_SEEDS})
   set_tests_properties(fuzz_${F_NAME} PROPERTIES LABELS fuzz TIMEOUT ${timeout})
 endfunction()

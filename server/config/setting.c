@@ -39,7 +39,7 @@ static cau_status store_text(const setting *s, void *member, const char *text, c
 	if (strlen(text) >= CAU_CONFIG_TEXT_BYTES)
 		return cau_fail(error, CAU_BAD_VALUE, s->name, "longer than %d bytes",
 		                CAU_CONFIG_TEXT_BYTES - 1);
-	strcpy(member, text);
+	memcpy(member, text, strlen(text) + 1);
 	return CAU_OK;
 }
 

@@ -150,7 +150,8 @@ static void print_number(raw_value *value, const char *spec, size_t spec_bytes, 
 	assert(spec_bytes < sizeof own);
 	memcpy(own, spec, spec_bytes);
 	own[spec_bytes] = 0;
-	if (strchr("feg", own[spec_bytes - 1]))
+	if (strchr("feg", own[spec_bytes - 1])) // each takes another type off the list
+		// NOLINTNEXTLINE(bugprone-branch-clone)
 		length = snprintf(text, sizeof text, own, va_arg(from->list, double));
 	else if (strstr(own, "ll"))
 		length = snprintf(text, sizeof text, own, va_arg(from->list, long long));

@@ -3,6 +3,7 @@
 // ranges that cover a type the most specific one counts, and its q says how much the type is
 // wanted.
 #include <stdbool.h>
+#include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 #include <strings.h>
@@ -65,7 +66,7 @@ static void read_parameter(range *read, const char *from, const char *end)
 	if (strcasecmp(name, "q") == 0)
 		read->q = read_q(value);
 	else if (strcasecmp(name, "version") == 0)
-		strcpy(read->version, value);
+		snprintf(read->version, sizeof read->version, "%s", value);
 }
 
 // One range, `type/subtype;parameter=value;...`, up to its comma. Returns what is behind it.

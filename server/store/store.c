@@ -101,8 +101,8 @@ static cau_status find_path(const char *given, char path[4096], cau_error *error
 		snprintf(path, 4096, "%s", resolved);
 		return CAU_OK;
 	}
-	strcpy(folder, given);
-	strcpy(name, given);
+	snprintf(folder, sizeof folder, "%s", given);
+	snprintf(name, sizeof name, "%s", given);
 	if (!realpath(dirname(folder), resolved))
 		return cau_fail(error, CAU_IO, "path", "no folder %s", folder);
 	if ((size_t)snprintf(path, 4096, "%s/%s", resolved, basename(name)) >= 4096)

@@ -111,6 +111,7 @@ void cau_dds_publish(cau_dds_session *session, const cau_hosted_tool *tools, int
 		cau_hosted_tool *last = &session->states[i];
 		cau_dds_tool *wire = cau_dds_find_tool(session, tools[i].state.name);
 		// Padding may differ: then it is written once more.
+		// NOLINTNEXTLINE(bugprone-suspicious-memory-comparison)
 		bool changed = session->states_tick != tick || memcmp(last, &tools[i], sizeof *last) != 0;
 		if (all || (changed && (is_read || is_news(last, &tools[i]))))
 			publish_state(session, &tools[i], tick, time_s);

@@ -5,6 +5,9 @@
 #include <stdio.h>
 
 static const double bounded_m = 0.3; // a pull of 0.1 m on a scene of 0.12 m
+// Under sanitizers, where a step takes thirty times as long, each scene is pulled one way: other
+// directions take the same path through the program.
+static const size_t ways_under_sanitizers = 1;
 
 static double farthest(const cau_session *session, int32_t *inverted)
 {
@@ -27,7 +30,8 @@ static void pull_every_way(const char *name, double top_m, double slip_force_n)
 	jaws->slip_force_n = slip_force_n;
 	jaws->grasp_stiffness_n_m = slip_force_n > 100 ? 1e4 : 200;
 	cau_session *session = stage_open(scene, 2);
-	for (size_t w = 0; w < sizeof ways / sizeof *ways; ++w) {
+	size_t way_count = CAU_TEST_SANITIZED ? ways_under_sanitizers : sizeof ways / sizeof *ways;
+	for (size_t w = 0; w < way_count; ++w) {
 		const double *at = jaws->pose.position_m;
 		int32_t inverted = 0, held;
 		stage_move(session, "jaws", at[0], at[1], at[2]);

@@ -71,12 +71,15 @@ static void read_hash(const char *arguments, char hash[17])
 	assert_int_equal(strspn(hash, "0123456789abcdef"), 16);
 }
 
+// Under sanitizers, where this takes minutes, one other run: two threads and a snapshot while edges
+// part. Alike hashes are the other builds' business, and a race would show in this run.
 static void expect_one_hash(const char *scene, const char *seconds, const char *snapshots[3])
 {
 	char arguments[256], first[17], other[17];
 	snprintf(arguments, sizeof arguments, "--scene %s --cut --seconds %s --json", scene, seconds);
 	read_hash(arguments, first);
-	for (int i = 0; i < 4; i++) {
+	int from = CAU_TEST_SANITIZED ? 1 : 0, to = CAU_TEST_SANITIZED ? 2 : 4;
+	for (int i = from; i < to; i++) {
 		if (i < 3)
 			snprintf(arguments, sizeof arguments,
 			         "--scene %s --cut --seconds %s --json --threads %d --snapshot-at %s", scene,

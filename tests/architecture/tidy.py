@@ -1,0 +1,47 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""clang-tidy over each source of a folder, once. Usage: tidy.py ROOT FOLDER BUILD
+
+BUILD/compile_commands.json has one entry for every object: a source of which several are made (the
+kernels, once for each instruction set) would be looked at several times. What is left out here is
+the same text with other options of the compiler.
+"""
+
+import json
+import os
+import shutil
+import subprocess
+import sys
+import tempfile
+
+import project
+
+
+def one_entry_each(root, folder, build):
+    with open(os.path.join(build, "compile_commands.json"), encoding="utf-8") as file:
+        entries = json.load(file)
+    inside = os.path.join(os.path.abspath(root), folder, "")
+    return {entry["file"]: entry for entry in entries if entry["file"].startswith(inside)}
+
+
+def violations(database, files):
+    found = []
+    for name in files:
+        answer = subprocess.run(["clang-tidy", "-quiet", "-p", database, name], capture_output=True,
+                                text=True, check=False)
+        if answer.returncode:
+            found.append(answer.stdout.strip() or answer.stderr.strip())
+    return found
+
+
+def main(root, folder, build):
+    if not shutil.which("clang-tidy"):
+        project.skip("clang-tidy is not installed")
+    entries = one_entry_each(root, folder, build)
+    with tempfile.TemporaryDirectory() as database:
+        with open(os.path.join(database, "compile_commands.json"), "w", encoding="utf-8") as file:
+            json.dump(list(entries.values()), file)
+        project.finish(violations(database, sorted(entries)), len(entries))
+
+
+if __name__ == "__main__":
+    main(*sys.argv[1:])
