@@ -27,7 +27,7 @@ DERIVED = ("CONFIGURATIONS",)
 
 ORDINARY_SLOTS, TIMING_SLOTS, FILLER_SLOTS = 2, 3, 1
 FILLER_LABELS = {"fuzz", "tidy"}
-GIVING_WAY = ["nice", "-n", "10"]
+GIVING_WAY = ["nice", "-n", "19"]  # below the daemon's own workers, which are at 5
 BUILD_COST, TIMING_COST = 1e6, 1e5  # above any time limit, which is the cost of the others
 BUILD_LIMIT_S = 3600
 

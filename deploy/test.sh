@@ -101,21 +101,6 @@ configure() {
 	watched "configure-$preset" cmake --preset "$preset" "${fresh[@]}" "$@"
 }
 
-# test_only: what --only says.
-test_only() {
-	local tree programs
-	tree=$(tree_of "$only_preset")
-	heading "build in $tree what the tests '$only' run"
-	configure "$only_preset"
-	mapfile -t programs < <(python3 deploy/programs_of_tests.py "$tree" "$only")
-	if [ ${#programs[@]} -gt 0 ]; then
-		watched "build-$only_preset" cmake --build "$tree" --target "${programs[@]}" --parallel "$jobs"
-	fi
-	heading "tests"
-	exec ctest --test-dir "$tree" -R "$only" --parallel "$jobs" --output-on-failure \
-		--no-label-summary --no-tests=error
-}
-
 # collect NAME PRESET LABELS WITHOUT TIMEOUT_FACTOR [TARGET]: adds a tree's tests to the suite; with a
 # target, building it is one of them, so that these tests begin when their tree is there.
 collect() {
