@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """Follows a page's list of steps to the letter, on a copy of the sources.
 
-Usage: follow.py ROOT PAGE SECTION COPY MOST [TEST...]
+Usage: follow.py [--edits-only] ROOT PAGE SECTION COPY MOST [TEST...]
 
 SECTION is a heading of PAGE. Under it each block of code has a sentence before it that ends with a
 colon and says what to do with it:
@@ -16,6 +16,8 @@ LINE must be in the file once, whatever stands before and after it on the line a
 block that no such sentence precedes, and a sentence without a block, are errors: nothing in the
 list may be left to the reader. Every TEST must have been run by ctest and passed. At the end the
 files that were changed are counted, generated and test files left out: at most MOST.
+
+With --edits-only nothing is run: that the list still fits the sources is seen in a moment.
 
 COPY is a folder that this program owns: it is made to hold what ROOT holds, but for what builds
 made there, which stays and makes the next run quicker.
@@ -124,7 +126,7 @@ def run(copy, script):
     return "".join(said)
 
 
-def follow(copy, steps):
+def follow(copy, steps, edits_only=False):
     """Does every step; returns what the scripts said."""
     said = ""
     for directive, block in steps:
@@ -135,7 +137,7 @@ def follow(copy, steps):
         elif editing:
             edit(copy, editing.group(1), editing.group(2), editing.group(3), block)
         elif RUN.match(directive):
-            said += run(copy, block)
+            said += "" if edits_only else run(copy, block)
         else:
             raise Wrong(f"not a step that can be followed: {directive}")
     return said
@@ -181,14 +183,16 @@ def changed_files(copy, before):
 
 
 def main():
-    root, page, section, copy = sys.argv[1:5]
-    most, tests = int(sys.argv[5]), sys.argv[6:]
+    arguments = [argument for argument in sys.argv[1:] if argument != "--edits-only"]
+    edits_only = len(arguments) < len(sys.argv) - 1
+    root, page, section, copy = arguments[:4]
+    most, tests = int(arguments[4]), [] if edits_only else arguments[5:]
     os.makedirs(copy, exist_ok=True)
     bring_up_to_date(root, copy)
     before = fingerprints(copy)
     with open(os.path.join(root, page), encoding="utf-8") as file:
         steps = steps_of(section_of(file.read(), section))
-    said = follow(copy, steps)
+    said = follow(copy, steps, edits_only)
     for test in tests:
         if not re.search(rf" {re.escape(test)} \.+ +Passed ", said):
             raise Wrong(f"the test {test} was not run, or did not pass")
@@ -203,5 +207,5 @@ if __name__ == "__main__":
     try:
         main()
     except Wrong as wrong:
-        print(f"{sys.argv[2]}: {wrong}")
+        print(wrong)
         sys.exit(1)

@@ -99,6 +99,11 @@ class Following(unittest.TestCase):
         self.refuse(PAGE.replace("## Adding a thing", "## Adding"), "no section")
         self.refuse("## Adding a thing\n\nThink.\n", "no steps")
 
+    def test_edits_alone_run_nothing(self):
+        steps = follow.steps_of(follow.section_of(PAGE.replace("cat list.txt", "false"), "Adding a thing"))
+        self.assertEqual(follow.follow(self.copy, steps, edits_only=True), "")
+        self.assertEqual(read(self.copy, "list.txt"), "first\nsecond\nthird\nlast\n")
+
     def test_a_script_that_fails_ends_it(self):
         self.refuse(PAGE.replace("cat list.txt", "false"), "exit code 1")
 
