@@ -57,7 +57,7 @@ static void perform(cau_hosted *h, const cau_effects *effects, const cau_order *
 		const cau_effect *effect = &effects->list[i];
 		switch (effect->kind) {
 		case CAU_EFFECT_REFUSE:
-			if (submitted == order_of(effect->ticket))
+			if (own && submitted == order_of(effect->ticket))
 				*own = effect;
 			else
 				cau_answer_fail(order_of(effect->ticket), &effect->error, effect->code);

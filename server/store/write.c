@@ -114,7 +114,7 @@ static cau_status look(struct cau_store_writer *writer, enum statement_index ind
 	cau_status status = CAU_OK;
 	*found = code == SQLITE_ROW;
 	if (*found) {
-		for (int i = 0; i < sqlite3_column_count(statement); i++)
+		for (int i = 0; i < 3 && i < sqlite3_column_count(statement); i++)
 			value[i] = sqlite3_column_int64(statement, i);
 	} else if (code != SQLITE_DONE) {
 		status = cau_store_fault(writer->database, code, "looking up", error);
@@ -128,7 +128,7 @@ static cau_status find_session(struct cau_store_writer *writer, const char *id, 
                                cau_error *error)
 {
 	bool found;
-	int64_t value[3];
+	int64_t value[3] = {0};
 	bind_text(writer->statement[FIND_SESSION], 1, id);
 	cau_status status = look(writer, FIND_SESSION, &found, value, error);
 	if (status)
@@ -354,7 +354,7 @@ static cau_status find_owner(struct cau_store_writer *writer, int64_t key, uint6
 {
 	for (;;) {
 		bool found;
-		int64_t up[3]; // parent, fork tick, end tick
+		int64_t up[3] = {0}; // parent, fork tick, end tick
 		sqlite3_bind_int64(writer->statement[FIND_BRANCH], 1, key);
 		sqlite3_bind_int64(writer->statement[FIND_BRANCH], 2, *parent);
 		cau_status status = look(writer, FIND_BRANCH, &found, up, error);

@@ -104,7 +104,7 @@ cau_dds_hand *cau_dds_move(cau_dds *dds, const cau_door *door, cau_dds_tool *too
 	if (!status) {
 		bool now = would_drive(tool, writer->client, state.driver.client, now_s);
 		hand = cau_dds_take_hand(dds, writer, door->session, tool, now, &error);
-		status = hand ? claim(hand, &state, now_s, &error) : error.status;
+		status = hand ? claim(hand, &state, now_s, &error) : CAU_LIMIT; // or memory: error has it
 	}
 	if (!status)
 		status = cau_motion_check_leap(&hand->past, &motion.pose, now_s, &state.state.definition,

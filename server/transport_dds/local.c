@@ -34,7 +34,7 @@ cau_status cau_dds_stay_local(cau_error *error)
 	static const char device[] = "lo";
 	DIR *descriptors = opendir("/proc/self/fd");
 	int problem = descriptors ? 0 : errno;
-	for (const struct dirent *entry; !problem && (entry = readdir(descriptors));) {
+	for (const struct dirent *entry; descriptors && !problem && (entry = readdir(descriptors));) {
 		char *end;
 		long descriptor = strtol(entry->d_name, &end, 10);
 		if (end != entry->d_name && is_open((int)descriptor) &&

@@ -73,3 +73,8 @@ cau_fail(cau_error *error, cau_status status, const char *path, const char *form
 	}
 	return status;
 }
+
+#ifdef __clang_analyzer__
+// The analyzer looks into no function of variable arguments: it is shown what this one returns.
+#define cau_fail(error, status, ...) ((void)(cau_fail)((error), (status), __VA_ARGS__), (status))
+#endif
