@@ -70,8 +70,9 @@ static cli_exit act_add(hand *h)
 	const char *word = h->at < h->c->argument_count ? h->c->arguments[h->at++] : "";
 	int32_t shape = cli_shape_of_word(word);
 	if (shape < 0) {
-		cli_complain(h->c, "add wants a shape: sphere, capsule, hook, spatula, bipolar, shears or "
-		                   "grasper");
+#define X(code, word, ...) " " #word
+		cli_complain(h->c, "add wants a shape:" CAU_TOOL_SHAPE_TABLE(X));
+#undef X
 		return CLI_USAGE;
 	}
 	cau_command command = command_of(h, CAU_COMMAND_TOOL_ADD);

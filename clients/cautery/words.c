@@ -8,9 +8,11 @@
 #define X(code, word) word,
 static const char *const states[] = {CAU_SESSION_STATE_TABLE(X)};
 static const char *const layers[] = {CAU_LAYER_TABLE(X)};
-static const char *const shapes[] = {CAU_TOOL_SHAPE_TABLE(X)};
 static const char *const reasons[] = {CAU_ENERGY_OFF_TABLE(X)};
 static const char *const events[] = {CAU_EVENT_TABLE(X)};
+#undef X
+#define X(code, word, ...) #word,
+static const char *const shapes[] = {CAU_TOOL_SHAPE_TABLE(X)};
 #undef X
 
 #define WORD(table, index)                                                                         \

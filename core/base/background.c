@@ -4,6 +4,8 @@
 #include <pthread.h>
 #include <stdlib.h>
 
+#include "cautery/assert.h"
+
 struct cau_background {
 	pthread_t thread;
 	pthread_mutex_t lock;
@@ -53,6 +55,7 @@ void cau_background_destroy(cau_background *background)
 	if (!background)
 		return;
 	pthread_mutex_lock(&background->lock);
+	CAU_ASSERT(!background->stop, "ended twice");
 	background->stop = 1;
 	pthread_cond_broadcast(&background->changed);
 	pthread_mutex_unlock(&background->lock);
@@ -64,7 +67,11 @@ void cau_background_destroy(cau_background *background)
 
 void cau_background_start(cau_background *background, void (*job)(void *context), void *context)
 {
+	CAU_ASSERT(job != NULL, "no job to do with %p", context);
 	pthread_mutex_lock(&background->lock);
+	CAU_ASSERT(!background->job, "the last job with %p has not been waited for",
+	           background->context);
+	CAU_ASSERT(!background->stop, "a job for a thread that is being ended");
 	background->context = context;
 	background->job = job;
 	pthread_cond_broadcast(&background->changed);
@@ -73,6 +80,7 @@ void cau_background_start(cau_background *background, void (*job)(void *context)
 
 void cau_background_wait(cau_background *background)
 {
+	CAU_ASSERT(!pthread_equal(pthread_self(), background->thread), "a job waits for itself");
 	pthread_mutex_lock(&background->lock);
 	while (background->job)
 		pthread_cond_wait(&background->changed, &background->lock);

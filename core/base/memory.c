@@ -4,6 +4,8 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "cautery/assert.h"
+
 enum { ALIGNMENT = 64 };
 
 struct cau_arena_block {
@@ -13,6 +15,7 @@ struct cau_arena_block {
 
 void *cau_arena_array(cau_arena *arena, size_t count, size_t size)
 {
+	CAU_ASSERT(size > 0, "%zu elements of no size", count);
 	size_t bytes;
 	if (__builtin_mul_overflow(count, size, &bytes) || bytes > SIZE_MAX / 2)
 		return NULL;
@@ -30,6 +33,7 @@ void *cau_arena_array(cau_arena *arena, size_t count, size_t size)
 
 void *cau_arena_copy(cau_arena *arena, const void *source, size_t count, size_t size)
 {
+	CAU_ASSERT(source || !count, "%zu elements of nothing", count);
 	void *copy = cau_arena_array(arena, count, size);
 	if (copy && count)
 		memcpy(copy, source, count * size);
@@ -39,6 +43,8 @@ void *cau_arena_copy(cau_arena *arena, const void *source, size_t count, size_t 
 void cau_arena_finish(cau_arena *arena)
 {
 	while (arena->blocks) {
+		CAU_ASSERT(arena->byte_count > 0, "%zu bytes handed out, and there are blocks",
+		           arena->byte_count);
 		struct cau_arena_block *next = arena->blocks->next;
 		free(arena->blocks);
 		arena->blocks = next;

@@ -4,10 +4,13 @@
 #include <stdatomic.h>
 #include <sys/mman.h>
 
+#include "cautery/assert.h"
+
 static atomic_size_t held;
 
 int cau_pages_take(cau_pages *pages, size_t byte_count)
 {
+	CAU_ASSERT(byte_count > 0, "pages for %zu bytes", byte_count);
 	*pages = (cau_pages){0};
 	void *start =
 		mmap(NULL, byte_count, PROT_READ | PROT_WRITE, MAP_PRIVATE | MAP_ANONYMOUS, -1, 0);
@@ -23,6 +26,8 @@ void cau_pages_give_back(cau_pages *pages)
 	if (!pages->start)
 		return;
 	munmap(pages->start, pages->byte_count);
+	CAU_ASSERT(atomic_load(&held) >= pages->byte_count, "%zu bytes given back of %zu held",
+	           pages->byte_count, atomic_load(&held));
 	atomic_fetch_sub(&held, pages->byte_count);
 	*pages = (cau_pages){0};
 }

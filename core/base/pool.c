@@ -7,6 +7,8 @@
 #include <stdlib.h>
 #include <sys/resource.h>
 
+#include "cautery/assert.h"
+
 // Loops follow each other within microseconds during a step, so helpers spin for a while before
 // they sleep; between steps they sleep.
 enum { FEW_SPINS = 200, SPINS = 20000, MAX_THREADS = 16 };
@@ -55,12 +57,14 @@ static void run_parts(cau_pool *pool, int from_front)
 	uint64_t ticket = atomic_load(&pool->ticket);
 	for (;;) {
 		int32_t first = ticket & 0xffff, end = (ticket >> 16) & 0xffff;
+		CAU_ASSERT(first <= end, "parts %d to %d", first, end);
 		if (first >= end)
 			return;
 		uint64_t claimed = from_front ? ticket + 1 : ticket - (1u << 16);
 		if (!atomic_compare_exchange_weak(&pool->ticket, &ticket, claimed))
 			continue;
 		pool->part(pool->context, from_front ? first : end - 1);
+		CAU_ASSERT(atomic_load(&pool->parts_left) > 0, "part %d was done twice", first);
 		atomic_fetch_sub(&pool->parts_left, 1);
 		ticket = atomic_load(&pool->ticket);
 	}
@@ -73,6 +77,7 @@ static void sleep_until_changed(cau_pool *pool, uint32_t seen)
 	while (generation_of(atomic_load(&pool->ticket)) == seen && !atomic_load(&pool->stop))
 		pthread_cond_wait(&pool->wake, &pool->lock);
 	atomic_fetch_sub(&pool->sleepers, 1);
+	CAU_ASSERT(atomic_load(&pool->sleepers) >= 0, "%d sleepers", atomic_load(&pool->sleepers));
 	pthread_mutex_unlock(&pool->lock);
 }
 
@@ -103,6 +108,7 @@ cau_pool *cau_pool_create(int32_t thread_count)
 	pthread_cond_init(&pool->wake, NULL);
 	pool->thread_count = 1;
 	pool->next_alone = LEAST_ALONE;
+	CAU_ASSERT(thread_count >= 1, "a pool of %d threads", thread_count);
 	if (thread_count > MAX_THREADS)
 		thread_count = MAX_THREADS;
 	while (pool->thread_count < thread_count) {
@@ -118,6 +124,8 @@ void cau_pool_destroy(cau_pool *pool)
 	if (!pool)
 		return;
 	pthread_mutex_lock(&pool->lock);
+	CAU_ASSERT(!atomic_load(&pool->parts_left), "ended with %d parts to do",
+	           atomic_load(&pool->parts_left));
 	atomic_store(&pool->stop, 1);
 	pthread_cond_broadcast(&pool->wake);
 	pthread_mutex_unlock(&pool->lock);
@@ -156,6 +164,8 @@ static int wait_long(cau_pool *pool)
 
 static void wait_for_helpers(cau_pool *pool, int32_t part_count)
 {
+	CAU_ASSERT(pool->next_alone >= LEAST_ALONE && pool->next_alone <= MOST_ALONE, "%d parts alone",
+	           pool->next_alone);
 	for (int spins = 0; spins < FEW_SPINS && atomic_load(&pool->parts_left); ++spins)
 		relax();
 	if (atomic_load(&pool->parts_left) && wait_long(pool)) {
@@ -172,12 +182,15 @@ static void wait_for_helpers(cau_pool *pool, int32_t part_count)
 void cau_pool_run(cau_pool *pool, int32_t part_count, void (*part)(void *context, int32_t index),
                   void *context)
 {
+	CAU_ASSERT(part_count >= 0 && part_count <= CAU_POOL_PARTS, "%d parts", part_count);
 	if (pool->thread_count == 1 || part_count <= 1 || pool->alone > 0) {
 		for (int32_t i = 0; i < part_count; ++i)
 			part(context, i);
 		pool->alone -= pool->alone > 0 ? part_count : 0;
 		return;
 	}
+	CAU_ASSERT(!atomic_load(&pool->parts_left), "two loops at once, the other with %d parts to do",
+	           atomic_load(&pool->parts_left));
 	pool->part = part;
 	pool->context = context;
 	atomic_store(&pool->parts_left, part_count);

@@ -3,6 +3,8 @@
 
 #include <math.h>
 
+#include "cautery/assert.h"
+
 enum { SWEEPS = 16 };
 
 void cau_symmetric_eigen3(const double a[6], double value[3], double v[3][3])
@@ -40,6 +42,7 @@ void cau_symmetric_eigen3(const double a[6], double value[3], double v[3][3])
 
 void cau_symmetric_power3(const double a[6], double power, double floor, double out[6])
 {
+	CAU_ASSERT(floor >= 0 && isfinite(power), "power %g of values from %g on", power, floor);
 	static const int row[6] = {0, 1, 2, 0, 0, 1}, column[6] = {0, 1, 2, 1, 2, 2};
 	double value[3], v[3][3];
 	cau_symmetric_eigen3(a, value, v);

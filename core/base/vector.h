@@ -4,6 +4,7 @@
 
 #include <math.h>
 
+#include "cautery/assert.h"
 #include "cautery/scene.h"
 
 typedef struct cau_vec3 {
@@ -79,6 +80,7 @@ static inline cau_vec3 cau_pose_to_local(const cau_pose *pose, cau_vec3 world)
 // The pose a fraction s (0 to 1) of the way from a to b: linear in position, nlerp in rotation.
 static inline cau_pose cau_pose_between(const cau_pose *a, const cau_pose *b, double s)
 {
+	CAU_ASSERT(s >= 0 && s <= 1, "a share of %g of the way", s);
 	cau_pose out;
 	for (int i = 0; i < 3; ++i)
 		out.position_m[i] = a->position_m[i] + s * (b->position_m[i] - a->position_m[i]);

@@ -38,7 +38,8 @@ typedef struct cau_sheet_group {
 
 typedef struct cau_fat_group {
 	int32_t first_slot, slot_count, layer, material;
-	int model; // CAU_MODEL_*
+	int model;          // CAU_MODEL_*
+	int keeps_rotation; // of the law, in `polar`, even where no limit does
 	int limit, projection;
 	int plastic;            // 1: `plastic` holds C_p^(-1/2) - I
 	double mu, lambda;      // Pa, of the energy as it is evaluated

@@ -5,7 +5,9 @@
 
 #include "base/symmetric.h"
 #include "base/vector.h"
+#include "cautery/assert.h"
 #include "constraint/elements_internal.h"
+#include "constraint/law.h"
 
 static void set_sheet_law(cau_sheet_group *group, const cau_sheet_material *material)
 {
@@ -14,6 +16,8 @@ static void set_sheet_law(cau_sheet_group *group, const cau_sheet_material *mate
 	for (int a = 0; a < 2; ++a) {
 		group->stretch_min[a] = 1 + material->strain_min[a];
 		group->stretch_max[a] = 1 + material->strain_max[a];
+		CAU_ASSERT(group->stretch_min[a] <= group->stretch_max[a], "stretches from %g to %g",
+		           group->stretch_min[a], group->stretch_max[a]);
 	}
 	group->shear_max = material->shear_max;
 }
@@ -54,24 +58,26 @@ static void fat_target_root(const cau_fat_material *material, const double fibre
 	fat_axes(fibre, axes);
 	to_world(material->target, axes, world);
 	cau_symmetric_power3(world, 0.5, 0, root);
+	CAU_ASSERT(root[0] > 0 && root[1] > 0 && root[2] > 0, "a target of %g, %g, %g", root[0],
+	           root[1], root[2]);
 }
 
 static void set_fat_law(cau_fat_group *group, const cau_fat_material *material,
                         const double fibre[3])
 {
 	double lambda, mu;
+	const cau_law *law = cau_law_of(material->model);
 	cau_fat_lame(material, &lambda, &mu);
 	group->model = material->model;
+	group->keeps_rotation = law->keeps_rotation;
 	group->limit = material->limit;
 	group->projection = material->projection;
 	group->plastic = material->plastic_strain_max > 0;
 	group->stiffness = 2 * mu + 3 * lambda;
-	group->mu = mu;
-	group->lambda = lambda;
-	if (material->model == CAU_MODEL_NEOHOOKEAN) { // Lame reparametrisation [Smith et al. 2018]
-		group->mu = 4.0 / 3.0 * mu;
-		group->lambda = lambda + 5.0 / 6.0 * mu;
-	}
+	group->mu = law->mu_mu * mu;
+	group->lambda = lambda + law->lambda_mu * mu;
+	CAU_ASSERT(group->stiffness > 0 && group->mu > 0 && group->lambda >= 0,
+	           "stiffness %g, mu %g, lambda %g Pa", group->stiffness, group->mu, group->lambda);
 	group->limit_stiffness = material->limit_stiffness_pa;
 	fat_target_root(material, fibre, group->target);
 	for (int a = 0; a < 3; ++a) {
@@ -86,6 +92,7 @@ static void set_fat_law(cau_fat_group *group, const cau_fat_material *material,
 static void set_sheet_slot(cau_sheet_set *set, int single, int32_t slot, const cau_tissue *tissue,
                            int32_t element, int alive, int keep_target)
 {
+	CAU_ASSERT_INDEX(slot, set->slot_count);
 	const cau_sheet_material *material = cau_triangle_material(tissue, element);
 	cau_element_map map;
 	cau_tissue_element_map(tissue, CAU_ELEMENT_TRIANGLE, element, &map);
@@ -102,6 +109,7 @@ static void set_sheet_slot(cau_sheet_set *set, int single, int32_t slot, const c
 static void set_fat_slot(cau_fat_set *set, int single, int32_t slot, const cau_tissue *tissue,
                          int32_t element, int alive, int keep_target)
 {
+	CAU_ASSERT_INDEX(slot, set->slot_count);
 	const cau_fat_material *material = cau_tetrahedron_material(tissue, element);
 	double volume = alive ? tissue->tetrahedron_volume[element] : 0;
 	int limited = material->limit != CAU_LIMIT_NONE || keep_target;
@@ -120,7 +128,11 @@ static void set_fat_slot(cau_fat_set *set, int single, int32_t slot, const cau_t
 void cau_elements_remove(cau_elements *elements, const cau_element_slots *slots, int kind,
                          int32_t element)
 {
+	CAU_ASSERT_INDEX(kind, CAU_ELEMENT_KINDS);
+	CAU_ASSERT(element >= 0, "element %d of kind %d", element, kind);
 	int32_t slot = slots->slot_of[kind][element];
+	CAU_ASSERT(slots->element_at[kind][slot] == element, "slot %d has element %d, not %d", slot,
+	           slots->element_at[kind][slot], element);
 	int single = elements->single;
 	switch (kind) {
 	case CAU_ELEMENT_TRIANGLE:
@@ -143,6 +155,9 @@ void cau_elements_set_target(cau_elements *elements, const cau_element_slots *sl
                              const cau_tissue *tissue, int kind, int32_t element,
                              const double *root)
 {
+	CAU_ASSERT(kind == CAU_ELEMENT_TRIANGLE || kind == CAU_ELEMENT_TETRAHEDRON,
+	           "a target for kind %d", kind);
+	CAU_ASSERT_INDEX(element, cau_tissue_element_count(tissue, kind));
 	int32_t slot = slots->slot_of[kind][element];
 	int single = elements->single;
 	if (kind == CAU_ELEMENT_TRIANGLE) {
@@ -161,7 +176,11 @@ void cau_elements_set_target(cau_elements *elements, const cau_element_slots *sl
 void cau_elements_target(const cau_elements *elements, const cau_element_slots *slots, int kind,
                          int32_t element, double *root)
 {
+	CAU_ASSERT(kind == CAU_ELEMENT_TRIANGLE || kind == CAU_ELEMENT_TETRAHEDRON,
+	           "a target of kind %d", kind);
 	int32_t slot = slots->slot_of[kind][element];
+	CAU_ASSERT(slots->element_at[kind][slot] == element, "slot %d has element %d, not %d", slot,
+	           slots->element_at[kind][slot], element);
 	int count = kind == CAU_ELEMENT_TRIANGLE ? 3 : 6;
 	void *const *target =
 		kind == CAU_ELEMENT_TRIANGLE ? elements->sheet.target : elements->fat.target;
@@ -173,10 +192,14 @@ void cau_elements_set_laws(cau_elements *elements, const cau_tissue *tissue)
 {
 	for (int32_t g = 0; g < elements->sheet.group_count; ++g) {
 		cau_sheet_group *group = &elements->sheet.group[g];
+		CAU_ASSERT_INDEX(group->layer, tissue->layer_count);
 		set_sheet_law(group, &tissue->layer[group->layer].def.sheet[group->material]);
 	}
 	for (int32_t g = 0; g < elements->fat.group_count; ++g) {
 		cau_fat_group *group = &elements->fat.group[g];
+		CAU_ASSERT(tissue->layer[group->layer].def.kind == CAU_LAYER_FAT,
+		           "group %d of fat in a layer of kind %d", g,
+		           tissue->layer[group->layer].def.kind);
 		const cau_layer_def *layer = &tissue->layer[group->layer].def;
 		set_fat_law(group, &layer->fat[group->material], layer->fibre);
 	}
@@ -198,6 +221,8 @@ void cau_elements_mark_targets(cau_elements *elements, const cau_element_slots *
 	memset(set->targeted, 0, (size_t)(set->slot_count / CAU_BATCH));
 	for (int32_t g = 0; g < set->group_count; ++g) {
 		const cau_fat_group *group = &set->group[g];
+		CAU_ASSERT(group->first_slot + group->slot_count <= set->slot_count, "slots %d + %d of %d",
+		           group->first_slot, group->slot_count, set->slot_count);
 		for (int32_t s = group->first_slot; s < group->first_slot + group->slot_count; ++s)
 			set->targeted[s / CAU_BATCH] |= slots->element_at[CAU_ELEMENT_TETRAHEDRON][s] >= 0 &&
 			                                !has_target(set, elements->single, s, group->target);

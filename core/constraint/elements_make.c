@@ -3,6 +3,7 @@
 #include <math.h>
 #include <string.h>
 
+#include "cautery/assert.h"
 #include "constraint/elements_internal.h"
 
 static cau_status no_memory(cau_error *error)
@@ -12,6 +13,7 @@ static cau_status no_memory(cau_error *error)
 
 static void rest_combination(const cau_tissue *tissue, const cau_element_map *map, double rest[3])
 {
+	CAU_ASSERT(map->rank == 1, "a combination of rank %d", map->rank);
 	for (int c = 0; c < 3; ++c) {
 		rest[c] = 0;
 		for (int i = 0; i < map->vertex_count; ++i)

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Triangles and tetrahedra in their slots, pair by pair (pairs.h).
+#include "cautery/assert.h"
 #include "constraint/elements_internal.h"
 #include "constraint/pairs.h"
 
@@ -28,6 +29,8 @@ typedef struct pair_maker {
 
 static int32_t layer_of(const cau_tissue *tissue, int kind, int32_t element)
 {
+	CAU_ASSERT(kind == CAU_ELEMENT_TRIANGLE || kind == CAU_ELEMENT_TETRAHEDRON,
+	           "kind %d has no pairs", kind);
 	return kind == CAU_ELEMENT_TRIANGLE ? tissue->triangle_layer[element]
 	                                    : tissue->tetrahedron_layer[element];
 }
@@ -48,6 +51,7 @@ static void find_groups(pair_maker *maker)
 		while (g < maker->group_count &&
 		       (maker->group[g].layer != layer || maker->group[g].material != material))
 			g++;
+		CAU_ASSERT(g < CAU_MAX_GROUPS, "more than %d groups", CAU_MAX_GROUPS);
 		if (g == maker->group_count)
 			maker->group[maker->group_count++] = (group_plan){layer, material, 0, 0};
 	}
@@ -84,6 +88,7 @@ static int32_t pair_slot(int32_t k, int32_t slots)
 		batch = in_share % BATCHES;
 		lane = in_share / BATCHES;
 	}
+	CAU_ASSERT(lane >= 0 && lane < CAU_BATCH, "lane %d of pair %d", lane, k);
 	return share * CAU_SHARE + batch * 2 * CAU_BATCH + lane;
 }
 
@@ -96,6 +101,8 @@ static void place_pairs(const pair_maker *maker, const group_plan *group)
 		    (maker->partner[e] >= 0 && maker->partner[e] < e))
 			continue;
 		int32_t slot = group->first_slot + pair_slot(done++, group->slot_count);
+		CAU_ASSERT(slot < group->first_slot + group->slot_count, "pair %d beyond %d slots", done,
+		           group->slot_count);
 		const int32_t half[2] = {e, maker->partner[e]};
 		for (int h = 0; h < 2 && half[h] >= 0; ++h, slot += CAU_BATCH) {
 			int order[4];
@@ -129,6 +136,8 @@ static void fill_sheet_slot(const pair_maker *maker, int32_t triangle, int32_t s
 	int single = maker->elements->single;
 	cau_element_map map;
 	cau_tissue_element_map(maker->tissue, CAU_ELEMENT_TRIANGLE, triangle, &map);
+	CAU_ASSERT(map.rank == 2 && map.vertex_count == 3, "triangle %d of rank %d", triangle,
+	           map.rank);
 	for (int i = 0; i < 3; ++i)
 		maker->vertices->at[maker->kind][i][slot] = map.vertex[order[i]];
 	for (int i = 0; i < 4; ++i)
@@ -175,6 +184,8 @@ static void fill_fat_slot(const pair_maker *maker, int32_t tetrahedron, int32_t 
 	int single = maker->elements->single;
 	cau_element_map map;
 	cau_tissue_element_map(maker->tissue, CAU_ELEMENT_TETRAHEDRON, tetrahedron, &map);
+	CAU_ASSERT(map.rank == 3 && map.vertex_count == 4, "tetrahedron %d of rank %d", tetrahedron,
+	           map.rank);
 	for (int i = 0; i < 4; ++i)
 		maker->vertices->at[maker->kind][i][slot] = map.vertex[order[i]];
 	for (int i = 0; i < 9; ++i)

@@ -2,6 +2,7 @@
 // The local step's shares, the records they write, and which records each vertex sums.
 #include <string.h>
 
+#include "cautery/assert.h"
 #include "constraint/elements_internal.h"
 
 static cau_status no_memory(cau_error *error)
@@ -11,6 +12,7 @@ static cau_status no_memory(cau_error *error)
 
 static void add_work(cau_element_slots *slots, int kind, int32_t group, int32_t first, int32_t last)
 {
+	CAU_ASSERT(first <= last && (last - first) % CAU_BATCH == 0, "slots %d to %d", first, last);
 	for (int32_t at = first; at < last; at += CAU_SHARE) {
 		int32_t end = at + CAU_SHARE, number = slots->work_count++;
 		slots->work[number] = (cau_local_work){.number = number,
@@ -44,6 +46,7 @@ cau_status cau_elements_make_work(cau_elements *elements, cau_element_slots *slo
 	}
 	add_work(slots, CAU_ELEMENT_LINK, 0, 0, elements->link.slot_count);
 	add_work(slots, CAU_ELEMENT_HINGE, 0, 0, elements->hinge.slot_count);
+	CAU_ASSERT(slots->work_count <= most, "%d shares, and room for %d", slots->work_count, most);
 	return CAU_OK;
 }
 
@@ -58,6 +61,7 @@ typedef struct share_elements {
 static share_elements elements_of(const cau_elements *elements, const cau_element_slots *slots,
                                   const cau_slot_vertices *vertices, int kind)
 {
+	CAU_ASSERT_INDEX(kind, CAU_ELEMENT_KINDS);
 	uint16_t *const *record_at[] = {elements->sheet.record_at, elements->fat.record_at,
 	                                elements->link.record_at, elements->hinge.record_at};
 	static const int count[] = {3, 4, 2, 4};
@@ -83,6 +87,8 @@ static int32_t number_records(const share_elements *share, cau_local_work *work,
 			share->record_at[i][s] = (uint16_t)(4 * (*last - work->first_record));
 		}
 	work->record_count = next - work->first_record;
+	CAU_ASSERT(work->record_count <= CAU_SHARE_RECORDS, "%d records in a share of at most %d",
+	           work->record_count, CAU_SHARE_RECORDS);
 	return next;
 }
 
@@ -105,6 +111,7 @@ static void list_records(const cau_elements *elements, const cau_element_slots *
 			for (int32_t k = 1; k < slots->work[w].record_count; ++k) { // 0: padding's
 				int32_t record = slots->work[w].first_record + k;
 				int32_t v = elements->record_vertex[record] / 4;
+				CAU_ASSERT_INDEX(v, vertex_count);
 				if (!pass)
 					place[v + 1]++;
 				else

@@ -2,9 +2,21 @@
 // Energies of fat (section 5.2): density Psi (Pa) and first Piola-Kirchhoff
 // stress P = dPsi/dF (Pa) of F = I + H. Written in H so that both are exactly zero at rest.
 // Strain here is (F^T F - I)/2, with the half.
+//
+// Each law, a row of CAU_MODEL_TABLE, is one function of this form: it returns P and sets *density
+// to Psi. `polar` is the slot's rotation, which a law that keeps one reads and writes.
+//
+//     INLINE m3 word_stress(law_terms t, rotation_lanes *polar, vreal *density)
 #pragma once
 
 #include "constraint/polar.h"
+
+// What a law is made of: F and H = F - I, the Lame parameters that its row asks for, and the
+// stiffness k of its part of A (Pa).
+typedef struct law_terms {
+	m3 f, h;
+	real mu, lambda, stiffness;
+} law_terms;
 
 // E = (H + H^T + H^T H) / 2
 INLINE sym3 green_strain(m3 h)
@@ -25,14 +37,15 @@ INLINE vreal sym3_dot(sym3 a, sym3 b)
 }
 
 // St. Venant-Kirchhoff: Psi = mu e:e + lambda/2 tr(e)^2, P = F (2 mu e + lambda tr(e) I).
-INLINE m3 stvk_stress(m3 f, m3 h, real mu, real lambda, vreal *density)
+INLINE m3 stvk_stress(law_terms t, rotation_lanes *polar, vreal *density)
 {
-	sym3 e = green_strain(h);
+	(void)polar;
+	sym3 e = green_strain(t.h);
 	vreal trace = e.a00 + e.a11 + e.a22;
-	*density = mu * sym3_dot(e, e) + (real)0.5 * lambda * trace * trace;
-	vreal l = lambda * trace, m = v_set(2 * mu);
+	*density = t.mu * sym3_dot(e, e) + (real)0.5 * t.lambda * trace * trace;
+	vreal l = t.lambda * trace, m = v_set(2 * t.mu);
 	sym3 s = {m * e.a00 + l, m * e.a11 + l, m * e.a22 + l, m * e.a01, m * e.a02, m * e.a12};
-	return m3_times_sym(f, s);
+	return m3_times_sym(t.f, s);
 }
 
 // q - log(1 + q) for q > -1 without cancellation: with z = q / (2 + q), log(1 + q) = 2 atanh(z).
@@ -55,8 +68,11 @@ INLINE vreal log_remainder(vreal q)
 // Psi = mu/2 (I_C - 3) + lambda/2 (J - alpha)^2 - mu/2 log(I_C + 1), alpha = 1 + 3 mu / (4 lambda).
 // P = mu (1 - 1/(I_C + 1)) F + lambda (J - alpha) cof F
 //   = mu [3/4 (F - cof F) + (1/4 - 1/(I_C + 1)) F] + lambda (J - 1) cof F.
-INLINE m3 neohookean_stress(m3 f, m3 h, real mu, real lambda, vreal *density)
+INLINE m3 neohookean_stress(law_terms t, rotation_lanes *polar, vreal *density)
 {
+	(void)polar;
+	m3 f = t.f, h = t.h;
+	real mu = t.mu, lambda = t.lambda;
 	m3 cof_h = m3_cofactor(h);
 	vreal trace = m3_trace(h);
 	vreal ic3 = 2 * trace + m3_dot(h, h); // I_C - 3
@@ -81,21 +97,21 @@ INLINE m3 neohookean_stress(m3 f, m3 h, real mu, real lambda, vreal *density)
 
 // Corotated linear elasticity with determinant-corrected rotation R:
 // Psi = mu |F - R|^2 + lambda/2 tr(R^T F - I)^2, P = 2 mu (F - R) + lambda tr(R^T F - I) R.
-INLINE m3 corotated_stress(m3 f, rotation_lanes *q, real mu, real lambda, vreal *density)
+INLINE m3 corotated_stress(law_terms t, rotation_lanes *polar, vreal *density)
 {
-	m3 rotation = polar_rotation(f, q);
-	m3 stretch = m3_sub(f, rotation);
+	m3 rotation = polar_rotation(t.f, polar);
+	m3 stretch = m3_sub(t.f, rotation);
 	vreal trace = m3_dot(rotation, stretch);
-	*density = mu * m3_dot(stretch, stretch) + (real)0.5 * lambda * trace * trace;
-	return m3_add_scaled(m3_scale(2 * v_set(mu), stretch), lambda * trace, rotation);
+	*density = t.mu * m3_dot(stretch, stretch) + (real)0.5 * t.lambda * trace * trace;
+	return m3_add_scaled(m3_scale(2 * v_set(t.mu), stretch), t.lambda * trace, rotation);
 }
 
 // The printed energy constraint C = Psi (eq. 14-17) projected in F: dF = -Psi P / |P|^2. Its stress
 // in the system is `stiffness` (Pa) times Psi P / |P|^2; 0/0 at rest is guarded relative to that.
-INLINE m3 energy_stress(m3 f, m3 h, real mu, real lambda, real stiffness, vreal *density)
+INLINE m3 energy_stress(law_terms t, rotation_lanes *polar, vreal *density)
 {
-	m3 p = stvk_stress(f, h, mu, lambda, density);
-	real least = (real)1e-10 * (2 * mu + 3 * lambda); // stress at a strain of 1e-10
-	vreal step = stiffness * *density / (m3_dot(p, p) + least * least);
+	m3 p = stvk_stress(t, polar, density);
+	real least = (real)1e-10 * (2 * t.mu + 3 * t.lambda); // stress at a strain of 1e-10
+	vreal step = t.stiffness * *density / (m3_dot(p, p) + least * least);
 	return m3_scale(step, p);
 }

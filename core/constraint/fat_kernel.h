@@ -30,16 +30,15 @@ INLINE sym3 sym3_load(void *const array[6], int32_t slot)
 INLINE m3 fat_energy_stress(const cau_fat_group *group, m3 f, m3 h, rotation_lanes *polar,
                             vreal *density)
 {
-	real mu = (real)group->mu, lambda = (real)group->lambda;
+	law_terms terms = {f, h, (real)group->mu, (real)group->lambda, (real)group->stiffness};
 	switch (group->model) {
-	case CAU_MODEL_STVK:
-		return stvk_stress(f, h, mu, lambda, density);
-	case CAU_MODEL_COROTATED:
-		return corotated_stress(f, polar, mu, lambda, density);
-	case CAU_MODEL_ENERGY:
-		return energy_stress(f, h, mu, lambda, (real)group->stiffness, density);
+#define X(code, word, ...)                                                                         \
+	case CAU_MODEL_##code:                                                                         \
+		return word##_stress(terms, polar, density);
+		CAU_MODEL_TABLE(X)
+#undef X
 	default:
-		return neohookean_stress(f, h, mu, lambda, density);
+		__builtin_unreachable(); // cau_law_of has refused it
 	}
 }
 
@@ -164,7 +163,7 @@ INLINE m3 fat_stress(const cau_fat_set *set, const cau_fat_group *group, int32_t
 	int limited = set->limited[slot / CAU_BATCH];
 	m3 f = m3_add(m3_identity(), h), r = {{v3_zero(), v3_zero(), v3_zero()}};
 	rotation_lanes polar = {v_set(1), v_set(0), v_set(0), v_set(0)};
-	if (limited || group->model == CAU_MODEL_COROTATED)
+	if (limited || group->keeps_rotation)
 		polar = rotation_load(set->polar, slot);
 	vreal density, volume = v_load(set->volume, slot);
 	if (limited) { // first: its rotation needs the most registers
@@ -180,7 +179,7 @@ INLINE m3 fat_stress(const cau_fat_set *set, const cau_fat_group *group, int32_t
 		group->plastic && set->flowed[slot / CAU_BATCH]
 			? fat_plastic_energy_stress(group, h, sym3_load(set->plastic, slot), &polar, &density)
 			: fat_energy_stress(group, f, h, &polar, &density);
-	if (!limited && group->model == CAU_MODEL_COROTATED)
+	if (!limited && group->keeps_rotation)
 		rotation_store(set->polar, slot, polar);
 	*energy += volume * density;
 	if (diagonal) {

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "constraint/pairs.h"
 
+#include "cautery/assert.h"
+
 static const int32_t FREE = -2; // not paired yet
 
 enum { MOST_NEIGHBOURS = 12 }; // more, across an edge of many triangles, are not asked
@@ -15,6 +17,7 @@ static int in_group(const cau_tissue *tissue, int kind, int32_t e, int32_t layer
 
 static int add_free(const int32_t *partner, int32_t element, int32_t *list, int count)
 {
+	CAU_ASSERT(count >= 0 && count <= MOST_NEIGHBOURS, "%d neighbours", count);
 	if (element < 0 || partner[element] != FREE || count == MOST_NEIGHBOURS)
 		return count;
 	list[count] = element;
@@ -48,6 +51,7 @@ static int free_neighbours(const cau_tissue *tissue, int kind, const int32_t *pa
 static int32_t choose(const cau_tissue *tissue, int kind, const int32_t *partner, int32_t e)
 {
 	int32_t near[MOST_NEIGHBOURS], of_near[MOST_NEIGHBOURS], best = -1;
+	CAU_ASSERT(partner[e] != FREE, "element %d may choose itself", e);
 	int fewest = MOST_NEIGHBOURS + 1, count = free_neighbours(tissue, kind, partner, e, near);
 	for (int i = 0; i < count; ++i) {
 		int others = free_neighbours(tissue, kind, partner, near[i], of_near);
@@ -62,6 +66,8 @@ static int32_t choose(const cau_tissue *tissue, int kind, const int32_t *partner
 int32_t cau_pair_elements(const cau_tissue *tissue, int kind, int32_t layer, int32_t material,
                           int32_t *partner)
 {
+	CAU_ASSERT(kind == CAU_ELEMENT_TRIANGLE || kind == CAU_ELEMENT_TETRAHEDRON,
+	           "kind %d has no pairs", kind);
 	int32_t pairs = 0, count = cau_tissue_element_count(tissue, kind);
 	for (int32_t e = 0; e < count; ++e)
 		if (in_group(tissue, kind, e, layer, material))
@@ -71,11 +77,13 @@ int32_t cau_pair_elements(const cau_tissue *tissue, int kind, int32_t layer, int
 			continue;
 		partner[e] = -1;
 		int32_t other = choose(tissue, kind, partner, e);
+		CAU_ASSERT(other < 0 || partner[other] == FREE, "element %d is paired twice", other);
 		partner[e] = other;
 		if (other >= 0)
 			partner[other] = e;
 		pairs++;
 	}
+	CAU_ASSERT(pairs <= count, "%d pairs of %d elements", pairs, count);
 	return pairs;
 }
 
@@ -90,6 +98,8 @@ static int place_of(const int32_t *vertices, int count, int32_t vertex)
 void cau_pair_order(const cau_tissue *tissue, int kind, int32_t first, int32_t other,
                     int32_t element, int *order)
 {
+	CAU_ASSERT(element == first || element == other, "element %d is in no pair of %d and %d",
+	           element, first, other);
 	int vertices = kind == CAU_ELEMENT_TRIANGLE ? 3 : 4, shared = vertices - 1, found = 0;
 	const int32_t *all = kind == CAU_ELEMENT_TRIANGLE ? tissue->triangle : tissue->tetrahedron;
 	const int32_t *a = all + (size_t)vertices * (size_t)first;
@@ -101,5 +111,7 @@ void cau_pair_order(const cau_tissue *tissue, int kind, int32_t first, int32_t o
 			order[found] = place_of(own, vertices, a[i]);
 			apex -= order[found++];
 		}
+	CAU_ASSERT(found == shared, "elements %d and %d share %d vertices", first, other, found);
+	CAU_ASSERT_INDEX(apex, vertices);
 	order[shared] = apex;
 }

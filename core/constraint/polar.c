@@ -4,6 +4,7 @@
 #include "base/symmetric.h"
 
 #define CAU_SINGLE 0
+#include "cautery/assert.h"
 #include "constraint/polar.h"
 
 static double dot(const double a[3], const double b[3])
@@ -41,6 +42,7 @@ static void quaternion_of(double r[3][3], double q[4])
 	int i = r[1][1] > r[0][0] ? 1 : 0;
 	i = r[2][2] > r[i][i] ? 2 : i;
 	int j = (i + 1) % 3, k = (i + 2) % 3;
+	CAU_ASSERT(r[i][i] >= r[j][j] && r[i][i] >= r[k][k], "axis %d is not the largest", i);
 	double s = sqrt(r[i][i] - r[j][j] - r[k][k] + 1) * 2;
 	q[0] = (r[k][j] - r[j][k]) / s;
 	q[1 + i] = s / 4;

@@ -3,10 +3,15 @@
 
 #include <string.h>
 
+#include "cautery/assert.h"
+
+_Static_assert(CAU_MAX_LAYERS <= 16, "a bit of `parted` for each layer");
+
 static const double heat_capacity = 3500; // J/(kg K), soft tissue
 
 static int element_kind(int primitive)
 {
+	CAU_ASSERT_INDEX(primitive, CAU_PRIMITIVE_KINDS);
 	static const int kind[CAU_PRIMITIVE_KINDS] = {CAU_ELEMENT_TRIANGLE, CAU_ELEMENT_TETRAHEDRON,
 	                                              CAU_ELEMENT_LINK};
 	return kind[primitive];
@@ -17,8 +22,18 @@ static int32_t primitive_count(const cau_tissue *tissue, int primitive)
 	return cau_tissue_element_count(tissue, element_kind(primitive));
 }
 
+// Of all kinds: what can be removed at most.
+static int32_t element_total(const cau_tissue *tissue)
+{
+	int32_t total = 0;
+	for (int kind = 0; kind < CAU_ELEMENT_KINDS; ++kind)
+		total += cau_tissue_element_count(tissue, kind);
+	return total;
+}
+
 static int32_t layer_of(const cau_tissue *tissue, int primitive, int32_t index)
 {
+	CAU_ASSERT_INDEX(index, primitive_count(tissue, primitive));
 	switch (primitive) {
 	case CAU_PRIMITIVE_TRIANGLE:
 		return tissue->triangle_layer[index];
@@ -42,6 +57,7 @@ static const cau_heat_material *heat_of(const cau_tissue *tissue, int primitive,
 static const int32_t *vertices_of(const cau_tissue *tissue, int primitive, int32_t index,
                                   int *count)
 {
+	CAU_ASSERT_INDEX(index, primitive_count(tissue, primitive));
 	*count = primitive == CAU_PRIMITIVE_TRIANGLE      ? 3
 	         : primitive == CAU_PRIMITIVE_TETRAHEDRON ? 4
 	                                                  : 2;
@@ -63,6 +79,8 @@ static cau_status list_triangle_hinges(cau_dissection *dissection, cau_arena *ar
 	if (!first || !dissection->triangle_hinge)
 		return cau_fail(error, CAU_NO_MEMORY, NULL, "no memory for the hinges");
 	int32_t *place = first + 1;
+	CAU_ASSERT(!tissue->hinge_count || tissue->triangle_count > 1, "%d hinges of %d triangles",
+	           tissue->hinge_count, tissue->triangle_count);
 	for (int32_t k = 0; k < 2 * tissue->hinge_count; ++k)
 		place[tissue->hinge_triangle[k] + 1]++;
 	for (int32_t t = 0; t < tissue->triangle_count; ++t)
@@ -110,6 +128,9 @@ cau_status cau_dissection_create(cau_dissection *dissection, const cau_tissue *t
 
 void cau_dissection_begin(cau_dissection *dissection)
 {
+	CAU_ASSERT(dissection->touched_count <= dissection->tissue->edges.edge_count,
+	           "%d edges touched of %d", dissection->touched_count,
+	           dissection->tissue->edges.edge_count);
 	for (int32_t k = 0; k < dissection->touched_count; ++k)
 		dissection->touched_mark[dissection->touched[k]] = 0;
 	dissection->touched_count = dissection->removed_count = 0;
@@ -118,6 +139,7 @@ void cau_dissection_begin(cau_dissection *dissection)
 // ---- faces
 static void draw_face(cau_dissection *dissection, int32_t face)
 {
+	CAU_ASSERT_INDEX(face, dissection->tissue->faces.face_count);
 	const cau_face_table *faces = &dissection->tissue->faces;
 	int drawn = dissection->face_owners[face] == 1;
 	if (face >= faces->triangle_count && faces->cover[face] >= 0)
@@ -140,6 +162,8 @@ static void lose_faces(cau_dissection *dissection, int primitive, int32_t index)
 	} else if (primitive == CAU_PRIMITIVE_TETRAHEDRON) {
 		for (int i = 0; i < 4; ++i) {
 			int32_t face = faces->tetrahedron_face[4 * (size_t)index + (size_t)i];
+			CAU_ASSERT(dissection->face_owners[face] > 0,
+			           "face %d loses tetrahedron %d, and has none", face, index);
 			dissection->face_owners[face]--;
 			draw_face(dissection, face);
 		}
@@ -149,6 +173,7 @@ static void lose_faces(cau_dissection *dissection, int primitive, int32_t index)
 // ---- exposure
 static int edge_lives(const cau_dissection *dissection, int32_t edge)
 {
+	CAU_ASSERT_INDEX(edge, dissection->tissue->edges.edge_count);
 	const cau_edge_table *edges = &dissection->tissue->edges;
 	for (int p = 0; p < CAU_PRIMITIVE_KINDS; ++p)
 		for (int32_t k = edges->first[p][edge]; k < edges->first[p][edge + 1]; ++k)
@@ -160,6 +185,7 @@ static int edge_lives(const cau_dissection *dissection, int32_t edge)
 // An edge's share of the mass at its ends: there are about a dozen edges at a vertex.
 static double heat_taken(const cau_dissection *dissection, int32_t edge, double gain)
 {
+	CAU_ASSERT(gain > 0, "edge %d takes %g degC s", edge, gain);
 	const cau_tissue *tissue = dissection->tissue;
 	const cau_edge_table *edges = &tissue->edges;
 	double absorption = 0;
@@ -185,6 +211,7 @@ double cau_dissection_expose(cau_dissection *dissection, const cau_near *near,
                              const cau_tool_def *tool, const cau_pose *pose, double jaw,
                              double duration_s)
 {
+	CAU_ASSERT(duration_s >= 0, "exposed for %g s", duration_s);
 	cau_vec3 center;
 	double radius, taken = 0;
 	cau_tool_bound(tool, CAU_PART_HOT, &center, &radius);
@@ -206,6 +233,7 @@ double cau_dissection_expose(cau_dissection *dissection, const cau_near *near,
 			taken += heat_taken(dissection, edge, gain);
 			if (!dissection->touched_mark[edge]) {
 				dissection->touched_mark[edge] = 1;
+				CAU_ASSERT_INDEX(dissection->touched_count, dissection->tissue->edges.edge_count);
 				dissection->touched[dissection->touched_count++] = edge;
 			}
 		}
@@ -222,6 +250,7 @@ static void remove_hinges(cau_dissection *dissection, int32_t triangle)
 		if (!dissection->alive.element[CAU_ELEMENT_HINGE][hinge])
 			continue;
 		dissection->alive.element[CAU_ELEMENT_HINGE][hinge] = 0;
+		CAU_ASSERT_INDEX(hinge, dissection->tissue->hinge_count);
 		dissection->removed[dissection->removed_count++] = (cau_removed){CAU_ELEMENT_HINGE, hinge};
 	}
 }
@@ -229,12 +258,20 @@ static void remove_hinges(cau_dissection *dissection, int32_t triangle)
 static void remove_primitive(cau_dissection *dissection, int primitive, int32_t index)
 {
 	int kind = element_kind(primitive), count;
+	CAU_ASSERT(dissection->alive.element[kind][index], "element %d of kind %d is removed twice",
+	           index, kind);
+	CAU_ASSERT(dissection->removed_count < element_total(dissection->tissue),
+	           "%d elements removed of %d", dissection->removed_count,
+	           element_total(dissection->tissue));
 	dissection->alive.element[kind][index] = 0;
 	dissection->elements_removed++;
 	dissection->removed[dissection->removed_count++] = (cau_removed){kind, index};
 	const int32_t *vertex = vertices_of(dissection->tissue, primitive, index, &count);
-	for (int i = 0; i < count; ++i)
+	for (int i = 0; i < count; ++i) {
+		CAU_ASSERT(dissection->live_elements[vertex[i]] > 0,
+		           "vertex %d loses element %d of kind %d, and has none", vertex[i], index, kind);
 		dissection->live_elements[vertex[i]]--;
+	}
 	lose_faces(dissection, primitive, index);
 	if (primitive == CAU_PRIMITIVE_TRIANGLE)
 		remove_hinges(dissection, index);
@@ -243,6 +280,8 @@ static void remove_primitive(cau_dissection *dissection, int primitive, int32_t 
 static double ignition_in_bundles(const cau_dissection *dissection, const cau_heat_material *heat,
                                   int32_t layer, int32_t edge)
 {
+	CAU_ASSERT(heat->ignition_bundle_m > 0, "bundles of %g m", heat->ignition_bundle_m);
+	CAU_ASSERT_INDEX(layer, dissection->tissue->layer_count);
 	const cau_tissue *tissue = dissection->tissue;
 	const int32_t *ends = tissue->edges.vertex + 2 * (size_t)edge;
 	cau_vec3 a = cau_vec3_of(tissue->rest + 3 * (size_t)ends[0]);
@@ -275,6 +314,7 @@ static uint16_t layers_parting(const cau_dissection *dissection, int32_t edge)
 		for (int32_t k = edges->first[p][edge]; k < edges->first[p][edge + 1]; ++k) {
 			int32_t index = edges->sharer[p][k];
 			uint16_t bit = (uint16_t)(1u << layer_of(dissection->tissue, p, index));
+			CAU_ASSERT(bit != 0, "layer %d has no bit", layer_of(dissection->tissue, p, index));
 			if (!((before | parting) & bit) && ignites(dissection, p, index, edge))
 				parting |= bit;
 		}
@@ -283,6 +323,7 @@ static uint16_t layers_parting(const cau_dissection *dissection, int32_t edge)
 
 static void part_edge(cau_dissection *dissection, int32_t edge, uint32_t *layers)
 {
+	CAU_ASSERT_INDEX(edge, dissection->tissue->edges.edge_count);
 	const cau_edge_table *edges = &dissection->tissue->edges;
 	uint16_t parting = layers_parting(dissection, edge);
 	if (!parting)
@@ -295,6 +336,8 @@ static void part_edge(cau_dissection *dissection, int32_t edge, uint32_t *layers
 			int32_t index = edges->sharer[p][k];
 			if (!(parting >> layer_of(dissection->tissue, p, index) & 1))
 				continue;
+			CAU_ASSERT(dissection->share_count[p][index] > 0,
+			           "primitive %d of kind %d loses edge %d, and has none", index, p, edge);
 			dissection->share_count[p][index]--;
 			if (dissection->alive.element[element_kind(p)][index])
 				remove_primitive(dissection, p, index);
@@ -309,6 +352,7 @@ void cau_dissection_part(cau_dissection *dissection, uint32_t *layers)
 
 double cau_dissection_heated(const cau_dissection *dissection, int32_t edge)
 {
+	CAU_ASSERT_INDEX(edge, dissection->tissue->edges.edge_count);
 	const cau_edge_table *edges = &dissection->tissue->edges;
 	double most = 0;
 	if (dissection->exposure[edge] <= 0)
@@ -335,8 +379,11 @@ static void recount_shares(cau_dissection *dissection)
 		for (int p = 0; p < CAU_PRIMITIVE_KINDS && dissection->parted[e]; ++p)
 			for (int32_t k = edges->first[p][e]; k < edges->first[p][e + 1]; ++k) {
 				int32_t index = edges->sharer[p][k];
-				if (dissection->parted[e] >> layer_of(dissection->tissue, p, index) & 1)
-					dissection->share_count[p][index]--;
+				if (!(dissection->parted[e] >> layer_of(dissection->tissue, p, index) & 1))
+					continue;
+				CAU_ASSERT(dissection->share_count[p][index] > 0,
+				           "primitive %d of kind %d loses edge %d, and has none", index, p, e);
+				dissection->share_count[p][index]--;
 			}
 	for (int p = 0; p < CAU_PRIMITIVE_KINDS; ++p)
 		for (int32_t i = 0; i < primitive_count(dissection->tissue, p); ++i)
@@ -371,6 +418,8 @@ static void recount_faces(cau_dissection *dissection)
 				dissection->face_owners[i] = 1;
 			for (int k = 0; k < 4 && p == CAU_PRIMITIVE_TETRAHEDRON; ++k)
 				dissection->face_owners[faces->tetrahedron_face[4 * (size_t)i + (size_t)k]]++;
+			CAU_ASSERT(dissection->live_elements[vertex[0]] > 0,
+			           "vertex %d of living tetrahedron %d has no element", vertex[0], i);
 		}
 	for (int32_t f = 0; f < faces->face_count; ++f)
 		draw_face(dissection, f);

@@ -4,6 +4,8 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "cautery/assert.h"
+
 typedef struct keyed {
 	uint32_t key;
 	int32_t vertex;
@@ -11,6 +13,7 @@ typedef struct keyed {
 
 static uint32_t spread_bits(uint32_t x) // 10 bits to every third
 {
+	CAU_ASSERT(x < 1u << 10, "%u has more than 10 bits", x);
 	x = (x | x << 16) & 0x030000ffu;
 	x = (x | x << 8) & 0x0300f00fu;
 	x = (x | x << 4) & 0x030c30c3u;
@@ -55,6 +58,7 @@ static void own_edges(cau_near *near, const cau_tissue *tissue, const int32_t *b
 	memcpy(near->halo_first, near->edge_first, (size_t)(near->block_count + 1) * sizeof(int32_t));
 	for (int32_t e = 0; e < edges->edge_count; ++e) {
 		int32_t at = near->halo_first[block_of[edges->vertex[2 * e]]]++;
+		CAU_ASSERT_INDEX(at, edges->edge_count);
 		near->edge[at] = e;
 		near->halo[at] = edges->vertex[2 * e + 1];
 	}
@@ -73,6 +77,8 @@ static void thin_halo(cau_near *near)
 	int32_t to = 0;
 	for (int32_t b = 0; b < near->block_count; ++b) {
 		int32_t first = near->halo_first[b], last = near->edge_first[b + 1], start = to;
+		CAU_ASSERT(to <= first && first <= last, "block %d has halo %d to %d, written from %d on",
+		           b, first, last, to);
 		qsort(near->halo + first, (size_t)(last - first), sizeof *near->halo, compare_index);
 		for (int32_t k = first; k < last; ++k)
 			if (to == start || near->halo[to - 1] != near->halo[k])
@@ -89,6 +95,8 @@ cau_status cau_near_create(cau_near *near, const cau_tissue *tissue, cau_arena *
 	near->vertex_count = tissue->vertex_count;
 	near->block_count = (tissue->vertex_count + CAU_NEAR_BLOCK - 1) / CAU_NEAR_BLOCK;
 	size_t blocks = (size_t)near->block_count;
+	CAU_ASSERT((int64_t)near->block_count * CAU_NEAR_BLOCK >= near->vertex_count,
+	           "%d blocks for %d vertices", near->block_count, near->vertex_count);
 	cau_arena scratch = {0};
 	keyed *order = cau_arena_array(&scratch, n, sizeof *order);
 	int32_t *block_of = cau_arena_array(&scratch, n, sizeof *block_of);
@@ -130,6 +138,7 @@ void cau_near_refit(cau_near *near, const double *position)
 	for (int32_t b = 0; b < near->block_count; ++b) {
 		cau_box box = {{1e30f, 1e30f, 1e30f}, {-1e30f, -1e30f, -1e30f}};
 		int32_t last = (b + 1) * CAU_NEAR_BLOCK;
+		CAU_ASSERT(b * CAU_NEAR_BLOCK < near->vertex_count, "block %d is empty", b);
 		for (int32_t i = b * CAU_NEAR_BLOCK; i < last && i < near->vertex_count; ++i)
 			grow(&box, position + 3 * (size_t)near->vertex[i]);
 		near->vertex_box[b] = box;
@@ -141,6 +150,7 @@ void cau_near_refit(cau_near *near, const double *position)
 
 int cau_box_meets(const cau_box *box, cau_vec3 center, double radius_m)
 {
+	CAU_ASSERT(!(radius_m < 0), "a ball of %g m", radius_m);
 	const double c[3] = {center.x, center.y, center.z};
 	double squared = 0;
 	for (int i = 0; i < 3; ++i) {

@@ -4,6 +4,7 @@
 #include <string.h>
 
 #include "base/symmetric.h"
+#include "cautery/assert.h"
 
 static const double ramp_s = 0.2;
 
@@ -12,6 +13,7 @@ static int32_t most_active(const cau_tissue *tissue)
 {
 	int32_t all = tissue->triangle_count + tissue->tetrahedron_count;
 	int32_t share = all / CAU_SHRINKING_SHARE;
+	CAU_ASSERT(all >= 0, "%d elements may shrink", all);
 	if (share < CAU_SHRINKING_LEAST)
 		return all < CAU_SHRINKING_LEAST ? all : CAU_SHRINKING_LEAST;
 	return share;
@@ -73,6 +75,7 @@ static void triangle_gradient(const cau_tissue *tissue, const double *position, 
 static void sandwich2(const double root[3], double c, double s, const double shrink[2],
                       double out[3])
 {
+	CAU_ASSERT(fabs(c * c + s * s - 1) < 1e-9, "axes (%g, %g) are not of unit length", c, s);
 	double a = c * c * shrink[0] + s * s * shrink[1], b = s * s * shrink[0] + c * c * shrink[1];
 	double d = c * s * (shrink[0] - shrink[1]);
 	double p00 = root[0] * a + root[2] * d, p01 = root[0] * d + root[2] * b;
@@ -105,6 +108,7 @@ static int triangle_target(const cau_tissue *tissue, const double *position, int
 		x = length = 1, y = 0;
 	sandwich2(from, x / length, y / length, material->shrink, target);
 	cau_symmetric_power2(target, 0.5, 1e-6, to);
+	CAU_ASSERT(to[0] > 0 && to[1] > 0, "triangle %d shrinks to %g, %g", triangle, to[0], to[1]);
 	return 1;
 }
 
@@ -170,6 +174,8 @@ static int tetrahedron_target(const cau_tissue *tissue, const double *position, 
 	}
 	sandwich3(from, turned, target);
 	cau_symmetric_power3(target, 0.5, 1e-6, to);
+	CAU_ASSERT(to[0] > 0 && to[1] > 0 && to[2] > 0, "tetrahedron %d shrinks to %g, %g, %g",
+	           tetrahedron, to[0], to[1], to[2]);
 	return 1;
 }
 
@@ -187,6 +193,8 @@ typedef struct expose {
 
 static void start_shrinking(const expose *work, int kind, int32_t element, cau_vec3 face_normal)
 {
+	CAU_ASSERT(kind == CAU_ELEMENT_TRIANGLE || kind == CAU_ELEMENT_TETRAHEDRON,
+	           "element %d of kind %d shrinks", element, kind);
 	const cau_tissue *tissue = work->dissection->tissue;
 	if (!work->dissection->alive.element[kind][element] || work->shrink->shrunk[kind][element])
 		return;
@@ -204,6 +212,9 @@ static void start_shrinking(const expose *work, int kind, int32_t element, cau_v
 	if (!shrinks)
 		return;
 	work->shrink->shrunk[kind][element] = 1;
+	CAU_ASSERT(work->shrink->active_count <= work->shrink->active_capacity,
+	           "%d elements shrink in room for %d", work->shrink->active_count,
+	           work->shrink->active_capacity);
 	if (work->shrink->active_count < work->shrink->active_capacity)
 		work->shrink->active[work->shrink->active_count++] = shrinking;
 	else
@@ -212,6 +223,7 @@ static void start_shrinking(const expose *work, int kind, int32_t element, cau_v
 
 static void expose_triangle(const expose *work, int32_t triangle)
 {
+	CAU_ASSERT_INDEX(triangle, work->dissection->tissue->triangle_count);
 	const cau_tissue *tissue = work->dissection->tissue;
 	const cau_edge_table *edges = &tissue->edges;
 	const int32_t *first = edges->first[CAU_PRIMITIVE_TRIANGLE];
@@ -227,6 +239,7 @@ static void expose_triangle(const expose *work, int32_t triangle)
 
 static void expose_tetrahedron(const expose *work, int32_t tetrahedron)
 {
+	CAU_ASSERT_INDEX(tetrahedron, work->dissection->tissue->tetrahedron_count);
 	const cau_face_table *faces = &work->dissection->tissue->faces;
 	for (int i = 0; i < 4; ++i) {
 		int32_t face = faces->tetrahedron_face[4 * (size_t)tetrahedron + (size_t)i];
@@ -246,6 +259,8 @@ void cau_shrink_expose(cau_shrink *shrink, const cau_dissection *dissection, int
                        const double *position, const cau_tool_def *tool, const cau_pose *pose,
                        double jaw, cau_elements *elements, const cau_element_slots *slots)
 {
+	CAU_ASSERT(first >= 0 && first <= dissection->removed_count, "from element %d on of %d removed",
+	           first, dissection->removed_count);
 	expose work = {shrink, dissection, position, tool, pose, jaw, elements, slots};
 	for (int32_t k = first; k < dissection->removed_count; ++k) {
 		const cau_removed *removed = &dissection->removed[k];
@@ -259,9 +274,13 @@ void cau_shrink_expose(cau_shrink *shrink, const cau_dissection *dissection, int
 void cau_shrink_advance(cau_shrink *shrink, const cau_tissue *tissue, double step_s,
                         cau_elements *elements, const cau_element_slots *slots)
 {
+	CAU_ASSERT(step_s > 0, "a step of %g s", step_s);
 	int32_t kept = 0;
 	for (int32_t k = 0; k < shrink->active_count; ++k) {
 		cau_shrinking *active = &shrink->active[k];
+		CAU_ASSERT(shrink->shrunk[active->kind][active->element],
+		           "element %d of kind %d shrinks and is not marked", active->element,
+		           active->kind);
 		active->age_s += step_s;
 		double s = fmin(active->age_s / ramp_s, 1), root[6];
 		for (int i = 0; i < 6; ++i)

@@ -4,6 +4,8 @@
 #include <stdbool.h>
 #include <string.h>
 
+#include "cautery/assert.h"
+
 static int32_t word_count(const cau_tissue *tissue)
 {
 	return (tissue->faces.face_count + 31) / 32;
@@ -40,9 +42,12 @@ cau_status cau_frame_create(cau_frame_state *frame, const cau_tissue *tissue,
 
 static void change_face(cau_frame_state *frame, const cau_tissue *tissue, int32_t face, int drawn)
 {
+	CAU_ASSERT_INDEX(face, tissue->faces.face_count);
 	for (int i = 0; i < 3; ++i) {
 		int32_t v = tissue->faces.vertex[3 * (size_t)face + (size_t)i];
 		frame->vertex_faces[v] += drawn ? 1 : -1;
+		CAU_ASSERT(frame->vertex_faces[v] >= 0, "vertex %d has %d faces", v,
+		           frame->vertex_faces[v]);
 		frame->vertex_visible[v] = frame->vertex_faces[v] > 0;
 	}
 }
@@ -60,12 +65,15 @@ static void update_mask(cau_frame_state *frame, const cau_dissection *dissection
 				change_face(frame, tissue, 32 * w + bit, !(dissection->face_mask[w] >> bit & 1));
 		frame->mask_before[w] = dissection->face_mask[w];
 		frame->mask_changed[frame->mask_changed_count++] = w;
+		CAU_ASSERT(frame->mask_changed_count <= word_count(tissue), "%d words changed of %d",
+		           frame->mask_changed_count, word_count(tissue));
 	}
 }
 
 static void expose_edge(cau_frame_state *frame, const cau_dissection *dissection, int32_t edge)
 {
 	float value = (float)cau_dissection_heated(dissection, edge);
+	CAU_ASSERT(value >= 0 && value <= 1, "edge %d is heated by %g", edge, (double)value);
 	for (int i = 0; i < 2; ++i) {
 		int32_t v = dissection->tissue->edges.vertex[2 * (size_t)edge + (size_t)i];
 		frame->exposure[v] = value > frame->exposure[v] ? value : frame->exposure[v];
@@ -75,12 +83,16 @@ static void expose_edge(cau_frame_state *frame, const cau_dissection *dissection
 // Counts an edge that has parted, in whichever layer, once at both its ends.
 static void char_edge(cau_frame_state *frame, const cau_dissection *dissection, int32_t edge)
 {
+	CAU_ASSERT_INDEX(edge, dissection->tissue->edges.edge_count);
 	if (!dissection->parted[edge] || frame->edge_burnt[edge])
 		return;
 	frame->edge_burnt[edge] = 1;
 	for (int i = 0; i < 2; ++i) {
 		int32_t v = dissection->tissue->edges.vertex[2 * (size_t)edge + (size_t)i];
 		frame->charring[v] = (float)++frame->burnt_edges[v] / (float)frame->vertex_edges[v];
+		CAU_ASSERT(frame->burnt_edges[v] <= frame->vertex_edges[v],
+		           "vertex %d: %d edges burnt of %d", v, frame->burnt_edges[v],
+		           frame->vertex_edges[v]);
 	}
 }
 
@@ -92,6 +104,8 @@ void cau_frame_update(cau_frame_state *frame, const cau_dissection *dissection, 
 		if (from[3 * v] != to[3 * v] || from[3 * v + 1] != to[3 * v + 1] ||
 		    from[3 * v + 2] != to[3 * v + 2])
 			frame->moved[frame->moved_count++] = v;
+	CAU_ASSERT(frame->moved_count <= dissection->tissue->vertex_count, "%d vertices moved of %d",
+	           frame->moved_count, dissection->tissue->vertex_count);
 	for (int32_t k = 0; k < dissection->touched_count; ++k) { // others do not part in this tick
 		expose_edge(frame, dissection, dissection->touched[k]);
 		char_edge(frame, dissection, dissection->touched[k]);
@@ -113,6 +127,7 @@ void cau_frame_rebuild(cau_frame_state *frame, const cau_dissection *dissection)
 			for (int i = 0; i < 3; ++i)
 				frame->vertex_faces[tissue->faces.vertex[3 * (size_t)f + (size_t)i]]++;
 	frame->moved_count = tissue->vertex_count;
+	CAU_ASSERT(frame->moved_count > 0, "a frame of %d vertices", frame->moved_count);
 	for (int32_t v = 0; v < tissue->vertex_count; ++v) {
 		frame->moved[v] = v;
 		frame->vertex_visible[v] = frame->vertex_faces[v] > 0;

@@ -5,11 +5,13 @@
 #include <string.h>
 
 #include "base/vector.h"
+#include "cautery/assert.h"
 #include "frame/frame_state.h"
 
 static void deformation_gradient(const cau_tissue *tissue, const double *position,
                                  int32_t tetrahedron, double f[3][3])
 {
+	CAU_ASSERT_INDEX(tetrahedron, tissue->tetrahedron_count);
 	const int32_t *v = tissue->tetrahedron + 4 * (size_t)tetrahedron;
 	const double *m = tissue->tetrahedron_dm_inverse + 9 * (size_t)tetrahedron;
 	memset(f, 0, 9 * sizeof(double));
@@ -24,6 +26,7 @@ static void deformation_gradient(const cau_tissue *tissue, const double *positio
 
 static double von_mises(double f[3][3], double mu)
 {
+	CAU_ASSERT(mu > 0, "a shear modulus of %g Pa", mu);
 	double e[3][3], trace = 0, squared = 0;
 	for (int i = 0; i < 3; ++i)
 		for (int j = 0; j < 3; ++j) {

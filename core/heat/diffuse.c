@@ -1,10 +1,14 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "heat/diffuse.h"
 
+#include "cautery/assert.h"
+
 // One row of inner nodes along x; `u`, `rate`, `next` point at its first inner node.
 static void diffuse_row(const float *restrict u, const float *restrict rate, float *restrict next,
                         int64_t count, int64_t row, int64_t plane)
 {
+	CAU_ASSERT(count >= 1 && row == count + 2, "%lld inner nodes in a row of %lld",
+	           (long long)count, (long long)row);
 	for (int64_t x = 0; x < count; ++x) {
 		float sum = u[x - 1] + u[x + 1] + u[x - row] + u[x + row] + u[x - plane] + u[x + plane];
 		next[x] = u[x] + rate[x] * (sum - 6.0F * u[x]);
@@ -13,6 +17,7 @@ static void diffuse_row(const float *restrict u, const float *restrict rate, flo
 
 void cau_diffuse(const float *temperature, const float *rate, float *next, int32_t nodes)
 {
+	CAU_ASSERT(nodes >= 3 && temperature != next, "a grid of %d nodes, into itself", nodes);
 	int64_t row = nodes, plane = row * row;
 	for (int64_t z = 1; z < nodes - 1; ++z)
 		for (int64_t y = 1; y < nodes - 1; ++y) {
@@ -24,6 +29,7 @@ void cau_diffuse(const float *temperature, const float *rate, float *next, int32
 // Lanes instead of one running value, so that the loop is vectorised without reordering rules.
 void cau_extremes(const float *values, int64_t count, float *least, float *greatest)
 {
+	CAU_ASSERT(count >= 1, "the extremes of %lld values", (long long)count);
 	enum { LANES = 16 };
 	float low[LANES], high[LANES];
 	for (int lane = 0; lane < LANES; ++lane)

@@ -1,12 +1,16 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "heat/exposure.h"
 
+#include "cautery/assert.h"
+
 enum { PARTS_MAX = 32 };
 
 double cau_exposure_gain(const cau_heat_grid *grid, const cau_tool_def *tool, const cau_pose *pose,
                          double jaw, cau_vec3 a, cau_vec3 b, double absorption_per_s,
                          double duration_s)
 {
+	CAU_ASSERT(duration_s >= 0 && absorption_per_s >= 0, "exposed for %g s at %g/s", duration_s,
+	           absorption_per_s);
 	if (cau_heat_grid_warmest(grid) <= CAU_LIVING_C)
 		return 0;
 	double mean = (cau_heat_grid_at(grid, a) + cau_heat_grid_at(grid, b)) / 2;
@@ -35,6 +39,7 @@ int cau_exposure_parts(const cau_tool_def *tool, const cau_pose *from, const cau
 	cau_tool_bound(tool, CAU_PART_HOT, &center, &radius);
 	double reach = cau_length(center) + radius; // of the hot part about the tip
 	double way = cau_length(cau_sub(cau_vec3_of(to->position_m), cau_vec3_of(from->position_m)));
+	CAU_ASSERT(reach >= 0, "a hot part that reaches %g m", reach);
 	double parts = (way + reach * turn_between(from, to)) / (cau_tool_thinnest_hot_m(tool) / 2);
 	return (int)fmin(fmax(ceil(parts * (1 - 1e-12)), 1), PARTS_MAX);
 }

@@ -4,12 +4,14 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "cautery/assert.h"
 #include "heat/diffuse.h"
 
 static const double REST_C = 0.01; // a field nowhere further from ambient is at rest
 
 static int64_t node_count(const cau_heat_grid *grid)
 {
+	CAU_ASSERT(grid->nodes >= 0 && grid->nodes <= 4096, "%d nodes along a side", grid->nodes);
 	return (int64_t)grid->nodes * grid->nodes * grid->nodes;
 }
 
@@ -21,6 +23,7 @@ static void fill(float *values, int64_t count, float value)
 
 static void rest(cau_heat_grid *grid)
 {
+	CAU_ASSERT(grid->temperature && grid->next, "a grid of %d nodes without fields", grid->nodes);
 	float ambient = (float)grid->ambient_c;
 	fill(grid->temperature, node_count(grid), ambient);
 	fill(grid->next, node_count(grid), ambient); // its outer nodes are never written again
@@ -34,6 +37,8 @@ static int at_rest(const cau_heat_grid *grid)
 
 int64_t cau_heat_grid_substeps(double step_m, double diffusivity_m2_s, double duration_s)
 {
+	CAU_ASSERT(step_m > 0 && diffusivity_m2_s >= 0, "a grid of %g m with %g m^2/s", step_m,
+	           diffusivity_m2_s);
 	double parts = 6 * diffusivity_m2_s * duration_s / (step_m * step_m);
 	parts = ceil(parts * (1 - 1e-12)); // exactly at the limit is within it, whatever the rounding
 	return (int64_t)fmin(fmax(parts, 1), 1e9);
@@ -136,6 +141,7 @@ static void copy_shifted(cau_heat_grid *grid, const int64_t shift[3])
 	int64_t n = grid->nodes;
 	int64_t first = shift[0] < 0 ? -shift[0] : 0; // x of the first node that has a source
 	int64_t kept = n - (shift[0] < 0 ? -shift[0] : shift[0]);
+	CAU_ASSERT(kept > 0 && kept <= n, "%lld of %lld nodes are kept", (long long)kept, (long long)n);
 	fill(grid->next, node_count(grid), (float)grid->ambient_c);
 	for (int64_t z = 0; z < n; ++z)
 		for (int64_t y = 0; y < n; ++y) {
@@ -191,6 +197,7 @@ typedef struct hold {
 // Holds the inner nodes of a block of size^3 nodes.
 static void hold_whole(const hold *h, const int32_t least[3], int32_t size)
 {
+	CAU_ASSERT(size >= 1, "a block of %d nodes", size);
 	int64_t n = h->grid->nodes;
 	int32_t from[3], to[3];
 	for (int axis = 0; axis < 3; ++axis) {
@@ -210,6 +217,7 @@ static void hold_whole(const hold *h, const int32_t least[3], int32_t size)
 // eighths are asked.
 static void hold_block(const hold *h, const int32_t least[3], int32_t size)
 {
+	CAU_ASSERT(size >= 1 && (size & (size - 1)) == 0, "a block of %d nodes", size);
 	if (least[0] >= h->grid->nodes || least[1] >= h->grid->nodes || least[2] >= h->grid->nodes)
 		return;
 	double half = (size - 1) / 2.0;
@@ -259,6 +267,7 @@ static void hold_hot(cau_heat_grid *grid, const cau_tool_def *tool, const cau_po
 
 void cau_heat_grid_survey(cau_heat_grid *grid)
 {
+	CAU_ASSERT(grid->nodes >= 3, "a survey of %d nodes", grid->nodes);
 	cau_extremes(grid->temperature, node_count(grid), &grid->coldest_c, &grid->warmest_c);
 	if (fabs(grid->coldest_c - grid->ambient_c) <= REST_C &&
 	    fabs(grid->warmest_c - grid->ambient_c) <= REST_C)
@@ -268,6 +277,7 @@ void cau_heat_grid_survey(cau_heat_grid *grid)
 void cau_heat_grid_advance(cau_heat_grid *grid, const cau_tool_def *tool, const cau_pose *pose,
                            double jaw, int energized, double duration_s)
 {
+	CAU_ASSERT(duration_s >= 0, "a part of %g s", duration_s);
 	follow(grid, tool, pose);
 	int heating = energized && cau_tool_thinnest_hot_m(tool) < INFINITY;
 	if (at_rest(grid) && !heating)
@@ -275,6 +285,7 @@ void cau_heat_grid_advance(cau_heat_grid *grid, const cau_tool_def *tool, const 
 	int64_t substeps = cau_heat_grid_substeps(grid->step_m, grid->diffusivity, duration_s);
 	double dt = duration_s / (double)substeps;
 	double rate = grid->diffusivity * dt / (grid->step_m * grid->step_m);
+	CAU_ASSERT(rate >= 0 && rate <= (1 + 1e-9) / 6, "a rate of %g is not stable", rate);
 	fill(grid->rate, node_count(grid), (float)rate);
 	if (heating)
 		hold_hot(grid, tool, pose, jaw);
@@ -298,6 +309,10 @@ double cau_heat_grid_at(const cau_heat_grid *grid, cau_vec3 point)
 		s[axis] = nodes - (double)cell[axis];
 	}
 	const float *corner = grid->temperature + (cell[2] * n + cell[1]) * n + cell[0];
+	CAU_ASSERT(cell[0] >= 0 && cell[1] >= 0 && cell[2] >= 0 && cell[0] < n - 1 && cell[1] < n - 1 &&
+	               cell[2] < n - 1,
+	           "cell %lld, %lld, %lld of %lld", (long long)cell[0], (long long)cell[1],
+	           (long long)cell[2], (long long)n - 1);
 	double sum = 0;
 	for (int i = 0; i < 8; ++i) {
 		int64_t x = i & 1, y = i >> 1 & 1, z = i >> 2;

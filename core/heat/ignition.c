@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
+#include "cautery/assert.h"
 #include "heat/exposure.h"
 
 // The output function of splitmix64 (Steele, Lea and Flood 2014): a bijection that mixes all bits.
@@ -27,11 +28,14 @@ static double normal(uint64_t seed, uint64_t where)
 
 static double ignition(double mean_c, double spread_c, double g)
 {
+	CAU_ASSERT(fabs(g) <= 3, "a draw of %g", g);
 	return fmax(mean_c + spread_c * g, 0.1 * mean_c);
 }
 
 double cau_ignition_of(double mean_c, double spread_c, uint64_t seed, int32_t layer, int32_t edge)
 {
+	CAU_ASSERT(spread_c >= 0, "a spread of %g degC", spread_c);
+	CAU_ASSERT(layer >= 0 && edge >= 0, "edge %d of layer %d", edge, layer);
 	uint64_t where = (uint64_t)(uint32_t)layer << 32 | (uint32_t)edge;
 	return ignition(mean_c, spread_c, normal(seed, where));
 }
@@ -56,6 +60,8 @@ static double node_draw(uint64_t seed, int32_t layer, const int64_t node[3])
 double cau_ignition_in_bundles(double mean_c, double spread_c, uint64_t seed, int32_t layer,
                                cau_vec3 place, cau_vec3 fibre, double bundle_m)
 {
+	CAU_ASSERT(bundle_m > 0, "bundles of %g m", bundle_m);
+	CAU_ASSERT(fabs(cau_dot(fibre, fibre) - 1) < 1e-9, "a fibre of length %g", cau_length(fibre));
 	// Rest space, squeezed along the fibres, in units of the lattice.
 	double squeeze = (1 / bundle_length - 1) * cau_dot(place, fibre);
 	cau_vec3 squeezed = cau_scale(1 / bundle_m, cau_add(place, cau_scale(squeeze, fibre)));

@@ -3,6 +3,7 @@
 #include <math.h>
 #include <string.h>
 
+#include "cautery/assert.h"
 #include "mesh/index_sort.h"
 #include "mesh/mesh_memory.h"
 #include "mesh/vertex_merge.h"
@@ -17,6 +18,7 @@ static const double diagonal_max_m = 1e6;
 
 static const double *position_of(const cau_mesh *mesh, int32_t vertex)
 {
+	CAU_ASSERT_INDEX(vertex, mesh->vertex_count);
 	return mesh->position + 3 * (size_t)vertex;
 }
 
@@ -46,6 +48,7 @@ static double longest_edge(const cau_mesh *mesh, const int32_t *element, int cor
 			subtract(position_of(mesh, element[i]), position_of(mesh, element[j]), edge);
 			longest = fmax(longest, dot(edge, edge));
 		}
+	CAU_ASSERT(longest > 0, "an element whose %d corners lie on one point", corners);
 	return sqrt(longest);
 }
 
@@ -129,6 +132,7 @@ static int32_t drop_unused(cau_mesh *mesh, int32_t *map)
 		}
 	map_corners(mesh, map);
 	int32_t dropped = mesh->vertex_count - kept;
+	CAU_ASSERT(dropped >= 0, "%d vertices kept of %d", kept, mesh->vertex_count);
 	mesh->vertex_count = kept;
 	return dropped;
 }
@@ -141,6 +145,7 @@ typedef struct bounds {
 
 static bounds bounds_of(const cau_mesh *mesh)
 {
+	CAU_ASSERT(mesh->vertex_count > 0, "the box of %d vertices", mesh->vertex_count);
 	bounds b;
 	double extent[3];
 	for (int c = 0; c < 3; c++)
@@ -186,6 +191,8 @@ static cau_status merge_vertices(cau_mesh *mesh, int32_t *map, int32_t *merged, 
 		return cau_fail(error, CAU_NO_MEMORY, NULL, "no memory for merging vertices");
 	map_corners(mesh, map);
 	*merged = drop_unused(mesh, map); // exactly the merged ones: all the rest are used
+	CAU_ASSERT(*merged >= 0 && mesh->vertex_count > 0, "%d vertices merged, %d left", *merged,
+	           mesh->vertex_count);
 	return CAU_OK;
 }
 
@@ -270,6 +277,7 @@ static int32_t mark_repeated(const int32_t *element, int32_t count, int corners,
 	marked = 0;
 	for (int32_t i = 0; i < count; i++) {
 		const int32_t *row = key + (size_t)order[i] * (size_t)corners;
+		CAU_ASSERT_INDEX(order[i], count);
 		const int32_t *before = i ? key + (size_t)order[i - 1] * (size_t)corners : NULL;
 		repeated[order[i]] = before && !memcmp(row, before, row_bytes);
 		marked += repeated[order[i]];
@@ -293,6 +301,7 @@ static void keep_triangles(cau_mesh *mesh, const bool *repeated)
 		kept++;
 	}
 	mesh->triangle_count = (int32_t)kept;
+	CAU_ASSERT(mesh->triangle_count > 0, "all triangles repeat %d others", mesh->triangle_count);
 }
 
 static void keep_tetrahedra(cau_mesh *mesh, const bool *repeated)
@@ -306,6 +315,8 @@ static void keep_tetrahedra(cau_mesh *mesh, const bool *repeated)
 		mesh->tetrahedron_region[kept++] = mesh->tetrahedron_region[t];
 	}
 	mesh->tetrahedron_count = (int32_t)kept;
+	CAU_ASSERT(mesh->tetrahedron_count > 0, "all tetrahedra repeat %d others",
+	           mesh->tetrahedron_count);
 }
 
 // Keeps the first of elements with the same vertices, whatever their order.

@@ -3,6 +3,7 @@
 
 #include <string.h>
 
+#include "cautery/assert.h"
 #include "mesh/index_sort.h"
 #include "mesh/mesh_memory.h"
 #include "mesh/primitives.h"
@@ -25,6 +26,7 @@ typedef struct kind_rows {
 
 static kind_rows rows_of(const cau_primitives *p, int kind)
 {
+	CAU_ASSERT_INDEX(kind, CAU_PRIMITIVE_KINDS);
 	switch (kind) {
 	case CAU_PRIMITIVE_TRIANGLE:
 		return (kind_rows){p->triangle_count, p->triangle};
@@ -67,6 +69,8 @@ static bool number_edges(const int32_t *end, const int32_t *order, int32_t slot_
 		edge_of_slot[order[i]] = edge;
 	}
 	table->edge_count = edge + 1;
+	CAU_ASSERT(table->edge_count <= slot_count, "%d edges of %d slots", table->edge_count,
+	           slot_count);
 	table->vertex = cau_mesh_array(2 * (size_t)table->edge_count, sizeof *table->vertex);
 	if (!table->vertex)
 		return false;
@@ -80,6 +84,8 @@ static bool fill_sharers(cau_edge_table *table, int kind, const int32_t *edge_of
                          int32_t slot_count)
 {
 	int32_t edge_count = table->edge_count;
+	CAU_ASSERT_INDEX(kind, CAU_PRIMITIVE_KINDS);
+	CAU_ASSERT(!table->first[kind], "the sharers of kind %d are made twice", kind);
 	int32_t *first = cau_mesh_array((size_t)edge_count + 1, sizeof *first);
 	int32_t *sharer = cau_mesh_array((size_t)slot_count, sizeof *sharer);
 	table->first[kind] = first;
@@ -87,8 +93,10 @@ static bool fill_sharers(cau_edge_table *table, int kind, const int32_t *edge_of
 	if (!first || !sharer)
 		return false;
 
-	for (int32_t s = 0; s < slot_count; s++)
+	for (int32_t s = 0; s < slot_count; s++) {
+		CAU_ASSERT_INDEX(edge_of_slot[s], edge_count);
 		first[edge_of_slot[s]]++;
+	}
 	for (int32_t e = 0, sum = 0; e <= edge_count; e++) {
 		sum += first[e];
 		first[e] = sum;
@@ -96,6 +104,8 @@ static bool fill_sharers(cau_edge_table *table, int kind, const int32_t *edge_of
 	// From the back, so that first[e] comes down to the start of its row.
 	for (int32_t s = slot_count - 1; s >= 0; s--)
 		sharer[--first[edge_of_slot[s]]] = s / slots_of[kind];
+	CAU_ASSERT(first[0] == 0 && first[edge_count] == slot_count, "rows from %d to %d of %d slots",
+	           first[0], first[edge_count], slot_count);
 	return true;
 }
 
@@ -136,6 +146,7 @@ static int32_t add_hinges(cau_edge_table *table, const int32_t *triangle_layer, 
 {
 	int32_t start = table->first[CAU_PRIMITIVE_TRIANGLE][e];
 	int32_t length = table->first[CAU_PRIMITIVE_TRIANGLE][e + 1] - start;
+	CAU_ASSERT(length >= 0, "%d triangles on edge %d", length, e);
 	for (int32_t i = 0; i < length; i++) {
 		int32_t triangle = table->sharer[CAU_PRIMITIVE_TRIANGLE][start + i];
 		row[i] = (layer_triangle){triangle_layer[triangle], triangle};
@@ -148,6 +159,7 @@ static int32_t add_hinges(cau_edge_table *table, const int32_t *triangle_layer, 
 		if (next - i != 2)
 			continue;
 		if (table->hinge_edge) {
+			CAU_ASSERT_INDEX(hinge_count, table->hinge_count);
 			table->hinge_edge[hinge_count] = e;
 			table->hinge_triangle[2 * (size_t)hinge_count] = row[i].triangle;
 			table->hinge_triangle[2 * (size_t)hinge_count + 1] = row[i + 1].triangle;
@@ -169,6 +181,7 @@ static int32_t add_all_hinges(cau_edge_table *table, const int32_t *triangle_lay
 static bool fill_hinges(cau_edge_table *table, int32_t triangle_count,
                         const int32_t *triangle_layer)
 {
+	CAU_ASSERT(!table->hinge_edge, "%d hinges are there already", table->hinge_count);
 	layer_triangle *row = cau_mesh_array((size_t)triangle_count, sizeof *row);
 	if (!row)
 		return false;
@@ -228,6 +241,7 @@ void cau_edge_table_finish(cau_edge_table *table)
 
 int32_t cau_edge_table_find(const cau_edge_table *table, int32_t a, int32_t b)
 {
+	CAU_ASSERT(a >= 0 && b >= 0, "the edge of vertices %d and %d", a, b);
 	int32_t wanted[2] = {a, b};
 	cau_index_order_row(wanted, 2);
 	int32_t low = 0, high = table->edge_count;

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include <string.h>
 
+#include "cautery/assert.h"
 #include "mesh/edge_table.h"
 #include "mesh/index_sort.h"
 #include "mesh/mesh_memory.h"
@@ -30,6 +31,7 @@ static void fill_slots(const cau_primitives *p, int32_t *key)
 // First position after the run of equal keys that starts at `from`.
 static int32_t run_end(const int32_t *key, const int32_t *order, int32_t from, int32_t slot_count)
 {
+	CAU_ASSERT_INDEX(from, slot_count);
 	const int32_t *first = key + 3 * (size_t)order[from];
 	int32_t next = from + 1;
 	while (next < slot_count && !memcmp(first, key + 3 * (size_t)order[next], 3 * sizeof *key))
@@ -46,6 +48,7 @@ static int32_t count_faces(const int32_t *key, const int32_t *order, int32_t slo
 		i = run_end(key, order, i, slot_count);
 		face_count += order[i - 1] >= triangle_count;
 	}
+	CAU_ASSERT(face_count <= slot_count, "%d faces of %d slots", face_count, slot_count);
 	return face_count;
 }
 
@@ -78,10 +81,13 @@ static void fill_sheet_faces(const cau_primitives *p, cau_face_table *table)
 static void fill_fat_face(const cau_primitives *p, const int32_t *run, int32_t covers,
                           int32_t owners, int32_t face, cau_face_table *table)
 {
+	CAU_ASSERT(owners == 1 || owners == 2, "face %d has %d tetrahedra", face, owners);
+	CAU_ASSERT_INDEX(face, table->face_count);
 	int32_t *owner = table->owner + 2 * (size_t)face;
 	owner[1] = -1;
 	for (int32_t i = 0; i < owners; i++) {
 		int32_t slot = run[covers + i] - p->triangle_count;
+		CAU_ASSERT_INDEX(slot, 4 * p->tetrahedron_count);
 		table->tetrahedron_face[slot] = face;
 		owner[i] = slot / 4;
 	}
@@ -116,6 +122,7 @@ static cau_status fill_fat_faces(const cau_primitives *p, const int32_t *key, co
 		if (owners)
 			fill_fat_face(p, order + i, covers, owners, face++, table);
 	}
+	CAU_ASSERT(face == table->face_count, "%d faces filled of %d", face, table->face_count);
 	return CAU_OK;
 }
 

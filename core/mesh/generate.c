@@ -4,10 +4,12 @@
 #include <math.h>
 #include <string.h>
 
+#include "cautery/assert.h"
 #include "mesh/mesh_memory.h"
 
 static cau_status check_sizes(const cau_mesh_def *def, int axes, cau_error *error)
 {
+	CAU_ASSERT(axes >= 1 && axes <= 3, "%d axes", axes);
 	for (int a = 0; a < axes; a++)
 		if (!(def->size_m[a] > 0) || !isfinite(def->size_m[a]))
 			return cau_fail(error, CAU_BAD_VALUE, "size_m", "size_m[%d] must be above zero", a);
@@ -41,6 +43,7 @@ static cau_status check_cells(const cau_mesh_def *def, int axes, int elements_pe
 // UV of each corner: x and y in metres, turned, so that the map to the surface is an isometry.
 static void fill_texture(cau_mesh *mesh, double turn_rad)
 {
+	CAU_ASSERT(mesh->texture != NULL, "no texture for %d triangles", mesh->triangle_count);
 	double c = cos(turn_rad), s = sin(turn_rad);
 	for (size_t corner = 0; corner < 3 * (size_t)mesh->triangle_count; corner++) {
 		const double *x = mesh->position + 3 * (size_t)mesh->triangle[corner];
@@ -52,6 +55,9 @@ static void fill_texture(cau_mesh *mesh, double turn_rad)
 // Vertices of a box of cells, centred in x and y, top at z = 0; cells[2] = 0 for a plane.
 static void fill_lattice(cau_mesh *mesh, const double size_m[3], const int32_t cells[3])
 {
+	CAU_ASSERT((int64_t)(cells[0] + 1) * (cells[1] + 1) * (cells[2] + 1) == mesh->vertex_count,
+	           "a lattice of %d x %d x %d cells for %d vertices", cells[0], cells[1], cells[2],
+	           mesh->vertex_count);
 	double *x = mesh->position;
 	for (int32_t i = 0; i <= cells[0]; i++)
 		for (int32_t j = 0; j <= cells[1]; j++)
@@ -88,6 +94,8 @@ cau_status cau_mesh_make_sheet(const cau_mesh_def *def, cau_mesh *mesh, cau_erro
 			int32_t a = i * (cells[1] + 1) + j, b = a + cells[1] + 1; // b: next along x
 			memcpy(triangle, (int32_t[]){a, b, b + 1, a, b + 1, a + 1}, 6 * sizeof *triangle);
 		}
+	CAU_ASSERT(triangle == mesh->triangle + 3 * (size_t)mesh->triangle_count,
+	           "cells other than %d triangles", mesh->triangle_count);
 	fill_texture(mesh, def->texture_turn_rad);
 	return CAU_OK;
 }
@@ -124,6 +132,8 @@ cau_status cau_mesh_make_slab(const cau_mesh_def *def, cau_mesh *mesh, cau_error
 	                          6 * cell_count, false, error);
 	if (status)
 		return status;
+	CAU_ASSERT(mesh->tetrahedron_count == 6 * cell_count, "%d tetrahedra in %lld cells",
+	           mesh->tetrahedron_count, (long long)cell_count);
 	fill_lattice(mesh, def->size_m, cells);
 	const int32_t stride[3] = {(cells[1] + 1) * (cells[2] + 1), cells[2] + 1, 1};
 	int32_t *tetrahedron = mesh->tetrahedron;

@@ -6,6 +6,8 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "cautery/assert.h"
+
 typedef struct section {
 	const char *name, *end;
 	void (*read)(cau_gmsh *gmsh);
@@ -54,6 +56,8 @@ static const section *read_header(cau_gmsh *gmsh)
 // Passes over a section by its name to behind its end.
 static void skip_section(cau_scan *scan, cau_word name)
 {
+	CAU_ASSERT(name.length > 0 && name.text[0] == '$', "a section called by %zu letters",
+	           name.length);
 	char end[80];
 	int length = snprintf(end, sizeof end, "$End%.*s",
 	                      (int)(name.length < 64 ? name.length : 64) - 1, name.text + 1);
@@ -69,6 +73,7 @@ static void skip_section(cau_scan *scan, cau_word name)
 
 static void read_section(cau_gmsh *gmsh, const section *known, cau_word name)
 {
+	CAU_ASSERT(name.length > 0, "a section without a name, at byte %zu", gmsh->scan->at);
 	cau_scan *scan = gmsh->scan;
 	if (name.text[0] != '$') {
 		cau_scan_fail(scan, CAU_BAD_SYNTAX, "expected the name of a section ($...)");

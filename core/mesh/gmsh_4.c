@@ -3,11 +3,14 @@
 // size_bytes, "int" has four bytes, reals have eight.
 #include <stdlib.h>
 
+#include "cautery/assert.h"
 #include "mesh/gmsh.h"
 #include "mesh/mesh_memory.h"
 
 static int64_t read_size(cau_gmsh *gmsh, const char *what)
 {
+	CAU_ASSERT(gmsh->size_bytes == 4 || gmsh->size_bytes == 8, "sizes of %d bytes",
+	           gmsh->size_bytes);
 	return cau_scan_integer(gmsh->scan, what, gmsh->size_bytes, 0, INT64_MAX);
 }
 
@@ -27,6 +30,8 @@ static int64_t read_count(cau_gmsh *gmsh, const char *what, int64_t text_bytes,
 
 static void add_entity(cau_gmsh *gmsh, struct cau_gmsh_entity entity)
 {
+	CAU_ASSERT(gmsh->entity_count <= gmsh->entity_capacity, "%d entities in room for %d",
+	           gmsh->entity_count, gmsh->entity_capacity);
 	if (gmsh->entity_count == gmsh->entity_capacity) {
 		int32_t capacity = gmsh->entity_capacity ? 2 * gmsh->entity_capacity : 16;
 		void *grown = capacity <= CAU_MESH_MAX_ELEMENTS
@@ -47,6 +52,7 @@ static void add_entity(cau_gmsh *gmsh, struct cau_gmsh_entity entity)
 // negative one is the same group with turned orientation.
 static void read_entity(cau_gmsh *gmsh, int32_t dimension)
 {
+	CAU_ASSERT(dimension >= 0 && dimension <= 3, "an entity of dimension %d", dimension);
 	cau_scan *scan = gmsh->scan;
 	struct cau_gmsh_entity entity = {.dimension = dimension};
 	entity.tag = read_int(gmsh, "an entity's tag", INT32_MIN, INT32_MAX);

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // What all versions of Gmsh's files share: the types of elements, positions, node lists.
+#include "cautery/assert.h"
 #include "mesh/gmsh.h"
 
 enum { KNOWN_TYPES = 32 };
@@ -77,6 +78,7 @@ void cau_gmsh_read_element(cau_gmsh *gmsh, int64_t number, int64_t type, int32_t
                            int number_bytes)
 {
 	cau_scan *scan = gmsh->scan;
+	CAU_ASSERT(number_bytes == 4 || number_bytes == 8, "node numbers of %d bytes", number_bytes);
 	if (scan->status)
 		return;
 	if (type != CAU_GMSH_TRIANGLE && type != CAU_GMSH_TETRAHEDRON) {
@@ -84,6 +86,7 @@ void cau_gmsh_read_element(cau_gmsh *gmsh, int64_t number, int64_t type, int32_t
 		return;
 	}
 	int32_t vertex[4] = {0};
+	CAU_ASSERT(types[type].nodes <= 4, "%d nodes of an element", types[type].nodes);
 	for (int i = 0; i < types[type].nodes; i++) {
 		int64_t node = cau_scan_integer(scan, "a node number", number_bytes, 0, INT64_MAX);
 		vertex[i] = cau_node_map_find(&gmsh->nodes, node);

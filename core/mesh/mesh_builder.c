@@ -4,11 +4,14 @@
 #include <math.h>
 #include <string.h>
 
+#include "cautery/assert.h"
 #include "mesh/mesh_memory.h"
 
 // Makes *array (of items of item_bytes) hold `capacity`. False: memory ran out.
 static bool grow_array(void *array, size_t item_bytes, int32_t capacity)
 {
+	CAU_ASSERT(capacity > 0 && item_bytes > 0, "room for %d items of %zu bytes", capacity,
+	           item_bytes);
 	void *old;
 	memcpy(&old, array, sizeof old);
 	void *grown = realloc(old, (size_t)capacity * item_bytes);
@@ -20,6 +23,7 @@ static bool grow_array(void *array, size_t item_bytes, int32_t capacity)
 // The capacity that holds one item more, or 0 where `most` are held already.
 static int32_t next_capacity(int32_t capacity, int32_t most)
 {
+	CAU_ASSERT(capacity >= 0 && capacity <= most, "room for %d of at most %d", capacity, most);
 	if (capacity == most)
 		return 0;
 	return capacity > most / 2 ? most : capacity ? 2 * capacity : 64;
@@ -38,6 +42,8 @@ static bool has_grown(cau_mesh_builder *builder, int32_t capacity, bool memory, 
 void cau_mesh_builder_vertex(cau_mesh_builder *builder, const double position[3])
 {
 	cau_mesh *mesh = &builder->mesh;
+	CAU_ASSERT(mesh->vertex_count <= builder->vertex_capacity, "%d vertices in room for %d",
+	           mesh->vertex_count, builder->vertex_capacity);
 	if (builder->scan->status)
 		return;
 	for (int c = 0; c < 3; c++)
@@ -60,8 +66,12 @@ void cau_mesh_builder_triangle(cau_mesh_builder *builder, const int32_t vertex[3
                                const double *texture)
 {
 	cau_mesh *mesh = &builder->mesh;
+	CAU_ASSERT(mesh->triangle_count <= builder->triangle_capacity, "%d triangles in room for %d",
+	           mesh->triangle_count, builder->triangle_capacity);
 	if (builder->scan->status)
 		return;
+	for (int c = 0; c < 3; c++)
+		CAU_ASSERT_INDEX(vertex[c], mesh->vertex_count);
 	if (mesh->triangle_count == builder->triangle_capacity) {
 		int32_t capacity = next_capacity(builder->triangle_capacity, CAU_MESH_MAX_ELEMENTS);
 		bool memory =
@@ -85,8 +95,13 @@ void cau_mesh_builder_tetrahedron(cau_mesh_builder *builder, const int32_t verte
                                   int32_t region)
 {
 	cau_mesh *mesh = &builder->mesh;
+	CAU_ASSERT(mesh->tetrahedron_count <= builder->tetrahedron_capacity,
+	           "%d tetrahedra in room for %d", mesh->tetrahedron_count,
+	           builder->tetrahedron_capacity);
 	if (builder->scan->status)
 		return;
+	for (int c = 0; c < 4; c++)
+		CAU_ASSERT_INDEX(vertex[c], mesh->vertex_count);
 	if (mesh->tetrahedron_count == builder->tetrahedron_capacity) {
 		int32_t capacity = next_capacity(builder->tetrahedron_capacity, CAU_MESH_MAX_ELEMENTS);
 		bool memory = capacity && grow_array(&mesh->tetrahedron, 4 * sizeof(int32_t), capacity) &&
@@ -102,12 +117,15 @@ void cau_mesh_builder_tetrahedron(cau_mesh_builder *builder, const int32_t verte
 
 void cau_mesh_builder_skip(cau_mesh_builder *builder, int64_t kind, int64_t count)
 {
+	CAU_ASSERT(count >= 0, "%lld elements passed over", (long long)count);
 	if (kind >= 0 && kind < CAU_SKIPPED_KINDS)
 		builder->skipped[kind] += count;
 }
 
 void cau_mesh_builder_check(cau_mesh_builder *builder, const char *(*name_of)(int kind))
 {
+	CAU_ASSERT(name_of != NULL, "no names for what was passed over, and %d vertices",
+	           builder->mesh.vertex_count);
 	if (builder->scan->status || builder->mesh.triangle_count || builder->mesh.tetrahedron_count)
 		return;
 	char found[160] = "nothing";

@@ -7,6 +7,7 @@
 #include <sys/stat.h>
 #include <unistd.h>
 
+#include "cautery/assert.h"
 #include "mesh/mesh_memory.h"
 
 static const long long most_bytes = 1LL << 30;
@@ -22,6 +23,7 @@ static ssize_t read_all(int file, char *bytes, size_t wanted)
 		if (got == 0)
 			break;
 		done += got > 0 ? (size_t)got : 0;
+		CAU_ASSERT(done <= wanted, "%zu bytes read of %zu", done, wanted);
 	}
 	return (ssize_t)done;
 }
@@ -54,6 +56,7 @@ static cau_status load(int file, const char *path, void **bytes, size_t *byte_co
 
 cau_status cau_mesh_file_load(const char *path, void **bytes, size_t *byte_count, cau_error *error)
 {
+	CAU_ASSERT(path[0] != 0, "a file without a name, for %p", (void *)bytes);
 	int file = open(path, O_RDONLY | O_CLOEXEC | O_NONBLOCK); // a pipe would wait for its writer
 	if (file < 0)
 		return cau_fail(error, CAU_IO, NULL, "cannot open '%.180s': %s", path, strerror(errno));

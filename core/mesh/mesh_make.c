@@ -2,6 +2,7 @@
 // From a definition to a clean mesh in metres.
 #include <math.h>
 
+#include "cautery/assert.h"
 #include "mesh/mesh_file.h"
 #include "mesh/mesh_memory.h"
 
@@ -19,6 +20,8 @@ static cau_status join_path(const char *directory, const char *file, char path[s
 static cau_status read_file(const cau_mesh_def *def, const char *directory, cau_mesh *mesh,
                             cau_error *error)
 {
+	CAU_ASSERT(def->source == CAU_MESH_FILE, "a mesh of source %d is read from a file",
+	           def->source);
 	char path[600];
 	void *bytes = NULL;
 	size_t byte_count = 0;
@@ -69,6 +72,7 @@ static cau_status check_place(const cau_mesh_def *def, cau_error *error)
 static void place(const cau_mesh_def *def, cau_mesh *mesh)
 {
 	double unit_m = is_read(def) ? def->unit_m : 1;
+	CAU_ASSERT(unit_m > 0, "a unit of %g m", unit_m);
 	for (size_t i = 0; i < 3 * (size_t)mesh->vertex_count; i++)
 		mesh->position[i] = unit_m * mesh->position[i] + def->translate_m[i % 3];
 }

@@ -3,6 +3,7 @@
 #include <string.h>
 #include <strings.h>
 
+#include "cautery/assert.h"
 #include "mesh/gmsh.h"
 #include "mesh/mesh_memory.h"
 #include "mesh/obj.h"
@@ -26,6 +27,9 @@ static bool has_ending(const char *name, const char *ending)
 // The readers leave room for growth.
 static cau_status copy_tight(const cau_mesh *from, cau_mesh *mesh, cau_error *error)
 {
+	CAU_ASSERT(from->vertex_count >= 0 && from->triangle_count >= 0 && from->tetrahedron_count >= 0,
+	           "%d vertices, %d triangles, %d tetrahedra", from->vertex_count, from->triangle_count,
+	           from->tetrahedron_count);
 	cau_status status = cau_mesh_reserve(mesh, from->vertex_count, from->triangle_count,
 	                                     from->tetrahedron_count, from->texture != NULL, error);
 	if (status)
@@ -48,6 +52,7 @@ static cau_status copy_tight(const cau_mesh *from, cau_mesh *mesh, cau_error *er
 cau_status cau_mesh_read(const char *name, const void *bytes, size_t byte_count, cau_mesh *mesh,
                          cau_error *error)
 {
+	CAU_ASSERT(bytes || !byte_count, "%zu bytes that are nowhere", byte_count);
 	*mesh = (cau_mesh){0};
 	for (size_t i = 0; i < sizeof formats / sizeof formats[0]; i++) {
 		if (!has_ending(name, formats[i].ending))

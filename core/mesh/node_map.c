@@ -1,12 +1,14 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "mesh/node_map.h"
 
+#include "cautery/assert.h"
 #include "mesh/mesh_memory.h"
 
 void cau_node_map_add(cau_node_map *map, int64_t number, cau_scan *scan)
 {
 	if (scan->status)
 		return;
+	CAU_ASSERT(map->count <= map->capacity, "%d nodes in room for %d", map->count, map->capacity);
 	if (map->count == map->capacity) {
 		int32_t capacity = map->capacity ? 2 * map->capacity : 64;
 		if (capacity > 2 * CAU_MESH_MAX_VERTICES) {
@@ -62,6 +64,8 @@ int32_t cau_node_map_find(const cau_node_map *map, int64_t number)
 		else
 			high = middle;
 	}
+	CAU_ASSERT(low >= map->count || low == 0 || map->node[low - 1].number < number,
+	           "node %lld is looked for in a map that is not sealed", (long long)number);
 	return low < map->count && map->node[low].number == number ? map->node[low].vertex : -1;
 }
 

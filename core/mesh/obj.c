@@ -4,6 +4,7 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "cautery/assert.h"
 #include "mesh/mesh_memory.h"
 
 enum { MAX_REGIONS = 256 };
@@ -62,6 +63,7 @@ static cau_word cut_part(cau_word *word)
 	const char *slash = word->length ? memchr(word->text, '/', word->length) : NULL;
 	cau_word part = {word->text, slash ? (size_t)(slash - word->text) : word->length};
 	size_t used = part.length + (slash ? 1 : 0);
+	CAU_ASSERT(used <= word->length, "%zu letters cut off %zu", used, word->length);
 	*word = (cau_word){word->text + used, word->length - used};
 	return part;
 }
@@ -69,6 +71,7 @@ static cau_word cut_part(cau_word *word)
 // An index from 1, or from -1 backwards, into the `count` things so far; from 0. -1: it failed.
 static int32_t read_index(obj *o, cau_word word, const char *what, int32_t count)
 {
+	CAU_ASSERT(count >= 0, "%s among %d", what, count);
 	int64_t number = cau_scan_word_integer(o->scan, word, what, INT32_MIN, INT32_MAX);
 	int64_t index = number < 0 ? count + number : number - 1;
 	if (!o->scan->status && (index < 0 || index >= count))
@@ -114,6 +117,7 @@ static void read_face(obj *o)
 		if (++corner_count < 3)
 			continue;
 		add_triangle(o, fan);
+		CAU_ASSERT(corner_count == 3 || corner_count == 4, "a fan of %d corners", corner_count);
 		fan[1] = fan[2];
 		corner_count = 3;
 	}
@@ -142,6 +146,7 @@ static void read_region(obj *o)
 	}
 	o->region_name[o->region_count++] = name;
 	o->region = o->region_count;
+	CAU_ASSERT(o->region_count <= MAX_REGIONS, "%d regions", o->region_count);
 }
 
 static void read_line(obj *o)

@@ -1,10 +1,14 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "mesh/primitives.h"
 
+#include "cautery/assert.h"
+
 // The rows of one kind, (count x width).
 static cau_status check_rows(const char *kind, const int32_t *row, int32_t count, int width,
                              int32_t vertex_count, cau_error *error)
 {
+	CAU_ASSERT(row || !count, "%d of kind %s are nowhere", count, kind);
+	CAU_ASSERT(width >= 2 && width <= 4, "%s of %d corners", kind, width);
 	for (int32_t i = 0; i < count; i++, row += width)
 		for (int a = 0; a < width; a++) {
 			if (row[a] < 0 || row[a] >= vertex_count)

@@ -7,6 +7,8 @@
 #include <string.h>
 #include <strings.h>
 
+#include "cautery/assert.h"
+
 enum {
 	NUMBER_BYTES = 64, // of a number as text, its zero included
 	QUOTE_BYTES = 32,  // of a word shown in a failure
@@ -14,11 +16,13 @@ enum {
 
 cau_scan cau_scan_make(const void *bytes, size_t byte_count, cau_error *error)
 {
+	CAU_ASSERT(bytes || !byte_count, "%zu bytes that are nowhere", byte_count);
 	return (cau_scan){.bytes = bytes, .count = byte_count, .error = error};
 }
 
 static size_t line_of(const cau_scan *scan, size_t at)
 {
+	CAU_ASSERT(at <= scan->count, "byte %zu of %zu", at, scan->count);
 	size_t line = 1;
 	for (size_t i = 0; i < at; i++)
 		line += scan->bytes[i] == '\n';
@@ -27,6 +31,7 @@ static size_t line_of(const cau_scan *scan, size_t at)
 
 void cau_scan_fail(cau_scan *scan, cau_status status, const char *format, ...)
 {
+	CAU_ASSERT(status != CAU_OK, "a failure that is none: %s", format);
 	if (scan->status)
 		return;
 	char reason[240];
@@ -68,6 +73,7 @@ static bool is_blank(unsigned char byte)
 // Length of a backslash and the line's end behind it, or 0.
 static size_t joint_length(const cau_scan *scan, size_t at)
 {
+	CAU_ASSERT(at <= scan->count, "byte %zu of %zu", at, scan->count);
 	const unsigned char *byte = scan->bytes + at;
 	size_t left = scan->count - at;
 	if (left >= 2 && byte[0] == '\\' && byte[1] == '\n')
@@ -77,6 +83,7 @@ static size_t joint_length(const cau_scan *scan, size_t at)
 
 static cau_word take_word(cau_scan *scan)
 {
+	CAU_ASSERT(scan->at < scan->count, "a word at byte %zu of %zu", scan->at, scan->count);
 	scan->mark = scan->at;
 	while (scan->at < scan->count && !is_blank(scan->bytes[scan->at]) &&
 	       !joint_length(scan, scan->at))
@@ -86,6 +93,7 @@ static cau_word take_word(cau_scan *scan)
 
 cau_word cau_scan_word_of_line(cau_scan *scan)
 {
+	CAU_ASSERT(scan->at <= scan->count, "byte %zu of %zu", scan->at, scan->count);
 	scan->mark = scan->at;
 	if (scan->status)
 		return (cau_word){0};
@@ -119,6 +127,7 @@ cau_word cau_scan_peek(cau_scan *scan)
 
 void cau_scan_skip_line(cau_scan *scan)
 {
+	CAU_ASSERT(scan->at <= scan->count, "byte %zu of %zu", scan->at, scan->count);
 	if (scan->at == scan->count)
 		return;
 	const unsigned char *from = scan->bytes + scan->at;
@@ -151,6 +160,7 @@ static bool copy_number(cau_word word, char text[static NUMBER_BYTES])
 int64_t cau_scan_word_integer(cau_scan *scan, cau_word word, const char *what, int64_t least,
                               int64_t most)
 {
+	CAU_ASSERT(least <= most, "%s from %lld to %lld", what, (long long)least, (long long)most);
 	if (scan->status)
 		return 0;
 	char text[NUMBER_BYTES], *end = NULL;
@@ -191,7 +201,9 @@ double cau_scan_word_real(cau_scan *scan, cau_word word, const char *what)
 // Copies a binary number into native order. False: the bytes ended.
 static bool take_bytes(cau_scan *scan, const char *what, unsigned char *out, int bytes)
 {
+	CAU_ASSERT(bytes == 1 || bytes == 2 || bytes == 4 || bytes == 8, "%s of %d bytes", what, bytes);
 	scan->mark = scan->at;
+	CAU_ASSERT(scan->at <= scan->count, "byte %zu of %zu", scan->at, scan->count);
 	if (scan->status)
 		return false;
 	if (cau_scan_left(scan) < (size_t)bytes) {
@@ -245,6 +257,7 @@ double cau_scan_real(cau_scan *scan, const char *what, int bytes)
 
 void cau_scan_check_count(cau_scan *scan, const char *what, int64_t count, int64_t item_bytes)
 {
+	CAU_ASSERT(item_bytes > 0, "%s of %lld bytes each", what, (long long)item_bytes);
 	if (scan->status)
 		return;
 	if ((uint64_t)count > cau_scan_left(scan) / (size_t)item_bytes)

@@ -3,6 +3,7 @@
 // farther than `distance` from each other, so that a cell holds few.
 #include "mesh/vertex_merge.h"
 
+#include "cautery/assert.h"
 #include "mesh/mesh_memory.h"
 
 typedef struct grid {
@@ -18,6 +19,7 @@ static void cell_of(const grid *g, int32_t vertex, int64_t cell[3])
 {
 	for (size_t c = 0; c < 3; c++)
 		cell[c] = (int64_t)((g->position[3 * (size_t)vertex + c] - g->origin[c]) / g->distance);
+	CAU_ASSERT(cell[0] >= 0, "vertex %d lies before the origin", vertex);
 }
 
 static uint64_t bucket_of(const grid *g, const int64_t cell[3])
@@ -51,11 +53,13 @@ static int32_t find_near(const grid *g, int32_t vertex, const int64_t cell[3])
 			if (v < lowest && is_near(g, v, vertex))
 				lowest = v;
 	}
+	CAU_ASSERT(lowest >= 0 && lowest <= vertex, "vertex %d becomes %d", vertex, lowest);
 	return lowest;
 }
 
 static void enter(grid *g, int32_t vertex, const int64_t cell[3])
 {
+	CAU_ASSERT(vertex >= 0, "vertex %d", vertex);
 	int32_t *bucket = g->bucket + bucket_of(g, cell);
 	g->next[vertex] = *bucket;
 	*bucket = vertex;
@@ -64,6 +68,8 @@ static void enter(grid *g, int32_t vertex, const int64_t cell[3])
 bool cau_vertex_merge(const double *position, int32_t vertex_count, const double origin[3],
                       double distance, int32_t *map)
 {
+	CAU_ASSERT(distance > 0 && vertex_count >= 0, "%d vertices nearer than %g m", vertex_count,
+	           distance);
 	grid g = {.position = position, .origin = origin, .distance = distance, .mask = 63};
 	while (g.mask < 2 * (uint64_t)vertex_count)
 		g.mask = 2 * g.mask + 1;

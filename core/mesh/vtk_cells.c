@@ -2,6 +2,7 @@
 // Points and cells of a legacy VTK file.
 #include <stdlib.h>
 
+#include "cautery/assert.h"
 #include "mesh/mesh_memory.h"
 #include "mesh/vtk_part.h"
 
@@ -40,6 +41,7 @@ void cau_vtk_read_points(cau_vtk *vtk)
 
 static int64_t *read_indices(cau_scan *scan, const char *what, int64_t count, int bytes)
 {
+	CAU_ASSERT(bytes == 4 || bytes == 8, "%s of %d bytes", what, bytes);
 	cau_scan_check_count(scan, what, count, scan->binary ? bytes : 1);
 	if (scan->status)
 		return NULL;
@@ -76,6 +78,8 @@ static void read_old_list(cau_scan *scan, cell_list *list)
 		for (int64_t c = 0; c < corners && !scan->status; c++)
 			list->corner[used + c] = cau_scan_integer(scan, "a point", 4, 0, INT32_MAX);
 		used += corners;
+		CAU_ASSERT(used <= length - count, "%lld corners in a list of %lld", (long long)used,
+		           (long long)(length - count));
 		list->first[i + 1] = used;
 	}
 }
@@ -125,6 +129,7 @@ static cell_list read_list(cau_vtk *vtk)
 // The point as a vertex. Fails where there is none of this number.
 static int32_t vertex_of(cau_vtk *vtk, int64_t point, int32_t cell)
 {
+	CAU_ASSERT(point >= 0, "point %lld of cell %d", (long long)point, cell);
 	int32_t count = vtk->builder->mesh.vertex_count;
 	if (point < count)
 		return (int32_t)point;
@@ -158,6 +163,7 @@ static void add_tetrahedron(cau_vtk *vtk, const int64_t *corner, int32_t cell)
 void cau_vtk_read_polygons(cau_vtk *vtk)
 {
 	cell_list list = read_list(vtk);
+	CAU_ASSERT(list.count >= 0, "%lld polygons", (long long)list.count);
 	for (int64_t i = 0; i < list.count && !vtk->scan->status; i++)
 		add_polygon(vtk, list.corner + list.first[i], list.first[i + 1] - list.first[i],
 		            vtk->cell_count++);
@@ -166,6 +172,7 @@ void cau_vtk_read_polygons(cau_vtk *vtk)
 
 void cau_vtk_read_other_cells(cau_vtk *vtk, int kind)
 {
+	CAU_ASSERT_INDEX(kind, CAU_SKIPPED_KINDS);
 	cell_list list = read_list(vtk);
 	cau_mesh_builder_skip(vtk->builder, kind, list.count);
 	vtk->cell_count += (int32_t)list.count;
@@ -186,6 +193,8 @@ void cau_vtk_read_cells(cau_vtk *vtk)
 
 static void add_cell(cau_vtk *vtk, int64_t type, const int64_t *corner, int64_t corners)
 {
+	CAU_ASSERT(corners >= 0, "a cell of %lld corners", (long long)corners);
+	CAU_ASSERT(vtk->cell_count < CAU_MESH_MAX_ELEMENTS, "%d cells", vtk->cell_count);
 	int32_t cell = vtk->cell_count++;
 	int64_t wanted = type == VTK_TRIANGLE ? 3 : type == VTK_TETRAHEDRON ? 4 : corners;
 	if (corners != wanted)

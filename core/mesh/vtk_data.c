@@ -3,6 +3,7 @@
 #include <math.h>
 #include <stdlib.h>
 
+#include "cautery/assert.h"
 #include "mesh/mesh_memory.h"
 #include "mesh/vtk_part.h"
 
@@ -72,6 +73,7 @@ static bool is_region_name(cau_word name)
 static void skip_numbers(cau_scan *scan, const cau_vtk_type *type, int64_t count)
 {
 	cau_vtk_start_numbers(scan);
+	CAU_ASSERT(scan->status || type, "%lld numbers of no type", (long long)count);
 	if (scan->status)
 		return;
 	cau_scan_check_count(scan, "number of values", count, scan->binary ? type->bytes : 1);
@@ -87,6 +89,7 @@ static void skip_numbers(cau_scan *scan, const cau_vtk_type *type, int64_t count
 // Reads the region of each cell.
 static void read_regions(cau_vtk *vtk, const cau_vtk_type *type, int64_t count)
 {
+	CAU_ASSERT(count >= 0, "%lld regions", (long long)count);
 	cau_scan *scan = vtk->scan;
 	cau_vtk_start_numbers(scan);
 	if (scan->status)

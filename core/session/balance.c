@@ -2,10 +2,12 @@
 // Mechanical totals, for tests and plots.
 #include <string.h>
 
+#include "cautery/assert.h"
 #include "session/session_internal.h"
 
 static cau_vec3 elastic_gradient(const cau_session *session, int32_t vertex)
 {
+	CAU_ASSERT_INDEX(vertex, session->tissue.vertex_count);
 	// the solver's gradient vector after a plain sum of the element records
 	int single = session->solver.elements.single;
 	double g[3];

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Heat and dissection of one tick, tool by tool (sections 6.1 to 6.3).
+#include "cautery/assert.h"
 #include "session/session_internal.h"
 
 // The tool's motion in equal parts: its heat grid follows, and the edges it meets are exposed (eq.
@@ -8,6 +9,7 @@ static void heat_edges(cau_session *session, cau_tool *tool)
 {
 	const cau_tool_def *def = &tool->state.definition;
 	int parts = cau_exposure_parts(def, &tool->pose_before, &tool->state.pose);
+	CAU_ASSERT(parts >= 1, "a way in %d parts", parts);
 	double duration = session->solver.step_s / parts;
 	for (int part = 1; part <= parts; ++part) {
 		cau_pose pose =
@@ -26,6 +28,8 @@ static void heat_edges(cau_session *session, cau_tool *tool)
 // Takes what the cut removed out of the local step and puts it on the list of the factor.
 static void take_out(cau_session *session, int32_t first)
 {
+	CAU_ASSERT(first >= 0 && first <= session->dissection.removed_count,
+	           "from element %d on of %d removed", first, session->dissection.removed_count);
 	for (int32_t k = first; k < session->dissection.removed_count; ++k) {
 		const cau_removed *removed = &session->dissection.removed[k];
 		cau_elements_remove(&session->solver.elements, &session->solver.slots, removed->kind,
@@ -41,6 +45,7 @@ void cau_session_burn(cau_session *session)
 		cau_near_refit(&session->near, session->position);
 	for (int32_t i = 0; i < session->tool_count; ++i) {
 		cau_tool *tool = &session->tool[i];
+		CAU_ASSERT(tool->grid.temperature != NULL, "tool %d has no heat grid", i);
 		int32_t first = session->dissection.removed_count;
 		uint32_t layers = 0;
 		heat_edges(session, tool);

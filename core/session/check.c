@@ -5,19 +5,23 @@
 #include <string.h>
 
 #include "base/symmetric.h"
+#include "cautery/assert.h"
 #include "cautery/name.h"
+#include "constraint/law.h"
 #include "session/session_internal.h"
 
 enum { PATH_BYTES = 160 };
 
 static void join(char out[PATH_BYTES], const char *path, const char *field)
 {
+	CAU_ASSERT(field[0] != 0, "a field without a name in \"%s\"", path);
 	snprintf(out, PATH_BYTES, "%.80s%s%.70s", path, *path ? "." : "", field);
 }
 
 static cau_status in_range(double value, double least, double most, const char *unit,
                            const char *path, const char *field, cau_error *error)
 {
+	CAU_ASSERT(least <= most, "%s from %g to %g", field, least, most);
 	if (value >= least && value <= most)
 		return CAU_OK;
 	char full[PATH_BYTES];
@@ -29,6 +33,7 @@ static cau_status in_range(double value, double least, double most, const char *
 static cau_status is_choice(int value, int count, const char *path, const char *field,
                             cau_error *error)
 {
+	CAU_ASSERT(count > 0, "%s has %d choices", field, count);
 	if (value >= 0 && value < count)
 		return CAU_OK;
 	char full[PATH_BYTES];
@@ -39,6 +44,7 @@ static cau_status is_choice(int value, int count, const char *path, const char *
 static cau_status finite_vector(const double *v, int count, double most, const char *path,
                                 const char *field, cau_error *error)
 {
+	CAU_ASSERT(count > 0 && most > 0, "%s has %d components within %g", field, count, most);
 	for (int i = 0; i < count; ++i)
 		if (!(fabs(v[i]) <= most)) {
 			char full[PATH_BYTES];
@@ -74,6 +80,7 @@ static cau_status check_heat(const cau_heat_material *object, const char *path, 
 static cau_status check_interval(const double *least, const double *most, int count,
                                  const char *path, cau_error *error)
 {
+	CAU_ASSERT(count == 2 || count == 3, "strains along %d axes", count);
 	for (int i = 0; i < count; ++i)
 		if (!(least[i] > -1 && least[i] <= most[i] && most[i] <= 100)) {
 			char full[PATH_BYTES];
@@ -87,6 +94,7 @@ static cau_status check_interval(const double *least, const double *most, int co
 
 static cau_status check_shrink(const double *shrink, int count, const char *path, cau_error *error)
 {
+	CAU_ASSERT(count == 2 || count == 3, "shrinkage along %d axes", count);
 	for (int i = 0; i < count; ++i)
 		if (!(shrink[i] >= 0.01 && shrink[i] <= 4)) {
 			char full[PATH_BYTES];
@@ -140,12 +148,12 @@ static cau_status check_fat(const cau_fat_material *object, const char *path, ca
 	CAU_FAT_TABLE(CHECK_FIELD)
 	if (!status)
 		status = is_choice(object->model, CAU_MODEL_COUNT, path, "model", error);
-	if (!status && object->model == CAU_MODEL_ENERGY && object->poisson_ratio > 1.0 / 3.0) {
+	if (!status && object->poisson_ratio > cau_law_of(object->model)->poisson_most) {
+		const cau_law *law = cau_law_of(object->model);
 		char full[PATH_BYTES];
 		join(full, path, "poisson_ratio");
-		status = cau_fail(error, CAU_BAD_VALUE, full,
-		                  "%g: the printed energy constraint is stable up to 1/3 only",
-		                  object->poisson_ratio);
+		status = cau_fail(error, CAU_BAD_VALUE, full, "%g: model \"%s\" is stable up to %.3g only",
+		                  object->poisson_ratio, law->word, law->poisson_most);
 	}
 	if (!status)
 		status = is_choice(object->limit, CAU_LIMIT_COUNT, path, "limit", error);
@@ -208,6 +216,7 @@ cau_status cau_pose_check(const cau_pose *pose, const char *path, cau_error *err
 cau_status cau_tool_check(const cau_tool_def *object, const char *path, double step_s,
                           cau_error *error)
 {
+	CAU_ASSERT(step_s > 0, "a tool for steps of %g s", step_s);
 	cau_status status = check_name(object->name, path, "name", error);
 	if (!status)
 		status = is_choice(object->shape, CAU_TOOL_SHAPE_COUNT, path, "shape", error);

@@ -3,12 +3,14 @@
 #include <math.h>
 #include <string.h>
 
+#include "cautery/assert.h"
 #include "session/session_internal.h"
 
 // ---- submission
 static cau_status check_values(const cau_session *session, const cau_command *command,
                                cau_error *error)
 {
+	CAU_ASSERT_INDEX(command->kind, CAU_COMMAND_COUNT);
 	switch (command->kind) {
 	case CAU_COMMAND_TOOL_ADD:
 		return cau_tool_check(&command->as.definition, "definition", session->solver.step_s, error);
@@ -60,6 +62,7 @@ cau_status cau_session_submit(cau_session *session, const cau_command *command, 
 	if (session->command_count == session->command_capacity)
 		return cau_fail(error, CAU_LIMIT, NULL, "%d commands are waiting already",
 		                session->command_count);
+	CAU_ASSERT_INDEX(session->command_count, session->command_capacity);
 	session->command[session->command_count++] = *command;
 	return CAU_OK;
 }
@@ -85,6 +88,8 @@ static cau_status configure_tool(cau_session *session, cau_tool *tool, const cau
 
 static cau_status apply_to_tool(cau_session *session, const cau_command *command, cau_error *error)
 {
+	CAU_ASSERT(command->kind > CAU_COMMAND_TOOL_ADD && command->kind <= CAU_COMMAND_TOOL_RELEASE,
+	           "command %d is for no tool", command->kind);
 	int32_t index = cau_session_find_tool(session, command->tool);
 	if (index < 0)
 		return cau_fail(error, CAU_NOT_FOUND, "tool", "there is no tool \"%s\"", command->tool);
@@ -115,6 +120,8 @@ static cau_status apply_to_tool(cau_session *session, const cau_command *command
 // Where the region's material stands; the first, which is the default, if the region has none.
 static int32_t find_material(const cau_layer_def *def, bool fat, int32_t region)
 {
+	CAU_ASSERT(def->material_count >= 1 && def->material_count <= CAU_MAX_MATERIALS, "%d materials",
+	           def->material_count);
 	for (int32_t m = 0; m < def->material_count; m++)
 		if ((fat ? def->fat[m].region : def->sheet[m].region) == region)
 			return m;
@@ -174,6 +181,8 @@ static cau_status set_force(cau_session *session, const cau_command *command, ca
 
 static cau_status apply(cau_session *session, const cau_command *command, cau_error *error)
 {
+	CAU_ASSERT(command->tick <= session->tick, "a command for tick %llu at tick %llu",
+	           (unsigned long long)command->tick, (unsigned long long)session->tick);
 	switch (command->kind) {
 	case CAU_COMMAND_TOOL_ADD:
 		return cau_session_add_tool(session, &command->as.definition, error);
@@ -216,5 +225,6 @@ cau_status cau_session_apply_commands(cau_session *session, cau_error *error)
 		}
 	}
 	session->command_count = kept;
+	CAU_ASSERT(session->refusal_count <= CAU_MAX_REFUSALS, "%d refusals", session->refusal_count);
 	return status;
 }

@@ -3,6 +3,7 @@
 #include <string.h>
 
 #include "base/hash.h"
+#include "cautery/assert.h"
 #include "session/session_internal.h"
 
 cau_session_def cau_default_session_def(void)
@@ -17,6 +18,8 @@ static cau_status no_memory(cau_error *error)
 
 static cau_status allocate_state(cau_session *session, cau_error *error)
 {
+	CAU_ASSERT(!session->position && session->command_capacity > 0,
+	           "state made twice, or for %d commands", session->command_capacity);
 	size_t n = (size_t)session->tissue.vertex_count;
 	cau_arena *arena = &session->arena;
 	session->position = cau_arena_copy(arena, session->tissue.rest, 3 * n, sizeof(double));
@@ -153,6 +156,7 @@ static cau_status make_rest(cau_session *session, cau_error *error)
 
 static uint64_t hash_array(uint64_t hash, const void *array, int32_t count, size_t bytes)
 {
+	CAU_ASSERT(count >= 0 && bytes > 0, "%d elements of %zu bytes", count, bytes);
 	return cau_hash_bytes(cau_hash_word(hash, (uint64_t)count), array, (size_t)count * bytes);
 }
 

@@ -3,6 +3,7 @@
 #include <math.h>
 #include <string.h>
 
+#include "cautery/assert.h"
 #include "session/session_internal.h"
 
 static const double farthest_m = 1000; // as for every place that comes from outside
@@ -40,6 +41,8 @@ cau_status cau_session_drive(cau_session *session, int32_t count, const int32_t 
 
 void cau_session_lead_driven(cau_session *session)
 {
+	CAU_ASSERT(session->driven_count >= 0 && session->driven_count <= session->tissue.vertex_count,
+	           "%d vertices led of %d", session->driven_count, session->tissue.vertex_count);
 	for (int32_t k = 0; k < session->driven_count; ++k)
 		if (session->pinned[session->driven[k]]) // else a command of this tick has unpinned it
 			memcpy(session->position + 3 * (size_t)session->driven[k],

@@ -10,6 +10,7 @@
 // from. Plastic flow counts as loss. Laws without an energy have none to compare: nothing is told.
 #include <string.h>
 
+#include "cautery/assert.h"
 #include "session/session_internal.h"
 
 enum { SUMS = 3 }; // of a chunk of vertices: work, kinetic energy before and after
@@ -32,6 +33,7 @@ cau_status cau_session_make_energy(cau_session *session, cau_error *error)
 // The share of a slot: shares of a kind are in the order of their slots.
 static int32_t share_of(const cau_element_slots *slots, int kind, int32_t slot)
 {
+	CAU_ASSERT(slots->work_count > 0, "slot %d of kind %d in no share", slot, kind);
 	int32_t least = 0, most = slots->work_count - 1;
 	while (least < most && slots->work[least].kind != kind)
 		least++;
@@ -44,6 +46,9 @@ static int32_t share_of(const cau_element_slots *slots, int kind, int32_t slot)
 		else
 			most = middle;
 	}
+	CAU_ASSERT(slots->work[least].kind == kind && slots->work[least].first <= slot &&
+	               slot < slots->work[least].last,
+	           "slot %d of kind %d is not in share %d", slot, kind, least);
 	return least;
 }
 
@@ -74,6 +79,8 @@ typedef struct kept_polars {
 
 static void keep_polars(const cau_elements *elements, const cau_local_work *work, kept_polars *kept)
 {
+	CAU_ASSERT(work->last - work->first <= CAU_SHARE, "a share of slots %d to %d", work->first,
+	           work->last);
 	size_t real = cau_real_bytes(elements->single);
 	kept->array = work->kind == CAU_ELEMENT_TRIANGLE ? elements->sheet.polar : elements->fat.polar;
 	kept->count = work->kind == CAU_ELEMENT_TRIANGLE      ? 6
@@ -87,6 +94,7 @@ static void keep_polars(const cau_elements *elements, const cau_local_work *work
 static void return_polars(const cau_elements *elements, const cau_local_work *work,
                           const kept_polars *kept)
 {
+	CAU_ASSERT(kept->count >= 0 && kept->count <= MOST_POLARS, "%d rotations kept", kept->count);
 	size_t real = cau_real_bytes(elements->single);
 	for (int i = 0; i < kept->count; ++i)
 		memcpy((char *)kept->array[i] + (size_t)work->first * real, kept->bytes[i],
@@ -96,6 +104,7 @@ static void return_polars(const cau_elements *elements, const cau_local_work *wo
 static void share_part(void *context, int32_t index)
 {
 	cau_session *session = context;
+	CAU_ASSERT_INDEX(index, session->solver.slots.work_count);
 	const cau_step_solver *solver = &session->solver;
 	const cau_local_work *work = &solver->slots.work[index];
 	kept_polars kept;
@@ -127,6 +136,7 @@ void cau_session_begin_energy(cau_session *session)
 // Of a support that was led: the elements' pull on it, against which it went its way.
 static double support_work(const cau_session *session, int32_t vertex, const double move[3])
 {
+	CAU_ASSERT(session->fixed[vertex], "vertex %d is no support", vertex);
 	const cau_incidence *incidence = &session->solver.slots.incidence;
 	const cau_elements *elements = &session->solver.elements;
 	double work = 0;
@@ -140,6 +150,7 @@ static double support_work(const cau_session *session, int32_t vertex, const dou
 static void vertex_part(void *context, int32_t chunk)
 {
 	cau_session *session = context;
+	CAU_ASSERT_INDEX(chunk, session->solver.chunk_count);
 	const cau_step_solver *solver = &session->solver;
 	const double *x = session->position, *start = session->position_start;
 	const double *velocity = session->velocity, *force = session->external;
@@ -175,6 +186,7 @@ static double tool_work(const cau_session *session)
 	double work = 0;
 	for (int32_t k = 0; k < session->contact.row_count; ++k) {
 		const cau_contact_row *row = &session->contact.row[k];
+		CAU_ASSERT_INDEX(row->vertex, session->tissue.vertex_count);
 		for (size_t c = 0, at = 3 * (size_t)row->vertex; c < 3; ++c)
 			work +=
 				row->reaction[c] * (session->position[at + c] - session->position_start[at + c]);
@@ -191,6 +203,9 @@ static double tool_work(const cau_session *session)
 void cau_session_end_energy(cau_session *session)
 {
 	cau_energy *energy = &session->energy;
+	CAU_ASSERT(!session->solver.conservative || (!energy->stale && !energy->marked),
+	           "tick %llu ends with an energy that it did not begin with",
+	           (unsigned long long)session->tick);
 	energy->gain_j = 0;
 	if (!session->solver.conservative)
 		return;

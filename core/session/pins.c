@@ -4,11 +4,14 @@
 // once).
 #include <string.h>
 
+#include "cautery/assert.h"
 #include "session/session_internal.h"
 
 cau_status cau_session_rebuild_system(cau_session *session, const int32_t *permutation,
                                       cau_error *error)
 {
+	CAU_ASSERT(session->contact.solution != NULL, "a system of %d vertices before its contacts",
+	           session->tissue.vertex_count);
 	cau_step_solver *solver = &session->solver;
 	cau_matrix_update_finish(&session->update);
 	cau_solver_finish(solver);
@@ -38,6 +41,7 @@ cau_status cau_session_rebuild_system(cau_session *session, const int32_t *permu
 cau_status cau_session_set_pins(cau_session *session, const cau_selection *selection, int pin,
                                 cau_error *error)
 {
+	CAU_ASSERT(pin == 0 || pin == 1, "pinned: %d", pin);
 	size_t n = (size_t)session->tissue.vertex_count;
 	memset(session->chosen, 0, n);
 	if (cau_tissue_select(&session->tissue, selection, session->chosen) <= 0)

@@ -18,6 +18,7 @@
 #include <math.h>
 #include <string.h>
 
+#include "cautery/assert.h"
 #include "session/session_internal.h"
 
 static const double fastest_m_s = 1540; // sound in soft tissue
@@ -42,6 +43,7 @@ cau_status cau_session_make_watch(cau_session *session, cau_error *error)
 
 static const char *layer_of_vertex(const cau_session *session, int32_t vertex)
 {
+	CAU_ASSERT_INDEX(vertex, session->tissue.vertex_count);
 	const cau_tissue *tissue = &session->tissue;
 	for (int32_t i = 0; i < tissue->layer_count; ++i) {
 		const cau_tissue_layer *layer = &tissue->layer[i];
@@ -54,6 +56,7 @@ static const char *layer_of_vertex(const cau_session *session, int32_t vertex)
 static cau_status refuse(const cau_session *session, cau_error *error, const char *layer,
                          const char *what)
 {
+	CAU_ASSERT(layer && what[0], "a refusal without a layer or a reason: %s", what);
 	return cau_fail(error, CAU_NUMERICAL, NULL, "at tick %llu, in layer \"%s\": %s",
 	                (unsigned long long)session->tick, layer, what);
 }
@@ -61,6 +64,7 @@ static cau_status refuse(const cau_session *session, cau_error *error, const cha
 // ---- the solver's own refusal
 static const char *layer_of_share(const cau_session *session, const cau_local_work *work)
 {
+	CAU_ASSERT_INDEX(work->kind, CAU_ELEMENT_KINDS);
 	const cau_elements *elements = &session->solver.elements;
 	const int32_t *element_at = session->solver.slots.element_at[work->kind];
 	const cau_tissue *tissue = &session->tissue;
@@ -94,6 +98,7 @@ cau_status cau_session_locate(const cau_session *session, cau_error *error)
 static void motion_part(void *context, int32_t chunk)
 {
 	cau_session *session = context;
+	CAU_ASSERT_INDEX(chunk, session->solver.chunk_count);
 	const double *x = session->position, *start = session->position_start;
 	double most = fastest_m_s * session->solver.step_s, farthest2 = 0;
 	int32_t first = chunk * CAU_VERTEX_CHUNK, last = first + CAU_VERTEX_CHUNK, astray = -1;
@@ -129,6 +134,7 @@ static cau_status refuse_vertex(const cau_session *session, int32_t vertex, cau_
 // ---- edges
 static double length_m(const double *position, const int32_t *edge)
 {
+	CAU_ASSERT(edge[0] != edge[1], "an edge from vertex %d to itself", edge[0]);
 	return cau_length(cau_sub(cau_vec3_of(position + 3 * (size_t)edge[1]),
 	                          cau_vec3_of(position + 3 * (size_t)edge[0])));
 }
@@ -136,6 +142,7 @@ static double length_m(const double *position, const int32_t *edge)
 // The layer of a living element on the edge, or NULL: then it holds nothing.
 static const char *living_layer(const cau_session *session, int32_t edge)
 {
+	CAU_ASSERT_INDEX(edge, session->tissue.edges.edge_count);
 	static const int kinds[] = {CAU_ELEMENT_TRIANGLE, CAU_ELEMENT_TETRAHEDRON, CAU_ELEMENT_LINK};
 	const cau_tissue *tissue = &session->tissue;
 	const int32_t *layer[] = {tissue->triangle_layer, tissue->tetrahedron_layer,
@@ -152,6 +159,7 @@ static const char *living_layer(const cau_session *session, int32_t edge)
 static void edge_part(void *context, int32_t chunk)
 {
 	cau_session *session = context;
+	CAU_ASSERT_INDEX(chunk, session->watch.chunk_count);
 	const cau_edge_table *edges = &session->tissue.edges;
 	int32_t first = chunk * EDGES_IN_CHUNK, last = first + EDGES_IN_CHUNK, shortest = -1;
 	double least = INFINITY, whole = most_sizes * session->size_m;
@@ -191,6 +199,7 @@ static cau_status check_edges(cau_session *session, cau_error *error)
 			watch->left_m = watch->room_m[k];
 			worst = watch->edge[k];
 		}
+	CAU_ASSERT(watch->left_m >= 0 || worst >= 0, "no edge is %g m too long", -watch->left_m);
 	return watch->left_m < 0 ? refuse_edge(session, worst, error) : CAU_OK;
 }
 
@@ -212,6 +221,7 @@ cau_status cau_session_check_motion(cau_session *session, cau_error *error)
 // ---- tetrahedra
 static const char *layer_of_most_fat(const cau_tissue *tissue)
 {
+	CAU_ASSERT(tissue->layer_count > 0, "%d layers", tissue->layer_count);
 	int32_t most = 0;
 	for (int32_t i = 1; i < tissue->layer_count; ++i)
 		if (tissue->layer[i].tetrahedron_count > tissue->layer[most].tetrahedron_count)
@@ -221,6 +231,8 @@ static const char *layer_of_most_fat(const cau_tissue *tissue)
 
 cau_status cau_session_check_inverted(const cau_session *session, cau_error *error)
 {
+	CAU_ASSERT(session->inverted >= 0 && session->inverted <= session->tissue.tetrahedron_count,
+	           "%d of %d tetrahedra", session->inverted, session->tissue.tetrahedron_count);
 	char what[128];
 	const cau_tissue *tissue = &session->tissue;
 	if (session->inverted <= most_inverted * tissue->tetrahedron_count)

@@ -3,6 +3,7 @@
 // that whoever has a command's answer finds its effect here, even while the session is paused.
 #include <string.h>
 
+#include "cautery/assert.h"
 #include "session/session_internal.h"
 
 static cau_layer_def *find_layer(cau_scene_def *scene, const char *name)
@@ -37,6 +38,7 @@ static void present_layers(const cau_session *session, cau_scene_def *scene)
 
 static void present_tools(const cau_session *session, cau_scene_def *scene)
 {
+	CAU_ASSERT(session->tool_count <= CAU_MAX_TOOLS, "%d tools", session->tool_count);
 	scene->tool_count = session->tool_count;
 	for (int32_t i = 0; i < session->tool_count; ++i) {
 		const cau_tool_state *now = &session->tool[i].state;
@@ -57,6 +59,8 @@ static void remove_tool(cau_scene_def *scene, int32_t index)
 	if (index < 0)
 		return;
 	scene->tool_count--;
+	CAU_ASSERT(index <= scene->tool_count && scene->tool_count >= 0, "tool %d of %d", index,
+	           scene->tool_count);
 	memmove(&scene->tools[index], &scene->tools[index + 1],
 	        (size_t)(scene->tool_count - index) * sizeof *scene->tools);
 }
@@ -66,6 +70,7 @@ static void configure_tool(cau_scene_def *scene, int32_t index, const cau_tool_d
 	if (index < 0)
 		return;
 	cau_tool_def before = scene->tools[index];
+	CAU_ASSERT_INDEX(index, scene->tool_count);
 	scene->tools[index] = *to;
 	scene->tools[index].pose = before.pose;
 	memcpy(scene->tools[index].name, before.name, sizeof before.name);

@@ -3,6 +3,7 @@
 // so that tick 0 is at rest: steps whose velocity is thrown away, until nothing moves.
 #include <string.h>
 
+#include "cautery/assert.h"
 #include "session/session_internal.h"
 
 enum { MOST_STEPS = 400 };
@@ -10,6 +11,7 @@ static const double still = 1e-5; // largest move of a step, relative to the mea
 
 static int is_identity(const double *target, int n)
 {
+	CAU_ASSERT(n == 2 || n == 3, "a target of %d axes", n);
 	for (int i = 0; i < (n == 2 ? 3 : 6); ++i)
 		if (target[i] != (i < n))
 			return 0;
@@ -57,6 +59,7 @@ static double largest_move(const cau_session *session)
 
 cau_status cau_session_relax(cau_session *session, cau_error *error)
 {
+	CAU_ASSERT(session->tick == 0, "relaxed at tick %llu", (unsigned long long)session->tick);
 	if (!has_tension(&session->tissue))
 		return CAU_OK;
 	size_t n = 3 * (size_t)session->tissue.vertex_count;

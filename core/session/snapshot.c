@@ -10,6 +10,7 @@
 #include <string.h>
 
 #include "base/hash.h"
+#include "cautery/assert.h"
 #include "session/snapshot_archive.h"
 
 static const char magic[8] = "CAUSNAP";
@@ -40,6 +41,7 @@ typedef struct snapshot_header {
 static void pass_arrays(snapshot_archive *archive, void *const *arrays, int count, int32_t slots,
                         int single)
 {
+	CAU_ASSERT(count >= 0 && slots >= 0, "%d arrays of %d slots", count, slots);
 	for (int i = 0; i < count; ++i)
 		snapshot_pass(archive, arrays[i], (size_t)slots * cau_real_bytes(single));
 }
@@ -47,6 +49,7 @@ static void pass_arrays(snapshot_archive *archive, void *const *arrays, int coun
 // Columns of A^-1 that contacts keep: they lag behind cuts, so they cannot be made again.
 static int32_t kept_columns(const cau_session *session)
 {
+	CAU_ASSERT_INDEX(session->contact.column_count, CAU_MAX_CONTACTS + 1);
 	return session->contact.epoch == session->solver.factor_epoch ? session->contact.column_count
 	                                                              : 0;
 }
@@ -56,6 +59,7 @@ static void pass_columns(snapshot_archive *archive, cau_session *session)
 	cau_contact_set *set = &session->contact;
 	int32_t count = kept_columns(session);
 	int single = session->solver.elements.single;
+	CAU_ASSERT(count >= 0 && count <= CAU_MAX_CONTACTS, "%d columns", count);
 	snapshot_pass(archive, set->column_vertex, (size_t)count * sizeof *set->column_vertex);
 	snapshot_pass(archive, set->column_version, (size_t)count * sizeof *set->column_version);
 	pass_arrays(archive, set->column, count, session->tissue.vertex_count, single);
@@ -66,6 +70,9 @@ static void pass_columns(snapshot_archive *archive, cau_session *session)
 
 static void pass_update(snapshot_archive *archive, cau_session *session)
 {
+	CAU_ASSERT(session->update.waiting_count <= session->update.waiting_capacity,
+	           "%d elements wait in room for %d", session->update.waiting_count,
+	           session->update.waiting_capacity);
 	cau_matrix_update *update = &session->update;
 	snapshot_pass(archive, update->waiting,
 	              (size_t)update->waiting_count * sizeof *update->waiting);
@@ -80,6 +87,8 @@ static void pass_update(snapshot_archive *archive, cau_session *session)
 
 static void pass_tool(snapshot_archive *archive, cau_tool *tool)
 {
+	CAU_ASSERT(tool->grid.nodes >= 0 && tool->grid.nodes <= MOST_NODES, "a heat grid of %d nodes",
+	           tool->grid.nodes);
 	cau_heat_grid grid = tool->grid;
 	snapshot_pass(archive, &tool->state, sizeof tool->state);
 	snapshot_pass(archive, &tool->target, sizeof tool->target);
@@ -202,6 +211,8 @@ cau_status cau_session_snapshot(const cau_session *session, void *bytes, size_t 
 	                            .version = VERSION};
 	write_payload((cau_session *)(uintptr_t)session, &archive);
 	header.payload_bytes = archive.at;
+	CAU_ASSERT(sizeof header + archive.at == needed, "%zu bytes written of %zu announced",
+	           sizeof header + archive.at, needed);
 	header.hash = hash_of(&header, archive.bytes, archive.at);
 	memcpy(bytes, &header, sizeof header);
 	*byte_count = sizeof header + archive.at;
@@ -312,6 +323,8 @@ static cau_status restore_tools(cau_session *session, const snapshot_header *hea
 		cau_session_drop_tool(session, session->tool_count - 1);
 	for (int32_t i = 0; i < header->tool_count; ++i) {
 		cau_tool *tool = &session->tool[i];
+		CAU_ASSERT(session->tool_count == i && i < CAU_MAX_TOOLS, "tool %d comes after %d", i,
+		           session->tool_count);
 		memset(tool, 0, sizeof *tool);
 		cau_tool_state state;
 		snapshot_archive ahead = *archive;
@@ -330,6 +343,8 @@ static cau_status restore_tools(cau_session *session, const snapshot_header *hea
 
 static void restore_counts(cau_session *session, const snapshot_header *header)
 {
+	CAU_ASSERT(!session->update.making, "counts are restored while a factor is made for tick %llu",
+	           (unsigned long long)session->update.swap_tick);
 	cau_matrix_update *update = &session->update;
 	session->command_count = header->command_count;
 	session->driven_count = 0;
@@ -366,10 +381,14 @@ static cau_status replay_factor(cau_session *session, const snapshot_header *hea
 	for (int32_t k = 0; k < update->operation_count && !status;) {
 		cau_waiting list[CAU_DOWNDATES_AT_MOST]; // elements between pins fill a group, not its rank
 		int32_t count = 0, taken = 0, group = update->operation[k].group;
-		for (; k < update->operation_count && update->operation[k].group == group; ++k)
+		for (; k < update->operation_count && update->operation[k].group == group; ++k) {
+			CAU_ASSERT_INDEX(count, CAU_DOWNDATES_AT_MOST);
 			list[count++] =
 				(cau_waiting){update->operation[k].kind, update->operation[k].element, 0};
+		}
 		status = cau_matrix_update_downdate(update, list, count, &taken, error);
+		CAU_ASSERT(status || taken == count, "%d elements of group %d are taken out, of %d", taken,
+		           group, count);
 	}
 	memset(update->touched, 0, (size_t)solver->sweep.supernode_count);
 	if (!status)

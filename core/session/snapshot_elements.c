@@ -4,6 +4,7 @@
 // it is still read.
 #include <stdlib.h>
 
+#include "cautery/assert.h"
 #include "session/snapshot_archive.h"
 
 // What comes one after the other: elements, -1 padding.
@@ -14,12 +15,14 @@ typedef struct element_order {
 
 static int32_t element_of(const element_order *order, int32_t place)
 {
+	CAU_ASSERT_INDEX(place, order->count);
 	return order->element ? order->element[place] : place;
 }
 
 static void pass_slots(snapshot_archive *archive, void *const *arrays, int count,
                        const element_order *order, int single)
 {
+	CAU_ASSERT(order->count >= 0, "%d elements in order", order->count);
 	size_t size = cau_real_bytes(single);
 	if (!archive->bytes) {
 		archive->at += (size_t)count * (size_t)order->count * size;
@@ -87,6 +90,7 @@ static int32_t padded_1(int32_t count)
 
 static int32_t place_1(int32_t k, int32_t count)
 {
+	CAU_ASSERT_INDEX(k, count);
 	int32_t share = k / SHARE_1 * SHARE_1;
 	if (share + SHARE_1 > count)
 		return k;
@@ -117,15 +121,16 @@ static int32_t group_count_of(const cau_elements *elements, int kind)
 
 static int32_t group_of_slot(const cau_elements *elements, int kind, int32_t slot)
 {
-	int32_t group = 0;
+	int32_t group = 0, count = group_count_of(elements, kind);
+	const cau_sheet_group *sheet = elements->sheet.group;
+	const cau_fat_group *fat = elements->fat.group;
 	if (kind == CAU_ELEMENT_TRIANGLE)
-		while (slot >=
-		       elements->sheet.group[group].first_slot + elements->sheet.group[group].slot_count)
+		while (group < count && slot >= sheet[group].first_slot + sheet[group].slot_count)
 			group++;
 	else if (kind == CAU_ELEMENT_TETRAHEDRON)
-		while (slot >=
-		       elements->fat.group[group].first_slot + elements->fat.group[group].slot_count)
+		while (group < count && slot >= fat[group].first_slot + fat[group].slot_count)
 			group++;
+	CAU_ASSERT(group < count, "slot %d of kind %d is in no group", slot, kind);
 	return group;
 }
 

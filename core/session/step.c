@@ -4,6 +4,7 @@
 #include <stdatomic.h>
 #include <string.h>
 
+#include "cautery/assert.h"
 #include "session/session_internal.h"
 
 void cau_session_stage_begin(cau_session *session)
@@ -14,6 +15,7 @@ void cau_session_stage_begin(cau_session *session)
 
 void cau_session_stage_end(cau_session *session, int stage)
 {
+	CAU_ASSERT_INDEX(stage, CAU_STAGE_COUNT);
 	if (!session->now_s)
 		return;
 	double now = session->now_s();
@@ -30,6 +32,7 @@ static void settle_part(void *context, int32_t index)
 {
 	settling *work = context;
 	const cau_step_solver *solver = work->solver;
+	CAU_ASSERT_INDEX(index, solver->slots.work_count);
 	atomic_fetch_add(&work->inverted,
 	                 solver->kernels->settle(&solver->elements, &solver->slots.work[index],
 	                                         solver->displacement));
@@ -42,6 +45,9 @@ void cau_session_settle(cau_session *session)
 	settling work = {.solver = solver};
 	cau_pool_run(solver->pool, solver->slots.work_count, settle_part, &work);
 	session->inverted = work.inverted;
+	CAU_ASSERT(session->inverted <= session->tissue.tetrahedron_count,
+	           "%d of %d tetrahedra are inverted", session->inverted,
+	           session->tissue.tetrahedron_count);
 }
 
 // Vertices whose last element is gone keep their row and stay where they are.
@@ -53,6 +59,9 @@ static void freeze_isolated(cau_session *session)
 		if (!session->fixed[v] && !session->dissection.live_elements[v]) {
 			session->fixed[v] = 1;
 			session->frozen_count++;
+			CAU_ASSERT(session->frozen_count <= session->tissue.vertex_count,
+			           "%d vertices frozen of %d", session->frozen_count,
+			           session->tissue.vertex_count);
 			memset(session->velocity + 3 * (size_t)v, 0, 3 * sizeof(double));
 		}
 	cau_session_drop_frozen_grasps(session);
@@ -87,6 +96,8 @@ static cau_status solve(cau_session *session, cau_error *error)
 
 static void begin_tick(cau_session *session)
 {
+	CAU_ASSERT(!session->faulted, "tick %llu of a faulted session",
+	           (unsigned long long)session->tick);
 	size_t bytes = 3 * (size_t)session->tissue.vertex_count * sizeof(double);
 	memcpy(session->position_start, session->position, bytes);
 	memset(session->stage_s, 0, sizeof session->stage_s);
@@ -96,6 +107,8 @@ static void begin_tick(cau_session *session)
 
 static cau_status fault(cau_session *session, cau_status status)
 {
+	CAU_ASSERT(status != CAU_OK, "a fault without a reason at tick %llu",
+	           (unsigned long long)session->tick);
 	size_t bytes = 3 * (size_t)session->tissue.vertex_count * sizeof(double);
 	memcpy(session->position, session->position_start, bytes);
 	memset(session->velocity, 0, bytes);

@@ -6,6 +6,7 @@
 #include <math.h>
 #include <string.h>
 
+#include "cautery/assert.h"
 #include "session/session_internal.h"
 
 static const double farthest_sizes = 200; // single precision: 1e-5 of the size, far below an edge
@@ -27,9 +28,11 @@ double cau_session_size(const cau_session *session)
 
 static void stop(cau_session *session, size_t vertex, cau_vec3 way)
 {
+	CAU_ASSERT(!session->fixed[vertex], "vertex %zu is stopped twice", vertex);
 	double *position = session->position + 3 * vertex;
 	cau_vec3 rest = cau_vec3_of(session->tissue.rest + 3 * vertex);
 	double reach_m = farthest_sizes * session->size_m;
+	CAU_ASSERT(reach_m > 0, "a stray beyond %g m", reach_m);
 	cau_vec3_to(cau_add_scaled(rest, reach_m / cau_length(way), way), position);
 	memset(session->velocity + 3 * vertex, 0, 3 * sizeof(double));
 	session->fixed[vertex] = 1;
@@ -38,6 +41,8 @@ static void stop(cau_session *session, size_t vertex, cau_vec3 way)
 
 void cau_session_stop_strays(cau_session *session)
 {
+	CAU_ASSERT(session->frozen_count <= session->tissue.vertex_count, "%d vertices frozen of %d",
+	           session->frozen_count, session->tissue.vertex_count);
 	int stopped = 0;
 	double reach_m = farthest_sizes * session->size_m;
 	for (size_t v = 0; v < (size_t)session->tissue.vertex_count; ++v) {

@@ -3,6 +3,7 @@
 // obeyed.
 #include <string.h>
 
+#include "cautery/assert.h"
 #include "session/session_internal.h"
 
 static const double jaw_per_s = 8; // a full stroke takes an eighth of a second
@@ -23,6 +24,8 @@ cau_status cau_session_add_tool(cau_session *session, const cau_tool_def *def, c
 		return cau_fail(error, CAU_ALREADY_EXISTS, "tool.name", "there is a tool \"%s\"",
 		                def->name);
 	cau_tool *tool = &session->tool[session->tool_count];
+	CAU_ASSERT(session->tool_count >= 0 && session->tool_count < CAU_MAX_TOOLS, "%d tools",
+	           session->tool_count);
 	memset(tool, 0, sizeof *tool);
 	cau_status status = cau_heat_grid_create(&tool->grid, def, session->scene->ambient_c,
 	                                         session->solver.step_s, &def->pose, error);
@@ -39,6 +42,7 @@ cau_status cau_session_add_tool(cau_session *session, const cau_tool_def *def, c
 
 void cau_session_drop_tool(cau_session *session, int32_t index)
 {
+	CAU_ASSERT_INDEX(index, session->tool_count);
 	cau_heat_grid_finish(&session->tool[index].grid);
 	session->tool_count--;
 	memmove(&session->tool[index], &session->tool[index + 1],
@@ -56,6 +60,7 @@ static double angle_between(const cau_pose *a, const cau_pose *b)
 
 static void move_tool(cau_tool *tool, double dt)
 {
+	CAU_ASSERT(dt > 0, "a tick of %g s", dt);
 	const cau_tool_def *def = &tool->state.definition;
 	tool->pose_before = tool->state.pose;
 	double distance = cau_length(
@@ -70,6 +75,7 @@ static void move_tool(cau_tool *tool, double dt)
 		share < 1 ? cau_pose_between(&tool->state.pose, &tool->target, share) : tool->target;
 	double jaw = tool->jaw_target - tool->state.jaw;
 	tool->state.jaw += fmax(-jaw_per_s * dt, fmin(jaw_per_s * dt, jaw));
+	CAU_ASSERT(tool->state.jaw >= 0 && tool->state.jaw <= 1, "a jaw at %g", tool->state.jaw);
 }
 
 void cau_session_move_tools(cau_session *session)

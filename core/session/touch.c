@@ -4,6 +4,7 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "cautery/assert.h"
 #include "session/session_internal.h"
 
 enum { CANDIDATES = 4 * CAU_MAX_CONTACTS };
@@ -20,6 +21,8 @@ static cau_tool_part pushing_part(const cau_tool *tool)
 static cau_contact_row contact_row(const cau_session *session, const cau_tool *tool, int32_t index,
                                    int32_t vertex)
 {
+	CAU_ASSERT_INDEX(vertex, session->tissue.vertex_count);
+	CAU_ASSERT_INDEX(index, session->tool_count);
 	cau_contact_row row = {.vertex = vertex, .tool = index};
 	cau_vec3 start = cau_vec3_of(session->position_start + 3 * (size_t)vertex);
 	cau_vec3 local = cau_pose_to_local(&tool->pose_before, start);
@@ -37,6 +40,8 @@ static int compare_rows(const void *a, const void *b)
 
 static int is_grasped(const cau_tool *tool, int32_t vertex)
 {
+	CAU_ASSERT(tool->grasp_count >= 0 && tool->grasp_count <= CAU_MAX_GRASPED,
+	           "%d vertices grasped", tool->grasp_count);
 	for (int32_t k = 0; k < tool->grasp_count; ++k)
 		if (tool->grasp[k].vertex == vertex)
 			return 1;
@@ -70,6 +75,7 @@ static int32_t collect(const cau_session *session, int32_t index, cau_contact_ro
 			rows[count++].gap = gap;
 		}
 	}
+	CAU_ASSERT(count <= CANDIDATES, "%d candidates", count);
 	qsort(rows, (size_t)count, sizeof *rows, compare_rows);
 	return count;
 }
@@ -79,6 +85,7 @@ static void add_attachments(cau_session *session, int32_t index)
 	cau_tool *tool = &session->tool[index];
 	for (int32_t k = 0; k < tool->grasp_count; ++k) {
 		cau_contact_row row = {.vertex = tool->grasp[k].vertex, .tool = index, .attached = 1};
+		CAU_ASSERT_INDEX(row.vertex, session->tissue.vertex_count);
 		cau_vec3_to(cau_pose_to_world(&tool->state.pose, cau_vec3_of(tool->grasp[k].local)),
 		            row.anchor);
 		cau_contact_add(&session->contact, &row);
@@ -113,6 +120,7 @@ static void add_drag(cau_session *session, int32_t index)
 			                 .coefficient = fmin(def->drag_ns_m / solver->step_s, most)};
 			cau_vec3 local = cau_pose_to_local(&tool->pose_before, x);
 			cau_vec3_to(cau_pose_to_world(&tool->state.pose, local), drag.target);
+			CAU_ASSERT_INDEX(solver->drag_count, session->tissue.vertex_count);
 			solver->drag[solver->drag_count++] = drag;
 		}
 	}
@@ -120,6 +128,7 @@ static void add_drag(cau_session *session, int32_t index)
 
 static void describe_tools(cau_session *session)
 {
+	CAU_ASSERT(session->tool_count <= CAU_MAX_TOOLS, "%d tools", session->tool_count);
 	session->contact.tool_count = session->tool_count;
 	for (int32_t i = 0; i < session->tool_count; ++i) {
 		const cau_tool *tool = &session->tool[i];
@@ -169,6 +178,7 @@ static void slip(cau_tool *tool, const cau_contact_row *row, const double *posit
 		                                 1 / def->grasp_stiffness_n_m, cau_vec3_of(row->reaction));
 		cau_vec3 local = cau_pose_to_local(&tool->state.pose, anchor);
 		cau_vec3_to(local, grasp->local);
+		CAU_ASSERT_INDEX(k, tool->grasp_count);
 		if (cau_length(cau_sub(local, cau_vec3_of(grasp->start))) > def->tip_length_m)
 			*grasp = tool->grasp[--tool->grasp_count];
 		return;
@@ -185,6 +195,7 @@ static void add_force(cau_tool_state *state, cau_vec3 force, cau_vec3 at)
 
 static void filter(double filtered[3], const double raw[3], double most, double dt)
 {
+	CAU_ASSERT(dt > 0 && most > 0, "a filter of %g s, up to %g", dt, most);
 	cau_vec3 now = cau_vec3_of(filtered);
 	now = cau_add_scaled(now, dt / (dt + filter_s), cau_sub(cau_vec3_of(raw), now));
 	double length = cau_length(now);
@@ -201,6 +212,7 @@ void cau_session_read_forces(cau_session *session)
 	}
 	for (int32_t k = 0; k < session->contact.row_count; ++k) {
 		const cau_contact_row *row = &session->contact.row[k];
+		CAU_ASSERT_INDEX(row->tool, session->tool_count);
 		cau_tool *tool = &session->tool[row->tool];
 		cau_vec3 reaction = cau_vec3_of(row->reaction);
 		add_force(&tool->state, cau_scale(-1, reaction),
@@ -222,8 +234,7 @@ void cau_session_read_forces(cau_session *session)
 cau_status cau_session_grasp(cau_session *session, cau_tool *tool, cau_error *error)
 {
 	const cau_tool_def *def = &tool->state.definition;
-	if (def->shape != CAU_TOOL_BIPOLAR && def->shape != CAU_TOOL_SHEARS &&
-	    def->shape != CAU_TOOL_GRASPER)
+	if (!cau_tool_has_jaws(def))
 		return cau_fail(error, CAU_BAD_STATE, "tool", "tool \"%s\" has no jaws to grasp with",
 		                def->name);
 	tool->state.grasping = true;
@@ -239,6 +250,7 @@ cau_status cau_session_grasp(cau_session *session, cau_tool *tool, cau_error *er
 		cau_grasp grasp = {.vertex = v};
 		cau_vec3_to(local, grasp.local);
 		cau_vec3_to(local, grasp.start);
+		CAU_ASSERT_INDEX(tool->grasp_count, CAU_MAX_GRASPED);
 		tool->grasp[tool->grasp_count++] = grasp;
 	}
 	tool->jaw_target = 0;
@@ -260,5 +272,6 @@ void cau_session_drop_frozen_grasps(cau_session *session)
 			if (session->fixed[tool->grasp[k].vertex])
 				tool->grasp[k] = tool->grasp[--tool->grasp_count];
 		tool->state.grasped_vertices = tool->grasp_count;
+		CAU_ASSERT(tool->grasp_count >= 0, "%d vertices grasped", tool->grasp_count);
 	}
 }

@@ -2,10 +2,13 @@
 // What callers see of a session: its constant parts, and the last tick's frame.
 #include <string.h>
 
+#include "cautery/assert.h"
 #include "session/session_internal.h"
 
 static void describe_layers(const cau_session *session, cau_session_info *info)
 {
+	CAU_ASSERT(session->tissue.layer_count <= CAU_MAX_LAYERS, "%d layers",
+	           session->tissue.layer_count);
 	const cau_tissue *tissue = &session->tissue;
 	for (int32_t i = 0; i < tissue->layer_count; ++i) {
 		const cau_tissue_layer *layer = &tissue->layer[i];
@@ -67,6 +70,8 @@ cau_status cau_session_make_faces(cau_session *session, cau_error *error)
 			continue;
 		}
 		int32_t layer = tissue->tetrahedron_layer[faces->owner[2 * (size_t)f]];
+		CAU_ASSERT(layer >= 0 && tissue->layer[layer].def.kind == CAU_LAYER_FAT,
+		           "face %d of fat is in layer %d", f, layer);
 		session->face_layer[f] = layer;
 		if (!session->fat_face_count[layer]++)
 			session->fat_first_face[layer] = f;
@@ -185,6 +190,7 @@ void cau_session_frame(const cau_session *session, cau_frame *frame)
 	};
 	for (int scalar = 0; scalar < CAU_SCALAR_COUNT; ++scalar)
 		frame->scalar[scalar] = is_made(session, scalar) ? session->frame.scalar[scalar] : NULL;
+	CAU_ASSERT(session->tool_count <= CAU_MAX_TOOLS, "%d tools", session->tool_count);
 	for (int32_t i = 0; i < session->tool_count; ++i)
 		session->tool_view[i] = session->tool[i].state;
 	fill_statistics(session, &frame->statistics);

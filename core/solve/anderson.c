@@ -5,6 +5,7 @@
 // iteration.
 #include <string.h>
 
+#include "cautery/assert.h"
 #include "solve/solver.h"
 
 // With contact A f = -grad E + reactions; the solver's gradient vector then holds that sum's
@@ -16,6 +17,7 @@ typedef struct mix {
 
 static int64_t chunk_reals(const cau_step_solver *solver, int32_t chunk, int64_t *first)
 {
+	CAU_ASSERT_INDEX(chunk, solver->chunk_count);
 	int64_t total = 4 * (int64_t)solver->tissue->vertex_count, count = 4 * CAU_VERTEX_CHUNK;
 	*first = chunk * count;
 	return *first + count > total ? total - *first : count;
@@ -49,6 +51,7 @@ static void combine_part(void *context, int32_t chunk)
 static void least_squares(double a[CAU_ANDERSON_WINDOW][CAU_ANDERSON_WINDOW],
                           double b[CAU_ANDERSON_WINDOW], int32_t count, double *x)
 {
+	CAU_ASSERT(count >= 1 && count <= CAU_ANDERSON_WINDOW, "%d columns", count);
 	double size[CAU_ANDERSON_WINDOW];
 	int used[CAU_ANDERSON_WINDOW];
 	for (int32_t i = 0; i < count; ++i)
@@ -79,6 +82,7 @@ static void weigh(mix *work)
 	cau_step_solver *solver = work->solver;
 	cau_history *history = &solver->history;
 	history->newest = (history->newest + 1) % CAU_ANDERSON_WINDOW;
+	CAU_ASSERT_INDEX(history->newest, CAU_ANDERSON_WINDOW);
 	if (history->count < CAU_ANDERSON_WINDOW)
 		history->count++;
 	cau_pool_run(solver->pool, solver->chunk_count, column_part, work);
@@ -99,6 +103,9 @@ static void weigh(mix *work)
 
 int cau_anderson_mix(cau_step_solver *solver, int32_t iteration)
 {
+	CAU_ASSERT(iteration >= 0, "iteration %d", iteration);
+	CAU_ASSERT(iteration > 0 || !solver->history.count, "the first iteration has %d columns",
+	           solver->history.count);
 	mix work = {.solver = solver};
 	solver->history.increment = solver->increment;
 	solver->history.gradient = solver->gradient;
@@ -117,6 +124,8 @@ static void swap(void **a, void **b)
 
 void cau_anderson_keep(cau_step_solver *solver)
 {
+	CAU_ASSERT(solver->history.increment == solver->increment,
+	           "what is kept was not mixed, with %d columns", solver->history.count);
 	swap(&solver->increment, &solver->history.last_increment);
 	swap(&solver->gradient, &solver->history.last_gradient);
 }

@@ -3,6 +3,7 @@
 
 #include <string.h>
 
+#include "cautery/assert.h"
 #include "solve/hold.h"
 
 cau_status cau_contact_create(cau_contact_set *set, const cau_tissue *tissue, int single,
@@ -26,6 +27,10 @@ cau_status cau_contact_create(cau_contact_set *set, const cau_tissue *tissue, in
 
 int cau_contact_add(cau_contact_set *set, const cau_contact_row *row)
 {
+	CAU_ASSERT(set->row_count >= 0 && set->row_count <= CAU_MAX_CONTACTS, "%d rows",
+	           set->row_count);
+	CAU_ASSERT_INDEX(row->tool, set->tool_count);
+	CAU_ASSERT(row->vertex >= 0, "a row of vertex %d", row->vertex);
 	if (set->row_count == CAU_MAX_CONTACTS)
 		return 0;
 	set->row[set->row_count++] = *row;
@@ -39,12 +44,14 @@ int cau_contact_add(cau_contact_set *set, const cau_contact_row *row)
 static void make_columns(cau_contact_set *set, cau_step_solver *solver, const int32_t *place,
                          int32_t count)
 {
+	CAU_ASSERT(count >= 1 && count <= 3, "%d columns at once", count);
 	int single = solver->elements.single;
 	for (int32_t c = 0; c < count; ++c)
 		cau_real_set(set->unit, single, 4 * (int64_t)set->column_vertex[place[c]] + c, 1);
 	cau_solver_apply_inverse(solver, set->unit, set->solution, 1);
 	for (int32_t c = 0; c < count; ++c) {
 		int32_t p = place[c];
+		CAU_ASSERT_INDEX(p, set->column_count);
 		for (int32_t v = 0; v < solver->tissue->vertex_count; ++v)
 			cau_real_set(set->column[p], single, v,
 			             cau_real_get(set->solution, single, 4 * (int64_t)v + c));
@@ -88,6 +95,7 @@ static void drop_unused(cau_contact_set *set)
 			set->inverse[i * CAU_MAX_CONTACTS + j] =
 				set->inverse[from[i] * CAU_MAX_CONTACTS + from[j]];
 	set->column_count = kept;
+	CAU_ASSERT(kept <= set->row_count, "%d columns kept for %d rows", kept, set->row_count);
 }
 
 static void find_columns(cau_contact_set *set, int32_t *missing)
@@ -105,6 +113,7 @@ static int32_t find_lagging(const cau_contact_set *set, uint64_t version, int32_
 	int32_t count = 0;
 	for (int32_t i = 0; i < set->row_count; ++i) {
 		int32_t p = set->row[i].column, k = count;
+		CAU_ASSERT_INDEX(p, set->column_count);
 		if (set->column_version[p] == version)
 			continue;
 		if (count < CAU_COLUMNS_RENEWED)
@@ -117,11 +126,13 @@ static int32_t find_lagging(const cau_contact_set *set, uint64_t version, int32_
 			place[k] = place[k - 1];
 		place[k] = p;
 	}
+	CAU_ASSERT(count <= CAU_COLUMNS_RENEWED, "%d columns lag furthest", count);
 	return count;
 }
 
 void cau_contact_prepare(cau_contact_set *set, cau_step_solver *solver)
 {
+	CAU_ASSERT(set->row_count > 0 && set->row_count <= CAU_MAX_CONTACTS, "%d rows", set->row_count);
 	int32_t missing, place[3];
 	if (set->epoch != solver->factor_epoch)
 		set->column_count = 0;
@@ -137,6 +148,7 @@ void cau_contact_prepare(cau_contact_set *set, cau_step_solver *solver)
 			continue;
 		set->row[i].column = find_column(set, set->row[i].vertex);
 		if (set->row[i].column < 0) {
+			CAU_ASSERT_INDEX(set->column_count, CAU_MAX_CONTACTS);
 			set->column_vertex[set->column_count] = set->row[i].vertex;
 			set->row[i].column = place[waiting++] = set->column_count++;
 		}
@@ -161,6 +173,8 @@ static void measure_gap(const cau_contact_set *set, const cau_step_solver *solve
 	if (row->attached)
 		return;
 	const cau_contact_tool *tool = &set->tool[row->tool];
+	CAU_ASSERT_INDEX(row->tool, set->tool_count);
+	CAU_ASSERT_INDEX(row->vertex, solver->tissue->vertex_count);
 	cau_vec3 normal;
 	row->gap =
 		cau_tool_distance_at(tool->def, &tool->pose, tool->jaw, (cau_tool_part)tool->part,
@@ -170,6 +184,7 @@ static void measure_gap(const cau_contact_set *set, const cau_step_solver *solve
 
 static cau_vec3 clamp_length(cau_vec3 a, double most, int *clamped)
 {
+	CAU_ASSERT(most >= 0, "at most %g N", most);
 	double length = cau_length(a);
 	*clamped = length > most;
 	return *clamped ? cau_scale(most / length, a) : a;
@@ -181,6 +196,7 @@ static cau_vec3 attachment_reaction(const cau_contact_set *set, cau_contact_row 
 {
 	const cau_tool_def *def = set->tool[row->tool].def;
 	double compliance = 1 / def->grasp_stiffness_n_m;
+	CAU_ASSERT(compliance > 0, "a compliance of %g m/N", compliance);
 	cau_vec3 r = cau_scale(1 / (s + compliance), cau_sub(cau_scale(s, old), away));
 	return clamp_length(r, def->slip_force_n, &row->slipping);
 }
@@ -207,6 +223,7 @@ static double relax_rows(cau_contact_set *set, const cau_step_solver *solver)
 	double change = 0, size = 0;
 	for (int32_t i = 0; i < set->row_count; ++i) {
 		cau_contact_row *row = &set->row[i];
+		CAU_ASSERT_INDEX(row->column, set->column_count);
 		const double *s = set->inverse + (size_t)row->column * CAU_MAX_CONTACTS;
 		cau_vec3 step = cau_vec3_of(set->step + 3 * i), old = cau_vec3_of(row->reaction);
 		cau_vec3 x = cau_add(cau_vec3_of(solver->position + 3 * (size_t)row->vertex), step);
@@ -240,6 +257,7 @@ typedef struct spread {
 
 static void spread_part(void *context, int32_t chunk)
 {
+	CAU_ASSERT_INDEX(chunk, ((const spread *)context)->solver->chunk_count);
 	const spread *work = context;
 	const cau_contact_set *set = work->set;
 	cau_step_solver *solver = work->solver;
@@ -271,12 +289,15 @@ static void take_off_gradient(cau_contact_set *set, cau_step_solver *solver)
 
 void cau_contact_load(cau_contact_set *set, cau_step_solver *solver)
 {
+	CAU_ASSERT_INDEX(set->row_count, CAU_MAX_CONTACTS + 1);
 	memset(set->before, 0, 3 * (size_t)set->row_count * sizeof *set->before);
 	take_off_gradient(set, solver);
 }
 
 void cau_contact_correct(cau_contact_set *set, cau_step_solver *solver)
 {
+	CAU_ASSERT(set->epoch == solver->factor_epoch, "columns of factor %llu for factor %llu",
+	           (unsigned long long)set->epoch, (unsigned long long)solver->factor_epoch);
 	for (int32_t i = 0; i < set->row_count; ++i) {
 		cau_contact_row *row = &set->row[i];
 		measure_gap(set, solver, row);

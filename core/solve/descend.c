@@ -4,6 +4,7 @@
 #include <math.h>
 #include <string.h>
 
+#include "cautery/assert.h"
 #include "solve/contact.h"
 #include "solve/solver.h"
 
@@ -26,6 +27,7 @@ typedef struct product {
 
 static void product_part(void *context, int32_t chunk)
 {
+	CAU_ASSERT_INDEX(chunk, ((const product *)context)->solver->chunk_count);
 	const product *work = context;
 	const cau_step_solver *solver = work->solver;
 	size_t real = cau_real_bytes(solver->elements.single);
@@ -105,6 +107,8 @@ static void use_plain_step(cau_step_solver *solver)
 // not come down to it.
 static double shorter(double scale, double before, double after, double slope)
 {
+	CAU_ASSERT(scale > 0 && scale <= 1, "a part of %g of the step", scale);
+	CAU_ASSERT(!(slope > 0), "a slope of %g J", slope);
 	double rise = after - before - slope * scale;
 	double bottom = isfinite(after) && rise > 0 ? -slope * scale / (2 * rise) : 0;
 	return scale * fmin(fmax(bottom, 0.01), 0.5);
@@ -131,6 +135,7 @@ static int may_stand(cau_step_solver *solver, double scale, double value, double
 // it. Returns 0 when nothing helps: the position is as before.
 static int take_step(cau_step_solver *solver, int accelerated, double slope, double *objective)
 {
+	CAU_ASSERT(!(slope > 0), "a step that leads up: %g J", slope);
 	double noise = objective_noise(solver);
 	if (solver->contact)
 		noise += cau_contact_work(solver->contact, solver);
@@ -190,6 +195,7 @@ static double step_norm(cau_step_solver *solver)
 // was taken back in this tick, and what it promises is far below the energy there is.
 static int is_harmless(const cau_step_solver *solver, double norm, double objective)
 {
+	CAU_ASSERT(!(norm < 0), "a step of length %g", norm);
 	const double far_below = 0.01;
 	return !solver->conservative && !solver->backtracks && norm * norm <= far_below * objective;
 }
@@ -201,6 +207,7 @@ static void nothing(void *context)
 
 void cau_solver_begin(cau_step_solver *solver, void (*meanwhile)(void *context), void *context)
 {
+	CAU_ASSERT(meanwhile != NULL, "nothing to do beside the local step of %p", context);
 	solver->iterations_done = solver->backtracks = 0;
 	solver->local_s = solver->contact_s = 0;
 	solver->residual = 0;
@@ -215,6 +222,7 @@ cau_status cau_solver_run(cau_step_solver *solver, cau_error *error)
 
 cau_status cau_solver_descend(cau_step_solver *solver, cau_error *error)
 {
+	CAU_ASSERT(solver->iterations > 0, "%d iterations", solver->iterations);
 	double objective = solver->objective, first = 0, last = 0;
 	int32_t steps = 0; // since the guess
 	cau_anderson_start(solver);
@@ -246,6 +254,8 @@ cau_status cau_solver_descend(cau_step_solver *solver, cau_error *error)
 		if (back)
 			steps = 0;
 	}
+	CAU_ASSERT(solver->backtracks <= solver->iterations * (CAU_MAX_BACKTRACKS + 1),
+	           "%d backtracks in %d iterations", solver->backtracks, solver->iterations);
 	cau_solver_displace(solver);
 	return CAU_OK;
 }

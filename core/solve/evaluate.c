@@ -1,10 +1,12 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Gradient and value of eq. 4: inertia, elements, drag.
 #include "base/vector.h"
+#include "cautery/assert.h"
 #include "solve/solver.h"
 
 void cau_solver_displace_chunk(cau_step_solver *solver, int32_t chunk)
 {
+	CAU_ASSERT_INDEX(chunk, solver->chunk_count);
 	int32_t first = chunk * CAU_VERTEX_CHUNK, last = first + CAU_VERTEX_CHUNK;
 	if (last > solver->tissue->vertex_count)
 		last = solver->tissue->vertex_count;
@@ -30,6 +32,7 @@ static void displacement_part(void *context, int32_t chunk)
 static void local_part(void *context, int32_t index)
 {
 	cau_step_solver *solver = context;
+	CAU_ASSERT_INDEX(index, solver->slots.work_count);
 	solver->kernels->local(&solver->elements, &solver->slots.work[index], solver->displacement,
 	                       solver->diagonal);
 }
@@ -57,6 +60,7 @@ ADD_INERTIA(double)
 static void vertex_part(void *context, int32_t chunk)
 {
 	cau_step_solver *solver = context;
+	CAU_ASSERT_INDEX(chunk, solver->chunk_count);
 	int32_t first = chunk * CAU_VERTEX_CHUNK, last = first + CAU_VERTEX_CHUNK;
 	if (last > solver->tissue->vertex_count)
 		last = solver->tissue->vertex_count;
@@ -72,6 +76,8 @@ static double add_drag(cau_step_solver *solver)
 	int single = solver->elements.single;
 	for (int32_t k = 0; k < solver->drag_count; ++k) {
 		const cau_drag *drag = &solver->drag[k];
+		CAU_ASSERT_INDEX(drag->vertex, solver->tissue->vertex_count);
+		CAU_ASSERT(drag->coefficient >= 0, "a drag of %g N/m", drag->coefficient);
 		if (solver->fixed[drag->vertex])
 			continue;
 		for (int c = 0; c < 3; ++c) {

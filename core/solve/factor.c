@@ -6,6 +6,8 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "cautery/assert.h"
+
 struct cau_factor {
 	cholmod_common common;
 	cholmod_factor *l;
@@ -20,6 +22,10 @@ static pthread_mutex_t analysis_lock = PTHREAD_MUTEX_INITIALIZER;
 
 static cholmod_sparse view_of(const cau_matrix *matrix)
 {
+	CAU_ASSERT(matrix->n > 0 && matrix->first[0] == 0, "a matrix of %d rows from %d on", matrix->n,
+	           matrix->first[0]);
+	CAU_ASSERT(matrix->first[matrix->n] >= matrix->n, "%d entries in %d rows with diagonals",
+	           matrix->first[matrix->n], matrix->n);
 	return (cholmod_sparse){
 		.nrow = (size_t)matrix->n,
 		.ncol = (size_t)matrix->n,
@@ -67,8 +73,10 @@ static cau_status finish_analysis(cau_factor *factor, cau_error *error)
 	if (!factor->inverse)
 		return cau_fail(error, CAU_NO_MEMORY, NULL, "no memory for a factor of %d rows", n);
 	const int *permutation = factor->l->Perm;
-	for (int32_t k = 0; k < n; ++k)
+	for (int32_t k = 0; k < n; ++k) {
+		CAU_ASSERT_INDEX(permutation[k], n);
 		factor->inverse[permutation[k]] = k;
+	}
 	return CAU_OK;
 }
 
@@ -146,6 +154,8 @@ void cau_factor_destroy(cau_factor *factor)
 
 cau_status cau_factor_refactor(cau_factor *factor, const cau_matrix *matrix, cau_error *error)
 {
+	CAU_ASSERT((size_t)matrix->n == factor->l->n, "%d rows for a factor of %zu", matrix->n,
+	           factor->l->n);
 	cholmod_sparse a = view_of(matrix);
 	int done = cholmod_factorize(&a, factor->l, &factor->common);
 	if (!done || factor->common.status < CHOLMOD_OK)
@@ -163,6 +173,7 @@ static void place_column(cau_factor *factor, int at, int count, const int32_t *r
                          const double *value)
 {
 	for (int i = 0; i < count; ++i) {
+		CAU_ASSERT_INDEX(row[i], factor->l->n);
 		int place = factor->inverse[row[i]], k = at + i;
 		for (; k > at && factor->update_row[k - 1] > place; --k) {
 			factor->update_row[k] = factor->update_row[k - 1];
@@ -176,10 +187,14 @@ static void place_column(cau_factor *factor, int at, int count, const int32_t *r
 cau_status cau_factor_update(cau_factor *factor, int32_t columns, const int32_t *first,
                              const int32_t *row, const double *value, int add, cau_error *error)
 {
+	CAU_ASSERT(columns >= 1 && first[0] == 0, "an update of %d columns from %d on", columns,
+	           first[0]);
 	if (columns > CAU_UPDATE_RANK || first[columns] > CAU_UPDATE_RANK * 8)
 		return cau_fail(error, CAU_LIMIT, NULL, "an update of rank %d is above %d", columns,
 		                CAU_UPDATE_RANK);
 	for (int32_t k = 0; k < columns; ++k) {
+		CAU_ASSERT(first[k] < first[k + 1], "column %d of the update has entries %d to %d", k,
+		           first[k], first[k + 1]);
 		factor->update_first[k] = first[k];
 		place_column(factor, first[k], first[k + 1] - first[k], row + first[k], value + first[k]);
 	}
@@ -204,6 +219,7 @@ cau_status cau_factor_update(cau_factor *factor, int32_t columns, const int32_t 
 
 int32_t cau_factor_size(const cau_factor *factor)
 {
+	CAU_ASSERT(factor->l->n <= INT32_MAX, "%zu rows", factor->l->n);
 	return (int32_t)factor->l->n;
 }
 
@@ -220,7 +236,9 @@ const int32_t *cau_factor_places(const cau_factor *factor)
 int32_t cau_factor_column(const cau_factor *factor, int32_t j, const int32_t **row,
                           const double **value, double *pivot)
 {
+	CAU_ASSERT_INDEX(j, factor->l->n);
 	const int *first = factor->l->p, *count = factor->l->nz;
+	CAU_ASSERT(count[j] >= 1, "column %d has %d entries", j, count[j]);
 	*row = (const int *)factor->l->i + first[j] + 1;
 	*value = (const double *)factor->l->x + first[j] + 1;
 	*pivot = ((const double *)factor->l->x)[first[j]];

@@ -1,13 +1,18 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "solve/hold.h"
 
+#include "cautery/assert.h"
+
 static const cau_tool_def *tool_of(const cau_contact_set *set, const cau_contact_row *row)
 {
+	CAU_ASSERT_INDEX(row->tool, set->tool_count);
 	return set->tool[row->tool].def;
 }
 
 static double between(const cau_contact_set *set, int32_t i, int32_t j)
 {
+	CAU_ASSERT_INDEX(set->row[i].column, CAU_MAX_CONTACTS);
+	CAU_ASSERT_INDEX(set->row[j].column, CAU_MAX_CONTACTS);
 	return set->inverse[set->row[i].column * CAU_MAX_CONTACTS + set->row[j].column];
 }
 
@@ -37,6 +42,8 @@ void cau_hold_prepare(cau_contact_set *set)
 	for (int32_t i = 0; i < set->row_count; ++i)
 		if (set->row[i].attached)
 			set->hold_row[set->hold_count++] = i;
+	CAU_ASSERT(set->hold_count <= set->row_count, "%d of %d rows are held", set->hold_count,
+	           set->row_count);
 	if (!factor(set))
 		set->hold_count = 0; // columns that lag behind cuts: row by row will do
 }
@@ -65,6 +72,7 @@ static void changes(const cau_contact_set *set, const cau_step_solver *solver,
 	for (int32_t i = 0; i < set->hold_count; ++i) {
 		int32_t at = set->hold_row[i];
 		const cau_contact_row *row = &set->row[at];
+		CAU_ASSERT(row->attached, "row %d is solved as held and is not", at);
 		double compliance = 1 / tool_of(set, row)->grasp_stiffness_n_m;
 		for (int c = 0; c < 3; ++c)
 			dr[c][i] = row->anchor[c] - solver->position[3 * (size_t)row->vertex + (size_t)c] -
@@ -88,6 +96,7 @@ static int would_slip(const cau_contact_set *set, double dr[3][CAU_MAX_CONTACTS]
 
 void cau_hold_solve(cau_contact_set *set, const cau_step_solver *solver)
 {
+	CAU_ASSERT_INDEX(set->hold_count, set->row_count + 1);
 	double dr[3][CAU_MAX_CONTACTS];
 	if (!set->hold_count)
 		return;

@@ -2,6 +2,7 @@
 // A^-1 of a vector: by the packed sweeps, or by the diagonal of eq. 7.
 #include <string.h>
 
+#include "cautery/assert.h"
 #include "solve/solver.h"
 
 typedef float vertex_single __attribute__((vector_size(16), may_alias));
@@ -33,6 +34,7 @@ static void permute_part(void *context, int32_t chunk)
 	const int32_t *row_at = cau_factor_permutation(solver->factor);
 	const int32_t *vertex = solver->system.vertex_of_row;
 	int32_t first = chunk * CAU_VERTEX_CHUNK, last = chunk_end(solver, first);
+	CAU_ASSERT(first < last, "chunk %d has rows %d to %d", chunk, first, last);
 	if (solver->elements.single) {
 		vertex_single *field = solver->sweep.field;
 		const vertex_single *in = run->in;
@@ -53,6 +55,7 @@ static void unpermute_part(void *context, int32_t chunk)
 	const cau_step_solver *solver = run->solver;
 	const int32_t *row_at = cau_factor_permutation(solver->factor);
 	int32_t first = chunk * CAU_VERTEX_CHUNK, last = chunk_end(solver, first);
+	CAU_ASSERT(first < last, "chunk %d has rows %d to %d", chunk, first, last);
 	for (int32_t k = first; k < last; ++k) {
 		int32_t vertex = solver->system.vertex_of_row[row_at[k]];
 		if (solver->elements.single)
@@ -68,6 +71,7 @@ static void unpermute_part(void *context, int32_t chunk)
 
 static void *task_sums(const cau_step_solver *solver, int32_t task)
 {
+	CAU_ASSERT_INDEX(task, solver->sweep.task_count);
 	size_t reals = 4 * (size_t)cau_sweep_task_place(&solver->sweep, task);
 	return (char *)solver->sweep.field + reals * cau_real_bytes(solver->elements.single);
 }
@@ -98,6 +102,7 @@ static void add_task_sums(const cau_step_solver *solver)
 		const void *sums = task_sums(solver, task);
 		for (int32_t i = 0; i < sweep->top_count; ++i) {
 			int32_t place = sweep->top_column[i];
+			CAU_ASSERT_INDEX(place, sweep->n);
 			if (solver->elements.single)
 				((vertex_single *)sweep->field)[place] += ((const vertex_single *)sums)[i];
 			else
@@ -127,6 +132,8 @@ static void backward_sweep(sweep_run *run)
 
 void cau_solver_apply_inverse(cau_step_solver *solver, const void *in, void *out, double sign)
 {
+	CAU_ASSERT(sign == 1 || sign == -1, "A^-1 times %g", sign);
+	CAU_ASSERT(in != out, "%p is read and written at once", in);
 	if (solver->diagonal) {
 		for (int32_t v = 0; v < solver->tissue->vertex_count; ++v)
 			for (int c = 0; c < 3; ++c) {
@@ -137,6 +144,8 @@ void cau_solver_apply_inverse(cau_step_solver *solver, const void *in, void *out
 			}
 		return;
 	}
+	CAU_ASSERT(solver->sweep.n == solver->system.row_count,
+	           "a factor of %d rows for a system of %d", solver->sweep.n, solver->system.row_count);
 	sweep_run run = {.solver = solver, .in = in, .out = out, .sign = sign};
 	cau_pool_run(solver->pool, row_chunks(solver), permute_part, &run);
 	forward_sweep(&run);

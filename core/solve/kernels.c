@@ -5,6 +5,7 @@
 
 #include <string.h>
 
+#include "cautery/assert.h"
 #include "constraint/fat_kernel.h"
 #include "constraint/link_kernel.h"
 #include "constraint/plasticity_kernel.h"
@@ -18,6 +19,11 @@ typedef real vertex_reals __attribute__((vector_size(4 * sizeof(real)), may_alia
 INLINE void take_displacement(const cau_elements *elements, const cau_local_work *work,
                               const real *displacement, real *taken)
 {
+	CAU_ASSERT(work->record_count <= CAU_SHARE_RECORDS, "%d records in a share of at most %d",
+	           work->record_count, CAU_SHARE_RECORDS);
+	CAU_ASSERT(work->first_record + work->record_count <= elements->record_count,
+	           "records %d + %d of %d", work->first_record, work->record_count,
+	           elements->record_count);
 	const int32_t *vertex = elements->record_vertex + work->first_record;
 	for (int32_t r = 0; r < work->record_count; ++r)
 		((vertex_reals *)taken)[r] = *(const vertex_reals *)(displacement + vertex[r]);
@@ -26,6 +32,9 @@ INLINE void take_displacement(const cau_elements *elements, const cau_local_work
 static void local(const cau_elements *elements, const cau_local_work *work,
                   const void *displacement, int diagonal)
 {
+	CAU_ASSERT_INDEX(work->kind, CAU_ELEMENT_KINDS);
+	CAU_ASSERT(work->last - work->first <= CAU_SHARE, "a share of slots %d to %d", work->first,
+	           work->last);
 	real taken[4 * CAU_SHARE_RECORDS] __attribute__((aligned(64)));
 	real *records = (real *)elements->gradient + 4 * (int64_t)work->first_record;
 	double *energy = &elements->energy[work->number];
@@ -63,6 +72,7 @@ static int32_t settle(const cau_elements *elements, const cau_local_work *work,
 static void sum(const cau_elements *elements, const cau_incidence *incidence, int32_t first,
                 int32_t last, void *gradient)
 {
+	CAU_ASSERT(first <= last, "vertices %d to %d", first, last);
 	enum { NEAR = (1 << 20) / sizeof(vertex_reals) };
 	const vertex_reals *record = elements->gradient;
 	int far = elements->record_count > NEAR; // more than the nearer caches keep
@@ -70,6 +80,7 @@ static void sum(const cau_elements *elements, const cau_incidence *incidence, in
 	for (int32_t v = first; v < last; ++v) {
 		vertex_reals total = {0};
 		for (int32_t k = incidence->first[v]; k < incidence->first[v + 1]; ++k) {
+			CAU_ASSERT_INDEX(incidence->record[k], elements->record_count);
 			if (far)
 				__builtin_prefetch(record + incidence->record[k + CAU_RECORDS_AHEAD]);
 			total += record[incidence->record[k]];
@@ -80,6 +91,7 @@ static void sum(const cau_elements *elements, const cau_incidence *incidence, in
 
 static void forward(const cau_sweep *sweep, int32_t supernode)
 {
+	CAU_ASSERT_INDEX(supernode, sweep->supernode_count);
 	const cau_supernode *node = &sweep->supernode[supernode];
 	if (CAU_SINGLE && sweep->narrow)
 		sweep_forward_node(sweep, node, 1);
@@ -89,6 +101,7 @@ static void forward(const cau_sweep *sweep, int32_t supernode)
 
 static void backward(const cau_sweep *sweep, int32_t supernode)
 {
+	CAU_ASSERT_INDEX(supernode, sweep->supernode_count);
 	const cau_supernode *node = &sweep->supernode[supernode];
 	if (CAU_SINGLE && sweep->narrow)
 		sweep_backward_node(sweep, node, 1);
@@ -99,6 +112,10 @@ static void backward(const cau_sweep *sweep, int32_t supernode)
 static double pack(const cau_sweep *sweep, int32_t supernode, const cau_factor *factor,
                    const cau_sweep_panels *panels, int32_t part)
 {
+	CAU_ASSERT_INDEX(supernode, sweep->supernode_count);
+	CAU_ASSERT_INDEX(part, CAU_PACK_PARTS);
+	CAU_ASSERT(sweep->supernode[supernode].columns <= CAU_NODE_COLUMNS, "a supernode of %d columns",
+	           sweep->supernode[supernode].columns);
 	return pack_node(sweep, &sweep->supernode[supernode], factor, panels, part);
 }
 
@@ -167,6 +184,7 @@ INLINE void add_strip(const cau_history *history, int64_t at, int32_t n, double 
 
 static void add_column(const cau_history *history, int64_t first, int64_t n, double *dot)
 {
+	CAU_ASSERT_INDEX(history->newest, history->count);
 	for (int32_t j = 0; j < 2 * CAU_ANDERSON_WINDOW; ++j)
 		dot[j] = 0;
 	for (int64_t at = 0; at < n; at += STRIP)
@@ -175,6 +193,8 @@ static void add_column(const cau_history *history, int64_t first, int64_t n, dou
 
 static void combine(const cau_history *history, int64_t first, int64_t n, const double *weight)
 {
+	CAU_ASSERT(history->count >= 0 && history->count <= CAU_ANDERSON_WINDOW, "%d columns",
+	           history->count);
 	const real *f = (const real *)history->increment + first;
 	real *step = (real *)history->step + first;
 	memcpy(step, f, (size_t)n * sizeof *step);

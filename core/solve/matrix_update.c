@@ -4,6 +4,8 @@
 #include <math.h>
 #include <string.h>
 
+#include "cautery/assert.h"
+
 static const double swap_after_s = 1.0 / 60.0; // between starting a new factor and using it
 
 enum { PER_UPDATE = CAU_UPDATE_RANK / 3 }; // elements that an update holds for certain
@@ -31,6 +33,8 @@ static double least_mass_pivot(const cau_step_solver *solver)
 cau_status cau_matrix_update_create(cau_matrix_update *update, cau_step_solver *solver,
                                     const cau_alive *alive, cau_arena *arena, cau_error *error)
 {
+	CAU_ASSERT(!update->background && !update->waiting_capacity, "made twice, with room for %d",
+	           update->waiting_capacity);
 	const cau_tissue *tissue = solver->tissue;
 	update->solver = solver;
 	int missing = 0;
@@ -80,6 +84,7 @@ static void take_off_diagonal(cau_step_solver *solver, int kind, int32_t element
 	cau_element_map map;
 	cau_tissue_element_map(solver->tissue, kind, element, &map);
 	double omega = map.weight * cau_element_map_scale(&map);
+	CAU_ASSERT(omega >= 0, "element %d of kind %d adds %g N/m", element, kind, omega);
 	for (int k = 0; k < map.vertex_count; ++k) {
 		int32_t v = map.vertex[k];
 		double inertia = solver->tissue->mass[v] / (solver->step_s * solver->step_s);
@@ -89,12 +94,23 @@ static void take_off_diagonal(cau_step_solver *solver, int kind, int32_t element
 
 void cau_matrix_update_remove(cau_matrix_update *update, int kind, int32_t element, uint64_t tick)
 {
+	CAU_ASSERT(update->waiting_count < update->waiting_capacity, "%d elements wait in room for %d",
+	           update->waiting_count, update->waiting_capacity);
+	CAU_ASSERT(!update->waiting_count || tick >= update->waiting[update->waiting_count - 1].tick,
+	           "an element is removed for tick %llu, after one of tick %llu",
+	           (unsigned long long)tick,
+	           (unsigned long long)update->waiting[update->waiting_count - 1].tick);
 	take_off_diagonal(update->solver, kind, element);
 	update->waiting[update->waiting_count++] = (cau_waiting){kind, element, tick};
 }
 
 static void forget_waiting(cau_matrix_update *update, int32_t count, uint64_t tick)
 {
+	CAU_ASSERT(count >= 0 && count <= update->waiting_count, "%d of %d elements that wait", count,
+	           update->waiting_count);
+	CAU_ASSERT(!count || tick >= update->waiting[count - 1].tick, "tick %llu comes after tick %llu",
+	           (unsigned long long)update->waiting[count ? count - 1 : 0].tick,
+	           (unsigned long long)tick);
 	for (int32_t k = 0; k < count; ++k)
 		if (tick - update->waiting[k].tick > update->longest_wait)
 			update->longest_wait = tick - update->waiting[k].tick;
@@ -115,10 +131,13 @@ static int32_t fill_update(const cau_matrix_update *update, const cau_waiting *l
 	for (; taken < count; ++taken) {
 		cau_element_map map;
 		cau_tissue_element_map(update->solver->tissue, list[taken].kind, list[taken].element, &map);
+		CAU_ASSERT(map.rank >= 1 && map.rank <= CAU_UPDATE_RANK, "an element of rank %d", map.rank);
 		if (*columns + map.rank > CAU_UPDATE_RANK)
 			break;
 		cau_system_columns(&update->solver->system, &map, columns, first, row, value);
 	}
+	CAU_ASSERT(taken > 0 && *columns <= CAU_UPDATE_RANK, "%d columns of %d elements", *columns,
+	           taken);
 	return taken;
 }
 
@@ -132,6 +151,9 @@ static void mark_columns(cau_matrix_update *update, int32_t entries, const int32
 cau_status cau_matrix_update_downdate(cau_matrix_update *update, const cau_waiting *list,
                                       int32_t count, int32_t *taken, cau_error *error)
 {
+	CAU_ASSERT(count > 0, "%d elements to take out", count);
+	CAU_ASSERT(!update->making, "the factor is being made for tick %llu",
+	           (unsigned long long)update->swap_tick);
 	int32_t first[CAU_UPDATE_RANK + 1], row[CAU_UPDATE_RANK * 8], columns;
 	double value[CAU_UPDATE_RANK * 8];
 	*taken = fill_update(update, list, count, &columns, first, row, value);
@@ -146,6 +168,8 @@ cau_status cau_matrix_update_downdate(cau_matrix_update *update, const cau_waiti
 
 double cau_matrix_update_pack(cau_matrix_update *update)
 {
+	CAU_ASSERT(!update->making, "the factor is being made for tick %llu",
+	           (unsigned long long)update->swap_tick);
 	const cau_step_solver *solver = update->solver;
 	double least =
 		cau_sweep_pack_touched(&solver->sweep, solver->factor, update->touched, solver->pool);
@@ -155,6 +179,8 @@ double cau_matrix_update_pack(cau_matrix_update *update)
 
 static void note_operations(cau_matrix_update *update, const cau_waiting *list, int32_t count)
 {
+	CAU_ASSERT(update->operation_count + count <= CAU_DOWNDATES_AT_MOST,
+	           "%d elements out, and %d more", update->operation_count, count);
 	for (int32_t k = 0; k < count; ++k)
 		update->operation[update->operation_count++] =
 			(cau_operation){list[k].kind, list[k].element, update->group_count};
@@ -165,6 +191,9 @@ static void note_operations(cau_matrix_update *update, const cau_waiting *list, 
 // tick can do when the oldest has waited long enough.
 static int updates_due(const cau_matrix_update *update, uint64_t tick)
 {
+	CAU_ASSERT(update->waiting_count > 0, "updates are due for %d elements", update->waiting_count);
+	CAU_ASSERT(tick >= update->waiting[0].tick, "tick %llu, and the oldest waits since %llu",
+	           (unsigned long long)tick, (unsigned long long)update->waiting[0].tick);
 	int32_t half = (update->waiting_count + 1) / 2, due = (half + PER_UPDATE - 1) / PER_UPDATE;
 	if (due > CAU_MOST_UPDATES || tick - update->waiting[0].tick >= CAU_WAITING_TICKS)
 		return CAU_MOST_UPDATES;
@@ -175,6 +204,8 @@ static int updates_due(const cau_matrix_update *update, uint64_t tick)
 void cau_matrix_update_take_out(void *context)
 {
 	cau_matrix_update *update = context;
+	CAU_ASSERT(update->updates_due >= 0 && update->updates_due <= CAU_MOST_UPDATES,
+	           "%d updates are due", update->updates_due);
 	update->due_status = CAU_OK;
 	update->done = 0;
 	for (int i = 0; i < update->updates_due && update->done < update->waiting_count; ++i) {
@@ -199,6 +230,8 @@ cau_status cau_matrix_update_end(cau_matrix_update *update, const cau_alive *ali
 			*error = update->due_error;
 		return update->due_status;
 	}
+	CAU_ASSERT(update->done <= update->waiting_count, "%d taken out of %d", update->done,
+	           update->waiting_count);
 	forget_waiting(update, update->done, tick);
 	update->updates_due = 0;
 	if (!update->done || cau_matrix_update_pack(update) >= update->least_pivot_bound)
@@ -230,6 +263,11 @@ static void release_panels(void *context)
 
 void cau_matrix_update_start(cau_matrix_update *update, uint64_t swap_tick)
 {
+	CAU_ASSERT(!update->making, "a factor is being made already, for tick %llu",
+	           (unsigned long long)update->swap_tick);
+	CAU_ASSERT(!update->solver->diagonal && update->background,
+	           "the diagonal system has no factor to make, for tick %llu",
+	           (unsigned long long)swap_tick);
 	cau_background_wait(update->background); // for the release of old panels
 	update->making = 1;
 	update->swap_tick = swap_tick;
@@ -238,6 +276,10 @@ void cau_matrix_update_start(cau_matrix_update *update, uint64_t swap_tick)
 
 static cau_status swap(cau_matrix_update *update, uint64_t tick, cau_error *error)
 {
+	CAU_ASSERT(update->making && tick >= update->swap_tick, "swapped at tick %llu instead of %llu",
+	           (unsigned long long)tick, (unsigned long long)update->swap_tick);
+	CAU_ASSERT(update->waiting_at_start <= update->waiting_count, "%d waited at the start, %d now",
+	           update->waiting_at_start, update->waiting_count);
 	cau_background_wait(update->background);
 	update->making = 0;
 	if (update->next_status)
@@ -262,6 +304,7 @@ static cau_status swap(cau_matrix_update *update, uint64_t tick, cau_error *erro
 static uint64_t swap_delay(const cau_matrix_update *update)
 {
 	double ticks = swap_after_s / update->solver->step_s;
+	CAU_ASSERT(ticks > 0 && ticks < 1e6, "a swap after %g ticks", ticks);
 	return ticks < 1 ? 1 : (uint64_t)(ticks + 0.5);
 }
 
@@ -284,6 +327,8 @@ static void advance_diagonal(cau_matrix_update *update, const cau_alive *alive)
 // Chooses how much of what waits is taken out, or starts a new factor when that is too much.
 static void serve(cau_matrix_update *update, const cau_alive *alive, uint64_t tick)
 {
+	CAU_ASSERT(!update->making && update->waiting_count > 0, "%d elements to serve",
+	           update->waiting_count);
 	int worn = update->operation_count + update->waiting_count > CAU_DOWNDATES_AT_MOST;
 	if (!too_many(update) && !worn) {
 		update->updates_due = updates_due(update, tick);

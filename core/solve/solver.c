@@ -3,6 +3,8 @@
 
 #include <string.h>
 
+#include "cautery/assert.h"
+#include "constraint/law.h"
 #include "solve/contact.h"
 
 static cau_status no_memory(cau_error *error)
@@ -17,9 +19,10 @@ static int is_linearised(int limit, int projection)
 
 static int has_energy(const cau_layer_def *layer, int32_t material)
 {
+	CAU_ASSERT_INDEX(material, layer->material_count);
 	if (layer->kind == CAU_LAYER_FAT) {
 		const cau_fat_material *fat = &layer->fat[material];
-		return fat->model != CAU_MODEL_ENERGY && !is_linearised(fat->limit, fat->projection);
+		return cau_law_of(fat->model)->has_energy && !is_linearised(fat->limit, fat->projection);
 	}
 	const cau_sheet_material *sheet = &layer->sheet[material];
 	return layer->kind == CAU_LAYER_LINKS || !is_linearised(sheet->limit, sheet->projection);
@@ -54,6 +57,8 @@ static cau_status allocate_vectors(cau_step_solver *solver, cau_arena *arena, ca
 	}
 	history->step = solver->trial_increment;
 	solver->chunk_count = (solver->tissue->vertex_count + CAU_VERTEX_CHUNK - 1) / CAU_VERTEX_CHUNK;
+	CAU_ASSERT((int64_t)solver->chunk_count * CAU_VERTEX_CHUNK >= solver->tissue->vertex_count,
+	           "%d chunks for %d vertices", solver->chunk_count, solver->tissue->vertex_count);
 	solver->chunk_energy = cau_arena_array(arena, (size_t)solver->chunk_count, sizeof(double));
 	solver->chunk_dot = cau_arena_array(
 		arena, (size_t)solver->chunk_count * 2 * CAU_ANDERSON_WINDOW, sizeof(double));
@@ -63,10 +68,27 @@ static cau_status allocate_vectors(cau_step_solver *solver, cau_arena *arena, ca
 	return CAU_OK;
 }
 
+// A loop has so many parts at most; a scene of several of the largest meshes would need more.
+static cau_status check_loops(const cau_step_solver *solver, cau_error *error)
+{
+	if (solver->chunk_count <= CAU_POOL_PARTS && solver->slots.work_count < CAU_POOL_PARTS)
+		return CAU_OK;
+	return cau_fail(
+		error, CAU_LIMIT, NULL,
+		"a tissue has at most %d vertices and %d elements: this one has %d vertices and "
+		"%d elements and more",
+		CAU_POOL_PARTS * CAU_VERTEX_CHUNK, CAU_POOL_PARTS * CAU_SHARE, solver->tissue->vertex_count,
+		solver->tissue->tetrahedron_count + solver->tissue->triangle_count);
+}
+
 cau_status cau_solver_create(cau_step_solver *solver, const cau_scene_def *scene,
                              const cau_tissue *tissue, cau_arena *arena, cau_error *error)
 {
+	CAU_ASSERT_INDEX(scene->precision, CAU_PRECISION_COUNT);
+	CAU_ASSERT_INDEX(scene->solver, CAU_SOLVER_COUNT);
 	int single = scene->precision == CAU_PRECISION_SINGLE;
+	CAU_ASSERT(solver->kernels && solver->kernels->single == single,
+	           "kernels of the wrong precision, not %d", single);
 	solver->tissue = tissue;
 	solver->iterations = scene->iterations;
 	solver->tolerance = scene->tolerance;
@@ -79,6 +101,8 @@ cau_status cau_solver_create(cau_step_solver *solver, const cau_scene_def *scene
 	if (!status)
 		status = allocate_vectors(solver, arena, error);
 	if (!status)
+		status = check_loops(solver, error);
+	if (!status)
 		status = cau_system_create(&solver->system, tissue, tissue->pinned, arena, error);
 	return status;
 }
@@ -86,6 +110,7 @@ cau_status cau_solver_create(cau_step_solver *solver, const cau_scene_def *scene
 cau_status cau_solver_analyse(cau_step_solver *solver, const cau_alive *alive,
                               const int32_t *permutation, cau_error *error)
 {
+	CAU_ASSERT(!solver->factor, "%d rows are factored twice", solver->system.row_count);
 	cau_system_assemble_diagonal(&solver->system, solver->tissue, alive, solver->step_s);
 	if (solver->diagonal || !solver->system.row_count) {
 		solver->diagonal = 1;

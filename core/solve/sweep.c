@@ -3,6 +3,7 @@
 
 #include <string.h>
 
+#include "cautery/assert.h"
 #include "solve/kernels.h"
 
 enum {
@@ -33,6 +34,7 @@ static int32_t rows_below(const cau_factor *factor, int32_t first, int32_t last,
 		const double *value;
 		double pivot;
 		int32_t n = cau_factor_column(factor, j, &row, &value, &pivot);
+		CAU_ASSERT(!n || row[0] > j, "column %d begins with row %d", j, row[0]);
 		for (int32_t k = 0; k < n; ++k)
 			if (row[k] >= last && mark[row[k]] != stamp) {
 				mark[row[k]] = stamp;
@@ -64,6 +66,8 @@ static int32_t column_count(const cau_factor *factor, int32_t j)
 // added.
 static int worth_merging(int64_t columns, int64_t rows, int64_t entries)
 {
+	CAU_ASSERT(columns > 0 && rows >= 0 && entries > 0, "%lld columns, %lld rows, %lld entries",
+	           (long long)columns, (long long)rows, (long long)entries);
 	int64_t area = columns * (columns + 1) / 2 + columns * rows;
 	return columns <= CAU_NODE_COLUMNS && (area - entries) * 5 <= area;
 }
@@ -77,6 +81,7 @@ static int32_t shape(const cau_factor *factor, draft *drafts, int32_t *subtree_f
 		subtree_first[j] = j;
 	for (int32_t j = 0; j < n; ++j) {
 		int32_t parent = column_parent(factor, j);
+		CAU_ASSERT(parent < 0 || parent > j, "column %d under column %d", j, parent);
 		if (parent >= 0 && subtree_first[j] < subtree_first[parent])
 			subtree_first[parent] = subtree_first[j];
 	}
@@ -106,11 +111,13 @@ static int32_t shape(const cau_factor *factor, draft *drafts, int32_t *subtree_f
 		}
 		drafts[count++] = fresh;
 	}
+	CAU_ASSERT(count <= n, "%d supernodes of %d columns", count, n);
 	return count;
 }
 
 static void sort_rows(int32_t *row, int32_t count)
 {
+	CAU_ASSERT(count >= 0, "%d rows", count);
 	for (int32_t gap = count / 2; gap > 0; gap /= 2)
 		for (int32_t i = gap; i < count; ++i) {
 			int32_t value = row[i], k = i;
@@ -143,10 +150,13 @@ static void choose_tasks(cau_sweep *sweep, const int64_t *subtree_work,
 		if (used - 1 + children > CAU_SWEEP_TASKS)
 			break;
 		candidates[largest] = candidates[--used];
+		CAU_ASSERT(used >= 0 && used + children <= CAU_SWEEP_TASKS, "%d tasks and %d more", used,
+		           children);
 		for (int32_t s = subtree_first[node]; s < node; ++s)
 			if (sweep->supernode[s].parent == node)
 				candidates[used++] = s;
 	}
+	CAU_ASSERT(used <= CAU_SWEEP_TASKS, "%d tasks", used);
 	sort_rows(candidates, used);
 	sweep->task_count = used;
 	for (int32_t i = 0; i < used; ++i) {
@@ -168,6 +178,8 @@ static void link_tree(cau_sweep *sweep, int64_t *work, int32_t *first)
 		cau_supernode *node = &sweep->supernode[s];
 		node->task = -1;
 		node->parent = node->rows ? sweep->column_node[sweep->row_global[node->row]] : -1;
+		CAU_ASSERT(node->parent < 0 || (node->parent > s && node->parent < sweep->supernode_count),
+		           "supernode %d under %d of %d", s, node->parent, sweep->supernode_count);
 		if (node->parent >= 0) {
 			work[node->parent] += work[s];
 			if (first[s] < first[node->parent])
@@ -186,6 +198,7 @@ static void number_top(cau_sweep *sweep, int32_t *top_number)
 			continue;
 		sweep->top_node[sweep->top_node_count++] = s;
 		for (int32_t j = 0; j < node->columns; ++j) {
+			CAU_ASSERT_INDEX(sweep->top_count, sweep->n);
 			top_number[node->first + j] = sweep->top_count;
 			sweep->top_column[sweep->top_count++] = node->first + j;
 		}
@@ -196,6 +209,7 @@ static void number_top(cau_sweep *sweep, int32_t *top_number)
 
 int32_t cau_sweep_task_place(const cau_sweep *sweep, int32_t task)
 {
+	CAU_ASSERT(task >= 0 && task <= sweep->task_count, "task %d of %d", task, sweep->task_count);
 	return sweep->padded_n + task * (sweep->padded_top + 1);
 }
 
@@ -214,6 +228,7 @@ static void name_places(cau_sweep *sweep, const int32_t *top_number)
 			forward[i] = backward[i] = 4 * (node->first + i);
 		for (int32_t i = 0; i < node->rows; ++i) {
 			int32_t row = sweep->row_global[node->row + i];
+			CAU_ASSERT_INDEX(row, sweep->n);
 			int above = task >= 0 && sweep->supernode[sweep->column_node[row]].task < 0;
 			backward[own + i] = 4 * row;
 			forward[own + i] = 4 * (above ? sums + top_number[row] : row);
@@ -230,6 +245,8 @@ static void lay_out(cau_sweep *sweep)
 	for (int32_t s = 0; s < sweep->supernode_count; ++s) {
 		cau_supernode *node = &sweep->supernode[s];
 		int32_t rows = node->columns + node->rows;
+		CAU_ASSERT(node->columns >= 1 && node->columns <= CAU_NODE_COLUMNS,
+		           "supernode %d has %d columns", s, node->columns);
 		node->padded_rows = pad(rows);
 		node->place = sweep->place_count;
 		sweep->place_count += node->padded_rows;

@@ -4,6 +4,7 @@
 #include <math.h>
 #include <string.h>
 
+#include "cautery/assert.h"
 #include "solve/kernels.h"
 
 size_t cau_sweep_entry_bytes(const cau_sweep *sweep)
@@ -14,6 +15,9 @@ size_t cau_sweep_entry_bytes(const cau_sweep *sweep)
 cau_status cau_sweep_create_panels(const cau_sweep *sweep, cau_sweep_panels *panels,
                                    cau_error *error)
 {
+	CAU_ASSERT(sweep->panel_entries > 0 && sweep->padded_n >= sweep->n,
+	           "%lld entries, %d of %d columns", (long long)sweep->panel_entries, sweep->padded_n,
+	           sweep->n);
 	size_t size = cau_real_bytes(sweep->single);
 	size_t panel = (size_t)sweep->panel_entries * cau_sweep_entry_bytes(sweep);
 	*panels = (cau_sweep_panels){0};
@@ -49,6 +53,9 @@ void cau_sweep_swap_panels(cau_sweep *sweep, cau_sweep_panels *panels)
 void cau_sweep_pack_panels(const cau_sweep *sweep, cau_sweep_panels *panels,
                            const cau_factor *factor)
 {
+	CAU_ASSERT(panels->panel != NULL, "no panels for %d supernodes", sweep->supernode_count);
+	CAU_ASSERT(cau_factor_size(factor) == sweep->n, "a factor of %d rows for panels of %d",
+	           cau_factor_size(factor), sweep->n);
 	for (int32_t s = 0; s < sweep->supernode_count; ++s)
 		sweep->kernels->pack(sweep, s, factor, panels, 0);
 }
@@ -84,6 +91,7 @@ static void share_out(const packing *work)
 
 static void pack_part(void *context, int32_t part)
 {
+	CAU_ASSERT_INDEX(part, CAU_PACK_PARTS);
 	packing *work = context;
 	cau_sweep_panels panels = panels_of(work->sweep);
 	work->least[part] = INFINITY;
@@ -97,6 +105,8 @@ static void pack_part(void *context, int32_t part)
 double cau_sweep_pack_touched(const cau_sweep *sweep, const cau_factor *factor, uint8_t *touched,
                               cau_pool *pool)
 {
+	CAU_ASSERT(cau_factor_size(factor) == sweep->n, "a factor of %d rows for panels of %d",
+	           cau_factor_size(factor), sweep->n);
 	packing work = {.sweep = sweep, .factor = factor, .touched = touched};
 	share_out(&work);
 	cau_pool_run(pool, CAU_PACK_PARTS, pack_part, &work);
@@ -109,6 +119,7 @@ double cau_sweep_pack_touched(const cau_sweep *sweep, const cau_factor *factor, 
 
 void cau_sweep_mark_path(const cau_sweep *sweep, int32_t column, uint8_t *touched)
 {
+	CAU_ASSERT_INDEX(column, sweep->n);
 	for (int32_t s = sweep->column_node[column]; s >= 0 && !touched[s];
 	     s = sweep->supernode[s].parent)
 		touched[s] = 1;

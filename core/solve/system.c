@@ -5,6 +5,8 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "cautery/assert.h"
+
 static int compare_keys(const void *a, const void *b)
 {
 	uint64_t x = *(const uint64_t *)a, y = *(const uint64_t *)b;
@@ -18,6 +20,8 @@ static int64_t element_keys(const cau_system *system, const cau_element_map *map
 	for (int i = 0; i < map->vertex_count; ++i)
 		for (int j = 0; j < map->vertex_count; ++j) {
 			int32_t column = system->row_of_vertex[map->vertex[i]];
+			CAU_ASSERT(column < system->row_count, "vertex %d has row %d of %d", map->vertex[i],
+			           column, system->row_count);
 			int32_t row = system->row_of_vertex[map->vertex[j]];
 			if (column >= 0 && row >= column)
 				keys[count++] = (uint64_t)column << 32 | (uint32_t)row;
@@ -43,6 +47,8 @@ static cau_status build_pattern(cau_system *system, const cau_tissue *tissue, ca
 			cau_tissue_element_map(tissue, kind, i, &map);
 			count += element_keys(system, &map, keys + count);
 		}
+	CAU_ASSERT(count <= capacity, "%lld entries in room for %lld", (long long)count,
+	           (long long)capacity);
 	qsort(keys, (size_t)count, sizeof *keys, compare_keys);
 	int64_t unique = 0;
 	for (int64_t k = 0; k < count; ++k)
@@ -88,6 +94,7 @@ cau_status cau_system_create(cau_system *system, const cau_tissue *tissue, const
 static void add_entry(const cau_matrix *matrix, double *value, int32_t a, int32_t b, double amount)
 {
 	int32_t column = a < b ? a : b, row = a < b ? b : a;
+	CAU_ASSERT_INDEX(row, matrix->n);
 	int32_t low = matrix->first[column], high = matrix->first[column + 1] - 1;
 	while (low < high) {
 		int32_t middle = low + (high - low) / 2;
@@ -96,6 +103,8 @@ static void add_entry(const cau_matrix *matrix, double *value, int32_t a, int32_
 		else
 			high = middle;
 	}
+	CAU_ASSERT(matrix->row[low] == row, "the pattern has no entry in column %d, row %d", column,
+	           row);
 	value[low] += amount;
 }
 
@@ -117,6 +126,7 @@ static void add_element(const cau_system *system, const cau_element_map *map, do
 void cau_system_assemble(const cau_system *system, const cau_tissue *tissue, const cau_alive *alive,
                          double step_s, double *value)
 {
+	CAU_ASSERT(step_s > 0, "a step of %g s", step_s);
 	memset(value, 0, (size_t)system->matrix.first[system->row_count] * sizeof *value);
 	for (int32_t r = 0; r < system->row_count; ++r)
 		value[system->matrix.first[r]] = tissue->mass[system->vertex_of_row[r]] / (step_s * step_s);
@@ -133,6 +143,7 @@ void cau_system_assemble(const cau_system *system, const cau_tissue *tissue, con
 void cau_system_assemble_diagonal(const cau_system *system, const cau_tissue *tissue,
                                   const cau_alive *alive, double step_s)
 {
+	CAU_ASSERT(step_s > 0, "a step of %g s", step_s);
 	for (int32_t v = 0; v < tissue->vertex_count; ++v)
 		system->diagonal[v] = tissue->mass[v] / (step_s * step_s);
 	cau_element_map map;
@@ -142,6 +153,7 @@ void cau_system_assemble_diagonal(const cau_system *system, const cau_tissue *ti
 				continue;
 			cau_tissue_element_map(tissue, kind, i, &map);
 			double omega = map.weight * cau_element_map_scale(&map);
+			CAU_ASSERT(omega >= 0, "element %d of kind %d adds %g N/m", i, kind, omega);
 			for (int k = 0; k < map.vertex_count; ++k)
 				system->diagonal[map.vertex[k]] += omega;
 		}
@@ -150,6 +162,9 @@ void cau_system_assemble_diagonal(const cau_system *system, const cau_tissue *ti
 void cau_system_columns(const cau_system *system, const cau_element_map *map, int32_t *columns,
                         int32_t *first, int32_t *row, double *value)
 {
+	CAU_ASSERT(map->weight >= 0, "an element of weight %g", map->weight);
+	CAU_ASSERT(*columns >= 0 && *columns + map->rank <= CAU_UPDATE_RANK, "%d columns and %d more",
+	           *columns, map->rank);
 	double root = sqrt(map->weight);
 	for (int r = 0; r < map->rank; ++r) {
 		int32_t at = first[*columns];

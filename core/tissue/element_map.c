@@ -3,6 +3,7 @@
 #include <math.h>
 #include <string.h>
 
+#include "cautery/assert.h"
 #include "tissue/tissue.h"
 
 // Of a link's reach: a truss between vertices that (nearly) coincide is as stiff as one this long.
@@ -10,6 +11,7 @@ static const double shortest_truss = 0.01;
 
 int32_t cau_tissue_element_count(const cau_tissue *tissue, int kind)
 {
+	CAU_ASSERT_INDEX(kind, CAU_ELEMENT_KINDS);
 	switch (kind) {
 	case CAU_ELEMENT_TRIANGLE:
 		return tissue->triangle_count;
@@ -25,6 +27,7 @@ int32_t cau_tissue_element_count(const cau_tissue *tissue, int kind)
 // Coefficients of vertices 1..rank are the rows of D_m^-1; vertex 0 has minus their sum.
 static void gradient_map(const double *dm_inverse, int rank, cau_element_map *map)
 {
+	CAU_ASSERT(rank == 2 || rank == 3, "a gradient of rank %d", rank);
 	map->rank = rank;
 	map->vertex_count = rank + 1;
 	for (int c = 0; c < rank; ++c) {
@@ -59,6 +62,7 @@ static double tetrahedron_weight(const cau_tissue *tissue, int32_t tetrahedron)
 
 void cau_tissue_element_map(const cau_tissue *tissue, int kind, int32_t index, cau_element_map *map)
 {
+	CAU_ASSERT_INDEX(index, cau_tissue_element_count(tissue, kind));
 	switch (kind) {
 	case CAU_ELEMENT_TRIANGLE:
 		memcpy(map->vertex, tissue->triangle + 3 * (size_t)index, 3 * sizeof(int32_t));
@@ -94,6 +98,8 @@ void cau_tissue_element_map(const cau_tissue *tissue, int kind, int32_t index, c
 
 double cau_element_map_scale(const cau_element_map *map)
 {
+	CAU_ASSERT(map->vertex_count >= 2 && map->vertex_count <= 4, "an element of %d vertices",
+	           map->vertex_count);
 	double sum = 0;
 	for (int r = 0; r < map->rank; ++r)
 		for (int i = 0; i < map->vertex_count; ++i)

@@ -3,10 +3,12 @@
 // cotangent coefficients of the isometric bending model [Bergou et al. 2006] vanishes on a flat
 // patch; a curved sheet keeps |e| of its rest shape.
 #include "base/vector.h"
+#include "cautery/assert.h"
 #include "tissue/tissue_internal.h"
 
 static cau_vec3 rest_of(const cau_tissue *tissue, int32_t vertex)
 {
+	CAU_ASSERT_INDEX(vertex, tissue->vertex_count);
 	return cau_vec3_of(tissue->rest + 3 * (size_t)vertex);
 }
 
@@ -19,16 +21,22 @@ static double cotangent(cau_vec3 at, cau_vec3 a, cau_vec3 b)
 
 static int32_t opposite(const cau_tissue *tissue, int32_t triangle, int32_t a, int32_t b)
 {
+	CAU_ASSERT_INDEX(triangle, tissue->triangle_count);
 	const int32_t *vertex = tissue->triangle + 3 * (size_t)triangle;
 	for (int i = 0; i < 2; ++i)
 		if (vertex[i] != a && vertex[i] != b)
 			return vertex[i];
+	CAU_ASSERT(vertex[2] != a && vertex[2] != b, "triangle %d has no vertex beside %d and %d",
+	           triangle, a, b);
 	return vertex[2];
 }
 
 static void make_hinge(cau_tissue *tissue, int32_t hinge, int32_t edge, const int32_t triangle[2],
                        double stiffness)
 {
+	CAU_ASSERT_INDEX(edge, tissue->edges.edge_count);
+	CAU_ASSERT(triangle[0] != triangle[1], "hinge %d has triangle %d twice", hinge, triangle[0]);
+	CAU_ASSERT(stiffness > 0, "hinge %d has stiffness %g", hinge, stiffness);
 	int32_t *v = tissue->hinge_vertex + 4 * (size_t)hinge;
 	v[0] = tissue->edges.vertex[2 * edge];
 	v[1] = tissue->edges.vertex[2 * edge + 1];
@@ -39,6 +47,7 @@ static void make_hinge(cau_tissue *tissue, int32_t hinge, int32_t edge, const in
 	double cot_a = cotangent(a, b, c) + cotangent(a, b, d); // at a
 	double cot_b = cotangent(b, a, c) + cotangent(b, a, d); // at b
 	double length = cau_length(cau_sub(b, a));
+	CAU_ASSERT(length > 0, "edge %d has no length", edge);
 	double height[2] = {2 * tissue->triangle_area[triangle[0]] / length,
 	                    2 * tissue->triangle_area[triangle[1]] / length};
 	double *k = tissue->hinge_coefficient + 4 * (size_t)hinge;
@@ -60,6 +69,8 @@ static double stiffness_of(const cau_tissue *tissue, const int32_t triangle[2])
 
 cau_status cau_tissue_hinge(cau_tissue *tissue, cau_arena *arena, cau_error *error)
 {
+	CAU_ASSERT(tissue->edges.edge_count > 0, "hinges before the %d edges",
+	           tissue->edges.edge_count);
 	const cau_edge_table *edges = &tissue->edges;
 	int32_t count = 0;
 	for (int32_t h = 0; h < edges->hinge_count; ++h)
@@ -77,5 +88,6 @@ cau_status cau_tissue_hinge(cau_tissue *tissue, cau_arena *arena, cau_error *err
 		if (stiffness > 0)
 			make_hinge(tissue, tissue->hinge_count++, edges->hinge_edge[h], triangle, stiffness);
 	}
+	CAU_ASSERT(tissue->hinge_count == count, "%d hinges made of %d", tissue->hinge_count, count);
 	return CAU_OK;
 }

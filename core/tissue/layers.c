@@ -3,6 +3,7 @@
 #include <string.h>
 
 #include "base/vector.h"
+#include "cautery/assert.h"
 #include "tissue/tissue_internal.h"
 
 // Meshes of the scene while it is being gathered: a mesh that several layers use has one copy of
@@ -31,6 +32,7 @@ static int32_t find_layer(const cau_scene_def *scene, const char *name)
 
 static cau_status make_meshes(gathering *work, const cau_scene_def *scene, cau_error *error)
 {
+	CAU_ASSERT(scene->mesh_count <= CAU_MAX_MESHES, "%d meshes", scene->mesh_count);
 	for (int32_t i = 0; i < scene->mesh_count; ++i) {
 		cau_mesh_report report;
 		cau_error inner = {0};
@@ -50,6 +52,8 @@ static cau_status make_meshes(gathering *work, const cau_scene_def *scene, cau_e
 // The boundary faces of a fat layer's mesh, outward.
 static cau_status make_boundary(const cau_mesh *mesh, cau_face_table *boundary, cau_error *error)
 {
+	CAU_ASSERT(mesh->tetrahedron_count > 0, "the boundary of %d tetrahedra",
+	           mesh->tetrahedron_count);
 	cau_primitives fat = {
 		.vertex_count = mesh->vertex_count,
 		.tetrahedron_count = mesh->tetrahedron_count,
@@ -69,6 +73,7 @@ static int32_t count_boundary(const cau_face_table *boundary)
 // Which mesh a layer takes its elements from: its own, or that of the fat whose membrane it is.
 static int32_t mesh_of(const cau_scene_def *scene, int32_t layer)
 {
+	CAU_ASSERT_INDEX(layer, scene->layer_count);
 	const cau_layer_def *def = &scene->layers[layer];
 	if (def->kind == CAU_LAYER_LINKS)
 		return -1;
@@ -121,6 +126,8 @@ static cau_status count_layers(cau_tissue *tissue, gathering *work, const cau_sc
 
 static int32_t material_of_region(const cau_layer_def *def, int32_t region)
 {
+	CAU_ASSERT(def->material_count >= 1 && def->material_count <= CAU_MAX_MATERIALS, "%d materials",
+	           def->material_count);
 	for (int32_t i = 1; i < def->material_count; ++i)
 		if ((def->kind == CAU_LAYER_FAT ? def->fat[i].region : def->sheet[i].region) == region)
 			return i;
@@ -130,6 +137,9 @@ static int32_t material_of_region(const cau_layer_def *def, int32_t region)
 static void copy_tetrahedra(cau_tissue *tissue, int32_t layer_index, const cau_mesh *mesh)
 {
 	const cau_tissue_layer *layer = &tissue->layer[layer_index];
+	CAU_ASSERT(layer->first_tetrahedron + mesh->tetrahedron_count <= tissue->tetrahedron_count,
+	           "tetrahedra %d + %d of %d", layer->first_tetrahedron, mesh->tetrahedron_count,
+	           tissue->tetrahedron_count);
 	for (int32_t t = 0; t < mesh->tetrahedron_count; ++t) {
 		int32_t to = layer->first_tetrahedron + t;
 		for (int i = 0; i < 4; ++i)
@@ -154,12 +164,17 @@ static void copy_boundary(cau_tissue *tissue, int32_t layer_index, const cau_mes
 		tissue->triangle_material[to] =
 			material_of_region(&layer->def, mesh->tetrahedron_region[boundary->owner[2 * f]]);
 		to++;
+		CAU_ASSERT(to <= layer->first_triangle + layer->triangle_count,
+		           "more than %d triangles bound layer %d", layer->triangle_count, layer_index);
 	}
 }
 
 static void copy_triangles(cau_tissue *tissue, int32_t layer_index, const cau_mesh *mesh)
 {
 	const cau_tissue_layer *layer = &tissue->layer[layer_index];
+	CAU_ASSERT(layer->first_triangle + mesh->triangle_count <= tissue->triangle_count,
+	           "triangles %d + %d of %d", layer->first_triangle, mesh->triangle_count,
+	           tissue->triangle_count);
 	for (int32_t t = 0; t < mesh->triangle_count; ++t) {
 		int32_t to = layer->first_triangle + t;
 		for (int i = 0; i < 3; ++i)
@@ -214,6 +229,7 @@ static cau_status make_frames(cau_tissue *tissue, int32_t layer_index, const cau
 	const cau_tissue_layer *layer = &tissue->layer[layer_index];
 	for (int32_t t = 0; t < layer->triangle_count; ++t) {
 		int32_t triangle = layer->first_triangle + t;
+		CAU_ASSERT_INDEX(triangle, tissue->triangle_count);
 		const int32_t *vertex = tissue->triangle + 3 * triangle;
 		double edge[2][3];
 		for (int e = 0; e < 2; ++e)
@@ -232,6 +248,10 @@ static cau_status make_frames(cau_tissue *tissue, int32_t layer_index, const cau
 
 static cau_status allocate(cau_tissue *tissue, cau_arena *arena, cau_error *error)
 {
+	CAU_ASSERT(tissue->vertex_count >= 0 && tissue->triangle_count >= 0 &&
+	               tissue->tetrahedron_count >= 0,
+	           "%d vertices, %d triangles, %d tetrahedra", tissue->vertex_count,
+	           tissue->triangle_count, tissue->tetrahedron_count);
 	size_t n = (size_t)tissue->vertex_count, t = (size_t)tissue->triangle_count;
 	size_t k = (size_t)tissue->tetrahedron_count;
 	tissue->rest = cau_arena_array(arena, 3 * n, sizeof(double));
@@ -283,6 +303,7 @@ static cau_status copy_layers(cau_tissue *tissue, const gathering *work, const c
 cau_status cau_tissue_gather(cau_tissue *tissue, const cau_scene_def *scene, cau_arena *arena,
                              cau_error *error)
 {
+	CAU_ASSERT(scene->layer_count <= CAU_MAX_LAYERS, "%d layers", scene->layer_count);
 	gathering *work = cau_arena_array(arena, 1, sizeof *work);
 	tissue->layer_count = scene->layer_count;
 	tissue->layer = cau_arena_array(arena, (size_t)scene->layer_count, sizeof *tissue->layer);

@@ -7,6 +7,7 @@
 #include <string.h>
 
 #include "base/vector.h"
+#include "cautery/assert.h"
 #include "tissue/tissue_internal.h"
 
 enum { MAX_PER_VERTEX = 8 };
@@ -14,6 +15,7 @@ enum { MAX_PER_VERTEX = 8 };
 // Marks the vertices that the layer's elements use.
 static void mark_layer(const cau_tissue *tissue, int32_t layer_index, uint8_t *mark)
 {
+	CAU_ASSERT_INDEX(layer_index, tissue->layer_count);
 	const cau_tissue_layer *layer = &tissue->layer[layer_index];
 	memset(mark, 0, (size_t)tissue->vertex_count);
 	for (int32_t i = 3 * layer->first_triangle;
@@ -49,6 +51,7 @@ static int32_t first_at_or_after(const candidate *lower, int32_t count, double x
 		else
 			high = middle;
 	}
+	CAU_ASSERT(low >= 0 && low <= count, "place %d of %d", low, count);
 	return low;
 }
 
@@ -61,6 +64,8 @@ static int is_nearer(double distance, int32_t vertex, double than, int32_t than_
 static int32_t nearest(const cau_tissue *tissue, int32_t from, const candidate *lower,
                        int32_t lower_count, double reach, int32_t most, int32_t *found)
 {
+	CAU_ASSERT(most >= 1 && most <= MAX_PER_VERTEX, "%d links from a vertex", most);
+	CAU_ASSERT_INDEX(from, tissue->vertex_count);
 	double distance[MAX_PER_VERTEX] = {0};
 	int32_t count = 0;
 	cau_vec3 x = cau_vec3_of(tissue->rest + 3 * (size_t)from);
@@ -71,6 +76,8 @@ static int32_t nearest(const cau_tissue *tissue, int32_t from, const candidate *
 		if (fmin(ahead, behind) > (count && count == most ? distance[count - 1] : reach))
 			return count;
 		int32_t vertex = ahead <= behind ? lower[right++].vertex : lower[left--].vertex;
+		CAU_ASSERT(right <= lower_count && left >= -1, "from %d to %d of %d candidates", left,
+		           right, lower_count);
 		double d = cau_length(cau_sub(cau_vec3_of(tissue->rest + 3 * (size_t)vertex), x));
 		if (vertex == from || d > reach ||
 		    (count == most && !is_nearer(d, vertex, distance[count - 1], found[count - 1])))
@@ -92,6 +99,7 @@ static cau_status link_layers(cau_tissue *tissue, int32_t index, uint8_t *mark, 
 	const cau_link_material *material = &layer->def.link;
 	int32_t of = cau_tissue_find_layer(tissue, layer->def.of);
 	int32_t to = cau_tissue_find_layer(tissue, layer->def.to);
+	CAU_ASSERT(of >= 0 && to >= 0, "layer %d links layers that are not there", index);
 	mark_layer(tissue, to, mark);
 	int32_t lower_count = 0;
 	for (int32_t v = 0; v < tissue->vertex_count; ++v)
@@ -108,6 +116,7 @@ static cau_status link_layers(cau_tissue *tissue, int32_t index, uint8_t *mark, 
 		                        (int32_t)material->per_vertex, found);
 		for (int32_t i = 0; i < count && tissue->link_count < capacity; ++i) {
 			int32_t k = tissue->link_count++;
+			CAU_ASSERT_INDEX(k, capacity);
 			tissue->link[2 * k] = v;
 			tissue->link[2 * k + 1] = found[i];
 			tissue->link_layer[k] = index;

@@ -1,10 +1,13 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Rest shape of the elements: D_m^-1, areas, volumes, lumped masses (eq. 8, 10).
 #include "base/vector.h"
+#include "cautery/assert.h"
 #include "tissue/tissue_internal.h"
 
 static cau_vec3 rest_edge(const cau_tissue *tissue, int32_t from, int32_t to)
 {
+	CAU_ASSERT_INDEX(from, tissue->vertex_count);
+	CAU_ASSERT_INDEX(to, tissue->vertex_count);
 	return cau_sub(cau_vec3_of(tissue->rest + 3 * (size_t)to),
 	               cau_vec3_of(tissue->rest + 3 * (size_t)from));
 }
@@ -28,6 +31,8 @@ static cau_status shape_triangle(cau_tissue *tissue, int32_t t, cau_error *error
 	const cau_sheet_material *material = cau_triangle_material(tissue, t);
 	for (int i = 0; i < 3; ++i)
 		tissue->mass[vertex[i]] += material->density_kg_m3 * material->thickness_m * area / 3;
+	CAU_ASSERT(area > 0 && tissue->mass[vertex[0]] > 0, "triangle %d: %g m^2, %g kg", t, area,
+	           tissue->mass[vertex[0]]);
 	return CAU_OK;
 }
 
@@ -49,6 +54,8 @@ static cau_status shape_tetrahedron(cau_tissue *tissue, int32_t t, cau_error *er
 		cau_vec3_to(cau_scale(1 / det, row[i]),
 		            tissue->tetrahedron_dm_inverse + 9 * (size_t)t + 3 * i);
 	tissue->tetrahedron_volume[t] = det / 6;
+	CAU_ASSERT(tissue->tetrahedron_volume[t] > 0, "tetrahedron %d has %g m^3", t,
+	           tissue->tetrahedron_volume[t]);
 	for (int i = 0; i < 4; ++i)
 		tissue->mass[vertex[i]] += cau_tetrahedron_material(tissue, t)->density_kg_m3 * det / 24;
 	return CAU_OK;
@@ -56,6 +63,7 @@ static cau_status shape_tetrahedron(cau_tissue *tissue, int32_t t, cau_error *er
 
 cau_status cau_tissue_shape(cau_tissue *tissue, cau_arena *arena, cau_error *error)
 {
+	CAU_ASSERT(!tissue->triangle_area, "%d triangles are shaped twice", tissue->triangle_count);
 	size_t t = (size_t)tissue->triangle_count, k = (size_t)tissue->tetrahedron_count;
 	tissue->triangle_dm_inverse = cau_arena_array(arena, 4 * t, sizeof(double));
 	tissue->triangle_area = cau_arena_array(arena, t, sizeof(double));

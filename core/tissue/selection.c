@@ -3,6 +3,7 @@
 #include <string.h>
 
 #include "base/vector.h"
+#include "cautery/assert.h"
 #include "tissue/tissue.h"
 
 static int in_box(const cau_selection *selection, const double *x)
@@ -21,6 +22,7 @@ static double distance(const cau_selection *selection, const double *x)
 // Vertices on an edge that exactly one triangle of the layer (or of any layer) has.
 static int32_t select_rim(const cau_tissue *tissue, int32_t layer, uint8_t *chosen)
 {
+	CAU_ASSERT(layer < tissue->layer_count, "layer %d of %d", layer, tissue->layer_count);
 	const cau_edge_table *edges = &tissue->edges;
 	int32_t count = 0;
 	for (int32_t e = 0; e < edges->edge_count; ++e) {
@@ -39,6 +41,7 @@ static int32_t select_rim(const cau_tissue *tissue, int32_t layer, uint8_t *chos
 
 int32_t cau_tissue_select(const cau_tissue *tissue, const cau_selection *selection, uint8_t *chosen)
 {
+	CAU_ASSERT_INDEX(selection->kind, CAU_SELECT_COUNT);
 	int32_t layer = -1, first = 0, last = tissue->vertex_count, count = 0, nearest = -1;
 	if (selection->layer[0]) {
 		layer = cau_tissue_find_layer(tissue, selection->layer);
@@ -46,6 +49,9 @@ int32_t cau_tissue_select(const cau_tissue *tissue, const cau_selection *selecti
 			return -1;
 		first = tissue->layer[layer].first_vertex;
 		last = first + tissue->layer[layer].vertex_count;
+		CAU_ASSERT(first >= 0 && last <= tissue->vertex_count,
+		           "layer %d has vertices %d to %d of %d", layer, first, last,
+		           tissue->vertex_count);
 	}
 	if (selection->kind == CAU_SELECT_RIM)
 		return select_rim(tissue, layer, chosen);
@@ -66,5 +72,7 @@ int32_t cau_tissue_select(const cau_tissue *tissue, const cau_selection *selecti
 		chosen[nearest] = 1;
 		count = 1;
 	}
+	CAU_ASSERT(count <= tissue->vertex_count, "%d vertices chosen of %d", count,
+	           tissue->vertex_count);
 	return count;
 }

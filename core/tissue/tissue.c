@@ -4,6 +4,7 @@
 #include <stdio.h>
 #include <string.h>
 
+#include "cautery/assert.h"
 #include "tissue/tissue_internal.h"
 
 static void view_primitives(cau_tissue *tissue)
@@ -43,6 +44,8 @@ cau_status cau_tissue_make(const cau_scene_def *scene, cau_arena *arena, cau_tis
 	if (!status)
 		status = cau_tissue_link(tissue, arena, error);
 	view_primitives(tissue);
+	CAU_ASSERT(status || tissue->link_count <= tissue->vertex_count * 8 * CAU_MAX_LAYERS,
+	           "%d links over %d vertices", tissue->link_count, tissue->vertex_count);
 	if (!status)
 		status =
 			cau_edge_table_make(&tissue->primitives, tissue->triangle_layer, &tissue->edges, error);

@@ -82,7 +82,7 @@ static int bipolar_between(const cau_tool_def *tool, double jaw, cau_vec3 point,
 	                     coordinate);
 }
 
-const cau_tool_family cau_family_bipolar = {
+const cau_tool_family cau_shape_bipolar = {
 	.hot = bipolar_hot,
 	.cold = bipolar_cold,
 	.hot_bound = bipolar_hot_bound,

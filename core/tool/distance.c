@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "tool/distance.h"
 
+#include "cautery/assert.h"
+
 // fmax and fmin would be library calls.
 static double greater_of(double a, double b)
 {
@@ -27,6 +29,7 @@ static double tube_distance(cau_vec3 from_core, double radius, cau_vec3 core_dir
 double cau_distance_capsule(cau_vec3 point, cau_vec3 a, cau_vec3 b, double radius,
                             cau_vec3 *gradient)
 {
+	CAU_ASSERT(!(radius < 0), "a capsule of %g m", radius);
 	cau_vec3 along = cau_sub(b, a);
 	cau_vec3 from_a = cau_sub(point, a);
 	double squared = cau_dot(along, along);
@@ -48,6 +51,8 @@ static cau_vec3 nearest_face(cau_vec3 beyond, cau_vec3 sign)
 double cau_distance_rounded_box(cau_vec3 point, cau_vec3 center, cau_vec3 half, double rounding,
                                 cau_vec3 *gradient)
 {
+	CAU_ASSERT(!(half.x < 0 || half.y < 0 || half.z < 0 || rounding < 0),
+	           "a box of %g, %g, %g m, rounded by %g", half.x, half.y, half.z, rounding);
 	cau_vec3 p = cau_sub(point, center);
 	cau_vec3 sign = {p.x < 0 ? -1 : 1, p.y < 0 ? -1 : 1, p.z < 0 ? -1 : 1};
 	cau_vec3 beyond = {fabs(p.x) - half.x, fabs(p.y) - half.y, fabs(p.z) - half.z};
@@ -65,6 +70,7 @@ double cau_distance_rounded_box(cau_vec3 point, cau_vec3 center, cau_vec3 half, 
 double cau_distance_quarter_arc(cau_vec3 point, cau_vec3 center, double radius, double tube,
                                 cau_vec3 *gradient)
 {
+	CAU_ASSERT(!(radius < 0 || tube < 0), "an arc of %g m, %g thick", radius, tube);
 	cau_vec3 p = cau_sub(point, center);
 	cau_vec3 core;
 	double in_plane = sqrt(p.x * p.x + p.z * p.z);

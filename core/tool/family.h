@@ -22,13 +22,10 @@ typedef struct cau_tool_family {
 	int (*between)(const cau_tool_def *tool, double jaw, cau_vec3 point, double *jaw_coordinate);
 } cau_tool_family;
 
-extern const cau_tool_family cau_family_sphere;
-extern const cau_tool_family cau_family_capsule;
-extern const cau_tool_family cau_family_hook;
-extern const cau_tool_family cau_family_spatula;
-extern const cau_tool_family cau_family_bipolar;
-extern const cau_tool_family cau_family_shears;
-extern const cau_tool_family cau_family_grasper;
+// cau_shape_sphere and so on: one of each row of the table, defined in the shape's own file.
+#define X(code, word, ...) extern const cau_tool_family cau_shape_##word;
+CAU_TOOL_SHAPE_TABLE(X)
+#undef X
 
 // The cold shaft: a capsule about the z axis whose lowest point is at z = start.
 double cau_shaft_distance(const cau_tool_def *tool, double start, cau_vec3 point,

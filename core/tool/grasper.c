@@ -52,7 +52,7 @@ static int grasper_between(const cau_tool_def *tool, double jaw, cau_vec3 point,
 	                     coordinate);
 }
 
-const cau_tool_family cau_family_grasper = {
+const cau_tool_family cau_shape_grasper = {
 	.cold = grasper_cold,
 	.cold_bound = grasper_cold_bound,
 	.between = grasper_between,

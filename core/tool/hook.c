@@ -84,7 +84,7 @@ static double wire_radius(const cau_tool_def *tool)
 	return tool->hot_radius_m;
 }
 
-const cau_tool_family cau_family_hook = {
+const cau_tool_family cau_shape_hook = {
 	.hot = hook_hot,
 	.cold = hook_cold,
 	.hot_bound = hook_hot_bound,

@@ -1,16 +1,22 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "tool/jaw.h"
 
+#include "cautery/assert.h"
 #include "tool/distance.h"
 
 cau_jaw cau_jaw_of(double side, double hinge, double angle_rad)
 {
+	CAU_ASSERT(side == 1 || side == -1, "a jaw on side %g", side);
 	return (cau_jaw){side, hinge, cos(angle_rad), sin(angle_rad)};
 }
 
 cau_plate cau_plate_of(double x_least, double x_most, double half_width, double z_least,
                        double z_most, double rounding)
 {
+	CAU_ASSERT(x_least <= x_most && z_least <= z_most, "a plate from %g, %g to %g, %g", x_least,
+	           z_least, x_most, z_most);
+	CAU_ASSERT(rounding >= 0 && half_width >= 0, "a plate %g wide, rounded by %g", half_width,
+	           rounding);
 	cau_plate plate = {
 		.least = {x_least, -fmax(half_width, rounding), z_least},
 		.most = {fmax(x_most, x_least + 2 * rounding), fmax(half_width, rounding),
@@ -41,6 +47,7 @@ static cau_vec3 direction_to_tool(const cau_jaw *jaw, cau_vec3 v)
 double cau_jaw_plate_distance(const cau_jaw *jaw, const cau_plate *plate, cau_vec3 point,
                               cau_vec3 *gradient)
 {
+	CAU_ASSERT(jaw->side == 1 || jaw->side == -1, "a jaw on side %g", jaw->side);
 	cau_vec3 center = cau_scale(0.5, cau_add(plate->least, plate->most));
 	cau_vec3 half = cau_scale(0.5, cau_sub(plate->most, plate->least));
 	cau_vec3 core = {fmax(half.x - plate->rounding, 0), fmax(half.y - plate->rounding, 0),
@@ -58,6 +65,7 @@ double cau_jaw_plate_distance(const cau_jaw *jaw, const cau_plate *plate, cau_ve
 cau_ball cau_jaw_plate_bound(double hinge, double angle_rad, const cau_plate *plate,
                              double center_z)
 {
+	CAU_ASSERT(center_z <= hinge, "a ball about %g, above the hinge at %g", center_z, hinge);
 	double cosine = cos(angle_rad), sine = sin(angle_rad);
 	double below = hinge - center_z;
 	double farthest = 0; // squared, in the plane y = 0
@@ -80,6 +88,9 @@ static double clamp(double value, double least, double most)
 int cau_jaws_hold(const cau_jaw *low, double low_face, const cau_jaw *high, double high_face,
                   double half_width, double reach, double depth, cau_vec3 point, double *coordinate)
 {
+	CAU_ASSERT(low->side == -high->side, "both jaws on side %g", low->side);
+	CAU_ASSERT(depth > 0 && reach >= 0 && half_width >= 0, "jaws %g deep, %g long, %g wide", depth,
+	           reach, half_width);
 	cau_vec3 in_low = cau_jaw_to_own(low, point);
 	cau_vec3 in_high = cau_jaw_to_own(high, point);
 	double low_gap = low_face - in_low.x;

@@ -56,7 +56,7 @@ static cau_ball capsule_cold_bound(const cau_tool_def *tool)
 	return cau_shaft_bound(tool, tool->tip_length_m + tool->hot_radius_m);
 }
 
-const cau_tool_family cau_family_sphere = {
+const cau_tool_family cau_shape_sphere = {
 	.hot = sphere_hot,
 	.cold = sphere_cold,
 	.hot_bound = sphere_hot_bound,
@@ -64,7 +64,7 @@ const cau_tool_family cau_family_sphere = {
 	.thinnest_hot = hot_radius,
 };
 
-const cau_tool_family cau_family_capsule = {
+const cau_tool_family cau_shape_capsule = {
 	.hot = capsule_hot,
 	.cold = capsule_cold,
 	.hot_bound = capsule_hot_bound,

@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
+#include "cautery/assert.h"
 #include "tool/distance.h"
 #include "tool/family.h"
 
@@ -8,6 +9,7 @@ static void shaft_core(const cau_tool_def *tool, double start, cau_vec3 *low, ca
 	double radius = tool->shaft_radius_m;
 	*low = (cau_vec3){0, 0, start + radius};
 	*high = (cau_vec3){0, 0, start + fmax(tool->shaft_length_m - radius, radius)};
+	CAU_ASSERT(high->z >= low->z, "a shaft from %g to %g", low->z, high->z);
 }
 
 double cau_shaft_distance(const cau_tool_def *tool, double start, cau_vec3 point,
@@ -28,6 +30,7 @@ cau_ball cau_shaft_bound(const cau_tool_def *tool, double start)
 
 cau_ball cau_ball_join(cau_ball a, cau_ball b)
 {
+	CAU_ASSERT(a.radius_m >= 0 && b.radius_m >= 0, "balls of %g and %g m", a.radius_m, b.radius_m);
 	cau_vec3 across = cau_sub(b.center, a.center);
 	double distance = cau_length(across);
 	if (distance + b.radius_m <= a.radius_m)

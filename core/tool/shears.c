@@ -73,7 +73,7 @@ static int shears_between(const cau_tool_def *tool, double jaw, cau_vec3 point, 
 	                     half_thickness(tool), point, coordinate);
 }
 
-const cau_tool_family cau_family_shears = {
+const cau_tool_family cau_shape_shears = {
 	.hot = shears_hot,
 	.cold = shears_cold,
 	.hot_bound = shears_hot_bound,

@@ -46,7 +46,7 @@ static cau_ball spatula_cold_bound(const cau_tool_def *tool)
 	return cau_shaft_bound(tool, shaft_start(tool));
 }
 
-const cau_tool_family cau_family_spatula = {
+const cau_tool_family cau_shape_spatula = {
 	.hot = spatula_hot,
 	.cold = spatula_cold,
 	.hot_bound = spatula_hot_bound,

@@ -1,8 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "tool/tool_shape.h"
 
-#include <assert.h>
-
+#include "cautery/assert.h"
 #include "tool/distance.h"
 #include "tool/family.h"
 
@@ -11,14 +10,14 @@ static const double TOUCH_M = 1e-6; // nearer than this meets
 
 static const cau_tool_family *family_of(const cau_tool_def *tool)
 {
-	static const cau_tool_family *const families[] = {
-		[CAU_TOOL_SPHERE] = &cau_family_sphere,   [CAU_TOOL_CAPSULE] = &cau_family_capsule,
-		[CAU_TOOL_HOOK] = &cau_family_hook,       [CAU_TOOL_SPATULA] = &cau_family_spatula,
-		[CAU_TOOL_BIPOLAR] = &cau_family_bipolar, [CAU_TOOL_SHEARS] = &cau_family_shears,
-		[CAU_TOOL_GRASPER] = &cau_family_grasper,
-	};
-	static_assert(sizeof families / sizeof *families == CAU_TOOL_SHAPE_COUNT, "a family per shape");
-	assert(tool->shape >= 0 && tool->shape < CAU_TOOL_SHAPE_COUNT);
+#define X(code, word, ...) &cau_shape_##word,
+	static const cau_tool_family *const families[] = {CAU_TOOL_SHAPE_TABLE(X)};
+#undef X
+	CAU_ASSERT_INDEX(tool->shape, CAU_TOOL_SHAPE_COUNT);
+	const cau_tool_family *family = families[tool->shape];
+	CAU_ASSERT(family->cold && family->cold_bound, "shape %d has nothing that pushes", tool->shape);
+	CAU_ASSERT(!family->hot == !family->hot_bound && !family->hot == !family->thinnest_hot,
+	           "shape %d: what heats has a bound and a radius", tool->shape);
 	return families[tool->shape];
 }
 
@@ -35,6 +34,7 @@ static double part_distance(cau_part_distance distance, const cau_tool_def *tool
 double cau_tool_distance(const cau_tool_def *tool, double jaw, cau_tool_part part, cau_vec3 point,
                          cau_vec3 *gradient)
 {
+	CAU_ASSERT(part >= CAU_PART_HOT && part <= CAU_PART_BOTH, "part %d", (int)part);
 	const cau_tool_family *family = family_of(tool);
 	jaw = fmin(fmax(jaw, 0), 1);
 	if (part == CAU_PART_HOT)
@@ -58,6 +58,7 @@ double cau_tool_distance_at(const cau_tool_def *tool, const cau_pose *pose, doub
 
 static cau_ball part_bound(const cau_tool_def *tool, cau_tool_part part)
 {
+	CAU_ASSERT(part >= CAU_PART_HOT && part <= CAU_PART_BOTH, "part %d", (int)part);
 	const cau_tool_family *family = family_of(tool);
 	if (part == CAU_PART_HOT)
 		return family->hot_bound ? family->hot_bound(tool) : (cau_ball){{0, 0, 0}, 0};
@@ -73,12 +74,18 @@ void cau_tool_bound(const cau_tool_def *tool, cau_tool_part part, cau_vec3 *cent
 	cau_ball ball = part_bound(tool, part);
 	*center = ball.center;
 	*radius_m = ball.radius_m;
+	CAU_ASSERT(*radius_m >= 0, "shape %d: a bound of %g m", tool->shape, *radius_m);
 }
 
 double cau_tool_thinnest_hot_m(const cau_tool_def *tool)
 {
 	const cau_tool_family *family = family_of(tool);
 	return family->thinnest_hot ? family->thinnest_hot(tool) : INFINITY;
+}
+
+int cau_tool_has_jaws(const cau_tool_def *tool)
+{
+	return family_of(tool)->between != NULL;
 }
 
 int cau_tool_between_jaws(const cau_tool_def *tool, double jaw, cau_vec3 point,
@@ -99,6 +106,7 @@ int cau_tool_meets_segment(const cau_tool_def *tool, double jaw, cau_tool_part p
 		return 0;
 	cau_vec3 along = cau_sub(b, a);
 	double length = cau_length(along);
+	CAU_ASSERT(length >= 0, "a segment of %g m", length);
 	along = cau_unit_or(along, (cau_vec3){0, 0, 0});
 	double from = 0, to = length;
 	for (int i = 0; i < TRACE_STEPS; ++i) {

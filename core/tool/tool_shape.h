@@ -31,6 +31,9 @@ void cau_tool_bound(const cau_tool_def *tool, cau_tool_part part, cau_vec3 *cent
 // shape without a hot part.
 double cau_tool_thinnest_hot_m(const cau_tool_def *tool);
 
+// Whether the shape has jaws that can grasp.
+int cau_tool_has_jaws(const cau_tool_def *tool);
+
 // Whether `point` (tool frame) lies between the jaws, where a grasp takes hold; false for a shape
 // without jaws. Points less than half a jaw's thickness inside a jaw count too, so that closed jaws
 // hold what they press. On success *jaw_coordinate (may be NULL) is -1 at one jaw, +1 at the other.

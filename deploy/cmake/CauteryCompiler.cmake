@@ -30,3 +30,10 @@ if(CAUTERY_SANITIZE)
     target_compile_options(cautery_compiler INTERFACE -Wno-maybe-uninitialized)
   endif()
 endif()
+
+# CAU_ASSERT (core/types/cautery/assert.h): on in Debug and under sanitizers, compiled away elsewhere.
+set(CAUTERY_ASSERTIONS "$<CONFIG:Debug>")
+if(CAUTERY_SANITIZE)
+  set(CAUTERY_ASSERTIONS 1)
+endif()
+target_compile_definitions(cautery_compiler INTERFACE $<${CAUTERY_ASSERTIONS}:CAU_ASSERTIONS>)

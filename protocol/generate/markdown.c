@@ -191,6 +191,25 @@ static void write_channels(FILE *out)
 	}
 }
 
+// The rows of scene.h that clients choose from, with their numbers in frames.
+static void write_descriptors(FILE *out)
+{
+	int number = 0;
+	fputs("\n## Tool shapes\n\nThe number stands in a frame's tool_names.\n\n"
+	      "| number | shape | hot part | jaws | |\n|---:|---|---|---|---|\n",
+	      out);
+#define X(code, word, hot, jaws, meaning)                                                          \
+	fprintf(out, "| %d | `" #word "` | %s | %s | " meaning " |\n", number++, hot ? "yes" : "no",   \
+	        jaws ? "yes" : "no");
+	CAU_TOOL_SHAPE_TABLE(X)
+#undef X
+	fputs("\n## Laws of fat\n\n| model | Poisson's ratio up to | |\n|---|---:|---|\n", out);
+#define X(code, word, poisson_most, has_energy, keeps_rotation, lambda_mu, mu_mu, meaning)         \
+	fprintf(out, "| `" #word "` | %.3g | " meaning " |\n", poisson_most);
+	CAU_MODEL_TABLE(X)
+#undef X
+}
+
 void write_markdown(FILE *out, const model *from)
 {
 	fputs("# Messages\n\nGenerated from the message tables in `include/cautery/`; "
@@ -200,6 +219,7 @@ void write_markdown(FILE *out, const model *from)
 	write_methods(out, from);
 	write_codes(out);
 	write_channels(out);
+	write_descriptors(out);
 	fputs("\n## Objects\n", out);
 	for (int i = 0; i < from->type_count; i++)
 		write_type(out, &from->types[i]);

@@ -186,10 +186,36 @@ static void write_lists(FILE *out)
 	fputs("} as const;\n", out);
 	write_scalars(out);
 	fputs("\n/** Words that frames tell by their number. */\nexport const TOOL_SHAPES = [", out);
-#define X(code, name) fprintf(out, "'%s', ", name);
+#define X(code, word, ...) fputs("'" #word "', ", out);
 	CAU_TOOL_SHAPE_TABLE(X)
+#undef X
 	fputs("] as const;\nexport const ENERGY_OFF_REASONS = [", out);
+#define X(code, name) fprintf(out, "'%s', ", name);
 	CAU_ENERGY_OFF_TABLE(X)
+#undef X
+	fputs("] as const;\n", out);
+}
+
+// What viewers ask of a shape, and what a material is chosen from.
+static void write_descriptors(FILE *out)
+{
+	fputs("\n/** What a tool of a shape has. */\n"
+	      "export const SHAPE_TRAITS: Readonly<Record<(typeof TOOL_SHAPES)[number], "
+	      "{ hot: boolean; jaws: boolean; meaning: string }>> = {\n",
+	      out);
+#define X(code, word, hot, jaws, meaning)                                                          \
+	fputs("  " #word ": { hot: " #hot ", jaws: " #jaws ", meaning: '" meaning "' },\n", out);
+	CAU_TOOL_SHAPE_TABLE(X)
+#undef X
+	fputs("};\n\n/** Choices of a material, in words. */\nexport const MODELS = [", out);
+#define X(code, word, ...) fputs("'" #word "', ", out);
+	CAU_MODEL_TABLE(X)
+#undef X
+	fputs("] as const;\nexport const LIMITS = [", out);
+#define X(code, name) fprintf(out, "'%s', ", name);
+	CAU_LIMIT_TABLE(X)
+	fputs("] as const;\nexport const PROJECTIONS = [", out);
+	CAU_PROJECTION_TABLE(X)
 #undef X
 	fputs("] as const;\n", out);
 }
@@ -223,6 +249,7 @@ void write_typescript(FILE *out, const model *from)
 		write_type(out, &from->types[i]);
 	write_methods(out, from);
 	write_lists(out);
+	write_descriptors(out);
 	fputs("\nexport interface Parameter {\n  name: string;\n  unit: string;\n  least: number;\n"
 	      "  most: number;\n  default: number;\n  meaning: string;\n}\n\n"
 	      "/** Numbers that panels edit. */\nexport const PARAMETERS = {\n",

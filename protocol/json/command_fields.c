@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // What a command may hold.
+#include "cautery/assert.h"
 #include "json/field_macros.h"
 #include "json/fields.h"
 
@@ -92,6 +93,8 @@ RECORD(cau_force_record, "a force", force_fields, NULL)
 
 static int add_material(cau_command *command, cau_part *parts)
 {
+	CAU_ASSERT(command->kind == CAU_COMMAND_SET_MATERIAL, "the material of command %d",
+	           command->kind);
 	int kind = command->as.material.kind;
 	cau_sheet_material *sheet = &command->as.material.sheet;
 	cau_fat_material *fat = &command->as.material.fat;
@@ -106,6 +109,8 @@ static int add_material(cau_command *command, cau_part *parts)
 
 static int add_tool(cau_command *command, cau_part *parts)
 {
+	CAU_ASSERT(command->kind == CAU_COMMAND_TOOL_ADD || command->kind == CAU_COMMAND_TOOL_CONFIGURE,
+	           "the tool of command %d", command->kind);
 	cau_tool_def *tool = &command->as.definition;
 	int count = 0;
 	parts[count++] = (cau_part){&cau_tool_record, tool, 0};
@@ -118,6 +123,7 @@ static int add_tool(cau_command *command, cau_part *parts)
 
 int cau_command_parts(cau_command *command, cau_part parts[CAU_MAX_PARTS])
 {
+	CAU_ASSERT_INDEX(command->kind, CAU_COMMAND_COUNT);
 	parts[0] = (cau_part){&cau_command_record, command, command->kind};
 	switch (command->kind) {
 	case CAU_COMMAND_TOOL_ADD:

@@ -9,6 +9,13 @@
 	static const cau_choices variable = {variable##_names,                                         \
 	                                     (int)(sizeof variable##_names / sizeof(char *))};
 
+// The same of a table X(code, word, ...) whose words are no strings.
+#define CHOICE_WORD(code, word, ...) #word,
+#define CHOICES_OF_WORDS(variable, TABLE)                                                          \
+	static const char *const variable##_names[] = {TABLE(CHOICE_WORD)};                            \
+	static const cau_choices variable = {variable##_names,                                         \
+	                                     (int)(sizeof variable##_names / sizeof(char *))};
+
 #define PLACE(member) .name = #member, .offset = offsetof(STRUCT, member)
 #define MEANS(unit_, meaning_) .unit = unit_, .meaning = meaning_
 #define RANGE(least_, most_) .least = least_, .most = most_

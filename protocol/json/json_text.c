@@ -9,6 +9,7 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "cautery/assert.h"
 #include "cautery/utf8.h"
 
 typedef struct level {
@@ -46,6 +47,7 @@ static cau_status syntax(const scanner *s, const char *reason)
 
 static int peek(const scanner *s)
 {
+	CAU_ASSERT(s->at <= s->bytes, "byte %zu of %zu", s->at, s->bytes);
 	return s->at < s->bytes ? (unsigned char)s->text[s->at] : -1;
 }
 
@@ -84,6 +86,7 @@ static int hex4(const char *text, size_t at, size_t bytes)
 // At the `u` of an escape: checks it and a surrogate pair's second half, and steps over.
 static cau_status scan_unicode_escape(scanner *s)
 {
+	CAU_ASSERT(peek(s) == 'u', "an escape at byte %zu that is none", s->at);
 	int code = hex4(s->text, s->at + 1, s->bytes);
 	if (code < 0)
 		return syntax(s, "\\u needs four hexadecimal digits");
@@ -106,6 +109,7 @@ static cau_status scan_unicode_escape(scanner *s)
 
 static cau_status scan_escape(scanner *s)
 {
+	CAU_ASSERT(peek(s) == '\\', "an escape at byte %zu that is none", s->at);
 	s->at++; // the backslash
 	int c = peek(s);
 	if (c == 'u')
@@ -119,6 +123,7 @@ static cau_status scan_escape(scanner *s)
 // At the opening quote; ends after the closing one.
 static cau_status scan_string(scanner *s)
 {
+	CAU_ASSERT(peek(s) == '"', "a string at byte %zu that is none", s->at);
 	for (s->at++;;) {
 		int c = peek(s);
 		if (c == '"') {
@@ -146,6 +151,7 @@ static cau_status scan_string(scanner *s)
 // Returns its bytes and moves *at; 0 at the closing quote.
 static size_t next_character(const scanner *s, size_t *at, char out[4])
 {
+	CAU_ASSERT(*at < s->bytes, "a character at byte %zu of %zu", *at, s->bytes);
 	static const char plain[] = "\"\\/bfnrt", meaning[] = "\"\\/\b\f\n\r\t";
 	char c = s->text[*at];
 	if (c == '"')
@@ -186,6 +192,8 @@ static bool same_key(const scanner *s, size_t a, size_t b)
 
 static cau_status scan_key(scanner *s)
 {
+	CAU_ASSERT(s->depth > 0 && s->levels[s->depth - 1].object,
+	           "a name at byte %zu, outside all objects", s->at);
 	size_t start = s->at + 1;
 	size_t first = s->levels[s->depth - 1].first_key;
 	cau_status status = scan_string(s);
@@ -201,6 +209,7 @@ static cau_status scan_key(scanner *s)
 		if (same_key(s, s->keys[i], start))
 			return fail_at(s, start, CAU_BAD_SYNTAX, "a name that the object has already");
 	s->keys[s->key_count++] = start;
+	CAU_ASSERT(s->key_count <= CAU_JSON_MAX_OPEN_KEYS, "%zu names of open objects", s->key_count);
 	return CAU_OK;
 }
 
@@ -218,6 +227,7 @@ static cau_status scan_digits(scanner *s, const char *reason)
 // The value of a number that fits the grammar. The C library reads the locale's decimal point.
 static double number_value(const char *text, size_t bytes)
 {
+	CAU_ASSERT(bytes > 0 && bytes <= CAU_JSON_MAX_NUMBER_BYTES, "a number of %zu bytes", bytes);
 	char copy[CAU_JSON_MAX_NUMBER_BYTES + 1];
 	memcpy(copy, text, bytes);
 	copy[bytes] = 0;
@@ -278,6 +288,7 @@ static cau_status scan_word(scanner *s, const char *word)
 
 static cau_status open_level(scanner *s)
 {
+	CAU_ASSERT(s->depth <= CAU_JSON_MAX_DEPTH, "%zu levels", s->depth);
 	if (s->depth == CAU_JSON_MAX_DEPTH)
 		return fail_at(s, s->at, CAU_LIMIT, "more than 64 levels of arrays and objects");
 	s->levels[s->depth++] = (level){.object = peek(s) == '{', .first_key = s->key_count};
@@ -287,7 +298,9 @@ static cau_status open_level(scanner *s)
 
 static void close_level(scanner *s)
 {
+	CAU_ASSERT(s->depth > 0, "a level is closed that is not open, at byte %zu", s->at);
 	s->key_count = s->levels[--s->depth].first_key;
+	CAU_ASSERT(s->key_count <= CAU_JSON_MAX_OPEN_KEYS, "%zu names of open objects", s->key_count);
 	s->at++;
 }
 
@@ -362,6 +375,7 @@ static cau_status scan_scalar(scanner *s)
 
 cau_status cau_json_scan(const char *text, size_t bytes, size_t bytes_max, cau_error *error)
 {
+	CAU_ASSERT(text || !bytes, "%zu bytes that are nowhere", bytes);
 	scanner s = {.text = text, .bytes = bytes, .error = error};
 	if (bytes > bytes_max)
 		return cau_fail(error, CAU_LIMIT, NULL, "%zu bytes, the limit is %zu", bytes, bytes_max);

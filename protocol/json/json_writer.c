@@ -7,12 +7,14 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "cautery/assert.h"
 #include "cautery/utf8.h"
 
 static const double integer_bound = 9007199254740992.0; // 2^53
 
 void cau_json_fail(cau_json_writer *writer, cau_status status, const char *reason)
 {
+	CAU_ASSERT(status != CAU_OK && reason, "a failure that is none: %s", reason);
 	if (writer->status)
 		return;
 	writer->status = status;
@@ -21,6 +23,7 @@ void cau_json_fail(cau_json_writer *writer, cau_status status, const char *reaso
 
 static void put(cau_json_writer *writer, const char *text, size_t bytes)
 {
+	CAU_ASSERT(text || !bytes, "%zu bytes that are nowhere", bytes);
 	if (writer->bytes < writer->capacity) {
 		size_t room = writer->capacity - writer->bytes;
 		memcpy(writer->buffer + writer->bytes, text, bytes < room ? bytes : room);
@@ -35,6 +38,8 @@ static void put_text(cau_json_writer *writer, const char *text)
 
 static void put_line_break(cau_json_writer *writer)
 {
+	CAU_ASSERT(writer->depth >= 0 && writer->depth <= CAU_JSON_MAX_DEPTH, "%d levels",
+	           writer->depth);
 	if (writer->indent == 0 || (writer->depth > 0 && writer->flat[writer->depth - 1]))
 		return;
 	put(writer, "\n", 1);
@@ -71,6 +76,8 @@ static void put_quoted(cau_json_writer *writer, const char *text)
 // What stands before a value: comma, line break, name.
 static void put_lead(cau_json_writer *writer, const char *key)
 {
+	CAU_ASSERT(writer->depth >= 0 && writer->depth <= CAU_JSON_MAX_DEPTH, "%d levels",
+	           writer->depth);
 	if (writer->depth > 0) {
 		int32_t top = writer->depth - 1;
 		if (writer->occupied[top])
@@ -88,6 +95,8 @@ static void put_lead(cau_json_writer *writer, const char *key)
 
 void cau_json_begin(cau_json_writer *writer, char *buffer, size_t capacity, int32_t indent)
 {
+	CAU_ASSERT(buffer || !capacity, "a buffer of %zu bytes that is nowhere", capacity);
+	CAU_ASSERT(indent >= 0, "an indent of %d", indent);
 	memset(writer, 0, sizeof *writer);
 	writer->buffer = buffer;
 	writer->capacity = capacity;
@@ -96,6 +105,8 @@ void cau_json_begin(cau_json_writer *writer, char *buffer, size_t capacity, int3
 
 void cau_json_open(cau_json_writer *writer, const char *key, char bracket)
 {
+	CAU_ASSERT(bracket == '{' || bracket == '[' || bracket == '(', "a level opened by '%c'",
+	           bracket);
 	put_lead(writer, key);
 	if (writer->depth == CAU_JSON_MAX_DEPTH) {
 		cau_json_fail(writer, CAU_BAD_STATE, "too many levels");
@@ -125,6 +136,7 @@ void cau_json_close(cau_json_writer *writer)
 // The shortest of 15 to 17 digits that reads back to the same bits.
 static void format_number(double value, char text[40])
 {
+	CAU_ASSERT(isfinite(value), "%g is no number of JSON", value);
 	for (int digits = 15; digits <= 17; digits++) {
 		snprintf(text, 32, "%.*g", digits, value);
 		if (strtod(text, NULL) == value)
@@ -187,6 +199,7 @@ void cau_json_string(cau_json_writer *writer, const char *key, const char *value
 
 void cau_json_numbers(cau_json_writer *writer, const char *key, const double *value, int32_t count)
 {
+	CAU_ASSERT(count >= 0, "%d numbers", count);
 	cau_json_open(writer, key, '(');
 	for (int32_t i = 0; i < count; i++)
 		cau_json_number(writer, NULL, value[i]);
@@ -195,6 +208,7 @@ void cau_json_numbers(cau_json_writer *writer, const char *key, const double *va
 
 void cau_json_raw(cau_json_writer *writer, const char *key, const char *json, size_t bytes)
 {
+	CAU_ASSERT(bytes > 0, "a value of %zu bytes", bytes);
 	put_lead(writer, key);
 	put(writer, json, bytes);
 }

@@ -5,6 +5,8 @@
 #include <stdbool.h>
 #include <string.h>
 
+#include "cautery/assert.h"
+
 enum { LONGEST = 48 };
 
 static int least(int a, int b)
@@ -22,6 +24,8 @@ static int distance(const char *a, const char *b)
 {
 	int rows[3][LONGEST + 1];
 	int a_count = (int)strlen(a), b_count = (int)strlen(b);
+	CAU_ASSERT(a_count <= LONGEST && b_count <= LONGEST, "words of %d and %d letters", a_count,
+	           b_count);
 	for (int j = 0; j <= b_count; j++)
 		rows[0][j] = j;
 	for (int i = 1; i <= a_count; i++) {
@@ -41,6 +45,7 @@ static int distance(const char *a, const char *b)
 
 const char *cau_nearest_name(const char *word, const char *const *names, int count)
 {
+	CAU_ASSERT(count >= 0, "%d names", count);
 	const char *nearest = NULL;
 	size_t bytes = strlen(word);
 	if (bytes > LONGEST)

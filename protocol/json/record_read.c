@@ -1,16 +1,20 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
+#include "cautery/assert.h"
 #include "json/record.h"
 
 enum { MAX_KEYS = 96 };
 
 bool cau_field_applies(const cau_field *field, int kind)
 {
+	CAU_ASSERT(kind < 32, "kind %d of \"%s\" has no bit", kind, field->name);
 	return field->kinds == 0 || (kind >= 0 && (field->kinds >> kind & 1u));
 }
 
 static void read_element(cau_reader *reader, const cJSON *value, const cau_field *field,
                          int32_t index, void *at)
 {
+	CAU_ASSERT(field->type == CAU_FIELD_NUMBER || field->type == CAU_FIELD_INTEGER,
+	           "an element of \"%s\", of type %d", field->name, (int)field->type);
 	if (field->type == CAU_FIELD_NUMBER)
 		((double *)at)[index] =
 			cau_read_number(reader, value, field->least, field->most, field->unit);
@@ -21,12 +25,14 @@ static void read_element(cau_reader *reader, const cJSON *value, const cau_field
 
 static void read_array(cau_reader *reader, const cJSON *value, const cau_field *field, void *at)
 {
+	CAU_ASSERT(field->count > 0, "\"%s\" has %d elements", field->name, field->count);
 	if (!cau_read_array(reader, value, field->least_count ? field->least_count : field->count,
 	                    field->count))
 		return;
 	int32_t index = 0;
 	for (const cJSON *element = value->child; element; element = element->next, index++) {
 		size_t mark = cau_reader_enter(reader, NULL, index);
+		CAU_ASSERT_INDEX(index, field->count);
 		read_element(reader, element, field, index, at);
 		cau_reader_leave(reader, mark);
 	}
@@ -78,6 +84,7 @@ void cau_read_field(cau_reader *reader, const cJSON *object, const cau_field *fi
 // A member that other kinds of the record have deserves a better word than "unknown".
 static void refuse_other_kinds(cau_reader *reader, const cJSON *object, const cau_part *part)
 {
+	CAU_ASSERT_INDEX(part->kind, part->record->kinds->count);
 	for (int i = 0; i < part->record->field_count; i++) {
 		const cau_field *field = &part->record->fields[i];
 		if (!cau_field_applies(field, part->kind) && cau_value_member(object, field->name))
@@ -90,6 +97,7 @@ static void refuse_other_kinds(cau_reader *reader, const cJSON *object, const ca
 void cau_read_parts(cau_reader *reader, const cJSON *object, const cau_part *parts, int part_count,
                     const char *const *others, int other_count)
 {
+	CAU_ASSERT(part_count > 0 && part_count <= CAU_MAX_PARTS, "%d parts", part_count);
 	const char *keys[MAX_KEYS] = {NULL};
 	int key_count = 0;
 	for (int p = 0; p < part_count; p++) {
@@ -102,6 +110,7 @@ void cau_read_parts(cau_reader *reader, const cJSON *object, const cau_part *par
 	}
 	for (int i = 0; i < other_count && key_count < MAX_KEYS; i++)
 		keys[key_count++] = others[i];
+	CAU_ASSERT(key_count < MAX_KEYS, "%d names, and room for %d", key_count, MAX_KEYS);
 	cau_read_no_others(reader, object, keys, key_count);
 	for (int p = 0; p < part_count; p++)
 		for (int i = 0; i < parts[p].record->field_count; i++)

@@ -1,10 +1,12 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include <string.h>
 
+#include "cautery/assert.h"
 #include "json/record.h"
 
 static void write_choice(cau_json_writer *writer, const cau_field *field, int choice)
 {
+	CAU_ASSERT(field->choices && field->choices->count > 0, "\"%s\" has no choices", field->name);
 	if (choice < 0 || choice >= field->choices->count)
 		cau_json_fail(writer, CAU_BAD_VALUE, "a choice that does not exist");
 	else
@@ -21,6 +23,7 @@ static void write_text(cau_json_writer *writer, const char *key, const char *tex
 
 static void write_integers(cau_json_writer *writer, const cau_field *field, const int32_t *value)
 {
+	CAU_ASSERT(field->count >= 0, "\"%s\" has %d elements", field->name, field->count);
 	if (field->count == 0) {
 		cau_json_integer(writer, field->name, *value);
 		return;
@@ -74,6 +77,7 @@ static void write_field(cau_json_writer *writer, const cau_field *field, const v
 
 void cau_write_parts(cau_json_writer *writer, const cau_part *parts, int part_count)
 {
+	CAU_ASSERT(part_count > 0 && part_count <= CAU_MAX_PARTS, "%d parts", part_count);
 	for (int p = 0; p < part_count; p++)
 		for (int i = 0; i < parts[p].record->field_count; i++)
 			if (cau_field_applies(&parts[p].record->fields[i], parts[p].kind))

@@ -1,17 +1,18 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // What a scene may hold. Scalars come from scene.h's tables; vectors, names and choices stand here.
+#include "cautery/assert.h"
 #include "json/field_macros.h"
 #include "json/fields.h"
 
 CHOICES(solver_choices, CAU_SOLVER_TABLE)
 CHOICES(precision_choices, CAU_PRECISION_TABLE)
 CHOICES(mesh_source_choices, CAU_MESH_SOURCE_TABLE)
-CHOICES(model_choices, CAU_MODEL_TABLE)
+CHOICES_OF_WORDS(model_choices, CAU_MODEL_TABLE)
 CHOICES(limit_choices, CAU_LIMIT_TABLE)
 CHOICES(projection_choices, CAU_PROJECTION_TABLE)
 CHOICES(layer_kind_choices, CAU_LAYER_TABLE)
 CHOICES(select_kind_choices, CAU_SELECT_TABLE)
-CHOICES(tool_shape_choices, CAU_TOOL_SHAPE_TABLE)
+CHOICES_OF_WORDS(tool_shape_choices, CAU_TOOL_SHAPE_TABLE)
 
 enum { FAR_M = 100 }; // places and ways
 
@@ -174,6 +175,7 @@ RECORD(cau_cut_record, "a cut", cut_fields, NULL)
 int cau_material_parts(int layer_kind, cau_sheet_material *sheet, cau_fat_material *fat,
                        cau_link_material *link, cau_part parts[2])
 {
+	CAU_ASSERT_INDEX(layer_kind, CAU_LAYER_COUNT);
 	if (layer_kind == CAU_LAYER_FAT) {
 		parts[0] = (cau_part){&cau_fat_record, fat, 0};
 		parts[1] = (cau_part){&cau_heat_record, &fat->heat, 0};

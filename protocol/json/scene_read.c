@@ -3,6 +3,7 @@
 
 #include <string.h>
 
+#include "cautery/assert.h"
 #include "cautery/defaults.h"
 #include "json/document.h"
 #include "json/fields.h"
@@ -10,6 +11,7 @@
 // Reads the first field of a record that has kinds: defaults and members depend on it.
 static bool read_kind(cau_reader *reader, const cJSON *object, const cau_record *record, void *base)
 {
+	CAU_ASSERT(record->field_count > 0 && record->kinds, "%s has no kinds", record->title);
 	if (cau_read_object(reader, object))
 		cau_read_field(reader, object, &record->fields[0], base);
 	return reader->status == CAU_OK;
@@ -29,6 +31,7 @@ static void read_mesh(cau_reader *reader, const cJSON *object, void *element)
 static void read_region(cau_reader *reader, const cJSON *object, cau_layer_def *layer,
                         int32_t index)
 {
+	CAU_ASSERT(index > 0 && index < CAU_MAX_MATERIALS, "region %d", index);
 	cau_part parts[CAU_MAX_PARTS];
 	layer->sheet[index] = layer->sheet[0];
 	layer->fat[index] = layer->fat[0];
@@ -123,6 +126,7 @@ static void read_list(cau_reader *reader, const cJSON *scene, const char *key, v
 	if (cau_read_array(reader, array, 0, most))
 		for (const cJSON *object = array->child; object && !reader->status; object = object->next) {
 			size_t inner = cau_reader_enter(reader, NULL, *count);
+			CAU_ASSERT_INDEX(*count, most);
 			read(reader, object, (char *)elements + (size_t)(*count)++ * element_bytes);
 			cau_reader_leave(reader, inner);
 		}

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "cautery/scene_json.h"
 
+#include "cautery/assert.h"
 #include "json/document.h"
 #include "json/fields.h"
 
@@ -14,6 +15,7 @@ static void write_part(cau_json_writer *writer, const cau_record *record, const 
 
 static void write_material(cau_json_writer *writer, const cau_layer_def *layer, int32_t index)
 {
+	CAU_ASSERT_INDEX(index, layer->material_count);
 	cau_part parts[CAU_MAX_PARTS];
 	cau_layer_def *shared = (cau_layer_def *)layer;
 	int count = cau_material_parts(layer->kind, &shared->sheet[index], &shared->fat[index],

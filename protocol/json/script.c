@@ -2,6 +2,7 @@
 #include <inttypes.h>
 #include <string.h>
 
+#include "cautery/assert.h"
 #include "cautery/command_json.h"
 
 void cau_script_begin(cau_script *script, const char *name, const char *text, size_t bytes)
@@ -20,6 +21,7 @@ static bool is_blank(const char *line, size_t bytes)
 // The next line that is not blank; false at the end of the text.
 static bool next_line(cau_script *script, const char **line, size_t *bytes)
 {
+	CAU_ASSERT(script->offset <= script->bytes, "byte %zu of %zu", script->offset, script->bytes);
 	while (script->offset < script->bytes) {
 		*line = script->text + script->offset;
 		size_t left = script->bytes - script->offset;
@@ -35,6 +37,7 @@ static bool next_line(cau_script *script, const char **line, size_t *bytes)
 
 static cau_status fail_line(const cau_script *script, cau_error *error)
 {
+	CAU_ASSERT(error->status != CAU_OK, "line %d fails without a reason", script->line);
 	char reason[sizeof error->reason];
 	snprintf(reason, sizeof reason, "%s", error->reason);
 	snprintf(error->reason, sizeof error->reason, "script line %d: %.280s", script->line, reason);

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "cautery/utf8.h"
 
+#include "cautery/assert.h"
+
 // The second byte is what tells overlong forms, surrogates and codes beyond U+10FFFF (RFC 3629, 4).
 static void second_byte_range(unsigned char first, unsigned char *least, unsigned char *most)
 {
@@ -19,6 +21,7 @@ static size_t told_length(unsigned char first)
 // Whether the bytes behind the first one are such as may follow it.
 static bool may_follow(const unsigned char *at, size_t bytes)
 {
+	CAU_ASSERT(bytes >= 1 && bytes <= 4, "a character of %zu bytes", bytes);
 	unsigned char least, most;
 	second_byte_range(at[0], &least, &most);
 	if (bytes > 1 && (at[1] < least || at[1] > most))
@@ -44,6 +47,7 @@ bool cau_utf8_is_start(const char *text, size_t bytes)
 
 size_t cau_utf8_encode(unsigned code, char out[4])
 {
+	CAU_ASSERT(code < 1u << 21, "code %x has more bits than four bytes hold", code);
 	if (code < 0x80) {
 		out[0] = (char)code;
 		return 1;

@@ -4,6 +4,7 @@
 #include <math.h>
 #include <string.h>
 
+#include "cautery/assert.h"
 #include "cautery/json_text.h"
 #include "cautery/name.h"
 #include "json/nearest_name.h"
@@ -33,8 +34,10 @@ void cau_reader_begin(cau_reader *reader, const char *path, cau_error *error)
 
 size_t cau_reader_enter(cau_reader *reader, const char *key, int32_t index)
 {
+	CAU_ASSERT(key || index >= 0, "element %d", index);
 	size_t mark = strlen(reader->path);
 	size_t room = sizeof reader->path - mark;
+	CAU_ASSERT(mark < sizeof reader->path, "a path of %zu bytes", mark);
 	if (key)
 		snprintf(reader->path + mark, room, "%s%s", mark ? "." : "", key);
 	else
@@ -44,12 +47,14 @@ size_t cau_reader_enter(cau_reader *reader, const char *key, int32_t index)
 
 void cau_reader_leave(cau_reader *reader, size_t mark)
 {
+	CAU_ASSERT(mark <= strlen(reader->path), "left at byte %zu of \"%s\"", mark, reader->path);
 	reader->path[mark] = 0;
 }
 
 cau_status cau_reader_fail(cau_reader *reader, cau_status status, const char *key,
                            const char *format, ...)
 {
+	CAU_ASSERT(status != CAU_OK, "a failure that is none at \"%s\"", reader->path);
 	if (reader->status)
 		return reader->status;
 	reader->status = status;
@@ -73,6 +78,7 @@ const cJSON *cau_value_member(const cJSON *object, const char *key)
 
 const char *cau_value_describe(const cJSON *value, char *buffer, size_t bytes)
 {
+	CAU_ASSERT(bytes >= 16, "a value described in %zu bytes", bytes);
 	if (!value)
 		return "nothing";
 	if (cJSON_IsNull(value))
@@ -112,6 +118,7 @@ bool cau_read_object(cau_reader *reader, const cJSON *value)
 
 bool cau_read_array(cau_reader *reader, const cJSON *value, int32_t least, int32_t most)
 {
+	CAU_ASSERT(least >= 0 && least <= most, "an array of %d to %d", least, most);
 	char wanted[48];
 	int32_t count = cJSON_IsArray(value) ? (int32_t)cJSON_GetArraySize(value) : -1;
 	if (count >= least && count <= most)
@@ -127,6 +134,7 @@ bool cau_read_array(cau_reader *reader, const cJSON *value, int32_t least, int32
 double cau_read_number(cau_reader *reader, const cJSON *value, double least, double most,
                        const char *unit)
 {
+	CAU_ASSERT(least <= most && unit, "a number from %g to %g", least, most);
 	if (!cJSON_IsNumber(value)) {
 		fail_type(reader, value, "a number");
 		return least;
@@ -143,6 +151,7 @@ double cau_read_number(cau_reader *reader, const cJSON *value, double least, dou
 
 int64_t cau_read_integer(cau_reader *reader, const cJSON *value, int64_t least, int64_t most)
 {
+	CAU_ASSERT(least <= most, "an integer from %lld to %lld", (long long)least, (long long)most);
 	if (!cJSON_IsNumber(value) || value->valuedouble != trunc(value->valuedouble)) {
 		fail_type(reader, value, "an integer");
 		return least;
@@ -165,6 +174,7 @@ bool cau_read_bool(cau_reader *reader, const cJSON *value)
 
 void cau_read_text(cau_reader *reader, const cJSON *value, char *text, size_t bytes)
 {
+	CAU_ASSERT(bytes > 0, "text in %zu bytes", bytes);
 	text[0] = 0;
 	if (!cJSON_IsString(value)) {
 		fail_type(reader, value, "a string");
@@ -190,6 +200,7 @@ void cau_read_name(cau_reader *reader, const cJSON *value, char *text)
 
 int cau_read_choice(cau_reader *reader, const cJSON *value, const char *const *names, int count)
 {
+	CAU_ASSERT(count > 0, "one of %d words", count);
 	if (!cJSON_IsString(value)) {
 		fail_type(reader, value, "a string");
 		return -1;
@@ -237,6 +248,7 @@ void cau_read_rotation(cau_reader *reader, const cJSON *value, double rotation[4
 void cau_read_no_others(cau_reader *reader, const cJSON *object, const char *const *names,
                         int count)
 {
+	CAU_ASSERT(count >= 0 && (names || !count), "%d names", count);
 	for (const cJSON *member = object ? object->child : NULL; member; member = member->next) {
 		bool known = false;
 		for (int i = 0; i < count && !known; i++)

@@ -1,12 +1,14 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include <string.h>
 
+#include "cautery/assert.h"
 #include "rpc/message.h"
 #include "json/document.h"
 
 static void read_vector(cau_reader *reader, const cJSON *value, const cau_wire_field *field,
                         double *to)
 {
+	CAU_ASSERT(field->count > 0, "\"%s\" has %d numbers", field->name, field->count);
 	if (!cau_read_array(reader, value, field->count, field->count) || !value)
 		return;
 	const cJSON *element = value->child;
@@ -42,6 +44,7 @@ static uint64_t read_hex64(cau_reader *reader, const cJSON *value)
 
 static uint32_t read_choices(cau_reader *reader, const cJSON *value, const cau_choices *choices)
 {
+	CAU_ASSERT(choices->count <= 32, "a set of %d words", choices->count);
 	uint32_t set = 0;
 	if (!cau_read_array(reader, value, 0, choices->count) || !value)
 		return 0;
@@ -61,6 +64,9 @@ static uint32_t read_choices(cau_reader *reader, const cJSON *value, const cau_c
 static void read_list(cau_reader *reader, const cJSON *value, const cau_wire_field *field,
                       cau_wire_list *list, bool strict)
 {
+	CAU_ASSERT_INDEX(field->object, CAU_WIRE_OBJECT_COUNT);
+	CAU_ASSERT(list->items || !list->capacity, "room for %d objects that is nowhere",
+	           list->capacity);
 	list->count = 0;
 	if (!cau_read_array(reader, value, 0, field->count) || !value)
 		return;
@@ -134,7 +140,10 @@ static void read_field(cau_reader *reader, const cJSON *value, const cau_wire_fi
 
 void cau_refuse_unknown(cau_reader *reader, const cJSON *value, cau_wire_object object)
 {
+	CAU_ASSERT_INDEX(object, CAU_WIRE_OBJECT_COUNT);
 	const cau_wire_shape *shape = &cau_wire_shapes[object];
+	CAU_ASSERT(shape->field_count <= CAU_WIRE_FIELDS_MAX, "%s has %d members", shape->name,
+	           shape->field_count);
 	const char *names[CAU_WIRE_FIELDS_MAX];
 	for (int32_t i = 0; i < shape->field_count; i++)
 		names[i] = shape->fields[i].name;
@@ -144,6 +153,7 @@ void cau_refuse_unknown(cau_reader *reader, const cJSON *value, cau_wire_object 
 void cau_read_message(cau_reader *reader, const cJSON *value, cau_wire_object object, void *to,
                       bool strict)
 {
+	CAU_ASSERT_INDEX(object, CAU_WIRE_OBJECT_COUNT);
 	const cau_wire_shape *shape = &cau_wire_shapes[object];
 	if (!cau_read_object(reader, value))
 		return;

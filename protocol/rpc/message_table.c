@@ -3,6 +3,7 @@
 
 #include <string.h>
 
+#include "cautery/assert.h"
 #include "cautery/command.h"
 
 // clang-format off: rows of tables
@@ -108,6 +109,8 @@ static const cau_method_info methods[CAU_METHOD_COUNT] = {
 
 const cau_method_info *cau_method_describe(cau_method method)
 {
+	CAU_ASSERT((unsigned)method >= CAU_METHOD_COUNT || methods[method].name, "method %d has no row",
+	           (int)method);
 	return (unsigned)method < CAU_METHOD_COUNT ? &methods[method] : NULL;
 }
 

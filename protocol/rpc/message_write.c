@@ -2,12 +2,15 @@
 #include <inttypes.h>
 #include <string.h>
 
+#include "cautery/assert.h"
 #include "cautery/name.h"
 #include "rpc/message.h"
 #include "json/document.h"
 
 static void check_number(cau_reader *place, const cau_wire_field *field, double value)
 {
+	CAU_ASSERT(field->least <= field->most, "\"%s\" from %g to %g", field->name, field->least,
+	           field->most);
 	if (!(value >= field->least && value <= field->most))
 		cau_reader_fail(place, CAU_BAD_VALUE, NULL, "%g is outside %g to %g", value, field->least,
 		                field->most);
@@ -16,6 +19,7 @@ static void check_number(cau_reader *place, const cau_wire_field *field, double 
 static void write_vector(cau_json_writer *writer, const cau_wire_field *field, const double *value,
                          cau_reader *place)
 {
+	CAU_ASSERT(field->count > 0, "\"%s\" has %d numbers", field->name, field->count);
 	for (int32_t i = 0; i < field->count; i++)
 		check_number(place, field, value[i]);
 	cau_json_numbers(writer, field->name, value, field->count);
@@ -45,6 +49,7 @@ static void write_choice(cau_json_writer *writer, const char *key, const cau_cho
 static void write_choices(cau_json_writer *writer, const cau_wire_field *field, uint32_t set,
                           cau_reader *place)
 {
+	CAU_ASSERT(field->choices->count <= 32, "a set of %d words", field->choices->count);
 	if (field->choices->count < 32 && set >> field->choices->count)
 		cau_reader_fail(place, CAU_BAD_VALUE, NULL, "a bit stands for no word");
 	cau_json_open(writer, field->name, '(');
@@ -57,6 +62,7 @@ static void write_choices(cau_json_writer *writer, const cau_wire_field *field, 
 static void write_list(cau_json_writer *writer, const cau_wire_field *field,
                        const cau_wire_list *list, cau_reader *place)
 {
+	CAU_ASSERT_INDEX(field->object, CAU_WIRE_OBJECT_COUNT);
 	if (list->count < 0 || list->count > field->count)
 		cau_reader_fail(place, CAU_BAD_VALUE, NULL, "%d objects, at most %d are allowed",
 		                list->count, field->count);
@@ -128,6 +134,7 @@ static void write_field(cau_json_writer *writer, const cau_wire_field *field, co
 void cau_write_message(cau_json_writer *writer, const char *key, cau_wire_object object,
                        const void *from, cau_reader *place)
 {
+	CAU_ASSERT_INDEX(object, CAU_WIRE_OBJECT_COUNT);
 	const cau_wire_shape *shape = &cau_wire_shapes[object];
 	cau_json_open(writer, key, '{');
 	for (int32_t i = 0; i < shape->field_count; i++) {

@@ -4,6 +4,8 @@
 #include <stddef.h>
 #include <string.h>
 
+#include "cautery/assert.h"
+
 typedef struct error_row {
 	int code;
 	const char *word;
@@ -25,6 +27,7 @@ static const error_row *find(int code)
 		if (rows[i].code == CAU_RPC_INTERNAL)
 			internal = &rows[i];
 	}
+	CAU_ASSERT(internal != NULL, "no row for code %d, nor for internal errors", code);
 	return internal;
 }
 

@@ -3,6 +3,7 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "cautery/assert.h"
 #include "cautery/rpc.h"
 #include "rpc/message.h"
 #include "json/document.h"
@@ -19,6 +20,7 @@ typedef struct rpc_document {
 
 void cau_rpc_fault_of_code(cau_rpc_fault *fault, cau_rpc_error_code code, const char *reason)
 {
+	CAU_ASSERT(reason != NULL, "fault %d without a reason", (int)code);
 	*fault = (cau_rpc_fault){.code = code};
 	snprintf(fault->status, sizeof fault->status, "%s", cau_rpc_error_word(code));
 	snprintf(fault->reason, sizeof fault->reason, "%s", reason);
@@ -89,6 +91,7 @@ static cau_status read_frame(const cJSON *root, cau_rpc_message *message, cau_rp
 
 static cau_status check_form(const cau_rpc_message *message, cau_rpc_fault *fault)
 {
+	CAU_ASSERT_INDEX(message->method, CAU_METHOD_COUNT);
 	cau_method_form form = cau_method_describe(message->method)->form;
 	if (message->kind == CAU_RPC_NOTIFICATION && form == CAU_FORM_REQUEST)
 		return refuse(fault, CAU_RPC_INVALID_REQUEST, "id", "the method needs an id");
@@ -99,6 +102,8 @@ static cau_status check_form(const cau_rpc_message *message, cau_rpc_fault *faul
 
 static cau_status take_command_apart(rpc_document *document, const char *name, cau_rpc_fault *fault)
 {
+	CAU_ASSERT(!document->session && !document->client_sequence, "\"%s\" is taken apart twice",
+	           name);
 	if (cau_value_member(document->params, "command"))
 		return refuse(fault, CAU_RPC_BAD_VALUE, "params.command", "the method says which command");
 	document->session = cJSON_DetachItemFromObjectCaseSensitive(document->params, "session");
@@ -226,6 +231,10 @@ void cau_rpc_finish(cau_rpc_message *message)
 
 cau_status cau_rpc_params(const cau_rpc_message *message, void *params, cau_error *error)
 {
+	CAU_ASSERT(message->document &&
+	               (message->kind == CAU_RPC_REQUEST || message->kind == CAU_RPC_NOTIFICATION),
+	           "the params of a message of kind %d", (int)message->kind);
+	CAU_ASSERT_INDEX(message->method, CAU_METHOD_COUNT);
 	const rpc_document *document = message->document;
 	const cau_method_info *info = cau_method_describe(message->method);
 	cau_reader reader;
@@ -236,6 +245,7 @@ cau_status cau_rpc_params(const cau_rpc_message *message, void *params, cau_erro
 
 cau_status cau_rpc_params_known(const cau_rpc_message *message, cau_error *error)
 {
+	CAU_ASSERT_INDEX(message->method, CAU_METHOD_COUNT);
 	const rpc_document *document = message->document;
 	const cau_method_info *info = cau_method_describe(message->method);
 	cau_reader reader;
@@ -248,6 +258,7 @@ cau_status cau_rpc_params_known(const cau_rpc_message *message, cau_error *error
 cau_status cau_rpc_envelope_read(const cau_rpc_message *message, cau_rpc_envelope *envelope,
                                  cau_error *error)
 {
+	CAU_ASSERT_INDEX(message->method, CAU_METHOD_COUNT);
 	const rpc_document *document = message->document;
 	bool command = cau_method_describe(message->method)->command >= 0;
 	const cJSON *session =

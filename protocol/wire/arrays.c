@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "wire/arrays.h"
 
+#include "cautery/assert.h"
+
 // Positions, mask, tools and statistics have cases of their own here, in encoder and decoder.
 _Static_assert(CAU_CHANNEL_COUNT - CAU_SCALAR_COUNT == 4, "a channel is a scalar or has cases");
 
@@ -15,6 +17,9 @@ int cau_channel_of_section(int type)
 
 array_shape cau_array_shape_of(const cau_stream_def *def, int channel)
 {
+	CAU_ASSERT_INDEX(channel, CAU_CHANNEL_COUNT);
+	CAU_ASSERT(def->vertex_count >= 0 && def->face_count >= 0, "%d vertices, %d faces",
+	           def->vertex_count, def->face_count);
 	size_t vertices = (size_t)def->vertex_count;
 	const cau_channel_info *info = cau_channel_describe((cau_channel_index)channel);
 	if (!cau_stream_has(def, channel))

@@ -3,6 +3,7 @@
 
 #include <meshoptimizer.h>
 
+#include "cautery/assert.h"
 #include "wire/bytes.h"
 
 enum { LENGTH_BYTES = 4 };
@@ -88,6 +89,8 @@ static const char *check_runs(const section *head, size_t element_count)
 static const char *unpack(const section *head, uint8_t *scratch, const uint8_t **numbers,
                           size_t *stride)
 {
+	CAU_ASSERT(head->width == 1 || head->width == 2 || head->width == 4, "numbers of %u bytes",
+	           head->width);
 	size_t element_bytes = (size_t)head->components * head->width;
 	size_t bytes = head->count * element_bytes;
 	if (head->coding == ELEMENTS_PLAIN) {
@@ -112,6 +115,7 @@ static const char *unpack(const section *head, uint8_t *scratch, const uint8_t *
 
 static uint32_t load_number(const uint8_t *at, uint32_t width, bool is_difference)
 {
+	CAU_ASSERT(width == 1 || width == 2 || width == 4, "a number of %u bytes", width);
 	uint32_t balance = is_difference ? ELEMENTS_BALANCE >> (32 - 8 * width) : 0;
 	uint32_t digits = width == 1 ? *at : width == 2 ? load_u16(at) : load_u32(at);
 	return (digits ^ balance) - balance;
@@ -121,6 +125,8 @@ static uint32_t load_number(const uint8_t *at, uint32_t width, bool is_differenc
 static bool set_run(const section *head, const elements_target *target, size_t begin, size_t end,
                     const uint8_t *numbers, size_t stride, uint32_t previous[6])
 {
+	CAU_ASSERT(begin <= end && end <= target->count, "elements %zu to %zu of %zu", begin, end,
+	           target->count);
 	bool in_range = true;
 	for (size_t element = begin; element < end; element++, numbers += stride) {
 		for (uint32_t c = 0; c < head->components; c++) {
@@ -143,6 +149,8 @@ static bool set_run(const section *head, const elements_target *target, size_t b
 const char *cau_elements_decode(const uint8_t *payload, size_t bytes, const elements_target *target,
                                 uint8_t *scratch, size_t *read)
 {
+	CAU_ASSERT(target->components >= 1 && target->components <= 6, "%u components",
+	           target->components);
 	section head;
 	const uint8_t *numbers;
 	size_t stride;
@@ -161,6 +169,8 @@ const char *cau_elements_decode(const uint8_t *payload, size_t bytes, const elem
 		at = load_leb128(at, end, &skip);
 		at = load_leb128(at, end, &length);
 		element += skip;
+		CAU_ASSERT(element + length <= target->count, "elements %zu + %zu of %zu", element, length,
+		           target->count);
 		if (!set_run(&head, target, element, element + length, numbers, stride, previous))
 			return "a value is out of its range";
 		numbers += length * stride;

@@ -3,6 +3,7 @@
 
 #include <string.h>
 
+#include "cautery/assert.h"
 #include "wire/arrays.h"
 #include "wire/header.h"
 #include "wire/records.h"
@@ -50,6 +51,9 @@ cau_status cau_frame_decoder_init(void *storage, size_t storage_bytes, const cau
 	made->state.quantised = (const int32_t *)made->arrays[CAU_CHANNEL_INDEX_POSITIONS];
 	made->state.face_mask = made->arrays[CAU_CHANNEL_INDEX_MASK];
 	made->state.tools = made->tools;
+	CAU_ASSERT((size_t)(made->scratch - (uint8_t *)storage) + cau_arrays_scratch_bytes(def) <=
+	               storage_bytes,
+	           "arrays beyond %zu bytes", storage_bytes);
 	*decoder = made;
 	return CAU_OK;
 }
@@ -116,6 +120,7 @@ static void forget(cau_frame_decoder *decoder)
 static const char *read_array(cau_frame_decoder *decoder, const section_cursor *cursor, int channel,
                               bool key)
 {
+	CAU_ASSERT_INDEX(channel, CAU_CHANNEL_COUNT);
 	array_shape shape = cau_array_shape_of(&decoder->def, channel);
 	elements_target target = {.values = decoder->arrays[channel],
 	                          .count = shape.count,
@@ -127,6 +132,7 @@ static const char *read_array(cau_frame_decoder *decoder, const section_cursor *
 	size_t count;
 	const char *wrong = cau_elements_decode(cursor->payload, cursor->payload_bytes, &target,
 	                                        decoder->scratch, &count);
+	CAU_ASSERT(wrong || count <= shape.count, "%zu of %zu elements", count, shape.count);
 	if (!wrong && channel == CAU_CHANNEL_INDEX_POSITIONS)
 		decoder->state.moved_count = (int32_t)count;
 	if (!wrong && channel == CAU_CHANNEL_INDEX_MASK)

@@ -4,6 +4,7 @@
 #include <math.h>
 #include <string.h>
 
+#include "cautery/assert.h"
 #include "wire/bytes.h"
 #include "wire/header.h"
 #include "wire/records.h"
@@ -51,6 +52,9 @@ cau_status cau_frame_encoder_init(void *storage, size_t storage_bytes, const cau
 		words += 2 * shape.count * shape.components;
 	}
 	made->scratch = (uint8_t *)words;
+	CAU_ASSERT((size_t)(made->scratch - (uint8_t *)storage) + cau_arrays_scratch_bytes(def) <=
+	               storage_bytes,
+	           "arrays beyond %zu bytes", storage_bytes);
 	cau_frame_encoder_restart(made, epoch);
 	*encoder = made;
 	return CAU_OK;
@@ -58,6 +62,7 @@ cau_status cau_frame_encoder_init(void *storage, size_t storage_bytes, const cau
 
 void cau_frame_encoder_restart(cau_frame_encoder *encoder, uint64_t epoch)
 {
+	CAU_ASSERT(epoch != 0, "epoch %llu", (unsigned long long)epoch);
 	encoder->header = (cau_frame_header){
 		.session = encoder->def.session, .profile = encoder->def.profile, .epoch = epoch};
 }
@@ -163,6 +168,8 @@ static void quantise_scalar(cau_frame_encoder *encoder, const cau_stream_sample 
 	uint32_t *next = encoder->next[channel];
 	double least = info->least, most = info->most;
 	double steps_per_unit = 1.0 / cau_channel_step(&encoder->def, channel);
+	CAU_ASSERT(steps_per_unit > 0 && values, "channel %d: %g steps a unit", (int)channel,
+	           steps_per_unit);
 	for (int32_t vertex = 0; vertex < encoder->def.vertex_count; vertex++) {
 		double steps = ((double)values[vertex] - least) * steps_per_unit;
 		steps = steps > 0.0 ? steps : 0.0;
@@ -192,6 +199,7 @@ static cau_status take_arrays(cau_frame_encoder *encoder, const cau_stream_sampl
 
 bool cau_tool_sets_differ(const cau_tool_set *set, const cau_stream_tool *tools, int32_t count)
 {
+	CAU_ASSERT(count >= 0 && count <= CAU_MAX_TOOLS, "%d tools", count);
 	bool differ = set->count != count;
 	for (int32_t i = 0; i < count && !differ; i++)
 		differ = tools[i].shape != set->tools[i].shape ||
@@ -201,6 +209,8 @@ bool cau_tool_sets_differ(const cau_tool_set *set, const cau_stream_tool *tools,
 
 static bool take_tools(cau_frame_encoder *encoder, const cau_stream_sample *sample)
 {
+	CAU_ASSERT(sample->tool_count >= 0 && sample->tool_count <= CAU_MAX_TOOLS, "%d tools",
+	           sample->tool_count);
 	cau_tool_set *held = &encoder->tools;
 	bool renamed = cau_tool_sets_differ(held, sample->tools, sample->tool_count);
 	for (int32_t i = 0; i < sample->tool_count; i++)
@@ -224,6 +234,7 @@ static uint8_t *section_payload(const frame_writer *writer)
 
 static void end_section(frame_writer *writer, cau_section type, size_t payload_bytes)
 {
+	CAU_ASSERT(payload_bytes % 4 == 0, "a section of %zu bytes", payload_bytes);
 	cau_section_head_write(writer->at, type, payload_bytes);
 	writer->at += CAU_FRAME_SECTION_BYTES + payload_bytes;
 	writer->section_count++;
@@ -286,9 +297,16 @@ static void write_sections(const cau_frame_encoder *encoder, frame_part part, fr
 static size_t end_frame(const cau_frame_encoder *encoder, frame_writer *writer, cau_frame_kind kind,
                         uint64_t base_sequence)
 {
+	CAU_ASSERT(writer->at >= writer->start + CAU_FRAME_HEADER_BYTES,
+	           "a frame shorter than its header, of %u sections", writer->section_count);
+	CAU_ASSERT(base_sequence <= encoder->header.sequence, "frame %llu builds on %llu",
+	           (unsigned long long)encoder->header.sequence, (unsigned long long)base_sequence);
 	cau_frame_header header = encoder->header;
 	header.kind = (uint8_t)kind;
 	header.byte_count = (uint32_t)(writer->at - writer->start);
+	CAU_ASSERT(header.byte_count <= cau_frame_bytes_max(&encoder->def),
+	           "a frame of %u bytes, at most %zu", header.byte_count,
+	           cau_frame_bytes_max(&encoder->def));
 	header.base_sequence = base_sequence;
 	header.section_count = writer->section_count;
 	cau_frame_header_write(writer->start, &header);
@@ -321,6 +339,8 @@ size_t cau_encoder_write_delta(const cau_frame_encoder *encoder,
                                uint32_t *const base[CAU_CHANNEL_COUNT], uint64_t base_sequence,
                                bool names, void *bytes)
 {
+	CAU_ASSERT(base_sequence < encoder->header.sequence, "frame %llu builds on %llu",
+	           (unsigned long long)encoder->header.sequence, (unsigned long long)base_sequence);
 	frame_writer writer = begin_frame(bytes);
 	write_sections(encoder, (frame_part){.base = base, .names = names}, &writer);
 	return end_frame(encoder, &writer, CAU_FRAME_DELTA, base_sequence);

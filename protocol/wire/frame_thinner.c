@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include <string.h>
 
+#include "cautery/assert.h"
 #include "wire/frame_encoder.h"
 
 struct cau_frame_thinner {
@@ -41,6 +42,8 @@ cau_status cau_frame_thinner_init(void *storage, size_t storage_bytes,
 
 static void keep(cau_frame_thinner *thinner)
 {
+	CAU_ASSERT(thinner->encoder->header.sequence % CAU_FRAME_THINNING == 0, "frame %llu is kept",
+	           (unsigned long long)thinner->encoder->header.sequence);
 	const cau_frame_encoder *encoder = thinner->encoder;
 	thinner->epoch = encoder->header.epoch;
 	thinner->sequence = encoder->header.sequence;
@@ -63,6 +66,8 @@ cau_status cau_frame_thin(cau_frame_thinner *thinner, void *bytes, size_t capaci
 		return status;
 	bool follows = thinner->epoch == encoder->header.epoch &&
 	               thinner->sequence + CAU_FRAME_THINNING == sequence;
+	CAU_ASSERT(!follows || thinner->sequence < sequence, "frame %llu follows %llu",
+	           (unsigned long long)sequence, (unsigned long long)thinner->sequence);
 	if (follows) {
 		bool names =
 			cau_tool_sets_differ(&thinner->tools, encoder->tools.tools, encoder->tools.count);

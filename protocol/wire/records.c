@@ -3,6 +3,7 @@
 
 #include <math.h>
 
+#include "cautery/assert.h"
 #include "cautery/name.h"
 #include "wire/bytes.h"
 
@@ -65,6 +66,9 @@ static uint8_t *store_vector(uint8_t *at, const double *value, int count)
 
 static void store_tool(uint8_t *at, const cau_stream_tool *tool)
 {
+	CAU_ASSERT_INDEX(tool->shape, CAU_TOOL_SHAPE_COUNT);
+	CAU_ASSERT(tool->energy_off < CAU_ENERGY_OFF_COUNT, "reason %d for energy off",
+	           tool->energy_off);
 	store_u64(at, tool->sequence);
 	at = store_vector(at + 8, tool->pose.position_m, 3);
 	at = store_vector(at, tool->pose.rotation, 4);
@@ -108,6 +112,7 @@ const char *cau_stream_tool_check(const cau_stream_tool *tool)
 
 size_t cau_tools_write(uint8_t *out, const cau_stream_tool *tools, int32_t count)
 {
+	CAU_ASSERT(count >= 0 && count <= CAU_MAX_TOOLS, "%d tools", count);
 	for (int32_t i = 0; i < count; i++)
 		store_tool(out + (size_t)i * TOOL_RECORD_BYTES, &tools[i]);
 	return (size_t)count * TOOL_RECORD_BYTES;
@@ -147,6 +152,7 @@ static bool load_tool(const uint8_t *at, cau_stream_tool *tool)
 const char *cau_tools_read(const uint8_t *payload, size_t bytes, cau_stream_tool *tools,
                            int32_t count)
 {
+	CAU_ASSERT(count >= 0 && count <= CAU_MAX_TOOLS, "%d tools", count);
 	if (bytes != (size_t)count * TOOL_RECORD_BYTES)
 		return "there are not as many tools as names";
 	for (int32_t i = 0; i < count; i++) {
@@ -158,6 +164,7 @@ const char *cau_tools_read(const uint8_t *payload, size_t bytes, cau_stream_tool
 
 static int is_float_word(size_t word)
 {
+	CAU_ASSERT_INDEX(word, STATISTICS_WORDS);
 	return word < STATISTICS_FLOATS || word >= STATISTICS_FLOATS + STATISTICS_COUNTS;
 }
 

@@ -4,6 +4,7 @@
 #include <math.h>
 #include <string.h>
 
+#include "cautery/assert.h"
 #include "wire/arrays.h"
 #include "wire/header.h"
 
@@ -82,6 +83,8 @@ static void write_section(topology_writer *writer, cau_section type, const uint3
 	                          .all = count > 0};
 	size_t bytes =
 		cau_elements_encode(&source, writer->scratch, writer->at + CAU_FRAME_SECTION_BYTES, NULL);
+	CAU_ASSERT(bytes % 4 == 0 && bytes <= cau_elements_bytes_max(count, components),
+	           "a section of %zu bytes", bytes);
 	cau_section_head_write(writer->at, type, bytes);
 	writer->at += CAU_FRAME_SECTION_BYTES + bytes;
 	writer->section_count++;
@@ -90,6 +93,7 @@ static void write_section(topology_writer *writer, cau_section type, const uint3
 static void write_faces(const cau_stream_def *def, const cau_topology *topology, uint32_t *values,
                         topology_writer *writer)
 {
+	CAU_ASSERT(def->face_count >= 0, "%d faces", def->face_count);
 	size_t faces = (size_t)def->face_count;
 	if (faces > 0)
 		memcpy(values, topology->face, faces * CORNERS * 4);

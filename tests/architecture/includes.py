@@ -17,6 +17,7 @@ INCLUDE = re.compile(r'^\s*#\s*include\s*([<"])([^>"]+)[>"]', re.MULTILINE)
 # The door between core and protocol stays small: plain data, and what follows from it alone.
 SHARED_TYPES = "core/types/"
 SHARED_TYPES_MOST_FILES = 8
+FAILED_ASSERTION = SHARED_TYPES + "assert.c"  # the one source among the headers
 
 # Folders (relative to the root) in which an include of a room's file may be found.
 DOORS = {
@@ -72,9 +73,11 @@ def door_violation(name, header, headers):
 
 def shared_type_violations(root, files):
     shared = [name for name in files if name.startswith(SHARED_TYPES) and not name.endswith(".txt")]
-    found = [f"{name}: core/types holds headers only" for name in shared if not name.endswith(".h")]
-    if len(shared) > SHARED_TYPES_MOST_FILES:
-        found.append(f"core/types: {len(shared)} files, at most {SHARED_TYPES_MOST_FILES} are shared")
+    found = [f"{name}: core/types holds headers only" for name in shared
+             if not name.endswith(".h") and name != FAILED_ASSERTION]
+    headers = [name for name in shared if name != FAILED_ASSERTION]
+    if len(headers) > SHARED_TYPES_MOST_FILES:
+        found.append(f"core/types: {len(headers)} files, at most {SHARED_TYPES_MOST_FILES} are shared")
     for name in shared:
         for quote, header in INCLUDE.findall(project.read_text(root, name) or ""):
             if (quote == '"' or "/" in header) and SHARED_TYPES + header not in files:

@@ -8,7 +8,9 @@ import tempfile
 import unittest
 
 import arrows
+import assertions
 import circles
+import examples
 import formatting
 import includes
 import layout
@@ -143,11 +145,37 @@ class Includes(Tree):
 
     def test_the_shared_types_stay_small(self):
         self.assertEqual(len(self.found("core/types/cautery/a.c", "")), 1)
+        self.assertEqual(self.found("core/types/assert.c", '#include "cautery/status.h"\n'), [])
         self.assertEqual(len(self.found("core/types/cautery/a.h", "#include <sys/stat.h>\n")), 1)
         many = [f"core/types/cautery/{i}.h" for i in range(9)]
         for name in many:
             self.write(name, "")
         self.assertEqual(len(includes.shared_type_violations(self.root, many)), 1)
+
+
+class Examples(Tree):
+    HEADER = """// What it is.
+//
+//     #include "cautery/a.h"
+//
+//     static int twice(void)
+//     {
+//         return 2 * %s;
+//     }
+#pragma once
+enum { CAU_A = 1 };
+"""
+
+    def found(self, text):
+        self.write("core/types/cautery/a.h", text)
+        return examples.violations(self.root, ["core/types/cautery/a.h"], "cc")
+
+    def test_a_use_that_compiles_passes(self):
+        self.assertEqual(self.found(self.HEADER % "CAU_A"), [])
+
+    def test_none_and_a_broken_one_are_found(self):
+        self.assertEqual(len(self.found("// What it is.\n#pragma once\n")), 1)
+        self.assertEqual(len(self.found(self.HEADER % "CAU_B")), 1)
 
 
 class Compiled(Tree):
@@ -284,6 +312,22 @@ class Symbols(Compiled):
         self.assertEqual(self.found(core, ("server/a.c", use.format("cau_a"))), [])
         self.assertEqual(len(self.found(core, ("protocol/a.c", use.format("cau_a")))), 1)
         self.assertEqual(len(self.found(core, ("clients/a.c", use.format("cau_a")))), 1)
+
+    def test_assertions_are_where_they_are_on_and_nowhere_else(self):
+        failed = "void cau_assert_failed(void);\nvoid {0}(void) {{ cau_assert_failed(); }}\n"
+        bare = [self.compiled("core/a.c", "int cau_a;\n")]
+        asserting = [self.compiled("core/b.c", failed.format("cau_b"))]
+        self.assertEqual(assertions.violations(bare, on=False), [])
+        self.assertEqual(len(assertions.violations(bare + asserting, on=False)), 1)
+        self.assertEqual(assertions.violations(bare + asserting, on=True), [])
+        self.assertEqual(len(assertions.violations(bare, on=True)), 1)
+
+    def test_a_failed_assertion_may_end_the_program_from_every_room(self):
+        end = ("core/types/assert.c", "void abort(void);\nvoid cau_assert_failed(void) { abort(); }\n")
+        use = "void cau_assert_failed(void);\nvoid {0}(void) {{ cau_assert_failed(); }}\n"
+        self.assertEqual(self.found(end, ("core/a.c", use.format("cau_a")),
+                                    ("protocol/a.c", use.format("cau_b"))), [])
+        self.assertEqual(len(self.found(("core/a.c", "void abort(void);\nvoid cau_a(void) { abort(); }\n"))), 1)
 
     def test_exported_names(self):
         self.assertEqual(len(self.found(("core/a.c", "void helper(void) {}\n"))), 1)

@@ -1,15 +1,31 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // A tissue session: the whole interface of Cautery's core.
 //
-//     cau_scene_def *scene = ...;                        // protocol reads it from JSON
-//     cau_session_def def = cau_default_session_def();
-//     def.scene = scene;
-//     cau_session *session;
-//     if (cau_session_create(&def, &session, &error)) ...
-//     cau_session_submit(session, &command, &error);     // any number, any time
-//     cau_session_step(session, &error);                 // one tick
-//     cau_session_frame(session, &frame);                // what to draw, valid until the next step
-//     cau_session_destroy(session);
+//     #include "cautery/session.h"
+//
+//     // Runs a checked scene for `ticks` ticks; the highest vertex at their end, m.
+//     static cau_status run(const cau_scene_def *scene, int ticks, double *highest_m,
+//                           cau_error *error)
+//     {
+//         cau_session_def def = cau_default_session_def();
+//         cau_session *session = NULL;
+//         cau_session_info info;
+//         cau_frame frame;
+//         def.scene = scene; // protocol reads it from JSON
+//         cau_status status = cau_session_create(&def, &session, error);
+//         if (status)
+//             return status; // error says what is wrong, and where
+//         for (int tick = 0; tick < ticks && !status; tick++)
+//             status = cau_session_step(session, error); // commands: cau_session_submit
+//         cau_session_describe(session, &info);
+//         cau_session_frame(session, &frame); // what to draw, valid until the next step
+//         *highest_m = frame.position[2];
+//         for (int v = 1; v < info.vertex_count; v++)
+//             if (frame.position[3 * v + 2] > *highest_m)
+//                 *highest_m = frame.position[3 * v + 2];
+//         cau_session_destroy(session);
+//         return status;
+//     }
 //
 // A session is used from one thread at a time; several sessions may be used from several threads.
 // Determinism: the same definition and the same commands at the same ticks give the same bits, for

@@ -19,6 +19,19 @@
 //     least    in `unit`, what n = 0 stands for
 //     step     in `unit`, one step; 0: told by the stream, as stress_step_pa
 //     most     the largest n: 255 or 65535
+//
+// In use:
+//
+//     #include "cautery/channels.h"
+//
+//     // The word of a channel's bit on the wire, or NULL.
+//     static const char *word_of(uint32_t bit)
+//     {
+//     #define ROW(X, CODE, name, ...) if (bit == CAU_CHANNEL_##CODE) return #name;
+//         CAU_CHANNEL_ROWS(ROW, ROW, )
+//     #undef ROW
+//         return (const char *)0;
+//     }
 #pragma once
 
 #include <stdint.h>

@@ -1,6 +1,18 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Typed commands to a session: what a driver or an operator can ask of a tissue. Shared by core
 // (which applies them at tick borders) and protocol (which reads and writes them as JSON).
+//
+//     #include "cautery/command.h"
+//     #include "cautery/defaults.h"
+//
+//     // Turns a tool's energy on at the next tick border.
+//     static void ask_for_energy(cau_command *command, const char *tool, uint64_t sequence)
+//     {
+//         cau_default_command(command, CAU_COMMAND_TOOL_ENERGIZE);
+//         strncpy(command->tool, tool, sizeof command->tool - 1);
+//         command->sequence = sequence;
+//         command->as.energized = 1;
+//     }
 #pragma once
 
 #include "cautery/scene.h"

@@ -2,6 +2,18 @@
 // Definitions with every member at its default. Scalars come from the tables of scene.h; what
 // stands beside the tables (vectors, choices, what differs by kind of tissue) stands here and
 // nowhere else. Shared by core and protocol, hence inline.
+//
+//     #include "cautery/defaults.h"
+//
+//     // A hook of 2 mm that stands a centimetre above the tissue.
+//     static cau_tool_def small_hook(void)
+//     {
+//         cau_tool_def tool;
+//         cau_default_tool_def(&tool, CAU_TOOL_HOOK);
+//         tool.hot_radius_m = 1e-3;
+//         tool.pose.position_m[2] = 0.01;
+//         return tool;
+//     }
 #pragma once
 
 #include <string.h>

@@ -1,5 +1,13 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Why a tool's energy is off; shared by core, protocol and the server's watchdog.
+//
+//     #include "cautery/energy_off.h"
+//
+//     // Whether somebody must look at the tool before its energy comes back.
+//     static int was_lost(cau_energy_off reason)
+//     {
+//         return reason == CAU_ENERGY_OFF_WATCHDOG || reason == CAU_ENERGY_OFF_TAKEN_OVER;
+//     }
 #pragma once
 
 // code, wire name

@@ -1,6 +1,16 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // The rule for names of scenes, meshes, layers, sessions and tools: they become ROS names,
 // partitions and URLs.
+//
+//     #include "cautery/name.h"
+//     #include "cautery/status.h"
+//
+//     static cau_status check(const char *name, cau_error *error)
+//     {
+//         if (cau_name_is_valid(name)) // "left-hook", not "Left hook"
+//             return CAU_OK;
+//         return cau_fail(error, CAU_BAD_VALUE, "name", "not a name: " CAU_NAME_RULE);
+//     }
 #pragma once
 
 #include <stdbool.h>

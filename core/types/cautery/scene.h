@@ -5,6 +5,23 @@
 // Every scalar parameter stands once, in a table X(field, default, least, most, unit, meaning).
 // The tables make the struct fields, the defaults, the range checks, the JSON fields (JSON name =
 // field name) and the documentation. Lengths, vectors and choices stand beside them.
+//
+//     #include "cautery/defaults.h"
+//     #include "cautery/scene.h"
+//
+//     // A taut sheet, pinned at its rim. The struct is large: keep it on the heap.
+//     static void make_drum(cau_scene_def *scene)
+//     {
+//         cau_default_scene_def(scene);
+//         scene->mesh_count = scene->layer_count = scene->pin_count = 1;
+//         cau_default_mesh_def(&scene->meshes[0]);
+//         strcpy(scene->meshes[0].name, "sheet");
+//         cau_default_layer_def(&scene->layers[0], CAU_LAYER_FASCIA);
+//         strcpy(scene->layers[0].name, "fascia");
+//         strcpy(scene->layers[0].mesh, "sheet");
+//         scene->layers[0].sheet[0].target[0] = 0.1; // wants to be 32 % as long along its fibres
+//         cau_default_selection(&scene->pins[0], CAU_SELECT_RIM);
+//     }
 #pragma once
 
 #include <stddef.h>
@@ -58,11 +75,21 @@ typedef struct cau_mesh_def {
 } cau_mesh_def;
 
 // ---- materials ------------------------------------------------------------------------------
+
+// The laws of fat, one row each: code, word in JSON, largest Poisson's ratio, whether its stress is
+// the gradient of an energy, whether it keeps a rotation from evaluation to evaluation, a and b of
+// the Lame parameters lambda + a mu and b mu that it is evaluated with (0 and 1: those of small
+// strain), and what it is. The stress of the law `word` is word_stress in
+// core/constraint/fat_energy.h.
 #define CAU_MODEL_TABLE(X)                                                                         \
-	X(NEOHOOKEAN, "neohookean")                                                                    \
-	X(COROTATED, "corotated")                                                                      \
-	X(STVK, "stvk")                                                                                \
-	X(ENERGY, "energy") /* eq. 14-17 as printed */
+	X(NEOHOOKEAN, neohookean, 0.45, true, false, 5.0 / 6.0, 4.0 / 3.0,                             \
+	  "stable neo-Hookean (Smith et al. 2018); tetrahedra that are inside out recover")            \
+	X(COROTATED, corotated, 0.45, true, true, 0.0, 1.0,                                            \
+	  "linear elasticity in the frame of the nearest rotation")                                    \
+	X(STVK, stvk, 0.45, true, false, 0.0, 1.0,                                                     \
+	  "St. Venant-Kirchhoff; weak in compression, does not resist inversion")                      \
+	X(ENERGY, energy, 1.0 / 3.0, false, false, 0.0, 1.0,                                           \
+	  "the energy constraint as printed (eq. 14-17)")
 #define CAU_LIMIT_TABLE(X)                                                                         \
 	X(NONE, "none")                                                                                \
 	X(TARGET, "target") /* F^T F is driven to T (eq. 11, 12) */                                    \
@@ -171,14 +198,17 @@ typedef struct cau_selection {
 } cau_selection;
 
 // ---- tools ----------------------------------------------------------------------------------
+// One row each: code, word in JSON, whether it has a hot part, whether it has jaws that grasp, and
+// what it is. Frames tell a shape by its row's number, so new rows come last. The signed distances
+// of the shape `word` are cau_shape_word in core/tool.
 #define CAU_TOOL_SHAPE_TABLE(X)                                                                    \
-	X(SPHERE, "sphere")   /* hot ball at the tip, cold shaft */                                    \
-	X(CAPSULE, "capsule") /* hot needle of tip_length_m, cold shaft */                             \
-	X(HOOK, "hook")       /* monopolar L hook: hot foot and heel, cold shaft */                    \
-	X(SPATULA, "spatula") /* hot flat blade, cold shaft */                                         \
-	X(BIPOLAR, "bipolar") /* two jaws that close, hot inner faces */                               \
-	X(SHEARS, "shears")   /* ultrasonic: one hot blade, one cold clamping jaw */                   \
-	X(GRASPER, "grasper") /* two cold jaws */
+	X(SPHERE, sphere, true, false, "hot ball at the tip, cold shaft")                              \
+	X(CAPSULE, capsule, true, false, "hot needle of tip_length_m, cold shaft")                     \
+	X(HOOK, hook, true, false, "monopolar L hook: hot foot and heel, cold shaft")                  \
+	X(SPATULA, spatula, true, false, "hot flat blade, cold shaft")                                 \
+	X(BIPOLAR, bipolar, true, true, "two jaws that close, hot inner faces")                        \
+	X(SHEARS, shears, true, true, "ultrasonic: one hot blade, one cold clamping jaw")              \
+	X(GRASPER, grasper, false, true, "two cold jaws")
 
 // Sizes of a tool. Its own frame: the tip at the origin, the shaft along +z, jaws open in x.
 #define CAU_TOOL_TABLE(X)                                                                          \
@@ -273,7 +303,7 @@ typedef enum cau_mesh_source {
 		CAU_MESH_SOURCE_COUNT
 } cau_mesh_source;
 typedef enum cau_model {
-#define X(code, name) CAU_MODEL_##code,
+#define X(code, ...) CAU_MODEL_##code,
 	CAU_MODEL_TABLE(X)
 #undef X
 		CAU_MODEL_COUNT
@@ -303,7 +333,7 @@ typedef enum cau_select_kind {
 		CAU_SELECT_COUNT
 } cau_select_kind;
 typedef enum cau_tool_shape_kind {
-#define X(code, name) CAU_TOOL_##code,
+#define X(code, ...) CAU_TOOL_##code,
 	CAU_TOOL_SHAPE_TABLE(X)
 #undef X
 		CAU_TOOL_SHAPE_COUNT

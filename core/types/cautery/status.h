@@ -1,5 +1,19 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Status codes and error reports, shared by core and protocol.
+//
+//     #include "cautery/status.h"
+//
+//     static cau_status check_speed(double speed_m_s, cau_error *error)
+//     {
+//         if (speed_m_s >= 0 && speed_m_s <= 5)
+//             return CAU_OK;
+//         return cau_fail(error, CAU_BAD_VALUE, "speed_m_s", "%g is not within 5 m/s", speed_m_s);
+//     }
+//
+//     static void report(const cau_error *error)
+//     {
+//         printf("%s: %s: %s\n", cau_status_name(error->status), error->path, error->reason);
+//     }
 #pragma once
 
 #include <stdarg.h>

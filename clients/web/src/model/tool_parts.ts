@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Tool shapes as solids, in the tool's frame (tip at the origin, shaft along +z, jaws open in x), with
 // the proportions of the core's signed distances, see core/tool/README.md.
-import { PARAMETERS, type Tool } from '../wire/messages.gen';
+import { PARAMETERS, SHAPE_TRAITS, type Tool } from '../wire/messages.gen';
 
 export type Vector3 = [number, number, number];
 
@@ -140,9 +140,9 @@ export function toolParts(tool: Tool): ToolPart[] {
 }
 
 export function hasJaws(shape: Tool['shape']): boolean {
-  return shape === 'bipolar' || shape === 'shears' || shape === 'grasper';
+  return SHAPE_TRAITS[shape].jaws;
 }
 
 export function hasHeat(shape: Tool['shape']): boolean {
-  return shape !== 'grasper';
+  return SHAPE_TRAITS[shape].hot;
 }

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // What a material has besides its plain numbers: models and limits to choose from, and values for each
 // direction of the material.
-import type { Layer } from '../wire/messages.gen';
+import { LIMITS, MODELS, PROJECTIONS, type Layer } from '../wire/messages.gen';
 import { element, field } from './dom';
 
 type Kind = Layer['kind'];
@@ -25,13 +25,13 @@ interface Directions {
   when?: 'target' | 'range';
 }
 
-const LIMIT: Omit<Choice, 'default'> = { name: 'limit', words: 'Strain limit', options: ['none', 'target', 'range'] };
+const LIMIT: Omit<Choice, 'default'> = { name: 'limit', words: 'Strain limit', options: LIMITS };
 const PROJECTION: Choice = {
-  name: 'projection', words: 'Projection', options: ['closed_form', 'linearised'], default: 'closed_form',
+  name: 'projection', words: 'Projection', options: PROJECTIONS, default: 'closed_form',
 };
 const SHEET: Choice[] = [{ ...LIMIT, default: 'target' }, PROJECTION];
 const FAT: Choice[] = [
-  { name: 'model', words: 'Model', options: ['neohookean', 'corotated', 'stvk', 'energy'], default: 'neohookean' },
+  { name: 'model', words: 'Model', options: MODELS, default: 'neohookean' },
   { ...LIMIT, default: 'none' },
   PROJECTION,
 ];

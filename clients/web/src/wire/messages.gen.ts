@@ -1694,6 +1694,22 @@ export type ScalarName = keyof typeof SCALARS;
 export const TOOL_SHAPES = ['sphere', 'capsule', 'hook', 'spatula', 'bipolar', 'shears', 'grasper', ] as const;
 export const ENERGY_OFF_REASONS = ['never_enabled', 'commanded', 'watchdog', 'restored', 'taken_over', ] as const;
 
+/** What a tool of a shape has. */
+export const SHAPE_TRAITS: Readonly<Record<(typeof TOOL_SHAPES)[number], { hot: boolean; jaws: boolean; meaning: string }>> = {
+  sphere: { hot: true, jaws: false, meaning: 'hot ball at the tip, cold shaft' },
+  capsule: { hot: true, jaws: false, meaning: 'hot needle of tip_length_m, cold shaft' },
+  hook: { hot: true, jaws: false, meaning: 'monopolar L hook: hot foot and heel, cold shaft' },
+  spatula: { hot: true, jaws: false, meaning: 'hot flat blade, cold shaft' },
+  bipolar: { hot: true, jaws: true, meaning: 'two jaws that close, hot inner faces' },
+  shears: { hot: true, jaws: true, meaning: 'ultrasonic: one hot blade, one cold clamping jaw' },
+  grasper: { hot: false, jaws: true, meaning: 'two cold jaws' },
+};
+
+/** Choices of a material, in words. */
+export const MODELS = ['neohookean', 'corotated', 'stvk', 'energy', ] as const;
+export const LIMITS = ['none', 'target', 'range', ] as const;
+export const PROJECTIONS = ['closed_form', 'linearised', ] as const;
+
 export interface Parameter {
   name: string;
   unit: string;
