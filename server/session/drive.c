@@ -9,11 +9,14 @@
 #include <math.h>
 #include <stdio.h>
 
+#include "cautery/assert.h"
 #include "cautery/rpc_errors.h"
 #include "session/internal.h"
 
 cau_drive *cau_drive_find(cau_logic *logic, const char *tool)
 {
+	CAU_ASSERT(logic->drive_count >= 0 && logic->drive_count <= CAU_MAX_TOOLS, "%d tools",
+	           logic->drive_count);
 	for (int32_t i = 0; i < logic->drive_count; i++)
 		if (strcmp(logic->drives[i].tool, tool) == 0)
 			return &logic->drives[i];
@@ -32,6 +35,7 @@ const cau_drive *cau_logic_drive(const cau_logic *logic, const char *tool)
 
 static void go_dark(cau_drive *drive, int energy_off, const char *cause, cau_effects *effects)
 {
+	CAU_ASSERT_INDEX(energy_off, CAU_ENERGY_OFF_COUNT);
 	drive->cut_off = energy_off;
 	drive->by_order = false;
 	snprintf(drive->cut_cause, sizeof drive->cut_cause, "%s", cause);
@@ -45,14 +49,18 @@ static void go_dark(cau_drive *drive, int energy_off, const char *cause, cau_eff
 	drive->enabled = false;
 	drive->energy_off = energy_off;
 	cau_effect_tell(effects, drive);
+	CAU_ASSERT(!drive->enabled, "tool %s is told dark and is not", drive->tool);
 }
 
 void cau_drive_cut(cau_drive *drive, uint64_t moment, int energy_off, const char *cause,
                    cau_effects *effects)
 {
+	CAU_ASSERT(cause[0] != 0, "tool %s is cut for no cause", drive->tool);
 	if (moment > drive->cut_moment)
 		drive->cut_moment = moment;
 	go_dark(drive, energy_off, cause, effects);
+	CAU_ASSERT(!drive->enabled && drive->cut_moment >= moment,
+	           "tool %s is cut at %llu and is not dark", drive->tool, (unsigned long long)moment);
 }
 
 void cau_drive_cut_lit(cau_logic *logic, uint64_t moment, int energy_off, const char *cause,
@@ -66,6 +74,9 @@ void cau_drive_cut_lit(cau_logic *logic, uint64_t moment, int energy_off, const 
 // next still counts.
 static void cut_lost(cau_logic *logic, cau_drive *drive, const char *cause, cau_effects *effects)
 {
+	CAU_ASSERT(logic->moment >= drive->lost_moment, "tool %s is lost at %llu, after %llu",
+	           drive->tool, (unsigned long long)logic->moment,
+	           (unsigned long long)drive->lost_moment);
 	drive->lost_moment = logic->moment;
 	drive->lost_client = drive->driver.client;
 	go_dark(drive, CAU_ENERGY_OFF_WATCHDOG, cause, effects);
@@ -83,6 +94,7 @@ void cau_drive_cut_client(cau_logic *logic, uint32_t client, const char *cause,
 
 static double silent_from_s(const cau_drive *drive)
 {
+	CAU_ASSERT(drive->driver.deadline_s >= 0, "a deadline of %g s", drive->driver.deadline_s);
 	return drive->alive_s + drive->driver.deadline_s;
 }
 
@@ -151,6 +163,8 @@ bool cau_drive_next_cut(cau_logic *logic, bool forced, cau_action *action)
 			.act = CAU_ACT_CUT, .was_lit = drive->lit && !drive->enabled, .drive = *drive};
 		memcpy(logic->cutting, drive->tool, sizeof logic->cutting);
 		drive->freeze = false; // one asked for meanwhile is another
+		CAU_ASSERT(action->act == CAU_ACT_CUT, "tool %s is cut by act %d", drive->tool,
+		           (int)action->act);
 		return true;
 	}
 	return false;
@@ -159,7 +173,8 @@ bool cau_drive_next_cut(cau_logic *logic, bool forced, cau_action *action)
 void cau_drive_cut_done(cau_logic *logic, cau_effects *effects)
 {
 	cau_drive *drive = cau_drive_find(logic, logic->cutting);
-	assert(drive); // tools come and go by the worker's own acts
+	CAU_ASSERT(drive != NULL, "tool %s is gone; tools come and go by the worker's own acts",
+	           logic->cutting);
 	drive->frozen = drive->cut_off == CAU_ENERGY_OFF_WATCHDOG;
 	if (!drive->lit || drive->enabled)
 		return;
@@ -249,6 +264,7 @@ bool cau_drive_allows(cau_logic *logic, const cau_waiting *order, cau_action *ac
 		return refuse(action, CAU_NOT_FOUND, 0, reason);
 	}
 	bool drives = drive->driver.client && drive->driver.client == asked->asker.client;
+	CAU_ASSERT_INDEX(asked->ask, CAU_ASK_COUNT);
 	switch (asked->ask) {
 	case CAU_ASK_TOOL_KEEP:
 	case CAU_ASK_TOOL_REMOVE:
@@ -276,6 +292,8 @@ bool cau_drive_change(cau_drive *drive, const cau_waiting *order, const cau_aske
 	cau_drive_cut(drive, order->moment, CAU_ENERGY_OFF_TAKEN_OVER, "another driver", effects);
 	if (drive->lit)
 		return false;
+	CAU_ASSERT(!drive->lit && !drive->enabled, "tool %s changes hands while it is lit",
+	           drive->tool);
 	drive->driver = *to;
 	// Who is handed a tool has given no sign of life for it yet.
 	drive->alive_s = to->client == order->asked.asker.client ? order->alive_s : 0;
@@ -285,6 +303,8 @@ bool cau_drive_change(cau_drive *drive, const cau_waiting *order, const cau_aske
 
 void cau_drive_enabled(cau_drive *drive, const cau_waiting *order, cau_effects *effects)
 {
+	CAU_ASSERT(order->asked.ask == CAU_ASK_ENERGY_ON, "order %d lights tool %s",
+	           (int)order->asked.ask, drive->tool);
 	drive->lit = true;
 	drive->alive_s = fmax(drive->alive_s, order->alive_s);
 	bool drives = drive->driver.client == order->asked.asker.client;
@@ -298,6 +318,8 @@ void cau_drive_enabled(cau_drive *drive, const cau_waiting *order, cau_effects *
 
 void cau_drive_add(cau_logic *logic, const cau_waiting *order)
 {
+	CAU_ASSERT(order->asked.tool[0] != 0, "a tool without a name, by order %llu",
+	           (unsigned long long)order->asked.ticket);
 	if (logic->drive_count == CAU_MAX_TOOLS)
 		return; // the core takes no more either
 	cau_drive *made = &logic->drives[logic->drive_count++];
@@ -318,6 +340,7 @@ void cau_drive_remove(cau_logic *logic, const char *tool)
 	size_t after = (size_t)(&logic->drives[logic->drive_count] - (gone + 1));
 	memmove(gone, gone + 1, after * sizeof *gone);
 	logic->drive_count--;
+	CAU_ASSERT(logic->drive_count >= 0, "%d tools", logic->drive_count);
 }
 
 // One entry for each tool that is there; drivers stay with tools of the same name. All are dark,
@@ -327,7 +350,8 @@ void cau_drive_match(cau_logic *logic, const cau_logic_event *event)
 	cau_drive old[CAU_MAX_TOOLS];
 	int32_t old_count = logic->drive_count;
 	memcpy(old, logic->drives, sizeof old);
-	assert(event->tool_count <= CAU_MAX_TOOLS);
+	CAU_ASSERT(event->tool_count >= 0 && event->tool_count <= CAU_MAX_TOOLS, "%d tools arrived",
+	           event->tool_count);
 	logic->drive_count = event->tool_count;
 	for (int32_t i = 0; i < event->tool_count; i++) {
 		cau_drive *made = &logic->drives[i];

@@ -2,7 +2,6 @@
 // What the files of this room share. Arrows: logic.c -> queue.c, time.c -> drive.c -> effects.c.
 #pragma once
 
-#include <assert.h>
 #include <string.h>
 
 #include "session/logic.h"

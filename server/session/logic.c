@@ -5,22 +5,48 @@
 #include <math.h>
 #include <stdio.h>
 
+#include "cautery/assert.h"
 #include "cautery/rpc_errors.h"
 #include "session/internal.h"
 
 size_t cau_logic_bytes(int32_t capacity)
 {
+	CAU_ASSERT(capacity > 0, "a queue of %d", capacity);
 	return sizeof(cau_logic) + (size_t)capacity * sizeof(cau_waiting);
 }
 
 void cau_logic_init(cau_logic *logic, int32_t capacity)
 {
+	CAU_ASSERT(capacity > 0, "a queue of %d", capacity);
 	memset(logic, 0, sizeof *logic); // padding too: two that are equal compare equal
 	logic->capacity = capacity;
 	logic->state = CAU_SESSION_STARTING;
 	logic->speed = 1;
 	logic->step_s = 1.0 / 60;
 	logic->store_takes = true;
+}
+
+// What holds between two calls, whatever came in. A tool that is enabled is lit; one that is being
+// looked at, cut or stepped is so by the worker alone.
+static void expect_sound(const cau_logic *logic)
+{
+	CAU_ASSERT(logic->count >= 0 && logic->count <= logic->capacity, "%d orders in a queue of %d",
+	           logic->count, logic->capacity);
+	CAU_ASSERT(logic->drive_count >= 0 && logic->drive_count <= CAU_MAX_TOOLS, "%d tools",
+	           logic->drive_count);
+	CAU_ASSERT(logic->steps_left >= 0, "%lld steps left", (long long)logic->steps_left);
+	for (int32_t i = 0; i < logic->drive_count; i++) {
+		const cau_drive *drive = &logic->drives[i];
+		CAU_ASSERT(!drive->enabled || drive->lit, "tool %s is enabled and not lit", drive->tool);
+		CAU_ASSERT(!drive->enabled || drive->driver.client, "tool %s is enabled by nobody",
+		           drive->tool);
+		CAU_ASSERT(drive->cut_moment <= logic->moment, "tool %s is cut at moment %llu of %llu",
+		           drive->tool, (unsigned long long)drive->cut_moment,
+		           (unsigned long long)logic->moment);
+	}
+	for (int32_t i = 1; i < logic->count; i++)
+		CAU_ASSERT(logic->waiting[i - 1].moment <= logic->waiting[i].moment,
+		           "order %d came in before the one ahead of it", i);
 }
 
 // ---- events -------------------------------------------------------------------------------------
@@ -43,6 +69,7 @@ static void take_store(cau_logic *logic, const cau_logic_event *event, cau_effec
 
 static void take_arrival(cau_logic *logic, const cau_logic_event *event, cau_effects *effects)
 {
+	CAU_ASSERT(event->step_s > 0, "arrived with ticks of %g s", event->step_s);
 	cau_drive_match(logic, event);
 	logic->state = event->state;
 	logic->tick = event->tick;
@@ -65,6 +92,8 @@ static void fault(cau_logic *logic, const char *reason, cau_effects *effects)
 
 void cau_logic_take(cau_logic *logic, const cau_logic_event *event, cau_effects *effects)
 {
+	CAU_ASSERT(event->kind != CAU_LOGIC_ORDER || event->asked, "event %d without an order",
+	           (int)event->kind);
 	const char *tool = event->tool ? event->tool : "", *cause = event->cause ? event->cause : "";
 	effects->count = 0;
 	logic->moment++;
@@ -114,8 +143,9 @@ void cau_logic_take(cau_logic *logic, const cau_logic_event *event, cau_effects 
 		cau_effect_wake(effects);
 		break;
 	case CAU_LOGIC_EVENT_COUNT:
-		assert(false);
+		CAU_ASSERT(false, "event %d is none", (int)event->kind);
 	}
+	expect_sound(logic);
 }
 
 // ---- what the worker does now -------------------------------------------------------------------
@@ -154,11 +184,13 @@ static bool pause(cau_logic *logic, const cau_waiting *order, cau_action *action
 	return true;
 }
 
-// One that was asked for at this tick has not darkened the tool yet; any other did when it came.
+// One that was asked for at this tick has not darkened the tool yet, whatever lit it since; any
+// other did when it came.
 static void turn_off(cau_logic *logic, const cau_waiting *order, cau_effects *effects)
 {
 	cau_drive *drive = cau_drive_find(logic, order->asked.tool);
-	if (drive->cut_moment < order->moment)
+	CAU_ASSERT(drive != NULL, "tool %s was allowed to go dark and is not there", order->asked.tool);
+	if (drive->enabled || drive->cut_moment < order->moment)
 		cau_drive_cut(drive, order->moment, CAU_ENERGY_OFF_COMMANDED, "turned off", effects);
 }
 
@@ -167,6 +199,7 @@ static bool change_driver(cau_logic *logic, const cau_waiting *order, cau_action
 {
 	const cau_asked *asked = &order->asked;
 	cau_drive *drive = cau_drive_find(logic, asked->tool);
+	CAU_ASSERT(drive != NULL, "tool %s was allowed to change hands and is not there", asked->tool);
 	bool takes = asked->ask == CAU_ASK_TAKE_OVER;
 	cau_asker to = takes || !order->to_gone ? takes ? asked->asker : asked->to : (cau_asker){0};
 	if (takes && order->gone)
@@ -184,6 +217,7 @@ static bool decide(cau_logic *logic, const cau_waiting *order, cau_action *actio
                    cau_effects *effects)
 {
 	const cau_asked *asked = &order->asked;
+	CAU_ASSERT_INDEX(asked->ask, CAU_ASK_COUNT);
 	action->act = CAU_ACT_ORDER;
 	if (logic->ended)
 		return refuse(action, CAU_NOT_FOUND, CAU_RPC_NOT_HERE, "params.session",
@@ -223,6 +257,8 @@ static bool decide(cau_logic *logic, const cau_waiting *order, cau_action *actio
 
 static void serve(cau_logic *logic, cau_waiting *order)
 {
+	CAU_ASSERT(logic->serving.moment == 0, "order %llu is being served still",
+	           (unsigned long long)logic->serving.asked.ticket);
 	logic->serving = *order;
 	cau_queue_remove(logic, order);
 }
@@ -255,6 +291,8 @@ static bool next_tick(cau_logic *logic, double now_s, cau_action *action, cau_ef
 		return next_order(logic, action, effects);
 	}
 	cau_time_begin_tick(logic, now_s);
+	CAU_ASSERT(!cau_drive_is_to_cut(logic), "tick %llu begins with energy that was cut",
+	           (unsigned long long)logic->tick);
 	logic->border = false;
 	action->act = CAU_ACT_STEP;
 	return true;
@@ -262,6 +300,7 @@ static bool next_tick(cau_logic *logic, double now_s, cau_action *action, cau_ef
 
 static bool next_end_of_steps(cau_logic *logic, cau_action *action)
 {
+	CAU_ASSERT(logic->steps_left >= 0, "%lld steps left", (long long)logic->steps_left);
 	bool faulted = logic->state == CAU_SESSION_FAULTED || logic->ended;
 	if (!logic->stepping || (logic->steps_left && !faulted))
 		return false;
@@ -303,7 +342,7 @@ static bool next_act(cau_logic *logic, double now_s, cau_action *action, cau_eff
 
 void cau_logic_next(cau_logic *logic, double now_s, cau_action *action, cau_effects *effects)
 {
-	assert(logic->acting == CAU_ACT_NOTHING);
+	CAU_ASSERT(logic->acting == CAU_ACT_NOTHING, "act %d is not done", (int)logic->acting);
 	effects->count = 0;
 	*action = (cau_action){.act = CAU_ACT_NOTHING};
 	logic->moment++;
@@ -314,6 +353,7 @@ void cau_logic_next(cau_logic *logic, double now_s, cau_action *action, cau_effe
 	if (!next_act(logic, now_s, action, effects))
 		logic->border = false;
 	logic->acting = action->act;
+	expect_sound(logic);
 }
 
 // ---- what came of it ----------------------------------------------------------------------------
@@ -321,7 +361,8 @@ void cau_logic_next(cau_logic *logic, double now_s, cau_action *action, cau_effe
 static void looked(cau_logic *logic, cau_outcome_kind outcome)
 {
 	cau_waiting *order = cau_queue_find(logic, logic->serving.asked.ticket);
-	assert(order); // only the worker takes orders out
+	CAU_ASSERT(order != NULL, "order %llu is gone; only the worker takes orders out",
+	           (unsigned long long)logic->serving.asked.ticket);
 	if (outcome == CAU_DONE)
 		order->looked = true;
 	else if (outcome == CAU_POSTPONED)
@@ -334,6 +375,8 @@ static void take_effect(cau_logic *logic, cau_effects *effects)
 {
 	const cau_waiting *order = &logic->serving;
 	cau_drive *drive = cau_drive_find(logic, order->asked.tool);
+	CAU_ASSERT(order->moment != 0, "order %llu never came in",
+	           (unsigned long long)order->asked.ticket);
 	switch (order->asked.ask) {
 	case CAU_ASK_TOOL_ADD:
 		cau_drive_add(logic, order);
@@ -343,12 +386,15 @@ static void take_effect(cau_logic *logic, cau_effects *effects)
 		break;
 	case CAU_ASK_TOOL_USE:
 	case CAU_ASK_MOTION:
+		CAU_ASSERT(drive != NULL, "tool %s was moved and is not there", order->asked.tool);
 		drive->frozen = false;
 		break;
 	case CAU_ASK_ENERGY_ON:
+		CAU_ASSERT(drive != NULL, "tool %s was enabled and is not there", order->asked.tool);
 		cau_drive_enabled(drive, order, effects);
 		break;
 	case CAU_ASK_ENERGY_OFF:
+		CAU_ASSERT(drive != NULL, "tool %s was turned off and is not there", order->asked.tool);
 		drive->lit = false;
 		break;
 	case CAU_ASK_GO:
@@ -371,7 +417,7 @@ void cau_logic_done(cau_logic *logic, double now_s, cau_outcome_kind outcome, ca
 	effects->count = 0;
 	logic->moment++;
 	logic->now_s = fmax(logic->now_s, now_s);
-	assert(act != CAU_ACT_NOTHING && act != CAU_ACT_STEP);
+	CAU_ASSERT(act != CAU_ACT_NOTHING && act != CAU_ACT_STEP, "act %d is done", (int)act);
 	if (act == CAU_ACT_LOOK)
 		looked(logic, outcome);
 	else if (act == CAU_ACT_CUT)
@@ -382,11 +428,12 @@ void cau_logic_done(cau_logic *logic, double now_s, cau_outcome_kind outcome, ca
 		cau_drive_cut_itself(logic, logic->serving.asked.tool);
 	memset(&logic->serving, 0, sizeof logic->serving);
 	logic->acting = CAU_ACT_NOTHING;
+	expect_sound(logic);
 }
 
 void cau_logic_stepped(cau_logic *logic, double now_s, const char *reason, cau_effects *effects)
 {
-	assert(logic->acting == CAU_ACT_STEP);
+	CAU_ASSERT(logic->acting == CAU_ACT_STEP, "act %d was no step", (int)logic->acting);
 	effects->count = 0;
 	logic->moment++;
 	logic->now_s = fmax(logic->now_s, now_s);
@@ -395,6 +442,7 @@ void cau_logic_stepped(cau_logic *logic, double now_s, const char *reason, cau_e
 	else
 		cau_time_end_tick(logic);
 	logic->acting = CAU_ACT_NOTHING;
+	expect_sound(logic);
 }
 
 double cau_logic_due_s(const cau_logic *logic)

@@ -7,6 +7,7 @@
 #include <math.h>
 #include <stdio.h>
 
+#include "cautery/assert.h"
 #include "cautery/rpc_errors.h"
 #include "session/internal.h"
 
@@ -16,6 +17,7 @@
 // driver is lost before.
 static bool is_for_later(const cau_logic *logic, const cau_asked *asked)
 {
+	CAU_ASSERT_INDEX(asked->ask, CAU_ASK_COUNT);
 	bool energy = asked->ask == CAU_ASK_ENERGY_ON || asked->ask == CAU_ASK_ENERGY_OFF;
 	return energy && asked->tick > logic->tick && !logic->ended;
 }
@@ -53,10 +55,11 @@ const cau_waiting *cau_queue_find_ask(const cau_logic *logic, cau_ask ask)
 
 void cau_queue_remove(cau_logic *logic, cau_waiting *order)
 {
-	assert(order >= logic->waiting && order < logic->waiting + logic->count);
+	CAU_ASSERT_INDEX(order - logic->waiting, logic->count);
 	size_t after = (size_t)(logic->waiting + logic->count - (order + 1));
 	memmove(order, order + 1, after * sizeof *order);
 	logic->count--;
+	CAU_ASSERT(logic->count >= 0, "%d orders", logic->count);
 }
 
 int32_t cau_logic_waiting(const cau_logic *logic)
@@ -154,6 +157,8 @@ static cau_status no_room(const cau_logic *logic, int32_t *code, cau_error *erro
 
 static void refuse(cau_effects *effects, uint64_t ticket, const cau_error *error, int32_t code)
 {
+	CAU_ASSERT(error->status != CAU_OK, "order %llu is refused for no reason",
+	           (unsigned long long)ticket);
 	cau_effect *effect = cau_effect_add(effects, CAU_EFFECT_REFUSE, ticket);
 	effect->error = *error;
 	effect->code = code;
@@ -162,6 +167,7 @@ static void refuse(cau_effects *effects, uint64_t ticket, const cau_error *error
 // Energy is off from this moment on, whatever becomes of the order itself.
 static void turn_off(cau_logic *logic, const cau_asked *asked, bool queued, cau_effects *effects)
 {
+	CAU_ASSERT(asked->ask == CAU_ASK_ENERGY_OFF, "order %d turns energy off", (int)asked->ask);
 	char cause[CAU_CAUSE_BYTES];
 	cau_drive *drive = cau_drive_find(logic, asked->tool);
 	snprintf(cause, sizeof cause, "turned off by %.24s", asked->asker.name);
@@ -177,6 +183,8 @@ static void turn_off(cau_logic *logic, const cau_asked *asked, bool queued, cau_
 // True if it needs no place in the queue: it was done, or its place is elsewhere.
 static bool take_without_room(cau_logic *logic, const cau_asked *asked, cau_effects *effects)
 {
+	CAU_ASSERT(logic->moment > 0, "an order before the first event, of ticket %llu",
+	           (unsigned long long)asked->ticket);
 	if (asked->ask == CAU_ASK_PAUSE)
 		logic->pause_moment = logic->moment;
 	else if (asked->ask != CAU_ASK_ENERGY_OFF)
@@ -190,6 +198,7 @@ static bool take_without_room(cau_logic *logic, const cau_asked *asked, cau_effe
 // stands between the two, and the newer pose counts.
 static cau_waiting *superseded(cau_logic *logic, const cau_asked *asked)
 {
+	CAU_ASSERT(asked->ask == CAU_ASK_MOTION, "order %d takes the place of motion", (int)asked->ask);
 	cau_waiting *found = NULL;
 	for (int32_t i = 0; i < logic->count; i++) {
 		cau_waiting *order = &logic->waiting[i];
@@ -206,13 +215,16 @@ static cau_waiting *superseded(cau_logic *logic, const cau_asked *asked)
 
 static void append(cau_logic *logic, const cau_asked *asked)
 {
-	assert(logic->count < logic->capacity);
+	CAU_ASSERT_INDEX(logic->count, logic->capacity);
 	logic->waiting[logic->count++] =
 		(cau_waiting){.asked = *asked, .moment = logic->moment, .alive_s = logic->now_s};
 }
 
 void cau_queue_take(cau_logic *logic, const cau_asked *asked, cau_effects *effects)
 {
+	CAU_ASSERT_INDEX(asked->ask, CAU_ASK_COUNT);
+	CAU_ASSERT(logic->count >= 0 && logic->count <= logic->capacity, "%d orders in a queue of %d",
+	           logic->count, logic->capacity);
 	cau_error error = {0};
 	int32_t code;
 	if (logic->ended) {

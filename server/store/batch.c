@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "batch.h"
+#include "cautery/assert.h"
 
 #include <stdlib.h>
 #include <string.h>
@@ -27,6 +28,7 @@ size_t cau_store_batch_bytes(const cau_store_batch *batch)
 
 bool cau_store_record_request(const struct record *record, const char **client, uint64_t *sequence)
 {
+	CAU_ASSERT(client && sequence, "a request of kind %d for nobody", (int)record->kind);
 	if (record->kind == RECORD_COMMAND) {
 		*client = record->as.command.client;
 		*sequence = record->as.command.sequence;
@@ -99,11 +101,13 @@ static const char *copy_text(unsigned char **at, const char *text)
 		return NULL;
 	char *copy = memcpy(*at, text, text_bytes(text));
 	*at += text_bytes(text);
+	CAU_ASSERT((*at)[-1] == 0, "a text of %zu bytes without its end", text_bytes(text));
 	return copy;
 }
 
 static cau_store_bytes copy_blob(unsigned char **at, cau_store_bytes blob)
 {
+	CAU_ASSERT(blob.data || !blob.bytes, "%zu bytes at no address", blob.bytes);
 	cau_store_bytes copy = {*at, blob.bytes};
 	if (blob.bytes)
 		memcpy(*at, blob.data, blob.bytes);
@@ -120,6 +124,8 @@ static const char *empty_as_null(const char *text)
 static struct record *append(cau_store_batch *batch, enum record_kind kind, size_t bytes,
                              cau_error *error)
 {
+	CAU_ASSERT(!batch->first == !batch->last, "a list of %lld records without an end",
+	           (long long)batch->record_count);
 	struct record *record = calloc(1, sizeof *record + bytes);
 	if (!record) {
 		cau_fail(error, CAU_NO_MEMORY, NULL, "a record of %zu bytes", bytes);

@@ -4,6 +4,7 @@
 #include <string.h>
 #include <sys/statvfs.h>
 
+#include "cautery/assert.h"
 #include "clock.h"
 #include "fault.h"
 #include "metrics.h"
@@ -50,6 +51,7 @@ static void roll_back(struct cau_store *store)
 // Writes and commits store->committing. Batches with a fault of their own have it in batch->error.
 static cau_status write_group(struct cau_store *store, cau_error *error)
 {
+	CAU_ASSERT(store->committing != NULL, "nothing to write, in state %d", (int)store->state);
 	int64_t now_ms = store->config.wall_clock_ms();
 	int count = 0;
 	cau_status status = cau_store_execute(store->writing, "BEGIN IMMEDIATE", "writing", error);
@@ -70,10 +72,13 @@ static cau_status write_group(struct cau_store *store, cau_error *error)
 // Nothing can be written: fails the group and all that waits, and takes no more.
 static void block(struct cau_store *store, const cau_error *error)
 {
+	CAU_ASSERT(error->status != CAU_OK, "blocked without a reason, in state %d", (int)store->state);
 	uint64_t bytes = 0;
 	for (const struct cau_store_batch *batch = store->committing; batch; batch = batch->next)
 		bytes += batch->bytes;
 	store->wanted_bytes = (bytes < MAX_FAILED_BYTES ? bytes : MAX_FAILED_BYTES) + SPARE_BYTES;
+	CAU_ASSERT(store->wanted_bytes >= SPARE_BYTES, "%llu bytes are wanted",
+	           (unsigned long long)store->wanted_bytes);
 	store->retry_due_s = cau_store_monotonic_s() + 1e-3 * store->config.full_retry_ms;
 	cau_store_queue_set_state(
 		store, error->status == CAU_CORRUPT ? CAU_STORE_DAMAGED : CAU_STORE_FULL, error->reason);
@@ -108,6 +113,7 @@ static void fold_log(struct cau_store *store)
 
 static void retire(struct cau_store *store)
 {
+	CAU_ASSERT(store->state == CAU_STORE_READY, "retention in state %d", (int)store->state);
 	cau_error error = {0};
 	int64_t rows = 0;
 	int pause_ms = store->config.retention_interval_ms;
@@ -116,6 +122,7 @@ static void retire(struct cau_store *store)
 		block(store, &error);
 		cau_store_queue_answer(store);
 	}
+	CAU_ASSERT(rows >= 0, "%lld rows retired", (long long)rows);
 	if (!status && rows) {
 		pthread_mutex_lock(&store->mutex);
 		store->metrics.retired_rows += (uint64_t)rows;
@@ -135,6 +142,7 @@ static bool has_room(const struct cau_store *store)
 // One attempt while full. A commit that failed may have left the log long: folding gives that back.
 static void try_again(struct cau_store *store)
 {
+	CAU_ASSERT(store->state == CAU_STORE_FULL, "tried again in state %d", (int)store->state);
 	cau_error error = {0};
 	char sql[128];
 	store->retry_due_s = cau_store_monotonic_s() + 1e-3 * store->config.full_retry_ms;

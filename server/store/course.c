@@ -3,6 +3,7 @@
 
 #include <stdlib.h>
 
+#include "cautery/assert.h"
 #include "fault.h"
 
 enum {
@@ -14,6 +15,7 @@ enum {
 // Makes room for one more element of `size` bytes in an array that is full at powers of two.
 static void *grow(void *array, int count, size_t size)
 {
+	CAU_ASSERT(count >= 0 && size > 0, "%d elements of %zu bytes", count, size);
 	bool full = (count & (count - 1)) == 0;
 	return full ? realloc(array, (count ? 2 * (size_t)count : 1) * size) : array;
 }
@@ -102,6 +104,7 @@ void cau_store_course_finish(struct cau_store_course *course)
 // Where the way that begins at a checkpoint's tick ends: at the first hole that is not behind it.
 static int64_t end_of_way(const struct cau_store_course *course, int64_t tick)
 {
+	CAU_ASSERT(tick >= 0, "the way from tick %lld", (long long)tick);
 	for (int i = 0; i < course->hole_count; i++)
 		if (course->hole[i].before_tick > tick)
 			return course->hole[i].from_tick > tick ? course->hole[i].from_tick : tick;
@@ -132,6 +135,7 @@ static bool ends_a_hole(const struct cau_store_course *course, int64_t tick)
 
 static bool may_go(const struct cau_store_course *course, int index)
 {
+	CAU_ASSERT_INDEX(index, course->point_count);
 	const struct cau_store_point *point = &course->point[index];
 	return index > 0 && index < course->point_count - NEWEST_KEPT && !point->marked &&
 	       !ends_a_hole(course, point->tick);
@@ -140,13 +144,17 @@ static bool may_go(const struct cau_store_course *course, int index)
 // How far its neighbours stand apart, and how old the later one is.
 static int64_t span_around(const struct cau_store_course *course, int index, int64_t *age)
 {
+	CAU_ASSERT(index > 0 && index < course->point_count - 1,
+	           "checkpoint %d of %d has no two neighbours", index, course->point_count);
 	const struct cau_store_point *point = course->point;
 	*age = point[course->point_count - 1].tick - point[index + 1].tick;
+	CAU_ASSERT(*age >= 0, "checkpoint %d is %lld ticks old", index, (long long)*age);
 	return point[index + 1].tick - point[index - 1].tick;
 }
 
 int cau_store_course_thin(const struct cau_store_course *course, int64_t spacing)
 {
+	CAU_ASSERT(spacing > 0, "a spacing of %lld ticks", (long long)spacing);
 	for (int i = 1; i < course->point_count - NEWEST_KEPT; i++) {
 		int64_t age, span = span_around(course, i, &age);
 		int64_t most = age / AGE_SHARE > spacing ? age / AGE_SHARE : spacing;
@@ -158,6 +166,7 @@ int cau_store_course_thin(const struct cau_store_course *course, int64_t spacing
 
 int cau_store_course_coarsen(const struct cau_store_course *course, int64_t spacing)
 {
+	CAU_ASSERT(spacing > 0, "a spacing of %lld ticks", (long long)spacing);
 	int least = -1;
 	double least_ratio = 0;
 	for (int i = 1; i < course->point_count - NEWEST_KEPT; i++) {

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "fault.h"
+#include "cautery/assert.h"
 
 #include <stdint.h>
 #include <string.h>
@@ -28,6 +29,7 @@ cau_status cau_store_fault(sqlite3 *database, int code, const char *what, cau_er
 	// The connection may be NULL when even opening it failed.
 	const char *message = database ? sqlite3_errmsg(database) : sqlite3_errstr(code);
 	cau_status status = status_of(code);
+	CAU_ASSERT(status != CAU_OK && what, "code %d is no failure", code);
 	int system = database && status == CAU_IO ? sqlite3_system_errno(database) : 0;
 	if (system)
 		return cau_fail(error, status, NULL, "%s: %s (%s)", what, message, strerrordesc_np(system));
@@ -36,6 +38,7 @@ cau_status cau_store_fault(sqlite3 *database, int code, const char *what, cau_er
 
 cau_status cau_store_execute(sqlite3 *database, const char *sql, const char *what, cau_error *error)
 {
+	CAU_ASSERT(database && sql, "nothing to do for %s", what);
 	int code = sqlite3_exec(database, sql, NULL, NULL, NULL);
 	return code ? cau_store_fault(database, code, what, error) : CAU_OK;
 }

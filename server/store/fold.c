@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "fold.h"
+#include "cautery/assert.h"
 
 // PASSIVE never holds up a commit. If it fails, the commits are safe in the log all the same, and
 // it is asked for again.
@@ -51,6 +52,7 @@ int cau_store_folder_start(struct cau_store_folder *folder, sqlite3 *database)
 void cau_store_folder_ask(struct cau_store_folder *folder)
 {
 	pthread_mutex_lock(&folder->mutex);
+	CAU_ASSERT(!folder->closing, "asked to fold while it ends: %d", folder->closing);
 	folder->asked = true;
 	pthread_cond_signal(&folder->work);
 	pthread_mutex_unlock(&folder->mutex);
@@ -69,6 +71,7 @@ bool cau_store_folder_wait(struct cau_store_folder *folder)
 void cau_store_folder_stop(struct cau_store_folder *folder)
 {
 	pthread_mutex_lock(&folder->mutex);
+	CAU_ASSERT(!folder->closing, "ended twice: %d", folder->closing);
 	folder->closing = true;
 	pthread_cond_signal(&folder->work);
 	pthread_mutex_unlock(&folder->mutex);

@@ -3,6 +3,7 @@
 
 #include <string.h>
 
+#include "cautery/assert.h"
 #include "clock.h"
 #include "metrics.h"
 
@@ -11,6 +12,8 @@
 static cau_status refuse(const struct cau_store *store, size_t bytes, cau_error *error)
 {
 	const cau_store_config *config = &store->config;
+	CAU_ASSERT(store->metrics.queue_bytes <= config->queue_bytes, "%zu bytes wait, at most %zu may",
+	           store->metrics.queue_bytes, config->queue_bytes);
 	if (store->closing)
 		return cau_fail(error, CAU_BAD_STATE, NULL, "the store is closing");
 	if (store->state == CAU_STORE_FULL)
@@ -28,6 +31,8 @@ static cau_status refuse(const struct cau_store *store, size_t bytes, cau_error 
 cau_status cau_store_submit(cau_store *store, cau_store_batch *batch, cau_store_callback callback,
                             void *user, cau_error *error)
 {
+	CAU_ASSERT(batch->next == NULL && batch->error.status == CAU_OK,
+	           "a batch of %zu bytes is submitted twice", batch->bytes);
 	pthread_mutex_lock(&store->mutex);
 	cau_status status = refuse(store, batch->bytes, error);
 	if (status) {
@@ -60,12 +65,14 @@ void cau_store_flush(cau_store *store)
 	while (store->answered < target)
 		pthread_cond_wait(&store->answer, &store->mutex);
 	store->flushing--;
+	CAU_ASSERT(store->flushing >= 0, "%d wait for the disk", (int)store->flushing);
 	pthread_mutex_unlock(&store->mutex);
 }
 
 // ---- the thread's side ----------------------------------------------------------------
 static bool group_is_ripe(const struct cau_store *store, double now_s, double *due_s)
 {
+	CAU_ASSERT(store->first != NULL, "no group to be ripe at %g s", now_s);
 	*due_s = store->first->submitted_s + 1e-3 * store->config.commit_delay_ms;
 	return store->closing || store->flushing || now_s >= *due_s ||
 	       store->metrics.queue_batches >= GROUP_BATCHES ||
@@ -86,6 +93,8 @@ static double chore_due_s(const struct cau_store *store, double now_s)
 
 static void take_group(struct cau_store *store)
 {
+	CAU_ASSERT(store->first && !store->committing,
+	           "a group is taken before the last is answered, in state %d", (int)store->state);
 	struct cau_store_batch *last = store->first;
 	size_t bytes = last->bytes;
 	for (int count = 1; last->next && count < GROUP_BATCHES && bytes < GROUP_BYTES; count++) {
@@ -97,6 +106,8 @@ static void take_group(struct cau_store *store)
 	if (!store->first)
 		store->last = NULL;
 	last->next = NULL;
+	CAU_ASSERT(!store->first == !store->last, "a queue without an end, in state %d",
+	           (int)store->state);
 }
 
 enum cau_store_turn cau_store_queue_await(struct cau_store *store)
@@ -155,6 +166,9 @@ static struct cau_store_batch *pop_answered(struct cau_store *store)
 	struct cau_store_batch *batch = store->committing;
 	if (batch) {
 		cau_store_metrics *metrics = &store->metrics;
+		CAU_ASSERT(metrics->queue_batches > 0 && metrics->queue_bytes >= batch->bytes,
+		           "%d batches of %zu bytes wait, and one of %zu is answered",
+		           (int)metrics->queue_batches, metrics->queue_bytes, batch->bytes);
 		store->committing = batch->next;
 		metrics->queue_batches--;
 		metrics->queue_bytes -= batch->bytes;
@@ -181,6 +195,8 @@ void cau_store_queue_answer(struct cau_store *store)
 		cau_store_batch_destroy(batch);
 		pthread_mutex_lock(&store->mutex);
 		store->answered++;
+		CAU_ASSERT(store->answered <= store->submitted, "%llu answered of %llu",
+		           (unsigned long long)store->answered, (unsigned long long)store->submitted);
 		pthread_cond_broadcast(&store->answer);
 		pthread_mutex_unlock(&store->mutex);
 	}
