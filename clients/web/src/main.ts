@@ -2,21 +2,28 @@
 // The page: makes the rooms and ties them together.
 import { Box3 } from 'three';
 
+import { Aim } from './hands/aim';
 import { Keys } from './hands/keys';
+import { Pedal } from './hands/pedal';
 import { Pointer } from './hands/pointer';
+import { Ruler } from './hands/ruler';
+import { SpaceMouse } from './hands/space_mouse';
 import { ToolHand } from './hands/tool_hand';
 import { Control } from './model/control';
 import { Model } from './model/model';
 import { clientWords } from './model/person';
 import { keepAddress, readAddress } from './panels/address';
 import { showCue } from './panels/cue';
+import { devicesSection } from './panels/devices';
 import { byId } from './panels/dom';
+import { showInspected } from './panels/inspect';
 import { materialsPanel } from './panels/materials';
 import { showHandles } from './panels/handles';
 import { modeSwitch } from './panels/mode';
 import { operatePanel } from './panels/operate';
 import { showHelp, showLink, showNotices, showReading } from './panels/overlay';
 import { plotsPanel } from './panels/plots';
+import { showRuler } from './panels/ruler';
 import { showSaid } from './panels/said';
 import { saveReceived, sessionsPanel } from './panels/sessions';
 import { makeTabs } from './panels/tabs';
@@ -59,7 +66,19 @@ const link: Link = new Link({
 });
 const control = new Control(model, link);
 const hand = new ToolHand(model, control, viewport);
-const pointer = new Pointer(viewport.canvas, viewport, hand);
+const ruler = new Ruler(new Aim(viewport));
+const pointer = new Pointer(viewport.canvas, viewport, hand, ruler);
+const pedal = new Pedal(() => hand.hold('pedal'), () => hand.letGo('pedal'));
+let spaceMouse: SpaceMouse | null = null;
+const makeSpaceMouse = (changed: () => void): SpaceMouse => {
+  spaceMouse = new SpaceMouse({
+    nudge: (right, up, nearer) => hand.nudge(right, up, nearer),
+    turn: (aboutShaft, tilt) => hand.turn(aboutShaft, tilt),
+    hold: () => hand.hold('cap'),
+    letGo: () => hand.letGo('cap'),
+  }, changed);
+  return spaceMouse;
+};
 const keys = new Keys(viewport.canvas, viewport, hand, () => model.toolState?.grasping === true);
 
 model.on('tools', () => viewport.setTools(model.tools));
@@ -67,17 +86,24 @@ model.on('joined', (joined) => {
   if (!joined) viewport.setSession(null);
 });
 
-const tabs = makeTabs([sessionsPanel(control, link), toolsPanel(control, hand), materialsPanel(control), viewPanel(control, viewport), plotsPanel(model)]);
-const tickShown = timeBar(control, address.tick);
+const inspect = showInspected(control, viewport);
+const tabs = makeTabs([sessionsPanel(control, link), toolsPanel(control, hand), materialsPanel(control), viewPanel(control, viewport, inspect.switch), plotsPanel(model)]);
+timeBar(control, address.tick);
 showHandles(control, hand, pointer);
 const placeSaid = showSaid(model, viewport, pointer);
 showNotices(control);
 showReading(control);
 showHelp();
-operatePanel(control, hand, viewport, () => connect(lastToken));
-modeSwitch((mode) => tabs.show(mode === 'research'));
+operatePanel(control, hand, viewport, () => connect(lastToken), devicesSection(pedal, makeSpaceMouse));
+modeSwitch((mode) => {
+  tabs.show(mode === 'research');
+  if (mode === 'research' || pointer.press !== 'measure') return;
+  pointer.press = 'work'; // trainees have no ruler
+  model.emit('tools', undefined);
+});
 const placeCue = showCue(control, viewport);
-keepAddress(model, viewport, tickShown);
+const placeRuler = showRuler(ruler, viewport);
+keepAddress(model, viewport);
 
 let lastToken: string | undefined;
 
@@ -103,11 +129,13 @@ sizes.observe(byId('handles'));
 
 function animate(): void {
   keys.advance();
+  spaceMouse?.advance();
   viewport.poseTools(hand.advance());
   viewport.showWay(hand.energy.alive ? hand.way.rest() : []);
   viewport.draw();
   placeSaid();
   placeCue();
+  placeRuler();
   requestAnimationFrame(animate);
 }
 requestAnimationFrame(animate);
@@ -128,6 +156,7 @@ export interface Inspection {
   /** of the tool in hand: 0 closed, 1 open; whether it holds tissue */
   jaw: number;
   grasping: boolean;
+  tipTemperatureC: number | null;
   /** definition of the tool in hand */
   tool: Tool | null;
   pictureMs: number;
@@ -161,6 +190,7 @@ const inspection: Inspection = {
   get tip() { return model.toolState?.positionM ?? []; },
   get jaw() { return model.toolState?.jaw ?? 1; },
   get grasping() { return model.toolState?.grasping ?? false; },
+  get tipTemperatureC() { return model.toolState?.tipTemperatureC ?? null; },
   get tool() { return model.tool; },
   get pictureMs() { return viewport.pictureMs; },
   get picturesDrawn() { return viewport.picturesDrawn; },

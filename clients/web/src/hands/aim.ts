@@ -38,7 +38,8 @@ export class Aim {
     const [from, along] = [origin.toArray(), direction.toArray()];
     const [position, normal] = [tissue.position.array as Float32Array, tissue.normal.array as Float32Array];
     const indices = tissue.visibleIndices();
-    return pick(from, along, position, indices)?.distance ?? acrossGap(from, along, position, normal, indices);
+    const hit = pick(from, along, position, indices, this.viewport.clip.away(origin, direction));
+    return hit?.distance ?? acrossGap(from, along, position, normal, indices);
   }
 }
 

@@ -10,12 +10,14 @@ import type { Frame } from '../wire/worker_messages';
 import { errorWords } from '../model/sentences';
 
 /** What can be held, and how to hold it anew. */
-export type Held = 'space' | 'button' | 'trigger' | 'pointer';
+export type Held = 'space' | 'button' | 'trigger' | 'pointer' | 'pedal' | 'cap';
 const AGAIN: Readonly<Record<Held, string>> = {
   space: 'Let go of Space and press it again.',
   button: 'Let go of Energy and press it again.',
   trigger: 'Let go of the trigger and pull it again.',
   pointer: 'Lift and press again.',
+  pedal: 'Lift the pedal and press it again.',
+  cap: 'Let go of the 3D mouse’s button and press it again.',
 };
 const LOST_WORDS: Readonly<Record<EnergyOff, string>> = {
   watchdog: 'the simulation heard nothing from this page in time, which a busy machine can cause',

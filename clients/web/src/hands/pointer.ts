@@ -3,17 +3,18 @@
 // works there. Beside the tissue a press turns the camera, as the right button does everywhere; the middle
 // one or Shift moves it; two fingers turn, pinch for depth or zoom.
 import type { Viewport } from '../scene/viewport';
+import type { Ruler } from './ruler';
 import type { ToolHand } from './tool_hand';
 
 /** What a press on the tissue does. */
-export type Press = 'work' | 'move' | 'look';
+export type Press = 'work' | 'move' | 'look' | 'measure';
 
 interface Finger {
   x: number;
   y: number;
 }
 
-type Drag = 'tool' | 'turn' | 'pan' | 'none';
+type Drag = 'tool' | 'turn' | 'pan' | 'ruler' | 'none';
 
 const TURN_RAD = 3.4; // for a drag over the picture's height
 const WHEEL_DEPTH_M = 0.0005; // a notch
@@ -35,6 +36,7 @@ export class Pointer {
     private readonly canvas: HTMLCanvasElement,
     private readonly viewport: Viewport,
     private readonly hand: ToolHand,
+    private readonly ruler: Ruler,
   ) {
     canvas.addEventListener('pointerdown', (event) => this.down(event));
     canvas.addEventListener('pointermove', (event) => this.move(event));
@@ -54,8 +56,9 @@ export class Pointer {
       return;
     }
     this.drag = this.dragOf(event);
-    if (this.drag !== 'tool') return;
     const { x, y } = this.place(event);
+    if (this.drag === 'ruler') this.ruler.begin(x, y);
+    if (this.drag !== 'tool') return;
     this.hand.press();
     if (!this.hand.pointAt(x, y)) this.drag = 'none';
     else if (this.press !== 'work') return;
@@ -66,7 +69,8 @@ export class Pointer {
   private dragOf(event: PointerEvent): Drag {
     if (event.button === 1 || event.shiftKey) return 'pan';
     const { x, y } = this.place(event);
-    return event.button === 2 || this.press === 'look' || !this.hand.overTissue(x, y) ? 'turn' : 'tool';
+    if (event.button === 2 || this.press === 'look' || !this.hand.overTissue(x, y)) return 'turn';
+    return this.press === 'measure' ? 'ruler' : 'tool';
   }
 
   private move(event: PointerEvent): void {
@@ -74,7 +78,7 @@ export class Pointer {
     const finger = this.fingers.get(event.pointerId);
     if (!finger) {
       const { x, y } = this.place(event);
-      if (event.pointerType !== 'touch' && this.press !== 'look' && this.fingers.size === 0) this.hand.hover(x, y);
+      if (event.pointerType !== 'touch' && this.leads && this.fingers.size === 0) this.hand.hover(x, y);
       return;
     }
     const height = this.canvas.clientHeight;
@@ -84,6 +88,9 @@ export class Pointer {
       this.twoFingers(finger, dx, dy);
     } else if (this.drag === 'tool') {
       this.lead(event);
+    } else if (this.drag === 'ruler') {
+      const { x, y } = this.place(event);
+      this.ruler.reach(x, y);
     } else if (this.drag === 'turn') {
       this.viewport.orbit.turn(-TURN_RAD * dx, TURN_RAD * dy);
     } else if (this.drag === 'pan') {
@@ -137,7 +144,12 @@ export class Pointer {
 
   /** Depth is of a tool in hand; without one the same motion is the camera's. */
   private get leadsTool(): boolean {
-    return this.press !== 'look' && this.hand.driving;
+    return this.leads && this.hand.driving;
+  }
+
+  /** Pointing leads the tool. */
+  private get leads(): boolean {
+    return this.press === 'work' || this.press === 'move';
   }
 
   private place(event: PointerEvent): { x: number; y: number } {

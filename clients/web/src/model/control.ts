@@ -13,7 +13,8 @@ export type ExtraChannel = 'stress' | 'temperature';
 export class Control {
   /** what the user waits for, in words: "Going back to 12.3 s" */
   readonly busy: string[] = [];
-  private extra: ExtraChannel | null = null;
+  private colour: ExtraChannel | null = null;
+  private inspecting = false;
 
   constructor(
     readonly model: Model,
@@ -36,13 +37,21 @@ export class Control {
     const { model } = this;
     model.session = session;
     if (session === null) model.setJoined(null);
-    this.link.watch(session, this.extra ? [...CHANNELS, this.extra] : CHANNELS);
+    const extra: ExtraChannel[] = this.inspecting ? ['stress', 'temperature'] : this.colour ? [this.colour] : [];
+    this.link.watch(session, [...CHANNELS, ...extra], this.colour ?? 'stress');
     model.emit('sessions', model.sessions);
   }
 
-  show(extra: ExtraChannel | null): void {
-    if (extra === this.extra) return;
-    this.extra = extra;
+  show(colour: ExtraChannel | null): void {
+    if (colour === this.colour) return;
+    this.colour = colour;
+    if (this.model.session !== null) this.watch(this.model.session);
+  }
+
+  /** Has stress and temperature of single vertices told, or no longer. */
+  inspect(on: boolean): void {
+    if (on === this.inspecting) return;
+    this.inspecting = on;
     if (this.model.session !== null) this.watch(this.model.session);
   }
 

@@ -13,6 +13,7 @@ import type {
   Tool,
 } from '../wire/messages.gen';
 import type { ToolState } from '../wire/records';
+import { History } from './history';
 import type { Frame, Joined, Sample } from '../wire/worker_messages';
 
 export interface Events {
@@ -23,6 +24,8 @@ export interface Events {
   tools: undefined;
   frame: Frame;
   timeline: Timeline | null;
+  /** the tick that is looked at; null: the newest */
+  held: number | null;
   takeover: TakeoverRequested | null;
   notice: Notice;
   said: Said;
@@ -61,6 +64,9 @@ export class Model {
   timeline: Timeline | null = null;
   takeover: TakeoverRequested | null = null;
   samples: Sample[] = [];
+  readonly history = new History();
+  /** the tick that the timeline is held at; null while it follows the session */
+  held: number | null = null;
   private readonly listeners = new Map<keyof Events, Set<Listener<never>>>();
 
   on<K extends keyof Events>(event: K, listener: Listener<Events[K]>): void {
@@ -150,6 +156,8 @@ export class Model {
     if (another) {
       this.frame = null;
       this.samples = [];
+      this.history.clear();
+      this.hold(null);
       this.timeline = null;
     }
     this.drivers = new Map(joined?.description.drivers.map((driver) => [driver.tool, driver]));
@@ -181,6 +189,7 @@ export class Model {
     const before = this.frame;
     this.frame = frame;
     this.samples.push(...frame.samples);
+    for (const { moment } of frame.samples) this.history.take(moment);
     if (this.samples.length > SAMPLES_MAX) this.samples.splice(0, this.samples.length - SAMPLES_MAX);
     const drivers = frame.tools.map((tool) => tool.driver).join();
     if (before && drivers !== before.tools.map((tool) => tool.driver).join()) this.followDrivers(frame);
@@ -190,6 +199,13 @@ export class Model {
   setTimeline(timeline: Timeline | null): void {
     this.timeline = timeline;
     this.emit('timeline', timeline);
+  }
+
+  /** Looks at a past tick, or with null at the newest again. */
+  hold(tick: number | null): void {
+    if (tick === this.held) return;
+    this.held = tick;
+    this.emit('held', tick);
   }
 
   addEvent({ event }: Pushes['event']): void {

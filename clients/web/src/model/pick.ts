@@ -4,6 +4,7 @@
 export interface Hit {
   distance: number;
   batch: number;
+  /** of the triangle's corners the nearest */
   vertex: number;
 }
 
@@ -12,17 +13,26 @@ export function pick(
   direction: readonly [number, number, number],
   position: Float32Array,
   indices: readonly (Uint32Array | null)[],
+  /** whether what is at a distance along the ray is cut away from the picture */
+  away: (distance: number) => boolean = () => false,
 ): Hit | null {
   let best: Hit | null = null;
+  let corner = 0;
   for (let batch = 0; batch < indices.length; batch++) {
     const index = indices[batch];
     if (!index) continue;
     for (let i = 0; i < index.length; i += 3) {
       const distance = meet(origin, direction, position, 3 * index[i], 3 * index[i + 1], 3 * index[i + 2]);
-      if (distance > 0 && (!best || distance < best.distance)) best = { distance, batch, vertex: index[i] };
+      if (distance <= 0 || (best && distance >= best.distance) || away(distance)) continue;
+      best = { distance, batch, vertex: index[i] };
+      corner = i;
     }
   }
-  return best;
+  if (!best) return null;
+  const corners = [...indices[best.batch]!.subarray(corner, corner + 3)];
+  const squared = (v: number): number => [0, 1, 2].reduce((sum, c) => sum + (origin[c] + best.distance * direction[c] - position[3 * v + c]) ** 2, 0);
+  const vertex = corners.reduce((nearest, v) => (squared(v) < squared(nearest) ? v : nearest));
+  return { ...best, vertex };
 }
 
 const PARALLEL = 1e-18; // m^2: edges of a micrometre seen edge-on

@@ -39,12 +39,12 @@ export function readAddress(): Address {
 }
 
 /** Keeps the address true: what is looked at, at the tick that is looked at. */
-export function keepAddress(model: Model, viewport: Viewport, tickShown: () => number | null): void {
+export function keepAddress(model: Model, viewport: Viewport): void {
   setInterval(() => {
     if (!model.frame || model.session !== model.frame.session || document.hidden) return;
     const address = new URL(window.location.href);
     address.searchParams.set('session', model.session);
-    address.searchParams.set('tick', String(tickShown() ?? model.frame.tick));
+    address.searchParams.set('tick', String(model.held ?? model.frame.tick));
     const { pose } = viewport.orbit;
     if (pose) address.searchParams.set('camera', cameraText(pose));
     else address.searchParams.delete('camera');

@@ -66,6 +66,13 @@ export function button(words: string, press: () => void, props: Props<HTMLButton
   return element('button', { type: 'button', onclick: press, ...props }, words);
 }
 
+/** A box to tick. */
+export function check(words: string, name: string, change: (on: boolean) => void, checked = false): HTMLElement {
+  const box = element('input', { type: 'checkbox', name, checked });
+  box.addEventListener('change', () => change(box.checked));
+  return element('label', { class: 'check' }, box, words);
+}
+
 export function save(name: string, data: Blob): void {
   const link = element('a', { href: URL.createObjectURL(data), download: name });
   link.click();

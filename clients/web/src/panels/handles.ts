@@ -12,6 +12,7 @@ const PRESSES: readonly (readonly [Press, string, string])[] = [
   ['work', 'Cut', 'A press on the tissue cuts as long as it lasts'],
   ['move', 'Move', 'A press on the tissue leads the tool there without energy'],
   ['look', 'Look', 'A drag turns the view; the tool stays'],
+  ['measure', 'Measure', 'A drag over the tissue is a ruler; the tool stays'],
 ];
 
 function pressChoice(control: Control, pointer: Pointer): HTMLElement {
@@ -19,12 +20,16 @@ function pressChoice(control: Control, pointer: Pointer): HTMLElement {
   const buttons = PRESSES.map(([press, words, title]) => {
     const choose = button(words, () => {
       pointer.press = press;
-      for (const other of buttons) other.setAttribute('aria-pressed', String(other === choose));
-    }, { title, data: { press }, aria: { pressed: String(press === pointer.press) } });
+      show();
+    }, { title, class: press === 'measure' ? 'research-only' : '', data: { press }, aria: { pressed: String(press === pointer.press) } });
     return choose;
   });
+  const show = (): void => {
+    for (const one of buttons) one.setAttribute('aria-pressed', String(one.dataset['press'] === pointer.press));
+  };
   group.append(...buttons);
   control.model.on('tools', () => {
+    show();
     const { tool } = control.model;
     const words = !tool || hasHeat(tool.shape) ? 'Cut' : 'Grasp';
     if (buttons[0].textContent !== words) buttons[0].textContent = words;

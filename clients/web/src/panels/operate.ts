@@ -6,14 +6,13 @@ import { NAME_MAX, nameOf, ownName, setOwnName } from '../model/person';
 import { hasHeat } from '../model/tool_parts';
 import type { Viewport } from '../scene/viewport';
 import { PARAMETERS } from '../wire/messages.gen';
-import { attempt, button, byId, element, field, problemPlace } from './dom';
+import { cameraButtons } from './camera';
+import { attempt, byId, element, field, problemPlace } from './dom';
 import { drivingButtons } from './driving';
 
 const POWER_LEAST_C = 60;
 const POWER_MOST_C = 400; // a spark's heat is beyond what tissue shows
 const POWER_STEP_C = 10;
-const FROM_ABOVE = 1.5; // rad
-const ALONG = 0.25;
 
 function instrument(control: Control, problem: HTMLElement): HTMLElement {
   const { model } = control;
@@ -63,22 +62,6 @@ function power(control: Control, hand: ToolHand, problem: HTMLElement): HTMLElem
   return section;
 }
 
-function camera(viewport: Viewport): HTMLElement {
-  const to = (words: string, move: () => void): HTMLButtonElement =>
-    button(words, () => {
-      move();
-      viewport.invalidate();
-    });
-  const buttons = [
-    to('Home', () => viewport.orbit.reset()),
-    to('From above', () => viewport.orbit.look(FROM_ABOVE)),
-    to('Along', () => viewport.orbit.look(ALONG)),
-    to('Nearer', () => viewport.orbit.zoom(1 / 1.25)),
-    to('Farther', () => viewport.orbit.zoom(1.25)),
-  ];
-  return element('section', { aria: { label: 'Camera' } }, element('h2', {}, 'Camera'), element('div', { class: 'buttons' }, ...buttons));
-}
-
 function person(control: Control, rename: () => void): HTMLElement {
   const name = element('input', { name: 'person', value: ownName(), maxLength: NAME_MAX, autocomplete: 'off' });
   name.addEventListener('change', () => {
@@ -108,8 +91,8 @@ function session(control: Control): HTMLElement {
   return section;
 }
 
-export function operatePanel(control: Control, hand: ToolHand, viewport: Viewport, rename: () => void): void {
+export function operatePanel(control: Control, hand: ToolHand, viewport: Viewport, rename: () => void, devices: HTMLElement): void {
   const problem = problemPlace();
-  byId('operate').append(problem, session(control), instrument(control, problem), power(control, hand, problem), camera(viewport), person(control, rename));
+  byId('operate').append(problem, session(control), instrument(control, problem), power(control, hand, problem), element('section', { aria: { label: 'Camera' } }, element('h2', {}, 'Camera'), cameraButtons(viewport)), person(control, rename), devices);
   control.model.emit('tools', undefined);
 }

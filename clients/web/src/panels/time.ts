@@ -37,8 +37,7 @@ function marks(events: readonly TimelineEvent[], least: number, most: number): S
   return svg;
 }
 
-/** Returns the tick that the timeline is held at; null while it follows the session. */
-export function timeBar(control: Control, shared: number | null): () => number | null {
+export function timeBar(control: Control, shared: number | null): void {
   const { model } = control;
   const problem = problemPlace();
   const pause = button('Pause', () => {
@@ -58,19 +57,16 @@ export function timeBar(control: Control, shared: number | null): () => number |
   const track = element('div', { class: 'track' }, slider);
   const rewind = button('Rewind here', () => void attempt(problem, async () => {
     await control.rewind(slider.valueAsNumber);
-    held = false;
+    model.hold(null);
   }, rewind), { id: 'rewind', hidden: true });
   const now = element('output', { class: 'now', id: 'now' });
-  let held = false;
   const seconds = (tick: number): string => `${(tick * (model.summary?.step_s ?? 1 / 60)).toFixed(2)} s`;
   const tell = (): void => {
     rewind.textContent = `Go back to ${seconds(slider.valueAsNumber)}`;
     slider.setAttribute('aria-valuetext', seconds(slider.valueAsNumber));
   };
   slider.addEventListener('input', () => {
-    held = slider.valueAsNumber < Number(slider.max);
-    rewind.hidden = !held;
-    tell();
+    model.hold(slider.valueAsNumber < Number(slider.max) ? slider.valueAsNumber : null);
   });
   byId('time').append(pause, step, reset, speed, track, rewind, now, problem);
 
@@ -80,9 +76,9 @@ export function timeBar(control: Control, shared: number | null): () => number |
     const most = Math.max(frame?.tick ?? 0, least + 1);
     slider.min = String(least);
     slider.max = String(most);
-    if (!held) slider.value = String(most);
+    slider.value = String(model.held ?? most);
     tell();
-    rewind.hidden = !held;
+    rewind.hidden = model.held === null;
   };
   const drawMarks = (): void => {
     place();
@@ -95,9 +91,9 @@ export function timeBar(control: Control, shared: number | null): () => number |
     step.disabled = !usable || model.frame?.paused !== true;
   };
   model.on('timeline', drawMarks);
+  model.on('held', place);
   model.on('link', enable);
   model.on('joined', (joined) => {
-    held = false;
     enable();
     if (joined) void attempt(problem, () => control.loadTimeline().then(showShared));
   });
@@ -106,9 +102,7 @@ export function timeBar(control: Control, shared: number | null): () => number |
     const tick = shared;
     shared = null;
     if (tick === null || tick < Number(slider.min) || tick >= Number(slider.max)) return;
-    held = true;
-    slider.value = String(tick);
-    place();
+    model.hold(tick);
   };
   let paused: boolean | null = null;
   model.on('frame', (frame) => {
@@ -125,5 +119,4 @@ export function timeBar(control: Control, shared: number | null): () => number |
     if (model.timeline && !document.hidden) drawMarks();
   }, REFRESH_MS);
   enable();
-  return () => (held ? slider.valueAsNumber : null);
 }

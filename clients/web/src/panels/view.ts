@@ -4,7 +4,9 @@ import type { Control } from '../model/control';
 import { colourAt, MAP_OF, type ColourMap, type Scalar } from '../model/colour_maps';
 import type { ViewOptions, Viewport } from '../scene/viewport';
 import type { Frame } from '../wire/worker_messages';
-import { attempt, button, byId, element, field, problemPlace, save, short } from './dom';
+import { cameraViews } from './camera';
+import { clipFields } from './clip';
+import { attempt, button, byId, check, element, field, problemPlace, save, short } from './dom';
 import type { Panel } from './tabs';
 
 const COLOURINGS: readonly (readonly [ViewOptions['colouring'], string])[] = [
@@ -20,12 +22,6 @@ const TITLES: Readonly<Record<Scalar, string>> = {
   stress: 'Von Mises stress',
   temperature: 'Temperature',
 };
-
-function check(words: string, name: string, change: (on: boolean) => void, checked = false): HTMLElement {
-  const box = element('input', { type: 'checkbox', name, checked });
-  box.addEventListener('change', () => change(box.checked));
-  return element('label', { class: 'check' }, box, words);
-}
 
 function paint(canvas: HTMLCanvasElement, map: ColourMap): void {
   const context = canvas.getContext('2d');
@@ -92,7 +88,7 @@ function themes(viewport: Viewport): HTMLElement {
   return field('Light', choose);
 }
 
-export function viewPanel(control: Control, viewport: Viewport): Panel {
+export function viewPanel(control: Control, viewport: Viewport, inspectSwitch: HTMLElement): Panel {
   const { model } = control;
   let options: ViewOptions = { wireframe: false, hiddenLayers: new Set(), colouring: 'tissue', forceArrow: false };
   const refreshLegend = legend(control, () => options);
@@ -121,10 +117,6 @@ export function viewPanel(control: Control, viewport: Viewport): Panel {
   const png = button('Save the picture', () => {
     void attempt(problem, async () => save(`cautery-${model.session ?? 'view'}-${model.frame?.tick ?? 0}.png`, await viewport.png()), png);
   });
-  const home = button('Camera home', () => {
-    viewport.orbit.reset();
-    viewport.invalidate();
-  });
   const body = element(
     'div',
     {},
@@ -132,8 +124,11 @@ export function viewPanel(control: Control, viewport: Viewport): Panel {
     layers,
     check('Wireframe', 'wireframe', (on) => set({ wireframe: on })),
     check('Force on the tool', 'force', (on) => set({ forceArrow: on })),
+    inspectSwitch,
+    clipFields(control, viewport),
+    cameraViews(viewport),
     themes(viewport),
-    element('div', { class: 'buttons' }, home, png),
+    element('div', { class: 'buttons' }, png),
     problem,
   );
   return { id: 'view', title: 'View', body };

@@ -13,7 +13,8 @@ import {
 } from 'three';
 
 import { FRINGE_FLOATS, type FringeShape } from '../model/fringe';
-import { FRAGMENTS, FRINGE_VERTEX } from './tissue_shader';
+import { FRINGE_VERTEX } from './surface_light';
+import { FRAGMENTS } from './tissue_shader';
 import type { SharedUniforms } from './tissue_view';
 
 const ATTRIBUTES = [['position', 3, 0], ['material', 3, 3], ['normal', 3, 6], ['heat', 3, 9], ['tip', 1, 12]] as const;

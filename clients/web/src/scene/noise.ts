@@ -1,18 +1,13 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// A periodic volume of smooth noise, made here once: fibres, lobes and blotches of tissue are read from
-// it at different scales, which is cheaper in a fragment shader than to compute noise there.
-import { Data3DTexture, LinearFilter, RedFormat, RepeatWrapping, UnsignedByteType } from 'three';
+// Periodic textures, made here once, that tissue's look is read from at different scales, which is cheaper
+// in a fragment shader than to compute it there: smooth noise, lobes, and vessels that branch. Their mip-maps
+// keep what is finer than the picture from sparkling in it.
+import { Data3DTexture, DataTexture, LinearFilter, LinearMipmapNearestFilter, RedFormat, RepeatWrapping, UnsignedByteType, type Texture } from 'three';
+
+import { lobeValues, random, vesselValues } from '../model/patterns';
 
 const SIZE = 48;
 const LATTICES = [6, 12, 24]; // cells along each axis, one octave each
-
-function random(seed: number): () => number {
-  let state = seed;
-  return () => {
-    state = (Math.imul(state, 1664525) + 1013904223) | 0;
-    return (state >>> 0) / 2 ** 32;
-  };
-}
 
 const smooth = (t: number): number => t * t * t * (t * (6 * t - 15) + 10);
 const mix = (a: number, b: number, t: number): number => a + (b - a) * t;
@@ -47,12 +42,29 @@ export function makeNoise(): Data3DTexture {
     weight *= 0.5;
   }
   const bytes = Uint8Array.from(sum, (value) => Math.round((255 * value) / 0.9625));
-  const texture = new Data3DTexture(bytes, SIZE, SIZE, SIZE);
+  return prepared(new Data3DTexture(bytes, SIZE, SIZE, SIZE));
+}
+
+function prepared<T extends Texture>(texture: T): T {
   texture.format = RedFormat;
   texture.type = UnsignedByteType;
-  texture.minFilter = texture.magFilter = LinearFilter;
-  texture.wrapS = texture.wrapT = texture.wrapR = RepeatWrapping;
+  texture.minFilter = LinearMipmapNearestFilter;
+  texture.magFilter = LinearFilter;
+  texture.generateMipmaps = true;
+  texture.wrapS = texture.wrapT = RepeatWrapping;
+  if (texture instanceof Data3DTexture) texture.wrapR = RepeatWrapping;
   texture.unpackAlignment = 1;
   texture.needsUpdate = true;
   return texture;
+}
+
+const LOBES_SIZE = 32;
+const VESSELS_SIZE = 192;
+
+export function makeLobes(): Data3DTexture {
+  return prepared(new Data3DTexture(lobeValues(LOBES_SIZE), LOBES_SIZE, LOBES_SIZE, LOBES_SIZE));
+}
+
+export function makeVessels(): DataTexture {
+  return prepared(new DataTexture(vesselValues(VESSELS_SIZE), VESSELS_SIZE, VESSELS_SIZE));
 }

@@ -49,9 +49,14 @@ export class Orbit {
     this.fit();
   }
 
+  /** null: it is at home */
   get pose(): CameraPose | null {
+    return this.atHome ? null : this.here;
+  }
+
+  get here(): CameraPose {
     const { azimuth, elevation, distance, target } = this;
-    return this.atHome ? null : { azimuth, elevation, distance, target: target.toArray() };
+    return { azimuth, elevation, distance, target: target.toArray() };
   }
 
   /** Looks from where a link says. */
@@ -62,9 +67,9 @@ export class Orbit {
     this.turn(0, elevation - this.elevation);
   }
 
-  /** Looks straight from above, or along the tissue. */
-  look(elevation: number): void {
-    this.azimuth = -Math.PI / 2;
+  /** Looks from a side: at azimuth 0 from the surgeon's side, counted to the right, rad. */
+  look(elevation: number, azimuth = 0): void {
+    this.azimuth = azimuth - Math.PI / 2;
     this.elevation = Math.min(Math.max(elevation, -STEEPEST), STEEPEST);
     this.fit();
     this.atHome = false;

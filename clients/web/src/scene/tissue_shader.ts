@@ -1,170 +1,35 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// How tissue looks: one vertex shader, and fragment shaders made of shared light and burn with a
-// surface for each kind of tissue. Lengths in metres, colours linear.
-
-export const VERTEX = /* glsl */ `
-in vec4 burn;
-in vec3 material;
-out vec3 vWorld;
-out vec3 vNormal;
-out vec4 vBurn;
-out vec3 vMaterial;
-void main() {
-  vWorld = position;
-  vNormal = normal;
-  vBurn = burn;
-  vMaterial = material;
-  gl_Position = projectionMatrix * viewMatrix * vec4(position, 1.0);
-}`;
-
-export const FRINGE_VERTEX = /* glsl */ `
-in vec3 material;
-in vec3 heat;
-in float tip;
-out vec3 vWorld;
-out vec3 vNormal;
-out vec4 vBurn;
-out vec3 vMaterial;
-out float vTip;
-void main() {
-  vWorld = position;
-  vNormal = normal;
-  vBurn = vec4(heat.xy, 1.0, heat.z);
-  vMaterial = material;
-  vTip = tip;
-  gl_Position = projectionMatrix * viewMatrix * vec4(position, 1.0);
-}`;
-
-const COMMON = /* glsl */ `
-precision highp float;
-precision highp sampler3D;
-in vec3 vWorld;
-in vec3 vNormal;
-in vec4 vBurn;
-in vec3 vMaterial;
-out vec4 fragment;
-uniform sampler3D noise;
-uniform sampler2D colourMap;
-uniform int mapChannel;   // -1: as tissue; else the channel of burn shown as colour
-uniform vec3 light;       // the lamp, world
-uniform float ambient;
-uniform int capsuleCount;
-uniform vec4 capsuleFrom[8]; // xyz and radius: parts of instruments that cast shadow
-uniform vec3 capsuleTo[8];
-uniform vec4 glow[4];     // xyz of hot tips and how much they glow
-
-float n(vec3 p) { return texture(noise, p).r; }
-
-// Share of the sky that a capsule leaves (after Quilez), and of the lamp.
-float openness(vec3 p, vec3 normal, vec3 a, vec3 b, float r) {
-  vec3 ba = b - a, pa = p - a;
-  float h = clamp(dot(pa, ba) / max(dot(ba, ba), 1e-12), 0.0, 1.0);
-  vec3 d = pa - h * ba;
-  float l = max(length(d), r * 0.6);
-  return 1.0 - clamp(max(0.0, dot(-d, normal)) * r * r / (l * l * l), 0.0, 1.0) * 0.85;
-}
-float lit(vec3 p, vec3 toLight, vec3 a, vec3 b, float r) {
-  vec3 ba = b - a, oa = p - a;
-  float oad = dot(oa, toLight), dba = dot(toLight, ba), baba = dot(ba, ba), oaba = dot(oa, ba);
-  vec2 th = vec2(-oad * baba + dba * oaba, oaba - oad * dba) / max(baba - dba * dba, 1e-12);
-  th.x = max(th.x, 0.0005);
-  th.y = clamp(th.y, 0.0, 1.0);
-  float d = length(a + ba * th.y - (p + toLight * th.x)) - r;
-  return smoothstep(0.0, 1.0, clamp(6.0 * d / th.x + 0.15, 0.0, 1.0));
-}
-
-// Bends the normal by a height, from its differences on the screen.
-vec3 bend(vec3 normal, float height, float amount) {
-  vec3 dx = dFdx(vWorld), dy = dFdy(vWorld);
-  vec3 r1 = cross(dy, normal), r2 = cross(normal, dx);
-  float det = dot(dx, r1);
-  vec3 gradient = sign(det) * (dFdx(height) * r1 + dFdy(height) * r2);
-  return normalize(abs(det) * normal - amount * gradient);
-}
-
-struct Surface { vec3 colour; vec3 normal; float alpha; float gloss; float wet; };
-
-vec3 shade(Surface s, vec3 view) {
-  vec3 toLight = normalize(light - vWorld);
-  float shadow = 1.0, sky = 1.0;
-  for (int i = 0; i < 8; i++) {
-    if (i >= capsuleCount) break;
-    shadow *= lit(vWorld, toLight, capsuleFrom[i].xyz, capsuleTo[i], capsuleFrom[i].w);
-    sky *= openness(vWorld, s.normal, capsuleFrom[i].xyz, capsuleTo[i], capsuleFrom[i].w);
-  }
-  float turned = dot(s.normal, toLight);
-  float wrapped = clamp((turned + 0.3) / 1.3, 0.0, 1.0);
-  // Light that went through flesh comes out redder.
-  vec3 through = vec3(0.20, 0.05, 0.03) * smoothstep(-0.6, 0.4, turned) * (1.0 - wrapped);
-  vec3 colour = s.colour * (ambient * sky + (0.25 + 0.75 * shadow) * wrapped * 0.95 + through);
-  vec3 halfway = normalize(toLight + view);
-  float shine = pow(max(dot(s.normal, halfway), 0.0), s.gloss);
-  float rim = pow(1.0 - max(dot(s.normal, view), 0.0), 4.0);
-  colour += (shadow * shine * s.wet + rim * 0.10 * s.wet * sky) * vec3(1.0, 0.97, 0.93);
-  for (int i = 0; i < 4 && mapChannel < 0; i++) { // over a colour that tells a number a glow would tell another
-    vec3 away = vWorld - glow[i].xyz;
-    colour += glow[i].w * exp(-dot(away, away) / 2.2e-5) * vec3(0.9, 0.28, 0.06) * (0.25 + s.colour);
-  }
-  return colour;
-}
-
-// Heat first dries and blanches, then browns; where it has burnt edges through, blotches and streaks of
-// char. What a tissue is browned to is its own: collagen to tan, fat to amber.
-void burnt(inout Surface s, vec3 browned, float blotch) {
-  // Heat made every rim: what is left of a parted edge is burnt even where its own nodes took up less.
-  float e = max(vBurn.x, 0.9 * vBurn.z * vBurn.z);
-  e += 0.3 * (blotch - 0.5) * smoothstep(0.05, 0.3, e);
-  s.colour = mix(s.colour, vec3(0.74, 0.60, 0.45), 0.45 * smoothstep(0.12, 0.45, e));
-  s.colour = mix(s.colour, browned, 0.85 * smoothstep(0.45, 0.9, e));
-  // On the wall of a cut a third to a half of a vertex's edges are gone: that is as black as it gets.
-  float c = clamp(min(2.0 * vBurn.y, 1.0) + 0.45 * vBurn.z, 0.0, 1.3) * (0.1 + 1.4 * blotch);
-  s.colour = mix(s.colour, vec3(0.045, 0.026, 0.017), 0.92 * smoothstep(0.80, 1.20, c));
-  s.wet *= 1.0 - 0.55 * smoothstep(0.3, 0.8, e);
-  s.alpha = mix(s.alpha, 1.0, smoothstep(0.3, 0.7, e));
-}
-
-// Cut sheets end in fibres: near a rim, what lies between the fibres is gone.
-void fray(float fibre) {
-  if (vBurn.z > 0.72 + 0.62 * fibre) discard;
-}
-
-void finish(Surface s, vec3 view) {
-  vec3 colour;
-  if (mapChannel < 0) colour = shade(s, view);
-  else {
-    // As bright under the lamp as in the legend: more would bleach what tells a number.
-    s.colour = 0.75 * pow(texture(colourMap, vec2(vBurn[mapChannel], 0.5)).rgb, vec3(2.2));
-    s.wet = 0.05;
-    s.alpha = 1.0;
-    colour = shade(s, view);
-  }
-  fragment = linearToOutputTexel(vec4(colour, s.alpha));
-}
-`;
+// How tissue and what lies around it look: a fragment shader for each kind. Lengths in metres, colours linear.
+import { COMMON } from './surface_light';
 
 // A pearly sheet of collagen: pale bundles that wander, thinner and glassier between them, where what
-// lies below shows through, with a few fine vessels.
+// lies below shows through, with vessels in it.
 const FASCIA_LOOK = /* glsl */ `
+float weave(vec3 along, out float bundle, out float strand) {
+  bundle = n(vec3(16.0 * along.x + 41.0 * along.y, 170.0 * along.yz));
+  strand = n(vec3(34.0 * along.x + 97.0 * along.y, 560.0 * along.yz) + 0.37);
+  return 0.6 * bundle + 0.4 * strand;
+}
 Surface fascia(vec3 normal, vec3 view, vec3 m, out float fibre, out float blotch) {
   float wander = n(m * 11.0);
   vec3 along = m + vec3(0.0, 0.0035 * (wander - 0.5), 0.0);
-  float bundle = n(vec3(16.0 * along.x + 41.0 * along.y, 170.0 * along.yz));
-  float strand = n(vec3(34.0 * along.x + 97.0 * along.y, 760.0 * along.yz) + 0.37);
-  float crossing = n(vec3(m.y * 30.0 + m.x * 22.0, (m.x - 0.6 * m.y) * 300.0, m.z * 90.0));
+  float bundle, strand, unused;
+  float here = weave(along, bundle, strand);
+  Steps over = steps(0.0002);
+  vec2 rise = vec2(weave(along + over.x, unused, unused), weave(along + over.y, unused, unused)) - here;
   blotch = n(m * 34.0);
   fibre = 0.5 * bundle + 0.5 * strand;
-  float weave = 0.44 * bundle + 0.26 * strand + 0.14 * crossing + 0.16 * blotch;
-  float dense = smoothstep(0.32, 0.68, weave);
+  float dense = smoothstep(0.34, 0.66, 0.84 * here + 0.16 * blotch);
   Surface s;
-  s.normal = bend(normal, weave, 0.00007);
-  s.colour = mix(vec3(0.64, 0.37, 0.31), vec3(0.80, 0.63, 0.55), dense);
-  s.colour = mix(s.colour, vec3(0.60, 0.22, 0.19), 0.30 * smoothstep(0.50, 0.72, blotch));
-  float vessel = abs(n(m * vec3(13.0, 17.0, 15.0) + 0.31) - 0.5);
-  s.colour = mix(s.colour, vec3(0.50, 0.07, 0.08), 0.55 * smoothstep(0.011, 0.002, vessel));
+  s.normal = bend(normal, over, rise, 0.000045);
+  s.colour = mix(vec3(0.67, 0.38, 0.31), vec3(0.76, 0.53, 0.45), dense);
+  s.colour = mix(s.colour, vec3(0.66, 0.33, 0.27), 0.4 * smoothstep(0.42, 0.70, blotch));
+  float blood = vessel(m.xy + 0.0016 * (vec2(wander, blotch) - 0.5));
+  s.colour = mix(s.colour, vec3(0.36, 0.035, 0.045), 0.72 * blood);
   float grazing = 1.0 - abs(dot(normal, view));
-  s.alpha = clamp(mix(0.70, 0.92, dense) + 0.5 * grazing * grazing, 0.0, 1.0);
+  s.alpha = clamp(mix(0.50, 0.74, dense) + 0.25 * blood + 0.5 * grazing * grazing, 0.0, 1.0);
   s.gloss = 60.0;
-  s.wet = 0.38;
+  s.wet = 0.42;
   return s;
 }
 const vec3 TAN = vec3(0.40, 0.235, 0.115);
@@ -203,23 +68,47 @@ void main() {
   finish(s, view);
 }`;
 
+// Lobes of fat, domed, with septa between them.
+const FAT_LOOK = /* glsl */ `
+float domes(vec3 m) { return lobed(m * 33.0) + 0.22 * lobed(m * 91.0); }
+Surface fat(vec3 normal, vec3 m, float bulge, out float grain) {
+  vec3 bent = m + 0.0024 * (n(m * 27.0) - 0.5) * vec3(1.0, -0.8, 0.6);
+  float here = domes(bent);
+  Steps over = steps(0.0004);
+  vec2 rise = vec2(domes(bent + over.x), domes(bent + over.y)) - here;
+  grain = n(m * 120.0);
+  Surface s;
+  s.normal = bend(normal, over, rise, bulge);
+  float dome = smoothstep(0.15, 0.75, here);
+  s.colour = mix(vec3(0.60, 0.27, 0.09), vec3(0.88, 0.62, 0.22), dome);
+  s.colour = mix(s.colour, vec3(0.93, 0.72, 0.36), 0.4 * smoothstep(0.7, 1.1, here));
+  s.colour *= 0.93 + 0.14 * grain;
+  s.alpha = 1.0;
+  s.gloss = 50.0;
+  s.wet = 0.4;
+  return s;
+}
+`;
+
+const MEMBRANE_LOOK = /* glsl */ `
+Surface membrane(vec3 normal, vec3 m, out float film) {
+  Surface s = fat(normal, m, 0.0008, film);
+  s.colour = mix(s.colour, vec3(0.74, 0.38, 0.31), 0.30);
+  s.colour = mix(s.colour, vec3(0.34, 0.03, 0.035), 0.7 * vessel(m.yx + vec2(0.031, 0.012)));
+  s.gloss = 60.0;
+  s.wet = 0.5;
+  return s;
+}
+`;
+
 const MEMBRANE = /* glsl */ `
 void main() {
   vec3 view = normalize(cameraPosition - vWorld);
   vec3 normal = normalize(vNormal);
   if (dot(normal, view) < 0.0) normal = -normal;
-  float lobe = n(vMaterial * 34.0);
-  float film = n(vMaterial * 140.0);
-  float vessel = n(vMaterial * vec3(15.0, 19.0, 17.0) + 0.61);
-  fray(0.5 * film + 0.5 * lobe);
-  Surface s;
-  s.normal = bend(normal, lobe + 0.15 * film, 0.0016);
-  vec3 fat = mix(vec3(0.62, 0.34, 0.09), vec3(0.86, 0.62, 0.24), smoothstep(0.3, 0.65, lobe));
-  s.colour = mix(fat, vec3(0.74, 0.36, 0.29), 0.34);
-  s.colour = mix(s.colour, vec3(0.42, 0.05, 0.05), 0.6 * smoothstep(0.018, 0.0, abs(vessel - 0.5)));
-  s.alpha = 1.0;
-  s.gloss = 90.0;
-  s.wet = 0.62;
+  float film;
+  Surface s = membrane(normal, vMaterial, film);
+  fray(film);
   burnt(s, vec3(0.46, 0.185, 0.07), 0.5 * film + 0.5 * n(vMaterial * 70.0));
   finish(s, view);
 }`;
@@ -229,16 +118,8 @@ void main() {
   vec3 view = normalize(cameraPosition - vWorld);
   vec3 normal = normalize(vNormal);
   if (dot(normal, view) < 0.0) normal = -normal;
-  float lobe = n(vMaterial * 34.0);
-  float grain = n(vMaterial * 150.0);
-  float septum = smoothstep(0.05, 0.0, abs(lobe - 0.46));
-  Surface s;
-  s.normal = bend(normal, lobe + 0.2 * grain, 0.0024);
-  s.colour = mix(vec3(0.66, 0.36, 0.07), vec3(0.92, 0.68, 0.22), smoothstep(0.3, 0.65, lobe));
-  s.colour = mix(s.colour, vec3(0.80, 0.62, 0.48), 0.35 * septum);
-  s.alpha = 1.0;
-  s.gloss = 45.0;
-  s.wet = 0.35;
+  float grain;
+  Surface s = fat(normal, vMaterial, 0.0015, grain);
   burnt(s, vec3(0.54, 0.235, 0.065), 0.5 * grain + 0.5 * n(vMaterial * 60.0 + 0.5));
   finish(s, view);
 }`;
@@ -249,25 +130,62 @@ void main() {
   vec3 view = normalize(cameraPosition - vWorld);
   vec3 normal = normalize(cross(dFdx(vWorld), dFdy(vWorld)));
   if (dot(normal, view) < 0.0) normal = -normal;
-  float lobe = n(vMaterial * 60.0);
-  float grain = n(vMaterial * 210.0);
+  float grain;
+  Surface s = fat(normal, vMaterial, 0.0018, grain);
   float blood = n(vMaterial * 24.0 + 0.23);
-  Surface s;
-  s.normal = bend(normal, lobe + 0.35 * grain, 0.0022);
-  s.colour = mix(vec3(0.70, 0.27, 0.05), vec3(0.95, 0.66, 0.22), smoothstep(0.25, 0.7, 0.7 * lobe + 0.3 * grain));
-  s.colour = mix(s.colour, vec3(0.45, 0.06, 0.04), 0.45 * smoothstep(0.52, 0.66, blood));
-  s.alpha = 1.0;
-  s.gloss = 60.0;
-  s.wet = 0.5;
+  s.colour = mix(s.colour, vec3(0.45, 0.06, 0.04), 0.5 * smoothstep(0.50, 0.66, blood));
+  s.wet = 0.55;
   burnt(s, vec3(0.42, 0.20, 0.05), 0.5 * grain + 0.5 * n(vMaterial * 60.0 + 0.5));
   finish(s, view);
+}`;
+
+// Around the tissue, drawn only: muscle under it, walls of fat in its membrane, the cut edge of the skin.
+const FLESH = /* glsl */ `
+void main() {
+  vec3 view = normalize(cameraPosition - vWorld);
+  vec3 normal = normalize(vNormal);
+  if (dot(normal, view) < 0.0) normal = -normal;
+  float zone = 3.0 * vBurn.w;
+  vec3 m = vMaterial;
+  float film;
+  Surface s = membrane(normal, m, film);
+  s.colour = mix(s.colour, vec3(0.62, 0.20, 0.13), 0.45 * smoothstep(0.45, 0.65, n(m * 15.0 + 0.3)));
+  float stripe = n(vec3(28.0 * m.x, 260.0 * m.y + 70.0 * n(m * 9.0), 40.0 * m.z));
+  vec3 muscle = mix(vec3(0.27, 0.040, 0.032), vec3(0.38, 0.075, 0.058), smoothstep(0.3, 0.7, stripe));
+  s.colour = mix(muscle, s.colour, smoothstep(0.55, 0.95, zone));
+  float dermis = smoothstep(1.2, 1.5, zone + 0.3 * (film - 0.5));
+  float skin = smoothstep(1.75, 1.95, zone + 0.1 * (film - 0.5));
+  s.colour = mix(s.colour, vec3(0.82, 0.62, 0.52), dermis);
+  s.colour = mix(s.colour, vec3(0.62, 0.33, 0.205) * (0.92 + 0.16 * film), skin);
+  s.normal = normalize(mix(s.normal, normal, 0.85 * skin));
+  s.wet = mix(s.wet, 0.10, skin);
+  show(s, view);
+}`;
+
+const CLOTH = /* glsl */ `
+uniform vec3 cloth;
+uniform vec3 background;
+void main() {
+  vec3 view = normalize(cameraPosition - vWorld);
+  vec3 normal = normalize(vNormal);
+  if (dot(normal, view) < 0.0) normal = -normal;
+  Surface s;
+  s.normal = normal;
+  s.colour = cloth * (0.9 + 0.2 * n(vec3(vWorld.xy * 45.0, 0.2)));
+  s.alpha = 1.0;
+  s.gloss = 20.0;
+  s.wet = 0.03;
+  show(s, view);
+  fragment.rgb = mix(fragment.rgb, background, smoothstep(0.5, 1.0, vBurn.w));
 }`;
 
 export const FRAGMENTS = {
   fascia: COMMON + FASCIA_LOOK + FASCIA,
   fringe: COMMON + FASCIA_LOOK + FRINGE,
-  membrane: COMMON + MEMBRANE,
-  fat: COMMON + FAT,
-  bared: COMMON + BARED,
+  membrane: COMMON + FAT_LOOK + MEMBRANE_LOOK + MEMBRANE,
+  fat: COMMON + FAT_LOOK + FAT,
+  bared: COMMON + FAT_LOOK + BARED,
+  flesh: COMMON + FAT_LOOK + MEMBRANE_LOOK + FLESH,
+  cloth: COMMON + CLOTH,
 } as const;
-export type SurfaceKind = keyof typeof FRAGMENTS;
+export type SurfaceKind = Exclude<keyof typeof FRAGMENTS, 'flesh' | 'cloth'>;

@@ -20,9 +20,10 @@ import {
 import { colourRow, type ColourMap } from '../model/colour_maps';
 import { BURN_BYTES, SCALAR } from '../model/tissue';
 import type { Frame, Joined } from '../wire/worker_messages';
-import { makeNoise } from './noise';
+import { makeLobes, makeNoise, makeVessels } from './noise';
 import { FringeView } from './fringe_view';
-import { FRAGMENTS, VERTEX, type SurfaceKind } from './tissue_shader';
+import { VERTEX } from './surface_light';
+import { FRAGMENTS, type SurfaceKind } from './tissue_shader';
 
 export const CAPSULES_MAX = 8;
 export const GLOWS_MAX = 4;
@@ -30,10 +31,13 @@ export const GLOWS_MAX = 4;
 export interface SharedUniforms {
   [name: string]: IUniform;
   noise: IUniform;
+  lobes: IUniform;
+  vessels: IUniform;
   colourMap: IUniform<DataTexture>;
   mapChannel: IUniform<number>;
   light: IUniform<Vector3>;
   ambient: IUniform<number>;
+  clip: IUniform<Vector4>;
   capsuleCount: IUniform<number>;
   capsuleFrom: IUniform<Vector4[]>;
   capsuleTo: IUniform<Vector3[]>;
@@ -51,10 +55,13 @@ export function mapTexture(map: ColourMap): DataTexture {
 export function makeSharedUniforms(): SharedUniforms {
   return {
     noise: { value: makeNoise() },
+    lobes: { value: makeLobes() },
+    vessels: { value: makeVessels() },
     colourMap: { value: mapTexture('cividis') },
     mapChannel: { value: -1 },
     light: { value: new Vector3(0, 0, 1) },
     ambient: { value: 0.42 },
+    clip: { value: new Vector4(0, 0, 0, 1) }, // nothing
     capsuleCount: { value: 0 },
     capsuleFrom: { value: Array.from({ length: CAPSULES_MAX }, () => new Vector4()) },
     capsuleTo: { value: Array.from({ length: CAPSULES_MAX }, () => new Vector3()) },

@@ -55,8 +55,11 @@ export class ToolView {
     const steel = this.makeMaterial(light, new Color(0.62, 0.64, 0.67), 0.85, { value: 0 });
     const hot = this.makeMaterial(light, new Color(0.70, 0.66, 0.60), 0.7, this.heat);
     const sleeve = this.makeMaterial(light, new Color(0.035, 0.038, 0.045), 0.12, { value: 0 });
-    for (const part of toolParts(definition)) {
-      const isShaft = part.solid === 'capsule' && !part.hot && !part.jaw;
+    sleeve.polygonOffset = true; // over the end of what it holds, which may be as wide
+    sleeve.polygonOffsetFactor = sleeve.polygonOffsetUnits = -2;
+    const parts = toolParts(definition);
+    for (const part of parts) {
+      const isShaft = part === parts.at(-1);
       const mesh = new Mesh(solidGeometry(part), part.hot ? hot : isShaft ? sleeve : steel);
       mesh.userData['hot'] = part.hot;
       this.place(mesh, part);

@@ -1,13 +1,14 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The picture: tissue, instruments, drape, smoke. Draws only when something changed.
-import { ArrowHelper, Box3, Color, Scene, Vector3, WebGLRenderer, type IUniform } from 'three';
+// The picture: tissue, the field around it, instruments, smoke. Draws only when something changed.
+import { ArrowHelper, Color, Scene, Vector3, WebGLRenderer, type IUniform } from 'three';
 
 import { MAP_OF, type Scalar } from '../model/colour_maps';
 import { SCALAR } from '../model/tissue';
 import type { Tool } from '../wire/messages.gen';
 import type { ToolState } from '../wire/records';
 import type { Frame, FrameBuffers, Joined } from '../wire/worker_messages';
-import { Drape } from './drape';
+import { ClipPlane } from './clip_plane';
+import { Field } from './field';
 import { framedPoints } from './framing';
 import { Orbit, type CameraPose } from './orbit';
 import { Pace } from './pace';
@@ -59,12 +60,13 @@ export class Viewport {
   private changedAt = 0;
   private readonly scene = new Scene();
   private readonly shared = makeSharedUniforms();
+  readonly clip = new ClipPlane(this.shared.clip);
   private readonly colourMaps = { cividis: this.shared.colourMap.value, heat: mapTexture('heat') };
   private readonly tools = new Map<string, ToolView>();
   private readonly smoke = new Smoke();
   private readonly arrow = new ArrowHelper(new Vector3(0, 0, 1), new Vector3(), 0.01, 0xf5b301);
   private readonly way = new WayView();
-  private readonly drape: Drape;
+  private readonly field: Field;
   private readonly background: IUniform<Color> = { value: new Color() };
   private options: ViewOptions = { wireframe: false, hiddenLayers: new Set(), colouring: 'tissue', forceArrow: false };
   private states: ToolState[] = [];
@@ -92,9 +94,9 @@ export class Viewport {
       this.pace?.reset();
       this.resize();
     });
-    this.drape = new Drape(this.background);
+    this.field = new Field(this.shared, this.background);
     this.arrow.visible = false;
-    this.scene.add(this.drape.mesh, this.smoke.points, this.arrow, this.way.points);
+    this.scene.add(this.field.group, this.smoke.points, this.arrow, this.way.points);
     this.setTheme(true);
   }
 
@@ -107,7 +109,7 @@ export class Viewport {
   setTheme(dark: boolean): void {
     this.background.value.set(dark ? 0x14181c : 0xdfe5e8);
     this.scene.background = this.background.value;
-    this.drape.setTheme(dark);
+    this.field.setTheme(dark);
     this.shared.ambient.value = dark ? 0.4 : 0.52;
     this.smoke.setLight(dark);
     this.invalidate();
@@ -120,11 +122,10 @@ export class Viewport {
       this.tissue = null;
     }
     this.setTools([]);
-    this.drape.mesh.visible = joined !== null;
+    this.field.place(joined?.surroundings ?? null);
     if (joined) {
       this.tissue = new TissueView(joined, this.shared);
       this.scene.add(this.tissue.group);
-      this.drape.place(new Box3().setFromArray(joined.rest));
       this.states = [];
       const { session } = joined.description.summary;
       if (session !== this.session) {

@@ -2,13 +2,15 @@
 // From decoded frames to what the page draws: every frame goes into the tissue, the newest is handed
 // over as soon as the page has given the last one's buffers back. So the page can never fall behind.
 import { materialCoordinates } from '../model/fibres';
+import { surroundingsOf } from '../model/field_shape';
 import { BURN_BYTES, Tissue } from '../model/tissue';
 import type { Changes, StreamState } from './decoder';
-import type { SessionDescription, StreamDescription } from './messages.gen';
+import { TEMPERATURE, type SessionDescription, type StreamDescription } from './messages.gen';
 import type { Topology } from './topology';
-import type { Frame, FrameBuffers, Joined, Sample } from './worker_messages';
+import type { Frame, FrameBuffers, Joined, Sample, VertexState } from './worker_messages';
 
 const SAMPLES_MAX = 600;
+const BYTE = 255; // exposure and charring of one
 
 export class Feed {
   readonly joined: Joined;
@@ -17,6 +19,7 @@ export class Feed {
   private readonly fringed = new Set<number>();
   private spare: FrameBuffers | null;
   private newest: StreamState | null = null;
+  private last: StreamState | null = null;
   private changed = true;
   private samples: Sample[] = [];
 
@@ -24,15 +27,17 @@ export class Feed {
     description: SessionDescription,
     private readonly stream: StreamDescription,
     topology: Topology,
+    /** which of the two is shown as colour */
+    private readonly scalar: 'stress' | 'temperature',
   ) {
     const { vertex_count: vertexCount, face_count: faceCount, origin_m: originM, step_m: stepM } = stream;
     const { layers } = description;
     const rest = Float32Array.from(topology.rest, (value, i) => originM[i % 3] + stepM * value);
     const material = materialCoordinates(topology, rest, layers, description.definition);
-    const scalar = stream.channels.includes('temperature') ? 'temperature' : 'stress';
     this.tissue = new Tissue({ vertexCount, faceCount, originM, stepM, layers, topology, scalar, material });
     const batches = this.tissue.batches.map(({ faces, ...batch }) => ({ ...batch, faceCount: faces.length }));
-    this.joined = { description, stream, batches, rest, material };
+    const surroundings = surroundingsOf(rest, topology.faces, layers, description.definition);
+    this.joined = { description, stream, batches, rest, material, surroundings };
     this.spare = {
       position: new Float32Array(3 * vertexCount),
       normal: new Float32Array(3 * vertexCount),
@@ -43,9 +48,23 @@ export class Feed {
   take(state: StreamState, changes: Changes, sample: Sample): void {
     for (const batch of this.tissue.update(state, changes)) this.stale.add(batch);
     this.changed ||= changes.whole || changes.scalars || changes.moved.length > 0 || changes.maskWords.length > 0;
-    this.newest = state;
+    this.newest = this.last = state;
     this.samples.push(sample);
     if (this.samples.length > SAMPLES_MAX) this.samples.shift();
+  }
+
+  /** What the newest frame tells of a vertex. */
+  vertex(vertex: number): VertexState | null {
+    const { last, stream } = this;
+    if (!last || vertex < 0 || vertex >= stream.vertex_count) return null;
+    const has = (channel: 'stress' | 'temperature'): boolean => stream.channels.includes(channel);
+    return {
+      vertex,
+      exposure: last.exposure[vertex] / BYTE,
+      charring: last.charring[vertex] / BYTE,
+      stressPa: has('stress') ? last.stress[vertex] * stream.stress_step_pa : null,
+      temperatureC: has('temperature') ? TEMPERATURE.leastC + TEMPERATURE.stepC * last.temperature[vertex] : null,
+    };
   }
 
   giveBack(buffers: FrameBuffers): void {
@@ -81,7 +100,7 @@ export class Feed {
       fringes,
       drawnFaces: tissue.drawnFaceCounts(),
       stressScalePa: tissue.stressScale * this.stream.stress_step_pa,
-      temperatureRangeC: this.stream.channels.includes('temperature') ? [...tissue.temperatureRangeC] : null,
+      temperatureRangeC: this.scalar === 'temperature' && this.stream.channels.includes('temperature') ? [...tissue.temperatureRangeC] : null,
       tools: state.tools,
       samples,
       framesDecoded,

@@ -3,7 +3,7 @@
 import type { LinkState } from './connection';
 import { RpcError } from './connection';
 import type { Notices, Pushes, Requests, UploadResult } from './messages.gen';
-import type { Channels, Frame, FrameBuffers, FromWorker, Joined, ToWorker } from './worker_messages';
+import type { Channels, Frame, FrameBuffers, FromWorker, Joined, ToWorker, VertexState } from './worker_messages';
 
 export interface LinkEvents {
   state(state: LinkState): void;
@@ -51,8 +51,14 @@ export class Link {
     this.send({ type: 'heartbeat', visible });
   }
 
-  watch(session: string | null, channels: Channels): void {
-    this.send({ type: 'watch', session, channels });
+  watch(session: string | null, channels: Channels, colour: 'stress' | 'temperature'): void {
+    this.send({ type: 'watch', session, channels, colour });
+  }
+
+  inspect(vertex: number): Promise<VertexState | null> {
+    return new Promise((resolve, reject) => {
+      this.send({ type: 'inspect', call: this.remember({ resolve: resolve as (result: unknown) => void, reject }), vertex });
+    });
   }
 
   upload(name: string, file: File, progress: (sent: number, total: number) => void): Promise<UploadResult> {

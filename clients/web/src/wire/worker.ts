@@ -1,12 +1,13 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // The worker: owns the socket, decodes every frame, hands the newest state to the page.
+import { momentOf } from '../model/history';
 import { isChunk, readChunk } from './chunk';
 import { Connection, RpcError } from './connection';
 import { decoderReady } from './elements';
 import { Feed } from './feed';
 import { Downloads, upload } from './files';
 import { Subscription } from './subscription';
-import type { Channels, FromWorker, Sample, ToWorker } from './worker_messages';
+import type { FromWorker, Sample, ToWorker } from './worker_messages';
 import type { StreamState } from './decoder';
 import type { Transfer } from './messages.gen';
 
@@ -25,6 +26,7 @@ let feed: Feed | null = null;
 let clockOffsetUs = 0; // the daemon's clock minus this one's
 let leastDelayUs = Infinity;
 let nextMeasureUs = 0;
+let coloured: 'stress' | 'temperature' = 'stress';
 const downloads = new Downloads((file) => scope.postMessage({ type: 'file', ...file }, [file.bytes.buffer]));
 
 const nowUs = (): number => Math.round(performance.now() * 1000);
@@ -73,10 +75,12 @@ function sampleOf(state: StreamState, bytes: number, decodeMs: number): Sample {
     statistics: state.statistics,
     forceN: Math.max(0, ...state.tools.map((tool) => Math.hypot(...tool.forceN))),
     energyJ: state.tools.reduce((sum, tool) => sum + tool.energyJ, 0),
+    moment: momentOf(state.tick, state.tools),
   };
 }
 
-function watch(session: string | null, channels: Channels): void {
+function watch({ session, channels, colour }: ToWorker & { type: 'watch' }): void {
+  coloured = colour;
   if (subscription && subscription.session === session) {
     void subscription.start({ channels });
     return;
@@ -88,7 +92,7 @@ function watch(session: string | null, channels: Channels): void {
   let received = performance.now();
   subscription = new Subscription(connection, session, { channels }, {
     joined: (description, stream, topology) => {
-      feed = new Feed(description, stream, topology);
+      feed = new Feed(description, stream, topology, coloured);
       scope.postMessage({ type: 'joined', joined: feed.joined });
     },
     frame: (state, changes, bytes) => {
@@ -169,7 +173,10 @@ async function receive(message: ToWorker): Promise<void> {
       await heartbeat(message.visible).catch(() => undefined); // lost: the link's state says so
       break;
     case 'watch':
-      watch(message.session, message.channels);
+      watch(message);
+      break;
+    case 'inspect':
+      scope.postMessage({ type: 'answer', call: message.call, result: feed?.vertex(message.vertex) ?? null });
       break;
     case 'upload':
       send(message);

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // What page and worker say to each other.
+import type { Surroundings } from '../model/field_shape';
 import type { FringeShape } from '../model/fringe';
+import type { Moment } from '../model/history';
 import type { Batch } from '../model/tissue';
 import type { LinkState } from './connection';
 import type { Pushes, Requests, Notices, SessionDescription, SessionJoin, StreamDescription } from './messages.gen';
@@ -13,7 +15,8 @@ export type ToWorker =
   | { type: 'call'; call: number; method: keyof Requests; params: object }
   | { type: 'notice'; method: keyof Notices; params: object }
   | { type: 'heartbeat'; visible: boolean }
-  | { type: 'watch'; session: string | null; channels: Channels }
+  | { type: 'watch'; session: string | null; channels: Channels; colour: 'stress' | 'temperature' }
+  | { type: 'inspect'; call: number; vertex: number }
   | { type: 'upload'; call: number; name: string; fileName: string; bytes: ArrayBuffer }
   | { type: 'return'; buffers: FrameBuffers };
 
@@ -22,6 +25,17 @@ export interface FrameBuffers {
   position: Float32Array;
   normal: Float32Array;
   burn: Uint8Array;
+}
+
+/** A vertex by the newest frame; null where the stream does not have it. */
+export interface VertexState {
+  vertex: number;
+  /** 1: it parts */
+  exposure: number;
+  /** share of its edges that are burnt through */
+  charring: number;
+  stressPa: number | null;
+  temperatureC: number | null;
 }
 
 /** One decoded frame for the plots. */
@@ -35,6 +49,7 @@ export interface Sample {
   statistics: Statistics | null;
   forceN: number;
   energyJ: number;
+  moment: Moment;
 }
 
 export interface TissueBatch extends Omit<Batch, 'faces'> {
@@ -48,6 +63,7 @@ export interface Joined {
   batches: TissueBatch[];
   rest: Float32Array;
   material: Float32Array;
+  surroundings: Surroundings | null;
 }
 
 export interface Frame {

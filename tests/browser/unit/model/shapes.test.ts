@@ -148,7 +148,7 @@ describe('fibres', () => {
 
 describe('what people save and see', () => {
   it('writes samples as CSV, empty where statistics are missing', () => {
-    const sample = { atS: 1.5, tick: 9, latencyMs: 2, bytes: 100, decodeMs: 0.1, statistics: null, forceN: 0.5, energyJ: 3 };
+    const sample = { atS: 1.5, tick: 9, latencyMs: 2, bytes: 100, decodeMs: 0.1, statistics: null, forceN: 0.5, energyJ: 3, moment: { tick: 9, tools: new Map() } };
     const [head, row, end] = samplesCsv([sample]).split('\n');
     expect(head.split(',').slice(0, 4)).toEqual(['time_s', 'tick', 'latency_ms', 'frame_bytes']);
     expect(row.split(',').slice(0, 8)).toEqual(['1.5', '9', '2', '100', '0.1', '0.5', '3', '']);

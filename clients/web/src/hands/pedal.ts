@@ -1,0 +1,68 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// A foot pedal: most of them are keyboards with one key to a browser. Which key is kept by the browser.
+
+const KEPT = 'pedal';
+/** Keys that have their own work in the page. */
+const TAKEN = /^(Arrow|Tab$|Enter$|NumpadEnter$|Escape$|Space$|Shift|Control|Alt|Meta|Key[WSQERFGH]$|Equal$|Minus$|Numpad(Add|Subtract)$)/;
+
+/** "B" for KeyB, "F13", "Page Down". */
+export function keyWords(code: string): string {
+  return code.replace(/^(Key|Digit)/, '').replace(/([a-z])([A-Z])/g, '$1 $2');
+}
+
+export class Pedal {
+  /** told the next key instead of having it pressed */
+  private asked: ((words: string | null) => void) | null = null;
+
+  constructor(
+    private readonly press: () => void,
+    private readonly letGo: () => void,
+  ) {
+    window.addEventListener('keydown', (event) => this.down(event), { capture: true });
+    window.addEventListener('keyup', (event) => event.code === this.code && this.letGo(), { capture: true });
+    window.addEventListener('blur', () => this.letGo());
+  }
+
+  /** the key's place on a keyboard, as browsers name it; null: there is no pedal */
+  get code(): string | null {
+    return localStorage.getItem(KEPT);
+  }
+
+  /** Takes the next key for the pedal's; `told`: why it cannot be that one, or null when it is. */
+  choose(told: (problem: string | null) => void): void {
+    this.asked = told;
+  }
+
+  forget(): void {
+    this.asked = null;
+    localStorage.removeItem(KEPT);
+    this.letGo();
+  }
+
+  private down(event: KeyboardEvent): void {
+    if (this.asked) {
+      this.take(event);
+    } else if (event.code === this.code && !isTyping(event.target)) {
+      event.preventDefault();
+      event.stopPropagation();
+      if (!event.repeat) this.press();
+    }
+  }
+
+  private take(event: KeyboardEvent): void {
+    const told = this.asked!;
+    event.preventDefault();
+    event.stopPropagation();
+    if (event.code === '' || TAKEN.test(event.code)) {
+      told(`${keyWords(event.code || event.key)} has other work in this page. Give the pedal another key, with the program that came with it.`);
+      return;
+    }
+    this.asked = null;
+    localStorage.setItem(KEPT, event.code);
+    told(null);
+  }
+}
+
+function isTyping(target: EventTarget | null): boolean {
+  return target instanceof HTMLInputElement && !['range', 'checkbox', 'button', 'file'].includes(target.type);
+}

@@ -1,0 +1,109 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// A 3D mouse by WebHID: its cap leads the tool and turns it, its first button is energy while held. The
+// browser lets a page see only devices that somebody has chosen by hand.
+
+/** What of WebHID is used; the DOM's types do not have it. */
+interface HidDevice extends EventTarget {
+  readonly productName: string;
+  readonly opened: boolean;
+  open(): Promise<void>;
+}
+interface Hid extends EventTarget {
+  getDevices(): Promise<HidDevice[]>;
+  requestDevice(options: { filters: object[] }): Promise<HidDevice[]>;
+}
+interface InputReport extends Event {
+  readonly reportId: number;
+  readonly data: DataView;
+}
+
+/** 3Dconnexion's own number, and Logitech's with the generic page of multi-axis controllers. */
+const FILTERS = [{ vendorId: 0x256f }, { vendorId: 0x046d, usagePage: 1, usage: 8 }];
+const FULL = 350; // of the cap, in each direction
+const REST = 0.06; // of it, that a hand which only lies there makes
+const SPEED_M_S = 0.045;
+const TURN_RAD_S = 1.6;
+const MOVED = 1, TURNED = 2, BUTTONS = 3;
+const AXIS_BYTES = 2;
+
+export interface LedByCap {
+  nudge(right: number, up: number, nearer: number): void;
+  turn(aboutShaft: number, tilt: number): void;
+  hold(): void;
+  letGo(): void;
+}
+
+export class SpaceMouse {
+  /** shares of the way: right, towards the hand, down; and turns about them */
+  private readonly axes = [0, 0, 0, 0, 0, 0];
+  private device: HidDevice | null = null;
+  private last = performance.now();
+
+  constructor(
+    private readonly led: LedByCap,
+    private readonly changed: () => void,
+  ) {
+    this.hid?.addEventListener('disconnect', (event) => {
+      if ((event as Event & { device: HidDevice }).device === this.device) this.lose();
+    });
+    // What was chosen once is known again.
+    void this.hid?.getDevices().then(([known]) => (known ? this.use(known) : undefined), () => undefined);
+  }
+
+  get offered(): boolean {
+    return this.hid !== undefined;
+  }
+
+  /** null: none is in use */
+  get name(): string | null {
+    return this.device?.productName ?? null;
+  }
+
+  /** Opens the browser's own chooser. */
+  async choose(): Promise<void> {
+    const [chosen] = (await this.hid?.requestDevice({ filters: FILTERS })) ?? [];
+    if (chosen) await this.use(chosen);
+  }
+
+  /** What the cap does in a time; once per animation frame. */
+  advance(): void {
+    const now = performance.now();
+    const seconds = Math.min((now - this.last) / 1000, 0.1);
+    this.last = now;
+    const [x, y, z, pitch, , twist] = this.axes.map((share) => (Math.abs(share) > REST ? share : 0));
+    const [step, turn] = [SPEED_M_S * seconds, TURN_RAD_S * seconds];
+    if (x !== 0 || y !== 0 || z !== 0) this.led.nudge(x * step, -y * step, -z * step);
+    if (pitch !== 0 || twist !== 0) this.led.turn(twist * turn, pitch * turn);
+  }
+
+  private get hid(): Hid | undefined {
+    return (navigator as { hid?: Hid }).hid;
+  }
+
+  private async use(device: HidDevice): Promise<void> {
+    if (!device.opened) await device.open();
+    if (this.device !== device) device.addEventListener('inputreport', (event) => this.take(event as InputReport));
+    this.device = device;
+    this.changed();
+  }
+
+  private take({ reportId, data }: InputReport): void {
+    if (reportId === BUTTONS) {
+      if (data.byteLength > 0 && (data.getUint8(0) & 1) !== 0) this.led.hold();
+      else this.led.letGo();
+      return;
+    }
+    if (reportId !== MOVED && reportId !== TURNED) return;
+    // Newer ones tell all six axes in one report.
+    const first = reportId === TURNED ? 3 : 0;
+    const count = Math.min(Math.floor(data.byteLength / AXIS_BYTES), 6 - first);
+    for (let i = 0; i < count; i++) this.axes[first + i] = Math.min(Math.max(data.getInt16(AXIS_BYTES * i, true) / FULL, -1), 1);
+  }
+
+  private lose(): void {
+    this.device = null;
+    this.axes.fill(0);
+    this.led.letGo();
+    this.changed();
+  }
+}

@@ -1,0 +1,236 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// The operative field that tissue is set into, drawn only: a bed under it, walls of fat around it up to a
+// rim of skin, and a cloth with a window. Rings around the tissue's rectangle, the same points in each.
+import type { LayerDescription, Scene } from '../wire/messages.gen';
+
+/** Corners of an upright box, m. */
+export interface Extent {
+  least: readonly [number, number, number];
+  most: readonly [number, number, number];
+}
+
+/** What lies in the field. */
+export interface Surroundings {
+  all: Extent;
+  /** of layers with thickness */
+  solid: Extent | null;
+  /** m, how high the tissue is at its edge */
+  edgeZ: number;
+  /** it lies in a body; else it hangs freely */
+  inBody: boolean;
+}
+
+export interface FieldShape {
+  /** m (vertices x 3) */
+  position: Float32Array;
+  /** what it is there, of each vertex: see ZONES */
+  zone: Float32Array;
+  index: Uint32Array;
+}
+
+/** Of flesh; between them one goes over into the other. */
+export const ZONES = { muscle: 0, fat: 1, skin: 2, most: 3 } as const;
+
+const EDGE_POINTS = 22; // on each side of the rectangle
+const CORNER_POINTS = 7; // of a quarter turn
+const EDGE_SHARE = 0.02; // of the tissue's width, that its edge is wide
+const USUAL_M = 0.12; // width of tissue for which the lengths below are meant
+const BOWL_M = 0.009; // under a sheet that nothing lies under
+const UNDER_M = 0.001;
+const HIDDEN_M = 0.0004; // below tissue that lies on it, so that only one of the two is seen
+
+/** Metres from the tissue's edge outwards, and above it. */
+const WALL: readonly (readonly [number, number, number])[] = [
+  [0, -0.0003, 1], [0.0012, 0.0004, 1], [0.003, 0.0013, 1], [0.006, 0.0031, 1], [0.0095, 0.0049, 1], [0.0122, 0.006, 1.15],
+  [0.0132, 0.0069, 1.9], [0.0144, 0.0073, 2], [0.019, 0.0075, 2], [0.027, 0.0078, 2], [0.034, 0.0079, 2],
+];
+const FARTHEST_M = 0.8;
+const BELOW_M = 0.012; // of tissue that hangs freely
+const CLOTH: readonly (readonly [number, number])[] = [
+  [0.0235, 0.0082], [0.0238, 0.0094], [0.0247, 0.0101], [0.0262, 0.0101], [0.032, 0.0098], [0.042, 0.0092], [0.06, 0.007], [0.09, 0.001],
+  [0.14, -0.012], [0.22, -0.035], [0.4, -0.085], [0.8, -0.17],
+];
+
+interface Ray {
+  /** of the rectangle, each coordinate from -1 to 1 */
+  x: number;
+  y: number;
+  /** outwards */
+  nx: number;
+  ny: number;
+}
+
+/** Places on the rectangle from one corner around, with as many directions at a corner as make it round. */
+function rays(): Ray[] {
+  const all: Ray[] = [];
+  const corners = [[1, -1], [1, 1], [-1, 1], [-1, -1]];
+  corners.forEach(([x, y], i) => {
+    const [tx, ty] = corners[(i + 1) % 4];
+    for (let k = 0; k < CORNER_POINTS; k++) {
+      const angle = (Math.PI / 2) * (i - 1 + k / (CORNER_POINTS - 1));
+      all.push({ x, y, nx: Math.cos(angle), ny: Math.sin(angle) });
+    }
+    const side = (Math.PI / 2) * i;
+    for (let k = 1; k <= EDGE_POINTS; k++) {
+      const share = k / (EDGE_POINTS + 1);
+      all.push({ x: x + share * (tx - x), y: y + share * (ty - y), nx: Math.cos(side), ny: Math.sin(side) });
+    }
+  });
+  return all;
+}
+const RAYS = rays();
+
+/** A hilly ground without a seam, about -1 to 1; x and y in waves. */
+function hills(x: number, y: number): number {
+  return (Math.sin(x + 1.7 * Math.sin(0.6 * y)) + Math.sin(1.3 * y + 1.9 * Math.sin(0.7 * x) + 1) + 0.6 * Math.sin(2.1 * x - 1.6 * y)) / 2.6;
+}
+
+class Rings {
+  private readonly position: number[] = [];
+  private readonly zone: number[] = [];
+  private rings = 0;
+
+  add(zone: number, place: (ray: Ray) => [number, number, number]): void {
+    for (const ray of RAYS) {
+      this.position.push(...place(ray));
+      this.zone.push(zone);
+    }
+    this.rings++;
+  }
+
+  shape(): FieldShape {
+    const index: number[] = [];
+    const n = RAYS.length;
+    for (let ring = 0; ring + 1 < this.rings; ring++) {
+      for (let i = 0; i < n; i++) {
+        const [a, b] = [ring * n + i, ring * n + ((i + 1) % n)];
+        index.push(a, a + n, b + n, a, b + n, b);
+      }
+    }
+    return { position: Float32Array.from(this.position), zone: Float32Array.from(this.zone), index: Uint32Array.from(index) };
+  }
+}
+
+const middle = ({ least, most }: Extent): [number, number] => [(least[0] + most[0]) / 2, (least[1] + most[1]) / 2];
+const half = ({ least, most }: Extent): [number, number] => [(most[0] - least[0]) / 2, (most[1] - least[1]) / 2];
+
+/** Rings of a box's rectangle, grown by some metres. */
+function around(box: Extent, grown: number): (ray: Ray) => [number, number] {
+  const [mx, my] = middle(box);
+  const [hx, hy] = half(box);
+  return ({ x, y, nx, ny }) => [mx + hx * x + grown * nx, my + hy * y + grown * ny];
+}
+
+/** Under the tissue: a well that solid tissue stands in, and a shelf around it up to the edge; or a bowl. */
+function addBed(rings: Rings, { all, solid, edgeZ }: Surroundings, scale: number): void {
+  const [mx, my] = middle(all);
+  if (!solid) {
+    const [hx, hy] = half(all);
+    for (const share of [0, 0.35, 0.65, 0.85, 0.95]) {
+      const z = edgeZ - HIDDEN_M - scale * BOWL_M * (1 - share ** 6);
+      rings.add(ZONES.muscle, ({ x, y }) => [mx + share * hx * x, my + share * hy * y, z + 0.0012 * scale * hills((90 * hx * share * x) / scale, (90 * hy * share * y) / scale)]);
+    }
+    return;
+  }
+  const floor = solid.least[2] - UNDER_M;
+  const [inner, outer] = [around(solid, -0.0005), around(solid, 0.0003)];
+  rings.add(ZONES.muscle, () => [mx, my, floor]);
+  rings.add(ZONES.muscle, (ray) => [...inner(ray), floor]);
+  const edge = around(all, -0.0002);
+  for (const share of [0, 0.33, 0.66, 1]) {
+    const z = (1 - share) * Math.min(solid.most[2], edgeZ) + share * edgeZ - HIDDEN_M - (share > 0 && share < 1 ? HIDDEN_M : 0);
+    rings.add(ZONES.fat, (ray) => {
+      const [from, to] = [outer(ray), edge(ray)];
+      return [from[0] + share * (to[0] - from[0]), from[1] + share * (to[1] - from[1]), z];
+    });
+  }
+}
+
+/** Tissue that is held all around, or stands on its ground, lies in a body; what hangs freely does not. */
+function liesInBody({ pins = [], layers = [] }: Scene): boolean {
+  return pins.some(({ kind }) => kind === 'rim') || (pins.some(({ kind }) => kind === 'box') && layers.some(({ kind }) => kind === 'fat'));
+}
+
+export function fleshAround(surroundings: Surroundings): FieldShape {
+  const { all, edgeZ } = surroundings;
+  const scale = scaleOf(all);
+  const rings = new Rings();
+  addBed(rings, surroundings, scale);
+  for (const [out, up, zone] of WALL) {
+    const place = around(all, scale * out);
+    const rough = 0.0009 * scale * Math.min(out / 0.006, 1) * (zone > 1.5 ? 0.4 : 1);
+    rings.add(zone, (ray) => {
+      const [x, y] = place(ray);
+      return [x, y, edgeZ + scale * up + rough * hills((420 * x) / scale, (420 * y) / scale)];
+    });
+  }
+  return rings.shape();
+}
+
+/** The cloth around a window. */
+export function clothAround({ all, edgeZ }: Surroundings): FieldShape {
+  const scale = scaleOf(all);
+  const rings = new Rings();
+  for (const [out, up] of CLOTH) {
+    const folds = 0.006 * scale * Math.min(Math.max(out - 0.03, 0) / 0.07, 1.6);
+    rings.add(out / FARTHEST_M, (ray) => {
+      const wander = 1 + 0.02 * hills(60 * ray.x, 60 * ray.y) * Math.min(out / 0.03, 1);
+      const [x, y] = around(all, scale * out * wander)(ray);
+      const turn = Math.atan2(y, x);
+      return [x, y, edgeZ + scale * up + folds * hills(9 * Math.cos(turn) + (7 * x) / scale, 9 * Math.sin(turn) + (7 * y) / scale)];
+    });
+  }
+  return rings.shape();
+}
+
+/** A cloth without a window, under tissue that hangs freely. */
+export function clothUnder({ all }: Surroundings): FieldShape {
+  const scale = scaleOf(all);
+  const rings = new Rings();
+  const z = all.least[2] - scale * BELOW_M;
+  rings.add(0, () => [...middle(all), z]);
+  for (const out of [0, 0.03, 0.1, 0.25, FARTHEST_M]) {
+    const place = around(all, scale * out);
+    rings.add(out / FARTHEST_M, (ray) => [...place(ray), z]);
+  }
+  return rings.shape();
+}
+
+function scaleOf(all: Extent): number {
+  return Math.max(...half(all)) / (USUAL_M / 2);
+}
+
+/** Least and largest coordinates of the vertices of some corners. */
+function extentOf(position: Float32Array, corners: Iterable<number>): Extent | null {
+  const least: [number, number, number] = [Infinity, Infinity, Infinity];
+  const most: [number, number, number] = [-Infinity, -Infinity, -Infinity];
+  for (const v of corners) {
+    for (let c = 0; c < 3; c++) {
+      least[c] = Math.min(least[c], position[3 * v + c]);
+      most[c] = Math.max(most[c], position[3 * v + c]);
+    }
+  }
+  return least[0] <= most[0] ? { least, most } : null;
+}
+
+/** How high tissue comes at the edge of its rectangle. */
+function edgeHeight(position: Float32Array, corners: Int32Array, { least, most }: Extent): number {
+  const near = EDGE_SHARE * Math.max(most[0] - least[0], most[1] - least[1]);
+  let height = -Infinity;
+  for (const v of corners) {
+    const [x, y, z] = position.subarray(3 * v, 3 * v + 3);
+    if (Math.min(x - least[0], most[0] - x, y - least[1], most[1] - y) <= near) height = Math.max(height, z);
+  }
+  return height;
+}
+
+/** From rest positions, corners of faces (vertex of each) and layers; null without faces. */
+export function surroundingsOf(rest: Float32Array, faces: Int32Array, layers: readonly LayerDescription[], scene: Scene): Surroundings | null {
+  const all = extentOf(rest, faces);
+  if (!all) return null;
+  const corners = layers
+    .filter(({ kind }) => kind === 'fat')
+    .map(({ first_face: first, face_count: count }) => faces.subarray(3 * first, 3 * (first + count)));
+  const solid = corners.length > 0 ? extentOf(rest, Int32Array.from(corners.flatMap((of) => [...of]))) : null;
+  return { all, solid, edgeZ: edgeHeight(rest, faces, all), inBody: liesInBody(scene) };
+}

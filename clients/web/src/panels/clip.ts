@@ -1,0 +1,39 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// A plane that cuts tissue away from the picture, to look inside; nothing of it reaches the simulation.
+import { Box3 } from 'three';
+
+import type { Control } from '../model/control';
+import type { Viewport } from '../scene/viewport';
+import { element, field } from './dom';
+
+const AXES = [['', 'nothing'], ['0', 'from the right'], ['1', 'from behind'], ['2', 'from above']] as const;
+const STEPS = 200;
+const MM = 1000;
+
+export function clipFields(control: Control, viewport: Viewport): HTMLElement {
+  const axis = element('select', { name: 'clip' }, ...AXES.map(([value, words]) => element('option', { value }, words)));
+  const share = element('input', { type: 'range', name: 'clip-at', min: '0', max: String(STEPS), value: String(STEPS / 2) });
+  const shown = element('small');
+  const where = element('label', { class: 'field' }, element('span', {}, 'Up to'), share, shown);
+  const apply = (): void => {
+    where.hidden = axis.value === '';
+    const rest = control.model.joined?.rest;
+    if (axis.value === '' || !rest) {
+      viewport.clip.set(null);
+      viewport.invalidate();
+      return;
+    }
+    const along = Number(axis.value) as 0 | 1 | 2;
+    const { min, max } = new Box3().setFromArray(rest);
+    const [least, most] = [min.getComponent(along), max.getComponent(along)];
+    const atM = least + ((most - least) * share.valueAsNumber) / STEPS;
+    shown.textContent = `${(MM * atM).toFixed(1)} mm`;
+    viewport.clip.set({ axis: along, atM });
+    viewport.invalidate();
+  };
+  axis.addEventListener('change', apply);
+  share.addEventListener('input', apply);
+  control.model.on('joined', apply);
+  apply();
+  return element('div', { class: 'form' }, field('Cut away', axis), where);
+}

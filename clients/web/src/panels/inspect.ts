@@ -1,0 +1,71 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// What is under the pointer: layer, vertex, place, temperature, stress, heat taken up.
+import { pick } from '../model/pick';
+import type { Control } from '../model/control';
+import type { Viewport } from '../scene/viewport';
+import type { VertexState } from '../wire/worker_messages';
+import { byId, check, short } from './dom';
+
+const AGAIN_MS = 200; // while the pointer rests, as tissue goes on
+const AWAY_PX = 18;
+const MM = 1000;
+
+interface Found {
+  layer: string;
+  vertex: number;
+}
+
+function find(viewport: Viewport, x: number, y: number): Found | null {
+  const { tissue, orbit } = viewport;
+  if (!tissue) return null;
+  const { origin, direction } = orbit.ray(x, y);
+  const hit = pick(origin.toArray(), direction.toArray(), tissue.position.array as Float32Array, tissue.visibleIndices(), viewport.clip.away(origin, direction));
+  return hit && { layer: tissue.joined.batches[hit.batch].layer, vertex: hit.vertex };
+}
+
+function words({ layer, vertex }: Found, state: VertexState, position: ArrayLike<number>): string {
+  const at = [0, 1, 2].map((c) => (MM * position[3 * vertex + c]).toFixed(1)).join(', ');
+  const temperature = state.temperatureC === null ? '' : `${state.temperatureC.toFixed(1)} °C`;
+  const stress = state.stressPa === null ? '' : `${short(state.stressPa / 1000, 3)} kPa`;
+  const heat = `${Math.round(100 * state.exposure)} % of the heat that parts it`;
+  return [`${layer}, vertex ${vertex}`, `${at} mm`, temperature, stress, heat].filter((part) => part !== '').join('\n');
+}
+
+/** Returns the switch for it. */
+export function showInspected(control: Control, viewport: Viewport): { switch: HTMLElement } {
+  const { canvas } = viewport;
+  const place = byId('inspected');
+  let on = false;
+  let pointer: { x: number; y: number } | null = null;
+  let asking = false;
+  const tell = async (): Promise<void> => {
+    if (!on || !pointer || asking) return;
+    const box = canvas.getBoundingClientRect();
+    const { x, y } = pointer;
+    const found = find(viewport, (2 * (x - box.left)) / box.width - 1, 1 - (2 * (y - box.top)) / box.height);
+    asking = true;
+    const state = found && (await control.link.inspect(found.vertex));
+    asking = false;
+    place.hidden = !on || !found || !state || !viewport.tissue;
+    if (!found || !state || !viewport.tissue) return;
+    place.textContent = words(found, state, viewport.tissue.position.array);
+    const left = Math.min(x - box.left + AWAY_PX, box.width - place.offsetWidth);
+    const top = Math.min(y - box.top + AWAY_PX, box.height - place.offsetHeight);
+    place.style.transform = `translate(${left.toFixed(0)}px, ${top.toFixed(0)}px)`;
+  };
+  canvas.addEventListener('pointermove', (event) => {
+    pointer = { x: event.clientX, y: event.clientY };
+    void tell();
+  });
+  canvas.addEventListener('pointerleave', () => {
+    pointer = null;
+    place.hidden = true;
+  });
+  setInterval(() => void tell(), AGAIN_MS);
+  const box = check('Tell what is under the pointer', 'inspect', (now) => {
+    on = now;
+    place.hidden = true;
+    control.inspect(now);
+  });
+  return { switch: box };
+}

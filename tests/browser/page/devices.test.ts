@@ -1,0 +1,82 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// A foot pedal, which is a keyboard with one key, and a 3D mouse by WebHID. The browser's chooser cannot be
+// automated: a fake answers it, as the page says that only a person can.
+import type { Browser } from 'playwright-core';
+
+import { Daemon } from './daemon';
+import { launch, ViewerPage } from './viewer_page';
+
+/** In the page, before its scripts: a WebHID with one 3D mouse that tests hold. */
+function holdSpaceMouse(): void {
+  const device = Object.assign(new EventTarget(), {
+    productName: 'Test SpaceMouse', opened: false,
+    open(this: { opened: boolean }) {
+      this.opened = true;
+      return Promise.resolve();
+    },
+  });
+  const report = (reportId: number, values: number[]): void => {
+    const data = new DataView(new ArrayBuffer(2 * values.length));
+    values.forEach((value, i) => data.setInt16(2 * i, value, true));
+    device.dispatchEvent(Object.assign(new Event('inputreport'), { reportId, data }));
+  };
+  const hid = Object.assign(new EventTarget(), { getDevices: () => Promise.resolve([]), requestDevice: () => Promise.resolve([device]) });
+  Object.defineProperty(navigator, 'hid', { value: hid });
+  Object.assign(window, { capReports: report, unplug: () => hid.dispatchEvent(Object.assign(new Event('disconnect'), { device })) });
+}
+
+describe('devices beside mouse and keys', () => {
+  const daemon = new Daemon(['--demo', 'fascia']);
+  let browser: Browser;
+  let viewer: ViewerPage;
+
+  const report = (id: number, values: number[]): Promise<void> =>
+    viewer.page.evaluate(([number, axes]) => (window as unknown as { capReports(id: number, values: number[]): void }).capReports(number, axes), [id, values] as const);
+
+  beforeAll(async () => {
+    await daemon.start();
+    browser = await launch();
+    viewer = await ViewerPage.openFirst(browser, daemon.url);
+    await viewer.page.addInitScript(holdSpaceMouse);
+    await viewer.page.reload();
+    await viewer.live('d1-fascia');
+    await viewer.page.locator('#devices > summary').click();
+  });
+  afterAll(async () => {
+    await browser.close();
+    await daemon.end();
+  });
+
+  it('a pedal is told to the page once, and is energy while it is down, wherever the focus is', async () => {
+    const { page } = viewer;
+    await page.getByRole('button', { name: 'Choose the pedal’s key' }).click();
+    await page.keyboard.press('w');
+    expect(await page.locator('#pedal').textContent()).toContain('W has other work');
+    await page.keyboard.press('F9');
+    expect(await page.locator('#pedal').textContent()).toContain('The pedal is F9');
+    await page.reload();
+    await viewer.live('d1-fascia');
+    await page.locator('#devices > summary').click(); // which has the focus now
+    await page.keyboard.down('F9');
+    await viewer.until(() => window.cautery.energized, null, 'energy is on');
+    await page.keyboard.up('F9');
+    await viewer.until(() => !window.cautery.energized, null, 'energy is off');
+  });
+
+  it('a 3D mouse leads the tool with its cap and heats with its button, until it is unplugged', async () => {
+    const { page } = viewer;
+    expect(await page.locator('#space-mouse').textContent()).toContain('only a person can answer that');
+    await page.getByRole('button', { name: 'Choose the 3D mouse' }).click();
+    await page.locator('#space-mouse').getByText('Test SpaceMouse leads the tool').waitFor();
+    const [x] = (await viewer.state()).tip;
+    await report(1, [350, 0, 0]);
+    await viewer.until((from) => window.cautery.driving && window.cautery.tip[0] > from, x + 0.02, 'the cap leads it to the right');
+    await report(1, [0, 0, 0]);
+    await report(3, [1]);
+    await viewer.until(() => window.cautery.energized, null, 'energy is on');
+    await page.evaluate(() => (window as unknown as { unplug(): void }).unplug());
+    await viewer.until(() => !window.cautery.energized, null, 'energy is off without it');
+    expect(await page.locator('#space-mouse').textContent()).toContain('A 3D mouse leads');
+    expect(viewer.complaints).toEqual([]);
+  });
+});

@@ -1,0 +1,112 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Looking closely: what is under the pointer, a ruler, a plane that cuts tissue away from the picture, views
+// that are kept.
+import type { Browser } from 'playwright-core';
+
+import { Daemon } from './daemon';
+import { launch, ViewerPage } from './viewer_page';
+
+const ANOTHER_COLOUR = 60; // see cut.test.ts
+const NEAR_MM = 0.6; // a picture has three pixels a millimetre
+
+describe('looking closely', () => {
+  const daemon = new Daemon(['--demo', 'fascia']);
+  let browser: Browser;
+  let viewer: ViewerPage;
+
+  const pointAt = async (point: [number, number, number]): Promise<void> => {
+    const { x, y } = await viewer.project(point);
+    await viewer.page.mouse.move(x, y);
+  };
+
+  beforeAll(async () => {
+    await daemon.start();
+    browser = await launch();
+    viewer = await ViewerPage.open(browser, daemon.url);
+    await viewer.live('d1-fascia');
+    await viewer.page.getByRole('tab', { name: 'View' }).click();
+  });
+  afterAll(async () => {
+    await browser.close();
+    await daemon.end();
+  });
+
+  it('tells layer, vertex, place, temperature and stress under the pointer', async () => {
+    const { page } = viewer;
+    await page.getByLabel('Tell what is under the pointer').check();
+    await pointAt([0.03, 0.02, 0]);
+    await viewer.until(() => document.querySelector('#inspected')?.checkVisibility() === true && document.querySelector('#inspected')!.textContent!.includes('kPa'), null, 'it is told');
+    const [what, where, temperature, stress, heat] = ((await page.locator('#inspected').textContent()) ?? '').split('\n');
+    expect(what).toMatch(/^fascia, vertex \d+$/);
+    const at = where.replace(' mm', '').split(', ').map(Number);
+    expect(Math.hypot(at[0] - 30, at[1] - 20)).toBeLessThan(2);
+    expect(temperature).toBe('37.0 °C');
+    expect(parseFloat(stress)).toBeGreaterThan(0); // the sheet is taut
+    expect(heat).toBe('0 % of the heat that parts it');
+    await page.getByLabel('Tell what is under the pointer').uncheck();
+    expect(await page.locator('#inspected').isVisible()).toBe(false);
+  });
+
+  it('measures from one place of the tissue to another', async () => {
+    const { page } = viewer;
+    await viewer.live('d1-fascia');
+    await page.getByRole('button', { name: 'Measure' }).click();
+    await pointAt([-0.021, 0.011, 0]);
+    await page.mouse.down();
+    await pointAt([0.029, 0.011, 0]);
+    await page.mouse.up();
+    await viewer.until(() => document.querySelector('#ruler')?.checkVisibility() === true, null, 'the ruler lies there');
+    const told = (await page.locator('#ruler output').textContent()) ?? '';
+    expect(Math.abs(parseFloat(told) - 50)).toBeLessThan(NEAR_MM);
+    await viewer.screenshot('ruler');
+    expect((await viewer.state()).energized).toBe(false);
+    await page.getByRole('button', { name: 'Take the ruler away' }).click();
+    await viewer.until(() => document.querySelector('#ruler')?.checkVisibility() === false, null, 'it is gone');
+    await page.getByRole('button', { name: 'Cut', exact: true }).click();
+  });
+
+  it('cuts away from the picture what lies beyond a plane, for the hand too', async () => {
+    const { page } = viewer;
+    const places: [number, number, number][] = [[0.03, 0.035, 0], [0.03, -0.035, 0]];
+    const whole = await viewer.coloursAt(places);
+    await page.getByLabel('Cut away').selectOption('from behind');
+    await viewer.drawn();
+    await viewer.until(() => window.cautery.idle, null, 'the picture of it');
+    const half = await viewer.coloursAt(places);
+    const change = half.map((colour, i) => Math.hypot(...colour.map((value, c) => value - whole[i][c])));
+    expect(change[0]).toBeGreaterThan(ANOTHER_COLOUR);
+    expect(change[1]).toBeLessThan(ANOTHER_COLOUR / 2);
+    await page.getByLabel('Tell what is under the pointer').check();
+    await pointAt(places[1]);
+    await viewer.until(() => document.querySelector('#inspected')?.checkVisibility() === true, null, 'what is left is told');
+    await pointAt(places[0]);
+    await viewer.until(() => document.querySelector('#inspected')?.checkVisibility() === false, null, 'what is cut away is not');
+    await page.getByLabel('Tell what is under the pointer').uncheck();
+    await page.getByLabel('Cut away').selectOption('nothing');
+  });
+
+  it('keeps views under a name, beside the standard ones', async () => {
+    const { page } = viewer;
+    await viewer.live('d1-fascia');
+    const corner: [number, number, number] = [0.05, 0.03, 0];
+    const apart = async (a: { x: number; y: number }): Promise<number> => {
+      const b = await viewer.project(corner);
+      return Math.hypot(a.x - b.x, a.y - b.y);
+    };
+    const views = page.locator('#panel-view fieldset', { hasText: 'Camera' });
+    await views.getByRole('button', { name: 'From the left' }).click();
+    const fromLeft = await viewer.project(corner);
+    await page.getByLabel('Name of the view').fill('my corner');
+    await views.getByRole('button', { name: 'Keep this view' }).click();
+    await views.getByRole('button', { name: 'Home' }).click();
+    expect(await apart(fromLeft)).toBeGreaterThan(50);
+    await page.reload();
+    await viewer.live('d1-fascia');
+    await page.getByRole('tab', { name: 'View' }).click();
+    await views.getByRole('button', { name: 'my corner', exact: true }).click();
+    expect(await apart(fromLeft)).toBeLessThan(3);
+    await views.getByRole('button', { name: 'Forget the view my corner' }).click();
+    expect(await views.getByRole('button', { name: 'my corner', exact: true }).count()).toBe(0);
+    expect(viewer.complaints).toEqual([]);
+  });
+});

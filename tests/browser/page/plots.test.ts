@@ -1,0 +1,83 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// What the tools did over the session is plotted, with one cursor in all plots that is the timeline's too.
+import type { Browser } from 'playwright-core';
+
+import { Daemon } from './daemon';
+import { launch, ViewerPage } from './viewer_page';
+
+const HOT_C = 150;
+
+describe('plots over the session', () => {
+  const daemon = new Daemon(['--demo', 'fascia']);
+  let browser: Browser;
+  let viewer: ViewerPage;
+
+  const told = async (): Promise<{ seconds: number; celsius: number; joules: number }> => {
+    const words = (await viewer.page.locator('#at-cursor').textContent()) ?? '';
+    const [, seconds, celsius, joules] = /^([\d.]+) s: hook (\d+) °C, [\d.e-]+ N, ([\d.e-]+) J$/.exec(words) ?? [];
+    expect(seconds, words).toBeDefined();
+    return { seconds: Number(seconds), celsius: Number(celsius), joules: Number(joules) };
+  };
+  const cursors = (): Promise<string[]> =>
+    viewer.page.evaluate(() => [...document.querySelectorAll<HTMLElement>('[aria-label="Over the session"] .u-cursor-x')].map(({ style }) => style.transform));
+
+  beforeAll(async () => {
+    await daemon.start();
+    browser = await launch();
+    viewer = await ViewerPage.open(browser, daemon.url);
+    await viewer.live('d1-fascia');
+    const { tick } = await viewer.state();
+    await viewer.until((then) => window.cautery.tick > then, tick + 120, 'two seconds without heat');
+    await viewer.page.keyboard.down('Space');
+    await viewer.until(([hot]) => window.cautery.energized && (window.cautery.tipTemperatureC ?? 0) > hot, [HOT_C], 'the tip is hot');
+    const lit = (await viewer.state()).tick;
+    await viewer.until((then) => window.cautery.tick > then, lit + 60, 'a second of heat');
+    await viewer.page.keyboard.up('Space');
+    await viewer.until(() => !window.cautery.energized, null, 'energy is off');
+    await viewer.page.getByRole('button', { name: 'Pause' }).click();
+    await viewer.until(() => window.cautery.paused, null, 'paused');
+    await viewer.page.getByRole('tab', { name: 'Plots' }).click();
+    await viewer.until(() => document.querySelectorAll('[aria-label="Over the session"] canvas').length === 3, null, 'three plots');
+  });
+  afterAll(async () => {
+    await browser.close();
+    await daemon.end();
+  });
+
+  it('tell the newest values of each tool', async () => {
+    const { seconds, celsius } = await told();
+    const { tick } = await viewer.state();
+    expect(Math.abs(60 * seconds - tick)).toBeLessThan(2);
+    expect(celsius).toBeGreaterThan(HOT_C / 2);
+  });
+
+  it('share a cursor that tells the values where it points, and holds the timeline there', async () => {
+    const { page } = viewer;
+    const newest = await told();
+    const box = (await page.locator('[aria-label="Over the session"] .u-over').nth(1).boundingBox())!;
+    await page.mouse.move(box.x + 0.2 * box.width, box.y + box.height / 2);
+    await viewer.until((before) => !document.querySelector('#at-cursor')!.textContent!.startsWith(before), newest.seconds.toFixed(2), 'the time that is pointed at');
+    const before = await told();
+    expect(before.seconds).toBeLessThan(newest.seconds);
+    expect(before.celsius).toBeLessThan(newest.celsius);
+    const at = await cursors();
+    expect(new Set(at).size).toBe(1);
+    expect(at).toHaveLength(3);
+    await page.mouse.down();
+    await page.mouse.up();
+    await viewer.until(() => document.querySelector('#rewind')?.checkVisibility() === true, null, 'that moment is offered');
+    expect(await page.locator('#rewind').textContent()).toBe(`Go back to ${before.seconds.toFixed(2)} s`);
+    await viewer.screenshot('plots');
+  });
+
+  it('follow the timeline', async () => {
+    const { page } = viewer;
+    await page.mouse.move(5, 300); // off the plots
+    await page.locator('#tick').focus();
+    await page.keyboard.press('Home');
+    await page.keyboard.press('PageUp');
+    const tick = Number(await page.locator('#tick').inputValue());
+    await viewer.until((wanted) => document.querySelector('#at-cursor')!.textContent!.startsWith(wanted), (tick / 60).toFixed(2).slice(0, -1), 'the values of that time');
+    expect(viewer.complaints).toEqual([]);
+  });
+});
