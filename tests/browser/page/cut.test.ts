@@ -46,6 +46,11 @@ describe('a cut in the demo', () => {
 
   it('marks the cut in the timeline', async () => {
     await viewer.until(() => document.querySelector('#time .mark.cut') !== null, null, 'a cut is marked');
+    const moments = viewer.page.locator('#moments');
+    const cut = (await moments.locator('option').allTextContents()).find((words) => /^\d+\.\d\d s: cut, hook$/.test(words));
+    expect(cut).toBeDefined();
+    await moments.selectOption({ label: cut! });
+    await viewer.until((at) => document.querySelector('#rewind')?.textContent === `Go back to ${at}`, cut!.split(':')[0], 'the moment of the cut is offered');
   });
 
   it('forks: the new session has the cut', async () => {
@@ -65,6 +70,10 @@ describe('a cut in the demo', () => {
     await viewer.page.locator('#tick').focus();
     await viewer.page.keyboard.press('Home');
     await viewer.page.locator('#rewind').click();
+    await viewer.page.keyboard.press('Escape'); // it asks first
+    expect((await viewer.state()).epoch).toBe(epoch);
+    await viewer.page.locator('#rewind').click();
+    await viewer.page.locator('dialog').getByRole('button', { name: 'Go back' }).click();
     await viewer.until((before) => window.cautery.epoch !== before, epoch, 'another epoch');
     await viewer.until((count) => Object.values(window.cautery.drawnFaces).reduce((a, b) => a + b, 0) === count, FACES, 'whole again');
     expect((await viewer.state()).energized).toBe(false);

@@ -51,9 +51,10 @@ const INPUTS: readonly (readonly [string, (viewer: ViewerPage) => Promise<void>]
     await cut(viewer);
     await mouse.up();
     await dark(viewer);
-    const { tip } = await viewer.state();
-    await mouse.move(from.x, from.y); // without a button: the tool follows, cold
-    await viewer.until((x) => window.cautery.tip[0] < x, Math.min(tip[0], 0) - 0.002, 'the tool follows the mouse');
+    await mouse.move(to.x, to.y); // without a button: the tool follows, cold
+    await viewer.until(() => window.cautery.tip[0] > 0.005, null, 'the tool follows the mouse');
+    await mouse.move(from.x, from.y); // where the tissue is gone now
+    await viewer.until(() => window.cautery.tip[0] < -0.005, null, 'the tool follows the mouse over the gap');
     expect((await viewer.state()).energized).toBe(false);
   }],
   ['a keyboard alone', async (viewer) => {

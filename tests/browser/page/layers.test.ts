@@ -148,7 +148,7 @@ describe('the layers scene, cut', () => {
     await viewer.page.locator('#picture').hover();
     await viewer.zoom(6);
     await viewer.page.emulateMedia({ colorScheme: 'light' });
-    await viewer.drawn();
+    await viewer.until(() => document.documentElement.dataset['theme'] === 'light', null, 'the page is light');
     await viewer.until(() => window.cautery.idle, null, 'the light picture');
     await viewer.screenshot('layers-strands');
     await viewer.close();

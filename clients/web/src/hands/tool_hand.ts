@@ -190,17 +190,19 @@ export class ToolHand {
     if (this.energy.wanted && !this.energy.alive && this.mayHeat) way.clear(); // what went dark does not go on
     if (way.empty) return;
     const fastest = toolSizes(this.model.tool!).maxSpeed * seconds;
-    const cutting = this.energy.alive && this.cutBegun(wanted.position);
-    const metres = cutting ? Math.min(this.pace.take(), fastest) : fastest;
-    way.follow(wanted.position, metres);
+    way.follow(wanted.position, this.energy.alive ? Math.min(this.hotMetres(wanted.position), fastest) : fastest);
     this.moved();
   }
 
-  /** A tool that comes from far away comes fast; it is slow from where the cut begins. */
-  private cutBegun(position: Vector3): boolean {
-    if (this.cutFrom && position.distanceTo(this.cutFrom) < ARRIVED_M) this.cutFrom = null;
-    return this.cutFrom === null;
+  /** How far a hot tool may go: fast to where the cut begins, not a step beyond it, and slowly from there on. */
+  private hotMetres(position: Vector3): number {
+    const left = this.cutFrom?.distanceTo(position) ?? 0;
+    if (left > ARRIVED_M) return left;
+    if (this.cutFrom) this.pace.begin();
+    this.cutFrom = null;
+    return this.pace.take();
   }
+
   private work(fresh: boolean): void {
     if (this.tool === null || !this.begin()) return;
     if (this.mayHeat) this.energy.enable(this.tool, fresh);

@@ -37,6 +37,7 @@ const EDGE_SHARE = 0.02; // of the tissue's width, that its edge is wide
 const USUAL_M = 0.12; // width of tissue for which the lengths below are meant
 const BOWL_M = 0.009; // under a sheet that nothing lies under
 const UNDER_M = 0.001;
+const OVERLAP_M = 0.0012; // of the shelf with the tissue that it goes around: no line is seen between them
 const HIDDEN_M = 0.0004; // below tissue that lies on it, so that only one of the two is seen
 
 /** Metres from the tissue's edge outwards, and above it. */
@@ -133,14 +134,14 @@ function addBed(rings: Rings, { all, solid, edgeZ }: Surroundings, scale: number
     return;
   }
   const floor = solid.least[2] - UNDER_M;
-  const [inner, outer] = [around(solid, -0.0005), around(solid, 0.0003)];
+  const inner = around(solid, -OVERLAP_M);
   rings.add(ZONES.muscle, () => [mx, my, floor]);
   rings.add(ZONES.muscle, (ray) => [...inner(ray), floor]);
   const edge = around(all, -0.0002);
   for (const share of [0, 0.33, 0.66, 1]) {
     const z = (1 - share) * Math.min(solid.most[2], edgeZ) + share * edgeZ - HIDDEN_M - (share > 0 && share < 1 ? HIDDEN_M : 0);
     rings.add(ZONES.fat, (ray) => {
-      const [from, to] = [outer(ray), edge(ray)];
+      const [from, to] = [inner(ray), edge(ray)];
       return [from[0] + share * (to[0] - from[0]), from[1] + share * (to[1] - from[1]), z];
     });
   }

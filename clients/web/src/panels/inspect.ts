@@ -12,6 +12,8 @@ const MM = 1000;
 
 interface Found {
   layer: string;
+  /** the daemon tells stress of fat, which its membrane shares vertices with */
+  stressed: boolean;
   vertex: number;
 }
 
@@ -20,13 +22,15 @@ function find(viewport: Viewport, x: number, y: number): Found | null {
   if (!tissue) return null;
   const { origin, direction } = orbit.ray(x, y);
   const hit = pick(origin.toArray(), direction.toArray(), tissue.position.array as Float32Array, tissue.visibleIndices(), viewport.clip.away(origin, direction));
-  return hit && { layer: tissue.joined.batches[hit.batch].layer, vertex: hit.vertex };
+  if (!hit) return null;
+  const { layer, kind } = tissue.joined.batches[hit.batch];
+  return { layer, vertex: hit.vertex, stressed: kind === 'fat' || kind === 'membrane' };
 }
 
-function words({ layer, vertex }: Found, state: VertexState, position: ArrayLike<number>): string {
+function words({ layer, vertex, stressed }: Found, state: VertexState, position: ArrayLike<number>): string {
   const at = [0, 1, 2].map((c) => (MM * position[3 * vertex + c]).toFixed(1)).join(', ');
   const temperature = state.temperatureC === null ? '' : `${state.temperatureC.toFixed(1)} °C`;
-  const stress = state.stressPa === null ? '' : `${short(state.stressPa / 1000, 3)} kPa`;
+  const stress = state.stressPa === null ? '' : stressed ? `${short(state.stressPa / 1000, 3)} kPa` : 'stress: told of fat only';
   const heat = `${Math.round(100 * state.exposure)} % of the heat that parts it`;
   return [`${layer}, vertex ${vertex}`, `${at} mm`, temperature, stress, heat].filter((part) => part !== '').join('\n');
 }

@@ -26,7 +26,6 @@ function marks(events: readonly TimelineEvent[], least: number, most: number): S
   svg.setAttribute('preserveAspectRatio', 'none');
   svg.setAttribute('aria-hidden', 'true');
   for (const event of events) {
-    if (!(event.kind in EVENT_WORDS) || event.tick < least) continue;
     const mark = document.createElementNS('http://www.w3.org/2000/svg', 'rect');
     mark.setAttribute('class', `mark ${event.kind}`);
     mark.setAttribute('x', String((1000 * (event.tick - least)) / Math.max(most - least, 1) - 1));
@@ -35,6 +34,16 @@ function marks(events: readonly TimelineEvent[], least: number, most: number): S
     svg.append(mark);
   }
   return svg;
+}
+
+/** "3.20 s: cut, hook" for each event, the newest first. */
+function nameMoments(place: HTMLSelectElement, events: readonly TimelineEvent[], seconds: (tick: number) => string): void {
+  place.hidden = events.length === 0;
+  if (place.options.length === events.length + 1 && place.dataset['last'] === String(events.at(-1)?.tick)) return;
+  place.dataset['last'] = String(events.at(-1)?.tick);
+  const options = [...events].reverse().map(({ kind, tick, tool }) =>
+    element('option', { value: String(tick) }, `${seconds(tick)}: ${EVENT_WORDS[kind] ?? kind}${tool === undefined || tool === '' ? '' : `, ${tool}`}`));
+  place.replaceChildren(element('option', { value: '', disabled: true, selected: true }, 'What happened'), ...options);
 }
 
 export function timeBar(control: Control, shared: number | null): void {
@@ -55,10 +64,14 @@ export function timeBar(control: Control, shared: number | null): void {
   speed.addEventListener('change', () => void attempt(problem, () => control.call('session.speed', { speed: Number(speed.value) })));
   const slider = element('input', { type: 'range', name: 'tick', id: 'tick', min: '0', max: '1', value: '1', aria: { label: 'Timeline: time to go back to' } });
   const track = element('div', { class: 'track' }, slider);
-  const rewind = button('Rewind here', () => void attempt(problem, async () => {
-    await control.rewind(slider.valueAsNumber);
-    model.hold(null);
-  }, rewind), { id: 'rewind', hidden: true });
+  const rewind = button('Rewind here', () => {
+    const tick = slider.valueAsNumber;
+    void ask(`Go back to ${seconds(tick)}?`, 'Everybody in the session goes there, and leaves what came after it.', 'Go back').then((sure) => {
+      if (sure) void attempt(problem, () => control.rewind(tick).then(() => model.hold(null)), rewind);
+    });
+  }, { id: 'rewind', hidden: true });
+  const moments = element('select', { id: 'moments', class: 'moments', aria: { label: 'What happened: show when' } });
+  moments.addEventListener('change', () => model.hold(Number(moments.value)));
   const now = element('output', { class: 'now', id: 'now' });
   const seconds = (tick: number): string => `${(tick * (model.summary?.step_s ?? 1 / 60)).toFixed(2)} s`;
   const tell = (): void => {
@@ -68,7 +81,7 @@ export function timeBar(control: Control, shared: number | null): void {
   slider.addEventListener('input', () => {
     model.hold(slider.valueAsNumber < Number(slider.max) ? slider.valueAsNumber : null);
   });
-  byId('time').append(pause, step, reset, speed, track, rewind, now, problem);
+  byId('time').append(pause, step, reset, speed, track, moments, rewind, now, problem);
 
   const place = (): void => {
     const { timeline, frame } = model;
@@ -83,7 +96,9 @@ export function timeBar(control: Control, shared: number | null): void {
   const drawMarks = (): void => {
     place();
     track.querySelector('svg')?.remove();
-    track.prepend(marks(model.timeline?.events ?? [], Number(slider.min), Number(slider.max)));
+    const events = (model.timeline?.events ?? []).filter(({ kind, tick }) => kind in EVENT_WORDS && tick >= Number(slider.min));
+    track.prepend(marks(events, Number(slider.min), Number(slider.max)));
+    if (document.activeElement !== moments) nameMoments(moments, events, seconds);
   };
   const enable = (): void => {
     const usable = model.mayOperate && model.joined !== null;

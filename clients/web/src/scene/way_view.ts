@@ -5,6 +5,7 @@ import { BufferAttribute, BufferGeometry, Points, PointsMaterial, type Vector3 }
 
 const DOTS_MAX = 400;
 const DOT_PX = 4;
+const SPACING_M = 0.002; // of dots where the hand was quick
 
 export class WayView {
   readonly points: Points<BufferGeometry, PointsMaterial>;
@@ -12,7 +13,7 @@ export class WayView {
 
   constructor() {
     const geometry = new BufferGeometry().setAttribute('position', new BufferAttribute(new Float32Array(3 * DOTS_MAX), 3));
-    const material = new PointsMaterial({ size: DOT_PX, sizeAttenuation: false, color: 0xffb060, depthTest: false });
+    const material = new PointsMaterial({ size: DOT_PX, sizeAttenuation: false, color: 0xffb060, depthTest: false, transparent: true }); // after tissue that is translucent
     this.points = new Points(geometry, material);
     this.points.frustumCulled = false;
     this.points.renderOrder = 4;
@@ -21,12 +22,19 @@ export class WayView {
 
   /** Says whether the picture is another than before. */
   show(way: readonly Vector3[]): boolean {
-    const count = Math.min(way.length, DOTS_MAX);
-    if (count === 0 && this.shown === 0) return false;
-    this.shown = count;
-    this.points.visible = count > 1; // one point is where the tool is
+    if (way.length === 0 && this.shown === 0) return false;
     const position = this.points.geometry.getAttribute('position') as BufferAttribute;
-    for (let i = 0; i < count; i++) position.setXYZ(i, way[i].x, way[i].y, way[i].z);
+    let count = 0;
+    for (let i = 1; i < way.length; i++) {
+      const [from, to] = [way[i - 1], way[i]];
+      const dots = Math.max(Math.round(from.distanceTo(to) / SPACING_M), 1);
+      for (let k = 1; k <= dots && count < DOTS_MAX; k++) {
+        const { x, y, z } = from.clone().lerp(to, k / dots);
+        position.setXYZ(count++, x, y, z);
+      }
+    }
+    this.shown = count;
+    this.points.visible = count > 0; // one point of a way is where the tool is
     position.needsUpdate = true;
     this.points.geometry.setDrawRange(0, count);
     return true;

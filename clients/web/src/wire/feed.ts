@@ -5,7 +5,7 @@ import { materialCoordinates } from '../model/fibres';
 import { surroundingsOf } from '../model/field_shape';
 import { BURN_BYTES, Tissue } from '../model/tissue';
 import type { Changes, StreamState } from './decoder';
-import { TEMPERATURE, type SessionDescription, type StreamDescription } from './messages.gen';
+import { SCALARS, type SessionDescription, type StreamDescription } from './messages.gen';
 import type { Topology } from './topology';
 import type { Frame, FrameBuffers, Joined, Sample, VertexState } from './worker_messages';
 
@@ -63,7 +63,7 @@ export class Feed {
       exposure: last.exposure[vertex] / BYTE,
       charring: last.charring[vertex] / BYTE,
       stressPa: has('stress') ? last.stress[vertex] * stream.stress_step_pa : null,
-      temperatureC: has('temperature') ? TEMPERATURE.leastC + TEMPERATURE.stepC * last.temperature[vertex] : null,
+      temperatureC: has('temperature') ? SCALARS.temperature.least + SCALARS.temperature.step * last.temperature[vertex] : null,
     };
   }
 
