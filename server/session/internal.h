@@ -43,13 +43,15 @@ void cau_drive_remove(cau_logic *logic, const char *tool);
 // ---- queue.c
 void cau_queue_take(cau_logic *logic, const cau_asked *asked, cau_effects *effects);
 void cau_queue_alive(cau_logic *logic, uint32_t client, const char *tool, double time_s);
-void cau_queue_cut(cau_logic *logic, uint32_t client); // its enables do not count any more
+void cau_queue_cut(cau_logic *logic, uint32_t client);      // its enables do not count any more
+void cau_queue_overtake(cau_logic *logic, uint64_t moment); // orders to resume from before it
 void cau_queue_forget(cau_logic *logic, uint32_t client);
 void cau_queue_committed(cau_logic *logic, cau_effects *effects);
 // The first that may be served at this border, or NULL.
 cau_waiting *cau_queue_head(cau_logic *logic);
 cau_waiting *cau_queue_find(cau_logic *logic, uint64_t ticket);
 const cau_waiting *cau_queue_find_ask(const cau_logic *logic, cau_ask ask);
+bool cau_queue_off_waits(const cau_logic *logic, const char *tool); // for now, not for later
 void cau_queue_remove(cau_logic *logic, cau_waiting *order);
 bool cau_queue_is_due(const cau_logic *logic);
 
@@ -59,7 +61,7 @@ bool cau_time_is_due(const cau_logic *logic, double now_s);
 void cau_time_begin_tick(cau_logic *logic, double now_s);
 void cau_time_end_tick(cau_logic *logic);
 // Orders about time; false after filling the action's refusal.
-bool cau_time_resume(cau_logic *logic, double now_s, cau_action *action);
+bool cau_time_resume(cau_logic *logic, const cau_waiting *order, cau_action *action);
 bool cau_time_step(cau_logic *logic, const cau_asked *asked, cau_action *action);
 bool cau_time_go(const cau_logic *logic, cau_action *action);
 void cau_time_speed(cau_logic *logic, double speed, double now_s);

@@ -81,6 +81,14 @@ static void take_arrival(cau_logic *logic, const cau_logic_event *event, cau_eff
 	cau_effect_wake(effects);
 }
 
+// It goes on where it is, dark. The time that it stood still is given up, not caught up.
+static void take_stay(cau_logic *logic, double time_s, cau_effects *effects)
+{
+	logic->going = false;
+	logic->next_step_s = fmax(logic->next_step_s, time_s);
+	cau_effect_wake(effects);
+}
+
 static void fault(cau_logic *logic, const char *reason, cau_effects *effects)
 {
 	logic->state = CAU_SESSION_FAULTED;
@@ -127,6 +135,9 @@ void cau_logic_take(cau_logic *logic, const cau_logic_event *event, cau_effects 
 		break;
 	case CAU_LOGIC_ARRIVED:
 		take_arrival(logic, event, effects);
+		break;
+	case CAU_LOGIC_STAYED:
+		take_stay(logic, event->time_s, effects);
 		break;
 	case CAU_LOGIC_FAULT:
 		logic->going = false;
@@ -178,6 +189,7 @@ static bool pause(cau_logic *logic, const cau_waiting *order, cau_action *action
 	cau_drive_cut_lit(logic, order->moment, CAU_ENERGY_OFF_COMMANDED, "paused", effects);
 	if (cau_drive_next_cut(logic, true, action))
 		return false;
+	cau_queue_overtake(logic, order->moment);
 	action->changed = logic->state == CAU_SESSION_RUNNING;
 	if (action->changed)
 		logic->state = CAU_SESSION_PAUSED;
@@ -242,7 +254,7 @@ static bool decide(cau_logic *logic, const cau_waiting *order, cau_action *actio
 	case CAU_ASK_PAUSE:
 		return pause(logic, order, action, effects);
 	case CAU_ASK_RESUME:
-		return cau_time_resume(logic, logic->now_s, action);
+		return cau_time_resume(logic, order, action);
 	case CAU_ASK_STEP:
 		return cau_time_step(logic, asked, action);
 	case CAU_ASK_GO:
@@ -396,6 +408,7 @@ static void take_effect(cau_logic *logic, cau_effects *effects)
 	case CAU_ASK_ENERGY_OFF:
 		CAU_ASSERT(drive != NULL, "tool %s was turned off and is not there", order->asked.tool);
 		drive->lit = false;
+		drive->by_order = drive->by_order && cau_queue_off_waits(logic, order->asked.tool);
 		break;
 	case CAU_ASK_GO:
 		logic->going = true;

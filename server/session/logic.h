@@ -76,6 +76,7 @@ typedef struct cau_waiting {
 	bool gone, to_gone;  // the asker, or the one it hands over to, will not come back
 	bool looked;         // it is no resend
 	bool postponed;      // it is one, whose first is not on the disk yet: waits for that
+	bool overtaken;      // RESUME: a pause that came in later was served before it
 } cau_waiting;
 
 // ---- drivers ------------------------------------------------------------------------------------
@@ -111,6 +112,7 @@ typedef enum cau_logic_event_kind {
 	CAU_LOGIC_STORE,     // store_takes, cause
 	CAU_LOGIC_COMMITTED, // nothing of this session is on its way to the disk any more
 	CAU_LOGIC_ARRIVED,   // tools, tick, state: after a start, rewind, reset or restore
+	CAU_LOGIC_STAYED,    // what was to be gone to cannot be
 	CAU_LOGIC_FAULT, // cause: numerical trouble outside a step, in a replay or in what is streamed
 	CAU_LOGIC_DRAIN, // the daemon ends
 	CAU_LOGIC_END,   // the session could not be brought up or kept

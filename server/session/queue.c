@@ -24,7 +24,7 @@ static bool is_for_later(const cau_logic *logic, const cau_asked *asked)
 
 static bool is_ready(const cau_logic *logic, const cau_waiting *order)
 {
-	return !order->postponed && !is_for_later(logic, &order->asked);
+	return (!order->postponed || logic->ended) && !is_for_later(logic, &order->asked);
 }
 
 cau_waiting *cau_queue_head(cau_logic *logic)
@@ -51,6 +51,17 @@ const cau_waiting *cau_queue_find_ask(const cau_logic *logic, cau_ask ask)
 		if (logic->waiting[i].asked.ask == ask && is_ready(logic, &logic->waiting[i]))
 			return &logic->waiting[i];
 	return NULL;
+}
+
+bool cau_queue_off_waits(const cau_logic *logic, const char *tool)
+{
+	for (int32_t i = 0; i < logic->count; i++) {
+		const cau_asked *asked = &logic->waiting[i].asked;
+		if (asked->ask == CAU_ASK_ENERGY_OFF && strcmp(asked->tool, tool) == 0 &&
+		    !is_for_later(logic, asked))
+			return true;
+	}
+	return false;
 }
 
 void cau_queue_remove(cau_logic *logic, cau_waiting *order)
@@ -106,6 +117,14 @@ void cau_queue_cut(cau_logic *logic, uint32_t client)
 	for (int32_t i = 0; i < logic->count; i++)
 		cut_order(logic, &logic->waiting[i], client);
 	cut_order(logic, &logic->serving, client);
+}
+
+// A pause is not undone by what was asked for before it, and was held up.
+void cau_queue_overtake(cau_logic *logic, uint64_t moment)
+{
+	for (int32_t i = 0; i < logic->count; i++)
+		if (logic->waiting[i].asked.ask == CAU_ASK_RESUME && logic->waiting[i].moment < moment)
+			logic->waiting[i].overtaken = true;
 }
 
 static void forget_order(cau_waiting *order, uint32_t client)

@@ -41,16 +41,18 @@ static bool refuse(cau_action *action, cau_status status, const char *reason)
 	return false;
 }
 
-bool cau_time_resume(cau_logic *logic, double now_s, cau_action *action)
+bool cau_time_resume(cau_logic *logic, const cau_waiting *order, cau_action *action)
 {
 	if (logic->state == CAU_SESSION_FAULTED)
 		return refuse(action, CAU_FAULTED, logic->fault);
 	if (logic->steps_left)
 		return refuse(action, CAU_BAD_STATE, "the session is being stepped");
+	if (order->overtaken)
+		return refuse(action, CAU_BAD_STATE, "a pause was asked for after this");
 	action->changed = logic->state == CAU_SESSION_PAUSED;
 	if (action->changed) {
 		logic->state = CAU_SESSION_RUNNING;
-		logic->next_step_s = now_s;
+		logic->next_step_s = logic->now_s;
 	}
 	return true;
 }

@@ -58,7 +58,7 @@ MUTANTS = (
 
 def build(folder, root, compiler):
     sources = [os.path.join(folder, name) for name in sorted(os.listdir(folder)) if name.endswith(".c")]
-    tests = [os.path.join(root, "tests", ROOM, name) for name in ("logic_test.c", "world.c")]
+    tests = [os.path.join(root, "tests", ROOM, name) for name in ("logic_test.c", "oracle.c", "world.c")]
     program = os.path.join(folder, "mutant")
     subprocess.run(
         [compiler, "-O1", "-DNDEBUG", "-D_GNU_SOURCE", "-std=gnu17",

@@ -8,7 +8,7 @@
 
 #include "cautery/status.h"
 
-static_assert(sizeof(reach_state) <= 64, "states are many");
+static_assert(sizeof(reach_state) <= 88, "states are many");
 
 const char *const reach_tool_names[REACH_TOOLS] = {"hook", "jaws"};
 
@@ -56,7 +56,12 @@ static void decode_order(const reach_order *from, int place, cau_waiting *to)
 	bool about_tool = from->ask >= CAU_ASK_TOOL_ADD && from->ask <= CAU_ASK_REQUEST_TAKEOVER;
 	if (about_tool)
 		strcpy(to->asked.tool, reach_tool_names[from->tool]);
+	to->asked.tick = from->later ? REACH_TICK + from->later : 0;
+	to->asked.ticks = from->ticks;
+	to->asked.numbered = from->looks || from->postponed;
+	to->postponed = from->postponed;
 	to->moment = moment_of_place(place);
+	to->overtaken = from->ask == CAU_ASK_RESUME && from->cut;
 	to->cut_moment = from->cut ? 2 * (REACH_QUEUE + 2) : 0;
 	to->alive_s = alive_of(from->fresh);
 	to->gone = from->gone;
@@ -84,10 +89,15 @@ void reach_decode(const reach_state *state, cau_logic *logic)
 	logic->moment = 2 * (REACH_QUEUE + 2);
 	logic->now_s = REACH_NOW_S;
 	logic->next_step_s = REACH_TICK_S;
+	logic->tick = REACH_TICK;
 	logic->state = state->state;
 	logic->going = state->going;
+	logic->draining = state->draining;
+	logic->ended = state->ended;
 	logic->store_takes = state->store_takes;
 	logic->acting = (cau_act)state->acting;
+	logic->steps_left = state->steps_left;
+	logic->stepping = state->stepping ? REACH_STEP_TICKET : 0;
 	if (state->acting == CAU_ACT_CUT)
 		strcpy(logic->cutting, reach_tool_names[state->cutting]);
 	if (state->pause_place)
@@ -98,48 +108,72 @@ void reach_decode(const reach_state *state, cau_logic *logic)
 	for (int i = 0; i < state->tool_count; i++)
 		decode_tool(&state->tools[i], i, &logic->drives[i]);
 	logic->drive_count = state->tool_count;
-	if (state->serves)
-		decode_order(&state->orders[0], 1, &logic->serving);
-	for (int i = 0; i < state->count; i++)
-		decode_order(&state->orders[state->serves + i], state->serves + i + 1, &logic->waiting[i]);
-	logic->count = state->count;
+	for (int i = 0; i < state->order_count; i++)
+		if (i + 1 == state->serves)
+			decode_order(&state->orders[i], i + 1, &logic->serving);
+		else
+			decode_order(&state->orders[i], i + 1, &logic->waiting[logic->count++]);
+	if (state->looks)
+		decode_order(&state->orders[state->looks - 1], state->looks, &logic->serving);
 }
 
 // ---- a state of a machine -----------------------------------------------------------------------
 
-static const cau_waiting *order_at(const cau_logic *logic, const reach_state *state, int index)
-{
-	return state->serves && index == 0 ? &logic->serving : &logic->waiting[index - state->serves];
-}
+// The orders of a machine as they came, the one that is served among them.
+typedef struct line {
+	const cau_waiting *orders[REACH_QUEUE + 1];
+	int count, serves, looks; // places from 1; 0: none
+} line;
 
-static int order_count(const reach_state *state)
+static line line_of(const cau_logic *logic)
 {
-	return state->serves + state->count;
+	line made = {0};
+	bool serves = logic->acting == CAU_ACT_ORDER, passed = false;
+	for (int i = 0; i < logic->count; i++) {
+		if (serves && !passed && logic->serving.moment < logic->waiting[i].moment) {
+			passed = true;
+			made.orders[made.count++] = &logic->serving;
+			made.serves = made.count;
+		}
+		made.orders[made.count++] = &logic->waiting[i];
+		bool looks = logic->acting == CAU_ACT_LOOK &&
+		             logic->waiting[i].asked.ticket == logic->serving.asked.ticket;
+		if (looks)
+			made.looks = made.count;
+	}
+	if (serves && !passed) {
+		made.orders[made.count++] = &logic->serving;
+		made.serves = made.count;
+	}
+	return made;
 }
 
 // What means nothing to this kind of order is left out.
-static void encode_order(const cau_waiting *from, double now_s, reach_order *to)
+static void encode_order(const cau_logic *logic, const cau_waiting *from, reach_order *to)
 {
-	cau_ask ask = from->asked.ask;
-	bool on = ask == CAU_ASK_ENERGY_ON, takes = ask == CAU_ASK_TAKE_OVER;
-	bool hands = ask == CAU_ASK_HAND_OVER;
-	to->ask = (uint8_t)ask;
-	to->client = on || takes || hands ? (uint8_t)from->asked.asker.client : 1;
-	to->tool = (uint8_t)reach_tool_index(from->asked.tool);
-	to->to = (uint8_t)from->asked.to.client;
-	to->fresh = (on || takes) && reach_is_fresh(from->alive_s, now_s);
-	to->cut = on && from->cut_moment;
+	const cau_asked *asked = &from->asked;
+	bool on = asked->ask == CAU_ASK_ENERGY_ON, takes = asked->ask == CAU_ASK_TAKE_OVER;
+	bool hands = asked->ask == CAU_ASK_HAND_OVER;
+	to->ask = (uint8_t)asked->ask;
+	to->client = on || takes || hands ? (uint8_t)asked->asker.client : 1;
+	to->tool = (uint8_t)reach_tool_index(asked->tool);
+	to->to = (uint8_t)asked->to.client;
+	to->fresh = (on || takes) && reach_is_fresh(from->alive_s, logic->now_s);
+	to->cut = (on && from->cut_moment) || from->overtaken;
 	to->gone = takes && from->gone;
 	to->to_gone = hands && from->to_gone;
+	to->later = asked->tick > logic->tick ? (uint8_t)(asked->tick - logic->tick) : 0;
+	to->looks = asked->numbered && !from->looked;
+	to->postponed = from->postponed;
+	to->ticks = asked->ask == CAU_ASK_STEP ? (uint8_t)asked->ticks : 0;
 }
 
 // The newest of the orders about this tool's energy that came in by `moment`; `lost_client`: of
 // this client's enables alone.
-static uint8_t place_of(const cau_logic *logic, const reach_state *state, const char *tool,
-                        uint64_t moment, uint32_t lost_client)
+static uint8_t place_of(const line *orders, const char *tool, uint64_t moment, uint32_t lost_client)
 {
-	for (int i = order_count(state); i-- > 0;) {
-		const cau_waiting *order = order_at(logic, state, i);
+	for (int i = orders->count; i-- > 0;) {
+		const cau_waiting *order = orders->orders[i];
 		cau_ask ask = order->asked.ask;
 		bool bears = lost_client
 		                 ? ask == CAU_ASK_ENERGY_ON && order->asked.asker.client == lost_client
@@ -150,7 +184,7 @@ static uint8_t place_of(const cau_logic *logic, const reach_state *state, const 
 	return 0;
 }
 
-static void encode_tool(const cau_logic *logic, const cau_drive *from, const reach_state *state,
+static void encode_tool(const cau_logic *logic, const cau_drive *from, const line *orders,
                         reach_tool *to)
 {
 	to->driver = (uint8_t)from->driver.client;
@@ -159,45 +193,74 @@ static void encode_tool(const cau_logic *logic, const cau_drive *from, const rea
 	to->lit = from->lit;
 	to->freeze = from->freeze;
 	to->by_order = from->by_order;
-	to->cut_place = place_of(logic, state, from->tool, from->cut_moment, 0);
+	to->cut_place = place_of(orders, from->tool, from->cut_moment, 0);
 	if (from->lost_client)
-		to->lost_place = place_of(logic, state, from->tool, from->lost_moment, from->lost_client);
+		to->lost_place = place_of(orders, from->tool, from->lost_moment, from->lost_client);
 	to->lost_client = to->lost_place ? (uint8_t)from->lost_client : 0;
 }
 
-static uint8_t orders_until(const cau_logic *logic, const reach_state *state, uint64_t moment)
+static uint8_t orders_until(const line *orders, uint64_t moment)
 {
 	int count = 0;
-	for (int i = 0; i < order_count(state); i++)
-		count += order_at(logic, state, i)->moment <= moment;
+	for (int i = 0; i < orders->count; i++)
+		count += orders->orders[i]->moment <= moment;
 	return (uint8_t)count;
 }
 
-void reach_encode(const cau_logic *logic, const reach_state *books, reach_state *state)
+static void encode_time(const cau_logic *logic, const line *orders, reach_state *state)
 {
-	memset(state, 0, sizeof *state);
-	state->tool_count = (uint8_t)logic->drive_count;
-	state->capacity = (uint8_t)logic->capacity;
-	state->serves = logic->acting == CAU_ACT_ORDER;
-	state->count = (uint8_t)logic->count;
 	state->state = (uint8_t)logic->state;
 	state->going = logic->going;
+	state->draining = logic->draining;
+	state->ended = logic->ended;
 	state->store_takes = logic->store_takes;
 	state->acting = (uint8_t)logic->acting;
 	if (logic->acting == CAU_ACT_CUT)
 		state->cutting = (uint8_t)reach_tool_index(logic->cutting);
+	state->steps_left = (uint8_t)logic->steps_left;
+	state->stepping = logic->stepping != 0;
 	if (logic->pause_moment)
-		state->pause_place = (uint8_t)(1 + orders_until(logic, state, logic->pause_moment));
+		state->pause_place = (uint8_t)(1 + orders_until(orders, logic->pause_moment));
 	if (logic->border)
-		state->border_place = (uint8_t)(1 + orders_until(logic, state, logic->border_moment));
+		state->border_place = (uint8_t)(1 + orders_until(orders, logic->border_moment));
+}
+
+void reach_encode(const cau_logic *logic, const reach_state *books, reach_state *state)
+{
+	line orders = line_of(logic);
+	memset(state, 0, sizeof *state);
+	state->tool_count = (uint8_t)logic->drive_count;
+	state->capacity = (uint8_t)logic->capacity;
+	state->order_count = (uint8_t)orders.count;
+	state->serves = (uint8_t)orders.serves;
+	state->looks = (uint8_t)orders.looks;
+	encode_time(logic, &orders, state);
 	state->held = books->held;
-	for (int i = 0; i < order_count(state); i++) {
-		encode_order(order_at(logic, state, i), logic->now_s, &state->orders[i]);
+	state->steps = books->steps;
+	for (int i = 0; i < orders.count; i++) {
+		encode_order(logic, orders.orders[i], &state->orders[i]);
 		state->orders[i].overtaken = books->orders[i].overtaken;
 	}
 	for (int i = 0; i < logic->drive_count; i++) {
-		encode_tool(logic, &logic->drives[i], state, &state->tools[i]);
+		encode_tool(logic, &logic->drives[i], &orders, &state->tools[i]);
 		state->tools[i].heated = books->tools[i].heated;
 		state->tools[i].wanted = books->tools[i].wanted;
 	}
+}
+
+// ---- symmetry -----------------------------------------------------------------------------------
+
+void reach_swap_tools(const reach_state *state, reach_state *swapped)
+{
+	*swapped = *state;
+	swapped->tools[0] = state->tools[1];
+	swapped->tools[1] = state->tools[0];
+	for (int i = 0; i < state->order_count; i++) {
+		uint8_t ask = state->orders[i].ask;
+		bool about_tool = ask >= CAU_ASK_TOOL_ADD && ask <= CAU_ASK_REQUEST_TAKEOVER;
+		if (about_tool)
+			swapped->orders[i].tool = !state->orders[i].tool;
+	}
+	if (state->acting == CAU_ACT_CUT)
+		swapped->cutting = !state->cutting;
 }

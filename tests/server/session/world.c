@@ -7,11 +7,12 @@
 #include <stdlib.h>
 #include <string.h>
 
-#define TICK_S 0.0625 // powers of two: sums are exact
-#define DEADLINE_S 0.25
+#include "server/session/oracle.h"
 
-static const char *const tool_names[TOOLS] = {"hook", "jaws"};
-static const char *const ask_names[CAU_ASK_COUNT] = {
+#define TICK_S 0.0625 // powers of two: sums are exact
+
+const char *const world_tool_names[TOOLS] = {"hook", "jaws"};
+const char *const world_ask_names[CAU_ASK_COUNT] = {
 	[CAU_ASK_TISSUE] = "tissue",
 	[CAU_ASK_TOOL_ADD] = "add",
 	[CAU_ASK_TOOL_KEEP] = "configure",
@@ -41,7 +42,7 @@ __attribute__((format(printf, 2, 3))) static void say(world *w, const char *form
 	va_end(arguments);
 }
 
-__attribute__((format(printf, 2, 3))) static void wrong(world *w, const char *format, ...)
+void world_wrong(world *w, const char *format, ...)
 {
 	va_list arguments;
 	va_start(arguments, format);
@@ -50,108 +51,7 @@ __attribute__((format(printf, 2, 3))) static void wrong(world *w, const char *fo
 	va_end(arguments);
 }
 
-static tool_book *book_of(world *w, const char *tool)
-{
-	for (int i = 0; i < TOOLS; i++)
-		if (strcmp(tool_names[i], tool) == 0)
-			return &w->tools[i];
-	return NULL;
-}
-
-static void darken(tool_book *tool, uint64_t came)
-{
-	if (came > tool->dark)
-		tool->dark = came;
-}
-
-static void darken_all(world *w, uint64_t came)
-{
-	for (int i = 0; i < TOOLS; i++)
-		darken(&w->tools[i], came);
-}
-
-// ---- the rules ----------------------------------------------------------------------------------
-
-// The newest of all that concerns its energy is an enable of its driver, who is there and not
-// silent.
-static bool should_be_lit(const world *w, const tool_book *tool)
-{
-	int client = tool->enabler;
-	return tool->there && tool->enable && tool->enable > tool->dark &&
-	       tool->enable > w->away[client] && tool->enable > w->gone[client] &&
-	       tool->enable > w->no_store && tool->driver == client &&
-	       tool->alive_s[client] + tool->deadline_s > w->now_s;
-}
-
-static void check_tick(world *w)
-{
-	for (int i = 0; i < TOOLS; i++) {
-		const tool_book *tool = &w->tools[i];
-		bool should = should_be_lit(w, tool);
-		if (tool->lit && !should)
-			wrong(w, "a tick begins with %s lit; the newest enable came %llu, the dark %llu",
-			      tool_names[i], (unsigned long long)tool->enable, (unsigned long long)tool->dark);
-		if (!tool->lit && should)
-			wrong(w, "a tick begins with %s dark, though it was enabled", tool_names[i]);
-		w->lit_steps += tool->lit;
-	}
-	for (int i = 0; i < w->ticket_count; i++)
-		if (w->tickets[i].asked.ask == CAU_ASK_PAUSE && w->tickets[i].kept &&
-		    !w->tickets[i].answers)
-			wrong(w, "a tick begins while a pause waits");
-	w->steps++;
-}
-
-// Whether the order may be done, as the page has it.
-static bool may(const world *w, const ticket_book *ticket)
-{
-	const cau_asked *asked = &ticket->asked;
-	const tool_book *tool = book_of((world *)w, asked->tool);
-	int client = (int)asked->asker.client;
-	bool drives = tool && tool->there && tool->driver == client;
-	switch (asked->ask) {
-	case CAU_ASK_TOOL_KEEP:
-	case CAU_ASK_TOOL_REMOVE:
-		return drives || (tool->there && !tool->driver);
-	case CAU_ASK_TOOL_USE:
-	case CAU_ASK_MOTION:
-	case CAU_ASK_HAND_OVER:
-		return drives;
-	case CAU_ASK_ENERGY_OFF:
-	case CAU_ASK_REQUEST_TAKEOVER:
-		return tool->there;
-	case CAU_ASK_TAKE_OVER:
-		return tool->there && (!tool->driver || drives || asked->asker.role == CAU_ROLE_ADMIN) &&
-		       ticket->came > w->gone[client];
-	default:
-		return true;
-	}
-}
-
-// An enable that nothing has overtaken must be taken.
-static bool must_enable(const world *w, const ticket_book *ticket)
-{
-	const tool_book *tool = book_of((world *)w, ticket->asked.tool);
-	int client = (int)ticket->asked.asker.client;
-	double alive_s = tool->alive_s[client];
-	return tool->there && tool->driver == client && w->store_takes && ticket->came > tool->dark &&
-	       ticket->came > w->away[client] && ticket->came > w->gone[client] &&
-	       ticket->came > w->no_store && alive_s + tool->deadline_s > w->now_s;
-}
-
-// ---- answers ------------------------------------------------------------------------------------
-
-static ticket_book *ticket_of(world *w, uint64_t number)
-{
-	assert(number >= 1 && number <= (uint64_t)w->ticket_count);
-	return &w->tickets[number - 1];
-}
-
-static void answered(world *w, uint64_t number)
-{
-	if (ticket_of(w, number)->answers++)
-		wrong(w, "order %llu is answered twice", (unsigned long long)number);
-}
+// ---- events -------------------------------------------------------------------------------------
 
 static void take_effects(world *w)
 {
@@ -161,18 +61,16 @@ static void take_effects(world *w)
 		            effect->kind == CAU_EFFECT_UNSTORED;
 		if (!ends)
 			continue;
-		ticket_book *ticket = ticket_of(w, effect->ticket);
-		answered(w, effect->ticket);
+		ticket_book *ticket = oracle_ticket(w, effect->ticket);
+		oracle_answered(w, effect->ticket);
 		if (effect->kind == CAU_EFFECT_REFUSE)
 			ticket->kept = false;
 		bool room_matters =
 			ticket->asked.ask != CAU_ASK_ENERGY_OFF && ticket->asked.ask != CAU_ASK_PAUSE;
 		if (effect->kind == CAU_EFFECT_REFUSE && !room_matters && !w->ended)
-			wrong(w, "%s was refused when it came in", ask_names[ticket->asked.ask]);
+			world_wrong(w, "%s was refused when it came in", world_ask_names[ticket->asked.ask]);
 	}
 }
-
-// ---- events -------------------------------------------------------------------------------------
 
 static void take(world *w, cau_logic_event event)
 {
@@ -191,16 +89,6 @@ static cau_asker asker_of(int client)
 	return asker;
 }
 
-static void note_coming(world *w, const ticket_book *ticket)
-{
-	const cau_asked *asked = &ticket->asked;
-	tool_book *tool = book_of(w, asked->tool);
-	if (tool) // any message about a tool is a sign of life
-		tool->alive_s[asked->asker.client] = w->now_s;
-	if (asked->ask == CAU_ASK_ENERGY_OFF && asked->tick <= w->tick)
-		darken(tool, ticket->came);
-}
-
 static void order(world *w, cau_ask ask, int client, int tool, uint32_t more)
 {
 	if (w->ticket_count == TICKETS)
@@ -215,17 +103,18 @@ static void order(world *w, cau_ask ask, int client, int tool, uint32_t more)
 	                            .ticks = 1 + more % 3,
 	                            .speed = 1};
 	if (about_tool)
-		snprintf(ticket->asked.tool, sizeof ticket->asked.tool, "%s", tool_names[tool]);
+		snprintf(ticket->asked.tool, sizeof ticket->asked.tool, "%s", world_tool_names[tool]);
 	if (ask == CAU_ASK_HAND_OVER)
 		ticket->asked.to = asker_of((int)(more % (CLIENTS + 1)));
 	if ((ask == CAU_ASK_ENERGY_ON || ask == CAU_ASK_ENERGY_OFF) && more % 5 == 0)
 		ticket->asked.tick = w->tick + 1 + more % 2;
-	say(w, "c%d: %s %s%s (%d)\n", client, ask_names[ask], about_tool ? tool_names[tool] : "",
-	    ticket->asked.tick ? " later" : "", w->ticket_count);
-	note_coming(w, ticket);
+	say(w, "c%d: %s %s%s (%d)\n", client, world_ask_names[ask],
+	    about_tool ? world_tool_names[tool] : "", ticket->asked.tick ? " later" : "",
+	    w->ticket_count);
+	oracle_note_coming(w, ticket);
 	take(w, (cau_logic_event){.kind = CAU_LOGIC_ORDER, .asked = &ticket->asked});
 	if (ask == CAU_ASK_ENERGY_OFF && ticket->answers) // it found no room, and acts at once
-		darken(&w->tools[tool], ticket->came);
+		oracle_darken(&w->tools[tool], ticket->came);
 	if (ask == CAU_ASK_PAUSE && ticket->answers && !w->ended)
 		w->paused = ticket->came;
 }
@@ -238,7 +127,7 @@ static void alive(world *w, int client, int tool)
 	say(w, "c%d lives\n", client);
 	take(w, (cau_logic_event){.kind = CAU_LOGIC_ALIVE,
 	                          .client = (uint32_t)client,
-	                          .tool = tool < 0 ? "" : tool_names[tool]});
+	                          .tool = tool < 0 ? "" : world_tool_names[tool]});
 }
 
 static void lose(world *w, int client, bool for_good)
@@ -261,21 +150,10 @@ static void pass_time(world *w, uint32_t quarters)
 	say(w, "it is %.4f s\n", w->now_s);
 }
 
-// Once a silence was looked at, a sign of life does not undo it.
-static void note_silence(world *w)
-{
-	for (int i = 0; i < TOOLS; i++) {
-		tool_book *tool = &w->tools[i];
-		bool lit = tool->enable > tool->dark && tool->there && tool->driver == tool->enabler;
-		if (lit && tool->alive_s[tool->enabler] + tool->deadline_s <= w->now_s)
-			darken(tool, w->came);
-	}
-}
-
 static void watch(world *w)
 {
 	say(w, "the watchdog looks\n");
-	note_silence(w);
+	oracle_note_silence(w);
 	take(w, (cau_logic_event){.kind = CAU_LOGIC_TIME});
 }
 
@@ -299,7 +177,7 @@ static void arrive(world *w, bool lit)
 		tool->lit = tool->there && lit;
 		if (!tool->there)
 			continue;
-		snprintf(tools[count].name, sizeof tools[count].name, "%s", tool_names[i]);
+		snprintf(tools[count].name, sizeof tools[count].name, "%s", world_tool_names[i]);
 		tools[count++].lit = tool->lit;
 	}
 	say(w, "arrived%s\n", lit ? ", with lit tools" : "");
@@ -315,109 +193,17 @@ static void arrive(world *w, bool lit)
 	                          .tool_count = count});
 }
 
-static void change_driver(world *w, const ticket_book *ticket, int to)
-{
-	tool_book *tool = book_of(w, ticket->asked.tool);
-	if (tool->driver == to)
-		return;
-	if (tool->lit)
-		wrong(w, "%s changes hands while it is lit", ticket->asked.tool);
-	darken(tool, ticket->came);
-	tool->driver = to;
-}
-
-// What an order that was done leads to, as the page has it.
-static void note_done(world *w, ticket_book *ticket)
-{
-	const cau_asked *asked = &ticket->asked;
-	tool_book *tool = book_of(w, asked->tool);
-	int client = (int)asked->asker.client, to = (int)asked->to.client;
-	switch (asked->ask) {
-	case CAU_ASK_TOOL_ADD:
-		tool->there = true;
-		tool->driver = ticket->came > w->gone[client] ? client : 0;
-		tool->deadline_s = DEADLINE_S;
-		break;
-	case CAU_ASK_TOOL_REMOVE:
-		tool->there = tool->lit = false;
-		tool->enable = 0;
-		tool->driver = 0;
-		break;
-	case CAU_ASK_TAKE_OVER:
-		change_driver(w, ticket, ticket->came > w->gone[client] ? client : 0);
-		break;
-	case CAU_ASK_HAND_OVER:
-		change_driver(w, ticket, to && ticket->came < w->gone[to] ? 0 : to);
-		break;
-	case CAU_ASK_ENERGY_ON:
-		tool->lit = true;
-		if (ticket->came > tool->enable) {
-			tool->enable = ticket->came;
-			tool->enabler = client;
-		}
-		break;
-	case CAU_ASK_ENERGY_OFF:
-		tool->lit = false;
-		darken(tool, ticket->came);
-		if (asked->tick) // it was for this tick: what came in later and was lit before is off too
-			tool->enable = 0;
-		break;
-	case CAU_ASK_PAUSE:
-		w->state = CAU_SESSION_PAUSED;
-		darken_all(w, ticket->came);
-		break;
-	case CAU_ASK_RESUME:
-		w->state = CAU_SESSION_RUNNING;
-		break;
-	case CAU_ASK_GO:
-		w->going = true;
-		darken_all(w, ticket->came);
-		break;
-	case CAU_ASK_DESTROY:
-		w->ended = true;
-		break;
-	default:
-		break;
-	}
-}
-
-static void check_decision(world *w)
-{
-	const ticket_book *ticket = ticket_of(w, w->action.ticket);
-	cau_ask ask = ticket->asked.ask;
-	bool orders = w->action.act == CAU_ACT_ORDER;
-	if (w->ended)
-		return;
-	if (ask == CAU_ASK_ENERGY_ON) {
-		const tool_book *tool = book_of(w, ticket->asked.tool);
-		uint32_t client = ticket->asked.asker.client;
-		bool silent = tool->alive_s[client] + tool->deadline_s <= w->now_s;
-		if (orders && (tool->driver != (int)client || silent))
-			wrong(w, "an enable of c%u is taken, which %s", client,
-			      silent ? "is silent" : "does not drive");
-		if (!orders && must_enable(w, ticket))
-			wrong(w, "a good enable of c%u was refused: %s", ticket->asked.asker.client,
-			      w->action.error.reason);
-	} else if (orders && !may(w, ticket)) {
-		wrong(w, "%s of c%u is done, and it may not", ask_names[ask], ticket->asked.asker.client);
-	} else if (!orders && may(w, ticket) && ask != CAU_ASK_RESUME && ask != CAU_ASK_STEP &&
-	           ask != CAU_ASK_GO) {
-		wrong(w, "%s of c%u is refused, and it may: %s", ask_names[ask], ticket->asked.asker.client,
-		      w->action.error.reason);
-	}
-}
-
 static void begin_work(world *w)
 {
 	cau_logic_next(w->logic, w->now_s, &w->action, &w->effects);
 	take_effects(w);
 	w->working = w->action.act != CAU_ACT_NOTHING;
 	if (w->action.act == CAU_ACT_ORDER || w->action.act == CAU_ACT_REFUSE)
-		check_decision(w);
+		oracle_check_decision(w);
 	if (w->action.act == CAU_ACT_STEP)
-		check_tick(w);
+		oracle_check_tick(w);
 	if (w->action.act == CAU_ACT_CUT)
-		note_silence(w);
+		oracle_note_silence(w);
 	if (w->working)
 		say(w, "worker: %s (%llu)\n",
 		    (const char *[]){"", "refuse", "look", "do", "cut", "pause", "TICK", "stepped",
@@ -427,16 +213,16 @@ static void begin_work(world *w)
 
 static cau_outcome_kind finish_order(world *w, uint32_t more)
 {
-	ticket_book *ticket = ticket_of(w, w->action.ticket);
+	ticket_book *ticket = oracle_ticket(w, w->action.ticket);
 	bool core_may_refuse = ticket->asked.ask == CAU_ASK_TOOL_ADD ||
 	                       ticket->asked.ask == CAU_ASK_TISSUE || ticket->asked.ask == CAU_ASK_GO;
-	const tool_book *tool = book_of(w, ticket->asked.tool);
+	const tool_book *tool = oracle_book(w, ticket->asked.tool);
 	bool there_already = ticket->asked.ask == CAU_ASK_TOOL_ADD && tool->there;
 	bool done = !there_already && !(core_may_refuse && more % 4 == 0);
 	if (ticket->asked.ask != CAU_ASK_STEP)
-		answered(w, w->action.ticket);
+		oracle_answered(w, w->action.ticket);
 	if (done)
-		note_done(w, ticket);
+		oracle_note_done(w, ticket);
 	return done ? CAU_DONE : CAU_NOT_DONE;
 }
 
@@ -446,7 +232,7 @@ static cau_outcome_kind finish_look(world *w, uint32_t more)
 		return CAU_POSTPONED;
 	if (more % 8 != 2)
 		return CAU_DONE;
-	answered(w, w->action.ticket);
+	oracle_answered(w, w->action.ticket);
 	return CAU_NOT_DONE;
 }
 
@@ -456,7 +242,7 @@ static cau_outcome_kind finish_act(world *w, uint32_t more)
 	case CAU_ACT_REFUSE:
 	case CAU_ACT_STEPPED:
 	case CAU_ACT_STEP_FAILED:
-		answered(w, w->action.ticket);
+		oracle_answered(w, w->action.ticket);
 		return CAU_DONE;
 	case CAU_ACT_LOOK:
 		return finish_look(w, more);
@@ -464,11 +250,11 @@ static cau_outcome_kind finish_act(world *w, uint32_t more)
 		return finish_order(w, more);
 	case CAU_ACT_CUT:
 		if (w->action.was_lit)
-			book_of(w, w->action.drive.tool)->lit = false;
+			oracle_book(w, w->action.drive.tool)->lit = false;
 		return CAU_DONE;
 	case CAU_ACT_PAUSE:
 		w->state = CAU_SESSION_PAUSED;
-		darken_all(w, w->paused);
+		oracle_darken_all(w, w->paused);
 		return CAU_DONE;
 	case CAU_ACT_NOTHING:
 	case CAU_ACT_STEP:
@@ -493,10 +279,19 @@ static void end_work(world *w, uint32_t more)
 		take(w, (cau_logic_event){.kind = CAU_LOGIC_COMMITTED});
 }
 
+static void stay(world *w)
+{
+	say(w, "stays where it is\n");
+	w->going = false;
+	take(w, (cau_logic_event){.kind = CAU_LOGIC_STAYED});
+}
+
 static void work(world *w, uint32_t more)
 {
 	if (w->working)
 		end_work(w, more);
+	else if (w->going && more % 3 == 0)
+		stay(w);
 	else if (w->going)
 		arrive(w, more % 2);
 	else
@@ -604,7 +399,7 @@ bool world_end(world *w)
 	}
 	for (int i = 0; i < w->ticket_count; i++)
 		if (w->tickets[i].answers != 1)
-			wrong(w, "order %d (%s) has %d answers", i + 1, ask_names[w->tickets[i].asked.ask],
-			      w->tickets[i].answers);
+			world_wrong(w, "order %d (%s) has %d answers", i + 1,
+			            world_ask_names[w->tickets[i].asked.ask], w->tickets[i].answers);
 	return !*w->wrong;
 }

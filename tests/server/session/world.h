@@ -1,8 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // A session's decisions in a world of two tools and three clients: bytes become events, acts and
-// what comes of them, in any interleaving, and after each an oracle is asked whether what happened
-// may happen. The oracle is written from protocol/README.md ("Roles and driving") and keeps its own
-// books; it looks at what the worker is told to do and never into the machine.
+// what comes of them, in any interleaving, and after each an oracle (oracle.h) is asked whether
+// what happened may happen.
 #pragma once
 
 #include <stdbool.h>
@@ -18,6 +17,8 @@ enum {
 	QUEUE = 6,
 	TICKETS = 256,
 };
+
+#define DEADLINE_S 0.25 // of silence, of every driver
 
 // What the oracle knows of a tool.
 typedef struct tool_book {
@@ -56,6 +57,12 @@ typedef struct world {
 	FILE *script;              // the events in words, or NULL
 	char wrong[200];           // "": nothing
 } world;
+
+extern const char *const world_tool_names[TOOLS];
+extern const char *const world_ask_names[CAU_ASK_COUNT];
+
+// Notes what is wrong, if nothing was so far.
+__attribute__((format(printf, 2, 3))) void world_wrong(world *w, const char *format, ...);
 
 world *world_create(void);
 void world_destroy(world *w);

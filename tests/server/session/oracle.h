@@ -1,0 +1,24 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Whether what a session decides may be. Written from protocol/README.md ("Roles and driving"); it
+// keeps its own books, looks at what the worker is told to do and never into the machine.
+#pragma once
+
+#include "server/session/world.h"
+
+tool_book *oracle_book(world *w, const char *tool); // NULL: it is about none
+ticket_book *oracle_ticket(world *w, uint64_t number);
+
+// What came in by then does not light the tool.
+void oracle_darken(tool_book *tool, uint64_t came);
+void oracle_darken_all(world *w, uint64_t came);
+
+// An order came in; was answered; was done by the worker.
+void oracle_note_coming(world *w, const ticket_book *ticket);
+void oracle_answered(world *w, uint64_t number);
+void oracle_note_done(world *w, ticket_book *ticket);
+// Somebody looked for silence: a later sign of life does not undo it.
+void oracle_note_silence(world *w);
+
+// The worker is told to do or to refuse an order; to begin a tick.
+void oracle_check_decision(world *w);
+void oracle_check_tick(world *w);

@@ -1,0 +1,510 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "server/session/reach_rules.h"
+
+#include <assert.h>
+#include <math.h>
+#include <string.h>
+
+const char *const reach_what_names[REACH_WHAT_COUNT] = {
+	"orders",         "lives",   "looks away", "is gone",    "all are silent",
+	"watchdog looks", "store",   "committed",  "work early", "work",
+	"done",           "refused", "postponed",  "faulted",    "arrived dark",
+	"arrived lit",    "stays",   "drains",     "ends"};
+
+static void must(reach_move *m, bool holds, const char *otherwise)
+{
+	if (!holds && !m->wrong)
+		m->wrong = otherwise;
+}
+
+// ---- the books ----------------------------------------------------------------------------------
+
+// What came in before does not light the tool any more; `client`: what this one asked for.
+static void darken(reach_state *books, int tool, int client)
+{
+	for (int i = 0; i < books->order_count; i++) {
+		reach_order *order = &books->orders[i];
+		if (order->ask == CAU_ASK_ENERGY_ON && order->tool == tool &&
+		    (!client || order->client == client))
+			order->overtaken = 1;
+	}
+	if (!client || books->tools[tool].driver == client)
+		books->tools[tool].wanted = 0;
+}
+
+static void darken_all(reach_state *books, int client)
+{
+	for (int i = 0; i < books->tool_count; i++)
+		darken(books, i, client);
+}
+
+// What came in before this place does not light the tool.
+static void darken_before(reach_state *books, int tool, int place)
+{
+	for (int i = 0; i < place - 1; i++)
+		if (books->orders[i].ask == CAU_ASK_ENERGY_ON && books->orders[i].tool == tool)
+			books->orders[i].overtaken = 1;
+	books->tools[tool].wanted = 0;
+}
+
+static void note_silence(reach_state *books)
+{
+	for (int i = 0; i < books->tool_count; i++)
+		if (books->tools[i].wanted && !books->tools[i].fresh)
+			darken(books, i, books->tools[i].driver);
+}
+
+// The order at this place is answered; places are from 1.
+static void drop_order(reach_state *books, int place)
+{
+	size_t after = (size_t)(books->order_count - place);
+	memmove(&books->orders[place - 1], &books->orders[place], after * sizeof *books->orders);
+	memset(&books->orders[--books->order_count], 0, sizeof *books->orders);
+}
+
+// The place of the first that may be served, or 0: those for a later tick, and those whose first is
+// on its way to the disk, stand aside.
+static int head(const reach_state *books)
+{
+	for (int i = 0; i < books->order_count; i++)
+		if (i + 1 != books->serves && !books->orders[i].later && !books->orders[i].postponed)
+			return i + 1;
+	return 0;
+}
+
+static bool waits_postponed(const reach_state *books, cau_ask ask)
+{
+	for (int i = 0; i < books->order_count; i++)
+		if (books->orders[i].ask == ask && books->orders[i].postponed)
+			return true;
+	return false;
+}
+
+static bool drives_are_as_before(const reach_move *m, bool but_for_life)
+{
+	for (int32_t i = 0; i < m->logic->drive_count; i++) {
+		cau_drive now = m->logic->drives[i];
+		if (but_for_life)
+			now.alive_s = m->before->drives[i].alive_s;
+		if (memcmp(&now, &m->before->drives[i], sizeof now) != 0)
+			return false;
+	}
+	return m->logic->drive_count == m->before->drive_count && m->logic->state == m->before->state &&
+	       m->logic->going == m->before->going && m->logic->stepping == m->before->stepping;
+}
+
+// ---- what comes in ------------------------------------------------------------------------------
+
+static bool has_effect(const reach_move *m, cau_effect_kind kind)
+{
+	for (int32_t i = 0; i < m->effects.count; i++)
+		if (m->effects.list[i].kind == kind)
+			return true;
+	return false;
+}
+
+static void take(reach_move *m, cau_logic_event taken)
+{
+	taken.time_s = REACH_NOW_S;
+	cau_logic_take(m->logic, &taken, &m->effects);
+	bool idle = m->before->acting == CAU_ACT_NOTHING;
+	bool newly_due = cau_logic_due_s(m->before) > 0 && cau_logic_due_s(m->logic) == 0;
+	must(m, !idle || !newly_due || has_effect(m, CAU_EFFECT_WAKE), "the worker is not woken");
+}
+
+// What an order that came in leads to at once.
+static void note_coming(reach_move *m, const reach_event *e, bool queued)
+{
+	bool off = e->ask == CAU_ASK_ENERGY_OFF, pause = e->ask == CAU_ASK_PAUSE;
+	if (m->before->ended)
+		return;
+	if (off && (!e->later || !queued)) // without room one for later acts now
+		darken(&m->books, e->tool, 0);
+	if (pause && !queued)
+		darken_all(&m->books, 0);
+	if (pause || (e->ask == CAU_ASK_RESUME && queued))
+		m->books.held = pause;
+	if (queued)
+		m->books.orders[m->books.order_count++] = (reach_order){.ask = (uint8_t)e->ask,
+		                                                        .client = (uint8_t)e->client,
+		                                                        .tool = (uint8_t)e->tool,
+		                                                        .later = (uint8_t)e->later};
+}
+
+static void do_order(reach_move *m, const reach_event *e)
+{
+	bool about_tool = e->ask >= CAU_ASK_TOOL_ADD && e->ask <= CAU_ASK_REQUEST_TAKEOVER;
+	cau_asked asked = {.ticket = 50,
+	                   .ask = e->ask,
+	                   .asker = reach_asker(e->client),
+	                   .to = reach_asker(e->to),
+	                   .tick = e->later ? REACH_TICK + (uint64_t)e->later : 0,
+	                   .ticks = e->ask == CAU_ASK_STEP ? 2 : 0,
+	                   .numbered = e->numbered};
+	if (about_tool)
+		strcpy(asked.tool, reach_tool_names[e->tool]);
+	take(m, (cau_logic_event){.kind = CAU_LOGIC_ORDER, .asked = &asked});
+	bool off = e->ask == CAU_ASK_ENERGY_OFF, pause = e->ask == CAU_ASK_PAUSE;
+	bool refused = has_effect(m, CAU_EFFECT_REFUSE);
+	bool queued = m->logic->count > m->before->count;
+	must(m, !refused || !(off || pause) || m->before->ended, "energy off or pause is refused");
+	must(m, refused || !m->before->ended, "what has ended takes an order");
+	must(m, !refused || (!queued && drives_are_as_before(m, true)), "refused, and yet it changed");
+	must(m, refused + queued + has_effect(m, CAU_EFFECT_UNSTORED) == 1, "not one answer");
+	note_coming(m, e, queued);
+}
+
+static void lose(reach_move *m, int client, bool for_good)
+{
+	darken_all(&m->books, client);
+	take(m, (cau_logic_event){.kind = for_good ? CAU_LOGIC_FORGET : CAU_LOGIC_AWAY,
+	                          .client = (uint32_t)client});
+}
+
+static void do_store(reach_move *m)
+{
+	bool takes = !m->before->store_takes;
+	if (!takes)
+		darken_all(&m->books, 0);
+	take(m, (cau_logic_event){.kind = CAU_LOGIC_STORE, .store_takes = takes});
+}
+
+static void arrive(reach_move *m, bool lit)
+{
+	cau_arrived_tool tools[REACH_TOOLS] = {0};
+	for (int i = 0; i < m->books.tool_count; i++) {
+		strcpy(tools[i].name, reach_tool_names[i]);
+		tools[i].lit = lit;
+		m->books.tools[i].heated = lit;
+		m->books.tools[i].wanted = 0;
+	}
+	take(m, (cau_logic_event){.kind = CAU_LOGIC_ARRIVED,
+	                          .state = m->before->state,
+	                          .tick = REACH_TICK,
+	                          .step_s = 0.0625,
+	                          .tools = tools,
+	                          .tool_count = m->books.tool_count});
+}
+
+static void end(reach_move *m, bool drain)
+{
+	if (drain)
+		darken_all(&m->books, 0);
+	take(m, (cau_logic_event){.kind = drain ? CAU_LOGIC_DRAIN : CAU_LOGIC_END});
+}
+
+// ---- the worker begins --------------------------------------------------------------------------
+
+static bool off_waits(const reach_move *m, int tool)
+{
+	for (int i = 0; i < m->books.order_count; i++)
+		if (m->books.orders[i].ask == CAU_ASK_ENERGY_OFF && m->books.orders[i].tool == tool &&
+		    !m->books.orders[i].later)
+			return true;
+	return false;
+}
+
+// No tick begins with energy that nobody wants, nor without energy that somebody does; none after a
+// pause, but those that session.step asked for.
+static void check_step(reach_move *m)
+{
+	bool stepped = m->before->state == CAU_SESSION_PAUSED;
+	bool held = m->books.held && !waits_postponed(&m->books, CAU_ASK_PAUSE);
+	must(m, !held || stepped, "a tick begins after a pause");
+	must(m, !stepped || m->books.steps, "a tick that nobody asked for");
+	must(m, !m->before->ended, "a tick begins after the end");
+	if (stepped && m->books.steps)
+		m->books.steps--;
+	for (int i = 0; i < m->books.tool_count; i++) {
+		const reach_tool *tool = &m->books.tools[i];
+		const cau_drive *drive = &m->logic->drives[i];
+		bool should = tool->wanted && tool->driver && tool->fresh;
+		must(m, !tool->heated || should, "a tick begins with a tool lit that is not to be");
+		must(m, tool->heated || !should, "a tick begins with a tool dark that is to be lit");
+		must(m, !drive->freeze && drive->lit == drive->enabled, "a tick begins with a cut owed");
+	}
+}
+
+// Whoever has work is told to do it: at once, or as soon as a border begins. What has ended owes
+// nothing but answers.
+static void check_rest(reach_move *m)
+{
+	for (int i = 0; i < m->books.tool_count && !m->logic->ended; i++) {
+		const cau_drive *drive = &m->logic->drives[i];
+		bool owed = drive->freeze || (m->books.tools[i].heated && !drive->enabled);
+		must(m, !owed || (!drive->freeze && off_waits(m, i)),
+		     "the worker rests, and a cut is owed");
+	}
+	if (cau_logic_due_s(m->logic) > 0)
+		return;
+	memcpy(m->before, m->logic, cau_logic_bytes(REACH_QUEUE));
+	cau_logic_next(m->before, REACH_NOW_S, &m->action, &m->effects);
+	must(m, m->action.act != CAU_ACT_NOTHING, "the worker spins");
+	m->action.act = CAU_ACT_NOTHING;
+}
+
+static void check_order(reach_move *m)
+{
+	const reach_order *order = &m->books.orders[m->action.ticket - 1];
+	bool changes = order->ask == CAU_ASK_TAKE_OVER || order->ask == CAU_ASK_HAND_OVER;
+	must(m, !order->later || m->before->ended, "an order is done before its tick");
+	must(m, !order->looks, "it may be a resend, and is done");
+	if (order->ask == CAU_ASK_ENERGY_OFF)
+		darken_before(&m->books, order->tool, (int)m->action.ticket);
+	if (m->action.changed && changes) {
+		must(m, !m->books.tools[order->tool].heated, "a tool changes hands lit");
+		darken_before(&m->books, order->tool, (int)m->action.ticket);
+	}
+}
+
+static void check_decision(reach_move *m)
+{
+	switch (m->action.act) {
+	case CAU_ACT_REFUSE:
+		must(m, drives_are_as_before(m, false), "refused, and yet it changed");
+		drop_order(&m->books, (int)m->action.ticket);
+		break;
+	case CAU_ACT_ORDER:
+		check_order(m);
+		m->books.serves = (uint8_t)m->action.ticket;
+		break;
+	case CAU_ACT_STEPPED:
+		must(m, !m->books.steps && m->before->stepping, "stepped too little");
+		break;
+	case CAU_ACT_STEP_FAILED:
+		must(m, m->before->stepping, "nobody steps");
+		m->books.steps = 0;
+		break;
+	default:
+		break;
+	}
+}
+
+// A tool goes dark when its change of hands or a pause begins, even if who asked for that is gone
+// before it ends; or since the worker sees a silence before the watchdog does.
+static void note_cut_begun(reach_move *m)
+{
+	int place = head(&m->books);
+	const reach_order none = {0}, *order = place ? &m->books.orders[place - 1] : &none;
+	bool changes = order->ask == CAU_ASK_TAKE_OVER || order->ask == CAU_ASK_HAND_OVER;
+	for (int i = 0; i < m->books.tool_count; i++) {
+		bool pauses = m->before->pause_moment || order->ask == CAU_ASK_PAUSE;
+		bool by_order = pauses || (changes && order->tool == i);
+		if (!m->before->drives[i].enabled || m->logic->drives[i].enabled)
+			continue;
+		if (by_order)
+			darken_before(&m->books, i, place);
+		else
+			darken(&m->books, i, m->books.tools[i].driver);
+	}
+}
+
+static void work(reach_move *m, double now_s)
+{
+	cau_logic_next(m->logic, now_s, &m->action, &m->effects);
+	cau_act act = m->action.act;
+	bool early = now_s < REACH_TICK_S;
+	bool rested = act == CAU_ACT_NOTHING, pending = cau_logic_due_s(m->before) == 0;
+	must(m, !early || rested || pending || m->before->draining, "there is work, and it is not due");
+	must(m, act != CAU_ACT_STEP || !early || m->before->stepping, "a tick begins too early");
+	if (act == CAU_ACT_CUT)
+		note_cut_begun(m);
+	check_decision(m);
+	if (act == CAU_ACT_STEP)
+		check_step(m);
+	if (rested)
+		check_rest(m);
+}
+
+// ---- and ends -----------------------------------------------------------------------------------
+
+static void note_order_done(reach_move *m, bool done)
+{
+	int place = m->books.serves;
+	const reach_order order = m->books.orders[place - 1];
+	reach_tool *tool = &m->books.tools[order.tool];
+	drop_order(&m->books, place);
+	m->books.serves = 0;
+	if (!done)
+		return;
+	if (order.ask == CAU_ASK_ENERGY_ON) {
+		tool->heated = 1;
+		tool->wanted = tool->wanted || (!order.overtaken && tool->driver == order.client);
+	} else if (order.ask == CAU_ASK_ENERGY_OFF) {
+		tool->heated = 0;
+		darken_before(&m->books, order.tool, place);
+	} else if (order.ask == CAU_ASK_GO || order.ask == CAU_ASK_PAUSE) {
+		for (int i = 0; i < m->books.tool_count; i++)
+			darken_before(&m->books, i, place); // what came in later counts
+	} else if (order.ask == CAU_ASK_STEP) {
+		m->books.steps = order.ticks;
+	} else if (order.ask == CAU_ASK_DESTROY) {
+		darken_all(&m->books, 0);
+	}
+}
+
+// A pause that was sent before pauses nothing.
+static void note_looked(reach_move *m, reach_what what)
+{
+	reach_order *order = &m->books.orders[m->books.looks - 1];
+	if (what == REACH_POSTPONED)
+		order->postponed = 1;
+	if (what != REACH_NOT_DONE)
+		return;
+	if (order->ask == CAU_ASK_PAUSE)
+		m->books.held = 0;
+	drop_order(&m->books, m->books.looks);
+}
+
+static cau_outcome_kind outcome_of(reach_what what)
+{
+	return what == REACH_DONE ? CAU_DONE : what == REACH_NOT_DONE ? CAU_NOT_DONE : CAU_POSTPONED;
+}
+
+static void finish(reach_move *m, reach_what what)
+{
+	int acting = m->books.acting;
+	if (acting == CAU_ACT_CUT) {
+		const cau_drive *drive = &m->before->drives[m->books.cutting];
+		if (!drive->enabled)
+			m->books.tools[m->books.cutting].heated = 0;
+	} else if (acting == CAU_ACT_ORDER) {
+		note_order_done(m, what == REACH_DONE);
+	} else if (acting == CAU_ACT_LOOK) {
+		note_looked(m, what);
+	}
+	cau_logic_done(m->logic, REACH_NOW_S, outcome_of(what), &m->effects);
+}
+
+static void step(reach_move *m, bool faulted)
+{
+	if (faulted)
+		darken_all(&m->books, 0);
+	cau_logic_stepped(m->logic, REACH_NOW_S, faulted ? "it melts" : NULL, &m->effects);
+	for (int i = 0; i < m->books.order_count && !faulted; i++)
+		if (m->books.orders[i].later)
+			m->books.orders[i].later--;
+}
+
+static void do_worker(reach_move *m, const reach_event *e)
+{
+	if (e->what == REACH_WORK_EARLY || e->what == REACH_WORK)
+		work(m, e->what == REACH_WORK ? REACH_TICK_S : REACH_NOW_S);
+	else if (m->books.acting == CAU_ACT_STEP)
+		step(m, e->what == REACH_FAULTED);
+	else
+		finish(m, e->what);
+}
+
+// ---- all of it ----------------------------------------------------------------------------------
+
+static bool core_may_refuse(const reach_state *state)
+{
+	uint8_t ask = state->serves ? state->orders[state->serves - 1].ask : 0;
+	return state->serves && (ask == CAU_ASK_ENERGY_ON || ask == CAU_ASK_ENERGY_OFF ||
+	                         ask == CAU_ASK_GO || ask == CAU_ASK_DESTROY);
+}
+
+static bool is_postponed(const reach_state *state)
+{
+	for (int i = 0; i < state->order_count; i++)
+		if (state->orders[i].postponed)
+			return true;
+	return false;
+}
+
+bool reach_can_be(const reach_event *e, const reach_state *state)
+{
+	bool acts = state->acting != CAU_ACT_NOTHING, steps = state->acting == CAU_ACT_STEP;
+	switch (e->what) {
+	case REACH_WORK_EARLY:
+	case REACH_WORK:
+		return !acts && !state->going;
+	case REACH_DONE:
+		return acts;
+	case REACH_NOT_DONE:
+		return core_may_refuse(state) || state->looks;
+	case REACH_POSTPONED:
+		return state->looks;
+	case REACH_COMMITTED:
+		return is_postponed(state);
+	case REACH_FAULTED:
+		return steps;
+	case REACH_ARRIVE_DARK:
+	case REACH_ARRIVE_LIT:
+	case REACH_STAY:
+		return state->going && !acts;
+	case REACH_DRAIN:
+		return !state->draining;
+	case REACH_END:
+		return !state->ended;
+	default:
+		return true;
+	}
+}
+
+// What is true of every state.
+static void check_state(reach_move *m)
+{
+	const cau_logic *logic = m->logic;
+	bool answers_owed = logic->count > 0 || logic->stepping;
+	bool work_waits = head(&m->books) || logic->stepping || logic->pause_moment;
+	must(m, logic->count >= 0 && logic->count <= logic->capacity, "the queue is overfull");
+	must(m, m->effects.count <= CAU_EFFECTS_MOST, "too many effects");
+	for (int i = 0; i < logic->drive_count; i++) {
+		const cau_drive *drive = &logic->drives[i];
+		must(m, !drive->enabled || drive->driver.client, "enabled, and nobody drives it");
+		must(m, !drive->enabled || drive->lit, "enabled, and the core was not told");
+		must(m, drive->lit == m->books.tools[i].heated, "what the core was told is not known");
+		must(m, !drive->enabled || cau_logic_look_s(logic) < INFINITY, "nobody looks for silence");
+		work_waits |= drive->freeze || (drive->lit && !drive->enabled);
+	}
+	work_waits = logic->ended ? answers_owed : work_waits && !logic->draining;
+	must(m, !work_waits || cau_logic_due_s(logic) == 0, "there is work, and it is not due");
+}
+
+void reach_do(reach_move *m, const reach_event *e)
+{
+	switch (e->what) {
+	case REACH_ORDER:
+		do_order(m, e);
+		break;
+	case REACH_ALIVE:
+		take(m, (cau_logic_event){.kind = CAU_LOGIC_ALIVE, .client = (uint32_t)e->client});
+		break;
+	case REACH_AWAY:
+	case REACH_FORGET:
+		lose(m, e->client, e->what == REACH_FORGET);
+		break;
+	case REACH_SILENCE:
+		m->logic->now_s += REACH_DEADLINE_S;
+		break;
+	case REACH_LOOK:
+		note_silence(&m->books);
+		take(m, (cau_logic_event){.kind = CAU_LOGIC_TIME});
+		break;
+	case REACH_STORE:
+		do_store(m);
+		break;
+	case REACH_COMMITTED:
+		for (int i = 0; i < m->books.order_count; i++)
+			m->books.orders[i].postponed = 0;
+		take(m, (cau_logic_event){.kind = CAU_LOGIC_COMMITTED});
+		break;
+	case REACH_ARRIVE_DARK:
+	case REACH_ARRIVE_LIT:
+		arrive(m, e->what == REACH_ARRIVE_LIT);
+		break;
+	case REACH_STAY:
+		take(m, (cau_logic_event){.kind = CAU_LOGIC_STAYED});
+		break;
+	case REACH_DRAIN:
+	case REACH_END:
+		end(m, e->what == REACH_DRAIN);
+		break;
+	default:
+		do_worker(m, e);
+		break;
+	}
+	check_state(m);
+}
