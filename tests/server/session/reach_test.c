@@ -2,8 +2,10 @@
 // Every state that a session's machine can come to, by breadth first: two clients (one an admin)
 // order, live, look away and go, the store fills, empties and commits, time passes, the session
 // steps, goes back, stays, ends, and the worker asks, does and is refused, in every order. In each
-// state and after each event rules are checked that keep their own books (reach_rules.c). All
-// searches close: what they do not reach cannot happen with these events.
+// state and after each event rules are checked that keep their own books (reach_rules.c). A search
+// that closes is a proof: what it does not reach cannot happen with these events. The two largest
+// worlds have not closed in half an hour; with --long their first states are looked at, nearest to
+// the beginning first, and the last line says "not closed".
 //
 // What makes them finite, and why nothing is lost by it:
 //   - Moments, times and ticks count only by how they compare, and a state keeps just that: places
@@ -39,31 +41,33 @@ enum {
 	END = 1024,   // the session is destroyed or lost, the daemon ends
 	ALL = 2 * END - 1,
 	EVENTS_MOST = 128,
+	STATES_OF_PART = 10000000,
+	STATES_HELD = 200000000, // beyond this a search that should close has failed to
 };
 
 typedef struct search {
 	const char *name;
 	int tools, capacity;
 	unsigned with;
-	bool takes_long;
+	enum { SHORT, LONG, PART } how; // in the suite; with --long; with --long, its first states
 } search;
 
 // One tool alone with everything; two tools and longer queues in parts, each without what
-// multiplies the states of the others; and the whole of both, which takes long.
+// multiplies the states of the others; and the whole of both, which takes long or is too much.
 static const search searches[] = {
-	{"one tool, a queue of one", 1, 1, ALL & ~(unsigned)(RESEND | STEP | LATER | END), false},
+	{"one tool, a queue of one", 1, 1, ALL & ~(unsigned)(RESEND | STEP | LATER | END), SHORT},
 	{"one tool, a queue of one, resends and later ticks", 1, 1,
-     ALL & ~(unsigned)(STEP | END | HAND | FAULT), false},
-	{"two tools, drivers", 2, 1, OFF | HAND, false},
-	{"two tools, pause and step", 2, 1, OFF | PAUSE | STEP, false},
-	{"two tools, losses", 2, 1, OFF | LOSS, false},
-	{"two tools, store and going back", 2, 1, STORE | GO, false},
-	{"two tools, later ticks", 2, 1, LATER, false},
-	{"one tool, a queue of two, pause and store", 1, 2, OFF | PAUSE | STORE, false},
-	{"one tool, a queue of two, resends and later ticks", 1, 2, OFF | RESEND | LATER, false},
-	{"one tool, a queue of one, everything", 1, 1, ALL, true},
-	{"one tool, a queue of two, everything", 1, 2, ALL, true},
-	{"two tools, a queue of one, everything", 2, 1, ALL, true},
+     ALL & ~(unsigned)(STEP | END | HAND | FAULT), SHORT},
+	{"two tools, drivers", 2, 1, OFF | HAND, SHORT},
+	{"two tools, pause and step", 2, 1, OFF | PAUSE | STEP, SHORT},
+	{"two tools, losses", 2, 1, OFF | LOSS, SHORT},
+	{"two tools, store and going back", 2, 1, STORE | GO, SHORT},
+	{"two tools, later ticks", 2, 1, LATER, SHORT},
+	{"one tool, a queue of two, pause and store", 1, 2, OFF | PAUSE | STORE, SHORT},
+	{"one tool, a queue of two, resends and later ticks", 1, 2, OFF | RESEND | LATER, SHORT},
+	{"one tool, a queue of one, everything", 1, 1, ALL, LONG},
+	{"one tool, a queue of two, everything", 1, 2, ALL, PART},
+	{"two tools, a queue of one, everything", 2, 1, ALL, PART},
 };
 
 // ---- the alphabet -------------------------------------------------------------------------------
@@ -273,11 +277,14 @@ static bool run(const search *what, uint32_t most, bool bounded)
 int main(int argc, char **argv)
 {
 	bool takes_long = argc > 1 && strcmp(argv[1], "--long") == 0, bounded = argc > 1 && !takes_long;
-	uint32_t most = bounded ? (uint32_t)strtoul(argv[1], NULL, 10) : 200000000;
+	uint32_t asked = bounded ? (uint32_t)strtoul(argv[1], NULL, 10) : 0;
 	bool good = true;
 	setvbuf(stdout, NULL, _IOLBF, 0);
-	for (size_t i = 0; i < sizeof searches / sizeof *searches; i++)
-		if (bounded || searches[i].takes_long == takes_long)
-			good = run(&searches[i], most, bounded) && good;
+	for (size_t i = 0; i < sizeof searches / sizeof *searches; i++) {
+		bool part = bounded || searches[i].how == PART;
+		uint32_t most = bounded ? asked : part ? STATES_OF_PART : STATES_HELD;
+		if (bounded || (searches[i].how != SHORT) == takes_long)
+			good = run(&searches[i], most, part) && good;
+	}
 	return good ? EXIT_SUCCESS : EXIT_FAILURE;
 }
