@@ -6,6 +6,7 @@ import { Daemon } from './daemon';
 import { launch, ViewerPage } from './viewer_page';
 
 const HOT_C = 150;
+const BODY_C = 37;
 const FRAMES_APART_S = 0.2; // that a busy machine does not tell
 
 describe('plots over the session', () => {
@@ -47,9 +48,10 @@ describe('plots over the session', () => {
 
   it('tell the newest values of each tool', async () => {
     const { seconds, celsius } = await told();
-    const { tick } = await viewer.state();
+    const { tick, tipTemperatureC } = await viewer.state();
     expect(Math.abs(60 * seconds - tick)).toBeLessThan(2);
-    expect(celsius).toBeGreaterThan(HOT_C / 2);
+    expect(Math.abs(celsius - tipTemperatureC!)).toBeLessThanOrEqual(0.5); // it is told in whole degrees
+    expect(celsius).toBeGreaterThan(BODY_C + 5); // it cools until the session pauses
   });
 
   it('share a cursor that tells the values where it points, and holds the timeline there', async () => {
