@@ -36,7 +36,7 @@ static void list_ranges(const struct cau_store_course *course, char *text, size_
 			length = snprintf(one, sizeof one, "%s%lld to %lld", comma, (long long)range.from_tick,
 			                  (long long)range.to_tick);
 		if (used + (size_t)length + sizeof ", ..." > capacity) {
-			strcpy(text + used, ", ...");
+			memcpy(text + used, ", ...", sizeof ", ...");
 			return;
 		}
 		memcpy(text + used, one, (size_t)length + 1);

@@ -282,6 +282,8 @@ cau_dds_hand *cau_dds_take_hand(cau_dds *dds, cau_dds_writer *writer, cau_dds_se
 
 void cau_dds_drop_hands(cau_dds_tool *tool)
 {
-	while (tool->hands)
-		unlink_hand(tool->hands);
+	for (cau_dds_hand *hand = tool->hands, *next; hand; hand = next) {
+		next = hand->next;
+		unlink_hand(hand);
+	}
 }

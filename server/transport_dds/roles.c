@@ -99,6 +99,6 @@ void cau_dds_bind_client_id(char client_id[65], const char *subject)
 		return;
 	int at = snprintf(both, CAU_DDS_SUBJECT_BYTES, "%s", subject) + 1;
 	int bytes = snprintf(both + at, 65, "%.64s", client_id);
-	if (!cau_sha256(both, (size_t)(at + bytes), client_id))
+	if (!cau_sha256(both, (size_t)at + (size_t)bytes, client_id))
 		*client_id = 0; // memory ran out: no answer of anybody's is found
 }
