@@ -14,8 +14,8 @@
 //   - The two tools differ by name and by who is cut first. A state stands for the one with the
 //     tools in each other's place too, and events are tried on both: so all that is reachable in
 //     either order is found.
-//   - The queue holds one order or two beside the one that is served, and two tools are not searched
-//     with two orders: these are bounds, no symmetries. The generated sequences have queues of six.
+//   - The queue holds one order or two beside the one that is served, and two tools are not
+//     searched with two orders: bounds, no symmetries. The generated sequences have queues of six.
 // Left to the generated sequences (logic_test.c): tools that come and go, motion, and what only
 // passes through the queue (tissue, snapshots, questions, speed).
 //     test_server_session_reach [--long | STATES_MOST]
