@@ -40,11 +40,20 @@ def list_tests(tree, labels, without):
     return json.loads(answer.stdout)["tests"]
 
 
+def is_tree(folder):
+    return os.path.exists(os.path.join(folder, "CMakeCache.txt"))
+
+
 def written_commands(tree):
-    """Each test's command as CMake wrote it: ctest tells that of a program which is built, only."""
+    """Each test's command as CMake wrote it: ctest tells that of a program which is built, only.
+
+    Trees within the tree are not its own: tests that build something leave theirs there, with tests of
+    the same names.
+    """
     commands = {}
     for folder, subfolders, files in os.walk(tree):
-        subfolders[:] = [name for name in subfolders if name not in ("CMakeFiles", "node_modules", "suite")]
+        subfolders[:] = [name for name in subfolders if name not in ("CMakeFiles", "node_modules", "suite")
+                         and not is_tree(os.path.join(folder, name))]
         if "CTestTestfile.cmake" in files:
             with open(os.path.join(folder, "CTestTestfile.cmake"), encoding="utf-8") as file:
                 commands.update(re.findall(r"^add_test\(\[=\[(.*?)\]=\] (.*)\)$", file.read(), re.MULTILINE))

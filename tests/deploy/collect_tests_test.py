@@ -1,0 +1,73 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""What deploy/collect_tests.py makes of a tree: whose commands, under which names, in which order.
+
+Usage: collect_tests_test.py DEPLOY CMAKE
+"""
+
+import json
+import os
+import subprocess
+import sys
+import tempfile
+
+PROJECT = """cmake_minimum_required(VERSION 3.25)
+project(small NONE)
+enable_testing()
+add_test(NAME quick COMMAND {says})
+set_tests_properties(quick PROPERTIES LABELS unit TIMEOUT 7)
+add_test(NAME timed COMMAND {says})
+set_tests_properties(timed PROPERTIES LABELS unit RUN_SERIAL ON)
+add_test(NAME parser COMMAND {says})
+set_tests_properties(parser PROPERTIES LABELS fuzz)
+add_test(NAME hours COMMAND {says})
+set_tests_properties(hours PROPERTIES LABELS "unit;long")
+"""
+
+
+def make_tree(cmake, folder, says):
+    """A configured tree in FOLDER/build whose tests run the program `says`."""
+    os.makedirs(folder)
+    with open(os.path.join(folder, "CMakeLists.txt"), "w", encoding="utf-8") as file:
+        file.write(PROJECT.format(says=says))
+    subprocess.run([cmake, "-S", folder, "-B", os.path.join(folder, "build")], check=True, stdout=subprocess.DEVNULL)
+    return os.path.join(folder, "build")
+
+
+def collect(deploy, suite, *arguments):
+    subprocess.run([sys.executable, "-B", os.path.join(deploy, "collect_tests.py"), suite, *arguments], check=True)
+    said = subprocess.run(["ctest", "--show-only=json-v1"], cwd=suite, check=True, stdout=subprocess.PIPE).stdout
+    return {test["name"]: {"command": test.get("command"), **{entry["name"]: entry["value"]
+                           for entry in test["properties"]}} for test in json.loads(said)["tests"]}
+
+
+def commands_are_the_trees_own(deploy, cmake, folder):
+    """Tests that build leave trees within the tree, whose tests have the same names."""
+    tree = make_tree(cmake, os.path.join(folder, "own"), "true")
+    make_tree(cmake, os.path.join(tree, "tests", "steps", "copy"), "false")
+    tests = collect(deploy, os.path.join(folder, "own-suite"), "release", tree, "", "", "1")
+    for name in ("quick", "timed", "parser", "hours"):
+        assert os.path.basename(tests[f"release.{name}"]["command"][-1]) == "true", tests[f"release.{name}"]
+
+
+def labels_limits_and_slots(deploy, cmake, folder):
+    tree = make_tree(cmake, os.path.join(folder, "slots"), "true")
+    tests = collect(deploy, os.path.join(folder, "slots-suite"), "asan", tree, "unit|fuzz", "long", "4", "true")
+    assert set(tests) == {"asan.build", "asan.quick", "asan.timed", "asan.parser"}, set(tests)
+    assert tests["asan.quick"]["TIMEOUT"] == 28 and "asan" in tests["asan.quick"]["LABELS"], tests["asan.quick"]
+    assert tests["asan.quick"]["FIXTURES_REQUIRED"] == ["asan.tree"], tests["asan.quick"]
+    # ctest does not name what is one
+    slots = [tests[f"asan.{name}"].get("PROCESSORS", 1) for name in ("quick", "timed", "parser", "build")]
+    assert slots == [2, 3, 1, 1], slots
+    assert tests["asan.build"]["COST"] > tests["asan.timed"]["COST"] > tests["asan.quick"]["COST"]
+    assert tests["asan.parser"]["command"][0].endswith("nice"), tests["asan.parser"]
+
+
+def main(deploy, cmake):
+    with tempfile.TemporaryDirectory() as folder:
+        for check in (commands_are_the_trees_own, labels_limits_and_slots):
+            check(deploy, cmake, folder)
+            print("ok", check.__name__)
+
+
+if __name__ == "__main__":
+    main(*sys.argv[1:])
