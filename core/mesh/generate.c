@@ -24,20 +24,37 @@ static cau_status check_turn(const cau_mesh_def *def, cau_error *error)
 }
 
 // Fails also where the product of the cells passes the bound on elements.
-static cau_status check_cells(const cau_mesh_def *def, int axes, int elements_per_cell,
-                              cau_error *error)
+static cau_status check_product(const int32_t cells[3], int axes, int elements_per_cell,
+                                cau_error *error)
 {
 	int64_t elements = elements_per_cell;
 	for (int a = 0; a < axes; a++) {
-		if (def->cells[a] < 1)
+		if (cells[a] < 1)
 			return cau_fail(error, CAU_BAD_VALUE, "cells", "cells[%d] must be at least 1", a);
-		elements *= def->cells[a];
+		elements *= cells[a];
 		if (elements > CAU_MESH_MAX_ELEMENTS)
 			return cau_fail(error, CAU_LIMIT, "cells",
 			                "these cells make more than %d elements, the most of one mesh",
 			                CAU_MESH_MAX_ELEMENTS);
 	}
 	return CAU_OK;
+}
+
+cau_status cau_mesh_check_cells(int source, const int32_t cells[3], cau_error *error)
+{
+	switch (source) {
+	case CAU_MESH_SHEET:
+		return check_product(cells, 2, 2, error);
+	case CAU_MESH_SLAB:
+		return check_product(cells, 3, 6, error);
+	case CAU_MESH_PATTERN:
+		if (cells[0] < 3 || cells[0] > 1000)
+			return cau_fail(error, CAU_BAD_VALUE, "cells",
+			                "cells[0] is the number of triangles of the fan, 3 to 1000");
+		return CAU_OK;
+	default:
+		return CAU_OK;
+	}
 }
 
 // UV of each corner: x and y in metres, turned, so that the map to the surface is an isometry.
@@ -77,7 +94,7 @@ cau_status cau_mesh_make_sheet(const cau_mesh_def *def, cau_mesh *mesh, cau_erro
 	if (!status)
 		status = check_turn(def, error);
 	if (!status)
-		status = check_cells(def, 2, 2, error);
+		status = cau_mesh_check_cells(CAU_MESH_SHEET, def->cells, error);
 	if (status)
 		return status;
 
@@ -122,7 +139,7 @@ cau_status cau_mesh_make_slab(const cau_mesh_def *def, cau_mesh *mesh, cau_error
 	*mesh = (cau_mesh){0};
 	cau_status status = check_sizes(def, 3, error);
 	if (!status)
-		status = check_cells(def, 3, 6, error);
+		status = cau_mesh_check_cells(CAU_MESH_SLAB, def->cells, error);
 	if (status)
 		return status;
 
@@ -152,12 +169,11 @@ cau_status cau_mesh_make_pattern(const cau_mesh_def *def, cau_mesh *mesh, cau_er
 	cau_status status = check_sizes(def, 2, error);
 	if (!status)
 		status = check_turn(def, error);
+	if (!status)
+		status = cau_mesh_check_cells(CAU_MESH_PATTERN, def->cells, error);
 	if (status)
 		return status;
 	int32_t count = def->cells[0];
-	if (count < 3 || count > 1000)
-		return cau_fail(error, CAU_BAD_VALUE, "cells",
-		                "cells[0] is the number of triangles of the fan, 3 to 1000");
 	status = cau_mesh_reserve(mesh, (int64_t)count + 1, count, 0, true, error);
 	if (status)
 		return status;

@@ -45,4 +45,8 @@ cau_status cau_mesh_make_sheet(const cau_mesh_def *def, cau_mesh *mesh, cau_erro
 cau_status cau_mesh_make_slab(const cau_mesh_def *def, cau_mesh *mesh, cau_error *error);
 cau_status cau_mesh_make_pattern(const cau_mesh_def *def, cau_mesh *mesh, cau_error *error);
 
+// Whether a mesh of this source (CAU_MESH_*) may have these cells: no fewer than it needs, and no
+// more elements than one mesh may have. CAU_BAD_VALUE or CAU_LIMIT at "cells".
+cau_status cau_mesh_check_cells(int source, const int32_t cells[3], cau_error *error);
+
 void cau_mesh_finish(cau_mesh *mesh); // frees all arrays; a zeroed mesh is fine

@@ -55,6 +55,15 @@ static cau_status finite_vector(const double *v, int count, double most, const c
 	return CAU_OK;
 }
 
+// Hands on what another room refused of the thing at `path`.
+static cau_status refuse_within(const cau_error *inner, const char *path, cau_error *error)
+{
+	CAU_ASSERT(inner->status != CAU_OK, "\"%s\" was not refused", path);
+	char full[PATH_BYTES];
+	join(full, path, inner->path);
+	return cau_fail(error, inner->status, full, "%s", inner->reason);
+}
+
 #define CHECK_FIELD(field, default_, least, most, unit, meaning)                                   \
 	if (!status)                                                                                   \
 		status = in_range(object->field, least, most, unit, path, #field, error);
@@ -228,13 +237,10 @@ cau_status cau_tool_check(const cau_tool_def *object, const char *path, double s
 	cau_heat_grid grid; // the grid knows its own stability limits
 	cau_error inner = {0};
 	status = cau_heat_grid_create(&grid, object, 37, step_s, &object->pose, &inner);
-	if (!status) {
-		cau_heat_grid_finish(&grid);
-		return CAU_OK;
-	}
-	char full[PATH_BYTES];
-	join(full, path, inner.path);
-	return cau_fail(error, status, full, "%s", inner.reason);
+	if (status)
+		return refuse_within(&inner, path, error);
+	cau_heat_grid_finish(&grid);
+	return CAU_OK;
 }
 
 cau_status cau_selection_check(const cau_selection *selection, const char *path, cau_error *error)
@@ -343,6 +349,9 @@ static cau_status check_mesh(const cau_scene_def *scene, int32_t index, cau_erro
 		status = finite_vector(mesh->translate_m, 3, 1000, path, "translate_m", error);
 	if (!status)
 		status = in_range(mesh->unit_m, 1e-9, 1e6, "m", path, "unit_m", error);
+	cau_error inner = {0};
+	if (!status && cau_mesh_check_cells(mesh->source, mesh->cells, &inner))
+		status = refuse_within(&inner, path, error);
 	return status;
 }
 

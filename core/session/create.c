@@ -60,7 +60,8 @@ enum { BYTES_OF_VERTEX = 1000, BYTES_OF_ELEMENT = 400 };
 // take about as much again.
 enum { BYTES_OF_FACTOR_ENTRY = 24 };
 
-// What generated meshes come to; those of files are not counted before they are read.
+// What generated meshes come to; those of files are not counted before they are read. The scene is
+// checked, so that no product of cells is beyond what a mesh may have.
 static cau_build_border foresee(const cau_scene_def *scene)
 {
 	cau_build_border border = {.next = CAU_BUILD_MESH};

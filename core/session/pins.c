@@ -50,8 +50,10 @@ cau_status cau_session_set_pins(cau_session *session, const cau_selection *selec
 	for (size_t v = 0; v < n; ++v)
 		if (session->chosen[v] && session->pinned[v] != pin) {
 			changed = 1;
+			int was_frozen = session->fixed[v] && !session->pinned[v];
 			session->pinned[v] = (uint8_t)pin;
 			session->fixed[v] = (uint8_t)(pin || !session->dissection.live_elements[v]);
+			session->frozen_count += (session->fixed[v] && !pin) - was_frozen;
 			memset(session->velocity + 3 * v, 0, 3 * sizeof(double));
 		}
 	if (!changed)

@@ -69,7 +69,7 @@ static int32_t collect(const cau_session *session, int32_t index, cau_contact_ro
 				continue;
 			double gap = cau_tool_distance_at(def, &tool->state.pose, tool->state.jaw, part,
 			                                  cau_vec3_of(session->position + 3 * (size_t)v), NULL);
-			if (gap > margin)
+			if (!(gap <= margin)) // nor is a vertex near that is nowhere
 				continue;
 			rows[count] = contact_row(session, tool, index, v);
 			rows[count++].gap = gap;

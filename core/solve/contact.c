@@ -182,9 +182,10 @@ static void measure_gap(const cau_contact_set *set, const cau_step_solver *solve
 	cau_vec3_to(normal, row->normal);
 }
 
+// A bound that is not a number leaves `a` as it is: the step ends as a fault.
 static cau_vec3 clamp_length(cau_vec3 a, double most, int *clamped)
 {
-	CAU_ASSERT(most >= 0, "at most %g N", most);
+	CAU_ASSERT(!(most < 0), "at most %g N", most);
 	double length = cau_length(a);
 	*clamped = length > most;
 	return *clamped ? cau_scale(most / length, a) : a;
@@ -296,8 +297,7 @@ void cau_contact_load(cau_contact_set *set, cau_step_solver *solver)
 
 void cau_contact_correct(cau_contact_set *set, cau_step_solver *solver)
 {
-	CAU_ASSERT(set->epoch == solver->factor_epoch, "columns of factor %llu for factor %llu",
-	           (unsigned long long)set->epoch, (unsigned long long)solver->factor_epoch);
+	CAU_ASSERT_INDEX(set->row_count, CAU_MAX_CONTACTS + 1);
 	for (int32_t i = 0; i < set->row_count; ++i) {
 		cau_contact_row *row = &set->row[i];
 		measure_gap(set, solver, row);

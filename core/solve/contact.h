@@ -70,7 +70,9 @@ cau_status cau_contact_create(cau_contact_set *set, const cau_tissue *tissue, in
 // Adds a row; returns 0 when the set is full (the caller offers the deepest first).
 int cau_contact_add(cau_contact_set *set, const cau_contact_row *row);
 
-// Finds or makes the rows' columns. Called once a step, after the rows are chosen.
+// Finds or makes the rows' columns. Called once a step, after the rows are chosen. The step may
+// make a new factor afterwards: the columns then lag behind it for the rest of the step, as they do
+// after a downdate, and the next step makes them anew.
 void cau_contact_prepare(cau_contact_set *set, cau_step_solver *solver);
 
 // Takes the present reactions off solver->gradient, so that the next global step feels them.

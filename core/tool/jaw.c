@@ -13,8 +13,6 @@ cau_jaw cau_jaw_of(double side, double hinge, double angle_rad)
 cau_plate cau_plate_of(double x_least, double x_most, double half_width, double z_least,
                        double z_most, double rounding)
 {
-	CAU_ASSERT(x_least <= x_most && z_least <= z_most, "a plate from %g, %g to %g, %g", x_least,
-	           z_least, x_most, z_most);
 	CAU_ASSERT(rounding >= 0 && half_width >= 0, "a plate %g wide, rounded by %g", half_width,
 	           rounding);
 	cau_plate plate = {

@@ -106,11 +106,27 @@ static void absurd_generated_meshes(void **state)
 		def.scene = scene;
 		cau_session *session = NULL;
 		error = (cau_error){0};
+		cau_error checked = {0}; // what is made of the cells is foreseen before they are meshed
+		assert_int_not_equal(cau_scene_check(scene, &checked), CAU_OK);
+		assert_string_equal(checked.path, "meshes[1].cells");
 		assert_int_not_equal(cau_session_create(&def, &session, &error), CAU_OK);
 		if (!strstr(error.path, "meshes[1]") || !error.reason[0])
 			fail_msg("%d cells: path \"%s\", reason \"%s\"", cells[k], error.path, error.reason);
 		free(scene);
 	}
+}
+
+// Each count of cells alone is one that a mesh can have; what they come to is beyond 64 bits.
+static void more_cells_than_can_be_counted(void **state)
+{
+	(void)state;
+	cau_scene_def *scene = stage_layered();
+	for (int c = 0; c < 3; ++c)
+		scene->meshes[1].cells[c] = INT32_MAX;
+	cau_error error;
+	stage_refuse(scene, CAU_LIMIT, &error);
+	assert_string_equal(error.path, "meshes[1].cells");
+	free(scene);
 }
 
 static void time_steps_of_zero_and_of_a_year(void **state)
@@ -327,6 +343,7 @@ int main(void)
 	const struct CMUnitTest tests[] = {
 		cmocka_unit_test(absurd_numbers_in_scenes),
 		cmocka_unit_test(absurd_generated_meshes),
+		cmocka_unit_test(more_cells_than_can_be_counted),
 		cmocka_unit_test(time_steps_of_zero_and_of_a_year),
 		cmocka_unit_test(materials_outside_their_theory),
 		cmocka_unit_test(names_and_references),

@@ -246,6 +246,53 @@ static void what_falls_for_ever_is_stopped(void **state)
 	free(scene);
 }
 
+static int32_t frozen(const cau_session *session)
+{
+	return stage_frame(session).statistics.frozen_vertices;
+}
+
+static int32_t recount_frozen(const cau_session *session)
+{
+	int32_t count = 0;
+	for (int32_t v = 0; v < session->tissue.vertex_count; ++v)
+		count += session->fixed[v] && !session->pinned[v];
+	return count;
+}
+
+// Pins are no frozen vertices, whatever they were before; let go, one without an element is frozen
+// again, and one that had only gone too far is free.
+static void pins_take_frozen_vertices_over(void **state)
+{
+	(void)state;
+	cau_scene_def *scene = stage_layered();
+	cau_session *session = stage_open(scene, 1);
+	stage_step(session, 1);
+	int32_t alone = 0;
+	while (session->fixed[alone])
+		alone++;
+	int32_t strayed = alone + 1;
+	assert_false(session->fixed[strayed]);
+	session->dissection.live_elements[alone] = 0; // as if its last element had parted
+	session->fixed[alone] = session->fixed[strayed] = 1;
+	session->frozen_count = 2;
+	cau_command command = stage_command(CAU_COMMAND_PIN);
+	command.as.selection = stage_everything();
+	for (int round = 0; round < 3; ++round) { // a count that drifts would fall below zero
+		command.kind = CAU_COMMAND_PIN;
+		stage_submit(session, &command);
+		stage_step(session, 1);
+		assert_int_equal(frozen(session), 0);
+		assert_int_equal(frozen(session), recount_frozen(session));
+		command.kind = CAU_COMMAND_UNPIN;
+		stage_submit(session, &command);
+		stage_step(session, 1);
+		assert_int_equal(frozen(session), 1);
+		assert_int_equal(frozen(session), recount_frozen(session));
+	}
+	cau_session_destroy(session);
+	free(scene);
+}
+
 // A tool that leaps a metre through the body is followed at its speed.
 static void a_tool_that_leaps(void **state)
 {
@@ -417,6 +464,7 @@ int main(void)
 		cmocka_unit_test(many_refusals_in_a_tick),
 		cmocka_unit_test(huge_forces_and_gravity),
 		cmocka_unit_test(what_falls_for_ever_is_stopped),
+		cmocka_unit_test(pins_take_frozen_vertices_over),
 		cmocka_unit_test(a_tool_that_leaps),
 		cmocka_unit_test(a_faulted_session_waits_for_a_snapshot),
 		cmocka_unit_test(only_pinned_vertices_are_driven),

@@ -217,11 +217,57 @@ static void what_no_vertex_does_is_a_fault(void **state)
 	}
 }
 
+static int32_t nearest_vertex(const cau_session *session, double x, double y, double z)
+{
+	int32_t nearest = -1;
+	double least = INFINITY;
+	for (int32_t v = 0; v < session->tissue.vertex_count; ++v) {
+		const double *at = session->tissue.rest + 3 * v;
+		double away = hypot(hypot(at[0] - x, at[1] - y), at[2] - z);
+		if (away < least && !session->fixed[v]) {
+			nearest = v;
+			least = away;
+		}
+	}
+	return nearest;
+}
+
+// A vertex is nowhere while a tool touches or holds others: what the tool feels of it is no number
+// either, and the step is a fault all the same.
+static void nowhere_beside_a_tool_is_a_fault(void **state)
+{
+	(void)state;
+	static const int shapes[] = {CAU_TOOL_SPHERE, CAU_TOOL_GRASPER};
+	for (int k = 0; k < 2; ++k)
+		for (int corner = 0; corner < 2; ++corner) {
+			cau_scene_def *scene = make_scene(CAU_MODEL_NEOHOOKEAN, 0, 0);
+			stage_add_tool(scene, "tool", shapes[k], SIZE_M[0] / 18, 0, k ? -0.001 : 0.009)
+				->hot_radius_m = 0.01;
+			cau_session *session = stage_open(scene, 1);
+			if (k)
+				stage_grasp(session, "tool");
+			stage_step(session, 20);
+			const cau_tool_state *tool = stage_tool(session, "tool");
+			assert_true(k ? tool->grasped_vertices > 0 : tool->contact_vertices > 0);
+			stage_bytes shot = stage_snapshot(session);
+			int32_t at =
+				corner ? nearest_vertex(session, 0.03, 0.02, 0) : nearest_vertex(session, 0, 0, 0);
+			session->velocity[3 * at] = NAN;
+			cau_error error = {0};
+			assert_int_equal(cau_session_step(session, &error), CAU_NUMERICAL);
+			assert_faulted(session, &shot, &error, "nowhere beside a tool");
+			free(shot.bytes);
+			cau_session_destroy(session);
+			free(scene);
+		}
+}
+
 int main(void)
 {
 	const struct CMUnitTest tests[] = {
 		cmocka_unit_test(no_pull_ends_in_a_silent_disaster),
 		cmocka_unit_test(what_no_vertex_does_is_a_fault),
+		cmocka_unit_test(nowhere_beside_a_tool_is_a_fault),
 	};
 	return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -1,0 +1,157 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// A session that is made in stages: what is known at each border, that a refusal at any of them
+// leaves nothing behind, and that whoever takes a session over mid-cut changes none of its bits.
+#include "core/session/busy_scene.h"
+
+#include <pthread.h>
+
+#include "session/session_internal.h"
+
+// What the creation of a session said at its borders, and where it was told to stop.
+typedef struct borders {
+	int stop_at; // CAU_BUILD_*, or -1
+	cau_status refusal;
+	int count;
+	cau_build_border seen[CAU_BUILD_STAGE_COUNT];
+} borders;
+
+static cau_status note_border(void *user, const cau_build_border *border, cau_error *error)
+{
+	borders *noted = user;
+	assert_true(noted->count < CAU_BUILD_STAGE_COUNT);
+	noted->seen[noted->count++] = *border;
+	if ((int)border->next != noted->stop_at)
+		return CAU_OK;
+	return cau_fail(error, noted->refusal, "scene", "no further than stage %d", noted->stop_at);
+}
+
+static cau_status create(const cau_scene_def *scene, int threads, borders *noted,
+                         cau_session **session, cau_error *error)
+{
+	cau_session_def def = cau_default_session_def();
+	def.scene = scene;
+	def.thread_count = threads;
+	def.border = note_border;
+	def.user = noted;
+	return cau_session_create(&def, session, error);
+}
+
+static void borders_come_in_order_and_know_ever_more(void **state)
+{
+	(void)state;
+	cau_scene_def *scene = busy_scene();
+	borders noted = {.stop_at = -1};
+	cau_session *session = NULL;
+	cau_error error = {0};
+	assert_int_equal(create(scene, 1, &noted, &session, &error), CAU_OK);
+	cau_session_info info = stage_info(session);
+	assert_int_equal(noted.count, CAU_BUILD_STAGE_COUNT);
+	for (int k = 0; k < noted.count; ++k) {
+		const cau_build_border *border = &noted.seen[k];
+		assert_int_equal(border->next, k);
+		// its meshes are generated: their vertices are known before there is one
+		assert_int_equal(border->vertex_count, info.vertex_count);
+		assert_true(border->bytes > 0);
+		assert_int_equal(border->factor_entries > 0, k >= CAU_BUILD_FACTOR);
+		if (k >= CAU_BUILD_ORDER)
+			assert_int_equal(border->element_count, info.triangle_count + info.tetrahedron_count +
+			                                            info.link_count + info.hinge_count);
+	}
+	assert_true(noted.seen[CAU_BUILD_MESH].element_count > 0);
+	cau_session_destroy(session);
+	free(scene);
+}
+
+// With helper threads and without; the address sanitizer looks for what is left behind.
+static void a_refusal_at_any_border_leaves_nothing(void **state)
+{
+	(void)state;
+	cau_scene_def *scene = busy_scene();
+	for (int threads = 1; threads <= 2; ++threads)
+		for (int stage = 0; stage < CAU_BUILD_STAGE_COUNT; ++stage) {
+			borders noted = {.stop_at = stage, .refusal = CAU_LIMIT};
+			cau_session *session = NULL;
+			cau_error error = {0};
+			assert_int_equal(create(scene, threads, &noted, &session, &error), CAU_LIMIT);
+			assert_null(session);
+			assert_int_equal(noted.count, stage + 1); // and no border after it
+			assert_int_equal(error.status, CAU_LIMIT);
+			assert_string_equal(error.path, "scene");
+		}
+	free(scene);
+}
+
+// ---- taken over
+enum { TICKS = 60 };
+
+static void hash_run(cau_session *session, int from, int to, uint64_t *hash)
+{
+	for (int tick = from; tick < to; ++tick) {
+		busy_run(session, 1);
+		hash[tick] = cau_session_hash(session);
+	}
+}
+
+typedef struct takeover {
+	cau_session *session;
+	int from, to;
+	uint64_t *hash;
+	bool in_the_making; // a factor was being made when it was taken over
+} takeover;
+
+// The thread that takes the session over makes its helpers and steps it from then on.
+static void *take_over(void *context)
+{
+	takeover *work = context;
+	cau_error error = {0};
+	work->in_the_making = work->session->update.making;
+	assert_int_equal(cau_session_adopt(work->session, &error), CAU_OK);
+	hash_run(work->session, work->from, work->to, work->hash);
+	return NULL;
+}
+
+static void hand_over(takeover *work)
+{
+	pthread_t thread;
+	assert_int_equal(pthread_create(&thread, NULL, take_over, work), 0);
+	assert_int_equal(pthread_join(thread, NULL), 0);
+}
+
+// At every tenth tick another thread takes the session over, and at every tick where a factor is
+// being made in the background.
+static void a_session_taken_over_mid_cut_keeps_its_bits(void **state)
+{
+	(void)state;
+	cau_scene_def *scene = busy_scene();
+	uint64_t alone[TICKS], handed[TICKS];
+	cau_session *session = stage_open(scene, 1);
+	hash_run(session, 0, TICKS, alone);
+	assert_true(stage_frame(session).statistics.elements_removed > 100);
+	cau_session_destroy(session);
+	for (int threads = 1; threads <= 2; ++threads) {
+		session = stage_open(scene, threads);
+		int while_making = 0;
+		for (int tick = 0; tick < TICKS; ++tick) {
+			takeover work = {session, tick, tick + 1, handed, false};
+			if (tick % 10 == 5 || session->update.making)
+				hand_over(&work);
+			else
+				hash_run(session, tick, tick + 1, handed);
+			while_making += work.in_the_making;
+		}
+		assert_true(while_making > 0);
+		assert_memory_equal(handed, alone, sizeof alone);
+		cau_session_destroy(session);
+	}
+	free(scene);
+}
+
+int main(void)
+{
+	const struct CMUnitTest tests[] = {
+		cmocka_unit_test(borders_come_in_order_and_know_ever_more),
+		cmocka_unit_test(a_refusal_at_any_border_leaves_nothing),
+		cmocka_unit_test(a_session_taken_over_mid_cut_keeps_its_bits),
+	};
+	return cmocka_run_group_tests(tests, NULL, NULL);
+}
