@@ -83,7 +83,6 @@ int32_t cau_pair_elements(const cau_tissue *tissue, int kind, int32_t layer, int
 			partner[other] = e;
 		pairs++;
 	}
-	CAU_ASSERT(pairs <= count, "%d pairs of %d elements", pairs, count);
 	return pairs;
 }
 

@@ -95,8 +95,6 @@ cau_status cau_near_create(cau_near *near, const cau_tissue *tissue, cau_arena *
 	near->vertex_count = tissue->vertex_count;
 	near->block_count = (tissue->vertex_count + CAU_NEAR_BLOCK - 1) / CAU_NEAR_BLOCK;
 	size_t blocks = (size_t)near->block_count;
-	CAU_ASSERT((int64_t)near->block_count * CAU_NEAR_BLOCK >= near->vertex_count,
-	           "%d blocks for %d vertices", near->block_count, near->vertex_count);
 	cau_arena scratch = {0};
 	keyed *order = cau_arena_array(&scratch, n, sizeof *order);
 	int32_t *block_of = cau_arena_array(&scratch, n, sizeof *block_of);

@@ -13,7 +13,6 @@ static int32_t most_active(const cau_tissue *tissue)
 {
 	int32_t all = tissue->triangle_count + tissue->tetrahedron_count;
 	int32_t share = all / CAU_SHRINKING_SHARE;
-	CAU_ASSERT(all >= 0, "%d elements may shrink", all);
 	if (share < CAU_SHRINKING_LEAST)
 		return all < CAU_SHRINKING_LEAST ? all : CAU_SHRINKING_LEAST;
 	return share;
@@ -212,9 +211,6 @@ static void start_shrinking(const expose *work, int kind, int32_t element, cau_v
 	if (!shrinks)
 		return;
 	work->shrink->shrunk[kind][element] = 1;
-	CAU_ASSERT(work->shrink->active_count <= work->shrink->active_capacity,
-	           "%d elements shrink in room for %d", work->shrink->active_count,
-	           work->shrink->active_capacity);
 	if (work->shrink->active_count < work->shrink->active_capacity)
 		work->shrink->active[work->shrink->active_count++] = shrinking;
 	else

@@ -65,8 +65,6 @@ static void update_mask(cau_frame_state *frame, const cau_dissection *dissection
 				change_face(frame, tissue, 32 * w + bit, !(dissection->face_mask[w] >> bit & 1));
 		frame->mask_before[w] = dissection->face_mask[w];
 		frame->mask_changed[frame->mask_changed_count++] = w;
-		CAU_ASSERT(frame->mask_changed_count <= word_count(tissue), "%d words changed of %d",
-		           frame->mask_changed_count, word_count(tissue));
 	}
 }
 
@@ -104,8 +102,6 @@ void cau_frame_update(cau_frame_state *frame, const cau_dissection *dissection, 
 		if (from[3 * v] != to[3 * v] || from[3 * v + 1] != to[3 * v + 1] ||
 		    from[3 * v + 2] != to[3 * v + 2])
 			frame->moved[frame->moved_count++] = v;
-	CAU_ASSERT(frame->moved_count <= dissection->tissue->vertex_count, "%d vertices moved of %d",
-	           frame->moved_count, dissection->tissue->vertex_count);
 	for (int32_t k = 0; k < dissection->touched_count; ++k) { // others do not part in this tick
 		expose_edge(frame, dissection, dissection->touched[k]);
 		char_edge(frame, dissection, dissection->touched[k]);
@@ -127,7 +123,6 @@ void cau_frame_rebuild(cau_frame_state *frame, const cau_dissection *dissection)
 			for (int i = 0; i < 3; ++i)
 				frame->vertex_faces[tissue->faces.vertex[3 * (size_t)f + (size_t)i]]++;
 	frame->moved_count = tissue->vertex_count;
-	CAU_ASSERT(frame->moved_count > 0, "a frame of %d vertices", frame->moved_count);
 	for (int32_t v = 0; v < tissue->vertex_count; ++v) {
 		frame->moved[v] = v;
 		frame->vertex_visible[v] = frame->vertex_faces[v] > 0;

@@ -309,10 +309,6 @@ double cau_heat_grid_at(const cau_heat_grid *grid, cau_vec3 point)
 		s[axis] = nodes - (double)cell[axis];
 	}
 	const float *corner = grid->temperature + (cell[2] * n + cell[1]) * n + cell[0];
-	CAU_ASSERT(cell[0] >= 0 && cell[1] >= 0 && cell[2] >= 0 && cell[0] < n - 1 && cell[1] < n - 1 &&
-	               cell[2] < n - 1,
-	           "cell %lld, %lld, %lld of %lld", (long long)cell[0], (long long)cell[1],
-	           (long long)cell[2], (long long)n - 1);
 	double sum = 0;
 	for (int i = 0; i < 8; ++i) {
 		int64_t x = i & 1, y = i >> 1 & 1, z = i >> 2;

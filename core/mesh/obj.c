@@ -63,7 +63,6 @@ static cau_word cut_part(cau_word *word)
 	const char *slash = word->length ? memchr(word->text, '/', word->length) : NULL;
 	cau_word part = {word->text, slash ? (size_t)(slash - word->text) : word->length};
 	size_t used = part.length + (slash ? 1 : 0);
-	CAU_ASSERT(used <= word->length, "%zu letters cut off %zu", used, word->length);
 	*word = (cau_word){word->text + used, word->length - used};
 	return part;
 }
@@ -117,7 +116,6 @@ static void read_face(obj *o)
 		if (++corner_count < 3)
 			continue;
 		add_triangle(o, fan);
-		CAU_ASSERT(corner_count == 3 || corner_count == 4, "a fan of %d corners", corner_count);
 		fan[1] = fan[2];
 		corner_count = 3;
 	}
@@ -146,7 +144,6 @@ static void read_region(obj *o)
 	}
 	o->region_name[o->region_count++] = name;
 	o->region = o->region_count;
-	CAU_ASSERT(o->region_count <= MAX_REGIONS, "%d regions", o->region_count);
 }
 
 static void read_line(obj *o)

@@ -10,7 +10,6 @@
 static cau_status check_values(const cau_session *session, const cau_command *command,
                                cau_error *error)
 {
-	CAU_ASSERT_INDEX(command->kind, CAU_COMMAND_COUNT);
 	switch (command->kind) {
 	case CAU_COMMAND_TOOL_ADD:
 		return cau_tool_check(&command->as.definition, "definition", session->solver.step_s, error);
@@ -62,7 +61,6 @@ cau_status cau_session_submit(cau_session *session, const cau_command *command, 
 	if (session->command_count == session->command_capacity)
 		return cau_fail(error, CAU_LIMIT, NULL, "%d commands are waiting already",
 		                session->command_count);
-	CAU_ASSERT_INDEX(session->command_count, session->command_capacity);
 	session->command[session->command_count++] = *command;
 	return CAU_OK;
 }
@@ -225,6 +223,5 @@ cau_status cau_session_apply_commands(cau_session *session, cau_error *error)
 		}
 	}
 	session->command_count = kept;
-	CAU_ASSERT(session->refusal_count <= CAU_MAX_REFUSALS, "%d refusals", session->refusal_count);
 	return status;
 }

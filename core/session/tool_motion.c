@@ -24,8 +24,6 @@ cau_status cau_session_add_tool(cau_session *session, const cau_tool_def *def, c
 		return cau_fail(error, CAU_ALREADY_EXISTS, "tool.name", "there is a tool \"%s\"",
 		                def->name);
 	cau_tool *tool = &session->tool[session->tool_count];
-	CAU_ASSERT(session->tool_count >= 0 && session->tool_count < CAU_MAX_TOOLS, "%d tools",
-	           session->tool_count);
 	memset(tool, 0, sizeof *tool);
 	cau_status status = cau_heat_grid_create(&tool->grid, def, session->scene->ambient_c,
 	                                         session->solver.step_s, &def->pose, error);

@@ -75,7 +75,6 @@ static int32_t collect(const cau_session *session, int32_t index, cau_contact_ro
 			rows[count++].gap = gap;
 		}
 	}
-	CAU_ASSERT(count <= CANDIDATES, "%d candidates", count);
 	qsort(rows, (size_t)count, sizeof *rows, compare_rows);
 	return count;
 }
@@ -120,7 +119,6 @@ static void add_drag(cau_session *session, int32_t index)
 			                 .coefficient = fmin(def->drag_ns_m / solver->step_s, most)};
 			cau_vec3 local = cau_pose_to_local(&tool->pose_before, x);
 			cau_vec3_to(cau_pose_to_world(&tool->state.pose, local), drag.target);
-			CAU_ASSERT_INDEX(solver->drag_count, session->tissue.vertex_count);
 			solver->drag[solver->drag_count++] = drag;
 		}
 	}
@@ -178,7 +176,6 @@ static void slip(cau_tool *tool, const cau_contact_row *row, const double *posit
 		                                 1 / def->grasp_stiffness_n_m, cau_vec3_of(row->reaction));
 		cau_vec3 local = cau_pose_to_local(&tool->state.pose, anchor);
 		cau_vec3_to(local, grasp->local);
-		CAU_ASSERT_INDEX(k, tool->grasp_count);
 		if (cau_length(cau_sub(local, cau_vec3_of(grasp->start))) > def->tip_length_m)
 			*grasp = tool->grasp[--tool->grasp_count];
 		return;
@@ -250,7 +247,6 @@ cau_status cau_session_grasp(cau_session *session, cau_tool *tool, cau_error *er
 		cau_grasp grasp = {.vertex = v};
 		cau_vec3_to(local, grasp.local);
 		cau_vec3_to(local, grasp.start);
-		CAU_ASSERT_INDEX(tool->grasp_count, CAU_MAX_GRASPED);
 		tool->grasp[tool->grasp_count++] = grasp;
 	}
 	tool->jaw_target = 0;
@@ -272,6 +268,5 @@ void cau_session_drop_frozen_grasps(cau_session *session)
 			if (session->fixed[tool->grasp[k].vertex])
 				tool->grasp[k] = tool->grasp[--tool->grasp_count];
 		tool->state.grasped_vertices = tool->grasp_count;
-		CAU_ASSERT(tool->grasp_count >= 0, "%d vertices grasped", tool->grasp_count);
 	}
 }

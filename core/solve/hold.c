@@ -42,8 +42,6 @@ void cau_hold_prepare(cau_contact_set *set)
 	for (int32_t i = 0; i < set->row_count; ++i)
 		if (set->row[i].attached)
 			set->hold_row[set->hold_count++] = i;
-	CAU_ASSERT(set->hold_count <= set->row_count, "%d of %d rows are held", set->hold_count,
-	           set->row_count);
 	if (!factor(set))
 		set->hold_count = 0; // columns that lag behind cuts: row by row will do
 }

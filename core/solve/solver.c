@@ -57,8 +57,6 @@ static cau_status allocate_vectors(cau_step_solver *solver, cau_arena *arena, ca
 	}
 	history->step = solver->trial_increment;
 	solver->chunk_count = (solver->tissue->vertex_count + CAU_VERTEX_CHUNK - 1) / CAU_VERTEX_CHUNK;
-	CAU_ASSERT((int64_t)solver->chunk_count * CAU_VERTEX_CHUNK >= solver->tissue->vertex_count,
-	           "%d chunks for %d vertices", solver->chunk_count, solver->tissue->vertex_count);
 	solver->chunk_energy = cau_arena_array(arena, (size_t)solver->chunk_count, sizeof(double));
 	solver->chunk_dot = cau_arena_array(
 		arena, (size_t)solver->chunk_count * 2 * CAU_ANDERSON_WINDOW, sizeof(double));

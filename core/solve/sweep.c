@@ -156,7 +156,6 @@ static void choose_tasks(cau_sweep *sweep, const int64_t *subtree_work,
 			if (sweep->supernode[s].parent == node)
 				candidates[used++] = s;
 	}
-	CAU_ASSERT(used <= CAU_SWEEP_TASKS, "%d tasks", used);
 	sort_rows(candidates, used);
 	sweep->task_count = used;
 	for (int32_t i = 0; i < used; ++i) {

@@ -116,7 +116,6 @@ static cau_status link_layers(cau_tissue *tissue, int32_t index, uint8_t *mark, 
 		                        (int32_t)material->per_vertex, found);
 		for (int32_t i = 0; i < count && tissue->link_count < capacity; ++i) {
 			int32_t k = tissue->link_count++;
-			CAU_ASSERT_INDEX(k, capacity);
 			tissue->link[2 * k] = v;
 			tissue->link[2 * k + 1] = found[i];
 			tissue->link_layer[k] = index;

@@ -9,7 +9,6 @@ static void shaft_core(const cau_tool_def *tool, double start, cau_vec3 *low, ca
 	double radius = tool->shaft_radius_m;
 	*low = (cau_vec3){0, 0, start + radius};
 	*high = (cau_vec3){0, 0, start + fmax(tool->shaft_length_m - radius, radius)};
-	CAU_ASSERT(high->z >= low->z, "a shaft from %g to %g", low->z, high->z);
 }
 
 double cau_shaft_distance(const cau_tool_def *tool, double start, cau_vec3 point,

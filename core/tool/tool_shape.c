@@ -14,10 +14,6 @@ static const cau_tool_family *family_of(const cau_tool_def *tool)
 	static const cau_tool_family *const families[] = {CAU_TOOL_SHAPE_TABLE(X)};
 #undef X
 	CAU_ASSERT_INDEX(tool->shape, CAU_TOOL_SHAPE_COUNT);
-	const cau_tool_family *family = families[tool->shape];
-	CAU_ASSERT(family->cold && family->cold_bound, "shape %d has nothing that pushes", tool->shape);
-	CAU_ASSERT(!family->hot == !family->hot_bound && !family->hot == !family->thinnest_hot,
-	           "shape %d: what heats has a bound and a radius", tool->shape);
 	return families[tool->shape];
 }
 
@@ -74,7 +70,6 @@ void cau_tool_bound(const cau_tool_def *tool, cau_tool_part part, cau_vec3 *cent
 	cau_ball ball = part_bound(tool, part);
 	*center = ball.center;
 	*radius_m = ball.radius_m;
-	CAU_ASSERT(*radius_m >= 0, "shape %d: a bound of %g m", tool->shape, *radius_m);
 }
 
 double cau_tool_thinnest_hot_m(const cau_tool_def *tool)
@@ -106,7 +101,6 @@ int cau_tool_meets_segment(const cau_tool_def *tool, double jaw, cau_tool_part p
 		return 0;
 	cau_vec3 along = cau_sub(b, a);
 	double length = cau_length(along);
-	CAU_ASSERT(length >= 0, "a segment of %g m", length);
 	along = cau_unit_or(along, (cau_vec3){0, 0, 0});
 	double from = 0, to = length;
 	for (int i = 0; i < TRACE_STEPS; ++i) {

@@ -40,6 +40,5 @@ def violations(objects, on):
 
 
 if __name__ == "__main__":
-    with open(sys.argv[1], encoding="utf-8") as listing:
-        pairs = [tuple(line.strip().split("|", 1)) for line in listing if "|" in line]
-    project.finish(violations(pairs, sys.argv[2] == "ON"), len(pairs))
+    pairs, missing = symbols.read_list(sys.argv[1])
+    project.finish(missing or violations(pairs, sys.argv[2] == "ON"), len(pairs))

@@ -5,12 +5,14 @@
 
 #include <setjmp.h>
 #include <stdarg.h>
+#include <stdbool.h>
 #include <stddef.h>
 #include <stdint.h>
 
 #include <cmocka.h>
 
 #include "core/tool/tools.h"
+#include "tool/family.h"
 
 enum { POINTS = 2000 };
 
@@ -42,9 +44,37 @@ static void for_every_part(check check_part)
 				}
 }
 
+// What a scene's table says of each shape.
+typedef struct table_row {
+	bool hot, jaws;
+	const cau_tool_family *family;
+} table_row;
+
+static const table_row rows[] = {
+#define X(code, word, hot, jaws, meaning) {hot, jaws, &cau_shape_##word},
+	CAU_TOOL_SHAPE_TABLE(X)
+#undef X
+};
+
 static int lacks(const cau_tool_def *tool, cau_tool_part part)
 {
-	return tool->shape == CAU_TOOL_GRASPER && part == CAU_PART_HOT;
+	return !rows[tool->shape].hot && part == CAU_PART_HOT;
+}
+
+// The columns of the table say what the shape's functions have.
+static void test_rows_say_what_shapes_have(void **state)
+{
+	(void)state;
+	for (int shape = 0; shape < CAU_TOOL_SHAPE_COUNT; ++shape) {
+		cau_tool_def tool = tool_with_defaults(shape);
+		const cau_tool_family *family = rows[shape].family;
+		assert_true(family->cold && family->cold_bound); // whatever the shape, it pushes
+		assert_int_equal(family->hot != NULL, rows[shape].hot);
+		assert_int_equal(family->hot_bound != NULL, rows[shape].hot);
+		assert_int_equal(family->thinnest_hot != NULL, rows[shape].hot);
+		assert_int_equal(isfinite(cau_tool_thinnest_hot_m(&tool)) != 0, rows[shape].hot);
+		assert_int_equal(cau_tool_has_jaws(&tool), rows[shape].jaws);
+	}
 }
 
 // Half the box of random points about a tool: holds its hot part.
@@ -175,8 +205,10 @@ static void test_hot_is_not_covered(void **state)
 static void test_tip_is_hot(void **state)
 {
 	(void)state;
-	for (int shape = 0; shape < CAU_TOOL_GRASPER; ++shape) {
+	for (int shape = 0; shape < CAU_TOOL_SHAPE_COUNT; ++shape) {
 		cau_tool_def tool = tool_with_defaults(shape);
+		if (lacks(&tool, CAU_PART_HOT))
+			continue;
 		double d = cau_tool_distance(&tool, 0, CAU_PART_HOT, (cau_vec3){0, 0, 0}, NULL);
 		if (shape == CAU_TOOL_BIPOLAR) // between the closed plates
 			assert_near(d, 0, ROUNDING_M);
@@ -387,13 +419,17 @@ static void test_between_jaws(void **state)
 		assert_true(cau_tool_between_jaws(&tool, 0, pressed, NULL)); // closed on it
 		assert_false(cau_tool_between_jaws(&tool, 0, beside, NULL));
 	}
-	cau_tool_def hook = tool_with_defaults(CAU_TOOL_HOOK);
-	assert_false(cau_tool_between_jaws(&hook, 1, (cau_vec3){0, 0, 0}, NULL));
+	for (int shape = 0; shape < CAU_TOOL_SHAPE_COUNT; ++shape) {
+		cau_tool_def tool = tool_with_defaults(shape);
+		if (!rows[shape].jaws)
+			assert_false(cau_tool_between_jaws(&tool, 1, (cau_vec3){0, 0, 0}, NULL));
+	}
 }
 
 int main(void)
 {
 	const struct CMUnitTest tests[] = {
+		cmocka_unit_test(test_rows_say_what_shapes_have),
 		cmocka_unit_test(test_lipschitz),
 		cmocka_unit_test(test_gradient),
 		cmocka_unit_test(test_surface_and_bound),
