@@ -55,6 +55,7 @@ cau_status cau_hosted_create(cau_hosted **made, const cau_surroundings *around,
 	cau_streams_init(&h->streams);
 	cau_logic_init(h->logic, orders);
 	h->logic->step_s = h->scene->step_s;
+	cau_decide_trace(h);
 	cau_hosted_publish_summary(h);
 	if (!cau_worker_pool_add(around->pool, &h->task)) {
 		h->scene = NULL; // stays the caller's

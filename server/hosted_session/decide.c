@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // The door between the session's decisions (server/session) and the threads around them: events go
 // in under one short lock, and what they lead to is done here, but for what is the worker's.
+#include <errno.h>
 #include <stdlib.h>
 #include <string.h>
 
@@ -80,11 +81,15 @@ static void perform(cau_hosted *h, const cau_effects *effects, const cau_order *
 	}
 }
 
+// Into the trace, if there is one, goes each call before it is made and what came of it, under the
+// lock: it is the order of both that counts.
 static void take(cau_hosted *h, const cau_logic_event *event, const cau_order *submitted,
                  cau_effects *effects, const cau_effect **own)
 {
 	pthread_mutex_lock(&h->deciding);
+	cau_trace_take(h->trace, event);
 	cau_logic_take(h->logic, event, effects);
+	cau_trace_effects(h->trace, effects);
 	tell(h, effects);
 	pthread_mutex_unlock(&h->deciding);
 	perform(h, effects, submitted, own);
@@ -116,7 +121,11 @@ void cau_decide_next(cau_hosted *h, cau_action *action)
 {
 	cau_effects effects;
 	pthread_mutex_lock(&h->deciding);
-	cau_logic_next(h->logic, cau_monotonic_s(), action, &effects);
+	double now_s = cau_monotonic_s();
+	cau_trace_next(h->trace, now_s);
+	cau_logic_next(h->logic, now_s, action, &effects);
+	cau_trace_action(h->trace, action);
+	cau_trace_effects(h->trace, &effects);
 	tell(h, &effects);
 	pthread_mutex_unlock(&h->deciding);
 	perform(h, &effects, NULL, NULL);
@@ -126,7 +135,10 @@ void cau_decide_done(cau_hosted *h, cau_outcome_kind outcome)
 {
 	cau_effects effects;
 	pthread_mutex_lock(&h->deciding);
-	cau_logic_done(h->logic, cau_monotonic_s(), outcome, &effects);
+	double now_s = cau_monotonic_s();
+	cau_trace_done(h->trace, now_s, outcome);
+	cau_logic_done(h->logic, now_s, outcome, &effects);
+	cau_trace_effects(h->trace, &effects);
 	tell(h, &effects);
 	pthread_mutex_unlock(&h->deciding);
 	perform(h, &effects, NULL, NULL);
@@ -136,7 +148,10 @@ void cau_decide_stepped(cau_hosted *h, const char *fault)
 {
 	cau_effects effects;
 	pthread_mutex_lock(&h->deciding);
-	cau_logic_stepped(h->logic, cau_monotonic_s(), fault, &effects);
+	double now_s = cau_monotonic_s();
+	cau_trace_stepped(h->trace, now_s, fault);
+	cau_logic_stepped(h->logic, now_s, fault, &effects);
+	cau_trace_effects(h->trace, &effects);
 	tell(h, &effects);
 	pthread_mutex_unlock(&h->deciding);
 	perform(h, &effects, NULL, NULL);
@@ -159,6 +174,50 @@ void cau_decide_arrived(cau_hosted *h, int state, const char *cause)
 	                                 .step_s = h->info.step_s,
 	                                 .tools = tools,
 	                                 .tool_count = frame.tool_count});
+}
+
+// ---- the trace ----------------------------------------------------------------------------------
+
+enum { TRACES_MOST = 1000 }; // of one session in one folder
+
+void cau_decide_trace(cau_hosted *h)
+{
+	const char *folder = h->around->config->trace_session;
+	char path[CAU_CONFIG_TEXT_BYTES + 100];
+	if (!*folder)
+		return;
+	for (int i = 1; i <= TRACES_MOST && !h->trace; i++) {
+		snprintf(path, sizeof path, "%s/%s.%d.trace", folder, h->id, i);
+		h->trace = fopen(path, "wxe");
+		if (!h->trace && errno != EEXIST)
+			break;
+	}
+	if (!h->trace) {
+		cau_log(CAU_LOG_WARNING, h->id, "not_traced", "file=\"%s\" reason=\"%s\"", path,
+		        strerror(errno));
+		return;
+	}
+	cau_trace_init(h->trace, h->logic->capacity, h->logic->step_s);
+	cau_log(CAU_LOG_INFO, h->id, "traced", "file=\"%s\"", path);
+}
+
+// After a slice, so that little is lost with a daemon that is killed. What could not be written
+// ends the trace: one with a gap could not be played again.
+void cau_decide_flush_trace(cau_hosted *h)
+{
+	if (!h->trace)
+		return;
+	pthread_mutex_lock(&h->deciding);
+	bool failed = fflush(h->trace) || ferror(h->trace);
+	int reason = errno;
+	FILE *ended = failed ? h->trace : NULL;
+	if (failed)
+		h->trace = NULL;
+	pthread_mutex_unlock(&h->deciding);
+	if (!failed)
+		return;
+	fclose(ended);
+	cau_log(CAU_LOG_WARNING, h->id, "trace_ended", "reason=\"%s\"", strerror(reason));
 }
 
 // ---- from any thread ----------------------------------------------------------------------------

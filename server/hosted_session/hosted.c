@@ -46,6 +46,8 @@ void cau_hosted_release(cau_hosted *h)
 		atomic_fetch_sub(h->around->memory_held, h->memory_held);
 	pthread_mutex_destroy(&h->mutex);
 	pthread_mutex_destroy(&h->deciding);
+	if (h->trace)
+		fclose(h->trace);
 	free(h->logic);
 	free(h->scene);
 	free(h->present);

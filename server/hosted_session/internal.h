@@ -11,6 +11,7 @@
 #include "hosted_session/hosted.h"
 #include "log/log.h"
 #include "session/logic.h"
+#include "trace/trace.h"
 
 enum {
 	EVENT_COUNT = 512, // of the timeline kept in memory
@@ -113,6 +114,7 @@ struct cau_hosted {
 	// lock of the session; what clients are told of a decision is told under it, in its order.
 	pthread_mutex_t deciding;
 	cau_logic *logic; // orders are its tickets
+	FILE *trace;      // of its calls; NULL: none is wanted
 
 	cau_streams streams; // with a lock of its own
 
@@ -190,6 +192,9 @@ cau_status cau_decide_order(cau_hosted *h, cau_order *order, const cau_asked *as
 void cau_decide_next(cau_hosted *h, cau_action *action);
 void cau_decide_done(cau_hosted *h, cau_outcome_kind outcome);
 void cau_decide_stepped(cau_hosted *h, const char *fault);
+// Opens the trace, where one is wanted; before anything is decided.
+void cau_decide_trace(cau_hosted *h);
+void cau_decide_flush_trace(cau_hosted *h); // worker
 // The core is at a state with these tools: after a start, rewind, reset or restore.
 void cau_decide_arrived(cau_hosted *h, int state, const char *cause);
 // A copy of a tool's drive. False: there is none.

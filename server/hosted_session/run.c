@@ -247,6 +247,7 @@ static cau_due when(cau_hosted *h)
 void cau_hosted_end_slice(cau_hosted *h)
 {
 	cau_record_commit(h);
+	cau_decide_flush_trace(h);
 	if (!h->starting)
 		h->unanswered = false;
 	cau_hosted_publish_summary(h);

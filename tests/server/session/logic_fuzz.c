@@ -1,0 +1,30 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Each four bytes are one event or act of the property test's world (world.h): a fuzzer that sees
+// which branches it takes finds sequences that chance does not.
+#include <stdlib.h>
+#include <string.h>
+
+#include "fuzz/fuzz_target.h"
+#include "server/session/world.h"
+
+enum { EVENTS_MOST = 200 }; // an order at most each, and TICKETS are more
+
+int LLVMFuzzerTestOneInput(const uint8_t *data, size_t bytes)
+{
+	static world *w;
+	if (!w)
+		w = world_create();
+	world_begin(w);
+	for (size_t i = 0; i + sizeof(uint32_t) <= bytes && i / sizeof(uint32_t) < EVENTS_MOST;
+	     i += sizeof(uint32_t)) {
+		uint32_t code;
+		memcpy(&code, data + i, sizeof code);
+		if (!world_do(w, code))
+			break;
+	}
+	if (*w->wrong || !world_end(w)) {
+		fprintf(stderr, "%s\n", w->wrong);
+		abort();
+	}
+	return 0;
+}
