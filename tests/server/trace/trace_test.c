@@ -275,7 +275,7 @@ static void test_a_trace_may_end_anywhere(void **state)
 	cau_error error = {0};
 	make_trace(&t);
 	size_t first = (size_t)(strchr(t.text, '\n') + 1 - t.text);
-	for (size_t bytes = first; bytes < t.bytes; bytes++)
+	for (size_t bytes = first; bytes < t.bytes; bytes += CAU_TEST_SANITIZED ? 17 : 1)
 		if (replay(t.text, bytes, &counts, &error))
 			fail_msg("after %zu of %zu bytes: %s: %s", bytes, t.bytes, error.path, error.reason);
 	assert_int_equal(replay(t.text, first - 1, &counts, &error), CAU_BAD_SYNTAX);
