@@ -46,8 +46,10 @@ static int64_t *read_indices(cau_scan *scan, const char *what, int64_t count, in
 	if (scan->status)
 		return NULL;
 	int64_t *index = cau_mesh_array((size_t)count, sizeof *index);
-	if (!index)
+	if (!index) {
 		cau_scan_fail(scan, CAU_NO_MEMORY, "no memory for %lld indices", (long long)count);
+		return NULL;
+	}
 	for (int64_t i = 0; i < count && !scan->status; i++)
 		index[i] = cau_scan_integer(scan, what, bytes, 0, INT64_MAX);
 	return index;
@@ -210,11 +212,12 @@ void cau_vtk_read_cell_types(cau_vtk *vtk)
 {
 	cau_scan *scan = vtk->scan;
 	int64_t count = cau_scan_count(scan, "number of cell types", 1);
-	if (!vtk->first || count != vtk->waiting_count)
+	bool fits = vtk->first && count == vtk->waiting_count;
+	if (!fits)
 		cau_scan_fail(scan, CAU_BAD_SYNTAX, "%lld CELL_TYPES for %lld CELLS", (long long)count,
 		              (long long)vtk->waiting_count);
 	cau_vtk_start_numbers(scan);
-	for (int64_t i = 0; i < count && !scan->status; i++) {
+	for (int64_t i = 0; fits && i < count && !scan->status; i++) {
 		int64_t type = cau_scan_integer(scan, "a type of cell", 4, 0, 255);
 		if (!scan->status)
 			add_cell(vtk, type, vtk->corner + vtk->first[i], vtk->first[i + 1] - vtk->first[i]);

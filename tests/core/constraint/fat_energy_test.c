@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // The energies of fat against closed forms and a stress written by hand.
+#include "constraint/law.h"
 #include "core/constraint/element.h"
 #include "reference/stress.h"
 #include "reference/uniaxial.h"
@@ -101,11 +102,13 @@ static void test_corotated_by_hand(void **state)
 static void test_energy_is_the_work_done(void **state)
 {
 	(void)state;
-	static const int models[] = {CAU_MODEL_STVK, CAU_MODEL_NEOHOOKEAN, CAU_MODEL_COROTATED};
 	enum { PARTS = 200 };
-	for (int m = 0; m < 3; ++m) {
+	for (int model = 0; model < CAU_MODEL_COUNT; ++model) {
+		const cau_law *law = cau_law_of(model);
+		if (!law->has_energy)
+			continue;
 		rig r;
-		make(&r, models[m], 4000, 0.4);
+		make(&r, model, 4000, fmin(0.4, law->poisson_most));
 		uint64_t random = 17;
 		double h[3][3], f[3][3], stress[3][3], x[12], work = 0;
 		rig_random_gradient(&random, 0.5, h);

@@ -59,10 +59,11 @@ static inline void put_text(byte_file *file, const char *text)
 static inline void put_number(byte_file *file, const void *number, size_t bytes)
 {
 	assert_true(file->count + bytes <= sizeof file->bytes);
+	unsigned char given[8];
+	assert_true(bytes <= sizeof given);
+	memcpy(given, number, bytes);
 	for (size_t i = 0; i < bytes; i++)
-		file->bytes[file->count + (file->turned ? bytes - 1 - i : i)] =
-			((const unsigned char *)number)[i];
-	file->count += bytes;
+		file->bytes[file->count++] = given[file->turned ? bytes - 1 - i : i];
 }
 
 static inline void put_ints(byte_file *file, const int32_t *number, size_t count)

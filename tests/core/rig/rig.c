@@ -252,7 +252,7 @@ void rig_element_gradient(rig *r, int kind, int32_t slot, double *gradient)
 	const cau_elements *e = &solver->elements;
 	weights_of w = weights(e, kind);
 	const cau_local_work *work = share_of(r, kind, slot);
-	double kept[2][4096];
+	double kept[2][4096] = {{0}};
 	assert_true(work->last - work->first <= 4096);
 	for (int k = 0; k < w.count; ++k)
 		for (int32_t s = work->first; s < work->last; ++s) {

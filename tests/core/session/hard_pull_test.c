@@ -6,6 +6,7 @@
 
 #include <stdio.h>
 
+#include "constraint/law.h"
 #include "session/session_internal.h"
 
 static const double SIZE_M[3] = {0.06, 0.04, 0.02};
@@ -118,9 +119,8 @@ static const pull pulls[PULLS] = {{"patch", push_patch, 1},
 static void describe(int model, int fat_limit, int membrane_limit, const pull *how, char *text,
                      size_t bytes)
 {
-	static const char *const models[] = {"neohookean", "corotated", "stvk", "energy"};
-	snprintf(text, bytes, "%s, fat %s, membrane %s, %s", models[model], limit_names[fat_limit],
-	         limit_names[membrane_limit], how->name);
+	snprintf(text, bytes, "%s, fat %s, membrane %s, %s", cau_law_of(model)->word,
+	         limit_names[fat_limit], limit_names[membrane_limit], how->name);
 }
 
 static void assert_possible(const cau_session *session, const char *what)

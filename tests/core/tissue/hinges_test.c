@@ -27,7 +27,9 @@ static void test_flat_patches_do_not_bend(void **state)
 	rig_build(&r, NULL, 1);
 	// every inner edge of the grid: 3 kinds
 	assert_int_equal(r.tissue.hinge_count, 5 * 4 + 4 * 4 + 5 * 3);
-	double turn[3][3], x[3 * 30], e[3], gradient[3 * 30];
+	enum { VERTICES = 6 * 5 };
+	assert_int_equal(r.tissue.vertex_count, VERTICES);
+	double turn[3][3], x[3 * VERTICES] = {0}, e[3], gradient[3 * VERTICES];
 	mat_rotation((double[]){1, 2, -1}, 0.8, turn);
 	for (int32_t v = 0; v < r.tissue.vertex_count; ++v)
 		mat_apply(turn, r.tissue.rest + 3 * v, x + 3 * v);

@@ -255,6 +255,7 @@ static void test_known_surfaces(void **state)
 		{CAU_TOOL_SHEARS, CAU_PART_COLD, 0, {5.4e-3, 0, 4e-3}, {1, 0, 0}},
 		{CAU_TOOL_GRASPER, CAU_PART_COLD, 0, {-2e-3, 0, 2e-3}, {-1, 0, 0}},
 		{CAU_TOOL_GRASPER, CAU_PART_COLD, 0, {1e-3, 2.5e-3, 2e-3}, {0, 1, 0}},
+		/* a new shape's points go above this line */
 	};
 	for (size_t i = 0; i < sizeof known / sizeof *known; ++i) {
 		cau_tool_def tool = tool_with_defaults(known[i].shape);
