@@ -186,12 +186,12 @@ cau_due cau_clerk_run(cau_task *task)
 	double now_s = cau_monotonic_s();
 	cau_creation *creation = take(hub);
 	if (!creation)
-		return (cau_due){INFINITY, INFINITY};
+		return (cau_due){INFINITY, INFINITY, 0};
 	cau_error error = {0};
 	cau_status status = resent(hub, creation, &error);
 	if (status == CAU_BAD_STATE) {
 		cau_hub_submit_creation(hub, creation);
-		return (cau_due){now_s + AGAIN_S, now_s + AGAIN_S};
+		return (cau_due){now_s + AGAIN_S, now_s + AGAIN_S, 0};
 	}
 	if (status == CAU_ALREADY_EXISTS) {
 		snprintf(error.path, sizeof error.path, "params.client_sequence");
@@ -200,7 +200,7 @@ cau_due cau_clerk_run(cau_task *task)
 		act(hub, creation);
 	}
 	cau_creation_free(creation);
-	return (cau_due){0, now_s};
+	return (cau_due){0, now_s, 0};
 }
 
 // ---- forks

@@ -5,11 +5,6 @@
 
 #include "rpc/internal.h"
 
-static bool is_about_tool(int kind)
-{
-	return kind >= CAU_COMMAND_TOOL_REMOVE && kind <= CAU_COMMAND_TOOL_RELEASE;
-}
-
 void cau_call_command(cau_call *call)
 {
 	cau_error error = {0};
@@ -22,15 +17,6 @@ void cau_call_command(cau_call *call)
 		return;
 	}
 	order->motion = call->message->kind == CAU_RPC_NOTIFICATION;
-	if (is_about_tool(order->as.command.kind)) { // any message about a tool is a sign of life
-		cau_hosted *hosted = cau_call_session(call);
-		if (!hosted) {
-			free(order);
-			return;
-		}
-		cau_hosted_feed(hosted, order->asker.client);
-		cau_hosted_release(hosted);
-	}
 	cau_call_submit(call, order);
 }
 

@@ -71,14 +71,15 @@ static cau_status publish_key(cau_streams *streams, cau_stream *stream, bool *ma
 	size_t bytes = 0;
 	cau_status status = cau_frame_encode_key(stream->encoder, stream->scratch,
 	                                         stream->scratch_bytes, &bytes, error);
-	*made = true;
 	if (status) {
 		give_up_key(streams, stream);
 		return status;
 	}
 	cau_buffer *buffer = cau_ring_take(stream, bytes);
-	if (buffer)
-		cau_ring_put_key(streams, stream, buffer, cau_frame_encoder_sequence(stream->encoder));
+	if (!buffer)
+		return CAU_OK;
+	cau_ring_put_key(streams, stream, buffer, cau_frame_encoder_sequence(stream->encoder));
+	*made = true;
 	return CAU_OK;
 }
 

@@ -25,7 +25,7 @@ struct cau_worker_pool {
 
 static bool is_long(const cau_task *task)
 {
-	return task->piece_s > CAU_SLICE_MOST_S;
+	return task->next.piece_s > CAU_SLICE_MOST_S;
 }
 
 // Whether a long task may begin a slice now. Where others are, one worker is kept for them; the
@@ -171,7 +171,7 @@ bool cau_worker_pool_add(cau_worker_pool *pool, cau_task *task)
 	pthread_mutex_lock(&pool->mutex);
 	bool fits = pool->task_count < pool->task_capacity;
 	if (fits) {
-		task->next = (cau_due){0, cau_monotonic_s()};
+		task->next = (cau_due){0, cau_monotonic_s(), task->next.piece_s};
 		task->running = task->woken = task->leaving = false;
 		task->ended_s = -INFINITY;
 		task->index = pool->task_count;
@@ -204,13 +204,6 @@ void cau_worker_pool_wake(cau_worker_pool *pool, cau_task *task)
 		task->next.deadline_s = fmin(task->next.deadline_s, now_s);
 		pthread_cond_signal(&pool->changed);
 	}
-	pthread_mutex_unlock(&pool->mutex);
-}
-
-void cau_worker_pool_expect(cau_worker_pool *pool, cau_task *task, double piece_s)
-{
-	pthread_mutex_lock(&pool->mutex);
-	task->piece_s = piece_s;
 	pthread_mutex_unlock(&pool->mutex);
 }
 

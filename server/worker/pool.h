@@ -18,14 +18,14 @@ typedef struct cau_worker_pool cau_worker_pool;
 typedef struct cau_due {
 	double due_s;      // not before; INFINITY: when woken
 	double deadline_s; // orders the tasks that are due
+	double piece_s;    // the longest piece of work that its next slice may hold, as far as is known
 } cau_due;
 
 #define CAU_SLICE_MOST_S 0.02
 
 typedef struct cau_task {
 	cau_due (*run)(struct cau_task *task); // one slice of work, some milliseconds
-	double piece_s; // set before it is added, later by cau_worker_pool_expect
-	// The pool's own:
+	// The pool's own; of `next` the piece_s is that of the first slice, set before it is added.
 	cau_due next;
 	bool running, woken, leaving;
 	int32_t index;
@@ -44,8 +44,5 @@ bool cau_worker_pool_add(cau_worker_pool *pool, cau_task *task);
 void cau_worker_pool_remove(cau_worker_pool *pool, cau_task *task);
 // Makes a task due now; if it is running, it runs once more. From any thread.
 void cau_worker_pool_wake(cau_worker_pool *pool, cau_task *task);
-// Tells how long the longest piece of work is that a slice of the task may hold, as lately seen or
-// to be expected. From any thread, within its slice too.
-void cau_worker_pool_expect(cau_worker_pool *pool, cau_task *task, double piece_s);
 // Tasks that are running or due.
 int32_t cau_worker_pool_busy(cau_worker_pool *pool);

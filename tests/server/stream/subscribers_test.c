@@ -301,6 +301,25 @@ static void test_falls_are_forgotten_in_time(void **unused)
 	scene_finish(&s);
 }
 
+// What could not be made was not made: nobody is told to look.
+static void test_a_key_frame_that_fails_wakes_nobody(void **state)
+{
+	(void)state;
+	scene s;
+	cau_error error = {0};
+	bool made = true;
+	scene_init(&s);
+	publish(&s);
+	s.stream->key_wanted = true;
+	s.stream->next_s = s.now_s + 1; // no delta is due
+	s.stream->scratch_bytes = 0;
+	cau_stream_moment moment = {.now_s = s.now_s};
+	assert_int_not_equal(cau_streams_publish(&s.streams, &moment, &made, &error), CAU_OK);
+	assert_false(made);
+	assert_false(s.stream->key_wanted);
+	scene_finish(&s);
+}
+
 int main(void)
 {
 	const struct CMUnitTest tests[] = {
@@ -311,6 +330,7 @@ int main(void)
 		cmocka_unit_test(test_a_last_single_frame_is_not_kept_back),
 		cmocka_unit_test(test_one_that_keeps_up_comes_back_on_trial),
 		cmocka_unit_test(test_falls_are_forgotten_in_time),
+		cmocka_unit_test(test_a_key_frame_that_fails_wakes_nobody),
 	};
 	return cmocka_run_group_tests(tests, NULL, NULL);
 }

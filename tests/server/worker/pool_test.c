@@ -36,7 +36,7 @@ static cau_due count(cau_task *task)
 		pthread_cond_signal(&c->done);
 	pthread_mutex_unlock(&c->mutex);
 	double next_s = cau_monotonic_s() + c->period_s;
-	return (cau_due){next_s, next_s};
+	return (cau_due){next_s, next_s, 0};
 }
 
 static void prepare(counting *c, int wanted, double period_s)
@@ -114,10 +114,10 @@ static cau_due take_turn(cau_task *task)
 	if (was_held) {
 		o->turn = turns + 1;
 		turns++;
-		return (cau_due){INFINITY, INFINITY};
+		return (cau_due){INFINITY, INFINITY, 0};
 	}
 	o->due_s = cau_monotonic_s() + MOMENT_S;
-	return (cau_due){o->due_s, o->deadline_s};
+	return (cau_due){o->due_s, o->deadline_s, 0};
 }
 
 enum { TASKS = 4 };
@@ -134,7 +134,7 @@ static cau_due hold(cau_task *task)
 		while (cau_monotonic_s() <= h->tasks[i].due_s)
 			;
 	was_held = true;
-	return (cau_due){INFINITY, INFINITY};
+	return (cau_due){INFINITY, INFINITY, 0};
 }
 
 static void the_earliest_deadline_goes_first(void **state)
@@ -189,7 +189,7 @@ static cau_due note(cau_task *task)
 	if (at < MARKS)
 		mark[at] = m->name;
 	long_inside -= m->is_long;
-	return (cau_due){0, cau_monotonic_s()};
+	return (cau_due){0, cau_monotonic_s(), m->is_long ? LONG_S : 0};
 }
 
 static void begin_marking(void)
@@ -199,7 +199,7 @@ static void begin_marking(void)
 
 static void add_marked(cau_worker_pool *pool, marked *m, char name, bool is_long)
 {
-	*m = (marked){.task = {.run = note, .piece_s = is_long ? LONG_S : 0},
+	*m = (marked){.task = {.run = note, .next.piece_s = is_long ? LONG_S : 0},
 	              .name = name,
 	              .is_long = is_long,
 	              .yields = is_long ? 200 : 1};
