@@ -222,10 +222,12 @@ void cau_daemon_stop(cau_daemon *daemon)
 	if (daemon->service)
 		cau_service_set_network(daemon->service, NULL);
 	cau_network_destroy(daemon->network);
-	cau_hub_destroy(daemon->hub);
+	// Answers to what waits go to transports, which may hold sessions, which know the hub.
+	cau_hub_stop(daemon->hub);
 	cau_builder_destroy(daemon->builder);
 	cau_dds_destroy(daemon->dds);
 	cau_service_destroy(daemon->service);
+	cau_hub_destroy(daemon->hub);
 	cau_worker_pool_destroy(daemon->pool);
 	cau_store_close(daemon->store);
 	cau_scenes_destroy(daemon->scenes);

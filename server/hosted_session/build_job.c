@@ -2,6 +2,7 @@
 // Building a session as a job of the builder, and how it comes back to the workers or to an end.
 #include <stdlib.h>
 #include <string.h>
+#include <sys/stat.h>
 
 #include "hosted_session/internal.h"
 
@@ -12,38 +13,40 @@
 
 enum { BYTES_OF_VERTEX = 100 }; // of a mesh file
 
-static double vertices_of(const cau_scene_def *scene)
+// Where the core will read it: core/mesh/mesh_make.c. One that is not there ends the building soon.
+static double bytes_of_file(const char *directory, const char *file)
 {
-	double count = 0;
-	for (int32_t i = 0; i < scene->mesh_count; i++) {
-		const cau_mesh_def *mesh = &scene->meshes[i];
-		double x = mesh->cells[0] + 1.0, y = mesh->cells[1] + 1.0, z = mesh->cells[2] + 1.0;
-		if (mesh->source == CAU_MESH_SHEET)
-			count += x * y;
-		else if (mesh->source == CAU_MESH_SLAB)
-			count += x * y * z;
-		else
-			count += (double)mesh->byte_count / BYTES_OF_VERTEX;
-	}
-	return count;
+	char path[600];
+	struct stat status;
+	bool alone = *file == '/' || !*directory;
+	int length =
+		snprintf(path, sizeof path, "%s%s%s", alone ? "" : directory, alone ? "" : "/", file);
+	bool there = length < (int)sizeof path && stat(path, &status) == 0;
+	return there ? (double)status.st_size : 0;
 }
 
-// The session is gone: what the store has of it goes too, in the slice that ends with this.
-static void answer_cancelled(cau_hosted *h, cau_order *order)
+static double vertices_of(const cau_scene_def *scene, const cau_mesh_def *mesh)
 {
-	cau_error error = {0};
-	cau_wire_nothing result = {0};
-	if (h->origin.kind == CAU_ORIGIN_STORE) {
-		cau_store_batch *batch = cau_record_batch(h);
-		if (!batch || cau_store_delete_session(batch, h->id, &error)) {
-			cau_fail(&error, CAU_NO_MEMORY, "", "no memory to destroy it");
-			cau_answer_fail(order, &error, 0);
-			return;
-		}
+	double x = mesh->cells[0] + 1.0, y = mesh->cells[1] + 1.0, z = mesh->cells[2] + 1.0;
+	switch (mesh->source) {
+	case CAU_MESH_SHEET:
+	case CAU_MESH_PATTERN:
+		return x * y;
+	case CAU_MESH_SLAB:
+		return x * y * z;
+	case CAU_MESH_FILE:
+		return bytes_of_file(scene->directory, mesh->file) / BYTES_OF_VERTEX;
+	default:
+		return (double)mesh->byte_count / BYTES_OF_VERTEX;
 	}
-	cau_answer_changed(h, CAU_CHANGE_DESTROYED, order->asker.name); // it was listed as starting
-	cau_log(CAU_LOG_INFO, h->id, "destroyed", "client=\"%s\"", order->asker.name);
-	cau_answer_order(h, order, &result);
+}
+
+double cau_building_expects_s(const cau_scene_def *scene)
+{
+	double vertices = 0;
+	for (int32_t i = 0; i < scene->mesh_count; i++)
+		vertices += vertices_of(scene, &scene->meshes[i]);
+	return BUILT_VERTEX_S * vertices;
 }
 
 // ---- the job
@@ -82,20 +85,23 @@ static void answer_destroyers(cau_hosted *h)
 		else
 			cau_hosted_refuse_gone(order);
 	}
-	answer_cancelled(h, first);
+	cau_hosted_destroy(h, first, h->origin.kind == CAU_ORIGIN_STORE); // it was listed as starting
 	h->destroyers = NULL;
 }
 
-// No worker runs a session that has ended: its last slice is the builder's.
+// Its last slice is the builder's. What a resend is looked for in must be on the disk by then:
+// there is no border any more at which it could be looked for again.
 static void come_to_an_end(cau_hosted *h)
 {
+	cau_store_flush(h->around->store);
 	if (cau_building_destroyed(h))
 		answer_destroyers(h);
+	cau_hosted_refuse_rest(h);
+	cau_hosted_end_slice(h);
 	for (cau_order *late = cau_building_give_back(h), *next; late; late = next) {
 		next = late->next;
 		cau_hosted_refuse_gone(late);
 	}
-	cau_hosted_end_slice(h);
 }
 
 static void come_back(cau_hosted *h)
@@ -103,8 +109,8 @@ static void come_back(cau_hosted *h)
 	cau_error error = {0};
 	if (h->starting) // the log is replayed in slices of the workers
 		snprintf(h->stage, sizeof h->stage, "replaying");
+	h->piece_s = STEPPED_VERTEX_S * h->info.vertex_count;
 	cau_hosted_end_slice(h);
-	cau_worker_pool_expect(h->around->pool, &h->task, STEPPED_VERTEX_S * h->info.vertex_count);
 	for (cau_order *late = cau_building_give_back(h), *next; late;
 	     late = next) { // after the last border
 		next = late->next;
@@ -147,7 +153,7 @@ cau_status cau_building_begin(cau_hosted *h, cau_error *error)
 	if (!b)
 		return cau_fail(error, CAU_NO_MEMORY, NULL, "no memory to build a session");
 	*b = (building){
-		.job = {.run = run, .drop = drop, .expected_s = BUILT_VERTEX_S * vertices_of(h->scene)},
+		.job = {.run = run, .drop = drop, .expected_s = cau_building_expects_s(h->scene)},
 		.hosted = cau_hosted_share(h)};
 	cau_builder_submit(h->around->builder, &b->job);
 	return CAU_OK;

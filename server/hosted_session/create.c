@@ -14,22 +14,25 @@ static void note_store(cau_hosted *h)
 		cau_hosted_store_takes(h, false, health.reason);
 }
 
-cau_status cau_hosted_create(cau_hosted **made, const cau_surroundings *around,
-                             const cau_hosted_def *def, cau_error *error)
+// NULL: there is no memory for it.
+static cau_hosted *allocate(int32_t orders)
 {
 	cau_hosted *h = calloc(1, sizeof *h);
-	*made = NULL;
-	int32_t orders = (int32_t)around->config->queue_commands;
-	if (h) {
-		h->present = malloc(sizeof *h->present);
-		h->logic = malloc(cau_logic_bytes(orders));
-	}
-	if (!h || !h->present || !h->logic) {
-		free(h ? h->present : NULL);
-		free(h ? h->logic : NULL);
-		free(h);
-		return cau_fail(error, CAU_NO_MEMORY, NULL, "no memory for a session");
-	}
+	if (!h)
+		return NULL;
+	h->present = malloc(sizeof *h->present);
+	h->logic = malloc(cau_logic_bytes(orders));
+	if (h->present && h->logic)
+		return h;
+	free(h->present);
+	free(h->logic);
+	free(h);
+	return NULL;
+}
+
+// As it is until the builder has built it.
+static void init(cau_hosted *h, const cau_surroundings *around, const cau_hosted_def *def)
+{
 	h->task.run = cau_hosted_run;
 	h->references = 1;
 	h->around = around;
@@ -53,31 +56,46 @@ cau_status cau_hosted_create(cau_hosted **made, const cau_surroundings *around,
 	                           .subscribers_most = around->config->max_subscribers,
 	                           .in_flight_most = (size_t)around->config->subscriber_bytes};
 	cau_streams_init(&h->streams);
-	cau_logic_init(h->logic, orders);
+	cau_logic_init(h->logic, (int32_t)around->config->queue_commands);
 	h->logic->step_s = h->scene->step_s;
 	cau_decide_trace(h);
 	cau_hosted_publish_summary(h);
+}
+
+cau_status cau_hosted_create(cau_hosted **made, const cau_surroundings *around,
+                             const cau_hosted_def *def, cau_error *error)
+{
+	*made = NULL;
+	cau_status status = CAU_OK;
+	cau_hosted *h = allocate((int32_t)around->config->queue_commands);
+	if (!h)
+		return cau_fail(error, CAU_NO_MEMORY, NULL, "no memory for a session");
+	init(h, around, def);
 	if (!cau_worker_pool_add(around->pool, &h->task)) {
-		h->scene = NULL; // stays the caller's
-		h->meshes = NULL;
-		cau_hosted_release(h);
-		return cau_fail(error, CAU_LIMIT, NULL, "the daemon has as many sessions as it may");
+		status = cau_fail(error, CAU_LIMIT, NULL, "the daemon has as many sessions as it may");
+		goto give_up;
 	}
 	note_store(h);
-	if (cau_building_begin(h, error)) {
-		h->scene = NULL; // stays the caller's
-		h->meshes = NULL;
-		cau_worker_pool_remove(around->pool, &h->task);
-		cau_hosted_release(h);
-		return CAU_NO_MEMORY;
+	status = cau_building_begin(h, error);
+	if (!status) {
+		*made = h;
+		return CAU_OK;
 	}
-	*made = h;
-	return CAU_OK;
+	cau_worker_pool_remove(around->pool, &h->task);
+give_up:
+	h->scene = NULL; // stays the caller's
+	h->meshes = NULL;
+	cau_hosted_release(h);
+	return status;
 }
 
 void cau_hosted_stop(cau_hosted *h)
 {
 	cau_worker_pool_remove(h->around->pool, &h->task);
+	if (h->away) // the builder has it, and refuses what waits as it gives it back
+		return;
+	cau_hosted_end(h);
+	cau_hosted_refuse_rest(h);
 }
 
 void cau_hosted_want_checkpoint(cau_hosted *h)

@@ -5,6 +5,7 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "cautery/assert.h"
 #include "hosted_session/internal.h"
 
 cau_hosted *cau_hosted_share(cau_hosted *h)
@@ -19,25 +20,18 @@ void cau_hosted_refuse_gone(cau_order *order)
 	cau_answer_fail(order, &error, CAU_RPC_NOT_HERE);
 }
 
-static void refuse_ticket(uint64_t ticket)
+void cau_hosted_end(cau_hosted *h)
 {
-	cau_hosted_refuse_gone((cau_order *)(uintptr_t)ticket);
+	h->ended = true; // first: whoever hears of it finds its name free
+	cau_decide(h, &(cau_logic_event){.kind = CAU_LOGIC_END, .time_s = cau_monotonic_s()});
 }
 
 void cau_hosted_release(cau_hosted *h)
 {
 	if (!h || atomic_fetch_sub(&h->references, 1) != 1)
 		return;
-	for (int32_t i = 0; i < h->logic->count; i++)
-		refuse_ticket(h->logic->waiting[i].asked.ticket);
-	if (h->logic->stepping)
-		refuse_ticket(h->logic->stepping);
-	for (cau_order *next; h->reads; h->reads = next) {
-		next = h->reads->next;
-		cau_hosted_refuse_gone(h->reads);
-	}
-	if (h->replay.order)
-		cau_hosted_refuse_gone(h->replay.order);
+	CAU_ASSERT(h->logic->count == 0 && !h->logic->stepping && !h->reads,
+	           "session %s goes with %d orders unanswered", h->id, h->logic->count);
 	free(h->replay.commands);
 	cau_streams_finish(&h->streams);
 	cau_store_batch_destroy(h->batch);

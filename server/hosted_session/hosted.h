@@ -52,12 +52,13 @@ typedef struct cau_hosted_def {
 	cau_reply reply; // answered with session_description once it is stored
 } cau_hosted_def;
 
-// One reference, for the caller; the session is in the pool and builds itself there.
+// One reference, for the caller; the session is in the pool, and the builder builds it.
 cau_status cau_hosted_create(cau_hosted **hosted, const cau_surroundings *around,
                              const cau_hosted_def *def, cau_error *error);
 cau_hosted *cau_hosted_share(cau_hosted *hosted);
 void cau_hosted_release(cau_hosted *hosted); // takes NULL
-// Takes the session out of the pool. Not from a worker.
+// Takes the session out of the pool; what waits for it is refused, by the builder if that is at
+// work on it. Not from a worker.
 void cau_hosted_stop(cau_hosted *hosted);
 // Logs that a session of the store could not be brought up, why, and what to do.
 void cau_hosted_tell_not_resumed(const char *id, cau_status status, const cau_error *error);

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// What the files of this room share. `worker` marks what only the worker that runs the session's
-// slice touches; the rest is guarded by the mutex, which is held for moments only.
+// What the files of this room share. `worker` marks what only whoever has the session touches: the
+// worker that runs its slice, or, while it is `away`, the builder. The rest is guarded by the
+// mutex, which is held for moments only.
 #pragma once
 
 #include <pthread.h>
@@ -97,7 +98,7 @@ struct cau_hosted {
 	double step_cost_s, realtime_factor;
 	char stage[32];        // while it is built; else ""
 	int64_t memory_held;   // of what all sessions may take
-	cau_order *destroyers; // those of them that are no resends, in their order
+	cau_order *destroyers; // of those in `cancelling` the ones that are no resends, in their order
 	bool unwanted;         // it was cancelled
 	bool adopted;          // its threads are the workers'
 	double piece_s;        // processor time of the longest step lately, for the pool
@@ -120,7 +121,7 @@ struct cau_hosted {
 
 	pthread_mutex_t mutex;
 	cau_order *cancelling; // session.destroy while it is built
-	cau_order *reads;      // reads.c
+	cau_order *reads;      // read_queue.c
 	int32_t read_count;
 	cau_refused_motion refused[CAU_MAX_TOOLS];
 	cau_tool_state tools[CAU_MAX_TOOLS]; // of the newest tick, for transports
@@ -134,7 +135,7 @@ struct cau_hosted {
 	atomic_bool unanswered; // its making is not with the store yet
 	atomic_bool ended, starting, checkpoint_wanted, drain_wanted, drained;
 	atomic_bool dirty;     // streams must show a change that no step made
-	atomic_bool away;      // with the builder: no worker touches it
+	atomic_bool away;      // it is the builder's, who alone ends this: no worker touches it
 	atomic_bool abandoned; // its creator is gone
 	atomic_int files;      // of this session that the builder makes
 	atomic_int commits;    // on their way to the disk
@@ -142,10 +143,14 @@ struct cau_hosted {
 
 // ---- hosted.c
 void cau_hosted_refuse_gone(cau_order *order); // there is no session for it any more
+// It could not be brought up or kept: nothing is taken any more. From any thread.
+void cau_hosted_end(cau_hosted *h);
 
 // ---- run.c
 cau_due cau_hosted_run(cau_task *task);
 void cau_hosted_end_slice(cau_hosted *h); // commits, and tells others what they may know
+// It has ended: what waits is refused. By whoever has it: its worker, the builder, or after both.
+void cau_hosted_refuse_rest(cau_hosted *h);
 
 // ---- summary.c
 void cau_hosted_publish_summary(cau_hosted *h);
@@ -165,6 +170,8 @@ bool cau_building_destroyed(cau_hosted *h);
 cau_order *cau_building_give_back(cau_hosted *h);
 
 // ---- build_job.c
+// About how long it takes to build, s.
+double cau_building_expects_s(const cau_scene_def *scene);
 // Leaves a session that was just made to the builder.
 cau_status cau_building_begin(cau_hosted *h, cau_error *error);
 
@@ -224,6 +231,9 @@ CAU_ORDER_TABLE(CHANGE, READ)
 // ---- time.c: orders about time and history
 // session.step has made its ticks, or the session faulted within them.
 void cau_time_stepped(cau_hosted *h, cau_order *order, bool failed);
+// The session goes, and with it its rows if it is stored, in the batch of this slice. False: there
+// is no memory for it. Answers the order, which it takes.
+bool cau_hosted_destroy(cau_hosted *h, cau_order *order, bool stored);
 // After the replay of a rewind, reset or restore.
 void cau_back_arrived(cau_hosted *h, cau_order *order);
 
@@ -272,7 +282,8 @@ int32_t cau_reads_note(cau_hosted *h);
 // The first of the `*noted` oldest that can be served now, NULL: none; counts down those it looked
 // at.
 cau_order *cau_reads_take(cau_hosted *h, int32_t *noted);
-bool cau_reads_wait(cau_hosted *h); // some can be served now
+bool cau_reads_wait(cau_hosted *h);   // some can be served now
+void cau_reads_refuse(cau_hosted *h); // all, of a session that has ended
 
 // ---- reads.c
 // Serves some of the `noted` oldest.

@@ -31,6 +31,8 @@ bool cau_reads_make_file(const cau_order *order)
 static cau_status append(cau_hosted *h, cau_order *order, cau_error *error)
 {
 	int64_t most = h->around->config->queue_reads, its_own = 0;
+	if (h->ended)
+		return cau_fail(error, CAU_NOT_FOUND, "params.session", "the session is destroyed");
 	cau_order **end = &h->reads;
 	for (; *end; end = &(*end)->next)
 		its_own += (*end)->asker.client == order->asker.client;
@@ -92,6 +94,19 @@ cau_order *cau_reads_take(cau_hosted *h, int32_t *noted)
 	}
 	pthread_mutex_unlock(&h->mutex);
 	return order;
+}
+
+void cau_reads_refuse(cau_hosted *h)
+{
+	pthread_mutex_lock(&h->mutex);
+	cau_order *order = h->reads;
+	h->reads = NULL;
+	h->read_count = 0;
+	pthread_mutex_unlock(&h->mutex);
+	for (cau_order *next; order; order = next) {
+		next = order->next;
+		cau_hosted_refuse_gone(order);
+	}
 }
 
 bool cau_reads_wait(cau_hosted *h)

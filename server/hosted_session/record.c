@@ -233,7 +233,8 @@ static void committed(void *user, cau_status status, const char *reason)
 		cau_log(CAU_LOG_ERROR, done->hosted->id, "commit_failed", "status=%s reason=\"%s\"",
 		        cau_status_name(status), reason);
 		lose(done->hosted, done->from_tick);
-		done->hosted->ended = done->hosted->ended || done->making;
+		if (done->making)
+			cau_hosted_end(done->hosted);
 	}
 	answer_all(done->pending, status, reason);
 	if (atomic_fetch_sub(&done->hosted->commits, 1) == 1) {
@@ -273,7 +274,8 @@ void cau_record_commit(cau_hosted *h)
 		lose(h, h->batch_lost);
 		cau_store_batch_destroy(h->batch);
 		answer_all(pending, status, error.reason);
-		h->ended = h->ended || is_being_made(h);
+		if (is_being_made(h))
+			cau_hosted_end(h);
 		if (travelling) {
 			atomic_fetch_sub(&h->commits, 1);
 			cau_hosted_release(h);

@@ -4,6 +4,7 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "cautery/assert.h"
 #include "hosted_session/internal.h"
 
 #define FACTOR_WINDOW_S 1.0   // realtime_factor is over this
@@ -51,11 +52,10 @@ static void measure_factor(cau_hosted *h, double now_s)
 	h->window_tick = h->tick;
 }
 
-// Tells the pool how long a step may be: the longest lately, forgotten over some ten steps.
+// How long a step may be, for the pool: the longest lately, forgotten over some ten steps.
 static void expect_piece(cau_hosted *h, double took_s)
 {
 	h->piece_s = fmax(took_s, PIECE_KEPT * h->piece_s);
-	cau_worker_pool_expect(h->around->pool, &h->task, h->piece_s);
 }
 
 static void step(cau_hosted *h)
@@ -146,6 +146,20 @@ static void act_until_tick(cau_hosted *h)
 	}
 }
 
+void cau_hosted_refuse_rest(cau_hosted *h)
+{
+	cau_action action;
+	CAU_ASSERT(h->logic->ended, "what waits for session %s is refused while it lives", h->id);
+	for (cau_decide_next(h, &action); action.act != CAU_ACT_NOTHING; cau_decide_next(h, &action)) {
+		act(h, &action);
+		cau_decide_done(h, CAU_DONE);
+	}
+	if (h->replay.order)
+		cau_hosted_refuse_gone(h->replay.order);
+	h->replay.order = NULL;
+	cau_reads_refuse(h);
+}
+
 // Whether something happened since the last checkpoint that a restart would have to replay, or that
 // a crash would take back: commands, energy, cuts.
 static bool is_quiet(cau_hosted *h)
@@ -232,16 +246,16 @@ static cau_due when(cau_hosted *h)
 {
 	double now_s = cau_monotonic_s();
 	if (h->ended || h->drain_wanted)
-		return (cau_due){INFINITY, INFINITY};
+		return (cau_due){INFINITY, INFINITY, h->piece_s};
 	if (h->starting || h->replay.active)
-		return (cau_due){0, now_s + 0.1}; // those at wall rate go first
+		return (cau_due){0, now_s + 0.1, h->piece_s}; // those at wall rate go first
 	pthread_mutex_lock(&h->deciding);
 	double due_s = cau_logic_due_s(h->logic), tick_s = h->logic->next_step_s;
 	double period_s = h->logic->step_s / h->logic->speed;
 	pthread_mutex_unlock(&h->deciding);
 	if (cau_decided_state(h) == CAU_SESSION_RUNNING)
-		return (cau_due){fmin(due_s, tick_s), tick_s + period_s};
-	return (cau_due){cau_reads_wait(h) || h->dirty ? 0 : due_s, now_s + 0.1};
+		return (cau_due){fmin(due_s, tick_s), tick_s + period_s, h->piece_s};
+	return (cau_due){cau_reads_wait(h) || h->dirty ? 0 : due_s, now_s + 0.1, h->piece_s};
 }
 
 void cau_hosted_end_slice(cau_hosted *h)
@@ -259,25 +273,36 @@ void cau_hosted_end_slice(cau_hosted *h)
 static void adopt(cau_hosted *h)
 {
 	cau_error error = {0};
-	if (h->adopted)
-		return;
 	h->adopted = true;
 	if (cau_session_adopt(h->core, &error))
 		cau_log(CAU_LOG_WARNING, h->id, "threads_not_adopted", "reason=\"%s\"", error.reason);
 }
 
-cau_due cau_hosted_run(cau_task *task)
+// The first slice steps nothing: by its end the pool knows how long a step may be.
+static void run_slice(cau_hosted *h)
 {
-	cau_hosted *h = (cau_hosted *)task;
-	if (h->ended || h->away)
-		return (cau_due){INFINITY, INFINITY};
-	adopt(h);
 	if (h->drain_wanted)
 		drain(h);
+	else if (!h->adopted)
+		adopt(h);
 	else if (h->replay.active)
 		go_on_replaying(h);
 	else
 		serve(h, cau_monotonic_s());
+}
+
+// `away` is looked at first. Until the builder gives the session back it is the builder's, `ended`
+// and all; what the builder did before is seen once `away` is seen to be false, so that no session
+// which has ended there is run. In the other order it may end and be given back between the two.
+cau_due cau_hosted_run(cau_task *task)
+{
+	cau_hosted *h = (cau_hosted *)task;
+	if (h->away)
+		return (cau_due){INFINITY, INFINITY, task->next.piece_s}; // as it was
+	if (!h->ended)
+		run_slice(h);
+	if (h->ended)
+		cau_hosted_refuse_rest(h);
 	cau_hosted_end_slice(h);
 	return when(h);
 }

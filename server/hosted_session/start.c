@@ -138,7 +138,7 @@ void cau_hosted_fail_start(cau_hosted *h, const cau_error *error)
 	cau_store_batch_destroy(h->batch);
 	h->batch = NULL;
 	h->starting = false;
-	h->ended = true; // whoever reads the answer finds its name free
+	cau_hosted_end(h);
 	cau_reply_fail(&h->creator_reply, error, 0);
 }
 

@@ -60,6 +60,10 @@ void cau_time_stepped(cau_hosted *h, cau_order *order, bool failed)
 {
 	cau_wire_tick_result result = {(int64_t)h->tick, 0};
 	cau_error error = {0};
+	if (failed && h->ended) {
+		cau_hosted_refuse_gone(order);
+		return;
+	}
 	if (failed) {
 		cau_fail(&error, CAU_FAULTED, "", "%s", h->logic->fault);
 		cau_answer_fail(order, &error, CAU_RPC_FAULTED);
@@ -244,20 +248,27 @@ cau_outcome_kind cau_apply_fork(cau_hosted *h, cau_order *order, const cau_actio
 	return CAU_DONE;
 }
 
-cau_outcome_kind cau_apply_destroy(cau_hosted *h, cau_order *order, const cau_action *action)
+bool cau_hosted_destroy(cau_hosted *h, cau_order *order, bool stored)
 {
-	(void)action;
 	cau_error error = {0};
 	cau_wire_nothing result = {0};
 	cau_store_batch *batch = cau_record_batch(h);
-	if (!batch || cau_store_delete_session(batch, h->id, &error)) {
+	if (stored && (!batch || cau_store_delete_session(batch, h->id, &error))) {
 		cau_fail(&error, CAU_NO_MEMORY, "", "no memory to destroy it");
 		cau_answer_fail(order, &error, 0);
-		return CAU_NOT_DONE;
+		return false;
 	}
 	cau_answer_changed(h, CAU_CHANGE_DESTROYED, order->asker.name);
 	cau_log(CAU_LOG_INFO, h->id, "destroyed", "client=\"%s\"", order->asker.name);
 	cau_answer_order(h, order, &result);
+	return true;
+}
+
+cau_outcome_kind cau_apply_destroy(cau_hosted *h, cau_order *order, const cau_action *action)
+{
+	(void)action;
+	if (!cau_hosted_destroy(h, order, true))
+		return CAU_NOT_DONE;
 	h->ended = true;
 	return CAU_DONE;
 }

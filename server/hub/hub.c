@@ -5,6 +5,7 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "cautery/assert.h"
 #include "hub/internal.h"
 
 // ---- sinks
@@ -78,7 +79,7 @@ cau_status cau_hub_create(cau_hub **made, const cau_hub_def *def, cau_error *err
 	return CAU_OK;
 }
 
-void cau_hub_destroy(cau_hub *hub)
+void cau_hub_stop(cau_hub *hub)
 {
 	if (!hub)
 		return;
@@ -88,6 +89,16 @@ void cau_hub_destroy(cau_hub *hub)
 	cau_store_flush(hub->def.store); // commits on their way know their sessions
 	for (int32_t i = 0; i < hub->session_count; i++)
 		cau_hosted_release(hub->sessions[i]);
+	hub->session_count = 0;
+}
+
+void cau_hub_destroy(cau_hub *hub)
+{
+	if (!hub)
+		return;
+	CAU_ASSERT(hub->session_count == 0 && hub->memory_held == 0,
+	           "the hub ends with %d sessions and %lld bytes of others", hub->session_count,
+	           (long long)hub->memory_held);
 	for (cau_creation *next; hub->first; hub->first = next) {
 		next = hub->first->next;
 		cau_creation_free(hub->first);

@@ -27,7 +27,12 @@ typedef struct cau_hub_def {
 } cau_hub_def;
 
 cau_status cau_hub_create(cau_hub **hub, const cau_hub_def *def, cau_error *error);
-// After the pool's threads have ended or every session is stopped. Takes NULL.
+// Ends every session: what waits for them is refused, what they stored is on the disk. After
+// cau_builder_stop. Transports may hold sessions still and let them go; nothing is answered then.
+// Takes NULL.
+void cau_hub_stop(cau_hub *hub);
+// After cau_hub_stop, once nobody holds a session any more: they give back what the hub counts.
+// Takes NULL.
 void cau_hub_destroy(cau_hub *hub);
 
 // Before sessions exist. At most four; the sink must outlive the hub's sessions.

@@ -41,6 +41,7 @@ static int open_hub(void **state)
 static int close_hub(void **state)
 {
 	(void)state;
+	cau_hub_stop(hub);
 	cau_hub_destroy(hub);
 	cau_worker_pool_destroy(pool);
 	cau_store_close(store);

@@ -102,7 +102,7 @@ ticket_book *oracle_ticket(world *w, uint64_t number)
 void oracle_answered(world *w, uint64_t number)
 {
 	if (oracle_ticket(w, number)->answers++)
-		world_wrong(w, "order %llu is oracle_answered twice", (unsigned long long)number);
+		world_wrong(w, "order %llu is answered twice", (unsigned long long)number);
 }
 
 void oracle_note_coming(world *w, const ticket_book *ticket)
