@@ -40,6 +40,7 @@ async function useSession(daemon, name) {
 	for (let i = 0; i < 20; i++)
 		first.notify('tool.move', { ...hook(session), position_m: [0.001 * i, 0, 0.02], rotation: AT_REST, sequence: i + 1 });
 	await call(first, forHook('tool.energize', session, { energized: true }));
+	first.notify('heartbeat', { visible: true });
 	await admin.until(() => !stream.tools[0].energized && stream.tools[0].energyOff === 'watchdog', 'it is cut for silence');
 	await assert.rejects(call(second, forHook('tool.energize', session, { energized: true })));
 	await call(second, forHook('tool.request_takeover', session));
