@@ -202,7 +202,7 @@ static void fat_gapes_because_it_was_taut(void **state)
 static void a_cold_tool_parts_nothing(void **state)
 {
 	(void)state;
-	cau_scene_def *scene = stage_scene_named("fascia");
+	cau_scene_def *scene = stage_scene_light("fascia");
 	scene->tools[0].temperature_c = 37;
 	cau_session *session = stage_open(scene, 1);
 	stage_energize(session, "hook", 1);

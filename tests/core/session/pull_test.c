@@ -23,7 +23,7 @@ static void pull_every_way(const char *name, double top_m, double slip_force_n)
 {
 	static const double ways[][3] = {{0, 0, 0.1},  {0.1, 0, 0},  {-0.1, 0, 0},      {0, 0.1, 0},
 	                                 {0, -0.1, 0}, {0, 0, -0.1}, {0.06, 0.06, 0.06}};
-	cau_scene_def *scene = stage_scene_named(name);
+	cau_scene_def *scene = stage_scene_light(name);
 	cau_tool_def *jaws =
 		stage_add_tool(scene, "jaws", CAU_TOOL_GRASPER, 0.01, 0.005, top_m - 0.004);
 	jaws->max_speed_m_s = 5; // the fastest that any scene may have

@@ -47,6 +47,18 @@ cau_scene_def *stage_scene_named(const char *name)
 	return scene;
 }
 
+cau_scene_def *stage_scene_light(const char *name)
+{
+	cau_scene_def *scene = stage_scene_named(name);
+	for (int32_t i = 0; i < scene->mesh_count; ++i) {
+		cau_mesh_def *mesh = &scene->meshes[i];
+		int is_grid = mesh->source == CAU_MESH_SHEET || mesh->source == CAU_MESH_SLAB;
+		for (int c = 0; c < 3 && is_grid && CAU_TEST_SANITIZED; ++c)
+			mesh->cells[c] = (mesh->cells[c] + 1) / 2;
+	}
+	return scene;
+}
+
 static cau_layer_def *add_layer(cau_scene_def *scene, const char *name, int kind)
 {
 	assert_true(scene->layer_count < CAU_MAX_LAYERS);
