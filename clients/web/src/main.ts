@@ -13,6 +13,7 @@ import { Control } from './model/control';
 import { Model } from './model/model';
 import { clientWords } from './model/person';
 import { keepAddress, readAddress } from './panels/address';
+import { clipFields } from './panels/clip';
 import { showCue } from './panels/cue';
 import { devicesSection } from './panels/devices';
 import { byId } from './panels/dom';
@@ -87,7 +88,8 @@ model.on('joined', (joined) => {
 });
 
 const inspect = showInspected(control, viewport);
-const tabs = makeTabs([sessionsPanel(control, link), toolsPanel(control, hand), materialsPanel(control), viewPanel(control, viewport, inspect.switch), plotsPanel(model)]);
+const clip = clipFields(control, viewport);
+const tabs = makeTabs([sessionsPanel(control, link), toolsPanel(control, hand), materialsPanel(control), viewPanel(control, viewport, inspect.switch, clip.fields), plotsPanel(model)]);
 timeBar(control, address.tick);
 showHandles(control, hand, pointer);
 const placeSaid = showSaid(model, viewport, pointer);
@@ -97,8 +99,12 @@ showHelp();
 operatePanel(control, hand, viewport, () => connect(lastToken), devicesSection(pedal, makeSpaceMouse));
 modeSwitch((mode) => {
   tabs.show(mode === 'research');
-  if (mode === 'research' || pointer.press !== 'measure') return;
-  pointer.press = 'work'; // trainees have no ruler
+  if (mode === 'research') return;
+  // Trainees have none of the tools that look closely, so nothing of them may stay behind.
+  clip.off();
+  inspect.off();
+  if (pointer.press !== 'measure') return;
+  pointer.press = 'work';
   model.emit('tools', undefined);
 });
 const placeCue = showCue(control, viewport);

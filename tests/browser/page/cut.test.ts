@@ -1,9 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Join the demo, drag the hook across the fascia with energy on, see faces go; fork; rewind; whole again.
-import type { Browser } from 'playwright-core';
 
-import { Daemon } from './daemon';
-import { launch, shareChanged, ViewerPage } from './viewer_page';
+import { Stage } from './stage';
+import { shareChanged, ViewerPage } from './viewer_page';
 
 const FACES = 6000; // of deploy/scenes/fascia.json
 const HOT_C = 900;
@@ -14,19 +13,12 @@ const WAY = Array.from({ length: 33 }, (_, i): [number, number, number] => [-0.0
 const SHARE_OPEN = 0.3;
 
 describe('a cut in the demo', () => {
-  const daemon = new Daemon(['--demo', 'fascia']);
-  let browser: Browser;
+  const stage = new Stage(['--demo', 'fascia']);
   let viewer: ViewerPage;
 
   beforeAll(async () => {
-    await daemon.start();
-    browser = await launch();
-    viewer = await ViewerPage.open(browser, daemon.url);
+    viewer = await stage.open();
     await viewer.live('d1-fascia');
-  });
-  afterAll(async () => {
-    await browser.close();
-    await daemon.end();
   });
 
   it('parts the fascia where the hook is dragged, in the model and in the picture', async () => {
@@ -89,6 +81,6 @@ describe('a cut in the demo', () => {
 
   it('never broke the daemon’s headers and never left its host', () => {
     expect(viewer.complaints).toEqual([]);
-    expect([...viewer.hosts]).toEqual([`127.0.0.1:${daemon.port}`]);
+    expect([...viewer.hosts]).toEqual([`127.0.0.1:${stage.daemon.port}`]);
   });
 });

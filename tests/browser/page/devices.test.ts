@@ -1,10 +1,9 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // A foot pedal, which is a keyboard with one key, and a 3D mouse by WebHID. The browser's chooser cannot be
 // automated: a fake answers it, as the page says that only a person can.
-import type { Browser } from 'playwright-core';
 
-import { Daemon } from './daemon';
-import { launch, ViewerPage } from './viewer_page';
+import { Stage } from './stage';
+import { ViewerPage } from './viewer_page';
 
 /** In the page, before its scripts: a WebHID with one 3D mouse that tests hold. */
 function holdSpaceMouse(): void {
@@ -22,29 +21,23 @@ function holdSpaceMouse(): void {
   };
   const hid = Object.assign(new EventTarget(), { getDevices: () => Promise.resolve([]), requestDevice: () => Promise.resolve([device]) });
   Object.defineProperty(navigator, 'hid', { value: hid });
-  Object.assign(window, { capReports: report, unplug: () => hid.dispatchEvent(Object.assign(new Event('disconnect'), { device })) });
+  const tell = (what: string): boolean => hid.dispatchEvent(Object.assign(new Event(what), { device }));
+  Object.assign(window, { capReports: report, unplug: () => tell('disconnect'), plugIn: () => tell('connect') });
 }
 
 describe('devices beside mouse and keys', () => {
-  const daemon = new Daemon(['--demo', 'fascia']);
-  let browser: Browser;
+  const stage = new Stage(['--demo', 'fascia']);
   let viewer: ViewerPage;
 
   const report = (id: number, values: number[]): Promise<void> =>
     viewer.page.evaluate(([number, axes]) => (window as unknown as { capReports(id: number, values: number[]): void }).capReports(number, axes), [id, values] as const);
 
   beforeAll(async () => {
-    await daemon.start();
-    browser = await launch();
-    viewer = await ViewerPage.openFirst(browser, daemon.url);
+    viewer = await stage.openFirst();
     await viewer.page.addInitScript(holdSpaceMouse);
     await viewer.page.reload();
     await viewer.live('d1-fascia');
     await viewer.page.locator('#devices > summary').click();
-  });
-  afterAll(async () => {
-    await browser.close();
-    await daemon.end();
   });
 
   it('a pedal is told to the page once, and is energy while it is down, wherever the focus is', async () => {
@@ -63,7 +56,7 @@ describe('devices beside mouse and keys', () => {
     await viewer.until(() => !window.cautery.energized, null, 'energy is off');
   });
 
-  it('a 3D mouse leads the tool with its cap and heats with its button, until it is unplugged', async () => {
+  it('a 3D mouse leads the tool with its cap and heats with its button, as long as it is plugged in', async () => {
     const { page } = viewer;
     expect(await page.locator('#space-mouse').textContent()).toContain('only a person can answer that');
     await page.getByRole('button', { name: 'Choose the 3D mouse' }).click();
@@ -77,6 +70,12 @@ describe('devices beside mouse and keys', () => {
     await page.evaluate(() => (window as unknown as { unplug(): void }).unplug());
     await viewer.until(() => !window.cautery.energized, null, 'energy is off without it');
     expect(await page.locator('#space-mouse').textContent()).toContain('A 3D mouse leads');
+    await page.evaluate(() => (window as unknown as { plugIn(): void }).plugIn()); // nobody has to choose it again
+    await page.locator('#space-mouse').getByText('Test SpaceMouse leads the tool').waitFor();
+    await report(3, [1]);
+    await viewer.until(() => window.cautery.energized, null, 'energy is on again');
+    await report(3, [0]);
+    await viewer.until(() => !window.cautery.energized, null, 'energy is off');
     expect(viewer.complaints).toEqual([]);
   });
 });

@@ -1,10 +1,9 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // A newcomer's first half minute: tissue and tool in the picture, one cue where to cut and nothing else in
 // the way; who follows the cue has cut. What destroys asks first.
-import type { Browser } from 'playwright-core';
 
-import { Daemon } from './daemon';
-import { launch, ViewerPage } from './viewer_page';
+import { BrowserStage, daemonForTest, Stage } from './stage';
+import { ViewerPage } from './viewer_page';
 
 const PHONE = { hasTouch: true, isMobile: true };
 const SCREENS = [
@@ -38,18 +37,22 @@ async function cue(viewer: ViewerPage): Promise<[Place, Place]> {
   return [{ x: box.x + x1, y: box.y + y1 }, { x: box.x + x2, y: box.y + y2 }];
 }
 
-describe('the first view', () => {
-  let browser: Browser;
-
-  beforeAll(async () => {
-    browser = await launch();
+/** From now on, counts how often the cue comes up. */
+async function countCues(viewer: ViewerPage): Promise<void> {
+  await viewer.page.evaluate(() => {
+    const cue = document.querySelector<HTMLElement>('#cue')!;
+    Object.assign(window, { cues: 0 });
+    new MutationObserver(() => cue.hidden || (window as unknown as { cues: number }).cues++).observe(cue, { attributes: true, attributeFilter: ['hidden'] });
   });
-  afterAll(() => browser.close());
+}
+const cues = (viewer: ViewerPage): Promise<number> => viewer.page.evaluate(() => (window as unknown as { cues: number }).cues);
+
+describe('the first view', () => {
+  const stage = new BrowserStage();
 
   it.each(SCREENS)('on %s shows where to cut, and who follows it cuts', async (_name, picture, options) => {
-    const daemon = new Daemon(['--demo', 'layers']);
-    await daemon.start();
-    const viewer = await ViewerPage.openFirst(browser, daemon.url, options);
+    const daemon = await daemonForTest(['--demo', 'layers']);
+    const viewer = await ViewerPage.openFirst(stage.browser, daemon.url, options);
     const { page } = viewer;
     await viewer.live('d1-layers');
     await viewer.until(() => document.querySelector('#cue')?.checkVisibility() === true, null, 'the cue is there');
@@ -69,8 +72,9 @@ describe('the first view', () => {
 
     const { fascia } = (await viewer.state()).drawnFaces;
     const [from, to] = await cue(viewer);
+    await countCues(viewer);
+    const fingers = await page.context().newCDPSession(page);
     if ('hasTouch' in options) {
-      const fingers = await page.context().newCDPSession(page);
       await fingers.send('Input.dispatchTouchEvent', { type: 'touchStart', touchPoints: [{ ...from, id: 1 }] });
       await viewer.until(() => window.cautery.energized, null, 'the finger heats');
       await fingers.send('Input.dispatchTouchEvent', { type: 'touchMove', touchPoints: [{ ...to, id: 1 }] });
@@ -85,28 +89,36 @@ describe('the first view', () => {
     expect(open, 'the cut begins where the cue does').toBe(true);
     await viewer.drawn();
     await viewer.screenshot(picture.replace('first-view', 'cutting'));
-    if (!('hasTouch' in options)) await page.mouse.up();
-    await viewer.until(() => document.querySelector('#cue')?.checkVisibility() === false, null, 'the cue does not come back');
+    if ('hasTouch' in options) await fingers.send('Input.dispatchTouchEvent', { type: 'touchEnd', touchPoints: [] });
+    else await page.mouse.up();
+    await viewer.until(() => !window.cautery.energized, null, 'energy is off');
+    expect(await cues(viewer), 'the cue does not come back').toBe(0);
     expect(viewer.complaints).toEqual([]);
     await viewer.close();
-    await daemon.end();
   });
 });
 
 describe('what destroys', () => {
-  const daemon = new Daemon(['--demo', 'fascia']);
-  let browser: Browser;
+  const stage = new Stage(['--demo', 'fascia']);
   let viewer: ViewerPage;
 
   beforeAll(async () => {
-    await daemon.start();
-    browser = await launch();
-    viewer = await ViewerPage.openFirst(browser, daemon.url);
+    viewer = await stage.openFirst();
     await viewer.live('d1-fascia');
   });
-  afterAll(async () => {
-    await browser.close();
-    await daemon.end();
+
+  it('leaves the cue away that somebody has followed, were it too briefly to cut', async () => {
+    const { page } = viewer;
+    await viewer.until(() => document.querySelector('#cue')?.checkVisibility() === true, null, 'the cue is there');
+    await page.locator('#picture').focus();
+    await page.keyboard.down('Space');
+    await viewer.until(() => window.cautery.energized && document.querySelector<HTMLElement>('#cue')!.hidden, null, 'energy is on');
+    await countCues(viewer);
+    await page.keyboard.up('Space');
+    await viewer.until(() => !window.cautery.energized, null, 'energy is off');
+    const { tick } = await viewer.state();
+    await viewer.until((later) => window.cautery.tick > later, tick + 10, 'frames without energy');
+    expect(await cues(viewer)).toBe(0);
   });
 
   it('asks before it starts over', async () => {
@@ -119,6 +131,7 @@ describe('what destroys', () => {
     await page.getByRole('button', { name: 'Start over' }).click();
     await page.locator('dialog').getByRole('button', { name: 'Start over' }).click();
     await viewer.until((before) => window.cautery.epoch !== before, epoch, 'another epoch');
+    await viewer.until(() => document.querySelector('#cue')?.checkVisibility() === true, null, 'the cue is back with tissue that is whole');
   });
 
   it('is out of a trainee’s reach, and asks a researcher', async () => {

@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Hands other than a mouse: fingers, a gamepad, keys; and a page out of sight, which loses its energy.
-import type { Browser, CDPSession } from 'playwright-core';
+import type { CDPSession } from 'playwright-core';
 
-import { Daemon } from './daemon';
 import { A, holdGamepad, RIGHT_TRIGGER, setPad } from './gamepad';
-import { launch, ViewerPage } from './viewer_page';
+import { Stage } from './stage';
+import { ViewerPage } from './viewer_page';
 
 const TABLET = { viewport: { width: 900, height: 700 }, hasTouch: true };
 const NEAR_M = 0.004;
@@ -20,8 +20,7 @@ interface Finger {
 }
 
 describe('hands', () => {
-  const daemon = new Daemon(['--demo', 'fascia']);
-  let browser: Browser;
+  const stage = new Stage(['--demo', 'fascia']);
   let viewer: ViewerPage;
   let fingers: CDPSession;
 
@@ -35,15 +34,9 @@ describe('hands', () => {
   };
 
   beforeAll(async () => {
-    await daemon.start();
-    browser = await launch();
-    viewer = await ViewerPage.open(browser, daemon.url, TABLET);
+    viewer = await stage.open(TABLET);
     await viewer.live('d1-fascia');
     fingers = await viewer.page.context().newCDPSession(viewer.page);
-  });
-  afterAll(async () => {
-    await browser.close();
-    await daemon.end();
   });
 
   it('a finger leads the tool, which follows', async () => {
@@ -99,23 +92,16 @@ describe('hands', () => {
 });
 
 describe('hands that need a page in front', () => {
-  const daemon = new Daemon(['--demo', 'fascia']);
-  let browser: Browser;
+  const stage = new Stage(['--demo', 'fascia']);
   let viewer: ViewerPage;
 
   beforeAll(async () => {
-    await daemon.start();
-    browser = await launch();
-    viewer = await ViewerPage.open(browser, daemon.url);
+    viewer = await stage.open();
     await viewer.live('d1-fascia');
     await viewer.page.evaluate(holdGamepad);
     await viewer.page.getByRole('tab', { name: 'Tools' }).click();
     await viewer.page.locator('#panel-tools .take').click();
     await viewer.until(() => window.cautery.driving, null, 'the tool is taken');
-  });
-  afterAll(async () => {
-    await browser.close();
-    await daemon.end();
   });
 
   it('a gamepad moves the tool and heats with its trigger', async () => {

@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Each input alone, from a page that has just come up to faces that are gone: a mouse, a keyboard, a
 // gamepad, one finger, two fingers. None of them presses a button of the page first.
-import type { Browser, CDPSession } from 'playwright-core';
+import type { CDPSession } from 'playwright-core';
 
-import { Daemon } from './daemon';
 import { holdGamepad, RIGHT_TRIGGER, setPad } from './gamepad';
-import { launch, ViewerPage } from './viewer_page';
+import { BrowserStage, daemonForTest } from './stage';
+import { ViewerPage } from './viewer_page';
 
 const FACES = 6000; // of deploy/scenes/fascia.json
 const CUT_FACES = 8;
@@ -108,17 +108,11 @@ const INPUTS: readonly (readonly [string, (viewer: ViewerPage) => Promise<void>]
 ];
 
 describe('each input alone takes a free tool, moves it and cuts', () => {
-  let browser: Browser;
-
-  beforeAll(async () => {
-    browser = await launch();
-  });
-  afterAll(() => browser.close());
+  const stage = new BrowserStage();
 
   it.each(INPUTS)('%s', async (name, play) => {
-    const daemon = new Daemon(['--demo', 'fascia']);
-    await daemon.start();
-    const viewer = await ViewerPage.openFirst(browser, daemon.url, name.includes('finger') ? TABLET : {});
+    const daemon = await daemonForTest(['--demo', 'fascia']);
+    const viewer = await ViewerPage.openFirst(stage.browser, daemon.url, name.includes('finger') ? TABLET : {});
     await viewer.live('d1-fascia');
     expect((await viewer.state()).driving).toBe(false);
     const begun = Date.now();
@@ -126,6 +120,5 @@ describe('each input alone takes a free tool, moves it and cuts', () => {
     process.stdout.write(`${name}: cut after ${((Date.now() - begun) / 1000).toFixed(1)} s\n`);
     expect(viewer.complaints).toEqual([]);
     await viewer.close();
-    await daemon.end();
   });
 });

@@ -1,17 +1,15 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Looking closely: what is under the pointer, a ruler, a plane that cuts tissue away from the picture, views
 // that are kept.
-import type { Browser } from 'playwright-core';
 
-import { Daemon } from './daemon';
-import { launch, ViewerPage } from './viewer_page';
+import { daemonForTest, Stage } from './stage';
+import { ViewerPage } from './viewer_page';
 
 const ANOTHER_COLOUR = 60; // see cut.test.ts
 const NEAR_MM = 0.6; // a picture has three pixels a millimetre
 
 describe('looking closely', () => {
-  const daemon = new Daemon(['--demo', 'fascia']);
-  let browser: Browser;
+  const stage = new Stage(['--demo', 'fascia']);
   let viewer: ViewerPage;
 
   const pointAt = async (point: [number, number, number]): Promise<void> => {
@@ -20,15 +18,9 @@ describe('looking closely', () => {
   };
 
   beforeAll(async () => {
-    await daemon.start();
-    browser = await launch();
-    viewer = await ViewerPage.open(browser, daemon.url);
+    viewer = await stage.open();
     await viewer.live('d1-fascia');
     await viewer.page.getByRole('tab', { name: 'View' }).click();
-  });
-  afterAll(async () => {
-    await browser.close();
-    await daemon.end();
   });
 
   it('tells layer, vertex, place and temperature under the pointer', async () => {
@@ -43,14 +35,22 @@ describe('looking closely', () => {
     expect(temperature).toBe('37.0 °C');
     expect(stress).toBe('stress: told of fat only');
     expect(heat).toBe('0 % of the heat that parts it');
+    const answered = await page.evaluate(() => {
+      const canvas = document.querySelector('#picture')!;
+      canvas.dispatchEvent(new PointerEvent('pointermove', { clientX: 400, clientY: 300 })); // asks
+      canvas.dispatchEvent(new PointerEvent('pointerleave'));
+      return window.cautery.tick + 60;
+    });
+    await viewer.until((tick) => window.cautery.tick > tick, answered, 'the answer was on its way meanwhile');
+    expect(await page.locator('#inspected').isVisible()).toBe(false);
     await page.getByLabel('Tell what is under the pointer').uncheck();
+    await pointAt([0.03, 0.02, 0]);
     expect(await page.locator('#inspected').isVisible()).toBe(false);
   });
 
   it('tells stress of fat', async () => {
-    const pulled = new Daemon(['--demo', 'fat-neohookean']);
-    await pulled.start();
-    const other = await ViewerPage.open(browser, pulled.url);
+    const pulled = await daemonForTest(['--demo', 'fat-neohookean']);
+    const other = await ViewerPage.open(stage.browser, pulled.url);
     await other.live('d1-fat-neohookean');
     await other.page.getByRole('tab', { name: 'Materials' }).click();
     const forces = other.page.locator('#forces');
@@ -66,7 +66,6 @@ describe('looking closely', () => {
     await other.until(stress, null, 'the stress of fat that is pulled');
     expect(other.complaints).toEqual([]);
     await other.close();
-    await pulled.end();
   });
 
   it('measures from one place of the tissue to another', async () => {
@@ -103,8 +102,31 @@ describe('looking closely', () => {
     await viewer.until(() => document.querySelector('#inspected')?.checkVisibility() === true, null, 'what is left is told');
     await pointAt(places[0]);
     await viewer.until(() => document.querySelector('#inspected')?.checkVisibility() === false, null, 'what is cut away is not');
-    await page.getByLabel('Tell what is under the pointer').uncheck();
-    await page.getByLabel('Cut away').selectOption('nothing');
+    await page.mouse.down(); // as beside the tissue: the view is turned, and no tool is taken
+    const corner = await viewer.project(places[1]);
+    const { x, y } = await viewer.project(places[0]);
+    await page.mouse.move(x + 60, y);
+    await page.mouse.up();
+    const turned = await viewer.project(places[1]);
+    expect(Math.hypot(turned.x - corner.x, turned.y - corner.y)).toBeGreaterThan(5);
+    expect((await viewer.state()).driving).toBe(false);
+    await page.locator('#panel-view').getByRole('button', { name: 'Home' }).click();
+  });
+
+  it('is for researchers: whoever goes to Operate has the whole tissue again, and is told nothing', async () => {
+    const { page } = viewer;
+    const places: [number, number, number][] = [[0.03, 0.035, 0], [0.03, -0.035, 0]];
+    await viewer.until(() => window.cautery.idle, null, 'the picture of the half');
+    const half = await viewer.coloursAt(places);
+    await page.getByRole('button', { name: 'Operate' }).click();
+    await pointAt(places[1]);
+    await viewer.until(() => window.cautery.idle, null, 'the picture of the whole');
+    const whole = await viewer.coloursAt([places[0]]);
+    expect(Math.hypot(...whole[0].map((value, c) => value - half[0][c]))).toBeGreaterThan(ANOTHER_COLOUR);
+    expect(await page.locator('#inspected').isVisible()).toBe(false);
+    await page.getByRole('button', { name: 'Research' }).click();
+    expect(await page.getByLabel('Tell what is under the pointer').isChecked()).toBe(false);
+    expect(await page.getByLabel('Cut away').inputValue()).toBe('');
   });
 
   it('keeps views under a name, beside the standard ones', async () => {

@@ -2,11 +2,11 @@
 // The layers scene is cut through its fascia at the daemon, and the frames of it are recorded. Played at
 // 60 Hz sharp, whatever the machine's load, they show that the page keeps up: one that fell behind would
 // show it as latency that grows with the stream. Then the cut itself is looked at; README.md shows it.
-import type { Browser, CDPSession } from 'playwright-core';
+import type { CDPSession } from 'playwright-core';
 
-import { Daemon } from './daemon';
 import { record, Replay, type Command, type Recording } from './replay';
-import { launch, ViewerPage } from './viewer_page';
+import { Stage } from './stage';
+import { ViewerPage } from './viewer_page';
 
 const SESSION = 'd1-layers';
 const RATE_HZ = 60;
@@ -88,28 +88,22 @@ function strandsAcross(viewer: ViewerPage): Promise<number> {
 }
 
 describe('the layers scene, cut', () => {
-  const daemon = new Daemon(['--demo', 'layers']);
-  let browser: Browser;
+  const stage = new Stage(['--demo', 'layers']);
   let recording: Recording;
 
   beforeAll(async () => {
-    await daemon.start();
-    recording = await record(daemon.url, SESSION, FRAMES, cutting());
+    const { url } = stage.daemon;
+    recording = await record(url, SESSION, FRAMES, cutting());
     let paused = false;
-    await record(daemon.url, SESSION, 0, (_tick, call) => {
+    await record(url, SESSION, 0, (_tick, call) => {
       if (!paused) call('session.pause', { session: SESSION });
       paused = true;
     });
-    browser = await launch();
-  });
-  afterAll(async () => {
-    await browser.close();
-    await daemon.end();
   });
 
   it('is decoded whole at 60 Hz and drawn without falling behind, with little work for the page', async () => {
-    const replay = new Replay(daemon.url, recording, RATE_HZ);
-    const viewer = await ViewerPage.open(browser, await replay.start());
+    const replay = new Replay(stage.daemon.url, recording, RATE_HZ);
+    const viewer = await ViewerPage.open(stage.browser, await replay.start());
     await viewer.until(() => window.cautery.tick > 0, null, 'the stream has begun');
     const meter = await ThreadMeter.on(viewer);
     const first = await viewer.state();
@@ -138,7 +132,7 @@ describe('the layers scene, cut', () => {
   });
 
   it('gapes, with strands left across it and the fat under it', async () => {
-    const viewer = await ViewerPage.openFirst(browser, daemon.url);
+    const viewer = await stage.openFirst();
     await viewer.live(SESSION);
     expect((await viewer.state()).drawnFaces['fascia']).toBeLessThan(6000 - 50); // of deploy/scenes/layers.json
     expect((await viewer.state()).drawnFaces['membrane']).toBeGreaterThan(0.8 * 6200);

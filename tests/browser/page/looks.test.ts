@@ -1,10 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // What a picture of the demo costs, by counting: draw calls, triangles, bytes of textures. A body around the
 // tissue may make each twice what the tissue alone on its cloth was.
-import type { Browser } from 'playwright-core';
 
-import { Daemon } from './daemon';
-import { launch, ViewerPage } from './viewer_page';
+import { Stage } from './stage';
 
 /** Of the tissue on its cloth alone, in the home view of `layers`. */
 const ALONE = { calls: 10, triangles: 20_389, textureBytes: 48 ** 3 + 2 * 4 * 256 };
@@ -43,25 +41,15 @@ function countDrawing(): void {
 }
 
 describe('the picture of the demo', () => {
-  const daemon = new Daemon(['--demo', 'layers']);
-  let browser: Browser;
+  const stage = new Stage(['--demo', 'layers']);
 
-  beforeAll(async () => {
-    await daemon.start();
-    browser = await launch();
-  });
-  afterAll(async () => {
-    await browser.close();
-    await daemon.end();
-  });
 
   it('costs at most twice what the tissue alone on its cloth did', async () => {
-    const viewer = await ViewerPage.openFirst(browser, daemon.url);
+    const viewer = await stage.openFirst();
     await viewer.page.addInitScript(countDrawing);
     await viewer.page.reload();
     await viewer.live('d1-layers');
-    await viewer.page.getByRole('button', { name: 'Pause' }).click();
-    await viewer.until(() => window.cautery.paused, null, 'paused');
+    await viewer.pause();
     await viewer.until(() => window.cautery.idle, null, 'the sharp picture');
     const counts = await viewer.page.evaluate(() => (window as unknown as { counts: Counts }).counts);
     process.stdout.write(`a picture: ${counts.calls} draw calls, ${Math.round(counts.triangles)} triangles, ${Math.round(counts.textureBytes / 1000)} KB of textures\n`);

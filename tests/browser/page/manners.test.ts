@@ -7,10 +7,9 @@ import { fileURLToPath } from 'node:url';
 import { gzipSync } from 'node:zlib';
 
 import AxeBuilder from '@axe-core/playwright';
-import type { Browser } from 'playwright-core';
 
-import { Daemon } from './daemon';
-import { launch, ViewerPage } from './viewer_page';
+import { Stage } from './stage';
+import { ViewerPage } from './viewer_page';
 
 const TABS = ['Sessions', 'Tools', 'Materials', 'View', 'Plots'];
 const BUNDLE_BYTES_MAX = 1_000_000; // compressed
@@ -35,21 +34,13 @@ async function faults(viewer: ViewerPage, rules: string[] = []): Promise<string[
 }
 
 describe('manners', () => {
-  const daemon = new Daemon(['--demo', 'layers']);
-  let browser: Browser;
+  const stage = new Stage(['--demo', 'layers']);
 
   beforeAll(async () => {
-    await daemon.start();
-    browser = await launch();
-    const first = await ViewerPage.open(browser, daemon.url);
+    const first = await stage.open();
     await first.live('d1-layers');
-    await first.page.getByRole('button', { name: 'Pause' }).click(); // the processor is the browser's from here on
-    await first.until(() => window.cautery.paused, null, 'paused');
+    await first.pause(); // the processor is the browser's from here on
     await first.close();
-  });
-  afterAll(async () => {
-    await browser.close();
-    await daemon.end();
   });
 
   it.each([
@@ -57,7 +48,7 @@ describe('manners', () => {
     ['light', { colorScheme: 'light' as const }],
     ['on a phone', { ...PHONE, colorScheme: 'dark' as const }],
   ])('has no accessibility fault, %s', async (name, options) => {
-    const viewer = await ViewerPage.open(browser, daemon.url, options);
+    const viewer = await stage.open(options);
     await viewer.live('d1-layers');
     await viewer.page.getByRole('button', { name: 'Operate' }).click();
     await viewer.page.getByRole('button', { name: 'Help' }).click();
@@ -72,7 +63,7 @@ describe('manners', () => {
   });
 
   it('does not jump about while it comes up', async () => {
-    const viewer = await ViewerPage.openFirst(browser, daemon.url);
+    const viewer = await stage.openFirst();
     await viewer.live('d1-layers');
     const shift = await viewer.page.evaluate(
       () =>
@@ -98,7 +89,7 @@ describe('manners', () => {
   });
 
   it('fits a phone in portrait', async () => {
-    const viewer = await ViewerPage.openFirst(browser, daemon.url, PHONE);
+    const viewer = await stage.openFirst(PHONE);
     await viewer.live('d1-layers');
     const overflow = await viewer.page.evaluate(() => document.documentElement.scrollWidth - window.innerWidth);
     expect(overflow).toBeLessThanOrEqual(0);
@@ -111,7 +102,7 @@ describe('manners', () => {
   it.each([['portrait', { width: 390, height: 780 }], ['landscape', { width: 780, height: 390 }]])(
     'has targets that a finger hits, on a phone in %s',
     async (_name, viewport) => {
-      const viewer = await ViewerPage.openFirst(browser, daemon.url, { ...PHONE, viewport });
+      const viewer = await stage.openFirst({ ...PHONE, viewport });
       await viewer.live('d1-layers');
       for (const mode of ['Operate', 'Research']) {
         await viewer.page.getByRole('button', { name: mode }).tap();
@@ -129,7 +120,7 @@ describe('manners', () => {
   );
 
   it('goes back along the timeline by finger', async () => {
-    const viewer = await ViewerPage.openFirst(browser, daemon.url, PHONE);
+    const viewer = await stage.openFirst(PHONE);
     await viewer.live('d1-layers');
     const box = (await viewer.page.locator('#tick').boundingBox())!;
     await viewer.page.touchscreen.tap(box.x + box.width / 2, box.y + box.height / 2);
@@ -140,7 +131,7 @@ describe('manners', () => {
   });
 
   it.each([['a desktop', { viewport: { width: 1280, height: 800 } }], ['a phone', PHONE]])('holds text twice as large on %s', async (_name, options) => {
-    const viewer = await ViewerPage.openFirst(browser, daemon.url, options);
+    const viewer = await stage.openFirst(options);
     const session = await viewer.page.context().newCDPSession(viewer.page);
     await session.send('Page.setFontSizes', { fontSizes: { standard: 32 } });
     await viewer.live('d1-layers');
@@ -160,7 +151,7 @@ describe('manners', () => {
   });
 
   it('reaches every control by Tab', async () => {
-    const viewer = await ViewerPage.open(browser, daemon.url);
+    const viewer = await stage.open();
     await viewer.live('d1-layers');
     for (const tab of TABS) {
       await viewer.page.getByRole('tab', { name: tab }).click();

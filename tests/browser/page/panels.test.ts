@@ -1,29 +1,22 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // What the panels change reaches the tissue: forces, pins, limits for each direction, snapshots. And what
 // is refused is said where it was asked.
-import type { Browser, Locator } from 'playwright-core';
+import type { Locator } from 'playwright-core';
 
-import { Daemon } from './daemon';
-import { launch, ViewerPage } from './viewer_page';
+import { Stage } from './stage';
+import { ViewerPage } from './viewer_page';
 
 const LIFTED_M = 0.003;
 
 describe('panels', () => {
-  const daemon = new Daemon(['--demo', 'fascia']);
-  let browser: Browser;
+  const stage = new Stage(['--demo', 'fascia']);
   let viewer: ViewerPage;
   let forces: Locator;
 
   beforeAll(async () => {
-    await daemon.start();
-    browser = await launch();
-    viewer = await ViewerPage.open(browser, daemon.url);
+    viewer = await stage.open();
     await viewer.live('d1-fascia');
     forces = viewer.page.locator('#forces');
-  });
-  afterAll(async () => {
-    await browser.close();
-    await daemon.end();
   });
 
   it('speaks in millimetres, degrees and sentences', async () => {
@@ -70,8 +63,7 @@ describe('panels', () => {
     await forces.locator('select[name=selection-layer]').selectOption('fascia');
     await forces.getByRole('button', { name: 'Unpin' }).click();
     await viewer.until((edge) => window.cautery.extent().least[0] > edge, least[0] + LIFTED_M, 'the taut sheet shrinks');
-    await viewer.page.getByRole('button', { name: 'Pause' }).click();
-    await viewer.until(() => window.cautery.paused, null, 'paused');
+    await viewer.pause();
   });
 
   it('goes back to what was kept', async () => {

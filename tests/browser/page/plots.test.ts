@@ -1,17 +1,15 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // What the tools did over the session is plotted, with one cursor in all plots that is the timeline's too.
-import type { Browser } from 'playwright-core';
 
-import { Daemon } from './daemon';
-import { launch, ViewerPage } from './viewer_page';
+import { Stage } from './stage';
+import { ViewerPage } from './viewer_page';
 
 const HOT_C = 150;
 const BODY_C = 37;
 const FRAMES_APART_S = 0.2; // that a busy machine does not tell
 
 describe('plots over the session', () => {
-  const daemon = new Daemon(['--demo', 'fascia']);
-  let browser: Browser;
+  const stage = new Stage(['--demo', 'fascia']);
   let viewer: ViewerPage;
 
   const told = async (): Promise<{ seconds: number; celsius: number; joules: number }> => {
@@ -24,9 +22,7 @@ describe('plots over the session', () => {
     viewer.page.evaluate(() => [...document.querySelectorAll<HTMLElement>('[aria-label="Over the session"] .u-cursor-x')].map(({ style }) => style.transform));
 
   beforeAll(async () => {
-    await daemon.start();
-    browser = await launch();
-    viewer = await ViewerPage.open(browser, daemon.url);
+    viewer = await stage.open();
     await viewer.live('d1-fascia');
     const { tick } = await viewer.state();
     await viewer.until((then) => window.cautery.tick > then, tick + 120, 'two seconds without heat');
@@ -36,14 +32,9 @@ describe('plots over the session', () => {
     await viewer.until((then) => window.cautery.tick > then, lit + 60, 'a second of heat');
     await viewer.page.keyboard.up('Space');
     await viewer.until(() => !window.cautery.energized, null, 'energy is off');
-    await viewer.page.getByRole('button', { name: 'Pause' }).click();
-    await viewer.until(() => window.cautery.paused, null, 'paused');
+    await viewer.pause();
     await viewer.page.getByRole('tab', { name: 'Plots' }).click();
     await viewer.until(() => document.querySelectorAll('[aria-label="Over the session"] canvas').length === 3, null, 'three plots');
-  });
-  afterAll(async () => {
-    await browser.close();
-    await daemon.end();
   });
 
   it('tell the newest values of each tool', async () => {

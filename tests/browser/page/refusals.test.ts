@@ -1,27 +1,19 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // What does not happen is said at once, where the eye is: at the tool.
-import type { Browser } from 'playwright-core';
 
-import { Daemon } from './daemon';
-import { launch, ViewerPage } from './viewer_page';
+import { Stage } from './stage';
+import { ViewerPage } from './viewer_page';
 
 const DEADLINE_S = 1;
 const BUSY_MS = 2000;
 
 describe('energy that a busy machine cuts', () => {
-  const daemon = new Daemon(['--demo', 'fascia', '--browser-deadline-s', String(DEADLINE_S)]);
-  let browser: Browser;
+  const stage = new Stage(['--demo', 'fascia', '--browser-deadline-s', String(DEADLINE_S)]);
   let viewer: ViewerPage;
 
   beforeAll(async () => {
-    await daemon.start();
-    browser = await launch();
-    viewer = await ViewerPage.open(browser, daemon.url);
+    viewer = await stage.open();
     await viewer.live('d1-fascia');
-  });
-  afterAll(async () => {
-    await browser.close();
-    await daemon.end();
   });
 
   it('is not dark without a word: what held it is named, and a fresh press brings it back', async () => {

@@ -5,10 +5,8 @@ import { mkdtempSync, rmSync, writeFileSync } from 'node:fs';
 import { tmpdir } from 'node:os';
 import { join } from 'node:path';
 
-import type { Browser } from 'playwright-core';
-
-import { Daemon } from './daemon';
-import { launch, ViewerPage } from './viewer_page';
+import { Stage } from './stage';
+import { ViewerPage } from './viewer_page';
 
 const veil = (viewer: ViewerPage, words: string): Promise<void> =>
   viewer.until((wanted) => document.querySelector('#veil')?.textContent?.includes(wanted) === true && document.querySelector('#veil')!.checkVisibility(), words, words);
@@ -25,33 +23,22 @@ function withoutWebGl(): void {
 }
 
 describe('a picture that is not live', () => {
-  const daemon = new Daemon(['--demo', 'fascia']);
-  let browser: Browser;
+  const stage = new Stage(['--demo', 'fascia']);
 
-  beforeAll(async () => {
-    await daemon.start();
-    browser = await launch();
-  });
-  afterAll(async () => {
-    await browser.close();
-    await daemon.end();
-  });
 
   it('without WebGL says so, and everything else works', async () => {
-    const viewer = await ViewerPage.openFirst(browser, daemon.url);
+    const viewer = await stage.openFirst();
     await viewer.page.addInitScript(withoutWebGl);
     await viewer.page.reload();
     await veil(viewer, 'offers no WebGL 2');
     await viewer.until(() => window.cautery.tick > 0, null, 'frames come in');
-    await viewer.page.getByRole('button', { name: 'Pause' }).click();
-    await viewer.until(() => window.cautery.paused, null, 'paused');
-    await viewer.page.getByRole('button', { name: 'Resume' }).click();
-    await viewer.until(() => !window.cautery.paused, null, 'running');
+    await viewer.pause();
+    await viewer.resume();
     await viewer.close();
   });
 
   it('whose graphics are lost says so, and is drawn again when they are back', async () => {
-    const viewer = await ViewerPage.openFirst(browser, daemon.url);
+    const viewer = await stage.openFirst();
     await viewer.live('d1-fascia');
     const before = await viewer.coloursAt([[0.02, 0.02, 0]]);
     await viewer.page.evaluate(() => {
@@ -69,12 +56,12 @@ describe('a picture that is not live', () => {
   });
 
   it('of a daemon that is gone says so until it is back', async () => {
-    const viewer = await ViewerPage.openFirst(browser, daemon.url);
+    const viewer = await stage.openFirst();
     await viewer.live('d1-fascia');
-    await daemon.kill();
+    await stage.daemon.kill();
     await veil(viewer, 'No connection');
     expect(await viewer.page.locator('#veil progress').isVisible()).toBe(true);
-    await daemon.start();
+    await stage.daemon.start();
     await unveiled(viewer);
     await viewer.live('d1-fascia');
     await viewer.close();
@@ -82,20 +69,11 @@ describe('a picture that is not live', () => {
 });
 
 describe('the address', () => {
-  const daemon = new Daemon(['--demo', 'fascia']);
-  let browser: Browser;
+  const stage = new Stage(['--demo', 'fascia']);
 
-  beforeAll(async () => {
-    await daemon.start();
-    browser = await launch();
-  });
-  afterAll(async () => {
-    await browser.close();
-    await daemon.end();
-  });
 
   it('has session, tick and camera, and comes back to them', async () => {
-    const viewer = await ViewerPage.openFirst(browser, daemon.url);
+    const viewer = await stage.openFirst();
     await viewer.live('d1-fascia');
     await viewer.page.getByRole('button', { name: 'From above' }).click();
     await viewer.until(() => /session=d1-fascia&tick=\d+&camera=-90.0,85.9,/.test(window.location.search), null, 'the address tells it');
@@ -110,7 +88,7 @@ describe('the address', () => {
 
     const tick = Number(new URL(shared).searchParams.get('tick'));
     await viewer.until((then) => window.cautery.tick > then + 30, tick, 'time goes on');
-    const other = await ViewerPage.openFirst(browser, shared);
+    const other = await ViewerPage.openFirst(stage.browser, shared);
     await other.live('d1-fascia');
     const { epoch } = await other.state();
     await other.until(() => document.querySelector('#rewind')?.checkVisibility() === true, null, 'the moment is offered');
@@ -124,20 +102,13 @@ describe('the address', () => {
 describe('a daemon with tokens', () => {
   const folder = mkdtempSync(join(tmpdir(), 'cautery-tokens-'));
   const tokens = join(folder, 'tokens');
-  const daemon = new Daemon(['--demo', 'fascia', '--tokens', tokens]);
-  let browser: Browser;
+  beforeAll(() => writeFileSync(tokens, 'operate open-sesame-0123456789abcdef\nview only-looking-0123456789abcdef\n', { mode: 0o600 }));
+  afterAll(() => rmSync(folder, { recursive: true }));
+  const stage = new Stage(['--demo', 'fascia', '--tokens', tokens]); // which reads them
   let viewer: ViewerPage;
 
   beforeAll(async () => {
-    writeFileSync(tokens, 'operate open-sesame-0123456789abcdef\nview only-looking-0123456789abcdef\n', { mode: 0o600 });
-    await daemon.start();
-    browser = await launch();
-    viewer = await ViewerPage.openFirst(browser, daemon.url);
-  });
-  afterAll(async () => {
-    await browser.close();
-    await daemon.end();
-    rmSync(folder, { recursive: true });
+    viewer = await stage.openFirst();
   });
 
   it('asks for one, can be asked again, and says what is wrong where one types', async () => {

@@ -2,10 +2,9 @@
 // Temperature as colour: hot around the energized hook, the body's elsewhere, in the model and in the
 // picture, with a legend that tells the range; and no longer asked for once it is not shown.
 import AxeBuilder from '@axe-core/playwright';
-import type { Browser } from 'playwright-core';
 
-import { Daemon } from './daemon';
-import { launch, ViewerPage, type Colour } from './viewer_page';
+import { Stage } from './stage';
+import { ViewerPage, type Colour } from './viewer_page';
 
 type Point = [number, number, number];
 
@@ -24,19 +23,12 @@ const redness = ([r, g]: Colour): number => (r - g) / Math.max(r, 1);
 const median = (values: readonly number[]): number => [...values].sort((a, b) => a - b)[Math.floor(values.length / 2)];
 
 describe('temperature as colour', () => {
-  const daemon = new Daemon(['--demo', 'fascia']);
-  let browser: Browser;
+  const stage = new Stage(['--demo', 'fascia']);
   let viewer: ViewerPage;
 
   beforeAll(async () => {
-    await daemon.start();
-    browser = await launch();
-    viewer = await ViewerPage.open(browser, daemon.url);
+    viewer = await stage.open();
     await viewer.live('d1-fascia');
-  });
-  afterAll(async () => {
-    await browser.close();
-    await daemon.end();
   });
 
   const temperatures = (points: readonly Point[]): Promise<(number | null)[]> =>
@@ -82,8 +74,7 @@ describe('temperature as colour', () => {
       [HOT_C, FRONT_M[0]] as const,
       'tissue in front of the hook is hot',
     );
-    await page.getByRole('button', { name: 'Pause' }).click(); // the heat stays where it is
-    await viewer.until(() => window.cautery.paused, null, 'paused');
+    await viewer.pause(); // the heat stays where it is
     await page.locator('#picture').focus();
     await page.keyboard.up('Space');
     await viewer.drawn();

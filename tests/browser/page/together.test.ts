@@ -1,32 +1,24 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Two pages on one session agree; only the driver's controls are live; others can ask; the page that
 // goes out of sight loses its energy; a killed daemon comes back and so do the pages.
-import type { Browser } from 'playwright-core';
 
-import { Daemon } from './daemon';
-import { launch, ViewerPage } from './viewer_page';
+import { Stage } from './stage';
+import { ViewerPage } from './viewer_page';
 
 const HOT_C = 900;
 const HOTTER_C = 950;
 const NEAR_PX = 120; // of words that are read without looking elsewhere
 
 describe('two pages on one session', () => {
-  const daemon = new Daemon(['--demo', 'fascia']);
-  let browser: Browser;
+  const stage = new Stage(['--demo', 'fascia']);
   let driver: ViewerPage;
   let watcher: ViewerPage;
 
   beforeAll(async () => {
-    await daemon.start();
-    browser = await launch();
-    driver = await ViewerPage.open(browser, daemon.url);
+    driver = await stage.open();
     await driver.live('d1-fascia');
-    watcher = await ViewerPage.open(browser, `${daemon.url}?session=d1-fascia`);
+    watcher = await ViewerPage.open(stage.browser, `${stage.daemon.url}?session=d1-fascia`);
     await watcher.live('d1-fascia');
-  });
-  afterAll(async () => {
-    await browser.close();
-    await daemon.end();
   });
 
   it('keeps what one is typing while the driver changes the tool', async () => {
@@ -72,8 +64,7 @@ describe('two pages on one session', () => {
     expect(other.drawnFaces).toEqual(one.drawnFaces);
     expect(other.tip).toEqual(one.tip);
     expect(other.epoch).toBe(one.epoch);
-    await driver.page.getByRole('button', { name: 'Resume' }).click();
-    await driver.until(() => !window.cautery.paused, null, 'running');
+    await driver.resume();
   });
 
   it('asks the driver, who hands the tool over', async () => {
@@ -107,10 +98,10 @@ describe('two pages on one session', () => {
     // Frames may run ahead of the store; the answer to the button's request comes when the pause is in it.
     await watcher.until(() => document.querySelector('[aria-busy=true]') === null, null, 'the pause is stored');
     const before = await driver.state();
-    await daemon.kill();
+    await stage.daemon.kill();
     await driver.until(() => window.cautery.link === 'lost', null, 'lost');
     expect(await driver.page.locator('#link').textContent()).toContain('No connection');
-    await daemon.start();
+    await stage.daemon.start();
     for (const page of [driver, watcher]) {
       await page.until((epoch) => window.cautery.link === 'online' && window.cautery.epoch !== epoch, before.epoch, 'a new epoch');
       const after = await page.state();

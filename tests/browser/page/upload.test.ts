@@ -1,9 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Upload a mesh, get a session of it, cut it. And what the daemon refuses is said in words.
-import type { Browser } from 'playwright-core';
 
-import { Daemon } from './daemon';
-import { launch, ViewerPage } from './viewer_page';
+import { Stage } from './stage';
+import { ViewerPage } from './viewer_page';
 
 const CELLS = 24;
 const HOT_C = 900;
@@ -21,8 +20,7 @@ function sheetObj(): string {
 }
 
 describe('a mesh of one’s own', () => {
-  const daemon = new Daemon([]);
-  let browser: Browser;
+  const stage = new Stage([]);
   let viewer: ViewerPage;
 
   const give = async (name: string, text: string): Promise<void> => {
@@ -33,15 +31,9 @@ describe('a mesh of one’s own', () => {
   };
 
   beforeAll(async () => {
-    await daemon.start();
-    browser = await launch();
-    viewer = await ViewerPage.open(browser, daemon.url);
+    viewer = await stage.open();
     await viewer.until(() => window.cautery.link === 'online', null, 'online');
     await viewer.page.locator('#upload > summary').click();
-  });
-  afterAll(async () => {
-    await browser.close();
-    await daemon.end();
   });
 
   it('says in words what is wrong with a file', async () => {

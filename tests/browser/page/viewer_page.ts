@@ -89,6 +89,16 @@ export class ViewerPage {
     await this.until((count) => window.cautery.idle || window.cautery.picturesDrawn > count + 1, picturesDrawn, 'a new picture');
   }
 
+  async pause(): Promise<void> {
+    await this.page.getByRole('button', { name: 'Pause' }).click();
+    await this.until(() => window.cautery.paused, null, 'paused');
+  }
+
+  async resume(): Promise<void> {
+    await this.page.getByRole('button', { name: 'Resume' }).click();
+    await this.until(() => !window.cautery.paused, null, 'running');
+  }
+
   project(point: [number, number, number]): Promise<{ x: number; y: number }> {
     return this.page.evaluate((p) => window.cautery.project(p), point);
   }

@@ -24,34 +24,35 @@ export class Aim {
     return origin.addScaledVector(direction, through.clone().sub(origin).dot(z) / direction.dot(z));
   }
 
-  /** The tissue straight under a point, or else its vertex nearest to it; without tissue the point. */
+  /** The tissue straight under a point, or else its vertex nearest to it; without tissue in the picture the point. */
   under(point: Vector3): Vector3 {
-    const { tissue } = this.viewport;
+    const { tissue, clip } = this.viewport;
     if (!tissue) return point.clone();
     const distance = this.meet(point, DOWN);
-    return distance === null ? nearestVertex(tissue.position.array as Float32Array, point) : point.clone().setZ(point.z - distance);
+    if (distance !== null) return point.clone().setZ(point.z - distance);
+    return nearestVertex(tissue.position.array as Float32Array, point, (at) => clip.hides(at.x, at.y, at.z));
   }
 
   private meet(origin: Vector3, direction: Vector3): number | null {
-    const { tissue } = this.viewport;
+    const { tissue, clip } = this.viewport;
     if (!tissue) return null;
     const [from, along] = [origin.toArray(), direction.toArray()];
     const [position, normal] = [tissue.position.array as Float32Array, tissue.normal.array as Float32Array];
     const indices = tissue.visibleIndices();
-    const hit = pick(from, along, position, indices, this.viewport.clip.away(origin, direction));
-    return hit?.distance ?? acrossGap(from, along, position, normal, indices);
+    const hit = pick(from, along, position, indices, clip.away(origin, direction));
+    return hit?.distance ?? acrossGap(from, along, position, normal, indices, (px, py, pz) => clip.hides(px, py, pz));
   }
 }
 
 const DOWN = new Vector3(0, 0, -1);
 
-function nearestVertex(position: Float32Array, point: Vector3): Vector3 {
+function nearestVertex(position: Float32Array, point: Vector3, hidden: (at: Vector3) => boolean): Vector3 {
   const nearest = point.clone();
   const at = new Vector3();
   let least = Infinity;
   for (let i = 0; i < position.length; i += 3) {
     const squared = at.fromArray(position, i).distanceToSquared(point);
-    if (squared >= least) continue;
+    if (squared >= least || hidden(at)) continue;
     least = squared;
     nearest.copy(at);
   }

@@ -22,10 +22,14 @@ const TURN_RAD_S = 1.2;
 const ZOOM_PER_S = 2.5;
 const STICK_REST = 0.12;
 
+/** Keys that work as long as they are held. */
 const HELD = new Set([
   'ArrowLeft', 'ArrowRight', 'ArrowUp', 'ArrowDown', 'KeyW', 'KeyS', 'KeyQ', 'KeyE', 'KeyR', 'KeyF', 'Equal', 'Minus',
   'NumpadAdd', 'NumpadSubtract',
 ]);
+
+/** Every key that has work of its own here. */
+export const WORKING_KEYS: ReadonlySet<string> = new Set([...HELD, 'Space', 'KeyG', 'KeyH']);
 
 export class Keys {
   private readonly down = new Set<string>();

@@ -1,9 +1,11 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // A foot pedal: most of them are keyboards with one key to a browser. Which key is kept by the browser.
 
+import { WORKING_KEYS } from './keys';
+
 const KEPT = 'pedal';
-/** Keys that have their own work in the page. */
-const TAKEN = /^(Arrow|Tab$|Enter$|NumpadEnter$|Escape$|Space$|Shift|Control|Alt|Meta|Key[WSQERFGH]$|Equal$|Minus$|Numpad(Add|Subtract)$)/;
+/** Keys with which people go through a page, whatever it is. */
+const EVERY_PAGES = /^(Arrow|Tab$|Enter$|NumpadEnter$|Escape$|Space$|Shift|Control|Alt|Meta)/;
 
 /** "B" for KeyB, "F13", "Page Down". */
 export function keyWords(code: string): string {
@@ -53,7 +55,7 @@ export class Pedal {
     const told = this.asked!;
     event.preventDefault();
     event.stopPropagation();
-    if (event.code === '' || TAKEN.test(event.code)) {
+    if (event.code === '' || EVERY_PAGES.test(event.code) || WORKING_KEYS.has(event.code)) {
       told(`${keyWords(event.code || event.key)} has other work in this page. Give the pedal another key, with the program that came with it.`);
       return;
     }

@@ -12,6 +12,9 @@ interface Hid extends EventTarget {
   getDevices(): Promise<HidDevice[]>;
   requestDevice(options: { filters: object[] }): Promise<HidDevice[]>;
 }
+interface HidConnection extends Event {
+  readonly device: HidDevice;
+}
 interface InputReport extends Event {
   readonly reportId: number;
   readonly data: DataView;
@@ -43,8 +46,12 @@ export class SpaceMouse {
     private readonly led: LedByCap,
     private readonly changed: () => void,
   ) {
+    this.hid?.addEventListener('connect', (event) => {
+      // One that was chosen before and is plugged in now.
+      if (!this.device) void this.use((event as HidConnection).device).catch(() => undefined);
+    });
     this.hid?.addEventListener('disconnect', (event) => {
-      if ((event as Event & { device: HidDevice }).device === this.device) this.lose();
+      if ((event as HidConnection).device === this.device) this.lose();
     });
     // What was chosen once is known again.
     void this.hid?.getDevices().then(([known]) => (known ? this.use(known) : undefined), () => undefined);
@@ -82,10 +89,12 @@ export class SpaceMouse {
 
   private async use(device: HidDevice): Promise<void> {
     if (!device.opened) await device.open();
-    if (this.device !== device) device.addEventListener('inputreport', (event) => this.take(event as InputReport));
+    device.addEventListener('inputreport', this.report); // known already where it was plugged in again
     this.device = device;
     this.changed();
   }
+
+  private readonly report = (event: Event): void => this.take(event as InputReport);
 
   private take({ reportId, data }: InputReport): void {
     if (reportId === BUTTONS) {

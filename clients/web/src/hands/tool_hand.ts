@@ -90,7 +90,9 @@ export class ToolHand {
 
   /** Leads a tool that is this page's to a place of the picture. Beside the tissue it stays. */
   hover(x: number, y: number): void {
-    if (this.model.driving && this.begin() && this.overTissue(x, y)) this.aimAt(x, y);
+    if (!this.model.driving || !this.begin()) return;
+    const place = this.places.onSurface(x, y);
+    if (place) this.aimAt(x, y, place);
   }
 
   /** Something begins to point anew. */
@@ -235,11 +237,12 @@ export class ToolHand {
     this.moveTo(this.over(this.aim), true);
   }
 
-  private aimAt(x: number, y: number): void {
-    const place = this.guide === 'surface' ? this.places.onSurface(x, y) : null;
-    const through = this.guide === 'surface' ? (this.aim ?? this.wanted!.position) : this.wanted!.position;
-    this.aim = place ?? this.places.inPlane(x, y, through);
-    this.moveTo(this.guide === 'surface' ? this.over(this.aim) : this.aim);
+  /** `known`: the place of the tissue there, where it has been looked up. */
+  private aimAt(x: number, y: number, known: Vector3 | null = null): void {
+    const surface = this.guide === 'surface';
+    const place = surface ? (known ?? this.places.onSurface(x, y)) : null;
+    this.aim = place ?? this.places.inPlane(x, y, (surface && this.aim) || this.wanted!.position);
+    this.moveTo(surface ? this.over(this.aim) : this.aim);
   }
 
   /** Where the tip is for a place that is aimed at: in it while the tool works, else over it. */

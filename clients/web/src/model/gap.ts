@@ -54,13 +54,18 @@ class Around {
   }
 }
 
-/** Distance along a ray that meets no tissue, where tissue is all around it; null beside the tissue. */
+/**
+ * Distance along a ray that meets no tissue, where tissue is all around it; null beside the tissue. What is
+ * cut away from the picture is no tissue, and nothing goes on into it.
+ */
 export function acrossGap(
   origin: Vector,
   direction: Vector,
   position: Float32Array,
   normal: Float32Array,
   indices: readonly (Uint32Array | null)[],
+  /** whether a place is cut away from the picture */
+  hidden: (x: number, y: number, z: number) => boolean = () => false,
 ): number | null {
   const right = normalised(cross(direction, Math.abs(direction[2]) < 0.9 ? [0, 0, 1] : [1, 0, 0]));
   const up = cross(right, direction);
@@ -71,9 +76,13 @@ export function acrossGap(
       const x = tx * right[0] + ty * right[1] + tz * right[2];
       const y = tx * up[0] + ty * up[1] + tz * up[2];
       if (x * x + y * y > REACH_M * REACH_M || tx * direction[0] + ty * direction[1] + tz * direction[2] <= 0) continue;
+      if (hidden(position[3 * v], position[3 * v + 1], position[3 * v + 2])) continue;
       const of: Vector = [normal[3 * v], normal[3 * v + 1], normal[3 * v + 2]];
       around.add(x, y, [position[3 * v], position[3 * v + 1], position[3 * v + 2]], of, dot(of, direction) > 0 ? -1 : 1);
     }
   }
-  return around.surrounds ? around.distance(origin, direction) : null;
+  if (!around.surrounds) return null;
+  const distance = around.distance(origin, direction);
+  const [x, y, z] = [0, 1, 2].map((c) => origin[c] + distance * direction[c]);
+  return hidden(x, y, z) ? null : distance;
 }

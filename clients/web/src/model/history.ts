@@ -42,7 +42,10 @@ export class History {
 
   take(moment: Moment): void {
     const last = this.kept.at(-1);
-    if (last && moment.tick <= last.tick) this.forgetFrom(moment.tick);
+    if (last && moment.tick <= last.tick) {
+      this.forgetFrom(moment.tick);
+      this.sinceKept = this.every; // it stands for what was forgotten, or is the same tick told again
+    }
     if (++this.sinceKept < this.every) return;
     this.sinceKept = 0;
     for (const name of moment.tools.keys()) this.names.add(name);

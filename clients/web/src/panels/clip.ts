@@ -1,7 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // A plane that cuts tissue away from the picture, to look inside; nothing of it reaches the simulation.
-import { Box3 } from 'three';
-
 import type { Control } from '../model/control';
 import type { Viewport } from '../scene/viewport';
 import { element, field } from './dom';
@@ -10,22 +8,22 @@ const AXES = [['', 'nothing'], ['0', 'from the right'], ['1', 'from behind'], ['
 const STEPS = 200;
 const MM = 1000;
 
-export function clipFields(control: Control, viewport: Viewport): HTMLElement {
+/** Returns the fields, and what gives the whole tissue back. */
+export function clipFields(control: Control, viewport: Viewport): { fields: HTMLElement; off: () => void } {
   const axis = element('select', { name: 'clip' }, ...AXES.map(([value, words]) => element('option', { value }, words)));
   const share = element('input', { type: 'range', name: 'clip-at', min: '0', max: String(STEPS), value: String(STEPS / 2) });
   const shown = element('small');
   const where = element('label', { class: 'field' }, element('span', {}, 'Up to'), share, shown);
   const apply = (): void => {
     where.hidden = axis.value === '';
-    const rest = control.model.joined?.rest;
-    if (axis.value === '' || !rest) {
+    const all = control.model.joined?.surroundings?.all;
+    if (axis.value === '' || !all) {
       viewport.clip.set(null);
       viewport.invalidate();
       return;
     }
     const along = Number(axis.value) as 0 | 1 | 2;
-    const { min, max } = new Box3().setFromArray(rest);
-    const [least, most] = [min.getComponent(along), max.getComponent(along)];
+    const [least, most] = [all.least[along], all.most[along]];
     const atM = least + ((most - least) * share.valueAsNumber) / STEPS;
     shown.textContent = `${(MM * atM).toFixed(1)} mm`;
     viewport.clip.set({ axis: along, atM });
@@ -35,5 +33,9 @@ export function clipFields(control: Control, viewport: Viewport): HTMLElement {
   share.addEventListener('input', apply);
   control.model.on('joined', apply);
   apply();
-  return element('div', { class: 'form' }, field('Cut away', axis), where);
+  const off = (): void => {
+    axis.value = '';
+    apply();
+  };
+  return { fields: element('div', { class: 'form' }, field('Cut away', axis), where), off };
 }

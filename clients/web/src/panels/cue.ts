@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Where to cut first: a ring that pulses on the tissue and a dot that shows the stroke. It is there until
-// somebody has cut, and comes back with tissue that is whole again.
+// somebody has heated or cut, and comes back with tissue that is whole again.
 import { Vector3 } from 'three';
 
 import { pick } from '../model/pick';
@@ -21,14 +21,9 @@ interface Stroke {
 /** Across the middle of the tissue, on what is on top there. */
 function strokeOf(viewport: Viewport): Stroke | null {
   const { tissue } = viewport;
-  if (!tissue) return null;
-  const rest = tissue.joined.rest;
-  const [least, most] = [new Vector3(Infinity, Infinity, Infinity), new Vector3(-Infinity, -Infinity, -Infinity)];
-  for (let i = 0; i < rest.length; i += 3) {
-    const at = new Vector3(rest[i], rest[i + 1], rest[i + 2]);
-    least.min(at);
-    most.max(at);
-  }
+  const all = tissue?.joined.surroundings?.all;
+  if (!tissue || !all) return null;
+  const [least, most] = [new Vector3(...all.least), new Vector3(...all.most)];
   const [middle, size] = [least.clone().add(most).multiplyScalar(0.5), most.clone().sub(least)];
   const on = (share: number): Vector3 | null => {
     const over = new Vector3(middle.x + share * size.x, middle.y, most.z + size.x);
@@ -61,20 +56,28 @@ export function showCue(control: Control, viewport: Viewport): () => void {
   const line = place.querySelector('line')!;
   let stroke: Stroke | null = null;
   let shown = '';
+  /** epochs in which a tool has been hot, and for which the stroke was laid */
+  let heatedIn: string | null = null;
+  let laidIn: string | null = null;
   const wanted = (): boolean => {
     const { frame, tool, timeline, joined } = model;
     if (!frame || !tool || !joined || !timeline || !model.mayOperate || frame.faulted) return false;
     if (!hasHeat(tool.shape) || (model.driver !== null && !model.driving)) return false;
-    return !frame.tools.some(({ energized }) => energized) && !timeline.events.some(({ kind }) => kind === 'cut');
+    return frame.epoch !== heatedIn && !timeline.events.some(({ kind }) => kind === 'cut');
   };
   const refresh = (): void => {
+    const { frame } = model;
+    if (frame?.tools.some(({ energized }) => energized)) heatedIn = frame.epoch;
     const show = wanted();
-    if (show && place.hidden) stroke = strokeOf(viewport);
+    if (show && laidIn !== frame!.epoch) {
+      stroke = strokeOf(viewport);
+      laidIn = frame!.epoch;
+    }
     place.hidden = !show || stroke === null;
   };
   for (const event of ['frame', 'timeline', 'tools', 'link'] as const) model.on(event, refresh);
   model.on('joined', () => {
-    stroke = null;
+    stroke = laidIn = heatedIn = null;
     place.hidden = true;
   });
   return () => {

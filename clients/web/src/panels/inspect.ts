@@ -35,8 +35,8 @@ function words({ layer, vertex, stressed }: Found, state: VertexState, position:
   return [`${layer}, vertex ${vertex}`, `${at} mm`, temperature, stress, heat].filter((part) => part !== '').join('\n');
 }
 
-/** Returns the switch for it. */
-export function showInspected(control: Control, viewport: Viewport): { switch: HTMLElement } {
+/** Returns the switch for it, and what switches it off. */
+export function showInspected(control: Control, viewport: Viewport): { switch: HTMLElement; off: () => void } {
   const { canvas } = viewport;
   const place = byId('inspected');
   let on = false;
@@ -50,8 +50,9 @@ export function showInspected(control: Control, viewport: Viewport): { switch: H
     asking = true;
     const state = found && (await control.link.inspect(found.vertex));
     asking = false;
-    place.hidden = !on || !found || !state || !viewport.tissue;
-    if (!found || !state || !viewport.tissue) return;
+    // The pointer may have left, or the switch gone off, while the answer was on its way.
+    place.hidden = !on || !pointer || !found || !state || !viewport.tissue;
+    if (place.hidden || !found || !state || !viewport.tissue) return;
     place.textContent = words(found, state, viewport.tissue.position.array);
     const left = Math.min(x - box.left + AWAY_PX, box.width - place.offsetWidth);
     const top = Math.min(y - box.top + AWAY_PX, box.height - place.offsetHeight);
@@ -66,10 +67,15 @@ export function showInspected(control: Control, viewport: Viewport): { switch: H
     place.hidden = true;
   });
   setInterval(() => void tell(), AGAIN_MS);
-  const box = check('Tell what is under the pointer', 'inspect', (now) => {
+  const set = (now: boolean): void => {
     on = now;
     place.hidden = true;
     control.inspect(now);
-  });
-  return { switch: box };
+  };
+  const box = check('Tell what is under the pointer', 'inspect', set);
+  const off = (): void => {
+    box.querySelector('input')!.checked = false;
+    set(false);
+  };
+  return { switch: box, off };
 }

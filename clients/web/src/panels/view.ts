@@ -5,7 +5,6 @@ import { colourAt, MAP_OF, type ColourMap, type Scalar } from '../model/colour_m
 import type { ViewOptions, Viewport } from '../scene/viewport';
 import type { Frame } from '../wire/worker_messages';
 import { cameraViews } from './camera';
-import { clipFields } from './clip';
 import { attempt, button, byId, check, element, field, problemPlace, save, short } from './dom';
 import type { Panel } from './tabs';
 
@@ -88,7 +87,7 @@ function themes(viewport: Viewport): HTMLElement {
   return field('Light', choose);
 }
 
-export function viewPanel(control: Control, viewport: Viewport, inspectSwitch: HTMLElement): Panel {
+export function viewPanel(control: Control, viewport: Viewport, inspectSwitch: HTMLElement, clip: HTMLElement): Panel {
   const { model } = control;
   let options: ViewOptions = { wireframe: false, hiddenLayers: new Set(), colouring: 'tissue', forceArrow: false };
   const refreshLegend = legend(control, () => options);
@@ -125,7 +124,7 @@ export function viewPanel(control: Control, viewport: Viewport, inspectSwitch: H
     check('Wireframe', 'wireframe', (on) => set({ wireframe: on })),
     check('Force on the tool', 'force', (on) => set({ forceArrow: on })),
     inspectSwitch,
-    clipFields(control, viewport),
+    clip,
     cameraViews(viewport),
     themes(viewport),
     element('div', { class: 'buttons' }, png),

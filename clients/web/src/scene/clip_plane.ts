@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // A plane that cuts tissue away from the picture, and from what picks in it.
-import { Vector3, type IUniform, type Vector4 } from 'three';
+import type { IUniform, Vector3, Vector4 } from 'three';
 
 export interface Clip {
   axis: 0 | 1 | 2;
@@ -17,11 +17,14 @@ export class ClipPlane {
     if (clip) value.setComponent(clip.axis, 1).setW(clip.atM);
   }
 
+  /** Whether a place is cut away. */
+  hides(x: number, y: number, z: number): boolean {
+    const { x: nx, y: ny, z: nz, w } = this.uniform.value;
+    return nx * x + ny * y + nz * z > w;
+  }
+
   /** Whether places along a ray are cut away. */
   away(origin: Vector3, direction: Vector3): (distance: number) => boolean {
-    const { x, y, z, w } = this.uniform.value;
-    const normal = new Vector3(x, y, z);
-    const [from, along] = [origin.dot(normal), direction.dot(normal)];
-    return (distance) => from + distance * along > w;
+    return (distance) => this.hides(origin.x + distance * direction.x, origin.y + distance * direction.y, origin.z + distance * direction.z);
   }
 }

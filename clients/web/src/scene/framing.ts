@@ -1,13 +1,14 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // What the camera's home shows: the tissue, and each tool's tip with a part of its shaft.
-import { Box3, Vector3 } from 'three';
+import { Vector3 } from 'three';
 
+import type { Extent } from '../model/field_shape';
 import type { ToolState } from '../wire/records';
 
 const SHAFT_SHOWN = 0.12; // of the tissue's diagonal
 
-export function framedPoints(rest: Float32Array, tools: readonly ToolState[]): Vector3[] {
-  const { min, max } = new Box3().setFromArray(rest);
+export function framedPoints({ least, most }: Extent, tools: readonly ToolState[]): Vector3[] {
+  const [min, max] = [new Vector3(...least), new Vector3(...most)];
   const middle = min.clone().add(max).multiplyScalar(0.5);
   const reach = max.distanceTo(min);
   const corners = [0, 1, 2, 3, 4, 5, 6, 7].map(

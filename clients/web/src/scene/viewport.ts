@@ -276,8 +276,9 @@ export class Viewport {
   }
 
   private frameTissue(): void {
-    if (!this.tissue) return;
-    this.orbit.frame(framedPoints(this.tissue.joined.rest, this.states));
+    const all = this.tissue?.joined.surroundings?.all;
+    if (!all) return;
+    this.orbit.frame(framedPoints(all, this.states));
     this.framed = true;
   }
 

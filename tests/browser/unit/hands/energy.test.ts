@@ -9,11 +9,15 @@ import type { Frame } from '../../../../clients/web/src/wire/worker_messages';
 
 const ME = 7;
 
+/** The daemon's answer to an enable, both resolved when the page has taken it. */
 interface Told {
   energized: boolean;
-  answer(tick: number): void;
-  refuse(words: string): void;
+  answer(tick: number): Promise<void>;
+  refuse(words: string): Promise<void>;
 }
+
+/** Timers run after all that answers have set off. */
+const taken = (): Promise<void> => new Promise((resolve) => setTimeout(resolve));
 
 /** A model and a control of which only what energy uses is there. */
 class Bench {
@@ -32,7 +36,11 @@ class Bench {
     model.on('unsaid', (key) => this.said.delete(key));
     const call = (_method: string, { energized }: { energized: boolean }): Promise<unknown> =>
       new Promise((resolve, reject) => {
-        this.told.push({ energized, answer: (tick) => resolve({ tick }), refuse: (words) => reject(new Error(words)) });
+        this.told.push({
+          energized,
+          answer: (tick) => (resolve({ tick }), taken()),
+          refuse: (words) => (reject(new Error(words)), taken()),
+        });
       });
     this.energy = new Energy(model, { call } as unknown as Control, () => 1);
   }
@@ -58,8 +66,7 @@ class Bench {
   async lit(by: 'space' | 'trigger' | 'pointer' = 'space'): Promise<void> {
     this.frame(10, false);
     this.press(by);
-    this.told[0].answer(11);
-    await Promise.resolve();
+    await this.told[0].answer(11);
     this.frame(12, true);
     expect(this.energy.alive).toBe(true);
     expect(this.said.size).toBe(0);
@@ -90,8 +97,7 @@ describe('energy that is held', () => {
     const bench = new Bench();
     bench.frame(10, false, 'never_enabled');
     bench.press();
-    bench.told[0].answer(11);
-    await Promise.resolve();
+    await bench.told[0].answer(11);
     bench.frame(11, false, 'never_enabled'); // the border where it takes effect: the step comes after it
     expect(bench.said.size).toBe(0);
     bench.frame(12, false, 'never_enabled');
@@ -101,8 +107,7 @@ describe('energy that is held', () => {
   it('refused is said in the daemon’s words', async () => {
     const bench = new Bench();
     bench.press();
-    bench.told[0].refuse('the store is full');
-    await new Promise((resolve) => setTimeout(resolve));
+    await bench.told[0].refuse('the store is full');
     expect(bench.said.get('energy')).toBe('Energy is off: the store is full. Let go of Space and press it again.');
   });
 
@@ -112,8 +117,7 @@ describe('energy that is held', () => {
     bench.press();
     bench.energy.release('space');
     bench.press();
-    bench.told[0].answer(11);
-    await Promise.resolve();
+    await bench.told[0].answer(11);
     bench.frame(12, false);
     expect(bench.energy.alive).toBe(true);
     expect(bench.said.size).toBe(0);

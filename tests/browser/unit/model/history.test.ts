@@ -21,6 +21,17 @@ describe('history', () => {
     expect(history.moments.map(({ tick }) => tick)).toEqual(Array.from({ length: 41 }, (_, i) => i));
   });
 
+  it('takes a tick that is told again for the newest of it, however thinned', () => {
+    const history = new History();
+    const ticks = 300_000;
+    for (let tick = 0; tick < ticks; tick++) history.take(moment(tick));
+    const { tick } = history.moments.at(-1)!;
+    history.take({ ...moment(tick), tools: new Map([['hook', { temperatureC: 5, forceN: 6, energyJ: 7 }]]) });
+    expect(history.at(tick)?.tick).toBe(tick);
+    expect(history.at(tick)?.tools.get('hook')?.forceN).toBe(6);
+    expect(history.moments.filter((one) => one.tick === tick)).toHaveLength(1);
+  });
+
   it('has room for any length, and keeps the beginning and the end of it', () => {
     const history = new History();
     const ticks = 300_000;

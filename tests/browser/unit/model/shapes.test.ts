@@ -106,6 +106,16 @@ describe('gaps', () => {
     }
   });
 
+  it('do not go on where the picture is cut away, nor by what is cut away', () => {
+    const { position, normal, index } = sheet(0);
+    const across = (hidden: (x: number, y: number, z: number) => boolean): number | null =>
+      acrossGap([0.001, 0, 0.1], down, position, normal, [index], hidden);
+    expect(across((x) => x > 0.02)).toBeCloseTo(0.099, 4);
+    expect(across((x, y) => Math.hypot(x - 0.001, y) < 0.001)).toBeNull(); // the place alone is away, no vertex is there
+    expect(across((x) => x > 0.0015)).toBeNull(); // what is left is on one side of it
+    expect(across((_x, _y, z) => z < 0.0005)).toBeCloseTo(0.099, 4);
+  });
+
   it('are not what lies beside the tissue, nor behind the eye, nor hidden', () => {
     const { position, normal, index } = sheet(0);
     for (const beside of [0.0301, 0.032, 0.04, 0.2]) {

@@ -5,6 +5,7 @@ import { spawnSync } from 'node:child_process';
 
 import { Matrix4, Mesh, Triangle, Vector3, type BufferGeometry } from 'three';
 
+import { hasJaws } from '../../../../clients/web/src/model/tool_parts';
 import { ToolView } from '../../../../clients/web/src/scene/tool_view';
 import { TOOL_SHAPES, type Tool } from '../../../../clients/web/src/wire/messages.gen';
 
@@ -102,7 +103,7 @@ describe.each(TOOL_SHAPES)('the drawn %s', (shape) => {
     const random = makeRandom();
     const [hot_radius_m, tip_length_m, shaft_radius_m] = sizes;
     const view = new ToolView({ name: 'it', shape, hot_radius_m, tip_length_m, shaft_radius_m }, { value: new Vector3() });
-    for (const jaw of ['bipolar', 'shears', 'grasper'].includes(shape) ? JAWS : [1]) {
+    for (const jaw of hasJaws(shape) ? JAWS : [1]) {
       for (const part of [0, 1]) {
         const triangles = drawnTriangles(view, jaw, part === 0);
         if (triangles.length === 0) {
