@@ -1,26 +1,400 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Gmsh files: the header, and the walk over the sections of any version. Formats: Gmsh's reference
-// manual, "File formats" (4.1) and "Legacy formats" (1 and 2.2).
+// Gmsh files (.msh) of versions 1, 2.2 (2.0, 2.1) and 4.1: types of elements, what each version has
+// between a section's name and its end, then the walk over the sections. Formats: Gmsh's reference
+// manual, "File formats" (4.1) and "Legacy formats" (1 and 2.2). All failures go to the scan.
 #include "mesh/gmsh.h"
 
 #include <stdlib.h>
 #include <string.h>
 
 #include "cautery/assert.h"
+#include "mesh/mesh_memory.h"
+#include "mesh/node_map.h"
 
+enum { TRIANGLE = 2, TETRAHEDRON = 4, KNOWN_TYPES = 32 }; // the format's own numbers
+
+typedef struct gmsh_file {
+	cau_scan *scan;
+	cau_mesh_builder *builder;
+	cau_node_map nodes;
+	bool has_nodes;
+	int size_bytes; // of a size_t in a binary file of version 4.1
+	struct entity {
+		int32_t dimension;
+		int32_t tag;
+		int32_t region;
+	} * entity; // version 4.1: entities with a physical group, in ascending order
+	int32_t entity_count;
+	int32_t entity_capacity;
+} gmsh_file;
+
+// ---- elements and positions, as all versions have them
+static const struct {
+	int nodes;
+	const char *name;
+} types[KNOWN_TYPES] = {
+	[1] = {2, "lines"},
+	[2] = {3, "triangles"},
+	[3] = {4, "quadrangles"},
+	[4] = {4, "tetrahedra"},
+	[5] = {8, "hexahedra"},
+	[6] = {6, "prisms"},
+	[7] = {5, "pyramids"},
+	[8] = {3, "3-node lines"},
+	[9] = {6, "6-node triangles"},
+	[10] = {9, "9-node quadrangles"},
+	[11] = {10, "10-node tetrahedra"},
+	[12] = {27, "27-node hexahedra"},
+	[13] = {18, "18-node prisms"},
+	[14] = {14, "14-node pyramids"},
+	[15] = {1, "points"},
+	[16] = {8, "8-node quadrangles"},
+	[17] = {20, "20-node hexahedra"},
+	[18] = {15, "15-node prisms"},
+	[19] = {13, "13-node pyramids"},
+	[20] = {9, "9-node triangles"},
+	[21] = {10, "10-node triangles"},
+	[22] = {12, "12-node triangles"},
+	[23] = {15, "15-node triangles"},
+	[24] = {15, "incomplete 15-node triangles"},
+	[25] = {21, "21-node triangles"},
+	[26] = {4, "4-node lines"},
+	[27] = {5, "5-node lines"},
+	[28] = {6, "6-node lines"},
+	[29] = {20, "20-node tetrahedra"},
+	[30] = {35, "35-node tetrahedra"},
+	[31] = {56, "56-node tetrahedra"},
+};
+
+// Nodes of an element of this type, or 0 for a type that is not known.
+static int nodes_of_type(int64_t type)
+{
+	return type > 0 && type < KNOWN_TYPES ? types[type].nodes : 0;
+}
+
+static const char *name_of_type(int type)
+{
+	return nodes_of_type(type) ? types[type].name : "elements of unknown type";
+}
+
+// Reads x, y, z and appends the vertex.
+static void read_position(gmsh_file *gmsh)
+{
+	double position[3];
+	for (int c = 0; c < 3; c++)
+		position[c] = cau_scan_real(gmsh->scan, "a coordinate", 8);
+	cau_mesh_builder_vertex(gmsh->builder, position);
+}
+
+// Passes over the nodes of an element that is not used: in text the rest of its line.
+static void skip_element(gmsh_file *gmsh, int64_t type, int number_bytes)
+{
+	int nodes = nodes_of_type(type);
+	cau_mesh_builder_skip(gmsh->builder, nodes ? type : 0, 1);
+	if (!gmsh->scan->binary)
+		cau_scan_skip_line(gmsh->scan);
+	else if (nodes)
+		cau_scan_skip(gmsh->scan, (int64_t)nodes * number_bytes);
+	else
+		cau_scan_fail(gmsh->scan, CAU_UNSUPPORTED, "elements of unknown type %lld",
+		              (long long)type);
+}
+
+// Reads the nodes of one element (numbers of number_bytes each in a binary file) and appends it, or
+// passes over it when it is of another type.
+static void read_element(gmsh_file *gmsh, int64_t number, int64_t type, int32_t region,
+                         int number_bytes)
+{
+	cau_scan *scan = gmsh->scan;
+	CAU_ASSERT(number_bytes == 4 || number_bytes == 8, "node numbers of %d bytes", number_bytes);
+	if (scan->status)
+		return;
+	if (type != TRIANGLE && type != TETRAHEDRON) {
+		skip_element(gmsh, type, number_bytes);
+		return;
+	}
+	int32_t vertex[4] = {0};
+	CAU_ASSERT(types[type].nodes <= 4, "%d nodes of an element", types[type].nodes);
+	for (int i = 0; i < types[type].nodes; i++) {
+		int64_t node = cau_scan_integer(scan, "a node number", number_bytes, 0, INT64_MAX);
+		vertex[i] = cau_node_map_find(&gmsh->nodes, node);
+		if (vertex[i] < 0)
+			cau_scan_fail(scan, CAU_BAD_MESH, "element %lld names node %lld, which is not there",
+			              (long long)number, (long long)node);
+	}
+	if (type == TRIANGLE)
+		cau_mesh_builder_triangle(gmsh->builder, vertex, region, NULL);
+	else
+		cau_mesh_builder_tetrahedron(gmsh->builder, vertex, region);
+}
+
+// ---- version 1: text only; its $NOD is as version 2.2's $Nodes
+
+// number-of-elements, then: elm-number elm-type reg-phys reg-elem number-of-nodes node-numbers
+static void read_elements_1(gmsh_file *gmsh)
+{
+	cau_scan *scan = gmsh->scan;
+	int64_t count = cau_scan_count(scan, "number of elements", 12);
+	for (int64_t i = 0; i < count && !scan->status; i++) {
+		int64_t number = cau_scan_text_integer(scan, "an element number", 0, INT64_MAX);
+		int64_t type = cau_scan_text_integer(scan, "a type of element", 1, INT32_MAX);
+		int64_t region = cau_scan_text_integer(scan, "a physical group", INT32_MIN, INT32_MAX);
+		cau_scan_text_integer(scan, "an elementary region", INT32_MIN, INT32_MAX);
+		int64_t nodes = cau_scan_text_integer(scan, "number of nodes", 1, INT32_MAX);
+		int expected = nodes_of_type(type);
+		if (!scan->status && expected && nodes != expected)
+			cau_scan_fail(scan, CAU_BAD_SYNTAX, "element %lld has %lld nodes, its type has %d",
+			              (long long)number, (long long)nodes, expected);
+		read_element(gmsh, number, type, (int32_t)region, 4);
+	}
+}
+
+// ---- version 2.2: text or binary
+
+// number-of-nodes (text), then: node-number x y z
+static void read_nodes_2(gmsh_file *gmsh)
+{
+	cau_scan *scan = gmsh->scan;
+	if (gmsh->has_nodes)
+		cau_scan_fail(scan, CAU_BAD_SYNTAX, "the nodes stand twice");
+	gmsh->has_nodes = true;
+	int64_t count = cau_scan_count(scan, "number of nodes", scan->binary ? 28 : 8);
+	cau_scan_skip_line(scan);
+	for (int64_t i = 0; i < count && !scan->status; i++) {
+		int64_t number = cau_scan_integer(scan, "a node number", 4, 0, INT64_MAX);
+		cau_node_map_add(&gmsh->nodes, number, scan);
+		read_position(gmsh);
+	}
+	cau_node_map_seal(&gmsh->nodes, scan);
+}
+
+// The tags and nodes of one element; the first tag is its physical group.
+static void read_tagged_element(gmsh_file *gmsh, int64_t number, int64_t type, int64_t tag_count)
+{
+	cau_scan *scan = gmsh->scan;
+	int64_t region = 0;
+	for (int64_t t = 0; t < tag_count && !scan->status; t++) {
+		int64_t tag = cau_scan_integer(scan, "a tag", 4, INT32_MIN, INT32_MAX);
+		if (t == 0)
+			region = tag;
+	}
+	read_element(gmsh, number, type, (int32_t)region, 4);
+}
+
+// number-of-elements; text: elm-number elm-type number-of-tags tags node-numbers
+static void read_text_elements(gmsh_file *gmsh, int64_t count)
+{
+	cau_scan *scan = gmsh->scan;
+	for (int64_t i = 0; i < count && !scan->status; i++) {
+		int64_t number = cau_scan_text_integer(scan, "an element number", 0, INT64_MAX);
+		int64_t type = cau_scan_text_integer(scan, "a type of element", 1, INT32_MAX);
+		int64_t tag_count = cau_scan_text_integer(scan, "number of tags", 0, INT32_MAX);
+		read_tagged_element(gmsh, number, type, tag_count);
+	}
+}
+
+// Binary: blocks of elm-type num-elm-follow num-tags, then elm-number tags node-numbers of each
+static void read_binary_elements(gmsh_file *gmsh, int64_t count)
+{
+	cau_scan *scan = gmsh->scan;
+	for (int64_t done = 0; done < count && !scan->status;) {
+		int64_t type = cau_scan_integer(scan, "a type of element", 4, 1, INT32_MAX);
+		int64_t follow = cau_scan_integer(scan, "number of elements", 4, 1, count - done);
+		int64_t tag_count = cau_scan_integer(scan, "number of tags", 4, 0, INT32_MAX);
+		for (int64_t i = 0; i < follow && !scan->status; i++) {
+			int64_t number = cau_scan_integer(scan, "an element number", 4, 0, INT32_MAX);
+			read_tagged_element(gmsh, number, type, tag_count);
+		}
+		done += follow;
+	}
+}
+
+static void read_elements_2(gmsh_file *gmsh)
+{
+	cau_scan *scan = gmsh->scan;
+	int64_t count = cau_scan_count(scan, "number of elements", 8);
+	cau_scan_skip_line(scan);
+	if (scan->binary)
+		read_binary_elements(gmsh, count);
+	else
+		read_text_elements(gmsh, count);
+}
+
+// ---- version 4.1: text or binary. "size" below is a size_t of size_bytes, "int" has four bytes,
+// reals have eight.
+static int64_t read_size(gmsh_file *gmsh, const char *what)
+{
+	CAU_ASSERT(gmsh->size_bytes == 4 || gmsh->size_bytes == 8, "sizes of %d bytes",
+	           gmsh->size_bytes);
+	return cau_scan_integer(gmsh->scan, what, gmsh->size_bytes, 0, INT64_MAX);
+}
+
+static int32_t read_int(gmsh_file *gmsh, const char *what, int32_t least, int32_t most)
+{
+	return (int32_t)cau_scan_integer(gmsh->scan, what, 4, least, most);
+}
+
+// A size that counts things of at least this many bytes each, as text or in binary.
+static int64_t read_count(gmsh_file *gmsh, const char *what, int64_t text_bytes,
+                          int64_t binary_bytes)
+{
+	int64_t count = read_size(gmsh, what);
+	cau_scan_check_count(gmsh->scan, what, count, gmsh->scan->binary ? binary_bytes : text_bytes);
+	return gmsh->scan->status ? 0 : count;
+}
+
+static void add_entity(gmsh_file *gmsh, struct entity entity)
+{
+	CAU_ASSERT(gmsh->entity_count <= gmsh->entity_capacity, "%d entities in room for %d",
+	           gmsh->entity_count, gmsh->entity_capacity);
+	if (gmsh->entity_count == gmsh->entity_capacity) {
+		int32_t capacity = gmsh->entity_capacity ? 2 * gmsh->entity_capacity : 16;
+		void *grown = capacity <= CAU_MESH_MAX_ELEMENTS
+		                  ? realloc(gmsh->entity, (size_t)capacity * sizeof *gmsh->entity)
+		                  : NULL;
+		if (!grown) {
+			cau_scan_fail(gmsh->scan, CAU_NO_MEMORY, "no memory for %d entities", capacity);
+			return;
+		}
+		gmsh->entity = grown;
+		gmsh->entity_capacity = capacity;
+	}
+	gmsh->entity[gmsh->entity_count++] = entity;
+}
+
+// tag(int), x y z or a box of six reals, number of physical groups(size), groups(int), and but for
+// points number of bounding entities(size), entities(int). The first group is the region; a
+// negative one is the same group with turned orientation.
+static void read_entity(gmsh_file *gmsh, int32_t dimension)
+{
+	CAU_ASSERT(dimension >= 0 && dimension <= 3, "an entity of dimension %d", dimension);
+	cau_scan *scan = gmsh->scan;
+	struct entity entity = {.dimension = dimension};
+	entity.tag = read_int(gmsh, "an entity's tag", INT32_MIN, INT32_MAX);
+	for (int i = 0; i < (dimension ? 6 : 3); i++)
+		cau_scan_real(scan, "an entity's bound", 8);
+	int64_t group_count = read_count(gmsh, "number of physical groups", 2, 4);
+	for (int64_t i = 0; i < group_count && !scan->status; i++) {
+		int32_t group = read_int(gmsh, "a physical group", -INT32_MAX, INT32_MAX);
+		if (i == 0)
+			entity.region = abs(group);
+	}
+	int64_t bound_count = dimension ? read_count(gmsh, "number of bounding entities", 2, 4) : 0;
+	for (int64_t i = 0; i < bound_count && !scan->status; i++)
+		read_int(gmsh, "a bounding entity", INT32_MIN, INT32_MAX);
+	if (entity.region && !scan->status)
+		add_entity(gmsh, entity);
+}
+
+static int compare_entities(const void *left, const void *right)
+{
+	const struct entity *a = left, *b = right;
+	int dimensions = (a->dimension > b->dimension) - (a->dimension < b->dimension);
+	return dimensions ? dimensions : (a->tag > b->tag) - (a->tag < b->tag);
+}
+
+// Numbers of points, curves, surfaces and volumes (size each), then these.
+static void read_entities_4(gmsh_file *gmsh)
+{
+	int64_t count[4];
+	for (int dimension = 0; dimension < 4; dimension++)
+		count[dimension] = read_count(gmsh, "number of entities", 8, 28);
+	for (int32_t dimension = 0; dimension < 4; dimension++)
+		for (int64_t i = 0; i < count[dimension] && !gmsh->scan->status; i++)
+			read_entity(gmsh, dimension);
+	if (gmsh->entity_count)
+		qsort(gmsh->entity, (size_t)gmsh->entity_count, sizeof *gmsh->entity, compare_entities);
+}
+
+static int32_t region_of(const gmsh_file *gmsh, int32_t dimension, int32_t tag)
+{
+	if (!gmsh->entity_count)
+		return 0;
+	struct entity key = {.dimension = dimension, .tag = tag};
+	const struct entity *found =
+		bsearch(&key, gmsh->entity, (size_t)gmsh->entity_count, sizeof key, compare_entities);
+	return found ? found->region : 0;
+}
+
+// dimension(int) tag(int) parametric(int) number of nodes(size), all node numbers(size), then all
+// positions: x y z and, where parametric, one more real per dimension.
+static void read_node_block(gmsh_file *gmsh)
+{
+	cau_scan *scan = gmsh->scan;
+	int32_t dimension = read_int(gmsh, "an entity's dimension", 0, 3);
+	read_int(gmsh, "an entity's tag", INT32_MIN, INT32_MAX);
+	int32_t parametric = read_int(gmsh, "0 or 1 (parametric)", 0, 1);
+	int64_t count = read_count(gmsh, "number of nodes", 8, 24 + gmsh->size_bytes);
+	for (int64_t i = 0; i < count && !scan->status; i++) {
+		int64_t number = read_size(gmsh, "a node number");
+		cau_node_map_add(&gmsh->nodes, number, scan);
+	}
+	for (int64_t i = 0; i < count && !scan->status; i++) {
+		read_position(gmsh);
+		for (int32_t p = 0; p < parametric * dimension; p++)
+			cau_scan_real(scan, "a parametric coordinate", 8);
+	}
+}
+
+// number of blocks, number of nodes, least and greatest node number (size each), then the blocks.
+static void read_nodes_4(gmsh_file *gmsh)
+{
+	cau_scan *scan = gmsh->scan;
+	if (gmsh->has_nodes)
+		cau_scan_fail(scan, CAU_BAD_SYNTAX, "the nodes stand twice");
+	gmsh->has_nodes = true;
+	int64_t block_count = read_count(gmsh, "number of blocks", 8, 12 + gmsh->size_bytes);
+	int64_t node_count = read_count(gmsh, "number of nodes", 8, 24 + gmsh->size_bytes);
+	read_size(gmsh, "the least node number");
+	read_size(gmsh, "the greatest node number");
+	for (int64_t i = 0; i < block_count && !scan->status; i++)
+		read_node_block(gmsh);
+	if (gmsh->nodes.count != node_count)
+		cau_scan_fail(scan, CAU_BAD_SYNTAX, "%lld nodes were announced, but %d stand here",
+		              (long long)node_count, gmsh->nodes.count);
+	cau_node_map_seal(&gmsh->nodes, scan);
+}
+
+// dimension(int) tag(int) type(int) number of elements(size), then element and node numbers(size).
+static void read_element_block(gmsh_file *gmsh)
+{
+	cau_scan *scan = gmsh->scan;
+	int32_t dimension = read_int(gmsh, "an entity's dimension", 0, 3);
+	int32_t tag = read_int(gmsh, "an entity's tag", INT32_MIN, INT32_MAX);
+	int32_t type = read_int(gmsh, "a type of element", 1, INT32_MAX);
+	int32_t region = region_of(gmsh, dimension, tag);
+	int64_t count = read_count(gmsh, "number of elements", 4, 2 * gmsh->size_bytes);
+	for (int64_t i = 0; i < count && !scan->status; i++) {
+		int64_t number = read_size(gmsh, "an element number");
+		read_element(gmsh, number, type, region, gmsh->size_bytes);
+	}
+}
+
+// number of blocks, number of elements, least and greatest number (size each), then the blocks.
+static void read_elements_4(gmsh_file *gmsh)
+{
+	cau_scan *scan = gmsh->scan;
+	int64_t block_count = read_count(gmsh, "number of blocks", 8, 12 + gmsh->size_bytes);
+	read_count(gmsh, "number of elements", 4, 2 * gmsh->size_bytes);
+	read_size(gmsh, "the least element number");
+	read_size(gmsh, "the greatest element number");
+	for (int64_t i = 0; i < block_count && !scan->status; i++)
+		read_element_block(gmsh);
+}
+
+// ---- the sections of each version
 typedef struct section {
 	const char *name, *end;
-	void (*read)(cau_gmsh *gmsh);
+	void (*read)(gmsh_file *gmsh);
 } section;
 
 static const section sections_1[] = {
-	{"$NOD", "$ENDNOD", cau_gmsh_nodes_2}, {"$ELM", "$ENDELM", cau_gmsh_elements_1}, {0}};
-static const section sections_2[] = {{"$Nodes", "$EndNodes", cau_gmsh_nodes_2},
-                                     {"$Elements", "$EndElements", cau_gmsh_elements_2},
-                                     {0}};
-static const section sections_4[] = {{"$Entities", "$EndEntities", cau_gmsh_entities_4},
-                                     {"$Nodes", "$EndNodes", cau_gmsh_nodes_4},
-                                     {"$Elements", "$EndElements", cau_gmsh_elements_4},
+	{"$NOD", "$ENDNOD", read_nodes_2}, {"$ELM", "$ENDELM", read_elements_1}, {0}};
+static const section sections_2[] = {
+	{"$Nodes", "$EndNodes", read_nodes_2}, {"$Elements", "$EndElements", read_elements_2}, {0}};
+static const section sections_4[] = {{"$Entities", "$EndEntities", read_entities_4},
+                                     {"$Nodes", "$EndNodes", read_nodes_4},
+                                     {"$Elements", "$EndElements", read_elements_4},
                                      {0}};
 
 // The number one in binary, from which the byte order is known.
@@ -36,7 +410,7 @@ static void read_byte_order(cau_scan *scan)
 }
 
 // $MeshFormat: version, whether binary, size of a number. Returns the version's sections.
-static const section *read_header(cau_gmsh *gmsh)
+static const section *read_header(gmsh_file *gmsh)
 {
 	cau_scan *scan = gmsh->scan;
 	double version = cau_scan_word_real(scan, cau_scan_word(scan), "a version");
@@ -71,7 +445,7 @@ static void skip_section(cau_scan *scan, cau_word name)
 	cau_scan_skip_line(scan);
 }
 
-static void read_section(cau_gmsh *gmsh, const section *known, cau_word name)
+static void read_section(gmsh_file *gmsh, const section *known, cau_word name)
 {
 	CAU_ASSERT(name.length > 0, "a section without a name, at byte %zu", gmsh->scan->at);
 	cau_scan *scan = gmsh->scan;
@@ -93,7 +467,7 @@ static void read_section(cau_gmsh *gmsh, const section *known, cau_word name)
 cau_status cau_mesh_read_gmsh(cau_mesh_builder *builder)
 {
 	cau_scan *scan = builder->scan;
-	cau_gmsh gmsh = {.scan = scan, .builder = builder};
+	gmsh_file gmsh = {.scan = scan, .builder = builder};
 	const section *known = sections_1;
 	if (cau_word_is(cau_scan_peek(scan), "$MeshFormat")) {
 		cau_scan_word(scan);
@@ -101,7 +475,7 @@ cau_status cau_mesh_read_gmsh(cau_mesh_builder *builder)
 	}
 	for (cau_word name = cau_scan_word(scan); name.length; name = cau_scan_word(scan))
 		read_section(&gmsh, known, name);
-	cau_mesh_builder_check(builder, cau_gmsh_type_name);
+	cau_mesh_builder_check(builder, name_of_type);
 	cau_node_map_finish(&gmsh.nodes);
 	free(gmsh.entity);
 	return scan->status;
