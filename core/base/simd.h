@@ -36,6 +36,8 @@ typedef real vreal __attribute__((vector_size(VECTOR_BYTES), may_alias));
 typedef real_bits vmask __attribute__((vector_size(VECTOR_BYTES), may_alias));
 typedef real vreal_memory __attribute__((vector_size(VECTOR_BYTES), may_alias, aligned(4)));
 
+typedef real vertex_reals __attribute__((vector_size(4 * sizeof(real)), may_alias)); // x, y, z, 0
+
 #define INLINE static inline __attribute__((always_inline))
 
 // The intrinsic of this tier and precision, where there is one.

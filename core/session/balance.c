@@ -9,10 +9,8 @@ static cau_vec3 elastic_gradient(const cau_session *session, int32_t vertex)
 {
 	CAU_ASSERT_INDEX(vertex, session->tissue.vertex_count);
 	// the solver's gradient vector after a plain sum of the element records
-	int single = session->solver.elements.single;
 	double g[3];
-	for (int c = 0; c < 3; ++c)
-		g[c] = cau_real_get(session->solver.gradient, single, 4 * (int64_t)vertex + c);
+	session->solver.kernels->vectors->read(session->solver.gradient, vertex, g);
 	return cau_vec3_of(g);
 }
 
@@ -23,13 +21,11 @@ void cau_session_balance(cau_session *session, cau_balance *balance)
 	*balance = (cau_balance){0};
 	// residual of eq. 4 at the present state, with the present reactions
 	cau_solver_evaluate(solver);
-	for (int32_t i = 0; i < session->contact.row_count; ++i)
-		for (int c = 0; c < 3; ++c) {
-			int64_t at = 4 * (int64_t)session->contact.row[i].vertex + c;
-			double g = cau_real_get(solver->gradient, solver->elements.single, at);
-			cau_real_set(solver->gradient, solver->elements.single, at,
-			             g - session->contact.row[i].reaction[c]);
-		}
+	for (int32_t i = 0; i < session->contact.row_count; ++i) {
+		const cau_contact_row *row = &session->contact.row[i];
+		const double off[3] = {-row->reaction[0], -row->reaction[1], -row->reaction[2]};
+		solver->kernels->vectors->add(solver->gradient, row->vertex, off);
+	}
 	double squared = 0;
 	for (int32_t v = 0; v < tissue->vertex_count; ++v)
 		squared += cau_dot(elastic_gradient(session, v), elastic_gradient(session, v));

@@ -134,7 +134,7 @@ static cau_status make_solver(cau_session *session, const cau_session_def *def, 
 		status =
 			cau_matrix_update_create(&session->update, solver, &dissection->alive, arena, error);
 	if (!status)
-		status = cau_contact_create(&session->contact, &session->tissue, solver->elements.single,
+		status = cau_contact_create(&session->contact, &session->tissue, solver->kernels->vectors,
 		                            arena, error);
 	return status;
 }

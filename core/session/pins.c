@@ -21,10 +21,10 @@ cau_status cau_session_rebuild_system(cau_session *session, const int32_t *permu
 	solver->factor_version++;
 	solver->factor_epoch++;
 	// a pinned vertex has no row any more, and nothing writes its part of these from now on
-	size_t vector = 4 * (size_t)session->tissue.vertex_count;
-	memset(solver->increment, 0, vector * cau_real_bytes(solver->elements.single));
-	memset(solver->history.last_increment, 0, vector * cau_real_bytes(solver->elements.single));
-	memset(session->contact.solution, 0, vector * cau_real_bytes(solver->elements.single));
+	size_t bytes = 4 * (size_t)session->tissue.vertex_count * solver->kernels->vectors->real_bytes;
+	memset(solver->increment, 0, bytes);
+	memset(solver->history.last_increment, 0, bytes);
+	memset(session->contact.solution, 0, bytes);
 	// the last rebuilt system goes: however often pins change, a session holds two at most
 	cau_arena *arena = &session->rebuilt_arena;
 	cau_arena_finish(arena);

@@ -38,14 +38,6 @@ typedef struct snapshot_header {
 	double gravity_m_s2[3];
 } snapshot_header;
 
-static void pass_arrays(snapshot_archive *archive, void *const *arrays, int count, int32_t slots,
-                        int single)
-{
-	CAU_ASSERT(count >= 0 && slots >= 0, "%d arrays of %d slots", count, slots);
-	for (int i = 0; i < count; ++i)
-		snapshot_pass(archive, arrays[i], (size_t)slots * cau_real_bytes(single));
-}
-
 // Columns of A^-1 that contacts keep: they lag behind cuts, so they cannot be made again.
 static int32_t kept_columns(const cau_session *session)
 {
@@ -58,10 +50,12 @@ static void pass_columns(snapshot_archive *archive, cau_session *session)
 {
 	cau_contact_set *set = &session->contact;
 	int32_t count = kept_columns(session);
-	int single = session->solver.elements.single;
+	size_t bytes =
+		(size_t)session->tissue.vertex_count * session->solver.kernels->vectors->real_bytes;
 	snapshot_pass(archive, set->column_vertex, (size_t)count * sizeof *set->column_vertex);
 	snapshot_pass(archive, set->column_version, (size_t)count * sizeof *set->column_version);
-	pass_arrays(archive, set->column, count, session->tissue.vertex_count, single);
+	for (int32_t i = 0; i < count; ++i)
+		snapshot_pass(archive, set->column[i], bytes);
 	for (int32_t i = 0; i < count; ++i)
 		snapshot_pass(archive, set->inverse + (size_t)i * CAU_MAX_CONTACTS,
 		              (size_t)count * sizeof *set->inverse);

@@ -17,10 +17,9 @@ typedef struct mix {
 
 static int64_t chunk_reals(const cau_step_solver *solver, int32_t chunk, int64_t *first)
 {
-	CAU_ASSERT_INDEX(chunk, solver->chunk_count);
-	int64_t total = 4 * (int64_t)solver->tissue->vertex_count, count = 4 * CAU_VERTEX_CHUNK;
-	*first = chunk * count;
-	return *first + count > total ? total - *first : count;
+	int32_t vertex, last = cau_solver_chunk_end(solver, chunk, &vertex);
+	*first = 4 * (int64_t)vertex;
+	return 4 * (int64_t)(last - vertex);
 }
 
 void cau_anderson_start(cau_step_solver *solver)
@@ -115,9 +114,9 @@ int cau_anderson_mix(cau_step_solver *solver, int32_t iteration)
 	return solver->history.count > 0;
 }
 
-static void swap(void **a, void **b)
+static void swap(cau_reals **a, cau_reals **b)
 {
-	void *kept = *a;
+	cau_reals *kept = *a;
 	*a = *b;
 	*b = kept;
 }

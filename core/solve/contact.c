@@ -6,20 +6,20 @@
 #include "cautery/assert.h"
 #include "solve/hold.h"
 
-cau_status cau_contact_create(cau_contact_set *set, const cau_tissue *tissue, int single,
-                              cau_arena *arena, cau_error *error)
+cau_status cau_contact_create(cau_contact_set *set, const cau_tissue *tissue,
+                              const cau_vectors *vectors, cau_arena *arena, cau_error *error)
 {
 	size_t n = (size_t)tissue->vertex_count;
 	set->inverse = cau_arena_array(arena, CAU_MAX_CONTACTS * CAU_MAX_CONTACTS, sizeof(double));
 	set->hold = cau_arena_array(arena, CAU_MAX_CONTACTS * CAU_MAX_CONTACTS, sizeof(double));
 	set->step = cau_arena_array(arena, 3 * CAU_MAX_CONTACTS, sizeof(double));
 	set->before = cau_arena_array(arena, 3 * CAU_MAX_CONTACTS, sizeof(double));
-	set->unit = cau_arena_array(arena, 4 * n, cau_real_bytes(single));
-	set->solution = cau_arena_array(arena, 4 * n, cau_real_bytes(single));
+	set->unit = cau_arena_array(arena, 4 * n, vectors->real_bytes);
+	set->solution = cau_arena_array(arena, 4 * n, vectors->real_bytes);
 	int missing =
 		!set->inverse || !set->hold || !set->step || !set->before || !set->unit || !set->solution;
 	for (int32_t k = 0; k < CAU_MAX_CONTACTS && !missing; ++k) {
-		set->column[k] = cau_arena_array(arena, n, cau_real_bytes(single));
+		set->column[k] = cau_arena_array(arena, n, vectors->real_bytes);
 		missing = !set->column[k];
 	}
 	return missing ? cau_fail(error, CAU_NO_MEMORY, NULL, "no memory for contacts") : CAU_OK;
@@ -45,22 +45,22 @@ static void make_columns(cau_contact_set *set, cau_step_solver *solver, const in
                          int32_t count)
 {
 	CAU_ASSERT(count >= 1 && count <= 3, "%d columns at once", count);
-	int single = solver->elements.single;
+	static const double load[3][3] = {{1, 0, 0}, {0, 1, 0}, {0, 0, 1}};
+	static const double unload[3][3] = {{-1, 0, 0}, {0, -1, 0}, {0, 0, -1}};
+	const cau_vectors *vectors = solver->kernels->vectors;
 	for (int32_t c = 0; c < count; ++c)
-		cau_real_set(set->unit, single, 4 * (int64_t)set->column_vertex[place[c]] + c, 1);
+		vectors->add(set->unit, set->column_vertex[place[c]], load[c]);
 	cau_solver_apply_inverse(solver, set->unit, set->solution, 1);
 	for (int32_t c = 0; c < count; ++c) {
 		int32_t p = place[c];
 		CAU_ASSERT_INDEX(p, set->column_count);
-		for (int32_t v = 0; v < solver->tissue->vertex_count; ++v)
-			cau_real_set(set->column[p], single, v,
-			             cau_real_get(set->solution, single, 4 * (int64_t)v + c));
+		vectors->take_coordinate(set->column[p], set->solution, c, solver->tissue->vertex_count);
 		for (int32_t i = 0; i < set->column_count; ++i) {
-			double s = cau_real_get(set->column[p], single, set->column_vertex[i]);
+			double s = vectors->at(set->column[p], set->column_vertex[i]);
 			set->inverse[p * CAU_MAX_CONTACTS + i] = set->inverse[i * CAU_MAX_CONTACTS + p] = s;
 		}
 		set->column_version[p] = solver->factor_version;
-		cau_real_set(set->unit, single, 4 * (int64_t)set->column_vertex[p] + c, 0);
+		vectors->add(set->unit, set->column_vertex[p], unload[c]);
 	}
 }
 
@@ -83,7 +83,7 @@ static void drop_unused(cau_contact_set *set)
 	for (int32_t k = 0; k < set->column_count; ++k) {
 		if (!used[k])
 			continue;
-		void *column = set->column[kept];
+		cau_reals *column = set->column[kept];
 		set->column[kept] = set->column[k];
 		set->column[k] = column;
 		set->column_vertex[kept] = set->column_vertex[k];
@@ -257,13 +257,10 @@ typedef struct spread {
 
 static void spread_part(void *context, int32_t chunk)
 {
-	CAU_ASSERT_INDEX(chunk, ((const spread *)context)->solver->chunk_count);
 	const spread *work = context;
 	const cau_contact_set *set = work->set;
 	cau_step_solver *solver = work->solver;
-	int32_t first = chunk * CAU_VERTEX_CHUNK, last = first + CAU_VERTEX_CHUNK;
-	if (last > solver->tissue->vertex_count)
-		last = solver->tissue->vertex_count;
+	int32_t first, last = cau_solver_chunk_end(solver, chunk, &first);
 	for (int32_t i = 0; i < set->row_count; ++i) {
 		const cau_contact_row *row = &set->row[i];
 		double dr[3];
@@ -276,15 +273,14 @@ static void spread_part(void *context, int32_t chunk)
 
 static void take_off_gradient(cau_contact_set *set, cau_step_solver *solver)
 {
-	int single = solver->elements.single;
-	for (int32_t i = 0; i < set->row_count; ++i)
+	for (int32_t i = 0; i < set->row_count; ++i) {
+		double change[3];
 		for (int c = 0; c < 3; ++c) {
-			int64_t at = 4 * (int64_t)set->row[i].vertex + c;
-			double dr = set->row[i].reaction[c] - set->before[3 * i + c];
-			cau_real_set(solver->gradient, single, at,
-			             cau_real_get(solver->gradient, single, at) - dr);
+			change[c] = set->before[3 * i + c] - set->row[i].reaction[c];
 			set->before[3 * i + c] = set->row[i].reaction[c];
 		}
+		solver->kernels->vectors->add(solver->gradient, set->row[i].vertex, change);
+	}
 }
 
 void cau_contact_load(cau_contact_set *set, cau_step_solver *solver)
@@ -300,9 +296,7 @@ void cau_contact_correct(cau_contact_set *set, cau_step_solver *solver)
 	for (int32_t i = 0; i < set->row_count; ++i) {
 		cau_contact_row *row = &set->row[i];
 		measure_gap(set, solver, row);
-		for (int c = 0; c < 3; ++c)
-			set->step[3 * i + c] = cau_real_get(solver->increment, solver->elements.single,
-			                                    4 * (int64_t)row->vertex + c);
+		solver->kernels->vectors->read(solver->increment, row->vertex, set->step + 3 * i);
 	}
 	for (int sweep = 0; sweep < CAU_CONTACT_SWEEPS; ++sweep) {
 		cau_hold_solve(set, solver);
@@ -316,10 +310,11 @@ void cau_contact_correct(cau_contact_set *set, cau_step_solver *solver)
 double cau_contact_work(const cau_contact_set *set, const cau_step_solver *solver)
 {
 	double work = 0;
-	for (int32_t i = 0; i < set->row_count; ++i)
+	for (int32_t i = 0; i < set->row_count; ++i) {
+		double way[3];
+		solver->kernels->vectors->read(solver->trial_increment, set->row[i].vertex, way);
 		for (int c = 0; c < 3; ++c)
-			work += fabs(set->row[i].reaction[c] *
-			             cau_real_get(solver->trial_increment, solver->elements.single,
-			                          4 * (int64_t)set->row[i].vertex + c));
+			work += fabs(set->row[i].reaction[c] * way[c]);
+	}
 	return 2 * work;
 }

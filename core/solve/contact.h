@@ -53,19 +53,20 @@ struct cau_contact_set {
 	int32_t column_count;
 	int32_t column_vertex[CAU_MAX_CONTACTS];
 	uint64_t column_version[CAU_MAX_CONTACTS]; // of the factor they were made from
-	void *column[CAU_MAX_CONTACTS];            // real (vertex_count), m/N
+	cau_reals *column[CAU_MAX_CONTACTS];       // (vertex_count), m/N
 	uint64_t epoch;                            // of the factor: another one empties the columns
 	double *inverse;    // (CAU_MAX_CONTACTS x CAU_MAX_CONTACTS): S by columns' places, m/N
 	double *step;       // (CAU_MAX_CONTACTS x 3): d before correction, m
 	double *before;     // (CAU_MAX_CONTACTS x 3): reactions before correction, N
 	int32_t hold_count; // attached rows, solved all at once: hold.h
 	int32_t hold_row[CAU_MAX_CONTACTS];
-	double *hold;          // (CAU_MAX_CONTACTS x CAU_MAX_CONTACTS): factor of S + 1/k over them
-	void *unit, *solution; // real vectors by vertex
+	double *hold; // (CAU_MAX_CONTACTS x CAU_MAX_CONTACTS): factor of S + 1/k over them
+	cau_reals *unit, *solution;
 };
 
-cau_status cau_contact_create(cau_contact_set *set, const cau_tissue *tissue, int single,
-                              cau_arena *arena, cau_error *error);
+// `vectors`: of the solver's precision.
+cau_status cau_contact_create(cau_contact_set *set, const cau_tissue *tissue,
+                              const cau_vectors *vectors, cau_arena *arena, cau_error *error);
 
 // Adds a row; returns 0 when the set is full (the caller offers the deepest first).
 int cau_contact_add(cau_contact_set *set, const cau_contact_row *row);

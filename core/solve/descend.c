@@ -8,10 +8,9 @@
 #include "solve/contact.h"
 #include "solve/solver.h"
 
-// What rounding can do to a sum, relative to its terms.
 static double rounding(const cau_step_solver *solver)
 {
-	return solver->elements.single ? 1e-6 : 1e-13;
+	return solver->kernels->vectors->rounding;
 }
 
 static double objective_noise(const cau_step_solver *solver)
@@ -22,23 +21,19 @@ static double objective_noise(const cau_step_solver *solver)
 // ---- products of vectors by vertex
 typedef struct product {
 	cau_step_solver *solver;
-	const char *a, *b; // real
+	const cau_reals *a, *b;
 } product;
 
 static void product_part(void *context, int32_t chunk)
 {
-	CAU_ASSERT_INDEX(chunk, ((const product *)context)->solver->chunk_count);
 	const product *work = context;
 	const cau_step_solver *solver = work->solver;
-	size_t real = cau_real_bytes(solver->elements.single);
-	int64_t first = 4 * (int64_t)chunk * CAU_VERTEX_CHUNK, n = 4 * (int64_t)CAU_VERTEX_CHUNK;
-	if (first + n > 4 * (int64_t)solver->tissue->vertex_count)
-		n = 4 * (int64_t)solver->tissue->vertex_count - first;
+	int32_t first, last = cau_solver_chunk_end(solver, chunk, &first);
 	solver->chunk_dot[chunk] =
-		solver->kernels->dot(work->a + (size_t)first * real, work->b + (size_t)first * real, n);
+		solver->kernels->dot(work->a, work->b, 4 * (int64_t)first, 4 * (int64_t)(last - first));
 }
 
-static double dot(cau_step_solver *solver, const void *a, const void *b)
+static double dot(cau_step_solver *solver, const cau_reals *a, const cau_reals *b)
 {
 	double sum = 0;
 	cau_pool_run(solver->pool, solver->chunk_count, product_part, &(product){solver, a, b});
@@ -59,24 +54,12 @@ static void move_part(void *context, int32_t chunk)
 {
 	const move *work = context;
 	cau_step_solver *solver = work->solver;
-	int32_t first = chunk * CAU_VERTEX_CHUNK, last = first + CAU_VERTEX_CHUNK;
-	if (last > solver->tissue->vertex_count)
-		last = solver->tissue->vertex_count;
-	double *before = solver->position_before, *x = solver->position;
+	int32_t first, last = cau_solver_chunk_end(solver, chunk, &first);
 	if (work->leave)
-		memcpy(before + 3 * first, x + 3 * first, 3 * (size_t)(last - first) * sizeof *x);
-	if (solver->elements.single) {
-		const float *d = solver->trial_increment;
-		for (int32_t v = first; v < last; ++v)
-			for (int c = 0; c < 3; ++c)
-				x[3 * v + c] = before[3 * v + c] + work->scale * (double)d[4 * v + c];
-	} else {
-		const double *d = solver->trial_increment;
-		for (int32_t v = first; v < last; ++v)
-			for (int c = 0; c < 3; ++c)
-				x[3 * v + c] = before[3 * v + c] + work->scale * d[4 * v + c];
-	}
-	cau_solver_displace_chunk(solver, chunk);
+		memcpy(solver->position_before + 3 * first, solver->position + 3 * first,
+		       3 * (size_t)(last - first) * sizeof *solver->position);
+	solver->kernels->vectors->step(solver, work->scale, first, last);
+	solver->kernels->vectors->displace(solver, first, last);
 }
 
 static void leave(cau_step_solver *solver)
@@ -98,7 +81,7 @@ static void scale_trial(cau_step_solver *solver, double scale)
 static void use_plain_step(cau_step_solver *solver)
 {
 	memcpy(solver->trial_increment, solver->history.last_increment,
-	       4 * (size_t)solver->tissue->vertex_count * cau_real_bytes(solver->elements.single));
+	       4 * (size_t)solver->tissue->vertex_count * solver->kernels->vectors->real_bytes);
 }
 
 // Where the parabola through the objective before the step, its slope there and its value after a

@@ -4,29 +4,11 @@
 #include "cautery/assert.h"
 #include "solve/solver.h"
 
-void cau_solver_displace_chunk(cau_step_solver *solver, int32_t chunk)
-{
-	CAU_ASSERT_INDEX(chunk, solver->chunk_count);
-	int32_t first = chunk * CAU_VERTEX_CHUNK, last = first + CAU_VERTEX_CHUNK;
-	if (last > solver->tissue->vertex_count)
-		last = solver->tissue->vertex_count;
-	const double *x = solver->position, *rest = solver->tissue->rest;
-	if (solver->elements.single) {
-		float *u = solver->displacement;
-		for (int32_t v = first; v < last; ++v)
-			for (int c = 0; c < 3; ++c)
-				u[4 * v + c] = (float)(x[3 * v + c] - rest[3 * v + c]);
-	} else {
-		double *u = solver->displacement;
-		for (int32_t v = first; v < last; ++v)
-			for (int c = 0; c < 3; ++c)
-				u[4 * v + c] = x[3 * v + c] - rest[3 * v + c];
-	}
-}
-
 static void displacement_part(void *context, int32_t chunk)
 {
-	cau_solver_displace_chunk(context, chunk);
+	const cau_step_solver *solver = context;
+	int32_t first, last = cau_solver_chunk_end(solver, chunk, &first);
+	solver->kernels->vectors->displace(solver, first, last);
 }
 
 static void local_part(void *context, int32_t index)
@@ -37,56 +19,31 @@ static void local_part(void *context, int32_t index)
 	                       solver->diagonal);
 }
 
-// Adds inertia m/dt^2 (x - s) to the chunk's gradient and returns its energy.
-#define ADD_INERTIA(real)                                                                          \
-	static double add_inertia_##real(const cau_step_solver *solver, int32_t first, int32_t last)   \
-	{                                                                                              \
-		double energy = 0, scale = 1 / (solver->step_s * solver->step_s);                          \
-		const double *x = solver->position, *s = solver->predicted;                                \
-		real *gradient = solver->gradient;                                                         \
-		for (int32_t v = first; v < last; ++v) {                                                   \
-			double m = scale * solver->tissue->mass[v], free = !solver->fixed[v];                  \
-			for (int c = 0; c < 3; ++c) {                                                          \
-				double away = x[3 * v + c] - s[3 * v + c];                                         \
-				energy += m * away * away;                                                         \
-				gradient[4 * v + c] = (real)(free * ((double)gradient[4 * v + c] + m * away));     \
-			}                                                                                      \
-		}                                                                                          \
-		return energy / 2;                                                                         \
-	}
-ADD_INERTIA(float)
-ADD_INERTIA(double)
-
 static void vertex_part(void *context, int32_t chunk)
 {
 	cau_step_solver *solver = context;
-	CAU_ASSERT_INDEX(chunk, solver->chunk_count);
-	int32_t first = chunk * CAU_VERTEX_CHUNK, last = first + CAU_VERTEX_CHUNK;
-	if (last > solver->tissue->vertex_count)
-		last = solver->tissue->vertex_count;
+	int32_t first, last = cau_solver_chunk_end(solver, chunk, &first);
 	solver->kernels->sum(&solver->elements, &solver->slots.incidence, first, last,
 	                     solver->gradient);
-	solver->chunk_energy[chunk] = solver->elements.single ? add_inertia_float(solver, first, last)
-	                                                      : add_inertia_double(solver, first, last);
+	solver->chunk_energy[chunk] = solver->kernels->vectors->add_inertia(solver, first, last);
 }
 
 static double add_drag(cau_step_solver *solver)
 {
 	double energy = 0;
-	int single = solver->elements.single;
 	for (int32_t k = 0; k < solver->drag_count; ++k) {
 		const cau_drag *drag = &solver->drag[k];
 		CAU_ASSERT_INDEX(drag->vertex, solver->tissue->vertex_count);
 		CAU_ASSERT(drag->coefficient >= 0, "a drag of %g N/m", drag->coefficient);
 		if (solver->fixed[drag->vertex])
 			continue;
+		double pull[3];
 		for (int c = 0; c < 3; ++c) {
-			int64_t i = 4 * (int64_t)drag->vertex + c;
 			double away = solver->position[3 * drag->vertex + c] - drag->target[c];
 			energy += drag->coefficient * away * away / 2;
-			cau_real_set(solver->gradient, single, i,
-			             cau_real_get(solver->gradient, single, i) + drag->coefficient * away);
+			pull[c] = drag->coefficient * away;
 		}
+		solver->kernels->vectors->add(solver->gradient, drag->vertex, pull);
 	}
 	return energy;
 }

@@ -1,17 +1,12 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // A^-1 of a vector: by the packed sweeps, or by the diagonal of eq. 7.
-#include <string.h>
-
 #include "cautery/assert.h"
 #include "solve/solver.h"
 
-typedef float vertex_single __attribute__((vector_size(16), may_alias));
-typedef double vertex_double __attribute__((vector_size(32), may_alias));
-
 typedef struct sweep_run {
 	const cau_step_solver *solver;
-	const void *in; // real by vertex
-	void *out;
+	const cau_reals *in; // by vertex
+	cau_reals *out;
 	double sign;
 } sweep_run;
 
@@ -26,62 +21,30 @@ static int32_t chunk_end(const cau_step_solver *solver, int32_t first)
 	return last < solver->system.row_count ? last : solver->system.row_count;
 }
 
-// field[place] = sign * in[vertex]: by place, so that a chunk writes what no other does.
+// By place, so that a chunk writes what no other does.
 static void permute_part(void *context, int32_t chunk)
 {
 	const sweep_run *run = context;
 	const cau_step_solver *solver = run->solver;
-	const int32_t *row_at = cau_factor_permutation(solver->factor);
-	const int32_t *vertex = solver->system.vertex_of_row;
 	int32_t first = chunk * CAU_VERTEX_CHUNK, last = chunk_end(solver, first);
 	CAU_ASSERT(first < last, "chunk %d has rows %d to %d", chunk, first, last);
-	if (solver->elements.single) {
-		vertex_single *field = solver->sweep.field;
-		const vertex_single *in = run->in;
-		float sign = (float)run->sign;
-		for (int32_t k = first; k < last; ++k)
-			field[k] = sign * in[vertex[row_at[k]]];
-	} else {
-		vertex_double *field = solver->sweep.field;
-		const vertex_double *in = run->in;
-		for (int32_t k = first; k < last; ++k)
-			field[k] = run->sign * in[vertex[row_at[k]]];
-	}
+	solver->kernels->vectors->permute(solver, run->in, run->sign, first, last);
 }
 
 static void unpermute_part(void *context, int32_t chunk)
 {
 	const sweep_run *run = context;
 	const cau_step_solver *solver = run->solver;
-	const int32_t *row_at = cau_factor_permutation(solver->factor);
 	int32_t first = chunk * CAU_VERTEX_CHUNK, last = chunk_end(solver, first);
 	CAU_ASSERT(first < last, "chunk %d has rows %d to %d", chunk, first, last);
-	for (int32_t k = first; k < last; ++k) {
-		int32_t vertex = solver->system.vertex_of_row[row_at[k]];
-		if (solver->elements.single)
-			((vertex_single *)run->out)[vertex] = solver->fixed[vertex]
-			                                          ? (vertex_single){0}
-			                                          : ((vertex_single *)solver->sweep.field)[k];
-		else
-			((vertex_double *)run->out)[vertex] = solver->fixed[vertex]
-			                                          ? (vertex_double){0}
-			                                          : ((vertex_double *)solver->sweep.field)[k];
-	}
-}
-
-static void *task_sums(const cau_step_solver *solver, int32_t task)
-{
-	CAU_ASSERT_INDEX(task, solver->sweep.task_count);
-	size_t reals = 4 * (size_t)cau_sweep_task_place(&solver->sweep, task);
-	return (char *)solver->sweep.field + reals * cau_real_bytes(solver->elements.single);
+	solver->kernels->vectors->unpermute(solver, run->out, first, last);
 }
 
 static void forward_task(void *context, int32_t task)
 {
 	const cau_step_solver *solver = ((sweep_run *)context)->solver;
 	const cau_sweep *sweep = &solver->sweep;
-	memset(task_sums(solver, task), 0,
-	       4 * (size_t)sweep->top_count * cau_real_bytes(solver->elements.single));
+	solver->kernels->vectors->clear_sums(sweep, task);
 	for (int32_t s = sweep->task_first[task]; s < sweep->task_last[task]; ++s)
 		solver->kernels->forward(sweep, s);
 }
@@ -94,29 +57,13 @@ static void backward_task(void *context, int32_t task)
 		solver->kernels->backward(sweep, s);
 }
 
-// Adds the tasks' sums for the rows above them, in task order.
-static void add_task_sums(const cau_step_solver *solver)
-{
-	const cau_sweep *sweep = &solver->sweep;
-	for (int32_t task = 0; task < sweep->task_count; ++task) {
-		const void *sums = task_sums(solver, task);
-		for (int32_t i = 0; i < sweep->top_count; ++i) {
-			int32_t place = sweep->top_column[i];
-			CAU_ASSERT_INDEX(place, sweep->n);
-			if (solver->elements.single)
-				((vertex_single *)sweep->field)[place] += ((const vertex_single *)sums)[i];
-			else
-				((vertex_double *)sweep->field)[place] += ((const vertex_double *)sums)[i];
-		}
-	}
-}
-
 static void forward_sweep(sweep_run *run)
 {
 	const cau_step_solver *solver = run->solver;
 	const cau_sweep *sweep = &solver->sweep;
 	cau_pool_run(solver->pool, sweep->task_count, forward_task, run);
-	add_task_sums(solver);
+	for (int32_t task = 0; task < sweep->task_count; ++task) // in their order
+		solver->kernels->vectors->add_sums(sweep, task);
 	for (int32_t i = 0; i < sweep->top_node_count; ++i)
 		solver->kernels->forward(sweep, sweep->top_node[i]);
 }
@@ -130,18 +77,13 @@ static void backward_sweep(sweep_run *run)
 	cau_pool_run(solver->pool, sweep->task_count, backward_task, run);
 }
 
-void cau_solver_apply_inverse(cau_step_solver *solver, const void *in, void *out, double sign)
+void cau_solver_apply_inverse(cau_step_solver *solver, const cau_reals *in, cau_reals *out,
+                              double sign)
 {
 	CAU_ASSERT(sign == 1 || sign == -1, "A^-1 times %g", sign);
-	CAU_ASSERT(in != out, "%p is read and written at once", in);
+	CAU_ASSERT(in != out, "%p is read and written at once", (const void *)in);
 	if (solver->diagonal) {
-		for (int32_t v = 0; v < solver->tissue->vertex_count; ++v)
-			for (int c = 0; c < 3; ++c) {
-				int64_t i = 4 * (int64_t)v + c;
-				double value = cau_real_get(in, solver->elements.single, i);
-				cau_real_set(out, solver->elements.single, i,
-				             solver->fixed[v] ? 0 : sign * value / solver->system.diagonal[v]);
-			}
+		solver->kernels->vectors->divide(solver, in, out, sign);
 		return;
 	}
 	CAU_ASSERT(solver->sweep.n == solver->system.row_count,

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Compiled several times: CAU_SINGLE is the precision, CAU_TABLE the name of the table it makes,
-// CAU_ISA the instruction set's name.
+// CAU_ISA the instruction set's name, CAU_VECTORS the table of vectors.c.
 #include "solve/kernels.h"
 
 #include <string.h>
@@ -13,11 +13,9 @@
 #include "solve/pack_kernel.h"
 #include "solve/sweep_kernel.h"
 
-typedef real vertex_reals __attribute__((vector_size(4 * sizeof(real)), may_alias));
-
-// Displacements (real, m) of the share's records.
+// Displacements (m) of the share's records.
 INLINE void take_displacement(const cau_elements *elements, const cau_local_work *work,
-                              const real *displacement, real *taken)
+                              const cau_reals *displacement, real *taken)
 {
 	CAU_ASSERT(work->record_count <= CAU_SHARE_RECORDS, "%d records in a share of at most %d",
 	           work->record_count, CAU_SHARE_RECORDS);
@@ -26,11 +24,12 @@ INLINE void take_displacement(const cau_elements *elements, const cau_local_work
 	           elements->record_count);
 	const int32_t *vertex = elements->record_vertex + work->first_record;
 	for (int32_t r = 0; r < work->record_count; ++r)
-		((vertex_reals *)taken)[r] = *(const vertex_reals *)(displacement + vertex[r]);
+		((vertex_reals *)taken)[r] =
+			*(const vertex_reals *)((const real *)displacement + vertex[r]);
 }
 
 static void local(const cau_elements *elements, const cau_local_work *work,
-                  const void *displacement, int diagonal)
+                  const cau_reals *displacement, int diagonal)
 {
 	CAU_ASSERT_INDEX(work->kind, CAU_ELEMENT_KINDS);
 	CAU_ASSERT(work->last - work->first <= CAU_SHARE, "a share of slots %d to %d", work->first,
@@ -59,7 +58,7 @@ static void local(const cau_elements *elements, const cau_local_work *work,
 }
 
 static int32_t settle(const cau_elements *elements, const cau_local_work *work,
-                      const void *displacement)
+                      const cau_reals *displacement)
 {
 	if (work->kind != CAU_ELEMENT_TETRAHEDRON)
 		return 0;
@@ -70,13 +69,13 @@ static int32_t settle(const cau_elements *elements, const cau_local_work *work,
 }
 
 static void sum(const cau_elements *elements, const cau_incidence *incidence, int32_t first,
-                int32_t last, void *gradient)
+                int32_t last, cau_reals *gradient)
 {
 	CAU_ASSERT(first <= last, "vertices %d to %d", first, last);
 	enum { NEAR = (1 << 20) / sizeof(vertex_reals) };
 	const vertex_reals *record = elements->gradient;
 	int far = elements->record_count > NEAR; // more than the nearer caches keep
-	vertex_reals *out = gradient;
+	vertex_reals *out = (vertex_reals *)gradient;
 	for (int32_t v = first; v < last; ++v) {
 		vertex_reals total = {0};
 		for (int32_t k = incidence->first[v]; k < incidence->first[v + 1]; ++k) {
@@ -121,9 +120,9 @@ static double pack(const cau_sweep *sweep, int32_t supernode, const cau_factor *
 
 enum { STRIP = 64 * LANES }; // reals summed at once: few enough that float sums stay accurate
 
-static double dot(const void *a, const void *b, int64_t n)
+static double dot(const cau_reals *a, const cau_reals *b, int64_t first, int64_t n)
 {
-	const real *x = a, *y = b;
+	const real *x = (const real *)a + first, *y = (const real *)b + first;
 	double total = 0;
 	int64_t i = 0;
 	for (; i + STRIP <= n; i += STRIP) {
@@ -137,10 +136,10 @@ static double dot(const void *a, const void *b, int64_t n)
 	return total;
 }
 
-static void add_scaled(void *y, double s, const void *x, int64_t n)
+static void add_scaled(cau_reals *y, double s, const cau_reals *x, int64_t n)
 {
-	real *out = y;
-	const real *in = x;
+	real *out = (real *)y;
+	const real *in = (const real *)x;
 	real scale = (real)s;
 	for (int64_t i = 0; i < n; ++i)
 		out[i] += scale * in[i];
@@ -206,20 +205,22 @@ static void combine(const cau_history *history, int64_t first, int64_t n, const 
 	}
 }
 
-static void spread(void *increment, const void *column, const double force[3], int32_t first,
-                   int32_t last)
+static void spread(cau_reals *increment, const cau_reals *column, const double force[3],
+                   int32_t first, int32_t last)
 {
-	vertex_reals *out = increment;
-	const real *weight = column;
+	vertex_reals *out = (vertex_reals *)increment;
+	const real *weight = (const real *)column;
 	vertex_reals f = {(real)force[0], (real)force[1], (real)force[2], 0};
 	for (int32_t v = first; v < last; ++v)
 		out[v] += weight[v] * f;
 }
 
+extern const cau_vectors CAU_VECTORS;
 extern const cau_kernels CAU_TABLE;
 const cau_kernels CAU_TABLE = {
 	.instruction_set = CAU_ISA,
 	.single = CAU_SINGLE,
+	.vectors = &CAU_VECTORS,
 	.local = local,
 	.settle = settle,
 	.sum = sum,

@@ -4,6 +4,7 @@
 
 #include "constraint/elements.h"
 #include "solve/sweep.h"
+#include "solve/vectors.h"
 #include "tissue/tissue.h"
 
 // A share of the local step: slots [first, last) of one group, whole batches, and the records that
@@ -25,27 +26,26 @@ enum { CAU_RECORDS_AHEAD = 32, CAU_ANDERSON_WINDOW = 5 };
 // Increments f = -A^-1 g of an accelerated iteration, their gradients g, and the columns of the
 // last ones: df = f - f_last and h = step + df.
 typedef struct cau_history {
-	const void *increment, *gradient; // real: f, g
-	void *last_increment, *last_gradient, *step;
-	void *df[CAU_ANDERSON_WINDOW], *h[CAU_ANDERSON_WINDOW];
+	const cau_reals *increment, *gradient; // f, g
+	cau_reals *last_increment, *last_gradient, *step;
+	cau_reals *df[CAU_ANDERSON_WINDOW], *h[CAU_ANDERSON_WINDOW];
 	int32_t count, newest; // columns in use; the one to be made
 } cau_history;
 
-// Arrays marked `real` hold four reals a vertex (x, y, z, 0), float or double as the table's name
-// says.
 typedef struct cau_kernels {
 	const char *instruction_set;
 	int single;
+	const cau_vectors *vectors; // of the same precision
 
-	// Records (N) and energy (J) of the elements in `work`, at displacement u (real, m).
+	// Records (N) and energy (J) of the elements in `work`, at displacement u (m).
 	void (*local)(const cau_elements *elements, const cau_local_work *work,
-	              const void *displacement, int diagonal);
+	              const cau_reals *displacement, int diagonal);
 	// After a step: plastic flow; returns the number of inverted tetrahedra.
 	int32_t (*settle)(const cau_elements *elements, const cau_local_work *work,
-	                  const void *displacement);
+	                  const cau_reals *displacement);
 	// gradient[v] = sum of v's records, in their order, for v in [first, last).
 	void (*sum)(const cau_elements *elements, const cau_incidence *incidence, int32_t first,
-	            int32_t last, void *gradient);
+	            int32_t last, cau_reals *gradient);
 	// One supernode of a sweep, on the sweep's field.
 	void (*forward)(const cau_sweep *sweep, int32_t supernode);
 	void (*backward)(const cau_sweep *sweep, int32_t supernode);
@@ -53,13 +53,13 @@ typedef struct cau_kernels {
 	// CAU_PACK_PARTS) says which scratch is used: one thread at a time for each.
 	double (*pack)(const cau_sweep *sweep, int32_t supernode, const cau_factor *factor,
 	               const cau_sweep_panels *panels, int32_t part);
-	// Dot product in double of n reals, in a fixed order.
-	double (*dot)(const void *a, const void *b, int64_t n);
-	// increment[v] += column[v] * force for v in [first, last); column is real, one a vertex.
-	void (*spread)(void *increment, const void *column, const double force[3], int32_t first,
-	               int32_t last);
+	// Dot product in double of n reals from `first` on, in a fixed order.
+	double (*dot)(const cau_reals *a, const cau_reals *b, int64_t first, int64_t n);
+	// increment[v] += column[v] * force for v in [first, last); the column has one real a vertex.
+	void (*spread)(cau_reals *increment, const cau_reals *column, const double force[3],
+	               int32_t first, int32_t last);
 	// y += s x over n reals
-	void (*add_scaled)(void *y, double s, const void *x, int64_t n);
+	void (*add_scaled)(cau_reals *y, double s, const cau_reals *x, int64_t n);
 	// Anderson acceleration over n reals from `first` on (anderson.c): a new column from the last
 	// two iterations, its products with all, and the step that the weights make.
 	void (*add_column)(const cau_history *history, int64_t first, int64_t n, double *dot);

@@ -134,7 +134,7 @@ static double pack_node(const cau_sweep *sweep, const cau_supernode *node, const
 	real inverse[CAU_NODE_COLUMNS], *scale = (real *)panels->scale + node->first;
 	int32_t columns = node->columns, rows = columns + node->rows;
 	pack_dense dense;
-	double least = pack_gather(sweep, node, factor, panels->d_inverse, part, &dense);
+	double least = pack_gather(sweep, node, factor, (real *)panels->d_inverse, part, &dense);
 	pack_multiply(node, &dense, inverse);
 	for (int32_t j = 0; j < columns; ++j) {
 		scale[j] = narrow ? inverse[j] / NARROW_MOST : 1;

@@ -41,11 +41,11 @@ int cau_solver_is_conservative(const cau_tissue *tissue, int diagonal)
 
 static cau_status allocate_vectors(cau_step_solver *solver, cau_arena *arena, cau_error *error)
 {
-	size_t n = (size_t)solver->tissue->vertex_count, size = cau_real_bytes(solver->elements.single);
+	size_t n = (size_t)solver->tissue->vertex_count, size = solver->kernels->vectors->real_bytes;
 	cau_history *history = &solver->history;
-	void **vectors[] = {&solver->displacement,    &solver->gradient,
-	                    &solver->increment,       &solver->trial_increment,
-	                    &history->last_increment, &history->last_gradient};
+	cau_reals **vectors[] = {&solver->displacement,    &solver->gradient,
+	                         &solver->increment,       &solver->trial_increment,
+	                         &history->last_increment, &history->last_gradient};
 	for (size_t i = 0; i < sizeof vectors / sizeof *vectors; ++i)
 		if (!(*vectors[i] = cau_arena_array(arena, 4 * n, size)))
 			return no_memory(error);
@@ -138,6 +138,14 @@ cau_status cau_solver_factor(cau_step_solver *solver, const cau_alive *alive,
 {
 	cau_status status = cau_solver_analyse(solver, alive, permutation, error);
 	return status ? status : cau_solver_make_factor(solver, arena, error);
+}
+
+int32_t cau_solver_chunk_end(const cau_step_solver *solver, int32_t chunk, int32_t *first)
+{
+	CAU_ASSERT_INDEX(chunk, solver->chunk_count);
+	int32_t last = (chunk + 1) * CAU_VERTEX_CHUNK;
+	*first = chunk * CAU_VERTEX_CHUNK;
+	return last < solver->tissue->vertex_count ? last : solver->tissue->vertex_count;
 }
 
 void cau_solver_finish(cau_step_solver *solver)

@@ -4,8 +4,7 @@
 // E, for increments. Anderson acceleration in the norm of A; backtracking on eq. 4, and on the work
 // along the step where a law has no energy.
 //
-// Vectors marked `real` hold four reals a vertex (x, y, z, 0), float or double; those marked double
-// hold three.
+// Vectors of reals (vectors.h) hold four a vertex, x, y, z and 0; those of doubles hold three.
 #pragma once
 
 #include "base/pool.h"
@@ -28,7 +27,7 @@ typedef struct cau_drag {
 
 typedef struct cau_contact_set cau_contact_set;
 
-typedef struct cau_step_solver {
+struct cau_step_solver {
 	const cau_tissue *tissue;
 	const cau_kernels *kernels;
 	cau_pool *pool;
@@ -55,11 +54,11 @@ typedef struct cau_step_solver {
 	int32_t drag_count;
 	cau_contact_set *contact; // NULL: none
 
-	void *displacement;    // real: u = x - X
-	void *gradient;        // real: grad of eq. 4
-	void *increment;       // real: d = -A^-1 grad
-	void *trial_increment; // real: the step that is taken
-	cau_history history;   // its step is trial_increment
+	cau_reals *displacement;    // u = x - X
+	cau_reals *gradient;        // grad of eq. 4
+	cau_reals *increment;       // d = -A^-1 grad
+	cau_reals *trial_increment; // the step that is taken
+	cau_history history;        // its step is trial_increment
 	double anderson_product[CAU_ANDERSON_WINDOW][CAU_ANDERSON_WINDOW]; // df_i . A df_j
 	double *chunk_energy;                                              // (chunk_count)
 	double *chunk_dot;       // (chunk_count x 2 CAU_ANDERSON_WINDOW)
@@ -73,7 +72,7 @@ typedef struct cau_step_solver {
 	double local_s, contact_s;
 	int32_t iterations_done, backtracks;
 	double residual; // |grad| in the norm of A^-1, relative to the first iteration's
-} cau_step_solver;
+};
 
 // Elements, pattern and vectors. The system is factored by cau_solver_factor once the laws are set.
 cau_status cau_solver_create(cau_step_solver *solver, const cau_scene_def *scene,
@@ -104,17 +103,19 @@ double cau_solver_evaluate(cau_step_solver *solver);
 // Likewise, while one thread does `meanwhile`, which may change neither position nor elements.
 double cau_solver_evaluate_beside(cau_step_solver *solver, void (*meanwhile)(void *context),
                                   void *context);
-// The displacements alone, of all vertices or of one share of them; and the rest.
+// The displacements alone, and the rest.
 void cau_solver_displace(cau_step_solver *solver);
-void cau_solver_displace_chunk(cau_step_solver *solver, int32_t chunk);
 double cau_solver_evaluate_displaced(cau_step_solver *solver);
 // Sum of elements' energies of the last evaluation, J.
 double cau_solver_elastic_energy(const cau_step_solver *solver);
 // global.c: increment = -A^-1 gradient, with unilateral constraints if there are any.
 void cau_solver_global(cau_step_solver *solver);
-// inverse.c: plain A^-1 applied: out = A^-1 in (real vectors by vertex; rows of fixed vertices come
-// out zero).
-void cau_solver_apply_inverse(cau_step_solver *solver, const void *in, void *out, double sign);
+// inverse.c: plain A^-1 applied: out = sign * A^-1 in (by vertex; rows of fixed vertices come out
+// zero).
+void cau_solver_apply_inverse(cau_step_solver *solver, const cau_reals *in, cau_reals *out,
+                              double sign);
+// The vertices of a share of a vertex loop: [first, returned).
+int32_t cau_solver_chunk_end(const cau_step_solver *solver, int32_t chunk, int32_t *first);
 // anderson.c: trial_increment from increment and the history of this step. What is mixed is kept,
 // once it is done with, by giving the next increment and gradient other arrays.
 void cau_anderson_start(cau_step_solver *solver);

@@ -307,8 +307,7 @@ static cau_status shape_supernodes(cau_sweep *sweep, cau_arena *arena, const cau
 cau_status cau_sweep_create(cau_sweep *sweep, cau_arena *arena, const cau_factor *factor,
                             const cau_kernels *kernels, int64_t whole_panels, cau_error *error)
 {
-	*sweep =
-		(cau_sweep){.single = kernels->single, .kernels = kernels, .n = cau_factor_size(factor)};
+	*sweep = (cau_sweep){.kernels = kernels, .n = cau_factor_size(factor)};
 	cau_arena scratch = {0};
 	cau_status status = shape_supernodes(sweep, arena, factor, &scratch, error);
 	size_t nodes = (size_t)sweep->supernode_count, n = (size_t)sweep->n;
@@ -321,11 +320,11 @@ cau_status cau_sweep_create(cau_sweep *sweep, cau_arena *arena, const cau_factor
 		status = no_memory(error);
 	if (!status) {
 		sweep->narrow =
-			sweep->single && sweep->panel_entries * (int64_t)sizeof(float) > whole_panels;
+			kernels->single && sweep->panel_entries * (int64_t)sizeof(float) > whole_panels;
 		link_tree(sweep, work, first);
 		number_top(sweep, top_number);
 		name_places(sweep, top_number);
-		size_t size = cau_real_bytes(sweep->single);
+		size_t size = kernels->vectors->real_bytes;
 		cau_sweep_panels panels = {0};
 		status = cau_sweep_create_panels(sweep, &panels, error);
 		cau_sweep_swap_panels(sweep, &panels);

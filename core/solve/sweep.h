@@ -19,12 +19,14 @@
 // the result does not depend on how many threads run the tasks.
 #pragma once
 
+#include <stdbool.h>
 #include <stdint.h>
 
 #include "base/memory.h"
 #include "base/pages.h"
 #include "base/pool.h"
 #include "solve/factor.h"
+#include "solve/vectors.h"
 
 enum {
 	CAU_SWEEP_TASKS = 8,        // more leave more above them, for one thread
@@ -50,11 +52,12 @@ typedef struct cau_supernode {
 // made in the background.
 typedef struct cau_sweep_panels {
 	cau_pages pages; // of the next three
-	void *panel, *d_inverse, *scale;
+	void *panel;     // reals, or narrow entries
+	cau_reals *d_inverse, *scale;
 } cau_sweep_panels;
 
-typedef struct cau_sweep {
-	int single, narrow;
+struct cau_sweep {
+	bool narrow;
 	const struct cau_kernels *kernels;
 	int32_t n, supernode_count, row_count, top_count, task_count;
 	cau_supernode *supernode;
@@ -68,18 +71,18 @@ typedef struct cau_sweep {
 	int32_t task_first[CAU_SWEEP_TASKS], task_last[CAU_SWEEP_TASKS]; // supernodes [first, last)
 	int32_t *top_node; // supernodes above the tasks, ascending
 	int32_t top_node_count;
-	cau_pages pages;         // of the next three
-	void *panel;             // the panels
-	void *d_inverse, *scale; // real (padded_n): D^-1, and what a step in the column is
+	cau_pages pages;              // of the next three
+	void *panel;                  // the panels: reals, or narrow entries
+	cau_reals *d_inverse, *scale; // (padded_n): D^-1, and what a step in the column is
 	// Four reals a place (x, y, z, 0): the vectors, permuted (padded_n), then each task's sums for
 	// the rows above it and its spare place (padded_top + 1), then that of the top supernodes.
-	void *field;
+	cau_reals *field;
 	int64_t panel_entries;
 	int32_t padded_n, padded_top;
 	int64_t max_dense;  // reals that packing a supernode takes
-	void *dense;        // real (CAU_PACK_PARTS x max_dense), for packing a supernode
+	cau_reals *dense;   // (CAU_PACK_PARTS x max_dense), for packing a supernode
 	int32_t *row_place; // (CAU_PACK_PARTS x n): likewise
-} cau_sweep;
+};
 
 // Lays the panels out for the factor's pattern and packs them; those of single precision with more
 // than `whole_panels` bytes are narrow. CAU_NO_MEMORY is the only failure;

@@ -107,7 +107,7 @@ INLINE void forward_tile(const cau_sweep *sweep, const cau_supernode *node, int 
 		                b + 4 * j, 1);
 	const int32_t *place = sweep->forward_place + node->place + row;
 	for (int k = 0; k < vectors; ++k)
-		sweep_subtract(sweep->field, place + k * LANES, tile.rows[k]);
+		sweep_subtract((real *)sweep->field, place + k * LANES, tile.rows[k]);
 }
 
 // The supernode's part of the forward sweep.
@@ -151,7 +151,7 @@ INLINE void backward_tile(const cau_sweep *sweep, const cau_supernode *node, int
 	const real *scale = (const real *)sweep->scale + node->first;
 	sweep_tile tile;
 	for (int k = 0; k < vectors; ++k)
-		tile.rows[k] = v3_gather_wide(sweep->field, place + k * LANES);
+		tile.rows[k] = v3_gather_wide((const real *)sweep->field, place + k * LANES);
 	int32_t j = node->columns;
 	while (j % SWEEP_BLOCK) {
 		--j;

@@ -9,7 +9,7 @@
 
 size_t cau_sweep_entry_bytes(const cau_sweep *sweep)
 {
-	return sweep->narrow ? sizeof(int16_t) : cau_real_bytes(sweep->single);
+	return sweep->narrow ? sizeof(int16_t) : sweep->kernels->vectors->real_bytes;
 }
 
 cau_status cau_sweep_create_panels(const cau_sweep *sweep, cau_sweep_panels *panels,
@@ -18,14 +18,15 @@ cau_status cau_sweep_create_panels(const cau_sweep *sweep, cau_sweep_panels *pan
 	CAU_ASSERT(sweep->panel_entries > 0 && sweep->padded_n >= sweep->n,
 	           "%lld entries, %d of %d columns", (long long)sweep->panel_entries, sweep->padded_n,
 	           sweep->n);
-	size_t size = cau_real_bytes(sweep->single);
+	size_t size = sweep->kernels->vectors->real_bytes;
 	size_t panel = (size_t)sweep->panel_entries * cau_sweep_entry_bytes(sweep);
 	*panels = (cau_sweep_panels){0};
 	if (!cau_pages_take(&panels->pages, panel + 2 * (size_t)sweep->padded_n * size))
 		return cau_fail(error, CAU_NO_MEMORY, NULL, "no memory for the packed factor");
 	panels->panel = panels->pages.start;
-	panels->d_inverse = (char *)panels->panel + panel; // whole lanes, so aligned to them
-	panels->scale = (char *)panels->d_inverse + (size_t)sweep->padded_n * size;
+	char *d_inverse = (char *)panels->panel + panel; // whole lanes, so aligned to them
+	panels->d_inverse = (cau_reals *)d_inverse;
+	panels->scale = (cau_reals *)(d_inverse + (size_t)sweep->padded_n * size);
 	return CAU_OK;
 }
 

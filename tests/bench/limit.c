@@ -81,11 +81,14 @@ static double bandwidth(const cau_step_solver *solver, double bytes)
 	int64_t n = (int64_t)(half / cau_real_bytes(solver->elements.single));
 	char *block = aligned_alloc(64, 2 * half);
 	double best = 0;
+	if (!block)
+		return 0;
 	memset(block, 0, 2 * half);
+	const cau_reals *a = (const cau_reals *)block, *b = (const cau_reals *)(block + half);
 	for (int run = 0; run < RUNS; ++run) {
 		double start = bench_now_s();
 		for (int pass = 0; pass < PASSES; ++pass)
-			solver->kernels->dot(block, block + half, n);
+			solver->kernels->dot(a, b, 0, n);
 		best = fmax(best, PASSES * 2.0 * (double)half / (bench_now_s() - start));
 	}
 	free(block);

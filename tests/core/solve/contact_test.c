@@ -33,7 +33,9 @@ static void make(pressed *p, double friction)
 	p->tool.hot_radius_m = RADIUS_M;
 	p->tool.friction = friction;
 	p->set = cau_arena_array(&p->r.arena, 1, sizeof *p->set);
-	assert_int_equal(cau_contact_create(p->set, &p->r.tissue, 0, &p->r.arena, NULL), CAU_OK);
+	assert_int_equal(
+		cau_contact_create(p->set, &p->r.tissue, p->r.solver.kernels->vectors, &p->r.arena, NULL),
+		CAU_OK);
 	p->set->tool_count = 1;
 	p->set->tool[0] = (cau_contact_tool){
 		.def = &p->tool,

@@ -245,6 +245,7 @@ static void test_dot_and_add_scaled(void **state)
 		fx[i] = (float)(x[i] = (float)random_between(&random, -1, 1));
 		fy[i] = (float)(y[i] = (float)random_between(&random, -1, 1));
 	}
+	const cau_kernels *whole = cau_kernels_choose(0, NULL), *half = cau_kernels_choose(1, NULL);
 	static const int counts[] = {0, 1, 7, 16, 1023, 1024, 1025, MOST};
 	// Strips of 64 float additions: 64 x 6e-8 of the sum of sizes at most.
 	static const double DOT_SINGLE = 4e-6, DOT_DOUBLE = 1e-14;
@@ -254,12 +255,17 @@ static void test_dot_and_add_scaled(void **state)
 			exact += x[i] * y[i];
 			size += fabs(x[i] * y[i]);
 		}
-		assert_near(cau_kernels_choose(0, NULL)->dot(x, y, counts[k]), exact, DOT_DOUBLE * size);
-		assert_near(cau_kernels_choose(1, NULL)->dot(fx, fy, counts[k]), exact, DOT_SINGLE * size);
+		assert_near(whole->dot((cau_reals *)x, (cau_reals *)y, 0, counts[k]), exact,
+		            DOT_DOUBLE * size);
+		assert_near(half->dot((cau_reals *)fx, (cau_reals *)fy, 0, counts[k]), exact,
+		            DOT_SINGLE * size);
 	}
+	// from a place on: the tail alone
+	assert_true(whole->dot((cau_reals *)x, (cau_reals *)y, MOST - 1, 1) ==
+	            x[MOST - 1] * y[MOST - 1]);
 	double expected = y[MOST - 1] + 0.5 * x[MOST - 1];
-	cau_kernels_choose(0, NULL)->add_scaled(y, 0.5, x, MOST);
-	cau_kernels_choose(1, NULL)->add_scaled(fy, 0.5, fx, MOST);
+	whole->add_scaled((cau_reals *)y, 0.5, (cau_reals *)x, MOST);
+	half->add_scaled((cau_reals *)fy, 0.5, (cau_reals *)fx, MOST);
 	assert_true(y[MOST - 1] == expected && fy[MOST - 1] == (float)expected);
 }
 

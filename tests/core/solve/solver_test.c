@@ -47,10 +47,10 @@ static void test_diagonal_step(void **state)
 	rig_build(&r, NULL, 1);
 	rig_factor(&r);
 	size_t n = (size_t)r.tissue.vertex_count;
-	double *in = r.solver.gradient, *out = r.solver.increment;
+	double *in = (double *)r.solver.gradient, *out = (double *)r.solver.increment;
 	for (size_t i = 0; i < 4 * n; ++i)
 		in[i] = (double)(i % 7) - 3;
-	cau_solver_apply_inverse(&r.solver, in, out, -1);
+	cau_solver_apply_inverse(&r.solver, r.solver.gradient, r.solver.increment, -1);
 	for (size_t i = 0; i < 3 * n; ++i) {
 		double expected = -in[4 * (i / 3) + i % 3] / r.solver.system.diagonal[i / 3];
 		assert_true(out[4 * (i / 3) + i % 3] == expected);

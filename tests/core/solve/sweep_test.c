@@ -156,7 +156,7 @@ static void test_partial_packing_is_full_packing(void **state)
 			rig r;
 			make(&r, scenes[s], form_of, NULL, 1);
 			cau_sweep *sweep = &r.solver.sweep;
-			size_t size = cau_real_bytes(sweep->single);
+			size_t size = sweep->kernels->vectors->real_bytes;
 			size_t panel = (size_t)sweep->panel_entries * cau_sweep_entry_bytes(sweep);
 			for (uint64_t tick = 0; tick < 12; ++tick)
 				cut_some(&r, tick, 6);
