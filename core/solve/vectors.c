@@ -84,8 +84,7 @@ static void divide(const cau_step_solver *solver, const cau_reals *in, cau_reals
 		for (int c = 0; c < 3; ++c) {
 			int64_t i = 4 * (int64_t)v + c;
 			double value = (double)from[i];
-			to[i] =
-				(real)(solver->fixed[v] ? 0 : sign * value / solver->system.diagonal[v]);
+			to[i] = (real)(solver->fixed[v] ? 0 : sign * value / solver->system.diagonal[v]);
 		}
 }
 

@@ -39,8 +39,8 @@ typedef struct cau_vectors {
 	// ---- A^-1 of a vector
 	// out = sign * in / diagonal, of all vertices; zero where a vertex is fixed
 	void (*divide)(const cau_step_solver *solver, const cau_reals *in, cau_reals *out, double sign);
-	// The sweep's field at places [first, last) from `in`, by vertex, times sign; and back to `out`,
-	// zero where a vertex is fixed.
+	// The sweep's field at places [first, last) from `in`, by vertex, times sign; and back to
+	// `out`, zero where a vertex is fixed.
 	void (*permute)(const cau_step_solver *solver, const cau_reals *in, double sign, int32_t first,
 	                int32_t last);
 	void (*unpermute)(const cau_step_solver *solver, cau_reals *out, int32_t first, int32_t last);
