@@ -7,6 +7,10 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "cautery/contexts.h"
+#include "cautery/local_file.h"
+#include "cautery/nearest.h"
+
 enum { SESSIONS_MAX = 4096 };
 
 // ---- ends --------------------------------------------------------------------------------------
@@ -19,6 +23,16 @@ void cli_complain(const cli *c, const char *format, ...)
 	vfprintf(c->complaints, format, arguments);
 	va_end(arguments);
 	fputc('\n', c->complaints);
+}
+
+void cli_complain_unknown(const cli *c, const char *what, const char *word,
+                          const char *const *words, size_t count)
+{
+	const char *meant = cli_nearest(word, words, count);
+	if (meant)
+		cli_complain(c, "no %s \"%s\"; did you mean \"%s\"? --help lists them", what, word, meant);
+	else
+		cli_complain(c, "no %s \"%s\"; --help lists them", what, word);
 }
 
 static void print_error_json(const cli *c)
@@ -113,6 +127,29 @@ double cli_number(const cli *c, const char *option, double least, double most, d
 }
 
 // ---- connection --------------------------------------------------------------------------------
+enum { TOKEN_BYTES_MAX = 4096 };
+
+typedef struct cli_daemon {
+	char url[CLI_CONTEXT_TEXT_BYTES];
+	char token[TOKEN_BYTES_MAX]; // "": none
+} cli_daemon;
+
+// The file's first line.
+static cli_exit read_token(cli *c, const char *file, cli_daemon *daemon)
+{
+	char *text;
+	size_t bytes;
+	if (cli_read_file(file, TOKEN_BYTES_MAX - 1, &text, &bytes, &c->error))
+		return cli_fail_file(c);
+	snprintf(daemon->token, sizeof daemon->token, "%.*s", (int)strcspn(text, "\r\n"), text);
+	free(text);
+	if (*daemon->token)
+		return CLI_DONE;
+	snprintf(c->error.file, sizeof c->error.file, "%.255s", file);
+	cau_fail(&c->error, CAU_BAD_VALUE, NULL, "its first line holds no token");
+	return cli_fail_file(c);
+}
+
 // The session that is meant where none is named: the only one.
 static cli_exit only_session(cli *c)
 {
@@ -148,10 +185,34 @@ static cli_exit choose_session(cli *c)
 	return CLI_DONE;
 }
 
+// What is nearer to the command counts: its options, the environment, the current context.
+static cli_exit find_daemon(cli *c, cli_daemon *daemon)
+{
+	cli_context context = {0};
+	const char *url = getenv("CAUTERYD_URL"), *token = getenv("CAUTERYD_TOKEN");
+	bool told = c->url || (url && !c->context); // a context's token is for its own daemon
+	if ((c->context || !told) && cli_context_find(c->context, &context, &c->error))
+		return cli_fail_file(c);
+	snprintf(daemon->url, sizeof daemon->url, "%s",
+	         c->url               ? c->url
+	         : *context.url       ? context.url
+	         : url && !c->context ? url
+	                              : CAU_CLIENT_DEFAULT_URL);
+	const char *file = c->token_file ? c->token_file : context.token_file;
+	if (*file)
+		return read_token(c, file, daemon);
+	snprintf(daemon->token, sizeof daemon->token, "%s", token ? token : "");
+	return CLI_DONE;
+}
+
 cli_exit cli_connect(cli *c)
 {
-	c->def.url = c->url ? c->url : CAU_CLIENT_DEFAULT_URL;
-	c->def.token = c->token;
+	cli_daemon daemon = {0};
+	cli_exit found = find_daemon(c, &daemon);
+	if (found)
+		return found;
+	c->def.url = daemon.url;
+	c->def.token = *daemon.token ? daemon.token : NULL;
 	c->def.timeout_s = c->timeout_s;
 	if (cau_loop_create(&c->loop, &c->error) ||
 	    cau_client_create(c->loop, &c->def, &c->client, &c->error) ||

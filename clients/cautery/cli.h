@@ -28,7 +28,8 @@ typedef struct cli_option {
 } cli_option;
 
 typedef struct cli_command {
-	const char *name;
+	const char *name;      // one word, or two: "snapshot ls"
+	const char *also;      // another name, or NULL
 	const char *arguments; // as help shows them
 	const char *summary;   // one line
 	const char *help;      // more lines, may be NULL
@@ -38,15 +39,18 @@ typedef struct cli_command {
 	cli_exit (*run)(cli *c);
 } cli_command;
 
+static const double cli_tick_max = 9007199254740991.0; // of the wire
+
 struct cli {
 	FILE *out, *complaints;
 	const cli_command *command;
+	const char *word; // the command's first
 	const char *arguments[CLI_ARGUMENTS_MAX];
 	int argument_count;
-	const char *values[CLI_OPTIONS_MAX]; // of the command's options; NULL: not given; flags: ""
-	const char *url, *token;
+	const char *values[CLI_OPTIONS_MAX];    // of the command's options; NULL: not given; flags: ""
+	const char *url, *token_file, *context; // NULL: not given
 	double timeout_s;
-	bool json, help;
+	bool json, help, version;
 	cau_client_def def; // what cli_connect uses; commands may set callbacks before
 	cau_loop *loop;
 	cau_client *client;
@@ -59,7 +63,10 @@ const cli_command *cli_find_command(const char *name);
 
 // Reads the command line. On a mistake, says it on c->complaints and returns false.
 bool cli_read(cli *c, int argument_count, char **arguments);
-void cli_help(const cli *c); // of the command, or of all
+// The same without asking whether it is whole, and with what is given there alone.
+bool cli_read_words(cli *c, int argument_count, char **arguments);
+int cli_common_options(const cli_option **options); // how many, that of all zeros included
+void cli_help(const cli *c);                        // of the command, or of all
 
 const char *cli_value(const cli *c, const char *option); // NULL: not given
 // The number of an option or `otherwise`; sets *bad and complains if it is none or out of bounds.
@@ -76,11 +83,17 @@ void cli_finish(cli *c);
 cli_exit cli_fail(cli *c);
 cli_exit cli_fail_file(cli *c); // the same, where a file here is to blame
 void cli_complain(const cli *c, const char *format, ...) __attribute__((format(printf, 2, 3)));
+// There is no such `what` as `word`; which of the words may have been meant.
+void cli_complain_unknown(const cli *c, const char *what, const char *word,
+                          const char *const *words, size_t count);
 
 // Calls the method and prints its result: with --json, as JSON. `result` may be NULL.
 cli_exit cli_call(cli *c, cau_method method, const void *params, void *result);
 // The method's result as one line of JSON, by the message tables.
 void cli_print_result(const cli *c, cau_method method, const void *result);
+
+// Sends a command of the session and tells from which tick on it is `done`.
+cli_exit cli_command_session(cli *c, const cau_command *command, const char *done);
 
 // The session of the command as parameter of a method.
 #define CLI_SESSION_PARAMS(c, params)                                                              \

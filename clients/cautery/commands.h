@@ -4,17 +4,23 @@
 
 #include "cautery/cli.h"
 
-extern const cli_command cli_ls, cli_scenes;                 // list.c
-extern const cli_command cli_create;                         // create.c
-extern const cli_command cli_info;                           // info.c
-extern const cli_command cli_watch;                          // watch.c
-extern const cli_command cli_tool;                           // tool.c
-extern const cli_command cli_run;                            // run.c
-extern const cli_command cli_record;                         // record.c
-extern const cli_command cli_export, cli_log;                // files.c
-extern const cli_command cli_rm;                             // list.c
-extern const cli_command cli_pause, cli_resume, cli_step;    // time.c
-extern const cli_command cli_speed, cli_reset;               // time.c
-extern const cli_command cli_rewind, cli_fork, cli_timeline; // history.c
-extern const cli_command cli_snapshot, cli_snapshots;        // history.c
-extern const cli_command cli_restore;                        // history.c
+extern const cli_command cli_ls, cli_scenes;                         // list.c
+extern const cli_command cli_create;                                 // create.c
+extern const cli_command cli_info;                                   // info.c
+extern const cli_command cli_watch;                                  // watch.c
+extern const cli_command cli_tool;                                   // tool.c
+extern const cli_command cli_run;                                    // run.c
+extern const cli_command cli_record;                                 // record.c
+extern const cli_command cli_export, cli_log;                        // files.c
+extern const cli_command cli_rm;                                     // list.c
+extern const cli_command cli_pause, cli_resume, cli_step;            // time.c
+extern const cli_command cli_speed, cli_reset;                       // time.c
+extern const cli_command cli_rewind, cli_fork, cli_snapshot;         // history.c
+extern const cli_command cli_snapshots, cli_restore;                 // history.c
+extern const cli_command cli_events;                                 // events.c
+extern const cli_command cli_pin, cli_unpin, cli_force, cli_gravity; // tissue.c
+extern const cli_command cli_material;                               // material.c
+extern const cli_command cli_ping;                                   // ping.c
+extern const cli_command cli_context_ls, cli_context_set;            // contexts.c
+extern const cli_command cli_context_use, cli_context_rm;            // contexts.c
+extern const cli_command cli_completion, cli_complete;               // completion.c

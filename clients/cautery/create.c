@@ -136,16 +136,37 @@ static cli_exit make_mesh_scene(cli *c, const char *file, cau_scene_def *scene,
 }
 
 // ---- the command -------------------------------------------------------------------------------
+static bool ends_with(const char *text, const char *ending)
+{
+	size_t length = strlen(text), tail = strlen(ending);
+	return length > tail && strcmp(text + length - tail, ending) == 0;
+}
+
+// What the option `kind` says, or the argument if it is such a file by its name.
+static const char *source_of(const cli *c, const char *kind)
+{
+	static const char *const definitions[] = {".json", NULL};
+	static const char *const meshes[] = {".msh", ".obj", ".vtk", NULL};
+	const char *said = cli_value(c, kind);
+	if (said || !c->argument_count)
+		return said;
+	const char *const *ending = strcmp(kind, "mesh") == 0 ? meshes : definitions;
+	for (; *ending; ending++)
+		if (ends_with(c->arguments[0], *ending))
+			return c->arguments[0];
+	return NULL;
+}
+
 static cli_exit fill_params(cli *c, cau_wire_session_create *params, cau_scene_def *scene,
                             cau_wire_session_description *d)
 {
-	const char *definition = cli_value(c, "definition"), *mesh = cli_value(c, "mesh");
+	const char *definition = source_of(c, "definition"), *mesh = source_of(c, "mesh");
 	const char *name = cli_value(c, "name");
 	params->has_name = name;
 	snprintf(params->name, sizeof params->name, "%s", name ? name : "");
 	params->has_paused = true;
 	params->paused = cli_value(c, "paused");
-	params->has_scene = c->argument_count == 1;
+	params->has_scene = !definition && !mesh;
 	if (params->has_scene) {
 		snprintf(params->scene, sizeof params->scene, "%s", c->arguments[0]);
 		return CLI_DONE;
@@ -167,7 +188,8 @@ static cli_exit run(cli *c)
 	                                  .drivers = {drivers, 0, CAU_MAX_TOOLS}};
 	int sources = c->argument_count + !!cli_value(c, "definition") + !!cli_value(c, "mesh");
 	if (sources != 1) {
-		cli_complain(c, "one of SCENE, --definition and --mesh says what the session is made from");
+		cli_complain(
+			c, "one of SCENE, FILE, --definition and --mesh says what the session is made from");
 		return CLI_USAGE;
 	}
 	cau_scene_def *scene = calloc(1, sizeof *scene);
@@ -191,11 +213,12 @@ static cli_exit run(cli *c)
 
 const cli_command cli_create = {
 	.name = "create",
-	.arguments = "SCENE | --definition FILE | --mesh FILE",
+	.arguments = "SCENE | FILE | --definition FILE | --mesh FILE",
 	.summary = "makes a session and prints its id",
-	.help = "SCENE is one of `cautery scenes`. A scene file's meshes are uploaded. Around a mesh\n"
-			"(.msh, .obj, .vtk) a scene is made: its lowest tenth pinned (a sheet: its rim), a\n"
-			"hot ball as tool.\n",
+	.help =
+		"SCENE is one of `cautery scenes`. FILE is told by its ending: .json is a scene, .msh,\n"
+		".obj and .vtk are meshes. A scene file's meshes are uploaded. Around a mesh a scene is\n"
+		"made: its lowest tenth pinned (a sheet: its rim), a hot ball as tool.\n",
 	.most = 1,
 	.options = {{"name", "N", "wanted name, without the daemon's label"},
                 {"paused", NULL, "starts paused"},

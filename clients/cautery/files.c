@@ -7,8 +7,6 @@
 #include "cautery/local_file.h"
 #include "cautery/progress.h"
 
-static const double tick_max = 9007199254740991.0; // of the wire
-
 static cli_exit download(cli *c, cau_method method, const void *params, const char *file)
 {
 	cau_wire_transfer transfer = {0};
@@ -60,8 +58,8 @@ static cli_exit run_log(cli *c)
 {
 	bool bad = false;
 	cau_wire_session_log params = {.has_from_tick = true, .has_to_tick = cli_value(c, "to")};
-	params.from_tick = (int64_t)cli_number(c, "from", 0, tick_max, 0, &bad);
-	params.to_tick = (int64_t)cli_number(c, "to", 0, tick_max, 0, &bad);
+	params.from_tick = (int64_t)cli_number(c, "from", 0, cli_tick_max, 0, &bad);
+	params.to_tick = (int64_t)cli_number(c, "to", 0, cli_tick_max, 0, &bad);
 	cli_exit code = bad ? CLI_USAGE : cli_connect(c);
 	if (code)
 		return code;

@@ -1,12 +1,10 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// rewind, fork, snapshot, restore, timeline.
+// rewind, fork, snapshot, restore.
 #include <stdlib.h>
 #include <string.h>
 
 #include "cautery/commands.h"
 #include "cautery/words.h"
-
-static const double tick_max = 9007199254740991.0; // of the wire
 
 // The name given with --name; false after complaining.
 static bool take_name(cli *c, bool *has, char name[CAU_NAME_BYTES])
@@ -34,7 +32,7 @@ static cli_exit run_rewind(cli *c)
 	cau_wire_session_rewind params = {0};
 	cau_wire_restored restored = {0};
 	double tick;
-	if (!cli_read_number(c, "TICK", c->arguments[c->argument_count - 1], 0, tick_max, &tick))
+	if (!cli_read_number(c, "TICK", c->arguments[c->argument_count - 1], 0, cli_tick_max, &tick))
 		return CLI_USAGE;
 	cli_exit code = cli_connect(c);
 	if (code)
@@ -105,7 +103,7 @@ static cli_exit run_fork(cli *c)
 	cau_wire_session_fork params = {
 		.has_tick = cli_value(c, "tick"), .has_paused = true, .paused = cli_value(c, "paused")};
 	bool bad = !take_name(c, &params.has_name, params.name);
-	params.tick = (int64_t)cli_number(c, "tick", 0, tick_max, 0, &bad);
+	params.tick = (int64_t)cli_number(c, "tick", 0, cli_tick_max, 0, &bad);
 	cli_exit code = bad ? CLI_USAGE : cli_connect(c);
 	if (code)
 		return code;
@@ -118,49 +116,10 @@ static cli_exit run_fork(cli *c)
 	return code;
 }
 
-static void print_event(const cli *c, const cau_wire_timeline_event *e)
-{
-	fprintf(c->out, "%9lld %8.2f s  %-12s", (long long)e->tick, e->time_s, cli_event_word(e->kind));
-	if (e->has_tool)
-		fprintf(c->out, " %s", e->tool);
-	if (e->has_client)
-		fprintf(c->out, " by %s", e->client);
-	if (e->has_count)
-		fprintf(c->out, " %lld", (long long)e->count);
-	if (e->has_detail)
-		fprintf(c->out, " %s", e->detail);
-	fputc('\n', c->out);
-}
-
-enum { EVENTS_MAX = 4096 };
-
-static cli_exit run_timeline(cli *c)
-{
-	bool bad = false;
-	cau_wire_session_timeline params = {.has_from_tick = true, .has_count = true};
-	params.from_tick = (int64_t)cli_number(c, "from", 0, tick_max, 0, &bad);
-	params.count = (int64_t)cli_number(c, "count", 1, EVENTS_MAX, 1024, &bad);
-	cau_wire_timeline_event *events = calloc(EVENTS_MAX, sizeof *events);
-	cau_wire_timeline timeline = {.events = {events, 0, EVENTS_MAX}};
-	cli_exit code = bad ? CLI_USAGE : events ? cli_connect(c) : CLI_CONNECTION;
-	CLI_SESSION_PARAMS(c, &params);
-	if (!code)
-		code = cli_call(c, CAU_METHOD_SESSION_TIMELINE, &params, &timeline);
-	if (!code && !c->json) {
-		for (int32_t i = 0; i < timeline.events.count; i++)
-			print_event(c, &events[i]);
-		fprintf(c->out, "now at tick %lld of branch %lld; rewind reaches back to tick %lld\n",
-		        (long long)timeline.tick, (long long)timeline.branch,
-		        (long long)timeline.oldest_tick);
-	}
-	free(events);
-	return code;
-}
-
 const cli_command cli_rewind = {.name = "rewind",
                                 .arguments = "[SESSION] TICK",
                                 .summary = "back to a tick, on a new branch; energy goes off",
-                                .help = "`cautery timeline` tells how far back one can go.\n",
+                                .help = "`cautery events` tells how far back one can go.\n",
                                 .least = 1,
                                 .most = 1,
                                 .session_optional = true,
@@ -183,7 +142,8 @@ const cli_command cli_snapshot = {.name = "snapshot",
                                   .options = {{"name", "N", "default: made up by the server"}},
                                   .run = run_snapshot};
 
-const cli_command cli_snapshots = {.name = "snapshots",
+const cli_command cli_snapshots = {.name = "snapshot ls",
+                                   .also = "snapshots",
                                    .arguments = "[SESSION]",
                                    .summary = "lists the states that `restore` goes back to",
                                    .session_optional = true,
@@ -196,11 +156,3 @@ const cli_command cli_restore = {.name = "restore",
                                  .most = 1,
                                  .session_optional = true,
                                  .run = run_restore};
-
-const cli_command cli_timeline = {.name = "timeline",
-                                  .arguments = "[SESSION]",
-                                  .summary = "lists cuts and other events",
-                                  .session_optional = true,
-                                  .options = {{"from", "TICK", "first tick (default 0)"},
-                                              {"count", "N", "newest events (default 1024)"}},
-                                  .run = run_timeline};

@@ -8,6 +8,10 @@ int main(int argument_count, char **arguments)
 	c.def.name = "cautery";
 	if (!cli_read(&c, argument_count, arguments))
 		return CLI_USAGE;
+	if (c.version) {
+		puts("cautery " CAUTERY_VERSION " (" CAU_SUBPROTOCOL ")");
+		return CLI_DONE;
+	}
 	if (c.help) {
 		cli_help(&c);
 		return CLI_DONE;

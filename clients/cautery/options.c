@@ -6,13 +6,18 @@
 #include "cautery/cli.h"
 
 static const cli_option common[] = {
-	{"url", "U", "where the daemon is (default: CAUTERYD_URL, else " CAU_CLIENT_DEFAULT_URL ")"},
-	{"token", "T", "access token (default: CAUTERYD_TOKEN)"},
+	{"url", "U",
+     "where the daemon is (default: CAUTERYD_URL, the context, " CAU_CLIENT_DEFAULT_URL ")"},
+	{"token-file", "F", "file with the access token (default: CAUTERYD_TOKEN, the context's)"},
+	{"context", "NAME", "a daemon of `cautery context ls` (default: the current one)"},
 	{"timeout", "S", "seconds to wait for an answer (default 30)"},
 	{"json", NULL, "one JSON object a line on standard output, the last one the result"},
-	{"help", NULL, "this text"},
+	{"help", NULL, "this text; -h does the same"},
+	{"version", NULL, "which version this is, and which protocol it speaks"},
 	{0},
 };
+
+enum { COMMON_COUNT = sizeof common / sizeof *common, OPTION_BYTES = 40 };
 
 // ---- help --------------------------------------------------------------------------------------
 static void print_options(FILE *out, const cli_option *options, int count)
@@ -29,11 +34,13 @@ static void help_of_command(const cli *c)
 {
 	fprintf(c->out, "cautery %s %s\n%s\n", c->command->name, c->command->arguments,
 	        c->command->summary);
+	if (c->command->also)
+		fprintf(c->out, "(`cautery %s` is the same.)\n", c->command->also);
 	if (c->command->help)
 		fprintf(c->out, "\n%s", c->command->help);
 	fputc('\n', c->out);
 	print_options(c->out, c->command->options, CLI_OPTIONS_MAX);
-	print_options(c->out, common, sizeof common / sizeof *common);
+	print_options(c->out, common, COMMON_COUNT);
 }
 
 void cli_help(const cli *c)
@@ -44,11 +51,11 @@ void cli_help(const cli *c)
 	}
 	fputs("cautery COMMAND [arguments]\nTalks to a cauteryd.\n\n", c->out);
 	for (int i = 0; cli_commands[i]; i++)
-		fprintf(c->out, "  %-9s %s\n", cli_commands[i]->name, cli_commands[i]->summary);
+		fprintf(c->out, "  %-12s %s\n", cli_commands[i]->name, cli_commands[i]->summary);
 	fputs("\nWhere SESSION may be left out, it is the only one that the daemon has.\n"
 	      "`cautery COMMAND --help` says more. All commands take:\n\n",
 	      c->out);
-	print_options(c->out, common, sizeof common / sizeof *common);
+	print_options(c->out, common, COMMON_COUNT);
 	fputs("\nExit code: 0 done; 1 the server refused, or the session is faulted or gone;\n"
 	      "2 arguments; 3 no server, no answer or connection lost; 4 a file here;\n"
 	      "5 a script was refused in part, lost its energy, or was interrupted.\n",
@@ -63,14 +70,19 @@ static bool take_common(cli *c, int index, const char *value)
 		c->url = value;
 		return true;
 	case 1:
-		c->token = value;
+		c->token_file = value;
 		return true;
 	case 2:
-		return cli_read_number(c, "--timeout", value, 0.01, 86400, &c->timeout_s);
+		c->context = value;
+		return true;
 	case 3:
+		return cli_read_number(c, "--timeout", value, 0.01, 86400, &c->timeout_s);
+	case 4:
 		return c->json = true;
-	default:
+	case 5:
 		return c->help = true;
+	default:
+		return c->version = true;
 	}
 }
 
@@ -83,15 +95,36 @@ static int find_option(const cli_option *options, int count, const char *name, s
 	return -1;
 }
 
+static int add_names(const cli_option *options, int count, char (*spelled)[OPTION_BYTES],
+                     const char **names, int name_count)
+{
+	for (int i = 0; i < count && options[i].name; i++, name_count++) {
+		snprintf(spelled[name_count], OPTION_BYTES, "--%s", options[i].name);
+		names[name_count] = spelled[name_count];
+	}
+	return name_count;
+}
+
+static void complain_of_option(const cli *c, const char *name, size_t bytes)
+{
+	char wrong[OPTION_BYTES], spelled[CLI_OPTIONS_MAX + COMMON_COUNT][OPTION_BYTES];
+	const char *names[CLI_OPTIONS_MAX + COMMON_COUNT];
+	int count = add_names(common, COMMON_COUNT, spelled, names, 0);
+	if (c->command)
+		count = add_names(c->command->options, CLI_OPTIONS_MAX, spelled, names, count);
+	snprintf(wrong, sizeof wrong, "--%.*s", (int)bytes, name);
+	cli_complain_unknown(c, "option", wrong, names, (size_t)count);
+}
+
 // Reads the option at arguments[*at], moving *at on over its value.
 static bool read_option(cli *c, char **arguments, int count, int *at)
 {
 	const char *name = arguments[*at] + 2;
 	size_t bytes = strcspn(name, "=");
 	int own = c->command ? find_option(c->command->options, CLI_OPTIONS_MAX, name, bytes) : -1;
-	int shared = find_option(common, sizeof common / sizeof *common, name, bytes);
+	int shared = find_option(common, COMMON_COUNT, name, bytes);
 	if (own < 0 && shared < 0) {
-		cli_complain(c, "no option --%.*s; --help lists them", (int)bytes, name);
+		complain_of_option(c, name, bytes);
 		return false;
 	}
 	const cli_option *option = own >= 0 ? &c->command->options[own] : &common[shared];
@@ -109,13 +142,37 @@ static bool read_option(cli *c, char **arguments, int count, int *at)
 	return true;
 }
 
+static bool take_command(cli *c, const char *word)
+{
+	enum { MOST = 64 };
+	const char *names[MOST];
+	size_t count = 0;
+	c->command = cli_find_command(word);
+	c->word = word;
+	if (c->command)
+		return true;
+	for (; cli_commands[count] && count < MOST; count++)
+		names[count] = cli_commands[count]->name;
+	cli_complain_unknown(c, "command", word, names, count);
+	return false;
+}
+
+// The command whose name has two words, of which this is the second; or NULL.
+static const cli_command *find_second(const cli *c, const char *word)
+{
+	char name[64];
+	snprintf(name, sizeof name, "%s %s", c->word, word);
+	return c->argument_count ? NULL : cli_find_command(name);
+}
+
 static bool take_word(cli *c, const char *word)
 {
-	if (!c->command) {
-		c->command = cli_find_command(word);
-		if (!c->command)
-			cli_complain(c, "no command \"%s\"; --help lists them", word);
-		return c->command;
+	if (!c->command)
+		return take_command(c, word);
+	const cli_command *second = find_second(c, word);
+	if (second) {
+		c->command = second;
+		return true;
 	}
 	if (c->argument_count == CLI_ARGUMENTS_MAX) {
 		cli_complain(c, "more than %d arguments", CLI_ARGUMENTS_MAX);
@@ -125,15 +182,33 @@ static bool take_word(cli *c, const char *word)
 	return true;
 }
 
-bool cli_read(cli *c, int argument_count, char **arguments)
+static bool check_arguments(const cli *c)
+{
+	int most = c->command->most + c->command->session_optional;
+	if (c->argument_count >= c->command->least && c->argument_count <= most)
+		return true;
+	if (*c->command->arguments)
+		cli_complain(c, "the arguments are: %s", c->command->arguments);
+	else
+		cli_complain(c, "\"%s\" is too much: it takes no arguments", c->arguments[0]);
+	return false;
+}
+
+int cli_common_options(const cli_option **options)
+{
+	*options = common;
+	return COMMON_COUNT;
+}
+
+bool cli_read_words(cli *c, int argument_count, char **arguments)
 {
 	bool words_only = false;
 	c->timeout_s = 30;
-	c->url = getenv("CAUTERYD_URL");
-	c->token = getenv("CAUTERYD_TOKEN");
 	for (int i = 1; i < argument_count; i++) {
 		if (!words_only && strcmp(arguments[i], "--") == 0)
 			words_only = true;
+		else if (!words_only && strcmp(arguments[i], "-h") == 0)
+			c->help = true;
 		else if (!words_only && strncmp(arguments[i], "--", 2) == 0) {
 			if (!read_option(c, arguments, argument_count, &i))
 				return false;
@@ -141,16 +216,18 @@ bool cli_read(cli *c, int argument_count, char **arguments)
 			return false;
 		}
 	}
-	if (c->help)
+	return true;
+}
+
+bool cli_read(cli *c, int argument_count, char **arguments)
+{
+	if (!cli_read_words(c, argument_count, arguments))
+		return false;
+	if (c->help || c->version)
 		return true;
 	if (!c->command) {
 		cli_complain(c, "which command? --help lists them");
 		return false;
 	}
-	int most = c->command->most + c->command->session_optional;
-	if (c->argument_count < c->command->least || c->argument_count > most) {
-		cli_complain(c, "the arguments are: %s", c->command->arguments);
-		return false;
-	}
-	return true;
+	return check_arguments(c);
 }

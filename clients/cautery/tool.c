@@ -212,16 +212,21 @@ static const struct {
 	{"wait", false, act_wait},
 };
 
+enum { ACTION_COUNT = sizeof actions / sizeof *actions };
+
 static cli_exit act(hand *h)
 {
 	const char *word = h->c->arguments[h->at++];
-	for (size_t i = 0; i < sizeof actions / sizeof *actions; i++) {
+	for (size_t i = 0; i < ACTION_COUNT; i++) {
 		if (strcmp(word, actions[i].word) != 0)
 			continue;
 		cli_exit code = actions[i].drives ? cli_take(h->c, h->stream, h->tool) : CLI_DONE;
 		return code ? code : actions[i].act(h);
 	}
-	cli_complain(h->c, "no action \"%s\"; --help lists them", word);
+	const char *words[ACTION_COUNT];
+	for (size_t i = 0; i < ACTION_COUNT; i++)
+		words[i] = actions[i].word;
+	cli_complain_unknown(h->c, "action", word, words, ACTION_COUNT);
 	return CLI_USAGE;
 }
 

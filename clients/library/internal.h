@@ -8,8 +8,6 @@
 #include "library/outbox.h"
 #include "library/url.h"
 
-#define CAU_CLIENT_SUBPROTOCOL "cautery.v1"
-
 enum {
 	CAU_CLIENT_TEXT_MAX = 64 << 20,  // of a text message from the server
 	CAU_CLIENT_BINARY_MAX = 1 << 30, // of a frame or chunk

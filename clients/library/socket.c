@@ -131,7 +131,7 @@ static int on_event(struct lws *wsi, enum lws_callback_reasons reason, void *use
 }
 
 static const struct lws_protocols protocols[] = {
-	{.name = CAU_CLIENT_SUBPROTOCOL, .callback = on_event, .rx_buffer_size = RECEIVE_BYTES},
+	{.name = CAU_SUBPROTOCOL, .callback = on_event, .rx_buffer_size = RECEIVE_BYTES},
 	{0},
 };
 

@@ -3,6 +3,7 @@
 #include <string.h>
 
 #include "cautery/json_writer.h"
+#include "cautery/rpc.h"
 #include "generate/write.h"
 
 enum { TEXT_BYTES = 4 << 20 };
@@ -298,9 +299,9 @@ static void write_channel(cau_json_writer *writer)
 	cau_json_open(writer, "channels", '{');
 	cau_json_open(writer, "wire", '{');
 	cau_json_string(writer, "address", "/v1");
-	cau_json_string(
-		writer, "description",
-		"WebSocket with subprotocol cautery.v1. Binary messages are told in README.md.");
+	cau_json_string(writer, "description",
+	                "WebSocket with subprotocol " CAU_SUBPROTOCOL
+	                ". Binary messages are told in README.md.");
 	cau_json_open(writer, "messages", '{');
 	for (int i = 0; i < CAU_METHOD_COUNT; i++) {
 		const cau_method_info *info = cau_method_describe((cau_method)i);

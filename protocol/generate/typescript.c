@@ -2,6 +2,7 @@
 #include <string.h>
 
 #include "cautery/frame_codec.h"
+#include "cautery/rpc.h"
 #include "cautery/rpc_errors.h"
 #include "generate/write.h"
 
@@ -243,8 +244,8 @@ void write_typescript(FILE *out, const model *from)
 	      "// Generated from protocol/include/cautery/*.def and the codec's tables; do not edit.\n"
 	      "// After a change there, build the target `messages`.\n\n",
 	      out);
-	fprintf(out, "export const WIRE_VERSION = %d;\nexport const SUBPROTOCOL = 'cautery.v%d';\n",
-	        CAU_FRAME_VERSION, CAU_FRAME_VERSION);
+	fprintf(out, "export const WIRE_VERSION = %d;\nexport const SUBPROTOCOL = '%s';\n",
+	        CAU_FRAME_VERSION, CAU_SUBPROTOCOL);
 	for (int i = 0; i < from->type_count; i++)
 		write_type(out, &from->types[i]);
 	write_methods(out, from);

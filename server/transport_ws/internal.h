@@ -6,11 +6,10 @@
 #include <pthread.h>
 #include <stdatomic.h>
 
+#include "cautery/rpc.h"
 #include "http/response.h"
 #include "transport_ws/network.h"
 
-// The name that clients ask for in Sec-WebSocket-Protocol, and the path.
-#define CAU_SUBPROTOCOL "cautery.v1"
 #define CAU_WS_PATH "/v1"
 
 enum {

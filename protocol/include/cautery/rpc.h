@@ -18,6 +18,9 @@
 #include "cautery/messages.h"
 #include "cautery/rpc_errors.h"
 
+// Of the WebSocket: what clients ask for in Sec-WebSocket-Protocol.
+#define CAU_SUBPROTOCOL "cautery.v1"
+
 enum { CAU_RPC_ID_BYTES = 65 };
 
 typedef struct cau_rpc_id {

@@ -76,10 +76,14 @@ static void mistakes_are_told(void **state)
 		const char *line, *said;
 	} cases[] = {
 		{"", "which command"},
-		{"fly", "no command \"fly\""},
-		{"ls d1-knee", "the arguments are"},
+		{"fly", "no command \"fly\"; --help"},
+		{"crate fascia", "no command \"crate\"; did you mean \"create\"?"},
+		{"ls d1-knee", "\"d1-knee\" is too much: it takes no arguments"},
+		{"ls --josn", "no option \"--josn\"; did you mean \"--json\"?"},
+		{"fork --pausd", "did you mean \"--paused\"?"},
+		{"context use", "the arguments are: NAME"},
 		{"rewind", "the arguments are: [SESSION] TICK"},
-		{"ls --colour", "no option --colour"},
+		{"ls --colour", "no option \"--colour\"; --help"},
 		{"ls --json=1", "--json takes no value"},
 		{"ls --url", "--url wants a value"},
 		{"fork --paused=yes", "--paused takes no value"},
@@ -93,6 +97,46 @@ static void mistakes_are_told(void **state)
 			fail_msg("\"%s\": %s", cases[i].line, r.said);
 		free(r.said);
 	}
+}
+
+static void commands_of_two_words_are_found(void **state)
+{
+	(void)state;
+	const struct {
+		const char *line;
+		const cli_command *command;
+		int arguments;
+	} cases[] = {
+		{"snapshot", &cli_snapshot, 0},
+		{"snapshot d1-ls", &cli_snapshot, 1},
+		{"snapshot ls", &cli_snapshots, 0},
+		{"snapshot --json ls d1-knee", &cli_snapshots, 1},
+		{"snapshot d1-knee --name ls", &cli_snapshot, 1},
+		{"snapshots", &cli_snapshots, 0},
+		{"context", &cli_context_ls, 0},
+		{"context rm here", &cli_context_rm, 1},
+		{"timeline", &cli_events, 0},
+	};
+	for (size_t i = 0; i < sizeof cases / sizeof *cases; i++) {
+		reading r = read_line(cases[i].line);
+		if (!r.read || r.c.command != cases[i].command || r.c.argument_count != cases[i].arguments)
+			fail_msg("\"%s\": %s", cases[i].line, r.said);
+		free(r.said);
+	}
+}
+
+static void help_and_version_are_answered_whatever_else_is_said(void **state)
+{
+	(void)state;
+	reading r = read_line("rewind -h");
+	assert_true(r.read && r.c.help);
+	free(r.said);
+	r = read_line("--version");
+	assert_true(r.read && r.c.version);
+	free(r.said);
+	r = read_line("tool d1-knee hook -- -h");
+	assert_true(r.read && !r.c.help);
+	free(r.said);
 }
 
 static void every_command_has_help(void **state)
@@ -121,6 +165,8 @@ int main(void)
 		cmocka_unit_test(words_and_options_are_told_apart),
 		cmocka_unit_test(options_of_a_command_have_values),
 		cmocka_unit_test(mistakes_are_told),
+		cmocka_unit_test(commands_of_two_words_are_found),
+		cmocka_unit_test(help_and_version_are_answered_whatever_else_is_said),
 		cmocka_unit_test(every_command_has_help),
 	};
 	return cmocka_run_group_tests(tests, NULL, NULL);

@@ -242,11 +242,19 @@ class Ends(programs.Case):
         os.chmod(tokens, 0o600)
         daemon = programs.Daemon(tokens=tokens)
         self.addCleanup(daemon.stop)
+        wrong = self.path("wrong", "wrong\n")
+        watcher = self.path("watcher", "watcher-token-0123456789\n")
+        master = self.path("master", "master-token-0123456789")
         self.cautery("ls", url=daemon.url, code=1)
-        self.cautery("ls", "--token", "wrong", url=daemon.url, code=1)
-        self.cautery("ls", "--token", "watcher-token-0123456789", url=daemon.url)
-        self.cautery("create", "fascia", "--token", "watcher-token-0123456789", url=daemon.url, code=1)
-        self.cautery("create", "fascia", "--token", "master-token-0123456789", url=daemon.url)
+        self.cautery("ls", "--token-file", wrong, url=daemon.url, code=1)
+        self.cautery("ls", "--token-file", watcher, url=daemon.url)
+        self.cautery("create", "fascia", "--token-file", watcher, url=daemon.url, code=1)
+        self.cautery("create", "fascia", "--token-file", master, url=daemon.url)
+        self.assertIn("its first line holds no token", self.cautery(
+            "ls", "--token-file", self.path("empty", "\n"), url=daemon.url, code=4)[1])
+        self.cautery("ls", "--token-file", self.path("nowhere"), url=daemon.url, code=4)
+        # for every user of the machine to see
+        self.assertIn("--token-file", self.cautery("ls", "--token", "x", url=daemon.url, code=2)[1])
 
 
 def pass_on(listening, port):

@@ -69,9 +69,10 @@ class Case(unittest.TestCase):
                 file.write(text)
         return path
 
-    def program(self, name, *arguments, code=0, url=None, **options):
-        """Runs a client and expects its exit code. Returns (standard output, standard error)."""
-        environment = dict(CLEAN, CAUTERYD_URL=url or self.daemon.url)
+    def program(self, name, *arguments, code=0, url=None, environment=None, **options):
+        """Runs a client and expects its exit code. Returns (standard output, standard error).
+        With an `environment` that alone is added to a clean one, and no URL."""
+        environment = dict(CLEAN, **(environment or {"CAUTERYD_URL": url or self.daemon.url}))
         done = subprocess.run([os.path.join(PROGRAMS, name), *map(str, arguments)], text=True,
                               capture_output=True, env=environment, timeout=PATIENCE_S,
                               check=False, **options)

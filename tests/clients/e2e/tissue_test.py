@@ -71,6 +71,66 @@ class Tissue(programs.Case):
         self.assertIn("mesh", told)
 
 
+class Forces(programs.Case):
+    real = True
+
+    def extent(self, session):
+        """Least and largest z of the tissue, m."""
+        file = self.path("now.obj")
+        self.cautery("export", session, file)
+        with open(file, encoding="utf-8") as lines:
+            heights = [float(line.split()[3]) for line in lines if line.startswith("v ")]
+        return min(heights), max(heights)
+
+    def test_tissue_is_pulled_pinned_and_let_go(self):
+        session = self.create("fascia", "--paused")
+        rest = self.extent(session)
+        self.json("force", session, 0, 0, 0.05, "--nearest", "0,0,0")
+        self.json("step", session, "--ticks", 40)
+        pulled = self.extent(session)
+        self.assertGreater(pulled[1], rest[1] + 1e-4)
+        self.json("pin", session, "--sphere", "0,0,0,0.004")
+        self.json("force", session, 0, 0, 0, "--nearest", "0,0,0")
+        self.json("step", session, "--ticks", 40)
+        self.assertAlmostEqual(self.extent(session)[1], pulled[1], delta=2e-5)  # it is held there
+        self.json("unpin", session, "--sphere", "0,0,0,0.004")
+        self.json("step", session, "--ticks", 200)
+        self.assertLess(self.extent(session)[1], rest[1] + 1e-4)
+        self.json("gravity", session, 0, 0, 9)
+        self.assertEqual(self.json("info", session)["definition"]["gravity_m_s2"], [0, 0, 9])
+
+    def test_a_material_is_changed_member_by_member(self):
+        session = self.create("fascia", "--paused")
+        before = self.json("material", session, "fascia")
+        self.assertIn(f"ignition_c={before['ignition_c']:g}",
+                      self.cautery("material", session, "fascia")[0].splitlines())
+        self.cautery("material", session, "fascia", "ignition_c=250", "limit=range")
+        self.cautery("step", session)
+        after = self.json("material", session, "fascia")
+        self.assertEqual((after["ignition_c"], after["limit"]), (250, "range"))
+        self.assertEqual({k: v for k, v in before.items() if k not in ("ignition_c", "limit")},
+                         {k: v for k, v in after.items() if k not in ("ignition_c", "limit")})
+        for arguments, told in ((("fasca",), "did you mean \"fascia\""),
+                                (("fascia", "ignition=2"), "no member \"ignition\""),
+                                (("fascia", "ignition_c"), "NAME=VALUE"),
+                                (("fascia", "ignition_c=hot"), "ignition_c"),
+                                (("fascia", "limit=tight"), "limit")):
+            self.assertIn(told, self.cautery("material", session, *arguments, code=2)[1])
+        self.assertEqual(self.json("material", session, "fascia"), after)
+
+    def test_which_vertices_must_be_said(self):
+        self.create("fascia", "--paused")
+        self.assertIn("one of --box", self.cautery("pin", code=2)[1])
+        self.assertIn("one of --box", self.cautery("pin", "--rim", "--nearest", "0,0,0", code=2)[1])
+        self.assertIn("6 numbers", self.cautery("pin", "--box", "0,0,0,1,1", code=2)[1])
+        self.assertIn("4 numbers", self.cautery("pin", "--sphere", "0,0,0,1,1", code=2)[1])
+        self.cautery("pin", "--rim", "--layer", "fascia")
+
+    def test_a_scene_file_is_told_by_its_ending(self):
+        file = os.path.join(os.environ["SCENES"], "fascia.json")
+        self.assertEqual(self.json("info", self.create(file))["summary"]["scene"], "fascia")
+
+
 class Tools(programs.Case):
     real = True
     settings = {"browser_deadline_s": 2}  # longer than this process can be kept waiting

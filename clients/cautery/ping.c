@@ -1,0 +1,72 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// ping: how long a request takes there and back.
+#include <math.h>
+
+#include "cautery/commands.h"
+
+typedef struct round_trips {
+	int count;
+	double least_ms, most_ms, sum_ms;
+} round_trips;
+
+static cli_exit ping_once(cli *c, round_trips *trips)
+{
+	cau_wire_heartbeat_result result = {0};
+	double sent_s = cau_client_now();
+	if (cau_client_call(c->client, CAU_METHOD_HEARTBEAT, &(cau_wire_heartbeat){.visible = true},
+	                    &result, &c->error))
+		return cli_fail(c);
+	double took_ms = 1e3 * (cau_client_now() - sent_s);
+	trips->least_ms = trips->count ? fmin(trips->least_ms, took_ms) : took_ms;
+	trips->most_ms = fmax(trips->most_ms, took_ms);
+	trips->sum_ms += took_ms;
+	trips->count++;
+	if (!c->json) {
+		fprintf(c->out, "%.2f ms\n", took_ms);
+		fflush(c->out);
+	}
+	return CLI_DONE;
+}
+
+static void wait_until(cli *c, double until_s)
+{
+	for (double now_s; (now_s = cau_client_now()) < until_s && !cli_interrupted();)
+		cau_loop_wait(c->loop, fmin(until_s - now_s, 0.25));
+}
+
+static void print_end(const cli *c, const round_trips *trips)
+{
+	double mean_ms = trips->sum_ms / trips->count;
+	if (c->json)
+		fprintf(c->out,
+		        "{\"count\": %d, \"least_ms\": %.3f, \"mean_ms\": %.3f, \"most_ms\": %.3f}\n",
+		        trips->count, trips->least_ms, mean_ms, trips->most_ms);
+	else
+		fprintf(c->out, "%d there and back: least %.2f ms, mean %.2f ms, most %.2f ms\n",
+		        trips->count, trips->least_ms, mean_ms, trips->most_ms);
+}
+
+static cli_exit run(cli *c)
+{
+	bool bad = false;
+	round_trips trips = {0};
+	int count = (int)cli_number(c, "count", 1, 1e6, 4, &bad);
+	double every_s = cli_number(c, "every", 0.001, 3600, 0.25, &bad);
+	cli_watch_signals();
+	cli_exit code = bad ? CLI_USAGE : cli_connect(c);
+	while (!code && trips.count < count && !cli_interrupted()) {
+		if (trips.count)
+			wait_until(c, cau_client_now() + every_s);
+		code = ping_once(c, &trips);
+	}
+	if (!code)
+		print_end(c, &trips);
+	return code;
+}
+
+const cli_command cli_ping = {.name = "ping",
+                              .arguments = "",
+                              .summary = "tells how long a request takes there and back",
+                              .options = {{"count", "N", "requests to send (default 4)"},
+                                          {"every", "S", "seconds between them (default 0.25)"}},
+                              .run = run};

@@ -1,0 +1,151 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// pin, unpin, force, gravity: what holds and pulls the tissue beside its tools.
+#include <stdlib.h>
+#include <string.h>
+
+#include "cautery/commands.h"
+#include "cautery/defaults.h"
+
+cli_exit cli_command_session(cli *c, const cau_command *command, const char *done)
+{
+	cau_wire_command_result result = {0};
+	if (cau_client_command(c->client, c->session, command, &result, &c->error))
+		return cli_fail(c);
+	if (c->json) // the result of every command is the same
+		cli_print_result(c, CAU_METHOD_TOOL_MOVE, &result);
+	else
+		fprintf(c->out, "%s: %s from tick %lld on\n", c->session, done, (long long)result.tick);
+	return CLI_DONE;
+}
+
+// The last arguments, whether a session stands before them or not.
+static bool read_vector(cli *c, const char *what, double most, double vector[3])
+{
+	for (int a = 0; a < 3; a++)
+		if (!cli_read_number(c, what, c->arguments[c->argument_count - 3 + a], -most, most,
+		                     &vector[a]))
+			return false;
+	return true;
+}
+
+// ---- which vertices -----------------------------------------------------------------------------
+// Numbers parted by commas. False: it is there and wrong.
+static bool read_list(const cli *c, const char *option, int count, double *values)
+{
+	const char *text = cli_value(c, option);
+	for (int i = 0; i < count; i++) {
+		char *end;
+		values[i] = strtod(text, &end);
+		if (end == text || *end != (i + 1 < count ? ',' : 0)) {
+			cli_complain(c, "--%s wants %d numbers with commas between, not \"%s\"", option, count,
+			             cli_value(c, option));
+			return false;
+		}
+		text = end + 1;
+	}
+	return true;
+}
+
+#define SELECTION_OPTIONS                                                                          \
+	{"box", "X,Y,Z,X,Y,Z", "vertices in a box, by its least and most corner, m"},                  \
+		{"sphere", "X,Y,Z,R", "vertices within R of a point, m"},                                  \
+		{"nearest", "X,Y,Z", "the one vertex nearest to a point, m"},                              \
+		{"rim", NULL, "the rim of the sheet --layer"},                                             \
+	{                                                                                              \
+		"layer", "L", "of this layer only"                                                         \
+	}
+
+static bool read_selection(const cli *c, cau_selection *selection)
+{
+	double v[6] = {0};
+	const char *layer = cli_value(c, "layer");
+	bool box = cli_value(c, "box"), sphere = cli_value(c, "sphere");
+	bool nearest = cli_value(c, "nearest"), rim = cli_value(c, "rim");
+	if (box + sphere + nearest + rim != 1) {
+		cli_complain(c, "one of --box, --sphere, --nearest and --rim says which vertices");
+		return false;
+	}
+	*selection = (cau_selection){.kind = box      ? CAU_SELECT_BOX
+	                                     : sphere ? CAU_SELECT_SPHERE
+	                                     : rim    ? CAU_SELECT_RIM
+	                                              : CAU_SELECT_NEAREST};
+	snprintf(selection->layer, sizeof selection->layer, "%s", layer ? layer : "");
+	if ((box && !read_list(c, "box", 6, v)) || (sphere && !read_list(c, "sphere", 4, v)) ||
+	    (nearest && !read_list(c, "nearest", 3, v)))
+		return false;
+	memcpy(box ? selection->least_m : selection->center_m, v, 3 * sizeof *v);
+	if (box)
+		memcpy(selection->most_m, v + 3, 3 * sizeof *v);
+	selection->radius_m = sphere ? v[3] : 0;
+	return true;
+}
+
+// ---- the commands -------------------------------------------------------------------------------
+static cli_exit run_selected(cli *c, int kind, const char *done)
+{
+	cau_command command;
+	cau_default_command(&command, kind);
+	cli_exit code = read_selection(c, &command.as.selection) ? cli_connect(c) : CLI_USAGE;
+	return code ? code : cli_command_session(c, &command, done);
+}
+
+static cli_exit run_pin(cli *c)
+{
+	return run_selected(c, CAU_COMMAND_PIN, "held");
+}
+
+static cli_exit run_unpin(cli *c)
+{
+	return run_selected(c, CAU_COMMAND_UNPIN, "free");
+}
+
+static cli_exit run_force(cli *c)
+{
+	cau_command command;
+	cau_default_command(&command, CAU_COMMAND_SET_FORCE);
+	bool read = read_vector(c, "FORCE", 1e4, command.as.force.force_n) &&
+	            read_selection(c, &command.as.force.selection);
+	cli_exit code = read ? cli_connect(c) : CLI_USAGE;
+	return code ? code : cli_command_session(c, &command, "pulled");
+}
+
+static cli_exit run_gravity(cli *c)
+{
+	cau_command command;
+	cau_default_command(&command, CAU_COMMAND_SET_GRAVITY);
+	bool read = read_vector(c, "GRAVITY", 100, command.as.gravity_m_s2);
+	cli_exit code = read ? cli_connect(c) : CLI_USAGE;
+	return code ? code : cli_command_session(c, &command, "gravity is another");
+}
+
+const cli_command cli_pin = {.name = "pin",
+                             .arguments = "[SESSION]",
+                             .summary = "holds vertices where they are",
+                             .session_optional = true,
+                             .options = {SELECTION_OPTIONS},
+                             .run = run_pin};
+
+const cli_command cli_unpin = {.name = "unpin",
+                               .arguments = "[SESSION]",
+                               .summary = "lets pinned vertices go",
+                               .session_optional = true,
+                               .options = {SELECTION_OPTIONS},
+                               .run = run_unpin};
+
+const cli_command cli_force = {
+	.name = "force",
+	.arguments = "[SESSION] FX FY FZ",
+	.summary = "pulls at vertices, N on each, until it is set again; 0 0 0 ends it",
+	.least = 3,
+	.most = 3,
+	.session_optional = true,
+	.options = {SELECTION_OPTIONS},
+	.run = run_force};
+
+const cli_command cli_gravity = {.name = "gravity",
+                                 .arguments = "[SESSION] GX GY GZ",
+                                 .summary = "sets gravity, m/s^2",
+                                 .least = 3,
+                                 .most = 3,
+                                 .session_optional = true,
+                                 .run = run_gravity};

@@ -1,0 +1,62 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include <setjmp.h>
+#include <stdarg.h>
+#include <stddef.h>
+#include <stdint.h>
+#include <string.h>
+
+#include <cmocka.h>
+
+#include "cautery/nearest.h"
+
+static const char *const words[] = {"create", "record", "restore", "reset", "rm", "ls", "events"};
+enum { COUNT = sizeof words / sizeof *words };
+
+static void what_was_meant_is_found(void **state)
+{
+	(void)state;
+	const struct {
+		const char *word, *meant; // NULL: none
+	} cases[] = {
+		{"create", "create"},
+		{"crate", "create"},   // a letter left out
+		{"creaete", "create"}, // one added
+		{"creste", "create"},  // another one
+		{"craete", "create"},  // two turned round
+		{"recrod", "record"},
+		{"eventts", "events"},
+		{"rset", "reset"},
+		{"restor", "restore"},
+		{"sl", "ls"},
+		{"ev", "events"}, // its end left out
+		{"re", "record"}, // the first of several
+		{"x", NULL},      // any word of two letters would be two slips away
+		{"", NULL},
+		{"fly", NULL},
+		{"annihilate", NULL},
+	};
+	for (size_t i = 0; i < sizeof cases / sizeof *cases; i++) {
+		const char *found = cli_nearest(cases[i].word, words, COUNT);
+		if (found != cases[i].meant && (!found || !cases[i].meant || strcmp(found, cases[i].meant)))
+			fail_msg("\"%s\" meant \"%s\"", cases[i].word, found ? found : "nothing");
+	}
+}
+
+static void long_words_mean_nothing(void **state)
+{
+	char word[4096];
+	(void)state;
+	memset(word, 'e', sizeof word);
+	word[sizeof word - 1] = 0;
+	assert_null(cli_nearest(word, words, COUNT));
+	assert_null(cli_nearest("create", &(const char *){word}, 1));
+}
+
+int main(void)
+{
+	const struct CMUnitTest tests[] = {
+		cmocka_unit_test(what_was_meant_is_found),
+		cmocka_unit_test(long_words_mean_nothing),
+	};
+	return cmocka_run_group_tests(tests, NULL, NULL);
+}
