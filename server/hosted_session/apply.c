@@ -43,22 +43,6 @@ static void note(cau_hosted *h, const cau_order *order, const cau_action *action
 	}
 }
 
-static void refuse(cau_hosted *h, cau_order *order, const cau_error *error, int32_t code)
-{
-	h->refused_commands++;
-	if (order->motion)
-		cau_drive_refuse(h, order, error);
-	cau_answer_fail(order, error, code);
-}
-
-void cau_hosted_refuse_order(cau_hosted *h, cau_order *order, const cau_action *action)
-{
-	if (order->kind == CAU_ORDER_COMMAND)
-		refuse(h, order, &action->error, action->code);
-	else
-		cau_answer_fail(order, &action->error, action->code);
-}
-
 // A faulted core takes no commands, and needs none to be dark.
 static bool is_off_of_faulted(const cau_hosted *h, const cau_command *command)
 {
@@ -91,7 +75,7 @@ cau_outcome_kind cau_apply_command(cau_hosted *h, cau_order *order, const cau_ac
 	if (command->tick < h->tick)
 		command->tick = h->tick;
 	if (!is_off_of_faulted(h, command) && cau_session_submit(h->core, command, &error)) {
-		refuse(h, order, &error, 0);
+		cau_hosted_refuse_order(h, order, &error, 0);
 		return CAU_NOT_DONE;
 	}
 	answer_command(h, order);

@@ -85,7 +85,7 @@ static void answer_destroyers(cau_hosted *h)
 		else
 			cau_hosted_refuse_gone(order);
 	}
-	cau_hosted_destroy(h, first, h->origin.kind == CAU_ORIGIN_STORE); // it was listed as starting
+	cau_hosted_destroy(h, first, h->origin.kind == CAU_ORIGIN_STORE || !h->unanswered);
 	h->destroyers = NULL;
 }
 
@@ -107,9 +107,6 @@ static void come_to_an_end(cau_hosted *h)
 static void come_back(cau_hosted *h)
 {
 	cau_error error = {0};
-	if (h->starting) // the log is replayed in slices of the workers
-		snprintf(h->stage, sizeof h->stage, "replaying");
-	h->piece_s = STEPPED_VERTEX_S * h->info.vertex_count;
 	cau_hosted_end_slice(h);
 	for (cau_order *late = cau_building_give_back(h), *next; late;
 	     late = next) { // after the last border
@@ -120,13 +117,22 @@ static void come_back(cau_hosted *h)
 	cau_worker_pool_wake(h->around->pool, &h->task);
 }
 
+void cau_building_over(cau_hosted *h)
+{
+	if (h->ended)
+		come_to_an_end(h);
+	else
+		come_back(h);
+}
+
 static void end(building *b)
 {
-	if (b->hosted->ended)
-		come_to_an_end(b->hosted);
-	else
-		come_back(b->hosted);
-	cau_hosted_release(b->hosted);
+	cau_hosted *h = b->hosted;
+	if (h->replaying) // in slices of the workers
+		snprintf(h->stage, sizeof h->stage, "replaying");
+	h->piece_s = STEPPED_VERTEX_S * h->info.vertex_count;
+	cau_building_over(h);
+	cau_hosted_release(h);
 	free(b);
 }
 

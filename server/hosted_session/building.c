@@ -105,18 +105,24 @@ bool cau_building_destroyed(cau_hosted *h)
 	return h->destroyers != NULL;
 }
 
-static cau_status check_wanted(cau_hosted *h, const char *next, cau_error *error)
+cau_status cau_building_check(cau_hosted *h, const char *doing, const char *next, cau_error *error)
 {
-	bool destroyed = cau_building_destroyed(h);
-	h->unwanted = destroyed || h->abandoned || h->drain_wanted;
-	if (destroyed)
+	if (cau_building_destroyed(h))
 		return cau_fail(error, CAU_BAD_STATE, "",
-		                "the session was destroyed while it was being built, before %s", next);
-	if (h->abandoned)
-		return cau_fail(error, CAU_BAD_STATE, "", "its creator is gone; it ended before %s", next);
+		                "the session was destroyed while it %s, before %s", doing, next);
 	if (h->drain_wanted)
 		return cau_fail(error, CAU_BAD_STATE, "", "the daemon is ending; it ended before %s", next);
 	return CAU_OK;
+}
+
+static cau_status check_wanted(cau_hosted *h, const char *next, cau_error *error)
+{
+	cau_status status = cau_building_check(h, "was being built", next, error);
+	if (!status && h->abandoned)
+		status =
+			cau_fail(error, CAU_BAD_STATE, "", "its creator is gone; it ended before %s", next);
+	h->unwanted = status != CAU_OK;
+	return status;
 }
 
 static void tell_stage(cau_hosted *h, const char *stage, const cau_build_border *border)
@@ -145,7 +151,7 @@ cau_status cau_building_border(void *user, const cau_build_border *border, cau_e
 bool cau_building_cancel(cau_hosted *h, cau_order *order)
 {
 	char name[sizeof order->asker.name];
-	if (order->kind != CAU_ORDER_DESTROY || !h->away || !h->starting)
+	if (order->kind != CAU_ORDER_DESTROY || !h->away)
 		return false;
 	memcpy(name, order->asker.name, sizeof name); // the order may be answered before this returns
 	bool taken = keep_cancelling(h, order);

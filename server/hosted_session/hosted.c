@@ -22,8 +22,9 @@ void cau_hosted_refuse_gone(cau_order *order)
 
 void cau_hosted_end(cau_hosted *h)
 {
-	h->ended = true; // first: whoever hears of it finds its name free
 	cau_decide(h, &(cau_logic_event){.kind = CAU_LOGIC_END, .time_s = cau_monotonic_s()});
+	h->ended = true; // who sees this may refuse what waits, and needs the decision for it
+	cau_worker_pool_wake(h->around->pool, &h->task);
 }
 
 void cau_hosted_release(cau_hosted *h)
@@ -32,7 +33,7 @@ void cau_hosted_release(cau_hosted *h)
 		return;
 	CAU_ASSERT(h->logic->count == 0 && !h->logic->stepping && !h->reads,
 	           "session %s goes with %d orders unanswered", h->id, h->logic->count);
-	free(h->replay.commands);
+	cau_replay_finish(&h->replay);
 	cau_streams_finish(&h->streams);
 	cau_store_batch_destroy(h->batch);
 	cau_session_destroy(h->core);
@@ -62,11 +63,6 @@ uint32_t cau_hosted_number(const cau_hosted *h)
 const cau_scene_def *cau_hosted_scene(const cau_hosted *h)
 {
 	return h->scene;
-}
-
-int64_t cau_hosted_branch(const cau_hosted *h)
-{
-	return h->branch;
 }
 
 bool cau_hosted_ended(cau_hosted *h)

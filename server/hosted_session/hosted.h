@@ -23,7 +23,7 @@ typedef struct cau_surroundings {
 	// Energy came on somewhere: the watchdog must look at its times again.
 	void (*armed)(void *user);
 	// Makes a new session that starts from the state of another; see cau_hosted_origin.
-	void (*fork)(void *user, cau_hosted *source, const cau_order *order, uint64_t tick);
+	void (*fork)(void *user, cau_hosted *source, int64_t branch, const cau_order *order);
 	void *user;
 } cau_surroundings;
 
@@ -71,9 +71,8 @@ int32_t cau_hosted_commit_code(cau_status status);
 
 const char *cau_hosted_id(const cau_hosted *hosted);
 uint32_t cau_hosted_number(const cau_hosted *hosted);
-// For whoever makes a fork, on the session's own worker: its definition and present branch.
+// As it was made. From any thread.
 const cau_scene_def *cau_hosted_scene(const cau_hosted *hosted);
-int64_t cau_hosted_branch(const cau_hosted *hosted);
 // Destroyed, or never came to be: to be forgotten.
 bool cau_hosted_ended(cau_hosted *hosted);
 // Being built, or its first rows not handed to the store yet.

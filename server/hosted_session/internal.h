@@ -38,12 +38,12 @@ typedef struct cau_replayed {
 
 // Going to a state of the store; in slices.
 typedef struct cau_replay {
-	bool active;
-	uint64_t until;
+	void *snapshot; // of the checkpoint, until the core has it
+	size_t snapshot_bytes;
+	uint64_t from, until; // ticks
 	bool exact;
 	cau_replayed *commands;
 	size_t count, capacity, at;
-	cau_order *order; // the rewind, reset or restore that asked; NULL: the start
 } cau_replay;
 
 typedef struct cau_named_snapshot {
@@ -85,6 +85,8 @@ struct cau_hosted {
 	uint32_t logged_order;
 	uint64_t epoch;
 	cau_replay replay;
+	bool replaying;   // after a restart or a fork, on the workers
+	cau_job *leaving; // what the builder is to do with it once this slice has ended; NULL: nothing
 	cau_store_batch *batch; // of this slice; NULL: nothing to write
 	uint64_t batch_tick;    // when it was begun
 	uint64_t batch_lost;    // a log that is lost from here on ends with this batch's checkpoint
@@ -96,12 +98,13 @@ struct cau_hosted {
 	double window_s; // realtime_factor's window
 	uint64_t window_tick;
 	double step_cost_s, realtime_factor;
-	char stage[32];        // while it is built; else ""
+	char stage[32];        // what the builder does with it; else ""
 	int64_t memory_held;   // of what all sessions may take
 	cau_order *destroyers; // of those in `cancelling` the ones that are no resends, in their order
 	bool unwanted;         // it was cancelled
 	bool adopted;          // its threads are the workers'
 	double piece_s;        // processor time of the longest step lately, for the pool
+	double stepped_s;      // of the steps in this slice
 	int32_t elements_removed;
 	uint32_t refused_commands;
 	cau_named_snapshot snapshots[SNAPSHOT_COUNT];
@@ -148,7 +151,11 @@ void cau_hosted_end(cau_hosted *h);
 
 // ---- run.c
 cau_due cau_hosted_run(cau_task *task);
+
+// ---- slice.c
 void cau_hosted_end_slice(cau_hosted *h); // commits, and tells others what they may know
+// Refuses an order, which it takes.
+void cau_hosted_refuse_order(cau_hosted *h, cau_order *order, const cau_error *error, int32_t code);
 // It has ended: what waits is refused. By whoever has it: its worker, the builder, or after both.
 void cau_hosted_refuse_rest(cau_hosted *h);
 
@@ -161,7 +168,9 @@ void cau_hosted_publish_tools(cau_hosted *h); // for other threads to read
 // ---- building.c: the borders of its stages
 // Between two stages.
 cau_status cau_building_border(void *user, const cau_build_border *border, cau_error *error);
-// Takes the order if it destroys a session that is being built.
+// CAU_BAD_STATE, where the session is destroyed or the daemon ends. `doing`: "was being built".
+cau_status cau_building_check(cau_hosted *h, const char *doing, const char *next, cau_error *error);
+// Takes the order if it destroys a session that is away.
 bool cau_building_cancel(cau_hosted *h, cau_order *order);
 // Whether somebody destroys it: h->destroyers.
 bool cau_building_destroyed(cau_hosted *h);
@@ -174,6 +183,8 @@ cau_order *cau_building_give_back(cau_hosted *h);
 double cau_building_expects_s(const cau_scene_def *scene);
 // Leaves a session that was just made to the builder.
 cau_status cau_building_begin(cau_hosted *h, cau_error *error);
+// The builder's last slice of a session that was away: it is the workers' again, or has ended.
+void cau_building_over(cau_hosted *h);
 
 // ---- start.c: builds the core, loads the state; on the builder
 void cau_hosted_start(cau_hosted *h);
@@ -181,12 +192,14 @@ void cau_hosted_fail_start(cau_hosted *h, const cau_error *error);
 void cau_hosted_started(cau_hosted *h); // after the replay of a start
 
 // ---- replay.c
-// Loads the checkpoint and log of a session's branch up to `tick` (UINT64_MAX: the end) into the
-// core and begins the replay. On failure the core is as it was.
-cau_status cau_replay_begin(cau_hosted *h, const char *session, int64_t branch, uint64_t tick,
-                            cau_order *order, cau_error *error);
-// One slice. False when it has ended (or faulted the session).
-bool cau_replay_slice(cau_hosted *h);
+// Reads the checkpoint and the log of a session's branch up to `tick` (UINT64_MAX: the end).
+cau_status cau_replay_read(cau_hosted *h, const char *session, int64_t branch, uint64_t tick,
+                           cau_error *error);
+// Has the core be at that checkpoint. After CAU_CORRUPT it is as it was, after another failure it
+// may be anywhere.
+cau_status cau_replay_restore(cau_hosted *h, cau_error *error);
+// Steps on along the log, until that is over or some seconds are.
+cau_status cau_replay_slice(cau_hosted *h, double seconds, bool *over, cau_error *error);
 void cau_replay_finish(cau_replay *replay);
 
 // ---- decide.c: the session's decisions, from any thread
@@ -216,7 +229,6 @@ static inline int cau_decided_state(const cau_hosted *h)
 
 // ---- apply.c: what each order does. Takes the order if it is done or answered.
 cau_outcome_kind cau_hosted_apply(cau_hosted *h, cau_order *order, const cau_action *action);
-void cau_hosted_refuse_order(cau_hosted *h, cau_order *order, const cau_action *action);
 
 // ---- what CAU_ORDER_TABLE names (order.h), in the file that each belongs to. Each takes the
 // order. cau_apply_pause may get none: it was answered when it came.
@@ -228,14 +240,18 @@ CAU_ORDER_TABLE(CHANGE, READ)
 #undef CHANGE
 #undef READ
 
+// ---- back.c
+// Lets the builder have a session whose slice has ended, to go back. From here on it is the
+// builder's.
+void cau_back_leave(cau_hosted *h);
+
 // ---- time.c: orders about time and history
 // session.step has made its ticks, or the session faulted within them.
 void cau_time_stepped(cau_hosted *h, cau_order *order, bool failed);
 // The session goes, and with it its rows if it is stored, in the batch of this slice. False: there
 // is no memory for it. Answers the order, which it takes.
 bool cau_hosted_destroy(cau_hosted *h, cau_order *order, bool stored);
-// After the replay of a rewind, reset or restore.
-void cau_back_arrived(cau_hosted *h, cau_order *order);
+const cau_named_snapshot *cau_snapshot_find(const cau_hosted *h, const char *name);
 
 // ---- drivers.c: what clients are told of drivers and energy
 void cau_drive_tell(cau_hosted *h, const cau_drive *drive); // tool.driver_changed

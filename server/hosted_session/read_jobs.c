@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Reads that the builder does, beside the session's slices.
+// What the builder does beside the session's slices: reads, and waiting for the store before a
+// fork.
 #include <stdlib.h>
 
 #include "hosted_session/internal.h"

@@ -7,24 +7,15 @@
 #include "cautery/command_json.h"
 #include "hosted_session/internal.h"
 
-#define SLICE_S 0.008
-
-// A checkpoint's copy: the core takes it only once the log is read too.
-typedef struct snapshot {
-	void *bytes;
-	size_t byte_count;
-	uint64_t tick;
-} snapshot;
-
 static cau_status take_checkpoint(void *user, const cau_store_checkpoint *checkpoint)
 {
-	snapshot *taken = user;
-	taken->bytes = malloc(checkpoint->snapshot.bytes);
-	if (!taken->bytes)
+	cau_replay *replay = user;
+	replay->snapshot = malloc(checkpoint->snapshot.bytes);
+	if (!replay->snapshot)
 		return CAU_NO_MEMORY;
-	memcpy(taken->bytes, checkpoint->snapshot.data, checkpoint->snapshot.bytes);
-	taken->byte_count = checkpoint->snapshot.bytes;
-	taken->tick = checkpoint->tick;
+	memcpy(replay->snapshot, checkpoint->snapshot.data, checkpoint->snapshot.bytes);
+	replay->snapshot_bytes = checkpoint->snapshot.bytes;
+	replay->from = checkpoint->tick;
 	return CAU_OK;
 }
 
@@ -44,38 +35,46 @@ static cau_status take_command(void *user, const cau_store_command *row)
 	return cau_command_from_json(row->payload.data, row->payload.bytes, &made->command, NULL);
 }
 
-cau_status cau_replay_begin(cau_hosted *h, const char *session, int64_t branch, uint64_t tick,
-                            cau_order *order, cau_error *error)
+cau_status cau_replay_read(cau_hosted *h, const char *session, int64_t branch, uint64_t tick,
+                           cau_error *error)
 {
 	cau_store *store = h->around->store;
 	cau_replay *replay = &h->replay;
 	bool to_end = tick == UINT64_MAX;
 	uint64_t before = to_end ? INT64_MAX : tick;
-	snapshot taken = {0};
 	cau_replay_finish(replay);
 	cau_status status =
-		cau_store_read_checkpoint(store, session, branch, before, take_checkpoint, &taken, error);
+		cau_store_read_checkpoint(store, session, branch, before, take_checkpoint, replay, error);
 	if (!status)
-		status = cau_store_read_log(store, session, branch, taken.tick, before, take_command,
+		status = cau_store_read_log(store, session, branch, replay->from, before, take_command,
 		                            replay, error);
 	// Asked last: retention may have taken some of it meanwhile.
 	if (!to_end && (!status || status == CAU_NOT_FOUND)) {
 		cau_status reached = cau_store_check_reach(store, session, branch, tick, error);
 		status = reached ? reached : status;
 	}
-	if (!status)
-		status = cau_session_restore(h->core, taken.bytes, taken.byte_count, &replay->exact, error);
-	free(taken.bytes);
 	if (status) {
 		cau_replay_finish(replay);
 		return status;
 	}
-	h->tick = taken.tick;
-	replay->until = to_end ? h->tick : tick;
+	replay->until = to_end ? replay->from : tick;
 	if (to_end && replay->count)
 		replay->until = replay->commands[replay->count - 1].tick;
-	replay->order = order;
-	replay->active = true;
+	return CAU_OK;
+}
+
+cau_status cau_replay_restore(cau_hosted *h, cau_error *error)
+{
+	cau_replay *replay = &h->replay;
+	cau_status status = cau_session_restore(h->core, replay->snapshot, replay->snapshot_bytes,
+	                                        &replay->exact, error);
+	if (status) {
+		cau_replay_finish(replay);
+		return status;
+	}
+	free(replay->snapshot);
+	replay->snapshot = NULL;
+	h->tick = replay->from;
 	return CAU_OK;
 }
 
@@ -86,26 +85,29 @@ static void submit_due(cau_hosted *h)
 		cau_session_submit(h->core, &replay->commands[replay->at].command, NULL);
 }
 
-bool cau_replay_slice(cau_hosted *h)
+cau_status cau_replay_slice(cau_hosted *h, double seconds, bool *over, cau_error *error)
 {
-	cau_error error = {0};
-	double end_s = cau_monotonic_s() + SLICE_S;
+	double end_s = cau_monotonic_s() + seconds;
+	*over = false;
 	while (h->tick < h->replay.until) {
 		submit_due(h);
-		if (cau_session_step(h->core, &error)) {
-			cau_hosted_fault(h, &error);
-			return false;
-		}
+		double began_cpu_s = cau_thread_cpu_s();
+		cau_status status = cau_session_step(h->core, error);
+		h->stepped_s += cau_thread_cpu_s() - began_cpu_s;
+		if (status)
+			return status;
 		h->tick++;
 		if (cau_monotonic_s() >= end_s && h->tick < h->replay.until)
-			return true;
+			return CAU_OK;
 	}
 	submit_due(h);
-	return false;
+	*over = true;
+	return CAU_OK;
 }
 
 void cau_replay_finish(cau_replay *replay)
 {
 	free(replay->commands);
+	free(replay->snapshot);
 	*replay = (cau_replay){.exact = replay->exact};
 }

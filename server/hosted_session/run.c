@@ -4,12 +4,12 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "cautery/assert.h"
 #include "hosted_session/internal.h"
 
 #define FACTOR_WINDOW_S 1.0   // realtime_factor is over this
 #define PIECE_KEPT 0.9        // of the longest step, from each to the next
 #define STEPPING_SLICE_S 0.01 // session.step runs so long before others get the worker
+#define REPLAY_SLICE_S 0.008  // and so long a replay, so that other sessions keep their pace
 
 enum {
 	QUIET_DOUBLINGS = 6
@@ -55,6 +55,7 @@ static void measure_factor(cau_hosted *h, double now_s)
 // How long a step may be, for the pool: the longest lately, forgotten over some ten steps.
 static void expect_piece(cau_hosted *h, double took_s)
 {
+	h->stepped_s += took_s;
 	h->piece_s = fmax(took_s, PIECE_KEPT * h->piece_s);
 }
 
@@ -89,7 +90,7 @@ static cau_outcome_kind act(cau_hosted *h, const cau_action *action)
 	cau_order *order = (cau_order *)(uintptr_t)action->ticket;
 	switch (action->act) {
 	case CAU_ACT_REFUSE:
-		cau_hosted_refuse_order(h, order, action);
+		cau_hosted_refuse_order(h, order, &action->error, action->code);
 		return CAU_DONE;
 	case CAU_ACT_LOOK:
 		return cau_hosted_look(h, order);
@@ -124,7 +125,7 @@ static void act_until_tick(cau_hosted *h)
 {
 	cau_action action;
 	double end_s = cau_monotonic_s() + STEPPING_SLICE_S;
-	while (!h->ended && !h->replay.active) {
+	while (!h->ended && !h->leaving) {
 		cau_decide_next(h, &action);
 		if (action.act == CAU_ACT_NOTHING)
 			return;
@@ -144,20 +145,6 @@ static void act_until_tick(cau_hosted *h)
 		if (outcome == CAU_POSTPONED)
 			note_commits(h);
 	}
-}
-
-void cau_hosted_refuse_rest(cau_hosted *h)
-{
-	cau_action action;
-	CAU_ASSERT(h->logic->ended, "what waits for session %s is refused while it lives", h->id);
-	for (cau_decide_next(h, &action); action.act != CAU_ACT_NOTHING; cau_decide_next(h, &action)) {
-		act(h, &action);
-		cau_decide_done(h, CAU_DONE);
-	}
-	if (h->replay.order)
-		cau_hosted_refuse_gone(h->replay.order);
-	h->replay.order = NULL;
-	cau_reads_refuse(h);
 }
 
 // Whether something happened since the last checkpoint that a restart would have to replay, or that
@@ -210,23 +197,20 @@ static void drain(cau_hosted *h)
 		h->drained = true;
 }
 
+// After a restart or a fork.
 static void go_on_replaying(cau_hosted *h)
 {
-	if (cau_replay_slice(h))
+	cau_error error = {0};
+	bool over;
+	if (cau_replay_slice(h, REPLAY_SLICE_S, &over, &error))
+		cau_hosted_fault(h, &error);
+	else if (!over)
 		return;
-	cau_order *order = h->replay.order;
 	cau_frame frame;
 	cau_session_frame(h->core, &frame);
 	h->elements_removed = frame.statistics.elements_removed;
-	if (!order) {
-		cau_hosted_started(h);
-	} else if (cau_decided_state(h) == CAU_SESSION_FAULTED && h->tick < h->replay.until) {
-		cau_error error = {.status = CAU_FAULTED};
-		snprintf(error.reason, sizeof error.reason, "%s", h->logic->fault);
-		cau_answer_fail(order, &error, 0);
-	} else {
-		cau_back_arrived(h, order);
-	}
+	h->replaying = false;
+	cau_hosted_started(h);
 	cau_replay_finish(&h->replay);
 }
 
@@ -234,7 +218,7 @@ static void serve(cau_hosted *h, double now_s)
 {
 	int32_t reads = cau_reads_note(h);
 	act_until_tick(h);
-	if (h->ended || h->replay.active)
+	if (h->ended || h->leaving)
 		return;
 	cau_drive_tell_refusals(h, now_s);
 	cau_frames_publish(h, cau_monotonic_s());
@@ -247,7 +231,7 @@ static cau_due when(cau_hosted *h)
 	double now_s = cau_monotonic_s();
 	if (h->ended || h->drain_wanted)
 		return (cau_due){INFINITY, INFINITY, h->piece_s};
-	if (h->starting || h->replay.active)
+	if (h->starting)
 		return (cau_due){0, now_s + 0.1, h->piece_s}; // those at wall rate go first
 	pthread_mutex_lock(&h->deciding);
 	double due_s = cau_logic_due_s(h->logic), tick_s = h->logic->next_step_s;
@@ -256,17 +240,6 @@ static cau_due when(cau_hosted *h)
 	if (cau_decided_state(h) == CAU_SESSION_RUNNING)
 		return (cau_due){fmin(due_s, tick_s), tick_s + period_s, h->piece_s};
 	return (cau_due){cau_reads_wait(h) || h->dirty ? 0 : due_s, now_s + 0.1, h->piece_s};
-}
-
-void cau_hosted_end_slice(cau_hosted *h)
-{
-	cau_record_commit(h);
-	cau_decide_flush_trace(h);
-	if (!h->starting)
-		h->unanswered = false;
-	cau_hosted_publish_summary(h);
-	cau_hosted_publish_tools(h);
-	h->around->sink.sliced(h->around->sink.user, h->number);
 }
 
 // The builder made the core, and its threads have the builder's priority: they become a worker's.
@@ -285,7 +258,7 @@ static void run_slice(cau_hosted *h)
 		drain(h);
 	else if (!h->adopted)
 		adopt(h);
-	else if (h->replay.active)
+	else if (h->replaying)
 		go_on_replaying(h);
 	else
 		serve(h, cau_monotonic_s());
@@ -297,12 +270,18 @@ static void run_slice(cau_hosted *h)
 cau_due cau_hosted_run(cau_task *task)
 {
 	cau_hosted *h = (cau_hosted *)task;
+	const cau_due away = {INFINITY, INFINITY, task->next.piece_s}; // as it was
 	if (h->away)
-		return (cau_due){INFINITY, INFINITY, task->next.piece_s}; // as it was
+		return away;
+	h->stepped_s = 0;
 	if (!h->ended)
 		run_slice(h);
 	if (h->ended)
 		cau_hosted_refuse_rest(h);
 	cau_hosted_end_slice(h);
-	return when(h);
+	task->undivided_s = h->stepped_s;
+	if (!h->leaving)
+		return when(h);
+	cau_back_leave(h);
+	return away;
 }

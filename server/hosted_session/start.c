@@ -103,6 +103,16 @@ static cau_status count_branch(void *user, const cau_store_branch *branch)
 	return CAU_OK;
 }
 
+static cau_status replay(cau_hosted *h, const char *session, int64_t branch, uint64_t tick,
+                         cau_error *error)
+{
+	cau_status status = cau_replay_read(h, session, branch, tick, error);
+	if (!status)
+		status = cau_replay_restore(h, error);
+	h->replaying = !status;
+	return status;
+}
+
 static cau_status resume_from_store(cau_hosted *h, cau_error *error)
 {
 	cau_store *store = h->around->store;
@@ -113,9 +123,7 @@ static cau_status resume_from_store(cau_hosted *h, cau_error *error)
 	if (!status)
 		status = cau_store_read_events(store, h->id, "snapshot", SNAPSHOT_COUNT, take_snapshot, h,
 		                               error);
-	if (!status)
-		status = cau_replay_begin(h, h->id, h->branch, UINT64_MAX, NULL, error);
-	return status;
+	return status ? status : replay(h, h->id, h->branch, UINT64_MAX, error);
 }
 
 void cau_hosted_tell_not_resumed(const char *id, cau_status status, const cau_error *error)
@@ -150,8 +158,7 @@ void cau_hosted_start(cau_hosted *h)
 	if (!status && h->origin.kind == CAU_ORIGIN_STORE)
 		status = resume_from_store(h, &error);
 	else if (!status && h->origin.kind == CAU_ORIGIN_FORK)
-		status =
-			cau_replay_begin(h, h->origin.session, h->origin.branch, h->origin.tick, NULL, &error);
+		status = replay(h, h->origin.session, h->origin.branch, h->origin.tick, &error);
 	if (!status && h->origin.kind != CAU_ORIGIN_STORE)
 		status = record_session(h, &error);
 	if (status) {
@@ -160,7 +167,7 @@ void cau_hosted_start(cau_hosted *h)
 	}
 	cau_log(CAU_LOG_INFO, h->id, "built", "seconds=%.3f vertices=%d", cau_monotonic_s() - began_s,
 	        h->info.vertex_count);
-	if (!h->replay.active)
+	if (!h->replaying)
 		cau_hosted_started(h);
 }
 

@@ -19,7 +19,7 @@ void cau_hosted_publish_summary(cau_hosted *h)
 		.epoch = h->epoch,
 		.has_fault = cau_decided_state(h) == CAU_SESSION_FAULTED && *h->logic->fault,
 	};
-	now.has_stage = h->starting && *h->stage;
+	now.has_stage = *h->stage;
 	snprintf(now.stage, sizeof now.stage, "%s", h->stage);
 	memcpy(now.session, h->id, sizeof now.session);
 	memcpy(now.scene, h->scene->name, sizeof now.scene);

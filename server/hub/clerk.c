@@ -204,7 +204,7 @@ cau_due cau_clerk_run(cau_task *task)
 }
 
 // ---- forks
-void cau_clerk_fork(void *user, cau_hosted *source, const cau_order *order, uint64_t tick)
+void cau_clerk_fork(void *user, cau_hosted *source, int64_t branch, const cau_order *order)
 {
 	cau_hub *hub = user;
 	cau_error error = {0};
@@ -224,8 +224,8 @@ void cau_clerk_fork(void *user, cau_hosted *source, const cau_order *order, uint
 	creation->asker = order->asker;
 	creation->client_sequence = order->client_sequence;
 	creation->reply = order->reply;
-	creation->origin = (cau_hosted_origin){
-		.kind = CAU_ORIGIN_FORK, .branch = cau_hosted_branch(source), .tick = tick};
+	creation->origin =
+		(cau_hosted_origin){.kind = CAU_ORIGIN_FORK, .branch = branch, .tick = order->as.fork.tick};
 	snprintf(creation->origin.session, sizeof creation->origin.session, "%s",
 	         cau_hosted_id(source));
 	cau_status status =

@@ -184,6 +184,11 @@ double cau_hub_watch(cau_hub *hub, double now_s)
 	return w.look_s;
 }
 
+double cau_hub_longest_slice_s(cau_hub *hub)
+{
+	return cau_worker_pool_longest_s(hub->def.pool);
+}
+
 static void note_starting(void *user, cau_hosted *hosted)
 {
 	*(bool *)user = *(bool *)user || cau_hosted_starting(hosted);

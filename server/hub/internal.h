@@ -40,7 +40,7 @@ struct cau_hub {
 cau_due cau_clerk_run(cau_task *task);
 // Makes and registers a session; takes the creation.
 cau_status cau_clerk_make(cau_hub *hub, cau_creation *creation, const char *id, cau_error *error);
-void cau_clerk_fork(void *user, cau_hosted *source, const cau_order *order, uint64_t tick);
+void cau_clerk_fork(void *user, cau_hosted *source, int64_t branch, const cau_order *order);
 void cau_creation_free(cau_creation *creation);
 
 // ---- discard.c

@@ -182,6 +182,9 @@ unsigned cau_service_metrics(cau_service *service, cau_metrics_format format, FI
 	session_rows taken = {0};
 	cau_hub_each(service->hub, take_session, &taken);
 	gauge(&to, "sessions", "", "Sessions hosted", (double)taken.count);
+	gauge(&to, "longest_slice_seconds", "seconds",
+	      "Processor time of the longest piece of work on a worker thread, steps not counted",
+	      cau_hub_longest_slice_s(service->hub));
 	write_network(service, &to);
 	write_store(service, &to);
 	write_process(&to);

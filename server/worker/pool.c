@@ -13,6 +13,7 @@ struct cau_worker_pool {
 	pthread_cond_t changed;     // tasks or times changed
 	pthread_cond_t left;        // a slice ended
 	bool ending, last_was_long; // of the slices begun
+	double longest_s;           // processor time of a slice, without what cannot be divided
 	int32_t nice;
 	int32_t workers; // threads wanted, all the time; thread_count: made so far
 	int32_t thread_count, task_count, task_capacity;
@@ -83,8 +84,12 @@ static void run_slice(cau_worker_pool *pool, cau_task *task)
 	task->woken = false;
 	pool->last_was_long = is_long(task);
 	pthread_mutex_unlock(&pool->mutex);
+	task->undivided_s = 0;
+	double began_s = cau_thread_cpu_s();
 	cau_due next = task->run(task);
+	double took_s = cau_thread_cpu_s() - began_s - task->undivided_s;
 	pthread_mutex_lock(&pool->mutex);
+	pool->longest_s = fmax(pool->longest_s, took_s);
 	task->running = false;
 	task->next = next;
 	task->ended_s = cau_monotonic_s();
@@ -205,6 +210,14 @@ void cau_worker_pool_wake(cau_worker_pool *pool, cau_task *task)
 		pthread_cond_signal(&pool->changed);
 	}
 	pthread_mutex_unlock(&pool->mutex);
+}
+
+double cau_worker_pool_longest_s(cau_worker_pool *pool)
+{
+	pthread_mutex_lock(&pool->mutex);
+	double longest_s = pool->longest_s;
+	pthread_mutex_unlock(&pool->mutex);
+	return longest_s;
 }
 
 int32_t cau_worker_pool_busy(cau_worker_pool *pool)

@@ -25,6 +25,7 @@ typedef struct cau_due {
 
 typedef struct cau_task {
 	cau_due (*run)(struct cau_task *task); // one slice of work, some milliseconds
+	double undivided_s; // set in a slice: processor time of what in it cannot be divided
 	// The pool's own; of `next` the piece_s is that of the first slice, set before it is added.
 	cau_due next;
 	bool running, woken, leaving;
@@ -44,5 +45,8 @@ bool cau_worker_pool_add(cau_worker_pool *pool, cau_task *task);
 void cau_worker_pool_remove(cau_worker_pool *pool, cau_task *task);
 // Makes a task due now; if it is running, it runs once more. From any thread.
 void cau_worker_pool_wake(cau_worker_pool *pool, cau_task *task);
+// Processor time of the longest slice so far, s, without what in it cannot be divided. Processor
+// time: others that use the machine do not make a slice longer.
+double cau_worker_pool_longest_s(cau_worker_pool *pool);
 // Tasks that are running or due.
 int32_t cau_worker_pool_busy(cau_worker_pool *pool);

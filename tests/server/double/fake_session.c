@@ -395,6 +395,11 @@ cau_status cau_session_restore(cau_session *s, const void *bytes, size_t count, 
 		memcpy(&magic, bytes, sizeof magic);
 	if (magic != MAGIC)
 		return cau_fail(error, CAU_CORRUPT, NULL, "not a snapshot");
+	cau_status status = cau_fake_hooks_set.restore ? cau_fake_hooks_set.restore() : CAU_OK;
+	if (status) {
+		memset(&s->state.position, 0, sizeof s->state.position);
+		return cau_fail(error, status, NULL, "half restored");
+	}
 	memcpy(&s->state, (const char *)bytes + sizeof magic, sizeof s->state);
 	for (int32_t f = 0; f < FACES; f++)
 		s->alive[f] = !(s->state.mask[f / 32] >> (f % 32) & 1);

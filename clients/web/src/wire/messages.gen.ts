@@ -168,7 +168,7 @@ export interface SessionSummary {
   fault?: string;
   /** false, in an answer to session.pause: the store had no room; it pauses all the same */
   stored?: boolean;
-  /** while it is starting: what the builder does (meshing, ordering, factoring, settling, replaying) */
+  /** while it is starting or goes back: what the builder does (meshing, ordering, factoring, settling; reading, restoring, replaying) */
   stage?: string;
 }
 

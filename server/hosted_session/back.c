@@ -1,0 +1,322 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Going back: rewind, reset and restore, and where a fork starts from.
+//
+// The worker leaves the session to the builder, at a tick border and dark; orders wait meanwhile.
+// The builder has it for itself, as while it builds one, in stages: what is to be reached is read,
+// the core is brought to the checkpoint, the log is replayed in slices. At the borders between them
+// it is told how far it is, and who destroys the session is heard. The state that is left is kept
+// until another is reached: where that fails, the session goes on as if it had not been asked.
+#include <stdlib.h>
+#include <string.h>
+
+#include "hosted_session/internal.h"
+
+// What the stages take, for the builder's order: a sheet of 250,000 vertices is restored in 1.5 s.
+#define READ_EXPECTED_S 0.02
+#define RESTORED_VERTEX_S 6e-6
+#define SLICE_S 0.1 // of a replay, before other short jobs have their turn
+
+typedef struct going {
+	cau_job job; // first
+	cau_hosted *hosted;
+	cau_order *order;
+	enum { READING, RESTORING, REPLAYING, STAGE_COUNT } stage;
+	int64_t branch; // where to
+	uint64_t tick, present_tick;
+	bool left;     // the core is not at the present any more
+	void *present; // its snapshot; NULL: there is none
+	size_t present_bytes;
+} going;
+
+static const char *const stage_names[STAGE_COUNT] = {"reading", "restoring", "replaying"};
+
+// ---- the past -----------------------------------------------------------------------------------
+
+// What the store lacks is told to it by the checkpoint that ends it; until then nobody goes there.
+static void end_gap(cau_hosted *h)
+{
+	if (h->lost_from != UINT64_MAX)
+		cau_record_checkpoint(h, NULL, NULL);
+}
+
+// On the builder. Before the past is read, all of it that is on its way must be in the store.
+static cau_status check_past(cau_hosted *h, int64_t branch, bool present, uint64_t tick,
+                             cau_error *error)
+{
+	cau_store_flush(h->around->store);
+	uint64_t lost_from = h->lost_from;
+	if (present && tick > lost_from)
+		return cau_fail(error, CAU_BAD_VALUE, "params.tick",
+		                "what happened from tick %llu on could not be stored",
+		                (unsigned long long)lost_from);
+	return cau_store_check_reach(h->around->store, h->id, branch, tick, error);
+}
+
+static cau_outcome_kind fail(cau_order *order, cau_status status, const char *path,
+                             const char *reason)
+{
+	cau_error error = {0};
+	cau_fail(&error, status, path, "%s", reason);
+	cau_answer_fail(order, &error, 0);
+	return CAU_NOT_DONE;
+}
+
+// ---- arriving -----------------------------------------------------------------------------------
+
+static int change_of(cau_order_kind kind, int *event)
+{
+	*event = kind == CAU_ORDER_RESET     ? CAU_EVENT_RESET
+	         : kind == CAU_ORDER_RESTORE ? CAU_EVENT_RESTORE
+	                                     : CAU_EVENT_REWIND;
+	return kind == CAU_ORDER_RESET     ? CAU_CHANGE_RESET
+	       : kind == CAU_ORDER_RESTORE ? CAU_CHANGE_RESTORED
+	                                   : CAU_CHANGE_REWOUND;
+}
+
+static void open_branch(cau_hosted *h)
+{
+	cau_error error = {0};
+	cau_store_batch *batch = cau_record_batch(h);
+	cau_store_branch row = {
+		.session = h->id, .branch = h->next_branch, .parent = h->branch, .fork_tick = h->tick};
+	cau_status status = batch ? cau_store_put_branch(batch, &row, &error) : CAU_NO_MEMORY;
+	if (status)
+		cau_log(CAU_LOG_ERROR, h->id, "branch_lost", "reason=\"%s\"", error.reason);
+	h->branch = h->next_branch++;
+	h->logged_order = 0;
+	h->logged_tick = UINT64_MAX;
+}
+
+static void arrive(cau_hosted *h, int64_t branch, cau_order *order)
+{
+	int event;
+	int change = change_of(order->kind, &event);
+	int state = cau_decided_state(h);
+	cau_frame frame;
+	cau_session_frame(h->core, &frame);
+	h->elements_removed = frame.statistics.elements_removed;
+	h->branch = branch;
+	h->stage[0] = 0;
+	cau_events_load(h);
+	open_branch(h);
+	cau_event_add(h, event, NULL, order->asker.name, 0, NULL);
+	cau_record_checkpoint(h, NULL, NULL);
+	cau_decide_arrived(h, state == CAU_SESSION_FAULTED ? CAU_SESSION_PAUSED : state,
+	                   "the session went back");
+	cau_frames_restart(h);
+	cau_record_state(h);
+	h->window_s = cau_monotonic_s();
+	h->window_tick = h->tick;
+	cau_wire_restored result = {
+		.tick = (int64_t)h->tick, .epoch = h->epoch, .branch = h->branch, .exact = h->replay.exact};
+	cau_answer_changed(h, change, order->asker.name);
+	cau_answer_order(h, order, &result);
+}
+
+// ---- staying ------------------------------------------------------------------------------------
+
+static cau_status return_to_present(going *g, cau_error *error)
+{
+	bool exact;
+	if (!g->left)
+		return CAU_OK;
+	g->hosted->tick = g->present_tick;
+	if (!g->present)
+		return cau_fail(error, CAU_FAULTED, "", "it was faulted before, and stays so");
+	return cau_session_restore(g->hosted->core, g->present, g->present_bytes, &exact, error);
+}
+
+// It goes on where it was, dark, as if nobody had asked.
+static void stay(going *g)
+{
+	cau_hosted *h = g->hosted;
+	cau_error error = {0};
+	if (return_to_present(g, &error))
+		cau_hosted_fault(h, &error);
+	else
+		cau_decide(h, &(cau_logic_event){.kind = CAU_LOGIC_STAYED, .time_s = cau_monotonic_s()});
+	h->window_s = cau_monotonic_s();
+	h->window_tick = h->tick;
+	h->dirty = true;
+}
+
+// ---- the stages ---------------------------------------------------------------------------------
+
+static cau_status read_past(going *g, cau_error *error)
+{
+	cau_hosted *h = g->hosted;
+	end_gap(h);
+	cau_record_commit(h);
+	cau_status status = check_past(h, g->branch, g->branch == h->branch, g->tick, error);
+	return status ? status : cau_replay_read(h, h->id, g->branch, g->tick, error);
+}
+
+// A session that is faulted has nothing that must be kept.
+static cau_status keep_present(going *g, cau_error *error)
+{
+	cau_hosted *h = g->hosted;
+	size_t capacity = cau_session_snapshot_bytes(h->core);
+	g->present = malloc(capacity);
+	cau_status status =
+		g->present ? cau_session_snapshot(h->core, g->present, capacity, &g->present_bytes, error)
+				   : cau_fail(error, CAU_NO_MEMORY, "", "no memory to keep the present state");
+	if (!status)
+		return CAU_OK;
+	free(g->present);
+	g->present = NULL;
+	return cau_decided_state(h) == CAU_SESSION_FAULTED ? CAU_OK : status;
+}
+
+static cau_status leave_present(going *g, cau_error *error)
+{
+	cau_status status = keep_present(g, error);
+	if (status)
+		return status;
+	g->left = true;
+	return cau_replay_restore(g->hosted, error);
+}
+
+static double expected_s(const going *g)
+{
+	const cau_hosted *h = g->hosted;
+	if (g->stage == READING)
+		return READ_EXPECTED_S;
+	if (g->stage == RESTORING)
+		return RESTORED_VERTEX_S * h->info.vertex_count;
+	return h->piece_s > SLICE_S ? h->piece_s : SLICE_S;
+}
+
+// Leaves it for its next turn; another thread may have it at once.
+static void go_on(going *g)
+{
+	g->job.expected_s = expected_s(g);
+	cau_builder_submit(g->hosted->around->builder, &g->job);
+}
+
+static void end(going *g)
+{
+	cau_hosted *h = g->hosted;
+	cau_replay_finish(&h->replay);
+	free(g->present);
+	free(g);
+	h->stage[0] = 0;
+	cau_building_over(h);
+	cau_hosted_release(h);
+}
+
+static void give_up(going *g, const cau_error *error)
+{
+	cau_hosted *h = g->hosted;
+	if (h->destroyers)
+		cau_hosted_end(h);
+	if (!h->ended)
+		stay(g);
+	cau_answer_fail(g->order, error, h->drain_wanted ? CAU_RPC_DRAINING : 0);
+	end(g);
+}
+
+static void tell_stage(cau_hosted *h, const char *stage)
+{
+	snprintf(h->stage, sizeof h->stage, "%s", stage);
+	cau_hosted_publish_summary(h);
+}
+
+static void run(cau_job *job)
+{
+	going *g = (going *)job;
+	cau_hosted *h = g->hosted;
+	cau_error error = {0};
+	bool over = true;
+	cau_status status = cau_building_check(h, "went back", stage_names[g->stage], &error);
+	tell_stage(h, stage_names[g->stage]);
+	if (!status && g->stage == READING)
+		status = read_past(g, &error);
+	else if (!status && g->stage == RESTORING)
+		status = leave_present(g, &error);
+	else if (!status)
+		status = cau_replay_slice(h, SLICE_S, &over, &error);
+	if (status) {
+		give_up(g, &error);
+		return;
+	}
+	g->stage += over;
+	if (g->stage < STAGE_COUNT) {
+		go_on(g);
+		return;
+	}
+	arrive(h, g->branch, g->order);
+	end(g);
+}
+
+static void drop(cau_job *job)
+{
+	cau_error error = {0};
+	cau_fail(&error, CAU_BAD_STATE, "", "the daemon is ending");
+	give_up((going *)job, &error);
+}
+
+// ---- on the worker ------------------------------------------------------------------------------
+
+void cau_back_leave(cau_hosted *h)
+{
+	going *g = (going *)h->leaving;
+	h->leaving = NULL;
+	h->away = true;
+	go_on(g);
+}
+
+cau_outcome_kind cau_apply_back(cau_hosted *h, cau_order *order, const cau_action *action)
+{
+	(void)action;
+	int64_t branch = h->branch;
+	uint64_t tick = order->kind == CAU_ORDER_RESET ? h->first_tick : order->as.tick;
+	if (order->kind == CAU_ORDER_RESTORE) {
+		const cau_named_snapshot *snapshot = cau_snapshot_find(h, order->as.name);
+		if (!snapshot)
+			return fail(order, CAU_NOT_FOUND, "params.name", "no snapshot has this name");
+		branch = snapshot->branch;
+		tick = snapshot->tick;
+	} else if (tick > h->tick) {
+		return fail(order, CAU_BAD_VALUE, "params.tick", "beyond the present");
+	}
+	going *g = malloc(sizeof *g);
+	if (!g)
+		return fail(order, CAU_NO_MEMORY, "", "no memory to go back");
+	cau_event_end_cut(h);
+	*g = (going){.job = {.run = run, .drop = drop},
+	             .hosted = cau_hosted_share(h),
+	             .order = order,
+	             .branch = branch,
+	             .tick = tick,
+	             .present_tick = h->tick};
+	h->leaving = &g->job;
+	tell_stage(h, stage_names[READING]);
+	return CAU_DONE;
+}
+
+// ---- forks --------------------------------------------------------------------------------------
+
+// On the builder, beside the session's slices.
+static void make_fork(cau_read_job *job)
+{
+	cau_hosted *h = job->hosted;
+	cau_error error = {0};
+	if (check_past(h, job->branch, true, job->order->as.fork.tick, &error))
+		cau_reply_fail(&job->order->reply, &error, 0);
+	else
+		h->around->fork(h->around->user, h, job->branch, job->order);
+}
+
+cau_outcome_kind cau_apply_fork(cau_hosted *h, cau_order *order, const cau_action *action)
+{
+	(void)action;
+	if (!order->as.fork.has_tick)
+		order->as.fork.tick = h->tick;
+	if (order->as.fork.tick > h->tick)
+		return fail(order, CAU_BAD_VALUE, "params.tick", "beyond the present");
+	if (order->as.fork.tick == h->tick)
+		cau_record_checkpoint(h, NULL, NULL);
+	end_gap(h);
+	cau_reads_hand_over(h, order, make_fork, NULL, NULL, READ_EXPECTED_S);
+	return CAU_DONE;
+}

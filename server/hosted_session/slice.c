@@ -1,0 +1,40 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// How a slice ends, whoever has it: a worker or the builder; and what is refused in it.
+#include "cautery/assert.h"
+#include "hosted_session/internal.h"
+
+void cau_hosted_end_slice(cau_hosted *h)
+{
+	cau_record_commit(h);
+	cau_decide_flush_trace(h);
+	if (!h->starting)
+		h->unanswered = false;
+	cau_hosted_publish_summary(h);
+	cau_hosted_publish_tools(h);
+	h->around->sink.sliced(h->around->sink.user, h->number);
+}
+
+void cau_hosted_refuse_order(cau_hosted *h, cau_order *order, const cau_error *error, int32_t code)
+{
+	if (order->kind == CAU_ORDER_COMMAND) {
+		h->refused_commands++;
+		if (order->motion)
+			cau_drive_refuse(h, order, error);
+	}
+	cau_answer_fail(order, error, code);
+}
+
+void cau_hosted_refuse_rest(cau_hosted *h)
+{
+	cau_action action;
+	CAU_ASSERT(h->logic->ended, "what waits for session %s is refused while it lives", h->id);
+	for (cau_decide_next(h, &action); action.act != CAU_ACT_NOTHING; cau_decide_next(h, &action)) {
+		cau_order *order = (cau_order *)(uintptr_t)action.ticket;
+		if (action.act == CAU_ACT_REFUSE)
+			cau_hosted_refuse_order(h, order, &action.error, action.code);
+		else if (action.act == CAU_ACT_STEP_FAILED)
+			cau_time_stepped(h, order, true);
+		cau_decide_done(h, CAU_DONE);
+	}
+	cau_reads_refuse(h);
+}
