@@ -2,14 +2,9 @@
 // A stream at exactly its rate, whatever the machine's load: frames of a real session are recorded as
 // the daemon makes them, and played to a page by a door in front of the daemon. Everything else that the
 // page says goes to the daemon and back.
-import { once } from 'node:events';
-import { createServer, request, type IncomingMessage, type ServerResponse } from 'node:http';
-import type { AddressInfo } from 'node:net';
-import type { Duplex } from 'node:stream';
-
+import { Door, PROTOCOL, type Said } from './door';
 import { MessageSocket } from './socket';
 
-const PROTOCOL = 'cautery.v1';
 const PUBLISHED_AT = 56; // offset of published_us in a frame's header
 const TICK_AT = 40;
 const KIND_AT = 5;
@@ -59,74 +54,36 @@ export async function record(daemonUrl: string, session: string, count: number, 
   return { session, frames };
 }
 
-export class Replay {
+export class Replay extends Door {
   /** deltas sent so far, and the tick of the last */
   sent = 0;
   readonly lastTick: number;
-  /** methods that the page called, in order */
-  readonly asked: string[] = [];
-  private readonly server = createServer((asked, answer) => this.serve(asked, answer));
-  private readonly sockets = new Set<MessageSocket>();
   private timer: NodeJS.Timeout | undefined;
   private clockUs = 0; // the daemon's clock when this one stood at 0
 
   constructor(
-    private readonly daemonUrl: string,
+    daemonUrl: string,
     private readonly recording: Recording,
     private readonly rateHz: number,
   ) {
+    super(daemonUrl);
     this.lastTick = Number(recording.frames[recording.frames.length - 1].readBigUInt64LE(TICK_AT));
-    this.server.on('upgrade', (asked: IncomingMessage, stream: Duplex) => void this.upgrade(asked, stream));
   }
 
-  async start(): Promise<string> {
-    this.server.listen(0, '127.0.0.1');
-    await once(this.server, 'listening');
-    return `http://127.0.0.1:${(this.server.address() as AddressInfo).port}/`;
-  }
-
-  async end(): Promise<void> {
+  override async end(): Promise<void> {
     clearInterval(this.timer);
-    for (const socket of this.sockets) socket.close();
-    this.server.closeAllConnections();
-    this.server.close();
-    await once(this.server, 'close');
+    await super.end();
   }
 
-  private serve(asked: IncomingMessage, answer: ServerResponse): void {
-    const headers = { ...asked.headers, host: new URL(this.daemonUrl).host };
-    delete headers.origin; // the door's, which is not the daemon's
-    const onwards = request(new URL(asked.url ?? '/', this.daemonUrl), { method: asked.method ?? 'GET', headers }, (got) => {
-      answer.writeHead(got.statusCode ?? 502, got.headers);
-      got.pipe(answer);
-    });
-    onwards.on('error', () => answer.destroy());
-    onwards.end();
+  protected override text({ page, text, method }: Said): void {
+    super.text({ page, text, method });
+    const { result } = JSON.parse(text) as { result?: { server_time_us?: number } };
+    if (method === 'hello') this.clockUs = (result?.server_time_us ?? 0) - 1000 * performance.now();
+    if (method === 'session.join') this.play(page);
   }
 
-  private async upgrade(asked: IncomingMessage, stream: Duplex): Promise<void> {
-    const daemon = await MessageSocket.connect(new URL(asked.url ?? '/v1', this.daemonUrl), PROTOCOL);
-    const page = MessageSocket.accept(asked, stream);
-    for (const socket of [page, daemon]) this.sockets.add(socket);
-    const names = new Map<number, string>();
-    page.onText = (text) => {
-      const { id, method } = JSON.parse(text) as { id?: number; method: string };
-      this.asked.push(method);
-      if (id !== undefined) names.set(id, method);
-      daemon.sendText(text);
-    };
-    page.onBinary = (bytes) => daemon.sendBinary(bytes);
-    page.onClose = () => daemon.close();
-    daemon.onClose = () => page.close();
-    daemon.onText = (text) => {
-      page.sendText(text);
-      const { id, result } = JSON.parse(text) as { id?: number; result?: { server_time_us?: number } };
-      const method = id === undefined ? undefined : names.get(id);
-      if (method === 'hello') this.clockUs = (result?.server_time_us ?? 0) - 1000 * performance.now();
-      if (method === 'session.join') this.play(page);
-    };
-    // The daemon's own frames stay out: the session is paused, and the page sees the recording.
-  }
+  /** The daemon's own frames stay out: the session is paused, and the page sees the recording. */
+  protected override binary(): void {}
 
   private play(page: MessageSocket): void {
     const [topology, key, ...deltas] = this.recording.frames;

@@ -1,0 +1,88 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// What takes its time says what it is, with a moving bar, over whatever is in the picture; and where it
+// ends there is tissue. A door holds the daemon's answers up for as long as the test looks.
+import { HoldingDoor } from './door';
+import { Stage } from './stage';
+import { ViewerPage } from './viewer_page';
+
+describe('while something is under way', () => {
+  const stage = new Stage(['--demo', 'fascia']);
+  let door: HoldingDoor;
+  let viewer: ViewerPage;
+
+  beforeAll(async () => {
+    door = new HoldingDoor(stage.daemon.url);
+    viewer = await ViewerPage.open(stage.browser, await door.start());
+    await viewer.live('d1-fascia');
+  });
+  afterAll(() => door.end());
+
+  const told = async (words: RegExp): Promise<void> => {
+    await viewer.page.locator('#veil p').getByText(words).waitFor();
+    expect(await viewer.page.locator('#veil progress').isVisible()).toBe(true);
+  };
+  /** The veil goes, and under it is tissue of a size. */
+  const seen = async (): Promise<void> => {
+    await viewer.until(() => document.querySelector<HTMLElement>('#veil')!.hidden, null, 'the picture is live again');
+    const { least, most } = await viewer.page.evaluate(() => window.cautery.extent());
+    expect(most[0] - least[0]).toBeGreaterThan(0.05);
+  };
+
+  it('making a session is said, and opening it, until its tissue is there', async () => {
+    const { page } = viewer;
+    door.hold('session.create');
+    await page.getByText('New session').click();
+    await page.getByLabel('Scene').selectOption('fascia');
+    await page.getByLabel('Name', { exact: true }).fill('second');
+    await page.getByRole('button', { name: 'Create', exact: true }).click();
+    await told(/^Making the session…$/);
+    door.letGo();
+    door.hold('frames');
+    await told(/^(Opening d1-second…|d1-second is being made: .*)$/);
+    door.letGo();
+    await viewer.live('d1-second');
+    await seen();
+  });
+
+  it('copying one is said, until the copy is there', async () => {
+    const { page } = viewer;
+    const faces = await viewer.faces();
+    door.hold('session.fork');
+    await page.getByLabel('Name of the fork').fill('twin');
+    await page.getByRole('button', { name: 'Fork this session' }).click();
+    await told(/^Copying the session…$/);
+    expect((await viewer.state()).session).toBe('d1-second'); // under the veil nothing has changed
+    expect(await viewer.faces()).toBe(faces);
+    door.letGo();
+    await viewer.live('d1-twin');
+    await seen();
+  });
+
+  it('going back in time is said, with where to', async () => {
+    const { page } = viewer;
+    await page.getByRole('button', { name: 'd1-fascia', exact: true }).click();
+    await viewer.live('d1-fascia');
+    const { epoch } = await viewer.state();
+    door.hold('session.rewind');
+    await page.locator('#tick').focus();
+    await page.keyboard.press('Home');
+    const to = ((await page.locator('#rewind').textContent()) ?? '').replace('Go back to ', '');
+    await page.locator('#rewind').click();
+    await page.locator('dialog').getByRole('button', { name: 'Go back' }).click();
+    await told(new RegExp(`^Going back to ${to.replace('.', '\\.')}…$`));
+    door.letGo();
+    await viewer.until((before) => window.cautery.epoch !== before, epoch, 'another epoch');
+    await seen();
+  });
+
+  it('starting over is said', async () => {
+    const { page } = viewer;
+    door.hold('session.reset');
+    await page.getByRole('button', { name: 'Start over' }).click();
+    await page.locator('dialog').getByRole('button', { name: 'Start over' }).click();
+    await told(/^Starting over…$/);
+    door.letGo();
+    await seen();
+    expect(viewer.complaints).toEqual([]);
+  });
+});
