@@ -18,11 +18,31 @@ const COLOUR_RULES = ['color-contrast', 'link-in-text-block']; // all that diffe
 const PHONE = { viewport: { width: 390, height: 780 }, hasTouch: true, isMobile: true };
 const distribution = fileURLToPath(new URL('../../../clients/web/dist', import.meta.url));
 
+/** Screens of desks, tablets and phones. */
+const COMMON_SIZES = [[1920, 1080], [1366, 768], [1024, 768], [820, 1180], [390, 780], [360, 640], [780, 390]] as const;
 const TARGET_PX = 44; // what a finger hits
 
 /** All that a panel can show is shown. */
 async function openAll(viewer: ViewerPage): Promise<void> {
   await viewer.page.evaluate(() => document.querySelectorAll('details').forEach((details) => (details.open = true)));
+}
+
+/** In the page: elements whose own words are wider than they are, and choices that do not show all of theirs. */
+function clippedWords(): string[] {
+  const pen = document.createElement('canvas').getContext('2d')!;
+  const ownWords = (one: Element): boolean => [...one.childNodes].some((node) => node.nodeType === Node.TEXT_NODE && node.textContent!.trim() !== '');
+  const wide = (one: HTMLElement): boolean => {
+    const style = getComputedStyle(one);
+    if (one instanceof HTMLSelectElement) {
+      pen.font = style.font;
+      return pen.measureText(one.selectedOptions[0]?.text ?? '').width > one.clientWidth - parseFloat(style.paddingLeft) - parseFloat(style.paddingRight);
+    }
+    return style.display !== 'inline' && one.scrollWidth > one.clientWidth + 1;
+  };
+  return [...document.body.querySelectorAll<HTMLElement>('*')]
+    .filter((one) => (ownWords(one) || one instanceof HTMLSelectElement) && one.checkVisibility() && !one.matches('.reading, .unseen, option, noscript, script'))
+    .filter((one) => getComputedStyle(one).clipPath === 'none' && wide(one)) // clipped away are words for screen readers alone
+    .map((one) => one.outerHTML.slice(0, 100));
 }
 
 /** All that axe finds, its best practices included. */
@@ -147,6 +167,25 @@ describe('manners', () => {
       expect(await viewer.page.evaluate(() => document.documentElement.scrollWidth - window.innerWidth), mode).toBeLessThanOrEqual(0);
     }
     await viewer.screenshot(`text-200-${_name.replace('a ', '')}`);
+    await viewer.close();
+  });
+
+  it('clips no words at common sizes', async () => {
+    const viewer = await stage.openFirst();
+    await viewer.live('d1-layers');
+    const clipped: string[] = [];
+    const shown = [{ mode: 'Operate', tab: null }, ...TABS.map((tab) => ({ mode: 'Research', tab }))];
+    for (const [width, height] of COMMON_SIZES) {
+      await viewer.page.setViewportSize({ width, height });
+      for (const { mode, tab } of shown) {
+        await viewer.page.getByRole('button', { name: mode }).click();
+        if (tab !== null) await viewer.page.getByRole('tab', { name: tab }).click();
+        await openAll(viewer);
+        const words = await viewer.page.evaluate(clippedWords);
+        clipped.push(...words.map((one) => `${width} x ${height}, ${mode} ${tab ?? ''}: ${one}`));
+      }
+    }
+    expect(clipped).toEqual([]);
     await viewer.close();
   });
 

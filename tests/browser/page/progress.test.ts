@@ -15,6 +15,7 @@ describe('while something is under way', () => {
     viewer = await ViewerPage.open(stage.browser, await door.start());
     await viewer.live('d1-fascia');
   });
+  afterEach(() => door.letGo());
   afterAll(() => door.end());
 
   const told = async (words: RegExp): Promise<void> => {
@@ -33,7 +34,7 @@ describe('while something is under way', () => {
     door.hold('session.create');
     await page.getByText('New session').click();
     await page.getByLabel('Scene').selectOption('fascia');
-    await page.getByLabel('Name', { exact: true }).fill('second');
+    await page.getByRole('textbox', { name: 'Name', exact: true }).fill('second');
     await page.getByRole('button', { name: 'Create', exact: true }).click();
     await told(/^Making the session…$/);
     door.letGo();

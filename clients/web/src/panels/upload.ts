@@ -6,7 +6,7 @@ import type { Link } from '../wire/link';
 import { attempt, element, field, problemPlace } from './dom';
 
 const MESH_KINDS: readonly (readonly [MeshKind, string])[] = [
-  ['fat', 'fat in its membrane (tetrahedra)'],
+  ['fat', 'fat (tetrahedra)'],
   ['fascia', 'fascia (triangles)'],
 ];
 
