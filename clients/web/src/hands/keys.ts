@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Keys while the picture or nothing has the focus, and a gamepad. What they do stands in KEY_HELP.
 import type { Viewport } from '../scene/viewport';
+import { LATCH_S } from './energy';
 import type { ToolHand } from './tool_hand';
 
 export const KEY_HELP: readonly (readonly [string, string])[] = [
@@ -10,6 +11,7 @@ export const KEY_HELP: readonly (readonly [string, string])[] = [
   ['Space', 'energy while held'],
   ['Wheel, W S', 'depth; W deeper, S nearer'],
   ['Q E, R F', 'turn the tool, tilt it'],
+  ['L', `keep energy on, for ${LATCH_S} s at most; L or Escape ends it`],
   ['G', 'grasp or let go'],
   ['Right drag, Shift + drag', 'turn or move the camera'],
   ['Ctrl + wheel, + −', 'zoom'],
@@ -29,7 +31,7 @@ const HELD = new Set([
 ]);
 
 /** Every key that has work of its own here. */
-export const WORKING_KEYS: ReadonlySet<string> = new Set([...HELD, 'Space', 'KeyG', 'KeyH']);
+export const WORKING_KEYS: ReadonlySet<string> = new Set([...HELD, 'Space', 'KeyG', 'KeyH', 'KeyL']);
 
 export class Keys {
   private readonly down = new Set<string>();
@@ -47,6 +49,7 @@ export class Keys {
     const meant = (event: KeyboardEvent): boolean => event.target === canvas || event.target === document.body;
     window.addEventListener('keydown', (event) => meant(event) && this.press(event));
     window.addEventListener('keyup', (event) => this.release(event));
+    window.addEventListener('keydown', (event) => event.code === 'Escape' && hand.letGo('latch'), { capture: true }); // wherever the focus is
     canvas.addEventListener('blur', () => this.letGo());
     window.addEventListener('blur', () => this.letGo());
   }
@@ -102,6 +105,8 @@ export class Keys {
       if (event.code !== 'Space') return;
     } else if (event.code === 'Space') {
       this.hand.hold('space');
+    } else if (event.code === 'KeyL') {
+      this.hand.latch();
     } else if (event.code === 'KeyG') {
       this.hand.jaws.grasp(!this.grasping());
     } else if (event.code === 'KeyH') {

@@ -55,7 +55,7 @@ export class ToolHand {
     private readonly viewport: Viewport,
   ) {
     const sequence = (): number => ++this.sequence;
-    this.energy = new Energy(model, control, sequence);
+    this.energy = new Energy(model, control, sequence, () => this.rest());
     this.jaws = new Jaws(model, control, sequence);
     this.motion = new Motion(control, sequence);
     this.taking = new Taking(model, control);
@@ -121,6 +121,12 @@ export class ToolHand {
     }
   }
 
+  /** Keeps energy on without anything held, or ends that. */
+  latch(): void {
+    if (this.energy.latched) this.letGo('latch');
+    else this.hold('latch');
+  }
+
   letGo(by: Held): void {
     this.pointed = this.pointed.slice(-1); // a tool that is still being taken only comes there
     const worked = this.energy.wanted;
@@ -130,10 +136,7 @@ export class ToolHand {
 
   /** Moves by metres to the picture's right, up, and towards the eye. */
   nudge(right: number, up: number, nearer: number): void {
-    if (!this.begin()) {
-      this.taking.use();
-      return;
-    }
+    if (!this.begin()) return void this.taking.use();
     const { x, y, z } = this.viewport.orbit.axes();
     if (this.guide === 'plane') {
       this.moveTo(this.wanted!.position.clone().addScaledVector(x, right).addScaledVector(y, up).addScaledVector(z, nearer));
@@ -179,8 +182,7 @@ export class ToolHand {
     this.motion.send(now, this.tool, this.wanted);
     if (this.way.empty) this.jaws.arrived(this.wanted.position);
     if (now - this.movedAt > ECHO_MS) return poses;
-    const { position, jaw } = this.wanted;
-    const { x, y, z, w } = this.wanted.rotation;
+    const { position, rotation: { x, y, z, w }, jaw } = this.wanted;
     poses.set(this.tool, { positionM: position.toArray(), rotation: [w, x, y, z], jaw });
     return poses;
   }

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // The tool's buttons over the picture: what a press on the tissue does, energy while held, jaws, depth.
 import { depthWords } from '../hands/depth';
+import { LATCH_S } from '../hands/energy';
 import type { Pointer, Press } from '../hands/pointer';
 import type { ToolHand } from '../hands/tool_hand';
 import type { Control } from '../model/control';
@@ -65,6 +66,30 @@ function energyButton(control: Control, hand: ToolHand): HTMLButtonElement {
   return energy;
 }
 
+/** Energy without a hand on it, with a sign in the picture that says so, and for how long. */
+function latchButton(control: Control, hand: ToolHand): HTMLButtonElement {
+  const { model } = control;
+  const sign = byId('latched');
+  const latch = button('Keep on', () => hand.latch(), { id: 'latch', class: 'latch', aria: { pressed: 'false' } });
+  const show = (): void => {
+    const { latched, alive } = hand.energy;
+    const on = latched && alive;
+    if (latch.getAttribute('aria-pressed') !== String(on)) latch.setAttribute('aria-pressed', String(on));
+    sign.hidden = !on;
+    if (!on) return;
+    const words = `Energy stays on for ${Math.ceil(hand.energy.latchedForS)} s. Keep on, L or Escape ends it.`;
+    if (sign.textContent !== words) sign.textContent = words;
+  };
+  model.on('tools', () => {
+    latch.hidden = model.tool !== null && !hasHeat(model.tool.shape);
+    latch.disabled = !hand.usable;
+    latch.title = hand.usable ? `Energy without holding, for ${LATCH_S} s at most (L)` : 'Only who uses the tool may';
+    show();
+  });
+  model.on('frame', show);
+  return latch;
+}
+
 function depthGroup(control: Control, hand: ToolHand): HTMLElement {
   const { model } = control;
   const nearer = button('−', () => hand.nudge(0, 0, DEPTH_STEP_M), { aria: { label: 'Nearer' }, title: 'Nearer (S)' });
@@ -84,7 +109,7 @@ function depthGroup(control: Control, hand: ToolHand): HTMLElement {
 export function showHandles(control: Control, hand: ToolHand, pointer: Pointer): void {
   const { model } = control;
   const grasp = button('Grasp', () => hand.jaws.grasp(model.toolState?.grasping !== true), { id: 'grasp', aria: { pressed: 'false' } });
-  byId('handles').append(pressChoice(control, pointer), energyButton(control, hand), grasp, depthGroup(control, hand));
+  byId('handles').append(pressChoice(control, pointer), energyButton(control, hand), latchButton(control, hand), grasp, depthGroup(control, hand));
   model.on('tools', () => {
     grasp.hidden = !model.tool || !hasJaws(model.tool.shape);
     grasp.disabled = !hand.jaws.usable;

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Energy that is held and cut by somebody else is said at once, with what brings it back; it comes back by
 // a fresh press alone, and letting go never switches off what somebody else has on.
-import { Energy } from '../../../../clients/web/src/hands/energy';
+import { Energy, LATCH_S, type Held } from '../../../../clients/web/src/hands/energy';
 import type { Control } from '../../../../clients/web/src/model/control';
 import { Model, type Said } from '../../../../clients/web/src/model/model';
 import type { EnergyOff, ToolState } from '../../../../clients/web/src/wire/records';
@@ -12,6 +12,8 @@ const ME = 7;
 /** The daemon's answer to an enable, both resolved when the page has taken it. */
 interface Told {
   energized: boolean;
+  /** the tick for which it was ordered */
+  tick: number | undefined;
   answer(tick: number): Promise<void>;
   refuse(words: string): Promise<void>;
 }
@@ -25,6 +27,8 @@ class Bench {
   readonly told: Told[] = [];
   readonly said = new Map<string, string>();
   readonly energy: Energy;
+  /** how often a latch has ended without a hand */
+  ends = 0;
 
   constructor() {
     const { model } = this;
@@ -34,15 +38,16 @@ class Bench {
     this.driver(ME);
     model.on('said', ({ key, words }: Said) => this.said.set(key ?? '', words));
     model.on('unsaid', (key) => this.said.delete(key));
-    const call = (_method: string, { energized }: { energized: boolean }): Promise<unknown> =>
+    const call = (_method: string, { energized, tick: ordered }: { energized: boolean; tick?: number }): Promise<unknown> =>
       new Promise((resolve, reject) => {
         this.told.push({
           energized,
+          tick: ordered,
           answer: (tick) => (resolve({ tick }), taken()),
           refuse: (words) => (reject(new Error(words)), taken()),
         });
       });
-    this.energy = new Energy(model, { call } as unknown as Control, () => 1);
+    this.energy = new Energy(model, { call } as unknown as Control, () => 1, () => this.ends++);
   }
 
   driver(client: number): void {
@@ -50,7 +55,7 @@ class Bench {
     this.model.emit('tools', undefined);
   }
 
-  press(by: 'space' | 'trigger' | 'pointer' = 'space'): void {
+  press(by: Held = 'space'): void {
     this.energy.hold(by);
     this.energy.enable('hook', true);
   }
@@ -63,7 +68,7 @@ class Bench {
   }
 
   /** Pressed at tick 10, answered, on. */
-  async lit(by: 'space' | 'trigger' | 'pointer' = 'space'): Promise<void> {
+  async lit(by: Held = 'space'): Promise<void> {
     this.frame(10, false);
     this.press(by);
     await this.told[0].answer(11);
@@ -166,5 +171,79 @@ describe('energy that is held', () => {
     bench.energy.release('pointer');
     expect(bench.told.at(-1)?.energized).toBe(false);
     expect(bench.energy.alive).toBe(false);
+  });
+});
+
+describe('energy that is latched', () => {
+  const TICKS = 60 * LATCH_S;
+
+  it('has a limit that the daemon is told with it', async () => {
+    const bench = new Bench();
+    await bench.lit('latch');
+    expect(bench.told.map(({ energized, tick }) => [energized, tick])).toEqual([[true, undefined], [false, 10 + TICKS]]);
+    expect(bench.energy.latched).toBe(true);
+    bench.frame(10 + TICKS - 60, true);
+    expect(bench.energy.latchedForS).toBe(1);
+    bench.frame(10 + TICKS + 1, false);
+    expect(bench.said.get('')).toBe(`Energy is off: it stays on for ${LATCH_S} s at most. Press Keep on for more.`);
+    expect([bench.energy.latched, bench.energy.wanted, bench.energy.alive]).toEqual([false, false, false]);
+    expect(bench.ends).toBe(1);
+  });
+
+  it('by whom holds something already has the limit from then on', async () => {
+    const bench = new Bench();
+    await bench.lit('space');
+    bench.energy.hold('latch');
+    bench.energy.release('space');
+    expect(bench.energy.alive).toBe(true);
+    expect(bench.told.at(-1)).toMatchObject({ energized: false, tick: 12 + TICKS });
+  });
+
+  it('ends where somebody ends it, at once', async () => {
+    const bench = new Bench();
+    await bench.lit('latch');
+    bench.energy.release('latch');
+    expect(bench.told.at(-1)).toMatchObject({ energized: false, tick: undefined });
+    expect(bench.energy.latched).toBe(false);
+    expect(bench.said.size).toBe(0);
+  });
+
+  it('ends with whatever cuts energy, and is not on when that comes back', async () => {
+    const bench = new Bench();
+    await bench.lit('latch');
+    bench.frame(40, false, 'watchdog');
+    expect(bench.said.get('')).toContain('heard nothing from this page in time, which a busy machine can cause. Press Keep on for more.');
+    expect(bench.energy.latched).toBe(false);
+    bench.press('space');
+    bench.energy.release('space');
+    expect(bench.energy.alive).toBe(false);
+  });
+
+  it('leaves an order behind that darkens a later press, which alone goes on by itself', async () => {
+    const bench = new Bench();
+    await bench.lit('latch');
+    bench.energy.release('latch');
+    bench.frame(100, false);
+    bench.press('pointer');
+    await bench.told.at(-1)!.answer(101);
+    bench.frame(102, true);
+    const calls = bench.told.length;
+    bench.frame(10 + TICKS, false, 'commanded'); // the order of the latch long ended
+    expect(bench.told.slice(calls).map(({ energized }) => energized)).toEqual([true]);
+    expect(bench.said.size).toBe(0);
+    await bench.told.at(-1)!.answer(11 + TICKS);
+    bench.frame(12 + TICKS, true);
+    bench.frame(13 + TICKS, false, 'commanded'); // somebody else's is no such order
+    expect(bench.said.get('energy')).toContain('somebody switched it off');
+    expect(bench.told.length).toBe(calls + 1);
+  });
+
+  it('is not taken in a paused session', () => {
+    const bench = new Bench();
+    bench.frame(10, false, 'commanded', { paused: true });
+    bench.press('latch');
+    expect(bench.told.filter(({ energized }) => energized)).toEqual([]);
+    expect(bench.energy.latched).toBe(false);
+    expect(bench.said.get('')).toContain('the session is paused');
   });
 });
