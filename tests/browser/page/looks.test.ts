@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // What a picture of the demo costs, by counting: draw calls, triangles, bytes of textures. A body around the
-// tissue may make each twice what the tissue alone on its cloth was.
-
+// tissue may make each twice what the tissue alone on its cloth was. And what an eye looks for in it.
 import { Stage } from './stage';
+import type { Colour, ViewerPage } from './viewer_page';
 
 /** Of the tissue on its cloth alone, in the home view of `layers`. */
 const ALONE = { calls: 10, triangles: 20_389, textureBytes: 48 ** 3 + 2 * 4 * 256 };
@@ -40,6 +40,30 @@ function countDrawing(): void {
   around('texStorage3D', ([, levels, format, width, height, depth]) => stored(levels, format, width, height, depth, 8));
 }
 
+type Point = [number, number, number];
+const SURFACE_Z_M = 0.002; // of the fascia in deploy/scenes/layers.json
+/** Of the tissue at home: enough to look wet, not so much that nothing else is seen. */
+const WET_LEAST = 0.004;
+const WET_MOST = 0.12;
+const SPARKS_MOST = 2e-4; // of its pixels; a hundred in a picture would be seen when the camera moves
+const BESIDE_M = 0.001; // a ring is a fifth of that wide
+const HIGHER_M = 0.003;
+const BRIGHTER = 12; // of 255: a ring takes more than half of what it lies on to white
+
+const light = (colours: readonly Colour[]): number => colours.reduce((sum, [r, g, b]) => sum + (r + g + b) / 3, 0) / colours.length;
+
+/** How much brighter the tissue is on the ring under the tip than on both sides of it, and the ring's radius. */
+async function ring(viewer: ViewerPage): Promise<{ brighter: number; radius: number }> {
+  const { tip: [x, y, z], tool } = await viewer.state();
+  const hot = tool?.hot_radius_m ?? 0.003;
+  const radius = hot + 0.5 * (z - hot - SURFACE_Z_M);
+  const angles = Array.from({ length: 15 }, (_, i) => -Math.PI / 2 + 0.08 * (i - 7)); // before the tool, where it hides nothing
+  const circle = (r: number): Point[] => angles.map((angle) => [x + r * Math.cos(angle), y + r * Math.sin(angle), SURFACE_Z_M]);
+  const colours = await viewer.coloursAt([radius, radius - BESIDE_M, radius + BESIDE_M].flatMap(circle), 1);
+  const part = (i: number): number => light(colours.slice(i * angles.length, (i + 1) * angles.length));
+  return { brighter: part(0) - (part(1) + part(2)) / 2, radius };
+}
+
 describe('the picture of the demo', () => {
   const stage = new Stage(['--demo', 'layers']);
 
@@ -58,6 +82,51 @@ describe('the picture of the demo', () => {
       expect(counts[what], what).toBeLessThanOrEqual(2 * ALONE[what]);
     }
     expect(viewer.complaints).toEqual([]);
+    await viewer.resume();
+    await viewer.close();
+  });
+
+  it('tells by a ring under the tip how high the tip is', async () => {
+    const viewer = await stage.openFirst();
+    await viewer.live('d1-layers');
+    await viewer.page.getByRole('button', { name: 'Take the tool' }).click();
+    await viewer.until(() => window.cautery.driving, null, 'the tool is taken');
+    const { x, y } = await viewer.project([0.015, 0.004, SURFACE_Z_M]);
+    await viewer.page.mouse.move(x, y);
+    await viewer.page.mouse.move(x + 1, y);
+    await viewer.until(() => Math.abs(window.cautery.tip[0] - 0.015) < 0.003, null, 'the tool hovers there');
+    await viewer.pause();
+    await viewer.until(() => window.cautery.idle, null, 'the picture of it');
+    const low = await ring(viewer);
+    await viewer.resume();
+    await viewer.page.locator('#picture').focus();
+    const { tip } = await viewer.state();
+    await viewer.page.keyboard.down('KeyS');
+    await viewer.until((above) => window.cautery.tip[2] > above, tip[2] + HIGHER_M, 'the tool is higher');
+    await viewer.page.keyboard.up('KeyS');
+    await viewer.pause();
+    await viewer.until(() => window.cautery.idle, null, 'the picture of that');
+    const high = await ring(viewer);
+    await viewer.screenshot('ring');
+    await viewer.resume();
+    process.stdout.write(`rings: ${[low, high].map(({ radius, brighter }) => `radius ${(1000 * radius).toFixed(1)} mm, ${brighter.toFixed(0)} brighter`).join('; ')}\n`);
+    expect(high.radius).toBeGreaterThan(low.radius);
+    expect(low.brighter).toBeGreaterThan(BRIGHTER);
+    expect(high.brighter).toBeGreaterThan(BRIGHTER);
+    await viewer.close();
+  });
+
+  it('shines wet where it lies at home, and does not sparkle', async () => {
+    const viewer = await stage.openFirst();
+    await viewer.live('d1-layers');
+    await viewer.pause();
+    await viewer.until(() => window.cautery.idle, null, 'the sharp picture');
+    const { wet, sparks } = await viewer.shine([-0.05, -0.03, SURFACE_Z_M], [0.05, 0.035, SURFACE_Z_M]);
+    process.stdout.write(`home: ${(100 * wet).toFixed(2)} % of the tissue mirrors the lamp, ${(1e6 * sparks).toFixed(0)} sparks in a million\n`);
+    expect(wet).toBeGreaterThan(WET_LEAST);
+    expect(wet).toBeLessThan(WET_MOST);
+    expect(sparks).toBeLessThan(SPARKS_MOST);
+    await viewer.resume();
     await viewer.close();
   });
 });

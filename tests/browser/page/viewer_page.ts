@@ -175,6 +175,39 @@ export class ViewerPage {
     await this.page.screenshot({ path: join(folder, `${name}.png`) });
   }
 
+  /**
+   * Between two corners of the tissue at home: the share of pixels that are nearly white, and of those that
+   * are brighter than all around them by so much that they would sparkle.
+   */
+  async shine(near: [number, number, number], far: [number, number, number]): Promise<{ wet: number; sparks: number }> {
+    const [from, to] = [await this.project(near), await this.project(far)];
+    await this.page.evaluate(() => (document.querySelector<HTMLElement>('#cue')!.style.display = 'none'));
+    const png = (await this.page.screenshot({ clip: { x: from.x, y: to.y, width: to.x - from.x, height: from.y - to.y } })).toString('base64');
+    await this.page.evaluate(() => (document.querySelector<HTMLElement>('#cue')!.style.display = ''));
+    return this.page.evaluate(async (data) => {
+      const image = new Image();
+      image.src = `data:image/png;base64,${data}`;
+      await image.decode();
+      const { width, height } = image;
+      const context = new OffscreenCanvas(width, height).getContext('2d')!;
+      context.drawImage(image, 0, 0);
+      const bytes = context.getImageData(0, 0, width, height).data;
+      const at = (x: number, y: number): number => Math.min(...bytes.subarray(4 * (y * width + x), 4 * (y * width + x) + 3));
+      const WHITE = 205, SPARK = 30;
+      let [wet, sparks] = [0, 0];
+      for (let y = 1; y < height - 1; y++) {
+        for (let x = 1; x < width - 1; x++) {
+          const here = at(x, y);
+          if (here > WHITE) wet++;
+          let around = 0;
+          for (let i = 0; i < 9; i++) if (i !== 4) around = Math.max(around, at(x + (i % 3) - 1, y + Math.floor(i / 3) - 1));
+          if (here > around + SPARK) sparks++;
+        }
+      }
+      return { wet: wet / (width * height), sparks: sparks / (width * height) };
+    }, png);
+  }
+
   /** Mean colours, 0 to 255, of small squares of the page at points of the tissue, all of one picture. */
   async coloursAt(points: readonly [number, number, number][], half = 2): Promise<Colour[]> {
     const places = await Promise.all(points.map((point) => this.project(point)));

@@ -2,8 +2,8 @@
 // What hangs off the rims of a cut sheet: a band of torn fibres, as long as the sheet's faces are wide,
 // from each rim outwards. The shader leaves single fibres of it. Only sight: nothing of it is in the daemon.
 
-/** Floats of a record: position, material coordinates, normal, heat exposure, charring, scalar, 0 root or 1 tip. */
-export const FRINGE_FLOATS = 13;
+/** Floats of a record: position, material coordinates, normal, the four of `burn`, 0 root or 1 tip. */
+export const FRINGE_FLOATS = 14;
 const LONGEST_M = 0.003;
 /** of fibres beside which the cut ran, over those that it crossed */
 const SHORTEST = 0.55;
@@ -24,6 +24,24 @@ export interface FringeShape {
   /** two records, root and tip, for each vertex on a rim */
   records: Float32Array;
   index: Uint32Array;
+}
+
+/** Of two triangles for each pair of rows, between their roots (2 row) and tips (2 row + 1). */
+export function bandIndex(pairs: readonly (readonly [number, number])[]): Uint32Array {
+  return Uint32Array.from(pairs.flatMap(([a, b]) => [2 * a, 2 * b, 2 * b + 1, 2 * a, 2 * b + 1, 2 * a + 1]));
+}
+
+/** What a vertex is, at a place beside it. */
+export function writeRecord(records: Float32Array, record: number, source: FringeSource, vertex: number, tip: number, beside: (c: number) => number): void {
+  const at = FRINGE_FLOATS * record;
+  const { position, material, normal, burn, burnBytes } = source;
+  for (let c = 0; c < 3; c++) {
+    records[at + c] = position[3 * vertex + c] + beside(c);
+    records[at + 3 + c] = material[3 * vertex + c];
+    records[at + 6 + c] = normal[3 * vertex + c];
+  }
+  for (let b = 0; b < 4; b++) records[at + 9 + b] = burn[burnBytes * vertex + b] / 255;
+  records[at + 13] = tip;
 }
 
 function hash(vertex: number): number {
@@ -53,7 +71,6 @@ export function makeNeighbours(faces: Int32Array, of: Int32Array, vertexCount: n
 }
 
 export class Fringe {
-  private readonly neighbours: Int32Array;
   private readonly length: number;
   private vertices: number[] = [];
   /** drawn faces at each vertex of a rim */
@@ -65,9 +82,9 @@ export class Fringe {
   constructor(
     private readonly source: FringeSource,
     private readonly layerFaces: Int32Array,
-    vertexCount: number,
+    /** see makeNeighbours */
+    private readonly neighbours: Int32Array,
   ) {
-    this.neighbours = makeNeighbours(source.faces, layerFaces, vertexCount);
     this.length = Math.min(1.3 * this.meanSide(), LONGEST_M);
   }
 
@@ -79,7 +96,7 @@ export class Fringe {
   rebuild(): void {
     const { faces, hidden } = this.source;
     const rows = new Map<number, number>();
-    const index: number[] = [];
+    const pairs: [number, number][] = [];
     this.vertices = [];
     this.sides = [];
     const row = (vertex: number, face: number): number => {
@@ -97,35 +114,21 @@ export class Fringe {
       for (let c = 0; c < 3; c++) {
         const drawn = this.neighbours[3 * i + c];
         if (drawn < 0 || hidden[drawn]) continue;
-        const a = 2 * row(faces[3 * face + c], drawn);
-        const b = 2 * row(faces[3 * face + ((c + 1) % 3)], drawn);
-        index.push(a, b, b + 1, a, b + 1, a + 1);
+        pairs.push([row(faces[3 * face + c], drawn), row(faces[3 * face + ((c + 1) % 3)], drawn)]);
       }
     });
-    this.index = Uint32Array.from(index);
+    this.index = bandIndex(pairs);
     this.reach = this.vertices.map((vertex, i) => this.reachOf(vertex, this.sides[i]));
   }
 
   /** The band where the tissue is now; index is shared with later shapes until faces change. */
   shape(): FringeShape {
     const records = new Float32Array(2 * FRINGE_FLOATS * this.vertices.length);
-    const { position, normal, material, burn, burnBytes } = this.source;
     this.vertices.forEach((vertex, i) => {
-      const out = this.outwards(position, vertex, this.sides[i]);
+      const out = this.outwards(this.source.position, vertex, this.sides[i]);
       const reach = this.reach[i];
-      for (let tip = 0; tip < 2; tip++) {
-        const at = FRINGE_FLOATS * (2 * i + tip);
-        for (let c = 0; c < 3; c++) {
-          records[at + c] = position[3 * vertex + c] + tip * reach * out[c];
-          records[at + 3 + c] = material[3 * vertex + c];
-          records[at + 6 + c] = normal[3 * vertex + c];
-        }
-        records[at + 2] -= tip * SAG * reach;
-        records[at + 9] = burn[burnBytes * vertex] / 255;
-        records[at + 10] = burn[burnBytes * vertex + 1] / 255;
-        records[at + 11] = burn[burnBytes * vertex + burnBytes - 1] / 255;
-        records[at + 12] = tip;
-      }
+      for (let tip = 0; tip < 2; tip++)
+        writeRecord(records, 2 * i + tip, this.source, vertex, tip, (c) => tip * reach * (out[c] - (c === 2 ? SAG : 0)));
     });
     return { records, index: this.index };
   }

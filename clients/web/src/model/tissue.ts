@@ -5,7 +5,8 @@
 import type { Changes, StreamState } from '../wire/decoder';
 import { SCALARS, type LayerDescription } from '../wire/messages.gen';
 import type { Topology } from '../wire/topology';
-import { Fringe } from './fringe';
+import { Edge } from './edge';
+import { Fringe, makeNeighbours } from './fringe';
 import { makeVertexFaces, markInnerFaces, type VertexFaces } from './topology_tables';
 
 export interface Batch {
@@ -25,6 +26,8 @@ export interface TissueSource {
   topology: Topology;
   /** what the stream brings beside exposure and charring */
   scalar: 'stress' | 'temperature';
+  /** of sheets, by layer, m */
+  thicknessM: Readonly<Record<string, number>>;
   /** material coordinates, m (vertices x 3) */
   material: Float32Array;
 }
@@ -33,6 +36,7 @@ export interface TissueSource {
 export const BURN_BYTES = 4;
 const RIM = 2;
 export const SCALAR = 3;
+const USUAL_SHEET_M = 5e-4; // of sheets whose thickness nobody has told
 const BOILING_C = 100;
 
 export class Tissue {
@@ -46,8 +50,9 @@ export class Tissue {
   readonly temperatureRangeC: [number, number] = [BOILING_C, BOILING_C];
   /** drawn faces of each batch; made anew where changed */
   readonly drawnIndex: Uint32Array[];
-  /** what hangs off the rims of each batch; null where it is no sheet */
+  /** what hangs off the rims of each batch, and its edge; null where it is no sheet */
   readonly fringes: (Fringe | null)[];
+  readonly edges: (Edge | null)[];
   private readonly vertexFaces: VertexFaces;
   private readonly batchOfFace: Int32Array;
   private readonly hidden: Uint8Array;
@@ -68,7 +73,9 @@ export class Tissue {
     this.faceMark = new Int32Array(faceCount);
     this.batches = makeBatches(source);
     this.drawnIndex = this.batches.map(() => new Uint32Array(0));
-    this.fringes = this.batches.map((batch) => this.makeFringe(batch));
+    const sheets = this.batches.map((batch) => this.makeSheet(batch));
+    this.fringes = sheets.map((sheet) => sheet?.fringe ?? null);
+    this.edges = sheets.map((sheet) => sheet?.edge ?? null);
     this.batchOfFace = new Int32Array(faceCount);
     this.batches.forEach((batch, b) => {
       for (const face of batch.faces) this.batchOfFace[face] = b;
@@ -86,6 +93,7 @@ export class Tissue {
     for (const batch of changedBatches) {
       this.updateIndex(batch);
       this.fringes[batch]?.rebuild();
+      this.edges[batch]?.rebuild();
     }
     return [...changedBatches];
   }
@@ -100,12 +108,14 @@ export class Tissue {
     return counts;
   }
 
-  private makeFringe(batch: Batch): Fringe | null {
+  private makeSheet(batch: Batch): { fringe: Fringe; edge: Edge } | null {
     if (batch.kind !== 'fascia' && batch.kind !== 'membrane') return null;
     const { position, normal, burn, hidden } = this;
     const { topology, material, vertexCount } = this.source;
     const source = { faces: topology.faces, material, position, normal, burn, burnBytes: BURN_BYTES, hidden };
-    return new Fringe(source, batch.faces, vertexCount);
+    const neighbours = makeNeighbours(topology.faces, batch.faces, vertexCount);
+    const thicknessM = this.source.thicknessM[batch.layer] ?? USUAL_SHEET_M;
+    return { fringe: new Fringe(source, batch.faces, neighbours), edge: new Edge(source, batch.faces, neighbours, thicknessM) };
   }
 
   private touchFace(face: number, touched: number[]): void {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The torn fibres at the rims of one sheet in three.js: records of the model as they come.
+// The torn fibres at the rims of one sheet, or its edge, in three.js: records of the model as they come.
 import {
   BufferAttribute,
   BufferGeometry,
@@ -17,7 +17,7 @@ import { FRINGE_VERTEX } from './surface_light';
 import { FRAGMENTS } from './tissue_shader';
 import type { SharedUniforms } from './tissue_view';
 
-const ATTRIBUTES = [['position', 3, 0], ['material', 3, 3], ['normal', 3, 6], ['heat', 3, 9], ['tip', 1, 12]] as const;
+const ATTRIBUTES = [['position', 3, 0], ['material', 3, 3], ['normal', 3, 6], ['burn', 4, 9], ['tip', 1, 13]] as const;
 const GROWTH = 1.5; // of the arrays on the card, so that a cut does not make them anew with every face
 
 export class FringeView {
@@ -27,11 +27,11 @@ export class FringeView {
   private index: BufferAttribute | null = null;
   private shown = true;
 
-  constructor(shared: SharedUniforms) {
+  constructor(shared: SharedUniforms, kind: 'fringe' | 'edge') {
     const material = new ShaderMaterial({
       glslVersion: GLSL3,
       vertexShader: FRINGE_VERTEX,
-      fragmentShader: FRAGMENTS.fringe,
+      fragmentShader: FRAGMENTS[kind],
       uniforms: shared,
       side: DoubleSide,
     });

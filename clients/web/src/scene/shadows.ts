@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// What instruments do to the light on the tissue: shafts and tips cast shadow, hot tips glow.
+// What instruments do to the light on the tissue: shafts and tips cast shadow, hot tips glow, and a ring
+// under each tip tells how high it is.
 import { Vector3 } from 'three';
 
 import { toolSizes } from '../model/tool_parts';
@@ -15,10 +16,11 @@ export function placeShadows(
   tools: ReadonlyMap<string, ToolView>,
   heatOf: (state: ToolState) => number,
 ): void {
-  const { capsuleFrom, capsuleTo, capsuleCount, glow } = shared;
+  const { capsuleFrom, capsuleTo, capsuleCount, glow, tips } = shared;
   let capsules = 0;
   let glows = 0;
-  for (const light of glow.value) light.w = 0;
+  let rings = 0;
+  for (const light of [...glow.value, ...tips.value]) light.w = 0;
   for (const state of states) {
     const view = tools.get(state.name);
     if (!view || capsules + 2 > CAPSULES_MAX) continue;
@@ -33,9 +35,10 @@ export function placeShadows(
     add(new Vector3(0, 0, 2.2 * tip), new Vector3(0, 0, shaftLength), shaft);
     const half = view.definition.shape === 'hook' ? tip / 2 : 0;
     add(new Vector3(-half, 0, 0), half > 0 ? new Vector3(half, 0, 0) : new Vector3(0, 0, tip), hot);
+    const { x, y, z } = view.group.position;
+    if (rings < GLOWS_MAX) tips.value[rings++].set(x, y, z, hot);
     const heat = heatOf(state);
     if (heat > 0 && glows < GLOWS_MAX) {
-      const { x, y, z } = view.group.position;
       glow.value[glows++].set(x, y, z, GLOW * heat);
     }
   }

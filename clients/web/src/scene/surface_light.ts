@@ -19,7 +19,7 @@ void main() {
 
 export const FRINGE_VERTEX = /* glsl */ `
 in vec3 material;
-in vec3 heat;
+in vec4 burn;
 in float tip;
 out vec3 vWorld;
 out vec3 vNormal;
@@ -29,7 +29,7 @@ out float vTip;
 void main() {
   vWorld = position;
   vNormal = normal;
-  vBurn = vec4(heat.xy, 1.0, heat.z);
+  vBurn = burn;
   vMaterial = material;
   vTip = tip;
   gl_Position = projectionMatrix * viewMatrix * vec4(position, 1.0);
@@ -55,6 +55,7 @@ uniform int capsuleCount;
 uniform vec4 capsuleFrom[8]; // xyz and radius: parts of instruments that cast shadow
 uniform vec3 capsuleTo[8];
 uniform vec4 glow[4];     // xyz of hot tips and how much they glow
+uniform vec4 tips[4];     // xyz of tips and the radius of what works there; 0: no more of them
 
 float n(vec3 p) { return texture(noise, p).r; }
 float lobed(vec3 p) { return texture(lobes, p).r; }
@@ -97,7 +98,8 @@ vec3 bend(vec3 normal, Steps over, vec2 rise, float amount) {
   return normalize(abs(det) * normal - amount * gradient);
 }
 
-const vec3 FAR_LAMP = vec3(0.29, 0.49, 0.822);
+// Where the camera is at home, flat wet tissue left of the picture's middle mirrors it.
+const vec3 FAR_LAMP = vec3(-0.220, 0.700, 0.679);
 
 struct Surface { vec3 colour; vec3 normal; float alpha; float gloss; float wet; };
 
@@ -116,11 +118,11 @@ vec3 shade(Surface s, vec3 view) {
   vec3 colour = s.colour * (ambient * sky + (0.25 + 0.75 * shadow) * wrapped * 0.95 + through);
   vec3 halfway = normalize(toLight + view);
   float shine = pow(max(dot(s.normal, halfway), 0.0), s.gloss);
-  // A wet film mirrors the room: a wide lamp across the table, and some light from everywhere.
-  vec3 bounced = reflect(-view, s.normal);
-  float across = smoothstep(0.78, 1.0, dot(bounced, FAR_LAMP)) * sky;
+  // A wet film mirrors the room: a lamp across the table with a wide bright frame, and some light from everywhere.
+  float mirrored = max(dot(reflect(-view, s.normal), FAR_LAMP), 0.0);
+  float across = (0.22 * pow(mirrored, 26.0) + 1.10 * pow(mirrored, 200.0)) * sky;
   float rim = pow(1.0 - max(dot(s.normal, view), 0.0), 4.0);
-  colour += s.wet * (shadow * shine + 0.17 * across * across * across + rim * 0.10 * sky) * vec3(1.0, 0.97, 0.93);
+  colour += s.wet * (shadow * shine + across + rim * 0.10 * sky) * vec3(1.0, 0.97, 0.93);
   for (int i = 0; i < 4 && mapChannel < 0; i++) { // over a colour that tells a number a glow would tell another
     vec3 away = vWorld - glow[i].xyz;
     colour += glow[i].w * exp(-dot(away, away) / 2.2e-5) * vec3(0.9, 0.28, 0.06) * (0.25 + s.colour);
@@ -137,8 +139,10 @@ void burnt(inout Surface s, vec3 browned, float blotch) {
   s.colour = mix(s.colour, vec3(0.74, 0.60, 0.45), 0.45 * smoothstep(0.12, 0.45, e));
   s.colour = mix(s.colour, browned, 0.85 * smoothstep(0.45, 0.9, e));
   // On the wall of a cut a third to a half of a vertex's edges are gone: that is as black as it gets.
-  float c = clamp(min(2.0 * vBurn.y, 1.0) + 0.45 * vBurn.z, 0.0, 1.3) * (0.1 + 1.4 * blotch);
-  s.colour = mix(s.colour, vec3(0.045, 0.026, 0.017), 0.92 * smoothstep(0.80, 1.20, c));
+  // With the dose it goes from what it is browned to over dark brown to black, in blotches.
+  float c = clamp(min(2.0 * vBurn.y, 1.0) + 0.45 * vBurn.z, 0.0, 1.3) * (0.35 + 1.1 * blotch);
+  s.colour = mix(s.colour, browned * vec3(0.42, 0.36, 0.34), 0.85 * smoothstep(0.30, 0.85, c));
+  s.colour = mix(s.colour, vec3(0.030, 0.019, 0.014), 0.94 * smoothstep(0.62, 1.15, c));
   s.wet *= 1.0 - 0.55 * smoothstep(0.3, 0.8, e);
   s.alpha = mix(s.alpha, 1.0, smoothstep(0.3, 0.7, e));
 }
@@ -152,10 +156,25 @@ void fray(float fibre) {
 vec3 toned(vec3 c) { return clamp(c * (2.51 * c + 0.03) / (c * (2.43 * c + 0.59) + 0.14), 0.0, 1.0); }
 const float EXPOSURE = 0.62;
 
+// Under each tip a ring that is wider the higher the tip is over it, and closes around it as it comes down.
+vec3 ringed(vec3 colour) {
+  for (int i = 0; i < 4; i++) {
+    float radius = tips[i].w;
+    if (radius <= 0.0) break;
+    float away = length(vWorld.xy - tips[i].xy);
+    float height = tips[i].z - radius - vWorld.z;
+    float width = max(0.0002, fwidth(away));
+    float on = 1.0 - smoothstep(0.5, 1.5, abs(away - radius - 0.5 * max(height, 0.0)) / width);
+    on *= smoothstep(0.0003, 0.0012, height) * (1.0 - smoothstep(0.012, 0.025, height));
+    colour = mix(colour, vec3(0.93, 0.98, 1.0), 0.6 * on);
+  }
+  return colour;
+}
+
 void finish(Surface s, vec3 view) {
   if (dot(vWorld, clip.xyz) > clip.w) discard;
   vec3 colour;
-  if (mapChannel < 0) colour = toned(EXPOSURE * shade(s, view));
+  if (mapChannel < 0) colour = ringed(toned(EXPOSURE * shade(s, view)));
   else {
     // As bright under the lamp as in the legend: more would bleach what tells a number.
     s.colour = 0.75 * pow(texture(colourMap, vec2(vBurn[mapChannel], 0.5)).rgb, vec3(2.2));
@@ -168,7 +187,7 @@ void finish(Surface s, vec3 view) {
 
 // What is only drawn has no scalar: grey beside colours that tell one.
 void show(Surface s, vec3 view) {
-  vec3 colour = toned(EXPOSURE * shade(s, view));
+  vec3 colour = ringed(toned(EXPOSURE * shade(s, view)));
   if (mapChannel >= 0) colour = vec3(0.5 * dot(colour, vec3(0.3, 0.5, 0.2)));
   fragment = linearToOutputTexel(vec4(colour, 1.0));
 }

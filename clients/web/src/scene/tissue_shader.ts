@@ -17,11 +17,13 @@ Surface fascia(vec3 normal, vec3 view, vec3 m, out float fibre, out float blotch
   float here = weave(along, bundle, strand);
   Steps over = steps(0.0002);
   vec2 rise = vec2(weave(along + over.x, unused, unused), weave(along + over.y, unused, unused)) - here;
+  // It is uneven by some tenths of a millimetre, which breaks what it mirrors into wet patches.
   blotch = n(m * 34.0);
+  vec2 uneven = vec2(n((m + over.x) * 34.0), n((m + over.y) * 34.0)) - blotch;
   fibre = 0.5 * bundle + 0.5 * strand;
   float dense = smoothstep(0.34, 0.66, 0.84 * here + 0.16 * blotch);
   Surface s;
-  s.normal = bend(normal, over, rise, 0.000045);
+  s.normal = bend(normal, over, 0.00006 * rise + 0.0010 * uneven, 1.0);
   s.colour = mix(vec3(0.67, 0.38, 0.31), vec3(0.76, 0.53, 0.45), dense);
   s.colour = mix(s.colour, vec3(0.66, 0.33, 0.27), 0.4 * smoothstep(0.42, 0.70, blotch));
   float blood = vessel(m.xy + 0.0016 * (vec2(wander, blotch) - 0.5));
@@ -29,7 +31,7 @@ Surface fascia(vec3 normal, vec3 view, vec3 m, out float fibre, out float blotch
   float grazing = 1.0 - abs(dot(normal, view));
   s.alpha = clamp(mix(0.50, 0.74, dense) + 0.25 * blood + 0.5 * grazing * grazing, 0.0, 1.0);
   s.gloss = 60.0;
-  s.wet = 0.42;
+  s.wet = mix(0.26, 0.66, smoothstep(0.40, 0.62, blotch)); // the film lies in patches
   return s;
 }
 const vec3 TAN = vec3(0.40, 0.235, 0.115);
@@ -65,6 +67,22 @@ void main() {
   s.alpha = 1.0;
   s.wet = 0.1;
   burnt(s, TAN, 0.35 + 0.3 * vTip + 0.35 * fine);
+  finish(s, view);
+}`;
+
+// The edge of a sheet: ends of bundles at a cut, its side elsewhere, darker towards what it lies on.
+const EDGE = /* glsl */ `
+in float vTip;
+void main() {
+  vec3 view = normalize(cameraPosition - vWorld);
+  vec3 normal = normalize(cross(dFdx(vWorld), dFdy(vWorld)));
+  if (dot(normal, view) < 0.0) normal = -normal;
+  float fibre, blotch;
+  Surface s = fascia(normal, view, vMaterial, fibre, blotch);
+  fray(fibre);
+  s.colour *= mix(1.15, 0.55, vTip) * (0.75 + 0.5 * fibre);
+  s.alpha = 1.0;
+  burnt(s, TAN, 0.6 * fibre + 0.4 * blotch);
   finish(s, view);
 }`;
 
@@ -182,6 +200,7 @@ void main() {
 export const FRAGMENTS = {
   fascia: COMMON + FASCIA_LOOK + FASCIA,
   fringe: COMMON + FASCIA_LOOK + FRINGE,
+  edge: COMMON + FASCIA_LOOK + EDGE,
   membrane: COMMON + FAT_LOOK + MEMBRANE_LOOK + MEMBRANE,
   fat: COMMON + FAT_LOOK + FAT,
   bared: COMMON + FAT_LOOK + BARED,

@@ -42,6 +42,7 @@ export interface SharedUniforms {
   capsuleFrom: IUniform<Vector4[]>;
   capsuleTo: IUniform<Vector3[]>;
   glow: IUniform<Vector4[]>;
+  tips: IUniform<Vector4[]>;
 }
 
 export function mapTexture(map: ColourMap): DataTexture {
@@ -66,6 +67,7 @@ export function makeSharedUniforms(): SharedUniforms {
     capsuleFrom: { value: Array.from({ length: CAPSULES_MAX }, () => new Vector4()) },
     capsuleTo: { value: Array.from({ length: CAPSULES_MAX }, () => new Vector3()) },
     glow: { value: Array.from({ length: GLOWS_MAX }, () => new Vector4()) },
+    tips: { value: Array.from({ length: GLOWS_MAX }, () => new Vector4()) },
   };
 }
 
@@ -89,6 +91,7 @@ export class TissueView {
   private readonly burn: BufferAttribute;
   private readonly meshes: Mesh<BufferGeometry, ShaderMaterial>[];
   private readonly fringes: (FringeView | null)[];
+  private readonly edges: (FringeView | null)[];
 
   constructor(
     readonly joined: Joined,
@@ -114,8 +117,11 @@ export class TissueView {
       this.group.add(mesh);
       return mesh;
     });
-    this.fringes = joined.batches.map(({ kind }) => (kind === 'fascia' || kind === 'membrane' ? new FringeView(shared) : null));
-    for (const fringe of this.fringes) if (fringe) this.group.add(fringe.mesh);
+    const views = (of: 'fringe' | 'edge'): (FringeView | null)[] =>
+      joined.batches.map(({ kind }) => (kind === 'fascia' || kind === 'membrane' ? new FringeView(shared, of) : null));
+    this.fringes = views('fringe');
+    this.edges = views('edge');
+    for (const view of [...this.fringes, ...this.edges]) if (view) this.group.add(view.mesh);
   }
 
   /** Takes a frame over; returns the arrays that were drawn before, to be given back. */
@@ -131,6 +137,7 @@ export class TissueView {
     for (const attribute of [this.position, this.normal, this.burn]) attribute.needsUpdate = true;
     for (const { batch, index } of frame.drawn) this.setIndex(batch, index);
     for (const { batch, ...shape } of frame.fringes) this.fringes[batch]?.take(shape);
+    for (const { batch, ...shape } of frame.edges) this.edges[batch]?.take(shape);
     return before;
   }
 
@@ -139,12 +146,13 @@ export class TissueView {
       if (batch.layer !== layer) return;
       this.meshes[b].visible = visible;
       this.fringes[b]?.show(visible);
+      this.edges[b]?.show(visible);
     });
   }
 
   setWireframe(wireframe: boolean): void {
     for (const mesh of this.meshes) mesh.material.wireframe = wireframe;
-    for (const fringe of this.fringes) fringe?.setWireframe(wireframe);
+    for (const view of [...this.fringes, ...this.edges]) view?.setWireframe(wireframe);
   }
 
   /** Indices of what can be seen, for picking. */
@@ -182,7 +190,7 @@ export class TissueView {
       mesh.geometry.dispose();
       mesh.material.dispose();
     }
-    for (const fringe of this.fringes) fringe?.dispose();
+    for (const view of [...this.fringes, ...this.edges]) view?.dispose();
   }
 
   private setIndex(batch: number, index: Uint32Array): void {

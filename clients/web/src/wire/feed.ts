@@ -34,7 +34,9 @@ export class Feed {
     const { layers } = description;
     const rest = Float32Array.from(topology.rest, (value, i) => originM[i % 3] + stepM * value);
     const material = materialCoordinates(topology, rest, layers, description.definition);
-    this.tissue = new Tissue({ vertexCount, faceCount, originM, stepM, layers, topology, scalar, material });
+    const sheets = (description.definition.layers ?? []).map((layer) => [layer.name, 'thickness_m' in layer ? layer.thickness_m : undefined] as const);
+    const thicknessM = Object.fromEntries(sheets.filter((sheet): sheet is [string, number] => sheet[1] !== undefined));
+    this.tissue = new Tissue({ vertexCount, faceCount, originM, stepM, layers, topology, scalar, material, thicknessM });
     const batches = this.tissue.batches.map(({ faces, ...batch }) => ({ ...batch, faceCount: faces.length }));
     const surroundings = surroundingsOf(rest, topology.faces, layers, description.definition);
     this.joined = { description, stream, batches, rest, material, surroundings };
@@ -84,6 +86,7 @@ export class Feed {
     this.stale.clear();
     const { samples, changed } = this;
     const fringes = changed ? this.fringes() : [];
+    const edges = changed ? this.edges() : [];
     this.samples = [];
     this.changed = false;
     return {
@@ -98,6 +101,7 @@ export class Feed {
       buffers,
       drawn,
       fringes,
+      edges,
       drawnFaces: tissue.drawnFaceCounts(),
       stressScalePa: tissue.stressScale * this.stream.stress_step_pa,
       temperatureRangeC: this.scalar === 'temperature' && this.stream.channels.includes('temperature') ? [...tissue.temperatureRangeC] : null,
@@ -106,6 +110,10 @@ export class Feed {
       framesDecoded,
       framesSkipped,
     };
+  }
+
+  private edges(): Frame['edges'] {
+    return this.tissue.edges.flatMap((edge, batch) => (edge ? [{ batch, ...edge.shape() }] : []));
   }
 
   /** Of all batches that have a rim, or had one when they were last handed over. */

@@ -81,6 +81,8 @@ export interface Frame {
   drawn: { batch: number; index: Uint32Array }[];
   /** torn fibres at the rims of cut sheets, by batch; changed: those that have or had any */
   fringes: ({ batch: number } & FringeShape)[];
+  /** walls at the edges of sheets, by batch */
+  edges: ({ batch: number } & FringeShape)[];
   drawnFaces: Record<string, number>;
   stressScalePa: number;
   /** of the colours, degC; null where the stream has no temperature */

@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
+import { Edge } from '../../../../clients/web/src/model/edge';
 import { Fringe, FRINGE_FLOATS, makeNeighbours } from '../../../../clients/web/src/model/fringe';
 
 const SINGLE = 1e-6;
@@ -8,7 +9,9 @@ const VERTICES = 2 * (SQUARES + 1);
 const SIDE_M = 0.002;
 const faces = Int32Array.from(Array.from({ length: SQUARES }, (_, i) => [2 * i, 2 * i + 2, 2 * i + 3, 2 * i, 2 * i + 3, 2 * i + 1]).flat());
 
-function strip(): { fringe: Fringe; hidden: Uint8Array; burn: Uint8Array } {
+const THICK_M = 0.0004;
+
+function strip(): { fringe: Fringe; edge: Edge; hidden: Uint8Array; burn: Uint8Array; normal: Float32Array } {
   const position = new Float32Array(3 * VERTICES);
   const normal = new Float32Array(3 * VERTICES);
   for (let v = 0; v < VERTICES; v++) {
@@ -19,7 +22,8 @@ function strip(): { fringe: Fringe; hidden: Uint8Array; burn: Uint8Array } {
   const burn = new Uint8Array(4 * VERTICES);
   const source = { faces, material: position.slice(), position, normal, burn, burnBytes: 4, hidden };
   const all = Int32Array.from({ length: 2 * SQUARES }, (_, i) => i);
-  return { fringe: new Fringe(source, all, VERTICES), hidden, burn };
+  const neighbours = makeNeighbours(faces, all, VERTICES);
+  return { fringe: new Fringe(source, all, neighbours), edge: new Edge(source, all, neighbours, THICK_M), hidden, burn, normal };
 }
 
 const record = (records: Float32Array, i: number): Float32Array => records.subarray(FRINGE_FLOATS * i, FRINGE_FLOATS * (i + 1));
@@ -51,12 +55,12 @@ describe('the fringe of a cut', () => {
       expect(Math.abs(root[0] - (left ? SIDE_M : 3 * SIDE_M))).toBeLessThan(SINGLE);
       expect((tip[0] - root[0]) * (left ? 1 : -1)).toBeGreaterThan(0);
       expect(Math.hypot(tip[0] - root[0], tip[1] - root[1])).toBeLessThan(1.5 * SIDE_M);
-      expect([root[12], tip[12]]).toEqual([0, 1]);
+      expect([root[13], tip[13]]).toEqual([0, 1]);
       expect([...tip.subarray(3, 9)]).toEqual([...root.subarray(3, 9)]); // fibres run straight out
     }
     const exposed = Array.from({ length: 4 }, (_, i) => record(records, 2 * i)[9]);
     expect(exposed.filter((exposure) => exposure === 1)).toHaveLength(1);
-    const scalars = Array.from({ length: 8 }, (_, i) => record(records, i)[11]); // of roots and tips
+    const scalars = Array.from({ length: 8 }, (_, i) => record(records, i)[12]); // of roots and tips
     expect(scalars.filter((scalar) => Math.abs(scalar - 0.2) < SINGLE)).toHaveLength(2);
   });
 
@@ -67,5 +71,43 @@ describe('the fringe of a cut', () => {
     hidden.fill(0);
     fringe.rebuild();
     expect(fringe.rimVertexCount).toBe(0);
+  });
+});
+
+describe('the edge of a sheet', () => {
+  /** How many sides of faces it goes along. */
+  const sides = (edge: Edge): number => edge.shape().index.length / 6;
+
+  it('goes once round a whole sheet, as deep as the sheet is thick', () => {
+    const { edge } = strip();
+    edge.rebuild();
+    expect(edge.vertexCount).toBe(VERTICES);
+    expect(sides(edge)).toBe(2 * SQUARES + 2);
+    const { records } = edge.shape();
+    for (let i = 0; i < records.length / FRINGE_FLOATS; i += 2) {
+      const [top, under] = [record(records, i), record(records, i + 1)];
+      expect(top[2] - under[2]).toBeCloseTo(THICK_M, 7);
+      expect([...under.subarray(0, 2)]).toEqual([...top.subarray(0, 2)]);
+      expect([top[13], under[13]]).toEqual([0, 1]);
+    }
+  });
+
+  it('goes along both lips of a gap, and not along what is gone', () => {
+    const { edge, hidden } = strip();
+    hidden.fill(1, 2, 6); // the two squares in the middle
+    edge.rebuild();
+    expect(edge.vertexCount).toBe(8);
+    expect(sides(edge)).toBe(2 * 4); // round each of the two squares that are left
+    hidden.fill(1);
+    edge.rebuild();
+    expect(edge.vertexCount).toBe(0);
+  });
+
+  it('goes down whichever side the mesh calls its front', () => {
+    const { edge, normal } = strip();
+    for (let v = 0; v < VERTICES; v++) normal[3 * v + 2] = -1;
+    edge.rebuild();
+    const { records } = edge.shape();
+    expect(record(records, 1)[2]).toBeCloseTo(-THICK_M, 7);
   });
 });

@@ -24,7 +24,7 @@ function makeTissue(faces: number[][], layers: LayerDescription[], shown: Tissue
   const topology = { faces: Int32Array.from(faces.flat()), faceLayers: new Int32Array(faces.length), texture: null, rest: new Int32Array(15) };
   const tissue = new Tissue({
     vertexCount: POINTS.length, faceCount: faces.length, originM: [1, 0, 0], stepM: STEP_M, layers, topology, scalar: shown,
-    material: Float32Array.from(POINTS.flat(), (value) => STEP_M * value),
+    material: Float32Array.from(POINTS.flat(), (value) => STEP_M * value), thicknessM: {},
   });
   const scalar = (): Int32Array => new Int32Array(POINTS.length);
   const state = {
