@@ -24,7 +24,7 @@ static inline uint64_t cau_hash_bytes(uint64_t hash, const void *bytes, size_t c
 		hash = cau_hash_word(hash, word);
 	}
 	uint64_t tail = count;
-	for (size_t i = 0; i < count; ++i)
+	for (size_t i = 0; i < count; i++)
 		tail = tail << 8 | cursor[i];
 	return cau_hash_word(hash, tail);
 }

@@ -8,17 +8,17 @@
 
 static atomic_size_t held;
 
-int cau_pages_take(cau_pages *pages, size_t byte_count)
+bool cau_pages_take(cau_pages *pages, size_t byte_count)
 {
 	CAU_ASSERT(byte_count > 0, "pages for %zu bytes", byte_count);
 	*pages = (cau_pages){0};
 	void *start =
 		mmap(NULL, byte_count, PROT_READ | PROT_WRITE, MAP_PRIVATE | MAP_ANONYMOUS, -1, 0);
 	if (start == MAP_FAILED)
-		return 0;
+		return false;
 	*pages = (cau_pages){start, byte_count};
 	atomic_fetch_add(&held, byte_count);
-	return 1;
+	return true;
 }
 
 void cau_pages_give_back(cau_pages *pages)

@@ -3,6 +3,7 @@
 // the heap would keep it resident, in pieces that the next one may not fit.
 #pragma once
 
+#include <stdbool.h>
 #include <stddef.h>
 
 typedef struct cau_pages {
@@ -10,8 +11,9 @@ typedef struct cau_pages {
 	size_t byte_count;
 } cau_pages;
 
-// Takes at least byte_count bytes (above 0). Returns 0 when memory ran out; *pages is empty then.
-int cau_pages_take(cau_pages *pages, size_t byte_count);
+// Takes at least byte_count bytes (above 0). Returns false when memory ran out; *pages is empty
+// then.
+bool cau_pages_take(cau_pages *pages, size_t byte_count);
 void cau_pages_give_back(cau_pages *pages); // takes empty ones
 
 // Bytes that the whole program holds in pages; any thread may ask.

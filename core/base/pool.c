@@ -4,6 +4,7 @@
 #include <pthread.h>
 #include <sched.h>
 #include <stdatomic.h>
+#include <stdbool.h>
 #include <stdlib.h>
 #include <sys/resource.h>
 
@@ -129,7 +130,7 @@ void cau_pool_destroy(cau_pool *pool)
 	atomic_store(&pool->stop, 1);
 	pthread_cond_broadcast(&pool->wake);
 	pthread_mutex_unlock(&pool->lock);
-	for (int32_t i = 1; i < pool->thread_count; ++i)
+	for (int32_t i = 1; i < pool->thread_count; i++)
 		pthread_join(pool->threads[i], NULL);
 	pthread_cond_destroy(&pool->wake);
 	pthread_mutex_destroy(&pool->lock);
@@ -149,11 +150,11 @@ static long preemptions(void)
 }
 
 // Waits for the parts that helpers hold. Returns whether someone else's work was in the way.
-static int wait_long(cau_pool *pool)
+static bool wait_long(cau_pool *pool)
 {
 	long before = preemptions();
 	int spins = 0;
-	for (; atomic_load(&pool->parts_left); ++spins) {
+	for (; atomic_load(&pool->parts_left); spins++) {
 		if (spins < SPINS)
 			relax();
 		else
@@ -166,7 +167,7 @@ static void wait_for_helpers(cau_pool *pool, int32_t part_count)
 {
 	CAU_ASSERT(pool->next_alone >= LEAST_ALONE && pool->next_alone <= MOST_ALONE, "%d parts alone",
 	           pool->next_alone);
-	for (int spins = 0; spins < FEW_SPINS && atomic_load(&pool->parts_left); ++spins)
+	for (int spins = 0; spins < FEW_SPINS && atomic_load(&pool->parts_left); spins++)
 		relax();
 	if (atomic_load(&pool->parts_left) && wait_long(pool)) {
 		pool->alone = pool->next_alone;
@@ -184,7 +185,7 @@ void cau_pool_run(cau_pool *pool, int32_t part_count, void (*part)(void *context
 {
 	CAU_ASSERT(part_count >= 0 && part_count <= CAU_POOL_PARTS, "%d parts", part_count);
 	if (pool->thread_count == 1 || part_count <= 1 || pool->alone > 0) {
-		for (int32_t i = 0; i < part_count; ++i)
+		for (int32_t i = 0; i < part_count; i++)
 			part(context, i);
 		pool->alone -= pool->alone > 0 ? part_count : 0;
 		return;

@@ -6,6 +6,7 @@
 #pragma once
 
 #include <math.h>
+#include <stdbool.h>
 #include <stdint.h>
 #if defined(__SSE2__)
 #include <immintrin.h>
@@ -138,7 +139,7 @@ INLINE int v_any(vmask m)
 	return _mm_movemask_epi8(V_INTEGER(m)) != 0;
 #else
 	real_bits any = 0;
-	for (int l = 0; l < LANES; ++l)
+	for (int l = 0; l < LANES; l++)
 		any |= m[l];
 	return any != 0;
 #endif
@@ -149,7 +150,7 @@ INLINE vreal v_sqrt(vreal a)
 	return V_CALL(sqrt, a);
 #else
 	vreal root;
-	for (int l = 0; l < LANES; ++l)
+	for (int l = 0; l < LANES; l++)
 #if CAU_SINGLE
 		root[l] = sqrtf(a[l]);
 #else
@@ -179,7 +180,7 @@ INLINE vsum v_widen(vreal a)
 INLINE double v_total(vsum a)
 {
 	for (int width = SUM_LANES / 2; width; width /= 2)
-		for (int l = 0; l < width; ++l)
+		for (int l = 0; l < width; l++)
 			a[l] += a[l + width];
 	return a[0];
 }
@@ -328,7 +329,7 @@ INLINE void vertex_row_add(real *field, const void *at, int wide, int k, vreal r
 		vreal whole;
 		__m128 part[PARTS];
 	} u = {row};
-	for (int j = 0; j < PARTS; ++j) {
+	for (int j = 0; j < PARTS; j++) {
 		real *vertex = field + place_of(at, wide, 4 * j + k);
 		_mm_store_ps(vertex, _mm_add_ps(_mm_load_ps(vertex), u.part[j]));
 	}
@@ -381,7 +382,7 @@ INLINE void v3_subtract_total(real *vertex, real s, v3 a)
 		__m128 part[PARTS];
 	} u = {pair_low(xy, z) + pair_high(xy, z)};
 	__m128 total = u.part[0];
-	for (int j = 1; j < PARTS; ++j)
+	for (int j = 1; j < PARTS; j++)
 		total = _mm_add_ps(total, u.part[j]);
 	_mm_store_ps(vertex, _mm_sub_ps(_mm_load_ps(vertex), _mm_mul_ps(_mm_set1_ps(s), total)));
 }
@@ -389,7 +390,7 @@ INLINE void v3_subtract_total(real *vertex, real s, v3 a)
 INLINE v3 v3_gather_at(const real *field, const void *at, int wide)
 {
 	v3 out = v3_zero();
-	for (int l = 0; l < LANES; ++l) {
+	for (int l = 0; l < LANES; l++) {
 		const real *vertex = field + place_of(at, wide, l);
 		out.x[l] = vertex[0];
 		out.y[l] = vertex[1];
@@ -399,7 +400,7 @@ INLINE v3 v3_gather_at(const real *field, const void *at, int wide)
 }
 INLINE void v3_add_at(real *field, const void *at, int wide, v3 a)
 {
-	for (int l = 0; l < LANES; ++l) {
+	for (int l = 0; l < LANES; l++) {
 		real *vertex = field + place_of(at, wide, l);
 		vertex[0] += a.x[l];
 		vertex[1] += a.y[l];
@@ -409,7 +410,7 @@ INLINE void v3_add_at(real *field, const void *at, int wide, v3 a)
 INLINE void v3_subtract_total(real *vertex, real s, v3 a)
 {
 	for (int width = LANES / 2; width; width /= 2)
-		for (int l = 0; l < width; ++l) {
+		for (int l = 0; l < width; l++) {
 			a.x[l] += a.x[l + width];
 			a.y[l] += a.y[l + width];
 			a.z[l] += a.z[l + width];

@@ -82,17 +82,17 @@ static inline cau_pose cau_pose_between(const cau_pose *a, const cau_pose *b, do
 {
 	CAU_ASSERT(s >= 0 && s <= 1, "a share of %g of the way", s);
 	cau_pose out;
-	for (int i = 0; i < 3; ++i)
+	for (int i = 0; i < 3; i++)
 		out.position_m[i] = a->position_m[i] + s * (b->position_m[i] - a->position_m[i]);
 	double dot = 0, norm = 0;
-	for (int i = 0; i < 4; ++i)
+	for (int i = 0; i < 4; i++)
 		dot += a->rotation[i] * b->rotation[i];
-	for (int i = 0; i < 4; ++i) {
+	for (int i = 0; i < 4; i++) {
 		out.rotation[i] = (1 - s) * a->rotation[i] + (dot < 0 ? -s : s) * b->rotation[i];
 		norm += out.rotation[i] * out.rotation[i];
 	}
 	norm = sqrt(norm);
-	for (int i = 0; i < 4; ++i)
+	for (int i = 0; i < 4; i++)
 		out.rotation[i] = norm > 0 ? out.rotation[i] / norm : a->rotation[i];
 	return out;
 }

@@ -31,7 +31,7 @@ INLINE vreal diagonal_scale_fat(m3 r, const vreal m[9], vreal g2_per_vertex)
 {
 	v3 sum = v3_zero();
 	vreal rg2 = v_set(0);
-	for (int i = 0; i < 3; ++i) {
+	for (int i = 0; i < 3; i++) {
 		v3 g = m3_apply(r, (v3){m[3 * i], m[3 * i + 1], m[3 * i + 2]});
 		rg2 += v3_dot(g, g);
 		sum = v3_add(sum, g);

@@ -17,6 +17,7 @@
 // cache, and an element names its vertices in sixteen bits.
 #pragma once
 
+#include <stdbool.h>
 #include <stdint.h>
 
 #include "cautery/scene.h"
@@ -104,7 +105,7 @@ typedef struct cau_hinge_set {
 } cau_hinge_set;
 
 typedef struct cau_elements {
-	int single; // precision of the real arrays
+	bool single; // precision of the real arrays
 	cau_sheet_set sheet;
 	cau_fat_set fat;
 	cau_link_set link;
@@ -115,18 +116,18 @@ typedef struct cau_elements {
 	double *energy;         // J, of each share
 } cau_elements;
 
-static inline double cau_real_get(const void *array, int single, int64_t index)
+static inline double cau_real_get(const void *array, bool single, int64_t index)
 {
 	return single ? (double)((const float *)array)[index] : ((const double *)array)[index];
 }
-static inline void cau_real_set(void *array, int single, int64_t index, double value)
+static inline void cau_real_set(void *array, bool single, int64_t index, double value)
 {
 	if (single)
 		((float *)array)[index] = (float)value;
 	else
 		((double *)array)[index] = value;
 }
-static inline size_t cau_real_bytes(int single)
+static inline size_t cau_real_bytes(bool single)
 {
 	return single ? sizeof(float) : sizeof(double);
 }

@@ -13,7 +13,7 @@ cau_status cau_elements_make_maps(cau_element_slots *slots, int kind, int32_t el
 	slots->element_at[kind] = cau_arena_array(arena, (size_t)slot_count, sizeof(int32_t));
 	if (!slots->slot_of[kind] || !slots->element_at[kind])
 		return cau_fail(error, CAU_NO_MEMORY, NULL, "no memory for the elements");
-	for (int32_t s = 0; s < slot_count; ++s)
+	for (int32_t s = 0; s < slot_count; s++)
 		slots->element_at[kind][s] = -1;
 	return CAU_OK;
 }
@@ -26,28 +26,28 @@ void cau_elements_assign(cau_element_slots *slots, int kind, int32_t element, in
 	slots->element_at[kind][slot] = element;
 }
 
-int cau_real_arrays(cau_arena *arena, void **array, int count, int32_t slots, int single)
+bool cau_real_arrays(cau_arena *arena, void **array, int count, int32_t slots, bool single)
 {
-	for (int i = 0; i < count; ++i)
+	for (int i = 0; i < count; i++)
 		if (!(array[i] = cau_arena_array(arena, (size_t)slots, cau_real_bytes(single))))
-			return 0;
-	return 1;
+			return false;
+	return true;
 }
 
-int cau_index_arrays(cau_arena *arena, uint16_t **array, int count, int32_t slots)
+bool cau_index_arrays(cau_arena *arena, uint16_t **array, int count, int32_t slots)
 {
-	for (int i = 0; i < count; ++i)
+	for (int i = 0; i < count; i++)
 		if (!(array[i] = cau_arena_array(arena, (size_t)slots, sizeof(uint16_t))))
-			return 0;
-	return 1;
+			return false;
+	return true;
 }
 
-int cau_slot_vertices_make(cau_slot_vertices *vertices, int kind, int count, int32_t slots)
+bool cau_slot_vertices_make(cau_slot_vertices *vertices, int kind, int count, int32_t slots)
 {
 	CAU_ASSERT(count >= 2 && count <= 4, "%d vertices of kind %d", count, kind);
 	int32_t **at = vertices->at[kind];
-	for (int i = 0; i < count; ++i)
+	for (int i = 0; i < count; i++)
 		if (!(at[i] = cau_arena_array(&vertices->arena, (size_t)slots, sizeof(int32_t))))
-			return 0;
-	return 1;
+			return false;
+	return true;
 }

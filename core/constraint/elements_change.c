@@ -13,7 +13,7 @@ static void set_sheet_law(cau_sheet_group *group, const cau_sheet_material *mate
 {
 	group->limit = material->limit;
 	group->projection = material->projection;
-	for (int a = 0; a < 2; ++a) {
+	for (int a = 0; a < 2; a++) {
 		group->stretch_min[a] = 1 + material->strain_min[a];
 		group->stretch_max[a] = 1 + material->strain_max[a];
 		CAU_ASSERT(group->stretch_min[a] <= group->stretch_max[a], "stretches from %g to %g",
@@ -40,10 +40,10 @@ static void to_world(const double s[6], double axes[3][3], double out[6])
 	static const int row[6] = {0, 1, 2, 0, 0, 1}, column[6] = {0, 1, 2, 1, 2, 2};
 	const double full[3][3] = {
 		{s[0] - 1, s[3], s[4]}, {s[3], s[1] - 1, s[5]}, {s[4], s[5], s[2] - 1}};
-	for (int k = 0; k < 6; ++k) {
+	for (int k = 0; k < 6; k++) {
 		out[k] = k < 3;
-		for (int i = 0; i < 3; ++i)
-			for (int j = 0; j < 3; ++j)
+		for (int i = 0; i < 3; i++)
+			for (int j = 0; j < 3; j++)
 				out[k] += axes[i][row[k]] * full[i][j] * axes[j][column[k]];
 	}
 }
@@ -80,7 +80,7 @@ static void set_fat_law(cau_fat_group *group, const cau_fat_material *material,
 	           "stiffness %g, mu %g, lambda %g Pa", group->stiffness, group->mu, group->lambda);
 	group->limit_stiffness = material->limit_stiffness_pa;
 	fat_target_root(material, fibre, group->target);
-	for (int a = 0; a < 3; ++a) {
+	for (int a = 0; a < 3; a++) {
 		group->stretch_min[a] = 1 + material->strain_min[a];
 		group->stretch_max[a] = 1 + material->strain_max[a];
 	}
@@ -89,7 +89,7 @@ static void set_fat_law(cau_fat_group *group, const cau_fat_material *material,
 	group->plastic_strain_max = material->plastic_strain_max;
 }
 
-static void set_sheet_slot(cau_sheet_set *set, int single, int32_t slot, const cau_tissue *tissue,
+static void set_sheet_slot(cau_sheet_set *set, bool single, int32_t slot, const cau_tissue *tissue,
                            int32_t element, int alive, int keep_target)
 {
 	CAU_ASSERT_INDEX(slot, set->slot_count);
@@ -102,11 +102,11 @@ static void set_sheet_slot(cau_sheet_set *set, int single, int32_t slot, const c
 	double root[3] = {0, 0, 0}; // no target
 	if (material->limit == CAU_LIMIT_TARGET)
 		cau_symmetric_power2(material->target, 0.5, 0, root);
-	for (int i = 0; i < 3; ++i)
+	for (int i = 0; i < 3; i++)
 		cau_real_set(set->target[i], single, slot, root[i]);
 }
 
-static void set_fat_slot(cau_fat_set *set, int single, int32_t slot, const cau_tissue *tissue,
+static void set_fat_slot(cau_fat_set *set, bool single, int32_t slot, const cau_tissue *tissue,
                          int32_t element, int alive, int keep_target)
 {
 	CAU_ASSERT_INDEX(slot, set->slot_count);
@@ -121,7 +121,7 @@ static void set_fat_slot(cau_fat_set *set, int single, int32_t slot, const cau_t
 		return;
 	double root[6];
 	fat_target_root(material, tissue->layer[tissue->tetrahedron_layer[element]].def.fibre, root);
-	for (int i = 0; i < 6; ++i)
+	for (int i = 0; i < 6; i++)
 		cau_real_set(set->target[i], single, slot, root[i]);
 }
 
@@ -133,7 +133,7 @@ void cau_elements_remove(cau_elements *elements, const cau_element_slots *slots,
 	int32_t slot = slots->slot_of[kind][element];
 	CAU_ASSERT(slots->element_at[kind][slot] == element, "slot %d has element %d, not %d", slot,
 	           slots->element_at[kind][slot], element);
-	int single = elements->single;
+	bool single = elements->single;
 	switch (kind) {
 	case CAU_ELEMENT_TRIANGLE:
 		cau_real_set(elements->sheet.weight, single, slot, 0);
@@ -159,13 +159,13 @@ void cau_elements_set_target(cau_elements *elements, const cau_element_slots *sl
 	           "a target for kind %d", kind);
 	CAU_ASSERT_INDEX(element, cau_tissue_element_count(tissue, kind));
 	int32_t slot = slots->slot_of[kind][element];
-	int single = elements->single;
+	bool single = elements->single;
 	if (kind == CAU_ELEMENT_TRIANGLE) {
-		for (int i = 0; i < 3; ++i)
+		for (int i = 0; i < 3; i++)
 			cau_real_set(elements->sheet.target[i], single, slot, root[i]);
 		return;
 	}
-	for (int i = 0; i < 6; ++i)
+	for (int i = 0; i < 6; i++)
 		cau_real_set(elements->fat.target[i], single, slot, root[i]);
 	double stiffness = cau_tetrahedron_material(tissue, element)->limit_stiffness_pa;
 	cau_real_set(elements->fat.limit_weight, single, slot,
@@ -184,18 +184,18 @@ void cau_elements_target(const cau_elements *elements, const cau_element_slots *
 	int count = kind == CAU_ELEMENT_TRIANGLE ? 3 : 6;
 	void *const *target =
 		kind == CAU_ELEMENT_TRIANGLE ? elements->sheet.target : elements->fat.target;
-	for (int i = 0; i < count; ++i)
+	for (int i = 0; i < count; i++)
 		root[i] = cau_real_get(target[i], elements->single, slot);
 }
 
 void cau_elements_set_laws(cau_elements *elements, const cau_tissue *tissue)
 {
-	for (int32_t g = 0; g < elements->sheet.group_count; ++g) {
+	for (int32_t g = 0; g < elements->sheet.group_count; g++) {
 		cau_sheet_group *group = &elements->sheet.group[g];
 		CAU_ASSERT_INDEX(group->layer, tissue->layer_count);
 		set_sheet_law(group, &tissue->layer[group->layer].def.sheet[group->material]);
 	}
-	for (int32_t g = 0; g < elements->fat.group_count; ++g) {
+	for (int32_t g = 0; g < elements->fat.group_count; g++) {
 		cau_fat_group *group = &elements->fat.group[g];
 		CAU_ASSERT(tissue->layer[group->layer].def.kind == CAU_LAYER_FAT,
 		           "group %d of fat in a layer of kind %d", g,
@@ -205,25 +205,25 @@ void cau_elements_set_laws(cau_elements *elements, const cau_tissue *tissue)
 	}
 }
 
-static int has_target(const cau_fat_set *set, int single, int32_t slot, const double root[6])
+static bool has_target(const cau_fat_set *set, bool single, int32_t slot, const double root[6])
 {
-	for (int i = 0; i < 6; ++i) {
+	for (int i = 0; i < 6; i++) {
 		double common = single ? (double)(float)root[i] : root[i];
 		if (cau_real_get(set->target[i], single, slot) != common)
-			return 0;
+			return false;
 	}
-	return 1;
+	return true;
 }
 
 void cau_elements_mark_targets(cau_elements *elements, const cau_element_slots *slots)
 {
 	cau_fat_set *set = &elements->fat;
 	memset(set->targeted, 0, (size_t)(set->slot_count / CAU_BATCH));
-	for (int32_t g = 0; g < set->group_count; ++g) {
+	for (int32_t g = 0; g < set->group_count; g++) {
 		const cau_fat_group *group = &set->group[g];
 		CAU_ASSERT(group->first_slot + group->slot_count <= set->slot_count, "slots %d + %d of %d",
 		           group->first_slot, group->slot_count, set->slot_count);
-		for (int32_t s = group->first_slot; s < group->first_slot + group->slot_count; ++s)
+		for (int32_t s = group->first_slot; s < group->first_slot + group->slot_count; s++)
 			set->targeted[s / CAU_BATCH] |= slots->element_at[CAU_ELEMENT_TETRAHEDRON][s] >= 0 &&
 			                                !has_target(set, elements->single, s, group->target);
 	}
@@ -233,22 +233,22 @@ void cau_elements_set_materials(cau_elements *elements, const cau_element_slots 
                                 const cau_tissue *tissue, uint8_t *const alive[CAU_ELEMENT_KINDS],
                                 uint8_t *const shrunk[2])
 {
-	int single = elements->single;
+	bool single = elements->single;
 	cau_elements_set_laws(elements, tissue);
-	for (int32_t t = 0; t < tissue->triangle_count; ++t)
+	for (int32_t t = 0; t < tissue->triangle_count; t++)
 		set_sheet_slot(&elements->sheet, single, slots->slot_of[CAU_ELEMENT_TRIANGLE][t], tissue, t,
 		               alive[CAU_ELEMENT_TRIANGLE][t], shrunk[CAU_ELEMENT_TRIANGLE][t]);
 	memset(elements->fat.limited, 0, (size_t)(elements->fat.slot_count / CAU_BATCH));
-	for (int32_t t = 0; t < tissue->tetrahedron_count; ++t)
+	for (int32_t t = 0; t < tissue->tetrahedron_count; t++)
 		set_fat_slot(&elements->fat, single, slots->slot_of[CAU_ELEMENT_TETRAHEDRON][t], tissue, t,
 		             alive[CAU_ELEMENT_TETRAHEDRON][t], shrunk[CAU_ELEMENT_TETRAHEDRON][t]);
 	cau_elements_mark_targets(elements, slots);
 	cau_element_map map;
-	for (int32_t k = 0; k < tissue->link_count; ++k) {
+	for (int32_t k = 0; k < tissue->link_count; k++) {
 		cau_tissue_element_map(tissue, CAU_ELEMENT_LINK, k, &map);
 		cau_real_set(elements->link.weight, single, k, alive[CAU_ELEMENT_LINK][k] ? map.weight : 0);
 	}
-	for (int32_t k = 0; k < tissue->hinge_count; ++k) {
+	for (int32_t k = 0; k < tissue->hinge_count; k++) {
 		cau_tissue_element_map(tissue, CAU_ELEMENT_HINGE, k, &map);
 		cau_real_set(elements->hinge.weight, single, k,
 		             alive[CAU_ELEMENT_HINGE][k] ? map.weight : 0);

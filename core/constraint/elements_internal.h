@@ -13,15 +13,15 @@ static inline int32_t cau_slots_padded(int32_t count)
 cau_status cau_elements_make_maps(cau_element_slots *slots, int kind, int32_t element_count,
                                   int32_t slot_count, cau_arena *arena, cau_error *error);
 void cau_elements_assign(cau_element_slots *slots, int kind, int32_t element, int32_t slot);
-int cau_real_arrays(cau_arena *arena, void **array, int count, int32_t slots, int single);
-int cau_index_arrays(cau_arena *arena, uint16_t **array, int count, int32_t slots);
+bool cau_real_arrays(cau_arena *arena, void **array, int count, int32_t slots, bool single);
+bool cau_index_arrays(cau_arena *arena, uint16_t **array, int count, int32_t slots);
 
 // The vertices of elements, by slot, until they have records.
 typedef struct cau_slot_vertices {
 	cau_arena arena;
 	int32_t *at[CAU_ELEMENT_KINDS][4];
 } cau_slot_vertices;
-int cau_slot_vertices_make(cau_slot_vertices *vertices, int kind, int count, int32_t slots);
+bool cau_slot_vertices_make(cau_slot_vertices *vertices, int kind, int count, int32_t slots);
 
 // elements_pairs.c: the sheet and fat sets
 cau_status cau_elements_make_pairs(const cau_tissue *tissue, cau_elements *elements,

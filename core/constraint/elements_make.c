@@ -14,15 +14,15 @@ static cau_status no_memory(cau_error *error)
 static void rest_combination(const cau_tissue *tissue, const cau_element_map *map, double rest[3])
 {
 	CAU_ASSERT(map->rank == 1, "a combination of rank %d", map->rank);
-	for (int c = 0; c < 3; ++c) {
+	for (int c = 0; c < 3; c++) {
 		rest[c] = 0;
-		for (int i = 0; i < map->vertex_count; ++i)
+		for (int i = 0; i < map->vertex_count; i++)
 			rest[c] +=
 				map->coefficient[0][i] * tissue->rest[3 * (size_t)map->vertex[i] + (size_t)c];
 	}
 }
 
-static cau_status make_links(const cau_tissue *tissue, int single, cau_arena *arena,
+static cau_status make_links(const cau_tissue *tissue, bool single, cau_arena *arena,
                              cau_elements *elements, cau_element_slots *slots,
                              cau_slot_vertices *vertices, cau_error *error)
 {
@@ -38,22 +38,22 @@ static cau_status make_links(const cau_tissue *tissue, int single, cau_arena *ar
 	    !cau_real_arrays(arena, &set->rest_length, 1, set->slot_count, single) ||
 	    !cau_real_arrays(arena, &set->weight, 1, set->slot_count, single))
 		return no_memory(error);
-	for (int32_t k = 0; k < tissue->link_count; ++k) {
+	for (int32_t k = 0; k < tissue->link_count; k++) {
 		cau_element_map map;
 		double rest[3];
 		cau_tissue_element_map(tissue, CAU_ELEMENT_LINK, k, &map);
 		rest_combination(tissue, &map, rest);
 		cau_elements_assign(slots, CAU_ELEMENT_LINK, k, k);
-		for (int i = 0; i < 2; ++i)
+		for (int i = 0; i < 2; i++)
 			vertices->at[CAU_ELEMENT_LINK][i][k] = map.vertex[i];
-		for (int c = 0; c < 3; ++c)
+		for (int c = 0; c < 3; c++)
 			cau_real_set(set->rest[c], single, k, rest[c]);
 		cau_real_set(set->rest_length, single, k, tissue->link_length[k]);
 	}
 	return CAU_OK;
 }
 
-static cau_status make_hinges(const cau_tissue *tissue, int single, cau_arena *arena,
+static cau_status make_hinges(const cau_tissue *tissue, bool single, cau_arena *arena,
                               cau_elements *elements, cau_element_slots *slots,
                               cau_slot_vertices *vertices, cau_error *error)
 {
@@ -70,31 +70,32 @@ static cau_status make_hinges(const cau_tissue *tissue, int single, cau_arena *a
 	    !cau_real_arrays(arena, &set->rest_length, 1, set->slot_count, single) ||
 	    !cau_real_arrays(arena, &set->weight, 1, set->slot_count, single))
 		return no_memory(error);
-	for (int32_t k = 0; k < tissue->hinge_count; ++k) {
+	for (int32_t k = 0; k < tissue->hinge_count; k++) {
 		cau_element_map map;
 		double rest[3], size = 0;
 		cau_tissue_element_map(tissue, CAU_ELEMENT_HINGE, k, &map);
 		rest_combination(tissue, &map, rest);
 		cau_elements_assign(slots, CAU_ELEMENT_HINGE, k, k);
-		for (int i = 0; i < 4; ++i) {
+		for (int i = 0; i < 4; i++) {
 			vertices->at[CAU_ELEMENT_HINGE][i][k] = map.vertex[i];
 			cau_real_set(set->coefficient[i], single, k, map.coefficient[0][i]);
 		}
 		double length = sqrt(rest[0] * rest[0] + rest[1] * rest[1] + rest[2] * rest[2]);
-		for (int c = 0; c < 3; ++c) {
+		for (int c = 0; c < 3; c++) {
 			double span = tissue->rest[3 * (size_t)map.vertex[1] + (size_t)c] -
 			              tissue->rest[3 * (size_t)map.vertex[0] + (size_t)c];
 			size += span * span;
 		}
-		int flat = length < 1e-6 * sqrt(size);
-		for (int c = 0; c < 3; ++c)
+		// What is left of a flat hinge's curvature is rounding: none, so that it rests at rest.
+		bool flat = length < 1e-6 * sqrt(size);
+		for (int c = 0; c < 3; c++)
 			cau_real_set(set->rest[c], single, k, flat ? 0 : rest[c]);
 		cau_real_set(set->rest_length, single, k, flat ? 0 : length);
 	}
 	return CAU_OK;
 }
 
-cau_status cau_elements_make(const cau_tissue *tissue, int single, cau_arena *arena,
+cau_status cau_elements_make(const cau_tissue *tissue, bool single, cau_arena *arena,
                              cau_elements *elements, cau_element_slots *slots, cau_error *error)
 {
 	cau_slot_vertices vertices = {0};

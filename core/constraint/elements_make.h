@@ -15,7 +15,7 @@ typedef struct cau_element_slots {
 	cau_incidence incidence; // records of each vertex
 } cau_element_slots;
 
-cau_status cau_elements_make(const cau_tissue *tissue, int single, cau_arena *arena,
+cau_status cau_elements_make(const cau_tissue *tissue, bool single, cau_arena *arena,
                              cau_elements *elements, cau_element_slots *slots, cau_error *error);
 
 // Takes the element out of the local step (weight 0).

@@ -45,7 +45,7 @@ static int32_t material_of(const cau_tissue *tissue, int kind, int32_t element)
 static void find_groups(pair_maker *maker)
 {
 	maker->group_count = 0;
-	for (int32_t e = 0; e < cau_tissue_element_count(maker->tissue, maker->kind); ++e) {
+	for (int32_t e = 0; e < cau_tissue_element_count(maker->tissue, maker->kind); e++) {
 		int32_t layer = layer_of(maker->tissue, maker->kind, e);
 		int32_t material = material_of(maker->tissue, maker->kind, e), g = 0;
 		while (g < maker->group_count &&
@@ -63,7 +63,7 @@ static cau_status plan_groups(pair_maker *maker, int kind, cau_arena *arena, cau
 	maker->kind = kind;
 	maker->slot_count = 0;
 	find_groups(maker);
-	for (int32_t g = 0; g < maker->group_count; ++g) {
+	for (int32_t g = 0; g < maker->group_count; g++) {
 		group_plan *group = &maker->group[g];
 		group->first_slot = maker->slot_count;
 		group->slot_count =
@@ -95,7 +95,7 @@ static int32_t pair_slot(int32_t k, int32_t slots)
 static void place_pairs(const pair_maker *maker, const group_plan *group)
 {
 	int32_t done = 0, count = cau_tissue_element_count(maker->tissue, maker->kind);
-	for (int32_t e = 0; e < count; ++e) {
+	for (int32_t e = 0; e < count; e++) {
 		if (layer_of(maker->tissue, maker->kind, e) != group->layer ||
 		    material_of(maker->tissue, maker->kind, e) != group->material ||
 		    (maker->partner[e] >= 0 && maker->partner[e] < e))
@@ -104,7 +104,7 @@ static void place_pairs(const pair_maker *maker, const group_plan *group)
 		CAU_ASSERT(slot < group->first_slot + group->slot_count, "pair %d beyond %d slots", done,
 		           group->slot_count);
 		const int32_t half[2] = {e, maker->partner[e]};
-		for (int h = 0; h < 2 && half[h] >= 0; ++h, slot += CAU_BATCH) {
+		for (int h = 0; h < 2 && half[h] >= 0; h++, slot += CAU_BATCH) {
 			int order[4];
 			cau_pair_order(maker->tissue, maker->kind, e, maker->partner[e], half[h], order);
 			cau_elements_assign(maker->slots, maker->kind, half[h], slot);
@@ -116,7 +116,7 @@ static void place_pairs(const pair_maker *maker, const group_plan *group)
 static cau_status make_sheet_arrays(const pair_maker *maker, cau_arena *arena, cau_error *error)
 {
 	cau_sheet_set *set = &maker->elements->sheet;
-	int single = maker->elements->single;
+	bool single = maker->elements->single;
 	if (!cau_slot_vertices_make(maker->vertices, maker->kind, 3, set->slot_count) ||
 	    !cau_index_arrays(arena, set->record_at, 3, set->slot_count) ||
 	    !cau_real_arrays(arena, set->dm_inverse, 4, set->slot_count, single) ||
@@ -133,16 +133,16 @@ static void fill_sheet_slot(const pair_maker *maker, int32_t triangle, int32_t s
                             const int *order)
 {
 	cau_sheet_set *set = &maker->elements->sheet;
-	int single = maker->elements->single;
+	bool single = maker->elements->single;
 	cau_element_map map;
 	cau_tissue_element_map(maker->tissue, CAU_ELEMENT_TRIANGLE, triangle, &map);
 	CAU_ASSERT(map.rank == 2 && map.vertex_count == 3, "triangle %d of rank %d", triangle,
 	           map.rank);
-	for (int i = 0; i < 3; ++i)
+	for (int i = 0; i < 3; i++)
 		maker->vertices->at[maker->kind][i][slot] = map.vertex[order[i]];
-	for (int i = 0; i < 4; ++i)
+	for (int i = 0; i < 4; i++)
 		cau_real_set(set->dm_inverse[i], single, slot, map.coefficient[i % 2][order[i / 2 + 1]]);
-	for (int i = 0; i < 6; ++i) {
+	for (int i = 0; i < 6; i++) {
 		double axis = maker->tissue->triangle_frame[6 * (size_t)triangle + (size_t)i];
 		cau_real_set(set->rest[i], single, slot, axis);
 		cau_real_set(set->polar[i], single, slot, axis);
@@ -153,7 +153,7 @@ static void fill_sheet_slot(const pair_maker *maker, int32_t triangle, int32_t s
 static cau_status make_fat_arrays(const pair_maker *maker, cau_arena *arena, cau_error *error)
 {
 	cau_fat_set *set = &maker->elements->fat;
-	int single = maker->elements->single;
+	bool single = maker->elements->single;
 	set->limited = cau_arena_array(arena, (size_t)(set->slot_count / CAU_BATCH), 1);
 	set->targeted = cau_arena_array(arena, (size_t)(set->slot_count / CAU_BATCH), 1);
 	set->flowed = cau_arena_array(arena, (size_t)(set->slot_count / CAU_BATCH), 1);
@@ -169,9 +169,9 @@ static cau_status make_fat_arrays(const pair_maker *maker, cau_arena *arena, cau
 	    !cau_real_arrays(arena, set->plastic_strain, 6, set->slot_count, single) ||
 	    !cau_real_arrays(arena, &set->position_scale, 1, set->slot_count, single))
 		return no_memory(error);
-	for (int32_t s = 0; s < set->slot_count; ++s) {
+	for (int32_t s = 0; s < set->slot_count; s++) {
 		cau_real_set(set->polar[0], single, s, 1);
-		for (int i = 0; i < 3; ++i) // padding has the identity for a target
+		for (int i = 0; i < 3; i++) // padding has the identity for a target
 			cau_real_set(set->target[i], single, s, 1);
 	}
 	return CAU_OK;
@@ -181,14 +181,14 @@ static void fill_fat_slot(const pair_maker *maker, int32_t tetrahedron, int32_t 
                           const int *order)
 {
 	cau_fat_set *set = &maker->elements->fat;
-	int single = maker->elements->single;
+	bool single = maker->elements->single;
 	cau_element_map map;
 	cau_tissue_element_map(maker->tissue, CAU_ELEMENT_TETRAHEDRON, tetrahedron, &map);
 	CAU_ASSERT(map.rank == 3 && map.vertex_count == 4, "tetrahedron %d of rank %d", tetrahedron,
 	           map.rank);
-	for (int i = 0; i < 4; ++i)
+	for (int i = 0; i < 4; i++)
 		maker->vertices->at[maker->kind][i][slot] = map.vertex[order[i]];
-	for (int i = 0; i < 9; ++i)
+	for (int i = 0; i < 9; i++)
 		cau_real_set(set->dm_inverse[i], single, slot, map.coefficient[i % 3][order[i / 3 + 1]]);
 	cau_real_set(set->position_scale, single, slot, cau_element_map_scale(&map));
 }
@@ -203,7 +203,7 @@ static cau_status make_sheets(pair_maker *maker, cau_arena *arena, cau_error *er
 	if (!status)
 		status = set->group ? make_sheet_arrays(maker, arena, error) : no_memory(error);
 	maker->fill = fill_sheet_slot;
-	for (int32_t g = 0; !status && g < set->group_count; ++g) {
+	for (int32_t g = 0; !status && g < set->group_count; g++) {
 		const group_plan *plan = &maker->group[g];
 		set->group[g] = (cau_sheet_group){.first_slot = plan->first_slot,
 		                                  .slot_count = plan->slot_count,
@@ -224,7 +224,7 @@ static cau_status make_fat(pair_maker *maker, cau_arena *arena, cau_error *error
 	if (!status)
 		status = set->group ? make_fat_arrays(maker, arena, error) : no_memory(error);
 	maker->fill = fill_fat_slot;
-	for (int32_t g = 0; !status && g < set->group_count; ++g) {
+	for (int32_t g = 0; !status && g < set->group_count; g++) {
 		const group_plan *plan = &maker->group[g];
 		set->group[g] = (cau_fat_group){.first_slot = plan->first_slot,
 		                                .slot_count = plan->slot_count,

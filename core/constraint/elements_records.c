@@ -34,12 +34,12 @@ cau_status cau_elements_make_work(cau_elements *elements, cau_element_slots *slo
 	elements->energy = cau_arena_array(arena, (size_t)most, sizeof *elements->energy);
 	if (!slots->work || !elements->energy)
 		return no_memory(error);
-	for (int32_t g = 0; g < elements->fat.group_count; ++g) {
+	for (int32_t g = 0; g < elements->fat.group_count; g++) {
 		const cau_fat_group *group = &elements->fat.group[g];
 		add_work(slots, CAU_ELEMENT_TETRAHEDRON, g, group->first_slot,
 		         group->first_slot + group->slot_count);
 	}
-	for (int32_t g = 0; g < elements->sheet.group_count; ++g) {
+	for (int32_t g = 0; g < elements->sheet.group_count; g++) {
 		const cau_sheet_group *group = &elements->sheet.group[g];
 		add_work(slots, CAU_ELEMENT_TRIANGLE, g, group->first_slot,
 		         group->first_slot + group->slot_count);
@@ -75,8 +75,8 @@ static int32_t number_records(const share_elements *share, cau_local_work *work,
                               int32_t *last_record)
 {
 	work->first_record = next++;
-	for (int32_t s = work->first; s < work->last; ++s)
-		for (int i = 0; i < share->vertices; ++i) {
+	for (int32_t s = work->first; s < work->last; s++)
+		for (int i = 0; i < share->vertices; i++) {
 			int32_t *last = &last_record[share->vertex_at[i][s]];
 			if (share->element_at[s] < 0) {
 				share->record_at[i][s] = 0;
@@ -95,8 +95,8 @@ static int32_t number_records(const share_elements *share, cau_local_work *work,
 static void name_vertices(const share_elements *share, const cau_local_work *work,
                           int32_t *record_vertex)
 {
-	for (int32_t s = work->first; s < work->last; ++s)
-		for (int i = 0; i < share->vertices && share->element_at[s] >= 0; ++i)
+	for (int32_t s = work->first; s < work->last; s++)
+		for (int i = 0; i < share->vertices && share->element_at[s] >= 0; i++)
 			record_vertex[work->first_record + share->record_at[i][s] / 4] =
 				4 * share->vertex_at[i][s];
 }
@@ -106,9 +106,9 @@ static void list_records(const cau_elements *elements, const cau_element_slots *
                          int32_t vertex_count, cau_incidence *incidence)
 {
 	int32_t *place = incidence->first + 1;
-	for (int pass = 0; pass < 2; ++pass) {
-		for (int32_t w = 0; w < slots->work_count; ++w)
-			for (int32_t k = 1; k < slots->work[w].record_count; ++k) { // 0: padding's
+	for (int pass = 0; pass < 2; pass++) {
+		for (int32_t w = 0; w < slots->work_count; w++)
+			for (int32_t k = 1; k < slots->work[w].record_count; k++) { // 0: padding's
 				int32_t record = slots->work[w].first_record + k;
 				int32_t v = elements->record_vertex[record] / 4;
 				CAU_ASSERT_INDEX(v, vertex_count);
@@ -117,7 +117,7 @@ static void list_records(const cau_elements *elements, const cau_element_slots *
 				else
 					incidence->record[place[v]++] = record;
 			}
-		for (int32_t v = 0; !pass && v < vertex_count; ++v)
+		for (int32_t v = 0; !pass && v < vertex_count; v++)
 			place[v + 1] += place[v];
 	}
 }
@@ -133,7 +133,7 @@ cau_status cau_elements_make_records(const cau_tissue *tissue, cau_elements *ele
 	if (!last_record)
 		return no_memory(error);
 	memset(last_record, -1, n * sizeof *last_record);
-	for (int32_t w = 0; w < slots->work_count; ++w) {
+	for (int32_t w = 0; w < slots->work_count; w++) {
 		share_elements share = elements_of(elements, slots, vertices, slots->work[w].kind);
 		elements->record_count =
 			number_records(&share, &slots->work[w], elements->record_count, last_record);
@@ -146,7 +146,7 @@ cau_status cau_elements_make_records(const cau_tissue *tissue, cau_elements *ele
 	incidence->record = cau_arena_array(arena, count + CAU_RECORDS_AHEAD, sizeof(int32_t));
 	if (!elements->gradient || !elements->record_vertex || !incidence->first || !incidence->record)
 		return no_memory(error);
-	for (int32_t w = 0; w < slots->work_count; ++w) {
+	for (int32_t w = 0; w < slots->work_count; w++) {
 		share_elements share = elements_of(elements, slots, vertices, slots->work[w].kind);
 		name_vertices(&share, &slots->work[w], elements->record_vertex);
 	}

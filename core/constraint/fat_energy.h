@@ -58,7 +58,7 @@ INLINE vreal log_remainder(vreal q)
 	vreal out = q * z - 2 * z * z2 * series;
 	vmask outside = v_abs(z) > (real)0.4;
 	if (v_any(outside))
-		for (int l = 0; l < LANES; ++l)
+		for (int l = 0; l < LANES; l++)
 			if (outside[l])
 				out[l] = (real)((double)q[l] - log1p((double)q[l]));
 	return out;

@@ -58,21 +58,21 @@ INLINE m3 fat_plastic_energy_stress(const cau_fat_group *group, m3 h, sym3 z, ro
 INLINE vreal fat_position_scale(const cau_fat_set *set, int32_t slot, m3 r)
 {
 	vreal m[9];
-	for (int i = 0; i < 9; ++i)
+	for (int i = 0; i < 9; i++)
 		m[i] = v_load(set->dm_inverse[i], slot);
 	return diagonal_scale_fat(r, m, v_load(set->position_scale, slot));
 }
 
 // Eq. 13 in F. In the diagonal system each constraint has its own step.
 INLINE m3 fat_linearised_residual(const cau_fat_set *set, int32_t slot, sym3 root, m3 f,
-                                  int diagonal)
+                                  bool diagonal)
 {
 	m3 rows = {{{root.a00, root.a01, root.a02},
 	            {root.a01, root.a11, root.a12},
 	            {root.a02, root.a12, root.a22}}};
 	m3 part[6], r = {{v3_zero(), v3_zero(), v3_zero()}};
 	fat_linearised_residuals(f, m3_transpose_times(rows, rows), part);
-	for (int i = 0; i < 6; ++i) {
+	for (int i = 0; i < 6; i++) {
 		vreal s = diagonal ? fat_position_scale(set, slot, part[i]) : v_set(1);
 		r = m3_add_scaled(r, s, part[i]);
 	}
@@ -106,7 +106,7 @@ INLINE m3 fat_ranged_residual(const cau_fat_group *group, sym3 root, m3 f, rotat
 
 // Residual of the strain limit (dimensionless); its energy is w/2 (|R|^2 + *extra).
 INLINE m3 fat_limit_residual(const cau_fat_set *set, const cau_fat_group *group, int32_t slot,
-                             sym3 common, m3 f, rotation_lanes *polar, int diagonal, vreal *extra)
+                             sym3 common, m3 f, rotation_lanes *polar, bool diagonal, vreal *extra)
 {
 	sym3 root = set->targeted[slot / CAU_BATCH] ? sym3_load(set->target, slot) : common;
 	if (group->limit == CAU_LIMIT_TARGET && group->projection == CAU_PROJECTION_LINEARISED)
@@ -129,7 +129,7 @@ typedef struct fat_face {
 INLINE fat_face fat_face_gather(const cau_fat_set *set, int32_t slot, const real *displacement)
 {
 	fat_face face = {.origin = v3_gather(displacement, set->record_at[0] + slot)};
-	for (int i = 0; i < 2; ++i)
+	for (int i = 0; i < 2; i++)
 		face.edge[i] = v3_sub(v3_gather(displacement, set->record_at[i + 1] + slot), face.origin);
 	return face;
 }
@@ -140,7 +140,7 @@ INLINE m3 fat_displacement_gradient(const cau_fat_set *set, int32_t slot, const 
 {
 	v3 to_apex = v3_sub(v3_gather(displacement, set->record_at[3] + slot), face->origin);
 	m3 h;
-	for (int c = 0; c < 3; ++c) {
+	for (int c = 0; c < 3; c++) {
 		h.c[c] = v3_scale(v_load(set->dm_inverse[c], slot), face->edge[0]);
 		h.c[c] = v3_add_scaled(h.c[c], v_load(set->dm_inverse[3 + c], slot), face->edge[1]);
 		h.c[c] = v3_add_scaled(h.c[c], v_load(set->dm_inverse[6 + c], slot), to_apex);
@@ -158,7 +158,7 @@ INLINE vreal fat_limit_weight(const cau_fat_set *set, const cau_fat_group *group
 
 // Stress (Pa m^3 = N m) in F = I + H; adds the energies (J). `common`: the group's target.
 INLINE m3 fat_stress(const cau_fat_set *set, const cau_fat_group *group, int32_t slot, sym3 common,
-                     m3 h, int diagonal, vreal *energy)
+                     m3 h, bool diagonal, vreal *energy)
 {
 	int limited = set->limited[slot / CAU_BATCH];
 	m3 f = m3_add(m3_identity(), h), r = {{v3_zero(), v3_zero(), v3_zero()}};
@@ -194,7 +194,7 @@ INLINE m3 fat_stress(const cau_fat_set *set, const cau_fat_group *group, int32_t
 INLINE v3 fat_vertex_gradient(const cau_fat_set *set, int32_t slot, m3 stress, int i)
 {
 	v3 g = v3_scale(v_load(set->dm_inverse[3 * i], slot), stress.c[0]);
-	for (int c = 1; c < 3; ++c)
+	for (int c = 1; c < 3; c++)
 		g = v3_add_scaled(g, v_load(set->dm_inverse[3 * i + c], slot), stress.c[c]);
 	return g;
 }
@@ -202,7 +202,7 @@ INLINE v3 fat_vertex_gradient(const cau_fat_set *set, int32_t slot, m3 stress, i
 // One vector of pairs, whose second halves are a batch behind their first: returns the energies (J)
 // and adds the gradient on their five vertices.
 INLINE vreal fat_pairs(const cau_fat_set *set, const cau_fat_group *group, int32_t slot,
-                       sym3 common, const real *displacement, int diagonal, real *records)
+                       sym3 common, const real *displacement, bool diagonal, real *records)
 {
 	fat_face face = fat_face_gather(set, slot, displacement);
 	v3 on_face[3] = {v3_zero(), v3_zero(), v3_zero()};
@@ -216,13 +216,13 @@ INLINE vreal fat_pairs(const cau_fat_set *set, const cau_fat_group *group, int32
 		v3 apex = fat_vertex_gradient(set, half, stress, 2);
 		v3_add_to(records, set->record_at[3] + half, apex);
 		on_face[0] = v3_sub(on_face[0], apex);
-		for (int i = 0; i < 2; ++i) {
+		for (int i = 0; i < 2; i++) {
 			v3 g = fat_vertex_gradient(set, half, stress, i);
 			on_face[i + 1] = v3_add(on_face[i + 1], g);
 			on_face[0] = v3_sub(on_face[0], g);
 		}
 	}
-	for (int i = 0; i < 3; ++i)
+	for (int i = 0; i < 3; i++)
 		v3_add_to(records, set->record_at[i] + slot, on_face[i]);
 	return energy;
 }
@@ -232,19 +232,19 @@ INLINE vreal fat_pairs(const cau_fat_set *set, const cau_fat_group *group, int32
 INLINE void fat_prefetch(const cau_fat_set *set, const cau_fat_group *group, int32_t slot)
 {
 	for (int32_t half = slot; half <= slot + CAU_BATCH; half += CAU_BATCH) {
-		for (int i = 0; i < 9; ++i)
+		for (int i = 0; i < 9; i++)
 			v_prefetch(set->dm_inverse[i], half);
 		v_prefetch(set->volume, half);
-		for (int i = half == slot ? 0 : 3; i < 4; ++i) {
+		for (int i = half == slot ? 0 : 3; i < 4; i++) {
 			__builtin_prefetch(set->record_at[i] + half);
 		}
 		if (!set->limited[half / CAU_BATCH])
 			continue;
 		if (group->limit == CAU_LIMIT_NONE)
 			v_prefetch(set->limit_weight, half);
-		for (int i = 0; i < 6 && set->targeted[half / CAU_BATCH]; ++i)
+		for (int i = 0; i < 6 && set->targeted[half / CAU_BATCH]; i++)
 			v_prefetch(set->target[i], half);
-		for (int i = 0; i < 4; ++i)
+		for (int i = 0; i < 4; i++)
 			v_prefetch(set->polar[i], half);
 	}
 }
@@ -252,7 +252,7 @@ INLINE void fat_prefetch(const cau_fat_set *set, const cau_fat_group *group, int
 // Slots [first, last) of one group: returns their energy, J. `displacement` is u = x - X, m,
 // of the share's records, `records` where the gradients on them are added up.
 static double fat_kernel(const cau_elements *elements, const cau_fat_group *group, int32_t first,
-                         int32_t last, const real *displacement, real *records, int diagonal)
+                         int32_t last, const real *displacement, real *records, bool diagonal)
 {
 	vsum energy = {0};
 	sym3 common = {v_set((real)group->target[0]), v_set((real)group->target[1]),

@@ -20,7 +20,7 @@ INLINE v3 length_residual(v3 rest, v3 d, vreal rest_length)
 // Position scale of the diagonal system for a rank-1 element: |G|^2 / vertices x |R|^2 / |R G^T|^2
 // is 1 / vertices whatever G is.
 static double link_kernel(const cau_elements *elements, int32_t first, int32_t last,
-                          const real *displacement, real *records, int diagonal)
+                          const real *displacement, real *records, bool diagonal)
 {
 	const cau_link_set *set = &elements->link;
 	real scale = diagonal ? (real)0.5 : 1;
@@ -41,7 +41,7 @@ static double link_kernel(const cau_elements *elements, int32_t first, int32_t l
 }
 
 static double hinge_kernel(const cau_elements *elements, int32_t first, int32_t last,
-                           const real *displacement, real *records, int diagonal)
+                           const real *displacement, real *records, bool diagonal)
 {
 	const cau_hinge_set *set = &elements->hinge;
 	real scale = diagonal ? (real)0.25 : 1;
@@ -49,7 +49,7 @@ static double hinge_kernel(const cau_elements *elements, int32_t first, int32_t 
 	for (int32_t slot = first; slot < last; slot += LANES) {
 		vreal c[4];
 		v3 d = v3_zero();
-		for (int i = 0; i < 4; ++i) {
+		for (int i = 0; i < 4; i++) {
 			c[i] = v_load(set->coefficient[i], slot);
 			d = v3_add_scaled(d, c[i], v3_gather(displacement, set->record_at[i] + slot));
 		}
@@ -58,7 +58,7 @@ static double hinge_kernel(const cau_elements *elements, int32_t first, int32_t 
 		v3 r = length_residual(rest, d, v_load(set->rest_length, slot));
 		vreal w = v_load(set->weight, slot);
 		energy += v_widen(w * v3_dot(r, r));
-		for (int i = 0; i < 4; ++i)
+		for (int i = 0; i < 4; i++)
 			v3_add_to(records, set->record_at[i] + slot, v3_scale(scale * w * c[i], r));
 	}
 	return 0.5 * v_total(energy);

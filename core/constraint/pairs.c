@@ -7,7 +7,7 @@ static const int32_t FREE = -2; // not paired yet
 
 enum { MOST_NEIGHBOURS = 12 }; // more, across an edge of many triangles, are not asked
 
-static int in_group(const cau_tissue *tissue, int kind, int32_t e, int32_t layer, int32_t material)
+static bool in_group(const cau_tissue *tissue, int kind, int32_t e, int32_t layer, int32_t material)
 {
 	return kind == CAU_ELEMENT_TRIANGLE
 	           ? tissue->triangle_layer[e] == layer && tissue->triangle_material[e] == material
@@ -30,7 +30,7 @@ static int free_neighbours(const cau_tissue *tissue, int kind, const int32_t *pa
 {
 	int count = 0;
 	if (kind == CAU_ELEMENT_TETRAHEDRON) {
-		for (int i = 0; i < 4; ++i) {
+		for (int i = 0; i < 4; i++) {
 			const int32_t *owner =
 				tissue->faces.owner + 2 * tissue->faces.tetrahedron_face[4 * e + i];
 			count = add_free(partner, owner[0] == e ? owner[1] : owner[0], list, count);
@@ -39,9 +39,9 @@ static int free_neighbours(const cau_tissue *tissue, int kind, const int32_t *pa
 	}
 	const int32_t *first = tissue->edges.first[CAU_PRIMITIVE_TRIANGLE];
 	const int32_t *sharer = tissue->edges.sharer[CAU_PRIMITIVE_TRIANGLE];
-	for (int i = 0; i < 3; ++i) {
+	for (int i = 0; i < 3; i++) {
 		int32_t edge = tissue->edges.triangle_edge[3 * e + i];
-		for (int32_t k = first[edge]; k < first[edge + 1]; ++k)
+		for (int32_t k = first[edge]; k < first[edge + 1]; k++)
 			count = add_free(partner, sharer[k] == e ? -1 : sharer[k], list, count);
 	}
 	return count;
@@ -53,7 +53,7 @@ static int32_t choose(const cau_tissue *tissue, int kind, const int32_t *partner
 	int32_t near[MOST_NEIGHBOURS], of_near[MOST_NEIGHBOURS], best = -1;
 	CAU_ASSERT(partner[e] != FREE, "element %d may choose itself", e);
 	int fewest = MOST_NEIGHBOURS + 1, count = free_neighbours(tissue, kind, partner, e, near);
-	for (int i = 0; i < count; ++i) {
+	for (int i = 0; i < count; i++) {
 		int others = free_neighbours(tissue, kind, partner, near[i], of_near);
 		if (others < fewest) {
 			fewest = others;
@@ -69,10 +69,10 @@ int32_t cau_pair_elements(const cau_tissue *tissue, int kind, int32_t layer, int
 	CAU_ASSERT(kind == CAU_ELEMENT_TRIANGLE || kind == CAU_ELEMENT_TETRAHEDRON,
 	           "kind %d has no pairs", kind);
 	int32_t pairs = 0, count = cau_tissue_element_count(tissue, kind);
-	for (int32_t e = 0; e < count; ++e)
+	for (int32_t e = 0; e < count; e++)
 		if (in_group(tissue, kind, e, layer, material))
 			partner[e] = FREE;
-	for (int32_t e = 0; e < count; ++e) {
+	for (int32_t e = 0; e < count; e++) {
 		if (!in_group(tissue, kind, e, layer, material) || partner[e] != FREE)
 			continue;
 		partner[e] = -1;
@@ -88,7 +88,7 @@ int32_t cau_pair_elements(const cau_tissue *tissue, int kind, int32_t layer, int
 
 static int place_of(const int32_t *vertices, int count, int32_t vertex)
 {
-	for (int i = 0; i < count; ++i)
+	for (int i = 0; i < count; i++)
 		if (vertices[i] == vertex)
 			return i;
 	return -1;
@@ -105,7 +105,7 @@ void cau_pair_order(const cau_tissue *tissue, int kind, int32_t first, int32_t o
 	const int32_t *own = all + (size_t)vertices * (size_t)element;
 	const int32_t *b = other < 0 ? a : all + (size_t)vertices * (size_t)other;
 	int apex = vertices * shared / 2; // what is left of the sum of all places
-	for (int i = 0; i < vertices && found < shared; ++i)
+	for (int i = 0; i < vertices && found < shared; i++)
 		if (place_of(b, vertices, a[i]) >= 0) {
 			order[found] = place_of(own, vertices, a[i]);
 			apex -= order[found++];

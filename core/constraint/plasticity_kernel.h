@@ -66,7 +66,7 @@ static int32_t settle_kernel(const cau_elements *elements, const cau_fat_group *
 		m3 h = fat_displacement_gradient(set, slot, &face, displacement);
 		vreal det = m3_determinant(m3_add(m3_identity(), h));
 		vmask bad = (det <= v_set(0)) & (v_load(set->volume, slot) > v_set(0));
-		for (int l = 0; l < LANES; ++l)
+		for (int l = 0; l < LANES; l++)
 			inverted += bad[l] != 0;
 		if (!group->plastic)
 			continue;

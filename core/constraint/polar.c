@@ -22,7 +22,7 @@ static void cross(const double a[3], const double b[3], double out[3])
 static double normalise(double a[3])
 {
 	double length = sqrt(dot(a, a));
-	for (int i = 0; i < 3 && length > 0; ++i)
+	for (int i = 0; i < 3 && length > 0; i++)
 		a[i] /= length;
 	return length;
 }
@@ -59,8 +59,8 @@ void cau_polar_robust(const double a[9], double q[4])
 	double value[3], v[3][3];
 	cau_symmetric_eigen3(metric, value, v);
 	int order[3] = {0, 1, 2};
-	for (int i = 0; i < 2; ++i)
-		for (int j = 0; j < 2 - i; ++j)
+	for (int i = 0; i < 2; i++)
+		for (int j = 0; j < 2 - i; j++)
 			if (value[order[j]] < value[order[j + 1]]) {
 				int swap = order[j];
 				order[j] = order[j + 1], order[j + 1] = swap;
@@ -68,24 +68,24 @@ void cau_polar_robust(const double a[9], double q[4])
 	// Left singular vectors u_1, u_2 from A v; u_3 = u_1 x u_2 turns the smallest direction as
 	// needed when v_3 = v_1 x v_2 is right-handed too.
 	double right[3][3], left[3][3], length[2];
-	for (int i = 0; i < 2; ++i) {
-		for (int k = 0; k < 3; ++k)
+	for (int i = 0; i < 2; i++) {
+		for (int k = 0; k < 3; k++)
 			right[i][k] = v[k][order[i]];
-		for (int k = 0; k < 3; ++k)
+		for (int k = 0; k < 3; k++)
 			left[i][k] = a[k] * right[i][0] + a[3 + k] * right[i][1] + a[6 + k] * right[i][2];
 		length[i] = normalise(left[i]);
 	}
 	if (!(length[1] > 1e-6 * length[0]) || !(length[0] > 1e-6))
 		return; // two singular values vanish, or all: keep the last rotation
 	double along = dot(left[0], left[1]);
-	for (int k = 0; k < 3; ++k)
+	for (int k = 0; k < 3; k++)
 		left[1][k] -= along * left[0][k];
 	normalise(left[1]);
 	cross(right[0], right[1], right[2]);
 	cross(left[0], left[1], left[2]);
 	double rotation[3][3];
-	for (int c = 0; c < 3; ++c)
-		for (int k = 0; k < 3; ++k)
+	for (int c = 0; c < 3; c++)
+		for (int k = 0; k < 3; k++)
 			rotation[k][c] =
 				left[0][k] * right[0][c] + left[1][k] * right[1][c] + left[2][k] * right[2][c];
 	quaternion_of(rotation, q);

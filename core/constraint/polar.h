@@ -52,11 +52,11 @@ INLINE rotation_lanes rotation_scale(rotation_lanes q, vreal scale)
 // Lanes that Newton's step cannot serve, one by one.
 static __attribute__((noinline)) void polar_lanes(const m3 *a, vmask which, rotation_lanes *q)
 {
-	for (int l = 0; l < LANES; ++l) {
+	for (int l = 0; l < LANES; l++) {
 		if (!which[l])
 			continue;
 		double in[9], out[4] = {(double)q->w[l], (double)q->x[l], (double)q->y[l], (double)q->z[l]};
-		for (int c = 0; c < 3; ++c) {
+		for (int c = 0; c < 3; c++) {
 			in[3 * c] = (double)a->c[c].x[l];
 			in[3 * c + 1] = (double)a->c[c].y[l];
 			in[3 * c + 2] = (double)a->c[c].z[l];
@@ -97,7 +97,7 @@ INLINE v3 polar_half_turn(m3 r, m3 a, vmask *hard)
 static __attribute__((noinline)) void polar_far(const m3 *a, rotation_lanes *q)
 {
 	vmask robust = v_set(0) > v_set(1); // none
-	for (int step = 0; step < POLAR_STEPS; ++step) {
+	for (int step = 0; step < POLAR_STEPS; step++) {
 		vmask hard;
 		v3 h = polar_half_turn(rotation_matrix(*q), *a, &hard);
 		robust |= hard;

@@ -16,13 +16,13 @@ INLINE sym2 sheet_metric_above_identity(const v3 f0[2], const v3 h[2])
 
 // Eq. 13 in F. In the diagonal system each constraint has its own step.
 INLINE sheet_gradient sheet_linearised_residual(sheet_gradient f, sym2 k, sym2 target_root,
-                                                const vreal dm_inverse[4], vreal g2, int diagonal)
+                                                const vreal dm_inverse[4], vreal g2, bool diagonal)
 {
 	vreal one = v_set(1);
 	sym2 target = sym2_sandwich(target_root, (sym2){one, one, v_set(0)});
 	sheet_gradient part[3], r = {{v3_zero(), v3_zero()}};
 	sheet_linearised_residuals(f, k, target, part);
-	for (int i = 0; i < 3; ++i) {
+	for (int i = 0; i < 3; i++) {
 		vreal s = diagonal ? diagonal_scale_sheet(part[i].c, dm_inverse, g2) : one;
 		r.c[0] = v3_add_scaled(r.c[0], s, part[i].c[0]);
 		r.c[1] = v3_add_scaled(r.c[1], s, part[i].c[1]);
@@ -34,7 +34,7 @@ INLINE sheet_gradient sheet_linearised_residual(sheet_gradient f, sym2 k, sym2 t
 // target (00 = 0) follow the range, if any. In the diagonal system R is scaled here.
 INLINE sheet_gradient sheet_residual(const cau_sheet_group *group, sheet_gradient f, sym2 k,
                                      sym2 target_root, sheet_gradient *polar,
-                                     const vreal dm_inverse[4], vreal g2, int diagonal,
+                                     const vreal dm_inverse[4], vreal g2, bool diagonal,
                                      vreal *squared)
 {
 	vmask targeted = target_root.a00 > v_set(0);
@@ -49,7 +49,7 @@ INLINE sheet_gradient sheet_residual(const cau_sheet_group *group, sheet_gradien
 		range = sheet_range_residual(f, k, group->stretch_min, group->stretch_max, group->shear_max,
 		                             &range_squared);
 	r = sheet_target_residual(f, k, target_root, polar);
-	for (int a = 0; a < 2; ++a)
+	for (int a = 0; a < 2; a++)
 		r.c[a] = v3_select(targeted, r.c[a], range.c[a]);
 	if (diagonal) {
 		vreal s = diagonal_scale_sheet(r.c, dm_inverse, g2);
@@ -80,7 +80,7 @@ INLINE sheet_gradient sheet_displacement_gradient(const cau_sheet_set *set, int3
 {
 	v3 to_apex = v3_sub(v3_gather(displacement, set->record_at[2] + slot), edge->origin);
 	sheet_gradient h;
-	for (int c = 0; c < 2; ++c)
+	for (int c = 0; c < 2; c++)
 		h.c[c] = v3_add_scaled(v3_scale(v_load(set->dm_inverse[c], slot), edge->along),
 		                       v_load(set->dm_inverse[2 + c], slot), to_apex);
 	return h;
@@ -88,14 +88,14 @@ INLINE sheet_gradient sheet_displacement_gradient(const cau_sheet_set *set, int3
 
 // w R in F = F_0 + H (N m); adds twice the energy (J).
 INLINE sheet_gradient sheet_stress(const cau_sheet_set *set, const cau_sheet_group *group,
-                                   int32_t slot, sheet_gradient h, int diagonal, vreal *energy)
+                                   int32_t slot, sheet_gradient h, bool diagonal, vreal *energy)
 {
 	v3 f0[2];
 	vreal m[4];
 	sheet_gradient polar;
-	for (int i = 0; i < 4; ++i)
+	for (int i = 0; i < 4; i++)
 		m[i] = v_load(set->dm_inverse[i], slot);
-	for (int a = 0; a < 2; ++a) {
+	for (int a = 0; a < 2; a++) {
 		f0[a] = (v3){v_load(set->rest[3 * a], slot), v_load(set->rest[3 * a + 1], slot),
 		             v_load(set->rest[3 * a + 2], slot)};
 		polar.c[a] = (v3){v_load(set->polar[3 * a], slot), v_load(set->polar[3 * a + 1], slot),
@@ -110,7 +110,7 @@ INLINE sheet_gradient sheet_stress(const cau_sheet_set *set, const cau_sheet_gro
 	vreal g2 = diagonal ? v_load(set->position_scale, slot) : v_set(0);
 	vreal squared;
 	sheet_gradient r = sheet_residual(group, f, k, root, &polar, m, g2, diagonal, &squared);
-	for (int a = 0; a < 2; ++a) {
+	for (int a = 0; a < 2; a++) {
 		v_store(set->polar[3 * a], slot, polar.c[a].x);
 		v_store(set->polar[3 * a + 1], slot, polar.c[a].y);
 		v_store(set->polar[3 * a + 2], slot, polar.c[a].z);
@@ -131,7 +131,7 @@ INLINE v3 sheet_vertex_gradient(const cau_sheet_set *set, int32_t slot, sheet_gr
 // One vector of pairs, whose second halves are a batch behind their first: returns twice the
 // energies (J) and adds the gradient on their four vertices.
 INLINE vreal sheet_pairs(const cau_sheet_set *set, const cau_sheet_group *group, int32_t slot,
-                         const real *displacement, int diagonal, real *records)
+                         const real *displacement, bool diagonal, real *records)
 {
 	sheet_edge edge = sheet_edge_gather(set, slot, displacement);
 	v3 on_edge[2] = {v3_zero(), v3_zero()};
@@ -146,7 +146,7 @@ INLINE vreal sheet_pairs(const cau_sheet_set *set, const cau_sheet_group *group,
 		on_edge[1] = v3_add(on_edge[1], second);
 		on_edge[0] = v3_sub(v3_sub(on_edge[0], apex), second);
 	}
-	for (int i = 0; i < 2; ++i)
+	for (int i = 0; i < 2; i++)
 		v3_add_to(records, set->record_at[i] + slot, on_edge[i]);
 	return energy;
 }
@@ -155,16 +155,16 @@ INLINE vreal sheet_pairs(const cau_sheet_set *set, const cau_sheet_group *group,
 INLINE void sheet_prefetch(const cau_sheet_set *set, int32_t slot)
 {
 	for (int32_t half = slot; half <= slot + CAU_BATCH; half += CAU_BATCH) {
-		for (int i = 0; i < 4; ++i)
+		for (int i = 0; i < 4; i++)
 			v_prefetch(set->dm_inverse[i], half);
-		for (int i = 0; i < 6; ++i) {
+		for (int i = 0; i < 6; i++) {
 			v_prefetch(set->rest[i], half);
 			v_prefetch(set->polar[i], half);
 		}
-		for (int i = 0; i < 3; ++i)
+		for (int i = 0; i < 3; i++)
 			v_prefetch(set->target[i], half);
 		v_prefetch(set->weight, half);
-		for (int i = half == slot ? 0 : 2; i < 3; ++i) {
+		for (int i = half == slot ? 0 : 2; i < 3; i++) {
 			__builtin_prefetch(set->record_at[i] + half);
 		}
 	}
@@ -174,7 +174,7 @@ INLINE void sheet_prefetch(const cau_sheet_set *set, int32_t slot)
 // of the share's records, `records` where the gradients on them are added up.
 static double sheet_kernel(const cau_elements *elements, const cau_sheet_group *group,
                            int32_t first, int32_t last, const real *displacement, real *records,
-                           int diagonal)
+                           bool diagonal)
 {
 	vsum energy = {0};
 	for (int32_t batch = first; batch < last; batch += 2 * CAU_BATCH) {

@@ -57,7 +57,7 @@ INLINE sym3 sym3_sqrt(sym3 a, sym3 *inverse)
 	const real small = CAU_SINGLE ? (real)1e-4 : (real)1e-9;
 	vreal one = v_set(1), zero = v_set(0);
 	sym3 y = a, z = {one, one, one, zero, zero, zero};
-	for (int i = 0; i < STEPS; ++i) {
+	for (int i = 0; i < STEPS; i++) {
 		sym3 last = y;
 		y = sym3_mean(y, sym3_inverse(z));
 		z = sym3_mean(z, sym3_inverse(last));
@@ -75,11 +75,11 @@ INLINE m3 fat_range_residual(m3 f, const double stretch_min[3], const double str
 	m3 r = {{v3_zero(), v3_zero(), v3_zero()}};
 	vreal length2[3];
 	*squared = v_set(0);
-	for (int a = 0; a < 3; ++a) {
+	for (int a = 0; a < 3; a++) {
 		length2[a] = v3_dot(f.c[a], f.c[a]);
 		*squared += range_stretch(f.c[a], length2[a], stretch_min[a], stretch_max[a], &r.c[a]);
 	}
-	for (int a = 0; a < 3; ++a) {
+	for (int a = 0; a < 3; a++) {
 		int b = (a + 1) % 3;
 		sym2 k = {length2[a], length2[b], v3_dot(f.c[a], f.c[b])};
 		*squared += range_shear(f.c[a], f.c[b], k, shear_max, &r.c[a], &r.c[b]);
@@ -95,7 +95,7 @@ INLINE void fat_linearised_residuals(m3 f, sym3 target, m3 part[6])
 	sym3 k = m3_transpose_times(f, f);
 	vreal have[6] = {k.a00, k.a11, k.a22, k.a01, k.a02, k.a12};
 	vreal want[6] = {target.a00, target.a11, target.a22, target.a01, target.a02, target.a12};
-	for (int i = 0; i < 6; ++i) {
+	for (int i = 0; i < 6; i++) {
 		int a = first[i], b = second[i];
 		vreal scale = a == b ? 4 * have[a] : have[a] + have[b];
 		vreal step = (have[i] - want[i]) / v_max(scale, v_set((real)1e-6));

@@ -51,11 +51,11 @@ INLINE sheet_gradient sheet_target_residual(sheet_gradient f, sym2 k, sym2 targe
 	sym2 root_inverse = {root.a11 * inverse, root.a00 * inverse, -root.a01 * inverse};
 	sym2 b = sym2_sandwich(target_root, root_inverse);
 	sheet_gradient q = sheet_times(sheet_times(f, target_root), root_inverse);
-	for (int a = 0; a < 2; ++a)
+	for (int a = 0; a < 2; a++)
 		polar->c[a] = v3_select(full, q.c[a], polar->c[a]);
 	sheet_gradient exact = sheet_times(f, (sym2){1 - b.a00, 1 - b.a11, -b.a01});
 	sheet_gradient kept = sheet_times(*polar, target_root);
-	for (int a = 0; a < 2; ++a)
+	for (int a = 0; a < 2; a++)
 		exact.c[a] = v3_select(full, exact.c[a], v3_sub(f.c[a], kept.c[a]));
 	return exact;
 }

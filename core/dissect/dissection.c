@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "dissect/dissection.h"
 
+#include <stdbool.h>
 #include <string.h>
 
 #include "cautery/assert.h"
@@ -26,7 +27,7 @@ static int32_t primitive_count(const cau_tissue *tissue, int primitive)
 static int32_t element_total(const cau_tissue *tissue)
 {
 	int32_t total = 0;
-	for (int kind = 0; kind < CAU_ELEMENT_KINDS; ++kind)
+	for (int kind = 0; kind < CAU_ELEMENT_KINDS; kind++)
 		total += cau_tissue_element_count(tissue, kind);
 	return total;
 }
@@ -81,11 +82,11 @@ static cau_status list_triangle_hinges(cau_dissection *dissection, cau_arena *ar
 	int32_t *place = first + 1;
 	CAU_ASSERT(!tissue->hinge_count || tissue->triangle_count > 1, "%d hinges of %d triangles",
 	           tissue->hinge_count, tissue->triangle_count);
-	for (int32_t k = 0; k < 2 * tissue->hinge_count; ++k)
+	for (int32_t k = 0; k < 2 * tissue->hinge_count; k++)
 		place[tissue->hinge_triangle[k] + 1]++;
-	for (int32_t t = 0; t < tissue->triangle_count; ++t)
+	for (int32_t t = 0; t < tissue->triangle_count; t++)
 		place[t + 1] += place[t];
-	for (int32_t k = 0; k < 2 * tissue->hinge_count; ++k)
+	for (int32_t k = 0; k < 2 * tissue->hinge_count; k++)
 		dissection->triangle_hinge[place[tissue->hinge_triangle[k]]++] = k / 2;
 	return CAU_OK;
 }
@@ -96,12 +97,12 @@ cau_status cau_dissection_create(cau_dissection *dissection, const cau_tissue *t
 	size_t edges = (size_t)tissue->edges.edge_count, faces = (size_t)tissue->faces.face_count,
 		   total = 0;
 	*dissection = (cau_dissection){.tissue = tissue, .seed = seed};
-	int missing = 0;
-	for (int p = 0; p < CAU_PRIMITIVE_KINDS; ++p) {
+	bool missing = false;
+	for (int p = 0; p < CAU_PRIMITIVE_KINDS; p++) {
 		dissection->share_count[p] = cau_arena_array(arena, (size_t)primitive_count(tissue, p), 1);
 		missing |= !dissection->share_count[p];
 	}
-	for (int k = 0; k < CAU_ELEMENT_KINDS; ++k) {
+	for (int k = 0; k < CAU_ELEMENT_KINDS; k++) {
 		size_t count = (size_t)cau_tissue_element_count(tissue, k);
 		dissection->alive.element[k] = cau_arena_array(arena, count, 1);
 		missing |= !dissection->alive.element[k];
@@ -131,7 +132,7 @@ void cau_dissection_begin(cau_dissection *dissection)
 	CAU_ASSERT(dissection->touched_count <= dissection->tissue->edges.edge_count,
 	           "%d edges touched of %d", dissection->touched_count,
 	           dissection->tissue->edges.edge_count);
-	for (int32_t k = 0; k < dissection->touched_count; ++k)
+	for (int32_t k = 0; k < dissection->touched_count; k++)
 		dissection->touched_mark[dissection->touched[k]] = 0;
 	dissection->touched_count = dissection->removed_count = 0;
 }
@@ -141,7 +142,7 @@ static void draw_face(cau_dissection *dissection, int32_t face)
 {
 	CAU_ASSERT_INDEX(face, dissection->tissue->faces.face_count);
 	const cau_face_table *faces = &dissection->tissue->faces;
-	int drawn = dissection->face_owners[face] == 1;
+	bool drawn = dissection->face_owners[face] == 1;
 	if (face >= faces->triangle_count && faces->cover[face] >= 0)
 		drawn &= !dissection->alive.element[CAU_ELEMENT_TRIANGLE][faces->cover[face]];
 	uint32_t bit = 1u << (face & 31);
@@ -160,7 +161,7 @@ static void lose_faces(cau_dissection *dissection, int primitive, int32_t index)
 		if (faces->triangle_covers[index] >= 0)
 			draw_face(dissection, faces->triangle_covers[index]);
 	} else if (primitive == CAU_PRIMITIVE_TETRAHEDRON) {
-		for (int i = 0; i < 4; ++i) {
+		for (int i = 0; i < 4; i++) {
 			int32_t face = faces->tetrahedron_face[4 * (size_t)index + (size_t)i];
 			CAU_ASSERT(dissection->face_owners[face] > 0,
 			           "face %d loses tetrahedron %d, and has none", face, index);
@@ -171,15 +172,15 @@ static void lose_faces(cau_dissection *dissection, int primitive, int32_t index)
 }
 
 // ---- exposure
-static int edge_lives(const cau_dissection *dissection, int32_t edge)
+static bool edge_lives(const cau_dissection *dissection, int32_t edge)
 {
 	CAU_ASSERT_INDEX(edge, dissection->tissue->edges.edge_count);
 	const cau_edge_table *edges = &dissection->tissue->edges;
-	for (int p = 0; p < CAU_PRIMITIVE_KINDS; ++p)
-		for (int32_t k = edges->first[p][edge]; k < edges->first[p][edge + 1]; ++k)
+	for (int p = 0; p < CAU_PRIMITIVE_KINDS; p++)
+		for (int32_t k = edges->first[p][edge]; k < edges->first[p][edge + 1]; k++)
 			if (dissection->alive.element[element_kind(p)][edges->sharer[p][k]])
-				return 1;
-	return 0;
+				return true;
+	return false;
 }
 
 // An edge's share of the mass at its ends: there are about a dozen edges at a vertex.
@@ -189,7 +190,7 @@ static double heat_taken(const cau_dissection *dissection, int32_t edge, double 
 	const cau_tissue *tissue = dissection->tissue;
 	const cau_edge_table *edges = &tissue->edges;
 	double absorption = 0;
-	for (int p = 0; p < CAU_PRIMITIVE_KINDS && absorption == 0; ++p)
+	for (int p = 0; p < CAU_PRIMITIVE_KINDS && absorption == 0; p++)
 		if (edges->first[p][edge] < edges->first[p][edge + 1])
 			absorption =
 				heat_of(tissue, p, edges->sharer[p][edges->first[p][edge]])->absorption_per_s;
@@ -199,7 +200,7 @@ static double heat_taken(const cau_dissection *dissection, int32_t edge, double 
 
 // Whether a sphere can reach the segment at all: most edges of a near block are out of it, and the
 // temperature at their ends need not be looked up.
-static int in_reach(cau_vec3 a, cau_vec3 b, cau_vec3 center, double radius)
+static bool in_reach(cau_vec3 a, cau_vec3 b, cau_vec3 center, double radius)
 {
 	cau_vec3 along = cau_sub(b, a), off = cau_sub(cau_add(a, b), cau_add(center, center));
 	double twice = 2 * (radius + 1e-6) + cau_length(along); // a micrometre for rounding
@@ -216,10 +217,10 @@ double cau_dissection_expose(cau_dissection *dissection, const cau_near *near,
 	double radius, taken = 0;
 	cau_tool_bound(tool, CAU_PART_HOT, &center, &radius);
 	center = cau_pose_to_world(pose, center);
-	for (int32_t block = 0; block < near->block_count; ++block) {
+	for (int32_t block = 0; block < near->block_count; block++) {
 		if (!cau_box_meets(&near->edge_box[block], center, radius))
 			continue;
-		for (int32_t k = near->edge_first[block]; k < near->edge_first[block + 1]; ++k) {
+		for (int32_t k = near->edge_first[block]; k < near->edge_first[block + 1]; k++) {
 			int32_t edge = near->edge[k];
 			const int32_t *v = dissection->tissue->edges.vertex + 2 * (size_t)edge;
 			cau_vec3 a = cau_vec3_of(position + 3 * (size_t)v[0]);
@@ -245,7 +246,7 @@ double cau_dissection_expose(cau_dissection *dissection, const cau_near *near,
 static void remove_hinges(cau_dissection *dissection, int32_t triangle)
 {
 	const int32_t *first = dissection->triangle_hinge_first;
-	for (int32_t k = first[triangle]; k < first[triangle + 1]; ++k) {
+	for (int32_t k = first[triangle]; k < first[triangle + 1]; k++) {
 		int32_t hinge = dissection->triangle_hinge[k];
 		if (!dissection->alive.element[CAU_ELEMENT_HINGE][hinge])
 			continue;
@@ -267,7 +268,7 @@ static void remove_primitive(cau_dissection *dissection, int primitive, int32_t 
 	dissection->elements_removed++;
 	dissection->removed[dissection->removed_count++] = (cau_removed){kind, index};
 	const int32_t *vertex = vertices_of(dissection->tissue, primitive, index, &count);
-	for (int i = 0; i < count; ++i) {
+	for (int i = 0; i < count; i++) {
 		CAU_ASSERT(dissection->live_elements[vertex[i]] > 0,
 		           "vertex %d loses element %d of kind %d, and has none", vertex[i], index, kind);
 		dissection->live_elements[vertex[i]]--;
@@ -294,7 +295,7 @@ static double ignition_in_bundles(const cau_dissection *dissection, const cau_he
 
 // Ignition of an edge in the layer of one of its primitives: exposure is compared as xi times the
 // integral.
-static int ignites(const cau_dissection *dissection, int primitive, int32_t index, int32_t edge)
+static bool ignites(const cau_dissection *dissection, int primitive, int32_t index, int32_t edge)
 {
 	const cau_heat_material *heat = heat_of(dissection->tissue, primitive, index);
 	int32_t layer = layer_of(dissection->tissue, primitive, index);
@@ -310,8 +311,8 @@ static uint16_t layers_parting(const cau_dissection *dissection, int32_t edge)
 {
 	const cau_edge_table *edges = &dissection->tissue->edges;
 	uint16_t before = dissection->parted[edge], parting = 0;
-	for (int p = 0; p < CAU_PRIMITIVE_KINDS; ++p)
-		for (int32_t k = edges->first[p][edge]; k < edges->first[p][edge + 1]; ++k) {
+	for (int p = 0; p < CAU_PRIMITIVE_KINDS; p++)
+		for (int32_t k = edges->first[p][edge]; k < edges->first[p][edge + 1]; k++) {
 			int32_t index = edges->sharer[p][k];
 			uint16_t bit = (uint16_t)(1u << layer_of(dissection->tissue, p, index));
 			CAU_ASSERT(bit != 0, "layer %d has no bit", layer_of(dissection->tissue, p, index));
@@ -331,8 +332,8 @@ static void part_edge(cau_dissection *dissection, int32_t edge, uint32_t *layers
 	dissection->parted[edge] |= parting;
 	dissection->edges_parted++;
 	*layers |= parting;
-	for (int p = 0; p < CAU_PRIMITIVE_KINDS; ++p)
-		for (int32_t k = edges->first[p][edge]; k < edges->first[p][edge + 1]; ++k) {
+	for (int p = 0; p < CAU_PRIMITIVE_KINDS; p++)
+		for (int32_t k = edges->first[p][edge]; k < edges->first[p][edge + 1]; k++) {
 			int32_t index = edges->sharer[p][k];
 			if (!(parting >> layer_of(dissection->tissue, p, index) & 1))
 				continue;
@@ -346,7 +347,7 @@ static void part_edge(cau_dissection *dissection, int32_t edge, uint32_t *layers
 
 void cau_dissection_part(cau_dissection *dissection, uint32_t *layers)
 {
-	for (int32_t k = 0; k < dissection->touched_count; ++k)
+	for (int32_t k = 0; k < dissection->touched_count; k++)
 		part_edge(dissection, dissection->touched[k], layers);
 }
 
@@ -357,7 +358,7 @@ double cau_dissection_heated(const cau_dissection *dissection, int32_t edge)
 	double most = 0;
 	if (dissection->exposure[edge] <= 0)
 		return 0;
-	for (int p = 0; p < CAU_PRIMITIVE_KINDS; ++p) {
+	for (int p = 0; p < CAU_PRIMITIVE_KINDS; p++) {
 		int32_t k = edges->first[p][edge];
 		if (k == edges->first[p][edge + 1])
 			continue;
@@ -372,12 +373,12 @@ static void recount_shares(cau_dissection *dissection)
 {
 	static const uint8_t edges_of[CAU_PRIMITIVE_KINDS] = {3, 6, 1};
 	const cau_edge_table *edges = &dissection->tissue->edges;
-	for (int p = 0; p < CAU_PRIMITIVE_KINDS; ++p)
+	for (int p = 0; p < CAU_PRIMITIVE_KINDS; p++)
 		memset(dissection->share_count[p], edges_of[p],
 		       (size_t)primitive_count(dissection->tissue, p));
-	for (int32_t e = 0; e < edges->edge_count; ++e)
-		for (int p = 0; p < CAU_PRIMITIVE_KINDS && dissection->parted[e]; ++p)
-			for (int32_t k = edges->first[p][e]; k < edges->first[p][e + 1]; ++k) {
+	for (int32_t e = 0; e < edges->edge_count; e++)
+		for (int p = 0; p < CAU_PRIMITIVE_KINDS && dissection->parted[e]; p++)
+			for (int32_t k = edges->first[p][e]; k < edges->first[p][e + 1]; k++) {
 				int32_t index = edges->sharer[p][k];
 				if (!(dissection->parted[e] >> layer_of(dissection->tissue, p, index) & 1))
 					continue;
@@ -385,8 +386,8 @@ static void recount_shares(cau_dissection *dissection)
 				           "primitive %d of kind %d loses edge %d, and has none", index, p, e);
 				dissection->share_count[p][index]--;
 			}
-	for (int p = 0; p < CAU_PRIMITIVE_KINDS; ++p)
-		for (int32_t i = 0; i < primitive_count(dissection->tissue, p); ++i)
+	for (int p = 0; p < CAU_PRIMITIVE_KINDS; p++)
+		for (int32_t i = 0; i < primitive_count(dissection->tissue, p); i++)
 			dissection->alive.element[element_kind(p)][i] =
 				dissection->share_count[p][i] == edges_of[p];
 }
@@ -395,7 +396,7 @@ static void recount_hinges(cau_dissection *dissection)
 {
 	const cau_tissue *tissue = dissection->tissue;
 	const uint8_t *triangle = dissection->alive.element[CAU_ELEMENT_TRIANGLE];
-	for (int32_t h = 0; h < tissue->hinge_count; ++h)
+	for (int32_t h = 0; h < tissue->hinge_count; h++)
 		dissection->alive.element[CAU_ELEMENT_HINGE][h] =
 			triangle[tissue->hinge_triangle[2 * h]] & triangle[tissue->hinge_triangle[2 * h + 1]];
 }
@@ -406,22 +407,22 @@ static void recount_faces(cau_dissection *dissection)
 	const cau_face_table *faces = &tissue->faces;
 	memset(dissection->live_elements, 0, (size_t)tissue->vertex_count * sizeof(int32_t));
 	memset(dissection->face_owners, 0, (size_t)faces->face_count);
-	for (int p = 0; p < CAU_PRIMITIVE_KINDS; ++p)
-		for (int32_t i = 0; i < primitive_count(tissue, p); ++i) {
+	for (int p = 0; p < CAU_PRIMITIVE_KINDS; p++)
+		for (int32_t i = 0; i < primitive_count(tissue, p); i++) {
 			if (!dissection->alive.element[element_kind(p)][i])
 				continue;
 			int count;
 			const int32_t *vertex = vertices_of(tissue, p, i, &count);
-			for (int k = 0; k < count; ++k)
+			for (int k = 0; k < count; k++)
 				dissection->live_elements[vertex[k]]++;
 			if (p == CAU_PRIMITIVE_TRIANGLE)
 				dissection->face_owners[i] = 1;
-			for (int k = 0; k < 4 && p == CAU_PRIMITIVE_TETRAHEDRON; ++k)
+			for (int k = 0; k < 4 && p == CAU_PRIMITIVE_TETRAHEDRON; k++)
 				dissection->face_owners[faces->tetrahedron_face[4 * (size_t)i + (size_t)k]]++;
 			CAU_ASSERT(dissection->live_elements[vertex[0]] > 0,
 			           "vertex %d of living tetrahedron %d has no element", vertex[0], i);
 		}
-	for (int32_t f = 0; f < faces->face_count; ++f)
+	for (int32_t f = 0; f < faces->face_count; f++)
 		draw_face(dissection, f);
 }
 

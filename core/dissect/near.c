@@ -31,13 +31,13 @@ static int compare(const void *a, const void *b)
 static void morton_order(const cau_tissue *tissue, keyed *order)
 {
 	double least[3] = {1e300, 1e300, 1e300}, most = 0;
-	for (int32_t i = 0; i < 3 * tissue->vertex_count; ++i)
+	for (int32_t i = 0; i < 3 * tissue->vertex_count; i++)
 		least[i % 3] = fmin(least[i % 3], tissue->rest[i]);
-	for (int32_t i = 0; i < 3 * tissue->vertex_count; ++i)
+	for (int32_t i = 0; i < 3 * tissue->vertex_count; i++)
 		most = fmax(most, tissue->rest[i] - least[i % 3]);
-	for (int32_t v = 0; v < tissue->vertex_count; ++v) {
+	for (int32_t v = 0; v < tissue->vertex_count; v++) {
 		uint32_t key = 0;
-		for (int c = 0; c < 3; ++c) {
+		for (int c = 0; c < 3; c++) {
 			double unit =
 				most > 0 ? (tissue->rest[3 * (size_t)v + (size_t)c] - least[c]) / most : 0;
 			key |= spread_bits((uint32_t)(unit * 1023)) << c;
@@ -51,12 +51,12 @@ static void morton_order(const cau_tissue *tissue, keyed *order)
 static void own_edges(cau_near *near, const cau_tissue *tissue, const int32_t *block_of)
 {
 	const cau_edge_table *edges = &tissue->edges;
-	for (int32_t e = 0; e < edges->edge_count; ++e)
+	for (int32_t e = 0; e < edges->edge_count; e++)
 		near->edge_first[block_of[edges->vertex[2 * e]] + 1]++;
-	for (int32_t b = 0; b < near->block_count; ++b)
+	for (int32_t b = 0; b < near->block_count; b++)
 		near->edge_first[b + 1] += near->edge_first[b];
 	memcpy(near->halo_first, near->edge_first, (size_t)(near->block_count + 1) * sizeof(int32_t));
-	for (int32_t e = 0; e < edges->edge_count; ++e) {
+	for (int32_t e = 0; e < edges->edge_count; e++) {
 		int32_t at = near->halo_first[block_of[edges->vertex[2 * e]]]++;
 		CAU_ASSERT_INDEX(at, edges->edge_count);
 		near->edge[at] = e;
@@ -75,12 +75,12 @@ static int compare_index(const void *a, const void *b)
 static void thin_halo(cau_near *near)
 {
 	int32_t to = 0;
-	for (int32_t b = 0; b < near->block_count; ++b) {
+	for (int32_t b = 0; b < near->block_count; b++) {
 		int32_t first = near->halo_first[b], last = near->edge_first[b + 1], start = to;
 		CAU_ASSERT(to <= first && first <= last, "block %d has halo %d to %d, written from %d on",
 		           b, first, last, to);
 		qsort(near->halo + first, (size_t)(last - first), sizeof *near->halo, compare_index);
-		for (int32_t k = first; k < last; ++k)
+		for (int32_t k = first; k < last; k++)
 			if (to == start || near->halo[to - 1] != near->halo[k])
 				near->halo[to++] = near->halo[k];
 		near->halo_first[b] = start;
@@ -111,7 +111,7 @@ cau_status cau_near_create(cau_near *near, const cau_tissue *tissue, cau_arena *
 		status = cau_fail(error, CAU_NO_MEMORY, NULL, "no memory for the broad phase");
 	} else {
 		morton_order(tissue, order);
-		for (int32_t i = 0; i < tissue->vertex_count; ++i) {
+		for (int32_t i = 0; i < tissue->vertex_count; i++) {
 			near->vertex[i] = order[i].vertex;
 			block_of[order[i].vertex] = i / CAU_NEAR_BLOCK;
 		}
@@ -124,7 +124,7 @@ cau_status cau_near_create(cau_near *near, const cau_tissue *tissue, cau_arena *
 
 static void grow(cau_box *box, const double *x)
 {
-	for (int c = 0; c < 3; ++c) {
+	for (int c = 0; c < 3; c++) {
 		float value = (float)x[c];
 		box->least[c] = value < box->least[c] ? value : box->least[c];
 		box->most[c] = value > box->most[c] ? value : box->most[c];
@@ -133,25 +133,25 @@ static void grow(cau_box *box, const double *x)
 
 void cau_near_refit(cau_near *near, const double *position)
 {
-	for (int32_t b = 0; b < near->block_count; ++b) {
+	for (int32_t b = 0; b < near->block_count; b++) {
 		cau_box box = {{1e30f, 1e30f, 1e30f}, {-1e30f, -1e30f, -1e30f}};
 		int32_t last = (b + 1) * CAU_NEAR_BLOCK;
 		CAU_ASSERT(b * CAU_NEAR_BLOCK < near->vertex_count, "block %d is empty", b);
-		for (int32_t i = b * CAU_NEAR_BLOCK; i < last && i < near->vertex_count; ++i)
+		for (int32_t i = b * CAU_NEAR_BLOCK; i < last && i < near->vertex_count; i++)
 			grow(&box, position + 3 * (size_t)near->vertex[i]);
 		near->vertex_box[b] = box;
-		for (int32_t k = near->halo_first[b]; k < near->halo_first[b + 1]; ++k)
+		for (int32_t k = near->halo_first[b]; k < near->halo_first[b + 1]; k++)
 			grow(&box, position + 3 * (size_t)near->halo[k]);
 		near->edge_box[b] = box;
 	}
 }
 
-int cau_box_meets(const cau_box *box, cau_vec3 center, double radius_m)
+bool cau_box_meets(const cau_box *box, cau_vec3 center, double radius_m)
 {
 	CAU_ASSERT(!(radius_m < 0), "a ball of %g m", radius_m);
 	const double c[3] = {center.x, center.y, center.z};
 	double squared = 0;
-	for (int i = 0; i < 3; ++i) {
+	for (int i = 0; i < 3; i++) {
 		double outside = fmax(fmax((double)box->least[i] - c[i], c[i] - (double)box->most[i]), 0);
 		squared += outside * outside;
 	}

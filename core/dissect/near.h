@@ -3,6 +3,8 @@
 // each block has a box round its own vertices and one round the edges it owns, refitted every tick.
 #pragma once
 
+#include <stdbool.h>
+
 #include "base/memory.h"
 #include "base/vector.h"
 #include "tissue/tissue.h"
@@ -31,4 +33,4 @@ cau_status cau_near_create(cau_near *near, const cau_tissue *tissue, cau_arena *
 void cau_near_refit(cau_near *near, const double *position);
 
 // Whether a box meets the sphere.
-int cau_box_meets(const cau_box *box, cau_vec3 center, double radius_m);
+bool cau_box_meets(const cau_box *box, cau_vec3 center, double radius_m);

@@ -84,13 +84,13 @@ static void sandwich2(const double root[3], double c, double s, const double shr
 	out[2] = p00 * root[2] + p01 * root[1];
 }
 
-static int triangle_target(const cau_tissue *tissue, const double *position, int32_t triangle,
-                           const cau_tool_def *tool, const cau_pose *pose, double jaw,
-                           const double from[6], double to[6])
+static bool triangle_target(const cau_tissue *tissue, const double *position, int32_t triangle,
+                            const cau_tool_def *tool, const cau_pose *pose, double jaw,
+                            const double from[6], double to[6])
 {
 	const cau_sheet_material *material = cau_triangle_material(tissue, triangle);
 	if (material->shrink[0] == 1 && material->shrink[1] == 1)
-		return 0;
+		return false;
 	const int32_t *v = tissue->triangle + 3 * (size_t)triangle;
 	cau_vec3 f[2],
 		sum = cau_add(cau_add(at(position, v[0]), at(position, v[1])), at(position, v[2]));
@@ -108,7 +108,7 @@ static int triangle_target(const cau_tissue *tissue, const double *position, int
 	sandwich2(from, x / length, y / length, material->shrink, target);
 	cau_symmetric_power2(target, 0.5, 1e-6, to);
 	CAU_ASSERT(to[0] > 0 && to[1] > 0, "triangle %d shrinks to %g, %g", triangle, to[0], to[1]);
-	return 1;
+	return true;
 }
 
 // ---- tetrahedra
@@ -118,9 +118,9 @@ static cau_vec3 tetrahedron_transpose_times(const cau_tissue *tissue, const doub
 	const int32_t *v = tissue->tetrahedron + 4 * (size_t)tetrahedron;
 	const double *m = tissue->tetrahedron_dm_inverse + 9 * (size_t)tetrahedron;
 	double out[3] = {0, 0, 0};
-	for (int i = 0; i < 3; ++i) {
+	for (int i = 0; i < 3; i++) {
 		double along = cau_dot(cau_sub(at(position, v[i + 1]), at(position, v[0])), n);
-		for (int c = 0; c < 3; ++c)
+		for (int c = 0; c < 3; c++)
 			out[c] += m[3 * i + c] * along;
 	}
 	return cau_vec3_of(out);
@@ -131,23 +131,23 @@ static void sandwich3(const double root[6], const double a[6], double out[6])
 {
 	static const int row[6] = {0, 1, 2, 0, 0, 1}, column[6] = {0, 1, 2, 1, 2, 2};
 	static const int place[3][3] = {{0, 3, 4}, {3, 1, 5}, {4, 5, 2}};
-	for (int k = 0; k < 6; ++k) {
+	for (int k = 0; k < 6; k++) {
 		out[k] = 0;
-		for (int i = 0; i < 3; ++i)
-			for (int j = 0; j < 3; ++j)
+		for (int i = 0; i < 3; i++)
+			for (int j = 0; j < 3; j++)
 				out[k] += root[place[row[k]][i]] * a[place[i][j]] * root[place[j][column[k]]];
 	}
 }
 
-static int tetrahedron_target(const cau_tissue *tissue, const double *position, int32_t tetrahedron,
-                              cau_vec3 face_normal, const cau_tool_def *tool, const cau_pose *pose,
-                              double jaw, const double from[6], double to[6])
+static bool tetrahedron_target(const cau_tissue *tissue, const double *position,
+                               int32_t tetrahedron, cau_vec3 face_normal, const cau_tool_def *tool,
+                               const cau_pose *pose, double jaw, const double from[6], double to[6])
 {
 	static const int row[6] = {0, 1, 2, 0, 0, 1}, column[6] = {0, 1, 2, 1, 2, 2};
 	const cau_fat_material *material = cau_tetrahedron_material(tissue, tetrahedron);
 	const double *s = material->shrink;
 	if (s[0] == 1 && s[1] == 1 && s[2] == 1)
-		return 0;
+		return false;
 	const int32_t *v = tissue->tetrahedron + 4 * (size_t)tetrahedron;
 	cau_vec3 sum = cau_add(cau_add(at(position, v[0]), at(position, v[1])),
 	                       cau_add(at(position, v[2]), at(position, v[3])));
@@ -166,16 +166,16 @@ static int tetrahedron_target(const cau_tissue *tissue, const double *position, 
 	cau_vec3 c = cau_cross(a, b);
 	const double axes[3][3] = {{a.x, a.y, a.z}, {b.x, b.y, b.z}, {c.x, c.y, c.z}};
 	double turned[6], target[6];
-	for (int k = 0; k < 6; ++k) {
+	for (int k = 0; k < 6; k++) {
 		turned[k] = 0;
-		for (int i = 0; i < 3; ++i)
+		for (int i = 0; i < 3; i++)
 			turned[k] += axes[i][row[k]] * s[i] * axes[i][column[k]];
 	}
 	sandwich3(from, turned, target);
 	cau_symmetric_power3(target, 0.5, 1e-6, to);
 	CAU_ASSERT(to[0] > 0 && to[1] > 0 && to[2] > 0, "tetrahedron %d shrinks to %g, %g, %g",
 	           tetrahedron, to[0], to[1], to[2]);
-	return 1;
+	return true;
 }
 
 // ---- exposed elements
@@ -203,11 +203,12 @@ static void start_shrinking(const expose *work, int kind, int32_t element, cau_v
 		shrinking.from[0] = shrinking.from[1] = 1;
 		shrinking.from[2] = kind == CAU_ELEMENT_TETRAHEDRON;
 	}
-	int shrinks = kind == CAU_ELEMENT_TRIANGLE
-	                  ? triangle_target(tissue, work->position, element, work->tool, work->pose,
-	                                    work->jaw, shrinking.from, shrinking.to)
-	                  : tetrahedron_target(tissue, work->position, element, face_normal, work->tool,
-	                                       work->pose, work->jaw, shrinking.from, shrinking.to);
+	bool shrinks =
+		kind == CAU_ELEMENT_TRIANGLE
+			? triangle_target(tissue, work->position, element, work->tool, work->pose, work->jaw,
+	                          shrinking.from, shrinking.to)
+			: tetrahedron_target(tissue, work->position, element, face_normal, work->tool,
+	                             work->pose, work->jaw, shrinking.from, shrinking.to);
 	if (!shrinks)
 		return;
 	work->shrink->shrunk[kind][element] = 1;
@@ -223,9 +224,9 @@ static void expose_triangle(const expose *work, int32_t triangle)
 	const cau_tissue *tissue = work->dissection->tissue;
 	const cau_edge_table *edges = &tissue->edges;
 	const int32_t *first = edges->first[CAU_PRIMITIVE_TRIANGLE];
-	for (int i = 0; i < 3; ++i) {
+	for (int i = 0; i < 3; i++) {
 		int32_t e = edges->triangle_edge[3 * (size_t)triangle + (size_t)i];
-		for (int32_t k = first[e]; k < first[e + 1]; ++k) {
+		for (int32_t k = first[e]; k < first[e + 1]; k++) {
 			int32_t other = edges->sharer[CAU_PRIMITIVE_TRIANGLE][k];
 			if (tissue->triangle_layer[other] == tissue->triangle_layer[triangle])
 				start_shrinking(work, CAU_ELEMENT_TRIANGLE, other, (cau_vec3){0, 0, 0});
@@ -237,13 +238,13 @@ static void expose_tetrahedron(const expose *work, int32_t tetrahedron)
 {
 	CAU_ASSERT_INDEX(tetrahedron, work->dissection->tissue->tetrahedron_count);
 	const cau_face_table *faces = &work->dissection->tissue->faces;
-	for (int i = 0; i < 4; ++i) {
+	for (int i = 0; i < 4; i++) {
 		int32_t face = faces->tetrahedron_face[4 * (size_t)tetrahedron + (size_t)i];
 		const int32_t *v = faces->vertex + 3 * (size_t)face;
 		cau_vec3 j = cau_sub(at(work->position, v[1]), at(work->position, v[0]));
 		cau_vec3 k = cau_sub(at(work->position, v[2]), at(work->position, v[0]));
 		cau_vec3 normal = cau_unit_or(cau_cross(j, k), (cau_vec3){0, 0, 1});
-		for (int o = 0; o < 2; ++o) {
+		for (int o = 0; o < 2; o++) {
 			int32_t other = faces->owner[2 * (size_t)face + (size_t)o];
 			if (other >= 0 && other != tetrahedron)
 				start_shrinking(work, CAU_ELEMENT_TETRAHEDRON, other, normal);
@@ -258,7 +259,7 @@ void cau_shrink_expose(cau_shrink *shrink, const cau_dissection *dissection, int
 	CAU_ASSERT(first >= 0 && first <= dissection->removed_count, "from element %d on of %d removed",
 	           first, dissection->removed_count);
 	expose work = {shrink, dissection, position, tool, pose, jaw, elements, slots};
-	for (int32_t k = first; k < dissection->removed_count; ++k) {
+	for (int32_t k = first; k < dissection->removed_count; k++) {
 		const cau_removed *removed = &dissection->removed[k];
 		if (removed->kind == CAU_ELEMENT_TRIANGLE)
 			expose_triangle(&work, removed->element);
@@ -272,14 +273,14 @@ void cau_shrink_advance(cau_shrink *shrink, const cau_tissue *tissue, double ste
 {
 	CAU_ASSERT(step_s > 0, "a step of %g s", step_s);
 	int32_t kept = 0;
-	for (int32_t k = 0; k < shrink->active_count; ++k) {
+	for (int32_t k = 0; k < shrink->active_count; k++) {
 		cau_shrinking *active = &shrink->active[k];
 		CAU_ASSERT(shrink->shrunk[active->kind][active->element],
 		           "element %d of kind %d shrinks and is not marked", active->element,
 		           active->kind);
 		active->age_s += step_s;
 		double s = fmin(active->age_s / ramp_s, 1), root[6];
-		for (int i = 0; i < 6; ++i)
+		for (int i = 0; i < 6; i++)
 			root[i] = active->from[i] + s * (active->to[i] - active->from[i]);
 		cau_elements_set_target(elements, slots, tissue, active->kind, active->element, root);
 		if (s < 1)

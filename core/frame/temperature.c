@@ -12,30 +12,30 @@ void cau_frame_cool(cau_frame_state *frame, const cau_tissue *tissue, double amb
 {
 	frame->ambient_c = (float)ambient_c;
 	frame->heated_count = 0;
-	for (int32_t v = 0; v < tissue->vertex_count; ++v)
+	for (int32_t v = 0; v < tissue->vertex_count; v++)
 		frame->temperature[v] = frame->ambient_c;
 }
 
 void cau_frame_cool_heated(cau_frame_state *frame)
 {
 	CAU_ASSERT(frame->heated_count >= 0, "%d vertices are heated", frame->heated_count);
-	for (int32_t k = 0; k < frame->heated_count; ++k)
+	for (int32_t k = 0; k < frame->heated_count; k++)
 		frame->temperature[frame->heated[k]] = frame->ambient_c;
 	frame->heated_count = 0;
 }
 
-static int grid_meets(const cau_heat_grid *grid, const cau_box *box)
+static bool grid_meets(const cau_heat_grid *grid, const cau_box *box)
 {
 	CAU_ASSERT(grid->nodes >= 2 && grid->step_m > 0, "a grid of %d nodes, %g m apart", grid->nodes,
 	           grid->step_m);
 	const double margin = BOX_MARGIN_M;
-	for (int axis = 0; axis < 3; ++axis) {
+	for (int axis = 0; axis < 3; axis++) {
 		double least = (double)grid->origin[axis] * grid->step_m;
 		double most = least + (grid->nodes - 1) * grid->step_m;
 		if ((double)box->most[axis] < least - margin || (double)box->least[axis] > most + margin)
-			return 0;
+			return false;
 	}
-	return 1;
+	return true;
 }
 
 static void heat_vertex(cau_frame_state *frame, int32_t vertex, float temperature)
@@ -54,11 +54,11 @@ void cau_frame_heat(cau_frame_state *frame, const cau_near *near, const cau_heat
 {
 	if (grid->coldest_c == grid->warmest_c)
 		return; // all of it at ambient
-	for (int32_t b = 0; b < near->block_count; ++b) {
+	for (int32_t b = 0; b < near->block_count; b++) {
 		if (!grid_meets(grid, &near->vertex_box[b]))
 			continue;
 		int32_t last = (b + 1) * CAU_NEAR_BLOCK;
-		for (int32_t i = b * CAU_NEAR_BLOCK; i < last && i < near->vertex_count; ++i) {
+		for (int32_t i = b * CAU_NEAR_BLOCK; i < last && i < near->vertex_count; i++) {
 			int32_t v = near->vertex[i];
 			CAU_ASSERT_INDEX(v, near->vertex_count);
 			cau_vec3 at = cau_vec3_of(position + 3 * (size_t)v);

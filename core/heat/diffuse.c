@@ -9,7 +9,7 @@ static void diffuse_row(const float *restrict u, const float *restrict rate, flo
 {
 	CAU_ASSERT(count >= 1 && row == count + 2, "%lld inner nodes in a row of %lld",
 	           (long long)count, (long long)row);
-	for (int64_t x = 0; x < count; ++x) {
+	for (int64_t x = 0; x < count; x++) {
 		float sum = u[x - 1] + u[x + 1] + u[x - row] + u[x + row] + u[x - plane] + u[x + plane];
 		next[x] = u[x] + rate[x] * (sum - 6.0F * u[x]);
 	}
@@ -19,8 +19,8 @@ void cau_diffuse(const float *temperature, const float *rate, float *next, int32
 {
 	CAU_ASSERT(nodes >= 3 && temperature != next, "a grid of %d nodes, into itself", nodes);
 	int64_t row = nodes, plane = row * row;
-	for (int64_t z = 1; z < nodes - 1; ++z)
-		for (int64_t y = 1; y < nodes - 1; ++y) {
+	for (int64_t z = 1; z < nodes - 1; z++)
+		for (int64_t y = 1; y < nodes - 1; y++) {
 			int64_t first = 1 + y * row + z * plane;
 			diffuse_row(temperature + first, rate + first, next + first, nodes - 2, row, plane);
 		}
@@ -32,22 +32,22 @@ void cau_extremes(const float *values, int64_t count, float *least, float *great
 	CAU_ASSERT(count >= 1, "the extremes of %lld values", (long long)count);
 	enum { LANES = 16 };
 	float low[LANES], high[LANES];
-	for (int lane = 0; lane < LANES; ++lane)
+	for (int lane = 0; lane < LANES; lane++)
 		low[lane] = high[lane] = values[0];
 	int64_t whole = count - count % LANES;
 	for (int64_t i = 0; i < whole; i += LANES)
-		for (int lane = 0; lane < LANES; ++lane) {
+		for (int lane = 0; lane < LANES; lane++) {
 			float value = values[i + lane];
 			low[lane] = value < low[lane] ? value : low[lane];
 			high[lane] = value > high[lane] ? value : high[lane];
 		}
-	for (int64_t i = whole; i < count; ++i) {
+	for (int64_t i = whole; i < count; i++) {
 		low[0] = values[i] < low[0] ? values[i] : low[0];
 		high[0] = values[i] > high[0] ? values[i] : high[0];
 	}
 	*least = low[0];
 	*greatest = high[0];
-	for (int lane = 1; lane < LANES; ++lane) {
+	for (int lane = 1; lane < LANES; lane++) {
 		*least = low[lane] < *least ? low[lane] : *least;
 		*greatest = high[lane] > *greatest ? high[lane] : *greatest;
 	}

@@ -27,7 +27,7 @@ double cau_exposure_gain(const cau_heat_grid *grid, const cau_tool_def *tool, co
 static double turn_between(const cau_pose *from, const cau_pose *to)
 {
 	double dot = 0;
-	for (int i = 0; i < 4; ++i)
+	for (int i = 0; i < 4; i++)
 		dot += from->rotation[i] * to->rotation[i];
 	return 4 * tan(acos(fmin(fabs(dot), 1)) / 2);
 }

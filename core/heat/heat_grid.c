@@ -17,7 +17,7 @@ static int64_t node_count(const cau_heat_grid *grid)
 
 static void fill(float *values, int64_t count, float value)
 {
-	for (int64_t i = 0; i < count; ++i)
+	for (int64_t i = 0; i < count; i++)
 		values[i] = value;
 }
 
@@ -30,7 +30,7 @@ static void rest(cau_heat_grid *grid)
 	grid->coldest_c = grid->warmest_c = ambient;
 }
 
-static int at_rest(const cau_heat_grid *grid)
+static bool at_rest(const cau_heat_grid *grid)
 {
 	return grid->coldest_c == grid->warmest_c;
 }
@@ -59,7 +59,7 @@ static void origin_for(const cau_heat_grid *grid, const cau_tool_def *tool, cons
 	cau_tool_bound(tool, CAU_PART_HOT, &center, &radius);
 	double world[3];
 	cau_vec3_to(cau_pose_to_world(pose, center), world);
-	for (int axis = 0; axis < 3; ++axis)
+	for (int axis = 0; axis < 3; axis++)
 		origin[axis] = whole_cells(world[axis] / grid->step_m - (grid->nodes - 1) / 2.0 + 0.5);
 }
 
@@ -126,11 +126,11 @@ static void reset_boundary(cau_heat_grid *grid, float *field)
 	float ambient = (float)grid->ambient_c;
 	fill(field, n * n, ambient);
 	fill(field + n * n * (n - 1), n * n, ambient);
-	for (int64_t z = 1; z < n - 1; ++z) {
+	for (int64_t z = 1; z < n - 1; z++) {
 		float *plane = field + z * n * n;
 		fill(plane, n, ambient);
 		fill(plane + n * (n - 1), n, ambient);
-		for (int64_t y = 1; y < n - 1; ++y)
+		for (int64_t y = 1; y < n - 1; y++)
 			plane[y * n] = plane[y * n + n - 1] = ambient;
 	}
 }
@@ -143,8 +143,8 @@ static void copy_shifted(cau_heat_grid *grid, const int64_t shift[3])
 	int64_t kept = n - (shift[0] < 0 ? -shift[0] : shift[0]);
 	CAU_ASSERT(kept > 0 && kept <= n, "%lld of %lld nodes are kept", (long long)kept, (long long)n);
 	fill(grid->next, node_count(grid), (float)grid->ambient_c);
-	for (int64_t z = 0; z < n; ++z)
-		for (int64_t y = 0; y < n; ++y) {
+	for (int64_t z = 0; z < n; z++)
+		for (int64_t y = 0; y < n; y++) {
 			int64_t from_y = y + shift[1], from_z = z + shift[2];
 			if (from_y < 0 || from_y >= n || from_z < 0 || from_z >= n)
 				continue;
@@ -164,9 +164,9 @@ static void swap_fields(cau_heat_grid *grid)
 static void follow(cau_heat_grid *grid, const cau_tool_def *tool, const cau_pose *pose)
 {
 	int64_t origin[3], shift[3];
-	int moved = 0, leapt = 0;
+	bool moved = false, leapt = false;
 	origin_for(grid, tool, pose, origin);
-	for (int axis = 0; axis < 3; ++axis) {
+	for (int axis = 0; axis < 3; axis++) {
 		shift[axis] = origin[axis] - grid->origin[axis];
 		moved |= shift[axis] != 0;
 		leapt |= shift[axis] <= -grid->nodes || shift[axis] >= grid->nodes;
@@ -200,13 +200,13 @@ static void hold_whole(const hold *h, const int32_t least[3], int32_t size)
 	CAU_ASSERT(size >= 1, "a block of %d nodes", size);
 	int64_t n = h->grid->nodes;
 	int32_t from[3], to[3];
-	for (int axis = 0; axis < 3; ++axis) {
+	for (int axis = 0; axis < 3; axis++) {
 		from[axis] = least[axis] > 1 ? least[axis] : 1;
 		to[axis] = least[axis] + size < n - 1 ? least[axis] + size : (int32_t)n - 1;
 	}
-	for (int64_t z = from[2]; z < to[2]; ++z)
-		for (int64_t y = from[1]; y < to[1]; ++y)
-			for (int64_t x = from[0]; x < to[0]; ++x) {
+	for (int64_t z = from[2]; z < to[2]; z++)
+		for (int64_t y = from[1]; y < to[1]; y++)
+			for (int64_t x = from[0]; x < to[0]; x++) {
 				h->grid->temperature[(z * n + y) * n + x] = (float)h->tool->temperature_c;
 				h->grid->rate[(z * n + y) * n + x] = 0;
 			}
@@ -222,7 +222,7 @@ static void hold_block(const hold *h, const int32_t least[3], int32_t size)
 		return;
 	double half = (size - 1) / 2.0;
 	cau_vec3 middle = h->first;
-	for (int axis = 0; axis < 3; ++axis)
+	for (int axis = 0; axis < 3; axis++)
 		middle = cau_add_scaled(middle, least[axis] + half, h->axis[axis]);
 	double step = h->grid->step_m;
 	double level = cau_tool_distance(h->tool, h->jaw, CAU_PART_HOT, middle, NULL) - step / 2;
@@ -233,7 +233,7 @@ static void hold_block(const hold *h, const int32_t least[3], int32_t size)
 		hold_whole(h, least, size);
 		return;
 	}
-	for (int eighth = 0; eighth < 8; ++eighth) {
+	for (int eighth = 0; eighth < 8; eighth++) {
 		int32_t part = size / 2;
 		hold_block(h,
 		           (const int32_t[3]){least[0] + (eighth & 1) * part,
@@ -275,11 +275,11 @@ void cau_heat_grid_survey(cau_heat_grid *grid)
 }
 
 void cau_heat_grid_advance(cau_heat_grid *grid, const cau_tool_def *tool, const cau_pose *pose,
-                           double jaw, int energized, double duration_s)
+                           double jaw, bool energized, double duration_s)
 {
 	CAU_ASSERT(duration_s >= 0, "a part of %g s", duration_s);
 	follow(grid, tool, pose);
-	int heating = energized && cau_tool_thinnest_hot_m(tool) < INFINITY;
+	bool heating = energized && cau_tool_thinnest_hot_m(tool) < INFINITY;
 	if (at_rest(grid) && !heating)
 		return;
 	int64_t substeps = cau_heat_grid_substeps(grid->step_m, grid->diffusivity, duration_s);
@@ -289,7 +289,7 @@ void cau_heat_grid_advance(cau_heat_grid *grid, const cau_tool_def *tool, const 
 	fill(grid->rate, node_count(grid), (float)rate);
 	if (heating)
 		hold_hot(grid, tool, pose, jaw);
-	for (int64_t i = 0; i < substeps; ++i) {
+	for (int64_t i = 0; i < substeps; i++) {
 		cau_diffuse(grid->temperature, grid->rate, grid->next, grid->nodes);
 		swap_fields(grid);
 	}
@@ -301,7 +301,7 @@ double cau_heat_grid_at(const cau_heat_grid *grid, cau_vec3 point)
 	const double position[3] = {point.x, point.y, point.z};
 	int64_t cell[3], n = grid->nodes;
 	double s[3];
-	for (int axis = 0; axis < 3; ++axis) {
+	for (int axis = 0; axis < 3; axis++) {
 		double nodes = position[axis] / grid->step_m - (double)grid->origin[axis];
 		if (!(nodes >= 0 && nodes <= (double)(n - 1)))
 			return grid->ambient_c;
@@ -310,7 +310,7 @@ double cau_heat_grid_at(const cau_heat_grid *grid, cau_vec3 point)
 	}
 	const float *corner = grid->temperature + (cell[2] * n + cell[1]) * n + cell[0];
 	double sum = 0;
-	for (int i = 0; i < 8; ++i) {
+	for (int i = 0; i < 8; i++) {
 		int64_t x = i & 1, y = i >> 1 & 1, z = i >> 2;
 		double weight = (x ? s[0] : 1 - s[0]) * (y ? s[1] : 1 - s[1]) * (z ? s[2] : 1 - s[2]);
 		sum += weight * (double)corner[(z * n + y) * n + x];

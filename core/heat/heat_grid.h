@@ -2,6 +2,8 @@
 // The tool's N x N x N temperature grid (section 6.2, eq. 18-19): world axes, follows the hot part.
 #pragma once
 
+#include <stdbool.h>
+
 #include "base/vector.h"
 #include "cautery/status.h"
 #include "tool/tool_shape.h"
@@ -35,7 +37,7 @@ void cau_heat_grid_finish(cau_heat_grid *grid);
 // is off ambient, O(1) otherwise: a field nowhere further than 0.01 degC from ambient is set to
 // ambient.
 void cau_heat_grid_advance(cau_heat_grid *grid, const cau_tool_def *tool, const cau_pose *pose,
-                           double jaw, int energized, double duration_s);
+                           double jaw, bool energized, double duration_s);
 
 // Takes over coldest_c and warmest_c from the nodes, after a caller wrote them (a restored
 // snapshot).

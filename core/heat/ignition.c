@@ -51,7 +51,7 @@ static double smooth(double t)
 static double node_draw(uint64_t seed, int32_t layer, const int64_t node[3])
 {
 	uint64_t where = 0;
-	for (int c = 0; c < 3; ++c)
+	for (int c = 0; c < 3; c++)
 		where = where << 21 | ((uint64_t)node[c] & 0x1FFFFF);
 	return normal(seed ^ mix((uint64_t)(uint32_t)layer + 1), where);
 }
@@ -67,16 +67,16 @@ double cau_ignition_in_bundles(double mean_c, double spread_c, uint64_t seed, in
 	double at[3], share[3];
 	cau_vec3_to(squeezed, at);
 	int64_t low[3];
-	for (int c = 0; c < 3; ++c) {
+	for (int c = 0; c < 3; c++) {
 		low[c] = (int64_t)floor(at[c]);
 		share[c] = smooth(at[c] - (double)low[c]);
 	}
 	// Weights of the eight corners, scaled so that the sum of draws is standard normal everywhere.
 	double sum = 0, squares = 0;
-	for (int corner = 0; corner < 8; ++corner) {
+	for (int corner = 0; corner < 8; corner++) {
 		int64_t node[3];
 		double weight = 1;
-		for (int c = 0; c < 3; ++c) {
+		for (int c = 0; c < 3; c++) {
 			int high = corner >> c & 1;
 			node[c] = low[c] + high;
 			weight *= high ? share[c] : 1 - share[c];

@@ -21,13 +21,13 @@ void cau_session_balance(cau_session *session, cau_balance *balance)
 	*balance = (cau_balance){0};
 	// residual of eq. 4 at the present state, with the present reactions
 	cau_solver_evaluate(solver);
-	for (int32_t i = 0; i < session->contact.row_count; ++i) {
+	for (int32_t i = 0; i < session->contact.row_count; i++) {
 		const cau_contact_row *row = &session->contact.row[i];
 		const double off[3] = {-row->reaction[0], -row->reaction[1], -row->reaction[2]};
 		solver->kernels->vectors->add(solver->gradient, row->vertex, off);
 	}
 	double squared = 0;
-	for (int32_t v = 0; v < tissue->vertex_count; ++v)
+	for (int32_t v = 0; v < tissue->vertex_count; v++)
 		squared += cau_dot(elastic_gradient(session, v), elastic_gradient(session, v));
 	balance->residual_n = sqrt(squared);
 	// elements alone
@@ -35,7 +35,7 @@ void cau_session_balance(cau_session *session, cau_balance *balance)
 	                     solver->gradient);
 	balance->elastic_j = cau_solver_elastic_energy(solver);
 	cau_vec3 momentum = {0, 0, 0}, force = {0, 0, 0}, torque = {0, 0, 0};
-	for (int32_t v = 0; v < tissue->vertex_count; ++v) {
+	for (int32_t v = 0; v < tissue->vertex_count; v++) {
 		cau_vec3 x = cau_vec3_of(session->position + 3 * (size_t)v);
 		cau_vec3 velocity = cau_vec3_of(session->velocity + 3 * (size_t)v);
 		cau_vec3 f = cau_scale(-1, elastic_gradient(session, v));

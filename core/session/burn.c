@@ -11,7 +11,7 @@ static void heat_edges(cau_session *session, cau_tool *tool)
 	int parts = cau_exposure_parts(def, &tool->pose_before, &tool->state.pose);
 	CAU_ASSERT(parts >= 1, "a way in %d parts", parts);
 	double duration = session->solver.step_s / parts;
-	for (int part = 1; part <= parts; ++part) {
+	for (int part = 1; part <= parts; part++) {
 		cau_pose pose =
 			cau_pose_between(&tool->pose_before, &tool->state.pose, (double)part / parts);
 		cau_heat_grid_advance(&tool->grid, def, &pose, tool->state.jaw, tool->state.energized,
@@ -30,7 +30,7 @@ static void take_out(cau_session *session, int32_t first)
 {
 	CAU_ASSERT(first >= 0 && first <= session->dissection.removed_count,
 	           "from element %d on of %d removed", first, session->dissection.removed_count);
-	for (int32_t k = first; k < session->dissection.removed_count; ++k) {
+	for (int32_t k = first; k < session->dissection.removed_count; k++) {
 		const cau_removed *removed = &session->dissection.removed[k];
 		cau_elements_remove(&session->solver.elements, &session->solver.slots, removed->kind,
 		                    removed->element);
@@ -43,7 +43,7 @@ void cau_session_burn(cau_session *session)
 {
 	if (session->tool_count)
 		cau_near_refit(&session->near, session->position);
-	for (int32_t i = 0; i < session->tool_count; ++i) {
+	for (int32_t i = 0; i < session->tool_count; i++) {
 		cau_tool *tool = &session->tool[i];
 		CAU_ASSERT(tool->grid.temperature != NULL, "tool %d has no heat grid", i);
 		int32_t first = session->dissection.removed_count;

@@ -45,7 +45,7 @@ static cau_status finite_vector(const double *v, int count, double most, const c
                                 const char *field, cau_error *error)
 {
 	CAU_ASSERT(count > 0 && most > 0, "%s has %d components within %g", field, count, most);
-	for (int i = 0; i < count; ++i)
+	for (int i = 0; i < count; i++)
 		if (!(fabs(v[i]) <= most)) {
 			char full[PATH_BYTES];
 			join(full, path, field);
@@ -90,7 +90,7 @@ static cau_status check_interval(const double *least, const double *most, int co
                                  const char *path, cau_error *error)
 {
 	CAU_ASSERT(count == 2 || count == 3, "strains along %d axes", count);
-	for (int i = 0; i < count; ++i)
+	for (int i = 0; i < count; i++)
 		if (!(least[i] > -1 && least[i] <= most[i] && most[i] <= 100)) {
 			char full[PATH_BYTES];
 			join(full, path, "strain_min");
@@ -104,7 +104,7 @@ static cau_status check_interval(const double *least, const double *most, int co
 static cau_status check_shrink(const double *shrink, int count, const char *path, cau_error *error)
 {
 	CAU_ASSERT(count == 2 || count == 3, "shrinkage along %d axes", count);
-	for (int i = 0; i < count; ++i)
+	for (int i = 0; i < count; i++)
 		if (!(shrink[i] >= 0.01 && shrink[i] <= 4)) {
 			char full[PATH_BYTES];
 			join(full, path, "shrink");
@@ -118,7 +118,7 @@ static cau_status check_shrink(const double *shrink, int count, const char *path
 // T must be symmetric positive definite: squared stretches between 1e-4 and 100.
 static cau_status check_target(const double eigen[3], int count, const char *path, cau_error *error)
 {
-	for (int i = 0; i < count; ++i)
+	for (int i = 0; i < count; i++)
 		if (!(eigen[i] >= 1e-4 && eigen[i] <= 100)) {
 			char full[PATH_BYTES];
 			join(full, path, "target");
@@ -211,7 +211,7 @@ cau_status cau_pose_check(const cau_pose *pose, const char *path, cau_error *err
 	if (!status)
 		status = finite_vector(pose->rotation, 4, 1.001, path, "rotation", error);
 	double squared = 0;
-	for (int i = 0; i < 4; ++i)
+	for (int i = 0; i < 4; i++)
 		squared += pose->rotation[i] * pose->rotation[i];
 	if (!status && !(fabs(sqrt(squared) - 1) <= 1e-3)) {
 		char full[PATH_BYTES];
@@ -262,7 +262,7 @@ cau_status cau_selection_check(const cau_selection *selection, const char *path,
 // ---- scene
 static int32_t find_layer(const cau_scene_def *scene, const char *name)
 {
-	for (int32_t i = 0; i < scene->layer_count; ++i)
+	for (int32_t i = 0; i < scene->layer_count; i++)
 		if (!strcmp(scene->layers[i].name, name))
 			return i;
 	return -1;
@@ -270,7 +270,7 @@ static int32_t find_layer(const cau_scene_def *scene, const char *name)
 
 static int32_t find_mesh(const cau_scene_def *scene, const char *name)
 {
-	for (int32_t i = 0; i < scene->mesh_count; ++i)
+	for (int32_t i = 0; i < scene->mesh_count; i++)
 		if (!strcmp(scene->meshes[i].name, name))
 			return i;
 	return -1;
@@ -320,7 +320,7 @@ static cau_status check_layer(const cau_scene_def *scene, int32_t index, cau_err
 	if (!status && !(layer->material_count >= 1 && layer->material_count <= CAU_MAX_MATERIALS))
 		status = cau_fail(error, CAU_BAD_VALUE, path, "%d materials; at least 1, at most %d",
 		                  layer->material_count, CAU_MAX_MATERIALS);
-	for (int32_t m = 0; m < layer->material_count && !status; ++m) {
+	for (int32_t m = 0; m < layer->material_count && !status; m++) {
 		char inner[PATH_BYTES];
 		if (m)
 			snprintf(inner, sizeof inner, "layers[%d].regions[%d]", index, m - 1);
@@ -366,7 +366,7 @@ static cau_status check_counts(const cau_scene_def *scene, cau_error *error)
 		{"pins", scene->pin_count, 0, CAU_MAX_PINS},
 		{"tools", scene->tool_count, 0, CAU_MAX_TOOLS},
 	};
-	for (size_t i = 0; i < sizeof counts / sizeof *counts; ++i)
+	for (size_t i = 0; i < sizeof counts / sizeof *counts; i++)
 		if (counts[i].count < counts[i].least || counts[i].count > counts[i].most)
 			return cau_fail(error, CAU_BAD_VALUE, counts[i].what,
 			                "%d of them; %d to %d are allowed", counts[i].count, counts[i].least,
@@ -418,16 +418,16 @@ cau_status cau_scene_check(const cau_scene_def *scene, cau_error *error)
 		status = check_time(scene, error);
 	if (!status)
 		status = check_counts(scene, error);
-	for (int32_t i = 0; i < scene->mesh_count && !status; ++i)
+	for (int32_t i = 0; i < scene->mesh_count && !status; i++)
 		status = check_mesh(scene, i, error);
-	for (int32_t i = 0; i < scene->layer_count && !status; ++i)
+	for (int32_t i = 0; i < scene->layer_count && !status; i++)
 		status = check_layer(scene, i, error);
 	char path[PATH_BYTES];
-	for (int32_t i = 0; i < scene->pin_count && !status; ++i) {
+	for (int32_t i = 0; i < scene->pin_count && !status; i++) {
 		snprintf(path, sizeof path, "pins[%d]", i);
 		status = cau_selection_check(&scene->pins[i], path, error);
 	}
-	for (int32_t i = 0; i < scene->tool_count && !status; ++i) {
+	for (int32_t i = 0; i < scene->tool_count && !status; i++) {
 		snprintf(path, sizeof path, "tools[%d]", i);
 		status = cau_tool_check(&scene->tools[i], path, scene->step_s, error);
 	}

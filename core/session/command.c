@@ -35,13 +35,13 @@ static cau_status check_values(const cau_session *session, const cau_command *co
 		return cau_material_check(kind, material, "material", error);
 	}
 	case CAU_COMMAND_SET_GRAVITY:
-		for (int c = 0; c < 3; ++c)
+		for (int c = 0; c < 3; c++)
 			if (!(fabs(command->as.gravity_m_s2[c]) <= 1000))
 				return cau_fail(error, CAU_BAD_VALUE, "gravity_m_s2", "%g is not within 1000 m/s^2",
 				                command->as.gravity_m_s2[c]);
 		return CAU_OK;
 	case CAU_COMMAND_SET_FORCE:
-		for (int c = 0; c < 3; ++c)
+		for (int c = 0; c < 3; c++)
 			if (!(fabs(command->as.force.force_n[c]) <= 1000))
 				return cau_fail(error, CAU_BAD_VALUE, "force_n", "%g is not within 1000 N",
 				                command->as.force.force_n[c]);
@@ -170,7 +170,7 @@ static cau_status set_force(cau_session *session, const cau_command *command, ca
 		cau_tissue_select(&session->tissue, &command->as.force.selection, session->chosen);
 	if (count <= 0)
 		return cau_fail(error, CAU_NOT_FOUND, "selection", "no vertex lies in this selection");
-	for (int32_t v = 0; v < session->tissue.vertex_count; ++v)
+	for (int32_t v = 0; v < session->tissue.vertex_count; v++)
 		if (session->chosen[v])
 			memcpy(session->external + 3 * (size_t)v, command->as.force.force_n,
 			       3 * sizeof(double));
@@ -206,7 +206,7 @@ cau_status cau_session_apply_commands(cau_session *session, cau_error *error)
 {
 	cau_status status = CAU_OK;
 	int32_t kept = 0;
-	for (int32_t k = 0; k < session->command_count; ++k) {
+	for (int32_t k = 0; k < session->command_count; k++) {
 		const cau_command *command = &session->command[k];
 		if (status || command->tick > session->tick) {
 			session->command[kept++] = *command;

@@ -65,7 +65,7 @@ enum { BYTES_OF_FACTOR_ENTRY = 24 };
 static cau_build_border foresee(const cau_scene_def *scene)
 {
 	cau_build_border border = {.next = CAU_BUILD_MESH};
-	for (int32_t i = 0; i < scene->mesh_count; ++i) {
+	for (int32_t i = 0; i < scene->mesh_count; i++) {
 		const cau_mesh_def *mesh = &scene->meshes[i];
 		int64_t x = mesh->cells[0], y = mesh->cells[1], z = mesh->cells[2];
 		if (mesh->source == CAU_MESH_SHEET) {
@@ -82,7 +82,7 @@ static cau_build_border foresee(const cau_scene_def *scene)
 static int64_t count_elements(const cau_tissue *tissue)
 {
 	int64_t count = 0;
-	for (int kind = 0; kind < CAU_ELEMENT_KINDS; ++kind)
+	for (int kind = 0; kind < CAU_ELEMENT_KINDS; kind++)
 		count += cau_tissue_element_count(tissue, kind);
 	return count;
 }
@@ -143,7 +143,7 @@ static cau_status make_rest(cau_session *session, cau_error *error)
 {
 	cau_arena *arena = &session->arena;
 	cau_status status = cau_near_create(&session->near, &session->tissue, arena, error);
-	for (int32_t i = 0; i < session->scene->tool_count && !status; ++i)
+	for (int32_t i = 0; i < session->scene->tool_count && !status; i++)
 		status = cau_session_add_tool(session, &session->scene->tools[i], error);
 	if (!status)
 		status = cau_session_relax(session, error);
@@ -246,7 +246,7 @@ void cau_session_destroy(cau_session *session)
 {
 	if (!session)
 		return;
-	for (int32_t i = 0; i < session->tool_count; ++i)
+	for (int32_t i = 0; i < session->tool_count; i++)
 		cau_heat_grid_finish(&session->tool[i].grid);
 	cau_matrix_update_finish(&session->update);
 	cau_solver_finish(&session->solver);

@@ -15,7 +15,7 @@ static cau_status check_driven(const cau_session *session, int32_t vertex, const
 		return cau_fail(error, CAU_BAD_VALUE, "vertices", "there is no vertex %d", vertex);
 	if (!session->pinned[vertex])
 		return cau_fail(error, CAU_BAD_STATE, "vertices", "vertex %d is not pinned", vertex);
-	for (int c = 0; c < 3; ++c)
+	for (int c = 0; c < 3; c++)
 		if (!(fabs(at[c]) <= farthest_m))
 			return cau_fail(error, CAU_BAD_VALUE, "position_m", "%g is not within %g m", at[c],
 			                farthest_m);
@@ -29,7 +29,7 @@ cau_status cau_session_drive(cau_session *session, int32_t count, const int32_t 
 		return cau_fail(error, CAU_BAD_VALUE, "count", "%d of %d vertices", count,
 		                session->tissue.vertex_count);
 	cau_status status = CAU_OK;
-	for (int32_t k = 0; k < count && !status; ++k)
+	for (int32_t k = 0; k < count && !status; k++)
 		status = check_driven(session, vertex[k], position + 3 * (size_t)k, error);
 	if (status || !count)
 		return status;
@@ -43,7 +43,7 @@ void cau_session_lead_driven(cau_session *session)
 {
 	CAU_ASSERT(session->driven_count >= 0 && session->driven_count <= session->tissue.vertex_count,
 	           "%d vertices led of %d", session->driven_count, session->tissue.vertex_count);
-	for (int32_t k = 0; k < session->driven_count; ++k)
+	for (int32_t k = 0; k < session->driven_count; k++)
 		if (session->pinned[session->driven[k]]) // else a command of this tick has unpinned it
 			memcpy(session->position + 3 * (size_t)session->driven[k],
 			       session->driven_position + 3 * (size_t)k, 3 * sizeof(double));

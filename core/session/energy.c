@@ -61,11 +61,11 @@ static void mark(cau_session *session, int kind, int32_t element)
 
 void cau_session_mark_changed(cau_session *session)
 {
-	for (int32_t k = 0; k < session->dissection.removed_count; ++k)
+	for (int32_t k = 0; k < session->dissection.removed_count; k++)
 		mark(session, session->dissection.removed[k].kind, session->dissection.removed[k].element);
 	if (session->shrink.active_count == session->shrink.active_capacity)
 		session->energy.stale = true; // what found no room has arrived at once
-	for (int32_t k = 0; k < session->shrink.active_count; ++k)
+	for (int32_t k = 0; k < session->shrink.active_count; k++)
 		mark(session, session->shrink.active[k].kind, session->shrink.active[k].element);
 }
 
@@ -86,7 +86,7 @@ static void keep_polars(const cau_elements *elements, const cau_local_work *work
 	kept->count = work->kind == CAU_ELEMENT_TRIANGLE      ? 6
 	              : work->kind == CAU_ELEMENT_TETRAHEDRON ? 4
 	                                                      : 0;
-	for (int i = 0; i < kept->count; ++i)
+	for (int i = 0; i < kept->count; i++)
 		memcpy(kept->bytes[i], (const char *)kept->array[i] + (size_t)work->first * real,
 		       (size_t)(work->last - work->first) * real);
 }
@@ -96,7 +96,7 @@ static void return_polars(const cau_elements *elements, const cau_local_work *wo
 {
 	CAU_ASSERT(kept->count >= 0 && kept->count <= MOST_POLARS, "%d rotations kept", kept->count);
 	size_t real = cau_real_bytes(elements->single);
-	for (int i = 0; i < kept->count; ++i)
+	for (int i = 0; i < kept->count; i++)
 		memcpy((char *)kept->array[i] + (size_t)work->first * real, kept->bytes[i],
 		       (size_t)(work->last - work->first) * real);
 }
@@ -140,8 +140,8 @@ static double support_work(const cau_session *session, int32_t vertex, const dou
 	const cau_incidence *incidence = &session->solver.slots.incidence;
 	const cau_elements *elements = &session->solver.elements;
 	double work = 0;
-	for (int32_t k = incidence->first[vertex]; k < incidence->first[vertex + 1]; ++k)
-		for (int c = 0; c < 3; ++c)
+	for (int32_t k = incidence->first[vertex]; k < incidence->first[vertex + 1]; k++)
+		for (int c = 0; c < 3; c++)
 			work += move[c] * cau_real_get(elements->gradient, elements->single,
 			                               4 * (int64_t)incidence->record[k] + c);
 	return work;
@@ -159,9 +159,9 @@ static void vertex_part(void *context, int32_t chunk)
 	int32_t first = chunk * CAU_VERTEX_CHUNK, last = first + CAU_VERTEX_CHUNK;
 	if (last > session->tissue.vertex_count)
 		last = session->tissue.vertex_count;
-	for (int32_t v = first; v < last; ++v) {
+	for (int32_t v = first; v < last; v++) {
 		double mass = session->tissue.mass[v], move[3], old2 = 0, new2 = 0, along = 0;
-		for (int c = 0; c < 3; ++c) {
+		for (int c = 0; c < 3; c++) {
 			move[c] = x[3 * v + c] - start[3 * v + c];
 			old2 += velocity[3 * v + c] * velocity[3 * v + c];
 			new2 += move[c] * move[c];
@@ -184,16 +184,16 @@ static void vertex_part(void *context, int32_t chunk)
 static double tool_work(const cau_session *session)
 {
 	double work = 0;
-	for (int32_t k = 0; k < session->contact.row_count; ++k) {
+	for (int32_t k = 0; k < session->contact.row_count; k++) {
 		const cau_contact_row *row = &session->contact.row[k];
 		CAU_ASSERT_INDEX(row->vertex, session->tissue.vertex_count);
-		for (size_t c = 0, at = 3 * (size_t)row->vertex; c < 3; ++c)
+		for (size_t c = 0, at = 3 * (size_t)row->vertex; c < 3; c++)
 			work +=
 				row->reaction[c] * (session->position[at + c] - session->position_start[at + c]);
 	}
-	for (int32_t k = 0; k < session->solver.drag_count; ++k) {
+	for (int32_t k = 0; k < session->solver.drag_count; k++) {
 		const cau_drag *drag = &session->solver.drag[k];
-		for (size_t c = 0, at = 3 * (size_t)drag->vertex; c < 3; ++c)
+		for (size_t c = 0, at = 3 * (size_t)drag->vertex; c < 3; c++)
 			work -= drag->coefficient * (session->position[at + c] - drag->target[c]) *
 			        (session->position[at + c] - session->position_start[at + c]);
 	}
@@ -212,7 +212,7 @@ void cau_session_end_energy(cau_session *session)
 	cau_pool_run(session->pool, session->solver.chunk_count, vertex_part, session);
 	double elastic_j = cau_solver_elastic_energy(&session->solver);
 	double gain_j = elastic_j - energy->elastic_j - tool_work(session);
-	for (int32_t k = 0; k < session->solver.chunk_count; ++k) {
+	for (int32_t k = 0; k < session->solver.chunk_count; k++) {
 		const double *sum = energy->sum_j + SUMS * (size_t)k;
 		gain_j += sum[2] - sum[1] - sum[0];
 	}

@@ -9,8 +9,8 @@ void cau_session_predict(cau_session *session)
 {
 	double dt = session->solver.step_s;
 	const double *gravity = session->scene->gravity_m_s2;
-	for (int32_t v = 0; v < session->tissue.vertex_count; ++v)
-		for (int c = 0; c < 3; ++c) {
+	for (int32_t v = 0; v < session->tissue.vertex_count; v++)
+		for (int c = 0; c < 3; c++) {
 			size_t i = 3 * (size_t)v + (size_t)c;
 			double guess = session->position_start[i] + dt * session->velocity[i];
 			double push = gravity[c] + session->external[i] / session->tissue.mass[v];
@@ -29,8 +29,8 @@ double cau_session_velocity_scale(const cau_session *session)
 void cau_session_update_velocities(cau_session *session)
 {
 	double scale = cau_session_velocity_scale(session);
-	for (int32_t v = 0; v < session->tissue.vertex_count; ++v)
-		for (int c = 0; c < 3; ++c) {
+	for (int32_t v = 0; v < session->tissue.vertex_count; v++)
+		for (int c = 0; c < 3; c++) {
 			size_t i = 3 * (size_t)v + (size_t)c;
 			session->velocity[i] =
 				session->fixed[v] ? 0 : scale * (session->position[i] - session->position_start[i]);

@@ -46,11 +46,11 @@ cau_status cau_session_set_pins(cau_session *session, const cau_selection *selec
 	memset(session->chosen, 0, n);
 	if (cau_tissue_select(&session->tissue, selection, session->chosen) <= 0)
 		return cau_fail(error, CAU_NOT_FOUND, "selection", "no vertex lies in this selection");
-	int changed = 0;
-	for (size_t v = 0; v < n; ++v)
+	bool changed = false;
+	for (size_t v = 0; v < n; v++)
 		if (session->chosen[v] && session->pinned[v] != pin) {
-			changed = 1;
-			int was_frozen = session->fixed[v] && !session->pinned[v];
+			changed = true;
+			bool was_frozen = session->fixed[v] && !session->pinned[v];
 			session->pinned[v] = (uint8_t)pin;
 			session->fixed[v] = (uint8_t)(pin || !session->dissection.live_elements[v]);
 			session->frozen_count += (session->fixed[v] && !pin) - was_frozen;

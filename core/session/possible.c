@@ -45,7 +45,7 @@ static const char *layer_of_vertex(const cau_session *session, int32_t vertex)
 {
 	CAU_ASSERT_INDEX(vertex, session->tissue.vertex_count);
 	const cau_tissue *tissue = &session->tissue;
-	for (int32_t i = 0; i < tissue->layer_count; ++i) {
+	for (int32_t i = 0; i < tissue->layer_count; i++) {
 		const cau_tissue_layer *layer = &tissue->layer[i];
 		if (vertex >= layer->first_vertex && vertex < layer->first_vertex + layer->vertex_count)
 			return layer->def.name;
@@ -82,12 +82,12 @@ cau_status cau_session_locate(const cau_session *session, cau_error *error)
 {
 	char reason[sizeof error->reason];
 	memcpy(reason, error->reason, sizeof reason);
-	for (int32_t w = 0; w < session->solver.slots.work_count; ++w)
+	for (int32_t w = 0; w < session->solver.slots.work_count; w++)
 		if (!isfinite(session->solver.elements.energy[w]))
 			return refuse(session, error, layer_of_share(session, &session->solver.slots.work[w]),
 			              reason);
 	int32_t v = 0;
-	for (; v < session->tissue.vertex_count - 1; ++v)
+	for (; v < session->tissue.vertex_count - 1; v++)
 		if (!isfinite(session->position[3 * v] + session->position[3 * v + 1] +
 		              session->position[3 * v + 2]))
 			break;
@@ -104,9 +104,9 @@ static void motion_part(void *context, int32_t chunk)
 	int32_t first = chunk * CAU_VERTEX_CHUNK, last = first + CAU_VERTEX_CHUNK, astray = -1;
 	if (last > session->tissue.vertex_count)
 		last = session->tissue.vertex_count;
-	for (int32_t v = first; v < last; ++v) {
+	for (int32_t v = first; v < last; v++) {
 		double move2 = 0;
-		for (int c = 0; c < 3; ++c)
+		for (int c = 0; c < 3; c++)
 			move2 += (x[3 * v + c] - start[3 * v + c]) * (x[3 * v + c] - start[3 * v + c]);
 		farthest2 = move2 > farthest2 ? move2 : farthest2;
 		// true for what is not a number; supports go as fast as they are led
@@ -147,8 +147,8 @@ static const char *living_layer(const cau_session *session, int32_t edge)
 	const cau_tissue *tissue = &session->tissue;
 	const int32_t *layer[] = {tissue->triangle_layer, tissue->tetrahedron_layer,
 	                          tissue->link_layer};
-	for (int k = 0; k < CAU_PRIMITIVE_KINDS; ++k)
-		for (int32_t i = tissue->edges.first[k][edge]; i < tissue->edges.first[k][edge + 1]; ++i) {
+	for (int k = 0; k < CAU_PRIMITIVE_KINDS; k++)
+		for (int32_t i = tissue->edges.first[k][edge]; i < tissue->edges.first[k][edge + 1]; i++) {
 			int32_t element = tissue->edges.sharer[k][i];
 			if (session->dissection.alive.element[kinds[k]][element])
 				return tissue->layer[layer[k][element]].def.name;
@@ -165,7 +165,7 @@ static void edge_part(void *context, int32_t chunk)
 	double least = INFINITY, whole = most_sizes * session->size_m;
 	if (last > edges->edge_count)
 		last = edges->edge_count;
-	for (int32_t e = first; e < last; ++e) {
+	for (int32_t e = first; e < last; e++) {
 		const int32_t *vertex = edges->vertex + 2 * (size_t)e;
 		double most = fmax(most_stretch * length_m(session->tissue.rest, vertex), whole);
 		double room = most - length_m(session->position, vertex);
@@ -194,7 +194,7 @@ static cau_status check_edges(cau_session *session, cau_error *error)
 	int32_t worst = -1;
 	cau_pool_run(session->pool, watch->chunk_count, edge_part, session);
 	watch->left_m = INFINITY;
-	for (int32_t k = 0; k < watch->chunk_count; ++k)
+	for (int32_t k = 0; k < watch->chunk_count; k++)
 		if (watch->room_m[k] < watch->left_m) {
 			watch->left_m = watch->room_m[k];
 			worst = watch->edge[k];
@@ -209,7 +209,7 @@ cau_status cau_session_check_motion(cau_session *session, cau_error *error)
 	double farthest2 = 0;
 	int32_t chunks = session->solver.chunk_count;
 	cau_pool_run(session->pool, chunks, motion_part, session);
-	for (int32_t k = 0; k < chunks; ++k) {
+	for (int32_t k = 0; k < chunks; k++) {
 		if (watch->astray[k] >= 0)
 			return refuse_vertex(session, watch->astray[k], error);
 		farthest2 = fmax(farthest2, watch->farthest2_m2[k]);
@@ -223,7 +223,7 @@ static const char *layer_of_most_fat(const cau_tissue *tissue)
 {
 	CAU_ASSERT(tissue->layer_count > 0, "%d layers", tissue->layer_count);
 	int32_t most = 0;
-	for (int32_t i = 1; i < tissue->layer_count; ++i)
+	for (int32_t i = 1; i < tissue->layer_count; i++)
 		if (tissue->layer[i].tetrahedron_count > tissue->layer[most].tetrahedron_count)
 			most = i;
 	return tissue->layer[most].def.name;

@@ -8,7 +8,7 @@
 
 static cau_layer_def *find_layer(cau_scene_def *scene, const char *name)
 {
-	for (int32_t i = 0; i < scene->layer_count; ++i)
+	for (int32_t i = 0; i < scene->layer_count; i++)
 		if (strcmp(scene->layers[i].name, name) == 0)
 			return &scene->layers[i];
 	return NULL;
@@ -16,7 +16,7 @@ static cau_layer_def *find_layer(cau_scene_def *scene, const char *name)
 
 static int32_t find_tool(const cau_scene_def *scene, const char *name)
 {
-	for (int32_t i = 0; i < scene->tool_count; ++i)
+	for (int32_t i = 0; i < scene->tool_count; i++)
 		if (strcmp(scene->tools[i].name, name) == 0)
 			return i;
 	return -1;
@@ -25,7 +25,7 @@ static int32_t find_tool(const cau_scene_def *scene, const char *name)
 static void present_layers(const cau_session *session, cau_scene_def *scene)
 {
 	const cau_tissue *tissue = &session->tissue;
-	for (int32_t i = 0; i < tissue->layer_count; ++i) {
+	for (int32_t i = 0; i < tissue->layer_count; i++) {
 		const cau_layer_def *now = &tissue->layer[i].def;
 		cau_layer_def *layer = find_layer(scene, now->name);
 		if (!layer)
@@ -40,7 +40,7 @@ static void present_tools(const cau_session *session, cau_scene_def *scene)
 {
 	CAU_ASSERT(session->tool_count <= CAU_MAX_TOOLS, "%d tools", session->tool_count);
 	scene->tool_count = session->tool_count;
-	for (int32_t i = 0; i < session->tool_count; ++i) {
+	for (int32_t i = 0; i < session->tool_count; i++) {
 		const cau_tool_state *now = &session->tool[i].state;
 		scene->tools[i] = now->definition;
 		memcpy(scene->tools[i].name, now->name, sizeof now->name);
@@ -107,6 +107,6 @@ void cau_session_present(const cau_session *session, cau_scene_def *scene)
 	memcpy(scene->gravity_m_s2, session->scene->gravity_m_s2, sizeof scene->gravity_m_s2);
 	present_layers(session, scene);
 	present_tools(session, scene);
-	for (int32_t k = 0; k < session->command_count; ++k)
+	for (int32_t k = 0; k < session->command_count; k++)
 		take_command(scene, &session->command[k]);
 }

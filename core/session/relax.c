@@ -9,31 +9,31 @@
 enum { MOST_STEPS = 400 };
 static const double still = 1e-5; // largest move of a step, relative to the mean edge length
 
-static int is_identity(const double *target, int n)
+static bool is_identity(const double *target, int n)
 {
 	CAU_ASSERT(n == 2 || n == 3, "a target of %d axes", n);
-	for (int i = 0; i < (n == 2 ? 3 : 6); ++i)
+	for (int i = 0; i < (n == 2 ? 3 : 6); i++)
 		if (target[i] != (i < n))
-			return 0;
-	return 1;
+			return false;
+	return true;
 }
 
-static int has_tension(const cau_tissue *tissue)
+static bool has_tension(const cau_tissue *tissue)
 {
-	for (int32_t i = 0; i < tissue->layer_count; ++i) {
+	for (int32_t i = 0; i < tissue->layer_count; i++) {
 		const cau_layer_def *def = &tissue->layer[i].def;
-		for (int32_t m = 0; m < def->material_count && def->kind != CAU_LAYER_LINKS; ++m) {
+		for (int32_t m = 0; m < def->material_count && def->kind != CAU_LAYER_LINKS; m++) {
 			int fat = def->kind == CAU_LAYER_FAT;
 			int limit = fat ? def->fat[m].limit : def->sheet[m].limit;
 			if (limit == CAU_LIMIT_TARGET &&
 			    !is_identity(fat ? def->fat[m].target : def->sheet[m].target, fat ? 3 : 2))
-				return 1;
+				return true;
 		}
 	}
-	return 0;
+	return false;
 }
 
-static int is_pinned(const cau_session *session)
+static bool is_pinned(const cau_session *session)
 {
 	return session->solver.system.row_count < session->tissue.vertex_count;
 }
@@ -41,7 +41,7 @@ static int is_pinned(const cau_session *session)
 static double mean_edge_m(const cau_tissue *tissue)
 {
 	double sum = 0;
-	for (int32_t e = 0; e < tissue->edges.edge_count; ++e) {
+	for (int32_t e = 0; e < tissue->edges.edge_count; e++) {
 		const int32_t *v = tissue->edges.vertex + 2 * (size_t)e;
 		sum += cau_length(cau_sub(cau_vec3_of(tissue->rest + 3 * (size_t)v[1]),
 		                          cau_vec3_of(tissue->rest + 3 * (size_t)v[0])));
@@ -52,7 +52,7 @@ static double mean_edge_m(const cau_tissue *tissue)
 static double largest_move(const cau_session *session)
 {
 	double most = 0;
-	for (int32_t i = 0; i < 3 * session->tissue.vertex_count; ++i)
+	for (int32_t i = 0; i < 3 * session->tissue.vertex_count; i++)
 		most = fmax(most, fabs(session->position[i] - session->position_start[i]));
 	return most;
 }
@@ -68,7 +68,7 @@ cau_status cau_session_relax(cau_session *session, cau_error *error)
 	if (!is_pinned(session)) // a free body relaxes without falling
 		memset(session->scene->gravity_m_s2, 0, sizeof gravity);
 	cau_status status = CAU_OK;
-	for (int step = 0; step < MOST_STEPS && !status; ++step) {
+	for (int step = 0; step < MOST_STEPS && !status; step++) {
 		memcpy(session->position_start, session->position, n * sizeof(double));
 		memset(session->velocity, 0, n * sizeof(double));
 		cau_session_predict(session);

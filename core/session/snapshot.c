@@ -54,9 +54,9 @@ static void pass_columns(snapshot_archive *archive, cau_session *session)
 		(size_t)session->tissue.vertex_count * session->solver.kernels->vectors->real_bytes;
 	snapshot_pass(archive, set->column_vertex, (size_t)count * sizeof *set->column_vertex);
 	snapshot_pass(archive, set->column_version, (size_t)count * sizeof *set->column_version);
-	for (int32_t i = 0; i < count; ++i)
+	for (int32_t i = 0; i < count; i++)
 		snapshot_pass(archive, set->column[i], bytes);
-	for (int32_t i = 0; i < count; ++i)
+	for (int32_t i = 0; i < count; i++)
 		snapshot_pass(archive, set->inverse + (size_t)i * CAU_MAX_CONTACTS,
 		              (size_t)count * sizeof *set->inverse);
 }
@@ -71,7 +71,7 @@ static void pass_update(snapshot_archive *archive, cau_session *session)
 	              (size_t)update->waiting_count * sizeof *update->waiting);
 	snapshot_pass(archive, update->operation,
 	              (size_t)update->operation_count * sizeof *update->operation);
-	for (int kind = 0; kind < CAU_ELEMENT_KINDS; ++kind) {
+	for (int kind = 0; kind < CAU_ELEMENT_KINDS; kind++) {
 		size_t count = (size_t)cau_tissue_element_count(&session->tissue, kind);
 		snapshot_pass(archive, update->canonical[kind], count);
 		snapshot_pass(archive, update->next_canonical[kind], count);
@@ -112,7 +112,7 @@ static cau_status pass_state(snapshot_archive *archive, cau_session *session, ca
 	              (size_t)session->shrink.active_count * sizeof *session->shrink.active);
 	snapshot_pass(archive, session->command,
 	              (size_t)session->command_count * sizeof *session->command);
-	for (int32_t i = 0; i < session->tissue.layer_count; ++i)
+	for (int32_t i = 0; i < session->tissue.layer_count; i++)
 		snapshot_pass(archive, &session->tissue.layer[i].def, sizeof session->tissue.layer[i].def);
 	cau_status status = cau_snapshot_pass_elements(archive, session, error);
 	pass_update(archive, session);
@@ -158,7 +158,7 @@ static void fill_header(const cau_session *session, snapshot_header *header)
 	header->edges_parted = session->dissection.edges_parted;
 	header->elements_removed = session->dissection.elements_removed;
 	header->faulted = session->faulted;
-	for (int32_t i = 0; i < session->tool_count; ++i)
+	for (int32_t i = 0; i < session->tool_count; i++)
 		header->grid_nodes[i] = session->tool[i].grid.nodes;
 	memcpy(header->gravity_m_s2, session->scene->gravity_m_s2, sizeof header->gravity_m_s2);
 }
@@ -178,7 +178,7 @@ static void write_payload(cau_session *session, snapshot_archive *archive)
 	if (session->solver.factor)
 		snapshot_pass(archive, (void *)(uintptr_t)cau_factor_permutation(session->solver.factor),
 		              (size_t)session->solver.system.row_count * sizeof(int32_t));
-	for (int32_t i = 0; i < session->tool_count; ++i)
+	for (int32_t i = 0; i < session->tool_count; i++)
 		pass_tool(archive, &session->tool[i]);
 	pass_state(archive, session, NULL); // writing does not fail
 }
@@ -273,7 +273,7 @@ static cau_session *imagine(const cau_session *session, const snapshot_header *h
 static cau_status check_tools(const snapshot_header *header, const unsigned char *payload,
                               snapshot_archive *counted, cau_error *error)
 {
-	for (int32_t i = 0; i < header->tool_count; ++i) {
+	for (int32_t i = 0; i < header->tool_count; i++) {
 		cau_tool_state state;
 		if (counted->at + sizeof state > counted->capacity)
 			return corrupt(error, "bytes are missing");
@@ -293,7 +293,7 @@ static cau_status check_payload(const cau_session *session, const snapshot_heade
                                 cau_error *error)
 {
 	snapshot_archive counted = {.capacity = payload_bytes, .version = header->version};
-	for (int32_t i = 0; i < header->tool_count; ++i)
+	for (int32_t i = 0; i < header->tool_count; i++)
 		if (header->grid_nodes[i] < 0 || header->grid_nodes[i] > MOST_NODES)
 			return corrupt(error, "a count is out of its range");
 	cau_session *imagined = imagine(session, header);
@@ -314,7 +314,7 @@ static cau_status restore_tools(cau_session *session, const snapshot_header *hea
 {
 	while (session->tool_count)
 		cau_session_drop_tool(session, session->tool_count - 1);
-	for (int32_t i = 0; i < header->tool_count; ++i) {
+	for (int32_t i = 0; i < header->tool_count; i++) {
 		cau_tool *tool = &session->tool[i];
 		CAU_ASSERT(session->tool_count == i && i < CAU_MAX_TOOLS, "tool %d comes after %d", i,
 		           session->tool_count);
@@ -374,7 +374,7 @@ static cau_status replay_factor(cau_session *session, const snapshot_header *hea
 	for (int32_t k = 0; k < update->operation_count && !status;) {
 		cau_waiting list[CAU_DOWNDATES_AT_MOST]; // elements between pins fill a group, not its rank
 		int32_t count = 0, taken = 0, group = update->operation[k].group;
-		for (; k < update->operation_count && update->operation[k].group == group; ++k) {
+		for (; k < update->operation_count && update->operation[k].group == group; k++) {
 			CAU_ASSERT_INDEX(count, CAU_DOWNDATES_AT_MOST);
 			list[count++] =
 				(cau_waiting){update->operation[k].kind, update->operation[k].element, 0};
@@ -476,10 +476,10 @@ uint64_t cau_session_hash(const cau_session *session)
 	hash = cau_hash_bytes(hash, session->velocity, 3 * n * sizeof(double));
 	hash = cau_hash_bytes(hash, session->dissection.exposure, edges * sizeof(double));
 	hash = cau_hash_bytes(hash, session->dissection.parted, edges * sizeof(uint16_t));
-	for (int i = 0; i < 6; ++i)
+	for (int i = 0; i < 6; i++)
 		hash = cau_hash_bytes(hash, elements->fat.plastic_strain[i],
 		                      (size_t)elements->fat.slot_count * cau_real_bytes(elements->single));
-	for (int32_t i = 0; i < session->tool_count; ++i) {
+	for (int32_t i = 0; i < session->tool_count; i++) {
 		const cau_tool *tool = &session->tool[i];
 		size_t nodes =
 			(size_t)tool->grid.nodes * (size_t)tool->grid.nodes * (size_t)tool->grid.nodes;

@@ -20,7 +20,7 @@ static int32_t element_of(const element_order *order, int32_t place)
 }
 
 static void pass_slots(snapshot_archive *archive, void *const *arrays, int count,
-                       const element_order *order, int single)
+                       const element_order *order, bool single)
 {
 	CAU_ASSERT(order->count >= 0, "%d elements in order", order->count);
 	size_t size = cau_real_bytes(single);
@@ -28,8 +28,8 @@ static void pass_slots(snapshot_archive *archive, void *const *arrays, int count
 		archive->at += (size_t)count * (size_t)order->count * size;
 		return;
 	}
-	for (int i = 0; i < count; ++i)
-		for (int32_t k = 0; k < order->count; ++k) {
+	for (int i = 0; i < count; i++)
+		for (int32_t k = 0; k < order->count; k++) {
 			int32_t element = element_of(order, k);
 			if (element < 0)
 				archive->at += size;
@@ -50,7 +50,7 @@ static void pass_marks(snapshot_archive *archive, uint8_t *mark, int32_t slot_co
 		int32_t first = element_of(order, k);
 		uint8_t value = first < 0 ? 0 : mark[order->slot_of[first] / CAU_BATCH];
 		snapshot_pass(archive, &value, 1);
-		for (int32_t i = k; i < k + each && archive->reading; ++i)
+		for (int32_t i = k; i < k + each && archive->reading; i++)
 			if (element_of(order, i) >= 0)
 				mark[order->slot_of[element_of(order, i)] / CAU_BATCH] |= value;
 	}
@@ -63,7 +63,7 @@ static void pass_all(snapshot_archive *archive, cau_elements *elements,
 	cau_fat_set *fat = &elements->fat;
 	const element_order *triangle = &order[CAU_ELEMENT_TRIANGLE],
 						*tetrahedron = &order[CAU_ELEMENT_TETRAHEDRON];
-	int single = elements->single;
+	bool single = elements->single;
 	pass_slots(archive, &sheet->weight, 1, triangle, single);
 	pass_slots(archive, sheet->target, 3, triangle, single);
 	pass_slots(archive, sheet->polar, 6, triangle, single);
@@ -102,11 +102,11 @@ static void order_group_1(element_order *order, const int32_t *group_of, int32_t
                           int32_t group)
 {
 	int32_t members = 0, done = 0;
-	for (int32_t e = 0; e < element_count; ++e)
+	for (int32_t e = 0; e < element_count; e++)
 		members += group_of[e] == group;
-	for (int32_t k = 0; k < padded_1(members); ++k)
+	for (int32_t k = 0; k < padded_1(members); k++)
 		order->element[order->count + k] = -1;
-	for (int32_t e = 0; e < element_count; ++e)
+	for (int32_t e = 0; e < element_count; e++)
 		if (group_of[e] == group)
 			order->element[order->count + place_1(done++, members)] = e;
 	order->count += padded_1(members);
@@ -148,12 +148,12 @@ static cau_status order_kind_1(const cau_session *session, int kind, element_ord
 		return CAU_NO_MEMORY;
 	}
 	order->count = 0;
-	for (int32_t e = 0; e < count; ++e)
+	for (int32_t e = 0; e < count; e++)
 		group_of[e] = group_of_slot(elements, kind, order->slot_of[e]);
-	for (int32_t g = 0; g < groups && dealt; ++g)
+	for (int32_t g = 0; g < groups && dealt; g++)
 		order_group_1(order, group_of, count, g);
 	if (!dealt)
-		for (; order->count < padded_1(count); ++order->count)
+		for (; order->count < padded_1(count); order->count++)
 			order->element[order->count] = order->count < count ? order->count : -1;
 	free(group_of);
 	return CAU_OK;
@@ -164,7 +164,7 @@ cau_status cau_snapshot_pass_elements(snapshot_archive *archive, cau_session *se
 {
 	element_order order[CAU_ELEMENT_KINDS] = {{0}};
 	cau_status status = CAU_OK;
-	for (int kind = 0; kind < CAU_ELEMENT_KINDS && !status; ++kind) {
+	for (int kind = 0; kind < CAU_ELEMENT_KINDS && !status; kind++) {
 		order[kind].slot_of = session->solver.slots.slot_of[kind];
 		order[kind].count = cau_tissue_element_count(&session->tissue, kind);
 		if (archive->version == 1)
@@ -172,7 +172,7 @@ cau_status cau_snapshot_pass_elements(snapshot_archive *archive, cau_session *se
 	}
 	if (!status)
 		pass_all(archive, &session->solver.elements, order);
-	for (int kind = 0; kind < CAU_ELEMENT_KINDS; ++kind)
+	for (int kind = 0; kind < CAU_ELEMENT_KINDS; kind++)
 		free(order[kind].element);
 	return status ? cau_fail(error, status, NULL, "no memory to restore") : CAU_OK;
 }

@@ -55,7 +55,7 @@ static void freeze_isolated(cau_session *session)
 {
 	if (!session->dissection.removed_count)
 		return;
-	for (int32_t v = 0; v < session->tissue.vertex_count; ++v)
+	for (int32_t v = 0; v < session->tissue.vertex_count; v++)
 		if (!session->fixed[v] && !session->dissection.live_elements[v]) {
 			session->fixed[v] = 1;
 			session->frozen_count++;

@@ -15,9 +15,9 @@ double cau_session_size(const cau_session *session)
 {
 	const double *rest = session->tissue.rest;
 	double squared = 0;
-	for (size_t c = 0; c < 3; ++c) {
+	for (size_t c = 0; c < 3; c++) {
 		double least = INFINITY, most = -INFINITY;
-		for (size_t v = 0; v < (size_t)session->tissue.vertex_count; ++v) {
+		for (size_t v = 0; v < (size_t)session->tissue.vertex_count; v++) {
 			least = fmin(least, rest[3 * v + c]);
 			most = fmax(most, rest[3 * v + c]);
 		}
@@ -43,15 +43,15 @@ void cau_session_stop_strays(cau_session *session)
 {
 	CAU_ASSERT(session->frozen_count <= session->tissue.vertex_count, "%d vertices frozen of %d",
 	           session->frozen_count, session->tissue.vertex_count);
-	int stopped = 0;
+	bool stopped = false;
 	double reach_m = farthest_sizes * session->size_m;
-	for (size_t v = 0; v < (size_t)session->tissue.vertex_count; ++v) {
+	for (size_t v = 0; v < (size_t)session->tissue.vertex_count; v++) {
 		cau_vec3 way = cau_sub(cau_vec3_of(session->position + 3 * v),
 		                       cau_vec3_of(session->tissue.rest + 3 * v));
 		if (session->fixed[v] || cau_dot(way, way) <= reach_m * reach_m)
 			continue;
 		stop(session, v, way);
-		stopped = 1;
+		stopped = true;
 	}
 	if (!stopped)
 		return;

@@ -10,7 +10,7 @@ static const double jaw_per_s = 8; // a full stroke takes an eighth of a second
 
 int32_t cau_session_find_tool(const cau_session *session, const char *name)
 {
-	for (int32_t i = 0; i < session->tool_count; ++i)
+	for (int32_t i = 0; i < session->tool_count; i++)
 		if (!strcmp(session->tool[i].state.name, name))
 			return i;
 	return -1;
@@ -51,7 +51,7 @@ void cau_session_drop_tool(cau_session *session, int32_t index)
 static double angle_between(const cau_pose *a, const cau_pose *b)
 {
 	double dot = 0;
-	for (int i = 0; i < 4; ++i)
+	for (int i = 0; i < 4; i++)
 		dot += a->rotation[i] * b->rotation[i];
 	return 2 * acos(fmin(fabs(dot), 1));
 }
@@ -78,6 +78,6 @@ static void move_tool(cau_tool *tool, double dt)
 
 void cau_session_move_tools(cau_session *session)
 {
-	for (int32_t i = 0; i < session->tool_count; ++i)
+	for (int32_t i = 0; i < session->tool_count; i++)
 		move_tool(&session->tool[i], session->solver.step_s);
 }

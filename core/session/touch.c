@@ -38,14 +38,14 @@ static int compare_rows(const void *a, const void *b)
 	return (x->vertex > y->vertex) - (x->vertex < y->vertex);
 }
 
-static int is_grasped(const cau_tool *tool, int32_t vertex)
+static bool is_grasped(const cau_tool *tool, int32_t vertex)
 {
 	CAU_ASSERT(tool->grasp_count >= 0 && tool->grasp_count <= CAU_MAX_GRASPED,
 	           "%d vertices grasped", tool->grasp_count);
-	for (int32_t k = 0; k < tool->grasp_count; ++k)
+	for (int32_t k = 0; k < tool->grasp_count; k++)
 		if (tool->grasp[k].vertex == vertex)
-			return 1;
-	return 0;
+			return true;
+	return false;
 }
 
 // Collects the free vertices within the margin of the pushing part, the deepest first.
@@ -59,11 +59,11 @@ static int32_t collect(const cau_session *session, int32_t index, cau_contact_ro
 	cau_vec3 center;
 	cau_tool_bound(def, part, &center, &radius);
 	center = cau_pose_to_world(&tool->state.pose, center);
-	for (int32_t b = 0; b < session->near.block_count; ++b) {
+	for (int32_t b = 0; b < session->near.block_count; b++) {
 		if (!cau_box_meets(&session->near.vertex_box[b], center, radius + margin))
 			continue;
 		int32_t last = (b + 1) * CAU_NEAR_BLOCK;
-		for (int32_t i = b * CAU_NEAR_BLOCK; i < last && i < session->tissue.vertex_count; ++i) {
+		for (int32_t i = b * CAU_NEAR_BLOCK; i < last && i < session->tissue.vertex_count; i++) {
 			int32_t v = session->near.vertex[i];
 			if (session->fixed[v] || count == CANDIDATES || is_grasped(tool, v))
 				continue;
@@ -82,8 +82,8 @@ static int32_t collect(const cau_session *session, int32_t index, cau_contact_ro
 static void add_attachments(cau_session *session, int32_t index)
 {
 	cau_tool *tool = &session->tool[index];
-	for (int32_t k = 0; k < tool->grasp_count; ++k) {
-		cau_contact_row row = {.vertex = tool->grasp[k].vertex, .tool = index, .attached = 1};
+	for (int32_t k = 0; k < tool->grasp_count; k++) {
+		cau_contact_row row = {.vertex = tool->grasp[k].vertex, .tool = index, .attached = true};
 		CAU_ASSERT_INDEX(row.vertex, session->tissue.vertex_count);
 		cau_vec3_to(cau_pose_to_world(&tool->state.pose, cau_vec3_of(tool->grasp[k].local)),
 		            row.anchor);
@@ -103,11 +103,11 @@ static void add_drag(cau_session *session, int32_t index)
 		return;
 	cau_tool_bound(def, CAU_PART_HOT, &center, &radius);
 	center = cau_pose_to_world(&tool->state.pose, center);
-	for (int32_t b = 0; b < session->near.block_count; ++b) {
+	for (int32_t b = 0; b < session->near.block_count; b++) {
 		if (!cau_box_meets(&session->near.vertex_box[b], center, radius))
 			continue;
 		int32_t last = (b + 1) * CAU_NEAR_BLOCK;
-		for (int32_t i = b * CAU_NEAR_BLOCK; i < last && i < session->tissue.vertex_count; ++i) {
+		for (int32_t i = b * CAU_NEAR_BLOCK; i < last && i < session->tissue.vertex_count; i++) {
 			int32_t v = session->near.vertex[i];
 			cau_vec3 x = cau_vec3_of(session->position_start + 3 * (size_t)v);
 			if (session->fixed[v] || solver->drag_count == session->tissue.vertex_count ||
@@ -128,7 +128,7 @@ static void describe_tools(cau_session *session)
 {
 	CAU_ASSERT(session->tool_count <= CAU_MAX_TOOLS, "%d tools", session->tool_count);
 	session->contact.tool_count = session->tool_count;
-	for (int32_t i = 0; i < session->tool_count; ++i) {
+	for (int32_t i = 0; i < session->tool_count; i++) {
 		const cau_tool *tool = &session->tool[i];
 		session->contact.tool[i] = (cau_contact_tool){
 			.def = &tool->state.definition,
@@ -149,11 +149,11 @@ void cau_session_find_contacts(cau_session *session)
 		return;
 	cau_near_refit(&session->near, session->position);
 	describe_tools(session);
-	for (int32_t i = 0; i < session->tool_count; ++i)
+	for (int32_t i = 0; i < session->tool_count; i++)
 		add_attachments(session, i);
-	for (int32_t i = 0; i < session->tool_count; ++i) {
+	for (int32_t i = 0; i < session->tool_count; i++) {
 		int32_t count = collect(session, i, rows);
-		for (int32_t k = 0; k < count && cau_contact_add(&session->contact, &rows[k]); ++k)
+		for (int32_t k = 0; k < count && cau_contact_add(&session->contact, &rows[k]); k++)
 			;
 		add_drag(session, i);
 	}
@@ -168,7 +168,7 @@ void cau_session_find_contacts(cau_session *session)
 static void slip(cau_tool *tool, const cau_contact_row *row, const double *position)
 {
 	const cau_tool_def *def = &tool->state.definition;
-	for (int32_t k = 0; k < tool->grasp_count; ++k) {
+	for (int32_t k = 0; k < tool->grasp_count; k++) {
 		cau_grasp *grasp = &tool->grasp[k];
 		if (grasp->vertex != row->vertex)
 			continue;
@@ -201,13 +201,13 @@ static void filter(double filtered[3], const double raw[3], double most, double 
 
 void cau_session_read_forces(cau_session *session)
 {
-	for (int32_t i = 0; i < session->tool_count; ++i) {
+	for (int32_t i = 0; i < session->tool_count; i++) {
 		cau_tool_state *state = &session->tool[i].state;
 		memset(state->raw_force_n, 0, sizeof state->raw_force_n);
 		memset(state->raw_torque_nm, 0, sizeof state->raw_torque_nm);
 		state->contact_vertices = 0;
 	}
-	for (int32_t k = 0; k < session->contact.row_count; ++k) {
+	for (int32_t k = 0; k < session->contact.row_count; k++) {
 		const cau_contact_row *row = &session->contact.row[k];
 		CAU_ASSERT_INDEX(row->tool, session->tool_count);
 		cau_tool *tool = &session->tool[row->tool];
@@ -218,7 +218,7 @@ void cau_session_read_forces(cau_session *session)
 		if (row->attached && row->slipping)
 			slip(tool, row, session->position);
 	}
-	for (int32_t i = 0; i < session->tool_count; ++i) {
+	for (int32_t i = 0; i < session->tool_count; i++) {
 		cau_tool_state *state = &session->tool[i].state;
 		double most = state->definition.force_max_n, dt = session->solver.step_s;
 		filter(state->force_n, state->raw_force_n, most, dt);
@@ -236,7 +236,7 @@ cau_status cau_session_grasp(cau_session *session, cau_tool *tool, cau_error *er
 		                def->name);
 	tool->state.grasping = true;
 	tool->grasp_count = 0;
-	for (int32_t i = 0; i < session->tissue.vertex_count; ++i) {
+	for (int32_t i = 0; i < session->tissue.vertex_count; i++) {
 		int32_t v = session->near.vertex[i];
 		double across;
 		cau_vec3 local =
@@ -262,9 +262,9 @@ void cau_session_release(cau_tool *tool)
 
 void cau_session_drop_frozen_grasps(cau_session *session)
 {
-	for (int32_t i = 0; i < session->tool_count; ++i) {
+	for (int32_t i = 0; i < session->tool_count; i++) {
 		cau_tool *tool = &session->tool[i];
-		for (int32_t k = tool->grasp_count - 1; k >= 0; --k)
+		for (int32_t k = tool->grasp_count - 1; k >= 0; k--)
 			if (session->fixed[tool->grasp[k].vertex])
 				tool->grasp[k] = tool->grasp[--tool->grasp_count];
 		tool->state.grasped_vertices = tool->grasp_count;

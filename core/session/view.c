@@ -10,7 +10,7 @@ static void describe_layers(const cau_session *session, cau_session_info *info)
 	CAU_ASSERT(session->tissue.layer_count <= CAU_MAX_LAYERS, "%d layers",
 	           session->tissue.layer_count);
 	const cau_tissue *tissue = &session->tissue;
-	for (int32_t i = 0; i < tissue->layer_count; ++i) {
+	for (int32_t i = 0; i < tissue->layer_count; i++) {
 		const cau_tissue_layer *layer = &tissue->layer[i];
 		cau_session_layer *out = &info->layers[i];
 		memcpy(out->name, layer->def.name, sizeof out->name);
@@ -64,7 +64,7 @@ cau_status cau_session_make_faces(cau_session *session, cau_error *error)
 		return cau_fail(error, CAU_NO_MEMORY, NULL, "no memory for the faces");
 	memcpy(session->face_texture, tissue->texture,
 	       6 * (size_t)tissue->triangle_count * sizeof(float));
-	for (int32_t f = 0; f < faces->face_count; ++f) {
+	for (int32_t f = 0; f < faces->face_count; f++) {
 		if (f < faces->triangle_count) {
 			session->face_layer[f] = tissue->triangle_layer[f];
 			continue;
@@ -88,7 +88,7 @@ static void make_stress(cau_session *session)
 
 static void heat_vertices(cau_session *session)
 {
-	for (int32_t i = 0; i < session->tool_count; ++i)
+	for (int32_t i = 0; i < session->tool_count; i++)
 		cau_frame_heat(&session->frame, &session->near, &session->tool[i].grid, session->position);
 }
 
@@ -129,21 +129,21 @@ static bool is_made(const cau_session *session, int scalar)
 
 void cau_session_show_scalars(cau_session *session)
 {
-	for (int scalar = 0; scalar < CAU_SCALAR_COUNT; ++scalar)
+	for (int scalar = 0; scalar < CAU_SCALAR_COUNT; scalar++)
 		if (is_watched(session->watched, scalar))
 			sources[scalar].follow(session);
 }
 
 void cau_session_renew_scalars(cau_session *session)
 {
-	for (int scalar = 0; scalar < CAU_SCALAR_COUNT; ++scalar)
+	for (int scalar = 0; scalar < CAU_SCALAR_COUNT; scalar++)
 		if (is_watched(session->watched, scalar))
 			sources[scalar].make(session);
 }
 
 void cau_session_watch(cau_session *session, uint32_t channels)
 {
-	for (int scalar = 0; scalar < CAU_SCALAR_COUNT; ++scalar)
+	for (int scalar = 0; scalar < CAU_SCALAR_COUNT; scalar++)
 		if (is_watched(channels & ~session->watched, scalar))
 			sources[scalar].make(session);
 	session->watched = channels;
@@ -188,10 +188,10 @@ void cau_session_frame(const cau_session *session, cau_frame *frame)
 		.refusal_count = session->refusal_count,
 		.refusals = session->refusal,
 	};
-	for (int scalar = 0; scalar < CAU_SCALAR_COUNT; ++scalar)
+	for (int scalar = 0; scalar < CAU_SCALAR_COUNT; scalar++)
 		frame->scalar[scalar] = is_made(session, scalar) ? session->frame.scalar[scalar] : NULL;
 	CAU_ASSERT(session->tool_count <= CAU_MAX_TOOLS, "%d tools", session->tool_count);
-	for (int32_t i = 0; i < session->tool_count; ++i)
+	for (int32_t i = 0; i < session->tool_count; i++)
 		session->tool_view[i] = session->tool[i].state;
 	fill_statistics(session, &frame->statistics);
 }

@@ -45,31 +45,32 @@ static void combine_part(void *context, int32_t chunk)
 	solver->kernels->combine(&solver->history, first, n, work->weight);
 }
 
-// Solves the small symmetric system by Gaussian elimination with diagonal pivots; columns that add
-// nothing new (pivot below 1e-8 of their own size) get no weight.
+// Solves the small symmetric system by Gaussian elimination with diagonal pivots. Its entries are
+// products, so a pivot of 1e-8 of a column's own size says that a ten-thousandth of its length
+// points anywhere new: less than that is noise in single precision, and gets no weight.
 static void least_squares(double a[CAU_ANDERSON_WINDOW][CAU_ANDERSON_WINDOW],
                           double b[CAU_ANDERSON_WINDOW], int32_t count, double *x)
 {
 	CAU_ASSERT(count >= 1 && count <= CAU_ANDERSON_WINDOW, "%d columns", count);
 	double size[CAU_ANDERSON_WINDOW];
 	int used[CAU_ANDERSON_WINDOW];
-	for (int32_t i = 0; i < count; ++i)
+	for (int32_t i = 0; i < count; i++)
 		size[i] = a[i][i];
-	for (int32_t p = 0; p < count; ++p) {
+	for (int32_t p = 0; p < count; p++) {
 		used[p] = a[p][p] > 1e-8 * size[p] && size[p] > 0;
-		for (int32_t i = p + 1; i < count && used[p]; ++i) {
+		for (int32_t i = p + 1; i < count && used[p]; i++) {
 			double ratio = a[i][p] / a[p][p];
-			for (int32_t j = p; j < count; ++j)
+			for (int32_t j = p; j < count; j++)
 				a[i][j] -= ratio * a[p][j];
 			b[i] -= ratio * b[p];
 		}
 	}
-	for (int32_t p = count - 1; p >= 0; --p) {
+	for (int32_t p = count - 1; p >= 0; p--) {
 		x[p] = 0;
 		if (!used[p])
 			continue;
 		double sum = b[p];
-		for (int32_t j = p + 1; j < count; ++j)
+		for (int32_t j = p + 1; j < count; j++)
 			sum -= a[p][j] * x[j];
 		x[p] = sum / a[p][p];
 	}
@@ -86,9 +87,9 @@ static void weigh(mix *work)
 		history->count++;
 	cau_pool_run(solver->pool, solver->chunk_count, column_part, work);
 	double b[CAU_ANDERSON_WINDOW] = {0}, a[CAU_ANDERSON_WINDOW][CAU_ANDERSON_WINDOW];
-	for (int32_t j = 0; j < history->count; ++j) {
+	for (int32_t j = 0; j < history->count; j++) {
 		double product = 0;
-		for (int32_t c = 0; c < solver->chunk_count; ++c) {
+		for (int32_t c = 0; c < solver->chunk_count; c++) {
 			const double *dot = solver->chunk_dot + (size_t)c * (2 * CAU_ANDERSON_WINDOW);
 			product += dot[j];
 			b[j] += dot[CAU_ANDERSON_WINDOW + j];
@@ -100,7 +101,7 @@ static void weigh(mix *work)
 	least_squares(a, b, history->count, work->weight);
 }
 
-int cau_anderson_mix(cau_step_solver *solver, int32_t iteration)
+bool cau_anderson_mix(cau_step_solver *solver, int32_t iteration)
 {
 	CAU_ASSERT(iteration >= 0, "iteration %d", iteration);
 	CAU_ASSERT(iteration > 0 || !solver->history.count, "the first iteration has %d columns",

@@ -16,25 +16,25 @@ cau_status cau_contact_create(cau_contact_set *set, const cau_tissue *tissue,
 	set->before = cau_arena_array(arena, 3 * CAU_MAX_CONTACTS, sizeof(double));
 	set->unit = cau_arena_array(arena, 4 * n, vectors->real_bytes);
 	set->solution = cau_arena_array(arena, 4 * n, vectors->real_bytes);
-	int missing =
+	bool missing =
 		!set->inverse || !set->hold || !set->step || !set->before || !set->unit || !set->solution;
-	for (int32_t k = 0; k < CAU_MAX_CONTACTS && !missing; ++k) {
+	for (int32_t k = 0; k < CAU_MAX_CONTACTS && !missing; k++) {
 		set->column[k] = cau_arena_array(arena, n, vectors->real_bytes);
 		missing = !set->column[k];
 	}
 	return missing ? cau_fail(error, CAU_NO_MEMORY, NULL, "no memory for contacts") : CAU_OK;
 }
 
-int cau_contact_add(cau_contact_set *set, const cau_contact_row *row)
+bool cau_contact_add(cau_contact_set *set, const cau_contact_row *row)
 {
 	CAU_ASSERT(set->row_count >= 0 && set->row_count <= CAU_MAX_CONTACTS, "%d rows",
 	           set->row_count);
 	CAU_ASSERT_INDEX(row->tool, set->tool_count);
 	CAU_ASSERT(row->vertex >= 0, "a row of vertex %d", row->vertex);
 	if (set->row_count == CAU_MAX_CONTACTS)
-		return 0;
+		return false;
 	set->row[set->row_count++] = *row;
-	return 1;
+	return true;
 }
 
 // ---- columns of A^-1
@@ -48,14 +48,14 @@ static void make_columns(cau_contact_set *set, cau_step_solver *solver, const in
 	static const double load[3][3] = {{1, 0, 0}, {0, 1, 0}, {0, 0, 1}};
 	static const double unload[3][3] = {{-1, 0, 0}, {0, -1, 0}, {0, 0, -1}};
 	const cau_vectors *vectors = solver->kernels->vectors;
-	for (int32_t c = 0; c < count; ++c)
+	for (int32_t c = 0; c < count; c++)
 		vectors->add(set->unit, set->column_vertex[place[c]], load[c]);
 	cau_solver_apply_inverse(solver, set->unit, set->solution, 1);
-	for (int32_t c = 0; c < count; ++c) {
+	for (int32_t c = 0; c < count; c++) {
 		int32_t p = place[c];
 		CAU_ASSERT_INDEX(p, set->column_count);
 		vectors->take_coordinate(set->column[p], set->solution, c, solver->tissue->vertex_count);
-		for (int32_t i = 0; i < set->column_count; ++i) {
+		for (int32_t i = 0; i < set->column_count; i++) {
 			double s = vectors->at(set->column[p], set->column_vertex[i]);
 			set->inverse[p * CAU_MAX_CONTACTS + i] = set->inverse[i * CAU_MAX_CONTACTS + p] = s;
 		}
@@ -66,7 +66,7 @@ static void make_columns(cau_contact_set *set, cau_step_solver *solver, const in
 
 static int32_t find_column(const cau_contact_set *set, int32_t vertex)
 {
-	for (int32_t k = 0; k < set->column_count; ++k)
+	for (int32_t k = 0; k < set->column_count; k++)
 		if (set->column_vertex[k] == vertex)
 			return k;
 	return -1;
@@ -77,10 +77,10 @@ static void drop_unused(cau_contact_set *set)
 {
 	uint8_t used[CAU_MAX_CONTACTS] = {0};
 	int32_t kept = 0, from[CAU_MAX_CONTACTS];
-	for (int32_t i = 0; i < set->row_count; ++i)
+	for (int32_t i = 0; i < set->row_count; i++)
 		if (set->row[i].column >= 0)
 			used[set->row[i].column] = 1;
-	for (int32_t k = 0; k < set->column_count; ++k) {
+	for (int32_t k = 0; k < set->column_count; k++) {
 		if (!used[k])
 			continue;
 		cau_reals *column = set->column[kept];
@@ -90,8 +90,8 @@ static void drop_unused(cau_contact_set *set)
 		set->column_version[kept] = set->column_version[k];
 		from[kept++] = k;
 	}
-	for (int32_t i = 0; i < kept; ++i) // rows and columns move towards the start only
-		for (int32_t j = 0; j < kept; ++j)
+	for (int32_t i = 0; i < kept; i++) // rows and columns move towards the start only
+		for (int32_t j = 0; j < kept; j++)
 			set->inverse[i * CAU_MAX_CONTACTS + j] =
 				set->inverse[from[i] * CAU_MAX_CONTACTS + from[j]];
 	set->column_count = kept;
@@ -100,8 +100,8 @@ static void drop_unused(cau_contact_set *set)
 
 static void find_columns(cau_contact_set *set, int32_t *missing)
 {
-	*missing = 0;
-	for (int32_t i = 0; i < set->row_count; ++i) {
+	*missing = false;
+	for (int32_t i = 0; i < set->row_count; i++) {
 		set->row[i].column = find_column(set, set->row[i].vertex);
 		*missing += set->row[i].column < 0;
 	}
@@ -111,7 +111,7 @@ static void find_columns(cau_contact_set *set, int32_t *missing)
 static int32_t find_lagging(const cau_contact_set *set, uint64_t version, int32_t *place)
 {
 	int32_t count = 0;
-	for (int32_t i = 0; i < set->row_count; ++i) {
+	for (int32_t i = 0; i < set->row_count; i++) {
 		int32_t p = set->row[i].column, k = count;
 		CAU_ASSERT_INDEX(p, set->column_count);
 		if (set->column_version[p] == version)
@@ -122,7 +122,7 @@ static int32_t find_lagging(const cau_contact_set *set, uint64_t version, int32_
 			continue;
 		else
 			k = count - 1;
-		for (; k > 0 && set->column_version[place[k - 1]] > set->column_version[p]; --k)
+		for (; k > 0 && set->column_version[place[k - 1]] > set->column_version[p]; k--)
 			place[k] = place[k - 1];
 		place[k] = p;
 	}
@@ -142,7 +142,7 @@ void cau_contact_prepare(cau_contact_set *set, cau_step_solver *solver)
 		find_columns(set, &missing);
 	}
 	int32_t waiting = 0;
-	for (int32_t i = 0; i < set->row_count; ++i) {
+	for (int32_t i = 0; i < set->row_count; i++) {
 		if (set->row[i].column >= 0)
 			continue;
 		set->row[i].column = find_column(set, set->row[i].vertex);
@@ -182,7 +182,7 @@ static void measure_gap(const cau_contact_set *set, const cau_step_solver *solve
 }
 
 // A bound that is not a number leaves `a` as it is: the step ends as a fault.
-static cau_vec3 clamp_length(cau_vec3 a, double most, int *clamped)
+static cau_vec3 clamp_length(cau_vec3 a, double most, bool *clamped)
 {
 	CAU_ASSERT(!(most < 0), "at most %g N", most);
 	double length = cau_length(a);
@@ -211,17 +211,21 @@ static cau_vec3 contact_reaction(const cau_contact_set *set, const cau_contact_r
 		return (cau_vec3){0, 0, 0};
 	cau_vec3 tangent = cau_add_scaled(old, -cau_dot(old, n), n);
 	cau_vec3 along = cau_add_scaled(slip, -cau_dot(slip, n), n);
-	int clamped;
+	bool clamped;
 	tangent = clamp_length(cau_add_scaled(tangent, -1 / s, along),
 	                       set->tool[row->tool].def->friction * normal, &clamped);
 	return cau_add_scaled(tangent, normal, n);
 }
 
+// A pass that changes no reaction by more than this, of the largest, is the last: columns in single
+// precision tell no smaller changes apart.
+static const double SETTLED = 1e-6;
+
 // One Gauss-Seidel pass over the rows. Returns the largest change relative to the largest reaction.
 static double relax_rows(cau_contact_set *set, const cau_step_solver *solver)
 {
 	double change = 0, size = 0;
-	for (int32_t i = 0; i < set->row_count; ++i) {
+	for (int32_t i = 0; i < set->row_count; i++) {
 		cau_contact_row *row = &set->row[i];
 		CAU_ASSERT_INDEX(row->column, set->column_count);
 		const double *s = set->inverse + (size_t)row->column * CAU_MAX_CONTACTS;
@@ -239,7 +243,7 @@ static double relax_rows(cau_contact_set *set, const cau_step_solver *solver)
 			continue;
 		change = fmax(change, length);
 		cau_vec3_to(next, row->reaction);
-		for (int32_t j = 0; j < set->row_count; ++j) {
+		for (int32_t j = 0; j < set->row_count; j++) {
 			double share = s[set->row[j].column];
 			set->step[3 * j] += share * by.x;
 			set->step[3 * j + 1] += share * by.y;
@@ -261,10 +265,10 @@ static void spread_part(void *context, int32_t chunk)
 	const cau_contact_set *set = work->set;
 	cau_step_solver *solver = work->solver;
 	int32_t first, last = cau_solver_chunk_end(solver, chunk, &first);
-	for (int32_t i = 0; i < set->row_count; ++i) {
+	for (int32_t i = 0; i < set->row_count; i++) {
 		const cau_contact_row *row = &set->row[i];
 		double dr[3];
-		for (int c = 0; c < 3; ++c)
+		for (int c = 0; c < 3; c++)
 			dr[c] = row->reaction[c] - set->before[3 * i + c];
 		if (dr[0] != 0 || dr[1] != 0 || dr[2] != 0)
 			solver->kernels->spread(solver->increment, set->column[row->column], dr, first, last);
@@ -273,9 +277,9 @@ static void spread_part(void *context, int32_t chunk)
 
 static void take_off_gradient(cau_contact_set *set, cau_step_solver *solver)
 {
-	for (int32_t i = 0; i < set->row_count; ++i) {
+	for (int32_t i = 0; i < set->row_count; i++) {
 		double change[3];
-		for (int c = 0; c < 3; ++c) {
+		for (int c = 0; c < 3; c++) {
 			change[c] = set->before[3 * i + c] - set->row[i].reaction[c];
 			set->before[3 * i + c] = set->row[i].reaction[c];
 		}
@@ -293,14 +297,14 @@ void cau_contact_load(cau_contact_set *set, cau_step_solver *solver)
 void cau_contact_correct(cau_contact_set *set, cau_step_solver *solver)
 {
 	CAU_ASSERT_INDEX(set->row_count, CAU_MAX_CONTACTS + 1);
-	for (int32_t i = 0; i < set->row_count; ++i) {
+	for (int32_t i = 0; i < set->row_count; i++) {
 		cau_contact_row *row = &set->row[i];
 		measure_gap(set, solver, row);
 		solver->kernels->vectors->read(solver->increment, row->vertex, set->step + 3 * i);
 	}
-	for (int sweep = 0; sweep < CAU_CONTACT_SWEEPS; ++sweep) {
+	for (int sweep = 0; sweep < CAU_CONTACT_SWEEPS; sweep++) {
 		cau_hold_solve(set, solver);
-		if (relax_rows(set, solver) < 1e-6)
+		if (relax_rows(set, solver) < SETTLED)
 			break;
 	}
 	cau_pool_run(solver->pool, solver->chunk_count, spread_part, &(spread){set, solver});
@@ -310,10 +314,10 @@ void cau_contact_correct(cau_contact_set *set, cau_step_solver *solver)
 double cau_contact_work(const cau_contact_set *set, const cau_step_solver *solver)
 {
 	double work = 0;
-	for (int32_t i = 0; i < set->row_count; ++i) {
+	for (int32_t i = 0; i < set->row_count; i++) {
 		double way[3];
 		solver->kernels->vectors->read(solver->trial_increment, set->row[i].vertex, way);
-		for (int c = 0; c < 3; ++c)
+		for (int c = 0; c < 3; c++)
 			work += fabs(set->row[i].reaction[c] * way[c]);
 	}
 	return 2 * work;

@@ -34,8 +34,8 @@ typedef struct cau_contact_tool {
 typedef struct cau_contact_row {
 	int32_t vertex;
 	int32_t tool;
-	int attached;
-	int slipping;       // attachment at its slip force in the last solve
+	bool attached;
+	bool slipping;      // attachment at its slip force in the last solve
 	double normal[3];   // outward from the tool
 	double gap;         // m, signed distance at the present iterate
 	double no_slip[3];  // m, where the vertex would be if it stuck to the tool
@@ -68,8 +68,8 @@ struct cau_contact_set {
 cau_status cau_contact_create(cau_contact_set *set, const cau_tissue *tissue,
                               const cau_vectors *vectors, cau_arena *arena, cau_error *error);
 
-// Adds a row; returns 0 when the set is full (the caller offers the deepest first).
-int cau_contact_add(cau_contact_set *set, const cau_contact_row *row);
+// Adds a row; returns false when the set is full (the caller offers the deepest first).
+bool cau_contact_add(cau_contact_set *set, const cau_contact_row *row);
 
 // Finds or makes the rows' columns. Called once a step, after the rows are chosen. The step may
 // make a new factor afterwards: the columns then lag behind it for the rest of the step, as they do

@@ -37,7 +37,7 @@ static double dot(cau_step_solver *solver, const cau_reals *a, const cau_reals *
 {
 	double sum = 0;
 	cau_pool_run(solver->pool, solver->chunk_count, product_part, &(product){solver, a, b});
-	for (int32_t chunk = 0; chunk < solver->chunk_count; ++chunk)
+	for (int32_t chunk = 0; chunk < solver->chunk_count; chunk++)
 		sum += solver->chunk_dot[chunk];
 	return sum;
 }
@@ -46,7 +46,7 @@ static double dot(cau_step_solver *solver, const cau_reals *a, const cau_reals *
 typedef struct move {
 	cau_step_solver *solver;
 	double scale;
-	int leave; // the present position becomes position_before
+	bool leave; // the present position becomes position_before
 } move;
 
 // position = position_before + scale * trial_increment, and the displacement of that
@@ -85,9 +85,10 @@ static void use_plain_step(cau_step_solver *solver)
 }
 
 // Where the parabola through the objective before the step, its slope there and its value after a
-// part `scale` of the step has its bottom: at most half of the part, at least a hundredth of it.
-// Tissue drawn far beyond its rest is thousands of times stiffer than A, and halving alone would
-// not come down to it.
+// part `scale` of the step has its bottom. Tissue drawn far beyond its rest is thousands of times
+// stiffer than A, and halving alone would not come down to it in the few tries there are. But a
+// parabola says little of such a law either: one answer may take off half of the part at least, so
+// that the tries lead somewhere, and leaves a hundredth of it, so that none gives the step up.
 static double shorter(double scale, double before, double after, double slope)
 {
 	CAU_ASSERT(scale > 0 && scale <= 1, "a part of %g of the step", scale);
@@ -102,21 +103,21 @@ static double shorter(double scale, double before, double after, double slope)
 // point can lead up that: then the work that is done against all forces along the way counts, by
 // the trapezoidal rule between its ends. It is negative for every step that is short enough, and no
 // law's want of an energy leaves the others without a safeguard.
-static int may_stand(cau_step_solver *solver, double scale, double value, double objective,
-                     double noise)
+static bool may_stand(cau_step_solver *solver, double scale, double value, double objective,
+                      double noise)
 {
 	if (value <= objective + noise)
-		return 1;
+		return true;
 	if (solver->conservative || !isfinite(value))
-		return 0;
+		return false;
 	double start = dot(solver, solver->history.last_gradient, solver->trial_increment);
 	double end = dot(solver, solver->gradient, solver->trial_increment);
 	return 0.5 * scale * (start + end) <= noise + rounding(solver) * fabs(start);
 }
 
 // Takes the trial step if it may stand; else the plain step, whose slope is `slope`; else shortens
-// it. Returns 0 when nothing helps: the position is as before.
-static int take_step(cau_step_solver *solver, int accelerated, double slope, double *objective)
+// it. Returns false when nothing helps: the position is as before.
+static bool take_step(cau_step_solver *solver, bool accelerated, double slope, double *objective)
 {
 	CAU_ASSERT(!(slope > 0), "a step that leads up: %g J", slope);
 	double noise = objective_noise(solver);
@@ -124,49 +125,49 @@ static int take_step(cau_step_solver *solver, int accelerated, double slope, dou
 		noise += cau_contact_work(solver->contact, solver);
 	double scale = 1;
 	leave(solver);
-	for (int tries = 0; tries <= CAU_MAX_BACKTRACKS; ++tries) {
+	for (int tries = 0; tries <= CAU_MAX_BACKTRACKS; tries++) {
 		double value = cau_solver_evaluate_displaced(solver);
 		if (may_stand(solver, scale, value, *objective, noise)) {
 			*objective = value;
 			if (scale != 1)
 				scale_trial(solver, scale);
-			return 1;
+			return true;
 		}
 		solver->backtracks++;
 		if (accelerated) {
 			use_plain_step(solver);
-			accelerated = 0;
+			accelerated = false;
 		} else {
 			scale = shorter(scale, *objective, value, slope);
 		}
 		move_to(solver, tries < CAU_MAX_BACKTRACKS ? scale : 0);
 	}
 	*objective = cau_solver_evaluate_displaced(solver);
-	return 0;
+	return false;
 }
 
 // When the first step had to be shortened, the guess x + dt v may be far up a slope that a few
 // short steps do not come down: then the start of the tick is the better guess. From there, or from
 // a guess that is lower still, eq. 4 only falls, so that a tick never ends with more energy than it
 // began with. Returns whether it went back.
-static int go_back(cau_step_solver *solver, double *objective)
+static bool go_back(cau_step_solver *solver, double *objective)
 {
 	size_t count = (size_t)solver->tissue->vertex_count;
 	if (!solver->position_start)
-		return 0;
+		return false;
 	memcpy(solver->position_before, solver->position, 3 * count * sizeof(double));
-	for (size_t v = 0; v < count; ++v)
+	for (size_t v = 0; v < count; v++)
 		if (!solver->fixed[v])
 			memcpy(solver->position + 3 * v, solver->position_start + 3 * v, 3 * sizeof(double));
 	double value = cau_solver_evaluate(solver);
 	if (value < *objective) {
 		cau_anderson_start(solver);
 		*objective = value;
-		return 1;
+		return true;
 	}
 	memcpy(solver->position, solver->position_before, 3 * count * sizeof(double));
 	*objective = cau_solver_evaluate(solver);
-	return 0;
+	return false;
 }
 
 static double step_norm(cau_step_solver *solver)
@@ -174,9 +175,11 @@ static double step_norm(cau_step_solver *solver)
 	return sqrt(fmax(-dot(solver, solver->increment, solver->gradient), 0));
 }
 
-// Where a law has no energy the last step need not be looked at if it is too small to do harm: none
-// was taken back in this tick, and what it promises is far below the energy there is.
-static int is_harmless(const cau_step_solver *solver, double norm, double objective)
+// Where a law has no energy the last step need not be looked at if it is too small to do harm,
+// which saves an evaluation: none was taken back in this tick, and the square of its length, which
+// is what it promises to take off E, is a hundredth of E at most. Were it to add that instead, the
+// tick would not show it.
+static bool is_harmless(const cau_step_solver *solver, double norm, double objective)
 {
 	CAU_ASSERT(!(norm < 0), "a step of length %g", norm);
 	const double far_below = 0.01;
@@ -209,7 +212,7 @@ cau_status cau_solver_descend(cau_step_solver *solver, cau_error *error)
 	double objective = solver->objective, first = 0, last = 0;
 	int32_t steps = 0; // since the guess
 	cau_anderson_start(solver);
-	for (int32_t k = 0; k < solver->iterations; ++k) {
+	for (int32_t k = 0; k < solver->iterations; k++) {
 		cau_solver_global(solver);
 		double norm = step_norm(solver);
 		if (!isfinite(norm) || !isfinite(objective))
@@ -221,17 +224,19 @@ cau_status cau_solver_descend(cau_step_solver *solver, cau_error *error)
 		solver->iterations_done = k + 1;
 		if (norm == 0 || (k && solver->residual <= solver->tolerance))
 			break;
+		// Steps of an iteration that converges get shorter. Without an energy to tell a bad mix by,
+		// a step that has doubled says that the history misleads: it is forgotten.
 		if (!solver->conservative && k && norm > 2 * last)
-			cau_anderson_start(solver); // the history misleads: forget it
+			cau_anderson_start(solver);
 		last = norm;
-		int accelerated = cau_anderson_mix(solver, steps++);
+		bool accelerated = cau_anderson_mix(solver, steps++);
 		if (k + 1 == solver->iterations && is_harmless(solver, norm, objective)) {
 			leave(solver);
 			break;
 		}
 		cau_anderson_keep(solver);
-		int taken = take_step(solver, accelerated, -norm * norm, &objective);
-		int back = !k && solver->backtracks && go_back(solver, &objective);
+		bool taken = take_step(solver, accelerated, -norm * norm, &objective);
+		bool back = !k && solver->backtracks && go_back(solver, &objective);
 		if (!taken && !back)
 			break;
 		if (back)

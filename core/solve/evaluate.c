@@ -31,14 +31,14 @@ static void vertex_part(void *context, int32_t chunk)
 static double add_drag(cau_step_solver *solver)
 {
 	double energy = 0;
-	for (int32_t k = 0; k < solver->drag_count; ++k) {
+	for (int32_t k = 0; k < solver->drag_count; k++) {
 		const cau_drag *drag = &solver->drag[k];
 		CAU_ASSERT_INDEX(drag->vertex, solver->tissue->vertex_count);
 		CAU_ASSERT(drag->coefficient >= 0, "a drag of %g N/m", drag->coefficient);
 		if (solver->fixed[drag->vertex])
 			continue;
 		double pull[3];
-		for (int c = 0; c < 3; ++c) {
+		for (int c = 0; c < 3; c++) {
 			double away = solver->position[3 * drag->vertex + c] - drag->target[c];
 			energy += drag->coefficient * away * away / 2;
 			pull[c] = drag->coefficient * away;
@@ -51,7 +51,7 @@ static double add_drag(cau_step_solver *solver)
 double cau_solver_elastic_energy(const cau_step_solver *solver)
 {
 	double energy = 0;
-	for (int32_t w = 0; w < solver->slots.work_count; ++w)
+	for (int32_t w = 0; w < solver->slots.work_count; w++)
 		energy += solver->elements.energy[w];
 	return energy;
 }
@@ -89,7 +89,7 @@ static double gather(cau_step_solver *solver, double start)
 	// sums over each vertex's records, plus inertia and drag
 	cau_pool_run(solver->pool, solver->chunk_count, vertex_part, solver);
 	double energy = cau_solver_elastic_energy(solver);
-	for (int32_t k = 0; k < solver->chunk_count; ++k)
+	for (int32_t k = 0; k < solver->chunk_count; k++)
 		energy += solver->chunk_energy[k];
 	energy += add_drag(solver);
 	if (solver->now_s)

@@ -73,7 +73,7 @@ static cau_status finish_analysis(cau_factor *factor, cau_error *error)
 	if (!factor->inverse)
 		return cau_fail(error, CAU_NO_MEMORY, NULL, "no memory for a factor of %d rows", n);
 	const int *permutation = factor->l->Perm;
-	for (int32_t k = 0; k < n; ++k) {
+	for (int32_t k = 0; k < n; k++) {
 		CAU_ASSERT_INDEX(permutation[k], n);
 		factor->inverse[permutation[k]] = k;
 	}
@@ -172,10 +172,10 @@ cau_status cau_factor_refactor(cau_factor *factor, const cau_matrix *matrix, cau
 static void place_column(cau_factor *factor, int at, int count, const int32_t *row,
                          const double *value)
 {
-	for (int i = 0; i < count; ++i) {
+	for (int i = 0; i < count; i++) {
 		CAU_ASSERT_INDEX(row[i], factor->l->n);
 		int place = factor->inverse[row[i]], k = at + i;
-		for (; k > at && factor->update_row[k - 1] > place; --k) {
+		for (; k > at && factor->update_row[k - 1] > place; k--) {
 			factor->update_row[k] = factor->update_row[k - 1];
 			factor->update_value[k] = factor->update_value[k - 1];
 		}
@@ -192,7 +192,7 @@ cau_status cau_factor_update(cau_factor *factor, int32_t columns, const int32_t 
 	if (columns > CAU_UPDATE_RANK || first[columns] > CAU_UPDATE_RANK * 8)
 		return cau_fail(error, CAU_LIMIT, NULL, "an update of rank %d is above %d", columns,
 		                CAU_UPDATE_RANK);
-	for (int32_t k = 0; k < columns; ++k) {
+	for (int32_t k = 0; k < columns; k++) {
 		CAU_ASSERT(first[k] < first[k + 1], "column %d of the update has entries %d to %d", k,
 		           first[k], first[k + 1]);
 		factor->update_first[k] = first[k];
@@ -250,7 +250,7 @@ double cau_factor_least_pivot(const cau_factor *factor)
 	double least = 1e300;
 	const int *first = factor->l->p;
 	const double *x = factor->l->x;
-	for (size_t j = 0; j < factor->l->n; ++j)
+	for (size_t j = 0; j < factor->l->n; j++)
 		least = x[first[j]] < least ? x[first[j]] : least;
 	return least;
 }

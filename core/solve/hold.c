@@ -16,30 +16,30 @@ static double between(const cau_contact_set *set, int32_t i, int32_t j)
 	return set->inverse[set->row[i].column * CAU_MAX_CONTACTS + set->row[j].column];
 }
 
-// Lower triangle, by rows, over hold_row. Returns 0 if it is not positive definite.
-static int factor(cau_contact_set *set)
+// Lower triangle, by rows, over hold_row. Returns false if it is not positive definite.
+static bool factor(cau_contact_set *set)
 {
-	for (int32_t i = 0; i < set->hold_count; ++i) {
+	for (int32_t i = 0; i < set->hold_count; i++) {
 		double *at = set->hold + (size_t)i * CAU_MAX_CONTACTS;
-		for (int32_t j = 0; j <= i; ++j) {
+		for (int32_t j = 0; j <= i; j++) {
 			const double *other = set->hold + (size_t)j * CAU_MAX_CONTACTS;
 			double sum = between(set, set->hold_row[i], set->hold_row[j]);
 			if (i == j)
 				sum += 1 / tool_of(set, &set->row[set->hold_row[i]])->grasp_stiffness_n_m;
-			for (int32_t k = 0; k < j; ++k)
+			for (int32_t k = 0; k < j; k++)
 				sum -= at[k] * other[k];
 			if (i == j && !(sum > 0))
-				return 0;
+				return false;
 			at[j] = i == j ? sqrt(sum) : sum / other[j];
 		}
 	}
-	return 1;
+	return true;
 }
 
 void cau_hold_prepare(cau_contact_set *set)
 {
 	set->hold_count = 0;
-	for (int32_t i = 0; i < set->row_count; ++i)
+	for (int32_t i = 0; i < set->row_count; i++)
 		if (set->row[i].attached)
 			set->hold_row[set->hold_count++] = i;
 	if (!factor(set))
@@ -50,15 +50,15 @@ void cau_hold_prepare(cau_contact_set *set)
 static void substitute(const cau_contact_set *set, double *x)
 {
 	int32_t n = set->hold_count;
-	for (int32_t i = 0; i < n; ++i) {
+	for (int32_t i = 0; i < n; i++) {
 		const double *at = set->hold + (size_t)i * CAU_MAX_CONTACTS;
-		for (int32_t k = 0; k < i; ++k)
+		for (int32_t k = 0; k < i; k++)
 			x[i] -= at[k] * x[k];
 		x[i] /= at[i];
 	}
-	for (int32_t i = n - 1; i >= 0; --i) {
+	for (int32_t i = n - 1; i >= 0; i--) {
 		x[i] /= set->hold[(size_t)i * CAU_MAX_CONTACTS + (size_t)i];
-		for (int32_t k = 0; k < i; ++k)
+		for (int32_t k = 0; k < i; k++)
 			x[k] -= set->hold[(size_t)i * CAU_MAX_CONTACTS + (size_t)k] * x[i];
 	}
 }
@@ -67,29 +67,29 @@ static void substitute(const cau_contact_set *set, double *x)
 static void changes(const cau_contact_set *set, const cau_step_solver *solver,
                     double dr[3][CAU_MAX_CONTACTS])
 {
-	for (int32_t i = 0; i < set->hold_count; ++i) {
+	for (int32_t i = 0; i < set->hold_count; i++) {
 		int32_t at = set->hold_row[i];
 		const cau_contact_row *row = &set->row[at];
 		CAU_ASSERT(row->attached, "row %d is solved as held and is not", at);
 		double compliance = 1 / tool_of(set, row)->grasp_stiffness_n_m;
-		for (int c = 0; c < 3; ++c)
+		for (int c = 0; c < 3; c++)
 			dr[c][i] = row->anchor[c] - solver->position[3 * (size_t)row->vertex + (size_t)c] -
 			           set->step[3 * at + c] - compliance * row->reaction[c];
 	}
-	for (int c = 0; c < 3; ++c)
+	for (int c = 0; c < 3; c++)
 		substitute(set, dr[c]);
 }
 
-static int would_slip(const cau_contact_set *set, double dr[3][CAU_MAX_CONTACTS])
+static bool would_slip(const cau_contact_set *set, double dr[3][CAU_MAX_CONTACTS])
 {
-	for (int32_t i = 0; i < set->hold_count; ++i) {
+	for (int32_t i = 0; i < set->hold_count; i++) {
 		const cau_contact_row *row = &set->row[set->hold_row[i]];
 		cau_vec3 by = {dr[0][i], dr[1][i], dr[2][i]};
 		if (row->slipping ||
 		    cau_length(cau_add(cau_vec3_of(row->reaction), by)) > tool_of(set, row)->slip_force_n)
-			return 1;
+			return true;
 	}
-	return 0;
+	return false;
 }
 
 void cau_hold_solve(cau_contact_set *set, const cau_step_solver *solver)
@@ -101,13 +101,13 @@ void cau_hold_solve(cau_contact_set *set, const cau_step_solver *solver)
 	changes(set, solver, dr);
 	if (would_slip(set, dr))
 		return;
-	for (int32_t i = 0; i < set->hold_count; ++i)
-		for (int c = 0; c < 3; ++c)
+	for (int32_t i = 0; i < set->hold_count; i++)
+		for (int c = 0; c < 3; c++)
 			set->row[set->hold_row[i]].reaction[c] += dr[c][i];
-	for (int32_t j = 0; j < set->row_count; ++j)
-		for (int32_t i = 0; i < set->hold_count; ++i) {
+	for (int32_t j = 0; j < set->row_count; j++)
+		for (int32_t i = 0; i < set->hold_count; i++) {
 			double share = between(set, j, set->hold_row[i]);
-			for (int c = 0; c < 3; ++c)
+			for (int c = 0; c < 3; c++)
 				set->step[3 * j + c] += share * dr[c][i];
 		}
 }

@@ -45,7 +45,7 @@ static void forward_task(void *context, int32_t task)
 	const cau_step_solver *solver = ((sweep_run *)context)->solver;
 	const cau_sweep *sweep = &solver->sweep;
 	solver->kernels->vectors->clear_sums(sweep, task);
-	for (int32_t s = sweep->task_first[task]; s < sweep->task_last[task]; ++s)
+	for (int32_t s = sweep->task_first[task]; s < sweep->task_last[task]; s++)
 		solver->kernels->forward(sweep, s);
 }
 
@@ -53,7 +53,7 @@ static void backward_task(void *context, int32_t task)
 {
 	const cau_step_solver *solver = ((sweep_run *)context)->solver;
 	const cau_sweep *sweep = &solver->sweep;
-	for (int32_t s = sweep->task_last[task] - 1; s >= sweep->task_first[task]; --s)
+	for (int32_t s = sweep->task_last[task] - 1; s >= sweep->task_first[task]; s--)
 		solver->kernels->backward(sweep, s);
 }
 
@@ -62,9 +62,9 @@ static void forward_sweep(sweep_run *run)
 	const cau_step_solver *solver = run->solver;
 	const cau_sweep *sweep = &solver->sweep;
 	cau_pool_run(solver->pool, sweep->task_count, forward_task, run);
-	for (int32_t task = 0; task < sweep->task_count; ++task) // in their order
+	for (int32_t task = 0; task < sweep->task_count; task++) // in their order
 		solver->kernels->vectors->add_sums(sweep, task);
-	for (int32_t i = 0; i < sweep->top_node_count; ++i)
+	for (int32_t i = 0; i < sweep->top_node_count; i++)
 		solver->kernels->forward(sweep, sweep->top_node[i]);
 }
 
@@ -72,7 +72,7 @@ static void backward_sweep(sweep_run *run)
 {
 	const cau_step_solver *solver = run->solver;
 	const cau_sweep *sweep = &solver->sweep;
-	for (int32_t i = sweep->top_node_count - 1; i >= 0; --i)
+	for (int32_t i = sweep->top_node_count - 1; i >= 0; i--)
 		solver->kernels->backward(sweep, sweep->top_node[i]);
 	cau_pool_run(solver->pool, sweep->task_count, backward_task, run);
 }

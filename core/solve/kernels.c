@@ -23,13 +23,13 @@ INLINE void take_displacement(const cau_elements *elements, const cau_local_work
 	           "records %d + %d of %d", work->first_record, work->record_count,
 	           elements->record_count);
 	const int32_t *vertex = elements->record_vertex + work->first_record;
-	for (int32_t r = 0; r < work->record_count; ++r)
+	for (int32_t r = 0; r < work->record_count; r++)
 		((vertex_reals *)taken)[r] =
 			*(const vertex_reals *)((const real *)displacement + vertex[r]);
 }
 
 static void local(const cau_elements *elements, const cau_local_work *work,
-                  const cau_reals *displacement, int diagonal)
+                  const cau_reals *displacement, bool diagonal)
 {
 	CAU_ASSERT_INDEX(work->kind, CAU_ELEMENT_KINDS);
 	CAU_ASSERT(work->last - work->first <= CAU_SHARE, "a share of slots %d to %d", work->first,
@@ -76,9 +76,9 @@ static void sum(const cau_elements *elements, const cau_incidence *incidence, in
 	const vertex_reals *record = elements->gradient;
 	int far = elements->record_count > NEAR; // more than the nearer caches keep
 	vertex_reals *out = (vertex_reals *)gradient;
-	for (int32_t v = first; v < last; ++v) {
+	for (int32_t v = first; v < last; v++) {
 		vertex_reals total = {0};
-		for (int32_t k = incidence->first[v]; k < incidence->first[v + 1]; ++k) {
+		for (int32_t k = incidence->first[v]; k < incidence->first[v + 1]; k++) {
 			CAU_ASSERT_INDEX(incidence->record[k], elements->record_count);
 			if (far)
 				__builtin_prefetch(record + incidence->record[k + CAU_RECORDS_AHEAD]);
@@ -131,7 +131,7 @@ static double dot(const cau_reals *a, const cau_reals *b, int64_t first, int64_t
 			strip += v_load(x + i, k) * v_load(y + i, k);
 		total += v_sum(strip);
 	}
-	for (; i < n; ++i)
+	for (; i < n; i++)
 		total += (double)x[i] * (double)y[i];
 	return total;
 }
@@ -141,7 +141,7 @@ static void add_scaled(cau_reals *y, double s, const cau_reals *x, int64_t n)
 	real *out = (real *)y;
 	const real *in = (const real *)x;
 	real scale = (real)s;
-	for (int64_t i = 0; i < n; ++i)
+	for (int64_t i = 0; i < n; i++)
 		out[i] += scale * in[i];
 }
 
@@ -156,13 +156,13 @@ INLINE void add_strip(const cau_history *history, int64_t at, int32_t n, double 
 			   *step = (const real *)history->step + at;
 	real *df = (real *)history->df[history->newest] + at,
 		 *h = (real *)history->h[history->newest] + at;
-	for (int32_t k = 0; k < n; ++k) {
+	for (int32_t k = 0; k < n; k++) {
 		real d = f[k] - f_last[k];
 		df[k] = d;
 		h[k] = step[k] + d;
 		dg[k] = g[k] - g_last[k];
 	}
-	for (int32_t j = 0; j < history->count; ++j) {
+	for (int32_t j = 0; j < history->count; j++) {
 		const real *column = (const real *)history->df[j] + at;
 		vreal with_dg = v_set(0), with_g = v_set(0);
 		int32_t k = 0;
@@ -172,7 +172,7 @@ INLINE void add_strip(const cau_history *history, int64_t at, int32_t n, double 
 			with_g += c * v_load(g, k);
 		}
 		double tail_dg = 0, tail_g = 0;
-		for (; k < n; ++k) {
+		for (; k < n; k++) {
 			tail_dg += (double)column[k] * (double)dg[k];
 			tail_g += (double)column[k] * (double)g[k];
 		}
@@ -184,7 +184,7 @@ INLINE void add_strip(const cau_history *history, int64_t at, int32_t n, double 
 static void add_column(const cau_history *history, int64_t first, int64_t n, double *dot)
 {
 	CAU_ASSERT_INDEX(history->newest, history->count);
-	for (int32_t j = 0; j < 2 * CAU_ANDERSON_WINDOW; ++j)
+	for (int32_t j = 0; j < 2 * CAU_ANDERSON_WINDOW; j++)
 		dot[j] = 0;
 	for (int64_t at = 0; at < n; at += STRIP)
 		add_strip(history, first + at, (int32_t)(n - at < STRIP ? n - at : STRIP), dot);
@@ -197,10 +197,10 @@ static void combine(const cau_history *history, int64_t first, int64_t n, const 
 	const real *f = (const real *)history->increment + first;
 	real *step = (real *)history->step + first;
 	memcpy(step, f, (size_t)n * sizeof *step);
-	for (int32_t j = 0; j < history->count; ++j) {
+	for (int32_t j = 0; j < history->count; j++) {
 		const real *h = (const real *)history->h[j] + first;
 		real w = (real)weight[j];
-		for (int64_t k = 0; k < n; ++k)
+		for (int64_t k = 0; k < n; k++)
 			step[k] -= w * h[k];
 	}
 }
@@ -211,7 +211,7 @@ static void spread(cau_reals *increment, const cau_reals *column, const double f
 	vertex_reals *out = (vertex_reals *)increment;
 	const real *weight = (const real *)column;
 	vertex_reals f = {(real)force[0], (real)force[1], (real)force[2], 0};
-	for (int32_t v = first; v < last; ++v)
+	for (int32_t v = first; v < last; v++)
 		out[v] += weight[v] * f;
 }
 

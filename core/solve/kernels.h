@@ -34,12 +34,12 @@ typedef struct cau_history {
 
 typedef struct cau_kernels {
 	const char *instruction_set;
-	int single;
+	bool single;
 	const cau_vectors *vectors; // of the same precision
 
 	// Records (N) and energy (J) of the elements in `work`, at displacement u (m).
 	void (*local)(const cau_elements *elements, const cau_local_work *work,
-	              const cau_reals *displacement, int diagonal);
+	              const cau_reals *displacement, bool diagonal);
 	// After a step: plastic flow; returns the number of inverted tetrahedra.
 	int32_t (*settle)(const cau_elements *elements, const cau_local_work *work,
 	                  const cau_reals *displacement);
@@ -68,4 +68,4 @@ typedef struct cau_kernels {
 
 // The best table this processor runs, not above `ceiling` ("baseline", "avx2", "avx512"; NULL: no
 // ceiling).
-const cau_kernels *cau_kernels_choose(int single, const char *ceiling);
+const cau_kernels *cau_kernels_choose(bool single, const char *ceiling);

@@ -10,15 +10,15 @@ extern const cau_kernels cau_kernels_single_avx512, cau_kernels_double_avx512;
 #endif
 
 #if defined(__x86_64__)
-static int allowed(const char *tier, const char *ceiling)
+static bool allowed(const char *tier, const char *ceiling)
 {
 	if (!ceiling || !*ceiling || !strcmp(ceiling, tier))
-		return 1;
+		return true;
 	return !strcmp(ceiling, "avx512") && !strcmp(tier, "avx2");
 }
 #endif
 
-const cau_kernels *cau_kernels_choose(int single, const char *ceiling)
+const cau_kernels *cau_kernels_choose(bool single, const char *ceiling)
 {
 #if defined(__x86_64__)
 	if (__builtin_cpu_supports("avx512f") && __builtin_cpu_supports("avx512dq") &&

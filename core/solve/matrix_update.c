@@ -18,14 +18,14 @@ static cau_status no_memory(cau_error *error)
 static void copy_alive(uint8_t *const to[CAU_ELEMENT_KINDS], const cau_alive *alive,
                        const cau_tissue *tissue)
 {
-	for (int kind = 0; kind < CAU_ELEMENT_KINDS; ++kind)
+	for (int kind = 0; kind < CAU_ELEMENT_KINDS; kind++)
 		memcpy(to[kind], alive->element[kind], (size_t)cau_tissue_element_count(tissue, kind));
 }
 
 static double least_mass_pivot(const cau_step_solver *solver)
 {
 	double least = INFINITY;
-	for (int32_t r = 0; r < solver->system.row_count; ++r)
+	for (int32_t r = 0; r < solver->system.row_count; r++)
 		least = fmin(least, solver->tissue->mass[solver->system.vertex_of_row[r]]);
 	return least / (2 * solver->step_s * solver->step_s);
 }
@@ -37,8 +37,8 @@ cau_status cau_matrix_update_create(cau_matrix_update *update, cau_step_solver *
 	           update->waiting_capacity);
 	const cau_tissue *tissue = solver->tissue;
 	update->solver = solver;
-	int missing = 0;
-	for (int kind = 0; kind < CAU_ELEMENT_KINDS; ++kind) {
+	bool missing = false;
+	for (int kind = 0; kind < CAU_ELEMENT_KINDS; kind++) {
 		size_t count = (size_t)cau_tissue_element_count(tissue, kind);
 		update->canonical[kind] = cau_arena_array(arena, count, 1);
 		update->next_canonical[kind] = cau_arena_array(arena, count, 1);
@@ -85,7 +85,7 @@ static void take_off_diagonal(cau_step_solver *solver, int kind, int32_t element
 	cau_tissue_element_map(solver->tissue, kind, element, &map);
 	double omega = map.weight * cau_element_map_scale(&map);
 	CAU_ASSERT(omega >= 0, "element %d of kind %d adds %g N/m", element, kind, omega);
-	for (int k = 0; k < map.vertex_count; ++k) {
+	for (int k = 0; k < map.vertex_count; k++) {
 		int32_t v = map.vertex[k];
 		double inertia = solver->tissue->mass[v] / (solver->step_s * solver->step_s);
 		solver->system.diagonal[v] = fmax(solver->system.diagonal[v] - omega, inertia);
@@ -111,7 +111,7 @@ static void forget_waiting(cau_matrix_update *update, int32_t count, uint64_t ti
 	CAU_ASSERT(!count || tick >= update->waiting[count - 1].tick, "tick %llu comes after tick %llu",
 	           (unsigned long long)update->waiting[count ? count - 1 : 0].tick,
 	           (unsigned long long)tick);
-	for (int32_t k = 0; k < count; ++k)
+	for (int32_t k = 0; k < count; k++)
 		if (tick - update->waiting[k].tick > update->longest_wait)
 			update->longest_wait = tick - update->waiting[k].tick;
 	update->waiting_count -= count;
@@ -128,7 +128,7 @@ static int32_t fill_update(const cau_matrix_update *update, const cau_waiting *l
 {
 	int32_t taken = 0;
 	*columns = first[0] = 0;
-	for (; taken < count; ++taken) {
+	for (; taken < count; taken++) {
 		cau_element_map map;
 		cau_tissue_element_map(update->solver->tissue, list[taken].kind, list[taken].element, &map);
 		CAU_ASSERT(map.rank >= 1 && map.rank <= CAU_UPDATE_RANK, "an element of rank %d", map.rank);
@@ -144,7 +144,7 @@ static int32_t fill_update(const cau_matrix_update *update, const cau_waiting *l
 static void mark_columns(cau_matrix_update *update, int32_t entries, const int32_t *row,
                          const int32_t *place_of_row)
 {
-	for (int32_t k = 0; k < entries; ++k)
+	for (int32_t k = 0; k < entries; k++)
 		cau_sweep_mark_path(&update->solver->sweep, place_of_row[row[k]], update->touched);
 }
 
@@ -181,7 +181,7 @@ static void note_operations(cau_matrix_update *update, const cau_waiting *list, 
 {
 	CAU_ASSERT(update->operation_count + count <= CAU_DOWNDATES_AT_MOST,
 	           "%d elements out, and %d more", update->operation_count, count);
-	for (int32_t k = 0; k < count; ++k)
+	for (int32_t k = 0; k < count; k++)
 		update->operation[update->operation_count++] =
 			(cau_operation){list[k].kind, list[k].element, update->group_count};
 	update->group_count++;
@@ -208,7 +208,7 @@ void cau_matrix_update_take_out(void *context)
 	           "%d updates are due", update->updates_due);
 	update->due_status = CAU_OK;
 	update->done = 0;
-	for (int i = 0; i < update->updates_due && update->done < update->waiting_count; ++i) {
+	for (int i = 0; i < update->updates_due && update->done < update->waiting_count; i++) {
 		const cau_waiting *list = update->waiting + update->done;
 		int32_t taken = 0;
 		update->due_status = cau_matrix_update_downdate(
@@ -269,7 +269,7 @@ void cau_matrix_update_start(cau_matrix_update *update, uint64_t swap_tick)
 	           "the diagonal system has no factor to make, for tick %llu",
 	           (unsigned long long)swap_tick);
 	cau_background_wait(update->background); // for the release of old panels
-	update->making = 1;
+	update->making = true;
 	update->swap_tick = swap_tick;
 	cau_background_start(update->background, make_next, update);
 }
@@ -281,7 +281,7 @@ static cau_status swap(cau_matrix_update *update, uint64_t tick, cau_error *erro
 	CAU_ASSERT(update->waiting_at_start <= update->waiting_count, "%d waited at the start, %d now",
 	           update->waiting_at_start, update->waiting_count);
 	cau_background_wait(update->background);
-	update->making = 0;
+	update->making = false;
 	if (update->next_status)
 		return cau_fail(error, update->next_status, NULL, "the system could not be factored anew");
 	cau_step_solver *solver = update->solver;
@@ -290,7 +290,7 @@ static cau_status swap(cau_matrix_update *update, uint64_t tick, cau_error *erro
 	else
 		cau_sweep_pack(&solver->sweep, solver->factor);
 	solver->factor_version++;
-	for (int kind = 0; kind < CAU_ELEMENT_KINDS; ++kind) {
+	for (int kind = 0; kind < CAU_ELEMENT_KINDS; kind++) {
 		uint8_t *canonical = update->canonical[kind];
 		update->canonical[kind] = update->next_canonical[kind];
 		update->next_canonical[kind] = canonical;
@@ -309,7 +309,7 @@ static uint64_t swap_delay(const cau_matrix_update *update)
 }
 
 // More than two ticks take out for certain.
-static int too_many(const cau_matrix_update *update)
+static bool too_many(const cau_matrix_update *update)
 {
 	return update->waiting_count > 2 * CAU_MOST_UPDATES * PER_UPDATE;
 }
@@ -329,7 +329,7 @@ static void serve(cau_matrix_update *update, const cau_alive *alive, uint64_t ti
 {
 	CAU_ASSERT(!update->making && update->waiting_count > 0, "%d elements to serve",
 	           update->waiting_count);
-	int worn = update->operation_count + update->waiting_count > CAU_DOWNDATES_AT_MOST;
+	bool worn = update->operation_count + update->waiting_count > CAU_DOWNDATES_AT_MOST;
 	if (!too_many(update) && !worn) {
 		update->updates_due = updates_due(update, tick);
 		return;
@@ -348,7 +348,7 @@ cau_status cau_matrix_update_begin(cau_matrix_update *update, const cau_alive *a
 		return CAU_OK;
 	}
 	cau_status status = CAU_OK;
-	int due = update->making && tick >= update->swap_tick;
+	bool due = update->making && tick >= update->swap_tick;
 	if (due)
 		status = swap(update, tick, error);
 	if (!status && !update->making && update->waiting_count)
@@ -368,7 +368,7 @@ void cau_matrix_update_stop(cau_matrix_update *update)
 {
 	cau_matrix_update_await(update);
 	cau_sweep_finish_panels(&update->next_panels);
-	update->making = 0;
+	update->making = false;
 }
 
 cau_status cau_matrix_update_refactor(cau_matrix_update *update, const cau_alive *alive,

@@ -37,7 +37,7 @@ typedef struct cau_matrix_update {
 	cau_operation *operation;              // (CAU_DOWNDATES_AT_MOST): which, in order
 	uint8_t *canonical[CAU_ELEMENT_KINDS]; // alive at the last canonical factorisation
 	// The factor in the making.
-	int making;
+	bool making;
 	uint64_t swap_tick;
 	int32_t waiting_at_start; // the first of `waiting` that it takes care of
 	uint8_t *next_canonical[CAU_ELEMENT_KINDS];

@@ -33,10 +33,10 @@ static double pack_gather(const cau_sweep *sweep, const cau_supernode *node,
 	dense->block = (real *)sweep->dense + part * sweep->max_dense;
 	dense->w = dense->block + (int64_t)columns * columns;
 	double least = INFINITY;
-	for (int32_t i = 0; i < node->rows; ++i)
+	for (int32_t i = 0; i < node->rows; i++)
 		row_place[sweep->row_global[node->row + i]] = columns + i;
 	memset(dense->block, 0, (size_t)columns * (size_t)(columns + stride) * sizeof(real));
-	for (int32_t j = 0; j < columns; ++j) {
+	for (int32_t j = 0; j < columns; j++) {
 		const int32_t *row;
 		const double *value;
 		double pivot;
@@ -45,7 +45,7 @@ static double pack_gather(const cau_sweep *sweep, const cau_supernode *node,
 		d_inverse[node->first + j] = (real)(1 / pivot);
 		least = fmin(least, pivot);
 		w[j] = -1;
-		for (int32_t k = 0; k < count; ++k) {
+		for (int32_t k = 0; k < count; k++) {
 			int32_t local = row[k] - node->first;
 			if (local < columns)
 				block[local] = (real)value[k];
@@ -62,16 +62,16 @@ INLINE void pack_columns(const real *block, int32_t columns, int32_t last, int32
                          int count, pack_rows *x)
 {
 	pack_rows sum[PACK_COLUMNS];
-	for (int k = 0; k < count; ++k)
+	for (int k = 0; k < count; k++)
 		sum[k] = x[last_of - k];
-	for (int32_t i = last_of + 1; i < last; ++i)
-		for (int k = 0; k < count; ++k)
-			for (int v = 0; v < PACK_VECTORS; ++v)
+	for (int32_t i = last_of + 1; i < last; i++)
+		for (int k = 0; k < count; k++)
+			for (int v = 0; v < PACK_VECTORS; v++)
 				sum[k].v[v] -= block[(int64_t)(last_of - k) * columns + i] * x[i].v[v];
-	for (int k = 0; k < count; ++k) {
+	for (int k = 0; k < count; k++) {
 		x[last_of - k] = sum[k];
-		for (int m = k + 1; m < count; ++m)
-			for (int v = 0; v < PACK_VECTORS; ++v)
+		for (int m = k + 1; m < count; m++)
+			for (int v = 0; v < PACK_VECTORS; v++)
 				sum[m].v[v] -= block[(int64_t)(last_of - m) * columns + last_of - k] * sum[k].v[v];
 	}
 }
@@ -82,37 +82,37 @@ static void pack_multiply(const cau_supernode *node, const pack_dense *dense, re
 	pack_rows x[CAU_NODE_COLUMNS];
 	vreal most[CAU_NODE_COLUMNS];
 	int32_t columns = node->columns, rows = columns + node->rows;
-	for (int32_t j = 0; j < columns; ++j)
+	for (int32_t j = 0; j < columns; j++)
 		most[j] = v_set(0);
 	for (int32_t row = 0; row < rows; row += PACK_ROWS) {
 		int32_t last = row + PACK_ROWS < columns ? row + PACK_ROWS : columns, j = last - 1;
-		for (int32_t k = 0; k < last; ++k)
+		for (int32_t k = 0; k < last; k++)
 			memcpy(&x[k], dense->w + (int64_t)k * node->padded_rows + row, sizeof x[k]);
-		for (; (j + 1) % PACK_COLUMNS; --j)
+		for (; (j + 1) % PACK_COLUMNS; j--)
 			pack_columns(dense->block, columns, last, j, 1, x);
 		for (; j > 0; j -= PACK_COLUMNS)
 			pack_columns(dense->block, columns, last, j, PACK_COLUMNS, x);
-		for (int32_t k = row; k < last; ++k)
+		for (int32_t k = row; k < last; k++)
 			((real *)&x[k])[k - row] = 0;
-		for (int32_t k = 0; k < last; ++k) {
-			for (int v = 0; v < PACK_VECTORS; ++v)
+		for (int32_t k = 0; k < last; k++) {
+			for (int v = 0; v < PACK_VECTORS; v++)
 				most[k] = v_max(most[k], v_abs(x[k].v[v]));
 			memcpy(dense->w + (int64_t)k * node->padded_rows + row, &x[k], sizeof x[k]);
 		}
 	}
-	for (int32_t j = 0; j < columns; ++j) {
+	for (int32_t j = 0; j < columns; j++) {
 		largest[j] = 0;
-		for (int l = 0; l < LANES; ++l)
+		for (int l = 0; l < LANES; l++)
 			largest[j] = most[j][l] > largest[j] ? most[j][l] : largest[j];
 	}
 }
 
 // Sixteen entries of W' as they are stored: narrow ones of a column by one scale, its largest entry
 // over NARROW_MOST.
-INLINE void pack_store(const real *in, real inverse_scale, void *out, int narrow)
+INLINE void pack_store(const real *in, real inverse_scale, void *out, bool narrow)
 {
 	const real up = NARROW_MOST + (real)1.5; // positive, and half a step more: truncation rounds
-	for (int v = 0; v < PACK_VECTORS; ++v) {
+	for (int v = 0; v < PACK_VECTORS; v++) {
 		vreal w = v_load(in, v * LANES);
 		if (narrow) {
 			vmask whole = __builtin_convertvector(w * inverse_scale + up, vmask);
@@ -129,20 +129,20 @@ INLINE void pack_store(const real *in, real inverse_scale, void *out, int narrow
 static double pack_node(const cau_sweep *sweep, const cau_supernode *node, const cau_factor *factor,
                         const cau_sweep_panels *panels, int32_t part)
 {
-	int narrow = sweep->narrow;
+	bool narrow = sweep->narrow;
 	char *panel = (char *)panels->panel + (size_t)node->panel * cau_sweep_entry_bytes(sweep);
 	real inverse[CAU_NODE_COLUMNS], *scale = (real *)panels->scale + node->first;
 	int32_t columns = node->columns, rows = columns + node->rows;
 	pack_dense dense;
 	double least = pack_gather(sweep, node, factor, (real *)panels->d_inverse, part, &dense);
 	pack_multiply(node, &dense, inverse);
-	for (int32_t j = 0; j < columns; ++j) {
+	for (int32_t j = 0; j < columns; j++) {
 		scale[j] = narrow ? inverse[j] / NARROW_MOST : 1;
 		inverse[j] = inverse[j] > REAL_TINY ? NARROW_MOST / inverse[j] : 0;
 	}
 	for (int32_t row = 0; row < rows; row += PACK_ROWS) {
 		int32_t last = row + PACK_ROWS < columns ? row + PACK_ROWS : columns;
-		for (int32_t j = 0; j < last; ++j) {
+		for (int32_t j = 0; j < last; j++) {
 			int64_t entry = (int64_t)j * node->padded_rows + row;
 			pack_store(dense.w + entry, inverse[j],
 			           panel + (size_t)entry * cau_sweep_entry_bytes(sweep), narrow);

@@ -12,12 +12,12 @@ static cau_status no_memory(cau_error *error)
 	return cau_fail(error, CAU_NO_MEMORY, NULL, "no memory for the solver");
 }
 
-static int is_linearised(int limit, int projection)
+static bool is_linearised(int limit, int projection)
 {
 	return limit == CAU_LIMIT_TARGET && projection == CAU_PROJECTION_LINEARISED;
 }
 
-static int has_energy(const cau_layer_def *layer, int32_t material)
+static bool has_energy(const cau_layer_def *layer, int32_t material)
 {
 	CAU_ASSERT_INDEX(material, layer->material_count);
 	if (layer->kind == CAU_LAYER_FAT) {
@@ -30,12 +30,12 @@ static int has_energy(const cau_layer_def *layer, int32_t material)
 
 // Linearised limits and the printed energy constraint are not gradients of any energy; nor is the
 // printed position projection.
-int cau_solver_is_conservative(const cau_tissue *tissue, int diagonal)
+bool cau_solver_is_conservative(const cau_tissue *tissue, bool diagonal)
 {
-	for (int32_t i = 0; i < tissue->layer_count; ++i)
-		for (int32_t m = 0; m < tissue->layer[i].def.material_count; ++m)
+	for (int32_t i = 0; i < tissue->layer_count; i++)
+		for (int32_t m = 0; m < tissue->layer[i].def.material_count; m++)
 			if (!has_energy(&tissue->layer[i].def, m))
-				return 0;
+				return false;
 	return !diagonal;
 }
 
@@ -46,10 +46,10 @@ static cau_status allocate_vectors(cau_step_solver *solver, cau_arena *arena, ca
 	cau_reals **vectors[] = {&solver->displacement,    &solver->gradient,
 	                         &solver->increment,       &solver->trial_increment,
 	                         &history->last_increment, &history->last_gradient};
-	for (size_t i = 0; i < sizeof vectors / sizeof *vectors; ++i)
+	for (size_t i = 0; i < sizeof vectors / sizeof *vectors; i++)
 		if (!(*vectors[i] = cau_arena_array(arena, 4 * n, size)))
 			return no_memory(error);
-	for (int j = 0; j < CAU_ANDERSON_WINDOW; ++j) {
+	for (int j = 0; j < CAU_ANDERSON_WINDOW; j++) {
 		history->df[j] = cau_arena_array(arena, 4 * n, size);
 		history->h[j] = cau_arena_array(arena, 4 * n, size);
 		if (!history->df[j] || !history->h[j])
@@ -84,7 +84,7 @@ cau_status cau_solver_create(cau_step_solver *solver, const cau_scene_def *scene
 {
 	CAU_ASSERT_INDEX(scene->precision, CAU_PRECISION_COUNT);
 	CAU_ASSERT_INDEX(scene->solver, CAU_SOLVER_COUNT);
-	int single = scene->precision == CAU_PRECISION_SINGLE;
+	bool single = scene->precision == CAU_PRECISION_SINGLE;
 	CAU_ASSERT(solver->kernels && solver->kernels->single == single,
 	           "kernels of the wrong precision, not %d", single);
 	solver->tissue = tissue;
@@ -111,7 +111,7 @@ cau_status cau_solver_analyse(cau_step_solver *solver, const cau_alive *alive,
 	CAU_ASSERT(!solver->factor, "%d rows are factored twice", solver->system.row_count);
 	cau_system_assemble_diagonal(&solver->system, solver->tissue, alive, solver->step_s);
 	if (solver->diagonal || !solver->system.row_count) {
-		solver->diagonal = 1;
+		solver->diagonal = true;
 		return CAU_OK;
 	}
 	cau_system_assemble(&solver->system, solver->tissue, alive, solver->step_s,

@@ -40,8 +40,8 @@ struct cau_step_solver {
 	uint64_t factor_version; // counts every change of the factor
 	uint64_t factor_epoch;   // counts those that leave nothing of the old one
 
-	int diagonal;     // CAU_SOLVER_DIAGONAL
-	int conservative; // every law is the gradient of an energy
+	bool diagonal;     // CAU_SOLVER_DIAGONAL
+	bool conservative; // every law is the gradient of an energy
 	int32_t iterations;
 	double tolerance, step_s;
 	const uint8_t *fixed; // (vertex_count): pinned or frozen
@@ -88,7 +88,7 @@ cau_status cau_solver_factor(cau_step_solver *solver, const cau_alive *alive,
 void cau_solver_finish(cau_step_solver *solver);
 
 // Whether every law of the tissue is the gradient of an energy.
-int cau_solver_is_conservative(const cau_tissue *tissue, int diagonal);
+bool cau_solver_is_conservative(const cau_tissue *tissue, bool diagonal);
 
 // Solves the step from the guess in solver->position. CAU_NUMERICAL if the state is not finite.
 cau_status cau_solver_run(cau_step_solver *solver, cau_error *error);
@@ -119,5 +119,5 @@ int32_t cau_solver_chunk_end(const cau_step_solver *solver, int32_t chunk, int32
 // anderson.c: trial_increment from increment and the history of this step. What is mixed is kept,
 // once it is done with, by giving the next increment and gradient other arrays.
 void cau_anderson_start(cau_step_solver *solver);
-int cau_anderson_mix(cau_step_solver *solver, int32_t iteration);
+bool cau_anderson_mix(cau_step_solver *solver, int32_t iteration);
 void cau_anderson_keep(cau_step_solver *solver);

@@ -29,13 +29,13 @@ static int32_t rows_below(const cau_factor *factor, int32_t first, int32_t last,
                           int32_t stamp, int32_t *out)
 {
 	int32_t count = 0;
-	for (int32_t j = first; j < last; ++j) {
+	for (int32_t j = first; j < last; j++) {
 		const int32_t *row;
 		const double *value;
 		double pivot;
 		int32_t n = cau_factor_column(factor, j, &row, &value, &pivot);
 		CAU_ASSERT(!n || row[0] > j, "column %d begins with row %d", j, row[0]);
-		for (int32_t k = 0; k < n; ++k)
+		for (int32_t k = 0; k < n; k++)
 			if (row[k] >= last && mark[row[k]] != stamp) {
 				mark[row[k]] = stamp;
 				if (out)
@@ -64,7 +64,7 @@ static int32_t column_count(const cau_factor *factor, int32_t j)
 
 // Whether two neighbouring drafts are better held as one dense block than as two: few zeros are
 // added.
-static int worth_merging(int64_t columns, int64_t rows, int64_t entries)
+static bool worth_merging(int64_t columns, int64_t rows, int64_t entries)
 {
 	CAU_ASSERT(columns > 0 && rows >= 0 && entries > 0, "%lld columns, %lld rows, %lld entries",
 	           (long long)columns, (long long)rows, (long long)entries);
@@ -77,9 +77,9 @@ static int worth_merging(int64_t columns, int64_t rows, int64_t entries)
 static int32_t shape(const cau_factor *factor, draft *drafts, int32_t *subtree_first, int32_t *mark)
 {
 	int32_t n = cau_factor_size(factor), count = 0;
-	for (int32_t j = 0; j < n; ++j)
+	for (int32_t j = 0; j < n; j++)
 		subtree_first[j] = j;
-	for (int32_t j = 0; j < n; ++j) {
+	for (int32_t j = 0; j < n; j++) {
 		int32_t parent = column_parent(factor, j);
 		CAU_ASSERT(parent < 0 || parent > j, "column %d under column %d", j, parent);
 		if (parent >= 0 && subtree_first[j] < subtree_first[parent])
@@ -87,7 +87,7 @@ static int32_t shape(const cau_factor *factor, draft *drafts, int32_t *subtree_f
 	}
 	int32_t stamp = 0;
 	memset(mark, -1, (size_t)n * sizeof *mark);
-	for (int32_t j = 0; j < n; ++j) {
+	for (int32_t j = 0; j < n; j++) {
 		int64_t entries = 1 + column_count(factor, j);
 		if (j + 1 - subtree_first[j] <= LEAF_COLUMNS) {
 			int64_t sum = entries;
@@ -119,7 +119,7 @@ static void sort_rows(int32_t *row, int32_t count)
 {
 	CAU_ASSERT(count >= 0, "%d rows", count);
 	for (int32_t gap = count / 2; gap > 0; gap /= 2)
-		for (int32_t i = gap; i < count; ++i) {
+		for (int32_t i = gap; i < count; i++) {
 			int32_t value = row[i], k = i;
 			for (; k >= gap && row[k - gap] > value; k -= gap)
 				row[k] = row[k - gap];
@@ -133,35 +133,35 @@ static void choose_tasks(cau_sweep *sweep, const int64_t *subtree_work,
                          const int32_t *subtree_first)
 {
 	int32_t count = sweep->supernode_count, candidates[CAU_SWEEP_TASKS], used = 0;
-	for (int32_t s = count - 1; s >= 0 && used < CAU_SWEEP_TASKS; --s)
+	for (int32_t s = count - 1; s >= 0 && used < CAU_SWEEP_TASKS; s--)
 		if (sweep->supernode[s].parent < 0)
 			candidates[used++] = s;
 	for (;;) { // open the largest subtree while there is room for its children
 		int32_t largest = -1;
-		for (int32_t i = 0; i < used; ++i)
+		for (int32_t i = 0; i < used; i++)
 			if (subtree_first[candidates[i]] < candidates[i] &&
 			    (largest < 0 || subtree_work[candidates[i]] > subtree_work[candidates[largest]]))
 				largest = i;
 		if (largest < 0)
 			break;
 		int32_t node = candidates[largest], children = 0;
-		for (int32_t s = subtree_first[node]; s < node; ++s)
+		for (int32_t s = subtree_first[node]; s < node; s++)
 			children += sweep->supernode[s].parent == node;
 		if (used - 1 + children > CAU_SWEEP_TASKS)
 			break;
 		candidates[largest] = candidates[--used];
 		CAU_ASSERT(used >= 0 && used + children <= CAU_SWEEP_TASKS, "%d tasks and %d more", used,
 		           children);
-		for (int32_t s = subtree_first[node]; s < node; ++s)
+		for (int32_t s = subtree_first[node]; s < node; s++)
 			if (sweep->supernode[s].parent == node)
 				candidates[used++] = s;
 	}
 	sort_rows(candidates, used);
 	sweep->task_count = used;
-	for (int32_t i = 0; i < used; ++i) {
+	for (int32_t i = 0; i < used; i++) {
 		sweep->task_first[i] = subtree_first[candidates[i]];
 		sweep->task_last[i] = candidates[i] + 1;
-		for (int32_t s = sweep->task_first[i]; s < sweep->task_last[i]; ++s)
+		for (int32_t s = sweep->task_first[i]; s < sweep->task_last[i]; s++)
 			sweep->supernode[s].task = i;
 	}
 }
@@ -169,11 +169,11 @@ static void choose_tasks(cau_sweep *sweep, const int64_t *subtree_work,
 // Parents, subtree ranges and work of the supernode tree, then the tasks.
 static void link_tree(cau_sweep *sweep, int64_t *work, int32_t *first)
 {
-	for (int32_t s = 0; s < sweep->supernode_count; ++s) {
+	for (int32_t s = 0; s < sweep->supernode_count; s++) {
 		first[s] = s;
 		work[s] = (int64_t)sweep->supernode[s].padded_rows * sweep->supernode[s].columns;
 	}
-	for (int32_t s = 0; s < sweep->supernode_count; ++s) {
+	for (int32_t s = 0; s < sweep->supernode_count; s++) {
 		cau_supernode *node = &sweep->supernode[s];
 		node->task = -1;
 		node->parent = node->rows ? sweep->column_node[sweep->row_global[node->row]] : -1;
@@ -191,12 +191,12 @@ static void link_tree(cau_sweep *sweep, int64_t *work, int32_t *first)
 // Numbers the columns above the tasks.
 static void number_top(cau_sweep *sweep, int32_t *top_number)
 {
-	for (int32_t s = 0; s < sweep->supernode_count; ++s) {
+	for (int32_t s = 0; s < sweep->supernode_count; s++) {
 		const cau_supernode *node = &sweep->supernode[s];
 		if (node->task >= 0)
 			continue;
 		sweep->top_node[sweep->top_node_count++] = s;
-		for (int32_t j = 0; j < node->columns; ++j) {
+		for (int32_t j = 0; j < node->columns; j++) {
 			CAU_ASSERT_INDEX(sweep->top_count, sweep->n);
 			top_number[node->first + j] = sweep->top_count;
 			sweep->top_column[sweep->top_count++] = node->first + j;
@@ -215,7 +215,7 @@ int32_t cau_sweep_task_place(const cau_sweep *sweep, int32_t task)
 // Where each supernode's columns and rows stand in the field.
 static void name_places(cau_sweep *sweep, const int32_t *top_number)
 {
-	for (int32_t s = 0; s < sweep->supernode_count; ++s) {
+	for (int32_t s = 0; s < sweep->supernode_count; s++) {
 		cau_supernode *node = &sweep->supernode[s];
 		int32_t task = node->task, own = node->columns;
 		int32_t sums = task < 0 ? 0 : cau_sweep_task_place(sweep, task);
@@ -223,16 +223,16 @@ static void name_places(cau_sweep *sweep, const int32_t *top_number)
 		                            : sums + sweep->padded_top);
 		int32_t *forward = sweep->forward_place + node->place,
 				*backward = sweep->backward_place + node->place;
-		for (int32_t i = 0; i < own; ++i)
+		for (int32_t i = 0; i < own; i++)
 			forward[i] = backward[i] = 4 * (node->first + i);
-		for (int32_t i = 0; i < node->rows; ++i) {
+		for (int32_t i = 0; i < node->rows; i++) {
 			int32_t row = sweep->row_global[node->row + i];
 			CAU_ASSERT_INDEX(row, sweep->n);
 			int above = task >= 0 && sweep->supernode[sweep->column_node[row]].task < 0;
 			backward[own + i] = 4 * row;
 			forward[own + i] = 4 * (above ? sums + top_number[row] : row);
 		}
-		for (int32_t i = own + node->rows; i < node->padded_rows; ++i) { // W' has zeros there
+		for (int32_t i = own + node->rows; i < node->padded_rows; i++) { // W' has zeros there
 			forward[i] = node->spare;
 			backward[i] = 4 * node->first;
 		}
@@ -241,7 +241,7 @@ static void name_places(cau_sweep *sweep, const int32_t *top_number)
 
 static void lay_out(cau_sweep *sweep)
 {
-	for (int32_t s = 0; s < sweep->supernode_count; ++s) {
+	for (int32_t s = 0; s < sweep->supernode_count; s++) {
 		cau_supernode *node = &sweep->supernode[s];
 		int32_t rows = node->columns + node->rows;
 		CAU_ASSERT(node->columns >= 1 && node->columns <= CAU_NODE_COLUMNS,
@@ -278,21 +278,21 @@ static cau_status shape_supernodes(cau_sweep *sweep, cau_arena *arena, const cau
 	if (!sweep->supernode)
 		return no_memory(error);
 	memset(mark, -1, n * sizeof *mark);
-	for (int32_t s = 0; s < sweep->supernode_count; ++s) {
+	for (int32_t s = 0; s < sweep->supernode_count; s++) {
 		cau_supernode *node = &sweep->supernode[s];
 		node->first = drafts[s].first;
 		node->columns = drafts[s].last - drafts[s].first;
 		node->row = sweep->row_count;
 		node->rows = rows_below(factor, drafts[s].first, drafts[s].last, mark, s, NULL);
 		sweep->row_count += node->rows;
-		for (int32_t j = 0; j < node->columns; ++j)
+		for (int32_t j = 0; j < node->columns; j++)
 			sweep->column_node[node->first + j] = s;
 	}
 	sweep->row_global = cau_arena_array(arena, (size_t)sweep->row_count, sizeof(int32_t));
 	if (!sweep->row_global)
 		return no_memory(error);
 	memset(mark, -1, n * sizeof *mark);
-	for (int32_t s = 0; s < sweep->supernode_count; ++s) {
+	for (int32_t s = 0; s < sweep->supernode_count; s++) {
 		const cau_supernode *node = &sweep->supernode[s];
 		int32_t *row = sweep->row_global + node->row;
 		rows_below(factor, node->first, node->first + node->columns, mark, s, row);

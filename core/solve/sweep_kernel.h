@@ -21,7 +21,7 @@ typedef struct sweep_tile {
 typedef struct sweep_panel {
 	const void *at;
 	int64_t stride; // entries in a column
-	int narrow;
+	bool narrow;
 } sweep_panel;
 
 INLINE const void *panel_at(sweep_panel panel, int64_t entry)
@@ -42,7 +42,7 @@ INLINE vreal panel_load(sweep_panel panel, int64_t entry)
 }
 
 INLINE sweep_panel panel_of(const cau_sweep *sweep, const cau_supernode *node, int32_t row,
-                            int narrow)
+                            bool narrow)
 {
 	return panel_from((sweep_panel){sweep->panel, node->padded_rows, narrow}, node->panel + row);
 }
@@ -80,44 +80,44 @@ INLINE void forward_columns(sweep_panel panel, sweep_tile *tile, int first, int 
 {
 	v3 at[SWEEP_BLOCK];
 	sweep_prefetch(panel, SWEEP_AHEAD, count);
-	for (int j = 0; j < count; ++j)
+	for (int j = 0; j < count; j++)
 		at[j] = (v3){v_set(b[4 * j]), v_set(b[4 * j + 1]), v_set(b[4 * j + 2])};
-	for (int k = first; k < last; ++k) {
+	for (int k = first; k < last; k++) {
 		v3 sum = tile->rows[k];
-		for (int j = 0; j < count; ++j)
+		for (int j = 0; j < count; j++)
 			sum = v3_add_scaled(sum, panel_load(panel, j * panel.stride + k * LANES), at[j]);
 		tile->rows[k] = sum;
 	}
 }
 
 // Rows [row, row + vectors x LANES) take W' b off; b is in steps of the columns' scales.
-INLINE void forward_tile(const cau_sweep *sweep, const cau_supernode *node, int narrow, int32_t row,
-                         int vectors, const real *b)
+INLINE void forward_tile(const cau_sweep *sweep, const cau_supernode *node, bool narrow,
+                         int32_t row, int vectors, const real *b)
 {
 	sweep_panel panel = panel_of(sweep, node, row, narrow);
 	sweep_tile tile;
-	for (int k = 0; k < vectors; ++k)
+	for (int k = 0; k < vectors; k++)
 		tile.rows[k] = v3_zero();
 	int32_t j = 0;
 	for (; j + SWEEP_BLOCK <= node->columns; j += SWEEP_BLOCK)
 		forward_columns(panel_from(panel, j * panel.stride), &tile, sweep_first(row, j), vectors,
 		                b + 4 * j, SWEEP_BLOCK);
-	for (; j < node->columns; ++j)
+	for (; j < node->columns; j++)
 		forward_columns(panel_from(panel, j * panel.stride), &tile, sweep_first(row, j), vectors,
 		                b + 4 * j, 1);
 	const int32_t *place = sweep->forward_place + node->place + row;
-	for (int k = 0; k < vectors; ++k)
+	for (int k = 0; k < vectors; k++)
 		sweep_subtract((real *)sweep->field, place + k * LANES, tile.rows[k]);
 }
 
 // The supernode's part of the forward sweep.
-INLINE void sweep_forward_node(const cau_sweep *sweep, const cau_supernode *node, int narrow)
+INLINE void sweep_forward_node(const cau_sweep *sweep, const cau_supernode *node, bool narrow)
 {
 	const real *scale = (const real *)sweep->scale + node->first;
 	const real *own = (const real *)sweep->field + 4 * (int64_t)node->first;
 	real b[4 * CAU_NODE_COLUMNS] __attribute__((aligned(64)));
-	for (int32_t j = 0; j < node->columns; ++j)
-		for (int c = 0; c < 4; ++c)
+	for (int32_t j = 0; j < node->columns; j++)
+		for (int c = 0; c < 4; c++)
 			b[4 * j + c] = scale[j] * own[4 * (int64_t)j + c];
 	for (int32_t row = 0; row < node->padded_rows; row += SWEEP_TILE)
 		forward_tile(sweep, node, narrow, row, least(SWEEP_TILE, node->padded_rows - row) / LANES,
@@ -131,26 +131,26 @@ INLINE void backward_columns(sweep_panel panel, const sweep_tile *tile, int firs
 {
 	v3 sum[SWEEP_BLOCK];
 	sweep_prefetch(panel, -SWEEP_AHEAD, count);
-	for (int j = 0; j < count; ++j)
+	for (int j = 0; j < count; j++)
 		sum[j] = v3_zero();
-	for (int k = first; k < last; ++k)
-		for (int j = 0; j < count; ++j)
+	for (int k = first; k < last; k++)
+		for (int j = 0; j < count; j++)
 			sum[j] = v3_add_scaled(sum[j], panel_load(panel, j * panel.stride + k * LANES),
 			                       tile->rows[k]);
-	for (int j = 0; j < count; ++j)
+	for (int j = 0; j < count; j++)
 		v3_subtract_total(column + 4 * j, scale[j], sum[j]);
 }
 
 // What all columns take off of rows [row, row + vectors x LANES), from the last column back, as the
 // supernodes are taken: the panels are read straight down.
-INLINE void backward_tile(const cau_sweep *sweep, const cau_supernode *node, int narrow,
+INLINE void backward_tile(const cau_sweep *sweep, const cau_supernode *node, bool narrow,
                           int32_t row, int vectors, real *own)
 {
 	const int32_t *place = sweep->backward_place + node->place + row;
 	sweep_panel panel = panel_of(sweep, node, row, narrow);
 	const real *scale = (const real *)sweep->scale + node->first;
 	sweep_tile tile;
-	for (int k = 0; k < vectors; ++k)
+	for (int k = 0; k < vectors; k++)
 		tile.rows[k] = v3_gather_wide((const real *)sweep->field, place + k * LANES);
 	int32_t j = node->columns;
 	while (j % SWEEP_BLOCK) {
@@ -167,12 +167,12 @@ INLINE void backward_tile(const cau_sweep *sweep, const cau_supernode *node, int
 
 // The supernode's part of the backward sweep: its columns hold y on entry, x on return. All its
 // columns are rows of the first tile, which is read before any of them is written.
-INLINE void sweep_backward_node(const cau_sweep *sweep, const cau_supernode *node, int narrow)
+INLINE void sweep_backward_node(const cau_sweep *sweep, const cau_supernode *node, bool narrow)
 {
 	const real *d = (const real *)sweep->d_inverse + node->first;
 	real *own = (real *)sweep->field + 4 * (int64_t)node->first;
-	for (int32_t i = 0; i < node->columns; ++i)
-		for (int c = 0; c < 4; ++c)
+	for (int32_t i = 0; i < node->columns; i++)
+		for (int c = 0; c < 4; c++)
 			own[4 * (int64_t)i + c] *= d[i];
 	for (int32_t row = 0; row < node->padded_rows; row += SWEEP_TILE)
 		backward_tile(sweep, node, narrow, row, least(SWEEP_TILE, node->padded_rows - row) / LANES,

@@ -57,7 +57,7 @@ void cau_sweep_pack_panels(const cau_sweep *sweep, cau_sweep_panels *panels,
 	CAU_ASSERT(panels->panel != NULL, "no panels for %d supernodes", sweep->supernode_count);
 	CAU_ASSERT(cau_factor_size(factor) == sweep->n, "a factor of %d rows for panels of %d",
 	           cau_factor_size(factor), sweep->n);
-	for (int32_t s = 0; s < sweep->supernode_count; ++s)
+	for (int32_t s = 0; s < sweep->supernode_count; s++)
 		sweep->kernels->pack(sweep, s, factor, panels, 0);
 }
 
@@ -78,12 +78,12 @@ typedef struct packing {
 static void share_out(const packing *work)
 {
 	int64_t load[CAU_PACK_PARTS] = {0};
-	for (int32_t s = work->sweep->supernode_count - 1; s >= 0; --s) {
+	for (int32_t s = work->sweep->supernode_count - 1; s >= 0; s--) {
 		const cau_supernode *node = &work->sweep->supernode[s];
 		int part = 0;
 		if (!work->touched[s])
 			continue;
-		for (int k = 1; k < CAU_PACK_PARTS; ++k)
+		for (int k = 1; k < CAU_PACK_PARTS; k++)
 			part = load[k] < load[part] ? k : part;
 		load[part] += (int64_t)node->columns * node->columns * (node->columns + node->rows);
 		work->touched[s] = (uint8_t)(1 + part);
@@ -96,7 +96,7 @@ static void pack_part(void *context, int32_t part)
 	packing *work = context;
 	cau_sweep_panels panels = panels_of(work->sweep);
 	work->least[part] = INFINITY;
-	for (int32_t s = 0; s < work->sweep->supernode_count; ++s)
+	for (int32_t s = 0; s < work->sweep->supernode_count; s++)
 		if (work->touched[s] == 1 + part)
 			work->least[part] =
 				fmin(work->least[part],
@@ -113,7 +113,7 @@ double cau_sweep_pack_touched(const cau_sweep *sweep, const cau_factor *factor, 
 	cau_pool_run(pool, CAU_PACK_PARTS, pack_part, &work);
 	memset(touched, 0, (size_t)sweep->supernode_count);
 	double least = INFINITY;
-	for (int part = 0; part < CAU_PACK_PARTS; ++part)
+	for (int part = 0; part < CAU_PACK_PARTS; part++)
 		least = fmin(least, work.least[part]);
 	return least;
 }

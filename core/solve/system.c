@@ -17,8 +17,8 @@ static int compare_keys(const void *a, const void *b)
 static int64_t element_keys(const cau_system *system, const cau_element_map *map, uint64_t *keys)
 {
 	int64_t count = 0;
-	for (int i = 0; i < map->vertex_count; ++i)
-		for (int j = 0; j < map->vertex_count; ++j) {
+	for (int i = 0; i < map->vertex_count; i++)
+		for (int j = 0; j < map->vertex_count; j++) {
 			int32_t column = system->row_of_vertex[map->vertex[i]];
 			CAU_ASSERT(column < system->row_count, "vertex %d has row %d of %d", map->vertex[i],
 			           column, system->row_count);
@@ -33,17 +33,17 @@ static cau_status build_pattern(cau_system *system, const cau_tissue *tissue, ca
                                 cau_arena *scratch, cau_error *error)
 {
 	int64_t capacity = system->row_count;
-	for (int kind = 0; kind < CAU_ELEMENT_KINDS; ++kind)
+	for (int kind = 0; kind < CAU_ELEMENT_KINDS; kind++)
 		capacity += 10 * (int64_t)cau_tissue_element_count(tissue, kind);
 	uint64_t *keys = cau_arena_array(scratch, (size_t)capacity, sizeof *keys);
 	if (!keys)
 		return cau_fail(error, CAU_NO_MEMORY, NULL, "no memory for the system's pattern");
 	int64_t count = 0;
-	for (int32_t r = 0; r < system->row_count; ++r)
+	for (int32_t r = 0; r < system->row_count; r++)
 		keys[count++] = (uint64_t)r << 32 | (uint32_t)r;
 	cau_element_map map;
-	for (int kind = 0; kind < CAU_ELEMENT_KINDS; ++kind)
-		for (int32_t i = 0; i < cau_tissue_element_count(tissue, kind); ++i) {
+	for (int kind = 0; kind < CAU_ELEMENT_KINDS; kind++)
+		for (int32_t i = 0; i < cau_tissue_element_count(tissue, kind); i++) {
 			cau_tissue_element_map(tissue, kind, i, &map);
 			count += element_keys(system, &map, keys + count);
 		}
@@ -51,7 +51,7 @@ static cau_status build_pattern(cau_system *system, const cau_tissue *tissue, ca
 	           (long long)capacity);
 	qsort(keys, (size_t)count, sizeof *keys, compare_keys);
 	int64_t unique = 0;
-	for (int64_t k = 0; k < count; ++k)
+	for (int64_t k = 0; k < count; k++)
 		if (!k || keys[k] != keys[k - 1])
 			keys[unique++] = keys[k];
 	if (unique > INT32_MAX)
@@ -63,7 +63,7 @@ static cau_status build_pattern(cau_system *system, const cau_tissue *tissue, ca
 	matrix->value = cau_arena_array(arena, (size_t)unique, sizeof(double));
 	if (!matrix->first || !matrix->row || !matrix->value)
 		return cau_fail(error, CAU_NO_MEMORY, NULL, "no memory for the system");
-	for (int64_t k = 0; k < unique; ++k) {
+	for (int64_t k = 0; k < unique; k++) {
 		matrix->row[k] = (int32_t)(uint32_t)keys[k];
 		matrix->first[(keys[k] >> 32) + 1] = (int32_t)k + 1;
 	}
@@ -80,7 +80,7 @@ cau_status cau_system_create(cau_system *system, const cau_tissue *tissue, const
 	system->diagonal = cau_arena_array(arena, n, sizeof(double));
 	if (!system->row_of_vertex || !system->vertex_of_row || !system->diagonal)
 		return cau_fail(error, CAU_NO_MEMORY, NULL, "no memory for the system");
-	for (int32_t v = 0; v < tissue->vertex_count; ++v) {
+	for (int32_t v = 0; v < tissue->vertex_count; v++) {
 		system->row_of_vertex[v] = pinned[v] ? -1 : system->row_count;
 		if (!pinned[v])
 			system->vertex_of_row[system->row_count++] = v;
@@ -110,14 +110,14 @@ static void add_entry(const cau_matrix *matrix, double *value, int32_t a, int32_
 
 static void add_element(const cau_system *system, const cau_element_map *map, double *value)
 {
-	for (int i = 0; i < map->vertex_count; ++i)
-		for (int j = i; j < map->vertex_count; ++j) {
+	for (int i = 0; i < map->vertex_count; i++)
+		for (int j = i; j < map->vertex_count; j++) {
 			int32_t a = system->row_of_vertex[map->vertex[i]];
 			int32_t b = system->row_of_vertex[map->vertex[j]];
 			if (a < 0 || b < 0)
 				continue;
 			double sum = 0;
-			for (int r = 0; r < map->rank; ++r)
+			for (int r = 0; r < map->rank; r++)
 				sum += map->coefficient[r][i] * map->coefficient[r][j];
 			add_entry(&system->matrix, value, a, b, map->weight * sum);
 		}
@@ -128,11 +128,11 @@ void cau_system_assemble(const cau_system *system, const cau_tissue *tissue, con
 {
 	CAU_ASSERT(step_s > 0, "a step of %g s", step_s);
 	memset(value, 0, (size_t)system->matrix.first[system->row_count] * sizeof *value);
-	for (int32_t r = 0; r < system->row_count; ++r)
+	for (int32_t r = 0; r < system->row_count; r++)
 		value[system->matrix.first[r]] = tissue->mass[system->vertex_of_row[r]] / (step_s * step_s);
 	cau_element_map map;
-	for (int kind = 0; kind < CAU_ELEMENT_KINDS; ++kind)
-		for (int32_t i = 0; i < cau_tissue_element_count(tissue, kind); ++i) {
+	for (int kind = 0; kind < CAU_ELEMENT_KINDS; kind++)
+		for (int32_t i = 0; i < cau_tissue_element_count(tissue, kind); i++) {
 			if (!alive->element[kind][i])
 				continue;
 			cau_tissue_element_map(tissue, kind, i, &map);
@@ -144,17 +144,17 @@ void cau_system_assemble_diagonal(const cau_system *system, const cau_tissue *ti
                                   const cau_alive *alive, double step_s)
 {
 	CAU_ASSERT(step_s > 0, "a step of %g s", step_s);
-	for (int32_t v = 0; v < tissue->vertex_count; ++v)
+	for (int32_t v = 0; v < tissue->vertex_count; v++)
 		system->diagonal[v] = tissue->mass[v] / (step_s * step_s);
 	cau_element_map map;
-	for (int kind = 0; kind < CAU_ELEMENT_KINDS; ++kind)
-		for (int32_t i = 0; i < cau_tissue_element_count(tissue, kind); ++i) {
+	for (int kind = 0; kind < CAU_ELEMENT_KINDS; kind++)
+		for (int32_t i = 0; i < cau_tissue_element_count(tissue, kind); i++) {
 			if (!alive->element[kind][i])
 				continue;
 			cau_tissue_element_map(tissue, kind, i, &map);
 			double omega = map.weight * cau_element_map_scale(&map);
 			CAU_ASSERT(omega >= 0, "element %d of kind %d adds %g N/m", i, kind, omega);
-			for (int k = 0; k < map.vertex_count; ++k)
+			for (int k = 0; k < map.vertex_count; k++)
 				system->diagonal[map.vertex[k]] += omega;
 		}
 }
@@ -166,9 +166,9 @@ void cau_system_columns(const cau_system *system, const cau_element_map *map, in
 	CAU_ASSERT(*columns >= 0 && *columns + map->rank <= CAU_UPDATE_RANK, "%d columns and %d more",
 	           *columns, map->rank);
 	double root = sqrt(map->weight);
-	for (int r = 0; r < map->rank; ++r) {
+	for (int r = 0; r < map->rank; r++) {
 		int32_t at = first[*columns];
-		for (int i = 0; i < map->vertex_count; ++i) {
+		for (int i = 0; i < map->vertex_count; i++) {
 			int32_t free_row = system->row_of_vertex[map->vertex[i]];
 			if (free_row < 0 || map->coefficient[r][i] == 0)
 				continue;

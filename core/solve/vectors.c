@@ -18,7 +18,7 @@ static void read(const cau_reals *vector, int32_t vertex, double value[3])
 {
 	CAU_ASSERT(vertex >= 0, "vertex %d", vertex);
 	const real *from = (const real *)vector + 4 * (int64_t)vertex;
-	for (int c = 0; c < 3; ++c)
+	for (int c = 0; c < 3; c++)
 		value[c] = (double)from[c];
 }
 
@@ -26,7 +26,7 @@ static void add(cau_reals *vector, int32_t vertex, const double value[3])
 {
 	CAU_ASSERT(vertex >= 0, "vertex %d", vertex);
 	real *to = (real *)vector + 4 * (int64_t)vertex;
-	for (int c = 0; c < 3; ++c)
+	for (int c = 0; c < 3; c++)
 		to[c] = (real)((double)to[c] + value[c]);
 }
 
@@ -35,7 +35,7 @@ static void take_coordinate(cau_reals *column, const cau_reals *vector, int c, i
 	CAU_ASSERT_INDEX(c, 3);
 	real *to = (real *)column;
 	const real *from = (const real *)vector;
-	for (int32_t v = 0; v < count; ++v)
+	for (int32_t v = 0; v < count; v++)
 		to[v] = from[4 * (int64_t)v + c];
 }
 
@@ -44,8 +44,8 @@ static void displace(const cau_step_solver *solver, int32_t first, int32_t last)
 {
 	const double *x = solver->position, *rest = solver->tissue->rest;
 	real *u = (real *)solver->displacement;
-	for (int32_t v = first; v < last; ++v)
-		for (int c = 0; c < 3; ++c)
+	for (int32_t v = first; v < last; v++)
+		for (int c = 0; c < 3; c++)
 			u[4 * v + c] = (real)(x[3 * v + c] - rest[3 * v + c]);
 }
 
@@ -54,8 +54,8 @@ static void step(const cau_step_solver *solver, double scale, int32_t first, int
 	double *x = solver->position;
 	const double *before = solver->position_before;
 	const real *d = (const real *)solver->trial_increment;
-	for (int32_t v = first; v < last; ++v)
-		for (int c = 0; c < 3; ++c)
+	for (int32_t v = first; v < last; v++)
+		for (int c = 0; c < 3; c++)
 			x[3 * v + c] = before[3 * v + c] + scale * (double)d[4 * v + c];
 }
 
@@ -64,9 +64,9 @@ static double add_inertia(const cau_step_solver *solver, int32_t first, int32_t 
 	double energy = 0, scale = 1 / (solver->step_s * solver->step_s);
 	const double *x = solver->position, *s = solver->predicted;
 	real *gradient = (real *)solver->gradient;
-	for (int32_t v = first; v < last; ++v) {
+	for (int32_t v = first; v < last; v++) {
 		double m = scale * solver->tissue->mass[v], free = !solver->fixed[v];
-		for (int c = 0; c < 3; ++c) {
+		for (int c = 0; c < 3; c++) {
 			double away = x[3 * v + c] - s[3 * v + c];
 			energy += m * away * away;
 			gradient[4 * v + c] = (real)(free * ((double)gradient[4 * v + c] + m * away));
@@ -80,8 +80,8 @@ static void divide(const cau_step_solver *solver, const cau_reals *in, cau_reals
 {
 	const real *from = (const real *)in;
 	real *to = (real *)out;
-	for (int32_t v = 0; v < solver->tissue->vertex_count; ++v)
-		for (int c = 0; c < 3; ++c) {
+	for (int32_t v = 0; v < solver->tissue->vertex_count; v++)
+		for (int c = 0; c < 3; c++) {
 			int64_t i = 4 * (int64_t)v + c;
 			double value = (double)from[i];
 			to[i] = (real)(solver->fixed[v] ? 0 : sign * value / solver->system.diagonal[v]);
@@ -95,7 +95,7 @@ static void permute(const cau_step_solver *solver, const cau_reals *in, double s
 	const int32_t *vertex = solver->system.vertex_of_row;
 	vertex_reals *field = (vertex_reals *)solver->sweep.field;
 	const vertex_reals *from = (const vertex_reals *)in;
-	for (int32_t k = first; k < last; ++k)
+	for (int32_t k = first; k < last; k++)
 		field[k] = (real)sign * from[vertex[row_at[k]]];
 }
 
@@ -104,7 +104,7 @@ static void unpermute(const cau_step_solver *solver, cau_reals *out, int32_t fir
 	const int32_t *row_at = cau_factor_permutation(solver->factor);
 	const vertex_reals *field = (const vertex_reals *)solver->sweep.field;
 	vertex_reals *to = (vertex_reals *)out;
-	for (int32_t k = first; k < last; ++k) {
+	for (int32_t k = first; k < last; k++) {
 		int32_t vertex = solver->system.vertex_of_row[row_at[k]];
 		to[vertex] = solver->fixed[vertex] ? (vertex_reals){0} : field[k];
 	}
@@ -125,7 +125,7 @@ static void add_sums(const cau_sweep *sweep, int32_t task)
 {
 	const vertex_reals *sums = sums_of(sweep, task);
 	vertex_reals *field = (vertex_reals *)sweep->field;
-	for (int32_t i = 0; i < sweep->top_count; ++i) {
+	for (int32_t i = 0; i < sweep->top_count; i++) {
 		CAU_ASSERT_INDEX(sweep->top_column[i], sweep->n);
 		field[sweep->top_column[i]] += sums[i];
 	}

@@ -30,9 +30,9 @@ static void gradient_map(const double *dm_inverse, int rank, cau_element_map *ma
 	CAU_ASSERT(rank == 2 || rank == 3, "a gradient of rank %d", rank);
 	map->rank = rank;
 	map->vertex_count = rank + 1;
-	for (int c = 0; c < rank; ++c) {
+	for (int c = 0; c < rank; c++) {
 		double sum = 0;
-		for (int i = 0; i < rank; ++i) {
+		for (int i = 0; i < rank; i++) {
 			map->coefficient[c][i + 1] = dm_inverse[rank * i + c];
 			sum += dm_inverse[rank * i + c];
 		}
@@ -54,7 +54,7 @@ static double tetrahedron_weight(const cau_tissue *tissue, int32_t tetrahedron)
 	double lambda, mu;
 	cau_fat_lame(material, &lambda, &mu);
 	double stiffness = 2 * mu + 3 * lambda;
-	int shrinks = material->shrink[0] != 1 || material->shrink[1] != 1 || material->shrink[2] != 1;
+	bool shrinks = material->shrink[0] != 1 || material->shrink[1] != 1 || material->shrink[2] != 1;
 	if (material->limit != CAU_LIMIT_NONE || shrinks)
 		stiffness += material->limit_stiffness_pa;
 	return stiffness * tissue->tetrahedron_volume[tetrahedron];
@@ -101,8 +101,8 @@ double cau_element_map_scale(const cau_element_map *map)
 	CAU_ASSERT(map->vertex_count >= 2 && map->vertex_count <= 4, "an element of %d vertices",
 	           map->vertex_count);
 	double sum = 0;
-	for (int r = 0; r < map->rank; ++r)
-		for (int i = 0; i < map->vertex_count; ++i)
+	for (int r = 0; r < map->rank; r++)
+		for (int i = 0; i < map->vertex_count; i++)
 			sum += map->coefficient[r][i] * map->coefficient[r][i];
 	return sum / map->vertex_count;
 }

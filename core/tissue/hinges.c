@@ -23,7 +23,7 @@ static int32_t opposite(const cau_tissue *tissue, int32_t triangle, int32_t a, i
 {
 	CAU_ASSERT_INDEX(triangle, tissue->triangle_count);
 	const int32_t *vertex = tissue->triangle + 3 * (size_t)triangle;
-	for (int i = 0; i < 2; ++i)
+	for (int i = 0; i < 2; i++)
 		if (vertex[i] != a && vertex[i] != b)
 			return vertex[i];
 	CAU_ASSERT(vertex[2] != a && vertex[2] != b, "triangle %d has no vertex beside %d and %d",
@@ -73,7 +73,7 @@ cau_status cau_tissue_hinge(cau_tissue *tissue, cau_arena *arena, cau_error *err
 	           tissue->edges.edge_count);
 	const cau_edge_table *edges = &tissue->edges;
 	int32_t count = 0;
-	for (int32_t h = 0; h < edges->hinge_count; ++h)
+	for (int32_t h = 0; h < edges->hinge_count; h++)
 		count += stiffness_of(tissue, edges->hinge_triangle + 2 * h) > 0;
 	tissue->hinge_vertex = cau_arena_array(arena, 4 * (size_t)count, sizeof(int32_t));
 	tissue->hinge_triangle = cau_arena_array(arena, 2 * (size_t)count, sizeof(int32_t));
@@ -82,7 +82,7 @@ cau_status cau_tissue_hinge(cau_tissue *tissue, cau_arena *arena, cau_error *err
 	if (!tissue->hinge_vertex || !tissue->hinge_triangle || !tissue->hinge_coefficient ||
 	    !tissue->hinge_weight)
 		return cau_fail(error, CAU_NO_MEMORY, NULL, "no memory for %d hinges", count);
-	for (int32_t h = 0; h < edges->hinge_count; ++h) {
+	for (int32_t h = 0; h < edges->hinge_count; h++) {
 		const int32_t *triangle = edges->hinge_triangle + 2 * h;
 		double stiffness = stiffness_of(tissue, triangle);
 		if (stiffness > 0)

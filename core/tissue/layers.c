@@ -16,7 +16,7 @@ typedef struct gathering {
 
 static int32_t find_mesh(const cau_scene_def *scene, const char *name)
 {
-	for (int32_t i = 0; i < scene->mesh_count; ++i)
+	for (int32_t i = 0; i < scene->mesh_count; i++)
 		if (!strcmp(scene->meshes[i].name, name))
 			return i;
 	return -1;
@@ -24,7 +24,7 @@ static int32_t find_mesh(const cau_scene_def *scene, const char *name)
 
 static int32_t find_layer(const cau_scene_def *scene, const char *name)
 {
-	for (int32_t i = 0; i < scene->layer_count; ++i)
+	for (int32_t i = 0; i < scene->layer_count; i++)
 		if (!strcmp(scene->layers[i].name, name))
 			return i;
 	return -1;
@@ -33,7 +33,7 @@ static int32_t find_layer(const cau_scene_def *scene, const char *name)
 static cau_status make_meshes(gathering *work, const cau_scene_def *scene, cau_error *error)
 {
 	CAU_ASSERT(scene->mesh_count <= CAU_MAX_MESHES, "%d meshes", scene->mesh_count);
-	for (int32_t i = 0; i < scene->mesh_count; ++i) {
+	for (int32_t i = 0; i < scene->mesh_count; i++) {
 		cau_mesh_report report;
 		cau_error inner = {0};
 		cau_status status =
@@ -65,7 +65,7 @@ static cau_status make_boundary(const cau_mesh *mesh, cau_face_table *boundary, 
 static int32_t count_boundary(const cau_face_table *boundary)
 {
 	int32_t count = 0;
-	for (int32_t f = 0; f < boundary->face_count; ++f)
+	for (int32_t f = 0; f < boundary->face_count; f++)
 		count += boundary->owner[2 * f + 1] < 0;
 	return count;
 }
@@ -85,7 +85,7 @@ static int32_t mesh_of(const cau_scene_def *scene, int32_t layer)
 static cau_status count_layers(cau_tissue *tissue, gathering *work, const cau_scene_def *scene,
                                cau_error *error)
 {
-	for (int32_t i = 0; i < scene->layer_count; ++i) {
+	for (int32_t i = 0; i < scene->layer_count; i++) {
 		cau_tissue_layer *layer = &tissue->layer[i];
 		layer->def = scene->layers[i];
 		int32_t m = mesh_of(scene, i);
@@ -128,7 +128,7 @@ static int32_t material_of_region(const cau_layer_def *def, int32_t region)
 {
 	CAU_ASSERT(def->material_count >= 1 && def->material_count <= CAU_MAX_MATERIALS, "%d materials",
 	           def->material_count);
-	for (int32_t i = 1; i < def->material_count; ++i)
+	for (int32_t i = 1; i < def->material_count; i++)
 		if ((def->kind == CAU_LAYER_FAT ? def->fat[i].region : def->sheet[i].region) == region)
 			return i;
 	return 0;
@@ -140,9 +140,9 @@ static void copy_tetrahedra(cau_tissue *tissue, int32_t layer_index, const cau_m
 	CAU_ASSERT(layer->first_tetrahedron + mesh->tetrahedron_count <= tissue->tetrahedron_count,
 	           "tetrahedra %d + %d of %d", layer->first_tetrahedron, mesh->tetrahedron_count,
 	           tissue->tetrahedron_count);
-	for (int32_t t = 0; t < mesh->tetrahedron_count; ++t) {
+	for (int32_t t = 0; t < mesh->tetrahedron_count; t++) {
 		int32_t to = layer->first_tetrahedron + t;
-		for (int i = 0; i < 4; ++i)
+		for (int i = 0; i < 4; i++)
 			tissue->tetrahedron[4 * to + i] = layer->first_vertex + mesh->tetrahedron[4 * t + i];
 		tissue->tetrahedron_layer[to] = layer_index;
 		tissue->tetrahedron_material[to] =
@@ -155,10 +155,10 @@ static void copy_boundary(cau_tissue *tissue, int32_t layer_index, const cau_mes
 {
 	const cau_tissue_layer *layer = &tissue->layer[layer_index];
 	int32_t to = layer->first_triangle;
-	for (int32_t f = 0; f < boundary->face_count; ++f) {
+	for (int32_t f = 0; f < boundary->face_count; f++) {
 		if (boundary->owner[2 * f + 1] >= 0)
 			continue;
-		for (int i = 0; i < 3; ++i)
+		for (int i = 0; i < 3; i++)
 			tissue->triangle[3 * to + i] = layer->first_vertex + boundary->vertex[3 * f + i];
 		tissue->triangle_layer[to] = layer_index;
 		tissue->triangle_material[to] =
@@ -175,11 +175,11 @@ static void copy_triangles(cau_tissue *tissue, int32_t layer_index, const cau_me
 	CAU_ASSERT(layer->first_triangle + mesh->triangle_count <= tissue->triangle_count,
 	           "triangles %d + %d of %d", layer->first_triangle, mesh->triangle_count,
 	           tissue->triangle_count);
-	for (int32_t t = 0; t < mesh->triangle_count; ++t) {
+	for (int32_t t = 0; t < mesh->triangle_count; t++) {
 		int32_t to = layer->first_triangle + t;
-		for (int i = 0; i < 3; ++i)
+		for (int i = 0; i < 3; i++)
 			tissue->triangle[3 * to + i] = layer->first_vertex + mesh->triangle[3 * t + i];
-		for (int i = 0; i < 6 && mesh->texture; ++i)
+		for (int i = 0; i < 6 && mesh->texture; i++)
 			tissue->texture[6 * (size_t)to + (size_t)i] = (float)mesh->texture[6 * t + i];
 		tissue->triangle_layer[to] = layer_index;
 		tissue->triangle_material[to] = material_of_region(&layer->def, mesh->triangle_region[t]);
@@ -188,12 +188,12 @@ static void copy_triangles(cau_tissue *tissue, int32_t layer_index, const cau_me
 
 // Unit t_u, t_v from the texture: (t_u, t_v) = D_m (u_j - u_i, u_k - u_i)^-1 (eq. 9), made
 // orthogonal.
-static int texture_frame(double edge[2][3], const double uv[6], double frame[6])
+static bool texture_frame(double edge[2][3], const double uv[6], double frame[6])
 {
 	double a = uv[2] - uv[0], b = uv[4] - uv[0], c = uv[3] - uv[1], d = uv[5] - uv[1];
 	double det = a * d - b * c, scale = (a * a + c * c) + (b * b + d * d);
-	if (!(fabs(det) > 1e-9 * scale))
-		return 0;
+	if (!(fabs(det) > 1e-9 * scale)) // the texture spans a line: no direction across it
+		return false;
 	cau_vec3 j = cau_vec3_of(edge[0]), k = cau_vec3_of(edge[1]);
 	cau_vec3 u = cau_sub(cau_scale(d / det, j), cau_scale(c / det, k));
 	cau_vec3 v = cau_sub(cau_scale(a / det, k), cau_scale(b / det, j));
@@ -201,7 +201,7 @@ static int texture_frame(double edge[2][3], const double uv[6], double frame[6])
 	v = cau_unit_or(cau_add_scaled(v, -cau_dot(u, v), u), (cau_vec3){0, 0, 0});
 	cau_vec3_to(u, frame);
 	cau_vec3_to(v, frame + 3);
-	return cau_dot(u, u) > 0.5 && cau_dot(v, v) > 0.5;
+	return cau_dot(u, u) > 0.5 && cau_dot(v, v) > 0.5; // of unit length, not zero
 }
 
 // Where there is no texture: the fibre direction laid into the triangle's plane, or, where it
@@ -212,7 +212,7 @@ static void fibre_frame(double edge[2][3], const double fibre[3], double frame[6
 	n = cau_unit_or(n, (cau_vec3){0, 0, 1});
 	cau_vec3 along = cau_unit_or(cau_vec3_of(fibre), (cau_vec3){1, 0, 0});
 	cau_vec3 u = cau_add_scaled(along, -cau_dot(along, n), n);
-	if (cau_length(u) < 1e-3) {
+	if (cau_length(u) < 1e-3) { // within a twentieth of a degree of the normal
 		int axis = fabs(n.x) <= fabs(n.y) ? (fabs(n.x) <= fabs(n.z) ? 0 : 2)
 		                                  : (fabs(n.y) <= fabs(n.z) ? 1 : 2);
 		cau_vec3 e = {axis == 0, axis == 1, axis == 2};
@@ -227,13 +227,13 @@ static cau_status make_frames(cau_tissue *tissue, int32_t layer_index, const cau
                               cau_error *error)
 {
 	const cau_tissue_layer *layer = &tissue->layer[layer_index];
-	for (int32_t t = 0; t < layer->triangle_count; ++t) {
+	for (int32_t t = 0; t < layer->triangle_count; t++) {
 		int32_t triangle = layer->first_triangle + t;
 		CAU_ASSERT_INDEX(triangle, tissue->triangle_count);
 		const int32_t *vertex = tissue->triangle + 3 * triangle;
 		double edge[2][3];
-		for (int e = 0; e < 2; ++e)
-			for (int i = 0; i < 3; ++i)
+		for (int e = 0; e < 2; e++)
+			for (int i = 0; i < 3; i++)
 				edge[e][i] = tissue->rest[3 * vertex[e + 1] + i] - tissue->rest[3 * vertex[0] + i];
 		double *frame = tissue->triangle_frame + 6 * triangle;
 		if (!mesh->texture || layer->def.of[0])
@@ -277,11 +277,11 @@ static cau_status allocate(cau_tissue *tissue, cau_arena *arena, cau_error *erro
 static cau_status copy_layers(cau_tissue *tissue, const gathering *work, const cau_scene_def *scene,
                               cau_error *error)
 {
-	for (int32_t m = 0; m < scene->mesh_count; ++m)
+	for (int32_t m = 0; m < scene->mesh_count; m++)
 		if (work->first_vertex[m] >= 0)
 			memcpy(tissue->rest + 3 * (size_t)work->first_vertex[m], work->mesh[m].position,
 			       3 * (size_t)work->mesh[m].vertex_count * sizeof(double));
-	for (int32_t i = 0; i < scene->layer_count; ++i) {
+	for (int32_t i = 0; i < scene->layer_count; i++) {
 		int32_t m = mesh_of(scene, i);
 		if (m < 0)
 			continue;
@@ -309,7 +309,7 @@ cau_status cau_tissue_gather(cau_tissue *tissue, const cau_scene_def *scene, cau
 	tissue->layer = cau_arena_array(arena, (size_t)scene->layer_count, sizeof *tissue->layer);
 	if (!work || !tissue->layer)
 		return cau_fail(error, CAU_NO_MEMORY, NULL, "no memory for the layers");
-	for (int32_t m = 0; m < CAU_MAX_MESHES; ++m)
+	for (int32_t m = 0; m < CAU_MAX_MESHES; m++)
 		work->first_vertex[m] = -1;
 	cau_status status = make_meshes(work, scene, error);
 	if (!status)
@@ -318,9 +318,9 @@ cau_status cau_tissue_gather(cau_tissue *tissue, const cau_scene_def *scene, cau
 		status = allocate(tissue, arena, error);
 	if (!status)
 		status = copy_layers(tissue, work, scene, error);
-	for (int32_t m = 0; m < scene->mesh_count; ++m)
+	for (int32_t m = 0; m < scene->mesh_count; m++)
 		cau_mesh_finish(&work->mesh[m]);
-	for (int32_t i = 0; i < scene->layer_count; ++i)
+	for (int32_t i = 0; i < scene->layer_count; i++)
 		cau_face_table_finish(&work->boundary[i]);
 	return status;
 }

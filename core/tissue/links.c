@@ -19,10 +19,10 @@ static void mark_layer(const cau_tissue *tissue, int32_t layer_index, uint8_t *m
 	const cau_tissue_layer *layer = &tissue->layer[layer_index];
 	memset(mark, 0, (size_t)tissue->vertex_count);
 	for (int32_t i = 3 * layer->first_triangle;
-	     i < 3 * (layer->first_triangle + layer->triangle_count); ++i)
+	     i < 3 * (layer->first_triangle + layer->triangle_count); i++)
 		mark[tissue->triangle[i]] = 1;
 	for (int32_t i = 4 * layer->first_tetrahedron;
-	     i < 4 * (layer->first_tetrahedron + layer->tetrahedron_count); ++i)
+	     i < 4 * (layer->first_tetrahedron + layer->tetrahedron_count); i++)
 		mark[tissue->tetrahedron[i]] = 1;
 }
 
@@ -55,7 +55,7 @@ static int32_t first_at_or_after(const candidate *lower, int32_t count, double x
 	return low;
 }
 
-static int is_nearer(double distance, int32_t vertex, double than, int32_t than_vertex)
+static bool is_nearer(double distance, int32_t vertex, double than, int32_t than_vertex)
 {
 	return distance < than || (distance == than && vertex < than_vertex);
 }
@@ -83,7 +83,7 @@ static int32_t nearest(const cau_tissue *tissue, int32_t from, const candidate *
 		    (count == most && !is_nearer(d, vertex, distance[count - 1], found[count - 1])))
 			continue;
 		int32_t k = count < most ? count++ : count - 1;
-		for (; k > 0 && is_nearer(d, vertex, distance[k - 1], found[k - 1]); --k) {
+		for (; k > 0 && is_nearer(d, vertex, distance[k - 1], found[k - 1]); k--) {
 			distance[k] = distance[k - 1];
 			found[k] = found[k - 1];
 		}
@@ -102,19 +102,19 @@ static cau_status link_layers(cau_tissue *tissue, int32_t index, uint8_t *mark, 
 	CAU_ASSERT(of >= 0 && to >= 0, "layer %d links layers that are not there", index);
 	mark_layer(tissue, to, mark);
 	int32_t lower_count = 0;
-	for (int32_t v = 0; v < tissue->vertex_count; ++v)
+	for (int32_t v = 0; v < tissue->vertex_count; v++)
 		if (mark[v])
 			lower[lower_count++] = (candidate){tissue->rest[3 * (size_t)v], v};
 	qsort(lower, (size_t)lower_count, sizeof *lower, compare_candidates);
 	mark_layer(tissue, of, mark);
 	layer->first_link = tissue->link_count;
-	for (int32_t v = 0; v < tissue->vertex_count; ++v) {
+	for (int32_t v = 0; v < tissue->vertex_count; v++) {
 		int32_t found[MAX_PER_VERTEX];
 		if (!mark[v])
 			continue;
 		int32_t count = nearest(tissue, v, lower, lower_count, material->reach_m,
 		                        (int32_t)material->per_vertex, found);
-		for (int32_t i = 0; i < count && tissue->link_count < capacity; ++i) {
+		for (int32_t i = 0; i < count && tissue->link_count < capacity; i++) {
 			int32_t k = tissue->link_count++;
 			tissue->link[2 * k] = v;
 			tissue->link[2 * k + 1] = found[i];
@@ -136,7 +136,7 @@ static cau_status link_layers(cau_tissue *tissue, int32_t index, uint8_t *mark, 
 cau_status cau_tissue_link(cau_tissue *tissue, cau_arena *arena, cau_error *error)
 {
 	int64_t capacity = 0;
-	for (int32_t i = 0; i < tissue->layer_count; ++i)
+	for (int32_t i = 0; i < tissue->layer_count; i++)
 		if (tissue->layer[i].def.kind == CAU_LAYER_LINKS)
 			capacity +=
 				(int64_t)tissue->vertex_count * (int64_t)tissue->layer[i].def.link.per_vertex;
@@ -153,7 +153,7 @@ cau_status cau_tissue_link(cau_tissue *tissue, cau_arena *arena, cau_error *erro
 	if (!mark || !lower || !tissue->link || !tissue->link_layer || !tissue->link_length)
 		status =
 			cau_fail(error, CAU_NO_MEMORY, NULL, "no memory for %lld links", (long long)capacity);
-	for (int32_t i = 0; i < tissue->layer_count && !status; ++i)
+	for (int32_t i = 0; i < tissue->layer_count && !status; i++)
 		if (tissue->layer[i].def.kind == CAU_LAYER_LINKS)
 			status = link_layers(tissue, i, mark, lower, (int32_t)capacity, error);
 	cau_arena_finish(&scratch);

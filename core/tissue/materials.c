@@ -7,7 +7,7 @@
 
 int32_t cau_tissue_find_layer(const cau_tissue *tissue, const char *name)
 {
-	for (int32_t i = 0; i < tissue->layer_count; ++i)
+	for (int32_t i = 0; i < tissue->layer_count; i++)
 		if (!strcmp(tissue->layer[i].def.name, name))
 			return i;
 	return -1;

@@ -12,6 +12,10 @@ static cau_vec3 rest_edge(const cau_tissue *tissue, int32_t from, int32_t to)
 	               cau_vec3_of(tissue->rest + 3 * (size_t)from));
 }
 
+// Cleaning has refused flat elements already, from 1e-6 on (mesh/clean.c). This is a second line,
+// far below the first, against dividing by nothing.
+static const double flat = 1e-9;
+
 static cau_status shape_triangle(cau_tissue *tissue, int32_t t, cau_error *error)
 {
 	const int32_t *vertex = tissue->triangle + 3 * (size_t)t;
@@ -22,14 +26,14 @@ static cau_status shape_triangle(cau_tissue *tissue, int32_t t, cau_error *error
 	double a = cau_dot(u, j), b = cau_dot(u, k), c = cau_dot(v, j), d = cau_dot(v, k);
 	double det = a * d - b * c, area = cau_length(cau_cross(j, k)) / 2;
 	double longest = fmax(cau_dot(j, j), cau_dot(k, k));
-	if (!(area > 1e-9 * longest) || !(fabs(det) > area))
+	if (!(area > flat * longest) || !(fabs(det) > area))
 		return cau_fail(error, CAU_BAD_MESH, NULL, "triangle %d of layer \"%s\" has no area", t,
 		                tissue->layer[tissue->triangle_layer[t]].def.name);
 	double *m = tissue->triangle_dm_inverse + 4 * (size_t)t;
 	m[0] = d / det, m[1] = -b / det, m[2] = -c / det, m[3] = a / det;
 	tissue->triangle_area[t] = area;
 	const cau_sheet_material *material = cau_triangle_material(tissue, t);
-	for (int i = 0; i < 3; ++i)
+	for (int i = 0; i < 3; i++)
 		tissue->mass[vertex[i]] += material->density_kg_m3 * material->thickness_m * area / 3;
 	CAU_ASSERT(area > 0 && tissue->mass[vertex[0]] > 0, "triangle %d: %g m^2, %g kg", t, area,
 	           tissue->mass[vertex[0]]);
@@ -41,22 +45,22 @@ static cau_status shape_tetrahedron(cau_tissue *tissue, int32_t t, cau_error *er
 	const int32_t *vertex = tissue->tetrahedron + 4 * (size_t)t;
 	cau_vec3 d[3];
 	double longest = 0;
-	for (int i = 0; i < 3; ++i) {
+	for (int i = 0; i < 3; i++) {
 		d[i] = rest_edge(tissue, vertex[0], vertex[i + 1]);
 		longest = fmax(longest, cau_length(d[i]));
 	}
 	cau_vec3 row[3] = {cau_cross(d[1], d[2]), cau_cross(d[2], d[0]), cau_cross(d[0], d[1])};
 	double det = cau_dot(d[0], row[0]);
-	if (!(det > 1e-9 * longest * longest * longest))
+	if (!(det > flat * longest * longest * longest))
 		return cau_fail(error, CAU_BAD_MESH, NULL, "tetrahedron %d of layer \"%s\" has no volume",
 		                t, tissue->layer[tissue->tetrahedron_layer[t]].def.name);
-	for (int i = 0; i < 3; ++i)
+	for (int i = 0; i < 3; i++)
 		cau_vec3_to(cau_scale(1 / det, row[i]),
 		            tissue->tetrahedron_dm_inverse + 9 * (size_t)t + 3 * i);
 	tissue->tetrahedron_volume[t] = det / 6;
 	CAU_ASSERT(tissue->tetrahedron_volume[t] > 0, "tetrahedron %d has %g m^3", t,
 	           tissue->tetrahedron_volume[t]);
-	for (int i = 0; i < 4; ++i)
+	for (int i = 0; i < 4; i++)
 		tissue->mass[vertex[i]] += cau_tetrahedron_material(tissue, t)->density_kg_m3 * det / 24;
 	return CAU_OK;
 }
@@ -73,11 +77,11 @@ cau_status cau_tissue_shape(cau_tissue *tissue, cau_arena *arena, cau_error *err
 	    !tissue->tetrahedron_volume)
 		return cau_fail(error, CAU_NO_MEMORY, NULL, "no memory for the elements");
 	cau_status status = CAU_OK;
-	for (int32_t i = 0; i < tissue->triangle_count && !status; ++i)
+	for (int32_t i = 0; i < tissue->triangle_count && !status; i++)
 		status = shape_triangle(tissue, i, error);
-	for (int32_t i = 0; i < tissue->tetrahedron_count && !status; ++i)
+	for (int32_t i = 0; i < tissue->tetrahedron_count && !status; i++)
 		status = shape_tetrahedron(tissue, i, error);
-	for (int32_t v = 0; v < tissue->vertex_count && !status; ++v)
+	for (int32_t v = 0; v < tissue->vertex_count && !status; v++)
 		if (!(tissue->mass[v] > 0))
 			status = cau_fail(error, CAU_BAD_MESH, NULL,
 			                  "vertex %d belongs to no layer's elements and has no mass", v);

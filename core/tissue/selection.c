@@ -6,12 +6,12 @@
 #include "cautery/assert.h"
 #include "tissue/tissue.h"
 
-static int in_box(const cau_selection *selection, const double *x)
+static bool in_box(const cau_selection *selection, const double *x)
 {
-	for (int i = 0; i < 3; ++i)
+	for (int i = 0; i < 3; i++)
 		if (x[i] < selection->least_m[i] || x[i] > selection->most_m[i])
-			return 0;
-	return 1;
+			return false;
+	return true;
 }
 
 static double distance(const cau_selection *selection, const double *x)
@@ -25,13 +25,13 @@ static int32_t select_rim(const cau_tissue *tissue, int32_t layer, uint8_t *chos
 	CAU_ASSERT(layer < tissue->layer_count, "layer %d of %d", layer, tissue->layer_count);
 	const cau_edge_table *edges = &tissue->edges;
 	int32_t count = 0;
-	for (int32_t e = 0; e < edges->edge_count; ++e) {
+	for (int32_t e = 0; e < edges->edge_count; e++) {
 		int32_t sharers = 0;
 		const int32_t *first = edges->first[CAU_PRIMITIVE_TRIANGLE];
-		for (int32_t k = first[e]; k < first[e + 1]; ++k)
+		for (int32_t k = first[e]; k < first[e + 1]; k++)
 			sharers += layer < 0 ||
 			           tissue->triangle_layer[edges->sharer[CAU_PRIMITIVE_TRIANGLE][k]] == layer;
-		for (int i = 0; i < 2 && sharers == 1; ++i) {
+		for (int i = 0; i < 2 && sharers == 1; i++) {
 			count += !chosen[edges->vertex[2 * e + i]];
 			chosen[edges->vertex[2 * e + i]] = 1;
 		}
@@ -55,7 +55,7 @@ int32_t cau_tissue_select(const cau_tissue *tissue, const cau_selection *selecti
 	}
 	if (selection->kind == CAU_SELECT_RIM)
 		return select_rim(tissue, layer, chosen);
-	for (int32_t v = first; v < last; ++v) {
+	for (int32_t v = first; v < last; v++) {
 		const double *x = tissue->rest + 3 * (size_t)v;
 		if (selection->kind == CAU_SELECT_NEAREST) {
 			if (nearest < 0 ||

@@ -22,7 +22,7 @@ static void view_primitives(cau_tissue *tissue)
 
 static cau_status pin(cau_tissue *tissue, const cau_scene_def *scene, cau_error *error)
 {
-	for (int32_t i = 0; i < scene->pin_count; ++i) {
+	for (int32_t i = 0; i < scene->pin_count; i++) {
 		char path[64];
 		snprintf(path, sizeof path, "pins[%d]", i);
 		int32_t count = cau_tissue_select(tissue, &scene->pins[i], tissue->pinned);

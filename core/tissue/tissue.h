@@ -5,6 +5,8 @@
 // elsewhere.
 #pragma once
 
+#include <stdbool.h>
+
 #include "base/memory.h"
 #include "cautery/scene.h"
 #include "cautery/status.h"

@@ -2,6 +2,8 @@
 // What every family of tools must offer; private to this room. One file per family.
 #pragma once
 
+#include <stdbool.h>
+
 #include "tool/tool_shape.h"
 
 typedef struct cau_ball {
@@ -19,7 +21,7 @@ typedef struct cau_tool_family {
 	cau_ball (*cold_bound)(const cau_tool_def *tool);
 	double (*thinnest_hot)(const cau_tool_def *tool); // m; NULL as `hot`
 	// NULL: the shape has no jaws.
-	int (*between)(const cau_tool_def *tool, double jaw, cau_vec3 point, double *jaw_coordinate);
+	bool (*between)(const cau_tool_def *tool, double jaw, cau_vec3 point, double *jaw_coordinate);
 } cau_tool_family;
 
 // cau_shape_sphere and so on: one of each row of the table, defined in the shape's own file.

@@ -43,7 +43,8 @@ static cau_ball grasper_cold_bound(const cau_tool_def *tool)
 	return cau_ball_join(jaws, cau_shaft_bound(tool, tool->tip_length_m));
 }
 
-static int grasper_between(const cau_tool_def *tool, double jaw, cau_vec3 point, double *coordinate)
+static bool grasper_between(const cau_tool_def *tool, double jaw, cau_vec3 point,
+                            double *coordinate)
 {
 	cau_jaw high = high_jaw(tool, jaw);
 	cau_jaw low = cau_jaw_opposite(&high);

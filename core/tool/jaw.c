@@ -67,7 +67,7 @@ cau_ball cau_jaw_plate_bound(double hinge, double angle_rad, const cau_plate *pl
 	double cosine = cos(angle_rad), sine = sin(angle_rad);
 	double below = hinge - center_z;
 	double farthest = 0; // squared, in the plane y = 0
-	for (int corner = 0; corner < 4; ++corner) {
+	for (int corner = 0; corner < 4; corner++) {
 		double x = corner & 1 ? plate->most.x : plate->least.x;
 		double z = corner & 2 ? plate->most.z : plate->least.z;
 		double arm_squared = x * x + z * z;
@@ -83,8 +83,9 @@ static double clamp(double value, double least, double most)
 	return fmin(fmax(value, least), most);
 }
 
-int cau_jaws_hold(const cau_jaw *low, double low_face, const cau_jaw *high, double high_face,
-                  double half_width, double reach, double depth, cau_vec3 point, double *coordinate)
+bool cau_jaws_hold(const cau_jaw *low, double low_face, const cau_jaw *high, double high_face,
+                   double half_width, double reach, double depth, cau_vec3 point,
+                   double *coordinate)
 {
 	CAU_ASSERT(low->side == -high->side, "both jaws on side %g", low->side);
 	CAU_ASSERT(depth > 0 && reach >= 0 && half_width >= 0, "jaws %g deep, %g long, %g wide", depth,
@@ -94,10 +95,10 @@ int cau_jaws_hold(const cau_jaw *low, double low_face, const cau_jaw *high, doub
 	double low_gap = low_face - in_low.x;
 	double high_gap = high_face - in_high.x;
 	if (low_gap < -depth || high_gap < -depth || fabs(point.y) > half_width)
-		return 0;
+		return false;
 	if (fmax(in_low.z, in_high.z) > 0 || fmin(in_low.z, in_high.z) < -reach)
-		return 0;
+		return false;
 	if (coordinate)
 		*coordinate = clamp((low_gap - high_gap) / fmax(low_gap + high_gap, depth), -1, 1);
-	return 1;
+	return true;
 }

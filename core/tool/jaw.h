@@ -4,6 +4,8 @@
 // side of the tool it is on.
 #pragma once
 
+#include <stdbool.h>
+
 #include "tool/family.h"
 
 typedef struct cau_jaw {
@@ -42,6 +44,6 @@ cau_ball cau_jaw_plate_bound(double hinge, double angle_rad, const cau_plate *pl
 // Whether `point` (tool frame) lies between the faces x = face of two jaws, or less than `depth`
 // inside one of them, not beyond half_width in y nor below `reach` under the hinge. *coordinate: -1
 // at `low`, +1 at `high`; gaps narrower than depth are measured as that.
-int cau_jaws_hold(const cau_jaw *low, double low_face, const cau_jaw *high, double high_face,
-                  double half_width, double reach, double depth, cau_vec3 point,
-                  double *coordinate);
+bool cau_jaws_hold(const cau_jaw *low, double low_face, const cau_jaw *high, double high_face,
+                   double half_width, double reach, double depth, cau_vec3 point,
+                   double *coordinate);

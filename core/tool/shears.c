@@ -64,7 +64,7 @@ static double blade_radius(const cau_tool_def *tool)
 	return tool->hot_radius_m;
 }
 
-static int shears_between(const cau_tool_def *tool, double jaw, cau_vec3 point, double *coordinate)
+static bool shears_between(const cau_tool_def *tool, double jaw, cau_vec3 point, double *coordinate)
 {
 	cau_jaw blade = cau_jaw_of(-1, tool->tip_length_m, 0);
 	cau_jaw clamp = clamp_jaw(tool, jaw);

@@ -78,13 +78,13 @@ double cau_tool_thinnest_hot_m(const cau_tool_def *tool)
 	return family->thinnest_hot ? family->thinnest_hot(tool) : INFINITY;
 }
 
-int cau_tool_has_jaws(const cau_tool_def *tool)
+bool cau_tool_has_jaws(const cau_tool_def *tool)
 {
 	return family_of(tool)->between != NULL;
 }
 
-int cau_tool_between_jaws(const cau_tool_def *tool, double jaw, cau_vec3 point,
-                          double *jaw_coordinate)
+bool cau_tool_between_jaws(const cau_tool_def *tool, double jaw, cau_vec3 point,
+                           double *jaw_coordinate)
 {
 	const cau_tool_family *family = family_of(tool);
 	return family->between && family->between(tool, fmin(fmax(jaw, 0), 1), point, jaw_coordinate);
@@ -93,25 +93,25 @@ int cau_tool_between_jaws(const cau_tool_def *tool, double jaw, cau_vec3 point,
 // A part's distance is 1-Lipschitz, so from a point at distance d nothing can be met within d: both
 // ends of the segment are moved inwards by their distances until one meets the part or they pass
 // each other.
-int cau_tool_meets_segment(const cau_tool_def *tool, double jaw, cau_tool_part part, cau_vec3 a,
-                           cau_vec3 b)
+bool cau_tool_meets_segment(const cau_tool_def *tool, double jaw, cau_tool_part part, cau_vec3 a,
+                            cau_vec3 b)
 {
 	cau_ball ball = part_bound(tool, part);
 	if (!(cau_distance_capsule(ball.center, a, b, ball.radius_m + TOUCH_M, NULL) <= 0))
-		return 0;
+		return false;
 	cau_vec3 along = cau_sub(b, a);
 	double length = cau_length(along);
 	along = cau_unit_or(along, (cau_vec3){0, 0, 0});
 	double from = 0, to = length;
-	for (int i = 0; i < TRACE_STEPS; ++i) {
+	for (int i = 0; i < TRACE_STEPS; i++) {
 		double first = cau_tool_distance(tool, jaw, part, cau_add_scaled(a, from, along), NULL);
 		double last = cau_tool_distance(tool, jaw, part, cau_add_scaled(a, to, along), NULL);
 		if (first <= TOUCH_M || last <= TOUCH_M)
-			return 1;
+			return true;
 		from += first;
 		to -= last;
 		if (from >= to)
-			return 0;
+			return false;
 	}
-	return 1;
+	return true;
 }

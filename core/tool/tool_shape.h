@@ -2,6 +2,8 @@
 // Tool shapes as signed distances with gradients, each with hot and cold parts (section 6.2).
 #pragma once
 
+#include <stdbool.h>
+
 #include "base/vector.h"
 #include "cautery/scene.h"
 
@@ -32,16 +34,16 @@ void cau_tool_bound(const cau_tool_def *tool, cau_tool_part part, cau_vec3 *cent
 double cau_tool_thinnest_hot_m(const cau_tool_def *tool);
 
 // Whether the shape has jaws that can grasp.
-int cau_tool_has_jaws(const cau_tool_def *tool);
+bool cau_tool_has_jaws(const cau_tool_def *tool);
 
 // Whether `point` (tool frame) lies between the jaws, where a grasp takes hold; false for a shape
 // without jaws. Points less than half a jaw's thickness inside a jaw count too, so that closed jaws
 // hold what they press. On success *jaw_coordinate (may be NULL) is -1 at one jaw, +1 at the other.
-int cau_tool_between_jaws(const cau_tool_def *tool, double jaw, cau_vec3 point,
-                          double *jaw_coordinate);
+bool cau_tool_between_jaws(const cau_tool_def *tool, double jaw, cau_vec3 point,
+                           double *jaw_coordinate);
 
 // Whether the segment a-b (tool frame) meets or lies inside the part. Sphere-traced from both ends,
 // exact to 1e-6 m: what passes nearer than that meets. After 1,024 steps the answer is that it
 // meets; the segment then ran within a thousandth of its length of the surface.
-int cau_tool_meets_segment(const cau_tool_def *tool, double jaw, cau_tool_part part, cau_vec3 a,
-                           cau_vec3 b);
+bool cau_tool_meets_segment(const cau_tool_def *tool, double jaw, cau_tool_part part, cau_vec3 a,
+                            cau_vec3 b);

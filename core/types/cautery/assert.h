@@ -15,7 +15,7 @@
 //     {
 //         CAU_ASSERT(count > 0, "the mean of %d numbers", count);
 //         double sum = 0;
-//         for (int i = 0; i < count; ++i)
+//         for (int i = 0; i < count; i++)
 //             sum += value[i];
 //         return sum / count;
 //     }

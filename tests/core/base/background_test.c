@@ -34,7 +34,7 @@ static void test_jobs_run_in_order_and_are_waited_for(void **state)
 	cau_background_wait(background); // no job: at once
 	job work = {.gate = PTHREAD_MUTEX_INITIALIZER, .value = 1};
 	int64_t expected = 1;
-	for (int i = 0; i < JOBS; ++i) {
+	for (int i = 0; i < JOBS; i++) {
 		if (i % 39 == 0) // before the number is full
 			work.value = 1, expected = 1;
 		cau_background_start(background, run, &work);
@@ -64,7 +64,7 @@ static void test_start_does_not_wait(void **state)
 static void test_destroy_waits_for_the_job(void **state)
 {
 	(void)state;
-	for (int i = 0; i < 200; ++i) {
+	for (int i = 0; i < 200; i++) {
 		cau_background *background = cau_background_create();
 		job work = {.gate = PTHREAD_MUTEX_INITIALIZER, .value = 2};
 		cau_background_start(background, run, &work);

@@ -24,16 +24,16 @@ static void test_every_bit_and_length_counts(void **state)
 	unsigned char bytes[BYTES] = {0};
 	uint64_t hash[HASHES];
 	size_t count = 0;
-	for (size_t bit = 0; bit < 8 * BYTES; ++bit) {
+	for (size_t bit = 0; bit < 8 * BYTES; bit++) {
 		bytes[bit / 8] ^= (unsigned char)(1u << bit % 8);
 		hash[count++] = cau_hash_bytes(CAU_HASH_START, bytes, BYTES);
 		bytes[bit / 8] ^= (unsigned char)(1u << bit % 8);
 	}
-	for (size_t length = 0; length <= BYTES; ++length)
+	for (size_t length = 0; length <= BYTES; length++)
 		hash[count++] = cau_hash_bytes(CAU_HASH_START, bytes, length);
 	assert_int_equal(count, HASHES);
 	qsort(hash, count, sizeof *hash, compare);
-	for (size_t k = 1; k < count; ++k)
+	for (size_t k = 1; k < count; k++)
 		assert_true(hash[k] != hash[k - 1]);
 }
 
@@ -41,7 +41,7 @@ static void test_order_and_alignment(void **state)
 {
 	(void)state;
 	unsigned char bytes[BYTES + 1];
-	for (int i = 0; i <= BYTES; ++i)
+	for (int i = 0; i <= BYTES; i++)
 		bytes[i] = (unsigned char)(7 * i + 1);
 	uint64_t whole = cau_hash_bytes(CAU_HASH_START, bytes, BYTES);
 	memmove(bytes + 1, bytes, BYTES);

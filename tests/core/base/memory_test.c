@@ -17,16 +17,16 @@ static void test_arrays_are_zeroed_aligned_and_padded(void **state)
 	static const size_t counts[] = {0, 1, 7, 63, 64, 65, 1000};
 	cau_arena arena = {0};
 	unsigned char *array[7];
-	for (size_t k = 0; k < 7; ++k) {
+	for (size_t k = 0; k < 7; k++) {
 		array[k] = cau_arena_array(&arena, counts[k], 3);
 		assert_non_null(array[k]);
 		assert_int_equal((uintptr_t)array[k] % ALIGNMENT, 0);
-		for (size_t i = 0; i < 3 * counts[k] + ALIGNMENT; ++i)
+		for (size_t i = 0; i < 3 * counts[k] + ALIGNMENT; i++)
 			assert_int_equal(array[k][i], 0);
 		memset(array[k], (int)k + 1, 3 * counts[k] + ALIGNMENT); // the padding is the caller's too
 	}
-	for (size_t k = 0; k < 7; ++k) // and no array reaches into another
-		for (size_t i = 0; i < 3 * counts[k] + ALIGNMENT; ++i)
+	for (size_t k = 0; k < 7; k++) // and no array reaches into another
+		for (size_t i = 0; i < 3 * counts[k] + ALIGNMENT; i++)
 			assert_int_equal(array[k][i], k + 1);
 	assert_true(arena.byte_count >= 3 * 1200);
 	cau_arena_finish(&arena);

@@ -15,17 +15,17 @@ static void test_pages_are_zeroed_and_counted(void **state)
 	static const size_t sizes[] = {1, 4096, 100001};
 	cau_pages pages[3];
 	size_t before = cau_pages_held(), sum = 0;
-	for (size_t k = 0; k < 3; ++k) {
+	for (size_t k = 0; k < 3; k++) {
 		assert_true(cau_pages_take(&pages[k], sizes[k]));
 		assert_int_equal((uintptr_t)pages[k].start % 4096, 0);
 		const unsigned char *byte = pages[k].start;
-		for (size_t i = 0; i < sizes[k]; ++i)
+		for (size_t i = 0; i < sizes[k]; i++)
 			assert_int_equal(byte[i], 0);
 		memset(pages[k].start, 0xa5, sizes[k]);
 		sum += sizes[k];
 		assert_int_equal(cau_pages_held(), before + sum);
 	}
-	for (size_t k = 0; k < 3; ++k)
+	for (size_t k = 0; k < 3; k++)
 		cau_pages_give_back(&pages[k]);
 	assert_int_equal(cau_pages_held(), before);
 	assert_null(pages[0].start);

@@ -32,15 +32,15 @@ static void test_every_part_once(void **state)
 	static const int32_t threads[] = {1, 2, 3, 7, 16};
 	static const int32_t parts[] = {0, 1, 2, 3, 5, 16, 63, PARTS};
 	static tally work;
-	for (size_t t = 0; t < sizeof threads / sizeof *threads; ++t) {
+	for (size_t t = 0; t < sizeof threads / sizeof *threads; t++) {
 		cau_pool *pool = cau_pool_create(threads[t]);
 		assert_non_null(pool);
 		assert_int_equal(cau_pool_thread_count(pool), threads[t]);
-		for (size_t k = 0; k < sizeof parts / sizeof *parts; ++k) {
+		for (size_t k = 0; k < sizeof parts / sizeof *parts; k++) {
 			memset(&work, 0, sizeof work);
-			for (int32_t loop = 1; loop <= 50; ++loop) {
+			for (int32_t loop = 1; loop <= 50; loop++) {
 				cau_pool_run(pool, parts[k], count_part, &work);
-				for (int32_t i = 0; i < PARTS + 1; ++i)
+				for (int32_t i = 0; i < PARTS + 1; i++)
 					assert_int_equal(work.count[i], i < parts[k] ? loop : 0);
 			}
 		}
@@ -55,7 +55,7 @@ static void test_the_most_parts(void **state)
 	memset(&work, 0, sizeof work);
 	cau_pool *pool = cau_pool_create(2);
 	cau_pool_run(pool, MANY_PARTS, count_part, &work);
-	for (int32_t i = 0; i < MANY_PARTS; ++i)
+	for (int32_t i = 0; i < MANY_PARTS; i++)
 		assert_int_equal(work.count[i], 1);
 	cau_pool_destroy(pool);
 }
@@ -76,13 +76,13 @@ static void test_loops_follow_each_other(void **state)
 {
 	(void)state;
 	static const int32_t threads[] = {2, 3};
-	for (size_t t = 0; t < 2; ++t) {
+	for (size_t t = 0; t < 2; t++) {
 		chain work = {0}, expected = {0};
 		cau_pool *pool = cau_pool_create(threads[t]);
-		for (int32_t loop = 0; loop < LOOPS; ++loop) {
+		for (int32_t loop = 0; loop < LOOPS; loop++) {
 			work.from = expected.from = loop & 1;
 			cau_pool_run(pool, 4, hand_on, &work);
-			for (int32_t i = 0; i < 4; ++i)
+			for (int32_t i = 0; i < 4; i++)
 				hand_on(&expected, i);
 		}
 		assert_memory_equal(work.value, expected.value, sizeof work.value);
@@ -102,7 +102,7 @@ static void stall_once(void *context, int32_t index)
 	stall *work = context;
 	(void)index;
 	if (pthread_equal(pthread_self(), work->caller)) {
-		for (int i = 0; i < 1000 && !atomic_load(&work->stalled); ++i)
+		for (int i = 0; i < 1000 && !atomic_load(&work->stalled); i++)
 			sched_yield(); // so that the helper gets a part
 		return;
 	}
@@ -114,7 +114,7 @@ static void stall_once(void *context, int32_t index)
 // Loops until the helper has stalled in one: the caller works alone from there.
 static void run_into_a_stall(cau_pool *pool, stall *work)
 {
-	for (int loop = 0; loop < 100000 && !work->stalled; ++loop)
+	for (int loop = 0; loop < 100000 && !work->stalled; loop++)
 		cau_pool_run(pool, 4, stall_once, work);
 	assert_int_equal(work->stalled, 1);
 	atomic_store(&work->by_helpers, 0);
@@ -127,10 +127,10 @@ static void test_a_stalled_helper_is_left_out_for_a_while(void **state)
 	stall work = {.caller = pthread_self()};
 	cau_pool *pool = cau_pool_create(2);
 	run_into_a_stall(pool, &work);
-	for (int loop = 0; loop < 1000; ++loop)
+	for (int loop = 0; loop < 1000; loop++)
 		cau_pool_run(pool, 4, stall_once, &work);
 	assert_int_equal(work.by_helpers, 0);
-	for (int loop = 0; loop < 1000000 && !work.by_helpers; ++loop)
+	for (int loop = 0; loop < 1000000 && !work.by_helpers; loop++)
 		cau_pool_run(pool, 4, stall_once, &work);
 	assert_true(work.by_helpers > 0);
 	cau_pool_destroy(pool);
@@ -146,7 +146,7 @@ static void wait_for_a_helper(void *context, int32_t index)
 	if (!pthread_equal(pthread_self(), work->caller))
 		atomic_fetch_add(&work->by_helpers, 1);
 	else if (index == 0)
-		for (int ms = 0; ms < PATIENCE_MS && !atomic_load(&work->by_helpers); ++ms)
+		for (int ms = 0; ms < PATIENCE_MS && !atomic_load(&work->by_helpers); ms++)
 			nanosleep(&(struct timespec){.tv_nsec = 1000000}, NULL);
 }
 
@@ -159,7 +159,7 @@ static void test_long_loops_are_shared_again_as_soon(void **state)
 	stall work = {.caller = pthread_self()};
 	cau_pool *pool = cau_pool_create(2);
 	run_into_a_stall(pool, &work);
-	for (int loop = 0; loop < LONG_LOOPS && !work.by_helpers; ++loop)
+	for (int loop = 0; loop < LONG_LOOPS && !work.by_helpers; loop++)
 		cau_pool_run(pool, MANY_PARTS, wait_for_a_helper, &work);
 	assert_true(work.by_helpers > 0);
 	cau_pool_destroy(pool);

@@ -20,10 +20,10 @@ static const double TOLERANCE = 2e-14;
 static void random_symmetric(uint64_t *random, const double value[3], double out[6])
 {
 	double axis[3], v[3][3], scaled[3][3], full[3][3];
-	for (int c = 0; c < 3; ++c)
+	for (int c = 0; c < 3; c++)
 		axis[c] = random_between(random, -1, 1);
 	mat_rotation(axis, random_between(random, -3, 3), v);
-	for (int i = 0; i < 9; ++i)
+	for (int i = 0; i < 9; i++)
 		scaled[i / 3][i % 3] = v[i / 3][i % 3] * value[i % 3];
 	mat_transpose(v, v);
 	mat_multiply(scaled, v, full);
@@ -36,9 +36,9 @@ static void test_eigenvectors(void **state)
 	(void)state;
 	uint64_t random = 171;
 	static const double given[4][3] = {{1, 1, 1}, {2, 2, -1}, {0, 0, 3}, {1e-9, 1, 1}};
-	for (int i = 0; i < DRAWS; ++i) {
+	for (int i = 0; i < DRAWS; i++) {
 		double six[6], value[3], v[3][3], full[3][3], product[3][3], identity[3][3], drawn[3];
-		for (int c = 0; c < 3; ++c)
+		for (int c = 0; c < 3; c++)
 			drawn[c] = i < 4 ? given[i][c] : random_between(&random, -2, 2);
 		random_symmetric(&random, drawn, six);
 		mat_of_symmetric(six, full);
@@ -47,7 +47,7 @@ static void test_eigenvectors(void **state)
 		mat_transpose_multiply(v, v, product);
 		assert_near(mat_distance(product, identity), 0, TOLERANCE);
 		mat_multiply(full, v, product);
-		for (int k = 0; k < 9; ++k)
+		for (int k = 0; k < 9; k++)
 			assert_near(product[k / 3][k % 3], value[k % 3] * v[k / 3][k % 3], 3 * TOLERANCE);
 	}
 }
@@ -56,11 +56,11 @@ static void test_powers(void **state)
 {
 	(void)state;
 	uint64_t random = 172;
-	for (int i = 0; i < DRAWS; ++i) {
+	for (int i = 0; i < DRAWS; i++) {
 		double six[6], half[6], minus[6], drawn[3], a[3][3], root[3][3], inverse[3][3],
 			product[3][3];
 		double identity[3][3];
-		for (int c = 0; c < 3; ++c)
+		for (int c = 0; c < 3; c++)
 			drawn[c] = random_between(&random, 0.05, 2);
 		random_symmetric(&random, drawn, six);
 		cau_symmetric_power3(six, 0.5, 0, half);

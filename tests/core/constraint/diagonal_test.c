@@ -15,8 +15,8 @@ static double omega_of(const rig *r, int kind)
 	cau_element_map map;
 	double sum = 0;
 	cau_tissue_element_map(&r->tissue, kind, 0, &map);
-	for (int row = 0; row < map.rank; ++row)
-		for (int i = 0; i < map.vertex_count; ++i)
+	for (int row = 0; row < map.rank; row++)
+		for (int i = 0; i < map.vertex_count; i++)
 			sum += map.coefficient[row][i] * map.coefficient[row][i];
 	return map.weight * sum / map.vertex_count;
 }
@@ -29,14 +29,14 @@ static void add_printed(const rig *r, int triangle, double c, double slope[3][3]
 	cau_tissue_element_map(&r->tissue, triangle ? CAU_ELEMENT_TRIANGLE : CAU_ELEMENT_TETRAHEDRON, 0,
 	                       &map);
 	double gradient[4][3] = {{0}}, size = 0;
-	for (int u = 0; u < map.vertex_count; ++u)
-		for (int i = 0; i < 3; ++i) {
-			for (int row = 0; row < map.rank; ++row)
+	for (int u = 0; u < map.vertex_count; u++)
+		for (int i = 0; i < 3; i++) {
+			for (int row = 0; row < map.rank; row++)
 				gradient[u][i] += slope[i][row] * map.coefficient[row][u];
 			size += gradient[u][i] * gradient[u][i];
 		}
-	for (int u = 0; u < map.vertex_count; ++u)
-		for (int i = 0; i < 3; ++i)
+	for (int u = 0; u < map.vertex_count; u++)
+		for (int i = 0; i < 3; i++)
 			out[3 * map.vertex[u] + i] += omega * c / size * gradient[u][i];
 }
 
@@ -54,13 +54,13 @@ static void test_energy_is_equation_17(void **state)
 	rig_build(&r, NULL, 1);
 	r.solver.diagonal = 1;
 	uint64_t random = 51;
-	for (int i = 0; i < DRAWS; ++i) {
+	for (int i = 0; i < DRAWS; i++) {
 		double f[3][3], p[3][3], e[3][3], x[12], got[12], expected[12] = {0}, squares = 0;
 		rig_random_gradient(&random, 0.4, f);
 		element_place(&r, 0, f, x);
 		rig_local(&r, x, got);
 		mat_transpose_multiply(f, f, e);
-		for (int k = 0; k < 9; ++k) {
+		for (int k = 0; k < 9; k++) {
 			e[k / 3][k % 3] = (e[k / 3][k % 3] - (k % 4 == 0)) / 2;
 			squares += e[k / 3][k % 3] * e[k / 3][k % 3];
 		}
@@ -86,15 +86,15 @@ static void test_linearised_limit_is_equation_13(void **state)
 	rig_build(&r, NULL, 1);
 	r.solver.diagonal = 1;
 	uint64_t random = 52;
-	for (int i = 0; i < DRAWS; ++i) {
+	for (int i = 0; i < DRAWS; i++) {
 		double f[3][3], x[9], got[9], expected[9] = {0};
 		rig_random_gradient(&random, 0.4, f);
 		element_place(&r, 1, f, x);
 		rig_local(&r, x, got);
-		for (int c = 0; c < 3; ++c) {
+		for (int c = 0; c < 3; c++) {
 			int a = pair[c][0], b = pair[c][1];
 			double slope[3][3] = {{0}}, k = 0;
-			for (int row = 0; row < 3; ++row) {
+			for (int row = 0; row < 3; row++) {
 				slope[row][a] += f[row][b];
 				slope[row][b] += f[row][a];
 				k += f[row][a] * f[row][b];
@@ -123,16 +123,16 @@ static void test_link_goes_half_way_at_each_end(void **state)
 	r.solver.diagonal = 1;
 	double x[18], got[18], expected[18] = {0}, e[3], length = 0;
 	uint64_t random = 53;
-	for (int i = 0; i < 18; ++i)
+	for (int i = 0; i < 18; i++)
 		x[i] = r.tissue.rest[i] + random_between(&random, -0.003, 0.003);
 	const int32_t *v = r.tissue.link;
-	for (int c = 0; c < 3; ++c) {
+	for (int c = 0; c < 3; c++) {
 		e[c] = x[3 * v[1] + c] - x[3 * v[0] + c];
 		length += e[c] * e[c];
 	}
 	length = sqrt(length);
 	double stiffness = material->young_modulus_pa * material->area_m2 / r.tissue.link_length[0];
-	for (int c = 0; c < 3; ++c) {
+	for (int c = 0; c < 3; c++) {
 		double force = stiffness * (length - r.tissue.link_length[0]) / 2 * e[c] / length;
 		expected[3 * v[1] + c] = force;
 		expected[3 * v[0] + c] = -force;
@@ -141,7 +141,7 @@ static void test_link_goes_half_way_at_each_end(void **state)
 	assert_true(rig_difference(got, expected, 18) < FORCE_TOLERANCE);
 	r.solver.diagonal = 0; // and the whole force in the other system
 	rig_local(&r, x, got);
-	for (int i = 0; i < 18; ++i)
+	for (int i = 0; i < 18; i++)
 		expected[i] *= 2;
 	assert_true(rig_difference(got, expected, 18) < FORCE_TOLERANCE);
 	rig_finish(&r);

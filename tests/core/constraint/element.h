@@ -27,16 +27,16 @@ static inline cau_layer_def *element_add_triangle(rig *r)
 static inline void element_edges(const rig *r, int triangle, const double *x, double out[3][3])
 {
 	const int32_t *v = triangle ? r->tissue.triangle : r->tissue.tetrahedron;
-	for (int k = 0; k < (triangle ? 2 : 3); ++k)
-		for (int c = 0; c < 3; ++c)
+	for (int k = 0; k < (triangle ? 2 : 3); k++)
+		for (int c = 0; c < 3; c++)
 			out[c][k] = x[3 * v[k + 1] + c] - x[3 * v[0] + c];
 	if (!triangle)
 		return;
 	double n[3];
-	for (int c = 0; c < 3; ++c)
+	for (int c = 0; c < 3; c++)
 		n[c] =
 			out[(c + 1) % 3][0] * out[(c + 2) % 3][1] - out[(c + 2) % 3][0] * out[(c + 1) % 3][1];
-	for (int c = 0; c < 3; ++c)
+	for (int c = 0; c < 3; c++)
 		out[c][2] = n[c] / sqrt(n[0] * n[0] + n[1] * n[1] + n[2] * n[2]);
 }
 
@@ -48,7 +48,7 @@ static inline void element_axes(const rig *r, int triangle, double axes[3][3])
 		return;
 	double edges[3][3];
 	element_edges(r, 1, r->tissue.rest, edges);
-	for (int c = 0; c < 3; ++c) {
+	for (int c = 0; c < 3; c++) {
 		axes[c][0] = r->tissue.triangle_frame[c];
 		axes[c][1] = r->tissue.triangle_frame[3 + c];
 		axes[c][2] = edges[c][2];
@@ -62,7 +62,7 @@ static inline void element_place(const rig *r, int triangle, double f[3][3], dou
 	element_axes(r, triangle, axes);
 	mat_transpose(axes, map);
 	mat_multiply(f, map, map);
-	for (int32_t v = 0; v < (triangle ? 3 : 4); ++v)
+	for (int32_t v = 0; v < (triangle ? 3 : 4); v++)
 		mat_apply(map, r->tissue.rest + 3 * v, x + 3 * v);
 }
 
@@ -75,8 +75,8 @@ static inline void element_stress(const rig *r, int triangle, const double *grad
 	const int32_t *v = triangle ? r->tissue.triangle : r->tissue.tetrahedron;
 	element_axes(r, triangle, axes);
 	element_edges(r, triangle, r->tissue.rest, d);
-	for (int k = 0; k < (triangle ? 2 : 3); ++k)
-		for (int c = 0; c < 3; ++c)
+	for (int k = 0; k < (triangle ? 2 : 3); k++)
+		for (int c = 0; c < 3; c++)
 			forces[c][k] = gradient[3 * v[k + 1] + c];
 	mat_transpose_multiply(axes, d, d); // D_m in the element's axes
 	mat_transpose(d, d);

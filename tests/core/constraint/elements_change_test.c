@@ -23,17 +23,17 @@ static void test_targets_are_set_and_read(void **state)
 {
 	(void)state;
 	const double root[6] = {0.5, 0.75, 0.25, 0.125, -0.0625, 0.03125}; // exact in float
-	for (int precision = 0; precision < CAU_PRECISION_COUNT; ++precision) {
+	for (int precision = 0; precision < CAU_PRECISION_COUNT; precision++) {
 		rig r;
 		make(&r, precision);
 		double got[6];
 		cau_elements *e = &r.solver.elements;
 		int32_t slot = r.solver.slots.slot_of[CAU_ELEMENT_TETRAHEDRON][9];
 		assert_true(cau_real_get(e->fat.limit_weight, e->single, slot) == 0);
-		for (int kind = 0; kind <= CAU_ELEMENT_TETRAHEDRON; ++kind) {
+		for (int kind = 0; kind <= CAU_ELEMENT_TETRAHEDRON; kind++) {
 			cau_elements_set_target(e, &r.solver.slots, &r.tissue, kind, 9, root);
 			cau_elements_target(e, &r.solver.slots, kind, 9, got);
-			for (int i = 0; i < (kind ? 6 : 3); ++i)
+			for (int i = 0; i < (kind ? 6 : 3); i++)
 				assert_true(got[i] == root[i]);
 		}
 		// fat without a limit has one now
@@ -41,10 +41,10 @@ static void test_targets_are_set_and_read(void **state)
 			r.tissue.tetrahedron_volume[9] * r.tissue.layer[0].def.fat[0].limit_stiffness_pa;
 		assert_near(cau_real_get(e->fat.limit_weight, e->single, slot), expected, 1e-7 * expected);
 		assert_int_equal(e->fat.limited[slot / CAU_BATCH], 1);
-		for (int32_t b = 0; b < e->fat.slot_count / CAU_BATCH; ++b)
+		for (int32_t b = 0; b < e->fat.slot_count / CAU_BATCH; b++)
 			assert_int_equal(e->fat.targeted[b], b == slot / CAU_BATCH);
 		cau_elements_mark_targets(e, &r.solver.slots); // as a snapshot's targets are
-		for (int32_t b = 0; b < e->fat.slot_count / CAU_BATCH; ++b)
+		for (int32_t b = 0; b < e->fat.slot_count / CAU_BATCH; b++)
 			assert_int_equal(e->fat.targeted[b], b == slot / CAU_BATCH);
 		rig_finish(&r);
 	}
@@ -58,7 +58,7 @@ static void test_new_materials(void **state)
 	make(&r, CAU_PRECISION_DOUBLE);
 	cau_step_solver *s = &r.solver;
 	const double root[6] = {0.5, 0.5, 0.5, 0, 0, 0};
-	for (int kind = 0; kind < CAU_ELEMENT_KINDS; ++kind)
+	for (int kind = 0; kind < CAU_ELEMENT_KINDS; kind++)
 		rig_remove(&r, kind, 3, 0);
 	cau_elements_set_target(&s->elements, &s->slots, &r.tissue, CAU_ELEMENT_TRIANGLE, 4, root);
 	r.shrink.shrunk[CAU_ELEMENT_TRIANGLE][4] = 1;
@@ -68,7 +68,7 @@ static void test_new_materials(void **state)
 	r.tissue.layer[0].def.fat[0].young_modulus_pa *= 3;
 	cau_elements_set_materials(&s->elements, &s->slots, &r.tissue, r.dissection.alive.element,
 	                           r.shrink.shrunk);
-	for (int kind = 0; kind < CAU_ELEMENT_KINDS; ++kind)
+	for (int kind = 0; kind < CAU_ELEMENT_KINDS; kind++)
 		assert_true(weight_of(&r, kind, s->slots.slot_of[kind][3]) == 0);
 	double after = weight_of(&r, CAU_ELEMENT_TRIANGLE, s->slots.slot_of[CAU_ELEMENT_TRIANGLE][4]);
 	assert_near(after, 2 * before, 1e-15 * before);

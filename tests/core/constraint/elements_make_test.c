@@ -32,11 +32,11 @@ static void test_slots_and_elements_are_one_to_one(void **state)
 	rig r;
 	make(&r, CAU_PRECISION_SINGLE);
 	const cau_element_slots *slots = &r.solver.slots;
-	for (int kind = 0; kind < CAU_ELEMENT_KINDS; ++kind) {
+	for (int kind = 0; kind < CAU_ELEMENT_KINDS; kind++) {
 		int32_t filled = 0, count = cau_tissue_element_count(&r.tissue, kind);
 		assert_true(count > 0);
 		assert_int_equal(slot_count(&r.solver.elements, kind) % CAU_BATCH, 0);
-		for (int32_t s = 0; s < slot_count(&r.solver.elements, kind); ++s) {
+		for (int32_t s = 0; s < slot_count(&r.solver.elements, kind); s++) {
 			int32_t element = slots->element_at[kind][s];
 			if (element < 0) {
 				assert_true(weight_of(&r, kind, s) == 0);
@@ -59,15 +59,15 @@ static void test_pairs_share_all_but_their_apex(void **state)
 	rig r;
 	make(&r, CAU_PRECISION_SINGLE);
 	const cau_elements *e = &r.solver.elements;
-	for (int k = 0; k < 2; ++k) {
+	for (int k = 0; k < 2; k++) {
 		const int32_t *element_at = r.solver.slots.element_at[kinds[k]];
 		int apex = k ? 3 : 2;
 		assert_int_equal(slot_count(e, kinds[k]) % (2 * CAU_BATCH), 0);
-		for (int32_t s = 0; s < slot_count(e, kinds[k]); ++s) {
+		for (int32_t s = 0; s < slot_count(e, kinds[k]); s++) {
 			if (s % (2 * CAU_BATCH) >= CAU_BATCH || element_at[s + CAU_BATCH] < 0)
 				continue;
 			assert_true(element_at[s] >= 0); // one that is alone is the first
-			for (int i = 0; i < apex; ++i) {
+			for (int i = 0; i < apex; i++) {
 				assert_int_equal(rig_vertex(&r, kinds[k], s, i),
 				                 rig_vertex(&r, kinds[k], s + CAU_BATCH, i));
 				assert_int_equal(rig_record(&r, kinds[k], s, i),

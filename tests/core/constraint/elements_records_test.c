@@ -24,21 +24,21 @@ static void test_every_record_is_summed_once(void **state)
 	int32_t *vertex_of = cau_arena_array(&r.arena, (size_t)e->record_count, sizeof(int32_t));
 	uint8_t *used = cau_arena_array(&r.arena, (size_t)e->record_count, 1);
 	memset(vertex_of, -1, (size_t)e->record_count * sizeof(int32_t));
-	for (int32_t v = 0; v < r.tissue.vertex_count; ++v)
-		for (int32_t k = incidence->first[v]; k < incidence->first[v + 1]; ++k) {
+	for (int32_t v = 0; v < r.tissue.vertex_count; v++)
+		for (int32_t k = incidence->first[v]; k < incidence->first[v + 1]; k++) {
 			assert_true(k == incidence->first[v] ||
 			            incidence->record[k] > incidence->record[k - 1]);
 			assert_int_equal(vertex_of[incidence->record[k]], -1);
 			vertex_of[incidence->record[k]] = v;
 		}
-	for (int kind = 0; kind < CAU_ELEMENT_KINDS; ++kind)
-		for (int32_t i = 0; i < cau_tissue_element_count(&r.tissue, kind); ++i) {
+	for (int kind = 0; kind < CAU_ELEMENT_KINDS; kind++)
+		for (int32_t i = 0; i < cau_tissue_element_count(&r.tissue, kind); i++) {
 			cau_element_map map;
 			cau_tissue_element_map(&r.tissue, kind, i, &map);
 			int32_t slot = r.solver.slots.slot_of[kind][i], found = 0;
-			for (int k = 0; k < map.vertex_count; ++k) {
+			for (int k = 0; k < map.vertex_count; k++) {
 				int32_t record = rig_record(&r, kind, slot, k);
-				for (int own = 0; own < map.vertex_count; ++own) // in its pair's order
+				for (int own = 0; own < map.vertex_count; own++) // in its pair's order
 					if (vertex_of[record] == map.vertex[own])
 						found |= 1 << own;
 				assert_int_equal(4 * vertex_of[record], e->record_vertex[record]);
@@ -46,7 +46,7 @@ static void test_every_record_is_summed_once(void **state)
 			}
 			assert_int_equal(found, (1 << map.vertex_count) - 1);
 		}
-	for (int32_t k = 0; k < e->record_count; ++k)
+	for (int32_t k = 0; k < e->record_count; k++)
 		assert_int_equal(used[k], vertex_of[k] >= 0);
 	rig_finish(&r);
 }
@@ -59,12 +59,12 @@ static void test_shares_write_apart(void **state)
 	make(&r, CAU_PRECISION_DOUBLE);
 	const cau_elements *e = &r.solver.elements;
 	int32_t next = 0;
-	for (int32_t w = 0; w < r.solver.slots.work_count; ++w) {
+	for (int32_t w = 0; w < r.solver.slots.work_count; w++) {
 		const cau_local_work *work = &r.solver.slots.work[w];
 		assert_int_equal(work->first_record, next);
 		next += work->record_count;
-		for (int32_t s = work->first; s < work->last; ++s) // padding too
-			for (int i = 0; i < rig_vertex_count(work->kind); ++i) {
+		for (int32_t s = work->first; s < work->last; s++) // padding too
+			for (int i = 0; i < rig_vertex_count(work->kind); i++) {
 				int32_t record = rig_record(&r, work->kind, s, i);
 				assert_true(record >= work->first_record && record < next);
 			}
@@ -82,7 +82,7 @@ static void test_work_covers_everything_once(void **state)
 	const cau_elements *e = &r.solver.elements;
 	int32_t covered[4] = {0};
 	uint8_t seen[4][4096] = {{0}};
-	for (int32_t w = 0; w < r.solver.slots.work_count; ++w) {
+	for (int32_t w = 0; w < r.solver.slots.work_count; w++) {
 		const cau_local_work *work = &r.solver.slots.work[w];
 		assert_int_equal(work->first % CAU_BATCH, 0);
 		assert_int_equal(work->last % CAU_BATCH, 0);

@@ -34,7 +34,7 @@ static void test_uniaxial_stretch(void **state)
 	                                             &count, &error),
 	                 CAU_OK);
 	assert_true(count > 0);
-	for (int32_t i = 0; i < count; ++i) {
+	for (int32_t i = 0; i < count; i++) {
 		const cau_reference_uniaxial *row = &rows[i];
 		rig r;
 		make(&r, row->model, row->young_modulus_pa, row->poisson_ratio);
@@ -42,7 +42,7 @@ static void test_uniaxial_stretch(void **state)
 		double stress[3][3], expected[3][3] = {{row->stress_pa, 0, 0}, {0, 0, 0}, {0, 0, 0}};
 		element_answer(&r, 0, f, stress);
 		double volume = r.tissue.tetrahedron_volume[0];
-		for (int k = 0; k < 9; ++k)
+		for (int k = 0; k < 9; k++)
 			assert_near(stress[k / 3][k % 3] / volume, expected[k / 3][k % 3],
 			            UNIAXIAL_TOLERANCE * row->young_modulus_pa);
 		rig_finish(&r);
@@ -55,16 +55,16 @@ static void test_stress_by_hand(void **state)
 	static const int models[] = {CAU_MODEL_STVK, CAU_MODEL_NEOHOOKEAN};
 	const double young = 4000, poisson = 0.41;
 	uint64_t random = 3;
-	for (int m = 0; m < 2; ++m) {
+	for (int m = 0; m < 2; m++) {
 		rig r;
 		make(&r, models[m], young, poisson);
 		double volume = r.tissue.tetrahedron_volume[0];
-		for (int i = 0; i < DRAWS; ++i) {
+		for (int i = 0; i < DRAWS; i++) {
 			double f[3][3], stress[3][3], expected[3][3];
 			rig_random_gradient(&random, 0.8, f); // some of them inverted
 			element_answer(&r, 0, f, stress);
 			cau_reference_stress(models[m], young, poisson, f, expected);
-			for (int k = 0; k < 9; ++k)
+			for (int k = 0; k < 9; k++)
 				assert_near(stress[k / 3][k % 3] / volume, expected[k / 3][k % 3],
 				            STRESS_TOLERANCE * young);
 		}
@@ -81,14 +81,14 @@ static void test_corotated_by_hand(void **state)
 	uint64_t random = 3;
 	rig r;
 	make(&r, CAU_MODEL_COROTATED, young, poisson);
-	for (int i = 0; i < DRAWS; ++i) {
+	for (int i = 0; i < DRAWS; i++) {
 		double f[3][3], q[3][3], stress[3][3], trace = -3;
 		rig_random_gradient(&random, 0.4, f);
 		element_answer(&r, 0, f, stress);
 		mat_polar(f, q);
-		for (int k = 0; k < 9; ++k)
+		for (int k = 0; k < 9; k++)
 			trace += q[k / 3][k % 3] * f[k / 3][k % 3];
-		for (int k = 0; k < 9; ++k) {
+		for (int k = 0; k < 9; k++) {
 			double rotation = q[k / 3][k % 3];
 			double expected = 2 * mu * (f[k / 3][k % 3] - rotation) + lambda * trace * rotation;
 			assert_near(stress[k / 3][k % 3] / r.tissue.tetrahedron_volume[0], expected,
@@ -103,7 +103,7 @@ static void test_energy_is_the_work_done(void **state)
 {
 	(void)state;
 	enum { PARTS = 200 };
-	for (int model = 0; model < CAU_MODEL_COUNT; ++model) {
+	for (int model = 0; model < CAU_MODEL_COUNT; model++) {
 		const cau_law *law = cau_law_of(model);
 		if (!law->has_energy)
 			continue;
@@ -112,12 +112,12 @@ static void test_energy_is_the_work_done(void **state)
 		uint64_t random = 17;
 		double h[3][3], f[3][3], stress[3][3], x[12], work = 0;
 		rig_random_gradient(&random, 0.5, h);
-		for (int p = 0; p <= PARTS; ++p) {
+		for (int p = 0; p <= PARTS; p++) {
 			double s = (double)p / PARTS, weight = p % PARTS == 0 ? 1 : p % 2 ? 4 : 2, power = 0;
-			for (int k = 0; k < 9; ++k)
+			for (int k = 0; k < 9; k++)
 				f[k / 3][k % 3] = (k % 4 == 0) + s * (h[k / 3][k % 3] - (k % 4 == 0));
 			element_answer(&r, 0, f, stress);
-			for (int k = 0; k < 9; ++k)
+			for (int k = 0; k < 9; k++)
 				power += stress[k / 3][k % 3] * (h[k / 3][k % 3] - (k % 4 == 0));
 			work += weight * power / (3 * PARTS);
 		}
@@ -139,21 +139,21 @@ static void test_energy_constraint_by_hand(void **state)
 	uint64_t random = 9;
 	rig r;
 	make(&r, CAU_MODEL_ENERGY, young, poisson);
-	for (int i = 0; i < DRAWS; ++i) {
+	for (int i = 0; i < DRAWS; i++) {
 		double f[3][3], e[3][3], p[3][3], stress[3][3], squares = 0, trace = 0, size = 0;
 		rig_random_gradient(&random, 0.5, f);
 		mat_transpose_multiply(f, f, e);
-		for (int k = 0; k < 9; ++k) {
+		for (int k = 0; k < 9; k++) {
 			e[k / 3][k % 3] = (e[k / 3][k % 3] - (k % 4 == 0)) / 2;
 			squares += e[k / 3][k % 3] * e[k / 3][k % 3];
 		}
 		trace = e[0][0] + e[1][1] + e[2][2];
 		double psi = mu * squares + lambda / 2 * trace * trace;
 		cau_reference_stress(CAU_MODEL_STVK, young, poisson, f, p);
-		for (int k = 0; k < 9; ++k)
+		for (int k = 0; k < 9; k++)
 			size += p[k / 3][k % 3] * p[k / 3][k % 3];
 		element_answer(&r, 0, f, stress);
-		for (int k = 0; k < 9; ++k) {
+		for (int k = 0; k < 9; k++) {
 			double expected = (2 * mu + 3 * lambda) * psi / size * p[k / 3][k % 3];
 			assert_near(stress[k / 3][k % 3] / r.tissue.tetrahedron_volume[0], expected,
 			            STRESS_TOLERANCE * young);

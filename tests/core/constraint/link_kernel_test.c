@@ -21,7 +21,7 @@ static void test_links_are_springs(void **state)
 	rig_deform(&r, a, 2e-3, &random, x);
 	rig_local(&r, x, NULL);
 	double energy = rig_energy_of(&r, CAU_ELEMENT_LINK);
-	for (int32_t k = 0; k < r.tissue.link_count; ++k) {
+	for (int32_t k = 0; k < r.tissue.link_count; k++) {
 		const int32_t *v = r.tissue.link + 2 * k;
 		cau_vec3 along = cau_sub(cau_vec3_of(x + 3 * v[1]), cau_vec3_of(x + 3 * v[0]));
 		double length = cau_length(along), longer = length - r.tissue.link_length[k], got[6];
@@ -41,7 +41,7 @@ static void test_links_are_springs(void **state)
 static void test_a_link_of_no_length(void **state)
 {
 	(void)state;
-	for (int precision = 0; precision < CAU_PRECISION_COUNT; ++precision) {
+	for (int precision = 0; precision < CAU_PRECISION_COUNT; precision++) {
 		rig r;
 		rig_begin(&r);
 		r.scene->precision = precision;
@@ -52,7 +52,7 @@ static void test_a_link_of_no_length(void **state)
 		const int32_t *v = r.tissue.link;
 		memcpy(r.solver.position + 3 * v[0], r.solver.position + 3 * v[1], 3 * sizeof(double));
 		assert_true(isfinite(rig_local(&r, r.solver.position, gradient)));
-		for (int32_t i = 0; i < 3 * r.tissue.vertex_count; ++i)
+		for (int32_t i = 0; i < 3 * r.tissue.vertex_count; i++)
 			assert_true(isfinite(gradient[i]));
 		rig_finish(&r);
 	}
@@ -63,7 +63,7 @@ static void test_a_link_of_no_length(void **state)
 static void test_hinges_keep_their_bend(void **state)
 {
 	(void)state;
-	for (int flat = 0; flat < 2; ++flat) {
+	for (int flat = 0; flat < 2; flat++) {
 		rig r;
 		rig_begin(&r);
 		if (flat)
@@ -80,10 +80,10 @@ static void test_hinges_keep_their_bend(void **state)
 		rig_random_gradient(&random, 0.2, a);
 		rig_deform(&r, a, 2e-3, &random, x);
 		double bent = rig_local(&r, x, NULL);
-		for (int32_t h = 0; h < r.tissue.hinge_count; ++h) {
+		for (int32_t h = 0; h < r.tissue.hinge_count; h++) {
 			double now[3] = {0}, rest[3] = {0};
-			for (int i = 0; i < 4; ++i)
-				for (int c = 0; c < 3; ++c) {
+			for (int i = 0; i < 4; i++)
+				for (int c = 0; c < 3; c++) {
 					double k = r.tissue.hinge_coefficient[4 * h + i];
 					int32_t at = 3 * r.tissue.hinge_vertex[4 * h + i] + c;
 					now[c] += k * x[at];
@@ -114,12 +114,12 @@ static void test_hinges_in_the_diagonal_system(void **state)
 	rig_random_gradient(&random, 0.2, a);
 	rig_deform(&r, a, 2e-3, &random, x);
 	rig_local(&r, x, NULL);
-	for (int32_t h = 0; h < r.tissue.hinge_count; ++h) {
+	for (int32_t h = 0; h < r.tissue.hinge_count; h++) {
 		const double *k = r.tissue.hinge_coefficient + 4 * h;
 		double e[3] = {0}, rest[3] = {0}, squares = 0, got[12], expected[12];
-		for (int i = 0; i < 4; ++i) {
+		for (int i = 0; i < 4; i++) {
 			squares += k[i] * k[i];
-			for (int c = 0; c < 3; ++c) {
+			for (int c = 0; c < 3; c++) {
 				e[c] += k[i] * x[3 * r.tissue.hinge_vertex[4 * h + i] + c];
 				rest[c] += k[i] * r.tissue.rest[3 * r.tissue.hinge_vertex[4 * h + i] + c];
 			}
@@ -127,7 +127,7 @@ static void test_hinges_in_the_diagonal_system(void **state)
 		double length = cau_length(cau_vec3_of(e));
 		double more = length - cau_length(cau_vec3_of(rest));
 		double omega = r.tissue.hinge_weight[h] * squares / 4;
-		for (int i = 0; i < 12; ++i)
+		for (int i = 0; i < 12; i++)
 			expected[i] = omega * more * k[i / 3] / squares * e[i % 3] / length;
 		rig_element_gradient(&r, CAU_ELEMENT_HINGE, h, got);
 		assert_true(rig_difference(got, expected, 12) < FORCE_TOLERANCE);

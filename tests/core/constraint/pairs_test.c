@@ -32,7 +32,7 @@ static void assert_orders_agree(const cau_tissue *tissue, int kind, int32_t firs
 	cau_pair_order(tissue, kind, first, other, other, theirs);
 	const int32_t *a = vertices_of(tissue, kind, first), *b = vertices_of(tissue, kind, other);
 	int seen_mine = 0, seen_theirs = 0;
-	for (int i = 0; i < count; ++i) {
+	for (int i = 0; i < count; i++) {
 		seen_mine |= 1 << mine[i];
 		seen_theirs |= 1 << theirs[i];
 		assert_int_equal(a[mine[i]] == b[theirs[i]], i < count - 1);
@@ -46,13 +46,13 @@ static void test_pairs_are_neighbours_of_one_group(void **state)
 	(void)state;
 	rig r;
 	make(&r);
-	for (int k = 0; k < 2; ++k)
-		for (int32_t layer = 0; layer < r.tissue.layer_count; ++layer) {
+	for (int k = 0; k < 2; k++)
+		for (int32_t layer = 0; layer < r.tissue.layer_count; layer++) {
 			int kind = KINDS[k];
 			int32_t count = cau_tissue_element_count(&r.tissue, kind), members = 0, alone = 0;
 			int32_t *partner = cau_arena_array(&r.arena, (size_t)count, sizeof *partner);
 			int32_t pairs = cau_pair_elements(&r.tissue, kind, layer, 0, partner);
-			for (int32_t e = 0; e < count; ++e) {
+			for (int32_t e = 0; e < count; e++) {
 				if (layer_of(&r.tissue, kind, e) != layer)
 					continue;
 				members++;
@@ -75,10 +75,10 @@ static void test_alone(void **state)
 	(void)state;
 	rig r;
 	make(&r);
-	for (int k = 0; k < 2; ++k) {
+	for (int k = 0; k < 2; k++) {
 		int order[4];
 		cau_pair_order(&r.tissue, KINDS[k], 0, -1, 0, order);
-		for (int i = 0; i < 3 + k; ++i)
+		for (int i = 0; i < 3 + k; i++)
 			assert_int_equal(order[i], i);
 	}
 	rig_finish(&r);

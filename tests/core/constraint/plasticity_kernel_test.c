@@ -22,7 +22,7 @@ static int32_t settle(rig *r, double f[3][3])
 	element_place(r, 0, f, x);
 	rig_local(r, x, NULL);
 	int32_t inverted = 0;
-	for (int32_t w = 0; w < r->solver.slots.work_count; ++w)
+	for (int32_t w = 0; w < r->solver.slots.work_count; w++)
 		inverted += r->solver.kernels->settle(&r->solver.elements, &r->solver.slots.work[w],
 		                                      r->solver.displacement);
 	return inverted;
@@ -31,7 +31,7 @@ static int32_t settle(rig *r, double f[3][3])
 static void stored(const rig *r, void *const array[6], double out[3][3])
 {
 	double s[6];
-	for (int i = 0; i < 6; ++i)
+	for (int i = 0; i < 6; i++)
 		s[i] = cau_real_get(array[i], r->solver.elements.single, 0);
 	mat_of_symmetric(s, out);
 }
@@ -39,7 +39,7 @@ static void stored(const rig *r, void *const array[6], double out[3][3])
 static double norm(double a[3][3])
 {
 	double sum = 0;
-	for (int k = 0; k < 9; ++k)
+	for (int k = 0; k < 9; k++)
 		sum += a[k / 3][k % 3] * a[k / 3][k % 3];
 	return sqrt(sum);
 }
@@ -49,21 +49,21 @@ static void flow(double f[3][3], double map[3][3], double plastic[3][3], double 
 {
 	double fe[3][3], e[3][3], z[3][3];
 	mat_identity(z);
-	for (int k = 0; k < 9; ++k)
+	for (int k = 0; k < 9; k++)
 		z[k / 3][k % 3] += map[k / 3][k % 3];
 	mat_multiply(f, z, fe);
 	mat_transpose_multiply(fe, fe, e);
 	double trace = e[0][0] + e[1][1] + e[2][2];
-	for (int k = 0; k < 9; ++k)
+	for (int k = 0; k < 9; k++)
 		e[k / 3][k % 3] = (e[k / 3][k % 3] - (k % 4 == 0 ? trace / 3 : 0)) / 2;
 	double beyond = norm(e) - yield;
 	if (beyond <= 0)
 		return;
 	double step = beyond / norm(e);
-	for (int k = 0; k < 9; ++k)
+	for (int k = 0; k < 9; k++)
 		plastic[k / 3][k % 3] += step * e[k / 3][k % 3];
 	double length = norm(plastic);
-	for (int k = 0; k < 9 && length > most; ++k)
+	for (int k = 0; k < 9 && length > most; k++)
 		plastic[k / 3][k % 3] *= most / length;
 }
 
@@ -76,7 +76,7 @@ static void test_flow_by_hand(void **state)
 	double plastic[3][3] = {{0}}, identity[3][3];
 	mat_identity(identity);
 	int flowed = 0, capped = 0;
-	for (int tick = 0; tick < 60; ++tick) {
+	for (int tick = 0; tick < 60; tick++) {
 		double f[3][3], map[3][3], got[3][3], before = norm(plastic);
 		rig_random_gradient(&random, tick % 3 ? 0.25 : 0.01, f);
 		stored(&r, r.solver.elements.fat.plastic, map);
@@ -90,7 +90,7 @@ static void test_flow_by_hand(void **state)
 		// (I + z) (I + 2 e_p) (I + z) = I
 		double c[3][3], z[3][3], product[3][3];
 		stored(&r, r.solver.elements.fat.plastic, z);
-		for (int k = 0; k < 9; ++k) {
+		for (int k = 0; k < 9; k++) {
 			c[k / 3][k % 3] = (k % 4 == 0) + 2 * got[k / 3][k % 3];
 			z[k / 3][k % 3] += k % 4 == 0;
 		}
@@ -128,7 +128,7 @@ static void test_flow_takes_the_stress_away(void **state)
 	double f[3][3] = {{1.15, 0, 0}, {0, 1 / sqrt(1.15), 0}, {0, 0, 1 / sqrt(1.15)}};
 	double first[3][3], last[3][3];
 	element_answer(&r, 0, f, first);
-	for (int tick = 0; tick < 60; ++tick)
+	for (int tick = 0; tick < 60; tick++)
 		settle(&r, f);
 	element_answer(&r, 0, f, last);
 	double mean = (last[0][0] * f[0][0] + last[1][1] * f[1][1] + last[2][2] * f[2][2]) / 3;
@@ -145,8 +145,8 @@ static void test_precisions_and_instruction_sets_agree(void **state)
 	// strains of a tenth as differences of squares near one, three ticks long
 	static const double tolerance[] = {3e-5, 1e-13};
 	double expected[6 * 128] = {0};
-	for (int precision = CAU_PRECISION_COUNT - 1; precision >= 0; --precision)
-		for (int t = 0; t < 3; ++t) {
+	for (int precision = CAU_PRECISION_COUNT - 1; precision >= 0; precision--)
+		for (int t = 0; t < 3; t++) {
 			rig r;
 			rig_begin(&r);
 			r.scene->precision = precision;
@@ -156,16 +156,16 @@ static void test_precisions_and_instruction_sets_agree(void **state)
 			rig_build(&r, tiers[t], 1);
 			uint64_t random = 62;
 			double a[3][3], got[6 * 128] = {0};
-			for (int tick = 0; tick < 3; ++tick) {
+			for (int tick = 0; tick < 3; tick++) {
 				rig_random_gradient(&random, 0.1, a);
 				rig_deform(&r, a, 1e-3, &random, r.solver.position);
 				rig_local(&r, r.solver.position, NULL);
-				for (int32_t w = 0; w < r.solver.slots.work_count; ++w)
+				for (int32_t w = 0; w < r.solver.slots.work_count; w++)
 					r.solver.kernels->settle(&r.solver.elements, &r.solver.slots.work[w],
 					                         r.solver.displacement);
 			}
-			for (int i = 0; i < 6; ++i)
-				for (int32_t s = 0; s < r.tissue.tetrahedron_count; ++s)
+			for (int i = 0; i < 6; i++)
+				for (int32_t s = 0; s < r.tissue.tetrahedron_count; s++)
 					got[128 * i + s] = cau_real_get(r.solver.elements.fat.plastic_strain[i],
 					                                r.solver.elements.single, s);
 			if (precision == CAU_PRECISION_DOUBLE && !t)
@@ -174,7 +174,7 @@ static void test_precisions_and_instruction_sets_agree(void **state)
 			rig_finish(&r);
 		}
 	double most = 0;
-	for (int i = 0; i < 6 * 128; ++i)
+	for (int i = 0; i < 6 * 128; i++)
 		most = fmax(most, fabs(expected[i]));
 	assert_true(most > 0.01);
 }

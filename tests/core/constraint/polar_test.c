@@ -28,7 +28,7 @@ static void nearest_rotation(rig *r, double f[3][3], double q[3][3])
 {
 	double stress[3][3];
 	element_answer(r, 0, f, stress);
-	for (int k = 0; k < 9; ++k)
+	for (int k = 0; k < 9; k++)
 		q[k / 3][k % 3] =
 			f[k / 3][k % 3] - stress[k / 3][k % 3] / (r->tissue.tetrahedron_volume[0] * YOUNG);
 }
@@ -36,7 +36,7 @@ static void nearest_rotation(rig *r, double f[3][3], double q[3][3])
 static void random_turn(uint64_t *random, double out[3][3])
 {
 	double axis[3];
-	for (int c = 0; c < 3; ++c)
+	for (int c = 0; c < 3; c++)
 		axis[c] = random_between(random, -1, 1);
 	mat_rotation(axis, random_between(random, -3.1, 3.1), out);
 }
@@ -48,8 +48,8 @@ static void with_singular_values(uint64_t *random, double a, double b, double c,
 	double s[3] = {a, b, c};
 	random_turn(random, u);
 	random_turn(random, v);
-	for (int i = 0; i < 3; ++i)
-		for (int j = 0; j < 3; ++j)
+	for (int i = 0; i < 3; i++)
+		for (int j = 0; j < 3; j++)
 			u[i][j] *= s[j];
 	mat_multiply(u, v, f);
 }
@@ -57,7 +57,7 @@ static void with_singular_values(uint64_t *random, double a, double b, double c,
 static double agreement(double q[3][3], double f[3][3])
 {
 	double sum = 0;
-	for (int k = 0; k < 9; ++k)
+	for (int k = 0; k < 9; k++)
 		sum += q[k / 3][k % 3] * f[k / 3][k % 3];
 	return sum;
 }
@@ -70,9 +70,9 @@ static void assert_nearest(const rig *r, double f[3][3], double q[3][3], uint64_
 	mat_transpose_multiply(q, q, square);
 	assert_near(mat_distance(square, identity), 0, 4 * tolerance);
 	assert_near(mat_determinant(q), 1, 4 * tolerance);
-	for (int k = 0; k < 9; ++k)
+	for (int k = 0; k < 9; k++)
 		size += fabs(f[k / 3][k % 3]);
-	for (int i = 0; i < RIVALS; ++i) {
+	for (int i = 0; i < RIVALS; i++) {
 		random_turn(random, rival);
 		assert_true(agreement(rival, f) <= agreement(q, f) + tolerance * size);
 		double small[3][3], axis[3] = {0, 0, 0}; // and no near one
@@ -86,11 +86,11 @@ static void assert_nearest(const rig *r, double f[3][3], double q[3][3], uint64_
 static void test_positive_determinants(void **state)
 {
 	(void)state;
-	for (int precision = 0; precision < CAU_PRECISION_COUNT; ++precision) {
+	for (int precision = 0; precision < CAU_PRECISION_COUNT; precision++) {
 		rig r;
 		make(&r, precision);
 		uint64_t random = 31;
-		for (int i = 0; i < DRAWS; ++i) {
+		for (int i = 0; i < DRAWS; i++) {
 			double f[3][3], q[3][3], expected[3][3];
 			with_singular_values(&random, random_between(&random, 0.3, 2.5),
 			                     random_between(&random, 0.3, 2.5),
@@ -106,11 +106,11 @@ static void test_positive_determinants(void **state)
 static void test_inverted_and_flat_elements_get_a_rotation(void **state)
 {
 	(void)state;
-	for (int precision = 0; precision < CAU_PRECISION_COUNT; ++precision) {
+	for (int precision = 0; precision < CAU_PRECISION_COUNT; precision++) {
 		rig r;
 		make(&r, precision);
 		uint64_t random = 33;
-		for (int i = 0; i < DRAWS; ++i) {
+		for (int i = 0; i < DRAWS; i++) {
 			double f[3][3], q[3][3];
 			double smallest = i % 3 ? random_between(&random, -0.4, -0.05) : 0;
 			with_singular_values(&random, random_between(&random, 1.2, 2),
@@ -133,7 +133,7 @@ static void test_mirror_image(void **state)
 	double f[3][3] = {{-1, 0, 0}, {0, 1, 0}, {0, 0, 1}}, q[3][3];
 	nearest_rotation(&r, f, q);
 	assert_nearest(&r, f, q, &random);
-	for (int k = 0; k < 9; ++k)
+	for (int k = 0; k < 9; k++)
 		f[k / 3][k % 3] = -(k % 4 == 0);
 	nearest_rotation(&r, f, q);
 	assert_nearest(&r, f, q, &random);

@@ -45,7 +45,7 @@ static inline void range_add_shear(double f[3][3], int a, int b, double most, do
 		double x0 = s * sin(first), y0 = t * sin(second);
 		assert_true(x * x + y * y >= x0 * x0 + y0 * y0 - 1e-15);
 	}
-	for (int row = 0; row < 3; ++row) {
+	for (int row = 0; row < 3; row++) {
 		double u = f[row][a] / s, v = sign * f[row][b] / t; // unit columns
 		double away_u = (fabs(cosine) * u - v) / across, away_v = (fabs(cosine) * v - u) / across;
 		r[row][a] += f[row][a] - s * cos(first) * (cos(first) * u + sin(first) * away_u);
@@ -58,15 +58,15 @@ static inline int range_residual(const range_limits *limits, double f[3][3], dou
 {
 	int inside = 1;
 	memset(r, 0, 9 * sizeof(double));
-	for (int a = 0; a < limits->columns; ++a) {
+	for (int a = 0; a < limits->columns; a++) {
 		double length = sqrt(range_dot(f, a, a));
 		double kept = fmin(fmax(length, 1 + limits->least[a]), 1 + limits->most[a]);
 		inside &= kept == length;
-		for (int row = 0; row < 3; ++row)
+		for (int row = 0; row < 3; row++)
 			r[row][a] += (1 - kept / length) * f[row][a];
 	}
-	for (int a = 0; a < limits->columns; ++a)
-		for (int b = 0; b < a; ++b) {
+	for (int a = 0; a < limits->columns; a++)
+		for (int b = 0; b < a; b++) {
 			inside &= fabs(range_cosine(f, a, b)) <= limits->shear;
 			range_add_shear(f, b, a, limits->shear, r);
 		}

@@ -30,7 +30,7 @@ static void residual(rig *r, double f[3][3], double out[3][3])
 	double known[3][3];
 	element_answer(r, 0, f, out);
 	cau_reference_stress(CAU_MODEL_STVK, YOUNG, POISSON, f, known);
-	for (int k = 0; k < 9; ++k)
+	for (int k = 0; k < 9; k++)
 		out[k / 3][k % 3] =
 			(out[k / 3][k % 3] / r->tissue.tetrahedron_volume[0] - known[k / 3][k % 3]) / LIMIT_PA;
 }
@@ -39,7 +39,7 @@ static void residual(rig *r, double f[3][3], double out[3][3])
 static void assert_projected(double f[3][3], double r[3][3], double wanted[3][3])
 {
 	double p[3][3], k[3][3], turned[3][3], turn[3][3];
-	for (int i = 0; i < 9; ++i)
+	for (int i = 0; i < 9; i++)
 		p[i / 3][i % 3] = f[i / 3][i % 3] - r[i / 3][i % 3];
 	mat_transpose_multiply(p, p, k);
 	assert_near(mat_distance(k, wanted), 0, RESIDUAL_TOLERANCE);
@@ -60,7 +60,7 @@ static void test_target_is_the_nearest_of_its_metric(void **state)
 	mat_of_symmetric(TARGET, wanted);
 	uint64_t random = 41;
 	int inverted = 0;
-	for (int i = 0; i < 3 * DRAWS; ++i) {
+	for (int i = 0; i < 3 * DRAWS; i++) {
 		double f[3][3], got[3][3];
 		rig_random_gradient(&random, 0.9, f);
 		inverted += mat_determinant(f) < 0;
@@ -83,8 +83,8 @@ static void test_target_follows_the_fibre(void **state)
 	rig_build(&r, NULL, 1);
 	double wanted[3][3], f[3][3], got[3][3];
 	uint64_t random = 42;
-	for (int i = 0; i < 3; ++i)
-		for (int j = 0; j < 3; ++j)
+	for (int i = 0; i < 3; i++)
+		for (int j = 0; j < 3; j++)
 			wanted[i][j] = (i == j) + (0.3 - 1) * FIBRE[i] * FIBRE[j];
 	rig_random_gradient(&random, 0.3, f);
 	residual(&r, f, got);
@@ -101,20 +101,20 @@ static void test_linearised_is_equation_13(void **state)
 	material->projection = CAU_PROJECTION_LINEARISED;
 	rig_build(&r, NULL, 1);
 	uint64_t random = 43;
-	for (int i = 0; i < DRAWS; ++i) {
+	for (int i = 0; i < DRAWS; i++) {
 		double f[3][3], got[3][3], k[3][3], expected[3][3] = {{0}};
 		rig_random_gradient(&random, 0.6, f);
 		residual(&r, f, got);
 		mat_transpose_multiply(f, f, k);
-		for (int p = 0; p < 6; ++p) {
+		for (int p = 0; p < 6; p++) {
 			double slope[3][3] = {{0}}, size = 0;
-			for (int row = 0; row < 3; ++row) {
+			for (int row = 0; row < 3; row++) {
 				slope[row][ROW[p]] += f[row][COLUMN[p]];
 				slope[row][COLUMN[p]] += f[row][ROW[p]];
 			}
-			for (int e = 0; e < 9; ++e)
+			for (int e = 0; e < 9; e++)
 				size += slope[e / 3][e % 3] * slope[e / 3][e % 3];
-			for (int e = 0; e < 9; ++e)
+			for (int e = 0; e < 9; e++)
 				expected[e / 3][e % 3] +=
 					(k[ROW[p]][COLUMN[p]] - TARGET[p]) / size * slope[e / 3][e % 3];
 		}
@@ -137,7 +137,7 @@ static void test_range_is_the_nearest_of_each_limit(void **state)
 	rig_build(&r, NULL, 1);
 	uint64_t random = 44;
 	int inside = 0, outside = 0;
-	for (int i = 0; i < 6 * DRAWS; ++i) {
+	for (int i = 0; i < 6 * DRAWS; i++) {
 		double f[3][3], got[3][3], expected[3][3];
 		rig_random_gradient(&random, i % 2 ? 0.4 : 0.04, f);
 		residual(&r, f, got);

@@ -26,7 +26,7 @@ static void draw(uint64_t *random, double size, double f[3][3])
 {
 	double turn[3][3], axis[3];
 	rig_random_gradient(random, size, f);
-	for (int c = 0; c < 3; ++c)
+	for (int c = 0; c < 3; c++)
 		axis[c] = random_between(random, -1, 1);
 	mat_rotation(axis, random_between(random, -3, 3), turn);
 	f[2][0] = f[2][1] = f[0][2] = f[1][2] = 0;
@@ -38,14 +38,14 @@ static void draw(uint64_t *random, double size, double f[3][3])
 static void residual(rig *r, double f[3][3], double out[3][3])
 {
 	element_answer(r, 1, f, out);
-	for (int k = 0; k < 9; ++k)
+	for (int k = 0; k < 9; k++)
 		out[k / 3][k % 3] /= weight_of(r);
 }
 
 static void metric(double f[3][3], double k[3])
 {
 	k[0] = k[1] = k[2] = 0;
-	for (int i = 0; i < 3; ++i) {
+	for (int i = 0; i < 3; i++) {
 		k[0] += f[i][0] * f[i][0];
 		k[1] += f[i][1] * f[i][1];
 		k[2] += f[i][0] * f[i][1];
@@ -56,15 +56,15 @@ static void metric(double f[3][3], double k[3])
 static void assert_projected(double f[3][3], double r[3][3], const double wanted[3])
 {
 	double p[3][3], k[3];
-	for (int i = 0; i < 9; ++i)
+	for (int i = 0; i < 9; i++)
 		p[i / 3][i % 3] = f[i / 3][i % 3] - r[i / 3][i % 3];
 	metric(p, k);
-	for (int i = 0; i < 3; ++i)
+	for (int i = 0; i < 3; i++)
 		assert_near(k[i], wanted[i], RESIDUAL_TOLERANCE);
-	for (int i = 0; i < 3; ++i) {
+	for (int i = 0; i < 3; i++) {
 		int a = (i + 1) % 3, b = (i + 2) % 3;
 		double turn = 0;
-		for (int c = 0; c < 2; ++c)
+		for (int c = 0; c < 2; c++)
 			turn += r[a][c] * p[b][c] - r[b][c] * p[a][c];
 		assert_near(turn, 0, RESIDUAL_TOLERANCE);
 	}
@@ -80,7 +80,7 @@ static void test_target_is_the_polar_factor(void **state)
 	cau_symmetric_power2(TARGET, 0.5, 0, root3);
 	root[0][0] = root3[0], root[1][1] = root3[1], root[0][1] = root[1][0] = root3[2];
 	uint64_t random = 21;
-	for (int i = 0; i < DRAWS; ++i) {
+	for (int i = 0; i < DRAWS; i++) {
 		double f[3][3], q[3][3], p[3][3], got[3][3];
 		draw(&random, 0.5, f);
 		residual(&r, f, got);
@@ -90,7 +90,7 @@ static void test_target_is_the_polar_factor(void **state)
 			continue; // turned over: a rotation of the sheet, not of f as drawn
 		mat_polar(q, q);
 		mat_multiply(q, root, p);
-		for (int k = 0; k < 9; ++k)
+		for (int k = 0; k < 9; k++)
 			if (k % 3 < 2)
 				assert_near(got[k / 3][k % 3], f[k / 3][k % 3] - p[k / 3][k % 3],
 				            RESIDUAL_TOLERANCE);
@@ -109,20 +109,20 @@ static void test_linearised_is_equation_13(void **state)
 	rig_build(&r, NULL, 1);
 	static const int pair[3][2] = {{0, 0}, {1, 1}, {0, 1}};
 	uint64_t random = 22;
-	for (int i = 0; i < DRAWS; ++i) {
+	for (int i = 0; i < DRAWS; i++) {
 		double f[3][3], got[3][3], expected[3][3] = {{0}}, k[3];
 		draw(&random, 0.5, f);
 		residual(&r, f, got);
 		metric(f, k);
-		for (int c = 0; c < 3; ++c) {
+		for (int c = 0; c < 3; c++) {
 			double slope[3][3] = {{0}}, size = 0;
-			for (int row = 0; row < 3; ++row) {
+			for (int row = 0; row < 3; row++) {
 				slope[row][pair[c][0]] += f[row][pair[c][1]];
 				slope[row][pair[c][1]] += f[row][pair[c][0]];
 			}
-			for (int e = 0; e < 9; ++e)
+			for (int e = 0; e < 9; e++)
 				size += slope[e / 3][e % 3] * slope[e / 3][e % 3];
-			for (int e = 0; e < 9; ++e)
+			for (int e = 0; e < 9; e++)
 				expected[e / 3][e % 3] += (k[c] - TARGET[c]) / size * slope[e / 3][e % 3];
 		}
 		assert_near(mat_distance(got, expected), 0, RESIDUAL_TOLERANCE);
@@ -150,13 +150,13 @@ static void test_range_is_the_nearest_of_each_limit(void **state)
 	begin_range(&r);
 	uint64_t random = 23;
 	int inside = 0, outside = 0;
-	for (int i = 0; i < 4 * DRAWS; ++i) {
+	for (int i = 0; i < 4 * DRAWS; i++) {
 		double f[3][3], got[3][3], expected[3][3];
 		draw(&random, i % 2 ? 0.4 : 0.05, f);
 		residual(&r, f, got);
 		if (range_residual(&limits, f, expected)) {
 			inside++;
-			for (int e = 0; e < 9; ++e)
+			for (int e = 0; e < 9; e++)
 				assert_true(got[e / 3][e % 3] == 0);
 		} else {
 			outside++;
@@ -177,14 +177,14 @@ static void test_range_of_what_is_flat_is_finite(void **state)
 		{{0, 0, 0}, {0, 0, 0}}, {{1e-9, 0, 0}, {1e-9, 1e-12, 0}}, {{1e6, 0, 0}, {1e6, 1, 0}}};
 	rig r;
 	begin_range(&r);
-	for (size_t k = 0; k < sizeof flat / sizeof *flat; ++k) {
+	for (size_t k = 0; k < sizeof flat / sizeof *flat; k++) {
 		double f[3][3] = {{0}}, got[3][3], size = 0;
-		for (int e = 0; e < 6; ++e)
+		for (int e = 0; e < 6; e++)
 			f[e % 3][e / 3] = flat[k][e / 3][e % 3];
 		residual(&r, f, got);
-		for (int e = 0; e < 6; ++e)
+		for (int e = 0; e < 6; e++)
 			size += fabs(flat[k][e / 3][e % 3]);
-		for (int e = 0; e < 9; ++e)
+		for (int e = 0; e < 9; e++)
 			if (!(fabs(got[e / 3][e % 3]) <= 1 + 2 * size)) // no farther than the set is
 				fail_msg("case %zu: %g", k, got[e / 3][e % 3]);
 	}
@@ -205,10 +205,10 @@ static void test_lost_rank_keeps_the_last_rotation(void **state)
 	residual(&r, turn, got); // F is orthonormal and T^(1/2) symmetric: Q is F here
 	mat_multiply(turn, root, p);
 	assert_projected(turn, got, TARGET);
-	for (int pass = 0; pass < 2; ++pass) { // a line, then a point
+	for (int pass = 0; pass < 2; pass++) { // a line, then a point
 		flat[0][0] = pass ? 0 : 0.7, flat[0][1] = pass ? 0 : 0.3;
 		residual(&r, flat, got);
-		for (int k = 0; k < 9; ++k)
+		for (int k = 0; k < 9; k++)
 			if (k % 3 < 2)
 				assert_near(got[k / 3][k % 3], flat[k / 3][k % 3] - p[k / 3][k % 3],
 				            RESIDUAL_TOLERANCE);

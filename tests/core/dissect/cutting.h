@@ -19,7 +19,7 @@ static inline uint32_t cut_random_edges(rig *r, uint64_t *random, int count)
 {
 	uint32_t layers = 0;
 	cau_dissection_begin(&r->dissection);
-	for (int i = 0; i < count; ++i)
+	for (int i = 0; i < count; i++)
 		expose_by_hand(&r->dissection,
 		               (int32_t)random_between(random, 0, r->tissue.edges.edge_count), 1e6);
 	cau_dissection_part(&r->dissection, &layers);

@@ -23,8 +23,8 @@ static int parted(const cau_dissection *d, int32_t a, int32_t b, int32_t layer)
 static int count_shares(const cau_dissection *d, const int32_t *vertex, int vertices, int32_t layer)
 {
 	int count = 0;
-	for (int i = 0; i < vertices; ++i)
-		for (int j = i + 1; j < vertices; ++j)
+	for (int i = 0; i < vertices; i++)
+		for (int j = i + 1; j < vertices; j++)
 			count += !parted(d, vertex[i], vertex[j], layer);
 	return count;
 }
@@ -34,26 +34,26 @@ static void assert_counts(const rig *r)
 	const cau_tissue *t = &r->tissue;
 	const cau_dissection *d = &r->dissection;
 	int32_t *live = calloc((size_t)t->vertex_count, sizeof *live);
-	for (int kind = 0; kind < CAU_PRIMITIVE_KINDS; ++kind) {
+	for (int kind = 0; kind < CAU_PRIMITIVE_KINDS; kind++) {
 		int vertices = kind == CAU_PRIMITIVE_TRIANGLE      ? 3
 		               : kind == CAU_PRIMITIVE_TETRAHEDRON ? 4
 		                                                   : 2;
 		const int32_t *all[] = {t->triangle, t->tetrahedron, t->link};
 		const int32_t *layer[] = {t->triangle_layer, t->tetrahedron_layer, t->link_layer};
-		for (int32_t e = 0; e < cau_tissue_element_count(t, kind); ++e) {
+		for (int32_t e = 0; e < cau_tissue_element_count(t, kind); e++) {
 			const int32_t *vertex = all[kind] + vertices * e;
 			int shares = count_shares(d, vertex, vertices, layer[kind][e]);
 			int alive = shares == vertices * (vertices - 1) / 2;
 			assert_int_equal(d->share_count[kind][e], shares);
 			assert_int_equal(d->alive.element[kind][e], alive);
-			for (int i = 0; i < vertices; ++i)
+			for (int i = 0; i < vertices; i++)
 				live[vertex[i]] += alive;
 		}
 	}
 	assert_memory_equal(d->live_elements, live, (size_t)t->vertex_count * sizeof *live);
 	free(live);
 	const uint8_t *triangle = d->alive.element[CAU_ELEMENT_TRIANGLE];
-	for (int32_t h = 0; h < t->hinge_count; ++h)
+	for (int32_t h = 0; h < t->hinge_count; h++)
 		assert_int_equal(d->alive.element[CAU_ELEMENT_HINGE][h],
 		                 triangle[t->hinge_triangle[2 * h]] &&
 		                     triangle[t->hinge_triangle[2 * h + 1]]);
@@ -62,7 +62,7 @@ static void assert_counts(const rig *r)
 static int has_vertices(const int32_t *element, int count, const int32_t *face)
 {
 	int found = 0;
-	for (int i = 0; i < count; ++i)
+	for (int i = 0; i < count; i++)
 		found += element[i] == face[0] || element[i] == face[1] || element[i] == face[2];
 	return found == 3;
 }
@@ -77,10 +77,10 @@ static int is_drawn(const rig *r, int32_t face)
 		return alive[CAU_ELEMENT_TRIANGLE][face];
 	const int32_t *vertex = t->faces.vertex + 3 * face;
 	int owners = 0;
-	for (int32_t e = 0; e < t->tetrahedron_count; ++e)
+	for (int32_t e = 0; e < t->tetrahedron_count; e++)
 		owners +=
 			alive[CAU_ELEMENT_TETRAHEDRON][e] && has_vertices(t->tetrahedron + 4 * e, 4, vertex);
-	for (int32_t e = 0; e < t->triangle_count; ++e)
+	for (int32_t e = 0; e < t->triangle_count; e++)
 		if (alive[CAU_ELEMENT_TRIANGLE][e] && has_vertices(t->triangle + 3 * e, 3, vertex))
 			return 0;
 	return owners == 1;
@@ -88,7 +88,7 @@ static int is_drawn(const rig *r, int32_t face)
 
 static void assert_faces(const rig *r)
 {
-	for (int32_t f = 0; f < r->tissue.faces.face_count; ++f)
+	for (int32_t f = 0; f < r->tissue.faces.face_count; f++)
 		assert_int_equal(!(r->dissection.face_mask[f >> 5] >> (f & 31) & 1), is_drawn(r, f));
 }
 
@@ -101,14 +101,14 @@ static void test_counts_after_random_cuts(void **state)
 	assert_counts(&r);
 	assert_faces(&r);
 	int32_t removed = 0;
-	for (int tick = 0; tick < 25; ++tick) {
+	for (int tick = 0; tick < 25; tick++) {
 		int32_t before = r.dissection.edges_parted;
 		cut_random_edges(&r, &random, 1 + tick);
 		assert_true(r.dissection.edges_parted > before);
 		assert_counts(&r);
 		if (tick % 6 == 0)
 			assert_faces(&r);
-		for (int32_t k = 0; k < r.dissection.removed_count; ++k) {
+		for (int32_t k = 0; k < r.dissection.removed_count; k++) {
 			const cau_removed *gone = &r.dissection.removed[k];
 			assert_false(r.dissection.alive.element[gone->kind][gone->element]);
 			removed += gone->kind != CAU_ELEMENT_HINGE;
@@ -116,8 +116,8 @@ static void test_counts_after_random_cuts(void **state)
 	}
 	assert_faces(&r);
 	int32_t dead = 0;
-	for (int kind = 0; kind < CAU_PRIMITIVE_KINDS; ++kind)
-		for (int32_t e = 0; e < cau_tissue_element_count(&r.tissue, kind); ++e)
+	for (int kind = 0; kind < CAU_PRIMITIVE_KINDS; kind++)
+		for (int32_t e = 0; e < cau_tissue_element_count(&r.tissue, kind); e++)
 			dead += !r.dissection.alive.element[kind][e];
 	assert_int_equal(removed, dead); // each was reported once
 	assert_int_equal(r.dissection.elements_removed, dead);
@@ -133,12 +133,12 @@ static void test_recount_gives_the_same(void **state)
 	make(&a);
 	make(&b);
 	uint64_t random = 142;
-	for (int tick = 0; tick < 10; ++tick)
+	for (int tick = 0; tick < 10; tick++)
 		cut_random_edges(&a, &random, 12);
 	memcpy(b.dissection.parted, a.dissection.parted,
 	       (size_t)a.tissue.edges.edge_count * sizeof *a.dissection.parted);
 	cau_dissection_recount(&b.dissection);
-	for (int kind = 0; kind < CAU_ELEMENT_KINDS; ++kind)
+	for (int kind = 0; kind < CAU_ELEMENT_KINDS; kind++)
 		assert_memory_equal(a.dissection.alive.element[kind], b.dissection.alive.element[kind],
 		                    (size_t)cau_tissue_element_count(&a.tissue, kind));
 	assert_memory_equal(a.dissection.face_mask, b.dissection.face_mask,
@@ -168,7 +168,7 @@ static void test_each_layer_has_its_own_ignition(void **state)
 	const double exposure[] = {0.99 * fat_at, 1.01 * fat_at, 0.99 * membrane_at,
 	                           1.01 * membrane_at};
 	const uint16_t expected[] = {0, 1 << FAT, 1 << FAT, 1 << FAT | 1 << MEMBRANE};
-	for (int k = 0; k < 4; ++k) {
+	for (int k = 0; k < 4; k++) {
 		uint32_t layers = 0;
 		cau_dissection_begin(&r.dissection);
 		expose_by_hand(&r.dissection, edge, exposure[k]);
@@ -205,7 +205,7 @@ static void test_bundles_part_by_place(void **state)
 		double at = cau_ignition_in_bundles(heat->ignition_c, 30, r.dissection.seed, FASCIA, middle,
 		                                    fibre, 0.01) /
 		            heat->absorption_per_s;
-		for (int above = 0; above < 2; ++above) {
+		for (int above = 0; above < 2; above++) {
 			uint32_t layers = 0;
 			cau_dissection_begin(&r.dissection);
 			expose_by_hand(&r.dissection, edge, (above ? 1.01 : 0.99) * at);
@@ -248,7 +248,7 @@ static void test_exposure_by_a_tool(void **state)
 	cau_near near = {0};
 	const double duration = 0.05;
 	assert_int_equal(cau_heat_grid_create(&grid, &tool, 37, duration, &pose, NULL), CAU_OK);
-	for (int k = 0; k < 40; ++k)
+	for (int k = 0; k < 40; k++)
 		cau_heat_grid_advance(&grid, &tool, &pose, 1, 1, duration);
 	assert_int_equal(cau_near_create(&near, &r.tissue, &r.arena, NULL), CAU_OK);
 	cau_near_refit(&near, r.tissue.rest);
@@ -256,7 +256,7 @@ static void test_exposure_by_a_tool(void **state)
 	double taken = cau_dissection_expose(&r.dissection, &near, r.tissue.rest, &grid, &tool, &pose,
 	                                     1, duration);
 	int32_t exposed = 0;
-	for (int32_t e = 0; e < r.tissue.edges.edge_count; ++e) {
+	for (int32_t e = 0; e < r.tissue.edges.edge_count; e++) {
 		const int32_t *v = r.tissue.edges.vertex + 2 * e;
 		double gain =
 			cau_exposure_gain(&grid, &tool, &pose, 1, cau_vec3_of(r.tissue.rest + 3 * v[0]),
@@ -268,7 +268,7 @@ static void test_exposure_by_a_tool(void **state)
 	assert_true(taken > 0);
 	double before = r.dissection.exposure[r.dissection.touched[0]]; // and nothing once all is dead
 	int32_t first = r.dissection.touched[0];
-	for (int32_t e = 0; e < r.tissue.edges.edge_count; ++e)
+	for (int32_t e = 0; e < r.tissue.edges.edge_count; e++)
 		r.dissection.parted[e] = 0xffff;
 	cau_dissection_recount(&r.dissection);
 	cau_dissection_begin(&r.dissection);

@@ -23,14 +23,14 @@ static void test_blocks_hold_everything_once(void **state)
 	rig_build(&r, NULL, 1);
 	assert_int_equal(cau_near_create(&near, &r.tissue, &r.arena, NULL), CAU_OK);
 	uint8_t *seen = cau_arena_array(&r.arena, (size_t)r.tissue.edges.edge_count, 1);
-	for (int32_t i = 0; i < r.tissue.vertex_count; ++i) {
+	for (int32_t i = 0; i < r.tissue.vertex_count; i++) {
 		assert_false(seen[near.vertex[i]]);
 		seen[near.vertex[i]] = 1;
 	}
 	memset(seen, 0, (size_t)r.tissue.edges.edge_count);
 	assert_int_equal(near.edge_first[0], 0);
 	assert_int_equal(near.edge_first[near.block_count], r.tissue.edges.edge_count);
-	for (int32_t k = 0; k < r.tissue.edges.edge_count; ++k) {
+	for (int32_t k = 0; k < r.tissue.edges.edge_count; k++) {
 		assert_false(seen[near.edge[k]]);
 		seen[near.edge[k]] = 1;
 	}
@@ -49,19 +49,19 @@ static void test_boxes_find_what_brute_force_finds(void **state)
 	uint64_t random = 151;
 	double a[3][3];
 	int32_t found = 0, left_out = 0;
-	for (int pose = 0; pose < 6; ++pose) {
+	for (int pose = 0; pose < 6; pose++) {
 		rig_random_gradient(&random, pose ? 1 : 0, a);
 		rig_deform(&r, a, pose ? 0.02 : 0, &random, r.solver.position);
 		const double *x = r.solver.position;
 		cau_near_refit(&near, x);
-		for (int probe = 0; probe < 60; ++probe) {
+		for (int probe = 0; probe < 60; probe++) {
 			cau_vec3 center = random_point(&random, 0.08);
 			double radius = random_between(&random, 0.001, 0.03);
-			for (int32_t b = 0; b < near.block_count; ++b) {
+			for (int32_t b = 0; b < near.block_count; b++) {
 				int meets_edges = cau_box_meets(&near.edge_box[b], center, radius);
 				int meets_vertices = cau_box_meets(&near.vertex_box[b], center, radius);
 				left_out += !meets_edges;
-				for (int32_t k = near.edge_first[b]; k < near.edge_first[b + 1]; ++k) {
+				for (int32_t k = near.edge_first[b]; k < near.edge_first[b + 1]; k++) {
 					const int32_t *v = r.tissue.edges.vertex + 2 * near.edge[k];
 					if (segment_distance(center, cau_vec3_of(x + 3 * v[0]),
 					                     cau_vec3_of(x + 3 * v[1])) <= radius) {
@@ -70,7 +70,7 @@ static void test_boxes_find_what_brute_force_finds(void **state)
 					}
 				}
 				for (int32_t i = b * CAU_NEAR_BLOCK;
-				     i < (b + 1) * CAU_NEAR_BLOCK && i < near.vertex_count; ++i)
+				     i < (b + 1) * CAU_NEAR_BLOCK && i < near.vertex_count; i++)
 					if (cau_length(cau_sub(cau_vec3_of(x + 3 * near.vertex[i]), center)) <= radius)
 						assert_true(meets_vertices);
 			}

@@ -45,7 +45,7 @@ static void burn(burnt *b)
 	cau_vec3 tip = cau_vec3_of(b->pose.position_m);
 	int32_t nearest = -1;
 	double least = INFINITY;
-	for (int32_t e = 0; e < b->r.tissue.edges.edge_count; ++e) {
+	for (int32_t e = 0; e < b->r.tissue.edges.edge_count; e++) {
 		const int32_t *v = b->r.tissue.edges.vertex + 2 * e;
 		double distance = cau_length(cau_sub(cau_vec3_of(x + 3 * v[0]), tip)) +
 		                  cau_length(cau_sub(cau_vec3_of(x + 3 * v[1]), tip));
@@ -67,11 +67,11 @@ static int is_exposed(const burnt *b, int kind, int32_t element)
 {
 	int vertices = kind == CAU_ELEMENT_TRIANGLE ? 3 : 4;
 	const int32_t *all = vertices == 3 ? b->r.tissue.triangle : b->r.tissue.tetrahedron;
-	for (int32_t k = 0; k < b->r.dissection.removed_count; ++k) {
+	for (int32_t k = 0; k < b->r.dissection.removed_count; k++) {
 		const cau_removed *gone = &b->r.dissection.removed[k];
 		int shared = 0;
-		for (int i = 0; i < vertices && gone->kind == kind; ++i)
-			for (int j = 0; j < vertices; ++j)
+		for (int i = 0; i < vertices && gone->kind == kind; i++)
+			for (int j = 0; j < vertices; j++)
 				shared += all[vertices * element + i] == all[vertices * gone->element + j];
 		if (shared == vertices - 1)
 			return b->r.dissection.alive.element[kind][element];
@@ -82,13 +82,13 @@ static int is_exposed(const burnt *b, int kind, int32_t element)
 static void test_exposed_elements_and_no_others(void **state)
 {
 	(void)state;
-	for (int fat = 0; fat < 2; ++fat) {
+	for (int fat = 0; fat < 2; fat++) {
 		burnt b;
 		make(&b, fat, 1);
 		burn(&b);
 		int kind = fat ? CAU_ELEMENT_TETRAHEDRON : CAU_ELEMENT_TRIANGLE;
 		int32_t exposed = 0;
-		for (int32_t e = 0; e < cau_tissue_element_count(&b.r.tissue, kind); ++e) {
+		for (int32_t e = 0; e < cau_tissue_element_count(&b.r.tissue, kind); e++) {
 			assert_int_equal(b.r.shrink.shrunk[kind][e], is_exposed(&b, kind, e));
 			exposed += is_exposed(&b, kind, e);
 		}
@@ -104,9 +104,9 @@ static void gradient_of(const burnt *b, int kind, int32_t element, double f[3][3
 	cau_element_map map;
 	cau_tissue_element_map(&b->r.tissue, kind, element, &map);
 	memset(f, 0, 9 * sizeof(double));
-	for (int c = 0; c < map.rank; ++c)
-		for (int i = 0; i < map.vertex_count; ++i)
-			for (int row = 0; row < 3; ++row)
+	for (int c = 0; c < map.rank; c++)
+		for (int i = 0; i < map.vertex_count; i++)
+			for (int row = 0; row < 3; row++)
 				f[row][c] += map.coefficient[c][i] * b->r.solver.position[3 * map.vertex[i] + row];
 }
 
@@ -116,13 +116,13 @@ static void contact_normal(const burnt *b, int kind, int32_t element, double n[3
 	cau_element_map map;
 	double length = 0;
 	cau_tissue_element_map(&b->r.tissue, kind, element, &map);
-	for (int c = 0; c < 3; ++c) {
+	for (int c = 0; c < 3; c++) {
 		n[c] = -b->pose.position_m[c];
-		for (int i = 0; i < map.vertex_count; ++i)
+		for (int i = 0; i < map.vertex_count; i++)
 			n[c] += b->r.solver.position[3 * map.vertex[i] + c] / map.vertex_count;
 		length += n[c] * n[c];
 	}
-	for (int c = 0; c < 3; ++c)
+	for (int c = 0; c < 3; c++)
 		n[c] /= sqrt(length);
 }
 
@@ -132,22 +132,22 @@ static void first_axis(const burnt *b, int kind, int32_t element, double axis[3]
 	double f[3][3], n[3], length = 0;
 	gradient_of(b, kind, element, f);
 	contact_normal(b, kind, element, n);
-	for (int c = 0; c < 3; ++c) {
+	for (int c = 0; c < 3; c++) {
 		axis[c] = f[0][c] * n[0] + f[1][c] * n[1] + f[2][c] * n[2];
 		length += axis[c] * axis[c];
 	}
-	for (int c = 0; c < 3; ++c)
+	for (int c = 0; c < 3; c++)
 		axis[c] /= sqrt(length);
 }
 
 static void test_triangles_by_hand(void **state)
 {
 	(void)state;
-	for (int targeted = 0; targeted < 2; ++targeted) {
+	for (int targeted = 0; targeted < 2; targeted++) {
 		burnt b;
 		make(&b, 0, targeted);
 		burn(&b);
-		for (int32_t k = 0; k < b.r.shrink.active_count; ++k) {
+		for (int32_t k = 0; k < b.r.shrink.active_count; k++) {
 			const cau_shrinking *active = &b.r.shrink.active[k];
 			double axis[3], root3[3] = {1, 1, 0}, root[3][3] = {{0}}, s[3][3] = {{0}}, got[3][3];
 			if (targeted)
@@ -155,7 +155,7 @@ static void test_triangles_by_hand(void **state)
 			root[0][0] = root3[0], root[1][1] = root3[1], root[0][1] = root[1][0] = root3[2];
 			first_axis(&b, CAU_ELEMENT_TRIANGLE, active->element, axis);
 			const double r[2][2] = {{axis[0], axis[1]}, {-axis[1], axis[0]}};
-			for (int i = 0; i < 4; ++i) // R^T diag(S) R
+			for (int i = 0; i < 4; i++) // R^T diag(S) R
 				s[i / 2][i % 2] = SHEET_SHRINK[0] * r[0][i / 2] * r[0][i % 2] +
 				                  SHEET_SHRINK[1] * r[1][i / 2] * r[1][i % 2];
 			mat_multiply(root, s, s);
@@ -174,11 +174,11 @@ static void test_triangles_by_hand(void **state)
 static void test_tetrahedra_by_hand(void **state)
 {
 	(void)state;
-	for (int targeted = 0; targeted < 2; ++targeted) {
+	for (int targeted = 0; targeted < 2; targeted++) {
 		burnt b;
 		make(&b, 1, targeted);
 		burn(&b);
-		for (int32_t k = 0; k < b.r.shrink.active_count; ++k) {
+		for (int32_t k = 0; k < b.r.shrink.active_count; k++) {
 			const cau_shrinking *active = &b.r.shrink.active[k];
 			double axis[3], six[6] = {1, 1, 1, 0, 0, 0}, root[3][3], inverse[3][3], s[3][3],
 							v[3][3];
@@ -194,7 +194,7 @@ static void test_tetrahedra_by_hand(void **state)
 			first_axis(&b, CAU_ELEMENT_TETRAHEDRON, active->element, axis);
 			double along[3];
 			mat_apply(s, axis, along);
-			for (int c = 0; c < 3; ++c)
+			for (int c = 0; c < 3; c++)
 				assert_near(along[c], FAT_SHRINK[0] * axis[c], TARGET_TOLERANCE);
 			const double packed[6] = {s[0][0], s[1][1], s[2][2], s[0][1], s[0][2], s[1][2]};
 			cau_symmetric_eigen3(packed, value, v);
@@ -221,7 +221,7 @@ static void test_ramp(void **state)
 		double s = fmin(++ticks * STEP_S / RAMP_S, 1);
 		cau_elements_target(&b.r.solver.elements, &b.r.solver.slots, CAU_ELEMENT_TRIANGLE,
 		                    active.element, root);
-		for (int i = 0; i < 3; ++i)
+		for (int i = 0; i < 3; i++)
 			assert_near(root[i], active.from[i] + s * (active.to[i] - active.from[i]),
 			            TARGET_TOLERANCE);
 		assert_true(ticks < 100);
@@ -234,13 +234,13 @@ static void test_ramp(void **state)
 static void test_set_once(void **state)
 {
 	(void)state;
-	for (int fat = 0; fat < 2; ++fat) {
+	for (int fat = 0; fat < 2; fat++) {
 		burnt b;
 		make(&b, fat, 1);
 		burn(&b);
 		int kind = fat ? CAU_ELEMENT_TETRAHEDRON : CAU_ELEMENT_TRIANGLE;
 		int32_t element = b.r.shrink.active[0].element, count = b.r.shrink.active_count;
-		for (int tick = 0; tick < 20; ++tick)
+		for (int tick = 0; tick < 20; tick++)
 			cau_shrink_advance(&b.r.shrink, &b.r.tissue, STEP_S, &b.r.solver.elements,
 			                   &b.r.solver.slots);
 		double before[6], after[6];
@@ -262,7 +262,7 @@ static void test_set_once(void **state)
 static void test_no_room(void **state)
 {
 	(void)state;
-	for (int fat = 0; fat < 2; ++fat) {
+	for (int fat = 0; fat < 2; fat++) {
 		burnt roomy, full;
 		make(&roomy, fat, 1);
 		make(&full, fat, 1);
@@ -272,13 +272,13 @@ static void test_no_room(void **state)
 		int kind = fat ? CAU_ELEMENT_TETRAHEDRON : CAU_ELEMENT_TRIANGLE;
 		assert_true(roomy.r.shrink.active_count > 2);
 		assert_int_equal(full.r.shrink.active_count, 1);
-		for (int32_t k = 0; k < roomy.r.shrink.active_count; ++k) {
+		for (int32_t k = 0; k < roomy.r.shrink.active_count; k++) {
 			const cau_shrinking *there = &roomy.r.shrink.active[k];
 			double root[6];
 			cau_elements_target(&full.r.solver.elements, &full.r.solver.slots, kind, there->element,
 			                    root);
 			const double *expected = k ? there->to : there->from;
-			for (int i = 0; i < (fat ? 6 : 3); ++i)
+			for (int i = 0; i < (fat ? 6 : 3); i++)
 				assert_near(root[i], expected[i], TARGET_TOLERANCE);
 			assert_true(full.r.shrink.shrunk[kind][there->element]);
 		}

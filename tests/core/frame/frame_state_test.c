@@ -43,7 +43,7 @@ static void test_moved_vertices(void **state)
 	make(&f);
 	double *x = f.r.solver.position;
 	const int32_t moved[] = {0, 5, 6, 100};
-	for (int k = 0; k < 4; ++k)
+	for (int k = 0; k < 4; k++)
 		x[3 * moved[k] + k % 3] += 1e-9;
 	cau_frame_update(&f.frame, &f.r.dissection, f.r.tissue.rest, x);
 	assert_int_equal(f.frame.moved_count, 4);
@@ -64,10 +64,10 @@ static void test_mask_and_visible_vertices_after_cuts(void **state)
 	uint32_t *known = cau_arena_array(&f.r.arena, (size_t)words(&f), sizeof *known);
 	memcpy(known, f.r.dissection.face_mask, (size_t)words(&f) * sizeof *known);
 	int32_t changes = 0;
-	for (int tick = 0; tick < 20; ++tick) {
+	for (int tick = 0; tick < 20; tick++) {
 		cut_random_edges(&f.r, &random, 1 + tick);
 		cau_frame_update(&f.frame, &f.r.dissection, t->rest, t->rest);
-		for (int32_t k = 0; k < f.frame.mask_changed_count; ++k) { // a viewer follows by the words
+		for (int32_t k = 0; k < f.frame.mask_changed_count; k++) { // a viewer follows by the words
 			int32_t w = f.frame.mask_changed[k];
 			assert_true(!k || w > f.frame.mask_changed[k - 1]);
 			assert_true(known[w] != f.r.dissection.face_mask[w]);
@@ -78,8 +78,8 @@ static void test_mask_and_visible_vertices_after_cuts(void **state)
 	}
 	assert_true(changes > 20);
 	uint8_t *visible = cau_arena_array(&f.r.arena, (size_t)t->vertex_count, 1);
-	for (int32_t face = 0; face < t->faces.face_count; ++face)
-		for (int i = 0; i < 3 && !(known[face >> 5] >> (face & 31) & 1); ++i)
+	for (int32_t face = 0; face < t->faces.face_count; face++)
+		for (int i = 0; i < 3 && !(known[face >> 5] >> (face & 31) & 1); i++)
 			visible[t->faces.vertex[3 * face + i]] = 1;
 	assert_memory_equal(f.frame.vertex_visible, visible, (size_t)t->vertex_count);
 	rig_finish(&f.r);
@@ -94,17 +94,17 @@ static void test_exposure_of_vertices(void **state)
 	const cau_tissue *t = &f.r.tissue;
 	uint64_t random = 192;
 	float *expected = cau_arena_array(&f.r.arena, (size_t)t->vertex_count, sizeof *expected);
-	for (int tick = 0; tick < 4; ++tick) {
+	for (int tick = 0; tick < 4; tick++) {
 		cau_dissection_begin(&f.r.dissection);
-		for (int k = 0; k < 30; ++k)
+		for (int k = 0; k < 30; k++)
 			expose_by_hand(&f.r.dissection,
 			               (int32_t)random_between(&random, 0, t->edges.edge_count),
 			               random_between(&random, 0, 300) * (1 + tick));
 		cau_frame_update(&f.frame, &f.r.dissection, t->rest, t->rest);
-		for (int32_t k = 0; k < f.r.dissection.touched_count; ++k) {
+		for (int32_t k = 0; k < f.r.dissection.touched_count; k++) {
 			int32_t edge = f.r.dissection.touched[k];
 			float value = (float)cau_dissection_heated(&f.r.dissection, edge);
-			for (int i = 0; i < 2; ++i) {
+			for (int i = 0; i < 2; i++) {
 				float *at = &expected[t->edges.vertex[2 * edge + i]];
 				*at = value > *at ? value : *at;
 			}
@@ -112,13 +112,13 @@ static void test_exposure_of_vertices(void **state)
 		assert_memory_equal(f.frame.exposure, expected, (size_t)t->vertex_count * sizeof(float));
 	}
 	int32_t charred = 0;
-	for (int32_t v = 0; v < t->vertex_count; ++v) {
+	for (int32_t v = 0; v < t->vertex_count; v++) {
 		assert_true(expected[v] >= 0 && expected[v] <= 1);
 		charred += expected[v] > 0;
 	}
 	assert_true(charred > 50);
 	cau_frame_rebuild(&f.frame, &f.r.dissection);
-	for (int32_t v = 0; v < t->vertex_count; ++v) // expose_by_hand may have set an edge back
+	for (int32_t v = 0; v < t->vertex_count; v++) // expose_by_hand may have set an edge back
 		assert_true(f.frame.exposure[v] <= expected[v]);
 	rig_finish(&f.r);
 }
@@ -137,16 +137,16 @@ static void test_charring_is_the_share_of_parted_edges(void **state)
 	int32_t *edges = cau_arena_array(&f.r.arena, n, sizeof *edges);
 	int32_t *parted = cau_arena_array(&f.r.arena, n, sizeof *parted);
 	int32_t between = 0; // values that are neither 0 nor 1
-	for (int tick = 0; tick < 20; ++tick) {
+	for (int tick = 0; tick < 20; tick++) {
 		cut_random_edges(&f.r, &random, 1 + tick);
 		cau_frame_update(&f.frame, d, t->rest, t->rest);
 		memset(edges, 0, n * sizeof *edges);
 		memset(parted, 0, n * sizeof *parted);
-		for (int32_t k = 0; k < 2 * t->edges.edge_count; ++k) {
+		for (int32_t k = 0; k < 2 * t->edges.edge_count; k++) {
 			edges[t->edges.vertex[k]]++;
 			parted[t->edges.vertex[k]] += d->parted[k / 2] != 0;
 		}
-		for (int32_t v = 0; v < t->vertex_count; ++v) {
+		for (int32_t v = 0; v < t->vertex_count; v++) {
 			assert_true(f.frame.charring[v] == (float)parted[v] / (float)edges[v]);
 			between += parted[v] > 0 && parted[v] < edges[v];
 		}
@@ -173,7 +173,7 @@ static void test_heat_below_ignition_chars_nothing(void **state)
 	cau_frame_update(&f.frame, &f.r.dissection, f.r.tissue.rest, f.r.tissue.rest);
 	assert_int_equal(layers, 0);
 	int32_t exposed = 0;
-	for (int32_t v = 0; v < f.r.tissue.vertex_count; ++v) {
+	for (int32_t v = 0; v < f.r.tissue.vertex_count; v++) {
 		exposed += f.frame.exposure[v] > 0;
 		assert_true(f.frame.charring[v] == 0);
 	}

@@ -29,7 +29,7 @@ static double uniform_stress(framed *f, double map[3][3])
 	rig_deform(&f->r, map, 0, &random, f->r.solver.position);
 	cau_frame_stress(&f->frame, &f->r.tissue, &f->r.dissection, f->r.solver.position);
 	double first = (double)f->frame.stress[0];
-	for (int32_t v = 0; v < f->r.tissue.vertex_count; ++v)
+	for (int32_t v = 0; v < f->r.tissue.vertex_count; v++)
 		assert_near((double)f->frame.stress[v], first, STRESS_TOLERANCE * first + 1e-9);
 	return first;
 }
@@ -66,7 +66,7 @@ static void test_removed_fat_has_none(void **state)
 	memset(f.r.dissection.alive.element[CAU_ELEMENT_TETRAHEDRON], 0,
 	       (size_t)f.r.tissue.tetrahedron_count);
 	cau_frame_stress(&f.frame, &f.r.tissue, &f.r.dissection, f.r.solver.position);
-	for (int32_t v = 0; v < f.r.tissue.vertex_count; ++v)
+	for (int32_t v = 0; v < f.r.tissue.vertex_count; v++)
 		assert_true(f.frame.stress[v] == 0);
 	rig_finish(&f.r);
 }

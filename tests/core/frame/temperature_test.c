@@ -48,7 +48,7 @@ static cau_heat_grid grid_of(const cau_tool_def *tool)
 static cau_heat_grid burning(const cau_tool_def *tool, int ticks)
 {
 	cau_heat_grid grid = grid_of(tool);
-	for (int tick = 0; tick < ticks; ++tick)
+	for (int tick = 0; tick < ticks; tick++)
 		cau_heat_grid_advance(&grid, tool, &tool->pose, 0, 1, TICK_S);
 	return grid;
 }
@@ -73,7 +73,7 @@ static void test_hot_inside_ambient_beyond(void **state)
 	heat(&h, &grid);
 	double corner = sqrt(3) * grid.step_m, reach = sqrt(3) * grid.nodes * grid.step_m / 2;
 	int inside = 0, between = 0, beyond = 0;
-	for (int32_t v = 0; v < h.r.tissue.vertex_count; ++v) {
+	for (int32_t v = 0; v < h.r.tissue.vertex_count; v++) {
 		cau_vec3 way = cau_sub(place_of(&h, v), cau_vec3_of(tool.pose.position_m));
 		double distance = cau_length(way), now = (double)h.frame.temperature[v];
 		if (distance < tool.hot_radius_m - corner) { // all nodes around it are held
@@ -101,10 +101,10 @@ static void test_a_linear_field_is_read_as_it_is(void **state)
 	cau_heat_grid grid = grid_of(&tool);
 	const double base = 100, slope[3] = {2000, -3000, 1500}; // degC, degC/m
 	int64_t n = grid.nodes;
-	for (int64_t i = 0; i < n * n * n; ++i) {
+	for (int64_t i = 0; i < n * n * n; i++) {
 		const int64_t node[3] = {i % n, i / n % n, i / (n * n)};
 		double value = base;
-		for (int axis = 0; axis < 3; ++axis)
+		for (int axis = 0; axis < 3; axis++)
 			value += slope[axis] * (double)(grid.origin[axis] + node[axis]) * grid.step_m;
 		grid.temperature[i] = (float)value;
 	}
@@ -116,11 +116,11 @@ static void test_a_linear_field_is_read_as_it_is(void **state)
 	cau_near_refit(&h.near, h.r.solver.position);
 	heat(&h, &grid);
 	int inside = 0;
-	for (int32_t v = 0; v < h.r.tissue.vertex_count; ++v) {
+	for (int32_t v = 0; v < h.r.tissue.vertex_count; v++) {
 		double at[3], expected = base;
 		cau_vec3_to(place_of(&h, v), at);
 		int in = 1;
-		for (int axis = 0; axis < 3; ++axis) {
+		for (int axis = 0; axis < 3; axis++) {
 			double nodes = at[axis] / grid.step_m - (double)grid.origin[axis];
 			in &= nodes >= 0 && nodes <= (double)(n - 1);
 			expected += slope[axis] * at[axis];
@@ -144,18 +144,18 @@ static void test_the_hotter_of_two_tools_stands(void **state)
 	tools[1].temperature_c = 400;
 	tools[2].temperature_c = 5;
 	cau_heat_grid grids[3];
-	for (int i = 0; i < 3; ++i)
+	for (int i = 0; i < 3; i++)
 		grids[i] = burning(&tools[i], 40);
 	float *first = cau_arena_array(&h.r.arena, (size_t)h.r.tissue.vertex_count, sizeof *first);
-	for (int order = 0; order < 2; ++order) {
+	for (int order = 0; order < 2; order++) {
 		cau_frame_cool_heated(&h.frame);
-		for (int i = 0; i < 3; ++i)
+		for (int i = 0; i < 3; i++)
 			heat(&h, &grids[order ? 2 - i : i]);
 		if (!order)
 			memcpy(first, h.frame.temperature, (size_t)h.r.tissue.vertex_count * sizeof *first);
 	}
 	int shared = 0, cold = 0;
-	for (int32_t v = 0; v < h.r.tissue.vertex_count; ++v) {
+	for (int32_t v = 0; v < h.r.tissue.vertex_count; v++) {
 		double a = cau_heat_grid_at(&grids[0], place_of(&h, v));
 		double b = cau_heat_grid_at(&grids[1], place_of(&h, v));
 		double c = cau_heat_grid_at(&grids[2], place_of(&h, v));
@@ -166,7 +166,7 @@ static void test_the_hotter_of_two_tools_stands(void **state)
 		cold += c < AMBIENT_C;
 	}
 	assert_true(shared > 20 && cold > 20);
-	for (int i = 0; i < 3; ++i)
+	for (int i = 0; i < 3; i++)
 		cau_heat_grid_finish(&grids[i]);
 	rig_finish(&h.r);
 }
@@ -179,13 +179,13 @@ static void test_left_vertices_are_at_ambient(void **state)
 	make(&h);
 	cau_tool_def tool = sphere_at(-0.03, 0);
 	cau_heat_grid grid = burning(&tool, 10);
-	for (int tick = 0; tick < 30; ++tick) {
+	for (int tick = 0; tick < 30; tick++) {
 		cau_pose pose = pose_at(-0.03 + 0.002 * tick, 0.001 * tick, 0);
 		cau_heat_grid_advance(&grid, &tool, &pose, 0, 1, TICK_S);
 		cau_frame_cool_heated(&h.frame);
 		heat(&h, &grid);
 		int32_t away = 0;
-		for (int32_t v = 0; v < h.r.tissue.vertex_count; ++v) {
+		for (int32_t v = 0; v < h.r.tissue.vertex_count; v++) {
 			assert_true(h.frame.temperature[v] == (float)cau_heat_grid_at(&grid, place_of(&h, v)));
 			away += h.frame.temperature[v] != (float)AMBIENT_C;
 		}
@@ -197,7 +197,7 @@ static void test_left_vertices_are_at_ambient(void **state)
 	cau_frame_cool_heated(&h.frame);
 	heat(&h, &grid);
 	assert_int_equal(h.frame.heated_count, 0);
-	for (int32_t v = 0; v < h.r.tissue.vertex_count; ++v)
+	for (int32_t v = 0; v < h.r.tissue.vertex_count; v++)
 		assert_true(h.frame.temperature[v] == (float)AMBIENT_C);
 	cau_heat_grid_finish(&grid);
 	rig_finish(&h.r);

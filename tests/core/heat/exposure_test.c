@@ -33,7 +33,7 @@ static double time_to_part(double temperature_c, double absorption_per_s, double
 	cau_heat_grid grid = create(&tool);
 	double exposure = 0;
 	int ticks = 0;
-	for (; exposure <= delta_c && ticks < 600; ++ticks) {
+	for (; exposure <= delta_c && ticks < 600; ticks++) {
 		cau_heat_grid_advance(&grid, &tool, &tool.pose, 0, 1, TICK_S);
 		exposure += cau_exposure_gain(&grid, &tool, &tool.pose, 0, A, B, absorption_per_s, TICK_S);
 	}
@@ -54,7 +54,7 @@ static void test_no_exposure_below_living(void **state)
 	(void)state;
 	cau_tool_def tool = tool_with_defaults(CAU_TOOL_SPHERE);
 	static const double temperatures[] = {AMBIENT_C, 37, 44.9};
-	for (int i = 0; i < 3; ++i) {
+	for (int i = 0; i < 3; i++) {
 		tool.temperature_c = temperatures[i];
 		cau_heat_grid grid = create(&tool);
 		cau_heat_grid_advance(&grid, &tool, &tool.pose, 0, i > 0, TICK_S);
@@ -74,7 +74,7 @@ static void test_no_exposure_outside_the_shape(void **state)
 	(void)state;
 	cau_tool_def tool = tool_with_defaults(CAU_TOOL_SPHERE);
 	cau_heat_grid grid = create(&tool);
-	for (int i = 0; i < 60; ++i)
+	for (int i = 0; i < 60; i++)
 		cau_heat_grid_advance(&grid, &tool, &tool.pose, 0, 1, TICK_S);
 	cau_vec3 near = {3.1e-3, -1e-3, 0}, by = {3.1e-3, 1e-3, 0};
 	double mean = (cau_heat_grid_at(&grid, near) + cau_heat_grid_at(&grid, by)) / 2;
@@ -93,7 +93,7 @@ static double greatest_way(const cau_tool_def *tool, const cau_pose *from, const
 {
 	uint64_t random = 41;
 	double greatest = 0;
-	for (int i = 0; i < 4000; ++i) {
+	for (int i = 0; i < 4000; i++) {
 		cau_vec3 p = random_point(&random, 0.015);
 		if (cau_tool_distance(tool, 0, CAU_PART_HOT, p, NULL) > 0)
 			continue;
@@ -106,7 +106,7 @@ static double greatest_way(const cau_tool_def *tool, const cau_pose *from, const
 static void test_parts(void **state)
 {
 	(void)state;
-	for (int shape = 0; shape < CAU_TOOL_GRASPER; ++shape) {
+	for (int shape = 0; shape < CAU_TOOL_GRASPER; shape++) {
 		cau_tool_def tool = tool_with_defaults(shape);
 		double half = cau_tool_thinnest_hot_m(&tool) / 2;
 		cau_pose from = pose_at(0.1, 0.2, 0.3), same = from;
@@ -118,7 +118,7 @@ static void test_parts(void **state)
 		cau_pose turned = pose_turned((cau_vec3){0.101, 0.2, 0.299}, (cau_vec3){1, 1, 0}, 0.5);
 		int parts = cau_exposure_parts(&tool, &from, &turned);
 		assert_true(parts > 1 && parts < 32);
-		for (int k = 0; k < parts; ++k) {
+		for (int k = 0; k < parts; k++) {
 			cau_pose start = cau_pose_between(&from, &turned, (double)k / parts);
 			cau_pose end = cau_pose_between(&from, &turned, (k + 1.0) / parts);
 			assert_true(greatest_way(&tool, &start, &end) <= half);

@@ -56,14 +56,14 @@ static double gaussian_error(double step_m, int nodes)
 	tool.grid_step_m = step_m;
 	tool.grid_cells = nodes;
 	cau_heat_grid grid = create(&tool, &tool.pose);
-	for (int64_t i = 0; i < node_count(&grid); ++i) {
+	for (int64_t i = 0; i < node_count(&grid); i++) {
 		double hot = gaussian(&grid, node_position(&grid, i), SPREAD_S);
 		grid.temperature[i] = (float)(AMBIENT_C + hot);
 	}
 	cau_heat_grid_survey(&grid);
 	cau_heat_grid_advance(&grid, &tool, &tool.pose, 0, 0, DURATION_S);
 	double worst = 0;
-	for (int64_t i = 0; i < node_count(&grid); ++i) {
+	for (int64_t i = 0; i < node_count(&grid); i++) {
 		double exact = gaussian(&grid, node_position(&grid, i), SPREAD_S + DURATION_S);
 		worst = fmax(worst, fabs(grid.temperature[i] - AMBIENT_C - exact));
 	}
@@ -95,7 +95,7 @@ static void test_steady_ball(void **state)
 	tool.hot_radius_m = 4e-3;
 	tool.grid_cells = 63;
 	cau_heat_grid grid = create(&tool, &tool.pose);
-	for (int i = 0; i < 60; ++i) // 120 s; the slowest mode's time is 4 W^2 / (3 pi^2 alpha) = 31 s
+	for (int i = 0; i < 60; i++) // 120 s; the slowest mode's time is 4 W^2 / (3 pi^2 alpha) = 31 s
 		cau_heat_grid_advance(&grid, &tool, &tool.pose, 0, 1, 2.0);
 	// Nodes up to dl/2 outside are held: the ball's radius is known to half a step.
 	static const double W = 31e-3, ROUGH_M = 0.5e-3;
@@ -131,7 +131,7 @@ static void test_stable_at_the_limit(void **state)
 	cau_heat_grid grid = create(&tool, &tool.pose);
 	uint64_t random = 21;
 	double most = 0;
-	for (int64_t i = 0; i < node_count(&grid); ++i) { // a checkerboard, the least stable field
+	for (int64_t i = 0; i < node_count(&grid); i++) { // a checkerboard, the least stable field
 		int64_t n = grid.nodes, x = i % n, y = i / n % n, z = i / (n * n);
 		if (x * y * z == 0 || x == n - 1 || y == n - 1 || z == n - 1)
 			continue; // the boundary is at ambient
@@ -141,7 +141,7 @@ static void test_stable_at_the_limit(void **state)
 	}
 	cau_heat_grid_survey(&grid);
 	double start = grid.warmest_c - AMBIENT_C;
-	for (int i = 0; i < 10; ++i) {
+	for (int i = 0; i < 10; i++) {
 		cau_heat_grid_advance(&grid, &tool, &tool.pose, 0, 0,
 		                      64 * grid.step_m * grid.step_m / (6 * grid.diffusivity));
 		double now = fmax(grid.warmest_c - AMBIENT_C, AMBIENT_C - grid.coldest_c);
@@ -192,15 +192,15 @@ static void test_refusals(void **state)
 static void test_hot_nodes_hold(void **state)
 {
 	(void)state;
-	for (int shape = 0; shape < CAU_TOOL_GRASPER; ++shape) {
+	for (int shape = 0; shape < CAU_TOOL_GRASPER; shape++) {
 		cau_tool_def tool = tool_with_defaults(shape);
 		tool.pose = pose_turned((cau_vec3){0.0123, -0.0234, 0.0011}, (cau_vec3){1, -2, 0.5}, 0.7);
 		cau_heat_grid grid = create(&tool, &tool.pose);
-		for (int i = 0; i < 5; ++i)
+		for (int i = 0; i < 5; i++)
 			cau_heat_grid_advance(&grid, &tool, &tool.pose, 0.5, 1, TICK_S);
 		int held = 0;
 		int64_t n = grid.nodes;
-		for (int64_t i = 0; i < node_count(&grid); ++i) {
+		for (int64_t i = 0; i < node_count(&grid); i++) {
 			cau_vec3 p = node_position(&grid, i);
 			double d = cau_tool_distance_at(&tool, &tool.pose, 0.5, CAU_PART_HOT, p, NULL);
 			int64_t x = i % n, y = i / n % n, z = i / (n * n);
@@ -224,7 +224,7 @@ static void test_shift_keeps_values(void **state)
 	(void)state;
 	static const int64_t shifts[][3] = {
 		{3, 0, 0}, {-2, 1, 0}, {0, -5, 4}, {-1, -1, -1}, {13, 0, 0}};
-	for (size_t k = 0; k < sizeof shifts / sizeof *shifts; ++k) {
+	for (size_t k = 0; k < sizeof shifts / sizeof *shifts; k++) {
 		cau_tool_def tool = tool_with_defaults(CAU_TOOL_SPHERE);
 		tool.diffusivity_m2_s = 0; // nothing but the shift changes a value
 		cau_heat_grid grid = create(&tool, &tool.pose);
@@ -232,7 +232,7 @@ static void test_shift_keeps_values(void **state)
 		int64_t n = grid.nodes, total = node_count(&grid);
 		float before[16 * 16 * 16];
 		assert_int_equal(n, 16);
-		for (int64_t i = 0; i < total; ++i)
+		for (int64_t i = 0; i < total; i++)
 			before[i] = grid.temperature[i] = 40 + (float)i / 64;
 		cau_heat_grid_survey(&grid);
 		double step = grid.step_m;
@@ -240,7 +240,7 @@ static void test_shift_keeps_values(void **state)
 			pose_at((double)shift[0] * step, (double)shift[1] * step, (double)shift[2] * step);
 		cau_heat_grid_advance(&grid, &tool, &there, 0, 0, TICK_S);
 		int kept = 0;
-		for (int64_t i = 0; i < total; ++i) {
+		for (int64_t i = 0; i < total; i++) {
 			int64_t x = i % n, y = i / n % n, z = i / (n * n);
 			int64_t ox = x + shift[0], oy = y + shift[1], oz = z + shift[2];
 			int outer = x * y * z == 0 || x == n - 1 || y == n - 1 || z == n - 1;
@@ -285,7 +285,7 @@ static void test_leap_leaves_the_heat_behind(void **state)
 	cau_pose far = pose_at(1, -1, 1e20);
 	cau_heat_grid_advance(&grid, &tool, &far, 0, 0, TICK_S);
 	assert_true(cau_heat_grid_warmest(&grid) == AMBIENT_C);
-	for (int64_t i = 0; i < node_count(&grid); ++i)
+	for (int64_t i = 0; i < node_count(&grid); i++)
 		assert_true(grid.temperature[i] == (float)AMBIENT_C);
 	cau_heat_grid_finish(&grid);
 }
@@ -296,11 +296,11 @@ static void test_comes_to_rest(void **state)
 	(void)state;
 	cau_tool_def tool = tool_with_defaults(CAU_TOOL_SPHERE);
 	cau_heat_grid grid = create(&tool, &tool.pose);
-	for (int i = 0; i < 60; ++i)
+	for (int i = 0; i < 60; i++)
 		cau_heat_grid_advance(&grid, &tool, &tool.pose, 0, 1, TICK_S);
 	double previous = cau_heat_grid_warmest(&grid);
 	int ticks = 0;
-	for (; cau_heat_grid_warmest(&grid) > AMBIENT_C; ++ticks) {
+	for (; cau_heat_grid_warmest(&grid) > AMBIENT_C; ticks++) {
 		cau_heat_grid_advance(&grid, &tool, &tool.pose, 0, 0, TICK_S);
 		assert_true(cau_heat_grid_warmest(&grid) <= previous);
 		previous = cau_heat_grid_warmest(&grid);
@@ -336,14 +336,14 @@ static void test_interpolation(void **state)
 	cau_tool_def tool = tool_with_defaults(CAU_TOOL_SPHERE);
 	cau_pose pose = pose_at(0.5, -0.25, 0.125);
 	cau_heat_grid grid = create(&tool, &pose);
-	for (int64_t i = 0; i < node_count(&grid); ++i) { // linear: reproduced exactly
+	for (int64_t i = 0; i < node_count(&grid); i++) { // linear: reproduced exactly
 		cau_vec3 p = node_position(&grid, i);
 		grid.temperature[i] =
 			(float)(60 + 1e3 * (p.x - 0.5) + 2e3 * (p.y + 0.25) - 3e3 * (p.z - 0.125));
 	}
 	cau_heat_grid_survey(&grid);
 	uint64_t random = 31;
-	for (int i = 0; i < 500; ++i) {
+	for (int i = 0; i < 500; i++) {
 		cau_vec3 p = {0.5 + random_between(&random, -7e-3, 7e-3),
 		              -0.25 + random_between(&random, -7e-3, 7e-3),
 		              0.125 + random_between(&random, -7e-3, 7e-3)};
@@ -362,7 +362,7 @@ static void test_cold_tools(void **state)
 	cau_tool_def tool = tool_with_defaults(CAU_TOOL_SPHERE);
 	tool.temperature_c = 5;
 	cau_heat_grid grid = create(&tool, &tool.pose);
-	for (int i = 0; i < 10; ++i)
+	for (int i = 0; i < 10; i++)
 		cau_heat_grid_advance(&grid, &tool, &tool.pose, 0, 1, TICK_S);
 	assert_near(cau_heat_grid_at(&grid, TIP), 5, 1e-4);
 	assert_near(cau_heat_grid_warmest(&grid), AMBIENT_C, 1e-4);

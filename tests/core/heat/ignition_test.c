@@ -21,7 +21,7 @@ static void test_statistics(void **state)
 	// spread.
 	const double error = SPREAD_C / sqrt(DRAWS);
 	double sum = 0, squares = 0, product = 0, previous = 0, beyond = 0;
-	for (int32_t edge = 0; edge < DRAWS; ++edge) {
+	for (int32_t edge = 0; edge < DRAWS; edge++) {
 		double g = (cau_ignition_of(MEAN_C, SPREAD_C, 7, 2, edge) - MEAN_C) / SPREAD_C;
 		sum += g;
 		squares += g * g;
@@ -53,7 +53,7 @@ static void test_cut(void **state)
 {
 	(void)state;
 	int at_floor = 0, at_cut = 0;
-	for (int32_t edge = 0; edge < DRAWS; ++edge) {
+	for (int32_t edge = 0; edge < DRAWS; edge++) {
 		double wide = cau_ignition_of(MEAN_C, 10 * MEAN_C, 7, 0, edge);
 		assert_true(wide >= 0.1 * MEAN_C);
 		at_floor += wide == 0.1 * MEAN_C;
@@ -78,9 +78,9 @@ static void test_bundles_are_normal_everywhere(void **state)
 	(void)state;
 	// One place, many seeds: in the middle of a cell of the lattice as on its corner.
 	const cau_vec3 places[] = {{0, 0, 0}, {0.0131, -0.0447, 0.0029}, {0.0015, 0.0015, 0.0015}};
-	for (size_t k = 0; k < sizeof places / sizeof *places; ++k) {
+	for (size_t k = 0; k < sizeof places / sizeof *places; k++) {
 		double sum = 0, squares = 0;
-		for (uint64_t seed = 0; seed < DRAWS; ++seed) {
+		for (uint64_t seed = 0; seed < DRAWS; seed++) {
 			double g = bundle_draw(seed, places[k], (cau_vec3){0, 1, 0});
 			sum += g;
 			squares += g * g;
@@ -95,7 +95,7 @@ static void test_bundles_are_normal_everywhere(void **state)
 static double likeness(cau_vec3 way, cau_vec3 fibre)
 {
 	double product = 0;
-	for (uint64_t seed = 0; seed < DRAWS; ++seed) {
+	for (uint64_t seed = 0; seed < DRAWS; seed++) {
 		cau_vec3 from = {0.0007, -0.0161, 0.0022};
 		product += bundle_draw(seed, from, fibre) * bundle_draw(seed, cau_add(from, way), fibre);
 	}

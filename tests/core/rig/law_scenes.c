@@ -90,7 +90,7 @@ static void add_fat_range(rig *r)
 	cau_fat_material *material = add_limited(r);
 	material->limit = CAU_LIMIT_RANGE;
 	material->shear_max = 0.04;
-	for (int i = 0; i < 3; ++i) {
+	for (int i = 0; i < 3; i++) {
 		material->strain_min[i] = -0.02 - 0.01 * i;
 		material->strain_max[i] = 0.03 + 0.01 * i;
 	}

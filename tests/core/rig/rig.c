@@ -80,10 +80,10 @@ cau_layer_def *rig_add_triangles(rig *r, int32_t point_count, const double *poin
 	cau_layer_def *layer = add_layer(r, CAU_LAYER_FASCIA);
 	cau_mesh_def *mesh = add_mesh(r, layer, CAU_MESH_BYTES);
 	char *text = borrow_text(r, mesh, "triangles.obj"), *at = text;
-	for (int32_t i = 0; i < point_count; ++i)
+	for (int32_t i = 0; i < point_count; i++)
 		at += sprintf(at, "v %.17g %.17g %.17g\n", points[3 * i], points[3 * i + 1],
 		              points[3 * i + 2]);
-	for (int32_t t = 0; t < count; ++t)
+	for (int32_t t = 0; t < count; t++)
 		at += sprintf(at, "f %d %d %d\n", vertex[3 * t] + 1, vertex[3 * t + 1] + 1,
 		              vertex[3 * t + 2] + 1);
 	mesh->byte_count = (size_t)(at - text);
@@ -100,15 +100,15 @@ cau_layer_def *rig_add_tetrahedra(rig *r, int32_t point_count, const double *poi
 	              "# vtk DataFile Version 3.0\nrig\nASCII\nDATASET UNSTRUCTURED_GRID\n"
 	              "POINTS %d double\n",
 	              point_count);
-	for (int32_t i = 0; i < point_count; ++i)
+	for (int32_t i = 0; i < point_count; i++)
 		at +=
 			sprintf(at, "%.17g %.17g %.17g\n", points[3 * i], points[3 * i + 1], points[3 * i + 2]);
 	at += sprintf(at, "CELLS %d %d\n", count, 5 * count);
-	for (int32_t t = 0; t < count; ++t)
+	for (int32_t t = 0; t < count; t++)
 		at += sprintf(at, "4 %d %d %d %d\n", vertex[4 * t], vertex[4 * t + 1], vertex[4 * t + 2],
 		              vertex[4 * t + 3]);
 	at += sprintf(at, "CELL_TYPES %d\n", count);
-	for (int32_t t = 0; t < count; ++t)
+	for (int32_t t = 0; t < count; t++)
 		at += sprintf(at, "10\n");
 	mesh->byte_count = (size_t)(at - text);
 	return layer;
@@ -177,16 +177,16 @@ double rig_local(rig *r, const double *x, double *gradient)
 	cau_step_solver *solver = &r->solver;
 	int single = solver->elements.single;
 	int32_t n = r->tissue.vertex_count;
-	for (int32_t v = 0; v < n; ++v)
-		for (int c = 0; c < 3; ++c)
+	for (int32_t v = 0; v < n; v++)
+		for (int c = 0; c < 3; c++)
 			cau_real_set(solver->displacement, single, 4 * v + c,
 			             x[3 * v + c] - r->tissue.rest[3 * v + c]);
-	for (int32_t w = 0; w < solver->slots.work_count; ++w)
+	for (int32_t w = 0; w < solver->slots.work_count; w++)
 		solver->kernels->local(&solver->elements, &solver->slots.work[w], solver->displacement,
 		                       solver->diagonal);
 	solver->kernels->sum(&solver->elements, &solver->slots.incidence, 0, n, solver->gradient);
-	for (int32_t v = 0; v < n && gradient; ++v)
-		for (int c = 0; c < 3; ++c)
+	for (int32_t v = 0; v < n && gradient; v++)
+		for (int c = 0; c < 3; c++)
 			gradient[3 * v + c] = cau_real_get(solver->gradient, single, 4 * v + c);
 	return cau_solver_elastic_energy(solver);
 }
@@ -194,7 +194,7 @@ double rig_local(rig *r, const double *x, double *gradient)
 double rig_energy_of(const rig *r, int work_kind)
 {
 	double energy = 0;
-	for (int32_t w = 0; w < r->solver.slots.work_count; ++w)
+	for (int32_t w = 0; w < r->solver.slots.work_count; w++)
 		if (r->solver.slots.work[w].kind == work_kind)
 			energy += r->solver.elements.energy[w];
 	return energy;
@@ -254,19 +254,19 @@ void rig_element_gradient(rig *r, int kind, int32_t slot, double *gradient)
 	const cau_local_work *work = share_of(r, kind, slot);
 	double kept[2][4096] = {{0}};
 	assert_true(work->last - work->first <= 4096);
-	for (int k = 0; k < w.count; ++k)
-		for (int32_t s = work->first; s < work->last; ++s) {
+	for (int k = 0; k < w.count; k++)
+		for (int32_t s = work->first; s < work->last; s++) {
 			kept[k][s - work->first] = cau_real_get(w.weight[k], e->single, s);
 			if (s != slot)
 				cau_real_set(w.weight[k], e->single, s, 0);
 		}
 	solver->kernels->local(e, work, solver->displacement, solver->diagonal);
-	for (int i = 0; i < rig_vertex_count(kind); ++i)
-		for (int c = 0; c < 3; ++c)
+	for (int i = 0; i < rig_vertex_count(kind); i++)
+		for (int c = 0; c < 3; c++)
 			gradient[3 * i + c] =
 				cau_real_get(e->gradient, e->single, 4 * rig_record(r, kind, slot, i) + c);
-	for (int k = 0; k < w.count; ++k)
-		for (int32_t s = work->first; s < work->last; ++s)
+	for (int k = 0; k < w.count; k++)
+		for (int32_t s = work->first; s < work->last; s++)
 			cau_real_set(w.weight[k], e->single, s, kept[k][s - work->first]);
 }
 
@@ -289,24 +289,24 @@ void rig_update_factor(rig *r, uint64_t tick)
 
 void rig_deform(const rig *r, double a[3][3], double noise_m, uint64_t *random, double *x)
 {
-	for (int32_t v = 0; v < r->tissue.vertex_count; ++v) {
+	for (int32_t v = 0; v < r->tissue.vertex_count; v++) {
 		mat_apply(a, r->tissue.rest + 3 * v, x + 3 * v);
-		for (int c = 0; c < 3; ++c)
+		for (int c = 0; c < 3; c++)
 			x[3 * v + c] += random_between(random, -noise_m, noise_m);
 	}
 }
 
 void rig_random_gradient(uint64_t *random, double size, double a[3][3])
 {
-	for (int i = 0; i < 3; ++i)
-		for (int j = 0; j < 3; ++j)
+	for (int i = 0; i < 3; i++)
+		for (int j = 0; j < 3; j++)
 			a[i][j] = (i == j) + random_between(random, -size, size);
 }
 
 double rig_difference(const double *a, const double *b, size_t n)
 {
 	double difference = 0, size = 0;
-	for (size_t i = 0; i < n; ++i) {
+	for (size_t i = 0; i < n; i++) {
 		difference = fmax(difference, fabs(a[i] - b[i]));
 		if (!isfinite(a[i]) || !isfinite(b[i]))
 			return INFINITY;

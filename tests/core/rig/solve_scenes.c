@@ -71,13 +71,13 @@ void solve_by_factor(rig *r, const double *b, double *x)
 	cau_arena scratch = {0};
 	double *in = cau_arena_array(&scratch, 3 * rows, sizeof(double));
 	double *out = cau_arena_array(&scratch, 3 * rows, sizeof(double));
-	for (size_t row = 0; row < rows; ++row)
-		for (size_t c = 0; c < 3; ++c)
+	for (size_t row = 0; row < rows; row++)
+		for (size_t c = 0; c < 3; c++)
 			in[c * rows + row] = b[3 * (size_t)system->vertex_of_row[row] + c];
 	assert_int_equal(cau_factor_solve(r->solver.factor, in, out, NULL), CAU_OK);
 	memset(x, 0, 3 * (size_t)r->tissue.vertex_count * sizeof(double));
-	for (size_t row = 0; row < rows; ++row)
-		for (size_t c = 0; c < 3; ++c)
+	for (size_t row = 0; row < rows; row++)
+		for (size_t c = 0; c < 3; c++)
 			x[3 * (size_t)system->vertex_of_row[row] + c] = out[c * rows + row];
 	cau_arena_finish(&scratch);
 }
@@ -85,12 +85,12 @@ void solve_by_factor(rig *r, const double *b, double *x)
 void solve_by_sweep(rig *r, const double *b, double *x)
 {
 	int single = r->solver.elements.single;
-	for (int32_t v = 0; v < r->tissue.vertex_count; ++v)
-		for (int c = 0; c < 3; ++c)
+	for (int32_t v = 0; v < r->tissue.vertex_count; v++)
+		for (int c = 0; c < 3; c++)
 			cau_real_set(r->solver.gradient, single, 4 * v + c, b[3 * v + c]);
 	cau_solver_apply_inverse(&r->solver, r->solver.gradient, r->solver.increment, 1);
-	for (int32_t v = 0; v < r->tissue.vertex_count; ++v)
-		for (int c = 0; c < 3; ++c)
+	for (int32_t v = 0; v < r->tissue.vertex_count; v++)
+		for (int c = 0; c < 3; c++)
 			x[3 * v + c] = cau_real_get(r->solver.increment, single, 4 * v + c);
 }
 
@@ -99,19 +99,19 @@ void solve_dense_matrix(const rig *r, double *a)
 	size_t n = (size_t)r->tissue.vertex_count;
 	double dt = r->solver.step_s;
 	memset(a, 0, n * n * sizeof(double));
-	for (size_t v = 0; v < n; ++v)
+	for (size_t v = 0; v < n; v++)
 		a[v * n + v] = r->tissue.mass[v] / (dt * dt);
-	for (int kind = 0; kind < CAU_ELEMENT_KINDS; ++kind)
-		for (int32_t e = 0; e < cau_tissue_element_count(&r->tissue, kind); ++e) {
+	for (int kind = 0; kind < CAU_ELEMENT_KINDS; kind++)
+		for (int32_t e = 0; e < cau_tissue_element_count(&r->tissue, kind); e++) {
 			cau_element_map map;
 			cau_tissue_element_map(&r->tissue, kind, e, &map);
-			for (int k = 0; k < map.rank && r->dissection.alive.element[kind][e]; ++k)
-				for (int i = 0; i < map.vertex_count; ++i)
-					for (int j = 0; j < map.vertex_count; ++j)
+			for (int k = 0; k < map.rank && r->dissection.alive.element[kind][e]; k++)
+				for (int i = 0; i < map.vertex_count; i++)
+					for (int j = 0; j < map.vertex_count; j++)
 						a[(size_t)map.vertex[i] * n + (size_t)map.vertex[j]] +=
 							map.weight * map.coefficient[k][i] * map.coefficient[k][j];
 		}
-	for (size_t v = 0; v < n; ++v)
-		for (size_t u = 0; u < n && r->tissue.pinned[v]; ++u)
+	for (size_t v = 0; v < n; v++)
+		for (size_t u = 0; u < n && r->tissue.pinned[v]; u++)
 			a[v * n + u] = a[u * n + v] = 0;
 }

@@ -36,7 +36,7 @@ static cau_scene_def *scene_of_law(const law *l)
 		fat->shear_max = 0.05;
 		fat->target[0] = l->limit == CAU_LIMIT_TARGET ? 0.6 : 1;
 		fat->target[3] = l->limit == CAU_LIMIT_TARGET ? 0.1 : 0;
-		for (int i = 0; i < 3; ++i) {
+		for (int i = 0; i < 3; i++) {
 			fat->strain_min[i] = -0.02;
 			fat->strain_max[i] = 0.02;
 		}
@@ -48,7 +48,7 @@ static cau_scene_def *scene_of_law(const law *l)
 		sheet->bending_stiffness_nm = 1e-4;
 		sheet->shear_max = 0.05;
 		sheet->target[0] = l->limit == CAU_LIMIT_TARGET ? 0.6 : 1;
-		for (int i = 0; i < 2; ++i) {
+		for (int i = 0; i < 2; i++) {
 			sheet->strain_min[i] = -0.02;
 			sheet->strain_max[i] = 0.02;
 		}
@@ -98,17 +98,17 @@ static void check_balance(const law *l)
 static void every_law_of_fat_is_balanced(void **state)
 {
 	(void)state;
-	for (int model = 0; model < CAU_MODEL_COUNT; ++model)
-		for (int limit = 0; limit < CAU_LIMIT_COUNT; ++limit)
-			for (int projection = 0; projection < CAU_PROJECTION_COUNT; ++projection)
+	for (int model = 0; model < CAU_MODEL_COUNT; model++)
+		for (int limit = 0; limit < CAU_LIMIT_COUNT; limit++)
+			for (int projection = 0; projection < CAU_PROJECTION_COUNT; projection++)
 				check_balance(&(law){CAU_LAYER_FAT, model, limit, projection});
 }
 
 static void every_law_of_sheets_is_balanced(void **state)
 {
 	(void)state;
-	for (int limit = 0; limit < CAU_LIMIT_COUNT; ++limit)
-		for (int projection = 0; projection < CAU_PROJECTION_COUNT; ++projection)
+	for (int limit = 0; limit < CAU_LIMIT_COUNT; limit++)
+		for (int projection = 0; projection < CAU_PROJECTION_COUNT; projection++)
 			check_balance(&(law){CAU_LAYER_FASCIA, 0, limit, projection});
 }
 
@@ -140,7 +140,7 @@ static void check_momentum(int precision, double tolerance)
 	cau_vec3 before = cau_vec3_of(stage_balance(session).momentum);
 	double size = cau_length(before), change = 0;
 	assert_true(size > 1e-5);
-	for (int tick = 0; tick < 300; ++tick) {
+	for (int tick = 0; tick < 300; tick++) {
 		stage_step(session, 1);
 		cau_vec3 now = cau_vec3_of(stage_balance(session).momentum);
 		change = fmax(change, cau_length(cau_sub(now, before)));
@@ -197,7 +197,7 @@ static void check_fall(int precision, double tolerance)
 	cau_frame frame = stage_frame(session);
 	double way = scene->gravity_m_s2[2] * info.step_s * info.step_s * TICKS * (TICKS + 1) / 2,
 		   off = 0;
-	for (size_t i = 0; i < 3 * (size_t)info.vertex_count; ++i) {
+	for (size_t i = 0; i < 3 * (size_t)info.vertex_count; i++) {
 		double fallen = frame.position[i] - info.rest_position[i];
 		off = fmax(off, fabs(fallen - (i % 3 == 2 ? way : 0)));
 	}

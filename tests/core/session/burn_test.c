@@ -29,7 +29,7 @@ typedef struct cut_run {
 static int anything_exposed(const cut_run *run)
 {
 	const double *exposure = run->session->dissection.exposure;
-	for (int32_t e = 0; e < run->info.edge_count; ++e)
+	for (int32_t e = 0; e < run->info.edge_count; e++)
 		if (exposure[e] > 0)
 			return 1;
 	return 0;
@@ -39,8 +39,8 @@ static int anything_exposed(const cut_run *run)
 static void leave_tension_alone(cau_scene_def *scene)
 {
 	memset(scene->gravity_m_s2, 0, sizeof scene->gravity_m_s2);
-	for (int32_t i = 0; i < scene->layer_count; ++i)
-		for (int k = 0; k < 3; ++k) {
+	for (int32_t i = 0; i < scene->layer_count; i++)
+		for (int k = 0; k < 3; k++) {
 			scene->layers[i].fat[0].shrink[k] = 1;
 			scene->layers[i].sheet[0].shrink[k % 2] = 1;
 		}
@@ -48,7 +48,7 @@ static void leave_tension_alone(cau_scene_def *scene)
 
 static void slacken(cau_scene_def *scene)
 {
-	for (int32_t i = 0; i < scene->layer_count; ++i) {
+	for (int32_t i = 0; i < scene->layer_count; i++) {
 		scene->layers[i].fat[0].limit = CAU_LIMIT_NONE;
 		scene->layers[i].sheet[0].target[0] = scene->layers[i].sheet[0].target[1] = 1;
 	}
@@ -72,7 +72,7 @@ static cut_run cut(cau_scene_def *scene, double seconds)
 	stage_energize(run.session, def->tool, 1);
 	stage_turn(run.session, def->tool, &pose);
 	int tick = 0;
-	for (; tick < MOST_TICKS && run.parting_tick < 0; ++tick) {
+	for (; tick < MOST_TICKS && run.parting_tick < 0; tick++) {
 		stage_step(run.session, 1);
 		if (run.contact_tick < 0 && anything_exposed(&run))
 			run.contact_tick = tick;
@@ -81,7 +81,7 @@ static cut_run cut(cau_scene_def *scene, double seconds)
 	}
 	double length = cau_length(cau_sub(cau_vec3_of(def->to_m), cau_vec3_of(def->from_m)));
 	for (double s = 0; s < seconds; s += run.info.step_s) {
-		for (int c = 0; c < 3; ++c)
+		for (int c = 0; c < 3; c++)
 			pose.position_m[c] =
 				def->from_m[c] + s * def->speed_m_s / length * (def->to_m[c] - def->from_m[c]);
 		stage_turn(run.session, def->tool, &pose);
@@ -125,7 +125,7 @@ static double drawn_back_edges(const cut_run *run, element_list list, size_t axi
 	cau_frame frame = stage_frame(run->session);
 	double sum = 0, middle = run->scene->cut.from_m[axis] + (axis == 0 ? drawn_m / 2 : 0);
 	int32_t counted = 0;
-	for (int32_t k = 0; k < list.corners * list.count; ++k) {
+	for (int32_t k = 0; k < list.corners * list.count; k++) {
 		size_t v = (size_t)list.vertex[k];
 		double from = run->uncut[3 * v + axis] - middle;
 		if (list.alive[k / list.corners] || !run->session->dissection.live_elements[v] ||
@@ -153,7 +153,7 @@ static double opening_edges(const char *name, element_list (*list)(const cut_run
                             double beyond_m)
 {
 	double way[2];
-	for (int slack = 0; slack < 2; ++slack) {
+	for (int slack = 0; slack < 2; slack++) {
 		cau_scene_def *scene = stage_scene_named(name);
 		leave_tension_alone(scene);
 		if (slack)

@@ -72,7 +72,7 @@ static inline void busy_commands(cau_session *session)
 
 static inline void busy_run(cau_session *session, int ticks)
 {
-	for (int k = 0; k < ticks; ++k) {
+	for (int k = 0; k < ticks; k++) {
 		busy_commands(session);
 		stage_step(session, 1);
 	}

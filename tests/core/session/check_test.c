@@ -11,7 +11,7 @@
 static void expect_refused_field(cau_scene_def *scene, double *field, const char *path)
 {
 	double before = *field;
-	for (int k = 0; k < STAGE_ABSURD_COUNT; ++k) {
+	for (int k = 0; k < STAGE_ABSURD_COUNT; k++) {
 		*field = stage_absurd[k];
 		cau_error error = {0};
 		cau_status status = cau_scene_check(scene, &error);
@@ -38,9 +38,9 @@ static void absurd_numbers_in_scenes(void **state)
 	{
 		cau_sheet_material *object = &scene->layers[0].sheet[0];
 		CAU_SHEET_TABLE(CHECK)
-		for (int i = 0; i < 3; ++i)
+		for (int i = 0; i < 3; i++)
 			expect_refused_field(scene, &object->target[i], "layers[0].target");
-		for (int i = 0; i < 2; ++i) {
+		for (int i = 0; i < 2; i++) {
 			expect_refused_field(scene, &object->strain_max[i], "layers[0].strain_m");
 			expect_refused_field(scene, &object->strain_min[i], "layers[0].strain_m");
 			expect_refused_field(scene, &object->shrink[i], "layers[0].shrink");
@@ -49,9 +49,9 @@ static void absurd_numbers_in_scenes(void **state)
 	{
 		cau_fat_material *object = &scene->layers[1].fat[0];
 		CAU_FAT_TABLE(CHECK)
-		for (int i = 0; i < 6; ++i)
+		for (int i = 0; i < 6; i++)
 			expect_refused_field(scene, &object->target[i], "layers[1].target");
-		for (int i = 0; i < 3; ++i)
+		for (int i = 0; i < 3; i++)
 			expect_refused_field(scene, &object->shrink[i], "layers[1].shrink");
 	}
 	{
@@ -67,7 +67,7 @@ static void absurd_numbers_in_scenes(void **state)
 		CAU_TOOL_TABLE(CHECK)
 	}
 #undef CHECK
-	for (int c = 0; c < 3; ++c) {
+	for (int c = 0; c < 3; c++) {
 		expect_refused_field(scene, &scene->gravity_m_s2[c], "gravity_m_s2");
 		expect_refused_field(scene, &scene->layers[0].fibre[c], "layers[0].fibre");
 		expect_refused_field(scene, &scene->pins[0].least_m[c], "pins[0].least_m");
@@ -75,7 +75,7 @@ static void absurd_numbers_in_scenes(void **state)
 		expect_refused_field(scene, &scene->meshes[0].translate_m[c], "meshes[0].translate_m");
 		expect_refused_field(scene, &scene->tools[1].pose.position_m[c], "tools[1].position_m");
 	}
-	for (int c = 0; c < 4; ++c)
+	for (int c = 0; c < 4; c++)
 		expect_refused_field(scene, &scene->tools[1].pose.rotation[c], "tools[1].rotation");
 	free(scene);
 }
@@ -84,8 +84,8 @@ static void absurd_generated_meshes(void **state)
 {
 	(void)state;
 	cau_error error;
-	for (int k = 0; k < STAGE_ABSURD_COUNT; ++k)
-		for (int c = 0; c < 3; ++c) {
+	for (int k = 0; k < STAGE_ABSURD_COUNT; k++)
+		for (int c = 0; c < 3; c++) {
 			cau_scene_def *scene = stage_layered();
 			scene->meshes[1].size_m[c] = stage_absurd[k];
 			cau_session_def def = cau_default_session_def();
@@ -99,7 +99,7 @@ static void absurd_generated_meshes(void **state)
 			free(scene);
 		}
 	const int32_t cells[] = {0, -1, INT32_MAX, INT32_MIN, 1000000};
-	for (size_t k = 0; k < sizeof cells / sizeof *cells; ++k) {
+	for (size_t k = 0; k < sizeof cells / sizeof *cells; k++) {
 		cau_scene_def *scene = stage_layered();
 		scene->meshes[1].cells[1] = cells[k];
 		cau_session_def def = cau_default_session_def();
@@ -121,7 +121,7 @@ static void more_cells_than_can_be_counted(void **state)
 {
 	(void)state;
 	cau_scene_def *scene = stage_layered();
-	for (int c = 0; c < 3; ++c)
+	for (int c = 0; c < 3; c++)
 		scene->meshes[1].cells[c] = INT32_MAX;
 	cau_error error;
 	stage_refuse(scene, CAU_LIMIT, &error);
@@ -133,7 +133,7 @@ static void time_steps_of_zero_and_of_a_year(void **state)
 {
 	(void)state;
 	const double steps[] = {0, -1.0 / 60, 365.25 * 86400, 1e-9};
-	for (size_t k = 0; k < sizeof steps / sizeof *steps; ++k) {
+	for (size_t k = 0; k < sizeof steps / sizeof *steps; k++) {
 		cau_scene_def *scene = stage_layered();
 		cau_error error;
 		scene->step_s = steps[k];
@@ -319,7 +319,7 @@ static void a_million_links(void **state)
 	cau_layer_def *upper = stage_add_sheet(scene, "upper", 0.1, 0.1, CELLS, CELLS);
 	stage_mesh_of(scene, upper)->translate_m[2] = 0.001;
 	stage_add_sheet(scene, "lower", 0.1, 0.1, CELLS, CELLS);
-	for (int k = 0; k < TIES; ++k) {
+	for (int k = 0; k < TIES; k++) {
 		char name[16];
 		snprintf(name, sizeof name, "ties-%d", k);
 		cau_link_material *link = &stage_add_links(scene, name, "upper", "lower")->link;

@@ -14,7 +14,7 @@ static void expect_refused(cau_session *session, cau_command *command, double *f
                            const char *what)
 {
 	double before = *field;
-	for (int k = 0; k < STAGE_ABSURD_COUNT; ++k) {
+	for (int k = 0; k < STAGE_ABSURD_COUNT; k++) {
 		*field = stage_absurd[k];
 		cau_error error = {0};
 		cau_status status = cau_session_submit(session, command, &error);
@@ -38,7 +38,7 @@ static void absurd_numbers_in_commands(void **state)
 		CAU_TOOL_TABLE(CHECK)
 	}
 	cau_command move = stage_command(CAU_COMMAND_TOOL_MOVE);
-	for (int c = 0; c < 4; ++c) {
+	for (int c = 0; c < 4; c++) {
 		expect_refused(session, &move, &move.as.move.pose.rotation[c], "rotation");
 		expect_refused(session, &move, &move.as.move.pose.position_m[c % 3], "position_m");
 	}
@@ -46,7 +46,7 @@ static void absurd_numbers_in_commands(void **state)
 	cau_command gravity = stage_command(CAU_COMMAND_SET_GRAVITY);
 	cau_command force = stage_command(CAU_COMMAND_SET_FORCE), pin = stage_command(CAU_COMMAND_PIN);
 	force.as.force.selection = pin.as.selection = stage_everything();
-	for (int c = 0; c < 3; ++c) {
+	for (int c = 0; c < 3; c++) {
 		expect_refused(session, &gravity, &gravity.as.gravity_m_s2[c], "gravity_m_s2");
 		expect_refused(session, &force, &force.as.force.force_n[c], "force_n");
 		expect_refused(session, &force, &force.as.force.selection.least_m[c], "least_m");
@@ -96,7 +96,7 @@ static void what_only_the_tick_can_tell(void **state)
 	const double least[3] = {5, 5, 5}, most[3] = {6, 6, 6};
 	cau_scene_def *scene = stage_layered();
 	cau_session *session = stage_open(scene, 1);
-	for (int kind = CAU_COMMAND_TOOL_REMOVE; kind <= CAU_COMMAND_TOOL_RELEASE; ++kind) {
+	for (int kind = CAU_COMMAND_TOOL_REMOVE; kind <= CAU_COMMAND_TOOL_RELEASE; kind++) {
 		cau_command command = stage_command(kind);
 		strcpy(command.tool, "nobody");
 		expect_refusal_at_tick(session, command, CAU_NOT_FOUND);
@@ -114,7 +114,7 @@ static void what_only_the_tick_can_tell(void **state)
 	expect_refusal_at_tick(session, material, CAU_BAD_VALUE);
 	strcpy(material.as.material.layer, "nobody");
 	expect_refusal_at_tick(session, material, CAU_NOT_FOUND);
-	for (int k = 0; k < CAU_MAX_TOOLS - 2; ++k) {
+	for (int k = 0; k < CAU_MAX_TOOLS - 2; k++) {
 		add = stage_command(CAU_COMMAND_TOOL_ADD);
 		snprintf(add.as.definition.name, sizeof add.as.definition.name, "extra%d", k);
 		stage_submit(session, &add);
@@ -135,7 +135,7 @@ static void a_million_commands(void **state)
 	cau_scene_def *scene = stage_layered();
 	cau_session *session = stage_open(scene, 1);
 	int taken = 0, refused = 0;
-	for (int k = 0; k < 1000000; ++k) {
+	for (int k = 0; k < 1000000; k++) {
 		cau_command move = stage_command(CAU_COMMAND_TOOL_MOVE);
 		cau_error error = {0};
 		cau_status status = cau_session_submit(session, &move, &error);
@@ -157,7 +157,7 @@ static void many_refusals_in_a_tick(void **state)
 	(void)state;
 	cau_scene_def *scene = stage_layered();
 	cau_session *session = stage_open(scene, 1);
-	for (int k = 0; k < 500; ++k) {
+	for (int k = 0; k < 500; k++) {
 		cau_command grasp = stage_command(CAU_COMMAND_TOOL_GRASP);
 		stage_submit(session, &grasp);
 	}
@@ -172,7 +172,7 @@ static double farthest(const cau_session *session)
 {
 	cau_session_info info = stage_info(session);
 	cau_frame frame = stage_frame(session);
-	for (int32_t i = 0; i < 3 * info.vertex_count; ++i)
+	for (int32_t i = 0; i < 3 * info.vertex_count; i++)
 		assert_true(isfinite(frame.position[i]) && isfinite(frame.velocity[i]));
 	return stage_farthest(&frame, info.rest_position, info.vertex_count);
 }
@@ -181,7 +181,7 @@ static double farthest(const cau_session *session)
 static int step_or_fault(cau_session *session, int ticks)
 {
 	cau_error error = {0};
-	for (int k = 0; k < ticks; ++k) {
+	for (int k = 0; k < ticks; k++) {
 		cau_status status = cau_session_step(session, &error);
 		if (status) {
 			assert_int_equal(status, CAU_NUMERICAL);
@@ -197,7 +197,7 @@ static int step_or_fault(cau_session *session, int ticks)
 static void huge_forces_and_gravity(void **state)
 {
 	(void)state;
-	for (int what = 0; what < 4; ++what) {
+	for (int what = 0; what < 4; what++) {
 		cau_scene_def *scene = stage_layered();
 		cau_session *session = stage_open(scene, 1);
 		const double least[3] = {-1, -1, -0.009}, most[3] = {1, 1, 1};
@@ -238,7 +238,7 @@ static void what_falls_for_ever_is_stopped(void **state)
 	cau_frame frame = stage_frame(session);
 	assert_int_equal(frame.statistics.frozen_vertices, 3 * 3 * 2);
 	double speed = 0;
-	for (int32_t i = 0; i < 3 * stage_info(session).vertex_count; ++i)
+	for (int32_t i = 0; i < 3 * stage_info(session).vertex_count; i++)
 		speed = fmax(speed, fabs(frame.velocity[i]));
 	if (!(speed < at_rest_m_s))
 		fail_msg("something still moves at %g m/s", speed);
@@ -254,7 +254,7 @@ static int32_t frozen(const cau_session *session)
 static int32_t recount_frozen(const cau_session *session)
 {
 	int32_t count = 0;
-	for (int32_t v = 0; v < session->tissue.vertex_count; ++v)
+	for (int32_t v = 0; v < session->tissue.vertex_count; v++)
 		count += session->fixed[v] && !session->pinned[v];
 	return count;
 }
@@ -277,7 +277,7 @@ static void pins_take_frozen_vertices_over(void **state)
 	session->frozen_count = 2;
 	cau_command command = stage_command(CAU_COMMAND_PIN);
 	command.as.selection = stage_everything();
-	for (int round = 0; round < 3; ++round) { // a count that drifts would fall below zero
+	for (int round = 0; round < 3; round++) { // a count that drifts would fall below zero
 		command.kind = CAU_COMMAND_PIN;
 		stage_submit(session, &command);
 		stage_step(session, 1);
@@ -300,12 +300,12 @@ static void a_tool_that_leaps(void **state)
 	cau_scene_def *scene = stage_layered();
 	cau_session *session = stage_open(scene, 1);
 	cau_session_info info = stage_info(session);
-	for (int leap = 0; leap < 6; ++leap) {
+	for (int leap = 0; leap < 6; leap++) {
 		cau_pose pose = {.position_m = {leap % 2 ? 1 : -1, 0, leap % 3 ? -0.002 : 0.5},
 		                 .rotation = {0, leap % 2, 1 - leap % 2, 0}};
 		stage_turn(session, "hook", &pose);
 		stage_turn(session, "jaws", &pose);
-		for (int k = 0; k < 40; ++k) {
+		for (int k = 0; k < 40; k++) {
 			cau_vec3 before = cau_vec3_of(stage_tool(session, "hook")->pose.position_m);
 			stage_step(session, 1);
 			cau_vec3 after = cau_vec3_of(stage_tool(session, "hook")->pose.position_m);
@@ -336,7 +336,7 @@ static void a_faulted_session_waits_for_a_snapshot(void **state)
 	assert_int_equal(cau_session_step(session, &error), CAU_NUMERICAL);
 	assert_true(error.reason[0]);
 	assert_true(isfinite(farthest(session)));
-	for (int k = 0; k < 3; ++k)
+	for (int k = 0; k < 3; k++)
 		assert_int_equal(cau_session_step(session, &error), CAU_FAULTED);
 	// a snapshot of it is of a faulted session
 	stage_bytes faulted = stage_snapshot(session);
@@ -365,15 +365,15 @@ static void only_pinned_vertices_are_driven(void **state)
 	cau_session_info info = stage_info(session);
 	cau_error error = {0};
 	int32_t pinned = -1, unpinned = -1;
-	for (int32_t v = 0; v < info.vertex_count; ++v)
+	for (int32_t v = 0; v < info.vertex_count; v++)
 		*(session->pinned[v] ? &pinned : &unpinned) = v;
 	double at[3] = {0.001, 0.002, -0.01};
 	assert_int_equal(cau_session_drive(session, 1, &unpinned, at, &error), CAU_BAD_STATE);
 	const int32_t beyond[] = {-1, info.vertex_count, INT32_MAX};
-	for (int k = 0; k < 3; ++k)
+	for (int k = 0; k < 3; k++)
 		assert_int_equal(cau_session_drive(session, 1, &beyond[k], at, &error), CAU_BAD_VALUE);
 	assert_int_equal(cau_session_drive(session, -1, &pinned, at, &error), CAU_BAD_VALUE);
-	for (int k = 0; k < STAGE_ABSURD_COUNT; ++k) {
+	for (int k = 0; k < STAGE_ABSURD_COUNT; k++) {
 		double absurd_place[3] = {0, stage_absurd[k], 0};
 		assert_int_equal(cau_session_drive(session, 1, &pinned, absurd_place, &error),
 		                 CAU_BAD_VALUE);
@@ -383,7 +383,7 @@ static void only_pinned_vertices_are_driven(void **state)
 	cau_frame frame = stage_frame(session);
 	assert_memory_equal(frame.position + 3 * (size_t)pinned, at, sizeof at);
 	int told = 0;
-	for (int32_t k = 0; k < frame.moved_count; ++k)
+	for (int32_t k = 0; k < frame.moved_count; k++)
 		told |= frame.moved[k] == pinned;
 	assert_true(told);
 	stage_step(session, 1); // and there it stays
@@ -399,7 +399,7 @@ static void pinning_does_not_grow_the_session(void **state)
 	cau_scene_def *scene = stage_layered();
 	cau_session *session = stage_open(scene, 1);
 	size_t once = 0;
-	for (int k = 0; k < 20; ++k) {
+	for (int k = 0; k < 20; k++) {
 		cau_command pin;
 		cau_default_command(&pin, k % 2 ? CAU_COMMAND_UNPIN : CAU_COMMAND_PIN);
 		pin.as.selection = stage_everything();
@@ -435,7 +435,7 @@ static void pinned_on_the_way(void **state)
 	stage_step(session, 20);
 	cau_frame frame = stage_frame(session);
 	int still = 0, moved = 0;
-	for (size_t v = 0; v < (size_t)info.vertex_count; ++v) {
+	for (size_t v = 0; v < (size_t)info.vertex_count; v++) {
 		int same = !memcmp(frame.position + 3 * v, before + 3 * v, 3 * sizeof(double));
 		if (session->pinned[v] && !same)
 			fail_msg("pinned vertex %zu moved", v);
@@ -447,7 +447,7 @@ static void pinned_on_the_way(void **state)
 	stage_submit(session, &pin);
 	stage_step(session, 20);
 	frame = stage_frame(session);
-	for (size_t v = 0; v < (size_t)info.vertex_count; ++v)
+	for (size_t v = 0; v < (size_t)info.vertex_count; v++)
 		assert_true(memcmp(frame.position + 3 * v, before + 3 * v, 3 * sizeof(double)) != 0 ||
 		            session->pinned[v]);
 	free(before);

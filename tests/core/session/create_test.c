@@ -46,7 +46,7 @@ static void borders_come_in_order_and_know_ever_more(void **state)
 	assert_int_equal(create(scene, 1, &noted, &session, &error), CAU_OK);
 	cau_session_info info = stage_info(session);
 	assert_int_equal(noted.count, CAU_BUILD_STAGE_COUNT);
-	for (int k = 0; k < noted.count; ++k) {
+	for (int k = 0; k < noted.count; k++) {
 		const cau_build_border *border = &noted.seen[k];
 		assert_int_equal(border->next, k);
 		// its meshes are generated: their vertices are known before there is one
@@ -67,8 +67,8 @@ static void a_refusal_at_any_border_leaves_nothing(void **state)
 {
 	(void)state;
 	cau_scene_def *scene = busy_scene();
-	for (int threads = 1; threads <= 2; ++threads)
-		for (int stage = 0; stage < CAU_BUILD_STAGE_COUNT; ++stage) {
+	for (int threads = 1; threads <= 2; threads++)
+		for (int stage = 0; stage < CAU_BUILD_STAGE_COUNT; stage++) {
 			borders noted = {.stop_at = stage, .refusal = CAU_LIMIT};
 			cau_session *session = NULL;
 			cau_error error = {0};
@@ -86,7 +86,7 @@ enum { TICKS = 60 };
 
 static void hash_run(cau_session *session, int from, int to, uint64_t *hash)
 {
-	for (int tick = from; tick < to; ++tick) {
+	for (int tick = from; tick < to; tick++) {
 		busy_run(session, 1);
 		hash[tick] = cau_session_hash(session);
 	}
@@ -128,10 +128,10 @@ static void a_session_taken_over_mid_cut_keeps_its_bits(void **state)
 	hash_run(session, 0, TICKS, alone);
 	assert_true(stage_frame(session).statistics.elements_removed > 100);
 	cau_session_destroy(session);
-	for (int threads = 1; threads <= 2; ++threads) {
+	for (int threads = 1; threads <= 2; threads++) {
 		session = stage_open(scene, threads);
 		int while_making = 0;
-		for (int tick = 0; tick < TICKS; ++tick) {
+		for (int tick = 0; tick < TICKS; tick++) {
 			takeover work = {session, tick, tick + 1, handed, false};
 			if (tick % 10 == 5 || session->update.making)
 				hand_over(&work);

@@ -50,10 +50,10 @@ static void shares_equal_a_recount(void **state)
 		{d->face_owners, (size_t)info.face_count, NULL},
 		{d->face_mask, ((size_t)info.face_count + 31) / 32 * sizeof(uint32_t), NULL},
 	};
-	for (size_t k = 0; k < sizeof books / sizeof *books; ++k)
+	for (size_t k = 0; k < sizeof books / sizeof *books; k++)
 		books[k].copy = copy_of(books[k].array, books[k].bytes);
 	cau_dissection_recount(d);
-	for (size_t k = 0; k < sizeof books / sizeof *books; ++k) {
+	for (size_t k = 0; k < sizeof books / sizeof *books; k++) {
 		if (memcmp(books[k].array, books[k].copy, books[k].bytes) != 0)
 			fail_msg("book %zu differs from a recount", k);
 		free(books[k].copy);
@@ -74,8 +74,8 @@ static void shares_are_counts_of_whole_edges(void **state)
 	uint8_t *count = calloc((size_t)t->tetrahedron_count, 1);
 	assert_non_null(count);
 	const int32_t *first = t->edges.first[CAU_PRIMITIVE_TETRAHEDRON];
-	for (int32_t e = 0; e < t->edges.edge_count; ++e)
-		for (int32_t k = first[e]; k < first[e + 1]; ++k) {
+	for (int32_t e = 0; e < t->edges.edge_count; e++)
+		for (int32_t k = first[e]; k < first[e + 1]; k++) {
 			int32_t i = t->edges.sharer[CAU_PRIMITIVE_TETRAHEDRON][k];
 			count[i] = (uint8_t)(count[i] + !(d->parted[e] >> t->tetrahedron_layer[i] & 1));
 		}
@@ -116,17 +116,17 @@ static void the_system_equals_a_reassembly(void **state)
 	cau_error error = {0};
 	assert_int_equal(cau_factor_create(&fresh, &matrix, NULL, &error), CAU_OK);
 	double condition = 0;
-	for (size_t r = 0; r < rows; ++r) {
+	for (size_t r = 0; r < rows; r++) {
 		double inertia = session->tissue.mass[system->vertex_of_row[r]] /
 		                 (session->solver.step_s * session->solver.step_s);
 		condition = fmax(condition, matrix.value[matrix.first[r]] / inertia);
 	}
-	for (size_t i = 0; i < 3 * rows; ++i)
+	for (size_t i = 0; i < 3 * rows; i++)
 		b[i] = sin(0.7 * (double)i) + 0.3 * cos(13.1 * (double)i);
 	assert_int_equal(cau_factor_solve(session->solver.factor, b, x, &error), CAU_OK);
 	assert_int_equal(cau_factor_solve(fresh, b, fresh_x, &error), CAU_OK);
 	double most = 0, off = 0, tolerance = fmax(system_tolerance, condition_tolerance * condition);
-	for (size_t i = 0; i < 3 * rows; ++i) {
+	for (size_t i = 0; i < 3 * rows; i++) {
 		most = fmax(most, fabs(fresh_x[i]));
 		off = fmax(off, fabs(x[i] - fresh_x[i]));
 	}
@@ -154,7 +154,7 @@ static void isolated_vertices_are_frozen(void **state)
 	double *before = copy_of(stage_frame(session).position, 3 * (size_t)n * sizeof(double));
 	stage_step(session, 20);
 	cau_frame frame = stage_frame(session);
-	for (size_t v = 0; v < (size_t)n; ++v) {
+	for (size_t v = 0; v < (size_t)n; v++) {
 		if (session->dissection.live_elements[v] || session->pinned[v])
 			continue;
 		isolated++;
@@ -205,7 +205,7 @@ static cau_session *cut_strip(const cau_scene_def *scene, int held, int fresh)
 		stage_grasp(session, "jaws");
 	stage_energize(session, "needle", 1);
 	cau_pose pose = scene->tools[0].pose;
-	for (int tick = 0; tick < STRIP_TICKS; ++tick) {
+	for (int tick = 0; tick < STRIP_TICKS; tick++) {
 		pose.position_m[2] = fmax(0, 0.05 - 0.008 * tick);
 		// free, it is pulled from its pins while it is being cut; held, away from the jaws
 		// afterwards
@@ -254,7 +254,7 @@ static void a_strip_falls_as_with_a_fresh_factor(void **state)
 static double weight_beyond(const cau_session *session, double x_m)
 {
 	double mass = 0;
-	for (int32_t v = 0; v < session->tissue.vertex_count; ++v)
+	for (int32_t v = 0; v < session->tissue.vertex_count; v++)
 		if (session->tissue.rest[3 * (size_t)v] > x_m && session->dissection.live_elements[v])
 			mass += session->tissue.mass[v];
 	return 9.81 * mass;
@@ -271,7 +271,7 @@ static void a_grasped_strip_stays_held(void **state)
 	cau_frame frame = stage_frame(session);
 	const cau_tool_state *jaws = stage_tool(session, "jaws");
 	assert_true(jaws->grasping && jaws->grasped_vertices > 5);
-	for (int32_t v = 0; v < info.vertex_count; ++v)
+	for (int32_t v = 0; v < info.vertex_count; v++)
 		if (info.rest_position[3 * (size_t)v] > 0.005 && session->dissection.live_elements[v])
 			assert_true(frame.position[3 * (size_t)v] > -0.01); // hangs, does not fall
 	// the jaws carry what hangs from them: single precision and ten iterations leave 0.1 %
@@ -300,7 +300,7 @@ static void burnt_out_of_the_jaws(void **state)
 	assert_true(stage_tool(session, "jaws")->grasped_vertices > 0);
 	stage_energize(session, "needle", 1);
 	cau_pose pose = scene->tools[0].pose;
-	for (int tick = 0; tick < 300; ++tick) {
+	for (int tick = 0; tick < 300; tick++) {
 		pose.position_m[0] = 0.031 - 0.0001 * tick;
 		pose.position_m[2] = 0;
 		stage_turn(session, "needle", &pose);
@@ -322,7 +322,7 @@ static void links_part_and_fascia_comes_off(void **state)
 				 most[3] = {1, 1, -0.0079};
 	const int32_t cells[3] = {12, 10, 2};
 	double lifted[2];
-	for (int cut = 0; cut < 2; ++cut) {
+	for (int cut = 0; cut < 2; cut++) {
 		cau_scene_def *scene = stage_scene(CAU_PRECISION_SINGLE);
 		scene->damping_per_s = 10;
 		cau_layer_def *fascia = stage_add_sheet(scene, "fascia", 0.05, 0.04, 20, 16);
@@ -344,7 +344,7 @@ static void links_part_and_fascia_comes_off(void **state)
 		cau_session *session = stage_open(scene, 1);
 		stage_energize(session, "needle", cut);
 		cau_pose pose = needle->pose;
-		for (int tick = 0; tick < 320 && cut; ++tick) {
+		for (int tick = 0; tick < 320 && cut; tick++) {
 			pose.position_m[0] = 0.03 - 0.0002 * tick;
 			stage_turn(session, "needle", &pose);
 			stage_step(session, 1);
@@ -353,11 +353,11 @@ static void links_part_and_fascia_comes_off(void **state)
 		cau_session_alive(session, &tetrahedra, &triangles, &links);
 		cau_session_info info = stage_info(session);
 		int32_t live_links = 0, dead = 0;
-		for (int32_t k = 0; k < info.link_count; ++k)
+		for (int32_t k = 0; k < info.link_count; k++)
 			live_links += links[k];
-		for (int32_t k = 0; k < info.triangle_count; ++k)
+		for (int32_t k = 0; k < info.triangle_count; k++)
 			dead += !triangles[k];
-		for (int32_t k = 0; k < info.tetrahedron_count; ++k)
+		for (int32_t k = 0; k < info.tetrahedron_count; k++)
 			dead += !tetrahedra[k];
 		assert_int_equal(dead, 0);
 		if (cut)
@@ -390,7 +390,7 @@ static void a_new_factor_amid_contacts(void **state)
 	int32_t made = 0;
 	cau_error error = {0};
 	bool exact;
-	for (int tick = 0; tick < BUSY_TICKS / 2; ++tick) {
+	for (int tick = 0; tick < BUSY_TICKS / 2; tick++) {
 		int32_t before = stage_frame(session).statistics.refactorisations;
 		busy_run(session, 1);
 		cau_statistics after = stage_frame(session).statistics;

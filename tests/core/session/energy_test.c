@@ -17,7 +17,7 @@ typedef struct tally {
 
 static void run(cau_session *session, int ticks, tally *t)
 {
-	for (int k = 0; k < ticks; ++k) {
+	for (int k = 0; k < ticks; k++) {
 		stage_step(session, 1);
 		double gain_j = stage_frame(session).statistics.energy_gain_j;
 		assert_true(isfinite(gain_j));
@@ -44,7 +44,7 @@ static cau_scene_def *make_block(void)
 static void rest_reads_nothing(void **state)
 {
 	(void)state;
-	for (int precision = 0; precision < CAU_PRECISION_COUNT; ++precision) {
+	for (int precision = 0; precision < CAU_PRECISION_COUNT; precision++) {
 		tally t = {0};
 		cau_scene_def *scene = make_block();
 		scene->precision = precision;
@@ -114,14 +114,14 @@ static void a_led_support_brings_in_what_is_held(void **state)
 	cau_session_info info = stage_info(session);
 	int32_t *top = malloc((size_t)info.vertex_count * sizeof *top), count = 0;
 	double *at = malloc(3 * (size_t)info.vertex_count * sizeof *at);
-	for (int32_t v = 0; v < info.vertex_count; ++v)
+	for (int32_t v = 0; v < info.vertex_count; v++)
 		if (info.rest_position[3 * v + 2] > -1e-6)
 			top[count++] = v;
 	tally t = {0};
 	cau_error error = {0};
-	for (int tick = 1; tick <= PULL_TICKS; ++tick) {
-		for (int32_t k = 0; k < count; ++k)
-			for (int c = 0; c < 3; ++c)
+	for (int tick = 1; tick <= PULL_TICKS; tick++) {
+		for (int32_t k = 0; k < count; k++)
+			for (int c = 0; c < 3; c++)
 				at[3 * k + c] = info.rest_position[3 * top[k] + c] + (c == 2 ? 5e-5 * tick : 0);
 		assert_int_equal(cau_session_drive(session, count, top, at, &error), CAU_OK);
 		run(session, 1, &t);
@@ -138,7 +138,7 @@ static void tools_and_forces_bring_in_what_is_held(void **state)
 {
 	(void)state;
 	const double least[3] = {-1, -1, -1e-6}, most[3] = {1, 1, 1};
-	for (int by_force = 0; by_force < 2; ++by_force) {
+	for (int by_force = 0; by_force < 2; by_force++) {
 		cau_scene_def *scene = make_block();
 		stage_add_tool(scene, "jaws", CAU_TOOL_GRASPER, 0.004, 0, -0.004);
 		cau_session *session = stage_open(scene, 1);
@@ -146,7 +146,7 @@ static void tools_and_forces_bring_in_what_is_held(void **state)
 		if (!by_force)
 			stage_grasp(session, "jaws");
 		run(session, 1, &t);
-		for (int tick = 1; tick <= PULL_TICKS; ++tick) {
+		for (int tick = 1; tick <= PULL_TICKS; tick++) {
 			if (by_force)
 				stage_force(session, stage_box(least, most), 0, 0, 2e-5 * tick);
 			else
@@ -172,7 +172,7 @@ static void a_snapshot_changes_nothing(void **state)
 	cau_error error = {0};
 	bool exact;
 	assert_int_equal(cau_session_restore(other, shot.bytes, shot.count, &exact, &error), CAU_OK);
-	for (int tick = 0; tick < 5; ++tick) {
+	for (int tick = 0; tick < 5; tick++) {
 		stage_step(session, 1);
 		stage_step(other, 1);
 		double a = stage_frame(session).statistics.energy_gain_j;
@@ -201,7 +201,7 @@ static void what_shrinks_does_not_count(void **state)
 	cau_session *session = stage_open(scene, 2);
 	tally t = {0};
 	stage_energize(session, "hook", 1);
-	for (int tick = 0; tick < 60; ++tick) {
+	for (int tick = 0; tick < 60; tick++) {
 		stage_move(session, "hook", -0.01 + 3e-4 * tick, 0, 0.002);
 		run(session, 1, &t);
 	}

@@ -27,12 +27,12 @@ static char *mesh_text(const cau_reference_case *reference, size_t *bytes)
 	assert_non_null(text);
 	at +=
 		sprintf(at, "$MeshFormat\n2.2 0 8\n$EndMeshFormat\n$Nodes\n%d\n", reference->vertex_count);
-	for (int32_t v = 0; v < reference->vertex_count; ++v) {
+	for (int32_t v = 0; v < reference->vertex_count; v++) {
 		const double *x = reference->position + 3 * (size_t)v;
 		at += sprintf(at, "%d %.17g %.17g %.17g\n", v + 1, x[0], x[1], x[2]);
 	}
 	at += sprintf(at, "$EndNodes\n$Elements\n%d\n", reference->tetrahedron_count);
-	for (int32_t t = 0; t < reference->tetrahedron_count; ++t) {
+	for (int32_t t = 0; t < reference->tetrahedron_count; t++) {
 		const int32_t *v = reference->tetrahedron + 4 * (size_t)t;
 		at += sprintf(at, "%d 4 0 %d %d %d %d\n", t + 1, v[0] + 1, v[1] + 1, v[2] + 1, v[3] + 1);
 	}
@@ -47,8 +47,8 @@ static void pin_face(cau_scene_def *scene, const cau_reference_case *reference, 
 {
 	const double slack = 1e-9; // m, far below an edge
 	double least[3] = {INFINITY, INFINITY, INFINITY}, most[3] = {-INFINITY, -INFINITY, -INFINITY};
-	for (int32_t k = 0; k < count; ++k)
-		for (size_t c = 0; c < 3; ++c) {
+	for (int32_t k = 0; k < count; k++)
+		for (size_t c = 0; c < 3; c++) {
 			double x = reference->position[3 * (size_t)vertex[k] + c];
 			least[c] = fmin(least[c], x - slack);
 			most[c] = fmax(most[c], x + slack);
@@ -92,8 +92,8 @@ static void lead_supports(cau_session *session, const cau_reference_case *refere
 {
 	double *place = malloc(3 * (size_t)reference->prescribed_count * sizeof *place + 1);
 	assert_non_null(place);
-	for (size_t k = 0; k < (size_t)reference->prescribed_count; ++k)
-		for (size_t c = 0; c < 3; ++c)
+	for (size_t k = 0; k < (size_t)reference->prescribed_count; k++)
+		for (size_t c = 0; c < 3; c++)
 			place[3 * k + c] = reference->position[3 * (size_t)reference->prescribed[k] + c] +
 			                   share * reference->prescribed_move[3 * k + c];
 	cau_error error = {0};
@@ -106,7 +106,7 @@ static void lead_supports(cau_session *session, const cau_reference_case *refere
 static void run_to_rest(cau_session *session, const cau_reference_case *reference)
 {
 	const double *end = reference->sphere_center_m, above = reference->sphere_radius_m + 1e-4;
-	for (int tick = 1; tick <= MOVING_TICKS + SETTLING_TICKS; ++tick) {
+	for (int tick = 1; tick <= MOVING_TICKS + SETTLING_TICKS; tick++) {
 		double share = fmin((double)tick / MOVING_TICKS, 1);
 		lead_supports(session, reference, share);
 		if (reference->sphere_radius_m > 0)
@@ -120,8 +120,8 @@ static void hold_force(const cau_session *session, int32_t count, const int32_t 
                        double force[3])
 {
 	memset(force, 0, 3 * sizeof *force);
-	for (int32_t k = 0; k < count; ++k)
-		for (int c = 0; c < 3; ++c)
+	for (int32_t k = 0; k < count; k++)
+		for (int c = 0; c < 3; c++)
 			force[c] += cau_real_get(session->solver.gradient, session->solver.elements.single,
 			                         4 * (int64_t)vertex[k] + c) -
 			            session->tissue.mass[vertex[k]] * session->scene->gravity_m_s2[c];
@@ -130,7 +130,7 @@ static void hold_force(const cau_session *session, int32_t count, const int32_t 
 static double largest(const double *numbers, int32_t count)
 {
 	double most = 0;
-	for (int32_t i = 0; i < count; ++i)
+	for (int32_t i = 0; i < count; i++)
 		most = fmax(most, fabs(numbers[i]));
 	return most;
 }
@@ -147,7 +147,7 @@ static double displacement_error(const cau_session *session, const cau_reference
 	size_t n = 3 * (size_t)reference->vertex_count;
 	double *expected = malloc(n * sizeof *expected);
 	assert_non_null(expected);
-	for (size_t i = 0; i < n; ++i)
+	for (size_t i = 0; i < n; i++)
 		expected[i] = reference->position[i] + reference->displacement[i];
 	double error = stage_farthest(&frame, expected, reference->vertex_count);
 	free(expected);

@@ -27,7 +27,7 @@ static void set_sheet_limit(cau_sheet_material *sheet, int which)
 	sheet->limit = limits[which];
 	sheet->projection = which == 2 ? CAU_PROJECTION_LINEARISED : CAU_PROJECTION_CLOSED_FORM;
 	sheet->limit_stiffness_pa = 1e5;
-	for (int a = 0; a < 2; ++a) {
+	for (int a = 0; a < 2; a++) {
 		sheet->strain_min[a] = -0.05;
 		sheet->strain_max[a] = 0.1;
 	}
@@ -40,7 +40,7 @@ static void set_fat_limit(cau_fat_material *fat, int which)
 	                             CAU_LIMIT_RANGE};
 	fat->limit = limits[which];
 	fat->projection = which == 2 ? CAU_PROJECTION_LINEARISED : CAU_PROJECTION_CLOSED_FORM;
-	for (int a = 0; a < 3; ++a) {
+	for (int a = 0; a < 3; a++) {
 		fat->strain_min[a] = -0.05;
 		fat->strain_max[a] = 0.1;
 	}
@@ -91,12 +91,12 @@ static void lead_patch(cau_session *session)
 	cau_error error = {0};
 	int32_t vertex[64], count = 0;
 	double at[3 * 64];
-	for (int32_t v = 0; v < info.vertex_count; ++v) {
+	for (int32_t v = 0; v < info.vertex_count; v++) {
 		const double *x = info.rest_position + 3 * v;
 		if (fabs(x[0]) > 0.011 || fabs(x[1]) > 0.011 || x[2] < -1e-4)
 			continue;
 		vertex[count] = v;
-		for (int c = 0; c < 3; ++c)
+		for (int c = 0; c < 3; c++)
 			at[3 * count + c] = x[c] + (c == 2 ? LEAP_M : 0);
 		count++;
 	}
@@ -127,7 +127,7 @@ static void assert_possible(const cau_session *session, const char *what)
 {
 	cau_session_info info = stage_info(session);
 	cau_frame frame = stage_frame(session);
-	for (int32_t i = 0; i < 3 * info.vertex_count; ++i)
+	for (int32_t i = 0; i < 3 * info.vertex_count; i++)
 		assert_true(isfinite(frame.position[i]) && isfinite(frame.velocity[i]));
 	double far = stage_farthest(&frame, info.rest_position, info.vertex_count);
 	if (far > FARTHEST_M || frame.statistics.inverted > info.tetrahedron_count / 2)
@@ -165,7 +165,7 @@ static int try_pull(int model, int fat_limit, int membrane_limit, const pull *ho
 	how->begin(session);
 	cau_status status = CAU_OK;
 	cau_error error = {0};
-	for (int tick = 0; tick < TICKS && !status; ++tick) {
+	for (int tick = 0; tick < TICKS && !status; tick++) {
 		status = cau_session_step(session, &error);
 		assert_possible(session, what);
 	}
@@ -182,16 +182,16 @@ static void no_pull_ends_in_a_silent_disaster(void **state)
 {
 	(void)state;
 	int faults[PULLS] = {0}, tries = 0;
-	for (int model = 0; model < CAU_MODEL_COUNT; ++model)
-		for (int fat = 0; fat < LIMITS; ++fat)
-			for (int membrane = 0; membrane < LIMITS; ++membrane) {
+	for (int model = 0; model < CAU_MODEL_COUNT; model++)
+		for (int fat = 0; fat < LIMITS; fat++)
+			for (int membrane = 0; membrane < LIMITS; membrane++) {
 				if (fat && membrane) // one limit at a time
 					continue;
 				tries++;
-				for (int k = 0; k < PULLS; ++k)
+				for (int k = 0; k < PULLS; k++)
 					faults[k] += try_pull(model, fat, membrane, &pulls[k]);
 			}
-	for (int k = 0; k < PULLS; ++k) {
+	for (int k = 0; k < PULLS; k++) {
 		print_message("%s: %d of %d faulted\n", pulls[k].name, faults[k], tries);
 		assert_true(pulls[k].beyond_tissue || !faults[k]);
 	}
@@ -206,7 +206,7 @@ static void expect_fault(int model, int fat_limit, int membrane_limit, double ve
 	cau_session *session = stage_open(scene, 1);
 	stage_step(session, 3);
 	stage_bytes shot = stage_snapshot(session);
-	for (int32_t i = 0; i < 3 * session->tissue.vertex_count; ++i)
+	for (int32_t i = 0; i < 3 * session->tissue.vertex_count; i++)
 		session->velocity[i] = session->fixed[i / 3] ? 0 : velocity_m_s;
 	cau_error error = {0};
 	if (cau_session_step(session, &error) != CAU_NUMERICAL)
@@ -222,8 +222,8 @@ static void what_no_vertex_does_is_a_fault(void **state)
 {
 	(void)state;
 	expect_fault(CAU_MODEL_NEOHOOKEAN, 0, 0, 2e5);
-	for (int model = 0; model < CAU_MODEL_COUNT; ++model)
-		for (int limit = 0; limit < LIMITS; ++limit)
+	for (int model = 0; model < CAU_MODEL_COUNT; model++)
+		for (int limit = 0; limit < LIMITS; limit++)
 			expect_fault(model, limit, LIMITS - 1 - limit, NAN);
 }
 
@@ -231,7 +231,7 @@ static int32_t nearest_vertex(const cau_session *session, double x, double y, do
 {
 	int32_t nearest = -1;
 	double least = INFINITY;
-	for (int32_t v = 0; v < session->tissue.vertex_count; ++v) {
+	for (int32_t v = 0; v < session->tissue.vertex_count; v++) {
 		const double *at = session->tissue.rest + 3 * v;
 		double away = hypot(hypot(at[0] - x, at[1] - y), at[2] - z);
 		if (away < least && !session->fixed[v]) {
@@ -248,8 +248,8 @@ static void nowhere_beside_a_tool_is_a_fault(void **state)
 {
 	(void)state;
 	static const int shapes[] = {CAU_TOOL_SPHERE, CAU_TOOL_GRASPER};
-	for (int k = 0; k < 2; ++k)
-		for (int corner = 0; corner < 2; ++corner) {
+	for (int k = 0; k < 2; k++)
+		for (int corner = 0; corner < 2; corner++) {
 			cau_scene_def *scene = make_scene(CAU_MODEL_NEOHOOKEAN, 0, 0);
 			stage_add_tool(scene, "tool", shapes[k], SIZE_M[0] / 18, 0, k ? -0.001 : 0.009)
 				->hot_radius_m = 0.01;

@@ -46,7 +46,7 @@ static cau_scene_def *small_scene(void)
 // A cut; then the hook goes, and its heat with it, which would be most of the snapshot.
 static void run(cau_session *session)
 {
-	for (int tick = 0; tick < AT_TICK; ++tick) {
+	for (int tick = 0; tick < AT_TICK; tick++) {
 		double s = (double)tick / AT_TICK;
 		if (tick < AT_TICK - 3)
 			stage_move(session, "hook", -0.012 + 0.02 * s, 0.004 * s,
@@ -121,7 +121,7 @@ static void it_is_what_the_commands_lead_to(void **state)
 	cau_frame had = stage_frame(older), has = stage_frame(session);
 	assert_in_range(has.statistics.elements_removed, REMOVED - 5, REMOVED + 5);
 	int32_t n = stage_info(session).vertex_count, elsewhere = 0;
-	for (int32_t v = 0; v < n; ++v)
+	for (int32_t v = 0; v < n; v++)
 		elsewhere += cau_length(cau_sub(cau_vec3_of(&had.position[3 * v]),
 		                                cau_vec3_of(&has.position[3 * v]))) > 2e-4;
 	if (elsewhere > n / 20)

@@ -85,7 +85,7 @@ static void tools_of_now(void **state)
 	stage_submit(session, &configure);
 	stage_submit(session, &remove);
 	stage_submit(session, &add);
-	for (int tick = 0; tick < 2; ++tick) {
+	for (int tick = 0; tick < 2; tick++) {
 		const cau_scene_def *present = present_of(session, scene);
 		assert_int_equal(present->tool_count, 2);
 		assert_string_equal(present->tools[0].name, "hook");

@@ -13,7 +13,7 @@ static double farthest(const cau_session *session, int32_t *inverted)
 {
 	cau_session_info info = stage_info(session);
 	cau_frame frame = stage_frame(session);
-	for (int32_t i = 0; i < 3 * info.vertex_count; ++i)
+	for (int32_t i = 0; i < 3 * info.vertex_count; i++)
 		assert_true(isfinite(frame.position[i]));
 	*inverted = frame.statistics.inverted > *inverted ? frame.statistics.inverted : *inverted;
 	return stage_farthest(&frame, info.rest_position, info.vertex_count);
@@ -31,7 +31,7 @@ static void pull_every_way(const char *name, double top_m, double slip_force_n)
 	jaws->grasp_stiffness_n_m = slip_force_n > 100 ? 1e4 : 200;
 	cau_session *session = stage_open(scene, 2);
 	size_t way_count = CAU_TEST_SANITIZED ? ways_under_sanitizers : sizeof ways / sizeof *ways;
-	for (size_t w = 0; w < way_count; ++w) {
+	for (size_t w = 0; w < way_count; w++) {
 		const double *at = jaws->pose.position_m;
 		int32_t inverted = 0, held;
 		stage_move(session, "jaws", at[0], at[1], at[2]);
@@ -42,7 +42,7 @@ static void pull_every_way(const char *name, double top_m, double slip_force_n)
 		assert_true(held > 0);
 		stage_move(session, "jaws", at[0] + ways[w][0], at[1] + ways[w][1], at[2] + ways[w][2]);
 		double far = 0;
-		for (int tick = 0; tick < 20; ++tick) {
+		for (int tick = 0; tick < 20; tick++) {
 			stage_step(session, 1);
 			far = fmax(far, farthest(session, &inverted));
 		}

@@ -50,11 +50,11 @@ typedef struct extent {
 static extent extent_of(const cau_session_info *info)
 {
 	extent e = {{INFINITY, INFINITY, INFINITY}, {-INFINITY, -INFINITY, -INFINITY}, 0};
-	for (size_t i = 0; i < 3 * (size_t)info->vertex_count; ++i) {
+	for (size_t i = 0; i < 3 * (size_t)info->vertex_count; i++) {
 		e.least[i % 3] = fmin(e.least[i % 3], info->rest_position[i]);
 		e.most[i % 3] = fmax(e.most[i % 3], info->rest_position[i]);
 	}
-	for (int c = 0; c < 3; ++c)
+	for (int c = 0; c < 3; c++)
 		e.size = fmax(e.size, e.most[c] - e.least[c]);
 	return e;
 }
@@ -69,14 +69,14 @@ static void cut(cau_session *session, const extent *e, const char *file)
 	add.as.definition.shape = CAU_TOOL_SPHERE;
 	add.as.definition.hot_radius_m = 0.006;
 	strcpy(add.as.definition.name, "ball");
-	for (int c = 0; c < 3; ++c)
+	for (int c = 0; c < 3; c++)
 		add.as.definition.pose.position_m[c] = (e->least[c] + e->most[c]) / 2;
 	add.as.definition.pose.position_m[0] = e->least[0] - 0.02;
 	stage_submit(session, &add);
 	stage_step(session, 1);
 	stage_energize(session, "ball", 1);
 	double started = stage_seconds();
-	for (int tick = 0; tick < ticks; ++tick) {
+	for (int tick = 0; tick < ticks; tick++) {
 		double s = 2.0 * tick / ticks, across = s < 1 ? s : 2 - s;
 		stage_move(session, "ball", e->least[0] + across * (e->most[0] - e->least[0]),
 		           (e->least[1] + e->most[1]) / 2 + 0.02 * sin(12 * s),
@@ -90,7 +90,7 @@ static void cut(cau_session *session, const extent *e, const char *file)
 	              frame.statistics.elements_removed, frame.statistics.inverted,
 	              stage_seconds() - started);
 	assert_true(frame.statistics.elements_removed > 0);
-	for (int32_t i = 0; i < 3 * info.vertex_count; ++i)
+	for (int32_t i = 0; i < 3 * info.vertex_count; i++)
 		assert_true(isfinite(frame.position[i]));
 }
 

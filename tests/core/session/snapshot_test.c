@@ -23,7 +23,7 @@ static int make_run(void **state)
 	cau_scene_def *scene = busy_scene();
 	cau_session *session = stage_open(scene, 1);
 	run = calloc(1, sizeof *run);
-	for (int tick = 0; tick <= BUSY_TICKS; ++tick) {
+	for (int tick = 0; tick <= BUSY_TICKS; tick++) {
 		run->hash[tick] = cau_session_hash(session);
 		run->waiting[tick] = session->update.waiting_count;
 		run->making[tick] = session->update.making;
@@ -39,7 +39,7 @@ static int make_run(void **state)
 static int drop_run(void **state)
 {
 	(void)state;
-	for (int tick = 0; tick <= BUSY_TICKS; ++tick)
+	for (int tick = 0; tick <= BUSY_TICKS; tick++)
 		free(run->shot[tick].bytes);
 	free(run);
 	return 0;
@@ -56,7 +56,7 @@ static void restore(cau_session *session, const stage_bytes *shot)
 
 static void expect_the_same(cau_session *session, int from, int to)
 {
-	for (int tick = from; tick <= to; ++tick) {
+	for (int tick = from; tick <= to; tick++) {
 		if (cau_session_hash(session) != run->hash[tick])
 			fail_msg("restored at tick %d, the state differs at tick %d", from, tick);
 		if (tick < to)
@@ -67,7 +67,7 @@ static void expect_the_same(cau_session *session, int from, int to)
 // The first tick at or after `from` with something waiting, and a factor in the making or not.
 static int tick_with(int from, int making)
 {
-	for (int tick = from; tick < BUSY_TICKS; ++tick)
+	for (int tick = from; tick < BUSY_TICKS; tick++)
 		if (run->waiting[tick] && run->making[tick] == making)
 			return tick;
 	return -1;
@@ -85,7 +85,7 @@ static void the_run_is_busy(void **state)
 	assert_true(frame.statistics.refactorisations >= 3);
 	assert_true(tick_with(0, 1) > 0);
 	int downdated = 0, grasped = 0, charred = 0;
-	for (int tick = 0; tick < BUSY_TICKS; ++tick) {
+	for (int tick = 0; tick < BUSY_TICKS; tick++) {
 		restore(session, &run->shot[tick]);
 		downdated += stage_frame(session).statistics.factor_operations > 0;
 		grasped += stage_tool(session, "jaws")->grasped_vertices > 0;
@@ -102,7 +102,7 @@ static void restored_into_a_fresh_session(void **state)
 {
 	(void)state;
 	int ticks[] = {0, 1, 17, tick_with(10, 1), tick_with(40, 1), tick_with(60, 1) + 1, 80};
-	for (size_t k = 0; k < sizeof ticks / sizeof *ticks; ++k) {
+	for (size_t k = 0; k < sizeof ticks / sizeof *ticks; k++) {
 		cau_scene_def *scene = busy_scene();
 		cau_session *session = stage_open(scene, 1 + (int32_t)k % 3);
 		restore(session, &run->shot[ticks[k]]);
@@ -168,7 +168,7 @@ static void queued_commands_pins_and_materials(void **state)
 	busy_run(session, 5);
 	stage_bytes shot = stage_snapshot(session);
 	restore(other, &shot);
-	for (int tick = 0; tick < 25; ++tick) {
+	for (int tick = 0; tick < 25; tick++) {
 		busy_run(session, 1);
 		busy_run(other, 1);
 		if (cau_session_hash(session) != cau_session_hash(other))
@@ -272,7 +272,7 @@ static void forged_counts_are_refused_and_change_nothing(void **state)
 	const stage_bytes *shot = &run->shot[50];
 	unsigned char *bytes = malloc(shot->count);
 	assert_non_null(bytes);
-	for (size_t i = 0; i < sizeof members / sizeof *members; ++i)
+	for (size_t i = 0; i < sizeof members / sizeof *members; i++)
 		for (int32_t by = -1; by <= 1; by += 2) {
 			memcpy(bytes, shot->bytes, shot->count);
 			forge(bytes, shot->count, members[i].at, by);
@@ -293,7 +293,7 @@ static void forged_counts_are_refused_and_change_nothing(void **state)
 static void another_definition_is_refused(void **state)
 {
 	(void)state;
-	for (int what = 0; what < 5; ++what) {
+	for (int what = 0; what < 5; what++) {
 		cau_scene_def *scene = busy_scene();
 		switch (what) {
 		case 0:

@@ -50,10 +50,10 @@ cau_scene_def *stage_scene_named(const char *name)
 cau_scene_def *stage_scene_light(const char *name)
 {
 	cau_scene_def *scene = stage_scene_named(name);
-	for (int32_t i = 0; i < scene->mesh_count; ++i) {
+	for (int32_t i = 0; i < scene->mesh_count; i++) {
 		cau_mesh_def *mesh = &scene->meshes[i];
 		int is_grid = mesh->source == CAU_MESH_SHEET || mesh->source == CAU_MESH_SLAB;
-		for (int c = 0; c < 3 && is_grid && CAU_TEST_SANITIZED; ++c)
+		for (int c = 0; c < 3 && is_grid && CAU_TEST_SANITIZED; c++)
 			mesh->cells[c] = (mesh->cells[c] + 1) / 2;
 	}
 	return scene;
@@ -118,7 +118,7 @@ cau_layer_def *stage_add_links(cau_scene_def *scene, const char *name, const cha
 
 cau_mesh_def *stage_mesh_of(cau_scene_def *scene, const cau_layer_def *layer)
 {
-	for (int32_t i = 0; i < scene->mesh_count; ++i)
+	for (int32_t i = 0; i < scene->mesh_count; i++)
 		if (!strcmp(scene->meshes[i].name, layer->mesh))
 			return &scene->meshes[i];
 	fail_msg("layer %s has no mesh", layer->name);
@@ -206,7 +206,7 @@ void stage_refuse(const cau_scene_def *scene, cau_status status, cau_error *erro
 void stage_step(cau_session *session, int32_t ticks)
 {
 	cau_error error = {0};
-	for (int32_t k = 0; k < ticks; ++k)
+	for (int32_t k = 0; k < ticks; k++)
 		expect_ok(cau_session_step(session, &error), &error);
 }
 
@@ -234,7 +234,7 @@ cau_balance stage_balance(cau_session *session)
 const cau_tool_state *stage_tool(const cau_session *session, const char *name)
 {
 	cau_frame frame = stage_frame(session);
-	for (int32_t i = 0; i < frame.tool_count; ++i)
+	for (int32_t i = 0; i < frame.tool_count; i++)
 		if (!strcmp(frame.tools[i].name, name))
 			return &frame.tools[i];
 	fail_msg("there is no tool %s", name);
@@ -345,7 +345,7 @@ void stage_cut_tick(cau_session *session, const cau_cut_def *cut, const cau_pose
 	} else {
 		double drawn = ((tick - APPROACH_TICKS) * step_s - cut->dwell_s) * cut->speed_m_s;
 		double share = fmin(fmax(drawn, 0) / length, 1);
-		for (int c = 0; c < 3; ++c)
+		for (int c = 0; c < 3; c++)
 			pose.position_m[c] += share * (cut->to_m[c] - cut->from_m[c]);
 	}
 	if (tick == APPROACH_TICKS)
@@ -357,8 +357,8 @@ void stage_cut_tick(cau_session *session, const cau_cut_def *cut, const cau_pose
 double stage_mean_edge_m(const cau_session_info *info)
 {
 	double sum = 0;
-	for (int32_t f = 0; f < info->face_count; ++f)
-		for (int k = 0; k < 3; ++k) {
+	for (int32_t f = 0; f < info->face_count; f++)
+		for (int k = 0; k < 3; k++) {
 			const int32_t *v = info->face + 3 * (size_t)f;
 			cau_vec3 a = cau_vec3_of(info->rest_position + 3 * (size_t)v[k]);
 			cau_vec3 b = cau_vec3_of(info->rest_position + 3 * (size_t)v[(k + 1) % 3]);
@@ -370,7 +370,7 @@ double stage_mean_edge_m(const cau_session_info *info)
 double stage_farthest(const cau_frame *frame, const double *from, int32_t vertex_count)
 {
 	double most = 0;
-	for (size_t v = 0; v < (size_t)vertex_count; ++v)
+	for (size_t v = 0; v < (size_t)vertex_count; v++)
 		most = fmax(most, cau_length(cau_sub(cau_vec3_of(frame->position + 3 * v),
 		                                     cau_vec3_of(from + 3 * v))));
 	return most;

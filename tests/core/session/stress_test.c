@@ -22,7 +22,7 @@ static double largest(const cau_session *session)
 	int32_t count = stage_info(session).vertex_count;
 	double most = 0;
 	assert_non_null(frame.stress);
-	for (int32_t v = 0; v < count; ++v)
+	for (int32_t v = 0; v < count; v++)
 		most = fmax(most, (double)frame.stress[v]);
 	return most;
 }

@@ -27,9 +27,9 @@ static int32_t expect_the_grids(const cau_session *session)
 	cau_frame frame = stage_frame(session);
 	int32_t away = 0;
 	assert_non_null(frame.temperature);
-	for (int32_t v = 0; v < session->tissue.vertex_count; ++v) {
+	for (int32_t v = 0; v < session->tissue.vertex_count; v++) {
 		double hottest = session->scene->ambient_c;
-		for (int32_t i = 0; i < session->tool_count; ++i)
+		for (int32_t i = 0; i < session->tool_count; i++)
 			hottest = fmax(hottest, cau_heat_grid_at(&session->tool[i].grid,
 			                                         cau_vec3_of(frame.position + 3 * (size_t)v)));
 		assert_true(frame.temperature[v] == (float)hottest);
@@ -47,7 +47,7 @@ static void test_it_is_there_when_asked_for(void **state)
 	assert_null(stage_frame(session).temperature);
 	cau_session_watch(session, CAU_CHANNEL_TEMPERATURE); // there at once, without a step
 	assert_true(expect_the_grids(session) > 20);
-	for (int tick = 0; tick < 10; ++tick) {
+	for (int tick = 0; tick < 10; tick++) {
 		busy_run(session, 1);
 		assert_true(expect_the_grids(session) > 20);
 	}
@@ -63,7 +63,7 @@ static void test_the_state_does_not_know_of_it(void **state)
 	cau_session *plain = opened(&scene[0]), *shown = opened(&scene[1]);
 	cau_session_watch(shown, CAU_CHANNEL_TEMPERATURE);
 	assert_int_equal(expect_the_grids(shown), 0);
-	for (int tick = 0; tick < TICKS; ++tick) {
+	for (int tick = 0; tick < TICKS; tick++) {
 		busy_run(plain, 1);
 		busy_run(shown, 1);
 		assert_true(cau_session_hash(plain) == cau_session_hash(shown));

@@ -9,17 +9,17 @@ static void the_hash_does_not_know_the_threads(void **state)
 	(void)state;
 	cau_scene_def *scene = busy_scene();
 	cau_session *session[3];
-	for (int i = 0; i < 3; ++i)
+	for (int i = 0; i < 3; i++)
 		session[i] = stage_open(scene, i + 1);
-	for (int tick = 0; tick < BUSY_TICKS; ++tick) {
-		for (int i = 0; i < 3; ++i)
+	for (int tick = 0; tick < BUSY_TICKS; tick++) {
+		for (int i = 0; i < 3; i++)
 			busy_run(session[i], 1);
-		for (int i = 1; i < 3; ++i)
+		for (int i = 1; i < 3; i++)
 			if (cau_session_hash(session[i]) != cau_session_hash(session[0]))
 				fail_msg("%d threads differ from one at tick %d", i + 1, tick);
 	}
 	assert_true(stage_frame(session[0]).statistics.refactorisations > 0);
-	for (int i = 0; i < 3; ++i)
+	for (int i = 0; i < 3; i++)
 		cau_session_destroy(session[i]);
 	free(scene);
 }
@@ -29,7 +29,7 @@ static void threads_may_change_on_the_way(void **state)
 	(void)state;
 	cau_scene_def *scene = busy_scene();
 	cau_session *steady = stage_open(scene, 1), *changing = stage_open(scene, 3);
-	for (int tick = 0; tick < 60; ++tick) {
+	for (int tick = 0; tick < 60; tick++) {
 		cau_session_set_threads(changing, 1 + tick % 4);
 		busy_run(steady, 1);
 		busy_run(changing, 1);
@@ -64,13 +64,13 @@ static void beside_busy_sessions(void **state)
 	worker alone = {.threads = 1};
 	run_alone(&alone);
 	worker beside[3];
-	for (int i = 0; i < 3; ++i) {
+	for (int i = 0; i < 3; i++) {
 		beside[i] = (worker){.threads = 1 + i % 2};
 		assert_int_equal(pthread_create(&beside[i].thread, NULL, run_alone, &beside[i]), 0);
 	}
-	for (int i = 0; i < 3; ++i)
+	for (int i = 0; i < 3; i++)
 		assert_int_equal(pthread_join(beside[i].thread, NULL), 0);
-	for (int i = 0; i < 3; ++i)
+	for (int i = 0; i < 3; i++)
 		if (beside[i].hash != alone.hash)
 			fail_msg("session %d differs from the one that ran alone", i);
 }
@@ -80,10 +80,10 @@ static void materials_change_beside_the_background(void **state)
 {
 	(void)state;
 	uint64_t hash[2];
-	for (int i = 0; i < 2; ++i) {
+	for (int i = 0; i < 2; i++) {
 		cau_scene_def *scene = busy_scene();
 		cau_session *session = stage_open(scene, 1 + i);
-		for (int tick = 0; tick < 50; ++tick) {
+		for (int tick = 0; tick < 50; tick++) {
 			cau_command command;
 			cau_default_command(&command, CAU_COMMAND_SET_MATERIAL);
 			strcpy(command.as.material.layer, "links");

@@ -33,7 +33,7 @@ static double deepest(const cau_session *session, const char *tool)
 	const cau_tool_state *state = stage_tool(session, tool);
 	cau_frame frame = stage_frame(session);
 	double depth = 0;
-	for (size_t v = 0; v < (size_t)session->tissue.vertex_count; ++v)
+	for (size_t v = 0; v < (size_t)session->tissue.vertex_count; v++)
 		if (!session->fixed[v])
 			depth = fmax(depth, -cau_tool_distance_at(&state->definition, &state->pose, state->jaw,
 			                                          CAU_PART_BOTH,
@@ -47,7 +47,7 @@ static void nothing_is_inside_a_cold_tool(void **state)
 	cau_scene_def *scene = block_scene(0.2);
 	cau_session *session = stage_open(scene, 1);
 	double worst = 0;
-	for (int tick = 0; tick < 120; ++tick) { // 4 mm in, then along, at 2 cm/s
+	for (int tick = 0; tick < 120; tick++) { // 4 mm in, then along, at 2 cm/s
 		double in = fmin(tick, 14) * 0.02 / 60, along = fmax(tick - 20, 0) * 0.006 / 60;
 		stage_move(session, "ball", along, 0, 0.0065 - in);
 		stage_step(session, 1);
@@ -65,14 +65,14 @@ static void friction_keeps_to_its_cone(void **state)
 	(void)state;
 	const double friction[] = {0, 0.3};
 	double sideways[2];
-	for (int k = 0; k < 2; ++k) {
+	for (int k = 0; k < 2; k++) {
 		cau_scene_def *scene = block_scene(friction[k]);
 		cau_session *session = stage_open(scene, 1);
-		for (int tick = 0; tick < 80; ++tick) {
+		for (int tick = 0; tick < 80; tick++) {
 			stage_move(session, "ball", fmax(tick - 20, 0) * 0.006 / 60, 0,
 			           0.0065 - fmin(tick, 10) * 0.0003);
 			stage_step(session, 1);
-			for (int32_t i = 0; i < session->contact.row_count; ++i) {
+			for (int32_t i = 0; i < session->contact.row_count; i++) {
 				const cau_contact_row *row = &session->contact.row[i];
 				cau_vec3 r = cau_vec3_of(row->reaction), n = cau_vec3_of(row->normal);
 				double normal = cau_dot(r, n), along = cau_length(cau_add_scaled(r, -normal, n));
@@ -130,7 +130,7 @@ static double centre_x(const cau_session *session)
 {
 	cau_frame frame = stage_frame(session);
 	double sum = 0;
-	for (size_t v = 0; v < (size_t)session->tissue.vertex_count; ++v)
+	for (size_t v = 0; v < (size_t)session->tissue.vertex_count; v++)
 		sum += frame.position[3 * v] / session->tissue.vertex_count;
 	return sum;
 }
@@ -142,7 +142,7 @@ static void the_tool_feels_the_weight_on_it(void **state)
 	cau_session *session = stage_open(scene, 1);
 	stage_step(session, 240);
 	double weight = 0;
-	for (int32_t v = 0; v < session->tissue.vertex_count; ++v)
+	for (int32_t v = 0; v < session->tissue.vertex_count; v++)
 		weight += 9.81 * session->tissue.mass[v];
 	const cau_tool_state *table = stage_tool(session, "table");
 	print_message("a weight of %.5g N is felt as %.5g N, filtered %.5g N\n", weight,
@@ -159,7 +159,7 @@ static void it_sticks_and_slips(void **state)
 	(void)state;
 	const double slope[] = {0.15, 0.6};
 	double way[2];
-	for (int k = 0; k < 2; ++k) {
+	for (int k = 0; k < 2; k++) {
 		cau_scene_def *scene = resting_scene();
 		cau_session *session = stage_open(scene, 1);
 		stage_step(session, 120);
@@ -210,7 +210,7 @@ static void jaws_hold_up_to_their_slip_force(void **state)
 	int32_t held = stage_tool(session, "jaws")->grasped_vertices;
 	assert_true(held > 5);
 	double most = 0;
-	for (int tick = 0; tick < 240; ++tick) {
+	for (int tick = 0; tick < 240; tick++) {
 		int32_t before = stage_tool(session, "jaws")->grasped_vertices;
 		draw_jaws(session, scene, tick * 2e-4);
 		const cau_tool_state *jaws = stage_tool(session, "jaws");
@@ -236,7 +236,7 @@ static void jaws_hold_what_pulls_less(void **state)
 	stage_grasp(session, "jaws");
 	stage_step(session, 5);
 	int32_t held = stage_tool(session, "jaws")->grasped_vertices;
-	for (int tick = 0; tick < 60; ++tick)
+	for (int tick = 0; tick < 60; tick++)
 		draw_jaws(session, scene, tick * 2e-4);
 	stage_step(session, 120);
 	const cau_tool_state *jaws = stage_tool(session, "jaws");

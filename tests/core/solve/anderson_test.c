@@ -19,7 +19,7 @@ static void make(rig *r, const law_scene *law)
 	rig_begin(r);
 	r->scene->step_s = 1.0 / 50;
 	law->add(r);
-	for (int32_t i = 0; i < r->scene->layer_count; ++i) {
+	for (int32_t i = 0; i < r->scene->layer_count; i++) {
 		cau_sheet_material *material = &r->scene->layers[i].sheet[0];
 		material->limit_stiffness_pa = 2e4;
 		material->density_kg_m3 = 25000;
@@ -28,7 +28,7 @@ static void make(rig *r, const law_scene *law)
 	rig_pin_box(r, (double[]){-1, -1, -1}, (double[]){-0.0199, 1, 1});
 	rig_build(r, NULL, 1);
 	rig_factor(r);
-	for (int32_t v = 0; v < r->tissue.vertex_count; ++v)
+	for (int32_t v = 0; v < r->tissue.vertex_count; v++)
 		if (!r->fixed[v]) {
 			r->solver.predicted[3 * v] += 3e-3;
 			r->solver.predicted[3 * v + 2] -= 2e-3;
@@ -41,7 +41,7 @@ static double plain_step(rig *r)
 	cau_solver_evaluate(solver);
 	cau_solver_apply_inverse(solver, solver->gradient, solver->increment, -1);
 	double product = 0;
-	for (int32_t i = 0; i < 3 * r->tissue.vertex_count; ++i) {
+	for (int32_t i = 0; i < 3 * r->tissue.vertex_count; i++) {
 		double d = ((double *)solver->increment)[4 * (i / 3) + i % 3];
 		solver->position[i] += d;
 		product -= d * ((double *)solver->gradient)[4 * (i / 3) + i % 3];
@@ -52,14 +52,14 @@ static double plain_step(rig *r)
 static void test_the_same_fixed_point(void **state)
 {
 	(void)state;
-	for (int k = 0; k < LAW_SCENES; ++k) {
+	for (int k = 0; k < LAW_SCENES; k++) {
 		rig a, b;
 		make(&a, &law_scenes[k]);
 		make(&b, &law_scenes[k]);
 		size_t n = 3 * (size_t)a.tissue.vertex_count;
 		double first = plain_step(&a), norm = first;
 		int steps = 1;
-		for (; steps < PLAIN_MOST && norm > STILL * first; ++steps)
+		for (; steps < PLAIN_MOST && norm > STILL * first; steps++)
 			norm = plain_step(&a);
 		if (!(norm <= STILL * first))
 			fail_msg("%s: the plain iteration is still at %g", law_scenes[k].name, norm / first);
@@ -67,7 +67,7 @@ static void test_the_same_fixed_point(void **state)
 		b.solver.tolerance = STILL;
 		assert_int_equal(cau_solver_run(&b.solver, NULL), CAU_OK);
 		double moved_a = 0, off = 0;
-		for (size_t i = 0; i < n; ++i) {
+		for (size_t i = 0; i < n; i++) {
 			moved_a = fmax(moved_a, fabs(a.solver.position[i] - a.tissue.rest[i]));
 			off = fmax(off, fabs(a.solver.position[i] - b.solver.position[i]));
 		}
@@ -87,15 +87,15 @@ static void test_sooner(void **state)
 {
 	(void)state;
 	double off[2];
-	for (int accelerated = 0; accelerated < 2; ++accelerated) {
+	for (int accelerated = 0; accelerated < 2; accelerated++) {
 		rig r, end;
 		rig *both[2] = {&r, &end};
-		for (int k = 0; k < 2; ++k) {
+		for (int k = 0; k < 2; k++) {
 			rig_begin(both[k]);
 			solve_scenes[1].add(both[k]);
 			rig_build(both[k], NULL, 1);
 			rig_factor(both[k]);
-			for (int32_t v = 0; v < both[k]->tissue.vertex_count; ++v)
+			for (int32_t v = 0; v < both[k]->tissue.vertex_count; v++)
 				if (both[k]->tissue.rest[3 * v + 2] > -1e-9)
 					both[k]->solver.predicted[3 * v + 2] += 0.01;
 		}
@@ -104,12 +104,12 @@ static void test_sooner(void **state)
 		assert_int_equal(cau_solver_run(&end.solver, NULL), CAU_OK);
 		assert_true(end.solver.residual <= 1e-10);
 		r.solver.iterations = 10;
-		for (int step = 0; step < 10 && !accelerated; ++step)
+		for (int step = 0; step < 10 && !accelerated; step++)
 			plain_step(&r);
 		if (accelerated)
 			assert_int_equal(cau_solver_run(&r.solver, NULL), CAU_OK);
 		off[accelerated] = 0;
-		for (int32_t i = 0; i < 3 * r.tissue.vertex_count; ++i)
+		for (int32_t i = 0; i < 3 * r.tissue.vertex_count; i++)
 			off[accelerated] =
 				fmax(off[accelerated], fabs(r.solver.position[i] - end.solver.position[i]));
 		rig_finish(&r);

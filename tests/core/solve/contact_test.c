@@ -54,7 +54,7 @@ static double gap_of(const pressed *p, int32_t vertex, cau_vec3 *normal)
 
 static void touch(pressed *p, double slide_m)
 {
-	for (int32_t v = 0; v < p->r.tissue.vertex_count; ++v) {
+	for (int32_t v = 0; v < p->r.tissue.vertex_count; v++) {
 		if (p->r.fixed[v] || gap_of(p, v, NULL) > MARGIN_M)
 			continue;
 		cau_contact_row row = {.vertex = v};
@@ -78,16 +78,16 @@ static void assert_balance(const pressed *p)
 {
 	size_t n = 3 * (size_t)p->r.tissue.vertex_count;
 	double *left = calloc(n, sizeof *left), largest = 0;
-	for (size_t i = 0; i < n; ++i)
+	for (size_t i = 0; i < n; i++)
 		left[i] = ((double *)p->r.solver.gradient)[4 * (i / 3) + i % 3];
-	for (int32_t k = 0; k < p->set->row_count; ++k) {
+	for (int32_t k = 0; k < p->set->row_count; k++) {
 		const cau_contact_row *row = &p->set->row[k];
 		largest = fmax(largest, cau_length(cau_vec3_of(row->reaction)));
-		for (int c = 0; c < 3; ++c)
+		for (int c = 0; c < 3; c++)
 			left[3 * row->vertex + c] -= row->reaction[c];
 	}
 	assert_true(largest > 0);
-	for (size_t i = 0; i < n; ++i)
+	for (size_t i = 0; i < n; i++)
 		if (!(fabs(left[i]) < FORCE_TOLERANCE * largest))
 			fail_msg("%g N of %g are left over at %zu", left[i], largest, i);
 	free(left);
@@ -97,7 +97,7 @@ static void test_pressed_without_and_with_friction(void **state)
 {
 	(void)state;
 	static const double frictions[] = {0, 0.3, 2};
-	for (size_t f = 0; f < 3; ++f) {
+	for (size_t f = 0; f < 3; f++) {
 		pressed p;
 		make(&p, frictions[f]);
 		touch(&p, 0.001);
@@ -105,9 +105,9 @@ static void test_pressed_without_and_with_friction(void **state)
 		assert_balance(&p);
 		double largest = 0, sideways = 0;
 		int32_t pushing = 0, idle = 0;
-		for (int32_t k = 0; k < p.set->row_count; ++k)
+		for (int32_t k = 0; k < p.set->row_count; k++)
 			largest = fmax(largest, cau_length(cau_vec3_of(p.set->row[k].reaction)));
-		for (int32_t k = 0; k < p.set->row_count; ++k) {
+		for (int32_t k = 0; k < p.set->row_count; k++) {
 			const cau_contact_row *row = &p.set->row[k];
 			cau_vec3 normal, reaction = cau_vec3_of(row->reaction);
 			double gap = gap_of(&p, row->vertex, &normal), push = cau_dot(reaction, normal);
@@ -123,7 +123,7 @@ static void test_pressed_without_and_with_friction(void **state)
 		}
 		assert_true(pushing > 3 && idle > 0);
 		assert_true(frictions[f] == 0 || sideways > 0); // carried along with the tool
-		for (int32_t v = 0; v < p.r.tissue.vertex_count; ++v)
+		for (int32_t v = 0; v < p.r.tissue.vertex_count; v++)
 			assert_true(gap_of(&p, v, NULL) > -GAP_TOLERANCE_M);
 		rig_finish(&p.r);
 	}
@@ -131,7 +131,7 @@ static void test_pressed_without_and_with_friction(void **state)
 
 static int32_t top_vertex(const pressed *p)
 {
-	for (int32_t v = 0; v < p->r.tissue.vertex_count; ++v) {
+	for (int32_t v = 0; v < p->r.tissue.vertex_count; v++) {
 		const double *x = p->r.tissue.rest + 3 * v;
 		if (fabs(x[0]) < 1e-9 && fabs(x[1]) < 1e-9 && x[2] > -1e-9)
 			return v;
@@ -145,7 +145,7 @@ static void test_attachment_is_a_spring_that_slips(void **state)
 {
 	(void)state;
 	static const double slips[] = {100, 0.02};
-	for (int s = 0; s < 2; ++s) {
+	for (int s = 0; s < 2; s++) {
 		pressed p;
 		make(&p, 0);
 		p.tool.slip_force_n = slips[s];
@@ -175,7 +175,7 @@ static void test_a_full_set_says_so(void **state)
 	pressed p;
 	make(&p, 0);
 	cau_contact_row row = {.vertex = top_vertex(&p)};
-	for (int k = 0; k < CAU_MAX_CONTACTS; ++k)
+	for (int k = 0; k < CAU_MAX_CONTACTS; k++)
 		assert_true(cau_contact_add(p.set, &row));
 	assert_false(cau_contact_add(p.set, &row));
 	assert_int_equal(p.set->row_count, CAU_MAX_CONTACTS);

@@ -25,7 +25,7 @@ static void make_gripped(rig *r, int model, int precision, int32_t threads)
 
 static void leap(rig *r, double x, double z)
 {
-	for (int32_t v = 0; v < r->tissue.vertex_count; ++v)
+	for (int32_t v = 0; v < r->tissue.vertex_count; v++)
 		if (r->fixed[v] && r->tissue.rest[3 * v + 2] > -1e-6) {
 			r->solver.position[3 * v] += x;
 			r->solver.position[3 * v + 2] += z;
@@ -45,9 +45,9 @@ static void test_a_leap_stays_bounded(void **state)
 	(void)state;
 	static const int models[] = {CAU_MODEL_STVK, CAU_MODEL_NEOHOOKEAN, CAU_MODEL_COROTATED};
 	int32_t backtracks = 0;
-	for (size_t m = 0; m < 3; ++m)
-		for (int precision = 0; precision < CAU_PRECISION_COUNT; ++precision)
-			for (int direction = 0; direction < 3; ++direction) {
+	for (size_t m = 0; m < 3; m++)
+		for (int precision = 0; precision < CAU_PRECISION_COUNT; precision++)
+			for (int direction = 0; direction < 3; direction++) {
 				rig r;
 				make_gripped(&r, models[m], precision, 1);
 				leap(&r, direction == 1 ? LEAP_M : 0,
@@ -57,13 +57,13 @@ static void test_a_leap_stays_bounded(void **state)
 				memcpy(r.solver.predicted, r.solver.position,
 				       3 * (size_t)r.tissue.vertex_count * sizeof(double));
 				double before = cau_solver_evaluate(&r.solver);
-				for (int t = 0; t < 20; ++t) {
+				for (int t = 0; t < 20; t++) {
 					tick(&r);
 					backtracks += r.solver.backtracks;
 				}
 				double after = cau_solver_evaluate(&r.solver);
 				assert_true(isfinite(after) && after < before);
-				for (int32_t i = 0; i < 3 * r.tissue.vertex_count; ++i)
+				for (int32_t i = 0; i < 3 * r.tissue.vertex_count; i++)
 					assert_true(fabs(r.solver.position[i] - r.tissue.rest[i]) < 2 * LEAP_M);
 				rig_finish(&r);
 			}
@@ -75,9 +75,9 @@ static void test_the_objective_never_rises(void **state)
 {
 	(void)state;
 	static const int models[] = {CAU_MODEL_STVK, CAU_MODEL_NEOHOOKEAN};
-	for (size_t m = 0; m < 2; ++m) {
+	for (size_t m = 0; m < 2; m++) {
 		double last = INFINITY;
-		for (int32_t iterations = 1; iterations <= 15; ++iterations) {
+		for (int32_t iterations = 1; iterations <= 15; iterations++) {
 			rig r;
 			make_gripped(&r, models[m], CAU_PRECISION_DOUBLE, 1);
 			leap(&r, 0, LEAP_M);
@@ -96,7 +96,7 @@ static void test_inverted_elements_recover(void **state)
 {
 	(void)state;
 	static const int models[] = {CAU_MODEL_NEOHOOKEAN, CAU_MODEL_COROTATED};
-	for (size_t m = 0; m < 2; ++m) {
+	for (size_t m = 0; m < 2; m++) {
 		rig r;
 		rig_begin(&r);
 		rig_add_slab(&r, 4, 4, 3)->fat[0].model = models[m];
@@ -104,16 +104,16 @@ static void test_inverted_elements_recover(void **state)
 		rig_build(&r, NULL, 1);
 		rig_factor(&r);
 		uint64_t random = 121;
-		for (int32_t i = 0; i < 3 * r.tissue.vertex_count; ++i)
+		for (int32_t i = 0; i < 3 * r.tissue.vertex_count; i++)
 			if (!r.fixed[i / 3])
 				r.solver.position[i] += random_between(&random, -0.03, 0.03);
 		int32_t inverted[2] = {0, 0};
-		for (int t = 0; t <= 150; ++t) {
+		for (int t = 0; t <= 150; t++) {
 			if (t)
 				tick(&r);
 			else
 				cau_solver_evaluate(&r.solver);
-			for (int32_t w = 0; w < r.solver.slots.work_count && (t == 0 || t == 150); ++w)
+			for (int32_t w = 0; w < r.solver.slots.work_count && (t == 0 || t == 150); w++)
 				inverted[t > 0] += r.solver.kernels->settle(
 					&r.solver.elements, &r.solver.slots.work[w], r.solver.displacement);
 		}
@@ -140,10 +140,10 @@ static void test_a_free_body_keeps_its_momentum(void **state)
 	rig_random_gradient(&random, 0.1, a);
 	rig_deform(&r, a, 5e-4, &random, x);
 	mat_rotation((double[]){1, 2, 3}, 0.1, turn);
-	for (int32_t v = 0; v < r.tissue.vertex_count; ++v) {
+	for (int32_t v = 0; v < r.tissue.vertex_count; v++) {
 		mat_apply(turn, x + 3 * v, r.solver.predicted + 3 * v);
 		r.solver.predicted[3 * v] += 0.004;
-		for (int c = 0; c < 3; ++c) {
+		for (int c = 0; c < 3; c++) {
 			double speed = (r.solver.predicted[3 * v + c] - x[3 * v + c]) / dt;
 			before[c] += r.tissue.mass[v] * speed;
 			size += r.tissue.mass[v] * fabs(speed);
@@ -156,19 +156,19 @@ static void test_a_free_body_keeps_its_momentum(void **state)
 	double *gradient = cau_arena_array(&r.arena, n, sizeof(double));
 	rig_local(&r, r.solver.position, gradient);
 	double force[3] = {0}, torque[3] = {0}, force_sum = 0, torque_sum = 0;
-	for (int32_t v = 0; v < r.tissue.vertex_count; ++v) {
+	for (int32_t v = 0; v < r.tissue.vertex_count; v++) {
 		const double *f = gradient + 3 * v, *p = r.solver.position + 3 * v;
 		double length = sqrt(f[0] * f[0] + f[1] * f[1] + f[2] * f[2]);
 		force_sum += length;
 		torque_sum += length * sqrt(p[0] * p[0] + p[1] * p[1] + p[2] * p[2]);
-		for (int c = 0; c < 3; ++c) {
+		for (int c = 0; c < 3; c++) {
 			force[c] += f[c];
 			torque[c] += p[(c + 1) % 3] * f[(c + 2) % 3] - p[(c + 2) % 3] * f[(c + 1) % 3];
 			after[c] += r.tissue.mass[v] * (p[c] - x[3 * v + c]) / dt;
 		}
 	}
 	assert_true(force_sum > 0);
-	for (int c = 0; c < 3; ++c) {
+	for (int c = 0; c < 3; c++) {
 		assert_true(fabs(force[c]) < BALANCE_TOLERANCE * force_sum);
 		assert_true(fabs(torque[c]) < BALANCE_TOLERANCE * torque_sum);
 		assert_near(after[c], before[c], MOMENTUM_TOLERANCE * size);
@@ -180,13 +180,13 @@ static void test_threads_change_nothing(void **state)
 {
 	(void)state;
 	static const int32_t threads[] = {1, 2, 3, 7};
-	for (int precision = 0; precision < CAU_PRECISION_COUNT; ++precision) {
+	for (int precision = 0; precision < CAU_PRECISION_COUNT; precision++) {
 		rig first;
 		make_gripped(&first, CAU_MODEL_NEOHOOKEAN, precision, 1);
 		leap(&first, 0.004, 0.01);
 		tick(&first);
 		size_t bytes = 3 * (size_t)first.tissue.vertex_count * sizeof(double);
-		for (size_t k = 1; k < sizeof threads / sizeof *threads; ++k) {
+		for (size_t k = 1; k < sizeof threads / sizeof *threads; k++) {
 			rig r;
 			make_gripped(&r, CAU_MODEL_NEOHOOKEAN, precision, threads[k]);
 			leap(&r, 0.004, 0.01);

@@ -20,7 +20,7 @@ static void make(rig *r, int32_t threads)
 	rig_deform(r, a, 1e-2, &random, r->solver.predicted);
 	r->solver.drag = cau_arena_array(&r->arena, 3, sizeof *r->solver.drag);
 	r->solver.drag_count = 3;
-	for (int k = 0; k < 3; ++k) // the last one on a vertex that is free, the first on a pinned one
+	for (int k = 0; k < 3; k++) // the last one on a vertex that is free, the first on a pinned one
 		r->solver.drag[k] = (cau_drag){7 * k, 40.0 + k, {0.01, 0.02 * k, -0.01}};
 }
 
@@ -33,9 +33,9 @@ static void test_gradient_is_that_of_the_objective(void **state)
 	double *gradient = cau_arena_array(&r.arena, n, sizeof(double));
 	double *numeric = cau_arena_array(&r.arena, n, sizeof(double));
 	cau_solver_evaluate(&r.solver);
-	for (size_t i = 0; i < n; ++i)
+	for (size_t i = 0; i < n; i++)
 		gradient[i] = cau_real_get(r.solver.gradient, 0, (int64_t)(4 * (i / 3) + i % 3));
-	for (size_t i = 0; i < n; ++i) {
+	for (size_t i = 0; i < n; i++) {
 		double at = r.solver.position[i];
 		if (r.fixed[i / 3]) {
 			assert_true(gradient[i] == 0);
@@ -57,15 +57,15 @@ static void test_inertia_and_drag_by_hand(void **state)
 	(void)state;
 	rig r;
 	make(&r, 1);
-	for (int32_t t = 0; t < r.tissue.tetrahedron_count; ++t)
+	for (int32_t t = 0; t < r.tissue.tetrahedron_count; t++)
 		rig_remove(&r, CAU_ELEMENT_TETRAHEDRON, t, 0);
 	double expected = 0, dt = r.solver.step_s;
-	for (int32_t i = 0; i < 3 * r.tissue.vertex_count; ++i) {
+	for (int32_t i = 0; i < 3 * r.tissue.vertex_count; i++) {
 		double away = r.solver.position[i] - r.solver.predicted[i];
 		expected += r.tissue.mass[i / 3] / (dt * dt) * away * away / 2;
 	}
-	for (int k = 0; k < 3; ++k)
-		for (int c = 0; c < 3 && !r.fixed[r.solver.drag[k].vertex]; ++c) {
+	for (int k = 0; k < 3; k++)
+		for (int c = 0; c < 3 && !r.fixed[r.solver.drag[k].vertex]; c++) {
 			double away =
 				r.solver.position[3 * r.solver.drag[k].vertex + c] - r.solver.drag[k].target[c];
 			expected += r.solver.drag[k].coefficient * away * away / 2;
@@ -80,7 +80,7 @@ static void test_threads_change_nothing(void **state)
 	(void)state;
 	static const int32_t threads[] = {1, 2, 3, 7};
 	double first = 0;
-	for (size_t k = 0; k < sizeof threads / sizeof *threads; ++k) {
+	for (size_t k = 0; k < sizeof threads / sizeof *threads; k++) {
 		rig r;
 		make(&r, threads[k]);
 		double value = cau_solver_evaluate(&r.solver);
@@ -101,7 +101,7 @@ static void test_other_work_may_be_done_beside(void **state)
 {
 	(void)state;
 	static const int32_t threads[] = {1, 2, 3, 7};
-	for (size_t k = 0; k < sizeof threads / sizeof *threads; ++k) {
+	for (size_t k = 0; k < sizeof threads / sizeof *threads; k++) {
 		rig r;
 		make(&r, threads[k]);
 		size_t reals = 4 * (size_t)r.tissue.vertex_count;

@@ -22,7 +22,7 @@ static double *random_load(rig *r, uint64_t *random)
 {
 	size_t n = 3 * (size_t)r->tissue.vertex_count;
 	double *b = cau_arena_array(&r->arena, n, sizeof(double));
-	for (size_t i = 0; i < n; ++i)
+	for (size_t i = 0; i < n; i++)
 		b[i] = r->tissue.pinned[i / 3] ? 0 : random_between(random, -1, 1);
 	return b;
 }
@@ -30,13 +30,13 @@ static double *random_load(rig *r, uint64_t *random)
 static double downdate_tolerance(const rig *r)
 {
 	double stiffest = 0, lightest = INFINITY, dt = r->solver.step_s;
-	for (int kind = 0; kind < CAU_ELEMENT_KINDS; ++kind)
-		for (int32_t e = 0; e < cau_tissue_element_count(&r->tissue, kind); ++e) {
+	for (int kind = 0; kind < CAU_ELEMENT_KINDS; kind++)
+		for (int32_t e = 0; e < cau_tissue_element_count(&r->tissue, kind); e++) {
 			cau_element_map map;
 			cau_tissue_element_map(&r->tissue, kind, e, &map);
 			stiffest = fmax(stiffest, map.weight * cau_element_map_scale(&map) * map.vertex_count);
 		}
-	for (int32_t v = 0; v < r->tissue.vertex_count; ++v)
+	for (int32_t v = 0; v < r->tissue.vertex_count; v++)
 		lightest = fmin(lightest, r->tissue.mass[v]);
 	return fmax(DOWNDATE_TOLERANCE, DOWNDATE_RATIO * stiffest * dt * dt / lightest);
 }
@@ -44,7 +44,7 @@ static double downdate_tolerance(const rig *r)
 static void test_solves_the_matrix(void **state)
 {
 	(void)state;
-	for (int s = 0; s < SOLVE_SCENES; ++s) {
+	for (int s = 0; s < SOLVE_SCENES; s++) {
 		rig r;
 		make(&r, s);
 		uint64_t random = 81;
@@ -54,15 +54,15 @@ static void test_solves_the_matrix(void **state)
 		solve_dense_matrix(&r, a);
 		solve_by_factor(&r, b, x);
 		double largest = 0, off = 0, reach = 0;
-		for (size_t v = 0; v < n; ++v) {
+		for (size_t v = 0; v < n; v++) {
 			double sum[3] = {0}, row = 0;
-			for (size_t u = 0; u < n; ++u) {
+			for (size_t u = 0; u < n; u++) {
 				row += fabs(a[v * n + u]);
-				for (size_t c = 0; c < 3; ++c)
+				for (size_t c = 0; c < 3; c++)
 					sum[c] += a[v * n + u] * x[3 * u + c];
 			}
 			largest = fmax(largest, row);
-			for (size_t c = 0; c < 3 && !r.tissue.pinned[v]; ++c) {
+			for (size_t c = 0; c < 3 && !r.tissue.pinned[v]; c++) {
 				off = fmax(off, fabs(sum[c] - b[3 * v + c]));
 				reach = fmax(reach, fabs(x[3 * v + c]));
 			}
@@ -79,7 +79,7 @@ static void downdate_some(rig *r, uint64_t *random, int count)
 	while (count > 0) {
 		int32_t first[CAU_UPDATE_RANK + 1] = {0}, row[CAU_UPDATE_RANK * 8], columns = 0;
 		double value[CAU_UPDATE_RANK * 8];
-		for (int tries = 0; tries < 40 && count > 0; ++tries) {
+		for (int tries = 0; tries < 40 && count > 0; tries++) {
 			int kind = (int)random_between(random, 0, CAU_ELEMENT_KINDS);
 			int32_t most = cau_tissue_element_count(&r->tissue, kind);
 			int32_t e = (int32_t)random_between(random, 0, most);
@@ -102,7 +102,7 @@ static void test_downdated_is_as_good_as_fresh(void **state)
 {
 	(void)state;
 	static const int scenes[] = {0, 1, 2, 5};
-	for (size_t s = 0; s < sizeof scenes / sizeof *scenes; ++s) {
+	for (size_t s = 0; s < sizeof scenes / sizeof *scenes; s++) {
 		rig r;
 		make(&r, scenes[s]);
 		uint64_t random = 82;
@@ -140,7 +140,7 @@ static void test_adding_takes_a_removal_back(void **state)
 	cau_tissue_element_map(&r.tissue, CAU_ELEMENT_TETRAHEDRON, 100, &map);
 	cau_system_columns(&r.solver.system, &map, &columns, first, row, value);
 	solve_by_factor(&r, b, before);
-	for (int add = 0; add < 2; ++add) {
+	for (int add = 0; add < 2; add++) {
 		assert_int_equal(cau_factor_update(r.solver.factor, columns, first, row, value, add, NULL),
 		                 CAU_OK);
 		solve_by_factor(&r, b, add ? x : between);
@@ -153,13 +153,13 @@ static void test_adding_takes_a_removal_back(void **state)
 static double column_sum(const cau_factor *factor)
 {
 	double sum = 0;
-	for (int32_t j = 0; j < cau_factor_size(factor); ++j) {
+	for (int32_t j = 0; j < cau_factor_size(factor); j++) {
 		const int32_t *row;
 		const double *value;
 		double pivot;
 		int32_t count = cau_factor_column(factor, j, &row, &value, &pivot);
 		sum += (j + 1) * pivot;
-		for (int32_t k = 0; k < count; ++k) {
+		for (int32_t k = 0; k < count; k++) {
 			assert_true(row[k] > j && (!k || row[k] > row[k - 1]));
 			sum += value[k] * row[k];
 		}
@@ -187,7 +187,7 @@ static void test_a_new_factor_has_no_memory(void **state)
 	assert_memory_equal(cau_factor_permutation(given), order,
 	                    (size_t)system->row_count * sizeof(int32_t));
 	assert_true(column_sum(given) == first);
-	for (int32_t k = 0; k < system->row_count; ++k)
+	for (int32_t k = 0; k < system->row_count; k++)
 		assert_int_equal(cau_factor_places(given)[order[k]], k);
 	cau_factor_destroy(given);
 	rig_finish(&r);

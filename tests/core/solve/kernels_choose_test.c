@@ -4,7 +4,7 @@
 static int rank_of(const char *tier)
 {
 	static const char *const tiers[] = {"baseline", "avx2", "avx512"};
-	for (int k = 0; k < 3; ++k)
+	for (int k = 0; k < 3; k++)
 		if (!strcmp(tier, tiers[k]))
 			return k;
 	fail_msg("no tier is called %s", tier);
@@ -15,9 +15,9 @@ static void test_the_best_below_the_ceiling(void **state)
 {
 	(void)state;
 	static const char *const ceilings[] = {"baseline", "avx2", "avx512", NULL, ""};
-	for (int single = 0; single < 2; ++single) {
+	for (int single = 0; single < 2; single++) {
 		int last = 0;
-		for (int k = 0; k < 5; ++k) {
+		for (int k = 0; k < 5; k++) {
 			const cau_kernels *kernels = cau_kernels_choose(single, ceilings[k]);
 			int rank = rank_of(kernels->instruction_set);
 			assert_int_equal(kernels->single, single);

@@ -47,13 +47,13 @@ static void make_deformed(deformed *d, const law_scene *law, int precision, cons
 static void test_gradient_is_that_of_the_energy(void **state)
 {
 	(void)state;
-	for (int k = 0; k < LAW_SCENES; ++k) {
+	for (int k = 0; k < LAW_SCENES; k++) {
 		if (!law_scenes[k].has_energy)
 			continue;
 		deformed d;
 		make_deformed(&d, &law_scenes[k], CAU_PRECISION_DOUBLE, NULL);
 		double *numeric = cau_arena_array(&d.r.arena, d.reals, sizeof(double));
-		for (size_t i = 0; i < d.reals; ++i) {
+		for (size_t i = 0; i < d.reals; i++) {
 			double at = d.x[i];
 			d.x[i] = at + DIFFERENCE_STEP_M;
 			double above = rig_local(&d.r, d.x, NULL);
@@ -76,20 +76,20 @@ static void element_balance(rig *r, const double *x, int kind, int32_t slot, dou
 	int32_t first = rig_vertex(r, kind, slot, 0);
 	double sum[3] = {0}, moment[3] = {0}, size = 0, arm_size = 0, gradient[12];
 	rig_element_gradient(r, kind, slot, gradient);
-	for (int i = 0; i < rig_vertex_count(kind); ++i) {
+	for (int i = 0; i < rig_vertex_count(kind); i++) {
 		double g[3], arm[3];
-		for (int c = 0; c < 3; ++c) {
+		for (int c = 0; c < 3; c++) {
 			g[c] = gradient[3 * i + c];
 			arm[c] = x[3 * rig_vertex(r, kind, slot, i) + c] - x[3 * first + c];
 			sum[c] += g[c];
 		}
-		for (int c = 0; c < 3; ++c)
+		for (int c = 0; c < 3; c++)
 			moment[c] += arm[(c + 1) % 3] * g[(c + 2) % 3] - arm[(c + 2) % 3] * g[(c + 1) % 3];
 		double length = sqrt(g[0] * g[0] + g[1] * g[1] + g[2] * g[2]);
 		size += length;
 		arm_size += length * sqrt(arm[0] * arm[0] + arm[1] * arm[1] + arm[2] * arm[2]);
 	}
-	for (int c = 0; c < 3; ++c) {
+	for (int c = 0; c < 3; c++) {
 		*force = fmax(*force, size > 0 ? fabs(sum[c]) / size : 0);
 		*torque = fmax(*torque, arm_size > 0 ? fabs(moment[c]) / arm_size : 0);
 	}
@@ -98,21 +98,21 @@ static void element_balance(rig *r, const double *x, int kind, int32_t slot, dou
 static void test_no_law_pushes_or_turns_an_element(void **state)
 {
 	(void)state;
-	for (int k = 0; k < LAW_SCENES; ++k)
-		for (int diagonal = 0; diagonal < 2; ++diagonal) {
+	for (int k = 0; k < LAW_SCENES; k++)
+		for (int diagonal = 0; diagonal < 2; diagonal++) {
 			deformed d;
 			make_deformed(&d, &law_scenes[k], CAU_PRECISION_DOUBLE, NULL);
 			d.r.solver.diagonal = diagonal;
 			rig_local(&d.r, d.x, d.gradient);
 			const cau_elements *e = &d.r.solver.elements;
 			double force = 0, torque = 0;
-			for (int32_t s = 0; s < e->sheet.slot_count; ++s)
+			for (int32_t s = 0; s < e->sheet.slot_count; s++)
 				element_balance(&d.r, d.x, CAU_ELEMENT_TRIANGLE, s, &force, &torque);
-			for (int32_t s = 0; s < e->fat.slot_count; ++s)
+			for (int32_t s = 0; s < e->fat.slot_count; s++)
 				element_balance(&d.r, d.x, CAU_ELEMENT_TETRAHEDRON, s, &force, &torque);
-			for (int32_t s = 0; s < e->link.slot_count; ++s)
+			for (int32_t s = 0; s < e->link.slot_count; s++)
 				element_balance(&d.r, d.x, CAU_ELEMENT_LINK, s, &force, &torque);
-			for (int32_t s = 0; s < e->hinge.slot_count; ++s)
+			for (int32_t s = 0; s < e->hinge.slot_count; s++)
 				element_balance(&d.r, d.x, CAU_ELEMENT_HINGE, s, &force, &torque);
 			if (!(force < BALANCE_DOUBLE) || !(torque < TORQUE_DOUBLE))
 				fail_msg("%s: force %g, torque %g", law_scenes[k].name, force, torque);
@@ -124,13 +124,13 @@ static void test_no_law_pushes_or_turns_an_element(void **state)
 static void test_rest_is_exactly_silent(void **state)
 {
 	(void)state;
-	for (int k = 0; k < LAW_SCENES; ++k)
-		for (int mode = 0; mode < 4; ++mode) {
+	for (int k = 0; k < LAW_SCENES; k++)
+		for (int mode = 0; mode < 4; mode++) {
 			rig r;
 			rig_begin(&r);
 			r.scene->precision = mode & 1 ? CAU_PRECISION_SINGLE : CAU_PRECISION_DOUBLE;
 			law_scenes[k].add(&r);
-			for (int i = 0; i < 6; ++i) {
+			for (int i = 0; i < 6; i++) {
 				if (i < 3)
 					r.scene->layers[0].sheet[0].target[i] = i < 2;
 				r.scene->layers[0].fat[0].target[i] = i < 3;
@@ -140,7 +140,7 @@ static void test_rest_is_exactly_silent(void **state)
 			size_t reals = 3 * (size_t)r.tissue.vertex_count;
 			double *gradient = cau_arena_array(&r.arena, reals, sizeof(double));
 			double energy = rig_local(&r, r.tissue.rest, gradient);
-			for (size_t i = 0; i < reals; ++i)
+			for (size_t i = 0; i < reals; i++)
 				if (gradient[i] != 0)
 					fail_msg("%s, mode %d: gradient %g at rest", law_scenes[k].name, mode,
 					         gradient[i]);
@@ -152,16 +152,16 @@ static void test_rest_is_exactly_silent(void **state)
 static void test_removed_elements_are_silent(void **state)
 {
 	(void)state;
-	for (int k = 0; k < LAW_SCENES; ++k) {
+	for (int k = 0; k < LAW_SCENES; k++) {
 		deformed d;
 		make_deformed(&d, &law_scenes[k], CAU_PRECISION_DOUBLE, NULL);
-		for (int kind = 0; kind < CAU_ELEMENT_KINDS; ++kind)
-			for (int32_t e = 0; e < cau_tissue_element_count(&d.r.tissue, kind); ++e)
+		for (int kind = 0; kind < CAU_ELEMENT_KINDS; kind++)
+			for (int32_t e = 0; e < cau_tissue_element_count(&d.r.tissue, kind); e++)
 				rig_remove(&d.r, kind, e, 0);
-		for (int diagonal = 0; diagonal < 2; ++diagonal) {
+		for (int diagonal = 0; diagonal < 2; diagonal++) {
 			d.r.solver.diagonal = diagonal;
 			assert_true(rig_local(&d.r, d.x, d.gradient) == 0);
-			for (size_t i = 0; i < d.reals; ++i)
+			for (size_t i = 0; i < d.reals; i++)
 				assert_true(d.gradient[i] == 0);
 		}
 		rig_finish(&d.r);
@@ -178,7 +178,7 @@ static void test_one_removed_leaves_the_others(void **state)
 	int32_t slot = d.r.solver.slots.slot_of[CAU_ELEMENT_TETRAHEDRON][GONE];
 	double share[12];
 	rig_element_gradient(&d.r, CAU_ELEMENT_TETRAHEDRON, slot, share);
-	for (int i = 0; i < 12; ++i)
+	for (int i = 0; i < 12; i++)
 		d.gradient[3 * rig_vertex(&d.r, CAU_ELEMENT_TETRAHEDRON, slot, i / 3) + i % 3] -= share[i];
 	rig_remove(&d.r, CAU_ELEMENT_TETRAHEDRON, GONE, 0);
 	double *after = cau_arena_array(&d.r.arena, d.reals, sizeof(double));
@@ -190,7 +190,7 @@ static void test_one_removed_leaves_the_others(void **state)
 static void compare(const law_scene *law, deformed *a, deformed *b, double tolerance,
                     const char *what)
 {
-	for (int diagonal = 0; diagonal < 2; ++diagonal) {
+	for (int diagonal = 0; diagonal < 2; diagonal++) {
 		a->r.solver.diagonal = b->r.solver.diagonal = diagonal;
 		a->energy = rig_local(&a->r, a->x, a->gradient);
 		b->energy = rig_local(&b->r, b->x, b->gradient);
@@ -204,7 +204,7 @@ static void compare(const law_scene *law, deformed *a, deformed *b, double toler
 static void test_single_agrees_with_double(void **state)
 {
 	(void)state;
-	for (int k = 0; k < LAW_SCENES; ++k) {
+	for (int k = 0; k < LAW_SCENES; k++) {
 		deformed a, b;
 		make_deformed(&a, &law_scenes[k], CAU_PRECISION_SINGLE, NULL);
 		make_deformed(&b, &law_scenes[k], CAU_PRECISION_DOUBLE, NULL);
@@ -218,9 +218,9 @@ static void test_every_instruction_set_agrees(void **state)
 {
 	(void)state;
 	static const char *const tiers[] = {"avx2", "avx512"};
-	for (int k = 0; k < LAW_SCENES; ++k)
-		for (int t = 0; t < 2; ++t)
-			for (int single = 0; single < 2; ++single) {
+	for (int k = 0; k < LAW_SCENES; k++)
+		for (int t = 0; t < 2; t++)
+			for (int single = 0; single < 2; single++) {
 				if (strcmp(cau_kernels_choose(single, tiers[t])->instruction_set, tiers[t]) != 0)
 					continue; // this processor has it not
 				int precision = single ? CAU_PRECISION_SINGLE : CAU_PRECISION_DOUBLE;
@@ -241,7 +241,7 @@ static void test_dot_and_add_scaled(void **state)
 	static double x[MOST], y[MOST];
 	static float fx[MOST], fy[MOST];
 	uint64_t random = 5;
-	for (int i = 0; i < MOST; ++i) {
+	for (int i = 0; i < MOST; i++) {
 		fx[i] = (float)(x[i] = (float)random_between(&random, -1, 1));
 		fy[i] = (float)(y[i] = (float)random_between(&random, -1, 1));
 	}
@@ -249,9 +249,9 @@ static void test_dot_and_add_scaled(void **state)
 	static const int counts[] = {0, 1, 7, 16, 1023, 1024, 1025, MOST};
 	// Strips of 64 float additions: 64 x 6e-8 of the sum of sizes at most.
 	static const double DOT_SINGLE = 4e-6, DOT_DOUBLE = 1e-14;
-	for (size_t k = 0; k < sizeof counts / sizeof *counts; ++k) {
+	for (size_t k = 0; k < sizeof counts / sizeof *counts; k++) {
 		double exact = 0, size = 0;
-		for (int i = 0; i < counts[k]; ++i) {
+		for (int i = 0; i < counts[k]; i++) {
 			exact += x[i] * y[i];
 			size += fabs(x[i] * y[i]);
 		}

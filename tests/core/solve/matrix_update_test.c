@@ -32,7 +32,7 @@ static void make(cutter *c, int scene, int precision, int32_t threads, double st
 	c->reals = 3 * (size_t)c->r.tissue.vertex_count;
 	c->load = cau_arena_array(&c->r.arena, c->reals, sizeof(double));
 	c->solution = cau_arena_array(&c->r.arena, c->reals, sizeof(double));
-	for (size_t i = 0; i < c->reals; ++i)
+	for (size_t i = 0; i < c->reals; i++)
 		c->load[i] = c->r.tissue.pinned[i / 3] ? 0 : (float)random_between(&c->random, -1, 1);
 }
 
@@ -40,7 +40,7 @@ static void make(cutter *c, int scene, int precision, int32_t threads, double st
 static int cut(cutter *c, int count)
 {
 	int removed = 0;
-	for (int tries = 0; tries < 50 * count && removed < count; ++tries) {
+	for (int tries = 0; tries < 50 * count && removed < count; tries++) {
 		int kind = (int)random_between(&c->random, 0, CAU_ELEMENT_KINDS);
 		int32_t most = cau_tissue_element_count(&c->r.tissue, kind);
 		int32_t e = (int32_t)random_between(&c->random, 0, most);
@@ -58,7 +58,7 @@ static void solve_fresh(cutter *c, int precision, int scene, double *out)
 {
 	cutter fresh;
 	make(&fresh, scene, precision, 1, c->r.scene->step_s);
-	for (int kind = 0; kind < CAU_ELEMENT_KINDS; ++kind)
+	for (int kind = 0; kind < CAU_ELEMENT_KINDS; kind++)
 		memcpy(fresh.r.dissection.alive.element[kind], c->r.dissection.alive.element[kind],
 		       (size_t)cau_tissue_element_count(&c->r.tissue, kind));
 	assert_int_equal(cau_matrix_update_refactor(&fresh.r.update, &fresh.r.dissection.alive, NULL),
@@ -73,7 +73,7 @@ static void test_a_few_are_downdated_at_once(void **state)
 	cutter c;
 	make(&c, SLAB, CAU_PRECISION_DOUBLE, 1, 1.0 / 60);
 	double *fresh = cau_arena_array(&c.r.arena, c.reals, sizeof(double));
-	for (int tick = 0; tick < 8; ++tick) {
+	for (int tick = 0; tick < 8; tick++) {
 		cut(&c, 4);
 		assert_int_equal(c.r.update.waiting_count, 0);
 		assert_int_equal(c.r.update.refactorisations, 0);
@@ -95,7 +95,7 @@ static void test_more_are_shared_with_the_next_ticks(void **state)
 	cutter c;
 	make(&c, SLAB, CAU_PRECISION_DOUBLE, 1, 1.0 / 60);
 	double *fresh = cau_arena_array(&c.r.arena, c.reals, sizeof(double));
-	for (int round = 0; round < 3; ++round) {
+	for (int round = 0; round < 3; round++) {
 		cut(&c, 12);
 		assert_in_range(c.r.update.waiting_count, 1, 6);
 		cut(&c, 0);
@@ -106,7 +106,7 @@ static void test_more_are_shared_with_the_next_ticks(void **state)
 		solve_fresh(&c, CAU_PRECISION_DOUBLE, SLAB, fresh);
 		assert_true(rig_difference(c.solution, fresh, c.reals) < DOWNDATE_TOLERANCE);
 	}
-	for (int tick = 0; tick < 10; ++tick) // as much again and again
+	for (int tick = 0; tick < 10; tick++) // as much again and again
 		cut(&c, 8);
 	cut(&c, 0);
 	cut(&c, 0);
@@ -122,7 +122,7 @@ static void test_a_burst_swaps_in_a_new_factor(void **state)
 {
 	(void)state;
 	static const double steps[] = {1.0 / 60, 1.0 / 240};
-	for (size_t k = 0; k < 2; ++k) {
+	for (size_t k = 0; k < 2; k++) {
 		cutter c;
 		make(&c, SLAB, CAU_PRECISION_SINGLE, 1, steps[k]);
 		double *before = cau_arena_array(&c.r.arena, c.reals, sizeof(double));
@@ -131,7 +131,7 @@ static void test_a_burst_swaps_in_a_new_factor(void **state)
 		assert_int_equal(cut(&c, 300), 300);
 		solve_fresh(&c, CAU_PRECISION_SINGLE, SLAB, fresh);
 		int ticks = (int)(steps[0] / steps[k] + 0.5);
-		for (int t = 0; t < ticks; ++t) {
+		for (int t = 0; t < ticks; t++) {
 			assert_int_equal(c.r.update.refactorisations, 0);
 			assert_int_equal(c.r.update.waiting_count, 300);
 			solve_by_sweep(&c.r, c.load, c.solution);
@@ -178,7 +178,7 @@ static void test_cuts_during_the_making_are_not_lost(void **state)
 	cut(&c, 5); // the swap, then five downdates
 	cut(&c, 100);
 	cut(&c, 100); // the swap, then another start
-	for (int tick = 0; tick < 3; ++tick)
+	for (int tick = 0; tick < 3; tick++)
 		cut(&c, 0);
 	assert_int_equal(c.r.update.waiting_count, 0);
 	assert_false(c.r.update.making);
@@ -193,13 +193,13 @@ static void test_no_element_waits_long(void **state)
 	(void)state;
 	// below, at and above what downdates can serve in a tick
 	static const int rates[] = {3, 7, 12, 13, 14, 16, 17, 24, 25, 40};
-	for (size_t k = 0; k < sizeof rates / sizeof *rates; ++k) {
+	for (size_t k = 0; k < sizeof rates / sizeof *rates; k++) {
 		cutter c;
 		make(&c, SLAB, CAU_PRECISION_SINGLE, 1, 1.0 / 60);
-		for (int tick = 0; tick < 40; ++tick) {
+		for (int tick = 0; tick < 40; tick++) {
 			cut(&c, rates[k]);
 			assert_true(c.r.update.operation_count <= CAU_DOWNDATES_AT_MOST);
-			for (int32_t w = 0; w < c.r.update.waiting_count; ++w)
+			for (int32_t w = 0; w < c.r.update.waiting_count; w++)
 				assert_true((double)(c.tick - c.r.update.waiting[w].tick) / 60 <= WAIT_MOST_S);
 		}
 		assert_true((double)c.r.update.longest_wait / 60 <= WAIT_MOST_S);
@@ -221,7 +221,7 @@ static void test_a_worn_factor_is_replaced(void **state)
 		assert_true(c.r.update.operation_count <= CAU_DOWNDATES_AT_MOST);
 	}
 	assert_true(total > CAU_DOWNDATES_AT_MOST);
-	for (int tick = 0; tick < 3; ++tick)
+	for (int tick = 0; tick < 3; tick++)
 		cut(&c, 0);
 	assert_int_equal(c.r.update.waiting_count, 0);
 	assert_true(c.r.update.operation_count < 40);
@@ -239,7 +239,7 @@ static void test_every_run_is_the_same(void **state)
 	cutter a, b;
 	make(&a, LAYERS, CAU_PRECISION_SINGLE, 1, 1.0 / 240);
 	make(&b, LAYERS, CAU_PRECISION_SINGLE, 3, 1.0 / 240);
-	for (size_t k = 0; k < sizeof script / sizeof *script; ++k) {
+	for (size_t k = 0; k < sizeof script / sizeof *script; k++) {
 		cut(&a, script[k]);
 		if (a.r.update.making)
 			cau_background_wait(a.r.update.background); // a's factor is ready early
@@ -260,13 +260,13 @@ static void test_nothing_left(void **state)
 	(void)state;
 	cutter c;
 	make(&c, SLAB, CAU_PRECISION_DOUBLE, 1, 1.0 / 60);
-	for (int kind = 0; kind < CAU_ELEMENT_KINDS; ++kind)
-		for (int32_t e = 0; e < cau_tissue_element_count(&c.r.tissue, kind); ++e)
+	for (int kind = 0; kind < CAU_ELEMENT_KINDS; kind++)
+		for (int32_t e = 0; e < cau_tissue_element_count(&c.r.tissue, kind); e++)
 			rig_remove(&c.r, kind, e, 0);
-	for (int tick = 0; tick < 3; ++tick)
+	for (int tick = 0; tick < 3; tick++)
 		cut(&c, 0);
 	solve_by_sweep(&c.r, c.load, c.solution);
-	for (size_t i = 0; i < c.reals; ++i) {
+	for (size_t i = 0; i < c.reals; i++) {
 		double expected =
 			c.load[i] * c.r.solver.step_s * c.r.solver.step_s / c.r.tissue.mass[i / 3];
 		assert_near(c.solution[i], expected, 1e-14 * fabs(expected)); // a division or two

@@ -7,7 +7,7 @@
 static void test_laws_with_an_energy(void **state)
 {
 	(void)state;
-	for (int k = 0; k < LAW_SCENES; ++k) {
+	for (int k = 0; k < LAW_SCENES; k++) {
 		rig r;
 		rig_begin(&r);
 		law_scenes[k].add(&r);
@@ -48,10 +48,10 @@ static void test_diagonal_step(void **state)
 	rig_factor(&r);
 	size_t n = (size_t)r.tissue.vertex_count;
 	double *in = (double *)r.solver.gradient, *out = (double *)r.solver.increment;
-	for (size_t i = 0; i < 4 * n; ++i)
+	for (size_t i = 0; i < 4 * n; i++)
 		in[i] = (double)(i % 7) - 3;
 	cau_solver_apply_inverse(&r.solver, r.solver.gradient, r.solver.increment, -1);
-	for (size_t i = 0; i < 3 * n; ++i) {
+	for (size_t i = 0; i < 3 * n; i++) {
 		double expected = -in[4 * (i / 3) + i % 3] / r.solver.system.diagonal[i / 3];
 		assert_true(out[4 * (i / 3) + i % 3] == expected);
 	}

@@ -35,7 +35,7 @@ static double *load(rig *r)
 	uint64_t random = 91;
 	size_t n = 3 * (size_t)r->tissue.vertex_count;
 	double *b = cau_arena_array(&r->arena, n, sizeof(double));
-	for (size_t i = 0; i < n; ++i)
+	for (size_t i = 0; i < n; i++)
 		b[i] = r->tissue.pinned[i / 3] ? 0 : (float)random_between(&random, -1, 1);
 	return b;
 }
@@ -43,7 +43,7 @@ static double *load(rig *r)
 static void cut_some(rig *r, uint64_t tick, int count)
 {
 	uint64_t random = 92 + tick;
-	for (int i = 0; i < count; ++i) {
+	for (int i = 0; i < count; i++) {
 		int kind = (int)random_between(&random, 0, CAU_ELEMENT_KINDS);
 		int32_t most = cau_tissue_element_count(&r->tissue, kind);
 		int32_t e = (int32_t)random_between(&random, 0, most);
@@ -56,9 +56,9 @@ static void cut_some(rig *r, uint64_t tick, int count)
 static void test_agree_with_the_factor(void **state)
 {
 	(void)state;
-	for (int s = 0; s < SOLVE_SCENES; ++s)
-		for (form panels = 0; panels < FORM_COUNT; ++panels)
-			for (int t = 0; t < 3; ++t) {
+	for (int s = 0; s < SOLVE_SCENES; s++)
+		for (form panels = 0; panels < FORM_COUNT; panels++)
+			for (int t = 0; t < 3; t++) {
 				if (!has_tier(panels != DOUBLES, TIERS[t]))
 					continue;
 				rig r;
@@ -71,7 +71,7 @@ static void test_agree_with_the_factor(void **state)
 				if (!(off < CLOSE[panels]))
 					fail_msg("%s, %s, %s: off by %g", solve_scenes[s].name, TIERS[t],
 					         FORM_NAMES[panels], off);
-				for (size_t i = 0; i < n; ++i)
+				for (size_t i = 0; i < n; i++)
 					assert_true(!r.tissue.pinned[i / 3] || x[i] == 0);
 				rig_finish(&r);
 			}
@@ -81,9 +81,9 @@ static void test_agree_with_the_factor(void **state)
 static void residual(const double *a, const double *b, const double *x, size_t n, double *r)
 {
 	memcpy(r, b, 3 * n * sizeof *r);
-	for (size_t i = 0; i < n; ++i)
-		for (size_t j = 0; j < n; ++j)
-			for (size_t c = 0; c < 3; ++c)
+	for (size_t i = 0; i < n; i++)
+		for (size_t j = 0; j < n; j++)
+			for (size_t c = 0; c < 3; c++)
 				r[3 * i + c] -= a[i * n + j] * x[3 * j + c];
 }
 
@@ -91,8 +91,8 @@ static void residual(const double *a, const double *b, const double *x, size_t n
 static void test_increments_refine(void **state)
 {
 	(void)state;
-	for (int s = 0; s < SOLVE_SCENES; ++s)
-		for (int t = 0; t < 3; ++t) {
+	for (int s = 0; s < SOLVE_SCENES; s++)
+		for (int t = 0; t < 3; t++) {
 			if (!has_tier(1, TIERS[t]))
 				continue;
 			rig r;
@@ -104,10 +104,10 @@ static void test_increments_refine(void **state)
 			solve_dense_matrix(&r, a);
 			solve_by_factor(&r, b, expected);
 			memset(x, 0, 3 * n * sizeof *x);
-			for (int k = 0; k < 3; ++k) {
+			for (int k = 0; k < 3; k++) {
 				residual(a, b, x, n, rest);
 				solve_by_sweep(&r, rest, d);
-				for (size_t i = 0; i < 3 * n; ++i)
+				for (size_t i = 0; i < 3 * n; i++)
 					x[i] += d[i];
 			}
 			double off = rig_difference(x, expected, 3 * n);
@@ -122,8 +122,8 @@ static void test_threads_change_nothing(void **state)
 {
 	(void)state;
 	static const int32_t threads[] = {1, 2, 3, 7};
-	for (int s = 0; s < SOLVE_SCENES; ++s)
-		for (form panels = 0; panels < FORM_COUNT; ++panels) {
+	for (int s = 0; s < SOLVE_SCENES; s++)
+		for (form panels = 0; panels < FORM_COUNT; panels++) {
 			rig first;
 			make(&first, s, panels, NULL, 1);
 			size_t n = 3 * (size_t)first.tissue.vertex_count;
@@ -131,7 +131,7 @@ static void test_threads_change_nothing(void **state)
 			solve_by_sweep(&first, b, expected[0]);
 			cut_some(&first, 0, 8);
 			solve_by_sweep(&first, b, expected[1]);
-			for (size_t k = 1; k < sizeof threads / sizeof *threads; ++k) {
+			for (size_t k = 1; k < sizeof threads / sizeof *threads; k++) {
 				rig r;
 				make(&r, s, panels, NULL, threads[k]);
 				double *x = load(&r);
@@ -151,14 +151,14 @@ static void test_partial_packing_is_full_packing(void **state)
 {
 	(void)state;
 	static const int scenes[] = {0, 1, 2, 5};
-	for (size_t s = 0; s < sizeof scenes / sizeof *scenes; ++s)
-		for (form form_of = 0; form_of < FORM_COUNT; ++form_of) {
+	for (size_t s = 0; s < sizeof scenes / sizeof *scenes; s++)
+		for (form form_of = 0; form_of < FORM_COUNT; form_of++) {
 			rig r;
 			make(&r, scenes[s], form_of, NULL, 1);
 			cau_sweep *sweep = &r.solver.sweep;
 			size_t size = sweep->kernels->vectors->real_bytes;
 			size_t panel = (size_t)sweep->panel_entries * cau_sweep_entry_bytes(sweep);
-			for (uint64_t tick = 0; tick < 12; ++tick)
+			for (uint64_t tick = 0; tick < 12; tick++)
 				cut_some(&r, tick, 6);
 			assert_true(r.update.operation_count > 10);
 			void *panels = cau_arena_copy(&r.arena, sweep->panel, panel, 1);
@@ -176,12 +176,12 @@ static void test_partial_packing_is_full_packing(void **state)
 static void test_shape(void **state)
 {
 	(void)state;
-	for (int s = 0; s < SOLVE_SCENES; ++s) {
+	for (int s = 0; s < SOLVE_SCENES; s++) {
 		rig r;
 		make(&r, s, DOUBLES, NULL, 1);
 		const cau_sweep *sweep = &r.solver.sweep;
 		int32_t next = 0, above = 0;
-		for (int32_t k = 0; k < sweep->supernode_count; ++k) {
+		for (int32_t k = 0; k < sweep->supernode_count; k++) {
 			const cau_supernode *node = &sweep->supernode[k];
 			assert_int_equal(node->first, next);
 			assert_true(node->columns > 0);

@@ -10,7 +10,7 @@ enum { VERTICES = 5 };
 static void test_what_is_added_is_read(void **state)
 {
 	(void)state;
-	for (int single = 0; single < 2; ++single) {
+	for (int single = 0; single < 2; single++) {
 		const cau_vectors *vectors = cau_kernels_choose(single, "baseline")->vectors;
 		assert_int_equal(vectors->real_bytes, single ? sizeof(float) : sizeof(double));
 		cau_reals *vector = calloc(4 * VERTICES, vectors->real_bytes);
@@ -20,12 +20,12 @@ static void test_what_is_added_is_read(void **state)
 		double got[3];
 		vectors->add(vector, 2, third);
 		vectors->read(vector, 2, got);
-		for (int c = 0; c < 3; ++c) {
+		for (int c = 0; c < 3; c++) {
 			double rounded = single ? (double)(float)third[c] : third[c];
 			assert_true(got[c] == rounded);
 			assert_true(vectors->at(vector, 4 * 2 + c) == rounded);
 			vectors->take_coordinate(column, vector, c, VERTICES);
-			for (int v = 0; v < VERTICES; ++v)
+			for (int v = 0; v < VERTICES; v++)
 				assert_true(vectors->at(column, v) == (v == 2 ? rounded : 0));
 		}
 		vectors->read(vector, 3, got); // its neighbour
@@ -44,7 +44,7 @@ static void test_what_is_added_is_read(void **state)
 static void test_displacements_and_steps(void **state)
 {
 	(void)state;
-	for (int single = 0; single < 2; ++single) {
+	for (int single = 0; single < 2; single++) {
 		rig r;
 		rig_begin(&r);
 		r.scene->precision = single ? CAU_PRECISION_SINGLE : CAU_PRECISION_DOUBLE;
@@ -53,11 +53,11 @@ static void test_displacements_and_steps(void **state)
 		cau_step_solver *solver = &r.solver;
 		const cau_vectors *vectors = solver->kernels->vectors;
 		int32_t n = r.tissue.vertex_count;
-		for (int32_t i = 0; i < 3 * n; ++i)
+		for (int32_t i = 0; i < 3 * n; i++)
 			solver->position[i] = r.tissue.rest[i] + 0.001 * i;
 		memset(solver->displacement, 0, 4 * (size_t)n * vectors->real_bytes);
 		vectors->displace(solver, 1, n);
-		for (int32_t i = 0; i < 3 * n; ++i) {
+		for (int32_t i = 0; i < 3 * n; i++) {
 			double wanted = i < 3 ? 0 : solver->position[i] - r.tissue.rest[i];
 			wanted = single ? (double)(float)wanted : wanted;
 			assert_true(vectors->at(solver->displacement, 4 * (i / 3) + i % 3) == wanted);
@@ -65,7 +65,7 @@ static void test_displacements_and_steps(void **state)
 		memcpy(solver->position_before, r.tissue.rest, 3 * (size_t)n * sizeof(double));
 		memcpy(solver->trial_increment, solver->displacement, 4 * (size_t)n * vectors->real_bytes);
 		vectors->step(solver, 0.5, 0, n);
-		for (int32_t i = 0; i < 3 * n; ++i) {
+		for (int32_t i = 0; i < 3 * n; i++) {
 			double way = i < 3 ? 0 : 0.0005 * i;
 			assert_near(solver->position[i], r.tissue.rest[i] + way, vectors->rounding);
 		}

@@ -10,9 +10,9 @@ static const double FLAT_TOLERANCE = 1e-15;
 
 static void combine(const rig *r, int32_t hinge, const double *x, double e[3])
 {
-	for (int c = 0; c < 3; ++c) {
+	for (int c = 0; c < 3; c++) {
 		e[c] = 0;
-		for (int i = 0; i < 4; ++i)
+		for (int i = 0; i < 4; i++)
 			e[c] += r->tissue.hinge_coefficient[4 * hinge + i] *
 			        x[3 * r->tissue.hinge_vertex[4 * hinge + i] + c];
 	}
@@ -31,16 +31,16 @@ static void test_flat_patches_do_not_bend(void **state)
 	assert_int_equal(r.tissue.vertex_count, VERTICES);
 	double turn[3][3], x[3 * VERTICES] = {0}, e[3], gradient[3 * VERTICES];
 	mat_rotation((double[]){1, 2, -1}, 0.8, turn);
-	for (int32_t v = 0; v < r.tissue.vertex_count; ++v)
+	for (int32_t v = 0; v < r.tissue.vertex_count; v++)
 		mat_apply(turn, r.tissue.rest + 3 * v, x + 3 * v);
-	for (int32_t h = 0; h < r.tissue.hinge_count; ++h)
-		for (int turned = 0; turned < 2; ++turned) {
+	for (int32_t h = 0; h < r.tissue.hinge_count; h++)
+		for (int turned = 0; turned < 2; turned++) {
 			combine(&r, h, turned ? x : r.tissue.rest, e);
-			for (int c = 0; c < 3; ++c)
+			for (int c = 0; c < 3; c++)
 				assert_near(e[c], 0, FLAT_TOLERANCE * 10);
 		}
 	// and a stretch within the plane is no bending either
-	for (int32_t i = 0; i < 3 * r.tissue.vertex_count; ++i)
+	for (int32_t i = 0; i < 3 * r.tissue.vertex_count; i++)
 		x[i] *= 1.3;
 	rig_local(&r, x, gradient);
 	assert_true(rig_energy_of(&r, CAU_ELEMENT_HINGE) < 1e-25);
@@ -57,13 +57,13 @@ static void test_bent_patches_by_hand(void **state)
 	law_add_roof(&r);
 	rig_build(&r, NULL, 1);
 	assert_int_equal(r.tissue.hinge_count, 3);
-	for (int32_t h = 0; h < 3; ++h) {
+	for (int32_t h = 0; h < 3; h++) {
 		const int32_t *v = r.tissue.hinge_vertex + 4 * h;
 		cau_vec3 a = cau_vec3_of(r.tissue.rest + 3 * v[0]);
 		cau_vec3 along = cau_sub(cau_vec3_of(r.tissue.rest + 3 * v[1]), a), sum = {0, 0, 0};
 		double length = cau_length(along), e[3], area = 0;
 		along = cau_scale(1 / length, along);
-		for (int k = 0; k < 2; ++k) {
+		for (int k = 0; k < 2; k++) {
 			cau_vec3 up = cau_sub(cau_vec3_of(r.tissue.rest + 3 * v[2 + k]), a);
 			up = cau_add_scaled(up, -cau_dot(up, along), along);
 			area += cau_length(up) * length / 2;

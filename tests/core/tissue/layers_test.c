@@ -22,11 +22,11 @@ static void test_layers_lie_one_after_the_other(void **state)
 	assert_int_equal(membrane->vertex_count, fat->vertex_count);
 	assert_int_equal(fascia->first_vertex, fat->vertex_count);
 	assert_int_equal(r.tissue.vertex_count, 7 * 6 * 4 + 8 * 7);
-	for (int32_t t = 0; t < r.tissue.triangle_count; ++t) {
+	for (int32_t t = 0; t < r.tissue.triangle_count; t++) {
 		const cau_tissue_layer *layer = &r.tissue.layer[r.tissue.triangle_layer[t]];
 		assert_true(t >= layer->first_triangle &&
 		            t < layer->first_triangle + layer->triangle_count);
-		for (int i = 0; i < 3; ++i) {
+		for (int i = 0; i < 3; i++) {
 			int32_t v = r.tissue.triangle[3 * t + i] - layer->first_vertex;
 			assert_in_range(v, 0, layer->vertex_count - 1);
 		}
@@ -46,7 +46,7 @@ static void test_membrane_is_the_outward_boundary(void **state)
 	const cau_tissue_layer *membrane = &r.tissue.layer[1];
 	double flux = 0; // of x through the surface: three times the volume
 	for (int32_t t = membrane->first_triangle;
-	     t < membrane->first_triangle + membrane->triangle_count; ++t) {
+	     t < membrane->first_triangle + membrane->triangle_count; t++) {
 		const int32_t *v = r.tissue.triangle + 3 * t;
 		cau_vec3 a = cau_vec3_of(r.tissue.rest + 3 * v[0]);
 		cau_vec3 b = cau_vec3_of(r.tissue.rest + 3 * v[1]);
@@ -81,7 +81,7 @@ static void test_frames_are_orthonormal(void **state)
 	r.scene->meshes[1].texture_turn_rad = 0.7;
 	memcpy(r.scene->layers[1].fibre, (double[]){0.2, -0.9, 0.1}, 3 * sizeof(double));
 	rig_build(&r, NULL, 1);
-	for (int32_t t = 0; t < r.tissue.triangle_count; ++t)
+	for (int32_t t = 0; t < r.tissue.triangle_count; t++)
 		assert_frame(&r, t);
 	rig_finish(&r);
 }
@@ -96,9 +96,9 @@ static void test_texture_gives_the_direction(void **state)
 	rig_add_sheet(&r, 3, 2);
 	r.scene->meshes[0].texture_turn_rad = turn;
 	rig_build(&r, NULL, 1);
-	for (int32_t t = 0; t < r.tissue.triangle_count; ++t) {
+	for (int32_t t = 0; t < r.tissue.triangle_count; t++) {
 		const double expected[6] = {cos(turn), sin(turn), 0, -sin(turn), cos(turn), 0};
-		for (int i = 0; i < 6; ++i)
+		for (int i = 0; i < 6; i++)
 			assert_near(r.tissue.triangle_frame[6 * t + i], expected[i], FRAME_TOLERANCE);
 	}
 	rig_finish(&r);
@@ -111,7 +111,7 @@ static void test_fibre_gives_the_direction(void **state)
 	static const double points[3][3] = {{0, 0, 0}, {0.02, 0, 0}, {0, 0.02, 0}};
 	static const int32_t vertex[3] = {0, 1, 2};
 	static const double fibres[2][3] = {{0.6, 0.8, 5}, {0, 0, 2}};
-	for (int k = 0; k < 2; ++k) {
+	for (int k = 0; k < 2; k++) {
 		rig r;
 		rig_begin(&r);
 		cau_layer_def *layer = rig_add_triangles(&r, 3, points[0], 1, vertex);
@@ -140,7 +140,7 @@ static void test_degenerate_triangles_are_refused_by_name(void **state)
 	     "triangle 1"}, // a texture that lies on one line
 		{"v 0 0 0\nv 1 0 0\nv 0 1 0\nv 2 0 0\nf 1 2 3\nf 1 2 4\n", "1"}, // no area
 	};
-	for (size_t k = 0; k < sizeof refusals / sizeof *refusals; ++k) {
+	for (size_t k = 0; k < sizeof refusals / sizeof *refusals; k++) {
 		rig r;
 		cau_error error = {0};
 		rig_begin(&r);
@@ -156,7 +156,7 @@ static void test_degenerate_triangles_are_refused_by_name(void **state)
 static void test_layers_without_elements_are_refused_by_name(void **state)
 {
 	(void)state;
-	for (int kind = 0; kind < 2; ++kind) {
+	for (int kind = 0; kind < 2; kind++) {
 		rig r;
 		cau_error error = {0};
 		rig_begin(&r);

@@ -32,10 +32,10 @@ static void test_the_nearest_within_reach(void **state)
 	int32_t lower_count = t->layer[0].vertex_count, counted = 0;
 	assert_true(t->link_count > 0);
 	assert_int_equal(t->layer[2].link_count, t->link_count);
-	for (int32_t upper = t->layer[1].first_vertex; upper < t->vertex_count; ++upper) {
+	for (int32_t upper = t->layer[1].first_vertex; upper < t->vertex_count; upper++) {
 		double farthest = 0;
 		int32_t taken = 0, nearer = 0, reachable = 0;
-		for (int32_t k = 0; k < t->link_count; ++k)
+		for (int32_t k = 0; k < t->link_count; k++)
 			if (t->link[2 * k] == upper) {
 				assert_in_range(t->link[2 * k + 1], 0, lower_count - 1);
 				double length = distance(&r, upper, t->link[2 * k + 1]);
@@ -44,7 +44,7 @@ static void test_the_nearest_within_reach(void **state)
 				farthest = fmax(farthest, length);
 				taken++;
 			}
-		for (int32_t v = 0; v < lower_count; ++v) {
+		for (int32_t v = 0; v < lower_count; v++) {
 			reachable += distance(&r, upper, v) <= REACH_M;
 			nearer += distance(&r, upper, v) < farthest * (1 - 1e-12);
 		}

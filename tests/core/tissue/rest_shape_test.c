@@ -22,11 +22,11 @@ static void test_masses_are_density_times_volume(void **state)
 	rig r;
 	make(&r);
 	double mass = 0, volume = 0, area[2] = {0, 0}, expected;
-	for (int32_t v = 0; v < r.tissue.vertex_count; ++v)
+	for (int32_t v = 0; v < r.tissue.vertex_count; v++)
 		mass += r.tissue.mass[v];
-	for (int32_t t = 0; t < r.tissue.tetrahedron_count; ++t)
+	for (int32_t t = 0; t < r.tissue.tetrahedron_count; t++)
 		volume += r.tissue.tetrahedron_volume[t];
-	for (int32_t t = 0; t < r.tissue.triangle_count; ++t)
+	for (int32_t t = 0; t < r.tissue.triangle_count; t++)
 		area[r.tissue.triangle_layer[t] == 2] += r.tissue.triangle_area[t];
 	const double size[3] = {0.1, 0.08, 0.03};
 	assert_near(volume, size[0] * size[1] * size[2], MASS_TOLERANCE * volume);
@@ -47,23 +47,23 @@ static void test_maps_reproduce_the_rest_shape(void **state)
 	(void)state;
 	rig r;
 	make(&r);
-	for (int kind = 0; kind < CAU_ELEMENT_KINDS; ++kind)
-		for (int32_t e = 0; e < cau_tissue_element_count(&r.tissue, kind); ++e) {
+	for (int kind = 0; kind < CAU_ELEMENT_KINDS; kind++)
+		for (int32_t e = 0; e < cau_tissue_element_count(&r.tissue, kind); e++) {
 			cau_element_map map;
 			double f[3][3] = {{0}};
 			cau_tissue_element_map(&r.tissue, kind, e, &map);
-			for (int c = 0; c < map.rank; ++c) {
+			for (int c = 0; c < map.rank; c++) {
 				double sum = 0, size = 0;
-				for (int i = 0; i < map.vertex_count; ++i) {
+				for (int i = 0; i < map.vertex_count; i++) {
 					sum += map.coefficient[c][i];
 					size += fabs(map.coefficient[c][i]);
-					for (int row = 0; row < 3; ++row)
+					for (int row = 0; row < 3; row++)
 						f[row][c] += map.coefficient[c][i] * r.tissue.rest[3 * map.vertex[i] + row];
 				}
 				assert_near(sum, 0, INVERSE_TOLERANCE * size);
 			}
-			for (int c = 0; c < map.rank; ++c)
-				for (int row = 0; row < 3; ++row) {
+			for (int c = 0; c < map.rank; c++)
+				for (int row = 0; row < 3; row++) {
 					double expected = row == c; // fat
 					if (kind == CAU_ELEMENT_TRIANGLE)
 						expected = r.tissue.triangle_frame[6 * e + 3 * c + row];

@@ -24,7 +24,7 @@ static void make(choice *c, int kind, const char *layer)
 static int32_t count(const choice *c)
 {
 	int32_t n = 0;
-	for (int32_t v = 0; v < c->r.tissue.vertex_count; ++v)
+	for (int32_t v = 0; v < c->r.tissue.vertex_count; v++)
 		n += c->chosen[v];
 	return n;
 }
@@ -36,7 +36,7 @@ static void test_rim(void **state)
 	make(&c, CAU_SELECT_RIM, "layer2");
 	assert_int_equal(cau_tissue_select(&c.r.tissue, &c.selection, c.chosen), 2 * (7 + 6));
 	assert_int_equal(count(&c), 2 * (7 + 6));
-	for (int32_t v = c.r.tissue.layer[2].first_vertex; v < c.r.tissue.vertex_count; ++v) {
+	for (int32_t v = c.r.tissue.layer[2].first_vertex; v < c.r.tissue.vertex_count; v++) {
 		const double *x = c.r.tissue.rest + 3 * v;
 		int rim = fabs(fabs(x[0]) - 0.05) < 1e-9 || fabs(fabs(x[1]) - 0.04) < 1e-9;
 		assert_int_equal(c.chosen[v], rim);
@@ -51,8 +51,8 @@ static void test_box_and_sphere(void **state)
 {
 	(void)state;
 	static const int kinds[] = {CAU_SELECT_BOX, CAU_SELECT_SPHERE};
-	for (int k = 0; k < 2; ++k)
-		for (int named = 0; named < 2; ++named) {
+	for (int k = 0; k < 2; k++)
+		for (int named = 0; named < 2; named++) {
 			choice c;
 			make(&c, kinds[k], named ? "layer0" : "");
 			memcpy(c.selection.least_m, (double[]){-0.02, -0.05, -0.011}, 3 * sizeof(double));
@@ -61,10 +61,10 @@ static void test_box_and_sphere(void **state)
 			c.selection.radius_m = 0.02;
 			int32_t expected = 0;
 			int32_t reported = cau_tissue_select(&c.r.tissue, &c.selection, c.chosen);
-			for (int32_t v = 0; v < c.r.tissue.vertex_count; ++v) {
+			for (int32_t v = 0; v < c.r.tissue.vertex_count; v++) {
 				const double *x = c.r.tissue.rest + 3 * v;
 				int in = !named || v < c.r.tissue.layer[0].vertex_count;
-				for (int i = 0; i < 3 && !k; ++i)
+				for (int i = 0; i < 3 && !k; i++)
 					in &= x[i] >= c.selection.least_m[i] && x[i] <= c.selection.most_m[i];
 				if (k)
 					in &= hypot(hypot(x[0] - 0.01, x[1]), x[2]) <= 0.02;
@@ -86,7 +86,7 @@ static void test_nearest(void **state)
 	assert_int_equal(cau_tissue_select(&c.r.tissue, &c.selection, c.chosen), 1);
 	assert_int_equal(count(&c), 1);
 	double least = INFINITY, got = 0;
-	for (int32_t v = c.r.tissue.layer[2].first_vertex; v < c.r.tissue.vertex_count; ++v) {
+	for (int32_t v = c.r.tissue.layer[2].first_vertex; v < c.r.tissue.vertex_count; v++) {
 		cau_vec3 away =
 			cau_sub(cau_vec3_of(c.r.tissue.rest + 3 * v), cau_vec3_of(c.selection.center_m));
 		least = fmin(least, cau_length(away));

@@ -57,10 +57,10 @@ static void test_quarter_arc_against_sampling(void **state)
 	const double sampling = radius * (M_PI / 2) / SAMPLES / 2;
 	cau_vec3 center = {0.3, -0.2, 0.5};
 	uint64_t random = 11;
-	for (int i = 0; i < POINTS; ++i) {
+	for (int i = 0; i < POINTS; i++) {
 		cau_vec3 p = random_point(&random, 3);
 		double nearest = INFINITY;
-		for (int k = 0; k <= SAMPLES; ++k) {
+		for (int k = 0; k <= SAMPLES; k++) {
 			double angle = M_PI + (M_PI / 2) * k / SAMPLES;
 			cau_vec3 core = {center.x + radius * cos(angle), center.y,
 			                 center.z + radius * sin(angle)};

@@ -32,10 +32,10 @@ enum { SIZES = sizeof sizes / sizeof *sizes };
 
 static void for_every_part(check check_part)
 {
-	for (int shape = 0; shape < CAU_TOOL_SHAPE_COUNT; ++shape)
-		for (int size = 0; size < SIZES; ++size)
-			for (int j = 0; j < 3; ++j)
-				for (int part = CAU_PART_HOT; part <= CAU_PART_BOTH; ++part) {
+	for (int shape = 0; shape < CAU_TOOL_SHAPE_COUNT; shape++)
+		for (int size = 0; size < SIZES; size++)
+			for (int j = 0; j < 3; j++)
+				for (int part = CAU_PART_HOT; part <= CAU_PART_BOTH; part++) {
 					cau_tool_def tool = tool_with_defaults(shape);
 					tool.hot_radius_m = sizes[size][0];
 					tool.tip_length_m = sizes[size][1];
@@ -65,7 +65,7 @@ static int lacks(const cau_tool_def *tool, cau_tool_part part)
 static void test_rows_say_what_shapes_have(void **state)
 {
 	(void)state;
-	for (int shape = 0; shape < CAU_TOOL_SHAPE_COUNT; ++shape) {
+	for (int shape = 0; shape < CAU_TOOL_SHAPE_COUNT; shape++) {
 		cau_tool_def tool = tool_with_defaults(shape);
 		const cau_tool_family *family = rows[shape].family;
 		assert_true(family->cold && family->cold_bound); // whatever the shape, it pushes
@@ -89,7 +89,7 @@ static void check_lipschitz(const cau_tool_def *tool, double jaw, cau_tool_part 
 	if (lacks(tool, part))
 		return;
 	uint64_t random = 5;
-	for (int i = 0; i < POINTS; ++i) {
+	for (int i = 0; i < POINTS; i++) {
 		double box = box_of(tool), reach = i % 2 ? box : box / 100; // far and near pairs
 		cau_vec3 a = random_point(&random, box);
 		cau_vec3 b = cau_add(a, random_point(&random, reach));
@@ -118,12 +118,12 @@ static void check_gradient(const cau_tool_def *tool, double jaw, cau_tool_part p
 		return;
 	uint64_t random = 7;
 	int compared = 0;
-	for (int i = 0; i < POINTS; ++i) {
+	for (int i = 0; i < POINTS; i++) {
 		cau_vec3 p = random_point(&random, box_of(tool)), g, difference, above, below;
 		double *out[3] = {&difference.x, &difference.y, &difference.z}, turned = 0;
 		cau_tool_distance(tool, jaw, part, p, &g);
 		assert_near(cau_length(g), 1, 1e-12);
-		for (int axis = 0; axis < 3; ++axis) {
+		for (int axis = 0; axis < 3; axis++) {
 			double step[3] = {0};
 			step[axis] = H_M;
 			cau_vec3 h = cau_vec3_of(step);
@@ -135,7 +135,7 @@ static void check_gradient(const cau_tool_def *tool, double jaw, cau_tool_part p
 		if (fabs(cau_length(difference) - 1) > TOLERANCE)
 			continue;
 		assert_true(cau_length(cau_sub(difference, g)) < fmax(TOLERANCE * 2, turned));
-		++compared;
+		compared++;
 	}
 	assert_true(compared > POINTS * 99 / 100); // creases are thin
 }
@@ -158,7 +158,7 @@ static void check_surface_and_bound(const cau_tool_def *tool, double jaw, cau_to
 	cau_tool_bound(tool, part, &center, &radius);
 	uint64_t random = 9;
 	int outside = 0;
-	for (int i = 0; i < POINTS; ++i) {
+	for (int i = 0; i < POINTS; i++) {
 		cau_vec3 g, p = random_point(&random, i % 2 ? box_of(tool) : 2 * tool->hot_radius_m);
 		double d = cau_tool_distance(tool, jaw, part, p, &g);
 		outside += d > 0;
@@ -188,7 +188,7 @@ static void check_not_covered(const cau_tool_def *tool, double jaw, cau_tool_par
 	if (tool->tip_length_m < 2 * tool->hot_radius_m)
 		return; // jaws wider than long turn into the shaft
 	uint64_t random = 13;
-	for (int i = 0; i < POINTS; ++i) {
+	for (int i = 0; i < POINTS; i++) {
 		cau_vec3 p = random_point(&random, box_of(tool));
 		double hot = cau_tool_distance(tool, jaw, CAU_PART_HOT, p, NULL);
 		double cold = cau_tool_distance(tool, jaw, CAU_PART_COLD, p, NULL);
@@ -205,7 +205,7 @@ static void test_hot_is_not_covered(void **state)
 static void test_tip_is_hot(void **state)
 {
 	(void)state;
-	for (int shape = 0; shape < CAU_TOOL_SHAPE_COUNT; ++shape) {
+	for (int shape = 0; shape < CAU_TOOL_SHAPE_COUNT; shape++) {
 		cau_tool_def tool = tool_with_defaults(shape);
 		if (lacks(&tool, CAU_PART_HOT))
 			continue;
@@ -257,7 +257,7 @@ static void test_known_surfaces(void **state)
 		{CAU_TOOL_GRASPER, CAU_PART_COLD, 0, {1e-3, 2.5e-3, 2e-3}, {0, 1, 0}},
 		/* a new shape's points go above this line */
 	};
-	for (size_t i = 0; i < sizeof known / sizeof *known; ++i) {
+	for (size_t i = 0; i < sizeof known / sizeof *known; i++) {
 		cau_tool_def tool = tool_with_defaults(known[i].shape);
 		cau_vec3 g, outside = cau_add_scaled(known[i].point, 1e-4, known[i].normal);
 		double jaw = known[i].jaw;
@@ -274,7 +274,7 @@ static void test_known_surfaces(void **state)
 static void test_jaws_open(void **state)
 {
 	(void)state;
-	for (int shape = CAU_TOOL_BIPOLAR; shape <= CAU_TOOL_GRASPER; ++shape) {
+	for (int shape = CAU_TOOL_BIPOLAR; shape <= CAU_TOOL_GRASPER; shape++) {
 		cau_tool_def tool = tool_with_defaults(shape);
 		int shears = shape == CAU_TOOL_SHEARS;
 		cau_tool_part part = shape == CAU_TOOL_BIPOLAR ? CAU_PART_HOT : CAU_PART_COLD;
@@ -309,7 +309,7 @@ static void test_world_frame(void **state)
 	cau_tool_def tool = tool_with_defaults(CAU_TOOL_HOOK);
 	cau_pose pose = pose_turned((cau_vec3){0.2, -0.1, 0.4}, (cau_vec3){1, 2, 3}, 0.8);
 	uint64_t random = 3;
-	for (int i = 0; i < 200; ++i) {
+	for (int i = 0; i < 200; i++) {
 		cau_vec3 local = random_point(&random, BOX_M), g, g_world;
 		cau_vec3 world = cau_pose_to_world(&pose, local);
 		double d = cau_tool_distance(&tool, 0, CAU_PART_BOTH, local, &g);
@@ -339,14 +339,14 @@ static void check_segments(const cau_tool_def *tool, double jaw, cau_tool_part p
 		return;
 	uint64_t random = 17;
 	int met = 0, missed = 0;
-	for (int i = 0; i < SEGMENTS; ++i) {
+	for (int i = 0; i < SEGMENTS; i++) {
 		// Far and long, far and short, about the tip, and at what is nearest.
 		double box = box_of(tool);
 		cau_vec3 a = random_point(&random, i % 4 == 2 ? tool->hot_radius_m : box);
 		cau_vec3 b = i % 4 == 3 ? aimed(tool, jaw, part, a, &random)
 		                        : cau_add(a, random_point(&random, i % 4 ? box / 10 : box));
 		double gap = cau_length(cau_sub(b, a)) / SAMPLES, least = INFINITY;
-		for (int k = 0; k <= SAMPLES; ++k) {
+		for (int k = 0; k <= SAMPLES; k++) {
 			cau_vec3 p = cau_add_scaled(a, (double)k / SAMPLES, cau_sub(b, a));
 			least = fmin(least, cau_tool_distance(tool, jaw, part, p, NULL));
 		}
@@ -373,7 +373,7 @@ static void test_segment_is_exact(void **state)
 	(void)state;
 	cau_tool_def tool = tool_with_defaults(CAU_TOOL_SPHERE);
 	double r = tool.hot_radius_m;
-	for (int i = 0; i < 3; ++i) {
+	for (int i = 0; i < 3; i++) {
 		double y = r + (double[]){-1e-6, 0.5e-6, 2e-6}[i];
 		cau_vec3 a = {-0.01, y, 0}, b = {0.013, y, 0};
 		assert_int_equal(cau_tool_meets_segment(&tool, 0, CAU_PART_HOT, a, b), i < 2);
@@ -391,7 +391,7 @@ static void test_between_jaws(void **state)
 {
 	(void)state;
 	static const int shapes[] = {CAU_TOOL_BIPOLAR, CAU_TOOL_SHEARS, CAU_TOOL_GRASPER};
-	for (int i = 0; i < 3; ++i) {
+	for (int i = 0; i < 3; i++) {
 		cau_tool_def tool = tool_with_defaults(shapes[i]);
 		int shears = shapes[i] == CAU_TOOL_SHEARS;
 		double face = shears ? tool.hot_radius_m : 0;
@@ -399,7 +399,7 @@ static void test_between_jaws(void **state)
 		double high = shears ? tool.jaw_open_rad : tool.jaw_open_rad / 2;
 		// Points at half the jaws' length below the hinge, on the faces and half way between.
 		double arm = tool.tip_length_m / 2, previous = -2, coordinate;
-		for (int k = 0; k <= 4; ++k) {
+		for (int k = 0; k <= 4; k++) {
 			double angle = low + (high - low) * k / 4;
 			cau_vec3 p = {face * cos(angle) + arm * sin(angle), 0,
 			              tool.tip_length_m - arm * cos(angle) + face * sin(angle)};
@@ -420,7 +420,7 @@ static void test_between_jaws(void **state)
 		assert_true(cau_tool_between_jaws(&tool, 0, pressed, NULL)); // closed on it
 		assert_false(cau_tool_between_jaws(&tool, 0, beside, NULL));
 	}
-	for (int shape = 0; shape < CAU_TOOL_SHAPE_COUNT; ++shape) {
+	for (int shape = 0; shape < CAU_TOOL_SHAPE_COUNT; shape++) {
 		cau_tool_def tool = tool_with_defaults(shape);
 		if (!rows[shape].jaws)
 			assert_false(cau_tool_between_jaws(&tool, 1, (cau_vec3){0, 0, 0}, NULL));

@@ -89,7 +89,7 @@ static void expect_end(void (*deed)(void), const char *const *told)
 	}
 	assert_true(WIFSIGNALED(status));
 	assert_int_equal(WTERMSIG(status), SIGABRT);
-	for (; *told; ++told)
+	for (; *told; told++)
 		if (!strstr(words, *told))
 			fail_msg("\"%s\" is not said in \"%s\"", *told, words);
 }
