@@ -12,6 +12,7 @@ How the tests share the machine. The suite is run with `--parallel 4`, two slots
 cores. An ordinary test takes two. One that measures times (RUN_SERIAL in its tree) takes three: no
 other test runs beside it, but what needs no particular speed and gives way may, so that the second
 core is not idle: building (one tree at a time), fuzzing and clang-tidy, which take one and are niced.
+A sanitizer's e2e test takes one: it waits more than it computes, and bounds no times.
 Builds come first, then what measures times, then the rest, the longest time limits first.
 """
 
@@ -27,6 +28,7 @@ DERIVED = ("CONFIGURATIONS",)
 
 ORDINARY_SLOTS, TIMING_SLOTS, FILLER_SLOTS = 2, 3, 1
 FILLER_LABELS = {"fuzz", "tidy"}
+WAITING_LABEL, WAITING_SLOTS = "e2e", 1
 GIVING_WAY = ["nice", "-n", "19"]  # below the daemon's own workers, which are at 5
 BUILD_COST, TIMING_COST = 1e6, 1e5  # above any time limit, which is the cost of the others
 BUILD_LIMIT_S = 3600
@@ -86,14 +88,15 @@ def adapt(suite_name, name, value, timeout_factor):
     return value
 
 
-def schedule(properties):
+def schedule(properties, sanitized):
     """How much of the machine a test takes, and when: further properties."""
     limit = properties.get("TIMEOUT", 0)
     if FILLER_LABELS & set(properties.get("LABELS", [])):
         return {"PROCESSORS": FILLER_SLOTS, "COST": 1}
     if properties.get("RUN_SERIAL"):
         return {"PROCESSORS": TIMING_SLOTS, "COST": TIMING_COST + limit}
-    return {"PROCESSORS": ORDINARY_SLOTS, "COST": limit}
+    waits = sanitized and WAITING_LABEL in properties.get("LABELS", [])
+    return {"PROCESSORS": WAITING_SLOTS if waits else ORDINARY_SLOTS, "COST": limit}
 
 
 def define(name, command, properties):
@@ -107,10 +110,11 @@ def render(test, command, suite_name, timeout_factor, needs_build):
     given = {entry["name"]: entry["value"] for entry in test["properties"]}
     properties = {name: adapt(suite_name, name, value, timeout_factor)
                   for name, value in given.items() if name not in DERIVED + SCHEDULE}
-    properties.update(schedule(given))
+    gives_way = bool(FILLER_LABELS & set(given.get("LABELS", [])))
+    properties.update(schedule(given, timeout_factor > 1))
     if needs_build:
         properties.setdefault("FIXTURES_REQUIRED", []).append(f"{suite_name}.tree")
-    if properties["PROCESSORS"] == FILLER_SLOTS:
+    if gives_way:
         command = " ".join([*GIVING_WAY, command])
     return define(f"{suite_name}.{test['name']}", command, properties)
 

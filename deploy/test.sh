@@ -157,7 +157,7 @@ collect_all() {
 		collect clang fuzz 'fuzz|tidy' '' 1 $fuzz_target
 	fi
 	if [ "$level" = full ] || [ "$level" = long ]; then
-		collect tsan tsan 'unit|determinism|e2e' "$sanitizers_without" 10 all
+		collect tsan tsan 'unit|determinism|e2e' "unthreaded|$sanitizers_without" 10 all
 	fi
 }
 

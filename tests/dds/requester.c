@@ -20,6 +20,7 @@
 #define PERIOD_S 0.01
 
 enum { KEPT = 256 };
+enum { MATCH_PATIENCE_S = 60 }; // a sanitized daemon on a busy machine
 
 typedef struct requester {
 	dds_entity_t participant, writer, reader, command;
@@ -78,10 +79,17 @@ static void open_writer(requester *r, const char *session)
 	                           "cautery/tool_command", qos);
 	dds_delete_qos(qos);
 	dds_publication_matched_status_t matched = {0};
+	dds_entity_t match = checked(dds_create_waitset(r->participant));
+	checked(dds_set_status_mask(r->command, DDS_PUBLICATION_MATCHED_STATUS));
+	checked(dds_waitset_attach(match, r->command, 0));
 	while (matched.current_count == 0) {
+		if (checked(dds_waitset_wait(match, NULL, 0, DDS_SECS(MATCH_PATIENCE_S))) == 0) {
+			fputs("nobody matches the writer of commands\n", stderr);
+			exit(1);
+		}
 		checked(dds_get_publication_matched_status(r->command, &matched));
-		dds_sleepfor(DDS_MSECS(5));
 	}
+	dds_delete(match);
 	printf("{\"event\":\"opened\"}\n");
 }
 

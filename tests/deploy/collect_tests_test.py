@@ -21,6 +21,8 @@ add_test(NAME parser COMMAND {says})
 set_tests_properties(parser PROPERTIES LABELS fuzz)
 add_test(NAME hours COMMAND {says})
 set_tests_properties(hours PROPERTIES LABELS "unit;long")
+add_test(NAME daemon COMMAND {says})
+set_tests_properties(daemon PROPERTIES LABELS e2e)
 """
 
 
@@ -51,15 +53,19 @@ def commands_are_the_trees_own(deploy, cmake, folder):
 
 def labels_limits_and_slots(deploy, cmake, folder):
     tree = make_tree(cmake, os.path.join(folder, "slots"), "true")
-    tests = collect(deploy, os.path.join(folder, "slots-suite"), "asan", tree, "unit|fuzz", "long", "4", "true")
-    assert set(tests) == {"asan.build", "asan.quick", "asan.timed", "asan.parser"}, set(tests)
+    tests = collect(deploy, os.path.join(folder, "slots-suite"), "asan", tree, "unit|fuzz|e2e", "long", "4", "true")
+    assert set(tests) == {"asan.build", "asan.quick", "asan.timed", "asan.parser", "asan.daemon"}, set(tests)
     assert tests["asan.quick"]["TIMEOUT"] == 28 and "asan" in tests["asan.quick"]["LABELS"], tests["asan.quick"]
     assert tests["asan.quick"]["FIXTURES_REQUIRED"] == ["asan.tree"], tests["asan.quick"]
     # ctest does not name what is one
-    slots = [tests[f"asan.{name}"].get("PROCESSORS", 1) for name in ("quick", "timed", "parser", "build")]
-    assert slots == [2, 3, 1, 1], slots
+    slots = [tests[f"asan.{name}"].get("PROCESSORS", 1) for name in ("quick", "timed", "parser", "build", "daemon")]
+    assert slots == [2, 3, 1, 1, 1], slots
     assert tests["asan.build"]["COST"] > tests["asan.timed"]["COST"] > tests["asan.quick"]["COST"]
     assert tests["asan.parser"]["command"][0].endswith("nice"), tests["asan.parser"]
+    assert tests["asan.daemon"]["command"] == tests["asan.quick"]["command"], tests["asan.daemon"]
+    # where times are measured, a daemon has a core
+    plain = collect(deploy, os.path.join(folder, "plain-suite"), "release", tree, "e2e", "", "1")
+    assert plain["release.daemon"].get("PROCESSORS", 1) == 2, plain
 
 
 def main(deploy, cmake):

@@ -34,7 +34,7 @@ async function pace({ driver, session, stream }, seconds) {
 		asked++;
 		await driver.client.call('tool.energize', { session, tool: 'hook', energized: false })
 			.catch((error) => refused.push(error.message));
-		await new Promise((resolve) => setTimeout(resolve, 50));
+		await new Promise((resolve) => setTimeout(resolve, 50)); // twenty a second, as a busy page asks
 	}
 	refused.push(...driver.client.notices.filter((n) => n.method === 'tool.refused').map((n) => n.params.reason));
 	return { factor: (stream.tick - from) / 60 / (now() - began), asked, refused };

@@ -95,7 +95,7 @@ async function pace(seconds) {
 		for (let i = 0; now() - from.at < 1; i++) {
 			asked.push(driver.client.call('tool.energize', { session, tool: 'hook', energized: i % 2 === 0 })
 				.catch((error) => refused.push(error.message)));
-			await new Promise((resolve) => setTimeout(resolve, 50));
+			await new Promise((resolve) => setTimeout(resolve, 50)); // twenty a second, as a busy page asks
 		}
 		factors.push((stream.tick - from.tick) / RATE_HZ / (now() - from.at));
 	}

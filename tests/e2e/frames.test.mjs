@@ -205,7 +205,7 @@ async function untilSockets(port, most) {
 	const until = performance.now() + PATIENCE_S * 1000;
 	while (sockets(port) > most) {
 		assert.ok(performance.now() < until, `${sockets(port)} sockets are left, more than ${most}`);
-		await new Promise((resolve) => setTimeout(resolve, 20));
+		await new Promise((resolve) => setTimeout(resolve, 20)); // the kernel tells nobody that a socket went
 	}
 }
 

@@ -28,10 +28,10 @@ cau_scene_def *stage_scene(int precision)
 	return scene;
 }
 
-cau_scene_def *stage_scene_named(const char *name)
+static cau_scene_def *read_scene(const char *folder, const char *name)
 {
 	char path[512];
-	snprintf(path, sizeof path, "%s/%s.json", CAU_TEST_SCENES, name);
+	snprintf(path, sizeof path, "%s/%s.json", folder, name);
 	FILE *file = fopen(path, "rb");
 	if (!file)
 		fail_msg("cannot open %s", path);
@@ -47,16 +47,14 @@ cau_scene_def *stage_scene_named(const char *name)
 	return scene;
 }
 
+cau_scene_def *stage_scene_named(const char *name)
+{
+	return read_scene(CAU_TEST_SCENES, name);
+}
+
 cau_scene_def *stage_scene_light(const char *name)
 {
-	cau_scene_def *scene = stage_scene_named(name);
-	for (int32_t i = 0; i < scene->mesh_count; i++) {
-		cau_mesh_def *mesh = &scene->meshes[i];
-		int is_grid = mesh->source == CAU_MESH_SHEET || mesh->source == CAU_MESH_SLAB;
-		for (int c = 0; c < 3 && is_grid && CAU_TEST_SANITIZED; c++)
-			mesh->cells[c] = (mesh->cells[c] + 1) / 2;
-	}
-	return scene;
+	return read_scene(CAU_TEST_LIGHT_SCENES, name);
 }
 
 static cau_layer_def *add_layer(cau_scene_def *scene, const char *name, int kind)

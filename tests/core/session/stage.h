@@ -28,8 +28,8 @@ enum { STAGE_ABSURD_COUNT = 5 };
 cau_scene_def *stage_scene(int precision);
 // deploy/scenes/NAME.json.
 cau_scene_def *stage_scene_named(const char *name);
-// The same, but under sanitizers, where a step takes thirty times as long, with half as many cells
-// along each axis: for tests whose bounds do not know the resolution.
+// The same, but under sanitizers with half as many cells along each axis: for tests whose bounds do
+// not know the resolution.
 cau_scene_def *stage_scene_light(const char *name);
 
 // A layer on a generated mesh of its own, with the defaults of its kind; pointers into the scene.

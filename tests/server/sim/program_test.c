@@ -12,8 +12,8 @@ static const char *program;
 static int run_program(const char *arguments, char *output, size_t bytes)
 {
 	char command[1024];
-	snprintf(command, sizeof command, "%s --scenes %s %s 2>%s", program, CAU_TEST_SCENES, arguments,
-	         fixture_path("complaints"));
+	snprintf(command, sizeof command, "%s --scenes %s %s 2>%s", program, CAU_TEST_LIGHT_SCENES,
+	         arguments, fixture_path("complaints"));
 	FILE *pipe = popen(command, "r");
 	assert_non_null(pipe);
 	size_t used = fread(output, 1, bytes - 1, pipe);
@@ -119,7 +119,7 @@ static void print_cut_is_the_kept_script(void **state)
 	static char output[1 << 18];
 	size_t bytes;
 	assert_int_equal(run_program("--scene layers --print-cut", output, sizeof output), 0);
-	char *kept = fixture_read(CAU_TEST_SCENES "/scripts/layers-cut.jsonl", &bytes);
+	char *kept = fixture_read(CAU_TEST_LIGHT_SCENES "/scripts/layers-cut.jsonl", &bytes);
 	assert_string_equal(output, kept);
 	free(kept);
 }

@@ -1,0 +1,32 @@
+# cautery_light_scenes(FROM TO): the scenes of a folder, and what lies beside them, with half as many cells
+# along each axis of every sheet and slab: the same layers, laws, tools and cuts in an eighth of the elements.
+# For tests under sanitizers, where a step takes thirty times as long, whose bounds do not know the resolution.
+function(cautery_light_scenes from to)
+  file(GLOB_RECURSE files RELATIVE "${from}" CONFIGURE_DEPENDS "${from}/*.json" "${from}/*.jsonl")
+  foreach(file IN LISTS files)
+    configure_file("${from}/${file}" "${to}/${file}" COPYONLY) # which configures anew when it changes
+    if(file MATCHES "\\.json$")
+      cautery_lighten("${from}/${file}" "${to}/${file}")
+    endif()
+  endforeach()
+endfunction()
+
+function(cautery_lighten from to)
+  file(READ "${from}" scene)
+  string(JSON count LENGTH "${scene}" meshes)
+  math(EXPR last "${count} - 1")
+  foreach(mesh RANGE ${last})
+    string(JSON source GET "${scene}" meshes ${mesh} source)
+    if(NOT source MATCHES "^(sheet|slab)$")
+      continue()
+    endif()
+    string(JSON axes LENGTH "${scene}" meshes ${mesh} cells)
+    math(EXPR last_axis "${axes} - 1")
+    foreach(axis RANGE ${last_axis})
+      string(JSON cells GET "${scene}" meshes ${mesh} cells ${axis})
+      math(EXPR cells "(${cells} + 1) / 2")
+      string(JSON scene SET "${scene}" meshes ${mesh} cells ${axis} ${cells})
+    endforeach()
+  endforeach()
+  file(WRITE "${to}" "${scene}\n")
+endfunction()
