@@ -19,7 +19,7 @@ function(cautery_fuzz)
   target_include_directories(fuzz_${F_NAME} PRIVATE
     "${PROJECT_SOURCE_DIR}/core" "${PROJECT_SOURCE_DIR}/protocol" "${PROJECT_SOURCE_DIR}/tests")
   set_target_properties(fuzz_${F_NAME} PROPERTIES
-    RUNTIME_OUTPUT_DIRECTORY "${CMAKE_BINARY_DIR}/fuzz")
+    RUNTIME_OUTPUT_DIRECTORY "${CMAKE_BINARY_DIR}/fuzz" CAUTERY_WARNINGS_ONLY OFF)
 
   add_dependencies(fuzz_targets fuzz_${F_NAME})
 
