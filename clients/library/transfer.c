@@ -4,8 +4,8 @@
 #include <string.h>
 
 #include "cautery/chunk_codec.h"
+#include "cautery/sha256.h"
 #include "library/internal.h"
-#include "library/sha256.h"
 
 enum { QUEUED_MAX = 1 << 20 }; // an upload keeps no more than this in the outbox
 
@@ -60,7 +60,7 @@ cau_status cau_client_upload(cau_client *client, const char *name, const char *f
 	cau_wire_upload_end end = {0};
 	snprintf(begin.name, sizeof begin.name, "%s", name);
 	snprintf(begin.file_name, sizeof begin.file_name, "%s", file_name);
-	if (!cau_client_hash(bytes, byte_count, end.sha256))
+	if (!cau_sha256(bytes, byte_count, end.sha256))
 		return cau_fail(error, CAU_UNSUPPORTED, NULL, "SHA-256 is not available");
 	cau_status status = cau_client_call(client, CAU_METHOD_UPLOAD_BEGIN, &begin, &begun, error);
 	if (!status)
@@ -153,10 +153,10 @@ static cau_status receive(cau_client *client, downloading *d, cau_client_progres
 
 static cau_status check(const downloading *d, cau_error *error)
 {
-	char hash[CAU_CLIENT_HASH_BYTES] = "";
+	char hash[CAU_SHA256_TEXT_BYTES] = "";
 	if (d->incoming.broken)
 		return cau_fail(error, CAU_CORRUPT, NULL, "chunks of the file came out of order");
-	if (!cau_client_hash(d->incoming.bytes, d->incoming.byte_count, hash))
+	if (!cau_sha256(d->incoming.bytes, d->incoming.byte_count, hash))
 		return cau_fail(error, CAU_UNSUPPORTED, NULL, "SHA-256 is not available");
 	if (strcmp(hash, d->transfer->sha256) != 0)
 		return cau_fail(error, CAU_CORRUPT, NULL, "the file has another hash than announced");

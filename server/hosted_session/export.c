@@ -5,8 +5,8 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "buffer/sha256.h"
 #include "cautery/command_json.h"
+#include "cautery/sha256.h"
 #include "hosted_session/internal.h"
 
 #define LINE_S 1e-6        // what a line of such a file takes, about

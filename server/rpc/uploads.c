@@ -4,7 +4,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "buffer/sha256.h"
+#include "cautery/sha256.h"
 
 static int64_t charge_of(int64_t byte_count)
 {

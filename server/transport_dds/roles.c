@@ -5,7 +5,7 @@
 #include <string.h>
 #include <sys/stat.h>
 
-#include "buffer/sha256.h"
+#include "cautery/sha256.h"
 #include "config/role.h"
 
 enum { LINE_BYTES = 512 };

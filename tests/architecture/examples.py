@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Each public header of core opens with a use of it, and that compiles.
+"""Each public header opens with a use of it, and that compiles.
 
 Usage: examples.py ROOT COMPILER
 
@@ -14,8 +14,9 @@ import tempfile
 
 import project
 
-PUBLIC = ("core/include/cautery/", "core/types/cautery/")
-INCLUDES = ("core/include", "core/types")
+PUBLIC = ("core/include/cautery/", "core/types/cautery/", "protocol/include/cautery/",
+          "clients/include/cautery/")
+INCLUDES = ("core/include", "core/types", "protocol/include", "clients/include")
 FLAGS = ("-std=gnu17", "-fsyntax-only", "-Wall", "-Wextra", "-Wpedantic", "-Wshadow", "-Wconversion",
          "-Werror", "-Wno-unused-function")
 LINE = re.compile(r"//(?:     (.*))?$")

@@ -2,19 +2,34 @@
 // A connection to cauteryd: hello, requests, streams decoded to the newest state, files, and coming
 // back after a lost connection. protocol/README.md tells what travels.
 //
-//     cau_loop *loop;
-//     cau_client *client;
-//     cau_client_def def = cau_default_client_def();
-//     if (cau_loop_create(&loop, &error) || cau_client_create(loop, &def, &client, &error) ||
-//         cau_client_connect(client, &error)) ...
-//     cau_client_stream *stream;
-//     cau_client_join(client, &(cau_wire_session_join){.has_session = true, ...}, &stream, &error);
-//     while (...) {
-//         cau_loop_wait(loop, 0.1);         // everything happens in here
-//         if (stream->state->synced) ...    // the newest positions, mask and tools
+//     #include "cautery/client.h"
+//
+//     // Shows a session until it is gone.
+//     static cau_status watch(const char *url, const char *session, cau_error *error)
+//     {
+//         cau_loop *loop = NULL;
+//         cau_client *client = NULL;
+//         cau_client_stream *stream = NULL;
+//         cau_client_def def = cau_default_client_def();
+//         cau_wire_session_join join = {.has_session = true};
+//         def.url = url;
+//         snprintf(join.session, sizeof join.session, "%s", session);
+//         cau_status status = cau_loop_create(&loop, error);
+//         if (!status)
+//             status = cau_client_create(loop, &def, &client, error);
+//         if (!status)
+//             status = cau_client_connect(client, error);
+//         if (!status)
+//             status = cau_client_join(client, &join, &stream, error);
+//         while (!status && !stream->ended) {
+//             cau_loop_wait(loop, 0.1); // everything happens in here
+//             if (stream->state->synced)
+//                 printf("tick %llu\n", (unsigned long long)stream->state->tick);
+//         }
+//         cau_client_destroy(client);
+//         cau_loop_destroy(loop);
+//         return status;
 //     }
-//     cau_client_destroy(client);
-//     cau_loop_destroy(loop);
 //
 // A loop and its clients belong to one thread. Callbacks are called inside cau_loop_wait and inside
 // the calls that wait (connect, call, command, join, upload, download, close); they may send, but

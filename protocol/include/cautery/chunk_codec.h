@@ -1,5 +1,23 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Binary chunks of files: client to server for uploads, server to client for exports.
+//
+//     #include <string.h>
+//
+//     #include "cautery/chunk_codec.h"
+//
+//     // Puts a chunk where it belongs in a file that is coming in.
+//     static cau_status take_chunk(const void *message, size_t bytes, uint8_t *file,
+//                                  size_t file_bytes, cau_error *error)
+//     {
+//         cau_chunk chunk;
+//         cau_status status = cau_chunk_read(message, bytes, &chunk, error);
+//         if (status)
+//             return status;
+//         if (chunk.offset > file_bytes || chunk.byte_count > file_bytes - chunk.offset)
+//             return cau_fail(error, CAU_LIMIT, "offset", "beyond the file's end");
+//         memcpy(file + chunk.offset, chunk.data, chunk.byte_count);
+//         return CAU_OK;
+//     }
 #pragma once
 
 #include <stddef.h>

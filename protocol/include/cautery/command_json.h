@@ -17,6 +17,23 @@
 //     gravity.set      gravity_m_s2
 //     force.set        selection, force_n
 // Rotations are quaternions w, x, y, z, within 1e-3 of unit length; they are normalised.
+//
+//     #include "cautery/command_json.h"
+//
+//     // How many commands a script has; -1: *error says which line is none.
+//     static int64_t count_commands(const char *text, size_t bytes, cau_error *error)
+//     {
+//         cau_script script;
+//         cau_command command;
+//         bool end = false;
+//         cau_script_begin(&script, "script", text, bytes);
+//         for (int64_t count = 0;; count++) {
+//             if (cau_script_next(&script, &command, &end, error))
+//                 return -1;
+//             if (end)
+//                 return count;
+//         }
+//     }
 #pragma once
 
 #include <stdbool.h>

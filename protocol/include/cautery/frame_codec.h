@@ -3,13 +3,25 @@
 // deltas against what the decoder holds. Pure functions over the caller's buffers; nothing is
 // allocated.
 //
-//     size_t bytes = cau_frame_encoder_bytes(&def);
-//     cau_frame_encoder *encoder;
-//     cau_frame_encoder_init(malloc(bytes), bytes, &def, random_epoch, &encoder, &error);
-//     each due tick:
-//         cau_frame_encode(encoder, &sample, buffer, capacity, &count, &error); // to all
-//         if (someone joined or lost a frame)
-//             cau_frame_encode_key(encoder, buffer, capacity, &count, &error);  // to those
+//     #include "cautery/frame_codec.h"
+//
+//     // At each due tick: the delta goes to all, a key frame to those who have just come.
+//     static cau_status publish(cau_frame_encoder *encoder, const cau_stream_sample *sample,
+//                               bool came, void *frame, void *key, size_t capacity,
+//                               size_t bytes[2], cau_error *error)
+//     {
+//         cau_status status = cau_frame_encode(encoder, sample, frame, capacity, &bytes[0], error);
+//         if (!status && came)
+//             status = cau_frame_encode_key(encoder, key, capacity, &bytes[1], error);
+//         return status;
+//     }
+//
+//     // On the other side: false where a key frame is to be asked for.
+//     static bool follow(cau_frame_decoder *decoder, const void *frame, size_t bytes)
+//     {
+//         return !cau_frame_decode(decoder, frame, bytes, NULL) &&
+//                cau_frame_decoder_state(decoder)->synced;
+//     }
 //
 // The encoder keeps what every decoder in step with it holds, in whole steps, so that errors never
 // add up: the key frame at n makes the same state as the chain of deltas up to n.

@@ -1,5 +1,16 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Strict RFC 8259: what passes this scan means the same to every JSON reader.
+//
+//     #include <stdbool.h>
+//
+//     #include "cautery/json_text.h"
+//
+//     enum { LARGEST = 65536 };
+//
+//     static bool is_json(const char *text, size_t bytes)
+//     {
+//         return cau_json_scan(text, bytes, LARGEST, NULL) == CAU_OK;
+//     }
 #pragma once
 
 #include <stddef.h>

@@ -1,12 +1,20 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Writes JSON into a caller's buffer: no allocation, numbers that read back to the same bits.
 //
-//     cau_json_writer writer;
-//     cau_json_begin(&writer, buffer, sizeof buffer, 0);
-//     cau_json_open(&writer, NULL, '{');
-//     cau_json_number(&writer, "step_s", scene->step_s);
-//     cau_json_close(&writer);
-//     status = cau_json_end(&writer, &bytes, &error);
+//     #include "cautery/json_writer.h"
+//
+//     // {"tick": 7, "time_s": 0.07}
+//     static cau_status tell_time(uint64_t tick, double time_s, char *buffer, size_t capacity,
+//                                 cau_error *error)
+//     {
+//         cau_json_writer writer;
+//         cau_json_begin(&writer, buffer, capacity, 0);
+//         cau_json_open(&writer, NULL, '{');
+//         cau_json_unsigned(&writer, "tick", tick);
+//         cau_json_number(&writer, "time_s", time_s);
+//         cau_json_close(&writer);
+//         return cau_json_end(&writer, NULL, error);
+//     }
 #pragma once
 
 #include <stdbool.h>

@@ -1,6 +1,22 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Words that messages choose from. Each table is X(code, wire name); tables of scenes, channels and
 // reasons for energy off stand with their types.
+//
+//     #include "cautery/message_choices.h"
+//
+//     static const char *role_word(cau_role role)
+//     {
+//     #define X(code, word) word,
+//         static const char *const words[] = {CAU_ROLE_TABLE(X)};
+//     #undef X
+//         return words[role];
+//     }
+//
+//     // Each may do what those before it may.
+//     static bool may_operate(cau_role role)
+//     {
+//         return role >= CAU_ROLE_OPERATE;
+//     }
 #pragma once
 
 #include "cautery/energy_off.h"

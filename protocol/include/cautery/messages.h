@@ -1,6 +1,15 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // The messages as C types, made from messages.def: object `hello` there is cau_wire_hello here. An
 // optional member f has a bool has_f before it. Text is UTF-8 with a closing zero.
+//
+//     #include "cautery/messages.h"
+//
+//     // The least role that may call a method; an admin's for what there is not.
+//     static cau_role needed_role(const char *method)
+//     {
+//         int32_t found = cau_method_find(method);
+//         return found < 0 ? CAU_ROLE_ADMIN : cau_method_describe((cau_method)found)->role;
+//     }
 #pragma once
 
 #include <stdbool.h>

@@ -2,16 +2,28 @@
 // JSON-RPC 2.0 messages, read and written by the tables of messages.h. Reading allocates one
 // document that cau_rpc_finish gives back; writing goes into the caller's buffer.
 //
-//     cau_rpc_message message;
-//     cau_rpc_fault fault;
-//     if (cau_rpc_read(text, bytes, limit, &message, &fault))
-//         ...                                  // cau_rpc_write_error, if it asks for an answer
-//     switch (message.method) {
-//     case CAU_METHOD_SESSION_STEP: {
+//     #include "cautery/rpc.h"
+//
+//     // Answers session.step, whatever else comes.
+//     static cau_status answer(const char *text, size_t bytes, cau_rpc_buffer *out,
+//                              cau_error *error)
+//     {
+//         cau_rpc_message message;
+//         cau_rpc_fault fault;
 //         cau_wire_session_step params = {0};
-//         status = cau_rpc_params(&message, &params, &error);
-//     ...
-//     cau_rpc_finish(&message);
+//         cau_wire_tick_result result = {.tick = 7};
+//         if (cau_rpc_read(text, bytes, 65536, &message, &fault))
+//             return cau_rpc_write_error(out, &message.id, &fault, error);
+//         cau_status status = cau_rpc_params(&message, &params, error);
+//         if (status) {
+//             cau_rpc_fault_of_error(&fault, error);
+//             status = cau_rpc_write_error(out, &message.id, &fault, error);
+//         } else {
+//             status = cau_rpc_write_result(out, &message.id, message.method, &result, error);
+//         }
+//         cau_rpc_finish(&message);
+//         return status;
+//     }
 #pragma once
 
 #include "cautery/command.h"

@@ -1,5 +1,15 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Error codes of answers and close codes of connections.
+//
+//     #include "cautery/rpc_errors.h"
+//
+//     // As an answer's members code, message and data.status have it.
+//     static void tell(FILE *out, cau_status status)
+//     {
+//         int code = cau_rpc_error_of_status(status);
+//         fprintf(out, "%d %s (%s)\n", code, cau_rpc_error_sentence(code),
+//                 cau_rpc_error_word(code));
+//     }
 #pragma once
 
 #include "cautery/status.h"

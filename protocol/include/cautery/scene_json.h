@@ -4,6 +4,16 @@
 // (cautery/defaults.h; a layer's by its kind), unknown ones are errors. A layer's own material
 // stands among its members; "regions": [{"region": 3, ...}] holds what differs in regions of the
 // mesh file.
+//
+//     #include "cautery/scene_json.h"
+//
+//     // Every member of a scene, those that its text leaves out too.
+//     static cau_status complete(const char *text, size_t bytes, cau_scene_def *scene,
+//                                char *buffer, size_t capacity, cau_error *error)
+//     {
+//         cau_status status = cau_scene_from_json("scene.json", text, bytes, scene, error);
+//         return status ? status : cau_scene_to_json(scene, buffer, capacity, NULL, error);
+//     }
 #pragma once
 
 #include <stddef.h>

@@ -1,6 +1,21 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // What a stream carries: its description, what the server puts in at a tick, and what a client
 // holds after decoding. Byte layouts stand in protocol/README.md. SI units, degrees Celsius.
+//
+//     #include "cautery/stream.h"
+//
+//     // A stream of positions alone, to a hundredth of a millimetre.
+//     static cau_status define(int32_t vertices, int32_t faces, cau_stream_def *def,
+//                              cau_error *error)
+//     {
+//         *def = cau_default_stream_def();
+//         def->session = 1;
+//         def->vertex_count = vertices;
+//         def->face_count = faces;
+//         def->channels = CAU_CHANNEL_POSITIONS;
+//         def->step_m = 1e-5;
+//         return cau_stream_def_check(def, error);
+//     }
 #pragma once
 
 #include <stdbool.h>

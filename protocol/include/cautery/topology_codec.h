@@ -1,6 +1,18 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // The frame that says what never changes in a session: faces, their layers, texture coordinates and
 // rest positions. Sent once after session.join, before the first key frame. Nothing is allocated.
+//
+//     #include "cautery/topology_codec.h"
+//
+//     // To whoever joined, before the first key frame.
+//     static cau_status send_topology(const cau_stream_def *def, const cau_topology *topology,
+//                                     void *scratch, void *frame, size_t capacity, size_t *bytes,
+//                                     cau_error *error)
+//     {
+//         uint64_t epoch = 1;
+//         return cau_topology_encode(def, epoch, topology, scratch, frame, capacity, bytes,
+//                                    error);
+//     }
 #pragma once
 
 #include "cautery/frame_codec.h"

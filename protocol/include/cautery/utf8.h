@@ -1,5 +1,15 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // UTF-8 as RFC 3629 has it: no overlong forms, no surrogates, nothing beyond U+10FFFF.
+//
+//     #include "cautery/utf8.h"
+//
+//     static bool is_utf8(const char *text, size_t bytes)
+//     {
+//         for (size_t at = 0, length; at < bytes; at += length)
+//             if (!(length = cau_utf8_length(text + at, bytes - at)))
+//                 return false;
+//         return true;
+//     }
 #pragma once
 
 #include <stdbool.h>

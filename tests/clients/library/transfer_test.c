@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Files up and down.
 #include "cautery/chunk_codec.h"
+#include "cautery/sha256.h"
 #include "clients/library/fixture.h"
-#include "library/sha256.h"
 
 enum { FILE_BYTES = 700000, TRANSFER = 12 }; // several chunks of the script's 100,000 bytes
 
@@ -94,7 +94,7 @@ static void an_upload_arrives_whole(void **state)
 	assert_true(files.in_order);
 	assert_int_equal(files.received_bytes, FILE_BYTES);
 	assert_memory_equal(files.received, files.file, FILE_BYTES);
-	assert_true(cau_client_hash(files.file, FILE_BYTES, hash));
+	assert_true(cau_sha256(files.file, FILE_BYTES, hash));
 	assert_string_equal(files.sha256, hash);
 	filing_end(&files);
 }
@@ -103,7 +103,7 @@ static void the_hash_is_sha_256(void **state)
 {
 	(void)state;
 	char hash[65];
-	assert_true(cau_client_hash("abc", 3, hash)); // FIPS 180-4, first example
+	assert_true(cau_sha256("abc", 3, hash)); // FIPS 180-4, first example
 	assert_string_equal(hash, "ba7816bf8f01cfea414140de5dae2223b00361a396177a9cb410ff61f20015ad");
 }
 
@@ -128,7 +128,7 @@ static bool send_export(scripted_peer *peer, const cau_rpc_message *message, con
 	                              .file_name = "t1.obj",
 	                              .media_type = "model/obj",
 	                              .byte_count = FILE_BYTES};
-	cau_client_hash(f->file, FILE_BYTES - f->lie, transfer.sha256);
+	cau_sha256(f->file, FILE_BYTES - f->lie, transfer.sha256);
 	scripted_result(peer, message, CAU_METHOD_SESSION_EXPORT, &transfer);
 	if (f->shuffle)
 		send_chunk(peer, f, 200000, 100000);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "buffer/sha256.h"
+#include "cautery/sha256.h"
 
 #include <setjmp.h>
 #include <stdarg.h>

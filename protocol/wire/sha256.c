@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "library/sha256.h"
+#include "cautery/sha256.h"
 
 #include <openssl/evp.h>
 #include <stdio.h>
 
-bool cau_client_hash(const void *bytes, size_t byte_count, char text[CAU_CLIENT_HASH_BYTES])
+bool cau_sha256(const void *bytes, size_t byte_count, char text[CAU_SHA256_TEXT_BYTES])
 {
 	unsigned char digest[EVP_MAX_MD_SIZE];
 	unsigned length = 0;
