@@ -43,6 +43,7 @@ static const double cli_tick_max = 9007199254740991.0; // of the wire
 
 struct cli {
 	FILE *out, *complaints;
+	const cli_command *const *commands; // ends with NULL
 	const cli_command *command;
 	const char *word; // the command's first
 	const char *arguments[CLI_ARGUMENTS_MAX];
@@ -57,9 +58,6 @@ struct cli {
 	char session[CAU_NAME_BYTES]; // chosen by cli_connect
 	cau_error error;
 };
-
-extern const cli_command *const cli_commands[]; // ends with NULL
-const cli_command *cli_find_command(const char *name);
 
 // Reads the command line. On a mistake, says it on c->complaints and returns false.
 bool cli_read(cli *c, int argument_count, char **arguments);

@@ -1,6 +1,4 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include <string.h>
-
 #include "cautery/commands.h"
 
 const cli_command *const cli_commands[] = {
@@ -12,13 +10,3 @@ const cli_command *const cli_commands[] = {
 	&cli_gravity,     &cli_material,   &cli_ping,       &cli_context_ls, &cli_context_set,
 	&cli_context_use, &cli_context_rm, &cli_completion, &cli_complete,   NULL,
 };
-
-const cli_command *cli_find_command(const char *name)
-{
-	for (int i = 0; cli_commands[i]; i++) {
-		const cli_command *command = cli_commands[i];
-		if (strcmp(command->name, name) == 0 || (command->also && strcmp(command->also, name) == 0))
-			return command;
-	}
-	return NULL;
-}

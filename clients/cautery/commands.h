@@ -4,6 +4,8 @@
 
 #include "cautery/cli.h"
 
+extern const cli_command *const cli_commands[]; // ends with NULL
+
 extern const cli_command cli_ls, cli_scenes;                         // list.c
 extern const cli_command cli_create;                                 // create.c
 extern const cli_command cli_info;                                   // info.c
@@ -21,6 +23,6 @@ extern const cli_command cli_events;                                 // events.c
 extern const cli_command cli_pin, cli_unpin, cli_force, cli_gravity; // tissue.c
 extern const cli_command cli_material;                               // material.c
 extern const cli_command cli_ping;                                   // ping.c
-extern const cli_command cli_context_ls, cli_context_set;            // contexts.c
-extern const cli_command cli_context_use, cli_context_rm;            // contexts.c
+extern const cli_command cli_context_ls, cli_context_set;            // context.c
+extern const cli_command cli_context_use, cli_context_rm;            // context.c
 extern const cli_command cli_completion, cli_complete;               // completion.c

@@ -75,14 +75,14 @@ static void offer_options(const cli *c, const cli *line, const char *begin)
 static void offer_commands(const cli *c, const char *first, const char *begin)
 {
 	size_t length = strlen(first);
-	for (int i = 0; cli_commands[i]; i++) {
-		const char *name = cli_commands[i]->name, *space = strchr(name, ' ');
+	for (int i = 0; c->commands[i]; i++) {
+		const char *name = c->commands[i]->name, *space = strchr(name, ' ');
 		if (*first && space && (size_t)(space - name) == length &&
 		    strncmp(name, first, length) == 0)
 			offer(c, space + 1, begin);
 		if (!*first && !space)
 			offer(c, name, begin);
-		const char *also = cli_commands[i]->also; // "context" of "context ls"
+		const char *also = c->commands[i]->also; // "context" of "context ls"
 		if (!*first && space && also && strlen(also) == (size_t)(space - name) &&
 		    strncmp(name, also, strlen(also)) == 0)
 			offer(c, also, begin);
@@ -105,7 +105,7 @@ static void offer_arguments(cli *c, const cli *line, const char *begin)
 static cli_exit run_complete(cli *c)
 {
 	// what stands before the word at the cursor, as the program would read it
-	cli line = {.out = c->out, .complaints = fopen("/dev/null", "w")};
+	cli line = {.out = c->out, .complaints = fopen("/dev/null", "w"), .commands = c->commands};
 	char *before[CLI_ARGUMENTS_MAX + 1] = {(char *)(uintptr_t) "cautery"};
 	int count = c->argument_count;
 	const char *begin = count ? c->arguments[count - 1] : "";

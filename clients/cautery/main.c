@@ -1,10 +1,13 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // cautery: the command line of cauteryd.
-#include "cautery/cli.h"
+#include "cautery/commands.h"
 
 int main(int argument_count, char **arguments)
 {
-	cli c = {.out = stdout, .complaints = stderr, .def = cau_default_client_def()};
+	cli c = {.out = stdout,
+	         .complaints = stderr,
+	         .commands = cli_commands,
+	         .def = cau_default_client_def()};
 	c.def.name = "cautery";
 	if (!cli_read(&c, argument_count, arguments))
 		return CLI_USAGE;

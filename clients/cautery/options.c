@@ -50,8 +50,8 @@ void cli_help(const cli *c)
 		return;
 	}
 	fputs("cautery COMMAND [arguments]\nTalks to a cauteryd.\n\n", c->out);
-	for (int i = 0; cli_commands[i]; i++)
-		fprintf(c->out, "  %-12s %s\n", cli_commands[i]->name, cli_commands[i]->summary);
+	for (int i = 0; c->commands[i]; i++)
+		fprintf(c->out, "  %-12s %s\n", c->commands[i]->name, c->commands[i]->summary);
 	fputs("\nWhere SESSION may be left out, it is the only one that the daemon has.\n"
 	      "`cautery COMMAND --help` says more. All commands take:\n\n",
 	      c->out);
@@ -142,17 +142,27 @@ static bool read_option(cli *c, char **arguments, int count, int *at)
 	return true;
 }
 
+static const cli_command *find_command(const cli *c, const char *name)
+{
+	for (int i = 0; c->commands[i]; i++) {
+		const cli_command *command = c->commands[i];
+		if (strcmp(command->name, name) == 0 || (command->also && strcmp(command->also, name) == 0))
+			return command;
+	}
+	return NULL;
+}
+
 static bool take_command(cli *c, const char *word)
 {
 	enum { MOST = 64 };
 	const char *names[MOST];
 	size_t count = 0;
-	c->command = cli_find_command(word);
+	c->command = find_command(c, word);
 	c->word = word;
 	if (c->command)
 		return true;
-	for (; cli_commands[count] && count < MOST; count++)
-		names[count] = cli_commands[count]->name;
+	for (; c->commands[count] && count < MOST; count++)
+		names[count] = c->commands[count]->name;
 	cli_complain_unknown(c, "command", word, names, count);
 	return false;
 }
@@ -162,7 +172,7 @@ static const cli_command *find_second(const cli *c, const char *word)
 {
 	char name[64];
 	snprintf(name, sizeof name, "%s %s", c->word, word);
-	return c->argument_count ? NULL : cli_find_command(name);
+	return c->argument_count ? NULL : find_command(c, name);
 }
 
 static bool take_word(cli *c, const char *word)

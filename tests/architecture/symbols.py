@@ -15,13 +15,13 @@ import project
 # A library's symbols, and the path prefixes of the sources that may need them.
 LIBRARIES = (
     ("SuiteSparse", r"(cholmod|SuiteSparse|amd|camd|colamd|METIS|openblas)_\w+", ("core/solve/factor.c",)),
-    ("cJSON", r"cJSON_\w+", ("protocol/",)),
+    ("cJSON", r"cJSON_\w+", ("protocol/", "clients/cautery/")),
     ("meshoptimizer", r"meshopt_\w+", ("protocol/",)),
     ("libwebsockets", r"_?lws\w*", ("server/", "clients/")),
     ("Cyclone DDS", r"dds_\w+", ("server/", "clients/")),
     ("SQLite", r"sqlite3_\w+", ("server/",)),
     ("systemd", r"sd_\w+", ("server/",)),
-    ("OpenSSL", r"(SSL|EVP|BIO|ERR|X509|RAND|PEM)_\w+|SHA\d+\w*", ("server/", "clients/")),
+    ("OpenSSL", r"(SSL|EVP|BIO|ERR|X509|RAND|PEM)_\w+|SHA\d+\w*", ("protocol/wire/sha256.c", "server/")),
 )
 
 # What a failed assertion calls, wherever it stands; Release builds have none.

@@ -28,7 +28,7 @@ static reading read_line(const char *line)
 	for (char *word = strtok(copy, " "); word; word = strtok(NULL, " "))
 		arguments[count++] = word;
 	FILE *complaints = open_memstream(&r.said, &r.said_bytes);
-	r.c = (cli){.out = complaints, .complaints = complaints};
+	r.c = (cli){.out = complaints, .complaints = complaints, .commands = cli_commands};
 	r.read = cli_read(&r.c, count, arguments);
 	if (r.read && r.c.help)
 		cli_help(&r.c);
