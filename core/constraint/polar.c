@@ -75,6 +75,8 @@ void cau_polar_robust(const double a[9], double q[4])
 			left[i][k] = a[k] * right[i][0] + a[3 + k] * right[i][1] + a[6 + k] * right[i][2];
 		length[i] = normalise(left[i]);
 	}
+	// The second is known to some 1e-8 of the first, as the square root of an eigenvalue; a hundred
+	// times that still gives a direction. The first is a stretch: 1 at rest.
 	if (!(length[1] > 1e-6 * length[0]) || !(length[0] > 1e-6))
 		return; // two singular values vanish, or all: keep the last rotation
 	double along = dot(left[0], left[1]);

@@ -50,7 +50,8 @@ INLINE vreal sym3_distance(sym3 a, sym3 b)
 }
 
 // Square root of a symmetric positive definite 3x3, and its inverse, by the Denman-Beavers
-// iteration. It converges quadratically: a step that is small leaves nothing to do.
+// iteration. It converges quadratically: after a step of the square root of rounding (1e-4 of 1e-8,
+// 1e-9 of 1e-16) nothing is left to do. Ten steps are enough for stretches from 1/30 to 30.
 INLINE sym3 sym3_sqrt(sym3 a, sym3 *inverse)
 {
 	enum { STEPS = 10 };
@@ -88,7 +89,8 @@ INLINE m3 fat_range_residual(m3 f, const double stretch_min[3], const double str
 }
 
 // TARGET linearised: the six unordered pairs of eq. 12 on the 3x3 metric, each projected once in F.
-// part[i] is the residual of pair i.
+// part[i] is the residual of pair i. Its gradient is guarded against columns shorter than a
+// thousandth of their rest length (squared: 1e-6), where it says nothing about the distance.
 INLINE void fat_linearised_residuals(m3 f, sym3 target, m3 part[6])
 {
 	static const int first[6] = {0, 1, 2, 0, 0, 1}, second[6] = {0, 1, 2, 1, 2, 2};

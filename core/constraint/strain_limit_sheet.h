@@ -73,7 +73,8 @@ INLINE sheet_gradient sheet_range_residual(sheet_gradient f, sym2 k, const doubl
 }
 
 // One linearised constraint C of F (eq. 12): dF = -C (dC/dF) / |dC/dF|^2, returned as the residual
-// C (dC/dF) / |dC/dF|^2. The guard is relative to the target's own size.
+// C (dC/dF) / |dC/dF|^2. The guard is for columns shorter than a thousandth of their rest length
+// (squared: 1e-6), where the gradient says nothing about the distance.
 INLINE vreal linearised_step(vreal c, vreal gradient_squared)
 {
 	return c / v_max(gradient_squared, v_set((real)1e-6));

@@ -51,7 +51,7 @@ typedef struct cau_supernode {
 // The factor's values: those in use, or a second set of the same layout, for a factor that is being
 // made in the background.
 typedef struct cau_sweep_panels {
-	cau_pages pages; // of the next three
+	cau_pages pages; // one allocation that holds panel, d_inverse and scale
 	void *panel;     // reals, or narrow entries
 	cau_reals *d_inverse, *scale;
 } cau_sweep_panels;
@@ -71,7 +71,7 @@ struct cau_sweep {
 	int32_t task_first[CAU_SWEEP_TASKS], task_last[CAU_SWEEP_TASKS]; // supernodes [first, last)
 	int32_t *top_node; // supernodes above the tasks, ascending
 	int32_t top_node_count;
-	cau_pages pages;              // of the next three
+	cau_pages pages;              // one allocation that holds panel, d_inverse and scale
 	void *panel;                  // the panels: reals, or narrow entries
 	cau_reals *d_inverse, *scale; // (padded_n): D^-1, and what a step in the column is
 	// Four reals a place (x, y, z, 0): the vectors, permuted (padded_n), then each task's sums for

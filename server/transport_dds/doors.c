@@ -37,7 +37,8 @@ cau_status cau_dds_open_topics(cau_dds *dds, cau_error *error)
 	return CAU_OK;
 }
 
-// A writer of ours waits for no reader: what it has no room for is lost, and mended.
+// Our writers wait for no reader (max_blocking_time 0). With KEEP_LAST a reader that is behind
+// loses the oldest samples; the newest state, or the next key frame, makes up for them.
 static dds_qos_t *reliable_qos(int32_t kept)
 {
 	dds_qos_t *qos = dds_create_qos();

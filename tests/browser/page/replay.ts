@@ -20,11 +20,13 @@ export interface Recording {
 
 export type Command = (tick: number, call: (method: string, params: object) => void) => void;
 
-/** Joins a session and keeps its frames until there are `count` deltas; `steer` is asked after each. */
-export async function record(daemonUrl: string, session: string, count: number, steer: Command): Promise<Recording> {
+/** Joins a session and keeps its frames until so many ticks are over; `steer` is asked after each frame. A tick
+ * has more than one where tools are moved between two. */
+export async function record(daemonUrl: string, session: string, ticks: number, steer: Command): Promise<Recording> {
   const socket = await MessageSocket.connect(new URL('v1', daemonUrl), PROTOCOL);
   const frames: Buffer[] = [];
   let id = 0;
+  let end: number | null = null;
   const call = (method: string, params: object): void =>
     socket.sendText(JSON.stringify({ jsonrpc: '2.0', id: ++id, method, params }));
   await new Promise<void>((resolve, reject) => {
@@ -34,14 +36,16 @@ export async function record(daemonUrl: string, session: string, count: number, 
       if (error) reject(new Error(`${error.message}: ${text}`));
     };
     socket.onBinary = (frame) => {
+      const tick = Number(frame.readBigUInt64LE(TICK_AT));
       frames.push(frame);
-      if (frames.length >= count + 2) resolve();
+      end ??= tick + ticks;
+      if (tick >= end && frames.length > 1) resolve();
       if (frames.length % ACK_FRAMES === 0) {
         const epoch = frame.readBigUInt64LE(16).toString(16).padStart(16, '0');
         const params = { session, epoch, sequence: Number(frame.readBigUInt64LE(24)) };
         socket.sendText(JSON.stringify({ jsonrpc: '2.0', method: 'stream.ack', params }));
       }
-      steer(Number(frame.readBigUInt64LE(TICK_AT)), call);
+      steer(tick, call);
     };
     call('hello', { version: 1, client: 'recorder' });
     const channels = ['positions', 'mask', 'exposure', 'charring', 'tools', 'statistics'];
