@@ -416,7 +416,7 @@ print(json.dumps(sqlite3.connect(sys.argv[1]).execute(sys.argv[2]).fetchall()))`
 test('beyond its budget a session loses the middle of its past, never its beginning, and says so', async () => {
 	let daemon = await Daemon.start({ settings: { retention_bytes: 1048576, checkpoint_s: 0.1 } });
 	let client = await daemon.connect();
-	const { summary: { session } } = await client.call('session.create', { scene: 'fascia', name: 'long', paused: true });
+	const session = await smallSession(client, 'long', { cells: [60, 50], paused: true }); // whose checkpoints soon pass that
 	await client.call('tool.take_over', { session, tool: 'hook' });
 	const beginning = await client.call('session.snapshot', { session, name: 'beginning' });
 	const timeline = () => client.call('session.timeline', { session });

@@ -116,10 +116,10 @@ test('large sessions are built beside a driven one, tell how far they are, and c
 	const session = await driven(daemon, 'knee');
 	const maker = await daemon.connect(), other = await daemon.connect();
 	const made = ['one', 'two'].map((name) =>
-		maker.call('session.create', { name, definition: sheet(name, 500) }).catch((error) => error));
+		maker.call('session.create', { name, definition: sheet(name, 650) }).catch((error) => error));
 	await daemon.log(/building.*stage=ordering/);
 	const { factor, refused } = await pace(session, SECONDS);
-	t.diagnostic(`${factor.toFixed(3)} of real time while two sheets of 251,001 vertices are built`);
+	t.diagnostic(`${factor.toFixed(3)} of real time while two sheets of 423,801 vertices are built`);
 	assert.deepEqual(refused, []);
 	assert.ok(factor >= 0.9, `${factor} of real time`);
 	const { sessions } = await other.call('session.list');

@@ -32,7 +32,7 @@ describe('while something is under way', () => {
   it('making a session is said, and opening it, until its tissue is there', async () => {
     const { page } = viewer;
     door.hold('session.create');
-    await page.getByText('New session').click();
+    await page.getByText('New session', { exact: true }).click();
     await page.getByLabel('Scene').selectOption('fascia');
     await page.getByRole('textbox', { name: 'Name', exact: true }).fill('second');
     await page.getByRole('button', { name: 'Create', exact: true }).click();

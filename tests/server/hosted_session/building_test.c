@@ -217,7 +217,7 @@ static void write_mesh_file(off_t bytes)
 	assert_int_equal(truncate(path, bytes), 0);
 }
 
-static double expected_of(cau_mesh_source source, const char *directory, const char *file)
+static double expected_of(int source, const char *directory, const char *file)
 {
 	cau_scene_def *scene = hosted_make_scene();
 	scene->mesh_count = 1;
