@@ -28,7 +28,7 @@ void cli_complain(const cli *c, const char *format, ...)
 void cli_complain_unknown(const cli *c, const char *what, const char *word,
                           const char *const *words, size_t count)
 {
-	const char *meant = cli_nearest(word, words, count);
+	const char *meant = cau_nearest(word, words, count);
 	if (meant)
 		cli_complain(c, "no %s \"%s\"; did you mean \"%s\"? --help lists them", what, word, meant);
 	else

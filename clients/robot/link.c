@@ -86,7 +86,7 @@ bool robot_link_open(robot_link *link, const robot_options *options, FILE *error
 	*link = (robot_link){0};
 	snprintf(link->command.session, sizeof link->command.session, "%s", options->session);
 	snprintf(link->command.tool, sizeof link->command.tool, "%s", options->tool);
-	link->participant = dds_create_participant(options->domain, NULL, NULL);
+	link->participant = dds_create_participant((dds_domainid_t)options->domain, NULL, NULL);
 	dds_qos_t *partition = dds_create_qos();
 	dds_qset_partition1(partition, options->session);
 	link->writer = open_writer(link, partition, options->deadline_s);

@@ -43,7 +43,7 @@ static int drive(const robot_options *options, const robot_trajectory *trajector
 		return EXIT_NO_TOOL;
 	}
 	if (!robot_link_wait(&link, WAIT_S)) {
-		fprintf(stderr, "cautery-robot: no tool `%s` of session `%s` in domain %u\n", options->tool,
+		fprintf(stderr, "cautery-robot: no tool `%s` of session `%s` in domain %d\n", options->tool,
 		        options->session, options->domain);
 		robot_link_close(&link);
 		return EXIT_NO_TOOL;

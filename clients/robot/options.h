@@ -16,7 +16,7 @@ typedef struct robot_options {
 	double deadline_s;    // declared
 	double force_limit_n; // backs off above; 0: never
 	double seconds;       // ends after this; 0: with the trajectory
-	uint32_t domain;
+	int32_t domain;
 	bool energy, standby, json, help;
 } robot_options;
 

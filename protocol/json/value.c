@@ -7,7 +7,7 @@
 #include "cautery/assert.h"
 #include "cautery/json_text.h"
 #include "cautery/name.h"
-#include "json/nearest_name.h"
+#include "cautery/nearest.h"
 
 cau_status cau_value_parse(const char *text, size_t bytes, size_t bytes_max, cJSON **value,
                            cau_error *error)
@@ -213,7 +213,7 @@ int cau_read_choice(cau_reader *reader, const cJSON *value, const char *const *n
 	list[0] = 0;
 	for (int i = 0; i < count && used < sizeof list; i++)
 		used += (size_t)snprintf(list + used, sizeof list - used, "%s%s", i ? ", " : "", names[i]);
-	const char *nearest = cau_nearest_name(value->valuestring, names, count);
+	const char *nearest = cau_nearest(value->valuestring, names, (size_t)count);
 	cau_reader_fail(reader, CAU_BAD_VALUE, NULL, "\"%.40s\" is none of %s%s%s%s",
 	                value->valuestring, list, nearest ? "; did you mean \"" : "",
 	                nearest ? nearest : "", nearest ? "\"?" : "");
@@ -255,7 +255,7 @@ void cau_read_no_others(cau_reader *reader, const cJSON *object, const char *con
 			known = strcmp(member->string, names[i]) == 0;
 		if (known)
 			continue;
-		const char *nearest = cau_nearest_name(member->string, names, count);
+		const char *nearest = cau_nearest(member->string, names, (size_t)count);
 		cau_reader_fail(reader, CAU_BAD_VALUE, member->string, "unknown%s%s%s",
 		                nearest ? ": did you mean \"" : "", nearest ? nearest : "",
 		                nearest ? "\"?" : "");

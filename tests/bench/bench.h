@@ -3,6 +3,7 @@
 #pragma once
 
 #include <stdbool.h>
+#include <stdio.h>
 
 #include "cautery/session.h"
 
@@ -10,9 +11,14 @@ typedef struct bench_options {
 	const char *scene, *scenes_directory;
 	int32_t threads, iterations, steps, repeat;
 	int solver, precision; // -1: the scene's
-	bool cut, error, scaling, json;
+	bool cut, error, scaling, json, help;
 	const char *instruction_set;
 } bench_options;
+
+// options.c. False after a line on `complaints`.
+bool bench_options_read(int argument_count, char **arguments, bench_options *options,
+                        FILE *complaints);
+void bench_options_help(FILE *out);
 
 typedef struct bench_timing {
 	double median_ms, p99_ms, steps_per_s;

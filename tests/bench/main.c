@@ -1,125 +1,9 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include <getopt.h>
 #include <stdio.h>
-#include <stdlib.h>
-#include <string.h>
 #include <unistd.h>
 
 #include "bench/bench.h"
 #include "bench/machine.h"
-
-static const char help[] =
-	"cautery-bench: measures steps of a scene\n"
-	"\n"
-	"  --scene NAME|FILE   fascia, fat, fat-neohookean, layers ... (default fat)\n"
-	"  --scenes DIR        where named scenes are\n"
-	"  --threads T         threads of a step (default 1)\n"
-	"  --iterations K      iterations of a step (default 10)\n"
-	"  --steps N           measured steps after the warm-up (default 300)\n"
-	"  --solver S          cholesky or diagonal (default: the scene's)\n"
-	"  --precision P       single or double (default: the scene's)\n"
-	"  --isa TIER          highest instruction set: baseline, avx2, avx512\n"
-	"  --cut               draw the scene's tool across it, energized\n"
-	"  --repeat R          cut, or go through the sizes, R times, each step's (size's) time the\n"
-	"                      least of them (default 1)\n"
-	"  --error             error of K iterations against the converged step under the scene's "
-	"pull\n"
-	"  --scaling           step time against size\n"
-	"  --json              the last line of standard output is one JSON object; its `machine` "
-	"says\n"
-	"                      on what it was measured, and what else that machine did meanwhile\n"
-	"\n"
-	"Exit codes: 0 measured, 1 the scene could not be run, 2 the arguments are wrong.\n";
-
-static int choose(const char *text, const char *const *names, int count)
-{
-	for (int i = 0; i < count; ++i)
-		if (!strcmp(text, names[i]))
-			return i;
-	fprintf(stderr, "cautery-bench: \"%s\" is no choice; see --help\n", text);
-	exit(2);
-}
-
-static int32_t number(const char *text, long least, long most)
-{
-	char *end;
-	long value = strtol(text, &end, 10);
-	if (*end || end == text || value < least || value > most) {
-		fprintf(stderr, "cautery-bench: \"%s\" is not a number from %ld to %ld\n", text, least,
-		        most);
-		exit(2);
-	}
-	return (int32_t)value;
-}
-
-static bench_options parse(int argc, char **argv)
-{
-	static const struct option known[] = {
-		{"scene", 1, NULL, 's'},      {"scenes", 1, NULL, 'd'},  {"threads", 1, NULL, 't'},
-		{"iterations", 1, NULL, 'k'}, {"steps", 1, NULL, 'n'},   {"solver", 1, NULL, 'o'},
-		{"precision", 1, NULL, 'p'},  {"isa", 1, NULL, 'i'},     {"cut", 0, NULL, 'c'},
-		{"error", 0, NULL, 'e'},      {"scaling", 0, NULL, 'g'}, {"json", 0, NULL, 'j'},
-		{"repeat", 1, NULL, 'r'},     {"help", 0, NULL, 'h'},    {NULL, 0, NULL, 0}};
-	static const char *const solvers[] = {"cholesky", "diagonal"};
-	static const char *const precisions[] = {"single", "double"};
-	bench_options options = {.scene = "fat",
-	                         .scenes_directory = CAU_BENCH_SCENES,
-	                         .threads = 1,
-	                         .iterations = 10,
-	                         .steps = 300,
-	                         .repeat = 1,
-	                         .solver = -1,
-	                         .precision = -1};
-	for (int c; (c = getopt_long(argc, argv, "", known, NULL)) != -1;)
-		switch (c) {
-		case 's':
-			options.scene = optarg;
-			break;
-		case 'd':
-			options.scenes_directory = optarg;
-			break;
-		case 't':
-			options.threads = number(optarg, 1, 16);
-			break;
-		case 'k':
-			options.iterations = number(optarg, 1, 1000);
-			break;
-		case 'n':
-			options.steps = number(optarg, 1, 100000);
-			break;
-		case 'o':
-			options.solver = choose(optarg, solvers, 2);
-			break;
-		case 'p':
-			options.precision = choose(optarg, precisions, 2);
-			break;
-		case 'i':
-			options.instruction_set = optarg;
-			break;
-		case 'c':
-			options.cut = true;
-			break;
-		case 'r':
-			options.repeat = number(optarg, 1, 100);
-			break;
-		case 'e':
-			options.error = true;
-			break;
-		case 'g':
-			options.scaling = true;
-			break;
-		case 'j':
-			options.json = true;
-			break;
-		case 'h':
-			fputs(help, stdout);
-			exit(0);
-		default:
-			fputs("see --help\n", stderr);
-			exit(2);
-		}
-	return options;
-}
 
 static void print_steps(const bench_options *options, const bench_steps_result *result)
 {
@@ -217,13 +101,19 @@ static void print_machine(const bench_options *options, const bench_steps_result
 
 int main(int argc, char **argv)
 {
-	bench_options options = parse(argc, argv);
+	bench_options options;
 	bench_cpu_time before;
 	bench_steps_result steps;
 	bench_cut_result cut;
 	bench_error_result error;
 	bench_scaling_result scaling;
 	bench_limit_result limit;
+	if (!bench_options_read(argc, argv, &options, stderr))
+		return 2;
+	if (options.help) {
+		bench_options_help(stdout);
+		return 0;
+	}
 	bench_cpu_time_read("", &before);
 	if (bench_steps(&options, &steps) || bench_limit(&options, &limit) ||
 	    (options.cut && bench_cut(&options, &cut)) ||

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "json/nearest_name.h"
+#include "cautery/nearest.h"
 
 #include <ctype.h>
 #include <stdbool.h>
@@ -7,7 +7,10 @@
 
 #include "cautery/assert.h"
 
-enum { LONGEST = 48 };
+enum {
+	LONGEST = 63,
+	LETTERS_PER_SLIP = 3, // a word of three letters may hold one slip, one of six two
+};
 
 static int least(int a, int b)
 {
@@ -43,23 +46,25 @@ static int distance(const char *a, const char *b)
 	return rows[a_count % 3][b_count];
 }
 
-const char *cau_nearest_name(const char *word, const char *const *names, int count)
+const char *cau_nearest(const char *word, const char *const *words, size_t count)
 {
-	CAU_ASSERT(count >= 0, "%d names", count);
 	const char *nearest = NULL;
-	size_t bytes = strlen(word);
-	if (bytes > LONGEST)
+	size_t length = strlen(word);
+	if (length > LONGEST)
 		return NULL;
-	int best = (int)bytes / 3 + 2;
-	for (int i = 0; i < count; i++) {
-		int d = strlen(names[i]) <= LONGEST ? distance(word, names[i]) : best;
-		// A forgotten unit ("young_modulus") is the likeliest slip of all.
-		if (bytes >= 3 && strncmp(word, names[i], bytes) == 0)
-			d = 0;
-		if (d < best) {
-			best = d;
-			nearest = names[i];
-		}
+	// not as many as it has letters: any other word would be that near
+	int fewest = least((int)length, ((int)length + LETTERS_PER_SLIP - 1) / LETTERS_PER_SLIP + 1);
+	for (size_t i = 0; i < count; i++) {
+		size_t other = strlen(words[i]);
+		int away = other <= LONGEST ? distance(word, words[i]) : fewest;
+		// what was left out is likelier than another word: a unit ("young_modulus"), a command's
+		// end
+		if (other > length && strncmp(word, words[i], length) == 0)
+			away = least(away, 1);
+		if (away >= fewest)
+			continue;
+		fewest = away;
+		nearest = words[i];
 	}
 	return nearest;
 }

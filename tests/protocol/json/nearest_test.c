@@ -36,10 +36,29 @@ static void what_was_meant_is_found(void **state)
 		{"annihilate", NULL},
 	};
 	for (size_t i = 0; i < sizeof cases / sizeof *cases; i++) {
-		const char *found = cli_nearest(cases[i].word, words, COUNT);
+		const char *found = cau_nearest(cases[i].word, words, COUNT);
 		if (found != cases[i].meant && (!found || !cases[i].meant || strcmp(found, cases[i].meant)))
 			fail_msg("\"%s\" meant \"%s\"", cases[i].word, found ? found : "nothing");
 	}
+}
+
+// Members of objects: other cases, units left out.
+static void members_are_found(void **state)
+{
+	(void)state;
+	static const char *const names[] = {"poisson_ratio", "young_modulus_pa", "density_kg_m3",
+	                                    "limit", "limit_stiffness_pa"};
+	enum { NAMES = sizeof names / sizeof *names };
+	assert_string_equal(cau_nearest("posson_ratio", names, NAMES), "poisson_ratio");
+	assert_string_equal(cau_nearest("poisson_raito", names, NAMES), "poisson_ratio");
+	assert_string_equal(cau_nearest("youngModulusPa", names, NAMES), "young_modulus_pa");
+	assert_string_equal(cau_nearest("Limit", names, NAMES), "limit");
+	assert_string_equal(cau_nearest("density", names, NAMES), "density_kg_m3");
+	assert_null(cau_nearest("temperature_c", names, NAMES));
+	assert_null(cau_nearest("x", names, NAMES));
+	assert_null(cau_nearest("", names, NAMES));
+	assert_null(cau_nearest("limit", names, 0));
+	assert_null(cau_nearest("limit_limit_limit_limit_limit_limit_limit_limit_limit", names, NAMES));
 }
 
 static void long_words_mean_nothing(void **state)
@@ -48,14 +67,15 @@ static void long_words_mean_nothing(void **state)
 	(void)state;
 	memset(word, 'e', sizeof word);
 	word[sizeof word - 1] = 0;
-	assert_null(cli_nearest(word, words, COUNT));
-	assert_null(cli_nearest("create", &(const char *){word}, 1));
+	assert_null(cau_nearest(word, words, COUNT));
+	assert_null(cau_nearest("create", &(const char *){word}, 1));
 }
 
 int main(void)
 {
 	const struct CMUnitTest tests[] = {
 		cmocka_unit_test(what_was_meant_is_found),
+		cmocka_unit_test(members_are_found),
 		cmocka_unit_test(long_words_mean_nothing),
 	};
 	return cmocka_run_group_tests(tests, NULL, NULL);

@@ -1,0 +1,174 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// The words of a command line, and --help.
+#include "cautery/options.h"
+
+#include <string.h>
+
+#include "cautery/assert.h"
+#include "cautery/nearest.h"
+#include "options/options_value.h"
+
+enum {
+	MOST_ROWS = 32,
+	LEFT_BYTES = 40, // of an option and its argument in --help
+};
+
+// ---- help --------------------------------------------------------------------------------------
+static void write_left(const cau_option *option, char left[LEFT_BYTES])
+{
+	int bytes = snprintf(left, LEFT_BYTES, "--%s%s%s", option->name, option->argument ? " " : "",
+	                     option->argument ? option->argument : "");
+	CAU_ASSERT(bytes < LEFT_BYTES, "--%s is too long for --help", option->name);
+	(void)bytes;
+}
+
+static int widest(const cau_command_line *line)
+{
+	int most = 0;
+	for (int i = 0; i < line->row_count; i++) {
+		char left[LEFT_BYTES];
+		write_left(&line->rows[i], left);
+		most = (int)strlen(left) > most ? (int)strlen(left) : most;
+	}
+	return most;
+}
+
+// The meaning beside its option, its further lines below its first.
+static void print_meaning(FILE *out, const char *left, int width, const char *meaning)
+{
+	for (const char *next = meaning; next;) {
+		size_t bytes = strcspn(next, "\n");
+		fprintf(out, "  %-*s  %.*s\n", width, left, (int)bytes, next);
+		left = "";
+		next = next[bytes] ? next + bytes + 1 : NULL;
+	}
+}
+
+void cau_options_help(const cau_command_line *line, FILE *out)
+{
+	int width = widest(line);
+	fprintf(out, "%s [options]%s%s\n%s\n", line->program, line->words ? " " : "",
+	        line->words ? line->words : "", line->summary);
+	for (int i = 0; i < line->row_count; i++) {
+		char left[LEFT_BYTES];
+		write_left(&line->rows[i], left);
+		print_meaning(out, left, width, line->rows[i].meaning);
+	}
+	if (line->closing)
+		fprintf(out, "\n%s", line->closing);
+}
+
+// ---- reading -----------------------------------------------------------------------------------
+static void complain_unknown(const cau_command_line *line, const char *name, size_t bytes,
+                             FILE *complaints)
+{
+	const char *names[MOST_ROWS];
+	char wrong[LEFT_BYTES];
+	snprintf(wrong, sizeof wrong, "%.*s", (int)bytes, name);
+	for (int i = 0; i < line->row_count; i++)
+		names[i] = line->rows[i].name;
+	const char *nearest = cau_nearest(wrong, names, (size_t)line->row_count);
+	fprintf(complaints, "%s: there is no option --%s", line->program, wrong);
+	if (nearest)
+		fprintf(complaints, ": did you mean --%s?\n", nearest);
+	else
+		fputs(" (--help lists them)\n", complaints);
+}
+
+static const cau_option *find_option(const cau_command_line *line, const char *name, size_t bytes)
+{
+	for (int i = 0; i < line->row_count; i++)
+		if (strlen(line->rows[i].name) == bytes && strncmp(line->rows[i].name, name, bytes) == 0)
+			return &line->rows[i];
+	return NULL;
+}
+
+static const cau_option *find_help(const cau_command_line *line)
+{
+	for (int i = 0; i < line->row_count; i++)
+		if (line->rows[i].kind == CAU_OPTION_HELP)
+			return &line->rows[i];
+	return NULL;
+}
+
+// What a command line has been read to.
+typedef struct reading {
+	const cau_command_line *line;
+	char **arguments;
+	int argument_count, at; // `at` is the argument that is looked at
+	char *into;
+	const char **words;
+	int word_count;
+	bool words_only; // `--` was met
+	bool helped;
+	FILE *complaints;
+} reading;
+
+static bool take_word(reading *r)
+{
+	const char *word = r->arguments[r->at];
+	if (r->word_count == r->line->word_count) {
+		fprintf(r->complaints, "%s: \"%s\" belongs to no option\n", r->line->program, word);
+		return false;
+	}
+	r->words[r->word_count++] = word;
+	return true;
+}
+
+static bool take_option(reading *r)
+{
+	const char *name = r->arguments[r->at] + 2;
+	size_t bytes = strcspn(name, "=");
+	const cau_option *option = find_option(r->line, name, bytes);
+	if (!option) {
+		complain_unknown(r->line, name, bytes, r->complaints);
+		return false;
+	}
+	const char *value = name[bytes] ? name + bytes + 1 : NULL;
+	if (option->argument && !value && r->at + 1 < r->argument_count)
+		value = r->arguments[++r->at];
+	if (!option->argument != !value) {
+		fprintf(r->complaints, "%s: --%s %s\n", r->line->program, option->name,
+		        option->argument ? "wants a value" : "takes no value");
+		return false;
+	}
+	r->helped = r->helped || option->kind == CAU_OPTION_HELP;
+	return cau_option_read_value(r->line, option, value, r->into + option->member, r->complaints);
+}
+
+static bool take_argument(reading *r)
+{
+	const char *argument = r->arguments[r->at];
+	const cau_option *help = find_help(r->line);
+	if (r->words_only || strncmp(argument, "-", 1) != 0)
+		return take_word(r);
+	if (strcmp(argument, "--") == 0)
+		return r->words_only = true;
+	if (strncmp(argument, "--", 2) == 0)
+		return take_option(r);
+	if (help && strcmp(argument, "-h") == 0) {
+		r->helped = true;
+		return cau_option_read_value(r->line, help, NULL, r->into + help->member, r->complaints);
+	}
+	return take_word(r);
+}
+
+bool cau_options_read(const cau_command_line *line, int argument_count, char **arguments,
+                      void *into, const char **words, FILE *complaints)
+{
+	CAU_ASSERT(line->row_count <= MOST_ROWS, "%d options", line->row_count);
+	CAU_ASSERT(!line->word_count == !line->words, "%d words", line->word_count);
+	reading r = {.line = line,
+	             .arguments = arguments,
+	             .argument_count = argument_count,
+	             .into = into,
+	             .words = words,
+	             .complaints = complaints};
+	for (r.at = 1; r.at < argument_count && !r.helped; r.at++)
+		if (!take_argument(&r))
+			return false;
+	if (r.helped || r.word_count == line->word_count)
+		return true;
+	fprintf(complaints, "%s: wants %s (--help tells more)\n", line->program, line->words);
+	return false;
+}
