@@ -15,8 +15,8 @@ import sys
 
 # Where CMake puts programs, libraries to preload included: a target is named as its file.
 PROGRAM = r"/(?:bin|tests|fuzz)/(?:lib)?([\w-]+)(?:\.so)?(?=[\";\s]|$)"
-# Tests that look at what the whole project was compiled to.
-EVERYTHING = "/objects.txt"
+# Tests that look at, or install, what the whole project was compiled to.
+EVERYTHING = re.compile(r"/(?:objects\.txt|cmake_install\.cmake)")
 
 
 def names(tree, regex):
@@ -43,7 +43,7 @@ def programs(tree, regex):
     program = re.compile(f"(?:{'|'.join(paths)}){PROGRAM}")
     for name, line in definitions(tree):
         if name in wanted:
-            found.update(["all"] if EVERYTHING in line else program.findall(line))
+            found.update(["all"] if EVERYTHING.search(line) else program.findall(line))
     return sorted(found)
 
 

@@ -81,6 +81,10 @@ int main(int argument_count, char **arguments)
 	load_result result = {0};
 	if (!load_options_read(argument_count, arguments, &options, stderr))
 		return LOAD_BAD_USAGE;
+	if (options.version) {
+		puts("cautery-load " CAUTERY_VERSION);
+		return LOAD_DONE;
+	}
 	if (options.help) {
 		load_options_help(stdout);
 		return LOAD_DONE;

@@ -22,7 +22,7 @@ typedef struct load_options {
 	double warm_up_s;
 	double slow_pct; // of the viewers that do not drive
 	double rate_hz;
-	bool json, help;
+	bool json, help, version;
 } load_options;
 
 // On a mistake, says it on `complaints` and returns false.

@@ -70,6 +70,10 @@ int main(int argument_count, char **arguments)
 	robot_trajectory trajectory;
 	if (!robot_options_read(&options, argument_count, arguments, stderr))
 		return EXIT_USAGE;
+	if (options.version) {
+		puts("cautery-robot " CAUTERY_VERSION);
+		return EXIT_DONE;
+	}
 	if (options.help) {
 		robot_options_help(stdout);
 		return EXIT_DONE;

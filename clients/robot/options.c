@@ -33,6 +33,7 @@ static const cau_option rows[] = {
 	{"json", NULL, CAU_OPTION_FLAG, AT(json),
      .meaning = "one JSON object as the last line of output"},
 	{"help", NULL, CAU_OPTION_HELP, AT(help), .meaning = "this text"},
+	{"version", NULL, CAU_OPTION_HELP, AT(version), .meaning = "which version this is"},
 };
 
 static const cau_command_line line = {

@@ -17,7 +17,7 @@ typedef struct robot_options {
 	double force_limit_n; // backs off above; 0: never
 	double seconds;       // ends after this; 0: with the trajectory
 	int32_t domain;
-	bool energy, standby, json, help;
+	bool energy, standby, json, help, version;
 } robot_options;
 
 // False: *options is not to be used, and why is printed on `errors`.

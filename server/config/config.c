@@ -66,7 +66,8 @@ static bool read_request(cau_config_request *request, const char *flag)
 	} requests[] = {{"--help", &request->help},
 	                {"--version", &request->version},
 	                {"--json", &request->json},
-	                {"--print-config", &request->print_config}};
+	                {"--print-config", &request->print_config},
+	                {"--settings-schema", &request->settings_schema}};
 	for (size_t i = 0; i < sizeof requests / sizeof requests[0]; i++)
 		if (strcmp(flag, requests[i].name) == 0)
 			return *requests[i].wanted = true;

@@ -20,7 +20,7 @@ enum { CAU_CONFIG_TEXT_BYTES = 512 };
 	INTEGER(port, 8740, 0, 65535, "port of HTTP and WebSocket; 0: any free one")                   \
 	TEXT(store, "cautery.db", "file of the store")                                                 \
 	TEXT(scenes, "", "folder of named scenes; empty: the installed one")                           \
-	TEXT(viewer, "", "folder of viewer files to serve; empty: a plain page")                       \
+	TEXT(viewer, "", "folder of viewer files to serve; empty: the installed one")                  \
 	TEXT(label, "d1", "this daemon's label, first part of its sessions' ids; no `-`")              \
 	TEXT(demo, "", "scene of which a session exists at start, made if the store has none")         \
 	TEXT(tokens, "", "file of tokens, one `ROLE TOKEN` a line; empty: loopback is admin")          \
@@ -86,7 +86,7 @@ typedef struct cau_config {
 
 // What the command line asked for besides settings.
 typedef struct cau_config_request {
-	bool help, version, json, print_config;
+	bool help, version, json, print_config, settings_schema;
 } cau_config_request;
 
 void cau_config_default(cau_config *config);
@@ -113,5 +113,8 @@ cau_status cau_config_load(cau_config *config, cau_config_request *request, int 
 
 // Writes the settings as one JSON object.
 void cau_config_print(const cau_config *config, FILE *stream);
+// Writes a JSON Schema (2020-12) of the file that --config reads: types, bounds, defaults,
+// meanings.
+void cau_config_schema(FILE *stream);
 // Writes the usage text.
 void cau_config_help(FILE *stream);

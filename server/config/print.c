@@ -43,15 +43,54 @@ void cau_config_print(const cau_config *config, FILE *stream)
 	fputs("\n}\n", stream);
 }
 
+// The type of a setting, its bounds and its default, as members of a JSON Schema.
+static void print_type(const setting *s, FILE *stream)
+{
+	static const char *const types[] = {[SETTING_TEXT] = "string",
+	                                    [SETTING_INTEGER] = "integer",
+	                                    [SETTING_REAL] = "number",
+	                                    [SETTING_SWITCH] = "boolean"};
+	fprintf(stream, "\"type\": \"%s\", ", types[s->kind]);
+	if (s->kind == SETTING_TEXT)
+		fprintf(stream, "\"maxLength\": %d, ", CAU_CONFIG_TEXT_BYTES - 1);
+	if (s->kind == SETTING_INTEGER || s->kind == SETTING_REAL)
+		fprintf(stream, "\"minimum\": %.15g, \"maximum\": %.15g, ", s->least, s->most);
+	fputs("\"default\": ", stream);
+	if (s->kind == SETTING_TEXT)
+		print_text(s->default_text, stream);
+	else
+		fputs(s->default_text, stream);
+}
+
+void cau_config_schema(FILE *stream)
+{
+	fputs("{\n  \"$schema\": \"https://json-schema.org/draft/2020-12/schema\",\n"
+	      "  \"title\": \"Settings of cauteryd\",\n  \"type\": \"object\",\n"
+	      "  \"additionalProperties\": false,\n  \"properties\": {",
+	      stream);
+	for (size_t i = 0; i < cau_setting_count; i++) {
+		const setting *s = &cau_settings[i];
+		fprintf(stream, "%s\n    \"%s\": {", i ? "," : "", s->name);
+		print_type(s, stream);
+		fputs(", \"description\": ", stream);
+		print_text(s->meaning, stream);
+		fputc('}', stream);
+	}
+	fputs("\n  }\n}\n", stream);
+}
+
 void cau_config_help(FILE *stream)
 {
-	fputs("cauteryd: a simulation server for energized soft-tissue dissection\n\n"
-	      "usage: cauteryd [--config FILE] [--SETTING VALUE]... [--print-config] [--json]\n\n"
-	      "  --config FILE         a JSON object of the settings below\n"
-	      "  --print-config        print the settings in force and end\n"
-	      "  --json                print one line of JSON with the address once ready\n"
-	      "  --version, --help\n\n"
-	      "Settings (flag over CAUTERY_SETTING in the environment over file over default):\n",
+	fputs("cauteryd [--config FILE] [--SETTING VALUE]...\n"
+	      "Serves simulated soft tissue, to be dissected with energized instruments, to browsers,\n"
+	      "robots and programs.\n\n"
+	      "  --config FILE                  a JSON object of the settings below\n"
+	      "  --print-config                 print the settings in force and end\n"
+	      "  --settings-schema              print a JSON Schema of the settings and end\n"
+	      "  --json                         print one line of JSON with the address once ready\n"
+	      "  --version                      which version this is\n"
+	      "  --help                         this text\n\n"
+	      "Settings (flag over CAUTERY_SETTING in the environment over file over default):\n\n",
 	      stream);
 	for (size_t i = 0; i < cau_setting_count; i++) {
 		const setting *s = &cau_settings[i];
@@ -59,6 +98,9 @@ void cau_config_help(FILE *stream)
 		snprintf(flag, sizeof flag, "%s", s->name);
 		for (char *c = flag; *c; c++)
 			*c = *c == '_' ? '-' : *c;
-		fprintf(stream, "  --%-20s %s [%s]\n", flag, s->meaning, s->default_text);
+		fprintf(stream, "  --%-28s %s [%s]\n", flag, s->meaning, s->default_text);
 	}
+	fputs("\nExit code: 0 ended when told to; 1 it could not start, and the last line of the log "
+	      "says why;\n2 the settings are wrong.\n",
+	      stream);
 }

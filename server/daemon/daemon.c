@@ -12,6 +12,7 @@
 #include "http/static_files.h"
 #include "hub/hub.h"
 #include "log/log.h"
+#include "places/places.h"
 #include "rpc/service.h"
 #include "transport_dds/dds_transport.h"
 #include "transport_ws/network.h"
@@ -114,12 +115,23 @@ static cau_status open_network(cau_daemon *daemon, cau_error *error)
 	return status;
 }
 
+// Scenes there must be; without a viewer a plain page says that there is none.
+static cau_status find_files(cau_config *config, cau_error *error)
+{
+	if (!*config->viewer)
+		cau_place_find("viewer", config->viewer, sizeof config->viewer);
+	if (*config->scenes || cau_place_find("scenes", config->scenes, sizeof config->scenes))
+		return CAU_OK;
+	return cau_fail(error, CAU_NOT_FOUND, "scenes",
+	                "no folder ../share/cautery/scenes beside this program: say where they are");
+}
+
 static cau_status open_all(cau_daemon *daemon, cau_error *error)
 {
 	cau_config *config = daemon->config;
-	if (!*config->scenes)
-		snprintf(config->scenes, sizeof config->scenes, "%s", CAUTERY_SCENES);
-	cau_status status = cau_auth_create(&daemon->auth, config, error);
+	cau_status status = find_files(config, error);
+	if (!status)
+		status = cau_auth_create(&daemon->auth, config, error);
 	if (!status)
 		status = cau_static_files_load(&daemon->files, config->viewer, error);
 	if (!status)

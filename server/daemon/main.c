@@ -114,6 +114,10 @@ int main(int argument_count, char **arguments)
 		puts("cauteryd " CAUTERY_VERSION);
 		return EXIT_STARTED;
 	}
+	if (request.settings_schema) {
+		cau_config_schema(stdout);
+		return EXIT_STARTED;
+	}
 	if (request.print_config) {
 		cau_config_print(&config, stdout);
 		return EXIT_STARTED;

@@ -51,6 +51,10 @@ int main(int argument_count, char **arguments)
 	sim_exit code = SIM_BAD_INPUT;
 	if (!sim_options_read(argument_count, arguments, &options, stderr))
 		return SIM_BAD_USAGE;
+	if (options.version) {
+		puts("cautery-sim " CAUTERY_VERSION);
+		return SIM_DONE;
+	}
 	if (options.help) {
 		sim_options_help(stdout);
 		return SIM_DONE;

@@ -32,6 +32,7 @@ static const cau_option rows[] = {
 	{"json", NULL, CAU_OPTION_FLAG, AT(json),
      .meaning = "one JSON object as the last line of output"},
 	{"help", NULL, CAU_OPTION_HELP, AT(help), .meaning = "this text"},
+	{"version", NULL, CAU_OPTION_HELP, AT(version), .meaning = "which version this is"},
 };
 
 static const cau_command_line line = {
@@ -55,7 +56,7 @@ bool sim_options_read(int argument_count, char **arguments, sim_options *options
 		.unit_m = 1.0, .seconds = -1.0, .threads = 1, .vtu_every = 10, .snapshot_at = -1};
 	if (!cau_options_read(&line, argument_count, arguments, options, NULL, complaints))
 		return false;
-	if (options->help)
+	if (options->help || options->version)
 		return true;
 	if (!options->scene) {
 		fputs("cautery-sim: --scene is needed (--help tells more)\n", complaints);

@@ -29,7 +29,7 @@ typedef struct sim_options {
 	bool cut;            // run the scene's own cut in place of a script
 	bool print_cut;      // print the scene's cut as a script and end
 	bool json;
-	bool help;
+	bool help, version;
 } sim_options;
 
 // Reads the command line. On a mistake, says it on `complaints` and returns false.

@@ -9,6 +9,7 @@
 
 #include "cautery/name.h"
 #include "cautery/scene_json.h"
+#include "places/places.h"
 #include "sim/mesh_scene.h"
 
 enum { PATH_BYTES = 1024 };
@@ -91,13 +92,15 @@ static cau_status load_file(const char *path, cau_scene_def *scene, cau_error *e
 static cau_status load_name(const char *name, const char *folder, cau_scene_def *scene,
                             cau_error *error)
 {
-	char path[PATH_BYTES];
+	char path[PATH_BYTES], installed[PATH_BYTES];
 	if (strlen(name) >= CAU_NAME_BYTES || !cau_name_is_valid(name))
 		return cau_fail(error, CAU_BAD_VALUE, NULL, "\"%.100s\" is no scene name (%s) and no file",
 		                name, CAU_NAME_RULE);
+	if (!folder && !cau_place_find("scenes", installed, sizeof installed))
+		return cau_fail(error, CAU_NOT_FOUND, NULL,
+		                "no folder ../share/cautery/scenes beside this program: say --scenes DIR");
 	if (!folder)
-		folder = access(CAUTERY_INSTALLED_SCENES, R_OK) == 0 ? CAUTERY_INSTALLED_SCENES
-		                                                     : CAUTERY_SOURCE_SCENES;
+		folder = installed;
 	int bytes = snprintf(path, sizeof path, "%s/%s.json", folder, name);
 	if (bytes < 0 || (size_t)bytes >= sizeof path)
 		return cau_fail(error, CAU_LIMIT, NULL, "the folder's name is too long");

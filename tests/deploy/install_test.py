@@ -1,0 +1,153 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""What `cmake --install` makes, used as installed: in a place that the build knows nothing of.
+
+Usage: install_test.py CMAKE TREE SOURCES      Exit code 77: skipped, and the reason is printed.
+"""
+
+import glob
+import http.client
+import json
+import os
+import shutil
+import subprocess
+import sys
+import tempfile
+import unittest
+
+CMAKE, TREE, SOURCES = sys.argv[1:]
+PATIENCE_S = 120
+CLEAN = {name: value for name, value in os.environ.items()
+         if not name.startswith(("CAUTERY", "CMAKE_", "PKG_CONFIG", "MAN"))}
+PROGRAMS = {"cauteryd": 8, "cautery-sim": 1, "cautery": 1, "cautery-load": 1, "cautery-robot": 1}
+
+
+def run(*command, **options):
+    done = subprocess.run(command, env={**CLEAN, **options.pop("environment", {})}, text=True, timeout=PATIENCE_S,
+                          stdout=subprocess.PIPE, stderr=subprocess.PIPE, check=False, **options)
+    assert done.returncode == 0, f"{command} ended with {done.returncode}\n{done.stdout}\n{done.stderr}"
+    return done
+
+
+class Installed(unittest.TestCase):
+    @classmethod
+    def setUpClass(cls):
+        cls.folder = tempfile.mkdtemp(prefix="cautery-install-")
+        cls.addClassCleanup(shutil.rmtree, cls.folder)
+        staged = os.path.join(cls.folder, "staged")
+        run(CMAKE, "--install", TREE, "--prefix", "/usr", environment={"DESTDIR": staged})
+        # Moved after it was installed: nothing in it may know where it was.
+        cls.prefix = os.path.join(cls.folder, "elsewhere")
+        os.rename(os.path.join(staged, "usr"), cls.prefix)
+
+    def path(self, *names):
+        return os.path.join(self.prefix, *names)
+
+    def one(self, pattern):
+        found = glob.glob(self.path(pattern), recursive=True)
+        self.assertEqual(len(found), 1, f"{pattern}: {found}")
+        return found[0]
+
+    def start(self):
+        """The installed daemon, with nothing said about its files. Returns its port."""
+        store = os.path.join(tempfile.mkdtemp(dir=self.folder), "store.db")
+        daemon = subprocess.Popen([self.path("bin/cauteryd"), "--json", "--port", "0", "--store", store],
+                                  stdout=subprocess.PIPE, env=CLEAN, cwd="/", text=True)
+
+        def end():
+            daemon.terminate()
+            self.assertEqual(daemon.wait(PATIENCE_S), 0)
+            daemon.stdout.close()
+
+        self.addCleanup(end)
+        return json.loads(daemon.stdout.readline())["port"]
+
+    def test_session_by_the_installed_command_line(self):
+        port = self.start()
+        url = {"CAUTERYD_URL": f"ws://127.0.0.1:{port}"}
+        session = run(self.path("bin/cautery"), "create", "fascia", environment=url).stdout.strip()
+        self.assertIn(session, run(self.path("bin/cautery"), "ls", environment=url).stdout)
+
+    def test_viewer_is_served(self):
+        viewer = os.path.join(SOURCES, "clients/web/dist/index.html")
+        connection = http.client.HTTPConnection("127.0.0.1", self.start(), timeout=PATIENCE_S)
+        connection.request("GET", "/")
+        page = connection.getresponse().read()
+        connection.close()
+        if os.path.exists(viewer):
+            with open(viewer, "rb") as file:
+                self.assertEqual(page, file.read())
+        else:
+            self.assertFalse(os.path.exists(self.path("share/cautery/viewer")))
+            print("note: the viewer is not built (npm run build in clients/web), so a plain page is served")
+
+    def test_scene_without_a_server(self):
+        said = run(self.path("bin/cautery-sim"), "--scene", "fascia", "--seconds", "0.1", "--json", cwd="/")
+        self.assertIn("hash", json.loads(said.stdout.splitlines()[-1]))
+
+    def test_pkg_config_links_a_client(self):
+        url = f"ws://127.0.0.1:{self.start()}"
+        config = {"PKG_CONFIG_PATH": os.path.dirname(self.one("lib/**/cautery-client.pc"))}
+        flags = run("pkg-config", "--cflags", "--libs", "cautery-client", environment=config).stdout.split()
+        program = os.path.join(self.folder, "greet")
+        run("cc", "-Wall", "-Wextra", "-Wpedantic", "-Werror", "-std=c17", "-o", program,
+            os.path.join(SOURCES, "tests/deploy/client/greet.c"), *flags)
+        self.assertRegex(run(program, url).stdout, r"^cauteryd \d")
+
+    def test_find_package_builds_the_example(self):
+        url = f"ws://127.0.0.1:{self.start()}"
+        tree = os.path.join(self.folder, "stranger")
+        run(CMAKE, "-S", os.path.join(SOURCES, "tests/deploy/client"), "-B", tree, f"-DCMAKE_PREFIX_PATH={self.prefix}",
+            f"-DEXAMPLE={self.one('share/doc/cautery/examples/teaching.c')}")
+        run(CMAKE, "--build", tree)
+        self.assertIn("cauteryd", run(os.path.join(tree, "example"), url).stdout)
+
+    def test_pages(self):
+        pages = [f"man{section}/{name}.{section}.gz" for name, section in PROGRAMS.items()]
+        for page in [*pages, "man5/cauteryd.json.5.gz"]:
+            file = self.path("share/man", page)
+            shown = run("man", "--warnings", "-E", "UTF-8", "-l", "-Tutf8", "-Z", file)
+            self.assertEqual(shown.stderr, "", page)
+            if shutil.which("mandoc"):
+                lint = subprocess.run(["mandoc", "-T", "lint", "-W", "error", file], capture_output=True, check=False)
+                self.assertEqual(lint.stdout, b"", page)
+
+    def test_pages_say_all_that_the_programs_do(self):
+        """Each option of the help text is on the page; each command, and each setting."""
+        for name, section in PROGRAMS.items():
+            said = run(self.path("bin", name), "--help").stdout
+            shown = run("man", "-l", self.path(f"share/man/man{section}/{name}.{section}.gz"),
+                        environment={"MANWIDTH": "200", "LC_ALL": "C"}).stdout
+            for line in said.splitlines():
+                if line.startswith("  ") and name != "cautery":
+                    self.assertIn(line.split()[0], shown)
+        settings = json.loads(run(self.path("bin/cauteryd"), "--settings-schema").stdout)["properties"]
+        shown = run("man", "-l", self.path("share/man/man5/cauteryd.json.5.gz"), environment={"LC_ALL": "C"}).stdout
+        for setting in settings:
+            self.assertRegex(shown, rf" {setting}\s+\(")
+
+    def test_completions_are_what_shells_take(self):
+        run("bash", "-n", self.path("share/bash-completion/completions/cautery"))
+        if shutil.which("zsh"):
+            run("zsh", "-n", self.one("share/zsh/*/_cautery"))
+
+    def test_nothing_knows_the_build(self):
+        """A path of the machine that built it would be a path that its user does not have."""
+        for folder, _, names in os.walk(self.prefix):
+            for name in names:
+                file = os.path.join(folder, name)
+                if not name.endswith(".a"):
+                    with open(file, "rb") as stream:
+                        self.assertNotIn(SOURCES.encode() + b"/", stream.read(), file)
+
+    def test_schema_has_the_defaults(self):
+        settings = json.loads(run(self.path("bin/cauteryd"), "--settings-schema").stdout)["properties"]
+        printed = json.loads(run(self.path("bin/cauteryd"), "--print-config").stdout)
+        self.assertEqual({name: setting["default"] for name, setting in settings.items()}, printed)
+
+    def test_versions(self):
+        for name in PROGRAMS:
+            self.assertRegex(run(self.path("bin", name), "--version").stdout, rf"^{name} \d+\.\d+\.\d+")
+
+
+if __name__ == "__main__":
+    unittest.main(argv=sys.argv[:1])
