@@ -109,6 +109,13 @@ void cau_frame_update(cau_frame_state *frame, const cau_dissection *dissection, 
 	update_mask(frame, dissection);
 }
 
+void cau_frame_stand_still(cau_frame_state *frame)
+{
+	CAU_ASSERT(frame->moved_count >= 0 && frame->mask_changed_count >= 0,
+	           "%d vertices and %d words changed", frame->moved_count, frame->mask_changed_count);
+	frame->moved_count = frame->mask_changed_count = 0;
+}
+
 void cau_frame_rebuild(cau_frame_state *frame, const cau_dissection *dissection)
 {
 	const cau_tissue *tissue = dissection->tissue;

@@ -30,7 +30,7 @@ static void rest(cau_heat_grid *grid)
 	grid->coldest_c = grid->warmest_c = ambient;
 }
 
-static bool at_rest(const cau_heat_grid *grid)
+bool cau_heat_grid_is_ambient(const cau_heat_grid *grid)
 {
 	return grid->coldest_c == grid->warmest_c;
 }
@@ -172,7 +172,7 @@ static void follow(cau_heat_grid *grid, const cau_tool_def *tool, const cau_pose
 		leapt |= shift[axis] <= -grid->nodes || shift[axis] >= grid->nodes;
 		grid->origin[axis] = origin[axis];
 	}
-	if (!moved || at_rest(grid))
+	if (!moved || cau_heat_grid_is_ambient(grid))
 		return;
 	if (leapt) {
 		rest(grid);
@@ -280,7 +280,7 @@ void cau_heat_grid_advance(cau_heat_grid *grid, const cau_tool_def *tool, const 
 	CAU_ASSERT(duration_s >= 0, "a part of %g s", duration_s);
 	follow(grid, tool, pose);
 	bool heating = energized && cau_tool_thinnest_hot_m(tool) < INFINITY;
-	if (at_rest(grid) && !heating)
+	if (cau_heat_grid_is_ambient(grid) && !heating)
 		return;
 	int64_t substeps = cau_heat_grid_substeps(grid->step_m, grid->diffusivity, duration_s);
 	double dt = duration_s / (double)substeps;
@@ -320,5 +320,5 @@ double cau_heat_grid_at(const cau_heat_grid *grid, cau_vec3 point)
 
 double cau_heat_grid_warmest(const cau_heat_grid *grid)
 {
-	return at_rest(grid) ? grid->ambient_c : (double)grid->warmest_c;
+	return cau_heat_grid_is_ambient(grid) ? grid->ambient_c : (double)grid->warmest_c;
 }

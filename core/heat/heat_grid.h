@@ -46,6 +46,9 @@ void cau_heat_grid_survey(cau_heat_grid *grid);
 // Trilinear interpolation, ambient outside the grid. degC.
 double cau_heat_grid_at(const cau_heat_grid *grid, cau_vec3 point);
 
+// Whether every node is at ambient (within 0.01 degC: see cau_heat_grid_advance).
+bool cau_heat_grid_is_ambient(const cau_heat_grid *grid);
+
 // Warmest node; ambient when cold. degC.
 double cau_heat_grid_warmest(const cau_heat_grid *grid);
 

@@ -139,7 +139,7 @@ static cau_status make_solver(cau_session *session, const cau_session_def *def, 
 	return status;
 }
 
-static cau_status make_rest(cau_session *session, cau_error *error)
+static cau_status make_remainder(cau_session *session, cau_error *error)
 {
 	cau_arena *arena = &session->arena;
 	cau_status status = cau_near_create(&session->near, &session->tissue, arena, error);
@@ -215,7 +215,9 @@ static cau_status build(cau_session *session, const cau_session_def *def, cau_er
 	if (!status)
 		status = cau_session_make_energy(session, error);
 	if (!status)
-		status = make_rest(session, error);
+		status = cau_session_make_rest(session, error);
+	if (!status)
+		status = make_remainder(session, error);
 	if (status)
 		return status;
 	session->definition_hash = hash_definition(session);

@@ -42,6 +42,13 @@ typedef struct cau_energy {
 	double *sum_j;    // (chunk_count x 3): scratch
 } cau_energy;
 
+// rest.c: whether the tissue is at rest, and since when it has been quiet.
+typedef struct cau_rest {
+	bool resting;
+	int32_t quiet_ticks; // 0: something moves
+	double *from;        // m, (n x 3): positions as the quiet began
+} cau_rest;
+
 // What possible.c knows of the last look at the edges, and its scratch.
 typedef struct cau_watch {
 	double left_m;        // vertices may still go half as far before an edge can be too long
@@ -79,6 +86,7 @@ struct cau_session {
 	int32_t inverted, frozen_count;
 	cau_watch watch;
 	cau_energy energy;
+	cau_rest rest;
 	double size_m;           // diagonal of the tissue's box at rest
 	int32_t driven_count;    // pinned vertices that the next step moves
 	int32_t *driven;         // (n)
@@ -151,6 +159,12 @@ cau_status cau_session_make_energy(cau_session *session, cau_error *error);
 void cau_session_begin_energy(cau_session *session);
 void cau_session_end_energy(cau_session *session);
 void cau_session_mark_changed(cau_session *session);
+// rest.c: its array; whether the coming tick is spent at rest (what is due wakes it); that tick;
+// and at the end of one that was not, whether the next will be.
+cau_status cau_session_make_rest(cau_session *session, cau_error *error);
+bool cau_session_rests(cau_session *session);
+cau_status cau_session_rest_tick(cau_session *session, cau_error *error);
+void cau_session_fall_asleep(cau_session *session);
 // motion.c: what turns a tick's way into the velocity after it, 1/s (eq. 2 and damping).
 double cau_session_velocity_scale(const cau_session *session);
 // motion.c: predicts s of eq. 4 before a solve; velocities after it.

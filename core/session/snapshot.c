@@ -6,6 +6,7 @@
 // and likewise the factor in the making. A header with every count and a hash of the rest comes
 // first: a damaged snapshot is refused before anything is touched, and so is one whose counts are
 // not those of its bytes.
+#include <stddef.h>
 #include <stdlib.h>
 #include <string.h>
 
@@ -15,7 +16,7 @@
 
 static const char magic[8] = "CAUSNAP";
 enum {
-	VERSION = 3,       // elements by number; version 1, by slot, is still read
+	VERSION = 4,       // with rest; 3, without, and 1, elements by slot, are still read
 	MOST_NODES = 4096, // along a heat grid's side: far more than a tool may have
 };
 
@@ -36,7 +37,13 @@ typedef struct snapshot_header {
 	int32_t grid_nodes[CAU_MAX_TOOLS];
 	int32_t faulted;
 	double gravity_m_s2[3];
+	int32_t resting, quiet_ticks; // since version 4
 } snapshot_header;
+
+static size_t header_bytes(uint32_t version)
+{
+	return version < 4 ? offsetof(snapshot_header, resting) : sizeof(snapshot_header);
+}
 
 // Columns of A^-1 that contacts keep: they lag behind cuts, so they cannot be made again.
 static int32_t kept_columns(const cau_session *session)
@@ -117,6 +124,8 @@ static cau_status pass_state(snapshot_archive *archive, cau_session *session, ca
 	cau_status status = cau_snapshot_pass_elements(archive, session, error);
 	pass_update(archive, session);
 	pass_columns(archive, session);
+	if (session->rest.quiet_ticks && !session->rest.resting)
+		snapshot_pass(archive, session->rest.from, 3 * n * sizeof(double));
 	return status;
 }
 
@@ -158,6 +167,8 @@ static void fill_header(const cau_session *session, snapshot_header *header)
 	header->edges_parted = session->dissection.edges_parted;
 	header->elements_removed = session->dissection.elements_removed;
 	header->faulted = session->faulted;
+	header->resting = session->rest.resting;
+	header->quiet_ticks = session->rest.quiet_ticks;
 	for (int32_t i = 0; i < session->tool_count; i++)
 		header->grid_nodes[i] = session->tool[i].grid.nodes;
 	memcpy(header->gravity_m_s2, session->scene->gravity_m_s2, sizeof header->gravity_m_s2);
@@ -168,8 +179,9 @@ static uint64_t hash_of(const snapshot_header *header, const unsigned char *payl
 	snapshot_header unsigned_header;
 	memcpy(&unsigned_header, header, sizeof unsigned_header); // with its padding, which is zero
 	unsigned_header.hash = 0;
-	return cau_hash_bytes(cau_hash_bytes(CAU_HASH_START, &unsigned_header, sizeof unsigned_header),
-	                      payload, bytes);
+	return cau_hash_bytes(
+		cau_hash_bytes(CAU_HASH_START, &unsigned_header, header_bytes(header->version)), payload,
+		bytes);
 }
 
 static void write_payload(cau_session *session, snapshot_archive *archive)
@@ -224,10 +236,10 @@ static cau_status check_header(const cau_session *session, const snapshot_header
 	const cau_matrix_update *update = &session->update;
 	if (memcmp(header->magic, magic, sizeof magic) != 0)
 		return corrupt(error, "it does not begin like one");
-	if (header->version != 1 && header->version != VERSION)
+	if (header->version != 1 && header->version != 3 && header->version != VERSION)
 		return cau_fail(
 			error, CAU_CORRUPT, NULL,
-			"the snapshot is of version %u and this build reads 1 and %u: restore it with "
+			"the snapshot is of version %u and this build reads 1, 3 and %u: restore it with "
 			"the build that wrote it",
 			(unsigned)header->version, (unsigned)VERSION);
 	if (header->single != (uint32_t)session->solver.elements.single)
@@ -242,7 +254,8 @@ static cau_status check_header(const cau_session *session, const snapshot_header
 	    header->waiting_count > update->waiting_capacity || header->operation_count < 0 ||
 	    header->operation_count > CAU_DOWNDATES_AT_MOST || header->column_count < 0 ||
 	    header->column_count > CAU_MAX_CONTACTS || header->waiting_at_start < 0 ||
-	    header->row_count < 0 || header->row_count > header->vertex_count)
+	    header->row_count < 0 || header->row_count > header->vertex_count ||
+	    header->quiet_ticks < 0 || (header->resting && !header->quiet_ticks))
 		return corrupt(error, "a count is out of its range");
 	if (header->payload_bytes != payload_bytes)
 		return corrupt(error, "bytes are missing");
@@ -266,6 +279,8 @@ static cau_session *imagine(const cau_session *session, const snapshot_header *h
 	imagined->contact.epoch = imagined->solver.factor_epoch;
 	imagined->update.waiting_count = header->waiting_count;
 	imagined->update.operation_count = header->operation_count;
+	imagined->rest.resting = header->resting;
+	imagined->rest.quiet_ticks = header->quiet_ticks;
 	return imagined;
 }
 
@@ -352,6 +367,8 @@ static void restore_counts(cau_session *session, const snapshot_header *header)
 	update->longest_wait = header->longest_wait;
 	session->tick = header->tick;
 	session->faulted = header->faulted;
+	session->rest.resting = header->resting;
+	session->rest.quiet_ticks = header->quiet_ticks;
 	session->frozen_count = header->frozen_count;
 	session->inverted = header->inverted;
 	memcpy(session->scene->gravity_m_s2, header->gravity_m_s2, sizeof header->gravity_m_s2);
@@ -421,12 +438,17 @@ done:
 cau_status cau_session_restore(cau_session *session, const void *bytes, size_t byte_count,
                                bool *exact, cau_error *error)
 {
-	snapshot_header header;
-	if (byte_count < sizeof header)
+	snapshot_header header = {0};
+	size_t head = header_bytes(0); // what all versions have, the version among it
+	if (byte_count >= head) {
+		memcpy(&header, bytes, head);
+		head = header_bytes(header.version);
+	}
+	if (byte_count < head)
 		return corrupt(error, "it is too short");
-	memcpy(&header, bytes, sizeof header);
-	unsigned char *payload = (unsigned char *)(uintptr_t)bytes + sizeof header;
-	size_t payload_bytes = byte_count - sizeof header;
+	memcpy(&header, bytes, head);
+	unsigned char *payload = (unsigned char *)(uintptr_t)bytes + head;
+	size_t payload_bytes = byte_count - head;
 	cau_status status = check_header(session, &header, payload, payload_bytes, error);
 	if (!status)
 		status = check_payload(session, &header, payload, payload_bytes, error);

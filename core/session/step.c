@@ -130,6 +130,8 @@ cau_status cau_session_step(cau_session *session, cau_error *error)
 {
 	if (session->faulted)
 		return cau_fail(error, CAU_FAULTED, NULL, "the session is faulted: restore a snapshot");
+	if (cau_session_rests(session)) // rest.c
+		return cau_session_rest_tick(session, error);
 	cau_session_stage_begin(session);
 	begin_tick(session);
 	cau_status status = cau_session_apply_commands(session, error); // command.c
@@ -164,6 +166,7 @@ cau_status cau_session_step(cau_session *session, cau_error *error)
 	cau_frame_update(&session->frame, &session->dissection, session->position_start,
 	                 session->position); // frame/frame_state.c
 	cau_session_show_scalars(session);   // view.c
+	cau_session_fall_asleep(session);    // rest.c
 	cau_session_stage_end(session, CAU_STAGE_FRAME);
 	session->tick++;
 	return CAU_OK;

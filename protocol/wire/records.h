@@ -7,8 +7,8 @@
 enum {
 	TOOL_RECORD_BYTES = 84,
 	TOOL_NAMES_BYTES_MAX = 4 + CAU_MAX_TOOLS * (2 + CAU_NAME_BYTES) + 3,
-	STATISTICS_RECORD_BYTES = 92,
-	STATISTICS_LEAST_BYTES = 88, // without energy_gain_j, as older servers send it
+	STATISTICS_RECORD_BYTES = 96,
+	STATISTICS_LEAST_BYTES = 88, // without what comes after refused_commands, as servers began
 };
 
 // What a decoder would refuse in this tool, or NULL.

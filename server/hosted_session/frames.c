@@ -53,6 +53,7 @@ static cau_stream_statistics fill_statistics(const cau_hosted *h, const cau_stat
 		.frozen_vertices = (uint32_t)from->frozen_vertices,
 		.refused_commands = h->refused_commands,
 		.energy_gain_j = (float)from->energy_gain_j,
+		.resting = from->resting,
 	};
 	for (int i = 0; i < CAU_STREAM_STAGES; i++)
 		to.stage_s[i] = (float)from->seconds[i];

@@ -127,5 +127,6 @@ typedef struct cau_hosted_counts {
 	double energy_gain_j; // that steps made out of nothing, those that lost some not counted
 	double realtime_factor;
 	int32_t half_rate; // subscribers at half rate
+	bool resting;      // its tissue: steps change nothing until something wakes it
 } cau_hosted_counts;
 void cau_hosted_count(cau_hosted *hosted, cau_hosted_counts *counts);

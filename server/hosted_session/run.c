@@ -81,6 +81,7 @@ static void step(cau_hosted *h)
 	h->counts.steps++;
 	h->counts.step_seconds += h->step_cost_s;
 	h->counts.energy_gain_j += fmax(frame.statistics.energy_gain_j, 0);
+	h->counts.resting = frame.statistics.resting;
 	pthread_mutex_unlock(&h->mutex);
 }
 

@@ -113,6 +113,7 @@ static void write_process(const exposition *to)
 	  c->watchdog_cuts)                                                                            \
 	X("session_subscribers", GAUGE, "", "Streams joined", s->subscriber_count)                     \
 	X("session_subscribers_half_rate", GAUGE, "", "Streams served at half rate", c->half_rate)     \
+	X("session_resting", GAUGE, "", "1 while its tissue is at rest", c->resting)                   \
 	X("session_paused", GAUGE, "", "1 while it is paused", s->state == CAU_SESSION_PAUSED)         \
 	X("session_faulted", GAUGE, "", "1 after a fault", s->state == CAU_SESSION_FAULTED)
 

@@ -58,6 +58,7 @@ static void write_result(cau_json_writer *writer, const sim_result *result)
 	write_time(writer, "energized_s", result->energized_s);
 	write_time(writer, "first_part_s", result->first_part_s);
 	cau_json_unsigned(writer, "snapshot_bytes", result->snapshot_bytes);
+	cau_json_bool(writer, "resting", result->statistics.resting);
 	cau_json_bool(writer, "snapshot_exact", result->snapshot_exact);
 }
 

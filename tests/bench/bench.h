@@ -35,6 +35,8 @@ cau_scene_def *bench_scene(const bench_options *options);
 cau_session *bench_session(const cau_scene_def *scene, const bench_options *options,
                            int32_t threads);
 void bench_submit(cau_session *session, const cau_command *command);
+// The next step is computed even where tissue is at rest: gravity is set to what it is.
+void bench_keep_awake(cau_session *session);
 
 // steps.c: plain steps with heat and contact on. Returns 0, or 1 after a line on standard error.
 typedef struct bench_steps_result {

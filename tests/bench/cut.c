@@ -46,6 +46,7 @@ static void energize(const cut_run *run)
 static int step(const cut_run *run, double *ms, cau_frame *frame)
 {
 	cau_error error = {0};
+	bench_keep_awake(run->session);
 	double start = bench_now_s();
 	cau_status status = cau_session_step(run->session, &error);
 	*ms = 1e3 * (bench_now_s() - start);

@@ -32,6 +32,7 @@ static double median_step_ms(cau_session *session, int32_t steps)
 {
 	double *ms = calloc((size_t)steps, sizeof *ms);
 	for (int32_t i = -10; i < steps; ++i) {
+		bench_keep_awake(session);
 		double start = bench_now_s();
 		cau_session_step(session, NULL);
 		if (i >= 0)

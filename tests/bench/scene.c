@@ -6,6 +6,7 @@
 
 #include "bench/bench.h"
 #include "cautery/scene_json.h"
+#include "session/session_internal.h"
 
 double bench_now_s(void)
 {
@@ -93,4 +94,13 @@ void bench_submit(cau_session *session, const cau_command *command)
 		fprintf(stderr, "cautery-bench: %s %s\n", error.path, error.reason);
 		exit(1);
 	}
+}
+
+void bench_keep_awake(cau_session *session)
+{
+	cau_command command;
+	memset(&command, 0, sizeof command);
+	command.kind = CAU_COMMAND_SET_GRAVITY;
+	memcpy(command.as.gravity_m_s2, session->scene->gravity_m_s2, sizeof command.as.gravity_m_s2);
+	bench_submit(session, &command);
 }

@@ -186,6 +186,8 @@ typedef struct cau_statistics {
 	// loss. A converged step reads 0 or less but for rounding (and buckling). 0 where a law has no
 	// energy (linearised limits, model energy, the diagonal system).
 	double energy_gain_j;
+	// The tissue is at rest: the step changed nothing, and none will until something wakes it.
+	bool resting;
 } cau_statistics;
 
 #define CAU_STAGE_TABLE(X)                                                                         \

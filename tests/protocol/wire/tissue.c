@@ -113,7 +113,8 @@ void tissue_move(tissue *moved, int32_t tick, double speed_m_s)
 	                                            .stage_s = {0.25f, 0.5f},
 	                                            .iterations = 10,
 	                                            .contacts = (uint32_t)tick,
-	                                            .energy_gain_j = 1e-6f * (float)tick};
+	                                            .energy_gain_j = 1e-6f * (float)tick,
+	                                            .resting = tick % 2 != 0};
 }
 
 cau_stream_def tissue_stream_def(const tissue *of)

@@ -51,10 +51,11 @@ export interface Statistics {
   frozenVertices: number;
   refusedCommands: number;
   energyGainJ: number; // that the last step made out of nothing; 0 from servers that do not tell it
+  resting: boolean; // steps change nothing until something wakes the tissue; false from servers that do not tell it
 }
 
 const TOOL_BYTES = 84;
-const STATISTICS_BYTES = 88; // without what servers have added since: energyGainJ
+const STATISTICS_BYTES = 88; // without what servers have added since: energyGainJ, resting
 const TOOLS_MAX = 8;
 
 export function readToolNames(payload: Uint8Array): ToolName[] {
@@ -130,5 +131,6 @@ export function readStatistics(payload: Uint8Array): Statistics {
     frozenVertices: count(8),
     refusedCommands: count(9),
     energyGainJ: payload.byteLength >= STATISTICS_BYTES + 4 ? real(22) : 0,
+    resting: payload.byteLength >= STATISTICS_BYTES + 8 && count(11) !== 0,
   };
 }

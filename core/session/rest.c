@@ -1,0 +1,172 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Rest. Tissue that has stopped is held where it is, and its steps cost nothing, until something
+// wakes it. It cannot be left to stop by itself: rounding and rotations that are found anew keep
+// the last digits moving for ever, and so does what little of a step an iteration leaves undone.
+//
+// Rest is a change of state that every run makes at the same tick, not a shortcut that some take:
+// velocities become zero and positions stay, to the bit. So it is part of snapshots.
+//
+// Tissue rests when for half a second
+// - no vertex was further than a micrometre from where it stood when that began. What still creeps
+//   then does so at 2 um/s at most, where the streams' steps are 50 um. It is the place that counts
+//   and not the way, as noise about a place is none; and half a second, as a swing is slow at its
+//   turn, but not for so long.
+// - every tool stood still and dark, with its grid at ambient (0.01 degC): heat goes on to part
+//   edges, and viewers see it spread.
+// - nothing was cut, nothing shrank, no cut waited for the factor, no factor was in the making.
+//
+// It wakes at a command that is due, and where supports are led; but not at a move that leads a
+// tool where it is already, which drivers send at the rate of their screens.
+#include <math.h>
+#include <string.h>
+
+#include "cautery/assert.h"
+#include "session/session_internal.h"
+
+static const double quiet_s = 0.5;
+static const double still_m = 1e-6;
+static const double still_share = 1e-5; // of the tissue's size, where that is less
+
+cau_status cau_session_make_rest(cau_session *session, cau_error *error)
+{
+	size_t n = (size_t)session->tissue.vertex_count;
+	session->rest.from = cau_arena_array(&session->arena, 3 * n, sizeof *session->rest.from);
+	if (!session->rest.from)
+		return cau_fail(error, CAU_NO_MEMORY, NULL, "no memory for a session");
+	return CAU_OK;
+}
+
+static int32_t ticks_to_rest(const cau_session *session)
+{
+	CAU_ASSERT(session->solver.step_s > 0, "a tick of %g s", session->solver.step_s);
+	return (int32_t)ceil(quiet_s / session->solver.step_s);
+}
+
+// ---- falling asleep
+
+static bool is_same_pose(const cau_pose *a, const cau_pose *b)
+{
+	for (int c = 0; c < 3; c++)
+		if (a->position_m[c] != b->position_m[c])
+			return false;
+	for (int c = 0; c < 4; c++)
+		if (a->rotation[c] != b->rotation[c])
+			return false;
+	return true;
+}
+
+static bool is_still(const cau_tool *tool)
+{
+	return !tool->state.energized && cau_heat_grid_is_ambient(&tool->grid) &&
+	       tool->state.jaw == tool->jaw_target && is_same_pose(&tool->state.pose, &tool->target) &&
+	       is_same_pose(&tool->state.pose, &tool->pose_before);
+}
+
+// Whether nothing but the tissue itself could move it.
+static bool is_left_alone(const cau_session *session)
+{
+	const cau_matrix_update *update = &session->update;
+	if (session->dissection.removed_count || session->shrink.active_count ||
+	    update->waiting_count || update->making)
+		return false;
+	for (int32_t i = 0; i < session->tool_count; i++)
+		if (!is_still(&session->tool[i]))
+			return false;
+	return true;
+}
+
+static double most_m(const cau_session *session)
+{
+	CAU_ASSERT(session->size_m >= 0, "a tissue of %g m", session->size_m);
+	return fmin(still_m, still_share * session->size_m);
+}
+
+// Whether the tick moved a vertex farther than tissue at rest may go in all (possible.c has
+// looked).
+static bool has_moved(const cau_session *session)
+{
+	double most = most_m(session);
+	for (int32_t chunk = 0; chunk < session->solver.chunk_count; chunk++)
+		if (!(session->watch.farthest2_m2[chunk] <= most * most))
+			return true;
+	return false;
+}
+
+static bool has_strayed(const cau_session *session)
+{
+	double most = most_m(session);
+	for (size_t v = 0; v < (size_t)session->tissue.vertex_count; v++) {
+		cau_vec3 way = cau_sub(cau_vec3_of(session->position + 3 * v),
+		                       cau_vec3_of(session->rest.from + 3 * v));
+		if (!(cau_dot(way, way) <= most * most))
+			return true;
+	}
+	return false;
+}
+
+void cau_session_fall_asleep(cau_session *session)
+{
+	cau_rest *rest = &session->rest;
+	CAU_ASSERT(!rest->resting, "tick %llu was solved at rest", (unsigned long long)session->tick);
+	size_t bytes = 3 * (size_t)session->tissue.vertex_count * sizeof(double);
+	if (!is_left_alone(session) || has_moved(session)) {
+		rest->quiet_ticks = 0;
+	} else if (!rest->quiet_ticks || has_strayed(session)) {
+		memcpy(rest->from, session->position, bytes);
+		rest->quiet_ticks = 1;
+	} else if (++rest->quiet_ticks >= ticks_to_rest(session)) {
+		memset(session->velocity, 0, bytes);
+		rest->resting = true;
+	}
+}
+
+// ---- waking
+
+// Whether a command leads a tool where it is already.
+static bool changes_nothing(const cau_session *session, const cau_command *command)
+{
+	int32_t index =
+		command->kind == CAU_COMMAND_TOOL_MOVE ? cau_session_find_tool(session, command->tool) : -1;
+	if (index < 0)
+		return false;
+	const cau_tool *tool = &session->tool[index];
+	return is_same_pose(&command->as.move.pose, &tool->target) &&
+	       (tool->state.grasping || command->as.move.jaw == tool->jaw_target);
+}
+
+static bool is_disturbed(const cau_session *session)
+{
+	CAU_ASSERT(session->driven_count >= 0, "%d vertices led", session->driven_count);
+	if (session->driven_count)
+		return true;
+	for (int32_t k = 0; k < session->command_count; k++)
+		if (session->command[k].tick <= session->tick &&
+		    !changes_nothing(session, &session->command[k]))
+			return true;
+	return false;
+}
+
+bool cau_session_rests(cau_session *session)
+{
+	if (is_disturbed(session)) {
+		session->rest.resting = false;
+		session->rest.quiet_ticks = 0;
+	}
+	return session->rest.resting;
+}
+
+cau_status cau_session_rest_tick(cau_session *session, cau_error *error)
+{
+	CAU_ASSERT(session->rest.resting, "tick %llu is not at rest",
+	           (unsigned long long)session->tick);
+	cau_step_solver *solver = &session->solver;
+	memset(session->stage_s, 0, sizeof session->stage_s);
+	session->refusal_count = 0;
+	solver->iterations_done = solver->backtracks = 0;
+	solver->residual = session->energy.gain_j = 0;
+	cau_dissection_begin(&session->dissection);
+	cau_status status = cau_session_apply_commands(session, error); // their numbers are told on
+	cau_frame_stand_still(&session->frame);
+	session->tick++;
+	return status;
+}
