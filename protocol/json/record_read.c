@@ -29,6 +29,7 @@ static void read_array(cau_reader *reader, const cJSON *value, const cau_field *
 	if (!cau_read_array(reader, value, field->least_count ? field->least_count : field->count,
 	                    field->count))
 		return;
+	CAU_ASSERT(value, "\"%s\" is an array, and nothing", field->name);
 	int32_t index = 0;
 	for (const cJSON *element = value->child; element; element = element->next, index++) {
 		size_t mark = cau_reader_enter(reader, NULL, index);

@@ -152,7 +152,7 @@ static void make_encoder(scripted_peer *peer)
 	size_t bytes = cau_frame_encoder_bytes(&def);
 	peer->storage = realloc(peer->storage, bytes);
 	peer->frame = 0;
-	uint64_t epoch = (uint64_t)(EPOCH + peer->number);
+	uint64_t epoch = (uint64_t)EPOCH + (uint64_t)peer->number;
 	cau_frame_encoder_init(peer->storage, bytes, &def, epoch, &peer->encoder, NULL);
 }
 
@@ -161,7 +161,7 @@ void scripted_answer_join(scripted_peer *peer, const cau_rpc_message *request)
 	cau_stream_def def = stream_def();
 	cau_wire_stream_description d = {.session = "t1-square",
 	                                 .session_number = SESSION_NUMBER,
-	                                 .epoch = (uint64_t)(EPOCH + peer->number),
+	                                 .epoch = (uint64_t)EPOCH + (uint64_t)peer->number,
 	                                 .rate_hz = 60,
 	                                 .channels = def.channels,
 	                                 .vertex_count = SCRIPTED_VERTICES,

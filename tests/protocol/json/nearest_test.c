@@ -37,7 +37,8 @@ static void what_was_meant_is_found(void **state)
 	};
 	for (size_t i = 0; i < sizeof cases / sizeof *cases; i++) {
 		const char *found = cau_nearest(cases[i].word, words, COUNT);
-		if (found != cases[i].meant && (!found || !cases[i].meant || strcmp(found, cases[i].meant)))
+		if (found != cases[i].meant &&
+		    (!found || !cases[i].meant || strcmp(found, cases[i].meant) != 0))
 			fail_msg("\"%s\" meant \"%s\"", cases[i].word, found ? found : "nothing");
 	}
 }

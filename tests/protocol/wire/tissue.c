@@ -38,7 +38,8 @@ void tissue_finish(tissue *made)
 
 static void move_vertex(tissue *moved, int32_t vertex, double time_s, double speed_m_s)
 {
-	double x = 0.002 * (vertex % moved->columns), y = 0.002 * (vertex / moved->columns);
+	int32_t column = vertex % moved->columns, row = vertex / moved->columns;
+	double x = 0.002 * column, y = 0.002 * row;
 	double turn = 6.283 * 0.7, reach = speed_m_s / turn, noise = 0.01 * reach;
 	double *at = &moved->position[3 * (size_t)vertex];
 	at[0] =

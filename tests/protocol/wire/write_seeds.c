@@ -49,9 +49,13 @@ int main(int argument_count, char **arguments)
 	uint8_t *bytes = malloc(capacity);
 	tissue of;
 	tissue_init(&of, SEED_COLUMNS, SEED_ROWS);
-	if (argument_count != 2 || !bytes ||
-	    cau_frame_encoder_init(malloc(storage), storage, &def, SEED_EPOCH, &encoder, NULL))
+	void *room = malloc(storage);
+	if (argument_count != 2 || !bytes || !room ||
+	    cau_frame_encoder_init(room, storage, &def, SEED_EPOCH, &encoder, NULL)) {
+		free(bytes);
+		free(room);
 		return EXIT_FAILURE;
+	}
 	int failed = write_topology(arguments[1], &def, &of);
 	for (int i = 0; i < 5 && !failed; i++) {
 		char name[32];

@@ -73,6 +73,7 @@ static void see_step(const cau_session *session)
 	bool lit = false;
 	cau_session_frame(session, &frame);
 	pthread_mutex_lock(&threads.lock);
+	assert(frame.tool_count <= TOOLS);
 	for (int32_t i = 0; i < frame.tool_count; i++) {
 		check_tool((int)i, frame.tick, frame.tools[i].energized);
 		lit = lit || frame.tools[i].energized;

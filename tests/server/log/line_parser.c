@@ -54,6 +54,7 @@ static bool parse_escape(cursor *c, line_field *field)
 {
 	if (c->at == c->end)
 		return false;
+	int high, low;
 	unsigned char kind = *c->at++;
 	switch (kind) {
 	case '"':
@@ -66,10 +67,14 @@ static bool parse_escape(cursor *c, line_field *field)
 	case 't':
 		return put(field, '\t');
 	case 'x':
-		if (c->end - c->at < 2 || hex_digit(c->at[0]) < 0 || hex_digit(c->at[1]) < 0)
+		if (c->end - c->at < 2)
+			return false;
+		high = hex_digit(c->at[0]);
+		low = hex_digit(c->at[1]);
+		if (high < 0 || low < 0)
 			return false;
 		c->at += 2;
-		return put(field, (unsigned char)(hex_digit(c->at[-2]) << 4 | hex_digit(c->at[-1])));
+		return put(field, (unsigned char)(high << 4 | low));
 	default:
 		return false;
 	}

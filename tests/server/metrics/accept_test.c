@@ -47,11 +47,11 @@ static const char *const get_open[] = {
 	"text/plain;q=0.5, application/openmetrics-text;q=0.501",
 	"text/plain;version=1.0.0, application/openmetrics-text;q=0.1", // a text that we do not have
 	// as Prometheus 2 and 3 ask
-	"application/openmetrics-text;version=1.0.0;q=0.5,application/openmetrics-text;version=0.0.1;"
-	"q=0.4,text/plain;version=0.0.4;q=0.3,*/*;q=0.2",
-	"application/openmetrics-text;version=1.0.0;escaping=allow-utf-8;q=0.6,"
-	"application/openmetrics-text;version=0.0.1;q=0.5,text/plain;version=1.0.0;"
-	"escaping=allow-utf-8;q=0.4,text/plain;version=0.0.4;q=0.3,*/*;q=0.2",
+	("application/openmetrics-text;version=1.0.0;q=0.5,application/openmetrics-text;version=0.0.1;"
+     "q=0.4,text/plain;version=0.0.4;q=0.3,*/*;q=0.2"),
+	("application/openmetrics-text;version=1.0.0;escaping=allow-utf-8;q=0.6,"
+     "application/openmetrics-text;version=0.0.1;q=0.5,text/plain;version=1.0.0;"
+     "escaping=allow-utf-8;q=0.4,text/plain;version=0.0.4;q=0.3,*/*;q=0.2"),
 };
 
 static void each_header_gets_its_format(void **state)

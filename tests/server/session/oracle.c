@@ -109,8 +109,10 @@ void oracle_note_coming(world *w, const ticket_book *ticket)
 {
 	const cau_asked *asked = &ticket->asked;
 	tool_book *tool = oracle_book(w, asked->tool);
-	if (tool) // any message about a tool is a sign of life
-		tool->alive_s[asked->asker.client] = w->now_s;
+	if (!tool)
+		return;
+	// any message about a tool is a sign of life
+	tool->alive_s[asked->asker.client] = w->now_s;
 	if (asked->ask == CAU_ASK_ENERGY_OFF && asked->tick <= w->tick)
 		oracle_darken(tool, ticket->came);
 }

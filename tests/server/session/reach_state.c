@@ -105,6 +105,7 @@ void reach_decode(const reach_state *state, cau_logic *logic)
 	logic->border = state->border_place > 0;
 	if (logic->border)
 		logic->border_moment = moment_of_place(state->border_place - 1);
+	assert(state->tool_count <= REACH_TOOLS);
 	for (int i = 0; i < state->tool_count; i++)
 		decode_tool(&state->tools[i], i, &logic->drives[i]);
 	logic->drive_count = state->tool_count;
