@@ -50,6 +50,11 @@ static cau_status hold_memory(cau_hosted *h, int64_t bytes, cau_error *error)
 	return CAU_OK;
 }
 
+cau_status cau_building_hold(cau_hosted *h, size_t more, cau_error *error)
+{
+	return hold_memory(h, h->memory_held + (int64_t)more, error);
+}
+
 static cau_status check_limits(cau_hosted *h, const cau_build_border *border, cau_error *error)
 {
 	const cau_config *config = h->around->config;

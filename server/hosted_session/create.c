@@ -22,8 +22,12 @@ static cau_hosted *allocate(int32_t orders)
 		return NULL;
 	h->present = malloc(sizeof *h->present);
 	h->logic = malloc(cau_logic_bytes(orders));
-	if (h->present && h->logic)
+	h->snapshot_shelf = cau_shelf_create();
+	h->copy_shelf = cau_shelf_create();
+	if (h->present && h->logic && h->snapshot_shelf && h->copy_shelf)
 		return h;
+	cau_shelf_release(h->snapshot_shelf);
+	cau_shelf_release(h->copy_shelf);
 	free(h->present);
 	free(h->logic);
 	free(h);

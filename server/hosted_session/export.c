@@ -48,51 +48,59 @@ static void fail(const cau_reply *reply, cau_status status, const char *reason)
 }
 
 // ---- the copy
-// What a file shows of a tick.
+// What a file shows of a tick. The arrays follow the struct, in the piece of memory that it is in.
 typedef struct tissue_copy {
-	double *position; // m, (vertex_count x 3)
-	float *exposure;  // (vertex_count)
-	uint32_t *mask;   // ((face_count + 31) / 32)
-	uint8_t *alive;   // (tetrahedron_count)
+	const double *position; // m, (vertex_count x 3)
+	const float *exposure;  // (vertex_count)
+	const uint32_t *mask;   // ((face_count + 31) / 32)
+	const uint8_t *alive;   // (tetrahedron_count)
 } tissue_copy;
 
-static void *copy_of(const void *source, size_t bytes)
+// Of the arrays, in their order: those of wider numbers come first, so that each is aligned.
+typedef struct copy_sizes {
+	size_t position, exposure, mask, alive;
+} copy_sizes;
+
+static copy_sizes sizes_of(const cau_session_info *info)
 {
-	void *copy = malloc(bytes + 1);
-	if (copy && bytes)
-		memcpy(copy, source, bytes);
-	return copy;
+	size_t vertices = (size_t)info->vertex_count, faces = (size_t)info->face_count;
+	return (copy_sizes){.position = vertices * 3 * sizeof(double),
+	                    .exposure = vertices * sizeof(float),
+	                    .mask = (faces + 31) / 32 * sizeof(uint32_t),
+	                    .alive = (size_t)info->tetrahedron_count};
 }
 
-static void free_copy(void *pointer)
+size_t cau_export_copy_bytes(const cau_session_info *info)
 {
-	tissue_copy *copy = pointer;
-	free(copy->position);
-	free(copy->exposure);
-	free(copy->mask);
-	free(copy->alive);
-	free(copy);
+	copy_sizes sizes = sizes_of(info);
+	return sizeof(tissue_copy) + sizes.position + sizes.exposure + sizes.mask + sizes.alive;
+}
+
+static void *copy_to(unsigned char **at, const void *source, size_t bytes)
+{
+	void *copy = *at;
+	if (bytes)
+		memcpy(copy, source, bytes);
+	*at += bytes;
+	return copy;
 }
 
 static tissue_copy *copy_tissue(const cau_hosted *h)
 {
-	size_t vertices = (size_t)h->info.vertex_count;
-	size_t words = ((size_t)h->info.face_count + 31) / 32;
 	const uint8_t *tetrahedron, *triangle, *link;
+	copy_sizes sizes = sizes_of(&h->info);
 	cau_frame frame;
-	tissue_copy *copy = calloc(1, sizeof *copy);
+	tissue_copy *copy = cau_shelf_take(h->copy_shelf, cau_export_copy_bytes(&h->info));
 	if (!copy)
 		return NULL;
+	unsigned char *at = (unsigned char *)(copy + 1);
 	cau_session_frame(h->core, &frame);
 	cau_session_alive(h->core, &tetrahedron, &triangle, &link);
-	copy->position = copy_of(frame.position, vertices * 3 * sizeof(double));
-	copy->exposure = copy_of(frame.exposure, vertices * sizeof(float));
-	copy->mask = copy_of(frame.face_mask, words * sizeof(uint32_t));
-	copy->alive = copy_of(tetrahedron, (size_t)h->info.tetrahedron_count);
-	if (copy->position && copy->exposure && copy->mask && copy->alive)
-		return copy;
-	free_copy(copy);
-	return NULL;
+	copy->position = copy_to(&at, frame.position, sizes.position);
+	copy->exposure = copy_to(&at, frame.exposure, sizes.exposure);
+	copy->mask = copy_to(&at, frame.face_mask, sizes.mask);
+	copy->alive = copy_to(&at, tetrahedron, sizes.alive);
+	return copy;
 }
 
 // ---- the file. `info` is the same for a session's whole life, so any thread may read it.
@@ -237,7 +245,7 @@ void cau_apply_export(cau_hosted *h, cau_order *order)
 		return;
 	}
 	double lines = (double)h->info.vertex_count + h->info.face_count + h->info.tetrahedron_count;
-	cau_reads_hand_over(h, order, make_tissue_file, copy, free_copy, LINE_S * lines);
+	cau_reads_hand_over(h, order, make_tissue_file, copy, cau_shelf_give_back, LINE_S * lines);
 }
 
 // ---- the log

@@ -36,6 +36,8 @@ void cau_hosted_release(cau_hosted *h)
 	cau_replay_finish(&h->replay);
 	cau_streams_finish(&h->streams);
 	cau_store_batch_destroy(h->batch);
+	cau_shelf_release(h->snapshot_shelf);
+	cau_shelf_release(h->copy_shelf);
 	cau_session_destroy(h->core);
 	if (h->memory_held)
 		atomic_fetch_sub(h->around->memory_held, h->memory_held);

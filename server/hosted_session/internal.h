@@ -7,6 +7,7 @@
 #include <pthread.h>
 #include <stdatomic.h>
 
+#include "buffer/shelf.h"
 #include "cautery/session.h"
 #include "clock/clock.h"
 #include "hosted_session/hosted.h"
@@ -105,6 +106,7 @@ struct cau_hosted {
 	bool adopted;          // its threads are the workers'
 	double piece_s;        // processor time of the longest step lately, for the pool
 	double stepped_s;      // of the steps in this slice
+	cau_shelf *snapshot_shelf, *copy_shelf; // memory for checkpoints, and for what files show
 	int32_t elements_removed;
 	uint32_t refused_commands;
 	cau_named_snapshot snapshots[SNAPSHOT_COUNT];
@@ -165,9 +167,14 @@ void cau_hosted_publish_summary(cau_hosted *h);
 // ---- tools.c
 void cau_hosted_publish_tools(cau_hosted *h); // for other threads to read
 
+// ---- export.c
+size_t cau_export_copy_bytes(const cau_session_info *info); // of what a file shows of a tick
+
 // ---- building.c: the borders of its stages
 // Between two stages.
 cau_status cau_building_border(void *user, const cau_build_border *border, cau_error *error);
+// Counts `more` bytes as the session's. CAU_LIMIT, where the settings do not allow them.
+cau_status cau_building_hold(cau_hosted *h, size_t more, cau_error *error);
 // CAU_BAD_STATE, where the session is destroyed or the daemon ends. `doing`: "was being built".
 cau_status cau_building_check(cau_hosted *h, const char *doing, const char *next, cau_error *error);
 // Takes the order if it destroys a session that is away.

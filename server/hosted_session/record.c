@@ -122,7 +122,7 @@ void cau_record_checkpoint(cau_hosted *h, uint64_t *hash, size_t *bytes)
 	cau_error error = {0};
 	cau_store_batch *batch = cau_record_batch(h);
 	size_t capacity = cau_session_snapshot_bytes(h->core), count = 0;
-	void *snapshot = malloc(capacity);
+	void *snapshot = cau_shelf_take(h->snapshot_shelf, capacity);
 	cau_store_checkpoint row = {
 		.session = h->id, .branch = h->branch, .tick = h->tick, .hash = cau_session_hash(h->core)};
 	cau_status status = snapshot && batch
@@ -130,8 +130,9 @@ void cau_record_checkpoint(cau_hosted *h, uint64_t *hash, size_t *bytes)
 	                        : cau_fail(&error, CAU_NO_MEMORY, NULL, "no memory for a checkpoint");
 	row.snapshot = (cau_store_bytes){snapshot, count};
 	if (!status)
-		status = cau_store_put_checkpoint(batch, &row, &error);
-	free(snapshot);
+		status = cau_store_lend_checkpoint(batch, &row, cau_shelf_give_back, &error);
+	if (status)
+		cau_shelf_give_back(snapshot);
 	h->checkpoint_wanted = false;
 	if (!status)
 		status = end_gap(h, batch, &error);

@@ -6,6 +6,24 @@
 #include "cautery/scene_json.h"
 #include "hosted_session/internal.h"
 
+// On each shelf one piece is in use, by the store or the builder, and one is there for the next
+// slice.
+enum { PIECES = 2 };
+
+// What the settings do not allow it to hold is made when it is needed.
+static void stock_shelves(cau_hosted *h)
+{
+	cau_error refused = {0};
+	int32_t vertices = h->info.vertex_count, faces = h->info.face_count;
+	size_t snapshot = cau_session_snapshot_bytes(h->core), copy = cau_export_copy_bytes(&h->info);
+	size_t opening = cau_streams_opening_bytes(vertices, faces);
+	if (cau_building_hold(h, PIECES * (snapshot + copy) + opening, &refused))
+		return;
+	cau_shelf_stock(h->snapshot_shelf, snapshot, PIECES);
+	cau_shelf_stock(h->copy_shelf, copy, PIECES);
+	cau_streams_stock(&h->streams, vertices, faces);
+}
+
 static cau_status build(cau_hosted *h, cau_error *error)
 {
 	cau_session_def def = cau_default_session_def();
@@ -18,6 +36,7 @@ static cau_status build(cau_hosted *h, cau_error *error)
 		return status;
 	cau_session_set_clock(h->core, cau_monotonic_s);
 	cau_session_describe(h->core, &h->info);
+	stock_shelves(h);
 	return CAU_OK;
 }
 

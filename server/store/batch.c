@@ -16,6 +16,8 @@ void cau_store_batch_destroy(cau_store_batch *batch)
 		return;
 	for (struct record *record = batch->first, *next; record; record = next) {
 		next = record->next;
+		if (record->give_back)
+			record->give_back(record->lent);
 		free(record);
 	}
 	free(batch);
@@ -242,24 +244,45 @@ cau_status cau_store_put_answer(cau_store_batch *batch, const cau_store_answer *
 	return CAU_OK;
 }
 
-cau_status cau_store_put_checkpoint(cau_store_batch *batch, const cau_store_checkpoint *checkpoint,
-                                    cau_error *error)
+// Without `give_back` the snapshot is copied.
+static cau_status append_checkpoint(cau_store_batch *batch, const cau_store_checkpoint *checkpoint,
+                                    void (*give_back)(void *snapshot), cau_error *error)
 {
 	TRY(check_text("session", checkpoint->session, true, error));
 	TRY(check_branch("branch", checkpoint->branch, 0, error));
 	TRY(check_count("tick", checkpoint->tick, error));
 	TRY(check_blob("snapshot", checkpoint->snapshot, error));
 
-	size_t bytes = text_bytes(checkpoint->session) + checkpoint->snapshot.bytes;
-	struct record *record = append(batch, RECORD_CHECKPOINT, bytes, error);
+	size_t copied = give_back ? 0 : checkpoint->snapshot.bytes;
+	struct record *record =
+		append(batch, RECORD_CHECKPOINT, text_bytes(checkpoint->session) + copied, error);
 	if (!record)
 		return CAU_NO_MEMORY;
 	unsigned char *at = record->storage;
 	cau_store_checkpoint *copy = &record->as.checkpoint;
 	*copy = *checkpoint;
 	copy->session = copy_text(&at, checkpoint->session);
-	copy->snapshot = copy_blob(&at, checkpoint->snapshot);
+	if (!give_back) {
+		copy->snapshot = copy_blob(&at, checkpoint->snapshot);
+		return CAU_OK;
+	}
+	record->lent = (void *)(uintptr_t)checkpoint->snapshot.data;
+	record->give_back = give_back;
+	batch->bytes += checkpoint->snapshot.bytes;
 	return CAU_OK;
+}
+
+cau_status cau_store_put_checkpoint(cau_store_batch *batch, const cau_store_checkpoint *checkpoint,
+                                    cau_error *error)
+{
+	return append_checkpoint(batch, checkpoint, NULL, error);
+}
+
+cau_status cau_store_lend_checkpoint(cau_store_batch *batch, const cau_store_checkpoint *checkpoint,
+                                     void (*give_back)(void *snapshot), cau_error *error)
+{
+	CAU_ASSERT(give_back, "a snapshot of %zu bytes is lent for good", checkpoint->snapshot.bytes);
+	return append_checkpoint(batch, checkpoint, give_back, error);
 }
 
 cau_status cau_store_put_event(cau_store_batch *batch, const cau_store_event *event,

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // What a batch holds: records, each one allocation with copies of all that its public struct points
-// to.
+// to, but for a checkpoint's snapshot.
 #pragma once
 
 #include "store/store.h"
@@ -30,7 +30,9 @@ struct record {
 		cau_store_event event;
 		cau_store_branch branch;
 		cau_store_gap gap;
-	} as; // its pointers lead into storage
+	} as; // its pointers lead into storage, or to what is lent
+	void *lent;
+	void (*give_back)(void *lent); // NULL: nothing is lent
 	unsigned char storage[];
 };
 

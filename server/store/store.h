@@ -96,8 +96,8 @@ void cau_store_flush(cau_store *store);
 const char *cau_store_label(const cau_store *store); // lives as long as the store
 
 // ---- writing: batches -----------------------------------------------------------------
-// A batch is written whole or not at all. Every put copies what it is given; on failure
-// (CAU_BAD_VALUE, CAU_LIMIT, CAU_NO_MEMORY) the batch is as it was before.
+// A batch is written whole or not at all. Every put copies what it is given, a lend does not; on
+// failure (CAU_BAD_VALUE, CAU_LIMIT, CAU_NO_MEMORY) the batch is as it was before.
 
 cau_store_batch *cau_store_batch_create(void);        // NULL if memory ran out
 void cau_store_batch_destroy(cau_store_batch *batch); // takes NULL
@@ -161,6 +161,11 @@ typedef struct cau_store_checkpoint {
 // Replaces one at the same tick of the same branch.
 cau_status cau_store_put_checkpoint(cau_store_batch *batch, const cau_store_checkpoint *checkpoint,
                                     cau_error *error);
+// The same, but the snapshot is the batch's until that is destroyed, by whoever has it then: after
+// the commit that is the store's thread, which gives it back there. After a failure it is the
+// caller's still.
+cau_status cau_store_lend_checkpoint(cau_store_batch *batch, const cau_store_checkpoint *checkpoint,
+                                     void (*give_back)(void *snapshot), cau_error *error);
 
 typedef struct cau_store_event {
 	const char *session; // NULL: the daemon's own

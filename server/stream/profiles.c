@@ -2,6 +2,8 @@
 // Which profiles there are: one is opened for the first subscriber whom none fits, and taken over
 // when nobody watches it any more.
 #include <math.h>
+#include <stdalign.h>
+#include <stddef.h>
 #include <stdlib.h>
 #include <string.h>
 
@@ -12,20 +14,23 @@ static void close_stream(cau_stream *stream)
 	cau_ring_clear(stream);
 	cau_buffer_release(stream->topology);
 	free(stream->half.storage);
-	free(stream->storage);
-	free(stream->scratch);
+	cau_shelf_give_back(stream->storage);
 	*stream = (cau_stream){0};
 }
 
 void cau_streams_init(cau_streams *streams)
 {
 	pthread_mutex_init(&streams->mutex, NULL);
+	streams->profile_shelf = cau_shelf_create();
+	streams->opening_shelf = cau_shelf_create();
 }
 
 void cau_streams_finish(cau_streams *streams)
 {
 	for (int i = 0; i < CAU_STREAM_PROFILES_MAX; i++)
 		close_stream(&streams->stream[i]);
+	cau_shelf_release(streams->profile_shelf);
+	cau_shelf_release(streams->opening_shelf);
 	pthread_mutex_destroy(&streams->mutex);
 }
 
@@ -71,30 +76,70 @@ static void wake_stream(cau_stream *stream)
 }
 
 // ---- opening
+// Where in one piece of memory things are that go together, each at an aligned place.
+static size_t aligned(size_t bytes)
+{
+	return (bytes + alignof(max_align_t) - 1) / alignof(max_align_t) * alignof(max_align_t);
+}
+
+static size_t profile_bytes(const cau_stream_def *def)
+{
+	return aligned(cau_frame_encoder_bytes(def)) + cau_frame_bytes_max(def);
+}
+
+static size_t topology_work_bytes(const cau_stream_def *def)
+{
+	return aligned(cau_topology_scratch_bytes(def)) + aligned(cau_topology_bytes_max(def)) +
+	       (size_t)def->face_count;
+}
+
+// With the channels that most ask for; a wish for more makes the piece larger.
+static cau_stream_def usual_def(int32_t vertex_count, int32_t face_count)
+{
+	cau_stream_def def = cau_default_stream_def();
+	def.vertex_count = vertex_count;
+	def.face_count = face_count;
+	return def;
+}
+
+size_t cau_streams_opening_bytes(int32_t vertex_count, int32_t face_count)
+{
+	cau_stream_def def = usual_def(vertex_count, face_count);
+	return profile_bytes(&def) + topology_work_bytes(&def);
+}
+
+void cau_streams_stock(cau_streams *streams, int32_t vertex_count, int32_t face_count)
+{
+	cau_stream_def def = usual_def(vertex_count, face_count);
+	if (!streams->profile_shelf || !streams->opening_shelf)
+		return;
+	cau_shelf_stock(streams->profile_shelf, profile_bytes(&def), 1);
+	cau_shelf_stock(streams->opening_shelf, topology_work_bytes(&def), 1);
+}
+
 static cau_status encode_topology(const cau_streams *streams, cau_stream *stream,
                                   const cau_stream_shape *shape, cau_error *error)
 {
 	size_t most = cau_topology_bytes_max(&stream->def), bytes = 0;
-	void *scratch = malloc(cau_topology_scratch_bytes(&stream->def));
-	uint8_t *layers = malloc((size_t)shape->face_count + 1);
-	cau_buffer *buffer = cau_buffer_create(most, true);
-	cau_status status = CAU_NO_MEMORY;
-	if (scratch && layers && buffer) {
-		for (int32_t i = 0; i < shape->face_count; i++)
-			layers[i] = (uint8_t)shape->face_layer[i];
-		cau_topology topology = {shape->face, layers, shape->texture, shape->rest_position};
-		status = cau_topology_encode(&stream->def, streams->epoch, &topology, scratch,
-		                             cau_buffer_bytes(buffer), most, &bytes, error);
-	}
-	if (!status) {
+	unsigned char *scratch =
+		cau_shelf_take(streams->opening_shelf, topology_work_bytes(&stream->def));
+	if (!scratch)
+		return cau_fail(error, CAU_NO_MEMORY, NULL, "no memory for a topology");
+	unsigned char *encoded = scratch + aligned(cau_topology_scratch_bytes(&stream->def));
+	uint8_t *layers = encoded + aligned(most);
+	for (int32_t i = 0; i < shape->face_count; i++)
+		layers[i] = (uint8_t)shape->face_layer[i];
+	cau_topology topology = {shape->face, layers, shape->texture, shape->rest_position};
+	cau_status status = cau_topology_encode(&stream->def, streams->epoch, &topology, scratch,
+	                                        encoded, most, &bytes, error);
+	if (!status)
 		stream->topology = cau_buffer_create(bytes, true);
-		if (stream->topology)
-			memcpy(cau_buffer_bytes(stream->topology), cau_buffer_bytes(buffer), bytes);
-	}
-	cau_buffer_release(buffer);
-	free(layers);
-	free(scratch);
-	return stream->topology ? CAU_OK : status ? status : CAU_NO_MEMORY;
+	if (stream->topology)
+		memcpy(cau_buffer_bytes(stream->topology), encoded, bytes);
+	else if (!status)
+		status = cau_fail(error, CAU_NO_MEMORY, NULL, "no memory for a topology");
+	cau_shelf_give_back(scratch);
+	return status;
 }
 
 static cau_status open_stream(cau_streams *streams, int slot, const cau_stream_wish *wish,
@@ -110,10 +155,12 @@ static cau_status open_stream(cau_streams *streams, int slot, const cau_stream_w
 	made.def.step_m = wish->step_m;
 	size_t bytes = cau_frame_encoder_bytes(&made.def);
 	made.scratch_bytes = cau_frame_bytes_max(&made.def);
-	made.storage = malloc(bytes);
-	made.scratch = malloc(made.scratch_bytes);
 	cau_status status = cau_stream_def_check(&made.def, error);
-	if (!status && (!made.storage || !made.scratch))
+	if (!status)
+		made.storage = cau_shelf_take(streams->profile_shelf, profile_bytes(&made.def));
+	if (made.storage)
+		made.scratch = (unsigned char *)made.storage + aligned(bytes);
+	else if (!status)
 		status = cau_fail(error, CAU_NO_MEMORY, NULL, "no memory for a stream");
 	if (!status)
 		status = cau_frame_encoder_init(made.storage, bytes, &made.def, streams->epoch,

@@ -6,6 +6,7 @@
 #include <pthread.h>
 
 #include "buffer/buffer.h"
+#include "buffer/shelf.h"
 #include "cautery/frame_codec.h"
 #include "cautery/topology_codec.h"
 
@@ -40,7 +41,7 @@ typedef struct cau_stream {
 	cau_buffer *topology;    // mutex
 	cau_stream_def def;      // worker
 	double rate_hz, next_s;  // worker
-	void *storage, *scratch; // worker
+	void *storage, *scratch; // worker; one piece of profile_shelf
 	size_t scratch_bytes;
 	cau_frame_encoder *encoder; // worker
 } cau_stream;
@@ -59,7 +60,8 @@ typedef struct cau_streams {
 	uint64_t epoch;           // worker
 	pthread_mutex_t mutex;    // held for moments; no other lock is taken under it
 	cau_stream stream[CAU_STREAM_PROFILES_MAX];
-	cau_stream_counts counts; // mutex; those of now are 0 here
+	cau_shelf *profile_shelf, *opening_shelf; // memory of a profile, and for opening one
+	cau_stream_counts counts;                 // mutex; those of now are 0 here
 } cau_streams;
 
 // One stream of one connection; zeroed but for `stream` at the start.
@@ -81,6 +83,10 @@ typedef struct cau_subscriber {
 // A zeroed struct, whose bounds and names the caller sets.
 void cau_streams_init(cau_streams *streams);
 void cau_streams_finish(cau_streams *streams);
+
+// What opening a profile takes of memory, and the making of it beforehand: on the builder.
+size_t cau_streams_opening_bytes(int32_t vertex_count, int32_t face_count);
+void cau_streams_stock(cau_streams *streams, int32_t vertex_count, int32_t face_count);
 
 // ---- profiles.c: on the worker
 

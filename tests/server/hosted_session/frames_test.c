@@ -28,8 +28,8 @@ static void open_stream(cau_hosted *h)
 	*stream = (cau_stream){.used = true, .epoch = 7, .rate_hz = 60, .def = def};
 	size_t bytes = cau_frame_encoder_bytes(&def);
 	stream->scratch_bytes = cau_frame_bytes_max(&def);
-	stream->storage = malloc(bytes);
-	stream->scratch = malloc(stream->scratch_bytes);
+	stream->storage = cau_shelf_take(h->streams.profile_shelf, bytes + stream->scratch_bytes);
+	stream->scratch = (unsigned char *)stream->storage + bytes;
 	assert_int_equal(
 		cau_frame_encoder_init(stream->storage, bytes, &def, 7, &stream->encoder, NULL), CAU_OK);
 }

@@ -84,12 +84,68 @@ static void bad_values_leave_the_batch_as_it_was(void **state)
 	cau_store_batch_destroy(batch);
 }
 
+static int given_back;
+
+static void count_return(void *snapshot)
+{
+	assert_string_equal(snapshot, "the state at 7");
+	given_back++;
+}
+
+static void a_lent_snapshot_comes_back_with_the_batch(void **state)
+{
+	(void)state;
+	static char snapshot[] = "the state at 7";
+	cau_error error;
+	cau_store_checkpoint row = {
+		.session = "knee", .tick = 7, .snapshot = {snapshot, sizeof snapshot}};
+	cau_store_checkpoint nobodys = {.snapshot = {snapshot, sizeof snapshot}};
+	cau_store_batch *batch = cau_store_batch_create();
+	given_back = 0;
+	assert_int_equal(cau_store_lend_checkpoint(batch, &nobodys, count_return, &error),
+	                 CAU_BAD_VALUE);
+	assert_int_equal(cau_store_lend_checkpoint(batch, &row, count_return, &error), CAU_OK);
+	assert_ptr_equal(batch->first->as.checkpoint.snapshot.data, snapshot);
+	assert_true(cau_store_batch_bytes(batch) > sizeof snapshot);
+	assert_int_equal(given_back, 0); // after a failure it is the caller's
+	cau_store_batch_destroy(batch);
+	assert_int_equal(given_back, 1);
+}
+
+static cau_status has_it(void *user, const cau_store_checkpoint *checkpoint)
+{
+	assert_string_equal(checkpoint->snapshot.data, "the state at 7");
+	*(bool *)user = true;
+	return CAU_OK;
+}
+
+static void a_lent_snapshot_is_stored_and_then_comes_back(void **state)
+{
+	const struct fixture *fixture = *state;
+	cau_store *store = open_store(&fixture->config);
+	bool found = false;
+	char snapshot[] = "the state at 7";
+	cau_store_checkpoint row = {
+		.session = "knee", .tick = 7, .snapshot = {snapshot, sizeof snapshot}};
+	cau_store_batch *batch = session_batch("knee");
+	given_back = 0;
+	assert_int_equal(cau_store_lend_checkpoint(batch, &row, count_return, NULL), CAU_OK);
+	assert_int_equal(write_batch(store, batch, NULL), CAU_OK);
+	assert_int_equal(cau_store_read_checkpoint(store, "knee", 0, 7, has_it, &found, NULL), CAU_OK);
+	assert_true(found);
+	cau_store_close(store);
+	assert_int_equal(given_back, 1);
+}
+
 int main(void)
 {
 	const struct CMUnitTest tests[] = {
 		cmocka_unit_test(puts_copy_what_they_are_given),
 		cmocka_unit_test(an_empty_client_is_no_client),
 		cmocka_unit_test(bad_values_leave_the_batch_as_it_was),
+		cmocka_unit_test(a_lent_snapshot_comes_back_with_the_batch),
+		cmocka_unit_test_setup_teardown(a_lent_snapshot_is_stored_and_then_comes_back,
+	                                    fixture_setup, fixture_teardown),
 	};
 	return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -31,8 +31,8 @@ static void open_stream(scene *s)
 	*stream = (cau_stream){.used = true, .epoch = 7, .rate_hz = 60, .def = def, .subscribers = 1};
 	size_t bytes = cau_frame_encoder_bytes(&def);
 	stream->scratch_bytes = cau_frame_bytes_max(&def);
-	stream->storage = malloc(bytes);
-	stream->scratch = malloc(stream->scratch_bytes);
+	stream->storage = cau_shelf_take(s->streams.profile_shelf, bytes + stream->scratch_bytes);
+	stream->scratch = (unsigned char *)stream->storage + bytes;
 	stream->topology = cau_buffer_create(1, true);
 	assert_int_equal(
 		cau_frame_encoder_init(stream->storage, bytes, &def, 7, &stream->encoder, NULL), CAU_OK);
