@@ -18,6 +18,7 @@ struct cau_background {
 static void *run(void *argument)
 {
 	cau_background *background = argument;
+	pthread_setname_np(pthread_self(), "cautery-factor");
 	pthread_mutex_lock(&background->lock);
 	for (;;) {
 		while (!background->job && !background->stop)

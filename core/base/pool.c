@@ -86,6 +86,7 @@ static void *helper(void *argument)
 {
 	cau_pool *pool = argument;
 	uint32_t seen = 0;
+	pthread_setname_np(pthread_self(), "cautery-step");
 	while (!atomic_load(&pool->stop)) {
 		int spins = 0;
 		while (generation_of(atomic_load(&pool->ticket)) == seen && !atomic_load(&pool->stop)) {

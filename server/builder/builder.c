@@ -29,6 +29,7 @@ static void *work(void *argument)
 {
 	lane *own = argument;
 	cau_builder *builder = own->builder;
+	pthread_setname_np(pthread_self(), "cautery-build");
 	cau_thread_set_nice(builder->nice);
 	pthread_mutex_lock(&builder->mutex);
 	while (!builder->stopping) {

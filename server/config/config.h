@@ -27,6 +27,7 @@ enum { CAU_CONFIG_TEXT_BYTES = 512 };
 	TEXT(hosts, "", "more accepted Host names, separated by commas")                               \
 	TEXT(origins, "", "more accepted Origins, separated by commas")                                \
 	TEXT(log_level, "info", "least level logged: debug, info, notice, warning, error")             \
+	TEXT(log_format, "text", "how lines are logged: text (key=value) or json")                     \
 	TEXT(trace_session, "", "folder where each session writes all that it decides; empty: none")   \
 	INTEGER(workers, 0, 0, 256, "threads that step sessions; 0: one a core")                       \
 	INTEGER(session_threads, 1, 1, 16, "threads one session's step may use")                       \

@@ -39,6 +39,7 @@ struct cau_daemon {
 	cau_network *network;
 	cau_dds *dds; // NULL: not wanted
 	unsigned long ticks_seen;
+	bool network_moved, store_moved, watchdog_moved; // since systemd was last told
 };
 
 static void on_armed(void *user)
@@ -174,6 +175,22 @@ cau_status cau_daemon_start(cau_daemon **made, cau_config *config, cau_error *er
 	return CAU_OK;
 }
 
+// Energy goes off by the network and the watchdog, and nothing is acknowledged without the store:
+// one of them that hangs is a daemon that hangs, and systemd is to take it for one. Workers may be
+// busy for as long as a step takes.
+static void tell_alive(cau_daemon *daemon)
+{
+	unsigned long ticks = cau_service_ticks(daemon->service);
+	daemon->network_moved = daemon->network_moved || ticks != daemon->ticks_seen;
+	daemon->ticks_seen = ticks;
+	daemon->store_moved = cau_store_moves(daemon->store) || daemon->store_moved;
+	daemon->watchdog_moved = cau_watchdog_moves(daemon->watchdog) || daemon->watchdog_moved;
+	if (!daemon->network_moved || !daemon->store_moved || !daemon->watchdog_moved)
+		return;
+	sd_notify(0, "WATCHDOG=1");
+	daemon->network_moved = daemon->store_moved = daemon->watchdog_moved = false;
+}
+
 int cau_daemon_wait(cau_daemon *daemon, const sigset_t *signals, int *signal_number)
 {
 	struct timespec patience = {0, REAP_MS * 1000000L};
@@ -183,10 +200,7 @@ int cau_daemon_wait(cau_daemon *daemon, const sigset_t *signals, int *signal_num
 	if (got > 0)
 		*signal_number = terminal_gone ? SIGTERM : got;
 	cau_hub_reap(daemon->hub);
-	unsigned long ticks = cau_service_ticks(daemon->service);
-	if (ticks != daemon->ticks_seen)
-		sd_notify(0, "WATCHDOG=1");
-	daemon->ticks_seen = ticks;
+	tell_alive(daemon);
 	return 0;
 }
 

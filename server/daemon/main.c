@@ -122,6 +122,12 @@ int main(int argument_count, char **arguments)
 		cau_config_print(&config, stdout);
 		return EXIT_STARTED;
 	}
+	if (!cau_log_set_format(config.log_format)) {
+		cau_fail(&error, CAU_BAD_VALUE, "log_format", "`%.20s` is neither text nor json",
+		         config.log_format);
+		fail("bad_settings", &error);
+		return EXIT_USAGE;
+	}
 	if (!cau_log_set_level(config.log_level)) {
 		cau_fail(&error, CAU_BAD_VALUE, "log_level", "there is no level `%.20s`", config.log_level);
 		fail("bad_settings", &error);

@@ -15,7 +15,7 @@ enum {
 	RAW_BYTES = 512, // of a value before escapes; CAU_LOG_VALUE_BYTES cuts it anyway
 };
 
-static const char cut_mark[] = " cut=true", more_mark[] = "...";
+static const char cut_mark[] = " cut=true", cut_member[] = ",\"cut\":true", more_mark[] = "...";
 
 // ---- escapes
 static bool is_bare(unsigned char byte)
@@ -62,13 +62,43 @@ static size_t escape(const char *text, size_t bytes, char to[ESCAPE_BYTES], size
 	return written;
 }
 
-static size_t quote(const char *value, size_t bytes, char to[CAU_LOG_VALUE_BYTES])
+// The number of a character of one to three bytes, which is all that is_control() says yes to.
+static unsigned character(const unsigned char *at, size_t length)
+{
+	switch (length) {
+	case 1:
+		return at[0];
+	case 2:
+		return (at[0] & 0x1Fu) << 6 | (at[1] & 0x3Fu);
+	default:
+		return (at[0] & 0x0Fu) << 12 | (at[1] & 0x3Fu) << 6 | (at[2] & 0x3Fu);
+	}
+}
+
+// The same as JSON has it.
+static size_t escape_json(const char *text, size_t bytes, char to[ESCAPE_BYTES], size_t *taken)
+{
+	const unsigned char *at = (const unsigned char *)text;
+	size_t length = cau_utf8_length(text, bytes);
+	*taken = length ? length : 1;
+	size_t mark = short_escape(*text, to);
+	if (mark)
+		return mark;
+	if (length && !is_control(at, length)) {
+		memcpy(to, text, length);
+		return length;
+	}
+	unsigned number = length ? character(at, length) : 0;
+	return (size_t)snprintf(to, ESCAPE_BYTES, "\\u%04x", number ? number : 0xFFFDu);
+}
+
+static size_t quote(const char *value, size_t bytes, bool json, char to[CAU_LOG_VALUE_BYTES])
 {
 	size_t length = 0, taken;
 	to[length++] = '"';
 	for (size_t i = 0; i < bytes; i += taken) {
 		char unit[ESCAPE_BYTES + 1];
-		size_t unit_bytes = escape(value + i, bytes - i, unit, &taken);
+		size_t unit_bytes = (json ? escape_json : escape)(value + i, bytes - i, unit, &taken);
 		if (length + unit_bytes + sizeof more_mark > CAU_LOG_VALUE_BYTES) {
 			memcpy(to + length, more_mark, sizeof more_mark - 1);
 			length += sizeof more_mark - 1;
@@ -89,7 +119,33 @@ static void append(cau_log_line *line, const char *text, size_t bytes)
 	line->bytes += bytes;
 }
 
-void cau_log_line_add(cau_log_line *line, const char *key, size_t key_bytes, const char *value,
+// Room for the mark and the line's end is always kept.
+static bool has_room(cau_log_line *line, size_t needed)
+{
+	size_t mark_bytes = line->json ? sizeof cut_member : sizeof cut_mark;
+	if (line->full)
+		return false;
+	line->full = needed + mark_bytes + 1 > sizeof line->text - line->bytes;
+	if (line->full)
+		append(line, line->json ? cut_member : cut_mark, mark_bytes - 1);
+	return !line->full;
+}
+
+// A member; a `number` is written as it stands.
+static void add_member(cau_log_line *line, const char *key, size_t key_bytes, const char *value,
+                       size_t value_bytes, bool number)
+{
+	char written[CAU_LOG_VALUE_BYTES];
+	size_t bytes = number ? value_bytes : quote(value, value_bytes, true, written);
+	if (!has_room(line, bytes + key_bytes + sizeof ",\"\":" - 1))
+		return;
+	append(line, ",\"", 2);
+	append(line, key, key_bytes);
+	append(line, "\":", 2);
+	append(line, number ? value : written, bytes);
+}
+
+static void add_field(cau_log_line *line, const char *key, size_t key_bytes, const char *value,
                       size_t value_bytes, bool quoted)
 {
 	char written[CAU_LOG_VALUE_BYTES];
@@ -98,26 +154,37 @@ void cau_log_line_add(cau_log_line *line, const char *key, size_t key_bytes, con
 		bare++;
 	if (bare < value_bytes || value_bytes == 0 || value_bytes > sizeof written)
 		quoted = true;
-	size_t bytes = quoted ? quote(value, value_bytes, written) : value_bytes;
-	size_t needed = 1 + key_bytes + 1 + bytes;
-	if (line->full)
+	size_t bytes = quoted ? quote(value, value_bytes, false, written) : value_bytes;
+	if (!has_room(line, 1 + key_bytes + 1 + bytes))
 		return;
-	// Room for the mark and the line's end is always kept.
-	line->full = needed + sizeof cut_mark > sizeof line->text - line->bytes;
-	if (line->full) {
-		append(line, cut_mark, sizeof cut_mark - 1);
-		return;
-	}
 	append(line, line->bytes ? " " : "", line->bytes > 0);
 	append(line, key, key_bytes);
 	append(line, "=", 1);
 	append(line, quoted ? written : value, bytes);
 }
 
+void cau_log_line_add(cau_log_line *line, const char *key, size_t key_bytes, const char *value,
+                      size_t value_bytes, bool quoted)
+{
+	if (line->json)
+		add_member(line, key, key_bytes, value, value_bytes, false);
+	else
+		add_field(line, key, key_bytes, value, value_bytes, quoted);
+}
+
+void cau_log_line_end(cau_log_line *line)
+{
+	if (line->json)
+		append(line, "}", 1);
+	append(line, "\n", 1);
+}
+
 // ---- formats
 typedef struct raw_value {
 	char text[RAW_BYTES];
 	size_t bytes;
+	int numbers; // printed by %d, %f and their like
+	size_t number_bytes;
 } raw_value;
 
 static void append_raw(raw_value *value, const char *text, size_t bytes)
@@ -159,7 +226,12 @@ static void print_number(raw_value *value, const char *spec, size_t spec_bytes, 
 		length = snprintf(text, sizeof text, own, va_arg(from->list, long));
 	else
 		length = snprintf(text, sizeof text, own, va_arg(from->list, int));
-	append_raw(value, text, length < 0 ? 0 : strnlen(text, (size_t)length));
+	size_t bytes = length < 0 ? 0 : strnlen(text, (size_t)length);
+	append_raw(value, text, bytes);
+	if (!strchr("xc", own[spec_bytes - 1])) {
+		value->numbers++;
+		value->number_bytes = bytes;
+	}
 }
 
 // Prints the conversion at `format` and returns what follows it.
@@ -175,6 +247,22 @@ static const char *print_one(raw_value *value, const char *format, arguments *fr
 	else
 		print_number(value, format, bytes, from);
 	return format + bytes;
+}
+
+// Whether a value stands in JSON as a number: the format has printed nothing but one, and JSON has
+// a word for it (it has none for what is infinite). Readers of JSON keep 15 digits.
+static bool is_number(const raw_value *value)
+{
+	enum { DIGITS_MOST = 15 };
+	const char *text = value->text;
+	if (value->numbers != 1 || value->bytes != value->number_bytes || value->bytes > DIGITS_MOST)
+		return false;
+	for (size_t i = 0; i < value->bytes; i++)
+		if (!text[i] || !strchr("0123456789.e+-", text[i]))
+			return false;
+	size_t sign = value->bytes && *text == '-';
+	bool padded = value->bytes > sign + 1 && text[sign] == '0' && text[sign + 1] != '.';
+	return value->bytes > sign && text[sign] != '+' && !padded;
 }
 
 void cau_log_line_print(cau_log_line *line, const char *format, va_list list)
@@ -196,7 +284,10 @@ void cau_log_line_print(cau_log_line *line, const char *format, va_list list)
 				append_raw(&value, format++, 1);
 		}
 		format += *format == '"';
-		cau_log_line_add(line, key, key_bytes, value.text, value.bytes, quoted);
+		if (line->json && is_number(&value))
+			add_member(line, key, key_bytes, value.text, value.bytes, true);
+		else
+			cau_log_line_add(line, key, key_bytes, value.text, value.bytes, quoted);
 	}
 	va_end(from.list);
 }

@@ -21,6 +21,7 @@ static const struct {
 };
 
 static atomic_int least_level = CAU_LOG_INFO;
+static atomic_bool as_json;
 
 bool cau_log_set_level(const char *name)
 {
@@ -30,6 +31,15 @@ bool cau_log_set_level(const char *name)
 			return true;
 		}
 	return false;
+}
+
+bool cau_log_set_format(const char *name)
+{
+	bool json = strcmp(name, "json") == 0;
+	if (!json && strcmp(name, "text") != 0)
+		return false;
+	as_json = json;
+	return true;
 }
 
 static void write_head(cau_log_line *line, cau_log_level level)
@@ -42,8 +52,10 @@ static void write_head(cau_log_line *line, cau_log_level level)
 	strftime(stamp, sizeof stamp, "%Y-%m-%dT%H:%M:%S", &utc);
 	if (getenv("JOURNAL_STREAM"))
 		snprintf(prefix, sizeof prefix, "<%d>", levels[level].priority);
-	line->bytes = (size_t)snprintf(line->text, sizeof line->text, "%s%s %s.%03ldZ", prefix,
-	                               levels[level].name, stamp, now.tv_nsec / 1000000);
+	line->bytes = (size_t)snprintf(line->text, sizeof line->text,
+	                               line->json ? "%s{\"level\":\"%s\",\"time\":\"%s.%03ldZ\""
+	                                          : "%s%s %s.%03ldZ",
+	                               prefix, levels[level].name, stamp, now.tv_nsec / 1000000);
 }
 
 static void add(cau_log_line *line, const char *key, const char *value)
@@ -55,7 +67,7 @@ void cau_log(cau_log_level level, const char *session, const char *event, const 
 {
 	if ((int)level < least_level)
 		return;
-	cau_log_line line = {.bytes = 0};
+	cau_log_line line = {.json = as_json};
 	write_head(&line, level);
 	add(&line, "session", session && *session ? session : "-");
 	add(&line, "event", event);
@@ -63,7 +75,7 @@ void cau_log(cau_log_level level, const char *session, const char *event, const 
 	va_start(arguments, format);
 	cau_log_line_print(&line, format, arguments);
 	va_end(arguments);
-	line.text[line.bytes++] = '\n';
+	cau_log_line_end(&line);
 	// A log that cannot be written has nowhere to be reported.
 	if (write(STDERR_FILENO, line.text, line.bytes) < 0)
 		return;

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Structured log lines on standard error, one write each, safe from any thread:
 //     info 2026-01-31T12:00:00.123Z session=d1-knee event=tool_cut tool=hook cause=watchdog
+//     {"level":"info","time":"2026-01-31T12:00:00.123Z","session":"d1-knee","event":"tool_cut",...}
 // Under journald (JOURNAL_STREAM is set) each line starts with its syslog priority, as in `<6>`.
 #pragma once
 
@@ -23,6 +24,10 @@ typedef enum cau_log_level {
 
 // Sets the least level logged; false if there is no such level. Any thread.
 bool cau_log_set_level(const char *name);
+
+// Lines as above, "text", or each a JSON object, "json"; false if there is no such format. Any
+// thread.
+bool cau_log_set_format(const char *name);
 
 // Logs one line. `session` may be NULL. `format` is the `key=value` tail and may be empty; what is
 // printed into its values is quoted and escaped where it must be, see line.h.

@@ -164,6 +164,7 @@ static void try_again(struct cau_store *store)
 void *cau_store_commit_run(void *context)
 {
 	struct cau_store *store = context;
+	pthread_setname_np(pthread_self(), "cautery-store");
 	for (;;) {
 		switch (cau_store_queue_await(store)) {
 		case TURN_GROUP:

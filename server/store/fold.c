@@ -15,6 +15,7 @@ static bool fold(sqlite3 *database)
 static void *run(void *context)
 {
 	struct cau_store_folder *folder = context;
+	pthread_setname_np(pthread_self(), "cautery-fold");
 	pthread_mutex_lock(&folder->mutex);
 	while (!folder->closing) {
 		if (!folder->asked) {

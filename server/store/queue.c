@@ -69,6 +69,16 @@ void cau_store_flush(cau_store *store)
 	pthread_mutex_unlock(&store->mutex);
 }
 
+bool cau_store_moves(cau_store *store)
+{
+	pthread_mutex_lock(&store->mutex);
+	bool moved = !store->asked_to_move;
+	store->asked_to_move = true;
+	pthread_cond_signal(&store->work);
+	pthread_mutex_unlock(&store->mutex);
+	return moved;
+}
+
 // ---- the thread's side ----------------------------------------------------------------
 static bool group_is_ripe(const struct cau_store *store, double now_s, double *due_s)
 {
@@ -116,6 +126,7 @@ enum cau_store_turn cau_store_queue_await(struct cau_store *store)
 	pthread_mutex_lock(&store->mutex);
 	for (;;) {
 		double now_s = cau_store_monotonic_s(), due_s;
+		store->asked_to_move = false;
 		if (store->first) {
 			if (group_is_ripe(store, now_s, &due_s)) {
 				take_group(store);

@@ -93,6 +93,10 @@ void cau_store_close(cau_store *store);
 // Waits until everything submitted before has been answered. Not from a callback.
 void cau_store_flush(cau_store *store);
 
+// Whether the store's thread has come round since this was asked last, and asks it to: false again
+// and again is a thread that hangs in a commit or a callback. Waits for no disk.
+bool cau_store_moves(cau_store *store);
+
 const char *cau_store_label(const cau_store *store); // lives as long as the store
 
 // ---- writing: batches -----------------------------------------------------------------

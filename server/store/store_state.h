@@ -47,6 +47,7 @@ struct cau_store {
 	struct cau_store_batch *committing;   // taken by the thread, not yet answered
 	uint64_t submitted, answered;         // since open
 	int flushing;                         // callers inside cau_store_flush()
+	bool asked_to_move;                   // cau_store_moves(): not come round since
 	bool closing;
 	cau_store_state state; // READY, FULL or DAMAGED
 	char reason[320];

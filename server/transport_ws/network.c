@@ -91,6 +91,7 @@ static void tick(lws_sorted_usec_list_t *sul)
 static void *serve(void *argument)
 {
 	cau_network *network = argument;
+	pthread_setname_np(pthread_self(), "cautery-net");
 	cau_thread_set_nice(CAU_NICE_FIRST);
 	lws_sul_schedule(network->context, 0, &network->sul, tick, TICK_MS * LWS_US_PER_MS);
 	while (!network->ending || ((network->connections || network->lingering) &&

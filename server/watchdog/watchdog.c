@@ -14,6 +14,7 @@ struct cau_watchdog {
 	pthread_mutex_t mutex;
 	pthread_cond_t changed;
 	bool started, woken, ending;
+	bool asked_to_move; // not looked since
 	double (*look)(void *user, double now_s);
 	void *user;
 };
@@ -33,12 +34,14 @@ static void wait_until(cau_watchdog *w, double look_s)
 static void *watch(void *argument)
 {
 	cau_watchdog *w = argument;
+	pthread_setname_np(pthread_self(), "cautery-watch");
 	cau_thread_set_nice(CAU_NICE_FIRST);
 	pthread_mutex_lock(&w->mutex);
 	while (!w->ending) {
 		pthread_mutex_unlock(&w->mutex);
 		double look_s = w->look(w->user, cau_monotonic_s());
 		pthread_mutex_lock(&w->mutex);
+		w->asked_to_move = w->asked_to_move && w->woken; // asked while it looked: looks again
 		wait_until(w, look_s);
 	}
 	pthread_mutex_unlock(&w->mutex);
@@ -90,4 +93,14 @@ void cau_watchdog_wake(cau_watchdog *w)
 	w->woken = true;
 	pthread_cond_signal(&w->changed);
 	pthread_mutex_unlock(&w->mutex);
+}
+
+bool cau_watchdog_moves(cau_watchdog *w)
+{
+	pthread_mutex_lock(&w->mutex);
+	bool moved = !w->asked_to_move;
+	w->asked_to_move = w->woken = true;
+	pthread_cond_signal(&w->changed);
+	pthread_mutex_unlock(&w->mutex);
+	return moved;
 }

@@ -3,6 +3,8 @@
 // driver of an energized tool would have been silent for too long.
 #pragma once
 
+#include <stdbool.h>
+
 #include "cautery/status.h"
 
 typedef struct cau_watchdog cau_watchdog;
@@ -14,3 +16,5 @@ cau_status cau_watchdog_create(cau_watchdog **watchdog, double (*look)(void *use
 void cau_watchdog_destroy(cau_watchdog *watchdog); // takes NULL
 // Something was energized: look at once. From any thread.
 void cau_watchdog_wake(cau_watchdog *watchdog);
+// Whether it has looked since this was asked last, and asks it to. From any thread.
+bool cau_watchdog_moves(cau_watchdog *watchdog);

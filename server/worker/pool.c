@@ -107,6 +107,7 @@ static void run_slice(cau_worker_pool *pool, cau_task *task)
 static void *work(void *argument)
 {
 	cau_worker_pool *pool = argument;
+	pthread_setname_np(pthread_self(), "cautery-work");
 	// Without the right to it the thread stays at the process's priority, which is no fault.
 	cau_thread_set_nice(pool->nice);
 	pthread_mutex_lock(&pool->mutex);

@@ -1,10 +1,13 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Whatever a value holds, the line reads back as the fields that were written.
+// Whatever a value holds, the line reads back as the fields that were written, and in JSON is an
+// object.
 #include "log/line.h"
 
+#include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 
+#include "cautery/json_text.h"
 #include "fuzz/fuzz_target.h"
 #include "line_parser.h"
 
@@ -30,5 +33,11 @@ int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size)
 	if (!line_parse(line.text, line.bytes, &fields) || fields.count != 3)
 		abort();
 	check(&fields.fields[1], data, size);
+	cau_log_line object = {.json = true};
+	object.bytes = (size_t)snprintf(object.text, sizeof object.text, "{\"head\":0");
+	cau_log_line_add(&object, "name", 4, (const char *)data, size, size % 2);
+	cau_log_line_end(&object);
+	if (cau_json_scan(object.text, object.bytes, sizeof object.text, NULL))
+		abort();
 	return 0;
 }

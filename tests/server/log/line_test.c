@@ -2,6 +2,7 @@
 // Lines are written with whatever names clients can think of, and read back by a strict parser.
 #include "log/line.h"
 
+#include <math.h>
 #include <setjmp.h>
 #include <stdarg.h>
 #include <stdint.h>
@@ -11,6 +12,7 @@
 
 #include <cmocka.h>
 
+#include "cautery/json_text.h"
 #include "line_parser.h"
 
 enum { LINES = 20000, FIELDS = 6, SHORT_VALUE = 60 };
@@ -171,6 +173,59 @@ static void a_line_without_room_says_that_it_is_cut(void **state)
 		assert_int_equal(fields.fields[i].value_bytes, sizeof value);
 }
 
+static void in_json_every_line_is_an_object(void **state)
+{
+	(void)state;
+	for (int i = 0; i < LINES; i++) {
+		char key[] = "name0", value[SHORT_VALUE];
+		cau_log_line line = {.json = true};
+		line.bytes = (size_t)snprintf(line.text, sizeof line.text, "{\"head\":0");
+		for (int f = 0; f < FIELDS; f++, key[4]++)
+			cau_log_line_add(&line, key, 5, value, random_value(value), random_below(2));
+		cau_log_line_end(&line);
+		assert_int_equal(line.text[line.bytes - 1], '\n');
+		assert_null(memchr(line.text, '\n', line.bytes - 1));
+		assert_int_equal(cau_json_scan(line.text, line.bytes, sizeof line.text, NULL), CAU_OK);
+	}
+}
+
+static void in_json_what_is_a_number_says_the_format(void **state)
+{
+	(void)state;
+	cau_log_line line = {.json = true};
+	print(&line, "a=%d b=%s c=%.3f d=\"%s at %d\" e=%d%% f=%g g=%02d", -3, "12", 0.5, "x", 4, 5,
+	      (double)INFINITY, 7);
+	cau_log_line_end(&line);
+	assert_line(&line, ",\"a\":-3,\"b\":\"12\",\"c\":0.500,\"d\":\"x at 4\",\"e\":\"5%\","
+	                   "\"f\":\"inf\",\"g\":\"07\"}\n");
+}
+
+static void in_json_controls_are_escaped_and_no_utf_8_is_replaced(void **state)
+{
+	(void)state;
+	cau_log_line line = {.json = true};
+	print(&line, "a=%s", "\"\\\n\x1b\xc2\x85\xe2\x80\xa8\xff\xc3\xa9");
+	cau_log_line_end(&line);
+	assert_line(&line, ",\"a\":\"\\\"\\\\\\n\\u001b\\u0085\\u2028\\ufffd\xc3\xa9\"}\n");
+}
+
+static void in_json_a_line_without_room_is_cut_and_still_an_object(void **state)
+{
+	(void)state;
+	char value[400], key[] = "name0";
+	memset(value, 'x', sizeof value);
+	for (size_t bytes = 300; bytes < sizeof value; bytes++) { // the end falls on every byte
+		cau_log_line line = {.json = true};
+		line.bytes = (size_t)snprintf(line.text, sizeof line.text, "{\"head\":0");
+		for (key[4] = '0'; key[4] < '8'; key[4]++)
+			cau_log_line_add(&line, key, 5, value, bytes, false);
+		cau_log_line_end(&line);
+		assert_true(line.bytes <= sizeof line.text);
+		assert_int_equal(cau_json_scan(line.text, line.bytes, sizeof line.text, NULL), CAU_OK);
+		assert_non_null(memmem(line.text, line.bytes, "\"cut\":true}", 11));
+	}
+}
+
 static void the_parser_is_strict(void **state)
 {
 	(void)state;
@@ -193,6 +248,10 @@ int main(void)
 		cmocka_unit_test(a_value_over_the_end_of_its_text_is_not_read),
 		cmocka_unit_test(a_long_value_gives_way_and_leaves_the_others),
 		cmocka_unit_test(a_line_without_room_says_that_it_is_cut),
+		cmocka_unit_test(in_json_every_line_is_an_object),
+		cmocka_unit_test(in_json_what_is_a_number_says_the_format),
+		cmocka_unit_test(in_json_controls_are_escaped_and_no_utf_8_is_replaced),
+		cmocka_unit_test(in_json_a_line_without_room_is_cut_and_still_an_object),
 		cmocka_unit_test(the_parser_is_strict),
 	};
 	return cmocka_run_group_tests(tests, NULL, NULL);

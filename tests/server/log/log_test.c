@@ -90,6 +90,21 @@ static void what_clients_send_cannot_forge_lines(void **state)
 	assert_ptr_equal(strchr(line, '\n'), line + strlen(line) - 1);
 }
 
+static void in_json_a_line_is_an_object(void **state)
+{
+	(void)state;
+	assert_true(cau_log_set_format("json"));
+	const char *line = written(one);
+	assert_int_equal(strncmp(line, "{\"level\":\"warning\",\"time\":\"20", 29), 0);
+	assert_non_null(
+		strstr(line, "Z\",\"session\":\"d1-knee\",\"event\":\"tool_cut\",\"tool\":\"hook\"}\n"));
+	setenv("JOURNAL_STREAM", "1:2", 1);
+	assert_int_equal(strncmp(written(one), "<4>{", 4), 0);
+	unsetenv("JOURNAL_STREAM");
+	assert_false(cau_log_set_format("xml"));
+	assert_true(cau_log_set_format("text"));
+}
+
 static void levels_below_the_least_are_left_out(void **state)
 {
 	(void)state;
@@ -106,6 +121,7 @@ int main(void)
 		cmocka_unit_test(a_line_has_level_time_session_and_event),
 		cmocka_unit_test(under_journald_a_line_starts_with_its_priority),
 		cmocka_unit_test(what_clients_send_cannot_forge_lines),
+		cmocka_unit_test(in_json_a_line_is_an_object),
 		cmocka_unit_test(levels_below_the_least_are_left_out),
 	};
 	return cmocka_run_group_tests(tests, NULL, NULL);

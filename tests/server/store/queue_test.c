@@ -4,6 +4,7 @@
 #include "store_fixture.h"
 
 #include <pthread.h>
+#include <sched.h>
 #include <string.h>
 
 struct gate {
@@ -256,6 +257,24 @@ static void many_threads_submit_flush_and_look(void **state)
 	cau_store_close(store);
 }
 
+static void it_moves_unless_a_commit_hangs(void **state)
+{
+	struct fixture *fixture = *state;
+	struct gate gate;
+	cau_store *store = open_store(&fixture->config);
+	for (int round = 0; round < 3; round++)
+		while (!cau_store_moves(store)) // asked, it comes round by itself
+			sched_yield();
+	hold(store, &gate);
+	cau_store_moves(store);
+	for (int asked = 0; asked < 1000; asked++)
+		assert_false(cau_store_moves(store));
+	let_go(&gate);
+	while (!cau_store_moves(store))
+		sched_yield();
+	cau_store_close(store);
+}
+
 #define TEST(name) cmocka_unit_test_setup_teardown(name, fixture_setup, fixture_teardown)
 
 int main(void)
@@ -265,6 +284,7 @@ int main(void)
 		TEST(a_bad_batch_fails_whole_and_alone),
 		TEST(a_full_queue_refuses_and_keeps_what_it_has),
 		TEST(bytes_are_bounded_too),
+		TEST(it_moves_unless_a_commit_hangs),
 		TEST(close_drains),
 		TEST(many_threads_submit_flush_and_look),
 	};

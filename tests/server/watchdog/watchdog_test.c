@@ -3,6 +3,7 @@
 
 #include <math.h>
 #include <pthread.h>
+#include <sched.h>
 #include <setjmp.h>
 #include <stdarg.h>
 #include <stdatomic.h>
@@ -61,7 +62,7 @@ static double end(lateness *l)
 }
 
 typedef struct looks {
-	pthread_mutex_t mutex;
+	pthread_mutex_t mutex, hang;
 	pthread_cond_t looked;
 	int count;
 	double expires_s, looked_s; // expires_s: INFINITY for nothing to watch
@@ -90,6 +91,7 @@ static void await(looks *l, int count)
 static looks fresh(void)
 {
 	return (looks){.mutex = PTHREAD_MUTEX_INITIALIZER,
+	               .hang = PTHREAD_MUTEX_INITIALIZER,
 	               .looked = PTHREAD_COND_INITIALIZER,
 	               .expires_s = INFINITY};
 }
@@ -127,10 +129,43 @@ static void a_wake_makes_it_look_at_once(void **state)
 	cau_watchdog_destroy(NULL);
 }
 
+// Looks, and then hangs until the lock is let go.
+static double look_and_hang(void *user, double now_s)
+{
+	looks *l = user;
+	double next_s = look(user, now_s);
+	pthread_mutex_lock(&l->hang);
+	pthread_mutex_unlock(&l->hang);
+	return next_s;
+}
+
+static void it_moves_unless_it_hangs(void **state)
+{
+	(void)state;
+	looks l = fresh();
+	cau_watchdog *watchdog;
+	assert_int_equal(cau_watchdog_create(&watchdog, look_and_hang, &l, NULL), CAU_OK);
+	await(&l, 1);
+	for (int round = 0; round < 3; round++) {
+		while (!cau_watchdog_moves(watchdog)) // asked, it comes round by itself
+			sched_yield();
+	}
+	pthread_mutex_lock(&l.hang);
+	while (cau_watchdog_moves(watchdog)) // the last look may end yet
+		sched_yield();
+	for (int asked = 0; asked < 1000; asked++)
+		assert_false(cau_watchdog_moves(watchdog));
+	pthread_mutex_unlock(&l.hang);
+	while (!cau_watchdog_moves(watchdog))
+		sched_yield();
+	cau_watchdog_destroy(watchdog);
+}
+
 int main(void)
 {
 	const struct CMUnitTest tests[] = {
 		cmocka_unit_test(it_looks_when_something_expires),
+		cmocka_unit_test(it_moves_unless_it_hangs),
 		cmocka_unit_test(a_wake_makes_it_look_at_once),
 	};
 	return cmocka_run_group_tests(tests, NULL, NULL);
