@@ -36,6 +36,8 @@ enum { CAU_CONFIG_TEXT_BYTES = 512 };
 	INTEGER(max_session_elements, 16000000, 1, 1000000000, "elements of one session")              \
 	INTEGER(max_session_bytes, 4000000000, 1000000, 1000000000000, "memory of one session, about") \
 	INTEGER(max_sessions_bytes, 16000000000, 1000000, 1000000000000, "of all sessions, about")     \
+	INTEGER(look_bytes, 67108864, 0, 1000000000000,                                                \
+	        "states a session keeps for looks at its past")                                        \
 	INTEGER(max_connections, 1024, 1, 65536, "WebSocket connections at once")                      \
 	INTEGER(max_subscribers, 128, 1, 4096, "streams of one session at once")                       \
 	INTEGER(max_message_bytes, 1048576, 4096, 67108864, "largest message of a client")             \

@@ -39,19 +39,6 @@ static void end_gap(cau_hosted *h)
 		cau_record_checkpoint(h, NULL, NULL);
 }
 
-// On the builder. Before the past is read, all of it that is on its way must be in the store.
-static cau_status check_past(cau_hosted *h, int64_t branch, bool present, uint64_t tick,
-                             cau_error *error)
-{
-	cau_store_flush(h->around->store);
-	uint64_t lost_from = h->lost_from;
-	if (present && tick > lost_from)
-		return cau_fail(error, CAU_BAD_VALUE, "params.tick",
-		                "what happened from tick %llu on could not be stored",
-		                (unsigned long long)lost_from);
-	return cau_store_check_reach(h->around->store, h->id, branch, tick, error);
-}
-
 static cau_outcome_kind fail(cau_order *order, cau_status status, const char *path,
                              const char *reason)
 {
@@ -147,8 +134,9 @@ static cau_status read_past(going *g, cau_error *error)
 	cau_hosted *h = g->hosted;
 	end_gap(h);
 	cau_record_commit(h);
-	cau_status status = check_past(h, g->branch, g->branch == h->branch, g->tick, error);
-	return status ? status : cau_replay_read(h, h->id, g->branch, g->tick, error);
+	cau_status status = cau_replay_check(h, g->branch, g->branch == h->branch, g->tick, error);
+	return status ? status
+	              : cau_replay_read(&h->replay, h->around->store, h->id, g->branch, g->tick, error);
 }
 
 // A session that is faulted has nothing that must be kept.
@@ -169,11 +157,22 @@ static cau_status keep_present(going *g, cau_error *error)
 
 static cau_status leave_present(going *g, cau_error *error)
 {
+	cau_hosted *h = g->hosted;
 	cau_status status = keep_present(g, error);
 	if (status)
 		return status;
 	g->left = true;
-	return cau_replay_restore(g->hosted, error);
+	status = cau_replay_restore(&h->replay, h->core, error);
+	if (!status)
+		h->tick = h->replay.tick;
+	return status;
+}
+
+static cau_status replay_slice(cau_hosted *h, bool *over, cau_error *error)
+{
+	cau_status status = cau_replay_slice(&h->replay, h->core, SLICE_S, over, error);
+	h->tick = h->replay.tick;
+	return status;
 }
 
 static double expected_s(const going *g)
@@ -234,7 +233,7 @@ static void run(cau_job *job)
 	else if (!status && g->stage == RESTORING)
 		status = leave_present(g, &error);
 	else if (!status)
-		status = cau_replay_slice(h, SLICE_S, &over, &error);
+		status = replay_slice(h, &over, &error);
 	if (status) {
 		give_up(g, &error);
 		return;
@@ -301,7 +300,7 @@ static void make_fork(cau_read_job *job)
 {
 	cau_hosted *h = job->hosted;
 	cau_error error = {0};
-	if (check_past(h, job->branch, true, job->order->as.fork.tick, &error))
+	if (cau_replay_check(h, job->branch, true, job->order->as.fork.tick, &error))
 		cau_reply_fail(&job->order->reply, &error, 0);
 	else
 		h->around->fork(h->around->user, h, job->branch, job->order);

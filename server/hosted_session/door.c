@@ -110,6 +110,7 @@ void cau_hosted_cut(cau_hosted *h, uint32_t client, const char *cause)
 
 void cau_hosted_forget_client(cau_hosted *h, uint32_t client)
 {
+	cau_looks_give_up(h, client);
 	cau_decide(h, &(cau_logic_event){
 					  .kind = CAU_LOGIC_FORGET, .time_s = cau_monotonic_s(), .client = client});
 }

@@ -14,6 +14,11 @@
 
 static atomic_uint last_transfer;
 
+uint32_t cau_export_number(void)
+{
+	return ++last_transfer;
+}
+
 // Answers with the transfer and hands the file to the transport, which sends it in chunks.
 static void answer_file(const cau_read_job *job, const char *bytes, size_t byte_count,
                         const char *ending, const char *media_type)
@@ -21,7 +26,7 @@ static void answer_file(const cau_read_job *job, const char *bytes, size_t byte_
 	const cau_reply *reply = &job->order->reply;
 	cau_error error = {0};
 	cau_buffer *file = cau_buffer_create(byte_count, true);
-	cau_wire_transfer result = {.transfer = ++last_transfer, .byte_count = (int64_t)byte_count};
+	cau_wire_transfer result = {.transfer = cau_export_number(), .byte_count = (int64_t)byte_count};
 	cau_outcome outcome = {.file = file, .transfer = (uint32_t)result.transfer};
 	char *text = NULL;
 	snprintf(result.file_name, sizeof result.file_name, "%s-%llu.%s", job->hosted->id,

@@ -6,91 +6,37 @@
 
 #include "hosted_session/internal.h"
 
-static void fill_tools(cau_hosted *h, const cau_frame *frame, cau_stream_tool *tools)
-{
-	for (int32_t i = 0; i < frame->tool_count; i++) {
-		const cau_tool_state *from = &frame->tools[i];
-		cau_drive drive = {.energy_off = CAU_ENERGY_OFF_NEVER_ENABLED};
-		bool known = cau_decide_find(h, from->name, &drive);
-		cau_stream_tool *to = &tools[i];
-		*to = (cau_stream_tool){
-			.shape = from->definition.shape,
-			.pose = from->pose,
-			.jaw = from->jaw,
-			.tip_temperature_c = from->tip_temperature_c,
-			.energy_j = from->energy_j,
-			.sequence = from->sequence,
-			.driver = drive.driver.client,
-			.energized = from->energized && (!known || drive.enabled),
-			.grasping = from->grasping,
-			.frozen = drive.frozen,
-			.energy_off = (uint8_t)drive.energy_off,
-			.grasped_vertices = (uint16_t)fmin(from->grasped_vertices, UINT16_MAX),
-			.contact_vertices = (uint16_t)fmin(from->contact_vertices, UINT16_MAX),
-			.touched_layers = (uint16_t)from->touched_layers,
-		};
-		memcpy(to->name, from->name, sizeof to->name);
-		memcpy(to->force_n, from->force_n, sizeof to->force_n);
-		memcpy(to->torque_nm, from->torque_nm, sizeof to->torque_nm);
-	}
-}
-
-static cau_stream_statistics fill_statistics(const cau_hosted *h, const cau_statistics *from)
-{
-	cau_stream_statistics to = {
-		.realtime_factor = (float)h->realtime_factor,
-		.step_cost_s = (float)h->step_cost_s,
-		.residual = (float)from->residual,
-		.deferred_max_s = (float)from->deferred_max_s,
-		.iterations = (uint32_t)from->iterations,
-		.backtracks = (uint32_t)from->backtracks,
-		.inverted = (uint32_t)from->inverted,
-		.edges_parted = (uint32_t)from->edges_parted,
-		.elements_removed = (uint32_t)from->elements_removed,
-		.pending_downdates = (uint32_t)from->pending_downdates,
-		.refactorisations = (uint32_t)from->refactorisations,
-		.contacts = (uint32_t)from->contacts,
-		.frozen_vertices = (uint32_t)from->frozen_vertices,
-		.refused_commands = h->refused_commands,
-		.energy_gain_j = (float)from->energy_gain_j,
-		.resting = from->resting,
-	};
-	for (int i = 0; i < CAU_STREAM_STAGES; i++)
-		to.stage_s[i] = (float)from->seconds[i];
-	return to;
-}
-
 typedef struct published {
 	cau_hosted *hosted;
-	cau_frame frame;
-	cau_stream_tool tools[CAU_MAX_TOOLS];
-	cau_stream_statistics statistics;
-	cau_stream_sample sample;
+	cau_shown shown;
 } published;
+
+static void add_drives(cau_hosted *h, cau_stream_tool *tools, int32_t count)
+{
+	for (int32_t i = 0; i < count; i++) {
+		cau_drive drive = {.energy_off = CAU_ENERGY_OFF_NEVER_ENABLED};
+		bool known = cau_decide_find(h, tools[i].name, &drive);
+		tools[i].driver = drive.driver.client;
+		tools[i].energized = tools[i].energized && (!known || drive.enabled);
+		tools[i].frozen = drive.frozen;
+		tools[i].energy_off = (uint8_t)drive.energy_off;
+	}
+}
 
 static const cau_stream_sample *fill_sample(void *user)
 {
 	published *p = user;
 	cau_hosted *h = p->hosted;
+	cau_shown *shown = &p->shown;
 	int state = cau_decided_state(h);
-	cau_session_frame(h->core, &p->frame);
-	fill_tools(h, &p->frame, p->tools);
-	p->statistics = fill_statistics(h, &p->frame.statistics);
-	p->sample = (cau_stream_sample){
-		.tick = p->frame.tick,
-		.time_s = p->frame.time_s,
-		.published_us = (uint64_t)(cau_monotonic_s() * 1e6),
-		.flags = (uint16_t)((state == CAU_SESSION_PAUSED ? CAU_FRAME_PAUSED : 0) |
-	                        (state == CAU_SESSION_FAULTED ? CAU_FRAME_FAULTED : 0)),
-		.position = p->frame.position,
-		.vertex_visible = p->frame.vertex_visible,
-		.face_mask = p->frame.face_mask,
-		.tool_count = p->frame.tool_count,
-		.tools = p->tools,
-		.statistics = &p->statistics,
-	};
-	memcpy(p->sample.scalar, p->frame.scalar, sizeof p->sample.scalar);
-	return &p->sample;
+	cau_show(h->core, shown);
+	add_drives(h, shown->tools, shown->frame.tool_count);
+	shown->statistics.realtime_factor = (float)h->realtime_factor;
+	shown->statistics.step_cost_s = (float)h->step_cost_s;
+	shown->statistics.refused_commands = h->refused_commands;
+	shown->sample.flags = (uint16_t)((state == CAU_SESSION_PAUSED ? CAU_FRAME_PAUSED : 0) |
+	                                 (state == CAU_SESSION_FAULTED ? CAU_FRAME_FAULTED : 0));
+	return &shown->sample;
 }
 
 // What costs the core work of its own is made as long as somebody watches it.

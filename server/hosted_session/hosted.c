@@ -33,6 +33,7 @@ void cau_hosted_release(cau_hosted *h)
 		return;
 	CAU_ASSERT(h->logic->count == 0 && !h->logic->stepping && !h->reads,
 	           "session %s goes with %d orders unanswered", h->id, h->logic->count);
+	cau_looks_finish(h->looks);
 	cau_replay_finish(&h->replay);
 	cau_streams_finish(&h->streams);
 	cau_store_batch_destroy(h->batch);

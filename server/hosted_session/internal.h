@@ -42,7 +42,9 @@ typedef struct cau_replay {
 	void *snapshot; // of the checkpoint, until the core has it
 	size_t snapshot_bytes;
 	uint64_t from, until; // ticks
+	uint64_t tick;        // where the core is
 	bool exact;
+	double stepped_s; // processor time of its steps
 	cau_replayed *commands;
 	size_t count, capacity, at;
 } cau_replay;
@@ -60,6 +62,8 @@ typedef struct cau_pending {
 	char *text; // malloc'ed
 	size_t text_bytes;
 } cau_pending;
+
+typedef struct cau_looks cau_looks;
 
 struct cau_hosted {
 	cau_task task; // first
@@ -126,6 +130,7 @@ struct cau_hosted {
 
 	pthread_mutex_t mutex;
 	cau_order *cancelling; // session.destroy while it is built
+	cau_looks *looks;      // frame_at.c; NULL: nobody looked at the past yet
 	cau_order *reads;      // read_queue.c
 	int32_t read_count;
 	cau_refused_motion refused[CAU_MAX_TOOLS];
@@ -198,15 +203,22 @@ void cau_hosted_start(cau_hosted *h);
 void cau_hosted_fail_start(cau_hosted *h, const cau_error *error);
 void cau_hosted_started(cau_hosted *h); // after the replay of a start
 
-// ---- replay.c
+// ---- replay.c: the way of a core to a state of the store
+// On the builder. Before the past is read, all of it that is on its way must be in the store.
+// CAU_BAD_VALUE: that tick cannot be reached; `present`: the branch is the present one.
+cau_status cau_replay_check(cau_hosted *h, int64_t branch, bool present, uint64_t tick,
+                            cau_error *error);
 // Reads the checkpoint and the log of a session's branch up to `tick` (UINT64_MAX: the end).
-cau_status cau_replay_read(cau_hosted *h, const char *session, int64_t branch, uint64_t tick,
-                           cau_error *error);
+cau_status cau_replay_read(cau_replay *replay, cau_store *store, const char *session,
+                           int64_t branch, uint64_t tick, cau_error *error);
 // Has the core be at that checkpoint. After CAU_CORRUPT it is as it was, after another failure it
 // may be anywhere.
-cau_status cau_replay_restore(cau_hosted *h, cau_error *error);
+cau_status cau_replay_restore(cau_replay *replay, cau_session *core, cau_error *error);
 // Steps on along the log, until that is over or some seconds are.
-cau_status cau_replay_slice(cau_hosted *h, double seconds, bool *over, cau_error *error);
+cau_status cau_replay_slice(cau_replay *replay, cau_session *core, double seconds, bool *over,
+                            cau_error *error);
+// The core is, or the snapshot will take it, further than the checkpoint: at `tick`, on this way.
+void cau_replay_shorten(cau_replay *replay, uint64_t tick);
 void cau_replay_finish(cau_replay *replay);
 
 // ---- decide.c: the session's decisions, from any thread
@@ -247,6 +259,17 @@ CAU_ORDER_TABLE(CHANGE, READ)
 #undef CHANGE
 #undef READ
 
+// ---- looks.c: who looks at past ticks
+// Gives up what a client asked for, or who will not come back.
+void cau_looks_give_up(cau_hosted *h, uint32_t client);
+// When a core that nobody looks at the past with is to go; INFINITY: there is none.
+double cau_looks_due_s(cau_hosted *h);
+void cau_looks_finish(cau_looks *looks); // takes NULL
+
+// ---- frame_at.c
+// Lets it go, if it is time.
+void cau_looks_tire(cau_hosted *h, double now_s);
+
 // ---- back.c
 // Lets the builder have a session whose slice has ended, to go back. From here on it is the
 // builder's.
@@ -270,6 +293,16 @@ void cau_drive_tell_refusals(cau_hosted *h, double now_s);
 // ---- drive.c: what the core and the log are told of them
 // Energy off and the tool where it is, as was decided.
 void cau_drive_do_cut(cau_hosted *h, const cau_action *action);
+
+// ---- shown.c
+// What a core shows of its tick; the sample points into the rest, and into the core.
+typedef struct cau_shown {
+	cau_frame frame;
+	cau_stream_tool tools[CAU_MAX_TOOLS]; // without drivers
+	cau_stream_statistics statistics;
+	cau_stream_sample sample;
+} cau_shown;
+void cau_show(const cau_session *core, cau_shown *shown);
 
 // ---- frames.c: the session's side of its streams
 void cau_frames_publish(cau_hosted *h, double now_s); // those that are due
@@ -307,6 +340,9 @@ int32_t cau_reads_note(cau_hosted *h);
 cau_order *cau_reads_take(cau_hosted *h, int32_t *noted);
 bool cau_reads_wait(cau_hosted *h);   // some can be served now
 void cau_reads_refuse(cau_hosted *h); // all, of a session that has ended
+
+// ---- export.c
+uint32_t cau_export_number(void); // of the next file
 
 // ---- reads.c
 // Serves some of the `noted` oldest.

@@ -34,7 +34,9 @@
 	READ(EXPORT, cau_apply_export)     /* as.format */                                             \
 	READ(LOG, cau_apply_log)           /* as.log */                                                \
 	READ(JOIN, cau_apply_join)         /* as.join */                                               \
-									   /* a new row goes above this line */
+	READ(FRAME_AT, cau_apply_frame_at) /* as.frame_at */                                           \
+	READ(FRAME_CANCEL, cau_apply_frame_cancel)                                                     \
+	/* a new row goes above this line */
 
 #define KIND(kind, ...) CAU_ORDER_##kind,
 typedef enum cau_order_kind { CAU_ORDER_TABLE(KIND, KIND) CAU_ORDER_COUNT } cau_order_kind;
@@ -77,5 +79,12 @@ typedef struct cau_order {
 			double rate_hz, step_m;
 			uint32_t channels;
 		} join;
+		struct {
+			uint64_t tick;
+			double step_m;
+			uint32_t channels;
+			int64_t branch; // the rest is filled in when it is served
+			uint64_t epoch;
+		} frame_at;
 	} as;
 } cau_order;

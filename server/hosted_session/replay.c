@@ -7,6 +7,18 @@
 #include "cautery/command_json.h"
 #include "hosted_session/internal.h"
 
+cau_status cau_replay_check(cau_hosted *h, int64_t branch, bool present, uint64_t tick,
+                            cau_error *error)
+{
+	cau_store_flush(h->around->store);
+	uint64_t lost_from = h->lost_from;
+	if (present && tick > lost_from)
+		return cau_fail(error, CAU_BAD_VALUE, "params.tick",
+		                "what happened from tick %llu on could not be stored",
+		                (unsigned long long)lost_from);
+	return cau_store_check_reach(h->around->store, h->id, branch, tick, error);
+}
+
 static cau_status take_checkpoint(void *user, const cau_store_checkpoint *checkpoint)
 {
 	cau_replay *replay = user;
@@ -35,11 +47,9 @@ static cau_status take_command(void *user, const cau_store_command *row)
 	return cau_command_from_json(row->payload.data, row->payload.bytes, &made->command, NULL);
 }
 
-cau_status cau_replay_read(cau_hosted *h, const char *session, int64_t branch, uint64_t tick,
-                           cau_error *error)
+cau_status cau_replay_read(cau_replay *replay, cau_store *store, const char *session,
+                           int64_t branch, uint64_t tick, cau_error *error)
 {
-	cau_store *store = h->around->store;
-	cau_replay *replay = &h->replay;
 	bool to_end = tick == UINT64_MAX;
 	uint64_t before = to_end ? INT64_MAX : tick;
 	cau_replay_finish(replay);
@@ -63,51 +73,58 @@ cau_status cau_replay_read(cau_hosted *h, const char *session, int64_t branch, u
 	return CAU_OK;
 }
 
-cau_status cau_replay_restore(cau_hosted *h, cau_error *error)
+cau_status cau_replay_restore(cau_replay *replay, cau_session *core, cau_error *error)
 {
-	cau_replay *replay = &h->replay;
-	cau_status status = cau_session_restore(h->core, replay->snapshot, replay->snapshot_bytes,
-	                                        &replay->exact, error);
+	cau_status status =
+		cau_session_restore(core, replay->snapshot, replay->snapshot_bytes, &replay->exact, error);
 	if (status) {
 		cau_replay_finish(replay);
 		return status;
 	}
 	free(replay->snapshot);
 	replay->snapshot = NULL;
-	h->tick = replay->from;
+	replay->tick = replay->from;
 	return CAU_OK;
 }
 
-static void submit_due(cau_hosted *h)
+static void submit_due(cau_replay *replay, cau_session *core)
 {
-	cau_replay *replay = &h->replay;
-	for (; replay->at < replay->count && replay->commands[replay->at].tick <= h->tick; replay->at++)
-		cau_session_submit(h->core, &replay->commands[replay->at].command, NULL);
+	for (; replay->at < replay->count && replay->commands[replay->at].tick <= replay->tick;
+	     replay->at++)
+		cau_session_submit(core, &replay->commands[replay->at].command, NULL);
 }
 
-cau_status cau_replay_slice(cau_hosted *h, double seconds, bool *over, cau_error *error)
+cau_status cau_replay_slice(cau_replay *replay, cau_session *core, double seconds, bool *over,
+                            cau_error *error)
 {
 	double end_s = cau_monotonic_s() + seconds;
 	*over = false;
-	while (h->tick < h->replay.until) {
-		submit_due(h);
+	while (replay->tick < replay->until) {
+		submit_due(replay, core);
 		double began_cpu_s = cau_thread_cpu_s();
-		cau_status status = cau_session_step(h->core, error);
-		h->stepped_s += cau_thread_cpu_s() - began_cpu_s;
+		cau_status status = cau_session_step(core, error);
+		replay->stepped_s += cau_thread_cpu_s() - began_cpu_s;
 		if (status)
 			return status;
-		h->tick++;
-		if (cau_monotonic_s() >= end_s && h->tick < h->replay.until)
+		replay->tick++;
+		if (cau_monotonic_s() >= end_s && replay->tick < replay->until)
 			return CAU_OK;
 	}
-	submit_due(h);
+	submit_due(replay, core);
 	*over = true;
 	return CAU_OK;
+}
+
+void cau_replay_shorten(cau_replay *replay, uint64_t tick)
+{
+	replay->from = tick;
+	while (replay->at < replay->count && replay->commands[replay->at].tick < tick)
+		replay->at++;
 }
 
 void cau_replay_finish(cau_replay *replay)
 {
 	free(replay->commands);
 	free(replay->snapshot);
-	*replay = (cau_replay){.exact = replay->exact};
+	*replay = (cau_replay){.exact = replay->exact, .tick = replay->tick};
 }

@@ -203,7 +203,11 @@ static void go_on_replaying(cau_hosted *h)
 {
 	cau_error error = {0};
 	bool over;
-	if (cau_replay_slice(h, REPLAY_SLICE_S, &over, &error))
+	cau_status status = cau_replay_slice(&h->replay, h->core, REPLAY_SLICE_S, &over, &error);
+	h->tick = h->replay.tick;
+	h->stepped_s += h->replay.stepped_s;
+	h->replay.stepped_s = 0;
+	if (status)
 		cau_hosted_fault(h, &error);
 	else if (!over)
 		return;
@@ -225,6 +229,7 @@ static void serve(cau_hosted *h, double now_s)
 	cau_frames_publish(h, cau_monotonic_s());
 	checkpoint_if_due(h, now_s);
 	cau_reads_serve(h, reads);
+	cau_looks_tire(h, now_s);
 }
 
 static cau_due when(cau_hosted *h)
@@ -240,6 +245,7 @@ static cau_due when(cau_hosted *h)
 	pthread_mutex_unlock(&h->deciding);
 	if (cau_decided_state(h) == CAU_SESSION_RUNNING)
 		return (cau_due){fmin(due_s, tick_s), tick_s + period_s, h->piece_s};
+	due_s = fmin(due_s, cau_looks_due_s(h));
 	return (cau_due){cau_reads_wait(h) || h->dirty ? 0 : due_s, now_s + 0.1, h->piece_s};
 }
 

@@ -125,9 +125,11 @@ static cau_status count_branch(void *user, const cau_store_branch *branch)
 static cau_status replay(cau_hosted *h, const char *session, int64_t branch, uint64_t tick,
                          cau_error *error)
 {
-	cau_status status = cau_replay_read(h, session, branch, tick, error);
+	cau_status status = cau_replay_read(&h->replay, h->around->store, session, branch, tick, error);
 	if (!status)
-		status = cau_replay_restore(h, error);
+		status = cau_replay_restore(&h->replay, h->core, error);
+	if (!status)
+		h->tick = h->replay.tick;
 	h->replaying = !status;
 	return status;
 }

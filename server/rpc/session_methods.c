@@ -231,6 +231,24 @@ void cau_call_session_export(cau_call *call)
 	submit(call, order);
 }
 
+void cau_call_session_frame_at(cau_call *call)
+{
+	cau_wire_session_frame_at params = {0};
+	cau_stream_def defaults = cau_default_stream_def();
+	cau_order *order = cau_call_order_with(call, CAU_ORDER_FRAME_AT, &params);
+	if (order) {
+		order->as.frame_at.tick = (uint64_t)params.tick;
+		order->as.frame_at.step_m = params.has_step_m ? params.step_m : defaults.step_m;
+		order->as.frame_at.channels = params.has_channels ? params.channels : defaults.channels;
+	}
+	submit(call, order);
+}
+
+void cau_call_session_frame_cancel(cau_call *call)
+{
+	submit_plain(call, CAU_ORDER_FRAME_CANCEL);
+}
+
 void cau_call_session_log(cau_call *call)
 {
 	cau_wire_session_log params = {0};

@@ -70,6 +70,12 @@
 	X(VTU, "vtu") /* tetrahedra and triangles that are left, with fields, for ParaView */          \
 	X(OBJ, "obj") /* drawn faces */
 
+#define CAU_LOOK_STAGE_TABLE(X)                                                                    \
+	X(BUILDING, "building") /* a core of its own */                                                \
+	X(READING, "reading")                                                                          \
+	X(RESTORING, "restoring")                                                                      \
+	X(REPLAYING, "replaying")
+
 #define CAU_CAPABILITY_TABLE(X)                                                                    \
 	X(UPLOAD, "upload")                                                                            \
 	X(EXPORT, "export")                                                                            \
@@ -86,6 +92,7 @@
 	CHOICE_TABLE(change, CAU_CHANGE_TABLE)                                                         \
 	CHOICE_TABLE(event_kind, CAU_EVENT_TABLE)                                                      \
 	CHOICE_TABLE(export_format, CAU_EXPORT_TABLE)                                                  \
+	CHOICE_TABLE(look_stage, CAU_LOOK_STAGE_TABLE)                                                 \
 	CHOICE_TABLE(capability, CAU_CAPABILITY_TABLE)                                                 \
 	CHOICE_TABLE(channel, CAU_CHANNEL_TABLE)                                                       \
 	CHOICE_TABLE(energy_off, CAU_ENERGY_OFF_TABLE)                                                 \
@@ -107,6 +114,9 @@ typedef enum cau_event_kind { CAU_EVENT_TABLE(X) CAU_EVENT_COUNT } cau_event_kin
 #undef X
 #define X(code, name) CAU_EXPORT_##code,
 typedef enum cau_export_format { CAU_EXPORT_TABLE(X) CAU_EXPORT_COUNT } cau_export_format;
+#undef X
+#define X(code, name) CAU_LOOK_##code,
+typedef enum cau_look_stage { CAU_LOOK_STAGE_TABLE(X) CAU_LOOK_STAGE_COUNT } cau_look_stage;
 #undef X
 #define X(code, name) CAU_CAPABILITY_##code,
 typedef enum cau_capability {

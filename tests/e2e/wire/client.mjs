@@ -7,6 +7,9 @@ import { Decoder, header } from './decoder.mjs';
 // Far beyond what any step needs; only failing tests reach it.
 export const PATIENCE_S = process.env.E2E_SLOW === '1' ? 200 : 20;
 
+// Methods that a file in chunks follows.
+const FILES = ['session.export', 'session.frame_at', 'session.log'];
+
 export class RpcError extends Error {
 	constructor(error) {
 		super(`${error.code} ${error.data?.status} ${error.data?.path ?? ''}: ${error.data?.reason}`);
@@ -68,7 +71,7 @@ export class Client {
 		else {
 			if (call.method === 'session.join')
 				this.streams.set(message.result.session_number, new Decoder(message.result));
-			if (call.method === 'session.export' || call.method === 'session.log')
+			if (FILES.includes(call.method))
 				this.transfers.set(message.result.transfer, { ...message.result, parts: [], received: 0 });
 			call.resolve(message.result);
 		}
@@ -141,13 +144,26 @@ export class Client {
 	}
 
 	async file(method, params) {
+		return (await this.announced(method, params)).bytes;
+	}
+
+	// What the session looked like at a tick, as a decoder that holds it.
+	async past(session, tick, options = {}) {
+		const { result, bytes } = await this.announced('session.frame_at', { session, tick, ...options });
+		const decoder = new Decoder(result);
+		if (decoder.take(bytes) !== 'key')
+			throw new Error('the past is no key frame');
+		return decoder;
+	}
+
+	async announced(method, params) {
 		const result = await this.call(method, params);
 		const transfer = this.transfers.get(result.transfer);
 		await this.until(() => transfer.received >= result.byte_count, 'the whole file');
 		const bytes = Buffer.concat(transfer.parts);
 		if (createHash('sha256').update(bytes).digest('hex') !== result.sha256)
 			throw new Error('the file has another hash');
-		return bytes;
+		return { result, bytes };
 	}
 
 	async upload(name, fileName, bytes, chunkBytes = 65536) {

@@ -177,6 +177,7 @@ export class Control {
     },
     'tool.refused': ({ tool, reason }) => this.model.say('warning', `The ${tool} does not follow: ${reason}.`),
     'takeover.requested': (params) => this.model.setTakeover(params),
+    'session.frame_progress': () => undefined, // this page asks for no past frames
     'event': (params) => {
       if (params.session === this.model.session) this.model.addEvent(params);
     },

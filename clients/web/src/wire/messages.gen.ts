@@ -424,6 +424,68 @@ export interface TickResult {
   tick: number;
 }
 
+/** asks what a session looked like; it goes on meanwhile, and nothing of it changes */
+export interface SessionFrameAt {
+  /** its id; that of the connection's URL by default */
+  session?: string;
+  /** on the present line, from oldest_tick to the present (0 to 9007199254740991) */
+  tick: number;
+  /** by default those that the table of channels marks */
+  channels?: ('positions' | 'mask' | 'exposure' | 'charring' | 'stress' | 'tools' | 'statistics' | 'temperature')[];
+  /** quantisation; 5e-5 by default (1e-07 to 0.001 m) */
+  step_m?: number;
+}
+
+/** one key frame that follows in binary chunks, and what a decoder needs beside the session's topology; its tools have no drivers */
+export interface PastFrame {
+  /** number in the chunks' headers (1 to 4294967295) */
+  transfer: number;
+  /** proposed */
+  file_name: string;
+  /** of the file */
+  media_type: string;
+  /** of the frame (0 to 9007199254740991 B) */
+  byte_count: number;
+  /** of the frame, 64 lower-case hex digits */
+  sha256: string;
+  /** what it shows (0 to 9007199254740991) */
+  tick: number;
+  /** to the bit what was; false: replayed by another build or instruction set */
+  exact: boolean;
+  /** in the frame's header (0 to 4294967295) */
+  session_number: number;
+  /** in the frame's header (0 to 3) */
+  profile: number;
+  /** in the frame's header; that of no stream */
+  epoch: string;
+  /** in the frame */
+  channels: ('positions' | 'mask' | 'exposure' | 'charring' | 'stress' | 'tools' | 'statistics' | 'temperature')[];
+  /** of positions and scalars (0 to 16777216) */
+  vertex_count: number;
+  /** of the mask (0 to 16777216) */
+  face_count: number;
+  /** where the quantised zero is (-1000000 to 1000000 m) */
+  origin_m: [number, number, number];
+  /** one quantised step (1e-07 to 0.01 m) */
+  step_m: number;
+  /** one step of the stress channel (0.001 to 1000000000 Pa) */
+  stress_step_pa: number;
+}
+
+/** how far a look at the past is */
+export interface FrameProgress {
+  /** its id */
+  session: string;
+  /** where it goes (0 to 9007199254740991) */
+  tick: number;
+  /** what it does */
+  stage: 'building' | 'reading' | 'restoring' | 'replaying';
+  /** where the replay began (0 to 9007199254740991) */
+  from_tick: number;
+  /** where it is (0 to 9007199254740991) */
+  at_tick: number;
+}
+
 /** asks for frames */
 export interface SessionJoin {
   /** its id; that of the connection's URL by default */
@@ -1512,6 +1574,10 @@ export interface Requests {
   'session.log': { params: SessionLog; result: Transfer };
   /** cuts and other events */
   'session.timeline': { params: SessionTimeline; result: Timeline };
+  /** the key frame of a past tick; nobody is rewound; binary chunks follow. Asked anew, the client's earlier one is given up */
+  'session.frame_at': { params: SessionFrameAt; result: PastFrame };
+  /** gives up the client's session.frame_at that is under way, if there is one */
+  'session.frame_cancel': { params: SessionRef; result: Nothing };
   /** asks for a key frame; at most one a second */
   'stream.key_frame': { params: SessionRef; result: Nothing };
   /** a new tool, driven by the caller */
@@ -1574,6 +1640,8 @@ export interface Pushes {
   'tool.refused': ToolRefused;
   /** to the tool's driver */
   'takeover.requested': TakeoverRequested;
+  /** to who waits for session.frame_at, about ten times a second */
+  'session.frame_progress': FrameProgress;
   /** to everybody who joined the session */
   'event': EventNotice;
 }

@@ -1,0 +1,76 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "hosted_session/kept_states.h"
+
+#include <stdlib.h>
+#include <string.h>
+
+static void drop(cau_kept_states *kept, int32_t index)
+{
+	cau_kept_state *state = &kept->state[index];
+	kept->byte_count -= state->byte_count;
+	free(state->bytes);
+	kept->count--;
+	memmove(state, state + 1, (size_t)(kept->count - index) * sizeof *state);
+}
+
+// How far a replay would have to go at most, if this one were gone. What lies before the first is
+// the store's.
+static uint64_t gap_without(const cau_kept_states *kept, int32_t index)
+{
+	uint64_t tick = kept->state[index].tick;
+	uint64_t before = index ? kept->state[index - 1].tick : tick;
+	uint64_t after = index + 1 < kept->count ? kept->state[index + 1].tick : tick;
+	return index && index + 1 < kept->count ? after - before : 2 * (after - before);
+}
+
+static int32_t least_missed(const cau_kept_states *kept)
+{
+	int32_t least = 0;
+	for (int32_t i = 1; i < kept->count; i++)
+		if (gap_without(kept, i) < gap_without(kept, least))
+			least = i;
+	return least;
+}
+
+// Where a state of this tick is or belongs.
+static int32_t place_of(const cau_kept_states *kept, uint64_t tick)
+{
+	int32_t place = 0;
+	while (place < kept->count && kept->state[place].tick < tick)
+		place++;
+	return place;
+}
+
+void cau_kept_states_put(cau_kept_states *kept, size_t budget, int64_t branch,
+                         const cau_kept_state *state)
+{
+	if (branch != kept->branch)
+		cau_kept_states_finish(kept);
+	kept->branch = branch;
+	int32_t place = place_of(kept, state->tick);
+	if (place < kept->count && kept->state[place].tick == state->tick)
+		drop(kept, place);
+	else if (kept->count == CAU_KEPT_STATES_MOST)
+		drop(kept, least_missed(kept));
+	place = place_of(kept, state->tick);
+	memmove(&kept->state[place + 1], &kept->state[place],
+	        (size_t)(kept->count - place) * sizeof *state);
+	kept->state[place] = *state;
+	kept->count++;
+	kept->byte_count += state->byte_count;
+	while (kept->byte_count > budget)
+		drop(kept, least_missed(kept));
+}
+
+const cau_kept_state *cau_kept_states_find(const cau_kept_states *kept, int64_t branch,
+                                           uint64_t tick)
+{
+	int32_t after = place_of(kept, tick + 1);
+	return branch == kept->branch && after ? &kept->state[after - 1] : NULL;
+}
+
+void cau_kept_states_finish(cau_kept_states *kept)
+{
+	while (kept->count)
+		drop(kept, kept->count - 1);
+}

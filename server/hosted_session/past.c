@@ -1,0 +1,188 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "hosted_session/past.h"
+
+#include <stdlib.h>
+#include <string.h>
+
+#include "cautery/assert.h"
+
+#define MEGABYTE 1e6
+
+// A state is kept where the nearest one before it is this far: half a second of most scenes, which
+// is replayed faster than a hand notices.
+enum { KEPT_TICKS = 30 };
+
+// ---- building -----------------------------------------------------------------------------------
+typedef struct border {
+	cau_past *past;
+	cau_past_go_on *go_on;
+	void *user;
+} border;
+
+static cau_status hold_memory(cau_past *past, int64_t bytes, cau_error *error)
+{
+	const cau_surroundings *around = past->hosted->around;
+	int64_t more = bytes - past->memory_held;
+	int64_t all = atomic_fetch_add(around->memory_held, more) + more;
+	if (more > 0 && all > around->config->max_sessions_bytes) {
+		atomic_fetch_sub(around->memory_held, more);
+		return cau_fail(error, CAU_LIMIT, "",
+		                "a look at the past takes about %.0f MB of memory, all sessions then %.0f "
+		                "MB; they may take %.0f MB (setting max_sessions_bytes)",
+		                (double)bytes / MEGABYTE, (double)all / MEGABYTE,
+		                (double)around->config->max_sessions_bytes / MEGABYTE);
+	}
+	past->memory_held = bytes;
+	return CAU_OK;
+}
+
+static cau_status cross_border(void *user, const cau_build_border *at, cau_error *error)
+{
+	const border *b = user;
+	cau_status status = b->go_on(b->user, error);
+	return status ? status : hold_memory(b->past, (int64_t)at->bytes, error);
+}
+
+cau_status cau_past_build(cau_past *past, cau_past_go_on *go_on, void *user, cau_error *error)
+{
+	border at = {past, go_on, user};
+	cau_session_def def = cau_default_session_def();
+	def.scene = past->hosted->scene;
+	def.thread_count = (int32_t)past->hosted->around->config->session_threads;
+	def.border = cross_border;
+	def.user = &at;
+	cau_status status = cau_session_create(&def, &past->core, error);
+	if (status)
+		cau_past_finish(past);
+	return status;
+}
+
+// ---- going there --------------------------------------------------------------------------------
+
+// In place of the checkpoint's snapshot.
+static cau_status begin_at_kept(cau_past *past, const cau_kept_state *kept, cau_error *error)
+{
+	cau_replay *replay = &past->replay;
+	void *copy = malloc(kept->byte_count);
+	if (!copy)
+		return cau_fail(error, CAU_NO_MEMORY, "", "no memory to look at the past");
+	memcpy(copy, kept->bytes, kept->byte_count);
+	free(replay->snapshot);
+	replay->snapshot = copy;
+	replay->snapshot_bytes = kept->byte_count;
+	cau_replay_shorten(replay, kept->tick);
+	return CAU_OK;
+}
+
+cau_status cau_past_read(cau_past *past, int64_t branch, uint64_t tick, cau_error *error)
+{
+	cau_hosted *h = past->hosted;
+	cau_replay *replay = &past->replay;
+	uint64_t at = replay->tick;
+	cau_status status = cau_replay_check(h, branch, true, tick, error);
+	if (!status)
+		status = cau_replay_read(replay, h->around->store, h->id, branch, tick, error);
+	if (status)
+		return status;
+	const cau_kept_state *kept = cau_kept_states_find(&past->kept, branch, tick);
+	uint64_t nearest = kept && kept->tick > replay->from ? kept->tick : replay->from;
+	past->arrived = past->somewhere && past->branch == branch && at >= nearest && at <= tick;
+	past->branch = branch;
+	if (past->arrived)
+		cau_replay_shorten(replay, at);
+	else if (kept && kept->tick > replay->from)
+		return begin_at_kept(past, kept, error);
+	return CAU_OK;
+}
+
+cau_status cau_past_restore(cau_past *past, cau_error *error)
+{
+	if (past->arrived)
+		return CAU_OK;
+	const cau_kept_state *kept = cau_kept_states_find(&past->kept, past->branch, past->replay.from);
+	bool was_exact = !kept || kept->tick != past->replay.from || kept->exact;
+	past->somewhere = false;
+	cau_status status = cau_replay_restore(&past->replay, past->core, error);
+	past->replay.exact &= was_exact;
+	past->somewhere = !status;
+	return status;
+}
+
+// What it came by is a gift: where there is no memory for it nothing is kept.
+static void keep(cau_past *past)
+{
+	size_t budget = (size_t)past->hosted->around->config->look_bytes;
+	size_t capacity = cau_session_snapshot_bytes(past->core);
+	uint64_t tick = past->replay.tick;
+	const cau_kept_state *before = cau_kept_states_find(&past->kept, past->branch, tick);
+	if (capacity > budget || (before && tick - before->tick < KEPT_TICKS))
+		return;
+	cau_kept_state state = {.tick = tick, .exact = past->replay.exact, .bytes = malloc(capacity)};
+	if (state.bytes &&
+	    !cau_session_snapshot(past->core, state.bytes, capacity, &state.byte_count, NULL)) {
+		void *fitting = realloc(state.bytes, state.byte_count);
+		state.bytes = fitting ? fitting : state.bytes;
+		cau_kept_states_put(&past->kept, budget, past->branch, &state);
+	} else {
+		free(state.bytes);
+	}
+}
+
+cau_status cau_past_slice(cau_past *past, double seconds, bool *over, cau_error *error)
+{
+	CAU_ASSERT(past->somewhere, "the past of session %s is followed from nowhere",
+	           past->hosted->id);
+	cau_status status = cau_replay_slice(&past->replay, past->core, seconds, over, error);
+	past->somewhere = !status;
+	if (!status)
+		keep(past);
+	return status;
+}
+
+// ---- showing it ---------------------------------------------------------------------------------
+static cau_status encode(const cau_stream_sample *sample, const cau_stream_def *def, uint64_t epoch,
+                         void *storage, void *scratch, size_t *bytes, cau_error *error)
+{
+	cau_frame_encoder *encoder;
+	cau_status status =
+		cau_frame_encoder_init(storage, cau_frame_encoder_bytes(def), def, epoch, &encoder, error);
+	if (!status) // the epoch's first is a key frame
+		status = cau_frame_encode(encoder, sample, scratch, cau_frame_bytes_max(def), bytes, error);
+	return status;
+}
+
+cau_buffer *cau_past_frame(cau_past *past, const cau_stream_def *def, uint64_t epoch,
+                           cau_error *error)
+{
+	cau_shown shown;
+	size_t bytes = 0;
+	cau_buffer *frame = NULL;
+	void *storage = malloc(cau_frame_encoder_bytes(def));
+	void *scratch = malloc(cau_frame_bytes_max(def));
+	cau_session_watch(past->core, def->channels);
+	cau_show(past->core, &shown);
+	shown.sample.flags = CAU_FRAME_PAUSED;
+	cau_status status = storage && scratch
+	                        ? encode(&shown.sample, def, epoch, storage, scratch, &bytes, error)
+	                        : CAU_NO_MEMORY;
+	if (!status)
+		frame = cau_buffer_create(bytes, true);
+	if (frame)
+		memcpy(cau_buffer_bytes(frame), scratch, bytes);
+	else if (!status || status == CAU_NO_MEMORY)
+		cau_fail(error, CAU_NO_MEMORY, "", "no memory for a frame of the past");
+	free(scratch);
+	free(storage);
+	return frame;
+}
+
+void cau_past_finish(cau_past *past)
+{
+	cau_session_destroy(past->core);
+	past->core = NULL;
+	past->somewhere = past->arrived = false;
+	cau_replay_finish(&past->replay);
+	cau_kept_states_finish(&past->kept);
+	atomic_fetch_sub(past->hosted->around->memory_held, past->memory_held);
+	past->memory_held = 0;
+}

@@ -1,0 +1,69 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// What a core knows of its tick, as streams carry it; what else there is of a session is added by
+// who knows it (frames.c).
+#include <math.h>
+#include <string.h>
+
+#include "hosted_session/internal.h"
+
+static void describe_tool(const cau_tool_state *from, cau_stream_tool *to)
+{
+	*to = (cau_stream_tool){
+		.shape = from->definition.shape,
+		.pose = from->pose,
+		.jaw = from->jaw,
+		.tip_temperature_c = from->tip_temperature_c,
+		.energy_j = from->energy_j,
+		.sequence = from->sequence,
+		.energized = from->energized,
+		.grasping = from->grasping,
+		.grasped_vertices = (uint16_t)fmin(from->grasped_vertices, UINT16_MAX),
+		.contact_vertices = (uint16_t)fmin(from->contact_vertices, UINT16_MAX),
+		.touched_layers = (uint16_t)from->touched_layers,
+	};
+	memcpy(to->name, from->name, sizeof to->name);
+	memcpy(to->force_n, from->force_n, sizeof to->force_n);
+	memcpy(to->torque_nm, from->torque_nm, sizeof to->torque_nm);
+}
+
+static void describe_step(const cau_statistics *from, cau_stream_statistics *to)
+{
+	*to = (cau_stream_statistics){
+		.residual = (float)from->residual,
+		.deferred_max_s = (float)from->deferred_max_s,
+		.iterations = (uint32_t)from->iterations,
+		.backtracks = (uint32_t)from->backtracks,
+		.inverted = (uint32_t)from->inverted,
+		.edges_parted = (uint32_t)from->edges_parted,
+		.elements_removed = (uint32_t)from->elements_removed,
+		.pending_downdates = (uint32_t)from->pending_downdates,
+		.refactorisations = (uint32_t)from->refactorisations,
+		.contacts = (uint32_t)from->contacts,
+		.frozen_vertices = (uint32_t)from->frozen_vertices,
+		.energy_gain_j = (float)from->energy_gain_j,
+		.resting = from->resting,
+	};
+	for (int i = 0; i < CAU_STREAM_STAGES; i++)
+		to->stage_s[i] = (float)from->seconds[i];
+}
+
+void cau_show(const cau_session *core, cau_shown *shown)
+{
+	cau_frame *frame = &shown->frame;
+	cau_session_frame(core, frame);
+	for (int32_t i = 0; i < frame->tool_count; i++)
+		describe_tool(&frame->tools[i], &shown->tools[i]);
+	describe_step(&frame->statistics, &shown->statistics);
+	shown->sample = (cau_stream_sample){
+		.tick = frame->tick,
+		.time_s = frame->time_s,
+		.published_us = (uint64_t)(cau_monotonic_s() * 1e6),
+		.position = frame->position,
+		.vertex_visible = frame->vertex_visible,
+		.face_mask = frame->face_mask,
+		.tool_count = frame->tool_count,
+		.tools = shown->tools,
+		.statistics = &shown->statistics,
+	};
+	memcpy(shown->sample.scalar, frame->scalar, sizeof shown->sample.scalar);
+}
