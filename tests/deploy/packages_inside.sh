@@ -1,0 +1,80 @@
+#!/usr/bin/env bash
+# SPDX-License-Identifier: GPL-3.0-or-later
+# What packages.sh does inside its bare Debian 12; /packages has the packages in two revisions.
+set -euo pipefail
+
+step() {
+	echo "== $*"
+}
+
+fail() {
+	echo "FAILED: $*" >&2
+	[ ! -e /tmp/daemon.log ] || tail -n 20 /tmp/daemon.log >&2
+	exit 1
+}
+
+# run_daemon: as the unit says, by its user, in its state folder; sets $daemon and $CAUTERYD_URL.
+run_daemon() {
+	local command address
+	command=$(sed -n 's/^ExecStart=//p' /usr/lib/systemd/system/cauteryd.service)
+	install -d -o cautery -g cautery -m 700 /var/lib/cautery # systemd's StateDirectory
+	rm -f /tmp/address
+	(cd /var/lib/cautery && exec setpriv --reuid=cautery --regid=cautery --clear-groups --bounding-set=-all \
+		--inh-caps=-all --no-new-privs $command --port 0 --json) >/tmp/address 2>/tmp/daemon.log &
+	daemon=$!
+	for ((i = 0; i < 300; i++)); do
+		[ ! -s /tmp/address ] || break
+		kill -0 $daemon || fail "the daemon ended"
+		sleep 0.1
+	done
+	address=$(sed -n 's/.*"url": "http\([^"]*\)".*/ws\1/p' /tmp/address)
+	[ -n "$address" ] || fail "the daemon told no address"
+	export CAUTERYD_URL=$address
+}
+
+end_daemon() {
+	kill -TERM $daemon
+	wait $daemon || fail "the daemon ended with $?"
+}
+
+step "install"
+apt-get update -q >/dev/null
+apt-get install -q -y --no-install-recommends /packages/*-1_amd64.deb >/tmp/apt.log 2>&1 || {
+	tail -n 20 /tmp/apt.log
+	fail "the packages do not install"
+}
+getent passwd cautery || fail "no user cautery"
+cauteryd --version
+
+
+step "run as its user"
+run_daemon
+session=$(cautery create fascia)
+cautery ls | grep -q "$session" || fail "the session is not listed"
+cautery pause "$session"
+[ "$(stat -c %U /var/lib/cautery/cautery.db)" = cautery ] || fail "the store is not its user's"
+end_daemon
+
+step "upgrade, with sessions in the store and settings of the administrator's"
+echo '{"max_sessions": 7}' >/etc/cautery/cauteryd.json
+dpkg -i /packages/*-2_amd64.deb >/tmp/dpkg.log 2>&1 || fail "the upgrade: $(tail -n 3 /tmp/dpkg.log)"
+dpkg-query -W -f '${Package} ${Version}\n' cauteryd | grep -q -- '-2$' || fail "not upgraded"
+grep -q max_sessions /etc/cautery/cauteryd.json || fail "the administrator's settings are lost"
+run_daemon
+cautery info "$session" >/tmp/info || fail "the session did not outlive the upgrade"
+end_daemon
+
+step "a client is built against libcautery-dev"
+apt-get install -q -y --no-install-recommends gcc libc6-dev pkg-config >/dev/null 2>&1
+cc -o /tmp/example /usr/share/doc/cautery/examples/teaching.c -D_GNU_SOURCE \
+	$(pkg-config --cflags --libs cautery-client)
+
+step "remove, then purge"
+dpkg -r cauteryd >/dev/null
+[ -e /var/lib/cautery/cautery.db ] || fail "the store went with the package: that is what purge is for"
+dpkg -P cauteryd cautery-clients libcautery-dev >/dev/null
+for left in /var/lib/cautery /etc/cautery /usr/share/cautery /usr/lib/systemd/system/cauteryd.service; do
+	[ ! -e $left ] || fail "$left is left: $(find $left | head -n 3)"
+done
+[ -z "$(dpkg-query -W -f '${Package}\n' 'cauter*' 'libcautery*' 2>/dev/null)" ] || fail "a package is left"
+echo "all is well"
