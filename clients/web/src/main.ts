@@ -27,6 +27,7 @@ import { plotsPanel } from './panels/plots';
 import { showRuler } from './panels/ruler';
 import { showSaid } from './panels/said';
 import { saveReceived, sessionsPanel } from './panels/sessions';
+import { showPast } from './panels/past';
 import { makeTabs } from './panels/tabs';
 import { timeBar } from './panels/time';
 import { askForToken } from './panels/token';
@@ -91,6 +92,7 @@ const inspect = showInspected(control, viewport);
 const clip = clipFields(control, viewport);
 const tabs = makeTabs([sessionsPanel(control, link), toolsPanel(control, hand), materialsPanel(control), viewPanel(control, viewport, inspect.switch, clip.fields), plotsPanel(model)]);
 timeBar(control, address.tick);
+showPast(control);
 showHandles(control, hand, pointer);
 const placeSaid = showSaid(model, viewport, pointer);
 showNotices(control);
@@ -153,6 +155,8 @@ export interface Inspection {
   tick: number;
   epoch: string;
   paused: boolean;
+  /** the past tick that the picture shows; null: the newest */
+  past: number | null;
   drawnFaces: Readonly<Record<string, number>>;
   framesDecoded: number;
   framesSkipped: number;
@@ -188,6 +192,7 @@ const inspection: Inspection = {
   get tick() { return model.frame?.tick ?? -1; },
   get epoch() { return model.frame?.epoch ?? ''; },
   get paused() { return model.frame?.paused ?? false; },
+  get past() { return model.frame?.past?.tick ?? null; },
   get drawnFaces() { return model.frame?.drawnFaces ?? {}; },
   get framesDecoded() { return model.frame?.framesDecoded ?? 0; },
   get framesSkipped() { return model.frame?.framesSkipped ?? 0; },

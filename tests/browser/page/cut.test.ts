@@ -43,6 +43,8 @@ describe('a cut in the demo', () => {
     expect(cut).toBeDefined();
     await moments.selectOption({ label: cut! });
     await viewer.until((at) => document.querySelector('#rewind')?.textContent === `Go back to ${at}`, cut!.split(':')[0], 'the moment of the cut is offered');
+    await viewer.page.getByRole('button', { name: 'Return to live' }).click();
+    await viewer.until(() => window.cautery.past === null, null, 'the present is shown');
   });
 
   it('forks: the new session has the cut', async () => {

@@ -14,6 +14,7 @@ import { Depths } from './depth';
 import { Energy, type Held } from './energy';
 import { Jaws } from './jaws';
 import { Motion, type Wanted } from './motion';
+import { Past } from './past';
 import { Presence } from './presence';
 import { Taking } from './taking';
 import { Way } from './way';
@@ -36,6 +37,7 @@ export class ToolHand {
   private readonly taking: Taking;
   private readonly places: Aim;
   private readonly pace: CuttingPace;
+  private readonly past: Past;
   private wanted: Wanted | null = null;
   /** the place of the tissue that is aimed at; null: where the tool is */
   private aim: Vector3 | null = null;
@@ -62,12 +64,11 @@ export class ToolHand {
     this.places = new Aim(viewport);
     this.pace = new CuttingPace(model);
     model.on('tools', () => this.follow());
-    new Presence(control.link, () => this.energy.wanted, () => this.hide());
+    this.past = new Past(model, () => this.leave('you look at the past.'));
+    new Presence(control.link, () => this.energy.wanted, () => this.leave('the page lost the focus. Press again.'));
   }
 
-  get driving(): boolean {
-    return this.model.driving;
-  }
+  get driving(): boolean { return this.model.driving; }
 
   get mayHeat(): boolean {
     return this.model.driving && this.model.tool !== null && hasHeat(this.model.tool.shape);
@@ -79,9 +80,7 @@ export class ToolHand {
   }
 
   /** m, below the surface */
-  get depthM(): number {
-    return this.depths.of(this.tool);
-  }
+  get depthM(): number { return this.depths.of(this.tool); }
 
   /** Whether a place of the picture is on the tissue, gaps in it included; both coordinates from -1 to 1. */
   overTissue(x: number, y: number): boolean {
@@ -96,12 +95,11 @@ export class ToolHand {
   }
 
   /** Something begins to point anew. */
-  press(): void {
-    this.pointed = [];
-  }
+  press(): void { this.pointed = []; }
 
   /** Points at a place of the picture: takes a free tool, and leads it there. False: it may not. */
   pointAt(x: number, y: number): boolean {
+    if (this.past.refuses()) return false;
     if (!this.begin()) {
       if (this.pointed.length < POINTED_MAX) this.pointed.push({ x, y });
       return this.taking.use();
@@ -112,6 +110,7 @@ export class ToolHand {
 
   /** Something is pressed and held that makes the tool work. */
   hold(by: Held): void {
+    if (this.past.refuses()) return;
     const working = this.energy.wanted && this.energy.alive;
     this.energy.hold(by);
     if (!this.model.driving) {
@@ -136,6 +135,7 @@ export class ToolHand {
 
   /** Moves by metres to the picture's right, up, and towards the eye. */
   nudge(right: number, up: number, nearer: number): void {
+    if (this.past.refuses()) return;
     if (!this.begin()) return void this.taking.use();
     const { x, y, z } = this.viewport.orbit.axes();
     if (this.guide === 'plane') {
@@ -265,7 +265,7 @@ export class ToolHand {
   /** Takes the tool's present pose up, if this page may move it. */
   private begin(): boolean {
     const state = this.model.toolState;
-    if (!this.model.driving || !state) return false;
+    if (!this.model.driving || !state || this.past.shown) return false;
     if (this.wanted && (!this.way.empty || performance.now() - this.movedAt < ECHO_MS)) return true;
     const [w, x, y, z] = state.rotation;
     this.wanted = { position: new Vector3(...state.positionM), rotation: new Quaternion(x, y, z, w), jaw: state.jaw };
@@ -278,11 +278,11 @@ export class ToolHand {
     this.motion.unsent = true;
   }
 
-  /** The page is out of sight or out of hand: energy goes off here and at the daemon. */
-  private hide(): void {
+  /** The tissue is out of sight or out of hand: energy goes off here and at the daemon. */
+  private leave(why: string): void {
     const lit = this.energy.releaseAll();
     this.rest();
-    if (lit) this.model.say('warning', 'Energy is off: the page lost the focus. Press again.');
+    if (lit) this.model.say('warning', `Energy is off: ${why}`);
   }
 
   private follow(): void {

@@ -81,6 +81,18 @@ export class Control {
     await this.loadTimeline();
   }
 
+  /** Shows a past tick in the picture; nobody is rewound. */
+  async lookAt(tick: number): Promise<void> {
+    await this.link.past(this.here().session, tick);
+  }
+
+  /** Shows the newest again, and has the daemon fetch nothing any more. */
+  lookAtPresent(): void {
+    this.link.present();
+    if (this.model.session === null || this.model.link.state !== 'online') return;
+    this.link.call('session.frame_cancel', this.here()).catch(() => undefined); // there was nothing to give up
+  }
+
   async reset(): Promise<void> {
     await this.during('Starting over', this.link.call('session.reset', this.here()));
   }
@@ -177,7 +189,9 @@ export class Control {
     },
     'tool.refused': ({ tool, reason }) => this.model.say('warning', `The ${tool} does not follow: ${reason}.`),
     'takeover.requested': (params) => this.model.setTakeover(params),
-    'session.frame_progress': () => undefined, // this page asks for no past frames
+    'session.frame_progress': (params) => {
+      if (params.session === this.model.session) this.model.emit('looking', params);
+    },
     'event': (params) => {
       if (params.session === this.model.session) this.model.addEvent(params);
     },

@@ -4,6 +4,7 @@
 import type { LinkState } from '../wire/connection';
 import type {
   Driver,
+  FrameProgress,
   HelloResult,
   Pushes,
   SceneSummary,
@@ -26,6 +27,8 @@ export interface Events {
   timeline: Timeline | null;
   /** the tick that is looked at; null: the newest */
   held: number | null;
+  /** how far the daemon is in fetching the tick that is looked at */
+  looking: FrameProgress;
   takeover: TakeoverRequested | null;
   notice: Notice;
   said: Said;

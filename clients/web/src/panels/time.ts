@@ -62,7 +62,7 @@ export function timeBar(control: Control, shared: number | null): void {
   const speed = element('select', { name: 'speed', class: 'research-only', aria: { label: 'Speed' } }, ...SPEEDS.map((s) => element('option', { value: String(s) }, `${s} ×`)));
   speed.value = '1';
   speed.addEventListener('change', () => void attempt(problem, () => control.call('session.speed', { speed: Number(speed.value) })));
-  const slider = element('input', { type: 'range', name: 'tick', id: 'tick', min: '0', max: '1', value: '1', aria: { label: 'Timeline: time to go back to' } });
+  const slider = element('input', { type: 'range', name: 'tick', id: 'tick', min: '0', max: '1', value: '1', aria: { label: 'Timeline: time to look back at' } });
   const track = element('div', { class: 'track' }, slider);
   const rewind = button('Rewind here', () => {
     const tick = slider.valueAsNumber;
@@ -102,7 +102,8 @@ export function timeBar(control: Control, shared: number | null): void {
   };
   const enable = (): void => {
     const usable = model.mayOperate && model.joined !== null;
-    for (const control_ of [pause, reset, speed, slider, rewind]) control_.disabled = !usable;
+    for (const control_ of [pause, reset, speed, rewind]) control_.disabled = !usable;
+    slider.disabled = model.joined === null; // whoever may look may look back
     step.disabled = !usable || model.frame?.paused !== true;
   };
   model.on('timeline', drawMarks);
@@ -112,7 +113,7 @@ export function timeBar(control: Control, shared: number | null): void {
     enable();
     if (joined) void attempt(problem, () => control.loadTimeline().then(showShared));
   });
-  // A link's moment is offered, not gone to: going back moves everybody in the session.
+  // A link's moment is shown, not gone to: going back moves everybody in the session.
   const showShared = (): void => {
     const tick = shared;
     shared = null;

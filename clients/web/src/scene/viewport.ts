@@ -159,7 +159,7 @@ export class Viewport {
 
   /** Draws a frame next; returns arrays to give back. */
   takeFrame(frame: Frame): FrameBuffers | null {
-    this.states = frame.tools;
+    this.states = frame.past?.tools ?? frame.tools;
     if (!this.framed && this.tissue) {
       this.frameTissue();
       if (this.wantedPose) this.orbit.restore(this.wantedPose);

@@ -10,6 +10,7 @@ import type { Topology } from './topology';
 import type { Frame, FrameBuffers, Joined, Sample, VertexState } from './worker_messages';
 
 const SAMPLES_MAX = 600;
+const WHOLE: Changes = { whole: true, moved: [], maskWords: [], scalars: true };
 const BYTE = 255; // exposure and charring of one
 
 export class Feed {
@@ -20,6 +21,8 @@ export class Feed {
   private spare: FrameBuffers | null;
   private newest: StreamState | null = null;
   private last: StreamState | null = null;
+  /** shown in place of the newest */
+  private past: StreamState | null = null;
   private changed = true;
   private samples: Sample[] = [];
 
@@ -48,16 +51,30 @@ export class Feed {
   }
 
   take(state: StreamState, changes: Changes, sample: Sample): void {
-    for (const batch of this.tissue.update(state, changes)) this.stale.add(batch);
-    this.changed ||= changes.whole || changes.scalars || changes.moved.length > 0 || changes.maskWords.length > 0;
+    if (!this.past) this.draw(state, changes);
     this.newest = this.last = state;
     this.samples.push(sample);
     if (this.samples.length > SAMPLES_MAX) this.samples.shift();
   }
 
-  /** What the newest frame tells of a vertex. */
+  /** Shows a past state, or with null the newest again, from the next frame that is handed over on. */
+  look(past: StreamState | null): void {
+    const state = past ?? this.last;
+    if (past === this.past || !state) return;
+    this.past = past;
+    this.draw(state, WHOLE);
+    this.newest = this.last;
+  }
+
+  private draw(state: StreamState, changes: Changes): void {
+    for (const batch of this.tissue.update(state, changes)) this.stale.add(batch);
+    this.changed ||= changes.whole || changes.scalars || changes.moved.length > 0 || changes.maskWords.length > 0;
+  }
+
+  /** What the frame that is shown tells of a vertex. */
   vertex(vertex: number): VertexState | null {
-    const { last, stream } = this;
+    const { stream } = this;
+    const last = this.past ?? this.last;
     if (!last || vertex < 0 || vertex >= stream.vertex_count) return null;
     const has = (channel: 'stress' | 'temperature'): boolean => stream.channels.includes(channel);
     return {
@@ -75,7 +92,7 @@ export class Feed {
 
   /** The newest state if it was not handed over yet and buffers are here; the caller transfers them. */
   handOver(framesDecoded: number, framesSkipped: number): Frame | null {
-    const { newest: state, spare: buffers, tissue } = this;
+    const { newest: state, spare: buffers, tissue, past } = this;
     if (!state || !buffers) return null;
     this.newest = null;
     this.spare = null;
@@ -106,6 +123,7 @@ export class Feed {
       stressScalePa: tissue.stressScale * this.stream.stress_step_pa,
       temperatureRangeC: this.scalar === 'temperature' && this.stream.channels.includes('temperature') ? [...tissue.temperatureRangeC] : null,
       tools: state.tools,
+      past: past && { tick: past.tick, timeS: past.timeS, tools: past.tools },
       samples,
       framesDecoded,
       framesSkipped,

@@ -41,14 +41,24 @@ export interface ReceivedFile {
   sound: boolean;
 }
 
+type Done = (file: ReceivedFile) => void;
+
+interface Download {
+  transfer: Transfer;
+  bytes: Uint8Array;
+  got: number;
+  done: Done;
+}
+
 /** Chunks of announced transfers, until they are whole. */
 export class Downloads {
-  private readonly open = new Map<number, { transfer: Transfer; bytes: Uint8Array; got: number }>();
+  private readonly open = new Map<number, Download>();
 
-  constructor(private readonly done: (file: ReceivedFile) => void) {}
+  constructor(private readonly done: Done) {}
 
-  announce(transfer: Transfer): void {
-    const download = { transfer, bytes: new Uint8Array(transfer.byte_count), got: 0 };
+  /** `done`: who gets it, instead of who gets all others */
+  announce(transfer: Transfer, done = this.done): void {
+    const download = { transfer, bytes: new Uint8Array(transfer.byte_count), got: 0, done };
     if (transfer.byte_count === 0) void this.finish(download);
     else this.open.set(transfer.transfer, download);
   }
@@ -68,11 +78,11 @@ export class Downloads {
     void this.finish(download);
   }
 
-  private async finish({ transfer, bytes }: { transfer: Transfer; bytes: Uint8Array }): Promise<void> {
+  private async finish({ transfer, bytes, done }: Download): Promise<void> {
     const sound = await sha256(bytes).then(
       (hash) => hash === transfer.sha256,
       () => true, // without SubtleCrypto the hash cannot be checked
     );
-    this.done({ name: transfer.file_name, mediaType: transfer.media_type, bytes, sound });
+    done({ name: transfer.file_name, mediaType: transfer.media_type, bytes, sound });
   }
 }

@@ -61,6 +61,16 @@ export class Link {
     });
   }
 
+  /** Shows a past tick in place of the newest, once the daemon has fetched it; nobody is rewound. */
+  past(session: string, tick: number): Promise<unknown> {
+    return new Promise((resolve, reject) => this.send({ type: 'past', call: this.remember({ resolve, reject }), session, tick }));
+  }
+
+  /** Shows the newest again. */
+  present(): void {
+    this.send({ type: 'present' });
+  }
+
   upload(name: string, file: File, progress: (sent: number, total: number) => void): Promise<UploadResult> {
     return file.arrayBuffer().then(
       (bytes) =>

@@ -8,8 +8,8 @@ import { Feed } from './feed';
 import { Downloads, upload } from './files';
 import { Subscription } from './subscription';
 import type { FromWorker, Sample, ToWorker } from './worker_messages';
-import type { StreamState } from './decoder';
-import type { Transfer } from './messages.gen';
+import { FrameDecoder, type StreamState } from './decoder';
+import type { PastFrame, Transfer } from './messages.gen';
 
 /** The few names of a worker's global scope that are used; the DOM's types have no room for both. */
 interface WorkerScope {
@@ -157,6 +157,46 @@ function send(message: ToWorker & { type: 'upload' }): void {
   );
 }
 
+/** A whole frame of the past; its hash says that nothing of it was lost. */
+function download(found: PastFrame): Promise<StreamState> {
+  return new Promise((resolve, reject) => {
+    downloads.announce(found, ({ bytes, sound }) => {
+      const decoder = new FrameDecoder(found);
+      if (sound && decoder.decode(bytes).kind === 'applied') resolve(decoder.state);
+      else reject(new RpcError('corrupt', 'the frame was damaged on its way'));
+    });
+  });
+}
+
+/** Only the newest wish is shown: what was asked for before it may still be on its way. */
+let wished = 0;
+
+function showPresent(): void {
+  wished++;
+  feed?.look(null);
+  handOver();
+}
+
+async function showPast({ call: number, session, tick }: ToWorker & { type: 'past' }): Promise<void> {
+  const wish = ++wished;
+  const of = feed;
+  if (!connection || !of) {
+    fail(number, new RpcError('bad_state', 'no session is open'));
+    return;
+  }
+  const { channels, step_m } = of.joined.stream;
+  try {
+    const state = await download(await connection.request('session.frame_at', { session, tick, channels, step_m }));
+    if (wish === wished && of === feed) {
+      of.look(state);
+      handOver();
+    }
+    scope.postMessage({ type: 'answer', call: number, result: null });
+  } catch (error) {
+    fail(number, error);
+  }
+}
+
 async function receive(message: ToWorker): Promise<void> {
   await decoderReady;
   switch (message.type) {
@@ -177,6 +217,12 @@ async function receive(message: ToWorker): Promise<void> {
       break;
     case 'inspect':
       scope.postMessage({ type: 'answer', call: message.call, result: feed?.vertex(message.vertex) ?? null });
+      break;
+    case 'past':
+      await showPast(message);
+      break;
+    case 'present':
+      showPresent();
       break;
     case 'upload':
       send(message);

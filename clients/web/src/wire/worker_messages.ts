@@ -17,6 +17,8 @@ export type ToWorker =
   | { type: 'heartbeat'; visible: boolean }
   | { type: 'watch'; session: string | null; channels: Channels; colour: 'stress' | 'temperature' }
   | { type: 'inspect'; call: number; vertex: number }
+  | { type: 'past'; call: number; session: string; tick: number }
+  | { type: 'present' }
   | { type: 'upload'; call: number; name: string; fileName: string; bytes: ArrayBuffer }
   | { type: 'return'; buffers: FrameBuffers };
 
@@ -66,6 +68,12 @@ export interface Joined {
   surroundings: Surroundings | null;
 }
 
+export interface PastState {
+  tick: number;
+  timeS: number;
+  tools: ToolState[];
+}
+
 export interface Frame {
   session: string;
   epoch: string;
@@ -88,6 +96,8 @@ export interface Frame {
   /** of the colours, degC; null where the stream has no temperature */
   temperatureRangeC: readonly [number, number] | null;
   tools: ToolState[];
+  /** what buffers, faces and colours are of, where that is a past tick; all else is of the newest */
+  past: PastState | null;
   samples: Sample[];
   framesDecoded: number;
   framesSkipped: number;

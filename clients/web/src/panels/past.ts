@@ -1,0 +1,65 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Looking back: where the timeline is held the picture shows that time, read-only. A sign over the picture
+// says so, how far the daemon is in fetching it, and how to come back.
+import type { Control } from '../model/control';
+import { errorWords } from '../model/sentences';
+import { RpcError } from '../wire/connection';
+import { button, byId, element } from './dom';
+
+const SETTLED_MS = 250; // a hand that drags along the timeline asks for where it rests
+
+const STAGE_WORDS = { building: 'a second tissue is made for it', reading: 'it is looked up', restoring: 'it is brought back', replaying: 'what happened is repeated' };
+
+export function showPast(control: Control): void {
+  const { model } = control;
+  const place = byId('past');
+  const words = element('p');
+  const bar = element('progress', { max: 1, aria: { label: 'On the way there' } });
+  place.append(words, bar, button('Return to live', () => model.hold(null), { id: 'live' }));
+  let timer: ReturnType<typeof setTimeout> | undefined;
+  let wanted: number | null = null;
+
+  const at = (tick: number): string => `t = ${(tick * (model.summary?.step_s ?? 1 / 60)).toFixed(2)} s`;
+  const say = (text: string, going: boolean): void => {
+    if (words.textContent !== text) words.textContent = text;
+    bar.hidden = !going;
+    if (!going) bar.removeAttribute('value');
+  };
+  const there = (): boolean => wanted !== null && model.frame?.past?.tick === wanted;
+  const tell = (): void => {
+    if (wanted !== null && there()) say(`Viewing ${at(wanted)}. Nobody is rewound.`, false);
+  };
+  const ask = async (tick: number): Promise<void> => {
+    try {
+      await control.lookAt(tick);
+    } catch (error) {
+      if (tick !== wanted) return; // given up for another
+      const later = error instanceof RpcError && error.status === 'bad_state';
+      say(`${at(tick)} cannot be shown${later ? ' now' : ''}. ${errorWords(error)}`, false);
+    }
+  };
+  const look = (tick: number | null): void => {
+    clearTimeout(timer);
+    wanted = tick;
+    place.hidden = tick === null;
+    if (tick === null) {
+      control.lookAtPresent();
+      return;
+    }
+    say(`Fetching ${at(tick)}…`, true);
+    timer = setTimeout(() => void ask(tick), SETTLED_MS);
+  };
+
+  model.on('held', look);
+  model.on('frame', tell);
+  model.on('looking', ({ tick, stage, from_tick: from, at_tick: now }) => {
+    if (tick !== wanted || there()) return;
+    say(`Fetching ${at(tick)}: ${STAGE_WORDS[stage]}…`, true);
+    if (stage === 'replaying' && tick > from) bar.value = (now - from) / (tick - from);
+    else bar.removeAttribute('value');
+  });
+  // Who joins again (other channels, a connection that was lost) holds the newest.
+  model.on('joined', (joined) => {
+    if (joined && wanted !== null) look(wanted);
+  });
+}
