@@ -136,6 +136,9 @@ void cau_client_not_opened(cau_client *client, struct lws *wsi, const char *in, 
 		snprintf(why, sizeof why, "%.*s", (int)bytes, in);
 	snprintf(reason, sizeof reason, "no connection to %.160s port %d: %s", client->url.host,
 	         client->url.port, why);
+	if (client->url.tls && strstr(why, "SSL"))
+		snprintf(reason + strlen(reason), sizeof reason - strlen(reason),
+		         " (is its certificate trusted? SSL_CERT_FILE names a file of authorities)");
 	client->wsi = NULL;
 	cau_client_lost(client, reason);
 }

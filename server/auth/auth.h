@@ -40,3 +40,8 @@ bool cau_auth_host_allowed(const cau_config *config, const char *host);
 // Whether an Origin header is this daemon's own page (same host and port as `host`) or one that the
 // settings add. An absent one (NULL or "") is no browser and passes.
 bool cau_auth_origin_allowed(const cau_config *config, const char *origin, const char *host);
+
+// Who a connection is from: `address` holds its peer's, and is replaced by what the X-Forwarded-For
+// header says (NULL: there is none) where the peer is one of the settings' trusted_proxies.
+void cau_auth_find_address(const cau_config *config, const char *forwarded, char *address,
+                           size_t capacity);

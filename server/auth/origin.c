@@ -5,9 +5,9 @@
 #include <strings.h>
 
 #include "auth/auth.h"
+#include "auth/list.h"
 
-// Whether `text` is one of the comma-separated names in `list`.
-static bool listed(const char *list, const char *text)
+bool cau_list_has(const char *list, const char *text)
 {
 	size_t length = strlen(text);
 	while (*list) {
@@ -55,7 +55,7 @@ bool cau_auth_host_allowed(const cau_config *config, const char *host)
 	long port;
 	if (!host || !split_host(host, name, sizeof name, &port))
 		return false;
-	if (listed(config->hosts, name) || listed(config->hosts, host))
+	if (cau_list_has(config->hosts, name) || cau_list_has(config->hosts, host))
 		return true;
 	if (port != -1 && port != config->port)
 		return false;
@@ -65,7 +65,7 @@ bool cau_auth_host_allowed(const cau_config *config, const char *host)
 
 bool cau_auth_origin_allowed(const cau_config *config, const char *origin, const char *host)
 {
-	if (!origin || !*origin || listed(config->origins, origin))
+	if (!origin || !*origin || cau_list_has(config->origins, origin))
 		return true;
 	char own[320];
 	snprintf(own, sizeof own, "http://%.256s", host ? host : "");

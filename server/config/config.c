@@ -130,6 +130,15 @@ static cau_status check_together(const cau_config *config, cau_error *error)
 		return cau_fail(error, CAU_BAD_VALUE, "listen",
 		                "%.60s is not loopback: that needs a file of tokens (--tokens)",
 		                config->listen);
+	if (!*config->tls_certificate != !*config->tls_key)
+		return cau_fail(error, CAU_BAD_VALUE, *config->tls_key ? "tls_certificate" : "tls_key",
+		                "TLS needs both a certificate and its key");
+	if (!is_loopback(config->listen) && !*config->tls_certificate && !config->tls_by_proxy)
+		return cau_fail(
+			error, CAU_BAD_VALUE, "listen",
+			"%.60s is not loopback: that needs TLS (--tls-certificate and --tls-key), or "
+			"--tls-by-proxy where a proxy in front does it",
+			config->listen);
 	if (*config->dds_config && !*config->dds_security && !config->dds_network)
 		return cau_fail(
 			error, CAU_BAD_VALUE, "dds_config",

@@ -16,7 +16,7 @@ enum { CAU_CONFIG_TEXT_BYTES = 512 };
 // TEXT(name, default, meaning) INTEGER(name, default, least, most, meaning)
 // REAL(name, default, least, most, meaning) SWITCH(name, default, meaning)
 #define CAU_CONFIG_TABLE(TEXT, INTEGER, REAL, SWITCH)                                              \
-	TEXT(listen, "127.0.0.1", "address to listen on; others than loopback need tokens")            \
+	TEXT(listen, "127.0.0.1", "address to listen on; others than loopback need tokens, TLS")       \
 	INTEGER(port, 8740, 0, 65535, "port of HTTP and WebSocket; 0: any free one")                   \
 	TEXT(store, "cautery.db", "file of the store")                                                 \
 	TEXT(scenes, "", "folder of named scenes; empty: the installed one")                           \
@@ -24,6 +24,10 @@ enum { CAU_CONFIG_TEXT_BYTES = 512 };
 	TEXT(label, "d1", "this daemon's label, first part of its sessions' ids; no `-`")              \
 	TEXT(demo, "", "scene of which a session exists at start, made if the store has none")         \
 	TEXT(tokens, "", "file of tokens, one `ROLE TOKEN` a line; empty: loopback is admin")          \
+	TEXT(tls_certificate, "", "file of the certificate and its chain (PEM); empty: no TLS")        \
+	TEXT(tls_key, "", "file of the certificate's key (PEM)")                                       \
+	SWITCH(tls_by_proxy, false, "a proxy does TLS: listen beyond loopback without")                \
+	TEXT(trusted_proxies, "", "addresses whose X-Forwarded-For is believed, separated by commas")  \
 	TEXT(hosts, "", "more accepted Host names, separated by commas")                               \
 	TEXT(origins, "", "more accepted Origins, separated by commas")                                \
 	TEXT(log_level, "info", "least level logged: debug, info, notice, warning, error")             \

@@ -217,7 +217,7 @@ void cau_daemon_reload(cau_daemon *daemon)
 {
 	cau_error error = {0};
 	const cau_config *config = daemon->config;
-	bool tokens = false, roles = false;
+	bool tokens = false, roles = false, pair = false;
 	sd_notifyf(0, "RELOADING=1\nMONOTONIC_USEC=%lld", (long long)(cau_monotonic_s() * 1e6));
 	if (*config->tokens)
 		tokens = reloaded("tokens", cau_auth_reload(daemon->auth, config, &error), &error);
@@ -226,7 +226,10 @@ void cau_daemon_reload(cau_daemon *daemon)
 	error = (cau_error){0};
 	if (daemon->dds && *config->dds_roles)
 		roles = reloaded("dds_roles", cau_dds_reload(daemon->dds, &error), &error);
-	cau_log(CAU_LOG_NOTICE, NULL, "reloaded", "tokens=%d dds_roles=%d", tokens, roles);
+	error = (cau_error){0};
+	if (*config->tls_certificate)
+		pair = reloaded("tls_certificate", cau_network_reload_tls(daemon->network, &error), &error);
+	cau_log(CAU_LOG_NOTICE, NULL, "reloaded", "tokens=%d dds_roles=%d tls=%d", tokens, roles, pair);
 	sd_notify(0, "READY=1");
 }
 

@@ -34,9 +34,9 @@ static int fail(const char *event, const cau_error *error)
 
 static void print_ready(const cau_config *config)
 {
-	printf("{\"address\": \"%s\", \"port\": %lld, \"url\": \"http://%s:%lld/\", \"pid\": %d}\n",
-	       config->listen, (long long)config->port, config->listen, (long long)config->port,
-	       getpid());
+	printf("{\"address\": \"%s\", \"port\": %lld, \"url\": \"%s://%s:%lld/\", \"pid\": %d}\n",
+	       config->listen, (long long)config->port, *config->tls_certificate ? "https" : "http",
+	       config->listen, (long long)config->port, getpid());
 	fflush(stdout);
 }
 

@@ -146,7 +146,7 @@ int cau_connection_write_close(cau_connection *c)
 {
 	unsigned char frame[LWS_PRE + CAU_CLOSE_FRAME_BYTES];
 	if (c->close_sent) {
-		shutdown(c->descriptor, SHUT_WR);
+		cau_connection_shut(c);
 		return c->peer_ended ? -1 : 0;
 	}
 	c->close_sent = true;
@@ -165,8 +165,7 @@ void cau_connection_dropped(cau_connection *c)
 	cau_connection_close(c, CAU_CLOSE_PROTOCOL, "data before the handshake was answered");
 	c->close_sent = true;
 	size_t bytes = write_close_frame(c, frame);
-	if (send(c->descriptor, frame, bytes, MSG_DONTWAIT | MSG_NOSIGNAL) < 0)
-		return; // the peer is gone
+	cau_connection_put(c, frame, bytes);
 }
 
 void cau_connection_watch(cau_connection *c, double now_s)

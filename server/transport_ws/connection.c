@@ -35,6 +35,9 @@ static cau_connection *make(cau_network *network, struct lws *wsi)
 	c->opened_s = c->last_taken_s = c->rate_start_s = c->heard_s = cau_monotonic_s();
 	cau_frame_reader_init(&c->reader, (size_t)network->def.config->max_message_bytes);
 	lws_get_peer_simple(wsi, c->address, sizeof c->address);
+	char forwarded[HEADER_BYTES];
+	if (cau_request_header(wsi, WSI_TOKEN_X_FORWARDED_FOR, forwarded, sizeof forwarded))
+		cau_auth_find_address(network->def.config, forwarded, c->address, sizeof c->address);
 	return c;
 }
 
@@ -107,10 +110,20 @@ static cau_buffer *take_control(cau_connection *c)
 	return buffer;
 }
 
+static bool take_over(cau_connection *c)
+{
+	if (!cau_input_take_over(c))
+		return false;
+	// The rest of a record of TLS whose beginning was the request.
+	if (c->reading == CAU_READING_OURS && cau_connection_has_more(c))
+		cau_connection_close(c, CAU_CLOSE_PROTOCOL, "data before the handshake was answered");
+	return true;
+}
+
 // Replies go first: many viewers must not hold up commands.
 static int writable(cau_network *network, cau_connection *c)
 {
-	if (c->reading < CAU_READING_OURS && !cau_input_take_over(c))
+	if (c->reading < CAU_READING_OURS && !take_over(c))
 		return -1;
 	if (c->pong_due && !c->close_sent)
 		return write_pong(c);

@@ -32,6 +32,10 @@ int cau_http_callback(struct lws *wsi, enum lws_callback_reasons reason, void *u
 	cau_network *network = cau_network_of(wsi);
 	cau_http_body *body = user;
 	switch (reason) {
+	case LWS_CALLBACK_OPENSSL_LOAD_EXTRA_SERVER_VERIFY_CERTS: // its context of TLS is made
+		if (network->tls)
+			cau_tls_configure(network->tls, user);
+		return 0;
 	case LWS_CALLBACK_HTTP:
 		return cau_http_serve(network, wsi, body, in);
 	case LWS_CALLBACK_HTTP_WRITEABLE:

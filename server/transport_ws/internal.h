@@ -9,6 +9,7 @@
 #include "cautery/rpc.h"
 #include "http/response.h"
 #include "transport_ws/network.h"
+#include "transport_ws/tls.h"
 
 #define CAU_WS_PATH "/v1"
 
@@ -20,6 +21,7 @@ enum {
 
 struct cau_network {
 	cau_network_def def;
+	cau_tls *tls; // NULL: without
 	struct lws_context *context;
 	struct lws_vhost *vhost;
 	lws_retry_bo_t validity;
@@ -59,6 +61,16 @@ bool cau_input_begin(cau_connection *connection);
 // connection must end.
 bool cau_input_take_over(cau_connection *connection);
 void cau_input_end(cau_connection *connection);
+
+// ---- socket.c
+// As recv() does: what is there, at most so many bytes; 0 behind the last one; -1 with EAGAIN.
+ssize_t cau_connection_receive(cau_connection *connection, void *bytes, size_t most);
+// Whether there is more than the socket tells of: the rest of a record of TLS.
+bool cau_connection_has_more(const cau_connection *connection);
+// Sends a few bytes past libwebsockets, or loses them.
+void cau_connection_put(cau_connection *connection, const void *bytes, size_t count);
+// Tells the peer that nothing follows.
+void cau_connection_shut(cau_connection *connection);
 
 // ---- sending.c
 void cau_connection_pong(cau_connection *connection, const void *payload, size_t bytes);

@@ -29,6 +29,18 @@ static void set_protocols(cau_network *network)
 	network->protocols[2] = (struct lws_protocols){.name = "input", .callback = cau_input_callback};
 }
 
+// libwebsockets reads the pair at first and makes the context of TLS; from then on it is ours
+// (cau_http_callback). With its own list of protocols browsers would choose HTTP/2, over which it
+// has no WebSocket that they know.
+static void add_tls(const cau_network *network, struct lws_context_creation_info *info)
+{
+	info->options |= LWS_SERVER_OPTION_DO_SSL_GLOBAL_INIT;
+	info->ssl_cert_filepath = network->def.config->tls_certificate;
+	info->ssl_private_key_filepath = network->def.config->tls_key;
+	info->ssl_cipher_list = cau_tls_ciphers;
+	info->alpn = "http/1.1";
+}
+
 static cau_status open_context(cau_network *network, cau_error *error)
 {
 	cau_config *config = network->def.config;
@@ -46,6 +58,8 @@ static cau_status open_context(cau_network *network, cau_error *error)
 		.retry_and_idle_policy = &network->validity,
 		.options = LWS_SERVER_OPTION_FAIL_UPON_UNABLE_TO_BIND | LWS_SERVER_OPTION_EXPLICIT_VHOSTS,
 	};
+	if (network->tls)
+		add_tls(network, &info);
 	lws_set_log_level(LLL_ERR | LLL_WARN, log_library);
 	network->context = lws_create_context(&info);
 	if (!network->context)
@@ -70,7 +84,9 @@ cau_status cau_network_create(cau_network **made, const cau_network_def *def, ca
 	network->def = *def;
 	network->input = -1;
 	set_protocols(network);
-	cau_status status = open_context(network, error);
+	cau_status status = cau_tls_create(&network->tls, def->config, error);
+	if (!status)
+		status = open_context(network, error);
 	if (status)
 		cau_network_destroy(network);
 	else
@@ -134,7 +150,13 @@ void cau_network_destroy(cau_network *network)
 		lws_context_destroy(network->context);
 	if (network->input >= 0)
 		close(network->input);
+	cau_tls_destroy(network->tls);
 	free(network);
+}
+
+cau_status cau_network_reload_tls(cau_network *network, cau_error *error)
+{
+	return network->tls ? cau_tls_reload(network->tls, network->def.config, error) : CAU_OK;
 }
 
 cau_connection *cau_network_first(cau_network *network)

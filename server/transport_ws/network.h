@@ -52,6 +52,9 @@ void cau_network_wake(cau_network *network);
 // Closes every connection with the code, waits at most `seconds` for that, then ends the
 // thread. From the thread that created it.
 void cau_network_stop(cau_network *network, cau_close_code code, double seconds);
+// Reads certificate and key anew, if there are any; on failure they stay as they were, and the
+// error says why. Nobody is disconnected. Any thread.
+cau_status cau_network_reload_tls(cau_network *network, cau_error *error);
 void cau_network_destroy(cau_network *network); // takes NULL
 
 // Every open connection, in no order; on the network thread.

@@ -2,7 +2,6 @@
 // What comes in over the sockets that input.c took over: frames, and what they lead to.
 #include <errno.h>
 #include <sys/epoll.h>
-#include <sys/socket.h>
 
 #include "clock/clock.h"
 #include "transport_ws/internal.h"
@@ -80,12 +79,15 @@ static void take(cau_connection *c, const unsigned char *bytes, size_t count)
 
 static void read_some(cau_connection *c)
 {
-	static unsigned char bytes[READ_BYTES]; // the network thread's alone
-	ssize_t got = recv(c->descriptor, bytes, sizeof bytes, MSG_DONTWAIT);
-	if (got > 0)
-		take(c, bytes, (size_t)got);
-	else if (got == 0 || (errno != EAGAIN && errno != EINTR))
-		cau_connection_ended_by_peer(c);
+	static unsigned char bytes[READ_BYTES]; // the network thread's alone, more than a record of TLS
+	ssize_t got;
+	do {
+		got = cau_connection_receive(c, bytes, sizeof bytes);
+		if (got > 0)
+			take(c, bytes, (size_t)got);
+		else if (got == 0 || (errno != EAGAIN && errno != EINTR))
+			cau_connection_ended_by_peer(c);
+	} while (got > 0 && cau_connection_has_more(c));
 }
 
 // No connection is freed in here: ends are asked for, and made by

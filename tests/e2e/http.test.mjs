@@ -109,7 +109,9 @@ for (const [what, args, environment, file] of [
 	['a value of the wrong type', [], {}, '{"port": "80"}'],
 	['a value out of range', ['--port', '70000'], {}],
 	['a file that is no JSON', [], {}, '{"port": 80,}'],
-	['another address without tokens', ['--listen', '0.0.0.0'], {}],
+	['another address without tokens', ['--listen', '0.0.0.0', '--tls-by-proxy'], {}],
+	['another address without TLS', ['--listen', '0.0.0.0', '--tokens', '/dev/null'], {}],
+	['a certificate without its key', ['--tls-certificate', 'cert.pem'], {}],
 ])
 	test(`refused settings: ${what}`, () => {
 		const all = [...args, '--print-config'];

@@ -2,12 +2,13 @@
 // Starts cauteryd for a test, on a free port, with a store of its own. The program is named by the
 // environment variable CAUTERYD, the scenes' folder by SCENES.
 import { spawn } from 'node:child_process';
-import { mkdtempSync, rmSync } from 'node:fs';
+import { mkdtempSync, readFileSync, rmSync } from 'node:fs';
 import { tmpdir } from 'node:os';
 import { join } from 'node:path';
 import { createInterface } from 'node:readline';
 import { after } from 'node:test';
 import http from 'node:http';
+import https from 'node:https';
 import { Client, PATIENCE_S } from './client.mjs';
 
 // A test that fails leaves its daemon running, perhaps a timer or a connection too: nothing of that may
@@ -41,6 +42,7 @@ export class Daemon {
 		if (!first.port)
 			throw Object.assign(new Error(`cauteryd ended ${first.code}:\n${daemon.lines.join('\n')}`), first);
 		daemon.port = first.port;
+		daemon.authority = settings.tls_certificate ? readFileSync(settings.tls_certificate) : undefined; // of its own
 		await daemon.ready();
 		return daemon;
 	}
@@ -64,16 +66,17 @@ export class Daemon {
 	}
 
 	url(session) {
-		return `ws://127.0.0.1:${this.port}/v1${session ? `?session=${session}` : ''}`;
+		return `${this.authority ? 'wss' : 'ws'}://127.0.0.1:${this.port}/v1${session ? `?session=${session}` : ''}`;
 	}
 
 	connect(options = {}) {
-		return Client.connect(this.url(options.session), options);
+		const trusted = this.authority ? { socket: { ca: this.authority, ...options.socket } } : {};
+		return Client.connect(this.url(options.session), { ...options, ...trusted });
 	}
 
 	get(path, headers = {}, method = 'GET') {
 		return new Promise((resolve, reject) => {
-			http.request({ host: '127.0.0.1', port: this.port, path, headers, method, agent: false }, (answer) => {
+			(this.authority ? https : http).request({ host: '127.0.0.1', port: this.port, path, headers, method, agent: false, ca: this.authority }, (answer) => {
 				const parts = [];
 				answer.on('data', (part) => parts.push(part));
 				answer.on('end', () => resolve({

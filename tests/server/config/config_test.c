@@ -88,6 +88,30 @@ static void wrong_settings_are_refused(void **state)
 	refuses("--resume-s=nan", CAU_BAD_VALUE, "resume_s");
 	refuses("--dds=maybe", CAU_BAD_VALUE, "dds");
 	refuses("--listen=10.0.0.1", CAU_BAD_VALUE, "listen");
+	refuses("--tls-certificate=cert.pem", CAU_BAD_VALUE, "tls_key");
+	refuses("--tls-key=key.pem", CAU_BAD_VALUE, "tls_certificate");
+}
+
+static void beyond_loopback_it_wants_tokens_and_tls_or_a_proxy(void **state)
+{
+	(void)state;
+	static char listen[] = "--listen=10.0.0.1", tokens[] = "--tokens=t", proxy[] = "--tls-by-proxy",
+				certificate[] = "--tls-certificate=c", key[] = "--tls-key=k";
+	char *const attempts[][4] = {{listen, tokens},
+	                             {listen, proxy},
+	                             {listen, certificate, key},
+	                             {listen, tokens, proxy},
+	                             {listen, tokens, certificate, key}};
+	static const int words[] = {2, 2, 3, 3, 4};
+	for (size_t i = 0; i < sizeof words / sizeof *words; i++) {
+		cau_config config;
+		cau_error error = {0};
+		char *arguments[] = {(char[]){"cauteryd"}, attempts[i][0], attempts[i][1], attempts[i][2],
+		                     attempts[i][3]};
+		cau_status status = load(&config, words[i] + 1, arguments, no_environment, &error);
+		assert_int_equal(status, i < 3 ? CAU_BAD_VALUE : CAU_OK);
+		assert_string_equal(error.path, i < 3 ? "listen" : "");
+	}
 }
 
 static cau_status read_text(const char *text, cau_config *config, cau_error *error)
@@ -170,6 +194,7 @@ int main(void)
 		cmocka_unit_test(flags_are_spelled_both_ways),
 		cmocka_unit_test(environment_is_below_flags),
 		cmocka_unit_test(wrong_settings_are_refused),
+		cmocka_unit_test(beyond_loopback_it_wants_tokens_and_tls_or_a_proxy),
 		cmocka_unit_test(files_are_flat_objects),
 		cmocka_unit_test(wrong_files_are_refused),
 		cmocka_unit_test(what_is_printed_can_be_read),

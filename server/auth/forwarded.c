@@ -1,0 +1,38 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include <arpa/inet.h>
+#include <stdio.h>
+#include <string.h>
+
+#include "auth/auth.h"
+#include "auth/list.h"
+
+static bool is_address(const char *text)
+{
+	struct in6_addr address; // the larger one
+	return inet_pton(AF_INET, text, &address) == 1 || inet_pton(AF_INET6, text, &address) == 1;
+}
+
+// Each proxy adds the address that it was asked from on the right. So from the right on, those that
+// are proxies of ours are believed, and the first that is none is whom they were asked by; what
+// stands to the left of it anybody may have written.
+void cau_auth_find_address(const cau_config *config, const char *forwarded, char *address,
+                           size_t capacity)
+{
+	size_t end = forwarded ? strlen(forwarded) : 0;
+	while (end > 0 && cau_list_has(config->trusted_proxies, address)) {
+		char item[64];
+		size_t start = end;
+		while (start > 0 && forwarded[start - 1] != ',')
+			start--;
+		const char *first = forwarded + start + strspn(forwarded + start, " \t");
+		size_t bytes = strcspn(first, " \t,");
+		if (bytes == 0 || bytes >= sizeof item || bytes >= capacity)
+			return;
+		memcpy(item, first, bytes);
+		item[bytes] = 0;
+		if (!is_address(item))
+			return;
+		memcpy(address, item, bytes + 1);
+		end = start ? start - 1 : 0;
+	}
+}

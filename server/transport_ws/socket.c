@@ -1,0 +1,65 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// The bytes of a connection that this room reads and ends by itself, past libwebsockets: those of
+// its socket or, behind TLS, what the socket's records hold. The library writes, this room reads,
+// on one thread, so that the state of TLS has one user at a time.
+#include <errno.h>
+#include <openssl/err.h>
+#include <openssl/ssl.h>
+#include <sys/socket.h>
+
+#include "transport_ws/internal.h"
+
+static SSL *tls_of(const cau_connection *c)
+{
+	return c->network->tls ? lws_get_ssl(c->wsi) : NULL;
+}
+
+static ssize_t receive_tls(SSL *tls, void *bytes, size_t most)
+{
+	ERR_clear_error();
+	int got = SSL_read(tls, bytes, (int)most);
+	if (got > 0)
+		return got;
+	switch (SSL_get_error(tls, got)) {
+	case SSL_ERROR_ZERO_RETURN:
+		return 0;
+	case SSL_ERROR_WANT_READ:
+	case SSL_ERROR_WANT_WRITE: // an answer to a new key, which goes out with the next bytes
+		errno = EAGAIN;
+		return -1;
+	default: // the peer is gone, or sends what is no TLS
+		ERR_clear_error();
+		errno = EIO;
+		return -1;
+	}
+}
+
+ssize_t cau_connection_receive(cau_connection *c, void *bytes, size_t most)
+{
+	SSL *tls = tls_of(c);
+	return tls ? receive_tls(tls, bytes, most) : recv(c->descriptor, bytes, most, MSG_DONTWAIT);
+}
+
+bool cau_connection_has_more(const cau_connection *c)
+{
+	SSL *tls = tls_of(c);
+	return tls && SSL_pending(tls) > 0;
+}
+
+void cau_connection_put(cau_connection *c, const void *bytes, size_t count)
+{
+	SSL *tls = tls_of(c);
+	ERR_clear_error();
+	if (tls ? SSL_write(tls, bytes, (int)count) <= 0
+	        : send(c->descriptor, bytes, count, MSG_DONTWAIT | MSG_NOSIGNAL) < 0)
+		return; // the peer is gone
+}
+
+void cau_connection_shut(cau_connection *c)
+{
+	SSL *tls = tls_of(c);
+	ERR_clear_error();
+	if (tls && SSL_shutdown(tls) < 0)
+		ERR_clear_error(); // the socket is shut all the same
+	shutdown(c->descriptor, SHUT_WR);
+}
