@@ -5,6 +5,8 @@
 #include <math.h>
 #include <string.h>
 
+#include "server/session/reach_books.h"
+
 const char *const reach_what_names[REACH_WHAT_COUNT] = {
 	"orders",         "lives",   "looks away", "is gone",    "all are silent",
 	"watchdog looks", "store",   "committed",  "work early", "work",
@@ -15,69 +17,6 @@ static void must(reach_move *m, bool holds, const char *otherwise)
 {
 	if (!holds && !m->wrong)
 		m->wrong = otherwise;
-}
-
-// ---- the books ----------------------------------------------------------------------------------
-
-// What came in before does not light the tool any more; `client`: what this one asked for.
-static void darken(reach_state *books, int tool, int client)
-{
-	for (int i = 0; i < books->order_count; i++) {
-		reach_order *order = &books->orders[i];
-		if (order->ask == CAU_ASK_ENERGY_ON && order->tool == tool &&
-		    (!client || order->client == client))
-			order->overtaken = 1;
-	}
-	if (!client || books->tools[tool].driver == client)
-		books->tools[tool].wanted = 0;
-}
-
-static void darken_all(reach_state *books, int client)
-{
-	for (int i = 0; i < books->tool_count; i++)
-		darken(books, i, client);
-}
-
-// What came in before this place does not light the tool.
-static void darken_before(reach_state *books, int tool, int place)
-{
-	for (int i = 0; i < place - 1; i++)
-		if (books->orders[i].ask == CAU_ASK_ENERGY_ON && books->orders[i].tool == tool)
-			books->orders[i].overtaken = 1;
-	books->tools[tool].wanted = 0;
-}
-
-static void note_silence(reach_state *books)
-{
-	for (int i = 0; i < books->tool_count; i++)
-		if (books->tools[i].wanted && !books->tools[i].fresh)
-			darken(books, i, books->tools[i].driver);
-}
-
-// The order at this place is answered; places are from 1.
-static void drop_order(reach_state *books, int place)
-{
-	size_t after = (size_t)(books->order_count - place);
-	memmove(&books->orders[place - 1], &books->orders[place], after * sizeof *books->orders);
-	memset(&books->orders[--books->order_count], 0, sizeof *books->orders);
-}
-
-// The place of the first that may be served, or 0: those for a later tick, and those whose first is
-// on its way to the disk, stand aside.
-static int head(const reach_state *books)
-{
-	for (int i = 0; i < books->order_count; i++)
-		if (i + 1 != books->serves && !books->orders[i].later && !books->orders[i].postponed)
-			return i + 1;
-	return 0;
-}
-
-static bool waits_postponed(const reach_state *books, cau_ask ask)
-{
-	for (int i = 0; i < books->order_count; i++)
-		if (books->orders[i].ask == ask && books->orders[i].postponed)
-			return true;
-	return false;
 }
 
 static bool drives_are_as_before(const reach_move *m, bool but_for_life)
@@ -119,9 +58,9 @@ static void note_coming(reach_move *m, const reach_event *e, bool queued)
 	if (m->before->ended)
 		return;
 	if (off && (!e->later || !queued)) // without room one for later acts now
-		darken(&m->books, e->tool, 0);
+		reach_darken(&m->books, e->tool, 0);
 	if (pause && !queued)
-		darken_all(&m->books, 0);
+		reach_darken_all(&m->books, 0);
 	if (pause || (e->ask == CAU_ASK_RESUME && queued))
 		m->books.held = pause;
 	if (queued)
@@ -156,7 +95,7 @@ static void do_order(reach_move *m, const reach_event *e)
 
 static void lose(reach_move *m, int client, bool for_good)
 {
-	darken_all(&m->books, client);
+	reach_darken_all(&m->books, client);
 	take(m, (cau_logic_event){.kind = for_good ? CAU_LOGIC_FORGET : CAU_LOGIC_AWAY,
 	                          .client = (uint32_t)client});
 }
@@ -165,7 +104,7 @@ static void do_store(reach_move *m)
 {
 	bool takes = !m->before->store_takes;
 	if (!takes)
-		darken_all(&m->books, 0);
+		reach_darken_all(&m->books, 0);
 	take(m, (cau_logic_event){.kind = CAU_LOGIC_STORE, .store_takes = takes});
 }
 
@@ -189,7 +128,7 @@ static void arrive(reach_move *m, bool lit)
 static void end(reach_move *m, bool drain)
 {
 	if (drain)
-		darken_all(&m->books, 0);
+		reach_darken_all(&m->books, 0);
 	take(m, (cau_logic_event){.kind = drain ? CAU_LOGIC_DRAIN : CAU_LOGIC_END});
 }
 
@@ -209,7 +148,7 @@ static bool off_waits(const reach_move *m, int tool)
 static void check_step(reach_move *m)
 {
 	bool stepped = m->before->state == CAU_SESSION_PAUSED;
-	bool held = m->books.held && !waits_postponed(&m->books, CAU_ASK_PAUSE);
+	bool held = m->books.held && !reach_waits_postponed(&m->books, CAU_ASK_PAUSE);
 	must(m, !held || stepped, "a tick begins after a pause");
 	must(m, !stepped || m->books.steps, "a tick that nobody asked for");
 	must(m, !m->before->ended, "a tick begins after the end");
@@ -250,10 +189,10 @@ static void check_order(reach_move *m)
 	must(m, !order->later || m->before->ended, "an order is done before its tick");
 	must(m, !order->looks, "it may be a resend, and is done");
 	if (order->ask == CAU_ASK_ENERGY_OFF)
-		darken_before(&m->books, order->tool, (int)m->action.ticket);
+		reach_darken_before(&m->books, order->tool, (int)m->action.ticket);
 	if (m->action.changed && changes) {
 		must(m, !m->books.tools[order->tool].heated, "a tool changes hands lit");
-		darken_before(&m->books, order->tool, (int)m->action.ticket);
+		reach_darken_before(&m->books, order->tool, (int)m->action.ticket);
 	}
 }
 
@@ -262,7 +201,7 @@ static void check_decision(reach_move *m)
 	switch (m->action.act) {
 	case CAU_ACT_REFUSE:
 		must(m, drives_are_as_before(m, false), "refused, and yet it changed");
-		drop_order(&m->books, (int)m->action.ticket);
+		reach_drop_order(&m->books, (int)m->action.ticket);
 		break;
 	case CAU_ACT_ORDER:
 		check_order(m);
@@ -284,7 +223,7 @@ static void check_decision(reach_move *m)
 // before it ends; or since the worker sees a silence before the watchdog does.
 static void note_cut_begun(reach_move *m)
 {
-	int place = head(&m->books);
+	int place = reach_head(&m->books);
 	const reach_order none = {0}, *order = place ? &m->books.orders[place - 1] : &none;
 	bool changes = order->ask == CAU_ASK_TAKE_OVER || order->ask == CAU_ASK_HAND_OVER;
 	for (int i = 0; i < m->books.tool_count; i++) {
@@ -293,9 +232,9 @@ static void note_cut_begun(reach_move *m)
 		if (!m->before->drives[i].enabled || m->logic->drives[i].enabled)
 			continue;
 		if (by_order)
-			darken_before(&m->books, i, place);
+			reach_darken_before(&m->books, i, place);
 		else
-			darken(&m->books, i, m->books.tools[i].driver);
+			reach_darken(&m->books, i, m->books.tools[i].driver);
 	}
 }
 
@@ -323,7 +262,7 @@ static void note_order_done(reach_move *m, bool done)
 	int place = m->books.serves;
 	const reach_order order = m->books.orders[place - 1];
 	reach_tool *tool = &m->books.tools[order.tool];
-	drop_order(&m->books, place);
+	reach_drop_order(&m->books, place);
 	m->books.serves = 0;
 	if (!done)
 		return;
@@ -332,14 +271,14 @@ static void note_order_done(reach_move *m, bool done)
 		tool->wanted = tool->wanted || (!order.overtaken && tool->driver == order.client);
 	} else if (order.ask == CAU_ASK_ENERGY_OFF) {
 		tool->heated = 0;
-		darken_before(&m->books, order.tool, place);
+		reach_darken_before(&m->books, order.tool, place);
 	} else if (order.ask == CAU_ASK_GO || order.ask == CAU_ASK_PAUSE) {
 		for (int i = 0; i < m->books.tool_count; i++)
-			darken_before(&m->books, i, place); // what came in later counts
+			reach_darken_before(&m->books, i, place); // what came in later counts
 	} else if (order.ask == CAU_ASK_STEP) {
 		m->books.steps = order.ticks;
 	} else if (order.ask == CAU_ASK_DESTROY) {
-		darken_all(&m->books, 0);
+		reach_darken_all(&m->books, 0);
 	}
 }
 
@@ -353,7 +292,7 @@ static void note_looked(reach_move *m, reach_what what)
 		return;
 	if (order->ask == CAU_ASK_PAUSE)
 		m->books.held = 0;
-	drop_order(&m->books, m->books.looks);
+	reach_drop_order(&m->books, m->books.looks);
 }
 
 static cau_outcome_kind outcome_of(reach_what what)
@@ -379,7 +318,7 @@ static void finish(reach_move *m, reach_what what)
 static void step(reach_move *m, bool faulted)
 {
 	if (faulted)
-		darken_all(&m->books, 0);
+		reach_darken_all(&m->books, 0);
 	cau_logic_stepped(m->logic, REACH_NOW_S, faulted ? "it melts" : NULL, &m->effects);
 	for (int i = 0; i < m->books.order_count && !faulted; i++)
 		if (m->books.orders[i].later)
@@ -448,7 +387,7 @@ static void check_state(reach_move *m)
 {
 	const cau_logic *logic = m->logic;
 	bool answers_owed = logic->count > 0 || logic->stepping;
-	bool work_waits = head(&m->books) || logic->stepping || logic->pause_moment;
+	bool work_waits = reach_head(&m->books) || logic->stepping || logic->pause_moment;
 	must(m, logic->count >= 0 && logic->count <= logic->capacity, "the queue is overfull");
 	must(m, m->effects.count <= CAU_EFFECTS_MOST, "too many effects");
 	for (int i = 0; i < logic->drive_count; i++) {
@@ -480,7 +419,7 @@ void reach_do(reach_move *m, const reach_event *e)
 		m->logic->now_s += REACH_DEADLINE_S;
 		break;
 	case REACH_LOOK:
-		note_silence(&m->books);
+		reach_note_silence(&m->books);
 		take(m, (cau_logic_event){.kind = CAU_LOGIC_TIME});
 		break;
 	case REACH_STORE:

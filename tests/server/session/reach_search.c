@@ -2,7 +2,6 @@
 #include "server/session/reach_search.h"
 
 #include <stdlib.h>
-#include <string.h>
 
 enum { FIRST = 1 << 12 };
 
@@ -14,18 +13,18 @@ static void *grow(void *old, size_t count, size_t bytes)
 	return grown;
 }
 
-// FNV-1a by eight bytes, stirred so that the low bits are as good as the others.
-static uint32_t hash_of(const reach_state *state)
+// Stirred so that the low bits are as good as the others.
+static uint32_t hash_of(const reach_packed *state)
 {
-	uint64_t hash = 0xcbf29ce484222325u, word;
-	for (size_t i = 0; i < sizeof *state; i += sizeof word) {
-		size_t rest = sizeof *state - i;
-		word = 0;
-		memcpy(&word, (const unsigned char *)state + i, rest < sizeof word ? rest : sizeof word);
-		hash = (hash ^ word) * 0x9e3779b97f4a7c15u;
-		hash ^= hash >> 29;
-	}
-	return (uint32_t)(hash ^ (hash >> 32));
+	uint64_t hash = state->word[0] * 0x9e3779b97f4a7c15u;
+	hash = (hash ^ hash >> 29 ^ state->word[1]) * 0xbf58476d1ce4e5b9u;
+	hash = (hash ^ hash >> 32) * 0x94d049bb133111ebu;
+	return (uint32_t)(hash ^ hash >> 32);
+}
+
+static bool is_same(const reach_packed *a, const reach_packed *b)
+{
+	return a->word[0] == b->word[0] && a->word[1] == b->word[1];
 }
 
 static void put(reach_found *f, uint32_t number)
@@ -65,11 +64,11 @@ void reach_found_finish(reach_found *f)
 	free(f->slots);
 }
 
-bool reach_found_add(reach_found *f, const reach_state *state, uint32_t parent, int by)
+bool reach_found_add(reach_found *f, const reach_packed *state, uint32_t parent, int by)
 {
 	uint32_t slot = hash_of(state) & (f->slot_count - 1);
 	for (; f->slots[slot]; slot = (slot + 1) & (f->slot_count - 1))
-		if (memcmp(&f->states[f->slots[slot] - 1], state, sizeof *state) == 0)
+		if (is_same(&f->states[f->slots[slot] - 1], state))
 			return true;
 	if (f->count == f->most)
 		return false;

@@ -4,11 +4,20 @@
 #include <assert.h>
 #include <math.h>
 #include <stdio.h>
+#include <stdlib.h>
 #include <string.h>
 
 #include "cautery/status.h"
 
-static_assert(sizeof(reach_state) <= 88, "states are many");
+#define PLUS(name, bits) +(bits)
+enum {
+	ORDER_BITS = 0 REACH_ORDER_MEMBERS(PLUS),
+	TOOL_BITS = 0 REACH_TOOL_MEMBERS(PLUS),
+	TIME_BITS = 0 REACH_TIME_MEMBERS(PLUS),
+	WORD_BITS = 64,
+};
+static_assert((REACH_QUEUE + 1) * ORDER_BITS <= WORD_BITS, "the orders are a word");
+static_assert(REACH_TOOLS * TOOL_BITS + TIME_BITS <= WORD_BITS, "and all else is another");
 
 const char *const reach_tool_names[REACH_TOOLS] = {"hook", "jaws"};
 
@@ -264,4 +273,85 @@ void reach_swap_tools(const reach_state *state, reach_state *swapped)
 	}
 	if (state->acting == CAU_ACT_CUT)
 		swapped->cutting = !state->cutting;
+}
+
+// ---- as it is kept ------------------------------------------------------------------------------
+
+// Each member goes to a place of its own; what is beyond its bits is gathered in `beyond`.
+#define JOIN(name, bits)                                                                           \
+	at -= (bits);                                                                                  \
+	word |= (uint64_t)from->name << at;                                                            \
+	beyond |= from->name >> (bits);
+
+static uint64_t word_of(uint64_t word, int beyond)
+{
+	if (beyond)
+		abort();
+	return word;
+}
+
+static uint64_t pack_order(const reach_order *from)
+{
+	int at = ORDER_BITS, beyond = 0;
+	uint64_t word = 0;
+	REACH_ORDER_MEMBERS(JOIN)
+	return word_of(word, beyond);
+}
+
+static uint64_t pack_tool(const reach_tool *from)
+{
+	int at = TOOL_BITS, beyond = 0;
+	uint64_t word = 0;
+	REACH_TOOL_MEMBERS(JOIN)
+	return word_of(word, beyond);
+}
+
+static uint64_t pack_time(const reach_state *from)
+{
+	int at = TIME_BITS, beyond = 0;
+	uint64_t word = 0;
+	REACH_TIME_MEMBERS(JOIN)
+	return word_of(word, beyond);
+}
+#undef JOIN
+
+void reach_pack(const reach_state *state, reach_packed *packed)
+{
+	*packed = (reach_packed){{0, pack_time(state)}};
+	for (int i = 0; i < state->order_count; i++) // beyond them there is nothing
+		packed->word[0] |= pack_order(&state->orders[i]) << i * ORDER_BITS;
+	for (int i = 0; i < state->tool_count; i++)
+		packed->word[1] |= pack_tool(&state->tools[i]) << (TIME_BITS + i * TOOL_BITS);
+}
+
+#define TAKE(name, bits)                                                                           \
+	at -= (bits);                                                                                  \
+	to->name = (uint8_t)(word >> at & ((1u << (bits)) - 1));
+
+static void unpack_order(uint64_t word, reach_order *to)
+{
+	int at = ORDER_BITS;
+	REACH_ORDER_MEMBERS(TAKE)
+}
+
+static void unpack_tool(uint64_t word, reach_tool *to)
+{
+	int at = TOOL_BITS;
+	REACH_TOOL_MEMBERS(TAKE)
+}
+
+static void unpack_time(uint64_t word, reach_state *to)
+{
+	int at = TIME_BITS;
+	REACH_TIME_MEMBERS(TAKE)
+}
+#undef TAKE
+
+void reach_unpack(const reach_packed *packed, reach_state *state)
+{
+	unpack_time(packed->word[1], state);
+	for (int i = 0; i <= REACH_QUEUE; i++)
+		unpack_order(packed->word[0] >> i * ORDER_BITS, &state->orders[i]);
+	for (int i = 0; i < REACH_TOOLS; i++)
+		unpack_tool(packed->word[1] >> (TIME_BITS + i * TOOL_BITS), &state->tools[i]);
 }

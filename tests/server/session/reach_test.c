@@ -187,12 +187,18 @@ static void fail(const reach_found *found, uint32_t number, const reach_event *l
 }
 
 // Of a state and that with the tools in each other's place, always the same.
-static void choose(const reach_state *state, reach_state *chosen)
+static void choose(const reach_state *state, reach_packed *chosen)
 {
 	reach_state swapped;
+	reach_packed other;
+	reach_pack(state, chosen);
+	if (state->tool_count < REACH_TOOLS)
+		return;
 	reach_swap_tools(state, &swapped);
-	bool first = state->tool_count < REACH_TOOLS || memcmp(state, &swapped, sizeof swapped) <= 0;
-	*chosen = first ? *state : swapped;
+	reach_pack(&swapped, &other);
+	if (other.word[1] < chosen->word[1] ||
+	    (other.word[1] == chosen->word[1] && other.word[0] < chosen->word[0]))
+		*chosen = other;
 }
 
 typedef struct searching {
@@ -208,7 +214,8 @@ static bool expand(searching *s, const reach_state *from, uint32_t number)
 	size_t bytes = cau_logic_bytes(REACH_QUEUE);
 	reach_decode(from, s->machine);
 	for (int i = 0; i < event_count; i++) {
-		reach_state to, chosen;
+		reach_state to;
+		reach_packed chosen;
 		if (!reach_can_be(&events[i], from))
 			continue;
 		memcpy(s->move.logic, s->machine, bytes);
@@ -231,8 +238,8 @@ static bool expand(searching *s, const reach_state *from, uint32_t number)
 
 static bool expand_both(searching *s, uint32_t number)
 {
-	const reach_state from = s->found.states[number];
-	reach_state swapped;
+	reach_state from, swapped;
+	reach_unpack(&s->found.states[number], &from);
 	reach_swap_tools(&from, &swapped);
 	bool two = from.tool_count == REACH_TOOLS && memcmp(&from, &swapped, sizeof swapped) != 0;
 	return expand(s, &from, number) && (!two || expand(s, &swapped, number));
@@ -255,10 +262,12 @@ static bool run(const search *what, uint32_t most, bool bounded)
 	                           .capacity = (uint8_t)what->capacity,
 	                           .store_takes = 1,
 	                           .state = CAU_SESSION_RUNNING};
+	reach_packed packed;
 	uint32_t number = 0;
 	make_alphabet(what);
 	reach_found_init(&s.found, most);
-	reach_found_add(&s.found, &first, 0, 0);
+	choose(&first, &packed);
+	reach_found_add(&s.found, &packed, 0, 0);
 	while (number < s.found.count && expand_both(&s, number))
 		number++;
 	bool closed = number == s.found.count;
