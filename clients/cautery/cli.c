@@ -8,7 +8,6 @@
 #include <string.h>
 
 #include "cautery/contexts.h"
-#include "cautery/local_file.h"
 #include "cautery/nearest.h"
 
 enum { SESSIONS_MAX = 4096 };
@@ -127,27 +126,14 @@ double cli_number(const cli *c, const char *option, double least, double most, d
 }
 
 // ---- connection --------------------------------------------------------------------------------
-enum { TOKEN_BYTES_MAX = 4096 };
-
 typedef struct cli_daemon {
 	char url[CLI_CONTEXT_TEXT_BYTES];
-	char token[TOKEN_BYTES_MAX]; // "": none
+	char token[CAU_CLIENT_TOKEN_BYTES]; // "": none
 } cli_daemon;
 
-// The file's first line.
 static cli_exit read_token(cli *c, const char *file, cli_daemon *daemon)
 {
-	char *text;
-	size_t bytes;
-	if (cli_read_file(file, TOKEN_BYTES_MAX - 1, &text, &bytes, &c->error))
-		return cli_fail_file(c);
-	snprintf(daemon->token, sizeof daemon->token, "%.*s", (int)strcspn(text, "\r\n"), text);
-	free(text);
-	if (*daemon->token)
-		return CLI_DONE;
-	snprintf(c->error.file, sizeof c->error.file, "%.255s", file);
-	cau_fail(&c->error, CAU_BAD_VALUE, NULL, "its first line holds no token");
-	return cli_fail_file(c);
+	return cau_client_read_token(file, daemon->token, &c->error) ? cli_fail_file(c) : CLI_DONE;
 }
 
 // The session that is meant where none is named: the only one.

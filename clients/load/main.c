@@ -89,6 +89,14 @@ int main(int argument_count, char **arguments)
 		load_options_help(stdout);
 		return LOAD_DONE;
 	}
+	char token[CAU_CLIENT_TOKEN_BYTES];
+	cau_error error = {0};
+	if (options.token_file && cau_client_read_token(options.token_file, token, &error)) {
+		fprintf(stderr, "cautery-load: %s: %s\n", error.file, error.reason);
+		return LOAD_BAD_USAGE;
+	}
+	if (options.token_file)
+		options.token = token;
 	cau_status status = load_fleet_start(&fleet, &options);
 	if (!status)
 		status = run(&fleet, &result);

@@ -11,8 +11,8 @@
 static const cau_option rows[] = {
 	{"url", "U", CAU_OPTION_TEXT, AT(url),
      .meaning = "where the daemon is (default: CAUTERYD_URL, else " CAU_CLIENT_DEFAULT_URL ")"},
-	{"token", "T", CAU_OPTION_TEXT, AT(token),
-     .meaning = "access token, role operate or more (default: CAUTERYD_TOKEN)"},
+	{"token-file", "F", CAU_OPTION_TEXT, AT(token_file),
+     .meaning = "file with a token of role operate or more (default: CAUTERYD_TOKEN)"},
 	{"scene", "NAME", CAU_OPTION_TEXT, AT(scene), .meaning = "of the sessions (default fascia)"},
 	{"sessions", "S", CAU_OPTION_WHOLE, AT(sessions), 1, 4096,
      .meaning = "sessions made, and removed in the end (default 1)"},

@@ -15,7 +15,9 @@ typedef enum load_exit {
 } load_exit;
 
 typedef struct load_options {
-	const char *url, *token, *scene;
+	const char *url, *scene;
+	const char *token_file; // or NULL: `token`
+	const char *token;      // from the environment or, once it is read, from the file; or NULL
 	int32_t sessions;
 	int32_t viewers; // of each session; the first one drives
 	double seconds;  // measured, after the warm-up

@@ -13,8 +13,14 @@
 
 typedef struct cau_auth cau_auth;
 
-// Reads the file of tokens if the settings name one: `ROLE TOKEN` a line, `#` starts a comment,
-// tokens of 16 to 128 printable characters. A file that others than its owner can read is refused.
+enum { CAU_AUTH_NAME_BYTES = 48 };
+
+// Reads the file of tokens if the settings name one: a line each, `#` starts a comment,
+//
+//     ROLE sha256:HASH [name=N] [expires=2027-01-31T12:00:00Z]
+//
+// or a token of 16 to 128 printable characters in the place of its hash. Only hashes are kept. A
+// file that others than its owner can read is refused.
 cau_status cau_auth_create(cau_auth **auth, const cau_config *config, cau_error *error);
 void cau_auth_destroy(cau_auth *auth); // takes NULL
 // Reads the file of tokens anew. On failure the tokens stay as they were; the error says which line
@@ -28,8 +34,10 @@ bool cau_auth_role(const cau_auth *auth, const char *token, size_t bytes, cau_ro
 // What a connection remembers of the token that it came with: a number that no other token gets.
 // 0: the token has no role.
 uint64_t cau_auth_grant(const cau_auth *auth, const char *token, size_t bytes);
-// The role that the token behind a grant has now; false if it has been taken back.
+// The role that the token behind a grant has now; false if it was taken back or has expired.
 bool cau_auth_grant_role(const cau_auth *auth, uint64_t grant, cau_role *role);
+// Whose token it is, by its line; "": not said.
+void cau_auth_grant_name(const cau_auth *auth, uint64_t grant, char name[CAU_AUTH_NAME_BYTES]);
 
 // Whether requests must carry a token.
 bool cau_auth_required(const cau_auth *auth);

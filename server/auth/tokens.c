@@ -6,15 +6,28 @@
 #include <stdlib.h>
 #include <string.h>
 #include <sys/stat.h>
+#include <time.h>
 
 #include "auth/auth.h"
+#include "cautery/sha256.h"
+#include "clock/clock.h"
 #include "config/role.h"
 
-enum { MAX_TOKENS = 256, TOKEN_BYTES = 129, LEAST_TOKEN_BYTES = 16 };
+enum {
+	MAX_TOKENS = 256,
+	LEAST_TOKEN_BYTES = 16,
+	MOST_TOKEN_BYTES = 128,
+	NAME_BYTES = CAU_AUTH_NAME_BYTES,
+	WORD_BYTES = 160, // of a line: longer than the longest token
+};
 
+static const char hash_mark[] = "sha256:";
+
+// What is kept of a token is its hash. Tokens are random, so that none can be guessed from it.
 typedef struct token {
-	char text[TOKEN_BYTES];
-	size_t bytes;
+	char hash[CAU_SHA256_TEXT_BYTES];
+	char name[NAME_BYTES]; // whose it is, for the log; "": not said
+	int64_t expires_us;    // Unix time; INT64_MAX: never
 	cau_role role;
 	uint64_t grant; // stays as long as the token is in the file
 } token;
@@ -34,29 +47,72 @@ struct cau_auth {
 // Without tokens everybody has this one.
 enum { GRANT_OF_ALL = 1 };
 
+// The second word of a line: a hash, or a token whose hash is kept.
+static cau_status read_secret(token *made, const char *word, int number, cau_error *error)
+{
+	size_t bytes = strlen(word);
+	if (strncmp(word, hash_mark, sizeof hash_mark - 1) == 0) {
+		const char *hash = word + sizeof hash_mark - 1;
+		if (strlen(hash) != sizeof made->hash - 1 ||
+		    strspn(hash, "0123456789abcdef") != sizeof made->hash - 1)
+			return cau_fail(error, CAU_BAD_VALUE, "tokens",
+			                "line %d: a hash has 64 digits of 0-9 and a-f", number);
+		memcpy(made->hash, hash, sizeof made->hash);
+		return CAU_OK;
+	}
+	if (bytes < LEAST_TOKEN_BYTES || bytes > MOST_TOKEN_BYTES)
+		return cau_fail(error, CAU_BAD_VALUE, "tokens", "line %d: a token has %d to %d characters",
+		                number, LEAST_TOKEN_BYTES, MOST_TOKEN_BYTES);
+	if (!cau_sha256(word, bytes, made->hash))
+		return cau_fail(error, CAU_NO_MEMORY, "tokens", "no memory for tokens");
+	return CAU_OK;
+}
+
+// `name=anna` or `expires=2027-01-31T12:00:00Z`.
+static cau_status read_field(token *made, const char *word, int number, cau_error *error)
+{
+	const char *value = strchr(word, '=');
+	value = value ? value + 1 : "";
+	if (strncmp(word, "name=", 5) == 0 && *value && strlen(value) < sizeof made->name) {
+		snprintf(made->name, sizeof made->name, "%s", value);
+		return CAU_OK;
+	}
+	if (strncmp(word, "expires=", 8) == 0) {
+		struct tm utc = {0};
+		const char *end = strptime(value, "%Y-%m-%dT%H:%M:%SZ", &utc);
+		if (!end || *end)
+			return cau_fail(error, CAU_BAD_VALUE, "tokens",
+			                "line %d: a time is written 2027-01-31T12:00:00Z", number);
+		made->expires_us = (int64_t)timegm(&utc) * 1000000;
+		return CAU_OK;
+	}
+	return cau_fail(error, CAU_BAD_SYNTAX, "tokens",
+	                "line %d is not `ROLE TOKEN`, with name=N and expires=TIME or without", number);
+}
+
 static cau_status read_line(token_list *list, char *line, int number, cau_error *error)
 {
-	char word[16], text[TOKEN_BYTES + 1], more[2];
-	cau_role role;
+	char role[16], word[WORD_BYTES + 1];
+	int taken = 0;
+	token made = {.expires_us = INT64_MAX};
 	line[strcspn(line, "#\r\n")] = 0;
-	int fields = sscanf(line, "%15s %129s %1s", word, text, more);
+	int fields = sscanf(line, "%15s %160s%n", role, word, &taken);
 	if (fields <= 0)
 		return CAU_OK;
 	if (fields != 2)
 		return cau_fail(error, CAU_BAD_SYNTAX, "tokens", "line %d is not `ROLE TOKEN`", number);
-	size_t bytes = strlen(text);
-	if (!cau_role_read(word, &role))
+	if (!cau_role_read(role, &made.role))
 		return cau_fail(error, CAU_BAD_VALUE, "tokens", "line %d: roles are view, operate, admin",
 		                number);
-	if (bytes < LEAST_TOKEN_BYTES || bytes >= TOKEN_BYTES)
-		return cau_fail(error, CAU_BAD_VALUE, "tokens", "line %d: a token has %d to %d characters",
-		                number, LEAST_TOKEN_BYTES, TOKEN_BYTES - 1);
+	cau_status status = read_secret(&made, word, number, error);
+	for (int more; !status && sscanf(line += taken, " %160s%n", word, &more) == 1; taken = more)
+		status = read_field(&made, word, number, error);
+	explicit_bzero(word, sizeof word);
+	if (status)
+		return status;
 	if (list->count == MAX_TOKENS)
 		return cau_fail(error, CAU_LIMIT, "tokens", "more than %d tokens", MAX_TOKENS);
-	token *made = &list->tokens[list->count++];
-	memcpy(made->text, text, bytes + 1);
-	made->bytes = bytes;
-	made->role = role;
+	list->tokens[list->count++] = made;
 	return CAU_OK;
 }
 
@@ -95,11 +151,13 @@ static bool same_bytes(const char *a, const char *b, size_t bytes)
 	return difference == 0;
 }
 
-static const token *find_token(const token_list *list, const char *text, size_t bytes)
+// By its hash; every token of the list is looked at, so that a wrong one takes as long as a right
+// one.
+static const token *find_hash(const token_list *list, const char *hash)
 {
 	const token *found = NULL;
 	for (int i = 0; i < list->count; i++)
-		if (list->tokens[i].bytes == bytes && same_bytes(list->tokens[i].text, text, bytes))
+		if (same_bytes(list->tokens[i].hash, hash, sizeof list->tokens[i].hash))
 			found = &list->tokens[i];
 	return found;
 }
@@ -111,7 +169,7 @@ static void take_list(cau_auth *auth, token_list *read)
 	pthread_mutex_lock(&auth->mutex);
 	for (int i = 0; i < read->count; i++) {
 		token *now = &read->tokens[i];
-		const token *before = find_token(&auth->list, now->text, now->bytes);
+		const token *before = find_hash(&auth->list, now->hash);
 		now->grant = before ? before->grant : ++auth->last_grant;
 	}
 	auth->list = *read;
@@ -159,41 +217,64 @@ void cau_auth_destroy(cau_auth *auth)
 	free(auth);
 }
 
-// The token of this text or, with NULL, of this grant: a copy of its grant and role. False: none.
-static bool look_up(const cau_auth *auth, const char *text, size_t bytes, uint64_t *grant,
-                    cau_role *role)
+// Copies the token of this hash or, with NULL, of this grant, if it is there and has not expired.
+static bool look_up(const cau_auth *auth, const char *hash, uint64_t grant, token *copy)
 {
 	cau_auth *locked = (cau_auth *)auth; // const to callers: they change nothing that they can see
 	const token *found = NULL;
 	pthread_mutex_lock(&locked->mutex);
-	if (text)
-		found = find_token(&auth->list, text, bytes);
-	for (int i = 0; i < auth->list.count && !text; i++)
-		if (auth->list.tokens[i].grant == *grant)
+	if (hash)
+		found = find_hash(&auth->list, hash);
+	for (int i = 0; i < auth->list.count && !hash; i++)
+		if (auth->list.tokens[i].grant == grant)
 			found = &auth->list.tokens[i];
-	*role = found ? found->role : CAU_ROLE_ADMIN;
-	*grant = found ? found->grant : auth->required ? 0 : GRANT_OF_ALL;
+	if (found && cau_wall_us() >= found->expires_us)
+		found = NULL;
+	if (found)
+		*copy = *found;
 	pthread_mutex_unlock(&locked->mutex);
+	if (!found && !auth->required)
+		*copy = (token){.role = CAU_ROLE_ADMIN, .grant = GRANT_OF_ALL};
 	return found || !auth->required;
+}
+
+static bool look_up_text(const cau_auth *auth, const char *text, size_t bytes, token *copy)
+{
+	char hash[CAU_SHA256_TEXT_BYTES] = "";
+	if (auth->required && (bytes > MOST_TOKEN_BYTES || !cau_sha256(text, bytes, hash)))
+		return false;
+	return look_up(auth, hash, 0, copy);
 }
 
 bool cau_auth_role(const cau_auth *auth, const char *text, size_t bytes, cau_role *role)
 {
-	uint64_t grant;
-	return look_up(auth, text, bytes, &grant, role);
+	token found;
+	bool known = look_up_text(auth, text, bytes, &found);
+	if (known)
+		*role = found.role;
+	return known;
 }
 
 uint64_t cau_auth_grant(const cau_auth *auth, const char *text, size_t bytes)
 {
-	uint64_t grant;
-	cau_role role;
-	look_up(auth, text, bytes, &grant, &role);
-	return grant;
+	token found;
+	return look_up_text(auth, text, bytes, &found) ? found.grant : 0;
 }
 
 bool cau_auth_grant_role(const cau_auth *auth, uint64_t grant, cau_role *role)
 {
-	return look_up(auth, NULL, 0, &grant, role);
+	token found;
+	bool known = look_up(auth, NULL, grant, &found);
+	if (known)
+		*role = found.role;
+	return known;
+}
+
+void cau_auth_grant_name(const cau_auth *auth, uint64_t grant, char name[CAU_AUTH_NAME_BYTES])
+{
+	token found;
+	bool known = look_up(auth, NULL, grant, &found);
+	snprintf(name, CAU_AUTH_NAME_BYTES, "%s", known ? found.name : "");
 }
 
 bool cau_auth_required(const cau_auth *auth)

@@ -23,7 +23,7 @@ enum { CAU_CONFIG_TEXT_BYTES = 512 };
 	TEXT(viewer, "", "folder of viewer files to serve; empty: the installed one")                  \
 	TEXT(label, "d1", "this daemon's label, first part of its sessions' ids; no `-`")              \
 	TEXT(demo, "", "scene of which a session exists at start, made if the store has none")         \
-	TEXT(tokens, "", "file of tokens, one `ROLE TOKEN` a line; empty: loopback is admin")          \
+	TEXT(tokens, "", "file of tokens, a line each (cautery token); empty: loopback is admin")      \
 	TEXT(tls_certificate, "", "file of the certificate and its chain (PEM); empty: no TLS")        \
 	TEXT(tls_key, "", "file of the certificate's key (PEM)")                                       \
 	SWITCH(tls_by_proxy, false, "a proxy does TLS: listen beyond loopback without")                \

@@ -84,7 +84,8 @@ void cau_call_hello(cau_call *call)
 		return;
 	}
 	if (!cau_auth_role(service->auth, params.token, strlen(params.token), &role)) {
-		refuse(call, CAU_RPC_UNAUTHORIZED, CAU_CLOSE_UNAUTHORIZED, "the token is not known");
+		refuse(call, CAU_RPC_UNAUTHORIZED, CAU_CLOSE_UNAUTHORIZED,
+		       "the token is not known, or has expired");
 		return;
 	}
 	peer->grant = cau_auth_grant(service->auth, params.token, strlen(params.token));
@@ -102,9 +103,12 @@ void cau_call_hello(cau_call *call)
 	replace(service, replaced);
 	peer->greeted = peer->connection->served = true;
 	cau_hub_heartbeat(service->hub, asker->client, true);
-	cau_log(CAU_LOG_INFO, NULL, "hello", "connection=%llu client=%u name=\"%s\" resumed=%d",
-	        (unsigned long long)peer->connection->id, asker->client, asker->name,
-	        params.has_resume);
+	char whose[CAU_AUTH_NAME_BYTES];
+	cau_auth_grant_name(service->auth, peer->grant, whose);
+	cau_log(CAU_LOG_INFO, NULL, "hello",
+	        "connection=%llu client=%u name=\"%s\" resumed=%d token=\"%s\"",
+	        (unsigned long long)peer->connection->id, asker->client, asker->name, params.has_resume,
+	        whose);
 	answer(call);
 }
 

@@ -17,6 +17,8 @@ static cau_call_handler *const handlers[CAU_METHOD_COUNT] = {
 #include "cautery/methods.def"
 };
 
+enum { TICKS_TO_CHECK = 10 }; // tokens: about a second
+
 // ---- messages
 static void refuse(const cau_call *call, cau_status status, int32_t code, const char *reason)
 {
@@ -170,7 +172,7 @@ static void check_tokens(cau_service *service)
 		if (!peer->greeted)
 			continue;
 		if (!cau_auth_grant_role(service->auth, peer->grant, &role))
-			revoke(service, peer, "the token was taken back");
+			revoke(service, peer, "the token was taken back or has expired");
 		else if (role < peer->client.asker.role)
 			revoke(service, peer, "the token's role is less than it was: connect again");
 	}
@@ -197,7 +199,8 @@ static void on_tick(void *user)
 {
 	cau_service *service = user;
 	double now_s = cau_monotonic_s();
-	service->ticks++;
+	if (service->ticks++ % TICKS_TO_CHECK == 0)
+		check_tokens(service); // some may have expired
 	for (cau_connection *c = cau_network_first(service->network); c; c = c->next)
 		cau_peer_watch_slowness(cau_peer_of(c), now_s);
 	want_frames(service);

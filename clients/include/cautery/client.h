@@ -99,6 +99,13 @@ typedef struct cau_client_def {
 
 cau_client_def cau_default_client_def(void);
 
+enum { CAU_CLIENT_TOKEN_BYTES = 512 }; // more than any token has
+
+// The token in a file's first line. Errors: CAU_IO, CAU_BAD_VALUE (it holds none); error->file says
+// which file.
+cau_status cau_client_read_token(const char *file, char token[CAU_CLIENT_TOKEN_BYTES],
+                                 cau_error *error);
+
 // Errors: CAU_BAD_VALUE (the URL), CAU_NO_MEMORY.
 cau_status cau_client_create(cau_loop *loop, const cau_client_def *def, cau_client **client,
                              cau_error *error);

@@ -237,6 +237,28 @@ class Ends(programs.Case):
         self.assertEqual(error["path"], "params.session")
         self.assertTrue(error["reason"])
 
+    def test_a_token_is_made_and_used_and_expires(self):
+        secret, brief = self.path("anna.token"), self.path("brief.token")
+        lines = self.cautery("token", "operate", "--name", "anna", "--days", "1", "--out", secret)[0]
+        lines += self.cautery("token", "view", "--days", "0.001", "--out", brief)[0]  # 86 s
+        with open(secret, encoding="ascii") as file:
+            token = file.read().strip()
+        self.assertEqual(os.stat(secret).st_mode & 0o777, 0o600)
+        self.assertNotIn(token, lines)
+        tokens = self.path("tokens", lines)
+        os.chmod(tokens, 0o600)
+        daemon = programs.Daemon(tokens=tokens)
+        self.addCleanup(daemon.stop)
+        self.cautery("create", "fascia", "--token-file", secret, url=daemon.url)
+        self.cautery("ls", "--token-file", brief, url=daemon.url)
+        self.cautery("create", "fascia", "--token-file", brief, url=daemon.url, code=1)
+        self.program("cautery-load", "--seconds", "0.5", "--warm-up", "0", "--token-file", secret, url=daemon.url)
+        self.program("cautery-load", "--token", token, url=daemon.url, code=2)
+        # what stands there already may be in somebody's hands
+        self.cautery("token", "view", "--out", secret, code=4)
+        self.assertIn("did you mean", self.cautery("token", "opperate", "--out", self.path("x"), code=2)[1])
+        self.cautery("token", "view", code=2)
+
     def test_tokens(self):
         tokens = self.path("tokens", "view watcher-token-0123456789\nadmin master-token-0123456789\n")
         os.chmod(tokens, 0o600)

@@ -8,9 +8,12 @@
 #include <stdlib.h>
 #include <string.h>
 #include <sys/stat.h>
+#include <time.h>
 #include <unistd.h>
 
 #include <cmocka.h>
+
+#include "cautery/sha256.h"
 
 static cau_config settings(void)
 {
@@ -103,7 +106,52 @@ static void wrong_token_files_are_refused(void **state)
 	assert_int_equal(read_tokens("admin short\n", 0600, &auth), CAU_BAD_VALUE);
 	assert_int_equal(read_tokens("admin\n", 0600, &auth), CAU_BAD_SYNTAX);
 	assert_int_equal(read_tokens("admin 0123456789abcdef more\n", 0600, &auth), CAU_BAD_SYNTAX);
+	static const char *const values[] = {
+		"admin sha256:abc\n", "admin 0123456789abcdef expires=2027-01-31\n",
+		"admin 0123456789abcdef expires=2027-01-31T12:00:00Zx\n",
+		"admin sha256:0123456789abcdef0123456789abcdef0123456789abcdef0123456789abcdeF\n"};
+	for (size_t i = 0; i < sizeof values / sizeof *values; i++)
+		assert_int_equal(read_tokens(values[i], 0600, &auth), CAU_BAD_VALUE);
+	assert_int_equal(read_tokens("admin 0123456789abcdef name=\n", 0600, &auth), CAU_BAD_SYNTAX);
 	assert_null(auth);
+}
+
+static void a_hash_stands_for_its_token(void **state)
+{
+	(void)state;
+	cau_auth *auth;
+	char hash[CAU_SHA256_TEXT_BYTES], text[400], name[CAU_AUTH_NAME_BYTES];
+	assert_true(cau_sha256("0123456789abcdef", 16, hash));
+	snprintf(text, sizeof text, "operate sha256:%s name=anna expires=2999-01-01T00:00:00Z # hers\n",
+	         hash);
+	assert_int_equal(read_tokens(text, 0600, &auth), CAU_OK);
+	assert_true(role_is(auth, "0123456789abcdef", CAU_ROLE_OPERATE));
+	assert_false(cau_auth_role(auth, hash, 64, &(cau_role){0})); // who has read the file
+	cau_auth_grant_name(auth, cau_auth_grant(auth, "0123456789abcdef", 16), name);
+	assert_string_equal(name, "anna");
+	cau_auth_destroy(auth);
+}
+
+static void a_token_expires(void **state)
+{
+	(void)state;
+	cau_auth *auth;
+	char text[200];
+	struct timespec now;
+	struct tm utc;
+	clock_gettime(CLOCK_REALTIME, &now);
+	now.tv_sec += 2;
+	gmtime_r(&now.tv_sec, &utc);
+	strftime(text, sizeof text, "view 0123456789abcdef expires=%Y-%m-%dT%H:%M:%SZ\n", &utc);
+	assert_int_equal(read_tokens(text, 0600, &auth), CAU_OK);
+	cau_role role;
+	uint64_t grant = cau_auth_grant(auth, "0123456789abcdef", 16);
+	assert_true(grant && cau_auth_grant_role(auth, grant, &role));
+	now.tv_nsec = 0;
+	assert_int_equal(clock_nanosleep(CLOCK_REALTIME, TIMER_ABSTIME, &now, NULL), 0);
+	assert_false(cau_auth_grant_role(auth, grant, &role));
+	assert_false(cau_auth_role(auth, "0123456789abcdef", 16, &role));
+	cau_auth_destroy(auth);
 }
 
 static void without_tokens_everybody_is_admin(void **state)
@@ -221,6 +269,8 @@ int main(void)
 		cmocka_unit_test(own_origins_pass),
 		cmocka_unit_test(tokens_have_roles),
 		cmocka_unit_test(wrong_token_files_are_refused),
+		cmocka_unit_test(a_hash_stands_for_its_token),
+		cmocka_unit_test(a_token_expires),
 		cmocka_unit_test(without_tokens_everybody_is_admin),
 		cmocka_unit_test_setup_teardown(a_grant_follows_its_token, begin_reload, end_reload),
 		cmocka_unit_test_setup_teardown(a_broken_file_changes_nothing, begin_reload, end_reload),

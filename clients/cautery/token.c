@@ -1,0 +1,103 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// token: makes one, for a daemon's file of tokens and for whoever is to have it.
+#include <errno.h>
+#include <fcntl.h>
+#include <string.h>
+#include <sys/random.h>
+#include <time.h>
+#include <unistd.h>
+
+#include "cautery/commands.h"
+#include "cautery/name.h"
+#include "cautery/sha256.h"
+
+enum { RANDOM_BYTES = 32, DAY_S = 86400 };
+
+static const char *const roles[] = {"view", "operate", "admin"};
+enum { ROLE_COUNT = sizeof roles / sizeof *roles };
+
+static bool make_token(char text[2 * RANDOM_BYTES + 1])
+{
+	unsigned char bytes[RANDOM_BYTES];
+	if (getrandom(bytes, sizeof bytes, 0) != sizeof bytes)
+		return false;
+	for (int i = 0; i < RANDOM_BYTES; i++)
+		snprintf(text + (size_t)(2 * i), 3, "%02x", bytes[i]);
+	explicit_bzero(bytes, sizeof bytes);
+	return true;
+}
+
+// A new file that nobody else may read: whatever stood there before may be in others' hands.
+static bool write_secret(cli *c, const char *file, const char *text)
+{
+	int descriptor = open(file, O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC, 0600);
+	FILE *stream = descriptor >= 0 ? fdopen(descriptor, "w") : NULL;
+	bool written = stream && fprintf(stream, "%s\n", text) > 0;
+	if (stream && fclose(stream) == 0 && written)
+		return true;
+	snprintf(c->error.file, sizeof c->error.file, "%.255s", file);
+	cau_fail(&c->error, CAU_IO, NULL, "%s", strerror(errno));
+	return false;
+}
+
+static bool is_role(const cli *c, const char *word)
+{
+	for (int i = 0; i < ROLE_COUNT; i++)
+		if (strcmp(roles[i], word) == 0)
+			return true;
+	cli_complain_unknown(c, "role", word, roles, ROLE_COUNT);
+	return false;
+}
+
+static void print_line(const cli *c, const char *hash, const char *name, double days)
+{
+	char expires[64] = "";
+	struct tm utc;
+	time_t until = time(NULL) + (time_t)(days * DAY_S);
+	if (days > 0)
+		strftime(expires, sizeof expires, " expires=%Y-%m-%dT%H:%M:%SZ", gmtime_r(&until, &utc));
+	fprintf(c->out, "%s sha256:%s%s%s%s\n", c->arguments[0], hash, name ? " name=" : "",
+	        name ? name : "", expires);
+}
+
+static cli_exit run(cli *c)
+{
+	bool bad = false;
+	char text[2 * RANDOM_BYTES + 1], hash[CAU_SHA256_TEXT_BYTES];
+	const char *file = cli_value(c, "out"), *name = cli_value(c, "name");
+	double days = cli_number(c, "days", 0.001, 36500, 0, &bad);
+	if (bad || !is_role(c, c->arguments[0]))
+		return CLI_USAGE;
+	if (!file) {
+		cli_complain(c, "where is the token to go? --out FILE");
+		return CLI_USAGE;
+	}
+	if (name && (!cau_name_is_valid(name) || strlen(name) >= CAU_NAME_BYTES - 1)) {
+		cli_complain(c, "\"%s\" is no name: %s", name, CAU_NAME_RULE);
+		return CLI_USAGE;
+	}
+	if (!make_token(text) || !cau_sha256(text, strlen(text), hash)) {
+		cau_fail(&c->error, CAU_IO, NULL, "no random numbers");
+		return cli_fail_file(c);
+	}
+	bool written = write_secret(c, file, text);
+	explicit_bzero(text, sizeof text);
+	if (!written)
+		return cli_fail_file(c);
+	print_line(c, hash, name, days);
+	return CLI_DONE;
+}
+
+const cli_command cli_token = {
+	.name = "token",
+	.arguments = "view|operate|admin",
+	.summary = "makes an access token, and prints the line for the daemon's file of tokens",
+	.help =
+		"The token itself goes into a new file, for --token-file of whoever is to have it; the\n"
+		"line holds its hash alone. The daemon reads its file when it is told to reload.\n",
+	.least = 1,
+	.most = 1,
+	.options = {{"out", "FILE", "a new file for the token"},
+                {"name", "N", "whose it is, for the daemon's log"},
+                {"days", "D", "until it expires (default: never)"}},
+	.run = run};
