@@ -63,10 +63,12 @@ cau_status cau_session_relax(cau_session *session, cau_error *error)
 	if (!has_tension(&session->tissue))
 		return CAU_OK;
 	size_t n = 3 * (size_t)session->tissue.vertex_count;
-	double gravity[3], enough = still * mean_edge_m(&session->tissue);
+	double gravity[3], accuracy = session->solver.accuracy.wanted,
+					   enough = still * mean_edge_m(&session->tissue);
 	memcpy(gravity, session->scene->gravity_m_s2, sizeof gravity);
 	if (!is_pinned(session)) // a free body relaxes without falling
 		memset(session->scene->gravity_m_s2, 0, sizeof gravity);
+	session->solver.accuracy.wanted = 0; // fewer steps that are right beat more that are nearly so
 	cau_status status = CAU_OK;
 	for (int step = 0; step < MOST_STEPS && !status; step++) {
 		memcpy(session->position_start, session->position, n * sizeof(double));
@@ -78,6 +80,7 @@ cau_status cau_session_relax(cau_session *session, cau_error *error)
 		if (largest_move(session) < enough)
 			break;
 	}
+	session->solver.accuracy.wanted = accuracy;
 	memset(session->velocity, 0, n * sizeof(double));
 	memcpy(session->position_start, session->position, n * sizeof(double));
 	memcpy(session->scene->gravity_m_s2, gravity, sizeof gravity);

@@ -163,7 +163,7 @@ cau_status cau_session_rest_tick(cau_session *session, cau_error *error)
 	memset(session->stage_s, 0, sizeof session->stage_s);
 	session->refusal_count = 0;
 	solver->iterations_done = solver->backtracks = 0;
-	solver->residual = session->energy.gain_j = 0;
+	solver->residual = solver->accuracy.error = session->energy.gain_j = 0;
 	cau_dissection_begin(&session->dissection);
 	cau_status status = cau_session_apply_commands(session, error); // their numbers are told on
 	cau_frame_stand_still(&session->frame);

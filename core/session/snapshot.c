@@ -6,6 +6,7 @@
 // and likewise the factor in the making. A header with every count and a hash of the rest comes
 // first: a damaged snapshot is refused before anything is touched, and so is one whose counts are
 // not those of its bytes.
+#include <math.h>
 #include <stddef.h>
 #include <stdlib.h>
 #include <string.h>
@@ -16,7 +17,7 @@
 
 static const char magic[8] = "CAUSNAP";
 enum {
-	VERSION = 4,       // with rest; 3, without, and 1, elements by slot, are still read
+	VERSION = 4, // with rest and accuracy; 3, without, and 1, elements by slot, are still read
 	MOST_NODES = 4096, // along a heat grid's side: far more than a tool may have
 };
 
@@ -37,7 +38,10 @@ typedef struct snapshot_header {
 	int32_t grid_nodes[CAU_MAX_TOOLS];
 	int32_t faulted;
 	double gravity_m_s2[3];
-	int32_t resting, quiet_ticks; // since version 4
+	// since version 4
+	int32_t resting, quiet_ticks;
+	int32_t shallow_steps, unused;
+	double accuracy, amplification[CAU_ACCURACY_DEPTHS];
 } snapshot_header;
 
 static size_t header_bytes(uint32_t version)
@@ -169,6 +173,10 @@ static void fill_header(const cau_session *session, snapshot_header *header)
 	header->faulted = session->faulted;
 	header->resting = session->rest.resting;
 	header->quiet_ticks = session->rest.quiet_ticks;
+	header->shallow_steps = session->solver.accuracy.shallow_steps;
+	header->accuracy = session->solver.accuracy.wanted;
+	memcpy(header->amplification, session->solver.accuracy.amplification,
+	       sizeof header->amplification);
 	for (int32_t i = 0; i < session->tool_count; i++)
 		header->grid_nodes[i] = session->tool[i].grid.nodes;
 	memcpy(header->gravity_m_s2, session->scene->gravity_m_s2, sizeof header->gravity_m_s2);
@@ -230,6 +238,15 @@ static cau_status corrupt(cau_error *error, const char *why)
 	return cau_fail(error, CAU_CORRUPT, NULL, "this is no snapshot of this session: %s", why);
 }
 
+// Whether what steps have taught is what they can teach.
+static bool is_taught(const snapshot_header *header)
+{
+	for (int k = 0; k < CAU_ACCURACY_DEPTHS; k++)
+		if (!(header->amplification[k] > 0 && header->amplification[k] < INFINITY))
+			return false;
+	return header->shallow_steps >= 0;
+}
+
 static cau_status check_header(const cau_session *session, const snapshot_header *header,
                                const unsigned char *payload, size_t payload_bytes, cau_error *error)
 {
@@ -255,7 +272,8 @@ static cau_status check_header(const cau_session *session, const snapshot_header
 	    header->operation_count > CAU_DOWNDATES_AT_MOST || header->column_count < 0 ||
 	    header->column_count > CAU_MAX_CONTACTS || header->waiting_at_start < 0 ||
 	    header->row_count < 0 || header->row_count > header->vertex_count ||
-	    header->quiet_ticks < 0 || (header->resting && !header->quiet_ticks))
+	    header->quiet_ticks < 0 || (header->resting && !header->quiet_ticks) ||
+	    (header->version >= 4 && !is_taught(header)))
 		return corrupt(error, "a count is out of its range");
 	if (header->payload_bytes != payload_bytes)
 		return corrupt(error, "bytes are missing");
@@ -369,6 +387,11 @@ static void restore_counts(cau_session *session, const snapshot_header *header)
 	session->faulted = header->faulted;
 	session->rest.resting = header->resting;
 	session->rest.quiet_ticks = header->quiet_ticks;
+	if (header->version >= 4) {
+		session->solver.accuracy.shallow_steps = header->shallow_steps;
+		memcpy(session->solver.accuracy.amplification, header->amplification,
+		       sizeof header->amplification);
+	}
 	session->frozen_count = header->frozen_count;
 	session->inverted = header->inverted;
 	memcpy(session->scene->gravity_m_s2, header->gravity_m_s2, sizeof header->gravity_m_s2);
@@ -483,6 +506,7 @@ cau_status cau_session_restore(cau_session *session, const void *bytes, size_t b
 		session->faulted = true;
 	if (exact)
 		*exact = header.version == VERSION && header.build == build_hash() &&
+		         header.accuracy == session->solver.accuracy.wanted &&
 		         !strncmp(header.instruction_set, session->solver.kernels->instruction_set,
 		                  sizeof header.instruction_set);
 	return status;

@@ -166,6 +166,7 @@ static void fill_statistics(const cau_session *session, cau_statistics *statisti
 		.contacts = session->contact.row_count,
 		.frozen_vertices = session->frozen_count,
 		.energy_gain_j = session->energy.gain_j,
+		.error = solver->accuracy.error,
 		.resting = session->rest.resting,
 	};
 	memcpy(statistics->seconds, session->stage_s, sizeof session->stage_s);

@@ -212,6 +212,7 @@ cau_status cau_solver_descend(cau_step_solver *solver, cau_error *error)
 	double objective = solver->objective, first = 0, last = 0;
 	int32_t steps = 0; // since the guess
 	cau_anderson_start(solver);
+	cau_accuracy_begin(&solver->accuracy);
 	for (int32_t k = 0; k < solver->iterations; k++) {
 		cau_solver_global(solver);
 		double norm = step_norm(solver);
@@ -230,7 +231,9 @@ cau_status cau_solver_descend(cau_step_solver *solver, cau_error *error)
 			cau_anderson_start(solver);
 		last = norm;
 		bool accelerated = cau_anderson_mix(solver, steps++);
-		if (k + 1 == solver->iterations && is_harmless(solver, norm, objective)) {
+		int32_t backtracks = solver->backtracks;
+		bool enough = cau_accuracy_is_reached(solver, norm);
+		if ((enough || k + 1 == solver->iterations) && is_harmless(solver, norm, objective)) {
 			leave(solver);
 			break;
 		}
@@ -239,11 +242,16 @@ cau_status cau_solver_descend(cau_step_solver *solver, cau_error *error)
 		bool back = !k && solver->backtracks && go_back(solver, &objective);
 		if (!taken && !back)
 			break;
-		if (back)
+		if (back) {
 			steps = 0;
+			cau_accuracy_begin(&solver->accuracy);
+		}
+		if (enough && solver->backtracks == backtracks)
+			break;
 	}
 	CAU_ASSERT(solver->backtracks <= solver->iterations * (CAU_MAX_BACKTRACKS + 1),
 	           "%d backtracks in %d iterations", solver->backtracks, solver->iterations);
+	cau_accuracy_learn(&solver->accuracy);
 	cau_solver_displace(solver);
 	return CAU_OK;
 }

@@ -91,6 +91,7 @@ cau_status cau_solver_create(cau_step_solver *solver, const cau_scene_def *scene
 	solver->iterations = scene->iterations;
 	solver->tolerance = scene->tolerance;
 	solver->step_s = scene->step_s;
+	solver->accuracy.wanted = scene->tolerance > 0 ? 0 : scene->accuracy;
 	solver->diagonal = scene->solver == CAU_SOLVER_DIAGONAL;
 	solver->whole_panels = CAU_WHOLE_PANELS;
 	solver->conservative = cau_solver_is_conservative(tissue, solver->diagonal);
@@ -98,6 +99,8 @@ cau_status cau_solver_create(cau_step_solver *solver, const cau_scene_def *scene
 		cau_elements_make(tissue, single, arena, &solver->elements, &solver->slots, error);
 	if (!status)
 		status = allocate_vectors(solver, arena, error);
+	if (!status)
+		status = cau_accuracy_create(&solver->accuracy, solver->chunk_count, arena, error);
 	if (!status)
 		status = check_loops(solver, error);
 	if (!status)

@@ -9,6 +9,7 @@
 
 #include "base/pool.h"
 #include "constraint/elements_make.h"
+#include "solve/accuracy.h"
 #include "solve/kernels.h"
 #include "solve/system.h"
 
@@ -40,10 +41,11 @@ struct cau_step_solver {
 	uint64_t factor_version; // counts every change of the factor
 	uint64_t factor_epoch;   // counts those that leave nothing of the old one
 
-	bool diagonal;     // CAU_SOLVER_DIAGONAL
-	bool conservative; // every law is the gradient of an energy
-	int32_t iterations;
+	bool diagonal;      // CAU_SOLVER_DIAGONAL
+	bool conservative;  // every law is the gradient of an energy
+	int32_t iterations; // at most
 	double tolerance, step_s;
+	cau_accuracy accuracy;
 	const uint8_t *fixed; // (vertex_count): pinned or frozen
 
 	double *position;             // x, (n x 3), of the session

@@ -75,6 +75,29 @@ static double add_inertia(const cau_step_solver *solver, int32_t first, int32_t 
 	return energy / 2;
 }
 
+static void measure(const cau_step_solver *solver, int32_t first, int32_t last, double sums[4])
+{
+	const double *x = solver->position, *start = solver->position_start;
+	const real *trial = (const real *)solver->trial_increment;
+	const real *increment = (const real *)solver->increment;
+	double mass = 0, trial2 = 0, increment2 = 0, motion2 = 0;
+	for (int32_t v = first; v < last; v++) {
+		double m = solver->fixed[v] ? 0 : solver->tissue->mass[v];
+		mass += m;
+		for (int c = 0; c < 3; c++) {
+			double s = (double)trial[4 * v + c], d = (double)increment[4 * v + c];
+			double way = x[3 * v + c] - start[3 * v + c] + s;
+			trial2 += m * s * s;
+			increment2 += m * d * d;
+			motion2 += m * way * way;
+		}
+	}
+	sums[0] = mass;
+	sums[1] = trial2;
+	sums[2] = increment2;
+	sums[3] = motion2;
+}
+
 // ---- A^-1 of a vector
 static void divide(const cau_step_solver *solver, const cau_reals *in, cau_reals *out, double sign)
 {
@@ -142,6 +165,7 @@ const cau_vectors CAU_VECTORS = {
 	.displace = displace,
 	.step = step,
 	.add_inertia = add_inertia,
+	.measure = measure,
 	.divide = divide,
 	.permute = permute,
 	.unpermute = unpermute,

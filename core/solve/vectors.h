@@ -35,6 +35,9 @@ typedef struct cau_vectors {
 	// gradient += m / dt^2 (position - predicted), and zero where a vertex is fixed; returns the
 	// energy of that, J
 	double (*add_inertia)(const cau_step_solver *solver, int32_t first, int32_t last);
+	// mass, and mass times the squares of trial increment, increment, and of the motion that the
+	// trial increment makes of the step, over the free vertices: kg, kg m^2
+	void (*measure)(const cau_step_solver *solver, int32_t first, int32_t last, double sums[4]);
 
 	// ---- A^-1 of a vector
 	// out = sign * in / diagonal, of all vertices; zero where a vertex is fixed

@@ -21,7 +21,8 @@ enum { FAR_M = 100 }; // places and ways
 static const cau_field scene_fields[] = {
 	{OTHER(name, NAME, "name of the scene"), .required = true},
 	{OTHER(description, TEXT, "a sentence for people")},
-	CAU_TIME_TABLE(SCALAR){INTEGER(iterations, 1, 1000, "iterations of a step")},
+	CAU_TIME_TABLE(SCALAR){
+		INTEGER(iterations, 1, 1000, "iterations of a step at most; with `accuracy` 0, of each")},
 	{CHOICE(solver, solver_choices, "global system")},
 	{CHOICE(precision, precision_choices, "of the local and global steps")},
 	{OTHER(seed, COUNT, "of everything drawn at random")},

@@ -42,6 +42,7 @@ static void describe_step(const cau_statistics *from, cau_stream_statistics *to)
 		.frozen_vertices = (uint32_t)from->frozen_vertices,
 		.energy_gain_j = (float)from->energy_gain_j,
 		.resting = from->resting,
+		.error = (float)from->error,
 	};
 	for (int i = 0; i < CAU_STREAM_STAGES; i++)
 		to->stage_s[i] = (float)from->seconds[i];

@@ -22,6 +22,7 @@
 	X("contacts", PRId32, s->contacts)                                                             \
 	X("frozen_vertices", PRId32, s->frozen_vertices)                                               \
 	X("energy_gain_j", ".6g", s->energy_gain_j)                                                    \
+	X("error", ".6g", s->error)                                                                    \
 	X("resting", "d", s->resting)                                                                  \
 	X("tool_force_max_n", ".6g", largest_force(frame))                                             \
 	X("tip_temperature_max_c", ".6g", hottest_tip(frame))

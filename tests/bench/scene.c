@@ -66,6 +66,7 @@ cau_scene_def *bench_scene(const bench_options *options)
 	}
 	free(text);
 	scene->iterations = options->iterations;
+	scene->accuracy = 0; // so many in each step
 	if (options->solver >= 0)
 		scene->solver = options->solver;
 	if (options->precision >= 0)

@@ -186,6 +186,9 @@ typedef struct cau_statistics {
 	// loss. A converged step reads 0 or less but for rounding (and buckling). 0 where a law has no
 	// energy (linearised limits, model energy, the diagonal system).
 	double energy_gain_j;
+	// What the step is off its solution, relative to its own motion: of all vertices or of the
+	// worst chunk of them, an estimate (solve/accuracy.h). 0 where the scene's accuracy is 0.
+	double error;
 	// The tissue is at rest: the step changed nothing, and none will until something wakes it.
 	bool resting;
 } cau_statistics;

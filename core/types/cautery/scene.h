@@ -44,7 +44,8 @@ enum {
 	X(step_s, 1.0 / 60.0, 1.0 / 1000.0, 1.0 / 30.0, "s", "time step; one tick")                    \
 	X(damping_per_s, 0.0, 0.0, 1000.0, "1/s", "v <- v exp(-c dt)")                                 \
 	X(ambient_c, 37.0, -20.0, 60.0, "degC", "temperature of the body around the tools")            \
-	X(tolerance, 0.0, 0.0, 1.0, "1", "stop a step at this relative residual; 0: never")
+	X(tolerance, 0.0, 0.0, 1.0, "1", "stop a step at this relative residual; 0: never")            \
+	X(accuracy, 0.01, 0.0, 1.0, "1", "end a step at this error relative to its motion; 0: never")
 
 #define CAU_SOLVER_TABLE(X) /* code, JSON name */                                                  \
 	X(CHOLESKY, "cholesky")                                                                        \
@@ -265,7 +266,7 @@ typedef struct cau_scene_def {
 	char description[CAU_TEXT_BYTES];
 	char directory[CAU_TEXT_BYTES]; // where relative mesh files are looked up; not in the JSON
 	CAU_TIME_TABLE(CAU_FIELD)
-	int32_t iterations; // of a step, 1 to 1000
+	int32_t iterations; // of a step at most, 1 to 1000
 	int solver;         // CAU_SOLVER_*
 	int precision;      // CAU_PRECISION_* of the local and global steps
 	uint64_t seed;      // of everything drawn at random (ignition temperatures)

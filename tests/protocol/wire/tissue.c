@@ -115,7 +115,8 @@ void tissue_move(tissue *moved, int32_t tick, double speed_m_s)
 	                                            .iterations = 10,
 	                                            .contacts = (uint32_t)tick,
 	                                            .energy_gain_j = 1e-6f * (float)tick,
-	                                            .resting = tick % 2 != 0};
+	                                            .resting = tick % 2 != 0,
+	                                            .error = 1e-4f * (float)tick};
 }
 
 cau_stream_def tissue_stream_def(const tissue *of)

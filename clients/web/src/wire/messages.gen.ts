@@ -1081,7 +1081,9 @@ export interface Scene {
   ambient_c?: number;
   /** stop a step at this relative residual; 0: never (0 to 1) */
   tolerance?: number;
-  /** iterations of a step (1 to 1000) */
+  /** end a step at this error relative to its motion; 0: never (0 to 1) */
+  accuracy?: number;
+  /** iterations of a step at most; with `accuracy` 0, of each (1 to 1000) */
   iterations?: number;
   /** global system */
   solver?: 'cholesky' | 'diagonal';
@@ -1798,6 +1800,8 @@ export const PARAMETERS = {
       meaning: "temperature of the body around the tools" },
     { name: 'tolerance', unit: '1', least: 0, most: 1, default: 0,
       meaning: "stop a step at this relative residual; 0: never" },
+    { name: 'accuracy', unit: '1', least: 0, most: 1, default: 0.01,
+      meaning: "end a step at this error relative to its motion; 0: never" },
   ],
   tool: [
     { name: 'hot_radius_m', unit: 'm', least: 0.0002, most: 0.05, default: 0.003,

@@ -1,0 +1,228 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "solve/accuracy.h"
+
+#include <math.h>
+#include <string.h>
+
+#include "cautery/assert.h"
+#include "solve/contact.h"
+#include "solve/solver.h"
+
+static const double least_error_m = 0.5e-6; // what a chunk that hardly moves may be off,
+static const double least_share = 0.25;     // if that is no more of its motion than this,
+static const double still_error_m = 2e-8;   // or nothing at all
+static const double least_force_n = 1e-4;   // likewise a tool: a hundredth of what viewers show
+static const double force_share = 2;        // forces may be off by so much more than vertices
+static const double untaught = 3;           // amplification before anything is known
+static const double most_amplified = 300;
+static const double slack = 1.2;     // a contraction that is measured flatters a little
+static const double slowest = 0.999; // contraction that can be told from none
+static const double bound_share =
+	0.5; // the bound is reached by one mode alone, seldom by what is left
+static const double forgetting = 0.1; // of an amplification's logarithm, a step that shows less
+static const double worth_learning = 0.05; // lengths below are rounding
+enum {
+	SUMS = 4,     // of a chunk: mass, and mass times squares of trial increment, increment, motion
+	DEEP = 4,     // increments that a step is learned from by
+	SHALLOW = 12, // steps in a row that may have less
+};
+
+cau_status cau_accuracy_create(cau_accuracy *accuracy, int32_t chunk_count, cau_arena *arena,
+                               cau_error *error)
+{
+	CAU_ASSERT(chunk_count > 0, "%d chunks of vertices", chunk_count);
+	for (int k = 0; k < CAU_ACCURACY_DEPTHS; k++)
+		accuracy->amplification[k] = untaught;
+	accuracy->sums = cau_arena_array(arena, SUMS * (size_t)chunk_count, sizeof(double));
+	if (!accuracy->sums)
+		return cau_fail(error, CAU_NO_MEMORY, NULL, "no memory for the solver");
+	return CAU_OK;
+}
+
+void cau_accuracy_begin(cau_accuracy *accuracy)
+{
+	CAU_ASSERT(accuracy->wanted >= 0, "an accuracy of %g is wanted", accuracy->wanted);
+	accuracy->count = 0;
+	accuracy->left = accuracy->error = 0;
+	memset(accuracy->force, 0, sizeof accuracy->force);
+}
+
+// ---- lengths
+static void measure_part(void *context, int32_t chunk)
+{
+	cau_step_solver *solver = context;
+	int32_t first = chunk * CAU_VERTEX_CHUNK, last = first + CAU_VERTEX_CHUNK;
+	CAU_ASSERT_INDEX(chunk, solver->chunk_count);
+	if (last > solver->tissue->vertex_count)
+		last = solver->tissue->vertex_count;
+	solver->kernels->vectors->measure(solver, first, last,
+	                                  solver->accuracy.sums + SUMS * (size_t)chunk);
+}
+
+// Root mean squares, m, of a chunk's or of all vertices'.
+typedef struct lengths {
+	double trial, increment;
+	double told;    // an error of 1, as it is told, is so long
+	double allowed; // the step ends where it is off by so much
+} lengths;
+
+// An error of half a micrometre is none, but if every tick of slow tissue were off by that, it
+// would move as in treacle: by far less than it should, tick for tick.
+static lengths lengths_of(const double sums[SUMS], double wanted)
+{
+	CAU_ASSERT(sums[0] > 0, "%g kg of free vertices", sums[0]);
+	double motion = sqrt(sums[3] / sums[0]);
+	double slow = fmax(fmin(least_error_m, least_share * motion), still_error_m);
+	return (lengths){.trial = sqrt(sums[1] / sums[0]),
+	                 .increment = sqrt(sums[2] / sums[0]),
+	                 .told = fmax(motion, least_error_m / wanted),
+	                 .allowed = fmax(wanted * motion, slow)};
+}
+
+// What a step's trial increment is like: the longest of a chunk's and of all vertices', relative to
+// what it may be off, and as an error would be told.
+typedef struct trial {
+	double length, told, mass;
+	lengths all;
+} trial;
+
+static trial measure(cau_step_solver *solver)
+{
+	cau_accuracy *accuracy = &solver->accuracy;
+	double total[SUMS] = {0};
+	trial of = {0};
+	cau_pool_run(solver->pool, solver->chunk_count, measure_part, solver);
+	for (int32_t chunk = 0; chunk <= solver->chunk_count; chunk++) {
+		const double *sums =
+			chunk < solver->chunk_count ? accuracy->sums + SUMS * (size_t)chunk : total;
+		if (!(sums[0] > 0))
+			continue;
+		of.all = lengths_of(sums, accuracy->wanted); // of the last: of all
+		of.length = fmax(of.length, of.all.trial / of.all.allowed);
+		of.told = fmax(of.told, of.all.trial / of.all.told);
+		for (int k = 0; k < SUMS && chunk < solver->chunk_count; k++)
+			total[k] += sums[k];
+	}
+	of.mass = total[0];
+	return of;
+}
+
+// The largest change of a tool's force since the last increment, relative to what it may be off.
+static double force_change(cau_step_solver *solver)
+{
+	cau_accuracy *accuracy = &solver->accuracy;
+	const cau_contact_set *set = solver->contact;
+	double force[CAU_ACCURACY_TOOLS][3] = {0}, most = 0;
+	for (int32_t i = 0; set && i < set->row_count; i++) {
+		CAU_ASSERT_INDEX(set->row[i].tool, CAU_ACCURACY_TOOLS);
+		for (int c = 0; c < 3; c++)
+			force[set->row[i].tool][c] += set->row[i].reaction[c];
+	}
+	for (int32_t tool = 0; tool < CAU_ACCURACY_TOOLS; tool++) {
+		double size2 = 0, change2 = 0;
+		for (int c = 0; c < 3; c++) {
+			double change = force[tool][c] - accuracy->force[tool][c];
+			size2 += force[tool][c] * force[tool][c];
+			change2 += change * change;
+		}
+		double allowed = fmax(force_share * accuracy->wanted * sqrt(size2), least_force_n);
+		most = fmax(most, sqrt(change2) / allowed);
+	}
+	memcpy(accuracy->force, force, sizeof force);
+	return most;
+}
+
+// ---- estimates
+
+// The factor by which the last increments' norms became shorter, by the iteration; 0: not known.
+static double contraction(const cau_accuracy *accuracy)
+{
+	int32_t last = accuracy->count - 1;
+	const double *norm = accuracy->norm;
+	CAU_ASSERT(last >= 0, "a contraction of %d increments", accuracy->count);
+	double a = 0;
+	if (last >= 3 && norm[last - 2] > 0)
+		a = sqrt(norm[last] / norm[last - 2]);
+	else if (last == 2 && norm[1] > 0)
+		a = norm[2] / norm[1];
+	return fmin(a, slowest);
+}
+
+static double amplification(const cau_accuracy *accuracy, int32_t count)
+{
+	CAU_ASSERT(count >= 1, "an amplification of %d increments", count);
+	return accuracy->amplification[(count < CAU_ACCURACY_DEPTHS ? count : CAU_ACCURACY_DEPTHS) - 1];
+}
+
+// The error after the increments so far, relative to what is wanted; that of the step alone is
+// kept.
+static double estimate(cau_accuracy *accuracy, double bound)
+{
+	int32_t last = accuracy->count - 1;
+	double a = contraction(accuracy), alone = a / (1 - a), length = accuracy->length[last];
+	double carried = amplification(accuracy, accuracy->count);
+	if (last >= 2) // increments come in pairs of a long and a short one
+		length = fmax(length, a * accuracy->length[last - 1]);
+	bound = fmax(bound, length);
+	double error = fmin(fmax(slack * alone, carried) * length, bound);
+	accuracy->left = last >= 2 ? fmin(alone * length, bound) : error;
+	return error;
+}
+
+bool cau_accuracy_is_reached(cau_step_solver *solver, double norm)
+{
+	cau_accuracy *accuracy = &solver->accuracy;
+	if (accuracy->wanted == 0 || !solver->position_start || accuracy->count == CAU_ACCURACY_STEPS)
+		return false;
+	int32_t at = accuracy->count++;
+	trial of = measure(solver);
+	if (!(of.mass > 0))
+		return true;
+	double changed = force_change(solver), bound = 0, smooth = 0;
+	if (of.all.increment > 0) {
+		smooth = of.all.increment / of.all.allowed;
+		bound = bound_share * solver->step_s * solver->step_s * norm * norm /
+		        (of.mass * of.all.increment * of.all.allowed);
+	}
+	// What an iteration that stalls mixes may be as good as nothing while its increments stay.
+	accuracy->length[at] = at >= 2 ? fmax(of.length, smooth) : of.length;
+	accuracy->norm[at] = norm;
+	double error = estimate(accuracy, bound);
+	if (accuracy->length[at] > 0) {
+		accuracy->error = error * (at >= 2 ? fmax(of.told, accuracy->wanted * smooth) : of.told) /
+		                  accuracy->length[at];
+		error = fmax(error, changed * error / accuracy->length[at]);
+	}
+	bool learns = accuracy->shallow_steps >= SHALLOW && accuracy->count < DEEP;
+	return error <= 1 && !(learns && error > 0);
+}
+
+// ---- from step to step
+static void teach(double *amplification, double shown)
+{
+	CAU_ASSERT(*amplification > 0, "an amplification of %g", *amplification);
+	if (shown > *amplification)
+		*amplification = shown;
+	else
+		*amplification *= pow(fmax(shown, 1e-6) / *amplification, forgetting);
+}
+
+void cau_accuracy_learn(cau_accuracy *accuracy)
+{
+	double most = 0, left = accuracy->left;
+	if (accuracy->wanted == 0)
+		return;
+	accuracy->shallow_steps = accuracy->count < DEEP ? accuracy->shallow_steps + 1 : 0;
+	for (int32_t i = 0; i < accuracy->count; i++)
+		most = fmax(most, accuracy->length[i]);
+	if (!(most > worth_learning))
+		return;
+	// What came after an increment is what it had left, if two came at least.
+	for (int32_t count = accuracy->count - 1; count >= 1; count--) {
+		int32_t depth = count < CAU_ACCURACY_DEPTHS ? count : CAU_ACCURACY_DEPTHS;
+		left += accuracy->length[count];
+		if (accuracy->count - count >= 2 && accuracy->length[count - 1] > 0)
+			teach(&accuracy->amplification[depth - 1],
+			      fmin(left / accuracy->length[count - 1], most_amplified));
+	}
+}

@@ -1,0 +1,300 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Steps that end when they are right: what they are off the same step, converged from the same
+// state, is what they may be, and what they say that it is.
+#include "core/session/stage.h"
+
+#include "session/session_internal.h"
+
+enum { CONVERGED = 300, MOST = 60, MOST_SAMPLES = 400 };
+static const double converged_residual = 1e-7; // relative, of the norm in which steps are long
+static const double least_error_m = 0.5e-6;    // what is no error, however little moves
+
+// ---- scenes
+
+// A taut sheet, pinned at its rim, into which a hook is pressed and drawn.
+static cau_scene_def *make_taut(void)
+{
+	cau_scene_def *scene = stage_scene(CAU_PRECISION_DOUBLE);
+	cau_default_gravity(scene->gravity_m_s2);
+	cau_layer_def *fascia = stage_add_sheet(scene, "fascia", 0.06, 0.05, 30, 25);
+	fascia->sheet[0].target[0] = fascia->sheet[0].target[1] = 0.4;
+	cau_selection *rim = &scene->pins[scene->pin_count++];
+	cau_default_selection(rim, CAU_SELECT_RIM);
+	strcpy(rim->layer, "fascia");
+	stage_add_tool(scene, "hook", CAU_TOOL_HOOK, 0, 0, 0.03);
+	return scene;
+}
+
+// A block of fat on its floor, likewise.
+static cau_scene_def *make_block(void)
+{
+	const double size[3] = {0.06, 0.04, 0.01}, least[3] = {-1, -1, -0.0101},
+				 most[3] = {1, 1, -0.0099};
+	const int32_t cells[3] = {20, 13, 4};
+	cau_scene_def *scene = stage_scene(CAU_PRECISION_DOUBLE);
+	cau_default_gravity(scene->gravity_m_s2);
+	stage_add_slab(scene, "fat", size, cells);
+	stage_add_membrane(scene, "membrane", "fat");
+	stage_pin_box(scene, least, most);
+	stage_add_tool(scene, "hook", CAU_TOOL_HOOK, 0, 0, 0.03);
+	return scene;
+}
+
+// A sheet that hangs free from one edge: its slow modes hardly converge.
+static cau_scene_def *make_free(void)
+{
+	const double least[3] = {-1, 0.0249, -1}, most[3] = {1, 1, 1};
+	cau_scene_def *scene = stage_scene(CAU_PRECISION_DOUBLE);
+	cau_default_gravity(scene->gravity_m_s2);
+	stage_add_sheet(scene, "fascia", 0.05, 0.05, 16, 16);
+	stage_pin_box(scene, least, most);
+	return scene;
+}
+
+// ---- errors
+
+// |a - b| over free vertices of [first, last) in the norm of mass, relative to the motion to b.
+static double error_of(const cau_session *session, const double *a, const double *b, int32_t first,
+                       int32_t last, double accuracy)
+{
+	double mass = 0, off = 0, motion = 0;
+	for (int32_t v = first; v < last; v++) {
+		double m = session->fixed[v] ? 0 : session->tissue.mass[v];
+		mass += m;
+		for (int c = 0; c < 3; c++) {
+			double d = a[3 * v + c] - b[3 * v + c];
+			double way = b[3 * v + c] - session->position_start[3 * v + c];
+			off += m * d * d;
+			motion += m * way * way;
+		}
+	}
+	if (mass == 0)
+		return 0;
+	return sqrt(off / mass) / fmax(sqrt(motion / mass), least_error_m / accuracy);
+}
+
+// The worst of the whole and of each chunk.
+static double true_error(const cau_session *session, const cau_session *exact)
+{
+	int32_t n = session->tissue.vertex_count;
+	double accuracy = session->solver.accuracy.wanted;
+	double worst = error_of(session, session->position, exact->position, 0, n, accuracy);
+	for (int32_t first = 0; first < n; first += CAU_VERTEX_CHUNK) {
+		int32_t last = first + CAU_VERTEX_CHUNK < n ? first + CAU_VERTEX_CHUNK : n;
+		worst = fmax(worst,
+		             error_of(session, session->position, exact->position, first, last, accuracy));
+	}
+	return worst;
+}
+
+// Force on the first tool, relative to itself.
+static double force_error(const cau_session *session, const cau_session *exact)
+{
+	double off = 0, force = 0;
+	for (int c = 0; c < 3 && session->tool_count; c++) {
+		double of = exact->tool[0].state.raw_force_n[c];
+		force += of * of;
+		off += pow(session->tool[0].state.raw_force_n[c] - of, 2);
+	}
+	return force > 1e-6 ? sqrt(off / force) : 0; // of a millinewton and more
+}
+
+typedef struct sampled {
+	int32_t count, iterations;
+	double error[MOST_SAMPLES], told[MOST_SAMPLES], force[MOST_SAMPLES];
+} sampled;
+
+static void sample(cau_session *session, cau_session *exact, sampled *of)
+{
+	assert_true(of->count < MOST_SAMPLES);
+	stage_bytes shot = stage_snapshot(session);
+	assert_int_equal(cau_session_restore(exact, shot.bytes, shot.count, NULL, NULL), CAU_OK);
+	free(shot.bytes);
+	stage_step(exact, 1);
+	stage_step(session, 1);
+	cau_frame frame = stage_frame(session);
+	of->error[of->count] = true_error(session, exact);
+	of->told[of->count] = frame.statistics.error;
+	of->force[of->count++] = force_error(session, exact);
+	of->iterations += frame.statistics.iterations;
+}
+
+// The tool comes down in half a second and is drawn on at a centimetre a second, unlit.
+static sampled run(cau_scene_def *scene, int32_t most, int ticks, int every)
+{
+	sampled of = {0};
+	scene->iterations = most;
+	cau_session *session = stage_open(scene, 1), *exact = stage_open(scene, 1);
+	exact->solver.accuracy.wanted = 0;
+	exact->solver.iterations = CONVERGED;
+	exact->solver.tolerance = converged_residual;
+	for (int k = 0; k < ticks; k++) {
+		if (session->tool_count)
+			stage_move(session, "hook", 1.6e-4 * fmax(k - 30, 0), 0,
+			           0.03 - 0.0285 * fmin(k / 30.0, 1));
+		else
+			stage_gravity(session, 0, 0, -9.81); // stay awake
+		if (k % every == 0)
+			sample(session, exact, &of);
+		else
+			stage_step(session, 1);
+	}
+	cau_session_destroy(session);
+	cau_session_destroy(exact);
+	free(scene);
+	return of;
+}
+
+static int compare(const void *a, const void *b)
+{
+	double x = *(const double *)a, y = *(const double *)b;
+	return (x > y) - (x < y);
+}
+
+static double quantile(const double *values, int32_t count, double share)
+{
+	double sorted[MOST_SAMPLES];
+	memcpy(sorted, values, (size_t)count * sizeof *values);
+	qsort(sorted, (size_t)count, sizeof *sorted, compare);
+	return sorted[(int32_t)(share * (count - 1))];
+}
+
+// Share of samples whose true error is more than three times what was told, and of those told more
+// than `most` times what it is. Below a hundredth of what is wanted neither matters to anybody.
+static void compare_told(const sampled *of, double most, double *flattered, double *blackened)
+{
+	const double nothing = 1e-4;
+	*flattered = *blackened = 0;
+	for (int32_t k = 0; k < of->count; k++) {
+		*flattered += of->error[k] > 3 * of->told[k] && of->error[k] > nothing;
+		*blackened += of->told[k] > most * of->error[k] && of->told[k] > 0.01;
+	}
+	*flattered /= of->count;
+	*blackened /= of->count;
+}
+
+static void tell(const char *name, const sampled *of)
+{
+	double flattered, blackened;
+	compare_told(of, 3, &flattered, &blackened);
+	print_message("%s: %.2f iterations, error p50 %.2g p95 %.2g most %.2g, force p95 %.2g, "
+	              "flattered %.3f, blackened %.3f\n",
+	              name, (double)of->iterations / of->count, quantile(of->error, of->count, 0.5),
+	              quantile(of->error, of->count, 0.95), quantile(of->error, of->count, 1),
+	              quantile(of->force, of->count, 0.95), flattered, blackened);
+}
+
+static void expect_right(const char *name, const sampled *of)
+{
+	double flattered, blackened;
+	tell(name, of);
+	compare_told(of, 3, &flattered, &blackened);
+	assert_true(quantile(of->error, of->count, 0.95) <= 0.01);
+	assert_true(quantile(of->force, of->count, 0.95) <= 0.02);
+	assert_true(flattered <= 0.01);
+	assert_true(blackened <= 0.1);
+}
+
+static void a_taut_sheet_is_right(void **state)
+{
+	(void)state;
+	for (int precision = 0; precision < CAU_PRECISION_COUNT; precision++) {
+		cau_scene_def *scene = make_taut();
+		scene->precision = precision;
+		sampled of = run(scene, MOST, CAU_TEST_SANITIZED ? 40 : 120, CAU_TEST_SANITIZED ? 8 : 2);
+		expect_right("taut", &of);
+		assert_true(of.iterations <= 7 * of.count);
+	}
+}
+
+static void fat_is_right(void **state)
+{
+	(void)state;
+	for (int precision = 0; precision < CAU_PRECISION_COUNT; precision++) {
+		cau_scene_def *scene = make_block();
+		scene->precision = precision;
+		sampled of = run(scene, MOST, CAU_TEST_SANITIZED ? 36 : 100, CAU_TEST_SANITIZED ? 12 : 3);
+		expect_right("fat", &of);
+		assert_true(of.iterations <= 16 * of.count);
+	}
+}
+
+// A free sheet does not come to 1 % in so few iterations: it takes all that there are, and says so.
+static void what_is_not_reached_is_told(void **state)
+{
+	(void)state;
+	double flattered, blackened;
+	sampled of = run(make_free(), 10, CAU_TEST_SANITIZED ? 20 : 60, CAU_TEST_SANITIZED ? 5 : 2);
+	tell("free", &of);
+	compare_told(&of, 10, &flattered, &blackened);
+	assert_true(flattered <= 0.01);
+	for (int32_t k = 0; k < of.count; k++)
+		assert_true(of.error[k] <= 0.03 || of.told[k] > 0.01);
+}
+
+// ---- its number of iterations
+
+static void without_accuracy_each_step_takes_as_many(void **state)
+{
+	(void)state;
+	cau_scene_def *scene = make_taut();
+	scene->accuracy = 0;
+	scene->iterations = 7;
+	cau_session *session = stage_open(scene, 1);
+	for (int k = 0; k < 20; k++) {
+		stage_gravity(session, 0, 0, -9.81 - k); // else it would rest
+		stage_step(session, 1);
+		assert_int_equal(stage_frame(session).statistics.iterations, 7);
+		assert_true(stage_frame(session).statistics.error == 0);
+	}
+	cau_session_destroy(session);
+	free(scene);
+}
+
+// A tolerance is what is wanted of whoever gives one.
+static void a_tolerance_goes_before_accuracy(void **state)
+{
+	(void)state;
+	cau_scene_def *scene = make_block();
+	scene->iterations = CONVERGED;
+	scene->tolerance = 1e-6;
+	cau_session *session = stage_open(scene, 1);
+	stage_step(session, 1);
+	assert_true(stage_frame(session).statistics.residual <= 1e-6);
+	cau_session_destroy(session);
+	free(scene);
+}
+
+// One of another accuracy is read, and goes on otherwise than it would have.
+static void a_snapshot_of_another_accuracy_is_not_exact(void **state)
+{
+	(void)state;
+	cau_scene_def *scene = make_block();
+	cau_session *session = stage_open(scene, 1);
+	stage_step(session, 2);
+	stage_bytes shot = stage_snapshot(session);
+	scene->accuracy = 0.05;
+	cau_session *other = stage_open(scene, 1);
+	bool exact = true;
+	assert_int_equal(cau_session_restore(other, shot.bytes, shot.count, &exact, NULL), CAU_OK);
+	assert_false(exact);
+	assert_int_equal(cau_session_restore(session, shot.bytes, shot.count, &exact, NULL), CAU_OK);
+	assert_true(exact);
+	free(shot.bytes);
+	cau_session_destroy(session);
+	cau_session_destroy(other);
+	free(scene);
+}
+
+int main(void)
+{
+	const struct CMUnitTest tests[] = {
+		cmocka_unit_test(a_taut_sheet_is_right),
+		cmocka_unit_test(fat_is_right),
+		cmocka_unit_test(what_is_not_reached_is_told),
+		cmocka_unit_test(without_accuracy_each_step_takes_as_many),
+		cmocka_unit_test(a_tolerance_goes_before_accuracy),
+		cmocka_unit_test(a_snapshot_of_another_accuracy_is_not_exact),
+	};
+	return cmocka_run_group_tests(tests, NULL, NULL);
+}
