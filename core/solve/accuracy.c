@@ -21,6 +21,7 @@ static const double bound_share =
 	0.5; // the bound is reached by one mode alone, seldom by what is left
 static const double forgetting = 0.1; // of an amplification's logarithm, a step that shows less
 static const double worth_learning = 0.05; // lengths below are rounding
+static const double all_rounding = 0.02;   // a first length below: nothing moves at all
 enum {
 	SUMS = 4,     // of a chunk: mass, and mass times squares of trial increment, increment, motion
 	DEEP = 4,     // increments that a step is learned from by
@@ -193,8 +194,9 @@ bool cau_accuracy_is_reached(cau_step_solver *solver, double norm)
 		                  accuracy->length[at];
 		error = fmax(error, changed * error / accuracy->length[at]);
 	}
-	bool learns = accuracy->shallow_steps >= SHALLOW && accuracy->count < DEEP;
-	return error <= 1 && !(learns && error > 0);
+	bool learns = accuracy->shallow_steps >= SHALLOW && accuracy->count < DEEP &&
+	              accuracy->length[0] > all_rounding;
+	return error <= 1 && !learns;
 }
 
 // ---- from step to step

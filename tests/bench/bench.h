@@ -11,7 +11,8 @@ typedef struct bench_options {
 	const char *scene, *scenes_directory;
 	int32_t threads, iterations, steps, repeat;
 	int solver, precision; // -1: the scene's
-	bool cut, error, scaling, json, help;
+	double accuracy;       // 0: not measured
+	bool cut, error, scaling, rest, json, help;
 	const char *instruction_set;
 } bench_options;
 
@@ -65,6 +66,17 @@ typedef struct bench_error_result {
 	double curve_error[BENCH_CURVE], curve_ms[BENCH_CURVE];
 } bench_error_result;
 int bench_error(const bench_options *options, bench_error_result *result);
+
+// accuracy.c: steps that end at an accuracy against steps of K iterations, by turns.
+typedef struct bench_accuracy_result {
+	double speedup_over_k;  // time of K iterations over that of the accuracy
+	double error_p95;       // of sampled steps, the worst of the whole and of each chunk
+	double iterations_mean; // of a step
+	double rest_core_share; // of a session that rests, of one core
+} bench_accuracy_result;
+int bench_accuracy(const bench_options *options, bench_accuracy_result *result);
+// steps.c: the tools of plain steps, one lit above the tissue, one pressed into it.
+void bench_place_tools(cau_session *session);
 
 // limit.c: the time that moving its bytes through one core would take a step, if nothing else did.
 typedef struct bench_limit_result {

@@ -69,6 +69,19 @@ static void print_error(const bench_options *options, const bench_error_result *
 	fputs(options->json ? "]" : "\n", stdout);
 }
 
+static void print_accuracy(const bench_options *options, const bench_accuracy_result *result)
+{
+	printf(options->json ? "\"speedup_over_k\":%.6g,\"iterations_mean\":%.6g"
+	                     : "  %.2f times the steps of K iterations, %.2f iterations",
+	       result->speedup_over_k, result->iterations_mean);
+	if (options->rest)
+		printf(options->json ? ",\"rest_core_share\":%.3g"
+		                     : ", at rest and awake; a session that rests takes %.2g of a core\n",
+		       result->rest_core_share);
+	else
+		printf(options->json ? ",\"error_p95\":%.6g" : ", error p95 %.4g\n", result->error_p95);
+}
+
 static void print_limit(const bench_options *options, const bench_limit_result *result)
 {
 	printf(options->json ? "\"bytes_step\":%.0f,\"bandwidth_b_s\":%.4g,\"limit_ms\":%.6g"
@@ -108,6 +121,7 @@ int main(int argc, char **argv)
 	bench_error_result error;
 	bench_scaling_result scaling;
 	bench_limit_result limit;
+	bench_accuracy_result accuracy;
 	if (!bench_options_read(argc, argv, &options, stderr))
 		return 2;
 	if (options.help) {
@@ -118,6 +132,7 @@ int main(int argc, char **argv)
 	if (bench_steps(&options, &steps) || bench_limit(&options, &limit) ||
 	    (options.cut && bench_cut(&options, &cut)) ||
 	    (options.error && bench_error(&options, &error)) ||
+	    ((options.accuracy > 0 || options.rest) && bench_accuracy(&options, &accuracy)) ||
 	    (options.scaling && bench_scaling(&options, &scaling)))
 		return 1;
 	if (options.json)
@@ -133,6 +148,10 @@ int main(int argc, char **argv)
 	if (options.error) {
 		fputs(options.json ? "," : "", stdout);
 		print_error(&options, &error);
+	}
+	if (options.accuracy > 0 || options.rest) {
+		fputs(options.json ? "," : "", stdout);
+		print_accuracy(&options, &accuracy);
 	}
 	if (options.scaling) {
 		fputs(options.json ? "," : "", stdout);

@@ -32,6 +32,10 @@ static const cau_option rows[] = {
                 "least of them (default 1)"},
 	{"error", NULL, CAU_OPTION_FLAG, AT(error),
      .meaning = "error of K iterations against the converged step under the scene's pull"},
+	{"accuracy", "A", CAU_OPTION_NUMBER, AT(accuracy), 1e-4, 1,
+     .meaning = "steps that end at this error against steps of K iterations, by turns"},
+	{"rest", NULL, CAU_OPTION_FLAG, AT(rest),
+     .meaning = "the same at rest and awake, and what a session that rests costs"},
 	{"scaling", NULL, CAU_OPTION_FLAG, AT(scaling), .meaning = "step time against size"},
 	{"json", NULL, CAU_OPTION_FLAG, AT(json),
      .meaning = "the last line of standard output is one JSON object; its `machine` says\n"

@@ -38,7 +38,7 @@ static void top_middle(const cau_session *session, double at[3])
 	}
 }
 
-static void place_tools(cau_session *session)
+void bench_place_tools(cau_session *session)
 {
 	double at[3] = {0, 0, 0};
 	top_middle(session, at);
@@ -146,7 +146,7 @@ int bench_steps(const bench_options *options, bench_steps_result *result)
 	result->tetrahedra = session->tissue.tetrahedron_count;
 	result->triangles = session->tissue.triangle_count;
 	cau_session_set_clock(session, bench_now_s);
-	place_tools(session);
+	bench_place_tools(session);
 	int failed = run(session, options, result);
 	result->cholmod_ms = time_cholmod(session);
 	if (result->cholmod_ms > 0)

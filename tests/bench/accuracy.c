@@ -1,0 +1,168 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Steps that end at an accuracy against steps of K iterations: two sessions of one scene, stepped
+// by turns, so that whatever the machine does beside it slows both. Sampled steps are taken again
+// from the same state by a third session that iterates until they have converged.
+#include <math.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "bench/bench.h"
+#include "session/session_internal.h"
+
+enum {
+	WARM_UP = 60,
+	MOST = 40, // iterations of a step that has an accuracy to reach
+	SAMPLES = 20,
+	CONVERGED = 300,
+	REST_TICKS = 3000, // until tissue rests, at most
+	RESTING_TICKS = 100000,
+};
+static const double converged_residual = 3e-7;
+static const double least_error_m = 0.5e-6; // what is no error, however little moves
+
+typedef struct turns {
+	cau_session *session, *fixed, *exact;
+	double accuracy;
+} turns;
+
+static double part_error(const cau_session *session, const double *exact, int32_t first,
+                         int32_t last, double accuracy)
+{
+	double mass = 0, off = 0, motion = 0;
+	for (int32_t v = first; v < last; v++) {
+		double m = session->fixed[v] ? 0 : session->tissue.mass[v];
+		mass += m;
+		for (int c = 0; c < 3; c++) {
+			double d = session->position[3 * v + c] - exact[3 * v + c];
+			double way = exact[3 * v + c] - session->position_start[3 * v + c];
+			off += m * d * d;
+			motion += m * way * way;
+		}
+	}
+	return mass > 0 ? sqrt(off / mass) / fmax(sqrt(motion / mass), least_error_m / accuracy) : 0;
+}
+
+// Of the whole or of a chunk of vertices, whichever is worst.
+static double worst_error(const cau_session *session, const double *exact, double accuracy)
+{
+	int32_t n = session->tissue.vertex_count;
+	double worst = part_error(session, exact, 0, n, accuracy);
+	for (int32_t first = 0; first < n; first += CAU_VERTEX_CHUNK) {
+		int32_t last = first + CAU_VERTEX_CHUNK < n ? first + CAU_VERTEX_CHUNK : n;
+		worst = fmax(worst, part_error(session, exact, first, last, accuracy));
+	}
+	return worst;
+}
+
+static void copy_state(cau_session *to, const cau_session *from)
+{
+	size_t bytes = cau_session_snapshot_bytes(from), used = 0;
+	void *shot = malloc(bytes);
+	cau_error error = {0};
+	if (!shot || cau_session_snapshot(from, shot, bytes, &used, &error) ||
+	    cau_session_restore(to, shot, used, NULL, &error)) {
+		fprintf(stderr, "cautery-bench: %s\n", error.reason);
+		exit(1);
+	}
+	free(shot);
+}
+
+static double step_s(cau_session *session)
+{
+	cau_error error = {0};
+	bench_keep_awake(session);
+	double start = bench_now_s();
+	if (cau_session_step(session, &error)) {
+		fprintf(stderr, "cautery-bench: %s\n", error.reason);
+		exit(1);
+	}
+	return bench_now_s() - start;
+}
+
+static void measure(turns *t, int32_t steps, bench_accuracy_result *result)
+{
+	double accurate_s = 0, fixed_s = 0, error[SAMPLES] = {0};
+	int64_t iterations = 0;
+	int32_t samples = 0, every = steps / SAMPLES > 0 ? steps / SAMPLES : 1;
+	for (int32_t i = -WARM_UP; i < steps; i++) {
+		bool sampled = t->exact && i >= 0 && i % every == 0 && samples < SAMPLES;
+		if (sampled) {
+			copy_state(t->exact, t->session);
+			step_s(t->exact);
+		}
+		double accurate = step_s(t->session), fixed = step_s(t->fixed);
+		if (sampled)
+			error[samples++] = worst_error(t->session, t->exact->position, t->accuracy);
+		if (i < 0)
+			continue;
+		accurate_s += accurate;
+		fixed_s += fixed;
+		iterations += t->session->solver.iterations_done;
+	}
+	result->speedup_over_k = fixed_s / accurate_s;
+	result->iterations_mean = (double)iterations / steps;
+	result->error_p95 = bench_quantile(error, samples, 0.95);
+}
+
+// Steps that nothing wakes: until it rests, and then what they cost of a core.
+static int measure_rest(turns *t, bench_accuracy_result *result)
+{
+	int32_t ticks = 0;
+	for (; !t->session->rest.resting && ticks < REST_TICKS; ticks++)
+		cau_session_step(t->session, NULL);
+	if (!t->session->rest.resting) {
+		fprintf(stderr, "cautery-bench: no rest after %d ticks\n", ticks);
+		return 1;
+	}
+	double start = bench_now_s();
+	for (int32_t i = 0; i < RESTING_TICKS; i++)
+		cau_session_step(t->session, NULL);
+	result->rest_core_share = (bench_now_s() - start) / (RESTING_TICKS * t->session->solver.step_s);
+	copy_state(t->fixed, t->session); // awake, both from rest
+	return 0;
+}
+
+static int measure_scene(turns *t, const bench_options *options, bench_accuracy_result *result)
+{
+	if (!t->session || !t->fixed || (!options->rest && !t->exact))
+		return 1;
+	if (options->rest && measure_rest(t, result))
+		return 1;
+	if (!options->rest) {
+		bench_place_tools(t->session);
+		bench_place_tools(t->fixed);
+	}
+	measure(t, options->steps, result);
+	return 0;
+}
+
+int bench_accuracy(const bench_options *options, bench_accuracy_result *result)
+{
+	memset(result, 0, sizeof *result);
+	cau_scene_def *scene = bench_scene(options);
+	if (!scene)
+		return 1;
+	turns t = {.accuracy = options->accuracy > 0 ? options->accuracy : 0.01};
+	scene->accuracy = t.accuracy;
+	scene->iterations = options->iterations > MOST ? options->iterations : MOST;
+	t.session = bench_session(scene, options, options->threads);
+	t.fixed = bench_session(scene, options, options->threads);
+	if (!options->rest)
+		t.exact = bench_session(scene, options, options->threads);
+	if (t.fixed) {
+		t.fixed->solver.accuracy.wanted = 0;
+		t.fixed->solver.iterations = options->iterations;
+	}
+	if (t.exact) {
+		t.exact->solver.accuracy.wanted = 0;
+		t.exact->solver.iterations = CONVERGED;
+		t.exact->solver.tolerance = converged_residual;
+	}
+	int failed = measure_scene(&t, options, result);
+	cau_session_destroy(t.session);
+	cau_session_destroy(t.fixed);
+	cau_session_destroy(t.exact);
+	free(scene);
+	return failed;
+}
