@@ -87,9 +87,9 @@ static cau_status read_flags(cau_config *config, cau_config_request *request, co
 		char name[64];
 		const char *equals = strchr(flag, '=');
 		snprintf(name, sizeof name, "%.*s", equals ? (int)(equals - flag - 2) : 60, flag + 2);
-		bool is_config = strcmp(name, "config") == 0;
+		bool is_config = strcmp(name, "config") == 0, is_backup = strcmp(name, "backup") == 0;
 		const setting *found = cau_setting_find(name);
-		if (!is_config && !found)
+		if (!is_config && !is_backup && !found)
 			return cau_fail(error, CAU_NOT_FOUND, flag, "there is no such flag; see --help");
 		const char *text = equals ? equals + 1 : NULL;
 		if (!text && found && found->kind == SETTING_SWITCH)
@@ -100,8 +100,10 @@ static cau_status read_flags(cau_config *config, cau_config_request *request, co
 			return cau_fail(error, CAU_BAD_SYNTAX, flag, "needs a value");
 		if (is_config && file)
 			*file = text;
+		if (is_backup)
+			request->backup = text;
 		cau_status status = CAU_OK;
-		if (!is_config && !file)
+		if (found && !file)
 			status = cau_config_set(config, name, text, error);
 		if (status)
 			return status;

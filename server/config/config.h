@@ -94,6 +94,7 @@ typedef struct cau_config {
 // What the command line asked for besides settings.
 typedef struct cau_config_request {
 	bool help, version, json, print_config, settings_schema;
+	const char *backup; // file for a copy of the store, or NULL
 } cau_config_request;
 
 void cau_config_default(cau_config *config);

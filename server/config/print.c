@@ -87,6 +87,7 @@ void cau_config_help(FILE *stream)
 	      "  --config FILE                  a JSON object of the settings below\n"
 	      "  --print-config                 print the settings in force and end\n"
 	      "  --settings-schema              print a JSON Schema of the settings and end\n"
+	      "  --backup FILE                  copy the store, which a daemon may be using, and end\n"
 	      "  --json                         print one line of JSON with the address once ready\n"
 	      "  --version                      which version this is\n"
 	      "  --help                         this text\n\n"

@@ -4,12 +4,14 @@
 #include <signal.h>
 #include <stdio.h>
 #include <string.h>
+#include <sys/stat.h>
 #include <unistd.h>
 
 #include "config/config.h"
 #include "config/setting.h"
 #include "daemon/daemon.h"
 #include "log/log.h"
+#include "store/backup.h"
 
 // Ends 0 after a drain, 1 if the daemon could not start, 2 for bad settings.
 enum { EXIT_STARTED = 0, EXIT_FAILED = 1, EXIT_USAGE = 2 };
@@ -97,6 +99,19 @@ static int run(cau_config *config, bool json, call *called)
 	return EXIT_STARTED;
 }
 
+// The store's copy, for no other user to read.
+static int back_up(const cau_config *config, const char *file)
+{
+	cau_error error = {0};
+	umask(0077);
+	if (cau_store_backup(config->store, file, &error)) {
+		snprintf(error.file, sizeof error.file, "%.255s", file);
+		return fail("backup_failed", &error);
+	}
+	cau_log(CAU_LOG_NOTICE, NULL, "backed_up", "store=\"%s\" file=\"%s\"", config->store, file);
+	return EXIT_STARTED;
+}
+
 int main(int argument_count, char **arguments)
 {
 	cau_config config;
@@ -133,6 +148,8 @@ int main(int argument_count, char **arguments)
 		fail("bad_settings", &error);
 		return EXIT_USAGE;
 	}
+	if (request.backup)
+		return back_up(&config, request.backup);
 	call called = {argument_count, arguments, config};
 	return run(&config, request.json, &called);
 }

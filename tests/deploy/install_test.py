@@ -47,9 +47,10 @@ class Installed(unittest.TestCase):
         self.assertEqual(len(found), 1, f"{pattern}: {found}")
         return found[0]
 
-    def start(self):
+    def start(self, store=None):
         """The installed daemon, with nothing said about its files. Returns its port."""
-        store = os.path.join(tempfile.mkdtemp(dir=self.folder), "store.db")
+        store = store or os.path.join(tempfile.mkdtemp(dir=self.folder), "store.db")
+        self.store = store
         daemon = subprocess.Popen([self.path("bin/cauteryd"), "--json", "--port", "0", "--store", store],
                                   stdout=subprocess.PIPE, env=CLEAN, cwd="/", text=True)
 
@@ -66,6 +67,18 @@ class Installed(unittest.TestCase):
         url = {"CAUTERYD_URL": f"ws://127.0.0.1:{port}"}
         session = run(self.path("bin/cautery"), "create", "fascia", environment=url).stdout.strip()
         self.assertIn(session, run(self.path("bin/cautery"), "ls", environment=url).stdout)
+
+    def test_a_copy_of_a_store_in_use_holds_its_sessions(self):
+        port, copy = self.start(), os.path.join(self.folder, "copy.db")
+        session = run(self.path("bin/cautery"), "create", "fascia",
+                      environment={"CAUTERYD_URL": f"ws://127.0.0.1:{port}"}).stdout.strip()
+        run(self.path("bin/cauteryd"), "--store", self.store, "--backup", copy)
+        self.assertEqual(os.stat(copy).st_mode & 0o777, 0o600)
+        again = {"CAUTERYD_URL": f"ws://127.0.0.1:{self.start(copy)}"}
+        self.assertIn(session, run(self.path("bin/cautery"), "info", session, environment=again).stdout)
+        twice = subprocess.run([self.path("bin/cauteryd"), "--store", self.store, "--backup", copy], env=CLEAN,
+                               capture_output=True, check=False)
+        self.assertEqual(twice.returncode, 1)
 
     def test_viewer_is_served(self):
         viewer = os.path.join(SOURCES, "clients/web/dist/index.html")

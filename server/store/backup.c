@@ -1,0 +1,91 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "backup.h"
+
+#include <errno.h>
+#include <fcntl.h>
+#include <sqlite3.h>
+#include <stdbool.h>
+#include <stdio.h>
+#include <string.h>
+#include <unistd.h>
+
+#include "fault.h"
+#include "file.h"
+#include "probe.h"
+
+enum { NAME_BYTES = 4096, WAIT_MS = 100, WAITS_MOST = 300 };
+
+static cau_status fail_file(cau_error *error, const char *doing)
+{
+	return cau_fail(error, CAU_IO, NULL, "%s: %s", doing, strerror(errno));
+}
+
+// All pages in one step, in one reading transaction: those who write are not held up, since their
+// pages go to the log (WAL). Busy is only who folds the log at this moment.
+static cau_status copy_pages(sqlite3 *from, sqlite3 *to, cau_error *error)
+{
+	sqlite3_backup *backup = sqlite3_backup_init(to, "main", from, "main");
+	if (!backup)
+		return cau_store_fault(to, sqlite3_errcode(to), "beginning the copy", error);
+	int code = SQLITE_BUSY;
+	for (int i = 0; i < WAITS_MOST && (code == SQLITE_BUSY || code == SQLITE_LOCKED); i++) {
+		if (i)
+			sqlite3_sleep(WAIT_MS);
+		code = sqlite3_backup_step(backup, -1);
+	}
+	sqlite3_backup_finish(backup);
+	return code == SQLITE_DONE ? CAU_OK : cau_store_fault(to, code, "copying it", error);
+}
+
+static cau_status copy(const char *path, const char *made, cau_error *error)
+{
+	sqlite3 *from = NULL, *to = NULL;
+	cau_status status = cau_store_file_open_reader(path, &from, error);
+	if (!status && sqlite3_open_v2(made, &to, SQLITE_OPEN_READWRITE | SQLITE_OPEN_CREATE, NULL))
+		status = cau_store_fault(to, sqlite3_errcode(to), "making the copy", error);
+	if (!status)
+		status = copy_pages(from, to, error);
+	sqlite3_close(to);
+	sqlite3_close(from);
+	return status;
+}
+
+static cau_status sync_file(const char *made, cau_error *error)
+{
+	int descriptor = open(made, O_RDONLY | O_CLOEXEC);
+	bool synced = descriptor >= 0 && fsync(descriptor) == 0;
+	cau_status status = synced ? CAU_OK : fail_file(error, "syncing the copy");
+	if (descriptor >= 0)
+		close(descriptor);
+	return status;
+}
+
+// Under its name it is whole or not at all. A link replaces nothing.
+static cau_status put_in_place(const char *made, const char *file, cau_error *error)
+{
+	if (link(made, file) == 0)
+		return CAU_OK;
+	return errno == EEXIST ? cau_fail(error, CAU_ALREADY_EXISTS, NULL, "something is there already")
+	                       : fail_file(error, "putting the copy in its place");
+}
+
+cau_status cau_store_backup(const char *path, const char *file, cau_error *error)
+{
+	char made[NAME_BYTES];
+	enum cau_store_found found = CAU_STORE_ABSENT;
+	if ((size_t)snprintf(made, sizeof made, "%s.%d.new", file, (int)getpid()) >= sizeof made)
+		return cau_fail(error, CAU_BAD_VALUE, NULL, "the name is too long");
+	if (access(path, F_OK) != 0)
+		return cau_fail(error, CAU_NOT_FOUND, NULL, "no store %.200s", path);
+	if (access(file, F_OK) == 0)
+		return cau_fail(error, CAU_ALREADY_EXISTS, NULL, "something is there already");
+	cau_status status = copy(path, made, error);
+	if (!status)
+		status = cau_store_probe(made, NULL, &found, error);
+	if (!status)
+		status = sync_file(made, error);
+	if (!status)
+		status = put_in_place(made, file, error);
+	unlink(made);
+	return status;
+}
