@@ -7,6 +7,7 @@ import type { Frame } from '../wire/worker_messages';
 import { cameraViews } from './camera';
 import { attempt, button, byId, check, element, field, problemPlace, save, short } from './dom';
 import type { Panel } from './tabs';
+import { videoButton } from './video';
 
 const COLOURINGS: readonly (readonly [ViewOptions['colouring'], string])[] = [
   ['tissue', 'as tissue'],
@@ -127,7 +128,7 @@ export function viewPanel(control: Control, viewport: Viewport, inspectSwitch: H
     clip,
     cameraViews(viewport),
     themes(viewport),
-    element('div', { class: 'buttons' }, png),
+    element('div', { class: 'buttons' }, png, videoButton(model, viewport, problem)),
     problem,
   );
   return { id: 'view', title: 'View', body };

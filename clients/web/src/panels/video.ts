@@ -1,0 +1,58 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// What is seen, as a video: the browser's own recorder takes the pictures as they are drawn, and what it made
+// is saved when it is stopped.
+import type { Model } from '../model/model';
+import type { Viewport } from '../scene/viewport';
+import { attempt, button, save } from './dom';
+
+const PICTURES_A_SECOND = 30;
+const BITS_A_SECOND = 8_000_000; // tissue is full of fine detail
+const STILL_MS = 500; // a picture at which nothing changes is drawn again after this, so that it has its length
+/** The first that the browser can write is taken. WebM goes before MP4: its pictures may change their size. */
+const KINDS = [
+  { type: 'video/webm;codecs=vp9', ending: 'webm' },
+  { type: 'video/webm;codecs=vp8', ending: 'webm' },
+  { type: 'video/mp4', ending: 'mp4' },
+];
+
+interface Recording {
+  recorder: MediaRecorder;
+  still: ReturnType<typeof setInterval>;
+}
+
+/** A button that begins and ends a recording; `problem`: where is said that it cannot. */
+export function videoButton(model: Model, viewport: Viewport, problem: HTMLElement): HTMLButtonElement {
+  let going: Recording | null = null;
+  const press = button('Record a video', () => void attempt(problem, () => Promise.resolve().then(going ? end : begin)), { id: 'video', ariaPressed: 'false' });
+
+  const show = (): void => {
+    press.textContent = going ? 'Stop and save the video' : 'Record a video';
+    press.ariaPressed = String(going !== null);
+  };
+  const begin = (): void => {
+    const kind = 'MediaRecorder' in window ? KINDS.find(({ type }) => MediaRecorder.isTypeSupported(type)) : undefined;
+    if (!kind) throw new Error('this browser cannot record video');
+    const name = `cautery-${model.session ?? 'view'}-${model.frame?.tick ?? 0}.${kind.ending}`;
+    const stream = viewport.canvas.captureStream(PICTURES_A_SECOND);
+    const recorder = new MediaRecorder(stream, { mimeType: kind.type, videoBitsPerSecond: BITS_A_SECOND });
+    const parts: Blob[] = [];
+    recorder.addEventListener('dataavailable', ({ data }) => parts.push(data));
+    recorder.addEventListener('error', () => model.notice('error', 'The browser has given up recording. What it has is saved.'));
+    recorder.addEventListener('stop', () => {
+      stop();
+      save(name, new Blob(parts, { type: kind.type }));
+      for (const track of stream.getTracks()) track.stop();
+    });
+    recorder.start();
+    going = { recorder, still: setInterval(() => viewport.invalidate(), STILL_MS) };
+    viewport.invalidate();
+    show();
+  };
+  const stop = (): void => {
+    clearInterval(going?.still);
+    going = null;
+    show();
+  };
+  const end = (): void => going?.recorder.stop();
+  return press;
+}
