@@ -4,7 +4,7 @@ import { defineConfig } from 'vitest/config';
 
 const here = (path: string): string => fileURLToPath(new URL(path, import.meta.url));
 
-// Pages in Chromium against a real daemon, one after the other: two cores draw one page in software.
+// Pages in Chromium against real daemons, two files at a time: they wait more than they compute.
 export default defineConfig({
   resolve: {
     alias: {
@@ -17,8 +17,7 @@ export default defineConfig({
     dir: here('../../tests/browser/page'),
     include: ['**/*.test.ts'],
     pool: 'forks',
-    poolOptions: { forks: { singleFork: true } },
-    fileParallelism: false,
+    poolOptions: { forks: { minForks: 1, maxForks: 2 } },
     testTimeout: 300_000,
     hookTimeout: 300_000,
   },

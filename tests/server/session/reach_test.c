@@ -3,9 +3,10 @@
 // order, live, look away and go, the store fills, empties and commits, time passes, the session
 // steps, goes back, stays, ends, and the worker asks, does and is refused, in every order. In each
 // state and after each event rules are checked that keep their own books (reach_rules.c). A search
-// that closes is a proof: what it does not reach cannot happen with these events. The two largest
-// worlds have not closed in half an hour; with --long their first states are looked at, nearest to
-// the beginning first, and the last line says "not closed".
+// that closes is a proof: what it does not reach cannot happen with these events. With --long two
+// tools with all events close too, in half an hour of processor time and 1.6 GB. Of one tool with a
+// queue of two and all events the first states are looked at, nearest to the beginning first, and
+// its line says "not closed".
 //
 // What makes them finite, and why nothing is lost by it:
 //   - Moments, times and ticks count only by how they compare, and a state keeps just that: places
@@ -67,7 +68,7 @@ static const search searches[] = {
 	{"one tool, a queue of two, resends and later ticks", 1, 2, OFF | RESEND | LATER, SHORT},
 	{"one tool, a queue of one, everything", 1, 1, ALL, LONG},
 	{"one tool, a queue of two, everything", 1, 2, ALL, PART},
-	{"two tools, a queue of one, everything", 2, 1, ALL, PART},
+	{"two tools, a queue of one, everything", 2, 1, ALL, LONG}, // 51,696,545 states
 };
 
 // ---- the alphabet -------------------------------------------------------------------------------
