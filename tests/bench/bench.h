@@ -12,7 +12,7 @@ typedef struct bench_options {
 	int32_t threads, iterations, steps, repeat;
 	int solver, precision; // -1: the scene's
 	double accuracy;       // 0: not measured
-	bool cut, error, scaling, rest, json, help;
+	bool cut, error, scaling, rest, update, json, help;
 	const char *instruction_set;
 } bench_options;
 
@@ -94,6 +94,18 @@ typedef struct bench_scaling_result {
 	double exponent;
 } bench_scaling_result;
 int bench_scaling(const bench_options *options, bench_scaling_result *result);
+
+// update.c: the matrix kept in step with cuts of so many elements.
+enum { BENCH_UPDATES = 5 };
+typedef struct bench_update_row {
+	int32_t elements;
+	double downdate_ms, refactor_ms, anew_ms; // anew: with order and analysis
+} bench_update_row;
+typedef struct bench_update_result {
+	int32_t vertices;
+	bench_update_row row[BENCH_UPDATES];
+} bench_update_result;
+int bench_update(const bench_options *options, bench_update_result *result);
 
 // allocation.c: calls of malloc, calloc, realloc, aligned_alloc by the whole program so far.
 uint64_t bench_allocations(void);

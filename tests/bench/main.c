@@ -99,6 +99,23 @@ static void print_scaling(const bench_options *options, const bench_scaling_resu
 	printf(options->json ? "]" : "\n");
 }
 
+static void print_update(const bench_options *options, const bench_update_result *result)
+{
+	if (options->json)
+		printf("\"update\":[");
+	for (int i = 0; i < BENCH_UPDATES; i++) {
+		const bench_update_row *row = &result->row[i];
+		printf(options->json ? "%s{\"elements\":%d,\"downdate_ms\":%.6g,\"refactor_ms\":%.6g,"
+		                       "\"anew_ms\":%.6g}"
+		                     : "%s  %3d elements: downdates %.3f ms, numbers anew %.3f ms, order, "
+		                       "pattern and numbers anew %.3f ms\n",
+		       i && options->json ? "," : "", row->elements, row->downdate_ms, row->refactor_ms,
+		       row->anew_ms);
+	}
+	if (options->json)
+		putchar(']');
+}
+
 static void print_machine(const bench_options *options, const bench_steps_result *result,
                           const bench_cpu_time *before)
 {
@@ -122,6 +139,7 @@ int main(int argc, char **argv)
 	bench_scaling_result scaling;
 	bench_limit_result limit;
 	bench_accuracy_result accuracy;
+	bench_update_result update;
 	if (!bench_options_read(argc, argv, &options, stderr))
 		return 2;
 	if (options.help) {
@@ -133,7 +151,8 @@ int main(int argc, char **argv)
 	    (options.cut && bench_cut(&options, &cut)) ||
 	    (options.error && bench_error(&options, &error)) ||
 	    ((options.accuracy > 0 || options.rest) && bench_accuracy(&options, &accuracy)) ||
-	    (options.scaling && bench_scaling(&options, &scaling)))
+	    (options.scaling && bench_scaling(&options, &scaling)) ||
+	    (options.update && bench_update(&options, &update)))
 		return 1;
 	if (options.json)
 		printf("{\"scene\":\"%s\",\"threads\":%d,\"iterations\":%d,", options.scene,
@@ -156,6 +175,10 @@ int main(int argc, char **argv)
 	if (options.scaling) {
 		fputs(options.json ? "," : "", stdout);
 		print_scaling(&options, &scaling);
+	}
+	if (options.update) {
+		fputs(options.json ? "," : "", stdout);
+		print_update(&options, &update);
 	}
 	fputs(options.json ? "," : "", stdout);
 	print_machine(&options, &steps, &before);

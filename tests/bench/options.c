@@ -37,6 +37,8 @@ static const cau_option rows[] = {
 	{"rest", NULL, CAU_OPTION_FLAG, AT(rest),
      .meaning = "the same at rest and awake, and what a session that rests costs"},
 	{"scaling", NULL, CAU_OPTION_FLAG, AT(scaling), .meaning = "step time against size"},
+	{"update", NULL, CAU_OPTION_FLAG, AT(update),
+     .meaning = "what keeping the matrix in step with a cut costs, three ways"},
 	{"json", NULL, CAU_OPTION_FLAG, AT(json),
      .meaning = "the last line of standard output is one JSON object; its `machine` says\n"
                 "on what it was measured, and what else that machine did meanwhile"},

@@ -39,7 +39,7 @@ def rows_and_columns(scene, state):
 
 def hang(sim, name, montage):
     scene = sim.scene(name)
-    scene["iterations"] = ITERATIONS
+    scene |= {"iterations": ITERATIONS, "accuracy": 0}
     ticks, last = HANGING_S * STEPS_PER_S, LAST_S * STEPS_PER_S
     run = sim.run(scene, seconds=HANGING_S, states_every=last)
     rest, before, end = run.states[0], run.states[ticks - last], run.states[ticks]
