@@ -15,6 +15,17 @@ export function showSaid(model: Model, viewport: Viewport, pointer: Pointer): ()
   const place = byId('said');
   const lines = new Map<string, HTMLElement>();
   let transient = 0;
+  const put = (): void => {
+    if (lines.size === 0) return;
+    const picture = viewport.canvas.getBoundingClientRect();
+    const tip = model.driving ? model.toolState?.positionM : undefined;
+    const at = tip ? viewport.project(tip) : (pointer.last ?? { x: picture.left + picture.width / 2, y: picture.top + picture.height / 3 });
+    const { width, height } = place.getBoundingClientRect();
+    const x = Math.min(Math.max(at.x - picture.left - width / 2, MARGIN_PX), Math.max(picture.width - width - MARGIN_PX, MARGIN_PX));
+    const above = at.y - picture.top - height - AWAY_PX;
+    const y = Math.min(above >= MARGIN_PX ? above : at.y - picture.top + 2 * AWAY_PX, picture.height - height - MARGIN_PX);
+    place.style.transform = `translate(${x.toFixed(0)}px, ${Math.max(y, MARGIN_PX).toFixed(0)}px)`;
+  };
   const remove = (key: string): void => {
     lines.get(key)?.remove();
     lines.delete(key);
@@ -33,19 +44,10 @@ export function showSaid(model: Model, viewport: Viewport, pointer: Pointer): ()
     lines.set(name, line);
     place.append(line);
     for (const old of [...lines.keys()].slice(0, -LINES_MAX)) remove(old);
+    put(); // at once: on a slow machine the next frame is a while away, and the words stood where the last ones were
     if (key === undefined) setTimeout(() => lines.get(name) === line && remove(name), action ? 2 * SHOWN_MS : SHOWN_MS);
   };
   model.on('said', add);
   model.on('unsaid', remove);
-  return () => {
-    if (lines.size === 0) return;
-    const picture = viewport.canvas.getBoundingClientRect();
-    const tip = model.driving ? model.toolState?.positionM : undefined;
-    const at = tip ? viewport.project(tip) : (pointer.last ?? { x: picture.left + picture.width / 2, y: picture.top + picture.height / 3 });
-    const { width, height } = place.getBoundingClientRect();
-    const x = Math.min(Math.max(at.x - picture.left - width / 2, MARGIN_PX), Math.max(picture.width - width - MARGIN_PX, MARGIN_PX));
-    const above = at.y - picture.top - height - AWAY_PX;
-    const y = Math.min(above >= MARGIN_PX ? above : at.y - picture.top + 2 * AWAY_PX, picture.height - height - MARGIN_PX);
-    place.style.transform = `translate(${x.toFixed(0)}px, ${Math.max(y, MARGIN_PX).toFixed(0)}px)`;
-  };
+  return put;
 }
