@@ -4,13 +4,17 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "cautery/assert.h"
+
 static void drop(cau_kept_states *kept, int32_t index)
 {
+	CAU_ASSERT(index >= 0 && index < kept->count, "state %d of %d", index, kept->count);
 	cau_kept_state *state = &kept->state[index];
 	kept->byte_count -= state->byte_count;
 	free(state->bytes);
 	kept->count--;
 	memmove(state, state + 1, (size_t)(kept->count - index) * sizeof *state);
+	kept->state[kept->count] = (cau_kept_state){0};
 }
 
 // How far a replay would have to go at most, if this one were gone. What lies before the first is
@@ -58,7 +62,7 @@ void cau_kept_states_put(cau_kept_states *kept, size_t budget, int64_t branch,
 	kept->state[place] = *state;
 	kept->count++;
 	kept->byte_count += state->byte_count;
-	while (kept->byte_count > budget)
+	while (kept->count > 0 && kept->byte_count > budget)
 		drop(kept, least_missed(kept));
 }
 

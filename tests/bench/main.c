@@ -134,12 +134,12 @@ int main(int argc, char **argv)
 	bench_options options;
 	bench_cpu_time before;
 	bench_steps_result steps;
-	bench_cut_result cut;
-	bench_error_result error;
-	bench_scaling_result scaling;
+	bench_cut_result cut = {0};
+	bench_error_result error = {0};
+	bench_scaling_result scaling = {0};
 	bench_limit_result limit;
-	bench_accuracy_result accuracy;
-	bench_update_result update;
+	bench_accuracy_result accuracy = {0};
+	bench_update_result update = {0};
 	if (!bench_options_read(argc, argv, &options, stderr))
 		return 2;
 	if (options.help) {

@@ -198,11 +198,19 @@ class TestUnit(unittest.TestCase):
         self.assertTrue(listener.tells("STOPPING=1", PATIENCE_S))
         self.assertEqual(daemon.wait(PATIENCE_S), 0)
 
+    @staticmethod
+    def named_threads(daemon, names):
+        """Each thread names itself, so a daemon that listens may have one that has not come to that."""
+        end = time.monotonic() + PATIENCE_S
+        while not set(names) <= threads_of(daemon.pid).keys() and time.monotonic() < end:
+            time.sleep(0.01)
+        return threads_of(daemon.pid)
+
     def test_threads_have_names_and_priorities(self):
         daemon, _, _ = self.start()
-        threads = threads_of(daemon.pid)
         nice = {"cautery-net": -5, "cautery-watch": -5, "cautery-store": 0, "cautery-fold": 0, "cautery-work": 5,
                 "cautery-build": 19}
+        threads = self.named_threads(daemon, nice)
         for name, wanted in nice.items():
             self.assertIn(name, threads)
             if wanted >= 0 or os.geteuid() == 0:
@@ -212,8 +220,9 @@ class TestUnit(unittest.TestCase):
     def test_systemd_is_not_told_that_it_lives_while_it_hangs(self):
         """Each of the three threads that energy and the store depend on is stopped in its turn."""
         daemon, listener, _ = self.start()
-        threads = threads_of(daemon.pid)
-        for name in ("cautery-net", "cautery-store", "cautery-watch"):
+        watched = ("cautery-net", "cautery-store", "cautery-watch")
+        threads = self.named_threads(daemon, watched)
+        for name in watched:
             [thread] = threads[name]
             try:
                 ptrace(PTRACE_SEIZE, thread)
