@@ -35,6 +35,7 @@ class Installed(unittest.TestCase):
         cls.addClassCleanup(shutil.rmtree, cls.folder)
         staged = os.path.join(cls.folder, "staged")
         run(CMAKE, "--install", TREE, "--prefix", "/usr", environment={"DESTDIR": staged})
+        cls.beside = sorted(os.listdir(staged))
         # Moved after it was installed: nothing in it may know where it was.
         cls.prefix = os.path.join(cls.folder, "elsewhere")
         os.rename(os.path.join(staged, "usr"), cls.prefix)
@@ -61,6 +62,10 @@ class Installed(unittest.TestCase):
 
         self.addCleanup(end)
         return json.loads(daemon.stdout.readline())["port"]
+
+    def test_nothing_goes_beyond_the_prefix(self):
+        self.assertEqual(self.beside, ["usr"])
+        self.assertTrue(os.path.exists(self.path("etc/cautery/cauteryd.json")))
 
     def test_session_by_the_installed_command_line(self):
         port = self.start()
