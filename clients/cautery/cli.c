@@ -67,6 +67,12 @@ cli_exit cli_fail(cli *c)
 	return answered ? CLI_REFUSED : c->error.status == CAU_BAD_VALUE ? CLI_USAGE : CLI_CONNECTION;
 }
 
+cli_exit cli_fail_memory(cli *c)
+{
+	cau_fail(&c->error, CAU_NO_MEMORY, NULL, "no memory here");
+	return cli_fail(c);
+}
+
 cli_exit cli_fail_file(cli *c)
 {
 	tell_error(c);
@@ -144,7 +150,7 @@ static cli_exit only_session(cli *c)
 		.sessions = {calloc(SESSIONS_MAX, sizeof(cau_wire_session_summary)), 0, SESSIONS_MAX}};
 	cau_wire_session_summary *all = list.sessions.items;
 	if (!all)
-		return CLI_CONNECTION;
+		return cli_fail_memory(c);
 	if (cau_client_call(c->client, CAU_METHOD_SESSION_LIST, &(cau_wire_nothing){0}, &list,
 	                    &c->error)) {
 		code = cli_fail(c);
@@ -172,18 +178,26 @@ static cli_exit choose_session(cli *c)
 }
 
 // What is nearer to the command counts: its options, the environment, the current context.
+// `context` is empty unless it is the one that is meant.
+static const char *choose_url(const cli *c, const cli_context *context)
+{
+	const char *url = getenv("CAUTERYD_URL");
+	if (c->url)
+		return c->url;
+	if (*context->url)
+		return context->url;
+	return url && !c->context ? url : CAU_CLIENT_DEFAULT_URL;
+}
+
 static cli_exit find_daemon(cli *c, cli_daemon *daemon)
 {
 	cli_context context = {0};
-	const char *url = getenv("CAUTERYD_URL"), *token = getenv("CAUTERYD_TOKEN");
-	bool told = c->url || (url && !c->context); // a context's token is for its own daemon
+	const char *token = getenv("CAUTERYD_TOKEN");
+	// a context's token is for its own daemon
+	bool told = c->url || (getenv("CAUTERYD_URL") && !c->context);
 	if ((c->context || !told) && cli_context_find(c->context, &context, &c->error))
 		return cli_fail_file(c);
-	snprintf(daemon->url, sizeof daemon->url, "%s",
-	         c->url               ? c->url
-	         : *context.url       ? context.url
-	         : url && !c->context ? url
-	                              : CAU_CLIENT_DEFAULT_URL);
+	snprintf(daemon->url, sizeof daemon->url, "%s", choose_url(c, &context));
 	const char *file = c->token_file ? c->token_file : context.token_file;
 	if (*file)
 		return read_token(c, file, daemon);

@@ -79,7 +79,8 @@ void cli_finish(cli *c);
 
 // Tells c->error and returns the exit code that belongs to it.
 cli_exit cli_fail(cli *c);
-cli_exit cli_fail_file(cli *c); // the same, where a file here is to blame
+cli_exit cli_fail_file(cli *c);   // the same, where a file here is to blame
+cli_exit cli_fail_memory(cli *c); // says that there was no memory
 void cli_complain(const cli *c, const char *format, ...) __attribute__((format(printf, 2, 3)));
 // There is no such `what` as `word`; which of the words may have been meant.
 void cli_complain_unknown(const cli *c, const char *what, const char *word,

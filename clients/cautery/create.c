@@ -194,7 +194,7 @@ static cli_exit run(cli *c)
 	}
 	cau_scene_def *scene = calloc(1, sizeof *scene);
 	d.definition = calloc(1, sizeof *d.definition);
-	cli_exit code = scene && d.definition ? cli_connect(c) : CLI_CONNECTION;
+	cli_exit code = scene && d.definition ? cli_connect(c) : cli_fail_memory(c);
 	if (!code)
 		code = fill_params(c, &params, scene, &d);
 	if (!code) {

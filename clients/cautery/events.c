@@ -159,7 +159,7 @@ static cli_exit run(cli *c)
 		return CLI_USAGE;
 	f.timeline.events =
 		(cau_wire_list){calloc(EVENTS_MAX, sizeof(cau_wire_timeline_event)), 0, EVENTS_MAX};
-	cli_exit code = f.timeline.events.items ? tell(&f, &params, seconds) : CLI_CONNECTION;
+	cli_exit code = f.timeline.events.items ? tell(&f, &params, seconds) : cli_fail_memory(c);
 	if (c->client) // an answer still on its way must not find the list gone
 		cau_client_close(c->client);
 	free(f.timeline.events.items);

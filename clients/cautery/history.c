@@ -109,7 +109,7 @@ static cli_exit run_fork(cli *c)
 		return code;
 	CLI_CHANGE_PARAMS(c, &params);
 	d.definition = calloc(1, sizeof *d.definition);
-	code = d.definition ? cli_call(c, CAU_METHOD_SESSION_FORK, &params, &d) : CLI_CONNECTION;
+	code = d.definition ? cli_call(c, CAU_METHOD_SESSION_FORK, &params, &d) : cli_fail_memory(c);
 	if (!code && !c->json)
 		fprintf(c->out, "%s\n", d.summary.session);
 	free(d.definition);

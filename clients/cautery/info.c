@@ -62,8 +62,8 @@ static cli_exit run(cli *c)
 	d.definition = calloc(1, sizeof *d.definition);
 	CLI_SESSION_PARAMS(c, &params);
 	if (!code)
-		code =
-			d.definition ? cli_call(c, CAU_METHOD_SESSION_DESCRIBE, &params, &d) : CLI_CONNECTION;
+		code = d.definition ? cli_call(c, CAU_METHOD_SESSION_DESCRIBE, &params, &d)
+		                    : cli_fail_memory(c);
 	if (!code && !c->json)
 		print_description(c, &d);
 	free(d.definition);

@@ -25,7 +25,7 @@ static cli_exit run_ls(cli *c)
 {
 	cau_wire_session_list list = {
 		.sessions = {calloc(SESSIONS_MAX, sizeof(cau_wire_session_summary)), 0, SESSIONS_MAX}};
-	cli_exit code = list.sessions.items ? cli_connect(c) : CLI_CONNECTION;
+	cli_exit code = list.sessions.items ? cli_connect(c) : cli_fail_memory(c);
 	if (!code)
 		code = cli_call(c, CAU_METHOD_SESSION_LIST, &(cau_wire_nothing){0}, &list);
 	if (!code && !c->json)

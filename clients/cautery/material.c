@@ -115,7 +115,7 @@ static cli_exit send(cli *c, const cJSON *json)
 	cau_command command;
 	char *text = cJSON_PrintUnformatted(json);
 	if (!text)
-		return CLI_CONNECTION;
+		return cli_fail_memory(c);
 	cau_status status = cau_command_from_json(text, strlen(text), &command, &c->error);
 	free(text);
 	if (status) {
@@ -166,7 +166,9 @@ static cli_exit run(cli *c)
 	int32_t region = (int32_t)cli_number(c, "region", 0, INT32_MAX, 0, &bad);
 	snprintf(c->session, sizeof c->session, "%s", c->arguments[0]);
 	cau_scene_def *scene = calloc(1, sizeof *scene);
-	cli_exit code = bad ? CLI_USAGE : scene ? cli_connect(c) : CLI_CONNECTION;
+	cli_exit code = CLI_USAGE;
+	if (!bad)
+		code = scene ? cli_connect(c) : cli_fail_memory(c);
 	if (!code)
 		code = show_or_change(c, scene, region);
 	free(scene);

@@ -8,7 +8,7 @@
 static const cli_option common[] = {
 	{"url", "U",
      "where the daemon is (default: CAUTERYD_URL, the context, " CAU_CLIENT_DEFAULT_URL ")"},
-	{"token-file", "F", "file with the access token (default: CAUTERYD_TOKEN, the context's)"},
+	{"token-file", "F", "file with the access token (default: the context's, CAUTERYD_TOKEN)"},
 	{"context", "NAME", "a daemon of `cautery context ls` (default: the current one)"},
 	{"timeout", "S", "seconds to wait for an answer (default 30)"},
 	{"json", NULL, "one JSON object a line on standard output, the last one the result"},

@@ -76,6 +76,7 @@ export function check(words: string, name: string, change: (on: boolean) => void
 export function save(name: string, data: Blob): void {
   const link = element('a', { href: URL.createObjectURL(data), download: name });
   link.click();
+  // No browser says when it has taken the file: one that was given up at once is saved empty by some.
   setTimeout(() => URL.revokeObjectURL(link.href), 10_000);
 }
 
