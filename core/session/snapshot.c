@@ -3,9 +3,9 @@
 //
 // A downdated factor differs in its last bits from a fresh one, so a snapshot holds what the factor
 // was made of: the live elements at the last canonical factorisation and the ordered updates since,
-// and likewise the factor in the making. A header with every count and a hash of the rest comes
-// first: a damaged snapshot is refused before anything is touched, and so is one whose counts are
-// not those of its bytes.
+// and likewise the factor in the making. A header comes first (snapshot_header.h): a damaged
+// snapshot is refused before anything is touched, and so is one whose counts are not those of its
+// bytes.
 #include <math.h>
 #include <stddef.h>
 #include <stdlib.h>
@@ -14,53 +14,12 @@
 #include "base/hash.h"
 #include "cautery/assert.h"
 #include "session/snapshot_archive.h"
-
-static const char magic[8] = "CAUSNAP";
-enum {
-	VERSION = 4, // with rest and accuracy; 3, without, and 1, elements by slot, are still read
-	MOST_NODES = 4096, // along a heat grid's side: far more than a tool may have
-};
-
-typedef struct snapshot_header {
-	char magic[8];
-	uint32_t version;
-	uint32_t single;
-	char instruction_set[16];
-	uint64_t build;           // hash of the compiler's own words
-	uint64_t definition_hash; // create.c
-	uint64_t hash;            // of the header with this member 0, then the payload
-	uint64_t payload_bytes;
-	uint64_t tick, swap_tick, longest_wait, factor_version;
-	int32_t vertex_count, edge_count, row_count;
-	int32_t tool_count, command_count, active_count, column_count;
-	int32_t waiting_count, operation_count, group_count, waiting_at_start;
-	int32_t making, refactorisations, frozen_count, inverted, edges_parted, elements_removed;
-	int32_t grid_nodes[CAU_MAX_TOOLS];
-	int32_t faulted;
-	double gravity_m_s2[3];
-	// since version 4
-	int32_t resting, quiet_ticks;
-	int32_t shallow_steps, unused;
-	double accuracy, amplification[CAU_ACCURACY_DEPTHS];
-} snapshot_header;
-
-static size_t header_bytes(uint32_t version)
-{
-	return version < 4 ? offsetof(snapshot_header, resting) : sizeof(snapshot_header);
-}
-
-// Columns of A^-1 that contacts keep: they lag behind cuts, so they cannot be made again.
-static int32_t kept_columns(const cau_session *session)
-{
-	CAU_ASSERT_INDEX(session->contact.column_count, CAU_MAX_CONTACTS + 1);
-	return session->contact.epoch == session->solver.factor_epoch ? session->contact.column_count
-	                                                              : 0;
-}
+#include "session/snapshot_header.h"
 
 static void pass_columns(snapshot_archive *archive, cau_session *session)
 {
 	cau_contact_set *set = &session->contact;
-	int32_t count = kept_columns(session);
+	int32_t count = cau_snapshot_kept_columns(session);
 	size_t bytes =
 		(size_t)session->tissue.vertex_count * session->solver.kernels->vectors->real_bytes;
 	snapshot_pass(archive, set->column_vertex, (size_t)count * sizeof *set->column_vertex);
@@ -91,8 +50,8 @@ static void pass_update(snapshot_archive *archive, cau_session *session)
 
 static void pass_tool(snapshot_archive *archive, cau_tool *tool)
 {
-	CAU_ASSERT(tool->grid.nodes >= 0 && tool->grid.nodes <= MOST_NODES, "a heat grid of %d nodes",
-	           tool->grid.nodes);
+	CAU_ASSERT(tool->grid.nodes >= 0 && tool->grid.nodes <= CAU_SNAPSHOT_NODES,
+	           "a heat grid of %d nodes", tool->grid.nodes);
 	cau_heat_grid grid = tool->grid;
 	snapshot_pass(archive, &tool->state, sizeof tool->state);
 	snapshot_pass(archive, &tool->target, sizeof tool->target);
@@ -133,65 +92,6 @@ static cau_status pass_state(snapshot_archive *archive, cau_session *session, ca
 	return status;
 }
 
-static uint64_t build_hash(void)
-{
-	static const char words[] = __VERSION__ " " __DATE__;
-	return cau_hash_bytes(CAU_HASH_START, words, sizeof words);
-}
-
-static void fill_header(const cau_session *session, snapshot_header *header)
-{
-	memset(header, 0, sizeof *header);
-	memcpy(header->magic, magic, sizeof header->magic);
-	header->version = VERSION;
-	header->single = (uint32_t)session->solver.elements.single;
-	snprintf(header->instruction_set, sizeof header->instruction_set, "%s",
-	         session->solver.kernels->instruction_set);
-	header->build = build_hash();
-	header->definition_hash = session->definition_hash;
-	header->tick = session->tick;
-	header->vertex_count = session->tissue.vertex_count;
-	header->edge_count = session->tissue.edges.edge_count;
-	header->row_count = session->solver.factor ? session->solver.system.row_count : 0;
-	header->tool_count = session->tool_count;
-	header->command_count = session->command_count;
-	header->active_count = session->shrink.active_count;
-	header->factor_version = session->solver.factor_version;
-	header->column_count = kept_columns(session);
-	header->waiting_count = session->update.waiting_count;
-	header->operation_count = session->update.operation_count;
-	header->group_count = session->update.group_count;
-	header->waiting_at_start = session->update.waiting_at_start;
-	header->making = session->update.making;
-	header->swap_tick = session->update.swap_tick;
-	header->longest_wait = session->update.longest_wait;
-	header->refactorisations = session->update.refactorisations;
-	header->frozen_count = session->frozen_count;
-	header->inverted = session->inverted;
-	header->edges_parted = session->dissection.edges_parted;
-	header->elements_removed = session->dissection.elements_removed;
-	header->faulted = session->faulted;
-	header->resting = session->rest.resting;
-	header->quiet_ticks = session->rest.quiet_ticks;
-	header->shallow_steps = session->solver.accuracy.shallow_steps;
-	header->accuracy = session->solver.accuracy.wanted;
-	memcpy(header->amplification, session->solver.accuracy.amplification,
-	       sizeof header->amplification);
-	for (int32_t i = 0; i < session->tool_count; i++)
-		header->grid_nodes[i] = session->tool[i].grid.nodes;
-	memcpy(header->gravity_m_s2, session->scene->gravity_m_s2, sizeof header->gravity_m_s2);
-}
-
-static uint64_t hash_of(const snapshot_header *header, const unsigned char *payload, size_t bytes)
-{
-	snapshot_header unsigned_header;
-	memcpy(&unsigned_header, header, sizeof unsigned_header); // with its padding, which is zero
-	unsigned_header.hash = 0;
-	return cau_hash_bytes(
-		cau_hash_bytes(CAU_HASH_START, &unsigned_header, header_bytes(header->version)), payload,
-		bytes);
-}
-
 static void write_payload(cau_session *session, snapshot_archive *archive)
 {
 	snapshot_pass(archive, session->pinned, (size_t)session->tissue.vertex_count);
@@ -205,7 +105,7 @@ static void write_payload(cau_session *session, snapshot_archive *archive)
 
 size_t cau_session_snapshot_bytes(const cau_session *session)
 {
-	snapshot_archive archive = {.version = VERSION};
+	snapshot_archive archive = {.version = CAU_SNAPSHOT_VERSION};
 	write_payload((cau_session *)(uintptr_t)session, &archive); // only counts
 	return sizeof(snapshot_header) + archive.at;
 }
@@ -218,69 +118,21 @@ cau_status cau_session_snapshot(const cau_session *session, void *bytes, size_t 
 		return cau_fail(error, CAU_LIMIT, NULL, "a snapshot needs %zu bytes, %zu are given", needed,
 		                capacity);
 	snapshot_header header;
-	fill_header(session, &header);
+	cau_snapshot_fill_header(session, &header);
 	snapshot_archive archive = {.bytes = (unsigned char *)bytes + sizeof header,
 	                            .capacity = capacity - sizeof header,
-	                            .version = VERSION};
+	                            .version = CAU_SNAPSHOT_VERSION};
 	write_payload((cau_session *)(uintptr_t)session, &archive);
 	header.payload_bytes = archive.at;
 	CAU_ASSERT(sizeof header + archive.at == needed, "%zu bytes written of %zu announced",
 	           sizeof header + archive.at, needed);
-	header.hash = hash_of(&header, archive.bytes, archive.at);
+	header.hash = cau_snapshot_hash(&header, archive.bytes, archive.at);
 	memcpy(bytes, &header, sizeof header);
 	*byte_count = sizeof header + archive.at;
 	return CAU_OK;
 }
 
 // ---- restoring
-static cau_status corrupt(cau_error *error, const char *why)
-{
-	return cau_fail(error, CAU_CORRUPT, NULL, "this is no snapshot of this session: %s", why);
-}
-
-// Whether what steps have taught is what they can teach.
-static bool is_taught(const snapshot_header *header)
-{
-	for (int k = 0; k < CAU_ACCURACY_DEPTHS; k++)
-		if (!(header->amplification[k] > 0 && header->amplification[k] < INFINITY))
-			return false;
-	return header->shallow_steps >= 0;
-}
-
-static cau_status check_header(const cau_session *session, const snapshot_header *header,
-                               const unsigned char *payload, size_t payload_bytes, cau_error *error)
-{
-	const cau_matrix_update *update = &session->update;
-	if (memcmp(header->magic, magic, sizeof magic) != 0)
-		return corrupt(error, "it does not begin like one");
-	if (header->version != 1 && header->version != 3 && header->version != VERSION)
-		return cau_fail(
-			error, CAU_CORRUPT, NULL,
-			"the snapshot is of version %u and this build reads 1, 3 and %u: restore it with "
-			"the build that wrote it",
-			(unsigned)header->version, (unsigned)VERSION);
-	if (header->single != (uint32_t)session->solver.elements.single)
-		return corrupt(error, "it is of another precision");
-	if (header->definition_hash != session->definition_hash ||
-	    header->vertex_count != session->tissue.vertex_count ||
-	    header->edge_count != session->tissue.edges.edge_count)
-		return corrupt(error, "it is of another tissue");
-	if (header->tool_count < 0 || header->tool_count > CAU_MAX_TOOLS || header->command_count < 0 ||
-	    header->command_count > session->command_capacity || header->active_count < 0 ||
-	    header->active_count > session->shrink.active_capacity || header->waiting_count < 0 ||
-	    header->waiting_count > update->waiting_capacity || header->operation_count < 0 ||
-	    header->operation_count > CAU_DOWNDATES_AT_MOST || header->column_count < 0 ||
-	    header->column_count > CAU_MAX_CONTACTS || header->waiting_at_start < 0 ||
-	    header->row_count < 0 || header->row_count > header->vertex_count ||
-	    header->quiet_ticks < 0 || (header->resting && !header->quiet_ticks) ||
-	    (header->version >= 4 && !is_taught(header)))
-		return corrupt(error, "a count is out of its range");
-	if (header->payload_bytes != payload_bytes)
-		return corrupt(error, "bytes are missing");
-	if (header->hash != hash_of(header, payload, payload_bytes))
-		return corrupt(error, "its bytes have changed");
-	return CAU_OK;
-}
 
 // The counts of a header in place of the session's own, to walk over its payload. The arrays are
 // the session's: the walk only counts.
@@ -309,11 +161,11 @@ static cau_status check_tools(const snapshot_header *header, const unsigned char
 	for (int32_t i = 0; i < header->tool_count; i++) {
 		cau_tool_state state;
 		if (counted->at + sizeof state > counted->capacity)
-			return corrupt(error, "bytes are missing");
+			return cau_snapshot_corrupt(error, "bytes are missing");
 		memcpy(&state, payload + counted->at, sizeof state);
 		double cells = state.definition.grid_cells; // a whole number of nodes is made of it
 		if (!(cells >= header->grid_nodes[i] && cells < header->grid_nodes[i] + 1.0))
-			return corrupt(error, "a heat grid has another size");
+			return cau_snapshot_corrupt(error, "a heat grid has another size");
 		cau_tool tool = {.grid.nodes = header->grid_nodes[i]};
 		pass_tool(counted, &tool);
 	}
@@ -327,8 +179,8 @@ static cau_status check_payload(const cau_session *session, const snapshot_heade
 {
 	snapshot_archive counted = {.capacity = payload_bytes, .version = header->version};
 	for (int32_t i = 0; i < header->tool_count; i++)
-		if (header->grid_nodes[i] < 0 || header->grid_nodes[i] > MOST_NODES)
-			return corrupt(error, "a count is out of its range");
+		if (header->grid_nodes[i] < 0 || header->grid_nodes[i] > CAU_SNAPSHOT_NODES)
+			return cau_snapshot_corrupt(error, "a count is out of its range");
 	cau_session *imagined = imagine(session, header);
 	if (!imagined)
 		return cau_fail(error, CAU_NO_MEMORY, NULL, "no memory to restore");
@@ -337,7 +189,7 @@ static cau_status check_payload(const cau_session *session, const snapshot_heade
 	if (!status)
 		status = pass_state(&counted, imagined, error);
 	if (!status && counted.at != payload_bytes)
-		status = corrupt(error, "its counts are not those of its bytes");
+		status = cau_snapshot_corrupt(error, "its counts are not those of its bytes");
 	free(imagined);
 	return status;
 }
@@ -387,6 +239,7 @@ static void restore_counts(cau_session *session, const snapshot_header *header)
 	session->faulted = header->faulted;
 	session->rest.resting = header->resting;
 	session->rest.quiet_ticks = header->quiet_ticks;
+	cau_accuracy_forget(&session->solver.accuracy);
 	if (header->version >= 4) {
 		session->solver.accuracy.shallow_steps = header->shallow_steps;
 		memcpy(session->solver.accuracy.amplification, header->amplification,
@@ -462,17 +315,17 @@ cau_status cau_session_restore(cau_session *session, const void *bytes, size_t b
                                bool *exact, cau_error *error)
 {
 	snapshot_header header = {0};
-	size_t head = header_bytes(0); // what all versions have, the version among it
+	size_t head = cau_snapshot_header_bytes(0); // what all versions have, the version among it
 	if (byte_count >= head) {
 		memcpy(&header, bytes, head);
-		head = header_bytes(header.version);
+		head = cau_snapshot_header_bytes(header.version);
 	}
 	if (byte_count < head)
-		return corrupt(error, "it is too short");
+		return cau_snapshot_corrupt(error, "it is too short");
 	memcpy(&header, bytes, head);
 	unsigned char *payload = (unsigned char *)(uintptr_t)bytes + head;
 	size_t payload_bytes = byte_count - head;
-	cau_status status = check_header(session, &header, payload, payload_bytes, error);
+	cau_status status = cau_snapshot_check_header(session, &header, payload, payload_bytes, error);
 	if (!status)
 		status = check_payload(session, &header, payload, payload_bytes, error);
 	if (status)
@@ -505,10 +358,7 @@ cau_status cau_session_restore(cau_session *session, const void *bytes, size_t b
 	if (status) // half restored: say so instead of going on
 		session->faulted = true;
 	if (exact)
-		*exact = header.version == VERSION && header.build == build_hash() &&
-		         header.accuracy == session->solver.accuracy.wanted &&
-		         !strncmp(header.instruction_set, session->solver.kernels->instruction_set,
-		                  sizeof header.instruction_set);
+		*exact = cau_snapshot_is_exact(session, &header);
 	return status;
 }
 

@@ -15,11 +15,10 @@ static const double least_force_n = 1e-4;   // likewise a tool: a hundredth of w
 static const double force_share = 2;        // forces may be off by so much more than vertices
 static const double untaught = 3;           // amplification before anything is known
 static const double most_amplified = 300;
-static const double slack = 1.2;     // a contraction that is measured flatters a little
-static const double slowest = 0.999; // contraction that can be told from none
-static const double bound_share =
-	0.5; // the bound is reached by one mode alone, seldom by what is left
-static const double forgetting = 0.1; // of an amplification's logarithm, a step that shows less
+static const double slack = 1.2;       // a contraction that is measured flatters a little
+static const double slowest = 0.999;   // contraction that can be told from none
+static const double bound_share = 0.5; // one mode alone reaches the bound, seldom what is left
+static const double forgetting = 0.1;  // of an amplification's logarithm, a step that shows less
 static const double worth_learning = 0.05; // lengths below are rounding
 static const double all_rounding = 0.02;   // a first length below: nothing moves at all
 enum {
@@ -32,12 +31,18 @@ cau_status cau_accuracy_create(cau_accuracy *accuracy, int32_t chunk_count, cau_
                                cau_error *error)
 {
 	CAU_ASSERT(chunk_count > 0, "%d chunks of vertices", chunk_count);
-	for (int k = 0; k < CAU_ACCURACY_DEPTHS; k++)
-		accuracy->amplification[k] = untaught;
+	cau_accuracy_forget(accuracy);
 	accuracy->sums = cau_arena_array(arena, SUMS * (size_t)chunk_count, sizeof(double));
 	if (!accuracy->sums)
 		return cau_fail(error, CAU_NO_MEMORY, NULL, "no memory for the solver");
 	return CAU_OK;
+}
+
+void cau_accuracy_forget(cau_accuracy *accuracy)
+{
+	accuracy->shallow_steps = 0;
+	for (int k = 0; k < CAU_ACCURACY_DEPTHS; k++)
+		accuracy->amplification[k] = untaught;
 }
 
 void cau_accuracy_begin(cau_accuracy *accuracy)

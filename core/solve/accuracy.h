@@ -51,6 +51,8 @@ typedef struct cau_accuracy {
 
 cau_status cau_accuracy_create(cau_accuracy *accuracy, int32_t chunk_count, cau_arena *arena,
                                cau_error *error);
+// What steps have taught is as at the beginning.
+void cau_accuracy_forget(cau_accuracy *accuracy);
 // A step begins, or begins again where its guess was given up.
 void cau_accuracy_begin(cau_accuracy *accuracy);
 // Whether the step is near enough once it has taken its trial increment; `norm`: of the increment

@@ -8,6 +8,7 @@
 #include <string.h>
 
 #include "bench/bench.h"
+#include "core/rig/step_error.h"
 #include "session/session_internal.h"
 
 enum {
@@ -19,41 +20,11 @@ enum {
 	RESTING_TICKS = 100000,
 };
 static const double converged_residual = 3e-7;
-static const double least_error_m = 0.5e-6; // what is no error, however little moves
 
 typedef struct turns {
 	cau_session *session, *fixed, *exact;
 	double accuracy;
 } turns;
-
-static double part_error(const cau_session *session, const double *exact, int32_t first,
-                         int32_t last, double accuracy)
-{
-	double mass = 0, off = 0, motion = 0;
-	for (int32_t v = first; v < last; v++) {
-		double m = session->fixed[v] ? 0 : session->tissue.mass[v];
-		mass += m;
-		for (int c = 0; c < 3; c++) {
-			double d = session->position[3 * v + c] - exact[3 * v + c];
-			double way = exact[3 * v + c] - session->position_start[3 * v + c];
-			off += m * d * d;
-			motion += m * way * way;
-		}
-	}
-	return mass > 0 ? sqrt(off / mass) / fmax(sqrt(motion / mass), least_error_m / accuracy) : 0;
-}
-
-// Of the whole or of a chunk of vertices, whichever is worst.
-static double worst_error(const cau_session *session, const double *exact, double accuracy)
-{
-	int32_t n = session->tissue.vertex_count;
-	double worst = part_error(session, exact, 0, n, accuracy);
-	for (int32_t first = 0; first < n; first += CAU_VERTEX_CHUNK) {
-		int32_t last = first + CAU_VERTEX_CHUNK < n ? first + CAU_VERTEX_CHUNK : n;
-		worst = fmax(worst, part_error(session, exact, first, last, accuracy));
-	}
-	return worst;
-}
 
 static void copy_state(cau_session *to, const cau_session *from)
 {
@@ -93,7 +64,7 @@ static void measure(turns *t, int32_t steps, bench_accuracy_result *result)
 		}
 		double accurate = step_s(t->session), fixed = step_s(t->fixed);
 		if (sampled)
-			error[samples++] = worst_error(t->session, t->exact->position, t->accuracy);
+			error[samples++] = step_error(t->session, t->exact->position, t->accuracy);
 		if (i < 0)
 			continue;
 		accurate_s += accurate;

@@ -97,6 +97,9 @@ typedef struct stall {
 	_Atomic int stalled, by_helpers;
 } stall;
 
+// By far more than a loop takes, so that the caller is through with its parts meanwhile.
+static const long stall_ns = 50000000;
+
 static void stall_once(void *context, int32_t index)
 {
 	stall *work = context;
@@ -108,7 +111,7 @@ static void stall_once(void *context, int32_t index)
 	}
 	atomic_fetch_add(&work->by_helpers, 1);
 	if (!atomic_exchange(&work->stalled, 1))
-		nanosleep(&(struct timespec){.tv_nsec = 50000000}, NULL); // the stall itself
+		nanosleep(&(struct timespec){.tv_nsec = stall_ns}, NULL); // the stall itself
 }
 
 // Loops until the helper has stalled in one: the caller works alone from there.

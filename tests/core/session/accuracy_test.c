@@ -3,11 +3,11 @@
 // state, is what they may be, and what they say that it is.
 #include "core/session/stage.h"
 
+#include "core/rig/step_error.h"
 #include "session/session_internal.h"
 
 enum { CONVERGED = 300, MOST = 60, MOST_SAMPLES = 400 };
 static const double converged_residual = 1e-7; // relative, of the norm in which steps are long
-static const double least_error_m = 0.5e-6;    // what is no error, however little moves
 
 // ---- scenes
 
@@ -16,11 +16,7 @@ static cau_scene_def *make_taut(void)
 {
 	cau_scene_def *scene = stage_scene(CAU_PRECISION_DOUBLE);
 	cau_default_gravity(scene->gravity_m_s2);
-	cau_layer_def *fascia = stage_add_sheet(scene, "fascia", 0.06, 0.05, 30, 25);
-	fascia->sheet[0].target[0] = fascia->sheet[0].target[1] = 0.4;
-	cau_selection *rim = &scene->pins[scene->pin_count++];
-	cau_default_selection(rim, CAU_SELECT_RIM);
-	strcpy(rim->layer, "fascia");
+	stage_add_taut_sheet(scene);
 	stage_add_tool(scene, "hook", CAU_TOOL_HOOK, 0, 0, 0.03);
 	return scene;
 }
@@ -53,40 +49,6 @@ static cau_scene_def *make_free(void)
 
 // ---- errors
 
-// |a - b| over free vertices of [first, last) in the norm of mass, relative to the motion to b.
-static double error_of(const cau_session *session, const double *a, const double *b, int32_t first,
-                       int32_t last, double accuracy)
-{
-	double mass = 0, off = 0, motion = 0;
-	for (int32_t v = first; v < last; v++) {
-		double m = session->fixed[v] ? 0 : session->tissue.mass[v];
-		mass += m;
-		for (int c = 0; c < 3; c++) {
-			double d = a[3 * v + c] - b[3 * v + c];
-			double way = b[3 * v + c] - session->position_start[3 * v + c];
-			off += m * d * d;
-			motion += m * way * way;
-		}
-	}
-	if (mass == 0)
-		return 0;
-	return sqrt(off / mass) / fmax(sqrt(motion / mass), least_error_m / accuracy);
-}
-
-// The worst of the whole and of each chunk.
-static double true_error(const cau_session *session, const cau_session *exact)
-{
-	int32_t n = session->tissue.vertex_count;
-	double accuracy = session->solver.accuracy.wanted;
-	double worst = error_of(session, session->position, exact->position, 0, n, accuracy);
-	for (int32_t first = 0; first < n; first += CAU_VERTEX_CHUNK) {
-		int32_t last = first + CAU_VERTEX_CHUNK < n ? first + CAU_VERTEX_CHUNK : n;
-		worst = fmax(worst,
-		             error_of(session, session->position, exact->position, first, last, accuracy));
-	}
-	return worst;
-}
-
 // Force on the first tool, relative to itself.
 static double force_error(const cau_session *session, const cau_session *exact)
 {
@@ -113,7 +75,7 @@ static void sample(cau_session *session, cau_session *exact, sampled *of)
 	stage_step(exact, 1);
 	stage_step(session, 1);
 	cau_frame frame = stage_frame(session);
-	of->error[of->count] = true_error(session, exact);
+	of->error[of->count] = step_error(session, exact->position, session->solver.accuracy.wanted);
 	of->told[of->count] = frame.statistics.error;
 	of->force[of->count++] = force_error(session, exact);
 	of->iterations += frame.statistics.iterations;

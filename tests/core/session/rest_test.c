@@ -31,11 +31,7 @@ static cau_scene_def *make_sheet(void)
 {
 	cau_scene_def *scene = stage_scene(CAU_PRECISION_SINGLE);
 	cau_default_gravity(scene->gravity_m_s2);
-	cau_layer_def *fascia = stage_add_sheet(scene, "fascia", 0.06, 0.05, 30, 25);
-	fascia->sheet[0].target[0] = fascia->sheet[0].target[1] = 0.4;
-	cau_selection *rim = &scene->pins[scene->pin_count++];
-	cau_default_selection(rim, CAU_SELECT_RIM);
-	strcpy(rim->layer, "fascia");
+	stage_add_taut_sheet(scene);
 	stage_add_tool(scene, "hook", CAU_TOOL_HOOK, 0, 0, 0.03);
 	stage_add_tool(scene, "jaws", CAU_TOOL_GRASPER, 0.01, 0, 0.04);
 	return scene;

@@ -89,6 +89,15 @@ cau_layer_def *stage_add_sheet(cau_scene_def *scene, const char *name, double x_
 	return layer;
 }
 
+void stage_add_taut_sheet(cau_scene_def *scene)
+{
+	cau_layer_def *fascia = stage_add_sheet(scene, "fascia", 0.06, 0.05, 30, 25);
+	fascia->sheet[0].target[0] = fascia->sheet[0].target[1] = 0.4;
+	cau_selection *rim = &scene->pins[scene->pin_count++];
+	cau_default_selection(rim, CAU_SELECT_RIM);
+	strcpy(rim->layer, "fascia");
+}
+
 cau_layer_def *stage_add_slab(cau_scene_def *scene, const char *name, const double size_m[3],
                               const int32_t cells[3])
 {

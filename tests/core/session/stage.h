@@ -40,6 +40,8 @@ cau_layer_def *stage_add_slab(cau_scene_def *scene, const char *name, const doub
 void stage_add_membrane(cau_scene_def *scene, const char *name, const char *of);
 cau_layer_def *stage_add_links(cau_scene_def *scene, const char *name, const char *of,
                                const char *to);
+// A taut sheet of 60 x 50 mm, pinned at its rim.
+void stage_add_taut_sheet(cau_scene_def *scene);
 cau_mesh_def *stage_mesh_of(cau_scene_def *scene, const cau_layer_def *layer);
 void stage_pin_box(cau_scene_def *scene, const double least_m[3], const double most_m[3]);
 cau_tool_def *stage_add_tool(cau_scene_def *scene, const char *name, int shape, double x, double y,
