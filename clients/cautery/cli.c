@@ -67,12 +67,6 @@ cli_exit cli_fail(cli *c)
 	return answered ? CLI_REFUSED : c->error.status == CAU_BAD_VALUE ? CLI_USAGE : CLI_CONNECTION;
 }
 
-cli_exit cli_fail_memory(cli *c)
-{
-	cau_fail(&c->error, CAU_NO_MEMORY, NULL, "no memory here");
-	return cli_fail(c);
-}
-
 cli_exit cli_fail_file(cli *c)
 {
 	tell_error(c);

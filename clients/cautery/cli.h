@@ -79,8 +79,14 @@ void cli_finish(cli *c);
 
 // Tells c->error and returns the exit code that belongs to it.
 cli_exit cli_fail(cli *c);
-cli_exit cli_fail_file(cli *c);   // the same, where a file here is to blame
-cli_exit cli_fail_memory(cli *c); // says that there was no memory
+cli_exit cli_fail_file(cli *c); // the same, where a file here is to blame
+// The same, where there was no memory. Here, so that the analyzer knows that it is not CLI_DONE.
+static inline cli_exit cli_fail_memory(cli *c)
+{
+	cau_fail(&c->error, CAU_NO_MEMORY, NULL, "no memory here");
+	cli_fail(c);
+	return CLI_CONNECTION;
+}
 void cli_complain(const cli *c, const char *format, ...) __attribute__((format(printf, 2, 3)));
 // There is no such `what` as `word`; which of the words may have been meant.
 void cli_complain_unknown(const cli *c, const char *what, const char *word,
