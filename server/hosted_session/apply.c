@@ -83,6 +83,7 @@ cau_outcome_kind cau_apply_command(cau_hosted *h, cau_order *order, const cau_ac
 	h->counts.commands++;
 	h->counts.motions += command->kind == CAU_COMMAND_TOOL_MOVE;
 	pthread_mutex_unlock(&h->mutex);
+	cau_times_applied(h, order);
 	note(h, order, action);
 	free(order);
 	return CAU_DONE;

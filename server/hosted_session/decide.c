@@ -121,9 +121,10 @@ void cau_decide_next(cau_hosted *h, cau_action *action)
 {
 	cau_effects effects;
 	pthread_mutex_lock(&h->deciding);
-	double now_s = cau_monotonic_s();
+	double now_s = cau_monotonic_s(), due_s = h->logic->next_step_s;
 	cau_trace_next(h->trace, now_s);
 	cau_logic_next(h->logic, now_s, action, &effects);
+	h->late_s = h->logic->state == CAU_SESSION_RUNNING ? now_s - due_s : -1;
 	cau_trace_action(h->trace, action);
 	cau_trace_effects(h->trace, &effects);
 	tell(h, &effects);

@@ -76,6 +76,7 @@ cau_status cau_hosted_submit(cau_hosted *h, cau_order *order, cau_error *error)
 	bool motion = order->motion;
 	if (h->ended)
 		return cau_fail(error, CAU_NOT_FOUND, "params.session", "the session is destroyed");
+	order->came_s = cau_monotonic_s();
 	if (cau_building_cancel(h, order))
 		return CAU_OK;
 	if (cau_reads_are(order))

@@ -62,6 +62,7 @@ void cau_frames_publish(cau_hosted *h, double now_s)
 	if (cau_streams_publish(&h->streams, &moment, &made, &error) &&
 	    cau_decided_state(h) != CAU_SESSION_FAULTED)
 		cau_hosted_fault(h, &error);
+	cau_times_published(h, made);
 	if (made)
 		h->around->sink.frames(h->around->sink.user);
 }

@@ -8,9 +8,20 @@
 #include "cautery/scene.h"
 #include "config/config.h"
 #include "hosted_session/order.h"
+#include "metrics/histogram.h"
 #include "store/store.h"
 #include "stream/stream.h"
 #include "worker/pool.h"
+
+// What is measured of all sessions together, those that are gone too.
+enum { CAU_HOSTED_STAGES = 8 };
+typedef struct cau_hosted_times {
+	cau_histogram step;                     // a whole step, wall time
+	cau_histogram stage[CAU_HOSTED_STAGES]; // a step's share of each stage
+	cau_histogram lateness;                 // of a tick by the clock, when it begins
+	cau_histogram command_to_frame; // from a command's arrival to the first frame that shows it
+} cau_hosted_times;
+const char *cau_hosted_stage_name(int stage); // "global"
 
 // What all sessions share; outlives them.
 typedef struct cau_surroundings {
@@ -20,6 +31,7 @@ typedef struct cau_surroundings {
 	cau_builder *builder;
 	_Atomic int64_t *memory_held; // by all sessions, bytes, about
 	cau_sink sink;
+	cau_hosted_times *times; // NULL: nobody wants to know
 	// Energy came on somewhere: the watchdog must look at its times again.
 	void (*armed)(void *user);
 	// Makes a new session that starts from the state of another; see cau_hosted_origin.

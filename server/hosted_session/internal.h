@@ -19,6 +19,7 @@ enum {
 	EVENT_COUNT = 512, // of the timeline kept in memory
 	SNAPSHOT_COUNT = 64,
 	CUT_MERGE_TICKS = 30, // cuts of neighbouring ticks are one event
+	WAITING_COUNT = 32,   // commands between two frames whose wait is measured
 };
 
 // Refused motion of a tool, told once a second.
@@ -103,6 +104,9 @@ struct cau_hosted {
 	double window_s; // realtime_factor's window
 	uint64_t window_tick;
 	double step_cost_s, realtime_factor;
+	double late_s; // how late the tick that is to be made began; below 0: the clock does not say
+	double waiting_s[WAITING_COUNT]; // when commands came that no frame has shown yet
+	int32_t waiting_count;
 	char stage[32];        // what the builder does with it; else ""
 	int64_t memory_held;   // of what all sessions may take
 	cau_order *destroyers; // of those in `cancelling` the ones that are no resends, in their order
@@ -307,6 +311,13 @@ void cau_show(const cau_session *core, cau_shown *shown);
 // ---- frames.c: the session's side of its streams
 void cau_frames_publish(cau_hosted *h, double now_s); // those that are due
 void cau_frames_restart(cau_hosted *h);               // a new epoch
+
+// ---- times.c: what is measured of all sessions
+void cau_times_stepped(cau_hosted *h, const cau_statistics *statistics); // after each step
+// The core has taken the order's command.
+void cau_times_applied(cau_hosted *h, const cau_order *order);
+// A slice has published what was due; `made`: a frame.
+void cau_times_published(cau_hosted *h, bool made);
 
 // ---- record.c: the store
 cau_store_batch *cau_record_batch(cau_hosted *h); // of this slice; NULL if memory ran out

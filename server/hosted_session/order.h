@@ -48,6 +48,7 @@ typedef struct cau_order {
 	bool motion; // a tool.move that nobody waits for: only the newest of a tick counts
 	cau_asker asker;
 	int64_t client_sequence; // 0: none
+	double came_s;           // to the session; set by cau_hosted_submit
 	cau_reply reply;
 	union {
 		cau_command command;

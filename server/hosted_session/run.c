@@ -74,6 +74,7 @@ static void step(cau_hosted *h)
 		return;
 	}
 	cau_session_frame(h->core, &frame);
+	cau_times_stepped(h, &frame.statistics);
 	note_cut(h, &frame);
 	cau_event_settle(h);
 	note_refusals(h, &frame);

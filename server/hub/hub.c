@@ -68,6 +68,7 @@ cau_status cau_hub_create(cau_hub **made, const cau_hub_def *def, cau_error *err
 	                                 .builder = def->builder,
 	                                 .memory_held = &hub->memory_held,
 	                                 .sink = {hub, notify_all, frames_all, sliced_all},
+	                                 .times = &hub->times,
 	                                 .armed = armed,
 	                                 .fork = cau_clerk_fork,
 	                                 .user = hub};
@@ -187,6 +188,11 @@ double cau_hub_watch(cau_hub *hub, double now_s)
 double cau_hub_longest_slice_s(cau_hub *hub)
 {
 	return cau_worker_pool_longest_s(hub->def.pool);
+}
+
+const cau_hosted_times *cau_hub_times(const cau_hub *hub)
+{
+	return &hub->times;
 }
 
 static void note_starting(void *user, cau_hosted *hosted)

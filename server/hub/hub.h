@@ -113,6 +113,8 @@ cau_status cau_meshes_unpack(cau_scene_def *scene, const void *meshes, size_t by
 double cau_hub_watch(cau_hub *hub, double now_s);
 // Processor time of the longest slice on a worker so far, s, without the steps in it.
 double cau_hub_longest_slice_s(cau_hub *hub);
+// What was measured of all sessions; lives as long as the hub.
+const cau_hosted_times *cau_hub_times(const cau_hub *hub);
 // Forgets lost clients and ended sessions. Waits for a worker's slice: not from one.
 void cau_hub_reap(cau_hub *hub);
 // True once every session of the store has been brought up.

@@ -18,6 +18,7 @@ struct cau_hub {
 	cau_quota *quota;
 	_Atomic int64_t memory_held; // by all sessions, bytes, about
 	cau_surroundings around;
+	cau_hosted_times times;
 	cau_sink sinks[MOST_SINKS];
 	int sink_count;
 

@@ -1,7 +1,10 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "metrics/exposition.h"
 
+#include <inttypes.h>
 #include <math.h>
+
+#include "cautery/assert.h"
 
 const char *cau_metrics_content_type(cau_metrics_format format)
 {
@@ -30,7 +33,10 @@ static const char *family_ending(cau_metrics_format format, const cau_metric_fam
 void cau_metrics_begin(FILE *out, cau_metrics_format format, const cau_metric_family *family)
 {
 	const char *ending = family_ending(format, family);
-	const char *type = family->type == CAU_METRIC_COUNTER ? "counter" : "gauge";
+	static const char *const types[] = {[CAU_METRIC_GAUGE] = "gauge",
+	                                    [CAU_METRIC_COUNTER] = "counter",
+	                                    [CAU_METRIC_HISTOGRAM] = "histogram"};
+	const char *type = types[family->type];
 	fprintf(out, "# TYPE cautery_%s%s %s\n", family->name, ending, type);
 	if (format == CAU_METRICS_OPEN && *family->unit)
 		fprintf(out, "# UNIT cautery_%s %s\n", family->name, family->unit);
@@ -50,19 +56,60 @@ static void write_value(FILE *out, double value)
 		fprintf(out, "%.17g", value);
 }
 
+static void write_name(FILE *out, const cau_metric_family *family, const char *ending,
+                       const cau_metric_label *labels, size_t count)
+{
+	fprintf(out, "cautery_%s%s", family->name, ending);
+	for (size_t i = 0; i < count; i++) {
+		fprintf(out, "%s%s=\"", i ? "," : "{", labels[i].name);
+		write_escaped(out, labels[i].text, 1);
+		fputc('"', out);
+	}
+	fputs(count ? "} " : " ", out);
+}
+
+void cau_metrics_sample_labelled(FILE *out, cau_metrics_format format,
+                                 const cau_metric_family *family, const cau_metric_label *labels,
+                                 size_t count, double value)
+{
+	(void)format; // samples are the same in both
+	write_name(out, family, family->type == CAU_METRIC_COUNTER ? "_total" : "", labels, count);
+	write_value(out, value);
+	fputc('\n', out);
+}
+
 void cau_metrics_sample(FILE *out, cau_metrics_format format, const cau_metric_family *family,
                         const char *label, const char *text, double value)
 {
+	cau_metrics_sample_labelled(out, format, family, &(cau_metric_label){label, text},
+	                            label != NULL, value);
+}
+
+void cau_metrics_histogram(FILE *out, cau_metrics_format format, const cau_metric_family *family,
+                           const cau_metric_label *labels, size_t count, const cau_buckets *buckets)
+{
+	char bound[32] = "+Inf";
+	uint64_t below = 0;
+	cau_metric_label all[CAU_METRIC_LABELS_MOST + 1];
+	CAU_ASSERT(count <= CAU_METRIC_LABELS_MOST, "%zu labels of %s", count, family->name);
 	(void)format; // samples are the same in both
-	fprintf(out, "cautery_%s%s", family->name, family->type == CAU_METRIC_COUNTER ? "_total" : "");
-	if (label) {
-		fprintf(out, "{%s=\"", label);
-		write_escaped(out, text, 1);
-		fputs("\"}", out);
+	for (size_t i = 0; i < count; i++)
+		all[i] = labels[i];
+	all[count] = (cau_metric_label){"le", bound};
+	for (size_t i = 0; i <= buckets->bound_count; i++) {
+		below += buckets->counts[i];
+		if (i < buckets->bound_count)
+			snprintf(bound, sizeof bound, "%g", buckets->bounds[i]);
+		else
+			snprintf(bound, sizeof bound, "+Inf");
+		write_name(out, family, "_bucket", all, count + 1);
+		fprintf(out, "%" PRIu64 "\n", below);
 	}
-	fputc(' ', out);
-	write_value(out, value);
+	write_name(out, family, "_sum", labels, count);
+	write_value(out, buckets->sum);
 	fputc('\n', out);
+	write_name(out, family, "_count", labels, count);
+	fprintf(out, "%" PRIu64 "\n", below);
 }
 
 void cau_metrics_end(FILE *out, cau_metrics_format format)

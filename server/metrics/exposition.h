@@ -9,6 +9,8 @@
 //     cau_metrics_end(out, format);
 #pragma once
 
+#include <stddef.h>
+#include <stdint.h>
 #include <stdio.h>
 
 typedef enum cau_metrics_format {
@@ -18,7 +20,8 @@ typedef enum cau_metrics_format {
 
 typedef enum cau_metric_type {
 	CAU_METRIC_GAUGE,
-	CAU_METRIC_COUNTER, // samples are called NAME_total, which is no other family's name
+	CAU_METRIC_COUNTER,   // samples are called NAME_total, which is no other family's name
+	CAU_METRIC_HISTOGRAM, // samples are NAME_bucket, NAME_sum and NAME_count
 } cau_metric_type;
 
 typedef struct cau_metric_family {
@@ -39,5 +42,28 @@ void cau_metrics_begin(FILE *out, cau_metrics_format format, const cau_metric_fa
 // in it are escaped.
 void cau_metrics_sample(FILE *out, cau_metrics_format format, const cau_metric_family *family,
                         const char *label, const char *text, double value);
+
+typedef struct cau_metric_label {
+	const char *name, *text; // `text` in UTF-8
+} cau_metric_label;
+
+// A sample with `count` labels, of different names.
+void cau_metrics_sample_labelled(FILE *out, cau_metrics_format format,
+                                 const cau_metric_family *family, const cau_metric_label *labels,
+                                 size_t count, double value);
+
+// What a histogram has counted.
+typedef struct cau_buckets {
+	const double *bounds; // upper ends, ascending, (bound_count)
+	size_t bound_count;
+	const uint64_t *counts; // of each bucket alone, (bound_count + 1): the last is what is beyond
+	double sum;
+} cau_buckets;
+
+// All samples of a histogram with `count` labels, at most CAU_METRIC_LABELS_MOST, none named `le`.
+enum { CAU_METRIC_LABELS_MOST = 4 };
+void cau_metrics_histogram(FILE *out, cau_metrics_format format, const cau_metric_family *family,
+                           const cau_metric_label *labels, size_t count,
+                           const cau_buckets *buckets);
 // After the last family.
 void cau_metrics_end(FILE *out, cau_metrics_format format);

@@ -84,6 +84,7 @@ void cau_call_hello(cau_call *call)
 		return;
 	}
 	if (!cau_auth_role(service->auth, params.token, strlen(params.token), &role)) {
+		service->tokens_refused++;
 		refuse(call, CAU_RPC_UNAUTHORIZED, CAU_CLOSE_UNAUTHORIZED,
 		       "the token is not known, or has expired");
 		return;

@@ -15,6 +15,9 @@
 enum {
 	STREAMS_OF_PEER = 8,
 	FILES_OF_PEER = 4,
+#define X(...) +1
+	CAU_ANSWER_COLUMNS = 1 CAU_RPC_ERROR_TABLE(X), // the result, and each error
+#undef X
 	MALFORMED_MOST = 16, // messages that are no JSON-RPC, before the connection is closed
 };
 
@@ -74,8 +77,10 @@ struct cau_service {
 	atomic_ulong ticks;
 	pthread_mutex_t mutex; // guards the posts
 	cau_post *first, *last;
-	uint64_t requests, errors;
-	cau_upload_total uploads; // the network thread's
+	uint64_t requests, errors, tokens_refused; // the last of hellos
+	uint64_t calls[CAU_METHOD_COUNT];
+	_Atomic uint64_t answers[CAU_METHOD_COUNT + 1][CAU_ANSWER_COLUMNS]; // the last: of no method
+	cau_upload_total uploads;                                           // the network thread's
 	void (*write_more_metrics)(void *user, FILE *out, cau_metrics_format format); // may be NULL
 	void *more_metrics_user;
 };
@@ -143,6 +148,15 @@ cau_status cau_peer_fill_meshes(cau_peer *peer, cau_scene_def *scene, cau_error 
 
 // ---- pages.c
 void cau_service_page(void *user, cau_page *page);
+
+// ---- answers.c
+// `method` CAU_METHOD_COUNT: of none. `code` 0: a result.
+void cau_answers_count(cau_service *service, cau_method method, int32_t code);
+void cau_answers_write(cau_service *service, cau_metrics_format format, FILE *out);
+void cau_calls_write(cau_service *service, cau_metrics_format format, FILE *out);
+
+// ---- metrics_daemon.c: what /metrics tells of the daemon as a whole
+void cau_service_daemon_metrics(cau_service *service, cau_metrics_format format, FILE *out);
 
 // ---- metrics.c: writes the whole of /metrics; returns the HTTP status
 unsigned cau_service_metrics(cau_service *service, cau_metrics_format format, FILE *out);

@@ -79,12 +79,20 @@ static cau_buffer *fault_text(const cau_rpc_id *id, const cau_outcome *outcome)
 	return buffer;
 }
 
+static int32_t code_of(const cau_outcome *outcome)
+{
+	if (!outcome->error)
+		return 0;
+	return outcome->code ? outcome->code : (int32_t)cau_rpc_error_of_status(outcome->error->status);
+}
+
 void cau_service_answer(void *user, const cau_reply *reply, const cau_outcome *outcome)
 {
 	cau_service *service = user;
 	cau_post *post = calloc(1, sizeof *post);
 	if (!post)
 		return;
+	cau_answers_count(service, reply->method, code_of(outcome));
 	post->kind = POST_ANSWER;
 	post->connection = reply->connection;
 	post->id = reply->id;

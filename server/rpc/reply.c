@@ -41,6 +41,7 @@ void cau_call_fail(const cau_call *call, const cau_error *error, int32_t code)
 		cau_rpc_fault_of_code(&fault, (cau_rpc_error_code)code, error->reason);
 		snprintf(fault.path, sizeof fault.path, "%s", error->path);
 	}
+	cau_answers_count(call->peer->service, call->message->method, fault.code);
 	cau_peer_fault(call->peer, &call->message->id, &fault);
 }
 
@@ -62,10 +63,12 @@ void cau_call_result(const cau_call *call, const void *result)
 			cau_rpc_write_result(&out, &call->message->id, call->message->method, result, &error);
 		buffer->byte_count = out.bytes;
 		capacity = out.bytes + 1;
-		if (!status)
+		if (!status) {
+			cau_answers_count(call->peer->service, call->message->method, 0);
 			cau_connection_send(call->peer->connection, buffer);
-		else
+		} else {
 			cau_buffer_release(buffer);
+		}
 	}
 	if (status)
 		cau_call_fail(call, &error, CAU_RPC_INTERNAL);

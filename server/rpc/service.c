@@ -75,8 +75,10 @@ static bool admit(cau_call *call)
 static void refuse_message(cau_peer *peer, const cau_rpc_message *message,
                            const cau_rpc_fault *fault)
 {
-	if (message->kind != CAU_RPC_NOTIFICATION)
+	if (message->kind != CAU_RPC_NOTIFICATION) {
+		cau_answers_count(peer->service, CAU_METHOD_COUNT, fault->code);
 		cau_peer_fault(peer, &message->id, fault);
+	}
 	if (fault->code == CAU_RPC_PARSE || fault->code == CAU_RPC_INVALID_REQUEST)
 		cau_peer_malformed(peer);
 }
@@ -95,6 +97,7 @@ static void on_text(void *user, cau_connection *connection, const char *text, si
 	cau_call call = {.peer = peer, .message = &message};
 	if (message.kind == CAU_RPC_REQUEST || message.kind == CAU_RPC_NOTIFICATION) {
 		call.method = cau_method_describe(message.method);
+		service->calls[message.method]++;
 		if (admit(&call))
 			handlers[message.method](&call);
 	}

@@ -28,6 +28,7 @@ void cau_store_count_commit(struct cau_store *store, int batches, double seconds
 	pthread_mutex_lock(&store->mutex);
 	store->metrics.commits++;
 	store->metrics.group_size[size]++;
+	store->metrics.commit_s += seconds;
 	store->metrics.commit_time[cau_store_time_bucket(seconds)]++;
 	pthread_mutex_unlock(&store->mutex);
 }

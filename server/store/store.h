@@ -328,6 +328,7 @@ typedef struct cau_store_metrics {
 	uint64_t full_attempts;                       // made while full, to write again
 	uint64_t group_size[CAU_STORE_SIZE_BUCKETS];  // groups with at most 2^i batches
 	uint64_t commit_time[CAU_STORE_TIME_BUCKETS]; // COMMITs (write, fsync) by duration
+	double commit_s;                              // all COMMITs together
 	double commit_p50_s, commit_p99_s;            // upper ends of their buckets
 	double answer_p50_s, answer_p99_s;            // from submit to callback
 	int32_t queue_batches;                        // now

@@ -377,6 +377,7 @@ void cau_dds_end_silenced(cau_dds *dds);
 
 // ---- places.c: who may drive
 cau_status cau_dds_check_role(const cau_dds_writer *writer, cau_error *error);
+uint64_t cau_dds_places_most(const cau_config *config); // of clients
 // The writer's client, or itself while it has no place.
 const cau_asker *cau_dds_asker_of(const cau_dds_writer *writer);
 // Makes the writer one of the client whose it is, if that has a place.

@@ -151,6 +151,11 @@ static bool is_same(const cau_dds_client *client, const cau_dds_writer *writer)
 	       (*writer->subject && strcmp(client->subject, writer->subject) == 0);
 }
 
+uint64_t cau_dds_places_most(const cau_config *config)
+{
+	return (uint64_t)config->max_sessions * CAU_MAX_TOOLS + CLIENTS_BESIDE_DRIVERS;
+}
+
 static cau_status check_quota(cau_dds *dds, const cau_dds_writer *writer, cau_error *error)
 {
 	int idle = 0;
@@ -158,8 +163,7 @@ static cau_status check_quota(cau_dds *dds, const cau_dds_writer *writer, cau_er
 		if (is_same(client, writer) && is_idle(client) && ++idle == IDLE_OF_ONE_MOST)
 			return cau_fail(error, CAU_LIMIT, "",
 			                "its participant or identity has %d clients that drive nothing", idle);
-	if (dds->counts.clients >=
-	    (uint64_t)dds->config->max_sessions * CAU_MAX_TOOLS + CLIENTS_BESIDE_DRIVERS)
+	if (dds->counts.clients >= cau_dds_places_most(dds->config))
 		return cau_fail(error, CAU_LIMIT, "", "there are too many clients");
 	return CAU_OK;
 }

@@ -109,6 +109,8 @@ void cau_dds_write_metrics(void *user, FILE *out, cau_metrics_format format)
 	} rows[] = {
 		{{"dds_clients", CAU_METRIC_GAUGE, "", "Drivers on DDS that have a place"},
 	     (double)dds->counts.clients},
+		{{"dds_clients_most", CAU_METRIC_GAUGE, "", "Places for drivers on DDS"},
+	     (double)cau_dds_places_most(dds->config)},
 		{{"dds_places_denied", CAU_METRIC_COUNTER, "", "Times a writer on DDS got no place"},
 	     (double)dds->counts.denied},
 		{{"dds_places_evicted", CAU_METRIC_COUNTER, "", "Idle clients on DDS that made way"},

@@ -33,6 +33,7 @@ static bool may_read(cau_network *network, struct lws *wsi)
 static int serve_page(cau_network *network, struct lws *wsi, cau_http_body *body, const char *path)
 {
 	if (needs_token(path) && !may_read(network, wsi)) {
+		network->counts.refused_tokens++;
 		cau_http_answer denied = {.status = 401,
 		                          .content_type = "application/json",
 		                          .extra_name = "www-authenticate:",

@@ -64,6 +64,7 @@ cau_connection *cau_network_find(cau_network *network, uint64_t id);
 
 typedef struct cau_network_counts {
 	uint64_t connections, accepted, refused_handshakes, closed_slow, closed_errors;
+	uint64_t refused_tokens; // of pages
 	uint64_t messages_in, bytes_in, messages_out, bytes_out, frames_out;
 } cau_network_counts;
 cau_network_counts cau_network_count(cau_network *network); // on the network thread

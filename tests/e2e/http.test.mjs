@@ -58,6 +58,19 @@ for (const path of ['/.hidden', '/../secret.txt', '/%2e%2e/secret.txt', '/assets
 		assert.ok(!answer.text.startsWith('no'));
 	});
 
+test('tokens that are refused are counted, by the door that they came to', async () => {
+	const count = async (door) => {
+		const { text } = await daemon.get('/metrics', { authorization: `Bearer ${VIEW}` });
+		return Number(new RegExp(`^cautery_authentication_failures_total\\{door="${door}"\\} (.*)$`, 'm').exec(text)[1]);
+	};
+	const [hello, http] = [await count('hello'), await count('http')];
+	await assert.rejects(daemon.connect({ hello: { token: 'not-a-token-of-ours-at-all' } }));
+	assert.equal((await daemon.get('/metrics')).status, 401);
+	assert.equal((await daemon.get('/api/sessions', { authorization: 'Bearer wrong' })).status, 401);
+	assert.equal(await count('hello'), hello + 1);
+	assert.equal(await count('http'), http + 2);
+});
+
 test('health is told to everybody, numbers and sessions to tokens alone', async () => {
 	assert.equal((await daemon.get('/healthz')).status, 200);
 	assert.equal((await daemon.get('/readyz')).status, 200);
@@ -68,7 +81,7 @@ test('health is told to everybody, numbers and sessions to tokens alone', async 
 	}
 	const { text } = await daemon.get('/metrics', { authorization: `Bearer ${VIEW}` });
 	for (const line of text.split('\n').filter((l) => l && !l.startsWith('#')))
-		assert.match(line, /^cautery_[a-z0-9_]+(\{session="[^"]+"\})? [-+0-9.e]+$/);
+		assert.match(line, /^cautery_[a-z0-9_]+(\{[a-z]+="[^"]*"(,[a-z]+="[^"]*")*\})? [-+0-9.e]+$/);
 });
 
 test('a token gives its role, and none is refused with 4002', async () => {

@@ -81,6 +81,85 @@ test('while sessions are made and destroyed, each answer is whole and counters o
 	await churn;
 });
 
+// The samples of a family whose name has this ending and whose labels hold these.
+function samplesOf(families, family, ending = '', wanted = {}) {
+	return [...families.get(`cautery_${family}`).samples].filter(([key, { labels }]) =>
+		JSON.parse(key)[0] === `cautery_${family}${ending}` && Object.entries(wanted).every(([name, text]) => labels.get(name) === text))
+		.map(([, sample]) => sample);
+}
+const valueOf = (...asked) => samplesOf(...asked).reduce((sum, { value }) => sum + value, 0);
+
+test('steps, their stages, lateness and commits are counted by how long they take', async () => {
+	const session = await smallSession(client, 'timed', { paused: true });
+	const earlier = await scrape(false);
+	await client.call('session.step', { session, ticks: 50 });
+	const later = await scrape(false);
+	const grown = (...asked) => valueOf(later, ...asked) - valueOf(earlier, ...asked);
+	assert.equal(grown('step_seconds', '_count'), 50);
+	assert.ok(grown('step_seconds', '_sum') > 0);
+	const stages = samplesOf(later, 'step_stage_seconds', '_count').map(({ labels }) => labels.get('stage'));
+	assert.deepEqual(stages, ['commands', 'predict', 'local', 'global', 'contact', 'heat', 'dissect', 'frame']);
+	for (const stage of stages)
+		assert.equal(grown('step_stage_seconds', '_count', { stage }), 50, stage);
+	// stages are parts of the step: not more than it, and most of it
+	const share = grown('step_stage_seconds', '_sum') / grown('step_seconds', '_sum');
+	assert.ok(share > 0.5 && share <= 1.001, `stages are ${share} of the steps`);
+	assert.equal(grown('lateness_seconds', '_count'), 0, 'the clock does not say when a paused session steps');
+	assert.ok(grown('store_commit_seconds', '_count') >= 1);
+	assert.equal(valueOf(later, 'store_commit_seconds', '_count'), valueOf(later, 'store_commits_total'));
+	await client.call('session.destroy', { session });
+});
+
+test('while the clock runs, lateness is counted, and a command until a frame shows it', async () => {
+	const session = await smallSession(client, 'watched');
+	const stream = await client.join(session);
+	assert.ok(stream);
+	await client.call('tool.take_over', { session, tool: 'hook' });
+	const earlier = await scrape(false);
+	for (let i = 0; i < 5; i++)
+		await client.call('tool.move', { session, tool: 'hook', position_m: [0.001 * i, 0, 0.02], rotation: [1, 0, 0, 0] });
+	let later = await scrape(false);
+	const grown = (...asked) => valueOf(later, ...asked) - valueOf(earlier, ...asked);
+	// an answer may come before the frame does
+	for (const until = performance.now() + 20000; grown('command_to_frame_seconds', '_count') < 5 && performance.now() < until;)
+		later = await scrape(false);
+	assert.equal(grown('command_to_frame_seconds', '_count'), 5);
+	assert.ok(grown('command_to_frame_seconds', '_sum') > 0);
+	assert.ok(grown('lateness_seconds', '_count') > 0);
+	await client.call('session.destroy', { session });
+});
+
+test('calls and answers are counted by method and code', async () => {
+	const earlier = await scrape(false);
+	await client.call('session.list', {});
+	await assert.rejects(client.call('session.describe', { session: 'd1-nowhere' }));
+	await assert.rejects(client.call('session.pause', { session: 'd1-a', nonsense: 1 }));
+	await client.call('session.timeline', { session: 'd1-a' });
+	const later = await scrape(false);
+	const grown = (...asked) => valueOf(later, ...asked) - valueOf(earlier, ...asked);
+	for (const [method, code] of [['session.list', 'ok'], ['session.describe', 'not_here'], ['session.timeline', 'ok'], ['session.pause', 'bad_value']]) {
+		assert.equal(grown('calls_total', '', { method }), 1, method);
+		assert.equal(grown('answers_total', '', { method, code }), 1, `${method} ${code}`);
+		assert.equal(grown('answers_total', '', { method }), 1, method);
+	}
+	assert.equal(valueOf(later, 'answers_total', '', { method: 'scene.list', code: 'ok' }), 0);
+	assert.equal(samplesOf(later, 'answers_total', '', { method: 'scene.list', code: 'ok' }).length, 1, 'told before it is called');
+});
+
+test('what runs, its process and its disk are told', async () => {
+	const families = await scrape(false);
+	const [{ labels, value }] = samplesOf(families, 'build_info');
+	assert.equal(value, 1);
+	assert.equal(`cauteryd ${labels.get('version')}`, client.hello.server);
+	assert.equal(labels.get('dds'), 'off');
+	const age = Date.now() / 1000 - valueOf(families, 'start_time_seconds');
+	assert.ok(age > 0 && age < 600, `begun ${age} s ago`);
+	const files = valueOf(families, 'open_files');
+	assert.ok(files > 5 && files < valueOf(families, 'open_files_most'), `${files} files`);
+	assert.ok(valueOf(families, 'disk_free_bytes') <= valueOf(families, 'disk_size_bytes'));
+	assert.ok(valueOf(families, 'disk_free_bytes') > 0 && valueOf(families, 'resident_bytes') > 1e6);
+});
+
 test('Accept alone decides', async () => {
 	for (const [accept, open] of [['*/*', false], ['application/openmetrics-text;q=0.2, text/plain;q=0.3', false],
 		['application/openmetrics-text;q=0', false], ['text/plain;q=0.1, application/openmetrics-text;q=0.2', true]]) {
@@ -93,9 +172,13 @@ test('Accept alone decides', async () => {
 const HEAD = '# TYPE a_seconds counter\n# UNIT a_seconds seconds\n# HELP a_seconds Text\n';
 const GOOD = `${HEAD}a_seconds_total{b="c"} 1\n# TYPE d gauge\nd 1e-3\n# EOF\n`;
 
+const HISTOGRAM = '# TYPE h histogram\nh_bucket{le="1"} 2\nh_bucket{le="+Inf"} 3\nh_sum 4\nh_count 3';
+
 test('the strict reader takes what is right', () => {
 	assert.equal(readExposition(Buffer.from(GOOD), { open: true }).size, 2);
 	const escaped = readExposition(Buffer.from('# TYPE a gauge\na{b="\\"\\\\\\n"} +Inf\n# EOF\n'), { open: true });
+	const counted = readExposition(Buffer.from(`${HISTOGRAM}\n# EOF\n`), { open: true });
+	assert.equal(counted.get('h').samples.size, 4);
 	assert.equal([...escaped.get('a').samples.values()][0].labels.get('b'), '"\\\n');
 });
 
@@ -122,9 +205,12 @@ for (const [what, text] of [
 	['a label twice', GOOD.replace('b="c"', 'b="c",b="d"')],
 	['a trailing comma', GOOD.replace('b="c"', 'b="c",')],
 	['infinity without a sign', GOOD.replace('1e-3', 'Inf')],
+	['buckets that fall', GOOD.replace('# TYPE d gauge\nd 1e-3', HISTOGRAM.replace('"1"} 2', '"1"} 4'))],
+	['buckets without an end', GOOD.replace('# TYPE d gauge\nd 1e-3', HISTOGRAM.replace('h_bucket{le="+Inf"} 3\n', ''))],
+	['a count that is not the last bucket', GOOD.replace('# TYPE d gauge\nd 1e-3', HISTOGRAM.replace('h_count 3', 'h_count 2'))],
 	['a sample without a type', GOOD.replace('# TYPE d gauge\n', '')],
 ])
 	test(`the strict reader refuses ${what}`, () => {
 		assert.notEqual(text, GOOD);
-		assert.throws(() => readExposition(Buffer.from(text), { open: true }), /line \d+/);
+		assert.throws(() => readExposition(Buffer.from(text), { open: true }), /line \d+|the histogram h/);
 	});

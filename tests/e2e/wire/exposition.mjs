@@ -7,7 +7,7 @@ const LABEL = /^([a-zA-Z_][a-zA-Z0-9_]*)="((?:[^"\\\n]|\\[n"\\])*)"/;
 const NUMBER = /^(?:[+-]?(?:\d+(?:\.\d*)?|\.\d+)(?:[eE][+-]?\d+)?|[+-]Inf|NaN)$/;
 const METADATA = new RegExp(`^# (TYPE|UNIT|HELP) (${NAME})(?: (.*))?$`, 'su');
 const SAMPLE = new RegExp(`^(${NAME})(?:\\{(.*)\\})? (\\S+)$`, 'su');
-const ENDINGS = { counter: ['_total', '_created'], gauge: [''] };
+const ENDINGS = { counter: ['_total', '_created'], gauge: [''], histogram: ['_bucket', '_sum', '_count', '_created'] };
 
 function fail(number, why) {
 	throw new Error(`line ${number}: ${why}`);
@@ -34,7 +34,33 @@ function readLabels(text, number) {
 // Names that may stand in a family's samples; in the older format a counter's own name is its samples'.
 function sampleNames(family, open) {
 	const endings = ENDINGS[family.type];
-	return open ? endings.map((ending) => family.name + ending) : [family.name];
+	return open || family.type === 'histogram' ? endings.map((ending) => family.name + ending) : [family.name];
+}
+
+// A histogram's samples: of each set of labels buckets whose ends and counts rise, the last to +Inf, and a
+// count that is the last bucket's.
+function checkHistogram({ name, samples }) {
+	const series = new Map();
+	for (const [key, { labels, value }] of samples) {
+		const ending = JSON.parse(key)[0].slice(name.length), end = labels.get('le');
+		const others = JSON.stringify([...labels].filter(([label]) => label !== 'le'));
+		if ((ending === '_bucket') !== (end !== undefined))
+			throw new Error(`${key} and le`);
+		if (!series.has(others))
+			series.set(others, { ends: [], counts: [] });
+		const one = series.get(others);
+		if (end === undefined)
+			one[ending] = value;
+		else {
+			one.ends.push(Number(end.replace('Inf', 'Infinity')));
+			one.counts.push(value);
+		}
+	}
+	const rises = (list, less) => list.every((value, i) => i === 0 || less(list[i - 1], value));
+	for (const [others, { ends, counts, _count, _sum }] of series)
+		if (!rises(ends, (a, b) => a < b) || !rises(counts, (a, b) => a <= b) || ends.at(-1) !== Infinity
+			|| _count !== counts.at(-1) || !(_sum >= 0))
+			throw new Error(`the histogram ${name} of ${others}`);
 }
 
 class Reader {
@@ -119,5 +145,8 @@ export function readExposition(bytes, { open }) {
 		fail(lines.length + 1, 'the end is not # EOF');
 	const reader = new Reader(open);
 	lines.forEach((line, i) => reader.line(line, i + 1));
+	for (const family of reader.families.values())
+		if (family.type === 'histogram')
+			checkHistogram(family);
 	return reader.families;
 }

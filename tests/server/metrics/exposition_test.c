@@ -59,6 +59,49 @@ static void openmetrics_is_1_0_0(void **state)
 	           "# EOF\n");
 }
 
+static const cau_metric_family waited = {"waited_seconds", CAU_METRIC_HISTOGRAM, "seconds",
+                                         "Waits"};
+
+static void a_histogram_is_told_from_its_least_bucket_up(void **state)
+{
+	(void)state;
+	char *text = NULL;
+	size_t bytes = 0;
+	FILE *out = open_memstream(&text, &bytes);
+	const double bounds[] = {0.0005, 1};
+	const uint64_t counts[] = {3, 2, 1};
+	cau_metrics_begin(out, CAU_METRICS_TEXT, &waited);
+	cau_metrics_histogram(out, CAU_METRICS_TEXT, &waited, &(cau_metric_label){"stage", "a\"b"}, 1,
+	                      &(cau_buckets){bounds, 2, counts, 7.5});
+	cau_metrics_histogram(out, CAU_METRICS_TEXT, &waited, NULL, 0,
+	                      &(cau_buckets){NULL, 0, &counts[2], 2});
+	assert_int_equal(fclose(out), 0);
+	assert_string_equal(text, "# TYPE cautery_waited_seconds histogram\n"
+	                          "# HELP cautery_waited_seconds Waits\n"
+	                          "cautery_waited_seconds_bucket{stage=\"a\\\"b\",le=\"0.0005\"} 3\n"
+	                          "cautery_waited_seconds_bucket{stage=\"a\\\"b\",le=\"1\"} 5\n"
+	                          "cautery_waited_seconds_bucket{stage=\"a\\\"b\",le=\"+Inf\"} 6\n"
+	                          "cautery_waited_seconds_sum{stage=\"a\\\"b\"} 7.5\n"
+	                          "cautery_waited_seconds_count{stage=\"a\\\"b\"} 6\n"
+	                          "cautery_waited_seconds_bucket{le=\"+Inf\"} 1\n"
+	                          "cautery_waited_seconds_sum 2\n"
+	                          "cautery_waited_seconds_count 1\n");
+	free(text);
+}
+
+static void samples_may_have_several_labels(void **state)
+{
+	(void)state;
+	char *text = NULL;
+	size_t bytes = 0;
+	FILE *out = open_memstream(&text, &bytes);
+	const cau_metric_label labels[] = {{"method", "tool.move"}, {"code", "ok"}};
+	cau_metrics_sample_labelled(out, CAU_METRICS_TEXT, &spent, labels, 2, 4);
+	assert_int_equal(fclose(out), 0);
+	assert_string_equal(text, "cautery_spent_seconds_total{method=\"tool.move\",code=\"ok\"} 4\n");
+	free(text);
+}
+
 static void what_is_not_finite_has_its_own_words(void **state)
 {
 	(void)state;
@@ -80,6 +123,8 @@ int main(void)
 	const struct CMUnitTest tests[] = {
 		cmocka_unit_test(text_is_0_0_4),
 		cmocka_unit_test(openmetrics_is_1_0_0),
+		cmocka_unit_test(a_histogram_is_told_from_its_least_bucket_up),
+		cmocka_unit_test(samples_may_have_several_labels),
 		cmocka_unit_test(what_is_not_finite_has_its_own_words),
 	};
 	return cmocka_run_group_tests(tests, NULL, NULL);

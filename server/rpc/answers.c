@@ -1,0 +1,62 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Counts what was answered to which method, from any thread.
+#include "rpc/internal.h"
+
+// Of each column but the first, which is for results.
+static const struct {
+	int32_t code;
+	const char *word;
+} columns[CAU_ANSWER_COLUMNS] = {{0, "ok"},
+#define X(number, code, word, sentence) {(number), word},
+                                 CAU_RPC_ERROR_TABLE(X)
+#undef X
+};
+
+void cau_answers_count(cau_service *service, cau_method method, int32_t code)
+{
+	int column = 0;
+	while (column < CAU_ANSWER_COLUMNS - 1 && columns[column].code != code)
+		column++;
+	atomic_fetch_add_explicit(&service->answers[method][column], 1, memory_order_relaxed);
+}
+
+static const char *name_of(int method)
+{
+	return method == CAU_METHOD_COUNT ? "none" : cau_method_describe((cau_method)method)->name;
+}
+
+void cau_calls_write(cau_service *service, cau_metrics_format format, FILE *out)
+{
+	static const cau_metric_family family = {"calls", CAU_METRIC_COUNTER, "",
+	                                         "Requests and notifications on WebSocket by method"};
+	cau_metrics_begin(out, format, &family);
+	for (int m = 0; m < CAU_METHOD_COUNT; m++)
+		if (cau_method_describe((cau_method)m)->form != CAU_FORM_PUSH)
+			cau_metrics_sample(out, format, &family, "method", name_of(m),
+			                   (double)service->calls[m]);
+}
+
+// A series begins with 0 for the result of each method that clients may call, so that the first
+// call is seen as an increase; those of errors begin with their first one, since there are too many
+// to tell them all.
+static bool is_told(int method, int column, uint64_t count)
+{
+	cau_method_form form =
+		method < CAU_METHOD_COUNT ? cau_method_describe((cau_method)method)->form : CAU_FORM_PUSH;
+	return count > 0 || (column == 0 && (form == CAU_FORM_REQUEST || form == CAU_FORM_EITHER_WAY));
+}
+
+void cau_answers_write(cau_service *service, cau_metrics_format format, FILE *out)
+{
+	static const cau_metric_family family = {
+		"answers", CAU_METRIC_COUNTER, "",
+		"Answers on WebSocket by method and code; method none: to what was no request"};
+	cau_metrics_begin(out, format, &family);
+	for (int m = 0; m <= CAU_METHOD_COUNT; m++)
+		for (int c = 0; c < CAU_ANSWER_COLUMNS; c++) {
+			uint64_t count = service->answers[m][c];
+			cau_metric_label labels[] = {{"method", name_of(m)}, {"code", columns[c].word}};
+			if (is_told(m, c, count))
+				cau_metrics_sample_labelled(out, format, &family, labels, 2, (double)count);
+		}
+}
