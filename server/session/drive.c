@@ -33,6 +33,11 @@ const cau_drive *cau_logic_drive(const cau_logic *logic, const char *tool)
 
 // ---- cuts ---------------------------------------------------------------------------------------
 
+static uint64_t newest(uint64_t a, uint64_t b)
+{
+	return a > b ? a : b;
+}
+
 static void go_dark(cau_drive *drive, int energy_off, const char *cause, cau_effects *effects)
 {
 	CAU_ASSERT_INDEX(energy_off, CAU_ENERGY_OFF_COUNT);
@@ -56,8 +61,7 @@ void cau_drive_cut(cau_drive *drive, uint64_t moment, int energy_off, const char
                    cau_effects *effects)
 {
 	CAU_ASSERT(cause[0] != 0, "tool %s is cut for no cause", drive->tool);
-	if (moment > drive->cut_moment)
-		drive->cut_moment = moment;
+	drive->cut_moment = newest(drive->cut_moment, moment);
 	go_dark(drive, energy_off, cause, effects);
 	CAU_ASSERT(!drive->enabled && drive->cut_moment >= moment,
 	           "tool %s is cut at %llu and is not dark", drive->tool, (unsigned long long)moment);
@@ -66,19 +70,15 @@ void cau_drive_cut(cau_drive *drive, uint64_t moment, int energy_off, const char
 void cau_drive_cut_lit(cau_logic *logic, uint64_t moment, int energy_off, const char *cause,
                        cau_effects *effects)
 {
+	logic->dark_moment = newest(logic->dark_moment, moment);
 	for (int32_t i = 0; i < logic->drive_count; i++)
 		cau_drive_cut(&logic->drives[i], moment, energy_off, cause, effects);
 }
 
-// A tool whose driver is lost stays where it is, lit or not. What another asked for who drives it
-// next still counts.
-static void cut_lost(cau_logic *logic, cau_drive *drive, const char *cause, cau_effects *effects)
+// A tool whose driver is lost stays where it is, lit or not. What its driver asked for and waits is
+// cut in the queue; what another asked for who drives it next still counts.
+static void cut_lost(cau_drive *drive, const char *cause, cau_effects *effects)
 {
-	CAU_ASSERT(logic->moment >= drive->lost_moment, "tool %s is lost at %llu, after %llu",
-	           drive->tool, (unsigned long long)logic->moment,
-	           (unsigned long long)drive->lost_moment);
-	drive->lost_moment = logic->moment;
-	drive->lost_client = drive->driver.client;
 	go_dark(drive, CAU_ENERGY_OFF_WATCHDOG, cause, effects);
 	drive->freeze = drive->frozen = true; // said at once, as the darkness is; the core is told next
 	cau_effect_wake(effects);
@@ -89,7 +89,7 @@ void cau_drive_cut_client(cau_logic *logic, uint32_t client, const char *cause,
 {
 	for (int32_t i = 0; i < logic->drive_count; i++)
 		if (client && logic->drives[i].driver.client == client)
-			cut_lost(logic, &logic->drives[i], cause, effects);
+			cut_lost(&logic->drives[i], cause, effects);
 }
 
 static double silent_from_s(const cau_drive *drive)
@@ -98,13 +98,17 @@ static double silent_from_s(const cau_drive *drive)
 	return drive->alive_s + drive->driver.deadline_s;
 }
 
+bool cau_drive_is_silent(const cau_drive *drive, double now_s)
+{
+	return drive->enabled && silent_from_s(drive) <= now_s;
+}
+
 void cau_drive_cut_silent(cau_logic *logic, double now_s, cau_effects *effects)
 {
 	for (int32_t i = 0; i < logic->drive_count; i++) {
 		cau_drive *drive = &logic->drives[i];
-		if (drive->enabled && silent_from_s(drive) <= now_s)
-			cut_lost(logic, drive, "its driver is silent",
-			         effects); // the silence cut of the watchdog
+		if (cau_drive_is_silent(drive, now_s))
+			cut_lost(drive, "its driver is silent", effects); // the silence cut of the watchdog
 	}
 }
 
@@ -123,7 +127,7 @@ void cau_drive_forget(cau_logic *logic, uint32_t client, cau_effects *effects)
 		cau_drive *drive = &logic->drives[i];
 		if (!client || drive->driver.client != client)
 			continue;
-		cut_lost(logic, drive, "its driver is gone", effects);
+		cut_lost(drive, "its driver is gone", effects);
 		drive->driver = (cau_asker){0};
 		cau_effect_tell(effects, drive);
 	}
@@ -216,9 +220,7 @@ static bool refuse_stranger(const cau_drive *drive, cau_action *action)
 // Whether nothing that came in after the order darkens what it lights.
 static bool counts(const cau_drive *drive, const cau_waiting *order)
 {
-	bool lost = order->asked.asker.client == drive->lost_client;
-	return !order->cut_moment && order->moment > drive->cut_moment &&
-	       !(lost && order->moment <= drive->lost_moment);
+	return !order->cut_moment && order->moment > drive->cut_moment;
 }
 
 static bool allows_enable(const cau_logic *logic, const cau_drive *drive, const cau_waiting *order,
@@ -316,6 +318,8 @@ void cau_drive_enabled(cau_drive *drive, const cau_waiting *order, cau_effects *
 	cau_effect_armed(effects);
 }
 
+// A tool that is added is a new one, whatever its name. What was asked for before it was, or before
+// all went dark or it was itself turned off, does not light it.
 void cau_drive_add(cau_logic *logic, const cau_waiting *order)
 {
 	CAU_ASSERT(order->asked.tool[0] != 0, "a tool without a name, by order %llu",
@@ -326,7 +330,8 @@ void cau_drive_add(cau_logic *logic, const cau_waiting *order)
 	*made = (cau_drive){.alive_s = order->alive_s,
 	                    .energy_off = CAU_ENERGY_OFF_NEVER_ENABLED,
 	                    .cut_off = CAU_ENERGY_OFF_NEVER_ENABLED,
-	                    .cut_moment = order->off_moment};
+	                    .cut_moment =
+	                        newest(newest(order->moment, order->off_moment), logic->dark_moment)};
 	memcpy(made->tool, order->asked.tool, sizeof made->tool);
 	if (!order->gone)
 		made->driver = order->asked.asker;
@@ -360,6 +365,7 @@ void cau_drive_match(cau_logic *logic, const cau_logic_event *event)
 			if (strcmp(old[j].tool, event->tools[i].name) == 0)
 				*made = old[j];
 		memcpy(made->tool, event->tools[i].name, sizeof made->tool);
+		made->cut_moment = newest(made->cut_moment, logic->dark_moment);
 		made->enabled = made->frozen = made->by_order = false;
 		made->lit = made->freeze = event->tools[i].lit;
 		made->cut_off = CAU_ENERGY_OFF_RESTORED;

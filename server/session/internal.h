@@ -21,6 +21,8 @@ void cau_drive_cut_lit(cau_logic *logic, uint64_t moment, int energy_off, const 
                        cau_effects *effects);
 void cau_drive_cut_client(cau_logic *logic, uint32_t client, const char *cause,
                           cau_effects *effects);
+// Lit, by a driver who gave no sign of life for longer than its deadline.
+bool cau_drive_is_silent(const cau_drive *drive, double now_s);
 void cau_drive_cut_silent(cau_logic *logic, double now_s, cau_effects *effects);
 void cau_drive_forget(cau_logic *logic, uint32_t client, cau_effects *effects);
 void cau_drive_alive(cau_logic *logic, uint32_t client, const char *tool, double time_s);
@@ -44,8 +46,11 @@ void cau_drive_remove(cau_logic *logic, const char *tool);
 void cau_queue_take(cau_logic *logic, const cau_asked *asked, cau_effects *effects);
 void cau_queue_alive(cau_logic *logic, uint32_t client, const char *tool, double time_s);
 void cau_queue_cut(cau_logic *logic, uint32_t client);      // its enables do not count any more
+void cau_queue_cut_silent(cau_logic *logic, double now_s);  // nor do those of who is silent now
 void cau_queue_overtake(cau_logic *logic, uint64_t moment); // orders to resume from before it
 void cau_queue_forget(cau_logic *logic, uint32_t client);
+// Enables from before `moment` of a tool that is not there do not count any more.
+void cau_queue_darken(cau_logic *logic, const char *tool, uint64_t moment);
 void cau_queue_committed(cau_logic *logic, cau_effects *effects);
 // The first that may be served at this border, or NULL.
 cau_waiting *cau_queue_head(cau_logic *logic);

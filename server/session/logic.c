@@ -35,6 +35,8 @@ static void expect_sound(const cau_logic *logic)
 	CAU_ASSERT(logic->drive_count >= 0 && logic->drive_count <= CAU_MAX_TOOLS, "%d tools",
 	           logic->drive_count);
 	CAU_ASSERT(logic->steps_left >= 0, "%lld steps left", (long long)logic->steps_left);
+	CAU_ASSERT(logic->dark_moment <= logic->moment, "all went dark at moment %llu of %llu",
+	           (unsigned long long)logic->dark_moment, (unsigned long long)logic->moment);
 	for (int32_t i = 0; i < logic->drive_count; i++) {
 		const cau_drive *drive = &logic->drives[i];
 		CAU_ASSERT(!drive->enabled || drive->lit, "tool %s is enabled and not lit", drive->tool);
@@ -98,6 +100,12 @@ static void fault(cau_logic *logic, const char *reason, cau_effects *effects)
 	                  effects);
 }
 
+static void cut_silent(cau_logic *logic, double now_s, cau_effects *effects)
+{
+	cau_queue_cut_silent(logic, now_s);
+	cau_drive_cut_silent(logic, now_s, effects);
+}
+
 void cau_logic_take(cau_logic *logic, const cau_logic_event *event, cau_effects *effects)
 {
 	CAU_ASSERT(event->kind != CAU_LOGIC_ORDER || event->asked, "event %d without an order",
@@ -125,7 +133,7 @@ void cau_logic_take(cau_logic *logic, const cau_logic_event *event, cau_effects 
 		cau_queue_forget(logic, event->client);
 		break;
 	case CAU_LOGIC_TIME:
-		cau_drive_cut_silent(logic, event->time_s, effects);
+		cut_silent(logic, event->time_s, effects);
 		break;
 	case CAU_LOGIC_STORE:
 		take_store(logic, event, effects);
@@ -294,7 +302,7 @@ static bool next_tick(cau_logic *logic, double now_s, cau_action *action, cau_ef
 {
 	if (!cau_time_is_due(logic, now_s))
 		return false;
-	cau_drive_cut_silent(logic, now_s, effects);
+	cut_silent(logic, now_s, effects);
 	if (cau_drive_next_cut(logic, true, action))
 		return true;
 	const cau_waiting *waits = cau_queue_find_ask(logic, CAU_ASK_PAUSE);
@@ -395,6 +403,7 @@ static void take_effect(cau_logic *logic, cau_effects *effects)
 		break;
 	case CAU_ASK_TOOL_REMOVE:
 		cau_drive_remove(logic, order->asked.tool);
+		cau_queue_darken(logic, order->asked.tool, order->moment);
 		break;
 	case CAU_ASK_TOOL_USE:
 	case CAU_ASK_MOTION:

@@ -70,7 +70,7 @@ typedef struct cau_asked {
 typedef struct cau_waiting {
 	cau_asked asked;
 	uint64_t moment;     // of its coming in
-	uint64_t cut_moment; // its asker was lost since: an enable does not count; 0: no
+	uint64_t cut_moment; // its asker was lost since, or its tool: an enable does not count; 0: no
 	uint64_t off_moment; // TOOL_ADD: the newest order since to turn the coming tool off; 0: none
 	double alive_s;      // its asker's newest sign of life
 	bool gone, to_gone;  // the asker, or the one it hands over to, will not come back
@@ -86,18 +86,16 @@ enum { CAU_CAUSE_BYTES = 40 };
 // A tool and who drives it.
 typedef struct cau_drive {
 	char tool[CAU_NAME_BYTES];
-	cau_asker driver;     // client 0: nobody
-	double alive_s;       // the driver's last sign of life
-	bool enabled;         // its newest event about energy is an enable that counts
-	bool lit;             // the core was told to heat it
-	bool freeze;          // the tool is to stay where it is, from the next border on
-	bool frozen;          // and does, until its driver moves it
-	bool by_order;        // the newest cut is an order of the queue, which tells the core itself
-	int energy_off;       // CAU_ENERGY_OFF_*: why it is dark; meaningless while enabled
-	uint64_t cut_moment;  // no enable counts that came before
-	uint64_t lost_moment; // none of this client does that came before
-	uint32_t lost_client;
-	int cut_off; // the newest cut's CAU_ENERGY_OFF_*
+	cau_asker driver;    // client 0: nobody
+	double alive_s;      // the driver's last sign of life
+	bool enabled;        // its newest event about energy is an enable that counts
+	bool lit;            // the core was told to heat it
+	bool freeze;         // the tool is to stay where it is, from the next border on
+	bool frozen;         // and does, until its driver moves it
+	bool by_order;       // the newest cut is an order of the queue, which tells the core itself
+	int energy_off;      // CAU_ENERGY_OFF_*: why it is dark; meaningless while enabled
+	uint64_t cut_moment; // no enable counts that came before
+	int cut_off;         // the newest cut's CAU_ENERGY_OFF_*
 	char cut_cause[CAU_CAUSE_BYTES];
 } cau_drive;
 
@@ -216,6 +214,7 @@ typedef struct cau_logic {
 	// tools
 	cau_drive drives[CAU_MAX_TOOLS];
 	int32_t drive_count;
+	uint64_t dark_moment; // of the newest cut of all, of tools too that are still to come
 	// the queue, in the order of coming in
 	bool border;            // the worker is between two ticks, and takes what came before
 	uint64_t border_moment; // this

@@ -119,6 +119,22 @@ void cau_queue_cut(cau_logic *logic, uint32_t client)
 	cut_order(logic, &logic->serving, client);
 }
 
+static void cut_silent(cau_logic *logic, cau_waiting *order, double now_s)
+{
+	const cau_drive *drive = cau_drive_find(logic, order->asked.tool);
+	if (order->asked.ask == CAU_ASK_ENERGY_ON && drive && cau_drive_is_silent(drive, now_s) &&
+	    order->asked.asker.client == drive->driver.client)
+		order->cut_moment = logic->moment;
+}
+
+// A sign of life that comes after the silence does not bring back what was asked for before it.
+void cau_queue_cut_silent(cau_logic *logic, double now_s)
+{
+	for (int32_t i = 0; i < logic->count; i++)
+		cut_silent(logic, &logic->waiting[i], now_s);
+	cut_silent(logic, &logic->serving, now_s);
+}
+
 // A pause is not undone by what was asked for before it, and was held up.
 void cau_queue_overtake(cau_logic *logic, uint64_t moment)
 {
@@ -138,6 +154,17 @@ void cau_queue_forget(cau_logic *logic, uint32_t client)
 	for (int32_t i = 0; i < logic->count; i++)
 		forget_order(&logic->waiting[i], client);
 	forget_order(&logic->serving, client);
+}
+
+void cau_queue_darken(cau_logic *logic, const char *tool, uint64_t moment)
+{
+	CAU_ASSERT(!cau_drive_find(logic, tool), "tool %s is there and keeps its own moments", tool);
+	for (int32_t i = 0; i < logic->count; i++) {
+		cau_waiting *order = &logic->waiting[i];
+		if (order->asked.ask == CAU_ASK_ENERGY_ON && order->moment < moment &&
+		    strcmp(order->asked.tool, tool) == 0)
+			order->cut_moment = logic->moment;
+	}
 }
 
 // A tool that is still to be added is dark for whoever asked to light it before.
@@ -193,6 +220,8 @@ static void turn_off(cau_logic *logic, const cau_asked *asked, bool queued, cau_
 	if (drive) {
 		cau_drive_cut(drive, logic->moment, CAU_ENERGY_OFF_COMMANDED, cause, effects);
 		drive->by_order = queued;
+	} else {
+		cau_queue_darken(logic, asked->tool, logic->moment);
 	}
 	for (int32_t i = 0; i < logic->count; i++)
 		cut_coming(logic, &logic->waiting[i], asked->tool);

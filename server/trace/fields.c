@@ -172,8 +172,6 @@ static const field drive_fields[] = {
 	TRUTH(cau_drive, "drive.by_order", by_order),
 	SIGNED(cau_drive, "drive.energy_off", energy_off),
 	UNSIGNED(cau_drive, "drive.cut_moment", cut_moment),
-	UNSIGNED(cau_drive, "drive.lost_moment", lost_moment),
-	UNSIGNED(cau_drive, "drive.lost_client", lost_client),
 	SIGNED(cau_drive, "drive.cut_off", cut_off),
 	TEXT(cau_drive, "drive.cut_cause", cut_cause),
 };

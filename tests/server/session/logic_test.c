@@ -32,6 +32,40 @@ static void generate(sequence *s, uint64_t seed)
 		s->codes[i] = (uint32_t)next_random(&state);
 }
 
+// Each failed once.
+static const sequence found[] = {
+	{{0xff0040a0, 0x7e7e7e7e, 0x7e7e7e7e, 0x7e7e7e7e, 0xff070707, 0x54545454, 0x54545454,
+      0x57575757, 0x00054000, 0x54545401, 0x54545454, 0x57575757, 0x57575757, 0x47474747,
+      0x4747bd47, 0x7e7e7ebd, 0x7e7e7e7e, 0x5656567e, 0x56565656, 0x56565656, 0x7e7e5656,
+      0x7e7e7e7e, 0x7e7e7e7e, 0x7e7e7e7e, 0x57577e7e, 0x57575757},
+     26}, // removed, asked to light, turned off, added again
+	{{0xff0040a0, 0x7e7e7e7e, 0x7e7e7e7e, 0x7e7e7e7e, 0x2d7e0800, 0xbdb44747, 0x474747bd,
+      0x56565656, 0x56565656, 0x47474747, 0xbd4747bd, 0x7e7e7e7e, 0x7e7e7e7e, 0x56565656,
+      0x56565656, 0x56565656, 0x7e7e7e56},
+     17}, // asked to light before it was added
+	{{0x006e0701, 0xb8b8b800, 0xe0b8b8b8, 0x0050f038, 0x92929292, 0xffffff92, 0xffffffff,
+      0xffffc4ff, 0xfffbffff, 0xffffff29, 0xffffffff, 0xffffffff, 0x3fffffff, 0x2cffffff,
+      0xffffffff, 0xffffffff, 0xffffffff},
+     17}, // the store was full between that and its coming
+	{{0xe5cb71c6, 0x0ff40913, 0x54e64909, 0x3dbb8778, 0x8fea5008, 0xc1046b99, 0xe7f04567,
+      0x193ccc58, 0x5b3bb61e, 0x8628a593, 0x62ce6fdf, 0xa368a494, 0x06dcd659, 0xe7fef21a},
+     14}, // turned off while the session went to a state that has it
+	{{0x329e74df, 0xba221c75, 0x2c75a1c6, 0x32ea6f20, 0xdee652e5, 0xfab88340, 0x84d39233,
+      0xe9111eb3, 0xb41c207b, 0xddd509b8, 0xb0069d92, 0x1d616e1a, 0x68e20b7e, 0xb79ca257,
+      0xc058681f, 0xa2648415, 0xaded6892, 0xbd394a5a, 0x7096e75d, 0xae5420da},
+     20}, // the store was full meanwhile
+	{{0x00000073, 0x00000073, 0x00810000, 0x00000073, 0x00000073, 0x0000008d,
+      0x00000073, 0x00810000, 0x000000ed, 0x000000ed, 0x000000ed, 0x000000ed,
+      0x00000011, 0x0000002a, 0x00000073, 0x00000073, 0x00000073, 0x00000073,
+      0x00000073, 0x0000002a, 0x00000073, 0x00000073},
+     22}, // asked to light again, then silent, then alive
+	{{0x00000073, 0x00000073, 0x02010180, 0x00000073, 0x00000133, 0x02810000, 0x00813700,
+      0x00000073, 0x00000073, 0x00000032, 0x00000073, 0x00000073, 0x00000073, 0x00000073,
+      0x0000008d, 0x00000073, 0x00000073, 0x0000008d, 0x0000002a, 0x00000073, 0x00000073,
+      0x00000073, 0x00000073, 0x00000073, 0x00000073, 0x0000008d, 0x00000073, 0x00000073},
+     28}, // asked to light, removed, and added by an order that came before
+};
+
 static bool holds(world *w, const sequence *s)
 {
 	world_begin(w);
@@ -56,16 +90,28 @@ static void shrink(world *w, sequence *s)
 	}
 }
 
-static void print_failure(world *w, sequence *s, uint64_t seed)
+static void print_failure(world *w, sequence *s, const char *which, uint64_t seed)
 {
 	shrink(w, s);
-	fprintf(stderr, "sequence %llu fails; the shortest like it:\n", (unsigned long long)seed);
+	fprintf(stderr, "%s %llu fails; the shortest like it:\n", which, (unsigned long long)seed);
 	w->script = stderr;
 	holds(w, s);
 	fprintf(stderr, "-> %s\n{", w->wrong);
 	for (int i = 0; i < s->count; i++)
 		fprintf(stderr, "%s%#xu", i ? ", " : "", s->codes[i]);
 	fprintf(stderr, "}\n");
+}
+
+static bool old_ones_hold(world *w)
+{
+	for (size_t i = 0; i < sizeof found / sizeof *found; i++) {
+		sequence s = found[i];
+		if (!holds(w, &s)) {
+			print_failure(w, &s, "found sequence", i);
+			return false;
+		}
+	}
+	return true;
 }
 
 int main(int argc, char **argv)
@@ -75,13 +121,17 @@ int main(int argc, char **argv)
 	uint64_t events = 0;
 	struct timespec began, ended;
 	world *w = world_create();
+	if (!old_ones_hold(w)) {
+		world_destroy(w);
+		return EXIT_FAILURE;
+	}
 	clock_gettime(CLOCK_PROCESS_CPUTIME_ID, &began);
 	for (uint64_t seed = first; seed < first + count; seed++) {
 		sequence s;
 		generate(&s, seed);
 		events += (uint64_t)s.count;
 		if (!holds(w, &s)) {
-			print_failure(w, &s, seed);
+			print_failure(w, &s, "sequence", seed);
 			world_destroy(w);
 			return EXIT_FAILURE;
 		}

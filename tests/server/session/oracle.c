@@ -24,15 +24,33 @@ void oracle_darken_all(world *w, uint64_t came)
 		oracle_darken(&w->tools[i], came);
 }
 
-// The newest of all that concerns its energy is an enable of its driver, who is there and not
-// silent.
+static bool is_alive(const world *w, const tool_book *tool, int client)
+{
+	return tool->alive_s[client] + tool->deadline_s > w->now_s;
+}
+
+// Nothing that came in after it takes this client's enable back.
+static bool stands(const world *w, const tool_book *tool, int client, uint64_t enable)
+{
+	return tool->there && tool->driver == client && enable > tool->dark &&
+	       enable > tool->silent[client] && enable > w->away[client] && enable > w->gone[client] &&
+	       enable > w->no_store;
+}
+
+// The newest of all that concerns its energy is an enable of its driver, who is there.
+static bool is_enabled(const world *w, const tool_book *tool)
+{
+	return tool->enable && stands(w, tool, tool->enabler, tool->enable);
+}
+
 static bool should_be_lit(const world *w, const tool_book *tool)
 {
-	int client = tool->enabler;
-	return tool->there && tool->enable && tool->enable > tool->dark &&
-	       tool->enable > w->away[client] && tool->enable > w->gone[client] &&
-	       tool->enable > w->no_store && tool->driver == client &&
-	       tool->alive_s[client] + tool->deadline_s > w->now_s;
+	return is_enabled(w, tool) && is_alive(w, tool, tool->enabler);
+}
+
+static bool is_silent(const world *w, const tool_book *tool)
+{
+	return is_enabled(w, tool) && !is_alive(w, tool, tool->enabler);
 }
 
 void oracle_check_tick(world *w)
@@ -87,10 +105,7 @@ static bool must_enable(const world *w, const ticket_book *ticket)
 {
 	const tool_book *tool = oracle_book((world *)w, ticket->asked.tool);
 	int client = (int)ticket->asked.asker.client;
-	double alive_s = tool->alive_s[client];
-	return tool->there && tool->driver == client && w->store_takes && ticket->came > tool->dark &&
-	       ticket->came > w->away[client] && ticket->came > w->gone[client] &&
-	       ticket->came > w->no_store && alive_s + tool->deadline_s > w->now_s;
+	return w->store_takes && stands(w, tool, client, ticket->came) && is_alive(w, tool, client);
 }
 
 ticket_book *oracle_ticket(world *w, uint64_t number)
@@ -122,11 +137,69 @@ void oracle_note_silence(world *w)
 {
 	for (int i = 0; i < TOOLS; i++) {
 		tool_book *tool = &w->tools[i];
-		bool lit = tool->enable > tool->dark && tool->there && tool->driver == tool->enabler;
-		if (lit && tool->alive_s[tool->enabler] + tool->deadline_s <= w->now_s)
-			oracle_darken(tool, w->came);
+		if (is_silent(w, tool))
+			tool->silent[tool->enabler] = w->came;
 	}
 }
+
+// ---- cuts ---------------------------------------------------------------------------------------
+
+// Dark, whatever lit it: what came in by then lights it no more.
+static void cut(tool_book *tool, uint64_t came)
+{
+	oracle_darken(tool, came);
+	tool->enable = 0;
+}
+
+// The coming in of the order of this kind and tool that waits first; 0: none does.
+static uint64_t waits(const world *w, cau_ask ask, const char *tool)
+{
+	for (int i = 0; i < w->ticket_count; i++) {
+		const ticket_book *ticket = &w->tickets[i];
+		if (ticket->asked.ask == ask && !ticket->answers && strcmp(ticket->asked.tool, tool) == 0)
+			return ticket->came;
+	}
+	return 0;
+}
+
+static uint64_t oldest(uint64_t a, uint64_t b)
+{
+	return a && b ? (a < b ? a : b) : a + b; // 0: none
+}
+
+// A pause makes its cuts one after the other, and darkens all tools with the first.
+static bool is_cut_of_pause(world *w)
+{
+	uint64_t pause = oldest(w->paused, waits(w, CAU_ASK_PAUSE, ""));
+	if (strcmp(w->action.drive.cut_cause, "paused") != 0 || !pause)
+		return false;
+	for (int i = 0; i < TOOLS && !w->pausing; i++)
+		cut(&w->tools[i], pause);
+	w->pausing = true;
+	return true;
+}
+
+void oracle_note_cut(world *w)
+{
+	const cau_drive *drive = &w->action.drive;
+	tool_book *tool = oracle_book(w, drive->tool);
+	for (int i = 0; i < TOOLS; i++)
+		if (is_silent(w, &w->tools[i]))
+			w->tools[i].looked = w->came;
+	if (is_cut_of_pause(w) || !w->action.was_lit)
+		return;
+	uint64_t change =
+		oldest(waits(w, CAU_ASK_TAKE_OVER, drive->tool), waits(w, CAU_ASK_HAND_OVER, drive->tool));
+	uint64_t *silent = &tool->silent[tool->enabler];
+	if (strcmp(drive->cut_cause, "another driver") == 0 && change)
+		cut(tool, change);
+	else if (strcmp(drive->cut_cause, "its driver is silent") == 0 && tool->looked > tool->enable)
+		*silent = tool->looked > *silent ? tool->looked : *silent;
+	else if (should_be_lit(w, tool))
+		world_wrong(w, "%s is cut for nothing: %s", drive->tool, drive->cut_cause);
+}
+
+// ---- orders that are done -----------------------------------------------------------------------
 
 static void change_driver(world *w, const ticket_book *ticket, int to)
 {
@@ -150,10 +223,11 @@ void oracle_note_done(world *w, ticket_book *ticket)
 		tool->there = true;
 		tool->driver = ticket->came > w->gone[client] ? client : 0;
 		tool->deadline_s = DEADLINE_S;
+		oracle_darken(tool, ticket->came); // it is a new one
 		break;
 	case CAU_ASK_TOOL_REMOVE:
 		tool->there = tool->lit = false;
-		tool->enable = 0;
+		cut(tool, ticket->came);
 		tool->driver = 0;
 		break;
 	case CAU_ASK_TAKE_OVER:
@@ -171,9 +245,6 @@ void oracle_note_done(world *w, ticket_book *ticket)
 		break;
 	case CAU_ASK_ENERGY_OFF:
 		tool->lit = false;
-		oracle_darken(tool, ticket->came);
-		if (asked->tick) // it was for this tick: what came in later and was lit before is off too
-			tool->enable = 0;
 		break;
 	case CAU_ASK_PAUSE:
 		w->state = CAU_SESSION_PAUSED;
@@ -184,7 +255,8 @@ void oracle_note_done(world *w, ticket_book *ticket)
 		break;
 	case CAU_ASK_GO:
 		w->going = true;
-		oracle_darken_all(w, ticket->came);
+		for (int i = 0; i < TOOLS; i++)
+			cut(&w->tools[i], ticket->came);
 		break;
 	case CAU_ASK_DESTROY:
 		w->ended = true;
@@ -192,6 +264,16 @@ void oracle_note_done(world *w, ticket_book *ticket)
 	default:
 		break;
 	}
+}
+
+// It is dark from the decision on. One that was for this tick, or waited for the disk, takes off
+// too what came in later and was lit before.
+static void note_off(world *w, const ticket_book *ticket)
+{
+	tool_book *tool = oracle_book(w, ticket->asked.tool);
+	if (!may(w, ticket))
+		world_wrong(w, "off of c%u is done, and there is no tool", ticket->asked.asker.client);
+	cut(tool, ticket->came);
 }
 
 void oracle_check_decision(world *w)
@@ -211,6 +293,8 @@ void oracle_check_decision(world *w)
 		if (!orders && must_enable(w, ticket))
 			world_wrong(w, "a good enable of c%u was refused: %s", ticket->asked.asker.client,
 			            w->action.error.reason);
+	} else if (orders && ask == CAU_ASK_ENERGY_OFF) {
+		note_off(w, ticket);
 	} else if (orders && !may(w, ticket)) {
 		world_wrong(w, "%s of c%u is done, and it may not", world_ask_names[ask],
 		            ticket->asked.asker.client);

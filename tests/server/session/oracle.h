@@ -18,6 +18,8 @@ void oracle_answered(world *w, uint64_t number);
 void oracle_note_done(world *w, ticket_book *ticket);
 // Somebody looked for silence: a later sign of life does not undo it.
 void oracle_note_silence(world *w);
+// The worker cuts a tool: something that came in must be the reason.
+void oracle_note_cut(world *w);
 
 // The worker is told to do or to refuse an order; to begin a tick.
 void oracle_check_decision(world *w);

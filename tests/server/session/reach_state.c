@@ -88,8 +88,6 @@ static void decode_tool(const reach_tool *from, int index, cau_drive *to)
 	to->freeze = from->freeze;
 	to->by_order = from->by_order;
 	to->cut_moment = moment_of_place(from->cut_place);
-	to->lost_moment = moment_of_place(from->lost_place);
-	to->lost_client = from->lost_client;
 }
 
 void reach_decode(const reach_state *state, cau_logic *logic)
@@ -178,16 +176,13 @@ static void encode_order(const cau_logic *logic, const cau_waiting *from, reach_
 	to->ticks = asked->ask == CAU_ASK_STEP ? (uint8_t)asked->ticks : 0;
 }
 
-// The newest of the orders about this tool's energy that came in by `moment`; `lost_client`: of
-// this client's enables alone.
-static uint8_t place_of(const line *orders, const char *tool, uint64_t moment, uint32_t lost_client)
+// The newest of the orders about this tool's energy that came in by `moment`.
+static uint8_t place_of(const line *orders, const char *tool, uint64_t moment)
 {
 	for (int i = orders->count; i-- > 0;) {
 		const cau_waiting *order = orders->orders[i];
 		cau_ask ask = order->asked.ask;
-		bool bears = lost_client
-		                 ? ask == CAU_ASK_ENERGY_ON && order->asked.asker.client == lost_client
-		                 : ask == CAU_ASK_ENERGY_ON || ask == CAU_ASK_ENERGY_OFF;
+		bool bears = ask == CAU_ASK_ENERGY_ON || ask == CAU_ASK_ENERGY_OFF;
 		if (bears && order->moment <= moment && strcmp(order->asked.tool, tool) == 0)
 			return (uint8_t)(i + 1);
 	}
@@ -203,10 +198,7 @@ static void encode_tool(const cau_logic *logic, const cau_drive *from, const lin
 	to->lit = from->lit;
 	to->freeze = from->freeze;
 	to->by_order = from->by_order;
-	to->cut_place = place_of(orders, from->tool, from->cut_moment, 0);
-	if (from->lost_client)
-		to->lost_place = place_of(orders, from->tool, from->lost_moment, from->lost_client);
-	to->lost_client = to->lost_place ? (uint8_t)from->lost_client : 0;
+	to->cut_place = place_of(orders, from->tool, from->cut_moment);
 }
 
 static uint8_t orders_until(const line *orders, uint64_t moment)

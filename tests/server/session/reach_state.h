@@ -40,10 +40,8 @@ enum { REACH_TICK = 1000, REACH_STEP_TICKET = 60 };
 	X(freeze, 1)                                                                                   \
 	X(by_order, 1)                                                                                 \
 	X(cut_place, 2) /* places in `orders`, from 1; 0: before all */                                \
-	X(lost_place, 2)                                                                               \
-	X(lost_client, 2)                                                                              \
-	X(heated, 1) /* the test's own: the core was told to heat it */                                \
-	X(wanted, 1) /* likewise: an enable of its driver counts, and the core took it */
+	X(heated, 1)    /* the test's own: the core was told to heat it */                             \
+	X(wanted, 1)    /* likewise: an enable of its driver counts, and the core took it */
 
 #define REACH_TIME_MEMBERS(X)                                                                      \
 	X(tool_count, 2)                                                                               \

@@ -168,6 +168,17 @@ static void store(world *w, bool takes)
 
 // ---- the worker ---------------------------------------------------------------------------------
 
+// The state that was gone to has the jaws where the present has none, and none where it has.
+static void exchange_jaws(world *w)
+{
+	tool_book *jaws = &w->tools[1];
+	say(w, "jaws %s\n", jaws->there ? "are not there any more" : "are there again");
+	jaws->there = !jaws->there;
+	jaws->driver = 0;
+	jaws->enable = 0;
+	jaws->deadline_s = DEADLINE_S;
+}
+
 static void arrive(world *w, bool lit)
 {
 	cau_arrived_tool tools[TOOLS] = {0};
@@ -203,7 +214,13 @@ static void begin_work(world *w)
 	if (w->action.act == CAU_ACT_STEP)
 		oracle_check_tick(w);
 	if (w->action.act == CAU_ACT_CUT)
-		oracle_note_silence(w);
+		oracle_note_cut(w);
+	else
+		w->pausing = false;
+	if (w->action.act == CAU_ACT_PAUSE) {
+		w->served = w->paused;
+		w->paused = 0;
+	}
 	if (w->working)
 		say(w, "worker: %s (%llu)\n",
 		    (const char *[]){"", "refuse", "look", "do", "cut", "pause", "TICK", "stepped",
@@ -254,13 +271,18 @@ static cau_outcome_kind finish_act(world *w, uint32_t more)
 		return CAU_DONE;
 	case CAU_ACT_PAUSE:
 		w->state = CAU_SESSION_PAUSED;
-		oracle_darken_all(w, w->paused);
+		oracle_darken_all(w, w->served);
 		return CAU_DONE;
 	case CAU_ACT_NOTHING:
 	case CAU_ACT_STEP:
 		break;
 	}
 	return CAU_DONE;
+}
+
+static bool is_pause(world *w)
+{
+	return oracle_ticket(w, w->action.ticket)->asked.ask == CAU_ASK_PAUSE;
 }
 
 static void end_work(world *w, uint32_t more)
@@ -273,9 +295,11 @@ static void end_work(world *w, uint32_t more)
 		return;
 	}
 	cau_outcome_kind outcome = finish_act(w, more);
+	bool pauses = w->action.act == CAU_ACT_LOOK && is_pause(w);
 	cau_logic_done(w->logic, w->now_s, outcome, &w->effects);
 	take_effects(w);
-	if (outcome == CAU_POSTPONED && more % 2)
+	// A tick may begin while a pause waits for the disk; the oracle has none wait.
+	if (outcome == CAU_POSTPONED && (pauses || more % 16 == 1))
 		take(w, (cau_logic_event){.kind = CAU_LOGIC_COMMITTED});
 }
 
@@ -288,14 +312,17 @@ static void stay(world *w)
 
 static void work(world *w, uint32_t more)
 {
-	if (w->working)
+	if (w->working) {
 		end_work(w, more);
-	else if (w->going && more % 3 == 0)
+	} else if (w->going && more % 3 == 0) {
 		stay(w);
-	else if (w->going)
+	} else if (w->going) {
+		if (more / 2 % 4 == 0)
+			exchange_jaws(w);
 		arrive(w, more % 2);
-	else
+	} else {
 		begin_work(w);
+	}
 }
 
 // ---- one code -----------------------------------------------------------------------------------

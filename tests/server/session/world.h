@@ -29,6 +29,8 @@ typedef struct tool_book {
 	uint64_t enable; // coming in of the newest enable that the core took
 	int enabler;
 	double alive_s[CLIENTS + 1];
+	uint64_t silent[CLIENTS + 1]; // coming in of the newest look that found this driver silent
+	uint64_t looked;              // of the newest one that the worker may have had
 } tool_book;
 
 typedef struct ticket_book {
@@ -45,7 +47,9 @@ typedef struct world {
 	double now_s;
 	uint64_t came; // counts what comes in
 	uint64_t away[CLIENTS + 1], gone[CLIENTS + 1];
-	uint64_t paused; // coming in of the newest pause that found no room
+	uint64_t paused; // coming in of the newest pause that found no room and waits; 0: none
+	uint64_t served; // of the one that the worker is at
+	bool pausing;    // the worker makes the cuts of a pause
 	uint64_t no_store;
 	bool store_takes, working, going, ended;
 	uint64_t tick, going_since;
