@@ -10,6 +10,8 @@
 
 enum { WIRE_VERSION = 1 };
 
+#define REFUSALS_TOLD_S 1. // between log lines: whoever tries tokens does not fill the log
+
 static void refuse(const cau_call *call, int32_t code, cau_close_code close, const char *reason)
 {
 	cau_error error = {0};
@@ -66,6 +68,20 @@ static void replace(cau_service *service, uint64_t connection)
 		cau_connection_close(old, CAU_CLOSE_RESUMED, NULL);
 }
 
+static void refuse_token(const cau_call *call)
+{
+	cau_service *service = call->peer->service;
+	double now_s = cau_monotonic_s();
+	service->tokens_refused++;
+	if (now_s - service->refusal_told_s >= REFUSALS_TOLD_S) {
+		service->refusal_told_s = now_s;
+		cau_log(CAU_LOG_WARNING, NULL, "token_refused", "address=%s total=%llu",
+		        call->peer->connection->address, (unsigned long long)service->tokens_refused);
+	}
+	refuse(call, CAU_RPC_UNAUTHORIZED, CAU_CLOSE_UNAUTHORIZED,
+	       "the token is not known, or has expired");
+}
+
 void cau_call_hello(cau_call *call)
 {
 	cau_peer *peer = call->peer;
@@ -84,9 +100,7 @@ void cau_call_hello(cau_call *call)
 		return;
 	}
 	if (!cau_auth_role(service->auth, params.token, strlen(params.token), &role)) {
-		service->tokens_refused++;
-		refuse(call, CAU_RPC_UNAUTHORIZED, CAU_CLOSE_UNAUTHORIZED,
-		       "the token is not known, or has expired");
+		refuse_token(call);
 		return;
 	}
 	peer->grant = cau_auth_grant(service->auth, params.token, strlen(params.token));

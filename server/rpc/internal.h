@@ -78,6 +78,7 @@ struct cau_service {
 	pthread_mutex_t mutex; // guards the posts
 	cau_post *first, *last;
 	uint64_t requests, errors, tokens_refused; // the last of hellos
+	double refusal_told_s;                     // when the log told of one
 	uint64_t calls[CAU_METHOD_COUNT];
 	_Atomic uint64_t answers[CAU_METHOD_COUNT + 1][CAU_ANSWER_COLUMNS]; // the last: of no method
 	cau_upload_total uploads;                                           // the network thread's

@@ -64,10 +64,11 @@ test('tokens that are refused are counted, by the door that they came to', async
 		return Number(new RegExp(`^cautery_authentication_failures_total\\{door="${door}"\\} (.*)$`, 'm').exec(text)[1]);
 	};
 	const [hello, http] = [await count('hello'), await count('http')];
-	await assert.rejects(daemon.connect({ hello: { token: 'not-a-token-of-ours-at-all' } }));
+	await assert.rejects(daemon.connect({ hello: { token: 'not-a-token-of-ours-at-all' } }), { code: -32042 });
 	assert.equal((await daemon.get('/metrics')).status, 401);
 	assert.equal((await daemon.get('/api/sessions', { authorization: 'Bearer wrong' })).status, 401);
 	assert.equal(await count('hello'), hello + 1);
+	assert.match(await daemon.log(/event=token_refused/), /address=(::ffff:)?127\.0\.0\.1 total=\d+/);
 	assert.equal(await count('http'), http + 2);
 });
 

@@ -8,6 +8,7 @@
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
+#include <time.h>
 
 #include "cautery/defaults.h"
 #include "cautery/session.h"
@@ -38,10 +39,13 @@ typedef struct fake_state { // all that a snapshot holds
 	bool faulted;
 } fake_state;
 
+#define SLOW_STEP_S 0.05 // of wall time: a third of the pace of 60 Hz
+
 struct cau_session {
 	fake_state state;
 	char name[CAU_NAME_BYTES], description[CAU_TEXT_BYTES];
 	double step_s;
+	bool slow; // a force of 1000 N along y makes steps take SLOW_STEP_S, until it is another
 	double velocity[VERTICES * 3], rest[VERTICES * 3];
 	int32_t face[FACES * 3], face_layer[FACES];
 	int32_t moved[VERTICES], mask_changed[WORDS];
@@ -189,6 +193,8 @@ static void apply(cau_session *s, const cau_command *c)
 		memcpy(state->gravity, c->as.gravity_m_s2, sizeof state->gravity);
 	else if (c->kind == CAU_COMMAND_SET_FORCE && c->as.force.force_n[0] >= 1000)
 		state->trouble_tick = state->tick + 1;
+	else if (c->kind == CAU_COMMAND_SET_FORCE)
+		s->slow = c->as.force.force_n[1] >= 1000;
 	if (i < 0)
 		return;
 	state->tools[i].sequence = c->sequence;
@@ -277,6 +283,8 @@ cau_status cau_session_step(cau_session *s, cau_error *error)
 	apply_due(s);
 	if (cau_fake_hooks_set.step)
 		cau_fake_hooks_set.step(s);
+	if (s->slow)
+		nanosleep(&(struct timespec){0, (long)(SLOW_STEP_S * 1e9)}, NULL);
 	if (s->state.trouble_tick && s->state.tick >= s->state.trouble_tick) {
 		s->state.faulted = true;
 		return cau_fail(error, CAU_NUMERICAL, NULL, "a force beyond reason");
