@@ -14,7 +14,7 @@ Usage: deploy/test.sh [--fast | --full | --long] [--no-install]
                 sanitizers over the unit and e2e tests; 10 s of fuzzing for each parser
   --fast        the Release suite alone
   --full        adds the thread sanitizer over the unit, determinism and e2e tests, clang-tidy,
-                tests labelled full, the whole tree built with clang; 30 s of fuzzing
+                tests labelled full, clang's warnings on every source; 30 s of fuzzing
   --long        as --full, with tests labelled long, and 600 s of fuzzing
   --only REGEX  the tests whose names match, in one tree: builds what these run and nothing else
   --preset NAME with --only: the tree of this preset instead of release's (asan-ubsan, tsan, dev)
@@ -154,7 +154,7 @@ collect_all() {
 	collect release release '' "$without" 1
 	if [ "$level" != fast ]; then
 		collect asan asan-ubsan 'unit|e2e' "$sanitizers_without" 4 all
-		collect clang fuzz 'fuzz|tidy' '' 1 $fuzz_target
+		collect clang fuzz 'fuzz|tidy' '' 1 fuzz_targets
 	fi
 	if [ "$level" = full ] || [ "$level" = long ]; then
 		collect tsan tsan 'unit|determinism|e2e' "unthreaded|$sanitizers_without" 10 all
@@ -163,12 +163,11 @@ collect_all() {
 
 without='full|long'
 fuzz_seconds=10
-fuzz_target=fuzz_targets
 tidy=OFF
 long=OFF
 case $level in
-full) without=long fuzz_seconds=30 fuzz_target=all tidy=ON ;;
-long) without='' fuzz_seconds=600 fuzz_target=all tidy=ON long=ON ;;
+full) without=long fuzz_seconds=30 tidy=ON ;;
+long) without='' fuzz_seconds=600 tidy=ON long=ON ;;
 esac
 
 # tests that only look at the sources need no second tree

@@ -21,8 +21,8 @@ if(CAUTERY_FUZZ)
     set(CAUTERY_SANITIZE address,undefined)
   endif()
 endif()
-# Clang's tree runs fuzz targets alone. What none of them comes to is there for clang's warnings: neither
-# sanitized nor optimised it compiles ten times as fast. A folder sets CAUTERY_WARNINGS_ONLY for its targets.
+# Clang's tree runs fuzz targets alone. What these link and never come to is neither sanitized nor optimised,
+# so that it compiles ten times as fast. A folder sets CAUTERY_WARNINGS_ONLY for its targets.
 define_property(TARGET PROPERTY CAUTERY_WARNINGS_ONLY INITIALIZE_FROM_VARIABLE CAUTERY_WARNINGS_ONLY)
 set(cautery_runs "$<NOT:$<BOOL:$<TARGET_PROPERTY:CAUTERY_WARNINGS_ONLY>>>")
 target_compile_options(cautery_compiler INTERFACE "$<$<NOT:${cautery_runs}>:-O0>")
