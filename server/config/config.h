@@ -19,6 +19,7 @@ enum { CAU_CONFIG_TEXT_BYTES = 512 };
 	TEXT(listen, "127.0.0.1", "address to listen on; others than loopback need tokens, TLS")       \
 	INTEGER(port, 8740, 0, 65535, "port of HTTP and WebSocket; 0: any free one")                   \
 	TEXT(store, "cautery.db", "file of the store")                                                 \
+	TEXT(backups, "", "folder of the store's copies; empty: `backups` beside the store")           \
 	TEXT(scenes, "", "folder of named scenes; empty: the installed one")                           \
 	TEXT(viewer, "", "folder of viewer files to serve; empty: the installed one")                  \
 	TEXT(label, "d1", "this daemon's label, first part of its sessions' ids; no `-`")              \

@@ -107,6 +107,12 @@ cau_status cau_meshes_pack(cau_scene_def *scene, void **meshes, size_t *bytes, c
 cau_status cau_meshes_unpack(cau_scene_def *scene, const void *meshes, size_t bytes,
                              cau_error *error);
 
+// Has a copy of the store made, under a name ("": the time), in the folder of the settings. On
+// CAU_OK it is answered through `reply`, with store_copy or why not. CAU_BAD_STATE: one is being
+// made.
+cau_status cau_hub_back_up(cau_hub *hub, const char *name, const cau_reply *reply,
+                           cau_error *error);
+
 // ---- for the daemon
 
 // Cuts silent drivers' energy; the time to look again, INFINITY if nothing is energized.

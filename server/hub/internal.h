@@ -3,6 +3,7 @@
 #pragma once
 
 #include <pthread.h>
+#include <stdatomic.h>
 
 #include "clock/clock.h"
 #include "hub/hub.h"
@@ -35,6 +36,8 @@ struct cau_hub {
 	pthread_mutex_t clerk_mutex;
 	cau_creation *first, *last;
 	uint32_t last_name;
+
+	atomic_bool copying; // a copy of the store is being made
 };
 
 // ---- clerk.c

@@ -37,10 +37,22 @@ static cau_status copy_pages(sqlite3 *from, sqlite3 *to, cau_error *error)
 	return code == SQLITE_DONE ? CAU_OK : cau_store_fault(to, code, "copying it", error);
 }
 
+// For no other user to read.
+static cau_status make_file(const char *made, cau_error *error)
+{
+	int descriptor = open(made, O_RDWR | O_CREAT | O_EXCL | O_CLOEXEC, 0600);
+	if (descriptor < 0)
+		return fail_file(error, "making the copy");
+	close(descriptor);
+	return CAU_OK;
+}
+
 static cau_status copy(const char *path, const char *made, cau_error *error)
 {
 	sqlite3 *from = NULL, *to = NULL;
-	cau_status status = cau_store_file_open_reader(path, &from, error);
+	cau_status status = make_file(made, error);
+	if (!status)
+		status = cau_store_file_open_reader(path, &from, error);
 	if (!status && sqlite3_open_v2(made, &to, SQLITE_OPEN_READWRITE | SQLITE_OPEN_CREATE, NULL))
 		status = cau_store_fault(to, sqlite3_errcode(to), "making the copy", error);
 	if (!status)

@@ -3,6 +3,7 @@
 
 import json
 import os
+import re
 import signal
 import socket
 import subprocess
@@ -70,6 +71,30 @@ class Sessions(programs.Case):
         self.create("fascia", "--name", "one")
         self.create("fascia", "--name", "two")
         self.assertIn("2 sessions", self.cautery("pause", code=2)[1])
+
+
+class Backups(programs.Case):
+    def test_a_copy_is_a_store(self):
+        self.cautery("create", "fascia", "--name", "kept", "--paused")
+        said = self.cautery("backup", "evening")[0]
+        file, size = re.fullmatch(r"(.*/backups/evening\.db): (\d+) bytes\n", said).groups()
+        self.assertEqual(os.path.getsize(file), int(size))
+        self.assertEqual(file, os.path.join(self.daemon.folder, "backups", "evening.db"))
+        self.assertIn("something is there", self.cautery("backup", "evening", code=1)[1])
+        made = self.json("backup")
+        self.assertGreater(made["byte_count"], 0)
+        self.cautery("create", "fascia", "--name", "later", "--paused")
+        restored = programs.Daemon(store=file)
+        try:
+            listed = self.cautery("ls", url=restored.url)[0]
+            self.assertIn("d1-kept", listed)
+            self.assertNotIn("d1-later", listed)
+        finally:
+            restored.stop()
+
+    def test_usage(self):
+        self.cautery("backup", "x" * 49, code=2)
+        self.cautery("backup", "a", "b", code=2)
 
 
 class Scripts(programs.Case):

@@ -486,6 +486,20 @@ export interface FrameProgress {
   at_tick: number;
 }
 
+/** has the daemon copy its store */
+export interface StoreBackup {
+  /** of the copy, without .db; by default the time. Nothing is replaced */
+  name?: string;
+}
+
+/** a copy of the store as it was at one moment, checked */
+export interface StoreCopy {
+  /** where it is, on the daemon's machine */
+  file: string;
+  /** its size (0 to 9007199254740991 B) */
+  byte_count: number;
+}
+
 /** asks for frames */
 export interface SessionJoin {
   /** its id; that of the connection's URL by default */
@@ -1618,6 +1632,8 @@ export interface Requests {
   'upload.end': { params: UploadEnd; result: UploadResult };
   /** forgets it; sessions made of it stay */
   'upload.discard': { params: UploadDiscard; result: Nothing };
+  /** copies the daemon's store while everybody goes on, to a file on its machine; one at a time */
+  'store.backup': { params: StoreBackup; result: StoreCopy };
 }
 
 /** Notifications from the client. */

@@ -1,0 +1,35 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// backup: a copy of the daemon's store, on the daemon's disk.
+#include <string.h>
+
+#include "cautery/commands.h"
+
+static cli_exit run(cli *c)
+{
+	cau_wire_store_backup params = {.has_name = c->argument_count > 0};
+	cau_wire_store_copy result = {0};
+	if (params.has_name && strlen(c->arguments[0]) >= sizeof params.name) {
+		fprintf(c->complaints, "cautery backup: NAME has at most %zu characters\n",
+		        sizeof params.name - 1);
+		return CLI_USAGE;
+	}
+	if (params.has_name)
+		snprintf(params.name, sizeof params.name, "%s", c->arguments[0]);
+	cli_exit code = cli_connect(c);
+	if (!code)
+		code = cli_call(c, CAU_METHOD_STORE_BACKUP, &params, &result);
+	if (!code && !c->json)
+		fprintf(c->out, "%s: %lld bytes\n", result.file, (long long)result.byte_count);
+	return code;
+}
+
+const cli_command cli_backup = {
+	.name = "backup",
+	.arguments = "[NAME]",
+	.summary = "has the daemon copy its store while it goes on; prints the file",
+	.help =
+		"The copy is on the daemon's machine, in the folder of its setting `backups`, as NAME.db\n"
+		"(by default the time). It is checked, and nothing is replaced. Wants role admin. To\n"
+		"restore: stop the daemon, put the copy in the place of its store, start it.\n",
+	.most = 1,
+	.run = run};

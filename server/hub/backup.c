@@ -1,0 +1,126 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// store.backup: a copy of the store, made by the builder while everybody goes on. One at a time.
+#include <errno.h>
+#include <stdlib.h>
+#include <string.h>
+#include <sys/stat.h>
+#include <time.h>
+
+#include "builder/builder.h"
+#include "hub/internal.h"
+#include "store/backup.h"
+
+#define COPY_BYTES_PER_S 50e6 // about, read, written, synced and checked: for the builder's order
+
+typedef struct copying {
+	cau_job job; // first
+	cau_hub *hub;
+	cau_reply reply;
+	char folder[CAU_CONFIG_TEXT_BYTES + 16];
+	char file[CAU_CONFIG_TEXT_BYTES + 16 + CAU_NAME_BYTES + 8];
+} copying;
+
+static void finish(copying *what, const cau_error *error, const cau_outcome *done)
+{
+	what->hub->copying = false;
+	if (error)
+		cau_reply_fail(&what->reply, error, 0);
+	else
+		cau_reply_answer(&what->reply, done);
+	free(what);
+}
+
+static void drop(cau_job *job)
+{
+	cau_error error = {.status = CAU_BAD_STATE, .reason = "the server is shutting down"};
+	finish((copying *)job, &error, NULL);
+}
+
+// The folder that the settings name is there, or an administrator is told; that beside the store is
+// made when it is first needed.
+static cau_status make_folder(const copying *what, cau_error *error)
+{
+	bool named = *what->hub->def.config->backups;
+	if (named || mkdir(what->folder, 0700) == 0 || errno == EEXIST)
+		return CAU_OK;
+	return cau_fail(error, CAU_IO, "", "cannot make the folder %.150s: %s", what->folder,
+	                strerror(errno));
+}
+
+static cau_status copy(const copying *what, cau_outcome *done, cau_error *error)
+{
+	struct stat made;
+	cau_wire_store_copy result = {0};
+	cau_status status = make_folder(what, error);
+	if (!status)
+		status = cau_store_backup(what->hub->def.config->store, what->file, error);
+	if (status)
+		return status;
+	if (stat(what->file, &made) == 0)
+		result.byte_count = made.st_size;
+	snprintf(result.file, sizeof result.file, "%s", what->file);
+	done->text = cau_answer_text(what->reply.method, &result, &done->text_bytes, error);
+	return done->text ? CAU_OK : error->status;
+}
+
+static void run(cau_job *job)
+{
+	copying *what = (copying *)job;
+	cau_error error = {0};
+	cau_outcome done = {0};
+	cau_status status = copy(what, &done, &error);
+	char *text = (char *)done.text;
+	if (status)
+		cau_log(CAU_LOG_ERROR, NULL, "backup_failed", "file=\"%s\" status=%s reason=\"%s\"",
+		        what->file, cau_status_name(status), error.reason);
+	else
+		cau_log(CAU_LOG_NOTICE, NULL, "backed_up", "store=\"%s\" file=\"%s\"",
+		        what->hub->def.config->store, what->file);
+	finish(what, status ? &error : NULL, &done);
+	free(text);
+}
+
+static void name_copy(copying *what, const char *name)
+{
+	const cau_config *config = what->hub->def.config;
+	char made_up[CAU_NAME_BYTES];
+	time_t now = time(NULL);
+	struct tm utc;
+	if (*config->backups) {
+		snprintf(what->folder, sizeof what->folder, "%s", config->backups);
+	} else {
+		const char *slash = strrchr(config->store, '/');
+		int bytes = slash ? (int)(slash - config->store) + 1 : 0;
+		snprintf(what->folder, sizeof what->folder, "%.*sbackups", bytes, config->store);
+	}
+	if (!*name) {
+		strftime(made_up, sizeof made_up, "%Y%m%dT%H%M%SZ", gmtime_r(&now, &utc));
+		name = made_up;
+	}
+	snprintf(what->file, sizeof what->file, "%s/%s.db", what->folder, name);
+}
+
+static double expected_s(cau_hub *hub)
+{
+	cau_store_metrics metrics;
+	cau_store_get_metrics(hub->def.store, &metrics);
+	return (double)metrics.database_bytes / COPY_BYTES_PER_S;
+}
+
+cau_status cau_hub_back_up(cau_hub *hub, const char *name, const cau_reply *reply, cau_error *error)
+{
+	if (atomic_exchange(&hub->copying, true))
+		return cau_fail(error, CAU_BAD_STATE, "",
+		                "a copy is being made: try again when it is done");
+	copying *what = calloc(1, sizeof *what);
+	if (!what) {
+		hub->copying = false;
+		return cau_fail(error, CAU_NO_MEMORY, "", "no memory for the copy");
+	}
+	what->job = (cau_job){.run = run, .drop = drop, .expected_s = expected_s(hub)};
+	what->hub = hub;
+	what->reply = *reply;
+	name_copy(what, name);
+	cau_builder_submit(hub->def.builder, &what->job);
+	return CAU_OK;
+}

@@ -1,0 +1,14 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// store.backup: what an administrator asks of the daemon's store.
+#include "rpc/internal.h"
+
+void cau_call_store_backup(cau_call *call)
+{
+	cau_error error = {0};
+	cau_wire_store_backup params = {0};
+	cau_reply reply = cau_call_reply(call);
+	if (cau_rpc_params(call->message, &params, &error) ||
+	    cau_hub_back_up(call->peer->service->hub, params.has_name ? params.name : "", &reply,
+	                    &error))
+		cau_call_fail(call, &error, 0);
+}
