@@ -18,6 +18,7 @@ enum { CAU_CONFIG_TEXT_BYTES = 512 };
 #define CAU_CONFIG_TABLE(TEXT, INTEGER, REAL, SWITCH)                                              \
 	TEXT(listen, "127.0.0.1", "address to listen on; others than loopback need tokens, TLS")       \
 	INTEGER(port, 8740, 0, 65535, "port of HTTP and WebSocket; 0: any free one")                   \
+	INTEGER(agent_port, 0, 0, 65535, "port of HAProxy's agent-check, at `listen`; 0: none")        \
 	TEXT(store, "cautery.db", "file of the store")                                                 \
 	TEXT(backups, "", "folder of the store's copies; empty: `backups` beside the store")           \
 	TEXT(scenes, "", "folder of named scenes; empty: the installed one")                           \

@@ -1,14 +1,17 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "daemon/daemon.h"
 
+#include <stdatomic.h>
 #include <stdlib.h>
 #include <string.h>
 #include <systemd/sd-daemon.h>
 #include <unistd.h>
 
+#include "agent/agent.h"
 #include "auth/auth.h"
 #include "builder/builder.h"
 #include "clock/clock.h"
+#include "daemon/load_meter.h"
 #include "http/static_files.h"
 #include "hub/hub.h"
 #include "log/log.h"
@@ -37,7 +40,10 @@ struct cau_daemon {
 	cau_watchdog *watchdog;
 	cau_service *service;
 	cau_network *network;
-	cau_dds *dds; // NULL: not wanted
+	cau_dds *dds;     // NULL: not wanted
+	cau_agent *agent; // NULL: not wanted
+	cau_load_meter meter;
+	atomic_bool draining, stands_aside;
 	unsigned long ticks_seen;
 	bool network_moved, store_moved, watchdog_moved; // since systemd was last told
 };
@@ -77,11 +83,16 @@ static cau_status open_store(cau_daemon *daemon, cau_error *error)
 	return cau_store_open(&store, &daemon->store, error);
 }
 
+static int32_t count_workers(const cau_config *config)
+{
+	long cores = sysconf(_SC_NPROCESSORS_ONLN);
+	return config->workers ? (int32_t)config->workers : cores > 0 ? (int32_t)cores : 1;
+}
+
 static cau_status open_hub(cau_daemon *daemon, cau_error *error)
 {
 	cau_config *config = daemon->config;
-	long cores = sysconf(_SC_NPROCESSORS_ONLN);
-	int32_t workers = config->workers ? (int32_t)config->workers : cores > 0 ? (int32_t)cores : 1;
+	int32_t workers = count_workers(config);
 	cau_status status = cau_worker_pool_create(
 		&daemon->pool, workers, 2 * (int32_t)config->max_sessions + 1, CAU_NICE_LAST, error);
 	if (!status)
@@ -114,6 +125,28 @@ static cau_status open_network(cau_daemon *daemon, cau_error *error)
 	if (!status)
 		cau_service_set_network(daemon->service, daemon->network);
 	return status;
+}
+
+// On the agent's thread. Who has no place for new sessions may have some that go on.
+static void measure_load(void *user, cau_load *load)
+{
+	cau_daemon *daemon = user;
+	cau_store_health health;
+	cau_store_get_health(daemon->store, &health);
+	load->takes = cau_hub_ready(daemon->hub) && health.state == CAU_STORE_READY &&
+	              !daemon->draining && !daemon->stands_aside;
+	cau_load_meter_read(&daemon->meter, load);
+}
+
+static cau_status open_agent(cau_daemon *daemon, cau_error *error)
+{
+	const cau_config *config = daemon->config;
+	cau_load_meter_init(&daemon->meter, config, daemon->hub, count_workers(config));
+	cau_agent_def def = {.address = config->listen,
+	                     .port = (int)config->agent_port,
+	                     .measure = measure_load,
+	                     .user = daemon};
+	return cau_agent_create(&daemon->agent, &def, error);
 }
 
 // Scenes there must be; without a viewer a plain page says that there is none.
@@ -153,6 +186,8 @@ static cau_status open_all(cau_daemon *daemon, cau_error *error)
 		status = cau_network_start(daemon->network, error);
 	if (!status && daemon->dds)
 		status = cau_dds_start(daemon->dds, error);
+	if (!status && config->agent_port)
+		status = open_agent(daemon, error);
 	return status;
 }
 
@@ -233,11 +268,19 @@ void cau_daemon_reload(cau_daemon *daemon)
 	sd_notify(0, "READY=1");
 }
 
+void cau_daemon_stand_aside(cau_daemon *daemon, bool aside)
+{
+	daemon->stands_aside = aside;
+	cau_log(CAU_LOG_NOTICE, NULL, "stands_aside", "aside=%d agent=%d", aside,
+	        daemon->agent != NULL);
+}
+
 void cau_daemon_stop(cau_daemon *daemon)
 {
 	if (!daemon)
 		return;
 	sd_notify(0, "STOPPING=1");
+	daemon->draining = true;
 	if (daemon->service)
 		cau_service_drain(daemon->service);
 	cau_dds_stop(daemon->dds);
@@ -245,6 +288,7 @@ void cau_daemon_stop(cau_daemon *daemon)
 		cau_hub_drain(daemon->hub, daemon->config->drain_s);
 	if (daemon->network)
 		cau_network_stop(daemon->network, CAU_CLOSE_DRAINING, CLOSING_S);
+	cau_agent_destroy(daemon->agent);
 	if (daemon->builder)
 		cau_builder_stop(daemon->builder);
 	cau_watchdog_destroy(daemon->watchdog);

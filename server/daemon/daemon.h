@@ -20,5 +20,8 @@ int cau_daemon_wait(cau_daemon *daemon, const sigset_t *signals, int *signal_num
 // what it said before stays. Connections whose token was taken back, or has a lesser role now, are
 // closed, energy off; who has a lesser role on DDS loses its tools; nobody else notices.
 void cau_daemon_reload(cau_daemon *daemon);
+// From now on the agent-check says `drain`, or the load again: a proxy in front brings no new
+// sessions. Those that are here go on, and whoever is connected may still make some.
+void cau_daemon_stand_aside(cau_daemon *daemon, bool aside);
 // Checkpoints every session, closes connections with a reason, ends the threads, frees all.
 void cau_daemon_stop(cau_daemon *daemon);

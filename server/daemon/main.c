@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// cauteryd: reads its settings, starts the daemon, waits for a signal, drains.
+// cauteryd: reads its settings, starts the daemon, waits for signals, drains.
 #include <pthread.h>
 #include <signal.h>
 #include <stdio.h>
@@ -22,6 +22,8 @@ static void block_signals(sigset_t *signals)
 	sigaddset(signals, SIGTERM);
 	sigaddset(signals, SIGINT);
 	sigaddset(signals, SIGHUP);
+	sigaddset(signals, SIGUSR1);
+	sigaddset(signals, SIGUSR2);
 	pthread_sigmask(SIG_BLOCK, signals, NULL); // every thread made later inherits it
 	signal(SIGPIPE, SIG_IGN);
 	signal(SIGXFSZ, SIG_IGN); // a file that may not grow is the store's to answer
@@ -92,6 +94,8 @@ static int run(cau_config *config, bool json, call *called)
 			reload_settings(called);
 			cau_daemon_reload(daemon);
 		}
+		if (signal_number == SIGUSR1 || signal_number == SIGUSR2)
+			cau_daemon_stand_aside(daemon, signal_number == SIGUSR1);
 	}
 	cau_log(CAU_LOG_NOTICE, NULL, "ending", "signal=%d", signal_number);
 	cau_daemon_stop(daemon);

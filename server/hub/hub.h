@@ -74,6 +74,10 @@ cau_hosted *cau_hub_find_number(cau_hub *hub, uint32_t number);
 // Visits every session; the visitor must not call the hub.
 void cau_hub_each(cau_hub *hub, void (*visit)(void *user, cau_hosted *hosted), void *user);
 int32_t cau_hub_count(cau_hub *hub);
+// Memory of all sessions, bytes, about: what max_sessions_bytes bounds.
+int64_t cau_hub_memory(cau_hub *hub);
+// The share of its speed that the running session furthest behind reaches, 0 to 1; 1 where none is.
+double cau_hub_pace_share_min(cau_hub *hub);
 
 // A session to be made. Answered through `reply`, on failure too.
 typedef struct cau_creation {

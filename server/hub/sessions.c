@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // The list of sessions.
+#include <math.h>
 #include <string.h>
 
 #include "hub/internal.h"
@@ -46,4 +47,26 @@ int32_t cau_hub_count(cau_hub *hub)
 	int32_t count = 0;
 	cau_hub_each(hub, count_one, &count);
 	return count;
+}
+
+int64_t cau_hub_memory(cau_hub *hub)
+{
+	return hub->memory_held;
+}
+
+// A session that has just begun to run has no factor yet, and tells 0.
+static void note_pace(void *user, cau_hosted *hosted)
+{
+	double *least = user;
+	cau_wire_session_summary summary;
+	cau_hosted_summary(hosted, &summary);
+	if (summary.state == CAU_SESSION_RUNNING && summary.realtime_factor > 0 && summary.speed > 0)
+		*least = fmin(*least, summary.realtime_factor / summary.speed);
+}
+
+double cau_hub_pace_share_min(cau_hub *hub)
+{
+	double least = 1;
+	cau_hub_each(hub, note_pace, &least);
+	return least;
 }

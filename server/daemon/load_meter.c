@@ -1,0 +1,50 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "daemon/load_meter.h"
+
+#include <math.h>
+#include <time.h>
+
+#include "clock/clock.h"
+
+// Shorter windows would tell single steps; longer ones, sessions that are gone.
+#define WINDOW_S 0.5
+
+static double process_cpu_s(void)
+{
+	struct timespec now;
+	clock_gettime(CLOCK_PROCESS_CPUTIME_ID, &now);
+	return (double)now.tv_sec + 1e-9 * (double)now.tv_nsec;
+}
+
+void cau_load_meter_init(cau_load_meter *meter, const cau_config *config, cau_hub *hub,
+                         int32_t worker_count)
+{
+	*meter = (cau_load_meter){.config = config,
+	                          .hub = hub,
+	                          .worker_count = worker_count,
+	                          .window_s = cau_monotonic_s(),
+	                          .window_cpu_s = process_cpu_s()};
+}
+
+// Processor time of all threads: builders and the network take of the same cores as the workers.
+static void measure_cores(cau_load_meter *meter)
+{
+	double now_s = cau_monotonic_s(), cpu_s = process_cpu_s();
+	double wall_s = now_s - meter->window_s;
+	if (wall_s < WINDOW_S)
+		return;
+	meter->busy_share = fmin(1, (cpu_s - meter->window_cpu_s) / (wall_s * meter->worker_count));
+	meter->window_s = now_s;
+	meter->window_cpu_s = cpu_s;
+}
+
+void cau_load_meter_read(cau_load_meter *meter, cau_load *load)
+{
+	measure_cores(meter);
+	load->busy_share = meter->busy_share;
+	load->session_count = cau_hub_count(meter->hub);
+	load->session_count_most = (int32_t)meter->config->max_sessions;
+	load->session_bytes = cau_hub_memory(meter->hub);
+	load->session_bytes_most = meter->config->max_sessions_bytes;
+	load->pace_share_min = cau_hub_pace_share_min(meter->hub);
+}

@@ -1,0 +1,20 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Measures the daemon's load for whoever places new sessions.
+#pragma once
+
+#include "agent/load.h"
+#include "config/config.h"
+#include "hub/hub.h"
+
+typedef struct cau_load_meter {
+	const cau_config *config; // borrowed
+	cau_hub *hub;
+	int32_t worker_count;
+	double window_s, window_cpu_s; // where the present window began: monotonic, processor time
+	double busy_share;             // of the last window
+} cau_load_meter;
+
+void cau_load_meter_init(cau_load_meter *meter, const cau_config *config, cau_hub *hub,
+                         int32_t worker_count);
+// All but `takes`. One thread.
+void cau_load_meter_read(cau_load_meter *meter, cau_load *load);
