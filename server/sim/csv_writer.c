@@ -3,8 +3,9 @@
 
 #include <inttypes.h>
 #include <math.h>
+#include <string.h>
 
-// column, format, value of `frame` and `s`, its statistics
+// column, format, value of `frame`, `s`, its statistics, and `balance`
 #define COLUMNS(X)                                                                                 \
 	X("tick", PRIu64, frame->tick)                                                                 \
 	X("time_s", ".9g", frame->time_s)                                                              \
@@ -25,7 +26,20 @@
 	X("error", ".6g", s->error)                                                                    \
 	X("resting", "d", s->resting)                                                                  \
 	X("tool_force_max_n", ".6g", largest_force(frame))                                             \
-	X("tip_temperature_max_c", ".6g", hottest_tip(frame))
+	X("tip_temperature_max_c", ".6g", hottest_tip(frame))                                          \
+	X("kinetic_j", ".9g", balance->kinetic_j)                                                      \
+	X("elastic_j", ".9g", balance->elastic_j)
+
+// suffix of a tool's column, value of `tool`
+#define TOOL_COLUMNS(X)                                                                            \
+	X("force_x_n", tool->raw_force_n[0])                                                           \
+	X("force_y_n", tool->raw_force_n[1])                                                           \
+	X("force_z_n", tool->raw_force_n[2])                                                           \
+	X("torque_x_nm", tool->raw_torque_nm[0])                                                       \
+	X("torque_y_nm", tool->raw_torque_nm[1])                                                       \
+	X("torque_z_nm", tool->raw_torque_nm[2])                                                       \
+	X("temperature_c", tool->tip_temperature_c)                                                    \
+	X("energy_j", tool->energy_j)
 
 static double largest_force(const cau_frame *frame)
 {
@@ -45,7 +59,7 @@ static double hottest_tip(const cau_frame *frame)
 	return hottest;
 }
 
-void sim_csv_begin(FILE *file)
+void sim_csv_begin(FILE *file, const cau_scene_def *scene)
 {
 	const char *comma = "";
 #define HEAD(column, format, value)                                                                \
@@ -53,10 +67,39 @@ void sim_csv_begin(FILE *file)
 	comma = ",";
 	COLUMNS(HEAD)
 #undef HEAD
+#define HEAD(code, name) fputs(",stage_" name "_s", file);
+	CAU_STAGE_TABLE(HEAD)
+#undef HEAD
+	for (int32_t i = 0; i < scene->tool_count; i++) {
+#define HEAD(suffix, value) fprintf(file, ",%s_" suffix, scene->tools[i].name);
+		TOOL_COLUMNS(HEAD)
+#undef HEAD
+	}
 	fputc('\n', file);
 }
 
-void sim_csv_tick(FILE *file, const cau_frame *frame)
+// NULL if it was removed.
+static const cau_tool_state *find_tool(const cau_frame *frame, const char *name)
+{
+	for (int32_t i = 0; i < frame->tool_count; i++)
+		if (strcmp(frame->tools[i].name, name) == 0)
+			return &frame->tools[i];
+	return NULL;
+}
+
+static void write_tool(FILE *file, const cau_tool_state *tool)
+{
+#define CELL(suffix, value)                                                                        \
+	if (tool)                                                                                      \
+		fprintf(file, ",%.6g", value);                                                             \
+	else                                                                                           \
+		fputc(',', file);
+	TOOL_COLUMNS(CELL)
+#undef CELL
+}
+
+void sim_csv_tick(FILE *file, const cau_scene_def *scene, const cau_frame *frame,
+                  const cau_balance *balance)
 {
 	const cau_statistics *s = &frame->statistics;
 	const char *comma = "";
@@ -65,5 +108,9 @@ void sim_csv_tick(FILE *file, const cau_frame *frame)
 	comma = ",";
 	COLUMNS(CELL)
 #undef CELL
+	for (int stage = 0; stage < CAU_STAGE_COUNT; stage++)
+		fprintf(file, ",%.6g", s->seconds[stage]);
+	for (int32_t i = 0; i < scene->tool_count; i++)
+		write_tool(file, find_tool(frame, scene->tools[i].name));
 	fputc('\n', file);
 }

@@ -1,11 +1,15 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The statistics of every tick as comma-separated values.
+// Every tick as comma-separated values: statistics, energies, the time that each stage took, and
+// force, torque, temperature and heat of each tool that the scene has.
 #pragma once
 
-#include <stdbool.h>
 #include <stdio.h>
 
 #include "cautery/session.h"
 
-void sim_csv_begin(FILE *file);
-void sim_csv_tick(FILE *file, const cau_frame *frame);
+// The columns' names; those of a tool begin with its name. `scene` is the one that the ticks are
+// of.
+void sim_csv_begin(FILE *file, const cau_scene_def *scene);
+// Stage times are 0 unless the session has a clock. Cells of a tool that is gone are empty.
+void sim_csv_tick(FILE *file, const cau_scene_def *scene, const cau_frame *frame,
+                  const cau_balance *balance);

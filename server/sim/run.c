@@ -117,8 +117,11 @@ static void note_events(run *r, const cau_frame *frame)
 
 static cau_status write_outputs(run *r, const cau_frame *frame)
 {
-	if (r->csv)
-		sim_csv_tick(r->csv, frame);
+	if (r->csv) {
+		cau_balance balance;
+		cau_session_balance(r->session, &balance);
+		sim_csv_tick(r->csv, r->scene, frame, &balance);
+	}
 	if (r->vtu_open && frame->tick % (uint64_t)r->options->vtu_every == 0)
 		return sim_vtu_write(&r->vtu, r->session, r->error);
 	return CAU_OK;
@@ -129,7 +132,10 @@ static cau_status create_session(run *r, cau_session **session)
 	cau_session_def def = cau_default_session_def();
 	def.scene = r->scene;
 	def.thread_count = r->options->threads;
-	return cau_session_create(&def, session, r->error);
+	cau_status status = cau_session_create(&def, session, r->error);
+	if (!status && r->options->csv)
+		cau_session_set_clock(*session, now_s);
+	return status;
 }
 
 // Goes on in a fresh session from a snapshot of this one.
@@ -181,7 +187,7 @@ static cau_status open_outputs(run *r)
 		r->csv = fopen(r->options->csv, "wb");
 		if (!r->csv)
 			return cau_fail(r->error, CAU_IO, NULL, "cannot write %s", r->options->csv);
-		sim_csv_begin(r->csv);
+		sim_csv_begin(r->csv, r->scene);
 	}
 	if (!r->options->vtu)
 		return CAU_OK;

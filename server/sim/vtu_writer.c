@@ -161,6 +161,9 @@ static cau_status write_grid(const char *path, const cau_session_info *info, con
 	const array arrays[] = {
 		{"PointData", "velocity_m_s", "Float64", 3, frame->velocity, 24 * n},
 		{NULL, "exposure", "Float32", 1, frame->exposure, 4 * n},
+		{NULL, "charring", "Float32", 1, frame->charring, 4 * n},
+		{NULL, "temperature_c", "Float32", 1, frame->temperature, 4 * n},
+		{NULL, "stress_pa", "Float32", 1, frame->stress, 4 * n},
 		{"CellData", "kind", "UInt8", 1, c->kind, m},
 		{NULL, "layer", "Int32", 1, c->layer, 4 * m},
 		{"Points", "position_m", "Float64", 3, frame->position, 24 * n},
@@ -170,6 +173,108 @@ static cau_status write_grid(const char *path, const cau_session_info *info, con
 	};
 	return write_arrays(path, arrays, (int)(sizeof arrays / sizeof *arrays), info->vertex_count,
 	                    c->count, error);
+}
+
+// ---- tools --------------------------------------------------------------------------------------
+
+// What a file tells of tools: two points each, tip and end of the shaft.
+typedef struct tool_arrays {
+	double *position;            // m, (2 count x 3)
+	int64_t *corner, *end;       // (2 count), (count)
+	uint8_t *type, *energized;   // (count)
+	int32_t *number;             // (count)
+	double *force_n, *torque_nm; // (count x 3)
+	double *temperature_c, *energy_j;
+} tool_arrays;
+
+static void finish_tools(tool_arrays *a)
+{
+	free(a->position);
+	free(a->corner);
+	free(a->end);
+	free(a->type);
+	free(a->energized);
+	free(a->number);
+	free(a->force_n);
+	free(a->torque_nm);
+	free(a->temperature_c);
+	free(a->energy_j);
+}
+
+static bool reserve_tools(tool_arrays *a, size_t count)
+{
+	count += 1; // malloc(0) may be NULL
+	a->position = malloc(6 * count * sizeof *a->position);
+	a->corner = malloc(2 * count * sizeof *a->corner);
+	a->end = malloc(count * sizeof *a->end);
+	a->type = malloc(count);
+	a->energized = malloc(count);
+	a->number = malloc(count * sizeof *a->number);
+	a->force_n = malloc(3 * count * sizeof *a->force_n);
+	a->torque_nm = malloc(3 * count * sizeof *a->torque_nm);
+	a->temperature_c = malloc(count * sizeof *a->temperature_c);
+	a->energy_j = malloc(count * sizeof *a->energy_j);
+	return a->position && a->corner && a->end && a->type && a->energized && a->number &&
+	       a->force_n && a->torque_nm && a->temperature_c && a->energy_j;
+}
+
+// Tip and end of the shaft, which lies along the tool's own +z.
+static void place_tool(const cau_tool_state *tool, double tip[3], double end[3])
+{
+	const double *q = tool->pose.rotation, length = tool->definition.shaft_length_m;
+	const double shaft[3] = {2 * (q[1] * q[3] + q[0] * q[2]), 2 * (q[2] * q[3] - q[0] * q[1]),
+	                         1 - 2 * (q[1] * q[1] + q[2] * q[2])};
+	for (int c = 0; c < 3; c++) {
+		tip[c] = tool->pose.position_m[c];
+		end[c] = tip[c] + length * shaft[c];
+	}
+}
+
+static void fill_tools(const cau_frame *frame, tool_arrays *a)
+{
+	for (int32_t i = 0; i < frame->tool_count; i++) {
+		const cau_tool_state *tool = &frame->tools[i];
+		size_t at = (size_t)i;
+		place_tool(tool, a->position + 6 * at, a->position + 6 * at + 3);
+		a->corner[2 * at] = 2 * i;
+		a->corner[2 * at + 1] = 2 * i + 1;
+		a->end[at] = 2 * (i + 1);
+		a->type[at] = VTK_LINE;
+		a->energized[at] = tool->energized;
+		a->number[at] = i;
+		memcpy(a->force_n + 3 * at, tool->raw_force_n, sizeof tool->raw_force_n);
+		memcpy(a->torque_nm + 3 * at, tool->raw_torque_nm, sizeof tool->raw_torque_nm);
+		a->temperature_c[at] = tool->tip_temperature_c;
+		a->energy_j[at] = tool->energy_j;
+	}
+}
+
+static cau_status write_tools(const char *path, const cau_frame *frame, cau_error *error)
+{
+	tool_arrays a = {0};
+	size_t n = (size_t)frame->tool_count;
+	cau_status status = CAU_OK;
+	if (reserve_tools(&a, n)) {
+		fill_tools(frame, &a);
+		const array arrays[] = {
+			{"CellData", "tool", "Int32", 1, a.number, 4 * n},
+			{NULL, "force_n", "Float64", 3, a.force_n, 24 * n},
+			{NULL, "torque_nm", "Float64", 3, a.torque_nm, 24 * n},
+			{NULL, "temperature_c", "Float64", 1, a.temperature_c, 8 * n},
+			{NULL, "energy_j", "Float64", 1, a.energy_j, 8 * n},
+			{NULL, "energized", "UInt8", 1, a.energized, n},
+			{"Points", "position_m", "Float64", 3, a.position, 48 * n},
+			{"Cells", "connectivity", "Int64", 1, a.corner, 16 * n},
+			{NULL, "offsets", "Int64", 1, a.end, 8 * n},
+			{NULL, "types", "UInt8", 1, a.type, n},
+		};
+		status = write_arrays(path, arrays, (int)(sizeof arrays / sizeof *arrays),
+		                      2 * frame->tool_count, frame->tool_count, error);
+	} else {
+		status = cau_fail(error, CAU_NO_MEMORY, NULL, "no memory for a file's tools");
+	}
+	finish_tools(&a);
+	return status;
 }
 
 // ---- the series ---------------------------------------------------------------------------------
@@ -198,23 +303,37 @@ static cau_status remember(sim_vtu *vtu, const cau_frame *frame, cau_error *erro
 	return CAU_OK;
 }
 
-cau_status sim_vtu_write(sim_vtu *vtu, const cau_session *session, cau_error *error)
+static cau_status write_tissue(const char *path, const cau_session *session, const cau_frame *frame,
+                               cau_error *error)
 {
-	char name[64], path[PATH_BYTES];
 	cau_session_info info;
-	cau_frame frame;
 	cells c = {0};
 	cau_session_describe(session, &info);
+	cau_status status = fill_cells(session, &info, frame, &c)
+	                        ? write_grid(path, &info, frame, &c, error)
+	                        : cau_fail(error, CAU_NO_MEMORY, NULL, "no memory for a file's cells");
+	finish_cells(&c);
+	return status;
+}
+
+cau_status sim_vtu_write(sim_vtu *vtu, cau_session *session, cau_error *error)
+{
+	char name[64], path[PATH_BYTES];
+	cau_frame frame;
+	cau_session_watch(session, CAU_CHANNEL_STRESS | CAU_CHANNEL_TEMPERATURE);
 	cau_session_frame(session, &frame);
 	snprintf(name, sizeof name, "tissue-%08" PRIu64 ".vtu", frame.tick);
 	cau_status status = make_path(vtu, name, path, error);
-	if (!status && !fill_cells(session, &info, &frame, &c))
-		status = cau_fail(error, CAU_NO_MEMORY, NULL, "no memory for a file's cells");
 	if (!status)
-		status = write_grid(path, &info, &frame, &c, error);
+		status = write_tissue(path, session, &frame, error);
+	snprintf(name, sizeof name, "tools-%08" PRIu64 ".vtu", frame.tick);
+	if (!status)
+		status = make_path(vtu, name, path, error);
+	if (!status)
+		status = write_tools(path, &frame, error);
 	if (!status)
 		status = remember(vtu, &frame, error);
-	finish_cells(&c);
+	cau_session_watch(session, 0);
 	return status;
 }
 
@@ -230,8 +349,10 @@ cau_status sim_vtu_finish(sim_vtu *vtu, cau_error *error)
 		      "<Collection>\n",
 		      file);
 		for (int32_t i = 0; i < vtu->file_count; i++)
-			fprintf(file, "<DataSet timestep=\"%.9g\" file=\"tissue-%08" PRIu64 ".vtu\"/>\n",
-			        vtu->time_s[i], vtu->tick[i]);
+			fprintf(file,
+			        "<DataSet timestep=\"%.9g\" part=\"0\" file=\"tissue-%08" PRIu64 ".vtu\"/>\n"
+			        "<DataSet timestep=\"%.9g\" part=\"1\" file=\"tools-%08" PRIu64 ".vtu\"/>\n",
+			        vtu->time_s[i], vtu->tick[i], vtu->time_s[i], vtu->tick[i]);
 		fputs("</Collection>\n</VTKFile>\n", file);
 		if (fclose(file) != 0)
 			status = fail_file(path, error);

@@ -16,9 +16,13 @@ typedef struct sim_vtu {
 cau_status sim_vtu_begin(const char *folder, sim_vtu *vtu, cau_error *error);
 
 // Writes tissue-<tick>.vtu: live tetrahedra and links and the drawn triangles of sheets, each with
-// its kind (0 tetrahedron, 1 link, 2 triangle) and the layer of triangles (else -1); velocity and
-// exposure of vertices.
-cau_status sim_vtu_write(sim_vtu *vtu, const cau_session *session, cau_error *error);
+// its kind (0 tetrahedron, 1 link, 2 triangle) and the layer of triangles (else -1); velocity,
+// exposure, charring, temperature and stress of vertices.
+// And tools-<tick>.vtu: a line for each tool from its tip along its shaft, with the tool's number
+// in the tick, force and torque of the tissue on it (as computed, about the tip), its tip's
+// temperature, the heat that tissue took up from it, and whether it is energized.
+// What the session is asked to watch is asked for here, and no longer watched afterwards.
+cau_status sim_vtu_write(sim_vtu *vtu, cau_session *session, cau_error *error);
 
 // Writes cautery.pvd and frees.
 cau_status sim_vtu_finish(sim_vtu *vtu, cau_error *error);

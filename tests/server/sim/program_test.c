@@ -93,6 +93,51 @@ static void expect_one_hash(const char *scene, const char *seconds, const char *
 	}
 }
 
+// A column's number by its name, or -1.
+static int column_of(const char *head, const char *name)
+{
+	const char *place = strstr(head, name);
+	int column = 0;
+	if (!place || place > strchr(head, '\n'))
+		return -1;
+	for (const char *c = head; c < place; c++)
+		column += *c == ',';
+	return column;
+}
+
+static double cell_of(const char *line, int column)
+{
+	assert_true(column >= 0);
+	for (; column > 0; column--)
+		line = strchr(line, ',') + 1;
+	return atof(line);
+}
+
+// What is written besides changes nothing, and tells what the tick was: a hot hook that is pulled
+// through taut fascia, which moves and holds energy.
+static void files_change_nothing_and_tell_energies(void **state)
+{
+	(void)state;
+	char arguments[512], plain[17], with_files[17];
+	size_t bytes;
+	read_hash("--scene fascia --cut --seconds 5 --json", plain);
+	snprintf(arguments, sizeof arguments,
+	         "--scene fascia --cut --seconds 5 --json --csv %s --vtu %s --vtu-every 50",
+	         fixture_path("ticks.csv"), fixture_path("states"));
+	read_hash(arguments, with_files);
+	assert_string_equal(with_files, plain);
+	char *text = fixture_read(fixture_path("ticks.csv"), &bytes);
+	const char *last = strstr(text, "\n300,");
+	assert_non_null(last);
+	assert_true(cell_of(last, column_of(text, "kinetic_j")) > 0);
+	assert_true(cell_of(last, column_of(text, "elastic_j")) > 0);
+	assert_true(cell_of(last, column_of(text, "stage_local_s")) > 0);
+	assert_true(cell_of(last, column_of(text, "stage_local_s")) < 1);
+	assert_true(cell_of(last, column_of(text, "hook_temperature_c")) > 100);
+	assert_true(cell_of(last, column_of(text, "hook_energy_j")) > 0);
+	free(text);
+}
+
 // Before, while and after edges part (the needle is hot from 1.0 s and at the tissue from 1.5 s
 // on).
 static void one_hash_over_threads_and_snapshots(void **state)
@@ -129,6 +174,7 @@ int main(int argument_count, char **arguments)
 	const struct CMUnitTest tests[] = {
 		cmocka_unit_test(exit_codes_are_as_documented),
 		cmocka_unit_test(print_cut_is_the_kept_script),
+		cmocka_unit_test(files_change_nothing_and_tell_energies),
 		cmocka_unit_test(the_cut_parts_tissue),
 		cmocka_unit_test(one_hash_over_threads_and_snapshots),
 	};

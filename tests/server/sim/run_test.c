@@ -143,6 +143,11 @@ static void statistics_have_a_line_a_tick(void **state)
 	assert_int_equal(commas % lines, 0); // as many cells in each line
 	assert_memory_equal(text, "tick,time_s,", 12);
 	assert_non_null(strstr(text, "\n30,0.5,"));
+	for (const char *const *column =
+	         (const char *const[]){",kinetic_j,", ",elastic_j,", ",stage_local_s,",
+	                               ",hook_force_z_n,", ",hook_temperature_c,", NULL};
+	     *column; column++)
+		assert_non_null(strstr(text, *column));
 	free(text);
 	options.csv = "/nowhere/at/all.csv";
 	assert_int_equal(run_script(&options, "", NULL, &result, &in_input, &error), CAU_IO);

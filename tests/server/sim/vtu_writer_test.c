@@ -74,9 +74,77 @@ static void a_file_holds_the_drawn_tissue(void **state)
 	assert_int_equal(sim_vtu_write(&vtu, session, &error), CAU_OK);
 	assert_int_equal(sim_vtu_finish(&vtu, &error), CAU_OK);
 	text = fixture_read(fixture_path("vtu/cautery.pvd"), &bytes);
-	assert_non_null(strstr(text, "<DataSet timestep=\"0\" file=\"tissue-00000000.vtu\"/>"));
-	assert_non_null(strstr(text, "<DataSet timestep=\"1\" file=\"tissue-00000060.vtu\"/>"));
+	assert_non_null(
+		strstr(text, "<DataSet timestep=\"0\" part=\"0\" file=\"tissue-00000000.vtu\"/>"));
+	assert_non_null(
+		strstr(text, "<DataSet timestep=\"1\" part=\"0\" file=\"tissue-00000060.vtu\"/>"));
+	assert_non_null(
+		strstr(text, "<DataSet timestep=\"1\" part=\"1\" file=\"tools-00000060.vtu\"/>"));
 	free(text);
+	cau_session_destroy(session);
+	free(scene);
+}
+
+static double number_at(data array, size_t index)
+{
+	double value;
+	assert_true(8 * (index + 1) <= array.bytes);
+	memcpy(&value, array.at + 8 * index, sizeof value);
+	return value;
+}
+
+static void energize_hook(cau_session *session)
+{
+	cau_error error = {0};
+	cau_command command = {.kind = CAU_COMMAND_TOOL_ENERGIZE, .as.energized = true};
+	snprintf(command.tool, sizeof command.tool, "hook");
+	assert_int_equal(cau_session_submit(session, &command, &error), CAU_OK);
+	assert_int_equal(cau_session_step(session, &error), CAU_OK);
+}
+
+// Every vertex of the double has 37 for a scalar that is watched; its hook is at 170 degC.
+static void files_tell_scalars_and_tools(void **state)
+{
+	(void)state;
+	cau_scene_def *scene = fixture_scene();
+	cau_session_def def = cau_default_session_def();
+	cau_session *session;
+	cau_frame frame;
+	cau_error error = {0};
+	sim_vtu vtu;
+	size_t bytes;
+	def.scene = scene;
+	assert_int_equal(cau_session_create(&def, &session, &error), CAU_OK);
+	energize_hook(session);
+	assert_int_equal(sim_vtu_begin(fixture_path("tools"), &vtu, &error), CAU_OK);
+	assert_int_equal(sim_vtu_write(&vtu, session, &error), CAU_OK);
+	cau_session_frame(session, &frame);
+	assert_null(frame.stress); // watched for the file alone
+
+	char *text = fixture_read(fixture_path("tools/tissue-00000001.vtu"), &bytes);
+	for (const char *const *name = (const char *const[]){"temperature_c", "stress_pa", NULL}; *name;
+	     name++) {
+		float value;
+		data array = find_array(text, bytes, *name);
+		assert_int_equal(array.bytes * 6, find_array(text, bytes, "position_m").bytes);
+		memcpy(&value, array.at, sizeof value);
+		assert_float_equal(value, 37, 0);
+	}
+	free(text);
+
+	text = fixture_read(fixture_path("tools/tools-00000001.vtu"), &bytes);
+	const cau_tool_state *hook = &frame.tools[0];
+	data position = find_array(text, bytes, "position_m");
+	assert_int_equal(position.bytes, 2 * 24);
+	for (size_t c = 0; c < 3; c++) // upright: the shaft's end is above the tip
+		assert_float_equal((float)(number_at(position, 3 + c) - number_at(position, c)),
+		                   c == 2 ? (float)hook->definition.shaft_length_m : 0, 1e-7F);
+	assert_true(number_at(position, 2) == hook->pose.position_m[2]);
+	assert_true(number_at(find_array(text, bytes, "temperature_c"), 0) == 170);
+	assert_int_equal(*find_array(text, bytes, "energized").at, 1);
+	assert_int_equal(find_array(text, bytes, "force_n").bytes, 24);
+	free(text);
+	assert_int_equal(sim_vtu_finish(&vtu, &error), CAU_OK);
 	cau_session_destroy(session);
 	free(scene);
 }
@@ -94,6 +162,7 @@ int main(void)
 {
 	const struct CMUnitTest tests[] = {
 		cmocka_unit_test(a_file_holds_the_drawn_tissue),
+		cmocka_unit_test(files_tell_scalars_and_tools),
 		cmocka_unit_test(a_folder_that_cannot_be_is_an_error),
 	};
 	return cmocka_run_group_tests(tests, NULL, fixture_remove);
