@@ -69,6 +69,8 @@ enum { CAU_CONFIG_TEXT_BYTES = 512 };
 	REAL(checkpoint_s, 10, 0.1, 3600, "between checkpoints of a session that somebody drives")     \
 	REAL(retention_h, 24, 0.01, 8760, "what a rewind left behind is kept for this")                \
 	INTEGER(retention_bytes, 1073741824, 1048576, 1099511627776, "most of a session in the store") \
+	INTEGER(store_bytes, 17179869184, 0, 1125899906842624,                                         \
+	        "most of all sessions in the store; 0: no bound")                                      \
 	REAL(drain_s, 10, 0.1, 600, "longest wait for checkpoints when told to end")                   \
 	SWITCH(dds, false, "open the DDS transport")                                                   \
 	INTEGER(dds_domain, 0, 0, 230, "DDS domain")                                                   \

@@ -70,6 +70,19 @@ static void on_store_state(void *user, cau_store_state state, const char *reason
 	        "state=%s reason=\"%s\"", cau_store_state_name(state), reason);
 }
 
+// On the store's thread.
+static void on_store_budget(void *user, cau_store_budget_state state, int64_t bytes,
+                            int64_t dropped)
+{
+	static const char *const words[] = {[CAU_STORE_BUDGET_KEPT] = "kept",
+	                                    [CAU_STORE_BUDGET_SHRINKING] = "shrinking",
+	                                    [CAU_STORE_BUDGET_BEYOND] = "beyond"};
+	const cau_daemon *daemon = user;
+	cau_log(state == CAU_STORE_BUDGET_BEYOND ? CAU_LOG_WARNING : CAU_LOG_NOTICE, NULL,
+	        "store_budget", "state=%s bytes=%lld most=%lld dropped=%lld", words[state],
+	        (long long)bytes, (long long)daemon->config->store_bytes, (long long)dropped);
+}
+
 static cau_status open_store(cau_daemon *daemon, cau_error *error)
 {
 	const cau_config *config = daemon->config;
@@ -78,7 +91,9 @@ static cau_status open_store(cau_daemon *daemon, cau_error *error)
 	store.label = config->label;
 	store.retention_bytes = config->retention_bytes;
 	store.retention_age_ms = (int64_t)(config->retention_h * 3.6e6);
+	store.store_bytes = config->store_bytes;
 	store.on_state = on_store_state;
+	store.on_budget = on_store_budget;
 	store.user = daemon;
 	return cau_store_open(&store, &daemon->store, error);
 }

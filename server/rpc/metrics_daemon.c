@@ -95,6 +95,14 @@ static void write_store(cau_service *service, const exposition *to)
 	      (double)m.wal_bytes);
 	counter(to, "store_retired_rows", "", "Rows that were removed to keep the store's bounds",
 	        (double)m.retired_rows);
+	gauge(to, "store_kept_bytes", "bytes", "What sessions, logs and checkpoints take, in all",
+	      (double)m.kept_bytes);
+	gauge(to, "store_budget_bytes", "bytes", "What they may take; 0: no bound",
+	      (double)service->config->store_bytes);
+	counter(to, "store_budget_checkpoints", "", "Checkpoints removed to keep the store's budget",
+	        (double)m.budget_dropped);
+	gauge(to, "store_beyond_budget", "", "1 if they take more and nothing is left that may go",
+	      m.budget == CAU_STORE_BUDGET_BEYOND);
 	write_commits(to, &m);
 }
 

@@ -117,18 +117,27 @@ static void retire(struct cau_store *store)
 	cau_error error = {0};
 	int64_t rows = 0;
 	int pause_ms = store->config.retention_interval_ms;
-	cau_status status = cau_store_retention_step(store->writing, &store->config, &rows, &error);
+	cau_store_budget_state before = store->budget.state;
+	cau_status status =
+		cau_store_retention_step(store->writing, &store->config, &store->budget, &rows, &error);
 	if (status == CAU_CORRUPT) {
 		block(store, &error);
 		cau_store_queue_answer(store);
 	}
 	CAU_ASSERT(rows >= 0, "%lld rows retired", (long long)rows);
-	if (!status && rows) {
+	if (!status) {
 		pthread_mutex_lock(&store->mutex);
 		store->metrics.retired_rows += (uint64_t)rows;
+		store->metrics.kept_bytes = (uint64_t)store->budget.bytes;
+		store->metrics.budget_dropped = (uint64_t)store->budget.dropped;
+		store->metrics.budget = store->budget.state;
 		pthread_mutex_unlock(&store->mutex);
-		pause_ms = CHORE_PAUSE_MS;
 	}
+	if (!status && rows)
+		pause_ms = CHORE_PAUSE_MS;
+	if (!status && store->budget.state != before && store->config.on_budget)
+		store->config.on_budget(store->config.user, store->budget.state, store->budget.bytes,
+		                        store->budget.dropped);
 	store->chore_due_s = cau_store_monotonic_s() + 1e-3 * pause_ms;
 }
 

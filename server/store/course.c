@@ -164,6 +164,14 @@ int cau_store_course_thin(const struct cau_store_course *course, int64_t spacing
 	return -1;
 }
 
+int cau_store_course_oldest(const struct cau_store_course *course)
+{
+	for (int i = 1; i < course->point_count - NEWEST_KEPT; i++)
+		if (may_go(course, i))
+			return i;
+	return -1;
+}
+
 int cau_store_course_coarsen(const struct cau_store_course *course, int64_t spacing)
 {
 	CAU_ASSERT(spacing > 0, "a spacing of %lld ticks", (long long)spacing);

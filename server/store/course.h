@@ -60,5 +60,8 @@ bool cau_store_course_range(const struct cau_store_course *course, int64_t after
 // of a hole.
 int cau_store_course_thin(const struct cau_store_course *course, int64_t spacing);
 
+// The oldest that may go at all; -1: none.
+int cau_store_course_oldest(const struct cau_store_course *course);
+
 // The checkpoint whose loss would lengthen replays least for its age; -1: all must stay.
 int cau_store_course_coarsen(const struct cau_store_course *course, int64_t spacing);

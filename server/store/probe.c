@@ -38,7 +38,8 @@ static cau_status check_version(int64_t version, cau_error *error)
 {
 	if (version > CAU_STORE_SCHEMA_VERSION)
 		return cau_fail(error, CAU_UNSUPPORTED, NULL,
-		                "written by a newer Cautery: schema %lld, this build knows %d",
+		                "written by a newer Cautery: schema %lld, this build knows %d: run that "
+		                "one, or restore a copy from before the upgrade",
 		                (long long)version, CAU_STORE_SCHEMA_VERSION);
 	if (version < 0)
 		return cau_fail(error, CAU_CORRUPT, NULL, "impossible schema %lld", (long long)version);

@@ -15,6 +15,7 @@
 enum {
 	ROWS_A_STEP = 256,
 	ROW_BYTES = 64,            // as write.c counts a command
+	FREED_SHARE = 20,          // of the budget, once it was overdrawn
 	LEAST_SPACING_TICKS = 600, // thinning does not look closer: 10 s at 60 Hz, replayed in 3
 };
 
@@ -351,6 +352,101 @@ static cau_status empty_gaps(sqlite3 *database, int64_t *rows, cau_error *error)
 	                     removed.sum + removed.rows * ROW_BYTES, INT64_MAX, error);
 }
 
+// ---- the budget of the whole store -----------------------------------------------------
+#define SPENT                                                                                      \
+	"SELECT (SELECT coalesce(sum(bytes), 0) FROM branches)"                                        \
+	" + (SELECT coalesce(sum(length(definition) + length(mesh)), 0) FROM sessions)"
+
+// A present line's checkpoint, and how early it was written among all.
+struct oldest {
+	int64_t session, row;
+	struct cau_store_point point;
+};
+
+static cau_status look_at_oldest(sqlite3 *database, const struct present *present,
+                                 struct oldest *oldest, cau_error *error)
+{
+	struct outcome found;
+	int index = cau_store_course_oldest(&present->course);
+	if (index < 0)
+		return CAU_OK;
+	const struct cau_store_point *point = &present->course.point[index];
+	cau_status status = run(
+		database, "SELECT rowid FROM checkpoints WHERE session = ?1 AND branch = ?2 AND tick = ?3",
+		(const int64_t[]){present->session, point->branch, point->tick}, &found, error);
+	if (!status && found.rows && found.value[0] < oldest->row)
+		*oldest = (struct oldest){present->session, found.value[0], *point};
+	return status;
+}
+
+// Looks at each session's present line, the biggest session's first: for the oldest checkpoint, or,
+// with `trim`, until one has given some of its log.
+static cau_status walk(sqlite3 *database, bool trim, struct oldest *oldest, int64_t *rows,
+                       cau_error *error)
+{
+	struct outcome found;
+	for (int64_t nth = 0; !*rows; nth++) {
+		cau_status status =
+			run(database,
+		        "SELECT s.key, s.branch, (SELECT sum(bytes) FROM branches WHERE session = s.key)"
+		        " AS taken FROM sessions AS s WHERE s.deleted = 0 ORDER BY taken DESC, s.key"
+		        " LIMIT 1 OFFSET ?1",
+		        &nth, &found, error);
+		if (status || !found.rows)
+			return status;
+		struct present present = {found.value[0], found.value[1], found.value[2], {0}};
+		status = cau_store_course_read(database, present.session, present.branch, &present.course,
+		                               error);
+		if (!status)
+			status = trim ? trim_log(database, &present, rows, error)
+			              : look_at_oldest(database, &present, oldest, error);
+		cau_store_course_finish(&present.course);
+		if (status)
+			return status;
+	}
+	return CAU_OK;
+}
+
+// What was left goes first, then of all sessions the checkpoint that was written first and may go,
+// then the oldest log of the biggest session that has some to give.
+static cau_status shrink_store(sqlite3 *database, struct cau_store_budget *budget, int64_t *rows,
+                               cau_error *error)
+{
+	struct oldest oldest = {.row = INT64_MAX};
+	cau_status status = trim_left(database, INT64_MAX, 0, rows, error);
+	if (status || *rows)
+		return status;
+	status = walk(database, false, &oldest, rows, error);
+	if (!status && oldest.row < INT64_MAX) {
+		status = drop_point(database, oldest.session, &oldest.point, rows, error);
+		budget->dropped += status ? 0 : *rows;
+	} else if (!status) {
+		status = walk(database, true, &oldest, rows, error);
+	}
+	return status;
+}
+
+static cau_status keep_budget(sqlite3 *database, int64_t most, struct cau_store_budget *budget,
+                              int64_t *rows, cau_error *error)
+{
+	struct outcome spent;
+	cau_status status = run(database, SPENT, NULL, &spent, error);
+	if (status)
+		return status;
+	budget->bytes = spent.value[0];
+	// Once beyond it, some room is made, so that not every checkpoint begins this anew.
+	int64_t bound = budget->state == CAU_STORE_BUDGET_KEPT ? most : most - most / FREED_SHARE;
+	if (!most || budget->bytes <= bound) {
+		budget->state = CAU_STORE_BUDGET_KEPT;
+		return CAU_OK;
+	}
+	status = shrink_store(database, budget, rows, error);
+	budget->state = *rows                   ? CAU_STORE_BUDGET_SHRINKING
+	                : budget->bytes <= most ? CAU_STORE_BUDGET_KEPT
+	                                        : CAU_STORE_BUDGET_BEYOND;
+	return status;
+}
+
 // ---- old answers and events -----------------------------------------------------------
 static cau_status remove_old(sqlite3 *database, const char *sql, int64_t before_ms, int64_t *rows,
                              cau_error *error)
@@ -383,8 +479,8 @@ static cau_status forget_answers(sqlite3 *database, int64_t before_ms, int64_t *
 	                  before_ms, rows, error);
 }
 
-static cau_status step(sqlite3 *database, const cau_store_config *config, int64_t *rows,
-                       cau_error *error)
+static cau_status step(sqlite3 *database, const cau_store_config *config,
+                       struct cau_store_budget *budget, int64_t *rows, cau_error *error)
 {
 	int64_t now_ms = config->wall_clock_ms();
 	cau_status status = remove_deleted(database, rows, error);
@@ -394,6 +490,8 @@ static cau_status step(sqlite3 *database, const cau_store_config *config, int64_
 		status = empty_gaps(database, rows, error);
 	if (!status && !*rows)
 		status = thin_sessions(database, config->retention_bytes, rows, error);
+	if (!status && !*rows)
+		status = keep_budget(database, config->store_bytes, budget, rows, error);
 	if (!status && !*rows)
 		status = forget_answers(database, now_ms - config->answer_age_ms, rows, error);
 	if (!status && !*rows)
@@ -413,15 +511,19 @@ static cau_status step(sqlite3 *database, const cau_store_config *config, int64_
 }
 
 cau_status cau_store_retention_step(sqlite3 *database, const cau_store_config *config,
-                                    int64_t *rows, cau_error *error)
+                                    struct cau_store_budget *budget, int64_t *rows,
+                                    cau_error *error)
 {
+	struct cau_store_budget next = *budget;
 	*rows = 0;
 	cau_status status = cau_store_execute(database, "BEGIN IMMEDIATE", "retention", error);
 	if (!status)
-		status = step(database, config, rows, error);
+		status = step(database, config, &next, rows, error);
 	if (!status)
 		status = cau_store_execute(database, "COMMIT", "retention", error);
 	if (status && !sqlite3_get_autocommit(database))
 		sqlite3_exec(database, "ROLLBACK", NULL, NULL, NULL);
+	if (!status)
+		*budget = next;
 	return status;
 }

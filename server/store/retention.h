@@ -6,7 +6,15 @@
 
 #include "store/store.h"
 
+// The budget of the whole store, from step to step; zeroed at the start.
+struct cau_store_budget {
+	cau_store_budget_state state;
+	int64_t bytes;   // that sessions, logs and checkpoints took at the last look
+	int64_t dropped; // checkpoints, for the budget, so far
+};
+
 // One small step in a transaction of its own: at most some hundred rows or one checkpoint. Sets
-// *rows to what it removed; 0: nothing may go at present.
+// *rows to what it removed; 0: nothing may go at present. `budget` is as it was if it fails.
 cau_status cau_store_retention_step(sqlite3 *database, const cau_store_config *config,
-                                    int64_t *rows, cau_error *error);
+                                    struct cau_store_budget *budget, int64_t *rows,
+                                    cau_error *error);

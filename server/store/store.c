@@ -70,6 +70,7 @@ static cau_status check_config(const cau_store_config *config, cau_error *error)
 		{"queue_bytes", (int64_t)config->queue_bytes, 1, INT64_MAX},
 		{"full_retry_ms", config->full_retry_ms, 1, INT32_MAX},
 		{"retention_bytes", config->retention_bytes, 0, INT64_MAX},
+		{"store_bytes", config->store_bytes, 0, INT64_MAX},
 		{"retention_age_ms", config->retention_age_ms, 0, INT64_MAX},
 		{"answer_age_ms", config->answer_age_ms, 0, INT64_MAX},
 		{"event_age_ms", config->event_age_ms, 0, INT64_MAX},

@@ -8,6 +8,7 @@
 #include "batch.h"
 #include "fold.h"
 #include "lock.h"
+#include "retention.h"
 #include "write.h"
 
 enum {
@@ -29,9 +30,10 @@ struct cau_store {
 	sqlite3 *writing;
 	struct cau_store_writer writer;
 	size_t page_bytes;
-	int wal_pages;         // in the log after the last commit
-	double fold_due_s;     // monotonic: the log is not folded here before
-	double chore_due_s;    // monotonic: next look for something to remove
+	int wal_pages;      // in the log after the last commit
+	double fold_due_s;  // monotonic: the log is not folded here before
+	double chore_due_s; // monotonic: next look for something to remove
+	struct cau_store_budget budget;
 	double retry_due_s;    // monotonic: next attempt while full
 	uint64_t wanted_bytes; // free space that an attempt while full asks for
 

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // store.backup: a copy that is made while a session goes on, restored by starting a daemon with it.
 import assert from 'node:assert/strict';
-import { copyFileSync, mkdtempSync, readdirSync, rmSync, statSync, writeFileSync } from 'node:fs';
+import { copyFileSync, mkdtempSync, readFileSync, readdirSync, rmSync, statSync, writeFileSync } from 'node:fs';
 import { tmpdir } from 'node:os';
 import { join } from 'node:path';
 import { after, before, test } from 'node:test';
@@ -80,6 +80,22 @@ test('it is for administrators', async () => {
 	const driver = await daemon.connect({ hello: { token: DRIVER } });
 	await assert.rejects(driver.call('store.backup', {}), { code: -32043 });
 	await driver.close();
+});
+
+test('a store of a newer version is refused with what to do, and left as it is', async () => {
+	const { file } = await admin.call('store.backup', { name: 'of-today' });
+	const newer = join(folder, 'newer.db'), bytes = readFileSync(file);
+	const schema = bytes.readUInt32BE(60); // SQLite's user_version
+	bytes.writeUInt32BE(schema + 1, 60);
+	writeFileSync(newer, bytes);
+	const ended = await Daemon.start({ settings: { store: newer } }).catch((error) => error);
+	assert.equal(ended.code, 1, String(ended));
+	assert.match(ended.message, new RegExp(`event=start_failed status=unsupported .*reason="written by a newer Cautery: schema ${schema + 1}, `
+		+ `this build knows ${schema}: run that one, or restore a copy from before the upgrade"`));
+	assert.deepEqual(readFileSync(newer), bytes);
+	bytes.writeUInt32BE(schema, 60); // it was the version alone
+	writeFileSync(newer, bytes);
+	await (await Daemon.start({ settings: { store: newer } })).end();
 });
 
 test('a folder that the settings name must be there', async () => {

@@ -55,18 +55,20 @@ cau_store *retention_retire(struct fixture *fixture, cau_store *store, struct re
 {
 	sqlite3 *database;
 	int64_t rows;
+	struct cau_store_budget budget = {0};
 	*removal = (struct removal){0};
 	cau_store_close(store);
 	assert_int_equal(cau_store_file_open(fixture->path, 1 << 20, &database, NULL), CAU_OK);
 	do {
 		cau_error error = {0};
-		if (cau_store_retention_step(database, &fixture->config, &rows, &error))
+		if (cau_store_retention_step(database, &fixture->config, &budget, &rows, &error))
 			fail_msg("%s", error.reason);
 		removal->rows += rows;
 		removal->steps += rows > 0;
 		if (rows > removal->most)
 			removal->most = rows;
 	} while (rows);
+	removal->budget = budget;
 	sqlite3_close(database);
 	return open_store(&fixture->config);
 }

@@ -5,6 +5,7 @@
 
 #include <stdatomic.h>
 
+#include "store/retention.h"
 #include "store_fixture.h"
 
 #define RETENTION_HOUR_MS INT64_C(3600000)
@@ -13,6 +14,7 @@ extern _Atomic int64_t retention_clock_ms;
 
 struct removal {
 	int64_t rows, steps, most; // most: rows of one step
+	struct cau_store_budget budget;
 };
 
 cau_store *retention_open(struct fixture *fixture); // the clock is at its start

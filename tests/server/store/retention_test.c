@@ -160,6 +160,7 @@ static void a_log_beyond_the_limit_goes_as_a_gap_that_is_told(void **state)
 	const uint64_t end = 12000;
 	cau_error error = {0};
 	sqlite3 *database;
+	struct cau_store_budget budget = {0};
 	int64_t rows = 1;
 	fixture->config.retention_bytes = 1000000;
 	cau_store *store = retention_open(fixture);
@@ -169,8 +170,8 @@ static void a_log_beyond_the_limit_goes_as_a_gap_that_is_told(void **state)
 	}
 	assert_int_equal(cau_store_file_open(fixture->path, 1 << 20, &database, NULL), CAU_OK);
 	for (int step = 0; rows; step++) {
-		assert_int_equal(cau_store_retention_step(database, &fixture->config, &rows, &error),
-		                 CAU_OK);
+		assert_int_equal(
+			cau_store_retention_step(database, &fixture->config, &budget, &rows, &error), CAU_OK);
 		for (uint64_t tick = 0; step % 4 == 0 && tick <= end; tick += 333)
 			assert_true(!is_reached(store, 0, tick) || can_be_replayed(store, 0, tick));
 	}
@@ -223,14 +224,16 @@ static void an_untouched_weekend_is_small(void **state)
 	struct fixture *fixture = *state;
 	cau_error error = {0};
 	int64_t rows, count, pages;
+	struct cau_store_budget budget = {0};
 	sqlite3 *database;
 	cau_store *store = retention_open(fixture);
 	assert_int_equal(cau_store_file_open(fixture->path, 1 << 20, &database, NULL), CAU_OK);
 	for (uint64_t tick = 0; tick <= end; tick += cadence) {
 		retention_put_checkpoint(store, 0, tick);
 		do
-			assert_int_equal(cau_store_retention_step(database, &fixture->config, &rows, &error),
-			                 CAU_OK);
+			assert_int_equal(
+				cau_store_retention_step(database, &fixture->config, &budget, &rows, &error),
+				CAU_OK);
 		while (rows);
 		assert_true(is_reached(store, 0, tick / 2) && is_reached(store, 0, 0));
 	}

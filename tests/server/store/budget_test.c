@@ -1,0 +1,174 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// The budget of the whole store: of all sessions the oldest checkpoint goes first, what is marked
+// stays, and the daemon is told.
+#include <string.h>
+#include <unistd.h>
+
+#include "retention_fixture.h"
+
+#define TEST(name) cmocka_unit_test_setup_teardown(name, fixture_setup, fixture_teardown)
+
+enum { PATIENCE_MS = 30000 };
+
+static void put(cau_store *store, const char *session, uint64_t tick, bool marked)
+{
+	static const char snapshot[100000];
+	cau_store_batch *batch = cau_store_batch_create();
+	cau_store_checkpoint checkpoint = {
+		.session = session, .tick = tick, .snapshot = {snapshot, sizeof snapshot}};
+	assert_int_equal(cau_store_put_checkpoint(batch, &checkpoint, NULL), CAU_OK);
+	if (marked)
+		assert_int_equal(cau_store_put_mark(batch, session, 0, tick, NULL), CAU_OK);
+	assert_int_equal(write_batch(store, batch, NULL), CAU_OK);
+}
+
+static cau_status note_tick(void *user, const cau_store_checkpoint *checkpoint)
+{
+	*(uint64_t *)user = checkpoint->tick;
+	return CAU_OK;
+}
+
+// Whether a session has a checkpoint at this very tick.
+static bool has(cau_store *store, const char *session, uint64_t tick)
+{
+	uint64_t newest = UINT64_MAX;
+	cau_store_read_checkpoint(store, session, 0, tick, note_tick, &newest, NULL);
+	return newest == tick;
+}
+
+// Checkpoints of two sessions at ticks 0 to 6000, by turns; knee's at 1000 is marked. 1.4 MB.
+static cau_store *fill(struct fixture *fixture)
+{
+	cau_store *store = retention_open(fixture);
+	assert_int_equal(write_batch(store, session_batch("hip"), NULL), CAU_OK);
+	for (uint64_t tick = 0; tick <= 6000; tick += 1000) {
+		put(store, "knee", tick, tick == 1000);
+		put(store, "hip", tick, false);
+	}
+	return store;
+}
+
+static void of_all_sessions_the_oldest_goes_first(void **state)
+{
+	struct fixture *fixture = *state;
+	struct removal removal;
+	fixture->config.store_bytes = 1000000;
+	cau_store *store = retention_retire(fixture, fill(fixture), &removal);
+	assert_int_equal(removal.budget.dropped, 5); // to 950 kB, so that some room is there
+	assert_int_equal(removal.budget.state, CAU_STORE_BUDGET_KEPT);
+	assert_in_range(removal.budget.bytes, 900000, 950000);
+	for (uint64_t tick = 0; tick <= 6000; tick += 1000) {
+		assert_int_equal(has(store, "knee", tick), tick < 2000 || tick > 3000);
+		assert_int_equal(has(store, "hip", tick), tick == 0 || tick > 3000);
+	}
+	cau_store_close(store);
+}
+
+static void within_its_budget_and_without_one_nothing_goes(void **state)
+{
+	struct fixture *fixture = *state;
+	struct removal removal;
+	fixture->config.store_bytes = 1500000;
+	cau_store *store = retention_retire(fixture, fill(fixture), &removal);
+	assert_int_equal(removal.rows, 0);
+	assert_in_range(removal.budget.bytes, 1400000, 1500000);
+	fixture->config.store_bytes = 0;
+	store = retention_retire(fixture, store, &removal);
+	assert_int_equal(removal.rows, 0);
+	assert_int_equal(removal.budget.state, CAU_STORE_BUDGET_KEPT);
+	cau_store_close(store);
+}
+
+static void after_checkpoints_the_log_of_the_biggest_goes(void **state)
+{
+	struct fixture *fixture = *state;
+	struct removal removal;
+	static uint64_t ticks[6000];
+	cau_store *store = fill(fixture);
+	retention_log(store, 0, 0, 6000); // knee's
+	fixture->config.store_bytes = 750000;
+	store = retention_retire(fixture, store, &removal);
+	// the first, the newest two, and the marked one are left: 7 of 14
+	assert_int_equal(removal.budget.dropped, 7);
+	int left = read_ticks(store, "knee", 0, 0, 6000, ticks, 6000);
+	assert_in_range(left, 1000, 5000); // from one checkpoint to the next, and the newest stays
+	uint64_t oldest;
+	assert_int_equal(cau_store_read_oldest_tick(store, "knee", 0, &oldest, NULL), CAU_OK);
+	assert_true(oldest >= 1000);
+	assert_int_equal(cau_store_check_reach(store, "knee", 0, 5999, NULL), CAU_OK);
+	cau_store_close(store);
+}
+
+static void what_may_not_go_is_beyond_it(void **state)
+{
+	struct fixture *fixture = *state;
+	struct removal removal;
+	cau_store *store = retention_open(fixture);
+	for (uint64_t tick = 0; tick <= 6000; tick += 1000)
+		put(store, "knee", tick, true);
+	fixture->config.store_bytes = 300000;
+	store = retention_retire(fixture, store, &removal);
+	assert_int_equal(removal.rows, 0);
+	assert_int_equal(removal.budget.state, CAU_STORE_BUDGET_BEYOND);
+	for (uint64_t tick = 0; tick <= 6000; tick += 1000)
+		assert_true(has(store, "knee", tick));
+	cau_store_close(store);
+}
+
+// ---- told by a store that runs
+typedef struct told {
+	atomic_int count;
+	cau_store_budget_state states[8];
+	int64_t bytes[8], dropped[8];
+} told;
+
+static void note(void *user, cau_store_budget_state state, int64_t bytes, int64_t dropped)
+{
+	told *t = user;
+	int i = t->count;
+	if (i == 8)
+		return;
+	t->states[i] = state;
+	t->bytes[i] = bytes;
+	t->dropped[i] = dropped;
+	t->count = i + 1;
+}
+
+static void the_daemon_is_told_when_it_begins_and_when_it_is_over(void **state)
+{
+	struct fixture *fixture = *state;
+	static told heard;
+	cau_store_metrics metrics;
+	memset(&heard, 0, sizeof heard);
+	cau_store_close(fill(fixture));
+	fixture->config.store_bytes = 1000000;
+	fixture->config.retention_interval_ms = 10;
+	fixture->config.on_budget = note;
+	fixture->config.user = &heard;
+	cau_store *store = open_store(&fixture->config);
+	for (int waited = 0; heard.count < 2 && waited < PATIENCE_MS; waited++)
+		usleep(1000);
+	assert_int_equal(heard.count, 2);
+	assert_int_equal(heard.states[0], CAU_STORE_BUDGET_SHRINKING);
+	assert_true(heard.bytes[0] > 1400000);
+	assert_int_equal(heard.states[1], CAU_STORE_BUDGET_KEPT);
+	assert_true(heard.bytes[1] <= 950000);
+	assert_int_equal(heard.dropped[1], 5);
+	cau_store_get_metrics(store, &metrics);
+	assert_int_equal(metrics.budget_dropped, 5);
+	assert_int_equal(metrics.kept_bytes, heard.bytes[1]);
+	assert_int_equal(metrics.budget, CAU_STORE_BUDGET_KEPT);
+	cau_store_close(store);
+}
+
+int main(void)
+{
+	const struct CMUnitTest tests[] = {
+		TEST(of_all_sessions_the_oldest_goes_first),
+		TEST(within_its_budget_and_without_one_nothing_goes),
+		TEST(after_checkpoints_the_log_of_the_biggest_goes),
+		TEST(what_may_not_go_is_beyond_it),
+		TEST(the_daemon_is_told_when_it_begins_and_when_it_is_over),
+	};
+	return cmocka_run_group_tests(tests, NULL, NULL);
+}
