@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Mechanical totals, for tests and plots.
+#include <stdlib.h>
 #include <string.h>
 
 #include "cautery/assert.h"
@@ -14,13 +15,52 @@ static cau_vec3 elastic_gradient(const cau_session *session, int32_t vertex)
 	return cau_vec3_of(g);
 }
 
-void cau_session_balance(cau_session *session, cau_balance *balance)
+// The rotations that elements keep from evaluation to evaluation, which the next step starts from:
+// copied to or from `kept`.
+static size_t pass_polars(void *const *polar, int arrays, size_t array_bytes, char *kept,
+                          bool restore)
+{
+	for (int i = 0; i < arrays && array_bytes > 0; i++) {
+		char *other = kept + (size_t)i * array_bytes;
+		memcpy(restore ? polar[i] : other, restore ? other : polar[i], array_bytes);
+	}
+	return (size_t)arrays * array_bytes;
+}
+
+// NULL if memory ran out.
+static char *keep_polars(const cau_elements *elements)
+{
+	size_t real = cau_real_bytes(elements->single);
+	size_t sheet = (size_t)elements->sheet.slot_count * real;
+	size_t fat = (size_t)elements->fat.slot_count * real;
+	char *kept = malloc(6 * sheet + 4 * fat + 1);
+	if (kept)
+		pass_polars(elements->fat.polar, 4, fat,
+		            kept + pass_polars(elements->sheet.polar, 6, sheet, kept, false), false);
+	return kept;
+}
+
+static void return_polars(const cau_elements *elements, char *kept)
+{
+	size_t real = cau_real_bytes(elements->single);
+	size_t sheet = (size_t)elements->sheet.slot_count * real;
+	size_t fat = (size_t)elements->fat.slot_count * real;
+	pass_polars(elements->fat.polar, 4, fat,
+	            kept + pass_polars(elements->sheet.polar, 6, sheet, kept, true), true);
+	free(kept);
+}
+
+cau_status cau_session_balance(cau_session *session, cau_balance *balance)
 {
 	cau_step_solver *solver = &session->solver;
 	const cau_tissue *tissue = &session->tissue;
 	*balance = (cau_balance){0};
+	char *polars = keep_polars(&solver->elements);
+	if (!polars)
+		return CAU_NO_MEMORY;
 	// residual of eq. 4 at the present state, with the present reactions
 	cau_solver_evaluate(solver);
+	return_polars(&solver->elements, polars);
 	for (int32_t i = 0; i < session->contact.row_count; i++) {
 		const cau_contact_row *row = &session->contact.row[i];
 		const double off[3] = {-row->reaction[0], -row->reaction[1], -row->reaction[2]};
@@ -49,4 +89,5 @@ void cau_session_balance(cau_session *session, cau_balance *balance)
 	cau_vec3_to(momentum, balance->momentum);
 	cau_vec3_to(force, balance->net_force);
 	cau_vec3_to(torque, balance->net_torque);
+	return CAU_OK;
 }

@@ -119,7 +119,9 @@ static cau_status write_outputs(run *r, const cau_frame *frame)
 {
 	if (r->csv) {
 		cau_balance balance;
-		cau_session_balance(r->session, &balance);
+		cau_status status = cau_session_balance(r->session, &balance);
+		if (status)
+			return cau_fail(r->error, status, NULL, "no memory for a tick's energies");
 		sim_csv_tick(r->csv, r->scene, frame, &balance);
 	}
 	if (r->vtu_open && frame->tick % (uint64_t)r->options->vtu_every == 0)

@@ -269,4 +269,5 @@ typedef struct cau_balance {
 	double kinetic_j, elastic_j;
 	double residual_n; // |gradient of eq. 4| over free vertices at the last step's end
 } cau_balance;
-void cau_session_balance(cau_session *session, cau_balance *balance);
+// Changes no bit of the state. CAU_NO_MEMORY: *balance is all 0.
+cau_status cau_session_balance(cau_session *session, cau_balance *balance);

@@ -424,8 +424,9 @@ uint64_t cau_session_hash(const cau_session *s)
 	return hash;
 }
 
-void cau_session_balance(cau_session *s, cau_balance *balance)
+cau_status cau_session_balance(cau_session *s, cau_balance *balance)
 {
 	(void)s;
 	*balance = (cau_balance){0};
+	return CAU_OK;
 }
