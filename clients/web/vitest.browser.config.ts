@@ -8,6 +8,9 @@ const here = (path: string): string => fileURLToPath(new URL(path, import.meta.u
 export default defineConfig({
   resolve: {
     alias: {
+      '@mcap/core': here('./node_modules/@mcap/core'),
+      '@foxglove/schemas': here('./node_modules/@foxglove/schemas'),
+      'ajv': here('./node_modules/ajv'),
       'playwright-core': here('./node_modules/playwright-core/index.mjs'),
       '@axe-core/playwright': here('./node_modules/@axe-core/playwright/dist/index.mjs'),
     },

@@ -203,6 +203,17 @@ class Streams(programs.Case):
             stream.truncate()
         self.assertIn("cut short", self.cautery("watch", "--recording", file, code=4)[1])
 
+    def test_a_recording_as_mcap_ends_whole(self):
+        session = self.create("fascia")
+        file = self.path("scene.mcap")
+        recorded = self.json("record", session, file, "--mcap", "--seconds", 1)
+        self.assertGreater(recorded["messages"], 2)
+        with open(file, "rb") as stream:
+            content = stream.read()
+        self.assertEqual(len(content), recorded["bytes"])
+        self.assertEqual((content[:8], content[-8:]), (b"\x89MCAP0\r\n",) * 2)
+        self.assertEqual(content.count(b'{"deletions":['), recorded["messages"])
+
     def test_watch_comes_back_after_a_crash(self):
         daemon = programs.Daemon(checkpoint_s=0.2)
         self.cautery("create", "fascia", "--name", "knee", url=daemon.url)

@@ -6,6 +6,7 @@ import type { ViewOptions, Viewport } from '../scene/viewport';
 import type { Frame } from '../wire/worker_messages';
 import { cameraViews } from './camera';
 import { attempt, button, byId, check, element, field, problemPlace, save, short } from './dom';
+import { sceneRecordingButton } from './scene_recording';
 import type { Panel } from './tabs';
 import { videoButton } from './video';
 
@@ -128,7 +129,7 @@ export function viewPanel(control: Control, viewport: Viewport, inspectSwitch: H
     clip,
     cameraViews(viewport),
     themes(viewport),
-    element('div', { class: 'buttons' }, png, videoButton(model, viewport, problem)),
+    element('div', { class: 'buttons' }, png, videoButton(model, viewport, problem), sceneRecordingButton(model, viewport, problem)),
     problem,
   );
   return { id: 'view', title: 'View', body };

@@ -1,0 +1,174 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "cautery/scene_update.h"
+
+#include <stdbool.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "cautery/assert.h"
+
+// What stands for an instrument: the stream tells its pose, not its measures.
+static const double shaft_m = 0.06, shaft_diameter_m = 0.002, tip_diameter_m = 0.0015;
+
+enum { LAYER_COLORS = 4, LAYERS_MAX = 256 };
+
+// By layer: pearly fascia, a pink membrane, fat; others like what lies under them.
+static const char *const layer_color[LAYER_COLORS] = {
+	"{\"r\":0.9,\"g\":0.82,\"b\":0.76,\"a\":1}",
+	"{\"r\":0.85,\"g\":0.58,\"b\":0.5,\"a\":1}",
+	"{\"r\":0.93,\"g\":0.77,\"b\":0.4,\"a\":1}",
+	"{\"r\":0.7,\"g\":0.35,\"b\":0.32,\"a\":1}",
+};
+static const char steel[] = "{\"r\":0.7,\"g\":0.72,\"b\":0.75,\"a\":1}";
+static const char glowing[] = "{\"r\":1,\"g\":0.35,\"b\":0.1,\"a\":1}";
+static const char at_origin[] =
+	"{\"position\":{\"x\":0,\"y\":0,\"z\":0},\"orientation\":{\"x\":0,\"y\":0,\"z\":0,\"w\":1}}";
+
+static void write_time(FILE *out, uint64_t time_ns)
+{
+	fprintf(out, "\"timestamp\":{\"sec\":%llu,\"nsec\":%llu}",
+	        (unsigned long long)(time_ns / 1000000000), (unsigned long long)(time_ns % 1000000000));
+}
+
+// An entity up to its shapes, of which the caller writes those that it has.
+static void open_entity(FILE *out, const char *id, const cau_stream_state *state, uint64_t time_ns)
+{
+	fputc('{', out);
+	write_time(out, time_ns);
+	fprintf(out,
+	        ",\"frame_id\":\"session\",\"id\":\"%s\",\"lifetime\":{\"sec\":0,\"nsec\":0},"
+	        "\"frame_locked\":false,\"metadata\":[{\"key\":\"tick\",\"value\":\"%llu\"},"
+	        "{\"key\":\"time_s\",\"value\":\"%.9g\"}],"
+	        "\"arrows\":[],\"cubes\":[],\"lines\":[],\"texts\":[],\"models\":[],",
+	        id, (unsigned long long)state->tick, state->time_s);
+}
+
+// ---- tissue ------------------------------------------------------------------------------------
+static bool drawn(const cau_client_stream *stream, int32_t face, int layer)
+{
+	return stream->topology.face_layer[face] == layer &&
+	       !(stream->state->face_mask[face / 32] >> face % 32 & 1);
+}
+
+static void write_point(FILE *out, const cau_client_stream *stream, int32_t vertex)
+{
+	const cau_stream_def *d = &stream->def;
+	const int32_t *q = stream->state->quantised + 3 * vertex;
+	fprintf(out, "{\"x\":%.7g,\"y\":%.7g,\"z\":%.7g}", d->origin_m[0] + d->step_m * q[0],
+	        d->origin_m[1] + d->step_m * q[1], d->origin_m[2] + d->step_m * q[2]);
+}
+
+// The points of a layer's drawn faces. `place` (vertex_count): -1, and in the end again, but where
+// the list has the vertex. Returns how many it has.
+static int32_t write_points(FILE *out, const cau_client_stream *stream, int layer, int32_t *place)
+{
+	int32_t count = 0;
+	for (int32_t face = 0; face < stream->def.face_count; face++) {
+		if (!drawn(stream, face, layer))
+			continue;
+		for (int c = 0; c < 3; c++) {
+			int32_t vertex = stream->topology.face[3 * face + c];
+			if (place[vertex] >= 0)
+				continue;
+			if (count > 0)
+				fputc(',', out);
+			place[vertex] = count++;
+			write_point(out, stream, vertex);
+		}
+	}
+	return count;
+}
+
+static void write_indices(FILE *out, const cau_client_stream *stream, int layer,
+                          const int32_t *place)
+{
+	bool first = true;
+	for (int32_t face = 0; face < stream->def.face_count; face++) {
+		if (!drawn(stream, face, layer))
+			continue;
+		const int32_t *vertex = stream->topology.face + 3 * (size_t)face;
+		fprintf(out, "%s%d,%d,%d", first ? "" : ",", place[vertex[0]], place[vertex[1]],
+		        place[vertex[2]]);
+		first = false;
+	}
+}
+
+static cau_status write_tissue(FILE *out, const cau_client_stream *stream, cau_error *error)
+{
+	size_t place_bytes = (size_t)stream->def.vertex_count * sizeof(int32_t);
+	int32_t *place = malloc(place_bytes + 1);
+	bool has[LAYERS_MAX] = {false}, first = true;
+	if (!place)
+		return cau_fail(error, CAU_NO_MEMORY, NULL, "no memory for the tissue's points");
+	for (int32_t face = 0; face < stream->def.face_count; face++)
+		has[stream->topology.face_layer[face]] = true;
+	fputs("\"spheres\":[],\"cylinders\":[],\"triangles\":[", out);
+	for (int layer = 0; layer < LAYERS_MAX; layer++) {
+		if (!has[layer])
+			continue;
+		memset(place, 0xff, place_bytes);
+		fprintf(out, "%s{\"pose\":%s,\"points\":[", first ? "" : ",", at_origin);
+		write_points(out, stream, layer, place);
+		fprintf(out, "],\"color\":%s,\"colors\":[],\"indices\":[",
+		        layer_color[layer < LAYER_COLORS ? layer : LAYER_COLORS - 1]);
+		write_indices(out, stream, layer, place);
+		fputs("]}", out);
+		first = false;
+	}
+	fputs("]}", out);
+	free(place);
+	return CAU_OK;
+}
+
+// ---- tools -------------------------------------------------------------------------------------
+// The pose of a point on the shaft's axis, which is the tool's third.
+static void write_pose(FILE *out, const cau_pose *pose, double along_m)
+{
+	const double *q = pose->rotation, *p = pose->position_m; // w, x, y, z
+	double axis[3] = {2 * (q[1] * q[3] + q[0] * q[2]), 2 * (q[2] * q[3] - q[0] * q[1]),
+	                  1 - 2 * (q[1] * q[1] + q[2] * q[2])};
+	fprintf(out,
+	        "\"pose\":{\"position\":{\"x\":%.7g,\"y\":%.7g,\"z\":%.7g},"
+	        "\"orientation\":{\"x\":%.7g,\"y\":%.7g,\"z\":%.7g,\"w\":%.7g}}",
+	        p[0] + along_m * axis[0], p[1] + along_m * axis[1], p[2] + along_m * axis[2], q[1],
+	        q[2], q[3], q[0]);
+}
+
+static void write_size(FILE *out, double across_m, double along_m)
+{
+	fprintf(out, ",\"size\":{\"x\":%g,\"y\":%g,\"z\":%g}", across_m, across_m, along_m);
+}
+
+static void write_tool(FILE *out, const cau_stream_tool *tool)
+{
+	fputs("\"triangles\":[],\"spheres\":[{", out);
+	write_pose(out, &tool->pose, 0);
+	write_size(out, tip_diameter_m, tip_diameter_m);
+	fprintf(out, ",\"color\":%s}],\"cylinders\":[{", tool->energized ? glowing : steel);
+	write_pose(out, &tool->pose, tip_diameter_m / 2 + shaft_m / 2);
+	write_size(out, shaft_diameter_m, shaft_m);
+	fprintf(out, ",\"bottom_scale\":1,\"top_scale\":1,\"color\":%s}]}", steel);
+}
+
+cau_status cli_scene_update_write(FILE *out, const cau_client_stream *stream, uint64_t time_ns,
+                                  cau_error *error)
+{
+	const cau_stream_state *state = stream->state;
+	char id[CAU_NAME_BYTES + 8];
+	CAU_ASSERT(state->synced && state->face_mask && stream->has_topology, "%s is not whole",
+	           stream->description.session);
+	// Everything is told anew: whoever begins to read in the middle has the whole scene.
+	fputs("{\"deletions\":[{", out);
+	write_time(out, time_ns);
+	fputs(",\"type\":1,\"id\":\"\"}],\"entities\":[", out);
+	open_entity(out, "tissue", state, time_ns);
+	cau_status status = write_tissue(out, stream, error);
+	for (int32_t i = 0; i < state->tool_count && !status; i++) {
+		snprintf(id, sizeof id, "tool %s", state->tools[i].name);
+		fputc(',', out);
+		open_entity(out, id, state, time_ns);
+		write_tool(out, &state->tools[i]);
+	}
+	fputs("]}", out);
+	return status;
+}
