@@ -347,7 +347,8 @@ cau_status cau_session_restore(cau_session *session, const void *bytes, size_t b
 		cau_dissection_recount(&session->dissection);
 		session->dissection.edges_parted = header.edges_parted;
 		session->dissection.elements_removed = header.elements_removed;
-		session->contact.row_count = session->refusal_count = 0;
+		session->contact.row_count = session->contact.left_out_count = 0;
+		session->refusal_count = 0;
 		session->watch.left_m = 0;
 		session->energy.stale = true;
 		if (!status)

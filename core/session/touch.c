@@ -48,8 +48,9 @@ static bool is_grasped(const cau_tool *tool, int32_t vertex)
 	return false;
 }
 
-// Collects the free vertices within the margin of the pushing part, the deepest first.
-static int32_t collect(const cau_session *session, int32_t index, cau_contact_row *rows)
+// Collects the free vertices within the margin of the pushing part, the deepest first; counts those
+// that found no place.
+static int32_t collect(cau_session *session, int32_t index, cau_contact_row *rows)
 {
 	const cau_tool *tool = &session->tool[index];
 	const cau_tool_def *def = &tool->state.definition;
@@ -65,12 +66,16 @@ static int32_t collect(const cau_session *session, int32_t index, cau_contact_ro
 		int32_t last = (b + 1) * CAU_NEAR_BLOCK;
 		for (int32_t i = b * CAU_NEAR_BLOCK; i < last && i < session->tissue.vertex_count; i++) {
 			int32_t v = session->near.vertex[i];
-			if (session->fixed[v] || count == CANDIDATES || is_grasped(tool, v))
+			if (session->fixed[v] || is_grasped(tool, v))
 				continue;
 			double gap = cau_tool_distance_at(def, &tool->state.pose, tool->state.jaw, part,
 			                                  cau_vec3_of(session->position + 3 * (size_t)v), NULL);
 			if (!(gap <= margin)) // nor is a vertex near that is nowhere
 				continue;
+			if (count == CANDIDATES) {
+				session->contact.left_out_count++;
+				continue;
+			}
 			rows[count] = contact_row(session, tool, index, v);
 			rows[count++].gap = gap;
 		}
@@ -143,7 +148,7 @@ static void describe_tools(cau_session *session)
 void cau_session_find_contacts(cau_session *session)
 {
 	cau_contact_row rows[CANDIDATES];
-	session->contact.row_count = 0;
+	session->contact.row_count = session->contact.left_out_count = 0;
 	session->solver.drag_count = 0;
 	if (!session->tool_count)
 		return;
@@ -153,8 +158,8 @@ void cau_session_find_contacts(cau_session *session)
 		add_attachments(session, i);
 	for (int32_t i = 0; i < session->tool_count; i++) {
 		int32_t count = collect(session, i, rows);
-		for (int32_t k = 0; k < count && cau_contact_add(&session->contact, &rows[k]); k++)
-			;
+		for (int32_t k = 0; k < count; k++)
+			cau_contact_add(&session->contact, &rows[k]);
 		add_drag(session, i);
 	}
 	if (session->contact.row_count)

@@ -164,6 +164,7 @@ static void fill_statistics(const cau_session *session, cau_statistics *statisti
 		.refactorisations = session->update.refactorisations,
 		.factor_operations = session->update.operation_count,
 		.contacts = session->contact.row_count,
+		.contacts_left_out = session->contact.left_out_count,
 		.frozen_vertices = session->frozen_count,
 		.energy_gain_j = session->energy.gain_j,
 		.error = solver->accuracy.error,

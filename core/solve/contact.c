@@ -31,8 +31,10 @@ bool cau_contact_add(cau_contact_set *set, const cau_contact_row *row)
 	           set->row_count);
 	CAU_ASSERT_INDEX(row->tool, set->tool_count);
 	CAU_ASSERT(row->vertex >= 0, "a row of vertex %d", row->vertex);
-	if (set->row_count == CAU_MAX_CONTACTS)
+	if (set->row_count == CAU_MAX_CONTACTS) {
+		set->left_out_count++;
 		return false;
+	}
 	set->row[set->row_count++] = *row;
 	return true;
 }

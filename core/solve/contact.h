@@ -49,6 +49,7 @@ struct cau_contact_set {
 	cau_contact_tool tool[CAU_MAX_TOOLS];
 	int32_t row_count;
 	cau_contact_row row[CAU_MAX_CONTACTS];
+	int32_t left_out_count; // rows that found no place in this step
 	// Kept columns of A^-1: part of the session's state, since they lag after cuts.
 	int32_t column_count;
 	int32_t column_vertex[CAU_MAX_CONTACTS];
@@ -68,7 +69,8 @@ struct cau_contact_set {
 cau_status cau_contact_create(cau_contact_set *set, const cau_tissue *tissue,
                               const cau_vectors *vectors, cau_arena *arena, cau_error *error);
 
-// Adds a row; returns false when the set is full (the caller offers the deepest first).
+// Adds a row; counts it as left out and returns false when the set is full (the caller offers the
+// deepest first).
 bool cau_contact_add(cau_contact_set *set, const cau_contact_row *row);
 
 // Finds or makes the rows' columns. Called once a step, after the rows are chosen. The step may

@@ -13,10 +13,10 @@ enum {
 	TOOL_FROZEN = 1 << 2,
 	STATISTICS_FLOATS = 2 + CAU_STREAM_STAGES + 2,
 	STATISTICS_COUNTS = 10,
-	STATISTICS_WORDS = STATISTICS_RECORD_BYTES / 4, // floats, counts, and three more
+	STATISTICS_WORDS = STATISTICS_RECORD_BYTES / 4, // floats, counts, and four more
 };
 _Static_assert(sizeof(cau_stream_statistics) == STATISTICS_RECORD_BYTES &&
-                   STATISTICS_FLOATS + STATISTICS_COUNTS + 3 == STATISTICS_WORDS,
+                   STATISTICS_FLOATS + STATISTICS_COUNTS + 4 == STATISTICS_WORDS,
                "the record lists every member of cau_stream_statistics");
 
 size_t cau_tool_names_write(uint8_t *out, const cau_stream_tool *tools, int32_t count)
@@ -165,7 +165,8 @@ const char *cau_tools_read(const uint8_t *payload, size_t bytes, cau_stream_tool
 static int is_float_word(size_t word)
 {
 	CAU_ASSERT_INDEX(word, STATISTICS_WORDS);
-	size_t beyond = STATISTICS_FLOATS + STATISTICS_COUNTS; // energy_gain_j, resting, error
+	size_t beyond =
+		STATISTICS_FLOATS + STATISTICS_COUNTS; // energy_gain_j, resting, error and a count
 	return word < STATISTICS_FLOATS || word == beyond || word == beyond + 2;
 }
 

@@ -82,6 +82,7 @@ static void step(cau_hosted *h)
 	h->counts.steps++;
 	h->counts.step_seconds += h->step_cost_s;
 	h->counts.energy_gain_j += fmax(frame.statistics.energy_gain_j, 0);
+	h->counts.contacts_left_out = frame.statistics.contacts_left_out;
 	h->counts.resting = frame.statistics.resting;
 	pthread_mutex_unlock(&h->mutex);
 }

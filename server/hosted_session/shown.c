@@ -43,6 +43,7 @@ static void describe_step(const cau_statistics *from, cau_stream_statistics *to)
 		.energy_gain_j = (float)from->energy_gain_j,
 		.resting = from->resting,
 		.error = (float)from->error,
+		.contacts_left_out = (uint32_t)from->contacts_left_out,
 	};
 	for (int i = 0; i < CAU_STREAM_STAGES; i++)
 		to->stage_s[i] = (float)from->seconds[i];

@@ -29,6 +29,8 @@
 	X("session_subscribers", GAUGE, "", "Streams joined", s->subscriber_count)                     \
 	X("session_subscribers_half_rate", GAUGE, "", "Streams served at half rate", c->half_rate)     \
 	X("session_resting", GAUGE, "", "1 while its tissue is at rest", c->resting)                   \
+	X("session_contacts_left_out", GAUGE, "",                                                      \
+	  "Vertices near tools that the last step's contact had no place for", c->contacts_left_out)   \
 	X("session_paused", GAUGE, "", "1 while it is paused", s->state == CAU_SESSION_PAUSED)         \
 	X("session_faulted", GAUGE, "", "1 after a fault", s->state == CAU_SESSION_FAULTED)
 

@@ -21,6 +21,7 @@
 	X("refactorisations", PRId32, s->refactorisations)                                             \
 	X("factor_operations", PRId32, s->factor_operations)                                           \
 	X("contacts", PRId32, s->contacts)                                                             \
+	X("contacts_left_out", PRId32, s->contacts_left_out)                                           \
 	X("frozen_vertices", PRId32, s->frozen_vertices)                                               \
 	X("energy_gain_j", ".6g", s->energy_gain_j)                                                    \
 	X("error", ".6g", s->error)                                                                    \

@@ -105,6 +105,46 @@ static void an_energized_ball_does_not_push(void **state)
 	free(scene);
 }
 
+// ---- more than there is room for
+static int32_t vertices_within(const cau_session *session, const char *tool, double margin_m)
+{
+	const cau_tool_state *state = stage_tool(session, tool);
+	cau_frame frame = stage_frame(session);
+	int32_t count = 0;
+	for (size_t v = 0; v < (size_t)session->tissue.vertex_count; v++)
+		count += !session->fixed[v] &&
+		         cau_tool_distance_at(&state->definition, &state->pose, state->jaw, CAU_PART_BOTH,
+		                              cau_vec3_of(frame.position + 3 * v), NULL) <= margin_m;
+	return count;
+}
+
+static void contact_says_what_it_left_out(void **state)
+{
+	(void)state;
+	static const double radius_m[] = {0.006, 0.04}; // few vertices near, and more than are sorted
+	for (int k = 0; k < 2; k++) {
+		cau_scene_def *scene = block_scene(0.2);
+		scene->tools[0].hot_radius_m = radius_m[k];
+		scene->tools[0].grid_step_m = radius_m[k] / 5;
+		scene->tools[0].pose.position_m[2] = radius_m[k] - 1e-4;
+		cau_session *session = stage_open(scene, 1);
+		int32_t near = vertices_within(session, "ball", fmax(5e-4, 0.25 * radius_m[k]));
+		stage_step(session, 1);
+		cau_statistics statistics = stage_frame(session).statistics;
+		print_message("%d of %d vertices near are rows\n", statistics.contacts, near);
+		assert_true(k ? near > 4 * CAU_MAX_CONTACTS : near < CAU_MAX_CONTACTS);
+		assert_int_equal(statistics.contacts + statistics.contacts_left_out, near);
+		assert_int_equal(statistics.contacts, k ? CAU_MAX_CONTACTS : near);
+		stage_move(session, "ball", 0, 0, 1);
+		stage_step(session, 60);
+		statistics = stage_frame(session).statistics;
+		assert_int_equal(statistics.contacts, 0);
+		assert_int_equal(statistics.contacts_left_out, 0);
+		cau_session_destroy(session);
+		free(scene);
+	}
+}
+
 // ---- a block of tissue lying on a tool
 static cau_scene_def *resting_scene(void)
 {
@@ -270,6 +310,7 @@ int main(void)
 		cmocka_unit_test(nothing_is_inside_a_cold_tool),
 		cmocka_unit_test(friction_keeps_to_its_cone),
 		cmocka_unit_test(an_energized_ball_does_not_push),
+		cmocka_unit_test(contact_says_what_it_left_out),
 		cmocka_unit_test(the_tool_feels_the_weight_on_it),
 		cmocka_unit_test(it_sticks_and_slips),
 		cmocka_unit_test(jaws_hold_up_to_their_slip_force),

@@ -179,6 +179,7 @@ static void test_a_full_set_says_so(void **state)
 		assert_true(cau_contact_add(p.set, &row));
 	assert_false(cau_contact_add(p.set, &row));
 	assert_int_equal(p.set->row_count, CAU_MAX_CONTACTS);
+	assert_int_equal(p.set->left_out_count, 1);
 	rig_finish(&p.r);
 }
 

@@ -19,6 +19,7 @@ const COLUMNS: readonly (readonly [string, (sample: Sample) => number | null])[]
   ['elements_removed', (s) => s.statistics?.elementsRemoved ?? null],
   ['pending_downdates', (s) => s.statistics?.pendingDowndates ?? null],
   ['contacts', (s) => s.statistics?.contacts ?? null],
+  ['contacts_left_out', (s) => s.statistics?.contactsLeftOut ?? null],
 ];
 
 export function samplesCsv(samples: readonly Sample[]): string {

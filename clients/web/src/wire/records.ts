@@ -53,10 +53,11 @@ export interface Statistics {
   energyGainJ: number; // that the last step made out of nothing; 0 from servers that do not tell it
   resting: boolean; // steps change nothing until something wakes the tissue; false from servers that do not tell it
   error: number; // of the last step, estimated, relative to its own motion; 0 from servers that do not tell it
+  contactsLeftOut: number; // vertices that the last step's contact had no place for; 0 from servers that do not tell it
 }
 
 const TOOL_BYTES = 84;
-const STATISTICS_BYTES = 88; // without what servers have added since: energyGainJ, resting, error
+const STATISTICS_BYTES = 88; // without what servers have added since: energyGainJ, resting, error, contactsLeftOut
 const TOOLS_MAX = 8;
 
 export function readToolNames(payload: Uint8Array): ToolName[] {
@@ -134,5 +135,6 @@ export function readStatistics(payload: Uint8Array): Statistics {
     energyGainJ: payload.byteLength >= STATISTICS_BYTES + 4 ? real(22) : 0,
     resting: payload.byteLength >= STATISTICS_BYTES + 8 && count(11) !== 0,
     error: payload.byteLength >= STATISTICS_BYTES + 12 ? real(24) : 0,
+    contactsLeftOut: payload.byteLength >= STATISTICS_BYTES + 16 ? count(13) : 0,
   };
 }
