@@ -14,7 +14,7 @@ Usage: deploy/test.sh [--fast | --full | --long] [--no-install]
                 sanitizers over the unit and e2e tests; 10 s of fuzzing for each parser
   --fast        the Release suite alone
   --full        adds the thread sanitizer over the unit, determinism and e2e tests, clang-tidy,
-                tests labelled full, clang's warnings on every source; 30 s of fuzzing
+                tests labelled full, clang's warnings on every source
   --long        as --full, with tests labelled long, and 600 s of fuzzing
   --only REGEX  the tests whose names match, in one tree: builds what these run and nothing else
   --preset NAME with --only: the tree of this preset instead of release's (asan-ubsan, tsan, dev)
@@ -166,7 +166,7 @@ fuzz_seconds=10
 tidy=OFF
 long=OFF
 case $level in
-full) without=long fuzz_seconds=30 tidy=ON ;;
+full) without=long tidy=ON ;;
 long) without='' fuzz_seconds=600 tidy=ON long=ON ;;
 esac
 

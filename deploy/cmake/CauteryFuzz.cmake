@@ -10,7 +10,7 @@ set(CAUTERY_FUZZ_SECONDS 10 CACHE STRING "Seconds that each fuzz test runs")
 add_custom_target(fuzz_targets) # all of them, and nothing else
 
 function(cautery_fuzz)
-  cmake_parse_arguments(F "SATURATED" "NAME;SEEDS" "SOURCES;LIBRARIES" ${ARGN})
+  cmake_parse_arguments(F "" "NAME;SEEDS" "SOURCES;LIBRARIES" ${ARGN})
   if(F_SEEDS)
     cmake_path(ABSOLUTE_PATH F_SEEDS BASE_DIRECTORY "${CMAKE_CURRENT_SOURCE_DIR}")
   endif()
@@ -30,16 +30,10 @@ function(cautery_fuzz)
     return()
   endif()
 
-  # SATURATED: from its seeds nothing new is covered after a few seconds, of which --full gives 30. Those of
-  # --long are for what is rare.
-  set(seconds ${CAUTERY_FUZZ_SECONDS})
-  if(F_SATURATED AND seconds LESS 60)
-    set(seconds 10)
-  endif()
-  math(EXPR timeout "${seconds} + 120")
+  math(EXPR timeout "${CAUTERY_FUZZ_SECONDS} + 120")
   target_link_options(fuzz_${F_NAME} PRIVATE -fsanitize=fuzzer)
   add_test(NAME fuzz_${F_NAME} COMMAND "${PROJECT_SOURCE_DIR}/tests/fuzz/fuzz.sh" $<TARGET_FILE:fuzz_${F_NAME}>
-    ${seconds} "${CMAKE_BINARY_DIR}/fuzz/corpus/${F_NAME}"
+    ${CAUTERY_FUZZ_SECONDS} "${CMAKE_BINARY_DIR}/fuzz/corpus/${F_NAME}"
     "${CMAKE_BINARY_DIR}/fuzz/${F_NAME}-" ${F_SEEDS})
   set_tests_properties(fuzz_${F_NAME} PROPERTIES LABELS fuzz TIMEOUT ${timeout})
 endfunction()
