@@ -50,6 +50,7 @@ bool cau_auth_host_allowed(const cau_config *config, const char *host);
 bool cau_auth_origin_allowed(const cau_config *config, const char *origin, const char *host);
 
 // Who a connection is from: `address` holds its peer's, and is replaced by what the X-Forwarded-For
-// header says (NULL: there is none) where the peer is one of the settings' trusted_proxies.
+// header says (NULL: there is none) where the peer is one of the settings' trusted_proxies. An IPv4
+// address that is mapped into IPv6 becomes one of IPv4.
 void cau_auth_find_address(const cau_config *config, const char *forwarded, char *address,
                            size_t capacity);

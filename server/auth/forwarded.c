@@ -12,6 +12,17 @@ static bool is_address(const char *text)
 	return inet_pton(AF_INET, text, &address) == 1 || inet_pton(AF_INET6, text, &address) == 1;
 }
 
+// On a socket of IPv6 the system shows an IPv4 peer as ::ffff:10.0.0.1 (RFC 4291, 2.5.5.2);
+// settings name it as 10.0.0.1.
+static void take_off_mapping(char *address)
+{
+	static const char mapped[] = "::ffff:";
+	struct in_addr found;
+	char *inner = address + sizeof mapped - 1;
+	if (strncmp(address, mapped, sizeof mapped - 1) == 0 && inet_pton(AF_INET, inner, &found) == 1)
+		memmove(address, inner, strlen(inner) + 1);
+}
+
 // Each proxy adds the address that it was asked from on the right. So from the right on, those that
 // are proxies of ours are believed, and the first that is none is whom they were asked by; what
 // stands to the left of it anybody may have written.
@@ -19,6 +30,7 @@ void cau_auth_find_address(const cau_config *config, const char *forwarded, char
                            size_t capacity)
 {
 	size_t end = forwarded ? strlen(forwarded) : 0;
+	take_off_mapping(address);
 	while (end > 0 && cau_list_has(config->trusted_proxies, address)) {
 		char item[64];
 		size_t start = end;

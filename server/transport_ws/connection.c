@@ -36,8 +36,9 @@ static cau_connection *make(cau_network *network, struct lws *wsi)
 	cau_frame_reader_init(&c->reader, (size_t)network->def.config->max_message_bytes);
 	lws_get_peer_simple(wsi, c->address, sizeof c->address);
 	char forwarded[HEADER_BYTES];
-	if (cau_request_header(wsi, WSI_TOKEN_X_FORWARDED_FOR, forwarded, sizeof forwarded))
-		cau_auth_find_address(network->def.config, forwarded, c->address, sizeof c->address);
+	bool told = cau_request_header(wsi, WSI_TOKEN_X_FORWARDED_FOR, forwarded, sizeof forwarded);
+	cau_auth_find_address(network->def.config, told ? forwarded : NULL, c->address,
+	                      sizeof c->address);
 	return c;
 }
 

@@ -20,7 +20,8 @@ CLEAN = {k: v for k, v in os.environ.items() if not k.startswith(("CAUTERY_", "C
 
 
 class Daemon:
-    def __init__(self, real=False, port=0, store=None, **settings):
+    def __init__(self, real=False, port=0, store=None, log=None, **settings):
+        """`log`: an open file for what it logs."""
         self.folder = tempfile.mkdtemp(prefix="cautery-e2e-")
         self.store = store or os.path.join(self.folder, "store.db")
         program = os.path.join(PROGRAMS, "cauteryd") if real else os.environ["DOUBLE"]
@@ -28,7 +29,8 @@ class Daemon:
                    "--scenes", os.environ["SCENES"], "--log-level", "warning"]
         for name, value in settings.items():
             command += ["--" + name.replace("_", "-"), str(value)]
-        self.process = subprocess.Popen(command, stdout=subprocess.PIPE, env=CLEAN, text=True)
+        self.process = subprocess.Popen(command, stdout=subprocess.PIPE, stderr=log, env=CLEAN,
+                                        text=True)
         line = self.process.stdout.readline()
         if not line:
             raise RuntimeError(f"{program} did not start")

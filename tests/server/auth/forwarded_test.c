@@ -40,6 +40,14 @@ static void a_proxy_says_whom_it_was_asked_by(void **state)
 	assert_address("10.0.0.1", "10.0.0.1", NULL, "10.0.0.1");
 }
 
+static void ipv4_on_a_socket_of_ipv6_is_ipv4(void **state)
+{
+	(void)state;
+	assert_address("10.0.0.1", "::ffff:10.0.0.1", "1.2.3.4", "1.2.3.4");
+	assert_address("", "::ffff:10.0.0.9", NULL, "10.0.0.9");
+	assert_address("", "::ffff:0:1", NULL, "::ffff:0:1");
+}
+
 static void only_what_our_proxies_wrote_is_believed(void **state)
 {
 	(void)state;
@@ -66,6 +74,7 @@ int main(void)
 	const struct CMUnitTest tests[] = {
 		cmocka_unit_test(who_is_no_proxy_is_who_it_is),
 		cmocka_unit_test(a_proxy_says_whom_it_was_asked_by),
+		cmocka_unit_test(ipv4_on_a_socket_of_ipv6_is_ipv4),
 		cmocka_unit_test(only_what_our_proxies_wrote_is_believed),
 		cmocka_unit_test(what_is_no_address_is_not_believed),
 	};
