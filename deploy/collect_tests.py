@@ -31,6 +31,8 @@ FILLER_LABELS = {"fuzz", "tidy"}
 WAITING_LABEL, WAITING_SLOTS = "e2e", 1
 GIVING_WAY = ["nice", "-n", "19"]  # below the daemon's own workers, which are at 5
 BUILD_COST, TIMING_COST = 1e6, 1e5  # above any time limit, which is the cost of the others
+# Below any other test; of these, clang-tidy's rooms, which take a minute, before fuzzing, which takes seconds.
+FILLER_COST_PER_S = 1e-4
 BUILD_LIMIT_S = 3600
 
 
@@ -92,7 +94,7 @@ def schedule(properties, sanitized):
     """How much of the machine a test takes, and when: further properties."""
     limit = properties.get("TIMEOUT", 0)
     if FILLER_LABELS & set(properties.get("LABELS", [])):
-        return {"PROCESSORS": FILLER_SLOTS, "COST": 1}
+        return {"PROCESSORS": FILLER_SLOTS, "COST": FILLER_COST_PER_S * limit}
     if properties.get("RUN_SERIAL"):
         return {"PROCESSORS": TIMING_SLOTS, "COST": TIMING_COST + limit}
     waits = sanitized and WAITING_LABEL in properties.get("LABELS", [])

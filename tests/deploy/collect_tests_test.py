@@ -18,7 +18,9 @@ set_tests_properties(quick PROPERTIES LABELS unit TIMEOUT 7)
 add_test(NAME timed COMMAND {says})
 set_tests_properties(timed PROPERTIES LABELS unit RUN_SERIAL ON)
 add_test(NAME parser COMMAND {says})
-set_tests_properties(parser PROPERTIES LABELS fuzz)
+set_tests_properties(parser PROPERTIES LABELS fuzz TIMEOUT 130)
+add_test(NAME room COMMAND {says})
+set_tests_properties(room PROPERTIES LABELS tidy TIMEOUT 1800)
 add_test(NAME hours COMMAND {says})
 set_tests_properties(hours PROPERTIES LABELS "unit;long")
 add_test(NAME daemon COMMAND {says})
@@ -53,14 +55,15 @@ def commands_are_the_trees_own(deploy, cmake, folder):
 
 def labels_limits_and_slots(deploy, cmake, folder):
     tree = make_tree(cmake, os.path.join(folder, "slots"), "true")
-    tests = collect(deploy, os.path.join(folder, "slots-suite"), "asan", tree, "unit|fuzz|e2e", "long", "4", "true")
-    assert set(tests) == {"asan.build", "asan.quick", "asan.timed", "asan.parser", "asan.daemon"}, set(tests)
+    tests = collect(deploy, os.path.join(folder, "slots-suite"), "asan", tree, "unit|fuzz|tidy|e2e", "long", "4", "true")
+    assert set(tests) == {f"asan.{name}" for name in ("build", "quick", "timed", "parser", "room", "daemon")}, set(tests)
     assert tests["asan.quick"]["TIMEOUT"] == 28 and "asan" in tests["asan.quick"]["LABELS"], tests["asan.quick"]
     assert tests["asan.quick"]["FIXTURES_REQUIRED"] == ["asan.tree"], tests["asan.quick"]
     # ctest does not name what is one
     slots = [tests[f"asan.{name}"].get("PROCESSORS", 1) for name in ("quick", "timed", "parser", "build", "daemon")]
     assert slots == [2, 3, 1, 1, 1], slots
-    assert tests["asan.build"]["COST"] > tests["asan.timed"]["COST"] > tests["asan.quick"]["COST"]
+    costs = [tests[f"asan.{name}"]["COST"] for name in ("build", "timed", "quick", "room", "parser")]
+    assert costs == sorted(costs, reverse=True) and len(set(costs)) == len(costs), costs
     assert tests["asan.parser"]["command"][0].endswith("nice"), tests["asan.parser"]
     assert tests["asan.daemon"]["command"] == tests["asan.quick"]["command"], tests["asan.daemon"]
     # where times are measured, a daemon has a core
