@@ -2,6 +2,7 @@
 // token: makes one, for a daemon's file of tokens and for whoever is to have it.
 #include <errno.h>
 #include <fcntl.h>
+#include <math.h>
 #include <string.h>
 #include <sys/random.h>
 #include <time.h>
@@ -11,7 +12,9 @@
 #include "cautery/name.h"
 #include "cautery/sha256.h"
 
-enum { RANDOM_BYTES = 32, DAY_S = 86400 };
+enum { RANDOM_BYTES = 32, DAY_S = 86400, QUOTA_MOST = 1000000, SESSIONS_BYTES_MOST = 151 };
+
+#define NAME_LETTERS "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789._-"
 
 static const char *const roles[] = {"view", "operate", "admin"};
 enum { ROLE_COUNT = sizeof roles / sizeof *roles };
@@ -49,15 +52,38 @@ static bool is_role(const cli *c, const char *word)
 	return false;
 }
 
-static void print_line(const cli *c, const char *hash, const char *name, double days)
+// `quota` 0: the line has none.
+static void print_line(const cli *c, const char *hash, const char *name, double days, double quota)
 {
+	const char *sessions = cli_value(c, "sessions");
 	char expires[64] = "";
 	struct tm utc;
 	time_t until = time(NULL) + (time_t)(days * DAY_S);
 	if (days > 0)
 		strftime(expires, sizeof expires, " expires=%Y-%m-%dT%H:%M:%SZ", gmtime_r(&until, &utc));
-	fprintf(c->out, "%s sha256:%s%s%s%s\n", c->arguments[0], hash, name ? " name=" : "",
+	fprintf(c->out, "%s sha256:%s%s%s%s", c->arguments[0], hash, name ? " name=" : "",
 	        name ? name : "", expires);
+	if (sessions)
+		fprintf(c->out, " sessions=%s", sessions);
+	if (quota > 0)
+		fprintf(c->out, " quota=%.0f", quota);
+	fputc('\n', c->out);
+}
+
+// As the daemon reads them; NULL: every session.
+static bool are_sessions(const cli *c, const char *list)
+{
+	bool right = !list || (*list && strlen(list) <= SESSIONS_BYTES_MOST);
+	for (const char *at = list; right && at && *at;) {
+		size_t bytes = strcspn(at, ","), plain = strspn(at, NAME_LETTERS);
+		right = bytes > 0 && (plain == bytes || (plain + 1 == bytes && at[plain] == '*'));
+		right = right && (!at[bytes] || at[bytes + 1]);
+		at += bytes + (at[bytes] == ',');
+	}
+	if (!right)
+		cli_complain(c, "sessions are written d1-anna-*,d1-demo, in at most %d characters",
+		             SESSIONS_BYTES_MOST);
+	return right;
 }
 
 static cli_exit run(cli *c)
@@ -66,6 +92,7 @@ static cli_exit run(cli *c)
 	char text[2 * RANDOM_BYTES + 1], hash[CAU_SHA256_TEXT_BYTES];
 	const char *file = cli_value(c, "out"), *name = cli_value(c, "name");
 	double days = cli_number(c, "days", 0.001, 36500, 0, &bad);
+	double quota = floor(cli_number(c, "quota", 1, QUOTA_MOST, 0, &bad));
 	if (bad || !is_role(c, c->arguments[0]))
 		return CLI_USAGE;
 	if (!file) {
@@ -80,11 +107,13 @@ static cli_exit run(cli *c)
 		cau_fail(&c->error, CAU_IO, NULL, "no random numbers");
 		return cli_fail_file(c);
 	}
+	if (!are_sessions(c, cli_value(c, "sessions")))
+		return CLI_USAGE;
 	bool written = write_secret(c, file, text);
 	explicit_bzero(text, sizeof text);
 	if (!written)
 		return cli_fail_file(c);
-	print_line(c, hash, name, days);
+	print_line(c, hash, name, days, quota);
 	return CLI_DONE;
 }
 
@@ -99,5 +128,8 @@ const cli_command cli_token = {
 	.most = 1,
 	.options = {{"out", "FILE", "a new file for the token"},
                 {"name", "N", "whose it is, for the daemon's log"},
+                {"sessions", "LIST",
+                 "ids that it is for, with commas; d1-anna-* for all that begin so"},
+                {"quota", "N", "expensive requests a minute (default: those of its role)"},
                 {"days", "D", "until it expires (default: never)"}},
 	.run = run};

@@ -13,11 +13,20 @@
 
 typedef struct cau_auth cau_auth;
 
-enum { CAU_AUTH_NAME_BYTES = 48 };
+enum { CAU_AUTH_NAME_BYTES = 48, CAU_AUTH_SESSIONS_BYTES = 152 };
+
+// What a token's line bounds besides its role.
+typedef struct cau_auth_bounds {
+	// Ids of sessions, separated by commas, each perhaps with a `*` at its end for all that begin
+	// so; "": every session.
+	char sessions[CAU_AUTH_SESSIONS_BYTES];
+	int64_t quota; // expensive requests a minute of all its connections; 0: it has none of its own
+} cau_auth_bounds;
 
 // Reads the file of tokens if the settings name one: a line each, `#` starts a comment,
 //
-//     ROLE sha256:HASH [name=N] [expires=2027-01-31T12:00:00Z]
+//     ROLE sha256:HASH [name=N] [expires=2027-01-31T12:00:00Z] [sessions=d1-anna-*,d1-demo]
+//                      [quota=60]
 //
 // or a token of 16 to 128 printable characters in the place of its hash. Only hashes are kept. A
 // file that others than its owner can read is refused.
@@ -38,6 +47,13 @@ uint64_t cau_auth_grant(const cau_auth *auth, const char *token, size_t bytes);
 bool cau_auth_grant_role(const cau_auth *auth, uint64_t grant, cau_role *role);
 // Whose token it is, by its line; "": not said.
 void cau_auth_grant_name(const cau_auth *auth, uint64_t grant, char name[CAU_AUTH_NAME_BYTES]);
+
+// False if it was taken back or has expired; without a file of tokens nothing is bounded.
+bool cau_auth_grant_bounds(const cau_auth *auth, uint64_t grant, cau_auth_bounds *bounds);
+// Whether the session is one of those; "" is none of a list's.
+bool cau_auth_session_allowed(const cau_auth_bounds *bounds, const char *session);
+// Whether a token may read what tells of all sessions.
+bool cau_auth_sees_all(const cau_auth *auth, const char *token, size_t bytes);
 
 // Whether requests must carry a token.
 bool cau_auth_required(const cau_auth *auth);

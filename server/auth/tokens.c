@@ -18,7 +18,8 @@ enum {
 	LEAST_TOKEN_BYTES = 16,
 	MOST_TOKEN_BYTES = 128,
 	NAME_BYTES = CAU_AUTH_NAME_BYTES,
-	WORD_BYTES = 160, // of a line: longer than the longest token
+	WORD_BYTES = 160, // of a line: longer than the longest token, or list of sessions
+	MOST_QUOTA = 1000000,
 };
 
 static const char hash_mark[] = "sha256:";
@@ -29,6 +30,7 @@ typedef struct token {
 	char name[NAME_BYTES]; // whose it is, for the log; "": not said
 	int64_t expires_us;    // Unix time; INT64_MAX: never
 	cau_role role;
+	cau_auth_bounds bounds;
 	uint64_t grant; // stays as long as the token is in the file
 } token;
 
@@ -68,7 +70,24 @@ static cau_status read_secret(token *made, const char *word, int number, cau_err
 	return CAU_OK;
 }
 
-// `name=anna` or `expires=2027-01-31T12:00:00Z`.
+// `d1-anna-*,d1-demo`: no entry is empty, and a `*` ends one.
+static cau_status read_sessions(token *made, const char *list, int number, cau_error *error)
+{
+	bool right = *list && strlen(list) < sizeof made->bounds.sessions;
+	for (const char *at = list; right && *at;) {
+		size_t bytes = strcspn(at, ","), plain = strcspn(at, ",*");
+		right = bytes > 0 && bytes - plain <= 1 && (at[bytes] == 0 || at[bytes + 1]);
+		at += bytes + (at[bytes] == ',');
+	}
+	if (!right)
+		return cau_fail(error, CAU_BAD_VALUE, "tokens",
+		                "line %d: sessions are written d1-anna-*,d1-demo, in at most %d characters",
+		                number, CAU_AUTH_SESSIONS_BYTES - 1);
+	snprintf(made->bounds.sessions, sizeof made->bounds.sessions, "%s", list);
+	return CAU_OK;
+}
+
+// `name=anna`, `expires=2027-01-31T12:00:00Z`, `sessions=d1-anna-*` or `quota=60`.
 static cau_status read_field(token *made, const char *word, int number, cau_error *error)
 {
 	const char *value = strchr(word, '=');
@@ -86,8 +105,22 @@ static cau_status read_field(token *made, const char *word, int number, cau_erro
 		made->expires_us = (int64_t)timegm(&utc) * 1000000;
 		return CAU_OK;
 	}
+	if (strncmp(word, "sessions=", 9) == 0)
+		return read_sessions(made, value, number, error);
+	if (strncmp(word, "quota=", 6) == 0) {
+		char *end;
+		long long most = strtoll(value, &end, 10);
+		if (*end || most < 1 || most > MOST_QUOTA || *value < '0' || *value > '9')
+			return cau_fail(error, CAU_BAD_VALUE, "tokens",
+			                "line %d: a quota is 1 to %d expensive requests a minute", number,
+			                MOST_QUOTA);
+		made->bounds.quota = most;
+		return CAU_OK;
+	}
 	return cau_fail(error, CAU_BAD_SYNTAX, "tokens",
-	                "line %d is not `ROLE TOKEN`, with name=N and expires=TIME or without", number);
+	                "line %d is not `ROLE TOKEN`, with name=N, expires=TIME, sessions=LIST and "
+	                "quota=N or without",
+	                number);
 }
 
 static cau_status read_line(token_list *list, char *line, int number, cau_error *error)
@@ -275,6 +308,35 @@ void cau_auth_grant_name(const cau_auth *auth, uint64_t grant, char name[CAU_AUT
 	token found;
 	bool known = look_up(auth, NULL, grant, &found);
 	snprintf(name, CAU_AUTH_NAME_BYTES, "%s", known ? found.name : "");
+}
+
+bool cau_auth_grant_bounds(const cau_auth *auth, uint64_t grant, cau_auth_bounds *bounds)
+{
+	token found;
+	bool known = look_up(auth, NULL, grant, &found);
+	if (known)
+		*bounds = found.bounds;
+	return known;
+}
+
+bool cau_auth_session_allowed(const cau_auth_bounds *bounds, const char *session)
+{
+	if (!*bounds->sessions)
+		return true;
+	for (const char *at = bounds->sessions; *at;) {
+		size_t bytes = strcspn(at, ","), plain = strcspn(at, ",*");
+		bool same = strncmp(session, at, plain) == 0 && *session;
+		if (same && (plain < bytes || !session[plain]))
+			return true;
+		at += bytes + (at[bytes] == ',');
+	}
+	return false;
+}
+
+bool cau_auth_sees_all(const cau_auth *auth, const char *text, size_t bytes)
+{
+	token found;
+	return look_up_text(auth, text, bytes, &found) && !*found.bounds.sessions;
 }
 
 bool cau_auth_required(const cau_auth *auth)

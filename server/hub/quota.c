@@ -19,19 +19,30 @@ typedef struct address {
 	cau_allowance allowance;
 } address;
 
+// As many as a file of tokens may have; beyond them as with addresses.
+enum { TOKENS = 256 };
+
+typedef struct token {
+	uint64_t grant;
+	int64_t most;
+	cau_allowance allowance;
+} token;
+
 struct cau_quota {
 	const cau_config *config;
 	pthread_mutex_t mutex; // guards what follows
 	address addresses[ADDRESSES];
 	int address_count;
+	token tokens[TOKENS];
+	int token_count;
 	cau_allowance roles[CAU_ROLE_COUNT], all;
 };
 
 // One allowance and what bounds it.
 typedef struct bound {
 	cau_allowance *allowance;
-	int64_t most; // a minute
-	const char *setting, *whose;
+	int64_t most;              // a minute
+	const char *where, *whose; // it is set
 } bound;
 
 cau_quota *cau_quota_create(const cau_config *config)
@@ -77,14 +88,30 @@ static cau_allowance *find_address(cau_quota *quota, const char *text, double no
 	return &made->allowance;
 }
 
+static cau_allowance *find_token(cau_quota *quota, const cau_quota_token *wanted, double now_s)
+{
+	token *least = NULL;
+	for (int i = 0; i < quota->token_count; i++) {
+		token *known = &quota->tokens[i];
+		if (known->grant == wanted->grant)
+			return &known->allowance;
+		refill(&known->allowance, known->most, now_s);
+		if (!least || known->allowance.taken < least->allowance.taken)
+			least = known;
+	}
+	token *made = quota->token_count < TOKENS ? &quota->tokens[quota->token_count++] : least;
+	*made = (token){wanted->grant, wanted->most, {.seen_s = now_s}};
+	return &made->allowance;
+}
+
 static cau_status refuse(const bound *over, cau_error *error)
 {
 	double wait_s =
 		(over->allowance->taken + 1 - (double)over->most) * MINUTE_S / (double)over->most;
 	return cau_fail(error, CAU_LIMIT, "",
-	                "%s made %lld expensive requests within a minute, as many as it may (setting "
-	                "%s): try again in %.1f s",
-	                over->whose, (long long)over->most, over->setting, wait_s + 0.05);
+	                "%s made %lld expensive requests within a minute, as many as it may (%s): "
+	                "try again in %.1f s",
+	                over->whose, (long long)over->most, over->where, wait_s + 0.05);
 }
 
 static cau_status take_all(const bound *bounds, int count, double now_s, cau_error *error)
@@ -99,25 +126,32 @@ static cau_status take_all(const bound *bounds, int count, double now_s, cau_err
 	return CAU_OK;
 }
 
-cau_status cau_quota_take(cau_quota *quota, cau_allowance *connection, const char *address_text,
-                          cau_role role, double now_s, cau_error *error)
+cau_status cau_quota_take(cau_quota *quota, cau_allowance *connection,
+                          const cau_quota_token *of_token, const char *address_text, cau_role role,
+                          double now_s, cau_error *error)
 {
 	const cau_config *config = quota->config;
 	const bound by_role[CAU_ROLE_COUNT] = {
-		[CAU_ROLE_VIEW] = {NULL, config->quota_view, "quota_view", "viewers"},
-		[CAU_ROLE_OPERATE] = {NULL, config->quota_operate, "quota_operate", "operators"},
-		[CAU_ROLE_ADMIN] = {NULL, config->quota_admin, "quota_admin", "admins"},
+		[CAU_ROLE_VIEW] = {NULL, config->quota_view, "setting quota_view", "viewers"},
+		[CAU_ROLE_OPERATE] = {NULL, config->quota_operate, "setting quota_operate", "operators"},
+		[CAU_ROLE_ADMIN] = {NULL, config->quota_admin, "setting quota_admin", "admins"},
 	};
 	pthread_mutex_lock(&quota->mutex);
 	bound bounds[] = {
-		{connection, config->quota_connection, "quota_connection", "this connection"},
-		{find_address(quota, address_text, now_s), config->quota_address, "quota_address",
+		{connection, config->quota_connection, "setting quota_connection", "this connection"},
+		{find_address(quota, address_text, now_s), config->quota_address, "setting quota_address",
 	     "this address"},
 		by_role[role],
-		{&quota->all, config->quota_all, "quota_all", "all clients together"},
+		{&quota->all, config->quota_all, "setting quota_all", "all clients together"},
+		{NULL, 0, "the quota in its line", "this token"},
 	};
+	int count = sizeof bounds / sizeof bounds[0] - 1;
 	bounds[2].allowance = &quota->roles[role];
-	cau_status status = take_all(bounds, sizeof bounds / sizeof bounds[0], now_s, error);
+	if (of_token && of_token->most) {
+		bounds[count].allowance = find_token(quota, of_token, now_s);
+		bounds[count++].most = of_token->most;
+	}
+	cau_status status = take_all(bounds, count, now_s, error);
 	pthread_mutex_unlock(&quota->mutex);
 	return status;
 }

@@ -64,11 +64,31 @@ static bool listens(const cau_peer *peer, cau_audience audience)
 	return false;
 }
 
+// What everybody is told is of a session, made or gone: not for those whose token is for others.
+static bool may_know(const cau_peer *peer, const cau_post *post)
+{
+	static const char member[] = "\"session\":\"";
+	char session[CAU_NAME_BYTES];
+	if (post->audience.kind != CAU_AUDIENCE_EVERYBODY || !*peer->bounds.sessions)
+		return true;
+	const char *text = (const char *)cau_buffer_bytes(post->text);
+	const char *end = text + post->text->byte_count;
+	const char *found = memmem(text, post->text->byte_count, member, sizeof member - 1);
+	if (!found)
+		return false;
+	const char *from = found + sizeof member - 1;
+	const char *quote = memchr(from, '"', (size_t)(end - from));
+	if (!quote || quote - from >= (ptrdiff_t)sizeof session)
+		return false;
+	snprintf(session, sizeof session, "%.*s", (int)(quote - from), from);
+	return cau_auth_session_allowed(&peer->bounds, session);
+}
+
 // Every listener's queue needs its own node, so notices are copied; they are small.
 static void deliver_notice(cau_service *service, cau_post *post)
 {
 	for (cau_connection *c = cau_network_first(service->network); c; c = c->next) {
-		if (!listens(cau_peer_of(c), post->audience))
+		if (!listens(cau_peer_of(c), post->audience) || !may_know(cau_peer_of(c), post))
 			continue;
 		cau_buffer *copy = cau_buffer_create(post->text->byte_count, false);
 		if (copy)

@@ -104,6 +104,10 @@ void cau_call_hello(cau_call *call)
 		return;
 	}
 	peer->grant = cau_auth_grant(service->auth, params.token, strlen(params.token));
+	if (!cau_auth_grant_bounds(service->auth, peer->grant, &peer->bounds)) {
+		refuse_token(call); // it was taken back at this very moment
+		return;
+	}
 	cau_asker *asker = &peer->client.asker;
 	asker->role = params.has_role && params.role < (int32_t)role ? (cau_role)params.role : role;
 	asker->deadline_s = service->config->browser_deadline_s;

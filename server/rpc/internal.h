@@ -40,6 +40,7 @@ typedef struct cau_peer {
 	cau_connection *connection;
 	bool greeted;   // hello was answered
 	uint64_t grant; // of the token that it came with
+	cau_auth_bounds bounds;
 	cau_client client;
 	char session[CAU_NAME_BYTES]; // of the URL
 	int malformed;
@@ -122,6 +123,10 @@ typedef void cau_call_handler(cau_call *call);
 #include "cautery/methods.def"
 cau_call_handler cau_call_command; // of every tissue command
 
+// Whether the connection's token is for this session; answers the call if not.
+bool cau_call_may_use(const cau_call *call, const char *id);
+// Whether it is for the session that is to be made under `name` ("": a name made up); likewise.
+bool cau_call_may_make(const cau_call *call, const char *name);
 // The session of a call, shared, or NULL after a failure that is answered.
 cau_hosted *cau_call_session(const cau_call *call);
 // A zeroed order of the call's client, or NULL after a failure that is answered.

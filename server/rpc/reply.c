@@ -86,6 +86,32 @@ cau_reply cau_call_reply(const cau_call *call)
 	return reply;
 }
 
+bool cau_call_may_use(const cau_call *call, const char *id)
+{
+	cau_error error = {0};
+	if (cau_auth_session_allowed(&call->peer->bounds, id))
+		return true;
+	cau_fail(&error, CAU_BAD_STATE, "params.session", "the token is not for the session `%.48s`",
+	         id);
+	cau_call_fail(call, &error, CAU_RPC_FORBIDDEN);
+	return false;
+}
+
+bool cau_call_may_make(const cau_call *call, const char *name)
+{
+	cau_error error = {0};
+	char id[2 * CAU_NAME_BYTES];
+	snprintf(id, sizeof id, "%.48s-%s", call->peer->service->config->label, name);
+	if (!*call->peer->bounds.sessions ||
+	    (*name && cau_auth_session_allowed(&call->peer->bounds, id)))
+		return true;
+	cau_fail(&error, CAU_BAD_STATE, "params.name",
+	         "the token is for the sessions %s alone: give the new one such a name",
+	         call->peer->bounds.sessions);
+	cau_call_fail(call, &error, CAU_RPC_FORBIDDEN);
+	return false;
+}
+
 cau_hosted *cau_call_session(const cau_call *call)
 {
 	cau_error error = {0};
@@ -96,6 +122,8 @@ cau_hosted *cau_call_session(const cau_call *call)
 		cau_call_fail(call, &error, 0);
 		return NULL;
 	}
+	if (!cau_call_may_use(call, id))
+		return NULL;
 	cau_hosted *hosted = cau_hub_find(call->peer->service->hub, id);
 	if (hosted)
 		return hosted;

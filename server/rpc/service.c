@@ -42,7 +42,8 @@ static bool afford(const cau_call *call)
 		cau_call_fail(call, &error, 0);
 		return false;
 	}
-	if (!cau_quota_take(cau_hub_quota(peer->service->hub), &peer->allowance,
+	const cau_quota_token token = {peer->grant, peer->bounds.quota};
+	if (!cau_quota_take(cau_hub_quota(peer->service->hub), &peer->allowance, &token,
 	                    peer->connection->address, peer->client.asker.role, cau_monotonic_s(),
 	                    &error))
 		return true;
@@ -172,12 +173,18 @@ static void check_tokens(cau_service *service)
 	for (cau_connection *c = cau_network_first(service->network); c; c = c->next) {
 		cau_peer *peer = cau_peer_of(c);
 		cau_role role;
+		cau_auth_bounds bounds;
 		if (!peer->greeted)
 			continue;
-		if (!cau_auth_grant_role(service->auth, peer->grant, &role))
+		if (!cau_auth_grant_role(service->auth, peer->grant, &role) ||
+		    !cau_auth_grant_bounds(service->auth, peer->grant, &bounds))
 			revoke(service, peer, "the token was taken back or has expired");
 		else if (role < peer->client.asker.role)
 			revoke(service, peer, "the token's role is less than it was: connect again");
+		else if (strcmp(bounds.sessions, peer->bounds.sessions) != 0)
+			revoke(service, peer, "the token's sessions are others now: connect again");
+		else
+			peer->bounds = bounds;
 	}
 }
 

@@ -20,6 +20,17 @@ static int by_id(const void *a, const void *b)
 	              ((const cau_wire_session_summary *)b)->session);
 }
 
+// What the connection's token is not for is not shown to it.
+static void keep_allowed(const cau_peer *peer, cau_wire_list *list)
+{
+	cau_wire_session_summary *summary = list->items;
+	int32_t kept = 0;
+	for (int32_t i = 0; i < list->count; i++)
+		if (cau_auth_session_allowed(&peer->bounds, summary[i].session))
+			summary[kept++] = summary[i];
+	list->count = kept;
+}
+
 void cau_call_session_list(cau_call *call)
 {
 	cau_hub *hub = call->peer->service->hub;
@@ -32,6 +43,7 @@ void cau_call_session_list(cau_call *call)
 		return;
 	}
 	cau_hub_each(hub, list_one, &result.sessions);
+	keep_allowed(call->peer, &result.sessions);
 	qsort(result.sessions.items, (size_t)result.sessions.count, sizeof(cau_wire_session_summary),
 	      by_id);
 	cau_call_result(call, &result);
@@ -94,11 +106,13 @@ void cau_call_session_create(cau_call *call)
 	bool full = health.state != CAU_STORE_READY;
 	if (!status && full)
 		status = cau_fail(&error, CAU_IO, "", "%s", health.reason);
-	if (!status) {
+	bool allowed = status || cau_call_may_make(call, creation->name); // else it is answered
+	if (!status && allowed) {
 		cau_hub_submit_creation(call->peer->service->hub, creation);
 		return;
 	}
-	cau_call_fail(call, &error, full && status == CAU_IO ? CAU_RPC_STORE_FULL : 0);
+	if (status)
+		cau_call_fail(call, &error, full && status == CAU_IO ? CAU_RPC_STORE_FULL : 0);
 	if (creation) {
 		free(creation->meshes);
 		free(creation->scene);
@@ -207,6 +221,10 @@ void cau_call_session_fork(cau_call *call)
 		order->as.fork.has_tick = params.has_tick;
 		order->as.fork.tick = (uint64_t)params.tick;
 		order->as.fork.paused = params.paused;
+	}
+	if (order && !cau_call_may_make(call, params.name)) {
+		free(order);
+		return;
 	}
 	submit(call, order);
 }

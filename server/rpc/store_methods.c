@@ -7,6 +7,10 @@ void cau_call_store_backup(cau_call *call)
 	cau_error error = {0};
 	cau_wire_store_backup params = {0};
 	cau_reply reply = cau_call_reply(call);
+	if (*call->peer->bounds.sessions) { // the store holds all of them
+		cau_call_may_use(call, "");
+		return;
+	}
 	if (cau_rpc_params(call->message, &params, &error) ||
 	    cau_hub_back_up(call->peer->service->hub, params.has_name ? params.name : "", &reply,
 	                    &error))

@@ -295,6 +295,14 @@ class Ends(programs.Case):
         self.assertIn("did you mean", self.cautery("token", "opperate", "--out", self.path("x"), code=2)[1])
         self.cautery("token", "view", code=2)
 
+    def test_a_token_may_be_for_some_sessions(self):
+        line, _ = self.cautery("token", "operate", "--sessions", "d1-a-*,d1-b", "--quota", 60, "--out", self.path("some.token"))
+        self.assertRegex(line, r"^operate sha256:[0-9a-f]{64} sessions=d1-a-\*,d1-b quota=60\n$")
+        for wrong in ("", "a,,b", "a,", "*a", "a b", "x" * 152):
+            self.cautery("token", "operate", "--sessions", wrong, "--out", self.path("wrong.token"), code=2)
+        self.assertFalse(os.path.exists(self.path("wrong.token")))
+        self.cautery("token", "operate", "--quota", 0, "--out", self.path("wrong.token"), code=2)
+
     def test_tokens(self):
         tokens = self.path("tokens", "view watcher-token-0123456789\nadmin master-token-0123456789\n")
         os.chmod(tokens, 0o600)

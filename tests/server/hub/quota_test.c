@@ -22,7 +22,7 @@ static int take(cau_quota *quota, cau_allowance *connection, const char *address
                 double now_s, int wanted, cau_error *error)
 {
 	int passed = 0;
-	while (passed < wanted && !cau_quota_take(quota, connection, address, role, now_s, error))
+	while (passed < wanted && !cau_quota_take(quota, connection, NULL, address, role, now_s, error))
 		passed++;
 	return passed;
 }
