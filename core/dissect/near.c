@@ -146,6 +146,12 @@ void cau_near_refit(cau_near *near, const double *position)
 	}
 }
 
+void cau_near_cover(cau_near *near, const double *position)
+{
+	for (int32_t i = 0; i < near->vertex_count; i++)
+		grow(&near->vertex_box[i / CAU_NEAR_BLOCK], position + 3 * (size_t)near->vertex[i]);
+}
+
 bool cau_box_meets(const cau_box *box, cau_vec3 center, double radius_m)
 {
 	CAU_ASSERT(!(radius_m < 0), "a ball of %g m", radius_m);

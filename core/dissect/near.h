@@ -32,5 +32,8 @@ cau_status cau_near_create(cau_near *near, const cau_tissue *tissue, cau_arena *
 // Fits the boxes to positions x (m, vertex_count x 3).
 void cau_near_refit(cau_near *near, const double *position);
 
+// Grows the vertices' boxes, and no edge's, until they hold positions x as well.
+void cau_near_cover(cau_near *near, const double *position);
+
 // Whether a box meets the sphere.
 bool cau_box_meets(const cau_box *box, cau_vec3 center, double radius_m);

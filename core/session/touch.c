@@ -48,17 +48,32 @@ static bool is_grasped(const cau_tool *tool, int32_t vertex)
 	return false;
 }
 
+// Signed distance to the pushing part at the tick's end of where a vertex is guessed to be, or of
+// where it was if that is nearer: what was pushed out in the last tick is guessed to fly on, and
+// would be let go of by turns.
+static double least_gap(const cau_session *session, const cau_tool *tool, int32_t vertex)
+{
+	const cau_tool_state *state = &tool->state;
+	cau_tool_part part = pushing_part(tool);
+	size_t at = 3 * (size_t)vertex;
+	double least = cau_tool_distance_at(&state->definition, &state->pose, state->jaw, part,
+	                                    cau_vec3_of(session->position + at), NULL);
+	double was = cau_tool_distance_at(&state->definition, &state->pose, state->jaw, part,
+	                                  cau_vec3_of(session->position_start + at), NULL);
+	CAU_ASSERT_INDEX(vertex, session->tissue.vertex_count);
+	return was < least ? was : least;
+}
+
 // Collects the free vertices within the margin of the pushing part, the deepest first; counts those
 // that found no place.
 static int32_t collect(cau_session *session, int32_t index, cau_contact_row *rows)
 {
 	const cau_tool *tool = &session->tool[index];
 	const cau_tool_def *def = &tool->state.definition;
-	cau_tool_part part = pushing_part(tool);
 	double margin = fmax(least_margin_m, 0.25 * def->hot_radius_m), radius;
 	int32_t count = 0;
 	cau_vec3 center;
-	cau_tool_bound(def, part, &center, &radius);
+	cau_tool_bound(def, pushing_part(tool), &center, &radius);
 	center = cau_pose_to_world(&tool->state.pose, center);
 	for (int32_t b = 0; b < session->near.block_count; b++) {
 		if (!cau_box_meets(&session->near.vertex_box[b], center, radius + margin))
@@ -68,8 +83,7 @@ static int32_t collect(cau_session *session, int32_t index, cau_contact_row *row
 			int32_t v = session->near.vertex[i];
 			if (session->fixed[v] || is_grasped(tool, v))
 				continue;
-			double gap = cau_tool_distance_at(def, &tool->state.pose, tool->state.jaw, part,
-			                                  cau_vec3_of(session->position + 3 * (size_t)v), NULL);
+			double gap = least_gap(session, tool, v);
 			if (!(gap <= margin)) // nor is a vertex near that is nowhere
 				continue;
 			if (count == CANDIDATES) {
@@ -153,6 +167,7 @@ void cau_session_find_contacts(cau_session *session)
 	if (!session->tool_count)
 		return;
 	cau_near_refit(&session->near, session->position);
+	cau_near_cover(&session->near, session->position_start);
 	describe_tools(session);
 	for (int32_t i = 0; i < session->tool_count; i++)
 		add_attachments(session, i);
