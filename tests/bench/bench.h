@@ -12,7 +12,7 @@ typedef struct bench_options {
 	int32_t threads, iterations, steps, repeat;
 	int solver, precision; // -1: the scene's
 	double accuracy;       // 0: not measured
-	bool cut, error, scaling, rest, update, json, help;
+	bool cut, error, scaling, rest, update, remesh, json, help;
 	const char *instruction_set;
 } bench_options;
 
@@ -106,6 +106,26 @@ typedef struct bench_update_result {
 	bench_update_row row[BENCH_UPDATES];
 } bench_update_result;
 int bench_update(const bench_options *options, bench_update_result *result);
+
+// remesh.c: the scene's cut by a method that changes the topology, and by ours.
+typedef struct bench_remesh_result {
+	int32_t vertices, elements; // before the cut
+	// the other method
+	int32_t changes; // ticks in which the mesh changed, and all that rests on it
+	int32_t vertices_added, elements_added, ill_shaped;
+	int64_t inserts, deletes; // into and from the lists of elements around vertices
+	double remesh_s, assemble_s, factor_s;
+	double buffer_bytes; // of vertex and index buffers, written anew at each change
+	double system_bytes; // of A and its factor, likewise
+	// ours
+	int32_t our_changes; // ticks in which faces went out of sight, or the factor was changed
+	int32_t edges_parted, elements_removed, refactorisations;
+	double our_mask_bytes; // of the words of the mask that changed
+	double our_s; // of shares, mask, downdates, and of the wait for the factor, in all ticks
+} bench_remesh_result;
+int bench_remesh(const bench_options *options, bench_remesh_result *result);
+// cut.c: our half of it, in a session that nothing has cut.
+int bench_cut_ours(cau_session *session, const cau_scene_def *scene, bench_remesh_result *result);
 
 // allocation.c: calls of malloc, calloc, realloc, aligned_alloc by the whole program so far.
 uint64_t bench_allocations(void);

@@ -157,3 +157,29 @@ int bench_cut(const bench_options *options, bench_cut_result *result)
 	free(scene);
 	return failed;
 }
+
+int bench_cut_ours(cau_session *session, const cau_scene_def *scene, bench_remesh_result *result)
+{
+	cut_run run = {session, scene, scene->step_s};
+	int32_t dwell = (int32_t)(scene->cut.dwell_s / run.step_s), across = ticks_across(&run);
+	int failed = 0;
+	double ms;
+	cau_frame frame;
+	cau_session_set_clock(session, bench_now_s);
+	move_to(&run, 0);
+	for (int32_t i = 0; i < PLAIN_STEPS && !failed; i++)
+		failed = step(&run, &ms, &frame);
+	energize(&run);
+	for (int32_t i = -dwell; i <= across && !failed; i++) {
+		int32_t waiting = frame.statistics.pending_downdates;
+		move_to(&run, fmax(0, (double)i / across));
+		failed = step(&run, &ms, &frame);
+		result->our_s += frame.statistics.seconds[CAU_STAGE_DISSECT];
+		result->our_mask_bytes += 4.0 * frame.mask_changed_count;
+		result->our_changes += frame.mask_changed_count > 0 || waiting > 0;
+	}
+	result->edges_parted = frame.statistics.edges_parted;
+	result->elements_removed = frame.statistics.elements_removed;
+	result->refactorisations = frame.statistics.refactorisations;
+	return failed;
+}

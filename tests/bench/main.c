@@ -116,6 +116,30 @@ static void print_update(const bench_options *options, const bench_update_result
 		putchar(']');
 }
 
+static void print_remesh(const bench_options *options, const bench_remesh_result *r)
+{
+	printf(options->json ? "\"remesh\":{\"vertices\":%d,\"elements\":%d,\"changes\":%d,"
+	                       "\"vertices_added\":%d,\"elements_added\":%d,\"ill_shaped\":%d,"
+	                       "\"inserts\":%lld,\"deletes\":%lld,"
+	                     : "  re-meshed: %d vertices and %d elements, changed in %d ticks: %d "
+	                       "vertices and %d elements more, %d ill-shaped, %lld inserts, %lld "
+	                       "deletes\n",
+	       r->vertices, r->elements, r->changes, r->vertices_added, r->elements_added,
+	       r->ill_shaped, (long long)r->inserts, (long long)r->deletes);
+	printf(options->json
+	           ? "\"remesh_s\":%.6g,\"assemble_s\":%.6g,\"factor_s\":%.6g,"
+	             "\"buffer_bytes\":%.0f,\"system_bytes\":%.0f,"
+	           : "  %.4f s of re-meshing, %.4f s of assembly, %.4f s of factors, %.0f bytes "
+	             "of buffers, %.0f of systems\n",
+	       r->remesh_s, r->assemble_s, r->factor_s, r->buffer_bytes, r->system_bytes);
+	printf(options->json ? "\"our_changes\":%d,\"edges_parted\":%d,\"elements_removed\":%d,"
+	                       "\"refactorisations\":%d,\"our_mask_bytes\":%.0f,\"our_s\":%.6g}"
+	                     : "  ours: changed in %d ticks, %d edges parted, %d elements removed, %d "
+	                       "factorisations, %.0f bytes of masks, %.4f s\n",
+	       r->our_changes, r->edges_parted, r->elements_removed, r->refactorisations,
+	       r->our_mask_bytes, r->our_s);
+}
+
 static void print_machine(const bench_options *options, const bench_steps_result *result,
                           const bench_cpu_time *before)
 {
@@ -140,6 +164,7 @@ int main(int argc, char **argv)
 	bench_limit_result limit;
 	bench_accuracy_result accuracy = {0};
 	bench_update_result update = {0};
+	bench_remesh_result remesh = {0};
 	if (!bench_options_read(argc, argv, &options, stderr))
 		return 2;
 	if (options.help) {
@@ -152,7 +177,8 @@ int main(int argc, char **argv)
 	    (options.error && bench_error(&options, &error)) ||
 	    ((options.accuracy > 0 || options.rest) && bench_accuracy(&options, &accuracy)) ||
 	    (options.scaling && bench_scaling(&options, &scaling)) ||
-	    (options.update && bench_update(&options, &update)))
+	    (options.update && bench_update(&options, &update)) ||
+	    (options.remesh && bench_remesh(&options, &remesh)))
 		return 1;
 	if (options.json)
 		printf("{\"scene\":\"%s\",\"threads\":%d,\"iterations\":%d,", options.scene,
@@ -179,6 +205,10 @@ int main(int argc, char **argv)
 	if (options.update) {
 		fputs(options.json ? "," : "", stdout);
 		print_update(&options, &update);
+	}
+	if (options.remesh) {
+		fputs(options.json ? "," : "", stdout);
+		print_remesh(&options, &remesh);
 	}
 	fputs(options.json ? "," : "", stdout);
 	print_machine(&options, &steps, &before);

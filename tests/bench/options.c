@@ -39,6 +39,8 @@ static const cau_option rows[] = {
 	{"scaling", NULL, CAU_OPTION_FLAG, AT(scaling), .meaning = "step time against size"},
 	{"update", NULL, CAU_OPTION_FLAG, AT(update),
      .meaning = "what keeping the matrix in step with a cut costs, three ways"},
+	{"remesh", NULL, CAU_OPTION_FLAG, AT(remesh),
+     .meaning = "the scene's cut by a method that changes the topology, beside ours"},
 	{"json", NULL, CAU_OPTION_FLAG, AT(json),
      .meaning = "the last line of standard output is one JSON object; its `machine` says\n"
                 "on what it was measured, and what else that machine did meanwhile"},

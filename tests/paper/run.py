@@ -17,13 +17,16 @@ import time
 
 sys.path.insert(0, os.path.dirname(os.path.abspath(__file__)))
 import costs  # noqa: E402
+import dissection  # noqa: E402
 import ignition  # noqa: E402
 import patterns  # noqa: E402
+import remeshing  # noqa: E402
 import shrinkage  # noqa: E402
 import strain_limits  # noqa: E402
 from sim import FOLDER, ROOT, Sim  # noqa: E402
 
-PARTS = {"strain_limits": strain_limits, "patterns": patterns, "shrinkage": shrinkage, "ignition": ignition, "costs": costs}
+PARTS = {"strain_limits": strain_limits, "patterns": patterns, "shrinkage": shrinkage,
+         "dissection": dissection, "ignition": ignition, "remeshing": remeshing, "costs": costs}
 
 HEAD = """# The paper, reproduced
 

@@ -7,6 +7,7 @@ import sys
 import unittest
 
 sys.path.insert(0, os.path.dirname(os.path.abspath(__file__)))
+import dissection  # noqa: E402
 import geometry  # noqa: E402
 import patterns  # noqa: E402
 import run  # noqa: E402
@@ -42,6 +43,47 @@ class Geometry(unittest.TestCase):
         self.assertEqual(geometry.triangle_distance(flat, (-1, 0.3), (4, 0.3)), 0)  # passes through
         self.assertAlmostEqual(geometry.triangle_distance(flat, (-1, -2), (4, -2)), 2)
         self.assertAlmostEqual(geometry.triangle_distance(flat, (3, 0), (3, 0)), 1)  # a point
+
+
+class Cuts(unittest.TestCase):
+    # Three rows of squares, each of two triangles, of 1 by 1, six long, about the x axis.
+    REST = [(x - 3, y - 1.5, 0) for y in range(4) for x in range(7)]
+
+    def cells(self, without=()):
+        corners = [(7 * y + x, 7 * y + x + 1, 7 * y + x + 8, 7 * y + x + 7)
+                   for y in range(3) for x in range(6) if (x, y) not in without]
+        return [t for a, b, c, d in corners for t in ((a, b, c), (a, c, d))]
+
+    def flat(self, cells):
+        return [[self.REST[v][:2] for v in cell] for cell in cells]
+
+    def test_a_gap_is_what_nothing_covers_between_tissue(self):
+        self.assertEqual(dissection.gaps(self.flat(self.cells()), 0.5, 5), [])
+        cut = self.flat(self.cells(without=[(3, 1)]))
+        self.assertEqual(dissection.gaps(cut, 0.5, 5), [(-0.5, 0.5)])
+        self.assertEqual(dissection.gaps(cut, 1.5, 5), [])
+
+    def test_strands_join_both_sides(self):
+        self.assertEqual(dissection.strands(self.REST, self.cells(), 2.5, 1.5)[0], 1)  # whole
+        middle = [(x, 1) for x in range(6)]
+        self.assertEqual(dissection.strands(self.REST, self.cells(without=middle), 2.5, 1.5)[0], 0)
+        left = [square for square in middle if square[0] not in (1, 4)]
+        all_but_two = left + [(x, y) for x in range(6) if x not in (1, 4) for y in (0, 2)]
+        self.assertEqual(dissection.strands(self.REST, self.cells(without=all_but_two), 3, 1.5)[0], 2)
+
+    def test_a_straight_lip_is_not_rough_and_a_toothed_one_is(self):
+        stations = [0.001 * k for k in range(40)]
+        self.assertEqual(dissection.roughness(stations, [0.5] * 40), 0)
+        toothed = [0.001 * (-1) ** k for k in range(40)]
+        self.assertAlmostEqual(dissection.roughness(stations, toothed), 0.001, delta=2e-4)
+
+    def test_a_hole_is_one_walk(self):
+        whole, left = self.cells(), self.cells(without=[(3, 1)])
+        edges = dissection.edges_of(left) - dissection.edges_of(whole)
+        self.assertEqual(len(edges), 4)
+        walks = dissection.loops(edges)
+        self.assertEqual([len(walk) for walk in walks], [5])
+        self.assertEqual(walks[0][0], walks[0][-1])
 
 
 class Strokes(unittest.TestCase):

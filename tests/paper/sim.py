@@ -17,11 +17,12 @@ ROOT = os.path.dirname(os.path.dirname(FOLDER))
 
 @dataclass
 class Run:
-    """What a run gave: `result` as --json has it, `ticks` as --csv has them, `states` by tick."""
+    """What a run gave: `result` as --json has it, `ticks` as --csv has them, `states` and the tools' `tips` by tick."""
 
     result: dict
     ticks: list
     states: dict
+    tips: dict
 
 
 class Sim:
@@ -57,4 +58,6 @@ class Sim:
             ticks = list(csv.DictReader(file))
         states = {int(os.path.basename(name)[7:-4]): vtu.read(name)
                   for name in sorted(glob.glob(os.path.join(folder, "states", "tissue-*.vtu")))}
-        return Run(json.loads(answer.stdout.splitlines()[-1]), ticks, states)
+        tips = {int(os.path.basename(name)[6:-4]): vtu.read_tips(name)
+                for name in sorted(glob.glob(os.path.join(folder, "states", "tools-*.vtu")))}
+        return Run(json.loads(answer.stdout.splitlines()[-1]), ticks, states, tips)

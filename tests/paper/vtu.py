@@ -47,3 +47,9 @@ def read(path):
     return State(position_m=arrays["position_m"],
                  cells=[tuple(corners[a:b]) for a, b in zip(ends, ends[1:])],
                  kind=arrays["kind"], layer=arrays["layer"], exposure=arrays["exposure"])
+
+
+def read_tips(path):
+    """Where the tools' tips are, of a file tools-<tick>.vtu."""
+    with open(path, "rb") as file:
+        return read_arrays(file.read())["position_m"][::2]
