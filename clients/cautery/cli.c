@@ -8,6 +8,7 @@
 #include <string.h>
 
 #include "cautery/contexts.h"
+#include "cautery/name.h"
 #include "cautery/nearest.h"
 
 enum { SESSIONS_MAX = 4096 };
@@ -199,12 +200,26 @@ static cli_exit find_daemon(cli *c, cli_daemon *daemon)
 	return CLI_DONE;
 }
 
-cli_exit cli_connect(cli *c)
+// The session that the command line names, or NULL.
+static const char *named_session(const cli *c)
+{
+	const cli_command *command = c->command;
+	bool named = command->session_optional
+	                 ? c->argument_count > command->least
+	                 : c->argument_count > 0 && strncmp(command->arguments, "SESSION", 7) == 0;
+	return named ? c->arguments[0] : NULL;
+}
+
+cli_exit cli_connect_to(cli *c, const char *session, const char *label)
 {
 	cli_daemon daemon = {0};
+	cli_finish(c);
 	cli_exit found = find_daemon(c, &daemon);
 	if (found)
 		return found;
+	// a proxy in front of several daemons goes by it; what is no name the daemon refuses
+	c->def.session = session && cau_name_is_valid(session) ? session : NULL;
+	c->def.label = label;
 	c->def.url = daemon.url;
 	c->def.token = *daemon.token ? daemon.token : NULL;
 	c->def.timeout_s = c->timeout_s;
@@ -212,7 +227,17 @@ cli_exit cli_connect(cli *c)
 	    cau_client_create(c->loop, &c->def, &c->client, &c->error) ||
 	    cau_client_connect(c->client, &c->error))
 		return cli_fail(c);
-	return choose_session(c);
+	return CLI_DONE;
+}
+
+cli_exit cli_connect(cli *c)
+{
+	if (c->label && strchr(c->label, ',')) {
+		cli_complain(c, "--label wants one label here; `ls` alone takes several");
+		return CLI_USAGE;
+	}
+	cli_exit code = cli_connect_to(c, named_session(c), c->label);
+	return code ? code : choose_session(c);
 }
 
 void cli_finish(cli *c)

@@ -50,6 +50,7 @@ struct cli {
 	int argument_count;
 	const char *values[CLI_OPTIONS_MAX];    // of the command's options; NULL: not given; flags: ""
 	const char *url, *token_file, *context; // NULL: not given
+	const char *label;                      // one, or several for ls
 	double timeout_s;
 	bool json, help, version;
 	cau_client_def def; // what cli_connect uses; commands may set callbacks before
@@ -75,6 +76,9 @@ bool cli_read_number(const cli *c, const char *what, const char *text, double le
 
 // Connects and, for commands about a session, finds which one. CLI_DONE or how it failed, told.
 cli_exit cli_connect(cli *c);
+// Connects to the daemon of a session, or else of a label; either may be NULL. What was connected
+// before is closed.
+cli_exit cli_connect_to(cli *c, const char *session, const char *label);
 void cli_finish(cli *c);
 
 // Tells c->error and returns the exit code that belongs to it.

@@ -120,6 +120,7 @@ static cli_exit run_complete(cli *c)
 	c->url = line.url;
 	c->token_file = line.token_file;
 	c->context = line.context;
+	c->label = line.label;
 	if (strncmp(begin, "--", 2) == 0)
 		offer_options(c, &line, begin);
 	else if (!line.command)

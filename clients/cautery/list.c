@@ -4,6 +4,7 @@
 #include <string.h>
 
 #include "cautery/commands.h"
+#include "cautery/name.h"
 #include "cautery/words.h"
 
 enum { SESSIONS_MAX = 65536, SCENES_MAX = 256 };
@@ -21,14 +22,60 @@ static void print_sessions(const cli *c, const cau_wire_list *list)
 		        (long long)all[i].subscriber_count);
 }
 
+static int by_id(const void *a, const void *b)
+{
+	const cau_wire_session_summary *left = a, *right = b;
+	return strcmp(left->session, right->session);
+}
+
+// Adds the sessions of the daemon that is connected.
+static cli_exit add_sessions(cli *c, cau_wire_list *all)
+{
+	cau_wire_session_summary *first = all->items;
+	cau_wire_session_list more = {.sessions = {first + all->count, 0, all->capacity - all->count}};
+	if (cau_client_call(c->client, CAU_METHOD_SESSION_LIST, &(cau_wire_nothing){0}, &more,
+	                    &c->error))
+		return cli_fail(c);
+	all->count += more.sessions.count;
+	return CLI_DONE;
+}
+
+// Of the daemons of all labels, "d1,d2"; NULL: of the one that answers. A connection through a
+// proxy serves one of them.
+static cli_exit gather_sessions(cli *c, const char *labels, cau_wire_list *all)
+{
+	char label[CAU_NAME_BYTES];
+	if (!labels) {
+		cli_exit code = cli_connect_to(c, NULL, NULL);
+		return code ? code : add_sessions(c, all);
+	}
+	for (const char *at = labels; at; at = strchr(at, ',') ? strchr(at, ',') + 1 : NULL) {
+		int length = snprintf(label, sizeof label, "%.*s", (int)strcspn(at, ","), at);
+		if (length == 0 || length >= CAU_NAME_BYTES || !cau_name_is_valid(label)) {
+			cli_complain(c, "--label: \"%.*s\" is no label", (int)strcspn(at, ","), at);
+			return CLI_USAGE;
+		}
+		cli_exit code = cli_connect_to(c, NULL, label);
+		if (!code)
+			code = add_sessions(c, all);
+		if (code)
+			return code;
+	}
+	return CLI_DONE;
+}
+
 static cli_exit run_ls(cli *c)
 {
 	cau_wire_session_list list = {
 		.sessions = {calloc(SESSIONS_MAX, sizeof(cau_wire_session_summary)), 0, SESSIONS_MAX}};
-	cli_exit code = list.sessions.items ? cli_connect(c) : cli_fail_memory(c);
-	if (!code)
-		code = cli_call(c, CAU_METHOD_SESSION_LIST, &(cau_wire_nothing){0}, &list);
-	if (!code && !c->json)
+	if (!list.sessions.items)
+		return cli_fail_memory(c);
+	cli_exit code = gather_sessions(c, c->label, &list.sessions);
+	qsort(list.sessions.items, (size_t)list.sessions.count, sizeof(cau_wire_session_summary),
+	      by_id);
+	if (!code && c->json)
+		cli_print_result(c, CAU_METHOD_SESSION_LIST, &list);
+	else if (!code)
 		print_sessions(c, &list.sessions);
 	free(list.sessions.items);
 	return code;
@@ -46,10 +93,20 @@ static cli_exit run_scenes(cli *c)
 	return code;
 }
 
+static bool same_label(const char *a, const char *b)
+{
+	size_t length = strcspn(a, "-");
+	return length == strcspn(b, "-") && strncmp(a, b, length) == 0;
+}
+
 static cli_exit run_rm(cli *c)
 {
-	cli_exit code = cli_connect(c);
+	cli_exit code = CLI_DONE;
 	for (int i = 0; !code && i < c->argument_count; i++) {
+		if (i == 0 || !same_label(c->arguments[i - 1], c->arguments[i]))
+			code = cli_connect_to(c, c->arguments[i], c->label);
+		if (code)
+			break;
 		cau_wire_session_change params = {.has_session = true, .has_client_sequence = true};
 		snprintf(params.session, sizeof params.session, "%s", c->arguments[i]);
 		params.client_sequence = cau_client_next_sequence(c->client);
@@ -60,11 +117,13 @@ static cli_exit run_rm(cli *c)
 	return code;
 }
 
-const cli_command cli_ls = {.name = "ls",
-                            .arguments = "",
-                            .summary = "lists the daemon's sessions",
-                            .help = "RATE is simulated over wall time, over the last second.\n",
-                            .run = run_ls};
+const cli_command cli_ls = {
+	.name = "ls",
+	.arguments = "",
+	.summary = "lists the daemon's sessions",
+	.help = "RATE is simulated over wall time, over the last second. Behind a proxy:\n"
+			"those of one daemon, or with --label d1,d2 of each that is named.\n",
+	.run = run_ls};
 
 const cli_command cli_scenes = {.name = "scenes",
                                 .arguments = "",

@@ -10,6 +10,7 @@ static const cli_option common[] = {
      "where the daemon is (default: CAUTERYD_URL, the context, " CAU_CLIENT_DEFAULT_URL ")"},
 	{"token-file", "F", "file with the access token (default: the context's, CAUTERYD_TOKEN)"},
 	{"context", "NAME", "a daemon of `cautery context ls` (default: the current one)"},
+	{"label", "L", "the daemon of this label behind a proxy; for ls several, as in d1,d2"},
 	{"timeout", "S", "seconds to wait for an answer (default 30)"},
 	{"json", NULL, "one JSON object a line on standard output, the last one the result"},
 	{"help", NULL, "this text; -h does the same"},
@@ -76,10 +77,13 @@ static bool take_common(cli *c, int index, const char *value)
 		c->context = value;
 		return true;
 	case 3:
-		return cli_read_number(c, "--timeout", value, 0.01, 86400, &c->timeout_s);
+		c->label = value;
+		return true;
 	case 4:
-		return c->json = true;
+		return cli_read_number(c, "--timeout", value, 0.01, 86400, &c->timeout_s);
 	case 5:
+		return c->json = true;
+	case 6:
 		return c->help = true;
 	default:
 		return c->version = true;

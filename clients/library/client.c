@@ -12,6 +12,16 @@ cau_client_def cau_default_client_def(void)
 		.url = CAU_CLIENT_DEFAULT_URL, .name = "cautery client", .role = -1, .timeout_s = 30};
 }
 
+// What goes into the URL as it is.
+static cau_status check_names(const cau_client *client, cau_error *error)
+{
+	if (*client->session && !cau_name_is_valid(client->session))
+		return cau_fail(error, CAU_BAD_VALUE, "session", "is no name: " CAU_NAME_RULE);
+	if (*client->label && !cau_name_is_valid(client->label))
+		return cau_fail(error, CAU_BAD_VALUE, "label", "is no name: " CAU_NAME_RULE);
+	return CAU_OK;
+}
+
 static cau_status copy_text(char *to, size_t capacity, const char *from, const char *path,
                             cau_error *error)
 {
@@ -35,14 +45,16 @@ cau_status cau_client_create(cau_loop *loop, const cau_client_def *def, cau_clie
 	if (!status)
 		status = copy_text(made->session, sizeof made->session, def->session, "session", error);
 	if (!status)
+		status = copy_text(made->label, sizeof made->label, def->label, "label", error);
+	if (!status)
 		status = copy_text(made->token, sizeof made->token, def->token, "token", error);
 	if (!status)
 		status = copy_text(made->name, sizeof made->name, def->name, "name", error);
 	if (!status)
 		status =
 			copy_text(made->client_id, sizeof made->client_id, def->client_id, "client_id", error);
-	if (!status && *made->session && !cau_name_is_valid(made->session)) // it goes into the URL
-		status = cau_fail(error, CAU_BAD_VALUE, "session", "is no name: " CAU_NAME_RULE);
+	if (!status)
+		status = check_names(made, error);
 	if (status) {
 		free(made);
 		return status;

@@ -145,10 +145,12 @@ void cau_client_not_opened(cau_client *client, struct lws *wsi, const char *in, 
 
 static void open_socket(cau_client *client)
 {
-	char host[280], path[64];
+	char host[280], path[16 + CAU_NAME_BYTES];
 	bool bare = strchr(client->url.host, ':') == NULL; // no IPv6 address
 	snprintf(host, sizeof host, bare ? "%s:%d" : "[%s]:%d", client->url.host, client->url.port);
-	snprintf(path, sizeof path, *client->session ? "/v1?session=%s" : "/v1", client->session);
+	const char *name = *client->session ? client->session : client->label;
+	const char *query = *client->session ? "?session=" : *client->label ? "?label=" : "";
+	snprintf(path, sizeof path, "/v1%s%s", query, name);
 	struct lws_client_connect_info info = {
 		.context = client->loop->context,
 		.address = client->url.host,

@@ -57,7 +57,7 @@ typedef struct cau_client_incoming {
 struct cau_client {
 	cau_loop *loop;
 	cau_client_def def; // its strings point at what follows
-	char session[CAU_NAME_BYTES], token[513], name[65], client_id[65];
+	char session[CAU_NAME_BYTES], label[CAU_NAME_BYTES], token[513], name[65], client_id[65];
 	cau_url url;
 	struct lws *wsi;
 	cau_client_condition condition;

@@ -325,6 +325,31 @@ class Addresses(Fleet):
             self.assertIn("address=127.0.0.9", line)
 
 
+class CommandLine(Fleet):
+    def test_sessions_are_reached_wherever_they_are(self):
+        made = [self.cautery("create", "fascia", "--name", "knee", "--paused", "--label", label)
+                for label in self.daemons]
+        self.assertEqual(made, ["d1-knee", "d2-knee"])
+        for session in made:
+            self.assertIn(f"{session}: scene fascia", self.cautery("info", session))
+            self.cautery("step", session, "--ticks", "20")
+            self.cautery("tool", session, "hook", "move", "0", "0", "0.01")
+        listed = json.loads(self.cautery("ls", "--label", "d2,d1", "--json"))["sessions"]
+        self.assertEqual([(one["session"], one["tick"]) for one in listed], [("d1-knee", 20), ("d2-knee", 20)])
+        self.assertNotIn("d1-knee", self.cautery("ls", "--label", "d2"))
+        self.cautery("rm", *made)
+        self.assertEqual(json.loads(self.cautery("ls", "--label", "d1,d2", "--json"))["sessions"], [])
+
+    def test_what_is_wrong_is_said(self):
+        for arguments, code, said in ((("info", "d3-knee"), 3, "no daemon of this fleet has the label"),
+                                      (("ls", "--label", "d1,d3"), 3, "no daemon of this fleet has the label"),
+                                      (("ls", "--label", "d1,,d2"), 2, '"" is no label'),
+                                      (("ls", "--label", "D 1"), 2, '"D 1" is no label'),
+                                      (("create", "fascia", "--label", "d1,d2"), 2, "wants one label")):
+            with self.subTest(arguments=arguments):
+                self.assertIn(said, self.cautery(*arguments, code=code))
+
+
 class Clients(Fleet):
     """Programs that were written for one daemon."""
 

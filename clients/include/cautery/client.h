@@ -84,6 +84,7 @@ typedef struct cau_client_frame {
 typedef struct cau_client_def {
 	const char *url;       // ws://, wss://, http:// or https://; host, port
 	const char *session;   // that messages mean when they name none; for proxies, too
+	const char *label;     // of the daemon that is meant behind a proxy, where no session says it
 	const char *token;     // access token
 	const char *name;      // of the program, for logs and other users
 	const char *client_id; // lasting identity; by default one from the server
