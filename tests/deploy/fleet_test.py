@@ -272,8 +272,15 @@ class Routing(Fleet):
         self.assertEqual(answer.status, 200)
         self.assertIn("<html", text.lower())
 
+    def test_the_viewer_of_a_label_is_at_that_daemon(self):
+        self.fill("d2", 3)  # the other has more room
+        answer, text = self.get("/d2/")
+        self.assertEqual((answer.status, text), (200, self.get("/")[1]))
+        self.assertEqual(self.get("/d2/v1", HANDSHAKE)[0].status, 101)
+        self.assertEqual((self.connections("d1"), self.connections("d2")), (0, 1))
+
     def test_unknown_labels_are_said(self):
-        for path in ("/v1?session=d3-knee", "/v1?session=knee", "/v1?session=", "/v1?label=d", "/d3/metrics"):
+        for path in ("/v1?session=d3-knee", "/v1?session=knee", "/v1?session=", "/v1?label=d", "/d3/metrics", "/d3/v1"):
             with self.subTest(path=path):
                 self.expect_refused(path, 404, "unknown_label")
 
