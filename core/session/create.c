@@ -217,6 +217,8 @@ static cau_status build(cau_session *session, const cau_session_def *def, cau_er
 	if (!status)
 		status = cau_session_make_rest(session, error);
 	if (!status)
+		status = cau_session_make_spin(session, error);
+	if (!status)
 		status = make_remainder(session, error);
 	if (status)
 		return status;

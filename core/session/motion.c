@@ -4,7 +4,8 @@
 
 #include "session/session_internal.h"
 
-// s = x + dt v + dt^2 M^-1 f_ext (eq. 4), and the first guess x + dt v.
+// s = x + dt v + dt^2 M^-1 f_ext (eq. 4), and the first guess x + dt v; both turned where nothing
+// holds (spin.c).
 void cau_session_predict(cau_session *session)
 {
 	double dt = session->solver.step_s;
@@ -17,6 +18,7 @@ void cau_session_predict(cau_session *session)
 			session->solver.predicted[i] = guess + dt * dt * push;
 			session->position[i] = session->fixed[v] ? session->position_start[i] : guess;
 		}
+	cau_session_turn_prediction(session);
 }
 
 double cau_session_velocity_scale(const cau_session *session)

@@ -49,6 +49,16 @@ typedef struct cau_rest {
 	double *from;        // m, (n x 3): positions as the quiet began
 } cau_rest;
 
+// spin.c: the pieces that living elements join.
+typedef struct cau_spin {
+	bool stale;      // they are to be found anew
+	int32_t removed; // elements that were gone when they were found
+	int32_t piece_count;
+	int32_t *piece;  // (n): of a vertex
+	int32_t *member; // (n): vertices, by piece
+	int32_t *first;  // (piece_count + 1): into `member`
+} cau_spin;
+
 // What possible.c knows of the last look at the edges, and its scratch.
 typedef struct cau_watch {
 	double left_m;        // vertices may still go half as far before an edge can be too long
@@ -87,6 +97,7 @@ struct cau_session {
 	cau_watch watch;
 	cau_energy energy;
 	cau_rest rest;
+	cau_spin spin;
 	double size_m;           // diagonal of the tissue's box at rest
 	int32_t driven_count;    // pinned vertices that the next step moves
 	int32_t *driven;         // (n)
@@ -165,6 +176,9 @@ cau_status cau_session_make_rest(cau_session *session, cau_error *error);
 bool cau_session_rests(cau_session *session);
 cau_status cau_session_rest_tick(cau_session *session, cau_error *error);
 void cau_session_fall_asleep(cau_session *session);
+// spin.c: its arrays; prediction of what turns freely, once the rest is predicted.
+cau_status cau_session_make_spin(cau_session *session, cau_error *error);
+void cau_session_turn_prediction(cau_session *session);
 // motion.c: what turns a tick's way into the velocity after it, 1/s (eq. 2 and damping).
 double cau_session_velocity_scale(const cau_session *session);
 // motion.c: predicts s of eq. 4 before a solve; velocities after it.

@@ -350,7 +350,7 @@ cau_status cau_session_restore(cau_session *session, const void *bytes, size_t b
 		session->contact.row_count = session->contact.left_out_count = 0;
 		session->refusal_count = 0;
 		session->watch.left_m = 0;
-		session->energy.stale = true;
+		session->energy.stale = session->spin.stale = true;
 		if (!status)
 			status = replay_factor(session, &header, error);
 		cau_frame_rebuild(&session->frame, &session->dissection);

@@ -1,0 +1,335 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Rotation of pieces that nothing holds. Where a piece turns by an angle a in a tick, x + dt v lies
+// on the tangent and v is the last chord, so that implicit Euler (eq. 4) leaves it 1 - a^2 of its
+// angular momentum. Here its target s is turned about its centre of mass by as much as is wanting,
+// some 2/3 a^3.
+//
+// With c the centre of mass, r = x_t - c, u the velocity less its mean, C = sum m r r^T: forces
+// inside a piece have no torque, so that the step's solution x' has sum m x' x (s - c) = 0, and its
+// angular momentum is sum m r x (x' - c) / dt. A piece that keeps its shape has x' - c = R r. So R
+// is the rotation for which sum m r x R r = dt L, L = sum m r x u, and Q the one for which
+// sum m R r x Q (r + dt u) = 0. s becomes c' + Q (r + dt u) + dt^2 f / m. The energy of motion is
+// not to grow by it: R may not take more than u has. The first guess is c' + R (P r + dt u), the
+// way of a rigid piece whose last tick undid P: sum m r x P r = -dt L.
+//
+// A piece is what living elements join; it is found anew after cuts. What hangs on anything, or has
+// no extent but along a line, is left alone, and so is what turns by less than a milliradian in a
+// tick (which loses 1e-6 of its momentum in it) or so fast that no chord has that momentum.
+#include <math.h>
+#include <string.h>
+
+#include "cautery/assert.h"
+#include "session/session_internal.h"
+
+static const double least_turn = 1e-3; // rad in a tick
+static const double thinnest = 1e-9;   // det of the inertia, relative to the cube of its trace
+
+typedef double matrix[3][3]; // [row][column]
+
+cau_status cau_session_make_spin(cau_session *session, cau_error *error)
+{
+	size_t n = (size_t)session->tissue.vertex_count;
+	cau_spin *spin = &session->spin;
+	spin->piece = cau_arena_array(&session->arena, n, sizeof *spin->piece);
+	spin->member = cau_arena_array(&session->arena, n, sizeof *spin->member);
+	spin->first = cau_arena_array(&session->arena, n + 1, sizeof *spin->first);
+	spin->stale = true;
+	if (!spin->piece || !spin->member || !spin->first)
+		return cau_fail(error, CAU_NO_MEMORY, NULL, "no memory for a session");
+	return CAU_OK;
+}
+
+// ---- pieces
+
+// The least vertex that is known to hang together with this one; ways are halved as they are gone.
+static int32_t least_of(int32_t *piece, int32_t vertex)
+{
+	while (piece[vertex] != vertex) {
+		CAU_ASSERT(piece[vertex] < vertex, "vertex %d leads to %d", vertex, piece[vertex]);
+		piece[vertex] = piece[piece[vertex]];
+		vertex = piece[vertex];
+	}
+	return vertex;
+}
+
+static void join(int32_t *piece, const int32_t *vertex, int count)
+{
+	CAU_ASSERT(count >= 2 && count <= 4, "an element of %d vertices", count);
+	int32_t a = least_of(piece, vertex[0]);
+	for (int i = 1; i < count; i++) {
+		int32_t b = least_of(piece, vertex[i]);
+		if (a < b)
+			piece[b] = a;
+		else
+			piece[a] = b;
+		a = a < b ? a : b;
+	}
+}
+
+static void join_elements(cau_session *session)
+{
+	const cau_tissue *tissue = &session->tissue;
+	// hinges join nothing that their two triangles do not
+	const struct {
+		int kind, corners;
+		int32_t count;
+		const int32_t *vertex;
+	} part[] = {
+		{CAU_ELEMENT_TRIANGLE, 3, tissue->triangle_count, tissue->triangle},
+		{CAU_ELEMENT_TETRAHEDRON, 4, tissue->tetrahedron_count, tissue->tetrahedron},
+		{CAU_ELEMENT_LINK, 2, tissue->link_count, tissue->link},
+	};
+	for (size_t k = 0; k < sizeof part / sizeof part[0]; k++) {
+		const uint8_t *alive = session->dissection.alive.element[part[k].kind];
+		for (int32_t e = 0; e < part[k].count; e++)
+			if (alive[e])
+				join(session->spin.piece, part[k].vertex + (size_t)part[k].corners * (size_t)e,
+				     part[k].corners);
+	}
+}
+
+// Members of each piece, by vertex; pieces in the order of their least vertex. A vertex without
+// elements is a piece of its own.
+static void find_pieces(cau_session *session)
+{
+	cau_spin *spin = &session->spin;
+	int32_t n = session->tissue.vertex_count, count = 0;
+	for (int32_t v = 0; v < n; v++)
+		spin->piece[v] = v;
+	join_elements(session);
+	memset(spin->first, 0, ((size_t)n + 1) * sizeof *spin->first);
+	for (int32_t v = 0; v < n; v++) { // the least comes first: it has its number before the others
+		int32_t least = least_of(spin->piece, v);
+		spin->member[v] = least == v ? count++ : spin->member[least];
+	}
+	for (int32_t v = 0; v < n; v++) {
+		spin->piece[v] = spin->member[v];
+		spin->first[spin->piece[v] + 1]++;
+	}
+	for (int32_t p = 0; p < count; p++)
+		spin->first[p + 1] += spin->first[p];
+	CAU_ASSERT(spin->first[count] == n, "%d of %d vertices in pieces", spin->first[count], n);
+	for (int32_t v = n - 1; v >= 0; v--) // the ends move down to be the beginnings
+		spin->member[--spin->first[spin->piece[v] + 1]] = v;
+	memmove(spin->first, spin->first + 1, (size_t)count * sizeof *spin->first);
+	spin->first[count] = n;
+	spin->piece_count = count;
+	spin->removed = session->dissection.elements_removed;
+	spin->stale = false;
+}
+
+static bool is_free(const cau_session *session, int32_t piece)
+{
+	const cau_spin *spin = &session->spin;
+	CAU_ASSERT_INDEX(piece, spin->piece_count);
+	if (spin->first[piece + 1] - spin->first[piece] < 3)
+		return false;
+	for (int32_t k = spin->first[piece]; k < spin->first[piece + 1]; k++)
+		if (session->fixed[spin->member[k]])
+			return false;
+	return true;
+}
+
+// ---- rotations
+static void times(matrix a, matrix b, matrix out)
+{
+	for (int i = 0; i < 3; i++)
+		for (int j = 0; j < 3; j++)
+			out[i][j] = a[i][0] * b[0][j] + a[i][1] * b[1][j] + a[i][2] * b[2][j];
+}
+
+static double trace(matrix a)
+{
+	return a[0][0] + a[1][1] + a[2][2];
+}
+
+static cau_vec3 apply(matrix a, cau_vec3 v)
+{
+	return (cau_vec3){a[0][0] * v.x + a[0][1] * v.y + a[0][2] * v.z,
+	                  a[1][0] * v.x + a[1][1] * v.y + a[1][2] * v.z,
+	                  a[2][0] * v.x + a[2][1] * v.y + a[2][2] * v.z};
+}
+
+// sum b x a of a matrix sum a b^T
+static cau_vec3 axial(matrix a)
+{
+	return (cau_vec3){a[2][1] - a[1][2], a[0][2] - a[2][0], a[1][0] - a[0][1]};
+}
+
+// The rotation by |turn| about turn (Rodrigues).
+static void rotation_of(cau_vec3 turn, matrix out)
+{
+	double angle2 = cau_dot(turn, turn), angle = sqrt(angle2);
+	double one = angle > 1e-4 ? sin(angle) / angle : 1 - angle2 / 6;
+	double two = angle > 1e-4 ? (1 - cos(angle)) / angle2 : 0.5 - angle2 / 24;
+	const double t[3] = {turn.x, turn.y, turn.z};
+	matrix cross = {{0, -t[2], t[1]}, {t[2], 0, -t[0]}, {-t[1], t[0], 0}};
+	for (int i = 0; i < 3; i++)
+		for (int j = 0; j < 3; j++)
+			out[i][j] = (i == j) * (1 - two * angle2) + one * cross[i][j] + two * t[i] * t[j];
+}
+
+// trace(a) 1 - a: how the axial vector changes as a is turned; the inertia, for a symmetric one.
+static void inertia_of(matrix a, matrix out)
+{
+	double sum = trace(a);
+	for (int i = 0; i < 3; i++)
+		for (int j = 0; j < 3; j++)
+			out[i][j] = (i == j) * sum - a[i][j];
+}
+
+static double determinant(matrix a)
+{
+	cau_vec3 row[3] = {cau_vec3_of(a[0]), cau_vec3_of(a[1]), cau_vec3_of(a[2])};
+	return cau_dot(row[0], cau_cross(row[1], row[2]));
+}
+
+// a^-1 b by Cramer's rule; a is not singular.
+static cau_vec3 solve(matrix a, cau_vec3 b)
+{
+	double det = determinant(a);
+	CAU_ASSERT(det != 0, "a matrix of trace %g is singular", trace(a));
+	cau_vec3 row[3] = {cau_vec3_of(a[0]), cau_vec3_of(a[1]), cau_vec3_of(a[2])};
+	cau_vec3 sum = cau_scale(b.x, cau_cross(row[1], row[2]));
+	sum = cau_add_scaled(sum, b.y, cau_cross(row[2], row[0]));
+	return cau_scale(1 / det, cau_add_scaled(sum, b.z, cau_cross(row[0], row[1])));
+}
+
+// The rotation, near none, that gives a turned by it this axial vector: Newton's method. Returns
+// false where none is found.
+static bool turn_until(matrix a, cau_vec3 wanted, matrix rotation)
+{
+	enum { TRIES = 20 };
+	matrix turned, slope, step, before;
+	double enough = 1e-14 * fabs(trace(a));
+	rotation_of((cau_vec3){0, 0, 0}, rotation);
+	memcpy(turned, a, sizeof turned);
+	for (int k = 0; k < TRIES; k++) {
+		cau_vec3 wanting = cau_sub(wanted, axial(turned));
+		if (cau_length(wanting) <= enough)
+			return true;
+		inertia_of(turned, slope);
+		double sum = trace(slope);
+		if (!(determinant(slope) > thinnest * sum * sum * sum))
+			return false;
+		rotation_of(solve(slope, wanting), step);
+		memcpy(before, rotation, sizeof before);
+		times(step, before, rotation);
+		times(rotation, a, turned);
+	}
+	return false;
+}
+
+// ---- a piece
+typedef struct motion {
+	double mass;
+	cau_vec3 centre, velocity; // of the centre of mass
+	matrix spread;             // C = sum m r r^T, kg m^2
+	matrix flow;               // sum m u r^T, kg m^2/s
+	double kinetic_j;          // sum m u^2 / 2
+} motion;
+
+static void measure_motion(const cau_session *session, int32_t first, int32_t last, motion *out)
+{
+	*out = (motion){0};
+	const double *mass = session->tissue.mass;
+	for (int32_t k = first; k < last; k++) {
+		size_t v = (size_t)session->spin.member[k];
+		out->mass += mass[v];
+		out->centre =
+			cau_add_scaled(out->centre, mass[v], cau_vec3_of(session->position_start + 3 * v));
+		out->velocity =
+			cau_add_scaled(out->velocity, mass[v], cau_vec3_of(session->velocity + 3 * v));
+	}
+	CAU_ASSERT(out->mass > 0, "a piece of %g kg", out->mass);
+	out->centre = cau_scale(1 / out->mass, out->centre);
+	out->velocity = cau_scale(1 / out->mass, out->velocity);
+	for (int32_t k = first; k < last; k++) {
+		size_t v = (size_t)session->spin.member[k];
+		double r[3], u[3];
+		cau_vec3_to(cau_sub(cau_vec3_of(session->position_start + 3 * v), out->centre), r);
+		cau_vec3_to(cau_sub(cau_vec3_of(session->velocity + 3 * v), out->velocity), u);
+		for (int i = 0; i < 3; i++) {
+			out->kinetic_j += mass[v] * u[i] * u[i] / 2;
+			for (int j = 0; j < 3; j++) {
+				out->spread[i][j] += mass[v] * r[i] * r[j];
+				out->flow[i][j] += mass[v] * u[i] * r[j];
+			}
+		}
+	}
+}
+
+// Less of the rotation, so that the energy of its chords is at most what there is.
+static void keep_energy(motion *m, double dt, matrix r)
+{
+	matrix turned;
+	times(r, m->spread, turned);
+	double chords_j = (trace(m->spread) - trace(turned)) / (dt * dt);
+	CAU_ASSERT(m->kinetic_j >= 0, "an energy of %g J", m->kinetic_j);
+	if (!(chords_j > m->kinetic_j))
+		return;
+	cau_vec3 axis = axial(r); // twice its sine
+	double sine = cau_length(axis) / 2, angle = atan2(sine, (trace(r) - 1) / 2);
+	if (sine > 0)
+		rotation_of(cau_scale(angle * sqrt(m->kinetic_j / chords_j) / (2 * sine), axis), r);
+}
+
+// R, P and Q as above; false where the piece is left alone.
+static bool find_turn(motion *m, double dt, matrix r, matrix p, matrix q)
+{
+	matrix inertia, ahead, seen;
+	inertia_of(m->spread, inertia);
+	double sum = trace(inertia);
+	if (!(determinant(inertia) > thinnest * sum * sum * sum))
+		return false;
+	cau_vec3 wanted = cau_scale(dt, axial(m->flow));
+	cau_vec3 turn = solve(inertia, wanted);
+	if (!(cau_length(turn) >= least_turn) || !turn_until(m->spread, wanted, r) ||
+	    !turn_until(m->spread, cau_scale(-1, wanted), p))
+		return false;
+	keep_energy(m, dt, r);
+	for (int i = 0; i < 3; i++)
+		for (int j = 0; j < 3; j++)
+			ahead[i][j] = m->spread[i][j] + dt * m->flow[i][j];
+	matrix back = {
+		{r[0][0], r[1][0], r[2][0]}, {r[0][1], r[1][1], r[2][1]}, {r[0][2], r[1][2], r[2][2]}};
+	times(ahead, back, seen);
+	if (!turn_until(seen, (cau_vec3){0, 0, 0}, q))
+		return false;
+	return cau_length(axial(q)) / 2 < cau_length(turn); // else it does not turn as a whole
+}
+
+static void turn_piece(cau_session *session, int32_t first, int32_t last)
+{
+	double dt = session->solver.step_s;
+	motion m;
+	matrix r, p, q;
+	measure_motion(session, first, last, &m);
+	if (!find_turn(&m, dt, r, p, q))
+		return;
+	for (int32_t k = first; k < last; k++) {
+		size_t v = (size_t)session->spin.member[k];
+		cau_vec3 start = cau_vec3_of(session->position_start + 3 * v);
+		cau_vec3 velocity = cau_vec3_of(session->velocity + 3 * v);
+		cau_vec3 guess = cau_add_scaled(start, dt, velocity);
+		cau_vec3 pushed = cau_sub(cau_vec3_of(session->solver.predicted + 3 * v), guess);
+		cau_vec3 centre = cau_add_scaled(m.centre, dt, m.velocity);
+		cau_vec3 target = cau_add(centre, apply(q, cau_sub(guess, centre)));
+		cau_vec3_to(cau_add(target, pushed), session->solver.predicted + 3 * v);
+		cau_vec3 before = apply(p, cau_sub(start, m.centre));
+		before = cau_add_scaled(before, dt, cau_sub(velocity, m.velocity));
+		cau_vec3_to(cau_add(centre, apply(r, before)), session->position + 3 * v);
+	}
+}
+
+void cau_session_turn_prediction(cau_session *session)
+{
+	cau_spin *spin = &session->spin;
+	if (session->scene->solver == CAU_SOLVER_DIAGONAL) // as printed
+		return;
+	if (spin->stale || spin->removed != session->dissection.elements_removed)
+		find_pieces(session);
+	for (int32_t p = 0; p < spin->piece_count; p++)
+		if (is_free(session, p))
+			turn_piece(session, spin->first[p], spin->first[p + 1]);
+}
