@@ -375,6 +375,26 @@ static void write_stream_channels(cau_json_writer *writer)
 	cau_json_close(writer);
 }
 
+static void write_servers(cau_json_writer *writer)
+{
+	cau_json_open(writer, "servers", '{');
+	cau_json_open(writer, "local", '{');
+	cau_json_string(writer, "host", "127.0.0.1:8740");
+	cau_json_string(writer, "protocol", "ws");
+	cau_json_string(writer, "description",
+	                "a daemon on this machine, as it starts without settings");
+	cau_json_close(writer);
+	cau_json_open(writer, "secured", '{');
+	cau_json_string(writer, "host", "{host}");
+	cau_json_string(writer, "protocol", "wss");
+	cau_json_string(writer, "description", "a daemon or a proxy that does TLS; hello has a token");
+	cau_json_open(writer, "variables", '{');
+	cau_json_open(writer, "host", '{');
+	cau_json_string(writer, "default", "localhost:8740");
+	for (int level = 0; level < 4; level++)
+		cau_json_close(writer);
+}
+
 static void write_document(cau_json_writer *writer, const model *from)
 {
 	cau_json_open(writer, NULL, '{');
@@ -387,6 +407,7 @@ static void write_document(cau_json_writer *writer, const model *from)
 	                "protocol/README.md is the normative text.");
 	cau_json_close(writer);
 	cau_json_string(writer, "defaultContentType", "application/json");
+	write_servers(writer);
 	write_channel(writer);
 	write_stream_channels(writer);
 	cau_json_open(writer, "operations", '{');

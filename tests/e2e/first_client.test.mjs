@@ -1,0 +1,56 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// The programs that README.md and protocol/README.md show, run as they stand there but for the port.
+import assert from 'node:assert/strict';
+import { readFileSync } from 'node:fs';
+import { join } from 'node:path';
+import { after, before, test } from 'node:test';
+import { WebSocket as Plain } from 'ws';
+import { Daemon } from './wire/daemon.mjs';
+import { smallSession } from './wire/scene.mjs';
+
+const Run = Object.getPrototypeOf(async () => {}).constructor;
+let daemon, client;
+before(async () => {
+	daemon = await Daemon.start({ settings: { browser_deadline_s: 1 } });
+	client = await daemon.connect();
+});
+after(() => daemon.end());
+
+// The one program of a page, and what it logs. As in a browser, text comes as a string.
+function run(page) {
+	const blocks = [...readFileSync(join(process.env.PAGES, page), 'utf8').matchAll(/^```js\n([^]*?)^```$/gm)].map(([, text]) => text);
+	const [program] = blocks.filter((text) => text.startsWith('const socket = new WebSocket('));
+	assert.ok(program.includes('ws://127.0.0.1:8740/v1'));
+	const logged = [], sockets = [];
+	class Socket extends Plain {
+		constructor(...options) {
+			super(...options);
+			sockets.push(this);
+		}
+	}
+	const over = new Run('WebSocket', 'console', program.replace('127.0.0.1:8740', `127.0.0.1:${daemon.port}`))(
+		Socket, { log: (...words) => logged.push(words) });
+	return { over, logged, end: () => sockets.forEach((socket) => socket.close()) };
+}
+
+test('the first client of README.md sees vertices and frames', async () => {
+	await smallSession(client, 'layers');
+	const { over, logged, end } = run('README.md');
+	await over;
+	const said = (word) => logged.some((words) => words.includes(word));
+	for (const until = performance.now() + 20_000; !(said('vertices') && said('a frame of')) && performance.now() < until;)
+		await new Promise((resolve) => setTimeout(resolve, 50)); // it tells nobody
+	end();
+	assert.ok(logged.find((words) => words.includes('vertices'))[0] > 100);
+	assert.ok(logged.find((words) => words.includes('a frame of'))[1] > 100);
+});
+
+test('the first cut of protocol/README.md cuts', async () => {
+	const { over, logged, end } = run('protocol/README.md');
+	await over;
+	end();
+	const [[cuts]] = logged;
+	assert.ok(cuts.length > 0 && cuts.every(({ kind, count }) => kind === 'cut' && count > 0), JSON.stringify(cuts));
+	const { summary } = await client.call('session.describe', { session: 'd1-first' });
+	assert.equal(summary.state, 'paused');
+});
