@@ -225,6 +225,8 @@ class Placing(Fleet):
         self.assertRegex(self.cautery("create", "fascia", "--paused"), "^d1-")
 
     def test_many_at_once_are_not_all_sent_to_one(self):
+        await_true("both have room, now that they have started",
+                   lambda: all(int(self.new(label)["weight"]) >= 80 for label in self.daemons))
         opened = [self.get("/v1", HANDSHAKE)[0].status for _ in range(20)]
         self.assertEqual(opened, [101] * 20)
         counts = [self.connections(label) for label in self.daemons]
