@@ -3,7 +3,7 @@
 // the way; who follows the cue has cut. What destroys asks first.
 
 import { BrowserStage, daemonForTest, Stage } from './stage';
-import { ViewerPage } from './viewer_page';
+import { MOVING, ViewerPage } from './viewer_page';
 
 const PHONE = { hasTouch: true, isMobile: true };
 const SCREENS = [
@@ -52,7 +52,7 @@ describe('the first view', () => {
 
   it.each(SCREENS)('on %s shows where to cut, and who follows it cuts', async (_name, picture, options) => {
     const daemon = await daemonForTest(['--demo', 'layers']);
-    const viewer = await ViewerPage.openFirst(stage.browser, daemon.url, options);
+    const viewer = await ViewerPage.openFirst(stage.browser, daemon.url, { ...MOVING, ...options });
     const { page } = viewer;
     await viewer.live('d1-layers');
     await viewer.until(() => document.querySelector('#cue')?.checkVisibility() === true, null, 'the cue is there');

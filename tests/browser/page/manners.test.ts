@@ -9,7 +9,7 @@ import { gzipSync } from 'node:zlib';
 import AxeBuilder from '@axe-core/playwright';
 
 import { Stage } from './stage';
-import { ViewerPage } from './viewer_page';
+import { MOVING, ViewerPage } from './viewer_page';
 
 const TABS = ['Sessions', 'Tools', 'Materials', 'View', 'Plots'];
 const BUNDLE_BYTES_MAX = 1_000_000; // compressed
@@ -83,7 +83,7 @@ describe('manners', () => {
   });
 
   it('does not jump about while it comes up', async () => {
-    const viewer = await stage.openFirst();
+    const viewer = await stage.openFirst(MOVING);
     await viewer.live('d1-layers');
     const shift = await viewer.page.evaluate(
       () =>
