@@ -23,10 +23,12 @@ import patterns  # noqa: E402
 import remeshing  # noqa: E402
 import shrinkage  # noqa: E402
 import strain_limits  # noqa: E402
+import validation  # noqa: E402
 from sim import FOLDER, ROOT, Sim  # noqa: E402
 
 PARTS = {"strain_limits": strain_limits, "patterns": patterns, "shrinkage": shrinkage,
-         "dissection": dissection, "ignition": ignition, "remeshing": remeshing, "costs": costs}
+         "dissection": dissection, "ignition": ignition, "remeshing": remeshing, "costs": costs,
+         "validation": validation}
 
 HEAD = """# The paper, reproduced
 
