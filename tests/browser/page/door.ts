@@ -40,6 +40,9 @@ export class Door {
     await once(this.server, 'close');
   }
 
+  /** Changes what the daemon says to pages. */
+  change: ((text: string) => string) | null = null;
+
   protected text({ page, text }: Said): void {
     page.sendText(text);
   }
@@ -76,7 +79,7 @@ export class Door {
     daemon.onClose = () => page.close();
     daemon.onText = (text) => {
       const { id } = JSON.parse(text) as { id?: number };
-      this.text({ page, text, method: id === undefined ? null : (names.get(id) ?? null) });
+      this.text({ page, text: this.change?.(text) ?? text, method: id === undefined ? null : (names.get(id) ?? null) });
     };
     daemon.onBinary = (bytes) => this.binary(page, bytes);
   }

@@ -45,6 +45,18 @@ describe('while something is under way', () => {
     await seen();
   });
 
+  it('a session that somebody else is making says so', async () => {
+    const { page } = viewer;
+    // Made on the daemon in a moment: its answers are changed on their way, as if it were still at it.
+    door.change = (text) => text.replace(/("session": ?"d1-second"[^{}]*?"state": ?)"(running|paused)"/g, '$1"starting"');
+    await page.reload(); // the address comes back to d1-second
+    await told(/^d1-second is being made: its tissue is put together…$/);
+    door.change = null;
+    await page.reload();
+    await viewer.live('d1-second');
+    await seen();
+  });
+
   it('copying one is said, until the copy is there', async () => {
     const { page } = viewer;
     const faces = await viewer.faces();
