@@ -1,0 +1,109 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// What the body around the tissue costs: draw calls, triangles and bytes of textures, against those of the plain
+// scene, tissue and instruments over a cloth.
+import { Stage } from './stage';
+import { ViewerPage } from './viewer_page';
+
+/** One 48-cubed volume of noise and a row of colours, which was all before there was a body around the tissue. */
+const PLAIN_TEXTURE_BYTES = 48 ** 3 + 4 * 256;
+const TIMES_MORE = 2;
+
+interface Weight {
+  /** leaves out what the plain scene does not have */
+  plain: boolean;
+  calls: number;
+  triangles: number;
+  /** of all textures since the page came up; those of the pictures' size are no textures */
+  textureBytes: number;
+  pictures: number;
+}
+declare global {
+  interface Window {
+    weight: Weight;
+  }
+}
+
+/** In the page, before anything else: stands between it and its graphics. */
+function weigh(): void {
+  const weight: Weight = { plain: false, calls: 0, triangles: 0, textureBytes: 0, pictures: 0 };
+  window.weight = weight;
+  const BODY = ['float dermis', 'mix(1.15, 0.55, vTip)', 'thread < 0.36']; // of the shaders of flesh, edge and fringe
+  const gl = WebGL2RenderingContext.prototype;
+  const sources = new WeakMap<WebGLShader, string>();
+  const ofBody = new WeakSet<WebGLProgram>();
+  let inBody = false;
+  const before = <K extends keyof WebGL2RenderingContext>(name: K, look: (...given: never[]) => unknown): void => {
+    const real = gl[name] as (...given: unknown[]) => unknown;
+    (gl as unknown as Record<string, unknown>)[name] = function (this: WebGL2RenderingContext, ...given: never[]): unknown {
+      return look.apply(this, given) === false ? undefined : real.apply(this, given);
+    };
+  };
+  const drawn = (mode: number, count: number): boolean => {
+    if (weight.plain && inBody) return false;
+    weight.calls++;
+    if (mode === gl.TRIANGLES) weight.triangles += count / 3;
+    return true;
+  };
+  const stored = (format: number, ...sizes: number[]): void => {
+    weight.textureBytes += (format === gl.R8 || format === gl.RED ? 1 : 4) * sizes.reduce((product, size) => product * size, 1);
+  };
+  before('shaderSource', (shader: WebGLShader, source: string) => void sources.set(shader, source));
+  before('attachShader', (program: WebGLProgram, shader: WebGLShader) => {
+    if (BODY.some((mark) => sources.get(shader)?.includes(mark))) ofBody.add(program);
+  });
+  before('useProgram', (program: WebGLProgram | null) => void (inBody = program !== null && ofBody.has(program)));
+  before('drawElements', (mode: number, count: number) => drawn(mode, count));
+  before('drawArrays', (mode: number, _first: number, count: number) => drawn(mode, count));
+  const levels = (count: number, format: number, sizes: number[]): void => {
+    for (let level = 0; level < count; level++) stored(format, ...sizes.map((size) => Math.max(1, size >> level)));
+  };
+  before('texStorage2D', (_target: number, count: number, format: number, w: number, h: number) => levels(count, format, [w, h]));
+  before('texStorage3D', (_target: number, count: number, format: number, w: number, h: number, d: number) => levels(count, format, [w, h, d]));
+  before('texImage2D', (...[, , format, w, h]: number[]) => {
+    if (typeof h === 'number') stored(format, w, h);
+  });
+  before('texImage3D', (...[, , format, w, h, d]: number[]) => stored(format, w, h, d));
+  before('clear', () => void (weight.calls = weight.triangles = 0));
+  before('fenceSync', () => void weight.pictures++);
+}
+
+describe('the weight of a picture', () => {
+  const stage = new Stage(['--demo', 'layers']);
+  let viewer: ViewerPage;
+
+  /** The next picture's cost, of a session that stands still. */
+  const next = async (plain: boolean): Promise<Weight> => {
+    const { page } = viewer;
+    const before = await page.evaluate((left) => {
+      window.weight.plain = left;
+      return window.weight.pictures;
+    }, plain);
+    await page.mouse.wheel(0, plain ? -1 : 1); // looks from elsewhere, by next to nothing
+    await viewer.until((count) => window.weight.pictures > count, before, 'another picture');
+    return page.evaluate(() => ({ ...window.weight }));
+  };
+
+  beforeAll(async () => {
+    viewer = await ViewerPage.openFirst(stage.browser, 'about:blank', { viewport: { width: 800, height: 560 } });
+    await viewer.page.addInitScript(weigh);
+    await viewer.page.goto(stage.daemon.url);
+    viewer.complaints.length = 0; // of the blank page, which has no storage
+    await viewer.live('d1-layers');
+    await viewer.pause();
+    await viewer.page.mouse.move(60, 200); // beside the tissue, where the wheel is the camera's
+    await viewer.page.keyboard.down('Control');
+  });
+
+  it('is no more than twice that of the plain scene in calls, triangles and textures', async () => {
+    const plain = await next(true);
+    const whole = await next(false);
+    process.stdout.write(`calls ${plain.calls} -> ${whole.calls}, triangles ${plain.triangles} -> ${whole.triangles}, texture bytes ${PLAIN_TEXTURE_BYTES} -> ${whole.textureBytes}\n`);
+    expect(plain.triangles).toBeGreaterThan(6000);
+    expect(whole.calls).toBeGreaterThan(plain.calls);
+    expect(whole.calls).toBeLessThanOrEqual(TIMES_MORE * plain.calls);
+    expect(whole.triangles).toBeLessThanOrEqual(TIMES_MORE * plain.triangles);
+    expect(whole.textureBytes).toBeLessThanOrEqual(TIMES_MORE * PLAIN_TEXTURE_BYTES);
+    expect(viewer.complaints).toEqual([]);
+    await viewer.close();
+  });
+});
