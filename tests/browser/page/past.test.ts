@@ -56,8 +56,12 @@ describe('looking back', () => {
     const { x, y } = await viewer.project([0.01, 0.005, 0]);
     await page.mouse.move(x, y);
     await page.mouse.down();
-    await page.locator('#said').getByText('This is the past, to look at. Return to live to work.').waitFor();
+    const words = page.locator('#said').getByText('This is the past, to look at. Return to live to work.');
+    await words.waitFor();
     await page.mouse.up();
+    const box = (await words.boundingBox())!;
+    const under = await page.evaluate(([px, py]) => document.elementFromPoint(px, py)?.id, [box.x + box.width / 2, box.y + box.height / 2]);
+    expect(under, 'what a press on the words meets').toBe('picture');
     await page.keyboard.press('Space');
     const after = await viewer.state();
     expect(after.energized).toBe(false);
@@ -66,6 +70,7 @@ describe('looking back', () => {
 
   it('goes along with the timeline: to the moment of the cut', async () => {
     const { page } = viewer;
+    const { tip } = await viewer.state();
     const moments = page.locator('#moments');
     const cut = (await moments.locator('option').allTextContents()).find((words) => / s: cut, hook$/.test(words))!;
     await moments.selectOption({ label: cut });
@@ -74,6 +79,7 @@ describe('looking back', () => {
     const faces = await viewer.faces();
     expect(faces).toBeLessThanOrEqual(FACES);
     expect(faces).toBeGreaterThanOrEqual(left);
+    expect((await viewer.state()).tip, 'the tool stays where it was left').toEqual(tip);
   });
 
   it('returns to live at a press, and the hand works again', async () => {

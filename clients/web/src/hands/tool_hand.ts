@@ -50,6 +50,8 @@ export class ToolHand {
   private driven = false;
   /** where a cut begins, until the tool is there */
   private cutFrom: Vector3 | null = null;
+  /** it has gone down to work, and not risen since */
+  private down = false;
 
   constructor(
     private readonly model: Model,
@@ -219,7 +221,8 @@ export class ToolHand {
     this.jaws.letGo();
     this.cutFrom = null;
     this.way.clear();
-    if (this.wanted && this.guide === 'surface') this.rise();
+    if (this.down && this.wanted && this.guide === 'surface') this.rise();
+    this.down = false;
     this.viewport.invalidate();
   }
 
@@ -228,6 +231,7 @@ export class ToolHand {
     if (!this.wanted || this.guide === 'plane') return;
     const aim = this.aim ?? this.places.under(this.wanted.position);
     this.aim = aim;
+    this.down = true;
     this.cutFrom = this.over(aim);
     this.moveTo(this.cutFrom, true);
   }
@@ -314,6 +318,7 @@ export class ToolHand {
 
   private drop(): void {
     this.wanted = this.aim = this.cutFrom = null;
+    this.down = false;
     this.way.clear();
   }
 }
