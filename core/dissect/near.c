@@ -65,6 +65,32 @@ static void own_edges(cau_near *near, const cau_tissue *tissue, const int32_t *b
 	memcpy(near->halo_first, near->edge_first, (size_t)(near->block_count + 1) * sizeof(int32_t));
 }
 
+static int32_t least_vertex(const cau_face_table *faces, int32_t face)
+{
+	const int32_t *v = faces->vertex + 3 * (size_t)face;
+	int32_t least = v[0] < v[1] ? v[0] : v[1];
+	return least < v[2] ? least : v[2];
+}
+
+// Faces go to the block of their least vertex, which has both edges there, and so the others in its
+// halo.
+static void own_faces(cau_near *near, const cau_face_table *faces, const int32_t *block_of)
+{
+	for (int32_t f = 0; f < faces->face_count; f++)
+		near->face_first[block_of[least_vertex(faces, f)] + 1]++;
+	for (int32_t b = 0; b < near->block_count; b++)
+		near->face_first[b + 1] += near->face_first[b];
+	for (int32_t f = faces->face_count;
+	     f-- > 0;) { // from the blocks' ends, which come back to their starts
+		int32_t at = --near->face_first[block_of[least_vertex(faces, f)] + 1];
+		CAU_ASSERT_INDEX(at, faces->face_count);
+		near->face[at] = f;
+	}
+	for (int32_t b = 0; b < near->block_count; b++)
+		near->face_first[b] = near->face_first[b + 1];
+	near->face_first[near->block_count] = faces->face_count;
+}
+
 static int compare_index(const void *a, const void *b)
 {
 	int32_t x = *(const int32_t *)a, y = *(const int32_t *)b;
@@ -103,11 +129,14 @@ cau_status cau_near_create(cau_near *near, const cau_tissue *tissue, cau_arena *
 	near->halo = cau_arena_array(arena, e, sizeof(int32_t));
 	near->edge_first = cau_arena_array(arena, blocks + 1, sizeof(int32_t));
 	near->edge = cau_arena_array(arena, e, sizeof(int32_t));
+	near->face_first = cau_arena_array(arena, blocks + 1, sizeof(int32_t));
+	near->face = cau_arena_array(arena, (size_t)tissue->faces.face_count, sizeof(int32_t));
 	near->vertex_box = cau_arena_array(arena, blocks, sizeof(cau_box));
 	near->edge_box = cau_arena_array(arena, blocks, sizeof(cau_box));
 	cau_status status = CAU_OK;
 	if (!order || !block_of || !near->vertex || !near->halo_first || !near->halo ||
-	    !near->edge_first || !near->edge || !near->vertex_box || !near->edge_box) {
+	    !near->edge_first || !near->edge || !near->face_first || !near->face || !near->vertex_box ||
+	    !near->edge_box) {
 		status = cau_fail(error, CAU_NO_MEMORY, NULL, "no memory for the broad phase");
 	} else {
 		morton_order(tissue, order);
@@ -117,6 +146,7 @@ cau_status cau_near_create(cau_near *near, const cau_tissue *tissue, cau_arena *
 		}
 		own_edges(near, tissue, block_of);
 		thin_halo(near);
+		own_faces(near, &tissue->faces, block_of);
 	}
 	cau_arena_finish(&scratch);
 	return status;

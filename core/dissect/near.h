@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Broad phase: what is near a tool. Vertices are grouped in blocks by rest position (Morton order);
-// each block has a box round its own vertices and one round the edges it owns, refitted every tick.
+// each block has a box round its own vertices and one round the edges and faces it owns, refitted
+// every tick.
 #pragma once
 
 #include <stdbool.h>
@@ -22,6 +23,8 @@ typedef struct cau_near {
 	int32_t *halo;
 	int32_t *edge_first; // (block_count + 1): edges owned by the block
 	int32_t *edge;
+	int32_t *face_first; // (block_count + 1): faces whose least vertex is the block's
+	int32_t *face;
 	cau_box *vertex_box, *edge_box; // (block_count)
 	int32_t vertex_count;
 } cau_near;

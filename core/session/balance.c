@@ -63,8 +63,12 @@ cau_status cau_session_balance(cau_session *session, cau_balance *balance)
 	return_polars(&solver->elements, polars);
 	for (int32_t i = 0; i < session->contact.row_count; i++) {
 		const cau_contact_row *row = &session->contact.row[i];
-		const double off[3] = {-row->reaction[0], -row->reaction[1], -row->reaction[2]};
-		solver->kernels->vectors->add(solver->gradient, row->vertex, off);
+		for (int32_t k = 0; k < row->corner_count; k++) {
+			double off[3];
+			for (int c = 0; c < 3; c++)
+				off[c] = -row->weight[k] * row->reaction[c];
+			solver->kernels->vectors->add(solver->gradient, row->vertex[k], off);
+		}
 	}
 	double squared = 0;
 	for (int32_t v = 0; v < tissue->vertex_count; v++)

@@ -186,10 +186,9 @@ static double tool_work(const cau_session *session)
 	double work = 0;
 	for (int32_t k = 0; k < session->contact.row_count; k++) {
 		const cau_contact_row *row = &session->contact.row[k];
-		CAU_ASSERT_INDEX(row->vertex, session->tissue.vertex_count);
-		for (size_t c = 0, at = 3 * (size_t)row->vertex; c < 3; c++)
-			work +=
-				row->reaction[c] * (session->position[at + c] - session->position_start[at + c]);
+		cau_vec3 way = cau_sub(cau_contact_point(row, session->position),
+		                       cau_contact_point(row, session->position_start));
+		work += cau_dot(cau_vec3_of(row->reaction), way);
 	}
 	for (int32_t k = 0; k < session->solver.drag_count; k++) {
 		const cau_drag *drag = &session->solver.drag[k];

@@ -82,6 +82,7 @@ struct cau_session {
 	cau_shrink shrink;
 	cau_near near;
 	cau_contact_set contact;
+	struct cau_candidate *candidate; // reach.c: scratch
 	cau_frame_state frame;
 
 	uint64_t tick;
@@ -133,6 +134,18 @@ void cau_session_drop_tool(cau_session *session, int32_t index);
 int32_t cau_session_find_tool(const cau_session *session, const char *name);
 // touch.c: contact rows, attachments and drag before the solve; forces after it.
 void cau_session_find_contacts(cau_session *session);
+// After the solve: whether tissue is inside a tool, by what the rows say, or met it where there is
+// no row, which there is now.
+bool cau_session_find_missed(cau_session *session);
+
+// reach.c: whether a tool's contact is with faces as well as with vertices (not if it has jaws,
+// which tissue lies between and inside); the scratch that it needs; rows for the faces that the
+// part of a tool pushed in the last step; and, after the solve, rows for those that it has passed,
+// or that are deep inside.
+bool cau_session_feels_faces(const cau_tool *tool);
+struct cau_candidate *cau_session_make_reach(cau_arena *arena);
+void cau_session_reach_again(cau_session *session, int32_t index, cau_tool_part part);
+void cau_session_reach(cau_session *session, int32_t index, cau_tool_part part);
 void cau_session_read_forces(cau_session *session);
 cau_status cau_session_grasp(cau_session *session, cau_tool *tool, cau_error *error);
 void cau_session_release(cau_tool *tool);

@@ -27,7 +27,7 @@ static void pass_columns(snapshot_archive *archive, cau_session *session)
 	for (int32_t i = 0; i < count; i++)
 		snapshot_pass(archive, set->column[i], bytes);
 	for (int32_t i = 0; i < count; i++)
-		snapshot_pass(archive, set->inverse + (size_t)i * CAU_MAX_CONTACTS,
+		snapshot_pass(archive, set->inverse + (size_t)i * CAU_MAX_COLUMNS,
 		              (size_t)count * sizeof *set->inverse);
 }
 
@@ -87,6 +87,8 @@ static cau_status pass_state(snapshot_archive *archive, cau_session *session, ca
 	cau_status status = cau_snapshot_pass_elements(archive, session, error);
 	pass_update(archive, session);
 	pass_columns(archive, session);
+	snapshot_pass(archive, session->contact.memory,
+	              (size_t)session->contact.memory_count * sizeof *session->contact.memory);
 	if (session->rest.quiet_ticks && !session->rest.resting)
 		snapshot_pass(archive, session->rest.from, 3 * n * sizeof(double));
 	return status;
@@ -146,6 +148,7 @@ static cau_session *imagine(const cau_session *session, const snapshot_header *h
 	imagined->command_count = header->command_count;
 	imagined->shrink.active_count = header->active_count;
 	imagined->contact.column_count = header->column_count;
+	imagined->contact.memory_count = header->memory_count;
 	imagined->contact.epoch = imagined->solver.factor_epoch;
 	imagined->update.waiting_count = header->waiting_count;
 	imagined->update.operation_count = header->operation_count;
@@ -228,6 +231,7 @@ static void restore_counts(cau_session *session, const snapshot_header *header)
 	session->driven_count = 0;
 	session->shrink.active_count = header->active_count;
 	session->contact.column_count = header->column_count;
+	session->contact.memory_count = header->memory_count;
 	session->contact.epoch = session->solver.factor_epoch;
 	session->solver.factor_version = header->factor_version;
 	update->waiting_count = header->waiting_count;
@@ -347,7 +351,7 @@ cau_status cau_session_restore(cau_session *session, const void *bytes, size_t b
 		cau_dissection_recount(&session->dissection);
 		session->dissection.edges_parted = header.edges_parted;
 		session->dissection.elements_removed = header.elements_removed;
-		session->contact.row_count = session->contact.left_out_count = 0;
+		cau_contact_clear(&session->contact);
 		session->refusal_count = 0;
 		session->watch.left_m = 0;
 		session->energy.stale = session->spin.stale = true;

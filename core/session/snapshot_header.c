@@ -12,12 +12,14 @@ static const char magic[8] = "CAUSNAP";
 
 size_t cau_snapshot_header_bytes(uint32_t version)
 {
-	return version < 4 ? offsetof(snapshot_header, resting) : sizeof(snapshot_header);
+	return version < 4   ? offsetof(snapshot_header, resting)
+	       : version < 5 ? offsetof(snapshot_header, memory_count)
+	                     : sizeof(snapshot_header);
 }
 
 int32_t cau_snapshot_kept_columns(const cau_session *session)
 {
-	CAU_ASSERT_INDEX(session->contact.column_count, CAU_MAX_CONTACTS + 1);
+	CAU_ASSERT_INDEX(session->contact.column_count, CAU_MAX_COLUMNS + 1);
 	return session->contact.epoch == session->solver.factor_epoch ? session->contact.column_count
 	                                                              : 0;
 }
@@ -47,6 +49,7 @@ void cau_snapshot_fill_header(const cau_session *session, snapshot_header *heade
 	header->active_count = session->shrink.active_count;
 	header->factor_version = session->solver.factor_version;
 	header->column_count = cau_snapshot_kept_columns(session);
+	header->memory_count = session->contact.memory_count;
 	header->waiting_count = session->update.waiting_count;
 	header->operation_count = session->update.operation_count;
 	header->group_count = session->update.group_count;
@@ -103,10 +106,10 @@ cau_status cau_snapshot_check_header(const cau_session *session, const snapshot_
 	const cau_matrix_update *update = &session->update;
 	if (memcmp(header->magic, magic, sizeof magic) != 0)
 		return cau_snapshot_corrupt(error, "it does not begin like one");
-	if (header->version != 1 && header->version != 3 && header->version != CAU_SNAPSHOT_VERSION)
+	if (header->version != 1 && (header->version < 3 || header->version > CAU_SNAPSHOT_VERSION))
 		return cau_fail(
 			error, CAU_CORRUPT, NULL,
-			"the snapshot is of version %u and this build reads 1, 3 and %u: restore it with "
+			"the snapshot is of version %u and this build reads 1 and 3 to %u: restore it with "
 			"the build that wrote it",
 			(unsigned)header->version, (unsigned)CAU_SNAPSHOT_VERSION);
 	if (header->single != (uint32_t)session->solver.elements.single)
@@ -120,7 +123,8 @@ cau_status cau_snapshot_check_header(const cau_session *session, const snapshot_
 	    header->active_count > session->shrink.active_capacity || header->waiting_count < 0 ||
 	    header->waiting_count > update->waiting_capacity || header->operation_count < 0 ||
 	    header->operation_count > CAU_DOWNDATES_AT_MOST || header->column_count < 0 ||
-	    header->column_count > CAU_MAX_CONTACTS || header->waiting_at_start < 0 ||
+	    header->column_count > CAU_MAX_COLUMNS || header->waiting_at_start < 0 ||
+	    header->memory_count < 0 || header->memory_count > CAU_MAX_MEMORY ||
 	    header->row_count < 0 || header->row_count > header->vertex_count ||
 	    header->quiet_ticks < 0 || (header->resting && !header->quiet_ticks) ||
 	    (header->version >= 4 && !is_taught(header)))

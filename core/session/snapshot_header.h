@@ -6,8 +6,9 @@
 #include "session/session_internal.h"
 
 enum {
-	// with rest and accuracy; 3, without, and 1, elements by slot, are still read
-	CAU_SNAPSHOT_VERSION = 4,
+	// with the sides of faces; 4, without, 3, without rest and accuracy too, and 1, elements by
+	// slot, are still read
+	CAU_SNAPSHOT_VERSION = 5,
 	CAU_SNAPSHOT_NODES = 4096, // along a heat grid's side at most: far more than a tool may have
 };
 
@@ -32,6 +33,8 @@ typedef struct snapshot_header {
 	int32_t resting, quiet_ticks;
 	int32_t shallow_steps, unused;
 	double accuracy, amplification[CAU_ACCURACY_DEPTHS];
+	// since version 5
+	int32_t memory_count, unused_since_5;
 } snapshot_header;
 
 // How long the header of a version is; that of version 0 is what all have, the version among it.

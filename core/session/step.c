@@ -84,10 +84,21 @@ static cau_status begin_solve(cau_session *session, cau_error *error)
 	return status;
 }
 
+// Tissue that is pushed aside may meet the tool elsewhere: then the step goes on with that too.
+enum { MOST_ROUNDS = 8 };
+
 static cau_status solve(cau_session *session, cau_error *error)
 {
 	cau_error refusal = {0};
-	cau_status status = cau_solver_descend(&session->solver, &refusal);
+	cau_step_solver *solver = &session->solver;
+	cau_status status = cau_solver_descend(solver, &refusal);
+	for (int round = 0; round < MOST_ROUNDS && !status; round++) {
+		if (!cau_session_find_missed(session)) // touch.c
+			return CAU_OK;
+		solver->contact = &session->contact;
+		solver->objective = cau_solver_evaluate(solver);
+		status = cau_solver_descend(solver, &refusal);
+	}
 	if (!status)
 		return CAU_OK;
 	cau_session_locate(session, &refusal);

@@ -7,10 +7,10 @@
 #include "cautery/assert.h"
 #include "session/session_internal.h"
 
-enum { CANDIDATES = 4 * CAU_MAX_CONTACTS };
+enum { CANDIDATES = 4 * CAU_MAX_VERTEX_ROWS };
+static const double least_margin_m = 5e-4;
 static const double filter_s = 0.02;   // time constant of the reported force
 static const double drag_share = 0.25; // of a vertex's diagonal in A that drag may add
-static const double least_margin_m = 5e-4;
 
 // Cold parts push; the hot part pushes too while it is off.
 static cau_tool_part pushing_part(const cau_tool *tool)
@@ -23,10 +23,16 @@ static cau_contact_row contact_row(const cau_session *session, const cau_tool *t
 {
 	CAU_ASSERT_INDEX(vertex, session->tissue.vertex_count);
 	CAU_ASSERT_INDEX(index, session->tool_count);
-	cau_contact_row row = {.vertex = vertex, .tool = index};
+	cau_contact_row row = cau_contact_at_vertex(vertex, index);
+	cau_vec3 side;
 	cau_vec3 start = cau_vec3_of(session->position_start + 3 * (size_t)vertex);
 	cau_vec3 local = cau_pose_to_local(&tool->pose_before, start);
-	cau_vec3_to(cau_pose_to_world(&tool->state.pose, local), row.no_slip);
+	cau_vec3_to(cau_pose_to_world(&tool->state.pose, local), row.no_slip[0]);
+	if (cau_session_feels_faces(tool) && cau_tool_distance(&tool->state.definition, tool->state.jaw,
+	                                                       pushing_part(tool), local, &side) > 0)
+		cau_vec3_to(side, row.side); // else it may leave as it can
+	row.way_m = cau_length(cau_sub(cau_pose_to_local(&tool->state.pose, start), local)) +
+	            2 * tool->state.definition.hot_radius_m;
 	return row;
 }
 
@@ -35,7 +41,7 @@ static int compare_rows(const void *a, const void *b)
 	const cau_contact_row *x = a, *y = b;
 	if (x->gap != y->gap)
 		return x->gap < y->gap ? -1 : 1;
-	return (x->vertex > y->vertex) - (x->vertex < y->vertex);
+	return (x->vertex[0] > y->vertex[0]) - (x->vertex[0] < y->vertex[0]);
 }
 
 static bool is_grasped(const cau_tool *tool, int32_t vertex)
@@ -102,8 +108,9 @@ static void add_attachments(cau_session *session, int32_t index)
 {
 	cau_tool *tool = &session->tool[index];
 	for (int32_t k = 0; k < tool->grasp_count; k++) {
-		cau_contact_row row = {.vertex = tool->grasp[k].vertex, .tool = index, .attached = true};
-		CAU_ASSERT_INDEX(row.vertex, session->tissue.vertex_count);
+		cau_contact_row row = cau_contact_at_vertex(tool->grasp[k].vertex, index);
+		CAU_ASSERT_INDEX(row.vertex[0], session->tissue.vertex_count);
+		row.attached = true;
 		cau_vec3_to(cau_pose_to_world(&tool->state.pose, cau_vec3_of(tool->grasp[k].local)),
 		            row.anchor);
 		cau_contact_add(&session->contact, &row);
@@ -159,10 +166,20 @@ static void describe_tools(cau_session *session)
 	}
 }
 
+// Vertices leave room for faces, which are what a tool would pass.
+static void add_vertex(cau_contact_set *set, const cau_contact_row *row)
+{
+	if (set->row_count < CAU_MAX_VERTEX_ROWS)
+		cau_contact_add(set, row);
+	else
+		set->left_out_count++;
+}
+
 void cau_session_find_contacts(cau_session *session)
 {
 	cau_contact_row rows[CANDIDATES];
-	session->contact.row_count = session->contact.left_out_count = 0;
+	cau_contact_clear(&session->contact);
+	session->contact.left_out_count = 0;
 	session->solver.drag_count = 0;
 	if (!session->tool_count)
 		return;
@@ -174,11 +191,37 @@ void cau_session_find_contacts(cau_session *session)
 	for (int32_t i = 0; i < session->tool_count; i++) {
 		int32_t count = collect(session, i, rows);
 		for (int32_t k = 0; k < count; k++)
-			cau_contact_add(&session->contact, &rows[k]);
+			add_vertex(&session->contact, &rows[k]);
+		if (cau_session_feels_faces(&session->tool[i]))
+			cau_session_reach_again(session, i, pushing_part(&session->tool[i]));
 		add_drag(session, i);
 	}
 	if (session->contact.row_count)
 		cau_contact_prepare(&session->contact, &session->solver);
+}
+
+static const double missed_m = 1e-4; // a face deeper than this at its row is not held yet
+
+// Whether tissue is where it cannot have come: then the step goes on with the faces that the tools
+// met and no row told of, and with the rows that it ended inside of.
+bool cau_session_find_missed(cau_session *session)
+{
+	cau_contact_set *set = &session->contact;
+	int32_t rows = set->row_count, feeling = 0;
+	set->touched_count = 0;
+	for (int32_t i = 0; i < session->tool_count; i++)
+		feeling += cau_session_feels_faces(&session->tool[i]);
+	if (!feeling)
+		return false;
+	cau_near_refit(&session->near, session->position);
+	for (int32_t i = 0; i < session->tool_count; i++)
+		if (cau_session_feels_faces(&session->tool[i]))
+			cau_session_reach(session, i, pushing_part(&session->tool[i]));
+	if (set->row_count == rows && !set->face_count)
+		return false;
+	if (set->row_count > rows)
+		cau_contact_prepare(set, &session->solver);
+	return set->row_count > rows || cau_contact_depth(set, &session->solver) > missed_m;
 }
 
 // ---- after the solve
@@ -190,9 +233,9 @@ static void slip(cau_tool *tool, const cau_contact_row *row, const double *posit
 	const cau_tool_def *def = &tool->state.definition;
 	for (int32_t k = 0; k < tool->grasp_count; k++) {
 		cau_grasp *grasp = &tool->grasp[k];
-		if (grasp->vertex != row->vertex)
+		if (grasp->vertex != row->vertex[0])
 			continue;
-		cau_vec3 anchor = cau_add_scaled(cau_vec3_of(position + 3 * (size_t)row->vertex),
+		cau_vec3 anchor = cau_add_scaled(cau_contact_point(row, position),
 		                                 1 / def->grasp_stiffness_n_m, cau_vec3_of(row->reaction));
 		cau_vec3 local = cau_pose_to_local(&tool->state.pose, anchor);
 		cau_vec3_to(local, grasp->local);
@@ -221,6 +264,7 @@ static void filter(double filtered[3], const double raw[3], double most, double 
 
 void cau_session_read_forces(cau_session *session)
 {
+	cau_contact_remember(&session->contact);
 	for (int32_t i = 0; i < session->tool_count; i++) {
 		cau_tool_state *state = &session->tool[i].state;
 		memset(state->raw_force_n, 0, sizeof state->raw_force_n);
@@ -232,8 +276,7 @@ void cau_session_read_forces(cau_session *session)
 		CAU_ASSERT_INDEX(row->tool, session->tool_count);
 		cau_tool *tool = &session->tool[row->tool];
 		cau_vec3 reaction = cau_vec3_of(row->reaction);
-		add_force(&tool->state, cau_scale(-1, reaction),
-		          cau_vec3_of(session->position + 3 * (size_t)row->vertex));
+		add_force(&tool->state, cau_scale(-1, reaction), cau_contact_point(row, session->position));
 		tool->state.contact_vertices += !row->attached && cau_dot(reaction, reaction) > 0;
 		if (row->attached && row->slipping)
 			slip(tool, row, session->position);

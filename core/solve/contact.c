@@ -1,186 +1,178 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "solve/contact.h"
 
+#include <stdlib.h>
 #include <string.h>
 
 #include "cautery/assert.h"
 #include "solve/hold.h"
+#include "tool/face_distance.h"
 
 cau_status cau_contact_create(cau_contact_set *set, const cau_tissue *tissue,
                               const cau_vectors *vectors, cau_arena *arena, cau_error *error)
 {
-	size_t n = (size_t)tissue->vertex_count;
-	set->inverse = cau_arena_array(arena, CAU_MAX_CONTACTS * CAU_MAX_CONTACTS, sizeof(double));
-	set->hold = cau_arena_array(arena, CAU_MAX_CONTACTS * CAU_MAX_CONTACTS, sizeof(double));
-	set->step = cau_arena_array(arena, 3 * CAU_MAX_CONTACTS, sizeof(double));
+	size_t n = (size_t)tissue->vertex_count, columns = CAU_MAX_COLUMNS;
+	set->inverse = cau_arena_array(arena, columns * columns, sizeof(double));
+	set->answer = cau_arena_array(arena, CAU_MAX_CONTACTS * columns, sizeof(double));
+	set->step = cau_arena_array(arena, 3 * columns, sizeof(double));
+	set->change = cau_arena_array(arena, 3 * columns, sizeof(double));
+	set->hold = cau_arena_array(arena, CAU_MAX_HELD * CAU_MAX_HELD, sizeof(double));
 	set->before = cau_arena_array(arena, 3 * CAU_MAX_CONTACTS, sizeof(double));
 	set->unit = cau_arena_array(arena, 4 * n, vectors->real_bytes);
 	set->solution = cau_arena_array(arena, 4 * n, vectors->real_bytes);
-	bool missing =
-		!set->inverse || !set->hold || !set->step || !set->before || !set->unit || !set->solution;
-	for (int32_t k = 0; k < CAU_MAX_CONTACTS && !missing; k++) {
+	bool missing = !set->inverse || !set->answer || !set->step || !set->change || !set->hold ||
+	               !set->before || !set->unit || !set->solution;
+	for (int32_t k = 0; k < CAU_MAX_COLUMNS && !missing; k++) {
 		set->column[k] = cau_arena_array(arena, n, vectors->real_bytes);
 		missing = !set->column[k];
 	}
 	return missing ? cau_fail(error, CAU_NO_MEMORY, NULL, "no memory for contacts") : CAU_OK;
 }
 
+cau_contact_row cau_contact_at_vertex(int32_t vertex, int32_t tool)
+{
+	CAU_ASSERT(vertex >= 0, "a row of vertex %d", vertex);
+	return (cau_contact_row){
+		.corner_count = 1, .vertex = {vertex}, .weight = {1}, .free = {true}, .tool = tool};
+}
+
+// Of values by corner, (corner_count x 3).
+static cau_vec3 weighted(const cau_contact_row *row, const double *corner)
+{
+	cau_vec3 sum = {0, 0, 0};
+	for (int32_t k = 0; k < row->corner_count; k++)
+		sum = cau_add_scaled(sum, row->weight[k], cau_vec3_of(corner + 3 * (size_t)k));
+	return sum;
+}
+
+cau_vec3 cau_contact_point(const cau_contact_row *row, const double *x)
+{
+	cau_vec3 sum = {0, 0, 0};
+	for (int32_t k = 0; k < row->corner_count; k++)
+		sum = cau_add_scaled(sum, row->weight[k], cau_vec3_of(x + 3 * (size_t)row->vertex[k]));
+	return sum;
+}
+
+static bool is_corner(const cau_contact_set *set, int32_t vertex)
+{
+	for (int32_t i = 0; i < set->corner_count; i++)
+		if (set->corner[i] == vertex)
+			return true;
+	return false;
+}
+
+void cau_contact_clear(cau_contact_set *set)
+{
+	set->row_count = set->corner_count = set->face_count = 0;
+}
+
+// ---- sides of faces
+
+static int compare_memory(const void *a, const void *b)
+{
+	const cau_contact_memory *x = a, *y = b;
+	if (x->tool != y->tool)
+		return x->tool < y->tool ? -1 : 1;
+	return (x->face > y->face) - (x->face < y->face);
+}
+
+static cau_contact_memory memory_of(int32_t tool, int32_t face, cau_vec3 side)
+{
+	cau_contact_memory memory = {.tool = tool, .face = face};
+	cau_vec3_to(side, memory.side);
+	return memory;
+}
+
+void cau_contact_touch(cau_contact_set *set, int32_t tool, int32_t face, cau_vec3 side)
+{
+	CAU_ASSERT_INDEX(tool, set->tool_count);
+	if (set->touched_count < CAU_MAX_MEMORY)
+		set->touched[set->touched_count++] = memory_of(tool, face, side);
+}
+
+static void keep(cau_contact_set *set, const cau_contact_memory *memory)
+{
+	if (set->memory_count < CAU_MAX_MEMORY)
+		set->memory[set->memory_count++] = *memory;
+}
+
+void cau_contact_remember(cau_contact_set *set)
+{
+	set->memory_count = 0;
+	for (int32_t i = 0; i < set->row_count; i++) {
+		const cau_contact_row *row = &set->row[i];
+		cau_contact_memory pushed = memory_of(row->tool, row->face, cau_vec3_of(row->side));
+		pushed.pushed = 1;
+		if (row->corner_count == 3)
+			keep(set, &pushed);
+	}
+	int32_t pushed_count = set->memory_count;
+	for (int32_t i = 0; i < set->touched_count; i++) {
+		int32_t k = 0;
+		while (k < pushed_count && compare_memory(&set->memory[k], &set->touched[i]) != 0)
+			k++;
+		if (k == pushed_count)
+			keep(set, &set->touched[i]);
+	}
+	qsort(set->memory, (size_t)set->memory_count, sizeof *set->memory, compare_memory);
+	int32_t kept = 0; // a face with several rows once
+	for (int32_t i = 0; i < set->memory_count; i++)
+		if (!kept || compare_memory(&set->memory[kept - 1], &set->memory[i]) != 0)
+			set->memory[kept++] = set->memory[i];
+	set->memory_count = kept;
+}
+
+const cau_contact_memory *cau_contact_recall(const cau_contact_set *set, int32_t tool, int32_t face)
+{
+	cau_contact_memory key = {.tool = tool, .face = face};
+	return bsearch(&key, set->memory, (size_t)set->memory_count, sizeof key, compare_memory);
+}
+
+// ---- rows
+
 bool cau_contact_add(cau_contact_set *set, const cau_contact_row *row)
 {
 	CAU_ASSERT(set->row_count >= 0 && set->row_count <= CAU_MAX_CONTACTS, "%d rows",
 	           set->row_count);
 	CAU_ASSERT_INDEX(row->tool, set->tool_count);
-	CAU_ASSERT(row->vertex >= 0, "a row of vertex %d", row->vertex);
-	if (set->row_count == CAU_MAX_CONTACTS) {
+	CAU_ASSERT(row->corner_count == 1 || row->corner_count == 3, "a row of %d corners",
+	           row->corner_count);
+	int32_t added[3], count = 0;
+	for (int32_t k = 0; k < row->corner_count; k++)
+		if (row->free[k] && !is_corner(set, row->vertex[k]))
+			added[count++] = row->vertex[k];
+	if (set->row_count == CAU_MAX_CONTACTS || set->corner_count + count > CAU_MAX_COLUMNS) {
 		set->left_out_count++;
 		return false;
 	}
+	memcpy(set->corner + set->corner_count, added, (size_t)count * sizeof *added);
+	set->corner_count += count;
 	set->row[set->row_count++] = *row;
+	set->face_count += row->corner_count == 3;
 	return true;
 }
 
-// ---- columns of A^-1
-
-// Solves for up to three columns at once, one unit load in each of x, y and z, and enters them in
-// S.
-static void make_columns(cau_contact_set *set, cau_step_solver *solver, const int32_t *place,
-                         int32_t count)
-{
-	CAU_ASSERT(count >= 1 && count <= 3, "%d columns at once", count);
-	static const double load[3][3] = {{1, 0, 0}, {0, 1, 0}, {0, 0, 1}};
-	static const double unload[3][3] = {{-1, 0, 0}, {0, -1, 0}, {0, 0, -1}};
-	const cau_vectors *vectors = solver->kernels->vectors;
-	for (int32_t c = 0; c < count; c++)
-		vectors->add(set->unit, set->column_vertex[place[c]], load[c]);
-	cau_solver_apply_inverse(solver, set->unit, set->solution, 1);
-	for (int32_t c = 0; c < count; c++) {
-		int32_t p = place[c];
-		CAU_ASSERT_INDEX(p, set->column_count);
-		vectors->take_coordinate(set->column[p], set->solution, c, solver->tissue->vertex_count);
-		for (int32_t i = 0; i < set->column_count; i++) {
-			double s = vectors->at(set->column[p], set->column_vertex[i]);
-			set->inverse[p * CAU_MAX_CONTACTS + i] = set->inverse[i * CAU_MAX_CONTACTS + p] = s;
-		}
-		set->column_version[p] = solver->factor_version;
-		vectors->add(set->unit, set->column_vertex[p], unload[c]);
-	}
-}
-
-static int32_t find_column(const cau_contact_set *set, int32_t vertex)
-{
-	for (int32_t k = 0; k < set->column_count; k++)
-		if (set->column_vertex[k] == vertex)
-			return k;
-	return -1;
-}
-
-// Keeps only the columns that rows use, in their order.
-static void drop_unused(cau_contact_set *set)
-{
-	uint8_t used[CAU_MAX_CONTACTS] = {0};
-	int32_t kept = 0, from[CAU_MAX_CONTACTS];
-	for (int32_t i = 0; i < set->row_count; i++)
-		if (set->row[i].column >= 0)
-			used[set->row[i].column] = 1;
-	for (int32_t k = 0; k < set->column_count; k++) {
-		if (!used[k])
-			continue;
-		cau_reals *column = set->column[kept];
-		set->column[kept] = set->column[k];
-		set->column[k] = column;
-		set->column_vertex[kept] = set->column_vertex[k];
-		set->column_version[kept] = set->column_version[k];
-		from[kept++] = k;
-	}
-	for (int32_t i = 0; i < kept; i++) // rows and columns move towards the start only
-		for (int32_t j = 0; j < kept; j++)
-			set->inverse[i * CAU_MAX_CONTACTS + j] =
-				set->inverse[from[i] * CAU_MAX_CONTACTS + from[j]];
-	set->column_count = kept;
-	CAU_ASSERT(kept <= set->row_count, "%d columns kept for %d rows", kept, set->row_count);
-}
-
-static void find_columns(cau_contact_set *set, int32_t *missing)
-{
-	*missing = false;
-	for (int32_t i = 0; i < set->row_count; i++) {
-		set->row[i].column = find_column(set, set->row[i].vertex);
-		*missing += set->row[i].column < 0;
-	}
-}
-
-// The columns that lag furthest, by version and place.
-static int32_t find_lagging(const cau_contact_set *set, uint64_t version, int32_t *place)
-{
-	int32_t count = 0;
-	for (int32_t i = 0; i < set->row_count; i++) {
-		int32_t p = set->row[i].column, k = count;
-		CAU_ASSERT_INDEX(p, set->column_count);
-		if (set->column_version[p] == version)
-			continue;
-		if (count < CAU_COLUMNS_RENEWED)
-			count++;
-		else if (set->column_version[place[count - 1]] <= set->column_version[p])
-			continue;
-		else
-			k = count - 1;
-		for (; k > 0 && set->column_version[place[k - 1]] > set->column_version[p]; k--)
-			place[k] = place[k - 1];
-		place[k] = p;
-	}
-	return count;
-}
-
-void cau_contact_prepare(cau_contact_set *set, cau_step_solver *solver)
-{
-	CAU_ASSERT(set->row_count > 0 && set->row_count <= CAU_MAX_CONTACTS, "%d rows", set->row_count);
-	int32_t missing, place[3];
-	if (set->epoch != solver->factor_epoch)
-		set->column_count = 0;
-	set->epoch = solver->factor_epoch;
-	find_columns(set, &missing);
-	if (set->column_count + missing > CAU_MAX_CONTACTS) {
-		drop_unused(set);
-		find_columns(set, &missing);
-	}
-	int32_t waiting = 0;
-	for (int32_t i = 0; i < set->row_count; i++) {
-		if (set->row[i].column >= 0)
-			continue;
-		set->row[i].column = find_column(set, set->row[i].vertex);
-		if (set->row[i].column < 0) {
-			CAU_ASSERT_INDEX(set->column_count, CAU_MAX_CONTACTS);
-			set->column_vertex[set->column_count] = set->row[i].vertex;
-			set->row[i].column = place[waiting++] = set->column_count++;
-		}
-		if (waiting == 3) {
-			make_columns(set, solver, place, waiting);
-			waiting = 0;
-		}
-	}
-	if (waiting)
-		make_columns(set, solver, place, waiting);
-	int32_t lagging = find_lagging(set, solver->factor_version, place);
-	if (lagging)
-		make_columns(set, solver, place, lagging);
-	cau_hold_prepare(set);
-}
-
 // ---- reactions
-// Signed distance and normal of a contact row at the present iterate.
+// Signed distance and normal of a row's point at the present iterate. Where the tool has passed it,
+// the way back counts.
 static void measure_gap(const cau_contact_set *set, const cau_step_solver *solver,
                         cau_contact_row *row)
 {
-	if (row->attached)
-		return;
 	const cau_contact_tool *tool = &set->tool[row->tool];
+	cau_tool_part part = (cau_tool_part)tool->part;
+	cau_vec3 normal, side = cau_vec3_of(row->side);
 	CAU_ASSERT_INDEX(row->tool, set->tool_count);
-	CAU_ASSERT_INDEX(row->vertex, solver->tissue->vertex_count);
-	cau_vec3 normal;
-	row->gap =
-		cau_tool_distance_at(tool->def, &tool->pose, tool->jaw, (cau_tool_part)tool->part,
-	                         cau_vec3_of(solver->position + 3 * (size_t)row->vertex), &normal);
-	cau_vec3_to(normal, row->normal);
+	cau_vec3 point = cau_pose_to_local(&tool->pose, cau_contact_point(row, solver->position));
+	row->gap = cau_tool_distance(tool->def, tool->jaw, part, point, &normal);
+	bool beyond = cau_dot(normal, side) < 0;
+	if (beyond || (row->corner_count == 3 && row->gap < 0)) {
+		double way = cau_tool_way_out(tool->def, tool->jaw, part, point, side, row->way_m, &normal);
+		if (!(cau_dot(normal, side) > 0))
+			normal = side;
+		row->gap = -way * cau_dot(normal, side);
+	}
+	row->gap += row->slack_m;
+	cau_vec3_to(cau_rotate(tool->pose.rotation, normal), row->normal);
 }
 
 // A bound that is not a number leaves `a` as it is: the step ends as a fault.
@@ -223,21 +215,53 @@ static cau_vec3 contact_reaction(const cau_contact_set *set, const cau_contact_r
 // precision tell no smaller changes apart.
 static const double SETTLED = 1e-6;
 
+static cau_vec3 step_of(const cau_contact_set *set, const cau_contact_row *row)
+{
+	cau_vec3 step = {0, 0, 0};
+	for (int32_t k = 0; k < row->corner_count; k++)
+		if (row->column[k] >= 0)
+			step = cau_add_scaled(step, row->weight[k],
+			                      cau_vec3_of(set->step + 3 * (size_t)row->column[k]));
+	return step;
+}
+
+static double own_answer(const cau_contact_set *set, int32_t i)
+{
+	const cau_contact_row *row = &set->row[i];
+	const double *answer = set->answer + (size_t)i * CAU_MAX_COLUMNS;
+	double own = 0;
+	for (int32_t k = 0; k < row->corner_count; k++)
+		if (row->column[k] >= 0)
+			own += row->weight[k] * answer[row->column[k]];
+	return own;
+}
+
+static void move_corners(cau_contact_set *set, int32_t row, cau_vec3 by)
+{
+	const double *answer = set->answer + (size_t)row * CAU_MAX_COLUMNS;
+	for (int32_t c = 0; c < set->column_count; c++) {
+		set->step[3 * c] += answer[c] * by.x;
+		set->step[3 * c + 1] += answer[c] * by.y;
+		set->step[3 * c + 2] += answer[c] * by.z;
+	}
+}
+
 // One Gauss-Seidel pass over the rows. Returns the largest change relative to the largest reaction.
 static double relax_rows(cau_contact_set *set, const cau_step_solver *solver)
 {
 	double change = 0, size = 0;
 	for (int32_t i = 0; i < set->row_count; i++) {
 		cau_contact_row *row = &set->row[i];
-		CAU_ASSERT_INDEX(row->column, set->column_count);
-		const double *s = set->inverse + (size_t)row->column * CAU_MAX_CONTACTS;
-		cau_vec3 step = cau_vec3_of(set->step + 3 * i), old = cau_vec3_of(row->reaction);
-		cau_vec3 x = cau_add(cau_vec3_of(solver->position + 3 * (size_t)row->vertex), step);
-		double own = s[row->column];
+		cau_vec3 step = step_of(set, row), old = cau_vec3_of(row->reaction);
+		cau_vec3 x = cau_add(cau_contact_point(row, solver->position), step);
+		double own = own_answer(set, i);
+		if (!(own > 0)) // none of its corners can move
+			continue;
 		cau_vec3 next =
 			row->attached
 				? attachment_reaction(set, row, cau_sub(x, cau_vec3_of(row->anchor)), own, old)
-				: contact_reaction(set, row, step, cau_sub(x, cau_vec3_of(row->no_slip)), own, old);
+				: contact_reaction(set, row, step, cau_sub(x, weighted(row, row->no_slip[0])), own,
+		                           old);
 		cau_vec3 by = cau_sub(next, old);
 		double length = cau_length(by);
 		size = fmax(size, cau_length(next));
@@ -245,17 +269,12 @@ static double relax_rows(cau_contact_set *set, const cau_step_solver *solver)
 			continue;
 		change = fmax(change, length);
 		cau_vec3_to(next, row->reaction);
-		for (int32_t j = 0; j < set->row_count; j++) {
-			double share = s[set->row[j].column];
-			set->step[3 * j] += share * by.x;
-			set->step[3 * j + 1] += share * by.y;
-			set->step[3 * j + 2] += share * by.z;
-		}
+		move_corners(set, i, by);
 	}
 	return size > 0 ? change / size : 0;
 }
 
-// increment += C dr over a chunk of vertices
+// increment += C W^T dr over a chunk of vertices
 typedef struct spread {
 	const cau_contact_set *set;
 	cau_step_solver *solver;
@@ -267,31 +286,40 @@ static void spread_part(void *context, int32_t chunk)
 	const cau_contact_set *set = work->set;
 	cau_step_solver *solver = work->solver;
 	int32_t first, last = cau_solver_chunk_end(solver, chunk, &first);
-	for (int32_t i = 0; i < set->row_count; i++) {
-		const cau_contact_row *row = &set->row[i];
-		double dr[3];
-		for (int c = 0; c < 3; c++)
-			dr[c] = row->reaction[c] - set->before[3 * i + c];
-		if (dr[0] != 0 || dr[1] != 0 || dr[2] != 0)
-			solver->kernels->spread(solver->increment, set->column[row->column], dr, first, last);
+	for (int32_t c = 0; c < set->column_count; c++) {
+		const double *load = set->change + 3 * (size_t)c;
+		if (load[0] != 0 || load[1] != 0 || load[2] != 0)
+			solver->kernels->spread(solver->increment, set->column[c], load, first, last);
 	}
 }
 
+// W^T of what changed in the reactions since the last time: in `change`, and off the gradient.
 static void take_off_gradient(cau_contact_set *set, cau_step_solver *solver)
 {
+	memset(set->change, 0, 3 * (size_t)set->column_count * sizeof *set->change);
 	for (int32_t i = 0; i < set->row_count; i++) {
-		double change[3];
-		for (int c = 0; c < 3; c++) {
-			change[c] = set->before[3 * i + c] - set->row[i].reaction[c];
-			set->before[3 * i + c] = set->row[i].reaction[c];
+		const cau_contact_row *row = &set->row[i];
+		for (int32_t k = 0; k < row->corner_count; k++) {
+			double off[3];
+			if (row->column[k] < 0)
+				continue;
+			for (int c = 0; c < 3; c++) {
+				double change = row->weight[k] * (row->reaction[c] - set->before[3 * i + c]);
+				set->change[3 * row->column[k] + c] += change;
+				off[c] = -change;
+			}
+			solver->kernels->vectors->add(solver->gradient, row->vertex[k], off);
 		}
-		solver->kernels->vectors->add(solver->gradient, set->row[i].vertex, change);
+		memcpy(set->before + 3 * (size_t)i, row->reaction, sizeof row->reaction);
 	}
 }
 
 void cau_contact_load(cau_contact_set *set, cau_step_solver *solver)
 {
 	CAU_ASSERT_INDEX(set->row_count, CAU_MAX_CONTACTS + 1);
+	for (int32_t i = 0; i < set->row_count; i++)
+		if (!set->row[i].attached)
+			measure_gap(set, solver, &set->row[i]);
 	memset(set->before, 0, 3 * (size_t)set->row_count * sizeof *set->before);
 	take_off_gradient(set, solver);
 }
@@ -299,28 +327,42 @@ void cau_contact_load(cau_contact_set *set, cau_step_solver *solver)
 void cau_contact_correct(cau_contact_set *set, cau_step_solver *solver)
 {
 	CAU_ASSERT_INDEX(set->row_count, CAU_MAX_CONTACTS + 1);
-	for (int32_t i = 0; i < set->row_count; i++) {
-		cau_contact_row *row = &set->row[i];
-		measure_gap(set, solver, row);
-		solver->kernels->vectors->read(solver->increment, row->vertex, set->step + 3 * i);
-	}
+	for (int32_t c = 0; c < set->column_count; c++)
+		solver->kernels->vectors->read(solver->increment, set->column_vertex[c],
+		                               set->step + 3 * (size_t)c);
 	for (int sweep = 0; sweep < CAU_CONTACT_SWEEPS; sweep++) {
 		cau_hold_solve(set, solver);
 		if (relax_rows(set, solver) < SETTLED)
 			break;
 	}
-	cau_pool_run(solver->pool, solver->chunk_count, spread_part, &(spread){set, solver});
 	take_off_gradient(set, solver);
+	cau_pool_run(solver->pool, solver->chunk_count, spread_part, &(spread){set, solver});
+}
+
+double cau_contact_depth(const cau_contact_set *set, const cau_step_solver *solver)
+{
+	double depth = 0;
+	for (int32_t i = 0; i < set->row_count; i++) {
+		cau_contact_row row = set->row[i]; // it stays as its reaction was found
+		if (row.corner_count == 1)
+			continue;
+		measure_gap(set, solver, &row);
+		depth = fmax(depth, -row.gap);
+	}
+	return depth;
 }
 
 double cau_contact_work(const cau_contact_set *set, const cau_step_solver *solver)
 {
 	double work = 0;
 	for (int32_t i = 0; i < set->row_count; i++) {
-		double way[3];
-		solver->kernels->vectors->read(solver->trial_increment, set->row[i].vertex, way);
-		for (int c = 0; c < 3; c++)
-			work += fabs(set->row[i].reaction[c] * way[c]);
+		const cau_contact_row *row = &set->row[i];
+		double way[3][3];
+		for (int32_t k = 0; k < row->corner_count; k++)
+			solver->kernels->vectors->read(solver->trial_increment, row->vertex[k], way[k]);
+		cau_vec3 along = weighted(row, way[0]);
+		work += fabs(row->reaction[0] * along.x) + fabs(row->reaction[1] * along.y) +
+		        fabs(row->reaction[2] * along.z);
 	}
 	return 2 * work;
 }

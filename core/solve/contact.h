@@ -1,12 +1,16 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Tools that touch: unilateral contact with Coulomb friction and grasped
-// attachments, inside the solve. Vertices near a tool are rows. With C the rows' columns of A^-1
-// and S its block on the rows (a Schur complement: the factor is not touched), each global step d,
-// taken with the present reactions r on the right-hand side, is corrected to d + C dr, where r + dr
-// solves, by projected Gauss-Seidel,
+// attachments, inside the solve. Points of tissue at a tool are rows: a vertex, or a point of a
+// face, W x of its corners x with weights W >= 0 of sum 1. With C the corners' columns of A^-1, S
+// its block on the corners (a Schur complement: the factor is not touched) and W^T the rows' loads
+// on them, each global step d, taken with the present reactions r on the right-hand side, is
+// corrected to d + C W^T dr, where r + dr solves, by projected Gauss-Seidel,
 //
-//     contact      r_n >= 0,  gap + n.(d + S dr) >= 0, complementary;  |r_t| <= friction r_n
+//     contact      r_n >= 0,  gap + n.W (d + S W^T dr) >= 0, complementary;  |r_t| <= friction r_n
 //     against slip attachment   r = -k (x + d + S dr - anchor), its length at most the slip force
+//
+// A row knows on which side of the tool it belongs: a face that the tool has passed within the tick
+// is pushed back to where it was, not on.
 //
 // Columns are kept from tick to tick. Because r is on the right-hand side, the fixed point does not
 // depend on C: after a cut its columns may lag, and a few are renewed every tick.
@@ -18,7 +22,11 @@
 #include "tool/tool_shape.h"
 
 enum {
-	CAU_MAX_CONTACTS = 192,
+	CAU_MAX_CONTACTS = 256,    // rows
+	CAU_MAX_VERTEX_ROWS = 192, // of them of vertices, held or near: the rest is for faces
+	CAU_MAX_COLUMNS = 288,     // vertices that are corners of rows
+	CAU_MAX_MEMORY = 1024,     // faces whose side is kept
+	CAU_MAX_HELD = 192,        // rows of attachments that are solved at once
 	CAU_CONTACT_SWEEPS = 30,
 	CAU_COLUMNS_RENEWED = 3, // of those that lag, each tick
 };
@@ -32,36 +40,59 @@ typedef struct cau_contact_tool {
 } cau_contact_tool;
 
 typedef struct cau_contact_row {
-	int32_t vertex;
+	int32_t corner_count; // 1: a vertex; 3: a point of a face
+	int32_t face;
+	int32_t vertex[3]; // its corners
+	double weight[3];  // their shares in the point
+	bool free[3];      // whether they can move
+	int32_t column[3]; // the free ones' places among the kept columns; else -1
 	int32_t tool;
 	bool attached;
-	bool slipping;      // attachment at its slip force in the last solve
-	double normal[3];   // outward from the tool
-	double gap;         // m, signed distance at the present iterate
-	double no_slip[3];  // m, where the vertex would be if it stuck to the tool
-	double anchor[3];   // m, attachment's target
-	double reaction[3]; // N, of the tool on the vertex
-	int32_t column;     // its place among the kept columns
+	bool slipping;        // attachment at its slip force in the last solve
+	double side[3];       // unit, in the tool's frame: where the tissue belongs; 0: wherever it is
+	double way_m;         // how far the point may have to go that way at most
+	double slack_m;       // how deep it may stay inside in this tick
+	double normal[3];     // outward from the tool
+	double gap;           // m, signed distance at the present iterate, and slack_m
+	double no_slip[3][3]; // m, where its corners would be if they stuck to the tool
+	double anchor[3];     // m, attachment's target
+	double reaction[3];   // N, of the tool on the point
 } cau_contact_row;
+
+// A face that a tool pushed, or that was inside it, at the end of a step: on which side it belongs.
+typedef struct cau_contact_memory {
+	int32_t tool, face;
+	int32_t pushed, unused; // whether it was a row
+	double side[3];         // unit, in the tool's frame
+} cau_contact_memory;
 
 struct cau_contact_set {
 	int32_t tool_count;
 	cau_contact_tool tool[CAU_MAX_TOOLS];
 	int32_t row_count;
 	cau_contact_row row[CAU_MAX_CONTACTS];
-	int32_t left_out_count; // rows that found no place in this step
+	int32_t face_count;     // rows of faces
+	int32_t left_out_count; // of the step: points that touch and found no place
+	int32_t memory_count;   // of the last step, by tool and face: part of the session's state
+	cau_contact_memory memory[CAU_MAX_MEMORY];
+	int32_t touched_count; // what the present step has found of it
+	cau_contact_memory touched[CAU_MAX_MEMORY];
 	// Kept columns of A^-1: part of the session's state, since they lag after cuts.
 	int32_t column_count;
-	int32_t column_vertex[CAU_MAX_CONTACTS];
-	uint64_t column_version[CAU_MAX_CONTACTS]; // of the factor they were made from
-	cau_reals *column[CAU_MAX_CONTACTS];       // (vertex_count), m/N
-	uint64_t epoch;                            // of the factor: another one empties the columns
-	double *inverse;    // (CAU_MAX_CONTACTS x CAU_MAX_CONTACTS): S by columns' places, m/N
-	double *step;       // (CAU_MAX_CONTACTS x 3): d before correction, m
+	int32_t column_vertex[CAU_MAX_COLUMNS];
+	uint64_t column_version[CAU_MAX_COLUMNS]; // of the factor they were made from
+	cau_reals *column[CAU_MAX_COLUMNS];       // (vertex_count), m/N
+	uint64_t epoch;                           // of the factor: another one empties the columns
+	int32_t corner_count;                     // distinct vertices of the rows that are free
+	int32_t corner[CAU_MAX_COLUMNS];
+	double *inverse;    // (CAU_MAX_COLUMNS x CAU_MAX_COLUMNS): S by columns' places, m/N
+	double *answer;     // (CAU_MAX_CONTACTS x CAU_MAX_COLUMNS): S W^T, what a row moves, m/N
+	double *step;       // (CAU_MAX_COLUMNS x 3): d at the columns' vertices, m
+	double *change;     // (CAU_MAX_COLUMNS x 3): of the load on them, N
 	double *before;     // (CAU_MAX_CONTACTS x 3): reactions before correction, N
 	int32_t hold_count; // attached rows, solved all at once: hold.h
-	int32_t hold_row[CAU_MAX_CONTACTS];
-	double *hold; // (CAU_MAX_CONTACTS x CAU_MAX_CONTACTS): factor of S + 1/k over them
+	int32_t hold_row[CAU_MAX_HELD];
+	double *hold; // (CAU_MAX_HELD x CAU_MAX_HELD): factor of S + 1/k over them
 	cau_reals *unit, *solution;
 };
 
@@ -69,8 +100,28 @@ struct cau_contact_set {
 cau_status cau_contact_create(cau_contact_set *set, const cau_tissue *tissue,
                               const cau_vectors *vectors, cau_arena *arena, cau_error *error);
 
-// Adds a row; counts it as left out and returns false when the set is full (the caller offers the
-// deepest first).
+// The row of a free vertex, and nothing else about it.
+cau_contact_row cau_contact_at_vertex(int32_t vertex, int32_t tool);
+
+// Forgets all rows.
+void cau_contact_clear(cau_contact_set *set);
+
+// Notes that a face is inside or beyond a tool, and on which side it belongs (unit, in the tool's
+// frame). Past CAU_MAX_MEMORY faces nothing is kept.
+void cau_contact_touch(cau_contact_set *set, int32_t tool, int32_t face, cau_vec3 side);
+
+// Keeps, at a step's end, the faces that were pushed or touched: the next step knows their sides.
+void cau_contact_remember(cau_contact_set *set);
+
+// What was kept of a face; NULL: nothing.
+const cau_contact_memory *cau_contact_recall(const cau_contact_set *set, int32_t tool,
+                                             int32_t face);
+
+// Where a row's point is at positions x (m, vertex_count x 3).
+cau_vec3 cau_contact_point(const cau_contact_row *row, const double *x);
+
+// Adds a row; counts it as left out and returns false when there is no room for it or for the
+// columns of its corners (the caller offers the deepest first).
 bool cau_contact_add(cau_contact_set *set, const cau_contact_row *row);
 
 // Finds or makes the rows' columns. Called once a step, after the rows are chosen. The step may
@@ -78,12 +129,19 @@ bool cau_contact_add(cau_contact_set *set, const cau_contact_row *row);
 // after a downdate, and the next step makes them anew.
 void cau_contact_prepare(cau_contact_set *set, cau_step_solver *solver);
 
-// Takes the present reactions off solver->gradient, so that the next global step feels them.
+// S W^T of a row, after its weights changed.
+void cau_contact_find_answer(cau_contact_set *set, int32_t row);
+
+// Measures the rows' gaps, and takes the present reactions off solver->gradient, so that the next
+// global step feels them.
 void cau_contact_load(cau_contact_set *set, cau_step_solver *solver);
 
 // Corrects solver->increment by new reactions, and takes their change off solver->gradient, so that
 // A increment = -gradient still holds (as far as the columns are fresh).
 void cau_contact_correct(cau_contact_set *set, cau_step_solver *solver);
+
+// How deep (m) the deepest row of a face is inside its tool at solver->position; 0: none is.
+double cau_contact_depth(const cau_contact_set *set, const cau_step_solver *solver);
 
 // Work that the reactions may do along the trial step, J: what the objective may rise by.
 double cau_contact_work(const cau_contact_set *set, const cau_step_solver *solver);

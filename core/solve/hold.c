@@ -11,18 +11,18 @@ static const cau_tool_def *tool_of(const cau_contact_set *set, const cau_contact
 
 static double between(const cau_contact_set *set, int32_t i, int32_t j)
 {
-	CAU_ASSERT_INDEX(set->row[i].column, CAU_MAX_CONTACTS);
-	CAU_ASSERT_INDEX(set->row[j].column, CAU_MAX_CONTACTS);
-	return set->inverse[set->row[i].column * CAU_MAX_CONTACTS + set->row[j].column];
+	CAU_ASSERT_INDEX(set->row[i].column[0], CAU_MAX_COLUMNS);
+	CAU_ASSERT_INDEX(set->row[j].column[0], CAU_MAX_COLUMNS);
+	return set->inverse[set->row[i].column[0] * CAU_MAX_COLUMNS + set->row[j].column[0]];
 }
 
 // Lower triangle, by rows, over hold_row. Returns false if it is not positive definite.
 static bool factor(cau_contact_set *set)
 {
 	for (int32_t i = 0; i < set->hold_count; i++) {
-		double *at = set->hold + (size_t)i * CAU_MAX_CONTACTS;
+		double *at = set->hold + (size_t)i * CAU_MAX_HELD;
 		for (int32_t j = 0; j <= i; j++) {
-			const double *other = set->hold + (size_t)j * CAU_MAX_CONTACTS;
+			const double *other = set->hold + (size_t)j * CAU_MAX_HELD;
 			double sum = between(set, set->hold_row[i], set->hold_row[j]);
 			if (i == j)
 				sum += 1 / tool_of(set, &set->row[set->hold_row[i]])->grasp_stiffness_n_m;
@@ -40,7 +40,7 @@ void cau_hold_prepare(cau_contact_set *set)
 {
 	set->hold_count = 0;
 	for (int32_t i = 0; i < set->row_count; i++)
-		if (set->row[i].attached)
+		if (set->row[i].attached && set->hold_count < CAU_MAX_HELD)
 			set->hold_row[set->hold_count++] = i;
 	if (!factor(set))
 		set->hold_count = 0; // columns that lag behind cuts: row by row will do
@@ -51,21 +51,21 @@ static void substitute(const cau_contact_set *set, double *x)
 {
 	int32_t n = set->hold_count;
 	for (int32_t i = 0; i < n; i++) {
-		const double *at = set->hold + (size_t)i * CAU_MAX_CONTACTS;
+		const double *at = set->hold + (size_t)i * CAU_MAX_HELD;
 		for (int32_t k = 0; k < i; k++)
 			x[i] -= at[k] * x[k];
 		x[i] /= at[i];
 	}
 	for (int32_t i = n - 1; i >= 0; i--) {
-		x[i] /= set->hold[(size_t)i * CAU_MAX_CONTACTS + (size_t)i];
+		x[i] /= set->hold[(size_t)i * CAU_MAX_HELD + (size_t)i];
 		for (int32_t k = 0; k < i; k++)
-			x[k] -= set->hold[(size_t)i * CAU_MAX_CONTACTS + (size_t)k] * x[i];
+			x[k] -= set->hold[(size_t)i * CAU_MAX_HELD + (size_t)k] * x[i];
 	}
 }
 
 // By how much each reaction has to change: (S + 1/k) dr = anchor - x - step - r / k.
 static void changes(const cau_contact_set *set, const cau_step_solver *solver,
-                    double dr[3][CAU_MAX_CONTACTS])
+                    double dr[3][CAU_MAX_HELD])
 {
 	for (int32_t i = 0; i < set->hold_count; i++) {
 		int32_t at = set->hold_row[i];
@@ -73,14 +73,14 @@ static void changes(const cau_contact_set *set, const cau_step_solver *solver,
 		CAU_ASSERT(row->attached, "row %d is solved as held and is not", at);
 		double compliance = 1 / tool_of(set, row)->grasp_stiffness_n_m;
 		for (int c = 0; c < 3; c++)
-			dr[c][i] = row->anchor[c] - solver->position[3 * (size_t)row->vertex + (size_t)c] -
-			           set->step[3 * at + c] - compliance * row->reaction[c];
+			dr[c][i] = row->anchor[c] - solver->position[3 * (size_t)row->vertex[0] + (size_t)c] -
+			           set->step[3 * row->column[0] + c] - compliance * row->reaction[c];
 	}
 	for (int c = 0; c < 3; c++)
 		substitute(set, dr[c]);
 }
 
-static bool would_slip(const cau_contact_set *set, double dr[3][CAU_MAX_CONTACTS])
+static bool would_slip(const cau_contact_set *set, double dr[3][CAU_MAX_HELD])
 {
 	for (int32_t i = 0; i < set->hold_count; i++) {
 		const cau_contact_row *row = &set->row[set->hold_row[i]];
@@ -95,7 +95,7 @@ static bool would_slip(const cau_contact_set *set, double dr[3][CAU_MAX_CONTACTS
 void cau_hold_solve(cau_contact_set *set, const cau_step_solver *solver)
 {
 	CAU_ASSERT_INDEX(set->hold_count, set->row_count + 1);
-	double dr[3][CAU_MAX_CONTACTS];
+	double dr[3][CAU_MAX_HELD];
 	if (!set->hold_count)
 		return;
 	changes(set, solver, dr);
@@ -104,10 +104,10 @@ void cau_hold_solve(cau_contact_set *set, const cau_step_solver *solver)
 	for (int32_t i = 0; i < set->hold_count; i++)
 		for (int c = 0; c < 3; c++)
 			set->row[set->hold_row[i]].reaction[c] += dr[c][i];
-	for (int32_t j = 0; j < set->row_count; j++)
-		for (int32_t i = 0; i < set->hold_count; i++) {
-			double share = between(set, j, set->hold_row[i]);
+	for (int32_t i = 0; i < set->hold_count; i++) {
+		const double *answer = set->answer + (size_t)set->hold_row[i] * CAU_MAX_COLUMNS;
+		for (int32_t k = 0; k < set->column_count; k++)
 			for (int c = 0; c < 3; c++)
-				set->step[3 * j + c] += share * dr[c][i];
-		}
+				set->step[3 * k + c] += answer[k] * dr[c][i];
+	}
 }

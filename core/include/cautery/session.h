@@ -178,9 +178,9 @@ typedef struct cau_statistics {
 	double deferred_max_s;     // longest such wait so far, in simulated seconds
 	int32_t refactorisations;  // since creation
 	int32_t factor_operations; // since the last canonical factorisation
-	int32_t contacts;          // rows of the last step: vertices near a tool, or held by one
-	// Vertices near a tool, or held by one, that the step had no row for: what it did without them
-	// is not right, and a tool may stand deeper in tissue than it should. 0: contact is whole.
+	int32_t contacts;          // rows of the last step: vertices near tools or held, faces met
+	// Vertices and faces at a tool that the step had no row for: what it did without them is not
+	// right, and a tool may stand deeper in tissue than it should. 0: contact is whole.
 	int32_t contacts_left_out;
 	int32_t frozen_vertices;
 	// Energy that the step made out of nothing: kinetic, elastic and gravitational energy at its

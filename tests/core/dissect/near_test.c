@@ -34,6 +34,14 @@ static void test_blocks_hold_everything_once(void **state)
 		assert_false(seen[near.edge[k]]);
 		seen[near.edge[k]] = 1;
 	}
+	int32_t faces = r.tissue.faces.face_count;
+	uint8_t *seen_face = cau_arena_array(&r.arena, (size_t)faces, 1);
+	assert_int_equal(near.face_first[0], 0);
+	assert_int_equal(near.face_first[near.block_count], faces);
+	for (int32_t k = 0; k < faces; k++) {
+		assert_false(seen_face[near.face[k]]);
+		seen_face[near.face[k]] = 1;
+	}
 	rig_finish(&r);
 }
 
@@ -69,6 +77,12 @@ static void test_boxes_find_what_brute_force_finds(void **state)
 						found++;
 					}
 				}
+				for (int32_t k = near.face_first[b]; k < near.face_first[b + 1]; k++)
+					for (int c = 0; c < 3; c++) {
+						int32_t v = r.tissue.faces.vertex[3 * near.face[k] + c];
+						if (cau_length(cau_sub(cau_vec3_of(x + 3 * v), center)) <= radius)
+							assert_true(meets_edges);
+					}
 				for (int32_t i = b * CAU_NEAR_BLOCK;
 				     i < (b + 1) * CAU_NEAR_BLOCK && i < near.vertex_count; i++)
 					if (cau_length(cau_sub(cau_vec3_of(x + 3 * near.vertex[i]), center)) <= radius)

@@ -140,7 +140,7 @@ static void tools_and_forces_bring_in_what_is_held(void **state)
 	const double least[3] = {-1, -1, -1e-6}, most[3] = {1, 1, 1};
 	for (int by_force = 0; by_force < 2; by_force++) {
 		cau_scene_def *scene = make_block();
-		stage_add_tool(scene, "jaws", CAU_TOOL_GRASPER, 0.004, 0, -0.004);
+		stage_add_tool(scene, "jaws", CAU_TOOL_GRASPER, 0.004, 0, by_force ? 0.1 : -0.004);
 		cau_session *session = stage_open(scene, 1);
 		tally t = {0};
 		if (!by_force)

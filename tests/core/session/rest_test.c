@@ -390,7 +390,7 @@ static void threads_and_restores_change_no_bit(void **state)
 static void a_snapshot_without_rest_is_read(void **state)
 {
 	(void)state;
-	enum { VERSION_AT = 8, HASH_AT = 48, PAYLOAD_BYTES_AT = 56, REST_BYTES = 56 };
+	enum { VERSION_AT = 8, HASH_AT = 48, PAYLOAD_BYTES_AT = 56, REST_BYTES = 64 };
 	cau_scene_def *scene = make_hanging_block(CAU_PRECISION_SINGLE);
 	cau_session *session = stage_open(scene, 1), *other = stage_open(scene, 1);
 	stage_step(session, 3);

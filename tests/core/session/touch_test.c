@@ -164,9 +164,9 @@ static void contact_says_what_it_left_out(void **state)
 		stage_step(session, 1);
 		cau_statistics statistics = stage_frame(session).statistics;
 		print_message("%d of %d vertices near are rows\n", statistics.contacts, near);
-		assert_true(k ? near > 4 * CAU_MAX_CONTACTS : near < CAU_MAX_CONTACTS);
+		assert_true(k ? near > 4 * CAU_MAX_VERTEX_ROWS : near < CAU_MAX_VERTEX_ROWS);
 		assert_int_equal(statistics.contacts + statistics.contacts_left_out, near);
-		assert_int_equal(statistics.contacts, k ? CAU_MAX_CONTACTS : near);
+		assert_int_equal(statistics.contacts, k ? CAU_MAX_VERTEX_ROWS : near);
 		stage_move(session, "ball", 0, 0, 1);
 		stage_step(session, 60);
 		statistics = stage_frame(session).statistics;

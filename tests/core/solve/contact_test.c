@@ -57,9 +57,9 @@ static void touch(pressed *p, double slide_m)
 	for (int32_t v = 0; v < p->r.tissue.vertex_count; v++) {
 		if (p->r.fixed[v] || gap_of(p, v, NULL) > MARGIN_M)
 			continue;
-		cau_contact_row row = {.vertex = v};
-		memcpy(row.no_slip, p->r.tissue.rest + 3 * v, sizeof row.no_slip);
-		row.no_slip[0] += slide_m; // a vertex that stuck would have been carried along
+		cau_contact_row row = cau_contact_at_vertex(v, 0);
+		memcpy(row.no_slip[0], p->r.tissue.rest + 3 * v, sizeof row.no_slip[0]);
+		row.no_slip[0][0] += slide_m; // a vertex that stuck would have been carried along
 		assert_true(cau_contact_add(p->set, &row));
 	}
 	assert_true(p->set->row_count > 4);
@@ -84,7 +84,7 @@ static void assert_balance(const pressed *p)
 		const cau_contact_row *row = &p->set->row[k];
 		largest = fmax(largest, cau_length(cau_vec3_of(row->reaction)));
 		for (int c = 0; c < 3; c++)
-			left[3 * row->vertex + c] -= row->reaction[c];
+			left[3 * row->vertex[0] + c] -= row->reaction[c];
 	}
 	assert_true(largest > 0);
 	for (size_t i = 0; i < n; i++)
@@ -110,7 +110,7 @@ static void test_pressed_without_and_with_friction(void **state)
 		for (int32_t k = 0; k < p.set->row_count; k++) {
 			const cau_contact_row *row = &p.set->row[k];
 			cau_vec3 normal, reaction = cau_vec3_of(row->reaction);
-			double gap = gap_of(&p, row->vertex, &normal), push = cau_dot(reaction, normal);
+			double gap = gap_of(&p, row->vertex[0], &normal), push = cau_dot(reaction, normal);
 			cau_vec3 tangent = cau_add_scaled(reaction, -push, normal);
 			assert_true(gap > -GAP_TOLERANCE_M);            // no penetration
 			assert_true(push > -FORCE_TOLERANCE * largest); // no pull
@@ -150,7 +150,8 @@ static void test_attachment_is_a_spring_that_slips(void **state)
 		make(&p, 0);
 		p.tool.slip_force_n = slips[s];
 		int32_t v = top_vertex(&p);
-		cau_contact_row row = {.vertex = v, .attached = 1};
+		cau_contact_row row = cau_contact_at_vertex(v, 0);
+		row.attached = true;
 		memcpy(row.anchor, p.r.tissue.rest + 3 * v, sizeof row.anchor);
 		row.anchor[2] += 0.01;
 		row.anchor[0] += 0.003;
@@ -174,7 +175,7 @@ static void test_a_full_set_says_so(void **state)
 	(void)state;
 	pressed p;
 	make(&p, 0);
-	cau_contact_row row = {.vertex = top_vertex(&p)};
+	cau_contact_row row = cau_contact_at_vertex(top_vertex(&p), 0);
 	for (int k = 0; k < CAU_MAX_CONTACTS; k++)
 		assert_true(cau_contact_add(p.set, &row));
 	assert_false(cau_contact_add(p.set, &row));

@@ -1,0 +1,309 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Faces that a tool meets between vertices, or has passed within a tick.
+//
+// Vertices near a tool are rows of every step (touch.c). A tool that is smaller than the mesh's
+// cells, or so fast that a tick takes it to the other side, would slip through between them: so
+// when the step is solved each face that is drawn is followed from where it was at the tick's start
+// to where it is now, as seen from the tool, in steps that no face can outrun (conservative
+// advancement, B. Mirtich 1996). Where it first touches, the distance's gradient says on which side
+// it belongs. A face that ended on another side, or deep inside, becomes a row (solve/contact.h),
+// and the step goes on.
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "cautery/assert.h"
+#include "session/session_internal.h"
+#include "tool/face_distance.h"
+
+static const double touch_m = 1e-5;    // nearer is touching
+static const double margin_m = 2e-3;   // a face that was pushed and is further away is let go of
+static const double deep_share = 0.5;  // of the tip's radius: a face that is deeper is missed
+static const double release_m_s = 0.1; // of tissue that is inside a tool which begins to push
+enum { CANDIDATES = 4 * CAU_MAX_CONTACTS, STEPS_ON_WAY = 64 };
+
+typedef struct cau_candidate {
+	cau_contact_row row;
+	double depth; // m: the deepest are taken first
+} cau_candidate;
+
+typedef struct reach {
+	cau_session *session;
+	const cau_tool *tool;
+	const cau_tool_def *def;
+	int32_t index;
+	cau_tool_part part;
+	double most_way;
+	int32_t count;
+	cau_candidate *list; // (CANDIDATES)
+} reach;
+
+// A face or a vertex on its way, in the tool's frame.
+typedef struct passage {
+	cau_vec3 start[3], end[3];
+	double weight[3];
+	double way; // m, of the corner that goes furthest
+} passage;
+
+static double distance_at(const reach *r, const passage *p, double when, double weight[3],
+                          cau_vec3 *gradient)
+{
+	cau_vec3 corner[3];
+	for (int32_t k = 0; k < 3; k++)
+		corner[k] = cau_add_scaled(cau_scale(1 - when, p->start[k]), when, p->end[k]);
+	return cau_tool_face_distance(r->def, r->tool->state.jaw, r->part, corner, weight, gradient);
+}
+
+static void follow(const reach *r, const cau_contact_row *row, passage *p)
+{
+	const cau_session *session = r->session;
+	p->way = 0;
+	for (int32_t k = 0; k < 3; k++) {
+		size_t at = 3 * (size_t)row->vertex[k];
+		p->start[k] =
+			cau_pose_to_local(&r->tool->pose_before, cau_vec3_of(session->position_start + at));
+		p->end[k] = cau_pose_to_local(&r->tool->state.pose, cau_vec3_of(session->position + at));
+		p->weight[k] = 1.0 / 3;
+		double way = cau_length(cau_sub(p->end[k], p->start[k]));
+		p->way = way > p->way || isnan(way) ? way : p->way;
+	}
+}
+
+// What is kept of a face that was inside the tool, or pushed by it, at the last step's end; NULL:
+// it was neither.
+static const cau_contact_memory *remembered(const reach *r, int32_t face)
+{
+	return cau_contact_recall(&r->session->contact, r->index, face);
+}
+
+static void place(const reach *r, const passage *p, cau_vec3 side, double start_m,
+                  cau_contact_row *row)
+{
+	CAU_ASSERT(row->corner_count == 3, "a row of %d corners on a face", row->corner_count);
+	cau_vec3_to(side, row->side);
+	row->way_m = p->way + 2 * r->def->hot_radius_m;
+	row->slack_m = fmax(-start_m - release_m_s * r->session->solver.step_s, 0);
+	memcpy(row->weight, p->weight, sizeof row->weight);
+}
+
+// How far a point of the face would have to go back to the side on which it belongs.
+static double way_out(const reach *r, const passage *p, const double weight[3], cau_vec3 side,
+                      double most_m)
+{
+	cau_vec3 point = {0, 0, 0}, gradient;
+	for (int32_t k = 0; k < 3; k++)
+		point = cau_add_scaled(point, weight[k], p->end[k]);
+	return cau_tool_way_out(r->def, r->tool->state.jaw, r->part, point, side, most_m, &gradient);
+}
+
+// Where the face first touches on its way, from outside: its weights and side at that time. False:
+// nowhere.
+static bool find_touch(const reach *r, passage *p, double distance, cau_vec3 *side)
+{
+	CAU_ASSERT(p->way >= 0, "a way of %g m", p->way);
+	double when = 0;
+	for (int step = 0; step < STEPS_ON_WAY && distance > touch_m && when < 1; step++) {
+		when = fmin(when + distance / p->way, 1);
+		distance = distance_at(r, p, when, p->weight, side);
+	}
+	return distance <= touch_m;
+}
+
+// Follows a face through the tick and keeps its side where it ends inside or beyond the tool.
+// Returns whether that is deep: then its row is where it was touched first, or where it is deepest.
+static bool is_missed(reach *r, cau_candidate *c)
+{
+	passage p;
+	cau_vec3 side, gradient;
+	follow(r, &c->row, &p);
+	double start = distance_at(r, &p, 0, p.weight, &side);
+	if (!(start <= p.way + touch_m)) // nor is one that is nowhere
+		return false;
+	const cau_contact_memory *kept = remembered(r, c->row.face);
+	if (!kept && (start < -touch_m || !find_touch(r, &p, start, &side)))
+		return false; // inside since the tool began to push, it has no side to go to; or untouched
+	if (kept)
+		side = cau_vec3_of(kept->side);
+	double most = p.way + 2 * r->def->hot_radius_m, weight[3];
+	memcpy(weight, p.weight, sizeof weight);
+	double end = distance_at(r, &p, 1, weight, &gradient);
+	c->depth = way_out(r, &p, p.weight, side, most);
+	double deepest = way_out(r, &p, weight, side, most);
+	if (end <= touch_m || c->depth > 0 || deepest > 0)
+		cau_contact_touch(&r->session->contact, r->index, c->row.face, side);
+	if (deepest > c->depth) {
+		c->depth = deepest;
+		memcpy(p.weight, weight, sizeof weight);
+	}
+	if (!(c->depth > deep_share * r->def->hot_radius_m))
+		return false;
+	place(r, &p, side, start, &c->row);
+	return true;
+}
+
+// The row of a face that was pushed in the last step, if it is near still.
+static bool is_near(const reach *r, const cau_contact_memory *kept, cau_contact_row *row)
+{
+	passage p;
+	cau_vec3 gradient;
+	follow(r, row, &p);
+	double start = distance_at(r, &p, 0, p.weight, &gradient);
+	if (!(start - p.way <= margin_m))
+		return false;
+	place(r, &p, cau_vec3_of(kept->side), start, row);
+	return true;
+}
+
+// Fills in what the row knows of its corners. False: none can move.
+static bool describe_corners(const reach *r, cau_contact_row *row)
+{
+	const cau_session *session = r->session;
+	bool any_free = false;
+	for (int32_t k = 0; k < 3; k++) {
+		int32_t v = row->vertex[k];
+		CAU_ASSERT_INDEX(v, session->tissue.vertex_count);
+		row->free[k] = !session->fixed[v];
+		any_free = any_free || row->free[k];
+		cau_vec3 local = cau_pose_to_local(&r->tool->pose_before,
+		                                   cau_vec3_of(session->position_start + 3 * (size_t)v));
+		cau_vec3_to(cau_pose_to_world(&r->tool->state.pose, local), row->no_slip[k]);
+	}
+	return any_free;
+}
+
+// Whether a row pushes at that point of the face already, or near it.
+static bool has_row(const reach *r, const cau_contact_row *row)
+{
+	const double near_share = 0.1; // of the face
+	const cau_contact_set *set = &r->session->contact;
+	for (int32_t i = 0; i < set->row_count; i++) {
+		const cau_contact_row *other = &set->row[i];
+		if (other->tool != row->tool || other->corner_count != row->corner_count ||
+		    memcmp(other->vertex, row->vertex, sizeof row->vertex) != 0)
+			continue;
+		double off = 0;
+		for (int32_t k = 0; k < 3; k++)
+			off = fmax(off, fabs(other->weight[k] - row->weight[k]));
+		if (off < near_share)
+			return true;
+	}
+	return false;
+}
+
+static cau_candidate candidate_of(const reach *r, int32_t face)
+{
+	cau_candidate c = {.row = {.corner_count = 3, .tool = r->index, .face = face}};
+	memcpy(c.row.vertex, r->session->tissue.faces.vertex + 3 * (size_t)face, sizeof c.row.vertex);
+	return c;
+}
+
+static void offer(reach *r, int32_t face)
+{
+	cau_candidate c = candidate_of(r, face);
+	if (!describe_corners(r, &c.row) || !is_missed(r, &c) || has_row(r, &c.row))
+		return;
+	if (r->count < CANDIDATES)
+		r->list[r->count++] = c;
+	else
+		r->session->contact.left_out_count++;
+}
+
+static bool is_drawn(const cau_session *session, int32_t face)
+{
+	return !(session->dissection.face_mask[face >> 5] >> (face & 31) & 1);
+}
+
+// Whether any of the box's points may come near: the distance changes by no more than one goes.
+static bool may_meet(const reach *r, const cau_box *box)
+{
+	cau_vec3 middle, half;
+	double *m = &middle.x, *h = &half.x;
+	for (int c = 0; c < 3; c++) {
+		m[c] = 0.5 * ((double)box->least[c] + (double)box->most[c]);
+		h[c] = 0.5 * ((double)box->most[c] - (double)box->least[c]);
+	}
+	double distance = cau_tool_distance_at(r->def, &r->tool->state.pose, r->tool->state.jaw,
+	                                       r->part, middle, NULL);
+	return !(distance > cau_length(half) + r->most_way);
+}
+
+static void search_block(reach *r, int32_t block)
+{
+	const cau_near *near = &r->session->near;
+	for (int32_t i = near->face_first[block]; i < near->face_first[block + 1]; i++)
+		if (is_drawn(r->session, near->face[i]))
+			offer(r, near->face[i]);
+}
+
+// How far a point of the tissue goes at most, seen from the tool.
+static double most_way(const cau_session *session, const cau_tool *tool, double reach_m)
+{
+	double most = 0;
+	for (size_t v = 0; v < (size_t)session->tissue.vertex_count; v++)
+		most = fmax(most, cau_length(cau_sub(cau_vec3_of(session->position + 3 * v),
+		                                     cau_vec3_of(session->position_start + 3 * v))));
+	const cau_pose *from = &tool->pose_before, *to = &tool->state.pose;
+	double way = cau_length(cau_sub(cau_vec3_of(to->position_m), cau_vec3_of(from->position_m)));
+	double turn = 0;
+	for (int i = 0; i < 4; i++)
+		turn += from->rotation[i] * to->rotation[i];
+	return most + way + 2 * reach_m * sqrt(fmax(1 - turn * turn, 0));
+}
+
+static int compare(const void *a, const void *b)
+{
+	const cau_candidate *x = a, *y = b;
+	if (x->depth != y->depth)
+		return x->depth > y->depth ? -1 : 1;
+	return memcmp(x->row.vertex, y->row.vertex, sizeof x->row.vertex);
+}
+
+cau_candidate *cau_session_make_reach(cau_arena *arena)
+{
+	return cau_arena_array(arena, CANDIDATES, sizeof(cau_candidate));
+}
+
+static reach begin(cau_session *session, int32_t index, cau_tool_part part)
+{
+	CAU_ASSERT_INDEX(index, session->tool_count);
+	const cau_tool *tool = &session->tool[index];
+	return (reach){.session = session,
+	               .tool = tool,
+	               .def = &tool->state.definition,
+	               .index = index,
+	               .part = part,
+	               .list = session->candidate};
+}
+
+bool cau_session_feels_faces(const cau_tool *tool)
+{
+	return !cau_tool_has_jaws(&tool->state.definition);
+}
+
+void cau_session_reach_again(cau_session *session, int32_t index, cau_tool_part part)
+{
+	reach r = begin(session, index, part);
+	for (int32_t i = 0; i < session->contact.memory_count; i++) {
+		const cau_contact_memory *kept = &session->contact.memory[i];
+		if (kept->tool != index || !kept->pushed || !is_drawn(session, kept->face))
+			continue;
+		cau_candidate c = candidate_of(&r, kept->face);
+		if (describe_corners(&r, &c.row) && is_near(&r, kept, &c.row))
+			cau_contact_add(&session->contact, &c.row);
+	}
+}
+
+void cau_session_reach(cau_session *session, int32_t index, cau_tool_part part)
+{
+	reach r = begin(session, index, part);
+	cau_vec3 center;
+	double radius;
+	cau_tool_bound(r.def, part, &center, &radius);
+	r.most_way = most_way(session, r.tool, cau_length(center) + radius);
+	for (int32_t b = 0; b < session->near.block_count; b++)
+		if (may_meet(&r, &session->near.edge_box[b]))
+			search_block(&r, b);
+	qsort(r.list, (size_t)r.count, sizeof *r.list, compare);
+	for (int32_t k = 0; k < r.count; k++)
+		cau_contact_add(&session->contact, &r.list[k].row);
+}

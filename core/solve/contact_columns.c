@@ -1,0 +1,153 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// The columns of A^-1 that contacts need: one a corner, kept from tick to tick.
+#include <string.h>
+
+#include "cautery/assert.h"
+#include "solve/contact.h"
+#include "solve/hold.h"
+
+// Solves for up to three columns at once, one unit load in each of x, y and z, and enters them in
+// S.
+static void make_columns(cau_contact_set *set, cau_step_solver *solver, const int32_t *place,
+                         int32_t count)
+{
+	CAU_ASSERT(count >= 1 && count <= 3, "%d columns at once", count);
+	static const double load[3][3] = {{1, 0, 0}, {0, 1, 0}, {0, 0, 1}};
+	static const double unload[3][3] = {{-1, 0, 0}, {0, -1, 0}, {0, 0, -1}};
+	const cau_vectors *vectors = solver->kernels->vectors;
+	for (int32_t c = 0; c < count; c++)
+		vectors->add(set->unit, set->column_vertex[place[c]], load[c]);
+	cau_solver_apply_inverse(solver, set->unit, set->solution, 1);
+	for (int32_t c = 0; c < count; c++) {
+		int32_t p = place[c];
+		CAU_ASSERT_INDEX(p, set->column_count);
+		vectors->take_coordinate(set->column[p], set->solution, c, solver->tissue->vertex_count);
+		for (int32_t i = 0; i < set->column_count; i++) {
+			double s = vectors->at(set->column[p], set->column_vertex[i]);
+			set->inverse[p * CAU_MAX_COLUMNS + i] = set->inverse[i * CAU_MAX_COLUMNS + p] = s;
+		}
+		set->column_version[p] = solver->factor_version;
+		vectors->add(set->unit, set->column_vertex[p], unload[c]);
+	}
+}
+
+static int32_t find_column(const cau_contact_set *set, int32_t vertex)
+{
+	for (int32_t k = 0; k < set->column_count; k++)
+		if (set->column_vertex[k] == vertex)
+			return k;
+	return -1;
+}
+
+// Keeps only the columns that rows use, in their order.
+static void drop_unused(cau_contact_set *set)
+{
+	uint8_t used[CAU_MAX_COLUMNS] = {0};
+	int32_t kept = 0, from[CAU_MAX_COLUMNS];
+	for (int32_t i = 0; i < set->corner_count; i++) {
+		int32_t k = find_column(set, set->corner[i]);
+		if (k >= 0)
+			used[k] = 1;
+	}
+	for (int32_t k = 0; k < set->column_count; k++) {
+		if (!used[k])
+			continue;
+		cau_reals *column = set->column[kept];
+		set->column[kept] = set->column[k];
+		set->column[k] = column;
+		set->column_vertex[kept] = set->column_vertex[k];
+		set->column_version[kept] = set->column_version[k];
+		from[kept++] = k;
+	}
+	for (int32_t i = 0; i < kept; i++) // rows and columns move towards the start only
+		for (int32_t j = 0; j < kept; j++)
+			set->inverse[i * CAU_MAX_COLUMNS + j] =
+				set->inverse[from[i] * CAU_MAX_COLUMNS + from[j]];
+	set->column_count = kept;
+	CAU_ASSERT(kept <= set->corner_count, "%d columns kept for %d corners", kept,
+	           set->corner_count);
+}
+
+static int32_t count_missing(const cau_contact_set *set)
+{
+	int32_t missing = 0;
+	for (int32_t i = 0; i < set->corner_count; i++)
+		missing += find_column(set, set->corner[i]) < 0;
+	return missing;
+}
+
+// The columns that lag furthest, by version and place.
+static int32_t find_lagging(const cau_contact_set *set, uint64_t version, int32_t *place)
+{
+	int32_t count = 0;
+	for (int32_t i = 0; i < set->corner_count; i++) {
+		int32_t p = find_column(set, set->corner[i]), k = count;
+		CAU_ASSERT_INDEX(p, set->column_count);
+		if (set->column_version[p] == version)
+			continue;
+		if (count < CAU_COLUMNS_RENEWED)
+			count++;
+		else if (set->column_version[place[count - 1]] <= set->column_version[p])
+			continue;
+		else
+			k = count - 1;
+		for (; k > 0 && set->column_version[place[k - 1]] > set->column_version[p]; k--)
+			place[k] = place[k - 1];
+		place[k] = p;
+	}
+	return count;
+}
+
+static void make_missing(cau_contact_set *set, cau_step_solver *solver)
+{
+	int32_t waiting = 0, place[3];
+	for (int32_t i = 0; i < set->corner_count; i++) {
+		if (find_column(set, set->corner[i]) >= 0)
+			continue;
+		CAU_ASSERT_INDEX(set->column_count, CAU_MAX_COLUMNS);
+		set->column_vertex[set->column_count] = set->corner[i];
+		place[waiting++] = set->column_count++;
+		if (waiting == 3) {
+			make_columns(set, solver, place, waiting);
+			waiting = 0;
+		}
+	}
+	if (waiting)
+		make_columns(set, solver, place, waiting);
+}
+
+void cau_contact_find_answer(cau_contact_set *set, int32_t row)
+{
+	const cau_contact_row *of = &set->row[row];
+	double *answer = set->answer + (size_t)row * CAU_MAX_COLUMNS;
+	memset(answer, 0, (size_t)set->column_count * sizeof *answer);
+	for (int32_t k = 0; k < of->corner_count; k++) {
+		if (of->column[k] < 0 || of->weight[k] == 0)
+			continue;
+		const double *s = set->inverse + (size_t)of->column[k] * CAU_MAX_COLUMNS;
+		for (int32_t c = 0; c < set->column_count; c++)
+			answer[c] += of->weight[k] * s[c];
+	}
+}
+
+void cau_contact_prepare(cau_contact_set *set, cau_step_solver *solver)
+{
+	CAU_ASSERT(set->row_count > 0 && set->row_count <= CAU_MAX_CONTACTS, "%d rows", set->row_count);
+	int32_t place[3];
+	if (set->epoch != solver->factor_epoch)
+		set->column_count = 0;
+	set->epoch = solver->factor_epoch;
+	if (set->column_count + count_missing(set) > CAU_MAX_COLUMNS)
+		drop_unused(set);
+	make_missing(set, solver);
+	int32_t lagging = find_lagging(set, solver->factor_version, place);
+	if (lagging)
+		make_columns(set, solver, place, lagging);
+	for (int32_t i = 0; i < set->row_count; i++) {
+		cau_contact_row *row = &set->row[i];
+		for (int32_t k = 0; k < row->corner_count; k++)
+			row->column[k] = row->free[k] ? find_column(set, row->vertex[k]) : -1;
+		cau_contact_find_answer(set, i);
+	}
+	cau_hold_prepare(set);
+}

@@ -1,0 +1,214 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Nothing crosses (core/README.md, "Contact"): balls smaller and larger than the mesh's cells,
+// pressed into a sheet and a slab slowly and so fast that a tick takes them to the other side.
+#include "core/session/stage.h"
+
+#include <stdio.h>
+#include <stdlib.h>
+
+#include "session/session_internal.h"
+
+typedef struct press {
+	const char *what;
+	bool slab;
+	double radius_m, cell_m, speed_m_s, depth_m;
+	bool wide; // wider than a cell: it lies on vertices, and faces dip into it between them
+} press;
+
+static const press presses[] = {
+	{"1 mm ball, sheet of 2 mm cells, slow", false, 0.5e-3, 2e-3, 0.01, 3e-3, false},
+	{"1 mm ball, sheet of 2 mm cells, 1 m/s", false, 0.5e-3, 2e-3, 1, 3e-3, false},
+	{"3 mm ball, sheet of 2 mm cells, 0.1 m/s", false, 1.5e-3, 2e-3, 0.1, 4e-3, false},
+	{"3 mm ball, sheet of 2 mm cells, 1.5 m/s", false, 1.5e-3, 2e-3, 1.5, 4e-3, false},
+	{"3 mm ball, sheet of 1 mm cells, 1.5 m/s", false, 1.5e-3, 1e-3, 1.5, 4e-3, false},
+	{"3 mm ball, sheet of 4 mm cells, 0.1 m/s", false, 1.5e-3, 4e-3, 0.1, 4e-3, false},
+	{"1 mm ball, slab of 2.5 mm cells, slow", true, 0.5e-3, 2.5e-3, 0.02, 2e-3, false},
+	{"3 mm ball, slab of 2.5 mm cells, 1 m/s", true, 1.5e-3, 2.5e-3, 1, 4e-3, true},
+	{"13 mm ball, slab of 2.5 mm cells, 0.1 m/s", true, 6.5e-3, 2.5e-3, 0.1, 4e-3, true},
+	{"80 mm ball, slab of 2.5 mm cells, 0.1 m/s", true, 40e-3, 2.5e-3, 0.1, 4e-3, true},
+};
+
+static const double rest_depth_m = 1e-4; // of a face in a ball that stands still and is not wide
+static const double wide_share = 0.5;    // of the radius: how deep one may be in a wide ball
+
+static cau_scene_def *press_scene(const press *p)
+{
+	cau_scene_def *scene = stage_scene(CAU_PRECISION_SINGLE);
+	const double wide = p->slab ? 0.04 : 0.032;
+	int32_t cells = (int32_t)(wide / p->cell_m + 0.5);
+	if (p->slab) {
+		const double size[3] = {wide, wide, 0.016};
+		const int32_t counts[3] = {cells, cells, (int32_t)(0.016 / p->cell_m)};
+		const double least[3] = {-1, -1, -0.0161}, most[3] = {1, 1, -0.0159};
+		stage_add_slab(scene, "fat", size, counts);
+		stage_pin_box(scene, least, most);
+	} else {
+		const double half = wide / 2 - 1e-6;
+		const double sides[4][2][3] = {{{-1, -1, -1}, {-half, 1, 1}},
+		                               {{half, -1, -1}, {1, 1, 1}},
+		                               {{-1, -1, -1}, {1, -half, 1}},
+		                               {{-1, half, -1}, {1, 1, 1}}};
+		stage_add_sheet(scene, "fascia", wide, wide, cells, cells);
+		for (int i = 0; i < 4; i++)
+			stage_pin_box(scene, sides[i][0], sides[i][1]);
+	}
+	// off the lines of the mesh, so that no vertex lies below it
+	cau_tool_def *ball = stage_add_tool(scene, "ball", CAU_TOOL_SPHERE, 0.27 * p->cell_m,
+	                                    0.31 * p->cell_m, p->radius_m + 1e-3);
+	ball->hot_radius_m = p->radius_m;
+	ball->grid_step_m = fmin(p->radius_m, 2e-3);
+	ball->friction = 0.2;
+	ball->max_speed_m_s = 2;
+	return scene;
+}
+
+// ---- what is seen of it, by sampling: nothing of the code under test
+
+static cau_vec3 corner(const cau_session *session, int32_t face, int k)
+{
+	int32_t v = session->tissue.faces.vertex[3 * (size_t)face + (size_t)k];
+	return cau_vec3_of(session->position + 3 * (size_t)v);
+}
+
+static bool is_drawn(const cau_session *session, int32_t face)
+{
+	return !(session->dissection.face_mask[face >> 5] >> (face & 31) & 1);
+}
+
+// Whether the way by which the ball came, straight up from its middle, meets the face.
+static bool is_above(cau_vec3 from, cau_vec3 a, cau_vec3 b, cau_vec3 c)
+{
+	double ab = (b.x - a.x) * (from.y - a.y) - (b.y - a.y) * (from.x - a.x);
+	double bc = (c.x - b.x) * (from.y - b.y) - (c.y - b.y) * (from.x - b.x);
+	double ca = (a.x - c.x) * (from.y - c.y) - (a.y - c.y) * (from.x - c.x);
+	double area = ab + bc + ca;
+	bool within = (ab > 0 && bc > 0 && ca > 0) || (ab < 0 && bc < 0 && ca < 0);
+	return within && (bc * a.z + ca * b.z + ab * c.z) / area > from.z;
+}
+
+static double depth_of_face(cau_vec3 middle, double radius, cau_vec3 a, cau_vec3 b, cau_vec3 c)
+{
+	enum { SAMPLES = 12 };
+	double least = 1e300;
+	for (int i = 0; i <= SAMPLES; i++)
+		for (int j = 0; i + j <= SAMPLES; j++) {
+			double u = (double)i / SAMPLES, v = (double)j / SAMPLES;
+			cau_vec3 x = cau_add_scaled(cau_add_scaled(cau_scale(1 - u - v, a), u, b), v, c);
+			least = fmin(least, cau_length(cau_sub(x, middle)));
+		}
+	return radius - least;
+}
+
+typedef struct seen {
+	bool crossed;
+	double depth_m, force_n;
+} seen;
+
+static seen look(const cau_session *session, const press *p)
+{
+	const cau_tool_state *ball = stage_tool(session, "ball");
+	cau_vec3 middle = cau_vec3_of(ball->pose.position_m);
+	seen s = {.force_n = ball->raw_force_n[2], .depth_m = -1};
+	for (int32_t f = 0; f < session->tissue.faces.face_count; f++) {
+		if (!is_drawn(session, f))
+			continue;
+		cau_vec3 a = corner(session, f, 0), b = corner(session, f, 1), c = corner(session, f, 2);
+		s.crossed = s.crossed || is_above(middle, a, b, c);
+		if (cau_length(cau_sub(a, middle)) < p->radius_m + 3 * p->cell_m)
+			s.depth_m = fmax(s.depth_m, depth_of_face(middle, p->radius_m, a, b, c));
+	}
+	return s;
+}
+
+// Presses and holds for a second. Returns whether nothing crossed, and what is right at the end.
+static bool holds(const press *p)
+{
+	cau_scene_def *scene = press_scene(p);
+	cau_session *session = stage_open(scene, 1);
+	double top = p->radius_m + 1e-3, step = p->speed_m_s / 60;
+	int in = (int)((p->depth_m + 1e-3) / step) + 1, crossed = 0;
+	seen s = {0};
+	for (int tick = 0; tick < in + 60; tick++) {
+		stage_move(session, "ball", 0.27 * p->cell_m, 0.31 * p->cell_m,
+		           top - fmin((tick + 1) * step, p->depth_m + 1e-3));
+		stage_step(session, 1);
+		s = look(session, p);
+		crossed += s.crossed;
+	}
+	print_message("%-44s %s: %.3f mm deep at rest, %.3g N\n", p->what, crossed ? "CROSSED" : "held",
+	              1e3 * s.depth_m, s.force_n);
+	cau_session_destroy(session);
+	free(scene);
+	double most = p->wide ? wide_share * p->radius_m : rest_depth_m;
+	return !crossed && s.depth_m <= most && s.force_n > 0;
+}
+
+static void nothing_crosses(void **state)
+{
+	(void)state;
+	int failed = 0;
+	for (size_t i = 0; i < sizeof presses / sizeof *presses; i++)
+		failed += !holds(&presses[i]);
+	assert_int_equal(failed, 0);
+}
+
+// A press that faces hold, over threads and over a snapshot at each tick: the sides that are kept
+// are part of the state.
+static void sides_are_part_of_the_state(void **state)
+{
+	(void)state;
+	enum { TICKS = 30 };
+	cau_scene_def *scene = press_scene(&presses[2]);
+	cau_session *session = stage_open(scene, 1), *other = stage_open(scene, 2);
+	int kept = 0;
+	for (int tick = 0; tick < TICKS; tick++) {
+		double z = 2.5e-3 - fmin((tick + 1) / 600.0, 5e-3);
+		stage_bytes shot = stage_snapshot(session);
+		cau_error error = {0};
+		bool exact = false;
+		if (cau_session_restore(other, shot.bytes, shot.count, &exact, &error))
+			fail_msg("%s", error.reason);
+		assert_true(exact);
+		assert_int_equal(other->contact.memory_count, session->contact.memory_count);
+		kept += session->contact.memory_count > 0;
+		stage_move(session, "ball", 0.54e-3, 0.62e-3, z);
+		stage_move(other, "ball", 0.54e-3, 0.62e-3, z);
+		stage_step(session, 1);
+		stage_step(other, 1);
+		assert_true(cau_session_hash(session) == cau_session_hash(other));
+		free(shot.bytes);
+	}
+	assert_true(kept > TICKS / 2);
+	cau_session_destroy(session);
+	cau_session_destroy(other);
+	free(scene);
+}
+
+// Tissue that a tool begins to push from inside, as its energy goes off, has no side: it is let out
+// as it can, and nothing is thrown about.
+static void a_tool_that_begins_inside_throws_nothing(void **state)
+{
+	(void)state;
+	cau_scene_def *scene = press_scene(&presses[4]);
+	scene->tools[0].pose.position_m[2] = 0;
+	cau_session *session = stage_open(scene, 1);
+	for (int tick = 0; tick < 60; tick++) {
+		stage_step(session, 1);
+		cau_frame frame = stage_frame(session);
+		cau_session_info info = stage_info(session);
+		assert_true(stage_farthest(&frame, info.rest_position, info.vertex_count) <
+		            2 * presses[4].radius_m);
+	}
+	cau_session_destroy(session);
+	free(scene);
+}
+
+int main(void)
+{
+	const struct CMUnitTest tests[] = {
+		cmocka_unit_test(nothing_crosses),
+		cmocka_unit_test(sides_are_part_of_the_state),
+		cmocka_unit_test(a_tool_that_begins_inside_throws_nothing),
+	};
+	return cmocka_run_group_tests(tests, NULL, NULL);
+}
