@@ -4,9 +4,11 @@
 Usage: ctest ... | follow_tests.py LOGS
 
 On a terminal one line changes every second, elsewhere there is a new one every so often. How far a
-test NAME.build is, is read off LOGS/build-NAME.log.
+test NAME.build is, is read off LOGS/build-NAME.log. Before ctest's closing lines says once more how
+each failed test ended: its own lines are thousands above by then.
 """
 
+import collections
 import os
 import re
 import select
@@ -16,9 +18,12 @@ import time
 SILENT_S = 5
 LINE_EVERY_S = 15  # where it is not a terminal
 TERMINAL_COLUMNS = 100
+LAST_LINES = 40  # of a failed test, said again
 
 START = re.compile(rb"^\s*Start\s+\d+: (\S+)")
 RESULT = re.compile(rb"^\s*\d+/\d+ Test\s+#\d+: (\S+)")
+CLOSING = re.compile(rb"^\d+% tests passed")
+FAILED = re.compile(rb"\*\*\*(Failed|Timeout|Exception|Not Run)")
 STEPS = re.compile(rb"^\[(\d+)/(\d+)\] |^\[ *(\d+)%\] ", re.MULTILINE)
 
 
@@ -39,6 +44,7 @@ class Follower:
     def __init__(self, logs):
         self.logs, self.terminal = logs, sys.stdout.isatty()
         self.started, self.running, self.told = time.monotonic(), {}, time.monotonic()
+        self.failed, self.failing = {}, None  # last lines by test; the test whose lines come now
 
     def take(self, line):
         start, result = START.match(line), RESULT.match(line)
@@ -46,11 +52,29 @@ class Follower:
             self.running[start.group(1).decode()] = time.monotonic()
         if result:
             self.running.pop(result.group(1).decode(), None)
+        self.keep_failed(line, start, result)
         if self.terminal:
             sys.stdout.write("\r\033[K")
         sys.stdout.buffer.write(line)
         sys.stdout.flush()
         self.told = time.monotonic()
+
+    def keep_failed(self, line, start, result):
+        closing = CLOSING.match(line)
+        if closing:
+            self.tell_failed()
+        if result and FAILED.search(line):
+            self.failing = self.failed[result.group(1).decode()] = collections.deque(maxlen=LAST_LINES)
+        elif start or result or closing:
+            self.failing = None
+        elif self.failing is not None:
+            self.failing.append(line)
+
+    def tell_failed(self):
+        for name, lines in self.failed.items():
+            print(f"\n== how {name} ended", flush=True)
+            sys.stdout.buffer.write(b"".join(lines))
+            sys.stdout.flush()
 
     def describe(self, name, since):
         build = re.fullmatch(r"(\w+)\.build", name)
