@@ -6,8 +6,10 @@
 // when the step is solved each face that is drawn is followed from where it was at the tick's start
 // to where it is now, as seen from the tool, in steps that no face can outrun (conservative
 // advancement, B. Mirtich 1996). Where it first touches, the distance's gradient says on which side
-// it belongs. A face that ended on another side, or deep inside, becomes a row (solve/contact.h),
-// and the step goes on.
+// of the face the tool is. A face that ended beyond the tool, or deep inside, becomes a row
+// (solve/contact.h), and the step goes on. Sides are those of the face, not of the tool: as the
+// tool slides on, a face that was before it is below and then behind it, and belongs elsewhere as
+// seen from the tool.
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
@@ -17,14 +19,15 @@
 #include "tool/face_distance.h"
 
 static const double touch_m = 1e-5;    // nearer is touching
-static const double margin_m = 2e-3;   // a face that was pushed and is further away is let go of
 static const double deep_share = 0.5;  // of the tip's radius: a face that is deeper is missed
-static const double release_m_s = 0.1; // of tissue that is inside a tool which begins to push
+static const double margin_m = 2e-3;   // a face that was pushed and is further away is let go of
+static const double release_m_s = 0.1; // of a face that is inside and pushed out
 enum { CANDIDATES = 4 * CAU_MAX_CONTACTS, STEPS_ON_WAY = 64 };
 
 typedef struct cau_candidate {
 	cau_contact_row row;
 	double depth; // m: the deepest are taken first
+	bool kept;    // its side was known
 } cau_candidate;
 
 typedef struct reach {
@@ -35,6 +38,7 @@ typedef struct reach {
 	cau_tool_part part;
 	double most_way;
 	int32_t count;
+	bool kept_missed;    // a face whose side was known is among them
 	cau_candidate *list; // (CANDIDATES)
 } reach;
 
@@ -42,7 +46,8 @@ typedef struct reach {
 typedef struct passage {
 	cau_vec3 start[3], end[3];
 	double weight[3];
-	double way; // m, of the corner that goes furthest
+	double way;      // m, of the corner that goes furthest
+	cau_vec3 normal; // unit, as the tick began; 0 of a face without an area
 } passage;
 
 static double distance_at(const reach *r, const passage *p, double when, double weight[3],
@@ -67,6 +72,8 @@ static void follow(const reach *r, const cau_contact_row *row, passage *p)
 		double way = cau_length(cau_sub(p->end[k], p->start[k]));
 		p->way = way > p->way || isnan(way) ? way : p->way;
 	}
+	p->normal = cau_cross(cau_sub(p->start[1], p->start[0]), cau_sub(p->start[2], p->start[0]));
+	p->normal = cau_unit_or(p->normal, (cau_vec3){0, 0, 0});
 }
 
 // What is kept of a face that was inside the tool, or pushed by it, at the last step's end; NULL:
@@ -76,11 +83,18 @@ static const cau_contact_memory *remembered(const reach *r, int32_t face)
 	return cau_contact_recall(&r->session->contact, r->index, face);
 }
 
-static void place(const reach *r, const passage *p, cau_vec3 side, double start_m,
+// Where the face has to go to be out of the tool: away from the side on which the tool belongs.
+static cau_vec3 way_back(const passage *p, int32_t above)
+{
+	return cau_scale(-above, p->normal);
+}
+
+static void place(const reach *r, const passage *p, int32_t above, double start_m,
                   cau_contact_row *row)
 {
 	CAU_ASSERT(row->corner_count == 3, "a row of %d corners on a face", row->corner_count);
-	cau_vec3_to(side, row->side);
+	row->above = above;
+	cau_vec3_to(way_back(p, above), row->side);
 	row->way_m = p->way + 2 * r->def->hot_radius_m;
 	row->slack_m = fmax(-start_m - release_m_s * r->session->solver.step_s, 0);
 	memcpy(row->weight, p->weight, sizeof row->weight);
@@ -96,17 +110,21 @@ static double way_out(const reach *r, const passage *p, const double weight[3], 
 	return cau_tool_way_out(r->def, r->tool->state.jaw, r->part, point, side, most_m, &gradient);
 }
 
-// Where the face first touches on its way, from outside: its weights and side at that time. False:
-// nowhere.
-static bool find_touch(const reach *r, passage *p, double distance, cau_vec3 *side)
+// Where the face first touches on its way, from outside: its weights at that time, and on which of
+// its sides the tool is. 0: it touches nowhere, or with an edge, which tells no side.
+static int32_t find_touch(const reach *r, passage *p, double distance, cau_vec3 gradient)
 {
 	CAU_ASSERT(p->way >= 0, "a way of %g m", p->way);
+	const double least_share = 0.3; // of the gradient along the normal
 	double when = 0;
 	for (int step = 0; step < STEPS_ON_WAY && distance > touch_m && when < 1; step++) {
 		when = fmin(when + distance / p->way, 1);
-		distance = distance_at(r, p, when, p->weight, side);
+		distance = distance_at(r, p, when, p->weight, &gradient);
 	}
-	return distance <= touch_m;
+	double along = cau_dot(gradient, p->normal);
+	if (!(distance <= touch_m) || !(fabs(along) > least_share))
+		return 0;
+	return along < 0 ? 1 : -1;
 }
 
 // Follows a face through the tick and keeps its side where it ends inside or beyond the tool.
@@ -114,61 +132,67 @@ static bool find_touch(const reach *r, passage *p, double distance, cau_vec3 *si
 static bool is_missed(reach *r, cau_candidate *c)
 {
 	passage p;
-	cau_vec3 side, gradient;
+	cau_vec3 gradient;
 	follow(r, &c->row, &p);
-	double start = distance_at(r, &p, 0, p.weight, &side);
+	double start = distance_at(r, &p, 0, p.weight, &gradient);
 	if (!(start <= p.way + touch_m)) // nor is one that is nowhere
 		return false;
 	const cau_contact_memory *kept = remembered(r, c->row.face);
-	if (!kept && (start < -touch_m || !find_touch(r, &p, start, &side)))
-		return false; // inside since the tool began to push, it has no side to go to; or untouched
+	int32_t above = 0; // as of tissue that was inside when the tool began to push: it has no side
 	if (kept)
-		side = cau_vec3_of(kept->side);
+		above = kept->above;
+	else if (start >= -touch_m)
+		above = find_touch(r, &p, start, gradient);
+	if (!above)
+		return false;
+	cau_vec3 side = way_back(&p, above);
 	double most = p.way + 2 * r->def->hot_radius_m, weight[3];
 	memcpy(weight, p.weight, sizeof weight);
 	double end = distance_at(r, &p, 1, weight, &gradient);
 	c->depth = way_out(r, &p, p.weight, side, most);
 	double deepest = way_out(r, &p, weight, side, most);
 	if (end <= touch_m || c->depth > 0 || deepest > 0)
-		cau_contact_touch(&r->session->contact, r->index, c->row.face, side);
+		cau_contact_touch(&r->session->contact, r->index, c->row.face, above);
 	if (deepest > c->depth) {
 		c->depth = deepest;
 		memcpy(p.weight, weight, sizeof weight);
 	}
 	if (!(c->depth > deep_share * r->def->hot_radius_m))
 		return false;
-	place(r, &p, side, start, &c->row);
+	c->kept = kept != NULL;
+	place(r, &p, above, start, &c->row);
 	return true;
 }
 
-// The row of a face that was pushed in the last step, if it is near still.
-static bool is_near(const reach *r, const cau_contact_memory *kept, cau_contact_row *row)
+// The row of a face that was pushed in the last step, where it is nearest now. False: it is away.
+static bool take_up(const reach *r, const cau_contact_memory *kept, cau_contact_row *row)
 {
 	passage p;
 	cau_vec3 gradient;
 	follow(r, row, &p);
 	double start = distance_at(r, &p, 0, p.weight, &gradient);
-	if (!(start - p.way <= margin_m))
+	if (!(start <= margin_m))
 		return false;
-	place(r, &p, cau_vec3_of(kept->side), start, row);
+	place(r, &p, kept->above, start, row);
 	return true;
 }
 
-// Fills in what the row knows of its corners. False: none can move.
+// Fills in what the row knows of its corners. False: one cannot move, and a face that hangs on it
+// may have nowhere to go.
 static bool describe_corners(const reach *r, cau_contact_row *row)
 {
 	const cau_session *session = r->session;
-	bool any_free = false;
+	bool all_free = true;
 	for (int32_t k = 0; k < 3; k++) {
 		int32_t v = row->vertex[k];
 		CAU_ASSERT_INDEX(v, session->tissue.vertex_count);
 		row->free[k] = !session->fixed[v];
-		any_free = any_free || row->free[k];
+		all_free = all_free && row->free[k];
 		cau_vec3 local = cau_pose_to_local(&r->tool->pose_before,
 		                                   cau_vec3_of(session->position_start + 3 * (size_t)v));
 		cau_vec3_to(cau_pose_to_world(&r->tool->state.pose, local), row->no_slip[k]);
 	}
-	return any_free;
+	return all_free;
 }
 
 // Whether a row pushes at that point of the face already, or near it.
@@ -202,6 +226,7 @@ static void offer(reach *r, int32_t face)
 	cau_candidate c = candidate_of(r, face);
 	if (!describe_corners(r, &c.row) || !is_missed(r, &c) || has_row(r, &c.row))
 		return;
+	r->kept_missed = r->kept_missed || c.kept;
 	if (r->count < CANDIDATES)
 		r->list[r->count++] = c;
 	else
@@ -288,7 +313,7 @@ void cau_session_reach_again(cau_session *session, int32_t index, cau_tool_part 
 		if (kept->tool != index || !kept->pushed || !is_drawn(session, kept->face))
 			continue;
 		cau_candidate c = candidate_of(&r, kept->face);
-		if (describe_corners(&r, &c.row) && is_near(&r, kept, &c.row))
+		if (describe_corners(&r, &c.row) && take_up(&r, kept, &c.row))
 			cau_contact_add(&session->contact, &c.row);
 	}
 }
@@ -304,6 +329,8 @@ void cau_session_reach(cau_session *session, int32_t index, cau_tool_part part)
 		if (may_meet(&r, &session->near.edge_box[b]))
 			search_block(&r, b);
 	qsort(r.list, (size_t)r.count, sizeof *r.list, compare);
+	// Faces that touch only because others were passed tell a wrong side: first those are held.
 	for (int32_t k = 0; k < r.count; k++)
-		cau_contact_add(&session->contact, &r.list[k].row);
+		if (r.list[k].kept || !r.kept_missed)
+			cau_contact_add(&session->contact, &r.list[k].row);
 }

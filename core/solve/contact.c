@@ -76,18 +76,12 @@ static int compare_memory(const void *a, const void *b)
 	return (x->face > y->face) - (x->face < y->face);
 }
 
-static cau_contact_memory memory_of(int32_t tool, int32_t face, cau_vec3 side)
-{
-	cau_contact_memory memory = {.tool = tool, .face = face};
-	cau_vec3_to(side, memory.side);
-	return memory;
-}
-
-void cau_contact_touch(cau_contact_set *set, int32_t tool, int32_t face, cau_vec3 side)
+void cau_contact_touch(cau_contact_set *set, int32_t tool, int32_t face, int32_t above)
 {
 	CAU_ASSERT_INDEX(tool, set->tool_count);
+	CAU_ASSERT(above == 1 || above == -1, "side %d of face %d", above, face);
 	if (set->touched_count < CAU_MAX_MEMORY)
-		set->touched[set->touched_count++] = memory_of(tool, face, side);
+		set->touched[set->touched_count++] = (cau_contact_memory){tool, face, 0, above};
 }
 
 static void keep(cau_contact_set *set, const cau_contact_memory *memory)
@@ -101,10 +95,8 @@ void cau_contact_remember(cau_contact_set *set)
 	set->memory_count = 0;
 	for (int32_t i = 0; i < set->row_count; i++) {
 		const cau_contact_row *row = &set->row[i];
-		cau_contact_memory pushed = memory_of(row->tool, row->face, cau_vec3_of(row->side));
-		pushed.pushed = 1;
 		if (row->corner_count == 3)
-			keep(set, &pushed);
+			keep(set, &(cau_contact_memory){row->tool, row->face, 1, row->above});
 	}
 	int32_t pushed_count = set->memory_count;
 	for (int32_t i = 0; i < set->touched_count; i++) {
@@ -164,12 +156,13 @@ static void measure_gap(const cau_contact_set *set, const cau_step_solver *solve
 	CAU_ASSERT_INDEX(row->tool, set->tool_count);
 	cau_vec3 point = cau_pose_to_local(&tool->pose, cau_contact_point(row, solver->position));
 	row->gap = cau_tool_distance(tool->def, tool->jaw, part, point, &normal);
-	bool beyond = cau_dot(normal, side) < 0;
-	if (beyond || (row->corner_count == 3 && row->gap < 0)) {
-		double way = cau_tool_way_out(tool->def, tool->jaw, part, point, side, row->way_m, &normal);
-		if (!(cau_dot(normal, side) > 0))
-			normal = side;
-		row->gap = -way * cau_dot(normal, side);
+	if (cau_dot(normal, side) < 0 || (row->corner_count == 3 && row->gap < 0)) {
+		cau_vec3 out;
+		double way = cau_tool_way_out(tool->def, tool->jaw, part, point, side, row->way_m, &out);
+		if (way > 0) {
+			normal = cau_dot(out, side) > 0 ? out : side;
+			row->gap = -way * cau_dot(normal, side);
+		}
 	}
 	row->gap += row->slack_m;
 	cau_vec3_to(cau_rotate(tool->pose.rotation, normal), row->normal);

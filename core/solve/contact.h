@@ -41,11 +41,11 @@ typedef struct cau_contact_tool {
 
 typedef struct cau_contact_row {
 	int32_t corner_count; // 1: a vertex; 3: a point of a face
-	int32_t face;
-	int32_t vertex[3]; // its corners
-	double weight[3];  // their shares in the point
-	bool free[3];      // whether they can move
-	int32_t column[3]; // the free ones' places among the kept columns; else -1
+	int32_t face, above;  // as in cau_contact_memory
+	int32_t vertex[3];    // its corners
+	double weight[3];     // their shares in the point
+	bool free[3];         // whether they can move
+	int32_t column[3];    // the free ones' places among the kept columns; else -1
 	int32_t tool;
 	bool attached;
 	bool slipping;        // attachment at its slip force in the last solve
@@ -59,11 +59,11 @@ typedef struct cau_contact_row {
 	double reaction[3];   // N, of the tool on the point
 } cau_contact_row;
 
-// A face that a tool pushed, or that was inside it, at the end of a step: on which side it belongs.
+// A face that a tool pushed, or that was inside it, at the end of a step.
 typedef struct cau_contact_memory {
 	int32_t tool, face;
-	int32_t pushed, unused; // whether it was a row
-	double side[3];         // unit, in the tool's frame
+	int32_t pushed; // whether it was a row
+	int32_t above;  // 1: the tool is on the side to which the face's normal points; -1: below
 } cau_contact_memory;
 
 struct cau_contact_set {
@@ -106,9 +106,9 @@ cau_contact_row cau_contact_at_vertex(int32_t vertex, int32_t tool);
 // Forgets all rows.
 void cau_contact_clear(cau_contact_set *set);
 
-// Notes that a face is inside or beyond a tool, and on which side it belongs (unit, in the tool's
-// frame). Past CAU_MAX_MEMORY faces nothing is kept.
-void cau_contact_touch(cau_contact_set *set, int32_t tool, int32_t face, cau_vec3 side);
+// Notes that a face is inside or beyond a tool, and on which of its sides the tool belongs (`above`
+// as in cau_contact_memory). Past CAU_MAX_MEMORY faces nothing is kept.
+void cau_contact_touch(cau_contact_set *set, int32_t tool, int32_t face, int32_t above);
 
 // Keeps, at a step's end, the faces that were pushed or touched: the next step knows their sides.
 void cau_contact_remember(cau_contact_set *set);

@@ -203,12 +203,58 @@ static void a_tool_that_begins_inside_throws_nothing(void **state)
 	free(scene);
 }
 
+// Drawn across tissue, pressed in, and over its rim, slowly and so fast that each tick takes it
+// past whole cells: what is behind it is not dragged along, and nothing is torn to where no tissue
+// is.
+static void what_is_drawn_across_drags_nothing_along(void **state)
+{
+	(void)state;
+	static const struct {
+		const char *scene;
+		int shape;
+		double speed_m_s;
+	} ways[] = {
+		{"fat", CAU_TOOL_SPHERE, 0.05},
+		{"fat", CAU_TOOL_SPHERE, 0.5},
+		{"fat", CAU_TOOL_HOOK, 0.05},
+		{"fascia", CAU_TOOL_SPHERE, 0.05},
+	};
+	const double radius_m = 1.5e-3, depth_m = 2e-3;
+	const double bounded_m = 25e-3; // three ticks of the fastest
+	for (size_t w = 0; w < sizeof ways / sizeof *ways; w++) {
+		cau_scene_def *scene = stage_scene_light(ways[w].scene);
+		scene->tool_count = 0;
+		cau_tool_def *tool =
+			stage_add_tool(scene, "ball", ways[w].shape, -0.02, 1.3e-3, radius_m + 1e-3);
+		tool->hot_radius_m = tool->grid_step_m = radius_m;
+		tool->max_speed_m_s = 2;
+		cau_session *session = stage_open(scene, 1);
+		cau_session_info info = stage_info(session);
+		double far = 0, reach_m = 0.09; // beyond the rim
+		int ticks = 20 + (int)(60 * reach_m / ways[w].speed_m_s);
+		for (int tick = 0; tick < ticks; tick++) {
+			double in = fmin((tick + 1) * 1e-3, 1e-3 + depth_m);
+			double along = tick > 20 ? (tick - 20) * ways[w].speed_m_s / 60 : 0;
+			stage_move(session, "ball", -0.02 + along, 1.3e-3, radius_m + 1e-3 - in);
+			stage_step(session, 1);
+			cau_frame frame = stage_frame(session);
+			far = fmax(far, stage_farthest(&frame, info.rest_position, info.vertex_count));
+		}
+		print_message("%s at %g m/s: %.1f mm at most\n", ways[w].scene, ways[w].speed_m_s,
+		              1e3 * far);
+		assert_true(far < bounded_m);
+		cau_session_destroy(session);
+		free(scene);
+	}
+}
+
 int main(void)
 {
 	const struct CMUnitTest tests[] = {
 		cmocka_unit_test(nothing_crosses),
 		cmocka_unit_test(sides_are_part_of_the_state),
 		cmocka_unit_test(a_tool_that_begins_inside_throws_nothing),
+		cmocka_unit_test(what_is_drawn_across_drags_nothing_along),
 	};
 	return cmocka_run_group_tests(tests, NULL, NULL);
 }
