@@ -53,9 +53,8 @@ install_packages() {
 	watched apt-install "${apt[@]}" install "${missing[@]}"
 }
 
-# install_npm_packages FOLDER...: what each folder's lock file names, where it is not there yet. Not by
-# `npm ci`: newer ones refuse a lock file without other platforms' optional packages, which npm itself
-# leaves out of it. `install --no-save` takes the lock file's versions and leaves it as it is.
+# install_npm_packages FOLDER...: what each folder's lock file names, where it is not there yet; from
+# npm's own cache where that has it, without asking the registry again.
 install_npm_packages() {
 	local folder
 	for folder in "$@"; do
@@ -67,7 +66,7 @@ install_npm_packages() {
 			continue
 		fi
 		heading "npm packages of $folder"
-		watched "npm-$(basename "$folder")" npm install --no-save --prefix "$folder"
+		watched "npm-$(basename "$folder")" npm ci --prefer-offline --prefix "$folder"
 		touch "$folder/node_modules/.package-lock.json"
 	done
 }

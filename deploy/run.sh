@@ -118,7 +118,7 @@ build_viewer() {
 	if [ "$install" = yes ]; then
 		install_npm_packages clients/web
 	fi
-	if [ -d clients/web/node_modules/vite ]; then
+	if [ -d clients/web/node_modules/vite ] && clients/web/with_node.sh true; then
 		heading "build the viewer"
 		watched build-viewer npm run --silent --prefix clients/web build
 	fi

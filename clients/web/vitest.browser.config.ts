@@ -20,7 +20,7 @@ export default defineConfig({
     dir: here('../../tests/browser/page'),
     include: ['**/*.test.ts'],
     pool: 'forks',
-    poolOptions: { forks: { minForks: 1, maxForks: 2 } },
+    maxWorkers: 2,
     testTimeout: 300_000,
     hookTimeout: 300_000,
   },

@@ -13,6 +13,6 @@ export default defineConfig({
     dir: here('../../tests/browser/unit'),
     include: ['**/*.test.ts'],
     pool: 'forks',
-    poolOptions: { forks: { maxForks: 1 } },
+    maxWorkers: 1,
   },
 });

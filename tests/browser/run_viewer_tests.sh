@@ -15,6 +15,7 @@ skip() {
 
 command -v npm >/dev/null || skip "npm is not installed"
 [ -d node_modules/vite ] || skip "no packages in clients/web/node_modules (npm ci there installs them)"
+./with_node.sh true || skip "no Node that is new enough"
 
 case ${1:-} in
 types) exec npm run --silent types ;;

@@ -112,7 +112,7 @@ describe('what destroys', () => {
     await viewer.until(() => document.querySelector('#cue')?.checkVisibility() === true, null, 'the cue is there');
     await page.locator('#picture').focus();
     await page.keyboard.down('Space');
-    await viewer.until(() => window.cautery.energized && document.querySelector<HTMLElement>('#cue')!.hidden, null, 'energy is on');
+    await viewer.until(() => window.cautery.energized && document.querySelector<HTMLElement>('#cue')!.hidden === true, null, 'energy is on');
     await countCues(viewer);
     await page.keyboard.up('Space');
     await viewer.until(() => !window.cautery.energized, null, 'energy is off');

@@ -27,7 +27,7 @@ describe('looking closely', () => {
     const { page } = viewer;
     await page.getByLabel('Tell what is under the pointer').check();
     await pointAt([0.03, 0.02, 0]);
-    await viewer.until(() => document.querySelector('#inspected')?.checkVisibility() === true && document.querySelector('#inspected')!.textContent!.includes('°C'), null, 'it is told');
+    await viewer.until(() => document.querySelector('#inspected')?.checkVisibility() === true && document.querySelector('#inspected')!.textContent.includes('°C'), null, 'it is told');
     const [what, where, temperature, stress, heat] = ((await page.locator('#inspected').textContent()) ?? '').split('\n');
     expect(what).toMatch(/^fascia, vertex \d+$/);
     const at = where.replace(' mm', '').split(', ').map(Number);

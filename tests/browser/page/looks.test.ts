@@ -20,10 +20,10 @@ function countDrawing(): void {
   const gl = WebGL2RenderingContext.prototype;
   const texel = (format: number): number => (format === WebGL2RenderingContext.R8 ? 1 : 4);
   const around = <K extends 'clear' | 'drawElements' | 'drawArrays' | 'texStorage2D' | 'texStorage3D'>(name: K, tell: (given: number[]) => void): void => {
-    const real = gl[name] as (this: WebGL2RenderingContext, ...given: number[]) => void;
+    const real = gl[name];
     (gl as unknown as Record<string, unknown>)[name] = function (this: WebGL2RenderingContext, ...given: number[]) {
       tell(given);
-      real.apply(this, given);
+      Reflect.apply(real, this, given);
     };
   };
   const drawn = (mode: number, vertices: number): void => {

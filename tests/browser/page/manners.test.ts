@@ -207,7 +207,7 @@ describe('manners', () => {
 
   it('is a small bundle', () => {
     const files = readdirSync(distribution, { recursive: true, withFileTypes: true }).filter((entry) => entry.isFile());
-    const bytes = files.reduce((sum, file) => sum + gzipSync(readFileSync(join(file.path, file.name))).byteLength, 0);
+    const bytes = files.reduce((sum, file) => sum + gzipSync(readFileSync(join(file.parentPath, file.name))).byteLength, 0);
     process.stdout.write(`bundle: ${bytes} bytes compressed\n`);
     expect(bytes).toBeLessThan(BUNDLE_BYTES_MAX);
   });

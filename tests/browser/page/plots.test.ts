@@ -11,7 +11,7 @@ const FRAMES_APART_S = 0.2; // that a busy machine does not tell
 /** In the page, before anything else: keeps what plots write outside of their canvas. */
 function watchPlotWords(): void {
   const canvas = CanvasRenderingContext2D.prototype;
-  const write = Reflect.get(canvas, 'fillText') as (this: CanvasRenderingContext2D, words: string, x: number, y: number, most?: number) => void;
+  const write = Reflect.get<CanvasRenderingContext2D, 'fillText'>(canvas, 'fillText');
   window.plotWords = { written: 0, clipped: [] };
   canvas.fillText = function (words, x, y, most) {
     const { actualBoundingBoxLeft: left, actualBoundingBoxRight: right, actualBoundingBoxAscent: up, actualBoundingBoxDescent: down } = this.measureText(words);
@@ -76,7 +76,7 @@ describe('plots over the session', () => {
     const newest = await told();
     const box = (await page.locator('[aria-label="Over the session"] .u-over').nth(1).boundingBox())!;
     await page.mouse.move(box.x + 0.2 * box.width, box.y + box.height / 2);
-    await viewer.until((before) => !document.querySelector('#at-cursor')!.textContent!.startsWith(before), newest.seconds.toFixed(2), 'the time that is pointed at');
+    await viewer.until((before) => !document.querySelector('#at-cursor')!.textContent.startsWith(before), newest.seconds.toFixed(2), 'the time that is pointed at');
     const before = await told();
     expect(before.seconds).toBeLessThan(newest.seconds);
     expect(before.celsius).toBeLessThan(newest.celsius);
@@ -109,7 +109,7 @@ describe('plots over the session', () => {
     await page.keyboard.press('PageDown');
     const tick = Number(await page.locator('#tick').inputValue());
     expect(tick).toBeLessThan(newest);
-    await viewer.until(([seconds, apart]) => Math.abs(parseFloat(document.querySelector('#at-cursor')!.textContent!) - seconds) < apart, [tick / 60, FRAMES_APART_S] as const, 'the values of that time');
+    await viewer.until(([seconds, apart]) => Math.abs(parseFloat(document.querySelector('#at-cursor')!.textContent) - seconds) < apart, [tick / 60, FRAMES_APART_S] as const, 'the values of that time');
     expect(viewer.complaints).toEqual([]);
   });
 });

@@ -24,7 +24,7 @@ describe('while something is under way', () => {
   };
   /** The veil goes, and under it is tissue of a size. */
   const seen = async (): Promise<void> => {
-    await viewer.until(() => document.querySelector<HTMLElement>('#veil')!.hidden, null, 'the picture is live again');
+    await viewer.until(() => document.querySelector<HTMLElement>('#veil')!.hidden === true, null, 'the picture is live again');
     const { least, most } = await viewer.page.evaluate(() => window.cautery.extent());
     expect(most[0] - least[0]).toBeGreaterThan(0.05);
   };

@@ -47,7 +47,7 @@ function weigh(): void {
   const stored = (format: number, ...sizes: number[]): void => {
     weight.textureBytes += (format === gl.R8 || format === gl.RED ? 1 : 4) * sizes.reduce((product, size) => product * size, 1);
   };
-  before('shaderSource', (shader: WebGLShader, source: string) => void sources.set(shader, source));
+  before('shaderSource', (shader: WebGLShader, source: string) => sources.set(shader, source));
   before('attachShader', (program: WebGLProgram, shader: WebGLShader) => {
     if (BODY.some((mark) => sources.get(shader)?.includes(mark))) ofBody.add(program);
   });
@@ -63,8 +63,10 @@ function weigh(): void {
     if (typeof h === 'number') stored(format, w, h);
   });
   before('texImage3D', (...[, , format, w, h, d]: number[]) => stored(format, w, h, d));
-  before('clear', () => void (weight.calls = weight.triangles = 0));
-  before('fenceSync', () => void weight.pictures++);
+  before('clear', () => {
+    weight.calls = weight.triangles = 0;
+  });
+  before('fenceSync', () => weight.pictures++);
 }
 
 describe('the weight of a picture', () => {

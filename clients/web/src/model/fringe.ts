@@ -27,7 +27,7 @@ export interface FringeShape {
 }
 
 /** Of two triangles for each pair of rows, between their roots (2 row) and tips (2 row + 1). */
-export function bandIndex(pairs: readonly (readonly [number, number])[]): Uint32Array {
+export function bandIndex(pairs: readonly (readonly [number, number])[]): Uint32Array<ArrayBuffer> {
   return Uint32Array.from(pairs.flatMap(([a, b]) => [2 * a, 2 * b, 2 * b + 1, 2 * a, 2 * b + 1, 2 * a + 1]));
 }
 

@@ -74,7 +74,7 @@ export class Model {
 
   on<K extends keyof Events>(event: K, listener: Listener<Events[K]>): void {
     const set = this.listeners.get(event) ?? new Set();
-    set.add(listener as Listener<never>);
+    set.add(listener);
     this.listeners.set(event, set);
   }
 

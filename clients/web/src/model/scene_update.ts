@@ -2,7 +2,7 @@
 // What is seen as foxglove.SceneUpdate: the tissue's present faces as triangles, a list for each layer, and
 // each tool as a shaft with a tip, which glows where energy is on. `cautery record --mcap` writes the same
 // (clients/cautery/scene_update.c).
-import type { Color, CylinderPrimitive, Pose, SceneEntity, SceneUpdate, SpherePrimitive, Time, TriangleListPrimitive } from '@foxglove/schemas';
+import type { Color, CylinderPrimitive, Pose, SceneEntity, SceneEntityDeletionType, SceneUpdate, SpherePrimitive, Time, TriangleListPrimitive } from '@foxglove/schemas';
 
 import type { ToolState } from '../wire/records';
 
@@ -25,7 +25,7 @@ export interface SeenMoment {
   tools: Pick<ToolState, 'name' | 'positionM' | 'rotation' | 'energized'>[];
 }
 
-const DELETE_ALL = 1;
+const DELETE_ALL = 1 as unknown as SceneEntityDeletionType.ALL; // of that package the types alone are used
 const METRES = 1e7; // rounded to a tenth of a micrometre
 // What stands for an instrument, m
 const SHAFT_M = 0.06, SHAFT_DIAMETER_M = 0.002, TIP_DIAMETER_M = 0.0015;

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Materials per layer and region: the protocol's numbers with units and ranges; gravity; pins and forces.
 import type { Control } from '../model/control';
-import { PARAMETERS, type Layer, type MaterialSet } from '../wire/messages.gen';
+import { PARAMETERS, type Layer } from '../wire/messages.gen';
 import { attempt, element, field, problemPlace } from './dom';
 import { forcesSection } from './forces';
 import { limitInputs } from './limits';
@@ -44,7 +44,7 @@ function materialForm(control: Control, { layer, region, values }: Material): HT
     const work = async (): Promise<void> => {
       const material = { ...values, ...inputs.read(), ...limits.read() };
       const where = region === null ? {} : { region };
-      await control.setMaterial({ ...material, ...where, kind: layer.kind, layer: layer.name } as MaterialSet);
+      await control.setMaterial({ ...material, ...where, kind: layer.kind, layer: layer.name });
     };
     void attempt(problem, work, apply);
   });

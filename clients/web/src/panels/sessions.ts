@@ -162,6 +162,6 @@ export function sessionsPanel(control: Control, link: Link): Panel {
   return { id: 'sessions', title: 'Sessions', body, shown: (now) => (visible = now) };
 }
 
-export function saveReceived(name: string, mediaType: string, bytes: Uint8Array): void {
-  save(name, new Blob([bytes as BlobPart], { type: mediaType }));
+export function saveReceived(name: string, mediaType: string, bytes: Uint8Array<ArrayBuffer>): void {
+  save(name, new Blob([bytes], { type: mediaType }));
 }

@@ -25,7 +25,7 @@ export function readChunk(bytes: Uint8Array): Chunk {
   };
 }
 
-export function writeChunk(chunk: Chunk): Uint8Array {
+export function writeChunk(chunk: Chunk): Uint8Array<ArrayBuffer> {
   const bytes = new Uint8Array(CHUNK_HEAD_BYTES + chunk.data.byteLength);
   const view = viewOf(bytes);
   view.setUint32(0, CHUNK_MAGIC, true);

@@ -6,7 +6,7 @@ import type { HelloResult, Notices, Pushes, Requests } from './messages.gen';
 
 export interface Socket {
   binaryType: BinaryType;
-  send(data: string | ArrayBufferView): void;
+  send(data: string | ArrayBufferView<ArrayBuffer>): void;
   close(): void;
   onopen: ((event: Event) => void) | null;
   onclose: ((event: CloseEvent) => void) | null;
@@ -122,7 +122,7 @@ export class Connection {
         reject(new RpcError('lost', 'the daemon cannot be reached just now'));
         return;
       }
-      this.pending.set(id, { method, text, resolve: resolve as (result: unknown) => void, reject });
+      this.pending.set(id, { method, text, resolve: resolve, reject });
       if (this.online || method === 'hello') this.socket?.send(text);
     });
   }
@@ -131,7 +131,7 @@ export class Connection {
     if (this.online) this.socket?.send(JSON.stringify({ jsonrpc: '2.0', method, params }));
   }
 
-  sendBytes(bytes: Uint8Array): void {
+  sendBytes(bytes: Uint8Array<ArrayBuffer>): void {
     if (this.online) this.socket?.send(bytes);
   }
 

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // A section of elements: which elements of an array change (run list) and their numbers, plain or in
 // meshoptimizer's vertex codec, as values or as differences; see "Elements" in protocol/README.md.
-import { MeshoptDecoder } from 'meshoptimizer/meshopt_decoder.module.js';
+import { MeshoptDecoder } from 'meshoptimizer/decoder';
 
 import { viewOf, WireError } from './header';
 

@@ -6,7 +6,7 @@ import type { Connection } from './connection';
 import { RpcError } from './connection';
 import type { Transfer, UploadResult } from './messages.gen';
 
-async function sha256(bytes: Uint8Array): Promise<string> {
+async function sha256(bytes: Uint8Array<ArrayBuffer>): Promise<string> {
   // Pages beyond loopback without TLS have no SubtleCrypto.
   if (typeof crypto === 'undefined' || !('subtle' in crypto) || !crypto.subtle)
     throw new RpcError('unsupported', 'uploads need a secure page: use https, or the daemon on this machine');
@@ -18,7 +18,7 @@ export async function upload(
   connection: Connection,
   name: string,
   fileName: string,
-  bytes: Uint8Array,
+  bytes: Uint8Array<ArrayBuffer>,
   progress: (sent: number) => void,
 ): Promise<UploadResult> {
   const hash = await sha256(bytes);
@@ -36,7 +36,7 @@ export async function upload(
 export interface ReceivedFile {
   name: string;
   mediaType: string;
-  bytes: Uint8Array;
+  bytes: Uint8Array<ArrayBuffer>;
   /** the hash is as announced */
   sound: boolean;
 }
@@ -45,7 +45,7 @@ type Done = (file: ReceivedFile) => void;
 
 interface Download {
   transfer: Transfer;
-  bytes: Uint8Array;
+  bytes: Uint8Array<ArrayBuffer>;
   got: number;
   done: Done;
 }

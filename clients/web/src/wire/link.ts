@@ -11,7 +11,7 @@ export interface LinkEvents {
   notJoined(session: string, message: string): void;
   frame(frame: Frame): void;
   push<M extends keyof Pushes>(method: M, params: Pushes[M]): void;
-  file(name: string, mediaType: string, bytes: Uint8Array, sound: boolean): void;
+  file(name: string, mediaType: string, bytes: Uint8Array<ArrayBuffer>, sound: boolean): void;
 }
 
 interface Call {
@@ -38,7 +38,7 @@ export class Link {
 
   call<M extends keyof Requests>(method: M, params: Requests[M]['params']): Promise<Requests[M]['result']> {
     return new Promise((resolve, reject) => {
-      const call = this.remember({ resolve: resolve as (result: unknown) => void, reject });
+      const call = this.remember({ resolve: resolve, reject });
       this.send({ type: 'call', call, method, params });
     });
   }
@@ -57,7 +57,7 @@ export class Link {
 
   inspect(vertex: number): Promise<VertexState | null> {
     return new Promise((resolve, reject) => {
-      this.send({ type: 'inspect', call: this.remember({ resolve: resolve as (result: unknown) => void, reject }), vertex });
+      this.send({ type: 'inspect', call: this.remember({ resolve: resolve, reject }), vertex });
     });
   }
 
@@ -75,7 +75,7 @@ export class Link {
     return file.arrayBuffer().then(
       (bytes) =>
         new Promise((resolve, reject) => {
-          const call = this.remember({ resolve: resolve as (result: unknown) => void, reject, progress });
+          const call = this.remember({ resolve: resolve, reject, progress });
           this.send({ type: 'upload', call, name, fileName: file.name, bytes }, [bytes]);
         }),
     );
@@ -115,7 +115,7 @@ export class Link {
         this.take(message.call)?.reject(new RpcError(message.status, message.message, message.path));
         break;
       case 'push':
-        events.push(message.method, message.params as never);
+        events.push(message.method, message.params);
         break;
       case 'joined':
         events.joined(message.joined);

@@ -19,7 +19,7 @@ const FILE_BYTES_MAX = 1_000_000_000n; // four minutes of a scene of 12 000 face
 const PART_BYTES = 8 << 20; // one Blob each: browsers keep those on the disk where memory gets short
 
 const parts: Blob[] = [];
-let loose: Uint8Array[] = [];
+let loose: Uint8Array<ArrayBuffer>[] = [];
 let looseBytes = 0;
 let bytes = 0n;
 let messages = 0;

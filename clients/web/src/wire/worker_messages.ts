@@ -112,4 +112,4 @@ export type FromWorker =
   | { type: 'not_joined'; session: string; message: string; status: string }
   | { type: 'frame'; frame: Frame }
   | { type: 'progress'; call: number; sent: number; total: number }
-  | { type: 'file'; name: string; mediaType: string; bytes: Uint8Array; sound: boolean };
+  | { type: 'file'; name: string; mediaType: string; bytes: Uint8Array<ArrayBuffer>; sound: boolean };
