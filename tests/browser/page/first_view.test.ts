@@ -13,6 +13,7 @@ const SCREENS = [
 ] as const;
 
 const CUT_FACES = 24; // enough to be seen
+const CUE_PICTURES_PER_S = 5.01; // where drawing is work
 
 interface Place {
   x: number;
@@ -47,6 +48,21 @@ async function countCues(viewer: ViewerPage): Promise<void> {
 }
 const cues = (viewer: ViewerPage): Promise<number> => viewer.page.evaluate(() => (window as unknown as { cues: number }).cues);
 
+/** Pictures in a second that the cue's animations ask for: Infinity where they go smoothly. */
+function stepsPerSecond(viewer: ViewerPage): Promise<number> {
+  return viewer.page.evaluate(() => {
+    const rates = document.getAnimations().flatMap(({ effect }) => {
+      if (!(effect instanceof KeyframeEffect)) return [];
+      const frames = effect.getKeyframes();
+      return frames.slice(0, -1).map(({ easing, computedOffset }, i) => {
+        const span = (frames[i + 1].computedOffset - computedOffset) * Number(effect.getComputedTiming().duration);
+        return easing === 'step-end' || span === 0 ? 0 : (1000 * Number(/^steps\((\d+)/.exec(easing)?.[1] ?? Infinity)) / span;
+      });
+    });
+    return Math.max(0, ...rates);
+  });
+}
+
 describe('the first view', () => {
   const stage = new BrowserStage();
 
@@ -69,6 +85,11 @@ describe('the first view', () => {
     expect(inTheWay).toEqual([]);
     await viewer.until(() => window.cautery.idle, null, 'the sharp picture');
     await viewer.screenshot(picture);
+    // Software draws each picture of the cue's animation as long as the whole page.
+    const slow = await page.evaluate(() => window.cautery.pictureMs > 50);
+    const rate = await stepsPerSecond(viewer);
+    if (slow) expect(rate).toBeLessThanOrEqual(CUE_PICTURES_PER_S);
+    expect(rate).toBeGreaterThan(1);
 
     const { fascia } = (await viewer.state()).drawnFaces;
     const [from, to] = await cue(viewer);

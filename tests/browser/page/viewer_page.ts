@@ -19,8 +19,8 @@ const FLAGS = [
   '--disable-background-networking', '--disable-component-update', '--disable-sync',
 ];
 const PATIENCE_MS = 120_000; // two cores may be busy with other tests
-// Software draws the whole page anew for each picture of an animation, as long as the cue is there: more than a
-// core, while the tissue stands still. Pages of which that is no matter want none.
+// Software draws the whole page anew for each picture of an animation, as long as the cue is there. Pages of which
+// that is no matter want none.
 const STILL = { viewport: { width: 1100, height: 720 }, colorScheme: 'dark', reducedMotion: 'reduce' } as const;
 /** Of pages that move as most people's do. */
 export const MOVING = { reducedMotion: 'no-preference' } as const;

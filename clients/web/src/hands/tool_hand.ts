@@ -72,9 +72,7 @@ export class ToolHand {
 
   get driving(): boolean { return this.model.driving; }
 
-  get mayHeat(): boolean {
-    return this.model.driving && this.model.tool !== null && hasHeat(this.model.tool.shape);
-  }
+  get mayHeat(): boolean { return this.driving && this.model.tool !== null && hasHeat(this.model.tool.shape); }
 
   /** Whether using the chosen tool moves it: it is this page's, or nobody's. */
   get usable(): boolean {
@@ -85,9 +83,7 @@ export class ToolHand {
   get depthM(): number { return this.depths.of(this.tool); }
 
   /** Whether a place of the picture is on the tissue, gaps in it included; both coordinates from -1 to 1. */
-  overTissue(x: number, y: number): boolean {
-    return this.places.onSurface(x, y) !== null;
-  }
+  overTissue(x: number, y: number): boolean { return this.places.onSurface(x, y) !== null; }
 
   /** Leads a tool that is this page's to a place of the picture. Beside the tissue it stays. */
   hover(x: number, y: number): void {

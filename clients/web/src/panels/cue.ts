@@ -82,6 +82,9 @@ export function showCue(control: Control, viewport: Viewport): () => void {
   });
   return () => {
     if (place.hidden || !stroke) return;
+    // Each picture of the animation has the browser put the whole page together anew.
+    const seldom = viewport.pace?.laboured === true;
+    if (place.classList.contains('seldom') !== seldom) place.classList.toggle('seldom');
     const box = viewport.canvas.getBoundingClientRect();
     const [from, to] = [viewport.project(stroke.from.toArray()), viewport.project(stroke.to.toArray())];
     const at = [from.x - box.left, from.y - box.top, to.x - box.left, to.y - box.top].map((value) => value.toFixed(1));

@@ -28,7 +28,7 @@ export function makePlot(place: HTMLElement, series: readonly Series[], more: Pa
     legend: { show: series.length > 1, live: false },
     cursor: { show: false },
     scales: { x: { time: false } },
-    axes: [{ ...side, size: 28 }, { ...side, size: 44 }], // px: numbers, their gap and the ticks
+    axes: [{ ...side, size: 28 }, { ...side, size: 50 }], // px: numbers, their gap and the ticks
     series: [{}, ...series.map((one) => ({ ...one, width: 1.5, spanGaps: true }))],
     ...more,
   };

@@ -44,7 +44,7 @@ export function plotsPanel(model: Model): Panel {
   const session = sessionPlots(model);
   body.append(session.place, element('h2', {}, `The last ${SPAN_S} s`), counts, element('div', { class: 'buttons' }, csv));
   const places = PLOTS.map((plot) => {
-    const place = element('figure', { class: 'plot', aria: { role: 'img', label: plot.title } }, element('figcaption', {}, plot.title));
+    const place = element('div', { class: 'plot', aria: { role: 'img', label: plot.title } }, element('p', { class: 'of' }, plot.title));
     body.append(place);
     return place;
   });

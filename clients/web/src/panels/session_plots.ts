@@ -24,7 +24,7 @@ export interface SessionPlots {
 }
 
 export function sessionPlots(model: Model): SessionPlots {
-  const figures = PLOTS.map(([title]) => element('figure', { class: 'plot', aria: { role: 'img', label: `${title}, over the session` } }, element('figcaption', {}, title)));
+  const figures = PLOTS.map(([title]) => element('div', { class: 'plot', aria: { role: 'img', label: `${title}, over the session` } }, element('p', { class: 'of' }, title)));
   const told = element('output', { class: 'state', id: 'at-cursor' });
   const place = element('section', { class: 'form', aria: { label: 'Over the session' } }, element('h2', {}, 'Over the session'), told, ...figures);
   let plots: uPlot[] = [];

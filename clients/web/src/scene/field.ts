@@ -36,6 +36,9 @@ export class Field {
     };
     this.flesh = make(FRAGMENTS.flesh, shared);
     this.cloth = make(FRAGMENTS.cloth, { ...shared, cloth: this.colour, background });
+    // After what lies over them, so that what is hidden is not shaded: much of the flesh is under the cloth.
+    this.cloth.renderOrder = 2;
+    this.flesh.renderOrder = 3;
     this.group.visible = false;
   }
 

@@ -22,6 +22,11 @@ export class Pace {
     private readonly setScale: (scale: number) => void,
   ) {}
 
+  /** Whether drawing is work here: pictures take long, or are coarse so that they do not. */
+  get laboured(): boolean {
+    return this.level > 0 || this.pictureMs > SLOW_MS;
+  }
+
   /** Whether the last picture is there; asked once per animation frame. */
   ready(): boolean {
     if (!this.fence) return true;

@@ -120,10 +120,13 @@ vec3 shade(Surface s, vec3 view) {
   float shine = pow(max(dot(s.normal, halfway), 0.0), s.gloss);
   // A wet film mirrors the room: a lamp across the table with a wide bright frame, and some light from everywhere.
   float mirrored = max(dot(reflect(-view, s.normal), FAR_LAMP), 0.0);
-  float across = (0.22 * pow(mirrored, 26.0) + 1.10 * pow(mirrored, 200.0)) * sky;
-  float rim = pow(1.0 - max(dot(s.normal, view), 0.0), 4.0);
+  float m2 = mirrored * mirrored, m8 = m2 * m2 * m2 * m2, m24 = m8 * m8 * m8, m64 = m24 * m24 * m8 * m8;
+  float across = (0.22 * m24 * m2 + 1.10 * m64 * m64 * m64 * m8) * sky; // to the powers of 26 and 200
+  float grazing = 1.0 - max(dot(s.normal, view), 0.0);
+  float rim = grazing * grazing * grazing * grazing;
   colour += s.wet * (shadow * shine + across + rim * 0.10 * sky) * vec3(1.0, 0.97, 0.93);
   for (int i = 0; i < 4 && mapChannel < 0; i++) { // over a colour that tells a number a glow would tell another
+    if (glow[i].w <= 0.0) continue;
     vec3 away = vWorld - glow[i].xyz;
     colour += glow[i].w * exp(-dot(away, away) / 2.2e-5) * vec3(0.9, 0.28, 0.06) * (0.25 + s.colour);
   }

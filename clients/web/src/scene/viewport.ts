@@ -51,7 +51,7 @@ export class Viewport {
   private readonly renderer: WebGLRenderer | null;
   tissue: TissueView | null = null;
   picturesDrawn = 0;
-  private readonly pace: Pace | null;
+  readonly pace: Pace | null;
   private contextLost = false;
   /** of moving pictures, from pace */
   private scale = 1;
