@@ -8,6 +8,7 @@ import glob
 import http.client
 import json
 import os
+import re
 import shutil
 import subprocess
 import sys
@@ -48,11 +49,11 @@ class Installed(unittest.TestCase):
         self.assertEqual(len(found), 1, f"{pattern}: {found}")
         return found[0]
 
-    def start(self, store=None):
+    def start(self, *settings, store=None):
         """The installed daemon, with nothing said about its files. Returns its port."""
         store = store or os.path.join(tempfile.mkdtemp(dir=self.folder), "store.db")
         self.store = store
-        daemon = subprocess.Popen([self.path("bin/cauteryd"), "--json", "--port", "0", "--store", store],
+        daemon = subprocess.Popen([self.path("bin/cauteryd"), "--json", "--port", "0", "--store", store, *settings],
                                   stdout=subprocess.PIPE, env=CLEAN, cwd="/", text=True)
 
         def end():
@@ -79,7 +80,7 @@ class Installed(unittest.TestCase):
                       environment={"CAUTERYD_URL": f"ws://127.0.0.1:{port}"}).stdout.strip()
         run(self.path("bin/cauteryd"), "--store", self.store, "--backup", copy)
         self.assertEqual(os.stat(copy).st_mode & 0o777, 0o600)
-        again = {"CAUTERYD_URL": f"ws://127.0.0.1:{self.start(copy)}"}
+        again = {"CAUTERYD_URL": f"ws://127.0.0.1:{self.start(store=copy)}"}
         self.assertIn(session, run(self.path("bin/cautery"), "info", session, environment=again).stdout)
         twice = subprocess.run([self.path("bin/cauteryd"), "--store", self.store, "--backup", copy], env=CLEAN,
                                capture_output=True, check=False)
@@ -110,6 +111,25 @@ class Installed(unittest.TestCase):
         run("cc", "-Wall", "-Wextra", "-Wpedantic", "-Werror", "-std=c17", "-o", program,
             os.path.join(SOURCES, "tests/deploy/client/greet.c"), *flags)
         self.assertRegex(run(program, url).stdout, r"^cauteryd \d")
+
+    def test_first_client_of_the_readme(self):
+        """In C, by the command that stands above it, but for where this daemon listens."""
+        with open(os.path.join(SOURCES, "README.md"), encoding="utf-8") as file:
+            page = file.read()
+        [program] = re.findall(r"^```c\n(.*?)^```$", page, re.DOTALL | re.MULTILINE)
+        command = "cc first.c $(pkg-config --cflags --libs cautery-client)"
+        self.assertIn(f"`{command}`", page)
+        listens = "cau_default_client_def();"
+        self.assertIn(listens, program)
+        port = self.start("--demo", "layers")
+        with open(os.path.join(self.folder, "first.c"), "w", encoding="utf-8") as file:
+            file.write(program.replace(listens, f'{listens} def.url = "ws://127.0.0.1:{port}";'))
+        run("sh", "-c", command + " -Wall -Wextra -Werror", cwd=self.folder,
+            environment={"PKG_CONFIG_PATH": os.path.dirname(self.one("lib/**/cautery-client.pc"))})
+        with subprocess.Popen(["./a.out"], cwd=self.folder, env=CLEAN, stdout=subprocess.PIPE, text=True) as first:
+            said = [first.stdout.readline() for _ in range(20)]
+            first.kill()
+        self.assertRegex(said[-1], r"^tick [1-9]\d*, \d+ of [1-9]\d+ vertices moved$")
 
     def test_find_package_builds_the_example(self):
         url = f"ws://127.0.0.1:{self.start()}"

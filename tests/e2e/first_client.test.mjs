@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // The programs that README.md and protocol/README.md show, run as they stand there but for the port.
 import assert from 'node:assert/strict';
+import { spawn, spawnSync } from 'node:child_process';
 import { readFileSync } from 'node:fs';
 import { join } from 'node:path';
 import { after, before, test } from 'node:test';
@@ -16,9 +17,15 @@ before(async () => {
 });
 after(() => daemon.end());
 
+// The programs of a page in a language.
+function blocksOf(page, language) {
+	const blocks = new RegExp(`^\`\`\`${language}\\n([^]*?)^\`\`\`$`, 'gm');
+	return [...readFileSync(join(process.env.PAGES, page), 'utf8').matchAll(blocks)].map(([, text]) => text);
+}
+
 // The one program of a page, and what it logs. As in a browser, text comes as a string.
 function run(page) {
-	const blocks = [...readFileSync(join(process.env.PAGES, page), 'utf8').matchAll(/^```js\n([^]*?)^```$/gm)].map(([, text]) => text);
+	const blocks = blocksOf(page, 'js');
 	const [program] = blocks.filter((text) => text.startsWith('const socket = new WebSocket('));
 	assert.ok(program.includes('ws://127.0.0.1:8740/v1'));
 	const logged = [], sockets = [];
@@ -43,6 +50,29 @@ test('the first client of README.md sees vertices and frames', async () => {
 	end();
 	assert.ok(logged.find((words) => words.includes('vertices'))[0] > 100);
 	assert.ok(logged.find((words) => words.includes('a frame of'))[1] > 100);
+});
+
+const noPackage = spawnSync('python3', ['-c', 'import websocket']).status !== 0 && 'python3-websocket is not installed';
+
+test('the first client in Python likewise', { skip: noPackage }, async () => {
+	const [program, ...others] = blocksOf('README.md', 'python');
+	assert.equal(others.length, 0);
+	assert.ok(program.includes('ws://127.0.0.1:8740/v1'));
+	const python = spawn('python3', ['-u', '-c', program.replace('127.0.0.1:8740', `127.0.0.1:${daemon.port}`)]);
+	let said = '';
+	python.stderr.on('data', (text) => (said += text));
+	await new Promise((resolve) => {
+		const timer = setTimeout(resolve, 20_000);
+		python.stdout.on('data', (text) => {
+			said += text;
+			if (!/^\d+ vertices$/m.test(said) || !/^a frame of \d+ bytes$/m.test(said)) return;
+			clearTimeout(timer);
+			resolve();
+		});
+	});
+	python.kill();
+	assert.ok(Number(/^(\d+) vertices$/m.exec(said)?.[1]) > 100, said);
+	assert.ok(Number(/^a frame of (\d+) bytes$/m.exec(said)?.[1]) > 100, said);
 });
 
 test('the first cut of protocol/README.md cuts', async () => {
