@@ -1,0 +1,258 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Every command that a README shows is run by a test: here, or by the one that is named for it below.
+
+Usage: readme_commands_test.py SOURCES PROGRAMS      (PROGRAMS: the folder of the built programs)
+
+A command is a line of a block of shell that begins with a program's name. One that neither this file nor
+`ELSEWHERE` knows fails the test, and so does an entry that no README shows any more. Of a place elsewhere the
+file must hold the words that run it. Steps (`tests/steps`) are run to the letter, whole sections of a page.
+"""
+
+import concurrent.futures
+import os
+import re
+import shutil
+import signal
+import subprocess
+import sys
+import tempfile
+import unittest
+
+SOURCES, PROGRAMS = sys.argv[1:3]
+PATIENCE_S = 120
+FIRST = re.compile(
+    r"\(?(cmake|ctest|npm|cd|curl|cautery(-robot|-load|-sim|-bench)?|cauteryd(?! is )|apt-get|install|systemctl|promtool|haproxy|export|node|python3"
+    r"|docker|git|openssl|[A-Z_]+=\S+|(deploy|tests|build|/usr)/\S+)( |$)")
+LABEL = re.compile(r"^(look|next|stop) +")  # of what run.sh prints
+COMMENT = re.compile(r" +# .*| {2,}\S.*")
+SHELLS = {"", "sh", "bash", "shell", "console"}
+# Not here: they are for a service manager, which a container has not. The unit's own tests are deploy_unit's.
+SERVICE_MANAGER = {"systemctl reload haproxy", "systemctl restart prometheus"}
+
+FIRST_HOUR, INSTALL = "tests/deploy/first_hour_test.py", "tests/deploy/install_test.py"
+VIEWER, SECURITY, ROBOT = "tests/browser/run_viewer_tests.sh", "tests/dds/security.test.mjs", "tests/dds/robot.test.mjs"
+ELSEWHERE = {  # command: (file, words in it)
+    "deploy/run.sh": (FIRST_HOUR, '"deploy/run.sh"'),
+    "deploy/test.sh": (FIRST_HOUR, '"deploy/test.sh"'),
+    "cmake -S . -B build -DCMAKE_BUILD_TYPE=Release && cmake --build build":
+        ("deploy/package.sh", 'cmake -S "$source_folder" -B "$tree" -DCMAKE_BUILD_TYPE=Release'),  # deploy_packages
+    "ctest --test-dir build": (FIRST_HOUR, '"ctest", "--test-dir", "build"'),
+    "cmake --install build --prefix /usr/local": (INSTALL, 'CMAKE, "--install", TREE, "--prefix", "/usr"'),
+    "npm ci": ("tests/deploy/readme_commands_test.py", "cd clients/web && npm ci && npm run build"),
+    "npm run build": (VIEWER, "npm run --silent build"),
+    "npm run types && npm run lint && npm run unit": (VIEWER, "npm run --silent unit"),
+    "npm run browser": (VIEWER, "npm run --silent browser"),
+    "cauteryd --dds --dds-config deploy/dds/network.xml --dds-security keys/enclaves/daemon":
+        (SECURITY, "'--dds-security', enclave('daemon')"),
+    "CYCLONEDDS_URI=file://$PWD/deploy/dds/network.xml,file://$PWD/keys/enclaves/knee-robot/cyclonedds.xml "
+    "cautery-robot d1-knee hook": (SECURITY, "cyclonedds.xml"),
+    "export CYCLONEDDS_URI=file://$PWD/deploy/dds/loopback.xml": (ROBOT, "CYCLONEDDS_URI: process.env.LOOPBACK"),
+    "cauteryd --dds --demo fascia &": (ROBOT, "settings: { dds: true"),
+    "cautery-robot --energy --from=-0.02,0,0.001 --to=0.02,0,0.001 d1-fascia hook":
+        (ROBOT, "'--energy', '--from=-0.02,0,0.001', '--to=0.02,0,0.001'"),
+    "tests/bench/page.py": ("tests/bench/page_test.py", "import page"),
+    "tests/paper/run.py": ("tests/paper/CMakeLists.txt", "run.py\" --quick"),
+    # Ten minutes of finite elements: what they wrote is in the tree, and two tests read it.
+    "OMP_NUM_THREADS=1 /usr/bin/python3 tests/reference/generate.py": ("tests/reference/case_test.c", "CAU_TEST_REFERENCE"),
+}
+
+
+def commands_of(page):
+    """[command] of a page's blocks of shell: continued lines joined, comments left out."""
+    found, shell, fenced, before = [], False, False, ""
+    for line in page.splitlines():
+        if line.lstrip().startswith("```"):
+            fenced = not fenced
+            shell = fenced and line.strip()[3:] in SHELLS
+            continue
+        if not (shell if fenced else line.startswith("    ")):
+            before = ""
+            continue
+        line = before + LABEL.sub("", line.strip())
+        if line.endswith("\\"):
+            before = line[:-1].rstrip() + " "
+            continue
+        before = ""
+        if FIRST.match(line):
+            found.append(COMMENT.sub("", line).rstrip())
+    return found
+
+
+def shown():
+    """{command: [pages]} of all READMEs, without the sections that tests/steps follows."""
+    with open(os.path.join(SOURCES, "tests/steps/CMakeLists.txt"), encoding="utf-8") as file:
+        steps = re.findall(r'PAGE (\S+) SECTION "([^"]+)"', file.read())
+    listed = subprocess.run(["git", "-C", SOURCES, "ls-files", "*README.md"], check=True, text=True, stdout=subprocess.PIPE)
+    found = {}
+    for name in listed.stdout.split():
+        with open(os.path.join(SOURCES, name), encoding="utf-8") as file:
+            page = file.read()
+        for followed, section in steps:
+            if followed == name:
+                page = re.sub(rf"^(#+) {re.escape(section)}\n.*?(?=^#{{1,3}} |\Z)", "", page, flags=re.DOTALL | re.MULTILINE)
+        for command in commands_of(page):
+            found.setdefault(command, []).append(name)
+    return found
+
+
+class Commands(unittest.TestCase):
+    @classmethod
+    def setUpClass(cls):
+        cls.folder = tempfile.mkdtemp(prefix="cautery-readme-")
+        cls.addClassCleanup(shutil.rmtree, cls.folder)
+        for name in ("deploy", "tests"):
+            os.symlink(os.path.join(SOURCES, name), os.path.join(cls.folder, name))
+        os.makedirs(os.path.join(cls.folder, "build"))
+        os.symlink(PROGRAMS, os.path.join(cls.folder, "build/bin"))
+        cls.environment = {**os.environ, "PATH": f"{PROGRAMS}:{os.environ['PATH']}", "LC_ALL": "C.UTF-8"}
+        cls.shown, cls.ran = shown(), set()
+
+    def start(self, *settings):
+        daemon = subprocess.Popen(
+            ["cauteryd", "--json", "--port", "0", "--store", tempfile.mktemp(dir=self.folder), *settings],
+            stdout=subprocess.PIPE, stderr=subprocess.DEVNULL, env=self.environment, cwd=self.folder, text=True)
+        url = re.search(r'"port": (\d+)', daemon.stdout.readline()).group(1)
+
+        def end():
+            daemon.terminate()
+            self.assertEqual(daemon.wait(PATIENCE_S), 0)
+            daemon.stdout.close()
+        self.addCleanup(end)
+        return f"127.0.0.1:{url}"
+
+    def run_it(self, command, says="", at=None, until=False, instead=()):
+        """Runs a command that a README shows. `at`: the daemon in place of the README's; `until`: it goes on by
+        itself and is ended (Ctrl-C) once it has said what `says` wants; `instead`: what this machine has for what
+        the README's has, [(of the README, of this machine)]."""
+        self.assertIn(command, self.shown, "no README shows it")
+        self.ran.add(command)
+        text = command
+        for of_readme, of_machine in (*instead, *((("127.0.0.1:8740", at),) if at else ())):
+            self.assertTrue(of_readme in text or of_readme == "127.0.0.1:8740", f"{of_readme} is not in {command}")
+            text = text.replace(of_readme, of_machine)
+        environment = {**self.environment, **({"CAUTERYD_URL": f"ws://{at}"} if at else {})}
+        process = subprocess.Popen(["bash", "-c", text], cwd=self.folder, env=environment, text=True, start_new_session=True,
+                                   stdin=subprocess.DEVNULL, stdout=subprocess.PIPE, stderr=subprocess.STDOUT)
+        said = ""
+        if until:
+            while not re.search(says, said):
+                line = process.stdout.readline()
+                self.assertTrue(line, f"{text} ended by itself:\n{said}")
+                said += line
+            os.killpg(process.pid, signal.SIGINT)
+            process.communicate(timeout=PATIENCE_S)
+        else:
+            said = process.communicate(timeout=PATIENCE_S)[0]
+            self.assertEqual(process.returncode, 0, f"{text}:\n{said}")
+            self.assertRegex(said, says or ".*")
+        process.stdout.close()
+
+    def test_1_the_demo(self):
+        at = self.start("--demo", "layers")
+        self.run_it("curl http://127.0.0.1:8740/api/sessions", '"d1-layers"', at)
+        for _ in range(2):
+            self.run_it("build/bin/cautery --url ws://127.0.0.1:8740/ watch d1-layers", r"tick \d+ .*hook", at, until=True)
+        self.run_it("build/bin/cautery --url ws://127.0.0.1:8740/ run d1-layers deploy/scenes/scripts/layers-cut.jsonl",
+                    r"\d", at, until=True)
+
+    def test_2_the_command_line(self):
+        at = self.start()
+        self.make_mesh("knee.msh")
+        self.run_it("cautery create layers --name demo", "d1-demo", at)
+
+        def drive():
+            self.run_it("cautery run d1-demo deploy/scenes/scripts/layers-cut.jsonl", r"\d", at, until=True)
+            self.run_it("cautery tool d1-demo hook move 0 0 0 on wait 3 line 0.02 0 0 0.002 off", "", at)
+
+        def look():
+            self.run_it("cautery watch d1-demo", r"tick \d+", at, until=True)
+            self.run_it("cautery create knee.msh --unit-m 0.001", "d1-", at)
+            self.run_it("cautery material d1-demo fascia ignition_c=200", "", at)
+            self.run_it("cautery events d1-demo --follow", r"\S", at, until=True)
+
+        def record():
+            self.run_it("cautery record d1-demo stream.bin --seconds 10 && cautery watch --recording stream.bin", r"tick \d+", at)
+        with concurrent.futures.ThreadPoolExecutor() as hands:
+            for done in [hands.submit(each) for each in (drive, look, record)]:
+                done.result()
+
+    def make_mesh(self, name):
+        """A tetrahedron of 20 mm, as Gmsh writes it."""
+        with open(os.path.join(self.folder, name), "w", encoding="ascii") as file:
+            file.write("$MeshFormat\n2.2 0 8\n$EndMeshFormat\n$Nodes\n4\n1 0 0 0\n2 20 0 0\n3 0 20 0\n4 0 0 20\n"
+                       "$EndNodes\n$Elements\n1\n1 4 2 1 1 1 2 3 4\n$EndElements\n")
+
+    def test_3_settings(self):
+        self.run_it("build/bin/cauteryd --help", "--listen")
+        self.run_it("build/bin/cauteryd --print-config", '"listen"')
+
+    def test_4_identities_for_dds(self):
+        make = "deploy/dds/security/make.sh"
+        for arguments in ("keys", "keys controller knee-robot", "--session d1-knee keys controller guest",
+                          "--revoke knee-robot keys"):
+            self.run_it(f"{make} {arguments}")
+
+    def test_5_a_watching_machine(self):
+        etc = os.path.join(self.folder, "etc")
+        for name in ("prometheus", "haproxy"):
+            os.makedirs(os.path.join(etc, name))
+        here = (("/etc/", f"{etc}/"),)
+        self.run_it("cautery token view --name prometheus --days 365 --out cautery.token")
+        mine = "install -m 600" if os.getuid() else "install -o root -g root -m 600"
+        self.run_it("install -o prometheus -g prometheus -m 600 cautery.token /etc/prometheus/cautery.token",
+                    instead=(("install -o prometheus -g prometheus -m 600", mine), *here))
+        for name in ("prometheus.yml", "cautery.rules.yml"):
+            shutil.copy(os.path.join(SOURCES, "deploy/monitoring", name), self.folder)
+        self.run_it("install -m 644 prometheus.yml cautery.rules.yml /etc/prometheus/", instead=here)
+        with open(os.path.join(etc, "prometheus/prometheus.yml"), encoding="utf-8") as file:
+            config = file.read()
+        with open(os.path.join(etc, "prometheus/prometheus.yml"), "w", encoding="utf-8") as file:
+            file.write(config.replace("/etc/", f"{etc}/"))
+        self.run_it("promtool check config /etc/prometheus/prometheus.yml", "SUCCESS", instead=here)
+
+    def test_6_a_proxy(self):
+        certificate = os.path.join(self.folder, "etc/haproxy/cautery.pem")
+        os.makedirs(os.path.dirname(certificate), exist_ok=True)
+        subprocess.run(["openssl", "req", "-x509", "-newkey", "rsa:2048", "-nodes", "-days", "2", "-subj", "/CN=cautery.example.org",
+                        "-keyout", certificate, "-out", certificate + ".crt"], check=True, capture_output=True)
+        with open(certificate, "ab") as whole, open(certificate + ".crt", "rb") as crt:
+            whole.write(crt.read())
+        shutil.copy(os.path.join(SOURCES, "deploy/fleet/daemons.example"), os.path.join(self.folder, "daemons"))
+        here = (("/etc/", f"{self.folder}/etc/"),)
+        self.run_it("deploy/fleet/make_haproxy.py daemons --host cautery.example.org "
+                    "--certificate /etc/haproxy/cautery.pem > haproxy.cfg", instead=here)
+        self.run_it("haproxy -c -f haproxy.cfg && install -m 644 haproxy.cfg /etc/haproxy/haproxy.cfg", instead=here)
+
+    def test_7_packages_exist(self):
+        for command in [command for command in self.shown if command.startswith("apt-get install ")]:
+            self.run_it(command, instead=(("apt-get install", "apt-get -s install"),))
+
+    @unittest.skipUnless(shutil.which("npm"), "npm is not installed")
+    def test_8_the_viewer_is_built(self):
+        """In a copy: what is there serves other tests."""
+        copy = os.path.join(self.folder, "clients/web")
+        shutil.copytree(os.path.join(SOURCES, "clients/web"), copy, symlinks=True,
+                        ignore=shutil.ignore_patterns("node_modules", "dist"))
+        self.run_it("(cd clients/web && npm ci && npm run build)", "built in")
+        self.assertTrue(os.path.exists(os.path.join(copy, "dist/index.html")))
+        self.run_it("npm run dev", r"Local:", until=True, instead=(("npm ", "cd clients/web && npm "),))
+
+    def test_9_uniaxial_reference(self):
+        """Standard library only; what it writes is what is there."""
+        copy = os.path.join(self.folder, "copy/tests")
+        shutil.copytree(os.path.join(SOURCES, "tests/reference"), os.path.join(copy, "reference"))
+        self.run_it("/usr/bin/python3 tests/reference/uniaxial.py", instead=(("tests/", "copy/tests/"),))
+
+    def test_z_all_are_known(self):
+        for command, (place, words) in ELSEWHERE.items():
+            with open(os.path.join(SOURCES, place), encoding="utf-8") as file:
+                self.assertIn(words, file.read(), f"{place} does not run: {command}")
+        print("not run here, for want of a service manager:", *sorted(SERVICE_MANAGER), sep="\n  ")
+        known = self.ran | set(ELSEWHERE) | SERVICE_MANAGER
+        strange = {command: pages for command, pages in self.shown.items() if command not in known}
+        self.assertEqual(strange, {}, "commands of READMEs that no test runs")
+        self.assertEqual({command for command in known if command not in self.shown}, set(), "no README shows these")
+
+
+if __name__ == "__main__":
+    unittest.main(argv=sys.argv[:1], verbosity=2)
