@@ -137,34 +137,134 @@ static void say(FILE *out, const char *who, cau_status status, const cau_rpc_buf
 	fprintf(out, "%s %s\n", who, text->buffer);
 }
 
-static void write_dialogue(FILE *out)
+static cau_rpc_id id_of(int64_t number)
 {
-	char text[CAPACITY];
-	cau_rpc_buffer to = {text, sizeof text, 0};
+	return (cau_rpc_id){.kind = CAU_RPC_ID_NUMBER, .number = number};
+}
+
+static void answer(FILE *out, cau_rpc_buffer *to, int64_t number, cau_method method,
+                   const void *result)
+{
+	cau_rpc_id id = id_of(number);
+	say(out, "<", cau_rpc_write_result(to, &id, method, result, NULL), to);
+}
+
+static void say_hello(FILE *out, cau_rpc_buffer *to)
+{
 	cau_wire_hello hello = {
 		.version = 1, .client = "example 1.0", .has_client_id = true, .client_id = "bench-3"};
+	cau_wire_hello_result known = {.server = "cauteryd 0.1.0",
+	                               .version = 1,
+	                               .daemon = "d1",
+	                               .role = CAU_ROLE_OPERATE,
+	                               .client = 2,
+	                               .client_id = "bench-3",
+	                               .resume = "de159721b33b369d3c19a9f757294935",
+	                               .capabilities = 1u << CAU_CAPABILITY_UPLOAD |
+	                                               1u << CAU_CAPABILITY_EXPORT |
+	                                               1u << CAU_CAPABILITY_STORE,
+	                               .limits = {.message_bytes_max = 1048576,
+	                                          .upload_bytes_max = 67108864,
+	                                          .chunk_bytes_max = 262144,
+	                                          .sessions_max = 64,
+	                                          .subscribers_max = 1024,
+	                                          .profiles_max = 4,
+	                                          .tools_max = 8,
+	                                          .requests_per_s_max = 2000,
+	                                          .motions_per_s_max = 2000,
+	                                          .bytes_in_flight_max = 196608,
+	                                          .heartbeat_s = 0.25},
+	                               .server_time_us = 4900000,
+	                               .wall_time_s = 1795471587.5};
+	say(out, ">", cau_rpc_write_request(to, 1, CAU_METHOD_HELLO, &hello, NULL), to);
+	answer(out, to, 1, CAU_METHOD_HELLO, &known);
+}
+
+static void say_join(FILE *out, cau_rpc_buffer *to)
+{
+	cau_stream_def def = stream();
 	cau_wire_session_join join = {
 		.has_session = true, .session = "d1-demo", .has_rate_hz = true, .rate_hz = 30.0};
+	cau_wire_stream_description granted = {.session = "d1-demo",
+	                                       .session_number = def.session,
+	                                       .profile = def.profile,
+	                                       .epoch = epoch,
+	                                       .rate_hz = 30.0,
+	                                       .channels = def.channels,
+	                                       .vertex_count = def.vertex_count,
+	                                       .face_count = def.face_count,
+	                                       .step_m = def.step_m,
+	                                       .stress_step_pa = def.stress_step_pa};
+	say(out, ">", cau_rpc_write_request(to, 2, CAU_METHOD_SESSION_JOIN, &join, NULL), to);
+	answer(out, to, 2, CAU_METHOD_SESSION_JOIN, &granted);
+	fputs("< (binary) the topology frame of below, then a key frame\n", out);
+}
+
+static void say_take_over(FILE *out, cau_rpc_buffer *to)
+{
+	cau_wire_tool_ref hook = {.has_session = true, .session = "d1-demo", .tool = "hook"};
+	cau_wire_driver driver = {.tool = "hook",
+	                          .client = 2,
+	                          .name = "example 1.0",
+	                          .energy_off = CAU_ENERGY_OFF_NEVER_ENABLED};
+	cau_wire_driver_changed changed = {.session = "d1-demo", .driver = driver};
+	say(out, ">", cau_rpc_write_request(to, 3, CAU_METHOD_TOOL_TAKE_OVER, &hook, NULL), to);
+	say(out, "<", cau_rpc_write_notification(to, CAU_METHOD_TOOL_DRIVER_CHANGED, &changed, NULL),
+	    to);
+	answer(out, to, 3, CAU_METHOD_TOOL_TAKE_OVER, &driver);
+	fputs("< (binary) the key frame of below: client 2 drives the hook\n", out);
+}
+
+static void say_commands(FILE *out, cau_rpc_buffer *to)
+{
 	cau_rpc_envelope envelope = {true, "d1-demo", true, 1};
 	cau_command energize = {.kind = CAU_COMMAND_TOOL_ENERGIZE, .sequence = 12, .tool = "hook"};
 	energize.as.energized = 1;
 	cau_command move = {.kind = CAU_COMMAND_TOOL_MOVE, .sequence = 13, .tool = "hook"};
 	move.as.move.pose = (cau_pose){{0.01, 0.0, 0.002}, {1.0, 0.0, 0.0, 0.0}};
-	cau_rpc_id id = {.kind = CAU_RPC_ID_NUMBER, .number = 3};
 	cau_wire_command_result applied = {.tick = 61, .sequence = 12};
+	int64_t number = 4;
+	say(out, ">", cau_rpc_write_command(to, &number, &envelope, &energize, NULL), to);
+	answer(out, to, number, CAU_METHOD_TOOL_ENERGIZE, &applied);
+	fputs("< (binary) the delta of below: its energy is on\n", out);
+	say(out, ">", cau_rpc_write_command(to, NULL, NULL, &move, NULL), to);
+	fputs("> (again and again, at least every limits.heartbeat_s)\n", out);
+	cau_wire_heartbeat alive = {.visible = true};
+	say(out, ">", cau_rpc_write_notification(to, CAU_METHOD_HEARTBEAT, &alive, NULL), to);
+}
+
+// What a program does wrong, and the answer; the writer refuses to write such a thing.
+static void say_a_mistake(FILE *out, cau_rpc_buffer *to)
+{
+	cau_rpc_id id = id_of(5);
 	cau_rpc_fault fault;
 	cau_error error;
-	int64_t number = 3;
-	fputs("\n## A dialogue\n\n`>` client, `<` server.\n\n```\n", out);
-	say(out, ">", cau_rpc_write_request(&to, 1, CAU_METHOD_HELLO, &hello, NULL), &to);
-	say(out, ">", cau_rpc_write_request(&to, 2, CAU_METHOD_SESSION_JOIN, &join, NULL), &to);
-	say(out, ">", cau_rpc_write_command(&to, &number, &envelope, &energize, NULL), &to);
-	say(out, "<", cau_rpc_write_result(&to, &id, CAU_METHOD_TOOL_ENERGIZE, &applied, NULL), &to);
-	say(out, ">", cau_rpc_write_command(&to, NULL, NULL, &move, NULL), &to);
-	cau_fail(&error, CAU_BAD_VALUE, "params.rotation[0]", "7 is outside -1 to 1");
+	fputs("> {\"jsonrpc\":\"2.0\",\"id\":5,\"method\":\"tool.move\",\"params\":{\"session\":"
+	      "\"d1-demo\",\"tick\":0,\"sequence\":14,\"tool\":\"hook\",\"position_m\":[0.01,0,0.002],"
+	      "\"rotation\":[7,0,0,0],\"jaw\":0}}\n",
+	      out);
+	cau_fail(&error, CAU_BAD_VALUE, "params.rotation[0]", "7 is outside -1.001 to 1.001");
 	cau_rpc_fault_of_error(&fault, &error);
-	id.number = 4;
-	say(out, "<", cau_rpc_write_error(&to, &id, &fault, NULL), &to);
+	say(out, "<", cau_rpc_write_error(to, &id, &fault, NULL), to);
+}
+
+static void write_dialogue(FILE *out)
+{
+	char text[CAPACITY];
+	cau_rpc_buffer to = {text, sizeof text, 0};
+	fputs("\n## A dialogue\n\n`>` client, `<` server: from the first message until a tool's energy "
+	      "is on, and how "
+	      "it stays so. A request is answered once, by its id, a notification (without one) never; "
+	      "what the "
+	      "server tells by itself, such as `tool.driver_changed` and `event`, comes between "
+	      "answers in no "
+	      "fixed order.\n\n```\n",
+	      out);
+	say_hello(out, &to);
+	say_join(out, &to);
+	say_take_over(out, &to);
+	say_commands(out, &to);
+	say_a_mistake(out, &to);
 	fputs("```\n", out);
 }
 

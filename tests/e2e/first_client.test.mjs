@@ -52,13 +52,14 @@ test('the first client of README.md sees vertices and frames', async () => {
 	assert.ok(logged.find((words) => words.includes('a frame of'))[1] > 100);
 });
 
-const noPackage = spawnSync('python3', ['-c', 'import websocket']).status !== 0 && 'python3-websocket is not installed';
+const PYTHON = '/usr/bin/python3'; // Debian's, which Debian's packages are for
+const noPackage = spawnSync(PYTHON, ['-c', 'import websocket']).status !== 0 && 'python3-websocket is not installed';
 
 test('the first client in Python likewise', { skip: noPackage }, async () => {
 	const [program, ...others] = blocksOf('README.md', 'python');
 	assert.equal(others.length, 0);
 	assert.ok(program.includes('ws://127.0.0.1:8740/v1'));
-	const python = spawn('python3', ['-u', '-c', program.replace('127.0.0.1:8740', `127.0.0.1:${daemon.port}`)]);
+	const python = spawn(PYTHON, ['-u', '-c', program.replace('127.0.0.1:8740', `127.0.0.1:${daemon.port}`)]);
 	let said = '';
 	python.stderr.on('data', (text) => (said += text));
 	await new Promise((resolve) => {
