@@ -8,10 +8,11 @@ Appends the tests of the configured build tree TREE whose labels match the regul
 named NAME.<test>, with NAME as a further label and its time limit multiplied by TIMEOUT_FACTOR. With
 a command, building the tree is a test of its own, NAME.build, which the others wait for.
 
-How the tests share the machine. The suite is run with `--parallel 4`, two slots for each of two
-cores. An ordinary test takes two. One that measures times (RUN_SERIAL in its tree) takes three: no
-other test runs beside it, but what needs no particular speed and gives way may, so that the second
-core is not idle: building (one tree at a time), fuzzing and clang-tidy, which take one and are niced.
+How the tests share the machine. The suite is run with `--parallel 5`: two slots for each of two cores,
+and one for what fills them. An ordinary test takes two. One that measures times (RUN_SERIAL in its
+tree) takes four: no other test runs beside it. What needs no particular speed takes one and is run in
+the kernel's idle class, so that it has whatever the others leave of both cores and nothing else:
+building (one tree at a time), fuzzing and clang-tidy.
 A sanitizer's e2e test takes one: it waits more than it computes, and bounds no times.
 Builds come first, then what measures times, then the rest, the longest time limits first.
 """
@@ -26,10 +27,10 @@ OWN_NAMES = ("DEPENDS", "FIXTURES_SETUP", "FIXTURES_REQUIRED", "FIXTURES_CLEANUP
 SCHEDULE = ("COST", "PROCESSORS", "RUN_SERIAL")
 DERIVED = ("CONFIGURATIONS",)
 
-ORDINARY_SLOTS, TIMING_SLOTS, FILLER_SLOTS = 2, 3, 1
+ORDINARY_SLOTS, TIMING_SLOTS, FILLER_SLOTS = 2, 4, 1
 FILLER_LABELS = {"fuzz", "tidy"}
 WAITING_LABEL, WAITING_SLOTS = "e2e", 1
-GIVING_WAY = ["nice", "-n", "19"]  # below the daemon's own workers, which are at 5
+GIVING_WAY = ["chrt", "--idle", "0"]  # below any nice value
 BUILD_COST, TIMING_COST = 1e6, 1e5  # above any time limit, which is the cost of the others
 # Below any other test; of these, clang-tidy's rooms, which take a minute, before fuzzing, which takes seconds.
 FILLER_COST_PER_S = 1e-4

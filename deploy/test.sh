@@ -108,9 +108,8 @@ collect() {
 	local name=$1 preset=$2 tree build=()
 	tree=$(tree_of "$preset")
 	if [ -n "${6:-}" ]; then
-		# the other core is for tests
 		build=("$source_folder/deploy/build_tree.sh" "$logs/build-$name.log"
-			cmake --build "$source_folder/$tree" --target "$6" --parallel $((jobs > 2 ? jobs - 1 : 1)))
+			cmake --build "$source_folder/$tree" --target "$6" --parallel "$jobs")
 	fi
 	python3 deploy/collect_tests.py "$suite" "$name" "$tree" "${@:3:3}" "${build[@]}"
 }
@@ -186,5 +185,5 @@ configure_all
 heading "build: release"
 watched build-release cmake --build build --target all --parallel "$jobs"
 collect_all
-# four slots for two cores: collect_tests.py says how tests share them
-follow --test-dir "$suite" --parallel 4
+# five slots for two cores: collect_tests.py says how tests share them
+follow --test-dir "$suite" --parallel 5
