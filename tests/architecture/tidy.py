@@ -6,6 +6,7 @@ kernels, once for each instruction set) would be looked at several times. What i
 the same text with other options of the compiler.
 """
 
+import concurrent.futures
 import json
 import os
 import shutil
@@ -23,14 +24,16 @@ def one_entry_each(root, folder, build):
     return {entry["file"]: entry for entry in entries if entry["file"].startswith(inside)}
 
 
+def violation(database, name):
+    answer = subprocess.run(["clang-tidy", "-quiet", "-p", database, name], capture_output=True,
+                            text=True, check=False)
+    return (answer.stdout.strip() or answer.stderr.strip()) if answer.returncode else None
+
+
 def violations(database, files):
-    found = []
-    for name in files:
-        answer = subprocess.run(["clang-tidy", "-quiet", "-p", database, name], capture_output=True,
-                                text=True, check=False)
-        if answer.returncode:
-            found.append(answer.stdout.strip() or answer.stderr.strip())
-    return found
+    with concurrent.futures.ThreadPoolExecutor(os.cpu_count()) as readers:
+        found = readers.map(lambda name: violation(database, name), files)
+        return [each for each in found if each]
 
 
 def main(root, folder, build):
