@@ -33,6 +33,7 @@ export class ViewerPage {
   /** console errors, uncaught errors and failed requests */
   readonly complaints: string[] = [];
   readonly hosts = new Set<string>();
+  readonly schemes = new Set<string>();
 
   private constructor(readonly page: Page) {}
 
@@ -49,8 +50,13 @@ export class ViewerPage {
       if (message.type() === 'error') viewer.complaints.push(message.text());
     });
     page.on('pageerror', (error) => viewer.complaints.push(String(error)));
-    page.on('request', (request) => viewer.hosts.add(new URL(request.url()).host));
-    page.on('websocket', (socket) => viewer.hosts.add(new URL(socket.url()).host));
+    const note = (url: string): void => {
+      const { host, protocol } = new URL(url);
+      viewer.hosts.add(host);
+      if (protocol !== 'blob:' && protocol !== 'data:') viewer.schemes.add(protocol);
+    };
+    page.on('request', (request) => note(request.url()));
+    page.on('websocket', (socket) => note(socket.url()));
     await page.addInitScript((kept) => localStorage.setItem('mode', kept), mode);
     await page.goto(url);
     return viewer;
