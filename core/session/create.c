@@ -144,7 +144,9 @@ static cau_status make_remainder(cau_session *session, cau_error *error)
 	cau_arena *arena = &session->arena;
 	cau_status status = cau_near_create(&session->near, &session->tissue, arena, error);
 	session->candidate = cau_session_make_reach(arena);
-	if (!status && !session->candidate)
+	session->position_unheld =
+		cau_arena_array(arena, 3 * (size_t)session->tissue.vertex_count, sizeof(double));
+	if (!status && (!session->candidate || !session->position_unheld))
 		status = cau_fail(error, CAU_NO_MEMORY, NULL, "no memory for contacts");
 	for (int32_t i = 0; i < session->scene->tool_count && !status; i++)
 		status = cau_session_add_tool(session, &session->scene->tools[i], error);

@@ -21,6 +21,7 @@
 static const double touch_m = 1e-5;    // nearer is touching
 static const double deep_share = 0.5;  // of the tip's radius: a face that is deeper is missed
 static const double margin_m = 2e-3;   // a face that was pushed and is further away is let go of
+static const double most_stretch = 3;  // of an edge, by its length at rest
 static const double release_m_s = 0.1; // of a face that is inside and pushed out
 enum { CANDIDATES = 4 * CAU_MAX_CONTACTS, STEPS_ON_WAY = 64 };
 
@@ -177,12 +178,27 @@ static bool take_up(const reach *r, const cau_contact_memory *kept, cau_contact_
 	return true;
 }
 
+// Whether an edge of the face is drawn out so far that tissue would have torn.
+static bool is_overdrawn(const cau_session *session, const int32_t vertex[3])
+{
+	for (int32_t k = 0; k < 3; k++) {
+		size_t a = 3 * (size_t)vertex[k], b = 3 * (size_t)vertex[(k + 1) % 3];
+		cau_vec3 now = cau_sub(cau_vec3_of(session->position_start + a),
+		                       cau_vec3_of(session->position_start + b));
+		cau_vec3 rest =
+			cau_sub(cau_vec3_of(session->tissue.rest + a), cau_vec3_of(session->tissue.rest + b));
+		if (!(cau_dot(now, now) <= most_stretch * most_stretch * cau_dot(rest, rest)))
+			return true;
+	}
+	return false;
+}
+
 // Fills in what the row knows of its corners. False: one cannot move, and a face that hangs on it
-// may have nowhere to go.
+// may have nowhere to go; or the face is drawn out so far that the tool is let through.
 static bool describe_corners(const reach *r, cau_contact_row *row)
 {
 	const cau_session *session = r->session;
-	bool all_free = true;
+	bool all_free = !is_overdrawn(session, row->vertex);
 	for (int32_t k = 0; k < 3; k++) {
 		int32_t v = row->vertex[k];
 		CAU_ASSERT_INDEX(v, session->tissue.vertex_count);
@@ -263,16 +279,19 @@ static void search_block(reach *r, int32_t block)
 // How far a point of the tissue goes at most, seen from the tool.
 static double most_way(const cau_session *session, const cau_tool *tool, double reach_m)
 {
-	double most = 0;
-	for (size_t v = 0; v < (size_t)session->tissue.vertex_count; v++)
-		most = fmax(most, cau_length(cau_sub(cau_vec3_of(session->position + 3 * v),
-		                                     cau_vec3_of(session->position_start + 3 * v))));
+	double most2 = 0;
+	for (size_t v = 0; v < (size_t)session->tissue.vertex_count; v++) {
+		cau_vec3 way = cau_sub(cau_vec3_of(session->position + 3 * v),
+		                       cau_vec3_of(session->position_start + 3 * v));
+		double way2 = cau_dot(way, way);
+		most2 = way2 > most2 ? way2 : most2;
+	}
 	const cau_pose *from = &tool->pose_before, *to = &tool->state.pose;
 	double way = cau_length(cau_sub(cau_vec3_of(to->position_m), cau_vec3_of(from->position_m)));
 	double turn = 0;
 	for (int i = 0; i < 4; i++)
 		turn += from->rotation[i] * to->rotation[i];
-	return most + way + 2 * reach_m * sqrt(fmax(1 - turn * turn, 0));
+	return sqrt(most2) + way + 2 * reach_m * sqrt(fmax(1 - turn * turn, 0));
 }
 
 static int compare(const void *a, const void *b)

@@ -83,6 +83,7 @@ struct cau_session {
 	cau_near near;
 	cau_contact_set contact;
 	struct cau_candidate *candidate; // reach.c: scratch
+	double *position_unheld;         // m, (n x 3): touch.c, as a step was before faces were missed
 	cau_frame_state frame;
 
 	uint64_t tick;
@@ -137,6 +138,9 @@ void cau_session_find_contacts(cau_session *session);
 // After the solve: whether tissue is inside a tool, by what the rows say, or met it where there is
 // no row, which there is now.
 bool cau_session_find_missed(cau_session *session);
+// Takes the step back to what it was before the first face was found missed, and forgets all sides:
+// tools pass where tissue would not be held.
+void cau_session_let_through(cau_session *session);
 
 // reach.c: whether a tool's contact is with faces as well as with vertices (not if it has jaws,
 // which tissue lies between and inside); the scratch that it needs; rows for the faces that the

@@ -85,24 +85,35 @@ static cau_status begin_solve(cau_session *session, cau_error *error)
 }
 
 // Tissue that is pushed aside may meet the tool elsewhere: then the step goes on with that too.
-enum { MOST_ROUNDS = 8 };
+// What is not held by then is let through, as more rounds only throw it about.
+enum { MOST_ROUNDS = 2 };
 
-static cau_status solve(cau_session *session, cau_error *error)
+static cau_status descend(cau_session *session, cau_error *error)
 {
 	cau_error refusal = {0};
-	cau_step_solver *solver = &session->solver;
-	cau_status status = cau_solver_descend(solver, &refusal);
-	for (int round = 0; round < MOST_ROUNDS && !status; round++) {
-		if (!cau_session_find_missed(session)) // touch.c
-			return CAU_OK;
-		solver->contact = &session->contact;
-		solver->objective = cau_solver_evaluate(solver);
-		status = cau_solver_descend(solver, &refusal);
-	}
+	cau_status status = cau_solver_descend(&session->solver, &refusal);
 	if (!status)
 		return CAU_OK;
 	cau_session_locate(session, &refusal);
 	return cau_fail(error, status, NULL, "%s", refusal.reason);
+}
+
+static cau_status solve(cau_session *session, cau_error *error)
+{
+	cau_step_solver *solver = &session->solver;
+	cau_status status = descend(session, error);
+	for (int round = 0; !status && cau_session_find_missed(session); round++) { // touch.c
+		if (round == MOST_ROUNDS) {
+			cau_session_let_through(session);
+			solver->objective = cau_solver_evaluate(solver);
+			cau_solver_displace(solver);
+			return CAU_OK;
+		}
+		solver->contact = &session->contact;
+		solver->objective = cau_solver_evaluate(solver);
+		status = descend(session, error);
+	}
+	return status;
 }
 
 static void begin_tick(cau_session *session)

@@ -180,6 +180,8 @@ void cau_session_find_contacts(cau_session *session)
 	cau_contact_row rows[CANDIDATES];
 	cau_contact_clear(&session->contact);
 	session->contact.left_out_count = 0;
+	session->contact.begun_count = -1;
+	session->contact.let_through = false;
 	session->solver.drag_count = 0;
 	if (!session->tool_count)
 		return;
@@ -200,6 +202,16 @@ void cau_session_find_contacts(cau_session *session)
 		cau_contact_prepare(&session->contact, &session->solver);
 }
 
+static void keep_unheld(cau_session *session, int32_t rows)
+{
+	cau_contact_set *set = &session->contact;
+	size_t bytes = 3 * (size_t)session->tissue.vertex_count * sizeof(double);
+	set->begun_count = rows;
+	memcpy(session->position_unheld, session->position, bytes);
+	for (int32_t i = 0; i < rows; i++)
+		memcpy(set->begun_reaction[i], set->row[i].reaction, sizeof set->begun_reaction[i]);
+}
+
 static const double missed_m = 1e-4; // a face deeper than this at its row is not held yet
 
 // Whether tissue is where it cannot have come: then the step goes on with the faces that the tools
@@ -208,6 +220,7 @@ bool cau_session_find_missed(cau_session *session)
 {
 	cau_contact_set *set = &session->contact;
 	int32_t rows = set->row_count, feeling = 0;
+	bool first = set->begun_count < 0;
 	set->touched_count = 0;
 	for (int32_t i = 0; i < session->tool_count; i++)
 		feeling += cau_session_feels_faces(&session->tool[i]);
@@ -219,9 +232,23 @@ bool cau_session_find_missed(cau_session *session)
 			cau_session_reach(session, i, pushing_part(&session->tool[i]));
 	if (set->row_count == rows && !set->face_count)
 		return false;
+	if (first)
+		keep_unheld(session, rows);
 	if (set->row_count > rows)
 		cau_contact_prepare(set, &session->solver);
 	return set->row_count > rows || cau_contact_depth(set, &session->solver) > missed_m;
+}
+
+void cau_session_let_through(cau_session *session)
+{
+	cau_contact_set *set = &session->contact;
+	size_t bytes = 3 * (size_t)session->tissue.vertex_count * sizeof(double);
+	CAU_ASSERT_INDEX(set->begun_count, set->row_count + 1);
+	memcpy(session->position, session->position_unheld, bytes);
+	set->row_count = set->begun_count;
+	for (int32_t i = 0; i < set->row_count; i++)
+		memcpy(set->row[i].reaction, set->begun_reaction[i], sizeof set->row[i].reaction);
+	set->let_through = true;
 }
 
 // ---- after the solve

@@ -93,6 +93,8 @@ static void keep(cau_contact_set *set, const cau_contact_memory *memory)
 void cau_contact_remember(cau_contact_set *set)
 {
 	set->memory_count = 0;
+	if (set->let_through)
+		return;
 	for (int32_t i = 0; i < set->row_count; i++) {
 		const cau_contact_row *row = &set->row[i];
 		if (row->corner_count == 3)

@@ -220,7 +220,7 @@ static void what_is_drawn_across_drags_nothing_along(void **state)
 		{"fascia", CAU_TOOL_SPHERE, 0.05},
 	};
 	const double radius_m = 1.5e-3, depth_m = 2e-3;
-	const double bounded_m = 25e-3; // three ticks of the fastest
+	const double bounded_m = 3 * depth_m;
 	for (size_t w = 0; w < sizeof ways / sizeof *ways; w++) {
 		cau_scene_def *scene = stage_scene_light(ways[w].scene);
 		scene->tool_count = 0;
