@@ -210,7 +210,8 @@ cau_status cau_solver_descend(cau_step_solver *solver, cau_error *error)
 {
 	CAU_ASSERT(solver->iterations > 0, "%d iterations", solver->iterations);
 	double objective = solver->objective, first = 0, last = 0;
-	int32_t steps = 0; // since the guess
+	int32_t steps = 0;                              // since the guess
+	int32_t backtracks_before = solver->backtracks; // of the tick's earlier rounds
 	cau_anderson_start(solver);
 	cau_accuracy_begin(&solver->accuracy);
 	for (int32_t k = 0; k < solver->iterations; k++) {
@@ -239,7 +240,7 @@ cau_status cau_solver_descend(cau_step_solver *solver, cau_error *error)
 		}
 		cau_anderson_keep(solver);
 		bool taken = take_step(solver, accelerated, -norm * norm, &objective);
-		bool back = !k && solver->backtracks && go_back(solver, &objective);
+		bool back = !k && solver->backtracks > backtracks_before && go_back(solver, &objective);
 		if (!taken && !back)
 			break;
 		if (back) {
@@ -249,8 +250,10 @@ cau_status cau_solver_descend(cau_step_solver *solver, cau_error *error)
 		if (enough && solver->backtracks == backtracks)
 			break;
 	}
-	CAU_ASSERT(solver->backtracks <= solver->iterations * (CAU_MAX_BACKTRACKS + 1),
-	           "%d backtracks in %d iterations", solver->backtracks, solver->iterations);
+	CAU_ASSERT(solver->backtracks - backtracks_before <=
+	               solver->iterations * (CAU_MAX_BACKTRACKS + 1),
+	           "%d backtracks in %d iterations", solver->backtracks - backtracks_before,
+	           solver->iterations);
 	cau_accuracy_learn(&solver->accuracy);
 	cau_solver_displace(solver);
 	return CAU_OK;
