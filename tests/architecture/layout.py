@@ -6,7 +6,7 @@ import sys
 import project
 
 ALLOWED = {
-    "CMakeLists.txt", "CMakePresets.json", "CHANGELOG.md", "LICENSE", "README.md",
+    "CITATION.cff", "CMakeLists.txt", "CMakePresets.json", "CHANGELOG.md", "LICENSE", "README.md",
     "clients", "core", "deploy", "protocol", "server", "tests",
 }
 

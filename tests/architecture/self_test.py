@@ -10,6 +10,7 @@ import unittest
 import arrows
 import assertions
 import circles
+import citation
 import examples
 import formatting
 import includes
@@ -38,6 +39,22 @@ class Layout(unittest.TestCase):
 
     def test_a_stranger_is_named(self):
         self.assertEqual(len(layout.violations(["utils/a.c", "notes.md", "core/a.c"])), 2)
+
+
+class Citation(Tree):
+    def found(self, version="0.1.0", authors="authors:\n  - name: The Cautery developers\n"):
+        self.write("CMakeLists.txt", "project(cautery VERSION 0.1.0 LANGUAGES C)\n")
+        self.write("CITATION.cff", f'cff-version: 1.2.0\ntitle: "A title"\nversion: {version}\nlicense: MIT\n{authors}')
+        self.write("README.md", "  title   = {A title},\n  author  = {{The Cautery developers}},\n  version = {0.1.0},\n"
+                   "## Licence\n\nMIT; why\n")
+        return citation.violations(self.root)
+
+    def test_the_same_everywhere_passes(self):
+        self.assertEqual(self.found(), [])
+
+    def test_another_version_and_no_author(self):
+        self.assertEqual(len(self.found(version="0.2.0")), 1)
+        self.assertEqual(len(self.found(authors="")), 2)
 
 
 class TextRules(Tree):

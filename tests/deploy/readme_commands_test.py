@@ -5,7 +5,7 @@ Usage: readme_commands_test.py SOURCES PROGRAMS      (PROGRAMS: the folder of th
 
 A command is a line of a block of shell that begins with a program's name. One that neither this file nor
 `ELSEWHERE` knows fails the test, and so does an entry that no README shows any more. Of a place elsewhere the
-file must hold the words that run it. Steps (`tests/steps`) are run to the letter, whole sections of a page.
+file must hold the words that run it. What no test runs is listed with its reason, and printed. Steps (`tests/steps`) are run to the letter, whole sections of a page.
 """
 
 import concurrent.futures
@@ -13,6 +13,7 @@ import os
 import re
 import shutil
 import signal
+import socket
 import subprocess
 import sys
 import tempfile
@@ -23,37 +24,34 @@ PATIENCE_S = 120
 FIRST = re.compile(
     r"\(?(cmake|ctest|npm|cd|curl|cautery(-robot|-load|-sim|-bench)?|cauteryd(?! is )|apt-get|install|systemctl|promtool|haproxy|export|node|python3"
     r"|docker|git|openssl|[A-Z_]+=\S+|(deploy|tests|build|/usr)/\S+)( |$)")
+DDS_DOMAINS, DDS_PORT = range(201, 231), 21000  # beyond those that tests/dds takes, and taken as it does
 LABEL = re.compile(r"^(look|next|stop) +")  # of what run.sh prints
 COMMENT = re.compile(r" +# .*| {2,}\S.*")
 SHELLS = {"", "sh", "bash", "shell", "console"}
-# Not here: they are for a service manager, which a container has not. The unit's own tests are deploy_unit's.
-SERVICE_MANAGER = {"systemctl reload haproxy", "systemctl restart prometheus"}
+NOT_RUN = {  # command: why
+    "systemctl reload haproxy": "a container has no service manager",
+    "systemctl restart prometheus": "a container has no service manager",
+    "OMP_NUM_THREADS=1 /usr/bin/python3 tests/reference/generate.py":
+        "ten minutes of finite elements, with packages of their own; what it wrote is in the tree, and tests read it",
+}
 
 FIRST_HOUR, INSTALL = "tests/deploy/first_hour_test.py", "tests/deploy/install_test.py"
-VIEWER, SECURITY, ROBOT = "tests/browser/run_viewer_tests.sh", "tests/dds/security.test.mjs", "tests/dds/robot.test.mjs"
-ELSEWHERE = {  # command: (file, words in it)
+VIEWER, SECURITY = "tests/browser/run_viewer_tests.sh", "tests/dds/security.test.mjs"
+ELSEWHERE = {  # command: (file, words in it...)
     "deploy/run.sh": (FIRST_HOUR, '"deploy/run.sh"'),
     "deploy/test.sh": (FIRST_HOUR, '"deploy/test.sh"'),
     "cmake -S . -B build -DCMAKE_BUILD_TYPE=Release && cmake --build build":
         ("deploy/package.sh", 'cmake -S "$source_folder" -B "$tree" -DCMAKE_BUILD_TYPE=Release'),  # deploy_packages
     "ctest --test-dir build": (FIRST_HOUR, '"ctest", "--test-dir", "build"'),
     "cmake --install build --prefix /usr/local": (INSTALL, 'CMAKE, "--install", TREE, "--prefix", "/usr"'),
-    "npm ci": ("tests/deploy/readme_commands_test.py", "cd clients/web && npm ci && npm run build"),
-    "npm run build": (VIEWER, "npm run --silent build"),
-    "npm run types && npm run lint && npm run unit": (VIEWER, "npm run --silent unit"),
+    "npm run types && npm run lint && npm run unit": (VIEWER, "npm run --silent types", "npm run --silent lint", "npm run --silent unit"),
     "npm run browser": (VIEWER, "npm run --silent browser"),
     "cauteryd --dds --dds-config deploy/dds/network.xml --dds-security keys/enclaves/daemon":
         (SECURITY, "'--dds-security', enclave('daemon')"),
     "CYCLONEDDS_URI=file://$PWD/deploy/dds/network.xml,file://$PWD/keys/enclaves/knee-robot/cyclonedds.xml "
-    "cautery-robot d1-knee hook": (SECURITY, "cyclonedds.xml"),
-    "export CYCLONEDDS_URI=file://$PWD/deploy/dds/loopback.xml": (ROBOT, "CYCLONEDDS_URI: process.env.LOOPBACK"),
-    "cauteryd --dds --demo fascia &": (ROBOT, "settings: { dds: true"),
-    "cautery-robot --energy --from=-0.02,0,0.001 --to=0.02,0,0.001 d1-fascia hook":
-        (ROBOT, "'--energy', '--from=-0.02,0,0.001', '--to=0.02,0,0.001'"),
-    "tests/bench/page.py": ("tests/bench/page_test.py", "import page"),
+    "cautery-robot d1-knee hook": (SECURITY, "CYCLONEDDS_URI: identity ? `${LOOPBACK},file://${identity}/cyclonedds.xml`"),  # its own controller
+    "tests/bench/page.py": ("tests/bench/page_test.py", 'os.path.join(FOLDER, "page.py"), "--compare"'),  # of runs kept
     "tests/paper/run.py": ("tests/paper/CMakeLists.txt", "run.py\" --quick"),
-    # Ten minutes of finite elements: what they wrote is in the tree, and two tests read it.
-    "OMP_NUM_THREADS=1 /usr/bin/python3 tests/reference/generate.py": ("tests/reference/case_test.c", "CAU_TEST_REFERENCE"),
 }
 
 
@@ -119,6 +117,20 @@ class Commands(unittest.TestCase):
             daemon.stdout.close()
         self.addCleanup(end)
         return f"127.0.0.1:{url}"
+
+    def dds_domain(self):
+        """One that nobody on this machine has: who listens on its port has it, until the test ends."""
+        for domain in DDS_DOMAINS:
+            place = socket.socket()
+            try:
+                place.bind(("127.0.0.1", DDS_PORT + domain))
+                place.listen()
+            except OSError:
+                place.close()
+                continue
+            self.addCleanup(place.close)
+            return domain
+        raise AssertionError("every DDS domain is taken")
 
     def run_it(self, command, says="", at=None, until=False, instead=()):
         """Runs a command that a README shows. `at`: the daemon in place of the README's; `until`: it goes on by
@@ -233,7 +245,11 @@ class Commands(unittest.TestCase):
         copy = os.path.join(self.folder, "clients/web")
         shutil.copytree(os.path.join(SOURCES, "clients/web"), copy, symlinks=True,
                         ignore=shutil.ignore_patterns("node_modules", "dist"))
-        self.run_it("(cd clients/web && npm ci && npm run build)", "built in")
+        whole = "(cd clients/web && npm ci && npm run build)"
+        self.run_it(whole, "built in")
+        for part in ("npm ci", "npm run build"):  # of what ran just now
+            self.assertIn(f"&& {part}", whole)
+            self.ran.add(part)
         self.assertTrue(os.path.exists(os.path.join(copy, "dist/index.html")))
         self.run_it("npm run dev", r"Local:", until=True, instead=(("npm ", "cd clients/web && npm "),))
 
@@ -243,12 +259,31 @@ class Commands(unittest.TestCase):
         shutil.copytree(os.path.join(SOURCES, "tests/reference"), os.path.join(copy, "reference"))
         self.run_it("/usr/bin/python3 tests/reference/uniaxial.py", instead=(("tests/", "copy/tests/"),))
 
+    def test_a_robot_over_dds(self):
+        """The three lines after one another in one shell, in a domain of their own."""
+        lines = ("export CYCLONEDDS_URI=file://$PWD/deploy/dds/loopback.xml", "cauteryd --dds --demo fascia &",
+                 "cautery-robot --energy --from=-0.02,0,0.001 --to=0.02,0,0.001 d1-fascia hook")
+        for line in lines:
+            self.assertIn(line, self.shown, "no README shows it")
+        self.ran.update(lines)
+        domain = self.dds_domain()
+        text = "\n".join(lines).replace("cauteryd ", f"cauteryd --dds-domain {domain} 2>daemon.log >daemon.out ")
+        text = text.replace("cautery-robot ", f"cautery-robot --domain {domain} ")
+        text += "\ncode=$?; kill %1; wait %1 && exit $code"  # the daemon ends well, too
+        environment = {**self.environment, "CAUTERY_PORT": "0", "CAUTERY_STORE": tempfile.mktemp(dir=self.folder)}
+        done = subprocess.run(["bash", "-c", text], cwd=self.folder, env=environment, text=True, timeout=PATIENCE_S,
+                              stdin=subprocess.DEVNULL, stdout=subprocess.PIPE, stderr=subprocess.STDOUT, check=False)
+        self.assertEqual(done.returncode, 0, done.stdout)
+        self.assertRegex(done.stdout, r"(?s)drives.* [1-9]\d* commands")
+
     def test_z_all_are_known(self):
-        for command, (place, words) in ELSEWHERE.items():
+        for command, (place, *words) in ELSEWHERE.items():
             with open(os.path.join(SOURCES, place), encoding="utf-8") as file:
-                self.assertIn(words, file.read(), f"{place} does not run: {command}")
-        print("not run here, for want of a service manager:", *sorted(SERVICE_MANAGER), sep="\n  ")
-        known = self.ran | set(ELSEWHERE) | SERVICE_MANAGER
+                text = file.read()
+            for each in words:
+                self.assertIn(each, text, f"{place} does not run: {command}")
+        print("run by no test:", *(f"{command} ({why})" for command, why in NOT_RUN.items()), sep="\n  ")
+        known = self.ran | set(ELSEWHERE) | set(NOT_RUN)
         strange = {command: pages for command, pages in self.shown.items() if command not in known}
         self.assertEqual(strange, {}, "commands of READMEs that no test runs")
         self.assertEqual({command for command in known if command not in self.shown}, set(), "no README shows these")
