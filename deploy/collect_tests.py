@@ -8,11 +8,12 @@ Appends the tests of the configured build tree TREE whose labels match the regul
 named NAME.<test>, with NAME as a further label and its time limit multiplied by TIMEOUT_FACTOR. With
 a command, building the tree is a test of its own, NAME.build, which the others wait for.
 
-How the tests share the machine. The suite is run with `--parallel 5`: two slots for each of two cores,
-and one for what fills them. An ordinary test takes two. One that measures times (RUN_SERIAL in its
-tree) takes four: no other test runs beside it. What needs no particular speed takes one and is run in
-the kernel's idle class, so that it has whatever the others leave of both cores and nothing else:
-building (one tree at a time), fuzzing and clang-tidy.
+How the tests share the machine. The suite is run with `--parallel 4`, two slots for each of two
+cores. An ordinary test takes two. One that measures times (RUN_SERIAL in its tree) takes three: no
+other test runs beside it, but what needs no particular speed may: building (one tree at a time),
+fuzzing and clang-tidy, which take one. These are run in the kernel's idle class, so that they have
+whatever the others leave of both cores and nothing else. (ctest starts whatever fits: a fifth slot, or
+four for what measures times, would let the browser's tests wait until nothing is left to fill with.)
 A sanitizer's e2e test takes one: it waits more than it computes, and bounds no times.
 Builds come first, then what measures times, then the rest, the longest time limits first.
 """
@@ -27,7 +28,7 @@ OWN_NAMES = ("DEPENDS", "FIXTURES_SETUP", "FIXTURES_REQUIRED", "FIXTURES_CLEANUP
 SCHEDULE = ("COST", "PROCESSORS", "RUN_SERIAL")
 DERIVED = ("CONFIGURATIONS",)
 
-ORDINARY_SLOTS, TIMING_SLOTS, FILLER_SLOTS = 2, 4, 1
+ORDINARY_SLOTS, TIMING_SLOTS, FILLER_SLOTS = 2, 3, 1
 FILLER_LABELS = {"fuzz", "tidy"}
 WAITING_LABEL, WAITING_SLOTS = "e2e", 1
 GIVING_WAY = ["chrt", "--idle", "0"]  # below any nice value

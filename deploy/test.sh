@@ -185,5 +185,5 @@ configure_all
 heading "build: release"
 watched build-release cmake --build build --target all --parallel "$jobs"
 collect_all
-# five slots for two cores: collect_tests.py says how tests share them
-follow --test-dir "$suite" --parallel 5
+# four slots for two cores: collect_tests.py says how tests share them
+follow --test-dir "$suite" --parallel 4

@@ -61,7 +61,7 @@ def labels_limits_and_slots(deploy, cmake, folder):
     assert tests["asan.quick"]["FIXTURES_REQUIRED"] == ["asan.tree"], tests["asan.quick"]
     # ctest does not name what is one
     slots = [tests[f"asan.{name}"].get("PROCESSORS", 1) for name in ("quick", "timed", "parser", "build", "daemon")]
-    assert slots == [2, 4, 1, 1, 1], slots
+    assert slots == [2, 3, 1, 1, 1], slots
     costs = [tests[f"asan.{name}"]["COST"] for name in ("build", "timed", "quick", "room", "parser")]
     assert costs == sorted(costs, reverse=True) and len(set(costs)) == len(costs), costs
     assert tests["asan.parser"]["command"][0].endswith("chrt"), tests["asan.parser"]
