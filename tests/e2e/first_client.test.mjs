@@ -85,3 +85,21 @@ test('the first cut of protocol/README.md cuts', async () => {
 	const { summary } = await client.call('session.describe', { session: 'd1-first' });
 	assert.equal(summary.state, 'paused');
 });
+
+test('as protocol/README.md says, nobody drives a tool of the scene, and bits of the first mask are the faces inside', async () => {
+	const { summary } = await client.call('session.create', { name: 'inside', scene: 'layers', paused: true });
+	const stream = await client.join(summary.session);
+	assert.ok(stream.tools.length > 0 && stream.tools.every(({ driver }) => driver === 0));
+	const sides = new Map(); // how many drawn faces have an edge
+	let inside = 0;
+	for (let face = 0; face < summary.face_count; face++) {
+		inside += stream.isRemoved(face);
+		const corners = stream.faces.slice(3 * face, 3 * face + 3);
+		for (let i = 0; i < 3 && !stream.isRemoved(face); i++) {
+			const edge = [corners[i], corners[(i + 1) % 3]].sort((a, b) => a - b).join();
+			sides.set(edge, (sides.get(edge) ?? 0) + 1);
+		}
+	}
+	assert.ok(inside > 100 && inside < summary.face_count - 100, `${inside} of ${summary.face_count}`);
+	assert.ok([...sides.values()].every((count) => count <= 2), 'what is drawn is a skin: two faces at most meet in an edge');
+});
