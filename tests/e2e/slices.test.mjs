@@ -17,6 +17,7 @@ const DEADLINE_S = sanitized ? 2.5 : 0.25;
 const TRIALS = sanitized ? 3 : 12;
 const BACK_TICKS = 12;
 const LOOK_MS = 10; // a tenth of what going back takes at least, and within the messages that a client may send
+const SNAPSHOTS_MOST = 64; // of a session: a quick machine makes more rounds
 const TIMES_MOST = 20; // that it goes back, to be seen on its way
 const UNBOUNDED = Object.fromEntries(['connection', 'address', 'view', 'operate', 'admin', 'all']
 	.map((whose) => [`quota_${whose}`, 1000000]));
@@ -33,10 +34,11 @@ const makeLarge = (client, paused) => client.call('session.create', { name: 'lar
 
 // One round of all that is not a step, on a session that runs.
 async function round(client, i) {
-	await client.call('session.snapshot', { ...large, name: `round-${i}` });
+	if (i < SNAPSHOTS_MOST)
+		await client.call('session.snapshot', { ...large, name: `round-${i}` });
 	const { tick } = (await client.call('session.describe', large)).summary;
 	await client.call('session.rewind', { ...large, tick: Math.max(0, tick - BACK_TICKS) });
-	await client.call('session.restore', { ...large, name: `round-${i}` });
+	await client.call('session.restore', { ...large, name: `round-${i % SNAPSHOTS_MOST}` });
 	await client.call('session.reset', large);
 	await client.call('session.fork', { ...large, name: `fork-${i}`, paused: true });
 	await client.call('session.destroy', { session: `d1-fork-${i}` });
