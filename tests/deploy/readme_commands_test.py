@@ -17,6 +17,7 @@ import socket
 import subprocess
 import sys
 import tempfile
+import threading
 import unittest
 
 SOURCES, PROGRAMS = sys.argv[1:3]
@@ -26,6 +27,7 @@ FIRST = re.compile(
     r"|docker|git|openssl|[A-Z_]+=\S+|(deploy|tests|build|/usr)/\S+)( |$)")
 DDS_DOMAINS, DDS_PORT = range(201, 231), 21000  # beyond those that tests/dds takes, and taken as it does
 LABEL = re.compile(r"^(look|next|stop) +")  # of what run.sh prints
+ESCAPES = re.compile(r"\x1b\[[0-9;]*m")  # colours, which some programs write where CI is set
 COMMENT = re.compile(r" +# .*| {2,}\S.*")
 SHELLS = {"", "sh", "bash", "shell", "console"}
 NOT_RUN = {  # command: why
@@ -147,10 +149,13 @@ class Commands(unittest.TestCase):
                                    stdin=subprocess.DEVNULL, stdout=subprocess.PIPE, stderr=subprocess.STDOUT)
         said = ""
         if until:
-            while not re.search(says, said):
+            patience = threading.Timer(PATIENCE_S, os.killpg, (process.pid, signal.SIGKILL))
+            patience.start()
+            while not re.search(says, ESCAPES.sub("", said)):
                 line = process.stdout.readline()
-                self.assertTrue(line, f"{text} ended by itself:\n{said}")
+                self.assertTrue(line, f"{text} ended, or was ended after {PATIENCE_S} s:\n{said}")
                 said += line
+            patience.cancel()
             os.killpg(process.pid, signal.SIGINT)
             process.communicate(timeout=PATIENCE_S)
         else:
