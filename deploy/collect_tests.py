@@ -8,14 +8,13 @@ Appends the tests of the configured build tree TREE whose labels match the regul
 named NAME.<test>, with NAME as a further label and its time limit multiplied by TIMEOUT_FACTOR. With
 a command, building the tree is a test of its own, NAME.build, which the others wait for.
 
-How the tests share the machine. The suite is run with `--parallel 4`, two slots for each of two
-cores. An ordinary test takes two. One that measures times (RUN_SERIAL in its tree) takes three: no
-other test runs beside it, but what needs no particular speed may: building (one tree at a time),
-fuzzing and clang-tidy, which take one. These are run in the kernel's idle class, so that they have
-whatever the others leave of both cores and nothing else. (ctest starts whatever fits: a fifth slot, or
-four for what measures times, would let the browser's tests wait until nothing is left to fill with.)
-A sanitizer's e2e test takes one: it waits more than it computes, and bounds no times.
-Builds come first, then what measures times, then the rest, the longest time limits first.
+How the tests share the machine. The suite is run with `--parallel 12`, six slots for each of two
+cores. First comes what measures times (RUN_SERIAL in its tree): one at a time, with eleven slots. What
+needs no particular speed may run beside it: building (one tree at a time) and clang-tidy, which take
+one slot and run in the kernel's idle class, so that they have whatever the others leave of both cores
+and nothing else. Every other test depends on all that measure times: ctest starts whatever fits, and
+would let those wait for the end. Then three ordinary tests run at a time, or four of those that wait
+more than they compute (a sanitizer's e2e tests), the longest time limits first; fuzzing comes last.
 """
 
 import json
@@ -28,13 +27,12 @@ OWN_NAMES = ("DEPENDS", "FIXTURES_SETUP", "FIXTURES_REQUIRED", "FIXTURES_CLEANUP
 SCHEDULE = ("COST", "PROCESSORS", "RUN_SERIAL")
 DERIVED = ("CONFIGURATIONS",)
 
-ORDINARY_SLOTS, TIMING_SLOTS, FILLER_SLOTS = 2, 3, 1
-FILLER_LABELS = {"fuzz", "tidy"}
-WAITING_LABEL, WAITING_SLOTS = "e2e", 1
+TIMING_SLOTS, ORDINARY_SLOTS, WAITING_SLOTS, FILLER_SLOTS = 11, 4, 3, 1
+WAITING_LABEL, FILLER_LABEL, LAST_LABEL = "e2e", "tidy", "fuzz"
+TIMING_NAMES = "measure_times.txt"  # in the suite: what the others wait for
 GIVING_WAY = ["chrt", "--idle", "0"]  # below any nice value
 BUILD_COST, TIMING_COST = 1e6, 1e5  # above any time limit, which is the cost of the others
-# Below any other test; of these, clang-tidy's rooms, which take a minute, before fuzzing, which takes seconds.
-FILLER_COST_PER_S = 1e-4
+LATE_COST_PER_S = 1e-4  # below any other test; of these clang-tidy, which takes a minute, before fuzzing
 BUILD_LIMIT_S = 3600
 
 
@@ -92,14 +90,20 @@ def adapt(suite_name, name, value, timeout_factor):
     return value
 
 
+def measures_times(properties):
+    return bool(properties.get("RUN_SERIAL"))
+
+
 def schedule(properties, sanitized):
     """How much of the machine a test takes, and when: further properties."""
-    limit = properties.get("TIMEOUT", 0)
-    if FILLER_LABELS & set(properties.get("LABELS", [])):
-        return {"PROCESSORS": FILLER_SLOTS, "COST": FILLER_COST_PER_S * limit}
-    if properties.get("RUN_SERIAL"):
+    limit, labels = properties.get("TIMEOUT", 0), properties.get("LABELS", [])
+    if FILLER_LABEL in labels:
+        return {"PROCESSORS": FILLER_SLOTS, "COST": LATE_COST_PER_S * limit}
+    if LAST_LABEL in labels:
+        return {"PROCESSORS": ORDINARY_SLOTS, "COST": LATE_COST_PER_S * limit}
+    if measures_times(properties):
         return {"PROCESSORS": TIMING_SLOTS, "COST": TIMING_COST + limit}
-    waits = sanitized and WAITING_LABEL in properties.get("LABELS", [])
+    waits = sanitized and WAITING_LABEL in labels
     return {"PROCESSORS": WAITING_SLOTS if waits else ORDINARY_SLOTS, "COST": limit}
 
 
@@ -110,16 +114,24 @@ def define(name, command, properties):
     return "\n".join(lines) + "\n"
 
 
-def render(test, command, suite_name, timeout_factor, needs_build):
-    given = {entry["name"]: entry["value"] for entry in test["properties"]}
+def given_properties(test):
+    return {entry["name"]: entry["value"] for entry in test["properties"]}
+
+
+def render(test, command, suite_name, timeout_factor, needs_build, timing):
+    """`timing`: the tests of the suite that measure times, which this one waits for if it is none of
+    them, gives way to nothing and sets nothing up for them."""
+    given = given_properties(test)
     properties = {name: adapt(suite_name, name, value, timeout_factor)
                   for name, value in given.items() if name not in DERIVED + SCHEDULE}
-    gives_way = bool(FILLER_LABELS & set(given.get("LABELS", [])))
+    gives_way = FILLER_LABEL in given.get("LABELS", [])
     properties.update(schedule(given, timeout_factor > 1))
     if needs_build:
         properties.setdefault("FIXTURES_REQUIRED", []).append(f"{suite_name}.tree")
     if gives_way:
         command = " ".join([*GIVING_WAY, command])
+    elif not measures_times(given) and "FIXTURES_SETUP" not in given:
+        properties["DEPENDS"] = [*properties.get("DEPENDS", []), *timing]
     return define(f"{suite_name}.{test['name']}", command, properties)
 
 
@@ -129,15 +141,24 @@ def render_build(suite_name, command):
         "PROCESSORS": FILLER_SLOTS, "COST": BUILD_COST, "TIMEOUT": BUILD_LIMIT_S})
 
 
+def known_timing(suite, further):
+    """The tests that measure times of all trees so far, with these."""
+    with open(os.path.join(suite, TIMING_NAMES), "a+", encoding="utf-8") as file:
+        file.writelines(f"{name}\n" for name in further)
+        file.seek(0)
+        return file.read().split()
+
+
 def main(suite, suite_name, tree, labels, without, timeout_factor, *build):
     tests, commands = list_tests(tree, labels, without), written_commands(tree)
     if not tests:
         sys.exit(f"{suite_name}: {tree} has no test with a label that matches '{labels}'")
     os.makedirs(suite, exist_ok=True)
+    timing = known_timing(suite, [f"{suite_name}.{test['name']}" for test in tests if measures_times(given_properties(test))])
     with open(os.path.join(suite, "CTestTestfile.cmake"), "a", encoding="utf-8") as file:
         if build:
             file.write(render_build(suite_name, build))
-        file.writelines(render(test, commands[test["name"]], suite_name, float(timeout_factor), bool(build))
+        file.writelines(render(test, commands[test["name"]], suite_name, float(timeout_factor), bool(build), timing)
                         for test in tests)
 
 

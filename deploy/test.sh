@@ -185,5 +185,5 @@ configure_all
 heading "build: release"
 watched build-release cmake --build build --target all --parallel "$jobs"
 collect_all
-# four slots for two cores: collect_tests.py says how tests share them
-follow --test-dir "$suite" --parallel 4
+# twelve slots for two cores: collect_tests.py says how tests share them
+follow --test-dir "$suite" --parallel 12

@@ -61,14 +61,21 @@ def labels_limits_and_slots(deploy, cmake, folder):
     assert tests["asan.quick"]["FIXTURES_REQUIRED"] == ["asan.tree"], tests["asan.quick"]
     # ctest does not name what is one
     slots = [tests[f"asan.{name}"].get("PROCESSORS", 1) for name in ("quick", "timed", "parser", "build", "daemon")]
-    assert slots == [2, 3, 1, 1, 1], slots
+    assert slots == [4, 11, 4, 1, 3], slots
     costs = [tests[f"asan.{name}"]["COST"] for name in ("build", "timed", "quick", "room", "parser")]
     assert costs == sorted(costs, reverse=True) and len(set(costs)) == len(costs), costs
-    assert tests["asan.parser"]["command"][0].endswith("chrt"), tests["asan.parser"]
+    assert tests["asan.room"]["command"][0].endswith("chrt"), tests["asan.room"]
+    # what measures times is waited for, but not by what fills the machine beside it
+    waiting = {name for name, test in tests.items() if "asan.timed" in test.get("DEPENDS", [])}
+    assert waiting == {f"asan.{name}" for name in ("quick", "parser", "daemon")}, waiting
     assert tests["asan.daemon"]["command"] == tests["asan.quick"]["command"], tests["asan.daemon"]
     # where times are measured, a daemon has a core
     plain = collect(deploy, os.path.join(folder, "plain-suite"), "release", tree, "e2e", "", "1")
-    assert plain["release.daemon"].get("PROCESSORS", 1) == 2, plain
+    assert plain["release.daemon"].get("PROCESSORS", 1) == 4, plain
+    # by the tests of another tree, too
+    later = collect(deploy, os.path.join(folder, "slots-suite"), "tsan", tree, "unit", "long", "4", "true")
+    assert {"asan.timed", "tsan.timed"} < set(later["tsan.quick"]["DEPENDS"]), later["tsan.quick"]
+    assert later["tsan.timed"]["DEPENDS"] == ["tsan.build"], later["tsan.timed"]
 
 
 def main(deploy, cmake):

@@ -27,7 +27,7 @@ class Clone:
     def __init__(self, repository, folder):
         self.folder = os.path.join(folder, "clone")
         self.environment = {name: value for name, value in os.environ.items()
-                            if not name.startswith(("CAUTERY", "CMAKE_"))}
+                            if not name.startswith(("CAUTERY", "CMAKE_", "CCACHE_BASEDIR"))}  # a clone's own
         self.environment["XDG_STATE_HOME"] = os.path.join(folder, "state")
         subprocess.run(["git", "clone", "--quiet", repository, self.folder], check=True)
 

@@ -49,7 +49,8 @@ describe('while something is under way', () => {
     const { page } = viewer;
     // Made on the daemon in a moment: its answers are changed on their way, as if it were still at it.
     door.change = (text) => text.replace(/("session": ?"d1-second"[^{}]*?"state": ?)"(running|paused)"/g, '$1"starting"');
-    await page.reload(); // the address comes back to d1-second
+    await viewer.until(() => window.location.search.includes('session=d1-second'), null, 'the address');
+    await page.reload(); // it comes back to d1-second
     await told(/^d1-second is being made: its tissue is put together…$/);
     door.change = null;
     await page.reload();

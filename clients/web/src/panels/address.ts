@@ -4,7 +4,8 @@ import type { Model } from '../model/model';
 import type { CameraPose } from '../scene/orbit';
 import type { Viewport } from '../scene/viewport';
 
-const WRITE_MS = 1000;
+const LOOK_MS = 100;
+const WRITE_MS = 1000; // for a tick or camera that goes on; another session is written as soon as it is seen
 const DEGREES = 180 / Math.PI;
 const MM = 1000;
 
@@ -40,9 +41,12 @@ export function readAddress(): Address {
 
 /** Keeps the address true: what is looked at, at the tick that is looked at. */
 export function keepAddress(model: Model, viewport: Viewport): void {
+  let writtenAt = 0;
   setInterval(() => {
     if (!model.frame || model.session !== model.frame.session || document.hidden) return;
     const address = new URL(window.location.href);
+    if (address.searchParams.get('session') === model.session && performance.now() - writtenAt < WRITE_MS) return;
+    writtenAt = performance.now();
     address.searchParams.set('session', model.session);
     address.searchParams.set('tick', String(model.held ?? model.frame.tick));
     const { pose } = viewport.orbit;
@@ -50,5 +54,5 @@ export function keepAddress(model: Model, viewport: Viewport): void {
     else address.searchParams.delete('camera');
     address.search = address.search.replaceAll('%2C', ',');
     if (address.href !== window.location.href) window.history.replaceState(null, '', address.href);
-  }, WRITE_MS);
+  }, LOOK_MS);
 }

@@ -1,9 +1,11 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Keeps the page quick where drawing is slow: no picture is asked for while the last one is still being
 // made, so that the page's own thread never waits for it, and pictures get coarser until they take
-// less than a twentieth of a second.
+// less than a twentieth of a second. After one that took longer it rests as long, up to a fifth of a
+// second: such pictures are made by the processor, and half of it is left to the page and the machine.
 
 const SLOW_MS = 50;
+const REST_MS = 200; // at most, after a slow picture
 const QUICK_MS = 12;
 const STEPS = [1, 0.75, 0.55, 0.4]; // of the screen's resolution
 const PATIENCE = 12; // pictures before the resolution changes; one that is far too slow counts as several
@@ -11,6 +13,7 @@ const PATIENCE = 12; // pictures before the resolution changes; one that is far 
 export class Pace {
   private fence: WebGLSync | null = null;
   private started = 0;
+  private restsUntil = 0;
   private level = 0;
   private slow = 0;
   private quick = 0;
@@ -27,16 +30,18 @@ export class Pace {
     return this.level > 0 || this.pictureMs > SLOW_MS;
   }
 
-  /** Whether the last picture is there; asked once per animation frame. */
+  /** Whether the last picture is there, and its rest over; asked once per animation frame. */
   ready(): boolean {
-    if (!this.fence) return true;
+    if (!this.fence) return performance.now() >= this.restsUntil;
     const status = this.gl.getSyncParameter(this.fence, this.gl.SYNC_STATUS) as number;
     if (status !== this.gl.SIGNALED) return false;
     this.gl.deleteSync(this.fence);
     this.fence = null;
-    this.pictureMs = performance.now() - this.started;
+    const now = performance.now();
+    this.pictureMs = now - this.started;
+    this.restsUntil = this.pictureMs > SLOW_MS ? now + Math.min(this.pictureMs, REST_MS) : now;
     this.adapt();
-    return true;
+    return now >= this.restsUntil;
   }
 
   /** The graphics came back anew: fences of before never come true. */
