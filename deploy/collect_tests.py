@@ -32,6 +32,7 @@ WAITING_LABEL, FILLER_LABEL, LAST_LABEL = "e2e", "tidy", "fuzz"
 TIMING_NAMES = "measure_times.txt"  # in the suite: what the others wait for
 GIVING_WAY = ["chrt", "--idle", "0"]  # below any nice value
 BUILD_COST, TIMING_COST = 1e6, 1e5  # above any time limit, which is the cost of the others
+UNKNOWN_COST = 60  # of a test without a time limit
 LATE_COST_PER_S = 1e-4  # below any other test; of these clang-tidy, which takes a minute, before fuzzing
 BUILD_LIMIT_S = 3600
 
@@ -104,7 +105,7 @@ def schedule(properties, sanitized):
     if measures_times(properties):
         return {"PROCESSORS": TIMING_SLOTS, "COST": TIMING_COST + limit}
     waits = sanitized and WAITING_LABEL in labels
-    return {"PROCESSORS": WAITING_SLOTS if waits else ORDINARY_SLOTS, "COST": limit}
+    return {"PROCESSORS": WAITING_SLOTS if waits else ORDINARY_SLOTS, "COST": limit or UNKNOWN_COST}
 
 
 def define(name, command, properties):

@@ -21,9 +21,9 @@ Usage: deploy/test.sh [--fast | --full | --long] [--no-install]
   --no-install  fail if a package of deploy/packages.txt is missing, instead of installing it
   --help        this text
 
-On two cores, with nothing built before, --full takes about half an hour; the default and --fast less,
-of which the browser's tests take eight minutes. Tests of one tree run while the next is built. One
-source changed: --only, in seconds.
+On two cores, with nothing built before, --full takes about 20 minutes; the default and --fast less,
+of which the browser's tests take four. Tests of one tree run while the next is built. One source
+changed: --only, in seconds.
 
 Build trees: build, build-asan, build-fuzz, build-tsan. Logs of the stages: build/log.
 Environment: CAUTERY_MESHES, a folder with further test meshes (default: ../shared/meshes beside
