@@ -33,6 +33,7 @@ cau_status cli_mesh_scene_begin(cau_scene_def *scene, const char *file, double u
                                 cau_error *error)
 {
 	cau_default_scene_def(scene);
+	scene->parting = CAU_PARTING_ELEMENTS; // whoever made the mesh did not make it for its edges
 	name_after_file(file, scene->name);
 	cau_mesh_def *mesh = &scene->meshes[scene->mesh_count++];
 	cau_default_mesh_def(mesh);

@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "dissect/dissection.h"
+#include "dissect/dissection_internal.h"
 
-#include <stdbool.h>
 #include <string.h>
 
 #include "cautery/assert.h"
@@ -9,64 +8,6 @@
 _Static_assert(CAU_MAX_LAYERS <= 16, "a bit of `parted` for each layer");
 
 static const double heat_capacity = 3500; // J/(kg K), soft tissue
-
-static int element_kind(int primitive)
-{
-	CAU_ASSERT_INDEX(primitive, CAU_PRIMITIVE_KINDS);
-	static const int kind[CAU_PRIMITIVE_KINDS] = {CAU_ELEMENT_TRIANGLE, CAU_ELEMENT_TETRAHEDRON,
-	                                              CAU_ELEMENT_LINK};
-	return kind[primitive];
-}
-
-static int32_t primitive_count(const cau_tissue *tissue, int primitive)
-{
-	return cau_tissue_element_count(tissue, element_kind(primitive));
-}
-
-// Of all kinds: what can be removed at most.
-static int32_t element_total(const cau_tissue *tissue)
-{
-	int32_t total = 0;
-	for (int kind = 0; kind < CAU_ELEMENT_KINDS; kind++)
-		total += cau_tissue_element_count(tissue, kind);
-	return total;
-}
-
-static int32_t layer_of(const cau_tissue *tissue, int primitive, int32_t index)
-{
-	CAU_ASSERT_INDEX(index, primitive_count(tissue, primitive));
-	switch (primitive) {
-	case CAU_PRIMITIVE_TRIANGLE:
-		return tissue->triangle_layer[index];
-	case CAU_PRIMITIVE_TETRAHEDRON:
-		return tissue->tetrahedron_layer[index];
-	default:
-		return tissue->link_layer[index];
-	}
-}
-
-static const cau_heat_material *heat_of(const cau_tissue *tissue, int primitive, int32_t index)
-{
-	int32_t material = 0;
-	if (primitive == CAU_PRIMITIVE_TRIANGLE)
-		material = tissue->triangle_material[index];
-	else if (primitive == CAU_PRIMITIVE_TETRAHEDRON)
-		material = tissue->tetrahedron_material[index];
-	return cau_layer_heat(&tissue->layer[layer_of(tissue, primitive, index)], material);
-}
-
-static const int32_t *vertices_of(const cau_tissue *tissue, int primitive, int32_t index,
-                                  int *count)
-{
-	CAU_ASSERT_INDEX(index, primitive_count(tissue, primitive));
-	*count = primitive == CAU_PRIMITIVE_TRIANGLE      ? 3
-	         : primitive == CAU_PRIMITIVE_TETRAHEDRON ? 4
-	                                                  : 2;
-	const int32_t *base = primitive == CAU_PRIMITIVE_TRIANGLE      ? tissue->triangle
-	                      : primitive == CAU_PRIMITIVE_TETRAHEDRON ? tissue->tetrahedron
-	                                                               : tissue->link;
-	return base + (size_t)*count * (size_t)index;
-}
 
 static cau_status list_triangle_hinges(cau_dissection *dissection, cau_arena *arena,
                                        cau_error *error)
@@ -92,14 +33,16 @@ static cau_status list_triangle_hinges(cau_dissection *dissection, cau_arena *ar
 }
 
 cau_status cau_dissection_create(cau_dissection *dissection, const cau_tissue *tissue,
-                                 uint64_t seed, cau_arena *arena, cau_error *error)
+                                 uint64_t seed, int parting, cau_arena *arena, cau_error *error)
 {
+	CAU_ASSERT_INDEX(parting, CAU_PARTING_COUNT);
 	size_t edges = (size_t)tissue->edges.edge_count, faces = (size_t)tissue->faces.face_count,
 		   total = 0;
 	*dissection = (cau_dissection){.tissue = tissue, .seed = seed};
 	bool missing = false;
 	for (int p = 0; p < CAU_PRIMITIVE_KINDS; p++) {
-		dissection->share_count[p] = cau_arena_array(arena, (size_t)primitive_count(tissue, p), 1);
+		dissection->share_count[p] =
+			cau_arena_array(arena, (size_t)cau_dissection_count_of(tissue, p), 1);
 		missing |= !dissection->share_count[p];
 	}
 	for (int k = 0; k < CAU_ELEMENT_KINDS; k++) {
@@ -122,6 +65,8 @@ cau_status cau_dissection_create(cau_dissection *dissection, const cau_tissue *t
 	    !dissection->face_owners || !dissection->removed)
 		return cau_fail(error, CAU_NO_MEMORY, NULL, "no memory for the edges");
 	cau_status status = list_triangle_hinges(dissection, arena, error);
+	if (!status && parting == CAU_PARTING_ELEMENTS)
+		status = cau_doses_create(&dissection->doses, tissue, arena, error);
 	if (!status)
 		cau_dissection_recount(dissection);
 	return status;
@@ -135,40 +80,7 @@ void cau_dissection_begin(cau_dissection *dissection)
 	for (int32_t k = 0; k < dissection->touched_count; k++)
 		dissection->touched_mark[dissection->touched[k]] = 0;
 	dissection->touched_count = dissection->removed_count = 0;
-}
-
-// ---- faces
-static void draw_face(cau_dissection *dissection, int32_t face)
-{
-	CAU_ASSERT_INDEX(face, dissection->tissue->faces.face_count);
-	const cau_face_table *faces = &dissection->tissue->faces;
-	bool drawn = dissection->face_owners[face] == 1;
-	if (face >= faces->triangle_count && faces->cover[face] >= 0)
-		drawn &= !dissection->alive.element[CAU_ELEMENT_TRIANGLE][faces->cover[face]];
-	uint32_t bit = 1u << (face & 31);
-	if (drawn)
-		dissection->face_mask[face >> 5] &= ~bit;
-	else
-		dissection->face_mask[face >> 5] |= bit;
-}
-
-static void lose_faces(cau_dissection *dissection, int primitive, int32_t index)
-{
-	const cau_face_table *faces = &dissection->tissue->faces;
-	if (primitive == CAU_PRIMITIVE_TRIANGLE) {
-		dissection->face_owners[index] = 0;
-		draw_face(dissection, index);
-		if (faces->triangle_covers[index] >= 0)
-			draw_face(dissection, faces->triangle_covers[index]);
-	} else if (primitive == CAU_PRIMITIVE_TETRAHEDRON) {
-		for (int i = 0; i < 4; i++) {
-			int32_t face = faces->tetrahedron_face[4 * (size_t)index + (size_t)i];
-			CAU_ASSERT(dissection->face_owners[face] > 0,
-			           "face %d loses tetrahedron %d, and has none", face, index);
-			dissection->face_owners[face]--;
-			draw_face(dissection, face);
-		}
-	}
+	cau_doses_begin(&dissection->doses);
 }
 
 // ---- exposure
@@ -178,7 +90,7 @@ static bool edge_lives(const cau_dissection *dissection, int32_t edge)
 	const cau_edge_table *edges = &dissection->tissue->edges;
 	for (int p = 0; p < CAU_PRIMITIVE_KINDS; p++)
 		for (int32_t k = edges->first[p][edge]; k < edges->first[p][edge + 1]; k++)
-			if (dissection->alive.element[element_kind(p)][edges->sharer[p][k]])
+			if (cau_dissection_lives(dissection, p, edges->sharer[p][k]))
 				return true;
 	return false;
 }
@@ -192,8 +104,8 @@ static double heat_taken(const cau_dissection *dissection, int32_t edge, double 
 	double absorption = 0;
 	for (int p = 0; p < CAU_PRIMITIVE_KINDS && absorption == 0; p++)
 		if (edges->first[p][edge] < edges->first[p][edge + 1])
-			absorption =
-				heat_of(tissue, p, edges->sharer[p][edges->first[p][edge]])->absorption_per_s;
+			absorption = cau_dissection_heat_of(tissue, p, edges->sharer[p][edges->first[p][edge]])
+			                 ->absorption_per_s;
 	double mass = tissue->mass[edges->vertex[2 * edge]] + tissue->mass[edges->vertex[2 * edge + 1]];
 	return gain * absorption * heat_capacity * mass / 12;
 }
@@ -232,52 +144,15 @@ double cau_dissection_expose(cau_dissection *dissection, const cau_near *near,
 				continue;
 			dissection->exposure[edge] += gain;
 			taken += heat_taken(dissection, edge, gain);
-			if (!dissection->touched_mark[edge]) {
-				dissection->touched_mark[edge] = 1;
-				CAU_ASSERT_INDEX(dissection->touched_count, dissection->tissue->edges.edge_count);
-				dissection->touched[dissection->touched_count++] = edge;
-			}
+			cau_dissection_touch(dissection, edge);
 		}
 	}
+	if (dissection->doses.dose)
+		cau_doses_expose(dissection, near, position, grid, tool, pose, jaw, duration_s);
 	return taken;
 }
 
 // ---- parting
-static void remove_hinges(cau_dissection *dissection, int32_t triangle)
-{
-	const int32_t *first = dissection->triangle_hinge_first;
-	for (int32_t k = first[triangle]; k < first[triangle + 1]; k++) {
-		int32_t hinge = dissection->triangle_hinge[k];
-		if (!dissection->alive.element[CAU_ELEMENT_HINGE][hinge])
-			continue;
-		dissection->alive.element[CAU_ELEMENT_HINGE][hinge] = 0;
-		CAU_ASSERT_INDEX(hinge, dissection->tissue->hinge_count);
-		dissection->removed[dissection->removed_count++] = (cau_removed){CAU_ELEMENT_HINGE, hinge};
-	}
-}
-
-static void remove_primitive(cau_dissection *dissection, int primitive, int32_t index)
-{
-	int kind = element_kind(primitive), count;
-	CAU_ASSERT(dissection->alive.element[kind][index], "element %d of kind %d is removed twice",
-	           index, kind);
-	CAU_ASSERT(dissection->removed_count < element_total(dissection->tissue),
-	           "%d elements removed of %d", dissection->removed_count,
-	           element_total(dissection->tissue));
-	dissection->alive.element[kind][index] = 0;
-	dissection->elements_removed++;
-	dissection->removed[dissection->removed_count++] = (cau_removed){kind, index};
-	const int32_t *vertex = vertices_of(dissection->tissue, primitive, index, &count);
-	for (int i = 0; i < count; i++) {
-		CAU_ASSERT(dissection->live_elements[vertex[i]] > 0,
-		           "vertex %d loses element %d of kind %d, and has none", vertex[i], index, kind);
-		dissection->live_elements[vertex[i]]--;
-	}
-	lose_faces(dissection, primitive, index);
-	if (primitive == CAU_PRIMITIVE_TRIANGLE)
-		remove_hinges(dissection, index);
-}
-
 static double ignition_in_bundles(const cau_dissection *dissection, const cau_heat_material *heat,
                                   int32_t layer, int32_t edge)
 {
@@ -297,8 +172,8 @@ static double ignition_in_bundles(const cau_dissection *dissection, const cau_he
 // integral.
 static bool ignites(const cau_dissection *dissection, int primitive, int32_t index, int32_t edge)
 {
-	const cau_heat_material *heat = heat_of(dissection->tissue, primitive, index);
-	int32_t layer = layer_of(dissection->tissue, primitive, index);
+	const cau_heat_material *heat = cau_dissection_heat_of(dissection->tissue, primitive, index);
+	int32_t layer = cau_dissection_layer_of(dissection->tissue, primitive, index);
 	double ignition = heat->ignition_bundle_m > 0
 	                      ? ignition_in_bundles(dissection, heat, layer, edge)
 	                      : cau_ignition_of(heat->ignition_c, heat->ignition_spread_c,
@@ -306,16 +181,23 @@ static bool ignites(const cau_dissection *dissection, int primitive, int32_t ind
 	return heat->absorption_per_s * dissection->exposure[edge] > ignition;
 }
 
+// Links are single fibres, and part by their edge under either rule.
+static int first_kind_of_edges(const cau_dissection *dissection)
+{
+	return dissection->doses.dose ? CAU_PRIMITIVE_LINK : CAU_PRIMITIVE_TRIANGLE;
+}
+
 // Layers in which the edge parts now, as bits; those in which it has parted are left out.
 static uint16_t layers_parting(const cau_dissection *dissection, int32_t edge)
 {
 	const cau_edge_table *edges = &dissection->tissue->edges;
 	uint16_t before = dissection->parted[edge], parting = 0;
-	for (int p = 0; p < CAU_PRIMITIVE_KINDS; p++)
+	for (int p = first_kind_of_edges(dissection); p < CAU_PRIMITIVE_KINDS; p++)
 		for (int32_t k = edges->first[p][edge]; k < edges->first[p][edge + 1]; k++) {
 			int32_t index = edges->sharer[p][k];
-			uint16_t bit = (uint16_t)(1u << layer_of(dissection->tissue, p, index));
-			CAU_ASSERT(bit != 0, "layer %d has no bit", layer_of(dissection->tissue, p, index));
+			uint16_t bit = (uint16_t)(1u << cau_dissection_layer_of(dissection->tissue, p, index));
+			CAU_ASSERT(bit != 0, "layer %d has no bit",
+			           cau_dissection_layer_of(dissection->tissue, p, index));
 			if (!((before | parting) & bit) && ignites(dissection, p, index, edge))
 				parting |= bit;
 		}
@@ -324,31 +206,18 @@ static uint16_t layers_parting(const cau_dissection *dissection, int32_t edge)
 
 static void part_edge(cau_dissection *dissection, int32_t edge, uint32_t *layers)
 {
-	CAU_ASSERT_INDEX(edge, dissection->tissue->edges.edge_count);
-	const cau_edge_table *edges = &dissection->tissue->edges;
 	uint16_t parting = layers_parting(dissection, edge);
-	if (!parting)
-		return;
-	dissection->parted[edge] |= parting;
-	dissection->edges_parted++;
 	*layers |= parting;
-	for (int p = 0; p < CAU_PRIMITIVE_KINDS; p++)
-		for (int32_t k = edges->first[p][edge]; k < edges->first[p][edge + 1]; k++) {
-			int32_t index = edges->sharer[p][k];
-			if (!(parting >> layer_of(dissection->tissue, p, index) & 1))
-				continue;
-			CAU_ASSERT(dissection->share_count[p][index] > 0,
-			           "primitive %d of kind %d loses edge %d, and has none", index, p, edge);
-			dissection->share_count[p][index]--;
-			if (dissection->alive.element[element_kind(p)][index])
-				remove_primitive(dissection, p, index);
-		}
+	if (parting)
+		cau_dissection_lose_edge(dissection, edge, parting);
 }
 
 void cau_dissection_part(cau_dissection *dissection, uint32_t *layers)
 {
 	for (int32_t k = 0; k < dissection->touched_count; k++)
 		part_edge(dissection, dissection->touched[k], layers);
+	if (dissection->doses.dose)
+		cau_doses_part(dissection, layers);
 }
 
 double cau_dissection_heated(const cau_dissection *dissection, int32_t edge)
@@ -362,73 +231,9 @@ double cau_dissection_heated(const cau_dissection *dissection, int32_t edge)
 		int32_t k = edges->first[p][edge];
 		if (k == edges->first[p][edge + 1])
 			continue;
-		const cau_heat_material *heat = heat_of(dissection->tissue, p, edges->sharer[p][k]);
+		const cau_heat_material *heat =
+			cau_dissection_heat_of(dissection->tissue, p, edges->sharer[p][k]);
 		most = fmax(most, heat->absorption_per_s * dissection->exposure[edge] / heat->ignition_c);
 	}
 	return fmin(most, 1);
-}
-
-// ---- recount
-static void recount_shares(cau_dissection *dissection)
-{
-	static const uint8_t edges_of[CAU_PRIMITIVE_KINDS] = {3, 6, 1};
-	const cau_edge_table *edges = &dissection->tissue->edges;
-	for (int p = 0; p < CAU_PRIMITIVE_KINDS; p++)
-		memset(dissection->share_count[p], edges_of[p],
-		       (size_t)primitive_count(dissection->tissue, p));
-	for (int32_t e = 0; e < edges->edge_count; e++)
-		for (int p = 0; p < CAU_PRIMITIVE_KINDS && dissection->parted[e]; p++)
-			for (int32_t k = edges->first[p][e]; k < edges->first[p][e + 1]; k++) {
-				int32_t index = edges->sharer[p][k];
-				if (!(dissection->parted[e] >> layer_of(dissection->tissue, p, index) & 1))
-					continue;
-				CAU_ASSERT(dissection->share_count[p][index] > 0,
-				           "primitive %d of kind %d loses edge %d, and has none", index, p, e);
-				dissection->share_count[p][index]--;
-			}
-	for (int p = 0; p < CAU_PRIMITIVE_KINDS; p++)
-		for (int32_t i = 0; i < primitive_count(dissection->tissue, p); i++)
-			dissection->alive.element[element_kind(p)][i] =
-				dissection->share_count[p][i] == edges_of[p];
-}
-
-static void recount_hinges(cau_dissection *dissection)
-{
-	const cau_tissue *tissue = dissection->tissue;
-	const uint8_t *triangle = dissection->alive.element[CAU_ELEMENT_TRIANGLE];
-	for (int32_t h = 0; h < tissue->hinge_count; h++)
-		dissection->alive.element[CAU_ELEMENT_HINGE][h] =
-			triangle[tissue->hinge_triangle[2 * h]] & triangle[tissue->hinge_triangle[2 * h + 1]];
-}
-
-static void recount_faces(cau_dissection *dissection)
-{
-	const cau_tissue *tissue = dissection->tissue;
-	const cau_face_table *faces = &tissue->faces;
-	memset(dissection->live_elements, 0, (size_t)tissue->vertex_count * sizeof(int32_t));
-	memset(dissection->face_owners, 0, (size_t)faces->face_count);
-	for (int p = 0; p < CAU_PRIMITIVE_KINDS; p++)
-		for (int32_t i = 0; i < primitive_count(tissue, p); i++) {
-			if (!dissection->alive.element[element_kind(p)][i])
-				continue;
-			int count;
-			const int32_t *vertex = vertices_of(tissue, p, i, &count);
-			for (int k = 0; k < count; k++)
-				dissection->live_elements[vertex[k]]++;
-			if (p == CAU_PRIMITIVE_TRIANGLE)
-				dissection->face_owners[i] = 1;
-			for (int k = 0; k < 4 && p == CAU_PRIMITIVE_TETRAHEDRON; k++)
-				dissection->face_owners[faces->tetrahedron_face[4 * (size_t)i + (size_t)k]]++;
-			CAU_ASSERT(dissection->live_elements[vertex[0]] > 0,
-			           "vertex %d of living tetrahedron %d has no element", vertex[0], i);
-		}
-	for (int32_t f = 0; f < faces->face_count; f++)
-		draw_face(dissection, f);
-}
-
-void cau_dissection_recount(cau_dissection *dissection)
-{
-	recount_shares(dissection);
-	recount_hinges(dissection);
-	recount_faces(dissection);
 }

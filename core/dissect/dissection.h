@@ -12,9 +12,21 @@ typedef struct cau_removed {
 	int32_t kind, element; // cau_element_kind
 } cau_removed;
 
+// Doses of triangles and tetrahedra, where these part one by one (doses.c): arrays over all
+// triangles and then all tetrahedra, NULL where edges part.
+typedef struct cau_doses {
+	double *dose;          // integral of u at the middle dt while that chars, degC s
+	uint8_t *gone;         // has parted
+	double widest_m;       // greatest half width of a cut that an element can tell
+	int32_t touched_count; // of the present tick
+	int32_t *touched;
+	uint8_t *touched_mark;
+} cau_doses;
+
 typedef struct cau_dissection {
 	const cau_tissue *tissue;
 	uint64_t seed;
+	cau_doses doses;
 	double *exposure; // (edge_count): integral of (u_a + u_b)/2 dt while charring, degC s
 	uint16_t *parted; // (edge_count): bit per layer
 	uint8_t *share_count[CAU_PRIMITIVE_KINDS]; // live edges of each primitive
@@ -33,13 +45,18 @@ typedef struct cau_dissection {
 	int32_t edges_parted, elements_removed;
 } cau_dissection;
 
+// `parting`: CAU_PARTING_*.
 cau_status cau_dissection_create(cau_dissection *dissection, const cau_tissue *tissue,
-                                 uint64_t seed, cau_arena *arena, cau_error *error);
+                                 uint64_t seed, int parting, cau_arena *arena, cau_error *error);
+
+// Triangles and tetrahedra that part one by one: elements of `doses`, 0 where edges part.
+int32_t cau_dissection_dose_count(const cau_dissection *dissection);
 
 // Forgets the present tick's lists.
 void cau_dissection_begin(cau_dissection *dissection);
 
-// Exposes the edges near the tool's hot part at `pose` for duration_s (eq. 20). Returns the heat
+// Exposes the edges, and the elements where these part one by one, near the tool's hot part at
+// `pose` for duration_s (eq. 20). Returns the heat
 // that the tissue took up, J (absorbed degrees times heat capacity of the edges' share of mass: an
 // estimate).
 double cau_dissection_expose(cau_dissection *dissection, const cau_near *near,
@@ -47,13 +64,13 @@ double cau_dissection_expose(cau_dissection *dissection, const cau_near *near,
                              const cau_tool_def *tool, const cau_pose *pose, double jaw,
                              double duration_s);
 
-// Parts the edges that have reached their ignition temperature and removes what they held up.
+// Parts what has reached its ignition temperature: edges, with what they held up, or elements.
 // Removed elements are appended to `removed`. *layers gets a bit for each layer that lost
 // something.
 void cau_dissection_part(cau_dissection *dissection, uint32_t *layers);
 
-// Recounts everything that follows from `parted` (after a restore): share counts, alive, faces,
-// vertices.
+// Recounts everything that follows from `parted` and `gone` (after a restore): share counts, alive,
+// faces, vertices.
 void cau_dissection_recount(cau_dissection *dissection);
 
 // Largest exposure / ignition over the layers of an edge, 0 to 1.

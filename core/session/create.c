@@ -117,8 +117,8 @@ static cau_status make_solver(cau_session *session, const cau_session_def *def, 
 	cau_dissection *dissection = &session->dissection;
 	cau_status status = cau_solver_create(solver, session->scene, &session->tissue, arena, error);
 	if (!status)
-		status =
-			cau_dissection_create(dissection, &session->tissue, session->scene->seed, arena, error);
+		status = cau_dissection_create(dissection, &session->tissue, session->scene->seed,
+		                               session->scene->parting, arena, error);
 	if (!status)
 		status = cau_shrink_create(&session->shrink, &session->tissue, arena, error);
 	if (status)
@@ -177,6 +177,8 @@ static uint64_t hash_definition(const cau_session *session)
 	uint64_t hash = cau_hash_bytes(CAU_HASH_START, numbers, sizeof numbers);
 	hash = cau_hash_bytes(hash, choices, sizeof choices);
 	hash = cau_hash_word(hash, scene->seed);
+	if (scene->parting != CAU_PARTING_EDGES) // left out of older snapshots
+		hash = cau_hash_word(hash, (uint64_t)scene->parting);
 	hash = hash_array(hash, t->rest, t->vertex_count, 3 * sizeof(double));
 	hash = hash_array(hash, t->mass, t->vertex_count, sizeof(double));
 	hash = hash_array(hash, t->triangle, t->triangle_count, 3 * sizeof(int32_t));

@@ -76,6 +76,9 @@ static cau_status pass_state(snapshot_archive *archive, cau_session *session, ca
 	snapshot_pass(archive, session->solver.system.diagonal, n * sizeof(double));
 	snapshot_pass(archive, session->dissection.exposure, edges * sizeof(double));
 	snapshot_pass(archive, session->dissection.parted, edges * sizeof(uint16_t));
+	size_t doses = (size_t)cau_dissection_dose_count(&session->dissection);
+	snapshot_pass(archive, session->dissection.doses.dose, doses * sizeof(double));
+	snapshot_pass(archive, session->dissection.doses.gone, doses);
 	snapshot_pass(archive, session->shrink.shrunk[0], (size_t)session->tissue.triangle_count);
 	snapshot_pass(archive, session->shrink.shrunk[1], (size_t)session->tissue.tetrahedron_count);
 	snapshot_pass(archive, session->shrink.active,
@@ -377,6 +380,9 @@ uint64_t cau_session_hash(const cau_session *session)
 	hash = cau_hash_bytes(hash, session->velocity, 3 * n * sizeof(double));
 	hash = cau_hash_bytes(hash, session->dissection.exposure, edges * sizeof(double));
 	hash = cau_hash_bytes(hash, session->dissection.parted, edges * sizeof(uint16_t));
+	size_t doses = (size_t)cau_dissection_dose_count(&session->dissection);
+	hash = cau_hash_bytes(hash, session->dissection.doses.dose, doses * sizeof(double));
+	hash = cau_hash_bytes(hash, session->dissection.doses.gone, doses);
 	for (int i = 0; i < 6; i++)
 		hash = cau_hash_bytes(hash, elements->fat.plastic_strain[i],
 		                      (size_t)elements->fat.slot_count * cau_real_bytes(elements->single));

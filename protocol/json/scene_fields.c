@@ -6,6 +6,7 @@
 
 CHOICES(solver_choices, CAU_SOLVER_TABLE)
 CHOICES(precision_choices, CAU_PRECISION_TABLE)
+CHOICES(parting_choices, CAU_PARTING_TABLE)
 CHOICES(mesh_source_choices, CAU_MESH_SOURCE_TABLE)
 CHOICES_OF_WORDS(model_choices, CAU_MODEL_TABLE)
 CHOICES(limit_choices, CAU_LIMIT_TABLE)
@@ -25,6 +26,9 @@ static const cau_field scene_fields[] = {
 		INTEGER(iterations, 1, 1000, "iterations of a step at most; with `accuracy` 0, of each")},
 	{CHOICE(solver, solver_choices, "global system")},
 	{CHOICE(precision, precision_choices, "of the local and global steps")},
+	{CHOICE(parting, parting_choices,
+            "what heat parts: edges with all that share them, as in the paper, or "
+            "elements one by one, so that a cut does not depend on the mesh")},
 	{OTHER(seed, COUNT, "of everything drawn at random")},
 	{VECTOR(gravity_m_s2, 3, -100.0, 100.0, "m/s^2", "gravity")},
 };

@@ -122,6 +122,7 @@ static cau_status start_scene(const char *file, double unit_m, bool tetrahedra,
                               cau_scene_def *scene, cau_error *error)
 {
 	cau_default_scene_def(scene);
+	scene->parting = CAU_PARTING_ELEMENTS;
 	// A scanned organ has its shape under its weight already: gravity would count twice.
 	memset(scene->gravity_m_s2, 0, sizeof scene->gravity_m_s2);
 	name_after_file(file, scene->name);

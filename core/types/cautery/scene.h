@@ -53,6 +53,9 @@ enum {
 #define CAU_PRECISION_TABLE(X)                                                                     \
 	X(SINGLE, "single")                                                                            \
 	X(DOUBLE, "double")
+#define CAU_PARTING_TABLE(X)                                                                       \
+	X(EDGES, "edges")       /* the paper's rule: an edge, and with it all that share it */         \
+	X(ELEMENTS, "elements") /* each triangle and tetrahedron by the dose at its middle */
 
 // ---- meshes ---------------------------------------------------------------------------------
 #define CAU_MESH_SOURCE_TABLE(X)                                                                   \
@@ -101,9 +104,9 @@ typedef struct cau_mesh_def {
 
 // Common to all tissue that heat parts (section 6.2, 6.3).
 #define CAU_HEAT_TABLE(X)                                                                          \
-	X(ignition_c, 172.0, 1.0, 2000.0, "degC", "an edge parts when its exposure exceeds this")      \
-	X(ignition_spread_c, 0.0, 0.0, 500.0, "degC", "standard deviation over edges, drawn by seed")  \
-	X(ignition_bundle_m, 0.0, 0.0, 0.1, "m", "width of bundles that part alike; 0: each edge")     \
+	X(ignition_c, 172.0, 1.0, 2000.0, "degC", "it parts when its exposure exceeds this")           \
+	X(ignition_spread_c, 0.0, 0.0, 500.0, "degC", "standard deviation, drawn by seed")             \
+	X(ignition_bundle_m, 0.0, 0.0, 0.1, "m", "width of bundles that part alike; 0: none")          \
 	X(absorption_per_s, 0.4, 0.0, 1000.0, "1/s", "xi of eq. 20")
 
 #define CAU_SHEET_TABLE(X)                                                                         \
@@ -269,6 +272,7 @@ typedef struct cau_scene_def {
 	int32_t iterations; // of a step at most, 1 to 1000
 	int solver;         // CAU_SOLVER_*
 	int precision;      // CAU_PRECISION_* of the local and global steps
+	int parting;        // CAU_PARTING_*: what heat parts
 	uint64_t seed;      // of everything drawn at random (ignition temperatures)
 	double gravity_m_s2[3];
 	int32_t mesh_count;
@@ -297,6 +301,12 @@ typedef enum cau_precision {
 #undef X
 		CAU_PRECISION_COUNT
 } cau_precision;
+typedef enum cau_parting {
+#define X(code, name) CAU_PARTING_##code,
+	CAU_PARTING_TABLE(X)
+#undef X
+		CAU_PARTING_COUNT
+} cau_parting;
 typedef enum cau_mesh_source {
 #define X(code, name) CAU_MESH_##code,
 	CAU_MESH_SOURCE_TABLE(X)

@@ -148,7 +148,9 @@ void rig_build(rig *r, const char *tier, int32_t threads)
 	assert_non_null(solver->pool);
 	assert_true(solver->position && solver->predicted && solver->external && r->fixed);
 	expect_ok(cau_solver_create(solver, r->scene, &r->tissue, &r->arena, &error), &error);
-	expect_ok(cau_dissection_create(&r->dissection, &r->tissue, 1, &r->arena, &error), &error);
+	expect_ok(
+		cau_dissection_create(&r->dissection, &r->tissue, 1, r->scene->parting, &r->arena, &error),
+		&error);
 	expect_ok(cau_shrink_create(&r->shrink, &r->tissue, &r->arena, &error), &error);
 	cau_elements_set_materials(&solver->elements, &solver->slots, &r->tissue,
 	                           r->dissection.alive.element, r->shrink.shrunk);

@@ -145,6 +145,32 @@ static void written_again_it_is_the_same(void **state)
 }
 
 // Commands for later ticks, pins and materials set on the way are part of the state.
+// Where elements part one by one, by doses that are half there.
+static void doses_of_elements(void **state)
+{
+	(void)state;
+	cau_scene_def *scene = busy_scene();
+	scene->parting = CAU_PARTING_ELEMENTS;
+	cau_session *session = stage_open(scene, 1), *other = stage_open(scene, 2);
+	busy_run(session, 45);
+	int32_t before = stage_frame(session).statistics.elements_removed;
+	stage_bytes shot = stage_snapshot(session);
+	restore(other, &shot);
+	free(shot.bytes);
+	assert_true(cau_session_hash(other) == cau_session_hash(session));
+	for (int tick = 45; tick < BUSY_TICKS; tick++) {
+		busy_run(session, 1);
+		busy_run(other, 1);
+		if (cau_session_hash(session) != cau_session_hash(other))
+			fail_msg("restored at tick 45, the state differs at tick %d", tick + 1);
+	}
+	assert_true(before > 50);
+	assert_true(stage_frame(session).statistics.elements_removed > before + 50);
+	cau_session_destroy(other);
+	cau_session_destroy(session);
+	free(scene);
+}
+
 static void queued_commands_pins_and_materials(void **state)
 {
 	(void)state;
@@ -293,7 +319,7 @@ static void forged_counts_are_refused_and_change_nothing(void **state)
 static void another_definition_is_refused(void **state)
 {
 	(void)state;
-	for (int what = 0; what < 5; what++) {
+	for (int what = 0; what < 6; what++) {
 		cau_scene_def *scene = busy_scene();
 		switch (what) {
 		case 0:
@@ -306,6 +332,9 @@ static void another_definition_is_refused(void **state)
 			scene->seed++;
 			break;
 		case 3:
+			scene->parting = CAU_PARTING_ELEMENTS;
+			break;
+		case 4:
 			scene->layers[1].fat[0].density_kg_m3 *= 2;
 			break;
 		default:
@@ -344,6 +373,7 @@ int main(void)
 		cmocka_unit_test(restored_into_a_fresh_session),
 		cmocka_unit_test(restored_into_the_same_session),
 		cmocka_unit_test(written_again_it_is_the_same),
+		cmocka_unit_test(doses_of_elements),
 		cmocka_unit_test(queued_commands_pins_and_materials),
 		cmocka_unit_test(damage_is_refused),
 		cmocka_unit_test(forged_counts_are_refused_and_change_nothing),

@@ -86,7 +86,8 @@ static void every_scene_file_comes_back(void **state)
 static const char everything[] =
 	"{\"name\":\"all\",\"description\":\"\xc3\xa9\",\"step_s\":0.005,\"damping_per_s\":1,"
 	"\"ambient_c\":20,\"tolerance\":0.001,\"iterations\":20,\"solver\":\"diagonal\","
-	"\"precision\":\"double\",\"seed\":9007199254740991,\"gravity_m_s2\":[0,1,-2],"
+	"\"precision\":\"double\",\"parting\":\"elements\",\"seed\":9007199254740991,\"gravity_m_s2\":["
+	"0,1,-2],"
 	"\"meshes\":[{\"source\":\"file\",\"name\":\"a\",\"file\":\"a.msh\",\"unit_m\":0.001,"
 	"\"translate_m\":[1,2,3]},{\"source\":\"bytes\",\"name\":\"b\",\"file\":\"b.obj\"},"
 	"{\"source\":\"sheet\",\"name\":\"c\",\"size_m\":[1,2],\"cells\":[3,4],"
@@ -114,6 +115,7 @@ static void every_member_comes_back(void **state)
 	cau_scene_def *scene = scene_of(everything);
 	assert_int_equal(scene->solver, CAU_SOLVER_DIAGONAL);
 	assert_int_equal(scene->precision, CAU_PRECISION_DOUBLE);
+	assert_int_equal(scene->parting, CAU_PARTING_ELEMENTS);
 	assert_true(scene->seed == 9007199254740991u);
 	assert_int_equal(scene->mesh_count, 4);
 	assert_string_equal(scene->meshes[0].file, "a.msh");

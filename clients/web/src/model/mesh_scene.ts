@@ -31,6 +31,7 @@ export function sceneOfMesh(file: string, kind: MeshKind, unitM: number): Scene 
     description: 'An uploaded mesh.',
     damping_per_s: 4,
     gravity_m_s2: [0, 0, 0],
+    parting: 'elements',
     meshes: [{ source: 'bytes', name: 'mesh', file, unit_m: unitM }],
     layers,
     pins: FAR_BELOW.map((center_m) => ({ kind: 'nearest', center_m })),

@@ -825,11 +825,11 @@ export interface FasciaRegion {
   strain_max?: [number, number];
   /** S of eq. 21: squared stretches; 1: no shrinkage (0.001 to 10) */
   shrink?: [number, number];
-  /** an edge parts when its exposure exceeds this (1 to 2000 degC) */
+  /** it parts when its exposure exceeds this (1 to 2000 degC) */
   ignition_c?: number;
-  /** standard deviation over edges, drawn by seed (0 to 500 degC) */
+  /** standard deviation, drawn by seed (0 to 500 degC) */
   ignition_spread_c?: number;
-  /** width of bundles that part alike; 0: each edge (0 to 0.1 m) */
+  /** width of bundles that part alike; 0: none (0 to 0.1 m) */
   ignition_bundle_m?: number;
   /** xi of eq. 20 (0 to 1000 1/s) */
   absorption_per_s?: number;
@@ -867,11 +867,11 @@ export interface FasciaLayer {
   strain_max?: [number, number];
   /** S of eq. 21: squared stretches; 1: no shrinkage (0.001 to 10) */
   shrink?: [number, number];
-  /** an edge parts when its exposure exceeds this (1 to 2000 degC) */
+  /** it parts when its exposure exceeds this (1 to 2000 degC) */
   ignition_c?: number;
-  /** standard deviation over edges, drawn by seed (0 to 500 degC) */
+  /** standard deviation, drawn by seed (0 to 500 degC) */
   ignition_spread_c?: number;
-  /** width of bundles that part alike; 0: each edge (0 to 0.1 m) */
+  /** width of bundles that part alike; 0: none (0 to 0.1 m) */
   ignition_bundle_m?: number;
   /** xi of eq. 20 (0 to 1000 1/s) */
   absorption_per_s?: number;
@@ -905,11 +905,11 @@ export interface MembraneRegion {
   strain_max?: [number, number];
   /** S of eq. 21: squared stretches; 1: no shrinkage (0.001 to 10) */
   shrink?: [number, number];
-  /** an edge parts when its exposure exceeds this (1 to 2000 degC) */
+  /** it parts when its exposure exceeds this (1 to 2000 degC) */
   ignition_c?: number;
-  /** standard deviation over edges, drawn by seed (0 to 500 degC) */
+  /** standard deviation, drawn by seed (0 to 500 degC) */
   ignition_spread_c?: number;
-  /** width of bundles that part alike; 0: each edge (0 to 0.1 m) */
+  /** width of bundles that part alike; 0: none (0 to 0.1 m) */
   ignition_bundle_m?: number;
   /** xi of eq. 20 (0 to 1000 1/s) */
   absorption_per_s?: number;
@@ -949,11 +949,11 @@ export interface MembraneLayer {
   strain_max?: [number, number];
   /** S of eq. 21: squared stretches; 1: no shrinkage (0.001 to 10) */
   shrink?: [number, number];
-  /** an edge parts when its exposure exceeds this (1 to 2000 degC) */
+  /** it parts when its exposure exceeds this (1 to 2000 degC) */
   ignition_c?: number;
-  /** standard deviation over edges, drawn by seed (0 to 500 degC) */
+  /** standard deviation, drawn by seed (0 to 500 degC) */
   ignition_spread_c?: number;
-  /** width of bundles that part alike; 0: each edge (0 to 0.1 m) */
+  /** width of bundles that part alike; 0: none (0 to 0.1 m) */
   ignition_bundle_m?: number;
   /** xi of eq. 20 (0 to 1000 1/s) */
   absorption_per_s?: number;
@@ -993,11 +993,11 @@ export interface FatRegion {
   strain_max?: [number, number, number];
   /** S of eq. 21: squared stretches; 1: no shrinkage (0.001 to 10) */
   shrink?: [number, number, number];
-  /** an edge parts when its exposure exceeds this (1 to 2000 degC) */
+  /** it parts when its exposure exceeds this (1 to 2000 degC) */
   ignition_c?: number;
-  /** standard deviation over edges, drawn by seed (0 to 500 degC) */
+  /** standard deviation, drawn by seed (0 to 500 degC) */
   ignition_spread_c?: number;
-  /** width of bundles that part alike; 0: each edge (0 to 0.1 m) */
+  /** width of bundles that part alike; 0: none (0 to 0.1 m) */
   ignition_bundle_m?: number;
   /** xi of eq. 20 (0 to 1000 1/s) */
   absorption_per_s?: number;
@@ -1041,11 +1041,11 @@ export interface FatLayer {
   strain_max?: [number, number, number];
   /** S of eq. 21: squared stretches; 1: no shrinkage (0.001 to 10) */
   shrink?: [number, number, number];
-  /** an edge parts when its exposure exceeds this (1 to 2000 degC) */
+  /** it parts when its exposure exceeds this (1 to 2000 degC) */
   ignition_c?: number;
-  /** standard deviation over edges, drawn by seed (0 to 500 degC) */
+  /** standard deviation, drawn by seed (0 to 500 degC) */
   ignition_spread_c?: number;
-  /** width of bundles that part alike; 0: each edge (0 to 0.1 m) */
+  /** width of bundles that part alike; 0: none (0 to 0.1 m) */
   ignition_bundle_m?: number;
   /** xi of eq. 20 (0 to 1000 1/s) */
   absorption_per_s?: number;
@@ -1071,11 +1071,11 @@ export interface LinksLayer {
   reach_m?: number;
   /** trusses from each vertex of the upper sheet (1 to 8) */
   per_vertex?: number;
-  /** an edge parts when its exposure exceeds this (1 to 2000 degC) */
+  /** it parts when its exposure exceeds this (1 to 2000 degC) */
   ignition_c?: number;
-  /** standard deviation over edges, drawn by seed (0 to 500 degC) */
+  /** standard deviation, drawn by seed (0 to 500 degC) */
   ignition_spread_c?: number;
-  /** width of bundles that part alike; 0: each edge (0 to 0.1 m) */
+  /** width of bundles that part alike; 0: none (0 to 0.1 m) */
   ignition_bundle_m?: number;
   /** xi of eq. 20 (0 to 1000 1/s) */
   absorption_per_s?: number;
@@ -1103,6 +1103,8 @@ export interface Scene {
   solver?: 'cholesky' | 'diagonal';
   /** of the local and global steps */
   precision?: 'single' | 'double';
+  /** what heat parts: edges with all that share them, as in the paper, or elements one by one, so that a cut does not depend on the mesh */
+  parting?: 'edges' | 'elements';
   /** of everything drawn at random (0 to 9007199254740991) */
   seed?: number;
   /** gravity (-100 to 100 m/s^2) */
@@ -1368,11 +1370,11 @@ export interface MaterialSetFascia {
   strain_max?: [number, number];
   /** S of eq. 21: squared stretches; 1: no shrinkage (0.001 to 10) */
   shrink?: [number, number];
-  /** an edge parts when its exposure exceeds this (1 to 2000 degC) */
+  /** it parts when its exposure exceeds this (1 to 2000 degC) */
   ignition_c?: number;
-  /** standard deviation over edges, drawn by seed (0 to 500 degC) */
+  /** standard deviation, drawn by seed (0 to 500 degC) */
   ignition_spread_c?: number;
-  /** width of bundles that part alike; 0: each edge (0 to 0.1 m) */
+  /** width of bundles that part alike; 0: none (0 to 0.1 m) */
   ignition_bundle_m?: number;
   /** xi of eq. 20 (0 to 1000 1/s) */
   absorption_per_s?: number;
@@ -1416,11 +1418,11 @@ export interface MaterialSetMembrane {
   strain_max?: [number, number];
   /** S of eq. 21: squared stretches; 1: no shrinkage (0.001 to 10) */
   shrink?: [number, number];
-  /** an edge parts when its exposure exceeds this (1 to 2000 degC) */
+  /** it parts when its exposure exceeds this (1 to 2000 degC) */
   ignition_c?: number;
-  /** standard deviation over edges, drawn by seed (0 to 500 degC) */
+  /** standard deviation, drawn by seed (0 to 500 degC) */
   ignition_spread_c?: number;
-  /** width of bundles that part alike; 0: each edge (0 to 0.1 m) */
+  /** width of bundles that part alike; 0: none (0 to 0.1 m) */
   ignition_bundle_m?: number;
   /** xi of eq. 20 (0 to 1000 1/s) */
   absorption_per_s?: number;
@@ -1470,11 +1472,11 @@ export interface MaterialSetFat {
   strain_max?: [number, number, number];
   /** S of eq. 21: squared stretches; 1: no shrinkage (0.001 to 10) */
   shrink?: [number, number, number];
-  /** an edge parts when its exposure exceeds this (1 to 2000 degC) */
+  /** it parts when its exposure exceeds this (1 to 2000 degC) */
   ignition_c?: number;
-  /** standard deviation over edges, drawn by seed (0 to 500 degC) */
+  /** standard deviation, drawn by seed (0 to 500 degC) */
   ignition_spread_c?: number;
-  /** width of bundles that part alike; 0: each edge (0 to 0.1 m) */
+  /** width of bundles that part alike; 0: none (0 to 0.1 m) */
   ignition_bundle_m?: number;
   /** xi of eq. 20 (0 to 1000 1/s) */
   absorption_per_s?: number;
@@ -1502,11 +1504,11 @@ export interface MaterialSetLinks {
   reach_m?: number;
   /** trusses from each vertex of the upper sheet (1 to 8) */
   per_vertex?: number;
-  /** an edge parts when its exposure exceeds this (1 to 2000 degC) */
+  /** it parts when its exposure exceeds this (1 to 2000 degC) */
   ignition_c?: number;
-  /** standard deviation over edges, drawn by seed (0 to 500 degC) */
+  /** standard deviation, drawn by seed (0 to 500 degC) */
   ignition_spread_c?: number;
-  /** width of bundles that part alike; 0: each edge (0 to 0.1 m) */
+  /** width of bundles that part alike; 0: none (0 to 0.1 m) */
   ignition_bundle_m?: number;
   /** xi of eq. 20 (0 to 1000 1/s) */
   absorption_per_s?: number;
@@ -1865,11 +1867,11 @@ export const PARAMETERS = {
     { name: 'bending_stiffness_nm', unit: 'N m', least: 0, most: 10, default: 0,
       meaning: "bending; 0: no hinges" },
     { name: 'ignition_c', unit: 'degC', least: 1, most: 2000, default: 172,
-      meaning: "an edge parts when its exposure exceeds this" },
+      meaning: "it parts when its exposure exceeds this" },
     { name: 'ignition_spread_c', unit: 'degC', least: 0, most: 500, default: 0,
-      meaning: "standard deviation over edges, drawn by seed" },
+      meaning: "standard deviation, drawn by seed" },
     { name: 'ignition_bundle_m', unit: 'm', least: 0, most: 0.1, default: 0,
-      meaning: "width of bundles that part alike; 0: each edge" },
+      meaning: "width of bundles that part alike; 0: none" },
     { name: 'absorption_per_s', unit: '1/s', least: 0, most: 1000, default: 0.4,
       meaning: "xi of eq. 20" },
   ],
@@ -1885,11 +1887,11 @@ export const PARAMETERS = {
     { name: 'bending_stiffness_nm', unit: 'N m', least: 0, most: 10, default: 0,
       meaning: "bending; 0: no hinges" },
     { name: 'ignition_c', unit: 'degC', least: 1, most: 2000, default: 96.40000000000001,
-      meaning: "an edge parts when its exposure exceeds this" },
+      meaning: "it parts when its exposure exceeds this" },
     { name: 'ignition_spread_c', unit: 'degC', least: 0, most: 500, default: 0,
-      meaning: "standard deviation over edges, drawn by seed" },
+      meaning: "standard deviation, drawn by seed" },
     { name: 'ignition_bundle_m', unit: 'm', least: 0, most: 0.1, default: 0,
-      meaning: "width of bundles that part alike; 0: each edge" },
+      meaning: "width of bundles that part alike; 0: none" },
     { name: 'absorption_per_s', unit: '1/s', least: 0, most: 1000, default: 0.4,
       meaning: "xi of eq. 20" },
   ],
@@ -1909,11 +1911,11 @@ export const PARAMETERS = {
     { name: 'plastic_strain_max', unit: '1', least: 0, most: 10, default: 0,
       meaning: "gamma_2; 0: no plasticity" },
     { name: 'ignition_c', unit: 'degC', least: 1, most: 2000, default: 76,
-      meaning: "an edge parts when its exposure exceeds this" },
+      meaning: "it parts when its exposure exceeds this" },
     { name: 'ignition_spread_c', unit: 'degC', least: 0, most: 500, default: 0,
-      meaning: "standard deviation over edges, drawn by seed" },
+      meaning: "standard deviation, drawn by seed" },
     { name: 'ignition_bundle_m', unit: 'm', least: 0, most: 0.1, default: 0,
-      meaning: "width of bundles that part alike; 0: each edge" },
+      meaning: "width of bundles that part alike; 0: none" },
     { name: 'absorption_per_s', unit: '1/s', least: 0, most: 1000, default: 0.4,
       meaning: "xi of eq. 20" },
   ],
@@ -1927,11 +1929,11 @@ export const PARAMETERS = {
     { name: 'per_vertex', unit: '1', least: 1, most: 8, default: 3,
       meaning: "trusses from each vertex of the upper sheet" },
     { name: 'ignition_c', unit: 'degC', least: 1, most: 2000, default: 172,
-      meaning: "an edge parts when its exposure exceeds this" },
+      meaning: "it parts when its exposure exceeds this" },
     { name: 'ignition_spread_c', unit: 'degC', least: 0, most: 500, default: 0,
-      meaning: "standard deviation over edges, drawn by seed" },
+      meaning: "standard deviation, drawn by seed" },
     { name: 'ignition_bundle_m', unit: 'm', least: 0, most: 0.1, default: 0,
-      meaning: "width of bundles that part alike; 0: each edge" },
+      meaning: "width of bundles that part alike; 0: none" },
     { name: 'absorption_per_s', unit: '1/s', least: 0, most: 1000, default: 0.4,
       meaning: "xi of eq. 20" },
   ],

@@ -1,0 +1,254 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// The books of the edge-based structure: what a primitive is, which live, which faces are drawn;
+// what an edge or an element that parts takes with it; and all of it counted again from what has
+// parted.
+#include <string.h>
+
+#include "cautery/assert.h"
+#include "dissect/dissection_internal.h"
+
+static int element_kind(int primitive)
+{
+	CAU_ASSERT_INDEX(primitive, CAU_PRIMITIVE_KINDS);
+	static const int kind[CAU_PRIMITIVE_KINDS] = {CAU_ELEMENT_TRIANGLE, CAU_ELEMENT_TETRAHEDRON,
+	                                              CAU_ELEMENT_LINK};
+	return kind[primitive];
+}
+
+int32_t cau_dissection_count_of(const cau_tissue *tissue, int primitive)
+{
+	return cau_tissue_element_count(tissue, element_kind(primitive));
+}
+
+// Of all kinds: what can be removed at most.
+static int32_t element_total(const cau_tissue *tissue)
+{
+	int32_t total = 0;
+	for (int kind = 0; kind < CAU_ELEMENT_KINDS; kind++)
+		total += cau_tissue_element_count(tissue, kind);
+	return total;
+}
+
+int32_t cau_dissection_layer_of(const cau_tissue *tissue, int primitive, int32_t index)
+{
+	CAU_ASSERT_INDEX(index, cau_dissection_count_of(tissue, primitive));
+	switch (primitive) {
+	case CAU_PRIMITIVE_TRIANGLE:
+		return tissue->triangle_layer[index];
+	case CAU_PRIMITIVE_TETRAHEDRON:
+		return tissue->tetrahedron_layer[index];
+	default:
+		return tissue->link_layer[index];
+	}
+}
+
+const cau_heat_material *cau_dissection_heat_of(const cau_tissue *tissue, int primitive,
+                                                int32_t index)
+{
+	int32_t material = 0;
+	if (primitive == CAU_PRIMITIVE_TRIANGLE)
+		material = tissue->triangle_material[index];
+	else if (primitive == CAU_PRIMITIVE_TETRAHEDRON)
+		material = tissue->tetrahedron_material[index];
+	return cau_layer_heat(&tissue->layer[cau_dissection_layer_of(tissue, primitive, index)],
+	                      material);
+}
+
+const int32_t *cau_dissection_vertices_of(const cau_tissue *tissue, int primitive, int32_t index,
+                                          int *count)
+{
+	CAU_ASSERT_INDEX(index, cau_dissection_count_of(tissue, primitive));
+	*count = primitive == CAU_PRIMITIVE_TRIANGLE      ? 3
+	         : primitive == CAU_PRIMITIVE_TETRAHEDRON ? 4
+	                                                  : 2;
+	const int32_t *base = primitive == CAU_PRIMITIVE_TRIANGLE      ? tissue->triangle
+	                      : primitive == CAU_PRIMITIVE_TETRAHEDRON ? tissue->tetrahedron
+	                                                               : tissue->link;
+	return base + (size_t)*count * (size_t)index;
+}
+
+bool cau_dissection_lives(const cau_dissection *dissection, int primitive, int32_t index)
+{
+	CAU_ASSERT_INDEX(index, cau_dissection_count_of(dissection->tissue, primitive));
+	return dissection->alive.element[element_kind(primitive)][index];
+}
+
+void cau_dissection_touch(cau_dissection *dissection, int32_t edge)
+{
+	if (dissection->touched_mark[edge])
+		return;
+	dissection->touched_mark[edge] = 1;
+	CAU_ASSERT_INDEX(dissection->touched_count, dissection->tissue->edges.edge_count);
+	dissection->touched[dissection->touched_count++] = edge;
+}
+
+int32_t cau_doses_place(const cau_tissue *tissue, int primitive, int32_t index)
+{
+	CAU_ASSERT(primitive < CAU_PRIMITIVE_LINK, "links have no dose");
+	return primitive == CAU_PRIMITIVE_TRIANGLE ? index : tissue->triangle_count + index;
+}
+
+// ---- faces
+static void draw_face(cau_dissection *dissection, int32_t face)
+{
+	CAU_ASSERT_INDEX(face, dissection->tissue->faces.face_count);
+	const cau_face_table *faces = &dissection->tissue->faces;
+	bool drawn = dissection->face_owners[face] == 1;
+	if (face >= faces->triangle_count && faces->cover[face] >= 0)
+		drawn &= !dissection->alive.element[CAU_ELEMENT_TRIANGLE][faces->cover[face]];
+	uint32_t bit = 1u << (face & 31);
+	if (drawn)
+		dissection->face_mask[face >> 5] &= ~bit;
+	else
+		dissection->face_mask[face >> 5] |= bit;
+}
+
+static void lose_faces(cau_dissection *dissection, int primitive, int32_t index)
+{
+	const cau_face_table *faces = &dissection->tissue->faces;
+	if (primitive == CAU_PRIMITIVE_TRIANGLE) {
+		dissection->face_owners[index] = 0;
+		draw_face(dissection, index);
+		if (faces->triangle_covers[index] >= 0)
+			draw_face(dissection, faces->triangle_covers[index]);
+	} else if (primitive == CAU_PRIMITIVE_TETRAHEDRON) {
+		for (int i = 0; i < 4; i++) {
+			int32_t face = faces->tetrahedron_face[4 * (size_t)index + (size_t)i];
+			CAU_ASSERT(dissection->face_owners[face] > 0,
+			           "face %d loses tetrahedron %d, and has none", face, index);
+			dissection->face_owners[face]--;
+			draw_face(dissection, face);
+		}
+	}
+}
+
+// ---- parting
+static void remove_hinges(cau_dissection *dissection, int32_t triangle)
+{
+	const int32_t *first = dissection->triangle_hinge_first;
+	for (int32_t k = first[triangle]; k < first[triangle + 1]; k++) {
+		int32_t hinge = dissection->triangle_hinge[k];
+		if (!dissection->alive.element[CAU_ELEMENT_HINGE][hinge])
+			continue;
+		dissection->alive.element[CAU_ELEMENT_HINGE][hinge] = 0;
+		CAU_ASSERT_INDEX(hinge, dissection->tissue->hinge_count);
+		dissection->removed[dissection->removed_count++] = (cau_removed){CAU_ELEMENT_HINGE, hinge};
+	}
+}
+
+void cau_dissection_remove(cau_dissection *dissection, int primitive, int32_t index)
+{
+	int kind = element_kind(primitive), count;
+	CAU_ASSERT(dissection->alive.element[kind][index], "element %d of kind %d is removed twice",
+	           index, kind);
+	CAU_ASSERT(dissection->removed_count < element_total(dissection->tissue),
+	           "%d elements removed of %d", dissection->removed_count,
+	           element_total(dissection->tissue));
+	dissection->alive.element[kind][index] = 0;
+	dissection->elements_removed++;
+	dissection->removed[dissection->removed_count++] = (cau_removed){kind, index};
+	const int32_t *vertex =
+		cau_dissection_vertices_of(dissection->tissue, primitive, index, &count);
+	for (int i = 0; i < count; i++) {
+		CAU_ASSERT(dissection->live_elements[vertex[i]] > 0,
+		           "vertex %d loses element %d of kind %d, and has none", vertex[i], index, kind);
+		dissection->live_elements[vertex[i]]--;
+	}
+	lose_faces(dissection, primitive, index);
+	if (primitive == CAU_PRIMITIVE_TRIANGLE)
+		remove_hinges(dissection, index);
+}
+
+void cau_dissection_lose_edge(cau_dissection *dissection, int32_t edge, uint16_t layers)
+{
+	const cau_edge_table *edges = &dissection->tissue->edges;
+	CAU_ASSERT_INDEX(edge, edges->edge_count);
+	CAU_ASSERT(!(dissection->parted[edge] & layers), "edge %d parts again", edge);
+	dissection->parted[edge] |= layers;
+	dissection->edges_parted++;
+	for (int p = 0; p < CAU_PRIMITIVE_KINDS; p++)
+		for (int32_t k = edges->first[p][edge]; k < edges->first[p][edge + 1]; k++) {
+			int32_t index = edges->sharer[p][k];
+			if (!(layers >> cau_dissection_layer_of(dissection->tissue, p, index) & 1))
+				continue;
+			CAU_ASSERT(dissection->share_count[p][index] > 0,
+			           "primitive %d of kind %d loses edge %d, and has none", index, p, edge);
+			dissection->share_count[p][index]--;
+			if (cau_dissection_lives(dissection, p, index))
+				cau_dissection_remove(dissection, p, index);
+		}
+}
+
+// ---- recount
+static bool has_parted_by_dose(const cau_dissection *dissection, int primitive, int32_t index)
+{
+	return dissection->doses.dose && primitive < CAU_PRIMITIVE_LINK &&
+	       dissection->doses.gone[cau_doses_place(dissection->tissue, primitive, index)];
+}
+
+static void recount_shares(cau_dissection *dissection)
+{
+	static const uint8_t edges_of[CAU_PRIMITIVE_KINDS] = {3, 6, 1};
+	const cau_edge_table *edges = &dissection->tissue->edges;
+	for (int p = 0; p < CAU_PRIMITIVE_KINDS; p++)
+		memset(dissection->share_count[p], edges_of[p],
+		       (size_t)cau_dissection_count_of(dissection->tissue, p));
+	for (int32_t e = 0; e < edges->edge_count; e++)
+		for (int p = 0; p < CAU_PRIMITIVE_KINDS && dissection->parted[e]; p++)
+			for (int32_t k = edges->first[p][e]; k < edges->first[p][e + 1]; k++) {
+				int32_t index = edges->sharer[p][k];
+				if (!(dissection->parted[e] >>
+				          cau_dissection_layer_of(dissection->tissue, p, index) &
+				      1))
+					continue;
+				CAU_ASSERT(dissection->share_count[p][index] > 0,
+				           "primitive %d of kind %d loses edge %d, and has none", index, p, e);
+				dissection->share_count[p][index]--;
+			}
+	for (int p = 0; p < CAU_PRIMITIVE_KINDS; p++)
+		for (int32_t i = 0; i < cau_dissection_count_of(dissection->tissue, p); i++)
+			dissection->alive.element[element_kind(p)][i] =
+				dissection->share_count[p][i] == edges_of[p] &&
+				!has_parted_by_dose(dissection, p, i);
+}
+
+static void recount_hinges(cau_dissection *dissection)
+{
+	const cau_tissue *tissue = dissection->tissue;
+	const uint8_t *triangle = dissection->alive.element[CAU_ELEMENT_TRIANGLE];
+	for (int32_t h = 0; h < tissue->hinge_count; h++)
+		dissection->alive.element[CAU_ELEMENT_HINGE][h] =
+			triangle[tissue->hinge_triangle[2 * h]] & triangle[tissue->hinge_triangle[2 * h + 1]];
+}
+
+static void recount_faces(cau_dissection *dissection)
+{
+	const cau_tissue *tissue = dissection->tissue;
+	const cau_face_table *faces = &tissue->faces;
+	memset(dissection->live_elements, 0, (size_t)tissue->vertex_count * sizeof(int32_t));
+	memset(dissection->face_owners, 0, (size_t)faces->face_count);
+	for (int p = 0; p < CAU_PRIMITIVE_KINDS; p++)
+		for (int32_t i = 0; i < cau_dissection_count_of(tissue, p); i++) {
+			if (!dissection->alive.element[element_kind(p)][i])
+				continue;
+			int count;
+			const int32_t *vertex = cau_dissection_vertices_of(tissue, p, i, &count);
+			for (int k = 0; k < count; k++)
+				dissection->live_elements[vertex[k]]++;
+			if (p == CAU_PRIMITIVE_TRIANGLE)
+				dissection->face_owners[i] = 1;
+			for (int k = 0; k < 4 && p == CAU_PRIMITIVE_TETRAHEDRON; k++)
+				dissection->face_owners[faces->tetrahedron_face[4 * (size_t)i + (size_t)k]]++;
+			CAU_ASSERT(dissection->live_elements[vertex[0]] > 0,
+			           "vertex %d of living tetrahedron %d has no element", vertex[0], i);
+		}
+	for (int32_t f = 0; f < faces->face_count; f++)
+		draw_face(dissection, f);
+}
+
+void cau_dissection_recount(cau_dissection *dissection)
+{
+	recount_shares(dissection);
+	recount_hinges(dissection);
+	recount_faces(dissection);
+}

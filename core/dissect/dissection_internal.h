@@ -1,0 +1,35 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// The rooms' walls: books (books.c) at the bottom, the two rules of parting on them, elements by
+// their doses (doses.c) and edges (dissection.c), which calls the others.
+#pragma once
+
+#include <stdbool.h>
+
+#include "dissect/dissection.h"
+
+// ---- books.c
+int32_t cau_dissection_count_of(const cau_tissue *tissue, int primitive);
+int32_t cau_dissection_layer_of(const cau_tissue *tissue, int primitive, int32_t index);
+const cau_heat_material *cau_dissection_heat_of(const cau_tissue *tissue, int primitive,
+                                                int32_t index);
+// Its vertices, *count of them.
+const int32_t *cau_dissection_vertices_of(const cau_tissue *tissue, int primitive, int32_t index,
+                                          int *count);
+bool cau_dissection_lives(const cau_dissection *dissection, int primitive, int32_t index);
+// Takes a living primitive out: appends it to `removed`, with the hinges of a triangle.
+void cau_dissection_remove(cau_dissection *dissection, int primitive, int32_t index);
+// Marks an edge as one of the present tick.
+void cau_dissection_touch(cau_dissection *dissection, int32_t edge);
+// Place of a triangle or a tetrahedron in the arrays of doses.
+int32_t cau_doses_place(const cau_tissue *tissue, int primitive, int32_t index);
+// Counts the edge as parted in these layers (bits), none of which it had parted in.
+void cau_dissection_lose_edge(cau_dissection *dissection, int32_t edge, uint16_t layers);
+
+// ---- doses.c
+cau_status cau_doses_create(cau_doses *doses, const cau_tissue *tissue, cau_arena *arena,
+                            cau_error *error);
+void cau_doses_begin(cau_doses *doses);
+void cau_doses_expose(cau_dissection *dissection, const cau_near *near, const double *position,
+                      const cau_heat_grid *grid, const cau_tool_def *tool, const cau_pose *pose,
+                      double jaw, double duration_s);
+void cau_doses_part(cau_dissection *dissection, uint32_t *layers);
