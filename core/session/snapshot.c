@@ -131,7 +131,7 @@ cau_status cau_session_snapshot(const cau_session *session, void *bytes, size_t 
 	header.payload_bytes = archive.at;
 	CAU_ASSERT(sizeof header + archive.at == needed, "%zu bytes written of %zu announced",
 	           sizeof header + archive.at, needed);
-	header.hash = cau_snapshot_hash(&header, archive.bytes, archive.at);
+	header.hash = cau_snapshot_hash(&header, sizeof header, archive.bytes, archive.at);
 	memcpy(bytes, &header, sizeof header);
 	*byte_count = sizeof header + archive.at;
 	return CAU_OK;
@@ -225,7 +225,7 @@ static cau_status restore_tools(cau_session *session, const snapshot_header *hea
 	return CAU_OK;
 }
 
-static void restore_counts(cau_session *session, const snapshot_header *header)
+static void restore_counts(cau_session *session, const snapshot_header *header, bool learned)
 {
 	CAU_ASSERT(!session->update.making, "counts are restored while a factor is made for tick %llu",
 	           (unsigned long long)session->update.swap_tick);
@@ -247,7 +247,7 @@ static void restore_counts(cau_session *session, const snapshot_header *header)
 	session->rest.resting = header->resting;
 	session->rest.quiet_ticks = header->quiet_ticks;
 	cau_accuracy_forget(&session->solver.accuracy);
-	if (header->version >= 4) {
+	if (learned) {
 		session->solver.accuracy.shallow_steps = header->shallow_steps;
 		memcpy(session->solver.accuracy.amplification, header->amplification,
 		       sizeof header->amplification);
@@ -322,17 +322,18 @@ cau_status cau_session_restore(cau_session *session, const void *bytes, size_t b
                                bool *exact, cau_error *error)
 {
 	snapshot_header header = {0};
-	size_t head = cau_snapshot_header_bytes(0); // what all versions have, the version among it
+	size_t head = cau_snapshot_common_bytes();
 	if (byte_count >= head) {
 		memcpy(&header, bytes, head);
-		head = cau_snapshot_header_bytes(header.version);
+		head = cau_snapshot_header_bytes(&header, byte_count);
 	}
 	if (byte_count < head)
 		return cau_snapshot_corrupt(error, "it is too short");
 	memcpy(&header, bytes, head);
 	unsigned char *payload = (unsigned char *)(uintptr_t)bytes + head;
 	size_t payload_bytes = byte_count - head;
-	cau_status status = cau_snapshot_check_header(session, &header, payload, payload_bytes, error);
+	cau_status status =
+		cau_snapshot_check_header(session, &header, head, payload, payload_bytes, error);
 	if (!status)
 		status = check_payload(session, &header, payload, payload_bytes, error);
 	if (status)
@@ -344,7 +345,7 @@ cau_status cau_session_restore(cau_session *session, const void *bytes, size_t b
 	if (!status)
 		status = restore_tools(session, &header, &archive, error);
 	if (!status) {
-		restore_counts(session, &header);
+		restore_counts(session, &header, cau_snapshot_has_learned(head));
 		status = pass_state(&archive, session, error);
 		cau_elements_set_laws(&session->solver.elements, &session->tissue);
 		cau_elements_mark_targets(&session->solver.elements, &session->solver.slots);

@@ -10,11 +10,26 @@
 
 static const char magic[8] = "CAUSNAP";
 
-size_t cau_snapshot_header_bytes(uint32_t version)
+size_t cau_snapshot_common_bytes(void)
 {
-	return version < 4   ? offsetof(snapshot_header, resting)
-	       : version < 5 ? offsetof(snapshot_header, memory_count)
-	                     : sizeof(snapshot_header);
+	return offsetof(snapshot_header, resting);
+}
+
+size_t cau_snapshot_header_bytes(const snapshot_header *common, size_t byte_count)
+{
+	const size_t unlearned = offsetof(snapshot_header, shallow_steps);
+	if (common->version < 4)
+		return cau_snapshot_common_bytes();
+	if (common->version > 4)
+		return sizeof(snapshot_header);
+	return byte_count - common->payload_bytes == unlearned
+	           ? unlearned
+	           : offsetof(snapshot_header, memory_count);
+}
+
+bool cau_snapshot_has_learned(size_t header_bytes)
+{
+	return header_bytes > offsetof(snapshot_header, shallow_steps);
 }
 
 int32_t cau_snapshot_kept_columns(const cau_session *session)
@@ -74,15 +89,14 @@ void cau_snapshot_fill_header(const cau_session *session, snapshot_header *heade
 	memcpy(header->gravity_m_s2, session->scene->gravity_m_s2, sizeof header->gravity_m_s2);
 }
 
-uint64_t cau_snapshot_hash(const snapshot_header *header, const unsigned char *payload,
-                           size_t bytes)
+uint64_t cau_snapshot_hash(const snapshot_header *header, size_t header_bytes,
+                           const unsigned char *payload, size_t bytes)
 {
 	snapshot_header unsigned_header;
 	memcpy(&unsigned_header, header, sizeof unsigned_header); // with its padding, which is zero
 	unsigned_header.hash = 0;
-	return cau_hash_bytes(cau_hash_bytes(CAU_HASH_START, &unsigned_header,
-	                                     cau_snapshot_header_bytes(header->version)),
-	                      payload, bytes);
+	return cau_hash_bytes(cau_hash_bytes(CAU_HASH_START, &unsigned_header, header_bytes), payload,
+	                      bytes);
 }
 
 cau_status cau_snapshot_corrupt(cau_error *error, const char *why)
@@ -100,8 +114,8 @@ static bool is_taught(const snapshot_header *header)
 }
 
 cau_status cau_snapshot_check_header(const cau_session *session, const snapshot_header *header,
-                                     const unsigned char *payload, size_t payload_bytes,
-                                     cau_error *error)
+                                     size_t header_bytes, const unsigned char *payload,
+                                     size_t payload_bytes, cau_error *error)
 {
 	const cau_matrix_update *update = &session->update;
 	if (memcmp(header->magic, magic, sizeof magic) != 0)
@@ -127,11 +141,11 @@ cau_status cau_snapshot_check_header(const cau_session *session, const snapshot_
 	    header->memory_count < 0 || header->memory_count > CAU_MAX_MEMORY ||
 	    header->row_count < 0 || header->row_count > header->vertex_count ||
 	    header->quiet_ticks < 0 || (header->resting && !header->quiet_ticks) ||
-	    (header->version >= 4 && !is_taught(header)))
+	    (cau_snapshot_has_learned(header_bytes) && !is_taught(header)))
 		return cau_snapshot_corrupt(error, "a count is out of its range");
 	if (header->payload_bytes != payload_bytes)
 		return cau_snapshot_corrupt(error, "bytes are missing");
-	if (header->hash != cau_snapshot_hash(header, payload, payload_bytes))
+	if (header->hash != cau_snapshot_hash(header, header_bytes, payload, payload_bytes))
 		return cau_snapshot_corrupt(error, "its bytes have changed");
 	return CAU_OK;
 }

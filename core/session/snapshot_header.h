@@ -37,18 +37,25 @@ typedef struct snapshot_header {
 	int32_t memory_count, unused_since_5;
 } snapshot_header;
 
-// How long the header of a version is; that of version 0 is what all have, the version among it.
-size_t cau_snapshot_header_bytes(uint32_t version);
+// What all versions' headers have, the version and payload_bytes among it.
+size_t cau_snapshot_common_bytes(void);
+
+// How long the header of a snapshot of byte_count bytes is, by its version. The first builds of
+// version 4 wrote none of what steps have taught: theirs is known by its length.
+size_t cau_snapshot_header_bytes(const snapshot_header *common, size_t byte_count);
+
+// Whether it holds what steps have taught.
+bool cau_snapshot_has_learned(size_t header_bytes);
 
 // Of the session as it is; hash and payload_bytes are left 0.
 void cau_snapshot_fill_header(const cau_session *session, snapshot_header *header);
-uint64_t cau_snapshot_hash(const snapshot_header *header, const unsigned char *payload,
-                           size_t bytes);
+uint64_t cau_snapshot_hash(const snapshot_header *header, size_t header_bytes,
+                           const unsigned char *payload, size_t bytes);
 
 // Whether it is whole and of this tissue, with counts that there is room for. CAU_CORRUPT.
 cau_status cau_snapshot_check_header(const cau_session *session, const snapshot_header *header,
-                                     const unsigned char *payload, size_t payload_bytes,
-                                     cau_error *error);
+                                     size_t header_bytes, const unsigned char *payload,
+                                     size_t payload_bytes, cau_error *error);
 cau_status cau_snapshot_corrupt(cau_error *error, const char *why);
 
 // Whether a session restored from it goes on with the bits of the one that wrote it.

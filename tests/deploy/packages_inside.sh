@@ -1,6 +1,7 @@
 #!/usr/bin/env bash
 # SPDX-License-Identifier: GPL-3.0-or-later
-# What packages.sh does inside its bare Debian 12; /packages has the packages in two revisions.
+# What packages.sh does inside its bare Debian 12; /packages has the packages in two revisions, the
+# first of an earlier commit.
 set -euo pipefail
 
 step() {
@@ -13,14 +14,14 @@ fail() {
 	exit 1
 }
 
-# run_daemon: as the unit says, by its user, in its state folder; sets $daemon and $CAUTERYD_URL.
+# run_daemon OPTION...: as the unit says, by its user, in its state folder; sets $daemon, $CAUTERYD_URL.
 run_daemon() {
 	local command address
 	command=$(sed -n 's/^ExecStart=//p' /usr/lib/systemd/system/cauteryd.service)
 	install -d -o cautery -g cautery -m 700 /var/lib/cautery # systemd's StateDirectory
 	rm -f /tmp/address
 	(cd /var/lib/cautery && exec setpriv --reuid=cautery --regid=cautery --clear-groups --bounding-set=-all \
-		--inh-caps=-all --no-new-privs $command --port 0 --json) >/tmp/address 2>/tmp/daemon.log &
+		--inh-caps=-all --no-new-privs $command --port 0 --json "$@") >/tmp/address 2>/tmp/daemon.log &
 	daemon=$!
 	for ((i = 0; i < 300; i++)); do
 		[ ! -s /tmp/address ] || break
@@ -47,21 +48,57 @@ getent passwd cautery || fail "no user cautery"
 cauteryd --version
 
 
-step "run as its user"
+# vertices: those of the session as it is, exported.
+vertices() {
+	cautery export "$session" /tmp/tissue.obj >/dev/null
+	grep '^v ' /tmp/tissue.obj
+}
+
+tick() {
+	cautery info "$session" | sed -n 's/^ *tick \([0-9]*\),.*/\1/p'
+}
+
+step "run as its user, and cut"
 run_daemon
 session=$(cautery create fascia)
 cautery ls | grep -q "$session" || fail "the session is not listed"
+cautery speed "$session" 10 >/dev/null
+cautery run "$session" /usr/share/cautery/scenes/scripts/fascia-cut.jsonl 2>/dev/null | tee /tmp/run
+grep -q ' [1-9][0-9]* faces gone' /tmp/run || fail "nothing was cut"
 cautery pause "$session"
+vertices >/tmp/before
+before=$(tick)
 [ "$(stat -c %U /var/lib/cautery/cautery.db)" = cautery ] || fail "the store is not its user's"
 end_daemon
 
-step "upgrade, with sessions in the store and settings of the administrator's"
+step "upgrade, with a session in the store and settings of the administrator's"
 echo '{"max_sessions": 7}' >/etc/cautery/cauteryd.json
 dpkg -i /packages/*-2_amd64.deb >/tmp/dpkg.log 2>&1 || fail "the upgrade: $(tail -n 3 /tmp/dpkg.log)"
 dpkg-query -W -f '${Package} ${Version}\n' cauteryd | grep -q -- '-2$' || fail "not upgraded"
 grep -q max_sessions /etc/cautery/cauteryd.json || fail "the administrator's settings are lost"
+cauteryd --version
 run_daemon
 cautery info "$session" >/tmp/info || fail "the session did not outlive the upgrade"
+[ "$(tick)" = "$before" ] || fail "it is at tick $(tick), and was at $before"
+vertices | cmp - /tmp/before || fail "its tissue is not where it was"
+cautery resume "$session"
+cautery speed "$session" 1
+sleep 2
+[ "$(tick)" -gt "$before" ] || fail "it does not go on"
+cautery rewind "$session" 60
+[ "$(tick)" -lt "$before" ] || fail "it did not go back"
+cautery reset "$session"
+end_daemon
+
+step "TLS"
+apt-get install -q -y --no-install-recommends openssl curl >/dev/null 2>&1
+install -d -o cautery -g cautery -m 700 /tmp/tls
+openssl req -x509 -newkey rsa:2048 -nodes -days 2 -subj /CN=localhost -addext subjectAltName=DNS:localhost \
+	-keyout /tmp/tls/key.pem -out /tmp/tls/certificate.pem 2>/dev/null
+chown cautery: /tmp/tls/*
+run_daemon --tls-certificate /tmp/tls/certificate.pem --tls-key /tmp/tls/key.pem
+port=$(sed -n 's/.*"port": \([0-9]*\).*/\1/p' /tmp/address)
+curl -sS --cacert /tmp/tls/certificate.pem "https://localhost:$port/api/sessions" | grep -q "$session" || fail "no sessions over TLS"
 end_daemon
 
 step "a client is built against libcautery-dev"

@@ -3,7 +3,8 @@
 
 Usage: readme_commands_test.py SOURCES PROGRAMS      (PROGRAMS: the folder of the built programs)
 
-A command is a line of a block of shell that begins with a program's name. One that neither this file nor
+A command is a line of a block that says it is shell, or a line of another block that begins with the name of a
+program of ours, of a shell's own or of Debian's common ones (`FIRST`). One that neither this file nor
 `ELSEWHERE` knows fails the test, and so does an entry that no README shows any more. Of a place elsewhere the
 file must hold the words that run it. What no test runs is listed with its reason, and printed. Steps (`tests/steps`) are run to the letter, whole sections of a page.
 """
@@ -24,12 +25,16 @@ SOURCES, PROGRAMS = sys.argv[1:3]
 PATIENCE_S = 120
 FIRST = re.compile(
     r"\(?(cmake|ctest|npm|cd|curl|cautery(-robot|-load|-sim|-bench)?|cauteryd(?! is )|apt-get|install|systemctl|promtool|haproxy|export|node|python3"
-    r"|docker|git|openssl|[A-Z_]+=\S+|(deploy|tests|build|/usr)/\S+)( |$)")
+    r"|docker|git|openssl|[A-Z_]+=\S+|(\./|deploy/|tests/|build/|clients/|/usr/|/etc/|/opt/)\S+"
+    r"|alias|bash|cat|ch(grp|mod|own)|cmp|cp|crontab|dd|debootstrap|diff|dpkg|echo|env|etcd(ctl)?|eval|ffmpeg|find|gcc|groupadd"
+    r"|grep|gzip|head|ip|journalctl|jq|kill(all)?|kubectl|ln|logger|ls|make|mkdir|mount|mv|nano|nc|nft|ninja|nohup|pip3?|pkill|printf"
+    r"|ps|python|rm|rsync|scp|sed|set|setcap|sh|sleep|socat|source|sqlite3|ss|ssh|sudo|sysctl|systemd-\S+|tail|tar|tee|time(out)?"
+    r"|touch|ufw|umount|unset|unshare|user(add|mod)|vi|wait|wget|which|xargs|zsh|\[)( |$)")
 DDS_DOMAINS, DDS_PORT = range(201, 231), 21000  # beyond those that tests/dds takes, and taken as it does
 LABEL = re.compile(r"^(look|next|stop) +")  # of what run.sh prints
 ESCAPES = re.compile(r"\x1b\[[0-9;]*m")  # colours, which some programs write where CI is set
 COMMENT = re.compile(r" +# .*| {2,}\S.*")
-SHELLS = {"", "sh", "bash", "shell", "console"}
+SHELLS = {"sh", "bash", "shell", "console"}  # of a block's fence: every line is a command
 NOT_RUN = {  # command: why
     "systemctl reload haproxy": "a container has no service manager",
     "systemctl restart prometheus": "a container has no service manager",
@@ -45,6 +50,7 @@ ELSEWHERE = {  # command: (file, words in it...)
     "cmake -S . -B build -DCMAKE_BUILD_TYPE=Release && cmake --build build":
         ("deploy/package.sh", 'cmake -S "$source_folder" -B "$tree" -DCMAKE_BUILD_TYPE=Release'),  # deploy_packages
     "ctest --test-dir build": (FIRST_HOUR, '"ctest", "--test-dir", "build"'),
+    "kill 15703": (FIRST_HOUR, "os.kill(self.process, 15)"),  # the process that run.sh named
     "cmake --install build --prefix /usr/local": (INSTALL, 'CMAKE, "--install", TREE, "--prefix", "/usr"'),
     "npm run types && npm run lint && npm run unit": (VIEWER, "npm run --silent types", "npm run --silent lint", "npm run --silent unit"),
     "npm run browser": (VIEWER, "npm run --silent browser"),
@@ -59,13 +65,14 @@ ELSEWHERE = {  # command: (file, words in it...)
 
 def commands_of(page):
     """[command] of a page's blocks of shell: continued lines joined, comments left out."""
-    found, shell, fenced, before = [], False, False, ""
+    found, shell, fenced, before = [], None, False, ""  # shell: whether a fenced block says it is; None: it says nothing
     for line in page.splitlines():
         if line.lstrip().startswith("```"):
             fenced = not fenced
-            shell = fenced and line.strip()[3:] in SHELLS
+            kind = line.strip()[3:]
+            shell = None if not kind else kind in SHELLS
             continue
-        if not (shell if fenced else line.startswith("    ")):
+        if not (shell is not False if fenced else line.startswith("    ")):
             before = ""
             continue
         line = before + LABEL.sub("", line.strip())
@@ -73,7 +80,7 @@ def commands_of(page):
             before = line[:-1].rstrip() + " "
             continue
         before = ""
-        if FIRST.match(line):
+        if line and (fenced and shell or FIRST.match(line)) and not line.startswith("#"):
             found.append(COMMENT.sub("", line).rstrip())
     return found
 
