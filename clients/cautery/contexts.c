@@ -14,11 +14,18 @@
 enum { FILE_BYTES_MAX = 1 << 20 };
 
 // ---- the file -----------------------------------------------------------------------------------
+// A service or a job of cron may have no home, and so no contexts.
+static bool has_folder(void)
+{
+	const char *config = getenv("XDG_CONFIG_HOME"), *home = getenv("HOME");
+	return (config && config[0] == '/') || (home && *home);
+}
+
 static cau_status find_folder(char *folder, size_t bytes, cau_error *error)
 {
 	const char *config = getenv("XDG_CONFIG_HOME"), *home = getenv("HOME");
 	bool set = config && config[0] == '/'; // a relative one is to be ignored (XDG)
-	if (!set && !(home && *home))
+	if (!has_folder())
 		return cau_fail(error, CAU_IO, NULL, "neither XDG_CONFIG_HOME nor HOME says where it is");
 	int length =
 		snprintf(folder, bytes, "%s%s/cautery", set ? config : home, set ? "" : "/.config");
@@ -51,10 +58,10 @@ cau_status cli_contexts_read(cJSON **all, cau_error *error)
 	char file[CLI_CONTEXT_TEXT_BYTES + 32], *text = NULL;
 	size_t bytes;
 	*all = NULL;
-	cau_status status = find_file(file, sizeof file, error);
+	cau_status status = has_folder() ? find_file(file, sizeof file, error) : CAU_OK;
 	if (status)
 		return status;
-	if (access(file, F_OK) != 0 && errno == ENOENT)
+	if (!has_folder() || (access(file, F_OK) != 0 && errno == ENOENT))
 		*all = no_contexts();
 	else if ((status = cli_read_file(file, FILE_BYTES_MAX, &text, &bytes, error)))
 		return status;

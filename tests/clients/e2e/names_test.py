@@ -40,6 +40,13 @@ class Contexts(programs.Case):
         told = json.loads(self.context("ls", "--json")[0])
         self.assertEqual(told, {"contexts": {"here": {"url": self.daemon.url}}})
 
+    def test_without_a_home_there_are_no_contexts(self):
+        nowhere = {"XDG_CONFIG_HOME": "", "HOME": ""}
+        self.assertEqual(self.cautery("context", "ls", environment=nowhere)[0], "")
+        self.cautery("ls", "--context", "here", environment=nowhere, code=4)
+        said = self.cautery("context", "set", "here", "--url", self.daemon.url, environment=nowhere, code=4)[1]
+        self.assertIn("HOME", said)
+
     def test_a_context_brings_its_token(self):
         tokens = self.path("tokens", "admin master-token-0123456789\n")
         os.chmod(tokens, 0o600)
