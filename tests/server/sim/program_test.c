@@ -1,27 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The program as its users have it, on the real core: exit codes, output, and one hash however it
-// is run. The first argument is the program.
-#include "sim_fixture.h"
-
-#include <sys/wait.h>
-
-static const char *program;
-
-// Runs the program with these arguments; its standard output goes to `output`. Returns its exit
-// code.
-static int run_program(const char *arguments, char *output, size_t bytes)
-{
-	char command[1024];
-	snprintf(command, sizeof command, "%s --scenes %s %s 2>%s", program, CAU_TEST_LIGHT_SCENES,
-	         arguments, fixture_path("complaints"));
-	FILE *pipe = popen(command, "r");
-	assert_non_null(pipe);
-	size_t used = fread(output, 1, bytes - 1, pipe);
-	output[used] = 0;
-	int status = pclose(pipe);
-	assert_true(WIFEXITED(status));
-	return WEXITSTATUS(status);
-}
+// The program as its users have it, on the real core: exit codes and output. The first argument is
+// the program.
+#include "program_run.h"
 
 static void exit_codes_are_as_documented(void **state)
 {
@@ -54,42 +34,6 @@ static void exit_codes_are_as_documented(void **state)
 		int code = run_program(cases[i].arguments, output, sizeof output);
 		if (code != cases[i].code)
 			fail_msg("%s: exit code %d, not %d", cases[i].arguments, code, cases[i].code);
-	}
-}
-
-// The hash in the JSON object that is the last line of output.
-static void read_hash(const char *arguments, char hash[17])
-{
-	char output[8192];
-	assert_int_equal(run_program(arguments, output, sizeof output), 0);
-	const char *line = strrchr(output, '{');
-	assert_non_null(line);
-	const char *place = strstr(line, "\"hash\":\"");
-	assert_non_null(place);
-	snprintf(hash, 17, "%s", place + strlen("\"hash\":\""));
-	assert_int_equal(strlen(hash), 16);
-	assert_int_equal(strspn(hash, "0123456789abcdef"), 16);
-}
-
-// Under sanitizers, where this takes minutes, one other run: two threads and a snapshot while edges
-// part. Alike hashes are the other builds' business, and a race would show in this run.
-static void expect_one_hash(const char *scene, const char *seconds, const char *snapshots[3])
-{
-	char arguments[256], first[17], other[17];
-	snprintf(arguments, sizeof arguments, "--scene %s --cut --seconds %s --json", scene, seconds);
-	read_hash(arguments, first);
-	int from = CAU_TEST_SANITIZED ? 1 : 0, to = CAU_TEST_SANITIZED ? 2 : 4;
-	for (int i = from; i < to; i++) {
-		if (i < 3)
-			snprintf(arguments, sizeof arguments,
-			         "--scene %s --cut --seconds %s --json --threads %d --snapshot-at %s", scene,
-			         seconds, 1 + i % 2, snapshots[i]);
-		else
-			snprintf(arguments, sizeof arguments,
-			         "--scene %s --cut --seconds %s --json --threads 2", scene, seconds);
-		read_hash(arguments, other);
-		if (strcmp(first, other) != 0)
-			fail_msg("%s: %s, not %s", arguments, other, first);
 	}
 }
 
@@ -151,15 +95,6 @@ static void ticks_tell_energies_and_forces(void **state)
 	free(text);
 }
 
-// Before, while and after edges part (the needle is hot from 1.0 s and at the tissue from 1.5 s
-// on).
-static void one_hash_over_threads_and_snapshots(void **state)
-{
-	(void)state;
-	expect_one_hash("patterns", "12", (const char *[]){"0", "400", "650"});
-	expect_one_hash("fascia", "5", (const char *[]){"30", "240", "270"});
-}
-
 static void the_cut_parts_tissue(void **state)
 {
 	(void)state;
@@ -190,7 +125,6 @@ int main(int argument_count, char **arguments)
 		cmocka_unit_test(files_change_nothing),
 		cmocka_unit_test(ticks_tell_energies_and_forces),
 		cmocka_unit_test(the_cut_parts_tissue),
-		cmocka_unit_test(one_hash_over_threads_and_snapshots),
 	};
 	if (argument_count < 2) {
 		fputs("the program to test is the first argument\n", stderr);
