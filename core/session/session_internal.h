@@ -142,6 +142,18 @@ bool cau_session_find_missed(cau_session *session);
 // tools pass where tissue would not be held.
 void cau_session_let_through(cau_session *session);
 
+// touch.c, thin.c: a vertex at a tool, with its signed distance, m; of many the deepest are listed.
+enum { CAU_MAX_TOUCHING = 2048 };
+typedef struct cau_touching {
+	int32_t vertex, place; // place: along the broad phase's curve
+	double gap;
+} cau_touching;
+int cau_session_compare_touching(const void *a, const void *b); // for qsort: the deepest first
+// Leaves at most `room` (up to CAU_MAX_VERTEX_ROWS) of the listed in front of the list, and returns
+// how many.
+int32_t cau_session_thin(const cau_session *session, cau_touching *list, int32_t count,
+                         int32_t room);
+
 // reach.c: whether a tool's contact is with faces as well as with vertices (not if it has jaws,
 // which tissue lies between and inside); the scratch that it needs; rows for the faces that the
 // part of a tool pushed in the last step; and, after the solve, rows for those that it has passed,

@@ -7,8 +7,7 @@
 #include "cautery/assert.h"
 #include "session/session_internal.h"
 
-enum { CANDIDATES = 4 * CAU_MAX_VERTEX_ROWS };
-static const double least_margin_m = 5e-4;
+static const double least_margin_m = 5e-4, most_margin_m = 2e-3;
 static const double filter_s = 0.02;   // time constant of the reported force
 static const double drag_share = 0.25; // of a vertex's diagonal in A that drag may add
 
@@ -36,12 +35,12 @@ static cau_contact_row contact_row(const cau_session *session, const cau_tool *t
 	return row;
 }
 
-static int compare_rows(const void *a, const void *b)
+int cau_session_compare_touching(const void *a, const void *b)
 {
-	const cau_contact_row *x = a, *y = b;
+	const cau_touching *x = a, *y = b;
 	if (x->gap != y->gap)
 		return x->gap < y->gap ? -1 : 1;
-	return (x->vertex[0] > y->vertex[0]) - (x->vertex[0] < y->vertex[0]);
+	return (x->vertex > y->vertex) - (x->vertex < y->vertex);
 }
 
 static bool is_grasped(const cau_tool *tool, int32_t vertex)
@@ -70,13 +69,30 @@ static double least_gap(const cau_session *session, const cau_tool *tool, int32_
 	return was < least ? was : least;
 }
 
-// Collects the free vertices within the margin of the pushing part, the deepest first; counts those
-// that found no place.
-static int32_t collect(cau_session *session, int32_t index, cau_contact_row *rows)
+// Puts it behind the others or, where there is no room, in the place of the one that is least deep,
+// unless that is itself.
+static void list_touching(cau_session *session, cau_touching *list, int32_t *count,
+                          cau_touching touching)
+{
+	int32_t least = 0;
+	if (*count < CAU_MAX_TOUCHING) {
+		list[(*count)++] = touching;
+		return;
+	}
+	for (int32_t k = 1; k < CAU_MAX_TOUCHING; k++)
+		if (list[k].gap > list[least].gap)
+			least = k;
+	session->contact.left_out_count++;
+	if (touching.gap < list[least].gap)
+		list[least] = touching;
+}
+
+// Collects the free vertices within the margin of the pushing part, the deepest first.
+static int32_t collect(cau_session *session, int32_t index, cau_touching *list)
 {
 	const cau_tool *tool = &session->tool[index];
 	const cau_tool_def *def = &tool->state.definition;
-	double margin = fmax(least_margin_m, 0.25 * def->hot_radius_m), radius;
+	double margin = fmin(fmax(least_margin_m, 0.25 * def->hot_radius_m), most_margin_m), radius;
 	int32_t count = 0;
 	cau_vec3 center;
 	cau_tool_bound(def, pushing_part(tool), &center, &radius);
@@ -92,15 +108,10 @@ static int32_t collect(cau_session *session, int32_t index, cau_contact_row *row
 			double gap = least_gap(session, tool, v);
 			if (!(gap <= margin)) // nor is a vertex near that is nowhere
 				continue;
-			if (count == CANDIDATES) {
-				session->contact.left_out_count++;
-				continue;
-			}
-			rows[count] = contact_row(session, tool, index, v);
-			rows[count++].gap = gap;
+			list_touching(session, list, &count, (cau_touching){v, i, gap});
 		}
 	}
-	qsort(rows, (size_t)count, sizeof *rows, compare_rows);
+	qsort(list, (size_t)count, sizeof *list, cau_session_compare_touching);
 	return count;
 }
 
@@ -166,18 +177,23 @@ static void describe_tools(cau_session *session)
 	}
 }
 
-// Vertices leave room for faces, which are what a tool would pass.
-static void add_vertex(cau_contact_set *set, const cau_contact_row *row)
+// Rows of the vertices at a tool. They leave room for faces, which are what a tool would pass.
+static void add_vertices(cau_session *session, int32_t index)
 {
-	if (set->row_count < CAU_MAX_VERTEX_ROWS)
-		cau_contact_add(set, row);
-	else
-		set->left_out_count++;
+	cau_touching list[CAU_MAX_TOUCHING];
+	cau_contact_set *set = &session->contact;
+	int32_t count = collect(session, index, list);
+	int32_t room = set->row_count < CAU_MAX_VERTEX_ROWS ? CAU_MAX_VERTEX_ROWS - set->row_count : 0;
+	int32_t rows = cau_session_thin(session, list, count, room); // thin.c
+	set->left_out_count += count - rows;
+	for (int32_t k = 0; k < rows; k++) {
+		cau_contact_row row = contact_row(session, &session->tool[index], index, list[k].vertex);
+		cau_contact_add(set, &row);
+	}
 }
 
 void cau_session_find_contacts(cau_session *session)
 {
-	cau_contact_row rows[CANDIDATES];
 	cau_contact_clear(&session->contact);
 	session->contact.left_out_count = 0;
 	session->contact.begun_count = -1;
@@ -191,9 +207,7 @@ void cau_session_find_contacts(cau_session *session)
 	for (int32_t i = 0; i < session->tool_count; i++)
 		add_attachments(session, i);
 	for (int32_t i = 0; i < session->tool_count; i++) {
-		int32_t count = collect(session, i, rows);
-		for (int32_t k = 0; k < count; k++)
-			add_vertex(&session->contact, &rows[k]);
+		add_vertices(session, i);
 		if (cau_session_feels_faces(&session->tool[i]))
 			cau_session_reach_again(session, i, pushing_part(&session->tool[i]));
 		add_drag(session, i);

@@ -1,0 +1,62 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Which of too many vertices at a tool become rows, where there is room for a part of them only.
+//
+// The deepest alone would be a heap in the middle: what lies round it would sink in unheld, and the
+// tool with it. So rows are spread over all that touches: the first in van der Corput's order (the
+// places along the Morton curve with their bits reversed), of which any beginning is spread evenly,
+// and most of which stay as others come and go. Between them tissue holds itself up.
+#include <stdlib.h>
+
+#include "cautery/assert.h"
+#include "session/session_internal.h"
+
+static const double touching_m = 2e-4; // nearer is touching; others are only near
+// Touching vertices for each row, up to which it is better to leave the least deep out, round the
+// rim, than to leave holes between rows.
+static const int32_t most_crowded = 2;
+
+static uint32_t reversed(uint32_t x)
+{
+	x = (x & 0x55555555u) << 1 | (x >> 1 & 0x55555555u);
+	x = (x & 0x33333333u) << 2 | (x >> 2 & 0x33333333u);
+	x = (x & 0x0F0F0F0Fu) << 4 | (x >> 4 & 0x0F0F0F0Fu);
+	x = (x & 0x00FF00FFu) << 8 | (x >> 8 & 0x00FF00FFu);
+	return x << 16 | x >> 16;
+}
+
+static int compare_spread(const void *a, const void *b)
+{
+	const cau_touching *x = a, *y = b;
+	uint32_t first = reversed((uint32_t)x->place), second = reversed((uint32_t)y->place);
+	return (first > second) - (first < second);
+}
+
+// Brings those that are drawn and touch to the front; returns how many they are.
+static int32_t part_touching(const cau_session *session, cau_touching *list, int32_t count)
+{
+	int32_t touching = 0;
+	for (int32_t i = 0; i < count; i++) {
+		cau_touching each = list[i];
+		CAU_ASSERT_INDEX(each.vertex, session->tissue.vertex_count);
+		if (each.gap > touching_m || !session->frame.vertex_visible[each.vertex])
+			continue;
+		list[i] = list[touching];
+		list[touching++] = each;
+	}
+	return touching;
+}
+
+int32_t cau_session_thin(const cau_session *session, cau_touching *list, int32_t count,
+                         int32_t room)
+{
+	CAU_ASSERT(count >= 0 && count <= CAU_MAX_TOUCHING, "%d vertices touch", count);
+	CAU_ASSERT(room >= 0 && room <= CAU_MAX_VERTEX_ROWS, "room for %d", room);
+	if (count > room) {
+		int32_t touching = part_touching(session, list, count);
+		if (touching > most_crowded * room)
+			qsort(list, (size_t)touching, sizeof *list, compare_spread);
+		else
+			qsort(list, (size_t)count, sizeof *list, cau_session_compare_touching);
+	}
+	return count < room ? count : room;
+}
