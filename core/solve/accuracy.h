@@ -40,6 +40,7 @@ typedef struct cau_accuracy {
 	double amplification[CAU_ACCURACY_DEPTHS]; // c_j
 	int32_t shallow_steps;                     // since one that went deep
 	// Of this step; lengths and estimates relative to what is wanted.
+	bool newton;                         // increments are Newton's (newton.h)
 	int32_t count;                       // increments
 	double length[CAU_ACCURACY_STEPS];   // s_j, and |d| where that is more
 	double norm[CAU_ACCURACY_STEPS];     // |d| in the norm of A, J^(1/2)

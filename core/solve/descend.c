@@ -89,12 +89,17 @@ static void use_plain_step(cau_step_solver *solver)
 // stiffer than A, and halving alone would not come down to it in the few tries there are. But a
 // parabola says little of such a law either: one answer may take off half of the part at least, so
 // that the tries lead somewhere, and leaves a hundredth of it, so that none gives the step up.
-static double shorter(double scale, double before, double after, double slope)
+//
+// Newton's step rises otherwise: it is straight, and a sheet that turns along it is stretched by
+// the square of its part, which makes E rise by the fourth power.
+static double shorter(double scale, double before, double after, double slope, bool newton)
 {
 	CAU_ASSERT(scale > 0 && scale <= 1, "a part of %g of the step", scale);
 	CAU_ASSERT(!(slope > 0), "a slope of %g J", slope);
 	double rise = after - before - slope * scale;
 	double bottom = isfinite(after) && rise > 0 ? -slope * scale / (2 * rise) : 0;
+	if (newton) // of E + slope t + c t^4 instead of E + slope t + c t^2
+		bottom = cbrt(bottom / 2);
 	return scale * fmin(fmax(bottom, 0.01), 0.5);
 }
 
@@ -138,7 +143,7 @@ static bool take_step(cau_step_solver *solver, bool accelerated, double slope, d
 			use_plain_step(solver);
 			accelerated = false;
 		} else {
-			scale = shorter(scale, *objective, value, slope);
+			scale = shorter(scale, *objective, value, slope, solver->accuracy.newton);
 		}
 		move_to(solver, tries < CAU_MAX_BACKTRACKS ? scale : 0);
 	}
@@ -206,6 +211,17 @@ cau_status cau_solver_run(cau_step_solver *solver, cau_error *error)
 	return cau_solver_descend(solver, error);
 }
 
+// By A, or by Newton's method, whose steps need no mixing: then the history is forgotten.
+static cau_status find_increment(cau_step_solver *solver, cau_error *error)
+{
+	if (!solver->accuracy.newton) {
+		cau_solver_global(solver);
+		return CAU_OK;
+	}
+	cau_anderson_start(solver);
+	return cau_newton_increment(solver, error);
+}
+
 cau_status cau_solver_descend(cau_step_solver *solver, cau_error *error)
 {
 	CAU_ASSERT(solver->iterations > 0, "%d iterations", solver->iterations);
@@ -214,8 +230,11 @@ cau_status cau_solver_descend(cau_step_solver *solver, cau_error *error)
 	int32_t backtracks_before = solver->backtracks; // of the tick's earlier rounds
 	cau_anderson_start(solver);
 	cau_accuracy_begin(&solver->accuracy);
+	solver->accuracy.newton = cau_newton_is_called_for(solver);
 	for (int32_t k = 0; k < solver->iterations; k++) {
-		cau_solver_global(solver);
+		cau_status status = find_increment(solver, error);
+		if (status)
+			return status;
 		double norm = step_norm(solver);
 		if (!isfinite(norm) || !isfinite(objective))
 			return cau_fail(error, CAU_NUMERICAL, NULL,
@@ -231,7 +250,7 @@ cau_status cau_solver_descend(cau_step_solver *solver, cau_error *error)
 		if (!solver->conservative && k && norm > 2 * last)
 			cau_anderson_start(solver);
 		last = norm;
-		bool accelerated = cau_anderson_mix(solver, steps++);
+		bool accelerated = cau_anderson_mix(solver, solver->accuracy.newton ? 0 : steps++);
 		int32_t backtracks = solver->backtracks;
 		bool enough = cau_accuracy_is_reached(solver, norm);
 		if ((enough || k + 1 == solver->iterations) && is_harmless(solver, norm, objective)) {

@@ -10,6 +10,7 @@
 #include "constraint/link_kernel.h"
 #include "constraint/plasticity_kernel.h"
 #include "constraint/sheet_kernel.h"
+#include "solve/newton_kernel.h"
 #include "solve/pack_kernel.h"
 #include "solve/sweep_kernel.h"
 
@@ -227,6 +228,8 @@ const cau_kernels CAU_TABLE = {
 	.forward = forward,
 	.backward = backward,
 	.pack = pack,
+	.newton_factor = newton_factor,
+	.newton_solve = newton_solve,
 	.dot = dot,
 	.spread = spread,
 	.add_scaled = add_scaled,

@@ -3,6 +3,7 @@
 #pragma once
 
 #include "constraint/elements.h"
+#include "solve/newton.h"
 #include "solve/sweep.h"
 #include "solve/vectors.h"
 #include "tissue/tissue.h"
@@ -53,6 +54,9 @@ typedef struct cau_kernels {
 	// CAU_PACK_PARTS) says which scratch is used: one thread at a time for each.
 	double (*pack)(const cau_sweep *sweep, int32_t supernode, const cau_factor *factor,
 	               const cau_sweep_panels *panels, int32_t part);
+	// Newton's H = L D L^T in place; false: not positive definite. And field = H^-1 field.
+	bool (*newton_factor)(const cau_newton *newton);
+	void (*newton_solve)(const cau_newton *newton);
 	// Dot product in double of n reals from `first` on, in a fixed order.
 	double (*dot)(const cau_reals *a, const cau_reals *b, int64_t first, int64_t n);
 	// increment[v] += column[v] * force for v in [first, last); the column has one real a vertex.

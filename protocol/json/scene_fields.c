@@ -24,7 +24,7 @@ static const cau_field scene_fields[] = {
 	{OTHER(description, TEXT, "a sentence for people")},
 	CAU_TIME_TABLE(SCALAR){
 		INTEGER(iterations, 1, 1000, "iterations of a step at most; with `accuracy` 0, of each")},
-	{CHOICE(solver, solver_choices, "global system")},
+	{CHOICE(solver, solver_choices, "global system; `newton`: of free sheets, each step's own")},
 	{CHOICE(precision, precision_choices, "of the local and global steps")},
 	{CHOICE(parting, parting_choices,
             "what heat parts: edges with all that share them, as in the paper, or "

@@ -6,7 +6,7 @@
 
 #define AT(member) offsetof(bench_options, member)
 
-static const char *const solvers[] = {"cholesky", "diagonal", NULL};
+static const char *const solvers[] = {"cholesky", "diagonal", "newton", NULL};
 static const char *const precisions[] = {"single", "double", NULL};
 
 static const cau_option rows[] = {
@@ -20,7 +20,7 @@ static const cau_option rows[] = {
 	{"steps", "N", CAU_OPTION_WHOLE, AT(steps), 1, 100000,
      .meaning = "measured steps after the warm-up (default 300)"},
 	{"solver", "S", CAU_OPTION_CHOICE, AT(solver), .choices = solvers,
-     .meaning = "cholesky or diagonal (default: the scene's)"},
+     .meaning = "cholesky, diagonal or newton (default: the scene's)"},
 	{"precision", "P", CAU_OPTION_CHOICE, AT(precision), .choices = precisions,
      .meaning = "single or double (default: the scene's)"},
 	{"isa", "TIER", CAU_OPTION_TEXT, AT(instruction_set),

@@ -49,7 +49,8 @@ enum {
 
 #define CAU_SOLVER_TABLE(X) /* code, JSON name */                                                  \
 	X(CHOLESKY, "cholesky")                                                                        \
-	X(DIAGONAL, "diagonal")
+	X(DIAGONAL, "diagonal")                                                                        \
+	X(NEWTON, "newton")
 #define CAU_PRECISION_TABLE(X)                                                                     \
 	X(SINGLE, "single")                                                                            \
 	X(DOUBLE, "double")

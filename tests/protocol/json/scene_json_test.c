@@ -222,7 +222,7 @@ static const refusal refused[] = {
 	{SCENE("\"iterations\":0"), "iterations", "0 is outside 1 to 1000"},
 	{SCENE("\"seed\":-1"), "seed", "-1 is outside 0 to 9007199254740991"},
 	{SCENE("\"solver\":\"choleski\""), "solver",
-     "\"choleski\" is none of cholesky, diagonal; did you mean \"cholesky\"?"},
+     "\"choleski\" is none of cholesky, diagonal, newton; did you mean \"cholesky\"?"},
 	{SCENE("\"gravity_m_s2\":[0,0]"), "gravity_m_s2", "an array of 3 is needed, not an array of 2"},
 	{SCENE("\"gravity_m_s2\":[0,0,null]"), "gravity_m_s2[2]", "a number is needed, not null"},
 	{SCENE("\"gravity_m_s2\":[0,-981,0]"), "gravity_m_s2[1]", "-981 is outside -100 to 100 m/s^2"},

@@ -1099,8 +1099,8 @@ export interface Scene {
   accuracy?: number;
   /** iterations of a step at most; with `accuracy` 0, of each (1 to 1000) */
   iterations?: number;
-  /** global system */
-  solver?: 'cholesky' | 'diagonal';
+  /** global system; `newton`: of free sheets, each step's own */
+  solver?: 'cholesky' | 'diagonal' | 'newton';
   /** of the local and global steps */
   precision?: 'single' | 'double';
   /** what heat parts: edges with all that share them, as in the paper, or elements one by one, so that a cut does not depend on the mesh */
