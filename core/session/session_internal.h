@@ -148,9 +148,8 @@ typedef struct cau_touching {
 	int32_t vertex, place; // place: along the broad phase's curve
 	double gap;
 } cau_touching;
-int cau_session_compare_touching(const void *a, const void *b); // for qsort: the deepest first
-// Leaves at most `room` (up to CAU_MAX_VERTEX_ROWS) of the listed in front of the list, and returns
-// how many.
+// Leaves at most `room` (up to CAU_MAX_VERTEX_ROWS) of the listed in front of the list, the deepest
+// first unless they are spread, and returns how many.
 int32_t cau_session_thin(const cau_session *session, cau_touching *list, int32_t count,
                          int32_t room);
 

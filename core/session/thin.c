@@ -15,6 +15,14 @@ static const double touching_m = 2e-4; // nearer is touching; others are only ne
 // rim, than to leave holes between rows.
 static const int32_t most_crowded = 2;
 
+static int compare_depth(const void *a, const void *b)
+{
+	const cau_touching *x = a, *y = b;
+	if (x->gap != y->gap)
+		return x->gap < y->gap ? -1 : 1;
+	return (x->vertex > y->vertex) - (x->vertex < y->vertex);
+}
+
 static uint32_t reversed(uint32_t x)
 {
 	x = (x & 0x55555555u) << 1 | (x >> 1 & 0x55555555u);
@@ -51,12 +59,10 @@ int32_t cau_session_thin(const cau_session *session, cau_touching *list, int32_t
 {
 	CAU_ASSERT(count >= 0 && count <= CAU_MAX_TOUCHING, "%d vertices touch", count);
 	CAU_ASSERT(room >= 0 && room <= CAU_MAX_VERTEX_ROWS, "room for %d", room);
-	if (count > room) {
-		int32_t touching = part_touching(session, list, count);
-		if (touching > most_crowded * room)
-			qsort(list, (size_t)touching, sizeof *list, compare_spread);
-		else
-			qsort(list, (size_t)count, sizeof *list, cau_session_compare_touching);
-	}
+	int32_t touching = count > room ? part_touching(session, list, count) : 0;
+	if (touching > most_crowded * room)
+		qsort(list, (size_t)touching, sizeof *list, compare_spread);
+	else
+		qsort(list, (size_t)count, sizeof *list, compare_depth);
 	return count < room ? count : room;
 }

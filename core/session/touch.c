@@ -35,14 +35,6 @@ static cau_contact_row contact_row(const cau_session *session, const cau_tool *t
 	return row;
 }
 
-int cau_session_compare_touching(const void *a, const void *b)
-{
-	const cau_touching *x = a, *y = b;
-	if (x->gap != y->gap)
-		return x->gap < y->gap ? -1 : 1;
-	return (x->vertex > y->vertex) - (x->vertex < y->vertex);
-}
-
 static bool is_grasped(const cau_tool *tool, int32_t vertex)
 {
 	CAU_ASSERT(tool->grasp_count >= 0 && tool->grasp_count <= CAU_MAX_GRASPED,
@@ -87,7 +79,7 @@ static void list_touching(cau_session *session, cau_touching *list, int32_t *cou
 		list[least] = touching;
 }
 
-// Collects the free vertices within the margin of the pushing part, the deepest first.
+// Collects the free vertices within the margin of the pushing part.
 static int32_t collect(cau_session *session, int32_t index, cau_touching *list)
 {
 	const cau_tool *tool = &session->tool[index];
@@ -111,7 +103,6 @@ static int32_t collect(cau_session *session, int32_t index, cau_touching *list)
 			list_touching(session, list, &count, (cau_touching){v, i, gap});
 		}
 	}
-	qsort(list, (size_t)count, sizeof *list, cau_session_compare_touching);
 	return count;
 }
 
