@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Tools that touch: which vertices are in contact, held or dragged, and
 // what force the tools feel. The constraints themselves are in solve/contact.c.
-#include <stdlib.h>
 #include <string.h>
 
 #include "cautery/assert.h"
