@@ -58,10 +58,14 @@ cau_status cli_contexts_read(cJSON **all, cau_error *error)
 	char file[CLI_CONTEXT_TEXT_BYTES + 32], *text = NULL;
 	size_t bytes;
 	*all = NULL;
-	cau_status status = has_folder() ? find_file(file, sizeof file, error) : CAU_OK;
+	if (!has_folder()) {
+		*all = no_contexts();
+		return *all ? CAU_OK : cau_fail(error, CAU_NO_MEMORY, NULL, "no memory for the contexts");
+	}
+	cau_status status = find_file(file, sizeof file, error);
 	if (status)
 		return status;
-	if (!has_folder() || (access(file, F_OK) != 0 && errno == ENOENT))
+	if (access(file, F_OK) != 0 && errno == ENOENT)
 		*all = no_contexts();
 	else if ((status = cli_read_file(file, FILE_BYTES_MAX, &text, &bytes, error)))
 		return status;

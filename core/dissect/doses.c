@@ -9,7 +9,7 @@
 // elements that its surface crosses are in, half of them out.
 //
 // A hot part thinner than the elements would pass between their middles. So it counts as no thinner
-// than the mesh can tell (`half_width`).
+// than the mesh can tell (`half_width_of`).
 #include "cautery/assert.h"
 #include "dissect/dissection_internal.h"
 

@@ -59,6 +59,8 @@ enum { BYTES_OF_VERTEX = 1000, BYTES_OF_ELEMENT = 400 };
 // CHOLMOD keeps a number of 8 bytes and a row of 4; the packed panels and what else grows with them
 // take about as much again.
 enum { BYTES_OF_FACTOR_ENTRY = 24 };
+// What Newton's steps keep of an entry besides: its block and its row (solve/newton.h).
+enum { BYTES_OF_NEWTON_ENTRY = CAU_BLOCK * 8 + 4 };
 
 // What generated meshes come to; those of files are not counted before they are read. The scene is
 // checked, so that no product of cells is beyond what a mesh may have.
@@ -105,8 +107,10 @@ static cau_status pass_border(const cau_session *session, const cau_session_def 
 		border.bytes = (size_t)(BYTES_OF_VERTEX * border.vertex_count +
 		                        BYTES_OF_ELEMENT * border.element_count);
 	else
-		border.bytes =
-			session->arena.byte_count + (size_t)(BYTES_OF_FACTOR_ENTRY * border.factor_entries);
+		border.bytes = session->arena.byte_count +
+		               (size_t)((BYTES_OF_FACTOR_ENTRY +
+		                         (session->solver.newton_chosen ? BYTES_OF_NEWTON_ENTRY : 0)) *
+		                        border.factor_entries);
 	return def->border ? def->border(def->user, &border, error) : CAU_OK;
 }
 

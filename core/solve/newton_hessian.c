@@ -188,20 +188,6 @@ static cau_vec3 place_of(const cau_step_solver *solver, int32_t vertex)
 
 // ---- into H
 
-static int32_t find_block(const cau_newton *newton, int32_t column, int32_t row)
-{
-	int32_t low = newton->first[column], high = newton->first[column + 1] - 1;
-	while (low < high) {
-		int32_t middle = low + (high - low) / 2;
-		if (newton->row[middle] < row)
-			low = middle + 1;
-		else
-			high = middle;
-	}
-	CAU_ASSERT(newton->row[low] == row, "no block in column %d, row %d", column, row);
-	return low;
-}
-
 // H += m in the rows of vertex a and the columns of b, and its transpose where those are not one.
 static void add_block(cau_newton *newton, const cau_step_solver *solver, int32_t a, int32_t b,
                       const matrix3 *m)
@@ -210,10 +196,11 @@ static void add_block(cau_newton *newton, const cau_step_solver *solver, int32_t
 	if (row < 0 || column < 0 || solver->fixed[a] || solver->fixed[b])
 		return;
 	bool turned = row < column;
-	double *to = row == column ? newton->pivot + (int64_t)CAU_BLOCK * row
-	                           : newton->block +
-	                                 (int64_t)CAU_BLOCK * find_block(newton, turned ? row : column,
-	                                                                 turned ? column : row);
+	double *to = newton->pivot + (int64_t)CAU_BLOCK * row;
+	if (row != column)
+		to = newton->block + (int64_t)CAU_BLOCK * cau_pattern_place(newton->first, newton->row,
+		                                                            turned ? row : column,
+		                                                            turned ? column : row);
 	for (int r = 0; r < 3; r++)
 		for (int c = 0; c < 3; c++)
 			to[4 * c + r] += turned ? m->at[c][r] : m->at[r][c];

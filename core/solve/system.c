@@ -95,17 +95,7 @@ static void add_entry(const cau_matrix *matrix, double *value, int32_t a, int32_
 {
 	int32_t column = a < b ? a : b, row = a < b ? b : a;
 	CAU_ASSERT_INDEX(row, matrix->n);
-	int32_t low = matrix->first[column], high = matrix->first[column + 1] - 1;
-	while (low < high) {
-		int32_t middle = low + (high - low) / 2;
-		if (matrix->row[middle] < row)
-			low = middle + 1;
-		else
-			high = middle;
-	}
-	CAU_ASSERT(matrix->row[low] == row, "the pattern has no entry in column %d, row %d", column,
-	           row);
-	value[low] += amount;
+	value[cau_pattern_place(matrix->first, matrix->row, column, row)] += amount;
 }
 
 static void add_element(const cau_system *system, const cau_element_map *map, double *value)

@@ -4,6 +4,7 @@
 #pragma once
 
 #include "base/memory.h"
+#include "cautery/assert.h"
 #include "solve/factor.h"
 #include "tissue/tissue.h"
 
@@ -14,6 +15,22 @@ typedef struct cau_system {
 	cau_matrix matrix;      // pattern of all elements, dead ones too, so it never grows
 	double *diagonal;       // (vertex_count): A of the diagonal system (eq. 7), N/m
 } cau_system;
+
+// Place of an entry that a pattern has: `row` ascends from first[column] to first[column + 1].
+static inline int32_t cau_pattern_place(const int32_t *first, const int32_t *row, int32_t column,
+                                        int32_t wanted)
+{
+	int32_t low = first[column], high = first[column + 1] - 1;
+	while (low < high) {
+		int32_t middle = low + (high - low) / 2;
+		if (row[middle] < wanted)
+			low = middle + 1;
+		else
+			high = middle;
+	}
+	CAU_ASSERT(row[low] == wanted, "the pattern has no entry in column %d, row %d", column, wanted);
+	return low;
+}
 
 // Which elements live, as bytes 0/1 by kind (cau_element_kind).
 typedef struct cau_alive {

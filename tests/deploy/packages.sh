@@ -3,9 +3,6 @@
 # The Debian packages on a bare Debian 12 (a chroot): those of an earlier commit installed, run under
 # their own user, upgraded to today's with a cut session in the store, today's run with TLS, purged.
 #
-# Then, where systemd-nspawn can boot a container, that Debian is booted and its service manager has
-# the daemon.
-#
 # Usage: packages.sh FOLDER      Exit code 77: cannot be done here, and why is printed.
 # Needs root, debootstrap, the repository's history and a Debian mirror (CAUTERY_MIRROR, default http://deb.debian.org/debian).
 # FOLDER is kept: the bare system and the build tree are used again by the next run.
@@ -78,41 +75,3 @@ unshare --mount --pid --fork --kill-child --propagation private bash -euc '
 	exec env -i PATH=/usr/sbin:/usr/bin:/sbin:/bin LC_ALL=C.UTF-8 DEBIAN_FRONTEND=noninteractive \
 		chroot "$root" bash /packages/packages_inside.sh
 '
-
-command -v systemd-nspawn >/dev/null || {
-	echo "not booted: systemd-nspawn is not installed"
-	exit 0
-}
-boot=(systemd-nspawn --quiet --register=no --keep-unit --directory "$root")
-"${boot[@]}" true 2>/dev/null || {
-	echo "not booted: systemd-nspawn runs no container here"
-	exit 0
-}
-step "boot, with the daemon as its service manager has it"
-rm -rf "$root"
-cp -a "$base" "$root"
-cp /etc/resolv.conf /etc/hosts "$root/etc/"
-install -D -t "$root/packages" "$folder"/tree/packages/*.deb
-install -D -t "$root/packages" "$source_folder/tests/deploy/packages_booted.sh"
-env DEBIAN_FRONTEND=noninteractive chroot "$root" bash -euc '
-	apt-get update -q >/dev/null
-	apt-get install -q -y --no-install-recommends systemd-sysv dbus /packages/cauteryd*.deb /packages/cautery-clients*.deb' \
-	>"$folder/boot-install.log" 2>&1 || {
-	tail -n 20 "$folder/boot-install.log"
-	exit 1
-}
-cat >"$root/etc/systemd/system/booted.service" <<'END'
-[Unit]
-After=multi-user.target cauteryd.service
-[Service]
-Type=oneshot
-ExecStart=/bin/bash /packages/packages_booted.sh
-END
-mkdir -p "$root/etc/systemd/system/multi-user.target.wants"
-ln -s ../booted.service "$root/etc/systemd/system/multi-user.target.wants/"
-timeout 300 "${boot[@]}" --boot >"$folder/boot.log" 2>&1 || true
-cat "$root/packages/said" || {
-	tail -n 20 "$folder/boot.log"
-	exit 1
-}
-tail -n 1 "$root/packages/said" | grep -qx "all is well"

@@ -1,6 +1,6 @@
 #!/usr/bin/env bash
 # SPDX-License-Identifier: GPL-3.0-or-later
-# What packages.sh has a booted Debian 12 do, whose service manager has started cauteryd: reload it,
+# What packages_boot.sh has a booted Debian 12 do, whose service manager has started cauteryd: reload it,
 # find it when it hangs, stop it. Writes what it says to /packages/said, and powers off.
 set -euo pipefail
 exec >/packages/said 2>&1
@@ -21,8 +21,11 @@ main_pid() {
 [ "$(stat -c %U "/proc/$(main_pid)")" = cautery ] || fail "it is not its user's process"
 session=$(env -u HOME -u XDG_CONFIG_HOME cautery create fascia)
 systemctl reload cauteryd
-sleep 1 # until its line is in the journal
-[ "$(journalctl -u cauteryd --no-pager | grep -c 'event=reloaded')" = 1 ] || fail "it was not told to reload"
+for ((waited = 0; waited < 100; waited++)); do
+	[ "$(journalctl -u cauteryd --no-pager | grep -c 'event=reloaded')" = 0 ] || break
+	sleep 0.1 # a look at a time
+done
+[ "$waited" -lt 100 ] || fail "it was not told to reload"
 echo "reloaded"
 
 # It hangs: the watchdog ends it, and it comes back with its session.

@@ -83,11 +83,13 @@ cautery info "$session" >/tmp/info || fail "the session did not outlive the upgr
 vertices | cmp - /tmp/before || fail "its tissue is not where it was"
 cautery resume "$session"
 cautery speed "$session" 1
-sleep 2
+for ((waited = 0; waited < 100; waited++)); do
+	[ "$(tick)" -le "$before" ] || break
+	sleep 0.1 # a look at a time
+done
 [ "$(tick)" -gt "$before" ] || fail "it does not go on"
-cautery rewind "$session" 60
-[ "$(tick)" -lt "$before" ] || fail "it did not go back"
-cautery reset "$session"
+cautery rewind "$session" 60 | grep -q "is at tick 60," || fail "it did not go back"
+cautery reset "$session" | grep -q "is at tick 0," || fail "it did not start over"
 end_daemon
 
 step "TLS"

@@ -95,6 +95,12 @@ export class HoldingDoor extends Door {
     this.held = what;
   }
 
+  /** Lets the first of what waits pass, once there is one; the rest stays. */
+  async letOnePass(): Promise<void> {
+    while (this.waiting.length === 0) await new Promise(setImmediate);
+    this.waiting.shift()!();
+  }
+
   letGo(): void {
     this.held = null;
     for (const pass of this.waiting.splice(0)) pass();

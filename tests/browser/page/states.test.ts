@@ -5,6 +5,7 @@ import { mkdtempSync, rmSync, writeFileSync } from 'node:fs';
 import { tmpdir } from 'node:os';
 import { join } from 'node:path';
 
+import { HoldingDoor } from './door';
 import { Stage } from './stage';
 import { ViewerPage } from './viewer_page';
 
@@ -71,7 +72,6 @@ describe('a picture that is not live', () => {
 describe('the address', () => {
   const stage = new Stage(['--demo', 'fascia']);
 
-
   it('has session, tick and camera, and comes back to them', async () => {
     const viewer = await stage.openFirst();
     await viewer.live('d1-fascia');
@@ -95,6 +95,18 @@ describe('the address', () => {
     expect(await other.page.locator('#rewind').textContent()).toMatch(/^Go back to \d+\.\d\d s$/);
     expect((await other.state()).epoch).toBe(epoch); // and nobody was moved
     await other.close();
+
+    // The timeline may be there before the first frame, which follows the topology.
+    const door = new HoldingDoor(stage.daemon.url);
+    door.hold('frames');
+    const late = await ViewerPage.openFirst(stage.browser, (await door.start()) + new URL(shared).search);
+    await door.letOnePass();
+    await late.until(() => document.querySelector('#time .track svg') !== null, null, 'the timeline');
+    expect(await late.page.locator('#rewind').isVisible()).toBe(false);
+    door.letGo();
+    await late.until(() => document.querySelector('#rewind')?.checkVisibility() === true, null, 'the moment is offered');
+    await late.close();
+    await door.end();
     await viewer.close();
   });
 });

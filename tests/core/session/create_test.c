@@ -62,6 +62,27 @@ static void borders_come_in_order_and_know_ever_more(void **state)
 	free(scene);
 }
 
+// What a step makes room for later is asked for, too.
+static void newtons_room_is_asked_for(void **state)
+{
+	(void)state;
+	cau_build_border last[2];
+	for (int newton = 0; newton <= 1; newton++) {
+		cau_scene_def *scene = stage_scene(CAU_PRECISION_SINGLE);
+		stage_add_taut_sheet(scene);
+		scene->solver = newton ? CAU_SOLVER_NEWTON : CAU_SOLVER_CHOLESKY;
+		borders noted = {.stop_at = -1};
+		cau_session *session = NULL;
+		cau_error error = {0};
+		assert_int_equal(create(scene, 1, &noted, &session, &error), CAU_OK);
+		last[newton] = noted.seen[CAU_BUILD_FACTOR];
+		cau_session_destroy(session);
+		free(scene);
+	}
+	assert_int_equal(last[0].factor_entries, last[1].factor_entries);
+	assert_true(last[1].bytes >= last[0].bytes + 96 * (size_t)last[1].factor_entries);
+}
+
 // With helper threads and without; the address sanitizer looks for what is left behind.
 static void a_refusal_at_any_border_leaves_nothing(void **state)
 {
@@ -150,6 +171,7 @@ int main(void)
 {
 	const struct CMUnitTest tests[] = {
 		cmocka_unit_test(borders_come_in_order_and_know_ever_more),
+		cmocka_unit_test(newtons_room_is_asked_for),
 		cmocka_unit_test(a_refusal_at_any_border_leaves_nothing),
 		cmocka_unit_test(a_session_taken_over_mid_cut_keeps_its_bits),
 	};

@@ -106,22 +106,28 @@ export function timeBar(control: Control, shared: number | null): void {
     slider.disabled = model.joined === null; // whoever may look may look back
     step.disabled = !usable || model.frame?.paused !== true;
   };
-  model.on('timeline', drawMarks);
+  model.on('timeline', () => {
+    drawMarks();
+    showShared();
+  });
   model.on('held', place);
   model.on('link', enable);
   model.on('joined', (joined) => {
     enable();
-    if (joined) void attempt(problem, () => control.loadTimeline().then(showShared));
+    if (joined) void attempt(problem, () => control.loadTimeline());
   });
-  // A link's moment is shown, not gone to: going back moves everybody in the session.
+  // A link's moment is shown, not gone to: going back moves everybody in the session. Whichever comes last,
+  // the timeline or the first frame, says whether it is there.
   const showShared = (): void => {
+    const { timeline, frame } = model;
+    if (shared === null || !timeline || !frame) return;
     const tick = shared;
     shared = null;
-    if (tick === null || tick < Number(slider.min) || tick >= Number(slider.max)) return;
-    model.hold(tick);
+    if (tick >= timeline.oldest_tick && tick < frame.tick) model.hold(tick);
   };
   let paused: boolean | null = null;
   model.on('frame', (frame) => {
+    showShared();
     const rate = frame.samples.at(-1)?.statistics?.realtimeFactor;
     const text = `${frame.timeS.toFixed(2)} s${frame.faulted ? ' · faulted' : frame.paused ? ' · paused' : ''}${research() ? ` · tick ${frame.tick}` : ''}${rate === undefined || frame.paused || !research() ? '' : ` · ${rate.toFixed(2)} ×`}`;
     if (now.value !== text) now.value = text;
