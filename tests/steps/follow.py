@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """Follows a page's list of steps to the letter, on a copy of the sources.
 
-Usage: follow.py [--edits-only] ROOT PAGE SECTION COPY MOST [TEST...]
+Usage: follow.py [--edits-only] ROOT COPY PAGE SECTION MOST TESTS [PAGE SECTION MOST TESTS...]
 
 SECTION is a heading of PAGE. Under it each block of code has a sentence before it that ends with a
 colon and says what to do with it:
@@ -14,8 +14,12 @@ colon and says what to do with it:
 
 LINE must be in the file once, whatever stands before and after it on the line as white space. A
 block that no such sentence precedes, and a sentence without a block, are errors: nothing in the
-list may be left to the reader. Every TEST must have been run by ctest and passed. At the end the
-files that were changed are counted, generated and test files left out: at most MOST.
+list may be left to the reader. Every one of TESTS, with commas between them, must have been run by
+ctest and passed. At the end the files that were changed are counted, generated and test files left
+out: at most MOST.
+
+Several lists are followed together, as by somebody who adds several things at once: the edits of all,
+then what each runs, which every list has at its end. So what they all touch is built once.
 
 With --edits-only nothing is run: that the list still fits the sources is seen in a moment.
 
@@ -126,20 +130,37 @@ def run(copy, script):
     return "".join(said)
 
 
-def follow(copy, steps, edits_only=False):
-    """Does every step; returns what the scripts said."""
+def apply(copy, directive, block):
+    """Makes or changes a file."""
+    print(f"==== {directive}", flush=True)
+    making, editing = MAKE.match(directive), EDIT.match(directive)
+    if making:
+        make(copy, making.group(1), block)
+    elif editing:
+        edit(copy, editing.group(1), editing.group(2), editing.group(3), block)
+    else:
+        raise Wrong(f"not a step that can be followed: {directive}")
+
+
+def scripts_of(steps):
+    """What a list runs, which is its end: everything else comes before."""
+    runs = [bool(RUN.match(directive)) for directive, _ in steps]
+    if runs != sorted(runs):
+        raise Wrong("something is to be done after what is to be run")
+    return [block for directive, block in steps if RUN.match(directive)]
+
+
+def follow(copy, lists, edits_only=False):
+    """Does every step of all lists; returns what the scripts said."""
+    scripts = [script for steps in lists for script in scripts_of(steps)]
+    for steps in lists:
+        for directive, block in steps:
+            if not RUN.match(directive):
+                apply(copy, directive, block)
     said = ""
-    for directive, block in steps:
-        print(f"==== {directive}", flush=True)
-        making, editing = MAKE.match(directive), EDIT.match(directive)
-        if making:
-            make(copy, making.group(1), block)
-        elif editing:
-            edit(copy, editing.group(1), editing.group(2), editing.group(3), block)
-        elif RUN.match(directive):
-            said += "" if edits_only else run(copy, block)
-        else:
-            raise Wrong(f"not a step that can be followed: {directive}")
+    for script in [] if edits_only else scripts:
+        print(f"==== Run:\n{script}", flush=True)
+        said += run(copy, script)
     return said
 
 
@@ -182,23 +203,33 @@ def changed_files(copy, before):
     return sorted(name for name, now in fingerprints(copy).items() if before.get(name) != now)
 
 
+def lists_of(root, arguments):
+    """(heading, steps, most files, tests) of each list that the arguments name."""
+    found = []
+    for first in range(0, len(arguments), 4):
+        page, section, most, tests = arguments[first:first + 4]
+        with open(os.path.join(root, page), encoding="utf-8") as file:
+            found.append((section, steps_of(section_of(file.read(), section)), int(most), tests.split(",")))
+    return found
+
+
 def main():
     arguments = [argument for argument in sys.argv[1:] if argument != "--edits-only"]
     edits_only = len(arguments) < len(sys.argv) - 1
-    root, page, section, copy = arguments[:4]
-    most, tests = int(arguments[4]), [] if edits_only else arguments[5:]
+    root, copy = arguments[:2]
     os.makedirs(copy, exist_ok=True)
     bring_up_to_date(root, copy)
     before = fingerprints(copy)
-    with open(os.path.join(root, page), encoding="utf-8") as file:
-        steps = steps_of(section_of(file.read(), section))
-    said = follow(copy, steps, edits_only)
-    for test in tests:
-        if not re.search(rf" {re.escape(test)} \.+ +Passed ", said):
-            raise Wrong(f"the test {test} was not run, or did not pass")
+    lists = lists_of(root, arguments[2:])
+    said = follow(copy, [steps for _, steps, _, _ in lists], edits_only)
+    for _, _, _, tests in lists:
+        for test in [] if edits_only else tests:
+            if not re.search(rf" {re.escape(test)} \.+ +Passed ", said):
+                raise Wrong(f"the test {test} was not run, or did not pass")
     changed = [name for name in changed_files(copy, before)
                if name not in GENERATED and not name.startswith("tests/")]
-    print(f"{section}: {len(changed)} files, generated and test files not counted:", *changed, sep="\n  ")
+    what, most = ", ".join(section for section, *_ in lists), sum(most for _, _, most, _ in lists)
+    print(f"{what}: {len(changed)} files, generated and test files not counted:", *changed, sep="\n  ")
     if len(changed) > most:
         raise Wrong(f"more than {most} files")
 

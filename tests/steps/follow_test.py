@@ -73,7 +73,7 @@ class Following(unittest.TestCase):
         write(self.copy, "list.txt", "first\n  last\n")
 
     def follow(self, page):
-        return follow.follow(self.copy, follow.steps_of(follow.section_of(page, "Adding a thing")))
+        return follow.follow(self.copy, [follow.steps_of(follow.section_of(page, "Adding a thing"))])
 
     def refuse(self, page, words):
         with self.assertRaisesRegex(follow.Wrong, words):
@@ -101,8 +101,18 @@ class Following(unittest.TestCase):
 
     def test_edits_alone_run_nothing(self):
         steps = follow.steps_of(follow.section_of(PAGE.replace("cat list.txt", "false"), "Adding a thing"))
-        self.assertEqual(follow.follow(self.copy, steps, edits_only=True), "")
+        self.assertEqual(follow.follow(self.copy, [steps], edits_only=True), "")
         self.assertEqual(read(self.copy, "list.txt"), "first\nsecond\nthird\nlast\n")
+
+    def test_lists_together_are_edited_before_anything_runs(self):
+        first = "Make `a.txt`:\n\n```\na\n```\n\nRun:\n\n```sh\ncat a.txt b.txt\n```\n"
+        second = "In `a.txt`, below the line `a`:\n\n```\nc\n```\n\nMake `b.txt`:\n\n```\nb\n```\n\nRun:\n\n```sh\ncat b.txt\n```\n"
+        lists = [follow.steps_of(text.splitlines()) for text in (first, second)]
+        self.assertEqual(follow.follow(self.copy, lists), "a\nc\nb\nb\n")
+
+    def test_what_runs_ends_a_list(self):
+        self.refuse(PAGE.replace("## Another", "5. Make `late.txt`:\n\n   ```\n   late\n   ```\n\n## Another"),
+                    "after what is to be run")
 
     def test_a_script_that_fails_ends_it(self):
         self.refuse(PAGE.replace("cat list.txt", "false"), "exit code 1")
