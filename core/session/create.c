@@ -154,7 +154,7 @@ static cau_status make_remainder(cau_session *session, cau_error *error)
 		status = cau_fail(error, CAU_NO_MEMORY, NULL, "no memory for contacts");
 	for (int32_t i = 0; i < session->scene->tool_count && !status; i++)
 		status = cau_session_add_tool(session, &session->scene->tools[i], error);
-	if (!status)
+	if (!status && !session->faulted)
 		status = cau_session_relax(session, error);
 	if (!status)
 		status = cau_session_make_faces(session, error);
@@ -206,6 +206,7 @@ static cau_status build(cau_session *session, const cau_session_def *def, cau_er
 	session->scene = cau_arena_copy(&session->arena, def->scene, 1, sizeof *def->scene);
 	session->pool = cau_pool_create(def->thread_count);
 	session->command_capacity = def->command_capacity;
+	session->faulted = def->unsettled;
 	if (!session->scene || !session->pool)
 		return no_memory(error);
 	session->solver.kernels =

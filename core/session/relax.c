@@ -18,8 +18,9 @@ static bool is_identity(const double *target, int n)
 	return true;
 }
 
-static bool has_tension(const cau_tissue *tissue)
+bool cau_session_has_tension(const cau_session *session)
 {
+	const cau_tissue *tissue = &session->tissue;
 	for (int32_t i = 0; i < tissue->layer_count; i++) {
 		const cau_layer_def *def = &tissue->layer[i].def;
 		for (int32_t m = 0; m < def->material_count && def->kind != CAU_LAYER_LINKS; m++) {
@@ -60,7 +61,7 @@ static double largest_move(const cau_session *session)
 cau_status cau_session_relax(cau_session *session, cau_error *error)
 {
 	CAU_ASSERT(session->tick == 0, "relaxed at tick %llu", (unsigned long long)session->tick);
-	if (!has_tension(&session->tissue))
+	if (!cau_session_has_tension(session))
 		return CAU_OK;
 	size_t n = 3 * (size_t)session->tissue.vertex_count;
 	double gravity[3], accuracy = session->solver.accuracy.wanted,

@@ -7,6 +7,7 @@
 #include "builder/builder.h"
 #include "cautery/scene.h"
 #include "config/config.h"
+#include "hosted_session/beginnings.h"
 #include "hosted_session/order.h"
 #include "metrics/histogram.h"
 #include "store/store.h"
@@ -30,6 +31,7 @@ typedef struct cau_surroundings {
 	cau_worker_pool *pool;
 	cau_builder *builder;
 	_Atomic int64_t *memory_held; // by all sessions, bytes, about
+	cau_beginnings *beginnings;   // the builder's
 	cau_sink sink;
 	cau_hosted_times *times; // NULL: nobody wants to know
 	// Energy came on somewhere: the watchdog must look at its times again.

@@ -51,6 +51,7 @@ cau_status cau_past_build(cau_past *past, cau_past_go_on *go_on, void *user, cau
 	def.thread_count = (int32_t)past->hosted->around->config->session_threads;
 	def.border = cross_border;
 	def.user = &at;
+	def.unsettled = true; // it is restored to what it shows
 	cau_status status = cau_session_create(&def, &past->core, error);
 	if (status)
 		cau_past_finish(past);

@@ -24,14 +24,50 @@ static void stock_shelves(cau_hosted *h)
 	cau_streams_stock(&h->streams, vertices, faces);
 }
 
-static cau_status build(cau_hosted *h, cau_error *error)
+static cau_status create(cau_hosted *h, bool unsettled, cau_error *error)
 {
 	cau_session_def def = cau_default_session_def();
 	def.scene = h->scene;
 	def.thread_count = (int32_t)h->around->config->session_threads;
 	def.border = cau_building_border;
 	def.user = h;
-	cau_status status = cau_session_create(&def, &h->core, error);
+	def.unsettled = unsettled;
+	return cau_session_create(&def, &h->core, error);
+}
+
+// As the first session of its scene began; settled by itself where that does not serve.
+static cau_status create_as_before(cau_hosted *h, const cau_beginning *known, cau_error *error)
+{
+	bool exact = false;
+	cau_status status = create(h, true, error);
+	if (status)
+		return status;
+	if (!cau_session_restore(h->core, known->snapshot, known->byte_count, &exact, error) && exact) {
+		cau_log(CAU_LOG_INFO, h->id, "settled_before", "bytes=%zu", known->byte_count);
+		return CAU_OK;
+	}
+	cau_beginnings_drop_first(h->around->beginnings);
+	cau_session_destroy(h->core);
+	h->core = NULL;
+	return create(h, false, error);
+}
+
+static cau_status create_new(cau_hosted *h, cau_error *error)
+{
+	cau_beginnings *beginnings = h->around->beginnings;
+	const cau_beginning *known = cau_beginnings_find(beginnings, h->scene);
+	if (known)
+		return create_as_before(h, known, error);
+	cau_status status = create(h, false, error);
+	if (!status)
+		cau_beginnings_keep(beginnings, h->scene, h->core);
+	return status;
+}
+
+static cau_status build(cau_hosted *h, cau_error *error)
+{
+	bool checkpoint_follows = h->origin.kind != CAU_ORIGIN_SCENE;
+	cau_status status = checkpoint_follows ? create(h, true, error) : create_new(h, error);
 	if (status)
 		return status;
 	cau_session_set_clock(h->core, cau_monotonic_s);

@@ -67,6 +67,7 @@ cau_status cau_hub_create(cau_hub **made, const cau_hub_def *def, cau_error *err
 	                                 .pool = def->pool,
 	                                 .builder = def->builder,
 	                                 .memory_held = &hub->memory_held,
+	                                 .beginnings = &hub->beginnings,
 	                                 .sink = {hub, notify_all, frames_all, sliced_all},
 	                                 .times = &hub->times,
 	                                 .armed = armed,
@@ -106,6 +107,7 @@ void cau_hub_destroy(cau_hub *hub)
 	}
 	pthread_mutex_destroy(&hub->mutex);
 	pthread_mutex_destroy(&hub->clerk_mutex);
+	cau_beginnings_finish(&hub->beginnings);
 	cau_quota_destroy(hub->quota);
 	free(hub->sessions);
 	free(hub->clients);

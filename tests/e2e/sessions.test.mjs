@@ -27,6 +27,24 @@ test('two clients in two sessions see their own only', async () => {
 	await Promise.all([a.close(), b.close()]);
 });
 
+test('a second session of a scene begins where the first did, and need not settle', async () => {
+	const client = await daemon.connect();
+	const seen = [];
+	for (const name of ['first', 'second', 'third']) {
+		const session = await smallSession(client, name, { paused: true, cells: [22, 18] });
+		const stream = await client.join(session, { rate_hz: 1000 });
+		const { tick } = await cutMiddle(client, session, 60);
+		await client.until(() => stream.tick === tick, 'the cut');
+		assert.ok(stream.removed() > 0);
+		seen.push({ positions: [...stream.quantised], mask: [...stream.mask] });
+	}
+	assert.deepEqual(seen[1], seen[0]);
+	assert.deepEqual(seen[2], seen[0]);
+	const spared = daemon.lines.map((line) => /session=\S+-(first|second|third) event=settled_before/.exec(line)?.[1]);
+	assert.deepEqual(spared.filter(Boolean), ['second', 'third']);
+	await client.close();
+});
+
 test('five clients in one session hold the same state', async () => {
 	const clients = await Promise.all(Array.from({ length: 5 }, () => daemon.connect()));
 	const session = await smallSession(clients[0], 'shared', { paused: true });

@@ -71,6 +71,9 @@ typedef struct cau_session_def {
 	const cau_scene_def *scene; // borrowed during create
 	int32_t thread_count;       // 1 to 16 threads used by step, the caller's among them
 	int32_t command_capacity;   // queued commands; more are refused with CAU_LIMIT
+	// A snapshot will be restored, so built-in tension is not brought to rest, which mostly takes
+	// longer than all else: the session is faulted until a restore succeeds.
+	bool unsettled;
 	// Asked before each stage; anything but CAU_OK ends the creation with that status and *error.
 	cau_status (*border)(void *user, const cau_build_border *border, cau_error *error); // or NULL
 	void *user;
@@ -89,6 +92,10 @@ cau_status cau_scene_check(const cau_scene_def *scene, cau_error *error);
 // (core/README.md, "Built-in tension").
 cau_status cau_session_create(const cau_session_def *def, cau_session **session, cau_error *error);
 void cau_session_destroy(cau_session *session); // takes NULL
+
+// Whether its scene has built-in tension, which its creation brought to rest unless it was
+// unsettled.
+bool cau_session_has_tension(const cau_session *session);
 
 // Makes the session's helper threads anew, children of the caller: they have the priority of who
 // steps it, whoever created it. Waits for what they do.

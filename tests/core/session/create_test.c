@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // A session that is made in stages: what is known at each border, that a refusal at any of them
-// leaves nothing behind, and that whoever takes a session over mid-cut changes none of its bits.
+// leaves nothing behind, that whoever takes a session over mid-cut changes none of its bits, and
+// that neither does who begins with a snapshot.
 #include "core/session/busy_scene.h"
 
 #include <pthread.h>
@@ -167,6 +168,71 @@ static void a_session_taken_over_mid_cut_keeps_its_bits(void **state)
 	free(scene);
 }
 
+// ---- sessions that begin with a snapshot
+static cau_session *open_unsettled(const cau_scene_def *scene)
+{
+	cau_session_def def = cau_default_session_def();
+	def.scene = scene;
+	def.unsettled = true;
+	cau_session *session = NULL;
+	cau_error error = {0};
+	assert_int_equal(cau_session_create(&def, &session, &error), CAU_OK);
+	return session;
+}
+
+static void expect_restored(cau_session *session, stage_bytes shot)
+{
+	bool exact = false;
+	cau_error error = {0};
+	assert_int_equal(cau_session_restore(session, shot.bytes, shot.count, &exact, &error), CAU_OK);
+	assert_true(exact);
+}
+
+// A hook is lit in the middle of the tissue.
+static uint64_t hash_of_burning(cau_session *session, int ticks)
+{
+	const cau_cut_def *cut = &session->scene->cut;
+	const cau_pose *first = &stage_tool(session, cut->tool)->pose;
+	cau_pose from = *first;
+	for (int tick = 0; tick < ticks; tick++) {
+		stage_cut_tick(session, cut, &from, tick);
+		stage_step(session, 1);
+	}
+	return cau_session_hash(session);
+}
+
+static void what_begins_with_a_snapshot_need_not_settle(void **state)
+{
+	(void)state;
+	static const char *const scenes[] = {"fascia", "layers"};
+	for (size_t k = 0; k < sizeof scenes / sizeof *scenes; k++) {
+		cau_scene_def *scene = stage_scene_light(scenes[k]);
+		cau_session *settled = stage_open(scene, 1), *begun = open_unsettled(scene);
+		stage_bytes first = stage_snapshot(settled);
+		cau_error error = {0};
+		assert_int_equal(cau_session_step(begun, &error), CAU_FAULTED);
+		assert_true(cau_session_hash(begun) !=
+		            cau_session_hash(settled)); // its tension is built in
+		expect_restored(begun, first);
+		assert_int_equal(cau_session_hash(begun), cau_session_hash(settled));
+		uint64_t reached = hash_of_burning(settled, 100);
+		assert_int_equal(hash_of_burning(begun, 100), reached);
+		// and one that starts where the other has come to
+		stage_bytes later = stage_snapshot(settled);
+		cau_session *joined = open_unsettled(scene);
+		expect_restored(joined, later);
+		stage_step(settled, 20);
+		stage_step(joined, 20);
+		assert_int_equal(cau_session_hash(joined), cau_session_hash(settled));
+		cau_session_destroy(joined);
+		cau_session_destroy(begun);
+		cau_session_destroy(settled);
+		free(later.bytes);
+		free(first.bytes);
+		free(scene);
+	}
+}
+
 int main(void)
 {
 	const struct CMUnitTest tests[] = {
@@ -174,6 +240,7 @@ int main(void)
 		cmocka_unit_test(newtons_room_is_asked_for),
 		cmocka_unit_test(a_refusal_at_any_border_leaves_nothing),
 		cmocka_unit_test(a_session_taken_over_mid_cut_keeps_its_bits),
+		cmocka_unit_test(what_begins_with_a_snapshot_need_not_settle),
 	};
 	return cmocka_run_group_tests(tests, NULL, NULL);
 }

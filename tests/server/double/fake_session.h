@@ -8,6 +8,8 @@
 typedef struct cau_fake_hooks {
 	// The creation comes to the border before this stage; CAU_BUILD_STAGE_COUNT: it has ended.
 	void (*build)(cau_build_stage next);
+	// New sessions say that they have built-in tension.
+	bool tension;
 	// A snapshot is about to be restored; what is not CAU_OK fails it, half restored.
 	cau_status (*restore)(void);
 	// The core is about to take this command.

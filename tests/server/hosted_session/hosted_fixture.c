@@ -100,6 +100,7 @@ int hosted_open_surroundings(void **state)
 	of_store.wall_clock_ms = see_commit;
 	t.around = (cau_surroundings){.config = &t.config,
 	                              .memory_held = &t.memory_held,
+	                              .beginnings = &t.beginnings,
 	                              .sink = {NULL, notify, see_frames, see_slice}};
 	assert_int_equal(cau_store_open(&of_store, &t.around.store, NULL), CAU_OK);
 	assert_int_equal(cau_worker_pool_create(&t.around.pool, 2, 4, 0, NULL), CAU_OK);

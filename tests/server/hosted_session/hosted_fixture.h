@@ -24,6 +24,7 @@ typedef struct hosted_fixture {
 	char folder[40], file[64];
 	cau_config config;
 	_Atomic int64_t memory_held;
+	cau_beginnings beginnings;
 	cau_surroundings around;
 	cau_hosted *h;
 	atomic_int held_at; // border between two stages, or AT_RESTORE

@@ -317,6 +317,7 @@ static void open_surroundings(void)
 	threads.around = (cau_surroundings){.config = &threads.config,
 	                                    .store = threads.store,
 	                                    .memory_held = &threads.memory_held,
+	                                    .beginnings = &threads.beginnings,
 	                                    .armed = see_armed,
 	                                    .sink = {NULL, notify, see_frames, see_slice}};
 	assert_int_equal(cau_worker_pool_create(&threads.around.pool, 2, 4, 0, NULL), CAU_OK);

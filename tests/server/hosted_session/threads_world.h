@@ -51,6 +51,7 @@ typedef struct threads_world {
 	cau_config config;
 	cau_store *store;
 	_Atomic int64_t memory_held;
+	cau_beginnings beginnings;
 	cau_surroundings around;
 	_Atomic(cau_hosted *) h;
 	request requests[REQUESTS];
