@@ -5,50 +5,74 @@
 #include <string.h>
 
 #include "cautery/assert.h"
+#include "cautery/scene_json.h"
+#include "cautery/session.h"
 
-static void drop(cau_beginnings *all, int32_t at)
+static void drop(cau_beginnings *all, cau_beginning *beginning)
 {
-	CAU_ASSERT_INDEX(at, all->count);
-	all->byte_count -= all->kept[at].byte_count;
-	free(all->kept[at].scene);
-	free(all->kept[at].snapshot);
-	all->count--;
-	memmove(&all->kept[at], &all->kept[at + 1], (size_t)(all->count - at) * sizeof *all->kept);
+	CAU_ASSERT(all->byte_count >= beginning->byte_count, "%zu bytes of %zu", beginning->byte_count,
+	           all->byte_count);
+	all->byte_count -= beginning->byte_count;
+	free(beginning->definition);
+	free(beginning->snapshot);
+	*beginning = (cau_beginning){0};
 }
 
-static void put_first(cau_beginnings *all, int32_t at)
+// An empty place goes before any other.
+static cau_beginning *asked_for_longest_ago(cau_beginnings *all)
 {
-	CAU_ASSERT_INDEX(at, all->count);
-	cau_beginning first = all->kept[at];
-	memmove(&all->kept[1], &all->kept[0], (size_t)at * sizeof *all->kept);
-	all->kept[0] = first;
+	cau_beginning *oldest = &all->kept[0];
+	for (int i = 1; i < CAU_BEGINNINGS_MOST; i++)
+		if (all->kept[i].asked < oldest->asked)
+			oldest = &all->kept[i];
+	return oldest;
 }
 
-// Scenes are compared as they lie in memory: read by the same code into zeroed memory, the same
-// text gives the same bytes. Meshes that came with a session lie elsewhere each time, so such a
-// scene is nobody else's.
-const cau_beginning *cau_beginnings_find(cau_beginnings *all, const cau_scene_def *scene)
+// The scene's definition as it is stored; malloc'ed, or NULL without memory.
+static char *define(const cau_scene_def *scene, size_t *byte_count)
 {
-	for (int32_t i = 0; i < all->count; i++)
-		if (memcmp(all->kept[i].scene, scene, sizeof *scene) == 0) {
-			put_first(all, i);
-			return &all->kept[0];
-		}
-	return NULL;
+	cau_error error;
+	char *text = malloc(CAU_SCENE_JSON_MAX_BYTES);
+	if (text && cau_scene_to_json(scene, text, CAU_SCENE_JSON_MAX_BYTES, byte_count, &error)) {
+		free(text);
+		return NULL;
+	}
+	return text;
 }
 
-static bool make(cau_beginning *made, const cau_scene_def *scene, const cau_session *core)
+static bool is_of(const cau_beginning *beginning, const char *definition, size_t byte_count)
+{
+	return beginning->definition && beginning->definition_bytes == byte_count &&
+	       memcmp(beginning->definition, definition, byte_count) == 0;
+}
+
+cau_beginning *cau_beginnings_find(cau_beginnings *all, const cau_scene_def *scene)
+{
+	size_t byte_count = 0;
+	cau_beginning *found = NULL;
+	char *definition = define(scene, &byte_count);
+	for (int i = 0; i < CAU_BEGINNINGS_MOST && definition && !found; i++)
+		if (is_of(&all->kept[i], definition, byte_count))
+			found = &all->kept[i];
+	if (found)
+		found->asked = ++all->asked;
+	free(definition);
+	return found;
+}
+
+static bool take(cau_beginning *made, const cau_scene_def *scene, const cau_session *core)
 {
 	size_t capacity = cau_session_snapshot_bytes(core);
-	*made = (cau_beginning){.scene = malloc(sizeof *scene), .snapshot = malloc(capacity)};
-	if (made->scene && made->snapshot &&
-	    !cau_session_snapshot(core, made->snapshot, capacity, &made->byte_count, NULL)) {
-		memcpy(made->scene, scene, sizeof *scene);
+	*made = (cau_beginning){.snapshot = malloc(capacity)};
+	made->definition = define(scene, &made->definition_bytes);
+	if (made->definition && made->snapshot &&
+	    !cau_session_snapshot(core, made->snapshot, capacity, &made->byte_count, NULL) &&
+	    made->byte_count <= CAU_BEGINNING_BYTES) {
 		void *smaller = realloc(made->snapshot, made->byte_count);
 		made->snapshot = smaller ? smaller : made->snapshot;
 		return true;
 	}
-	free(made->scene);
+	free(made->definition);
 	free(made->snapshot);
 	return false;
 }
@@ -56,24 +80,22 @@ static bool make(cau_beginning *made, const cau_scene_def *scene, const cau_sess
 void cau_beginnings_keep(cau_beginnings *all, const cau_scene_def *scene, const cau_session *core)
 {
 	cau_beginning made;
-	if (!cau_session_has_tension(core) || !make(&made, scene, core))
+	if (!cau_session_has_tension(core) || !take(&made, scene, core))
 		return;
-	if (all->count == CAU_BEGINNINGS_MOST)
-		drop(all, all->count - 1);
-	all->kept[all->count++] = made;
+	cau_beginning *place = asked_for_longest_ago(all);
+	drop(all, place);
+	made.asked = ++all->asked;
 	all->byte_count += made.byte_count;
-	put_first(all, all->count - 1);
-	while (all->byte_count > CAU_BEGINNINGS_BYTES)
-		drop(all, all->count - 1);
+	*place = made;
 }
 
-void cau_beginnings_drop_first(cau_beginnings *all)
+void cau_beginnings_drop(cau_beginnings *all, cau_beginning *found)
 {
-	drop(all, 0);
+	drop(all, found);
 }
 
 void cau_beginnings_finish(cau_beginnings *all)
 {
-	while (all->count)
-		drop(all, all->count - 1);
+	for (int i = 0; i < CAU_BEGINNINGS_MOST; i++)
+		drop(all, &all->kept[i]);
 }

@@ -1,38 +1,43 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // What scenes with built-in tension came to at rest: snapshots of tick 0, so that a second session
-// of a scene begins where the first did, to the bit, and need not settle again. The builder's alone.
+// of a scene begins where the first did, to the bit, and need not settle again. The builder's
+// alone.
 #pragma once
 
 #include <stddef.h>
+#include <stdint.h>
 
 #include "cautery/scene.h"
-#include "cautery/session.h"
+
+typedef struct cau_session cau_session; // cautery/session.h
 
 enum {
-	CAU_BEGINNINGS_MOST = 8,            // scenes
-	CAU_BEGINNINGS_BYTES = 64 << 20,    // of all their snapshots
+	CAU_BEGINNINGS_MOST = 8,       // scenes
+	CAU_BEGINNING_BYTES = 8 << 20, // of a snapshot: some 20,000 vertices; larger ones are not kept
 };
 
 typedef struct cau_beginning {
-	cau_scene_def *scene; // malloc'ed
-	void *snapshot;       // malloc'ed
+	char *definition; // of the scene as JSON; malloc'ed; NULL: the place is empty
+	size_t definition_bytes;
+	void *snapshot; // malloc'ed
 	size_t byte_count;
+	uint64_t asked; // when it was asked for last, by the count of all
 } cau_beginning;
 
 // Zeroed: none.
 typedef struct cau_beginnings {
-	int32_t count;
-	size_t byte_count;                        // of all snapshots
-	cau_beginning kept[CAU_BEGINNINGS_MOST]; // the one that was asked for last comes first
+	size_t byte_count; // of all snapshots
+	uint64_t asked;
+	cau_beginning kept[CAU_BEGINNINGS_MOST];
 } cau_beginnings;
 
-// Of this very scene; NULL: there is none. Borrowed until the next call. That the meshes of files
-// are what they were is seen when it is restored: the core knows the tissue that a snapshot is of.
-const cau_beginning *cau_beginnings_find(cau_beginnings *beginnings, const cau_scene_def *scene);
-// Keeps that of `core`, which was just made of `scene`, if it had to settle. Those that were asked
-// for longest ago give way; without memory nothing is kept.
+// Of a scene of this definition; NULL: there is none. Borrowed until the next call. That its meshes
+// are the same is seen when it is restored: the core knows the tissue that a snapshot is of.
+cau_beginning *cau_beginnings_find(cau_beginnings *beginnings, const cau_scene_def *scene);
+// Keeps that of `core`, which was just made of `scene`, if it had to settle. The one that was asked
+// for longest ago gives way; without memory nothing is kept.
 void cau_beginnings_keep(cau_beginnings *beginnings, const cau_scene_def *scene,
                          const cau_session *core);
-// Forgets the first, which was found and did not serve.
-void cau_beginnings_drop_first(cau_beginnings *beginnings);
+// Forgets one that was found and did not serve.
+void cau_beginnings_drop(cau_beginnings *beginnings, cau_beginning *found);
 void cau_beginnings_finish(cau_beginnings *beginnings);

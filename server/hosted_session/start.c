@@ -36,7 +36,7 @@ static cau_status create(cau_hosted *h, bool unsettled, cau_error *error)
 }
 
 // As the first session of its scene began; settled by itself where that does not serve.
-static cau_status create_as_before(cau_hosted *h, const cau_beginning *known, cau_error *error)
+static cau_status create_as_before(cau_hosted *h, cau_beginning *known, cau_error *error)
 {
 	bool exact = false;
 	cau_status status = create(h, true, error);
@@ -46,7 +46,7 @@ static cau_status create_as_before(cau_hosted *h, const cau_beginning *known, ca
 		cau_log(CAU_LOG_INFO, h->id, "settled_before", "bytes=%zu", known->byte_count);
 		return CAU_OK;
 	}
-	cau_beginnings_drop_first(h->around->beginnings);
+	cau_beginnings_drop(h->around->beginnings, known);
 	cau_session_destroy(h->core);
 	h->core = NULL;
 	return create(h, false, error);
@@ -55,7 +55,7 @@ static cau_status create_as_before(cau_hosted *h, const cau_beginning *known, ca
 static cau_status create_new(cau_hosted *h, cau_error *error)
 {
 	cau_beginnings *beginnings = h->around->beginnings;
-	const cau_beginning *known = cau_beginnings_find(beginnings, h->scene);
+	cau_beginning *known = cau_beginnings_find(beginnings, h->scene);
 	if (known)
 		return create_as_before(h, known, error);
 	cau_status status = create(h, false, error);
