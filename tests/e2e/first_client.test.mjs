@@ -6,6 +6,7 @@ import { readFileSync } from 'node:fs';
 import { join } from 'node:path';
 import { after, before, test } from 'node:test';
 import { WebSocket as Plain } from 'ws';
+import { Client } from './wire/client.mjs';
 import { Daemon } from './wire/daemon.mjs';
 import { smallSession } from './wire/scene.mjs';
 
@@ -102,4 +103,75 @@ test('as protocol/README.md says, nobody drives a tool of the scene, and bits of
 	}
 	assert.ok(inside > 100 && inside < summary.face_count - 100, `${inside} of ${summary.face_count}`);
 	assert.ok([...sides.values()].every((count) => count <= 2), 'what is drawn is a skin: two faces at most meet in an edge');
+});
+
+// ---- the dialogue of protocol/examples.md
+
+// [what the client sends, the answers and notices that come then] of each line of the client's.
+function dialogue() {
+	const page = readFileSync(join(process.env.PAGES, 'protocol', 'examples.md'), 'utf8');
+	const turns = [];
+	for (const line of /^## A dialogue$[^]*?^```\n([^]*?)^```$/m.exec(page)[1].trim().split('\n')) {
+		const message = line.startsWith('{', 2) ? JSON.parse(line.slice(2)) : null;
+		if (line.startsWith('> ') && message)
+			turns.push({ asked: message, told: [] });
+		else if (line.startsWith('< '))
+			turns.at(-1).told.push(message ?? line.slice(2));
+	}
+	return turns;
+}
+
+// What a message is made of: its members and their types, whatever their values.
+function form(value) {
+	if (Array.isArray(value))
+		return value.length ? [form(value[0])] : [];
+	if (value === null || typeof value !== 'object')
+		return typeof value;
+	return Object.fromEntries(Object.entries(value).map(([name, member]) => [name, form(member)]));
+}
+
+test('a daemon answers the dialogue of protocol/examples.md as it stands there', async () => {
+	await smallSession(client, 'demo', { cells: [6, 5] });
+	const url = daemon.url();
+	const robot = new Client(url), answers = new Map();
+	await robot.opened;
+	const onText = robot.onText.bind(robot);
+	robot.onText = (data) => {
+		const message = JSON.parse(data.toString());
+		if ('id' in message)
+			answers.set(message.id, message);
+		onText(data);
+	};
+	const turns = dialogue();
+	assert.ok(turns.length >= 7, `${turns.length} turns`);
+	let stream, frames = 0;
+	robot.onFrame = () => frames++;
+	for (const { asked, told } of turns) {
+		const answer = told.find((message) => message.id !== undefined && !message.method);
+		assert.equal(Boolean(answer), 'id' in asked, 'a request is answered, a notification never');
+		if (!answer) {
+			robot.send(asked);
+			continue;
+		}
+		const before = frames;
+		robot.calls.set(asked.id, { method: asked.method, resolve: () => {}, reject: () => {} });
+		robot.send(asked);
+		await robot.until(() => answers.get(asked.id), `an answer to ${asked.method}`);
+		const got = answers.get(asked.id);
+		assert.deepEqual(form(got), form(answer), asked.method);
+		if (answer.error)
+			assert.deepEqual(got.error, answer.error);
+		for (const shown of told.filter(({ method }) => method)) {
+			const { params } = await robot.until(() => robot.notice(shown.method), shown.method);
+			assert.deepEqual(form(params), form(shown.params), shown.method);
+		}
+		if (asked.method === 'session.join')
+			stream = robot.streams.get(got.result.session_number);
+		if (told.some((message) => typeof message === 'string' && message.startsWith('(binary)')))
+			await robot.until(() => frames > before && stream.synced, `a frame after ${asked.method}`);
+		if (asked.method === 'tool.energize')
+			await robot.until(() => stream.tools.find(({ name }) => name === asked.params.tool).energized, 'energy is on');
+	}
+	assert.equal(robot.stray, undefined);
+	await robot.close();
 });
