@@ -11,6 +11,8 @@ type Point = [number, number, number];
 const BODY_C = 37; // ambient_c of deploy/scenes/fascia.json, by default
 const SHADE_C = 0.6; // what the picture tells apart: a 255th of the range from body to hook
 const HOT_C = 70;
+/** Places in front of the hook that are to be hot: more than this. */
+const ENOUGH = 5;
 /** Places in front of the hook's foot, which hides none of them: towards the camera, and along it. */
 const FRONT_M = [0.0035, 0.0045, 0.0055];
 const ALONG_M = [-0.003, -0.002, -0.001, 0, 0.001, 0.002, 0.003];
@@ -66,15 +68,19 @@ describe('temperature as colour', () => {
     await viewer.grab([0, 0, 0]);
     await page.mouse.up(); // or the hook would follow to the button below
     await page.keyboard.down('Space');
+    // all that is looked at below, where the hook has come to: it may still be on its way when the first of it is hot
     await viewer.until(
-      ([hot, reach]) => {
+      ({ hot, enough, reaches, alongs }) => {
         const [x, y] = window.cautery.tip;
-        return (window.cautery.temperatureAt([x, y - reach, 0]) ?? 0) > hot;
+        const celsius = reaches.flatMap((reach) => alongs.map((along) => window.cautery.temperatureAt([x + along, y - reach, 0]) ?? 0));
+        return celsius.filter((each) => each > hot).length > enough;
       },
-      [HOT_C, FRONT_M[0]] as const,
+      { hot: HOT_C, enough: ENOUGH, reaches: FRONT_M, alongs: ALONG_M },
       'tissue in front of the hook is hot',
     );
-    await viewer.pause(); // the heat stays where it is
+    // The heat stays where it is. A click would take the focus first, and energy with it: tissue cools in a few ticks.
+    await page.getByRole('button', { name: 'Pause' }).evaluate((button: HTMLButtonElement) => { button.click(); });
+    await viewer.until(() => window.cautery.paused, null, 'paused');
     await page.locator('#picture').focus();
     await page.keyboard.up('Space');
     await viewer.drawn();
@@ -86,7 +92,7 @@ describe('temperature as colour', () => {
     const hot = front.filter((_, i) => (near[i] ?? 0) > HOT_C);
     const colours = await viewer.coloursAt([...hot, ...FAR]);
     await viewer.screenshot('temperature');
-    expect(hot.length).toBeGreaterThan(5);
+    expect(hot.length).toBeGreaterThan(ENOUGH);
     for (const celsius of await temperatures(FAR)) expect(Math.abs((celsius ?? 0) - BODY_C)).toBeLessThan(SHADE_C);
     expect(median(colours.slice(0, hot.length).map(redness))).toBeGreaterThan(RED);
     expect(Math.max(...colours.slice(hot.length).map(redness))).toBeLessThan(PALE);
