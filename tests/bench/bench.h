@@ -12,7 +12,8 @@ typedef struct bench_options {
 	int32_t threads, iterations, steps, repeat;
 	int solver, precision; // -1: the scene's
 	double accuracy;       // 0: not measured
-	bool cut, error, scaling, rest, update, remesh, json, help;
+	bool cut, error, scaling, rest, update, remesh, classroom, json, help;
+	int32_t sessions, driven, workers; // of a classroom
 	const char *instruction_set;
 } bench_options;
 
@@ -27,12 +28,15 @@ typedef struct bench_timing {
 } bench_timing;
 
 double bench_now_s(void);
+double bench_cpu_s(void); // of all threads
 // Median and p99 of `count` values; sorts them.
 double bench_quantile(double *values, int32_t count, double quantile);
 
 // Reads the scene by name or path and lays the options over it. NULL and a line on standard error
 // if not.
 cau_scene_def *bench_scene(const bench_options *options);
+// The same with the scene's own accuracy, iterations, solver and precision.
+cau_scene_def *bench_scene_as_it_is(const bench_options *options);
 cau_session *bench_session(const cau_scene_def *scene, const bench_options *options,
                            int32_t threads);
 void bench_submit(cau_session *session, const cau_command *command);
@@ -75,6 +79,14 @@ typedef struct bench_accuracy_result {
 	double rest_core_share; // of a session that rests, of one core
 } bench_accuracy_result;
 int bench_accuracy(const bench_options *options, bench_accuracy_result *result);
+// classroom.c: many sessions at the pace of the clock, some of them driven, by a few workers.
+typedef struct bench_classroom_result {
+	double realtime_factor_min;   // simulated over wall time, of the session that has least
+	double bytes_session_further; // memory that each session after the first adds
+	double cores;                 // that were busy with it
+	int32_t elements_removed;     // by all tools
+} bench_classroom_result;
+int bench_classroom(const bench_options *options, bench_classroom_result *result);
 // steps.c: the tools of plain steps, one lit above the tissue, one pressed into it.
 void bench_place_tools(cau_session *session);
 

@@ -140,6 +140,17 @@ static void print_remesh(const bench_options *options, const bench_remesh_result
 	       r->our_mask_bytes, r->our_s);
 }
 
+static void print_classroom(const bench_options *options, const bench_classroom_result *result)
+{
+	printf(options->json ? "\"sessions\":%d,\"driven\":%d,\"workers\":%d,"
+	                       "\"realtime_factor_min\":%.6g,\"bytes_session_further\":%.0f,"
+	                       "\"cores\":%.4g,\"class_elements_removed\":%d"
+	                     : "  %d sessions, %d driven, %d workers: %.4f of real time at least, %.0f "
+	                       "bytes each after the first, %.2f cores, %d elements removed\n",
+	       options->sessions, options->driven, options->workers, result->realtime_factor_min,
+	       result->bytes_session_further, result->cores, result->elements_removed);
+}
+
 static void print_machine(const bench_options *options, const bench_steps_result *result,
                           const bench_cpu_time *before)
 {
@@ -165,6 +176,7 @@ int main(int argc, char **argv)
 	bench_accuracy_result accuracy = {0};
 	bench_update_result update = {0};
 	bench_remesh_result remesh = {0};
+	bench_classroom_result classroom = {0};
 	if (!bench_options_read(argc, argv, &options, stderr))
 		return 2;
 	if (options.help) {
@@ -178,7 +190,8 @@ int main(int argc, char **argv)
 	    ((options.accuracy > 0 || options.rest) && bench_accuracy(&options, &accuracy)) ||
 	    (options.scaling && bench_scaling(&options, &scaling)) ||
 	    (options.update && bench_update(&options, &update)) ||
-	    (options.remesh && bench_remesh(&options, &remesh)))
+	    (options.remesh && bench_remesh(&options, &remesh)) ||
+	    (options.classroom && bench_classroom(&options, &classroom)))
 		return 1;
 	if (options.json)
 		printf("{\"scene\":\"%s\",\"threads\":%d,\"iterations\":%d,", options.scene,
@@ -209,6 +222,10 @@ int main(int argc, char **argv)
 	if (options.remesh) {
 		fputs(options.json ? "," : "", stdout);
 		print_remesh(&options, &remesh);
+	}
+	if (options.classroom) {
+		fputs(options.json ? "," : "", stdout);
+		print_classroom(&options, &classroom);
 	}
 	fputs(options.json ? "," : "", stdout);
 	print_machine(&options, &steps, &before);

@@ -41,6 +41,15 @@ static const cau_option rows[] = {
      .meaning = "what keeping the matrix in step with a cut costs, three ways"},
 	{"remesh", NULL, CAU_OPTION_FLAG, AT(remesh),
      .meaning = "the scene's cut by a method that changes the topology, beside ours"},
+	{"classroom", NULL, CAU_OPTION_FLAG, AT(classroom),
+     .meaning = "many sessions at the pace of the clock, N ticks long, by a few workers; each as\n"
+                "accurate as its scene says"},
+	{"sessions", "S", CAU_OPTION_WHOLE, AT(sessions), 1, 1024,
+     .meaning = "of the classroom (default 64)"},
+	{"driven", "D", CAU_OPTION_WHOLE, AT(driven), 0, 1024,
+     .meaning = "of them, along the scene's cut, to and fro (default 4)"},
+	{"workers", "W", CAU_OPTION_WHOLE, AT(workers), 1, 16,
+     .meaning = "threads that step them (default 2)"},
 	{"json", NULL, CAU_OPTION_FLAG, AT(json),
      .meaning = "the last line of standard output is one JSON object; its `machine` says\n"
                 "on what it was measured, and what else that machine did meanwhile"},
@@ -69,6 +78,9 @@ bool bench_options_read(int argument_count, char **arguments, bench_options *opt
 	                           .iterations = 10,
 	                           .steps = 300,
 	                           .repeat = 1,
+	                           .sessions = 64,
+	                           .driven = 4,
+	                           .workers = 2,
 	                           .solver = -1,
 	                           .precision = -1};
 	return cau_options_read(&line, argument_count, arguments, options, NULL, complaints);

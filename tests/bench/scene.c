@@ -15,6 +15,13 @@ double bench_now_s(void)
 	return (double)now.tv_sec + 1e-9 * (double)now.tv_nsec;
 }
 
+double bench_cpu_s(void)
+{
+	struct timespec now;
+	clock_gettime(CLOCK_PROCESS_CPUTIME_ID, &now);
+	return (double)now.tv_sec + 1e-9 * (double)now.tv_nsec;
+}
+
 static int compare(const void *a, const void *b)
 {
 	double x = *(const double *)a, y = *(const double *)b;
@@ -46,7 +53,7 @@ static char *read_file(const char *path, size_t *bytes)
 	return text;
 }
 
-cau_scene_def *bench_scene(const bench_options *options)
+cau_scene_def *bench_scene_as_it_is(const bench_options *options)
 {
 	char path[512];
 	if (strchr(options->scene, '/') || strchr(options->scene, '.'))
@@ -65,6 +72,14 @@ cau_scene_def *bench_scene(const bench_options *options)
 		return NULL;
 	}
 	free(text);
+	return scene;
+}
+
+cau_scene_def *bench_scene(const bench_options *options)
+{
+	cau_scene_def *scene = bench_scene_as_it_is(options);
+	if (!scene)
+		return NULL;
 	scene->iterations = options->iterations;
 	scene->accuracy = 0; // so many in each step
 	if (options->solver >= 0)
