@@ -196,6 +196,15 @@ static uint64_t hash_definition(const cau_session *session)
 	return hash_array(hash, t->hinge_weight, t->hinge_count, sizeof(double));
 }
 
+// Snapshots have the first part, and none has ever had which material an element has.
+uint64_t cau_session_tissue_hash(const cau_session *session)
+{
+	const cau_tissue *t = &session->tissue;
+	uint64_t hash = hash_array(session->definition_hash, t->triangle_material, t->triangle_count,
+	                           sizeof(int32_t));
+	return hash_array(hash, t->tetrahedron_material, t->tetrahedron_count, sizeof(int32_t));
+}
+
 static cau_status build(cau_session *session, const cau_session_def *def, cau_error *error)
 {
 	cau_status status = cau_scene_check(def->scene, error);

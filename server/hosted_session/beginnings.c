@@ -4,15 +4,11 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "cautery/assert.h"
 #include "cautery/scene_json.h"
 #include "cautery/session.h"
 
-static void drop(cau_beginnings *all, cau_beginning *beginning)
+void cau_beginning_drop(cau_beginning *beginning)
 {
-	CAU_ASSERT(all->byte_count >= beginning->byte_count, "%zu bytes of %zu", beginning->byte_count,
-	           all->byte_count);
-	all->byte_count -= beginning->byte_count;
 	free(beginning->definition);
 	free(beginning->snapshot);
 	*beginning = (cau_beginning){0};
@@ -37,7 +33,8 @@ static char *define(const cau_scene_def *scene, size_t *byte_count)
 		free(text);
 		return NULL;
 	}
-	return text;
+	char *smaller = text ? realloc(text, *byte_count + 1) : NULL;
+	return smaller ? smaller : text;
 }
 
 static bool is_of(const cau_beginning *beginning, const char *definition, size_t byte_count)
@@ -63,7 +60,8 @@ cau_beginning *cau_beginnings_find(cau_beginnings *all, const cau_scene_def *sce
 static bool take(cau_beginning *made, const cau_scene_def *scene, const cau_session *core)
 {
 	size_t capacity = cau_session_snapshot_bytes(core);
-	*made = (cau_beginning){.snapshot = malloc(capacity)};
+	*made =
+		(cau_beginning){.snapshot = malloc(capacity), .tissue_hash = cau_session_tissue_hash(core)};
 	made->definition = define(scene, &made->definition_bytes);
 	if (made->definition && made->snapshot &&
 	    !cau_session_snapshot(core, made->snapshot, capacity, &made->byte_count, NULL) &&
@@ -72,8 +70,7 @@ static bool take(cau_beginning *made, const cau_scene_def *scene, const cau_sess
 		made->snapshot = smaller ? smaller : made->snapshot;
 		return true;
 	}
-	free(made->definition);
-	free(made->snapshot);
+	cau_beginning_drop(made);
 	return false;
 }
 
@@ -83,19 +80,13 @@ void cau_beginnings_keep(cau_beginnings *all, const cau_scene_def *scene, const 
 	if (!cau_session_has_tension(core) || !take(&made, scene, core))
 		return;
 	cau_beginning *place = asked_for_longest_ago(all);
-	drop(all, place);
+	cau_beginning_drop(place);
 	made.asked = ++all->asked;
-	all->byte_count += made.byte_count;
 	*place = made;
-}
-
-void cau_beginnings_drop(cau_beginnings *all, cau_beginning *found)
-{
-	drop(all, found);
 }
 
 void cau_beginnings_finish(cau_beginnings *all)
 {
 	for (int i = 0; i < CAU_BEGINNINGS_MOST; i++)
-		drop(all, &all->kept[i]);
+		cau_beginning_drop(&all->kept[i]);
 }

@@ -35,33 +35,41 @@ static cau_status create(cau_hosted *h, bool unsettled, cau_error *error)
 	return cau_session_create(&def, &h->core, error);
 }
 
+static cau_status create_first(cau_hosted *h, cau_error *error)
+{
+	cau_status status = create(h, false, error);
+	if (!status)
+		cau_beginnings_keep(h->around->beginnings, h->scene, h->core);
+	return status;
+}
+
+static bool begin_as(cau_hosted *h, const cau_beginning *known)
+{
+	bool exact = false;
+	return known->tissue_hash == cau_session_tissue_hash(h->core) &&
+	       !cau_session_restore(h->core, known->snapshot, known->byte_count, &exact, NULL) && exact;
+}
+
 // As the first session of its scene began; settled by itself where that does not serve.
 static cau_status create_as_before(cau_hosted *h, cau_beginning *known, cau_error *error)
 {
-	bool exact = false;
 	cau_status status = create(h, true, error);
 	if (status)
 		return status;
-	if (!cau_session_restore(h->core, known->snapshot, known->byte_count, &exact, error) && exact) {
+	if (begin_as(h, known)) {
 		cau_log(CAU_LOG_INFO, h->id, "settled_before", "bytes=%zu", known->byte_count);
 		return CAU_OK;
 	}
-	cau_beginnings_drop(h->around->beginnings, known);
+	cau_beginning_drop(known);
 	cau_session_destroy(h->core);
 	h->core = NULL;
-	return create(h, false, error);
+	return create_first(h, error);
 }
 
 static cau_status create_new(cau_hosted *h, cau_error *error)
 {
-	cau_beginnings *beginnings = h->around->beginnings;
-	cau_beginning *known = cau_beginnings_find(beginnings, h->scene);
-	if (known)
-		return create_as_before(h, known, error);
-	cau_status status = create(h, false, error);
-	if (!status)
-		cau_beginnings_keep(beginnings, h->scene, h->core);
-	return status;
+	cau_beginning *known = cau_beginnings_find(h->around->beginnings, h->scene);
+	return known ? create_as_before(h, known, error) : create_first(h, error);
 }
 
 static cau_status build(cau_hosted *h, cau_error *error)

@@ -16,7 +16,6 @@ enum { SETTLE_TICKS = 600, WARM_UP_TICKS = 120 };
 
 typedef struct desk {
 	cau_session *session;
-	cau_pose from; // where the tool stood
 	double first_due_s;
 	int64_t ticks;   // of the class, so far
 	int64_t counted; // when measuring began

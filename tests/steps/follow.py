@@ -15,8 +15,8 @@ colon and says what to do with it:
 LINE must be in the file once, whatever stands before and after it on the line as white space. A
 block that no such sentence precedes, and a sentence without a block, are errors: nothing in the
 list may be left to the reader. Every one of TESTS, with commas between them, must have been run by
-ctest and passed. At the end the files that were changed are counted, generated and test files left
-out: at most MOST.
+ctest and passed by what the list runs. At the end the files that a list changed are counted, generated
+and test files left out: at most MOST.
 
 Several lists are followed together, as by somebody who adds several things at once: the edits of all,
 then what each runs, which every list has at its end. So what they all touch is built once.
@@ -130,38 +130,30 @@ def run(copy, script):
     return "".join(said)
 
 
-def apply(copy, directive, block):
-    """Makes or changes a file."""
-    print(f"==== {directive}", flush=True)
-    making, editing = MAKE.match(directive), EDIT.match(directive)
-    if making:
-        make(copy, making.group(1), block)
-    elif editing:
-        edit(copy, editing.group(1), editing.group(2), editing.group(3), block)
-    else:
-        raise Wrong(f"not a step that can be followed: {directive}")
+def edit_all(copy, steps):
+    """Makes and changes what the list says; returns the files."""
+    edited = set()
+    for directive, block in steps:
+        print(f"==== {directive}", flush=True)
+        making, editing = MAKE.match(directive), EDIT.match(directive)
+        if making:
+            make(copy, making.group(1), block)
+        elif editing:
+            edit(copy, editing.group(1), editing.group(2), editing.group(3), block)
+        elif RUN.match(directive):
+            continue
+        else:
+            raise Wrong(f"not a step that can be followed: {directive}")
+        edited.add((making or editing).group(1))
+    return edited
 
 
-def scripts_of(steps):
-    """What a list runs, which is its end: everything else comes before."""
+def run_all(copy, steps):
+    """Runs what the list says; returns what was said."""
     runs = [bool(RUN.match(directive)) for directive, _ in steps]
     if runs != sorted(runs):
         raise Wrong("something is to be done after what is to be run")
-    return [block for directive, block in steps if RUN.match(directive)]
-
-
-def follow(copy, lists, edits_only=False):
-    """Does every step of all lists; returns what the scripts said."""
-    scripts = [script for steps in lists for script in scripts_of(steps)]
-    for steps in lists:
-        for directive, block in steps:
-            if not RUN.match(directive):
-                apply(copy, directive, block)
-    said = ""
-    for script in [] if edits_only else scripts:
-        print(f"==== Run:\n{script}", flush=True)
-        said += run(copy, script)
-    return said
+    return "".join(run(copy, block) for directive, block in steps if RUN.match(directive))
 
 
 def files_of_copy(copy):
@@ -203,14 +195,41 @@ def changed_files(copy, before):
     return sorted(name for name, now in fingerprints(copy).items() if before.get(name) != now)
 
 
-def lists_of(root, arguments):
-    """(heading, steps, most files, tests) of each list that the arguments name."""
-    found = []
-    for first in range(0, len(arguments), 4):
-        page, section, most, tests = arguments[first:first + 4]
+class List:
+    """One list of a page, with what it may change at most and the tests that it adds."""
+
+    def __init__(self, root, page, section, most, tests):
         with open(os.path.join(root, page), encoding="utf-8") as file:
-            found.append((section, steps_of(section_of(file.read(), section)), int(most), tests.split(",")))
-    return found
+            self.steps = steps_of(section_of(file.read(), section))
+        self.page, self.section, self.most, self.tests = page, section, int(most), tests.split(",")
+        self.changed = set()
+
+    def edit(self, copy):
+        self.changed |= edit_all(copy, self.steps)
+
+    def run(self, copy):
+        """Returns what running it changed besides."""
+        before = fingerprints(copy)
+        said = run_all(copy, self.steps)
+        for test in self.tests:
+            if not re.search(rf" {re.escape(test)} \.+ +Passed ", said):
+                raise Wrong(f"{self.section}: the test {test} was not run, or did not pass")
+        return set(changed_files(copy, before))
+
+    def count(self):
+        counted = sorted(name for name in self.changed if name not in GENERATED and not name.startswith("tests/"))
+        print(f"{self.section}: {len(counted)} files, generated and test files not counted:", *counted, sep="\n  ")
+        if len(counted) > self.most:
+            raise Wrong(f"{self.section}: more than {self.most} files")
+
+
+def run_lists(copy, lists):
+    """What one list's commands wrote, others of its page would have: it counts for each of them."""
+    for each in lists:
+        wrote = each.run(copy)
+        for other in lists:
+            if other.page == each.page:
+                other.changed |= wrote
 
 
 def main():
@@ -219,19 +238,13 @@ def main():
     root, copy = arguments[:2]
     os.makedirs(copy, exist_ok=True)
     bring_up_to_date(root, copy)
-    before = fingerprints(copy)
-    lists = lists_of(root, arguments[2:])
-    said = follow(copy, [steps for _, steps, _, _ in lists], edits_only)
-    for _, _, _, tests in lists:
-        for test in [] if edits_only else tests:
-            if not re.search(rf" {re.escape(test)} \.+ +Passed ", said):
-                raise Wrong(f"the test {test} was not run, or did not pass")
-    changed = [name for name in changed_files(copy, before)
-               if name not in GENERATED and not name.startswith("tests/")]
-    what, most = ", ".join(section for section, *_ in lists), sum(most for _, _, most, _ in lists)
-    print(f"{what}: {len(changed)} files, generated and test files not counted:", *changed, sep="\n  ")
-    if len(changed) > most:
-        raise Wrong(f"more than {most} files")
+    lists = [List(root, *arguments[first:first + 4]) for first in range(2, len(arguments), 4)]
+    for each in lists:
+        each.edit(copy)
+    if not edits_only:
+        run_lists(copy, lists)
+    for each in lists:
+        each.count()
 
 
 if __name__ == "__main__":

@@ -73,7 +73,9 @@ class Following(unittest.TestCase):
         write(self.copy, "list.txt", "first\n  last\n")
 
     def follow(self, page):
-        return follow.follow(self.copy, [follow.steps_of(follow.section_of(page, "Adding a thing"))])
+        steps = follow.steps_of(follow.section_of(page, "Adding a thing"))
+        follow.edit_all(self.copy, steps)
+        return follow.run_all(self.copy, steps)
 
     def refuse(self, page, words):
         with self.assertRaisesRegex(follow.Wrong, words):
@@ -101,14 +103,32 @@ class Following(unittest.TestCase):
 
     def test_edits_alone_run_nothing(self):
         steps = follow.steps_of(follow.section_of(PAGE.replace("cat list.txt", "false"), "Adding a thing"))
-        self.assertEqual(follow.follow(self.copy, [steps], edits_only=True), "")
+        self.assertEqual(follow.edit_all(self.copy, steps), {"table.h", "things/new.c", "list.txt"})
         self.assertEqual(read(self.copy, "list.txt"), "first\nsecond\nthird\nlast\n")
 
-    def test_lists_together_are_edited_before_anything_runs(self):
-        first = "Make `a.txt`:\n\n```\na\n```\n\nRun:\n\n```sh\ncat a.txt b.txt\n```\n"
-        second = "In `a.txt`, below the line `a`:\n\n```\nc\n```\n\nMake `b.txt`:\n\n```\nb\n```\n\nRun:\n\n```sh\ncat b.txt\n```\n"
-        lists = [follow.steps_of(text.splitlines()) for text in (first, second)]
-        self.assertEqual(follow.follow(self.copy, lists), "a\nc\nb\nb\n")
+    def lists(self, *texts, tests="t"):
+        for number, text in enumerate(texts):
+            write(self.copy, f"{number}.md", f"# P\n\n## S\n\n{text}")
+        return [follow.List(self.copy, f"{number}.md", "S", 1, tests) for number in range(len(texts))]
+
+    def test_each_list_runs_its_own_tests(self):
+        passes = "Run:\n\n```sh\necho ' t ...   Passed '\n```\n"
+        one, other = self.lists(passes, "Run:\n\n```sh\ntrue\n```\n")
+        one.run(self.copy)
+        with self.assertRaisesRegex(follow.Wrong, "the test t was not run"):
+            other.run(self.copy)
+
+    def test_what_is_written_counts_for_its_page(self):
+        writes = "Make `{}.txt`:\n\n```\na\n```\n\nRun:\n\n```sh\necho ' t ...   Passed '; date >written.txt\n```\n"
+        one, other = self.lists(writes.format("one"), writes.format("other").replace("date >written.txt", "true"))
+        for each in (one, other):
+            each.edit(self.copy)
+        follow.run_lists(self.copy, [one, other])
+        self.assertEqual((one.changed, other.changed), ({"one.txt", "written.txt"}, {"other.txt"}))
+        other.page = one.page
+        follow.run_lists(self.copy, [one, other])
+        with self.assertRaisesRegex(follow.Wrong, "more than 1 files"):
+            one.count()
 
     def test_what_runs_ends_a_list(self):
         self.refuse(PAGE.replace("## Another", "5. Make `late.txt`:\n\n   ```\n   late\n   ```\n\n## Another"),

@@ -96,6 +96,9 @@ void cau_session_destroy(cau_session *session); // takes NULL
 // Whether its scene has built-in tension, which its creation brought to rest unless it was
 // unsettled.
 bool cau_session_has_tension(const cau_session *session);
+// Hash of what its meshes came to, the material of each element among it. Sessions of equal scenes
+// for which it is equal come to rest alike, to the bit.
+uint64_t cau_session_tissue_hash(const cau_session *session);
 
 // Makes the session's helper threads anew, children of the caller: they have the priority of who
 // steps it, whoever created it. Waits for what they do.

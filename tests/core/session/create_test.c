@@ -192,8 +192,7 @@ static void expect_restored(cau_session *session, stage_bytes shot)
 static uint64_t hash_of_burning(cau_session *session, int ticks)
 {
 	const cau_cut_def *cut = &session->scene->cut;
-	const cau_pose *first = &stage_tool(session, cut->tool)->pose;
-	cau_pose from = *first;
+	const cau_pose from = stage_tool(session, cut->tool)->pose;
 	for (int tick = 0; tick < ticks; tick++) {
 		stage_cut_tick(session, cut, &from, tick);
 		stage_step(session, 1);
@@ -233,6 +232,26 @@ static void what_begins_with_a_snapshot_need_not_settle(void **state)
 	}
 }
 
+// A mesh's file may give an element another material and change nothing else.
+static void tissue_is_known_by_its_materials_too(void **state)
+{
+	(void)state;
+	cau_scene_def *scene = busy_scene();
+	cau_session *session = stage_open(scene, 1), *same = stage_open(scene, 1);
+	cau_tissue *tissue = &session->tissue;
+	uint64_t hash = cau_session_tissue_hash(session);
+	assert_int_equal(cau_session_tissue_hash(same), hash);
+	tissue->tetrahedron_material[tissue->tetrahedron_count - 1]++;
+	assert_true(cau_session_tissue_hash(session) != hash);
+	tissue->tetrahedron_material[tissue->tetrahedron_count - 1]--;
+	assert_int_equal(cau_session_tissue_hash(session), hash);
+	tissue->triangle_material[0]++;
+	assert_true(cau_session_tissue_hash(session) != hash);
+	cau_session_destroy(same);
+	cau_session_destroy(session);
+	free(scene);
+}
+
 int main(void)
 {
 	const struct CMUnitTest tests[] = {
@@ -241,6 +260,7 @@ int main(void)
 		cmocka_unit_test(a_refusal_at_any_border_leaves_nothing),
 		cmocka_unit_test(a_session_taken_over_mid_cut_keeps_its_bits),
 		cmocka_unit_test(what_begins_with_a_snapshot_need_not_settle),
+		cmocka_unit_test(tissue_is_known_by_its_materials_too),
 	};
 	return cmocka_run_group_tests(tests, NULL, NULL);
 }

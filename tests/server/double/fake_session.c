@@ -46,6 +46,7 @@ struct cau_session {
 	char name[CAU_NAME_BYTES], description[CAU_TEXT_BYTES];
 	double step_s;
 	bool tension;
+	uint64_t tissue_hash;
 	bool slow; // a force of 1000 N along y makes steps take SLOW_STEP_S, until it is another
 	double velocity[VERTICES * 3], rest[VERTICES * 3];
 	int32_t face[FACES * 3], face_layer[FACES];
@@ -138,6 +139,7 @@ cau_status cau_session_create(const cau_session_def *def, cau_session **made, ca
 	s->step_s = def->scene->step_s;
 	memcpy(s->state.gravity, def->scene->gravity_m_s2, sizeof s->state.gravity);
 	s->tension = cau_fake_hooks_set.tension;
+	s->tissue_hash = cau_fake_hooks_set.tissue_hash;
 	build_sheet(s);
 	for (int32_t i = 0; i < def->scene->tool_count; i++)
 		add_tool(s, &def->scene->tools[i]);
@@ -148,6 +150,11 @@ cau_status cau_session_create(const cau_session_def *def, cau_session **made, ca
 bool cau_session_has_tension(const cau_session *s)
 {
 	return s->tension;
+}
+
+uint64_t cau_session_tissue_hash(const cau_session *s)
+{
+	return s->tissue_hash;
 }
 
 void cau_session_destroy(cau_session *s)

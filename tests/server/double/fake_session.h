@@ -10,6 +10,7 @@ typedef struct cau_fake_hooks {
 	void (*build)(cau_build_stage next);
 	// New sessions say that they have built-in tension.
 	bool tension;
+	uint64_t tissue_hash; // theirs
 	// A snapshot is about to be restored; what is not CAU_OK fails it, half restored.
 	cau_status (*restore)(void);
 	// The core is about to take this command.

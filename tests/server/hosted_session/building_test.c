@@ -9,6 +9,7 @@
 
 #include <cmocka.h>
 
+#include "server/double/fake_session.h"
 #include "server/hosted_session/hosted_fixture.h"
 
 // ---- tests --------------------------------------------------------------------------------------
@@ -248,6 +249,45 @@ static void a_large_mesh_is_a_long_job_whatever_it_comes_from(void **state)
 	unlink(path);
 }
 
+// ---- a further session of a scene that had to settle
+static int made;
+
+static void count_made(cau_build_stage next)
+{
+	made += next == CAU_BUILD_STAGE_COUNT;
+}
+
+// How many cores it took to make a session.
+static int cores_of_another(void)
+{
+	made = 0;
+	if (t.h)
+		hosted_let_go();
+	memset(t.answers, 0, sizeof t.answers);
+	hosted_begin(NOWHERE, 0);
+	assert_int_equal(hosted_await(0)->status, CAU_OK);
+	hosted_destroy(1, 0);
+	assert_int_equal(hosted_await(1)->status, CAU_OK);
+	return made;
+}
+
+static void what_is_known_serves_unless_the_tissue_is_another(void **state)
+{
+	(void)state;
+	cau_fake_hooks_set.build = count_made;
+	cau_fake_hooks_set.tension = true;
+	cau_fake_hooks_set.tissue_hash = 1;
+	assert_int_equal(cores_of_another(), 1);
+	assert_int_equal(cores_of_another(), 1);
+	cau_fake_hooks_set.tissue_hash = 2; // its mesh has changed
+	assert_int_equal(cores_of_another(), 2);
+	assert_int_equal(cores_of_another(), 1); // and that is known now
+	atomic_store(&t.fail_restore, true);
+	assert_int_equal(cores_of_another(), 2);
+	assert_int_equal(cores_of_another(), 1);
+	cau_beginnings_finish(&t.beginnings);
+}
+
 int main(void)
 {
 #define TEST(function)                                                                             \
@@ -266,6 +306,7 @@ int main(void)
 		TEST(begun_after_the_builder_stopped_it_is_refused),
 		TEST(beyond_a_limit_it_is_refused_by_the_settings_name),
 		TEST(a_large_mesh_is_a_long_job_whatever_it_comes_from),
+		TEST(what_is_known_serves_unless_the_tissue_is_another),
 	};
 	return cmocka_run_group_tests(tests, NULL, NULL);
 }
