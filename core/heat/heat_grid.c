@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "heat/heat_grid.h"
 
-#include <stdlib.h>
 #include <string.h>
 
 #include "cautery/assert.h"
@@ -97,15 +96,13 @@ cau_status cau_heat_grid_create(cau_heat_grid *grid, const cau_tool_def *tool, d
 	grid->step_m = tool->grid_step_m;
 	grid->diffusivity = tool->diffusivity_m2_s;
 	grid->ambient_c = ambient_c;
-	size_t bytes = (size_t)node_count(grid) * sizeof(float);
-	grid->temperature = malloc(bytes);
-	grid->next = malloc(bytes);
-	grid->rate = malloc(bytes);
-	if (!grid->temperature || !grid->next || !grid->rate) {
-		cau_heat_grid_finish(grid);
+	size_t nodes = (size_t)node_count(grid);
+	if (!cau_pages_take(&grid->pages, 3 * nodes * sizeof(float)))
 		return cau_fail(error, CAU_NO_MEMORY, "grid_cells", "no memory for %d^3 nodes",
 		                (int)tool->grid_cells);
-	}
+	grid->temperature = grid->pages.start;
+	grid->next = grid->temperature + nodes;
+	grid->rate = grid->next + nodes;
 	origin_for(grid, tool, pose, grid->origin);
 	rest(grid);
 	return CAU_OK;
@@ -113,9 +110,7 @@ cau_status cau_heat_grid_create(cau_heat_grid *grid, const cau_tool_def *tool, d
 
 void cau_heat_grid_finish(cau_heat_grid *grid)
 {
-	free(grid->temperature);
-	free(grid->next);
-	free(grid->rate);
+	cau_pages_give_back(&grid->pages);
 	*grid = (cau_heat_grid){0};
 }
 

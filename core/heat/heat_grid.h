@@ -4,6 +4,7 @@
 
 #include <stdbool.h>
 
+#include "base/pages.h"
 #include "base/vector.h"
 #include "cautery/status.h"
 #include "tool/tool_shape.h"
@@ -18,6 +19,7 @@ typedef struct cau_heat_grid {
 	int64_t origin[3];  // node (0,0,0) in whole cells of the world: its position is origin * dl
 	float coldest_c;    // over the nodes, after the last advance
 	float warmest_c;    // likewise; equal to coldest_c where every node is at ambient
+	cau_pages pages;    // of the three fields
 	float *temperature; // degC, (N x N x N), x fastest
 	float *next;        // scratch of the same size
 	float *rate;        // scratch, (N x N x N): alpha dt / dl^2, 0 at nodes held by the tool

@@ -279,6 +279,7 @@ void cau_session_destroy(cau_session *session)
 	cau_pool_destroy(session->pool);
 	cau_arena_finish(&session->rebuilt_arena);
 	cau_arena_finish(&session->arena);
+	cau_image_release(session->image);
 	free(session);
 }
 

@@ -2,6 +2,7 @@
 // What a session is made of, between the files of this room.
 #pragma once
 
+#include "base/image.h"
 #include "base/memory.h"
 #include "base/pool.h"
 #include "cautery/session.h"
@@ -72,6 +73,7 @@ typedef struct cau_watch {
 struct cau_session {
 	cau_arena arena;
 	cau_arena rebuilt_arena; // the system since pins last changed: pins.c
+	cau_image *image;        // share.c: what it has in common with others; NULL: nothing
 	cau_scene_def *scene;
 	uint64_t definition_hash;
 	cau_tissue tissue;

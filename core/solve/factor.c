@@ -6,6 +6,7 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "base/large.h"
 #include "cautery/assert.h"
 
 struct cau_factor {
@@ -42,8 +43,20 @@ static cholmod_sparse view_of(const cau_matrix *matrix)
 	};
 }
 
+// A factor's arrays lie in pages that sessions may share. The library has one set of functions for
+// the whole program.
+static void choose_memory(void)
+{
+	SuiteSparse_config.malloc_func = cau_large_malloc;
+	SuiteSparse_config.calloc_func = cau_large_calloc;
+	SuiteSparse_config.realloc_func = cau_large_realloc;
+	SuiteSparse_config.free_func = cau_large_free;
+}
+
 static void start(cholmod_common *common)
 {
+	static pthread_once_t chosen = PTHREAD_ONCE_INIT;
+	pthread_once(&chosen, choose_memory);
 	cholmod_start(common);
 	common->print = 0;
 	common->try_catch = 1;
@@ -69,7 +82,7 @@ static cau_status create_empty(cau_factor **out, cau_error *error)
 static cau_status finish_analysis(cau_factor *factor, cau_error *error)
 {
 	int32_t n = (int32_t)factor->l->n;
-	factor->inverse = malloc((size_t)n * sizeof *factor->inverse);
+	factor->inverse = cau_large_malloc((size_t)n * sizeof *factor->inverse);
 	if (!factor->inverse)
 		return cau_fail(error, CAU_NO_MEMORY, NULL, "no memory for a factor of %d rows", n);
 	const int *permutation = factor->l->Perm;
@@ -148,7 +161,7 @@ void cau_factor_destroy(cau_factor *factor)
 	cholmod_free_dense(&factor->e, &factor->common);
 	cholmod_free_factor(&factor->l, &factor->common);
 	cholmod_finish(&factor->common);
-	free(factor->inverse);
+	cau_large_free(factor->inverse);
 	free(factor);
 }
 
@@ -268,4 +281,14 @@ cau_status cau_factor_solve(cau_factor *factor, const double *b, double *x, cau_
 		return cau_fail(error, CAU_NO_MEMORY, NULL, "no memory to solve");
 	memcpy(x, factor->x->x, bytes);
 	return CAU_OK;
+}
+
+int32_t cau_factor_pages(const cau_factor *factor, cau_pages *pages)
+{
+	const cholmod_factor *l = factor->l;
+	const void *const array[CAU_FACTOR_PARTS] = {
+		l->x, l->i, l->p, l->nz, l->Perm, l->ColCount, l->next, l->prev, factor->inverse};
+	for (int k = 0; k < CAU_FACTOR_PARTS; k++)
+		pages[k] = cau_large_pages(array[k]);
+	return CAU_FACTOR_PARTS;
 }

@@ -5,11 +5,15 @@
 
 #include <stdint.h>
 
+#include "base/pages.h"
 #include "cautery/status.h"
 
 typedef struct cau_factor cau_factor;
 
-enum { CAU_UPDATE_RANK = 8 }; // columns of one update at most
+enum {
+	CAU_UPDATE_RANK = 8,  // columns of one update at most
+	CAU_FACTOR_PARTS = 9, // arrays that it is made of
+};
 
 // Symmetric matrix, lower triangle by columns, rows ascending, diagonal present.
 typedef struct cau_matrix {
@@ -52,3 +56,7 @@ double cau_factor_least_pivot(const cau_factor *factor);
 // Reference solve in double, x = A^-1 b for three columns each of n (b and x n x 3 column-major).
 // Allocates on first use only.
 cau_status cau_factor_solve(cau_factor *factor, const double *b, double *x, cau_error *error);
+
+// The pages of its arrays (CAU_FACTOR_PARTS), empty where an array is small; returns how many.
+// Borrowed until the next operation.
+int32_t cau_factor_pages(const cau_factor *factor, cau_pages *pages);

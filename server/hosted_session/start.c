@@ -230,8 +230,9 @@ void cau_hosted_start(cau_hosted *h)
 		cau_hosted_fail_start(h, &error);
 		return;
 	}
-	cau_log(CAU_LOG_INFO, h->id, "built", "seconds=%.3f vertices=%d", cau_monotonic_s() - began_s,
-	        h->info.vertex_count);
+	size_t shared = cau_session_share(h->core);
+	cau_log(CAU_LOG_INFO, h->id, "built", "seconds=%.3f vertices=%d shared_bytes=%zu",
+	        cau_monotonic_s() - began_s, h->info.vertex_count, shared);
 	if (!h->replaying)
 		cau_hosted_started(h);
 }

@@ -165,6 +165,8 @@ static cau_session *seat(const cau_scene_def *scene, const cau_session *first)
 	if (!status && first)
 		status = cau_session_restore(session, shot, bytes, NULL, &error);
 	free(shot);
+	if (!status)
+		cau_session_share(session);
 	if (status) {
 		fprintf(stderr, "cautery-bench: %s %s\n", error.path, error.reason);
 		cau_session_destroy(session);

@@ -42,6 +42,8 @@ test('a second session of a scene begins where the first did, and need not settl
 	assert.deepEqual(seen[2], seen[0]);
 	const spared = daemon.lines.map((line) => /session=\S+-(first|second|third) event=settled_before/.exec(line)?.[1]);
 	assert.deepEqual(spared.filter(Boolean), ['second', 'third']);
+	const shared = daemon.lines.map((line) => /-(?:first|second|third) event=built .*shared_bytes=(\d+)/.exec(line)?.[1]);
+	assert.equal(shared.filter((bytes) => Number(bytes) > 500_000).length, 3);
 	await client.close();
 });
 

@@ -100,6 +100,13 @@ bool cau_session_has_tension(const cau_session *session);
 // for which it is equal come to rest alike, to the bit.
 uint64_t cau_session_tissue_hash(const cau_session *session);
 
+// Lets the session share memory with the others of equal tissue in this program for which it was
+// called: where pages are equal, byte by byte, there is one of them, and the first write makes a
+// page the writer's own. Steps, results and hashes are as without. Once, when the session is
+// what it begins as. Returns the bytes that it has in common with what others may have, 0 where the
+// system has no such memory; they last until what is written makes them the session's own.
+size_t cau_session_share(cau_session *session);
+
 // Makes the session's helper threads anew, children of the caller: they have the priority of who
 // steps it, whoever created it. Waits for what they do.
 cau_status cau_session_adopt(cau_session *session, cau_error *error);

@@ -152,6 +152,12 @@ bool cau_session_has_tension(const cau_session *s)
 	return s->tension;
 }
 
+size_t cau_session_share(cau_session *s)
+{
+	(void)s;
+	return 0;
+}
+
 uint64_t cau_session_tissue_hash(const cau_session *s)
 {
 	return s->tissue_hash;

@@ -1,0 +1,238 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "base/image.h"
+
+#include <fcntl.h>
+#include <pthread.h>
+#include <stdbool.h>
+#include <stdlib.h>
+#include <string.h>
+#include <sys/mman.h>
+#include <unistd.h>
+
+#include "cautery/assert.h"
+
+// A process may have 65,530 mappings by default. Shorter runs stay as they are, and a session adds
+// at most twice as many as the runs it is shown.
+enum { PAGE = 4096, LEAST_RUN = 16 /* pages */, MOST_RUNS = 64 };
+
+typedef struct image_part {
+	size_t at, page_count; // in the file, in pages
+} image_part;
+
+struct cau_image {
+	cau_image *next;
+	uint64_t key;
+	int32_t holders;
+	int file;
+	char *view; // the whole file, to compare with
+	size_t page_count;
+	int32_t part_count;
+	image_part part[CAU_IMAGE_PARTS];
+};
+
+static pthread_mutex_t lock = PTHREAD_MUTEX_INITIALIZER; // guards the list and the holders
+static cau_image *images;
+
+// Whole pages of what was taken; the last one may be a part of a page.
+static size_t pages_of(const cau_pages *pages)
+{
+	CAU_ASSERT((uintptr_t)pages->start % PAGE == 0, "pages at %p", pages->start);
+	return pages->byte_count / PAGE;
+}
+
+// Between arrays there are bytes that no one may touch; these two read them all the same.
+__attribute__((no_sanitize("address"))) static bool same_page(const char *a, const char *b)
+{
+	const uint64_t *x = (const void *)a, *y = (const void *)b;
+	uint64_t differ = 0;
+	for (int k = 0; k < PAGE / 8; k++)
+		differ |= x[k] ^ y[k];
+	return differ == 0;
+}
+
+__attribute__((no_sanitize("address"))) static void copy_page(char *to, const char *from)
+{
+	uint64_t *x = (void *)to;
+	const uint64_t *y = (const void *)from;
+	for (int k = 0; k < PAGE / 8; k++)
+		x[k] = y[k];
+}
+
+// What a mapping may be refused for, their number and the address space, is looked at before the
+// old pages go, and the new ones are charged as the old ones were: it replaces them, or nothing.
+static bool map_over(const cau_image *image, size_t first, size_t count, char *start)
+{
+	return mmap(start, count * PAGE, PROT_READ | PROT_WRITE, MAP_PRIVATE | MAP_FIXED, image->file,
+	            (off_t)(first * PAGE)) != MAP_FAILED;
+}
+
+// ---- making
+static void destroy(cau_image *image)
+{
+	if (image->view)
+		munmap(image->view, image->page_count * PAGE);
+	if (image->file >= 0)
+		close(image->file);
+	free(image);
+}
+
+static void lay_out(cau_image *image, const cau_pages *pages, int32_t count)
+{
+	image->part_count = count < CAU_IMAGE_PARTS ? count : CAU_IMAGE_PARTS;
+	for (int32_t i = 0; i < image->part_count; i++) {
+		image->part[i] = (image_part){image->page_count, pages_of(&pages[i])};
+		image->page_count += image->part[i].page_count;
+	}
+}
+
+// Memory is taken at once: a file that grows as it is written would end the program where it ends.
+static bool open_file(cau_image *image)
+{
+	image->file = memfd_create("cautery-image", MFD_CLOEXEC | MFD_ALLOW_SEALING);
+	if (image->file < 0 || fallocate(image->file, 0, 0, (off_t)(image->page_count * PAGE)))
+		return false;
+	void *view =
+		mmap(NULL, image->page_count * PAGE, PROT_READ | PROT_WRITE, MAP_SHARED, image->file, 0);
+	if (view == MAP_FAILED)
+		return false;
+	image->view = view;
+	return true;
+}
+
+static void fill(const cau_image *image, const cau_pages *pages)
+{
+	for (int32_t i = 0; i < image->part_count; i++)
+		for (size_t k = 0; k < image->part[i].page_count; k++)
+			copy_page(image->view + (image->part[i].at + k) * PAGE,
+			          (const char *)pages[i].start + k * PAGE);
+}
+
+// The seal is refused while there is a way to write.
+static bool seal(cau_image *image)
+{
+	size_t bytes = image->page_count * PAGE;
+	munmap(image->view, bytes);
+	image->view = NULL;
+	if (fcntl(image->file, F_ADD_SEALS, F_SEAL_WRITE | F_SEAL_GROW | F_SEAL_SHRINK | F_SEAL_SEAL))
+		return false;
+	void *view = mmap(NULL, bytes, PROT_READ, MAP_SHARED, image->file, 0);
+	image->view = view == MAP_FAILED ? NULL : view;
+	return image->view != NULL;
+}
+
+static cau_image *make(uint64_t key, const cau_pages *pages, int32_t count)
+{
+	cau_image *image = calloc(1, sizeof *image);
+	if (!image)
+		return NULL;
+	image->key = key;
+	image->file = -1;
+	lay_out(image, pages, count);
+	bool fits = image->page_count > 0 && image->page_count <= CAU_IMAGE_BYTES / PAGE;
+	if (fits && open_file(image)) {
+		fill(image, pages);
+		if (seal(image))
+			return image;
+	}
+	destroy(image);
+	return NULL;
+}
+
+// ---- the list
+static cau_image *hold(uint64_t key)
+{
+	cau_image *found = images;
+	while (found && found->key != key)
+		found = found->next;
+	if (found)
+		found->holders++;
+	return found;
+}
+
+cau_image *cau_image_of(uint64_t key, const cau_pages *pages, int32_t count)
+{
+	pthread_mutex_lock(&lock);
+	cau_image *image = hold(key);
+	pthread_mutex_unlock(&lock);
+	if (image)
+		return image;
+	cau_image *made = make(key, pages, count); // copies for long, and nobody waits
+	pthread_mutex_lock(&lock);
+	image = hold(key); // another thread's, made meanwhile
+	if (!image && made) {
+		made->holders = 1;
+		made->next = images;
+		image = images = made;
+		made = NULL;
+	}
+	pthread_mutex_unlock(&lock);
+	if (made)
+		destroy(made);
+	return image;
+}
+
+void cau_image_release(cau_image *image)
+{
+	if (!image)
+		return;
+	pthread_mutex_lock(&lock);
+	CAU_ASSERT(image->holders > 0, "%d holders of an image", image->holders);
+	bool last = --image->holders == 0;
+	cau_image **at = &images;
+	while (last && *at != image)
+		at = &(*at)->next;
+	if (last)
+		*at = image->next;
+	pthread_mutex_unlock(&lock);
+	if (last)
+		destroy(image);
+}
+
+int32_t cau_image_count(void)
+{
+	int32_t count = 0;
+	pthread_mutex_lock(&lock);
+	for (const cau_image *image = images; image; image = image->next)
+		count++;
+	pthread_mutex_unlock(&lock);
+	return count;
+}
+
+// ---- showing
+// The next run of equal pages at or after *first: its length, 0 at the end.
+static size_t find_run(const cau_image *image, const image_part *part, const char *start,
+                       size_t *first)
+{
+	size_t k = *first, length = 0;
+	for (; k < part->page_count; k++) {
+		if (same_page(image->view + (part->at + k) * PAGE, start + k * PAGE)) {
+			length++;
+			continue;
+		}
+		if (length >= LEAST_RUN)
+			break;
+		length = 0;
+	}
+	*first = k - length;
+	return length >= LEAST_RUN ? length : 0;
+}
+
+size_t cau_image_show(const cau_image *image, const cau_pages *pages, int32_t count)
+{
+	size_t shown = 0;
+	int32_t runs = 0;
+	for (int32_t i = 0; i < count && i < image->part_count; i++) {
+		const image_part *part = &image->part[i];
+		if (pages_of(&pages[i]) != part->page_count)
+			continue;
+		char *start = pages[i].start;
+		size_t length;
+		for (size_t k = 0; runs < MOST_RUNS && (length = find_run(image, part, start, &k));
+		     k += length, runs++) {
+			if (!map_over(image, part->at + k, length, start + k * PAGE))
+				return shown * PAGE;
+			shown += length;
+		}
+	}
+	return shown * PAGE;
+}

@@ -1,0 +1,32 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Memory that sessions of equal tissue have in common: an image is a copy of one session's pages,
+// in a file in memory that nobody can write any more. Another session's pages that are equal to it,
+// byte by byte, give way to private mappings of it; the first write makes a page the writer's own
+// again, so that nobody sees what another does. What is equal need not be known beforehand.
+//
+// Images live in one list for the whole program, and as long as a session holds them. Any thread
+// may call these; who owns the pages calls for them, while nothing else reads or writes them.
+#pragma once
+
+#include <stddef.h>
+#include <stdint.h>
+
+#include "base/pages.h"
+
+enum {
+	CAU_IMAGE_PARTS = 512,       // pieces of memory of one image; further ones have no part in it
+	CAU_IMAGE_BYTES = 256 << 20, // of one image: there is none of more, which takes long to copy
+};
+
+typedef struct cau_image cau_image;
+
+// The image of this key, held once more; if there is none, it is made of these pages, which become
+// the first that are shown. NULL: the system does not allow it, or has no memory for it. Pages of
+// equal place in the list are compared: they should be listed in the same order each time.
+cau_image *cau_image_of(uint64_t key, const cau_pages *pages, int32_t count);
+// Maps the image over those of the pages that are equal to it; returns their bytes.
+size_t cau_image_show(const cau_image *image, const cau_pages *pages, int32_t count);
+// What was mapped stays so until its pages are given back. The last holder's release ends it.
+void cau_image_release(cau_image *image); // takes NULL
+
+int32_t cau_image_count(void); // of the whole program
