@@ -5,69 +5,88 @@
 #include <stdlib.h>
 
 #include "builder/job_queue.h"
+#include "cautery/assert.h"
 #include "clock/clock.h"
 #include "worker/priority.h"
 
-enum { LANES = 2 }; // short jobs, long jobs
-
-typedef struct lane {
-	cau_builder *builder;
-	pthread_t thread;
-	bool made, busy;
-	cau_job_queue queue;
-	pthread_cond_t work;
-} lane;
-
 struct cau_builder {
 	pthread_mutex_t mutex; // guards all
+	pthread_cond_t work;   // there is some, or the builder stops
 	int nice;
 	bool stopping;
-	lane lanes[LANES];
+	cau_job_queue shorts, longs;
+	int under_way;
+	int32_t thread_count;
+	pthread_t thread[1 + CAU_BUILDER_THREADS_MOST]; // the first takes short jobs alone
 };
 
-static void *work(void *argument)
+static bool is_long(const cau_job *job)
 {
-	lane *own = argument;
-	cau_builder *builder = own->builder;
-	pthread_setname_np(pthread_self(), "cautery-build");
-	cau_thread_set_nice(builder->nice);
-	pthread_mutex_lock(&builder->mutex);
+	return job->expected_s > CAU_BUILDER_SHORT_S;
+}
+
+// With the mutex: runs what this thread may, until the builder stops.
+static void work(cau_builder *builder, bool takes_long)
+{
 	while (!builder->stopping) {
-		cau_job *job = cau_job_queue_take(&own->queue);
+		cau_job *job = takes_long ? cau_job_queue_take(&builder->longs) : NULL;
+		if (!job)
+			job = cau_job_queue_take(&builder->shorts);
 		if (!job) {
-			pthread_cond_wait(&own->work, &builder->mutex);
+			pthread_cond_wait(&builder->work, &builder->mutex);
 			continue;
 		}
-		own->busy = true;
+		builder->under_way++;
 		pthread_mutex_unlock(&builder->mutex);
 		job->run(job);
 		pthread_mutex_lock(&builder->mutex);
-		own->busy = false;
+		builder->under_way--;
 	}
+}
+
+static void *live(cau_builder *builder, bool takes_long)
+{
+	pthread_setname_np(pthread_self(), "cautery-build");
+	cau_thread_set_nice(builder->nice);
+	pthread_mutex_lock(&builder->mutex);
+	work(builder, takes_long);
 	pthread_mutex_unlock(&builder->mutex);
 	return NULL;
 }
 
-cau_status cau_builder_create(cau_builder **made, int nice, cau_error *error)
+static void *take_shorts(void *builder)
 {
+	return live(builder, false);
+}
+
+static void *take_all(void *builder)
+{
+	return live(builder, true);
+}
+
+static bool start_threads(cau_builder *builder, int32_t count)
+{
+	while (builder->thread_count < count &&
+	       pthread_create(&builder->thread[builder->thread_count], NULL,
+	                      builder->thread_count ? take_all : take_shorts, builder) == 0)
+		builder->thread_count++;
+	return builder->thread_count == count;
+}
+
+cau_status cau_builder_create(cau_builder **made, int32_t threads, int nice, cau_error *error)
+{
+	CAU_ASSERT(threads >= 1 && threads <= CAU_BUILDER_THREADS_MOST, "%d threads", threads);
 	*made = NULL;
 	cau_builder *builder = calloc(1, sizeof *builder);
 	if (!builder)
 		return cau_fail(error, CAU_NO_MEMORY, NULL, "no memory for the builder");
 	builder->nice = nice;
 	pthread_mutex_init(&builder->mutex, NULL);
-	for (int i = 0; i < LANES; i++) {
-		builder->lanes[i].builder = builder;
-		pthread_cond_init(&builder->lanes[i].work, NULL);
-	}
-	for (int i = 0; i < LANES; i++) {
-		lane *own = &builder->lanes[i];
-		own->made = pthread_create(&own->thread, NULL, work, own) == 0;
-		if (!own->made) {
-			cau_builder_stop(builder);
-			cau_builder_destroy(builder);
-			return cau_fail(error, CAU_NO_MEMORY, NULL, "no thread for the builder");
-		}
+	pthread_cond_init(&builder->work, NULL);
+	if (!start_threads(builder, 1 + threads)) {
+		cau_builder_stop(builder);
+		cau_builder_destroy(builder);
+		return cau_fail(error, CAU_NO_MEMORY, NULL, "no thread for the builder");
 	}
 	*made = builder;
 	return CAU_OK;
@@ -77,54 +96,48 @@ void cau_builder_submit(cau_builder *builder, cau_job *job)
 {
 	pthread_mutex_lock(&builder->mutex);
 	bool late = builder->stopping;
-	lane *its = &builder->lanes[job->expected_s > CAU_BUILDER_SHORT_S];
 	if (!late) {
-		cau_job_queue_put(&its->queue, job, cau_monotonic_s());
-		pthread_cond_signal(&its->work);
+		cau_job_queue_put(is_long(job) ? &builder->longs : &builder->shorts, job,
+		                  cau_monotonic_s());
+		pthread_cond_broadcast(&builder->work); // not every thread may take it
 	}
 	pthread_mutex_unlock(&builder->mutex);
 	if (late)
 		job->drop(job);
 }
 
-static void drop_all(cau_builder *builder)
+static void drop_all(cau_job_queue *queue)
 {
-	for (int i = 0; i < LANES; i++)
-		for (cau_job *job; (job = cau_job_queue_take(&builder->lanes[i].queue));)
-			job->drop(job);
+	for (cau_job *job; (job = cau_job_queue_take(queue));)
+		job->drop(job);
 }
 
 void cau_builder_stop(cau_builder *builder)
 {
 	pthread_mutex_lock(&builder->mutex);
 	builder->stopping = true; // nothing is queued from here on
-	for (int i = 0; i < LANES; i++)
-		pthread_cond_signal(&builder->lanes[i].work);
+	pthread_cond_broadcast(&builder->work);
 	pthread_mutex_unlock(&builder->mutex);
-	for (int i = 0; i < LANES; i++) {
-		if (builder->lanes[i].made)
-			pthread_join(builder->lanes[i].thread, NULL);
-		builder->lanes[i].made = false;
-	}
-	drop_all(builder);
+	for (int32_t i = 0; i < builder->thread_count; i++)
+		pthread_join(builder->thread[i], NULL);
+	builder->thread_count = 0;
+	drop_all(&builder->shorts);
+	drop_all(&builder->longs);
 }
 
 void cau_builder_destroy(cau_builder *builder)
 {
 	if (!builder)
 		return;
-	for (int i = 0; i < LANES; i++)
-		pthread_cond_destroy(&builder->lanes[i].work);
+	pthread_cond_destroy(&builder->work);
 	pthread_mutex_destroy(&builder->mutex);
 	free(builder);
 }
 
 int cau_builder_busy(cau_builder *builder)
 {
-	int busy = 0;
 	pthread_mutex_lock(&builder->mutex);
-	for (int i = 0; i < LANES; i++)
-		busy += builder->lanes[i].queue.count + builder->lanes[i].busy;
+	int busy = builder->shorts.count + builder->longs.count + builder->under_way;
 	pthread_mutex_unlock(&builder->mutex);
 	return busy;
 }

@@ -1,13 +1,15 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Work that takes long and that no session's pace may wait for: sessions are built here, states
-// read back from the store, files made. Done at the system's lowest priority, one job after the
-// other, so that it gets what workers leave.
+// read back from the store, files made. Done at the system's lowest priority, so that it gets what
+// workers leave.
 //
-// There are two lanes, each a thread: jobs that are expected to be short do not stand behind a
-// large tissue, whose stages (CHOLMOD, METIS) nobody can interrupt.
+// One thread takes short jobs alone, so that these never stand behind large tissue, whose stages
+// (CHOLMOD, METIS) nobody can interrupt. The others take long jobs, and short ones while there is
+// no long one: a daemon that starts builds as many of its sessions at once.
 #pragma once
 
 #include <stdbool.h>
+#include <stdint.h>
 
 #include "cautery/status.h"
 
@@ -22,11 +24,14 @@ typedef struct cau_job {
 	double rank;
 } cau_job;
 
-// Jobs expected to last longer than this have a lane of their own, s.
+// Jobs expected to last longer than this are long, s.
 #define CAU_BUILDER_SHORT_S 0.5
 
-// Threads run at `nice` (0 to 19).
-cau_status cau_builder_create(cau_builder **builder, int nice, cau_error *error);
+enum { CAU_BUILDER_THREADS_MOST = 16 };
+
+// With so many threads for jobs of any length (1 to CAU_BUILDER_THREADS_MOST), and the one for
+// short ones, at `nice` (0 to 19).
+cau_status cau_builder_create(cau_builder **builder, int32_t threads, int nice, cau_error *error);
 // From any thread; takes the job. After cau_builder_stop it is dropped on the spot.
 void cau_builder_submit(cau_builder *builder, cau_job *job);
 // Drops what waits, and returns when the jobs under way have ended.

@@ -12,6 +12,7 @@
 #include "builder/builder.h"
 #include "clock/clock.h"
 #include "daemon/load_meter.h"
+#include "daemon/restart.h"
 #include "http/static_files.h"
 #include "hub/hub.h"
 #include "log/log.h"
@@ -43,6 +44,7 @@ struct cau_daemon {
 	cau_dds *dds;     // NULL: not wanted
 	cau_agent *agent; // NULL: not wanted
 	cau_load_meter meter;
+	cau_restart restart;
 	atomic_bool draining, stands_aside;
 	unsigned long ticks_seen;
 	bool network_moved, store_moved, watchdog_moved; // since systemd was last told
@@ -104,6 +106,12 @@ static int32_t count_workers(const cau_config *config)
 	return config->workers ? (int32_t)config->workers : cores > 0 ? (int32_t)cores : 1;
 }
 
+// As many as could work at once.
+static int32_t count_builders(int32_t workers)
+{
+	return workers < CAU_BUILDER_THREADS_MOST ? workers : CAU_BUILDER_THREADS_MOST;
+}
+
 static cau_status open_hub(cau_daemon *daemon, cau_error *error)
 {
 	cau_config *config = daemon->config;
@@ -111,7 +119,8 @@ static cau_status open_hub(cau_daemon *daemon, cau_error *error)
 	cau_status status = cau_worker_pool_create(
 		&daemon->pool, workers, 2 * (int32_t)config->max_sessions + 1, CAU_NICE_LAST, error);
 	if (!status)
-		status = cau_builder_create(&daemon->builder, CAU_NICE_BUILDER, error);
+		status =
+			cau_builder_create(&daemon->builder, count_builders(workers), CAU_NICE_BUILDER, error);
 	cau_hub_def def = {.config = config,
 	                   .store = daemon->store,
 	                   .pool = daemon->pool,
@@ -177,6 +186,7 @@ static cau_status find_files(cau_config *config, cau_error *error)
 
 static cau_status open_all(cau_daemon *daemon, cau_error *error)
 {
+	int32_t resumed = 0;
 	cau_config *config = daemon->config;
 	cau_status status = find_files(config, error);
 	if (!status)
@@ -196,7 +206,8 @@ static cau_status open_all(cau_daemon *daemon, cau_error *error)
 	if (daemon->dds)
 		cau_service_add_metrics(daemon->service, cau_dds_write_metrics, daemon->dds);
 	if (!status)
-		status = cau_hub_resume(daemon->hub, error);
+		status = cau_hub_resume(daemon->hub, &resumed, error);
+	cau_restart_begin(&daemon->restart, daemon->hub, resumed);
 	if (!status)
 		status = cau_network_start(daemon->network, error);
 	if (!status && daemon->dds)
@@ -250,6 +261,7 @@ int cau_daemon_wait(cau_daemon *daemon, const sigset_t *signals, int *signal_num
 	if (got > 0)
 		*signal_number = terminal_gone ? SIGTERM : got;
 	cau_hub_reap(daemon->hub);
+	cau_restart_tell(&daemon->restart);
 	tell_alive(daemon);
 	return 0;
 }

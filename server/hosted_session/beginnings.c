@@ -4,24 +4,15 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "cautery/assert.h"
 #include "cautery/scene_json.h"
 #include "cautery/session.h"
 
-void cau_beginning_drop(cau_beginning *beginning)
+static void destroy(cau_beginning *beginning)
 {
 	free(beginning->definition);
 	free(beginning->snapshot);
-	*beginning = (cau_beginning){0};
-}
-
-// An empty place goes before any other.
-static cau_beginning *asked_for_longest_ago(cau_beginnings *all)
-{
-	cau_beginning *oldest = &all->kept[0];
-	for (int i = 1; i < CAU_BEGINNINGS_MOST; i++)
-		if (all->kept[i].asked < oldest->asked)
-			oldest = &all->kept[i];
-	return oldest;
+	free(beginning);
 }
 
 // The scene's definition as it is stored; malloc'ed, or NULL without memory.
@@ -39,54 +30,118 @@ static char *define(const cau_scene_def *scene, size_t *byte_count)
 
 static bool is_of(const cau_beginning *beginning, const char *definition, size_t byte_count)
 {
-	return beginning->definition && beginning->definition_bytes == byte_count &&
+	return beginning && beginning->definition_bytes == byte_count &&
 	       memcmp(beginning->definition, definition, byte_count) == 0;
 }
 
-cau_beginning *cau_beginnings_find(cau_beginnings *all, const cau_scene_def *scene)
+void cau_beginnings_init(cau_beginnings *all)
+{
+	*all = (cau_beginnings){0};
+	pthread_mutex_init(&all->mutex, NULL);
+}
+
+// ---- with the mutex
+static cau_beginning **place_of(cau_beginnings *all, const char *definition, size_t byte_count)
+{
+	for (int i = 0; i < CAU_BEGINNINGS_MOST; i++)
+		if (is_of(all->kept[i], definition, byte_count))
+			return &all->kept[i];
+	return NULL;
+}
+
+// An empty place goes before any other.
+static cau_beginning **asked_for_longest_ago(cau_beginnings *all)
+{
+	cau_beginning **oldest = &all->kept[0];
+	for (int i = 0; i < CAU_BEGINNINGS_MOST && *oldest; i++)
+		if (!all->kept[i] || all->kept[i]->asked < (*oldest)->asked)
+			oldest = &all->kept[i];
+	return oldest;
+}
+
+static void give_up(cau_beginning *beginning)
+{
+	if (beginning && --beginning->holders == 0)
+		destroy(beginning);
+}
+
+// ---- without
+cau_beginning *cau_beginnings_hold(cau_beginnings *all, const cau_scene_def *scene)
 {
 	size_t byte_count = 0;
-	cau_beginning *found = NULL;
 	char *definition = define(scene, &byte_count);
-	for (int i = 0; i < CAU_BEGINNINGS_MOST && definition && !found; i++)
-		if (is_of(&all->kept[i], definition, byte_count))
-			found = &all->kept[i];
-	if (found)
+	if (!definition)
+		return NULL;
+	pthread_mutex_lock(&all->mutex);
+	cau_beginning **place = place_of(all, definition, byte_count), *found = place ? *place : NULL;
+	if (found) {
+		found->holders++;
 		found->asked = ++all->asked;
+	}
+	pthread_mutex_unlock(&all->mutex);
 	free(definition);
 	return found;
+}
+
+void cau_beginnings_let_go(cau_beginnings *all, cau_beginning *held)
+{
+	pthread_mutex_lock(&all->mutex);
+	give_up(held);
+	pthread_mutex_unlock(&all->mutex);
 }
 
 static bool take(cau_beginning *made, const cau_scene_def *scene, const cau_session *core)
 {
 	size_t capacity = cau_session_snapshot_bytes(core);
-	*made =
-		(cau_beginning){.snapshot = malloc(capacity), .tissue_hash = cau_session_tissue_hash(core)};
+	made->tissue_hash = cau_session_tissue_hash(core);
+	made->snapshot = malloc(capacity);
 	made->definition = define(scene, &made->definition_bytes);
-	if (made->definition && made->snapshot &&
-	    !cau_session_snapshot(core, made->snapshot, capacity, &made->byte_count, NULL) &&
-	    made->byte_count <= CAU_BEGINNING_BYTES) {
-		void *smaller = realloc(made->snapshot, made->byte_count);
-		made->snapshot = smaller ? smaller : made->snapshot;
-		return true;
-	}
-	cau_beginning_drop(made);
-	return false;
+	if (!made->definition || !made->snapshot ||
+	    cau_session_snapshot(core, made->snapshot, capacity, &made->byte_count, NULL) ||
+	    made->byte_count > CAU_BEGINNING_BYTES)
+		return false;
+	void *smaller = realloc(made->snapshot, made->byte_count);
+	made->snapshot = smaller ? smaller : made->snapshot;
+	return true;
 }
 
 void cau_beginnings_keep(cau_beginnings *all, const cau_scene_def *scene, const cau_session *core)
 {
-	cau_beginning made;
-	if (!cau_session_has_tension(core) || !take(&made, scene, core))
+	cau_beginning *made = cau_session_has_tension(core) ? calloc(1, sizeof *made) : NULL;
+	if (!made)
 		return;
-	cau_beginning *place = asked_for_longest_ago(all);
-	cau_beginning_drop(place);
-	made.asked = ++all->asked;
+	if (!take(made, scene, core)) {
+		destroy(made);
+		return;
+	}
+	made->holders = 1;
+	pthread_mutex_lock(&all->mutex);
+	cau_beginning **place = place_of(all, made->definition, made->definition_bytes);
+	place = place ? place : asked_for_longest_ago(all);
+	give_up(*place);
+	made->asked = ++all->asked;
 	*place = made;
+	pthread_mutex_unlock(&all->mutex);
+}
+
+void cau_beginnings_forget(cau_beginnings *all, const cau_beginning *held)
+{
+	pthread_mutex_lock(&all->mutex);
+	for (int i = 0; i < CAU_BEGINNINGS_MOST; i++)
+		if (all->kept[i] == held) {
+			give_up(all->kept[i]);
+			all->kept[i] = NULL;
+		}
+	pthread_mutex_unlock(&all->mutex);
 }
 
 void cau_beginnings_finish(cau_beginnings *all)
 {
-	for (int i = 0; i < CAU_BEGINNINGS_MOST; i++)
-		cau_beginning_drop(&all->kept[i]);
+	for (int i = 0; i < CAU_BEGINNINGS_MOST; i++) {
+		CAU_ASSERT(!all->kept[i] || all->kept[i]->holders == 1, "a beginning that %d hold",
+		           all->kept[i]->holders);
+		give_up(all->kept[i]);
+		all->kept[i] = NULL;
+	}
+	pthread_mutex_destroy(&all->mutex);
 }

@@ -31,7 +31,7 @@ typedef struct cau_surroundings {
 	cau_worker_pool *pool;
 	cau_builder *builder;
 	_Atomic int64_t *memory_held; // by all sessions, bytes, about
-	cau_beginnings *beginnings;   // the builder's
+	cau_beginnings *beginnings;
 	cau_sink sink;
 	cau_hosted_times *times; // NULL: nobody wants to know
 	// Energy came on somewhere: the watchdog must look at its times again.

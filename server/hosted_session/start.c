@@ -51,7 +51,7 @@ static bool begin_as(cau_hosted *h, const cau_beginning *known)
 }
 
 // As the first session of its scene began; settled by itself where that does not serve.
-static cau_status create_as_before(cau_hosted *h, cau_beginning *known, cau_error *error)
+static cau_status create_as_before(cau_hosted *h, const cau_beginning *known, cau_error *error)
 {
 	cau_status status = create(h, true, error);
 	if (status)
@@ -60,7 +60,7 @@ static cau_status create_as_before(cau_hosted *h, cau_beginning *known, cau_erro
 		cau_log(CAU_LOG_INFO, h->id, "settled_before", "bytes=%zu", known->byte_count);
 		return CAU_OK;
 	}
-	cau_beginning_drop(known);
+	cau_beginnings_forget(h->around->beginnings, known);
 	cau_session_destroy(h->core);
 	h->core = NULL;
 	return create_first(h, error);
@@ -68,8 +68,12 @@ static cau_status create_as_before(cau_hosted *h, cau_beginning *known, cau_erro
 
 static cau_status create_new(cau_hosted *h, cau_error *error)
 {
-	cau_beginning *known = cau_beginnings_find(h->around->beginnings, h->scene);
-	return known ? create_as_before(h, known, error) : create_first(h, error);
+	cau_beginning *known = cau_beginnings_hold(h->around->beginnings, h->scene);
+	if (!known)
+		return create_first(h, error);
+	cau_status status = create_as_before(h, known, error);
+	cau_beginnings_let_go(h->around->beginnings, known);
+	return status;
 }
 
 static cau_status build(cau_hosted *h, cau_error *error)

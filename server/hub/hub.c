@@ -62,6 +62,7 @@ cau_status cau_hub_create(cau_hub **made, const cau_hub_def *def, cau_error *err
 		return cau_fail(error, CAU_NO_MEMORY, NULL, "no memory for the hub");
 	}
 	hub->def = *def;
+	cau_beginnings_init(&hub->beginnings);
 	hub->around = (cau_surroundings){.config = def->config,
 	                                 .store = def->store,
 	                                 .pool = def->pool,

@@ -37,8 +37,9 @@ void cau_hub_destroy(cau_hub *hub);
 
 // Before sessions exist. At most four; the sink must outlive the hub's sessions.
 void cau_hub_add_sink(cau_hub *hub, const cau_sink *sink);
-// Resumes the store's sessions; reads the store. Then makes the demo if the settings want one.
-cau_status cau_hub_resume(cau_hub *hub, cau_error *error);
+// Resumes the store's sessions, *resumed of them; reads the store. Then makes the demo if the
+// settings want one.
+cau_status cau_hub_resume(cau_hub *hub, int32_t *resumed, cau_error *error);
 const cau_scenes *cau_hub_scenes(const cau_hub *hub);
 // What transports ask before they pass on a request that costs much.
 cau_quota *cau_hub_quota(cau_hub *hub);

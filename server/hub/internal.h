@@ -18,7 +18,7 @@ struct cau_hub {
 	cau_hub_def def;
 	cau_quota *quota;
 	_Atomic int64_t memory_held; // by all sessions, bytes, about
-	cau_beginnings beginnings;   // the builder's
+	cau_beginnings beginnings;
 	cau_surroundings around;
 	cau_hosted_times times;
 	cau_sink sinks[MOST_SINKS];

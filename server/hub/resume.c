@@ -55,7 +55,7 @@ static cau_status take_session(void *user, const cau_store_session *row)
 }
 
 // A session that cannot be brought up is reported and left in the store.
-static void resume_one(cau_hub *hub, const char *id)
+static bool resume_one(cau_hub *hub, const char *id)
 {
 	cau_error error = {0};
 	cau_creation *creation = calloc(1, sizeof *creation);
@@ -74,6 +74,7 @@ static void resume_one(cau_hub *hub, const char *id)
 		cau_hosted_tell_not_resumed(id, status, &error);
 	if (creation)
 		cau_creation_free(creation);
+	return !status;
 }
 
 static void note_scene(void *user, cau_hosted *hosted)
@@ -107,12 +108,13 @@ static cau_status make_demo(cau_hub *hub, cau_error *error)
 	return CAU_OK;
 }
 
-cau_status cau_hub_resume(cau_hub *hub, cau_error *error)
+cau_status cau_hub_resume(cau_hub *hub, int32_t *resumed, cau_error *error)
 {
 	ids list = {0};
+	*resumed = 0;
 	cau_status status = cau_store_read_sessions(hub->def.store, take_id, &list, error);
 	for (int32_t i = 0; !status && i < list.count; i++)
-		resume_one(hub, list.id[i]);
+		*resumed += resume_one(hub, list.id[i]);
 	free(list.id);
 	if (!status && *hub->def.config->demo)
 		status = make_demo(hub, error);

@@ -84,17 +84,19 @@ static void waiting_jobs_go_by_length(void **state)
 	board b;
 	cau_builder *builder;
 	set_up(&b);
-	assert_int_equal(cau_builder_create(&builder, NICE, NULL), CAU_OK);
-	named first = make(&b, 'f', 0.1, true);
+	assert_int_equal(cau_builder_create(&builder, 1, NICE, NULL), CAU_OK);
+	named giant = make(&b, 'g', 60, true), first = make(&b, 'f', 0.1, true);
 	named slow = make(&b, 's', 0.4, false), quick = make(&b, 'q', 0.01, false);
-	cau_builder_submit(builder, &first.job);
+	cau_builder_submit(builder, &giant.job);
 	await(&b, 1);
+	cau_builder_submit(builder, &first.job);
+	await(&b, 2); // neither thread is free
 	cau_builder_submit(builder, &slow.job);
 	cau_builder_submit(builder, &quick.job);
-	assert_int_equal(cau_builder_busy(builder), 3);
+	assert_int_equal(cau_builder_busy(builder), 4);
 	open_gate(&b);
-	await(&b, 3);
-	assert_string_equal(b.order, "fqs");
+	await(&b, 4);
+	assert_string_equal(b.order, "gfqs");
 	assert_int_equal(b.nice, NICE);
 	cau_builder_stop(builder);
 	cau_builder_destroy(builder);
@@ -106,7 +108,7 @@ static void a_short_job_does_not_stand_behind_a_long_one(void **state)
 	board b;
 	cau_builder *builder;
 	set_up(&b);
-	assert_int_equal(cau_builder_create(&builder, NICE, NULL), CAU_OK);
+	assert_int_equal(cau_builder_create(&builder, 1, NICE, NULL), CAU_OK);
 	named giant = make(&b, 'g', 60, true), small = make(&b, 's', 0.05, false);
 	cau_builder_submit(builder, &giant.job);
 	await(&b, 1);
@@ -118,13 +120,55 @@ static void a_short_job_does_not_stand_behind_a_long_one(void **state)
 	cau_builder_destroy(builder);
 }
 
+static void long_jobs_run_beside_each_other(void **state)
+{
+	(void)state;
+	board b;
+	cau_builder *builder;
+	set_up(&b);
+	assert_int_equal(cau_builder_create(&builder, 3, NICE, NULL), CAU_OK);
+	named giant[4];
+	for (int i = 0; i < 4; i++) {
+		giant[i] = make(&b, (char)('a' + i), 60 + i, true);
+		cau_builder_submit(builder, &giant[i].job);
+	}
+	await(&b, 3);
+	named small = make(&b, 's', 0.05, false);
+	cau_builder_submit(builder, &small.job);
+	await(&b, 4); // the thread of short jobs is free, though a long one waits
+	assert_int_equal(b.order[3], 's');
+	assert_int_equal(cau_builder_busy(builder) > 3, 1);
+	open_gate(&b);
+	await(&b, 5);
+	cau_builder_stop(builder);
+	cau_builder_destroy(builder);
+}
+
+static void idle_threads_of_long_jobs_take_short_ones(void **state)
+{
+	(void)state;
+	board b;
+	cau_builder *builder;
+	set_up(&b);
+	assert_int_equal(cau_builder_create(&builder, 2, NICE, NULL), CAU_OK);
+	named job[3];
+	for (int i = 0; i < 3; i++) {
+		job[i] = make(&b, (char)('a' + i), 0.1, true);
+		cau_builder_submit(builder, &job[i].job);
+	}
+	await(&b, 3); // all at once
+	open_gate(&b);
+	cau_builder_stop(builder);
+	cau_builder_destroy(builder);
+}
+
 static void what_waits_at_the_end_is_dropped(void **state)
 {
 	(void)state;
 	board b;
 	cau_builder *builder;
 	set_up(&b);
-	assert_int_equal(cau_builder_create(&builder, NICE, NULL), CAU_OK);
+	assert_int_equal(cau_builder_create(&builder, 1, NICE, NULL), CAU_OK);
 	cau_builder_stop(builder);
 	named late = make(&b, 'l', 0.1, false);
 	cau_builder_submit(builder, &late.job);
@@ -139,6 +183,8 @@ int main(void)
 	const struct CMUnitTest tests[] = {
 		cmocka_unit_test(waiting_jobs_go_by_length),
 		cmocka_unit_test(a_short_job_does_not_stand_behind_a_long_one),
+		cmocka_unit_test(long_jobs_run_beside_each_other),
+		cmocka_unit_test(idle_threads_of_long_jobs_take_short_ones),
 		cmocka_unit_test(what_waits_at_the_end_is_dropped),
 	};
 	return cmocka_run_group_tests(tests, NULL, NULL);

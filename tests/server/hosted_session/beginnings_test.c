@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // The beginnings of scenes that had to settle are found again by the very scene, and few are kept.
+#include <pthread.h>
 #include <setjmp.h>
 #include <stdarg.h>
 #include <stdio.h>
@@ -48,7 +49,7 @@ static int64_t found_tick(int number)
 	cau_session *core = NULL;
 	cau_frame frame;
 	int64_t tick = -1;
-	cau_beginning *found = cau_beginnings_find(&all, scene);
+	cau_beginning *found = cau_beginnings_hold(&all, scene);
 	def.scene = scene;
 	bool exact = false;
 	cau_error error = {0};
@@ -59,9 +60,17 @@ static int64_t found_tick(int number)
 		cau_session_frame(core, &frame);
 		tick = (int64_t)frame.tick;
 		cau_session_destroy(core);
+		cau_beginnings_let_go(&all, found);
 	}
 	free(scene);
 	return tick;
+}
+
+static int begin(void **state)
+{
+	(void)state;
+	cau_beginnings_init(&all);
+	return 0;
 }
 
 static int finish(void **state)
@@ -69,7 +78,7 @@ static int finish(void **state)
 	(void)state;
 	cau_beginnings_finish(&all);
 	for (int i = 0; i < CAU_BEGINNINGS_MOST; i++)
-		if (all.kept[i].definition || all.kept[i].snapshot)
+		if (all.kept[i])
 			return 1;
 	return 0;
 }
@@ -85,10 +94,64 @@ static void a_scene_finds_its_own(void **state)
 	assert_int_equal(found_tick(2), 5);
 	assert_int_equal(found_tick(3), -1);
 	cau_scene_def *second = scene_of(2);
-	cau_beginning_drop(cau_beginnings_find(&all, second));
+	cau_beginning *held = cau_beginnings_hold(&all, second);
+	cau_beginnings_forget(&all, held);
+	assert_int_equal(found_tick(2), -1);
+	assert_true(held->byte_count > 0); // whoever holds it still may read it
+	assert_int_equal(held->holders, 1);
+	cau_beginnings_let_go(&all, held);
 	free(second);
 	assert_int_equal(found_tick(2), -1);
 	assert_int_equal(found_tick(1), 3);
+}
+
+// Two sessions of a scene that were made at the same time both settled.
+static void a_scene_has_one_place(void **state)
+{
+	(void)state;
+	cau_fake_hooks_set.tension = true;
+	keep(1, 3);
+	keep(2, 4);
+	keep(1, 5);
+	assert_int_equal(found_tick(1), 5);
+	assert_int_equal(found_tick(2), 4);
+	int places = 0;
+	for (int i = 0; i < CAU_BEGINNINGS_MOST; i++)
+		places += all.kept[i] != NULL;
+	assert_int_equal(places, 2);
+}
+
+// What one thread holds, others replace, forget and give up.
+static void *hold_and_keep(void *context)
+{
+	const int *number = context;
+	for (int i = 0; i < 40; i++) {
+		cau_scene_def *scene = scene_of(i % 3);
+		keep(i % 3, *number);
+		cau_beginning *held = cau_beginnings_hold(&all, scene);
+		if (held && i % 5 == *number % 5)
+			cau_beginnings_forget(&all, held);
+		if (held && (!held->snapshot || !held->definition))
+			*(int *)context = -1;
+		if (held)
+			cau_beginnings_let_go(&all, held);
+		free(scene);
+	}
+	return NULL;
+}
+
+static void several_threads_hold_them(void **state)
+{
+	(void)state;
+	pthread_t thread[3];
+	int number[3] = {1, 2, 3};
+	cau_fake_hooks_set.tension = true;
+	for (int i = 0; i < 3; i++)
+		assert_int_equal(pthread_create(&thread[i], NULL, hold_and_keep, &number[i]), 0);
+	for (int i = 0; i < 3; i++)
+		assert_int_equal(pthread_join(thread[i], NULL), 0);
+	for (int i = 0; i < 3; i++)
+		assert_int_equal(number[i], i + 1);
 }
 
 static void what_did_not_settle_is_not_kept(void **state)
@@ -116,9 +179,11 @@ static void who_was_asked_for_longest_ago_gives_way(void **state)
 int main(void)
 {
 	const struct CMUnitTest tests[] = {
-		cmocka_unit_test_teardown(a_scene_finds_its_own, finish),
-		cmocka_unit_test_teardown(what_did_not_settle_is_not_kept, finish),
-		cmocka_unit_test_teardown(who_was_asked_for_longest_ago_gives_way, finish),
+		cmocka_unit_test_setup_teardown(a_scene_finds_its_own, begin, finish),
+		cmocka_unit_test_setup_teardown(a_scene_has_one_place, begin, finish),
+		cmocka_unit_test_setup_teardown(several_threads_hold_them, begin, finish),
+		cmocka_unit_test_setup_teardown(what_did_not_settle_is_not_kept, begin, finish),
+		cmocka_unit_test_setup_teardown(who_was_asked_for_longest_ago_gives_way, begin, finish),
 	};
 	return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -285,7 +285,6 @@ static void what_is_known_serves_unless_the_tissue_is_another(void **state)
 	atomic_store(&t.fail_restore, true);
 	assert_int_equal(cores_of_another(), 2);
 	assert_int_equal(cores_of_another(), 1);
-	cau_beginnings_finish(&t.beginnings);
 }
 
 int main(void)

@@ -104,7 +104,8 @@ int hosted_open_surroundings(void **state)
 	                              .sink = {NULL, notify, see_frames, see_slice}};
 	assert_int_equal(cau_store_open(&of_store, &t.around.store, NULL), CAU_OK);
 	assert_int_equal(cau_worker_pool_create(&t.around.pool, 2, 4, 0, NULL), CAU_OK);
-	assert_int_equal(cau_builder_create(&t.around.builder, 0, NULL), CAU_OK);
+	assert_int_equal(cau_builder_create(&t.around.builder, 1, 0, NULL), CAU_OK);
+	cau_beginnings_init(&t.beginnings);
 	return 0;
 }
 
@@ -118,6 +119,7 @@ int hosted_close_surroundings(void **state)
 	cau_store_flush(t.around.store);
 	cau_hosted_release(t.h);
 	cau_builder_destroy(t.around.builder);
+	cau_beginnings_finish(&t.beginnings);
 	cau_worker_pool_destroy(t.around.pool);
 	cau_store_close(t.around.store);
 	pthread_barrier_destroy(&t.met);

@@ -321,7 +321,8 @@ static void open_surroundings(void)
 	                                    .armed = see_armed,
 	                                    .sink = {NULL, notify, see_frames, see_slice}};
 	assert_int_equal(cau_worker_pool_create(&threads.around.pool, 2, 4, 0, NULL), CAU_OK);
-	assert_int_equal(cau_builder_create(&threads.around.builder, 0, NULL), CAU_OK);
+	assert_int_equal(cau_builder_create(&threads.around.builder, 1, 0, NULL), CAU_OK);
+	cau_beginnings_init(&threads.beginnings);
 }
 
 int threads_begin(void **state)
@@ -358,6 +359,7 @@ int threads_end(void **state)
 	cau_worker_pool_destroy(threads.around.pool);
 	cau_builder_stop(threads.around.builder);
 	cau_builder_destroy(threads.around.builder);
+	cau_beginnings_finish(&threads.beginnings);
 	cau_store_close(threads.store);
 	pthread_barrier_destroy(&threads.met);
 	pthread_barrier_destroy(&threads.over);
