@@ -2,7 +2,7 @@
 """What cauteryd tells systemd: READY once it serves, WATCHDOG while it lives, STOPPING when told to end,
 and how far it is with the sessions of its store.
 
-Usage: notify.py CAUTERYD SCENES
+Usage: notify.py CAUTERYD SCENES CAUTERY
 """
 
 import http.client
@@ -25,8 +25,7 @@ def expect(listener, wanted):
             return
 
 
-def make_sessions(program, port, count):
-    client = os.path.join(os.path.dirname(program), "cautery")
+def make_sessions(client, port, count):
     for number in range(count):
         subprocess.run([client, "create", "fascia", "--name", f"s{number}", "--paused",
                         "--url", f"ws://127.0.0.1:{port}"], check=True, stdout=subprocess.DEVNULL)
@@ -65,7 +64,7 @@ def run(program, scenes, folder, listener, use):
                 daemon.wait()
 
 
-def main(program, scenes):
+def main(program, scenes, client):
     with tempfile.TemporaryDirectory() as folder:
         listener = socket.socket(socket.AF_UNIX, socket.SOCK_DGRAM)
         listener.settimeout(PATIENCE_S)
@@ -77,7 +76,7 @@ def main(program, scenes):
             assert connection.getresponse().status == 200
             expect(listener, "WATCHDOG=1")
             expect(listener, "WATCHDOG=1")
-            make_sessions(program, port, SESSIONS)
+            make_sessions(client, port, SESSIONS)
 
         run(program, scenes, folder, listener, live)
         run(program, scenes, folder, listener,
@@ -85,4 +84,4 @@ def main(program, scenes):
 
 
 if __name__ == "__main__":
-    main(sys.argv[1], sys.argv[2])
+    main(*sys.argv[1:])
