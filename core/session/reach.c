@@ -268,11 +268,31 @@ static bool may_meet(const reach *r, const cau_box *box)
 	return !(distance > cau_length(half) + r->most_way);
 }
 
+// Whether the face was at the tick's start as near as it can have come since: whatever is further
+// is_missed refuses, after a search.
+static bool may_be_met(const reach *r, int32_t face)
+{
+	const int32_t *vertex = r->session->tissue.faces.vertex + 3 * (size_t)face;
+	cau_vec3 corner[3], middle = {0, 0, 0};
+	double radius2 = 0;
+	for (int32_t k = 0; k < 3; k++) {
+		corner[k] = cau_vec3_of(r->session->position + 3 * (size_t)vertex[k]);
+		middle = cau_add_scaled(middle, 1.0 / 3, corner[k]);
+	}
+	for (int32_t k = 0; k < 3; k++) {
+		cau_vec3 half = cau_sub(corner[k], middle);
+		radius2 = fmax(radius2, cau_dot(half, half));
+	}
+	double distance = cau_tool_distance_at(r->def, &r->tool->state.pose, r->tool->state.jaw,
+	                                       r->part, middle, NULL);
+	return !(distance > sqrt(radius2) + 2 * r->most_way + 2 * touch_m);
+}
+
 static void search_block(reach *r, int32_t block)
 {
 	const cau_near *near = &r->session->near;
 	for (int32_t i = near->face_first[block]; i < near->face_first[block + 1]; i++)
-		if (is_drawn(r->session, near->face[i]))
+		if (is_drawn(r->session, near->face[i]) && may_be_met(r, near->face[i]))
 			offer(r, near->face[i]);
 }
 
