@@ -8,20 +8,6 @@
 
 #define PACE_S 2.0 // between two lines of the log
 
-static void count_starting(void *user, cau_hosted *hosted)
-{
-	cau_wire_session_summary summary;
-	cau_hosted_summary(hosted, &summary);
-	*(int32_t *)user += summary.state == CAU_SESSION_STARTING;
-}
-
-static int32_t starting(const cau_restart *restart)
-{
-	int32_t count = 0;
-	cau_hub_each(restart->hub, count_starting, &count);
-	return count;
-}
-
 void cau_restart_begin(cau_restart *restart, cau_hub *hub, int32_t sessions)
 {
 	*restart =
@@ -33,7 +19,7 @@ void cau_restart_tell(cau_restart *restart)
 {
 	if (restart->left == 0)
 		return;
-	int32_t left = starting(restart); // those that clients make meanwhile among them
+	int32_t left = cau_hub_starting(restart->hub); // those that clients make meanwhile among them
 	if (left >= restart->left)
 		return;
 	restart->left = left;

@@ -40,6 +40,8 @@ void cau_hub_add_sink(cau_hub *hub, const cau_sink *sink);
 // Resumes the store's sessions, *resumed of them; reads the store. Then makes the demo if the
 // settings want one.
 cau_status cau_hub_resume(cau_hub *hub, int32_t *resumed, cau_error *error);
+// Sessions that are not there yet, whoever wanted them.
+int32_t cau_hub_starting(cau_hub *hub);
 const cau_scenes *cau_hub_scenes(const cau_hub *hub);
 // What transports ask before they pass on a request that costs much.
 cau_quota *cau_hub_quota(cau_hub *hub);
