@@ -12,6 +12,21 @@ INLINE vreal sym3_norm(sym3 a)
 	return v_sqrt(v_max(sym3_dot(a, a), v_set(REAL_TINY)));
 }
 
+// e' of H_e = F_e - I.
+INLINE sym3 strain_deviator(m3 he)
+{
+	sym3 e = green_strain(he);
+	vreal mean = (e.a00 + e.a11 + e.a22) * (real)(1.0 / 3.0);
+	e.a00 -= mean, e.a11 -= mean, e.a22 -= mean;
+	return e;
+}
+
+// Whether any lane of what has not flowed yet, whose H_e is H, does now.
+INLINE bool plastic_begins(const cau_fat_group *group, m3 h)
+{
+	return v_any(sym3_norm(strain_deviator(h)) - (real)group->yield_strain > v_set(0));
+}
+
 // e_p after flow; `flowed` marks the lanes that changed.
 INLINE sym3 plastic_flow(const cau_fat_group *group, m3 h, sym3 z, sym3 plastic, vmask *flowed)
 {
@@ -19,9 +34,7 @@ INLINE sym3 plastic_flow(const cau_fat_group *group, m3 h, sym3 z, sym3 plastic,
 	he.c[0] = v3_add(he.c[0], (v3){z.a00, z.a01, z.a02});
 	he.c[1] = v3_add(he.c[1], (v3){z.a01, z.a11, z.a12});
 	he.c[2] = v3_add(he.c[2], (v3){z.a02, z.a12, z.a22});
-	sym3 e = green_strain(he);
-	vreal mean = (e.a00 + e.a11 + e.a22) * (real)(1.0 / 3.0);
-	e.a00 -= mean, e.a11 -= mean, e.a22 -= mean;
+	sym3 e = strain_deviator(he);
 	vreal size = sym3_norm(e), beyond = size - (real)group->yield_strain;
 	*flowed = beyond > v_set(0);
 	vreal step = v_select(*flowed, beyond / size, v_set(0));
@@ -66,9 +79,9 @@ static int32_t settle_kernel(const cau_elements *elements, const cau_fat_group *
 		m3 h = fat_displacement_gradient(set, slot, &face, displacement);
 		vreal det = m3_determinant(m3_add(m3_identity(), h));
 		vmask bad = (det <= v_set(0)) & (v_load(set->volume, slot) > v_set(0));
-		for (int l = 0; l < LANES; l++)
+		for (int l = 0; l < LANES && v_any(bad); l++)
 			inverted += bad[l] != 0;
-		if (!group->plastic)
+		if (!group->plastic || (!set->flowed[slot / CAU_BATCH] && !plastic_begins(group, h)))
 			continue;
 		vmask flowed;
 		sym3 p = plastic_flow(group, h, sym3_load(set->plastic, slot),

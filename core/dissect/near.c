@@ -152,34 +152,75 @@ cau_status cau_near_create(cau_near *near, const cau_tissue *tissue, cau_arena *
 	return status;
 }
 
-static void grow(cau_box *box, const double *x)
+// In double until it is whole: rounding keeps the order, and costs more than the comparisons.
+typedef struct bounds {
+	double least[3], most[3];
+} bounds;
+
+static inline bounds grow(bounds b, const double *x)
 {
 	for (int c = 0; c < 3; c++) {
-		float value = (float)x[c];
-		box->least[c] = value < box->least[c] ? value : box->least[c];
-		box->most[c] = value > box->most[c] ? value : box->most[c];
+		b.least[c] = x[c] < b.least[c] ? x[c] : b.least[c];
+		b.most[c] = x[c] > b.most[c] ? x[c] : b.most[c];
 	}
+	return b;
+}
+
+static inline bounds grow_round(bounds b, const int32_t *vertex, int32_t count,
+                                const double *position)
+{
+	for (int32_t i = 0; i < count; i++)
+		b = grow(b, position + 3 * (size_t)vertex[i]);
+	return b;
+}
+
+static cau_box box_of(bounds b)
+{
+	cau_box box;
+	for (int c = 0; c < 3; c++) {
+		box.least[c] = (float)b.least[c];
+		box.most[c] = (float)b.most[c];
+	}
+	return box;
+}
+
+static bounds bounds_of(const cau_box *box)
+{
+	bounds b;
+	for (int c = 0; c < 3; c++) {
+		b.least[c] = (double)box->least[c];
+		b.most[c] = (double)box->most[c];
+	}
+	return b;
+}
+
+// How many vertices the block has of its own.
+static int32_t own_count(const cau_near *near, int32_t block)
+{
+	int32_t left = near->vertex_count - block * CAU_NEAR_BLOCK;
+	CAU_ASSERT(left > 0, "block %d is empty", block);
+	return left < CAU_NEAR_BLOCK ? left : CAU_NEAR_BLOCK;
 }
 
 void cau_near_refit(cau_near *near, const double *position)
 {
-	for (int32_t b = 0; b < near->block_count; b++) {
-		cau_box box = {{1e30f, 1e30f, 1e30f}, {-1e30f, -1e30f, -1e30f}};
-		int32_t last = (b + 1) * CAU_NEAR_BLOCK;
-		CAU_ASSERT(b * CAU_NEAR_BLOCK < near->vertex_count, "block %d is empty", b);
-		for (int32_t i = b * CAU_NEAR_BLOCK; i < last && i < near->vertex_count; i++)
-			grow(&box, position + 3 * (size_t)near->vertex[i]);
-		near->vertex_box[b] = box;
-		for (int32_t k = near->halo_first[b]; k < near->halo_first[b + 1]; k++)
-			grow(&box, position + 3 * (size_t)near->halo[k]);
-		near->edge_box[b] = box;
+	for (int32_t block = 0; block < near->block_count; block++) {
+		bounds b = {{1e30, 1e30, 1e30}, {-1e30, -1e30, -1e30}};
+		b = grow_round(b, near->vertex + block * CAU_NEAR_BLOCK, own_count(near, block), position);
+		near->vertex_box[block] = box_of(b);
+		int32_t first = near->halo_first[block], last = near->halo_first[block + 1];
+		b = grow_round(b, near->halo + first, last - first, position);
+		near->edge_box[block] = box_of(b);
 	}
 }
 
 void cau_near_cover(cau_near *near, const double *position)
 {
-	for (int32_t i = 0; i < near->vertex_count; i++)
-		grow(&near->vertex_box[i / CAU_NEAR_BLOCK], position + 3 * (size_t)near->vertex[i]);
+	for (int32_t block = 0; block < near->block_count; block++) {
+		bounds b = bounds_of(&near->vertex_box[block]);
+		b = grow_round(b, near->vertex + block * CAU_NEAR_BLOCK, own_count(near, block), position);
+		near->vertex_box[block] = box_of(b);
+	}
 }
 
 bool cau_box_meets(const cau_box *box, cau_vec3 center, double radius_m)

@@ -45,18 +45,23 @@ static bool is_grasped(const cau_tool *tool, int32_t vertex)
 }
 
 // Signed distance to the pushing part at the tick's end of where a vertex is guessed to be, or of
-// where it was if that is nearer: what was pushed out in the last tick is guessed to fly on, and
-// would be let go of by turns.
-static double least_gap(const cau_session *session, const cau_tool *tool, int32_t vertex)
+// where it was if that is nearer and may be within the margin: what was pushed out in the last tick
+// is guessed to fly on, and would be let go of by turns.
+static double least_gap(const cau_session *session, const cau_tool *tool, int32_t vertex,
+                        double margin_m)
 {
 	const cau_tool_state *state = &tool->state;
 	cau_tool_part part = pushing_part(tool);
 	size_t at = 3 * (size_t)vertex;
 	double least = cau_tool_distance_at(&state->definition, &state->pose, state->jaw, part,
 	                                    cau_vec3_of(session->position + at), NULL);
-	double was = cau_tool_distance_at(&state->definition, &state->pose, state->jaw, part,
-	                                  cau_vec3_of(session->position_start + at), NULL);
 	CAU_ASSERT_INDEX(vertex, session->tissue.vertex_count);
+	cau_vec3 start = cau_vec3_of(session->position_start + at);
+	double way = cau_length(cau_sub(cau_vec3_of(session->position + at), start));
+	if (least > 2 * margin_m + way) // it was as far away but for its way
+		return least;
+	double was =
+		cau_tool_distance_at(&state->definition, &state->pose, state->jaw, part, start, NULL);
 	return was < least ? was : least;
 }
 
@@ -96,7 +101,7 @@ static int32_t collect(cau_session *session, int32_t index, cau_touching *list)
 			int32_t v = session->near.vertex[i];
 			if (session->fixed[v] || is_grasped(tool, v))
 				continue;
-			double gap = least_gap(session, tool, v);
+			double gap = least_gap(session, tool, v, margin);
 			if (!(gap <= margin)) // nor is a vertex near that is nowhere
 				continue;
 			list_touching(session, list, &count, (cau_touching){v, i, gap});
