@@ -257,6 +257,25 @@ static void restore_counts(cau_session *session, const snapshot_header *header, 
 	memcpy(session->scene->gravity_m_s2, header->gravity_m_s2, sizeof header->gravity_m_s2);
 }
 
+// The canonical factor, unless that is what there is: its bits depend on the matrix alone, whose
+// values are those that it was last made from.
+static cau_status make_canonical(cau_session *session, cau_error *error)
+{
+	cau_step_solver *solver = &session->solver;
+	cau_matrix *matrix = &solver->system.matrix;
+	size_t bytes = (size_t)matrix->first[matrix->n] * sizeof *matrix->value;
+	double *made_from = cau_factor_is_canonical(solver->factor) ? malloc(bytes) : NULL;
+	if (made_from)
+		memcpy(made_from, matrix->value, bytes);
+	cau_alive canonical;
+	memcpy(canonical.element, session->update.canonical, sizeof canonical.element);
+	cau_system_assemble(&solver->system, &session->tissue, &canonical, solver->step_s,
+	                    matrix->value);
+	bool same = made_from && memcmp(made_from, matrix->value, bytes) == 0;
+	free(made_from);
+	return same ? CAU_OK : cau_factor_refactor(solver->factor, matrix, error);
+}
+
 // The factor as it was: canonical, then the recorded updates in their groups.
 static cau_status replay_factor(cau_session *session, const snapshot_header *header,
                                 cau_error *error)
@@ -266,11 +285,7 @@ static cau_status replay_factor(cau_session *session, const snapshot_header *hea
 	update->refactorisations = header->refactorisations;
 	if (!solver->factor)
 		return CAU_OK;
-	cau_alive canonical;
-	memcpy(canonical.element, update->canonical, sizeof canonical.element);
-	cau_system_assemble(&solver->system, &session->tissue, &canonical, solver->step_s,
-	                    solver->system.matrix.value);
-	cau_status status = cau_factor_refactor(solver->factor, &solver->system.matrix, error);
+	cau_status status = make_canonical(session, error);
 	for (int32_t k = 0; k < update->operation_count && !status;) {
 		cau_waiting list[CAU_DOWNDATES_AT_MOST]; // elements between pins fill a group, not its rank
 		int32_t count = 0, taken = 0, group = update->operation[k].group;

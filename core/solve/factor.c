@@ -12,6 +12,7 @@
 struct cau_factor {
 	cholmod_common common;
 	cholmod_factor *l;
+	bool canonical;               // made whole, and not updated since
 	int32_t *inverse;             // (n): place of each row of A in L
 	cholmod_dense *b, *x, *y, *e; // of cau_factor_solve
 	int update_first[CAU_UPDATE_RANK + 1];
@@ -170,6 +171,7 @@ cau_status cau_factor_refactor(cau_factor *factor, const cau_matrix *matrix, cau
 	CAU_ASSERT((size_t)matrix->n == factor->l->n, "%d rows for a factor of %zu", matrix->n,
 	           factor->l->n);
 	cholmod_sparse a = view_of(matrix);
+	factor->canonical = false;
 	int done = cholmod_factorize(&a, factor->l, &factor->common);
 	if (!done || factor->common.status < CHOLMOD_OK)
 		return cau_fail(error, CAU_NO_MEMORY, NULL, "no memory to factor a system of %d rows",
@@ -178,7 +180,13 @@ cau_status cau_factor_refactor(cau_factor *factor, const cau_matrix *matrix, cau
 		return cau_fail(error, CAU_NUMERICAL, NULL,
 		                "the system matrix is not positive definite (row %d)",
 		                (int)factor->l->minor);
+	factor->canonical = true;
 	return CAU_OK;
+}
+
+bool cau_factor_is_canonical(const cau_factor *factor)
+{
+	return factor->canonical;
 }
 
 // Sorts one short column of C by its permuted rows.
@@ -225,6 +233,7 @@ cau_status cau_factor_update(cau_factor *factor, int32_t columns, const int32_t 
 		.sorted = 1,
 		.packed = 1,
 	};
+	factor->canonical = false;
 	if (!cholmod_updown(add, &c, factor->l, &factor->common))
 		return cau_fail(error, CAU_NO_MEMORY, NULL, "no memory for an update of the factor");
 	return CAU_OK;

@@ -3,6 +3,7 @@
 // Simplicial, so no BLAS is involved and the bits depend on nothing but the operations' order.
 #pragma once
 
+#include <stdbool.h>
 #include <stdint.h>
 
 #include "base/pages.h"
@@ -38,6 +39,9 @@ void cau_factor_destroy(cau_factor *factor); // takes NULL
 // Numeric factorisation anew with the same pattern: canonical, its bits depend on the values alone.
 // On any thread; the order may be read meanwhile, nothing else.
 cau_status cau_factor_refactor(cau_factor *factor, const cau_matrix *matrix, cau_error *error);
+
+// Whether it is as cau_factor_refactor left it: nothing was added or taken out since.
+bool cau_factor_is_canonical(const cau_factor *factor);
 
 // A <- A + C C^T (add) or A - C C^T, C of `columns` sparse columns in the matrix's own row numbers:
 // column k has rows row[first[k] .. first[k+1]). The pattern of C C^T must lie inside that of A.

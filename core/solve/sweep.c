@@ -24,7 +24,8 @@ static int32_t pad(int32_t count)
 }
 
 // Number of distinct rows at or after `last` in columns [first, last); `mark` (n) is scratch of
-// -1s.
+// -1s. A column whose parent is one of them has no row that its parent has not (T. Davis, Direct
+// Methods for Sparse Linear Systems, 2006, section 4.1).
 static int32_t rows_below(const cau_factor *factor, int32_t first, int32_t last, int32_t *mark,
                           int32_t stamp, int32_t *out)
 {
@@ -35,6 +36,8 @@ static int32_t rows_below(const cau_factor *factor, int32_t first, int32_t last,
 		double pivot;
 		int32_t n = cau_factor_column(factor, j, &row, &value, &pivot);
 		CAU_ASSERT(!n || row[0] > j, "column %d begins with row %d", j, row[0]);
+		if (n && row[0] < last)
+			continue;
 		for (int32_t k = 0; k < n; k++)
 			if (row[k] >= last && mark[row[k]] != stamp) {
 				mark[row[k]] = stamp;

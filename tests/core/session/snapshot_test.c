@@ -147,6 +147,45 @@ static void queued_commands_pins_and_materials(void **state)
 	free(scene);
 }
 
+// What a session restores from is its own beginning, with a factor that was made of other
+// materials, that elements were taken out of, or that is in the making: each time it goes on as a
+// fresh one.
+static void a_factor_serves_its_own_matrix_alone(void **state)
+{
+	(void)state;
+	cau_scene_def *scene = busy_scene();
+	cau_session *session = stage_open(scene, 1);
+	stage_bytes beginning = stage_snapshot(session);
+	uint64_t fresh = 0;
+	for (int round = 0; round < 4; round++) {
+		if (round == 1) { // as it began, then with another matrix
+			cau_command stiffer;
+			cau_default_command(&stiffer, CAU_COMMAND_SET_MATERIAL);
+			stiffer.as.material.kind = CAU_LAYER_FAT;
+			strcpy(stiffer.as.material.layer, "fat");
+			stiffer.as.material.fat = scene->layers[1].fat[0];
+			stiffer.as.material.fat.young_modulus_pa *= 3;
+			stage_submit(session, &stiffer);
+			busy_run(session, 2);
+		}
+		assert_int_equal(cau_session_restore(session, beginning.bytes, beginning.count, NULL, NULL),
+		                 CAU_OK);
+		busy_run(session, round == 2 ? 30 : BUSY_TICKS); // within cuts, or after them
+		if (round == 2)
+			continue;
+		if (!round)
+			fresh = cau_session_hash(session);
+		assert_true(cau_session_hash(session) == fresh);
+	}
+	cau_session *other = stage_open(scene, 1);
+	busy_run(other, BUSY_TICKS);
+	assert_true(cau_session_hash(other) == fresh);
+	cau_session_destroy(other);
+	cau_session_destroy(session);
+	free(beginning.bytes);
+	free(scene);
+}
+
 int main(void)
 {
 	const struct CMUnitTest tests[] = {
@@ -156,6 +195,7 @@ int main(void)
 		cmocka_unit_test(written_again_it_is_the_same),
 		cmocka_unit_test(doses_of_elements),
 		cmocka_unit_test(queued_commands_pins_and_materials),
+		cmocka_unit_test(a_factor_serves_its_own_matrix_alone),
 	};
 	return cmocka_run_group_tests(tests, make_run, drop_run);
 }
