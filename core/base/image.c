@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "base/image.h"
 
+#include <errno.h>
 #include <fcntl.h>
 #include <pthread.h>
 #include <stdbool.h>
@@ -85,10 +86,20 @@ static void lay_out(cau_image *image, const cau_pages *pages, int32_t count)
 	}
 }
 
+// A file in memory that nobody can run: systems may refuse any other (vm.memfd_noexec), and those
+// before Linux 6.3 do not know the flag.
+static int make_file(void)
+{
+	enum { NOEXEC_SEAL = 8 }; // MFD_NOEXEC_SEAL, of headers from then on
+	const unsigned flags = MFD_CLOEXEC | MFD_ALLOW_SEALING;
+	int file = memfd_create("cautery-image", flags | NOEXEC_SEAL);
+	return file < 0 && errno == EINVAL ? memfd_create("cautery-image", flags) : file;
+}
+
 // Memory is taken at once: a file that grows as it is written would end the program where it ends.
 static bool open_file(cau_image *image)
 {
-	image->file = memfd_create("cautery-image", MFD_CLOEXEC | MFD_ALLOW_SEALING);
+	image->file = make_file();
 	if (image->file < 0 || fallocate(image->file, 0, 0, (off_t)(image->page_count * PAGE)))
 		return false;
 	void *view =

@@ -3,16 +3,10 @@
 import assert from 'node:assert/strict';
 import { test } from 'node:test';
 import { Daemon } from './wire/daemon.mjs';
-import { AT_REST, smallSession } from './wire/scene.mjs';
+import { AT_REST, picture, smallSession } from './wire/scene.mjs';
 
-// What a picture is made of: the mask, and the positions of vertices that a drawn face uses.
 function shown(state, faces) {
-	const drawn = new Map();
-	for (let face = 0; face < faces.length / 3; face++)
-		if (!(state.mask[face >> 5] >>> (face & 31) & 1))
-			for (const v of [0, 1, 2].map((corner) => faces[3 * face + corner]))
-				drawn.set(v, [...state.quantised.slice(3 * v, 3 * v + 3)]);
-	return { mask: [...state.mask], drawn, tools: state.tools.map(({ position, temperature }) => ({ position, temperature })) };
+	return { ...picture(state, faces), tools: state.tools.map(({ position, temperature }) => ({ position, temperature })) };
 }
 
 // A sheet that is cut from tick 30 on, and what its stream showed at each tick.

@@ -27,3 +27,14 @@ export async function cutMiddle(client, session, ticks = 120) {
 	await client.call('tool.move', { session, tool: 'hook', position_m: [0.02, 0, 0.001], rotation: AT_REST });
 	return client.call('session.step', { session, ticks });
 }
+
+// What a picture is made of: the mask, and the positions of vertices that a drawn face uses. Others are sent no more, so
+// that where they were last depends on the ticks that came to a frame of their own.
+export function picture(state, faces = state.faces) {
+	const drawn = new Map();
+	for (let face = 0; face < faces.length / 3; face++)
+		if (!(state.mask[face >> 5] >>> (face & 31) & 1))
+			for (const v of [0, 1, 2].map((corner) => faces[3 * face + corner]))
+				drawn.set(v, [...state.quantised.slice(3 * v, 3 * v + 3)]);
+	return { mask: [...state.mask], drawn };
+}
