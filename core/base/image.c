@@ -14,7 +14,7 @@
 
 // A process may have 65,530 mappings by default. Shorter runs stay as they are, and a session adds
 // at most twice as many as the runs it is shown.
-enum { PAGE = 4096, LEAST_RUN = 16 /* pages */, MOST_RUNS = 64 };
+enum { LEAST_RUN_BYTES = 64 << 10, MOST_RUNS = 64 };
 
 typedef struct image_part {
 	size_t at, page_count; // in the file, in pages
@@ -25,7 +25,8 @@ struct cau_image {
 	uint64_t key;
 	int32_t holders;
 	int file;
-	char *view; // the whole file, to compare with
+	char *view;  // the whole file, to compare with
+	size_t page; // bytes: the system's, less than which nothing can be mapped
 	size_t page_count;
 	int32_t part_count;
 	image_part part[CAU_IMAGE_PARTS];
@@ -35,27 +36,29 @@ static pthread_mutex_t lock = PTHREAD_MUTEX_INITIALIZER; // guards the list and 
 static cau_image *images;
 
 // Whole pages of what was taken; the last one may be a part of a page.
-static size_t pages_of(const cau_pages *pages)
+static size_t pages_of(const cau_image *image, const cau_pages *pages)
 {
-	CAU_ASSERT((uintptr_t)pages->start % PAGE == 0, "pages at %p", pages->start);
-	return pages->byte_count / PAGE;
+	CAU_ASSERT((uintptr_t)pages->start % image->page == 0, "pages at %p", pages->start);
+	return pages->byte_count / image->page;
 }
 
 // Between arrays there are bytes that no one may touch; these two read them all the same.
-__attribute__((no_sanitize("address"))) static bool same_page(const char *a, const char *b)
+__attribute__((no_sanitize("address"))) static bool same_page(const char *a, const char *b,
+                                                              size_t bytes)
 {
 	const uint64_t *x = (const void *)a, *y = (const void *)b;
 	uint64_t differ = 0;
-	for (int k = 0; k < PAGE / 8; k++)
+	for (size_t k = 0; k < bytes / 8; k++)
 		differ |= x[k] ^ y[k];
 	return differ == 0;
 }
 
-__attribute__((no_sanitize("address"))) static void copy_page(char *to, const char *from)
+__attribute__((no_sanitize("address"))) static void copy_pages(char *to, const char *from,
+                                                               size_t bytes)
 {
 	uint64_t *x = (void *)to;
 	const uint64_t *y = (const void *)from;
-	for (int k = 0; k < PAGE / 8; k++)
+	for (size_t k = 0; k < bytes / 8; k++)
 		x[k] = y[k];
 }
 
@@ -63,15 +66,20 @@ __attribute__((no_sanitize("address"))) static void copy_page(char *to, const ch
 // old pages go, and the new ones are charged as the old ones were: it replaces them, or nothing.
 static bool map_over(const cau_image *image, size_t first, size_t count, char *start)
 {
-	return mmap(start, count * PAGE, PROT_READ | PROT_WRITE, MAP_PRIVATE | MAP_FIXED, image->file,
-	            (off_t)(first * PAGE)) != MAP_FAILED;
+	return mmap(start, count * image->page, PROT_READ | PROT_WRITE, MAP_PRIVATE | MAP_FIXED,
+	            image->file, (off_t)(first * image->page)) != MAP_FAILED;
+}
+
+static size_t bytes_of(const cau_image *image)
+{
+	return image->page_count * image->page;
 }
 
 // ---- making
 static void destroy(cau_image *image)
 {
 	if (image->view)
-		munmap(image->view, image->page_count * PAGE);
+		munmap(image->view, bytes_of(image));
 	if (image->file >= 0)
 		close(image->file);
 	free(image);
@@ -81,7 +89,7 @@ static void lay_out(cau_image *image, const cau_pages *pages, int32_t count)
 {
 	image->part_count = count < CAU_IMAGE_PARTS ? count : CAU_IMAGE_PARTS;
 	for (int32_t i = 0; i < image->part_count; i++) {
-		image->part[i] = (image_part){image->page_count, pages_of(&pages[i])};
+		image->part[i] = (image_part){image->page_count, pages_of(image, &pages[i])};
 		image->page_count += image->part[i].page_count;
 	}
 }
@@ -100,10 +108,9 @@ static int make_file(void)
 static bool open_file(cau_image *image)
 {
 	image->file = make_file();
-	if (image->file < 0 || fallocate(image->file, 0, 0, (off_t)(image->page_count * PAGE)))
+	if (image->file < 0 || fallocate(image->file, 0, 0, (off_t)bytes_of(image)))
 		return false;
-	void *view =
-		mmap(NULL, image->page_count * PAGE, PROT_READ | PROT_WRITE, MAP_SHARED, image->file, 0);
+	void *view = mmap(NULL, bytes_of(image), PROT_READ | PROT_WRITE, MAP_SHARED, image->file, 0);
 	if (view == MAP_FAILED)
 		return false;
 	image->view = view;
@@ -113,20 +120,18 @@ static bool open_file(cau_image *image)
 static void fill(const cau_image *image, const cau_pages *pages)
 {
 	for (int32_t i = 0; i < image->part_count; i++)
-		for (size_t k = 0; k < image->part[i].page_count; k++)
-			copy_page(image->view + (image->part[i].at + k) * PAGE,
-			          (const char *)pages[i].start + k * PAGE);
+		copy_pages(image->view + image->part[i].at * image->page, pages[i].start,
+		           image->part[i].page_count * image->page);
 }
 
 // The seal is refused while there is a way to write.
 static bool seal(cau_image *image)
 {
-	size_t bytes = image->page_count * PAGE;
-	munmap(image->view, bytes);
+	munmap(image->view, bytes_of(image));
 	image->view = NULL;
 	if (fcntl(image->file, F_ADD_SEALS, F_SEAL_WRITE | F_SEAL_GROW | F_SEAL_SHRINK | F_SEAL_SEAL))
 		return false;
-	void *view = mmap(NULL, bytes, PROT_READ, MAP_SHARED, image->file, 0);
+	void *view = mmap(NULL, bytes_of(image), PROT_READ, MAP_SHARED, image->file, 0);
 	image->view = view == MAP_FAILED ? NULL : view;
 	return image->view != NULL;
 }
@@ -138,8 +143,9 @@ static cau_image *make(uint64_t key, const cau_pages *pages, int32_t count)
 		return NULL;
 	image->key = key;
 	image->file = -1;
+	image->page = (size_t)sysconf(_SC_PAGESIZE);
 	lay_out(image, pages, count);
-	bool fits = image->page_count > 0 && image->page_count <= CAU_IMAGE_BYTES / PAGE;
+	bool fits = image->page_count > 0 && bytes_of(image) <= CAU_IMAGE_BYTES;
 	if (fits && open_file(image)) {
 		fill(image, pages);
 		if (seal(image))
@@ -214,18 +220,19 @@ int32_t cau_image_count(void)
 static size_t find_run(const cau_image *image, const image_part *part, const char *start,
                        size_t *first)
 {
-	size_t k = *first, length = 0;
+	size_t k = *first, length = 0, least = LEAST_RUN_BYTES / image->page;
 	for (; k < part->page_count; k++) {
-		if (same_page(image->view + (part->at + k) * PAGE, start + k * PAGE)) {
+		if (same_page(image->view + (part->at + k) * image->page, start + k * image->page,
+		              image->page)) {
 			length++;
 			continue;
 		}
-		if (length >= LEAST_RUN)
+		if (length && length >= least)
 			break;
 		length = 0;
 	}
 	*first = k - length;
-	return length >= LEAST_RUN ? length : 0;
+	return length >= least ? length : 0;
 }
 
 size_t cau_image_show(const cau_image *image, const cau_pages *pages, int32_t count)
@@ -234,16 +241,16 @@ size_t cau_image_show(const cau_image *image, const cau_pages *pages, int32_t co
 	int32_t runs = 0;
 	for (int32_t i = 0; i < count && i < image->part_count; i++) {
 		const image_part *part = &image->part[i];
-		if (pages_of(&pages[i]) != part->page_count)
+		if (pages_of(image, &pages[i]) != part->page_count)
 			continue;
 		char *start = pages[i].start;
 		size_t length;
 		for (size_t k = 0; runs < MOST_RUNS && (length = find_run(image, part, start, &k));
 		     k += length, runs++) {
-			if (!map_over(image, part->at + k, length, start + k * PAGE))
-				return shown * PAGE;
+			if (!map_over(image, part->at + k, length, start + k * image->page))
+				return shown * image->page;
 			shown += length;
 		}
 	}
-	return shown * PAGE;
+	return shown * image->page;
 }

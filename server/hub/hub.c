@@ -198,16 +198,16 @@ const cau_hosted_times *cau_hub_times(const cau_hub *hub)
 	return &hub->times;
 }
 
-static void note_starting(void *user, cau_hosted *hosted)
+static void count_starting(void *user, cau_hosted *hosted)
 {
-	*(bool *)user = *(bool *)user || cau_hosted_starting(hosted);
+	*(int32_t *)user += cau_hosted_starting(hosted);
 }
 
-bool cau_hub_ready(cau_hub *hub)
+int32_t cau_hub_starting(cau_hub *hub)
 {
-	bool starting = false;
-	cau_hub_each(hub, note_starting, &starting);
-	return !starting;
+	int32_t count = 0;
+	cau_hub_each(hub, count_starting, &count);
+	return count;
 }
 
 typedef struct store_news {

@@ -40,8 +40,6 @@ void cau_hub_add_sink(cau_hub *hub, const cau_sink *sink);
 // Resumes the store's sessions, *resumed of them; reads the store. Then makes the demo if the
 // settings want one.
 cau_status cau_hub_resume(cau_hub *hub, int32_t *resumed, cau_error *error);
-// Sessions that are not there yet, whoever wanted them.
-int32_t cau_hub_starting(cau_hub *hub);
 const cau_scenes *cau_hub_scenes(const cau_hub *hub);
 // What transports ask before they pass on a request that costs much.
 cau_quota *cau_hub_quota(cau_hub *hub);
@@ -130,8 +128,9 @@ double cau_hub_longest_slice_s(cau_hub *hub);
 const cau_hosted_times *cau_hub_times(const cau_hub *hub);
 // Forgets lost clients and ended sessions. Waits for a worker's slice: not from one.
 void cau_hub_reap(cau_hub *hub);
-// True once every session of the store has been brought up.
-bool cau_hub_ready(cau_hub *hub);
+// Sessions that are not there yet, whoever wanted them; 0 once all of the store have been brought
+// up.
+int32_t cau_hub_starting(cau_hub *hub);
 // The store has room again, or has none any more. From the store's thread.
 void cau_hub_store_takes(cau_hub *hub, bool takes, const char *reason);
 // Checkpoints all sessions; returns when they are on the disk or the time is over.

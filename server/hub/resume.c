@@ -120,17 +120,3 @@ cau_status cau_hub_resume(cau_hub *hub, int32_t *resumed, cau_error *error)
 		status = make_demo(hub, error);
 	return status;
 }
-
-static void count_starting(void *user, cau_hosted *hosted)
-{
-	cau_wire_session_summary summary;
-	cau_hosted_summary(hosted, &summary);
-	*(int32_t *)user += summary.state == CAU_SESSION_STARTING;
-}
-
-int32_t cau_hub_starting(cau_hub *hub)
-{
-	int32_t count = 0;
-	cau_hub_each(hub, count_starting, &count);
-	return count;
-}

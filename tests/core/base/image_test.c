@@ -10,19 +10,24 @@
 #include <stdio.h>
 #include <string.h>
 #include <sys/mman.h>
+#include <unistd.h>
 
 #include <cmocka.h>
 
-enum { PAGE = 4096, PAGES = 64, KEY = 7 };
+#include "core/base/images_here.h"
+
+enum { PAGES = 64, KEY = 7, LEAST_RUN_BYTES = 64 << 10 };
+
+static size_t page; // bytes
 
 // The number of each page, and of each byte in it.
 static cau_pages patterned(void)
 {
 	cau_pages pages;
-	assert_true(cau_pages_take(&pages, (size_t)PAGES * PAGE));
+	assert_true(cau_pages_take(&pages, (size_t)PAGES * page));
 	unsigned char *byte = pages.start;
 	for (size_t i = 0; i < pages.byte_count; i++)
-		byte[i] = (unsigned char)(i / PAGE + 3 * i);
+		byte[i] = (unsigned char)(i / page + 3 * i);
 	return pages;
 }
 
@@ -30,7 +35,7 @@ static bool is_patterned(const cau_pages *pages, size_t but_for_page)
 {
 	const unsigned char *byte = pages->start;
 	for (size_t i = 0; i < pages->byte_count; i++)
-		if (i / PAGE != but_for_page && byte[i] != (unsigned char)(i / PAGE + 3 * i))
+		if (i / page != but_for_page && byte[i] != (unsigned char)(i / page + 3 * i))
 			return false;
 	return true;
 }
@@ -59,23 +64,22 @@ static void equal_pages_become_one_until_one_is_written(void **state)
 {
 	(void)state;
 	cau_pages a = patterned(), b = patterned(), c = patterned();
-	((char *)b.start)[20 * PAGE + 5]++; // before it is shared
+	((char *)b.start)[20 * page + 5]++; // before it is shared
 	cau_image *image = cau_image_of(KEY, &a, 1);
-	if (!image)
-		skip(); // the system has no sealed files in memory
-	assert_int_equal(cau_image_show(image, &a, 1), (size_t)PAGES * PAGE);
+	assert_non_null(image);
+	assert_int_equal(cau_image_show(image, &a, 1), (size_t)PAGES * page);
 	assert_ptr_equal(cau_image_of(KEY, &b, 1), image);
-	assert_int_equal(cau_image_show(image, &b, 1), (size_t)(PAGES - 1) * PAGE);
+	assert_int_equal(cau_image_show(image, &b, 1), (size_t)(PAGES - 1) * page);
 	assert_int_equal(mappings("rw-p", NULL), 3); // one of a, two around the page of b
 	assert_true(is_patterned(&a, PAGES));
 	assert_true(is_patterned(&b, 20));
-	((char *)a.start)[30 * PAGE]++; // and afterwards, to either side
-	((char *)b.start)[40 * PAGE]++;
+	((char *)a.start)[30 * page]++; // and afterwards, to either side
+	((char *)b.start)[40 * page]++;
 	assert_false(is_patterned(&a, PAGES));
 	assert_true(is_patterned(&a, 30));
 	assert_false(is_patterned(&b, 20));
 	assert_ptr_equal(cau_image_of(KEY, &c, 1), image); // which is as it was
-	assert_int_equal(cau_image_show(image, &c, 1), (size_t)PAGES * PAGE);
+	assert_int_equal(cau_image_show(image, &c, 1), (size_t)PAGES * page);
 	for (int i = 0; i < 3; i++)
 		cau_image_release(image);
 	assert_int_equal(cau_image_count(), 0);
@@ -92,29 +96,28 @@ static void nothing_can_write_an_image(void **state)
 	void *view = NULL;
 	cau_pages a = patterned();
 	cau_image *image = cau_image_of(KEY, &a, 1);
-	if (!image)
-		skip();
+	assert_non_null(image);
 	assert_int_equal(mappings("r--s", &view), 1);
-	assert_int_equal(mprotect(view, PAGE, PROT_READ | PROT_WRITE), -1);
+	assert_int_equal(mprotect(view, page, PROT_READ | PROT_WRITE), -1);
 	assert_true(errno == EACCES || errno == EPERM);
 	cau_image_release(image);
 	assert_int_equal(mappings("r--s", NULL), 0);
 	cau_pages_give_back(&a);
 }
 
-// What is 15 pages long, of another size, or in another place, stays as it is.
+// What is shorter than 64 KiB, of another size, or in another place, stays as it is.
 static void short_runs_and_others_stay_as_they_are(void **state)
 {
 	(void)state;
 	cau_pages a[2] = {patterned(), patterned()}, b[2] = {patterned(), patterned()};
-	for (size_t k = 15; k < PAGES; k += 16)
-		((char *)b[1].start)[k * PAGE]++;
+	size_t run = LEAST_RUN_BYTES / page;
+	for (size_t k = run - 1; k < PAGES; k += run)
+		((char *)b[1].start)[k * page]++;
 	cau_pages half = {a[0].start, a[0].byte_count / 2};
 	cau_image *image = cau_image_of(KEY, a, 2);
-	if (!image)
-		skip();
+	assert_non_null(image);
 	assert_int_equal(cau_image_show(image, &half, 1), 0);
-	assert_int_equal(cau_image_show(image, b, 2), (size_t)PAGES * PAGE);
+	assert_int_equal(cau_image_show(image, b, 2), (size_t)PAGES * page);
 	assert_int_equal(cau_image_show(image, b, 0), 0);
 	cau_image_release(image);
 	for (int i = 0; i < 2; i++) {
@@ -128,8 +131,7 @@ static void each_key_has_its_own(void **state)
 	(void)state;
 	cau_pages a = patterned();
 	cau_image *image[2] = {cau_image_of(1, &a, 1), cau_image_of(2, &a, 1)};
-	if (!image[0])
-		skip();
+	assert_non_null(image[0]);
 	assert_ptr_not_equal(image[0], image[1]);
 	assert_int_equal(cau_image_count(), 2);
 	cau_image_release(image[0]); // the older, behind the other in the list
@@ -146,7 +148,7 @@ static void of_too_much_and_of_nothing_there_is_none(void **state)
 {
 	(void)state;
 	cau_pages much, nothing = {0};
-	assert_true(cau_pages_take(&much, CAU_IMAGE_BYTES + PAGE)); // never touched
+	assert_true(cau_pages_take(&much, CAU_IMAGE_BYTES + page)); // never touched
 	assert_null(cau_image_of(KEY, &much, 1));
 	assert_null(cau_image_of(KEY, &nothing, 1));
 	assert_null(cau_image_of(KEY, NULL, 0));
@@ -156,6 +158,11 @@ static void of_too_much_and_of_nothing_there_is_none(void **state)
 
 int main(void)
 {
+	page = (size_t)sysconf(_SC_PAGESIZE);
+	if (!images_here()) {
+		print_message("skipped: this system has no sealed files in memory\n");
+		return 77;
+	}
 	const struct CMUnitTest tests[] = {
 		cmocka_unit_test(equal_pages_become_one_until_one_is_written),
 		cmocka_unit_test(nothing_can_write_an_image),

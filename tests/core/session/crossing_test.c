@@ -165,6 +165,31 @@ static void nothing_crosses(void **state)
 	assert_true(end.left_out > 100); // of the last, more touched than there are rows: it is said
 }
 
+// On its side, nothing of a ball is left at the faces that it passes within a tick, as its shaft is
+// where it is pressed in upright.
+static void what_a_tick_takes_past_a_face_is_held_too(void **state)
+{
+	(void)state;
+	static const press quick = {"3 mm ball on its side", false, 1.5e-3, 1e-3, 1, 8e-3, 1e-4};
+	cau_scene_def *scene = press_scene(&quick);
+	scene->tools[0].shaft_length_m = 4e-3;
+	cau_pose pose = scene->tools[0].pose;
+	pose.rotation[0] = pose.rotation[2] = sqrt(0.5); // its shaft along x
+	scene->tools[0].pose = pose;
+	cau_session *session = stage_open(scene, 1);
+	stage_step(session, 1);
+	pose.position_m[2] = -quick.depth_m;
+	stage_turn(session, "ball", &pose); // at 2 m/s at most: there within the tick
+	for (int tick = 0; tick < 30; tick++) {
+		stage_step(session, 1);
+		assert_false(look(session, &quick).crossed);
+	}
+	assert_true(stage_tool(session, "ball")->pose.position_m[2] < -0.9 * quick.depth_m);
+	assert_true(look(session, &quick).force_n > 0);
+	cau_session_destroy(session);
+	free(scene);
+}
+
 // A press that faces hold, over threads and over a snapshot at each tick: the sides that are kept
 // are part of the state.
 static void sides_are_part_of_the_state(void **state)
@@ -265,6 +290,7 @@ int main(void)
 {
 	const struct CMUnitTest tests[] = {
 		cmocka_unit_test(nothing_crosses),
+		cmocka_unit_test(what_a_tick_takes_past_a_face_is_held_too),
 		cmocka_unit_test(sides_are_part_of_the_state),
 		cmocka_unit_test(a_tool_that_begins_inside_throws_nothing),
 		cmocka_unit_test(what_is_drawn_across_drags_nothing_along),

@@ -137,7 +137,7 @@ static void long_jobs_run_beside_each_other(void **state)
 	cau_builder_submit(builder, &small.job);
 	await(&b, 4); // the thread of short jobs is free, though a long one waits
 	assert_int_equal(b.order[3], 's');
-	assert_int_equal(cau_builder_busy(builder) > 3, 1);
+	assert_in_range(cau_builder_busy(builder), 4, 5); // that one may still be ending
 	open_gate(&b);
 	await(&b, 5);
 	cau_builder_stop(builder);

@@ -1,0 +1,18 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Whether this system has what images are made of (core/base/image.h): files in memory that can be
+// sealed. Where it has, a session that shares nothing is a failure, and not a test to be skipped.
+#pragma once
+
+#include <fcntl.h>
+#include <stdbool.h>
+#include <sys/mman.h>
+#include <unistd.h>
+
+static inline bool images_here(void)
+{
+	int file = memfd_create("cautery-test", MFD_CLOEXEC | MFD_ALLOW_SEALING);
+	bool sealed = file >= 0 && fcntl(file, F_ADD_SEALS, F_SEAL_WRITE) == 0;
+	if (file >= 0)
+		close(file);
+	return sealed;
+}
