@@ -86,22 +86,23 @@ static void tell_progress(cau_looks *looks)
 	                  CAU_METHOD_SESSION_FRAME_PROGRESS, &progress);
 }
 
-// ---- the line
-// ------------------------------------------------------------------------------------ The next
-// that waits, as the present one. False: there is none, and the builder lets go.
+// ---- the line -----------------------------------------------------------------------------------
+// The next that waits, as the present one. False: there is none, and the builder lets go; from the
+// mutex's release on another of its threads may have the looks, so nothing of them is read then.
 static bool take_next(cau_looks *looks)
 {
 	cau_hosted *h = looks->hosted;
 	pthread_mutex_lock(&h->mutex);
 	looks->present = looks->waiting;
 	looks->given_up = false;
-	if (looks->present)
+	bool taken = looks->present != NULL;
+	if (taken)
 		looks->waiting = looks->present->next;
 	else
 		looks->busy = false;
 	looks->idle_since_s = cau_monotonic_s();
 	pthread_mutex_unlock(&h->mutex);
-	return looks->present != NULL;
+	return taken;
 }
 
 static void drop_present(cau_looks *looks, const cau_error *error, int32_t code)
