@@ -8,12 +8,14 @@
 // parted or on their way to shrink) changes the elastic energy without force: the shares of the
 // local step that have such elements are evaluated again where they are, for the next tick to start
 // from. Plastic flow counts as loss. Laws without an energy have none to compare: nothing is told.
+// Where the solver spared itself the look at where a step ended, the elastic energy there is what
+// eq. 4 comes to without its inertia.
 #include <string.h>
 
 #include "cautery/assert.h"
 #include "session/session_internal.h"
 
-enum { SUMS = 3 }; // of a chunk of vertices: work, kinetic energy before and after
+enum { SUMS = 4 }; // of a chunk: work, kinetic energy before and after, inertia's part of eq. 4
 
 cau_status cau_session_make_energy(cau_session *session, cau_error *error)
 {
@@ -122,12 +124,14 @@ void cau_session_begin_energy(cau_session *session)
 	cau_step_solver *solver = &session->solver;
 	if (!solver->conservative)
 		return;
-	if (energy->stale || energy->marked) {
+	bool anew = energy->stale || energy->marked;
+	if (anew) {
+		energy->stale |= solver->spared; // then no share is of where the tissue is
 		cau_solver_displace(solver);
 		cau_pool_run(session->pool, solver->slots.work_count, share_part, session);
 		memset(energy->dirty, 0, (size_t)solver->slots.work_count);
 	}
-	energy->elastic_j = cau_solver_elastic_energy(solver);
+	energy->elastic_j = solver->spared && !anew ? energy->end_j : cau_solver_elastic_energy(solver);
 	energy->stale = energy->marked = false;
 }
 
@@ -155,13 +159,16 @@ static void vertex_part(void *context, int32_t chunk)
 	const double *x = session->position, *start = session->position_start;
 	const double *velocity = session->velocity, *force = session->external;
 	const double *gravity = session->scene->gravity_m_s2;
-	double work = 0, before = 0, after = 0, scale = cau_session_velocity_scale(session);
+	double work = 0, before = 0, after = 0, inertia = 0;
+	double scale = cau_session_velocity_scale(session);
 	int32_t first = chunk * CAU_VERTEX_CHUNK, last = first + CAU_VERTEX_CHUNK;
 	if (last > session->tissue.vertex_count)
 		last = session->tissue.vertex_count;
 	for (int32_t v = first; v < last; v++) {
 		double mass = session->tissue.mass[v], move[3], old2 = 0, new2 = 0, along = 0;
 		for (int c = 0; c < 3; c++) {
+			double away = x[3 * v + c] - solver->predicted[3 * v + c];
+			inertia += mass * away * away;
 			move[c] = x[3 * v + c] - start[3 * v + c];
 			old2 += velocity[3 * v + c] * velocity[3 * v + c];
 			new2 += move[c] * move[c];
@@ -179,6 +186,7 @@ static void vertex_part(void *context, int32_t chunk)
 	sum[0] = work;
 	sum[1] = before / 2;
 	sum[2] = after * scale * scale / 2;
+	sum[3] = inertia / (2 * solver->step_s * solver->step_s);
 }
 
 static double tool_work(const cau_session *session)
@@ -209,11 +217,13 @@ void cau_session_end_energy(cau_session *session)
 	if (!session->solver.conservative)
 		return;
 	cau_pool_run(session->pool, session->solver.chunk_count, vertex_part, session);
-	double elastic_j = cau_solver_elastic_energy(&session->solver);
-	double gain_j = elastic_j - energy->elastic_j - tool_work(session);
+	double gain_j = -energy->elastic_j - tool_work(session), inertia_j = 0;
 	for (int32_t k = 0; k < session->solver.chunk_count; k++) {
 		const double *sum = energy->sum_j + SUMS * (size_t)k;
 		gain_j += sum[2] - sum[1] - sum[0];
+		inertia_j += sum[3];
 	}
-	energy->gain_j = gain_j;
+	energy->end_j = session->solver.spared ? session->solver.objective - inertia_j
+	                                       : cau_solver_elastic_energy(&session->solver);
+	energy->gain_j = gain_j + energy->end_j;
 }

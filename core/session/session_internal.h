@@ -37,10 +37,11 @@ typedef struct cau_tool {
 typedef struct cau_energy {
 	double gain_j;    // of the last tick
 	double elastic_j; // at its start
+	double end_j;     // and at its end
 	bool stale;       // every share is to be evaluated before the next tick
 	bool marked;      // some are: those that are dirty
 	uint8_t *dirty;   // (work_count)
-	double *sum_j;    // (chunk_count x 3): scratch
+	double *sum_j;    // (chunk_count x 4): scratch
 } cau_energy;
 
 // rest.c: whether the tissue is at rest, and since when it has been quiet.

@@ -225,7 +225,7 @@ static cau_status restore_tools(cau_session *session, const snapshot_header *hea
 	return CAU_OK;
 }
 
-static void restore_counts(cau_session *session, const snapshot_header *header, bool learned)
+static void restore_counts(cau_session *session, const snapshot_header *header, size_t header_bytes)
 {
 	CAU_ASSERT(!session->update.making, "counts are restored while a factor is made for tick %llu",
 	           (unsigned long long)session->update.swap_tick);
@@ -246,12 +246,7 @@ static void restore_counts(cau_session *session, const snapshot_header *header, 
 	session->faulted = header->faulted;
 	session->rest.resting = header->resting;
 	session->rest.quiet_ticks = header->quiet_ticks;
-	cau_accuracy_forget(&session->solver.accuracy);
-	if (learned) {
-		session->solver.accuracy.shallow_steps = header->shallow_steps;
-		memcpy(session->solver.accuracy.amplification, header->amplification,
-		       sizeof header->amplification);
-	}
+	cau_snapshot_read_learned(header, header_bytes, &session->solver.accuracy);
 	session->frozen_count = header->frozen_count;
 	session->inverted = header->inverted;
 	memcpy(session->scene->gravity_m_s2, header->gravity_m_s2, sizeof header->gravity_m_s2);
@@ -360,7 +355,7 @@ cau_status cau_session_restore(cau_session *session, const void *bytes, size_t b
 	if (!status)
 		status = restore_tools(session, &header, &archive, error);
 	if (!status) {
-		restore_counts(session, &header, cau_snapshot_has_learned(head));
+		restore_counts(session, &header, head);
 		status = pass_state(&archive, session, error);
 		cau_elements_set_laws(&session->solver.elements, &session->tissue);
 		cau_elements_mark_targets(&session->solver.elements, &session->solver.slots);

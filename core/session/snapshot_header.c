@@ -20,16 +20,37 @@ size_t cau_snapshot_header_bytes(const snapshot_header *common, size_t byte_coun
 	const size_t unlearned = offsetof(snapshot_header, shallow_steps);
 	if (common->version < 4)
 		return cau_snapshot_common_bytes();
-	if (common->version > 4)
+	if (common->version > 5)
 		return sizeof(snapshot_header);
+	if (common->version == 5)
+		return offsetof(snapshot_header, force_left);
 	return byte_count - common->payload_bytes == unlearned
 	           ? unlearned
 	           : offsetof(snapshot_header, memory_count);
 }
 
-bool cau_snapshot_has_learned(size_t header_bytes)
+static bool has_learned(size_t header_bytes)
 {
 	return header_bytes > offsetof(snapshot_header, shallow_steps);
+}
+
+static bool has_forces(size_t header_bytes)
+{
+	return header_bytes > offsetof(snapshot_header, force_left);
+}
+
+void cau_snapshot_read_learned(const snapshot_header *header, size_t header_bytes,
+                               cau_accuracy *accuracy)
+{
+	cau_accuracy_forget(accuracy);
+	if (!has_learned(header_bytes))
+		return;
+	accuracy->shallow_steps = header->shallow_steps;
+	memcpy(accuracy->amplification, header->amplification, sizeof header->amplification);
+	if (!has_forces(header_bytes))
+		return;
+	accuracy->force_left = header->force_left;
+	memcpy(accuracy->force_before, header->force_before, sizeof header->force_before);
 }
 
 int32_t cau_snapshot_kept_columns(const cau_session *session)
@@ -84,6 +105,9 @@ void cau_snapshot_fill_header(const cau_session *session, snapshot_header *heade
 	header->accuracy = session->solver.accuracy.wanted;
 	memcpy(header->amplification, session->solver.accuracy.amplification,
 	       sizeof header->amplification);
+	header->force_left = session->solver.accuracy.force_left;
+	memcpy(header->force_before, session->solver.accuracy.force_before,
+	       sizeof header->force_before);
 	for (int32_t i = 0; i < session->tool_count; i++)
 		header->grid_nodes[i] = session->tool[i].grid.nodes;
 	memcpy(header->gravity_m_s2, session->scene->gravity_m_s2, sizeof header->gravity_m_s2);
@@ -105,8 +129,10 @@ cau_status cau_snapshot_corrupt(cau_error *error, const char *why)
 }
 
 // Whether what steps have taught is what they can teach.
-static bool is_taught(const snapshot_header *header)
+static bool is_taught(const snapshot_header *header, size_t header_bytes)
 {
+	if (has_forces(header_bytes) && !(header->force_left > 0 && header->force_left < INFINITY))
+		return false;
 	for (int k = 0; k < CAU_ACCURACY_DEPTHS; k++)
 		if (!(header->amplification[k] > 0 && header->amplification[k] < INFINITY))
 			return false;
@@ -141,7 +167,7 @@ cau_status cau_snapshot_check_header(const cau_session *session, const snapshot_
 	    header->memory_count < 0 || header->memory_count > CAU_MAX_MEMORY ||
 	    header->row_count < 0 || header->row_count > header->vertex_count ||
 	    header->quiet_ticks < 0 || (header->resting && !header->quiet_ticks) ||
-	    (cau_snapshot_has_learned(header_bytes) && !is_taught(header)))
+	    (has_learned(header_bytes) && !is_taught(header, header_bytes)))
 		return cau_snapshot_corrupt(error, "a count is out of its range");
 	if (header->payload_bytes != payload_bytes)
 		return cau_snapshot_corrupt(error, "bytes are missing");

@@ -6,9 +6,10 @@
 #include "session/session_internal.h"
 
 enum {
-	// with the sides of faces; 4, without, 3, without rest and accuracy too, and 1, elements by
-	// slot, are still read
-	CAU_SNAPSHOT_VERSION = 5,
+	// with what tools' forces have taught; 5, without, 4, without the sides of faces too, 3,
+	// without
+	// rest and accuracy, and 1, elements by slot, are still read
+	CAU_SNAPSHOT_VERSION = 6,
 	CAU_SNAPSHOT_NODES = 4096, // along a heat grid's side at most: far more than a tool may have
 };
 
@@ -35,6 +36,8 @@ typedef struct snapshot_header {
 	double accuracy, amplification[CAU_ACCURACY_DEPTHS];
 	// since version 5
 	int32_t memory_count, unused_since_5;
+	// since version 6
+	double force_left, force_before[CAU_ACCURACY_TOOLS][3];
 } snapshot_header;
 
 // What all versions' headers have, the version and payload_bytes among it.
@@ -44,8 +47,9 @@ size_t cau_snapshot_common_bytes(void);
 // version 4 wrote none of what steps have taught: theirs is known by its length.
 size_t cau_snapshot_header_bytes(const snapshot_header *common, size_t byte_count);
 
-// Whether it holds what steps have taught.
-bool cau_snapshot_has_learned(size_t header_bytes);
+// What steps have taught, as far as a header so long has it.
+void cau_snapshot_read_learned(const snapshot_header *header, size_t header_bytes,
+                               cau_accuracy *accuracy);
 
 // Of the session as it is; hash and payload_bytes are left 0.
 void cau_snapshot_fill_header(const cau_session *session, snapshot_header *header);

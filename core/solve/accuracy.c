@@ -13,7 +13,11 @@ static const double least_share = 0.25;     // if that is no more of its motion 
 static const double still_error_m = 2e-8;   // or nothing at all
 static const double least_force_n = 1e-4;   // likewise a tool: a hundredth of what viewers show
 static const double force_share = 2;        // forces may be off by so much more than vertices
+static const double steady = 0.25;          // a push that has changed by less is as those before
+static const double still_force = 0.002;    // and by less than this, not at all
+static const double force_slack = 3;        // other rows may do worse than those that taught
 static const double untaught = 3;           // amplification before anything is known
+static const double untaught_force = 1;     // likewise of forces: all of them may be wrong
 static const double most_amplified = 300;
 static const double slack = 1.2;       // a contraction that is measured flatters a little
 static const double slowest = 0.999;   // contraction that can be told from none
@@ -43,6 +47,8 @@ cau_status cau_accuracy_create(cau_accuracy *accuracy, int32_t chunk_count, cau_
 void cau_accuracy_forget(cau_accuracy *accuracy)
 {
 	accuracy->shallow_steps = 0;
+	accuracy->force_left = untaught_force;
+	memset(accuracy->force_before, 0, sizeof accuracy->force_before);
 	for (int k = 0; k < CAU_ACCURACY_DEPTHS; k++)
 		accuracy->amplification[k] = untaught;
 }
@@ -52,6 +58,7 @@ void cau_accuracy_begin(cau_accuracy *accuracy)
 	CAU_ASSERT(accuracy->wanted >= 0, "an accuracy of %g is wanted", accuracy->wanted);
 	accuracy->count = 0;
 	accuracy->left = accuracy->error = 0;
+	accuracy->moves = false;
 	memset(accuracy->force, 0, sizeof accuracy->force);
 }
 
@@ -115,29 +122,60 @@ static trial measure(cau_step_solver *solver)
 	return of;
 }
 
-// The largest change of a tool's force since the last increment, relative to what it may be off.
-static double force_change(cau_step_solver *solver)
+// ---- forces
+static void sum_forces(const cau_contact_set *set, double force[CAU_ACCURACY_TOOLS][3])
 {
-	cau_accuracy *accuracy = &solver->accuracy;
-	const cau_contact_set *set = solver->contact;
-	double force[CAU_ACCURACY_TOOLS][3] = {0}, most = 0;
+	memset(force, 0, CAU_ACCURACY_TOOLS * sizeof force[0]);
 	for (int32_t i = 0; set && i < set->row_count; i++) {
 		CAU_ASSERT_INDEX(set->row[i].tool, CAU_ACCURACY_TOOLS);
 		for (int c = 0; c < 3; c++)
 			force[set->row[i].tool][c] += set->row[i].reaction[c];
 	}
+}
+
+// The largest difference of a tool's forces, relative to the first, and where these are next to
+// nothing to `least_n`.
+static double difference(double of[CAU_ACCURACY_TOOLS][3], double from[CAU_ACCURACY_TOOLS][3],
+                         double least_n)
+{
+	CAU_ASSERT(least_n > 0, "forces relative to %g N", least_n);
+	double most = 0;
 	for (int32_t tool = 0; tool < CAU_ACCURACY_TOOLS; tool++) {
 		double size2 = 0, change2 = 0;
 		for (int c = 0; c < 3; c++) {
-			double change = force[tool][c] - accuracy->force[tool][c];
-			size2 += force[tool][c] * force[tool][c];
+			double change = of[tool][c] - from[tool][c];
+			size2 += of[tool][c] * of[tool][c];
 			change2 += change * change;
 		}
-		double allowed = fmax(force_share * accuracy->wanted * sqrt(size2), least_force_n);
-		most = fmax(most, sqrt(change2) / allowed);
+		most = fmax(most, sqrt(change2) / fmax(sqrt(size2), least_n));
 	}
-	memcpy(accuracy->force, force, sizeof force);
 	return most;
+}
+
+// The force of which least_force_n is as much as it may be off.
+static double least_told(const cau_accuracy *accuracy)
+{
+	return least_force_n / (force_share * accuracy->wanted);
+}
+
+// How much the tools' forces have changed since the last increment, or since none, relative to what
+// they may be off.
+static double force_change(cau_step_solver *solver)
+{
+	cau_accuracy *accuracy = &solver->accuracy;
+	double force[CAU_ACCURACY_TOOLS][3];
+	sum_forces(solver->contact, force);
+	double change = difference(force, accuracy->force, least_told(accuracy));
+	memcpy(accuracy->force, force, sizeof force);
+	if (accuracy->count == 1)
+		memcpy(accuracy->force_first, force, sizeof force);
+	return change / (force_share * accuracy->wanted);
+}
+
+// How much they differ from what they were at the end of the step before.
+static double force_drift(cau_accuracy *accuracy)
+{
+	return difference(accuracy->force, accuracy->force_before, least_told(accuracy));
 }
 
 // ---- estimates
@@ -189,6 +227,18 @@ static double estimate(cau_accuracy *accuracy, double bound)
 	return error;
 }
 
+// Likewise of the tools' forces, which changed by so much (relative to what they may be off) with
+// the last increment. `amplification` is what the vertices' error is of the increment's length.
+static double estimate_forces(const cau_accuracy *accuracy, double changed, double drift,
+                              double amplification)
+{
+	CAU_ASSERT(changed >= 0, "forces that changed by %g", changed);
+	if (accuracy->count > 1)
+		return changed * amplification;
+	return changed * (drift <= steady ? force_slack * accuracy->force_left
+	                                  : fmax(amplification, untaught_force));
+}
+
 bool cau_accuracy_is_reached(cau_step_solver *solver, double norm)
 {
 	cau_accuracy *accuracy = &solver->accuracy;
@@ -198,24 +248,25 @@ bool cau_accuracy_is_reached(cau_step_solver *solver, double norm)
 	trial of = measure(solver);
 	if (!(of.mass > 0))
 		return true;
-	double changed = force_change(solver), bound = 0, smooth = 0;
+	double changed = force_change(solver), drift = force_drift(accuracy), bound = 0, smooth = 0;
 	if (of.all.increment > 0) {
 		smooth = of.all.increment / of.all.allowed;
 		bound = bound_share * solver->step_s * solver->step_s * norm * norm /
 		        (of.mass * of.all.increment * of.all.allowed);
 	}
 	// What an iteration that stalls mixes may be as good as nothing while its increments stay.
-	accuracy->length[at] = at >= 2 ? fmax(of.length, smooth) : of.length;
+	double length = accuracy->length[at] = at >= 2 ? fmax(of.length, smooth) : of.length;
 	accuracy->norm[at] = norm;
 	double error = accuracy->newton ? estimate_newton(accuracy, solver->backtracks > 0)
 	                                : estimate(accuracy, bound);
-	if (accuracy->length[at] > 0) {
-		accuracy->error = error * (at >= 2 ? fmax(of.told, accuracy->wanted * smooth) : of.told) /
-		                  accuracy->length[at];
-		error = fmax(error, changed * error / accuracy->length[at]);
+	if (length > 0) {
+		double told = at >= 2 ? fmax(of.told, accuracy->wanted * smooth) : of.told;
+		accuracy->error = error * told / length;
+		error = fmax(error, estimate_forces(accuracy, changed, drift, error / length));
 	}
-	bool learns = accuracy->shallow_steps >= SHALLOW && accuracy->count < DEEP &&
-	              accuracy->length[0] > all_rounding;
+	if (!at)
+		accuracy->moves = length > all_rounding || drift > still_force;
+	bool learns = accuracy->shallow_steps >= SHALLOW && accuracy->count < DEEP && accuracy->moves;
 	return error <= 1 && !learns;
 }
 
@@ -234,6 +285,10 @@ void cau_accuracy_learn(cau_accuracy *accuracy)
 	double most = 0, left = accuracy->left;
 	if (accuracy->wanted == 0 || accuracy->newton)
 		return;
+	if (accuracy->count > 1)
+		teach(&accuracy->force_left,
+		      difference(accuracy->force, accuracy->force_first, least_told(accuracy)));
+	memcpy(accuracy->force_before, accuracy->force, sizeof accuracy->force);
 	accuracy->shallow_steps = accuracy->count < DEEP ? accuracy->shallow_steps + 1 : 0;
 	for (int32_t i = 0; i < accuracy->count; i++)
 		most = fmax(most, accuracy->length[i]);

@@ -6,7 +6,9 @@
 // step's own motion: of all vertices together and of each chunk of CAU_VERTEX_CHUNK, whichever is
 // worst, so that a flap that flies does not hide what happens under a tool. Motion counts for as
 // much at least as makes half a micrometre of error enough. Forces of tools count by half, relative
-// to themselves.
+// to themselves. Each step finds them from nothing, in one solve with its first increment, so that
+// what this leaves of them is taught by the steps before, too; a push that has just begun or
+// changed much is not what these have seen, and takes a second increment to be told.
 //
 // After j increments of lengths s_1 .. s_j the error is c_j s_j. What c_j is
 // - the step itself tells: the norms of the gradient contract by a factor a in each iteration, and
@@ -39,15 +41,19 @@ typedef struct cau_accuracy {
 	// What steps have taught, part of a session's state.
 	double amplification[CAU_ACCURACY_DEPTHS]; // c_j
 	int32_t shallow_steps;                     // since one that went deep
+	double force_left; // of a tool's force, what the first increment leaves it off
+	double force_before[CAU_ACCURACY_TOOLS][3]; // N, of the tools at the last step's end
 	// Of this step; lengths and estimates relative to what is wanted.
-	bool newton;                         // increments are Newton's (newton.h)
-	int32_t count;                       // increments
-	double length[CAU_ACCURACY_STEPS];   // s_j, and |d| where that is more
-	double norm[CAU_ACCURACY_STEPS];     // |d| in the norm of A, J^(1/2)
-	double force[CAU_ACCURACY_TOOLS][3]; // N, of the tools after the last increment
-	double left;                         // estimate from this step alone
-	double error;                        // estimate, relative to motion; 0: none was made
-	double *sums;                        // (chunk_count x 4): scratch
+	bool newton;                               // increments are Newton's (newton.h)
+	bool moves;                                // there is something to learn from
+	int32_t count;                             // increments
+	double length[CAU_ACCURACY_STEPS];         // s_j, and |d| where that is more
+	double norm[CAU_ACCURACY_STEPS];           // |d| in the norm of A, J^(1/2)
+	double force[CAU_ACCURACY_TOOLS][3];       // N, of the tools after the last increment,
+	double force_first[CAU_ACCURACY_TOOLS][3]; // and after the first
+	double left;                               // estimate from this step alone
+	double error;                              // estimate, relative to motion; 0: none was made
+	double *sums;                              // (chunk_count x 4): scratch
 } cau_accuracy;
 
 cau_status cau_accuracy_create(cau_accuracy *accuracy, int32_t chunk_count, cau_arena *arena,

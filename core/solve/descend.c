@@ -180,15 +180,16 @@ static double step_norm(cau_step_solver *solver)
 	return sqrt(fmax(-dot(solver, solver->increment, solver->gradient), 0));
 }
 
-// Where a law has no energy the last step need not be looked at if it is too small to do harm,
-// which saves an evaluation: none was taken back in this tick, and the square of its length, which
-// is what it promises to take off E, is a hundredth of E at most. Were it to add that instead, the
-// tick would not show it.
+// Whether the last step need not be looked at, which saves an evaluation: none was taken back in
+// this tick, and the square of its length, which is what it promises to take off E, is less than
+// what rounding hides of E's change. Where a law has no energy to tell a bad step by, a hundredth
+// of E will do: were it to add that instead, the tick would not show it.
 static bool is_harmless(const cau_step_solver *solver, double norm, double objective)
 {
 	CAU_ASSERT(!(norm < 0), "a step of length %g", norm);
 	const double far_below = 0.01;
-	return !solver->conservative && !solver->backtracks && norm * norm <= far_below * objective;
+	double most = solver->conservative ? objective_noise(solver) : far_below * objective;
+	return !solver->backtracks && !solver->drag_count && norm * norm <= most;
 }
 
 static void nothing(void *context)
@@ -228,6 +229,7 @@ cau_status cau_solver_descend(cau_step_solver *solver, cau_error *error)
 	double objective = solver->objective, first = 0, last = 0;
 	int32_t steps = 0;                              // since the guess
 	int32_t backtracks_before = solver->backtracks; // of the tick's earlier rounds
+	solver->spared = false;
 	cau_anderson_start(solver);
 	cau_accuracy_begin(&solver->accuracy);
 	solver->accuracy.newton = cau_newton_is_called_for(solver);
@@ -255,6 +257,8 @@ cau_status cau_solver_descend(cau_step_solver *solver, cau_error *error)
 		bool enough = cau_accuracy_is_reached(solver, norm);
 		if ((enough || k + 1 == solver->iterations) && is_harmless(solver, norm, objective)) {
 			leave(solver);
+			solver->spared = true;
+			objective -= norm * norm / 2;
 			break;
 		}
 		cau_anderson_keep(solver);
@@ -274,6 +278,7 @@ cau_status cau_solver_descend(cau_step_solver *solver, cau_error *error)
 	           "%d backtracks in %d iterations", solver->backtracks - backtracks_before,
 	           solver->iterations);
 	cau_accuracy_learn(&solver->accuracy);
+	solver->objective = objective;
 	cau_solver_displace(solver);
 	return CAU_OK;
 }

@@ -72,8 +72,9 @@ struct cau_step_solver {
 
 	double (*now_s)(void); // NULL: no timing
 
-	double objective; // of the guess, once the step has begun
+	double objective; // J, of the guess, once the step has begun, and of where it has ended
 	// Of the last step.
+	bool spared; // its end was not evaluated: elements' energies are of just before it
 	double local_s, contact_s;
 	int32_t iterations_done, backtracks;
 	double residual; // |grad| in the norm of A^-1, relative to the first iteration's

@@ -181,6 +181,42 @@ static void fat_is_right(void **state)
 	}
 }
 
+// A push that stays as it was takes no second increment to tell its force by; one that jumps does,
+// in that very tick, since what steady steps have taught says nothing of a blow.
+static void a_steady_push_takes_one_increment_and_a_blow_more(void **state)
+{
+	(void)state;
+	enum { PRESSED = 60, HELD = 48 };
+	cau_scene_def *scene = make_taut();
+	scene->iterations = MOST;
+	cau_session *session = stage_open(scene, 1), *exact = stage_open(scene, 1);
+	sampled of = {0}, blow = {0};
+	exact->solver.accuracy.wanted = 0;
+	exact->solver.iterations = CONVERGED;
+	exact->solver.tolerance = converged_residual;
+	for (int k = 0; k < PRESSED + HELD; k++) {
+		stage_gravity(session, 0, 0, -9.81 - 1e-3 * (k % 2)); // stay awake
+		stage_move(session, "hook", 0, 0, 0.03 - 0.0285 * fmin(k / 30.0, 1));
+		if (k < PRESSED)
+			stage_step(session, 1);
+		else
+			sample(session, exact, &of);
+	}
+	tell("steady", &of);
+	assert_true(session->tool[0].state.raw_force_n[2] > 0.05);
+	assert_true(of.iterations <= 1.8 * of.count);
+	assert_true(quantile(of.force, of.count, 1) <= 0.02);
+	session->solver.accuracy.amplification[0] = 1e-9; // no vertex asks for a second increment,
+	session->solver.accuracy.shallow_steps = 0;       // nor is it time to learn
+	stage_move(session, "hook", 0, 0, -0.003);
+	sample(session, exact, &blow);
+	assert_true(blow.iterations >= 2);
+	assert_true(blow.force[0] <= 0.02);
+	cau_session_destroy(session);
+	cau_session_destroy(exact);
+	free(scene);
+}
+
 // A free sheet does not come to 1 % in so few iterations: it takes all that there are, and says so.
 static void what_is_not_reached_is_told(void **state)
 {
@@ -253,6 +289,7 @@ int main(void)
 	const struct CMUnitTest tests[] = {
 		cmocka_unit_test(a_taut_sheet_is_right),
 		cmocka_unit_test(fat_is_right),
+		cmocka_unit_test(a_steady_push_takes_one_increment_and_a_blow_more),
 		cmocka_unit_test(what_is_not_reached_is_told),
 		cmocka_unit_test(without_accuracy_each_step_takes_as_many),
 		cmocka_unit_test(a_tolerance_goes_before_accuracy),

@@ -4,7 +4,7 @@
 #include "core/session/stage.h"
 
 #include "base/hash.h"
-#include "session/session_internal.h"
+#include "session/snapshot_header.h"
 
 enum { LONGEST = 3000 };
 static const double gravity_z = -9.81;
@@ -390,7 +390,8 @@ static void threads_and_restores_change_no_bit(void **state)
 static void a_snapshot_without_rest_is_read(void **state)
 {
 	(void)state;
-	enum { VERSION_AT = 8, HASH_AT = 48, PAYLOAD_BYTES_AT = 56, REST_BYTES = 64 };
+	enum { VERSION_AT = 8, HASH_AT = 48, PAYLOAD_BYTES_AT = 56 };
+	const size_t rest_bytes = sizeof(snapshot_header) - offsetof(snapshot_header, resting);
 	cau_scene_def *scene = make_hanging_block(CAU_PRECISION_SINGLE);
 	cau_session *session = stage_open(scene, 1), *other = stage_open(scene, 1);
 	stage_step(session, 3);
@@ -398,9 +399,9 @@ static void a_snapshot_without_rest_is_read(void **state)
 	stage_bytes shot = stage_snapshot(session);
 	uint64_t payload_bytes;
 	memcpy(&payload_bytes, shot.bytes + PAYLOAD_BYTES_AT, sizeof payload_bytes);
-	size_t head = shot.count - payload_bytes - REST_BYTES;
-	memmove(shot.bytes + head, shot.bytes + head + REST_BYTES, payload_bytes);
-	shot.count -= REST_BYTES;
+	size_t head = shot.count - payload_bytes - rest_bytes;
+	memmove(shot.bytes + head, shot.bytes + head + rest_bytes, payload_bytes);
+	shot.count -= rest_bytes;
 	const uint32_t version = 3;
 	memcpy(shot.bytes + VERSION_AT, &version, sizeof version);
 	memset(shot.bytes + HASH_AT, 0, sizeof(uint64_t));
