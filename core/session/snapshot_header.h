@@ -6,9 +6,10 @@
 #include "session/session_internal.h"
 
 enum {
-	// with the sides of faces; 4, without, 3, without rest and accuracy too, and 1, elements by
-	// slot, are still read
-	CAU_SNAPSHOT_VERSION = 5,
+	// with tears, and what materials bear; 5, without, 4, without the sides of faces, 3, without
+	// rest
+	// and accuracy too, and 1, elements by slot, are still read
+	CAU_SNAPSHOT_VERSION = 6,
 	CAU_SNAPSHOT_NODES = 4096, // along a heat grid's side at most: far more than a tool may have
 };
 
@@ -35,6 +36,8 @@ typedef struct snapshot_header {
 	double accuracy, amplification[CAU_ACCURACY_DEPTHS];
 	// since version 5
 	int32_t memory_count, unused_since_5;
+	// since version 6: tears
+	int32_t over_count, elements_torn;
 } snapshot_header;
 
 // What all versions' headers have, the version and payload_bytes among it.
