@@ -68,6 +68,8 @@ cau_status cau_dissection_create(cau_dissection *dissection, const cau_tissue *t
 	if (!status && parting == CAU_PARTING_ELEMENTS)
 		status = cau_doses_create(&dissection->doses, tissue, arena, error);
 	if (!status)
+		status = cau_tears_create(&dissection->tears, tissue, arena, error);
+	if (!status)
 		cau_dissection_recount(dissection);
 	return status;
 }

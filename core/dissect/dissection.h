@@ -3,6 +3,7 @@
 // removed elements, faces drawn.
 #pragma once
 
+#include "base/pool.h"
 #include "dissect/near.h"
 #include "heat/exposure.h"
 #include "solve/system.h"
@@ -23,10 +24,29 @@ typedef struct cau_doses {
 	uint8_t *touched_mark;
 } cau_doses;
 
+// What is stretched beyond what it bears (tears.c): places of triangles, then tetrahedra, then
+// links.
+typedef struct cau_over {
+	int32_t place, counted; // ticks: a converged one counts for three
+} cau_over;
+
+typedef struct cau_tears {
+	int32_t over_count;                   // at the last tick: part of the session's state
+	cau_over *over;                       // ascending by place
+	int32_t elements_torn;                // since creation, with what they took along
+	double widest_m[CAU_PRIMITIVE_KINDS]; // greatest size of an element
+	// Scratch.
+	cau_over *before;
+	int32_t *now, *found; // over in this tick; how many of each part
+	double *load;         // of those in `now`
+	int32_t *most;        // (vertex_count): the most loaded of `now` there, and 1; 0: none
+} cau_tears;
+
 typedef struct cau_dissection {
 	const cau_tissue *tissue;
 	uint64_t seed;
 	cau_doses doses;
+	cau_tears tears;
 	double *exposure; // (edge_count): integral of (u_a + u_b)/2 dt while charring, degC s
 	uint16_t *parted; // (edge_count): bit per layer
 	uint8_t *share_count[CAU_PRIMITIVE_KINDS]; // live edges of each primitive
@@ -68,6 +88,15 @@ double cau_dissection_expose(cau_dissection *dissection, const cau_near *near,
 // Removed elements are appended to `removed`. *layers gets a bit for each layer that lost
 // something.
 void cau_dissection_part(cau_dissection *dissection, uint32_t *layers);
+
+// How many elements may be over what they bear, at most.
+int32_t cau_tears_capacity(const cau_tissue *tissue);
+
+// Tears what is stretched at positions x beyond what it bears, and has been for long enough:
+// elements, with what their edge held up where edges part. Called once a tick; `converged`: whether
+// its step has.
+void cau_dissection_tear(cau_dissection *dissection, const double *position, bool converged,
+                         cau_pool *pool);
 
 // Recounts everything that follows from `parted` and `gone` (after a restore): share counts, alive,
 // faces, vertices.

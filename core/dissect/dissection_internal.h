@@ -33,3 +33,9 @@ void cau_doses_expose(cau_dissection *dissection, const cau_near *near, const do
                       const cau_heat_grid *grid, const cau_tool_def *tool, const cau_pose *pose,
                       double jaw, double duration_s);
 void cau_doses_part(cau_dissection *dissection, uint32_t *layers);
+// Takes a living triangle or tetrahedron out by itself, where elements part.
+void cau_doses_lose(cau_dissection *dissection, int primitive, int32_t index);
+
+// ---- tears.c
+cau_status cau_tears_create(cau_tears *tears, const cau_tissue *tissue, cau_arena *arena,
+                            cau_error *error);

@@ -199,6 +199,19 @@ static void lose_edge_between(cau_dissection *dissection, int32_t a, int32_t b, 
 	cau_dissection_lose_edge(dissection, edge, (uint16_t)(1u << layer));
 }
 
+void cau_doses_lose(cau_dissection *dissection, int primitive, int32_t index)
+{
+	const cau_tissue *tissue = dissection->tissue;
+	int32_t layer = cau_dissection_layer_of(tissue, primitive, index);
+	dissection->doses.gone[cau_doses_place(tissue, primitive, index)] = 1;
+	cau_dissection_remove(dissection, primitive, index);
+	int count;
+	const int32_t *vertex = cau_dissection_vertices_of(tissue, primitive, index, &count);
+	for (int i = 0; i < count; i++)
+		for (int j = 0; j < i; j++)
+			lose_edge_between(dissection, vertex[i], vertex[j], layer);
+}
+
 static void part_element(cau_dissection *dissection, int32_t place, uint32_t *layers)
 {
 	const cau_tissue *tissue = dissection->tissue;
@@ -209,15 +222,8 @@ static void part_element(cau_dissection *dissection, int32_t place, uint32_t *la
 	if (dissection->doses.gone[place] ||
 	    absorption * dissection->doses.dose[place] <= ignition_of(dissection, primitive, index))
 		return;
-	int32_t layer = cau_dissection_layer_of(tissue, primitive, index);
-	dissection->doses.gone[place] = 1;
-	*layers |= 1u << layer;
-	cau_dissection_remove(dissection, primitive, index);
-	int count;
-	const int32_t *vertex = cau_dissection_vertices_of(tissue, primitive, index, &count);
-	for (int i = 0; i < count; i++)
-		for (int j = 0; j < i; j++)
-			lose_edge_between(dissection, vertex[i], vertex[j], layer);
+	*layers |= 1u << cau_dissection_layer_of(tissue, primitive, index);
+	cau_doses_lose(dissection, primitive, index);
 }
 
 void cau_doses_part(cau_dissection *dissection, uint32_t *layers)

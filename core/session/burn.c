@@ -25,8 +25,7 @@ static void heat_edges(cau_session *session, cau_tool *tool)
 	tool->state.tip_temperature_c = cau_heat_grid_at(&tool->grid, tip);
 }
 
-// Takes what the cut removed out of the local step and puts it on the list of the factor.
-static void take_out(cau_session *session, int32_t first)
+void cau_session_take_out(cau_session *session, int32_t first)
 {
 	CAU_ASSERT(first >= 0 && first <= session->dissection.removed_count,
 	           "from element %d on of %d removed", first, session->dissection.removed_count);
@@ -50,7 +49,7 @@ void cau_session_burn(cau_session *session)
 		uint32_t layers = 0;
 		heat_edges(session, tool);
 		cau_dissection_part(&session->dissection, &layers); // section 6.1
-		take_out(session, first);
+		cau_session_take_out(session, first);
 		cau_shrink_expose(&session->shrink, &session->dissection, first, session->position,
 		                  &tool->state.definition, &tool->state.pose, tool->state.jaw,
 		                  &session->solver.elements, &session->solver.slots); // eq. 21

@@ -170,6 +170,11 @@ void cau_session_release(cau_tool *tool);
 void cau_session_drop_frozen_grasps(cau_session *session);
 // burn.c: heat, exposure, parting.
 void cau_session_burn(cau_session *session);
+// Takes what was removed from element `first` of the tick's list on out of the local step, and puts
+// it on the list of the factor.
+void cau_session_take_out(cau_session *session, int32_t first);
+// tear.c: what is stretched beyond what it bears parts.
+void cau_session_tear(cau_session *session);
 // relax.c: built-in tension brought to its equilibrium.
 cau_status cau_session_relax(cau_session *session, cau_error *error);
 // pins.c: a new set of pinned vertices, and the systems that follow from it.

@@ -64,6 +64,68 @@ static void pass_tool(snapshot_archive *archive, cau_tool *tool)
 	snapshot_pass(archive, tool->grid.temperature, nodes * sizeof *tool->grid.temperature);
 }
 
+// What a material bears came with version 6, as its last member, and has a place of its own below:
+// the materials themselves are passed as they have always been.
+enum { BEARING_BYTES = sizeof(cau_heat_material) - offsetof(cau_heat_material, tear_energy_j_m2) };
+_Static_assert(BEARING_BYTES == sizeof(double), "what a material bears is its last member");
+_Static_assert(offsetof(cau_layer_def, link) + sizeof(cau_link_material) == sizeof(cau_layer_def),
+               "nothing is behind a layer's last material");
+_Static_assert(sizeof((cau_command *)0)->as == sizeof((cau_command *)0)->as.material,
+               "a command with materials is the longest");
+
+static void pass_materials(snapshot_archive *archive, cau_sheet_material *sheet,
+                           cau_fat_material *fat, cau_link_material *link, int count)
+{
+	for (int i = 0; i < count; i++)
+		snapshot_pass(archive, &sheet[i], sizeof *sheet - BEARING_BYTES);
+	for (int i = 0; i < count; i++)
+		snapshot_pass(archive, &fat[i], sizeof *fat - BEARING_BYTES);
+	snapshot_pass(archive, link, sizeof *link - BEARING_BYTES);
+}
+
+static void pass_command(snapshot_archive *archive, cau_command *command)
+{
+	const size_t before = offsetof(cau_command, as), all = sizeof *command - 3 * BEARING_BYTES;
+	snapshot_pass(archive, command, before);
+	if (!archive->bytes || command->kind != CAU_COMMAND_SET_MATERIAL) {
+		snapshot_pass(archive, &command->as, all - before);
+		return;
+	}
+	const size_t sheet = offsetof(cau_command, as.material.sheet);
+	snapshot_pass(archive, &command->as, sheet - before);
+	pass_materials(archive, &command->as.material.sheet, &command->as.material.fat,
+	               &command->as.material.link, 1);
+}
+
+static void pass_bearings(snapshot_archive *archive, cau_sheet_material *sheet,
+                          cau_fat_material *fat, cau_link_material *link, int count)
+{
+	for (int i = 0; i < count; i++)
+		snapshot_pass(archive, &sheet[i].heat.tear_energy_j_m2, BEARING_BYTES);
+	for (int i = 0; i < count; i++)
+		snapshot_pass(archive, &fat[i].heat.tear_energy_j_m2, BEARING_BYTES);
+	snapshot_pass(archive, &link->heat.tear_energy_j_m2, BEARING_BYTES);
+}
+
+// Since version 6: what materials bear, and which elements are over it.
+static void pass_tears(snapshot_archive *archive, cau_session *session)
+{
+	cau_tears *tears = &session->dissection.tears;
+	for (int32_t i = 0; i < session->tissue.layer_count; i++) {
+		cau_layer_def *def = &session->tissue.layer[i].def;
+		pass_bearings(archive, def->sheet, def->fat, &def->link, CAU_MAX_MATERIALS);
+	}
+	for (int32_t i = 0; i < session->command_count; i++) {
+		cau_command none, *command = &session->command[i];
+		memset(&none, 0, sizeof none); // others have the same room, empty
+		if (command->kind != CAU_COMMAND_SET_MATERIAL)
+			command = &none;
+		pass_bearings(archive, &command->as.material.sheet, &command->as.material.fat,
+		              &command->as.material.link, 1);
+	}
+	snapshot_pass(archive, tears->over, (size_t)tears->over_count * sizeof *tears->over);
+}
+
 // Everything but the tools and what decides the system's shape, which restoring needs first.
 static cau_status pass_state(snapshot_archive *archive, cau_session *session, cau_error *error)
 {
@@ -83,10 +145,13 @@ static cau_status pass_state(snapshot_archive *archive, cau_session *session, ca
 	snapshot_pass(archive, session->shrink.shrunk[1], (size_t)session->tissue.tetrahedron_count);
 	snapshot_pass(archive, session->shrink.active,
 	              (size_t)session->shrink.active_count * sizeof *session->shrink.active);
-	snapshot_pass(archive, session->command,
-	              (size_t)session->command_count * sizeof *session->command);
-	for (int32_t i = 0; i < session->tissue.layer_count; i++)
-		snapshot_pass(archive, &session->tissue.layer[i].def, sizeof session->tissue.layer[i].def);
+	for (int32_t i = 0; i < session->command_count; i++)
+		pass_command(archive, &session->command[i]);
+	for (int32_t i = 0; i < session->tissue.layer_count; i++) {
+		cau_layer_def *def = &session->tissue.layer[i].def;
+		snapshot_pass(archive, def, offsetof(cau_layer_def, sheet));
+		pass_materials(archive, def->sheet, def->fat, &def->link, CAU_MAX_MATERIALS);
+	}
 	cau_status status = cau_snapshot_pass_elements(archive, session, error);
 	pass_update(archive, session);
 	pass_columns(archive, session);
@@ -94,6 +159,8 @@ static cau_status pass_state(snapshot_archive *archive, cau_session *session, ca
 	              (size_t)session->contact.memory_count * sizeof *session->contact.memory);
 	if (session->rest.quiet_ticks && !session->rest.resting)
 		snapshot_pass(archive, session->rest.from, 3 * n * sizeof(double));
+	if (archive->version >= 6)
+		pass_tears(archive, session);
 	return status;
 }
 
@@ -152,6 +219,7 @@ static cau_session *imagine(const cau_session *session, const snapshot_header *h
 	imagined->shrink.active_count = header->active_count;
 	imagined->contact.column_count = header->column_count;
 	imagined->contact.memory_count = header->memory_count;
+	imagined->dissection.tears.over_count = header->over_count;
 	imagined->contact.epoch = imagined->solver.factor_epoch;
 	imagined->update.waiting_count = header->waiting_count;
 	imagined->update.operation_count = header->operation_count;
@@ -235,6 +303,8 @@ static void restore_counts(cau_session *session, const snapshot_header *header, 
 	session->shrink.active_count = header->active_count;
 	session->contact.column_count = header->column_count;
 	session->contact.memory_count = header->memory_count;
+	session->dissection.tears.over_count = header->over_count;
+	session->dissection.tears.elements_torn = header->elements_torn;
 	session->contact.epoch = session->solver.factor_epoch;
 	session->solver.factor_version = header->factor_version;
 	update->waiting_count = header->waiting_count;
@@ -394,6 +464,9 @@ uint64_t cau_session_hash(const cau_session *session)
 	size_t doses = (size_t)cau_dissection_dose_count(&session->dissection);
 	hash = cau_hash_bytes(hash, session->dissection.doses.dose, doses * sizeof(double));
 	hash = cau_hash_bytes(hash, session->dissection.doses.gone, doses);
+	const cau_tears *tears = &session->dissection.tears;
+	if (tears->over_count) // what tears nothing has the hash that it had before there were tears
+		hash = cau_hash_bytes(hash, tears->over, (size_t)tears->over_count * sizeof *tears->over);
 	for (int i = 0; i < 6; i++)
 		hash = cau_hash_bytes(hash, elements->fat.plastic_strain[i],
 		                      (size_t)elements->fat.slot_count * cau_real_bytes(elements->single));

@@ -86,6 +86,8 @@ void cau_snapshot_fill_header(const cau_session *session, snapshot_header *heade
 	header->factor_version = session->solver.factor_version;
 	header->column_count = cau_snapshot_kept_columns(session);
 	header->memory_count = session->contact.memory_count;
+	header->over_count = session->dissection.tears.over_count;
+	header->elements_torn = session->dissection.tears.elements_torn;
 	header->waiting_count = session->update.waiting_count;
 	header->operation_count = session->update.operation_count;
 	header->group_count = session->update.group_count;
@@ -165,6 +167,7 @@ cau_status cau_snapshot_check_header(const cau_session *session, const snapshot_
 	    header->operation_count > CAU_DOWNDATES_AT_MOST || header->column_count < 0 ||
 	    header->column_count > CAU_MAX_COLUMNS || header->waiting_at_start < 0 ||
 	    header->memory_count < 0 || header->memory_count > CAU_MAX_MEMORY ||
+	    header->over_count < 0 || header->over_count > cau_tears_capacity(&session->tissue) ||
 	    header->row_count < 0 || header->row_count > header->vertex_count ||
 	    header->quiet_ticks < 0 || (header->resting && !header->quiet_ticks) ||
 	    (has_learned(header_bytes) && !is_taught(header, header_bytes)))

@@ -6,9 +6,8 @@
 #include "session/session_internal.h"
 
 enum {
-	// with what tools' forces have taught; 5, without, 4, without the sides of faces too, 3,
-	// without
-	// rest and accuracy, and 1, elements by slot, are still read
+	// with tears, what materials bear and what tools' forces have taught; 5, without, 4, without
+	// the sides of faces too, 3, without rest and accuracy, and 1, elements by slot, are still read
 	CAU_SNAPSHOT_VERSION = 6,
 	CAU_SNAPSHOT_NODES = 4096, // along a heat grid's side at most: far more than a tool may have
 };
@@ -38,6 +37,7 @@ typedef struct snapshot_header {
 	int32_t memory_count, unused_since_5;
 	// since version 6
 	double force_left, force_before[CAU_ACCURACY_TOOLS][3];
+	int32_t over_count, elements_torn; // tears
 } snapshot_header;
 
 // What all versions' headers have, the version and payload_bytes among it.

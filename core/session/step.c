@@ -180,6 +180,7 @@ cau_status cau_session_step(cau_session *session, cau_error *error)
 		return fault(session, status);
 	cau_session_read_forces(session); // touch.c
 	end_solve_stages(session);
+	cau_session_tear(session); // tear.c
 	cau_session_burn(session); // eq. 18-21: burn.c
 	cau_session_stage_end(session, CAU_STAGE_HEAT);
 	freeze_isolated(session);

@@ -159,6 +159,7 @@ static void fill_statistics(const cau_session *session, cau_statistics *statisti
 		.inverted = session->inverted,
 		.edges_parted = session->dissection.edges_parted,
 		.elements_removed = session->dissection.elements_removed,
+		.elements_torn = session->dissection.tears.elements_torn,
 		.pending_downdates = session->update.waiting_count,
 		.deferred_max_s = (double)session->update.longest_wait * solver->step_s,
 		.refactorisations = session->update.refactorisations,

@@ -191,6 +191,7 @@ typedef struct cau_statistics {
 	int32_t inverted;          // tetrahedra with negative volume after the step
 	int32_t edges_parted;      // since creation
 	int32_t elements_removed;  // since creation
+	int32_t elements_torn;     // of these, by being stretched beyond what they bear
 	int32_t pending_downdates; // removed elements the factor still holds
 	double deferred_max_s;     // longest such wait so far, in simulated seconds
 	int32_t refactorisations;  // since creation

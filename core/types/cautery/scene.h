@@ -103,12 +103,14 @@ typedef struct cau_mesh_def {
 	X(CLOSED_FORM, "closed_form") /* P = Q T^(1/2) */                                              \
 	X(LINEARISED, "linearised")   /* eq. 13 in F */
 
-// Common to all tissue that heat parts (section 6.2, 6.3).
+// Common to all tissue: how heat parts it (section 6.2, 6.3), and what it takes to tear it.
 #define CAU_HEAT_TABLE(X)                                                                          \
 	X(ignition_c, 172.0, 1.0, 2000.0, "degC", "it parts when its exposure exceeds this")           \
 	X(ignition_spread_c, 0.0, 0.0, 500.0, "degC", "standard deviation, drawn by seed")             \
 	X(ignition_bundle_m, 0.0, 0.0, 0.1, "m", "width of bundles that part alike; 0: none")          \
-	X(absorption_per_s, 0.4, 0.0, 1000.0, "1/s", "xi of eq. 20")
+	X(absorption_per_s, 0.4, 0.0, 1000.0, "1/s", "xi of eq. 20")                                   \
+	X(tear_energy_j_m2, 0.0, 0.0, 1e6, "J/m^2",                                                    \
+	  "energy that a tear takes by its area; 0: none does")
 
 #define CAU_SHEET_TABLE(X)                                                                         \
 	X(thickness_m, 5e-4, 1e-6, 0.05, "m", "sheet thickness")                                       \

@@ -392,6 +392,7 @@ static void a_snapshot_without_rest_is_read(void **state)
 	(void)state;
 	enum { VERSION_AT = 8, HASH_AT = 48, PAYLOAD_BYTES_AT = 56 };
 	const size_t rest_bytes = sizeof(snapshot_header) - offsetof(snapshot_header, resting);
+	const size_t tears = (2 * CAU_MAX_MATERIALS + 1) * sizeof(double); // of the one layer
 	cau_scene_def *scene = make_hanging_block(CAU_PRECISION_SINGLE);
 	cau_session *session = stage_open(scene, 1), *other = stage_open(scene, 1);
 	stage_step(session, 3);
@@ -401,7 +402,9 @@ static void a_snapshot_without_rest_is_read(void **state)
 	memcpy(&payload_bytes, shot.bytes + PAYLOAD_BYTES_AT, sizeof payload_bytes);
 	size_t head = shot.count - payload_bytes - rest_bytes;
 	memmove(shot.bytes + head, shot.bytes + head + rest_bytes, payload_bytes);
-	shot.count -= rest_bytes;
+	payload_bytes -= tears;
+	memcpy(shot.bytes + PAYLOAD_BYTES_AT, &payload_bytes, sizeof payload_bytes);
+	shot.count -= rest_bytes + tears;
 	const uint32_t version = 3;
 	memcpy(shot.bytes + VERSION_AT, &version, sizeof version);
 	memset(shot.bytes + HASH_AT, 0, sizeof(uint64_t));

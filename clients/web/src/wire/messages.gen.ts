@@ -833,6 +833,8 @@ export interface FasciaRegion {
   ignition_bundle_m?: number;
   /** xi of eq. 20 (0 to 1000 1/s) */
   absorption_per_s?: number;
+  /** energy that a tear takes by its area; 0: none does (0 to 1000000 J/m^2) */
+  tear_energy_j_m2?: number;
 }
 
 /** a layer of this kind, with its material */
@@ -875,6 +877,8 @@ export interface FasciaLayer {
   ignition_bundle_m?: number;
   /** xi of eq. 20 (0 to 1000 1/s) */
   absorption_per_s?: number;
+  /** energy that a tear takes by its area; 0: none does (0 to 1000000 J/m^2) */
+  tear_energy_j_m2?: number;
   /** what differs in regions of the mesh file */
   regions?: FasciaRegion[];
 }
@@ -913,6 +917,8 @@ export interface MembraneRegion {
   ignition_bundle_m?: number;
   /** xi of eq. 20 (0 to 1000 1/s) */
   absorption_per_s?: number;
+  /** energy that a tear takes by its area; 0: none does (0 to 1000000 J/m^2) */
+  tear_energy_j_m2?: number;
 }
 
 /** a layer of this kind, with its material */
@@ -957,6 +963,8 @@ export interface MembraneLayer {
   ignition_bundle_m?: number;
   /** xi of eq. 20 (0 to 1000 1/s) */
   absorption_per_s?: number;
+  /** energy that a tear takes by its area; 0: none does (0 to 1000000 J/m^2) */
+  tear_energy_j_m2?: number;
   /** what differs in regions of the mesh file */
   regions?: MembraneRegion[];
 }
@@ -1001,6 +1009,8 @@ export interface FatRegion {
   ignition_bundle_m?: number;
   /** xi of eq. 20 (0 to 1000 1/s) */
   absorption_per_s?: number;
+  /** energy that a tear takes by its area; 0: none does (0 to 1000000 J/m^2) */
+  tear_energy_j_m2?: number;
 }
 
 /** a layer of this kind, with its material */
@@ -1049,6 +1059,8 @@ export interface FatLayer {
   ignition_bundle_m?: number;
   /** xi of eq. 20 (0 to 1000 1/s) */
   absorption_per_s?: number;
+  /** energy that a tear takes by its area; 0: none does (0 to 1000000 J/m^2) */
+  tear_energy_j_m2?: number;
   /** what differs in regions of the mesh file */
   regions?: FatRegion[];
 }
@@ -1079,6 +1091,8 @@ export interface LinksLayer {
   ignition_bundle_m?: number;
   /** xi of eq. 20 (0 to 1000 1/s) */
   absorption_per_s?: number;
+  /** energy that a tear takes by its area; 0: none does (0 to 1000000 J/m^2) */
+  tear_energy_j_m2?: number;
 }
 
 /** the plain data from which a session is made */
@@ -1378,6 +1392,8 @@ export interface MaterialSetFascia {
   ignition_bundle_m?: number;
   /** xi of eq. 20 (0 to 1000 1/s) */
   absorption_per_s?: number;
+  /** energy that a tear takes by its area; 0: none does (0 to 1000000 J/m^2) */
+  tear_energy_j_m2?: number;
 }
 
 /** replaces a layer's material */
@@ -1426,6 +1442,8 @@ export interface MaterialSetMembrane {
   ignition_bundle_m?: number;
   /** xi of eq. 20 (0 to 1000 1/s) */
   absorption_per_s?: number;
+  /** energy that a tear takes by its area; 0: none does (0 to 1000000 J/m^2) */
+  tear_energy_j_m2?: number;
 }
 
 /** replaces a layer's material */
@@ -1480,6 +1498,8 @@ export interface MaterialSetFat {
   ignition_bundle_m?: number;
   /** xi of eq. 20 (0 to 1000 1/s) */
   absorption_per_s?: number;
+  /** energy that a tear takes by its area; 0: none does (0 to 1000000 J/m^2) */
+  tear_energy_j_m2?: number;
 }
 
 /** replaces a layer's material */
@@ -1512,6 +1532,8 @@ export interface MaterialSetLinks {
   ignition_bundle_m?: number;
   /** xi of eq. 20 (0 to 1000 1/s) */
   absorption_per_s?: number;
+  /** energy that a tear takes by its area; 0: none does (0 to 1000000 J/m^2) */
+  tear_energy_j_m2?: number;
 }
 
 /** for the whole session */
@@ -1874,6 +1896,8 @@ export const PARAMETERS = {
       meaning: "width of bundles that part alike; 0: none" },
     { name: 'absorption_per_s', unit: '1/s', least: 0, most: 1000, default: 0.4,
       meaning: "xi of eq. 20" },
+    { name: 'tear_energy_j_m2', unit: 'J/m^2', least: 0, most: 1000000, default: 0,
+      meaning: "energy that a tear takes by its area; 0: none does" },
   ],
   membrane: [
     { name: 'thickness_m', unit: 'm', least: 1e-06, most: 0.05, default: 0.0005,
@@ -1894,6 +1918,8 @@ export const PARAMETERS = {
       meaning: "width of bundles that part alike; 0: none" },
     { name: 'absorption_per_s', unit: '1/s', least: 0, most: 1000, default: 0.4,
       meaning: "xi of eq. 20" },
+    { name: 'tear_energy_j_m2', unit: 'J/m^2', least: 0, most: 1000000, default: 0,
+      meaning: "energy that a tear takes by its area; 0: none does" },
   ],
   fat: [
     { name: 'density_kg_m3', unit: 'kg/m^3', least: 1, most: 25000, default: 911,
@@ -1918,6 +1944,8 @@ export const PARAMETERS = {
       meaning: "width of bundles that part alike; 0: none" },
     { name: 'absorption_per_s', unit: '1/s', least: 0, most: 1000, default: 0.4,
       meaning: "xi of eq. 20" },
+    { name: 'tear_energy_j_m2', unit: 'J/m^2', least: 0, most: 1000000, default: 0,
+      meaning: "energy that a tear takes by its area; 0: none does" },
   ],
   links: [
     { name: 'young_modulus_pa', unit: 'Pa', least: 1, most: 100000000000, default: 100000,
@@ -1936,5 +1964,7 @@ export const PARAMETERS = {
       meaning: "width of bundles that part alike; 0: none" },
     { name: 'absorption_per_s', unit: '1/s', least: 0, most: 1000, default: 0.4,
       meaning: "xi of eq. 20" },
+    { name: 'tear_energy_j_m2', unit: 'J/m^2', least: 0, most: 1000000, default: 0,
+      meaning: "energy that a tear takes by its area; 0: none does" },
   ],
 } satisfies Record<string, Parameter[]>;

@@ -1,0 +1,441 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Tearing: what is stretched beyond what its layer bears parts, with no heat.
+//
+// A strength would tie a tear to the mesh: at the tip of a cut the stretch grows without bound as
+// elements shrink, so the finer mesh would tear first, and at no work at all. What a tear takes is
+// energy by its area, G_c. So an element is one band of a crack [Bazant and Oh 1983, Crack band
+// theory for fracture of concrete]: it goes when what it stores over its width, energy density
+// times size, reaches G_c. The density beside a tip falls with the distance as 1/r, and what
+// elements of any size h feel there, times h, is one share of the energy that the tear would set
+// free (`share_of`). (Away from any tip or edge of what is held, the stretch is even
+// and there is no crack yet: there a finer mesh bears more, by the root of h.)
+//
+// What counts is stretch beyond the rest shape, not the energy of the law. A fascia whose target is
+// 0.1 stores much at rest and is taut for good; it does not tear by that. So with the principal
+// stretches s of F
+//     psi = E/2 sum (s - 1)+^2 + k/2 sum (s - s_free)+^2,
+// E Young's modulus of fat and links, k the stiffness of the strain limit of sheets and fat, s_free
+// 1 or, of a range, what it lets go along that axis. Pushing tears nothing. Along one axis this is
+// the energy of the laws at small strain; it leaves out what Poisson's ratio adds where two axes
+// are stretched, and counts what has flowed as stored, which a band spends all the same.
+//
+// An element goes when it was there in two converged ticks, one after the other, or in six of any
+// kind: an iterate on the way may be far beyond the solution, but not for a tenth of a second, and
+// a flap that hangs on little may never converge. Of those that touch each other only the most
+// loaded goes, as what it leaves lets its neighbours go slack: a tear is one element wide.
+#include <string.h>
+
+#include "base/symmetric.h"
+#include "cautery/assert.h"
+#include "dissect/dissection_internal.h"
+
+enum { PART = 2048 }; // elements that are looked at in one go
+
+// What a tick counts in which an element is over, and how much it takes.
+enum { COUNTS_CONVERGED = 3, COUNTS_AT_ALL = 1, TAKES = 2 * COUNTS_CONVERGED };
+
+int32_t cau_tears_capacity(const cau_tissue *tissue)
+{
+	return tissue->triangle_count + tissue->tetrahedron_count + tissue->link_count;
+}
+
+static int primitive_at(const cau_tissue *tissue, int32_t place, int32_t *index)
+{
+	CAU_ASSERT_INDEX(place, cau_tears_capacity(tissue));
+	*index = place;
+	if (place < tissue->triangle_count)
+		return CAU_PRIMITIVE_TRIANGLE;
+	*index -= tissue->triangle_count;
+	if (*index < tissue->tetrahedron_count)
+		return CAU_PRIMITIVE_TETRAHEDRON;
+	*index -= tissue->tetrahedron_count;
+	return CAU_PRIMITIVE_LINK;
+}
+
+// Where its band is crossed, m: of a triangle the leg of a right one of its area, of a tetrahedron
+// the edge of the cube that six of them fill, of a fibre all of it, which recoils whole.
+static double size_of(const cau_tissue *tissue, int primitive, int32_t index)
+{
+	if (primitive == CAU_PRIMITIVE_TRIANGLE)
+		return sqrt(2 * tissue->triangle_area[index]);
+	if (primitive == CAU_PRIMITIVE_TETRAHEDRON)
+		return cbrt(6 * tissue->tetrahedron_volume[index]);
+	return tissue->link_length[index];
+}
+
+cau_status cau_tears_create(cau_tears *tears, const cau_tissue *tissue, cau_arena *arena,
+                            cau_error *error)
+{
+	size_t total = (size_t)cau_tears_capacity(tissue);
+	size_t parts = total / PART + CAU_MAX_LAYERS; // each layer's last may not be full
+	tears->over = cau_arena_array(arena, total, sizeof *tears->over);
+	tears->before = cau_arena_array(arena, total, sizeof *tears->before);
+	tears->now = cau_arena_array(arena, parts * PART, sizeof *tears->now);
+	tears->found = cau_arena_array(arena, parts, sizeof *tears->found);
+	tears->load = cau_arena_array(arena, parts * PART, sizeof *tears->load);
+	tears->most = cau_arena_array(arena, (size_t)tissue->vertex_count, sizeof *tears->most);
+	if (!tears->over || !tears->before || !tears->now || !tears->found || !tears->load ||
+	    !tears->most)
+		return cau_fail(error, CAU_NO_MEMORY, NULL, "no memory for tears");
+	for (int32_t place = 0; place < cau_tears_capacity(tissue); place++) {
+		int32_t index;
+		int primitive = primitive_at(tissue, place, &index);
+		double size = size_of(tissue, primitive, index);
+		double *widest = &tears->widest_m[primitive];
+		*widest = fmax(*widest, size);
+	}
+	return CAU_OK;
+}
+
+// ---- how much an element is loaded
+
+// What an element's law and its layer make of stretch.
+typedef struct bearing {
+	double young_pa, limit_pa;
+	double free[3];   // stretches that the limit lets go, along the material axes
+	double tear_j_m2; // its share of G_c
+} bearing;
+
+// The share of the energy set free that one element at the tip of a cut stores over its size:
+// measured on strips of known energy, of triangles and of tetrahedra, within 4 % on three meshes
+// (tests/core/session/tear_test.c). A fibre has no tip: it stores all that it sets free.
+static const double share_of[CAU_PRIMITIVE_KINDS] = {0.4, 0.4, 1};
+
+static void free_stretches(double out[3], int limit, const double *strain_max, int count)
+{
+	for (int i = 0; i < 3; i++)
+		out[i] = limit == CAU_LIMIT_RANGE && i < count ? 1 + strain_max[i] : 1;
+}
+
+static bearing bearing_of(const cau_tissue *tissue, int primitive, int32_t index)
+{
+	double energy = cau_dissection_heat_of(tissue, primitive, index)->tear_energy_j_m2;
+	bearing b = {.tear_j_m2 = share_of[primitive] * energy, .free = {1, 1, 1}};
+	if (b.tear_j_m2 == 0)
+		return b;
+	if (primitive == CAU_PRIMITIVE_TRIANGLE) {
+		const cau_sheet_material *sheet = cau_triangle_material(tissue, index);
+		b.limit_pa = sheet->limit_stiffness_pa;
+		free_stretches(b.free, sheet->limit, sheet->strain_max, 2);
+	} else if (primitive == CAU_PRIMITIVE_TETRAHEDRON) {
+		const cau_fat_material *fat = cau_tetrahedron_material(tissue, index);
+		b.young_pa = fat->young_modulus_pa;
+		b.limit_pa = fat->limit != CAU_LIMIT_NONE ? fat->limit_stiffness_pa : 0;
+		free_stretches(b.free, fat->limit, fat->strain_max, 3);
+	} else {
+		b.young_pa = tissue->layer[tissue->link_layer[index]].def.link.young_modulus_pa;
+	}
+	return b;
+}
+
+// F^T F in the material axes, 00, 11, 22, 01, 02, 12, and what a point of the axes has not, 0; of a
+// link its squared stretch alone.
+static void metric_of(const cau_tissue *tissue, int primitive, int32_t index,
+                      const double *position, double metric[6])
+{
+	int count;
+	const int32_t *v = cau_dissection_vertices_of(tissue, primitive, index, &count);
+	cau_vec3 origin = cau_vec3_of(position + 3 * (size_t)v[0]);
+	cau_vec3 f[3] = {{0, 0, 0}, {0, 0, 0}, {0, 0, 0}};
+	int rank = count - 1;
+	double whole = primitive == CAU_PRIMITIVE_LINK ? 1 / tissue->link_length[index] : 0;
+	const double *inverse = primitive == CAU_PRIMITIVE_TRIANGLE
+	                            ? tissue->triangle_dm_inverse + 4 * (size_t)index
+	                        : primitive == CAU_PRIMITIVE_TETRAHEDRON
+	                            ? tissue->tetrahedron_dm_inverse + 9 * (size_t)index
+	                            : &whole;
+	for (int i = 0; i < rank; i++) {
+		cau_vec3 edge = cau_sub(cau_vec3_of(position + 3 * (size_t)v[i + 1]), origin);
+		for (int c = 0; c < rank; c++)
+			f[c] = cau_add_scaled(f[c], inverse[rank * i + c], edge);
+	}
+	static const int row[6] = {0, 1, 2, 0, 0, 1}, column[6] = {0, 1, 2, 1, 2, 2};
+	for (int k = 0; k < 6; k++)
+		metric[k] = cau_dot(f[row[k]], f[column[k]]);
+}
+
+static double square_above(double stretch, double free)
+{
+	return stretch > free ? (stretch - free) * (stretch - free) : 0;
+}
+
+// psi, J/m^3.
+static double stored_energy(const bearing *b, const double metric[6])
+{
+	double value[3], axis[3][3], twice = 0;
+	cau_symmetric_eigen3(metric, value, axis);
+	for (int k = 0; k < 3; k++) {
+		double stretch = sqrt(fmax(value[k], 0)), free = 0;
+		for (int i = 0; i < 3; i++)
+			free += axis[i][k] * axis[i][k] * b->free[i] * b->free[i];
+		twice += b->young_pa * square_above(stretch, 1) +
+		         b->limit_pa * square_above(stretch, sqrt(free));
+	}
+	return twice / 2;
+}
+
+// Where an element of size_m would be loaded with 1.
+static double borne_j_m3(const bearing *b, double size_m)
+{
+	return b->tear_j_m2 / size_m;
+}
+
+// Sum of the squared stretches below which no element of size up to widest_m can be loaded with 1:
+// for a given sum psi is most where all of it is along one axis.
+static double least_squared(const bearing *b, double widest_m)
+{
+	double most = 1 + sqrt(2 * borne_j_m3(b, widest_m) / (b->young_pa + b->limit_pa));
+	return most * most;
+}
+
+static double load_of(const cau_tissue *tissue, const bearing *b, int primitive, int32_t index,
+                      const double *position)
+{
+	double metric[6];
+	metric_of(tissue, primitive, index, position, metric);
+	return stored_energy(b, metric) / borne_j_m3(b, size_of(tissue, primitive, index));
+}
+
+// ---- which are over what they bear
+
+// Elements of one layer that tears, and the first of the parts that they are looked at in.
+typedef struct tearing {
+	int primitive;
+	int32_t first, count, first_part;
+} tearing;
+
+typedef struct looking {
+	cau_dissection *dissection;
+	const double *position;
+	int32_t part_count, range_count;
+	tearing range[CAU_MAX_LAYERS];
+} looking;
+
+// The sum of the squared stretches, quickly: most elements are far from being over.
+static double squared_stretches(const cau_tissue *tissue, int primitive, int32_t index,
+                                const double *position)
+{
+	if (primitive != CAU_PRIMITIVE_TRIANGLE) {
+		double metric[6];
+		metric_of(tissue, primitive, index, position, metric);
+		return metric[0] + metric[1] + metric[2];
+	}
+	const int32_t *v = tissue->triangle + 3 * (size_t)index;
+	const double *m = tissue->triangle_dm_inverse + 4 * (size_t)index;
+	cau_vec3 origin = cau_vec3_of(position + 3 * (size_t)v[0]);
+	cau_vec3 a = cau_sub(cau_vec3_of(position + 3 * (size_t)v[1]), origin);
+	cau_vec3 b = cau_sub(cau_vec3_of(position + 3 * (size_t)v[2]), origin);
+	return (m[0] * m[0] + m[1] * m[1]) * cau_dot(a, a) +
+	       2 * (m[0] * m[2] + m[1] * m[3]) * cau_dot(a, b) +
+	       (m[2] * m[2] + m[3] * m[3]) * cau_dot(b, b);
+}
+
+static int32_t material_of(const cau_tissue *tissue, int primitive, int32_t index)
+{
+	return primitive == CAU_PRIMITIVE_TRIANGLE      ? tissue->triangle_material[index]
+	       : primitive == CAU_PRIMITIVE_TETRAHEDRON ? tissue->tetrahedron_material[index]
+	                                                : 0;
+}
+
+static void look_at_part(void *context, int32_t part)
+{
+	const looking *work = context;
+	const cau_tissue *tissue = work->dissection->tissue;
+	cau_tears *tears = &work->dissection->tears;
+	const tearing *range = work->range + work->range_count - 1;
+	for (; range->first_part > part; range--)
+		;
+	int32_t first = range->first + (part - range->first_part) * PART, found = 0, material = -1;
+	int32_t end = range->first + range->count, last = first + PART < end ? first + PART : end;
+	int32_t before = range->primitive == CAU_PRIMITIVE_TRIANGLE ? 0 : tissue->triangle_count;
+	before += range->primitive == CAU_PRIMITIVE_LINK ? tissue->tetrahedron_count : 0;
+	bearing b = {0};
+	double least = 0;
+	for (int32_t index = first; index < last; index++) {
+		if (!cau_dissection_lives(work->dissection, range->primitive, index))
+			continue;
+		if (material_of(tissue, range->primitive, index) != material) {
+			material = material_of(tissue, range->primitive, index);
+			b = bearing_of(tissue, range->primitive, index);
+			least =
+				b.tear_j_m2 > 0 ? least_squared(&b, tears->widest_m[range->primitive]) : HUGE_VAL;
+		}
+		if (!(squared_stretches(tissue, range->primitive, index, work->position) >= least))
+			continue;
+		double load = load_of(tissue, &b, range->primitive, index, work->position);
+		if (!(load >= 1))
+			continue;
+		tears->now[part * PART + found] = before + index;
+		tears->load[part * PART + found++] = load;
+	}
+	tears->found[part] = found;
+}
+
+static bool bears_all(const cau_tissue_layer *layer)
+{
+	for (int32_t m = 0; m < layer->def.material_count; m++)
+		if (cau_layer_heat(layer, m)->tear_energy_j_m2 > 0)
+			return false;
+	return true;
+}
+
+static void add_range(looking *work, int primitive, int32_t first, int32_t count)
+{
+	if (!count)
+		return;
+	CAU_ASSERT_INDEX(work->range_count, CAU_MAX_LAYERS);
+	work->range[work->range_count++] = (tearing){primitive, first, count, work->part_count};
+	work->part_count += (count + PART - 1) / PART;
+}
+
+// By place: triangles of all layers, then tetrahedra, then links.
+static void list_ranges(looking *work)
+{
+	const cau_tissue *tissue = work->dissection->tissue;
+	for (int primitive = 0; primitive < CAU_PRIMITIVE_KINDS; primitive++)
+		for (int32_t i = 0; i < tissue->layer_count; i++) {
+			const cau_tissue_layer *l = &tissue->layer[i];
+			if (bears_all(l))
+				continue;
+			if (primitive == CAU_PRIMITIVE_TRIANGLE)
+				add_range(work, primitive, l->first_triangle, l->triangle_count);
+			else if (primitive == CAU_PRIMITIVE_TETRAHEDRON)
+				add_range(work, primitive, l->first_tetrahedron, l->tetrahedron_count);
+			else
+				add_range(work, primitive, l->first_link, l->link_count);
+		}
+}
+
+// Fills `now` and `load`, by place, and returns how many there are.
+static int32_t look(cau_dissection *dissection, const double *position, cau_pool *pool)
+{
+	looking work = {.dissection = dissection, .position = position};
+	cau_tears *tears = &dissection->tears;
+	int32_t count = 0;
+	list_ranges(&work);
+	CAU_ASSERT(work.part_count <= CAU_POOL_PARTS, "%d parts", work.part_count);
+	cau_pool_run(pool, work.part_count, look_at_part, &work);
+	for (int32_t part = 0; part < work.part_count; part++)
+		for (int32_t k = 0; k < tears->found[part]; k++, count++) {
+			tears->now[count] = tears->now[part * PART + k];
+			tears->load[count] = tears->load[part * PART + k];
+		}
+	return count;
+}
+
+// ---- which go
+
+// Keeps the `count` over now as `over`, each with what it has counted up to, and leaves in `now`
+// those that have counted enough.
+static int32_t count_over(cau_tears *tears, int32_t count, bool converged)
+{
+	int32_t ready = 0, before = tears->over_count, at = 0;
+	cau_over *kept = tears->over;
+	tears->over = tears->before;
+	tears->before = kept;
+	tears->over_count = count;
+	for (int32_t k = 0; k < count; k++) {
+		int32_t place = tears->now[k], counted = converged ? COUNTS_CONVERGED : COUNTS_AT_ALL;
+		while (at < before && kept[at].place < place)
+			at++;
+		if (at < before && kept[at].place == place)
+			counted += kept[at].counted;
+		tears->over[k] = (cau_over){place, counted < TAKES ? counted : TAKES};
+		if (counted < TAKES)
+			continue;
+		tears->now[ready] = place;
+		tears->load[ready++] = tears->load[k];
+	}
+	return ready;
+}
+
+// Of what touches a vertex, the most loaded: k + 1 of `now`, the first of equals.
+static void mark_most(cau_dissection *dissection, int32_t count)
+{
+	cau_tears *tears = &dissection->tears;
+	for (int32_t k = 0; k < count; k++) {
+		int32_t index;
+		int corners, primitive = primitive_at(dissection->tissue, tears->now[k], &index);
+		const int32_t *v =
+			cau_dissection_vertices_of(dissection->tissue, primitive, index, &corners);
+		for (int i = 0; i < corners; i++) {
+			int32_t best = tears->most[v[i]];
+			if (!best || tears->load[k] > tears->load[best - 1])
+				tears->most[v[i]] = k + 1;
+		}
+	}
+}
+
+static bool is_most(const cau_dissection *dissection, int32_t k)
+{
+	int32_t index;
+	int corners, primitive = primitive_at(dissection->tissue, dissection->tears.now[k], &index);
+	const int32_t *v = cau_dissection_vertices_of(dissection->tissue, primitive, index, &corners);
+	for (int i = 0; i < corners; i++)
+		if (dissection->tears.most[v[i]] != k + 1)
+			return false;
+	return true;
+}
+
+static void forget_most(cau_dissection *dissection, int32_t count)
+{
+	for (int32_t k = 0; k < count; k++) {
+		int32_t index;
+		int corners, primitive = primitive_at(dissection->tissue, dissection->tears.now[k], &index);
+		const int32_t *v =
+			cau_dissection_vertices_of(dissection->tissue, primitive, index, &corners);
+		for (int i = 0; i < corners; i++)
+			dissection->tears.most[v[i]] = 0;
+	}
+}
+
+// The edge along which it is stretched most, against its length at rest.
+static int32_t longest_edge(const cau_dissection *dissection, int primitive, int32_t index,
+                            const double *position)
+{
+	const cau_tissue *tissue = dissection->tissue;
+	int corners, at[2] = {0, 1};
+	double most = 0;
+	const int32_t *v = cau_dissection_vertices_of(tissue, primitive, index, &corners);
+	for (int i = 0; i < corners; i++)
+		for (int j = 0; j < i; j++) {
+			size_t a = 3 * (size_t)v[i], b = 3 * (size_t)v[j];
+			double stretch =
+				cau_length(cau_sub(cau_vec3_of(position + a), cau_vec3_of(position + b))) /
+				cau_length(cau_sub(cau_vec3_of(tissue->rest + a), cau_vec3_of(tissue->rest + b)));
+			if (stretch > most)
+				most = stretch, at[0] = i, at[1] = j;
+		}
+	int32_t edge = cau_edge_table_find(&tissue->edges, v[at[0]], v[at[1]]);
+	CAU_ASSERT(edge >= 0, "element %d of kind %d has no edge", index, primitive);
+	return edge;
+}
+
+static void tear(cau_dissection *dissection, int32_t place, const double *position)
+{
+	const cau_tissue *tissue = dissection->tissue;
+	int32_t index;
+	int primitive = primitive_at(tissue, place, &index);
+	if (!cau_dissection_lives(dissection, primitive, index))
+		return; // with an edge of the one before it
+	int32_t layer = cau_dissection_layer_of(tissue, primitive, index);
+	if (dissection->doses.dose && primitive != CAU_PRIMITIVE_LINK)
+		cau_doses_lose(dissection, primitive, index);
+	else
+		cau_dissection_lose_edge(dissection, longest_edge(dissection, primitive, index, position),
+		                         (uint16_t)(1u << layer));
+}
+
+void cau_dissection_tear(cau_dissection *dissection, const double *position, bool converged,
+                         cau_pool *pool)
+{
+	cau_tears *tears = &dissection->tears;
+	int32_t removed = dissection->elements_removed;
+	int32_t count = count_over(tears, look(dissection, position, pool), converged);
+	mark_most(dissection, count);
+	for (int32_t k = 0; k < count; k++)
+		if (is_most(dissection, k))
+			tear(dissection, tears->now[k], position);
+	forget_most(dissection, count);
+	tears->elements_torn += dissection->elements_removed - removed;
+}
