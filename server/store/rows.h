@@ -34,7 +34,8 @@
 	X(GAPS, "uuuu")         /* branch, from_tick, before_tick, trimmed */                          \
 	X(ANSWERS, "suub")      /* client, sequence, time_ms, result */                                \
 	X(FORGOTTEN, "suu")     /* client, sequence, time_ms */                                        \
-	X(DRIVERS, "ssssuu")    /* tool, resume, client_id, name, role, deadline_us */
+	X(DRIVERS, "ssssuu")    /* tool, resume, client_id, name, role, deadline_us */                 \
+	X(PACE, "u")            /* speed, in millionths */
 
 typedef enum cau_rows_table {
 #define X(name, columns) CAU_ROWS_##name,
