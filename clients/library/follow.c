@@ -211,3 +211,9 @@ bool cau_client_follows(const cau_client *client)
 {
 	return client->following;
 }
+
+const char *cau_client_called(const cau_client *client, const char *session)
+{
+	bool moved = *client->moved_from && strcmp(client->moved_from, session) == 0;
+	return moved ? client->moved_to : session;
+}

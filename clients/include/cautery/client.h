@@ -137,6 +137,8 @@ uint64_t cau_client_connections(const cau_client *client); // hellos answered so
 // or whose streams, are of that session alone; others are told `moved`. The condition is LOST or
 // CONNECTING meanwhile.
 bool cau_client_follows(const cau_client *client);
+// The id by which messages name a session that the program calls so: another once it has moved.
+const char *cau_client_called(const cau_client *client, const char *session);
 
 // While on, sends a heartbeat every 100 ms: whoever drives an energized tool needs it.
 void cau_client_keep_alive(cau_client *client, bool on);
