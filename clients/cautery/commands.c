@@ -35,6 +35,7 @@ const cli_command *const cli_commands[] = {
 	&cli_context_use,
 	&cli_context_rm,
 	&cli_backup,
+	&cli_move,
 	&cli_token,
 	&cli_completion,
 	&cli_complete,

@@ -23,6 +23,7 @@ extern const cli_command cli_events;                                 // events.c
 extern const cli_command cli_pin, cli_unpin, cli_force, cli_gravity; // tissue.c
 extern const cli_command cli_material;                               // material.c
 extern const cli_command cli_backup;                                 // backup.c
+extern const cli_command cli_move;                                   // move.c
 extern const cli_command cli_ping;                                   // ping.c
 extern const cli_command cli_context_ls, cli_context_set;            // context.c
 extern const cli_command cli_context_use, cli_context_rm;            // context.c

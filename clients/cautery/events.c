@@ -82,9 +82,9 @@ static void take_notification(void *user, cau_client *client, const cau_rpc_mess
 {
 	follower *f = user;
 	cau_wire_event_notice notice = {0};
-	(void)client;
 	if (!f->answered || message->method != CAU_METHOD_EVENT ||
-	    cau_rpc_params(message, &notice, NULL) || strcmp(notice.session, f->c->session) != 0)
+	    cau_rpc_params(message, &notice, NULL) ||
+	    strcmp(notice.session, cau_client_called(client, f->c->session)) != 0)
 		return;
 	if (f->c->json)
 		print_event_json(f->c, &notice.event);

@@ -281,6 +281,8 @@ static cli_exit run(cli *c)
 		code = cli_fail_file(c);
 	cli_watch_signals();
 	c->def.user = &r;
+	c->def.follow = false; // a session that moves goes dark: what is left of the script would mean
+	                       // something else
 	c->def.on_notification = take_notification;
 	if (!code)
 		code = cli_connect(c);

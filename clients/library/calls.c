@@ -31,8 +31,27 @@ static cau_status write_once(const writing *w, cau_rpc_buffer *out, cau_error *e
 	return cau_rpc_write_request(out, w->id, w->method, w->params, error);
 }
 
-static cau_status write_text(const writing *w, size_t room_before, message_text *made,
-                             cau_error *error)
+// The program says the id that it knows.
+static cau_status rename_session(const cau_client *client, size_t room_before, message_text *made,
+                                 cau_error *error)
+{
+	size_t bytes = made->byte_count;
+	char *text =
+		cau_follow_text(client->moved_from, client->moved_to, made->bytes + room_before, &bytes);
+	if (!text)
+		return CAU_OK;
+	char *grown = realloc(made->bytes, room_before + bytes + 1);
+	if (grown) {
+		made->bytes = grown;
+		made->byte_count = bytes;
+		memcpy(grown + room_before, text, bytes + 1);
+	}
+	free(text);
+	return grown ? CAU_OK : cau_fail(error, CAU_NO_MEMORY, NULL, "no memory for a message");
+}
+
+static cau_status write_text(const cau_client *client, const writing *w, size_t room_before,
+                             message_text *made, cau_error *error)
 {
 	size_t capacity = FIRST_CAPACITY;
 	cau_status status = CAU_LIMIT;
@@ -49,6 +68,8 @@ static cau_status write_text(const writing *w, size_t room_before, message_text 
 		made->byte_count = out.bytes;
 		capacity = out.bytes + 1;
 	}
+	if (!status)
+		status = rename_session(client, room_before, made, error);
 	if (status) {
 		free(made->bytes);
 		made->bytes = NULL;
@@ -57,7 +78,7 @@ static cau_status write_text(const writing *w, size_t room_before, message_text 
 }
 
 // ---- sending -----------------------------------------------------------------------------------
-static void append_pending(cau_client *client, cau_client_pending *pending)
+void cau_calls_keep(cau_client *client, cau_client_pending *pending)
 {
 	pending->next = NULL;
 	if (client->last_pending)
@@ -99,7 +120,7 @@ static cau_status send_request(cau_client *client, const writing *w, cau_client_
 	if (client->condition == CAU_CLIENT_IDLE || client->condition == CAU_CLIENT_CLOSED)
 		return cau_fail(error, CAU_IO, NULL, "not connected%s%s",
 		                *client->trouble.reason ? ": " : "", client->trouble.reason);
-	cau_status status = write_text(w, sizeof(cau_client_pending), &made, error);
+	cau_status status = write_text(client, w, sizeof(cau_client_pending), &made, error);
 	if (status)
 		return status;
 	cau_client_pending *pending = (cau_client_pending *)made.bytes;
@@ -109,13 +130,13 @@ static cau_status send_request(cau_client *client, const writing *w, cau_client_
 	                                .user = user,
 	                                .byte_count = made.byte_count};
 	pending->resendable = can_resend(w->method, pending->text, pending->byte_count);
-	if (client->condition == CAU_CLIENT_READY) // else hello's answer sends it
+	if (client->condition == CAU_CLIENT_READY && !client->following) // else hello's answer sends it
 		status = cau_socket_send(client, false, pending->text, pending->byte_count, NULL, 0, error);
 	if (status) {
 		free(pending);
 		return status;
 	}
-	append_pending(client, pending);
+	cau_calls_keep(client, pending);
 	return CAU_OK;
 }
 
@@ -163,7 +184,7 @@ static cau_status send_notification(cau_client *client, const writing *w, cau_er
 	message_text made;
 	if (client->condition != CAU_CLIENT_READY)
 		return cau_fail(error, CAU_IO, NULL, "not connected");
-	cau_status status = write_text(w, 0, &made, error);
+	cau_status status = write_text(client, w, 0, &made, error);
 	if (!status)
 		status = cau_socket_send(client, false, made.bytes, made.byte_count, NULL, 0, error);
 	free(made.bytes);
@@ -216,6 +237,11 @@ static cau_client_pending *take_pending(cau_client *client, int64_t id)
 	return pending;
 }
 
+void cau_calls_drop(cau_client *client, const cau_client_pending *pending)
+{
+	take_pending(client, pending->id);
+}
+
 static void fail_pending(cau_client_pending *pending, const cau_error *error)
 {
 	if (pending->answer)
@@ -229,15 +255,20 @@ void cau_calls_answered(cau_client *client, const cau_rpc_message *message)
 	cau_client_pending *pending = take_pending(client, message->id.number);
 	if (!pending)
 		return; // answered before, on an earlier connection
+	if (message->kind == CAU_RPC_ERROR && cau_follow_answer(client, pending, &message->fault))
+		return;
 	if (message->kind == CAU_RPC_ERROR) {
 		client->fault = message->fault;
 		cau_error_of_fault(&message->fault, &error);
 		fail_pending(pending, &error);
 		return;
 	}
+	cau_follow_found(client);
 	if (pending->answer)
 		pending->answer(pending->user, message, NULL);
 	free(pending);
+	if (client->following)
+		cau_follow_when_answered(client);
 }
 
 void cau_calls_lost(cau_client *client, bool all)
@@ -249,6 +280,7 @@ void cau_calls_lost(cau_client *client, bool all)
 		next = pending->next;
 		if (!all && pending->resendable) {
 			pending->next = NULL;
+			pending->again = false;
 			if (kept_last)
 				kept_last->next = pending;
 			else

@@ -8,8 +8,11 @@
 
 cau_client_def cau_default_client_def(void)
 {
-	return (cau_client_def){
-		.url = CAU_CLIENT_DEFAULT_URL, .name = "cautery client", .role = -1, .timeout_s = 30};
+	return (cau_client_def){.url = CAU_CLIENT_DEFAULT_URL,
+	                        .name = "cautery client",
+	                        .role = -1,
+	                        .follow = true,
+	                        .timeout_s = 30};
 }
 
 // What goes into the URL as it is.

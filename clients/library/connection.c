@@ -6,7 +6,11 @@
 
 #include "library/internal.h"
 
-enum { FIRST_RETRY_US = 100000, LAST_RETRY_US = 2000000 };
+enum {
+	FIRST_RETRY_US = 100000,
+	LAST_RETRY_US = 2000000,
+	FOLLOWS_MOST = 5, // attempts of a client that does not come back otherwise
+};
 
 static void set_condition(cau_client *client, cau_client_condition condition)
 {
@@ -52,6 +56,7 @@ void cau_client_opened(cau_client *client)
 void cau_client_greeted(cau_client *client)
 {
 	client->attempts = 0;
+	client->following = false;
 	client->connections++;
 	lws_sul_cancel(&client->deadline);
 	lws_sul_schedule(client->loop->context, 0, &client->tick, tick, tick_us(client));
@@ -96,15 +101,19 @@ static bool is_final(int code)
 
 void cau_client_lost(cau_client *client, const char *reason)
 {
-	bool again = client->def.reconnect && client->connections > 0 && !client->closing &&
-	             !is_final(client->close_code);
+	bool follows = client->following && client->attempts < FOLLOWS_MOST;
+	bool again = (client->def.reconnect || follows) && client->connections > 0 &&
+	             !client->closing && !is_final(client->close_code);
 	cau_client_forget_timers(client);
 	cau_outbox_clear(&client->outbox);
 	if (!client->closing || !client->trouble.status)
 		cau_fail(&client->trouble, CAU_IO, NULL, "%s", reason);
 	cau_streams_lost(client);
 	if (again) {
-		double wait_us = fmin(LAST_RETRY_US, FIRST_RETRY_US * exp2(client->attempts));
+		// The first way to a daemon that has the session now waits for nothing.
+		bool at_once = client->following && !client->attempts && !client->ways;
+		int before = client->following ? client->attempts + client->ways - 1 : client->attempts;
+		double wait_us = at_once ? 0 : fmin(LAST_RETRY_US, FIRST_RETRY_US * exp2(before));
 		lws_sul_schedule(client->loop->context, 0, &client->retry, retry, (lws_usec_t)wait_us);
 	}
 	client->closing = false;

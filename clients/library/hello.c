@@ -20,7 +20,8 @@ cau_status cau_hello_send(cau_client *client, cau_error *error)
 	hello.has_client_id = *id;
 	snprintf(hello.client_id, sizeof hello.client_id, "%s", id);
 	hello.has_resume = again;
-	snprintf(hello.resume, sizeof hello.resume, "%s", client->server.resume);
+	const char *token = *client->kept_resume ? client->kept_resume : client->server.resume;
+	snprintf(hello.resume, sizeof hello.resume, "%s", token);
 	hello.has_role = client->def.role >= 0;
 	hello.role = client->def.role;
 	cau_status status = cau_rpc_write_request(&out, HELLO_ID, CAU_METHOD_HELLO, &hello, error);

@@ -29,6 +29,7 @@ typedef struct cau_client_pending {
 	cau_client_answer *answer; // NULL: nobody waits any more
 	void *user;
 	bool resendable;
+	bool again; // answered with `moved`: it goes to the other daemon
 	size_t byte_count;
 	char text[];
 } cau_client_pending;
@@ -75,6 +76,12 @@ struct cau_client {
 	uint64_t connections;
 	int attempts; // to connect, since the last hello
 	bool keep_alive;
+	bool following; // on the way to the daemon that has the session now
+	int ways;       // that it has gone for that, to where the session has not arrived yet
+	double arrives_until_s;
+	char kept_resume[65]; // of the daemon that had it, until the session is found; "": found
+	char moved_from[CAU_NAME_BYTES], moved_to[CAU_NAME_BYTES]; // the id that the program knows, and
+	                                                           // what it is now; "": none moved
 	lws_sorted_usec_list_t tick, retry, deadline;
 	cau_client_slot *slots[CAU_CLIENT_STREAMS_MAX];
 	cau_client_incoming *incoming; // one at a time
@@ -109,6 +116,21 @@ void cau_calls_answered(cau_client *client, const cau_rpc_message *message);
 void cau_calls_lost(cau_client *client, bool all); // fails those that cannot be sent again
 void cau_calls_resend(cau_client *client);
 void cau_error_of_fault(const cau_rpc_fault *fault, cau_error *error);
+
+void cau_calls_keep(cau_client *client, cau_client_pending *pending); // at the end
+void cau_calls_drop(cau_client *client, const cau_client_pending *pending);
+
+// follow.c
+// The text with another id of the session, malloc'ed; NULL where it does not name it.
+char *cau_follow_text(const char *from, const char *to, const char *text, size_t *bytes);
+// Goes after a session. False: this client does not.
+bool cau_follow(cau_client *client, const char *from, const char *to, const char *url);
+void cau_follow_when_answered(cau_client *client);
+void cau_follow_found(cau_client *client); // the daemon has answered about the session
+// Takes the request back that was answered so. False: the program is told.
+bool cau_follow_answer(cau_client *client, cau_client_pending *pending, const cau_rpc_fault *fault);
+bool cau_follow_join(cau_client *client, const char *session, const cau_rpc_fault *fault);
+void cau_follow_change(cau_client *client, const cau_wire_session_changed *changed);
 
 // streams.c, frames.c
 void cau_streams_lost(cau_client *client);

@@ -93,6 +93,8 @@ static void joined(void *user, const cau_rpc_message *answer, const cau_error *e
 	cau_client_slot *slot = user;
 	cau_error trouble = {0};
 	cau_client_answer *answer_to = slot->answer;
+	if (!answer && cau_follow_join(slot->client, slot->wanted.session, &slot->client->fault))
+		return;
 	if (answer && take_description(slot, answer, &trouble)) {
 		answer = NULL;
 		error = &trouble;
@@ -140,15 +142,18 @@ cau_status cau_client_send_join(cau_client *client, const cau_wire_session_join 
                                 cau_client_stream **stream, cau_client_answer *answer, void *user,
                                 cau_error *error)
 {
-	cau_client_slot *slot = find_slot(client, params, error);
+	cau_wire_session_join wanted = *params;
+	if (wanted.has_session && strcmp(wanted.session, client->moved_from) == 0)
+		memcpy(wanted.session, client->moved_to, sizeof wanted.session);
+	cau_client_slot *slot = find_slot(client, &wanted, error);
 	if (!slot)
 		return CAU_LIMIT;
-	slot->wanted = *params;
+	slot->wanted = wanted;
 	slot->answer = answer;
 	slot->user = user;
 	slot->stream.ended = false;
 	*stream = &slot->stream;
-	return cau_client_send(client, CAU_METHOD_SESSION_JOIN, params, joined, slot, error);
+	return cau_client_send(client, CAU_METHOD_SESSION_JOIN, &wanted, joined, slot, error);
 }
 
 typedef struct joining {
@@ -216,7 +221,11 @@ void cau_streams_rejoin(cau_client *client)
 void cau_streams_changed(cau_client *client, const cau_rpc_message *message)
 {
 	cau_wire_session_changed params = {0};
-	if (cau_rpc_params(message, &params, NULL) || params.change != CAU_CHANGE_DESTROYED)
+	if (cau_rpc_params(message, &params, NULL))
+		return;
+	if (params.change == CAU_CHANGE_MOVED)
+		cau_follow_change(client, &params);
+	if (params.change != CAU_CHANGE_DESTROYED)
 		return;
 	for (int i = 0; i < CAU_CLIENT_STREAMS_MAX; i++)
 		if (client->slots[i] &&

@@ -152,6 +152,8 @@ static cau_status drive_all(load_fleet *fleet, double now_s, double *next_s)
 	for (int32_t s = 0; !status && s < fleet->options->sessions; s++) {
 		load_session *session = &fleet->sessions[s];
 		const cau_client *driver = session->viewers[0].client;
+		if (cau_client_follows(driver)) // its session has moved
+			continue;
 		if (cau_client_get_condition(driver) != CAU_CLIENT_READY) {
 			fleet->error = *cau_client_trouble(driver);
 			return CAU_IO;

@@ -162,7 +162,7 @@ static void write_type(cau_json_writer *writer, const type *of)
 
 static void write_fault_schemas(cau_json_writer *writer)
 {
-	static const char *const text[] = {"status", "path", "reason"};
+	static const char *const text[] = {"status", "path", "reason", "moved_to", "url"};
 	cau_json_open(writer, "Id", '{');
 	cau_json_string(writer, "description",
 	                "text or whole number; null only in answers to what had none");

@@ -164,6 +164,8 @@ static cau_status read_fault(const cJSON *value, cau_rpc_message *message, cau_r
 	copy_text(data, "status", message->fault.status, sizeof message->fault.status);
 	copy_text(data, "path", message->fault.path, sizeof message->fault.path);
 	copy_text(data, "reason", message->fault.reason, sizeof message->fault.reason);
+	copy_text(data, "moved_to", message->fault.moved_to, sizeof message->fault.moved_to);
+	copy_text(data, "url", message->fault.url, sizeof message->fault.url);
 	if (!message->fault.reason[0])
 		copy_text(value, "message", message->fault.reason, sizeof message->fault.reason);
 	return CAU_OK;

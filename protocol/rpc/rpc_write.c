@@ -128,6 +128,10 @@ cau_status cau_rpc_write_error(cau_rpc_buffer *out, const cau_rpc_id *id,
 	if (fault->path[0])
 		cau_json_string(&writer, "path", fault->path);
 	cau_json_string(&writer, "reason", fault->reason);
+	if (fault->moved_to[0])
+		cau_json_string(&writer, "moved_to", fault->moved_to);
+	if (fault->url[0])
+		cau_json_string(&writer, "url", fault->url);
 	cau_json_close(&writer);
 	cau_json_close(&writer);
 	return end(&writer, out, NULL, error);

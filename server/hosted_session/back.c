@@ -258,10 +258,10 @@ static void drop(cau_job *job)
 
 void cau_back_leave(cau_hosted *h)
 {
-	going *g = (going *)h->leaving;
+	cau_job *job = h->leaving;
 	h->leaving = NULL;
 	h->away = true;
-	go_on(g);
+	cau_builder_submit(h->around->builder, job);
 }
 
 cau_outcome_kind cau_apply_back(cau_hosted *h, cau_order *order, const cau_action *action)
@@ -282,7 +282,7 @@ cau_outcome_kind cau_apply_back(cau_hosted *h, cau_order *order, const cau_actio
 	if (!g)
 		return fail(order, CAU_NO_MEMORY, "", "no memory to go back");
 	cau_event_end_cut(h);
-	*g = (going){.job = {.run = run, .drop = drop},
+	*g = (going){.job = {.run = run, .drop = drop, .expected_s = READ_EXPECTED_S},
 	             .hosted = cau_hosted_share(h),
 	             .order = order,
 	             .branch = branch,

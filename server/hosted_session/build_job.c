@@ -4,6 +4,7 @@
 #include <string.h>
 #include <sys/stat.h>
 
+#include "cautery/assert.h"
 #include "hosted_session/internal.h"
 
 // What building takes, for the builder's order, and what a step takes until the first is measured,
@@ -83,7 +84,7 @@ static void answer_destroyers(cau_hosted *h)
 		if (is_resend(order, first))
 			answer_resend(h, order);
 		else
-			cau_hosted_refuse_gone(order);
+			cau_hosted_refuse_gone(h, order);
 	}
 	cau_hosted_destroy(h, first, h->origin.kind == CAU_ORIGIN_STORE || !h->unanswered);
 	h->destroyers = NULL;
@@ -94,13 +95,13 @@ static void answer_destroyers(cau_hosted *h)
 static void come_to_an_end(cau_hosted *h)
 {
 	cau_store_flush(h->around->store);
-	if (cau_building_destroyed(h))
+	if (!*h->moved.session && cau_building_destroyed(h)) // else it is destroyed where it is now
 		answer_destroyers(h);
 	cau_hosted_refuse_rest(h);
 	cau_hosted_end_slice(h);
 	for (cau_order *late = cau_building_give_back(h), *next; late; late = next) {
 		next = late->next;
-		cau_hosted_refuse_gone(late);
+		cau_hosted_refuse_gone(h, late);
 	}
 }
 
@@ -140,7 +141,10 @@ static void run(cau_job *job)
 {
 	building *b = (building *)job;
 	cau_hosted_start(b->hosted);
-	end(b);
+	if (b->hosted->incoming && !b->hosted->ended)
+		cau_hold_incoming(b->hosted, job);
+	else
+		end(b);
 }
 
 static void drop(cau_job *job)
@@ -151,6 +155,22 @@ static void drop(cau_job *job)
 	b->hosted->unwanted = true;
 	cau_hosted_fail_start(b->hosted, &error);
 	end(b);
+}
+
+// It was built before, and has been accepted since.
+static void run_again(cau_job *job)
+{
+	building *b = (building *)job;
+	cau_hosted_resume(b->hosted);
+	end(b);
+}
+
+void cau_building_again(cau_hosted *h, cau_job *job)
+{
+	CAU_ASSERT(((building *)job)->hosted == h, "the job of another session comes back to %s",
+	           h->id);
+	job->run = run_again;
+	cau_builder_submit(h->around->builder, job);
 }
 
 cau_status cau_building_begin(cau_hosted *h, cau_error *error)

@@ -50,6 +50,7 @@ static void init(cau_hosted *h, const cau_surroundings *around, const cau_hosted
 	h->creator_sequence = def->client_sequence;
 	h->creator_reply = def->reply;
 	h->pause_at_start = def->paused;
+	h->incoming = def->incoming;
 	h->next_branch = 1;
 	h->lost_from = h->batch_lost = UINT64_MAX;
 	h->starting = h->unanswered = h->away = true;

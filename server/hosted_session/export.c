@@ -19,18 +19,15 @@ uint32_t cau_export_number(void)
 	return ++last_transfer;
 }
 
-// Answers with the transfer and hands the file to the transport, which sends it in chunks.
-static void answer_file(const cau_read_job *job, const char *bytes, size_t byte_count,
-                        const char *ending, const char *media_type)
+void cau_hosted_answer_file(const cau_reply *reply, const char *name, const char *media_type,
+                            const void *bytes, size_t byte_count)
 {
-	const cau_reply *reply = &job->order->reply;
 	cau_error error = {0};
 	cau_buffer *file = cau_buffer_create(byte_count, true);
 	cau_wire_transfer result = {.transfer = cau_export_number(), .byte_count = (int64_t)byte_count};
 	cau_outcome outcome = {.file = file, .transfer = (uint32_t)result.transfer};
 	char *text = NULL;
-	snprintf(result.file_name, sizeof result.file_name, "%s-%llu.%s", job->hosted->id,
-	         (unsigned long long)job->tick, ending);
+	snprintf(result.file_name, sizeof result.file_name, "%s", name);
 	snprintf(result.media_type, sizeof result.media_type, "%s", media_type);
 	if (file && cau_sha256(bytes, byte_count, result.sha256)) {
 		memcpy(cau_buffer_bytes(file), bytes, byte_count);
@@ -43,6 +40,15 @@ static void answer_file(const cau_read_job *job, const char *bytes, size_t byte_
 	cau_reply_answer(reply, &outcome);
 	cau_buffer_release(file);
 	free(text);
+}
+
+static void answer_file(const cau_read_job *job, const char *bytes, size_t byte_count,
+                        const char *ending, const char *media_type)
+{
+	char name[CAU_NAME_BYTES + 40];
+	snprintf(name, sizeof name, "%s-%llu.%s", job->hosted->id, (unsigned long long)job->tick,
+	         ending);
+	cau_hosted_answer_file(&job->order->reply, name, media_type, bytes, byte_count);
 }
 
 static void fail(const cau_reply *reply, cau_status status, const char *reason)

@@ -14,8 +14,21 @@ cau_hosted *cau_hosted_share(cau_hosted *h)
 	return h;
 }
 
-void cau_hosted_refuse_gone(cau_order *order)
+void cau_reply_moved(const cau_reply *reply, const cau_moved_to *to)
 {
+	cau_error error = {0};
+	cau_fail(&error, CAU_NOT_FOUND, "params.session", "it is `%s` now", to->session);
+	cau_outcome outcome = {.error = &error, .code = CAU_RPC_MOVED, .moved = to};
+	cau_reply_answer(reply, &outcome);
+}
+
+void cau_hosted_refuse_gone(cau_hosted *h, cau_order *order)
+{
+	if (*h->moved.session) {
+		cau_reply_moved(&order->reply, &h->moved);
+		free(order);
+		return;
+	}
 	cau_error error = {.status = CAU_NOT_FOUND, .reason = "the session is gone"};
 	cau_answer_fail(order, &error, CAU_RPC_NOT_HERE);
 }

@@ -10,6 +10,7 @@
 #include "hosted_session/beginnings.h"
 #include "hosted_session/order.h"
 #include "metrics/histogram.h"
+#include "session/logic.h"
 #include "store/store.h"
 #include "stream/stream.h"
 #include "worker/pool.h"
@@ -60,6 +61,7 @@ typedef struct cau_hosted_def {
 	void *meshes;         // malloc'ed, taken; may be NULL
 	size_t mesh_bytes;
 	bool paused;
+	bool incoming; // of a move: it is built, `reply` is answered with move_held, and it waits
 	cau_hosted_origin origin;
 	cau_asker creator;
 	int64_t client_sequence;
@@ -99,6 +101,26 @@ void cau_hosted_summary(cau_hosted *hosted, cau_wire_session_summary *summary);
 // the store takes nothing; CAU_NOT_FOUND: the session is going away. Motion that is refused is
 // counted and told to its driver.
 cau_status cau_hosted_submit(cau_hosted *hosted, cau_order *order, cau_error *error);
+
+// Answers with a file: its name, and its bytes, which are copied, in chunks.
+void cau_hosted_answer_file(const cau_reply *reply, const char *name, const char *media_type,
+                            const void *bytes, size_t byte_count);
+
+// ---- sessions that move (hold.c). An order CAU_ORDER_HOLD has one stand still, dark; it is
+// answered with move_held when all that it was is on the disk. Then one of these two follows.
+
+// It is served on.
+void cau_hosted_go_on(cau_hosted *hosted);
+// It ends here: what waits for it and who watches it is told where it is.
+void cau_hosted_go_away(cau_hosted *hosted, const cau_moved_to *to);
+// Who drives its tools, and its speed, while it stands still. Returns how many.
+int32_t cau_hosted_hands(cau_hosted *hosted, cau_drive *drives, double *speed);
+// One that was made with `incoming`, and whose reply has been answered with move_held, is served
+// from the rows that the store has now, running or paused; `reply` is answered with
+// session_description.
+void cau_hosted_come(cau_hosted *hosted, int64_t branch, bool paused, const cau_reply *reply);
+// Or it ends, and nothing is said of the store's rows.
+void cau_hosted_give_up(cau_hosted *hosted);
 
 // ---- drivers
 

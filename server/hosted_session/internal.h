@@ -91,7 +91,10 @@ struct cau_hosted {
 	uint32_t logged_order;
 	uint64_t epoch;
 	cau_replay replay;
-	bool replaying;   // after a restart or a fork, on the workers
+	bool replaying; // after a restart or a fork, on the workers
+	bool incoming;  // of a move, and not accepted yet: it is built and then waits for that
+	bool came;      // and has been since
+	struct cau_holding *holding; // it stands still, or waits to be accepted; NULL: neither
 	cau_job *leaving; // what the builder is to do with it once this slice has ended; NULL: nothing
 	cau_store_batch *batch; // of this slice; NULL: nothing to write
 	uint64_t batch_tick;    // when it was begun
@@ -151,12 +154,14 @@ struct cau_hosted {
 	atomic_bool dirty;     // streams must show a change that no step made
 	atomic_bool away;      // it is the builder's, who alone ends this: no worker touches it
 	atomic_bool abandoned; // its creator is gone
+	cau_moved_to moved;    // once it has ended: where it went; written before `ended`
 	atomic_int files;      // of this session that the builder makes
 	atomic_int commits;    // on their way to the disk
 };
 
 // ---- hosted.c
-void cau_hosted_refuse_gone(cau_order *order); // there is no session for it any more
+// There is no session for it any more.
+void cau_hosted_refuse_gone(cau_hosted *h, cau_order *order);
 // It could not be brought up or kept: nothing is taken any more. From any thread.
 void cau_hosted_end(cau_hosted *h);
 
@@ -199,6 +204,8 @@ cau_order *cau_building_give_back(cau_hosted *h);
 double cau_building_expects_s(const cau_scene_def *scene);
 // Leaves a session that was just made to the builder.
 cau_status cau_building_begin(cau_hosted *h, cau_error *error);
+// The job of a session that was built goes on with cau_hosted_resume.
+void cau_building_again(cau_hosted *h, cau_job *job);
 // The builder's last slice of a session that was away: it is the workers' again, or has ended.
 void cau_building_over(cau_hosted *h);
 
@@ -206,6 +213,13 @@ void cau_building_over(cau_hosted *h);
 void cau_hosted_start(cau_hosted *h);
 void cau_hosted_fail_start(cau_hosted *h, const cau_error *error);
 void cau_hosted_started(cau_hosted *h); // after the replay of a start
+
+// Brings a session up whose core is built, from the rows that the store has now.
+void cau_hosted_resume(cau_hosted *h);
+
+// ---- hold.c
+// A session of a move is built: it waits to be accepted, and its creator is told how it stands.
+void cau_hold_incoming(cau_hosted *h, cau_job *job);
 
 // ---- replay.c: the way of a core to a state of the store
 // On the builder. Before the past is read, all of it that is on its way must be in the store.
@@ -275,8 +289,8 @@ void cau_looks_finish(cau_looks *looks); // takes NULL
 void cau_looks_tire(cau_hosted *h, double now_s);
 
 // ---- back.c
-// Lets the builder have a session whose slice has ended, to go back. From here on it is the
-// builder's.
+// Lets the builder have a session whose slice has ended, to go back or to stand still. From here on
+// it is the builder's.
 void cau_back_leave(cau_hosted *h);
 
 // ---- time.c: orders about time and history

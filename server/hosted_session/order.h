@@ -24,6 +24,7 @@
 	CHANGE(SNAPSHOT, HISTORY, cau_apply_snapshot) /* as.name */                                    \
 	CHANGE(RESTORE, GO, cau_apply_back)           /* as.name */                                    \
 	CHANGE(FORK, HISTORY, cau_apply_fork)         /* as.fork */                                    \
+	CHANGE(HOLD, GO, cau_apply_hold)                                                               \
 	CHANGE(DESTROY, DESTROY, cau_apply_destroy)                                                    \
 	CHANGE(TAKE_OVER, TAKE_OVER, cau_apply_drive)                          /* as.tool */           \
 	CHANGE(HAND_OVER, HAND_OVER, cau_apply_drive)                          /* as.tool */           \

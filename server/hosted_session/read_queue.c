@@ -105,7 +105,7 @@ void cau_reads_refuse(cau_hosted *h)
 	pthread_mutex_unlock(&h->mutex);
 	for (cau_order *next; order; order = next) {
 		next = order->next;
-		cau_hosted_refuse_gone(order);
+		cau_hosted_refuse_gone(h, order);
 	}
 }
 

@@ -22,11 +22,18 @@ typedef struct cau_audience {
 	uint64_t id;
 } cau_audience;
 
+// Where a session is that has moved to another daemon.
+typedef struct cau_moved_to {
+	char session[CAU_NAME_BYTES]; // its id there; "": nowhere
+	char url[256];                // of that daemon; "": the same address leads there
+} cau_moved_to;
+
 // What became of a request.
 typedef struct cau_outcome {
-	const cau_error *error; // NULL: done
-	int32_t code;           // of the error: CAU_RPC_*; 0: the status's own
-	const char *text;       // done: the whole JSON-RPC answer; its id is its method's name
+	const cau_error *error;    // NULL: done
+	int32_t code;              // of the error: CAU_RPC_*; 0: the status's own
+	const cau_moved_to *moved; // of CAU_RPC_MOVED
+	const char *text;          // done: the whole JSON-RPC answer; its id is its method's name
 	size_t text_bytes;
 	cau_buffer *file;   // of an export; shared, the sink takes its own reference
 	uint32_t transfer;  // the file's number in chunks
@@ -64,3 +71,6 @@ static inline void cau_reply_fail(const cau_reply *reply, const cau_error *error
 	cau_outcome outcome = {.error = error, .code = code};
 	cau_reply_answer(reply, &outcome);
 }
+
+// Tells who asked that another daemon has the session.
+void cau_reply_moved(const cau_reply *reply, const cau_moved_to *to);

@@ -219,12 +219,31 @@ void cau_hosted_fail_start(cau_hosted *h, const cau_error *error)
 	cau_reply_fail(&h->creator_reply, error, 0);
 }
 
+// Of a move: what has come is read once, so that it is known to be readable before anybody decides.
+static cau_status try_out(cau_hosted *h, cau_error *error)
+{
+	cau_status status =
+		cau_replay_read(&h->replay, h->around->store, h->id, h->origin.branch, UINT64_MAX, error);
+	return status ? status : cau_replay_restore(&h->replay, h->core, error);
+}
+
+void cau_hosted_resume(cau_hosted *h)
+{
+	cau_error error = {0};
+	if (resume_from_store(h, &error))
+		cau_hosted_fail_start(h, &error);
+	else if (!h->replaying)
+		cau_hosted_started(h);
+}
+
 void cau_hosted_start(cau_hosted *h)
 {
 	cau_error error = {0};
 	double began_s = cau_monotonic_s();
 	cau_status status = build(h, &error);
-	if (!status && h->origin.kind == CAU_ORIGIN_STORE)
+	if (!status && h->incoming)
+		status = try_out(h, &error);
+	else if (!status && h->origin.kind == CAU_ORIGIN_STORE)
 		status = resume_from_store(h, &error);
 	else if (!status && h->origin.kind == CAU_ORIGIN_FORK)
 		status = replay(h, h->origin.session, h->origin.branch, h->origin.tick, &error);
@@ -237,7 +256,7 @@ void cau_hosted_start(cau_hosted *h)
 	size_t shared = cau_session_share(h->core);
 	cau_log(CAU_LOG_INFO, h->id, "built", "seconds=%.3f vertices=%d shared_bytes=%zu",
 	        cau_monotonic_s() - began_s, h->info.vertex_count, shared);
-	if (!h->replaying)
+	if (!h->replaying && !h->incoming)
 		cau_hosted_started(h);
 }
 
@@ -271,7 +290,10 @@ void cau_hosted_started(cau_hosted *h)
 	cau_record_checkpoint(h, NULL, NULL);
 	if (!restarted)
 		cau_record_mark(h);
-	cau_decide_arrived(h, state, restarted ? "the daemon was restarted" : "a new session");
+	cau_decide_arrived(h, state,
+	                   h->came     ? "the session has moved"
+	                   : restarted ? "the daemon was restarted"
+	                               : "a new session");
 	cau_frames_restart(h);
 	h->window_s = cau_monotonic_s();
 	h->window_tick = h->tick;
@@ -282,6 +304,7 @@ void cau_hosted_started(cau_hosted *h)
 		        h->replay.exact);
 	else
 		cau_event_add(h, CAU_EVENT_CREATED, NULL, h->creator.name, 0, NULL);
-	cau_answer_changed(h, restarted ? CAU_CHANGE_RESTARTED : CAU_CHANGE_CREATED, h->creator.name);
+	bool known = restarted && !h->came; // to who joined it here
+	cau_answer_changed(h, known ? CAU_CHANGE_RESTARTED : CAU_CHANGE_CREATED, h->creator.name);
 	answer_creator(h);
 }

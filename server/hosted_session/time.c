@@ -61,7 +61,7 @@ void cau_time_stepped(cau_hosted *h, cau_order *order, bool failed)
 	cau_wire_tick_result result = {(int64_t)h->tick, 0};
 	cau_error error = {0};
 	if (failed && !*h->logic->fault) { // it is gone
-		cau_hosted_refuse_gone(order);
+		cau_hosted_refuse_gone(h, order);
 		return;
 	}
 	if (failed) {

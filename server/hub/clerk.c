@@ -76,12 +76,21 @@ static cau_status make_id(cau_hub *hub, const cau_creation *creation, char id[CA
 	return CAU_OK;
 }
 
-static cau_status check_place(cau_hub *hub, const char *id, cau_error *error)
+static cau_status check_place(cau_hub *hub, const cau_creation *creation, const char *id,
+                              cau_error *error)
 {
+	cau_moved_to to;
 	cau_hosted *other = cau_hub_find(hub, id);
 	cau_hosted_release(other);
 	if (other)
 		return cau_fail(error, CAU_ALREADY_EXISTS, "params.name", "`%s` exists", id);
+	if (creation->origin.kind != CAU_ORIGIN_STORE && cau_hub_moved(hub, id, &to))
+		return cau_fail(error, CAU_ALREADY_EXISTS, "params.name",
+		                "`%s` has moved and is `%s` now: who asks for it is led there", id,
+		                to.session);
+	if (creation->origin.kind != CAU_ORIGIN_STORE && cau_arrivals_have(hub, id))
+		return cau_fail(error, CAU_ALREADY_EXISTS, "params.name",
+		                "`%s` is on its way here from another daemon", id);
 	if (cau_hub_count(hub) >= hub->def.config->max_sessions)
 		return cau_fail(error, CAU_LIMIT, "", "the daemon has %lld sessions (setting max_sessions)",
 		                (long long)hub->def.config->max_sessions);
@@ -91,7 +100,7 @@ static cau_status check_place(cau_hub *hub, const char *id, cau_error *error)
 cau_status cau_clerk_make(cau_hub *hub, cau_creation *creation, const char *id, cau_error *error)
 {
 	cau_hosted *hosted = NULL;
-	cau_status status = check_place(hub, id, error);
+	cau_status status = check_place(hub, creation, id, error);
 	if (status)
 		return status;
 	cau_hosted_def def = {.id = id,
@@ -159,7 +168,7 @@ static void act_on_missing(cau_hub *hub, const cau_creation *asked)
 	if (!made && asked->reply.method == CAU_METHOD_SESSION_DESTROY)
 		cau_clerk_discard(hub, asked);
 	else
-		cau_clerk_answer_missing(&asked->reply, asked->name);
+		cau_clerk_answer_missing(hub, &asked->reply, asked->name);
 	cau_hosted_release(made);
 }
 

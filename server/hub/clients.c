@@ -141,3 +141,29 @@ bool cau_hub_find_client(cau_hub *hub, uint32_t number, cau_asker *asker)
 	pthread_mutex_unlock(&hub->mutex);
 	return client != NULL;
 }
+
+uint32_t cau_hub_expect(cau_hub *hub, const cau_client *client)
+{
+	pthread_mutex_lock(&hub->mutex);
+	cau_client *kept = find_token(hub, client->resume);
+	if (!kept && (kept = add_client(hub))) {
+		uint32_t number = kept->asker.client;
+		*kept = *client;
+		kept->asker.client = number;
+		kept->lost = true;
+		kept->lost_s = cau_monotonic_s();
+	}
+	uint32_t number = kept ? kept->asker.client : 0;
+	pthread_mutex_unlock(&hub->mutex);
+	return number;
+}
+
+bool cau_hub_resume_token(cau_hub *hub, uint32_t number, char token[CAU_RESUME_BYTES])
+{
+	pthread_mutex_lock(&hub->mutex);
+	const cau_client *client = find_number(hub, number);
+	if (client)
+		memcpy(token, client->resume, CAU_RESUME_BYTES);
+	pthread_mutex_unlock(&hub->mutex);
+	return client && *token;
+}

@@ -6,14 +6,20 @@
 
 #include "hub/internal.h"
 
-void cau_clerk_answer_missing(const cau_reply *reply, const char *id)
+void cau_clerk_answer_missing(cau_hub *hub, const cau_reply *reply, const char *id)
 {
 	cau_error error = {0};
+	cau_moved_to to;
+	if (cau_hub_moved(hub, id, &to)) {
+		cau_reply_moved(reply, &to);
+		return;
+	}
 	cau_fail(&error, CAU_NOT_FOUND, "params.session", "this daemon does not have `%.48s`", id);
 	cau_reply_fail(reply, &error, CAU_RPC_NOT_HERE);
 }
 
 typedef struct discarding {
+	cau_hub *hub;
 	cau_reply reply;
 	char id[CAU_NAME_BYTES];
 	char *text; // the answer
@@ -37,7 +43,7 @@ static void committed(void *user, cau_status status, const char *reason)
 		cau_log(CAU_LOG_INFO, what->id, "destroyed", "reason=\"it had not been brought up\"");
 		cau_reply_answer(&what->reply, &outcome);
 	} else if (status == CAU_NOT_FOUND) {
-		cau_clerk_answer_missing(&what->reply, what->id);
+		cau_clerk_answer_missing(what->hub, &what->reply, what->id);
 	} else {
 		cau_fail(&error, status, "", "%.200s", reason);
 		cau_reply_fail(&what->reply, &error, cau_hosted_commit_code(status));
@@ -45,7 +51,7 @@ static void committed(void *user, cau_status status, const char *reason)
 	finish(what);
 }
 
-static discarding *begin(const cau_creation *asked, cau_error *error)
+static discarding *begin(cau_hub *hub, const cau_creation *asked, cau_error *error)
 {
 	cau_wire_nothing result = {0};
 	discarding *what = calloc(1, sizeof *what);
@@ -53,6 +59,7 @@ static discarding *begin(const cau_creation *asked, cau_error *error)
 		cau_fail(error, CAU_NO_MEMORY, "", "no memory to destroy it");
 		return NULL;
 	}
+	what->hub = hub;
 	what->reply = asked->reply;
 	memcpy(what->id, asked->name, sizeof what->id);
 	what->text = cau_answer_text(asked->reply.method, &result, &what->text_bytes, error);
@@ -84,7 +91,14 @@ static cau_status submit(cau_store *store, const cau_creation *asked, discarding
 void cau_clerk_discard(cau_hub *hub, const cau_creation *asked)
 {
 	cau_error error = {0};
-	discarding *what = begin(asked, &error);
+	if (cau_arrivals_have(hub, asked->name)) {
+		cau_fail(&error, CAU_BAD_STATE, "params.session",
+		         "it is on its way here from another daemon: `cautery move --resume %s` ends that",
+		         asked->name);
+		cau_reply_fail(&asked->reply, &error, 0);
+		return;
+	}
+	discarding *what = begin(hub, asked, &error);
 	if (what && !submit(hub->def.store, asked, what, &error))
 		return;
 	finish(what);

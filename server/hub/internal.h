@@ -27,7 +27,7 @@ struct cau_hub {
 	pthread_mutex_t mutex; // guards what follows; taken before a session's, never inside one
 	cau_hosted **sessions;
 	int32_t session_count;
-	uint32_t last_session;
+	_Atomic uint32_t last_session;
 	cau_client *clients;
 	int32_t client_count, client_capacity;
 	uint32_t last_client;
@@ -39,6 +39,13 @@ struct cau_hub {
 	uint32_t last_name;
 
 	atomic_bool copying; // a copy of the store is being made
+
+	pthread_mutex_t moves_mutex; // guards what follows; inside no other lock but the hub's
+	struct cau_departure *departures;
+	struct cau_arrival *arrivals;
+	struct cau_tombstone *tombstones; // by id
+	int32_t tombstone_count, tombstone_capacity;
+	bool moves_end; // the daemon ends: no move is begun or goes on
 };
 
 // ---- clerk.c
@@ -49,6 +56,67 @@ void cau_clerk_fork(void *user, cau_hosted *source, int64_t branch, const cau_or
 void cau_creation_free(cau_creation *creation);
 
 // ---- discard.c
-void cau_clerk_answer_missing(const cau_reply *reply, const char *id);
+void cau_clerk_answer_missing(cau_hub *hub, const cau_reply *reply, const char *id);
 // Destroys the session `asked->name` of the store, which is not among the hub's; answers.
 void cau_clerk_discard(cau_hub *hub, const cau_creation *asked);
+
+// ---- clients.c
+// What a client comes back with to its tools. False: it cannot.
+bool cau_hub_resume_token(cau_hub *hub, uint32_t number, char token[CAU_RESUME_BYTES]);
+
+// ---- resume.c
+// Session `id` of the store, as what is needed to make it; freed by cau_creation_free.
+cau_status cau_hub_read_session(cau_hub *hub, const char *id, cau_creation **creation,
+                                cau_error *error);
+// Brings session `id` of the store up; answers `reply` (may be of nobody) with its description.
+cau_status cau_hub_resume_one(cau_hub *hub, const char *id, const cau_reply *reply,
+                              cau_error *error);
+
+// ---- moved.c: sessions that have moved away
+typedef struct cau_tombstone {
+	char id[CAU_NAME_BYTES], move[CAU_NAME_BYTES];
+	cau_moved_to to;
+	char proof[CAU_PROOF_BYTES];
+} cau_tombstone;
+// Of the store, at the start.
+cau_status cau_tombstones_read(cau_hub *hub, cau_error *error);
+// All three: with the moves' lock.
+const cau_tombstone *cau_tombstone_find(const cau_hub *hub, const char *id);
+bool cau_tombstone_put(cau_hub *hub, const cau_tombstone *made); // false: no memory
+void cau_tombstone_drop(cau_hub *hub, const char *id);
+
+// ---- moves.c: what leaving and coming share
+// One request about a move, on the builder.
+typedef struct cau_move_job {
+	cau_job job; // first
+	cau_hub *hub;
+	cau_move_asked asked;
+	cau_reply reply;
+} cau_move_job;
+void cau_move_fail(const cau_reply *reply, cau_status status, int32_t code, const char *path,
+                   const char *reason);
+void cau_move_answer(const cau_reply *reply, const void *result);
+void cau_move_decided(const cau_reply *reply, const cau_tombstone *moved); // NULL: it stays
+
+// ---- departures.c
+void cau_departure_begin(cau_move_job *job);
+void cau_departure_read(cau_move_job *job);
+void cau_departure_hold(cau_move_job *job);
+void cau_departure_commit(cau_move_job *job);
+void cau_departure_cancel(cau_move_job *job);
+void cau_departures_list(cau_hub *hub, cau_wire_list *list); // with the moves' lock
+// Those that have stood still for too long, or all of them, go on.
+void cau_departures_let_go(cau_hub *hub, double now_s, bool all);
+void cau_departures_free(cau_hub *hub);
+
+// ---- arrivals.c
+cau_status cau_arrivals_read(cau_hub *hub, cau_error *error); // of the store, at the start
+void cau_arrival_receive(cau_move_job *job);
+void cau_arrival_ready(cau_move_job *job);
+void cau_arrival_accept(cau_move_job *job);
+void cau_arrival_forget(cau_move_job *job);
+void cau_arrivals_list(cau_hub *hub, cau_wire_list *list); // with the moves' lock
+// Whether this session has come, in whole or in part, and is not this daemon's yet.
+bool cau_arrivals_have(cau_hub *hub, const char *id);
+void cau_arrivals_reap(cau_hub *hub, bool all);
+void cau_arrivals_free(cau_hub *hub);

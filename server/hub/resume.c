@@ -54,26 +54,49 @@ static cau_status take_session(void *user, const cau_store_session *row)
 	return status;
 }
 
-// A session that cannot be brought up is reported and left in the store.
-static bool resume_one(cau_hub *hub, const char *id)
+cau_status cau_hub_read_session(cau_hub *hub, const char *id, cau_creation **read, cau_error *error)
 {
-	cau_error error = {0};
 	cau_creation *creation = calloc(1, sizeof *creation);
 	if (creation)
 		creation->scene = calloc(1, sizeof *creation->scene);
 	cau_status status =
 		creation && creation->scene
-			? cau_store_read_session(hub->def.store, id, take_session, creation, &error)
-			: CAU_NO_MEMORY;
-	if (!status) {
-		snprintf(creation->scene->directory, sizeof creation->scene->directory, "%.255s",
-		         hub->def.config->scenes);
-		status = cau_clerk_make(hub, creation, id, &error);
+			? cau_store_read_session(hub->def.store, id, take_session, creation, error)
+			: cau_fail(error, CAU_NO_MEMORY, "", "no memory for a session");
+	if (status) {
+		if (creation)
+			cau_creation_free(creation);
+		return status;
 	}
+	snprintf(creation->scene->directory, sizeof creation->scene->directory, "%.255s",
+	         hub->def.config->scenes);
+	*read = creation;
+	return CAU_OK;
+}
+
+cau_status cau_hub_resume_one(cau_hub *hub, const char *id, const cau_reply *reply,
+                              cau_error *error)
+{
+	cau_creation *creation = NULL;
+	cau_status status = cau_hub_read_session(hub, id, &creation, error);
+	if (status)
+		return status;
+	creation->reply = *reply;
+	status = cau_clerk_make(hub, creation, id, error);
+	cau_creation_free(creation);
+	return status;
+}
+
+// A session that cannot be brought up is reported and left in the store; one that is on its way
+// here from another daemon is in doubt, and waits.
+static bool resume_one(cau_hub *hub, const char *id)
+{
+	cau_error error = {0};
+	if (cau_arrivals_have(hub, id))
+		return false;
+	cau_status status = cau_hub_resume_one(hub, id, &(cau_reply){0}, &error);
 	if (status)
 		cau_hosted_tell_not_resumed(id, status, &error);
-	if (creation)
-		cau_creation_free(creation);
 	return !status;
 }
 
@@ -112,7 +135,11 @@ cau_status cau_hub_resume(cau_hub *hub, int32_t *resumed, cau_error *error)
 {
 	ids list = {0};
 	*resumed = 0;
-	cau_status status = cau_store_read_sessions(hub->def.store, take_id, &list, error);
+	cau_status status = cau_tombstones_read(hub, error);
+	if (!status)
+		status = cau_arrivals_read(hub, error);
+	if (!status)
+		status = cau_store_read_sessions(hub->def.store, take_id, &list, error);
 	for (int32_t i = 0; !status && i < list.count; i++)
 		*resumed += resume_one(hub, list.id[i]);
 	free(list.id);

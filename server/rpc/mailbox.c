@@ -71,6 +71,10 @@ static cau_buffer *fault_text(const cau_rpc_id *id, const cau_outcome *outcome)
 		cau_rpc_fault_of_code(&fault, (cau_rpc_error_code)outcome->code, outcome->error->reason);
 		snprintf(fault.path, sizeof fault.path, "%s", outcome->error->path);
 	}
+	if (outcome->moved) {
+		memcpy(fault.moved_to, outcome->moved->session, sizeof fault.moved_to);
+		memcpy(fault.url, outcome->moved->url, sizeof fault.url);
+	}
 	if (cau_rpc_write_error(&out, id, &fault, NULL)) {
 		cau_buffer_release(buffer);
 		return NULL;

@@ -31,6 +31,21 @@ void cau_peer_malformed(cau_peer *peer)
 		cau_connection_close(peer->connection, CAU_CLOSE_GARBAGE, NULL);
 }
 
+static void fail_moved(const cau_call *call, const cau_moved_to *to)
+{
+	cau_rpc_fault fault;
+	char reason[2 * CAU_NAME_BYTES];
+	if (call->message->kind == CAU_RPC_NOTIFICATION)
+		return;
+	snprintf(reason, sizeof reason, "it is `%s` now", to->session);
+	cau_rpc_fault_of_code(&fault, CAU_RPC_MOVED, reason);
+	snprintf(fault.path, sizeof fault.path, "params.session");
+	memcpy(fault.moved_to, to->session, sizeof fault.moved_to);
+	memcpy(fault.url, to->url, sizeof fault.url);
+	cau_answers_count(call->peer->service, call->message->method, fault.code);
+	cau_peer_fault(call->peer, &call->message->id, &fault);
+}
+
 void cau_call_fail(const cau_call *call, const cau_error *error, int32_t code)
 {
 	cau_rpc_fault fault;
@@ -112,10 +127,17 @@ bool cau_call_may_make(const cau_call *call, const char *name)
 	return false;
 }
 
+// That which the message means, or the connection.
+static const char *named_session(const cau_call *call)
+{
+	return call->envelope.has_session ? call->envelope.session : call->peer->session;
+}
+
 cau_hosted *cau_call_session(const cau_call *call)
 {
 	cau_error error = {0};
-	const char *id = call->envelope.has_session ? call->envelope.session : call->peer->session;
+	cau_moved_to to;
+	const char *id = named_session(call);
 	if (!*id) {
 		cau_fail(&error, CAU_BAD_VALUE, "params.session",
 		         "missing: neither the message nor the connection's URL names a session");
@@ -133,6 +155,10 @@ cau_hosted *cau_call_session(const cau_call *call)
 	    cau_hub_submit_missing(call->peer->service->hub, id, &call->peer->client.asker, sequence,
 	                           &reply))
 		return NULL;
+	if (cau_hub_moved(call->peer->service->hub, id, &to)) {
+		fail_moved(call, &to);
+		return NULL;
+	}
 	cau_fail(&error, CAU_NOT_FOUND, "params.session", "this daemon does not have `%.48s`", id);
 	cau_call_fail(call, &error, CAU_RPC_NOT_HERE);
 	return NULL;
@@ -175,8 +201,13 @@ void cau_call_submit(const cau_call *call, cau_order *order)
 		return;
 	}
 	bool file = call->method->cost == CAU_COST_FILE && order->reply.answer;
+	cau_moved_to to;
 	cau_status status = cau_hosted_submit(hosted, order, &error);
-	if (status) {
+	if (status == CAU_NOT_FOUND &&
+	    cau_hub_moved(call->peer->service->hub, named_session(call), &to)) {
+		free(order); // just now
+		fail_moved(call, &to);
+	} else if (status) {
 		free(order);
 		cau_call_fail(call, &error, status == CAU_IO ? CAU_RPC_STORE_FULL : 0);
 	} else {

@@ -373,3 +373,82 @@ cau_status cau_store_put_gap(cau_store_batch *batch, const cau_store_gap *gap, c
 		                (unsigned long long)gap->from_tick, (unsigned long long)gap->before_tick);
 	return append_gap(batch, RECORD_GAP, gap, error);
 }
+
+// ---- sessions that move ---------------------------------------------------------------
+cau_status cau_store_put_moved(cau_store_batch *batch, const cau_store_moved *moved,
+                               cau_error *error)
+{
+	const char *const texts[] = {moved->id,    moved->move, moved->target,
+	                             moved->label, moved->url,  moved->proof};
+	size_t bytes = 0;
+	for (size_t i = 0; i < sizeof texts / sizeof *texts; i++)
+		bytes += text_bytes(texts[i]);
+	TRY(check_text("id", moved->id, true, error));
+	TRY(check_text("target", moved->target, true, error));
+	TRY(check_text("label", moved->label, true, error));
+	TRY(check_text("move", moved->move, true, error));
+	TRY(check_text("proof", moved->proof, true, error));
+	struct record *record = append(batch, RECORD_MOVED, bytes, error);
+	if (!record)
+		return CAU_NO_MEMORY;
+	unsigned char *at = record->storage;
+	record->as.moved = (cau_store_moved){.id = copy_text(&at, moved->id),
+	                                     .move = copy_text(&at, moved->move),
+	                                     .target = copy_text(&at, moved->target),
+	                                     .label = copy_text(&at, moved->label),
+	                                     .url = copy_text(&at, moved->url),
+	                                     .proof = copy_text(&at, moved->proof)};
+	return CAU_OK;
+}
+
+cau_status cau_store_put_arrival(cau_store_batch *batch, const cau_store_arrival *arrival,
+                                 cau_error *error)
+{
+	TRY(check_text("id", arrival->id, true, error));
+	TRY(check_text("move", arrival->move, true, error));
+	TRY(check_text("lock", arrival->lock, true, error));
+	TRY(check_text("source", arrival->source, true, error));
+	TRY(check_text("label", arrival->label, true, error));
+	size_t bytes = text_bytes(arrival->id) + text_bytes(arrival->move) + text_bytes(arrival->lock) +
+	               text_bytes(arrival->source) + text_bytes(arrival->label);
+	struct record *record = append(batch, RECORD_ARRIVAL, bytes, error);
+	if (!record)
+		return CAU_NO_MEMORY;
+	unsigned char *at = record->storage;
+	cau_store_arrival *copy = &record->as.arrival;
+	*copy = *arrival;
+	copy->id = copy_text(&at, arrival->id);
+	copy->move = copy_text(&at, arrival->move);
+	copy->lock = copy_text(&at, arrival->lock);
+	copy->source = copy_text(&at, arrival->source);
+	copy->label = copy_text(&at, arrival->label);
+	return CAU_OK;
+}
+
+cau_status cau_store_forget_arrival(cau_store_batch *batch, const char *id, cau_error *error)
+{
+	TRY(check_text("id", id, true, error));
+	struct record *record = append(batch, RECORD_ARRIVAL_FORGET, text_bytes(id), error);
+	if (!record)
+		return CAU_NO_MEMORY;
+	unsigned char *at = record->storage;
+	record->as.arrival = (cau_store_arrival){.id = copy_text(&at, id)};
+	return CAU_OK;
+}
+
+cau_status cau_store_lend_rows(cau_store_batch *batch, const char *id, const void *piece,
+                               size_t bytes, void (*give_back)(void *piece), cau_error *error)
+{
+	CAU_ASSERT(give_back, "a piece of %zu bytes is lent for good", bytes);
+	TRY(check_text("id", id, true, error));
+	struct record *record = append(batch, RECORD_ROWS, text_bytes(id), error);
+	if (!record)
+		return CAU_NO_MEMORY;
+	unsigned char *at = record->storage;
+	record->as.rows.id = copy_text(&at, id);
+	record->as.rows.piece = (cau_store_bytes){piece, bytes};
+	record->lent = (void *)(uintptr_t)piece;
+	record->give_back = give_back;
+	batch->bytes += bytes;
+	return CAU_OK;
+}

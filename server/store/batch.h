@@ -17,6 +17,10 @@ enum record_kind {
 	RECORD_BRANCH,
 	RECORD_MARK, // as.gap: session, branch, from_tick
 	RECORD_GAP,
+	RECORD_MOVED,
+	RECORD_ARRIVAL,
+	RECORD_ARRIVAL_FORGET, // as.arrival: id
+	RECORD_ROWS,           // as.rows; what is lent
 };
 
 struct record {
@@ -30,6 +34,12 @@ struct record {
 		cau_store_event event;
 		cau_store_branch branch;
 		cau_store_gap gap;
+		cau_store_moved moved;
+		cau_store_arrival arrival;
+		struct {
+			const char *id;
+			cau_store_bytes piece;
+		} rows;
 	} as; // its pointers lead into storage, or to what is lent
 	void *lent;
 	void (*give_back)(void *lent); // NULL: nothing is lent

@@ -68,5 +68,17 @@ static const char fourth_step[] =
 	" from_tick INTEGER NOT NULL, before_tick INTEGER NOT NULL, trimmed INTEGER NOT NULL,"
 	" PRIMARY KEY(session, branch, from_tick)) WITHOUT ROWID;";
 
-const char *const cau_store_schema_steps[CAU_STORE_SCHEMA_VERSION] = {first_step, second_step,
-                                                                      third_step, fourth_step};
+// moved: sessions that another daemon has now. The row is the decision: it is written in the
+// transaction that takes the session out, and `proof` is what lets the other daemon serve it.
+// arrivals: sessions on their way here, whose rows are there under the same id; one is served once
+// it is accepted, by a proof whose SHA-256 is `lock`.
+static const char fifth_step[] =
+	"CREATE TABLE moved(id TEXT PRIMARY KEY, move TEXT NOT NULL, target TEXT NOT NULL,"
+	" label TEXT NOT NULL, url TEXT NOT NULL, proof TEXT NOT NULL, time_ms INTEGER NOT NULL)"
+	" WITHOUT ROWID;"
+	"CREATE TABLE arrivals(id TEXT PRIMARY KEY, move TEXT NOT NULL, lock TEXT NOT NULL,"
+	" source TEXT NOT NULL, label TEXT NOT NULL, pieces INTEGER NOT NULL, state INTEGER NOT NULL,"
+	" time_ms INTEGER NOT NULL) WITHOUT ROWID;";
+
+const char *const cau_store_schema_steps[CAU_STORE_SCHEMA_VERSION] = {
+	first_step, second_step, third_step, fourth_step, fifth_step};

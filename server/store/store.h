@@ -227,6 +227,46 @@ typedef struct cau_store_gap {
 // To be told with the checkpoint that ends it, at before_tick.
 cau_status cau_store_put_gap(cau_store_batch *batch, const cau_store_gap *gap, cau_error *error);
 
+// ---- writing: sessions that move (dump.h reads them, rows.h is how they travel) -----------------
+// What another daemon has now.
+typedef struct cau_store_moved {
+	const char *id;                   // here
+	const char *move;                 // which move it was
+	const char *target, *label, *url; // its id there, that daemon's label, and its address or ""
+	const char *proof;                // what lets the other daemon serve it
+	int64_t time_ms;                  // ignored in a put
+} cau_store_moved;
+// The session's rows go, its id leads elsewhere from here on. In place of an older such row.
+// CAU_NOT_FOUND: there is no such session.
+cau_status cau_store_put_moved(cau_store_batch *batch, const cau_store_moved *moved,
+                               cau_error *error);
+
+typedef enum cau_store_arrival_state {
+	CAU_STORE_ARRIVING, // pieces are missing
+	CAU_STORE_WHOLE,    // all rows are here; who serves it is decided elsewhere
+	CAU_STORE_ACCEPTED, // it is this store's
+} cau_store_arrival_state;
+
+// A session that comes from another store.
+typedef struct cau_store_arrival {
+	const char *id;             // here
+	const char *move;           // which move it is
+	const char *lock;           // SHA-256 of the proof, 64 hex digits
+	const char *source, *label; // its id there, and that daemon's label
+	int64_t pieces;             // that are here
+	cau_store_arrival_state state;
+	int64_t time_ms; // ignored in a put
+} cau_store_arrival;
+// Makes or replaces the row. ACCEPTED: a row that says that this id has moved away goes with it.
+cau_status cau_store_put_arrival(cau_store_batch *batch, const cau_store_arrival *arrival,
+                                 cau_error *error);
+// The row and the session's go, if they are there.
+cau_status cau_store_forget_arrival(cau_store_batch *batch, const char *id, cau_error *error);
+// The rows of a piece that cau_rows_check has passed, into session `id`, which its first makes.
+// Borrowed until the batch is answered, then given back.
+cau_status cau_store_lend_rows(cau_store_batch *batch, const char *id, const void *piece,
+                               size_t bytes, void (*give_back)(void *piece), cau_error *error);
+
 // ---- writing: submission --------------------------------------------------------------
 // Called once per accepted batch, on the store's thread, without locks held, in the order of
 // submission. CAU_OK: the batch is on the disk, and no crash or power cut undoes it. Else nothing
@@ -315,6 +355,14 @@ cau_status cau_store_read_clients(cau_store *store, const char *session,
 typedef cau_status (*cau_store_visit_answer)(void *user, const cau_store_answer *answer);
 cau_status cau_store_read_answer(cau_store *store, const char *client, uint64_t sequence,
                                  cau_store_visit_answer visit, void *user, cau_error *error);
+
+// Sessions that have moved away, and those that have come or are coming.
+typedef cau_status (*cau_store_visit_moved)(void *user, const cau_store_moved *moved);
+cau_status cau_store_read_moved(cau_store *store, cau_store_visit_moved visit, void *user,
+                                cau_error *error);
+typedef cau_status (*cau_store_visit_arrival)(void *user, const cau_store_arrival *arrival);
+cau_status cau_store_read_arrivals(cau_store *store, cau_store_visit_arrival visit, void *user,
+                                   cau_error *error);
 
 // ---- health and metrics ---------------------------------------------------------------
 typedef struct cau_store_health {

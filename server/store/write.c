@@ -2,6 +2,7 @@
 #include "write.h"
 
 #include "fault.h"
+#include "import.h"
 
 // name, SQL
 #define STATEMENT_TABLE(X)                                                                         \
@@ -421,6 +422,11 @@ cau_status cau_store_writer_apply(struct cau_store_writer *writer, const struct 
 	case RECORD_MARK:
 	case RECORD_GAP:
 		return apply_gap(writer, record, error);
+	case RECORD_MOVED:
+	case RECORD_ARRIVAL:
+	case RECORD_ARRIVAL_FORGET:
+	case RECORD_ROWS:
+		return cau_store_import(writer->database, record, now_ms, error);
 	}
 	return cau_fail(error, CAU_BAD_VALUE, NULL, "a record of unknown kind");
 }

@@ -90,6 +90,7 @@ typedef struct cau_client_def {
 	const char *client_id; // lasting identity; by default one from the server
 	int role;              // CAU_ROLE_* wanted at most; -1: what the token gives
 	bool reconnect;        // come back after a lost connection: resume, join again, resend
+	bool follow;           // go after a session that moves to another daemon; true by default
 	double timeout_s;      // of connecting and of each call that waits
 	void *user;            // for the callbacks, each of which may be NULL
 	void (*on_condition)(void *user, cau_client *client, cau_client_condition condition);
@@ -130,6 +131,14 @@ cau_client_condition cau_client_get_condition(const cau_client *client);
 const cau_error *cau_client_trouble(const cau_client *client); // of the last loss
 const cau_wire_hello_result *cau_client_server(const cau_client *client);
 uint64_t cau_client_connections(const cau_client *client); // hellos answered so far
+
+// Whether it is on its way after a session that has moved to another daemon: that one's streams are
+// joined again there, and its old id means the new one from then on. A client does so whose session,
+// or whose streams, are of that session alone; others are told `moved`. The condition is LOST or
+// CONNECTING meanwhile.
+bool cau_client_follows(const cau_client *client);
+// The id by which messages name a session that the program calls so: another once it has moved.
+const char *cau_client_called(const cau_client *client, const char *session);
 
 // While on, sends a heartbeat every 100 ms: whoever drives an energized tool needs it.
 void cau_client_keep_alive(cau_client *client, bool on);

@@ -47,6 +47,9 @@ typedef struct cau_rpc_fault {
 	char status[33];  // data.status: the word of the error table
 	char path[160];   // data.path, may be empty
 	char reason[320]; // data.reason
+	// CAU_RPC_MOVED: data.moved_to, the session's id on the daemon that has it now, and data.url,
+	// that daemon's address, empty where it is the same as this one's.
+	char moved_to[CAU_NAME_BYTES], url[256];
 } cau_rpc_fault;
 
 typedef struct cau_rpc_message {

@@ -44,7 +44,8 @@
 	X(-32049, SEQUENCE_PAST, "sequence_past",                                                      \
 	  "the answer to this client_sequence is no longer kept")                                      \
 	X(-32050, SEQUENCE_CONFLICT, "sequence_conflict",                                              \
-	  "this client_sequence belongs to another method")
+	  "this client_sequence belongs to another method")                                            \
+	X(-32051, MOVED, "moved", "another daemon has the session now")
 
 typedef enum cau_rpc_error_code {
 #define X(number, code, word, sentence) CAU_RPC_##code = (number),

@@ -8,7 +8,7 @@ import { Decoder, header } from './decoder.mjs';
 export const PATIENCE_S = process.env.E2E_SLOW === '1' ? 200 : 20;
 
 // Methods that a file in chunks follows.
-const FILES = ['session.export', 'session.frame_at', 'session.log'];
+const FILES = ['move.read', 'session.export', 'session.frame_at', 'session.log'];
 
 export class RpcError extends Error {
 	constructor(error) {

@@ -500,6 +500,98 @@ export interface StoreCopy {
   byte_count: number;
 }
 
+/** a session is to go to another daemon */
+export interface MoveBegin {
+  /** its id */
+  session: string;
+  /** its id there */
+  target: string;
+  /** of the daemon that is to have it */
+  label: string;
+  /** where that daemon is, for who asks for the old id; none where one address leads to all */
+  url?: string;
+}
+
+/** a move has begun */
+export interface MoveBegun {
+  /** names it from here on */
+  move: string;
+}
+
+/** names a move */
+export interface MoveRef {
+  /** its id on the daemon that is asked */
+  session: string;
+  /** of move.begin */
+  move: string;
+}
+
+/** a state that a session stands at */
+export interface MoveHeld {
+  /** when (0 to 9007199254740991) */
+  tick: number;
+  /** of the state */
+  hash: string;
+  /** another daemon's state was read here to the bit; false: another build or instruction set wrote it, and what follows may differ in last digits */
+  exact?: boolean;
+}
+
+/** what became of a move */
+export interface MoveDecision {
+  /** false: the session stays, and this move will never be */
+  moved: boolean;
+  /** its id there */
+  target?: string;
+  /** lets the other daemon serve it */
+  proof?: string;
+}
+
+/** a piece of a session */
+export interface MoveReceive {
+  /** its id here */
+  session: string;
+  /** of move.begin */
+  move: string;
+  /** that holds the piece; it is gone with this */
+  upload: string;
+}
+
+/** a piece is on the disk */
+export interface MoveReceived {
+  /** that are (0 to 9007199254740991) */
+  pieces: number;
+}
+
+/** a session is to be served here */
+export interface MoveAccept {
+  /** its id here */
+  session: string;
+  /** of move.begin */
+  move: string;
+  /** of move.commit */
+  proof: string;
+}
+
+/** a move, as this daemon knows it */
+export interface MoveEntry {
+  /** its id here */
+  session: string;
+  /** of move.begin */
+  move: string;
+  /** its id on the other daemon */
+  other: string;
+  /** leaving, held, deciding, gone; incoming, doubt (all is here, and whether it is to be served is known to the other daemon), accepting */
+  state: string;
+  /** gone: where the other daemon is, as it was said */
+  url?: string;
+}
+
+/** moves of this daemon's sessions */
+export interface MoveList {
+  /** those that are not over first, then what has gone */
+  moves: MoveEntry[];
+}
+
 /** asks for frames */
 export interface SessionJoin {
   /** its id; that of the connection's URL by default */
@@ -630,8 +722,10 @@ export interface SessionChanged {
   summary: SessionSummary;
   /** who did it */
   client?: string;
-  /** moved: the address of the daemon that has it now */
+  /** moved: the address of the daemon that has it now, if it is another */
   target?: string;
+  /** moved: its id there */
+  moved_to?: string;
 }
 
 /** the simulation met numerical trouble; rewind or reset */
@@ -1658,6 +1752,26 @@ export interface Requests {
   'upload.discard': { params: UploadDiscard; result: Nothing };
   /** copies the daemon's store while everybody goes on, to a file on its machine; one at a time */
   'store.backup': { params: StoreBackup; result: StoreCopy };
+  /** a session is to go to another daemon; it is served meanwhile */
+  'move.begin': { params: MoveBegin; result: MoveBegun };
+  /** the next piece of it; binary chunks follow */
+  'move.read': { params: MoveRef; result: Transfer };
+  /** it stands still, dark; what is asked of it waits */
+  'move.hold': { params: MoveRef; result: MoveHeld };
+  /** the other daemon has all of it on its disk: it ends here, and the answer is what lets it be served there */
+  'move.commit': { params: MoveRef; result: MoveDecision };
+  /** it stays, unless it has moved: the answer says which */
+  'move.cancel': { params: MoveRef; result: MoveDecision };
+  /** an upload is a piece of a session that comes here; answered when it is on the disk */
+  'move.receive': { params: MoveReceive; result: MoveReceived };
+  /** builds what has come, and answers when it could be served soon */
+  'move.ready': { params: MoveRef; result: MoveHeld };
+  /** it is this daemon's, by the proof of move.commit; answered when it is served */
+  'move.accept': { params: MoveAccept; result: SessionDescription };
+  /** what has come goes; only after move.cancel has said that the session stays where it was */
+  'move.forget': { params: MoveRef; result: Nothing };
+  /** sessions that come, are in doubt, are leaving, or have gone */
+  'move.list': { params: Nothing; result: MoveList };
 }
 
 /** Notifications from the client. */
@@ -1746,6 +1860,7 @@ export const ERROR_CODES = {
   store_full: -32048,
   sequence_past: -32049,
   sequence_conflict: -32050,
+  moved: -32051,
 } as const;
 export type ErrorStatus = keyof typeof ERROR_CODES;
 

@@ -1,0 +1,317 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// move: carries a session from one daemon to another. The two never talk to each other: this is the
+// courier between them. It may be killed anywhere; the same command again ends what it began.
+#include <stdlib.h>
+#include <string.h>
+
+#include "cautery/commands.h"
+#include "cautery/name.h"
+#include "cautery/progress.h"
+
+enum { MOVES_MOST = 1024, PIECE_FLAGS_AT = 12, PART_ENDS = 1, ENDS = 2, HEAD_BYTES = 16 };
+
+typedef struct courier {
+	cli *c;
+	cau_client *to; // the daemon that is to have it; c->client is the one that has it
+	const char *label;
+	cau_wire_move_ref from_ref, to_ref; // the move, as each of them knows the session
+	bool exact;
+	double bytes;
+	double stood_s; // when it came to stand still
+	char token[CAU_CLIENT_TOKEN_BYTES];
+} courier;
+
+static cli_exit fail_to(courier *m)
+{
+	cli_complain(m->c, "of the daemon that is to have it (%s):", m->label);
+	return cli_fail(m->c);
+}
+
+static cau_status ask_from(courier *m, cau_method method, void *result)
+{
+	return cau_client_call(m->c->client, method, &m->from_ref, result, &m->c->error);
+}
+
+static cau_status ask_to(courier *m, cau_method method, void *result)
+{
+	return cau_client_call(m->to, method, &m->to_ref, result, &m->c->error);
+}
+
+// ---- connecting ---------------------------------------------------------------------------------
+
+static cli_exit check_label(courier *m, const char *session)
+{
+	size_t bytes = strlen(m->label);
+	if (!cau_name_is_valid(m->label) || strchr(m->label, '-')) {
+		cli_complain(m->c, "`%s` is no label of a daemon", m->label);
+		return CLI_USAGE;
+	}
+	if (strncmp(session, m->label, bytes) == 0 && session[bytes] == '-') {
+		cli_complain(m->c, "%s is of %s already", session, m->label);
+		return CLI_USAGE;
+	}
+	return CLI_DONE;
+}
+
+// Its id there: the new label, and the name that is given, or what follows the old label.
+static cli_exit name_target(courier *m, const char *session)
+{
+	char text[2 * CAU_NAME_BYTES];
+	const char *name = cli_value(m->c, "name"), *dash = strchr(session, '-');
+	snprintf(text, sizeof text, "%.48s-%.48s", m->label, name ? name : dash ? dash + 1 : session);
+	if (!cau_name_is_valid(text) || strlen(text) >= CAU_NAME_BYTES) {
+		cli_complain(m->c, "`%s` is no name: %s, at most %d bytes; --name gives another", text,
+		             CAU_NAME_RULE, CAU_NAME_BYTES - 1);
+		return CLI_USAGE;
+	}
+	snprintf(m->from_ref.session, sizeof m->from_ref.session, "%s", session);
+	memcpy(m->to_ref.session, text, sizeof m->to_ref.session);
+	return CLI_DONE;
+}
+
+static cli_exit connect_target(courier *m)
+{
+	cli *c = m->c;
+	const char *url = cli_value(c, "to-url"), *file = cli_value(c, "to-token-file");
+	cau_client_def def = c->def;
+	if (file && cau_client_read_token(file, m->token, &c->error))
+		return cli_fail_file(c);
+	if (file)
+		def.token = m->token;
+	if (url)
+		def.url = url;
+	def.session = NULL;
+	def.label = url ? NULL : m->label; // behind a proxy one address leads to all
+	if (cau_client_create(c->loop, &def, &m->to, &c->error) || cau_client_connect(m->to, &c->error))
+		return fail_to(m);
+	const char *daemon = cau_client_server(m->to)->daemon;
+	if (strcmp(daemon, m->label) == 0)
+		return CLI_DONE;
+	cli_complain(c, "%s is the daemon `%s`: --to-url says where `%s` is", url ? url : "there",
+	             daemon, m->label);
+	return CLI_USAGE;
+}
+
+// ---- deciding -----------------------------------------------------------------------------------
+
+// It is the other daemon's from here on: without an answer the same command ends it.
+static cli_exit deliver(courier *m, const char *proof)
+{
+	cau_wire_move_accept params = {0};
+	memcpy(params.session, m->to_ref.session, sizeof params.session);
+	memcpy(params.move, m->to_ref.move, sizeof params.move);
+	snprintf(params.proof, sizeof params.proof, "%s", proof);
+	if (!cau_client_call(m->to, CAU_METHOD_MOVE_ACCEPT, &params, NULL, &m->c->error))
+		return CLI_DONE;
+	cli_complain(m->c,
+	             "it has left and is %s's, which does not serve it yet: the same command "
+	             "again ends this",
+	             m->label);
+	return fail_to(m);
+}
+
+static cli_exit tell_moved(courier *m)
+{
+	cli *c = m->c;
+	if (c->json)
+		fprintf(c->out, "{\"session\":\"%s\",\"exact\":%s}\n", m->to_ref.session,
+		        m->exact ? "true" : "false");
+	else
+		fprintf(c->out, "%s is %s now\n", m->from_ref.session, m->to_ref.session);
+	return CLI_DONE;
+}
+
+// Asks the daemon that it was at what became of the move, and tells the other. `moved`: it has.
+static cli_exit settle(courier *m, bool *moved)
+{
+	cau_wire_move_decision decision = {0};
+	*moved = false;
+	if (ask_from(m, CAU_METHOD_MOVE_CANCEL, &decision))
+		return cli_fail(m->c);
+	if (decision.moved) {
+		*moved = true;
+		return deliver(m, decision.proof);
+	}
+	if (ask_to(m, CAU_METHOD_MOVE_FORGET, NULL))
+		return fail_to(m);
+	return CLI_DONE;
+}
+
+// What an earlier courier has left behind of this session.
+static cli_exit settle_earlier(courier *m, bool *moved)
+{
+	cau_wire_move_list list = {
+		.moves = {calloc(MOVES_MOST, sizeof(cau_wire_move_entry)), 0, MOVES_MOST}};
+	const cau_wire_move_entry *entries = list.moves.items, *found = NULL;
+	cli_exit code = CLI_DONE;
+	*moved = false;
+	if (!entries)
+		return cli_fail_memory(m->c);
+	if (cau_client_call(m->to, CAU_METHOD_MOVE_LIST, &(cau_wire_nothing){0}, &list, &m->c->error))
+		code = fail_to(m);
+	for (int32_t i = 0; !code && i < list.moves.count; i++)
+		if (strcmp(entries[i].other, m->from_ref.session) == 0 &&
+		    strcmp(entries[i].state, "gone") != 0)
+			found = &entries[i];
+	if (found) {
+		memcpy(m->to_ref.session, found->session, sizeof m->to_ref.session);
+		memcpy(m->to_ref.move, found->move, sizeof m->to_ref.move);
+		memcpy(m->from_ref.move, found->move, sizeof m->from_ref.move);
+		code = settle(m, moved);
+	}
+	free(list.moves.items);
+	return code;
+}
+
+// ---- carrying -----------------------------------------------------------------------------------
+
+static cli_exit carry_piece(courier *m, unsigned *flags)
+{
+	cli *c = m->c;
+	unsigned char *bytes = NULL;
+	cau_wire_transfer transfer = {0};
+	cau_wire_upload_result uploaded = {0};
+	cau_wire_move_receive receive = {.upload = "piece"};
+	if (cau_client_download(c->client, CAU_METHOD_MOVE_READ, &m->from_ref, NULL, NULL, &transfer,
+	                        &bytes, &c->error))
+		return cli_fail(c);
+	size_t count = (size_t)transfer.byte_count;
+	*flags = count >= HEAD_BYTES ? bytes[PIECE_FLAGS_AT] : 0;
+	m->bytes += (double)count;
+	memcpy(receive.session, m->to_ref.session, sizeof receive.session);
+	memcpy(receive.move, m->to_ref.move, sizeof receive.move);
+	cau_status status = cau_client_upload(m->to, "piece", "piece.caum", bytes, count, NULL, NULL,
+	                                      &uploaded, &c->error);
+	if (!status)
+		status = cau_client_call(m->to, CAU_METHOD_MOVE_RECEIVE, &receive,
+		                         &(cau_wire_move_received){0}, &c->error);
+	free(bytes);
+	return status ? fail_to(m) : CLI_DONE;
+}
+
+static cli_exit carry_until(courier *m, unsigned flag)
+{
+	unsigned flags = 0;
+	cli_exit code = CLI_DONE;
+	while (!code && !(flags & flag))
+		code = carry_piece(m, &flags);
+	return code;
+}
+
+static cli_exit begin(courier *m)
+{
+	cau_wire_move_begin params = {0};
+	cau_wire_move_begun result = {0};
+	const char *url = cli_value(m->c, "to-url");
+	memcpy(params.session, m->from_ref.session, sizeof params.session);
+	memcpy(params.target, m->to_ref.session, sizeof params.target);
+	snprintf(params.label, sizeof params.label, "%s", m->label);
+	params.has_url = url != NULL;
+	snprintf(params.url, sizeof params.url, "%s", url ? url : "");
+	if (cau_client_call(m->c->client, CAU_METHOD_MOVE_BEGIN, &params, &result, &m->c->error))
+		return cli_fail(m->c);
+	memcpy(m->from_ref.move, result.move, sizeof m->from_ref.move);
+	memcpy(m->to_ref.move, result.move, sizeof m->to_ref.move);
+	return CLI_DONE;
+}
+
+static cli_exit prepare(courier *m)
+{
+	cau_wire_move_held ready = {0};
+	cli_exit code = carry_until(m, PART_ENDS);
+	if (code)
+		return code;
+	if (ask_to(m, CAU_METHOD_MOVE_READY, &ready))
+		return fail_to(m);
+	m->exact = ready.has_exact && ready.exact;
+	if (m->exact || cli_value(m->c, "inexact"))
+		return CLI_DONE;
+	cli_complain(m->c,
+	             "%s is another build, or its processor has another instruction set: it would "
+	             "go on, but not to the last bit; --inexact moves it all the same",
+	             m->label);
+	return CLI_REFUSED;
+}
+
+static cli_exit hand_over(courier *m)
+{
+	cau_wire_move_held held = {0};
+	cau_wire_move_decision decision = {0};
+	m->stood_s = cau_client_now();
+	if (ask_from(m, CAU_METHOD_MOVE_HOLD, &held))
+		return cli_fail(m->c);
+	cli_exit code = carry_until(m, ENDS);
+	if (code)
+		return code;
+	if (ask_from(m, CAU_METHOD_MOVE_COMMIT, &decision))
+		return cli_fail(m->c);
+	code = deliver(m, decision.proof);
+	if (!code && !m->c->json)
+		fprintf(m->c->complaints, "%s stood still for %.3f s at tick %lld; %.1f MB moved%s\n",
+		        m->from_ref.session, cau_client_now() - m->stood_s, (long long)held.tick,
+		        m->bytes * 1e-6, m->exact ? "" : ", not bit-exact");
+	return code;
+}
+
+static cli_exit move(courier *m)
+{
+	bool moved = false;
+	cli_exit code = settle_earlier(m, &moved);
+	if (!code && moved)
+		return tell_moved(m);
+	if (code || cli_value(m->c, "cancel"))
+		return code;
+	code = begin(m);
+	if (code)
+		return code;
+	code = prepare(m);
+	if (!code)
+		code = hand_over(m);
+	if (!code)
+		return tell_moved(m);
+	cli_exit settled = settle(m, &moved); // what failed may have been the answer alone
+	return !settled && moved ? tell_moved(m) : code;
+}
+
+static cli_exit run(cli *c)
+{
+	courier m = {.c = c, .label = c->arguments[1], .exact = true};
+	const char *session = c->arguments[0];
+	c->def.follow = false; // each of the two stays where it is
+	cli_exit code = check_label(&m, session);
+	if (!code)
+		code = name_target(&m, session);
+	if (!code)
+		code = cli_connect(c);
+	if (!code)
+		code = connect_target(&m);
+	if (!code)
+		code = move(&m);
+	if (m.to)
+		cau_client_close(m.to);
+	cau_client_destroy(m.to);
+	return code;
+}
+
+const cli_command cli_move = {
+	.name = "move",
+	.arguments = "SESSION LABEL",
+	.summary = "moves a session to the daemon LABEL; wants role admin on both",
+	.help = "Behind a proxy one address leads to both daemons; else --to-url says where LABEL is. "
+            "What is\n"
+			"there goes over while the session is served, then it stands still, dark, for as long "
+            "as the\n"
+			"rest takes, and is served there. Who asks for it by its old id is led there. Killed "
+            "anywhere,\n"
+			"the same command again ends what was begun; --cancel does only that: it stays where "
+            "it is,\n"
+			"unless it has moved already.\n",
+	.least = 2,
+	.most = 2,
+	.options = {{"to-url", "U", "where the daemon LABEL is, as clients are to reach it"},
+                {"to-token-file", "F", "token for it (default: the same)"},
+                {"name", "NAME", "its name there (default: as it is)"},
+                {"inexact", NULL, "also to another build or instruction set"},
+                {"cancel", NULL, "ends what an earlier move has begun, and moves nothing"},
+                {0}},
+	.run = run};

@@ -1,0 +1,204 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// A session that moves to another daemon: it stands still where it leaves, and waits to be accepted
+// where it comes to. In both it is the builder's, as while it is built, with no job under way; what
+// is asked of it waits.
+#include <stdlib.h>
+#include <string.h>
+
+#include "cautery/assert.h"
+#include "hosted_session/internal.h"
+
+#define STOPS_EXPECTED_S 0.01 // a commit, for the builder's order
+
+typedef struct cau_holding {
+	cau_job job; // first
+	cau_hosted *hosted;
+	cau_order *order; // to stand still, until it is answered
+	uint64_t hash;
+	cau_job *built; // of one that waits to be accepted: the job that built it
+} cau_holding;
+
+// ---- standing still -----------------------------------------------------------------------------
+
+static void finish(cau_holding *holding)
+{
+	cau_hosted *h = holding->hosted;
+	h->holding = NULL;
+	h->stage[0] = 0;
+	free(holding);
+	cau_building_over(h);
+	cau_hosted_release(h);
+}
+
+static void run_on(cau_job *job)
+{
+	cau_holding *holding = (cau_holding *)job;
+	cau_hosted *h = holding->hosted;
+	cau_decide(h, &(cau_logic_event){.kind = CAU_LOGIC_STAYED, .time_s = cau_monotonic_s()});
+	h->window_s = cau_monotonic_s();
+	h->window_tick = h->tick;
+	h->dirty = true;
+	finish(holding);
+}
+
+// All that it was is on the disk once the store has answered what it was given.
+static void run_stop(cau_job *job)
+{
+	cau_holding *holding = (cau_holding *)job;
+	cau_hosted *h = holding->hosted;
+	cau_error error = {0};
+	cau_outcome outcome = {0};
+	cau_order *order = holding->order;
+	cau_wire_move_held result = {.tick = (int64_t)h->tick, .hash = holding->hash};
+	cau_store_flush(h->around->store);
+	bool stored = h->lost_from == UINT64_MAX;
+	char *text =
+		stored ? cau_answer_text(order->reply.method, &result, &outcome.text_bytes, &error) : NULL;
+	holding->order = NULL;
+	holding->job.run = holding->job.drop = run_on;
+	if (!stored)
+		cau_fail(&error, CAU_IO, "", "the store has not taken all that happened: try again later");
+	outcome.text = text;
+	outcome.error = text ? NULL : &error;
+	cau_reply_answer(&order->reply, &outcome); // from here on the session may go on or away
+	free(order);
+	free(text);
+	if (error.status)
+		run_on(job);
+}
+
+static void drop_stop(cau_job *job)
+{
+	cau_holding *holding = (cau_holding *)job;
+	cau_error error = {0};
+	cau_fail(&error, CAU_BAD_STATE, "", "the daemon is ending");
+	cau_answer_fail(holding->order, &error, CAU_RPC_DRAINING);
+	run_on(job);
+}
+
+static cau_outcome_kind refuse(cau_order *order, cau_status status, const char *reason)
+{
+	cau_error error = {0};
+	cau_fail(&error, status, "", "%s", reason);
+	cau_answer_fail(order, &error, 0);
+	return CAU_NOT_DONE;
+}
+
+cau_outcome_kind cau_apply_hold(cau_hosted *h, cau_order *order, const cau_action *action)
+{
+	(void)action;
+	if (cau_decided_state(h) == CAU_SESSION_FAULTED)
+		return refuse(order, CAU_FAULTED, "a faulted session does not move: rewind or reset it");
+	cau_holding *holding = calloc(1, sizeof *holding);
+	if (!holding)
+		return refuse(order, CAU_NO_MEMORY, "no memory to let it stand still");
+	holding->job = (cau_job){.run = run_stop, .drop = drop_stop, .expected_s = STOPS_EXPECTED_S};
+	holding->hosted = cau_hosted_share(h);
+	holding->order = order;
+	cau_event_end_cut(h);
+	cau_record_state(h);
+	cau_record_checkpoint(h, NULL, NULL);
+	holding->hash = cau_session_hash(h->core);
+	h->holding = holding;
+	h->leaving = &holding->job;
+	snprintf(h->stage, sizeof h->stage, "moving");
+	cau_hosted_publish_summary(h);
+	return CAU_DONE;
+}
+
+void cau_hosted_go_on(cau_hosted *h)
+{
+	CAU_ASSERT(h->holding && !h->holding->order, "session %s does not stand still", h->id);
+	cau_builder_submit(h->around->builder, &h->holding->job);
+}
+
+static void run_away(cau_job *job)
+{
+	cau_holding *holding = (cau_holding *)job;
+	cau_hosted *h = holding->hosted;
+	cau_wire_session_changed changed = {.change = CAU_CHANGE_MOVED, .has_moved_to = true};
+	cau_hosted_summary(h, &changed.summary);
+	memcpy(changed.moved_to, h->moved.session, sizeof changed.moved_to);
+	changed.has_target = *h->moved.url;
+	snprintf(changed.target, sizeof changed.target, "%s", h->moved.url);
+	cau_answer_notify(h, (cau_audience){CAU_AUDIENCE_EVERYBODY, h->number},
+	                  CAU_METHOD_SESSION_CHANGED, &changed);
+	cau_log(CAU_LOG_NOTICE, h->id, "moved", "tick=%llu to=%s url=\"%s\"",
+	        (unsigned long long)h->tick, h->moved.session, h->moved.url);
+	cau_hosted_end(h);
+	finish(holding);
+}
+
+void cau_hosted_go_away(cau_hosted *h, const cau_moved_to *to)
+{
+	CAU_ASSERT(h->holding && !h->holding->order, "session %s does not stand still", h->id);
+	h->moved = *to;
+	h->holding->job.run = h->holding->job.drop = run_away;
+	cau_builder_submit(h->around->builder, &h->holding->job);
+}
+
+int32_t cau_hosted_hands(cau_hosted *h, cau_drive *drives, double *speed)
+{
+	pthread_mutex_lock(&h->deciding);
+	*speed = h->logic->speed;
+	pthread_mutex_unlock(&h->deciding);
+	return cau_decide_drives(h, drives);
+}
+
+// ---- waiting to be accepted ---------------------------------------------------------------------
+
+// Nobody waits for it any more, or the daemon ends: what is in the store stays.
+static void drop_incoming(cau_job *job)
+{
+	cau_holding *holding = (cau_holding *)job;
+	cau_job *built = holding->built;
+	holding->hosted->holding = NULL;
+	free(holding);
+	built->drop(built);
+}
+
+void cau_hold_incoming(cau_hosted *h, cau_job *job)
+{
+	cau_error error = {0};
+	cau_outcome outcome = {0};
+	cau_wire_move_held result = {.tick = (int64_t)h->replay.tick,
+	                             .hash = cau_session_hash(h->core),
+	                             .has_exact = true,
+	                             .exact = h->replay.exact};
+	const cau_reply reply = h->creator_reply;
+	cau_holding *holding = calloc(1, sizeof *holding);
+	char *text =
+		holding ? cau_answer_text(reply.method, &result, &outcome.text_bytes, &error) : NULL;
+	if (!text) {
+		free(holding);
+		job->drop(job);
+		return;
+	}
+	cau_replay_finish(&h->replay);
+	h->creator_reply = (cau_reply){0};
+	*holding = (cau_holding){
+		.job = {.run = drop_incoming, .drop = drop_incoming}, .hosted = h, .built = job};
+	h->holding = holding;
+	outcome.text = text;
+	cau_reply_answer(&reply, &outcome); // from here on it may come
+	free(text);
+}
+
+void cau_hosted_come(cau_hosted *h, int64_t branch, bool paused, const cau_reply *reply)
+{
+	cau_job *built = h->holding->built;
+	free(h->holding);
+	h->holding = NULL;
+	h->incoming = false;
+	h->came = true;
+	h->origin.branch = branch;
+	h->pause_at_start = paused;
+	h->creator_reply = *reply;
+	cau_building_again(h, built);
+}
+
+void cau_hosted_give_up(cau_hosted *h)
+{
+	CAU_ASSERT(h->holding && h->holding->built, "session %s waits for nothing", h->id);
+	cau_builder_submit(h->around->builder, &h->holding->job);
+}

@@ -1,0 +1,757 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Sessions that come from another daemon: their rows are written as they come, their core is built
+// beforehand, and they are served once the proof is seen that they are served nowhere else.
+#include <stdlib.h>
+#include <string.h>
+
+#include "cautery/name.h"
+#include "cautery/sha256.h"
+#include "hub/fault_point.h"
+#include "hub/internal.h"
+#include "session/handover.h"
+#include "store/rows.h"
+
+enum { ARRIVALS_MOST = 64 }; // that are not served yet
+
+// Who drove a tool, and may come back to it here.
+typedef struct hand {
+	char tool[CAU_NAME_BYTES];
+	cau_client client;
+} hand;
+
+struct cau_arrival {
+	struct cau_arrival *next;
+	cau_coming coming;
+	char id[CAU_NAME_BYTES], move[CAU_NAME_BYTES], source[CAU_NAME_BYTES], label[CAU_NAME_BYTES];
+	char lock[CAU_SHA256_TEXT_BYTES];
+	int64_t pieces;
+	bool writing;       // a piece, or what becomes of it, is on its way to the disk
+	bool forgotten;     // only its core is still to be cleared away
+	cau_hosted *hosted; // that is built, or waits; NULL: none
+	bool ready;         // it waits
+	cau_wire_move_held stands;
+	hand hands[CAU_MAX_TOOLS];
+	int32_t hand_count;
+	double speed;
+};
+typedef struct cau_arrival arrival;
+
+// ---- the list: with the lock --------------------------------------------------------------------
+
+static arrival *find(cau_hub *hub, const char *id)
+{
+	arrival *a = hub->arrivals;
+	while (a && (a->forgotten || strcmp(a->id, id) != 0))
+		a = a->next;
+	return a;
+}
+
+static arrival *find_own(cau_hub *hub, const cau_move_asked *asked)
+{
+	arrival *a = find(hub, asked->session);
+	return a && strcmp(a->move, asked->move) == 0 ? a : NULL;
+}
+
+static void take_out(cau_hub *hub, arrival *a)
+{
+	arrival **link = &hub->arrivals;
+	while (*link != a)
+		link = &(*link)->next;
+	*link = a->next;
+	free(a);
+}
+
+bool cau_arrivals_have(cau_hub *hub, const char *id)
+{
+	pthread_mutex_lock(&hub->moves_mutex);
+	const arrival *a = find(hub, id);
+	bool waits = a && !cau_coming_serves(&a->coming);
+	pthread_mutex_unlock(&hub->moves_mutex);
+	return waits;
+}
+
+static cau_status take_row(void *user, const cau_store_arrival *row)
+{
+	cau_hub *hub = user;
+	arrival *a = calloc(1, sizeof *a);
+	if (!a)
+		return CAU_NO_MEMORY;
+	snprintf(a->id, sizeof a->id, "%.48s", row->id);
+	snprintf(a->move, sizeof a->move, "%.48s", row->move);
+	snprintf(a->source, sizeof a->source, "%.48s", row->source);
+	snprintf(a->label, sizeof a->label, "%.48s", row->label);
+	snprintf(a->lock, sizeof a->lock, "%s", row->lock);
+	a->pieces = row->pieces;
+	a->speed = 1;
+	a->coming = cau_coming_after_restart(true, row->state != CAU_STORE_ARRIVING,
+	                                     row->state == CAU_STORE_ACCEPTED);
+	a->next = hub->arrivals;
+	hub->arrivals = a;
+	if (!cau_coming_serves(&a->coming))
+		cau_log(CAU_LOG_WARNING, a->id, "in_doubt",
+		        "move=%s from=%s whole=%d remedy=\"`cautery move --resume %s` asks the daemon "
+		        "that it came from\"",
+		        a->move, a->source, row->state == CAU_STORE_WHOLE, a->id);
+	return CAU_OK;
+}
+
+cau_status cau_arrivals_read(cau_hub *hub, cau_error *error)
+{
+	return cau_store_read_arrivals(hub->def.store, take_row, hub, error);
+}
+
+// ---- receive ------------------------------------------------------------------------------------
+
+// What of a piece is not the store's alone.
+typedef struct contents {
+	uint32_t index, flags;
+	bool has_header;
+	char move[CAU_NAME_BYTES], lock[CAU_SHA256_TEXT_BYTES], source[CAU_NAME_BYTES],
+		label[CAU_NAME_BYTES];
+	hand hands[CAU_MAX_TOOLS];
+	int32_t hand_count;
+	double speed; // 0: it does not say
+} contents;
+
+static void take_header(const cau_row *row, contents *found)
+{
+	found->has_header = true;
+	cau_rows_text(row, 0, found->move, sizeof found->move);
+	cau_rows_text(row, 1, found->lock, sizeof found->lock);
+	cau_rows_text(row, 2, found->source, sizeof found->source);
+	cau_rows_text(row, 3, found->label, sizeof found->label);
+}
+
+static void take_hand(const cau_row *row, contents *found)
+{
+	if (found->hand_count == CAU_MAX_TOOLS)
+		return;
+	hand *made = &found->hands[found->hand_count++];
+	cau_asker *asker = &made->client.asker;
+	cau_rows_text(row, 0, made->tool, sizeof made->tool);
+	cau_rows_text(row, 1, made->client.resume, sizeof made->client.resume);
+	cau_rows_text(row, 2, asker->client_id, sizeof asker->client_id);
+	cau_rows_text(row, 3, asker->name, sizeof asker->name);
+	// It waits, dark, for one who says hello with a role of his own.
+	asker->role = CAU_ROLE_OPERATE;
+	asker->deadline_s = (double)row->column[5].integer * 1e-6;
+}
+
+static cau_status read_contents(const cau_move_asked *asked, contents *found, cau_error *error)
+{
+	cau_rows_reader reader;
+	cau_row row;
+	cau_status status = cau_rows_open(&reader, asked->piece, asked->piece_bytes, error);
+	if (status)
+		return status;
+	found->index = reader.index;
+	found->flags = reader.flags;
+	while (!(status = cau_rows_next(&reader, &row, error))) {
+		if (row.table == CAU_ROWS_HEADER)
+			take_header(&row, found);
+		else if (row.table == CAU_ROWS_DRIVERS)
+			take_hand(&row, found);
+		else if (row.table == CAU_ROWS_PACE)
+			found->speed = (double)row.column[0].integer * 1e-6;
+	}
+	if (status != CAU_NOT_FOUND)
+		return status;
+	bool begins = found->has_header && strcmp(found->move, asked->move) == 0 &&
+	              strlen(found->lock) == CAU_SHA256_TEXT_BYTES - 1 &&
+	              cau_name_is_valid(found->source);
+	if (found->has_header != (found->index == 0) || (found->has_header && !begins))
+		return cau_fail(error, CAU_BAD_VALUE, "params.upload", "the piece is of another move");
+	return CAU_OK;
+}
+
+static cau_status check_id(const cau_hub *hub, const char *id, cau_error *error)
+{
+	size_t bytes = strlen(hub->def.config->label);
+	if (strncmp(id, hub->def.config->label, bytes) == 0 && id[bytes] == '-')
+		return CAU_OK;
+	return cau_fail(error, CAU_BAD_VALUE, "params.session",
+	                "this daemon's sessions begin with `%s-`", hub->def.config->label);
+}
+
+static cau_status check_room(cau_hub *hub, const char *id, cau_error *error)
+{
+	cau_hosted *other = cau_hub_find(hub, id);
+	cau_hosted_release(other);
+	if (other)
+		return cau_fail(error, CAU_ALREADY_EXISTS, "params.session", "`%s` exists", id);
+	if (cau_hub_count(hub) >= hub->def.config->max_sessions)
+		return cau_fail(error, CAU_LIMIT, "", "the daemon has %lld sessions (setting max_sessions)",
+		                (long long)hub->def.config->max_sessions);
+	return check_id(hub, id, error);
+}
+
+// With the lock. A session that came by this id before and is gone leaves its place.
+static arrival *enlist(cau_hub *hub, const cau_move_asked *asked, const contents *found,
+                       cau_error *error)
+{
+	int32_t waiting = 0;
+	arrival *old = find(hub, asked->session);
+	for (const arrival *a = hub->arrivals; a; a = a->next)
+		waiting += !cau_coming_serves(&a->coming);
+	if (waiting >= ARRIVALS_MOST) {
+		cau_fail(error, CAU_LIMIT, "", "%d sessions are on their way here", waiting);
+		return NULL;
+	}
+	arrival *a = calloc(1, sizeof *a);
+	if (!a) {
+		cau_fail(error, CAU_NO_MEMORY, "", "no memory for a move");
+		return NULL;
+	}
+	if (old)
+		take_out(hub, old);
+	memcpy(a->id, asked->session, sizeof a->id);
+	memcpy(a->move, asked->move, sizeof a->move);
+	memcpy(a->lock, found->lock, sizeof a->lock);
+	memcpy(a->source, found->source, sizeof a->source);
+	memcpy(a->label, found->label, sizeof a->label);
+	a->speed = 1;
+	a->next = hub->arrivals;
+	hub->arrivals = a;
+	return a;
+}
+
+// The arrival that takes this piece next, marked as writing; NULL: *error says why not.
+static arrival *begin_piece(cau_hub *hub, const cau_move_asked *asked, const contents *found,
+                            cau_error *error)
+{
+	pthread_mutex_lock(&hub->moves_mutex);
+	arrival *a = find(hub, asked->session);
+	bool waits = a && !cau_coming_serves(&a->coming);
+	if (!waits && found->index == 0)
+		a = enlist(hub, asked, found, error);
+	else if (!waits || strcmp(a->move, asked->move) != 0 || a->writing ||
+	         a->pieces != found->index || a->coming.state == CAU_COMING_WHOLE) {
+		cau_fail(error, CAU_BAD_STATE, "params.upload",
+		         waits && strcmp(a->move, asked->move) != 0
+		             ? "another move brings this session: `cautery move --resume` ends that"
+		             : "this piece is not the next one");
+		a = NULL;
+	}
+	if (a)
+		a->writing = true;
+	pthread_mutex_unlock(&hub->moves_mutex);
+	return a;
+}
+
+typedef struct at_disk {
+	cau_hub *hub;
+	arrival *arrival;
+	cau_reply reply;
+	contents found;
+} at_disk;
+
+static void note_contents(arrival *a, const contents *found)
+{
+	if (found->speed > 0)
+		a->speed = found->speed;
+	for (int32_t i = 0; i < found->hand_count && a->hand_count < CAU_MAX_TOOLS; i++)
+		a->hands[a->hand_count++] = found->hands[i];
+}
+
+// On the store's thread.
+static void piece_written(void *user, cau_status status, const char *reason)
+{
+	at_disk *done = user;
+	arrival *a = done->arrival;
+	cau_wire_move_received result = {0};
+	bool last = done->found.flags & CAU_ROWS_ENDS;
+	cau_fault_point(last ? "move_last_piece" : "move_piece");
+	pthread_mutex_lock(&done->hub->moves_mutex);
+	a->writing = false;
+	if (!status) {
+		cau_coming_take(&a->coming, last ? CAU_COMING_LAST : CAU_COMING_PIECE, true);
+		note_contents(a, &done->found);
+		result.pieces = ++a->pieces;
+	} else if (a->pieces == 0) {
+		take_out(done->hub, a);
+	}
+	pthread_mutex_unlock(&done->hub->moves_mutex);
+	if (status)
+		cau_move_fail(&done->reply, status, cau_hosted_commit_code(status), "", reason);
+	else
+		cau_move_answer(&done->reply, &result);
+	free(done);
+}
+
+static cau_store_arrival row_of(const arrival *a, int64_t pieces, cau_store_arrival_state state)
+{
+	return (cau_store_arrival){.id = a->id,
+	                           .move = a->move,
+	                           .lock = a->lock,
+	                           .source = a->source,
+	                           .label = a->label,
+	                           .pieces = pieces,
+	                           .state = state};
+}
+
+static cau_status write_piece(cau_move_job *job, at_disk *travelling, cau_error *error)
+{
+	bool last = travelling->found.flags & CAU_ROWS_ENDS;
+	cau_store_arrival row = row_of(travelling->arrival, travelling->found.index + 1,
+	                               last ? CAU_STORE_WHOLE : CAU_STORE_ARRIVING);
+	cau_store_batch *batch = cau_store_batch_create();
+	if (!batch)
+		return cau_fail(error, CAU_NO_MEMORY, "", "no memory for a piece");
+	cau_status status = cau_store_put_arrival(batch, &row, error);
+	if (!status)
+		status = cau_store_lend_rows(batch, row.id, job->asked.piece, job->asked.piece_bytes, free,
+		                             error);
+	if (!status)
+		job->asked.piece = NULL; // the batch's
+	if (!status)
+		status = cau_store_submit(job->hub->def.store, batch, piece_written, travelling, error);
+	if (status)
+		cau_store_batch_destroy(batch);
+	return status;
+}
+
+void cau_arrival_receive(cau_move_job *job)
+{
+	cau_error error = {0};
+	cau_status status = CAU_NO_MEMORY;
+	at_disk *travelling = calloc(1, sizeof *travelling);
+	if (travelling)
+		status = read_contents(&job->asked, &travelling->found, &error);
+	if (!status && travelling->found.index == 0)
+		status = check_room(job->hub, job->asked.session, &error);
+	arrival *a = status ? NULL : begin_piece(job->hub, &job->asked, &travelling->found, &error);
+	if (a) {
+		travelling->hub = job->hub;
+		travelling->arrival = a;
+		travelling->reply = job->reply;
+		status = write_piece(job, travelling, &error);
+		if (!status)
+			return;
+		piece_written(travelling, status, error.reason);
+		return;
+	}
+	cau_reply_fail(&job->reply, &error, 0);
+	free(travelling);
+}
+
+// ---- ready --------------------------------------------------------------------------------------
+
+typedef struct making {
+	cau_hub *hub;
+	arrival *arrival; // stays in the list while it has a core
+	cau_reply reply;
+} making;
+
+static void built(void *user, const cau_reply *reply, const cau_outcome *outcome)
+{
+	making *made = user;
+	cau_rpc_message answer;
+	cau_rpc_fault fault;
+	(void)reply;
+	pthread_mutex_lock(&made->hub->moves_mutex);
+	if (!outcome->error &&
+	    !cau_rpc_read(outcome->text, outcome->text_bytes, outcome->text_bytes, &answer, &fault)) {
+		made->arrival->ready =
+			!cau_rpc_result(&answer, CAU_METHOD_MOVE_READY, &made->arrival->stands, NULL);
+		cau_rpc_finish(&answer);
+	}
+	pthread_mutex_unlock(&made->hub->moves_mutex);
+	cau_reply_answer(&made->reply, outcome);
+	free(made);
+}
+
+// With the lock.
+static cau_status build(cau_move_job *job, arrival *a, cau_creation *creation, cau_error *error)
+{
+	cau_hub *hub = job->hub;
+	making *made = malloc(sizeof *made);
+	if (!made)
+		return cau_fail(error, CAU_NO_MEMORY, "", "no memory for a session");
+	*made = (making){hub, a, job->reply};
+	cau_hosted_def def = {
+		.id = a->id,
+		.number = ++hub->last_session,
+		.scene = creation->scene,
+		.meshes = creation->meshes,
+		.mesh_bytes = creation->mesh_bytes,
+		.paused = creation->paused,
+		.incoming = true,
+		.origin = creation->origin,
+		.reply = {.answer = built, .user = made, .method = CAU_METHOD_MOVE_READY}};
+	cau_status status = cau_hosted_create(&a->hosted, &hub->around, &def, error);
+	if (status) {
+		free(made);
+		return status;
+	}
+	creation->scene = NULL;
+	creation->meshes = NULL;
+	return CAU_OK;
+}
+
+// The arrival that is to be built, marked as writing; NULL: *status says why not, or it was built
+// before, and that is answered.
+static arrival *begin_build(cau_move_job *job, cau_status *status, cau_error *error)
+{
+	pthread_mutex_lock(&job->hub->moves_mutex);
+	arrival *a = find_own(job->hub, &job->asked);
+	cau_coming_state state = a ? a->coming.state : CAU_COMING_NOT;
+	bool waits = state == CAU_COMING_INCOMING || state == CAU_COMING_WHOLE;
+	if (!waits || a->writing)
+		*status = cau_fail(error, CAU_BAD_STATE, "params.move", "there is nothing to build");
+	else if (a->hosted && !a->ready)
+		*status = cau_fail(error, CAU_BAD_STATE, "", "it is being built");
+	else if (a->hosted)
+		cau_move_answer(&job->reply, &a->stands);
+	bool begins = waits && !*status && !a->hosted;
+	if (begins)
+		a->writing = true;
+	pthread_mutex_unlock(&job->hub->moves_mutex);
+	return begins ? a : NULL;
+}
+
+void cau_arrival_ready(cau_move_job *job)
+{
+	cau_error error = {0};
+	cau_status status = CAU_OK;
+	cau_creation *creation = NULL;
+	arrival *a = begin_build(job, &status, &error);
+	if (a)
+		status = cau_hub_read_session(job->hub, a->id, &creation, &error);
+	if (a) {
+		pthread_mutex_lock(&job->hub->moves_mutex);
+		if (!status)
+			status = build(job, a, creation, &error);
+		a->writing = false;
+		pthread_mutex_unlock(&job->hub->moves_mutex);
+	}
+	if (creation)
+		cau_creation_free(creation);
+	if (status)
+		cau_reply_fail(&job->reply, &error, 0);
+}
+
+// ---- accept -------------------------------------------------------------------------------------
+
+typedef struct accepting {
+	cau_job job; // first; on the builder, once it is on the disk
+	cau_hub *hub;
+	arrival *arrival;
+	cau_reply reply;
+} accepting;
+
+static void submit_plain(cau_hosted *hosted, cau_order *order)
+{
+	cau_error error = {0};
+	if (order && cau_hosted_submit(hosted, order, &error)) {
+		cau_log(CAU_LOG_WARNING, cau_hosted_id(hosted), "hand_lost", "reason=\"%s\"", error.reason);
+		free(order);
+	}
+}
+
+// Whoever drove a tool has it here, dark, and may come back to it for as long as after a lost
+// connection.
+static void give_hands(cau_hub *hub, const arrival *a, cau_hosted *hosted)
+{
+	for (int32_t i = 0; i < a->hand_count; i++) {
+		cau_order *order = calloc(1, sizeof *order);
+		uint32_t number = order ? cau_hub_expect(hub, &a->hands[i].client) : 0;
+		if (!number) {
+			free(order);
+			continue;
+		}
+		order->kind = CAU_ORDER_TAKE_OVER;
+		order->reply.method = CAU_METHOD_TOOL_TAKE_OVER;
+		order->asker = a->hands[i].client.asker;
+		order->asker.client = number;
+		memcpy(order->as.tool.tool, a->hands[i].tool, sizeof order->as.tool.tool);
+		submit_plain(hosted, order);
+	}
+	cau_order *pace = a->speed != 1 ? calloc(1, sizeof *pace) : NULL;
+	if (pace) {
+		pace->kind = CAU_ORDER_SPEED;
+		pace->reply.method = CAU_METHOD_SESSION_SPEED;
+		pace->as.speed = a->speed;
+		submit_plain(hosted, pace);
+	}
+}
+
+// The core that was built beforehand, among the sessions; NULL: there is none, or no place.
+static cau_hosted *take_built(cau_hub *hub, arrival *a)
+{
+	pthread_mutex_lock(&hub->mutex);
+	pthread_mutex_lock(&hub->moves_mutex);
+	bool takes = a->hosted && a->ready && !cau_hosted_ended(a->hosted) &&
+	             (size_t)hub->session_count < SLOTS(hub->def.config);
+	cau_hosted *hosted = takes ? a->hosted : NULL;
+	if (takes) {
+		hub->sessions[hub->session_count++] = hosted;
+		cau_hosted_share(hosted);
+		a->hosted = NULL;
+	}
+	pthread_mutex_unlock(&hub->moves_mutex);
+	pthread_mutex_unlock(&hub->mutex);
+	return hosted;
+}
+
+static cau_status serve(accepting *what, cau_error *error)
+{
+	cau_hub *hub = what->hub;
+	arrival *a = what->arrival;
+	cau_creation *row = NULL;
+	cau_status status = cau_hub_read_session(hub, a->id, &row, error);
+	if (status)
+		return status;
+	cau_hosted *hosted = take_built(hub, a);
+	if (hosted) {
+		give_hands(hub, a, hosted);
+		cau_hosted_come(hosted, row->origin.branch, row->paused, &what->reply);
+	} else {
+		status = cau_hub_resume_one(hub, a->id, &what->reply, error);
+		hosted = status ? NULL : cau_hub_find(hub, a->id);
+		if (hosted)
+			give_hands(hub, a, hosted);
+	}
+	cau_hosted_release(hosted);
+	cau_creation_free(row);
+	return status;
+}
+
+static void run(cau_job *job)
+{
+	accepting *what = (accepting *)job;
+	cau_error error = {0};
+	cau_status status = serve(what, &error);
+	if (status) {
+		cau_hosted_tell_not_resumed(what->arrival->id, status, &error);
+		cau_reply_fail(&what->reply, &error, 0);
+	}
+	free(what);
+}
+
+// It is in the store, and comes up with the others at the next start.
+static void drop(cau_job *job)
+{
+	accepting *what = (accepting *)job;
+	cau_move_fail(&what->reply, CAU_BAD_STATE, CAU_RPC_DRAINING, "", "the server is shutting down");
+	free(what);
+}
+
+// On the store's thread.
+static void accepted(void *user, cau_status status, const char *reason)
+{
+	accepting *what = user;
+	cau_hub *hub = what->hub;
+	cau_fault_point("move_accepted");
+	pthread_mutex_lock(&hub->moves_mutex);
+	cau_coming_take(&what->arrival->coming, status ? CAU_COMING_REFUSED : CAU_COMING_WRITTEN, true);
+	if (!status)
+		cau_tombstone_drop(hub, what->arrival->id);
+	pthread_mutex_unlock(&hub->moves_mutex);
+	if (!status) {
+		cau_log(CAU_LOG_NOTICE, what->arrival->id, "came", "move=%s from=%s", what->arrival->move,
+		        what->arrival->source);
+		cau_builder_submit(hub->def.builder, &what->job);
+		return;
+	}
+	cau_move_fail(&what->reply, status, cau_hosted_commit_code(status), "", reason);
+	free(what);
+}
+
+// With the lock.
+static cau_status write_accepted(cau_move_job *job, arrival *a, cau_error *error)
+{
+	cau_store_arrival row = row_of(a, a->pieces, CAU_STORE_ACCEPTED);
+	cau_store_batch *batch = cau_store_batch_create();
+	accepting *what = calloc(1, sizeof *what);
+	cau_status status = batch && what
+	                        ? cau_store_put_arrival(batch, &row, error)
+	                        : cau_fail(error, CAU_NO_MEMORY, "", "no memory to accept it");
+	if (!status) {
+		*what = (accepting){
+			.job = {.run = run, .drop = drop}, .hub = job->hub, .arrival = a, .reply = job->reply};
+		status = cau_store_submit(job->hub->def.store, batch, accepted, what, error);
+	}
+	if (!status)
+		return CAU_OK;
+	cau_store_batch_destroy(batch);
+	free(what);
+	cau_coming_take(&a->coming, CAU_COMING_REFUSED, true);
+	return status;
+}
+
+static bool opens(const arrival *a, const char *proof)
+{
+	char hash[CAU_SHA256_TEXT_BYTES] = "";
+	return cau_sha256(proof, strlen(proof), hash) && strcmp(hash, a->lock) == 0;
+}
+
+// Accepted before: as it is now.
+static void describe(cau_move_job *job)
+{
+	cau_error error = {0};
+	cau_hosted *hosted = cau_hub_find(job->hub, job->asked.session);
+	cau_order *order = hosted ? calloc(1, sizeof *order) : NULL;
+	cau_status status = CAU_NOT_FOUND;
+	if (order) {
+		order->kind = CAU_ORDER_DESCRIBE;
+		order->reply = job->reply;
+		status = cau_hosted_submit(hosted, order, &error);
+	}
+	if (status) {
+		free(order);
+		cau_move_fail(&job->reply, CAU_NOT_FOUND, CAU_RPC_NOT_HERE, "params.session",
+		              "it was accepted before, and is not here any more");
+	}
+	cau_hosted_release(hosted);
+}
+
+void cau_arrival_accept(cau_move_job *job)
+{
+	cau_error error = {0};
+	cau_status status = CAU_OK;
+	cau_coming_act act = CAU_COMING_REFUSE;
+	pthread_mutex_lock(&job->hub->moves_mutex);
+	arrival *a = find_own(job->hub, &job->asked);
+	if (!a)
+		status = cau_fail(&error, CAU_BAD_STATE, "params.move", "no such move is known here");
+	else if (!opens(a, job->asked.proof))
+		status = cau_fail(&error, CAU_BAD_VALUE, "params.proof", "it is not that of this move");
+	else if (a->writing || (a->hosted && !a->ready && !cau_hosted_ended(a->hosted)))
+		status = cau_fail(&error, CAU_BAD_STATE, "", "it is being built: ask again");
+	else
+		act = cau_coming_take(&a->coming, CAU_COMING_PROOF, true);
+	if (!status && act == CAU_COMING_REFUSE)
+		status =
+			cau_fail(&error, CAU_BAD_STATE, "", "not all of it is here, or it is accepted now");
+	if (!status && act == CAU_COMING_DO_WRITE)
+		status = write_accepted(job, a, &error);
+	pthread_mutex_unlock(&job->hub->moves_mutex);
+	if (status)
+		cau_reply_fail(&job->reply, &error, cau_hosted_commit_code(status));
+	else if (act == CAU_COMING_SAY_HERE)
+		describe(job);
+}
+
+// ---- forget -------------------------------------------------------------------------------------
+
+static void forgotten(void *user, cau_status status, const char *reason)
+{
+	at_disk *done = user;
+	arrival *a = done->arrival;
+	pthread_mutex_lock(&done->hub->moves_mutex);
+	a->writing = false;
+	if (status)
+		a->coming = cau_coming_after_restart(true, done->found.flags & CAU_ROWS_ENDS, false);
+	else
+		a->forgotten = true;
+	if (!status && a->hosted && a->ready)
+		cau_hosted_give_up(a->hosted);
+	pthread_mutex_unlock(&done->hub->moves_mutex);
+	if (status)
+		cau_move_fail(&done->reply, status, cau_hosted_commit_code(status), "", reason);
+	else
+		cau_move_answer(&done->reply, &(cau_wire_nothing){0});
+	free(done);
+}
+
+// With the lock.
+static cau_status write_forgotten(cau_move_job *job, arrival *a, bool whole, cau_error *error)
+{
+	at_disk *travelling = calloc(1, sizeof *travelling);
+	cau_store_batch *batch = cau_store_batch_create();
+	cau_status status = batch && travelling
+	                        ? cau_store_forget_arrival(batch, a->id, error)
+	                        : cau_fail(error, CAU_NO_MEMORY, "", "no memory to forget it");
+	if (!status) {
+		*travelling = (at_disk){.hub = job->hub, .arrival = a, .reply = job->reply};
+		travelling->found.flags = whole ? CAU_ROWS_ENDS : 0;
+		status = cau_store_submit(job->hub->def.store, batch, forgotten, travelling, error);
+	}
+	if (!status) {
+		a->writing = true;
+		return CAU_OK;
+	}
+	cau_store_batch_destroy(batch);
+	free(travelling);
+	a->coming = cau_coming_after_restart(true, whole, false);
+	return status;
+}
+
+void cau_arrival_forget(cau_move_job *job)
+{
+	cau_error error = {0};
+	cau_status status = CAU_OK;
+	pthread_mutex_lock(&job->hub->moves_mutex);
+	arrival *a = find_own(job->hub, &job->asked);
+	bool whole = a && a->coming.state == CAU_COMING_WHOLE;
+	bool busy = a && (a->writing || (a->hosted && !a->ready && !cau_hosted_ended(a->hosted)));
+	if (busy)
+		status = cau_fail(&error, CAU_BAD_STATE, "", "it is being built: ask again");
+	else if (!a || cau_coming_take(&a->coming, CAU_COMING_FORGET, true) != CAU_COMING_DO_FORGET)
+		status = cau_fail(&error, CAU_BAD_STATE, "params.move",
+		                  "no such move is known here, or the session is this daemon's");
+	else
+		status = write_forgotten(job, a, whole, &error);
+	pthread_mutex_unlock(&job->hub->moves_mutex);
+	if (status)
+		cau_reply_fail(&job->reply, &error, cau_hosted_commit_code(status));
+}
+
+// ---- all of them --------------------------------------------------------------------------------
+
+void cau_arrivals_list(cau_hub *hub, cau_wire_list *list)
+{
+	cau_wire_move_entry *entries = list->items;
+	for (const arrival *a = hub->arrivals; a && list->count < list->capacity; a = a->next) {
+		if (a->forgotten || cau_coming_serves(&a->coming))
+			continue;
+		cau_wire_move_entry *entry = &entries[list->count++];
+		cau_coming_state state = a->coming.state;
+		*entry = (cau_wire_move_entry){0};
+		memcpy(entry->session, a->id, sizeof entry->session);
+		memcpy(entry->move, a->move, sizeof entry->move);
+		memcpy(entry->other, a->source, sizeof entry->other);
+		snprintf(entry->state, sizeof entry->state, "%s",
+		         state == CAU_COMING_WHOLE       ? "doubt"
+		         : state == CAU_COMING_ACCEPTING ? "accepting"
+		                                         : "incoming");
+	}
+}
+
+// The next core that has ended, whose place is then free; shared.
+static cau_hosted *take_ended(cau_hub *hub, bool all)
+{
+	cau_hosted *ended = NULL;
+	pthread_mutex_lock(&hub->moves_mutex);
+	for (arrival *a = hub->arrivals, *next; a && !ended; a = next) {
+		next = a->next;
+		if (a->hosted && all && a->ready && !cau_hosted_ended(a->hosted))
+			cau_hosted_give_up(a->hosted); // the builder has stopped: it is done at once
+		if (a->hosted && cau_hosted_ended(a->hosted)) {
+			ended = a->hosted;
+			a->hosted = NULL;
+			a->ready = false;
+		}
+		if (!a->hosted && a->forgotten)
+			take_out(hub, a);
+	}
+	pthread_mutex_unlock(&hub->moves_mutex);
+	return ended;
+}
+
+void cau_arrivals_reap(cau_hub *hub, bool all)
+{
+	for (cau_hosted *ended; (ended = take_ended(hub, all));) {
+		cau_hosted_stop(ended);
+		cau_hosted_release(ended);
+	}
+}
+
+void cau_arrivals_free(cau_hub *hub)
+{
+	for (arrival *a = hub->arrivals, *next; a; a = next) {
+		next = a->next;
+		free(a);
+	}
+	hub->arrivals = NULL;
+}

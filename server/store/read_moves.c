@@ -1,0 +1,55 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Reading what has moved away, and what has come or is coming.
+#include "fault.h"
+#include "read.h"
+
+cau_status cau_store_read_moved(cau_store *store, cau_store_visit_moved visit, void *user,
+                                cau_error *error)
+{
+	sqlite3_stmt *statement = NULL;
+	cau_status visited = CAU_OK;
+	pthread_mutex_lock(&store->reading_mutex);
+	cau_status status = cau_store_prepare(
+		store, "SELECT id, move, target, label, url, proof, time_ms FROM moved ORDER BY id",
+		&statement, error);
+	while (!status && !visited && !(status = cau_store_next_row(store, statement, error))) {
+		cau_store_moved moved = {.id = cau_store_column_text(statement, 0),
+		                         .move = cau_store_column_text(statement, 1),
+		                         .target = cau_store_column_text(statement, 2),
+		                         .label = cau_store_column_text(statement, 3),
+		                         .url = cau_store_column_text(statement, 4),
+		                         .proof = cau_store_column_text(statement, 5),
+		                         .time_ms = sqlite3_column_int64(statement, 6)};
+		visited = visit(user, &moved);
+	}
+	sqlite3_finalize(statement);
+	pthread_mutex_unlock(&store->reading_mutex);
+	return visited ? visited : cau_store_end_is_fine(status);
+}
+
+cau_status cau_store_read_arrivals(cau_store *store, cau_store_visit_arrival visit, void *user,
+                                   cau_error *error)
+{
+	sqlite3_stmt *statement = NULL;
+	cau_status visited = CAU_OK;
+	pthread_mutex_lock(&store->reading_mutex);
+	cau_status status = cau_store_prepare(
+		store,
+		"SELECT id, move, lock, source, label, pieces, state, time_ms FROM arrivals ORDER BY id",
+		&statement, error);
+	while (!status && !visited && !(status = cau_store_next_row(store, statement, error))) {
+		cau_store_arrival arrival = {.id = cau_store_column_text(statement, 0),
+		                             .move = cau_store_column_text(statement, 1),
+		                             .lock = cau_store_column_text(statement, 2),
+		                             .source = cau_store_column_text(statement, 3),
+		                             .label = cau_store_column_text(statement, 4),
+		                             .pieces = sqlite3_column_int64(statement, 5),
+		                             .state =
+		                                 (cau_store_arrival_state)sqlite3_column_int(statement, 6),
+		                             .time_ms = sqlite3_column_int64(statement, 7)};
+		visited = visit(user, &arrival);
+	}
+	sqlite3_finalize(statement);
+	pthread_mutex_unlock(&store->reading_mutex);
+	return visited ? visited : cau_store_end_is_fine(status);
+}

@@ -1,0 +1,229 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// A session moves between two daemons with all that belongs to it, and whoever is killed when: at most
+// one serves it, and one in the end.
+import assert from 'node:assert/strict';
+import { execFile, spawn } from 'node:child_process';
+import { test } from 'node:test';
+import { Courier } from './wire/courier.mjs';
+import { Daemon } from './wire/daemon.mjs';
+import { AT_REST, cutMiddle, picture, smallSession } from './wire/scene.mjs';
+
+const settings = (label) => ({ label });
+const daemons = async () => Promise.all(['d1', 'd2'].map((label) => Daemon.start({ settings: settings(label) })));
+const again = (daemon, label) => Daemon.start({ folder: daemon.folder, settings: settings(label) });
+const rejection = (promise) => promise.then(() => null, (error) => error);
+const serves = async (client, session) =>
+	(await client.call('session.list')).sessions.some((s) => s.session === session && s.state !== 'starting');
+
+async function end(...all) {
+	for (const daemon of all)
+		await daemon.end();
+}
+
+// The command line, while this process goes on answering.
+const run = (words) => new Promise((resolve) => execFile(process.env.CAUTERY, words, (error, stdout, stderr) =>
+	resolve({ status: error ? error.code : 0, stdout, stderr })));
+
+// The state's hash, by a snapshot that nobody steps past.
+const hashOf = async (client, session, name) => (await client.call('session.snapshot', { session, name })).hash;
+
+test('all of a session moves: its state to the bit, history, answers, drivers; its old id leads there', async () => {
+	const [d1, d2] = await daemons();
+	const one = await d1.connect(), two = await d2.connect();
+	const driver = await d1.connect({ hello: { client_id: 'surgeon' } });
+	const session = await smallSession(one, 'knee', { paused: true });
+	const twin = await smallSession(one, 'twin', { paused: true }); // is not moved
+	for (const id of [session, twin])
+		await cutMiddle(driver, id, 60);
+	await one.call('session.snapshot', { session, name: 'first' });
+	await one.call('session.rewind', { session, tick: 40 });
+	await one.call('session.rewind', { session: twin, tick: 40 });
+	const stepped = await driver.call('session.step', { session, ticks: 7, client_sequence: 91 });
+	await driver.call('session.step', { session: twin, ticks: 7 });
+	const before = await one.call('session.timeline', { session });
+	const stream = await one.join(session);
+	await one.call('session.speed', { session, speed: 0.5 });
+
+	const courier = new Courier(one, two, session, 'd2-knee');
+	await courier.walk('part');
+	await courier.ready();
+	assert.equal(courier.stands.exact, true);
+	// What comes about meanwhile goes with the rest.
+	const late = await driver.call('tool.energize', { session, tool: 'hook', energized: false, client_sequence: 92 });
+	await courier.hold();
+	const waits = rejection(driver.call('session.step', { session, ticks: 5, client_sequence: 93 }));
+	await courier.rest();
+	await courier.commit();
+	await courier.accept();
+
+	// Whoever waited, and whoever asks, is told; so is who watched.
+	const told = await waits;
+	assert.deepEqual([told.code, told.data.status, told.data.moved_to], [-32051, 'moved', 'd2-knee']);
+	const asked = await rejection(one.call('session.describe', { session }));
+	assert.deepEqual([asked.code, asked.data.moved_to, asked.data.path], [-32051, 'd2-knee', 'params.session']);
+	await one.until(() => one.notice('session.changed', (p) => p.change === 'moved' && p.moved_to === 'd2-knee'), 'news');
+	assert.equal(await serves(one, session), false);
+	assert.equal((await rejection(smallSession(one, 'knee'))).data.status, 'already_exists');
+	// What was answered before is answered again, here and there, and does nothing.
+	assert.equal((await driver.call('session.step', { session, ticks: 7, client_sequence: 91 })).tick, stepped.tick);
+
+	const here = await d2.connect({ hello: { client_id: 'surgeon', resume: driver.hello.resume } });
+	const there = 'd2-knee';
+	const described = await here.call('session.describe', { session: there });
+	assert.equal(described.summary.state, 'paused');
+	assert.equal(described.summary.speed, 0.5);
+	assert.equal(described.summary.tick, stepped.tick);
+	assert.deepEqual(described.drivers.map((d) => [d.tool, d.client, d.energized]), [['hook', here.hello.client, false]]);
+	for (const [sequence, tick] of [[91, stepped.tick], [92, late.tick]])
+		assert.equal((await here.call(sequence === 91 ? 'session.step' : 'tool.energize', {
+			session: there, client_sequence: sequence, ...(sequence === 91 ? { ticks: 7 } : { tool: 'hook', energized: false }),
+		})).tick, tick);
+	assert.equal((await here.call('session.describe', { session: there })).summary.tick, stepped.tick);
+	const after = await here.call('session.timeline', { session: there });
+	assert.deepEqual(after.events.slice(0, before.events.length), before.events);
+	const now = await here.join(there);
+	assert.deepEqual(picture(now), picture(stream));
+
+	// It goes on as one does that was never moved, and back to what was before.
+	await here.call('session.step', { session: there, ticks: 30 });
+	await driver.call('tool.energize', { session: twin, tool: 'hook', energized: false });
+	await driver.call('session.step', { session: twin, ticks: 30 });
+	assert.equal(await hashOf(here, there, 'went-on'), await hashOf(driver, twin, 'went-on'));
+	const { snapshots } = await here.call('session.snapshots', { session: there });
+	assert.ok(snapshots.some(({ name }) => name === 'first'));
+	const restored = await here.call('session.restore', { session: there, name: 'first' });
+	assert.equal(restored.exact, true);
+	assert.equal((await here.call('session.reset', { session: there })).tick, 0);
+	await end(d1, d2);
+});
+
+// Of a session whose states differ by what was acknowledged: the tick tells.
+async function startMove(d1, d2) {
+	const one = await d1.connect(), two = await d2.connect();
+	const session = await smallSession(one, 'knee', { paused: true, cells: [8, 6] });
+	await one.call('session.step', { session, ticks: 3 });
+	return { one, two, session };
+}
+
+async function settled(d1, d2) {
+	const one = await d1.connect(), two = await d2.connect();
+	await Courier.settle(one, two);
+	const at = [await serves(one, 'd1-knee'), await serves(two, 'd2-knee')];
+	assert.equal(at[0] !== at[1], true, `${at} serve it`);
+	const [client, session] = at[0] ? [one, 'd1-knee'] : [two, 'd2-knee'];
+	assert.equal((await client.call('session.step', { session, ticks: 1 })).tick, 4);
+	assert.deepEqual((await two.call('move.list')).moves.filter((m) => m.state !== 'gone'), []);
+	return at[1];
+}
+
+for (const victim of ['source', 'target', 'courier', 'both'])
+	for (const step of Courier.STEPS)
+		test(`${victim} killed after ${step}: one serves it in the end, and never two`, async () => {
+			let [d1, d2] = await daemons();
+			const { one, two, session } = await startMove(d1, d2);
+			await new Courier(one, two, session, 'd2-knee').walk(step);
+			if (victim === 'courier')
+				for (const client of [one, two])
+					client.terminate();
+			if (victim === 'source' || victim === 'both') {
+				await d1.kill();
+				d1 = await again(d1, 'd1');
+			}
+			if (victim === 'target' || victim === 'both') {
+				await d2.kill();
+				d2 = await again(d2, 'd2');
+			}
+			// Before anybody asks: the target serves only what it has seen the proof of.
+			const early = await d2.connect();
+			assert.equal(await serves(early, 'd2-knee'), step === 'accept');
+			const moved = await settled(d1, d2);
+			assert.equal(moved, step === 'commit' || step === 'accept');
+			await end(d1, d2);
+		});
+
+// The process kills itself between what is on the disk and what is said of it.
+for (const [point, moved] of [['move_stopped', false], ['move_decided', true], ['move_piece', false], ['move_last_piece', false], ['move_accepted', true]])
+	test(`killed at ${point}: one serves it in the end`, async () => {
+		const atTarget = /piece|accepted/.test(point);
+		const dying = { program: process.env.CAUTERYD_DYING, environment: { CAUTERYD_DIES_AT: point } };
+		let d1 = await Daemon.start({ settings: settings('d1'), ...(atTarget ? {} : dying) });
+		let d2 = await Daemon.start({ settings: settings('d2'), ...(atTarget ? dying : {}) });
+		const { one, two, session } = await startMove(d1, d2);
+		const failed = await rejection(new Courier(one, two, session, 'd2-knee').walk());
+		assert.match(failed.message, /closed/);
+		const dead = atTarget ? d2 : d1;
+		assert.equal((await dead.exited).signal, 'SIGKILL');
+		if (atTarget)
+			d2 = await again(d2, 'd2');
+		else
+			d1 = await again(d1, 'd1');
+		assert.equal(await settled(d1, d2), moved);
+		await end(d1, d2);
+	});
+
+test('a session goes there and back, and is led to where it is', async () => {
+	const [d1, d2] = await daemons();
+	const { one, two, session } = await startMove(d1, d2);
+	await new Courier(one, two, session, 'd2-knee').walk();
+	await new Courier(two, one, 'd2-knee', session).walk();
+	assert.equal((await one.call('session.step', { session, ticks: 1 })).tick, 4);
+	const asked = await rejection(two.call('session.describe', { session: 'd2-knee' }));
+	assert.equal(asked.data.moved_to, session);
+	await end(d1, d2);
+});
+
+test('what does not fit is refused, and nothing is served before its time', async () => {
+	const [d1, d2] = await daemons();
+	const { one, two, session } = await startMove(d1, d2);
+	const courier = new Courier(one, two, session, 'd2-knee');
+	assert.equal((await rejection(new Courier(one, two, session, 'd1-knee').begin())).data.path, 'params.target');
+	await courier.walk('ready');
+	assert.equal((await rejection(new Courier(one, two, session, 'd2-knee').begin())).data.status, 'bad_state');
+	assert.equal((await rejection(courier.commit())).data.status, 'bad_state'); // not all has been read
+	assert.equal((await rejection(two.call('session.destroy', { session: 'd2-knee' }))).data.status, 'bad_state');
+	assert.equal((await rejection(smallSession(two, 'knee'))).data.status, 'already_exists');
+	await courier.hold();
+	await courier.rest();
+	courier.proof = '0'.repeat(64);
+	assert.equal((await rejection(courier.accept())).data.path, 'params.proof');
+	assert.equal(await serves(two, 'd2-knee'), false);
+	// A daemon that the session did not come from must not say that it stays there.
+	const stranger = await rejection(two.call('move.cancel', { session, move: courier.move }));
+	assert.equal(stranger.data.status, 'not_here');
+	await two.upload('piece', 'piece.caum', Buffer.from('no piece at all, though long enough'));
+	const refused = await rejection(two.call('move.receive', { session: 'd2-knee', move: courier.move, upload: 'piece' }));
+	assert.equal(refused.data.status, 'corrupt');
+	const operator = await d1.connect({ hello: { role: 'operate' } });
+	assert.equal((await rejection(operator.call('move.list'))).data.status, 'forbidden');
+	assert.equal(await settled(d1, d2), false);
+	await end(d1, d2);
+});
+
+test('cautery move carries a running session, and the library goes after it', async () => {
+	const [d1, d2] = await daemons();
+	const one = await d1.connect(), two = await d2.connect();
+	const session = await smallSession(one, 'knee');
+	const at = (daemon) => `ws://127.0.0.1:${daemon.port}`;
+	const watching = spawn(process.env.CAUTERY, ['events', session, '--follow', '--url', at(d1)]);
+	const seen = new Promise((resolve) => watching.stdout.on('data', (text) => /snapshot/.test(text) && resolve()));
+	await one.until(() => one.notice('session.changed'), 'the session');
+	const mover = await run(['move', session, 'd2', '--url', at(d1), '--to-url', at(d2)]);
+	assert.equal(mover.status, 0, mover.stderr);
+	assert.match(mover.stdout, /d1-knee is d2-knee now/);
+	const stood = Number(/stood still for ([0-9.]+) s/.exec(mover.stderr)[1]);
+	if (process.env.E2E_SLOW !== '1')
+		assert.ok(stood < 1, `${stood} s`);
+	const { summary } = await two.call('session.describe', { session: 'd2-knee' });
+	assert.equal(summary.state, 'running');
+	// By the old id, and by one that was watching all the time.
+	const info = await run(['pause', session, '--url', at(d1)]);
+	assert.equal(info.status, 0, info.stderr);
+	assert.equal((await two.call('session.describe', { session: 'd2-knee' })).summary.state, 'paused');
+	await two.call('session.snapshot', { session: 'd2-knee', name: 'seen' });
+	await seen;
+	watching.kill();
+	const again = await run(['move', session, 'd2', '--url', at(d1), '--to-url', at(d2)]);
+	assert.equal(again.status, 1);
+	assert.match(again.stderr, /d2-knee/);
+	await end(d1, d2);
+});
