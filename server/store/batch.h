@@ -17,6 +17,7 @@ enum record_kind {
 	RECORD_BRANCH,
 	RECORD_MARK, // as.gap: session, branch, from_tick
 	RECORD_GAP,
+	RECORD_GENERATION, // as.generation
 };
 
 struct record {
@@ -30,6 +31,7 @@ struct record {
 		cau_store_event event;
 		cau_store_branch branch;
 		cau_store_gap gap;
+		const char *generation;
 	} as; // its pointers lead into storage, or to what is lent
 	void *lent;
 	void (*give_back)(void *lent); // NULL: nothing is lent
