@@ -230,6 +230,20 @@ cli_exit cli_connect_to(cli *c, const char *session, const char *label)
 	return CLI_DONE;
 }
 
+cli_exit cli_find_fleet(cli *c, cau_fleet *fleet)
+{
+	cli_daemon daemon = {0};
+	cli_finish(c);
+	cli_exit found = find_daemon(c, &daemon);
+	if (found)
+		return found;
+	if (cau_loop_create(&c->loop, &c->error) ||
+	    cau_client_find_fleet(c->loop, daemon.url, c->timeout_s, fleet, &c->error))
+		found = cli_fail(c);
+	cli_finish(c);
+	return found;
+}
+
 cli_exit cli_connect(cli *c)
 {
 	if (c->label && strchr(c->label, ',')) {

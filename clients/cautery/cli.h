@@ -79,6 +79,8 @@ cli_exit cli_connect(cli *c);
 // Connects to the daemon of a session, or else of a label; either may be NULL. What was connected
 // before is closed.
 cli_exit cli_connect_to(cli *c, const char *session, const char *label);
+// The labels of the daemons behind the address; none: one daemon alone. Leaves no connection.
+cli_exit cli_find_fleet(cli *c, cau_fleet *fleet);
 void cli_finish(cli *c);
 
 // Tells c->error and returns the exit code that belongs to it.

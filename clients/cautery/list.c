@@ -40,15 +40,10 @@ static cli_exit add_sessions(cli *c, cau_wire_list *all)
 	return CLI_DONE;
 }
 
-// Of the daemons of all labels, "d1,d2"; NULL: of the one that answers. A connection through a
-// proxy serves one of them.
-static cli_exit gather_sessions(cli *c, const char *labels, cau_wire_list *all)
+// Of the daemons of all labels, "d1,d2". A connection through a proxy serves one of them.
+static cli_exit gather_named(cli *c, const char *labels, cau_wire_list *all)
 {
 	char label[CAU_NAME_BYTES];
-	if (!labels) {
-		cli_exit code = cli_connect_to(c, NULL, NULL);
-		return code ? code : add_sessions(c, all);
-	}
 	for (const char *at = labels; at; at = strchr(at, ',') ? strchr(at, ',') + 1 : NULL) {
 		int length = snprintf(label, sizeof label, "%.*s", (int)strcspn(at, ","), at);
 		if (length == 0 || length >= CAU_NAME_BYTES || !cau_name_is_valid(label)) {
@@ -64,18 +59,52 @@ static cli_exit gather_sessions(cli *c, const char *labels, cau_wire_list *all)
 	return CLI_DONE;
 }
 
+// Of all daemons that the proxy tells of. One that does not answer hides no other's sessions: it is
+// told of, and the exit code says that the list is not whole.
+static cli_exit gather_fleet(cli *c, const cau_fleet *fleet, cau_wire_list *all)
+{
+	cli_exit worst = CLI_DONE;
+	for (int32_t i = 0; i < fleet->count; i++) {
+		cli_exit code = cli_connect_to(c, NULL, fleet->labels[i]);
+		if (!code)
+			code = add_sessions(c, all);
+		if (code)
+			cli_complain(c, "the sessions of %s are not in the list", fleet->labels[i]);
+		worst = code ? code : worst;
+	}
+	return worst;
+}
+
+static cli_exit gather_all(cli *c, cau_wire_list *all)
+{
+	cau_fleet *fleet = malloc(sizeof *fleet);
+	if (!fleet)
+		return cli_fail_memory(c);
+	cli_exit code = cli_find_fleet(c, fleet);
+	if (!code && fleet->count > 0) {
+		code = gather_fleet(c, fleet, all);
+	} else if (!code) {
+		code = cli_connect_to(c, NULL, NULL);
+		code = code ? code : add_sessions(c, all);
+	}
+	free(fleet);
+	return code;
+}
+
 static cli_exit run_ls(cli *c)
 {
 	cau_wire_session_list list = {
 		.sessions = {calloc(SESSIONS_MAX, sizeof(cau_wire_session_summary)), 0, SESSIONS_MAX}};
 	if (!list.sessions.items)
 		return cli_fail_memory(c);
-	cli_exit code = gather_sessions(c, c->label, &list.sessions);
+	cli_exit code =
+		c->label ? gather_named(c, c->label, &list.sessions) : gather_all(c, &list.sessions);
 	qsort(list.sessions.items, (size_t)list.sessions.count, sizeof(cau_wire_session_summary),
 	      by_id);
-	if (!code && c->json)
+	bool some = !code || list.sessions.count > 0;
+	if (some && c->json)
 		cli_print_result(c, CAU_METHOD_SESSION_LIST, &list);
-	else if (!code)
+	else if (some)
 		print_sessions(c, &list.sessions);
 	free(list.sessions.items);
 	return code;
@@ -120,9 +149,9 @@ static cli_exit run_rm(cli *c)
 const cli_command cli_ls = {
 	.name = "ls",
 	.arguments = "",
-	.summary = "lists the daemon's sessions",
+	.summary = "lists the sessions",
 	.help = "RATE is simulated over wall time, over the last second. Behind a proxy:\n"
-			"those of one daemon, or with --label d1,d2 of each that is named.\n",
+			"those of all daemons, or with --label d1,d2 of each that is named.\n",
 	.run = run_ls};
 
 const cli_command cli_scenes = {.name = "scenes",

@@ -87,6 +87,11 @@ struct cau_client {
 	cau_client_incoming *incoming; // one at a time
 };
 
+// fleet.c
+#define CAU_FLEET_PROTOCOL "cautery-fleet" // of the loop; nothing on the wire has this name
+int cau_fleet_on_event(struct lws *wsi, enum lws_callback_reasons reason, void *user, void *in,
+                       size_t bytes);
+
 // send.c
 void cau_socket_cut(cau_client *client); // by and by; ends in cau_client_lost
 cau_status cau_socket_send(cau_client *client, bool binary, const void *head, size_t head_bytes,

@@ -132,6 +132,7 @@ static int on_event(struct lws *wsi, enum lws_callback_reasons reason, void *use
 
 static const struct lws_protocols protocols[] = {
 	{.name = CAU_SUBPROTOCOL, .callback = on_event, .rx_buffer_size = RECEIVE_BYTES},
+	{.name = CAU_FLEET_PROTOCOL, .callback = cau_fleet_on_event},
 	{0},
 };
 

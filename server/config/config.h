@@ -24,6 +24,9 @@ enum { CAU_CONFIG_TEXT_BYTES = 512 };
 	TEXT(scenes, "", "folder of named scenes; empty: the installed one")                           \
 	TEXT(viewer, "", "folder of viewer files to serve; empty: the installed one")                  \
 	TEXT(label, "d1", "this daemon's label, first part of its sessions' ids; no `-`")              \
+	TEXT(etcd, "", "addresses of etcd (http://HOST:PORT,...): no label is served twice")           \
+	REAL(etcd_ttl_s, 15, 2, 3600, "etcd gives the label away that was not renewed for this")       \
+	SWITCH(take_label, false, "serve the label by a store that etcd does not know as the newest")  \
 	TEXT(demo, "", "scene of which a session exists at start, made if the store has none")         \
 	TEXT(tokens, "", "file of tokens, a line each (cautery token); empty: loopback is admin")      \
 	TEXT(tls_certificate, "", "file of the certificate and its chain (PEM); empty: no TLS")        \

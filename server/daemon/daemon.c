@@ -1,9 +1,12 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "daemon/daemon.h"
 
+#include <math.h>
+#include <signal.h>
 #include <stdatomic.h>
 #include <stdlib.h>
 #include <string.h>
+#include <sys/time.h>
 #include <systemd/sd-daemon.h>
 #include <unistd.h>
 
@@ -15,6 +18,7 @@
 #include "daemon/restart.h"
 #include "http/static_files.h"
 #include "hub/hub.h"
+#include "lease/lease.h"
 #include "log/log.h"
 #include "places/places.h"
 #include "rpc/service.h"
@@ -27,6 +31,7 @@
 enum {
 	CLOSING_S = 2, // for connections to take their close frames
 	REAP_MS = 250,
+	LAST_WORD_US = 50000, // for the log to take a line
 };
 
 struct cau_daemon {
@@ -35,6 +40,7 @@ struct cau_daemon {
 	cau_static_files *files;
 	cau_scenes *scenes;
 	cau_store *store;
+	cau_lease *lease; // NULL: not wanted
 	cau_worker_pool *pool;
 	cau_builder *builder;
 	cau_hub *hub;
@@ -56,10 +62,82 @@ static void on_armed(void *user)
 	cau_watchdog_wake(daemon->watchdog);
 }
 
+// A look comes before the lease's end, too: the thread that renews it may be stuck.
 static double on_look(void *user, double now_s)
 {
 	cau_daemon *daemon = user;
-	return cau_hub_watch(daemon->hub, now_s);
+	double look_s = cau_hub_watch(daemon->hub, now_s);
+	return daemon->lease ? fmin(look_s, now_s + cau_lease_check(daemon->lease)) : look_s;
+}
+
+// ---- the label
+// The process ends as a kill would end it, which is what the store is held to: energy is off with
+// it, nobody hears another word, and what was acknowledged is on the disk. A reader of the log that
+// takes nothing must not hold that up, so a signal of the kernel's comes behind the line.
+static _Noreturn void on_label_lost(void *user, const char *reason)
+{
+	const cau_daemon *daemon = user;
+	const struct itimerval at_once = {.it_value.tv_usec = LAST_WORD_US};
+	signal(SIGALRM, SIG_DFL);
+	setitimer(ITIMER_REAL, &at_once, NULL);
+	cau_log(CAU_LOG_ERROR, NULL, "label_lost", "label=%s reason=\"%s\"", daemon->config->label,
+	        reason);
+	_exit(EXIT_FAILURE);
+}
+
+// On the store's thread: what is on the disk is not told once the label may be another's.
+static void on_commit(void *user)
+{
+	cau_daemon *daemon = user;
+	if (daemon->lease)
+		cau_lease_check(daemon->lease);
+}
+
+static void note_stored(void *user, cau_status status, const char *reason)
+{
+	cau_fail(user, status, "store", "%s", reason);
+}
+
+static cau_status store_generation(void *user, const char *text, cau_error *error)
+{
+	cau_daemon *daemon = user;
+	cau_error stored = {0};
+	cau_store_batch *batch = cau_store_batch_create();
+	if (!batch)
+		return cau_fail(error, CAU_NO_MEMORY, NULL, "no memory for the generation");
+	cau_status status = cau_store_put_generation(batch, text, error);
+	if (!status)
+		status = cau_store_submit(daemon->store, batch, note_stored, &stored, error);
+	if (status) {
+		cau_store_batch_destroy(batch);
+		return status;
+	}
+	cau_store_flush(daemon->store);
+	if (stored.status && error)
+		*error = stored;
+	return stored.status;
+}
+
+static cau_status take_label(cau_daemon *daemon, cau_error *error)
+{
+	const cau_config *config = daemon->config;
+	char stored[CAU_STORE_ID_BYTES];
+	_Static_assert((int)CAU_LEASE_STORED_BYTES <= CAU_STORE_ID_BYTES, "the store takes it");
+	cau_lease *lease = NULL;
+	cau_lease_def def = {.addresses = config->etcd,
+	                     .label = config->label,
+	                     .store = config->store,
+	                     .ttl_s = config->etcd_ttl_s,
+	                     .take_label = config->take_label,
+	                     .stored = stored,
+	                     .store_generation = store_generation,
+	                     .lost = on_label_lost,
+	                     .user = daemon};
+	cau_status status = cau_store_read_generation(daemon->store, stored, error);
+	if (!status)
+		status = cau_lease_take(&lease, &def, error);
+	daemon->lease = lease;
+	return status;
 }
 
 // On the store's thread.
@@ -96,6 +174,7 @@ static cau_status open_store(cau_daemon *daemon, cau_error *error)
 	store.store_bytes = config->store_bytes;
 	store.on_state = on_store_state;
 	store.on_budget = on_store_budget;
+	store.on_commit = on_commit;
 	store.user = daemon;
 	return cau_store_open(&store, &daemon->store, error);
 }
@@ -197,6 +276,8 @@ static cau_status open_all(cau_daemon *daemon, cau_error *error)
 		status = cau_scenes_load(&daemon->scenes, config->scenes, error);
 	if (!status)
 		status = open_store(daemon, error);
+	if (!status && *config->etcd)
+		status = take_label(daemon, error);
 	if (!status)
 		status = open_hub(daemon, error);
 	if (!status)
@@ -330,6 +411,7 @@ void cau_daemon_stop(cau_daemon *daemon)
 	cau_hub_destroy(daemon->hub);
 	cau_worker_pool_destroy(daemon->pool);
 	cau_store_close(daemon->store);
+	cau_lease_give_back(daemon->lease); // nothing is written any more
 	cau_scenes_destroy(daemon->scenes);
 	cau_static_files_destroy(daemon->files);
 	cau_auth_destroy(daemon->auth);

@@ -47,6 +47,13 @@ static cau_status make_file(const char *made, cau_error *error)
 	return CAU_OK;
 }
 
+// A copy is never the newest of its label: what was stored after it is not in it.
+static cau_status forget_generation(sqlite3 *to, cau_error *error)
+{
+	int code = sqlite3_exec(to, "DELETE FROM meta WHERE name = 'generation'", NULL, NULL, NULL);
+	return code ? cau_store_fault(to, code, "the copy's generation", error) : CAU_OK;
+}
+
 static cau_status copy(const char *path, const char *made, cau_error *error)
 {
 	sqlite3 *from = NULL, *to = NULL;
@@ -57,6 +64,8 @@ static cau_status copy(const char *path, const char *made, cau_error *error)
 		status = cau_store_fault(to, sqlite3_errcode(to), "making the copy", error);
 	if (!status)
 		status = copy_pages(from, to, error);
+	if (!status)
+		status = forget_generation(to, error);
 	sqlite3_close(to);
 	sqlite3_close(from);
 	return status;

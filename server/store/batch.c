@@ -325,6 +325,17 @@ cau_status cau_store_forget_events(cau_store_batch *batch, const char *session, 
 	return CAU_OK;
 }
 
+cau_status cau_store_put_generation(cau_store_batch *batch, const char *text, cau_error *error)
+{
+	TRY(check_text("generation", text, true, error));
+	struct record *record = append(batch, RECORD_GENERATION, text_bytes(text), error);
+	if (!record)
+		return CAU_NO_MEMORY;
+	unsigned char *at = record->storage;
+	record->as.generation = copy_text(&at, text);
+	return CAU_OK;
+}
+
 cau_status cau_store_put_branch(cau_store_batch *batch, const cau_store_branch *branch,
                                 cau_error *error)
 {

@@ -21,6 +21,7 @@ enum record_kind {
 	RECORD_ARRIVAL,
 	RECORD_ARRIVAL_FORGET, // as.arrival: id
 	RECORD_ROWS,           // as.rows; what is lent
+	RECORD_GENERATION, // as.generation
 };
 
 struct record {
@@ -40,6 +41,7 @@ struct record {
 			const char *id;
 			cau_store_bytes piece;
 		} rows;
+		const char *generation;
 	} as; // its pointers lead into storage, or to what is lent
 	void *lent;
 	void (*give_back)(void *lent); // NULL: nothing is lent

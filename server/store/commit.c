@@ -91,6 +91,8 @@ static void commit_group(struct cau_store *store)
 	cau_error error = {0};
 	if (write_group(store, &error))
 		block(store, &error);
+	if (store->config.on_commit)
+		store->config.on_commit(store->config.user);
 	cau_store_queue_answer(store);
 }
 

@@ -65,6 +65,23 @@ cau_status cau_store_find_session(cau_store *store, const char *id, int64_t *key
 	return status;
 }
 
+cau_status cau_store_read_generation(cau_store *store, char text[CAU_STORE_ID_BYTES],
+                                     cau_error *error)
+{
+	sqlite3_stmt *statement = NULL;
+	*text = 0;
+	pthread_mutex_lock(&store->reading_mutex);
+	cau_status status = cau_store_prepare(store, "SELECT value FROM meta WHERE name = 'generation'",
+	                                      &statement, error);
+	if (!status)
+		status = cau_store_next_row(store, statement, error);
+	if (!status)
+		snprintf(text, CAU_STORE_ID_BYTES, "%s", cau_store_column_text(statement, 0));
+	sqlite3_finalize(statement);
+	pthread_mutex_unlock(&store->reading_mutex);
+	return cau_store_end_is_fine(status);
+}
+
 // ---- sessions -------------------------------------------------------------------------
 static void fill_session(sqlite3_stmt *statement, cau_store_session *session)
 {

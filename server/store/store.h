@@ -81,6 +81,9 @@ typedef struct cau_store_config {
 	// Called on the store's thread when the state changes; may be NULL. On FULL -> READY the logs
 	// of running sessions lack what failed: checkpoint every session before its next command.
 	void (*on_state)(void *user, cau_store_state state, const char *reason);
+	// Called on the store's thread after each commit, before anybody hears of it; may be NULL. A
+	// daemon that has lost its label does not return from it.
+	void (*on_commit)(void *user);
 	// Likewise, of the budget; `bytes` are taken, `dropped` checkpoints went for it so far.
 	void (*on_budget)(void *user, cau_store_budget_state state, int64_t bytes, int64_t dropped);
 	void *user;
@@ -108,6 +111,10 @@ void cau_store_flush(cau_store *store);
 bool cau_store_moves(cau_store *store);
 
 const char *cau_store_label(const cau_store *store); // lives as long as the store
+
+// Which opening of the store this is, in the daemon's words; "" in one that was never told.
+cau_status cau_store_read_generation(cau_store *store, char text[CAU_STORE_ID_BYTES],
+                                     cau_error *error);
 
 // ---- writing: batches -----------------------------------------------------------------
 // A batch is written whole or not at all. Every put copies what it is given, a lend does not; on
@@ -211,6 +218,9 @@ typedef struct cau_store_branch {
 // that owns that tick becomes the parent.
 cau_status cau_store_put_branch(cau_store_batch *batch, const cau_store_branch *branch,
                                 cau_error *error);
+
+// What cau_store_read_generation reads from then on.
+cau_status cau_store_put_generation(cau_store_batch *batch, const char *text, cau_error *error);
 
 // The state at this tick stays as long as the session, on a branch that has been left too, and so
 // do the events of that tick. The session's first checkpoint stays without a mark.

@@ -32,7 +32,8 @@
 	X(ADD_MARK, "INSERT OR IGNORE INTO marks VALUES(?1, ?2, ?3)")                                  \
 	X(ADD_GAP,                                                                                     \
 	  "INSERT INTO gaps VALUES(?1, ?2, ?3, ?4, 0) ON CONFLICT(session, branch, from_tick)"         \
-	  " DO UPDATE SET before_tick = max(before_tick, excluded.before_tick)")
+	  " DO UPDATE SET before_tick = max(before_tick, excluded.before_tick)")                       \
+	X(SET_GENERATION, "REPLACE INTO meta VALUES('generation', ?1)")
 
 enum statement_index {
 #define X(name, sql) name,
@@ -427,6 +428,9 @@ cau_status cau_store_writer_apply(struct cau_store_writer *writer, const struct 
 	case RECORD_ARRIVAL_FORGET:
 	case RECORD_ROWS:
 		return cau_store_import(writer->database, record, now_ms, error);
+	case RECORD_GENERATION:
+		bind_text(writer->statement[SET_GENERATION], 1, record->as.generation);
+		return run(writer, SET_GENERATION, "the generation", error);
 	}
 	return cau_fail(error, CAU_BAD_VALUE, NULL, "a record of unknown kind");
 }

@@ -346,8 +346,20 @@ class CommandLine(Fleet):
         listed = json.loads(self.cautery("ls", "--label", "d2,d1", "--json"))["sessions"]
         self.assertEqual([(one["session"], one["tick"]) for one in listed], [("d1-knee", 20), ("d2-knee", 20)])
         self.assertNotIn("d1-knee", self.cautery("ls", "--label", "d2"))
+        everywhere = json.loads(self.cautery("ls", "--json"))["sessions"]
+        self.assertEqual([one["session"] for one in everywhere], ["d1-knee", "d2-knee"])
+        alone = json.loads(self.cautery("ls", "--json", at=self.daemons["d2"].url))["sessions"]
+        self.assertEqual([one["session"] for one in alone], ["d2-knee"])
         self.cautery("rm", *made)
         self.assertEqual(json.loads(self.cautery("ls", "--label", "d1,d2", "--json"))["sessions"], [])
+
+    def test_a_daemon_that_is_gone_hides_no_others(self):
+        self.cautery("create", "fascia", "--name", "knee", "--paused", "--label", "d2")
+        self.daemons["d1"].kill()
+        await_true("d1 is missed", lambda: self.new("d1")["status"].startswith("DOWN"))
+        listed = self.cautery("ls", code=3)
+        self.assertIn("d2-knee", listed)
+        self.assertIn("the sessions of d1 are not in the list", listed)
 
     def test_what_is_wrong_is_said(self):
         for arguments, code, said in ((("info", "d3-knee"), 3, "no daemon of this fleet has the label"),

@@ -40,6 +40,7 @@
 #include <stddef.h>
 #include <stdint.h>
 
+#include "cautery/fleet_json.h"
 #include "cautery/messages.h"
 #include "cautery/rpc.h"
 #include "cautery/stream.h"
@@ -145,6 +146,15 @@ void cau_client_keep_alive(cau_client *client, bool on);
 
 // Stops and starts reading from the socket, as a slow reader does.
 void cau_client_read(cau_client *client, bool on);
+
+// ---- fleets ------------------------------------------------------------------------------------
+// The labels of the daemons behind an address: those that the proxy in front of them tells. None
+// (*fleet has no labels) where one daemon answers, whose /api/fleet there is not. A connection
+// serves one label (cau_client_def), so who wants all lists connects to each. Waits, `timeout_s` at
+// most. Errors: CAU_BAD_VALUE (the URL), CAU_IO (no answer), CAU_NO_MEMORY; those of
+// cau_fleet_from_json.
+cau_status cau_client_find_fleet(cau_loop *loop, const char *url, double timeout_s,
+                                 cau_fleet *fleet, cau_error *error);
 
 // ---- requests ----------------------------------------------------------------------------------
 // Called once for each request: with the answer, or with an error and NULL.

@@ -24,11 +24,12 @@ class Daemon:
         """`log`: an open file for what it logs."""
         self.folder = tempfile.mkdtemp(prefix="cautery-e2e-")
         self.store = store or os.path.join(self.folder, "store.db")
+        settings.setdefault("log_level", "warning")
         program = os.path.join(PROGRAMS, "cauteryd") if real else os.environ["DOUBLE"]
         command = [program, "--json", "--port", str(port), "--store", self.store,
-                   "--scenes", os.environ["SCENES"], "--log-level", "warning"]
+                   "--scenes", os.environ["SCENES"]]
         for name, value in settings.items():
-            command += ["--" + name.replace("_", "-"), str(value)]
+            command.append(f"--{name.replace('_', '-')}={value}")
         self.process = subprocess.Popen(command, stdout=subprocess.PIPE, stderr=log, env=CLEAN,
                                         text=True)
         line = self.process.stdout.readline()

@@ -55,6 +55,39 @@ static void it_holds_what_was_acknowledged_and_opens(void **state)
 	cau_store_close(copy);
 }
 
+static void read_generation(const char *path, const struct fixture *fixture,
+                            char text[CAU_STORE_ID_BYTES])
+{
+	cau_store_config config = fixture->config;
+	config.path = path;
+	cau_store *store = open_store(&config);
+	assert_int_equal(cau_store_read_generation(store, text, NULL), CAU_OK);
+	cau_store_close(store);
+}
+
+static void the_generation_stays_with_the_store(void **state)
+{
+	struct fixture *fixture = *state;
+	char file[200], text[CAU_STORE_ID_BYTES];
+	static const char *const words[] = {"1:a", "2:b"};
+	read_generation(fixture->path, fixture, text);
+	assert_string_equal(text, "");
+	cau_store *store = open_store(&fixture->config);
+	for (int i = 0; i < 2; i++) {
+		cau_store_batch *batch = cau_store_batch_create();
+		assert_int_equal(cau_store_put_generation(batch, "", NULL), CAU_BAD_VALUE);
+		assert_int_equal(cau_store_put_generation(batch, words[i], NULL), CAU_OK);
+		assert_int_equal(write_batch(store, batch, NULL), CAU_OK);
+	}
+	snprintf(file, sizeof file, "%s/copy.db", fixture->folder);
+	assert_int_equal(cau_store_backup(fixture->path, file, NULL), CAU_OK);
+	cau_store_close(store);
+	read_generation(fixture->path, fixture, text);
+	assert_string_equal(text, "2:b");
+	read_generation(file, fixture, text);
+	assert_string_equal(text, "");
+}
+
 static void nothing_is_replaced(void **state)
 {
 	struct fixture *fixture = *state;
@@ -89,6 +122,7 @@ int main(void)
 {
 	const struct CMUnitTest tests[] = {
 		TEST(it_holds_what_was_acknowledged_and_opens),
+		TEST(the_generation_stays_with_the_store),
 		TEST(nothing_is_replaced),
 		TEST(what_is_no_store_has_no_copy),
 	};

@@ -1,0 +1,155 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "lease/logic.h"
+
+#include <inttypes.h>
+#include <math.h>
+#include <stdio.h>
+#include <string.h>
+
+#include "cautery/assert.h"
+
+// ---- generations
+bool cau_generation_same(cau_generation a, cau_generation b)
+{
+	return a.number == b.number && a.mark == b.mark;
+}
+
+void cau_generation_write(cau_generation generation, char text[CAU_GENERATION_BYTES])
+{
+	*text = 0;
+	if (generation.number > 0)
+		snprintf(text, CAU_GENERATION_BYTES, "%" PRId64 ":%016" PRIx64, generation.number,
+		         generation.mark);
+}
+
+// What is read must be written the same, so there is one text for each.
+bool cau_generation_read(const char *text, size_t bytes, cau_generation *generation)
+{
+	char copy[CAU_GENERATION_BYTES], again[CAU_GENERATION_BYTES];
+	*generation = (cau_generation){0};
+	if (bytes >= sizeof copy)
+		return false;
+	memcpy(copy, text, bytes);
+	copy[bytes] = 0;
+	cau_generation found = {0};
+	if (bytes > 0 && sscanf(copy, "%18" SCNd64 ":%16" SCNx64, &found.number, &found.mark) != 2)
+		return false;
+	cau_generation_write(found, again);
+	if (strlen(again) != bytes || memcmp(again, copy, bytes) != 0)
+		return false;
+	*generation = found;
+	return true;
+}
+
+// ---- may this store be served?
+static bool is_the_newest(const cau_claim *claim)
+{
+	if (claim->is_copy)
+		return false;
+	if (claim->known.number == 0) // the label is new to etcd, and the store to generations
+		return claim->held.number == 0;
+	return cau_generation_same(claim->known, claim->held) ||
+	       cau_generation_same(claim->known, claim->next);
+}
+
+static void explain(const cau_claim *claim, cau_error *error)
+{
+	if (claim->is_copy)
+		cau_fail(error, CAU_BAD_STATE, "etcd",
+		         "the store's file is a copy of the one that was opened last, which may hold more; "
+		         "--take-label serves it all the same");
+	else if (claim->known.number == 0)
+		cau_fail(error, CAU_BAD_STATE, "etcd",
+		         "etcd knows no generation of this label, and the store is of generation %" PRId64
+		         ": it is another etcd, or has lost its data; --take-label serves the store",
+		         claim->held.number);
+	else
+		cau_fail(error, CAU_BAD_STATE, "etcd",
+		         "the store is of generation %" PRId64 " and etcd knows %" PRId64
+		         " of this label, of another store: this one is a copy from before; "
+		         "--take-label serves it all the same",
+		         claim->held.number, claim->known.number);
+}
+
+// Nobody's lease is taken away, whatever the operator says: it ends by itself.
+cau_verdict cau_lease_judge(const cau_claim *claim, cau_error *error)
+{
+	if (!is_the_newest(claim) && !claim->take_label) {
+		explain(claim, error);
+		return CAU_VERDICT_REFUSE;
+	}
+	return claim->is_held && !claim->is_held_here ? CAU_VERDICT_WAIT : CAU_VERDICT_CLAIM;
+}
+
+static cau_generation after_all(const cau_claim *claim, uint64_t mark)
+{
+	int64_t most = claim->known.number;
+	most = claim->held.number > most ? claim->held.number : most;
+	most = claim->next.number > most ? claim->next.number : most;
+	return (cau_generation){most + 1, mark};
+}
+
+void cau_lease_choose(cau_claim *claim, bool *has_next, uint64_t mark)
+{
+	if (claim->known.number > 0 && cau_generation_same(claim->known, claim->next)) {
+		claim->held = claim->next;
+		*has_next = false;
+	}
+	if (!*has_next)
+		claim->next = after_all(claim, mark);
+	*has_next = true;
+}
+
+// ---- until when?
+cau_lease_rules cau_lease_rules_of(double ttl_s)
+{
+	CAU_ASSERT(ttl_s >= 2, "a time to live of %g s", ttl_s);
+	return (cau_lease_rules){
+		.ttl_s = ttl_s,
+		// Beside this, two clocks that differ by 200 ppm over a minute are 12 ms apart.
+		.margin_s = fmax(0.5, 0.1 * ttl_s),
+		.renew_s = ttl_s / 4,
+		.limit_s = ttl_s / 6,
+		.retry_s = fmin(0.25, ttl_s / 40),
+	};
+}
+
+static double end_of(const cau_lease_logic *logic, double sent_s, double ttl_s)
+{
+	return sent_s + fmin(ttl_s, logic->rules.ttl_s) - logic->rules.margin_s;
+}
+
+void cau_lease_begin(cau_lease_logic *logic, const cau_lease_rules *rules, double sent_s,
+                     double ttl_s)
+{
+	*logic = (cau_lease_logic){.rules = *rules};
+	logic->held_until_s = end_of(logic, sent_s, ttl_s);
+	logic->ask_at_s = sent_s + rules->renew_s;
+}
+
+void cau_lease_answer(cau_lease_logic *logic, cau_renewal renewal, double sent_s, double ttl_s,
+                      double now_s)
+{
+	CAU_ASSERT(sent_s <= now_s, "an answer at %g s to what was sent at %g s", now_s, sent_s);
+	// An answer that comes after the end brings nothing back: the end was acted on.
+	if (now_s >= logic->held_until_s || renewal == CAU_RENEWAL_GONE)
+		logic->lost = true;
+	if (logic->lost)
+		return;
+	logic->ask_at_s = now_s + logic->rules.retry_s;
+	if (renewal == CAU_RENEWED) {
+		logic->held_until_s = fmax(logic->held_until_s, end_of(logic, sent_s, ttl_s));
+		logic->ask_at_s = sent_s + logic->rules.renew_s;
+	}
+}
+
+cau_lease_step cau_lease_next(cau_lease_logic *logic, double now_s)
+{
+	double left_s = logic->held_until_s - now_s;
+	logic->lost = logic->lost || left_s <= 0;
+	if (logic->lost)
+		return (cau_lease_step){.kind = CAU_LEASE_END};
+	if (now_s >= logic->ask_at_s)
+		return (cau_lease_step){CAU_LEASE_RENEW, fmin(logic->rules.limit_s, left_s)};
+	return (cau_lease_step){CAU_LEASE_WAIT, fmin(logic->ask_at_s, logic->held_until_s) - now_s};
+}
