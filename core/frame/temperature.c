@@ -24,15 +24,14 @@ void cau_frame_cool_heated(cau_frame_state *frame)
 	frame->heated_count = 0;
 }
 
-static bool grid_meets(const cau_heat_grid *grid, const cau_box *box)
+// Whether a box of vertices reaches into the one that the grid has heat in.
+static bool boxes_meet(const double least[3], const double most[3], const cau_box *box)
 {
-	CAU_ASSERT(grid->nodes >= 2 && grid->step_m > 0, "a grid of %d nodes, %g m apart", grid->nodes,
-	           grid->step_m);
 	const double margin = BOX_MARGIN_M;
 	for (int axis = 0; axis < 3; axis++) {
-		double least = (double)grid->origin[axis] * grid->step_m;
-		double most = least + (grid->nodes - 1) * grid->step_m;
-		if ((double)box->most[axis] < least - margin || (double)box->least[axis] > most + margin)
+		CAU_ASSERT(least[axis] <= most[axis], "a box from %g to %g", least[axis], most[axis]);
+		if ((double)box->most[axis] < least[axis] - margin ||
+		    (double)box->least[axis] > most[axis] + margin)
 			return false;
 	}
 	return true;
@@ -52,10 +51,15 @@ static void heat_vertex(cau_frame_state *frame, int32_t vertex, float temperatur
 void cau_frame_heat(cau_frame_state *frame, const cau_near *near, const cau_heat_grid *grid,
                     const double *position)
 {
-	if (grid->coldest_c == grid->warmest_c)
-		return; // all of it at ambient
+	if (cau_heat_grid_is_ambient(grid))
+		return;
+	cau_vec3 first, last_node;
+	double least[3], most[3];
+	cau_heat_grid_box(grid, &first, &last_node);
+	cau_vec3_to(first, least);
+	cau_vec3_to(last_node, most);
 	for (int32_t b = 0; b < near->block_count; b++) {
-		if (!grid_meets(grid, &near->vertex_box[b]))
+		if (!boxes_meet(least, most, &near->vertex_box[b]))
 			continue;
 		int32_t last = (b + 1) * CAU_NEAR_BLOCK;
 		for (int32_t i = b * CAU_NEAR_BLOCK; i < last && i < near->vertex_count; i++) {

@@ -3,26 +3,52 @@
 
 #include "cautery/assert.h"
 
-// One row of inner nodes along x; `u`, `rate`, `next` point at its first inner node.
-static void diffuse_row(const float *restrict u, const float *restrict rate, float *restrict next,
-                        int64_t count, int64_t row, int64_t plane)
+// Nodes around node i, `row` and `plane` nodes on from one to the next along y and z.
+#define SIX(u, i, row, plane)                                                                      \
+	(u[i - 1] + u[i + 1] + u[i - row] + u[i + row] + u[i - plane] + u[i + plane])
+
+// One row of inner nodes along x; `u` and `next` point at its first inner node.
+static void diffuse_row(const float *restrict u, float rate, float *restrict next, int64_t count,
+                        int64_t row, int64_t plane)
 {
 	CAU_ASSERT(count >= 1 && row == count + 2, "%lld inner nodes in a row of %lld",
 	           (long long)count, (long long)row);
-	for (int64_t x = 0; x < count; x++) {
-		float sum = u[x - 1] + u[x + 1] + u[x - row] + u[x + row] + u[x - plane] + u[x + plane];
-		next[x] = u[x] + rate[x] * (sum - 6.0F * u[x]);
-	}
+	for (int64_t x = 0; x < count; x++)
+		next[x] = u[x] + rate * (SIX(u, x, row, plane) - 6.0F * u[x]);
 }
 
-void cau_diffuse(const float *temperature, const float *rate, float *next, int32_t nodes)
+static void diffuse_row_around(const float *restrict u, const float *restrict rate,
+                               const float *restrict pull, float held_c, float *restrict next,
+                               int64_t count, int64_t row, int64_t plane)
+{
+	CAU_ASSERT(count >= 1 && row == count + 2, "%lld inner nodes in a row of %lld",
+	           (long long)count, (long long)row);
+	for (int64_t x = 0; x < count; x++)
+		next[x] =
+			u[x] + rate[x] * (SIX(u, x, row, plane) - 6.0F * u[x] + pull[x] * (held_c - u[x]));
+}
+
+void cau_diffuse(const float *temperature, float rate, float *next, int32_t nodes)
 {
 	CAU_ASSERT(nodes >= 3 && temperature != next, "a grid of %d nodes, into itself", nodes);
 	int64_t row = nodes, plane = row * row;
 	for (int64_t z = 1; z < nodes - 1; z++)
 		for (int64_t y = 1; y < nodes - 1; y++) {
 			int64_t first = 1 + y * row + z * plane;
-			diffuse_row(temperature + first, rate + first, next + first, nodes - 2, row, plane);
+			diffuse_row(temperature + first, rate, next + first, nodes - 2, row, plane);
+		}
+}
+
+void cau_diffuse_around(const float *temperature, const float *rate, const float *pull,
+                        float held_c, float *next, int32_t nodes)
+{
+	CAU_ASSERT(nodes >= 3 && temperature != next, "a grid of %d nodes, into itself", nodes);
+	int64_t row = nodes, plane = row * row;
+	for (int64_t z = 1; z < nodes - 1; z++)
+		for (int64_t y = 1; y < nodes - 1; y++) {
+			int64_t first = 1 + y * row + z * plane;
+			diffuse_row_around(temperature + first, rate + first, pull + first, held_c,
+			                   next + first, nodes - 2, row, plane);
 		}
 }
 

@@ -8,25 +8,28 @@
 
 static const double REST_C = 0.01; // a field nowhere further from ambient is at rest
 
+// What is no further from ambient parts nothing (at 41 degC tissue lives), and it never will again
+// when nothing is held, as it only falls. The outer fields would take minutes for the rest of it;
+// alone, the innermost one takes seconds.
+static const double FAINT_C = 4;
+
 static int64_t node_count(const cau_heat_grid *grid)
 {
 	CAU_ASSERT(grid->nodes >= 0 && grid->nodes <= 4096, "%d nodes along a side", grid->nodes);
 	return (int64_t)grid->nodes * grid->nodes * grid->nodes;
 }
 
-static void fill(float *values, int64_t count, float value)
+static void rest_from(cau_heat_grid *grid, int innermost)
 {
-	for (int64_t i = 0; i < count; i++)
-		values[i] = value;
+	for (int k = innermost; k < CAU_HEAT_FIELDS; k++)
+		cau_heat_field_fill(&grid->field[k], grid->nodes, (float)grid->ambient_c);
+	grid->outer_rests = true;
 }
 
 static void rest(cau_heat_grid *grid)
 {
-	CAU_ASSERT(grid->temperature && grid->next, "a grid of %d nodes without fields", grid->nodes);
-	float ambient = (float)grid->ambient_c;
-	fill(grid->temperature, node_count(grid), ambient);
-	fill(grid->next, node_count(grid), ambient); // its outer nodes are never written again
-	grid->coldest_c = grid->warmest_c = ambient;
+	rest_from(grid, 0);
+	grid->coldest_c = grid->warmest_c = (float)grid->ambient_c;
 }
 
 bool cau_heat_grid_is_ambient(const cau_heat_grid *grid)
@@ -59,7 +62,8 @@ static void origin_for(const cau_heat_grid *grid, const cau_tool_def *tool, cons
 	double world[3];
 	cau_vec3_to(cau_pose_to_world(pose, center), world);
 	for (int axis = 0; axis < 3; axis++)
-		origin[axis] = whole_cells(world[axis] / grid->step_m - (grid->nodes - 1) / 2.0 + 0.5);
+		origin[axis] =
+			whole_cells(world[axis] / grid->field[0].step_m - (grid->nodes - 1) / 2.0 + 0.5);
 }
 
 static cau_status check(const cau_tool_def *tool, double tick_s, cau_error *error)
@@ -85,6 +89,29 @@ static cau_status check(const cau_tool_def *tool, double tick_s, cau_error *erro
 	return CAU_OK;
 }
 
+enum { ARRAYS = 2 * CAU_HEAT_FIELDS + 3 }; // a field and its scratch each, the surface's three
+
+static void lay_out(cau_heat_grid *grid, double step_m, size_t nodes)
+{
+	float *room = grid->pages.start;
+	for (int k = 0; k < CAU_HEAT_FIELDS; k++, step_m *= 2) {
+		grid->field[k] =
+			(cau_heat_field){.step_m = step_m, .temperature = room, .next = room + nodes};
+		room += 2 * nodes;
+	}
+	grid->surface.distance = room;
+	grid->surface.rate = room + nodes;
+	grid->surface.pull = room + 2 * nodes;
+	grid->fall = room + 3 * nodes;
+}
+
+// The outer fields' origins, around that of the innermost one.
+static void place_outer(cau_heat_grid *grid)
+{
+	for (int k = 1; k < CAU_HEAT_FIELDS; k++)
+		cau_heat_field_origin_around(grid->field[k - 1].origin, grid->nodes, grid->field[k].origin);
+}
+
 cau_status cau_heat_grid_create(cau_heat_grid *grid, const cau_tool_def *tool, double ambient_c,
                                 double tick_s, const cau_pose *pose, cau_error *error)
 {
@@ -93,17 +120,17 @@ cau_status cau_heat_grid_create(cau_heat_grid *grid, const cau_tool_def *tool, d
 	if (status != CAU_OK)
 		return status;
 	grid->nodes = (int32_t)tool->grid_cells;
-	grid->step_m = tool->grid_step_m;
 	grid->diffusivity = tool->diffusivity_m2_s;
 	grid->ambient_c = ambient_c;
-	size_t nodes = (size_t)node_count(grid);
-	if (!cau_pages_take(&grid->pages, 3 * nodes * sizeof(float)))
+	size_t nodes = (size_t)node_count(grid), face = (size_t)grid->nodes * (size_t)grid->nodes;
+	size_t floats = ARRAYS * nodes + face;
+	if (!cau_pages_take(&grid->pages, floats * sizeof(float)))
 		return cau_fail(error, CAU_NO_MEMORY, "grid_cells", "no memory for %d^3 nodes",
 		                (int)tool->grid_cells);
-	grid->temperature = grid->pages.start;
-	grid->next = grid->temperature + nodes;
-	grid->rate = grid->next + nodes;
-	origin_for(grid, tool, pose, grid->origin);
+	lay_out(grid, tool->grid_step_m, nodes);
+	cau_heat_field_fall(grid->nodes, grid->fall);
+	origin_for(grid, tool, pose, grid->field[0].origin);
+	place_outer(grid);
 	rest(grid);
 	return CAU_OK;
 }
@@ -114,159 +141,123 @@ void cau_heat_grid_finish(cau_heat_grid *grid)
 	*grid = (cau_heat_grid){0};
 }
 
-// The outer layer of nodes at ambient.
-static void reset_boundary(cau_heat_grid *grid, float *field)
+// What the inner fields hold, to where the outer ones have it too.
+static void take_inner(cau_heat_grid *grid)
 {
-	int64_t n = grid->nodes;
-	float ambient = (float)grid->ambient_c;
-	fill(field, n * n, ambient);
-	fill(field + n * n * (n - 1), n * n, ambient);
-	for (int64_t z = 1; z < n - 1; z++) {
-		float *plane = field + z * n * n;
-		fill(plane, n, ambient);
-		fill(plane + n * (n - 1), n, ambient);
-		for (int64_t y = 1; y < n - 1; y++)
-			plane[y * n] = plane[y * n + n - 1] = ambient;
+	for (int k = 1; k < CAU_HEAT_FIELDS; k++)
+		cau_heat_field_take_inner(&grid->field[k], grid->nodes, &grid->field[k - 1]);
+}
+
+static bool is_leap(const cau_heat_field *field, int32_t nodes, const int64_t origin[3])
+{
+	for (int axis = 0; axis < 3; axis++) {
+		int64_t shift = origin[axis] - field->origin[axis];
+		if (shift <= -nodes || shift >= nodes)
+			return true;
 	}
+	return false;
 }
 
-// Copies the node that is `shift` cells on to each node; nodes from outside are at ambient.
-static void copy_shifted(cau_heat_grid *grid, const int64_t shift[3])
-{
-	int64_t n = grid->nodes;
-	int64_t first = shift[0] < 0 ? -shift[0] : 0; // x of the first node that has a source
-	int64_t kept = n - (shift[0] < 0 ? -shift[0] : shift[0]);
-	CAU_ASSERT(kept > 0 && kept <= n, "%lld of %lld nodes are kept", (long long)kept, (long long)n);
-	fill(grid->next, node_count(grid), (float)grid->ambient_c);
-	for (int64_t z = 0; z < n; z++)
-		for (int64_t y = 0; y < n; y++) {
-			int64_t from_y = y + shift[1], from_z = z + shift[2];
-			if (from_y < 0 || from_y >= n || from_z < 0 || from_z >= n)
-				continue;
-			const float *source = grid->temperature + (from_z * n + from_y) * n + first + shift[0];
-			memcpy(grid->next + (z * n + y) * n + first, source, (size_t)kept * sizeof(float));
-		}
-}
-
-static void swap_fields(cau_heat_grid *grid)
-{
-	float *old = grid->temperature;
-	grid->temperature = grid->next;
-	grid->next = old;
-}
-
-// Moves the grid so that it is centred on the hot part. No value is resampled: nodes keep theirs.
+// Moves the fields so that they are centred on the hot part, the outermost first: the others find
+// what comes in there. No value is resampled: nodes keep theirs.
 static void follow(cau_heat_grid *grid, const cau_tool_def *tool, const cau_pose *pose)
 {
-	int64_t origin[3], shift[3];
-	bool moved = false, leapt = false;
-	origin_for(grid, tool, pose, origin);
-	for (int axis = 0; axis < 3; axis++) {
-		shift[axis] = origin[axis] - grid->origin[axis];
-		moved |= shift[axis] != 0;
-		leapt |= shift[axis] <= -grid->nodes || shift[axis] >= grid->nodes;
-		grid->origin[axis] = origin[axis];
-	}
-	if (!moved || cau_heat_grid_is_ambient(grid))
+	int64_t origin[CAU_HEAT_FIELDS][3];
+	int32_t n = grid->nodes;
+	origin_for(grid, tool, pose, origin[0]);
+	if (!memcmp(origin[0], grid->field[0].origin, sizeof origin[0]))
 		return;
-	if (leapt) {
-		rest(grid);
+	for (int k = 1; k < CAU_HEAT_FIELDS; k++)
+		cau_heat_field_origin_around(origin[k - 1], n, origin[k]);
+	const int last = CAU_HEAT_FIELDS - 1;
+	if (cau_heat_grid_is_ambient(grid) || is_leap(&grid->field[last], n, origin[last])) {
+		if (!cau_heat_grid_is_ambient(grid))
+			rest(grid);
+		for (int k = 0; k <= last; k++)
+			memcpy(grid->field[k].origin, origin[k], sizeof origin[k]);
 		return;
 	}
-	copy_shifted(grid, shift);
-	swap_fields(grid);
-	reset_boundary(grid, grid->temperature);
-	reset_boundary(grid, grid->next);
+	if (!grid->outer_rests)
+		take_inner(grid);
+	for (int k = last; k >= 0; k--)
+		cau_heat_field_move(&grid->field[k], n, origin[k], k < last ? &grid->field[k + 1] : NULL);
 }
 
-// What hold_block needs to place a node in the tool's frame: node (x, y, z) is at first + x axis[0]
-// + ...
-typedef struct hold {
-	cau_heat_grid *grid;
-	const cau_tool_def *tool;
-	double jaw;
-	cau_vec3 first;
-	cau_vec3 axis[3]; // m in the tool's frame for one cell along the world's x, y, z
-} hold;
+// ---- advancing
 
-// Holds the inner nodes of a block of size^3 nodes.
-static void hold_whole(const hold *h, const int32_t least[3], int32_t size)
+static double rate_of(const cau_heat_grid *grid, int k, double duration_s, int64_t *substeps)
 {
-	CAU_ASSERT(size >= 1, "a block of %d nodes", size);
-	int64_t n = h->grid->nodes;
-	int32_t from[3], to[3];
-	for (int axis = 0; axis < 3; axis++) {
-		from[axis] = least[axis] > 1 ? least[axis] : 1;
-		to[axis] = least[axis] + size < n - 1 ? least[axis] + size : (int32_t)n - 1;
-	}
-	for (int64_t z = from[2]; z < to[2]; z++)
-		for (int64_t y = from[1]; y < to[1]; y++)
-			for (int64_t x = from[0]; x < to[0]; x++) {
-				h->grid->temperature[(z * n + y) * n + x] = (float)h->tool->temperature_c;
-				h->grid->rate[(z * n + y) * n + x] = 0;
-			}
+	double step = grid->field[k].step_m;
+	*substeps = cau_heat_grid_substeps(step, grid->diffusivity, duration_s);
+	double rate = grid->diffusivity * (duration_s / (double)*substeps) / (step * step);
+	CAU_ASSERT(rate >= 0 && rate <= (1 + 1e-9) / 6, "a rate of %g is not stable", rate);
+	return rate;
 }
 
-// Holds the hot nodes of a block of size^3 nodes, size a power of two. The distance is 1-Lipschitz:
-// its value in the middle decides the whole block, unless the surface may pass through it; then its
-// eighths are asked.
-static void hold_block(const hold *h, const int32_t least[3], int32_t size)
+// The outer fields, the outermost first: each has its boundary from the one around it, and is held
+// where there is one within.
+static void advance_outer(cau_heat_grid *grid, double duration_s)
 {
-	CAU_ASSERT(size >= 1 && (size & (size - 1)) == 0, "a block of %d nodes", size);
-	if (least[0] >= h->grid->nodes || least[1] >= h->grid->nodes || least[2] >= h->grid->nodes)
-		return;
-	double half = (size - 1) / 2.0;
-	cau_vec3 middle = h->first;
-	for (int axis = 0; axis < 3; axis++)
-		middle = cau_add_scaled(middle, least[axis] + half, h->axis[axis]);
-	double step = h->grid->step_m;
-	double level = cau_tool_distance(h->tool, h->jaw, CAU_PART_HOT, middle, NULL) - step / 2;
-	double corner = sqrt(3) * half * step;
-	if (!(level < corner)) // a distance that is not a number holds nothing
-		return;
-	if (level < -corner) {
-		hold_whole(h, least, size);
-		return;
-	}
-	for (int eighth = 0; eighth < 8; eighth++) {
-		int32_t part = size / 2;
-		hold_block(h,
-		           (const int32_t[3]){least[0] + (eighth & 1) * part,
-		                              least[1] + (eighth >> 1 & 1) * part,
-		                              least[2] + (eighth >> 2) * part},
-		           part);
+	int32_t n = grid->nodes;
+	for (int k = CAU_HEAT_FIELDS - 1; k > 0; k--) {
+		cau_heat_field *field = &grid->field[k];
+		bool outermost = k == CAU_HEAT_FIELDS - 1;
+		int64_t substeps;
+		double rate = rate_of(grid, k, duration_s, &substeps);
+		if (!outermost)
+			cau_heat_field_take_boundary(field, n, field + 1);
+		for (int64_t i = 0; i < substeps; i++) {
+			cau_heat_field_take_inner(field, n, field - 1);
+			cau_diffuse(field->temperature, (float)rate, field->next, n);
+			cau_heat_field_swap(field);
+			if (outermost)
+				cau_heat_field_open_boundary(field, n, (float)grid->ambient_c, grid->fall);
+		}
 	}
 }
 
-// Sets the inner nodes with SDF < dl/2 to the tool's temperature, and their rate to zero.
-static void hold_hot(cau_heat_grid *grid, const cau_tool_def *tool, const cau_pose *pose,
-                     double jaw)
+static void advance_innermost(cau_heat_grid *grid, double duration_s)
 {
-	double step = grid->step_m;
-	cau_vec3 first = {(double)grid->origin[0] * step, (double)grid->origin[1] * step,
-	                  (double)grid->origin[2] * step};
-	hold h = {
-		.grid = grid,
-		.tool = tool,
-		.jaw = jaw,
-		.first = cau_pose_to_local(pose, first),
-		.axis = {cau_rotate_back(pose->rotation, (cau_vec3){step, 0, 0}),
-	             cau_rotate_back(pose->rotation, (cau_vec3){0, step, 0}),
-	             cau_rotate_back(pose->rotation, (cau_vec3){0, 0, step})},
-	};
-	int32_t size = 1;
-	while (size < grid->nodes)
-		size *= 2;
-	hold_block(&h, (const int32_t[3]){0, 0, 0}, size);
+	cau_heat_field *field = &grid->field[0];
+	cau_heat_surface *surface = &grid->surface;
+	int64_t substeps;
+	double rate = rate_of(grid, 0, duration_s, &substeps);
+	cau_heat_field_take_boundary(field, grid->nodes, field + 1);
+	if (surface->held)
+		cau_heat_surface_hold(surface, field, grid->nodes, rate);
+	for (int64_t i = 0; i < substeps; i++) {
+		if (surface->held)
+			cau_diffuse_around(field->temperature, surface->rate, surface->pull, surface->held_c,
+			                   field->next, grid->nodes);
+		else
+			cau_diffuse(field->temperature, (float)rate, field->next, grid->nodes);
+		cau_heat_field_swap(field);
+	}
 }
 
-void cau_heat_grid_survey(cau_heat_grid *grid)
+static bool is_within(const cau_heat_grid *grid, double most_c)
 {
+	return fabs(grid->coldest_c - grid->ambient_c) <= most_c &&
+	       fabs(grid->warmest_c - grid->ambient_c) <= most_c;
+}
+
+static void survey(cau_heat_grid *grid)
+{
+	int64_t count = node_count(grid);
 	CAU_ASSERT(grid->nodes >= 3, "a survey of %d nodes", grid->nodes);
-	cau_extremes(grid->temperature, node_count(grid), &grid->coldest_c, &grid->warmest_c);
-	if (fabs(grid->coldest_c - grid->ambient_c) <= REST_C &&
-	    fabs(grid->warmest_c - grid->ambient_c) <= REST_C)
+	cau_extremes(grid->field[0].temperature, count, &grid->coldest_c, &grid->warmest_c);
+	if (grid->surface.held && !is_within(grid, REST_C))
+		return;
+	for (int k = 1; k < CAU_HEAT_FIELDS && !grid->outer_rests; k++) {
+		float least, most;
+		cau_extremes(grid->field[k].temperature, count, &least, &most);
+		grid->coldest_c = least < grid->coldest_c ? least : grid->coldest_c;
+		grid->warmest_c = most > grid->warmest_c ? most : grid->warmest_c;
+	}
+	if (is_within(grid, REST_C))
 		rest(grid);
+	else if (!grid->surface.held && !grid->outer_rests && is_within(grid, FAINT_C))
+		rest_from(grid, 1);
 }
 
 void cau_heat_grid_advance(cau_heat_grid *grid, const cau_tool_def *tool, const cau_pose *pose,
@@ -274,43 +265,66 @@ void cau_heat_grid_advance(cau_heat_grid *grid, const cau_tool_def *tool, const 
 {
 	CAU_ASSERT(duration_s >= 0, "a part of %g s", duration_s);
 	follow(grid, tool, pose);
+	grid->surface.held = false;
 	bool heating = energized && cau_tool_thinnest_hot_m(tool) < INFINITY;
 	if (cau_heat_grid_is_ambient(grid) && !heating)
 		return;
-	int64_t substeps = cau_heat_grid_substeps(grid->step_m, grid->diffusivity, duration_s);
-	double dt = duration_s / (double)substeps;
-	double rate = grid->diffusivity * dt / (grid->step_m * grid->step_m);
-	CAU_ASSERT(rate >= 0 && rate <= (1 + 1e-9) / 6, "a rate of %g is not stable", rate);
-	fill(grid->rate, node_count(grid), (float)rate);
-	if (heating)
-		hold_hot(grid, tool, pose, jaw);
-	for (int64_t i = 0; i < substeps; i++) {
-		cau_diffuse(grid->temperature, grid->rate, grid->next, grid->nodes);
-		swap_fields(grid);
+	if (heating) {
+		grid->outer_rests = false;
+		cau_heat_surface_find(&grid->surface, &grid->field[0], grid->nodes, tool, pose, jaw);
 	}
-	cau_heat_grid_survey(grid);
+	if (!grid->outer_rests)
+		advance_outer(grid, duration_s);
+	advance_innermost(grid, duration_s);
+	survey(grid);
 }
+
+void cau_heat_grid_fill_outer(cau_heat_grid *grid)
+{
+	CAU_ASSERT(grid->nodes >= 3, "%d nodes to fill from", grid->nodes);
+	rest_from(grid, 1);
+	place_outer(grid);
+	take_inner(grid);
+}
+
+void cau_heat_grid_take_over(cau_heat_grid *grid, const cau_tool_def *tool, const cau_pose *pose,
+                             double jaw, bool energized)
+{
+	place_outer(grid);
+	grid->surface.held = energized && cau_tool_thinnest_hot_m(tool) < INFINITY;
+	if (grid->surface.held)
+		cau_heat_surface_find(&grid->surface, &grid->field[0], grid->nodes, tool, pose, jaw);
+	float least, most;
+	grid->outer_rests = true;
+	for (int k = 1; k < CAU_HEAT_FIELDS; k++) {
+		cau_extremes(grid->field[k].temperature, node_count(grid), &least, &most);
+		grid->outer_rests &= least == most && least == (float)grid->ambient_c;
+	}
+	survey(grid);
+}
+
+// ---- reading
 
 double cau_heat_grid_at(const cau_heat_grid *grid, cau_vec3 point)
 {
-	const double position[3] = {point.x, point.y, point.z};
-	int64_t cell[3], n = grid->nodes;
-	double s[3];
-	for (int axis = 0; axis < 3; axis++) {
-		double nodes = position[axis] / grid->step_m - (double)grid->origin[axis];
-		if (!(nodes >= 0 && nodes <= (double)(n - 1)))
-			return grid->ambient_c;
-		cell[axis] = (int64_t)fmin(floor(nodes), (double)(n - 2));
-		s[axis] = nodes - (double)cell[axis];
-	}
-	const float *corner = grid->temperature + (cell[2] * n + cell[1]) * n + cell[0];
-	double sum = 0;
-	for (int i = 0; i < 8; i++) {
-		int64_t x = i & 1, y = i >> 1 & 1, z = i >> 2;
-		double weight = (x ? s[0] : 1 - s[0]) * (y ? s[1] : 1 - s[1]) * (z ? s[2] : 1 - s[2]);
-		sum += weight * (double)corner[(z * n + y) * n + x];
-	}
-	return sum;
+	cau_heat_cell cell;
+	const cau_heat_field *field = grid->field;
+	int fields = grid->outer_rests ? 1 : CAU_HEAT_FIELDS;
+	if (cau_heat_field_find(field, grid->nodes, point, &cell))
+		return cau_heat_surface_at(&grid->surface, field, grid->nodes, &cell);
+	for (int k = 1; k < fields; k++)
+		if (cau_heat_field_find(&field[k], grid->nodes, point, &cell))
+			return cau_heat_cell_mean(&cell, &field[k], grid->nodes);
+	return grid->ambient_c;
+}
+
+void cau_heat_grid_box(const cau_heat_grid *grid, cau_vec3 *least, cau_vec3 *most)
+{
+	const cau_heat_field *field = &grid->field[grid->outer_rests ? 0 : CAU_HEAT_FIELDS - 1];
+	double step = field->step_m, side = (grid->nodes - 1) * step;
+	*least = (cau_vec3){(double)field->origin[0] * step, (double)field->origin[1] * step,
+	                    (double)field->origin[2] * step};
+	*most = cau_add(*least, (cau_vec3){side, side, side});
 }
 
 double cau_heat_grid_warmest(const cau_heat_grid *grid)

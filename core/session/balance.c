@@ -78,6 +78,7 @@ cau_status cau_session_balance(cau_session *session, cau_balance *balance)
 	solver->kernels->sum(&solver->elements, &solver->slots.incidence, 0, tissue->vertex_count,
 	                     solver->gradient);
 	balance->elastic_j = cau_solver_elastic_energy(solver);
+	cau_vec3 gravity = cau_vec3_of(session->scene->gravity_m_s2);
 	cau_vec3 momentum = {0, 0, 0}, force = {0, 0, 0}, torque = {0, 0, 0};
 	for (int32_t v = 0; v < tissue->vertex_count; v++) {
 		cau_vec3 x = cau_vec3_of(session->position + 3 * (size_t)v);
@@ -89,6 +90,7 @@ cau_status cau_session_balance(cau_session *session, cau_balance *balance)
 		balance->force_sum += cau_length(f);
 		balance->torque_sum += cau_length(x) * cau_length(f);
 		balance->kinetic_j += tissue->mass[v] * cau_dot(velocity, velocity) / 2;
+		balance->gravitational_j -= tissue->mass[v] * cau_dot(gravity, x);
 	}
 	cau_vec3_to(momentum, balance->momentum);
 	cau_vec3_to(force, balance->net_force);

@@ -13,7 +13,9 @@ static void heat_edges(cau_session *session, cau_tool *tool)
 	double duration = session->solver.step_s / parts;
 	for (int part = 1; part <= parts; part++) {
 		cau_pose pose =
-			cau_pose_between(&tool->pose_before, &tool->state.pose, (double)part / parts);
+			tool->state.pose; // at the end to the bit: restoring finds the surface there
+		if (part < parts)
+			pose = cau_pose_between(&tool->pose_before, &pose, (double)part / parts);
 		cau_heat_grid_advance(&tool->grid, def, &pose, tool->state.jaw, tool->state.energized,
 		                      duration);
 		if (cau_heat_grid_warmest(&tool->grid) > CAU_LIVING_C)
@@ -44,7 +46,7 @@ void cau_session_burn(cau_session *session)
 		cau_near_refit(&session->near, session->position);
 	for (int32_t i = 0; i < session->tool_count; i++) {
 		cau_tool *tool = &session->tool[i];
-		CAU_ASSERT(tool->grid.temperature != NULL, "tool %d has no heat grid", i);
+		CAU_ASSERT(tool->grid.field[0].temperature != NULL, "tool %d has no heat grid", i);
 		int32_t first = session->dissection.removed_count;
 		uint32_t layers = 0;
 		heat_edges(session, tool);

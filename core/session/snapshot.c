@@ -52,16 +52,18 @@ static void pass_tool(snapshot_archive *archive, cau_tool *tool)
 {
 	CAU_ASSERT(tool->grid.nodes >= 0 && tool->grid.nodes <= CAU_SNAPSHOT_NODES,
 	           "a heat grid of %d nodes", tool->grid.nodes);
-	cau_heat_grid grid = tool->grid;
+	cau_heat_grid *grid = &tool->grid;
 	snapshot_pass(archive, &tool->state, sizeof tool->state);
 	snapshot_pass(archive, &tool->target, sizeof tool->target);
 	snapshot_pass(archive, &tool->jaw_target, sizeof tool->jaw_target);
 	snapshot_pass(archive, &tool->pose_before, sizeof tool->pose_before);
 	snapshot_pass(archive, &tool->grasp_count, sizeof tool->grasp_count);
 	snapshot_pass(archive, tool->grasp, sizeof tool->grasp);
-	snapshot_pass(archive, tool->grid.origin, sizeof tool->grid.origin);
-	size_t nodes = (size_t)grid.nodes * (size_t)grid.nodes * (size_t)grid.nodes;
-	snapshot_pass(archive, tool->grid.temperature, nodes * sizeof *tool->grid.temperature);
+	snapshot_pass(archive, grid->field[0].origin, sizeof grid->field[0].origin);
+	size_t nodes = (size_t)grid->nodes * (size_t)grid->nodes * (size_t)grid->nodes;
+	int fields = archive->version < CAU_SNAPSHOT_NESTED ? 1 : CAU_HEAT_FIELDS;
+	for (int k = 0; k < fields; k++)
+		snapshot_pass(archive, grid->field[k].temperature, nodes * sizeof(float));
 }
 
 // What a material bears came with version 6, as its last member, and has a place of its own below:
@@ -288,7 +290,10 @@ static cau_status restore_tools(cau_session *session, const snapshot_header *hea
 			return status;
 		session->tool_count++;
 		pass_tool(archive, tool);
-		cau_heat_grid_survey(&tool->grid);
+		if (header->version < CAU_SNAPSHOT_NESTED)
+			cau_heat_grid_fill_outer(&tool->grid);
+		cau_heat_grid_take_over(&tool->grid, &state.definition, &state.pose, state.jaw,
+		                        state.energized);
 	}
 	return CAU_OK;
 }
@@ -478,7 +483,8 @@ uint64_t cau_session_hash(const cau_session *session)
 		hash = cau_hash_bytes(hash, tool->state.force_n, sizeof tool->state.force_n);
 		hash = cau_hash_word(hash,
 		                     (uint64_t)tool->state.energized << 32 | (uint32_t)tool->grasp_count);
-		hash = cau_hash_bytes(hash, tool->grid.temperature, nodes * sizeof(float));
+		for (int k = 0; k < CAU_HEAT_FIELDS; k++)
+			hash = cau_hash_bytes(hash, tool->grid.field[k].temperature, nodes * sizeof(float));
 	}
 	return hash;
 }

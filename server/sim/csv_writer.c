@@ -5,6 +5,9 @@
 #include <math.h>
 #include <string.h>
 
+// All but the last columns, the stages' times, depend on scene and commands alone: two runs have
+// the same bytes there.
+
 // column, format, value of `frame`, `s`, its statistics, and `balance`
 #define COLUMNS(X)                                                                                 \
 	X("tick", PRIu64, frame->tick)                                                                 \
@@ -29,7 +32,8 @@
 	X("tool_force_max_n", ".6g", largest_force(frame))                                             \
 	X("tip_temperature_max_c", ".6g", hottest_tip(frame))                                          \
 	X("kinetic_j", ".9g", balance->kinetic_j)                                                      \
-	X("elastic_j", ".9g", balance->elastic_j)
+	X("elastic_j", ".9g", balance->elastic_j)                                                      \
+	X("gravitational_j", ".9g", balance->gravitational_j)
 
 // suffix of a tool's column, value of `tool`
 #define TOOL_COLUMNS(X)                                                                            \
@@ -68,14 +72,14 @@ void sim_csv_begin(FILE *file, const cau_scene_def *scene)
 	comma = ",";
 	COLUMNS(HEAD)
 #undef HEAD
-#define HEAD(code, name) fputs(",stage_" name "_s", file);
-	CAU_STAGE_TABLE(HEAD)
-#undef HEAD
 	for (int32_t i = 0; i < scene->tool_count; i++) {
 #define HEAD(suffix, value) fprintf(file, ",%s_" suffix, scene->tools[i].name);
 		TOOL_COLUMNS(HEAD)
 #undef HEAD
 	}
+#define HEAD(code, name) fputs(",stage_" name "_s", file);
+	CAU_STAGE_TABLE(HEAD)
+#undef HEAD
 	fputc('\n', file);
 }
 
@@ -109,9 +113,9 @@ void sim_csv_tick(FILE *file, const cau_scene_def *scene, const cau_frame *frame
 	comma = ",";
 	COLUMNS(CELL)
 #undef CELL
-	for (int stage = 0; stage < CAU_STAGE_COUNT; stage++)
-		fprintf(file, ",%.6g", s->seconds[stage]);
 	for (int32_t i = 0; i < scene->tool_count; i++)
 		write_tool(file, find_tool(frame, scene->tools[i].name));
+	for (int stage = 0; stage < CAU_STAGE_COUNT; stage++)
+		fprintf(file, ",%.6g", s->seconds[stage]);
 	fputc('\n', file);
 }

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Every tick as comma-separated values: statistics, energies, the time that each stage took, and
-// force, torque, temperature and heat of each tool that the scene has.
+// Every tick as comma-separated values: statistics, energies, force, torque, temperature and heat
+// of each tool that the scene has, and last the time that each stage took. README.md has the
+// columns.
 #pragma once
 
 #include <stdio.h>
@@ -10,6 +11,7 @@
 // The columns' names; those of a tool begin with its name. `scene` is the one that the ticks are
 // of.
 void sim_csv_begin(FILE *file, const cau_scene_def *scene);
-// Stage times are 0 unless the session has a clock. Cells of a tool that is gone are empty.
+// Stage times are the machine's, and 0 unless the session has a clock. Cells of a tool that is gone
+// are empty.
 void sim_csv_tick(FILE *file, const cau_scene_def *scene, const cau_frame *frame,
                   const cau_balance *balance);

@@ -288,7 +288,8 @@ typedef struct cau_balance {
 	double force_sum;     // sum of |f_i|, N
 	double torque_sum;    // sum of |r_i| |f_i|, N m
 	double kinetic_j, elastic_j;
-	double residual_n; // |gradient of eq. 4| over free vertices at the last step's end
+	double gravitational_j; // above the world's origin
+	double residual_n;      // |gradient of eq. 4| over free vertices at the last step's end
 } cau_balance;
 // Changes no bit of the state. CAU_NO_MEMORY: *balance is all 0.
 cau_status cau_session_balance(cau_session *session, cau_balance *balance);

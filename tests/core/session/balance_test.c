@@ -193,6 +193,7 @@ static void check_fall(int precision, double tolerance)
 	cau_default_gravity(scene->gravity_m_s2);
 	cau_session *session = stage_open(scene, 1);
 	cau_session_info info = stage_info(session);
+	double above_j = stage_balance(session).gravitational_j;
 	stage_step(session, TICKS);
 	cau_frame frame = stage_frame(session);
 	double way = scene->gravity_m_s2[2] * info.step_s * info.step_s * TICKS * (TICKS + 1) / 2,
@@ -201,6 +202,10 @@ static void check_fall(int precision, double tolerance)
 		double fallen = frame.position[i] - info.rest_position[i];
 		off = fmax(off, fabs(fallen - (i % 3 == 2 ? way : 0)));
 	}
+	cau_balance balance = stage_balance(session);
+	double speed = scene->gravity_m_s2[2] * info.step_s * TICKS, mass = balance.momentum[2] / speed;
+	double lost_j = above_j - balance.gravitational_j;
+	assert_true(fabs(lost_j / (mass * scene->gravity_m_s2[2] * way) - 1) <= tolerance);
 	print_message("precision %d: off by %.1e of the way fallen\n", precision, off / fabs(way));
 	if (!(off <= tolerance * fabs(way)))
 		fail_msg("fell %g m, off by %g m", way, off);

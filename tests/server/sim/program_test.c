@@ -88,11 +88,44 @@ static void ticks_tell_energies_and_forces(void **state)
 	assert_non_null(last);
 	assert_true(cell_of(last, column_of(text, "kinetic_j")) > 0);
 	assert_true(cell_of(last, column_of(text, "elastic_j")) > 0);
+	assert_true(cell_of(last, column_of(text, "gravitational_j")) != 0);
 	assert_true(cell_of(last, column_of(text, "stage_local_s")) > 0);
 	assert_true(cell_of(last, column_of(text, "stage_local_s")) < 1);
 	assert_true(cell_of(last, column_of(text, "hook_temperature_c")) > 100);
 	assert_true(cell_of(last, column_of(text, "hook_energy_j")) > 0);
 	free(text);
+}
+
+// All but the stages' times, which come last: the same bytes, whenever and with how many threads.
+static void ticks_are_the_same_but_for_their_times(void **state)
+{
+	(void)state;
+	char *text[2], arguments[512], hash[17];
+	size_t bytes;
+	for (int i = 0; i < 2; i++) {
+		snprintf(arguments, sizeof arguments,
+		         "--scene fascia --cut --seconds 3 --json --threads %d --csv %s", i + 1,
+		         fixture_path("same.csv"));
+		read_hash(arguments, hash);
+		text[i] = fixture_read(fixture_path("same.csv"), &bytes);
+	}
+	int columns = column_of(text[0], "stage_commands_s"), lines = 0;
+	const char *line[2] = {text[0], text[1]};
+	while (line[0] && *line[0] && line[1]) {
+		size_t length = 0;
+		for (int comma = 0; comma < columns; length++)
+			comma += line[0][length] == ',';
+		assert_memory_equal(line[0], line[1], length);
+		lines++;
+		for (int i = 0; i < 2; i++) {
+			line[i] = strchr(line[i], '\n');
+			line[i] = line[i] ? line[i] + 1 : NULL;
+		}
+	}
+	assert_int_equal(lines, 181);
+	assert_null(strstr(strstr(text[0], ",stage_"), ",hook_"));
+	free(text[0]);
+	free(text[1]);
 }
 
 static void the_cut_parts_tissue(void **state)
@@ -124,6 +157,7 @@ int main(int argument_count, char **arguments)
 		cmocka_unit_test(print_cut_is_the_kept_script),
 		cmocka_unit_test(files_change_nothing),
 		cmocka_unit_test(ticks_tell_energies_and_forces),
+		cmocka_unit_test(ticks_are_the_same_but_for_their_times),
 		cmocka_unit_test(the_cut_parts_tissue),
 	};
 	if (argument_count < 2) {

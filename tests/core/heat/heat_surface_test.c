@@ -1,0 +1,223 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// The field around a hot part whose surface lies between the nodes: against the solution around a
+// ball, and against finer grids where the ball moves.
+#include "heat/heat_surface.h"
+
+#include <setjmp.h>
+#include <stdarg.h>
+#include <stddef.h>
+#include <stdint.h>
+
+#include <cmocka.h>
+
+#include "core/tool/tools.h"
+#include "heat/heat_grid.h"
+
+static const double AMBIENT_C = 37;
+static const double TICK_S = 1.0 / 60;
+static const double RADIUS_M = 3e-3;
+// What is asked: 2 % of the tool's excess over ambient at cells of a sixth of the radius.
+static const double ASKED = 0.02;
+
+static cau_tool_def ball_of(double step_m, int cells)
+{
+	cau_tool_def tool = tool_with_defaults(CAU_TOOL_SPHERE);
+	tool.hot_radius_m = RADIUS_M;
+	tool.grid_step_m = step_m;
+	tool.grid_cells = cells;
+	tool.pose = pose_at(0.23e-3, -0.41e-3, 0.37e-3); // on no node
+	return tool;
+}
+
+static cau_heat_grid create(const cau_tool_def *tool)
+{
+	cau_heat_grid grid;
+	assert_int_equal(cau_heat_grid_create(&grid, tool, AMBIENT_C, TICK_S, &tool->pose, NULL),
+	                 CAU_OK);
+	return grid;
+}
+
+// Outside a ball that is held at 1 from time 0 on, in an infinite medium at 0 (Carslaw and Jaeger).
+static double around_ball(double r, double time_s, double diffusivity)
+{
+	return RADIUS_M / r * erfc((r - RADIUS_M) / (2 * sqrt(diffusivity * time_s)));
+}
+
+static cau_vec3 direction(uint64_t *random)
+{
+	for (;;) {
+		cau_vec3 d = {random_between(random, -1, 1), random_between(random, -1, 1),
+		              random_between(random, -1, 1)};
+		double length = cau_length(d);
+		if (length > 0.1 && length < 1)
+			return cau_scale(1 / length, d);
+	}
+}
+
+// Greatest error, relative to the tool's excess, from the surface to ten radii, against the
+// solution at `against_s`.
+static double worst_around_ball(const cau_tool_def *tool, int parts, double part_s,
+                                double against_s)
+{
+	cau_heat_grid grid = create(tool);
+	for (int i = 0; i < parts; i++)
+		cau_heat_grid_advance(&grid, tool, &tool->pose, 0, 1, part_s);
+	double worst = 0, excess = tool->temperature_c - AMBIENT_C;
+	uint64_t random = 19;
+	for (int i = 0; i < 4000; i++) {
+		double r = RADIUS_M * (1 + 9 * pow(random_between(&random, 0, 1), 3)); // most of them near
+		cau_vec3 at = cau_add_scaled(cau_vec3_of(tool->pose.position_m), r, direction(&random));
+		double u = (cau_heat_grid_at(&grid, at) - AMBIENT_C) / excess;
+		worst = fmax(worst, fabs(u - around_ball(r, against_s, tool->diffusivity_m2_s)));
+	}
+	cau_heat_grid_finish(&grid);
+	return worst;
+}
+
+static void test_around_a_ball(void **state)
+{
+	(void)state;
+	cau_tool_def tool = ball_of(RADIUS_M / 6, 32);
+	static const struct {
+		int parts;
+		double part_s;
+	} run[] = {{60, 1.0 / 60}, {600, 1.0 / 60}, {600, 0.1}, {300, 1}};
+	for (size_t k = 0; k < sizeof run / sizeof *run; k++) {
+		double time_s = run[k].parts * run[k].part_s;
+		double worst = worst_around_ball(&tool, run[k].parts, run[k].part_s, time_s);
+		print_message("ball: %.2f %% after %g s\n", 100 * worst, time_s);
+		assert_true(worst < ASKED);
+	}
+}
+
+// A smaller box settles sooner: nothing grows any more after twenty minutes.
+static void test_steady_around_a_ball(void **state)
+{
+	(void)state;
+	cau_tool_def tool = ball_of(RADIUS_M / 6, 24);
+	double worst = worst_around_ball(&tool, 120, 10, INFINITY);
+	print_message("ball: %.2f %% when steady\n", 100 * worst);
+	assert_true(worst < ASKED);
+}
+
+// Halving the cells, from those of a tool with the defaults, leaves less than half of the error.
+static void test_finer_is_better(void **state)
+{
+	(void)state;
+	static const double DEFAULTS = 0.05;
+	cau_tool_def coarse = ball_of(RADIUS_M / 3, 16), fine = ball_of(RADIUS_M / 6, 32);
+	double at_a_third = worst_around_ball(&coarse, 240, TICK_S, 4);
+	double at_a_sixth = worst_around_ball(&fine, 240, TICK_S, 4);
+	print_message("ball: %.2f %% at a third of the radius, %.2f %% at a sixth\n", 100 * at_a_third,
+	              100 * at_a_sixth);
+	assert_true(at_a_third < DEFAULTS);
+	assert_true(at_a_sixth < at_a_third / 2);
+}
+
+// The field a second after the ball has set off at `speed`, obliquely to the axes.
+static cau_heat_grid after_a_way(cau_tool_def *tool, double speed_m_s, int parts)
+{
+	cau_heat_grid grid = create(tool);
+	const cau_vec3 start = cau_vec3_of(tool->pose.position_m);
+	for (int i = 1; i <= 60 * parts; i++) {
+		double way = speed_m_s * i / (60 * parts);
+		cau_vec3 at = cau_add_scaled(start, way, (cau_vec3){0.8, 0.36, 0.48});
+		cau_vec3_to(at, tool->pose.position_m);
+		cau_heat_grid_advance(&grid, tool, &tool->pose, 0, 1, TICK_S / parts);
+	}
+	return grid;
+}
+
+// Root mean square of the differences, from the surface to 3 mm from it; relative to the excess.
+static double difference(const cau_tool_def *tool, const cau_heat_grid *a, const cau_heat_grid *b)
+{
+	double sum = 0;
+	uint64_t random = 23;
+	enum { POINTS = 4000 };
+	for (int i = 0; i < POINTS; i++) {
+		double r = random_between(&random, RADIUS_M, 2 * RADIUS_M);
+		cau_vec3 at = cau_add_scaled(cau_vec3_of(tool->pose.position_m), r, direction(&random));
+		double d = cau_heat_grid_at(a, at) - cau_heat_grid_at(b, at);
+		sum += d * d;
+	}
+	return sqrt(sum / POINTS) / (tool->temperature_c - AMBIENT_C);
+}
+
+// 5 and 10 mm/s: what cuts are made at and more. The reference has half the cells' length and
+// quarters of the ticks.
+static void test_a_moving_ball(void **state)
+{
+	(void)state;
+	for (int k = 1; k <= 2; k++) {
+		double speed = 5e-3 * k;
+		cau_tool_def tool = ball_of(RADIUS_M / 6, 32), finer = ball_of(RADIUS_M / 12, 64);
+		cau_heat_grid reference = after_a_way(&finer, speed, 4);
+		cau_heat_grid grid = after_a_way(&tool, speed, 1);
+		double rms = difference(&tool, &grid, &reference);
+		print_message("moving ball: %.2f %% rms at %g mm/s\n", 100 * rms, 1e3 * speed);
+		assert_true(rms < ASKED);
+		cau_heat_grid_finish(&grid);
+		cau_heat_grid_finish(&reference);
+	}
+}
+
+// With steps of exactly dl^2 / (6 alpha) and the surface anywhere between the nodes, on them too,
+// nothing leaves the range from ambient to the tool, and what is held is at the tool's temperature.
+static void test_stable_wherever_the_surface_is(void **state)
+{
+	(void)state;
+	static const float ROUNDING_C = 1e-3F; // of floats near 200
+	cau_tool_def tool = ball_of(1e-3, 16);
+	double limit = 1e-6 / (6 * tool.diffusivity_m2_s);
+	uint64_t random = 29;
+	for (int trial = 0; trial < 60; trial++) {
+		double cell = trial < 20 ? 1e-3 * trial / 20 : 0;
+		cau_vec3 off = {random_between(&random, 0, 1e-3), random_between(&random, 0, 1e-3), cell};
+		tool.pose = trial < 40 ? pose_at(off.x, trial < 20 ? 0 : off.y, off.z)
+		                       : pose_at(1e-7 * (trial - 50), 0, 0);
+		cau_heat_grid grid = create(&tool);
+		cau_heat_grid_advance(&grid, &tool, &tool.pose, 0, 1, 20 * limit);
+		for (int64_t i = 0; i < 16 * 16 * 16; i++) {
+			float u = grid.field[0].temperature[i];
+			assert_true(u >= (float)AMBIENT_C - ROUNDING_C);
+			assert_true(u <= (float)tool.temperature_c + ROUNDING_C);
+		}
+		cau_vec3 middle = cau_vec3_of(tool.pose.position_m);
+		assert_true(cau_heat_grid_at(&grid, middle) == (float)tool.temperature_c);
+		cau_heat_grid_finish(&grid);
+	}
+}
+
+// At the surface the field is that of the tool, where linear interpolation between the nodes would
+// be off by a quarter of what it falls in a cell.
+static void test_read_up_to_the_surface(void **state)
+{
+	(void)state;
+	cau_tool_def tool = ball_of(RADIUS_M / 6, 32);
+	cau_heat_grid grid = create(&tool);
+	for (int i = 0; i < 60; i++)
+		cau_heat_grid_advance(&grid, &tool, &tool.pose, 0, 1, TICK_S);
+	double excess = tool.temperature_c - AMBIENT_C;
+	uint64_t random = 31;
+	for (int i = 0; i < 2000; i++) {
+		cau_vec3 d = direction(&random), middle = cau_vec3_of(tool.pose.position_m);
+		double at = cau_heat_grid_at(&grid, cau_add_scaled(middle, RADIUS_M, d));
+		assert_near(at, tool.temperature_c, ASKED * excess);
+		double within = cau_heat_grid_at(&grid, cau_add_scaled(middle, 0.95 * RADIUS_M, d));
+		assert_true(within == tool.temperature_c);
+	}
+	cau_heat_grid_finish(&grid);
+}
+
+int main(void)
+{
+	const struct CMUnitTest tests[] = {
+		cmocka_unit_test(test_around_a_ball),
+		cmocka_unit_test(test_steady_around_a_ball),
+		cmocka_unit_test(test_finer_is_better),
+		cmocka_unit_test(test_a_moving_ball),
+		cmocka_unit_test(test_stable_wherever_the_surface_is),
+		cmocka_unit_test(test_read_up_to_the_surface),
+	};
+	return cmocka_run_group_tests(tests, NULL, NULL);
+}
