@@ -6,9 +6,10 @@
 #include "session/session_internal.h"
 
 enum {
-	// with the sides of faces; 4, without, 3, without rest and accuracy too, and 1, elements by
+	// with the poses that tools are asked to take; 5, without, 4, without the sides of faces too,
+	// 3, without rest and accuracy too, and 1, elements by
 	// slot, are still read
-	CAU_SNAPSHOT_VERSION = 5,
+	CAU_SNAPSHOT_VERSION = 6,
 	CAU_SNAPSHOT_NODES = 4096, // along a heat grid's side at most: far more than a tool may have
 };
 
