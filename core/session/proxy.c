@@ -33,8 +33,7 @@ static void lead(cau_tool *tool, double share)
 	cau_vec3 offset = offset_of(&tool->pose_before, &tool->anchor_before);
 	if (cau_length(offset) > nearly_m)
 		offset = offset_of(&tool->pose_before, &tool->anchor);
-	state->pose = tool->anchor;
-	cau_vec3_to(cau_add(cau_vec3_of(state->pose.position_m), offset), state->pose.position_m);
+	state->pose = cau_coupling_pose(&tool->anchor, offset);
 }
 
 static void let_go(cau_session *session, cau_tool *tool)
@@ -98,6 +97,7 @@ void cau_session_take_poses(cau_session *session)
 	for (int32_t i = 0; i < session->tool_count; i++) {
 		if (!set->row_count) // nothing was solved that could hold it
 			memset(set->tool[i].offset, 0, sizeof set->tool[i].offset);
-		session->tool[i].state.pose = cau_coupling_pose(&set->tool[i]);
+		session->tool[i].state.pose =
+			cau_coupling_pose(&set->tool[i].anchor, cau_vec3_of(set->tool[i].offset));
 	}
 }

@@ -190,7 +190,7 @@ static void measure_gap(const cau_contact_set *set, const cau_step_solver *solve
 	cau_tool_part part = (cau_tool_part)tool->part;
 	cau_vec3 normal, side = cau_vec3_of(row->side);
 	CAU_ASSERT_INDEX(row->tool, set->tool_count);
-	cau_pose pose = cau_coupling_pose(tool);
+	cau_pose pose = cau_coupling_pose(&tool->anchor, cau_vec3_of(tool->offset));
 	cau_vec3 point = cau_pose_to_local(&pose, cau_contact_point(row, solver->position));
 	row->gap = cau_tool_distance(tool->def, tool->jaw, part, point, &normal);
 	if (cau_dot(normal, side) < 0 || (row->corner_count == 3 && row->gap < 0)) {

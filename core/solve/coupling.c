@@ -5,11 +5,11 @@
 
 #include "cautery/assert.h"
 
-cau_pose cau_coupling_pose(const cau_contact_tool *tool)
+cau_pose cau_coupling_pose(const cau_pose *anchor, cau_vec3 offset)
 {
-	cau_pose pose = tool->anchor;
-	for (int c = 0; c < 3; c++)
-		pose.position_m[c] += tool->offset[c];
+	cau_pose pose = *anchor;
+	if (cau_dot(offset, offset) != 0) // else a zero would lose its sign
+		cau_vec3_to(cau_add(cau_vec3_of(anchor->position_m), offset), pose.position_m);
 	return pose;
 }
 

@@ -21,8 +21,8 @@
 // twenty times as stiff as fat under a ball of 3 mm, so that light touch is where it is asked for.
 static const double cau_coupling_reach_m = 0.004;
 
-// Where the tool is: its anchor, and its offset from that.
-cau_pose cau_coupling_pose(const cau_contact_tool *tool);
+// The anchor's pose, off by so much (m); to the bit where that is nothing.
+cau_pose cau_coupling_pose(const cau_pose *anchor, cau_vec3 offset);
 
 // The spring's compliance by how far it is pulled out, and the offsets that the present reactions
 // make. Returns whether a compliance has changed.

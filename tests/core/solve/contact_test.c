@@ -48,7 +48,7 @@ static void make(pressed *p, double friction)
 static double gap_of(const pressed *p, int32_t vertex, cau_vec3 *normal)
 {
 	const cau_contact_tool *tool = &p->set->tool[0];
-	cau_pose pose = cau_coupling_pose(tool);
+	cau_pose pose = cau_coupling_pose(&tool->anchor, cau_vec3_of(tool->offset));
 	return cau_tool_distance_at(tool->def, &pose, tool->jaw, CAU_PART_BOTH,
 	                            cau_vec3_of(p->r.solver.position + 3 * vertex), normal);
 }
