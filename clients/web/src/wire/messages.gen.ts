@@ -1762,6 +1762,7 @@ export const SECTION = {
   face_layers: 17,
   texture: 18,
   rest: 19,
+  tools_asked: 32,
 } as const;
 
 /** Scalars of the vertices: n in a frame stands for least + step n in the unit, n is at most `most`.
