@@ -247,7 +247,7 @@ static cli_exit run(cli *c)
 		return code;
 	const cau_stream_tool *found = cli_find_tool(h.stream, h.tool);
 	if (found) {
-		h.pose = found->pose;
+		h.pose = found->asked_pose;
 		h.jaw = found->jaw;
 		h.sequence = (int64_t)found->sequence;
 	}

@@ -67,6 +67,7 @@ static void write_tool(cau_json_writer *writer, const cau_stream_tool *tool)
 	cau_json_unsigned(writer, "driver", tool->driver);
 	cau_json_unsigned(writer, "sequence", tool->sequence);
 	cau_json_numbers(writer, "position_m", tool->pose.position_m, 3);
+	cau_json_numbers(writer, "asked_m", tool->asked_pose.position_m, 3);
 	cau_json_numbers(writer, "force_n", tool->force_n, 3);
 	cau_json_number(writer, "tip_temperature_c", tool->tip_temperature_c);
 	cau_json_close(writer);

@@ -18,11 +18,12 @@
 #include "session/session_internal.h"
 #include "tool/face_distance.h"
 
-static const double touch_m = 1e-5;    // nearer is touching
-static const double deep_share = 0.5;  // of the tip's radius: a face that is deeper is missed
-static const double margin_m = 2e-3;   // a face that was pushed and is further away is let go of
-static const double most_stretch = 3;  // of an edge, by its length at rest
-static const double release_m_s = 0.1; // of a face that is inside and pushed out
+static const double touch_m = 1e-5;   // nearer is touching
+static const double deep_share = 0.5; // of the tip's radius: a face that is deeper is missed
+static const double dip_share =
+	0.3; // likewise: a face that is deeper is a row from the next step on
+static const double beside_m = 2e-5; // of the tip beside a row: no other is needed there
+static const double margin_m = 2e-3; // a face that was pushed and is further away is let go of
 enum { CANDIDATES = 4 * CAU_MAX_CONTACTS, STEPS_ON_WAY = 64 };
 
 typedef struct cau_candidate {
@@ -97,7 +98,7 @@ static void place(const reach *r, const passage *p, int32_t above, double start_
 	row->above = above;
 	cau_vec3_to(way_back(p, above), row->side);
 	row->way_m = p->way + 2 * r->def->hot_radius_m;
-	row->slack_m = fmax(-start_m - release_m_s * r->session->solver.step_s, 0);
+	row->slack_m = cau_contact_slack(start_m, r->session->solver.step_s);
 	memcpy(row->weight, p->weight, sizeof row->weight);
 }
 
@@ -153,7 +154,8 @@ static bool is_missed(reach *r, cau_candidate *c)
 	c->depth = way_out(r, &p, p.weight, side, most);
 	double deepest = way_out(r, &p, weight, side, most);
 	if (end <= touch_m || c->depth > 0 || deepest > 0)
-		cau_contact_touch(&r->session->contact, r->index, c->row.face, above);
+		cau_contact_touch(&r->session->contact, r->index, c->row.face, above,
+		                  fmax(c->depth, deepest) > dip_share * r->def->hot_radius_m);
 	if (deepest > c->depth) {
 		c->depth = deepest;
 		memcpy(p.weight, weight, sizeof weight);
@@ -165,69 +167,67 @@ static bool is_missed(reach *r, cau_candidate *c)
 	return true;
 }
 
-// The row of a face that was pushed in the last step, where it is nearest now. False: it is away.
-static bool take_up(const reach *r, const cau_contact_memory *kept, cau_contact_row *row)
-{
-	passage p;
-	cau_vec3 gradient;
-	follow(r, row, &p);
-	double start = distance_at(r, &p, 0, p.weight, &gradient);
-	if (!(start <= margin_m))
-		return false;
-	place(r, &p, kept->above, start, row);
-	return true;
-}
-
-// Whether an edge of the face is drawn out so far that tissue would have torn.
-static bool is_overdrawn(const cau_session *session, const int32_t vertex[3])
-{
-	for (int32_t k = 0; k < 3; k++) {
-		size_t a = 3 * (size_t)vertex[k], b = 3 * (size_t)vertex[(k + 1) % 3];
-		cau_vec3 now = cau_sub(cau_vec3_of(session->position_start + a),
-		                       cau_vec3_of(session->position_start + b));
-		cau_vec3 rest =
-			cau_sub(cau_vec3_of(session->tissue.rest + a), cau_vec3_of(session->tissue.rest + b));
-		if (!(cau_dot(now, now) <= most_stretch * most_stretch * cau_dot(rest, rest)))
-			return true;
-	}
-	return false;
-}
-
-// Fills in what the row knows of its corners. False: one cannot move, and a face that hangs on it
-// may have nowhere to go; or the face is drawn out so far that the tool is let through.
-static bool describe_corners(const reach *r, cau_contact_row *row)
+// Fills in what the row knows of its corners. Where none of them can move, the tool gives way.
+static void describe_corners(const reach *r, cau_contact_row *row)
 {
 	const cau_session *session = r->session;
-	bool all_free = !is_overdrawn(session, row->vertex);
 	for (int32_t k = 0; k < 3; k++) {
 		int32_t v = row->vertex[k];
 		CAU_ASSERT_INDEX(v, session->tissue.vertex_count);
 		row->free[k] = !session->fixed[v];
-		all_free = all_free && row->free[k];
 		cau_vec3 local = cau_pose_to_local(&r->tool->pose_before,
 		                                   cau_vec3_of(session->position_start + 3 * (size_t)v));
-		cau_vec3_to(cau_pose_to_world(&r->tool->state.pose, local), row->no_slip[k]);
+		cau_vec3_to(cau_pose_to_world(&r->tool->anchor, local), row->no_slip[k]);
 	}
-	return all_free;
 }
 
-// Whether a row pushes at that point of the face already, or near it.
+// Square of how far (m) apart two points of a face are.
+static double apart2(const reach *r, const cau_contact_row *a, const cau_contact_row *b)
+{
+	cau_vec3 off = {0, 0, 0};
+	for (int32_t k = 0; k < 3; k++)
+		off = cau_add_scaled(off, a->weight[k] - b->weight[k],
+		                     cau_vec3_of(r->session->position_start + 3 * (size_t)a->vertex[k]));
+	return cau_dot(off, off);
+}
+
+// Whether a row pushes at that point of the face already, or so near it that the tip, round as it
+// is, is no deeper beside it than makes a difference.
 static bool has_row(const reach *r, const cau_contact_row *row)
 {
-	const double near_share = 0.1; // of the face
+	const double near2 = 2 * r->def->hot_radius_m * beside_m;
 	const cau_contact_set *set = &r->session->contact;
 	for (int32_t i = 0; i < set->row_count; i++) {
 		const cau_contact_row *other = &set->row[i];
 		if (other->tool != row->tool || other->corner_count != row->corner_count ||
 		    memcmp(other->vertex, row->vertex, sizeof row->vertex) != 0)
 			continue;
-		double off = 0;
-		for (int32_t k = 0; k < 3; k++)
-			off = fmax(off, fabs(other->weight[k] - row->weight[k]));
-		if (off < near_share)
+		if (apart2(r, other, row) < near2)
 			return true;
 	}
 	return false;
+}
+
+// Rows of a face that was pushed in the last step: where it was pushed, and where it is nearest
+// now, unless that is near. None: it is away. Points that moved with what is nearest would make
+// tissue at rest tilt to and fro.
+static void take_up(const reach *r, const cau_contact_memory *kept, cau_contact_row *row)
+{
+	passage p;
+	cau_vec3 gradient;
+	follow(r, row, &p);
+	double start = distance_at(r, &p, 0, p.weight, &gradient);
+	if (!(start <= margin_m))
+		return;
+	place(r, &p, kept->above, start, row);
+	CAU_ASSERT_INDEX(kept->point_count, CAU_MAX_POINTS + 1);
+	for (int32_t k = 0; k < kept->point_count; k++) {
+		memcpy(row->weight, kept->point[k], sizeof row->weight);
+		cau_contact_add(&r->session->contact, row);
+	}
+	memcpy(row->weight, p.weight, sizeof row->weight);
+	if (!has_row(r, row))
+		cau_contact_add(&r->session->contact, row);
 }
 
 static cau_candidate candidate_of(const reach *r, int32_t face)
@@ -240,7 +240,8 @@ static cau_candidate candidate_of(const reach *r, int32_t face)
 static void offer(reach *r, int32_t face)
 {
 	cau_candidate c = candidate_of(r, face);
-	if (!describe_corners(r, &c.row) || !is_missed(r, &c) || has_row(r, &c.row))
+	describe_corners(r, &c.row);
+	if (!is_missed(r, &c) || has_row(r, &c.row))
 		return;
 	r->kept_missed = r->kept_missed || c.kept;
 	if (r->count < CANDIDATES)
@@ -341,7 +342,7 @@ static reach begin(cau_session *session, int32_t index, cau_tool_part part)
 
 bool cau_session_feels_faces(const cau_tool *tool)
 {
-	return !cau_tool_has_jaws(&tool->state.definition);
+	return !tool->state.grasping;
 }
 
 void cau_session_reach_again(cau_session *session, int32_t index, cau_tool_part part)
@@ -352,8 +353,8 @@ void cau_session_reach_again(cau_session *session, int32_t index, cau_tool_part 
 		if (kept->tool != index || !kept->pushed || !is_drawn(session, kept->face))
 			continue;
 		cau_candidate c = candidate_of(&r, kept->face);
-		if (describe_corners(&r, &c.row) && take_up(&r, kept, &c.row))
-			cau_contact_add(&session->contact, &c.row);
+		describe_corners(&r, &c.row);
+		take_up(&r, kept, &c.row);
 	}
 }
 
@@ -367,6 +368,7 @@ void cau_session_reach(cau_session *session, int32_t index, cau_tool_part part)
 	for (int32_t b = 0; b < session->near.block_count; b++)
 		if (may_meet(&r, &session->near.edge_box[b]))
 			search_block(&r, b);
+	session->contact.tool[index].passing = r.count > 0;
 	qsort(r.list, (size_t)r.count, sizeof *r.list, compare);
 	// Faces that touch only because others were passed tell a wrong side: first those are held.
 	for (int32_t k = 0; k < r.count; k++)

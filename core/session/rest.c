@@ -55,11 +55,24 @@ static bool is_same_pose(const cau_pose *a, const cau_pose *b)
 	return true;
 }
 
+// A tool that touches quivers with the tissue that it stands on.
+static bool has_stayed(const cau_tool *tool)
+{
+	if (is_same_pose(&tool->state.pose, &tool->state.asked_pose))
+		return is_same_pose(&tool->state.pose, &tool->pose_before);
+	cau_vec3 way = cau_sub(cau_vec3_of(tool->state.pose.position_m),
+	                       cau_vec3_of(tool->pose_before.position_m));
+	return cau_length(way) <= still_m &&
+	       !memcmp(tool->state.pose.rotation, tool->pose_before.rotation,
+	               sizeof tool->state.pose.rotation);
+}
+
 static bool is_still(const cau_tool *tool)
 {
 	return !tool->state.energized && cau_heat_grid_is_ambient(&tool->grid) &&
-	       tool->state.jaw == tool->jaw_target && is_same_pose(&tool->state.pose, &tool->target) &&
-	       is_same_pose(&tool->state.pose, &tool->pose_before);
+	       tool->state.jaw == tool->jaw_target &&
+	       is_same_pose(&tool->state.asked_pose, &tool->target) &&
+	       is_same_pose(&tool->anchor, &tool->target) && has_stayed(tool);
 }
 
 // Whether nothing but the tissue itself could move it.

@@ -25,9 +25,12 @@ typedef struct cau_grasp { // one attached vertex
 
 typedef struct cau_tool {
 	cau_tool_state state;
-	cau_pose target; // where the driver wants it
+	cau_pose target; // where the driver wants it, and state.asked_pose within its speed limits
 	double jaw_target;
 	cau_pose pose_before; // at the start of the tick
+	cau_pose anchor,
+		anchor_before; // proxy.c: what it hangs on, at the end and the start of the tick
+	double pace; // share of the anchor's way that it goes in a tick; 1 but after it was held back
 	cau_heat_grid grid;
 	int32_t grasp_count;
 	cau_grasp grasp[CAU_MAX_GRASPED];
@@ -136,6 +139,16 @@ void cau_session_move_tools(cau_session *session);
 cau_status cau_session_add_tool(cau_session *session, const cau_tool_def *def, cau_error *error);
 void cau_session_drop_tool(cau_session *session, int32_t index);
 int32_t cau_session_find_tool(const cau_session *session, const char *name);
+// proxy.c: a tool's anchor goes where it is asked to be, and the guess of its pose with it; both
+// for the solve; where the tools are by that. And where they would pass tissue that is not held:
+// the tick begins again with them led a part of their way, on the last attempt not at all (false:
+// there is no such tool, or no attempt left); those that were not held back in a tick go on faster.
+enum { CAU_ATTEMPTS = 2 };
+void cau_session_lead_tool(cau_session *session, cau_tool *tool, const cau_pose *asked_before);
+void cau_session_couple(cau_session *session);
+void cau_session_take_poses(cau_session *session);
+bool cau_session_hold_back(cau_session *session, int attempt);
+void cau_session_let_follow(cau_session *session);
 // touch.c: contact rows, attachments and drag before the solve; forces after it.
 void cau_session_find_contacts(cau_session *session);
 // After the solve: whether tissue is inside a tool, by what the rows say, or met it where there is

@@ -31,6 +31,17 @@ static void pass_columns(snapshot_archive *archive, cau_session *session)
 		              (size_t)count * sizeof *set->inverse);
 }
 
+// The points at which faces were pushed came with version 6.
+static void pass_memory(snapshot_archive *archive, cau_contact_set *set)
+{
+	size_t bytes =
+		archive->version >= 6 ? sizeof *set->memory : offsetof(cau_contact_memory, point_count);
+	if (archive->reading)
+		memset(set->memory, 0, (size_t)set->memory_count * sizeof *set->memory);
+	for (int32_t i = 0; i < set->memory_count; i++)
+		snapshot_pass(archive, &set->memory[i], bytes);
+}
+
 static void pass_update(snapshot_archive *archive, cau_session *session)
 {
 	CAU_ASSERT(session->update.waiting_count <= session->update.waiting_capacity,
@@ -48,15 +59,32 @@ static void pass_update(snapshot_archive *archive, cau_session *session)
 	}
 }
 
+// What a tool's state had before version 6; all of it that decides what follows in a snapshot.
+static const size_t older_state = offsetof(cau_tool_state, asked_pose);
+
+// What came with version 6: before, a tool was where it was asked to be.
+static void pass_anchor(snapshot_archive *archive, cau_tool *tool)
+{
+	if (archive->version >= 6) {
+		snapshot_pass(archive, &tool->state.asked_pose, sizeof tool->state - older_state);
+		snapshot_pass(archive, &tool->anchor, sizeof tool->anchor);
+		snapshot_pass(archive, &tool->pace, sizeof tool->pace);
+	} else if (archive->reading) {
+		tool->state.asked_pose = tool->anchor = tool->state.pose;
+		tool->pace = 1;
+	}
+}
+
 static void pass_tool(snapshot_archive *archive, cau_tool *tool)
 {
 	CAU_ASSERT(tool->grid.nodes >= 0 && tool->grid.nodes <= CAU_SNAPSHOT_NODES,
 	           "a heat grid of %d nodes", tool->grid.nodes);
 	cau_heat_grid *grid = &tool->grid;
-	snapshot_pass(archive, &tool->state, sizeof tool->state);
+	snapshot_pass(archive, &tool->state, older_state);
 	snapshot_pass(archive, &tool->target, sizeof tool->target);
 	snapshot_pass(archive, &tool->jaw_target, sizeof tool->jaw_target);
 	snapshot_pass(archive, &tool->pose_before, sizeof tool->pose_before);
+	pass_anchor(archive, tool);
 	snapshot_pass(archive, &tool->grasp_count, sizeof tool->grasp_count);
 	snapshot_pass(archive, tool->grasp, sizeof tool->grasp);
 	snapshot_pass(archive, grid->field[0].origin, sizeof grid->field[0].origin);
@@ -157,8 +185,7 @@ static cau_status pass_state(snapshot_archive *archive, cau_session *session, ca
 	cau_status status = cau_snapshot_pass_elements(archive, session, error);
 	pass_update(archive, session);
 	pass_columns(archive, session);
-	snapshot_pass(archive, session->contact.memory,
-	              (size_t)session->contact.memory_count * sizeof *session->contact.memory);
+	pass_memory(archive, &session->contact);
 	if (session->rest.quiet_ticks && !session->rest.resting)
 		snapshot_pass(archive, session->rest.from, 3 * n * sizeof(double));
 	if (archive->version >= 6)
@@ -236,9 +263,9 @@ static cau_status check_tools(const snapshot_header *header, const unsigned char
 {
 	for (int32_t i = 0; i < header->tool_count; i++) {
 		cau_tool_state state;
-		if (counted->at + sizeof state > counted->capacity)
+		if (counted->at + older_state > counted->capacity)
 			return cau_snapshot_corrupt(error, "bytes are missing");
-		memcpy(&state, payload + counted->at, sizeof state);
+		memcpy(&state, payload + counted->at, older_state);
 		double cells = state.definition.grid_cells; // a whole number of nodes is made of it
 		if (!(cells >= header->grid_nodes[i] && cells < header->grid_nodes[i] + 1.0))
 			return cau_snapshot_corrupt(error, "a heat grid has another size");
@@ -282,7 +309,7 @@ static cau_status restore_tools(cau_session *session, const snapshot_header *hea
 		memset(tool, 0, sizeof *tool);
 		cau_tool_state state;
 		snapshot_archive ahead = *archive;
-		snapshot_pass(&ahead, &state, sizeof state);
+		snapshot_pass(&ahead, &state, older_state);
 		cau_status status =
 			cau_heat_grid_create(&tool->grid, &state.definition, session->scene->ambient_c,
 		                         session->solver.step_s, &state.pose, error);
@@ -479,7 +506,10 @@ uint64_t cau_session_hash(const cau_session *session)
 		const cau_tool *tool = &session->tool[i];
 		size_t nodes =
 			(size_t)tool->grid.nodes * (size_t)tool->grid.nodes * (size_t)tool->grid.nodes;
-		hash = cau_hash_bytes(hash, &tool->state.pose, sizeof tool->state.pose);
+		const cau_pose *pose = &tool->state.pose, *asked = &tool->state.asked_pose;
+		hash = cau_hash_bytes(hash, pose, sizeof *pose);
+		if (memcmp(pose->position_m, asked->position_m, sizeof pose->position_m) != 0)
+			hash = cau_hash_bytes(hash, asked, sizeof *asked);
 		hash = cau_hash_bytes(hash, tool->state.force_n, sizeof tool->state.force_n);
 		hash = cau_hash_word(hash,
 		                     (uint64_t)tool->state.energized << 32 | (uint32_t)tool->grasp_count);

@@ -98,21 +98,44 @@ static cau_status descend(cau_session *session, cau_error *error)
 	return cau_fail(error, status, NULL, "%s", refusal.reason);
 }
 
+// Returns whether tools would pass tissue in what it ends with.
+static bool hold(cau_session *session, cau_status *status, cau_error *error)
+{
+	cau_step_solver *solver = &session->solver;
+	*status = descend(session, error);
+	for (int round = 0; !*status && cau_session_find_missed(session); round++) { // touch.c
+		if (round == MOST_ROUNDS)
+			return true;
+		solver->contact = &session->contact;
+		solver->objective = cau_solver_evaluate(solver);
+		*status = descend(session, error);
+	}
+	return false;
+}
+
+static void begin_again(cau_session *session)
+{
+	cau_step_solver *solver = &session->solver;
+	cau_session_find_contacts(session);
+	solver->contact = session->contact.row_count ? &session->contact : NULL;
+	solver->objective = cau_solver_evaluate(solver);
+}
+
 static cau_status solve(cau_session *session, cau_error *error)
 {
 	cau_step_solver *solver = &session->solver;
-	cau_status status = descend(session, error);
-	for (int round = 0; !status && cau_session_find_missed(session); round++) { // touch.c
-		if (round == MOST_ROUNDS) {
-			cau_session_let_through(session);
-			solver->objective = cau_solver_evaluate(solver);
-			cau_solver_displace(solver);
-			return CAU_OK;
+	cau_status status = CAU_OK;
+	for (int attempt = 0; hold(session, &status, error); attempt++) {
+		if (cau_session_hold_back(session, attempt)) { // proxy.c
+			begin_again(session);
+			continue;
 		}
-		solver->contact = &session->contact;
+		cau_session_let_through(session);
 		solver->objective = cau_solver_evaluate(solver);
-		status = descend(session, error);
+		cau_solver_displace(solver);
+		break;
 	}
+	cau_session_let_follow(session); // proxy.c
 	return status;
 }
 

@@ -31,7 +31,9 @@ cau_status cau_session_add_tool(cau_session *session, const cau_tool_def *def, c
 		return status;
 	memcpy(tool->state.name, def->name, sizeof tool->state.name);
 	tool->state.definition = *def;
-	tool->state.pose = tool->target = tool->pose_before = def->pose;
+	tool->state.pose = tool->state.asked_pose = tool->anchor = def->pose;
+	tool->target = tool->pose_before = tool->anchor_before = def->pose;
+	tool->pace = 1;
 	tool->state.jaw = tool->jaw_target = 1;
 	tool->state.tip_temperature_c = session->scene->ambient_c;
 	session->tool_count++;
@@ -57,21 +59,23 @@ static double angle_between(const cau_pose *a, const cau_pose *b)
 	return 2 * acos(fmin(fabs(dot), 1));
 }
 
-static void move_tool(cau_tool *tool, double dt)
+static void move_tool(cau_session *session, cau_tool *tool)
 {
+	double dt = session->solver.step_s;
 	CAU_ASSERT(dt > 0, "a tick of %g s", dt);
 	const cau_tool_def *def = &tool->state.definition;
-	tool->pose_before = tool->state.pose;
-	double distance = cau_length(
-		cau_sub(cau_vec3_of(tool->target.position_m), cau_vec3_of(tool->state.pose.position_m)));
-	double angle = angle_between(&tool->state.pose, &tool->target);
+	cau_pose before = tool->state.asked_pose;
+	double distance =
+		cau_length(cau_sub(cau_vec3_of(tool->target.position_m), cau_vec3_of(before.position_m)));
+	double angle = angle_between(&before, &tool->target);
 	double share = 1;
 	if (distance > def->max_speed_m_s * dt)
 		share = fmin(share, def->max_speed_m_s * dt / distance);
 	if (angle > def->max_turn_rad_s * dt)
 		share = fmin(share, def->max_turn_rad_s * dt / angle);
-	tool->state.pose =
-		share < 1 ? cau_pose_between(&tool->state.pose, &tool->target, share) : tool->target;
+	tool->state.asked_pose =
+		share < 1 ? cau_pose_between(&before, &tool->target, share) : tool->target;
+	cau_session_lead_tool(session, tool, &before);
 	double jaw = tool->jaw_target - tool->state.jaw;
 	tool->state.jaw += fmax(-jaw_per_s * dt, fmin(jaw_per_s * dt, jaw));
 	CAU_ASSERT(tool->state.jaw >= 0 && tool->state.jaw <= 1, "a jaw at %g", tool->state.jaw);
@@ -80,5 +84,5 @@ static void move_tool(cau_tool *tool, double dt)
 void cau_session_move_tools(cau_session *session)
 {
 	for (int32_t i = 0; i < session->tool_count; i++)
-		move_tool(&session->tool[i], session->solver.step_s);
+		move_tool(session, &session->tool[i]);
 }

@@ -22,16 +22,25 @@ static cau_contact_row contact_row(const cau_session *session, const cau_tool *t
 	CAU_ASSERT_INDEX(vertex, session->tissue.vertex_count);
 	CAU_ASSERT_INDEX(index, session->tool_count);
 	cau_contact_row row = cau_contact_at_vertex(vertex, index);
+	row.free[0] = !session->fixed[vertex];
 	cau_vec3 side;
 	cau_vec3 start = cau_vec3_of(session->position_start + 3 * (size_t)vertex);
 	cau_vec3 local = cau_pose_to_local(&tool->pose_before, start);
-	cau_vec3_to(cau_pose_to_world(&tool->state.pose, local), row.no_slip[0]);
-	if (cau_session_feels_faces(tool) && cau_tool_distance(&tool->state.definition, tool->state.jaw,
-	                                                       pushing_part(tool), local, &side) > 0)
+	cau_vec3_to(cau_pose_to_world(&tool->anchor, local), row.no_slip[0]);
+	double start_m = cau_tool_distance(&tool->state.definition, tool->state.jaw, pushing_part(tool),
+	                                   local, &side);
+	if (cau_session_feels_faces(tool) && start_m > 0)
 		cau_vec3_to(side, row.side); // else it may leave as it can
+	row.slack_m = cau_contact_slack(start_m, session->solver.step_s);
 	row.way_m = cau_length(cau_sub(cau_pose_to_local(&tool->state.pose, start), local)) +
 	            2 * tool->state.definition.hot_radius_m;
 	return row;
+}
+
+// Whether a vertex can neither move nor hold what it belongs to: the last of its elements is gone.
+static bool is_left_over(const cau_session *session, int32_t vertex)
+{
+	return session->fixed[vertex] && !session->dissection.live_elements[vertex];
 }
 
 static bool is_grasped(const cau_tool *tool, int32_t vertex)
@@ -83,7 +92,8 @@ static void list_touching(cau_session *session, cau_touching *list, int32_t *cou
 		list[least] = touching;
 }
 
-// Collects the free vertices within the margin of the pushing part.
+// Collects the vertices within the margin of the pushing part: those that are held too, where the
+// tool is what gives way.
 static int32_t collect(cau_session *session, int32_t index, cau_touching *list)
 {
 	const cau_tool *tool = &session->tool[index];
@@ -99,7 +109,7 @@ static int32_t collect(cau_session *session, int32_t index, cau_touching *list)
 		int32_t last = (b + 1) * CAU_NEAR_BLOCK;
 		for (int32_t i = b * CAU_NEAR_BLOCK; i < last && i < session->tissue.vertex_count; i++) {
 			int32_t v = session->near.vertex[i];
-			if (session->fixed[v] || is_grasped(tool, v))
+			if (is_left_over(session, v) || is_grasped(tool, v))
 				continue;
 			double gap = least_gap(session, tool, v, margin);
 			if (!(gap <= margin)) // nor is a vertex near that is nowhere
@@ -117,7 +127,7 @@ static void add_attachments(cau_session *session, int32_t index)
 		cau_contact_row row = cau_contact_at_vertex(tool->grasp[k].vertex, index);
 		CAU_ASSERT_INDEX(row.vertex[0], session->tissue.vertex_count);
 		row.attached = true;
-		cau_vec3_to(cau_pose_to_world(&tool->state.pose, cau_vec3_of(tool->grasp[k].local)),
+		cau_vec3_to(cau_pose_to_world(&tool->anchor, cau_vec3_of(tool->grasp[k].local)),
 		            row.anchor);
 		cau_contact_add(&session->contact, &row);
 	}
@@ -162,14 +172,15 @@ static void describe_tools(cau_session *session)
 	session->contact.tool_count = session->tool_count;
 	for (int32_t i = 0; i < session->tool_count; i++) {
 		const cau_tool *tool = &session->tool[i];
+		bool held_back = session->contact.tool[i].held_back; // of the attempt before
 		session->contact.tool[i] = (cau_contact_tool){
+			.held_back = held_back,
 			.def = &tool->state.definition,
-			.pose = tool->state.pose,
-			.pose_before = tool->pose_before,
 			.jaw = tool->state.jaw,
 			.part = (int)pushing_part(tool),
 		};
 	}
+	cau_session_couple(session);
 }
 
 // Rows of the vertices at a tool. They leave room for faces, which are what a tool would pass.
@@ -219,6 +230,8 @@ static void keep_unheld(cau_session *session, int32_t rows)
 	memcpy(session->position_unheld, session->position, bytes);
 	for (int32_t i = 0; i < rows; i++)
 		memcpy(set->begun_reaction[i], set->row[i].reaction, sizeof set->begun_reaction[i]);
+	for (int32_t i = 0; i < set->tool_count; i++)
+		memcpy(set->begun_offset[i], set->tool[i].offset, sizeof set->begun_offset[i]);
 }
 
 static const double missed_m = 1e-4; // a face deeper than this at its row is not held yet
@@ -229,6 +242,7 @@ bool cau_session_find_missed(cau_session *session)
 {
 	cau_contact_set *set = &session->contact;
 	int32_t rows = set->row_count, feeling = 0;
+	cau_session_take_poses(session);
 	bool first = set->begun_count < 0;
 	set->touched_count = 0;
 	for (int32_t i = 0; i < session->tool_count; i++)
@@ -245,7 +259,8 @@ bool cau_session_find_missed(cau_session *session)
 		keep_unheld(session, rows);
 	if (set->row_count > rows)
 		cau_contact_prepare(set, &session->solver);
-	return set->row_count > rows || cau_contact_depth(set, &session->solver) > missed_m;
+	bool deep = cau_contact_is_deep(set, &session->solver, missed_m);
+	return set->row_count > rows || deep;
 }
 
 void cau_session_let_through(cau_session *session)
@@ -257,6 +272,9 @@ void cau_session_let_through(cau_session *session)
 	set->row_count = set->begun_count;
 	for (int32_t i = 0; i < set->row_count; i++)
 		memcpy(set->row[i].reaction, set->begun_reaction[i], sizeof set->row[i].reaction);
+	for (int32_t i = 0; i < set->tool_count; i++)
+		memcpy(set->tool[i].offset, set->begun_offset[i], sizeof set->tool[i].offset);
+	cau_session_take_poses(session);
 	set->let_through = true;
 }
 

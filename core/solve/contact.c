@@ -5,6 +5,7 @@
 #include <string.h>
 
 #include "cautery/assert.h"
+#include "solve/coupling.h"
 #include "solve/hold.h"
 #include "tool/face_distance.h"
 
@@ -34,6 +35,13 @@ cau_contact_row cau_contact_at_vertex(int32_t vertex, int32_t tool)
 	CAU_ASSERT(vertex >= 0, "a row of vertex %d", vertex);
 	return (cau_contact_row){
 		.corner_count = 1, .vertex = {vertex}, .weight = {1}, .free = {true}, .tool = tool};
+}
+
+double cau_contact_slack(double start_m, double step_s)
+{
+	const double release_m_s = 0.1;
+	CAU_ASSERT(step_s > 0, "a tick of %g s", step_s);
+	return fmax(-start_m - release_m_s * step_s, 0);
 }
 
 // Of values by corner, (corner_count x 3).
@@ -76,12 +84,13 @@ static int compare_memory(const void *a, const void *b)
 	return (x->face > y->face) - (x->face < y->face);
 }
 
-void cau_contact_touch(cau_contact_set *set, int32_t tool, int32_t face, int32_t above)
+void cau_contact_touch(cau_contact_set *set, int32_t tool, int32_t face, int32_t above, bool pushed)
 {
 	CAU_ASSERT_INDEX(tool, set->tool_count);
 	CAU_ASSERT(above == 1 || above == -1, "side %d of face %d", above, face);
 	if (set->touched_count < CAU_MAX_MEMORY)
-		set->touched[set->touched_count++] = (cau_contact_memory){tool, face, 0, above};
+		set->touched[set->touched_count++] =
+			(cau_contact_memory){.tool = tool, .face = face, .pushed = pushed, .above = above};
 }
 
 static void keep(cau_contact_set *set, const cau_contact_memory *memory)
@@ -90,16 +99,32 @@ static void keep(cau_contact_set *set, const cau_contact_memory *memory)
 		set->memory[set->memory_count++] = *memory;
 }
 
+// A face that was pushed, with the point at which it was.
+static void keep_pushed(cau_contact_set *set, const cau_contact_row *row)
+{
+	cau_contact_memory memory = {
+		.tool = row->tool, .face = row->face, .pushed = 1, .above = row->above};
+	int32_t at = 0;
+	while (at < set->memory_count && compare_memory(&set->memory[at], &memory) != 0)
+		at++;
+	if (at == set->memory_count)
+		keep(set, &memory);
+	cau_vec3 reaction = cau_vec3_of(row->reaction);
+	if (at == set->memory_count || !(cau_dot(reaction, reaction) > 0))
+		return; // no room for it, or it pushed nothing
+	cau_contact_memory *kept = &set->memory[at];
+	if (kept->point_count < CAU_MAX_POINTS)
+		memcpy(kept->point[kept->point_count++], row->weight, sizeof row->weight);
+}
+
 void cau_contact_remember(cau_contact_set *set)
 {
 	set->memory_count = 0;
 	if (set->let_through)
 		return;
-	for (int32_t i = 0; i < set->row_count; i++) {
-		const cau_contact_row *row = &set->row[i];
-		if (row->corner_count == 3)
-			keep(set, &(cau_contact_memory){row->tool, row->face, 1, row->above});
-	}
+	for (int32_t i = 0; i < set->row_count; i++)
+		if (set->row[i].corner_count == 3)
+			keep_pushed(set, &set->row[i]);
 	int32_t pushed_count = set->memory_count;
 	for (int32_t i = 0; i < set->touched_count; i++) {
 		int32_t k = 0;
@@ -109,9 +134,18 @@ void cau_contact_remember(cau_contact_set *set)
 			keep(set, &set->touched[i]);
 	}
 	qsort(set->memory, (size_t)set->memory_count, sizeof *set->memory, compare_memory);
-	int32_t kept = 0; // a face with several rows once
+	int32_t kept = 0; // one that was touched in several rounds once
 	for (int32_t i = 0; i < set->memory_count; i++)
 		if (!kept || compare_memory(&set->memory[kept - 1], &set->memory[i]) != 0)
+			set->memory[kept++] = set->memory[i];
+	set->memory_count = kept;
+}
+
+void cau_contact_forget(cau_contact_set *set, int32_t tool)
+{
+	int32_t kept = 0;
+	for (int32_t i = 0; i < set->memory_count; i++)
+		if (set->memory[i].tool != tool)
 			set->memory[kept++] = set->memory[i];
 	set->memory_count = kept;
 }
@@ -156,7 +190,8 @@ static void measure_gap(const cau_contact_set *set, const cau_step_solver *solve
 	cau_tool_part part = (cau_tool_part)tool->part;
 	cau_vec3 normal, side = cau_vec3_of(row->side);
 	CAU_ASSERT_INDEX(row->tool, set->tool_count);
-	cau_vec3 point = cau_pose_to_local(&tool->pose, cau_contact_point(row, solver->position));
+	cau_pose pose = cau_coupling_pose(&tool->anchor, cau_vec3_of(tool->offset));
+	cau_vec3 point = cau_pose_to_local(&pose, cau_contact_point(row, solver->position));
 	row->gap = cau_tool_distance(tool->def, tool->jaw, part, point, &normal);
 	if (cau_dot(normal, side) < 0 || (row->corner_count == 3 && row->gap < 0)) {
 		cau_vec3 out;
@@ -167,7 +202,7 @@ static void measure_gap(const cau_contact_set *set, const cau_step_solver *solve
 		}
 	}
 	row->gap += row->slack_m;
-	cau_vec3_to(cau_rotate(tool->pose.rotation, normal), row->normal);
+	cau_vec3_to(cau_rotate(pose.rotation, normal), row->normal);
 }
 
 // A bound that is not a number leaves `a` as it is: the step ends as a fault.
@@ -241,23 +276,29 @@ static void move_corners(cau_contact_set *set, int32_t row, cau_vec3 by)
 	}
 }
 
+static cau_vec3 relaxed(const cau_contact_set *set, const cau_step_solver *solver,
+                        cau_contact_row *row, double own)
+{
+	const cau_contact_tool *tool = &set->tool[row->tool];
+	cau_vec3 step = step_of(set, row), old = cau_vec3_of(row->reaction);
+	cau_vec3 offset = cau_vec3_of(tool->offset);
+	cau_vec3 x = cau_sub(cau_add(cau_contact_point(row, solver->position), step), offset);
+	if (row->attached)
+		return attachment_reaction(set, row, cau_sub(x, cau_vec3_of(row->anchor)), own, old);
+	cau_vec3 apart = cau_sub(step, cau_sub(offset, cau_vec3_of(tool->measured)));
+	return contact_reaction(set, row, apart, cau_sub(x, weighted(row, row->no_slip[0])), own, old);
+}
+
 // One Gauss-Seidel pass over the rows. Returns the largest change relative to the largest reaction.
 static double relax_rows(cau_contact_set *set, const cau_step_solver *solver)
 {
 	double change = 0, size = 0;
 	for (int32_t i = 0; i < set->row_count; i++) {
 		cau_contact_row *row = &set->row[i];
-		cau_vec3 step = step_of(set, row), old = cau_vec3_of(row->reaction);
-		cau_vec3 x = cau_add(cau_contact_point(row, solver->position), step);
-		double own = own_answer(set, i);
-		if (!(own > 0)) // none of its corners can move
-			continue;
+		// where none of its corners can move, the tool does
 		cau_vec3 next =
-			row->attached
-				? attachment_reaction(set, row, cau_sub(x, cau_vec3_of(row->anchor)), own, old)
-				: contact_reaction(set, row, step, cau_sub(x, weighted(row, row->no_slip[0])), own,
-		                           old);
-		cau_vec3 by = cau_sub(next, old);
+			relaxed(set, solver, row, own_answer(set, i) + set->tool[row->tool].compliance);
+		cau_vec3 by = cau_sub(next, cau_vec3_of(row->reaction));
 		double length = cau_length(by);
 		size = fmax(size, cau_length(next));
 		if (length == 0)
@@ -265,6 +306,7 @@ static double relax_rows(cau_contact_set *set, const cau_step_solver *solver)
 		change = fmax(change, length);
 		cau_vec3_to(next, row->reaction);
 		move_corners(set, i, by);
+		cau_coupling_take(&set->tool[row->tool], by);
 	}
 	return size > 0 ? change / size : 0;
 }
@@ -312,6 +354,8 @@ static void take_off_gradient(cau_contact_set *set, cau_step_solver *solver)
 void cau_contact_load(cau_contact_set *set, cau_step_solver *solver)
 {
 	CAU_ASSERT_INDEX(set->row_count, CAU_MAX_CONTACTS + 1);
+	for (int32_t i = 0; i < set->tool_count; i++)
+		memcpy(set->tool[i].measured, set->tool[i].offset, sizeof set->tool[i].measured);
 	for (int32_t i = 0; i < set->row_count; i++)
 		if (!set->row[i].attached)
 			measure_gap(set, solver, &set->row[i]);
@@ -325,6 +369,8 @@ void cau_contact_correct(cau_contact_set *set, cau_step_solver *solver)
 	for (int32_t c = 0; c < set->column_count; c++)
 		solver->kernels->vectors->read(solver->increment, set->column_vertex[c],
 		                               set->step + 3 * (size_t)c);
+	if (cau_coupling_begin(set) && set->hold_count)
+		cau_hold_prepare(set);
 	for (int sweep = 0; sweep < CAU_CONTACT_SWEEPS; sweep++) {
 		cau_hold_solve(set, solver);
 		if (relax_rows(set, solver) < SETTLED)
@@ -334,17 +380,19 @@ void cau_contact_correct(cau_contact_set *set, cau_step_solver *solver)
 	cau_pool_run(solver->pool, solver->chunk_count, spread_part, &(spread){set, solver});
 }
 
-double cau_contact_depth(const cau_contact_set *set, const cau_step_solver *solver)
+bool cau_contact_is_deep(cau_contact_set *set, const cau_step_solver *solver, double most_m)
 {
-	double depth = 0;
+	bool any = false;
 	for (int32_t i = 0; i < set->row_count; i++) {
 		cau_contact_row row = set->row[i]; // it stays as its reaction was found
 		if (row.corner_count == 1)
 			continue;
 		measure_gap(set, solver, &row);
-		depth = fmax(depth, -row.gap);
+		if (row.gap >= -most_m)
+			continue;
+		any = set->tool[row.tool].passing = true;
 	}
-	return depth;
+	return any;
 }
 
 double cau_contact_work(const cau_contact_set *set, const cau_step_solver *solver)

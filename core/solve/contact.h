@@ -9,6 +9,9 @@
 //     contact      r_n >= 0,  gap + n.W (d + S W^T dr) >= 0, complementary;  |r_t| <= friction r_n
 //     against slip attachment   r = -k (x + d + S dr - anchor), its length at most the slip force
 //
+// The tool itself is an unknown of the same correction: it hangs on the pose that is asked by a
+// spring (coupling.h), so S gains that spring's compliance between all rows of one tool.
+//
 // A row knows on which side of the tool it belongs: a face that the tool has passed within the tick
 // is pushed back to where it was, not on.
 //
@@ -26,6 +29,7 @@ enum {
 	CAU_MAX_VERTEX_ROWS = 192, // of them of vertices, held or near: the rest is for faces
 	CAU_MAX_COLUMNS = 288,     // vertices that are corners of rows
 	CAU_MAX_MEMORY = 1024,     // faces whose side is kept
+	CAU_MAX_POINTS = 2,        // of a face that are kept: on one alone it would tilt to and fro
 	CAU_MAX_HELD = 192,        // rows of attachments that are solved at once
 	CAU_CONTACT_SWEEPS = 30,
 	CAU_COLUMNS_RENEWED = 3, // of those that lag, each tick
@@ -34,9 +38,14 @@ enum {
 // A tool as the contact sees it during one step.
 typedef struct cau_contact_tool {
 	const cau_tool_def *def;
-	cau_pose pose, pose_before; // at the tick's end and start
+	cau_pose anchor; // where it is asked to be at the tick's end
 	double jaw;
-	int part; // cau_tool_part that pushes
+	int part;           // cau_tool_part that pushes
+	double offset[3];   // m, of where it is from where it is asked to be: coupling.h
+	double measured[3]; // m, the offset at which the rows' gaps were measured
+	double compliance;  // m/N, of the coupling
+	bool passing;       // it would pass tissue that the rows do not hold
+	bool held_back;     // and did in this tick
 } cau_contact_tool;
 
 typedef struct cau_contact_row {
@@ -54,16 +63,19 @@ typedef struct cau_contact_row {
 	double slack_m;       // how deep it may stay inside in this tick
 	double normal[3];     // outward from the tool
 	double gap;           // m, signed distance at the present iterate, and slack_m
-	double no_slip[3][3]; // m, where its corners would be if they stuck to the tool
-	double anchor[3];     // m, attachment's target
+	double no_slip[3][3]; // m, where its corners would be if they stuck to the tool at its anchor
+	double anchor[3];     // m, attachment's target, likewise
 	double reaction[3];   // N, of the tool on the point
 } cau_contact_row;
 
 // A face that a tool pushed, or that was inside it, at the end of a step.
 typedef struct cau_contact_memory {
 	int32_t tool, face;
-	int32_t pushed; // whether it was a row
+	int32_t pushed; // whether it was a row, or is to be one
 	int32_t above;  // 1: the tool is on the side to which the face's normal points; -1: below
+	// since snapshots of version 6: weights of the points at which the tool pushed
+	int32_t point_count, unused;
+	double point[CAU_MAX_POINTS][3];
 } cau_contact_memory;
 
 struct cau_contact_set {
@@ -75,8 +87,9 @@ struct cau_contact_set {
 	bool let_through;    // tools passed what could not be held: no side is remembered
 	int32_t begun_count; // rows that the step began with, and their reactions before more came
 	double begun_reaction[CAU_MAX_CONTACTS][3];
-	int32_t left_out_count; // of the step: points that touch and found no place
-	int32_t memory_count;   // of the last step, by tool and face: part of the session's state
+	double begun_offset[CAU_MAX_TOOLS][3]; // m
+	int32_t left_out_count;                // of the step: points that touch and found no place
+	int32_t memory_count; // of the last step, by tool and face: part of the session's state
 	cau_contact_memory memory[CAU_MAX_MEMORY];
 	int32_t touched_count; // what the present step has found of it
 	cau_contact_memory touched[CAU_MAX_MEMORY];
@@ -109,16 +122,25 @@ cau_contact_row cau_contact_at_vertex(int32_t vertex, int32_t tool);
 // Forgets all rows.
 void cau_contact_clear(cau_contact_set *set);
 
-// Notes that a face is inside or beyond a tool, and on which of its sides the tool belongs (`above`
-// as in cau_contact_memory). Past CAU_MAX_MEMORY faces nothing is kept.
-void cau_contact_touch(cau_contact_set *set, int32_t tool, int32_t face, int32_t above);
+// Notes that a face is inside or beyond a tool, on which of its sides the tool belongs (`above` as
+// in cau_contact_memory), and whether the next step is to begin with a row for it. Past
+// CAU_MAX_MEMORY faces nothing is kept.
+void cau_contact_touch(cau_contact_set *set, int32_t tool, int32_t face, int32_t above,
+                       bool pushed);
 
 // Keeps, at a step's end, the faces that were pushed or touched: the next step knows their sides.
 void cau_contact_remember(cau_contact_set *set);
 
+// Forgets the sides of a tool.
+void cau_contact_forget(cau_contact_set *set, int32_t tool);
+
 // What was kept of a face; NULL: nothing.
 const cau_contact_memory *cau_contact_recall(const cau_contact_set *set, int32_t tool,
                                              int32_t face);
+
+// How deep (m) a point that was at `start_m` from the tool as the tick began may stay inside: what
+// a tool begins to push from within is let out at a bounded speed.
+double cau_contact_slack(double start_m, double step_s);
 
 // Where a row's point is at positions x (m, vertex_count x 3).
 cau_vec3 cau_contact_point(const cau_contact_row *row, const double *x);
@@ -143,8 +165,9 @@ void cau_contact_load(cau_contact_set *set, cau_step_solver *solver);
 // A increment = -gradient still holds (as far as the columns are fresh).
 void cau_contact_correct(cau_contact_set *set, cau_step_solver *solver);
 
-// How deep (m) the deepest row of a face is inside its tool at solver->position; 0: none is.
-double cau_contact_depth(const cau_contact_set *set, const cau_step_solver *solver);
+// Whether a row of a face is deeper (m) inside its tool at solver->position than it may be: such
+// tools are passing.
+bool cau_contact_is_deep(cau_contact_set *set, const cau_step_solver *solver, double most_m);
 
 // Work that the reactions may do along the trial step, J: what the objective may rise by.
 double cau_contact_work(const cau_contact_set *set, const cau_step_solver *solver);

@@ -2,6 +2,7 @@
 #include "solve/hold.h"
 
 #include "cautery/assert.h"
+#include "solve/coupling.h"
 
 static const cau_tool_def *tool_of(const cau_contact_set *set, const cau_contact_row *row)
 {
@@ -13,7 +14,9 @@ static double between(const cau_contact_set *set, int32_t i, int32_t j)
 {
 	CAU_ASSERT_INDEX(set->row[i].column[0], CAU_MAX_COLUMNS);
 	CAU_ASSERT_INDEX(set->row[j].column[0], CAU_MAX_COLUMNS);
-	return set->inverse[set->row[i].column[0] * CAU_MAX_COLUMNS + set->row[j].column[0]];
+	double tissue = set->inverse[set->row[i].column[0] * CAU_MAX_COLUMNS + set->row[j].column[0]];
+	return set->row[i].tool == set->row[j].tool ? tissue + set->tool[set->row[i].tool].compliance
+	                                            : tissue;
 }
 
 // Lower triangle, by rows, over hold_row. Returns false if it is not positive definite.
@@ -63,7 +66,8 @@ static void substitute(const cau_contact_set *set, double *x)
 	}
 }
 
-// By how much each reaction has to change: (S + 1/k) dr = anchor - x - step - r / k.
+// By how much each reaction has to change: (S + 1/k) dr = anchor + offset - x - step - r / k, where
+// S has the tools' couplings too.
 static void changes(const cau_contact_set *set, const cau_step_solver *solver,
                     double dr[3][CAU_MAX_HELD])
 {
@@ -72,8 +76,10 @@ static void changes(const cau_contact_set *set, const cau_step_solver *solver,
 		const cau_contact_row *row = &set->row[at];
 		CAU_ASSERT(row->attached, "row %d is solved as held and is not", at);
 		double compliance = 1 / tool_of(set, row)->grasp_stiffness_n_m;
+		const double *offset = set->tool[row->tool].offset;
 		for (int c = 0; c < 3; c++)
-			dr[c][i] = row->anchor[c] - solver->position[3 * (size_t)row->vertex[0] + (size_t)c] -
+			dr[c][i] = row->anchor[c] + offset[c] -
+			           solver->position[3 * (size_t)row->vertex[0] + (size_t)c] -
 			           set->step[3 * row->column[0] + c] - compliance * row->reaction[c];
 	}
 	for (int c = 0; c < 3; c++)
@@ -109,5 +115,7 @@ void cau_hold_solve(cau_contact_set *set, const cau_step_solver *solver)
 		for (int32_t k = 0; k < set->column_count; k++)
 			for (int c = 0; c < 3; c++)
 				set->step[3 * k + c] += answer[k] * dr[c][i];
+		cau_coupling_take(&set->tool[set->row[set->hold_row[i]].tool],
+		                  (cau_vec3){dr[0][i], dr[1][i], dr[2][i]});
 	}
 }

@@ -145,11 +145,15 @@ static const char *read_section(cau_frame_decoder *decoder, const section_cursor
 {
 	cau_stream_state *state = &decoder->state;
 	bool names = cursor->type == CAU_SECTION_TOOL_NAMES;
-	int channel = names ? CAU_CHANNEL_INDEX_TOOLS : cau_channel_of_section(cursor->type);
+	bool asked = cursor->type == CAU_SECTION_TOOLS_ASKED;
+	int channel = names || asked ? CAU_CHANNEL_INDEX_TOOLS : cau_channel_of_section(cursor->type);
 	if (channel == CAU_CHANNEL_COUNT || !cau_stream_has(&decoder->def, channel))
 		return NULL;
 	switch (channel) {
 	case CAU_CHANNEL_INDEX_TOOLS:
+		if (asked)
+			return cau_tools_asked_read(cursor->payload, cursor->payload_bytes, decoder->tools,
+			                            state->tool_count);
 		return names ? cau_tool_names_read(cursor->payload, cursor->payload_bytes, decoder->tools,
 		                                   &state->tool_count)
 		             : cau_tools_read(cursor->payload, cursor->payload_bytes, decoder->tools,

@@ -16,8 +16,8 @@ size_t cau_frame_bytes_max(const cau_stream_def *def)
 		array_shape shape = cau_array_shape_of(def, channel);
 		bytes += CAU_FRAME_SECTION_BYTES + cau_elements_bytes_max(shape.count, shape.components);
 	}
-	return bytes + (size_t)3 * CAU_FRAME_SECTION_BYTES + TOOL_NAMES_BYTES_MAX +
-	       (size_t)CAU_MAX_TOOLS * TOOL_RECORD_BYTES + STATISTICS_RECORD_BYTES;
+	return bytes + (size_t)4 * CAU_FRAME_SECTION_BYTES + TOOL_NAMES_BYTES_MAX +
+	       (size_t)CAU_MAX_TOOLS * (TOOL_RECORD_BYTES + TOOL_ASKED_BYTES) + STATISTICS_RECORD_BYTES;
 }
 
 static size_t struct_bytes(void)
@@ -278,7 +278,14 @@ static void write_tools(const cau_tool_set *set, bool names, frame_writer *write
 	            cau_tools_write(section_payload(writer), set->tools, set->count));
 }
 
-// The channels in their order, which is that of their sections.
+static void write_asked(const cau_tool_set *set, frame_writer *writer)
+{
+	size_t bytes = cau_tools_asked_write(section_payload(writer), set->tools, set->count);
+	if (bytes)
+		end_section(writer, CAU_SECTION_TOOLS_ASKED, bytes);
+}
+
+// The channels in their order, which is that of their sections; what came to them later is last.
 static void write_sections(const cau_frame_encoder *encoder, frame_part part, frame_writer *writer)
 {
 	for (int channel = 0; channel < CAU_CHANNEL_COUNT; channel++) {
@@ -292,6 +299,8 @@ static void write_sections(const cau_frame_encoder *encoder, frame_part part, fr
 		else
 			write_array(encoder, channel, part, writer);
 	}
+	if (wants(encoder, CAU_CHANNEL_INDEX_TOOLS))
+		write_asked(&encoder->tools, writer);
 }
 
 static size_t end_frame(const cau_frame_encoder *encoder, frame_writer *writer, cau_frame_kind kind,

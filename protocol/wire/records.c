@@ -105,7 +105,9 @@ const char *cau_stream_tool_check(const cau_stream_tool *tool)
 	if (!is_finite(tool->pose.position_m, 3) || !is_finite(tool->pose.rotation, 4) ||
 	    !is_finite(&tool->jaw, 1) || !is_finite(tool->force_n, 3) ||
 	    !is_finite(tool->torque_nm, 3) || !is_finite(&tool->tip_temperature_c, 1) ||
-	    !is_finite(&tool->energy_j, 1))
+	    !is_finite(&tool->energy_j, 1) ||
+	    (tool->behind &&
+	     (!is_finite(tool->asked_pose.position_m, 3) || !is_finite(tool->asked_pose.rotation, 4))))
 		return "a number is not finite in single precision";
 	return NULL;
 }
@@ -116,6 +118,21 @@ size_t cau_tools_write(uint8_t *out, const cau_stream_tool *tools, int32_t count
 	for (int32_t i = 0; i < count; i++)
 		store_tool(out + (size_t)i * TOOL_RECORD_BYTES, &tools[i]);
 	return (size_t)count * TOOL_RECORD_BYTES;
+}
+
+size_t cau_tools_asked_write(uint8_t *out, const cau_stream_tool *tools, int32_t count)
+{
+	CAU_ASSERT(count >= 0 && count <= CAU_MAX_TOOLS, "%d tools", count);
+	bool any = false;
+	for (int32_t i = 0; i < count; i++)
+		any = any || tools[i].behind;
+	uint8_t *at = out;
+	for (int32_t i = 0; i < count && any; i++) {
+		const cau_pose *asked = tools[i].behind ? &tools[i].asked_pose : &tools[i].pose;
+		at = store_vector(at, asked->position_m, 3);
+		at = store_vector(at, asked->rotation, 4);
+	}
+	return (size_t)(at - out);
 }
 
 static const uint8_t *load_vector(const uint8_t *at, double *value, int count, bool *finite)
@@ -138,6 +155,8 @@ static bool load_tool(const uint8_t *at, cau_stream_tool *tool)
 	at = load_vector(at, tool->torque_nm, 3, &finite);
 	at = load_vector(at, &tool->tip_temperature_c, 1, &finite);
 	at = load_vector(at, &tool->energy_j, 1, &finite);
+	tool->behind = false;
+	tool->asked_pose = tool->pose;
 	tool->driver = load_u32(at);
 	tool->energized = at[4] & TOOL_ENERGIZED;
 	tool->grasping = at[4] & TOOL_GRASPING;
@@ -160,6 +179,24 @@ const char *cau_tools_read(const uint8_t *payload, size_t bytes, cau_stream_tool
 			return "a tool's number is not finite or its reason for energy off is not known";
 	}
 	return NULL;
+}
+
+const char *cau_tools_asked_read(const uint8_t *payload, size_t bytes, cau_stream_tool *tools,
+                                 int32_t count)
+{
+	CAU_ASSERT(count >= 0 && count <= CAU_MAX_TOOLS, "%d tools", count);
+	bool finite = true;
+	if (bytes != (size_t)count * TOOL_ASKED_BYTES)
+		return "there are not as many poses asked as tools";
+	for (int32_t i = 0; i < count; i++) {
+		payload = load_vector(payload, tools[i].asked_pose.position_m, 3, &finite);
+		payload = load_vector(payload, tools[i].asked_pose.rotation, 4, &finite);
+		for (int c = 0; c < 3; c++)
+			tools[i].behind |= tools[i].asked_pose.position_m[c] != tools[i].pose.position_m[c];
+		for (int c = 0; c < 4; c++)
+			tools[i].behind |= tools[i].asked_pose.rotation[c] != tools[i].pose.rotation[c];
+	}
+	return finite ? NULL : "a pose that is asked is not finite";
 }
 
 static int is_float_word(size_t word)

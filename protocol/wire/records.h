@@ -6,6 +6,7 @@
 
 enum {
 	TOOL_RECORD_BYTES = 84,
+	TOOL_ASKED_BYTES = 28,
 	TOOL_NAMES_BYTES_MAX = 4 + CAU_MAX_TOOLS * (2 + CAU_NAME_BYTES) + 3,
 	STATISTICS_RECORD_BYTES = 104,
 	STATISTICS_LEAST_BYTES = 88, // without what comes after refused_commands, as servers began
@@ -17,6 +18,8 @@ const char *cau_stream_tool_check(const cau_stream_tool *tool);
 // Each writes a payload and returns its length.
 size_t cau_tool_names_write(uint8_t *out, const cau_stream_tool *tools, int32_t count);
 size_t cau_tools_write(uint8_t *out, const cau_stream_tool *tools, int32_t count);
+// Poses that are asked; 0: none is another than the tool's.
+size_t cau_tools_asked_write(uint8_t *out, const cau_stream_tool *tools, int32_t count);
 size_t cau_statistics_write(uint8_t *out, const cau_stream_statistics *statistics);
 
 // Each reads a payload; returns NULL or what is wrong. tool_names_read keeps the rest of the
@@ -25,5 +28,8 @@ const char *cau_tool_names_read(const uint8_t *payload, size_t bytes, cau_stream
                                 int32_t *count);
 const char *cau_tools_read(const uint8_t *payload, size_t bytes, cau_stream_tool *tools,
                            int32_t count);
+// After cau_tools_read, which puts each tool where it is asked to be.
+const char *cau_tools_asked_read(const uint8_t *payload, size_t bytes, cau_stream_tool *tools,
+                                 int32_t count);
 const char *cau_statistics_read(const uint8_t *payload, size_t bytes,
                                 cau_stream_statistics *statistics);

@@ -45,7 +45,7 @@ static void freeze_command(cau_hosted *h, const cau_tool_state *state)
 	cau_default_command(&stay, CAU_COMMAND_TOOL_MOVE);
 	memcpy(stay.tool, state->name, sizeof stay.tool);
 	stay.sequence = state->sequence;
-	stay.as.move.pose = state->pose;
+	stay.as.move.pose = state->pose; // where it is: it is not pulled any farther either
 	stay.as.move.jaw = state->jaw;
 	tell_core(h, &stay);
 }

@@ -6,11 +6,26 @@
 
 #include "hosted_session/internal.h"
 
+// Tools that touch are always behind a little: by less than this nobody sees it.
+static const double behind_m = 1e-5;
+
+static bool is_behind(const cau_tool_state *tool)
+{
+	bool turned =
+		memcmp(tool->pose.rotation, tool->asked_pose.rotation, sizeof tool->pose.rotation) != 0;
+	double off2 = 0;
+	for (int c = 0; c < 3; c++)
+		off2 += pow(tool->pose.position_m[c] - tool->asked_pose.position_m[c], 2);
+	return turned || off2 > behind_m * behind_m;
+}
+
 static void describe_tool(const cau_tool_state *from, cau_stream_tool *to)
 {
 	*to = (cau_stream_tool){
 		.shape = from->definition.shape,
 		.pose = from->pose,
+		.behind = is_behind(from),
+		.asked_pose = from->asked_pose,
 		.jaw = from->jaw,
 		.tip_temperature_c = from->tip_temperature_c,
 		.energy_j = from->energy_j,

@@ -250,6 +250,8 @@ static void open_ros_writers(cau_dds *dds, uint32_t session, cau_dds_tool *tool,
 		const dds_topic_descriptor_t *type;
 	} outlets[] = {
 		{&tool->pose_topic, &tool->pose, "measured_cp", &geometry_msgs_msg_dds__PoseStamped__desc},
+		{&tool->asked_topic, &tool->asked, "setpoint_cp",
+	     &geometry_msgs_msg_dds__PoseStamped__desc},
 		{&tool->force_topic, &tool->force, "measured_cf",
 	     &geometry_msgs_msg_dds__WrenchStamped__desc},
 		{&tool->jaw_topic, &tool->jaw, "jaw/measured_js", &sensor_msgs_msg_dds__JointState__desc},
@@ -313,10 +315,11 @@ void cau_dds_close_tool(cau_dds *dds, cau_dds_tool *tool)
 	close_door(dds, &tool->energize);
 	close_door(dds, &tool->state_command);
 	cau_dds_close_outlet(&tool->pose);
+	cau_dds_close_outlet(&tool->asked);
 	cau_dds_close_outlet(&tool->force);
 	cau_dds_close_outlet(&tool->jaw);
-	const dds_entity_t made[] = {tool->operating_writer, tool->pose_topic, tool->force_topic,
-	                             tool->jaw_topic, tool->operating_topic};
+	const dds_entity_t made[] = {tool->operating_writer, tool->pose_topic, tool->asked_topic,
+	                             tool->force_topic,      tool->jaw_topic,  tool->operating_topic};
 	for (size_t i = 0; i < sizeof made / sizeof made[0]; i++)
 		if (made[i] > 0)
 			dds_delete(made[i]);

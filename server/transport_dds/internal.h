@@ -94,8 +94,9 @@ typedef struct cau_dds_tool {
 	// closed where the ROS 2 name is taken
 	cau_door servo_cp, servo_jp, energize, state_command;
 	cau_door loose_cp, loose_jp; // of best effort; open once such a writer is there
-	dds_entity_t pose_topic, force_topic, jaw_topic;
-	cau_dds_outlet pose, force, jaw;                // measured_cp, measured_cf, jaw/measured_js
+	dds_entity_t pose_topic, asked_topic, force_topic, jaw_topic;
+	cau_dds_outlet pose, asked, force, jaw;         // measured_cp, setpoint_cp, measured_cf,
+	                                                // jaw/measured_js
 	dds_entity_t operating_topic, operating_writer; // operating_state
 	cau_dds_operating operating, operating_told;
 	struct cau_dds_hand *hands;

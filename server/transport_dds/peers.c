@@ -81,6 +81,7 @@ static end find_in_tool(const cau_dds_session *session, cau_dds_tool *tool, cons
 		{tool->energize.topic, tool->energize.reader, true, &tool->energize, NULL},
 		{tool->state_command.topic, tool->state_command.reader, true, &tool->state_command, NULL},
 		{tool->pose_topic, tool->pose.writer, false, NULL, NULL},
+		{tool->asked_topic, tool->asked.writer, false, NULL, NULL},
 		{tool->force_topic, tool->force.writer, false, NULL, NULL},
 		{tool->jaw_topic, tool->jaw.writer, false, NULL, NULL},
 		{tool->operating_topic, tool->operating_writer, false, NULL, NULL},

@@ -152,8 +152,8 @@ static bool is_session_read(const cau_dds_session *session)
 	           cau_dds_is_read(&stream->key) || cau_dds_is_read(&stream->delta);
 	for (int i = 0; i < CAU_MAX_TOOLS && !any; i++) {
 		const cau_dds_tool *tool = &session->tools[i];
-		any = cau_dds_is_read(&tool->pose) || cau_dds_is_read(&tool->force) ||
-		      cau_dds_is_read(&tool->jaw);
+		any = cau_dds_is_read(&tool->pose) || cau_dds_is_read(&tool->asked) ||
+		      cau_dds_is_read(&tool->force) || cau_dds_is_read(&tool->jaw);
 	}
 	return any;
 }

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// What the server says of tools: cautery/tool_state, measured_cp, measured_cf, jaw/measured_js.
+// What the server says of tools: cautery/tool_state, measured_cp, setpoint_cp, measured_cf,
+// jaw/measured_js.
 #include <math.h>
 #include <string.h>
 
@@ -55,15 +56,21 @@ static bool is_due(cau_dds_outlet *outlet, bool changed)
 	return cau_dds_take_newcomers(outlet) || changed;
 }
 
+static void publish_pose(cau_dds_outlet *outlet, const cau_pose *pose, bool changed)
+{
+	const double *p = pose->position_m, *q = pose->rotation;
+	if (!is_due(outlet, changed))
+		return;
+	geometry_msgs_msg_dds__PoseStamped_ sample = {
+		header_now(), {{p[0], p[1], p[2]}, {.x_ = q[1], .y_ = q[2], .z_ = q[3], .w_ = q[0]}}};
+	dds_write(outlet->writer, &sample);
+}
+
 static void publish_measured(cau_dds_tool *wire, const cau_tool_state *state, bool changed)
 {
-	const double *p = state->pose.position_m, *q = state->pose.rotation, *f = state->force_n,
-				 *t = state->torque_nm;
-	if (is_due(&wire->pose, changed)) {
-		geometry_msgs_msg_dds__PoseStamped_ pose = {
-			header_now(), {{p[0], p[1], p[2]}, {.x_ = q[1], .y_ = q[2], .z_ = q[3], .w_ = q[0]}}};
-		dds_write(wire->pose.writer, &pose);
-	}
+	const double *f = state->force_n, *t = state->torque_nm;
+	publish_pose(&wire->pose, &state->pose, changed);
+	publish_pose(&wire->asked, &state->asked_pose, changed);
 	if (is_due(&wire->force, changed)) {
 		geometry_msgs_msg_dds__WrenchStamped_ force = {header_now(),
 		                                               {{f[0], f[1], f[2]}, {t[0], t[1], t[2]}}};

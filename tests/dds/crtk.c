@@ -41,6 +41,7 @@ void crtk_open(crtk *c, dds_entity_t participant, const char *session, const cha
 	     true},
 		{&c->jaw_reader, "jaw/measured_js", &sensor_msgs_msg_dds__JointState__desc, false, false},
 		{&c->pose_reader, "measured_cp", &geometry_msgs_msg_dds__PoseStamped__desc, false, false},
+		{&c->asked_reader, "setpoint_cp", &geometry_msgs_msg_dds__PoseStamped__desc, false, false},
 	};
 	for (size_t i = 0; i < sizeof ends / sizeof ends[0]; i++) {
 		dds_entity_t topic = ros_topic(participant, session, tool, ends[i].name, ends[i].type);
@@ -89,11 +90,22 @@ static void take_pose(void *user, const void *sample)
 	c->poses++;
 }
 
+static void take_asked(void *user, const void *sample)
+{
+	crtk *c = user;
+	const geometry_msgs_msg_dds__Point_ *p =
+		&((const geometry_msgs_msg_dds__PoseStamped_ *)sample)->pose_.position_;
+	c->asked_m[0] = p->x_;
+	c->asked_m[1] = p->y_;
+	c->asked_m[2] = p->z_;
+}
+
 void crtk_read(crtk *c)
 {
 	take_each(c->state_reader, take_state, c);
 	take_each(c->jaw_reader, take_jaw, c);
 	take_each(c->pose_reader, take_pose, c);
+	take_each(c->asked_reader, take_asked, c);
 }
 
 void crtk_command(const crtk *c, const char *word)
@@ -115,7 +127,8 @@ void crtk_jaw(const crtk *c, double angle_rad)
 void crtk_tell(const crtk *c)
 {
 	printf("{\"event\":\"crtk\",\"state\":\"%s\",\"homed\":%s,\"busy\":%s,\"states\":%d,"
-	       "\"jaw_rad\":%.6f,\"position_m\":[%.6f,%.6f,%.6f]}\n",
+	       "\"jaw_rad\":%.6f,\"position_m\":[%.6f,%.6f,%.6f],\"asked_m\":[%.6f,%.6f,%.6f]}\n",
 	       c->state, c->homed ? "true" : "false", c->busy ? "true" : "false", c->states, c->jaw_rad,
-	       c->position_m[0], c->position_m[1], c->position_m[2]);
+	       c->position_m[0], c->position_m[1], c->position_m[2], c->asked_m[0], c->asked_m[1],
+	       c->asked_m[2]);
 }

@@ -151,13 +151,13 @@ test('a paused session is told as paused tools', async (t) => {
 	await robot.untilCrtk((c) => c.state === 'ENABLED');
 });
 
-test('the jaw goes where servo_jp says, and measured_js and measured_cp tell', async (t) => {
+test('the jaw goes where servo_jp says, and measured_js, measured_cp and setpoint_cp tell', async (t) => {
 	const seen = await driven(t, 'jaw');
 	const { session, robot } = seen;
 	const aim = [0.01, -0.01, 0.02];
 	await follows(seen, aim);
 	robot.tell('jaw 0.2');
-	await robot.untilCrtk((c) => Math.abs(c.jaw_rad - 0.2) < 1e-5 && far(c.position_m, aim) < AT_AIM_M);
+	await robot.untilCrtk((c) => Math.abs(c.jaw_rad - 0.2) < 1e-5 && far(c.position_m, aim) < AT_AIM_M && far(c.asked_m, aim) < AT_AIM_M);
 	await refusesOne(session, robot, 'jaw 0.6');
 	assert.ok(Math.abs((await robot.crtk()).jaw_rad - 0.2) < 1e-5);
 });

@@ -167,7 +167,7 @@ void cau_session_present(const cau_session *session, cau_scene_def *scene);
 typedef struct cau_tool_state {
 	char name[CAU_NAME_BYTES];
 	cau_tool_def definition;
-	cau_pose pose;
+	cau_pose pose; // where it is: tissue stops it
 	double jaw;
 	bool energized;
 	bool grasping;            // jaws commanded closed on tissue
@@ -181,6 +181,10 @@ typedef struct cau_tool_state {
 	double tip_temperature_c;
 	double energy_j;   // heat taken up by tissue, rough
 	uint64_t sequence; // last applied command's
+	// Where it is led to, within its speed limits. It is pulled there with force_max_n at most.
+	cau_pose asked_pose;
+	int32_t slips; // times that it was left behind so far that it let go of what stopped it
+	int32_t unused;
 } cau_tool_state;
 
 typedef struct cau_statistics {

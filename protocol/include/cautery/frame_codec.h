@@ -54,7 +54,8 @@ typedef enum cau_frame_kind {
 	X(FACES, 16, "faces")          /* the rest: of topology frames */                              \
 	X(FACE_LAYERS, 17, "face_layers")                                                              \
 	X(TEXTURE, 18, "texture")                                                                      \
-	X(REST, 19, "rest")
+	X(REST, 19, "rest")                                                                            \
+	X(TOOLS_ASKED, 32, "tools_asked") /* of the channel tools */
 #define ROW(X, code, name, section, ...) CAU_SECTION_##code = (section),
 #define X(code, number, name) CAU_SECTION_##code = (number),
 typedef enum cau_section { CAU_CHANNEL_ROWS(ROW, ROW, ) CAU_OTHER_SECTION_TABLE(X) } cau_section;

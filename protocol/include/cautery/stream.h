@@ -73,9 +73,11 @@ double cau_channel_step(const cau_stream_def *def, cau_channel_index channel);
 // One tool as a frame shows it.
 typedef struct cau_stream_tool {
 	char name[CAU_NAME_BYTES];
-	int32_t shape; // CAU_TOOL_*
-	cau_pose pose; // single precision on the wire, like all that follows
-	double jaw;    // 0 closed to 1 open
+	int32_t shape;       // CAU_TOOL_*
+	cau_pose pose;       // single precision on the wire, like all that follows
+	bool behind;         // tissue keeps it from where it is led to
+	cau_pose asked_pose; // where that is; of a decoder's tools also where they are not behind
+	double jaw;          // 0 closed to 1 open
 	double force_n[3];
 	double torque_nm[3]; // about the tip
 	double tip_temperature_c;

@@ -150,7 +150,8 @@ class Tools(programs.Case):
         self.assertFalse(tools["needle"]["energized"])
         moved = [t for t in self.json("watch", session, "--seconds", 0.3)["tools"]
                  if t["tool"] == "needle"][0]
-        self.assertAlmostEqual(moved["position_m"][0], 0.02, places=6)  # single precision
+        self.assertAlmostEqual(moved["asked_m"][0], 0.02, places=6)  # single precision
+        self.assertAlmostEqual(moved["position_m"][0], 0.02, places=3)  # tissue keeps it back a little
 
     def test_mistakes(self):
         session = self.create("fascia")

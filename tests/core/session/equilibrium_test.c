@@ -83,6 +83,7 @@ static cau_scene_def *scene_of(const cau_reference_case *reference, const char *
 		cau_tool_def *ball = stage_add_tool(scene, "ball", CAU_TOOL_SPHERE, 0, 0, 0);
 		ball->hot_radius_m = reference->sphere_radius_m;
 		ball->friction = 0;
+		ball->force_max_n = 1000; // it yields by 4 um a newton: it is where it is asked to be
 		ball->pose.position_m[2] = reference->sphere_radius_m + 1e-4; // just above the body
 	}
 	return scene;

@@ -28,6 +28,7 @@ static void pull_every_way(const char *name, double top_m, double slip_force_n)
 		stage_add_tool(scene, "jaws", CAU_TOOL_GRASPER, 0.01, 0.005, top_m - 0.004);
 	jaws->max_speed_m_s = 5; // the fastest that any scene may have
 	jaws->slip_force_n = slip_force_n;
+	jaws->force_max_n = 1000; // nor do they stay behind
 	jaws->grasp_stiffness_n_m = slip_force_n > 100 ? 1e4 : 200;
 	cau_session *session = stage_open(scene, 2);
 	size_t way_count = CAU_TEST_SANITIZED ? ways_under_sanitizers : sizeof ways / sizeof *ways;

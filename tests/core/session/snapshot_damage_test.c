@@ -113,32 +113,41 @@ static void forged_counts_are_refused_and_change_nothing(void **state)
 	free(scene);
 }
 
-// The payload as versions before 6 had it, without the heat fields around each tool's innermost
-// one, and without the tears that it ends with. Returns its length.
+// Copies one piece, and leaves another out.
+static void copy_piece(unsigned char **to, const unsigned char **from, size_t kept, size_t left_out)
+{
+	memcpy(*to, *from, kept);
+	*to += kept;
+	*from += kept + left_out;
+}
+
+// The payload as versions before 6 had it: without what each tool's pose hangs on and the heat
+// fields around its innermost one, and without the tears that it ends with. Returns its length.
 static size_t payload_of_version_5(const stage_bytes *shot, const cau_session *session,
                                    unsigned char *payload)
 {
 	const size_t tears =
 		(size_t)session->scene->layer_count * (2 * CAU_MAX_MATERIALS + 1) * sizeof(double);
+	const size_t state = offsetof(cau_tool_state, asked_pose);
 	snapshot_header header;
-	const unsigned char *from = (const unsigned char *)shot->bytes + sizeof header;
-	const unsigned char *end = (const unsigned char *)shot->bytes + shot->count - tears;
 	memcpy(&header, shot->bytes, sizeof header);
-	size_t before = (size_t)header.vertex_count + (size_t)header.row_count * sizeof(int32_t);
-	size_t count = 0;
+	const unsigned char *from = shot->bytes + sizeof header, *end = shot->bytes + shot->count;
+	unsigned char *to = payload;
+	copy_piece(&to, &from, (size_t)header.vertex_count + (size_t)header.row_count * sizeof(int32_t),
+	           0);
 	for (int32_t i = 0; i < header.tool_count; i++) {
 		const cau_tool *tool = &session->tool[i];
 		size_t n = (size_t)header.grid_nodes[i], field = n * n * n * sizeof(float);
-		size_t kept = sizeof tool->state + sizeof tool->target + sizeof tool->jaw_target +
-		              sizeof tool->pose_before + sizeof tool->grasp_count + sizeof tool->grasp +
-		              sizeof tool->grid.field[0].origin + field;
-		memcpy(payload + count, from, before + kept);
-		count += before + kept;
-		from += before + kept + (CAU_HEAT_FIELDS - 1) * field;
-		before = 0;
+		copy_piece(&to, &from,
+		           state + sizeof tool->target + sizeof tool->jaw_target + sizeof tool->pose_before,
+		           sizeof tool->state - state + sizeof tool->anchor + sizeof tool->pace);
+		copy_piece(&to, &from,
+		           sizeof tool->grasp_count + sizeof tool->grasp +
+		               sizeof tool->grid.field[0].origin + field,
+		           (CAU_HEAT_FIELDS - 1) * field);
 	}
-	memcpy(payload + count, from, (size_t)(end - from));
-	return count + (size_t)(end - from);
+	copy_piece(&to, &from, (size_t)(end - from) - tears, tears);
+	return (size_t)(to - payload);
 }
 
 // Version 4 as its first builds wrote it and as its last did, and version 5: the header ended

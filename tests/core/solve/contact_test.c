@@ -7,6 +7,7 @@
 #include <string.h>
 
 #include "core/rig/rig.h"
+#include "solve/coupling.h"
 
 // Of the largest reaction, where the step has converged to its residual of 1e-10.
 static const double FORCE_TOLERANCE = 1e-5;
@@ -39,8 +40,7 @@ static void make(pressed *p, double friction)
 	p->set->tool_count = 1;
 	p->set->tool[0] = (cau_contact_tool){
 		.def = &p->tool,
-		.pose = pose_at(0.004, -0.003, RADIUS_M - DEPTH_M),
-		.pose_before = pose_at(0.004, -0.003, RADIUS_M - DEPTH_M),
+		.anchor = pose_at(0.004, -0.003, RADIUS_M - DEPTH_M),
 		.part = CAU_PART_BOTH,
 	};
 }
@@ -48,7 +48,8 @@ static void make(pressed *p, double friction)
 static double gap_of(const pressed *p, int32_t vertex, cau_vec3 *normal)
 {
 	const cau_contact_tool *tool = &p->set->tool[0];
-	return cau_tool_distance_at(tool->def, &tool->pose, tool->jaw, CAU_PART_BOTH,
+	cau_pose pose = cau_coupling_pose(&tool->anchor, cau_vec3_of(tool->offset));
+	return cau_tool_distance_at(tool->def, &pose, tool->jaw, CAU_PART_BOTH,
 	                            cau_vec3_of(p->r.solver.position + 3 * vertex), normal);
 }
 
@@ -159,7 +160,9 @@ static void test_attachment_is_a_spring_that_slips(void **state)
 		solve(&p);
 		assert_balance(&p);
 		cau_vec3 reaction = cau_vec3_of(p.set->row[0].reaction);
-		cau_vec3 away = cau_sub(cau_vec3_of(row.anchor), cau_vec3_of(p.r.solver.position + 3 * v));
+		cau_vec3 offset = cau_vec3_of(p.set->tool[0].offset); // the tool gives way to it
+		cau_vec3 away = cau_sub(cau_add(cau_vec3_of(row.anchor), offset),
+		                        cau_vec3_of(p.r.solver.position + 3 * v));
 		double force = p.tool.grasp_stiffness_n_m * cau_length(away);
 		assert_int_equal(p.set->row[0].slipping, s);
 		assert_near(cau_length(reaction), s ? slips[s] : force, FORCE_TOLERANCE * force);

@@ -172,6 +172,8 @@ function readTool(view, at, name) {
     sequence: view.getBigUint64(at, true),
     position: floats(8, 3),
     rotation: floats(20, 4),
+    asked: floats(8, 3),
+    askedRotation: floats(20, 4),
     jaw: floats(36, 1),
     force: floats(40, 3),
     torque: floats(52, 3),
@@ -233,6 +235,11 @@ export class StreamDecoder {
       if (payload.length !== 84 * this.toolNames.length) fail('not as many tools as names');
       const view = new DataView(payload.buffer, payload.byteOffset, payload.byteLength);
       this.tools = this.toolNames.map((name, i) => readTool(view, 84 * i, name));
+    } else if (type === 32) {
+      if (payload.length !== 28 * this.tools.length) fail('not as many poses asked as tools');
+      const view = new DataView(payload.buffer, payload.byteOffset, payload.byteLength);
+      const floats = (at, count) => Array.from({ length: count }, (_, k) => view.getFloat32(at + 4 * k, true));
+      this.tools.forEach((tool, i) => Object.assign(tool, { asked: floats(28 * i, 3), askedRotation: floats(28 * i + 12, 4) }));
     } else if (type === 8) {
       this.statistics = readStatistics(payload);
     }

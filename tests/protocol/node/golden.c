@@ -78,6 +78,8 @@ static void write_tool(FILE *out, const cau_stream_tool *tool)
 	        tool->contact_vertices, tool->touched_layers);
 	write_floats(out, "position", tool->pose.position_m, 3);
 	write_floats(out, "rotation", tool->pose.rotation, 4);
+	write_floats(out, "asked", tool->asked_pose.position_m, 3);
+	write_floats(out, "askedRotation", tool->asked_pose.rotation, 4);
 	write_floats(out, "jaw", &tool->jaw, 1);
 	write_floats(out, "force", tool->force_n, 3);
 	write_floats(out, "torque", tool->torque_nm, 3);

@@ -65,10 +65,13 @@ static void assert_tools_equal(const cau_stream_tool *a, const cau_stream_tool *
 	assert_true(a->sequence == b->sequence && a->driver == b->driver);
 	assert_true(a->energized == b->energized && a->grasping == b->grasping &&
 	            a->frozen == b->frozen);
+	assert_true(a->behind == b->behind);
 	assert_int_equal(a->energy_off, b->energy_off);
 	assert_int_equal(a->contact_vertices, b->contact_vertices);
 	for (int i = 0; i < 3; i++) {
 		assert_true((float)a->pose.position_m[i] == (float)b->pose.position_m[i]);
+		assert_true((float)(b->behind ? b->asked_pose : b->pose).position_m[i] ==
+		            (float)a->asked_pose.position_m[i]);
 		assert_true((float)a->force_n[i] == (float)b->force_n[i]);
 		assert_true((float)a->torque_nm[i] == (float)b->torque_nm[i]);
 	}

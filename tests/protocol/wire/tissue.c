@@ -75,6 +75,9 @@ static void move_tool(cau_stream_tool *tool, const char *name, int shape, int32_
 	*tool = (cau_stream_tool){
 		.shape = shape,
 		.pose = {.position_m = {0.0005 * tick, 0.01, 0.002}, .rotation = {1.0, 0.0, 0.0, 0.0}},
+		.behind = tick % 3 == 1,
+		.asked_pose = {.position_m = {0.0005 * tick, 0.01, 0.001},
+	                   .rotation = {1.0, 0.0, 0.0, 0.0}},
 		.jaw = 0.25,
 		.force_n = {0.1, -0.2, 0.0625 * (tick % 5)},
 		.torque_nm = {0.0, 0.001, -0.002},

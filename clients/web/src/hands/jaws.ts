@@ -45,7 +45,7 @@ export class Jaws {
   /** The hand has led the tool here; jaws that wait for it close. */
   arrived(position: Vector3): void {
     const state = this.model.toolState;
-    if (this.pressed !== 'soon' || !state || position.distanceTo(new Vector3(...state.positionM)) > ARRIVED_M) return;
+    if (this.pressed !== 'soon' || !state || position.distanceTo(new Vector3(...state.asked.positionM)) > ARRIVED_M) return;
     this.pressed = 'yes';
     this.grasp(true);
   }

@@ -268,7 +268,7 @@ export class ToolHand {
     if (!this.model.driving || !state || this.past.shown) return false;
     if (this.wanted && (!this.way.empty || performance.now() - this.movedAt < ECHO_MS)) return true;
     const [w, x, y, z] = state.rotation;
-    this.wanted = { position: new Vector3(...state.positionM), rotation: new Quaternion(x, y, z, w), jaw: state.jaw };
+    this.wanted = { position: new Vector3(...state.asked.positionM), rotation: new Quaternion(x, y, z, w), jaw: state.jaw };
     this.sequence = Math.max(this.sequence, state.sequence);
     return true;
   }

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// One instrument: its solids from the definition, jaws that turn, metal that glows a little when hot.
+// One instrument: its solids from the definition, jaws that turn, metal that glows a little when hot. As a
+// ghost it is where its driver wants it while tissue keeps it elsewhere.
 import { BufferGeometry, Color, GLSL3, Group, Mesh, ShaderMaterial, Vector3, type IUniform } from 'three';
 
 import { toolParts, toolSizes, type ToolPart } from '../model/tool_parts';
@@ -26,6 +27,7 @@ uniform vec3 light;
 uniform vec3 base;
 uniform float mirror;
 uniform float heat;
+uniform float opacity;
 void main() {
   vec3 normal = normalize(vNormalWorld);
   vec3 view = normalize(cameraPosition - vWorld);
@@ -36,8 +38,10 @@ void main() {
   float shine = pow(max(dot(normal, normalize(toLight + view)), 0.0), 70.0);
   vec3 colour = base * mix(0.22 + 0.8 * diffuse, room + 0.25 * diffuse, mirror) + shine * (0.3 + mirror) * 0.7;
   colour = mix(colour, vec3(1.0, 0.42, 0.12) * (0.5 + 0.5 * diffuse), 0.22 * heat) + heat * vec3(0.10, 0.025, 0.0);
-  fragment = linearToOutputTexel(vec4(colour, 1.0));
+  fragment = linearToOutputTexel(vec4(colour, opacity));
 }`;
+
+const GHOST_OPACITY = 0.25;
 
 export class ToolView {
   readonly group = new Group();
@@ -50,6 +54,7 @@ export class ToolView {
   constructor(
     readonly definition: Tool,
     light: IUniform<Vector3>,
+    private readonly ghost = false,
   ) {
     this.jawOpen = toolSizes(definition).jawOpen;
     const steel = this.makeMaterial(light, new Color(0.62, 0.64, 0.67), 0.85, { value: 0 });
@@ -78,6 +83,13 @@ export class ToolView {
     this.setJaw(jaw);
     this.heat.value = heat;
     return true;
+  }
+
+  /** Says whether it was drawn. */
+  hide(): boolean {
+    const was = this.group.visible;
+    this.group.visible = false;
+    return was;
   }
 
   dispose(): void {
@@ -115,7 +127,9 @@ export class ToolView {
       glslVersion: GLSL3,
       vertexShader: VERTEX,
       fragmentShader: FRAGMENT,
-      uniforms: { light, base: { value: base }, mirror: { value: mirror }, heat },
+      uniforms: { light, base: { value: base }, mirror: { value: mirror }, heat, opacity: { value: this.ghost ? GHOST_OPACITY : 1 } },
+      transparent: this.ghost,
+      depthWrite: !this.ghost,
     });
     this.materials.push(material);
     return material;

@@ -15,7 +15,7 @@ import { Pace } from './pace';
 import { placeShadows } from './shadows';
 import { Smoke } from './smoke';
 import { makeSharedUniforms, mapTexture, TissueView } from './tissue_view';
-import { ToolView } from './tool_view';
+import { ToolViews } from './tool_views';
 import { WayView } from './way_view';
 
 export interface ViewOptions {
@@ -62,7 +62,7 @@ export class Viewport {
   private readonly shared = makeSharedUniforms();
   readonly clip = new ClipPlane(this.shared.clip);
   private readonly colourMaps = { cividis: this.shared.colourMap.value, heat: mapTexture('heat') };
-  private readonly tools = new Map<string, ToolView>();
+  private readonly tools: ToolViews;
   private readonly smoke = new Smoke();
   private readonly arrow = new ArrowHelper(new Vector3(0, 0, 1), new Vector3(), 0.01, 0xf5b301);
   private readonly way = new WayView();
@@ -95,6 +95,7 @@ export class Viewport {
       this.resize();
     });
     this.field = new Field(this.shared, this.background);
+    this.tools = new ToolViews(this.scene, this.shared.light);
     this.arrow.visible = false;
     this.scene.add(this.field.group, this.smoke.points, this.arrow, this.way.points);
     this.setTheme(true);
@@ -140,20 +141,7 @@ export class Viewport {
 
   /** Definitions of the instruments, when they come, go or change. */
   setTools(tools: readonly Tool[]): void {
-    for (const [name, view] of this.tools) {
-      const kept = tools.find((tool) => tool.name === name);
-      if (kept && JSON.stringify(kept) === JSON.stringify(view.definition)) continue;
-      this.scene.remove(view.group);
-      view.dispose();
-      this.tools.delete(name);
-    }
-    for (const tool of tools) {
-      if (this.tools.has(tool.name)) continue;
-      const view = new ToolView(tool, this.shared.light);
-      view.group.visible = false;
-      this.tools.set(tool.name, view);
-      this.scene.add(view.group);
-    }
+    this.tools.setTools(tools);
     this.invalidate();
   }
 
@@ -169,16 +157,13 @@ export class Viewport {
     return this.tissue ? this.tissue.take(frame) : null;
   }
 
-  /** Where an instrument is drawn: the hand's pose goes before the server's. */
+  /** Where instruments are drawn. */
   poseTools(poses: ReadonlyMap<string, Pose>): void {
     let changed = false;
-    for (const state of this.states) {
-      const pose = poses.get(state.name) ?? state;
-      const view = this.tools.get(state.name);
-      if (view?.set(pose.positionM, pose.rotation, pose.jaw, this.heatOf(state))) changed = true;
-    }
+    for (const state of this.states)
+      if (this.tools.pose(state, poses.get(state.name), this.heatOf(state))) changed = true;
     if (!changed) return;
-    placeShadows(this.shared, this.states, this.tools, (state) => this.heatOf(state));
+    placeShadows(this.shared, this.states, this.tools.solid, (state) => this.heatOf(state));
     this.invalidate();
   }
 
@@ -300,7 +285,7 @@ export class Viewport {
   private smoking(): Vector3[] {
     const sources: Vector3[] = [];
     for (const state of this.states) {
-      const view = this.tools.get(state.name);
+      const view = this.tools.solid.get(state.name);
       if (view && state.energized && state.touchedLayers !== 0) sources.push(view.group.position);
     }
     return sources;

@@ -856,7 +856,7 @@ export interface Tool {
   grasp_stiffness_n_m?: number;
   /** an attached vertex slips above this force (0 to 1000 N) */
   slip_force_n?: number;
-  /** clamp of the force reported to drivers (0.01 to 1000 N) */
+  /** it pushes with this at most, as told to drivers (0.01 to 1000 N) */
   force_max_n?: number;
   /** first place of the tip (-100 to 100 m) */
   position_m?: [number, number, number];
@@ -1273,7 +1273,7 @@ export interface ToolAdd {
   grasp_stiffness_n_m?: number;
   /** an attached vertex slips above this force (0 to 1000 N) */
   slip_force_n?: number;
-  /** clamp of the force reported to drivers (0.01 to 1000 N) */
+  /** it pushes with this at most, as told to drivers (0.01 to 1000 N) */
   force_max_n?: number;
   /** name of the tool */
   name: string;
@@ -1341,7 +1341,7 @@ export interface ToolConfigure {
   grasp_stiffness_n_m?: number;
   /** an attached vertex slips above this force (0 to 1000 N) */
   slip_force_n?: number;
-  /** clamp of the force reported to drivers (0.01 to 1000 N) */
+  /** it pushes with this at most, as told to drivers (0.01 to 1000 N) */
   force_max_n?: number;
 }
 
@@ -1899,6 +1899,7 @@ export const SECTION = {
   face_layers: 17,
   texture: 18,
   rest: 19,
+  tools_asked: 32,
 } as const;
 
 /** Scalars of the vertices: n in a frame stands for least + step n in the unit, n is at most `most`.
@@ -1990,7 +1991,7 @@ export const PARAMETERS = {
     { name: 'slip_force_n', unit: 'N', least: 0, most: 1000, default: 2,
       meaning: "an attached vertex slips above this force" },
     { name: 'force_max_n', unit: 'N', least: 0.01, most: 1000, default: 20,
-      meaning: "clamp of the force reported to drivers" },
+      meaning: "it pushes with this at most, as told to drivers" },
   ],
   fascia: [
     { name: 'thickness_m', unit: 'm', least: 1e-06, most: 0.05, default: 0.0005,

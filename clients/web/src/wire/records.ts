@@ -17,6 +17,7 @@ export interface ToolState extends ToolName {
   sequence: number;
   positionM: Vector;
   rotation: Quaternion;
+  asked: { positionM: Vector; rotation: Quaternion }; // where it is led to: elsewhere where tissue stops it
   jaw: number;
   forceN: Vector;
   torqueNm: Vector;
@@ -57,6 +58,7 @@ export interface Statistics {
 }
 
 const TOOL_BYTES = 84;
+const ASKED_BYTES = 28;
 const STATISTICS_BYTES = 88; // without what servers have added since: energyGainJ, resting, error, contactsLeftOut
 const TOOLS_MAX = 8;
 
@@ -82,13 +84,21 @@ function readVector(view: DataView, offset: number): Vector {
   return [view.getFloat32(offset, true), view.getFloat32(offset + 4, true), view.getFloat32(offset + 8, true)];
 }
 
+function readPose(view: DataView, offset: number): { positionM: Vector; rotation: Quaternion } {
+  return {
+    positionM: readVector(view, offset),
+    rotation: [view.getFloat32(offset + 12, true), ...readVector(view, offset + 16)],
+  };
+}
+
 function readTool(view: DataView, offset: number, name: ToolName): ToolState {
   const flags = view.getUint8(offset + 76);
+  const pose = readPose(view, offset + 8);
   return {
     ...name,
     sequence: Number(view.getBigUint64(offset, true)),
-    positionM: readVector(view, offset + 8),
-    rotation: [view.getFloat32(offset + 20, true), ...readVector(view, offset + 24)],
+    ...pose,
+    asked: pose,
     jaw: view.getFloat32(offset + 36, true),
     forceN: readVector(view, offset + 40),
     torqueNm: readVector(view, offset + 52),
@@ -109,6 +119,13 @@ export function readTools(payload: Uint8Array, names: readonly ToolName[]): Tool
   if (payload.byteLength !== names.length * TOOL_BYTES) throw new WireError('tool records do not match their names');
   const view = viewOf(payload);
   return names.map((name, i) => readTool(view, i * TOOL_BYTES, name));
+}
+
+// Without the section every tool is where it is asked to be, as readTools tells.
+export function readAsked(payload: Uint8Array, tools: readonly ToolState[]): ToolState[] {
+  if (payload.byteLength !== tools.length * ASKED_BYTES) throw new WireError('poses asked do not match their tools');
+  const view = viewOf(payload);
+  return tools.map((tool, i) => ({ ...tool, asked: readPose(view, i * ASKED_BYTES) }));
 }
 
 export function readStatistics(payload: Uint8Array): Statistics {

@@ -1,0 +1,67 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// The instruments of a session, each drawn where it is and, where tissue keeps it from where its driver wants
+// it, once more as a ghost there.
+import type { IUniform, Scene, Vector3 } from 'three';
+
+import type { Tool } from '../wire/messages.gen';
+import type { ToolState } from '../wire/records';
+import { ToolView } from './tool_view';
+
+const GHOST_M = 3e-4; // nearer than this the two would be one picture
+
+interface ToolPose {
+  positionM: readonly number[];
+  rotation: readonly number[];
+  jaw: number;
+}
+
+export class ToolViews {
+  readonly solid = new Map<string, ToolView>();
+  private readonly ghosts = new Map<string, ToolView>();
+
+  constructor(
+    private readonly scene: Scene,
+    private readonly light: IUniform<Vector3>,
+  ) {}
+
+  /** Definitions of the instruments, when they come, go or change. */
+  setTools(tools: readonly Tool[]): void {
+    for (const [name, view] of this.solid) {
+      const kept = tools.find((tool) => tool.name === name);
+      if (!kept || JSON.stringify(kept) !== JSON.stringify(view.definition)) this.remove(name);
+    }
+    for (const tool of tools) if (!this.solid.has(tool.name)) this.add(tool);
+  }
+
+  /** Where one is drawn: the hand's pose goes before the server's, but by as much as tissue keeps the tool from
+   * it. Says whether the picture is another than before. */
+  pose(state: ToolState, hand: ToolPose | undefined, heat: number): boolean {
+    const asked = hand ?? { ...state.asked, jaw: state.jaw };
+    const off = state.positionM.map((x, i) => x - state.asked.positionM[i]);
+    const at = asked.positionM.map((x, i) => x + off[i]);
+    const moved = this.solid.get(state.name)?.set(at, hand?.rotation ?? state.rotation, asked.jaw, heat);
+    const ghost = this.ghosts.get(state.name);
+    const behind = Math.hypot(...off) > GHOST_M;
+    const shown = behind ? ghost?.set(asked.positionM, asked.rotation, asked.jaw, 0) : ghost?.hide();
+    return moved === true || shown === true;
+  }
+
+  private add(tool: Tool): void {
+    for (const views of [this.solid, this.ghosts]) {
+      const view = new ToolView(tool, this.light, views === this.ghosts);
+      view.group.visible = false;
+      views.set(tool.name, view);
+      this.scene.add(view.group);
+    }
+  }
+
+  private remove(name: string): void {
+    for (const views of [this.solid, this.ghosts]) {
+      const view = views.get(name);
+      if (!view) continue;
+      this.scene.remove(view.group);
+      view.dispose();
+      views.delete(name);
+    }
+  }
+}

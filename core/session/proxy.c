@@ -1,0 +1,103 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// A tool has a pose that is asked and a pose that is. A driver leads the first within the tool's
+// speed limits (tool_motion.c). The second hangs on it by a spring (solve/coupling.h): a tick
+// begins with a guess of it, by which contacts are looked for, and takes it from the solve.
+//
+// Where a step finds no way to hold the tissue that a tool would pass, the tool was to go too far
+// for one tick: the spring's anchor, which is where the tool is asked to be, stays behind, and the
+// tick is solved again. It follows in shorter ways, as far as tissue yields. A tool that is left
+// behind farther than a driver can mean lets go: it is where it is asked to be at once, and belongs
+// on no side of the tissue that it is in there.
+#include <string.h>
+
+#include "cautery/assert.h"
+#include "session/session_internal.h"
+#include "solve/coupling.h"
+
+static const double most_behind_m = 0.04; // ten times as far as the spring is pulled out at most
+static const double slower = 1.0 / 8, faster = 2, least_pace = 1.0 / 512;
+
+static cau_vec3 offset_of(const cau_pose *pose, const cau_pose *anchor)
+{
+	return cau_sub(cau_vec3_of(pose->position_m), cau_vec3_of(anchor->position_m));
+}
+
+// The anchor goes a share of its way, and with it the tool; but one that pushes with all it has
+// stays where it is.
+static void lead(cau_tool *tool, double share)
+{
+	const double nearly_m = 0.9 * cau_coupling_reach_m;
+	cau_tool_state *state = &tool->state;
+	tool->anchor = share < 1 ? cau_pose_between(&tool->anchor_before, &state->asked_pose, share)
+	                         : state->asked_pose;
+	cau_vec3 offset = offset_of(&tool->pose_before, &tool->anchor_before);
+	if (cau_length(offset) > nearly_m)
+		offset = offset_of(&tool->pose_before, &tool->anchor);
+	state->pose = cau_coupling_pose(&tool->anchor, offset);
+}
+
+static void let_go(cau_session *session, cau_tool *tool)
+{
+	cau_contact_forget(&session->contact, (int32_t)(tool - session->tool));
+	tool->anchor_before = tool->pose_before = tool->state.asked_pose;
+	tool->pace = 1;
+	tool->grasp_count = 0;
+	tool->state.slips++;
+}
+
+void cau_session_lead_tool(cau_session *session, cau_tool *tool, const cau_pose *asked_before)
+{
+	tool->anchor_before = tool->anchor;
+	tool->pose_before = tool->state.pose;
+	session->contact.tool[tool - session->tool].held_back = false;
+	if (cau_length(offset_of(&tool->state.pose, asked_before)) > most_behind_m)
+		let_go(session, tool);
+	lead(tool, tool->pace);
+}
+
+bool cau_session_hold_back(cau_session *session, int attempt)
+{
+	CAU_ASSERT_INDEX(attempt, CAU_ATTEMPTS + 1);
+	bool any = false;
+	for (int32_t i = 0; i < session->tool_count && attempt < CAU_ATTEMPTS; i++) {
+		cau_tool *tool = &session->tool[i];
+		if (!session->contact.tool[i].passing)
+			continue;
+		any = session->contact.tool[i].held_back = true;
+		tool->pace = fmax(slower * tool->pace, least_pace);
+		lead(tool, attempt == CAU_ATTEMPTS - 1 ? 0 : tool->pace);
+	}
+	for (size_t v = 0; v < (size_t)session->tissue.vertex_count && any; v++)
+		if (!session->fixed[v])
+			memcpy(session->position + 3 * v, session->position_start + 3 * v, 3 * sizeof(double));
+	return any;
+}
+
+void cau_session_let_follow(cau_session *session)
+{
+	for (int32_t i = 0; i < session->tool_count; i++)
+		if (!session->contact.tool[i].held_back)
+			session->tool[i].pace = fmin(faster * session->tool[i].pace, 1);
+}
+
+void cau_session_couple(cau_session *session)
+{
+	for (int32_t i = 0; i < session->tool_count; i++) {
+		cau_contact_tool *tool = &session->contact.tool[i];
+		tool->anchor = session->tool[i].anchor;
+		cau_vec3_to(offset_of(&session->tool[i].state.pose, &tool->anchor), tool->offset);
+	}
+}
+
+void cau_session_take_poses(cau_session *session)
+{
+	cau_contact_set *set = &session->contact;
+	CAU_ASSERT(!session->tool_count || set->tool_count == session->tool_count, "%d tools of %d",
+	           set->tool_count, session->tool_count);
+	for (int32_t i = 0; i < session->tool_count; i++) {
+		if (!set->row_count) // nothing was solved that could hold it
+			memset(set->tool[i].offset, 0, sizeof set->tool[i].offset);
+		session->tool[i].state.pose =
+			cau_coupling_pose(&set->tool[i].anchor, cau_vec3_of(set->tool[i].offset));
+	}
+}
