@@ -260,6 +260,31 @@ static void test_follows_in_whole_cells(void **state)
 	cau_heat_grid_finish(&grid);
 }
 
+// What a tool leaves behind is in the outer fields: a second after the burn, its place is as warm
+// whether the tool has stayed there or has gone 20 mm, beyond the innermost field.
+static void test_heat_that_is_left_behind_stays(void **state)
+{
+	(void)state;
+	static const double COARSER = 0.1; // cells of 4 mm tell no more of a spot of 8 mm
+	double left_c[2];
+	for (int goes = 0; goes < 2; goes++) {
+		cau_tool_def tool = tool_with_defaults(CAU_TOOL_SPHERE);
+		cau_heat_grid grid = create(&tool, &tool.pose);
+		for (int i = 0; i < 300; i++)
+			cau_heat_grid_advance(&grid, &tool, &tool.pose, 0, 1, TICK_S);
+		for (int i = 1; i <= 60; i++) {
+			cau_pose pose = pose_at(goes * 20e-3 * i / 60, 0, 0);
+			cau_heat_grid_advance(&grid, &tool, &pose, 0, 0, TICK_S);
+		}
+		left_c[goes] = cau_heat_grid_at(&grid, TIP) - AMBIENT_C;
+		cau_heat_grid_finish(&grid);
+	}
+	print_message("left behind: %.1f degC above ambient, %.1f under the tool\n", left_c[1],
+	              left_c[0]);
+	assert_true(left_c[0] > 20);
+	assert_near(left_c[1], left_c[0], COARSER * left_c[0]);
+}
+
 static void test_leap_leaves_the_heat_behind(void **state)
 {
 	(void)state;
@@ -369,6 +394,7 @@ int main(void)
 		cmocka_unit_test(test_hot_nodes_hold),
 		cmocka_unit_test(test_shift_keeps_values),
 		cmocka_unit_test(test_follows_in_whole_cells),
+		cmocka_unit_test(test_heat_that_is_left_behind_stays),
 		cmocka_unit_test(test_leap_leaves_the_heat_behind),
 		cmocka_unit_test(test_comes_to_rest),
 		cmocka_unit_test(test_survives_a_bad_pose),

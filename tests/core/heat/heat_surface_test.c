@@ -82,7 +82,8 @@ static void test_around_a_ball(void **state)
 		int parts;
 		double part_s;
 	} run[] = {{60, 1.0 / 60}, {600, 1.0 / 60}, {600, 0.1}, {300, 1}};
-	for (size_t k = 0; k < sizeof run / sizeof *run; k++) {
+	size_t runs = CAU_TEST_SANITIZED ? 1 : sizeof run / sizeof *run; // the same code in each
+	for (size_t k = 0; k < runs; k++) {
 		double time_s = run[k].parts * run[k].part_s;
 		double worst = worst_around_ball(&tool, run[k].parts, run[k].part_s, time_s);
 		print_message("ball: %.2f %% after %g s\n", 100 * worst, time_s);
@@ -189,22 +190,25 @@ static void test_stable_wherever_the_surface_is(void **state)
 }
 
 // At the surface the field is that of the tool, where linear interpolation between the nodes would
-// be off by a quarter of what it falls in a cell.
+// be off by a quarter of what it falls in a cell. Within it is so to the bit from the first tick
+// on, when the nodes outside are cold still.
 static void test_read_up_to_the_surface(void **state)
 {
 	(void)state;
 	cau_tool_def tool = ball_of(RADIUS_M / 6, 32);
 	cau_heat_grid grid = create(&tool);
-	for (int i = 0; i < 60; i++)
-		cau_heat_grid_advance(&grid, &tool, &tool.pose, 0, 1, TICK_S);
 	double excess = tool.temperature_c - AMBIENT_C;
 	uint64_t random = 31;
-	for (int i = 0; i < 2000; i++) {
-		cau_vec3 d = direction(&random), middle = cau_vec3_of(tool.pose.position_m);
-		double at = cau_heat_grid_at(&grid, cau_add_scaled(middle, RADIUS_M, d));
-		assert_near(at, tool.temperature_c, ASKED * excess);
-		double within = cau_heat_grid_at(&grid, cau_add_scaled(middle, 0.95 * RADIUS_M, d));
-		assert_true(within == tool.temperature_c);
+	for (int tick = 1; tick <= 60; tick++) {
+		cau_heat_grid_advance(&grid, &tool, &tool.pose, 0, 1, TICK_S);
+		for (int i = 0; i < 2000 && (tick == 1 || tick == 60); i++) {
+			cau_vec3 d = direction(&random), middle = cau_vec3_of(tool.pose.position_m);
+			double at = cau_heat_grid_at(&grid, cau_add_scaled(middle, RADIUS_M, d));
+			if (tick == 60)
+				assert_near(at, tool.temperature_c, ASKED * excess);
+			double within = cau_heat_grid_at(&grid, cau_add_scaled(middle, 0.98 * RADIUS_M, d));
+			assert_true(within == tool.temperature_c);
+		}
 	}
 	cau_heat_grid_finish(&grid);
 }
@@ -213,11 +217,16 @@ int main(void)
 {
 	const struct CMUnitTest tests[] = {
 		cmocka_unit_test(test_around_a_ball),
-		cmocka_unit_test(test_steady_around_a_ball),
-		cmocka_unit_test(test_finer_is_better),
-		cmocka_unit_test(test_a_moving_ball),
 		cmocka_unit_test(test_stable_wherever_the_surface_is),
 		cmocka_unit_test(test_read_up_to_the_surface),
 	};
-	return cmocka_run_group_tests(tests, NULL, NULL);
+	// The same code for longer; sanitizers see fields move in heat_field_test.c and
+	// heat_grid_test.c.
+	const struct CMUnitTest figures[] = {
+		cmocka_unit_test(test_steady_around_a_ball),
+		cmocka_unit_test(test_finer_is_better),
+		cmocka_unit_test(test_a_moving_ball),
+	};
+	int failed = CAU_TEST_SANITIZED ? 0 : cmocka_run_group_tests(figures, NULL, NULL);
+	return failed + cmocka_run_group_tests(tests, NULL, NULL);
 }
