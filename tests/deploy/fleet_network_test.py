@@ -115,7 +115,8 @@ class Fleet:
         self.token_file = os.path.join(folder, "token")
         with open(os.open(self.token_file, os.O_CREAT | os.O_WRONLY, 0o600), "w", encoding="ascii") as file:
             file.write(TOKEN + "\n")
-        self.etcd = etcd.Etcd(ADDRESS["etcd"], 2379, 2380, programs.PATIENCE_S, ["ip", "netns", "exec", "etcd"])
+        self.etcd = etcd.Etcd(ADDRESS["etcd"], 2379, 2380, programs.PATIENCE_S, ["ip", "netns", "exec", "etcd"],
+                              os.path.join(folder, "etcd"))
         self.keepers = {label: Keeper(self, label) for label in TTL_S}
         self.people, self.twice = [], []
         self.tls, self.certificate = None, None
@@ -262,7 +263,7 @@ async def go_through(fleet, trouble):
     outages = [(one, outage) for one in fleet.people for outage in one.outages if outage[0] >= began]
     return {"trouble": trouble.__name__.replace("_", " "), "lost": len({one for one, _ in outages}),
             "others": len([one for one, _ in outages if one.label != label]),
-            "back_s": max((outage[1] - reachable for _, outage in outages), default=0),
+            "back_s": max(((outage[1] or time.monotonic()) - reachable for _, outage in outages), default=0),
             "acknowledged": sum(len(one.acknowledged) for one in fleet.people) - acknowledged,
             "began": began, "ended": time.monotonic()}
 
@@ -350,9 +351,8 @@ def make_small_scene(folder):
         json.dump(scene, file)
 
 
-def inside():
+def inside(folder):
     make_network()
-    folder = tempfile.mkdtemp(prefix="cautery-fleet-")
     try:
         make_small_scene(folder)
         wrong = asyncio.run(run(Fleet(folder)))
@@ -361,23 +361,22 @@ def inside():
             with open(os.path.join(folder, label + ".log"), encoding="utf-8") as log:
                 print(f"---- {label}\n{log.read()[-3000:]}", file=sys.stderr)
         raise
-    finally:
-        shutil.rmtree(folder, ignore_errors=True)
     print("\n".join(wrong) or "all as promised")
     return 1 if wrong else 0
 
 
 def main():
     if os.environ.get(INSIDE):
-        return inside()
+        return inside(os.environ[INSIDE])
     assert HAPROXY and etcd.ETCD, "haproxy or etcd-server is missing: deploy/packages.txt"
     probe = subprocess.run([*NAMESPACES, "ip", "link", "add", "hub", "type", "bridge"], capture_output=True, text=True,
                            check=False)
     if probe.returncode:
         print(f"SKIPPED: this system allows no namespaces with a bridge: {probe.stderr.strip()}")
         return 77
-    return subprocess.run([*NAMESPACES, sys.executable, "-B", os.path.abspath(__file__), SOURCE],
-                          env=dict(os.environ, **{INSIDE: "1"}), check=False).returncode
+    with tempfile.TemporaryDirectory(prefix="cautery-fleet-") as folder:
+        return subprocess.run([*NAMESPACES, sys.executable, "-B", os.path.abspath(__file__), SOURCE],
+                              env=dict(os.environ, **{INSIDE: folder}), check=False).returncode
 
 
 if __name__ == "__main__":
