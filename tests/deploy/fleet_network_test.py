@@ -25,7 +25,8 @@ import fleet_client  # noqa: E402
 import programs  # noqa: E402
 
 INSIDE = "CAUTERYD_FLEET_INSIDE"
-NAMESPACES = ["unshare", "--net", "--mount", "--propagation", "private", "--pid", "--fork", "--kill-child",
+NAMESPACES = ["setpriv", "--pdeathsig", "KILL",  # a test that is killed takes all of it along
+              "unshare", "--net", "--mount", "--propagation", "private", "--pid", "--fork", "--kill-child",
               "--mount-proc"]
 HAPROXY = shutil.which("haproxy", path=os.environ.get("PATH", "") + ":/usr/sbin:/sbin")
 NAME, TOKEN = "cautery.test", "f" * 40
@@ -149,6 +150,12 @@ class Fleet:
             return answer.status, answer.read().decode()
         finally:
             connection.close()
+
+    def is_ready(self, label):
+        try:
+            return self.get(f"/{label}/readyz")[0] == 200
+        except OSError:  # the proxy does not listen yet
+            return False
 
     async def cautery(self, *arguments):
         environment = dict(programs.CLEAN, SSL_CERT_FILE=self.certificate)
@@ -320,7 +327,7 @@ async def run(fleet):
     for keeper in fleet.keepers.values():
         await asyncio.wait_for(keeper.listens.wait(), programs.PATIENCE_S)
     for label in TTL_S:
-        await await_true(f"the proxy knows {label}", lambda: fleet.get(f"/{label}/readyz")[0] == 200)
+        await await_true(f"the proxy knows {label}", lambda: fleet.is_ready(label))
     watching = asyncio.ensure_future(watch_labels(fleet))
     await begin_sessions(fleet)
     counts = {label: len([one for one in fleet.people if one.label == label and not one.drives]) for label in TTL_S}
