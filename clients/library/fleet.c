@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Which daemons stand behind an address: one GET of /api/fleet, which the proxy in front of several
-// answers and a daemon alone does not have. Nothing is asked of a daemon for it, and no token goes
-// along.
+// answers. A daemon alone answers that it is, or 404 if it is older. No token goes along.
 #include <stdlib.h>
 #include <string.h>
 

@@ -26,7 +26,7 @@ static void read_labels(cau_reader *reader, const cJSON *labels, cau_fleet *flee
 {
 	const cJSON *label = NULL;
 	size_t mark = cau_reader_enter(reader, "labels", 0);
-	if (cau_read_array(reader, labels, 1, CAU_FLEET_LABELS_MAX))
+	if (cau_read_array(reader, labels, 0, CAU_FLEET_LABELS_MAX))
 		cJSON_ArrayForEach(label, labels)
 		{
 			read_label(reader, label, fleet);

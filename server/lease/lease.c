@@ -97,9 +97,11 @@ static cau_status read_stored(cau_lease *lease, cau_error *error)
 	const char *second = first ? strchr(first + 1, ' ') : NULL;
 	if (!*text)
 		return CAU_OK;
+	char *end = NULL;
 	if (second && cau_generation_read(text, (size_t)(first - text), &lease->held) &&
-	    cau_generation_read(first + 1, (size_t)(second - first - 1), &lease->next) &&
-	    sscanf(second + 1, "%19" SCNuMAX, &lease->stored_file) == 1)
+	    cau_generation_read(first + 1, (size_t)(second - first - 1), &lease->next))
+		lease->stored_file = strtoumax(second + 1, &end, 10);
+	if (end && end > second + 1 && *end == 0)
 		return CAU_OK;
 	return cau_fail(error, CAU_CORRUPT, "store", "`%.60s` is no generation of a store", text);
 }

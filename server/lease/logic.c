@@ -4,6 +4,7 @@
 #include <inttypes.h>
 #include <math.h>
 #include <stdio.h>
+#include <stdlib.h>
 #include <string.h>
 
 #include "cautery/assert.h"
@@ -22,6 +23,9 @@ void cau_generation_write(cau_generation generation, char text[CAU_GENERATION_BY
 		         generation.mark);
 }
 
+// Some are left to count on.
+static const int64_t number_most = 999999999999999999;
+
 // What is read must be written the same, so there is one text for each.
 bool cau_generation_read(const char *text, size_t bytes, cau_generation *generation)
 {
@@ -31,8 +35,11 @@ bool cau_generation_read(const char *text, size_t bytes, cau_generation *generat
 		return false;
 	memcpy(copy, text, bytes);
 	copy[bytes] = 0;
-	cau_generation found = {0};
-	if (bytes > 0 && sscanf(copy, "%18" SCNd64 ":%16" SCNx64, &found.number, &found.mark) != 2)
+	char *colon = copy, *end = copy;
+	cau_generation found = {.number = strtoll(copy, &colon, 10)};
+	if (bytes > 0 && *colon == ':')
+		found.mark = strtoull(colon + 1, &end, 16);
+	if (found.number < 0 || found.number > number_most || *end)
 		return false;
 	cau_generation_write(found, again);
 	if (strlen(again) != bytes || memcmp(again, copy, bytes) != 0)

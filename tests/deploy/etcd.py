@@ -13,10 +13,10 @@ ETCD = shutil.which("etcd", path=os.environ.get("PATH", "") + ":/usr/sbin:/sbin"
 
 
 class Etcd:
-    def __init__(self, host, client_port, peer_port, patience_s, prefix=()):
-        """`prefix`: words before the command, which run it elsewhere."""
+    def __init__(self, host, client_port, peer_port, patience_s, prefix=(), folder=None):
+        """`prefix`: words before the command, which run it elsewhere. A `folder` is the caller's."""
         assert ETCD, "etcd is missing: deploy/packages.txt"
-        self.folder = tempfile.mkdtemp(prefix="cautery-etcd-")
+        self.folder = folder or tempfile.mkdtemp(prefix="cautery-etcd-")
         self.host, self.port = host, client_port
         self.url, peer = f"http://{host}:{client_port}", f"http://{host}:{peer_port}"
         self.process = subprocess.Popen(

@@ -75,6 +75,7 @@ test('tokens that are refused are counted, by the door that they came to', async
 test('health is told to everybody, numbers and sessions to tokens alone', async () => {
 	assert.equal((await daemon.get('/healthz')).status, 200);
 	assert.equal((await daemon.get('/readyz')).status, 200);
+	assert.deepEqual(JSON.parse((await daemon.get('/api/fleet')).text), { labels: [] }); // a daemon alone
 	for (const path of ['/metrics', '/api/sessions']) {
 		assert.equal((await daemon.get(path)).status, 401);
 		assert.equal((await daemon.get(path, { authorization: 'Bearer wrong-token-000000000' })).status, 401);

@@ -12,7 +12,7 @@ int LLVMFuzzerTestOneInput(const uint8_t *data, size_t bytes)
 	cau_error error = {0};
 	cau_status status = cau_fleet_from_json((const char *)data, bytes, &fleet, &error);
 	if (status ? fleet.count != 0 || error.reason[0] == 0
-	           : fleet.count < 1 || fleet.count > CAU_FLEET_LABELS_MAX)
+	           : fleet.count < 0 || fleet.count > CAU_FLEET_LABELS_MAX)
 		abort();
 	for (int32_t i = 0; i < fleet.count; i++)
 		if (!cau_name_is_valid(fleet.labels[i]) || strchr(fleet.labels[i], '-'))

@@ -149,7 +149,7 @@ void cau_client_read(cau_client *client, bool on);
 
 // ---- fleets ------------------------------------------------------------------------------------
 // The labels of the daemons behind an address: those that the proxy in front of them tells. None
-// (*fleet has no labels) where one daemon answers, whose /api/fleet there is not. A connection
+// (*fleet has no labels) where one daemon answers. A connection
 // serves one label (cau_client_def), so who wants all lists connects to each. Waits, `timeout_s` at
 // most. Errors: CAU_BAD_VALUE (the URL), CAU_IO (no answer), CAU_NO_MEMORY; those of
 // cau_fleet_from_json.

@@ -17,6 +17,7 @@ import { clipFields } from './panels/clip';
 import { showCue } from './panels/cue';
 import { devicesSection } from './panels/devices';
 import { byId } from './panels/dom';
+import { keepFleet } from './panels/fleet';
 import { showInspected } from './panels/inspect';
 import { materialsPanel } from './panels/materials';
 import { showHandles } from './panels/handles';
@@ -129,6 +130,7 @@ function connect(token?: string): void {
 showLink(control);
 const openToken = askForToken(model, connect);
 showVeil(control, viewport, openToken);
+keepFleet(model, clientWords(__VIEWER_VERSION__), () => lastToken);
 connect();
 
 const sizes = new ResizeObserver(() => viewport.resize());

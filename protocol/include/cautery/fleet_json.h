@@ -28,7 +28,7 @@ typedef struct cau_fleet {
 	char labels[CAU_FLEET_LABELS_MAX][CAU_NAME_BYTES];
 } cau_fleet;
 
-// Reads the proxy's answer: at least one label, each a name without "-", none twice. Members that
-// it does not know are skipped. On an error *fleet has no labels. Errors: CAU_BAD_SYNTAX,
+// Reads the answer: labels, each a name without "-", none twice; a daemon alone has none. Members
+// that it does not know are skipped. On an error *fleet has no labels. Errors: CAU_BAD_SYNTAX,
 // CAU_LIMIT, CAU_NO_MEMORY, CAU_BAD_VALUE with the path of the member.
 cau_status cau_fleet_from_json(const char *text, size_t bytes, cau_fleet *fleet, cau_error *error);

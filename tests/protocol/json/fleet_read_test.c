@@ -35,6 +35,8 @@ static void what_later_proxies_tell_besides_is_skipped(void **state)
 	cau_error error = {0};
 	assert_int_equal(read_text("{\"site\": {\"a\": [1]}, \"labels\": [\"d1\"]}", &error), CAU_OK);
 	assert_int_equal(fleet.count, 1);
+	assert_int_equal(read_text("{\"labels\": []}", &error), CAU_OK); // a daemon alone
+	assert_int_equal(fleet.count, 0);
 }
 
 static void what_is_no_fleet_is_refused(void **state)
@@ -50,7 +52,6 @@ static void what_is_no_fleet_is_refused(void **state)
 		{"[\"d1\"]", CAU_BAD_VALUE, ""},
 		{"{}", CAU_BAD_VALUE, "labels"},
 		{"{\"labels\": \"d1\"}", CAU_BAD_VALUE, "labels"},
-		{"{\"labels\": []}", CAU_BAD_VALUE, "labels"},
 		{"{\"labels\": [\"d1\", 2]}", CAU_BAD_VALUE, "labels[1]"},
 		{"{\"labels\": [\"d1\", \"D2\"]}", CAU_BAD_VALUE, "labels[1]"},
 		{"{\"labels\": [\"d1\", \"\"]}", CAU_BAD_VALUE, "labels[1]"},

@@ -58,6 +58,8 @@ export class Model {
   hello: HelloResult | null = null;
   scenes: readonly SceneSummary[] = [];
   sessions: readonly SessionSummary[] = [];
+  elsewhere: readonly SessionSummary[] = [];
+  silent: readonly string[] = [];
   /** id of the session that is or will be watched */
   session: string | null = null;
   joined: Joined | null = null;
@@ -142,6 +144,13 @@ export class Model {
 
   setSessions(sessions: readonly SessionSummary[]): void {
     this.sessions = [...sessions].sort((a, b) => a.session.localeCompare(b.session));
+    this.emit('sessions', this.sessions);
+  }
+
+  /** What the other daemons of a fleet have, and which of them do not answer. */
+  setElsewhere(sessions: readonly SessionSummary[], silent: readonly string[]): void {
+    this.elsewhere = [...sessions].sort((a, b) => a.session.localeCompare(b.session));
+    this.silent = silent;
     this.emit('sessions', this.sessions);
   }
 

@@ -31,6 +31,14 @@ function row(control: Control, summary: SessionSummary, problem: HTMLElement): H
   return element('li', { class: here ? 'session here' : 'session' }, join, element('small', {}, details), destroy);
 }
 
+/** A session of another daemon: the page opens anew, since its connection serves one of them. */
+function rowElsewhere(summary: SessionSummary): HTMLElement {
+  const details = `${summary.scene}, ${summary.state}, ${summary.time_s.toFixed(1)} s, ${summary.subscriber_count} watching`;
+  const link = element('a', { class: 'session-name', title: `Watch ${summary.session}, at another daemon` }, summary.session);
+  link.href = `?session=${encodeURIComponent(summary.session)}`;
+  return element('li', { class: 'session' }, link, element('small', {}, details));
+}
+
 /** Scene members that are worth choosing before a session is made. */
 function createForm(control: Control, problem: HTMLElement): HTMLElement {
   const { model, link } = control;
@@ -131,8 +139,12 @@ export function sessionsPanel(control: Control, link: Link): Panel {
   const list = element('ul', { class: 'sessions', aria: { label: 'Sessions' } });
   const about = element('p', { class: 'about' });
   const show = (): void => {
-    list.replaceChildren(...model.sessions.map((summary) => row(control, summary, problem)));
-    if (model.sessions.length === 0) list.replaceChildren(element('li', {}, 'No sessions yet. Create one below.'));
+    list.replaceChildren(
+      ...model.sessions.map((summary) => row(control, summary, problem)),
+      ...model.elsewhere.map(rowElsewhere),
+      ...model.silent.map((label) => element('li', {}, `${label} does not answer: its sessions are not in this list.`)),
+    );
+    if (list.childElementCount === 0) list.replaceChildren(element('li', {}, 'No sessions yet. Create one below.'));
   };
   model.on('sessions', show);
   model.on('link', show);

@@ -20,6 +20,11 @@ interface Call {
   progress?: (sent: number, total: number) => void;
 }
 
+/** Another identity than any other connection has. */
+export function newClientId(): string {
+  return Array.from(crypto.getRandomValues(new Uint8Array(12)), (b) => b.toString(16).padStart(2, '0')).join('');
+}
+
 export class Link {
   private readonly worker: Worker;
   private readonly calls = new Map<number, Call>();
@@ -32,8 +37,7 @@ export class Link {
 
   /** A new connection, under a new identity: answers of an earlier one are of no use to it. */
   connect(url: string, client: string, token?: string): void {
-    const clientId = Array.from(crypto.getRandomValues(new Uint8Array(12)), (b) => b.toString(16).padStart(2, '0')).join('');
-    this.send({ type: 'connect', url, client, clientId, ...(token === undefined ? {} : { token }) });
+    this.send({ type: 'connect', url, client, clientId: newClientId(), ...(token === undefined ? {} : { token }) });
   }
 
   call<M extends keyof Requests>(method: M, params: Requests[M]['params']): Promise<Requests[M]['result']> {
