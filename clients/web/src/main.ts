@@ -137,6 +137,12 @@ function follow(session: string, daemon: string): void {
     window.location.assign(there.href);
     return;
   }
+  // Behind a proxy, the page of one daemon is at its label: the other's is at its own.
+  const [label, old] = [session, model.session ?? ''].map((id) => id.split('-')[0]);
+  if (window.location.pathname === `/${old}/`) {
+    window.location.assign(`/${label}/?session=${encodeURIComponent(session)}`);
+    return;
+  }
   link.follow(socketAddress(session));
   control.watch(session);
 }
