@@ -186,7 +186,7 @@ static void leave_to_builder(cau_hosted *h, void (*run)(cau_job *job))
 	CAU_ASSERT(job != NULL, "session %s waits for nothing", h->id);
 	h->built = NULL;
 	job->run = run;
-	cau_builder_submit(h->around->builder, job);
+	cau_builder_submit(h->around->mover, job);
 }
 
 void cau_hosted_come(cau_hosted *h, int64_t branch, bool paused, const cau_reply *reply)

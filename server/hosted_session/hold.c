@@ -107,7 +107,7 @@ cau_outcome_kind cau_apply_hold(cau_hosted *h, cau_order *order, const cau_actio
 void cau_hosted_go_on(cau_hosted *h)
 {
 	CAU_ASSERT(h->holding && !h->holding->order, "session %s does not stand still", h->id);
-	cau_builder_submit(h->around->builder, &h->holding->job);
+	cau_builder_submit(h->around->mover, &h->holding->job);
 }
 
 static void run_away(cau_job *job)
@@ -132,7 +132,7 @@ void cau_hosted_go_away(cau_hosted *h, const cau_moved_to *to)
 	CAU_ASSERT(h->holding && !h->holding->order, "session %s does not stand still", h->id);
 	h->moved = *to;
 	h->holding->job.run = h->holding->job.drop = run_away;
-	cau_builder_submit(h->around->builder, &h->holding->job);
+	cau_builder_submit(h->around->mover, &h->holding->job);
 }
 
 int32_t cau_hosted_hands(cau_hosted *h, cau_drive *drives, double *speed)

@@ -31,6 +31,7 @@ typedef struct cau_surroundings {
 	cau_store *store;
 	cau_worker_pool *pool;
 	cau_builder *builder;
+	cau_builder *mover;           // for sessions that move; may be the same
 	_Atomic int64_t *memory_held; // by all sessions, bytes, about
 	cau_beginnings *beginnings;
 	cau_sink sink;

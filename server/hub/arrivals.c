@@ -366,7 +366,7 @@ void cau_arrival_ready(cau_move_job *job)
 // ---- accept -------------------------------------------------------------------------------------
 
 typedef struct accepting {
-	cau_job job; // first; on the builder, once it is on the disk
+	cau_job job; // first; on the mover, once it is on the disk
 	cau_hub *hub;
 	arrival *arrival;
 	cau_reply reply;
@@ -483,7 +483,7 @@ static void accepted(void *user, cau_status status, const char *reason)
 	if (!status) {
 		cau_log(CAU_LOG_NOTICE, what->arrival->id, "came", "move=%s from=%s", what->arrival->move,
 		        what->arrival->source);
-		cau_builder_submit(hub->def.builder, &what->job);
+		cau_builder_submit(hub->around.mover, &what->job);
 		return;
 	}
 	cau_move_fail(&what->reply, status, cau_hosted_commit_code(status), "", reason);

@@ -29,7 +29,7 @@ struct cau_departure {
 	cau_store_dump *dump;
 	uint32_t pieces;
 	bool part_sent, rest_begun, all_sent;
-	bool reading; // a job of the builder has the dump
+	bool reading; // a job of the mover has the dump
 	bool over;    // not in the list any more: whoever has the dump frees it
 	double touched_s, held_s;
 	cau_reply waiting; // for the disk

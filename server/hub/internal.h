@@ -120,7 +120,7 @@ void cau_move_fail(const cau_reply *reply, cau_status status, int32_t code, cons
 void cau_move_answer(const cau_reply *reply, const void *result);
 void cau_move_decided(const cau_reply *reply, const cau_tombstone *moved); // NULL: it stays
 // ---- moves.c
-// One request about a move, on the builder.
+// One request about a move, on the mover.
 typedef struct cau_move_job {
 	cau_job job; // first
 	cau_hub *hub;

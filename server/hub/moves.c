@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Requests about sessions that move: each is a short job of the builder, since most read the store.
+// Requests about sessions that move: each is a short job of the mover, since most read the store.
 // What is decided is server/session/handover.h's.
 #include <stdlib.h>
 #include <string.h>
@@ -86,6 +86,6 @@ cau_status cau_hub_move(cau_hub *hub, const cau_move_asked *asked, const cau_rep
 	                       .hub = hub,
 	                       .asked = *asked,
 	                       .reply = *reply};
-	cau_builder_submit(hub->def.builder, &what->job);
+	cau_builder_submit(hub->around.mover, &what->job);
 	return CAU_OK;
 }
