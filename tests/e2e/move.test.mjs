@@ -17,7 +17,7 @@ const serves = async (client, session) =>
 
 async function end(...all) {
 	for (const daemon of all)
-		await daemon.end();
+		assert.equal((await daemon.end()).code, 0);
 }
 
 // The command line, while this process goes on answering.
