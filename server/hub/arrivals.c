@@ -547,6 +547,8 @@ void cau_arrival_accept(cau_move_job *job)
 	arrival *a = find_own(job->hub, &job->asked);
 	if (!a)
 		status = cau_fail(&error, CAU_BAD_STATE, "params.move", "no such move is known here");
+	else if (job->hub->moves_end)
+		status = cau_fail(&error, CAU_BAD_STATE, "", "the server is shutting down: ask again");
 	else if (!opens(a, job->asked.proof))
 		status = cau_fail(&error, CAU_BAD_VALUE, "params.proof", "it is not that of this move");
 	else if (a->writing || (a->hosted && !a->ready && !cau_hosted_ended(a->hosted)))
