@@ -298,13 +298,13 @@ const cli_command cli_move = {
 	.arguments = "SESSION LABEL",
 	.summary = "moves a session to the daemon LABEL; wants role admin on both",
 	.help = "Behind a proxy one address leads to both daemons; else --to-url says where LABEL is. "
-            "What is\n"
+			"What is\n"
 			"there goes over while the session is served, then it stands still, dark, for as long "
-            "as the\n"
+			"as the\n"
 			"rest takes, and is served there. Who asks for it by its old id is led there. Killed "
-            "anywhere,\n"
+			"anywhere,\n"
 			"the same command again ends what was begun; --cancel does only that: it stays where "
-            "it is,\n"
+			"it is,\n"
 			"unless it has moved already.\n",
 	.least = 2,
 	.most = 2,

@@ -78,16 +78,6 @@ static cau_status write_text(const cau_client *client, const writing *w, size_t 
 }
 
 // ---- sending -----------------------------------------------------------------------------------
-void cau_calls_keep(cau_client *client, cau_client_pending *pending)
-{
-	pending->next = NULL;
-	if (client->last_pending)
-		client->last_pending->next = pending;
-	else
-		client->first_pending = pending;
-	client->last_pending = pending;
-}
-
 // Whether the same text may go out again on another connection.
 static bool can_resend(cau_method method, const char *sent, size_t bytes)
 {
@@ -136,7 +126,7 @@ static cau_status send_request(cau_client *client, const writing *w, cau_client_
 		free(pending);
 		return status;
 	}
-	cau_calls_keep(client, pending);
+	cau_pending_add(client, pending);
 	return CAU_OK;
 }
 
@@ -219,29 +209,6 @@ void cau_error_of_fault(const cau_rpc_fault *fault, cau_error *error)
 	         more ? fault->reason : "");
 }
 
-static cau_client_pending *take_pending(cau_client *client, int64_t id)
-{
-	cau_client_pending *before = NULL, *pending = client->first_pending;
-	while (pending && pending->id != id) {
-		before = pending;
-		pending = pending->next;
-	}
-	if (!pending)
-		return NULL;
-	if (before)
-		before->next = pending->next;
-	else
-		client->first_pending = pending->next;
-	if (client->last_pending == pending)
-		client->last_pending = before;
-	return pending;
-}
-
-void cau_calls_drop(cau_client *client, const cau_client_pending *pending)
-{
-	take_pending(client, pending->id);
-}
-
 static void fail_pending(cau_client_pending *pending, const cau_error *error)
 {
 	if (pending->answer)
@@ -252,7 +219,7 @@ static void fail_pending(cau_client_pending *pending, const cau_error *error)
 void cau_calls_answered(cau_client *client, const cau_rpc_message *message)
 {
 	cau_error error = {0};
-	cau_client_pending *pending = take_pending(client, message->id.number);
+	cau_client_pending *pending = cau_pending_take(client, message->id.number);
 	if (!pending)
 		return; // answered before, on an earlier connection
 	if (message->kind == CAU_RPC_ERROR && cau_follow_answer(client, pending, &message->fault))

@@ -179,11 +179,11 @@ bool cau_follow_answer(cau_client *client, cau_client_pending *pending, const ca
 		return false;
 	session_of(client, pending, session);
 	pending->again = pending->resendable = true; // it was refused: it may be sent again
-	cau_calls_keep(client, pending);
+	cau_pending_add(client, pending);
 	if (moved ? cau_follow(client, session, fault->moved_to, fault->url)
 	          : goes_again(client, session, fault))
 		return true;
-	cau_calls_drop(client, pending);
+	cau_pending_take(client, pending->id);
 	return false;
 }
 

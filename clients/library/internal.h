@@ -116,14 +116,16 @@ cau_status cau_hello_answered(cau_client *client, const cau_rpc_message *message
 // receive.c
 void cau_text_received(cau_client *client, const char *text, size_t bytes);
 
+// pending.c
+void cau_pending_add(cau_client *client, cau_client_pending *pending); // at the end
+// The request of this id, which is the caller's then; NULL: there is none.
+cau_client_pending *cau_pending_take(cau_client *client, int64_t id);
+
 // calls.c
 void cau_calls_answered(cau_client *client, const cau_rpc_message *message);
 void cau_calls_lost(cau_client *client, bool all); // fails those that cannot be sent again
 void cau_calls_resend(cau_client *client);
 void cau_error_of_fault(const cau_rpc_fault *fault, cau_error *error);
-
-void cau_calls_keep(cau_client *client, cau_client_pending *pending); // at the end
-void cau_calls_drop(cau_client *client, const cau_client_pending *pending);
 
 // follow.c
 // The text with another id of the session, malloc'ed; NULL where it does not name it.

@@ -42,7 +42,7 @@ struct cau_daemon {
 	cau_store *store;
 	cau_lease *lease; // NULL: not wanted
 	cau_worker_pool *pool;
-	cau_builder *builder;
+	cau_builder *builder, *mover;
 	cau_hub *hub;
 	cau_watchdog *watchdog;
 	cau_service *service;
@@ -200,10 +200,13 @@ static cau_status open_hub(cau_daemon *daemon, cau_error *error)
 	if (!status)
 		status =
 			cau_builder_create(&daemon->builder, count_builders(workers), CAU_NICE_BUILDER, error);
+	if (!status) // who waits for a session that moves does not wait for what workers leave
+		status = cau_builder_create(&daemon->mover, 1, CAU_NICE_LAST, error);
 	cau_hub_def def = {.config = config,
 	                   .store = daemon->store,
 	                   .pool = daemon->pool,
 	                   .builder = daemon->builder,
+	                   .mover = daemon->mover,
 	                   .scenes = daemon->scenes,
 	                   .armed = on_armed,
 	                   .user = daemon};
@@ -399,6 +402,8 @@ void cau_daemon_stop(cau_daemon *daemon)
 	cau_agent_destroy(daemon->agent);
 	if (daemon->builder)
 		cau_builder_stop(daemon->builder);
+	if (daemon->mover)
+		cau_builder_stop(daemon->mover);
 	cau_watchdog_destroy(daemon->watchdog);
 	if (daemon->service)
 		cau_service_set_network(daemon->service, NULL);
@@ -406,6 +411,7 @@ void cau_daemon_stop(cau_daemon *daemon)
 	// Answers to what waits go to transports, which may hold sessions, which know the hub.
 	cau_hub_stop(daemon->hub);
 	cau_builder_destroy(daemon->builder);
+	cau_builder_destroy(daemon->mover);
 	cau_dds_destroy(daemon->dds);
 	cau_service_destroy(daemon->service);
 	cau_hub_destroy(daemon->hub);

@@ -261,7 +261,7 @@ void cau_back_leave(cau_hosted *h)
 	cau_job *job = h->leaving;
 	h->leaving = NULL;
 	h->away = true;
-	cau_builder_submit(h->around->builder, job);
+	cau_builder_submit(h->holding ? h->around->mover : h->around->builder, job);
 }
 
 cau_outcome_kind cau_apply_back(cau_hosted *h, cau_order *order, const cau_action *action)

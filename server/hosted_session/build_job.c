@@ -137,16 +137,6 @@ static void end(building *b)
 	free(b);
 }
 
-static void run(cau_job *job)
-{
-	building *b = (building *)job;
-	cau_hosted_start(b->hosted);
-	if (b->hosted->incoming && !b->hosted->ended)
-		cau_hold_incoming(b->hosted, job);
-	else
-		end(b);
-}
-
 static void drop(cau_job *job)
 {
 	building *b = (building *)job;
@@ -157,7 +147,32 @@ static void drop(cau_job *job)
 	end(b);
 }
 
-// It was built before, and has been accepted since.
+// ---- of a move: it is built and waits to be accepted
+// ---------------------------------------------
+
+static void wait_to_come(building *b)
+{
+	cau_hosted *h = b->hosted;
+	cau_error error = {0};
+	cau_outcome outcome = {0};
+	cau_wire_move_held result = {.tick = (int64_t)h->replay.tick,
+	                             .hash = cau_session_hash(h->core),
+	                             .has_exact = true,
+	                             .exact = h->replay.exact};
+	const cau_reply reply = h->creator_reply;
+	char *text = cau_answer_text(reply.method, &result, &outcome.text_bytes, &error);
+	if (!text) {
+		drop(&b->job);
+		return;
+	}
+	cau_replay_finish(&h->replay);
+	h->creator_reply = (cau_reply){0};
+	h->built = &b->job;
+	outcome.text = text;
+	cau_reply_answer(&reply, &outcome); // from here on it may come
+	free(text);
+}
+
 static void run_again(cau_job *job)
 {
 	building *b = (building *)job;
@@ -165,12 +180,38 @@ static void run_again(cau_job *job)
 	end(b);
 }
 
-void cau_building_again(cau_hosted *h, cau_job *job)
+static void leave_to_builder(cau_hosted *h, void (*run)(cau_job *job))
 {
-	CAU_ASSERT(((building *)job)->hosted == h, "the job of another session comes back to %s",
-	           h->id);
-	job->run = run_again;
-	cau_builder_submit(h->around->builder, job);
+	cau_job *job = h->built;
+	CAU_ASSERT(job != NULL, "session %s waits for nothing", h->id);
+	h->built = NULL;
+	job->run = run;
+	cau_builder_submit(h->around->mover, job);
+}
+
+void cau_hosted_come(cau_hosted *h, int64_t branch, bool paused, const cau_reply *reply)
+{
+	h->incoming = false;
+	h->came = true;
+	h->origin.branch = branch;
+	h->pause_at_start = paused;
+	h->creator_reply = *reply;
+	leave_to_builder(h, run_again);
+}
+
+void cau_hosted_give_up(cau_hosted *h)
+{
+	leave_to_builder(h, drop);
+}
+
+static void run(cau_job *job)
+{
+	building *b = (building *)job;
+	cau_hosted_start(b->hosted);
+	if (b->hosted->incoming && !b->hosted->ended)
+		wait_to_come(b);
+	else
+		end(b);
 }
 
 cau_status cau_building_begin(cau_hosted *h, cau_error *error)

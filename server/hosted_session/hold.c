@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// A session that moves to another daemon: it stands still where it leaves, and waits to be accepted
-// where it comes to. In both it is the builder's, as while it is built, with no job under way; what
-// is asked of it waits.
+// A session that moves to another daemon stands still where it leaves. It is the builder's then, as
+// while it is built, with no job under way; what is asked of it waits.
 #include <stdlib.h>
 #include <string.h>
 
@@ -15,7 +14,6 @@ typedef struct cau_holding {
 	cau_hosted *hosted;
 	cau_order *order; // to stand still, until it is answered
 	uint64_t hash;
-	cau_job *built; // of one that waits to be accepted: the job that built it
 } cau_holding;
 
 // ---- standing still -----------------------------------------------------------------------------
@@ -109,7 +107,7 @@ cau_outcome_kind cau_apply_hold(cau_hosted *h, cau_order *order, const cau_actio
 void cau_hosted_go_on(cau_hosted *h)
 {
 	CAU_ASSERT(h->holding && !h->holding->order, "session %s does not stand still", h->id);
-	cau_builder_submit(h->around->builder, &h->holding->job);
+	cau_builder_submit(h->around->mover, &h->holding->job);
 }
 
 static void run_away(cau_job *job)
@@ -134,7 +132,7 @@ void cau_hosted_go_away(cau_hosted *h, const cau_moved_to *to)
 	CAU_ASSERT(h->holding && !h->holding->order, "session %s does not stand still", h->id);
 	h->moved = *to;
 	h->holding->job.run = h->holding->job.drop = run_away;
-	cau_builder_submit(h->around->builder, &h->holding->job);
+	cau_builder_submit(h->around->mover, &h->holding->job);
 }
 
 int32_t cau_hosted_hands(cau_hosted *h, cau_drive *drives, double *speed)
@@ -143,62 +141,4 @@ int32_t cau_hosted_hands(cau_hosted *h, cau_drive *drives, double *speed)
 	*speed = h->logic->speed;
 	pthread_mutex_unlock(&h->deciding);
 	return cau_decide_drives(h, drives);
-}
-
-// ---- waiting to be accepted ---------------------------------------------------------------------
-
-// Nobody waits for it any more, or the daemon ends: what is in the store stays.
-static void drop_incoming(cau_job *job)
-{
-	cau_holding *holding = (cau_holding *)job;
-	cau_job *built = holding->built;
-	holding->hosted->holding = NULL;
-	free(holding);
-	built->drop(built);
-}
-
-void cau_hold_incoming(cau_hosted *h, cau_job *job)
-{
-	cau_error error = {0};
-	cau_outcome outcome = {0};
-	cau_wire_move_held result = {.tick = (int64_t)h->replay.tick,
-	                             .hash = cau_session_hash(h->core),
-	                             .has_exact = true,
-	                             .exact = h->replay.exact};
-	const cau_reply reply = h->creator_reply;
-	cau_holding *holding = calloc(1, sizeof *holding);
-	char *text =
-		holding ? cau_answer_text(reply.method, &result, &outcome.text_bytes, &error) : NULL;
-	if (!text) {
-		free(holding);
-		job->drop(job);
-		return;
-	}
-	cau_replay_finish(&h->replay);
-	h->creator_reply = (cau_reply){0};
-	*holding = (cau_holding){
-		.job = {.run = drop_incoming, .drop = drop_incoming}, .hosted = h, .built = job};
-	h->holding = holding;
-	outcome.text = text;
-	cau_reply_answer(&reply, &outcome); // from here on it may come
-	free(text);
-}
-
-void cau_hosted_come(cau_hosted *h, int64_t branch, bool paused, const cau_reply *reply)
-{
-	cau_job *built = h->holding->built;
-	free(h->holding);
-	h->holding = NULL;
-	h->incoming = false;
-	h->came = true;
-	h->origin.branch = branch;
-	h->pause_at_start = paused;
-	h->creator_reply = *reply;
-	cau_building_again(h, built);
-}
-
-void cau_hosted_give_up(cau_hosted *h)
-{
-	CAU_ASSERT(h->holding && h->holding->built, "session %s waits for nothing", h->id);
-	cau_builder_submit(h->around->builder, &h->holding->job);
 }

@@ -31,6 +31,7 @@ typedef struct cau_surroundings {
 	cau_store *store;
 	cau_worker_pool *pool;
 	cau_builder *builder;
+	cau_builder *mover;           // for sessions that move; may be the same
 	_Atomic int64_t *memory_held; // by all sessions, bytes, about
 	cau_beginnings *beginnings;
 	cau_sink sink;
@@ -106,8 +107,8 @@ cau_status cau_hosted_submit(cau_hosted *hosted, cau_order *order, cau_error *er
 void cau_hosted_answer_file(const cau_reply *reply, const char *name, const char *media_type,
                             const void *bytes, size_t byte_count);
 
-// ---- sessions that move (hold.c). An order CAU_ORDER_HOLD has one stand still, dark; it is
-// answered with move_held when all that it was is on the disk. Then one of these two follows.
+// ---- sessions that move (hold.c, build_job.c). An order CAU_ORDER_HOLD has one stand still, dark;
+// it is answered with move_held when all that it was is on the disk. Then one of these two follows.
 
 // It is served on.
 void cau_hosted_go_on(cau_hosted *hosted);

@@ -94,7 +94,8 @@ struct cau_hosted {
 	bool replaying; // after a restart or a fork, on the workers
 	bool incoming;  // of a move, and not accepted yet: it is built and then waits for that
 	bool came;      // and has been since
-	struct cau_holding *holding; // it stands still, or waits to be accepted; NULL: neither
+	struct cau_holding *holding; // it stands still, to leave; NULL: it does not
+	cau_job *built;              // that built it, while it waits to be accepted; else NULL
 	cau_job *leaving; // what the builder is to do with it once this slice has ended; NULL: nothing
 	cau_store_batch *batch; // of this slice; NULL: nothing to write
 	uint64_t batch_tick;    // when it was begun
@@ -204,8 +205,6 @@ cau_order *cau_building_give_back(cau_hosted *h);
 double cau_building_expects_s(const cau_scene_def *scene);
 // Leaves a session that was just made to the builder.
 cau_status cau_building_begin(cau_hosted *h, cau_error *error);
-// The job of a session that was built goes on with cau_hosted_resume.
-void cau_building_again(cau_hosted *h, cau_job *job);
 // The builder's last slice of a session that was away: it is the workers' again, or has ended.
 void cau_building_over(cau_hosted *h);
 
@@ -216,10 +215,6 @@ void cau_hosted_started(cau_hosted *h); // after the replay of a start
 
 // Brings a session up whose core is built, from the rows that the store has now.
 void cau_hosted_resume(cau_hosted *h);
-
-// ---- hold.c
-// A session of a move is built: it waits to be accepted, and its creator is told how it stands.
-void cau_hold_incoming(cau_hosted *h, cau_job *job);
 
 // ---- replay.c: the way of a core to a state of the store
 // On the builder. Before the past is read, all of it that is on its way must be in the store.

@@ -13,42 +13,14 @@
 
 enum { ARRIVALS_MOST = 64 }; // that are not served yet
 
-// Who drove a tool, and may come back to it here.
-typedef struct hand {
-	char tool[CAU_NAME_BYTES];
-	cau_client client;
-} hand;
-
-struct cau_arrival {
-	struct cau_arrival *next;
-	cau_coming coming;
-	char id[CAU_NAME_BYTES], move[CAU_NAME_BYTES], source[CAU_NAME_BYTES], label[CAU_NAME_BYTES];
-	char lock[CAU_SHA256_TEXT_BYTES];
-	int64_t pieces;
-	bool writing;       // a piece, or what becomes of it, is on its way to the disk
-	bool forgotten;     // only its core is still to be cleared away
-	cau_hosted *hosted; // that is built, or waits; NULL: none
-	bool ready;         // it waits
-	cau_wire_move_held stands;
-	hand hands[CAU_MAX_TOOLS];
-	int32_t hand_count;
-	double speed;
-};
-typedef struct cau_arrival arrival;
+typedef cau_arrival arrival;
+typedef cau_arrival_hand hand;
 
 // ---- the list: with the lock --------------------------------------------------------------------
 
-static arrival *find(cau_hub *hub, const char *id)
-{
-	arrival *a = hub->arrivals;
-	while (a && (a->forgotten || strcmp(a->id, id) != 0))
-		a = a->next;
-	return a;
-}
-
 static arrival *find_own(cau_hub *hub, const cau_move_asked *asked)
 {
-	arrival *a = find(hub, asked->session);
+	arrival *a = cau_arrival_find(hub, asked->session);
 	return a && strcmp(a->move, asked->move) == 0 ? a : NULL;
 }
 
@@ -59,45 +31,6 @@ static void take_out(cau_hub *hub, arrival *a)
 		link = &(*link)->next;
 	*link = a->next;
 	free(a);
-}
-
-bool cau_arrivals_have(cau_hub *hub, const char *id)
-{
-	pthread_mutex_lock(&hub->moves_mutex);
-	const arrival *a = find(hub, id);
-	bool waits = a && !cau_coming_serves(&a->coming);
-	pthread_mutex_unlock(&hub->moves_mutex);
-	return waits;
-}
-
-static cau_status take_row(void *user, const cau_store_arrival *row)
-{
-	cau_hub *hub = user;
-	arrival *a = calloc(1, sizeof *a);
-	if (!a)
-		return CAU_NO_MEMORY;
-	snprintf(a->id, sizeof a->id, "%.48s", row->id);
-	snprintf(a->move, sizeof a->move, "%.48s", row->move);
-	snprintf(a->source, sizeof a->source, "%.48s", row->source);
-	snprintf(a->label, sizeof a->label, "%.48s", row->label);
-	snprintf(a->lock, sizeof a->lock, "%s", row->lock);
-	a->pieces = row->pieces;
-	a->speed = 1;
-	a->coming = cau_coming_after_restart(true, row->state != CAU_STORE_ARRIVING,
-	                                     row->state == CAU_STORE_ACCEPTED);
-	a->next = hub->arrivals;
-	hub->arrivals = a;
-	if (!cau_coming_serves(&a->coming))
-		cau_log(CAU_LOG_WARNING, a->id, "in_doubt",
-		        "move=%s from=%s whole=%d remedy=\"`cautery move --resume %s` asks the daemon "
-		        "that it came from\"",
-		        a->move, a->source, row->state == CAU_STORE_WHOLE, a->id);
-	return CAU_OK;
-}
-
-cau_status cau_arrivals_read(cau_hub *hub, cau_error *error)
-{
-	return cau_store_read_arrivals(hub->def.store, take_row, hub, error);
 }
 
 // ---- receive ------------------------------------------------------------------------------------
@@ -190,7 +123,7 @@ static arrival *enlist(cau_hub *hub, const cau_move_asked *asked, const contents
                        cau_error *error)
 {
 	int32_t waiting = 0;
-	arrival *old = find(hub, asked->session);
+	arrival *old = cau_arrival_find(hub, asked->session);
 	for (const arrival *a = hub->arrivals; a; a = a->next)
 		waiting += !cau_coming_serves(&a->coming);
 	if (waiting >= ARRIVALS_MOST) {
@@ -220,7 +153,7 @@ static arrival *begin_piece(cau_hub *hub, const cau_move_asked *asked, const con
                             cau_error *error)
 {
 	pthread_mutex_lock(&hub->moves_mutex);
-	arrival *a = find(hub, asked->session);
+	arrival *a = cau_arrival_find(hub, asked->session);
 	bool waits = a && !cau_coming_serves(&a->coming);
 	if (!waits && found->index == 0)
 		a = enlist(hub, asked, found, error);
@@ -228,7 +161,7 @@ static arrival *begin_piece(cau_hub *hub, const cau_move_asked *asked, const con
 	         a->pieces != found->index || a->coming.state == CAU_COMING_WHOLE) {
 		cau_fail(error, CAU_BAD_STATE, "params.upload",
 		         waits && strcmp(a->move, asked->move) != 0
-		             ? "another move brings this session: `cautery move --resume` ends that"
+		             ? "another move brings this session: `cautery move` of it ends that"
 		             : "this piece is not the next one");
 		a = NULL;
 	}
@@ -433,7 +366,7 @@ void cau_arrival_ready(cau_move_job *job)
 // ---- accept -------------------------------------------------------------------------------------
 
 typedef struct accepting {
-	cau_job job; // first; on the builder, once it is on the disk
+	cau_job job; // first; on the mover, once it is on the disk
 	cau_hub *hub;
 	arrival *arrival;
 	cau_reply reply;
@@ -550,7 +483,7 @@ static void accepted(void *user, cau_status status, const char *reason)
 	if (!status) {
 		cau_log(CAU_LOG_NOTICE, what->arrival->id, "came", "move=%s from=%s", what->arrival->move,
 		        what->arrival->source);
-		cau_builder_submit(hub->def.builder, &what->job);
+		cau_builder_submit(hub->around.mover, &what->job);
 		return;
 	}
 	cau_move_fail(&what->reply, status, cau_hosted_commit_code(status), "", reason);
@@ -614,6 +547,8 @@ void cau_arrival_accept(cau_move_job *job)
 	arrival *a = find_own(job->hub, &job->asked);
 	if (!a)
 		status = cau_fail(&error, CAU_BAD_STATE, "params.move", "no such move is known here");
+	else if (job->hub->moves_end)
+		status = cau_fail(&error, CAU_BAD_STATE, "", "the server is shutting down: ask again");
 	else if (!opens(a, job->asked.proof))
 		status = cau_fail(&error, CAU_BAD_VALUE, "params.proof", "it is not that of this move");
 	else if (a->writing || (a->hosted && !a->ready && !cau_hosted_ended(a->hosted)))

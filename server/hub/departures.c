@@ -29,7 +29,7 @@ struct cau_departure {
 	cau_store_dump *dump;
 	uint32_t pieces;
 	bool part_sent, rest_begun, all_sent;
-	bool reading; // a job of the builder has the dump
+	bool reading; // a job of the mover has the dump
 	bool over;    // not in the list any more: whoever has the dump frees it
 	double touched_s, held_s;
 	cau_reply waiting; // for the disk
@@ -372,10 +372,13 @@ static bool is_late(const departure *d, double now_s)
 
 void cau_departures_let_go(cau_hub *hub, double now_s, bool all)
 {
-	if (all)
-		cau_store_flush(hub->def.store); // what was on its way to the disk is decided
+	if (all) { // nothing is given to the disk any more, and what was is decided
+		pthread_mutex_lock(&hub->moves_mutex);
+		hub->moves_end = true;
+		pthread_mutex_unlock(&hub->moves_mutex);
+		cau_store_flush(hub->def.store);
+	}
 	pthread_mutex_lock(&hub->moves_mutex);
-	hub->moves_end |= all;
 	for (departure *d = hub->departures, *next; d; d = next) {
 		next = d->next;
 		cau_leaving_state from = d->leaving.state;
@@ -545,6 +548,9 @@ void cau_departure_commit(cau_move_job *job)
 	if (!d) {
 		if (!show(job))
 			fail_unknown(&job->reply);
+	} else if (job->hub->moves_end) {
+		cau_move_fail(&job->reply, CAU_BAD_STATE, CAU_RPC_DRAINING, "",
+		              "the server is shutting down");
 	} else if (!d->all_sent) {
 		cau_move_fail(&job->reply, CAU_BAD_STATE, 0, "", "not all of it has been read");
 	} else if (cau_leaving_take(&d->leaving, CAU_LEAVING_COMMIT, true) == CAU_LEAVING_DO_WRITE) {

@@ -93,8 +93,7 @@ void cau_clerk_discard(cau_hub *hub, const cau_creation *asked)
 	cau_error error = {0};
 	if (cau_arrivals_have(hub, asked->name)) {
 		cau_fail(&error, CAU_BAD_STATE, "params.session",
-		         "it is on its way here from another daemon: `cautery move --resume %s` ends that",
-		         asked->name);
+		         "it is on its way here from another daemon: `cautery move` again ends that");
 		cau_reply_fail(&asked->reply, &error, 0);
 		return;
 	}

@@ -67,6 +67,7 @@ cau_status cau_hub_create(cau_hub **made, const cau_hub_def *def, cau_error *err
 	                                 .store = def->store,
 	                                 .pool = def->pool,
 	                                 .builder = def->builder,
+	                                 .mover = def->mover ? def->mover : def->builder,
 	                                 .memory_held = &hub->memory_held,
 	                                 .beginnings = &hub->beginnings,
 	                                 .sink = {hub, notify_all, frames_all, sliced_all},

@@ -21,6 +21,7 @@ typedef struct cau_hub_def {
 	cau_store *store;
 	cau_worker_pool *pool;
 	cau_builder *builder;
+	cau_builder *mover; // for sessions that move, at the workers' priority; NULL: the builder
 	const cau_scenes *scenes;
 	void (*armed)(void *user); // energy came on: cau_hub_watch is to be called again
 	void *user;
@@ -131,7 +132,7 @@ typedef struct cau_move_asked {
 	size_t piece_bytes;
 } cau_move_asked;
 
-// Does it, on the builder, and answers through `reply`. Takes the piece, on failure too.
+// Does it, on the mover, and answers through `reply`. Takes the piece, on failure too.
 cau_status cau_hub_move(cau_hub *hub, const cau_move_asked *asked, const cau_reply *reply,
                         cau_error *error);
 // Whether the session has moved away, and where to.

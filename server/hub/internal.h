@@ -5,9 +5,11 @@
 #include <pthread.h>
 #include <stdatomic.h>
 
+#include "cautery/sha256.h"
 #include "clock/clock.h"
 #include "hub/hub.h"
 #include "log/log.h"
+#include "session/handover.h"
 
 enum { MOST_SINKS = 4 };
 
@@ -72,7 +74,7 @@ cau_status cau_hub_read_session(cau_hub *hub, const char *id, cau_creation **cre
 cau_status cau_hub_resume_one(cau_hub *hub, const char *id, const cau_reply *reply,
                               cau_error *error);
 
-// ---- moved.c: sessions that have moved away
+// ---- moved.c: sessions that have moved away, and those that are on their way here
 typedef struct cau_tombstone {
 	char id[CAU_NAME_BYTES], move[CAU_NAME_BYTES];
 	cau_moved_to to;
@@ -85,18 +87,46 @@ const cau_tombstone *cau_tombstone_find(const cau_hub *hub, const char *id);
 bool cau_tombstone_put(cau_hub *hub, const cau_tombstone *made); // false: no memory
 void cau_tombstone_drop(cau_hub *hub, const char *id);
 
-// ---- moves.c: what leaving and coming share
-// One request about a move, on the builder.
+// Who drove a tool, and may come back to it here.
+typedef struct cau_arrival_hand {
+	char tool[CAU_NAME_BYTES];
+	cau_client client;
+} cau_arrival_hand;
+
+typedef struct cau_arrival {
+	struct cau_arrival *next;
+	cau_coming coming;
+	char id[CAU_NAME_BYTES], move[CAU_NAME_BYTES], source[CAU_NAME_BYTES], label[CAU_NAME_BYTES];
+	char lock[CAU_SHA256_TEXT_BYTES];
+	int64_t pieces;
+	bool writing;       // a piece, or what becomes of it, is on its way to the disk
+	bool forgotten;     // only its core is still to be cleared away
+	cau_hosted *hosted; // that is built, or waits; NULL: none
+	bool ready;         // it waits
+	cau_wire_move_held stands;
+	cau_arrival_hand hands[CAU_MAX_TOOLS];
+	int32_t hand_count;
+	double speed;
+} cau_arrival;
+// Of the store, at the start.
+cau_status cau_arrivals_read(cau_hub *hub, cau_error *error);
+cau_arrival *cau_arrival_find(cau_hub *hub, const char *id); // with the lock; NULL: there is none
+// Whether this session has come, in whole or in part, and is not this daemon's yet.
+bool cau_arrivals_have(cau_hub *hub, const char *id);
+
+// ---- move_answers.c
+void cau_move_fail(const cau_reply *reply, cau_status status, int32_t code, const char *path,
+                   const char *reason);
+void cau_move_answer(const cau_reply *reply, const void *result);
+void cau_move_decided(const cau_reply *reply, const cau_tombstone *moved); // NULL: it stays
+// ---- moves.c
+// One request about a move, on the mover.
 typedef struct cau_move_job {
 	cau_job job; // first
 	cau_hub *hub;
 	cau_move_asked asked;
 	cau_reply reply;
 } cau_move_job;
-void cau_move_fail(const cau_reply *reply, cau_status status, int32_t code, const char *path,
-                   const char *reason);
-void cau_move_answer(const cau_reply *reply, const void *result);
-void cau_move_decided(const cau_reply *reply, const cau_tombstone *moved); // NULL: it stays
 
 // ---- departures.c
 void cau_departure_begin(cau_move_job *job);
@@ -110,13 +140,10 @@ void cau_departures_let_go(cau_hub *hub, double now_s, bool all);
 void cau_departures_free(cau_hub *hub);
 
 // ---- arrivals.c
-cau_status cau_arrivals_read(cau_hub *hub, cau_error *error); // of the store, at the start
 void cau_arrival_receive(cau_move_job *job);
 void cau_arrival_ready(cau_move_job *job);
 void cau_arrival_accept(cau_move_job *job);
 void cau_arrival_forget(cau_move_job *job);
 void cau_arrivals_list(cau_hub *hub, cau_wire_list *list); // with the moves' lock
-// Whether this session has come, in whole or in part, and is not this daemon's yet.
-bool cau_arrivals_have(cau_hub *hub, const char *id);
 void cau_arrivals_reap(cau_hub *hub, bool all);
 void cau_arrivals_free(cau_hub *hub);

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Sessions that another daemon has now, by their old ids. In memory, since the network thread asks
-// for them and touches no disk.
+// Sessions that another daemon has now, by their old ids, and those that come from another. In
+// memory, since the network thread asks for them and touches no disk.
 #include <stdlib.h>
 #include <string.h>
 
@@ -92,4 +92,54 @@ bool cau_hub_moved(cau_hub *hub, const char *id, cau_moved_to *to)
 		*to = found->to;
 	pthread_mutex_unlock(&hub->moves_mutex);
 	return found != NULL;
+}
+
+// ---- on their way here --------------------------------------------------------------------------
+
+cau_arrival *cau_arrival_find(cau_hub *hub, const char *id)
+{
+	cau_arrival *a = hub->arrivals;
+	while (a && (a->forgotten || strcmp(a->id, id) != 0))
+		a = a->next;
+	return a;
+}
+
+bool cau_arrivals_have(cau_hub *hub, const char *id)
+{
+	pthread_mutex_lock(&hub->moves_mutex);
+	const cau_arrival *a = cau_arrival_find(hub, id);
+	bool waits = a && !cau_coming_serves(&a->coming);
+	pthread_mutex_unlock(&hub->moves_mutex);
+	return waits;
+}
+
+static cau_status take_arrival(void *user, const cau_store_arrival *row)
+{
+	cau_hub *hub = user;
+	cau_arrival *a = calloc(1, sizeof *a);
+	if (!a)
+		return CAU_NO_MEMORY;
+	snprintf(a->id, sizeof a->id, "%.48s", row->id);
+	snprintf(a->move, sizeof a->move, "%.48s", row->move);
+	snprintf(a->source, sizeof a->source, "%.48s", row->source);
+	snprintf(a->label, sizeof a->label, "%.48s", row->label);
+	snprintf(a->lock, sizeof a->lock, "%s", row->lock);
+	a->pieces = row->pieces;
+	a->speed = 1;
+	a->coming = cau_coming_after_restart(true, row->state != CAU_STORE_ARRIVING,
+	                                     row->state == CAU_STORE_ACCEPTED);
+	a->next = hub->arrivals;
+	hub->arrivals = a;
+	if (!cau_coming_serves(&a->coming))
+		cau_log(CAU_LOG_WARNING, a->id, "in_doubt",
+		        "move=%s from=%s whole=%d remedy=\"`cautery move %s %s` asks the daemon that it "
+		        "came from\"",
+		        a->move, a->source, row->state == CAU_STORE_WHOLE, a->source,
+		        hub->def.config->label);
+	return CAU_OK;
+}
+
+cau_status cau_arrivals_read(cau_hub *hub, cau_error *error)
+{
+	return cau_store_read_arrivals(hub->def.store, take_arrival, hub, error);
 }

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Requests about sessions that move: each is a short job of the builder, since most read the store.
+// Requests about sessions that move: each is a short job of the mover, since most read the store.
 // What is decided is server/session/handover.h's.
 #include <stdlib.h>
 #include <string.h>
@@ -7,36 +7,6 @@
 #include "hub/internal.h"
 
 #define EXPECTED_S 0.05 // for the builder's order: a piece is read or written
-
-void cau_move_fail(const cau_reply *reply, cau_status status, int32_t code, const char *path,
-                   const char *reason)
-{
-	cau_error error = {0};
-	cau_fail(&error, status, path, "%s", reason);
-	cau_reply_fail(reply, &error, code);
-}
-
-void cau_move_answer(const cau_reply *reply, const void *result)
-{
-	cau_error error = {0};
-	cau_outcome outcome = {0};
-	char *text = cau_answer_text(reply->method, result, &outcome.text_bytes, &error);
-	outcome.text = text;
-	outcome.error = text ? NULL : &error;
-	cau_reply_answer(reply, &outcome);
-	free(text);
-}
-
-void cau_move_decided(const cau_reply *reply, const cau_tombstone *moved)
-{
-	cau_wire_move_decision result = {
-		.moved = moved != NULL, .has_target = moved != NULL, .has_proof = moved != NULL};
-	if (moved) {
-		memcpy(result.target, moved->to.session, sizeof result.target);
-		memcpy(result.proof, moved->proof, sizeof result.proof);
-	}
-	cau_move_answer(reply, &result);
-}
 
 static void list_gone(cau_hub *hub, cau_wire_list *list)
 {
@@ -116,6 +86,6 @@ cau_status cau_hub_move(cau_hub *hub, const cau_move_asked *asked, const cau_rep
 	                       .hub = hub,
 	                       .asked = *asked,
 	                       .reply = *reply};
-	cau_builder_submit(hub->def.builder, &what->job);
+	cau_builder_submit(hub->around.mover, &what->job);
 	return CAU_OK;
 }

@@ -421,8 +421,8 @@ static void take_effect(cau_logic *logic, cau_effects *effects)
 		break;
 	case CAU_ASK_GO:
 		logic->going = true;
-		cau_drive_cut_lit(logic, order->moment, CAU_ENERGY_OFF_RESTORED, "the session went elsewhere",
-		                  effects);
+		cau_drive_cut_lit(logic, order->moment, CAU_ENERGY_OFF_RESTORED,
+		                  "the session went elsewhere", effects);
 		break;
 	case CAU_ASK_DESTROY:
 		logic->ended = true;

@@ -30,7 +30,7 @@ static const char *const at_end[] = {
 	"INSERT OR REPLACE INTO temp.seen_point SELECT branch, tick, hash FROM checkpoints"
 	" WHERE session = ?1",
 	"UPDATE temp.seen SET event = coalesce((SELECT max(key) FROM events WHERE session = ?1), "
-    "event),"
+	"event),"
 	" answer_ms = max(0, coalesce((SELECT max(time_ms) FROM answers), answer_ms) - 5000)"};
 
 // table, in the rest too, SQL. Answers of the five seconds before come twice, since the wall clock

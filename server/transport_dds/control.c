@@ -126,14 +126,27 @@ static const struct {
 	[cautery_TAKE_OVER] = {CAU_ORDER_TAKE_OVER, read_take_over},
 };
 
+// The reply's `session` is where it is now.
+static cau_status fail_missing(const asked *a, int32_t *code, cau_error *error)
+{
+	cau_moved_to to;
+	if (cau_hub_moved(a->dds->hub, a->sample->session, &to)) {
+		*code = CAU_RPC_MOVED;
+		memcpy(a->request->session, to.session, sizeof to.session);
+		return cau_fail(error, CAU_NOT_FOUND, "session", "it is `%s` now", to.session);
+	}
+	*code = CAU_RPC_NOT_HERE;
+	return cau_fail(error, CAU_NOT_FOUND, "session", "this daemon does not have `%.48s`",
+	                a->sample->session);
+}
+
 // It may have been answered before its session was destroyed, or destroy one of the store only.
-static cau_status look_up(const asked *a, cau_reply reply, cau_error *error)
+static cau_status look_up(const asked *a, cau_reply reply, int32_t *code, cau_error *error)
 {
 	if (a->method->changes && cau_hub_submit_missing(a->dds->hub, a->sample->session, &a->asker,
 	                                                 (int64_t)a->sample->number, &reply))
 		return CAU_OK;
-	return cau_fail(error, CAU_NOT_FOUND, "session", "this daemon does not have `%.48s`",
-	                a->sample->session);
+	return fail_missing(a, code, error);
 }
 
 static cau_status submit(asked *a, cau_hosted *hosted, cau_reply reply, int32_t *code,
@@ -157,10 +170,8 @@ static cau_status submit(asked *a, cau_hosted *hosted, cau_reply reply, int32_t 
 static cau_status order_session(asked *a, cau_reply reply, int32_t *code, cau_error *error)
 {
 	cau_hosted *hosted = cau_hub_find(a->dds->hub, a->sample->session);
-	if (!hosted) {
-		*code = CAU_RPC_NOT_HERE;
-		return look_up(a, reply, error);
-	}
+	if (!hosted)
+		return look_up(a, reply, code, error);
 	cau_status status = submit(a, hosted, reply, code, error);
 	cau_hosted_release(hosted);
 	return status;
@@ -215,9 +226,7 @@ static cau_status join(const asked *a, int32_t *code, cau_error *error)
 			cau_dds_reply_join(a->dds, a->request, &summary);
 			return CAU_OK;
 		}
-	*code = CAU_RPC_NOT_HERE;
-	return cau_fail(error, CAU_NOT_FOUND, "session", "this daemon does not have `%.48s`",
-	                a->sample->session);
+	return fail_missing(a, code, error);
 }
 
 // ---- asking

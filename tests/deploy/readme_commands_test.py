@@ -45,6 +45,8 @@ NOT_RUN = {  # command: why
 FIRST_HOUR, INSTALL = "tests/deploy/first_hour_test.py", "tests/deploy/install_test.py"
 VIEWER, SECURITY = "tests/browser/run_viewer_tests.sh", "tests/dds/security.test.mjs"
 ELSEWHERE = {  # command: (file, words in it...)
+    'cautery move d1-knee d2 --to-url wss://other.example.org':
+        ('tests/e2e/move.test.mjs', "'move', session, 'd2'", "'--to-url'"),
     "deploy/run.sh": (FIRST_HOUR, '"deploy/run.sh"'),
     "deploy/test.sh": (FIRST_HOUR, '"deploy/test.sh"'),
     "cmake -S . -B build -DCMAKE_BUILD_TYPE=Release && cmake --build build":

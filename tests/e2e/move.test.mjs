@@ -17,7 +17,7 @@ const serves = async (client, session) =>
 
 async function end(...all) {
 	for (const daemon of all)
-		await daemon.end();
+		assert.equal((await daemon.end()).code, 0);
 }
 
 // The command line, while this process goes on answering.
@@ -225,5 +225,22 @@ test('cautery move carries a running session, and the library goes after it', as
 	const again = await run(['move', session, 'd2', '--url', at(d1), '--to-url', at(d2)]);
 	assert.equal(again.status, 1);
 	assert.match(again.stderr, /d2-knee/);
+	await end(d1, d2);
+});
+
+test('cautery-load, driver and viewers, goes after its session and removes it where it is', async () => {
+	const [d1, d2] = await daemons();
+	const one = await d1.connect(), two = await d2.connect();
+	const at = (daemon) => `ws://127.0.0.1:${daemon.port}`;
+	const load = execFile(process.env.CAUTERY_LOAD, ['--url', at(d1), '--viewers', '3', '--seconds', '3', '--warm-up', '0']);
+	const ended = new Promise((resolve) => load.on('exit', resolve));
+	const made = await one.until(() => one.notice('session.changed', (p) => p.change === 'created'), 'its session');
+	const { session } = made.params.summary, target = session.replace('d1-', 'd2-');
+	await one.join(session); // and with it the first row of its log is on the disk
+	await new Courier(one, two, session, target).walk('accept', at(d2));
+	assert.equal(await ended, 0);
+	// Its driver has had the tool there too, and has destroyed the session at its end.
+	await two.until(() => two.notice('session.changed', (p) => p.change === 'destroyed' && p.summary.session === target), 'its end');
+	assert.ok(d2.lines.some((line) => line.includes(`session=${target}`) && /event=driver .*cautery-load driver/.test(line)));
 	await end(d1, d2);
 });

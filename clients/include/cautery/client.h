@@ -134,9 +134,9 @@ const cau_wire_hello_result *cau_client_server(const cau_client *client);
 uint64_t cau_client_connections(const cau_client *client); // hellos answered so far
 
 // Whether it is on its way after a session that has moved to another daemon: that one's streams are
-// joined again there, and its old id means the new one from then on. A client does so whose session,
-// or whose streams, are of that session alone; others are told `moved`. The condition is LOST or
-// CONNECTING meanwhile.
+// joined again there, and its old id means the new one from then on. A client does so whose
+// session, or whose streams, are of that session alone; others are told `moved`. The condition is
+// LOST or CONNECTING meanwhile.
 bool cau_client_follows(const cau_client *client);
 // The id by which messages name a session that the program calls so: another once it has moved.
 const char *cau_client_called(const cau_client *client, const char *session);

@@ -55,6 +55,9 @@ const link: Link = new Link({
     viewport.setSession(joined);
     model.setJoined(joined);
   },
+  moved: (session, to, url) => {
+    if (session === model.session) follow(to, url);
+  },
   notJoined: (session, message) => model.notice('error', `${session} cannot be watched: ${message}`),
   frame: (frame) => {
     const buffers = viewport.takeFrame(frame);
@@ -116,14 +119,39 @@ keepAddress(model, viewport);
 
 let lastToken: string | undefined;
 
-function connect(token?: string): void {
-  lastToken = token;
+function socketAddress(session: string | null): string {
   const url = new URL('./v1', window.location.href);
   url.protocol = url.protocol === 'https:' ? 'wss:' : 'ws:';
-  const wanted = address.session;
-  url.search = wanted === null ? '' : `session=${encodeURIComponent(wanted)}`;
+  url.search = session === null ? '' : `session=${encodeURIComponent(session)}`;
   url.hash = '';
-  link.connect(url.href, clientWords(__VIEWER_VERSION__), token);
+  return url.href;
+}
+
+/** A page may connect to its own address alone: a daemon that has another has its page there, too. */
+function follow(session: string, daemon: string): void {
+  const there = daemon === '' ? null : new URL(daemon);
+  model.notice('info', `The session is ${session} now.`);
+  if (there && there.host !== window.location.host) {
+    there.protocol = there.protocol === 'wss:' || there.protocol === 'https:' ? 'https:' : 'http:';
+    there.pathname = '/';
+    there.search = `session=${encodeURIComponent(session)}`;
+    window.location.assign(there.href);
+    return;
+  }
+  // Behind a proxy, the page of one daemon is at its label: the other's is at its own.
+  const [label, old] = [session, model.session ?? ''].map((id) => id.split('-')[0]);
+  if (window.location.pathname === `/${old}/`) {
+    window.location.assign(`/${label}/?session=${encodeURIComponent(session)}`);
+    return;
+  }
+  link.follow(socketAddress(session));
+  control.watch(session);
+}
+
+function connect(token?: string): void {
+  lastToken = token;
+  const wanted = address.session;
+  link.connect(socketAddress(wanted), clientWords(__VIEWER_VERSION__), token);
   const session = model.session ?? wanted;
   if (session !== null) control.watch(session);
 }

@@ -197,15 +197,18 @@ export class Control {
     },
   };
 
-  private sessionChanged({ change, summary, target }: Pushes['session.changed']): void {
+  private sessionChanged({ change, summary }: Pushes['session.changed']): void {
     if (change === 'destroyed') {
       this.model.removeSession(summary.session);
       this.left(summary.session);
       return;
     }
+    if (change === 'moved') { // the page goes after it: see main.ts
+      this.model.removeSession(summary.session);
+      return;
+    }
     this.model.putSession(summary);
     if (summary.session !== this.model.session) return;
-    if (change === 'moved') this.model.notice('warning', `The session has moved to ${target ?? 'another daemon'}.`);
     if (['reset', 'rewound', 'restored', 'restarted'].includes(change)) this.later(this.loadTimeline());
     if (['tools', 'tissue', 'reset', 'rewound', 'restored'].includes(change)) this.later(this.describe());
   }

@@ -39,6 +39,9 @@ export class RpcError extends Error {
     message: string,
     readonly path?: string,
     readonly reason?: string,
+    /** status moved: the session's id where it is now, and that daemon's address if it is another */
+    readonly movedTo?: string,
+    readonly url?: string,
   ) {
     super(reason ?? message);
   }
@@ -56,7 +59,7 @@ interface Answer {
   method?: keyof Pushes;
   params?: never;
   result?: unknown;
-  error?: { message: string; data?: { status?: string; path?: string; reason?: string } };
+  error?: { message: string; data?: { status?: string; path?: string; reason?: string; moved_to?: string; url?: string } };
 }
 
 const FIRST_RETRY_S = 0.25;
@@ -80,16 +83,22 @@ export class Connection {
   private clientSequence = 0;
   private retries = 0;
   private timer: ReturnType<typeof setTimeout> | undefined;
+  private url: string;
+  /** of the daemon that had the session, until it is found where it is now */
+  private keptResume: string | null = null;
+  private following = false;
 
   constructor(
     private readonly options: ConnectionOptions,
     private readonly open: (url: string, protocol: string) => Socket,
     private readonly events: ConnectionEvents,
-  ) {}
+  ) {
+    this.url = options.url;
+  }
 
   start(): void {
     this.events.state({ state: 'connecting' });
-    const socket = this.open(this.options.url, SUBPROTOCOL);
+    const socket = this.open(this.url, SUBPROTOCOL);
     socket.binaryType = 'arraybuffer';
     this.socket = socket;
     socket.onopen = () => this.greet();
@@ -107,6 +116,31 @@ export class Connection {
       socket.close();
     }
     this.abandon(() => true, 'the connection was closed');
+  }
+
+  /** Goes after a session to where it is now: the same client, who gets its tools back there. */
+  follow(url: string): void {
+    this.url = url;
+    this.keptResume ??= this.lastResume;
+    this.following = true;
+    this.comeBack();
+  }
+
+  /** Connects anew, as after a loss. */
+  comeBack(): void {
+    const { socket } = this;
+    if (!socket) return; // it is about to
+    socket.onclose = null;
+    socket.onmessage = null;
+    socket.close();
+    this.lost('the session has moved');
+  }
+
+  /** The session that was followed has been found. */
+  found(): void {
+    this.keptResume = null;
+    this.following = false;
+    this.retries = 0;
   }
 
   get online(): boolean {
@@ -137,7 +171,7 @@ export class Connection {
 
   private greet(): void {
     const { client, clientId, token } = this.options;
-    const resume = this.lastResume;
+    const resume = this.keptResume ?? this.lastResume;
     const params = {
       version: WIRE_VERSION,
       client,
@@ -157,7 +191,7 @@ export class Connection {
     const again = this.lastResume !== null;
     this.hello = hello;
     this.lastResume = hello.resume;
-    this.retries = 0;
+    if (!this.following) this.retries = 0;
     for (const pending of this.pending.values()) this.socket?.send(pending.text);
     this.events.state({ state: 'online', hello, again });
   }
@@ -189,7 +223,7 @@ export class Connection {
     this.pending.delete(answer.id ?? -1);
     if (answer.error) {
       const { message, data: detail } = answer.error;
-      pending.reject(new RpcError(detail?.status ?? 'internal', message, detail?.path, detail?.reason));
+      pending.reject(new RpcError(detail?.status ?? 'internal', message, detail?.path, detail?.reason, detail?.moved_to, detail?.url));
     } else {
       pending.resolve(answer.result);
     }
@@ -204,8 +238,14 @@ export class Connection {
       this.end(refusal, words);
       return;
     }
+    this.lost(words);
+  }
+
+  private lost(words: string): void {
+    this.socket = null;
+    this.hello = null;
     this.abandon((method) => method === 'hello' || !outlivesLoss(method), 'the connection was lost');
-    const retryInS = Math.min(LONGEST_RETRY_S, FIRST_RETRY_S * 2 ** this.retries) * (0.75 + 0.5 * Math.random());
+    const retryInS = this.following && this.retries === 0 ? 0 : Math.min(LONGEST_RETRY_S, FIRST_RETRY_S * 2 ** this.retries) * (0.75 + 0.5 * Math.random());
     this.retries++;
     this.events.state({ state: 'lost', words, retryInS });
     this.timer = setTimeout(() => this.start(), retryInS * 1000);

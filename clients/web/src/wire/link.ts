@@ -9,6 +9,8 @@ export interface LinkEvents {
   state(state: LinkState): void;
   joined(joined: Joined): void;
   notJoined(session: string, message: string): void;
+  /** url: of the daemon that has it now; empty where the same address leads there. */
+  moved(session: string, to: string, url: string): void;
   frame(frame: Frame): void;
   push<M extends keyof Pushes>(method: M, params: Pushes[M]): void;
   file(name: string, mediaType: string, bytes: Uint8Array<ArrayBuffer>, sound: boolean): void;
@@ -38,6 +40,11 @@ export class Link {
   /** A new connection, under a new identity: answers of an earlier one are of no use to it. */
   connect(url: string, client: string, token?: string): void {
     this.send({ type: 'connect', url, client, clientId: newClientId(), ...(token === undefined ? {} : { token }) });
+  }
+
+  /** The same client goes to another daemon, after a session. */
+  follow(url: string): void {
+    this.send({ type: 'follow', url });
   }
 
   call<M extends keyof Requests>(method: M, params: Requests[M]['params']): Promise<Requests[M]['result']> {
@@ -126,6 +133,9 @@ export class Link {
         break;
       case 'not_joined':
         events.notJoined(message.session, message.message);
+        break;
+      case 'moved':
+        events.moved(message.session, message.to, message.url);
         break;
       case 'frame':
         events.frame(message.frame);

@@ -9,7 +9,7 @@ import { Downloads, upload } from './files';
 import { Subscription } from './subscription';
 import type { FromWorker, Sample, ToWorker } from './worker_messages';
 import { FrameDecoder, type StreamState } from './decoder';
-import type { PastFrame, Transfer } from './messages.gen';
+import type { PastFrame, Pushes, Transfer } from './messages.gen';
 
 /** The few names of a worker's global scope that are used; the DOM's types have no room for both. */
 interface WorkerScope {
@@ -79,6 +79,25 @@ function sampleOf(state: StreamState, bytes: number, decodeMs: number): Sample {
   };
 }
 
+const ARRIVES_MOST_MS = 30000;
+let arrivesUntilMs = -Infinity;
+
+function tellMoved(session: string, to: string, url = ''): void {
+  scope.postMessage({ type: 'moved', session, to, url });
+}
+
+function follow(url: string): void {
+  arrivesUntilMs = performance.now() + ARRIVES_MOST_MS;
+  connection?.follow(url);
+}
+
+function pushed<M extends keyof Pushes>(method: M, params: Pushes[M]): void {
+  scope.postMessage({ type: 'push', method, params });
+  if (method !== 'session.changed') return;
+  const { change, summary, target, moved_to: to } = params as Pushes['session.changed'];
+  if (change === 'moved' && to !== undefined) tellMoved(summary.session, to, target);
+}
+
 function watch({ session, channels, colour }: ToWorker & { type: 'watch' }): void {
   coloured = colour;
   if (subscription && subscription.session === session) {
@@ -93,6 +112,7 @@ function watch({ session, channels, colour }: ToWorker & { type: 'watch' }): voi
   subscription = new Subscription(connection, session, { channels }, {
     joined: (description, stream, topology) => {
       feed = new Feed(description, stream, topology, coloured);
+      connection?.found();
       scope.postMessage({ type: 'joined', joined: feed.joined });
     },
     frame: (state, changes, bytes) => {
@@ -101,6 +121,14 @@ function watch({ session, channels, colour }: ToWorker & { type: 'watch' }): voi
     },
     failed: (error) => {
       const status = error instanceof RpcError ? error.status : 'internal';
+      if (error instanceof RpcError && error.movedTo !== undefined) {
+        tellMoved(session, error.movedTo, error.url);
+        return;
+      }
+      if (status === 'not_here' && performance.now() < arrivesUntilMs) { // on its way here still
+        connection?.comeBack();
+        return;
+      }
       scope.postMessage({ type: 'not_joined', session, status, message: error instanceof Error ? error.message : String(error) });
     },
   });
@@ -127,7 +155,7 @@ function connect(message: ToWorker & { type: 'connect' }): void {
       nextMeasureUs = 0;
       if (subscription) void subscription.start();
     },
-    push: (method, params) => scope.postMessage({ type: 'push', method, params }),
+    push: pushed,
     binary: (bytes) => (isChunk(bytes) ? downloads.take(readChunk(bytes)) : takeBytes(bytes)),
   });
   connection.start();
@@ -200,6 +228,9 @@ async function showPast({ call: number, session, tick }: ToWorker & { type: 'pas
 async function receive(message: ToWorker): Promise<void> {
   await decoderReady;
   switch (message.type) {
+    case 'follow':
+      follow(message.url);
+      break;
     case 'connect':
       connect(message);
       break;

@@ -12,6 +12,7 @@ export type Channels = NonNullable<SessionJoin['channels']>;
 
 export type ToWorker =
   | { type: 'connect'; url: string; client: string; clientId: string; token?: string }
+  | { type: 'follow'; url: string }
   | { type: 'call'; call: number; method: keyof Requests; params: object }
   | { type: 'notice'; method: keyof Notices; params: object }
   | { type: 'heartbeat'; visible: boolean }
@@ -110,6 +111,7 @@ export type FromWorker =
   | { type: 'push'; method: keyof Pushes; params: Pushes[keyof Pushes] }
   | { type: 'joined'; joined: Joined }
   | { type: 'not_joined'; session: string; message: string; status: string }
+  | { type: 'moved'; session: string; to: string; url: string }
   | { type: 'frame'; frame: Frame }
   | { type: 'progress'; call: number; sent: number; total: number }
   | { type: 'file'; name: string; mediaType: string; bytes: Uint8Array<ArrayBuffer>; sound: boolean };

@@ -153,4 +153,30 @@ describe('a connection', () => {
     sockets[0].say({ method: 'session.faulted', params: { session: 'd1-a', tick: 3, reason: 'x' } });
     expect(pushes).toEqual(['session.faulted']);
   });
+
+  it('goes after a session with the same identity, until it is found', async () => {
+    const { sockets, connection } = setUp();
+    await greet(sockets[0]);
+    const asked = connection.request('session.describe', { session: 'd1-knee' });
+    const data = { status: 'moved', reason: 'it is `d2-knee` now', moved_to: 'd2-knee', url: 'ws://other' };
+    sockets[0].say({ id: sockets[0].last('session.describe').id, error: { message: 'moved', data } });
+    await expect(asked).rejects.toMatchObject({ status: 'moved', movedTo: 'd2-knee', url: 'ws://other' });
+    connection.follow('ws://host/v1?session=d2-knee');
+    await vi.advanceTimersByTimeAsync(0);
+    expect(sockets).toHaveLength(2); // at once
+    sockets[1].open();
+    sockets[1].say({ id: sockets[1].last('hello').id, result: { ...HELLO, resume: 'too-early' } });
+    await vi.advanceTimersByTimeAsync(0);
+    connection.comeBack(); // it has not arrived there yet
+    await vi.advanceTimersByTimeAsync(1000);
+    sockets[2].open();
+    expect(sockets[2].last('hello').params).toMatchObject({ client_id: 'me', resume: 'again' });
+    sockets[2].say({ id: sockets[2].last('hello').id, result: { ...HELLO, resume: 'there' } });
+    await vi.advanceTimersByTimeAsync(0);
+    connection.found();
+    sockets[2].lose(1006);
+    await vi.advanceTimersByTimeAsync(1000);
+    sockets[3].open();
+    expect(sockets[3].last('hello').params).toMatchObject({ resume: 'there' });
+  });
 });

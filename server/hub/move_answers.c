@@ -1,0 +1,36 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// What a courier is told.
+#include <stdlib.h>
+#include <string.h>
+
+#include "hub/internal.h"
+
+void cau_move_fail(const cau_reply *reply, cau_status status, int32_t code, const char *path,
+                   const char *reason)
+{
+	cau_error error = {0};
+	cau_fail(&error, status, path, "%s", reason);
+	cau_reply_fail(reply, &error, code);
+}
+
+void cau_move_answer(const cau_reply *reply, const void *result)
+{
+	cau_error error = {0};
+	cau_outcome outcome = {0};
+	char *text = cau_answer_text(reply->method, result, &outcome.text_bytes, &error);
+	outcome.text = text;
+	outcome.error = text ? NULL : &error;
+	cau_reply_answer(reply, &outcome);
+	free(text);
+}
+
+void cau_move_decided(const cau_reply *reply, const cau_tombstone *moved)
+{
+	cau_wire_move_decision result = {
+		.moved = moved != NULL, .has_target = moved != NULL, .has_proof = moved != NULL};
+	if (moved) {
+		memcpy(result.target, moved->to.session, sizeof result.target);
+		memcpy(result.proof, moved->proof, sizeof result.proof);
+	}
+	cau_move_answer(reply, &result);
+}
