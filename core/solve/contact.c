@@ -97,7 +97,7 @@ void cau_contact_remember(cau_contact_set *set)
 		return;
 	for (int32_t i = 0; i < set->row_count; i++) {
 		const cau_contact_row *row = &set->row[i];
-		if (row->corner_count == 3)
+		if (row->corner_count == 3 && !row->attached)
 			keep(set, &(cau_contact_memory){row->tool, row->face, 1, row->above});
 	}
 	int32_t pushed_count = set->memory_count;
@@ -142,7 +142,7 @@ bool cau_contact_add(cau_contact_set *set, const cau_contact_row *row)
 	memcpy(set->corner + set->corner_count, added, (size_t)count * sizeof *added);
 	set->corner_count += count;
 	set->row[set->row_count++] = *row;
-	set->face_count += row->corner_count == 3;
+	set->face_count += row->corner_count == 3 && !row->attached;
 	return true;
 }
 
@@ -339,7 +339,7 @@ double cau_contact_depth(const cau_contact_set *set, const cau_step_solver *solv
 	double depth = 0;
 	for (int32_t i = 0; i < set->row_count; i++) {
 		cau_contact_row row = set->row[i]; // it stays as its reaction was found
-		if (row.corner_count == 1)
+		if (row.corner_count == 1 || row.attached)
 			continue;
 		measure_gap(set, solver, &row);
 		depth = fmax(depth, -row.gap);

@@ -114,8 +114,8 @@ static void forged_counts_are_refused_and_change_nothing(void **state)
 }
 
 // Version 4 as its first builds wrote it and as its last did, and version 5: the header ended
-// before what steps have taught, before the sides of faces, and before tears, which the payload
-// ends with.
+// before what steps have taught, before the sides of faces, and before tears; the payload, before
+// these and holds on faces.
 static void shorter_headers_are_read(void **state)
 {
 	(void)state;
@@ -125,9 +125,14 @@ static void shorter_headers_are_read(void **state)
 	                       offsetof(snapshot_header, over_count)};
 	const stage_bytes *shot = &run->shot[0];
 	cau_scene_def *scene = busy_scene();
-	const size_t tears = (size_t)scene->layer_count * (2 * CAU_MAX_MATERIALS + 1) * sizeof(double);
+	snapshot_header now;
+	memcpy(&now, shot->bytes, sizeof now);
+	const size_t hold = 4 * sizeof(int32_t) + 3 * sizeof(double);
+	const size_t since_6 =
+		(size_t)scene->layer_count * (2 * CAU_MAX_MATERIALS + 1) * sizeof(double) +
+		(size_t)now.tool_count * CAU_MAX_GRASPED * hold;
 	for (size_t i = 0; i < sizeof ends / sizeof *ends; i++) {
-		size_t payload = shot->count - sizeof(snapshot_header) - tears, count = ends[i] + payload;
+		size_t payload = shot->count - sizeof(snapshot_header) - since_6, count = ends[i] + payload;
 		unsigned char *bytes = malloc(count);
 		assert_non_null(bytes);
 		snapshot_header header;
