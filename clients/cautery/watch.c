@@ -32,6 +32,8 @@ static void write_line(FILE *out, const view *v)
 	        (unsigned long long)s->tick, s->time_s, (double)s->statistics.realtime_factor,
 	        s->moved_count, (long long)v->faces->gone, s->statistics.edges_parted,
 	        s->statistics.elements_removed, (long long)v->faces->drawn);
+	if (s->statistics.elements_torn)
+		fprintf(out, "  torn %u elements", s->statistics.elements_torn);
 	for (int32_t i = 0; i < s->tool_count; i++)
 		fprintf(out, "  %s %s%s %.0f degC %.2f N", s->tools[i].name,
 		        s->tools[i].energized ? "on" : "off", s->tools[i].frozen ? " (watchdog)" : "",
@@ -64,6 +66,9 @@ static void write_tool(cau_json_writer *writer, const cau_stream_tool *tool)
 	cau_json_string(writer, "tool", tool->name);
 	cau_json_bool(writer, "energized", tool->energized);
 	cau_json_string(writer, "energy_off", cli_energy_off_word(tool->energy_off));
+	cau_json_bool(writer, "grasping", tool->grasping);
+	cau_json_bool(writer, "slipping", tool->slipping);
+	cau_json_unsigned(writer, "points_held", tool->grasped_vertices);
 	cau_json_unsigned(writer, "driver", tool->driver);
 	cau_json_unsigned(writer, "sequence", tool->sequence);
 	cau_json_numbers(writer, "position_m", tool->pose.position_m, 3);
@@ -89,6 +94,7 @@ static void print_json(const cli *c, const view *v)
 	cau_json_integer(&w, "faces_bared", v->faces->bared);
 	cau_json_unsigned(&w, "edges_parted", s->statistics.edges_parted);
 	cau_json_unsigned(&w, "elements_removed", s->statistics.elements_removed);
+	cau_json_unsigned(&w, "elements_torn", s->statistics.elements_torn);
 	cau_json_bool(&w, "paused", s->flags & CAU_FRAME_PAUSED);
 	cau_json_bool(&w, "faulted", s->flags & CAU_FRAME_FAULTED);
 	cau_json_open(&w, "tools", '[');

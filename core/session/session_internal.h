@@ -17,10 +17,12 @@
 
 enum { CAU_MAX_GRASPED = 96, CAU_MAX_REFUSALS = 32 };
 
-typedef struct cau_grasp { // one attached vertex
-	int32_t vertex;
-	double local[3]; // m, anchor in the tool's frame
-	double start[3]; // m, where it was taken hold of
+typedef struct cau_grasp { // one attached vertex, or a point of a face between vertices
+	int32_t face;          // -1: a vertex
+	int32_t vertex[3];     // the face's corners; the vertex
+	double weight[3];      // their shares in the point
+	double local[3];       // m, anchor in the tool's frame
+	double start[3];       // m, where it was taken hold of
 } cau_grasp;
 
 typedef struct cau_tool {
@@ -181,6 +183,15 @@ void cau_session_read_forces(cau_session *session);
 cau_status cau_session_grasp(cau_session *session, cau_tool *tool, cau_error *error);
 void cau_session_release(cau_tool *tool);
 void cau_session_drop_frozen_grasps(cau_session *session);
+// grasp.c: a hold on a vertex; the row of a hold, without its anchor; the hold that a row is of, or
+// NULL; whether what it is on is left.
+cau_grasp cau_session_hold_vertex(int32_t vertex);
+cau_contact_row cau_session_row_of_hold(const cau_session *session, const cau_grasp *grasp,
+                                        int32_t tool);
+cau_grasp *cau_session_hold_of_row(cau_tool *tool, const cau_contact_row *row);
+bool cau_session_hold_is_left(const cau_session *session, const cau_grasp *grasp);
+// Takes hold of faces between the jaws of which no corner is held.
+void cau_session_grasp_faces(const cau_session *session, cau_tool *tool);
 // burn.c: heat, exposure, parting.
 void cau_session_burn(cau_session *session);
 // Takes what was removed from element `first` of the tick's list on out of the local step, and puts

@@ -75,6 +75,22 @@ static void pass_anchor(snapshot_archive *archive, cau_tool *tool)
 	}
 }
 
+// As it was when jaws held vertices alone; the faces come with pass_faces_held.
+static void pass_hold(snapshot_archive *archive, cau_grasp *grasp)
+{
+	int32_t unused = 0;
+	snapshot_pass(archive, &grasp->vertex[0], sizeof grasp->vertex[0]);
+	snapshot_pass(archive, &unused, sizeof unused);
+	snapshot_pass(archive, grasp->local, sizeof grasp->local);
+	snapshot_pass(archive, grasp->start, sizeof grasp->start);
+	if (archive->reading)
+		*grasp = (cau_grasp){.face = -1,
+		                     .vertex = {grasp->vertex[0], -1, -1},
+		                     .weight = {1, 0, 0},
+		                     .local = {grasp->local[0], grasp->local[1], grasp->local[2]},
+		                     .start = {grasp->start[0], grasp->start[1], grasp->start[2]}};
+}
+
 static void pass_tool(snapshot_archive *archive, cau_tool *tool)
 {
 	CAU_ASSERT(tool->grid.nodes >= 0 && tool->grid.nodes <= CAU_SNAPSHOT_NODES,
@@ -86,7 +102,8 @@ static void pass_tool(snapshot_archive *archive, cau_tool *tool)
 	snapshot_pass(archive, &tool->pose_before, sizeof tool->pose_before);
 	pass_anchor(archive, tool);
 	snapshot_pass(archive, &tool->grasp_count, sizeof tool->grasp_count);
-	snapshot_pass(archive, tool->grasp, sizeof tool->grasp);
+	for (int32_t k = 0; k < CAU_MAX_GRASPED; k++)
+		pass_hold(archive, &tool->grasp[k]);
 	snapshot_pass(archive, grid->field[0].origin, sizeof grid->field[0].origin);
 	size_t nodes = (size_t)grid->nodes * (size_t)grid->nodes * (size_t)grid->nodes;
 	int fields = archive->version < CAU_SNAPSHOT_NESTED ? 1 : CAU_HEAT_FIELDS;
@@ -156,6 +173,18 @@ static void pass_tears(snapshot_archive *archive, cau_session *session)
 	snapshot_pass(archive, tears->over, (size_t)tears->over_count * sizeof *tears->over);
 }
 
+// Since version 6: which holds are on faces.
+static void pass_faces_held(snapshot_archive *archive, cau_session *session)
+{
+	for (int32_t i = 0; i < session->tool_count; i++)
+		for (int32_t k = 0; k < CAU_MAX_GRASPED; k++) {
+			cau_grasp *grasp = &session->tool[i].grasp[k];
+			snapshot_pass(archive, &grasp->face, sizeof grasp->face);
+			snapshot_pass(archive, grasp->vertex, sizeof grasp->vertex);
+			snapshot_pass(archive, grasp->weight, sizeof grasp->weight);
+		}
+}
+
 // Everything but the tools and what decides the system's shape, which restoring needs first.
 static cau_status pass_state(snapshot_archive *archive, cau_session *session, cau_error *error)
 {
@@ -188,8 +217,10 @@ static cau_status pass_state(snapshot_archive *archive, cau_session *session, ca
 	pass_memory(archive, &session->contact);
 	if (session->rest.quiet_ticks && !session->rest.resting)
 		snapshot_pass(archive, session->rest.from, 3 * n * sizeof(double));
-	if (archive->version >= 6)
+	if (archive->version >= 6) {
 		pass_tears(archive, session);
+		pass_faces_held(archive, session);
+	}
 	return status;
 }
 
@@ -245,6 +276,7 @@ static cau_session *imagine(const cau_session *session, const snapshot_header *h
 	cau_matrix_update_await(&session->update);
 	memcpy(imagined, session, sizeof *imagined);
 	imagined->command_count = header->command_count;
+	imagined->tool_count = header->tool_count;
 	imagined->shrink.active_count = header->active_count;
 	imagined->contact.column_count = header->column_count;
 	imagined->contact.memory_count = header->memory_count;

@@ -48,7 +48,7 @@ static bool is_grasped(const cau_tool *tool, int32_t vertex)
 	CAU_ASSERT(tool->grasp_count >= 0 && tool->grasp_count <= CAU_MAX_GRASPED,
 	           "%d vertices grasped", tool->grasp_count);
 	for (int32_t k = 0; k < tool->grasp_count; k++)
-		if (tool->grasp[k].vertex == vertex)
+		if (tool->grasp[k].face < 0 && tool->grasp[k].vertex[0] == vertex)
 			return true;
 	return false;
 }
@@ -124,9 +124,7 @@ static void add_attachments(cau_session *session, int32_t index)
 {
 	cau_tool *tool = &session->tool[index];
 	for (int32_t k = 0; k < tool->grasp_count; k++) {
-		cau_contact_row row = cau_contact_at_vertex(tool->grasp[k].vertex, index);
-		CAU_ASSERT_INDEX(row.vertex[0], session->tissue.vertex_count);
-		row.attached = true;
+		cau_contact_row row = cau_session_row_of_hold(session, &tool->grasp[k], index);
 		cau_vec3_to(cau_pose_to_world(&tool->anchor, cau_vec3_of(tool->grasp[k].local)),
 		            row.anchor);
 		cau_contact_add(&session->contact, &row);
@@ -203,6 +201,7 @@ void cau_session_find_contacts(cau_session *session)
 	cau_contact_clear(&session->contact);
 	session->contact.left_out_count = 0;
 	session->contact.begun_count = -1;
+	session->contact.torn = session->dissection.tears.elements_torn > 0;
 	session->contact.let_through = false;
 	session->solver.drag_count = 0;
 	if (!session->tool_count)
@@ -285,18 +284,16 @@ void cau_session_let_through(cau_session *session)
 static void slip(cau_tool *tool, const cau_contact_row *row, const double *position)
 {
 	const cau_tool_def *def = &tool->state.definition;
-	for (int32_t k = 0; k < tool->grasp_count; k++) {
-		cau_grasp *grasp = &tool->grasp[k];
-		if (grasp->vertex != row->vertex[0])
-			continue;
-		cau_vec3 anchor = cau_add_scaled(cau_contact_point(row, position),
-		                                 1 / def->grasp_stiffness_n_m, cau_vec3_of(row->reaction));
-		cau_vec3 local = cau_pose_to_local(&tool->state.pose, anchor);
-		cau_vec3_to(local, grasp->local);
-		if (cau_length(cau_sub(local, cau_vec3_of(grasp->start))) > def->tip_length_m)
-			*grasp = tool->grasp[--tool->grasp_count];
+	cau_grasp *grasp = cau_session_hold_of_row(tool, row);
+	if (!grasp)
 		return;
-	}
+	cau_vec3 anchor = cau_add_scaled(cau_contact_point(row, position), 1 / def->grasp_stiffness_n_m,
+	                                 cau_vec3_of(row->reaction));
+	cau_vec3 local = cau_pose_to_local(&tool->state.pose, anchor);
+	cau_vec3_to(local, grasp->local);
+	tool->state.slipping = true;
+	if (cau_length(cau_sub(local, cau_vec3_of(grasp->start))) > def->tip_length_m)
+		*grasp = tool->grasp[--tool->grasp_count];
 }
 
 static void add_force(cau_tool_state *state, cau_vec3 force, cau_vec3 at)
@@ -324,6 +321,7 @@ void cau_session_read_forces(cau_session *session)
 		memset(state->raw_force_n, 0, sizeof state->raw_force_n);
 		memset(state->raw_torque_nm, 0, sizeof state->raw_torque_nm);
 		state->contact_vertices = 0;
+		state->slipping = false;
 	}
 	for (int32_t k = 0; k < session->contact.row_count; k++) {
 		const cau_contact_row *row = &session->contact.row[k];
@@ -361,11 +359,12 @@ cau_status cau_session_grasp(cau_session *session, cau_tool *tool, cau_error *er
 		if (session->fixed[v] || tool->grasp_count == CAU_MAX_GRASPED ||
 		    !cau_tool_between_jaws(def, tool->state.jaw, local, &across))
 			continue;
-		cau_grasp grasp = {.vertex = v};
+		cau_grasp grasp = cau_session_hold_vertex(v);
 		cau_vec3_to(local, grasp.local);
 		cau_vec3_to(local, grasp.start);
 		tool->grasp[tool->grasp_count++] = grasp;
 	}
+	cau_session_grasp_faces(session, tool);
 	tool->jaw_target = 0;
 	return CAU_OK;
 }
@@ -382,7 +381,7 @@ void cau_session_drop_frozen_grasps(cau_session *session)
 	for (int32_t i = 0; i < session->tool_count; i++) {
 		cau_tool *tool = &session->tool[i];
 		for (int32_t k = tool->grasp_count - 1; k >= 0; k--)
-			if (session->fixed[tool->grasp[k].vertex])
+			if (!cau_session_hold_is_left(session, &tool->grasp[k]))
 				tool->grasp[k] = tool->grasp[--tool->grasp_count];
 		tool->state.grasped_vertices = tool->grasp_count;
 	}

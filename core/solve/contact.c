@@ -123,7 +123,7 @@ void cau_contact_remember(cau_contact_set *set)
 	if (set->let_through)
 		return;
 	for (int32_t i = 0; i < set->row_count; i++)
-		if (set->row[i].corner_count == 3)
+		if (set->row[i].corner_count == 3 && !set->row[i].attached)
 			keep_pushed(set, &set->row[i]);
 	int32_t pushed_count = set->memory_count;
 	for (int32_t i = 0; i < set->touched_count; i++) {
@@ -176,7 +176,7 @@ bool cau_contact_add(cau_contact_set *set, const cau_contact_row *row)
 	memcpy(set->corner + set->corner_count, added, (size_t)count * sizeof *added);
 	set->corner_count += count;
 	set->row[set->row_count++] = *row;
-	set->face_count += row->corner_count == 3;
+	set->face_count += row->corner_count == 3 && !row->attached;
 	return true;
 }
 
@@ -385,7 +385,7 @@ bool cau_contact_is_deep(cau_contact_set *set, const cau_step_solver *solver, do
 	bool any = false;
 	for (int32_t i = 0; i < set->row_count; i++) {
 		cau_contact_row row = set->row[i]; // it stays as its reaction was found
-		if (row.corner_count == 1)
+		if (row.corner_count == 1 || row.attached)
 			continue;
 		measure_gap(set, solver, &row);
 		if (row.gap >= -most_m)

@@ -83,7 +83,10 @@ struct cau_contact_set {
 	cau_contact_tool tool[CAU_MAX_TOOLS];
 	int32_t row_count;
 	cau_contact_row row[CAU_MAX_CONTACTS];
-	int32_t face_count;  // rows of faces
+	int32_t face_count; // rows of faces
+	// Tissue has been torn: what hangs in jaws may hang by little, and columns that lag behind by
+	// what went would throw it about. So all are fresh.
+	bool torn;
 	bool let_through;    // tools passed what could not be held: no side is remembered
 	int32_t begun_count; // rows that the step began with, and their reactions before more came
 	double begun_reaction[CAU_MAX_CONTACTS][3];

@@ -130,19 +130,37 @@ void cau_contact_find_answer(cau_contact_set *set, int32_t row)
 	}
 }
 
+static bool holds_anything(const cau_contact_set *set)
+{
+	for (int32_t i = 0; i < set->row_count; i++)
+		if (set->row[i].attached)
+			return true;
+	return false;
+}
+
+// Those that lag furthest or, where it matters, all that lag, three at a time.
+static void renew(cau_contact_set *set, cau_step_solver *solver)
+{
+	int32_t place[CAU_COLUMNS_RENEWED];
+	int32_t rounds = set->torn && holds_anything(set) ? CAU_MAX_COLUMNS / CAU_COLUMNS_RENEWED : 1;
+	for (int32_t round = 0; round < rounds; round++) {
+		int32_t lagging = find_lagging(set, solver->factor_version, place);
+		if (!lagging)
+			return;
+		make_columns(set, solver, place, lagging);
+	}
+}
+
 void cau_contact_prepare(cau_contact_set *set, cau_step_solver *solver)
 {
 	CAU_ASSERT(set->row_count > 0 && set->row_count <= CAU_MAX_CONTACTS, "%d rows", set->row_count);
-	int32_t place[3];
 	if (set->epoch != solver->factor_epoch)
 		set->column_count = 0;
 	set->epoch = solver->factor_epoch;
 	if (set->column_count + count_missing(set) > CAU_MAX_COLUMNS)
 		drop_unused(set);
 	make_missing(set, solver);
-	int32_t lagging = find_lagging(set, solver->factor_version, place);
-	if (lagging)
-		make_columns(set, solver, place, lagging);
+	renew(set, solver);
 	for (int32_t i = 0; i < set->row_count; i++) {
 		cau_contact_row *row = &set->row[i];
 		for (int32_t k = 0; k < row->corner_count; k++)

@@ -10,13 +10,16 @@ static const cau_tool_def *tool_of(const cau_contact_set *set, const cau_contact
 	return set->tool[row->tool].def;
 }
 
+// W_i S W_j^T: how far the point of row i goes by a force on that of row j, m/N.
 static double between(const cau_contact_set *set, int32_t i, int32_t j)
 {
-	CAU_ASSERT_INDEX(set->row[i].column[0], CAU_MAX_COLUMNS);
-	CAU_ASSERT_INDEX(set->row[j].column[0], CAU_MAX_COLUMNS);
-	double tissue = set->inverse[set->row[i].column[0] * CAU_MAX_COLUMNS + set->row[j].column[0]];
-	return set->row[i].tool == set->row[j].tool ? tissue + set->tool[set->row[i].tool].compliance
-	                                            : tissue;
+	const cau_contact_row *row = &set->row[i];
+	const double *answer = set->answer + (size_t)j * CAU_MAX_COLUMNS;
+	double sum = row->tool == set->row[j].tool ? set->tool[row->tool].compliance : 0;
+	for (int32_t k = 0; k < row->corner_count; k++)
+		if (row->column[k] >= 0)
+			sum += row->weight[k] * answer[row->column[k]];
+	return sum;
 }
 
 // Lower triangle, by rows, over hold_row. Returns false if it is not positive definite.
@@ -75,12 +78,19 @@ static void changes(const cau_contact_set *set, const cau_step_solver *solver,
 		int32_t at = set->hold_row[i];
 		const cau_contact_row *row = &set->row[at];
 		CAU_ASSERT(row->attached, "row %d is solved as held and is not", at);
-		double compliance = 1 / tool_of(set, row)->grasp_stiffness_n_m;
+		double compliance = 1 / tool_of(set, row)->grasp_stiffness_n_m, step[3] = {0};
+		double point[3] = {0};
 		const double *offset = set->tool[row->tool].offset;
+		for (int32_t k = 0; k < row->corner_count; k++)
+			for (int c = 0; c < 3; c++) {
+				size_t at_corner = 3 * (size_t)row->vertex[k] + (size_t)c;
+				point[c] += row->weight[k] * solver->position[at_corner];
+				if (row->column[k] >= 0)
+					step[c] += row->weight[k] * set->step[3 * row->column[k] + c];
+			}
 		for (int c = 0; c < 3; c++)
-			dr[c][i] = row->anchor[c] + offset[c] -
-			           solver->position[3 * (size_t)row->vertex[0] + (size_t)c] -
-			           set->step[3 * row->column[0] + c] - compliance * row->reaction[c];
+			dr[c][i] =
+				row->anchor[c] + offset[c] - point[c] - step[c] - compliance * row->reaction[c];
 	}
 	for (int c = 0; c < 3; c++)
 		substitute(set, dr[c]);

@@ -11,12 +11,13 @@ enum {
 	TOOL_ENERGIZED = 1 << 0,
 	TOOL_GRASPING = 1 << 1,
 	TOOL_FROZEN = 1 << 2,
+	TOOL_SLIPPING = 1 << 3,
 	STATISTICS_FLOATS = 2 + CAU_STREAM_STAGES + 2,
 	STATISTICS_COUNTS = 10,
-	STATISTICS_WORDS = STATISTICS_RECORD_BYTES / 4, // floats, counts, and four more
+	STATISTICS_WORDS = STATISTICS_RECORD_BYTES / 4, // floats, counts, and five more
 };
 _Static_assert(sizeof(cau_stream_statistics) == STATISTICS_RECORD_BYTES &&
-                   STATISTICS_FLOATS + STATISTICS_COUNTS + 4 == STATISTICS_WORDS,
+                   STATISTICS_FLOATS + STATISTICS_COUNTS + 5 == STATISTICS_WORDS,
                "the record lists every member of cau_stream_statistics");
 
 size_t cau_tool_names_write(uint8_t *out, const cau_stream_tool *tools, int32_t count)
@@ -78,8 +79,9 @@ static void store_tool(uint8_t *at, const cau_stream_tool *tool)
 	at = store_vector(at, &tool->tip_temperature_c, 1);
 	at = store_vector(at, &tool->energy_j, 1);
 	store_u32(at, tool->driver);
-	at[4] = (uint8_t)((tool->energized ? TOOL_ENERGIZED : 0) |
-	                  (tool->grasping ? TOOL_GRASPING : 0) | (tool->frozen ? TOOL_FROZEN : 0));
+	at[4] =
+		(uint8_t)((tool->energized ? TOOL_ENERGIZED : 0) | (tool->grasping ? TOOL_GRASPING : 0) |
+	              (tool->frozen ? TOOL_FROZEN : 0) | (tool->slipping ? TOOL_SLIPPING : 0));
 	at[5] = tool->energy_off;
 	store_u16(at + 6, tool->grasped_vertices);
 	store_u16(at + 8, tool->contact_vertices);
@@ -161,6 +163,7 @@ static bool load_tool(const uint8_t *at, cau_stream_tool *tool)
 	tool->energized = at[4] & TOOL_ENERGIZED;
 	tool->grasping = at[4] & TOOL_GRASPING;
 	tool->frozen = at[4] & TOOL_FROZEN;
+	tool->slipping = at[4] & TOOL_SLIPPING;
 	tool->energy_off = at[5];
 	tool->grasped_vertices = load_u16(at + 6);
 	tool->contact_vertices = load_u16(at + 8);
@@ -203,7 +206,7 @@ static int is_float_word(size_t word)
 {
 	CAU_ASSERT_INDEX(word, STATISTICS_WORDS);
 	size_t beyond =
-		STATISTICS_FLOATS + STATISTICS_COUNTS; // energy_gain_j, resting, error and a count
+		STATISTICS_FLOATS + STATISTICS_COUNTS; // energy_gain_j, resting, error and two counts
 	return word < STATISTICS_FLOATS || word == beyond || word == beyond + 2;
 }
 

@@ -82,6 +82,7 @@ static void arrive(cau_hosted *h, int64_t branch, cau_order *order)
 	cau_frame frame;
 	cau_session_frame(h->core, &frame);
 	h->elements_removed = frame.statistics.elements_removed;
+	h->elements_torn = frame.statistics.elements_torn;
 	h->branch = branch;
 	h->stage[0] = 0;
 	cau_events_load(h);

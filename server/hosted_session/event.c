@@ -6,11 +6,6 @@
 
 #include "hosted_session/internal.h"
 
-static cau_wire_timeline_event *newest(cau_hosted *h)
-{
-	return h->event_count ? &h->events[(h->event_count - 1) % EVENT_COUNT] : NULL;
-}
-
 static void tell(cau_hosted *h, const cau_wire_timeline_event *what)
 {
 	cau_wire_event_notice params = {.event = *what};
@@ -26,30 +21,52 @@ static void publish(cau_hosted *h, const cau_wire_timeline_event *event)
 	tell(h, event);
 }
 
-// ---- cuts ---------------------------------------------------------------------------------------
-// Those of neighbouring ticks are one event, which is told and stored once it is whole.
+// ---- cuts and tears -----------------------------------------------------------------------------
+// Those of neighbouring ticks are one event, which is told and stored once it is whole. One of each
+// may grow at a time.
+static cau_wire_timeline_event *event_at(cau_hosted *h, uint64_t open)
+{
+	return &h->events[(open - 1) % EVENT_COUNT];
+}
+
+static uint64_t *open_of(cau_hosted *h, int kind)
+{
+	return kind == CAU_EVENT_CUT ? &h->cut_open : kind == CAU_EVENT_TEAR ? &h->tear_open : NULL;
+}
+
+static void end_open(cau_hosted *h, uint64_t *open)
+{
+	uint64_t ended = *open;
+	*open = 0;
+	if (ended)
+		publish(h, event_at(h, ended));
+}
+
 void cau_event_end_cut(cau_hosted *h)
 {
-	if (!h->cut_open)
-		return;
-	h->cut_open = false;
-	publish(h, newest(h));
+	bool cut_first = h->cut_open < h->tear_open;
+	end_open(h, cut_first ? &h->cut_open : &h->tear_open);
+	end_open(h, cut_first ? &h->tear_open : &h->cut_open);
 }
 
 void cau_event_settle(cau_hosted *h)
 {
-	if (h->cut_open && h->tick > (uint64_t)newest(h)->tick + CUT_MERGE_TICKS)
-		cau_event_end_cut(h);
+	uint64_t *const open[] = {&h->cut_open, &h->tear_open};
+	for (int i = 0; i < 2; i++)
+		if (*open[i] && h->tick > (uint64_t)event_at(h, *open[i])->tick + CUT_MERGE_TICKS)
+			end_open(h, open[i]);
 }
 
 void cau_event_add(cau_hosted *h, int kind, const char *tool, const char *client, int64_t count,
                    const char *detail)
 {
-	if (kind == CAU_EVENT_CUT && h->cut_open) {
-		newest(h)->count += count;
+	uint64_t *open = open_of(h, kind);
+	if (open && *open) {
+		event_at(h, *open)->count += count;
 		return;
 	}
-	cau_event_end_cut(h);
+	if (!open)
+		cau_event_end_cut(h);
 	cau_wire_timeline_event *event = &h->events[h->event_count++ % EVENT_COUNT];
 	*event = (cau_wire_timeline_event){.tick = (int64_t)h->tick,
 	                                   .time_s = (double)h->tick * h->info.step_s,
@@ -65,8 +82,8 @@ void cau_event_add(cau_hosted *h, int kind, const char *tool, const char *client
 		snprintf(event->client, sizeof event->client, "%s", client);
 	if (event->has_detail)
 		snprintf(event->detail, sizeof event->detail, "%s", detail);
-	if (kind == CAU_EVENT_CUT)
-		h->cut_open = true;
+	if (open)
+		*open = h->event_count;
 	else
 		publish(h, event);
 }
@@ -105,7 +122,7 @@ void cau_events_load(cau_hosted *h)
 {
 	cau_error error = {0};
 	cau_event_page taken = {h->events, 0, EVENT_COUNT};
-	h->cut_open = false;
+	h->cut_open = h->tear_open = 0;
 	if (cau_events_read(h, h->branch, 0, h->tick, &taken, &error))
 		cau_log(CAU_LOG_ERROR, h->id, "events_not_read", "reason=\"%s\"", error.reason);
 	h->event_count = (uint64_t)taken.count;

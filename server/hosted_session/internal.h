@@ -18,7 +18,7 @@
 enum {
 	EVENT_COUNT = 512, // of the timeline kept in memory
 	SNAPSHOT_COUNT = 64,
-	CUT_MERGE_TICKS = 30, // cuts of neighbouring ticks are one event
+	CUT_MERGE_TICKS = 30, // cuts of neighbouring ticks are one event, and so are tears
 	WAITING_COUNT = 32,   // commands between two frames whose wait is measured
 };
 
@@ -119,14 +119,15 @@ struct cau_hosted {
 	double piece_s;        // processor time of the longest step lately, for the pool
 	double stepped_s;      // of the steps in this slice
 	cau_shelf *snapshot_shelf, *copy_shelf; // memory for checkpoints, and for what files show
-	int32_t elements_removed;
+	int32_t elements_removed, elements_torn;
 	uint32_t refused_commands;
 	cau_named_snapshot snapshots[SNAPSHOT_COUNT];
 	int32_t snapshot_count;
 	cau_wire_timeline_event events[EVENT_COUNT]; // ring, of the present line
 	uint64_t event_count;
 	bool events_older; // the store has some from before
-	bool cut_open;     // the newest event is a cut that may grow; nobody knows of it yet
+	uint64_t cut_open,
+		tear_open; // the event, and 1, that may grow; nobody knows of it yet; 0: none
 
 	// What is decided. Its lock is held for moments, never across the core, and inside no other
 	// lock of the session; what clients are told of a decision is told under it, in its order.

@@ -16,10 +16,26 @@ enum {
 }; // an untouched session has a checkpoint every 64 checkpoint_s at least
 
 // ---- time
+// Who pulls: the first whose jaws hold something.
+static void note_tear(cau_hosted *h, const cau_frame *frame, int32_t torn)
+{
+	const cau_tool_state *puller = NULL;
+	for (int32_t i = frame->tool_count - 1; i >= 0; i--)
+		if (frame->tools[i].grasped_vertices)
+			puller = &frame->tools[i];
+	h->touched = true;
+	cau_event_add(h, CAU_EVENT_TEAR, puller ? puller->name : NULL, NULL, torn, NULL);
+}
+
 static void note_cut(cau_hosted *h, const cau_frame *frame)
 {
-	int32_t removed = frame->statistics.elements_removed - h->elements_removed;
-	h->elements_removed = frame->statistics.elements_removed;
+	const cau_statistics *now = &frame->statistics;
+	int32_t torn = now->elements_torn - h->elements_torn;
+	int32_t removed = now->elements_removed - h->elements_removed - torn;
+	h->elements_removed = now->elements_removed;
+	h->elements_torn = now->elements_torn;
+	if (torn > 0)
+		note_tear(h, frame, torn);
 	if (removed <= 0)
 		return;
 	cau_drive drives[CAU_MAX_TOOLS];
@@ -216,6 +232,7 @@ static void go_on_replaying(cau_hosted *h)
 	cau_frame frame;
 	cau_session_frame(h->core, &frame);
 	h->elements_removed = frame.statistics.elements_removed;
+	h->elements_torn = frame.statistics.elements_torn;
 	h->replaying = false;
 	cau_hosted_started(h);
 	cau_replay_finish(&h->replay);

@@ -32,6 +32,7 @@ static void describe_tool(const cau_tool_state *from, cau_stream_tool *to)
 		.sequence = from->sequence,
 		.energized = from->energized,
 		.grasping = from->grasping,
+		.slipping = from->slipping,
 		.grasped_vertices = (uint16_t)fmin(from->grasped_vertices, UINT16_MAX),
 		.contact_vertices = (uint16_t)fmin(from->contact_vertices, UINT16_MAX),
 		.touched_layers = (uint16_t)from->touched_layers,
@@ -59,6 +60,7 @@ static void describe_step(const cau_statistics *from, cau_stream_statistics *to)
 		.resting = from->resting,
 		.error = (float)from->error,
 		.contacts_left_out = (uint32_t)from->contacts_left_out,
+		.elements_torn = (uint32_t)from->elements_torn,
 	};
 	for (int i = 0; i < CAU_STREAM_STAGES; i++)
 		to->stage_s[i] = (float)from->seconds[i];

@@ -19,6 +19,7 @@
 	X("inverted", PRId32, s->inverted)                                                             \
 	X("edges_parted", PRId32, s->edges_parted)                                                     \
 	X("elements_removed", PRId32, s->elements_removed)                                             \
+	X("elements_torn", PRId32, s->elements_torn)                                                   \
 	X("pending_downdates", PRId32, s->pending_downdates)                                           \
 	X("deferred_max_s", ".6g", s->deferred_max_s)                                                  \
 	X("refactorisations", PRId32, s->refactorisations)                                             \

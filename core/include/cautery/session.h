@@ -171,7 +171,8 @@ typedef struct cau_tool_state {
 	double jaw;
 	bool energized;
 	bool grasping;            // jaws commanded closed on tissue
-	int32_t grasped_vertices; // 0 while grasping: the jaws are empty
+	bool slipping;            // some of what they hold slid in the last step
+	int32_t grasped_vertices; // points held, of faces too; 0 while grasping: the jaws are empty
 	int32_t contact_vertices;
 	int32_t touched_layers; // bit per layer
 	double force_n[3];      // of the tissue on the tool, filtered and clamped

@@ -53,6 +53,7 @@
 #define CAU_EVENT_TABLE(X)                                                                         \
 	X(CREATED, "created")                                                                          \
 	X(CUT, "cut")                                                                                  \
+	X(TEAR, "tear")                                                                                \
 	X(ENERGY_ON, "energy_on")                                                                      \
 	X(ENERGY_OFF, "energy_off")                                                                    \
 	X(WATCHDOG, "watchdog")                                                                        \

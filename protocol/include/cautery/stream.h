@@ -86,6 +86,7 @@ typedef struct cau_stream_tool {
 	uint32_t driver;   // the driving client's number; 0: nobody
 	bool energized;
 	bool grasping;
+	bool slipping;             // some of what its jaws hold slid in the last step
 	bool frozen;               // its watchdog fired: it stands still until a new command
 	uint8_t energy_off;        // CAU_ENERGY_OFF_*; meaningless while energized
 	uint16_t grasped_vertices; // saturates
@@ -114,6 +115,7 @@ typedef struct cau_stream_statistics {
 	uint32_t resting;           // 1: the tissue is at rest; 0 where the sender does not tell it
 	float error;                // of the last step, estimated; 0 where the sender does not tell it
 	uint32_t contacts_left_out; // 0 where the sender does not tell it
+	uint32_t elements_torn;     // 0 where the sender does not tell it
 } cau_stream_statistics;
 
 // What the server knows at a tick; everything is borrowed for the call. Arrays whose channel the

@@ -19,11 +19,23 @@ static double farthest(const cau_session *session, int32_t *inverted)
 	return stage_farthest(&frame, info.rest_position, info.vertex_count);
 }
 
+static const double ways[][3] = {{0, 0, 0.1},  {0.1, 0, 0},  {-0.1, 0, 0},      {0, 0.1, 0},
+                                 {0, -0.1, 0}, {0, 0, -0.1}, {0.06, 0.06, 0.06}};
+
+// Where nothing tears, all that was pulled is there to recover.
+static void bear_all(cau_scene_def *scene)
+{
+	for (int32_t i = 0; i < scene->layer_count; i++) {
+		cau_layer_def *layer = &scene->layers[i];
+		layer->sheet[0].heat.tear_energy_j_m2 = layer->fat[0].heat.tear_energy_j_m2 =
+			layer->link.heat.tear_energy_j_m2 = 0;
+	}
+}
+
 static void pull_every_way(const char *name, double top_m, double slip_force_n)
 {
-	static const double ways[][3] = {{0, 0, 0.1},  {0.1, 0, 0},  {-0.1, 0, 0},      {0, 0.1, 0},
-	                                 {0, -0.1, 0}, {0, 0, -0.1}, {0.06, 0.06, 0.06}};
 	cau_scene_def *scene = stage_scene_light(name);
+	bear_all(scene);
 	cau_tool_def *jaws =
 		stage_add_tool(scene, "jaws", CAU_TOOL_GRASPER, 0.01, 0.005, top_m - 0.004);
 	jaws->max_speed_m_s = 5; // the fastest that any scene may have

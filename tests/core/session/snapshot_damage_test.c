@@ -122,12 +122,16 @@ static void copy_piece(unsigned char **to, const unsigned char **from, size_t ke
 }
 
 // The payload as versions before 6 had it: without what each tool's pose hangs on and the heat
-// fields around its innermost one, and without the tears that it ends with. Returns its length.
+// fields around its innermost one, and without tears and holds on faces, which it ends with.
+// Returns its length.
 static size_t payload_of_version_5(const stage_bytes *shot, const cau_session *session,
                                    unsigned char *payload)
 {
-	const size_t tears =
-		(size_t)session->scene->layer_count * (2 * CAU_MAX_MATERIALS + 1) * sizeof(double);
+	const size_t grasp = 2 * sizeof(int32_t) + 6 * sizeof(double);
+	const size_t on_face = 4 * sizeof(int32_t) + 3 * sizeof(double);
+	const size_t since_6 =
+		(size_t)session->scene->layer_count * (2 * CAU_MAX_MATERIALS + 1) * sizeof(double) +
+		(size_t)session->tool_count * CAU_MAX_GRASPED * on_face;
 	const size_t state = offsetof(cau_tool_state, asked_pose);
 	snapshot_header header;
 	memcpy(&header, shot->bytes, sizeof header);
@@ -142,11 +146,11 @@ static size_t payload_of_version_5(const stage_bytes *shot, const cau_session *s
 		           state + sizeof tool->target + sizeof tool->jaw_target + sizeof tool->pose_before,
 		           sizeof tool->state - state + sizeof tool->anchor + sizeof tool->pace);
 		copy_piece(&to, &from,
-		           sizeof tool->grasp_count + sizeof tool->grasp +
+		           sizeof tool->grasp_count + CAU_MAX_GRASPED * grasp +
 		               sizeof tool->grid.field[0].origin + field,
 		           (CAU_HEAT_FIELDS - 1) * field);
 	}
-	copy_piece(&to, &from, (size_t)(end - from) - tears, tears);
+	copy_piece(&to, &from, (size_t)(end - from) - since_6, since_6);
 	return (size_t)(to - payload);
 }
 

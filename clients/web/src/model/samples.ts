@@ -17,6 +17,7 @@ const COLUMNS: readonly (readonly [string, (sample: Sample) => number | null])[]
   ['iterations', (s) => s.statistics?.iterations ?? null],
   ['edges_parted', (s) => s.statistics?.edgesParted ?? null],
   ['elements_removed', (s) => s.statistics?.elementsRemoved ?? null],
+  ['elements_torn', (s) => s.statistics?.elementsTorn ?? null],
   ['pending_downdates', (s) => s.statistics?.pendingDowndates ?? null],
   ['contacts', (s) => s.statistics?.contacts ?? null],
   ['contacts_left_out', (s) => s.statistics?.contactsLeftOut ?? null],

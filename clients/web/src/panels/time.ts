@@ -9,6 +9,7 @@ const SPEEDS = [0.1, 0.25, 0.5, 1, 2];
 const REFRESH_MS = 2000;
 const EVENT_WORDS: Partial<Record<TimelineEvent['kind'], string>> = {
   cut: 'cut',
+  tear: 'tear',
   energy_on: 'energy on',
   energy_off: 'energy off',
   watchdog: 'watchdog',

@@ -28,6 +28,7 @@ export interface ToolState extends ToolName {
   grasping: boolean;
   frozen: boolean;
   energyOff: EnergyOff;
+  slipping: boolean; // some of what its jaws hold slid in the last step; false from servers that do not tell it
   graspedVertices: number;
   contactVertices: number;
   touchedLayers: number;
@@ -55,11 +56,12 @@ export interface Statistics {
   resting: boolean; // steps change nothing until something wakes the tissue; false from servers that do not tell it
   error: number; // of the last step, estimated, relative to its own motion; 0 from servers that do not tell it
   contactsLeftOut: number; // vertices that the last step's contact had no place for; 0 from servers that do not tell it
+  elementsTorn: number; // of those removed, by being stretched beyond what they bear; 0 from servers that do not tell it
 }
 
 const TOOL_BYTES = 84;
 const ASKED_BYTES = 28;
-const STATISTICS_BYTES = 88; // without what servers have added since: energyGainJ, resting, error, contactsLeftOut
+const STATISTICS_BYTES = 88; // without what servers have added since: energyGainJ, resting, error, contactsLeftOut, elementsTorn
 const TOOLS_MAX = 8;
 
 export function readToolNames(payload: Uint8Array): ToolName[] {
@@ -108,6 +110,7 @@ function readTool(view: DataView, offset: number, name: ToolName): ToolState {
     energized: (flags & 1) !== 0,
     grasping: (flags & 2) !== 0,
     frozen: (flags & 4) !== 0,
+    slipping: (flags & 8) !== 0,
     energyOff: ENERGY_OFF_REASONS[view.getUint8(offset + 77)] ?? 'never_enabled',
     graspedVertices: view.getUint16(offset + 78, true),
     contactVertices: view.getUint16(offset + 80, true),
@@ -153,5 +156,6 @@ export function readStatistics(payload: Uint8Array): Statistics {
     resting: payload.byteLength >= STATISTICS_BYTES + 8 && count(11) !== 0,
     error: payload.byteLength >= STATISTICS_BYTES + 12 ? real(24) : 0,
     contactsLeftOut: payload.byteLength >= STATISTICS_BYTES + 16 ? count(13) : 0,
+    elementsTorn: payload.byteLength >= STATISTICS_BYTES + 20 ? count(14) : 0,
   };
 }
