@@ -168,17 +168,21 @@ static bool is_missed(reach *r, cau_candidate *c)
 }
 
 // Fills in what the row knows of its corners. Where none of them can move, the tool gives way.
-static void describe_corners(const reach *r, cau_contact_row *row)
+// False: some can, and a face that hangs on those that cannot may have nowhere to go.
+static bool describe_corners(const reach *r, cau_contact_row *row)
 {
 	const cau_session *session = r->session;
+	int free_count = 0;
 	for (int32_t k = 0; k < 3; k++) {
 		int32_t v = row->vertex[k];
 		CAU_ASSERT_INDEX(v, session->tissue.vertex_count);
 		row->free[k] = !session->fixed[v];
+		free_count += row->free[k];
 		cau_vec3 local = cau_pose_to_local(&r->tool->pose_before,
 		                                   cau_vec3_of(session->position_start + 3 * (size_t)v));
 		cau_vec3_to(cau_pose_to_world(&r->tool->anchor, local), row->no_slip[k]);
 	}
+	return free_count == 0 || free_count == 3;
 }
 
 // Square of how far (m) apart two points of a face are.
@@ -240,8 +244,7 @@ static cau_candidate candidate_of(const reach *r, int32_t face)
 static void offer(reach *r, int32_t face)
 {
 	cau_candidate c = candidate_of(r, face);
-	describe_corners(r, &c.row);
-	if (!is_missed(r, &c) || has_row(r, &c.row))
+	if (!describe_corners(r, &c.row) || !is_missed(r, &c) || has_row(r, &c.row))
 		return;
 	r->kept_missed = r->kept_missed || c.kept;
 	if (r->count < CANDIDATES)
@@ -353,8 +356,8 @@ void cau_session_reach_again(cau_session *session, int32_t index, cau_tool_part 
 		if (kept->tool != index || !kept->pushed || !is_drawn(session, kept->face))
 			continue;
 		cau_candidate c = candidate_of(&r, kept->face);
-		describe_corners(&r, &c.row);
-		take_up(&r, kept, &c.row);
+		if (describe_corners(&r, &c.row))
+			take_up(&r, kept, &c.row);
 	}
 }
 
