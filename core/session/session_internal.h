@@ -84,6 +84,7 @@ struct cau_session {
 	cau_shrink shrink;
 	cau_near near;
 	cau_contact_set contact;
+	cau_collide collide;             // meet.c: where solver.collide points, if anywhere
 	struct cau_candidate *candidate; // reach.c: scratch
 	double *position_unheld;         // m, (n x 3): touch.c, as a step was before faces were missed
 	cau_frame_state frame;
@@ -167,6 +168,10 @@ void cau_session_read_forces(cau_session *session);
 cau_status cau_session_grasp(cau_session *session, cau_tool *tool, cau_error *error);
 void cau_session_release(cau_tool *tool);
 void cau_session_drop_frozen_grasps(cau_session *session);
+// meet.c: tissue against tissue: its arrays, if the scene wants it; what touches as the tick
+// begins, and the first guess as far as that lets it go.
+cau_status cau_session_make_collide(cau_session *session, cau_error *error);
+void cau_session_begin_collide(cau_session *session);
 // burn.c: heat, exposure, parting.
 void cau_session_burn(cau_session *session);
 // relax.c: built-in tension brought to its equilibrium.

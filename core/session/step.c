@@ -162,6 +162,7 @@ cau_status cau_session_step(cau_session *session, cau_error *error)
 	cau_session_stage_end(session, CAU_STAGE_COMMANDS);
 	cau_session_predict(session);       // eq. 4: motion.c
 	cau_session_lead_driven(session);   // drive.c
+	cau_session_begin_collide(session); // meet.c
 	cau_session_find_contacts(session); // touch.c
 	cau_session_stage_end(session, CAU_STAGE_PREDICT);
 	if (!status)
