@@ -157,6 +157,8 @@ static cau_status make_remainder(cau_session *session, cau_error *error)
 	if (!status && !session->faulted)
 		status = cau_session_relax(session, error);
 	if (!status)
+		status = cau_session_make_collide(session, error);
+	if (!status)
 		status = cau_session_make_faces(session, error);
 	if (!status)
 		status =
@@ -183,6 +185,10 @@ static uint64_t hash_definition(const cau_session *session)
 	hash = cau_hash_word(hash, scene->seed);
 	if (scene->parting != CAU_PARTING_EDGES) // left out of older snapshots
 		hash = cau_hash_word(hash, (uint64_t)scene->parting);
+	if (scene->contact_thickness_m > 0) { // likewise
+		const double contact[] = {scene->contact_thickness_m, scene->contact_friction};
+		hash = cau_hash_bytes(hash, contact, sizeof contact);
+	}
 	hash = hash_array(hash, t->rest, t->vertex_count, 3 * sizeof(double));
 	hash = hash_array(hash, t->mass, t->vertex_count, sizeof(double));
 	hash = hash_array(hash, t->triangle, t->triangle_count, 3 * sizeof(int32_t));

@@ -7,9 +7,9 @@
 // tools, drag in char, and supports that are led. What a tick changes after its solve (elements
 // parted or on their way to shrink) changes the elastic energy without force: the shares of the
 // local step that have such elements are evaluated again where they are, for the next tick to start
-// from. Plastic flow counts as loss. Laws without an energy have none to compare: nothing is told.
-// Where the solver spared itself the look at where a step ended, the elastic energy there is what
-// eq. 4 comes to without its inertia.
+// from. Plastic flow and friction of tissue on tissue count as loss. Laws without an energy have
+// none to compare: nothing is told. Where the solver spared itself the look at where a step ended,
+// the elastic energy there is what eq. 4 comes to without its inertia.
 #include <string.h>
 
 #include "cautery/assert.h"
@@ -218,6 +218,8 @@ void cau_session_end_energy(cau_session *session)
 		return;
 	cau_pool_run(session->pool, session->solver.chunk_count, vertex_part, session);
 	double gain_j = -energy->elastic_j - tool_work(session), inertia_j = 0;
+	if (session->solver.collide)
+		gain_j += session->collide.energy_j - session->collide.start_energy_j;
 	for (int32_t k = 0; k < session->solver.chunk_count; k++) {
 		const double *sum = energy->sum_j + SUMS * (size_t)k;
 		gain_j += sum[2] - sum[1] - sum[0];

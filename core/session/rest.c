@@ -13,7 +13,8 @@
 //   turn, but not for so long.
 // - every tool stood still and dark, with its grid at ambient (0.01 degC): heat goes on to part
 //   edges, and viewers see it spread.
-// - nothing was cut, nothing shrank, no cut waited for the factor, no factor was in the making.
+// - nothing was cut, nothing shrank, no cut waited for the factor, no factor was in the making,
+// - no step was cut short lest tissue cross tissue.
 //
 // It wakes at a command that is due, and where supports are led; but not at a move that leads a
 // tool where it is already, which drivers send at the rate of their screens.
@@ -80,7 +81,8 @@ static bool is_left_alone(const cau_session *session)
 {
 	const cau_matrix_update *update = &session->update;
 	if (session->dissection.removed_count || session->shrink.active_count ||
-	    update->waiting_count || update->making)
+	    update->waiting_count || update->making ||
+	    (session->solver.collide && session->collide.held_back_count))
 		return false;
 	for (int32_t i = 0; i < session->tool_count; i++)
 		if (!is_still(&session->tool[i]))

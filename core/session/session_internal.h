@@ -90,6 +90,7 @@ struct cau_session {
 	cau_shrink shrink;
 	cau_near near;
 	cau_contact_set contact;
+	cau_collide collide;             // meet.c: where solver.collide points, if anywhere
 	struct cau_candidate *candidate; // reach.c: scratch
 	double *position_unheld;         // m, (n x 3): touch.c, as a step was before faces were missed
 	cau_frame_state frame;
@@ -192,6 +193,10 @@ cau_grasp *cau_session_hold_of_row(cau_tool *tool, const cau_contact_row *row);
 bool cau_session_hold_is_left(const cau_session *session, const cau_grasp *grasp);
 // Takes hold of faces between the jaws of which no corner is held.
 void cau_session_grasp_faces(const cau_session *session, cau_tool *tool);
+// meet.c: tissue against tissue: its arrays, if the scene wants it; what touches as the tick
+// begins, and the first guess as far as that lets it go.
+cau_status cau_session_make_collide(cau_session *session, cau_error *error);
+void cau_session_begin_collide(cau_session *session);
 // burn.c: heat, exposure, parting.
 void cau_session_burn(cau_session *session);
 // Takes what was removed from element `first` of the tick's list on out of the local step, and puts

@@ -116,6 +116,7 @@ static bool hold(cau_session *session, cau_status *status, cau_error *error)
 static void begin_again(cau_session *session)
 {
 	cau_step_solver *solver = &session->solver;
+	cau_session_begin_collide(session);
 	cau_session_find_contacts(session);
 	solver->contact = session->contact.row_count ? &session->contact : NULL;
 	solver->objective = cau_solver_evaluate(solver);
@@ -185,6 +186,7 @@ cau_status cau_session_step(cau_session *session, cau_error *error)
 	cau_session_stage_end(session, CAU_STAGE_COMMANDS);
 	cau_session_predict(session);       // eq. 4: motion.c
 	cau_session_lead_driven(session);   // drive.c
+	cau_session_begin_collide(session); // meet.c
 	cau_session_find_contacts(session); // touch.c
 	cau_session_stage_end(session, CAU_STAGE_PREDICT);
 	if (!status)

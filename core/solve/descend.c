@@ -84,6 +84,16 @@ static void use_plain_step(cau_step_solver *solver)
 	       4 * (size_t)solver->tissue->vertex_count * solver->kernels->vectors->real_bytes);
 }
 
+// Likewise to a part of the plain step, as far as tissue does not cross tissue: short enough, it is
+// not held back, and leads down.
+static void move_apart(cau_step_solver *solver, double scale)
+{
+	use_plain_step(solver);
+	scale_trial(solver, scale);
+	cau_solver_keep_apart(solver, solver->position_before);
+	move_to(solver, 1);
+}
+
 // Where the parabola through the objective before the step, its slope there and its value after a
 // part `scale` of the step has its bottom. Tissue drawn far beyond its rest is thousands of times
 // stiffer than A, and halving alone would not come down to it in the few tries there are. But a
@@ -129,12 +139,14 @@ static bool take_step(cau_step_solver *solver, bool accelerated, double slope, d
 	if (solver->contact)
 		noise += cau_contact_work(solver->contact, solver);
 	double scale = 1;
+	if (solver->collide)
+		cau_solver_keep_apart(solver, solver->position);
 	leave(solver);
 	for (int tries = 0; tries <= CAU_MAX_BACKTRACKS; tries++) {
 		double value = cau_solver_evaluate_displaced(solver);
-		if (may_stand(solver, scale, value, *objective, noise)) {
+		if (may_stand(solver, solver->collide ? 1 : scale, value, *objective, noise)) {
 			*objective = value;
-			if (scale != 1)
+			if (scale != 1 && !solver->collide)
 				scale_trial(solver, scale);
 			return true;
 		}
@@ -145,7 +157,12 @@ static bool take_step(cau_step_solver *solver, bool accelerated, double slope, d
 		} else {
 			scale = shorter(scale, *objective, value, slope, solver->accuracy.newton);
 		}
-		move_to(solver, tries < CAU_MAX_BACKTRACKS ? scale : 0);
+		if (tries == CAU_MAX_BACKTRACKS)
+			move_to(solver, 0);
+		else if (solver->collide)
+			move_apart(solver, scale);
+		else
+			move_to(solver, scale);
 	}
 	*objective = cau_solver_evaluate_displaced(solver);
 	return false;
@@ -189,7 +206,21 @@ static bool is_harmless(const cau_step_solver *solver, double norm, double objec
 	CAU_ASSERT(!(norm < 0), "a step of length %g", norm);
 	const double far_below = 0.01;
 	double most = solver->conservative ? objective_noise(solver) : far_below * objective;
-	return !solver->backtracks && !solver->drag_count && norm * norm <= most;
+	return !solver->backtracks && !solver->drag_count && !solver->collide && norm * norm <= most;
+}
+
+// A step that was cut short lest tissue cross tissue says nothing of what is left to do.
+static bool is_held_back(const cau_step_solver *solver)
+{
+	return solver->collide && solver->collide->held_back;
+}
+
+// Whether other tissue presses on other than before: then earlier steps tell nothing of the next.
+static bool forget_touching(const cau_step_solver *solver, uint64_t *touching)
+{
+	bool changed = solver->collide->touching_hash != *touching;
+	*touching = solver->collide->touching_hash;
+	return changed;
 }
 
 static void nothing(void *context)
@@ -227,12 +258,16 @@ cau_status cau_solver_descend(cau_step_solver *solver, cau_error *error)
 {
 	CAU_ASSERT(solver->iterations > 0, "%d iterations", solver->iterations);
 	double objective = solver->objective, first = 0, last = 0;
-	int32_t steps = 0;                              // since the guess
+	int32_t steps = 0; // since the guess, or since it was forgotten
+	uint64_t touching = solver->collide ? solver->collide->touching_hash : 0;
 	int32_t backtracks_before = solver->backtracks; // of the tick's earlier rounds
 	solver->spared = false;
 	cau_anderson_start(solver);
 	cau_accuracy_begin(&solver->accuracy);
 	solver->accuracy.newton = cau_newton_is_called_for(solver);
+	// Tissue that was guessed into tissue may have more energy than it began with.
+	if (solver->collide && solver->collide->energy_j > solver->collide->start_energy_j)
+		go_back(solver, &objective);
 	for (int32_t k = 0; k < solver->iterations; k++) {
 		cau_status status = find_increment(solver, error);
 		if (status)
@@ -256,6 +291,8 @@ cau_status cau_solver_descend(cau_step_solver *solver, cau_error *error)
 		int32_t backtracks = solver->backtracks;
 		bool enough = cau_accuracy_is_reached(solver, norm);
 		if ((enough || k + 1 == solver->iterations) && is_harmless(solver, norm, objective)) {
+			if (solver->collide)
+				cau_solver_keep_apart(solver, solver->position);
 			leave(solver);
 			solver->spared = true;
 			objective -= norm * norm / 2;
@@ -270,8 +307,12 @@ cau_status cau_solver_descend(cau_step_solver *solver, cau_error *error)
 			steps = 0;
 			cau_accuracy_begin(&solver->accuracy);
 		}
-		if (enough && solver->backtracks == backtracks)
+		if (enough && solver->backtracks == backtracks && !is_held_back(solver))
 			break;
+		if (solver->collide && forget_touching(solver, &touching)) {
+			cau_anderson_start(solver);
+			steps = 0;
+		}
 	}
 	CAU_ASSERT(solver->backtracks - backtracks_before <=
 	               solver->iterations * (CAU_MAX_BACKTRACKS + 1),

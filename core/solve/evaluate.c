@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Gradient and value of eq. 4: inertia, elements, drag.
+// Gradient and value of eq. 4: inertia, elements, drag, tissue against tissue.
 #include "base/vector.h"
 #include "cautery/assert.h"
 #include "solve/solver.h"
@@ -48,6 +48,19 @@ static double add_drag(cau_step_solver *solver)
 	return energy;
 }
 
+static double add_collisions(cau_step_solver *solver)
+{
+	cau_collide *collide = solver->collide;
+	double energy = cau_collide_evaluate(collide, solver->pool, solver->position);
+	for (int32_t k = 0; k < collide->loaded_count; k++) {
+		int32_t v = collide->loaded[k];
+		CAU_ASSERT_INDEX(v, solver->tissue->vertex_count);
+		if (!solver->fixed[v])
+			solver->kernels->vectors->add(solver->gradient, v, collide->gradient + 3 * (size_t)v);
+	}
+	return energy;
+}
+
 double cau_solver_elastic_energy(const cau_step_solver *solver)
 {
 	double energy = 0;
@@ -92,6 +105,8 @@ static double gather(cau_step_solver *solver, double start)
 	for (int32_t k = 0; k < solver->chunk_count; k++)
 		energy += solver->chunk_energy[k];
 	energy += add_drag(solver);
+	if (solver->collide)
+		energy += add_collisions(solver);
 	if (solver->now_s)
 		solver->local_s += solver->now_s() - start;
 	return energy;

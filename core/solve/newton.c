@@ -9,7 +9,8 @@
 
 bool cau_newton_is_called_for(const cau_step_solver *solver)
 {
-	return solver->newton_chosen && (!solver->contact || !solver->contact->row_count);
+	return solver->newton_chosen && (!solver->contact || !solver->contact->row_count) &&
+	       (!solver->collide || !solver->collide->touching_count);
 }
 
 // By row, and back: the gradient of a fixed vertex is 0, and so is what comes of it.

@@ -8,6 +8,7 @@
 #pragma once
 
 #include "base/pool.h"
+#include "collide/collide.h"
 #include "constraint/elements_make.h"
 #include "solve/accuracy.h"
 #include "solve/kernels.h"
@@ -28,6 +29,11 @@ typedef struct cau_drag {
 } cau_drag;
 
 typedef struct cau_contact_set cau_contact_set;
+
+// Vectors of a conjugate gradient, made with solver->collide.
+typedef struct cau_yield {
+	cau_reals *residual, *solved, *direction, *image; // image = A direction
+} cau_yield;
 
 struct cau_step_solver {
 	const cau_tissue *tissue;
@@ -58,11 +64,13 @@ struct cau_step_solver {
 	cau_drag *drag;
 	int32_t drag_count;
 	cau_contact_set *contact; // NULL: none
+	cau_collide *collide;     // likewise: tissue against tissue
 
 	cau_reals *displacement;    // u = x - X
 	cau_reals *gradient;        // grad of eq. 4
 	cau_reals *increment;       // d = -A^-1 grad
 	cau_reals *trial_increment; // the step that is taken
+	cau_yield yield;            // yield.c: scratch, where tissue touches tissue
 	cau_history history;        // its step is trial_increment
 	double anderson_product[CAU_ANDERSON_WINDOW][CAU_ANDERSON_WINDOW]; // df_i . A df_j
 	double *chunk_energy;                                              // (chunk_count)
@@ -120,6 +128,13 @@ void cau_solver_global(cau_step_solver *solver);
 // zero).
 void cau_solver_apply_inverse(cau_step_solver *solver, const cau_reals *in, cau_reals *out,
                               double sign);
+// yield.c: its vectors; makes increment = -(A + K)^-1 gradient of -A^-1 gradient, K the stiffness
+// of tissue on tissue.
+cau_status cau_solver_make_yield(cau_step_solver *solver, cau_arena *arena, cau_error *error);
+void cau_solver_yield(cau_step_solver *solver);
+// apart.c: shortens trial_increment, to be taken from positions `from`, so that tissue crosses no
+// tissue. Returns whether it had to.
+bool cau_solver_keep_apart(cau_step_solver *solver, const double *from);
 // The vertices of a share of a vertex loop: [first, returned).
 int32_t cau_solver_chunk_end(const cau_step_solver *solver, int32_t chunk, int32_t *first);
 // anderson.c: trial_increment from increment and the history of this step. What is mixed is kept,

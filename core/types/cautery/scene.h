@@ -45,7 +45,10 @@ enum {
 	X(damping_per_s, 0.0, 0.0, 1000.0, "1/s", "v <- v exp(-c dt)")                                 \
 	X(ambient_c, 37.0, -20.0, 60.0, "degC", "temperature of the body around the tools")            \
 	X(tolerance, 0.0, 0.0, 1.0, "1", "stop a step at this relative residual; 0: never")            \
-	X(accuracy, 0.01, 0.0, 1.0, "1", "end a step at this error relative to its motion; 0: never")
+	X(accuracy, 0.01, 0.0, 1.0, "1", "end a step at this error relative to its motion; 0: never")  \
+	X(contact_thickness_m, 0.0, 0.0, 0.01, "m",                                                    \
+	  "tissue keeps this far from tissue; 0: it crosses")                                          \
+	X(contact_friction, 0.1, 0.0, 2.0, "1", "of tissue on tissue")
 
 #define CAU_SOLVER_TABLE(X) /* code, JSON name */                                                  \
 	X(CHOLESKY, "cholesky")                                                                        \

@@ -1205,6 +1205,10 @@ export interface Scene {
   tolerance?: number;
   /** end a step at this error relative to its motion; 0: never (0 to 1) */
   accuracy?: number;
+  /** tissue keeps this far from tissue; 0: it crosses (0 to 0.01 m) */
+  contact_thickness_m?: number;
+  /** of tissue on tissue (0 to 2) */
+  contact_friction?: number;
   /** iterations of a step at most; with `accuracy` 0, of each (1 to 1000) */
   iterations?: number;
   /** global system; `newton`: of free sheets, each step's own */
@@ -1958,6 +1962,10 @@ export const PARAMETERS = {
       meaning: "stop a step at this relative residual; 0: never" },
     { name: 'accuracy', unit: '1', least: 0, most: 1, default: 0.01,
       meaning: "end a step at this error relative to its motion; 0: never" },
+    { name: 'contact_thickness_m', unit: 'm', least: 0, most: 0.01, default: 0,
+      meaning: "tissue keeps this far from tissue; 0: it crosses" },
+    { name: 'contact_friction', unit: '1', least: 0, most: 2, default: 0.1,
+      meaning: "of tissue on tissue" },
   ],
   tool: [
     { name: 'hot_radius_m', unit: 'm', least: 0.0002, most: 0.05, default: 0.003,

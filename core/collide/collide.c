@@ -1,0 +1,91 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "collide/collide.h"
+
+#include <math.h>
+
+#include "cautery/assert.h"
+
+// Pairs that there is room for: so many a vertex of the tissue, and some more.
+enum { PAIRS_OF_VERTEX = 8, PAIRS_BESIDES = 4096 };
+
+// A pair is as stiff as gravity asks for (a vertex on a face has a dozen pairs, which it presses
+// together by a tenth of a millimetre), and a tenth as stiff as what its elements hold a vertex
+// with: what they press with is then met well before a pair's distance is used up. Of the layers as
+// the scene has them, whatever is cut: nothing of it is to be kept in snapshots.
+static const double of_inertia = 2, of_elements = 0.1;
+
+static void find_stiffness(cau_collide *collide, double step_s)
+{
+	const cau_tissue *tissue = collide->tissue;
+	double *stiffness = collide->stiffness;
+	cau_element_map map;
+	CAU_ASSERT(step_s > 0, "a step of %g s", step_s);
+	for (int32_t v = 0; v < tissue->vertex_count; v++)
+		stiffness[v] = of_inertia * tissue->mass[v] / (step_s * step_s);
+	for (int kind = 0; kind < CAU_ELEMENT_KINDS; kind++)
+		for (int32_t i = 0; i < cau_tissue_element_count(tissue, kind); i++) {
+			cau_tissue_element_map(tissue, kind, i, &map);
+			for (int k = 0; k < map.vertex_count; k++)
+				stiffness[map.vertex[k]] += of_elements * map.weight * cau_element_map_scale(&map);
+		}
+}
+
+static bool make_arrays(cau_collide *collide, cau_arena *arena)
+{
+	const cau_tissue *tissue = collide->tissue;
+	size_t n = (size_t)tissue->vertex_count, blocks = (size_t)collide->surface.most_blocks;
+	size_t pairs = (size_t)collide->most_pairs, box = sizeof(cau_collide_box);
+	bool made = true;
+	struct {
+		void **array;
+		size_t count, bytes;
+	} arrays[] = {
+		{(void **)&collide->exempt, n, 1},
+		{(void **)&collide->stiffness, n, sizeof(double)},
+		{(void **)&collide->anchor, 3 * n, sizeof(double)},
+		{(void **)&collide->reach_m, n, sizeof(double)},
+		{(void **)&collide->pair, pairs, sizeof *collide->pair},
+		{(void **)&collide->grip, pairs, sizeof *collide->grip},
+		{(void **)&collide->stopped, pairs, sizeof *collide->stopped},
+		{(void **)&collide->is_loaded, n, 1},
+		{(void **)&collide->loaded, n, sizeof(int32_t)},
+		{(void **)&collide->gradient, 3 * n, sizeof(double)},
+		{(void **)&collide->probe, 3 * n, sizeof(double)},
+		{(void **)&collide->answer, 3 * n, sizeof(double)},
+		{(void **)&collide->step, 3 * n, sizeof(double)},
+		{(void **)&collide->face_box, (size_t)tissue->faces.face_count, box},
+		{(void **)&collide->edge_box, (size_t)tissue->edges.edge_count, box},
+		{(void **)&collide->vertex_box, n, box},
+		{(void **)&collide->block_box[0], blocks, box},
+		{(void **)&collide->block_box[1], blocks, box},
+		{(void **)&collide->block_box[2], blocks, box},
+		{(void **)&collide->slice, blocks, sizeof *collide->slice},
+		{(void **)&collide->list[0], blocks * CAU_COLLIDE_SLICE, sizeof(cau_collide_found)},
+		{(void **)&collide->list[1], blocks * CAU_COLLIDE_SLICE, sizeof(cau_collide_found)},
+	};
+	for (size_t i = 0; i < sizeof arrays / sizeof *arrays; i++) {
+		*arrays[i].array = cau_arena_array(arena, arrays[i].count, arrays[i].bytes);
+		made &= *arrays[i].array != NULL;
+	}
+	return made;
+}
+
+cau_status cau_collide_create(cau_collide *collide, const cau_tissue *tissue, double thickness_m,
+                              double friction, double step_s, cau_arena *arena, cau_error *error)
+{
+	CAU_ASSERT(thickness_m > 0 && friction >= 0, "a thickness of %g m, friction %g", thickness_m,
+	           friction);
+	*collide = (cau_collide){
+		.tissue = tissue,
+		.thickness_m = thickness_m,
+		.friction = friction,
+		.most_pairs = PAIRS_OF_VERTEX * tissue->vertex_count + PAIRS_BESIDES,
+	};
+	cau_status status = cau_surface_create(&collide->surface, tissue, arena, error);
+	if (status)
+		return status;
+	if (!make_arrays(collide, arena))
+		return cau_fail(error, CAU_NO_MEMORY, NULL, "no memory for tissue against tissue");
+	find_stiffness(collide, step_s);
+	return CAU_OK;
+}

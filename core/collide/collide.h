@@ -1,0 +1,135 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Tissue against tissue: the drawn surface keeps a thickness from itself, and never crosses itself.
+//
+// Pairs are a vertex and a face, or two edges, that share no vertex. A pair that is nearer than its
+// thickness h has an energy that is part of eq. 4 (energy.c): with d its distance,
+//
+//     k/2 (h - d)^2 down to h/2; below, k h^2/8 + k h^2/4 log(h / 2d),
+//
+// continuous with its slope and curvature [offset geometric contact, Chen et al. 2025]. Below a
+// hundredth of h the force grows linearly, so that it is finite where tissue was crossed before.
+// Friction opposes the way since the tick's start with the force that the pair had then.
+//
+// No step is taken that crosses (filter.c): a pair is separated by a plane before and after every
+// move, and so all the way, as corners move straight. What would pass is moved back to its side of
+// the plane, and stopped where that is not enough.
+//
+// Pairs are looked for once (find.c) for all places that lie within each vertex's `reach_m` of
+// `anchor`; who asks for a place beyond has them looked for again. Which pairs touch, and in what
+// order their forces are added up, does not depend on that, so nothing here outlives a tick.
+#pragma once
+
+#include "base/pool.h"
+#include "collide/gap.h"
+#include "collide/surface.h"
+
+enum { CAU_COLLIDE_SLICE = 2048 }; // pairs of a kind that a block may have
+
+typedef struct cau_collide_pair {
+	cau_gap_kind kind;
+	int32_t vertex[4];  // corners
+	double thickness_m; // less than the surface's where it is as near at rest
+	double stiffness;   // k, N/m
+	cau_vec3 plane;     // unit: a direction that separated the parts when they were last measured
+	double slope;       // dE/dd of the last evaluation, N; 0: apart
+	double curvature;   // likewise, N/m
+	double weight[4];   // likewise, of the gap
+	cau_vec3 normal;
+} cau_collide_pair;
+
+// What a pair that touched at the tick's start resists of sliding.
+typedef struct cau_collide_grip {
+	int32_t vertex[4];
+	double weight[4];
+	cau_vec3 normal;
+	double most_n;    // friction times the force that presses
+	double stiffness; // N/m, until it slides
+	double present;   // N/m: force by way of the last evaluation
+} cau_collide_grip;
+
+typedef struct cau_collide_box {
+	double least[3], most[3];
+} cau_collide_box;
+
+typedef struct cau_collide_found { // a pair as find.c lists it
+	int32_t first, second;         // vertex and face, or edges: places among the surface's parts
+} cau_collide_found;
+
+typedef struct cau_collide_slice { // of a block: what it found, and whether that was all
+	int32_t count[2];              // by cau_gap_kind
+	bool full;
+} cau_collide_slice;
+
+typedef struct cau_collide {
+	const cau_tissue *tissue;
+	double thickness_m, friction;
+	const uint8_t *fixed; // (n): borrowed; vertices that no step moves
+	uint8_t *exempt;      // (n): vertices that touch nothing, as those in jaws
+	double *stiffness;    // N/m, (n): of a vertex
+	cau_surface surface;
+	// Where the pairs are valid.
+	bool found;
+	double *anchor;  // m, (n x 3)
+	double *reach_m; // (n)
+	int32_t pair_count, most_pairs;
+	cau_collide_pair *pair; // (most_pairs)
+	int32_t grip_count;
+	cau_collide_grip *grip; // (most_pairs)
+	const double *start;    // m, (n x 3): where the tick began
+	// Of the last evaluation.
+	double energy_j;        // of pairs, without friction
+	int32_t touching_count; // pairs nearer than their thickness
+	uint64_t touching_hash; // of which are pressed
+	int32_t loaded_count;
+	uint8_t *is_loaded; // (n)
+	int32_t *loaded;    // (n): vertices that have a gradient
+	double *gradient;   // N, (n x 3): of those, else 0
+	double *probe;      // m, (n x 3): for cau_collide_apply, and
+	double *answer;     // N, what comes of it, both where loaded
+	// Of the last filter, and of the tick.
+	double kept_share;            // filter.c: of its distance, a pair keeps at least
+	bool held_back, out_of_reach; // it shortened; because the pairs are known for no further
+	int32_t held_back_count, search_count;
+	bool cut_short; // the pairs found no room: steps were shorter than asked for
+	double *step;   // m, (n x 3): for filter
+	double start_energy_j;
+	// find.c: scratch
+	cau_collide_box *face_box, *edge_box, *vertex_box; // by place among the surface's parts
+	cau_collide_box *block_box[3];                     // faces, edges, vertices of a block
+	cau_collide_slice *slice;                          // (blocks)
+	cau_collide_found *list[2];                        // by kind, (blocks x CAU_COLLIDE_SLICE)
+	bool *stopped;                                     // (most_pairs): filter.c: scratch
+} cau_collide;
+
+// The caller sets `fixed` and `start`, for good.
+cau_status cau_collide_create(cau_collide *collide, const cau_tissue *tissue, double thickness_m,
+                              double friction, double step_s, cau_arena *arena, cau_error *error);
+
+// Begins a tick at positions x (m, n x 3): what is drawn has been listed, `exempt` filled. Steps of
+// up to `step` (n x 3) are foreseen. Measures the energy there and takes the grips.
+void cau_collide_begin(cau_collide *collide, cau_pool *pool, const double *x, const double *step);
+
+// Energy at x, J, friction's included; the gradient is kept.
+double cau_collide_evaluate(cau_collide *collide, cau_pool *pool, const double *x);
+
+// Of the last evaluation: answer = K probe over the vertices that are loaded, K the Hessian of the
+// energy without what is negative of it.
+void cau_collide_apply(cau_collide *collide);
+
+// Changes `collide->step` (n x 3), wanted from x on, so that nothing crosses on the way, nor, of a
+// first guess, comes nearer than the thickness. Returns whether it had to.
+bool cau_collide_filter(cau_collide *collide, cau_pool *pool, const double *x, bool guess);
+
+// ---- between the files of this room
+
+// find.c: the pairs for all places that `step` (NULL: none) leads to from x, and some more.
+void cau_collide_find(cau_collide *collide, cau_pool *pool, const double *x, const double *step);
+// Whether the pairs are those of x.
+bool cau_collide_covers(const cau_collide *collide, const double *x);
+
+static inline void cau_collide_corners(const cau_collide_pair *pair, const double *x,
+                                       cau_vec3 corner[4])
+{
+	for (int i = 0; i < 4; i++)
+		corner[i] = cau_vec3_of(x + 3 * (size_t)pair->vertex[i]);
+}

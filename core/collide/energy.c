@@ -1,0 +1,211 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// What touching pairs add to eq. 4, and its gradient. Pairs are measured in shares, each on its
+// own; energies and forces are added up in the pairs' order.
+#include <math.h>
+#include <string.h>
+
+#include "base/hash.h"
+#include "cautery/assert.h"
+#include "collide/collide.h"
+
+static const double soft_share = 0.002; // of the thickness, below which the force grows linearly
+enum { SHARE = 256 };                   // pairs
+
+static double potential(double stiffness, double thickness, double distance, double *slope,
+                        double *curvature)
+{
+	double half = thickness / 2, soft = soft_share * thickness;
+	CAU_ASSERT(thickness > 0 && stiffness > 0, "%g N/m over %g m", stiffness, thickness);
+	if (distance >= half) {
+		double in = fmax(thickness - distance, 0);
+		*slope = -stiffness * in;
+		*curvature = stiffness;
+		return stiffness * in * in / 2;
+	}
+	double scale = stiffness * half * half, at = fmax(distance, soft), in = at - distance;
+	double force = scale / at;
+	*curvature = force / at;
+	*slope = -force - *curvature * in;
+	return scale * (0.5 + log(half / at)) + force * in + *curvature * in * in / 2;
+}
+
+typedef struct measuring {
+	cau_collide *collide;
+	const double *x;
+} measuring;
+
+// A direction that keeps the parts further apart than the thickness spares the search for the
+// nearest places.
+static void measure(cau_collide_pair *pair, const double *x)
+{
+	cau_vec3 corner[4];
+	cau_collide_corners(pair, x, corner);
+	pair->slope = 0;
+	if (cau_gap_along(pair->kind, corner, pair->plane) >= pair->thickness_m)
+		return;
+	cau_gap gap = cau_gap_between(pair->kind, corner);
+	pair->plane = gap.normal;
+	if (!(gap.distance < pair->thickness_m) || !(gap.distance > 0))
+		return;
+	potential(pair->stiffness, pair->thickness_m, gap.distance, &pair->slope, &pair->curvature);
+	pair->normal = gap.normal;
+	memcpy(pair->weight, gap.weight, sizeof pair->weight);
+}
+
+static void measure_part(void *context, int32_t share)
+{
+	const measuring *work = context;
+	cau_collide *collide = work->collide;
+	int32_t first = share * SHARE, last = first + SHARE;
+	CAU_ASSERT(first < collide->pair_count, "share %d of %d pairs", share, collide->pair_count);
+	if (last > collide->pair_count)
+		last = collide->pair_count;
+	for (int32_t i = first; i < last; i++)
+		measure(&collide->pair[i], work->x);
+}
+
+static void load(cau_collide *collide, const int32_t vertex[4], const double weight[4],
+                 cau_vec3 force)
+{
+	for (int i = 0; i < 4; i++) {
+		double *to = collide->gradient + 3 * (size_t)vertex[i];
+		if (weight[i] == 0)
+			continue;
+		if (!collide->is_loaded[vertex[i]])
+			collide->loaded[collide->loaded_count++] = vertex[i];
+		collide->is_loaded[vertex[i]] = 1;
+		to[0] += weight[i] * force.x;
+		to[1] += weight[i] * force.y;
+		to[2] += weight[i] * force.z;
+	}
+}
+
+static void unload(cau_collide *collide)
+{
+	for (int32_t k = 0; k < collide->loaded_count; k++) {
+		memset(collide->gradient + 3 * (size_t)collide->loaded[k], 0, 3 * sizeof(double));
+		collide->is_loaded[collide->loaded[k]] = 0;
+	}
+	collide->loaded_count = 0;
+}
+
+// Elastic up to the most that friction bears, and of that force beyond.
+static double add_grip(cau_collide *collide, cau_collide_grip *grip, const double *x)
+{
+	cau_vec3 slip = {0, 0, 0};
+	for (int i = 0; i < 4; i++) {
+		size_t at = 3 * (size_t)grip->vertex[i];
+		slip = cau_add_scaled(slip, grip->weight[i],
+		                      cau_sub(cau_vec3_of(x + at), cau_vec3_of(collide->start + at)));
+	}
+	slip = cau_add_scaled(slip, -cau_dot(slip, grip->normal), grip->normal);
+	double length = cau_length(slip), yield = grip->most_n / grip->stiffness;
+	grip->present = grip->stiffness;
+	if (!(length > 0))
+		return 0;
+	double force = length < yield ? grip->stiffness * length : grip->most_n;
+	grip->present = force / length;
+	load(collide, grip->vertex, grip->weight, cau_scale(grip->present, slip));
+	return length < yield ? force * length / 2 : force * (length - yield / 2);
+}
+
+static double distance_of(const cau_collide_pair *pair, const double *x)
+{
+	cau_vec3 way = {0, 0, 0};
+	for (int i = 0; i < 4; i++)
+		way = cau_add_scaled(way, pair->weight[i], cau_vec3_of(x + 3 * (size_t)pair->vertex[i]));
+	return cau_length(way);
+}
+
+// In the pairs' order.
+static void add_pairs(cau_collide *collide, const double *x)
+{
+	collide->energy_j = 0;
+	collide->touching_count = 0;
+	collide->touching_hash = CAU_HASH_START;
+	for (int32_t i = 0; i < collide->pair_count; i++) {
+		const cau_collide_pair *pair = &collide->pair[i];
+		double slope, curvature;
+		if (pair->slope == 0)
+			continue;
+		double distance = distance_of(pair, x);
+		collide->energy_j +=
+			potential(pair->stiffness, pair->thickness_m, distance, &slope, &curvature);
+		collide->touching_count++;
+		if (distance < pair->thickness_m / 2)
+			collide->touching_hash =
+				cau_hash_bytes(collide->touching_hash, pair->vertex, sizeof pair->vertex);
+		load(collide, pair->vertex, pair->weight, cau_scale(pair->slope, pair->normal));
+	}
+}
+
+double cau_collide_evaluate(cau_collide *collide, cau_pool *pool, const double *x)
+{
+	if (!cau_collide_covers(collide, x))
+		cau_collide_find(collide, pool, x, NULL);
+	measuring work = {collide, x};
+	cau_pool_run(pool, (collide->pair_count + SHARE - 1) / SHARE, measure_part, &work);
+	unload(collide);
+	add_pairs(collide, x);
+	double energy = collide->energy_j;
+	for (int32_t i = 0; i < collide->grip_count; i++)
+		energy += add_grip(collide, &collide->grip[i], x);
+	return energy;
+}
+
+// stiffness * normal (normal . way) and, across the normal, across * the rest of the way
+static void apply(cau_collide *collide, const int32_t vertex[4], const double weight[4],
+                  cau_vec3 normal, double stiffness, double across)
+{
+	cau_vec3 way = {0, 0, 0};
+	for (int i = 0; i < 4; i++)
+		way = cau_add_scaled(way, weight[i], cau_vec3_of(collide->probe + 3 * (size_t)vertex[i]));
+	cau_vec3 force = cau_scale(across, way);
+	force = cau_add_scaled(force, (stiffness - across) * cau_dot(way, normal), normal);
+	for (int i = 0; i < 4; i++) {
+		double *to = collide->answer + 3 * (size_t)vertex[i];
+		cau_vec3_to(cau_add_scaled(cau_vec3_of(to), weight[i], force), to);
+	}
+}
+
+void cau_collide_apply(cau_collide *collide)
+{
+	for (int32_t k = 0; k < collide->loaded_count; k++)
+		memset(collide->answer + 3 * (size_t)collide->loaded[k], 0, 3 * sizeof(double));
+	for (int32_t i = 0; i < collide->pair_count; i++) {
+		const cau_collide_pair *pair = &collide->pair[i];
+		if (pair->slope != 0)
+			apply(collide, pair->vertex, pair->weight, pair->normal, pair->curvature, 0);
+	}
+	for (int32_t i = 0; i < collide->grip_count; i++) {
+		const cau_collide_grip *grip = &collide->grip[i];
+		apply(collide, grip->vertex, grip->weight, grip->normal, 0, grip->present);
+	}
+}
+
+// What presses at the tick's start resists sliding in it.
+static void take_grips(cau_collide *collide)
+{
+	collide->grip_count = 0;
+	for (int32_t i = 0; i < collide->pair_count && collide->friction > 0; i++) {
+		const cau_collide_pair *pair = &collide->pair[i];
+		if (pair->slope == 0)
+			continue;
+		cau_collide_grip *grip = &collide->grip[collide->grip_count++];
+		*grip = (cau_collide_grip){.normal = pair->normal,
+		                           .most_n = -collide->friction * pair->slope,
+		                           .stiffness = pair->stiffness};
+		memcpy(grip->vertex, pair->vertex, sizeof grip->vertex);
+		memcpy(grip->weight, pair->weight, sizeof grip->weight);
+	}
+}
+
+void cau_collide_begin(cau_collide *collide, cau_pool *pool, const double *x, const double *step)
+{
+	collide->held_back_count = collide->search_count = 0;
+	collide->cut_short = collide->held_back = false;
+	collide->grip_count = 0;
+	cau_collide_find(collide, pool, x, step);
+	collide->start_energy_j = cau_collide_evaluate(collide, pool, x);
+	take_grips(collide);
+}

@@ -1,0 +1,89 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Tissue against tissue, from tick to tick: what touches is looked for where the tick began, and
+// the first guess goes no further than it may (collide/collide.h).
+#include <string.h>
+
+#include "cautery/assert.h"
+#include "session/session_internal.h"
+
+enum { MOST_LEGS = 16 }; // of the first guess: it goes on where it came to the end of its reach
+
+cau_status cau_session_make_collide(cau_session *session, cau_error *error)
+{
+	const cau_scene_def *scene = session->scene;
+	cau_collide *collide = &session->collide;
+	if (scene->contact_thickness_m == 0)
+		return CAU_OK;
+	cau_status status =
+		cau_collide_create(collide, &session->tissue, scene->contact_thickness_m,
+	                       scene->contact_friction, scene->step_s, &session->arena, error);
+	if (!status)
+		status = cau_solver_make_yield(&session->solver, &session->arena, error);
+	if (status)
+		return status;
+	collide->fixed = session->fixed;
+	collide->start = session->position_start;
+	session->solver.collide = collide;
+	return CAU_OK;
+}
+
+// What jaws hold lies between and inside them, where its folds have no room to keep apart.
+static void exempt_held(cau_session *session)
+{
+	uint8_t *exempt = session->collide.exempt;
+	memset(exempt, 0, (size_t)session->tissue.vertex_count);
+	for (int32_t i = 0; i < session->tool_count; i++)
+		for (int32_t k = 0; k < session->tool[i].grasp_count; k++) {
+			const cau_grasp *grasp = &session->tool[i].grasp[k];
+			for (int c = 0; c < 3; c++)
+				if (grasp->vertex[c] >= 0) // one, or a face's corners
+					exempt[grasp->vertex[c]] = 1;
+		}
+}
+
+static void ask_for(cau_session *session, const double *from, const double *to)
+{
+	const cau_surface_parts *surface = &session->collide.surface.vertices;
+	for (int32_t k = 0; k < surface->count; k++)
+		for (size_t c = 0, i = 3 * (size_t)surface->item[k]; c < 3; c++, i++)
+			session->collide.step[i] = to[i] - from[i];
+}
+
+// Where a vertex is let go; supports that are led are where they are led to.
+static void go(cau_session *session, double *position)
+{
+	const cau_collide *collide = &session->collide;
+	const cau_surface_parts *surface = &collide->surface.vertices;
+	for (int32_t k = 0; k < surface->count; k++) {
+		size_t v = (size_t)surface->item[k];
+		for (size_t i = 3 * v; i < 3 * v + 3 && !session->fixed[v]; i++)
+			position[i] += collide->step[i];
+	}
+}
+
+void cau_session_begin_collide(cau_session *session)
+{
+	cau_step_solver *solver = &session->solver;
+	cau_collide *collide = solver->collide;
+	if (!collide)
+		return;
+	size_t bytes = 3 * (size_t)session->tissue.vertex_count * sizeof(double);
+	double *guess = solver->position, *at = solver->position_before; // free until the solve
+	exempt_held(session);
+	cau_surface_list(&collide->surface, session->dissection.face_mask);
+	ask_for(session, session->position_start, guess);
+	cau_collide_begin(collide, session->pool, session->position_start, collide->step);
+	memcpy(at, session->position_start, bytes);
+	for (int leg = 0; leg < MOST_LEGS; leg++) {
+		ask_for(session, at, guess);
+		cau_collide_filter(collide, session->pool, at, true);
+		go(session, at);
+		if (!collide->out_of_reach)
+			break;
+	}
+	for (int32_t k = 0; k < collide->surface.vertices.count; k++) {
+		size_t v = (size_t)collide->surface.vertices.item[k];
+		if (!session->fixed[v])
+			memcpy(guess + 3 * v, at + 3 * v, 3 * sizeof(double));
+	}
+}

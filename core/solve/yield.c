@@ -1,0 +1,112 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// The global step where tissue touches tissue. A knows nothing of the stiffness K between touching
+// parts, and a step by A alone throws what lies on something light far off it. So the step is that
+// of A + K, by conjugate gradients with A^-1 for preconditioner: a few sweeps more. With z = A^-1 r
+// and directions p of z's, A p is a sum of r's, so A itself is never multiplied by.
+#include <string.h>
+
+#include "cautery/assert.h"
+#include "solve/solver.h"
+
+static const double enough = 0.01; // of r.z, at which the solution serves as a step
+enum { MOST_SWEEPS = 12 };
+
+cau_status cau_solver_make_yield(cau_step_solver *solver, cau_arena *arena, cau_error *error)
+{
+	size_t count = 4 * (size_t)solver->tissue->vertex_count;
+	cau_reals **vectors[] = {&solver->yield.residual, &solver->yield.solved,
+	                         &solver->yield.direction, &solver->yield.image};
+	for (size_t i = 0; i < sizeof vectors / sizeof *vectors; i++)
+		if (!(*vectors[i] = cau_arena_array(arena, count, solver->kernels->vectors->real_bytes)))
+			return cau_fail(error, CAU_NO_MEMORY, NULL, "no memory for tissue against tissue");
+	return CAU_OK;
+}
+
+// to += scale * from
+static void add(cau_step_solver *solver, cau_reals *to, double scale, const cau_reals *from)
+{
+	solver->kernels->add_scaled(to, scale, from, 4 * (int64_t)solver->tissue->vertex_count);
+}
+
+// to = from + scale * to
+static void turn(cau_step_solver *solver, cau_reals *to, double scale, const cau_reals *from)
+{
+	add(solver, to, scale - 1, to);
+	add(solver, to, 1, from);
+}
+
+typedef struct product {
+	cau_step_solver *solver;
+	const cau_reals *a, *b;
+} product;
+
+static void product_part(void *context, int32_t chunk)
+{
+	const product *work = context;
+	cau_step_solver *solver = work->solver;
+	int32_t first, last = cau_solver_chunk_end(solver, chunk, &first);
+	solver->chunk_dot[chunk] =
+		solver->kernels->dot(work->a, work->b, 4 * (int64_t)first, 4 * (int64_t)(last - first));
+}
+
+static double dot(cau_step_solver *solver, const cau_reals *a, const cau_reals *b)
+{
+	double all = 0;
+	cau_pool_run(solver->pool, solver->chunk_count, product_part, &(product){solver, a, b});
+	for (int32_t chunk = 0; chunk < solver->chunk_count; chunk++)
+		all += solver->chunk_dot[chunk];
+	return all;
+}
+
+// residual -= scale * K direction, and returns direction . K direction where scale is 0.
+static double apply(cau_step_solver *solver, double scale)
+{
+	cau_collide *collide = solver->collide;
+	const cau_vectors *vectors = solver->kernels->vectors;
+	double along = 0;
+	for (int32_t k = 0; k < collide->loaded_count && scale == 0; k++)
+		vectors->read(solver->yield.direction, collide->loaded[k],
+		              collide->probe + 3 * (size_t)collide->loaded[k]);
+	if (scale == 0)
+		cau_collide_apply(collide);
+	for (int32_t k = 0; k < collide->loaded_count; k++) {
+		int32_t v = collide->loaded[k];
+		const double *probe = collide->probe + 3 * (size_t)v,
+					 *force = collide->answer + 3 * (size_t)v;
+		along += probe[0] * force[0] + probe[1] * force[1] + probe[2] * force[2];
+		if (scale != 0 && !solver->fixed[v])
+			vectors->add(solver->yield.residual, v,
+			             (double[]){-scale * force[0], -scale * force[1], -scale * force[2]});
+	}
+	return along;
+}
+
+void cau_solver_yield(cau_step_solver *solver)
+{
+	cau_yield *y = &solver->yield;
+	size_t bytes = 4 * (size_t)solver->tissue->vertex_count * solver->kernels->vectors->real_bytes;
+	CAU_ASSERT(y->residual != NULL, "%d parts touch", solver->collide->touching_count);
+	// r = -gradient, z = p = A^-1 r is the increment as it is, A p = r
+	memset(y->residual, 0, bytes);
+	add(solver, y->residual, -1, solver->gradient);
+	memcpy(y->image, y->residual, bytes);
+	memcpy(y->direction, solver->increment, bytes);
+	double size = dot(solver, y->residual, solver->increment), first = size;
+	memset(solver->increment, 0, bytes);
+	for (int sweep = 0; size > 0 && sweep < MOST_SWEEPS; sweep++) {
+		double stiff = apply(solver, 0) + dot(solver, y->direction, y->image);
+		double step = size / stiff;
+		if (!(stiff > 0))
+			return;
+		add(solver, solver->increment, step, y->direction);
+		add(solver, y->residual, -step, y->image);
+		apply(solver, step);
+		cau_solver_apply_inverse(solver, y->residual, y->solved, 1);
+		double next = dot(solver, y->residual, y->solved);
+		if (!(next > enough * first))
+			return;
+		turn(solver, y->direction, next / size, y->solved);
+		turn(solver, y->image, next / size, y->residual);
+		size = next;
+	}
+}

@@ -1,0 +1,141 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Energy and gradient of touching sheets: against finite differences, nothing beyond the thickness,
+// the same whatever was foreseen, and the friction of a slide.
+#include "core/collide/sheets.h"
+
+#include <stdlib.h>
+
+static const double STEP_M = 1e-9;     // of a difference
+static const double DIFFERENCE = 1e-4; // where two nearest places are equally near it has a kink
+static const double ROUNDING = 1e-12;
+
+static void gradient_is_the_energys(void **state)
+{
+	(void)state;
+	sheets s;
+	sheets_begin(&s, 4e-3, 0.3, 2.5e-3);
+	cau_collide *collide = &s.collide;
+	sheets_shake(&s, 5e-4);
+	int32_t n = s.r.tissue.vertex_count;
+	cau_collide_begin(collide, s.pool, s.x, collide->step);
+	assert_true(collide->touching_count > 100 && collide->grip_count == collide->touching_count);
+	double *x = malloc(3 * (size_t)n * sizeof *x), *gradient = malloc(3 * (size_t)n * sizeof *x);
+	memcpy(x, s.x, 3 * (size_t)n * sizeof *x);
+	for (int32_t i = 0; i < 3 * n; i++) // some slide, some stick, some come nearer
+		x[i] += 1e-4 * sheets_draw(&s);
+	cau_collide_evaluate(collide, s.pool, x);
+	memcpy(gradient, collide->gradient, 3 * (size_t)n * sizeof *x);
+	double most = 0, total[3] = {0};
+	for (int32_t i = 0; i < 3 * n; i++) {
+		most = fmax(most, fabs(gradient[i]));
+		total[i % 3] += gradient[i];
+	}
+	int off = 0;
+	for (int32_t i = 0; i < 3 * n; i++) {
+		double at = x[i];
+		x[i] = at + STEP_M;
+		double up = cau_collide_evaluate(collide, s.pool, x);
+		x[i] = at - STEP_M;
+		double down = cau_collide_evaluate(collide, s.pool, x);
+		x[i] = at;
+		off += fabs((up - down) / (2 * STEP_M) - gradient[i]) > DIFFERENCE * most;
+	}
+	assert_int_equal(off, 0);
+	for (int c = 0; c < 3; c++) // action and reaction
+		assert_true(fabs(total[c]) < 1e-9 * most);
+	free(x);
+	free(gradient);
+	rig_finish(&s.r);
+}
+
+static void apart_is_nothing(void **state)
+{
+	(void)state;
+	sheets s;
+	sheets_begin(&s, 1e-3, 0.3, 1.01e-3);
+	cau_collide_begin(&s.collide, s.pool, s.x, s.collide.step);
+	assert_true(s.collide.start_energy_j == 0 && s.collide.loaded_count == 0);
+	assert_true(s.collide.pair_count > 0);
+	rig_finish(&s.r);
+}
+
+// What is found besides changes no bit.
+static void foresight_changes_nothing(void **state)
+{
+	(void)state;
+	sheets s;
+	sheets_begin(&s, 3e-3, 0, 2e-3);
+	sheets_shake(&s, 5e-4);
+	cau_collide_begin(&s.collide, s.pool, s.x, s.collide.step);
+	double energy = s.collide.start_energy_j;
+	int32_t pairs = s.collide.pair_count;
+	for (int32_t i = 0; i < 3 * s.r.tissue.vertex_count; i++)
+		s.collide.step[i] = 5e-4 * sheets_draw(&s);
+	s.collide.found = false;
+	cau_collide_find(&s.collide, s.pool, s.x, s.collide.step);
+	assert_true(cau_collide_evaluate(&s.collide, s.pool, s.x) == energy && energy > 0);
+	assert_true(pairs > 0);
+	rig_finish(&s.r);
+}
+
+// The stiffness that the solve is told of is the gradient's change, where no force is large.
+static void stiffness_is_the_gradients_change(void **state)
+{
+	(void)state;
+	sheets s;
+	sheets_begin(&s, 3e-3, 0, 2.9e-3);
+	cau_collide *collide = &s.collide;
+	int32_t upper = s.r.tissue.layer[1].first_vertex, n = s.r.tissue.vertex_count;
+	cau_collide_begin(collide, s.pool, s.x, collide->step);
+	double before = 0, after = 0, told = 0;
+	for (int32_t v = upper; v < n; v++) {
+		before += collide->gradient[3 * (size_t)v + 2];
+		collide->probe[3 * (size_t)v + 2] = 1e-6;
+	}
+	cau_collide_apply(collide);
+	for (int32_t v = upper; v < n; v++) {
+		told += collide->answer[3 * (size_t)v + 2];
+		s.x[3 * (size_t)v + 2] += 1e-6;
+	}
+	cau_collide_evaluate(collide, s.pool, s.x);
+	for (int32_t v = upper; v < n; v++)
+		after += collide->gradient[3 * (size_t)v + 2];
+	assert_true(told > 0 && fabs(after - before - told) < 1e-3 * told);
+	rig_finish(&s.r);
+}
+
+// A slide is resisted by friction times what presses, and no more.
+static void a_slide_rubs(void **state)
+{
+	(void)state;
+	const double friction = 0.25;
+	sheets s;
+	sheets_begin(&s, 3e-3, friction, 2e-3);
+	cau_collide *collide = &s.collide;
+	int32_t upper = s.r.tissue.layer[1].first_vertex, n = s.r.tissue.vertex_count;
+	cau_collide_begin(collide, s.pool, s.x, collide->step);
+	double pressed = 0, *x = malloc(3 * (size_t)n * sizeof *x);
+	for (int32_t k = 0; k < collide->grip_count; k++)
+		pressed += collide->grip[k].most_n;
+	memcpy(x, s.x, 3 * (size_t)n * sizeof *x);
+	double energy[2];
+	for (int k = 0; k < 2; k++) { // far beyond where it sticks, where the pairs' distances stay
+		for (int32_t v = upper; v < n; v++)
+			x[3 * (size_t)v] = s.x[3 * (size_t)v] + 2e-3 * (k + 1);
+		energy[k] = cau_collide_evaluate(collide, s.pool, x) - collide->energy_j;
+	}
+	double force = (energy[1] - energy[0]) / 2e-3;
+	assert_true(pressed > 0 && force > 0 && force <= pressed * (1 + ROUNDING));
+	free(x);
+	rig_finish(&s.r);
+}
+
+int main(void)
+{
+	const struct CMUnitTest tests[] = {
+		cmocka_unit_test(gradient_is_the_energys),           cmocka_unit_test(apart_is_nothing),
+		cmocka_unit_test(foresight_changes_nothing),         cmocka_unit_test(a_slide_rubs),
+		cmocka_unit_test(stiffness_is_the_gradients_change),
+	};
+	return cmocka_run_group_tests(tests, NULL, NULL);
+}

@@ -1,0 +1,166 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Filtered steps: sheets that are thrown at each other step after step end on the sides they began
+// on, those that go apart are let alone, and where pairs find no room nothing moves that could
+// cross.
+#include "core/collide/sheets.h"
+
+#include <stdlib.h>
+
+enum { STEPS = 60 };
+
+static double volume(const double *a, const double *b, const double *c, const double *d)
+{
+	cau_vec3 o = cau_vec3_of(a);
+	return cau_dot(cau_sub(cau_vec3_of(b), o),
+	               cau_cross(cau_sub(cau_vec3_of(c), o), cau_sub(cau_vec3_of(d), o)));
+}
+
+static int pierces(const double *x, const int32_t *edge, const int32_t *face)
+{
+	const double *a = x + 3 * edge[0], *b = x + 3 * edge[1], *c = x + 3 * face[0],
+				 *d = x + 3 * face[1], *e = x + 3 * face[2];
+	if (volume(a, c, d, e) * volume(b, c, d, e) >= 0)
+		return 0;
+	double p = volume(a, b, c, d), q = volume(a, b, d, e), r = volume(a, b, e, c);
+	return (p > 0 && q > 0 && r > 0) || (p < 0 && q < 0 && r < 0);
+}
+
+static int crossings(const sheets *s, const double *x)
+{
+	const cau_tissue *t = &s->r.tissue;
+	int count = 0;
+	for (int32_t e = 0; e < t->edges.edge_count; e++)
+		for (int32_t f = 0; f < t->triangle_count; f++) {
+			const int32_t *a = t->edges.vertex + 2 * (size_t)e, *b = t->triangle + 3 * (size_t)f;
+			if (a[0] != b[0] && a[0] != b[1] && a[0] != b[2] && a[1] != b[0] && a[1] != b[1] &&
+			    a[1] != b[2])
+				count += pierces(x, a, b);
+		}
+	return count;
+}
+
+// Every pair keeps a fifth of its distance, or of its thickness where that is less.
+static void expect_kept(const sheets *s, const double *before)
+{
+	for (int32_t k = 0; k < s->collide.pair_count; k++) {
+		const cau_collide_pair *pair = &s->collide.pair[k];
+		cau_vec3 corner[4];
+		cau_collide_corners(pair, before, corner);
+		double had = cau_gap_between(pair->kind, corner).distance;
+		cau_collide_corners(pair, s->x, corner);
+		double has = cau_gap_between(pair->kind, corner).distance;
+		assert_true(has >= (1 - 1e-6) * 0.2 * fmin(had, pair->thickness_m));
+	}
+}
+
+// Steps of several thicknesses any way, and towards each other. Returns the steps held back.
+static int throw_together(sheets *s, bool filtered)
+{
+	int32_t n = s->r.tissue.vertex_count, upper = s->r.tissue.layer[1].first_vertex;
+	int held = 0;
+	double *before = malloc(3 * (size_t)n * sizeof *before);
+	assert_non_null(before);
+	cau_collide_begin(&s->collide, s->pool, s->x, s->collide.step);
+	for (int k = 0; k < STEPS; k++) {
+		for (int32_t i = 0; i < 3 * n; i++) {
+			s->collide.step[i] = 3e-3 * sheets_draw(s);
+			if (i % 3 == 2)
+				s->collide.step[i] += i / 3 < upper ? 1e-3 : -1e-3;
+		}
+		for (int32_t v = 0; v < n; v++)
+			if (s->r.fixed[v])
+				memset(s->collide.step + 3 * (size_t)v, 0, 3 * sizeof(double));
+		held += filtered && cau_collide_filter(&s->collide, s->pool, s->x, false);
+		memcpy(before, s->x, 3 * (size_t)n * sizeof *before);
+		for (int32_t i = 0; i < 3 * n; i++)
+			s->x[i] += s->collide.step[i];
+		if (!filtered)
+			continue;
+		assert_int_equal(crossings(s, s->x), 0);
+		expect_kept(s, before);
+	}
+	free(before);
+	return held;
+}
+
+static void thrown_sheets_stay_apart(void **state)
+{
+	(void)state;
+	sheets s;
+	sheets_begin(&s, 5e-4, 0, 2e-3);
+	assert_true(throw_together(&s, true) > STEPS / 2);
+	rig_finish(&s.r);
+	sheets_begin(&s, 5e-4, 0, 2e-3);
+	throw_together(&s, false);
+	assert_true(crossings(&s, s.x) > 0); // it was needed, and would be seen
+	rig_finish(&s.r);
+}
+
+// Where every third vertex is fixed, moving parts back does not settle it: corners have to stop.
+static void what_cannot_make_room_stops(void **state)
+{
+	(void)state;
+	sheets s;
+	sheets_begin(&s, 2e-3, 0, 1e-3);
+	for (int32_t v = 0; v < s.r.tissue.vertex_count; v += 3)
+		s.r.fixed[v] = 1;
+	assert_true(throw_together(&s, true) > STEPS / 2);
+	rig_finish(&s.r);
+}
+
+static void parting_sheets_are_let_go(void **state)
+{
+	(void)state;
+	sheets s;
+	sheets_begin(&s, 5e-4, 0, 2e-4);
+	int32_t n = s.r.tissue.vertex_count, upper = s.r.tissue.layer[1].first_vertex;
+	cau_collide_begin(&s.collide, s.pool, s.x, s.collide.step);
+	for (int32_t v = upper; v < n; v++)
+		s.collide.step[3 * (size_t)v + 2] = 5e-4;
+	assert_false(cau_collide_filter(&s.collide, s.pool, s.x, false));
+	for (int32_t v = upper; v < n; v++)
+		assert_true(s.collide.step[3 * (size_t)v + 2] == 5e-4);
+	rig_finish(&s.r);
+}
+
+// A sheet that is fixed is no obstacle that gives way: the other one stops.
+static void what_is_fixed_is_not_moved(void **state)
+{
+	(void)state;
+	sheets s;
+	sheets_begin(&s, 5e-4, 0, 6e-4);
+	int32_t n = s.r.tissue.vertex_count, upper = s.r.tissue.layer[1].first_vertex;
+	memset(s.r.fixed, 1, (size_t)upper);
+	cau_collide_begin(&s.collide, s.pool, s.x, s.collide.step);
+	for (int32_t v = upper; v < n; v++)
+		s.collide.step[3 * (size_t)v + 2] = -9e-4;
+	assert_true(cau_collide_filter(&s.collide, s.pool, s.x, false));
+	for (int32_t v = 0; v < n; v++) {
+		double z = s.collide.step[3 * (size_t)v + 2];
+		assert_true(v < upper ? z == 0 : z > -6e-4 && z < 0);
+	}
+	rig_finish(&s.r);
+}
+
+static void without_room_nothing_crosses(void **state)
+{
+	(void)state;
+	sheets s;
+	sheets_begin(&s, 5e-4, 0, 2e-3);
+	s.collide.most_pairs = 40; // far from enough once they are near
+	throw_together(&s, true);
+	assert_true(s.collide.cut_short);
+	rig_finish(&s.r);
+}
+
+int main(void)
+{
+	const struct CMUnitTest tests[] = {
+		cmocka_unit_test(thrown_sheets_stay_apart),
+		cmocka_unit_test(what_cannot_make_room_stops),
+		cmocka_unit_test(parting_sheets_are_let_go),
+		cmocka_unit_test(what_is_fixed_is_not_moved),
+		cmocka_unit_test(without_room_nothing_crosses),
+	};
+	return cmocka_run_group_tests(tests, NULL, NULL);
+}
