@@ -78,7 +78,8 @@ def page(cases):
 
 The same four cuts, run command by command by `cauteryd` and looked at obliquely in the viewer ([clients/web](../../clients/web/README.md)),
 in headless Chromium, at the times of the drawing. What lies around the tissue, char in blotches and fringes of torn fibres
-along a lip are the viewer's, drawn from the same states; which tissue is there is the daemon's. As in the paper's figure 7, the fascia gapes and
+along a lip are the viewer's, drawn from the same states; which tissue is there is the daemon's. Figures 4 to 6
+stay drawings: which triangles go and lips that move by a millimetre are not seen better in pictures. As in the paper's figure 7, the fascia gapes and
 the fat opens with its membrane drawn back.
 
 | | cutting | | | at rest |
