@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Run from the source folder, because it looks at tests/browser too (`npm run lint`).
+// Run from the source folder, because it looks at tests/browser and tests/paper too (`npm run lint`).
 import { fileURLToPath } from 'node:url';
 import js from '@eslint/js';
 import { defineConfig, globalIgnores } from 'eslint/config';
@@ -8,7 +8,7 @@ import { configs } from 'typescript-eslint';
 export default defineConfig(
   globalIgnores(['**/dist/', '**/node_modules/', '**/*.js', '**/messages.gen.ts']),
   {
-    files: ['clients/web/**/*.ts', 'tests/browser/**/*.ts'],
+    files: ['clients/web/**/*.ts', 'tests/browser/**/*.ts', 'tests/paper/*.ts'],
     extends: [js.configs.recommended, configs.strictTypeChecked],
     languageOptions: {
       parserOptions: { project: './tsconfig.json', tsconfigRootDir: fileURLToPath(new URL('.', import.meta.url)) },

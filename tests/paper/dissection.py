@@ -2,10 +2,11 @@
 """Figure 7: fascia, and fat in its membrane, under the instrument, as sequences, and what their cuts are like."""
 
 import math
-from dataclasses import replace
+from dataclasses import dataclass, replace
 
 from drawing import Montage
 from shrinkage import edges_of
+from sim import at_once
 
 STEPS_PER_S = 60
 REST_S = 5  # after the cut
@@ -190,31 +191,60 @@ CASES = (  # name, scene, way of the cut, layer that is looked at
 )
 
 
-def dissect(sim, name, make, way, layer, montage):
+@dataclass
+class Cut:
+    """States of a cut, seen with x along it, the tool's tips and their hot radius, and what it is like at its end."""
+
+    name: str
+    layer: int
+    states: dict
+    tips: dict
+    radius_m: float
+    measures: dict
+
+    @property
+    def last(self):
+        return max(self.states)
+
+    def draw(self, montage, title, tick):
+        picture(montage, title, self.states[0], self.states[tick], self.layer, (*self.tips[tick], self.radius_m))
+
+
+def length_m(scene):
+    return math.dist(scene["cut"]["from_m"], scene["cut"]["to_m"])
+
+
+def ticks_of(scene):
+    """Of the cut and the rest after it, in whole intervals of the states that are kept."""
+    cut = scene["cut"]
+    seconds = 3 + cut["dwell_s"] + length_m(scene) / cut["speed_m_s"] + REST_S
+    return round(seconds * STEPS_PER_S / STATES) * STATES
+
+
+def dissect(sim, name, make, way, layer):
     scene = make(sim)
-    cut, tool = scene["cut"], scene["tools"][0]
-    length_m = math.dist(cut["from_m"], cut["to_m"])
-    ticks = round((3 + cut["dwell_s"] + length_m / cut["speed_m_s"] + REST_S) * STEPS_PER_S / STATES) * STATES
+    ticks = ticks_of(scene)
     run = sim.run(scene, cut=True, seconds=ticks / STEPS_PER_S, states_every=ticks // STATES)
-    whole = seen(run.states[0], way)
-    for tick in (ticks * k // STATES for k in DRAWN):
-        x, y, _ = run.tips[tick][0]
-        tip = (x, y, tool["hot_radius_m"]) if way == "x" else (y, x, tool["hot_radius_m"])
-        picture(montage, f"{name}, {tick / STEPS_PER_S:.0f} s", whole, seen(run.states[tick], way), layer, tip)
-    found = measure(whole, seen(run.states[ticks], way), layer, 0.9 * length_m / 2, HALF_WIDTH_M)
-    return {"name": name, "what": make.__doc__, "length_mm": 1e3 * length_m, **found}
+    states = {tick: seen(state, way) for tick, state in run.states.items()}
+    tips = {tick: of[0][:2] if way == "x" else of[0][1::-1] for tick, of in run.tips.items()}
+    measures = measure(states[0], states[ticks], layer, 0.9 * length_m(scene) / 2, HALF_WIDTH_M)
+    return Cut(name, layer, states, tips, scene["tools"][0]["hot_radius_m"],
+               {"name": name, "length_mm": 1e3 * length_m(scene), **measures})
 
 
 def run(sim, folder, quick):
     montage = Montage(len(DRAWN), 260, 205, 3500)
-    cuts = [dissect(sim, *case, montage) for case in (CASES[:2] if quick else CASES)]
+    cuts = at_once([lambda case=case: dissect(sim, *case) for case in (CASES[:2] if quick else CASES)])
     if not quick:
+        for cut in cuts:
+            for tick in (cut.last * k // STATES for k in DRAWN):
+                cut.draw(montage, f"{cut.name}, {tick / STEPS_PER_S:.0f} s", tick)
         montage.write(f"{folder}/figure-7.svg")
     figures = {}
-    for c in cuts:
+    for c in (cut.measures for cut in cuts):
         name = f"figure_7.{c['name'].replace(', ', '.')}"
         figures |= {f"{name}.strands": c["strands"], f"{name}.rough_mm": c["rough_mm"], f"{name}.open_mm": c["mean_mm"]}
-    return figures, cuts
+    return figures, [cut.measures for cut in cuts]
 
 
 def page(cuts):
@@ -224,7 +254,7 @@ def page(cuts):
              f"{c['mean_mm']:.1f}, {c['most_mm']:.1f} | {c['gone']} | {c['charred']} |" for c in cuts]
     return f"""## Figure 7: fascia and fat under the instrument
 
-Drawn from the states that `cautery-sim` writes, from above, not by the viewer: the top layer's border, what is open dark,
+Drawn from the states that `cautery-sim` writes, from above (the viewer's pictures follow): the top layer's border, what is open dark,
 what has taken more than {CHARRED:.0%} of its ignition's dose brown, the hot part a ring. The paper's scenes as they are,
 then with other ways of the tool and an uneven ignition:
 

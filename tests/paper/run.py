@@ -1,11 +1,17 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Makes the paper's figures and tables from the shipped scenes, and writes this folder's README.md.
+"""Makes the paper's figures and tables and the validation of the method, and writes README.md and validation.md here.
 
-Usage: tests/paper/run.py [--programs build/bin]          all of it, and the page with its pictures
+Usage: tests/paper/run.py [--programs build/bin]          all of it, and both pages with their pictures
        tests/paper/run.py --quick [--programs build/bin]  a small form of each, against expected.json;
                                                           writes nothing, fails where a figure is off
-       tests/paper/run.py --only NAME...                  these parts alone; writes their pictures only
+       tests/paper/run.py --only NAME...                  these parts alone; writes their pictures and
+                                                          prints their sections
+       tests/paper/run.py --keep FILE                     all of it, but what FILE has from a run that was
+                                                          interrupted; each part is kept there when made
+
+Wants the programs and tests of a Release build; gnuplot for plots; for the viewer's pictures Chromium and
+clients/web/node_modules (npm ci there). A part that cannot be made says so on its page, and the command fails.
 """
 
 import argparse
@@ -14,32 +20,51 @@ import os
 import platform
 import sys
 import time
+import traceback
 
 sys.path.insert(0, os.path.dirname(os.path.abspath(__file__)))
+import conservation  # noqa: E402
 import costs  # noqa: E402
+import cuts  # noqa: E402
 import dissection  # noqa: E402
+import elements  # noqa: E402
+import errors  # noqa: E402
+import heat  # noqa: E402
 import ignition  # noqa: E402
+import loads  # noqa: E402
+import parting  # noqa: E402
 import patterns  # noqa: E402
 import remeshing  # noqa: E402
 import shrinkage  # noqa: E402
 import strain_limits  # noqa: E402
-import validation  # noqa: E402
+import viewer  # noqa: E402
 from sim import FOLDER, ROOT, Sim  # noqa: E402
 
-PARTS = {"strain_limits": strain_limits, "patterns": patterns, "shrinkage": shrinkage,
-         "dissection": dissection, "ignition": ignition, "remeshing": remeshing, "costs": costs,
-         "validation": validation}
+PAPER = {"strain_limits": strain_limits, "patterns": patterns, "parting": parting, "shrinkage": shrinkage,
+         "dissection": dissection, "viewer": viewer, "ignition": ignition, "remeshing": remeshing, "costs": costs}
+VALIDATION = {"elements": elements, "heat": heat, "conservation": conservation, "loads": loads, "errors": errors,
+              "cuts": cuts}
+PARTS = PAPER | VALIDATION
+NOT_QUICK = {"viewer"}  # the browser's own tests hold the viewer; what is cut in its pictures, figure 7's figures
 
-HEAD = """# The paper, reproduced
+PAPER_HEAD = """# The paper, reproduced
 
 What *Energized Soft Tissue Dissection in Surgery Simulation* shows and a simulation can make, made here: their figures
-and numbers beside ours, every parameter, and in plain words where ours differs. This page is written by
+and numbers beside ours, every parameter, and in plain words where ours differs. This page, and [validation.md](validation.md)
+beside it, are written by
 
     tests/paper/run.py
 
-from the shipped scenes ([deploy/scenes](../../deploy/scenes/README.md)) through `cautery-sim`. `tests/paper/run.py
+from the shipped scenes ([deploy/scenes](../../deploy/scenes/README.md)) through `cautery-sim` and the viewer. `tests/paper/run.py
 --quick` is the same code in a small form; the test `paper_quick` holds its figures to `expected.json`, each within the
-tolerance that stands there. Section and equation numbers are the paper's.
+tolerance that stands there; `--only NAME` makes one part. Section and equation numbers are the paper's.
+"""
+
+VALIDATION_HEAD = """# The method, validated
+
+What the method is off where an answer is known, and what its results depend on. Written by `tests/paper/run.py`, with
+[the paper's page](README.md); each section names the command that makes its numbers. The test `paper_quick` holds some of each
+in a small form (`expected.json`).
 """
 
 
@@ -55,21 +80,61 @@ def arguments():
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("--programs", default=os.path.join(ROOT, "build", "bin"), help="folder of cautery-sim")
     parser.add_argument("--quick", action="store_true", help="small, against expected.json")
-    parser.add_argument("--only", nargs="+", choices=sorted(PARTS), help="these parts alone")
+    parser.add_argument("--only", nargs="+", choices=list(PARTS), metavar="NAME",
+                        help=f"these parts alone: {', '.join(PARTS)}")
+    parser.add_argument("--keep", metavar="FILE", help="parts that are made, of this run and an earlier one")
     return parser.parse_args()
 
 
-def run_parts(sim, names, quick):
-    """({figure: value}, {part: section of the page})"""
-    figures, sections = {}, {}
-    for name in names:
-        print(f"{name} ...", file=sys.stderr, flush=True)
+def say(text):
+    print(text, file=sys.stderr, flush=True)
+
+
+def make(sim, name, quick):
+    """(figures, section of a page, None or why there is none)"""
+    try:
+        figures, details = PARTS[name].run(sim, FOLDER, quick)
+        return figures, "" if quick else PARTS[name].page(details), None
+    except Exception as error:  # of whatever kind: the other parts are worth having
+        traceback.print_exc()
+        why = f"{type(error).__name__}: {error}"
+        return {}, f"## {name}\n\nCould not be made this time: {why}\n", why
+
+
+def read_kept(path):
+    """{part: its section and the seconds that it took}, of an interrupted run."""
+    if not path or not os.path.exists(path):
+        return {}
+    with open(path, encoding="utf-8") as file:
+        return json.load(file)
+
+
+def write_kept(path, kept):
+    with open(path, "w", encoding="utf-8") as file:
+        json.dump(kept, file, indent=1)
+
+
+def run_parts(sim, names, quick, keep=None):
+    """({figure: value}, {part: section of its page}, {part: why it could not be made}, seconds in all)"""
+    figures, sections, failed, kept, took = {}, {}, {}, read_kept(keep), 0
+    for index, name in enumerate(names):
+        if name in kept:
+            sections[name] = kept[name]["section"]
+            took += kept[name]["seconds"]
+            continue
+        say(f"{index + 1} of {len(names)}: {name} ...")
         start = time.monotonic()
-        found, details = PARTS[name].run(sim, FOLDER, quick)
+        found, sections[name], why = make(sim, name, quick)
+        seconds = time.monotonic() - start
+        took += seconds
         figures |= found
-        sections[name] = PARTS[name].page(details)
-        print(f"{name}: {time.monotonic() - start:.0f} s", file=sys.stderr, flush=True)
-    return figures, sections
+        if why:
+            failed[name] = why
+        elif keep:
+            kept[name] = {"section": sections[name], "seconds": seconds}
+            write_kept(keep, kept)
+        say(f"{name}: {why or 'made'}, {seconds:.0f} s")
+    return figures, sections, failed, took
 
 
 def compare(figures, expected):
@@ -93,21 +158,37 @@ def check(figures, names):
     return 1 if complaints else 0
 
 
+def duration(seconds):
+    return f"{seconds / 60:.0f} minutes" if seconds >= 90 else f"{seconds:.0f} seconds"
+
+
+def made_line(seconds, load_before, failed):
+    cores = len(os.sched_getaffinity(0))
+    whole = f"Made but for {', '.join(failed)}" if failed else "Made whole"
+    return (f"{whole} in {duration(seconds)}, {time.strftime('%Y-%m-%d')}, on {cores} cores of: {processor()}. The machine's load "
+            f"before was {load_before:.1f}: where that is not near 0, others used it too, and times are to be compared within "
+            "one table only.\n")
+
+
+def write_pages(sections, last):
+    for file_name, head, parts in (("README.md", PAPER_HEAD, PAPER), ("validation.md", VALIDATION_HEAD, VALIDATION)):
+        with open(os.path.join(FOLDER, file_name), "w", encoding="utf-8") as file:
+            file.write("\n".join([head, last, *(sections[name] for name in parts)]))
+
+
 def main():
     given = arguments()
-    names = given.only or list(PARTS)
-    start = time.monotonic()
-    figures, sections = run_parts(Sim(os.path.join(given.programs, "cautery-sim")), names, given.quick)
-    if given.quick:
-        return check(figures, names)
-    if given.only:
+    names = given.only or [name for name in PARTS if not (given.quick and name in NOT_QUICK)]
+    load_before = os.getloadavg()[0]
+    sim = Sim(os.path.join(given.programs, "cautery-sim"))
+    figures, sections, failed, took = run_parts(sim, names, given.quick, given.keep)
+    status = check(figures, names) if given.quick else 0
+    if given.only and not given.quick:
         print("\n".join(sections.values()))
-        return 0
-    last = (f"Made whole in {(time.monotonic() - start) / 60:.0f} minutes, {time.strftime('%Y-%m-%d')}, on one core of: "
-            f"{processor()}.\n")
-    with open(os.path.join(FOLDER, "README.md"), "w", encoding="utf-8") as file:
-        file.write("\n".join([HEAD, last, *sections.values()]))
-    return 0
+    elif not given.quick:
+        write_pages(sections, made_line(took, load_before, failed))
+    say(f"{len(names) - len(failed)} of {len(names)} parts in {duration(took)}")
+    return 1 if failed else status
 
 
 if __name__ == "__main__":

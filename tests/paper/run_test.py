@@ -4,13 +4,20 @@
 import math
 import os
 import sys
+import tempfile
 import unittest
 
 sys.path.insert(0, os.path.dirname(os.path.abspath(__file__)))
+import cuts  # noqa: E402
 import dissection  # noqa: E402
+import elements  # noqa: E402
 import geometry  # noqa: E402
+import heat  # noqa: E402
 import patterns  # noqa: E402
+import plots  # noqa: E402
 import run  # noqa: E402
+import sim  # noqa: E402
+import viewer  # noqa: E402
 
 TRIANGLE = ((0, 0, 0), (2, 0, 0), (0, 1, 0))
 
@@ -24,6 +31,75 @@ class Figures(unittest.TestCase):
         self.assertEqual(run.compare({}, {"a": [1, 0.1]}), ["a: not measured"])
         self.assertEqual(run.compare({"a": 1}, {}), ["a = 1, which expected.json does not have"])
         self.assertEqual(len(run.compare({"a": math.nan}, {"a": [1, 0.1]})), 1)
+
+
+class Parts(unittest.TestCase):
+    def test_a_part_that_cannot_be_made_says_so_and_the_others_are_made(self):
+        class Broken:
+            @staticmethod
+            def run(_sim, _folder, _quick):
+                raise OSError("no such program")
+
+        class Whole:
+            @staticmethod
+            def run(_sim, _folder, _quick):
+                return {"whole": 1}, "details"
+
+            @staticmethod
+            def page(details):
+                return f"of {details}"
+        kept, run.PARTS = run.PARTS, {"broken": Broken, "whole": Whole}
+        try:
+            with tempfile.TemporaryDirectory() as folder:
+                path = os.path.join(folder, "kept.json")
+                figures, sections, failed, _ = run.run_parts(None, ["broken", "whole"], False, path)
+                again = run.run_parts(None, ["whole"], False, path)
+        finally:
+            run.PARTS = kept
+        self.assertEqual(again[:2], ({}, {"whole": "of details"}))  # it was not made again
+        self.assertEqual((figures, list(failed), sections["whole"]), ({"whole": 1}, ["broken"], "of details"))
+        self.assertIn("Could not be made this time: OSError: no such program", sections["broken"])
+        self.assertIn("Made but for broken in", run.made_line(60, 0, failed))
+        self.assertIn("Made whole in 20 minutes", run.made_line(1200, 0, {}))
+
+    def test_every_part_has_its_figures_expected_and_its_place_on_a_page(self):
+        with open(os.path.join(run.FOLDER, "expected.json"), encoding="utf-8") as file:
+            expected = run.json.load(file)
+        self.assertEqual(set(expected), set(run.PARTS) - run.NOT_QUICK)
+        self.assertEqual(set(run.PARTS), set(run.PAPER) | set(run.VALIDATION))
+
+    def test_jobs_come_back_in_their_order(self):
+        self.assertEqual(sim.at_once([lambda k=k: k for k in range(9)]), list(range(9)))
+
+
+class Validation(unittest.TestCase):
+    def test_lines_of_the_test_of_equilibria_are_read(self):
+        line = ("[ RUN ] x\ntwist_stvk_nu30                  displacement 3.2e-09, force 1.8e-08 of the same mesh's; mesh "
+                "against a converged one +36.1 %; 0.4 s\n")
+        self.assertEqual(elements.LINE.findall(line), [("twist_stvk_nu30", "3.2e-09", "1.8e-08", "+36.1")])
+
+    def test_the_closed_form_is_hot_at_the_ball_and_comes_to_r_over_r(self):
+        self.assertEqual(heat.exact_c(heat.BALL_M, 1), heat.HOT_C)
+        half = (heat.HOT_C + heat.AMBIENT_C) / 2
+        self.assertAlmostEqual(heat.exact_c(2 * heat.BALL_M, 1e11), half, delta=1e-3)
+        self.assertAlmostEqual(heat.exact_c(1, 1), heat.AMBIENT_C)
+        points = [(0.001, 170), (0.004, heat.exact_c(0.004, 1) + 13.3), (0.005, heat.exact_c(0.005, 1) - 1.33)]
+        self.assertAlmostEqual(heat.worst(points, 1), 0.1)
+
+    def test_the_volume_of_a_cell(self):
+        class Rest:
+            position_m = [(0, 0, 0), (1, 0, 0), (0, 2, 0), (0, 0, 3)]
+        self.assertAlmostEqual(cuts.volume(Rest, (0, 1, 2, 3)), 1)
+
+    def test_a_thinned_line_keeps_both_ends(self):
+        line = [(k, 0) for k in range(1000)]
+        self.assertEqual(plots.thinned(line)[0], line[0])
+        self.assertEqual(plots.thinned(line)[-1], line[-1])
+        self.assertLessEqual(len(plots.thinned(line)), 201)
+        self.assertEqual(plots.thinned(line[:9]), line[:9])
+
+    def test_pictures_are_named_by_their_cut(self):
+        self.assertEqual(viewer.file_stem("fascia, frayed"), "figure-7-fascia-frayed")
 
 
 class Geometry(unittest.TestCase):

@@ -7,6 +7,7 @@ import json
 import os
 import subprocess
 import tempfile
+from concurrent.futures import ThreadPoolExecutor
 from dataclasses import dataclass
 
 import vtu
@@ -25,9 +26,29 @@ class Run:
     tips: dict
 
 
+def at_once(jobs):
+    """What each job returns, in their order; as many at a time as there are processors."""
+    with ThreadPoolExecutor(len(os.sched_getaffinity(0))) as pool:
+        return [future.result() for future in [pool.submit(job) for job in jobs]]
+
+
+def printed(sim, program, *arguments):
+    """What a program of the tests prints."""
+    command = [os.path.join(os.path.dirname(os.path.dirname(sim.program)), "tests", program), *arguments]
+    return subprocess.run(command, stdout=subprocess.PIPE, stderr=subprocess.STDOUT, text=True, check=True).stdout
+
+
+def table(sim, program, *arguments):
+    """The CSV that it prints, as numbers by column."""
+    return [{name: float(value) for name, value in row.items()}
+            for row in csv.DictReader(printed(sim, program, *arguments).splitlines())]
+
+
 class Sim:
+    """cautery-sim; the programs beside it are found by where it is."""
+
     def __init__(self, program):
-        self.program = program
+        self.program = os.path.abspath(program)
 
     @staticmethod
     def scene(name):

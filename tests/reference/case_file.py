@@ -31,7 +31,7 @@ def write_case(path, case, mesh, solution):
         _section(out, "vertices", (_numbers(p) for p in position))
         _section(out, "tetrahedra", (" ".join(map(str, t)) for t in tetrahedron))
         _section(out, "fixed", (str(v) for v in solution["fixed"]))
-        _section(out, "prescribed", (f"{v} {_numbers(case.move_m)}" for v in solution["moved"]))
+        _section(out, "prescribed", (f"{v} {_numbers(solution['displacement'][v])}" for v in solution["moved"]))
         _section(out, "contacts", (f"{v} {f:.9g}" for v, f in solution["contacts"]))
         _section(out, "displacements", (_numbers(u) for u in solution["displacement"]))
         out.write("end\n")

@@ -29,6 +29,8 @@ static const char *const NAMES[] = {
 	"cantilever_stvk_nu45",
 	"cantilever_neohookean_nu30",
 	"cantilever_neohookean_nu45",
+	"twist_stvk_nu30",
+	"twist_neohookean_nu40",
 	"indentation_stvk_nu30",
 	"indentation_neohookean_nu30",
 	"indentation_neohookean_nu40",

@@ -33,7 +33,8 @@ class Case:
     steps: int
     density_kg_m3: float = 911.0
     gravity_m_s2: tuple = (0.0, 0.0, 0.0)
-    move_m: tuple = ()       # of the far end; empty: it is free
+    move_m: tuple = ()       # of the far end; empty: it is free, unless it is turned
+    turn_rad: float = 0.0    # of the far end about the beam's axis
     sphere_radius_m: float = 0.0
     depth_m: float = 0.0
     finer: tuple = (2, 2)    # the converged mesh: cells along each side x this, and its degree
@@ -48,7 +49,15 @@ class Case:
         return np.flatnonzero(x[:, 0] > self.size_m[0] / 2 - NEAR)
 
     def moved(self, x):
-        return self.end(x) if self.move_m else np.array([], dtype=int)
+        return self.end(x) if self.move_m or self.turn_rad else np.array([], dtype=int)
+
+    def end_moves(self, x):
+        """What the far end's nodes are to move by (m)."""
+        if not self.turn_rad:
+            return np.tile(self.move_m, (len(x), 1))
+        y, z = x[:, 1], x[:, 2] + self.size_m[2] / 2
+        c, s = np.cos(self.turn_rad), np.sin(self.turn_rad)
+        return np.stack([0 * y, (c - 1) * y - s * z, s * y + (c - 1) * z], axis=1)
 
     def sphere_m(self):
         """Centre and radius."""
@@ -64,6 +73,11 @@ class Case:
         """The one number that is compared with the converged mesh (README.md)."""
         if self.move_m:
             return answer.force[self.moved(x)].sum(axis=0)[0]
+        if self.turn_rad:
+            end = self.moved(x)
+            now, force = (x + answer.u.reshape(-1, 3))[end], answer.force[end]
+            arm = now[:, 1], now[:, 2] + self.size_m[2] / 2
+            return (arm[0] * force[:, 2] - arm[1] * force[:, 1]).sum()
         if self.sphere_radius_m:
             return answer.force[list(answer.contact)].sum(axis=0)[2]
         y, z = abs(x[:, 1]), abs(x[:, 2] + self.size_m[2] / 2)
@@ -82,7 +96,8 @@ class Case:
         x = body.position
         fixed, moved = self.fixed(x), self.moved(x)
         target = np.zeros((len(fixed) + len(moved), 3))
-        target[len(fixed):] = self.move_m or 0.0
+        if len(moved):
+            target[len(fixed):] = self.end_moves(x[moved])
         return equilibrium(body, np.concatenate([fixed, moved]), target,
                            self.sphere_at if self.sphere_radius_m else None, self.steps, start,
                            residual)
@@ -93,6 +108,9 @@ def cases():
                  move_m=(0.012, 0.0, 0.004))
     beam = dict(young_modulus_pa=4e5, size_m=(0.25, 0.03, 0.04), cells=(25, 3, 4), steps=4,
                 gravity_m_s2=(0.0, 0.0, -9.81))
+    # Sixty degrees: the far end's corners go 21 mm, its edges are never shorter than 0.87 on the way.
+    twisted = dict(young_modulus_pa=5e3, size_m=(0.12, 0.03, 0.03), cells=(16, 4, 4), steps=6,
+                   turn_rad=np.pi / 3)
     pressed = dict(young_modulus_pa=5e3, size_m=(0.024, 0.024, 0.012), cells=(12, 12, 6),
                    sphere_radius_m=0.006, finer=(2, 1))
     return [
@@ -103,6 +121,8 @@ def cases():
         Case("cantilever_stvk_nu45", "stvk", poisson_ratio=0.45, **beam),
         Case("cantilever_neohookean_nu30", "neohookean", poisson_ratio=0.3, **beam),
         Case("cantilever_neohookean_nu45", "neohookean", poisson_ratio=0.45, **beam),
+        Case("twist_stvk_nu30", "stvk", poisson_ratio=0.3, **twisted),
+        Case("twist_neohookean_nu40", "neohookean", poisson_ratio=0.4, **twisted),
         # St. Venant-Kirchhoff gives way in compression: 2 mm already crushes elements to 0.43.
         Case("indentation_stvk_nu30", "stvk", poisson_ratio=0.3, depth_m=0.0015, steps=12,
              **pressed),

@@ -236,6 +236,12 @@ static void a_cantilever(void **state)
 	each_case("cantilever_", 4);
 }
 
+static void a_twisted_beam(void **state)
+{
+	(void)state;
+	each_case("twist_", 2);
+}
+
 static void an_indentation(void **state)
 {
 	(void)state;
@@ -247,6 +253,7 @@ int main(void)
 	const struct CMUnitTest tests[] = {
 		cmocka_unit_test(a_pulled_block),
 		cmocka_unit_test(a_cantilever),
+		cmocka_unit_test(a_twisted_beam),
 		cmocka_unit_test(an_indentation),
 	};
 	return cmocka_run_group_tests(tests, NULL, NULL);
