@@ -21,7 +21,7 @@ enum record_kind {
 	RECORD_ARRIVAL,
 	RECORD_ARRIVAL_FORGET, // as.arrival: id
 	RECORD_ROWS,           // as.rows; what is lent
-	RECORD_GENERATION, // as.generation
+	RECORD_GENERATION,     // as.generation
 };
 
 struct record {
