@@ -59,132 +59,6 @@ static void pass_update(snapshot_archive *archive, cau_session *session)
 	}
 }
 
-// What a tool's state had before version 6; all of it that decides what follows in a snapshot.
-static const size_t older_state = offsetof(cau_tool_state, asked_pose);
-
-// What came with version 6: before, a tool was where it was asked to be.
-static void pass_anchor(snapshot_archive *archive, cau_tool *tool)
-{
-	if (archive->version >= 6) {
-		snapshot_pass(archive, &tool->state.asked_pose, sizeof tool->state - older_state);
-		snapshot_pass(archive, &tool->anchor, sizeof tool->anchor);
-		snapshot_pass(archive, &tool->pace, sizeof tool->pace);
-	} else if (archive->reading) {
-		tool->state.asked_pose = tool->anchor = tool->state.pose;
-		tool->pace = 1;
-	}
-}
-
-// As it was when jaws held vertices alone; the faces come with pass_faces_held.
-static void pass_hold(snapshot_archive *archive, cau_grasp *grasp)
-{
-	int32_t unused = 0;
-	snapshot_pass(archive, &grasp->vertex[0], sizeof grasp->vertex[0]);
-	snapshot_pass(archive, &unused, sizeof unused);
-	snapshot_pass(archive, grasp->local, sizeof grasp->local);
-	snapshot_pass(archive, grasp->start, sizeof grasp->start);
-	if (archive->reading)
-		*grasp = (cau_grasp){.face = -1,
-		                     .vertex = {grasp->vertex[0], -1, -1},
-		                     .weight = {1, 0, 0},
-		                     .local = {grasp->local[0], grasp->local[1], grasp->local[2]},
-		                     .start = {grasp->start[0], grasp->start[1], grasp->start[2]}};
-}
-
-static void pass_tool(snapshot_archive *archive, cau_tool *tool)
-{
-	CAU_ASSERT(tool->grid.nodes >= 0 && tool->grid.nodes <= CAU_SNAPSHOT_NODES,
-	           "a heat grid of %d nodes", tool->grid.nodes);
-	cau_heat_grid *grid = &tool->grid;
-	snapshot_pass(archive, &tool->state, older_state);
-	snapshot_pass(archive, &tool->target, sizeof tool->target);
-	snapshot_pass(archive, &tool->jaw_target, sizeof tool->jaw_target);
-	snapshot_pass(archive, &tool->pose_before, sizeof tool->pose_before);
-	pass_anchor(archive, tool);
-	snapshot_pass(archive, &tool->grasp_count, sizeof tool->grasp_count);
-	for (int32_t k = 0; k < CAU_MAX_GRASPED; k++)
-		pass_hold(archive, &tool->grasp[k]);
-	snapshot_pass(archive, grid->field[0].origin, sizeof grid->field[0].origin);
-	size_t nodes = (size_t)grid->nodes * (size_t)grid->nodes * (size_t)grid->nodes;
-	int fields = archive->version < CAU_SNAPSHOT_NESTED ? 1 : CAU_HEAT_FIELDS;
-	for (int k = 0; k < fields; k++)
-		snapshot_pass(archive, grid->field[k].temperature, nodes * sizeof(float));
-}
-
-// What a material bears came with version 6, as its last member, and has a place of its own below:
-// the materials themselves are passed as they have always been.
-enum { BEARING_BYTES = sizeof(cau_heat_material) - offsetof(cau_heat_material, tear_energy_j_m2) };
-_Static_assert(BEARING_BYTES == sizeof(double), "what a material bears is its last member");
-_Static_assert(offsetof(cau_layer_def, link) + sizeof(cau_link_material) == sizeof(cau_layer_def),
-               "nothing is behind a layer's last material");
-_Static_assert(sizeof((cau_command *)0)->as == sizeof((cau_command *)0)->as.material,
-               "a command with materials is the longest");
-
-static void pass_materials(snapshot_archive *archive, cau_sheet_material *sheet,
-                           cau_fat_material *fat, cau_link_material *link, int count)
-{
-	for (int i = 0; i < count; i++)
-		snapshot_pass(archive, &sheet[i], sizeof *sheet - BEARING_BYTES);
-	for (int i = 0; i < count; i++)
-		snapshot_pass(archive, &fat[i], sizeof *fat - BEARING_BYTES);
-	snapshot_pass(archive, link, sizeof *link - BEARING_BYTES);
-}
-
-static void pass_command(snapshot_archive *archive, cau_command *command)
-{
-	const size_t before = offsetof(cau_command, as), all = sizeof *command - 3 * BEARING_BYTES;
-	snapshot_pass(archive, command, before);
-	if (!archive->bytes || command->kind != CAU_COMMAND_SET_MATERIAL) {
-		snapshot_pass(archive, &command->as, all - before);
-		return;
-	}
-	const size_t sheet = offsetof(cau_command, as.material.sheet);
-	snapshot_pass(archive, &command->as, sheet - before);
-	pass_materials(archive, &command->as.material.sheet, &command->as.material.fat,
-	               &command->as.material.link, 1);
-}
-
-static void pass_bearings(snapshot_archive *archive, cau_sheet_material *sheet,
-                          cau_fat_material *fat, cau_link_material *link, int count)
-{
-	for (int i = 0; i < count; i++)
-		snapshot_pass(archive, &sheet[i].heat.tear_energy_j_m2, BEARING_BYTES);
-	for (int i = 0; i < count; i++)
-		snapshot_pass(archive, &fat[i].heat.tear_energy_j_m2, BEARING_BYTES);
-	snapshot_pass(archive, &link->heat.tear_energy_j_m2, BEARING_BYTES);
-}
-
-// Since version 6: what materials bear, and which elements are over it.
-static void pass_tears(snapshot_archive *archive, cau_session *session)
-{
-	cau_tears *tears = &session->dissection.tears;
-	for (int32_t i = 0; i < session->tissue.layer_count; i++) {
-		cau_layer_def *def = &session->tissue.layer[i].def;
-		pass_bearings(archive, def->sheet, def->fat, &def->link, CAU_MAX_MATERIALS);
-	}
-	for (int32_t i = 0; i < session->command_count; i++) {
-		cau_command none, *command = &session->command[i];
-		memset(&none, 0, sizeof none); // others have the same room, empty
-		if (command->kind != CAU_COMMAND_SET_MATERIAL)
-			command = &none;
-		pass_bearings(archive, &command->as.material.sheet, &command->as.material.fat,
-		              &command->as.material.link, 1);
-	}
-	snapshot_pass(archive, tears->over, (size_t)tears->over_count * sizeof *tears->over);
-}
-
-// Since version 6: which holds are on faces.
-static void pass_faces_held(snapshot_archive *archive, cau_session *session)
-{
-	for (int32_t i = 0; i < session->tool_count; i++)
-		for (int32_t k = 0; k < CAU_MAX_GRASPED; k++) {
-			cau_grasp *grasp = &session->tool[i].grasp[k];
-			snapshot_pass(archive, &grasp->face, sizeof grasp->face);
-			snapshot_pass(archive, grasp->vertex, sizeof grasp->vertex);
-			snapshot_pass(archive, grasp->weight, sizeof grasp->weight);
-		}
-}
-
 // Everything but the tools and what decides the system's shape, which restoring needs first.
 static cau_status pass_state(snapshot_archive *archive, cau_session *session, cau_error *error)
 {
@@ -205,11 +79,11 @@ static cau_status pass_state(snapshot_archive *archive, cau_session *session, ca
 	snapshot_pass(archive, session->shrink.active,
 	              (size_t)session->shrink.active_count * sizeof *session->shrink.active);
 	for (int32_t i = 0; i < session->command_count; i++)
-		pass_command(archive, &session->command[i]);
+		cau_snapshot_pass_command(archive, &session->command[i]);
 	for (int32_t i = 0; i < session->tissue.layer_count; i++) {
 		cau_layer_def *def = &session->tissue.layer[i].def;
 		snapshot_pass(archive, def, offsetof(cau_layer_def, sheet));
-		pass_materials(archive, def->sheet, def->fat, &def->link, CAU_MAX_MATERIALS);
+		cau_snapshot_pass_materials(archive, def->sheet, def->fat, &def->link, CAU_MAX_MATERIALS);
 	}
 	cau_status status = cau_snapshot_pass_elements(archive, session, error);
 	pass_update(archive, session);
@@ -218,8 +92,8 @@ static cau_status pass_state(snapshot_archive *archive, cau_session *session, ca
 	if (session->rest.quiet_ticks && !session->rest.resting)
 		snapshot_pass(archive, session->rest.from, 3 * n * sizeof(double));
 	if (archive->version >= 6) {
-		pass_tears(archive, session);
-		pass_faces_held(archive, session);
+		cau_snapshot_pass_tears(archive, session);
+		cau_snapshot_pass_faces_held(archive, session);
 	}
 	return status;
 }
@@ -231,7 +105,7 @@ static void write_payload(cau_session *session, snapshot_archive *archive)
 		snapshot_pass(archive, (void *)(uintptr_t)cau_factor_permutation(session->solver.factor),
 		              (size_t)session->solver.system.row_count * sizeof(int32_t));
 	for (int32_t i = 0; i < session->tool_count; i++)
-		pass_tool(archive, &session->tool[i]);
+		cau_snapshot_pass_tool(archive, &session->tool[i]);
 	pass_state(archive, session, NULL); // writing does not fail
 }
 
@@ -295,14 +169,14 @@ static cau_status check_tools(const snapshot_header *header, const unsigned char
 {
 	for (int32_t i = 0; i < header->tool_count; i++) {
 		cau_tool_state state;
-		if (counted->at + older_state > counted->capacity)
+		if (counted->at + CAU_SNAPSHOT_OLDER_TOOL > counted->capacity)
 			return cau_snapshot_corrupt(error, "bytes are missing");
-		memcpy(&state, payload + counted->at, older_state);
+		memcpy(&state, payload + counted->at, CAU_SNAPSHOT_OLDER_TOOL);
 		double cells = state.definition.grid_cells; // a whole number of nodes is made of it
 		if (!(cells >= header->grid_nodes[i] && cells < header->grid_nodes[i] + 1.0))
 			return cau_snapshot_corrupt(error, "a heat grid has another size");
 		cau_tool tool = {.grid.nodes = header->grid_nodes[i]};
-		pass_tool(counted, &tool);
+		cau_snapshot_pass_tool(counted, &tool);
 	}
 	return CAU_OK;
 }
@@ -341,14 +215,14 @@ static cau_status restore_tools(cau_session *session, const snapshot_header *hea
 		memset(tool, 0, sizeof *tool);
 		cau_tool_state state;
 		snapshot_archive ahead = *archive;
-		snapshot_pass(&ahead, &state, older_state);
+		snapshot_pass(&ahead, &state, CAU_SNAPSHOT_OLDER_TOOL);
 		cau_status status =
 			cau_heat_grid_create(&tool->grid, &state.definition, session->scene->ambient_c,
 		                         session->solver.step_s, &state.pose, error);
 		if (status)
 			return status;
 		session->tool_count++;
-		pass_tool(archive, tool);
+		cau_snapshot_pass_tool(archive, tool);
 		if (header->version < CAU_SNAPSHOT_NESTED)
 			cau_heat_grid_fill_outer(&tool->grid);
 		cau_heat_grid_take_over(&tool->grid, &state.definition, &state.pose, state.jaw,

@@ -2,6 +2,7 @@
 // The bytes of a snapshot's payload: the same walk over the state counts, writes and reads them.
 #pragma once
 
+#include <stddef.h>
 #include <string.h>
 
 #include "session/session_internal.h"
@@ -28,3 +29,19 @@ static inline void snapshot_pass(snapshot_archive *archive, void *data, size_t b
 // older version, is the only failure.
 cau_status cau_snapshot_pass_elements(snapshot_archive *archive, cau_session *session,
                                       cau_error *error);
+
+// Bytes that a tool's state had before version 6; all of it that decides what follows in a
+// snapshot.
+enum { CAU_SNAPSHOT_OLDER_TOOL = offsetof(cau_tool_state, asked_pose) };
+
+// snapshot_tools.c
+void cau_snapshot_pass_tool(snapshot_archive *archive, cau_tool *tool);
+// Since version 6: which of the holds of all tools are on faces, and where.
+void cau_snapshot_pass_faces_held(snapshot_archive *archive, cau_session *session);
+
+// snapshot_materials.c: materials as all versions have them; a command with those that it sets;
+// and, since version 6, what materials bear and which elements are over it.
+void cau_snapshot_pass_materials(snapshot_archive *archive, cau_sheet_material *sheet,
+                                 cau_fat_material *fat, cau_link_material *link, int count);
+void cau_snapshot_pass_command(snapshot_archive *archive, cau_command *command);
+void cau_snapshot_pass_tears(snapshot_archive *archive, cau_session *session);

@@ -131,16 +131,24 @@ typedef struct cau_move_job {
 // ---- departures.c
 void cau_departure_begin(cau_move_job *job);
 void cau_departure_read(cau_move_job *job);
+void cau_departures_list(cau_hub *hub, cau_wire_list *list); // with the moves' lock
+void cau_departures_free(cau_hub *hub);
+
+// ---- departure_end.c
 void cau_departure_hold(cau_move_job *job);
 void cau_departure_commit(cau_move_job *job);
 void cau_departure_cancel(cau_move_job *job);
-void cau_departures_list(cau_hub *hub, cau_wire_list *list); // with the moves' lock
 // Those that have stood still for too long, or all of them, go on.
 void cau_departures_let_go(cau_hub *hub, double now_s, bool all);
-void cau_departures_free(cau_hub *hub);
+
+// ---- arrival_pieces.c
+void cau_arrival_receive(cau_move_job *job);
 
 // ---- arrivals.c
-void cau_arrival_receive(cau_move_job *job);
+void cau_arrival_take_out(cau_hub *hub, cau_arrival *arrival); // with the lock; frees it
+// As the store has it; its strings are the arrival's.
+cau_store_arrival cau_arrival_row(const cau_arrival *arrival, int64_t pieces,
+                                  cau_store_arrival_state state);
 void cau_arrival_ready(cau_move_job *job);
 void cau_arrival_accept(cau_move_job *job);
 void cau_arrival_forget(cau_move_job *job);

@@ -1,0 +1,238 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// The pieces in which a session comes from another daemon: each is looked through for what is not
+// the store's alone, and written with the row that says how many there are.
+#include <stdlib.h>
+#include <string.h>
+
+#include "cautery/name.h"
+#include "cautery/sha256.h"
+#include "hub/fault_point.h"
+#include "hub/internal.h"
+#include "session/handover.h"
+#include "store/rows.h"
+
+enum { ARRIVALS_MOST = 64 }; // that are not served yet
+
+typedef cau_arrival arrival;
+typedef cau_arrival_hand hand;
+
+// What of a piece is not the store's alone.
+typedef struct contents {
+	uint32_t index, flags;
+	bool has_header;
+	char move[CAU_NAME_BYTES], lock[CAU_SHA256_TEXT_BYTES], source[CAU_NAME_BYTES],
+		label[CAU_NAME_BYTES];
+	hand hands[CAU_MAX_TOOLS];
+	int32_t hand_count;
+	double speed; // 0: it does not say
+} contents;
+
+static void take_header(const cau_row *row, contents *found)
+{
+	found->has_header = true;
+	cau_rows_text(row, 0, found->move, sizeof found->move);
+	cau_rows_text(row, 1, found->lock, sizeof found->lock);
+	cau_rows_text(row, 2, found->source, sizeof found->source);
+	cau_rows_text(row, 3, found->label, sizeof found->label);
+}
+
+static void take_hand(const cau_row *row, contents *found)
+{
+	if (found->hand_count == CAU_MAX_TOOLS)
+		return;
+	hand *made = &found->hands[found->hand_count++];
+	cau_asker *asker = &made->client.asker;
+	cau_rows_text(row, 0, made->tool, sizeof made->tool);
+	cau_rows_text(row, 1, made->client.resume, sizeof made->client.resume);
+	cau_rows_text(row, 2, asker->client_id, sizeof asker->client_id);
+	cau_rows_text(row, 3, asker->name, sizeof asker->name);
+	// It waits, dark, for one who says hello with a role of his own.
+	asker->role = CAU_ROLE_OPERATE;
+	asker->deadline_s = (double)row->column[5].integer * 1e-6;
+}
+
+static cau_status read_contents(const cau_move_asked *asked, contents *found, cau_error *error)
+{
+	cau_rows_reader reader;
+	cau_row row;
+	cau_status status = cau_rows_open(&reader, asked->piece, asked->piece_bytes, error);
+	if (status)
+		return status;
+	found->index = reader.index;
+	found->flags = reader.flags;
+	while (!(status = cau_rows_next(&reader, &row, error))) {
+		if (row.table == CAU_ROWS_HEADER)
+			take_header(&row, found);
+		else if (row.table == CAU_ROWS_DRIVERS)
+			take_hand(&row, found);
+		else if (row.table == CAU_ROWS_PACE)
+			found->speed = (double)row.column[0].integer * 1e-6;
+	}
+	if (status != CAU_NOT_FOUND)
+		return status;
+	bool begins = found->has_header && strcmp(found->move, asked->move) == 0 &&
+	              strlen(found->lock) == CAU_SHA256_TEXT_BYTES - 1 &&
+	              cau_name_is_valid(found->source);
+	if (found->has_header != (found->index == 0) || (found->has_header && !begins))
+		return cau_fail(error, CAU_BAD_VALUE, "params.upload", "the piece is of another move");
+	return CAU_OK;
+}
+
+static cau_status check_id(const cau_hub *hub, const char *id, cau_error *error)
+{
+	size_t bytes = strlen(hub->def.config->label);
+	if (strncmp(id, hub->def.config->label, bytes) == 0 && id[bytes] == '-')
+		return CAU_OK;
+	return cau_fail(error, CAU_BAD_VALUE, "params.session",
+	                "this daemon's sessions begin with `%s-`", hub->def.config->label);
+}
+
+static cau_status check_room(cau_hub *hub, const char *id, cau_error *error)
+{
+	cau_hosted *other = cau_hub_find(hub, id);
+	cau_hosted_release(other);
+	if (other)
+		return cau_fail(error, CAU_ALREADY_EXISTS, "params.session", "`%s` exists", id);
+	if (cau_hub_count(hub) >= hub->def.config->max_sessions)
+		return cau_fail(error, CAU_LIMIT, "", "the daemon has %lld sessions (setting max_sessions)",
+		                (long long)hub->def.config->max_sessions);
+	return check_id(hub, id, error);
+}
+
+// With the lock. A session that came by this id before and is gone leaves its place.
+static arrival *enlist(cau_hub *hub, const cau_move_asked *asked, const contents *found,
+                       cau_error *error)
+{
+	int32_t waiting = 0;
+	arrival *old = cau_arrival_find(hub, asked->session);
+	for (const arrival *a = hub->arrivals; a; a = a->next)
+		waiting += !cau_coming_serves(&a->coming);
+	if (waiting >= ARRIVALS_MOST) {
+		cau_fail(error, CAU_LIMIT, "", "%d sessions are on their way here", waiting);
+		return NULL;
+	}
+	arrival *a = calloc(1, sizeof *a);
+	if (!a) {
+		cau_fail(error, CAU_NO_MEMORY, "", "no memory for a move");
+		return NULL;
+	}
+	if (old)
+		cau_arrival_take_out(hub, old);
+	memcpy(a->id, asked->session, sizeof a->id);
+	memcpy(a->move, asked->move, sizeof a->move);
+	memcpy(a->lock, found->lock, sizeof a->lock);
+	memcpy(a->source, found->source, sizeof a->source);
+	memcpy(a->label, found->label, sizeof a->label);
+	a->speed = 1;
+	a->next = hub->arrivals;
+	hub->arrivals = a;
+	return a;
+}
+
+// The arrival that takes this piece next, marked as writing; NULL: *error says why not.
+static arrival *begin_piece(cau_hub *hub, const cau_move_asked *asked, const contents *found,
+                            cau_error *error)
+{
+	pthread_mutex_lock(&hub->moves_mutex);
+	arrival *a = cau_arrival_find(hub, asked->session);
+	bool waits = a && !cau_coming_serves(&a->coming);
+	if (!waits && found->index == 0)
+		a = enlist(hub, asked, found, error);
+	else if (!waits || strcmp(a->move, asked->move) != 0 || a->writing ||
+	         a->pieces != found->index || a->coming.state == CAU_COMING_WHOLE) {
+		cau_fail(error, CAU_BAD_STATE, "params.upload",
+		         waits && strcmp(a->move, asked->move) != 0
+		             ? "another move brings this session: `cautery move` of it ends that"
+		             : "this piece is not the next one");
+		a = NULL;
+	}
+	if (a)
+		a->writing = true;
+	pthread_mutex_unlock(&hub->moves_mutex);
+	return a;
+}
+
+typedef struct at_disk {
+	cau_hub *hub;
+	arrival *arrival;
+	cau_reply reply;
+	contents found;
+} at_disk;
+
+static void note_contents(arrival *a, const contents *found)
+{
+	if (found->speed > 0)
+		a->speed = found->speed;
+	for (int32_t i = 0; i < found->hand_count && a->hand_count < CAU_MAX_TOOLS; i++)
+		a->hands[a->hand_count++] = found->hands[i];
+}
+
+// On the store's thread.
+static void piece_written(void *user, cau_status status, const char *reason)
+{
+	at_disk *done = user;
+	arrival *a = done->arrival;
+	cau_wire_move_received result = {0};
+	bool last = done->found.flags & CAU_ROWS_ENDS;
+	cau_fault_point(last ? "move_last_piece" : "move_piece");
+	pthread_mutex_lock(&done->hub->moves_mutex);
+	a->writing = false;
+	if (!status) {
+		cau_coming_take(&a->coming, last ? CAU_COMING_LAST : CAU_COMING_PIECE, true);
+		note_contents(a, &done->found);
+		result.pieces = ++a->pieces;
+	} else if (a->pieces == 0) {
+		cau_arrival_take_out(done->hub, a);
+	}
+	pthread_mutex_unlock(&done->hub->moves_mutex);
+	if (status)
+		cau_move_fail(&done->reply, status, cau_hosted_commit_code(status), "", reason);
+	else
+		cau_move_answer(&done->reply, &result);
+	free(done);
+}
+
+static cau_status write_piece(cau_move_job *job, at_disk *travelling, cau_error *error)
+{
+	bool last = travelling->found.flags & CAU_ROWS_ENDS;
+	cau_store_arrival row = cau_arrival_row(travelling->arrival, travelling->found.index + 1,
+	                                        last ? CAU_STORE_WHOLE : CAU_STORE_ARRIVING);
+	cau_store_batch *batch = cau_store_batch_create();
+	if (!batch)
+		return cau_fail(error, CAU_NO_MEMORY, "", "no memory for a piece");
+	cau_status status = cau_store_put_arrival(batch, &row, error);
+	if (!status)
+		status = cau_store_lend_rows(batch, row.id, job->asked.piece, job->asked.piece_bytes, free,
+		                             error);
+	if (!status)
+		job->asked.piece = NULL; // the batch's
+	if (!status)
+		status = cau_store_submit(job->hub->def.store, batch, piece_written, travelling, error);
+	if (status)
+		cau_store_batch_destroy(batch);
+	return status;
+}
+
+void cau_arrival_receive(cau_move_job *job)
+{
+	cau_error error = {0};
+	cau_status status = CAU_NO_MEMORY;
+	at_disk *travelling = calloc(1, sizeof *travelling);
+	if (travelling)
+		status = read_contents(&job->asked, &travelling->found, &error);
+	if (!status && travelling->found.index == 0)
+		status = check_room(job->hub, job->asked.session, &error);
+	arrival *a = status ? NULL : begin_piece(job->hub, &job->asked, &travelling->found, &error);
+	if (a) {
+		travelling->hub = job->hub;
+		travelling->arrival = a;
+		travelling->reply = job->reply;
+		status = write_piece(job, travelling, &error);
+		if (!status)
+			return;
+		piece_written(travelling, status, error.reason);
+		return;
+	}
+	cau_reply_fail(&job->reply, &error, 0);
+	free(travelling);
+}

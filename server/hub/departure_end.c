@@ -1,0 +1,327 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// How a session's leaving ends: it stands still, the rest goes out, and a row in the store says
+// that it is elsewhere; or it goes on here.
+#include <stdlib.h>
+#include <string.h>
+
+#include "hub/departure.h"
+#include "hub/fault_point.h"
+
+#define HELD_MOST_S 30.  // a session that stands still for longer goes on
+#define SENDS_MOST_S 60. // a courier that asks for nothing for so long has gone
+
+typedef struct cau_departure departure;
+
+// ---- going on -----------------------------------------------------------------------------------
+
+static void clear(cau_hub *hub, departure *d);
+
+// Does what a machine answered to a cancel or to time. With the lock; may take the departure out.
+static void let_go(cau_hub *hub, departure *d, cau_leaving_state from, cau_leaving_act act)
+{
+	if (act == CAU_LEAVING_DO_CLEAR) {
+		clear(hub, d);
+		return;
+	}
+	if (act != CAU_LEAVING_DO_GO_ON)
+		return;
+	cau_log(CAU_LOG_NOTICE, d->id, "move_ended", "move=%s reason=\"it stays here\"",
+	        d->becomes.move);
+	if (from != CAU_LEAVING_SENDS)
+		cau_hosted_go_on(d->hosted);
+	cau_move_decided(&d->waiting, NULL);
+	cau_departure_take_out(hub, d);
+}
+
+typedef struct at_disk {
+	cau_hub *hub;
+	departure *departure;
+} at_disk;
+
+// The disk has said what became of the tombstone, or of what clears it. On the store's thread.
+static void cleared(void *user, cau_status status, const char *reason)
+{
+	at_disk *done = user;
+	cau_hub *hub = done->hub;
+	departure *d = done->departure;
+	(void)reason;
+	pthread_mutex_lock(&hub->moves_mutex);
+	cau_leaving_act act =
+		cau_leaving_take(&d->leaving, status ? CAU_LEAVING_REFUSED : CAU_LEAVING_WRITTEN, true);
+	if (status) {
+		cau_move_fail(&d->waiting, CAU_IO, CAU_RPC_STORE_FULL, "", "the store has no room");
+		d->waiting = (cau_reply){0};
+		d->held_s = cau_monotonic_s(); // asked again later
+	} else {
+		let_go(hub, d, CAU_LEAVING_CLEARING, act);
+	}
+	pthread_mutex_unlock(&hub->moves_mutex);
+	free(done);
+}
+
+static cau_status submit(cau_hub *hub, departure *d, cau_store_batch *batch,
+                         cau_store_callback callback, cau_error *error)
+{
+	at_disk *travelling = malloc(sizeof *travelling);
+	if (!travelling)
+		return cau_fail(error, CAU_NO_MEMORY, "", "no memory for a commit");
+	*travelling = (at_disk){hub, d};
+	cau_status status = cau_store_submit(hub->def.store, batch, callback, travelling, error);
+	if (status)
+		free(travelling);
+	return status;
+}
+
+// Any commit that follows makes sure that one which the disk refused does not come to light.
+static void clear(cau_hub *hub, departure *d)
+{
+	cau_error error = {0};
+	cau_store_batch *batch = cau_store_batch_create();
+	cau_store_event event = {.kind = "move_ended", .text = d->id};
+	cau_status status = batch ? cau_store_put_event(batch, &event, &error)
+	                          : cau_fail(&error, CAU_NO_MEMORY, "", "no memory for a commit");
+	if (!status)
+		status = submit(hub, d, batch, cleared, &error);
+	if (!status)
+		return;
+	cau_store_batch_destroy(batch);
+	cau_leaving_take(&d->leaving, CAU_LEAVING_UNSENT, true);
+	cau_reply_fail(&d->waiting, &error, status == CAU_IO ? CAU_RPC_STORE_FULL : 0);
+	d->waiting = (cau_reply){0};
+	d->held_s = cau_monotonic_s();
+}
+
+static bool is_late(const departure *d, double now_s)
+{
+	cau_leaving_state state = d->leaving.state;
+	if (state == CAU_LEAVING_HELD || state == CAU_LEAVING_DOUBTS)
+		return now_s - d->held_s > HELD_MOST_S;
+	return state == CAU_LEAVING_SENDS && now_s - d->touched_s > SENDS_MOST_S;
+}
+
+void cau_departures_let_go(cau_hub *hub, double now_s, bool all)
+{
+	if (all) { // nothing is given to the disk any more, and what was is decided
+		pthread_mutex_lock(&hub->moves_mutex);
+		hub->moves_end = true;
+		pthread_mutex_unlock(&hub->moves_mutex);
+		cau_store_flush(hub->def.store);
+	}
+	pthread_mutex_lock(&hub->moves_mutex);
+	for (departure *d = hub->departures, *next; d; d = next) {
+		next = d->next;
+		cau_leaving_state from = d->leaving.state;
+		if (all || is_late(d, now_s))
+			let_go(hub, d, from, cau_leaving_take(&d->leaving, CAU_LEAVING_LATE, true));
+	}
+	pthread_mutex_unlock(&hub->moves_mutex);
+}
+
+// ---- hold ---------------------------------------------------------------------------------------
+
+// Whom to answer once the session stands still, or cannot.
+typedef struct holding {
+	cau_hub *hub;
+	cau_move_asked asked;
+	cau_reply reply;
+} holding;
+
+static void held(void *user, const cau_reply *reply, const cau_outcome *outcome)
+{
+	holding *asked = user;
+	cau_hub *hub = asked->hub;
+	(void)reply;
+	cau_fault_point("move_stopped");
+	pthread_mutex_lock(&hub->moves_mutex);
+	departure *d = cau_departure_find_own(hub, &asked->asked);
+	cau_leaving_act act = cau_leaving_take(
+		&d->leaving, outcome->error ? CAU_LEAVING_NOT_STOPPED : CAU_LEAVING_STOPPED, true);
+	d->held_s = cau_monotonic_s();
+	if (outcome->error) // the session has gone on by itself
+		cau_departure_take_out(hub, d);
+	else
+		let_go(hub, d, CAU_LEAVING_STOPS, act);
+	pthread_mutex_unlock(&hub->moves_mutex);
+	if (outcome->error || act == CAU_LEAVING_SAY_HELD)
+		cau_reply_answer(&asked->reply, outcome);
+	else
+		cau_move_fail(&asked->reply, CAU_BAD_STATE, 0, "", "the move was cancelled meanwhile");
+	free(asked);
+}
+
+static void ask_to_hold(cau_move_job *job, cau_hosted *hosted)
+{
+	cau_error error = {0};
+	holding *asked = malloc(sizeof *asked);
+	cau_order *order = calloc(1, sizeof *order);
+	cau_reply reply = {.answer = held, .user = asked, .method = job->reply.method};
+	if (!asked || !order) {
+		free(asked);
+		free(order);
+		cau_departures_let_go(job->hub, cau_monotonic_s(), false);
+		cau_move_fail(&job->reply, CAU_NO_MEMORY, 0, "", "no memory for the request");
+		return;
+	}
+	*asked = (holding){.hub = job->hub, .asked = job->asked, .reply = job->reply};
+	order->kind = CAU_ORDER_HOLD;
+	order->asker = (cau_asker){.name = "a move", .role = CAU_ROLE_ADMIN};
+	order->reply = reply;
+	if (cau_hosted_submit(hosted, order, &error)) {
+		free(order);
+		cau_reply_fail(&reply, &error, 0);
+	}
+}
+
+void cau_departure_hold(cau_move_job *job)
+{
+	pthread_mutex_lock(&job->hub->moves_mutex);
+	departure *d = cau_departure_find_own(job->hub, &job->asked);
+	bool known = d != NULL;
+	bool stops = known && d->part_sent && !d->reading &&
+	             cau_leaving_take(&d->leaving, CAU_LEAVING_HOLD, true) == CAU_LEAVING_DO_STOP;
+	cau_hosted *hosted = stops ? cau_hosted_share(d->hosted) : NULL;
+	pthread_mutex_unlock(&job->hub->moves_mutex);
+	if (!known)
+		cau_departure_fail_unknown(&job->reply);
+	else if (!stops)
+		cau_move_fail(&job->reply, CAU_BAD_STATE, 0, "",
+		              "it stands still already, or what was there has not been read yet");
+	else
+		ask_to_hold(job, hosted);
+	cau_hosted_release(hosted);
+}
+
+// ---- commit -------------------------------------------------------------------------------------
+
+static bool is_own_fault(cau_status status)
+{
+	return status == CAU_NOT_FOUND || status == CAU_BAD_VALUE || status == CAU_ALREADY_EXISTS ||
+	       status == CAU_LIMIT;
+}
+
+// With the lock.
+static void go_away(cau_hub *hub, departure *d)
+{
+	if (!cau_tombstone_put(hub, &d->becomes))
+		cau_log(CAU_LOG_ERROR, d->id, "moved_forgotten",
+		        "to=%s reason=\"no memory; it is in the store, and known after a restart\"",
+		        d->becomes.to.session);
+	cau_hosted_go_away(d->hosted, &d->becomes.to);
+	cau_move_decided(&d->waiting, &d->becomes);
+	cau_departure_take_out(hub, d);
+}
+
+static void decided(void *user, cau_status status, const char *reason)
+{
+	at_disk *done = user;
+	cau_hub *hub = done->hub;
+	departure *d = done->departure;
+	cau_leaving_event event = !status                ? CAU_LEAVING_WRITTEN
+	                          : is_own_fault(status) ? CAU_LEAVING_UNSENT
+	                                                 : CAU_LEAVING_REFUSED;
+	cau_fault_point("move_decided");
+	pthread_mutex_lock(&hub->moves_mutex);
+	cau_leaving_act act = cau_leaving_take(&d->leaving, event, true);
+	if (act == CAU_LEAVING_DO_END) {
+		go_away(hub, d);
+	} else {
+		cau_move_fail(&d->waiting, status, cau_hosted_commit_code(status), "", reason);
+		d->waiting = (cau_reply){0};
+		let_go(hub, d, CAU_LEAVING_HELD, act);
+	}
+	pthread_mutex_unlock(&hub->moves_mutex);
+	free(done);
+}
+
+// With the lock.
+static void write_tombstone(cau_hub *hub, departure *d, const cau_reply *reply)
+{
+	cau_error error = {0};
+	const cau_tombstone *row = &d->becomes;
+	cau_store_moved moved = {.id = row->id,
+	                         .move = row->move,
+	                         .target = row->to.session,
+	                         .label = d->label,
+	                         .url = row->to.url,
+	                         .proof = row->proof};
+	cau_store_batch *batch = cau_store_batch_create();
+	cau_status status = batch ? cau_store_put_moved(batch, &moved, &error)
+	                          : cau_fail(&error, CAU_NO_MEMORY, "", "no memory for a commit");
+	d->waiting = *reply;
+	if (!status)
+		status = submit(hub, d, batch, decided, &error);
+	if (!status)
+		return;
+	cau_store_batch_destroy(batch);
+	cau_leaving_state from = d->leaving.state;
+	cau_leaving_act act = cau_leaving_take(&d->leaving, CAU_LEAVING_UNSENT, true);
+	cau_reply_fail(reply, &error, cau_hosted_commit_code(status));
+	d->waiting = (cau_reply){0};
+	let_go(hub, d, from, act);
+}
+
+// What the tombstone says, if it is of this move. With the lock.
+static bool show(cau_move_job *job)
+{
+	const cau_tombstone *found = cau_tombstone_find(job->hub, job->asked.session);
+	bool own = found && strcmp(found->move, job->asked.move) == 0;
+	if (own)
+		cau_move_decided(&job->reply, found);
+	return own;
+}
+
+void cau_departure_commit(cau_move_job *job)
+{
+	pthread_mutex_lock(&job->hub->moves_mutex);
+	departure *d = cau_departure_find_own(job->hub, &job->asked);
+	if (!d) {
+		if (!show(job))
+			cau_departure_fail_unknown(&job->reply);
+	} else if (job->hub->moves_end) {
+		cau_move_fail(&job->reply, CAU_BAD_STATE, CAU_RPC_DRAINING, "",
+		              "the server is shutting down");
+	} else if (!d->all_sent) {
+		cau_move_fail(&job->reply, CAU_BAD_STATE, 0, "", "not all of it has been read");
+	} else if (cau_leaving_take(&d->leaving, CAU_LEAVING_COMMIT, true) == CAU_LEAVING_DO_WRITE) {
+		write_tombstone(job->hub, d, &job->reply);
+	} else {
+		cau_move_fail(&job->reply, CAU_BAD_STATE, 0, "", "it is being decided: ask again");
+	}
+	pthread_mutex_unlock(&job->hub->moves_mutex);
+}
+
+// ---- cancel -------------------------------------------------------------------------------------
+
+// Who asks another daemon than the one that the session came from must not hear that it stays
+// there.
+static bool is_of_this_daemon(const cau_hub *hub, const char *id)
+{
+	size_t bytes = strlen(hub->def.config->label);
+	return strncmp(id, hub->def.config->label, bytes) == 0 && id[bytes] == '-';
+}
+
+static void cancel(cau_move_job *job, departure *d)
+{
+	cau_leaving_state from = d->leaving.state;
+	cau_leaving_act act = cau_leaving_take(&d->leaving, CAU_LEAVING_CANCEL, true);
+	if (act == CAU_LEAVING_NOTHING) {
+		cau_move_fail(&job->reply, CAU_BAD_STATE, 0, "", "it is being decided: ask again");
+		return;
+	}
+	d->waiting = job->reply;
+	let_go(job->hub, d, from, act);
+}
+
+void cau_departure_cancel(cau_move_job *job)
+{
+	pthread_mutex_lock(&job->hub->moves_mutex);
+	departure *d = cau_departure_find_own(job->hub, &job->asked);
+	if (d)
+		cancel(job, d);
+	else if (!is_of_this_daemon(job->hub, job->asked.session))
+		cau_move_fail(&job->reply, CAU_NOT_FOUND, CAU_RPC_NOT_HERE, "params.session",
+		              "it is not of this daemon");
+	else if (!show(job))
+		cau_move_decided(&job->reply, NULL);
+	pthread_mutex_unlock(&job->hub->moves_mutex);
+}
