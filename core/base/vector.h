@@ -3,6 +3,7 @@
 #pragma once
 
 #include <math.h>
+#include <stdbool.h>
 
 #include "cautery/assert.h"
 #include "cautery/scene.h"
@@ -78,6 +79,18 @@ static inline cau_vec3 cau_pose_to_local(const cau_pose *pose, cau_vec3 world)
 	return cau_rotate_back(pose->rotation, cau_sub(world, cau_vec3_of(pose->position_m)));
 }
 // The pose a fraction s (0 to 1) of the way from a to b: linear in position, nlerp in rotation.
+static inline bool cau_pose_is_same_place(const cau_pose *a, const cau_pose *b)
+{
+	return a->position_m[0] == b->position_m[0] && a->position_m[1] == b->position_m[1] &&
+	       a->position_m[2] == b->position_m[2];
+}
+
+static inline bool cau_pose_is_same_turn(const cau_pose *a, const cau_pose *b)
+{
+	return a->rotation[0] == b->rotation[0] && a->rotation[1] == b->rotation[1] &&
+	       a->rotation[2] == b->rotation[2] && a->rotation[3] == b->rotation[3];
+}
+
 static inline cau_pose cau_pose_between(const cau_pose *a, const cau_pose *b, double s)
 {
 	CAU_ASSERT(s >= 0 && s <= 1, "a share of %g of the way", s);

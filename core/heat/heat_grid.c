@@ -94,9 +94,9 @@ enum { ARRAYS = 2 * CAU_HEAT_FIELDS + 3 }; // a field and its scratch each, the 
 static void lay_out(cau_heat_grid *grid, double step_m, size_t nodes)
 {
 	float *room = grid->pages.start;
-	for (int k = 0; k < CAU_HEAT_FIELDS; k++, step_m *= 2) {
-		grid->field[k] =
-			(cau_heat_field){.step_m = step_m, .temperature = room, .next = room + nodes};
+	for (int k = 0; k < CAU_HEAT_FIELDS; k++) {
+		grid->field[k] = (cau_heat_field){
+			.step_m = step_m * (1 << k), .temperature = room, .next = room + nodes};
 		room += 2 * nodes;
 	}
 	grid->surface.distance = room;
@@ -162,7 +162,7 @@ static bool is_leap(const cau_heat_field *field, int32_t nodes, const int64_t or
 // what comes in there. No value is resampled: nodes keep theirs.
 static void follow(cau_heat_grid *grid, const cau_tool_def *tool, const cau_pose *pose)
 {
-	int64_t origin[CAU_HEAT_FIELDS][3];
+	int64_t origin[CAU_HEAT_FIELDS][3] = {0};
 	int32_t n = grid->nodes;
 	origin_for(grid, tool, pose, origin[0]);
 	if (!memcmp(origin[0], grid->field[0].origin, sizeof origin[0]))

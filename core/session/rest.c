@@ -47,13 +47,7 @@ static int32_t ticks_to_rest(const cau_session *session)
 
 static bool is_same_pose(const cau_pose *a, const cau_pose *b)
 {
-	for (int c = 0; c < 3; c++)
-		if (a->position_m[c] != b->position_m[c])
-			return false;
-	for (int c = 0; c < 4; c++)
-		if (a->rotation[c] != b->rotation[c])
-			return false;
-	return true;
+	return cau_pose_is_same_place(a, b) && cau_pose_is_same_turn(a, b);
 }
 
 // A tool that touches quivers with the tissue that it stands on.
@@ -64,8 +58,7 @@ static bool has_stayed(const cau_tool *tool)
 	cau_vec3 way = cau_sub(cau_vec3_of(tool->state.pose.position_m),
 	                       cau_vec3_of(tool->pose_before.position_m));
 	return cau_length(way) <= still_m &&
-	       !memcmp(tool->state.pose.rotation, tool->pose_before.rotation,
-	               sizeof tool->state.pose.rotation);
+	       cau_pose_is_same_turn(&tool->state.pose, &tool->pose_before);
 }
 
 static bool is_still(const cau_tool *tool)

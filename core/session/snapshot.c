@@ -168,7 +168,7 @@ static cau_status check_tools(const snapshot_header *header, const unsigned char
                               snapshot_archive *counted, cau_error *error)
 {
 	for (int32_t i = 0; i < header->tool_count; i++) {
-		cau_tool_state state;
+		cau_tool_state state = {0};
 		if (counted->at + CAU_SNAPSHOT_OLDER_TOOL > counted->capacity)
 			return cau_snapshot_corrupt(error, "bytes are missing");
 		memcpy(&state, payload + counted->at, CAU_SNAPSHOT_OLDER_TOOL);
@@ -213,7 +213,7 @@ static cau_status restore_tools(cau_session *session, const snapshot_header *hea
 		CAU_ASSERT(session->tool_count == i && i < CAU_MAX_TOOLS, "tool %d comes after %d", i,
 		           session->tool_count);
 		memset(tool, 0, sizeof *tool);
-		cau_tool_state state;
+		cau_tool_state state = {0};
 		snapshot_archive ahead = *archive;
 		snapshot_pass(&ahead, &state, CAU_SNAPSHOT_OLDER_TOOL);
 		cau_status status =
@@ -414,7 +414,7 @@ uint64_t cau_session_hash(const cau_session *session)
 			(size_t)tool->grid.nodes * (size_t)tool->grid.nodes * (size_t)tool->grid.nodes;
 		const cau_pose *pose = &tool->state.pose, *asked = &tool->state.asked_pose;
 		hash = cau_hash_bytes(hash, pose, sizeof *pose);
-		if (memcmp(pose->position_m, asked->position_m, sizeof pose->position_m) != 0)
+		if (!cau_pose_is_same_place(pose, asked))
 			hash = cau_hash_bytes(hash, asked, sizeof *asked);
 		hash = cau_hash_bytes(hash, tool->state.force_n, sizeof tool->state.force_n);
 		hash = cau_hash_word(hash,

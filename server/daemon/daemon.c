@@ -74,7 +74,7 @@ static double on_look(void *user, double now_s)
 // The process ends as a kill would end it, which is what the store is held to: energy is off with
 // it, nobody hears another word, and what was acknowledged is on the disk. A reader of the log that
 // takes nothing must not hold that up, so a signal of the kernel's comes behind the line.
-static _Noreturn void on_label_lost(void *user, const char *reason)
+__attribute__((noreturn)) static void on_label_lost(void *user, const char *reason)
 {
 	const cau_daemon *daemon = user;
 	const struct itimerval at_once = {.it_value.tv_usec = LAST_WORD_US};

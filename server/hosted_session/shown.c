@@ -11,9 +11,10 @@ static const double behind_m = 1e-5;
 
 static bool is_behind(const cau_tool_state *tool)
 {
-	bool turned =
-		memcmp(tool->pose.rotation, tool->asked_pose.rotation, sizeof tool->pose.rotation) != 0;
+	bool turned = false;
 	double off2 = 0;
+	for (int c = 0; c < 4; c++)
+		turned |= tool->pose.rotation[c] != tool->asked_pose.rotation[c];
 	for (int c = 0; c < 3; c++)
 		off2 += pow(tool->pose.position_m[c] - tool->asked_pose.position_m[c], 2);
 	return turned || off2 > behind_m * behind_m;

@@ -111,19 +111,21 @@ bool cau_hub_submit_missing(cau_hub *hub, const char *id, const cau_asker *asker
 
 enum { CAU_PROOF_BYTES = 65 };
 
+typedef enum {
+	CAU_MOVE_BEGIN,
+	CAU_MOVE_READ,
+	CAU_MOVE_HOLD,
+	CAU_MOVE_COMMIT,
+	CAU_MOVE_CANCEL,
+	CAU_MOVE_RECEIVE,
+	CAU_MOVE_READY,
+	CAU_MOVE_ACCEPT,
+	CAU_MOVE_FORGET,
+	CAU_MOVE_LIST,
+} cau_move_what;
+
 typedef struct cau_move_asked {
-	enum {
-		CAU_MOVE_BEGIN,
-		CAU_MOVE_READ,
-		CAU_MOVE_HOLD,
-		CAU_MOVE_COMMIT,
-		CAU_MOVE_CANCEL,
-		CAU_MOVE_RECEIVE,
-		CAU_MOVE_READY,
-		CAU_MOVE_ACCEPT,
-		CAU_MOVE_FORGET,
-		CAU_MOVE_LIST,
-	} what;
+	cau_move_what what;
 	char session[CAU_NAME_BYTES], move[CAU_NAME_BYTES];
 	cau_moved_to to;             // BEGIN
 	char label[CAU_NAME_BYTES];  // BEGIN

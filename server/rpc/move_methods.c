@@ -22,7 +22,7 @@ static void submit(cau_call *call, cau_move_asked *asked)
 		call->peer->files_asked += file;
 }
 
-static void submit_ref(cau_call *call, int what)
+static void submit_ref(cau_call *call, cau_move_what what)
 {
 	cau_error error = {0};
 	cau_wire_move_ref params = {0};

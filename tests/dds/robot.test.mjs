@@ -93,7 +93,8 @@ async function into(t, name, isSo, ...flags) {
 }
 
 test('a robot backs off from too much force', async (t) => {
-	const { force_most_n: most_n } = await into(t, 'blind', (tool) => tool.position[2] < -0.0075);
+	// The sheet keeps the tool 1.5 mm behind what is asked, by some 7 N.
+	const { force_most_n: most_n } = await into(t, 'blind', (tool) => tool.position[2] < -0.006);
 	assert.ok(most_n > 0.1, `${most_n} N`);
 	let lowest = Infinity;
 	const rises = ({ position: [, , z] }) => z > (lowest = Math.min(lowest, z)) + RISE_M;

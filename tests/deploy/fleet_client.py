@@ -17,6 +17,14 @@ class Lost(Exception):
     pass
 
 
+def where_it_went(message):
+    """The id that a session has now, if this notice or answer says that it has moved; or None."""
+    data = message.get("error", {}).get("data", {})
+    if message.get("method") == "session.changed":
+        data = message["params"]
+    return data.get("moved_to") or None
+
+
 class Socket:
     """What is needed of RFC 6455."""
 
@@ -72,6 +80,7 @@ class Person:
         self.pending = None  # (client_sequence, params) of a move without its answer
         self.acknowledged, self.refused = [], 0  # moves: (sequence, tick that the answer says)
         self.frames = 0
+        self.followed = 0  # times that its session had moved
         self.outages = []  # [from, to], to None while it lasts
         self.ready = asyncio.Event()
 
@@ -90,6 +99,9 @@ class Person:
                 kind, payload = await self.socket.receive()
                 self.frames += kind == 2
                 message = json.loads(payload) if kind == 1 else {}
+                if where_it_went(message):
+                    self.follow(where_it_went(message))
+                    raise Lost("moved")
                 future = self.waiting.get(message.get("id"))
                 if future and not future.done():
                     future.set_result(message)
@@ -97,6 +109,13 @@ class Person:
             for future in self.waiting.values():
                 if not future.done():
                     future.set_exception(Lost(str(error)))
+
+    def follow(self, session):
+        """What has no answer yet is asked again of who has the session now."""
+        self.session, self.label = session, session.split("-")[0]
+        self.followed += 1
+        if self.pending:
+            self.pending[1]["session"] = session
 
     async def greet(self):
         answer = await self.call("hello", {"version": 1, "client": "fleet test", "client_id": self.client_id,

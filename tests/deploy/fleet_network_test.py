@@ -30,7 +30,7 @@ NAMESPACES = ["setpriv", "--pdeathsig", "KILL",  # a test that is killed takes a
               "--mount-proc"]
 HAPROXY = shutil.which("haproxy", path=os.environ.get("PATH", "") + ":/usr/sbin:/sbin")
 NAME, TOKEN = "cautery.test", "f" * 40
-SESSIONS, DRIVEN = 60, 10
+SESSIONS, DRIVEN, MOVED = 60, 10, 10
 DOWN_S = 10  # a machine's link
 TTL_S = {"d1": 20, "d2": 20, "d3": 5}  # above that, and below
 BACK_S = 5  # a client is back so long after its daemon could be reached again
@@ -257,7 +257,22 @@ async def a_link_is_down_for_more_than_the_time_to_live(fleet):
     return label, up
 
 
-TROUBLES = (nothing_happens, a_daemon_is_killed, a_daemon_drains, a_link_is_down_for_less_than_the_time_to_live,
+async def sessions_move(fleet):
+    """From d1 to d2 under load, driven ones first. Who uses them goes after them."""
+    driven = {one.session for one in fleet.people if one.drives}
+    moving = sorted({one.session for one in fleet.people if one.label == "d1"},
+                    key=lambda session: session not in driven)[:MOVED]
+    assert len(moving) == MOVED and driven & set(moving), moving
+    people = [one for one in fleet.people if one.session in moving]
+    for session in moving:
+        await fleet.cautery("move", session, "d2")
+    moved = time.monotonic()
+    await await_true("all have followed", lambda: all(one.followed for one in people))
+    return "d2", moved
+
+
+TROUBLES = (nothing_happens, a_daemon_is_killed, a_daemon_drains, sessions_move,
+            a_link_is_down_for_less_than_the_time_to_live,
             a_link_is_down_for_more_than_the_time_to_live)
 
 
