@@ -64,32 +64,85 @@ typedef struct follower {
 	cli *c;
 	cau_wire_timeline timeline;
 	bool answered; // events that came before are in the answer
+	bool asks;     // again: what comes meanwhile is in that answer
 	cau_error failure;
+	int64_t last_tick; // of those that were told, the last,
+	int32_t at_last;   // and how many are of that tick
 } follower;
+
+static void note(follower *f, int64_t tick)
+{
+	f->at_last = tick == f->last_tick ? f->at_last + 1 : 1;
+	f->last_tick = tick;
+}
+
+static void tell_event(follower *f, const cau_wire_timeline_event *event)
+{
+	if (f->c->json)
+		print_event_json(f->c, event);
+	else
+		print_event(f->c, event);
+	note(f, event->tick);
+}
+
+// What came about while there was no connection.
+static void tell_missed(follower *f, const cau_wire_timeline *timeline)
+{
+	const cau_wire_timeline_event *events = timeline->events.items;
+	int64_t last = f->last_tick;
+	int32_t told = f->at_last;
+	for (int32_t i = 0; i < timeline->events.count; i++)
+		if (events[i].tick > last || (events[i].tick == last && told-- <= 0))
+			tell_event(f, &events[i]);
+}
 
 static void take_timeline(void *user, const cau_rpc_message *answer, const cau_error *error)
 {
 	follower *f = user;
+	const cau_wire_timeline_event *events = f->timeline.events.items;
 	f->answered = true;
-	if (!answer)
+	if (!answer) {
 		f->failure = *error;
-	else if (!cau_rpc_result(answer, CAU_METHOD_SESSION_TIMELINE, &f->timeline, &f->failure))
+	} else if (!cau_rpc_result(answer, CAU_METHOD_SESSION_TIMELINE, &f->timeline, &f->failure)) {
 		print_timeline(f->c, &f->timeline);
+		for (int32_t i = 0; i < f->timeline.events.count; i++)
+			note(f, events[i].tick);
+	}
 	fflush(f->c->out);
+}
+
+static void take_missed(void *user, const cau_rpc_message *answer, const cau_error *error)
+{
+	follower *f = user;
+	(void)error; // the connection went again: it is asked again
+	f->asks = false;
+	if (answer && !cau_rpc_result(answer, CAU_METHOD_SESSION_TIMELINE, &f->timeline, &f->failure))
+		tell_missed(f, &f->timeline);
+	fflush(f->c->out);
+}
+
+// Back after a lost connection, or where the session has moved to.
+static void take_condition(void *user, cau_client *client, cau_client_condition condition)
+{
+	follower *f = user;
+	cau_wire_session_timeline params = {
+		.has_from_tick = true, .from_tick = f->last_tick, .has_count = true, .count = EVENTS_MAX};
+	if (!f->answered || condition != CAU_CLIENT_READY)
+		return;
+	CLI_SESSION_PARAMS(f->c, &params);
+	f->asks =
+		!cau_client_send(client, CAU_METHOD_SESSION_TIMELINE, &params, take_missed, f, &f->failure);
 }
 
 static void take_notification(void *user, cau_client *client, const cau_rpc_message *message)
 {
 	follower *f = user;
 	cau_wire_event_notice notice = {0};
-	if (!f->answered || message->method != CAU_METHOD_EVENT ||
+	if (!f->answered || f->asks || message->method != CAU_METHOD_EVENT ||
 	    cau_rpc_params(message, &notice, NULL) ||
 	    strcmp(notice.session, cau_client_called(client, f->c->session)) != 0)
 		return;
-	if (f->c->json)
-		print_event_json(f->c, &notice.event);
-	else
-		print_event(f->c, &notice.event);
+	tell_event(f, &notice.event);
 	fflush(f->c->out);
 }
 
@@ -133,6 +186,7 @@ static cli_exit tell(follower *f, cau_wire_session_timeline *params, double seco
 	bool follow = cli_value(c, "follow");
 	c->def.user = f;
 	c->def.on_notification = take_notification;
+	c->def.on_condition = take_condition;
 	c->def.reconnect = follow;
 	cli_watch_signals();
 	cli_exit code = cli_connect(c);
