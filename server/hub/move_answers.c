@@ -17,6 +17,8 @@ void cau_move_answer(const cau_reply *reply, const void *result)
 {
 	cau_error error = {0};
 	cau_outcome outcome = {0};
+	if (!reply->answer) // nobody waits: its method is none, whose message would be another's
+		return;
 	char *text = cau_answer_text(reply->method, result, &outcome.text_bytes, &error);
 	outcome.text = text;
 	outcome.error = text ? NULL : &error;

@@ -21,6 +21,7 @@ import programs  # noqa: E402
 
 TTL_S = 2  # the least that there is
 MARGIN_S = 0.5
+LOST = (1, -signal.SIGALRM)  # it ends by itself, or by the kernel's signal where that takes long (the thread sanitizer)
 # A machine that other tests keep busy runs a thread late, and a test. Under sanitizers more so.
 LATE_S = 8 if os.environ.get("E2E_SLOW") == "1" else 2
 
@@ -120,7 +121,7 @@ class Lease(unittest.TestCase):
             daemon = self.start("a.db", log=log)
             self.etcd.process.send_signal(signal.SIGSTOP)
             began = time.monotonic()
-            self.assertEqual(daemon.process.wait(programs.PATIENCE_S), 1)
+            self.assertIn(daemon.process.wait(programs.PATIENCE_S), LOST)
             self.assertLess(time.monotonic() - began, TTL_S - MARGIN_S + LATE_S)
             log.seek(0)
             self.assertIn("event=label_lost label=d1", log.read())
@@ -148,7 +149,7 @@ class Lease(unittest.TestCase):
             # Nobody tells when the lease has ended; its own clock does not know either.
             time.sleep(TTL_S)
             daemon.process.send_signal(signal.SIGCONT)
-            self.assertEqual(daemon.process.wait(programs.PATIENCE_S), 1)
+            self.assertIn(daemon.process.wait(programs.PATIENCE_S), LOST)
             try:
                 said = answers.read()
             except ConnectionResetError:

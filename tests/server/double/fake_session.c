@@ -96,7 +96,7 @@ static void add_tool(cau_session *s, const cau_tool_def *definition)
 	memset(tool, 0, sizeof *tool);
 	memcpy(tool->name, definition->name, sizeof tool->name);
 	tool->definition = *definition;
-	tool->pose = s->state.target[i] = definition->pose;
+	tool->pose = tool->asked_pose = s->state.target[i] = definition->pose;
 	tool->tip_temperature_c = 37;
 }
 
@@ -263,6 +263,7 @@ static void move_tool(cau_session *s, int32_t i)
 	for (int k = 0; k < 3; k++)
 		tool->pose.position_m[k] += share * way[k];
 	memcpy(tool->pose.rotation, s->state.target[i].rotation, sizeof tool->pose.rotation);
+	tool->asked_pose = tool->pose; // nothing stops it
 }
 
 static void cut(cau_session *s, const cau_tool_state *tool)
