@@ -80,12 +80,13 @@ test('a face that a cut lays open comes with its vertices, in the same frame', a
 	const whole = await second.join(session, { rate_hz: 1000, channels: ['positions', 'exposure', 'charring'] });
 	await client.call('tool.take_over', { session, tool });
 	await client.call('tool.energize', { session, tool, energized: true });
-	let opened = 0, stale = 0;
+	let opened = 0, stale = 0, warmed = false;
 	for (let i = 0; i < 300 && opened < 10; i++) {
 		const before = Uint32Array.from(stream.mask);
 		await client.call('tool.move', { session, tool, position_m: [-0.03 + 0.0002 * i, 0, Math.max(0.003 - 0.0002 * i, -0.002)], rotation: AT_REST });
 		const { tick } = await client.call('session.step', { session, ticks: 1 });
 		await Promise.all([client.until(() => stream.tick === tick, 'the frame'), second.until(() => whole.tick === tick, 'its')]);
+		warmed ||= whole.charring.some((value, v) => value === 0 && whole.exposure[v] > 0);
 		if (!before.some((word, w) => word & ~stream.mask[w]))
 			continue;
 		opened++;
@@ -99,7 +100,7 @@ test('a face that a cut lays open comes with its vertices, in the same frame', a
 	assert.ok(opened >= 10, `${opened} ticks laid faces open`);
 	assert.equal(stale, opened, 'there always was an inside');
 	assert.ok(whole.charring.some((value) => value > 0 && value < 255), 'some are charred');
-	assert.ok(whole.charring.some((value, v) => value === 0 && whole.exposure[v] > 0), 'heat alone chars nothing');
+	assert.ok(warmed, 'heat alone chars nothing');
 	await Promise.all([client.close(), second.close()]);
 });
 
