@@ -12,6 +12,7 @@
 struct cau_builder {
 	pthread_mutex_t mutex; // guards all
 	pthread_cond_t work;   // there is some, or the builder stops
+	const char *name;
 	int nice;
 	bool stopping;
 	cau_job_queue shorts, longs;
@@ -46,7 +47,7 @@ static void work(cau_builder *builder, bool takes_long)
 
 static void *live(cau_builder *builder, bool takes_long)
 {
-	pthread_setname_np(pthread_self(), "cautery-build");
+	pthread_setname_np(pthread_self(), builder->name);
 	cau_thread_set_nice(builder->nice);
 	pthread_mutex_lock(&builder->mutex);
 	work(builder, takes_long);
@@ -73,13 +74,15 @@ static bool start_threads(cau_builder *builder, int32_t count)
 	return builder->thread_count == count;
 }
 
-cau_status cau_builder_create(cau_builder **made, int32_t threads, int nice, cau_error *error)
+cau_status cau_builder_create(cau_builder **made, const char *name, int32_t threads, int nice,
+                              cau_error *error)
 {
 	CAU_ASSERT(threads >= 1 && threads <= CAU_BUILDER_THREADS_MOST, "%d threads", threads);
 	*made = NULL;
 	cau_builder *builder = calloc(1, sizeof *builder);
 	if (!builder)
 		return cau_fail(error, CAU_NO_MEMORY, NULL, "no memory for the builder");
+	builder->name = name;
 	builder->nice = nice;
 	pthread_mutex_init(&builder->mutex, NULL);
 	pthread_cond_init(&builder->work, NULL);

@@ -30,8 +30,9 @@ typedef struct cau_job {
 enum { CAU_BUILDER_THREADS_MOST = 16 };
 
 // With so many threads for jobs of any length (1 to CAU_BUILDER_THREADS_MOST), and the one for
-// short ones, at `nice` (0 to 19).
-cau_status cau_builder_create(cau_builder **builder, int32_t threads, int nice, cau_error *error);
+// short ones, at `nice` (0 to 19). The name is what tools show of them: at most 15 bytes, kept.
+cau_status cau_builder_create(cau_builder **builder, const char *name, int32_t threads, int nice,
+                              cau_error *error);
 // From any thread; takes the job. After cau_builder_stop it is dropped on the spot.
 void cau_builder_submit(cau_builder *builder, cau_job *job);
 // Drops what waits, and returns when the jobs under way have ended.

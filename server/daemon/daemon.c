@@ -198,10 +198,10 @@ static cau_status open_hub(cau_daemon *daemon, cau_error *error)
 	cau_status status = cau_worker_pool_create(
 		&daemon->pool, workers, 2 * (int32_t)config->max_sessions + 1, CAU_NICE_LAST, error);
 	if (!status)
-		status =
-			cau_builder_create(&daemon->builder, count_builders(workers), CAU_NICE_BUILDER, error);
+		status = cau_builder_create(&daemon->builder, "cautery-build", count_builders(workers),
+		                            CAU_NICE_BUILDER, error);
 	if (!status) // who waits for a session that moves does not wait for what workers leave
-		status = cau_builder_create(&daemon->mover, 1, CAU_NICE_LAST, error);
+		status = cau_builder_create(&daemon->mover, "cautery-move", 1, CAU_NICE_LAST, error);
 	cau_hub_def def = {.config = config,
 	                   .store = daemon->store,
 	                   .pool = daemon->pool,

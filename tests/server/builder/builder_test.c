@@ -84,7 +84,7 @@ static void waiting_jobs_go_by_length(void **state)
 	board b;
 	cau_builder *builder;
 	set_up(&b);
-	assert_int_equal(cau_builder_create(&builder, 1, NICE, NULL), CAU_OK);
+	assert_int_equal(cau_builder_create(&builder, "cautery-build", 1, NICE, NULL), CAU_OK);
 	named giant = make(&b, 'g', 60, true), first = make(&b, 'f', 0.1, true);
 	named slow = make(&b, 's', 0.4, false), quick = make(&b, 'q', 0.01, false);
 	cau_builder_submit(builder, &giant.job);
@@ -108,7 +108,7 @@ static void a_short_job_does_not_stand_behind_a_long_one(void **state)
 	board b;
 	cau_builder *builder;
 	set_up(&b);
-	assert_int_equal(cau_builder_create(&builder, 1, NICE, NULL), CAU_OK);
+	assert_int_equal(cau_builder_create(&builder, "cautery-build", 1, NICE, NULL), CAU_OK);
 	named giant = make(&b, 'g', 60, true), small = make(&b, 's', 0.05, false);
 	cau_builder_submit(builder, &giant.job);
 	await(&b, 1);
@@ -126,7 +126,7 @@ static void long_jobs_run_beside_each_other(void **state)
 	board b;
 	cau_builder *builder;
 	set_up(&b);
-	assert_int_equal(cau_builder_create(&builder, 3, NICE, NULL), CAU_OK);
+	assert_int_equal(cau_builder_create(&builder, "cautery-build", 3, NICE, NULL), CAU_OK);
 	named giant[4];
 	for (int i = 0; i < 4; i++) {
 		giant[i] = make(&b, (char)('a' + i), 60 + i, true);
@@ -150,7 +150,7 @@ static void idle_threads_of_long_jobs_take_short_ones(void **state)
 	board b;
 	cau_builder *builder;
 	set_up(&b);
-	assert_int_equal(cau_builder_create(&builder, 2, NICE, NULL), CAU_OK);
+	assert_int_equal(cau_builder_create(&builder, "cautery-build", 2, NICE, NULL), CAU_OK);
 	named job[3];
 	for (int i = 0; i < 3; i++) {
 		job[i] = make(&b, (char)('a' + i), 0.1, true);
@@ -168,7 +168,7 @@ static void what_waits_at_the_end_is_dropped(void **state)
 	board b;
 	cau_builder *builder;
 	set_up(&b);
-	assert_int_equal(cau_builder_create(&builder, 1, NICE, NULL), CAU_OK);
+	assert_int_equal(cau_builder_create(&builder, "cautery-build", 1, NICE, NULL), CAU_OK);
 	cau_builder_stop(builder);
 	named late = make(&b, 'l', 0.1, false);
 	cau_builder_submit(builder, &late.job);

@@ -104,7 +104,7 @@ int hosted_open_surroundings(void **state)
 	                              .sink = {NULL, notify, see_frames, see_slice}};
 	assert_int_equal(cau_store_open(&of_store, &t.around.store, NULL), CAU_OK);
 	assert_int_equal(cau_worker_pool_create(&t.around.pool, 2, 4, 0, NULL), CAU_OK);
-	assert_int_equal(cau_builder_create(&t.around.builder, 1, 0, NULL), CAU_OK);
+	assert_int_equal(cau_builder_create(&t.around.builder, "cautery-build", 1, 0, NULL), CAU_OK);
 	cau_beginnings_init(&t.beginnings);
 	return 0;
 }

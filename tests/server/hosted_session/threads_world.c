@@ -321,7 +321,8 @@ static void open_surroundings(void)
 	                                    .armed = see_armed,
 	                                    .sink = {NULL, notify, see_frames, see_slice}};
 	assert_int_equal(cau_worker_pool_create(&threads.around.pool, 2, 4, 0, NULL), CAU_OK);
-	assert_int_equal(cau_builder_create(&threads.around.builder, 1, 0, NULL), CAU_OK);
+	assert_int_equal(cau_builder_create(&threads.around.builder, "cautery-build", 1, 0, NULL),
+	                 CAU_OK);
 	cau_beginnings_init(&threads.beginnings);
 }
 

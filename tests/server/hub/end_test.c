@@ -56,7 +56,7 @@ static int open_hub(void **state)
 	of_store.path = t.file;
 	if (cau_store_open(&of_store, &t.store, NULL) ||
 	    cau_worker_pool_create(&t.pool, 2, 4, 0, NULL) ||
-	    cau_builder_create(&t.builder, 1, 0, NULL))
+	    cau_builder_create(&t.builder, "cautery-build", 1, 0, NULL))
 		return -1;
 	cau_hub_def def = {.config = &t.config,
 	                   .store = t.store,
