@@ -220,8 +220,11 @@ cli_exit cli_connect_to(cli *c, const char *session, const char *label)
 	// a proxy in front of several daemons goes by it; what is no name the daemon refuses
 	c->def.session = session && cau_name_is_valid(session) ? session : NULL;
 	c->def.label = label;
-	c->def.url = daemon.url;
-	c->def.token = *daemon.token ? daemon.token : NULL;
+	// commands connect elsewhere by the same definition, when this function is over
+	memcpy(c->daemon_url, daemon.url, sizeof daemon.url);
+	memcpy(c->token, daemon.token, sizeof daemon.token);
+	c->def.url = c->daemon_url;
+	c->def.token = *c->token ? c->token : NULL;
 	c->def.timeout_s = c->timeout_s;
 	if (cau_loop_create(&c->loop, &c->error) ||
 	    cau_client_create(c->loop, &c->def, &c->client, &c->error) ||

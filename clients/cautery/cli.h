@@ -5,6 +5,7 @@
 #include <stdio.h>
 
 #include "cautery/client.h"
+#include "cautery/contexts.h"
 #include "cautery/json_writer.h"
 
 // Exit codes, as --help and clients/README.md state them.
@@ -54,6 +55,7 @@ struct cli {
 	double timeout_s;
 	bool json, help, version;
 	cau_client_def def; // what cli_connect uses; commands may set callbacks before
+	char daemon_url[CLI_CONTEXT_TEXT_BYTES], token[CAU_CLIENT_TOKEN_BYTES]; // def's; "": none
 	cau_loop *loop;
 	cau_client *client;
 	char session[CAU_NAME_BYTES]; // chosen by cli_connect

@@ -17,10 +17,10 @@ class Lost(Exception):
     pass
 
 
-def where_it_went(message):
-    """The id that a session has now, if this notice or answer says that it has moved; or None."""
+def where_it_went(message, session):
+    """The id that this session has now, if a notice (they go to all) or an answer says that it has moved; or None."""
     data = message.get("error", {}).get("data", {})
-    if message.get("method") == "session.changed":
+    if message.get("method") == "session.changed" and message["params"]["summary"]["session"] == session:
         data = message["params"]
     return data.get("moved_to") or None
 
@@ -99,8 +99,9 @@ class Person:
                 kind, payload = await self.socket.receive()
                 self.frames += kind == 2
                 message = json.loads(payload) if kind == 1 else {}
-                if where_it_went(message):
-                    self.follow(where_it_went(message))
+                moved_to = where_it_went(message, self.session)
+                if moved_to:
+                    self.follow(moved_to)
                     raise Lost("moved")
                 future = self.waiting.get(message.get("id"))
                 if future and not future.done():
