@@ -142,6 +142,7 @@ void cau_departure_begin(cau_move_job *job)
 	}
 	d->hosted = hosted;
 	cau_status status = fill(d, &job->asked, &error);
+	cau_store_flush(job->hub->def.store); // one that was made just now is on its way there
 	if (!status)
 		status = cau_store_dump_open(job->hub->def.store, d->id, &d->dump, &error);
 	memcpy(result.move, d->becomes.move, sizeof result.move);

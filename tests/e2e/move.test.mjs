@@ -236,7 +236,7 @@ test('cautery-load, driver and viewers, goes after its session and removes it wh
 	const ended = new Promise((resolve) => load.on('exit', resolve));
 	const made = await one.until(() => one.notice('session.changed', (p) => p.change === 'created'), 'its session');
 	const { session } = made.params.summary, target = session.replace('d1-', 'd2-');
-	await one.join(session); // and with it the first row of its log is on the disk
+	await one.call('session.snapshot', { session, name: 'first' }); // it is on the disk, and what came before it
 	await new Courier(one, two, session, target).walk('accept', at(d2));
 	assert.equal(await ended, 0);
 	// Its driver has had the tool there too, and has destroyed the session at its end.
