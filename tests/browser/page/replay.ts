@@ -2,6 +2,8 @@
 // A stream at exactly its rate, whatever the machine's load: frames of a real session are recorded as
 // the daemon makes them, and played to a page by a door in front of the daemon. Everything else that the
 // page says goes to the daemon and back.
+import { setTimeout as delay } from 'node:timers/promises';
+
 import { Door, PROTOCOL, type Said } from './door';
 import { MessageSocket } from './socket';
 
@@ -18,38 +20,67 @@ export interface Recording {
   frames: Buffer[];
 }
 
-export type Command = (tick: number, call: (method: string, params: object) => void) => void;
+export type Command = (step: number, call: (method: string, params: object) => void) => void;
 
-/** Joins a session and keeps its frames until so many ticks are over; `steer` is asked after each frame. A tick
- * has more than one where tools are moved between two. */
-export async function record(daemonUrl: string, session: string, ticks: number, steer: Command): Promise<Recording> {
+/** Joins a session, pauses it and keeps its frames while it takes so many steps, one by one: `steer` speaks before
+ * each, so that the same cut comes of it whatever the machine's load. A tick has more than one frame where tools
+ * are moved between two. */
+export async function record(daemonUrl: string, session: string, steps: number, steer: Command): Promise<Recording> {
   const socket = await MessageSocket.connect(new URL('v1', daemonUrl), PROTOCOL);
   const frames: Buffer[] = [];
+  const answers = new Map<number, { resolve(result: unknown): void; reject(error: Error): void }>();
   let id = 0;
-  let end: number | null = null;
-  const call = (method: string, params: object): void =>
-    socket.sendText(JSON.stringify({ jsonrpc: '2.0', id: ++id, method, params }));
+  const call = (method: string, params: object): Promise<unknown> =>
+    new Promise((resolve, reject) => {
+      answers.set(++id, { resolve, reject });
+      socket.sendText(JSON.stringify({ jsonrpc: '2.0', id, method, params }));
+    });
+  socket.onText = (text) => {
+    const { id: of, result, error } = JSON.parse(text) as { id?: number; result?: unknown; error?: { message: string } };
+    if (of === undefined) return;
+    if (error) answers.get(of)?.reject(new Error(`${error.message}: ${text}`));
+    else answers.get(of)?.resolve(result);
+    answers.delete(of);
+  };
+  let look = (): void => undefined; // at each frame
+  socket.onBinary = (frame) => {
+    frames.push(frame);
+    if (frames.length % ACK_FRAMES === 0) {
+      const epoch = frame.readBigUInt64LE(16).toString(16).padStart(16, '0');
+      const params = { session, epoch, sequence: Number(frame.readBigUInt64LE(24)) };
+      socket.sendText(JSON.stringify({ jsonrpc: '2.0', method: 'stream.ack', params }));
+    }
+    look();
+  };
+  const until = (enough: () => boolean): Promise<void> =>
+    new Promise((resolve) => {
+      look = (): void => {
+        if (enough()) resolve();
+      };
+      look();
+    });
+  const take = async (): Promise<void> => {
+    await call('hello', { version: 1, client: 'recorder' });
+    const there = async (): Promise<boolean> =>
+      ((await call('session.list', {})) as { sessions: { session: string }[] }).sessions.some((one) => one.session === session);
+    while (!(await there())) await delay(LOOK_MS); // the demo is still being made
+    await call('session.pause', { session });
+    const channels = ['positions', 'mask', 'exposure', 'charring', 'tools', 'statistics'];
+    await call('session.join', { session, channels });
+    await until(() => frames.length === 2);
+    let tick = 0;
+    for (let step = 0; step < steps; step++) {
+      const said: Promise<unknown>[] = [];
+      steer(step, (method, params) => void said.push(call(method, params)));
+      const stepped = call('session.step', { session, ticks: 1 });
+      await Promise.all(said);
+      tick = ((await stepped) as { tick: number }).tick;
+    }
+    await until(() => Number(frames[frames.length - 1].readBigUInt64LE(TICK_AT)) === tick);
+  };
   await new Promise<void>((resolve, reject) => {
     socket.onClose = () => reject(new Error('the daemon closed the recording'));
-    socket.onText = (text) => {
-      const { error } = JSON.parse(text) as { error?: { message: string } };
-      if (error) reject(new Error(`${error.message}: ${text}`));
-    };
-    socket.onBinary = (frame) => {
-      const tick = Number(frame.readBigUInt64LE(TICK_AT));
-      frames.push(frame);
-      end ??= tick + ticks;
-      if (tick >= end && frames.length > 1) resolve();
-      if (frames.length % ACK_FRAMES === 0) {
-        const epoch = frame.readBigUInt64LE(16).toString(16).padStart(16, '0');
-        const params = { session, epoch, sequence: Number(frame.readBigUInt64LE(24)) };
-        socket.sendText(JSON.stringify({ jsonrpc: '2.0', method: 'stream.ack', params }));
-      }
-      steer(tick, call);
-    };
-    call('hello', { version: 1, client: 'recorder' });
-    const channels = ['positions', 'mask', 'exposure', 'charring', 'tools', 'statistics'];
-    call('session.join', { session, channels });
+    take().then(resolve, reject);
   });
   socket.onClose = () => undefined;
   socket.close();
