@@ -228,6 +228,70 @@ test('cautery move carries a running session, and the library goes after it', as
 	await end(d1, d2);
 });
 
+const OPEN_MOST = 20; // requests without an answer: several in a tick, and fewer a second than a client may send
+
+// Sends moves without waiting for answers, where its session is; what was refused because that moved is asked again
+// there, in order.
+class Flood {
+	constructor(session) {
+		Object.assign(this, { session, sequence: 0, acknowledged: new Map(), again: [], open: new Set() });
+	}
+
+	send(client, number) {
+		const asked = client.call('tool.move', {
+			session: this.session, tool: 'hook', sequence: number, client_sequence: number, rotation: AT_REST,
+			position_m: [1e-4 * (number % 100), 0, 0.01],
+		}).then(({ tick }) => this.acknowledged.set(number, tick), (error) => {
+			assert.equal(error.data?.status, 'moved', error.message);
+			this.again.push(number);
+		}).finally(() => this.open.delete(asked));
+		this.open.add(asked);
+	}
+
+	// Until its session is elsewhere, and all that was asked is answered.
+	async run(client, moved) {
+		for (const number of this.again.splice(0))
+			this.send(client, number);
+		while (!moved()) {
+			if (this.open.size < OPEN_MOST)
+				this.send(client, ++this.sequence);
+			await new Promise(setImmediate); // what comes in is read
+		}
+		while (this.open.size)
+			await Promise.all(this.open);
+		this.again.sort((a, b) => a - b);
+	}
+}
+
+test('what a driver is told was done is in the log, once, wherever its session was', async () => {
+	const all = await daemons();
+	const clients = await Promise.all(all.map((daemon) => daemon.connect()));
+	let session = await smallSession(clients[0], 'knee', { cells: [8, 6] });
+	let driver = await all[0].connect({ hello: { client_id: 'surgeon' } });
+	await driver.call('tool.take_over', { session, tool: 'hook' });
+	const flood = new Flood(session);
+	for (let at = 0; at < 4; at++) {
+		const [from, to] = [at % 2, (at + 1) % 2], target = `d${to + 1}-knee`;
+		const walking = new Courier(clients[from], clients[to], session, target).walk();
+		const gone = ({ change, moved_to }) => change === 'moved' && moved_to === target;
+		await Promise.all([flood.run(driver, () => driver.notice('session.changed', gone)), walking]);
+		driver = await all[to].connect({ hello: { client_id: 'surgeon', resume: driver.hello.resume } });
+		flood.session = session = target;
+	}
+	let rest = 20;
+	await flood.run(driver, () => !rest--);
+	const log = (await driver.file('session.log', { session })).toString().trim().split('\n').map((line) => JSON.parse(line));
+	// The daemon's own lines, of where a tool stays whose driver is away, repeat the last sequence.
+	const first = new Map();
+	for (const { command, sequence, tick } of log)
+		if (command === 'tool.move' && !first.has(sequence))
+			first.set(sequence, tick);
+	assert.equal(flood.acknowledged.size, flood.sequence);
+	const told = [...flood.acknowledged].filter(([number, tick]) => first.get(number) !== tick);
+	assert.deepEqual(told, []);
+	await end(...all);
+});
+
 test('cautery-load, driver and viewers, goes after its session and removes it where it is', async () => {
 	const [d1, d2] = await daemons();
 	const one = await d1.connect(), two = await d2.connect();
