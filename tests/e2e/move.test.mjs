@@ -292,6 +292,44 @@ test('what a driver is told was done is in the log, once, wherever its session w
 	await end(...all);
 });
 
+test('to another kind of processor it goes only where that is asked for, and goes on there', async (t) => {
+	const d1 = await Daemon.start({ settings: settings('d1') });
+	const d2 = await Daemon.start({ settings: settings('d2'), program: process.env.CAUTERYD_BASELINE });
+	const one = await d1.connect(), two = await d2.connect();
+	const session = await smallSession(one, 'knee', { paused: true, cells: [8, 6] });
+	await cutMiddle(one, session, 40);
+	await one.call('tool.energize', { session, tool: 'hook', energized: false });
+	await one.call('session.snapshot', { session, name: 'first' });
+	const { summary, instruction_set: tier } = await one.call('session.describe', { session });
+	if (tier === 'baseline')
+		return t.skip('this processor knows the lowest tier alone');
+	const stream = await one.join(session);
+	const at = (daemon) => `ws://127.0.0.1:${daemon.port}`;
+	const words = ['move', session, 'd2', '--url', at(d1), '--to-url', at(d2)];
+
+	const refused = await run(words);
+	assert.equal(refused.status, 1, refused.stderr);
+	assert.match(refused.stderr, /another build, or its processor has another instruction set.*--inexact/);
+	assert.deepEqual([await serves(one, session), await serves(two, 'd2-knee')], [true, false]);
+	for (const client of [one, two])
+		assert.deepEqual((await client.call('move.list')).moves, []);
+	await one.call('session.step', { session, ticks: 1 });
+
+	const moved = await run([...words, '--inexact']);
+	assert.equal(moved.status, 0, moved.stderr);
+	assert.match(moved.stderr, /not bit-exact/);
+	const there = 'd2-knee';
+	const described = await two.call('session.describe', { session: there });
+	assert.deepEqual([described.instruction_set, described.summary.tick], ['baseline', summary.tick + 1]);
+	await one.until(() => stream.tick === summary.tick + 1, 'the last frame');
+	assert.deepEqual(picture(await two.join(there)), picture(stream));
+	assert.equal((await two.call('session.step', { session: there, ticks: 5 })).tick, summary.tick + 6);
+	// Its past is computed anew from a state that the other one made, and said not to be to the bit.
+	const restored = await two.call('session.restore', { session: there, name: 'first' });
+	assert.deepEqual([restored.tick, restored.exact], [summary.tick, false]);
+	await end(d1, d2);
+});
+
 test('cautery-load, driver and viewers, goes after its session and removes it where it is', async () => {
 	const [d1, d2] = await daemons();
 	const one = await d1.connect(), two = await d2.connect();
