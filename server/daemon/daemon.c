@@ -239,7 +239,7 @@ static void measure_load(void *user, cau_load *load)
 	cau_daemon *daemon = user;
 	cau_store_health health;
 	cau_store_get_health(daemon->store, &health);
-	load->takes = cau_hub_starting(daemon->hub) == 0 && health.state == CAU_STORE_READY &&
+	load->takes = cau_hub_resuming(daemon->hub) == 0 && health.state == CAU_STORE_READY &&
 	              !daemon->draining && !daemon->stands_aside;
 	cau_load_meter_read(&daemon->meter, load);
 }

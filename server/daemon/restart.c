@@ -19,7 +19,7 @@ void cau_restart_tell(cau_restart *restart)
 {
 	if (restart->left == 0)
 		return;
-	int32_t left = cau_hub_starting(restart->hub); // those that clients make meanwhile among them
+	int32_t left = cau_hub_resuming(restart->hub);
 	if (left >= restart->left)
 		return;
 	restart->left = left;

@@ -208,18 +208,6 @@ const cau_hosted_times *cau_hub_times(const cau_hub *hub)
 	return &hub->times;
 }
 
-static void count_starting(void *user, cau_hosted *hosted)
-{
-	*(int32_t *)user += cau_hosted_starting(hosted);
-}
-
-int32_t cau_hub_starting(cau_hub *hub)
-{
-	int32_t count = 0;
-	cau_hub_each(hub, count_starting, &count);
-	return count;
-}
-
 typedef struct store_news {
 	bool takes;
 	const char *reason;

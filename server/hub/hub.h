@@ -165,9 +165,9 @@ double cau_hub_longest_slice_s(cau_hub *hub);
 const cau_hosted_times *cau_hub_times(const cau_hub *hub);
 // Forgets lost clients and ended sessions. Waits for a worker's slice: not from one.
 void cau_hub_reap(cau_hub *hub);
-// Sessions that are not there yet, whoever wanted them; 0 once all of the store have been brought
-// up.
-int32_t cau_hub_starting(cau_hub *hub);
+// Of the sessions that the daemon begins with, the store's and the demo, how many are not there
+// yet; whatever clients make.
+int32_t cau_hub_resuming(cau_hub *hub);
 // The store has room again, or has none any more. From the store's thread.
 void cau_hub_store_takes(cau_hub *hub, bool takes, const char *reason);
 // Checkpoints all sessions; returns when they are on the disk or the time is over.

@@ -30,6 +30,7 @@ struct cau_hub {
 	cau_hosted **sessions;
 	int32_t session_count;
 	_Atomic uint32_t last_session;
+	_Atomic uint32_t last_resumed; // of those that the daemon begins with, which are the first
 	cau_client *clients;
 	int32_t client_count, client_capacity;
 	uint32_t last_client;

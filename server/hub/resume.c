@@ -128,7 +128,26 @@ static cau_status make_demo(cau_hub *hub, cau_error *error)
 	*creation->scene = *scene;
 	snprintf(creation->name, sizeof creation->name, "%s", scene->name);
 	cau_hub_submit_creation(hub, creation);
+	hub->last_resumed++; // it has the next number, since no client is there yet
 	return CAU_OK;
+}
+
+typedef struct counting {
+	uint32_t last_resumed;
+	int32_t count;
+} counting;
+
+static void count_resuming(void *user, cau_hosted *hosted)
+{
+	counting *c = user;
+	c->count += cau_hosted_number(hosted) <= c->last_resumed && cau_hosted_starting(hosted);
+}
+
+int32_t cau_hub_resuming(cau_hub *hub)
+{
+	counting c = {.last_resumed = hub->last_resumed};
+	cau_hub_each(hub, count_resuming, &c);
+	return c.count;
 }
 
 cau_status cau_hub_resume(cau_hub *hub, int32_t *resumed, cau_error *error)
@@ -142,6 +161,7 @@ cau_status cau_hub_resume(cau_hub *hub, int32_t *resumed, cau_error *error)
 		status = cau_store_read_sessions(hub->def.store, take_id, &list, error);
 	for (int32_t i = 0; !status && i < list.count; i++)
 		*resumed += resume_one(hub, list.id[i]);
+	hub->last_resumed = hub->last_session;
 	free(list.id);
 	if (!status && *hub->def.config->demo)
 		status = make_demo(hub, error);

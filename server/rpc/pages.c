@@ -21,7 +21,7 @@ static unsigned write_ready(cau_service *service, FILE *out)
 {
 	cau_store_health health;
 	cau_store_get_health(service->store, &health);
-	bool resumed = cau_hub_starting(service->hub) == 0, store = health.state == CAU_STORE_READY;
+	bool resumed = cau_hub_resuming(service->hub) == 0, store = health.state == CAU_STORE_READY;
 	bool ready = resumed && store && !service->draining;
 	fprintf(out, "{\"ready\": %s, \"sessions_resumed\": %s, \"store\": \"%s\", \"draining\": %s}\n",
 	        ready ? "true" : "false", resumed ? "true" : "false",

@@ -10,6 +10,7 @@ import asyncio
 import http.client
 import json
 import os
+import re
 import shutil
 import signal
 import ssl
@@ -120,6 +121,7 @@ class Fleet:
                               os.path.join(folder, "etcd"))
         self.keepers = {label: Keeper(self, label) for label in TTL_S}
         self.people, self.twice = [], []
+        self.stood_s = []  # of each session that moved
         self.tls, self.certificate = None, None
 
     def start_proxy(self):
@@ -265,7 +267,8 @@ async def sessions_move(fleet):
     assert len(moving) == MOVED and driven & set(moving), moving
     people = [one for one in fleet.people if one.session in moving]
     for session in moving:
-        await fleet.cautery("move", session, "d2")
+        told = await fleet.cautery("move", session, "d2")
+        fleet.stood_s.append(float(re.search(r"stood still for ([0-9.]+) s", told).group(1)))
     moved = time.monotonic()
     await await_true("all have followed", lambda: all(one.followed for one in people))
     return "d2", moved
@@ -292,9 +295,10 @@ async def go_through(fleet, trouble):
 
 # ---- what came of it
 async def compare_logs(fleet):
-    """(acknowledged moves that no log has, moves that acted at another tick than their answer says). A move that was
-    sent again and acted again would be answered with its second tick. A later line of the same sequence alone says
-    nothing: the daemon notes where a tool stays whose driver is gone."""
+    """(acknowledged moves that no log has, moves that acted at another tick than their answer says). Nobody drives any
+    more: a log ends with the tick at which it was asked for, and what is acknowledged while it comes is not in it. A
+    move that was sent again and acted again would be answered with its second tick. A later line of the same sequence
+    alone says nothing: the daemon notes where a tool stays whose driver is gone."""
     missing = repeated = 0
     for one in (one for one in fleet.people if one.drives):
         file = os.path.join(fleet.folder, one.session + ".jsonl")
@@ -302,7 +306,10 @@ async def compare_logs(fleet):
         with open(file, encoding="utf-8") as lines:
             moves = [move for move in map(json.loads, lines) if move["command"] == "tool.move"]
         first = {move["sequence"]: move["tick"] for move in reversed(moves)}
-        missing += len([move for move, _ in one.acknowledged if move not in first])
+        lost = [f"move {move} at tick {tick}" for move, tick in one.acknowledged if move not in first]
+        if lost:
+            print(f"{one.session}: {lost} of {len(one.acknowledged)}; the log's last: {moves[-1]}", flush=True)
+        missing += len(lost)
         repeated += len([move for move, tick in one.acknowledged if first.get(move, tick) != tick])
     return missing, repeated
 
@@ -313,6 +320,16 @@ async def begin_sessions(fleet):
         drives = number % (SESSIONS // DRIVEN) == 0
         fleet.people += [fleet_client.Person(fleet, session, False)]
         fleet.people += [fleet_client.Person(fleet, session, True)] if drives else []
+
+
+async def end_tasks(tasks):
+    for task in tasks:
+        if task.done():
+            task.result()  # what went wrong in it
+    while tasks:  # wait_for loses a cancel that comes with what it waits for
+        for task in tasks:
+            task.cancel()
+        _, tasks = await asyncio.wait(tasks, timeout=1)
 
 
 def check(fleet, rows, missing, repeated):
@@ -332,7 +349,8 @@ def show(fleet, rows, missing, repeated):
         twice = len([when for when, _ in fleet.twice if row["began"] <= when < row["ended"]])
         print(f"| {row['trouble']} | {row['lost']} | {row['back_s']:.1f} | {row['acknowledged']} | | | {twice} |")
     print(f"| in all | | | {sum(len(one.acknowledged) for one in fleet.people)} | {missing} | {repeated} "
-          f"| {len(fleet.twice)} |\n")
+          f"| {len(fleet.twice)} |\n\nthose that moved stood still for {min(fleet.stood_s):.2f} to"
+          f" {max(fleet.stood_s):.2f} s\n")
 
 
 async def run(fleet):
@@ -354,11 +372,9 @@ async def run(fleet):
         rows.append(await go_through(fleet, trouble))
         print(f"{rows[-1]['trouble']}: all back after {rows[-1]['back_s']:.1f} s", flush=True)
     assert len((await fleet.cautery("ls")).splitlines()) == 1 + SESSIONS  # of all daemons
+    await end_tasks(living)
     missing, repeated = await compare_logs(fleet)
-    for task in [*living, watching, *keeping]:
-        if task.done():
-            task.result()  # what went wrong in it
-        task.cancel()
+    await end_tasks([watching, *keeping])
     proxy.kill()
     show(fleet, rows, missing, repeated)
     return check(fleet, rows, missing, repeated)

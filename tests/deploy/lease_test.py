@@ -34,19 +34,18 @@ def free_ports(count):
     return ports
 
 
-class Lease(unittest.TestCase):
+class WithStores(unittest.TestCase):
+    urls = None  # of the etcds
+
     def setUp(self):
         self.folder = tempfile.mkdtemp(prefix="cautery-lease-")
         self.addCleanup(shutil.rmtree, self.folder)
-        self.etcd = etcd.Etcd("127.0.0.1", *free_ports(2), programs.PATIENCE_S)
-        self.addCleanup(self.etcd.stop)
-        self.etcd.await_healthy()
 
     def path(self, name):
         return os.path.join(self.folder, name)
 
     def settings(self, store, **more):
-        return {"label": "d1", "etcd": self.etcd.url, "etcd_ttl_s": TTL_S, "store": self.path(store), **more}
+        return {"label": "d1", "etcd": self.urls, "etcd_ttl_s": TTL_S, "store": self.path(store), **more}
 
     def start(self, store, log=None, **more):
         daemon = programs.Daemon(log=log, **self.settings(store, **more))
@@ -69,6 +68,15 @@ class Lease(unittest.TestCase):
                               capture_output=True, env=dict(programs.CLEAN, CAUTERYD_URL=daemon.url),
                               timeout=programs.PATIENCE_S)
         return done.stdout.strip()
+
+
+class Lease(WithStores):
+    def setUp(self):
+        super().setUp()
+        self.etcd = etcd.Etcd("127.0.0.1", *free_ports(2), programs.PATIENCE_S)
+        self.addCleanup(self.etcd.stop)
+        self.etcd.await_healthy()
+        self.urls = self.etcd.url
 
     def test_a_daemon_that_was_killed_is_back_at_once(self):
         first = self.start("a.db")
@@ -155,6 +163,38 @@ class Lease(unittest.TestCase):
             except ConnectionResetError:
                 said = b""
             self.assertNotIn(b"d1-knee", said)
+
+
+class Three(WithStores):
+    TTL_S = 6  # longer than the others take to find a leader: one to two seconds
+
+    def setUp(self):
+        super().setUp()
+        ports = free_ports(6)
+        peers = {f"e{i}": ports[3 + i] for i in range(3)}
+        self.etcds = [etcd.Etcd("127.0.0.1", ports[i], ports[3 + i], programs.PATIENCE_S, name=f"e{i}", peers=peers)
+                      for i in range(3)]
+        for one in self.etcds:
+            self.addCleanup(one.stop)
+        for one in self.etcds:
+            one.await_healthy()
+        self.etcds.sort(key=lambda one: not one.leads())  # it is asked first, and by default alone
+        self.urls = ",".join(one.url for one in self.etcds)
+
+    def test_one_may_fail_and_with_two_gone_the_daemon_ends_in_time(self):
+        daemon = self.start("a.db", etcd_ttl_s=self.TTL_S)
+        leader, second, _ = self.etcds
+        leader.kill()
+        with self.assertRaises(subprocess.TimeoutExpired):
+            daemon.process.wait(self.TTL_S)  # without the two that are left it would have ended
+        self.assertEqual(self.cautery(daemon, "create", "fascia", "--name", "knee", "--paused"), "d1-knee")
+        second.kill()
+        began = time.monotonic()
+        self.assertIn(daemon.process.wait(programs.PATIENCE_S), LOST)
+        self.assertLess(time.monotonic() - began, self.TTL_S - MARGIN_S + LATE_S)
+        leader.start()
+        leader.await_healthy()
+        self.assertIn("d1-knee", self.cautery(self.start("a.db", etcd_ttl_s=self.TTL_S), "ls"))
 
 
 if __name__ == "__main__":

@@ -228,6 +228,108 @@ test('cautery move carries a running session, and the library goes after it', as
 	await end(d1, d2);
 });
 
+const OPEN_MOST = 20; // requests without an answer: several in a tick, and fewer a second than a client may send
+
+// Sends moves without waiting for answers, where its session is; what was refused because that moved is asked again
+// there, in order.
+class Flood {
+	constructor(session) {
+		Object.assign(this, { session, sequence: 0, acknowledged: new Map(), again: [], open: new Set() });
+	}
+
+	send(client, number) {
+		const asked = client.call('tool.move', {
+			session: this.session, tool: 'hook', sequence: number, client_sequence: number, rotation: AT_REST,
+			position_m: [1e-4 * (number % 100), 0, 0.01],
+		}).then(({ tick }) => this.acknowledged.set(number, tick), (error) => {
+			assert.equal(error.data?.status, 'moved', error.message);
+			this.again.push(number);
+		}).finally(() => this.open.delete(asked));
+		this.open.add(asked);
+	}
+
+	// Until its session is elsewhere, and all that was asked is answered.
+	async run(client, moved) {
+		for (const number of this.again.splice(0))
+			this.send(client, number);
+		while (!moved()) {
+			if (this.open.size < OPEN_MOST)
+				this.send(client, ++this.sequence);
+			await new Promise(setImmediate); // what comes in is read
+		}
+		while (this.open.size)
+			await Promise.all(this.open);
+		this.again.sort((a, b) => a - b);
+	}
+}
+
+test('what a driver is told was done is in the log, once, wherever its session was', async () => {
+	const all = await daemons();
+	const clients = await Promise.all(all.map((daemon) => daemon.connect()));
+	let session = await smallSession(clients[0], 'knee', { cells: [8, 6] });
+	let driver = await all[0].connect({ hello: { client_id: 'surgeon' } });
+	await driver.call('tool.take_over', { session, tool: 'hook' });
+	const flood = new Flood(session);
+	for (let at = 0; at < 4; at++) {
+		const [from, to] = [at % 2, (at + 1) % 2], target = `d${to + 1}-knee`;
+		const walking = new Courier(clients[from], clients[to], session, target).walk();
+		const gone = ({ change, moved_to }) => change === 'moved' && moved_to === target;
+		await Promise.all([flood.run(driver, () => driver.notice('session.changed', gone)), walking]);
+		driver = await all[to].connect({ hello: { client_id: 'surgeon', resume: driver.hello.resume } });
+		flood.session = session = target;
+	}
+	let rest = 20;
+	await flood.run(driver, () => !rest--);
+	const log = (await driver.file('session.log', { session })).toString().trim().split('\n').map((line) => JSON.parse(line));
+	// The daemon's own lines, of where a tool stays whose driver is away, repeat the last sequence.
+	const first = new Map();
+	for (const { command, sequence, tick } of log)
+		if (command === 'tool.move' && !first.has(sequence))
+			first.set(sequence, tick);
+	assert.equal(flood.acknowledged.size, flood.sequence);
+	const told = [...flood.acknowledged].filter(([number, tick]) => first.get(number) !== tick);
+	assert.deepEqual(told, []);
+	await end(...all);
+});
+
+test('to another kind of processor it goes only where that is asked for, and goes on there', async (t) => {
+	const d1 = await Daemon.start({ settings: settings('d1') });
+	const d2 = await Daemon.start({ settings: settings('d2'), program: process.env.CAUTERYD_BASELINE });
+	const one = await d1.connect(), two = await d2.connect();
+	const session = await smallSession(one, 'knee', { paused: true, cells: [8, 6] });
+	await cutMiddle(one, session, 40);
+	await one.call('tool.energize', { session, tool: 'hook', energized: false });
+	await one.call('session.snapshot', { session, name: 'first' });
+	const { summary, instruction_set: tier } = await one.call('session.describe', { session });
+	if (tier === 'baseline')
+		return t.skip('this processor knows the lowest tier alone');
+	const stream = await one.join(session);
+	const at = (daemon) => `ws://127.0.0.1:${daemon.port}`;
+	const words = ['move', session, 'd2', '--url', at(d1), '--to-url', at(d2)];
+
+	const refused = await run(words);
+	assert.equal(refused.status, 1, refused.stderr);
+	assert.match(refused.stderr, /another build, or its processor has another instruction set.*--inexact/);
+	assert.deepEqual([await serves(one, session), await serves(two, 'd2-knee')], [true, false]);
+	for (const client of [one, two])
+		assert.deepEqual((await client.call('move.list')).moves, []);
+	await one.call('session.step', { session, ticks: 1 });
+
+	const moved = await run([...words, '--inexact']);
+	assert.equal(moved.status, 0, moved.stderr);
+	assert.match(moved.stderr, /not bit-exact/);
+	const there = 'd2-knee';
+	const described = await two.call('session.describe', { session: there });
+	assert.deepEqual([described.instruction_set, described.summary.tick], ['baseline', summary.tick + 1]);
+	await one.until(() => stream.tick === summary.tick + 1, 'the last frame');
+	assert.deepEqual(picture(await two.join(there)), picture(stream));
+	assert.equal((await two.call('session.step', { session: there, ticks: 5 })).tick, summary.tick + 6);
+	// Its past is computed anew from a state that the other one made, and said not to be to the bit.
+	const restored = await two.call('session.restore', { session: there, name: 'first' });
+	assert.deepEqual([restored.tick, restored.exact], [summary.tick, false]);
+	await end(d1, d2);
+});
+
 test('cautery-load, driver and viewers, goes after its session and removes it where it is', async () => {
 	const [d1, d2] = await daemons();
 	const one = await d1.connect(), two = await d2.connect();
