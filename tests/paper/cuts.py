@@ -112,9 +112,9 @@ mean over that with the shipped cells.
 {chr(10).join(by_mesh)}
 
 By edges, half a cell all round goes with what the heat has parted, so a coarse mesh loses more. By elements it loses
-what the heat reaches: the means are held to 15 % over 1 to 2 x the cells and to 30 % at 0.5 x, in sessions like these, where
-tissue moves, gives way and is pushed (`core_session_cut_by_mesh_long`; 0.5 x alone in every run of the tests), and where it
-stands still (`core_dissect_doses`).
+what the heat reaches. The means of eight ways are held to 15 % over 1 to 2 x the cells and to 30 % at 0.5 x, in such sessions
+on a slab as wide as the tool reaches (`core_session_cut_by_mesh`, 0.5 x beside 1 x, in every run of the tests; with
+`--long` the finer ones), and on tissue that stands still (`core_dissect_doses`).
 
 ![Volume by mesh](validation-cuts.svg)
 
