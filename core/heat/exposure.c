@@ -3,7 +3,9 @@
 
 #include "cautery/assert.h"
 
-enum { PARTS_MAX = 32 };
+// Of the parts that half a cell asks for: with four, a ball at 50 mm/s in cells of a sixth of its
+// radius is within 2 %, and more bring it little (README.md).
+enum { PARTS_MAX = 32, CELL_PARTS_MAX = 4 };
 
 double cau_exposure_gain(const cau_heat_grid *grid, const cau_tool_def *tool, const cau_pose *pose,
                          double jaw, cau_vec3 a, cau_vec3 b, double absorption_per_s,
@@ -32,7 +34,8 @@ static double turn_between(const cau_pose *from, const cau_pose *to)
 	return 4 * tan(acos(fmin(fabs(dot), 1)) / 2);
 }
 
-int cau_exposure_parts(const cau_tool_def *tool, const cau_pose *from, const cau_pose *to)
+// No point of the hot part goes further than this from one pose to the other, m.
+static double longest_way_m(const cau_tool_def *tool, const cau_pose *from, const cau_pose *to)
 {
 	cau_vec3 center;
 	double radius;
@@ -40,6 +43,24 @@ int cau_exposure_parts(const cau_tool_def *tool, const cau_pose *from, const cau
 	double reach = cau_length(center) + radius; // of the hot part about the tip
 	double way = cau_length(cau_sub(cau_vec3_of(to->position_m), cau_vec3_of(from->position_m)));
 	CAU_ASSERT(reach >= 0, "a hot part that reaches %g m", reach);
-	double parts = (way + reach * turn_between(from, to)) / (cau_tool_thinnest_hot_m(tool) / 2);
-	return (int)fmin(fmax(ceil(parts * (1 - 1e-12)), 1), PARTS_MAX);
+	return way + reach * turn_between(from, to);
+}
+
+static int parts_of(double way_m, double each_m, int most)
+{
+	CAU_ASSERT(each_m > 0, "parts of %g m", each_m);
+	return (int)fmin(fmax(ceil(way_m / each_m * (1 - 1e-12)), 1), most);
+}
+
+int cau_exposure_parts(const cau_tool_def *tool, const cau_pose *from, const cau_pose *to)
+{
+	return parts_of(longest_way_m(tool, from, to), cau_tool_thinnest_hot_m(tool) / 2, PARTS_MAX);
+}
+
+int cau_heating_parts(const cau_tool_def *tool, const cau_pose *from, const cau_pose *to)
+{
+	double way = longest_way_m(tool, from, to), thinnest = cau_tool_thinnest_hot_m(tool);
+	int swept = parts_of(way, thinnest / 2, PARTS_MAX);
+	int in_cells = thinnest < INFINITY ? parts_of(way, tool->grid_step_m / 2, CELL_PARTS_MAX) : 1;
+	return swept > in_cells ? swept : in_cells;
 }

@@ -17,6 +17,10 @@ double cau_exposure_gain(const cau_heat_grid *grid, const cau_tool_def *tool, co
 // parts.
 int cau_exposure_parts(const cau_tool_def *tool, const cau_pose *from, const cau_pose *to);
 
+// The same, and so many more, up to four, that no point of the hot part moves by more than half a
+// cell of the tool's grid in one: the field is that of a tool which moves, not of one that leaps.
+int cau_heating_parts(const cau_tool_def *tool, const cau_pose *from, const cau_pose *to);
+
 // Ignition temperature of edge `edge` in layer `layer`: mean + spread * g, g standard normal (cut
 // off at 3), drawn from (seed, layer, edge) alone; never below a tenth of the mean.
 double cau_ignition_of(double mean_c, double spread_c, uint64_t seed, int32_t layer, int32_t edge);

@@ -8,7 +8,7 @@
 static void heat_edges(cau_session *session, cau_tool *tool)
 {
 	const cau_tool_def *def = &tool->state.definition;
-	int parts = cau_exposure_parts(def, &tool->pose_before, &tool->state.pose);
+	int parts = cau_heating_parts(def, &tool->pose_before, &tool->state.pose);
 	CAU_ASSERT(parts >= 1, "a way in %d parts", parts);
 	double duration = session->solver.step_s / parts;
 	for (int part = 1; part <= parts; part++) {

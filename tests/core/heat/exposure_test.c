@@ -129,6 +129,26 @@ static void test_parts(void **state)
 	assert_int_equal(cau_exposure_parts(&grasper, &from, &to), 1);
 }
 
+// As many as half a cell asks for, no more than four of those; never fewer than what is swept.
+static void test_heating_parts(void **state)
+{
+	(void)state;
+	cau_tool_def tool = tool_with_defaults(CAU_TOOL_SPHERE);
+	double cell = tool.grid_step_m;
+	static const double cells[] = {0, 0.5, 0.51, 1.4, 2, 3};
+	static const int parts[] = {1, 1, 2, 3, 4, 4};
+	cau_pose from = pose_at(0.1, 0.2, 0.3);
+	for (size_t k = 0; k < sizeof cells / sizeof *cells; k++) {
+		cau_pose to = pose_at(0.1 + cells[k] * cell, 0.2, 0.3);
+		assert_int_equal(cau_heating_parts(&tool, &from, &to), parts[k]);
+		assert_true(cau_exposure_parts(&tool, &from, &to) <= parts[k]);
+	}
+	cau_pose far = pose_at(1.1, 0.2, 0.3);
+	assert_int_equal(cau_heating_parts(&tool, &from, &far), 32);
+	cau_tool_def grasper = tool_with_defaults(CAU_TOOL_GRASPER);
+	assert_int_equal(cau_heating_parts(&grasper, &from, &far), 1);
+}
+
 int main(void)
 {
 	const struct CMUnitTest tests[] = {
@@ -136,6 +156,7 @@ int main(void)
 		cmocka_unit_test(test_no_exposure_below_living),
 		cmocka_unit_test(test_no_exposure_outside_the_shape),
 		cmocka_unit_test(test_parts),
+		cmocka_unit_test(test_heating_parts),
 	};
 	return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -18,6 +18,7 @@ static void a_scene_is_made_around_the_mesh(void **state)
 	assert_string_equal(scene->name, "my-liver-2");
 	assert_string_equal(scene->meshes[0].file, "some/My Liver_2.final.msh");
 	assert_true(scene->meshes[0].unit_m == 0.001);
+	assert_int_equal(scene->parting, CAU_PARTING_ELEMENTS);
 	assert_int_equal(scene->layer_count, 2);
 	assert_int_equal(scene->layers[0].kind, CAU_LAYER_FAT);
 	assert_string_equal(scene->layers[1].of, "fat");

@@ -78,7 +78,7 @@ static void files_change_nothing(void **state)
 }
 
 // Of a hot hook that is pulled through taut fascia, which moves and holds energy.
-static void ticks_tell_energies_and_forces(void **state)
+static void ticks_tell_energies_and_times(void **state)
 {
 	(void)state;
 	size_t bytes;
@@ -93,6 +93,27 @@ static void ticks_tell_energies_and_forces(void **state)
 	assert_true(cell_of(last, column_of(text, "stage_local_s")) < 1);
 	assert_true(cell_of(last, column_of(text, "hook_temperature_c")) > 100);
 	assert_true(cell_of(last, column_of(text, "hook_energy_j")) > 0);
+	free(text);
+}
+
+// A cold hook presses taut fascia, which pushes it up.
+static void ticks_tell_forces(void **state)
+{
+	(void)state;
+	char arguments[512], output[4096];
+	size_t bytes;
+	fixture_write(fixture_path("press.jsonl"),
+	              "{\"command\":\"tool.move\",\"tick\":1,\"tool\":\"hook\","
+	              "\"position_m\":[0,0,-0.003],\"rotation\":[1,0,0,0]}\n");
+	snprintf(arguments, sizeof arguments, "--scene fascia --seconds 1 --script %s --csv %s",
+	         fixture_path("press.jsonl"), fixture_path("pressed.csv"));
+	assert_int_equal(run_program(arguments, output, sizeof output), 0);
+	char *text = fixture_read(fixture_path("pressed.csv"), &bytes);
+	const char *last = strstr(text, "\n60,");
+	assert_non_null(last);
+	double up = cell_of(last, column_of(text, "hook_force_z_n"));
+	assert_true(up > 0);
+	assert_true(cell_of(last, column_of(text, "tool_force_max_n")) >= up);
 	free(text);
 }
 
@@ -156,7 +177,8 @@ int main(int argument_count, char **arguments)
 		cmocka_unit_test(exit_codes_are_as_documented),
 		cmocka_unit_test(print_cut_is_the_kept_script),
 		cmocka_unit_test(files_change_nothing),
-		cmocka_unit_test(ticks_tell_energies_and_forces),
+		cmocka_unit_test(ticks_tell_energies_and_times),
+		cmocka_unit_test(ticks_tell_forces),
 		cmocka_unit_test(ticks_are_the_same_but_for_their_times),
 		cmocka_unit_test(the_cut_parts_tissue),
 	};

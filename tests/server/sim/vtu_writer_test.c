@@ -130,6 +130,15 @@ static void files_tell_scalars_and_tools(void **state)
 		memcpy(&value, array.at, sizeof value);
 		assert_float_equal(value, 37, 0);
 	}
+	const struct {
+		const char *name;
+		const void *value;
+	} drawn[] = {{"exposure", frame.exposure}, {"charring", frame.charring}};
+	for (int i = 0; i < 2; i++) {
+		data array = find_array(text, bytes, drawn[i].name);
+		assert_int_equal(array.bytes * 6, find_array(text, bytes, "position_m").bytes);
+		assert_memory_equal(array.at, drawn[i].value, array.bytes);
+	}
 	free(text);
 
 	text = fixture_read(fixture_path("tools/tools-00000001.vtu"), &bytes);

@@ -1,0 +1,178 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// What a drawn cut takes does not depend on the mesh, where elements part one by one: whole
+// sessions of `fat-neohookean`'s slab with its membrane, which the tool presses in, drags along and
+// burns, cut for 40 mm at the scene's speed. Mean of eight ways that lie otherwise in the cells:
+// within 15 % of that with the shipped cells for 1 to 2 times as many along an edge, within 30 %
+// for half as many.
+//
+// The slab is as wide as the tool reaches, and steps are of 1/30 s, which take the same
+// (validation.md in tests/paper). By itself: the shipped cells and half of them. With `--long`:
+// finer ones.
+#include <stdio.h>
+
+#include "core/session/stage.h"
+#include "session/session_internal.h"
+
+enum { WAYS = CAU_TEST_SANITIZED ? 1 : 8 }; // all walk the same code, and steps take long there
+static const double half_cut_m = 0.02, cell_m = 0.002, near_m = 1e-4;
+
+static const int32_t shipped_cells[3] = {26, 10, 4}; // of 2 mm; the ball's radius is 3 mm
+static const double step_s = 1.0 / 30;
+
+// Bottom and both short ends are held, as the shipped slab's are.
+static void pin(cau_scene_def *scene, const double size_m[3])
+{
+	const double end = size_m[0] / 2 - near_m;
+	scene->pin_count = 0;
+	stage_pin_box(scene, (double[]){-1, -1, -1}, (double[]){1, 1, near_m - size_m[2]});
+	stage_pin_box(scene, (double[]){-1, -1, -1}, (double[]){-end, 1, 1});
+	stage_pin_box(scene, (double[]){end, -1, -1}, (double[]){1, 1, 1});
+}
+
+// The way `way` of WAYS, by the golden ratio over a cell, so that none lies on another.
+static cau_scene_def *scene_of(double fineness, int parting, int way)
+{
+	cau_scene_def *scene = stage_scene_named("fat-neohookean");
+	cau_mesh_def *mesh = &scene->meshes[0];
+	for (int c = 0; c < 3; c++) {
+		mesh->size_m[c] = shipped_cells[c] * cell_m;
+		mesh->cells[c] = (int32_t)lround(shipped_cells[c] * fineness);
+	}
+	pin(scene, mesh->size_m);
+	scene->parting = parting;
+	scene->step_s = step_s;
+	double x = cell_m / fineness * way / WAYS, y = cell_m / fineness * fmod(0.618034 * way, 1);
+	memcpy(scene->cut.from_m, (double[]){x - half_cut_m, y, 0}, sizeof scene->cut.from_m);
+	memcpy(scene->cut.to_m, (double[]){x + half_cut_m, y, 0}, sizeof scene->cut.to_m);
+	memcpy(scene->tools[0].pose.position_m, (double[]){x - half_cut_m, y, 0.02},
+	       sizeof scene->tools[0].pose.position_m);
+	return scene;
+}
+
+// Rest volume of the tetrahedra that the scene's cut takes.
+static double volume_taken_m3(const cau_scene_def *scene)
+{
+	cau_session *session = stage_open(scene, 1);
+	int ticks = stage_cut_ticks(&scene->cut, scene->step_s);
+	for (int tick = 0; tick < ticks; tick++) {
+		stage_cut_tick(session, &scene->cut, &scene->tools[0].pose, tick);
+		stage_step(session, 1);
+	}
+	double taken = 0;
+	for (int32_t t = 0; t < session->tissue.tetrahedron_count; t++)
+		if (!session->dissection.alive.element[CAU_ELEMENT_TETRAHEDRON][t])
+			taken += session->tissue.tetrahedron_volume[t];
+	cau_session_destroy(session);
+	return taken;
+}
+
+static double mean_volume_m3(double fineness, int parting)
+{
+	double sum = 0, least = INFINITY, most = 0;
+	for (int way = 0; way < WAYS; way++) {
+		cau_scene_def *scene = scene_of(fineness, parting, way);
+		double taken = volume_taken_m3(scene);
+		sum += taken;
+		least = fmin(least, taken);
+		most = fmax(most, taken);
+		free(scene);
+	}
+	print_message("%.1f times the cells, by %s: %.0f mm^3 (%.0f to %.0f)\n", fineness,
+	              parting == CAU_PARTING_ELEMENTS ? "elements" : "edges", 1e9 * sum / WAYS,
+	              1e9 * least, 1e9 * most);
+	fflush(stdout);
+	return sum / WAYS;
+}
+
+static void assert_alike(double volume_m3, double shipped_m3, double fineness)
+{
+	double off = volume_m3 / shipped_m3 - 1, most = fineness < 1 ? 0.3 : 0.15;
+	if (!(fabs(off) <= most))
+		fail_msg("%g times the cells: %+.0f %%, more than %.0f %%", fineness, 100 * off,
+		         100 * most);
+}
+
+// By the paper's rule half a cell all round goes too: the test can tell.
+static void half_the_cells_take_as_much(void **state)
+{
+	(void)state;
+	double half = mean_volume_m3(0.5, CAU_PARTING_ELEMENTS);
+	assert_true(half > 1e-7);
+	assert_true(mean_volume_m3(0.5, CAU_PARTING_EDGES) > 2 * half);
+	if (CAU_TEST_SANITIZED)
+		return; // one way's volume says nothing of the mesh
+	double shipped = mean_volume_m3(1, CAU_PARTING_ELEMENTS);
+	assert_alike(half, shipped, 0.5);
+}
+
+// By the scene's step or half or twice it, by few iterations or many, whatever accuracy asks.
+static void steps_and_iterations_take_as_much(void **state)
+{
+	(void)state;
+	static const double fineness = 0.5, alike = 0.1; // a cell is a fiftieth of the cut
+	static const struct {
+		double step_s;
+		int32_t iterations; // 0: as the scene has it
+	} other[] = {{1.0 / 60, 0}, {1.0 / 120, 0}, {1.0 / 30, 5}, {1.0 / 30, 20}};
+	enum { OTHERS = CAU_TEST_SANITIZED ? 1 : sizeof other / sizeof *other, OF_WAYS = 2 };
+	double usual = 0, taken[OTHERS] = {0};
+	for (int way = 0; way < OF_WAYS && way < WAYS; way++) {
+		cau_scene_def *scene = scene_of(fineness, CAU_PARTING_ELEMENTS, way);
+		usual += volume_taken_m3(scene);
+		for (int i = 0; i < OTHERS; i++) {
+			scene->step_s = other[i].step_s;
+			if (other[i].iterations) {
+				scene->accuracy = 0;
+				scene->iterations = other[i].iterations;
+			}
+			taken[i] += volume_taken_m3(scene);
+		}
+		free(scene);
+	}
+	for (int i = 0; i < OTHERS; i++) {
+		print_message("steps of %.4f s, %d iterations: %+.1f %%\n", other[i].step_s,
+		              other[i].iterations, 100 * (taken[i] / usual - 1));
+		assert_true(fabs(taken[i] / usual - 1) <= alike);
+	}
+}
+
+// The scenes of the paper keep the paper's rule.
+static void scenes_have_their_rule(void **state)
+{
+	(void)state;
+	static const struct {
+		const char *name;
+		int parting;
+	} scenes[] = {{"layers", CAU_PARTING_ELEMENTS},
+	              {"fascia", CAU_PARTING_EDGES},
+	              {"fat", CAU_PARTING_EDGES},
+	              {"fat-neohookean", CAU_PARTING_EDGES}};
+	for (size_t i = 0; i < sizeof scenes / sizeof *scenes; i++) {
+		cau_scene_def *scene = stage_scene_named(scenes[i].name);
+		assert_int_equal(scene->parting, scenes[i].parting);
+		free(scene);
+	}
+}
+
+// Minutes.
+static void finer_cells_take_as_much(void **state)
+{
+	(void)state;
+	static const double finer[] = {1.5, 2};
+	double shipped = mean_volume_m3(1, CAU_PARTING_ELEMENTS);
+	for (size_t k = 0; k < sizeof finer / sizeof *finer; k++)
+		assert_alike(mean_volume_m3(finer[k], CAU_PARTING_ELEMENTS), shipped, finer[k]);
+}
+
+int main(int count, char **argument)
+{
+	const struct CMUnitTest tests[] = {
+		cmocka_unit_test(half_the_cells_take_as_much),
+		cmocka_unit_test(steps_and_iterations_take_as_much),
+		cmocka_unit_test(scenes_have_their_rule),
+	};
+	const struct CMUnitTest long_tests[] = {cmocka_unit_test(finer_cells_take_as_much)};
+	if (count > 1 && strcmp(argument[1], "--long") == 0)
+		return cmocka_run_group_tests(long_tests, NULL, NULL);
+	return cmocka_run_group_tests(tests, NULL, NULL);
+}
