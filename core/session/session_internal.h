@@ -167,10 +167,11 @@ typedef struct cau_touching {
 	int32_t vertex, place; // place: along the broad phase's curve
 	double gap;
 } cau_touching;
-// Leaves at most `room` (up to CAU_MAX_VERTEX_ROWS) of the listed in front of the list, the deepest
-// first unless they are spread, and returns how many.
+// Leaves in front of the list those that are to become rows, where so many are `taken` already: of
+// all CAU_NEAR_ROWS, of those that touch CAU_MAX_VERTEX_ROWS at most, the deepest first unless they
+// are spread. Returns how many, and how many that touch are `left_out`.
 int32_t cau_session_thin(const cau_session *session, cau_touching *list, int32_t count,
-                         int32_t room);
+                         int32_t taken, int32_t *left_out);
 
 // reach.c: whether a tool's contact is with faces as well as with vertices (not if it has jaws,
 // which tissue lies between and inside); the scratch that it needs; rows for the faces that the

@@ -24,7 +24,7 @@ static void pass_columns(snapshot_archive *archive, cau_session *session)
 		(size_t)session->tissue.vertex_count * session->solver.kernels->vectors->real_bytes;
 	snapshot_pass(archive, set->column_vertex, (size_t)count * sizeof *set->column_vertex);
 	snapshot_pass(archive, set->column_version, (size_t)count * sizeof *set->column_version);
-	for (int32_t i = 0; i < count; i++)
+	for (int32_t i = 0; i < count && i < CAU_WHOLE_COLUMNS; i++)
 		snapshot_pass(archive, set->column[i], bytes);
 	for (int32_t i = 0; i < count; i++)
 		snapshot_pass(archive, set->inverse + (size_t)i * CAU_MAX_COLUMNS,

@@ -141,6 +141,16 @@ static bool is_taught(const snapshot_header *header, size_t header_bytes)
 	return header->shallow_steps >= 0;
 }
 
+// Versions before 7 had columns that are whole only, and half the faces.
+static bool has_room_for_contact(const snapshot_header *header)
+{
+	bool older = header->version < CAU_SNAPSHOT_WIDE;
+	int32_t columns = older ? CAU_WHOLE_COLUMNS : CAU_MAX_COLUMNS;
+	int32_t faces = older ? CAU_MAX_MEMORY / 2 : CAU_MAX_MEMORY;
+	return header->column_count <= columns && header->memory_count >= 0 &&
+	       header->memory_count <= faces;
+}
+
 cau_status cau_snapshot_check_header(const cau_session *session, const snapshot_header *header,
                                      size_t header_bytes, const unsigned char *payload,
                                      size_t payload_bytes, cau_error *error)
@@ -165,11 +175,10 @@ cau_status cau_snapshot_check_header(const cau_session *session, const snapshot_
 	    header->active_count > session->shrink.active_capacity || header->waiting_count < 0 ||
 	    header->waiting_count > update->waiting_capacity || header->operation_count < 0 ||
 	    header->operation_count > CAU_DOWNDATES_AT_MOST || header->column_count < 0 ||
-	    header->column_count > CAU_MAX_COLUMNS || header->waiting_at_start < 0 ||
-	    header->memory_count < 0 || header->memory_count > CAU_MAX_MEMORY ||
-	    header->over_count < 0 || header->over_count > cau_tears_capacity(&session->tissue) ||
-	    header->row_count < 0 || header->row_count > header->vertex_count ||
-	    header->quiet_ticks < 0 || (header->resting && !header->quiet_ticks) ||
+	    header->waiting_at_start < 0 || !has_room_for_contact(header) || header->over_count < 0 ||
+	    header->over_count > cau_tears_capacity(&session->tissue) || header->row_count < 0 ||
+	    header->row_count > header->vertex_count || header->quiet_ticks < 0 ||
+	    (header->resting && !header->quiet_ticks) ||
 	    (has_learned(header_bytes) && !is_taught(header, header_bytes)))
 		return cau_snapshot_corrupt(error, "a count is out of its range");
 	if (header->payload_bytes != payload_bytes)

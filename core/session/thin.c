@@ -1,7 +1,9 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Which of too many vertices at a tool become rows, where there is room for a part of them only.
 //
-// The deepest alone would be a heap in the middle: what lies round it would sink in unheld, and the
+// Those that are only near have rows as long as these are few: they may come to touch within the
+// tick. Past that only what is drawn and touches has one. And where even that is too much: the
+// deepest alone would be a heap in the middle: what lies round it would sink in unheld, and the
 // tool with it. So rows are spread over all that touches: the first in van der Corput's order (the
 // places along the Morton curve with their bits reversed), of which any beginning is spread evenly,
 // and most of which stay as others come and go. Between them tissue holds itself up.
@@ -55,14 +57,18 @@ static int32_t part_touching(const cau_session *session, cau_touching *list, int
 }
 
 int32_t cau_session_thin(const cau_session *session, cau_touching *list, int32_t count,
-                         int32_t room)
+                         int32_t taken, int32_t *left_out)
 {
 	CAU_ASSERT(count >= 0 && count <= CAU_MAX_TOUCHING, "%d vertices touch", count);
-	CAU_ASSERT(room >= 0 && room <= CAU_MAX_VERTEX_ROWS, "room for %d", room);
-	int32_t touching = count > room ? part_touching(session, list, count) : 0;
+	CAU_ASSERT(taken >= 0, "%d rows of vertices", taken);
+	int32_t near_room = taken < CAU_NEAR_ROWS ? CAU_NEAR_ROWS - taken : 0;
+	int32_t most = taken < CAU_MAX_VERTEX_ROWS ? CAU_MAX_VERTEX_ROWS - taken : 0;
+	int32_t touching = count > near_room ? part_touching(session, list, count) : 0;
+	int32_t room = touching < near_room ? near_room : touching < most ? touching : most;
 	if (touching > most_crowded * room)
 		qsort(list, (size_t)touching, sizeof *list, compare_spread);
 	else
-		qsort(list, (size_t)count, sizeof *list, compare_depth);
+		qsort(list, (size_t)(touching > near_room ? touching : count), sizeof *list, compare_depth);
+	*left_out = touching > room ? touching - room : 0;
 	return count < room ? count : room;
 }

@@ -187,9 +187,8 @@ static void add_vertices(cau_session *session, int32_t index)
 	cau_touching list[CAU_MAX_TOUCHING];
 	cau_contact_set *set = &session->contact;
 	int32_t count = collect(session, index, list);
-	int32_t room = set->row_count < CAU_MAX_VERTEX_ROWS ? CAU_MAX_VERTEX_ROWS - set->row_count : 0;
-	int32_t rows = cau_session_thin(session, list, count, room); // thin.c
-	set->left_out_count += count - rows;
+	int32_t left_out, rows = cau_session_thin(session, list, count, set->row_count, &left_out);
+	set->left_out_count += left_out;
 	for (int32_t k = 0; k < rows; k++) {
 		cau_contact_row row = contact_row(session, &session->tool[index], index, list[k].vertex);
 		cau_contact_add(set, &row);

@@ -14,7 +14,7 @@ cau_status cau_contact_create(cau_contact_set *set, const cau_tissue *tissue,
 {
 	size_t n = (size_t)tissue->vertex_count, columns = CAU_MAX_COLUMNS;
 	set->inverse = cau_arena_array(arena, columns * columns, sizeof(double));
-	set->answer = cau_arena_array(arena, CAU_MAX_CONTACTS * columns, sizeof(double));
+	set->answer = cau_arena_array(arena, (CAU_MAX_POINT_ROWS + 1) * columns, sizeof(double));
 	set->step = cau_arena_array(arena, 3 * columns, sizeof(double));
 	set->change = cau_arena_array(arena, 3 * columns, sizeof(double));
 	set->hold = cau_arena_array(arena, CAU_MAX_HELD * CAU_MAX_HELD, sizeof(double));
@@ -23,7 +23,7 @@ cau_status cau_contact_create(cau_contact_set *set, const cau_tissue *tissue,
 	set->solution = cau_arena_array(arena, 4 * n, vectors->real_bytes);
 	bool missing = !set->inverse || !set->answer || !set->step || !set->change || !set->hold ||
 	               !set->before || !set->unit || !set->solution;
-	for (int32_t k = 0; k < CAU_MAX_COLUMNS && !missing; k++) {
+	for (int32_t k = 0; k < CAU_WHOLE_COLUMNS && !missing; k++) {
 		set->column[k] = cau_arena_array(arena, n, vectors->real_bytes);
 		missing = !set->column[k];
 	}
@@ -71,7 +71,7 @@ static bool is_corner(const cau_contact_set *set, int32_t vertex)
 
 void cau_contact_clear(cau_contact_set *set)
 {
-	set->row_count = set->corner_count = set->face_count = 0;
+	set->row_count = set->corner_count = set->face_count = set->point_count = 0;
 }
 
 // ---- sides of faces
@@ -88,7 +88,9 @@ void cau_contact_touch(cau_contact_set *set, int32_t tool, int32_t face, int32_t
 {
 	CAU_ASSERT_INDEX(tool, set->tool_count);
 	CAU_ASSERT(above == 1 || above == -1, "side %d of face %d", above, face);
-	if (set->touched_count < CAU_MAX_MEMORY)
+	if (set->touched_count == CAU_MAX_MEMORY)
+		set->left_out_count++;
+	else
 		set->touched[set->touched_count++] =
 			(cau_contact_memory){.tool = tool, .face = face, .pushed = pushed, .above = above};
 }
@@ -169,13 +171,16 @@ bool cau_contact_add(cau_contact_set *set, const cau_contact_row *row)
 	for (int32_t k = 0; k < row->corner_count; k++)
 		if (row->free[k] && !is_corner(set, row->vertex[k]))
 			added[count++] = row->vertex[k];
-	if (set->row_count == CAU_MAX_CONTACTS || set->corner_count + count > CAU_MAX_COLUMNS) {
+	bool point = row->corner_count > 1;
+	if (set->row_count == CAU_MAX_CONTACTS || set->corner_count + count > CAU_MAX_COLUMNS ||
+	    (point && set->point_count == CAU_MAX_POINT_ROWS)) {
 		set->left_out_count++;
 		return false;
 	}
 	memcpy(set->corner + set->corner_count, added, (size_t)count * sizeof *added);
 	set->corner_count += count;
-	set->row[set->row_count++] = *row;
+	set->row[set->row_count] = *row;
+	set->row[set->row_count++].answer = point ? set->point_count++ : -1;
 	set->face_count += row->corner_count == 3 && !row->attached;
 	return true;
 }
@@ -248,17 +253,19 @@ static const double SETTLED = 1e-6;
 static cau_vec3 step_of(const cau_contact_set *set, const cau_contact_row *row)
 {
 	cau_vec3 step = {0, 0, 0};
-	for (int32_t k = 0; k < row->corner_count; k++)
-		if (row->column[k] >= 0)
-			step = cau_add_scaled(step, row->weight[k],
-			                      cau_vec3_of(set->step + 3 * (size_t)row->column[k]));
+	const double *x = set->step, *y = x + CAU_MAX_COLUMNS, *z = y + CAU_MAX_COLUMNS;
+	for (int32_t k = 0; k < row->corner_count; k++) {
+		int32_t c = row->column[k];
+		if (c >= 0)
+			step = cau_add_scaled(step, row->weight[k], (cau_vec3){x[c], y[c], z[c]});
+	}
 	return step;
 }
 
 static double own_answer(const cau_contact_set *set, int32_t i)
 {
 	const cau_contact_row *row = &set->row[i];
-	const double *answer = set->answer + (size_t)i * CAU_MAX_COLUMNS;
+	const double *answer = cau_contact_answer(set, row);
 	double own = 0;
 	for (int32_t k = 0; k < row->corner_count; k++)
 		if (row->column[k] >= 0)
@@ -266,13 +273,14 @@ static double own_answer(const cau_contact_set *set, int32_t i)
 	return own;
 }
 
-static void move_corners(cau_contact_set *set, int32_t row, cau_vec3 by)
+void cau_contact_move(cau_contact_set *set, const cau_contact_row *row, cau_vec3 by)
 {
-	const double *answer = set->answer + (size_t)row * CAU_MAX_COLUMNS;
+	const double *answer = cau_contact_answer(set, row);
+	double *x = set->step, *y = x + CAU_MAX_COLUMNS, *z = y + CAU_MAX_COLUMNS;
 	for (int32_t c = 0; c < set->column_count; c++) {
-		set->step[3 * c] += answer[c] * by.x;
-		set->step[3 * c + 1] += answer[c] * by.y;
-		set->step[3 * c + 2] += answer[c] * by.z;
+		x[c] += answer[c] * by.x;
+		y[c] += answer[c] * by.y;
+		z[c] += answer[c] * by.z;
 	}
 }
 
@@ -305,7 +313,7 @@ static double relax_rows(cau_contact_set *set, const cau_step_solver *solver)
 			continue;
 		change = fmax(change, length);
 		cau_vec3_to(next, row->reaction);
-		move_corners(set, i, by);
+		cau_contact_move(set, row, by);
 		cau_coupling_take(&set->tool[row->tool], by);
 	}
 	return size > 0 ? change / size : 0;
@@ -327,6 +335,22 @@ static void spread_part(void *context, int32_t chunk)
 		const double *load = set->change + 3 * (size_t)c;
 		if (load[0] != 0 || load[1] != 0 || load[2] != 0)
 			solver->kernels->spread(solver->increment, set->column[c], load, first, last);
+	}
+}
+
+// The same by A^-1 of all loads at once: of the columns beyond CAU_WHOLE_COLUMNS S alone is kept.
+static void substitute_back(cau_contact_set *set, cau_step_solver *solver)
+{
+	const cau_vectors *vectors = solver->kernels->vectors;
+	for (int32_t c = 0; c < set->column_count; c++)
+		vectors->add(set->unit, set->column_vertex[c], set->change + 3 * (size_t)c);
+	cau_solver_apply_inverse(solver, set->unit, set->solution, 1);
+	solver->kernels->add_scaled(solver->increment, 1, set->solution,
+	                            4 * (int64_t)solver->tissue->vertex_count);
+	for (int32_t c = 0; c < set->column_count; c++) {
+		double load[3]; // as it was rounded
+		vectors->read(set->unit, set->column_vertex[c], load);
+		vectors->add(set->unit, set->column_vertex[c], (double[]){-load[0], -load[1], -load[2]});
 	}
 }
 
@@ -363,21 +387,34 @@ void cau_contact_load(cau_contact_set *set, cau_step_solver *solver)
 	take_off_gradient(set, solver);
 }
 
+static void read_step(cau_contact_set *set, const cau_step_solver *solver)
+{
+	for (int32_t k = 0; k < set->column_count; k++) {
+		double step[3];
+		solver->kernels->vectors->read(solver->increment, set->column_vertex[k], step);
+		for (int32_t c = 0; c < 3; c++)
+			set->step[c * CAU_MAX_COLUMNS + k] = step[c];
+	}
+}
+
 void cau_contact_correct(cau_contact_set *set, cau_step_solver *solver)
 {
 	CAU_ASSERT_INDEX(set->row_count, CAU_MAX_CONTACTS + 1);
-	for (int32_t c = 0; c < set->column_count; c++)
-		solver->kernels->vectors->read(solver->increment, set->column_vertex[c],
-		                               set->step + 3 * (size_t)c);
+	read_step(set, solver);
 	if (cau_coupling_begin(set) && set->hold_count)
 		cau_hold_prepare(set);
-	for (int sweep = 0; sweep < CAU_CONTACT_SWEEPS; sweep++) {
+	bool wide = cau_contact_is_wide(set);
+	int sweeps = wide ? CAU_CONTACT_FEW_SWEEPS : CAU_CONTACT_SWEEPS;
+	for (int sweep = 0; sweep < sweeps; sweep++) {
 		cau_hold_solve(set, solver);
 		if (relax_rows(set, solver) < SETTLED)
 			break;
 	}
 	take_off_gradient(set, solver);
-	cau_pool_run(solver->pool, solver->chunk_count, spread_part, &(spread){set, solver});
+	if (wide)
+		substitute_back(set, solver);
+	else
+		cau_pool_run(solver->pool, solver->chunk_count, spread_part, &(spread){set, solver});
 }
 
 bool cau_contact_is_deep(cau_contact_set *set, const cau_step_solver *solver, double most_m)

@@ -15,6 +15,10 @@
 // A row knows on which side of the tool it belongs: a face that the tool has passed within the tick
 // is pushed back to where it was, not on.
 //
+// Of the columns beyond the first CAU_WHOLE_COLUMNS only what S has of them is kept (G. Saupin,
+// C. Duriez, S. Cotin and L. Grisoni 2008): where there are such, C W^T dr is one further
+// back-substitution of the rows' loads instead, which costs less than reading that many columns.
+//
 // Columns are kept from tick to tick. Because r is on the right-hand side, the fixed point does not
 // depend on C: after a cut its columns may lag, and a few are renewed every tick.
 #pragma once
@@ -25,14 +29,18 @@
 #include "tool/tool_shape.h"
 
 enum {
-	CAU_MAX_CONTACTS = 256,    // rows
-	CAU_MAX_VERTEX_ROWS = 192, // of them of vertices, held or near: the rest is for faces
-	CAU_MAX_COLUMNS = 288,     // vertices that are corners of rows
-	CAU_MAX_MEMORY = 1024,     // faces whose side is kept
+	CAU_MAX_CONTACTS = 1024,   // rows
+	CAU_MAX_VERTEX_ROWS = 768, // of them of vertices, held or near: the rest is for faces
+	CAU_NEAR_ROWS = 192,       // of these where some only are near
+	CAU_MAX_POINT_ROWS = 256,  // of points of faces
+	CAU_MAX_COLUMNS = 960,     // vertices that are corners of rows
+	CAU_WHOLE_COLUMNS = 288,   // of them with the whole of their column
+	CAU_MAX_MEMORY = 2048,     // faces whose side is kept
 	CAU_MAX_POINTS = 2,        // of a face that are kept: on one alone it would tilt to and fro
 	CAU_MAX_HELD = 192,        // rows of attachments that are solved at once
 	CAU_CONTACT_SWEEPS = 30,
-	CAU_COLUMNS_RENEWED = 3, // of those that lag, each tick
+	CAU_CONTACT_FEW_SWEEPS = 16, // where columns are not whole: eight take the force 2 % off
+	CAU_COLUMNS_RENEWED = 3,     // of those that lag, each tick
 };
 
 // A tool as the contact sees it during one step.
@@ -55,6 +63,7 @@ typedef struct cau_contact_row {
 	double weight[3];     // their shares in the point
 	bool free[3];         // whether they can move
 	int32_t column[3];    // the free ones' places among the kept columns; else -1
+	int32_t answer;       // place of its S W^T; -1: it is its column's row of S
 	int32_t tool;
 	bool attached;
 	bool slipping;        // attachment at its slip force in the last solve
@@ -83,7 +92,8 @@ struct cau_contact_set {
 	cau_contact_tool tool[CAU_MAX_TOOLS];
 	int32_t row_count;
 	cau_contact_row row[CAU_MAX_CONTACTS];
-	int32_t face_count; // rows of faces
+	int32_t face_count;  // rows of faces
+	int32_t point_count; // rows of several corners, attached ones too
 	// Tissue has been torn: what hangs in jaws may hang by little, and columns that lag behind by
 	// what went would throw it about. So all are fresh.
 	bool torn;
@@ -100,13 +110,13 @@ struct cau_contact_set {
 	int32_t column_count;
 	int32_t column_vertex[CAU_MAX_COLUMNS];
 	uint64_t column_version[CAU_MAX_COLUMNS]; // of the factor they were made from
-	cau_reals *column[CAU_MAX_COLUMNS];       // (vertex_count), m/N
+	cau_reals *column[CAU_WHOLE_COLUMNS];     // (vertex_count), m/N
 	uint64_t epoch;                           // of the factor: another one empties the columns
 	int32_t corner_count;                     // distinct vertices of the rows that are free
 	int32_t corner[CAU_MAX_COLUMNS];
 	double *inverse;    // (CAU_MAX_COLUMNS x CAU_MAX_COLUMNS): S by columns' places, m/N
-	double *answer;     // (CAU_MAX_CONTACTS x CAU_MAX_COLUMNS): S W^T, what a row moves, m/N
-	double *step;       // (CAU_MAX_COLUMNS x 3): d at the columns' vertices, m
+	double *answer;     // (CAU_MAX_POINT_ROWS + 1 x CAU_MAX_COLUMNS): S W^T, m/N; the last is 0
+	double *step;       // (3 x CAU_MAX_COLUMNS): d at the columns' vertices, m
 	double *change;     // (CAU_MAX_COLUMNS x 3): of the load on them, N
 	double *before;     // (CAU_MAX_CONTACTS x 3): reactions before correction, N
 	int32_t hold_count; // attached rows, solved all at once: hold.h
@@ -159,6 +169,15 @@ void cau_contact_prepare(cau_contact_set *set, cau_step_solver *solver);
 
 // S W^T of a row, after its weights changed.
 void cau_contact_find_answer(cau_contact_set *set, int32_t row);
+
+// The same, to read (column_count): what a load on the row moves, m/N.
+const double *cau_contact_answer(const cau_contact_set *set, const cau_contact_row *row);
+
+// A load (N) on the row more: where the columns' vertices go by it.
+void cau_contact_move(cau_contact_set *set, const cau_contact_row *row, cau_vec3 by);
+
+// Whether rows have columns of which the set has S alone.
+bool cau_contact_is_wide(const cau_contact_set *set);
 
 // Measures the rows' gaps, and takes the present reactions off solver->gradient, so that the next
 // global step feels them.

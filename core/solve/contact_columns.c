@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The columns of A^-1 that contacts need: one a corner, kept from tick to tick.
+// The columns of A^-1 that contacts need: one a corner, kept from tick to tick; whole up to
+// CAU_WHOLE_COLUMNS, and beyond as far as S goes.
 #include <string.h>
 
 #include "cautery/assert.h"
@@ -21,9 +22,13 @@ static void make_columns(cau_contact_set *set, cau_step_solver *solver, const in
 	for (int32_t c = 0; c < count; c++) {
 		int32_t p = place[c];
 		CAU_ASSERT_INDEX(p, set->column_count);
-		vectors->take_coordinate(set->column[p], set->solution, c, solver->tissue->vertex_count);
+		if (p < CAU_WHOLE_COLUMNS)
+			vectors->take_coordinate(set->column[p], set->solution, c,
+			                         solver->tissue->vertex_count);
 		for (int32_t i = 0; i < set->column_count; i++) {
-			double s = vectors->at(set->column[p], set->column_vertex[i]);
+			double moved[3];
+			vectors->read(set->solution, set->column_vertex[i], moved);
+			double s = moved[c];
 			set->inverse[p * CAU_MAX_COLUMNS + i] = set->inverse[i * CAU_MAX_COLUMNS + p] = s;
 		}
 		set->column_version[p] = solver->factor_version;
@@ -39,8 +44,36 @@ static int32_t find_column(const cau_contact_set *set, int32_t vertex)
 	return -1;
 }
 
+// Columns that come to a place where they have to be whole.
+static void make_whole(cau_contact_set *set, cau_step_solver *solver, const int32_t *from)
+{
+	int32_t place[3], waiting = 0;
+	for (int32_t k = 0; k < set->column_count && k < CAU_WHOLE_COLUMNS; k++) {
+		if (from[k] >= CAU_WHOLE_COLUMNS)
+			place[waiting++] = k;
+		if (waiting == 3) {
+			make_columns(set, solver, place, waiting);
+			waiting = 0;
+		}
+	}
+	if (waiting)
+		make_columns(set, solver, place, waiting);
+}
+
+static void move_column(cau_contact_set *set, int32_t from, int32_t to)
+{
+	CAU_ASSERT(to <= from, "column %d to %d", from, to);
+	if (from < CAU_WHOLE_COLUMNS) {
+		cau_reals *column = set->column[to];
+		set->column[to] = set->column[from];
+		set->column[from] = column;
+	}
+	set->column_vertex[to] = set->column_vertex[from];
+	set->column_version[to] = set->column_version[from];
+}
+
 // Keeps only the columns that rows use, in their order.
-static void drop_unused(cau_contact_set *set)
+static void drop_unused(cau_contact_set *set, cau_step_solver *solver)
 {
 	uint8_t used[CAU_MAX_COLUMNS] = {0};
 	int32_t kept = 0, from[CAU_MAX_COLUMNS];
@@ -52,11 +85,7 @@ static void drop_unused(cau_contact_set *set)
 	for (int32_t k = 0; k < set->column_count; k++) {
 		if (!used[k])
 			continue;
-		cau_reals *column = set->column[kept];
-		set->column[kept] = set->column[k];
-		set->column[k] = column;
-		set->column_vertex[kept] = set->column_vertex[k];
-		set->column_version[kept] = set->column_version[k];
+		move_column(set, k, kept);
 		from[kept++] = k;
 	}
 	for (int32_t i = 0; i < kept; i++) // rows and columns move towards the start only
@@ -66,6 +95,7 @@ static void drop_unused(cau_contact_set *set)
 	set->column_count = kept;
 	CAU_ASSERT(kept <= set->corner_count, "%d columns kept for %d corners", kept,
 	           set->corner_count);
+	make_whole(set, solver, from);
 }
 
 static int32_t count_missing(const cau_contact_set *set)
@@ -119,7 +149,9 @@ static void make_missing(cau_contact_set *set, cau_step_solver *solver)
 void cau_contact_find_answer(cau_contact_set *set, int32_t row)
 {
 	const cau_contact_row *of = &set->row[row];
-	double *answer = set->answer + (size_t)row * CAU_MAX_COLUMNS;
+	if (of->answer < 0 || of->answer == CAU_MAX_POINT_ROWS)
+		return;
+	double *answer = set->answer + (size_t)of->answer * CAU_MAX_COLUMNS;
 	memset(answer, 0, (size_t)set->column_count * sizeof *answer);
 	for (int32_t k = 0; k < of->corner_count; k++) {
 		if (of->column[k] < 0 || of->weight[k] == 0)
@@ -128,6 +160,18 @@ void cau_contact_find_answer(cau_contact_set *set, int32_t row)
 		for (int32_t c = 0; c < set->column_count; c++)
 			answer[c] += of->weight[k] * s[c];
 	}
+}
+
+const double *cau_contact_answer(const cau_contact_set *set, const cau_contact_row *row)
+{
+	if (row->answer < 0)
+		return set->inverse + (size_t)row->column[0] * CAU_MAX_COLUMNS;
+	return set->answer + (size_t)row->answer * CAU_MAX_COLUMNS;
+}
+
+bool cau_contact_is_wide(const cau_contact_set *set)
+{
+	return set->corner_count > CAU_WHOLE_COLUMNS;
 }
 
 static bool holds_anything(const cau_contact_set *set)
@@ -151,21 +195,29 @@ static void renew(cau_contact_set *set, cau_step_solver *solver)
 	}
 }
 
+// Where a row's columns are, and its answer: that of a vertex that cannot move is nothing.
+static void find_columns(cau_contact_set *set, int32_t index)
+{
+	cau_contact_row *row = &set->row[index];
+	for (int32_t k = 0; k < row->corner_count; k++)
+		row->column[k] = row->free[k] ? find_column(set, row->vertex[k]) : -1;
+	if (row->corner_count == 1)
+		row->answer = row->column[0] >= 0 ? -1 : CAU_MAX_POINT_ROWS;
+	cau_contact_find_answer(set, index);
+}
+
 void cau_contact_prepare(cau_contact_set *set, cau_step_solver *solver)
 {
 	CAU_ASSERT(set->row_count > 0 && set->row_count <= CAU_MAX_CONTACTS, "%d rows", set->row_count);
 	if (set->epoch != solver->factor_epoch)
 		set->column_count = 0;
 	set->epoch = solver->factor_epoch;
-	if (set->column_count + count_missing(set) > CAU_MAX_COLUMNS)
-		drop_unused(set);
+	int32_t most = cau_contact_is_wide(set) ? CAU_MAX_COLUMNS : CAU_WHOLE_COLUMNS;
+	if (set->column_count + count_missing(set) > most)
+		drop_unused(set, solver);
 	make_missing(set, solver);
 	renew(set, solver);
-	for (int32_t i = 0; i < set->row_count; i++) {
-		cau_contact_row *row = &set->row[i];
-		for (int32_t k = 0; k < row->corner_count; k++)
-			row->column[k] = row->free[k] ? find_column(set, row->vertex[k]) : -1;
-		cau_contact_find_answer(set, i);
-	}
+	for (int32_t i = 0; i < set->row_count; i++)
+		find_columns(set, i);
 	cau_hold_prepare(set);
 }

@@ -14,7 +14,7 @@ static const cau_tool_def *tool_of(const cau_contact_set *set, const cau_contact
 static double between(const cau_contact_set *set, int32_t i, int32_t j)
 {
 	const cau_contact_row *row = &set->row[i];
-	const double *answer = set->answer + (size_t)j * CAU_MAX_COLUMNS;
+	const double *answer = cau_contact_answer(set, &set->row[j]);
 	double sum = row->tool == set->row[j].tool ? set->tool[row->tool].compliance : 0;
 	for (int32_t k = 0; k < row->corner_count; k++)
 		if (row->column[k] >= 0)
@@ -86,7 +86,7 @@ static void changes(const cau_contact_set *set, const cau_step_solver *solver,
 				size_t at_corner = 3 * (size_t)row->vertex[k] + (size_t)c;
 				point[c] += row->weight[k] * solver->position[at_corner];
 				if (row->column[k] >= 0)
-					step[c] += row->weight[k] * set->step[3 * row->column[k] + c];
+					step[c] += row->weight[k] * set->step[c * CAU_MAX_COLUMNS + row->column[k]];
 			}
 		for (int c = 0; c < 3; c++)
 			dr[c][i] =
@@ -121,11 +121,9 @@ void cau_hold_solve(cau_contact_set *set, const cau_step_solver *solver)
 		for (int c = 0; c < 3; c++)
 			set->row[set->hold_row[i]].reaction[c] += dr[c][i];
 	for (int32_t i = 0; i < set->hold_count; i++) {
-		const double *answer = set->answer + (size_t)set->hold_row[i] * CAU_MAX_COLUMNS;
-		for (int32_t k = 0; k < set->column_count; k++)
-			for (int c = 0; c < 3; c++)
-				set->step[3 * k + c] += answer[k] * dr[c][i];
-		cau_coupling_take(&set->tool[set->row[set->hold_row[i]].tool],
-		                  (cau_vec3){dr[0][i], dr[1][i], dr[2][i]});
+		const cau_contact_row *row = &set->row[set->hold_row[i]];
+		cau_vec3 by = {dr[0][i], dr[1][i], dr[2][i]};
+		cau_contact_move(set, row, by);
+		cau_coupling_take(&set->tool[row->tool], by);
 	}
 }

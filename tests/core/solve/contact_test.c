@@ -21,10 +21,10 @@ typedef struct pressed {
 } pressed;
 
 // A block held at its bottom.
-static void make(pressed *p, double friction)
+static void make_of(pressed *p, double friction, int32_t along, int32_t across, int32_t deep)
 {
 	rig_begin(&p->r);
-	rig_add_slab(&p->r, 12, 10, 4)->fat[0].young_modulus_pa = 4000;
+	rig_add_slab(&p->r, along, across, deep)->fat[0].young_modulus_pa = 4000;
 	rig_pin_box(&p->r, (double[]){-1, -1, -1}, (double[]){1, 1, -0.0299});
 	rig_build(&p->r, NULL, 1);
 	rig_factor(&p->r);
@@ -43,6 +43,11 @@ static void make(pressed *p, double friction)
 		.anchor = pose_at(0.004, -0.003, RADIUS_M - DEPTH_M),
 		.part = CAU_PART_BOTH,
 	};
+}
+
+static void make(pressed *p, double friction)
+{
+	make_of(p, friction, 12, 10, 4);
 }
 
 static double gap_of(const pressed *p, int32_t vertex, cau_vec3 *normal)
@@ -130,6 +135,36 @@ static void test_pressed_without_and_with_friction(void **state)
 	}
 }
 
+// More rows than there are whole columns, then few again: the same law holds.
+static void test_rows_beyond_whole_columns(void **state)
+{
+	(void)state;
+	const double shallow_m = 0.001;
+	pressed p;
+	make_of(&p, 0.3, 20, 18, 2);
+	p.tool.hot_radius_m = 0.2;
+	for (int round = 0; round < 2; round++) {
+		p.set->tool[0].anchor = pose_at(0.004, -0.003, 0.2 - (round ? shallow_m : DEPTH_M));
+		cau_contact_clear(p.set);
+		memcpy(p.r.solver.position, p.r.tissue.rest,
+		       3 * (size_t)p.r.tissue.vertex_count * sizeof *p.r.solver.position);
+		for (int32_t v = 0; v < p.r.tissue.vertex_count; v++) {
+			cau_contact_row row = cau_contact_at_vertex(v, 0);
+			memcpy(row.no_slip[0], p.r.tissue.rest + 3 * v, sizeof row.no_slip[0]);
+			if (!p.r.fixed[v] && p.r.tissue.rest[3 * v + 2] > -1e-9 &&
+			    gap_of(&p, v, NULL) < (round ? shallow_m : MARGIN_M))
+				assert_true(cau_contact_add(p.set, &row));
+		}
+		assert_true(cau_contact_is_wide(p.set) == !round);
+		solve(&p);
+		assert_true(p.set->column_count <= CAU_WHOLE_COLUMNS || !round);
+		assert_balance(&p);
+		for (int32_t v = 0; v < p.r.tissue.vertex_count; v++)
+			assert_true(gap_of(&p, v, NULL) > -GAP_TOLERANCE_M);
+	}
+	rig_finish(&p.r);
+}
+
 static int32_t top_vertex(const pressed *p)
 {
 	for (int32_t v = 0; v < p->r.tissue.vertex_count; v++) {
@@ -191,6 +226,7 @@ int main(void)
 {
 	const struct CMUnitTest tests[] = {
 		cmocka_unit_test(test_pressed_without_and_with_friction),
+		cmocka_unit_test(test_rows_beyond_whole_columns),
 		cmocka_unit_test(test_attachment_is_a_spring_that_slips),
 		cmocka_unit_test(test_a_full_set_says_so),
 	};
