@@ -35,13 +35,16 @@ typedef struct measuring {
 } measuring;
 
 // A direction that keeps the parts further apart than the thickness spares the search for the
-// nearest places.
-static void measure(cau_collide_pair *pair, const double *x)
+// nearest places: by more than rounding, so that who has no such direction comes to the same.
+static const double surely = 1 + 1e-9;
+
+static void measure(const cau_collide *collide, cau_collide_pair *pair, const double *x)
 {
 	cau_vec3 corner[4];
 	cau_collide_corners(pair, x, corner);
 	pair->slope = 0;
-	if (cau_gap_along(pair->kind, corner, pair->plane) >= pair->thickness_m)
+	if (cau_gap_along(pair->kind, corner, pair->plane) >= surely * pair->thickness_m ||
+	    cau_collide_is_exempt(collide, pair))
 		return;
 	cau_gap gap = cau_gap_between(pair->kind, corner);
 	pair->plane = gap.normal;
@@ -61,7 +64,7 @@ static void measure_part(void *context, int32_t share)
 	if (last > collide->pair_count)
 		last = collide->pair_count;
 	for (int32_t i = first; i < last; i++)
-		measure(&collide->pair[i], work->x);
+		measure(collide, &collide->pair[i], work->x);
 }
 
 static void load(cau_collide *collide, const int32_t vertex[4], const double weight[4],
@@ -141,8 +144,8 @@ static void add_pairs(cau_collide *collide, const double *x)
 
 double cau_collide_evaluate(cau_collide *collide, cau_pool *pool, const double *x)
 {
-	if (!cau_collide_covers(collide, x))
-		cau_collide_find(collide, pool, x, NULL);
+	if (!cau_collide_covers(collide, x, false))
+		cau_collide_find(collide, pool, x, false);
 	measuring work = {collide, x};
 	cau_pool_run(pool, (collide->pair_count + SHARE - 1) / SHARE, measure_part, &work);
 	unload(collide);
@@ -200,12 +203,19 @@ static void take_grips(cau_collide *collide)
 	}
 }
 
-void cau_collide_begin(cau_collide *collide, cau_pool *pool, const double *x, const double *step)
+static bool has_changed(const cau_collide *collide)
+{
+	return memchr(collide->surface.changed, 1, (size_t)collide->surface.block_count) != NULL;
+}
+
+void cau_collide_begin(cau_collide *collide, cau_pool *pool, const double *x)
 {
 	collide->held_back_count = collide->search_count = 0;
 	collide->cut_short = collide->held_back = false;
 	collide->grip_count = 0;
-	cau_collide_find(collide, pool, x, step);
+	cau_collide_forget_dead(collide);
+	if (has_changed(collide) || !cau_collide_covers(collide, x, true))
+		cau_collide_find(collide, pool, x, true);
 	collide->start_energy_j = cau_collide_evaluate(collide, pool, x);
 	take_grips(collide);
 }
