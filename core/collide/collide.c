@@ -44,6 +44,8 @@ static bool make_arrays(cau_collide *collide, cau_arena *arena)
 		{(void **)&collide->stiffness, n, sizeof(double)},
 		{(void **)&collide->anchor, 3 * n, sizeof(double)},
 		{(void **)&collide->reach_m, n, sizeof(double)},
+		{(void **)&collide->seen, 3 * n, sizeof(double)},
+		{(void **)&collide->apart_m, pairs, sizeof(double)},
 		{(void **)&collide->pair, pairs, sizeof *collide->pair},
 		{(void **)&collide->grip, pairs, sizeof *collide->grip},
 		{(void **)&collide->stopped, pairs, sizeof *collide->stopped},

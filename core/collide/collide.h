@@ -79,6 +79,10 @@ typedef struct cau_collide {
 	bool found;
 	double *anchor;  // m, (n x 3)
 	double *reach_m; // (n)
+	bool ahead;      // they are where the filter let the last step lead
+	double *seen;    // m, (n x 3): where the tick began, and
+	double *apart_m; // (most_pairs): how far apart pairs were there at least
+	double away_m;   // how far any vertex has been from there since, at most
 	int32_t pair_count, most_pairs;
 	cau_collide_pair *pair; // (most_pairs)
 	int32_t grip_count;
@@ -141,8 +145,19 @@ void cau_collide_find(cau_collide *collide, cau_pool *pool, const double *x, boo
 bool cau_collide_covers(const cau_collide *collide, const double *x, bool stepping);
 // How far a filtered step may lead, m, where `collide->step` is wanted.
 double cau_collide_room(const cau_collide *collide, int32_t vertex);
+double cau_collide_most_room(const cau_collide *collide, double step_m); // of a step so long
 // What died since is looked at again.
 void cau_collide_forget_dead(cau_collide *collide);
+
+// energy.c: measures how far pairs are apart at x, from where `away_m` counts.
+void cau_collide_see(cau_collide *collide, cau_pool *pool, const double *x);
+double cau_collide_away(const cau_collide *collide, const double *x);
+// Whether a pair is at least this far apart wherever vertices have been.
+static inline bool cau_collide_is_far(const cau_collide *collide, int32_t pair, double away_m,
+                                      double by_m)
+{
+	return collide->apart_m[pair] - 2 * away_m >= by_m;
+}
 
 static inline bool cau_collide_is_exempt(const cau_collide *collide, const cau_collide_pair *pair)
 {

@@ -133,6 +133,13 @@ static void stop(cau_collide *collide, const cau_collide_pair *pair, const look 
 		shorten(collide, pair->vertex[i], most);
 }
 
+// Whether a pair stays clear of its partner whatever its corners do within their room.
+static bool is_clear(const cau_collide *collide, int32_t pair)
+{
+	return cau_collide_is_far(collide, pair, collide->away_m,
+	                          collide->kept_share * collide->pair[pair].thickness_m);
+}
+
 static void stop_pairs(cau_collide *collide, const double *x)
 {
 	look l;
@@ -141,7 +148,8 @@ static void stop_pairs(cau_collide *collide, const double *x)
 	while (again) { // each pair is stopped once at most
 		again = false;
 		for (int32_t i = 0; i < collide->pair_count; i++) {
-			if (collide->stopped[i] || !comes_near(collide, &collide->pair[i], x, &l))
+			if (collide->stopped[i] || is_clear(collide, i) ||
+			    !comes_near(collide, &collide->pair[i], x, &l))
 				continue;
 			stop(collide, &collide->pair[i], &l);
 			collide->stopped[i] = again = true;
@@ -150,16 +158,20 @@ static void stop_pairs(cau_collide *collide, const double *x)
 }
 
 // No step is longer than the most, whatever is known; where pairs found no room, than that allows.
-static bool limit(cau_collide *collide, bool by_reach)
+// Returns whether one was; *longest is how long they are then.
+static bool limit(cau_collide *collide, bool by_reach, double *longest)
 {
 	const cau_surface_parts *vertices = &collide->surface.vertices;
 	const double just = 1 - 1e-6; // so that rounding leads nobody beyond
-	double most = fmax(cau_collide_most_step_m, collide->thickness_m);
+	double most = fmax(cau_collide_most_step_m, collide->thickness_m), longest2 = 0;
 	bool shortened = false;
 	for (int32_t k = 0; k < vertices->count; k++) {
 		int32_t v = vertices->item[k];
 		shortened |= shorten(collide, v, by_reach ? just * collide->reach_m[v] : most);
+		cau_vec3 step = cau_vec3_of(collide->step + 3 * (size_t)v);
+		longest2 = cau_dot(step, step) > longest2 ? cau_dot(step, step) : longest2;
 	}
+	*longest = sqrt(longest2);
 	return shortened;
 }
 
@@ -169,7 +181,9 @@ static bool find(cau_collide *collide, cau_pool *pool, const double *x)
 	bool before = collide->cut_short;
 	collide->cut_short = false;
 	cau_collide_find(collide, pool, x, true);
-	bool shortened = collide->cut_short && limit(collide, true);
+	cau_collide_see(collide, pool, x);
+	double longest;
+	bool shortened = collide->cut_short && limit(collide, true, &longest);
 	collide->cut_short |= before;
 	return shortened;
 }
@@ -181,18 +195,21 @@ static void take_room(cau_collide *collide)
 		collide->room_m[vertices->item[k]] = cau_collide_room(collide, vertices->item[k]);
 }
 
-// Moves back what comes too near. Returns whether anything did.
-static bool part_pairs(cau_collide *collide, const double *x)
+// Moves back what comes too near, after which steps may be as long as their room. Returns whether
+// anything did.
+static bool part_pairs(cau_collide *collide, const double *x, double away_m)
 {
 	look l;
 	bool again = true, parted = false;
 	for (int pass = 0; pass < PASSES && again; pass++) {
 		again = false;
 		for (int32_t i = 0; i < collide->pair_count; i++) {
-			if (!comes_near(collide, &collide->pair[i], x, &l))
+			if (is_clear(collide, i) || !comes_near(collide, &collide->pair[i], x, &l))
 				continue;
-			if (!parted)
+			if (!parted) {
 				take_room(collide);
+				collide->away_m = away_m;
+			}
 			part(collide, &collide->pair[i], &l);
 			again = parted = true;
 		}
@@ -202,14 +219,18 @@ static bool part_pairs(cau_collide *collide, const double *x)
 
 bool cau_collide_filter(cau_collide *collide, cau_pool *pool, const double *x, bool guess)
 {
+	double longest;
 	collide->kept_share = guess ? kept_by_guess : kept_share;
-	bool changed = limit(collide, false);
+	bool changed = limit(collide, false, &longest);
 	if (!cau_collide_covers(collide, x, true))
 		changed |= find(collide, pool, x);
 	collide->out_of_reach = changed;
-	changed |= part_pairs(collide, x);
+	double away = cau_collide_away(collide, x);
+	collide->away_m = away + longest;
+	changed |= part_pairs(collide, x, away + cau_collide_most_room(collide, longest));
 	if (changed)
 		stop_pairs(collide, x);
+	collide->ahead = true;
 	collide->held_back = changed;
 	collide->held_back_count += changed && !guess;
 	return changed;

@@ -3,7 +3,7 @@
 // reach of where it was anchored. Boxes of parts, grown by what their corners may move, are held
 // against boxes of blocks and then against each other.
 //
-// Pairs live on from tick to tick. Where a vertex has left its reach, those that have used up half
+// Pairs live on from tick to tick. Where a vertex has left its reach, those that have used up some
 // of theirs are anchored anew, and the blocks they belong to, as those that list other parts since
 // a cut, are looked at again; all else is kept. What a block finds is ordered by parts alone. So
 // which pairs touch, and in what order, does not depend on when they were found.
@@ -15,9 +15,9 @@
 
 static const double least_room = 0.4;   // of the thickness: where no step is asked for
 static const double room_of_step = 1.5; // what others push is moved farther than it wanted
-static const double least_reach = 0.2;  // of the thickness, beyond that: for the ticks to come
-static const double foresight = 2;      // of the room: likewise, where tissue moves on
-static const double used_up = 0.5;      // of that: then anchored anew with those beyond it
+static const double least_reach = 0.3;  // of the thickness, beyond that: for the ticks to come
+static const double foresight = 2;      // of the step, likewise, where tissue moves on
+static const double used_up = 0.2;      // of that: then anchored anew with those beyond it
 // A pair keeps at most so much of the distance that it has at rest: neighbours, between which the
 // surface itself may be drawn together, less than others.
 static const double near_share = 0.1, far_share = 0.5;
@@ -334,11 +334,19 @@ static bool search(cau_collide *collide, cau_pool *pool)
 
 // ---- where they are valid
 
+double cau_collide_most_room(const cau_collide *collide, double step_m)
+{
+	double room = room_of_step * step_m, least = least_room * collide->thickness_m;
+	return room > least ? room : least;
+}
+
 double cau_collide_room(const cau_collide *collide, int32_t vertex)
 {
 	cau_vec3 step = cau_vec3_of(collide->step + 3 * (size_t)vertex);
 	double least = least_room * collide->thickness_m, way2 = cau_dot(step, step);
-	return room_of_step * room_of_step * way2 <= least * least ? least : room_of_step * sqrt(way2);
+	if (room_of_step * room_of_step * way2 <= least * least)
+		return least;
+	return cau_collide_most_room(collide, sqrt(way2));
 }
 
 // Whether x is within a share of a vertex's reach, less the room for, `stepping`, a step from x.
@@ -382,8 +390,9 @@ static void anchor_used_up(cau_collide *collide, const double *x, bool stepping)
 		int32_t v = vertices->item[k];
 		if (collide->found && is_enough(collide, x, stepping, v, used_up))
 			continue;
+		double way = stepping ? cau_length(cau_vec3_of(collide->step + 3 * (size_t)v)) : 0;
 		double room = stepping ? cau_collide_room(collide, v) : 0;
-		anchor(collide, x, v, fmax(fmin(foresight * room, most), room + least));
+		anchor(collide, x, v, room + fmax(fmin(foresight * way, most), least));
 	}
 }
 
