@@ -33,7 +33,7 @@ static void find_stiffness(cau_collide *collide, double step_s)
 static bool make_arrays(cau_collide *collide, cau_arena *arena)
 {
 	const cau_tissue *tissue = collide->tissue;
-	size_t n = (size_t)tissue->vertex_count, blocks = (size_t)collide->surface.most_blocks;
+	size_t n = (size_t)tissue->vertex_count, blocks = (size_t)collide->surface.block_count;
 	size_t pairs = (size_t)collide->most_pairs, box = sizeof(cau_collide_box);
 	bool made = true;
 	struct {
@@ -44,9 +44,12 @@ static bool make_arrays(cau_collide *collide, cau_arena *arena)
 		{(void **)&collide->stiffness, n, sizeof(double)},
 		{(void **)&collide->anchor, 3 * n, sizeof(double)},
 		{(void **)&collide->reach_m, n, sizeof(double)},
+		{(void **)&collide->seen, 3 * n, sizeof(double)},
+		{(void **)&collide->apart_m, pairs, sizeof(double)},
 		{(void **)&collide->pair, pairs, sizeof *collide->pair},
 		{(void **)&collide->grip, pairs, sizeof *collide->grip},
 		{(void **)&collide->stopped, pairs, sizeof *collide->stopped},
+		{(void **)&collide->room_m, n, sizeof(double)},
 		{(void **)&collide->is_loaded, n, 1},
 		{(void **)&collide->loaded, n, sizeof(int32_t)},
 		{(void **)&collide->gradient, 3 * n, sizeof(double)},
@@ -60,6 +63,11 @@ static bool make_arrays(cau_collide *collide, cau_arena *arena)
 		{(void **)&collide->block_box[1], blocks, box},
 		{(void **)&collide->block_box[2], blocks, box},
 		{(void **)&collide->slice, blocks, sizeof *collide->slice},
+		{(void **)&collide->changed, blocks, sizeof(int32_t)},
+		{(void **)&collide->moved, n, 1},
+		{(void **)&collide->alive_before[0], (size_t)tissue->triangle_count, 1},
+		{(void **)&collide->alive_before[1], (size_t)tissue->tetrahedron_count, 1},
+		{(void **)&collide->alive_before[2], (size_t)tissue->link_count, 1},
 		{(void **)&collide->list[0], blocks * CAU_COLLIDE_SLICE, sizeof(cau_collide_found)},
 		{(void **)&collide->list[1], blocks * CAU_COLLIDE_SLICE, sizeof(cau_collide_found)},
 	};

@@ -14,9 +14,10 @@
 // move, and so all the way, as corners move straight. What would pass is moved back to its side of
 // the plane, and stopped where that is not enough.
 //
-// Pairs are looked for once (find.c) for all places that lie within each vertex's `reach_m` of
-// `anchor`; who asks for a place beyond has them looked for again. Which pairs touch, and in what
-// order their forces are added up, does not depend on that, so nothing here outlives a tick.
+// Pairs are known (find.c) for all places where no vertex is farther than its `reach_m` from its
+// `anchor`, from tick to tick; where a place beyond is asked for, they are looked
+// for again. Which pairs touch, and in what order their forces are added up, does not depend on
+// that, so no snapshot has any of it.
 #pragma once
 
 #include "base/pool.h"
@@ -24,6 +25,9 @@
 #include "collide/surface.h"
 
 enum { CAU_COLLIDE_SLICE = 2048 }; // pairs of a kind that a block may have
+// A filtered step is no longer than this, or than the thickness if that is more: then pairs need
+// be known no further.
+static const double cau_collide_most_step_m = 1e-3;
 
 typedef struct cau_collide_pair {
 	cau_gap_kind kind;
@@ -52,7 +56,9 @@ typedef struct cau_collide_box {
 } cau_collide_box;
 
 typedef struct cau_collide_found { // a pair as find.c lists it
-	int32_t first, second;         // vertex and face, or edges: places among the surface's parts
+	int32_t first, second;         // vertex and face, or edges, of the tissue
+	int32_t block;                 // that lists the second
+	double thickness_m, stiffness;
 } cau_collide_found;
 
 typedef struct cau_collide_slice { // of a block: what it found, and whether that was all
@@ -65,12 +71,18 @@ typedef struct cau_collide {
 	double thickness_m, friction;
 	const uint8_t *fixed; // (n): borrowed; vertices that no step moves
 	uint8_t *exempt;      // (n): vertices that touch nothing, as those in jaws
-	double *stiffness;    // N/m, (n): of a vertex
+	// What joins parts while it lives: triangles, tetrahedra, links; borrowed, NULL: all do.
+	const uint8_t *alive[CAU_PRIMITIVE_KINDS];
+	double *stiffness; // N/m, (n): of a vertex
 	cau_surface surface;
 	// Where the pairs are valid.
 	bool found;
 	double *anchor;  // m, (n x 3)
 	double *reach_m; // (n)
+	bool ahead;      // they are where the filter let the last step lead
+	double *seen;    // m, (n x 3): where the tick began, and
+	double *apart_m; // (most_pairs): how far apart pairs were there at least
+	double away_m;   // how far any vertex has been from there since, at most
 	int32_t pair_count, most_pairs;
 	cau_collide_pair *pair; // (most_pairs)
 	int32_t grip_count;
@@ -93,21 +105,26 @@ typedef struct cau_collide {
 	bool cut_short; // the pairs found no room: steps were shorter than asked for
 	double *step;   // m, (n x 3): for filter
 	double start_energy_j;
-	// find.c: scratch
-	cau_collide_box *face_box, *edge_box, *vertex_box; // by place among the surface's parts
+	// find.c: what is known
+	cau_collide_box *face_box, *edge_box, *vertex_box; // of the tissue's, where they are drawn
 	cau_collide_box *block_box[3];                     // faces, edges, vertices of a block
 	cau_collide_slice *slice;                          // (blocks)
 	cau_collide_found *list[2];                        // by kind, (blocks x CAU_COLLIDE_SLICE)
-	bool *stopped;                                     // (most_pairs): filter.c: scratch
+	uint8_t *alive_before[CAU_PRIMITIVE_KINDS];        // as they were when it was found
+	// and scratch
+	uint8_t *moved;                  // (n): anchored anew
+	int32_t changed_count, *changed; // blocks
+	bool *stopped;                   // (most_pairs): filter.c: scratch
+	double *room_m;                  // (n): likewise, where drawn
 } cau_collide;
 
 // The caller sets `fixed` and `start`, for good.
 cau_status cau_collide_create(cau_collide *collide, const cau_tissue *tissue, double thickness_m,
                               double friction, double step_s, cau_arena *arena, cau_error *error);
 
-// Begins a tick at positions x (m, n x 3): what is drawn has been listed, `exempt` filled. Steps of
-// up to `step` (n x 3) are foreseen. Measures the energy there and takes the grips.
-void cau_collide_begin(cau_collide *collide, cau_pool *pool, const double *x, const double *step);
+// Begins a tick at positions x (m, n x 3): what is drawn has been listed, `exempt` filled. Steps as
+// long as `collide->step` are foreseen. Measures the energy there and takes the grips.
+void cau_collide_begin(cau_collide *collide, cau_pool *pool, const double *x);
 
 // Energy at x, J, friction's included; the gradient is kept.
 double cau_collide_evaluate(cau_collide *collide, cau_pool *pool, const double *x);
@@ -122,10 +139,31 @@ bool cau_collide_filter(cau_collide *collide, cau_pool *pool, const double *x, b
 
 // ---- between the files of this room
 
-// find.c: the pairs for all places that `step` (NULL: none) leads to from x, and some more.
-void cau_collide_find(cau_collide *collide, cau_pool *pool, const double *x, const double *step);
-// Whether the pairs are those of x.
-bool cau_collide_covers(const cau_collide *collide, const double *x);
+// find.c: the pairs for x and, `stepping`, for all steps from there within each vertex's room.
+void cau_collide_find(cau_collide *collide, cau_pool *pool, const double *x, bool stepping);
+// Whether they are known.
+bool cau_collide_covers(const cau_collide *collide, const double *x, bool stepping);
+// How far a filtered step may lead, m, where `collide->step` is wanted.
+double cau_collide_room(const cau_collide *collide, int32_t vertex);
+double cau_collide_most_room(const cau_collide *collide, double step_m); // of a step so long
+// What died since is looked at again.
+void cau_collide_forget_dead(cau_collide *collide);
+
+// energy.c: measures how far pairs are apart at x, from where `away_m` counts.
+void cau_collide_see(cau_collide *collide, cau_pool *pool, const double *x);
+double cau_collide_away(const cau_collide *collide, const double *x);
+// Whether a pair is at least this far apart wherever vertices have been.
+static inline bool cau_collide_is_far(const cau_collide *collide, int32_t pair, double away_m,
+                                      double by_m)
+{
+	return collide->apart_m[pair] - 2 * away_m >= by_m;
+}
+
+static inline bool cau_collide_is_exempt(const cau_collide *collide, const cau_collide_pair *pair)
+{
+	return collide->exempt[pair->vertex[0]] | collide->exempt[pair->vertex[1]] |
+	       collide->exempt[pair->vertex[2]] | collide->exempt[pair->vertex[3]];
+}
 
 static inline void cau_collide_corners(const cau_collide_pair *pair, const double *x,
                                        cau_vec3 corner[4])

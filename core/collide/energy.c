@@ -35,13 +35,19 @@ typedef struct measuring {
 } measuring;
 
 // A direction that keeps the parts further apart than the thickness spares the search for the
-// nearest places.
-static void measure(cau_collide_pair *pair, const double *x)
+// nearest places: by more than rounding, so that who has no such direction comes to the same.
+static const double surely = 1 + 1e-9;
+
+static void measure(const cau_collide *collide, int32_t index, const double *x)
 {
 	cau_vec3 corner[4];
-	cau_collide_corners(pair, x, corner);
+	cau_collide_pair *pair = &collide->pair[index];
 	pair->slope = 0;
-	if (cau_gap_along(pair->kind, corner, pair->plane) >= pair->thickness_m)
+	if (cau_collide_is_far(collide, index, collide->away_m, surely * pair->thickness_m))
+		return;
+	cau_collide_corners(pair, x, corner);
+	if (cau_gap_along(pair->kind, corner, pair->plane) >= surely * pair->thickness_m ||
+	    cau_collide_is_exempt(collide, pair))
 		return;
 	cau_gap gap = cau_gap_between(pair->kind, corner);
 	pair->plane = gap.normal;
@@ -61,7 +67,7 @@ static void measure_part(void *context, int32_t share)
 	if (last > collide->pair_count)
 		last = collide->pair_count;
 	for (int32_t i = first; i < last; i++)
-		measure(&collide->pair[i], work->x);
+		measure(collide, i, work->x);
 }
 
 static void load(cau_collide *collide, const int32_t vertex[4], const double weight[4],
@@ -139,10 +145,62 @@ static void add_pairs(cau_collide *collide, const double *x)
 	}
 }
 
+// ---- how far pairs are apart where the tick began, which spares most of them a look
+
+static void see_part(void *context, int32_t share)
+{
+	const measuring *work = context;
+	cau_collide *collide = work->collide;
+	int32_t first = share * SHARE, last = first + SHARE;
+	CAU_ASSERT(first < collide->pair_count, "share %d of %d pairs", share, collide->pair_count);
+	if (last > collide->pair_count)
+		last = collide->pair_count;
+	for (int32_t i = first; i < last; i++) {
+		cau_collide_pair *pair = &collide->pair[i];
+		cau_vec3 corner[4];
+		cau_collide_corners(pair, work->x, corner);
+		collide->apart_m[i] = cau_gap_along(pair->kind, corner, pair->plane);
+		if (collide->apart_m[i] > 2 * pair->thickness_m)
+			continue;
+		cau_gap gap = cau_gap_between(pair->kind, corner);
+		collide->apart_m[i] = gap.distance;
+		pair->plane = gap.normal;
+	}
+}
+
+void cau_collide_see(cau_collide *collide, cau_pool *pool, const double *x)
+{
+	measuring work = {collide, x};
+	memcpy(collide->seen, x, 3 * (size_t)collide->tissue->vertex_count * sizeof *x);
+	collide->away_m = 0;
+	cau_pool_run(pool, (collide->pair_count + SHARE - 1) / SHARE, see_part, &work);
+}
+
+double cau_collide_away(const cau_collide *collide, const double *x)
+{
+	const cau_surface_parts *vertices = &collide->surface.vertices;
+	double most2 = 0;
+	for (int32_t k = 0; k < vertices->count; k++) {
+		size_t at = 3 * (size_t)vertices->item[k];
+		cau_vec3 way = cau_sub(cau_vec3_of(x + at), cau_vec3_of(collide->seen + at));
+		double way2 = cau_dot(way, way);
+		most2 = way2 > most2 ? way2 : most2;
+	}
+	return sqrt(most2);
+}
+
 double cau_collide_evaluate(cau_collide *collide, cau_pool *pool, const double *x)
 {
-	if (!cau_collide_covers(collide, x))
-		cau_collide_find(collide, pool, x, NULL);
+	bool ahead = collide->ahead;
+	collide->ahead = false;
+	CAU_ASSERT(!ahead || cau_collide_covers(collide, x, false), "%d pairs are not those of x",
+	           collide->pair_count);
+	if (!ahead && !cau_collide_covers(collide, x, false)) {
+		cau_collide_find(collide, pool, x, false);
+		cau_collide_see(collide, pool, x);
+	} else if (!ahead) {
+		collide->away_m = cau_collide_away(collide, x);
+	}
 	measuring work = {collide, x};
 	cau_pool_run(pool, (collide->pair_count + SHARE - 1) / SHARE, measure_part, &work);
 	unload(collide);
@@ -200,12 +258,21 @@ static void take_grips(cau_collide *collide)
 	}
 }
 
-void cau_collide_begin(cau_collide *collide, cau_pool *pool, const double *x, const double *step)
+static bool has_changed(const cau_collide *collide)
+{
+	return memchr(collide->surface.changed, 1, (size_t)collide->surface.block_count) != NULL;
+}
+
+void cau_collide_begin(cau_collide *collide, cau_pool *pool, const double *x)
 {
 	collide->held_back_count = collide->search_count = 0;
 	collide->cut_short = collide->held_back = false;
 	collide->grip_count = 0;
-	cau_collide_find(collide, pool, x, step);
+	cau_collide_forget_dead(collide);
+	if (has_changed(collide) || !cau_collide_covers(collide, x, true))
+		cau_collide_find(collide, pool, x, true);
+	cau_collide_see(collide, pool, x);
+	collide->ahead = true;
 	collide->start_energy_j = cau_collide_evaluate(collide, pool, x);
 	take_grips(collide);
 }

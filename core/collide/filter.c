@@ -49,6 +49,8 @@ static bool comes_near(const cau_collide *collide, cau_collide_pair *pair, const
 {
 	see(collide, pair, x, l);
 	double clear = collide->kept_share * pair->thickness_m;
+	if (cau_collide_is_exempt(collide, pair))
+		return false;
 	if (cau_gap_along(pair->kind, l->corner, pair->plane) - most_closing(pair, l) >= clear)
 		return false;
 	cau_gap gap = cau_gap_between(pair->kind, l->corner);
@@ -75,15 +77,27 @@ static double mobility(const cau_collide *collide, const cau_collide_pair *pair,
 	return free ? free / mass : 0;
 }
 
+static bool shorten(cau_collide *collide, int32_t vertex, double most)
+{
+	double *step = collide->step + 3 * (size_t)vertex;
+	double length2 = cau_dot(cau_vec3_of(step), cau_vec3_of(step));
+	if (length2 <= most * most || collide->fixed[vertex])
+		return false;
+	cau_vec3_to(cau_scale(most / sqrt(length2), cau_vec3_of(step)), step);
+	return true;
+}
+
 static void move_corner(cau_collide *collide, int32_t vertex, double by, cau_vec3 normal)
 {
 	double *step = collide->step + 3 * (size_t)vertex;
 	if (collide->fixed[vertex])
 		return;
 	cau_vec3_to(cau_add_scaled(cau_vec3_of(step), by, normal), step);
+	shorten(collide, vertex, collide->room_m[vertex]);
 }
 
-// Moves both parts back along the plane's normal until they keep their distance.
+// Moves both parts back along the plane's normal until they keep their distance, as far as corners
+// have room: what they might meet beyond need not be known.
 static void part(cau_collide *collide, const cau_collide_pair *pair, const look *l)
 {
 	int firsts = cau_gap_first(pair->kind);
@@ -110,16 +124,6 @@ static void part(cau_collide *collide, const cau_collide_pair *pair, const look 
 
 // ---- what always holds
 
-static bool shorten(cau_collide *collide, int32_t vertex, double most)
-{
-	double *step = collide->step + 3 * (size_t)vertex;
-	double length = cau_length(cau_vec3_of(step));
-	if (collide->fixed[vertex] || length <= most)
-		return false;
-	cau_vec3_to(cau_scale(most / length, cau_vec3_of(step)), step);
-	return true;
-}
-
 // Corners go no further than half of what their pair may lose: that stays enough, whatever other
 // pairs shorten.
 static void stop(cau_collide *collide, const cau_collide_pair *pair, const look *l)
@@ -127,6 +131,13 @@ static void stop(cau_collide *collide, const cau_collide_pair *pair, const look 
 	double most = fmax((l->distance - l->floor) / 2, 0);
 	for (int i = 0; i < 4; i++)
 		shorten(collide, pair->vertex[i], most);
+}
+
+// Whether a pair stays clear of its partner whatever its corners do within their room.
+static bool is_clear(const cau_collide *collide, int32_t pair)
+{
+	return cau_collide_is_far(collide, pair, collide->away_m,
+	                          collide->kept_share * collide->pair[pair].thickness_m);
 }
 
 static void stop_pairs(cau_collide *collide, const double *x)
@@ -137,7 +148,8 @@ static void stop_pairs(cau_collide *collide, const double *x)
 	while (again) { // each pair is stopped once at most
 		again = false;
 		for (int32_t i = 0; i < collide->pair_count; i++) {
-			if (collide->stopped[i] || !comes_near(collide, &collide->pair[i], x, &l))
+			if (collide->stopped[i] || is_clear(collide, i) ||
+			    !comes_near(collide, &collide->pair[i], x, &l))
 				continue;
 			stop(collide, &collide->pair[i], &l);
 			collide->stopped[i] = again = true;
@@ -145,64 +157,80 @@ static void stop_pairs(cau_collide *collide, const double *x)
 	}
 }
 
-// Steps end within the reach for which the pairs are known.
-static bool stay_in_reach(cau_collide *collide, const double *x)
+// No step is longer than the most, whatever is known; where pairs found no room, than that allows.
+// Returns whether one was; *longest is how long they are then.
+static bool limit(cau_collide *collide, bool by_reach, double *longest)
 {
 	const cau_surface_parts *vertices = &collide->surface.vertices;
+	const double just = 1 - 1e-6; // so that rounding leads nobody beyond
+	double most = fmax(cau_collide_most_step_m, collide->thickness_m), longest2 = 0;
 	bool shortened = false;
 	for (int32_t k = 0; k < vertices->count; k++) {
-		size_t v = (size_t)vertices->item[k];
-		cau_vec3 from = cau_sub(cau_vec3_of(x + 3 * v), cau_vec3_of(collide->anchor + 3 * v));
-		cau_vec3 step = cau_vec3_of(collide->step + 3 * v), to = cau_add(from, step);
-		double reach = collide->reach_m[v];
-		if (collide->fixed[v] || cau_dot(to, to) <= reach * reach)
-			continue;
-		double left = fmax(reach - cau_length(from), 0) * (1 - 1e-9);
-		shortened |= shorten(collide, (int32_t)v, left);
+		int32_t v = vertices->item[k];
+		shortened |= shorten(collide, v, by_reach ? just * collide->reach_m[v] : most);
+		cau_vec3 step = cau_vec3_of(collide->step + 3 * (size_t)v);
+		longest2 = cau_dot(step, step) > longest2 ? cau_dot(step, step) : longest2;
 	}
+	*longest = sqrt(longest2);
 	return shortened;
 }
 
-static bool ends_in_reach(const cau_collide *collide, const double *x)
+// Finds the pairs. Returns whether steps had to be shortened for want of room.
+static bool find(cau_collide *collide, cau_pool *pool, const double *x)
+{
+	bool before = collide->cut_short;
+	collide->cut_short = false;
+	cau_collide_find(collide, pool, x, true);
+	cau_collide_see(collide, pool, x);
+	double longest;
+	bool shortened = collide->cut_short && limit(collide, true, &longest);
+	collide->cut_short |= before;
+	return shortened;
+}
+
+static void take_room(cau_collide *collide)
 {
 	const cau_surface_parts *vertices = &collide->surface.vertices;
-	if (!collide->found)
-		return false;
-	for (int32_t k = 0; k < vertices->count; k++) {
-		size_t v = (size_t)vertices->item[k];
-		double away2 = 0, reach = collide->reach_m[v];
-		for (size_t i = 3 * v; i < 3 * v + 3; i++) {
-			double away = x[i] + collide->step[i] - collide->anchor[i];
-			away2 += away * away;
+	for (int32_t k = 0; k < vertices->count; k++)
+		collide->room_m[vertices->item[k]] = cau_collide_room(collide, vertices->item[k]);
+}
+
+// Moves back what comes too near, after which steps may be as long as their room. Returns whether
+// anything did.
+static bool part_pairs(cau_collide *collide, const double *x, double away_m)
+{
+	look l;
+	bool again = true, parted = false;
+	for (int pass = 0; pass < PASSES && again; pass++) {
+		again = false;
+		for (int32_t i = 0; i < collide->pair_count; i++) {
+			if (is_clear(collide, i) || !comes_near(collide, &collide->pair[i], x, &l))
+				continue;
+			if (!parted) {
+				take_room(collide);
+				collide->away_m = away_m;
+			}
+			part(collide, &collide->pair[i], &l);
+			again = parted = true;
 		}
-		if (!(away2 <= reach * reach))
-			return false;
 	}
-	return true;
+	return parted;
 }
 
 bool cau_collide_filter(cau_collide *collide, cau_pool *pool, const double *x, bool guess)
 {
-	look l;
+	double longest;
 	collide->kept_share = guess ? kept_by_guess : kept_share;
-	bool changed = false, again = true;
-	if (!ends_in_reach(collide, x)) {
-		cau_collide_find(collide, pool, x, collide->step);
-		changed = stay_in_reach(collide, x);
-	}
+	bool changed = limit(collide, false, &longest);
+	if (!cau_collide_covers(collide, x, true))
+		changed |= find(collide, pool, x);
 	collide->out_of_reach = changed;
-	for (int pass = 0; pass < PASSES && again; pass++) {
-		again = false;
-		for (int32_t i = 0; i < collide->pair_count; i++)
-			if (comes_near(collide, &collide->pair[i], x, &l)) {
-				part(collide, &collide->pair[i], &l);
-				again = changed = true;
-			}
-	}
-	if (changed) {
-		stay_in_reach(collide, x);
+	double away = cau_collide_away(collide, x);
+	collide->away_m = away + longest;
+	changed |= part_pairs(collide, x, away + cau_collide_most_room(collide, longest));
+	if (changed)
 		stop_pairs(collide, x);
-	}
+	collide->ahead = true;
 	collide->held_back = changed;
 	collide->held_back_count += changed && !guess;
 	return changed;

@@ -5,21 +5,13 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "base/morton.h"
 #include "cautery/assert.h"
 
 typedef struct keyed {
 	uint32_t key;
 	int32_t face;
 } keyed;
-
-static uint32_t spread_bits(uint32_t x) // 10 bits to every third
-{
-	CAU_ASSERT(x < 1u << 10, "%u has more than 10 bits", x);
-	x = (x | x << 16) & 0x030000ffu;
-	x = (x | x << 8) & 0x0300f00fu;
-	x = (x | x << 4) & 0x030c30c3u;
-	return (x | x << 2) & 0x09249249u;
-}
 
 static int compare(const void *a, const void *b)
 {
@@ -38,26 +30,72 @@ static void order_faces(const cau_tissue *tissue, keyed *key, int32_t *order)
 	for (int32_t i = 0; i < 3 * tissue->vertex_count; i++)
 		most = fmax(most, tissue->rest[i] - least[i % 3]);
 	for (int32_t f = 0; f < tissue->faces.face_count; f++) {
-		key[f] = (keyed){0, f};
+		double unit[3] = {0};
 		for (size_t c = 0; c < 3 && most > 0; c++) {
 			double middle = 0;
 			for (size_t k = 0; k < 3; k++)
 				middle += tissue->rest[3 * (size_t)tissue->faces.vertex[3 * (size_t)f + k] + c] / 3;
-			double unit = fmin(fmax((middle - least[c]) / most, 0), 1);
-			key[f].key |= spread_bits((uint32_t)(unit * 1023)) << c;
+			unit[c] = fmin(fmax((middle - least[c]) / most, 0), 1);
 		}
+		key[f] = (keyed){cau_morton(unit), f};
 	}
 	qsort(key, (size_t)tissue->faces.face_count, sizeof *key, compare);
 	for (int32_t f = 0; f < tissue->faces.face_count; f++)
 		order[f] = key[f].face;
 }
 
-static bool make_parts(cau_surface_parts *parts, int32_t most, int32_t most_blocks,
-                       cau_arena *arena)
+// Whether a face is drawn while nothing is cut.
+static bool is_outside(const cau_face_table *faces, int32_t face)
+{
+	const int32_t *owner = faces->owner + 2 * (size_t)face;
+	CAU_ASSERT_INDEX(face, faces->face_count);
+	return face < faces->triangle_count ||
+	       (faces->cover[face] < 0 && (owner[0] < 0) != (owner[1] < 0));
+}
+
+static void make_blocks(cau_surface *surface)
+{
+	int32_t outside = 0, faces = surface->tissue->faces.face_count;
+	surface->block_count = 0;
+	for (int32_t i = 0; i < faces; i++) {
+		outside += is_outside(&surface->tissue->faces, surface->order[i]);
+		if (outside == CAU_SURFACE_BLOCK || i + 1 == faces ||
+		    i + 1 - surface->own[surface->block_count] == CAU_SURFACE_FACES) {
+			surface->own[++surface->block_count] = i + 1;
+			outside = 0;
+		}
+	}
+}
+
+static bool make_parts(cau_surface_parts *parts, int32_t most, int32_t blocks, cau_arena *arena)
 {
 	parts->item = cau_arena_array(arena, (size_t)most, sizeof(int32_t));
-	parts->first = cau_arena_array(arena, (size_t)most_blocks + 1, sizeof(int32_t));
+	parts->first = cau_arena_array(arena, (size_t)blocks + 1, sizeof(int32_t));
 	return parts->item && parts->first;
+}
+
+static bool make_places(int32_t *block[2], int32_t count, cau_arena *arena)
+{
+	for (int i = 0; i < 2; i++) {
+		block[i] = cau_arena_array(arena, (size_t)count, sizeof(int32_t));
+		if (!block[i])
+			return false;
+		memset(block[i], 0xff, (size_t)count * sizeof(int32_t));
+	}
+	return true;
+}
+
+static bool make_lists(cau_surface *surface, cau_arena *arena)
+{
+	const cau_tissue *tissue = surface->tissue;
+	int32_t blocks = surface->block_count;
+	surface->changed = cau_arena_array(arena, (size_t)blocks, 1);
+	return surface->changed &&
+	       make_parts(&surface->faces, tissue->faces.face_count, blocks, arena) &&
+	       make_parts(&surface->edges, tissue->edges.edge_count, blocks, arena) &&
+	       make_parts(&surface->vertices, tissue->vertex_count, blocks, arena) &&
+	       make_places(surface->edge_block, tissue->edges.edge_count, arena) &&
+	       make_places(surface->vertex_block, tissue->vertex_count, arena);
 }
 
 cau_status cau_surface_create(cau_surface *surface, const cau_tissue *tissue, cau_arena *arena,
@@ -65,45 +103,32 @@ cau_status cau_surface_create(cau_surface *surface, const cau_tissue *tissue, ca
 {
 	size_t faces = (size_t)tissue->faces.face_count;
 	surface->tissue = tissue;
-	surface->most_blocks = (tissue->faces.face_count + CAU_SURFACE_BLOCK - 1) / CAU_SURFACE_BLOCK;
 	surface->order = cau_arena_array(arena, faces, sizeof(int32_t));
+	surface->own = cau_arena_array(arena, faces / CAU_SURFACE_BLOCK + 2, sizeof(int32_t));
 	surface->face_edge = cau_arena_array(arena, 3 * faces, sizeof(int32_t));
-	surface->edge_seen = cau_arena_array(arena, (size_t)tissue->edges.edge_count, 1);
-	surface->vertex_seen = cau_arena_array(arena, (size_t)tissue->vertex_count, 1);
 	surface->mask = cau_arena_array(arena, (faces + 31) / 32, sizeof(uint32_t));
-	bool made = make_parts(&surface->faces, tissue->faces.face_count, surface->most_blocks, arena);
-	made &= make_parts(&surface->edges, tissue->edges.edge_count, surface->most_blocks, arena);
-	made &= make_parts(&surface->vertices, tissue->vertex_count, surface->most_blocks, arena);
 	keyed *key = malloc((faces + 1) * sizeof *key);
-	if (made && key && surface->mask && surface->order && surface->face_edge &&
-	    surface->edge_seen && surface->vertex_seen) {
+	bool made = key && surface->order && surface->own && surface->face_edge && surface->mask;
+	if (made) {
 		order_faces(tissue, key, surface->order);
 		memset(surface->face_edge, 0xff, 3 * faces * sizeof(int32_t));
-		free(key);
-		return CAU_OK;
+		make_blocks(surface);
+		made = make_lists(surface, arena);
 	}
 	free(key);
-	return cau_fail(error, CAU_NO_MEMORY, NULL, "no memory for the surface that touches");
+	return made ? CAU_OK
+	            : cau_fail(error, CAU_NO_MEMORY, NULL, "no memory for the surface that touches");
 }
 
-static void end_block(cau_surface *surface)
+static void take(cau_surface_parts *parts, int32_t *block_of, int32_t item, int32_t block)
 {
-	int32_t b = ++surface->block_count;
-	CAU_ASSERT(b <= surface->most_blocks, "%d blocks of %d", b, surface->most_blocks);
-	surface->faces.first[b] = surface->faces.count;
-	surface->edges.first[b] = surface->edges.count;
-	surface->vertices.first[b] = surface->vertices.count;
-}
-
-static void take(cau_surface_parts *parts, uint8_t *seen, int32_t item)
-{
-	if (seen[item])
+	if (block_of[item] >= 0)
 		return;
-	seen[item] = 1;
+	block_of[item] = block;
 	parts->item[parts->count++] = item;
 }
 
-static void take_face(cau_surface *surface, int32_t face)
+static void take_face(cau_surface *surface, int32_t face, int32_t block)
 {
 	const int32_t *vertex = surface->tissue->faces.vertex + 3 * (size_t)face;
 	int32_t *edge = surface->face_edge + 3 * (size_t)face;
@@ -112,30 +137,57 @@ static void take_face(cau_surface *surface, int32_t face)
 		if (edge[k] < 0)
 			edge[k] = cau_edge_table_find(&surface->tissue->edges, vertex[k], vertex[(k + 1) % 3]);
 		CAU_ASSERT_INDEX(edge[k], surface->tissue->edges.edge_count);
-		take(&surface->edges, surface->edge_seen, edge[k]);
-		take(&surface->vertices, surface->vertex_seen, vertex[k]);
+		take(&surface->edges, surface->edge_block[0], edge[k], block);
+		take(&surface->vertices, surface->vertex_block[0], vertex[k], block);
 	}
-	if (surface->faces.count % CAU_SURFACE_BLOCK == 0)
-		end_block(surface);
+}
+
+static void list_block(cau_surface *surface, const uint32_t *face_mask, int32_t block)
+{
+	for (int32_t i = surface->own[block]; i < surface->own[block + 1]; i++) {
+		int32_t face = surface->order[i];
+		uint32_t bit = face_mask[face >> 5] >> (face & 31) & 1;
+		if (bit != (surface->mask[face >> 5] >> (face & 31) & 1))
+			surface->changed[block] = 1;
+		if (!bit)
+			take_face(surface, face, block);
+	}
+	surface->faces.first[block + 1] = surface->faces.count;
+	surface->edges.first[block + 1] = surface->edges.count;
+	surface->vertices.first[block + 1] = surface->vertices.count;
+}
+
+// The lists' places so far become those before; -1 for all.
+static void turn_over(int32_t *block[2], int32_t count)
+{
+	int32_t *before = block[0];
+	block[0] = block[1];
+	block[1] = before;
+	memset(block[0], 0xff, (size_t)count * sizeof(int32_t));
+}
+
+// Both the block that no longer lists a part and the one that does list others now.
+static void compare_places(cau_surface *surface, int32_t *const block[2], int32_t count)
+{
+	for (int32_t i = 0; i < count; i++)
+		for (int k = 0; k < 2 && block[0][i] != block[1][i]; k++)
+			if (block[k][i] >= 0)
+				surface->changed[block[k][i]] = 1;
 }
 
 void cau_surface_list(cau_surface *surface, const uint32_t *face_mask)
 {
-	size_t bytes = ((size_t)surface->tissue->faces.face_count + 31) / 32 * sizeof(uint32_t);
+	const cau_tissue *tissue = surface->tissue;
+	size_t bytes = ((size_t)tissue->faces.face_count + 31) / 32 * sizeof(uint32_t);
 	if (surface->listed && memcmp(surface->mask, face_mask, bytes) == 0)
 		return;
+	surface->faces.count = surface->edges.count = surface->vertices.count = 0;
+	turn_over(surface->edge_block, tissue->edges.edge_count);
+	turn_over(surface->vertex_block, tissue->vertex_count);
+	for (int32_t block = 0; block < surface->block_count; block++)
+		list_block(surface, face_mask, block);
+	compare_places(surface, surface->edge_block, tissue->edges.edge_count);
+	compare_places(surface, surface->vertex_block, tissue->vertex_count);
 	memcpy(surface->mask, face_mask, bytes);
 	surface->listed = true;
-	surface->block_count = 0;
-	surface->faces.count = surface->edges.count = surface->vertices.count = 0;
-	surface->faces.first[0] = surface->edges.first[0] = surface->vertices.first[0] = 0;
-	memset(surface->edge_seen, 0, (size_t)surface->tissue->edges.edge_count);
-	memset(surface->vertex_seen, 0, (size_t)surface->tissue->vertex_count);
-	for (int32_t i = 0; i < surface->tissue->faces.face_count; i++) {
-		int32_t face = surface->order[i];
-		if (!(face_mask[face >> 5] >> (face & 31) & 1))
-			take_face(surface, face);
-	}
-	if (surface->faces.count % CAU_SURFACE_BLOCK)
-		end_block(surface);
 }

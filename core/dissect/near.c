@@ -4,21 +4,13 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "base/morton.h"
 #include "cautery/assert.h"
 
 typedef struct keyed {
 	uint32_t key;
 	int32_t vertex;
 } keyed;
-
-static uint32_t spread_bits(uint32_t x) // 10 bits to every third
-{
-	CAU_ASSERT(x < 1u << 10, "%u has more than 10 bits", x);
-	x = (x | x << 16) & 0x030000ffu;
-	x = (x | x << 8) & 0x0300f00fu;
-	x = (x | x << 4) & 0x030c30c3u;
-	return (x | x << 2) & 0x09249249u;
-}
 
 static int compare(const void *a, const void *b)
 {
@@ -36,13 +28,10 @@ static void morton_order(const cau_tissue *tissue, keyed *order)
 	for (int32_t i = 0; i < 3 * tissue->vertex_count; i++)
 		most = fmax(most, tissue->rest[i] - least[i % 3]);
 	for (int32_t v = 0; v < tissue->vertex_count; v++) {
-		uint32_t key = 0;
-		for (int c = 0; c < 3; c++) {
-			double unit =
-				most > 0 ? (tissue->rest[3 * (size_t)v + (size_t)c] - least[c]) / most : 0;
-			key |= spread_bits((uint32_t)(unit * 1023)) << c;
-		}
-		order[v] = (keyed){key, v};
+		double unit[3] = {0};
+		for (size_t c = 0; c < 3 && most > 0; c++)
+			unit[c] = (tissue->rest[3 * (size_t)v + c] - least[c]) / most;
+		order[v] = (keyed){cau_morton(unit), v};
 	}
 	qsort(order, (size_t)tissue->vertex_count, sizeof *order, compare);
 }

@@ -23,6 +23,8 @@ cau_status cau_session_make_collide(cau_session *session, cau_error *error)
 		return status;
 	collide->fixed = session->fixed;
 	collide->start = session->position_start;
+	for (int kind = 0; kind < CAU_PRIMITIVE_KINDS; kind++)
+		collide->alive[kind] = session->dissection.alive.element[kind];
 	session->solver.collide = collide;
 	return CAU_OK;
 }
@@ -61,6 +63,20 @@ static void go(cau_session *session, double *position)
 	}
 }
 
+// Where the guess would lead through tissue: on in legs, each filtered, from where the last one
+// ended.
+static void go_in_legs(cau_session *session, const double *guess, double *at)
+{
+	cau_collide *collide = &session->collide;
+	for (int leg = 0; leg < MOST_LEGS; leg++) {
+		go(session, at);
+		if (!collide->out_of_reach)
+			return;
+		ask_for(session, at, guess);
+		cau_collide_filter(collide, session->pool, at, true);
+	}
+}
+
 void cau_session_begin_collide(cau_session *session)
 {
 	cau_step_solver *solver = &session->solver;
@@ -72,15 +88,11 @@ void cau_session_begin_collide(cau_session *session)
 	exempt_held(session);
 	cau_surface_list(&collide->surface, session->dissection.face_mask);
 	ask_for(session, session->position_start, guess);
-	cau_collide_begin(collide, session->pool, session->position_start, collide->step);
+	cau_collide_begin(collide, session->pool, session->position_start);
+	if (!cau_collide_filter(collide, session->pool, session->position_start, true))
+		return;
 	memcpy(at, session->position_start, bytes);
-	for (int leg = 0; leg < MOST_LEGS; leg++) {
-		ask_for(session, at, guess);
-		cau_collide_filter(collide, session->pool, at, true);
-		go(session, at);
-		if (!collide->out_of_reach)
-			break;
-	}
+	go_in_legs(session, guess, at);
 	for (int32_t k = 0; k < collide->surface.vertices.count; k++) {
 		size_t v = (size_t)collide->surface.vertices.item[k];
 		if (!session->fixed[v])

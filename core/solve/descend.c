@@ -206,7 +206,8 @@ static bool is_harmless(const cau_step_solver *solver, double norm, double objec
 	CAU_ASSERT(!(norm < 0), "a step of length %g", norm);
 	const double far_below = 0.01;
 	double most = solver->conservative ? objective_noise(solver) : far_below * objective;
-	return !solver->backtracks && !solver->drag_count && !solver->collide && norm * norm <= most;
+	bool touches = solver->collide && solver->collide->touching_count;
+	return !solver->backtracks && !solver->drag_count && !touches && norm * norm <= most;
 }
 
 // A step that was cut short lest tissue cross tissue says nothing of what is left to do.
@@ -290,9 +291,8 @@ cau_status cau_solver_descend(cau_step_solver *solver, cau_error *error)
 		bool accelerated = cau_anderson_mix(solver, solver->accuracy.newton ? 0 : steps++);
 		int32_t backtracks = solver->backtracks;
 		bool enough = cau_accuracy_is_reached(solver, norm);
-		if ((enough || k + 1 == solver->iterations) && is_harmless(solver, norm, objective)) {
-			if (solver->collide)
-				cau_solver_keep_apart(solver, solver->position);
+		if ((enough || k + 1 == solver->iterations) && is_harmless(solver, norm, objective) &&
+		    !(solver->collide && cau_solver_keep_apart(solver, solver->position))) {
 			leave(solver);
 			solver->spared = true;
 			objective -= norm * norm / 2;

@@ -60,7 +60,7 @@ static int throw_together(sheets *s, bool filtered)
 	int held = 0;
 	double *before = malloc(3 * (size_t)n * sizeof *before);
 	assert_non_null(before);
-	cau_collide_begin(&s->collide, s->pool, s->x, s->collide.step);
+	cau_collide_begin(&s->collide, s->pool, s->x);
 	for (int k = 0; k < STEPS; k++) {
 		for (int32_t i = 0; i < 3 * n; i++) {
 			s->collide.step[i] = 3e-3 * sheets_draw(s);
@@ -114,7 +114,7 @@ static void parting_sheets_are_let_go(void **state)
 	sheets s;
 	sheets_begin(&s, 5e-4, 0, 2e-4);
 	int32_t n = s.r.tissue.vertex_count, upper = s.r.tissue.layer[1].first_vertex;
-	cau_collide_begin(&s.collide, s.pool, s.x, s.collide.step);
+	cau_collide_begin(&s.collide, s.pool, s.x);
 	for (int32_t v = upper; v < n; v++)
 		s.collide.step[3 * (size_t)v + 2] = 5e-4;
 	assert_false(cau_collide_filter(&s.collide, s.pool, s.x, false));
@@ -131,7 +131,7 @@ static void what_is_fixed_is_not_moved(void **state)
 	sheets_begin(&s, 5e-4, 0, 6e-4);
 	int32_t n = s.r.tissue.vertex_count, upper = s.r.tissue.layer[1].first_vertex;
 	memset(s.r.fixed, 1, (size_t)upper);
-	cau_collide_begin(&s.collide, s.pool, s.x, s.collide.step);
+	cau_collide_begin(&s.collide, s.pool, s.x);
 	for (int32_t v = upper; v < n; v++)
 		s.collide.step[3 * (size_t)v + 2] = -9e-4;
 	assert_true(cau_collide_filter(&s.collide, s.pool, s.x, false));
