@@ -273,17 +273,6 @@ static double own_answer(const cau_contact_set *set, int32_t i)
 	return own;
 }
 
-void cau_contact_move(cau_contact_set *set, const cau_contact_row *row, cau_vec3 by)
-{
-	const double *answer = cau_contact_answer(set, row);
-	double *x = set->step, *y = x + CAU_MAX_COLUMNS, *z = y + CAU_MAX_COLUMNS;
-	for (int32_t c = 0; c < set->column_count; c++) {
-		x[c] += answer[c] * by.x;
-		y[c] += answer[c] * by.y;
-		z[c] += answer[c] * by.z;
-	}
-}
-
 static cau_vec3 relaxed(const cau_contact_set *set, const cau_step_solver *solver,
                         cau_contact_row *row, double own)
 {

@@ -146,29 +146,6 @@ static void make_missing(cau_contact_set *set, cau_step_solver *solver)
 		make_columns(set, solver, place, waiting);
 }
 
-void cau_contact_find_answer(cau_contact_set *set, int32_t row)
-{
-	const cau_contact_row *of = &set->row[row];
-	if (of->answer < 0 || of->answer == CAU_MAX_POINT_ROWS)
-		return;
-	double *answer = set->answer + (size_t)of->answer * CAU_MAX_COLUMNS;
-	memset(answer, 0, (size_t)set->column_count * sizeof *answer);
-	for (int32_t k = 0; k < of->corner_count; k++) {
-		if (of->column[k] < 0 || of->weight[k] == 0)
-			continue;
-		const double *s = set->inverse + (size_t)of->column[k] * CAU_MAX_COLUMNS;
-		for (int32_t c = 0; c < set->column_count; c++)
-			answer[c] += of->weight[k] * s[c];
-	}
-}
-
-const double *cau_contact_answer(const cau_contact_set *set, const cau_contact_row *row)
-{
-	if (row->answer < 0)
-		return set->inverse + (size_t)row->column[0] * CAU_MAX_COLUMNS;
-	return set->answer + (size_t)row->answer * CAU_MAX_COLUMNS;
-}
-
 bool cau_contact_is_wide(const cau_contact_set *set)
 {
 	return set->corner_count > CAU_WHOLE_COLUMNS;

@@ -6,7 +6,7 @@
 // for half as many.
 //
 // The slab is as wide as the tool reaches, and steps are of 1/30 s, which take the same
-// (validation.md in tests/paper). By itself: the shipped cells and half of them. With `--long`:
+// (tests/paper/validation.md). By itself: the shipped cells and half of them. With `--long`:
 // finer ones.
 #include <stdio.h>
 
