@@ -95,6 +95,7 @@ static void print_json(const cli *c, const view *v)
 	cau_json_unsigned(&w, "edges_parted", s->statistics.edges_parted);
 	cau_json_unsigned(&w, "elements_removed", s->statistics.elements_removed);
 	cau_json_unsigned(&w, "elements_torn", s->statistics.elements_torn);
+	cau_json_unsigned(&w, "touching_cut_short", s->statistics.touching_cut_short);
 	cau_json_bool(&w, "paused", s->flags & CAU_FRAME_PAUSED);
 	cau_json_bool(&w, "faulted", s->flags & CAU_FRAME_FAULTED);
 	cau_json_open(&w, "tools", '[');

@@ -102,8 +102,8 @@ typedef struct cau_collide {
 	double kept_share;            // filter.c: of its distance, a pair keeps at least
 	bool held_back, out_of_reach; // it shortened; because the pairs are known for no further
 	int32_t held_back_count, search_count;
-	bool cut_short; // the pairs found no room: steps were shorter than asked for
-	double *step;   // m, (n x 3): for filter
+	int32_t cut_short_count; // the pairs found no room: steps were shorter than asked for
+	double *step;            // m, (n x 3): for filter
 	double start_energy_j;
 	// find.c: what is known
 	cau_collide_box *face_box, *edge_box, *vertex_box; // of the tissue's, where they are drawn

@@ -266,7 +266,8 @@ static bool has_changed(const cau_collide *collide)
 void cau_collide_begin(cau_collide *collide, cau_pool *pool, const double *x)
 {
 	collide->held_back_count = collide->search_count = 0;
-	collide->cut_short = collide->held_back = false;
+	collide->cut_short_count = 0;
+	collide->held_back = false;
 	collide->grip_count = 0;
 	cau_collide_forget_dead(collide);
 	if (has_changed(collide) || !cau_collide_covers(collide, x, true))

@@ -178,13 +178,11 @@ static bool limit(cau_collide *collide, bool by_reach, double *longest)
 // Finds the pairs. Returns whether steps had to be shortened for want of room.
 static bool find(cau_collide *collide, cau_pool *pool, const double *x)
 {
-	bool before = collide->cut_short;
-	collide->cut_short = false;
+	int32_t before = collide->cut_short_count;
+	double longest;
 	cau_collide_find(collide, pool, x, true);
 	cau_collide_see(collide, pool, x);
-	double longest;
-	bool shortened = collide->cut_short && limit(collide, true, &longest);
-	collide->cut_short |= before;
+	bool shortened = collide->cut_short_count > before && limit(collide, true, &longest);
 	return shortened;
 }
 

@@ -294,6 +294,7 @@ static bool gather(cau_collide *collide)
 					&collide->list[kind][(size_t)b * CAU_COLLIDE_SLICE + (size_t)k];
 				if (collide->pair_count == collide->most_pairs)
 					return false;
+				collide->apart_m[collide->pair_count] = 0; // not known
 				cau_collide_pair *pair = &collide->pair[collide->pair_count++];
 				pair->kind = (cau_gap_kind)kind;
 				pair->thickness_m = found->thickness_m;
@@ -422,7 +423,7 @@ void cau_collide_find(cau_collide *collide, cau_pool *pool, const double *x, boo
 	double share = stepping;
 	if (search(collide, pool) || search_least(collide, pool, x, share))
 		return;
-	collide->cut_short = true;
+	collide->cut_short_count++;
 	for (int tries = 0; tries < TRIES && stepping; tries++)
 		if (search_least(collide, pool, x, share /= 2))
 			return;

@@ -14,10 +14,10 @@ enum {
 	TOOL_SLIPPING = 1 << 3,
 	STATISTICS_FLOATS = 2 + CAU_STREAM_STAGES + 2,
 	STATISTICS_COUNTS = 10,
-	STATISTICS_WORDS = STATISTICS_RECORD_BYTES / 4, // floats, counts, and five more
+	STATISTICS_WORDS = STATISTICS_RECORD_BYTES / 4, // floats, counts, and six more
 };
 _Static_assert(sizeof(cau_stream_statistics) == STATISTICS_RECORD_BYTES &&
-                   STATISTICS_FLOATS + STATISTICS_COUNTS + 5 == STATISTICS_WORDS,
+                   STATISTICS_FLOATS + STATISTICS_COUNTS + 6 == STATISTICS_WORDS,
                "the record lists every member of cau_stream_statistics");
 
 size_t cau_tool_names_write(uint8_t *out, const cau_stream_tool *tools, int32_t count)
@@ -206,7 +206,7 @@ static int is_float_word(size_t word)
 {
 	CAU_ASSERT_INDEX(word, STATISTICS_WORDS);
 	size_t beyond =
-		STATISTICS_FLOATS + STATISTICS_COUNTS; // energy_gain_j, resting, error and two counts
+		STATISTICS_FLOATS + STATISTICS_COUNTS; // energy_gain_j, resting, error and three counts
 	return word < STATISTICS_FLOATS || word == beyond || word == beyond + 2;
 }
 

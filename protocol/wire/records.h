@@ -8,7 +8,7 @@ enum {
 	TOOL_RECORD_BYTES = 84,
 	TOOL_ASKED_BYTES = 28,
 	TOOL_NAMES_BYTES_MAX = 4 + CAU_MAX_TOOLS * (2 + CAU_NAME_BYTES) + 3,
-	STATISTICS_RECORD_BYTES = 108,
+	STATISTICS_RECORD_BYTES = 112,
 	STATISTICS_LEAST_BYTES = 88, // without what comes after refused_commands, as servers began
 };
 

@@ -163,8 +163,8 @@ typedef struct cau_hosted_counts {
 	double step_seconds;  // spent in steps
 	double energy_gain_j; // that steps made out of nothing, those that lost some not counted
 	double realtime_factor;
-	int32_t half_rate;         // subscribers at half rate
-	int32_t contacts_left_out; // of the last step
-	bool resting;              // its tissue: steps change nothing until something wakes it
+	int32_t half_rate;                             // subscribers at half rate
+	int32_t contacts_left_out, touching_cut_short; // of the last step
+	bool resting; // its tissue: steps change nothing until something wakes it
 } cau_hosted_counts;
 void cau_hosted_count(cau_hosted *hosted, cau_hosted_counts *counts);

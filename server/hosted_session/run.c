@@ -99,6 +99,7 @@ static void step(cau_hosted *h)
 	h->counts.step_seconds += h->step_cost_s;
 	h->counts.energy_gain_j += fmax(frame.statistics.energy_gain_j, 0);
 	h->counts.contacts_left_out = frame.statistics.contacts_left_out;
+	h->counts.touching_cut_short = frame.statistics.touching_cut_short;
 	h->counts.resting = frame.statistics.resting;
 	pthread_mutex_unlock(&h->mutex);
 }

@@ -62,6 +62,7 @@ static void describe_step(const cau_statistics *from, cau_stream_statistics *to)
 		.error = (float)from->error,
 		.contacts_left_out = (uint32_t)from->contacts_left_out,
 		.elements_torn = (uint32_t)from->elements_torn,
+		.touching_cut_short = (uint32_t)from->touching_cut_short,
 	};
 	for (int i = 0; i < CAU_STREAM_STAGES; i++)
 		to->stage_s[i] = (float)from->seconds[i];

@@ -26,6 +26,7 @@
 	X("factor_operations", PRId32, s->factor_operations)                                           \
 	X("contacts", PRId32, s->contacts)                                                             \
 	X("contacts_left_out", PRId32, s->contacts_left_out)                                           \
+	X("touching_cut_short", PRId32, s->touching_cut_short)                                         \
 	X("frozen_vertices", PRId32, s->frozen_vertices)                                               \
 	X("energy_gain_j", ".6g", s->energy_gain_j)                                                    \
 	X("error", ".6g", s->error)                                                                    \

@@ -205,6 +205,9 @@ typedef struct cau_statistics {
 	// Vertices and faces at a tool that the step had no row for: what it did without them is not
 	// right, and a tool may stand deeper in tissue than it should. 0: contact is whole.
 	int32_t contacts_left_out;
+	// Times that tissue near tissue, in a scene with a contact thickness, was in more pairs than
+	// there is room for: the step was held up there, though nothing crossed. 0: contact is whole.
+	int32_t touching_cut_short;
 	int32_t frozen_vertices;
 	// Energy that the step made out of nothing: kinetic, elastic and gravitational energy at its
 	// end less those at its start, and less the work of tools, led supports and commanded forces.

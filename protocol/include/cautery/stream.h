@@ -110,12 +110,13 @@ typedef struct cau_stream_statistics {
 	uint32_t refactorisations;
 	uint32_t contacts;
 	uint32_t frozen_vertices;
-	uint32_t refused_commands;  // since creation
-	float energy_gain_j;        // 0 where the sender does not tell it
-	uint32_t resting;           // 1: the tissue is at rest; 0 where the sender does not tell it
-	float error;                // of the last step, estimated; 0 where the sender does not tell it
-	uint32_t contacts_left_out; // 0 where the sender does not tell it
-	uint32_t elements_torn;     // 0 where the sender does not tell it
+	uint32_t refused_commands;   // since creation
+	float energy_gain_j;         // 0 where the sender does not tell it
+	uint32_t resting;            // 1: the tissue is at rest; 0 where the sender does not tell it
+	float error;                 // of the last step, estimated; 0 where the sender does not tell it
+	uint32_t contacts_left_out;  // 0 where the sender does not tell it
+	uint32_t elements_torn;      // 0 where the sender does not tell it
+	uint32_t touching_cut_short; // 0 where the sender does not tell it
 } cau_stream_statistics;
 
 // What the server knows at a tick; everything is borrowed for the call. Arrays whose channel the

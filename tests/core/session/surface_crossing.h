@@ -34,16 +34,20 @@ static inline int surface_pierces(const double *x, int32_t p, int32_t q, const i
 	return (first > 0 && second > 0 && third > 0) || (first < 0 && second < 0 && third < 0);
 }
 
-// How many pairs of an edge and a face cross; edges of two faces count twice.
-static inline int surface_crossings(const cau_session *session)
+// How many pairs of an edge and a face cross; edges of two faces count twice. Faces with a corner
+// in `left_out` (by vertex; NULL: none) are not looked at.
+static inline int surface_crossings_but(const cau_session *session, const uint8_t *left_out)
 {
 	cau_session_info info = stage_info(session);
 	cau_frame frame = stage_frame(session);
 	int32_t *drawn = malloc((size_t)(info.face_count + 1) * sizeof *drawn), count = 0;
 	int crossings = 0;
-	for (int32_t f = 0; f < info.face_count; f++)
-		if (!(frame.face_mask[f >> 5] >> (f & 31) & 1))
+	for (int32_t f = 0; f < info.face_count; f++) {
+		const int32_t *v = info.face + 3 * (size_t)f;
+		bool out = left_out && (left_out[v[0]] | left_out[v[1]] | left_out[v[2]]);
+		if (!out && !(frame.face_mask[f >> 5] >> (f & 31) & 1))
 			drawn[count++] = f;
+	}
 	for (int32_t i = 0; i < count; i++)
 		for (int k = 0; k < 3; k++) {
 			const int32_t *own = info.face + 3 * (size_t)drawn[i];
@@ -57,4 +61,9 @@ static inline int surface_crossings(const cau_session *session)
 		}
 	free(drawn);
 	return crossings;
+}
+
+static inline int surface_crossings(const cau_session *session)
+{
+	return surface_crossings_but(session, NULL);
 }

@@ -121,7 +121,8 @@ void tissue_move(tissue *moved, int32_t tick, double speed_m_s)
 	                                            .resting = tick % 2 != 0,
 	                                            .error = 1e-4f * (float)tick,
 	                                            .contacts_left_out = 2 * (uint32_t)tick,
-	                                            .elements_torn = 3 * (uint32_t)tick};
+	                                            .elements_torn = 3 * (uint32_t)tick,
+	                                            .touching_cut_short = 5 * (uint32_t)tick};
 }
 
 cau_stream_def tissue_stream_def(const tissue *of)

@@ -21,6 +21,7 @@ const COLUMNS: readonly (readonly [string, (sample: Sample) => number | null])[]
   ['pending_downdates', (s) => s.statistics?.pendingDowndates ?? null],
   ['contacts', (s) => s.statistics?.contacts ?? null],
   ['contacts_left_out', (s) => s.statistics?.contactsLeftOut ?? null],
+  ['touching_cut_short', (s) => s.statistics?.touchingCutShort ?? null],
 ];
 
 export function samplesCsv(samples: readonly Sample[]): string {

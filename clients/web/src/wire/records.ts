@@ -57,11 +57,12 @@ export interface Statistics {
   error: number; // of the last step, estimated, relative to its own motion; 0 from servers that do not tell it
   contactsLeftOut: number; // vertices that the last step's contact had no place for; 0 from servers that do not tell it
   elementsTorn: number; // of those removed, by being stretched beyond what they bear; 0 from servers that do not tell it
+  touchingCutShort: number; // times in the last step that tissue touching tissue found no room; 0 from servers that do not tell it
 }
 
 const TOOL_BYTES = 84;
 const ASKED_BYTES = 28;
-const STATISTICS_BYTES = 88; // without what servers have added since: energyGainJ, resting, error, contactsLeftOut, elementsTorn
+const STATISTICS_BYTES = 88; // without what servers have added since: energyGainJ, resting, error, contactsLeftOut, elementsTorn, touchingCutShort
 const TOOLS_MAX = 8;
 
 export function readToolNames(payload: Uint8Array): ToolName[] {
@@ -157,5 +158,6 @@ export function readStatistics(payload: Uint8Array): Statistics {
     error: payload.byteLength >= STATISTICS_BYTES + 12 ? real(24) : 0,
     contactsLeftOut: payload.byteLength >= STATISTICS_BYTES + 16 ? count(13) : 0,
     elementsTorn: payload.byteLength >= STATISTICS_BYTES + 20 ? count(14) : 0,
+    touchingCutShort: payload.byteLength >= STATISTICS_BYTES + 24 ? count(15) : 0,
   };
 }

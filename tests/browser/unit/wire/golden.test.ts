@@ -51,7 +51,7 @@ describe.skipIf(folder === undefined || !existsSync(join(folder, 'frame-00.bin')
       expectState(decoder, i);
     }
     expect(decoder.state.tools.map((tool) => tool.name)).toEqual(['hook', 'left-grasper']);
-    expect(decoder.state.statistics).toMatchObject({ iterations: 10, contacts: FRAMES - 1, contactsLeftOut: 2 * (FRAMES - 1), elementsTorn: 3 * (FRAMES - 1) });
+    expect(decoder.state.statistics).toMatchObject({ iterations: 10, contacts: FRAMES - 1, contactsLeftOut: 2 * (FRAMES - 1), elementsTorn: 3 * (FRAMES - 1), touchingCutShort: 5 * (FRAMES - 1) });
     expect(decoder.state.statistics?.stageS.slice(0, 2)).toEqual([0.25, 0.5]);
   });
 
