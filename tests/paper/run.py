@@ -30,6 +30,7 @@ import dissection  # noqa: E402
 import elements  # noqa: E402
 import errors  # noqa: E402
 import heat  # noqa: E402
+import held  # noqa: E402
 import ignition  # noqa: E402
 import loads  # noqa: E402
 import parting  # noqa: E402
@@ -171,9 +172,10 @@ def made_line(seconds, load_before, failed):
 
 
 def write_pages(sections, last):
-    for file_name, head, parts in (("README.md", PAPER_HEAD, PAPER), ("validation.md", VALIDATION_HEAD, VALIDATION)):
+    for file_name, head, parts, tail in (("README.md", PAPER_HEAD, PAPER, []),
+                                         ("validation.md", VALIDATION_HEAD, VALIDATION, [held.table()])):
         with open(os.path.join(FOLDER, file_name), "w", encoding="utf-8") as file:
-            file.write("\n".join([head, last, *(sections[name] for name in parts)]))
+            file.write("\n".join([head, last, *(sections[name] for name in parts), *tail]))
 
 
 def main():

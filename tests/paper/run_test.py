@@ -13,6 +13,7 @@ import dissection  # noqa: E402
 import elements  # noqa: E402
 import geometry  # noqa: E402
 import heat  # noqa: E402
+import held  # noqa: E402
 import patterns  # noqa: E402
 import plots  # noqa: E402
 import run  # noqa: E402
@@ -73,6 +74,17 @@ class Parts(unittest.TestCase):
 
 
 class Validation(unittest.TestCase):
+    def test_what_is_said_to_be_held_has_its_test(self):
+        with open(os.path.join(run.ROOT, held.QUICK), encoding="utf-8") as file:
+            figures = [name for part in run.json.load(file).values() for name in part]
+        for what, _, tests in held.HELD:
+            for path, name in tests:
+                if path == held.QUICK:
+                    self.assertTrue(any(figure.startswith(name) for figure in figures), f"{what}: {name}")
+                    continue
+                with open(os.path.join(run.ROOT, path), encoding="utf-8") as file:
+                    self.assertIn(f"cmocka_unit_test({name})", file.read(), what)
+
     def test_lines_of_the_test_of_equilibria_are_read(self):
         line = ("[ RUN ] x\ntwist_stvk_nu30                  displacement 3.2e-09, force 1.8e-08 of the same mesh's; mesh "
                 "against a converged one +36.1 %; 0.4 s\n")

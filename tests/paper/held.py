@@ -1,0 +1,74 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Validation: which test holds which number, to what. `run_test.py` looks whether each is there."""
+
+QUICK = "tests/paper/expected.json"  # of the test paper_quick; a figure of it, or the beginning of some
+
+# What, to what it is held, and by which tests: a file and a function in it.
+HELD = (
+    ("block, cantilever, twisted beam against the stored references", "0.1 %",
+     (("tests/core/session/equilibrium_test.c", "a_pulled_block"), ("tests/core/session/equilibrium_test.c", "a_cantilever"),
+      ("tests/core/session/equilibrium_test.c", "a_twisted_beam"), (QUICK, "elements."))),
+    ("indentation, likewise", "1 %", (("tests/core/session/equilibrium_test.c", "an_indentation"), (QUICK, "elements.indentation"))),
+    ("heat against the Gaussian, by cells", "1 % at 1 mm, a quarter at 0.5 mm",
+     (("tests/core/heat/heat_grid_test.c", "test_gaussian"), (QUICK, "heat.gaussian"))),
+    ("heat about a ball at rest, cells of a sixth of its radius, 1 to 600 s and steady", "2 % of tool minus ambient",
+     (("tests/core/heat/heat_surface_test.c", "test_around_a_ball"),
+      ("tests/core/heat/heat_surface_test.c", "test_steady_around_a_ball"), (QUICK, "heat.ball"))),
+    ("the same at 0.1 s: above 2 %, as cells are; cells of a twelfth", "2 %, and a third of what cells of a sixth are off",
+     (("tests/core/heat/heat_surface_test.c", "test_soon_after_the_beginning"),)),
+    ("heat about a ball at 5, 10, 20 mm/s, cells of a sixth, to a radius from its surface", "2 %, rms",
+     (("tests/core/heat/heat_surface_test.c", "test_a_moving_ball"),)),
+    ("the same at 50 mm/s, over a cube of 14 mm (to a radius from its surface it is 3.4 %)", "2 %, rms",
+     (("tests/core/heat/heat_surface_test.c", "test_a_moving_ball"),)),
+    ("momentum of a free body", "1e-9",
+     (("tests/core/session/balance_test.c", "a_free_body_keeps_its_momentum"), (QUICK, "conservation.momentum"))),
+    ("angular momentum and energy of a spinning block", "3 % and 1 % in the page's throw",
+     (("tests/core/session/spin_test.c", "a_free_block_turns_as_a_rigid_one"),
+      ("tests/core/session/spin_test.c", "it_goes_on_for_long"), (QUICK, "conservation."))),
+    ("energy out of nothing", "none",
+     (("tests/core/session/energy_test.c", "rest_reads_nothing"), (QUICK, "conservation.swing.gained"))),
+    ("strain limits, as asked and as reached", "0.3 % of strain about figure 4's, 0.1 % at one load",
+     ((QUICK, "figure_4."), (QUICK, "loads."))),
+    ("error of a step, as asked: fascia, fat, fat-neohookean, layers", "1 %, 95 of 100",
+     (("tests/core/session/accuracy_test.c", "a_taut_sheet_is_right"), ("tests/core/session/accuracy_test.c", "fat_is_right"),
+      (QUICK, "errors."))),
+    ("error of a step, a free sheet, by Newton's steps", "1 %, 95 of 100",
+     (("tests/core/session/free_sheet_test.c", "a_hanging_sheet_is_right"), (QUICK, "errors.hanging"))),
+    ("a drawn cut of 40 mm by elements, mean of eight ways, by mesh", "15 % at 1 to 2 x the cells, 30 % at 0.5 x",
+     (("tests/core/session/cut_by_mesh_test.c", "half_the_cells_take_as_much"),
+      ("tests/core/session/cut_by_mesh_test.c", "finer_cells_take_as_much"),
+      ("tests/core/dissect/doses_test.c", "what_a_cut_takes_is_not_the_meshs"))),
+    ("the same by step and iterations", "10 %",
+     (("tests/core/session/cut_by_mesh_test.c", "steps_and_iterations_take_as_much"),)),
+    ("`layers` and scenes of mesh files part by elements, the paper's by edges", "as said",
+     (("tests/core/session/cut_by_mesh_test.c", "scenes_have_their_rule"),
+      ("tests/server/sim/mesh_scene_test.c", "a_scene_is_made_around_the_mesh"), (QUICK, "parting."))),
+    ("VTU has temperature, exposure, stress, tools", "their values",
+     (("tests/server/sim/vtu_writer_test.c", "files_tell_scalars_and_tools"),)),
+    ("CSV has energies, forces, stage times", "their values",
+     (("tests/server/sim/program_test.c", "ticks_tell_energies_and_times"),
+      ("tests/server/sim/program_test.c", "ticks_tell_forces"))),
+    ("ignition after 2.35 s and 1.44 s", "a tick in scenes",
+     (("tests/core/session/burn_test.c", "fascia_parts_after_2_35_s"), ("tests/core/session/burn_test.c", "fat_parts_after_1_44_s"),
+      (QUICK, "ignition."))),
+)
+
+
+def named(test):
+    path, name = test
+    return f"`{name}`" if path == QUICK else f"`{name}` in [{path.split('/')[-1]}](../../{path})"
+
+
+def table():
+    """The section, without figures of a run: what it says is in the tests."""
+    rows = [f"| {what} | {to} | {', '.join(named(test) for test in tests)} |" for what, to, tests in HELD]
+    return f"""## What tests hold
+
+What a change may not make worse without a test that fails. Names without a file are figures of `expected.json`, or
+the beginning of some, which the test `paper_quick` holds. Not held: how far free sheets are off by the scenes' own steps (the
+tables above tell it), times, and strain beyond a limit at the loads that `paper_quick` does not hang.
+
+| what | to | by |
+|---|---|---|
+{chr(10).join(rows)}
+"""
