@@ -330,7 +330,7 @@ static bool find_reactions(point *list, int n, const double *s, const double *b)
 {
 	size_t many = (size_t)n;
 	double *a = malloc(many * many * sizeof *a + 1), *x = malloc(many * sizeof *x + 1);
-	int *at = malloc(many * sizeof *at + 1);
+	int *at = calloc(many + 1, sizeof *at);
 	bool right = false, *pushes = malloc(many + 1);
 	for (int k = 0; k < n; k++)
 		pushes[k] = list[k].reaction_n > 0 || b[k] < 0;
@@ -401,7 +401,7 @@ static bool move(solver *s)
 	cholmod_dense *sides = right_sides(s);
 	cholmod_dense *answers = cholmod_solve(CHOLMOD_A, s->factor, sides, &s->common);
 	double *y = answers->x, *columns = sides->x, *free_way = y + rows * n;
-	double *system = malloc((n * n + n) * sizeof *system + 1), *gap = system + n * n;
+	double *system = calloc(n * n + n + 1, sizeof *system), *gap = system + n * n;
 	for (size_t k = 0; k < n; k++) {
 		gap[k] = s->point[k].gap_m + dot_of(columns + k * rows, free_way, rows);
 		for (size_t j = 0; j < n; j++)
