@@ -13,6 +13,7 @@
 static const double kept_share = 0.2;    // of its distance, or of the thickness if that is less;
 static const double kept_by_guess = 1;   // by the first guess, which adds no energy so
 static const double least_share = 0.005; // of the thickness: a pair that is so near comes no nearer
+static const double just = 1 - 1e-6;     // of a reach: so that rounding leads nobody beyond
 enum { PASSES = 8 };
 
 typedef struct look {
@@ -162,7 +163,6 @@ static void stop_pairs(cau_collide *collide, const double *x)
 static bool limit(cau_collide *collide, bool by_reach, double *longest)
 {
 	const cau_surface_parts *vertices = &collide->surface.vertices;
-	const double just = 1 - 1e-6; // so that rounding leads nobody beyond
 	double most = fmax(cau_collide_most_step_m, collide->thickness_m), longest2 = 0;
 	bool shortened = false;
 	for (int32_t k = 0; k < vertices->count; k++) {
@@ -186,11 +186,14 @@ static bool find(cau_collide *collide, cau_pool *pool, const double *x)
 	return shortened;
 }
 
+// Where pairs found no room, a corner has what its reach allows.
 static void take_room(cau_collide *collide)
 {
 	const cau_surface_parts *vertices = &collide->surface.vertices;
-	for (int32_t k = 0; k < vertices->count; k++)
-		collide->room_m[vertices->item[k]] = cau_collide_room(collide, vertices->item[k]);
+	for (int32_t k = 0; k < vertices->count; k++) {
+		int32_t v = vertices->item[k];
+		collide->room_m[v] = fmin(cau_collide_room(collide, v), just * collide->reach_m[v]);
+	}
 }
 
 // Moves back what comes too near, after which steps may be as long as their room. Returns whether
