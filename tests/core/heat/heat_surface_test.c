@@ -183,8 +183,8 @@ static double difference(const cau_tool_def *tool, const cau_heat_grid *a, const
 static void test_a_moving_ball(void **state)
 {
 	(void)state;
-	static const double speeds_m_s[] = {20e-3, 5e-3, 10e-3, 50e-3};
-	size_t speeds = CAU_TEST_SANITIZED ? 1 : sizeof speeds_m_s / sizeof *speeds_m_s;
+	static const double speeds_m_s[] = {5e-3, 10e-3, 20e-3, 50e-3};
+	const size_t speeds = sizeof speeds_m_s / sizeof *speeds_m_s;
 	for (size_t k = 0; k < speeds; k++) {
 		cau_tool_def tool = ball_of(RADIUS_M / 6, 32), finer = ball_of(RADIUS_M / 12, 64);
 		cau_heat_grid reference = after_a_way(&finer, speeds_m_s[k], 8);
