@@ -66,7 +66,7 @@ static bool is_held(const pressing *p, const kind *k)
 	bool whole = stage_frame(session).statistics.contacts_left_out == 0;
 	bool pushed = most >= 0.99 * tool->definition.force_max_n;
 	bool right = most > 0 && tool->slips == 0;
-	bool stands = !whole || deep <= most_penetration_m(p);
+	bool stands = deep <= most_penetration_m(p);
 	print_message("%-18s %-7s %g mm, %4.2f m/s: %s, %6.3f N, %.3f mm deep%s%s\n", k->what,
 	              tissues[p->tissue], 1e3 * p->cell_m, p->speed_m_s, crossed ? "CROSSED" : "held",
 	              most, 1e3 * deep, whole ? "" : ", points left out", stands ? "" : ": TOO DEEP");
