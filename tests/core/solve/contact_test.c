@@ -135,6 +135,16 @@ static void test_pressed_without_and_with_friction(void **state)
 	}
 }
 
+// What is kept of each column says the same as S.
+static void assert_columns_are_whole(const pressed *p)
+{
+	for (int32_t i = 0; i < p->set->column_count; i++)
+		for (int32_t k = 0; k < p->set->column_count; k++)
+			assert_near(
+				p->r.solver.kernels->vectors->at(p->set->column[i], p->set->column_vertex[k]),
+				p->set->inverse[i * CAU_MAX_COLUMNS + k], 1e-12);
+}
+
 // More rows than there are whole columns, then few again: the same law holds.
 static void test_rows_beyond_whole_columns(void **state)
 {
@@ -158,6 +168,8 @@ static void test_rows_beyond_whole_columns(void **state)
 		assert_true(cau_contact_is_wide(p.set) == !round);
 		solve(&p);
 		assert_true(p.set->column_count <= CAU_WHOLE_COLUMNS || !round);
+		if (round)
+			assert_columns_are_whole(&p);
 		assert_balance(&p);
 		for (int32_t v = 0; v < p.r.tissue.vertex_count; v++)
 			assert_true(gap_of(&p, v, NULL) > -GAP_TOLERANCE_M);
