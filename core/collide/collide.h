@@ -15,9 +15,9 @@
 // the plane, and stopped where that is not enough.
 //
 // Pairs are known (find.c) for all places where no vertex is farther than its `reach_m` from its
-// `anchor`, from tick to tick; where a place beyond is asked for, they are looked
-// for again. Which pairs touch, and in what order their forces are added up, does not depend on
-// that, so no snapshot has any of it.
+// `anchor`, from tick to tick; where a place beyond is asked for, they are looked for again. Which
+// pairs touch, and in what order their forces are added up, does not depend on that, so no snapshot
+// has any of it.
 #pragma once
 
 #include "base/pool.h"

@@ -58,15 +58,25 @@ static void measure(const cau_collide *collide, int32_t index, const double *x)
 	memcpy(pair->weight, gap.weight, sizeof pair->weight);
 }
 
+static int32_t share_count(const cau_collide *collide)
+{
+	return (collide->pair_count + SHARE - 1) / SHARE;
+}
+
+// The place behind a share's last pair.
+static int32_t end_of(const cau_collide *collide, int32_t share)
+{
+	CAU_ASSERT_INDEX(share, share_count(collide));
+	int32_t end = (share + 1) * SHARE;
+	return end < collide->pair_count ? end : collide->pair_count;
+}
+
 static void measure_part(void *context, int32_t share)
 {
 	const measuring *work = context;
 	cau_collide *collide = work->collide;
-	int32_t first = share * SHARE, last = first + SHARE;
-	CAU_ASSERT(first < collide->pair_count, "share %d of %d pairs", share, collide->pair_count);
-	if (last > collide->pair_count)
-		last = collide->pair_count;
-	for (int32_t i = first; i < last; i++)
+	int32_t end = end_of(collide, share);
+	for (int32_t i = share * SHARE; i < end; i++)
 		measure(collide, i, work->x);
 }
 
@@ -151,11 +161,8 @@ static void see_part(void *context, int32_t share)
 {
 	const measuring *work = context;
 	cau_collide *collide = work->collide;
-	int32_t first = share * SHARE, last = first + SHARE;
-	CAU_ASSERT(first < collide->pair_count, "share %d of %d pairs", share, collide->pair_count);
-	if (last > collide->pair_count)
-		last = collide->pair_count;
-	for (int32_t i = first; i < last; i++) {
+	int32_t end = end_of(collide, share);
+	for (int32_t i = share * SHARE; i < end; i++) {
 		cau_collide_pair *pair = &collide->pair[i];
 		cau_vec3 corner[4];
 		cau_collide_corners(pair, work->x, corner);
@@ -173,7 +180,7 @@ void cau_collide_see(cau_collide *collide, cau_pool *pool, const double *x)
 	measuring work = {collide, x};
 	memcpy(collide->seen, x, 3 * (size_t)collide->tissue->vertex_count * sizeof *x);
 	collide->away_m = 0;
-	cau_pool_run(pool, (collide->pair_count + SHARE - 1) / SHARE, see_part, &work);
+	cau_pool_run(pool, share_count(collide), see_part, &work);
 }
 
 double cau_collide_away(const cau_collide *collide, const double *x)
@@ -202,7 +209,7 @@ double cau_collide_evaluate(cau_collide *collide, cau_pool *pool, const double *
 		collide->away_m = cau_collide_away(collide, x);
 	}
 	measuring work = {collide, x};
-	cau_pool_run(pool, (collide->pair_count + SHARE - 1) / SHARE, measure_part, &work);
+	cau_pool_run(pool, share_count(collide), measure_part, &work);
 	unload(collide);
 	add_pairs(collide, x);
 	double energy = collide->energy_j;

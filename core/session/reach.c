@@ -24,7 +24,7 @@ static const double dip_share =
 	0.3; // likewise: a face that is deeper is a row from the next step on
 static const double beside_m = 2e-5; // of the tip beside a row: no other is needed there
 static const double margin_m = 2e-3; // a face that was pushed and is further away is let go of
-enum { CANDIDATES = 1024, STEPS_ON_WAY = 64 };
+enum { CANDIDATES = 4 * CAU_MAX_POINT_ROWS, STEPS_ON_WAY = 64 };
 
 typedef struct cau_candidate {
 	cau_contact_row row;

@@ -6,10 +6,10 @@
 #include "session/session_internal.h"
 
 enum {
-	// with columns of A^-1 of which only S is kept; 6, without, 5, without nested heat fields,
-	// tears, what materials bear, what tools' forces have taught and the
-	// poses that tools are asked to take, 4, without the sides of faces too, 3, without
-	// rest and accuracy, and 1, elements by slot, are still read
+	// 7 has columns of A^-1 of which only S is kept. Still read are 6, without these; 5, without
+	// nested heat fields, tears, what materials bear, what tools' forces have taught and the poses
+	// that tools are asked to take; 4, without the sides of faces; 3, without rest and accuracy; 1,
+	// elements by slot.
 	CAU_SNAPSHOT_VERSION = 7,
 	CAU_SNAPSHOT_WIDE = 7,     // the first with columns of S alone
 	CAU_SNAPSHOT_NESTED = 6,   // the first with nested heat fields

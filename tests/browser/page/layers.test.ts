@@ -4,7 +4,8 @@
 // show it as latency that grows with the stream. Then the cut itself is looked at; README.md shows it.
 import type { CDPSession } from 'playwright-core';
 
-import { record, Replay, type Command, type Recording } from './replay';
+import { record, type Command, type Recording } from './recording';
+import { Replay } from './replay';
 import { Stage } from './stage';
 import { ViewerPage } from './viewer_page';
 

@@ -13,6 +13,7 @@
 
 #include "cautery/defaults.h"
 #include "log/log.h"
+#include "server/hub/small_creation.h"
 
 enum { CREATED, WAITING, ANSWERS };
 
@@ -118,19 +119,8 @@ static cau_reply reply_to(int asked, cau_method method)
 
 static cau_hosted *make_session(void)
 {
-	cau_creation *creation = calloc(1, sizeof *creation);
-	cau_scene_def *scene = creation->scene = calloc(1, sizeof *scene);
-	cau_default_scene_def(scene);
-	snprintf(scene->name, sizeof scene->name, "ending");
-	scene->layer_count = scene->tool_count = 1;
-	cau_default_layer_def(&scene->layers[0], CAU_LAYER_FASCIA);
-	snprintf(scene->layers[0].name, sizeof scene->layers[0].name, "sheet");
-	cau_default_tool_def(&scene->tools[0], CAU_TOOL_HOOK);
-	snprintf(scene->tools[0].name, sizeof scene->tools[0].name, "hook");
-	snprintf(creation->name, sizeof creation->name, "ending");
-	creation->paused = true;
-	creation->reply = reply_to(CREATED, CAU_METHOD_SESSION_CREATE);
-	cau_hub_submit_creation(t.hub, creation);
+	cau_reply reply = reply_to(CREATED, CAU_METHOD_SESSION_CREATE);
+	cau_hub_submit_creation(t.hub, small_creation("ending", reply));
 	assert_int_equal(await(CREATED)->status, CAU_OK);
 	cau_hosted *hosted = cau_hub_find_number(t.hub, 1);
 	assert_non_null(hosted);

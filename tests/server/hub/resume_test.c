@@ -12,9 +12,9 @@
 
 #include <cmocka.h>
 
-#include "cautery/defaults.h"
 #include "log/log.h"
 #include "server/double/fake_session.h"
+#include "server/hub/small_creation.h"
 
 static struct {
 	char folder[40], file[64];
@@ -143,19 +143,8 @@ static int tear_down(void **state)
 
 static void ask_for(const char *name)
 {
-	cau_creation *creation = calloc(1, sizeof *creation);
-	cau_scene_def *scene = creation->scene = calloc(1, sizeof *scene);
-	cau_default_scene_def(scene);
-	snprintf(scene->name, sizeof scene->name, "sheet");
-	scene->layer_count = scene->tool_count = 1;
-	cau_default_layer_def(&scene->layers[0], CAU_LAYER_FASCIA);
-	snprintf(scene->layers[0].name, sizeof scene->layers[0].name, "sheet");
-	cau_default_tool_def(&scene->tools[0], CAU_TOOL_HOOK);
-	snprintf(scene->tools[0].name, sizeof scene->tools[0].name, "hook");
-	snprintf(creation->name, sizeof creation->name, "%s", name);
-	creation->paused = true;
-	creation->reply = (cau_reply){.answer = see_made, .method = CAU_METHOD_SESSION_CREATE};
-	cau_hub_submit_creation(t.hub, creation);
+	cau_reply reply = {.answer = see_made, .method = CAU_METHOD_SESSION_CREATE};
+	cau_hub_submit_creation(t.hub, small_creation(name, reply));
 }
 
 // ---- the tests
