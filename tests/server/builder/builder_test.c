@@ -19,13 +19,13 @@ typedef struct board {
 	pthread_cond_t changed;
 	char order[16]; // names of the jobs that ran
 	int dropped, nice;
-	bool open; // the gate that held jobs wait at
+	int open; // gates that held jobs wait at
 } board;
 
 typedef struct named {
 	cau_job job; // first
 	char name;
-	bool held; // runs until the gate is open
+	int held; // runs until so many gates are open
 	board *board;
 } named;
 
@@ -37,7 +37,7 @@ static void run(cau_job *job)
 	b->order[strlen(b->order)] = n->name;
 	b->nice = getpriority(PRIO_PROCESS, (id_t)gettid());
 	pthread_cond_broadcast(&b->changed);
-	while (n->held && !b->open)
+	while (n->held > b->open)
 		pthread_cond_wait(&b->changed, &b->mutex);
 	pthread_mutex_unlock(&b->mutex);
 }
@@ -54,7 +54,7 @@ static void set_up(board *b)
 	pthread_cond_init(&b->changed, NULL);
 }
 
-static named make(board *b, char name, double expected_s, bool held)
+static named make(board *b, char name, double expected_s, int held)
 {
 	return (named){.job = {.run = run, .drop = drop, .expected_s = expected_s},
 	               .name = name,
@@ -73,7 +73,7 @@ static void await(board *b, size_t count)
 static void open_gate(board *b)
 {
 	pthread_mutex_lock(&b->mutex);
-	b->open = true;
+	b->open++;
 	pthread_cond_broadcast(&b->changed);
 	pthread_mutex_unlock(&b->mutex);
 }
@@ -85,8 +85,8 @@ static void waiting_jobs_go_by_length(void **state)
 	cau_builder *builder;
 	set_up(&b);
 	assert_int_equal(cau_builder_create(&builder, "cautery-build", 1, NICE, NULL), CAU_OK);
-	named giant = make(&b, 'g', 60, true), first = make(&b, 'f', 0.1, true);
-	named slow = make(&b, 's', 0.4, false), quick = make(&b, 'q', 0.01, false);
+	named giant = make(&b, 'g', 60, 2), first = make(&b, 'f', 0.1, 1);
+	named slow = make(&b, 's', 0.4, 0), quick = make(&b, 'q', 0.01, 0);
 	cau_builder_submit(builder, &giant.job);
 	await(&b, 1);
 	cau_builder_submit(builder, &first.job);
@@ -95,8 +95,9 @@ static void waiting_jobs_go_by_length(void **state)
 	cau_builder_submit(builder, &quick.job);
 	assert_int_equal(cau_builder_busy(builder), 4);
 	open_gate(&b);
-	await(&b, 4);
+	await(&b, 4); // one after the other: the giant goes on
 	assert_string_equal(b.order, "gfqs");
+	open_gate(&b);
 	assert_int_equal(b.nice, NICE);
 	cau_builder_stop(builder);
 	cau_builder_destroy(builder);
@@ -109,7 +110,7 @@ static void a_short_job_does_not_stand_behind_a_long_one(void **state)
 	cau_builder *builder;
 	set_up(&b);
 	assert_int_equal(cau_builder_create(&builder, "cautery-build", 1, NICE, NULL), CAU_OK);
-	named giant = make(&b, 'g', 60, true), small = make(&b, 's', 0.05, false);
+	named giant = make(&b, 'g', 60, 1), small = make(&b, 's', 0.05, 0);
 	cau_builder_submit(builder, &giant.job);
 	await(&b, 1);
 	cau_builder_submit(builder, &small.job);
@@ -129,11 +130,11 @@ static void long_jobs_run_beside_each_other(void **state)
 	assert_int_equal(cau_builder_create(&builder, "cautery-build", 3, NICE, NULL), CAU_OK);
 	named giant[4];
 	for (int i = 0; i < 4; i++) {
-		giant[i] = make(&b, (char)('a' + i), 60 + i, true);
+		giant[i] = make(&b, (char)('a' + i), 60 + i, 1);
 		cau_builder_submit(builder, &giant[i].job);
 	}
 	await(&b, 3);
-	named small = make(&b, 's', 0.05, false);
+	named small = make(&b, 's', 0.05, 0);
 	cau_builder_submit(builder, &small.job);
 	await(&b, 4); // the thread of short jobs is free, though a long one waits
 	assert_int_equal(b.order[3], 's');
@@ -153,7 +154,7 @@ static void idle_threads_of_long_jobs_take_short_ones(void **state)
 	assert_int_equal(cau_builder_create(&builder, "cautery-build", 2, NICE, NULL), CAU_OK);
 	named job[3];
 	for (int i = 0; i < 3; i++) {
-		job[i] = make(&b, (char)('a' + i), 0.1, true);
+		job[i] = make(&b, (char)('a' + i), 0.1, 1);
 		cau_builder_submit(builder, &job[i].job);
 	}
 	await(&b, 3); // all at once
@@ -170,7 +171,7 @@ static void what_waits_at_the_end_is_dropped(void **state)
 	set_up(&b);
 	assert_int_equal(cau_builder_create(&builder, "cautery-build", 1, NICE, NULL), CAU_OK);
 	cau_builder_stop(builder);
-	named late = make(&b, 'l', 0.1, false);
+	named late = make(&b, 'l', 0.1, 0);
 	cau_builder_submit(builder, &late.job);
 	assert_int_equal(b.dropped, 1);
 	assert_string_equal(b.order, "");
