@@ -43,6 +43,30 @@ HELD = (
     ("`layers` and scenes of mesh files part by elements, the paper's by edges", "as said",
      (("tests/core/session/cut_by_mesh_test.c", "scenes_have_their_rule"),
       ("tests/server/sim/mesh_scene_test.c", "a_scene_is_made_around_the_mesh"), (QUICK, "parting."))),
+    ("a ball's force against the solution of the same mesh, and that against the stored references", "1 % and 1e-5",
+     (("tests/core/session/force_test.c", "it_is_the_solution_of_the_same_mesh"),
+      ("tests/reference/indented_test.c", "it_is_the_finite_element_packages"), (QUICK, "contact.off_the_solution"))),
+    ("the same over meshes from four cells a patch on, and on the finest against Hertz; finer ones in `core_session_force_long`", "10 %",
+     (("tests/core/session/force_test.c", "it_hardly_depends_on_the_mesh_and_is_hertzs"),
+      ("tests/core/session/force_test.c", "nor_on_finer_meshes"), (QUICK, "contact.over_meshes"), (QUICK, "contact.off_hertz"))),
+    ("the same as a ball slides over cells", "3 % at four cells a patch; a sixth at two, where a tenth is asked",
+     (("tests/core/session/force_test.c", "sliding_over_four_cells_it_hardly_changes"),
+      ("tests/core/session/force_test.c", "over_two_cells_it_changes_by_a_sixth_where_a_tenth_is_asked"), (QUICK, "contact.sliding."))),
+    ("vertices inside a ball that is drawn at 2 cm/s; at rest", "0.02 mm; 0.001 mm",
+     (("tests/core/session/touch_test.c", "nothing_is_inside_a_cold_tool"), (QUICK, "contact.vertices_inside"))),
+    ("faces inside a ball at rest, where 0.1 mm is asked", "a quarter of a cell or 0.3 of the radius, the lesser; 0.1 mm at least",
+     (("tests/core/session/proxy_matrix_test.c", "nothing_crosses"), (QUICK, "contact.faces_inside"))),
+    ("no tool crosses: a tenth of the presses in each run, all 224 in `core_session_proxy_matrix_all` (long)", "none",
+     (("tests/core/session/proxy_matrix_test.c", "nothing_crosses"), ("tests/core/session/crossing_test.c", "nothing_crosses"),
+      ("tests/core/session/crossing_test.c", "what_a_tick_takes_past_a_face_is_held_too"), (QUICK, "contact.crossed"))),
+    ("what cannot yield stops a tool, which pushes with `force_max_n` at most", "as said",
+     (("tests/core/session/proxy_test.c", "tissue_that_cannot_yield_stops_it"),
+      ("tests/core/session/proxy_test.c", "it_pushes_with_what_it_has"))),
+    ("tissue against tissue crosses nowhere; 10,000 motions of tools in `core_session_self_contact_long`", "none, no energy gained",
+     (("tests/core/session/self_contact_test.c", "lips_that_are_pushed_together_never_cross"),
+      ("tests/core/session/self_contact_test.c", "a_flap_that_is_laid_back_stays"),
+      ("tests/core/session/self_contact_test.c", "a_hanging_sheet_folds_and_never_crosses"),
+      ("tests/core/session/self_contact_test.c", "many_motions_of_tools"))),
     ("VTU has temperature, exposure, stress, tools", "their values",
      (("tests/server/sim/vtu_writer_test.c", "files_tell_scalars_and_tools"),)),
     ("CSV has energies, forces, stage times", "their values",
@@ -66,7 +90,8 @@ def table():
 
 What a change may not make worse without a test that fails. Names without a file are figures of `expected.json`, or
 the beginning of some, which the test `paper_quick` holds. Not held: how far free sheets are off by the scenes' own steps (the
-tables above tell it), times, and strain beyond a limit at the loads that `paper_quick` does not hang.
+tables above tell it), times, what a drawn tool costs among them, and strain beyond a limit at the loads that `paper_quick` does
+not hang.
 
 | what | to | by |
 |---|---|---|

@@ -6,11 +6,12 @@ import subprocess
 
 
 def plot(path, title, x_label, y_label, series, logscale="", extra=()):
-    """Lines of [(label, [(x, y)])] as an SVG; `logscale` of gnuplot's axes, `extra` lines of its own language."""
+    """Lines of [(label, [(x, y)])] as an SVG, or of [(label, [(x, y)], gnuplot's style)]; `logscale` of gnuplot's axes,
+    `extra` lines of its own language."""
     blocks, clauses = [], []
-    for index, (label, points) in enumerate(series):
+    for index, (label, points, *own) in enumerate(series):
         blocks.append(f"$d{index} << END\n" + "\n".join(f"{x} {y}" for x, y in points) + "\nEND")
-        style = "linespoints" if len(points) < 50 else "lines"
+        style = own[0] if own else "linespoints" if len(points) < 50 else "lines"
         clauses.append(f'$d{index} with {style} linewidth 2 title "{label}"')
     script = "\n".join([
         'set terminal svg size 720,440 font "sans-serif,13" background "white"',

@@ -24,6 +24,7 @@ import traceback
 
 sys.path.insert(0, os.path.dirname(os.path.abspath(__file__)))
 import conservation  # noqa: E402
+import contact  # noqa: E402
 import costs  # noqa: E402
 import cuts  # noqa: E402
 import dissection  # noqa: E402
@@ -43,8 +44,8 @@ from sim import FOLDER, ROOT, Sim  # noqa: E402
 
 PAPER = {"strain_limits": strain_limits, "patterns": patterns, "parting": parting, "shrinkage": shrinkage,
          "dissection": dissection, "viewer": viewer, "ignition": ignition, "remeshing": remeshing, "costs": costs}
-VALIDATION = {"elements": elements, "heat": heat, "conservation": conservation, "loads": loads, "errors": errors,
-              "cuts": cuts}
+VALIDATION = {"elements": elements, "heat": heat, "conservation": conservation, "loads": loads, "contact": contact,
+              "errors": errors, "cuts": cuts}
 PARTS = PAPER | VALIDATION
 NOT_QUICK = {"viewer"}  # the browser's own tests hold the viewer; what is cut in its pictures, figure 7's figures
 

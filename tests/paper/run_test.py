@@ -8,6 +8,7 @@ import tempfile
 import unittest
 
 sys.path.insert(0, os.path.dirname(os.path.abspath(__file__)))
+import contact  # noqa: E402
 import cuts  # noqa: E402
 import dissection  # noqa: E402
 import elements  # noqa: E402
@@ -89,6 +90,39 @@ class Validation(unittest.TestCase):
         line = ("[ RUN ] x\ntwist_stvk_nu30                  displacement 3.2e-09, force 1.8e-08 of the same mesh's; mesh "
                 "against a converged one +36.1 %; 0.4 s\n")
         self.assertEqual(elements.LINE.findall(line), [("twist_stvk_nu30", "3.2e-09", "1.8e-08", "+36.1")])
+
+    def test_the_matrix_of_presses_is_read_whole_or_not_at_all(self):
+        lines = ("[ RUN      ] nothing_crosses\n"
+                 "ball of 0.25 mm    sheet   4 mm, 1.50 m/s: held,  0.049 N, 0.000 mm deep\n"
+                 "hook of 1.5 mm     slab    2 mm, 0.10 m/s: CROSSED, 12.345 N, 0.671 mm deep, points left out: TOO DEEP\n")
+        presses, failed = contact.read_matrix(lines + "2 of 192 presses, 1 failed\n")
+        self.assertEqual(presses, [("ball of 0.25 mm", "sheet", 4, False, 0), ("hook of 1.5 mm", "slab", 2, True, 0.671)])
+        self.assertEqual(failed, 1)
+        for cut_short in (lines, lines + "3 of 192 presses, 1 failed\n", "0 of 192 presses, 0 failed\n"):
+            with self.assertRaises(ValueError):
+                contact.read_matrix(cut_short)
+
+    def test_what_is_said_of_contact_says_so_where_it_is_not_as_asked(self):
+        self.assertEqual(contact.judged(0.05, 0.1), "5.0%, within the 10% that is asked")
+        self.assertEqual(contact.judged(0.11, 0.1), "11.0%, above the 10% that is asked")
+        still, moved = ([{"force_n": force, "solved_n": force} for force in forces] for forces in ((1, 1), (1, 1.5)))
+        self.assertEqual(contact.slides_said({2: still, 4: still}), "All are as asked.")
+        self.assertEqual(contact.slides_said({2: moved, 4: still}),
+                         "At 2 cells a patch it is not as asked: the solution of such a mesh changes by 40.0%.")
+        case = contact.COSTS[0]
+        self.assertIn("0.60 ms, within", contact.cost_said({case: {"in_ms": 1.596, "away_ms": 1}}))
+        self.assertIn("0.70 ms, above", contact.cost_said({case: {"in_ms": 1.7, "away_ms": 1}}))
+        held, crossed = (("ball of 1 mm", "sheet", 4, through, 0.2) for through in (False, True))
+        self.assertIn("**none** crossed. Of 1 balls 1", contact.crossing_said([held], 0))
+        self.assertIn("**1** crossed, and 1 failed", contact.crossing_said([held, crossed], 1))
+        press = {"vertex_depth_m": 0, "face_depth_m": 9e-5, "left_out": 0}
+        ball = contact.BALLS[0]
+        said = contact.rest_said({(ball, 2): [press]}).replace("\n", " ")
+        self.assertIn("No face is deeper than that either; the deepest is 0.09 mm", said)
+        deep = press | {"face_depth_m": 2e-4, "left_out": 3}
+        said = contact.rest_said({(ball, 2): [press], (ball, 4): [deep]}).replace("\n", " ")
+        self.assertIn("in 1 of 2", said)
+        self.assertIn("At 1 of 2 places something touched that found no row", said)
 
     def test_the_closed_form_is_hot_at_the_ball_and_comes_to_r_over_r(self):
         self.assertEqual(heat.exact_c(heat.BALL_M, 1), heat.HOT_C)

@@ -32,10 +32,11 @@ def at_once(jobs):
         return [future.result() for future in [pool.submit(job) for job in jobs]]
 
 
-def printed(sim, program, *arguments):
-    """What a program of the tests prints."""
+def printed(sim, program, *arguments, check=True, environment=None):
+    """What a program of the tests prints; with `check` it must succeed."""
     command = [os.path.join(os.path.dirname(os.path.dirname(sim.program)), "tests", program), *arguments]
-    return subprocess.run(command, stdout=subprocess.PIPE, stderr=subprocess.STDOUT, text=True, check=True).stdout
+    return subprocess.run(command, stdout=subprocess.PIPE, stderr=subprocess.STDOUT, text=True, check=check,
+                          env=os.environ | (environment or {})).stdout
 
 
 def table(sim, program, *arguments):

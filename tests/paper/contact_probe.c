@@ -1,0 +1,148 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Prints what the validation page tells of tools that touch tissue, as CSV:
+//
+//     paper_contact_probe press RADIUS_MM CELL_MM POISSON HALF_MM PLACES SOLVED DEPTH_MM...
+//                         a ball pressed into a slab, a line a depth and place: PLACES along one
+//                         cell, the first off the mesh's lines; SOLVED 1: the force of the same
+//                         mesh's own solution beside the session's
+//     paper_contact_probe cost RADIUS_MM DEPTH_MM SPEED_MM_S TICKS
+//                         a step of `fat` with a ball that is drawn through it and with one that
+//                         hangs above it, by turns
+#include <stdio.h>
+#include <time.h>
+
+#include "core/session/indent.h"
+
+// ---- press
+static const double thick_m = 16e-3;
+static const double even = 1.6; // cells are equal as far as so many radii of the deepest patch
+
+static double vertex_depth_m(const indent_stand *stand)
+{
+	const double *position = stage_frame(stand->session).position;
+	cau_vec3 middle = cau_vec3_of(stage_tool(stand->session, "ball")->pose.position_m);
+	double nearest = stand->of.radius_m;
+	for (int32_t i = 0; i < stand->body.surface_count; i++) {
+		cau_vec3 corner = cau_vec3_of(position + 3 * (size_t)stand->face[i]);
+		nearest = fmin(nearest, cau_length(cau_sub(corner, middle)));
+	}
+	return stand->of.radius_m - nearest;
+}
+
+static void print_press(indent_stand *stand, double share, bool solved)
+{
+	const indent *of = &stand->of;
+	double x = (0.27 + share) * of->cell_m, y = (0.31 + 0.6 * share) * of->cell_m;
+	double force_n = indent_press(stand, x, y, of->depth_m);
+	const cau_tool_state *ball = stage_tool(stand->session, "ball");
+	double depth_m = of->radius_m - ball->pose.position_m[2]; // it yields a little
+	double hertz_n = cau_indented_by_hertz(indent_young_modulus_pa, of->poisson_ratio, of->radius_m,
+	                                       depth_m, of->thick_m);
+	printf("%.9g,%.9g,%.9g,%.9g,%.9g,%.9g,%.9g,%.9g,%d\n", depth_m, share, indent_cells(of),
+	       force_n, solved ? indent_solve(stand, false).force_n[2] : NAN, hertz_n,
+	       vertex_depth_m(stand), indent_face_depth_m(stand),
+	       (int)stage_frame(stand->session).statistics.contacts_left_out);
+}
+
+// `text`: RADIUS_MM and what follows it.
+static void press(int count, char **text)
+{
+	double radius_m = 1e-3 * strtod(text[0], NULL), cell_m = 1e-3 * strtod(text[1], NULL);
+	double deepest_m = 1e-3 * strtod(text[count - 1], NULL);
+	indent of = {.radius_m = radius_m,
+	             .depth_m = deepest_m,
+	             .cell_m = cell_m,
+	             .even_m = even * sqrt(radius_m * deepest_m),
+	             .thick_m = thick_m,
+	             .half_m = 1e-3 * strtod(text[3], NULL),
+	             .poisson_ratio = strtod(text[2], NULL)};
+	int places = atoi(text[4]);
+	indent_stand *stand = indent_open(&of);
+	printf("depth_m,share,cells,force_n,solved_n,hertz_n,vertex_depth_m,face_depth_m,left_out\n");
+	for (int k = 6; k < count; k++) {
+		stand->of.depth_m = 1e-3 * strtod(text[k], NULL);
+		for (int place = 0; place < places; place++)
+			print_press(stand, (double)place / places, atoi(text[5]) > 0);
+	}
+	indent_close(stand);
+}
+
+// ---- cost
+static const double run_m = 0.03;     // to and fro, this far to either side of the middle
+static const double aside_m = 0.6e-3; // off the mesh's lines
+static const double away_m = 0.05;    // of what hangs above
+static const double tick_s = 1.0 / 60;
+enum { WARM_UP_TICKS = 60, STEP_ITERATIONS = 10 };
+
+static double processor_s(void)
+{
+	struct timespec now;
+	clock_gettime(CLOCK_PROCESS_CPUTIME_ID, &now);
+	return (double)now.tv_sec + 1e-9 * (double)now.tv_nsec;
+}
+
+static cau_session *open_fat(double radius_m)
+{
+	cau_scene_def *scene = stage_scene_named("fat");
+	scene->iterations = STEP_ITERATIONS;
+	scene->accuracy = 0; // as many in each step
+	cau_tool_def *ball = &scene->tools[0];
+	ball->hot_radius_m = radius_m;
+	ball->tip_length_m = fmax(ball->tip_length_m, 2 * radius_m);
+	ball->shaft_radius_m = fmin(radius_m, ball->shaft_radius_m);
+	ball->max_speed_m_s = 2;
+	ball->pose.position_m[0] = 0;
+	cau_session *session = stage_open(scene, 1);
+	free(scene);
+	return session;
+}
+
+// There and back again, from the middle on.
+static double along_m(int tick, double speed_m_s)
+{
+	double way = fmod(tick * tick_s * speed_m_s + run_m, 4 * run_m);
+	return way < 2 * run_m ? way - run_m : 3 * run_m - way;
+}
+
+// Returns the processor's time (s) of one step.
+static double step_s(cau_session *session, double x_m, double z_m)
+{
+	stage_move(session, "ball", x_m, aside_m, z_m);
+	double start = processor_s();
+	stage_step(session, 1);
+	return processor_s() - start;
+}
+
+static void cost(double radius_m, double depth_m, double speed_m_s, int ticks)
+{
+	cau_session *in = open_fat(radius_m), *away = open_fat(radius_m);
+	double in_s = 0, away_s = 0;
+	int points = 0;
+	for (int tick = -WARM_UP_TICKS; tick < ticks; tick++) {
+		double x = along_m(tick + WARM_UP_TICKS, speed_m_s);
+		double of_in = step_s(in, x, radius_m - depth_m), of_away = step_s(away, x, away_m);
+		in_s += tick < 0 ? 0 : of_in;
+		away_s += tick < 0 ? 0 : of_away;
+		points += tick < 0 ? 0 : stage_tool(in, "ball")->contact_vertices;
+	}
+	printf("in_ms,away_ms,points\n%.9g,%.9g,%.9g\n", 1e3 * in_s / ticks, 1e3 * away_s / ticks,
+	       (double)points / ticks);
+	cau_session_destroy(in);
+	cau_session_destroy(away);
+}
+
+int main(int argc, char **argv)
+{
+	if (argc >= 9 && !strcmp(argv[1], "press"))
+		press(argc - 2, argv + 2);
+	else if (argc == 6 && !strcmp(argv[1], "cost"))
+		cost(1e-3 * strtod(argv[2], NULL), 1e-3 * strtod(argv[3], NULL),
+		     1e-3 * strtod(argv[4], NULL), atoi(argv[5]));
+	else {
+		fprintf(stderr,
+		        "usage: paper_contact_probe press RADIUS_MM CELL_MM POISSON HALF_MM PLACES SOLVED "
+		        "DEPTH_MM... | cost RADIUS_MM DEPTH_MM SPEED_MM_S TICKS\n");
+		return 2;
+	}
+	return 0;
+}
