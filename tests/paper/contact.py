@@ -31,13 +31,14 @@ class Ball:
 BALLS = (Ball(1.5, 8, (0.1, 0.2, 0.4, 0.8), 0.4), Ball(6.5, 24, (0.25, 0.5, 1, 2), 1), Ball(13, 26, (0.25, 0.5, 1, 2), 1),
          Ball(40, 40, (0.25, 0.5, 1, 2), 1))
 SLIDING = BALLS[1]
-SOLVED_CELLS = 5  # a patch, at the usual depth, where Newton's method solves the same mesh
+SOLVED_CELLS = 4.5  # a patch, at the usual depth, where Newton's method solves the same mesh
 MESHES, QUICK_MESHES = (2, 3, 4, 6, 8), (4, 6)
 ENOUGH_CELLS = 4  # from which on meshes are asked to agree
 SLIDES, QUICK_SLIDES = {2: 0.1, 4: 0.03, 6: 0.03}, (2, 4)  # cells a patch: the change that is asked for at most
 SOLVED_SLIDES = (2, 4)
 PLACES, SLIDING_PLACES = 4, 8  # along a cell
 REST_CELLS_MM, REST_DEPTH_MM, REST_HALF_MM = (4, 2, 1), 2, 20
+NARROW_HALF_MM, NARROW_CELL_MM = 8, 4  # a slab of few cells, in which the smallest ball rests on faces alone
 MOST_ACROSS = 15  # cells a patch: more vertices of a finer mesh would touch than have rows
 # Radius, depth (mm), speed (mm/s), and what is asked of the first.
 COSTS, ASKED_MS, COST_TICKS = ((3, 2, 50), (6.5, 3, 50), (3, 2, 200)), 0.6, 200
@@ -60,6 +61,10 @@ def slid(sim, cells, solved):
 
 def rested(sim, ball, cell):
     return pressed(sim, ball, cell, (REST_DEPTH_MM,), PLACES, half=max(ball.half, REST_HALF_MM))
+
+
+def narrow(sim):
+    return pressed(sim, BALLS[0], NARROW_CELL_MM, (REST_DEPTH_MM,), PLACES, half=NARROW_HALF_MM)
 
 
 def drawn(sim, case):
@@ -88,6 +93,8 @@ def jobs_of(sim, quick):
     """{what: how it is made}, those that take longest first."""
     balls = BALLS[1:2] if quick else BALLS
     jobs = {"matrix": lambda: matrix(sim, QUICK_EVERY if quick else EVERY)}
+    if not quick:
+        jobs["narrow"] = lambda: narrow(sim)
     for ball in balls:
         depths = (ball.usual,) if quick else ball.depths
         jobs["depths", ball] = lambda ball=ball, depths=depths: pressed(sim, ball, ball.cell(SOLVED_CELLS), depths, solved=True)
@@ -129,6 +136,11 @@ def over_meshes(meshes, ball):
     values = [row["force_n"] / row["hertz_n"] for (of, cells), rows in meshes.items() if of == ball and cells >= ENOUGH_CELLS
               for row in rows]
     return max(values) / min(values) - 1
+
+
+def wobble(rows):
+    """How much the force changes while a ball rests, from least to most, of the mean of both, at the worst of its places."""
+    return max((row["most_n"] - row["least_n"]) / max(abs(row["most_n"] + row["least_n"]) / 2, 1e-12) for row in rows)
 
 
 def deepest(rows, what):
@@ -227,7 +239,8 @@ def rest_rows(rest):
         of = [rest.get((ball, cell)) for cell in REST_CELLS_MM]
         vertices = max(deepest(presses, "vertex_depth_m") for presses in of if presses)
         faces = " | ".join(f"{1e3 * deepest(presses, 'face_depth_m'):.2f}" if presses else "-" for presses in of)
-        rows.append(f"| {ball.radius:g} | {1e3 * vertices:.0e} | {faces} |")
+        forces = " | ".join(f"{wobble(presses):.1%}" if presses else "-" for presses in of)
+        rows.append(f"| {ball.radius:g} | {1e3 * vertices:.0e} | {faces} | {forces} |")
     return rows
 
 
@@ -269,12 +282,14 @@ def rest_said(rest):
     faces_said = (f"Faces are deeper than that in {len(above)} of {len(faces)}: a ball stands on vertices, and faces between them dip "
                   "into it" if above else "No face is deeper than that either")
     without = [row["left_out"] > 0 for rows in rest.values() for row in rows]
+    (restless, its_cell), most = max(((key, wobble(rows)) for key, rows in rest.items()), key=lambda item: item[1])
     return paragraph(f"Asked is {INSIDE_MM:g} mm at most. Vertices are inside by {vertices:.0e} mm at most, "
                      f"{'within' if vertices <= INSIDE_MM else 'above'} that.",
                      f"{faces_said}; the deepest is {deep:.2f} mm (ball of {ball.radius:g} mm, cells of {cell:g} mm).",
                      f"At {sum(without)} of {len(without)} places something touched that found no row." if any(without) else
                      "All that touched had its row.",
-                     "A `-` is where more vertices would touch than have rows.")
+                     f"A force changes by {most:.1%} at most though its ball stands still (ball of {restless.radius:g} mm, cells of "
+                     f"{its_cell:g} mm).", "A `-` is where more vertices would touch than have rows.")
 
 
 def cost_said(costs):
@@ -292,6 +307,13 @@ def crossing_said(presses, failed):
                      f"{'.' if failed == 0 else f', and {failed} failed the test that they are of.'}",
                      f"Of {len(balls)} balls {len(above) or 'none'} ended with a face deeper inside than {INSIDE_MM:g} mm; "
                      f"the deepest is {deep:.2f} mm ({tool}, {tissue}, cells of {cell:g} mm).")
+
+
+def narrow_said(rows):
+    through = sum(row["least_n"] <= 0 for row in rows)  # what has let it through does not push it back
+    return paragraph(f"Beyond that matrix: the ball of {BALLS[0].radius:g} mm without friction, {REST_DEPTH_MM} mm deep in a slab "
+                     f"{2 * NARROW_HALF_MM} mm wide of cells of {NARROW_CELL_MM} mm, where it rests on faces, at {len(rows)} places.",
+                     f"**It is let through while it rests at {through} of them.**" if through else "It is held at all of them.")
 
 
 def page(details):
@@ -338,11 +360,12 @@ A ball of {SLIDING.radius:g} mm, {SLIDING.usual:g} mm deep, nu {SLIDING_POISSON:
 
 ![Force along a cell](validation-contact-sliding.svg)
 
-How deep tissue is inside a ball that rests {REST_DEPTH_MM} mm deep in a slab {2 * REST_HALF_MM} mm wide or more, mm: the deepest of {PLACES} places; vertices
-on all meshes, then faces by their cells.
+How deep tissue is inside a ball that rests {REST_DEPTH_MM} mm deep in a slab {2 * REST_HALF_MM} mm wide or more, mm, the deepest within half a second at
+{PLACES} places: vertices on all meshes, then faces by their cells. Last, how much the force changes in that time, from least to most, at
+the worst of the places.
 
-| ball, mm | vertices | {' | '.join(f'faces, {cell} mm' for cell in REST_CELLS_MM)} |
-|---:|---:|{'---:|' * len(REST_CELLS_MM)}
+| ball, mm | vertices | {' | '.join(f'faces, {cell} mm' for cell in REST_CELLS_MM)} | {' | '.join(f'force, {cell} mm' for cell in REST_CELLS_MM)} |
+|---:|---:|{'---:|' * 2 * len(REST_CELLS_MM)}
 {chr(10).join(rest_rows(rest))}
 
 {rest_said(rest)}
@@ -361,4 +384,6 @@ cells of 4, 2 and 1 mm, five radii deep but at most 4 mm: every third press, non
 `core_session_proxy_matrix_all` tries all. Crossed is what has a face above it where it came from.
 
 {crossing_said(*found["matrix"])}
+
+{narrow_said(found["narrow"])}
 """

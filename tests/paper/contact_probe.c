@@ -3,8 +3,9 @@
 //
 //     paper_contact_probe press RADIUS_MM CELL_MM POISSON HALF_MM PLACES SOLVED DEPTH_MM...
 //                         a ball pressed into a slab, a line a depth and place: PLACES along one
-//                         cell, the first off the mesh's lines; SOLVED 1: the force of the same
-//                         mesh's own solution beside the session's
+//                         cell, the first off the mesh's lines; how its force changes within half
+//                         a second of rest, and how deep it is inside meanwhile; SOLVED 1: the
+//                         force of the same mesh's own solution beside the session's
 //     paper_contact_probe cost RADIUS_MM DEPTH_MM SPEED_MM_S TICKS
 //                         a step of `fat` with a ball that is drawn through it and with one that
 //                         hangs above it, by turns
@@ -29,19 +30,40 @@ static double vertex_depth_m(const indent_stand *stand)
 	return stand->of.radius_m - nearest;
 }
 
+// What is seen of a ball that stands where it is.
+typedef struct watched {
+	double least_n, most_n, vertex_depth_m, face_depth_m;
+} watched;
+
+static watched watch(indent_stand *stand)
+{
+	enum { TICKS = 30 };
+	watched seen = {.least_n = INFINITY, .most_n = -INFINITY};
+	for (int tick = 0; tick < TICKS; tick++) {
+		stage_step(stand->session, 1);
+		double force_n = stage_tool(stand->session, "ball")->raw_force_n[2];
+		seen.least_n = fmin(seen.least_n, force_n);
+		seen.most_n = fmax(seen.most_n, force_n);
+		seen.vertex_depth_m = fmax(seen.vertex_depth_m, vertex_depth_m(stand));
+		seen.face_depth_m = fmax(seen.face_depth_m, indent_face_depth_m(stand));
+	}
+	return seen;
+}
+
 static void print_press(indent_stand *stand, double share, bool solved)
 {
 	const indent *of = &stand->of;
 	double x = (0.27 + share) * of->cell_m, y = (0.31 + 0.6 * share) * of->cell_m;
-	double force_n = indent_press(stand, x, y, of->depth_m);
+	indent_press(stand, x, y, of->depth_m);
+	watched seen = watch(stand);
 	const cau_tool_state *ball = stage_tool(stand->session, "ball");
 	double depth_m = of->radius_m - ball->pose.position_m[2]; // it yields a little
 	double hertz_n = cau_indented_by_hertz(indent_young_modulus_pa, of->poisson_ratio, of->radius_m,
 	                                       depth_m, of->thick_m);
-	printf("%.9g,%.9g,%.9g,%.9g,%.9g,%.9g,%.9g,%.9g,%d\n", depth_m, share, indent_cells(of),
-	       force_n, solved ? indent_solve(stand, false).force_n[2] : NAN, hertz_n,
-	       vertex_depth_m(stand), indent_face_depth_m(stand),
-	       (int)stage_frame(stand->session).statistics.contacts_left_out);
+	printf("%.9g,%.9g,%.9g,%.9g,%.9g,%.9g,%.9g,%.9g,%.9g,%.9g,%d\n", depth_m, share,
+	       indent_cells(of), ball->raw_force_n[2], seen.least_n, seen.most_n,
+	       solved ? indent_solve(stand, false).force_n[2] : NAN, hertz_n, seen.vertex_depth_m,
+	       seen.face_depth_m, (int)stage_frame(stand->session).statistics.contacts_left_out);
 }
 
 // `text`: RADIUS_MM and what follows it.
@@ -58,7 +80,9 @@ static void press(int count, char **text)
 	             .poisson_ratio = strtod(text[2], NULL)};
 	int places = atoi(text[4]);
 	indent_stand *stand = indent_open(&of);
-	printf("depth_m,share,cells,force_n,solved_n,hertz_n,vertex_depth_m,face_depth_m,left_out\n");
+	printf(
+		"depth_m,share,cells,force_n,least_n,most_n,solved_n,hertz_n,vertex_depth_m,face_depth_m,"
+		"left_out\n");
 	for (int k = 6; k < count; k++) {
 		stand->of.depth_m = 1e-3 * strtod(text[k], NULL);
 		for (int place = 0; place < places; place++)

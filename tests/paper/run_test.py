@@ -115,13 +115,16 @@ class Validation(unittest.TestCase):
         held, crossed = (("ball of 1 mm", "sheet", 4, through, 0.2) for through in (False, True))
         self.assertIn("**none** crossed. Of 1 balls 1", contact.crossing_said([held], 0))
         self.assertIn("**1** crossed, and 1 failed", contact.crossing_said([held, crossed], 1))
-        press = {"vertex_depth_m": 0, "face_depth_m": 9e-5, "left_out": 0}
+        self.assertIn("held at all", contact.narrow_said([{"least_n": 1}, {"least_n": 0.1}]))
+        self.assertIn("at 1 of them", contact.narrow_said([{"least_n": 1}, {"least_n": 0}]))
+        press = {"vertex_depth_m": 0, "face_depth_m": 9e-5, "left_out": 0, "least_n": 1, "most_n": 1}
         ball = contact.BALLS[0]
         said = contact.rest_said({(ball, 2): [press]}).replace("\n", " ")
         self.assertIn("No face is deeper than that either; the deepest is 0.09 mm", said)
-        deep = press | {"face_depth_m": 2e-4, "left_out": 3}
+        deep = press | {"face_depth_m": 2e-4, "left_out": 3, "most_n": 3}
         said = contact.rest_said({(ball, 2): [press], (ball, 4): [deep]}).replace("\n", " ")
         self.assertIn("in 1 of 2", said)
+        self.assertIn("changes by 100.0% at most though its ball stands still (ball of 1.5 mm, cells of 4 mm)", said)
         self.assertIn("At 1 of 2 places something touched that found no row", said)
 
     def test_the_closed_form_is_hot_at_the_ball_and_comes_to_r_over_r(self):
