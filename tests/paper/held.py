@@ -56,7 +56,7 @@ HELD = (
      (("tests/core/session/touch_test.c", "nothing_is_inside_a_cold_tool"), (QUICK, "contact.vertices_inside"))),
     ("faces inside a ball at rest, where 0.1 mm is asked", "a quarter of a cell or 0.3 of the radius, the lesser; 0.1 mm at least",
      (("tests/core/session/proxy_matrix_test.c", "nothing_crosses"), (QUICK, "contact.faces_inside"))),
-    ("no tool crosses: a tenth of the presses in each run, all 224 in `core_session_proxy_matrix_all` (long)", "none",
+    ("no press of the matrix crosses: a ninth of them in each run, all 224 in `core_session_proxy_matrix_all` (long)", "none",
      (("tests/core/session/proxy_matrix_test.c", "nothing_crosses"), ("tests/core/session/crossing_test.c", "nothing_crosses"),
       ("tests/core/session/crossing_test.c", "what_a_tick_takes_past_a_face_is_held_too"), (QUICK, "contact.crossed"))),
     ("what cannot yield stops a tool, which pushes with `force_max_n` at most", "as said",
