@@ -182,7 +182,7 @@ def draw(folder, found):
         series += [(f"{ball.radius:g} mm, Hertz", hertz_line(ball, rows), f"lines linecolor {colour}"),
                    ("session", in_mn(rows, "force_n"), f"points pointtype 7 pointsize 0.6 linecolor {colour}"),
                    ("the mesh's solution", in_mn(rows, "solved_n"), f"points pointtype 6 pointsize 1.2 linecolor {colour}")]
-    plots.plot(plots.picture(folder, "contact-force"), "Balls pressed into a slab of 16 mm", "depth, mm", "force, mN", series,
+    plots.plot(plots.picture(folder, "contact-force"), f"Balls pressed into a slab of {THICK_MM} mm", "depth, mm", "force, mN", series,
                logscale="xy", extra=["set xrange [0.08:2.5]", "set yrange [0.2:400]"])
     meshes = of_kind(found, "meshes")
     plots.plot(plots.picture(folder, "contact-meshes"), "The same force by mesh", "cells a patch", "off Hertz, %",
@@ -194,7 +194,7 @@ def draw(folder, found):
             if not math.isnan(rows[0][of]):
                 middle = mean([row[of] for row in rows])
                 slides.append((label, [(row["share"], 100 * (row[of] / middle - 1)) for row in rows], f"{style} linecolor {colour}"))
-    plots.plot(plots.picture(folder, "contact-sliding"), "A ball of 6.5 mm somewhere else along a cell", "way, of a cell",
+    plots.plot(plots.picture(folder, "contact-sliding"), f"A ball of {SLIDING.radius:g} mm somewhere else along a cell", "way, of a cell",
                "off the mean, %", slides)
 
 
