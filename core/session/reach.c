@@ -18,12 +18,15 @@
 #include "session/session_internal.h"
 #include "tool/face_distance.h"
 
-static const double touch_m = 1e-5;   // nearer is touching
-static const double deep_share = 0.5; // of the tip's radius: a face that is deeper is missed
-static const double dip_share =
-	0.3; // likewise: a face that is deeper is a row from the next step on
-static const double beside_m = 2e-5; // of the tip beside a row: no other is needed there
-static const double margin_m = 2e-3; // a face that was pushed and is further away is let go of
+static const double touch_m = 1e-5; // nearer is touching
+// A face that dips in deeper is a row from the next step on, and stands no deeper than it may: so
+// much a flat face and a round tip may differ. Held at its very surface it would be pressed as if
+// the tip were larger.
+static const double dip_m = 6e-5, dip_share = 0.3;      // of the tip's radius at most
+static const double stand_m = 8e-5, stand_share = 0.03; // likewise
+static const double beside_m = 2e-5;      // of the tip beside a row: no other is needed there
+static const double same_m = 1e-5;        // points that are no farther apart are one
+static const double most_margin_m = 2e-3; // a face that was pushed and is further away is let go of
 enum { CANDIDATES = 4 * CAU_MAX_POINT_ROWS, STEPS_ON_WAY = 64 };
 
 typedef struct cau_candidate {
@@ -98,7 +101,8 @@ static void place(const reach *r, const passage *p, int32_t above, double start_
 	row->above = above;
 	cau_vec3_to(way_back(p, above), row->side);
 	row->way_m = p->way + 2 * r->def->hot_radius_m;
-	row->slack_m = cau_contact_slack(start_m, r->session->solver.step_s);
+	double stand = fmin(stand_m, stand_share * r->def->hot_radius_m);
+	row->slack_m = fmax(cau_contact_slack(start_m, r->session->solver.step_s), stand);
 	memcpy(row->weight, p->weight, sizeof row->weight);
 }
 
@@ -155,12 +159,12 @@ static bool is_missed(reach *r, cau_candidate *c)
 	double deepest = way_out(r, &p, weight, side, most);
 	if (end <= touch_m || c->depth > 0 || deepest > 0)
 		cau_contact_touch(&r->session->contact, r->index, c->row.face, above,
-		                  fmax(c->depth, deepest) > dip_share * r->def->hot_radius_m);
+		                  fmax(c->depth, deepest) > fmin(dip_m, dip_share * r->def->hot_radius_m));
 	if (deepest > c->depth) {
 		c->depth = deepest;
 		memcpy(p.weight, weight, sizeof weight);
 	}
-	if (!(c->depth > deep_share * r->def->hot_radius_m))
+	if (!(c->depth > cau_missed_share * r->def->hot_radius_m))
 		return false;
 	c->kept = kept != NULL;
 	place(r, &p, above, start, &c->row);
@@ -185,28 +189,25 @@ static bool describe_corners(const reach *r, cau_contact_row *row)
 	return free_count == 0 || free_count == 3;
 }
 
-// Square of how far (m) apart two points of a face are.
+// Square of how far (m) apart two points are.
 static double apart2(const reach *r, const cau_contact_row *a, const cau_contact_row *b)
 {
-	cau_vec3 off = {0, 0, 0};
-	for (int32_t k = 0; k < 3; k++)
-		off = cau_add_scaled(off, a->weight[k] - b->weight[k],
-		                     cau_vec3_of(r->session->position_start + 3 * (size_t)a->vertex[k]));
+	cau_vec3 off = cau_sub(cau_contact_point(a, r->session->position_start),
+	                       cau_contact_point(b, r->session->position_start));
 	return cau_dot(off, off);
 }
 
-// Whether a row pushes at that point of the face already, or so near it that the tip, round as it
-// is, is no deeper beside it than makes a difference.
+// Whether a row pushes at that point already, as of another face on the same edge, or on the same
+// face so near it that the tip, round as it is, is no deeper beside it than makes a difference.
 static bool has_row(const reach *r, const cau_contact_row *row)
 {
 	const double near2 = 2 * r->def->hot_radius_m * beside_m;
 	const cau_contact_set *set = &r->session->contact;
 	for (int32_t i = 0; i < set->row_count; i++) {
 		const cau_contact_row *other = &set->row[i];
-		if (other->tool != row->tool || other->corner_count != row->corner_count ||
-		    memcmp(other->vertex, row->vertex, sizeof row->vertex) != 0)
+		if (other->tool != row->tool || other->corner_count != row->corner_count || other->attached)
 			continue;
-		if (apart2(r, other, row) < near2)
+		if (apart2(r, other, row) < (other->face == row->face ? near2 : same_m * same_m))
 			return true;
 	}
 	return false;
@@ -221,13 +222,14 @@ static void take_up(const reach *r, const cau_contact_memory *kept, cau_contact_
 	cau_vec3 gradient;
 	follow(r, row, &p);
 	double start = distance_at(r, &p, 0, p.weight, &gradient);
-	if (!(start <= margin_m))
+	if (!(start <= fmin(cau_session_margin(r->def) + p.way, most_margin_m)))
 		return;
 	place(r, &p, kept->above, start, row);
 	CAU_ASSERT_INDEX(kept->point_count, CAU_MAX_POINTS + 1);
 	for (int32_t k = 0; k < kept->point_count; k++) {
 		memcpy(row->weight, kept->point[k], sizeof row->weight);
-		cau_contact_add(&r->session->contact, row);
+		if (!has_row(r, row))
+			cau_contact_add(&r->session->contact, row);
 	}
 	memcpy(row->weight, p.weight, sizeof row->weight);
 	if (!has_row(r, row))

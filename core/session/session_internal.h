@@ -167,12 +167,16 @@ typedef struct cau_touching {
 	int32_t vertex, place; // place: along the broad phase's curve
 	double gap;
 } cau_touching;
+// thin.c: how near (m) to a tool tissue may come to touch it within a tick.
+double cau_session_margin(const cau_tool_def *def);
 // Leaves in front of the list those that are to become rows, where so many are `taken` already: of
 // all CAU_NEAR_ROWS, of those that touch CAU_MAX_VERTEX_ROWS at most, the deepest first unless they
 // are spread. Returns how many, and how many that touch are `left_out`.
 int32_t cau_session_thin(const cau_session *session, cau_touching *list, int32_t count,
                          int32_t taken, int32_t *left_out);
 
+// Of the tip's radius: a face that is deeper in it is missed.
+static const double cau_missed_share = 0.5;
 // reach.c: whether a tool's contact is with faces as well as with vertices (not if it has jaws,
 // which tissue lies between and inside); the scratch that it needs; rows for the faces that the
 // part of a tool pushed in the last step; and, after the solve, rows for those that it has passed,

@@ -85,8 +85,10 @@ static cau_status begin_solve(cau_session *session, cau_error *error)
 }
 
 // Tissue that is pushed aside may meet the tool elsewhere: then the step goes on with that too.
-// What is not held by then is let through, as more rounds only throw it about.
-enum { MOST_ROUNDS = 2 };
+// What is not held by then is tried with the tool led less far; where it stands still at last, more
+// rounds are worth their time, as there is a place where tissue was. What these leave deep in the
+// tool goes on in the next tick; what they leave beyond it is let through.
+enum { MOST_ROUNDS = 2, LAST_ROUNDS = 8 };
 
 static cau_status descend(cau_session *session, cau_error *error)
 {
@@ -99,12 +101,12 @@ static cau_status descend(cau_session *session, cau_error *error)
 }
 
 // Returns whether tools would pass tissue in what it ends with.
-static bool hold(cau_session *session, cau_status *status, cau_error *error)
+static bool hold(cau_session *session, int rounds, cau_status *status, cau_error *error)
 {
 	cau_step_solver *solver = &session->solver;
 	*status = descend(session, error);
 	for (int round = 0; !*status && cau_session_find_missed(session); round++) { // touch.c
-		if (round == MOST_ROUNDS)
+		if (round == rounds)
 			return true;
 		solver->contact = &session->contact;
 		solver->objective = cau_solver_evaluate(solver);
@@ -126,11 +128,15 @@ static cau_status solve(cau_session *session, cau_error *error)
 {
 	cau_step_solver *solver = &session->solver;
 	cau_status status = CAU_OK;
-	for (int attempt = 0; hold(session, &status, error); attempt++) {
+	int rounds = MOST_ROUNDS;
+	for (int attempt = 0; hold(session, rounds, &status, error); attempt++) {
 		if (cau_session_hold_back(session, attempt)) { // proxy.c
 			begin_again(session);
+			rounds = attempt == CAU_ATTEMPTS - 1 ? LAST_ROUNDS : MOST_ROUNDS;
 			continue;
 		}
+		if (!session->contact.crossing)
+			break;
 		cau_session_let_through(session);
 		solver->objective = cau_solver_evaluate(solver);
 		cau_solver_displace(solver);

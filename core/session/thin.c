@@ -7,15 +7,22 @@
 // tool with it. So rows are spread over all that touches: the first in van der Corput's order (the
 // places along the Morton curve with their bits reversed), of which any beginning is spread evenly,
 // and most of which stay as others come and go. Between them tissue holds itself up.
+#include <math.h>
 #include <stdlib.h>
 
 #include "cautery/assert.h"
 #include "session/session_internal.h"
 
+static const double least_margin_m = 5e-4, most_margin_m = 2e-3;
 static const double touching_m = 2e-4; // nearer is touching; others are only near
 // Touching vertices for each row, up to which it is better to leave the least deep out, round the
 // rim, than to leave holes between rows.
 static const int32_t most_crowded = 2;
+
+double cau_session_margin(const cau_tool_def *def)
+{
+	return fmin(fmax(least_margin_m, 0.25 * def->hot_radius_m), most_margin_m);
+}
 
 static int compare_depth(const void *a, const void *b)
 {

@@ -6,7 +6,6 @@
 #include "cautery/assert.h"
 #include "session/session_internal.h"
 
-static const double least_margin_m = 5e-4, most_margin_m = 2e-3;
 static const double filter_s = 0.02;   // time constant of the reported force
 static const double drag_share = 0.25; // of a vertex's diagonal in A that drag may add
 
@@ -98,7 +97,7 @@ static int32_t collect(cau_session *session, int32_t index, cau_touching *list)
 {
 	const cau_tool *tool = &session->tool[index];
 	const cau_tool_def *def = &tool->state.definition;
-	double margin = fmin(fmax(least_margin_m, 0.25 * def->hot_radius_m), most_margin_m), radius;
+	double margin = cau_session_margin(def), radius;
 	int32_t count = 0;
 	cau_vec3 center;
 	cau_tool_bound(def, pushing_part(tool), &center, &radius);
@@ -257,8 +256,9 @@ bool cau_session_find_missed(cau_session *session)
 		keep_unheld(session, rows);
 	if (set->row_count > rows)
 		cau_contact_prepare(set, &session->solver);
-	bool deep = cau_contact_is_deep(set, &session->solver, missed_m);
-	return set->row_count > rows || deep;
+	set->crossing = set->row_count > rows ||
+	                cau_contact_is_deep(set, &session->solver, missed_m, cau_missed_share);
+	return cau_contact_is_deep(set, &session->solver, missed_m, 0) || set->row_count > rows;
 }
 
 void cau_session_let_through(cau_session *session)

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// What a load on a row of contact moves: S W^T, by the columns' places.
+// What a load on a row of contact moves: S W^T, by the columns' places; and where that takes the
+// row's point.
 #include <string.h>
 
 #include "cautery/assert.h"
@@ -37,4 +38,66 @@ void cau_contact_move(cau_contact_set *set, const cau_contact_row *row, cau_vec3
 		y[c] += answer[c] * by.y;
 		z[c] += answer[c] * by.z;
 	}
+}
+
+double cau_contact_bears(const cau_contact_set *set, const cau_contact_row *row)
+{
+	const double of_the_tools = 2;
+	return of_the_tools * set->tool[row->tool].def->force_max_n;
+}
+
+double cau_contact_between(const cau_contact_set *set, const cau_contact_row *row,
+                           const cau_contact_row *other)
+{
+	const double *answer = cau_contact_answer(set, other);
+	double sum = row->tool == other->tool ? set->tool[row->tool].compliance : 0;
+	for (int32_t k = 0; k < row->corner_count; k++)
+		if (row->column[k] >= 0)
+			sum += row->weight[k] * answer[row->column[k]];
+	return sum;
+}
+
+cau_vec3 cau_contact_weighted(const cau_contact_row *row, const double *corner)
+{
+	cau_vec3 sum = {0, 0, 0};
+	for (int32_t k = 0; k < row->corner_count; k++)
+		sum = cau_add_scaled(sum, row->weight[k], cau_vec3_of(corner + 3 * (size_t)k));
+	return sum;
+}
+
+cau_vec3 cau_contact_point(const cau_contact_row *row, const double *x)
+{
+	cau_vec3 sum = {0, 0, 0};
+	for (int32_t k = 0; k < row->corner_count; k++)
+		sum = cau_add_scaled(sum, row->weight[k], cau_vec3_of(x + 3 * (size_t)row->vertex[k]));
+	return sum;
+}
+
+static cau_vec3 step_of(const cau_contact_set *set, const cau_contact_row *row)
+{
+	cau_vec3 step = {0, 0, 0};
+	const double *x = set->step, *y = x + CAU_MAX_COLUMNS, *z = y + CAU_MAX_COLUMNS;
+	for (int32_t k = 0; k < row->corner_count; k++) {
+		int32_t c = row->column[k];
+		if (c >= 0)
+			step = cau_add_scaled(step, row->weight[k], (cau_vec3){x[c], y[c], z[c]});
+	}
+	return step;
+}
+
+cau_vec3 cau_contact_place(const cau_contact_set *set, const cau_step_solver *solver,
+                           const cau_contact_row *row)
+{
+	cau_vec3 x = cau_add(cau_contact_point(row, solver->position), step_of(set, row));
+	return cau_sub(x, cau_vec3_of(set->tool[row->tool].offset));
+}
+
+void cau_contact_motion(const cau_contact_set *set, const cau_step_solver *solver,
+                        const cau_contact_row *row, cau_vec3 *apart, cau_vec3 *slip)
+{
+	const cau_contact_tool *tool = &set->tool[row->tool];
+	cau_vec3 given = cau_sub(cau_vec3_of(tool->offset), cau_vec3_of(tool->measured));
+	*apart = cau_sub(step_of(set, row), given);
+	*slip =
+		cau_sub(cau_contact_place(set, solver, row), cau_contact_weighted(row, row->no_slip[0]));
 }

@@ -4,8 +4,11 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "base/hash.h"
 #include "cautery/assert.h"
+#include "solve/active.h"
 #include "solve/coupling.h"
+#include "solve/follow.h"
 #include "solve/hold.h"
 #include "tool/face_distance.h"
 
@@ -21,8 +24,9 @@ cau_status cau_contact_create(cau_contact_set *set, const cau_tissue *tissue,
 	set->before = cau_arena_array(arena, 3 * CAU_MAX_CONTACTS, sizeof(double));
 	set->unit = cau_arena_array(arena, 4 * n, vectors->real_bytes);
 	set->solution = cau_arena_array(arena, 4 * n, vectors->real_bytes);
-	bool missing = !set->inverse || !set->answer || !set->step || !set->change || !set->hold ||
-	               !set->before || !set->unit || !set->solution;
+	set->active = cau_arena_array(arena, CAU_MAX_ACTIVE * CAU_MAX_ACTIVE, sizeof(double));
+	bool missing = !set->active || !set->inverse || !set->answer || !set->step || !set->change ||
+	               !set->hold || !set->before || !set->unit || !set->solution;
 	for (int32_t k = 0; k < CAU_WHOLE_COLUMNS && !missing; k++) {
 		set->column[k] = cau_arena_array(arena, n, vectors->real_bytes);
 		missing = !set->column[k];
@@ -42,23 +46,6 @@ double cau_contact_slack(double start_m, double step_s)
 	const double release_m_s = 0.1;
 	CAU_ASSERT(step_s > 0, "a tick of %g s", step_s);
 	return fmax(-start_m - release_m_s * step_s, 0);
-}
-
-// Of values by corner, (corner_count x 3).
-static cau_vec3 weighted(const cau_contact_row *row, const double *corner)
-{
-	cau_vec3 sum = {0, 0, 0};
-	for (int32_t k = 0; k < row->corner_count; k++)
-		sum = cau_add_scaled(sum, row->weight[k], cau_vec3_of(corner + 3 * (size_t)k));
-	return sum;
-}
-
-cau_vec3 cau_contact_point(const cau_contact_row *row, const double *x)
-{
-	cau_vec3 sum = {0, 0, 0};
-	for (int32_t k = 0; k < row->corner_count; k++)
-		sum = cau_add_scaled(sum, row->weight[k], cau_vec3_of(x + 3 * (size_t)row->vertex[k]));
-	return sum;
 }
 
 static bool is_corner(const cau_contact_set *set, int32_t vertex)
@@ -238,6 +225,7 @@ static cau_vec3 contact_reaction(const cau_contact_set *set, const cau_contact_r
 	double normal = cau_dot(old, n) - (row->gap + cau_dot(step, n)) / s;
 	if (normal <= 0)
 		return (cau_vec3){0, 0, 0};
+	normal = fmin(normal, cau_contact_bears(set, row));
 	cau_vec3 tangent = cau_add_scaled(old, -cau_dot(old, n), n);
 	cau_vec3 along = cau_add_scaled(slip, -cau_dot(slip, n), n);
 	bool clamped;
@@ -250,40 +238,16 @@ static cau_vec3 contact_reaction(const cau_contact_set *set, const cau_contact_r
 // precision tell no smaller changes apart.
 static const double SETTLED = 1e-6;
 
-static cau_vec3 step_of(const cau_contact_set *set, const cau_contact_row *row)
-{
-	cau_vec3 step = {0, 0, 0};
-	const double *x = set->step, *y = x + CAU_MAX_COLUMNS, *z = y + CAU_MAX_COLUMNS;
-	for (int32_t k = 0; k < row->corner_count; k++) {
-		int32_t c = row->column[k];
-		if (c >= 0)
-			step = cau_add_scaled(step, row->weight[k], (cau_vec3){x[c], y[c], z[c]});
-	}
-	return step;
-}
-
-static double own_answer(const cau_contact_set *set, int32_t i)
-{
-	const cau_contact_row *row = &set->row[i];
-	const double *answer = cau_contact_answer(set, row);
-	double own = 0;
-	for (int32_t k = 0; k < row->corner_count; k++)
-		if (row->column[k] >= 0)
-			own += row->weight[k] * answer[row->column[k]];
-	return own;
-}
-
 static cau_vec3 relaxed(const cau_contact_set *set, const cau_step_solver *solver,
                         cau_contact_row *row, double own)
 {
-	const cau_contact_tool *tool = &set->tool[row->tool];
-	cau_vec3 step = step_of(set, row), old = cau_vec3_of(row->reaction);
-	cau_vec3 offset = cau_vec3_of(tool->offset);
-	cau_vec3 x = cau_sub(cau_add(cau_contact_point(row, solver->position), step), offset);
+	cau_vec3 apart, slip, old = cau_vec3_of(row->reaction);
 	if (row->attached)
-		return attachment_reaction(set, row, cau_sub(x, cau_vec3_of(row->anchor)), own, old);
-	cau_vec3 apart = cau_sub(step, cau_sub(offset, cau_vec3_of(tool->measured)));
-	return contact_reaction(set, row, apart, cau_sub(x, weighted(row, row->no_slip[0])), own, old);
+		return attachment_reaction(
+			set, row, cau_sub(cau_contact_place(set, solver, row), cau_vec3_of(row->anchor)), own,
+			old);
+	cau_contact_motion(set, solver, row, &apart, &slip);
+	return contact_reaction(set, row, apart, slip, own, old);
 }
 
 // One Gauss-Seidel pass over the rows. Returns the largest change relative to the largest reaction.
@@ -293,8 +257,7 @@ static double relax_rows(cau_contact_set *set, const cau_step_solver *solver)
 	for (int32_t i = 0; i < set->row_count; i++) {
 		cau_contact_row *row = &set->row[i];
 		// where none of its corners can move, the tool does
-		cau_vec3 next =
-			relaxed(set, solver, row, own_answer(set, i) + set->tool[row->tool].compliance);
+		cau_vec3 next = relaxed(set, solver, row, cau_contact_between(set, row, row));
 		cau_vec3 by = cau_sub(next, cau_vec3_of(row->reaction));
 		double length = cau_length(by);
 		size = fmax(size, cau_length(next));
@@ -370,8 +333,11 @@ void cau_contact_load(cau_contact_set *set, cau_step_solver *solver)
 	for (int32_t i = 0; i < set->tool_count; i++)
 		memcpy(set->tool[i].measured, set->tool[i].offset, sizeof set->tool[i].measured);
 	for (int32_t i = 0; i < set->row_count; i++)
-		if (!set->row[i].attached)
+		if (!set->row[i].attached) {
+			if (set->row[i].corner_count == 3)
+				cau_contact_follow(set, solver, i);
 			measure_gap(set, solver, &set->row[i]);
+		}
 	memset(set->before, 0, 3 * (size_t)set->row_count * sizeof *set->before);
 	take_off_gradient(set, solver);
 }
@@ -386,19 +352,53 @@ static void read_step(cau_contact_set *set, const cau_step_solver *solver)
 	}
 }
 
+enum { PASSES = 4 }; // that tell which rows push, before these are solved together
+
+// Not where columns are not whole, which is more than it is worth.
+static bool is_worth_solving_together(const cau_contact_set *set)
+{
+	return set->face_count && !cau_contact_is_wide(set);
+}
+
+void cau_contact_begin(cau_contact_set *set)
+{
+	set->pushing = 0;
+	set->others = set->elsewhere = false;
+}
+
+// Whether other rows push than after the last correction, or at points that have gone on.
+static void note_changes(cau_contact_set *set)
+{
+	const double as_it_was = 0.006; // of a face
+	uint64_t before = set->pushing;
+	set->pushing = CAU_HASH_START;
+	set->elsewhere = false;
+	for (int32_t i = 0; i < set->row_count; i++) {
+		const cau_contact_row *row = &set->row[i];
+		if (!(cau_length(cau_vec3_of(row->reaction)) > 0))
+			continue;
+		set->pushing = cau_hash_word(set->pushing, (uint64_t)i);
+		set->elsewhere = set->elsewhere || row->went > as_it_was;
+	}
+	set->others = before && before != set->pushing;
+}
+
 void cau_contact_correct(cau_contact_set *set, cau_step_solver *solver)
 {
 	CAU_ASSERT_INDEX(set->row_count, CAU_MAX_CONTACTS + 1);
 	read_step(set, solver);
 	if (cau_coupling_begin(set) && set->hold_count)
 		cau_hold_prepare(set);
-	bool wide = cau_contact_is_wide(set);
+	bool wide = cau_contact_is_wide(set), together = is_worth_solving_together(set);
 	int sweeps = wide ? CAU_CONTACT_FEW_SWEEPS : CAU_CONTACT_SWEEPS;
 	for (int sweep = 0; sweep < sweeps; sweep++) {
 		cau_hold_solve(set, solver);
 		if (relax_rows(set, solver) < SETTLED)
 			break;
+		if (together && sweep % PASSES == PASSES - 1)
+			cau_active_solve(set, solver);
 	}
+	note_changes(set);
 	take_off_gradient(set, solver);
 	if (wide)
 		substitute_back(set, solver);
@@ -406,7 +406,8 @@ void cau_contact_correct(cau_contact_set *set, cau_step_solver *solver)
 		cau_pool_run(solver->pool, solver->chunk_count, spread_part, &(spread){set, solver});
 }
 
-bool cau_contact_is_deep(cau_contact_set *set, const cau_step_solver *solver, double most_m)
+bool cau_contact_is_deep(cau_contact_set *set, const cau_step_solver *solver, double most_m,
+                         double most_share)
 {
 	bool any = false;
 	for (int32_t i = 0; i < set->row_count; i++) {
@@ -414,7 +415,8 @@ bool cau_contact_is_deep(cau_contact_set *set, const cau_step_solver *solver, do
 		if (row.corner_count == 1 || row.attached)
 			continue;
 		measure_gap(set, solver, &row);
-		if (row.gap >= -most_m)
+		double share_m = most_share * set->tool[row.tool].def->hot_radius_m;
+		if (row.gap >= -fmax(most_m, share_m))
 			continue;
 		any = set->tool[row.tool].passing = true;
 	}
@@ -429,7 +431,7 @@ double cau_contact_work(const cau_contact_set *set, const cau_step_solver *solve
 		double way[3][3];
 		for (int32_t k = 0; k < row->corner_count; k++)
 			solver->kernels->vectors->read(solver->trial_increment, row->vertex[k], way[k]);
-		cau_vec3 along = weighted(row, way[0]);
+		cau_vec3 along = cau_contact_weighted(row, way[0]);
 		work += fabs(row->reaction[0] * along.x) + fabs(row->reaction[1] * along.y) +
 		        fabs(row->reaction[2] * along.z);
 	}

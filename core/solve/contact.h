@@ -36,8 +36,9 @@ enum {
 	CAU_MAX_COLUMNS = 960,     // vertices that are corners of rows
 	CAU_WHOLE_COLUMNS = 288,   // of them with the whole of their column
 	CAU_MAX_MEMORY = 2048,     // faces whose side is kept
-	CAU_MAX_POINTS = 2,        // of a face that are kept: on one alone it would tilt to and fro
+	CAU_MAX_POINTS = 2,        // of a face that are kept: a tool may touch it with two of its arms
 	CAU_MAX_HELD = 192,        // rows of attachments that are solved at once
+	CAU_MAX_ACTIVE = 96,       // rows that push and are solved together
 	CAU_CONTACT_SWEEPS = 30,
 	CAU_CONTACT_FEW_SWEEPS = 16, // where columns are not whole: eight take the force 2 % off
 	CAU_COLUMNS_RENEWED = 3,     // of those that lag, each tick
@@ -61,6 +62,7 @@ typedef struct cau_contact_row {
 	int32_t face, above;  // as in cau_contact_memory
 	int32_t vertex[3];    // its corners
 	double weight[3];     // their shares in the point
+	double went;          // by how much these changed in this iteration, summed: follow.h
 	bool free[3];         // whether they can move
 	int32_t column[3];    // the free ones' places among the kept columns; else -1
 	int32_t answer;       // place of its S W^T; -1: it is its column's row of S
@@ -98,6 +100,10 @@ struct cau_contact_set {
 	// what went would throw it about. So all are fresh.
 	bool torn;
 	bool let_through;    // tools passed what could not be held: no side is remembered
+	uint64_t pushing;    // which rows push after the last correction
+	bool others;         // others than after the one before it
+	bool elsewhere;      // or at points that have gone on since
+	bool crossing;       // what the solve ended with would be beyond a tool, not only deep in it
 	int32_t begun_count; // rows that the step began with, and their reactions before more came
 	double begun_reaction[CAU_MAX_CONTACTS][3];
 	double begun_offset[CAU_MAX_TOOLS][3]; // m
@@ -123,6 +129,10 @@ struct cau_contact_set {
 	int32_t hold_row[CAU_MAX_HELD];
 	double *hold; // (CAU_MAX_HELD x CAU_MAX_HELD): factor of S + 1/k over them
 	cau_reals *unit, *solution;
+	// Rows that push, solved together: active.h.
+	int32_t active_row[CAU_MAX_ACTIVE];
+	bool active_sticks[CAU_MAX_ACTIVE];
+	double *active; // (CAU_MAX_ACTIVE x CAU_MAX_ACTIVE)
 };
 
 // `vectors`: of the solver's precision.
@@ -155,6 +165,9 @@ const cau_contact_memory *cau_contact_recall(const cau_contact_set *set, int32_t
 // a tool begins to push from within is let out at a bounded speed.
 double cau_contact_slack(double start_m, double step_s);
 
+// Of values by corner, (corner_count x 3): at the row's point.
+cau_vec3 cau_contact_weighted(const cau_contact_row *row, const double *corner);
+
 // Where a row's point is at positions x (m, vertex_count x 3).
 cau_vec3 cau_contact_point(const cau_contact_row *row, const double *x);
 
@@ -176,8 +189,28 @@ const double *cau_contact_answer(const cau_contact_set *set, const cau_contact_r
 // A load (N) on the row more: where the columns' vertices go by it.
 void cau_contact_move(cau_contact_set *set, const cau_contact_row *row, cau_vec3 by);
 
+// What a row pushes with at most, N. A tool has less; but of tissue that is caught between its
+// sides rows push against each other, and would without end.
+double cau_contact_bears(const cau_contact_set *set, const cau_contact_row *row);
+
+// How far (m) a force of 1 N on the point of one row moves that of the other, seen from the tool.
+double cau_contact_between(const cau_contact_set *set, const cau_contact_row *row,
+                           const cau_contact_row *other);
+
+// Where (m) the step as it is takes a row's point, as seen from where its tool is asked to be.
+cau_vec3 cau_contact_place(const cau_contact_set *set, const cau_step_solver *solver,
+                           const cau_contact_row *row);
+
+// How far (m) that is, seen from the tool, from where its gap was measured (`apart`) and from where
+// it would be if it stuck (`slip`).
+void cau_contact_motion(const cau_contact_set *set, const cau_step_solver *solver,
+                        const cau_contact_row *row, cau_vec3 *apart, cau_vec3 *slip);
+
 // Whether rows have columns of which the set has S alone.
 bool cau_contact_is_wide(const cau_contact_set *set);
+
+// Before a descent's first correction: it changes nothing.
+void cau_contact_begin(cau_contact_set *set);
 
 // Measures the rows' gaps, and takes the present reactions off solver->gradient, so that the next
 // global step feels them.
@@ -187,9 +220,10 @@ void cau_contact_load(cau_contact_set *set, cau_step_solver *solver);
 // A increment = -gradient still holds (as far as the columns are fresh).
 void cau_contact_correct(cau_contact_set *set, cau_step_solver *solver);
 
-// Whether a row of a face is deeper (m) inside its tool at solver->position than it may be: such
-// tools are passing.
-bool cau_contact_is_deep(cau_contact_set *set, const cau_step_solver *solver, double most_m);
+// Whether a row of a face is deeper inside its tool at solver->position than it may be, in m or as
+// a share of the tip's radius, whichever is more: such tools are passing.
+bool cau_contact_is_deep(cau_contact_set *set, const cau_step_solver *solver, double most_m,
+                         double most_share);
 
 // Work that the reactions may do along the trial step, J: what the objective may rise by.
 double cau_contact_work(const cau_contact_set *set, const cau_step_solver *solver);

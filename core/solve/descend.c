@@ -216,6 +216,19 @@ static bool is_held_back(const cau_step_solver *solver)
 	return solver->collide && solver->collide->held_back;
 }
 
+// Whether a tool was found to push on other points than an increment before: how much these got
+// shorter by tells nothing then.
+static bool meets_others(const cau_step_solver *solver)
+{
+	return solver->contact && solver->contact->others;
+}
+
+// Whether these or the points themselves are others now.
+static bool touches_elsewhere(const cau_step_solver *solver)
+{
+	return meets_others(solver) || (solver->contact && solver->contact->elsewhere);
+}
+
 // Whether other tissue presses on other than before: then earlier steps tell nothing of the next.
 static bool forget_touching(const cau_step_solver *solver, uint64_t *touching)
 {
@@ -263,6 +276,8 @@ cau_status cau_solver_descend(cau_step_solver *solver, cau_error *error)
 	uint64_t touching = solver->collide ? solver->collide->touching_hash : 0;
 	int32_t backtracks_before = solver->backtracks; // of the tick's earlier rounds
 	solver->spared = false;
+	if (solver->contact)
+		cau_contact_begin(solver->contact);
 	cau_anderson_start(solver);
 	cau_accuracy_begin(&solver->accuracy);
 	solver->accuracy.newton = cau_newton_is_called_for(solver);
@@ -290,7 +305,9 @@ cau_status cau_solver_descend(cau_step_solver *solver, cau_error *error)
 		last = norm;
 		bool accelerated = cau_anderson_mix(solver, solver->accuracy.newton ? 0 : steps++);
 		int32_t backtracks = solver->backtracks;
-		bool enough = cau_accuracy_is_reached(solver, norm);
+		if (meets_others(solver))
+			cau_accuracy_begin(&solver->accuracy);
+		bool enough = cau_accuracy_is_reached(solver, norm) && !touches_elsewhere(solver);
 		if ((enough || k + 1 == solver->iterations) && is_harmless(solver, norm, objective) &&
 		    !(solver->collide && cau_solver_keep_apart(solver, solver->position))) {
 			leave(solver);

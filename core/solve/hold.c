@@ -10,18 +10,6 @@ static const cau_tool_def *tool_of(const cau_contact_set *set, const cau_contact
 	return set->tool[row->tool].def;
 }
 
-// W_i S W_j^T: how far the point of row i goes by a force on that of row j, m/N.
-static double between(const cau_contact_set *set, int32_t i, int32_t j)
-{
-	const cau_contact_row *row = &set->row[i];
-	const double *answer = cau_contact_answer(set, &set->row[j]);
-	double sum = row->tool == set->row[j].tool ? set->tool[row->tool].compliance : 0;
-	for (int32_t k = 0; k < row->corner_count; k++)
-		if (row->column[k] >= 0)
-			sum += row->weight[k] * answer[row->column[k]];
-	return sum;
-}
-
 // Lower triangle, by rows, over hold_row. Returns false if it is not positive definite.
 static bool factor(cau_contact_set *set)
 {
@@ -29,7 +17,8 @@ static bool factor(cau_contact_set *set)
 		double *at = set->hold + (size_t)i * CAU_MAX_HELD;
 		for (int32_t j = 0; j <= i; j++) {
 			const double *other = set->hold + (size_t)j * CAU_MAX_HELD;
-			double sum = between(set, set->hold_row[i], set->hold_row[j]);
+			double sum =
+				cau_contact_between(set, &set->row[set->hold_row[i]], &set->row[set->hold_row[j]]);
 			if (i == j)
 				sum += 1 / tool_of(set, &set->row[set->hold_row[i]])->grasp_stiffness_n_m;
 			for (int32_t k = 0; k < j; k++)

@@ -2,8 +2,7 @@
 // Each iteration linearises what the points may not do, n . d >= -gap, and solves for the increment
 // d by the Hessian's factor and the points' own dense system: the reactions are those of a linear
 // complementarity problem in H^-1, found by an active set of their own. The ball's curvature is
-// part of the Hessian (that of the Lagrangian), so it converges quadratically where points are
-// vertices.
+// part of the Hessian (that of the Lagrangian), so it converges quadratically.
 #include "reference/indented.h"
 
 #include <cholmod.h>
@@ -13,16 +12,10 @@
 
 #include "cautery/scene.h"
 #include "reference/stress.h"
+#include "reference/touching.h"
 
 enum { MOST_POINTS = 1500, MOST_ITERATIONS = 60, MOST_CHANGES = 100 };
 static const double converged = 1e-8; // of the ball's force; a gap, of its radius
-static const double near = 0.01;      // of the radius: points that may come to push
-
-typedef struct point { // on a vertex, an edge or a face: those with a weight are its own
-	int32_t vertex[3];
-	double weight[3];
-	double normal[3], gap_m, reaction_n;
-} point;
 
 typedef struct solver {
 	const cau_indented_body *body;
@@ -31,7 +24,7 @@ typedef struct solver {
 	double *gradient; // N, (n x 3)
 	int32_t *unknown; // (n): of its x; -1: fixed
 	int32_t unknown_count;
-	point *point;
+	cau_touching_point *point;
 	int point_count;
 	cholmod_common common;
 	cholmod_triplet *entries;
@@ -88,8 +81,10 @@ static void deformation(const double *position, const int32_t v[4], double shape
 }
 
 typedef struct tangent { // what dP is made of (Pa), and F
-	double plain, outer, volume, bulge;
+	bool stvk;
+	double plain, outer, volume, bulge; // of stvk mu and lambda are plain and volume
 	double f[3][3], cofactor[3][3];
+	double second[3][3]; // Piola-Kirchhoff's, of stvk
 } tangent;
 
 // Rows of the cofactor are cross products of F's other two rows.
@@ -99,8 +94,25 @@ static void cofactor_of(double f[3][3], double out[3][3])
 		cross(f[(i + 1) % 3], f[(i + 2) % 3], out[i]);
 }
 
+// 2 mu E + lambda tr E, with E = (F^T F - I) / 2.
+static tangent stvk_tangent_of(const cau_indented_body *body, double f[3][3])
+{
+	double nu = body->poisson_ratio, mu = body->young_modulus_pa / (2 * (1 + nu));
+	tangent t = {.stvk = true, .plain = mu, .volume = 2 * mu * nu / (1 - 2 * nu)};
+	memcpy(t.f, f, sizeof t.f);
+	double trace = 0.5 * (dot(f[0], f[0]) + dot(f[1], f[1]) + dot(f[2], f[2]) - 3);
+	for (int j = 0; j < 3; j++)
+		for (int k = 0; k < 3; k++) {
+			double square = f[0][j] * f[0][k] + f[1][j] * f[1][k] + f[2][j] * f[2][k];
+			t.second[j][k] = mu * (square - (j == k)) + t.volume * trace * (j == k);
+		}
+	return t;
+}
+
 static tangent tangent_of(const cau_indented_body *body, double f[3][3])
 {
+	if (body->model == CAU_MODEL_STVK)
+		return stvk_tangent_of(body, f);
 	double nu = body->poisson_ratio, mu = body->young_modulus_pa / (2 * (1 + nu));
 	double m = 4.0 / 3 * mu, l = 2 * mu * nu / (1 - 2 * nu) + 5.0 / 6 * mu;
 	double alpha = 1 + m / l - m / (4 * l);
@@ -114,9 +126,25 @@ static tangent tangent_of(const cau_indented_body *body, double f[3][3])
 	return t;
 }
 
+static void stvk_change_of_stress(const tangent *t, int i, const double row[3], double out[3][3])
+{
+	double along = dot(row, t->f[i]);
+	for (int r = 0; r < 3; r++)
+		for (int c = 0; c < 3; c++) {
+			out[r][c] =
+				t->volume * along * t->f[r][c] +
+				t->plain * (dot(t->f[r], row) * t->f[i][c] + dot(t->f[r], t->f[i]) * row[c]);
+			out[r][c] += r == i ? dot(row, t->second[c]) : 0;
+		}
+}
+
 // dP of dF, which has the row `i` alone.
 static void change_of_stress(const tangent *t, int i, const double row[3], double out[3][3])
 {
+	if (t->stvk) {
+		stvk_change_of_stress(t, i, row, out);
+		return;
+	}
 	double along = dot(t->f[i], row), grown = dot(t->cofactor[i], row), turned[2][3];
 	cross(t->f[(i + 2) % 3], row, turned[0]); // of the cofactor's rows i + 1 and i + 2
 	cross(row, t->f[(i + 1) % 3], turned[1]);
@@ -146,8 +174,7 @@ static void add_element(solver *s, const int32_t v[4])
 	const cau_indented_body *body = s->body;
 	double volume = shapes(body, v, shape);
 	deformation(s->position, v, shape, f);
-	cau_reference_stress(CAU_MODEL_NEOHOOKEAN, body->young_modulus_pa, body->poisson_ratio, f,
-	                     stress);
+	cau_reference_stress(body->model, body->young_modulus_pa, body->poisson_ratio, f, stress);
 	tangent t = tangent_of(body, f);
 	for (int a = 0; a < 4; a++)
 		for (int i = 0; i < 3; i++) {
@@ -164,88 +191,18 @@ static void add_element(solver *s, const int32_t v[4])
 
 // ---- points
 
-// Vertices in order, those without a weight last: the same point is the same to the bit.
-static void sort_point(point *p)
-{
-	for (int k = 0; k < 3; k++)
-		if (p->weight[k] == 0)
-			p->vertex[k] = INT32_MAX;
-	for (int a = 0; a < 2; a++)
-		for (int b = 0; b < 2 - a; b++)
-			if (p->vertex[b] > p->vertex[b + 1]) {
-				int32_t v = p->vertex[b];
-				double w = p->weight[b];
-				p->vertex[b] = p->vertex[b + 1];
-				p->weight[b] = p->weight[b + 1];
-				p->vertex[b + 1] = v;
-				p->weight[b + 1] = w;
-			}
-}
-
-static bool is_listed(const point *list, int count, const point *p, double *reaction_n)
-{
-	for (int k = 0; k < count; k++)
-		if (!memcmp(list[k].vertex, p->vertex, sizeof p->vertex) &&
-		    !memcmp(list[k].weight, p->weight, sizeof p->weight)) {
-			*reaction_n = list[k].reaction_n;
-			return true;
-		}
-	return false;
-}
-
-static void add_point(solver *s, const point *before, int before_count, point p)
-{
-	double x[3] = {0, 0, 0}, already;
-	sort_point(&p);
-	for (int k = 0; k < 3; k++)
-		for (int c = 0; c < 3 && p.weight[k] > 0; c++)
-			x[c] += p.weight[k] * s->position[3 * (size_t)p.vertex[k] + (size_t)c];
-	minus(x, s->ball->centre_m, p.normal);
-	double length = sqrt(dot(p.normal, p.normal));
-	p.gap_m = length - s->ball->radius_m;
-	if (p.gap_m > near * s->ball->radius_m || s->point_count == MOST_POINTS ||
-	    is_listed(s->point, s->point_count, &p, &already))
-		return;
-	for (int c = 0; c < 3; c++)
-		p.normal[c] /= length;
-	p.reaction_n = 0;
-	is_listed(before, before_count, &p, &p.reaction_n);
-	s->point[s->point_count++] = p;
-}
-
-static void find_points(solver *s)
-{
-	const cau_indented_body *body = s->body;
-	int count = s->point_count;
-	point *before = malloc((size_t)count * sizeof *before + 1);
-	memcpy(before, s->point, (size_t)count * sizeof *before);
-	s->point_count = 0;
-	for (int32_t k = 0; k < body->surface_count; k++) {
-		int32_t v = body->surface[k];
-		if (!body->fixed[v])
-			add_point(s, before, count, (point){.vertex = {v, v, v}, .weight = {1, 0, 0}});
-	}
-	for (int32_t k = 0; k < s->ball->point_count; k++) {
-		point p = {.reaction_n = 0};
-		memcpy(p.vertex, s->ball->point[k].vertex, sizeof p.vertex);
-		memcpy(p.weight, s->ball->point[k].weight, sizeof p.weight);
-		add_point(s, before, count, p);
-	}
-	free(before);
-}
-
 // How the normals turn, of the Lagrangian's Hessian: what pushes lets a point slide off the ball.
-static void add_curvature(solver *s, const point *p)
+static void add_curvature(solver *s, const cau_touching_point *p)
 {
-	double by = -p->reaction_n / (p->gap_m + s->ball->radius_m);
-	for (int a = 0; a < 3; a++)
-		for (int b = 0; b < 3; b++)
-			for (int i = 0; i < 3; i++)
-				for (int j = 0; j < 3 && p->weight[a] > 0 && p->weight[b] > 0; j++)
-					if (s->unknown[p->vertex[a]] >= 0 && s->unknown[p->vertex[b]] >= 0)
-						add_entry(s, s->unknown[p->vertex[b]] + j, s->unknown[p->vertex[a]] + i,
-						          by * p->weight[a] * p->weight[b] *
-						              ((i == j) - p->normal[i] * p->normal[j]));
+	double bend[3][3];
+	for (int a = 0; a < p->corners; a++)
+		for (int b = 0; b < p->corners; b++) {
+			int32_t column = s->unknown[p->vertex[a]], row = s->unknown[p->vertex[b]];
+			cau_touching_bend(p, b, a, bend);
+			for (int i = 0; i < 3 && row >= 0 && column >= 0; i++)
+				for (int j = 0; j < 3; j++)
+					add_entry(s, row + i, column + j, -p->reaction_n * bend[i][j]);
+		}
 }
 
 // ---- an iteration
@@ -279,12 +236,12 @@ static void measure(const solver *s, cau_indented *out)
 	memcpy(left, s->gradient, n * sizeof *left);
 	*out = (cau_indented){.iterations = out->iterations};
 	for (int k = 0; k < s->point_count; k++) {
-		const point *p = &s->point[k];
+		const cau_touching_point *p = &s->point[k];
 		out->points += p->reaction_n > 0;
 		out->deepest_m = fmax(out->deepest_m, p->reaction_n > 0 ? fabs(p->gap_m) : -p->gap_m);
 		for (int c = 0; c < 3; c++) {
 			out->force_n[c] -= p->reaction_n * p->normal[c];
-			for (int a = 0; a < 3 && p->weight[a] > 0; a++)
+			for (int a = 0; a < p->corners; a++)
 				left[3 * (size_t)p->vertex[a] + (size_t)c] -=
 					p->weight[a] * p->reaction_n * p->normal[c];
 		}
@@ -326,7 +283,7 @@ static bool solve_dense(double *a, double *x, int n)
 
 // Reactions >= 0 and gaps S r + b >= 0, of which one is zero for each point. Who pulls is let go,
 // who is inside is taken.
-static bool find_reactions(point *list, int n, const double *s, const double *b)
+static bool find_reactions(cau_touching_point *list, int n, const double *s, const double *b)
 {
 	size_t many = (size_t)n;
 	double *a = malloc(many * many * sizeof *a + 1), *x = malloc(many * sizeof *x + 1);
@@ -375,8 +332,8 @@ static cholmod_dense *right_sides(solver *s)
 		cholmod_zeros(rows, (size_t)s->point_count + 1, CHOLMOD_REAL, &s->common);
 	double *x = sides->x, *last = x + rows * (size_t)s->point_count;
 	for (int k = 0; k < s->point_count; k++)
-		for (int a = 0; a < 3; a++)
-			for (int c = 0; c < 3 && s->point[k].weight[a] > 0; c++)
+		for (int a = 0; a < s->point[k].corners; a++)
+			for (int c = 0; c < 3; c++)
 				if (s->unknown[s->point[k].vertex[a]] >= 0)
 					x[(size_t)k * rows + (size_t)(s->unknown[s->point[k].vertex[a]] + c)] +=
 						s->point[k].weight[a] * s->point[k].normal[c];
@@ -456,7 +413,8 @@ bool cau_indented_solve(const cau_indented_body *body, const cau_indenting_ball 
 	*out = (cau_indented){0};
 	begin(&s);
 	for (; right; out->iterations++) {
-		find_points(&s);
+		s.point_count =
+			cau_touching_find(body, ball, position, s.point, s.point_count, MOST_POINTS);
 		assemble(&s, true);
 		measure(&s, out);
 		done = out->iterations > 0 && out->residual < converged &&

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// A body of linear tetrahedra, stable neo-Hookean, into which a rigid ball is pressed: its static
-// equilibrium by Newton's method with the exact Hessian and an active set, in double. An oracle
-// apart from core: its energy, its system, its contact and its convergence are its own.
+// A body of linear tetrahedra, stable neo-Hookean or StVK, into which a rigid ball is pressed: its
+// static equilibrium by Newton's method with the exact Hessian and an active set, in double. An
+// oracle apart from core: its energy, its system, its contact and its convergence are its own.
 #pragma once
 
 #include <stdbool.h>
@@ -12,19 +12,16 @@ typedef struct cau_indented_body {
 	const double *rest;         // m, (n x 3)
 	const int32_t *tetrahedron; // (m x 4), of positive volume
 	const int32_t *surface;     // vertices that the ball may meet; one may stand there again
-	const bool *fixed;          // (n): these stay where they are
+	int32_t face_count;         // (face_count x 3): where it may meet what is between them
+	const int32_t *face;
+	const bool *fixed; // (n): these stay where they are
+	int model;         // CAU_MODEL_NEOHOOKEAN or CAU_MODEL_STVK
 	double young_modulus_pa, poisson_ratio;
 } cau_indented_body;
 
-typedef struct cau_indented_point { // of a face: its corners' shares
-	int32_t vertex[3];
-	double weight[3];
-} cau_indented_point;
-
 typedef struct cau_indenting_ball {
 	double centre_m[3], radius_m;
-	int32_t point_count; // that stay outside besides the vertices
-	const cau_indented_point *point;
+	double dip_m; // vertices stay outside; between them a face may be so much inside
 } cau_indenting_ball;
 
 typedef struct cau_indented {

@@ -78,6 +78,7 @@ static void compare(const char *name)
 	                          .tetrahedron = reference.tetrahedron,
 	                          .surface = surface,
 	                          .fixed = fixed,
+	                          .model = reference.model,
 	                          .young_modulus_pa = reference.young_modulus_pa,
 	                          .poisson_ratio = reference.poisson_ratio};
 	cau_indented found;
@@ -95,6 +96,7 @@ static void it_is_the_finite_element_packages(void **state)
 	(void)state;
 	compare("indentation_neohookean_nu30");
 	compare("indentation_neohookean_nu40");
+	compare("indentation_stvk_nu30");
 }
 
 // Eq. 12 of the paper: 16/9 E sqrt(R) d^(3/2) (1 + 1.133 x + 1.283 x^2 + 0.769 x^3 +- 0.0975 x^4).

@@ -165,7 +165,8 @@ static void a_taut_sheet_is_right(void **state)
 		scene->precision = precision;
 		sampled of = run(scene, MOST, CAU_TEST_SANITIZED ? 40 : 120, CAU_TEST_SANITIZED ? 8 : 2);
 		expect_right("taut", &of);
-		assert_true(of.iterations <= 7 * of.count);
+		assert_true(of.iterations <=
+		            10 * of.count); // points of faces go with the tool: 3 for vertices
 	}
 }
 
@@ -177,7 +178,7 @@ static void fat_is_right(void **state)
 		scene->precision = precision;
 		sampled of = run(scene, MOST, CAU_TEST_SANITIZED ? 36 : 100, CAU_TEST_SANITIZED ? 12 : 3);
 		expect_right("fat", &of);
-		assert_true(of.iterations <= 16 * of.count);
+		assert_true(of.iterations <= 17 * of.count); // 14 for vertices alone
 	}
 }
 

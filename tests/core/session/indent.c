@@ -16,6 +16,11 @@ static const double above_m = 2e-4;     // where the ball waits
 static const double speed_m_s = 0.05;
 enum { SETTLING_TICKS = 60 };
 
+double indent_dip_m(double radius_m)
+{
+	return fmin(8e-5, 0.03 * radius_m); // core/README.md
+}
+
 double indent_cells(const indent *of)
 {
 	return 2 * sqrt(of->radius_m * of->depth_m) / of->cell_m;
@@ -103,13 +108,15 @@ static void make_body(indent_stand *stand, const grid *g)
 	*body = (cau_indented_body){.vertex_count = g->wide * g->wide * g->deep,
 	                            .tetrahedron_count = 6 * cells * (g->deep - 1),
 	                            .surface_count = 6 * cells,
+	                            .model = CAU_MODEL_NEOHOOKEAN,
 	                            .young_modulus_pa = indent_young_modulus_pa,
 	                            .poisson_ratio = stand->of.poisson_ratio};
 	body->rest = stand->rest = room(3 * (size_t)body->vertex_count, sizeof(double));
 	body->fixed = stand->fixed = room((size_t)body->vertex_count, sizeof(bool));
 	body->tetrahedron = stand->tetrahedron =
 		room(4 * (size_t)body->tetrahedron_count, sizeof(int32_t));
-	body->surface = stand->face = room((size_t)body->surface_count, sizeof(int32_t));
+	body->face_count = 2 * cells;
+	body->surface = body->face = stand->face = room((size_t)body->surface_count, sizeof(int32_t));
 	int32_t *tetrahedron = stand->tetrahedron, *face = stand->face;
 	for (int32_t i = 0; i < g->wide; i++)
 		for (int32_t j = 0; j < g->wide; j++)
@@ -224,20 +231,6 @@ double indent_press(indent_stand *stand, double x_m, double y_m, double depth_m)
 
 // ---- the reference
 
-// Points of faces that push, of the session's rows; returns how many.
-static int points_of(const cau_session *session, cau_indented_point *point)
-{
-	int count = 0;
-	for (int32_t k = 0; k < session->contact.row_count; k++) {
-		const cau_contact_row *row = &session->contact.row[k];
-		if (row->corner_count == 1 || cau_length(cau_vec3_of(row->reaction)) == 0)
-			continue;
-		memcpy(point[count].vertex, row->vertex, sizeof point->vertex);
-		memcpy(point[count++].weight, row->weight, sizeof point->weight);
-	}
-	return count;
-}
-
 cau_indented indent_solve(const indent_stand *stand, bool from_rest)
 {
 	enum { STAGES = 4 };
@@ -245,10 +238,8 @@ cau_indented indent_solve(const indent_stand *stand, bool from_rest)
 	double *position = room(n, sizeof *position);
 	const double *end_m = stage_tool(stand->session, "ball")->pose.position_m;
 	double way = stand->of.radius_m - end_m[2];
-	cau_indented_point *point = room(CAU_MAX_CONTACTS, sizeof *point);
 	cau_indenting_ball ball = {.radius_m = stand->of.radius_m,
-	                           .point_count = points_of(stand->session, point),
-	                           .point = point};
+	                           .dip_m = indent_dip_m(stand->of.radius_m)};
 	cau_indented answer = {0};
 	memcpy(position, from_rest ? stand->rest : stage_frame(stand->session).position,
 	       n * sizeof *position);
@@ -260,7 +251,6 @@ cau_indented indent_solve(const indent_stand *stand, bool from_rest)
 			         answer.residual, answer.deepest_m, answer.iterations);
 	}
 	free(position);
-	free(point);
 	return answer;
 }
 

@@ -28,6 +28,9 @@ typedef struct indent_stand {
 
 extern const double indent_young_modulus_pa;
 
+// How deep (m) core lets faces stand in a ball at rest.
+double indent_dip_m(double radius_m);
+
 // How many cells the patch spans that a ball of this size and depth has by Hertz.
 double indent_cells(const indent *of);
 
@@ -39,8 +42,8 @@ void indent_close(indent_stand *stand);
 double indent_press(indent_stand *stand, double x_m, double y_m, double depth_m);
 
 // The reference's solution with the ball where it is now, from the session's state on or from rest,
-// by a ball that comes down in stages. What stays outside is what the session keeps outside: all
-// vertices, and those points of faces that push now. Fails the test if there is none.
+// by a ball that comes down in stages. Vertices stay outside, and no point of a face is deeper than
+// core lets it stand. Fails the test if there is none.
 cau_indented indent_solve(const indent_stand *stand, bool from_rest);
 
 // How much deeper than the ball's surface the deepest point of a face is, m.

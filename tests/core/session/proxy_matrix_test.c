@@ -30,12 +30,7 @@ enum {
 	TISSUES = sizeof tissues / sizeof *tissues,
 };
 
-// A ball of some cells stands on vertices, and faces between these reach into it (core/README.md);
-// one that they would reach into by a third of its radius has rows of faces.
-static double most_penetration_m(const pressing *p)
-{
-	return fmax(1e-4, fmin(0.3 * p->radius_m, 0.25 * p->cell_m));
-}
+static const double most_penetration_m = 1e-4; // of a ball at rest, anywhere on what is drawn
 
 // A thin tip that dents soft tissue by more than this passes at last.
 static double depth_m(const kind *k)
@@ -66,7 +61,7 @@ static bool is_held(const pressing *p, const kind *k)
 	bool whole = stage_frame(session).statistics.contacts_left_out == 0;
 	bool pushed = most >= 0.99 * tool->definition.force_max_n;
 	bool right = most > 0 && tool->slips == 0;
-	bool stands = deep <= most_penetration_m(p);
+	bool stands = deep <= most_penetration_m;
 	print_message("%-18s %-7s %g mm, %4.2f m/s: %s, %6.3f N, %.3f mm deep%s%s\n", k->what,
 	              tissues[p->tissue], 1e3 * p->cell_m, p->speed_m_s, crossed ? "CROSSED" : "held",
 	              most, 1e3 * deep, whole ? "" : ", points left out", stands ? "" : ": TOO DEEP");
