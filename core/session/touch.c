@@ -321,6 +321,7 @@ void cau_session_read_forces(cau_session *session)
 		memset(state->raw_torque_nm, 0, sizeof state->raw_torque_nm);
 		state->contact_vertices = 0;
 		state->slipping = false;
+		cau_session_read_pinch(session, &session->tool[i], i);
 	}
 	for (int32_t k = 0; k < session->contact.row_count; k++) {
 		const cau_contact_row *row = &session->contact.row[k];
@@ -364,6 +365,7 @@ cau_status cau_session_grasp(cau_session *session, cau_tool *tool, cau_error *er
 		tool->grasp[tool->grasp_count++] = grasp;
 	}
 	cau_session_grasp_faces(session, tool);
+	cau_session_begin_pinch(session, tool);
 	tool->jaw_target = 0;
 	return CAU_OK;
 }
@@ -373,6 +375,8 @@ void cau_session_release(cau_tool *tool)
 	tool->state.grasping = false;
 	tool->grasp_count = 0;
 	tool->jaw_target = 1;
+	tool->state.asked_jaw = tool->state.jaw;
+	tool->state.jaw_force_n = 0;
 }
 
 void cau_session_drop_frozen_grasps(cau_session *session)
