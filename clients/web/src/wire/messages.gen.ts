@@ -1910,6 +1910,7 @@ export const SECTION = {
   texture: 18,
   rest: 19,
   tools_asked: 32,
+  tool_jaws: 33,
 } as const;
 
 /** Scalars of the vertices: n in a frame stands for least + step n in the unit, n is at most `most`.
