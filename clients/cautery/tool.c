@@ -248,7 +248,7 @@ static cli_exit run(cli *c)
 	const cau_stream_tool *found = cli_find_tool(h.stream, h.tool);
 	if (found) {
 		h.pose = found->asked_pose;
-		h.jaw = found->jaw;
+		h.jaw = found->grasping ? 1 : found->asked_jaw; // once it lets go it is open
 		h.sequence = (int64_t)found->sequence;
 	}
 	cau_client_keep_alive(c->client, true);

@@ -22,6 +22,17 @@ static double length(const double vector[3])
 	return sqrt(vector[0] * vector[0] + vector[1] * vector[1] + vector[2] * vector[2]);
 }
 
+static void write_tool_line(FILE *out, const cau_stream_tool *tool)
+{
+	fprintf(out, "  %s %s%s %.0f degC %.2f N", tool->name, tool->energized ? "on" : "off",
+	        tool->frozen ? " (watchdog)" : "", tool->tip_temperature_c, length(tool->force_n));
+	if (tool->grasping && !tool->grasped_vertices)
+		fprintf(out, "  jaws empty");
+	else if (tool->grasping)
+		fprintf(out, "  holds %d points%s, jaws %.0f %% open, %.1f N", tool->grasped_vertices,
+		        tool->slipping ? ", slipping" : "", 100 * tool->jaw, tool->jaw_force_n);
+}
+
 // The newest state in one line, without its end.
 static void write_line(FILE *out, const view *v)
 {
@@ -35,9 +46,7 @@ static void write_line(FILE *out, const view *v)
 	if (s->statistics.elements_torn)
 		fprintf(out, "  torn %u elements", s->statistics.elements_torn);
 	for (int32_t i = 0; i < s->tool_count; i++)
-		fprintf(out, "  %s %s%s %.0f degC %.2f N", s->tools[i].name,
-		        s->tools[i].energized ? "on" : "off", s->tools[i].frozen ? " (watchdog)" : "",
-		        s->tools[i].tip_temperature_c, length(s->tools[i].force_n));
+		write_tool_line(out, &s->tools[i]);
 	fprintf(out, "%s%s", s->flags & CAU_FRAME_PAUSED ? "  paused" : "",
 	        s->flags & CAU_FRAME_FAULTED ? "  FAULTED" : "");
 }
@@ -69,6 +78,9 @@ static void write_tool(cau_json_writer *writer, const cau_stream_tool *tool)
 	cau_json_bool(writer, "grasping", tool->grasping);
 	cau_json_bool(writer, "slipping", tool->slipping);
 	cau_json_unsigned(writer, "points_held", tool->grasped_vertices);
+	cau_json_number(writer, "jaw", tool->jaw);
+	cau_json_number(writer, "asked_jaw", tool->asked_jaw);
+	cau_json_number(writer, "jaw_force_n", tool->jaw_force_n);
 	cau_json_unsigned(writer, "driver", tool->driver);
 	cau_json_unsigned(writer, "sequence", tool->sequence);
 	cau_json_numbers(writer, "position_m", tool->pose.position_m, 3);

@@ -61,11 +61,19 @@ static bool has_stayed(const cau_tool *tool)
 	       cau_pose_is_same_turn(&tool->state.pose, &tool->pose_before);
 }
 
+// What jaws hold gives way to them ever less.
+static bool have_jaws_stayed(const cau_tool *tool)
+{
+	const cau_tool_def *def = &tool->state.definition;
+	double turned = fabs(tool->state.jaw - tool->jaw_before) * def->jaw_open_rad;
+	return tool->state.asked_jaw == tool->jaw_target && turned * def->tip_length_m <= still_m &&
+	       (tool->grasp_count || tool->state.jaw == tool->jaw_target);
+}
+
 static bool is_still(const cau_tool *tool)
 {
 	return !tool->state.energized && cau_heat_grid_is_ambient(&tool->grid) &&
-	       tool->state.jaw == tool->jaw_target &&
-	       is_same_pose(&tool->state.asked_pose, &tool->target) &&
+	       have_jaws_stayed(tool) && is_same_pose(&tool->state.asked_pose, &tool->target) &&
 	       is_same_pose(&tool->anchor, &tool->target) && has_stayed(tool);
 }
 

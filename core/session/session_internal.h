@@ -29,13 +29,15 @@ typedef struct cau_tool {
 	cau_tool_state state;
 	cau_pose target; // where the driver wants it, and state.asked_pose within its speed limits
 	double jaw_target;
-	cau_pose pose_before; // at the start of the tick
+	double jaw_before;    // at the start of the tick
+	cau_pose pose_before; // likewise
 	cau_pose anchor,
 		anchor_before; // proxy.c: what it hangs on, at the end and the start of the tick
 	double pace; // share of the anchor's way that it goes in a tick; 1 but after it was held back
 	cau_heat_grid grid;
 	int32_t grasp_count;
 	cau_grasp grasp[CAU_MAX_GRASPED];
+	double least_open_rad; // pinch.c: what the jaws hold lets them close no further
 } cau_tool;
 
 // energy.c: what a tick makes out of nothing, and the shares whose laws it changed.
@@ -198,6 +200,11 @@ cau_grasp *cau_session_hold_of_row(cau_tool *tool, const cau_contact_row *row);
 bool cau_session_hold_is_left(const cau_session *session, const cau_grasp *grasp);
 // Takes hold of faces between the jaws of which no corner is held.
 void cau_session_grasp_faces(const cau_session *session, cau_tool *tool);
+// pinch.c: once jaws have taken hold; as a tick begins they turn towards where they are asked to
+// be, as far as what they hold lets them, and take it along; after the solve, how hard they press.
+void cau_session_begin_pinch(const cau_session *session, cau_tool *tool);
+void cau_session_turn_jaws(cau_tool *tool, double step_s);
+void cau_session_read_pinch(cau_session *session, cau_tool *tool, int32_t index);
 // meet.c: tissue against tissue: its arrays, if the scene wants it; what touches as the tick
 // begins, and the first guess as far as that lets it go.
 cau_status cau_session_make_collide(cau_session *session, cau_error *error);

@@ -169,9 +169,12 @@ static cau_status check_tools(const snapshot_header *header, const unsigned char
 {
 	for (int32_t i = 0; i < header->tool_count; i++) {
 		cau_tool_state state = {0};
-		if (counted->at + CAU_SNAPSHOT_OLDER_TOOL > counted->capacity)
+		snapshot_archive ahead = *counted;
+		ahead.bytes = (unsigned char *)(uintptr_t)payload;
+		ahead.reading = 1;
+		cau_snapshot_pass_tool_state(&ahead, &state);
+		if (ahead.at > ahead.capacity)
 			return cau_snapshot_corrupt(error, "bytes are missing");
-		memcpy(&state, payload + counted->at, CAU_SNAPSHOT_OLDER_TOOL);
 		double cells = state.definition.grid_cells; // a whole number of nodes is made of it
 		if (!(cells >= header->grid_nodes[i] && cells < header->grid_nodes[i] + 1.0))
 			return cau_snapshot_corrupt(error, "a heat grid has another size");
@@ -215,7 +218,7 @@ static cau_status restore_tools(cau_session *session, const snapshot_header *hea
 		memset(tool, 0, sizeof *tool);
 		cau_tool_state state = {0};
 		snapshot_archive ahead = *archive;
-		snapshot_pass(&ahead, &state, CAU_SNAPSHOT_OLDER_TOOL);
+		cau_snapshot_pass_tool_state(&ahead, &state);
 		cau_status status =
 			cau_heat_grid_create(&tool->grid, &state.definition, session->scene->ambient_c,
 		                         session->solver.step_s, &state.pose, error);
@@ -416,6 +419,9 @@ uint64_t cau_session_hash(const cau_session *session)
 		hash = cau_hash_bytes(hash, pose, sizeof *pose);
 		if (!cau_pose_is_same_place(pose, asked))
 			hash = cau_hash_bytes(hash, asked, sizeof *asked);
+		const double jaws[] = {tool->state.jaw, tool->state.asked_jaw};
+		if (jaws[0] != jaws[1])
+			hash = cau_hash_bytes(hash, jaws, sizeof jaws);
 		hash = cau_hash_bytes(hash, tool->state.force_n, sizeof tool->state.force_n);
 		hash = cau_hash_word(hash,
 		                     (uint64_t)tool->state.energized << 32 | (uint32_t)tool->grasp_count);

@@ -30,11 +30,10 @@ static inline void snapshot_pass(snapshot_archive *archive, void *data, size_t b
 cau_status cau_snapshot_pass_elements(snapshot_archive *archive, cau_session *session,
                                       cau_error *error);
 
-// Bytes that a tool's state had before version 6; all of it that decides what follows in a
-// snapshot.
-enum { CAU_SNAPSHOT_OLDER_TOOL = offsetof(cau_tool_state, asked_pose) };
-
-// snapshot_tools.c
+// snapshot_tools.c: of a tool's state what versions before 6 had of it, which decides what follows;
+// all of a tool.
+void cau_snapshot_pass_tool_state(snapshot_archive *archive, cau_tool_state *state);
+void cau_snapshot_pass_tool_def(snapshot_archive *archive, cau_tool_def *def);
 void cau_snapshot_pass_tool(snapshot_archive *archive, cau_tool *tool);
 // Since version 6: which of the holds of all tools are on faces, and where.
 void cau_snapshot_pass_faces_held(snapshot_archive *archive, cau_session *session);

@@ -6,11 +6,12 @@
 #include "session/session_internal.h"
 
 enum {
-	// 7 has columns of A^-1 of which only S is kept. Still read are 6, without these; 5, without
-	// nested heat fields, tears, what materials bear, what tools' forces have taught and the poses
-	// that tools are asked to take; 4, without the sides of faces; 3, without rest and accuracy; 1,
-	// elements by slot.
-	CAU_SNAPSHOT_VERSION = 7,
+	// 8 has jaws that stop at what they hold. Still read are 7, without these; 6, without columns
+	// of A^-1 of which only S is kept; 5, without nested heat fields, tears, what materials bear,
+	// what tools' forces have taught and the poses that tools are asked to take; 4, without the
+	// sides of faces; 3, without rest and accuracy; 1, elements by slot.
+	CAU_SNAPSHOT_VERSION = 8,
+	CAU_SNAPSHOT_JAWS = 8,     // the first with jaws that stop at what they hold
 	CAU_SNAPSHOT_WIDE = 7,     // the first with columns of S alone
 	CAU_SNAPSHOT_NESTED = 6,   // the first with nested heat fields
 	CAU_SNAPSHOT_NODES = 4096, // along a heat grid's side at most: far more than a tool may have

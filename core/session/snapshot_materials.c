@@ -3,6 +3,7 @@
 #include <stddef.h>
 
 #include "session/snapshot_archive.h"
+#include "session/snapshot_header.h"
 
 // What a material bears came with version 6, as its last member, and has a place of its own below:
 // the materials themselves are passed as they have always been.
@@ -23,10 +24,26 @@ void cau_snapshot_pass_materials(snapshot_archive *archive, cau_sheet_material *
 	snapshot_pass(archive, link, sizeof *link - BEARING_BYTES);
 }
 
+// Its definition grew by what jaws press with, at the cost of the room behind it.
+enum { TOOL_BYTES_SINCE_8 = sizeof(double) };
+
+static bool is_of_tool(const cau_command *command)
+{
+	return command->kind == CAU_COMMAND_TOOL_ADD || command->kind == CAU_COMMAND_TOOL_CONFIGURE;
+}
+
 void cau_snapshot_pass_command(snapshot_archive *archive, cau_command *command)
 {
 	const size_t before = offsetof(cau_command, as), all = sizeof *command - 3 * BEARING_BYTES;
 	snapshot_pass(archive, command, before);
+	if (archive->bytes && is_of_tool(command)) {
+		const size_t definition = sizeof command->as.definition - TOOL_BYTES_SINCE_8;
+		cau_snapshot_pass_tool_def(archive, &command->as.definition);
+		snapshot_pass(archive, (char *)&command->as + sizeof command->as.definition,
+		              all - before - definition -
+		                  (archive->version >= CAU_SNAPSHOT_JAWS ? TOOL_BYTES_SINCE_8 : 0));
+		return;
+	}
 	if (!archive->bytes || command->kind != CAU_COMMAND_SET_MATERIAL) {
 		snapshot_pass(archive, &command->as, all - before);
 		return;

@@ -6,8 +6,6 @@
 #include "cautery/assert.h"
 #include "session/session_internal.h"
 
-static const double jaw_per_s = 8; // a full stroke takes an eighth of a second
-
 int32_t cau_session_find_tool(const cau_session *session, const char *name)
 {
 	for (int32_t i = 0; i < session->tool_count; i++)
@@ -34,7 +32,7 @@ cau_status cau_session_add_tool(cau_session *session, const cau_tool_def *def, c
 	tool->state.pose = tool->state.asked_pose = tool->anchor = def->pose;
 	tool->target = tool->pose_before = tool->anchor_before = def->pose;
 	tool->pace = 1;
-	tool->state.jaw = tool->jaw_target = 1;
+	tool->state.jaw = tool->state.asked_jaw = tool->jaw_target = tool->jaw_before = 1;
 	tool->state.tip_temperature_c = session->scene->ambient_c;
 	session->tool_count++;
 	return CAU_OK;
@@ -76,9 +74,7 @@ static void move_tool(cau_session *session, cau_tool *tool)
 	tool->state.asked_pose =
 		share < 1 ? cau_pose_between(&before, &tool->target, share) : tool->target;
 	cau_session_lead_tool(session, tool, &before);
-	double jaw = tool->jaw_target - tool->state.jaw;
-	tool->state.jaw += fmax(-jaw_per_s * dt, fmin(jaw_per_s * dt, jaw));
-	CAU_ASSERT(tool->state.jaw >= 0 && tool->state.jaw <= 1, "a jaw at %g", tool->state.jaw);
+	cau_session_turn_jaws(tool, dt);
 }
 
 void cau_session_move_tools(cau_session *session)

@@ -83,6 +83,11 @@ static bool bipolar_between(const cau_tool_def *tool, double jaw, cau_vec3 point
 	                     coordinate);
 }
 
+static cau_tool_jaws bipolar_jaws(const cau_tool_def *tool)
+{
+	return (cau_tool_jaws){.hinge_m = tool->tip_length_m, .share = {0.5, 0.5}};
+}
+
 const cau_tool_family cau_shape_bipolar = {
 	.hot = bipolar_hot,
 	.cold = bipolar_cold,
@@ -90,4 +95,5 @@ const cau_tool_family cau_shape_bipolar = {
 	.cold_bound = bipolar_cold_bound,
 	.thinnest_hot = half_thickness,
 	.between = bipolar_between,
+	.jaws = bipolar_jaws,
 };

@@ -22,6 +22,7 @@ typedef struct cau_tool_family {
 	double (*thinnest_hot)(const cau_tool_def *tool); // m; NULL as `hot`
 	// NULL: the shape has no jaws.
 	bool (*between)(const cau_tool_def *tool, double jaw, cau_vec3 point, double *jaw_coordinate);
+	cau_tool_jaws (*jaws)(const cau_tool_def *tool); // NULL as `between`
 } cau_tool_family;
 
 // cau_shape_sphere and so on: one of each row of the table, defined in the shape's own file.

@@ -53,8 +53,14 @@ static bool grasper_between(const cau_tool_def *tool, double jaw, cau_vec3 point
 	                     coordinate);
 }
 
+static cau_tool_jaws grasper_jaws(const cau_tool_def *tool)
+{
+	return (cau_tool_jaws){.hinge_m = tool->tip_length_m, .share = {0.5, 0.5}};
+}
+
 const cau_tool_family cau_shape_grasper = {
 	.cold = grasper_cold,
 	.cold_bound = grasper_cold_bound,
 	.between = grasper_between,
+	.jaws = grasper_jaws,
 };

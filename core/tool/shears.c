@@ -73,6 +73,13 @@ static bool shears_between(const cau_tool_def *tool, double jaw, cau_vec3 point,
 	                     half_thickness(tool), point, coordinate);
 }
 
+// The blade stands.
+static cau_tool_jaws shears_jaws(const cau_tool_def *tool)
+{
+	return (cau_tool_jaws){
+		.hinge_m = tool->tip_length_m, .face_m = tool->hot_radius_m, .share = {0, 1}};
+}
+
 const cau_tool_family cau_shape_shears = {
 	.hot = shears_hot,
 	.cold = shears_cold,
@@ -80,4 +87,5 @@ const cau_tool_family cau_shape_shears = {
 	.cold_bound = shears_cold_bound,
 	.thinnest_hot = blade_radius,
 	.between = shears_between,
+	.jaws = shears_jaws,
 };

@@ -90,6 +90,25 @@ bool cau_tool_between_jaws(const cau_tool_def *tool, double jaw, cau_vec3 point,
 	return family->between && family->between(tool, fmin(fmax(jaw, 0), 1), point, jaw_coordinate);
 }
 
+cau_tool_jaws cau_tool_describe_jaws(const cau_tool_def *tool)
+{
+	const cau_tool_family *family = family_of(tool);
+	CAU_ASSERT(family->jaws, "shape %d has no jaws", tool->shape);
+	return family->jaws(tool);
+}
+
+double cau_tool_jaw_angle(const cau_tool_jaws *jaws, cau_vec3 point)
+{
+	return atan2(point.x - jaws->face_m, jaws->hinge_m - point.z);
+}
+
+cau_vec3 cau_tool_turn_with_jaw(const cau_tool_jaws *jaws, cau_vec3 point, double angle_rad)
+{
+	double arm = hypot(point.x - jaws->face_m, jaws->hinge_m - point.z);
+	return (cau_vec3){jaws->face_m + arm * sin(angle_rad), point.y,
+	                  jaws->hinge_m - arm * cos(angle_rad)};
+}
+
 // A part's distance is 1-Lipschitz, so from a point at distance d nothing can be met within d: both
 // ends of the segment are moved inwards by their distances until one meets the part or they pass
 // each other.

@@ -42,6 +42,24 @@ bool cau_tool_has_jaws(const cau_tool_def *tool);
 bool cau_tool_between_jaws(const cau_tool_def *tool, double jaw, cau_vec3 point,
                            double *jaw_coordinate);
 
+// How the jaws turn: about the y axis through z = hinge_m, and closed they meet in the plane
+// x = face_m. The one on the side of -x turns by share[0] of the opening angle, the other by
+// share[1].
+typedef struct cau_tool_jaws {
+	double hinge_m, face_m;
+	double share[2];
+} cau_tool_jaws;
+
+// Of a shape that has jaws.
+cau_tool_jaws cau_tool_describe_jaws(const cau_tool_def *tool);
+
+// The angle (rad) by which a jaw that turns from the closed plane is open when its face goes
+// through `point` (tool frame); negative on the side of -x.
+double cau_tool_jaw_angle(const cau_tool_jaws *jaws, cau_vec3 point);
+
+// The point, turned about the hinge to such an angle.
+cau_vec3 cau_tool_turn_with_jaw(const cau_tool_jaws *jaws, cau_vec3 point, double angle_rad);
+
 // Whether the segment a-b (tool frame) meets or lies inside the part. Sphere-traced from both ends,
 // exact to 1e-6 m: what passes nearer than that meets. After 1,024 steps the answer is that it
 // meets; the segment then ran within a thousandth of its length of the surface.

@@ -145,8 +145,10 @@ static const char *read_section(cau_frame_decoder *decoder, const section_cursor
 {
 	cau_stream_state *state = &decoder->state;
 	bool names = cursor->type == CAU_SECTION_TOOL_NAMES;
-	bool asked = cursor->type == CAU_SECTION_TOOLS_ASKED;
-	int channel = names || asked ? CAU_CHANNEL_INDEX_TOOLS : cau_channel_of_section(cursor->type);
+	bool asked = cursor->type == CAU_SECTION_TOOLS_ASKED,
+		 jaws = cursor->type == CAU_SECTION_TOOL_JAWS;
+	int channel =
+		names || asked || jaws ? CAU_CHANNEL_INDEX_TOOLS : cau_channel_of_section(cursor->type);
 	if (channel == CAU_CHANNEL_COUNT || !cau_stream_has(&decoder->def, channel))
 		return NULL;
 	switch (channel) {
@@ -154,6 +156,9 @@ static const char *read_section(cau_frame_decoder *decoder, const section_cursor
 		if (asked)
 			return cau_tools_asked_read(cursor->payload, cursor->payload_bytes, decoder->tools,
 			                            state->tool_count);
+		if (jaws)
+			return cau_tool_jaws_read(cursor->payload, cursor->payload_bytes, decoder->tools,
+			                          state->tool_count);
 		return names ? cau_tool_names_read(cursor->payload, cursor->payload_bytes, decoder->tools,
 		                                   &state->tool_count)
 		             : cau_tools_read(cursor->payload, cursor->payload_bytes, decoder->tools,

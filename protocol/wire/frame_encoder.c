@@ -17,7 +17,8 @@ size_t cau_frame_bytes_max(const cau_stream_def *def)
 		bytes += CAU_FRAME_SECTION_BYTES + cau_elements_bytes_max(shape.count, shape.components);
 	}
 	return bytes + (size_t)4 * CAU_FRAME_SECTION_BYTES + TOOL_NAMES_BYTES_MAX +
-	       (size_t)CAU_MAX_TOOLS * (TOOL_RECORD_BYTES + TOOL_ASKED_BYTES) + STATISTICS_RECORD_BYTES;
+	       (size_t)CAU_MAX_TOOLS * (TOOL_RECORD_BYTES + TOOL_ASKED_BYTES + TOOL_JAW_BYTES) +
+	       STATISTICS_RECORD_BYTES;
 }
 
 static size_t struct_bytes(void)
@@ -283,6 +284,9 @@ static void write_asked(const cau_tool_set *set, frame_writer *writer)
 	size_t bytes = cau_tools_asked_write(section_payload(writer), set->tools, set->count);
 	if (bytes)
 		end_section(writer, CAU_SECTION_TOOLS_ASKED, bytes);
+	bytes = cau_tool_jaws_write(section_payload(writer), set->tools, set->count);
+	if (bytes)
+		end_section(writer, CAU_SECTION_TOOL_JAWS, bytes);
 }
 
 // The channels in their order, which is that of their sections; what came to them later is last.

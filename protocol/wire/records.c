@@ -105,7 +105,8 @@ const char *cau_stream_tool_check(const cau_stream_tool *tool)
 	    tool->energy_off >= CAU_ENERGY_OFF_COUNT)
 		return "its shape or its reason for energy off is none";
 	if (!is_finite(tool->pose.position_m, 3) || !is_finite(tool->pose.rotation, 4) ||
-	    !is_finite(&tool->jaw, 1) || !is_finite(tool->force_n, 3) ||
+	    !is_finite(&tool->jaw, 1) || !is_finite(&tool->asked_jaw, 1) ||
+	    !is_finite(&tool->jaw_force_n, 1) || !is_finite(tool->force_n, 3) ||
 	    !is_finite(tool->torque_nm, 3) || !is_finite(&tool->tip_temperature_c, 1) ||
 	    !is_finite(&tool->energy_j, 1) ||
 	    (tool->behind &&
@@ -137,6 +138,20 @@ size_t cau_tools_asked_write(uint8_t *out, const cau_stream_tool *tools, int32_t
 	return (size_t)(at - out);
 }
 
+size_t cau_tool_jaws_write(uint8_t *out, const cau_stream_tool *tools, int32_t count)
+{
+	CAU_ASSERT(count >= 0 && count <= CAU_MAX_TOOLS, "%d tools", count);
+	bool any = false;
+	for (int32_t i = 0; i < count; i++)
+		any = any || (float)tools[i].asked_jaw != (float)tools[i].jaw || tools[i].jaw_force_n > 0;
+	uint8_t *at = out;
+	for (int32_t i = 0; i < count && any; i++) {
+		at = store_vector(at, &tools[i].asked_jaw, 1);
+		at = store_vector(at, &tools[i].jaw_force_n, 1);
+	}
+	return (size_t)(at - out);
+}
+
 static const uint8_t *load_vector(const uint8_t *at, double *value, int count, bool *finite)
 {
 	for (int i = 0; i < count; i++, at += 4) {
@@ -159,6 +174,8 @@ static bool load_tool(const uint8_t *at, cau_stream_tool *tool)
 	at = load_vector(at, &tool->energy_j, 1, &finite);
 	tool->behind = false;
 	tool->asked_pose = tool->pose;
+	tool->asked_jaw = tool->jaw;
+	tool->jaw_force_n = 0;
 	tool->driver = load_u32(at);
 	tool->energized = at[4] & TOOL_ENERGIZED;
 	tool->grasping = at[4] & TOOL_GRASPING;
@@ -200,6 +217,20 @@ const char *cau_tools_asked_read(const uint8_t *payload, size_t bytes, cau_strea
 			tools[i].behind |= tools[i].asked_pose.rotation[c] != tools[i].pose.rotation[c];
 	}
 	return finite ? NULL : "a pose that is asked is not finite";
+}
+
+const char *cau_tool_jaws_read(const uint8_t *payload, size_t bytes, cau_stream_tool *tools,
+                               int32_t count)
+{
+	CAU_ASSERT(count >= 0 && count <= CAU_MAX_TOOLS, "%d tools", count);
+	bool finite = true;
+	if (bytes != (size_t)count * TOOL_JAW_BYTES)
+		return "there are not as many jaws as tools";
+	for (int32_t i = 0; i < count; i++) {
+		payload = load_vector(payload, &tools[i].asked_jaw, 1, &finite);
+		payload = load_vector(payload, &tools[i].jaw_force_n, 1, &finite);
+	}
+	return finite ? NULL : "a number of jaws is not finite";
 }
 
 static int is_float_word(size_t word)

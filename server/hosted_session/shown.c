@@ -28,6 +28,8 @@ static void describe_tool(const cau_tool_state *from, cau_stream_tool *to)
 		.behind = is_behind(from),
 		.asked_pose = from->asked_pose,
 		.jaw = from->jaw,
+		.asked_jaw = from->asked_jaw,
+		.jaw_force_n = from->jaw_force_n,
 		.tip_temperature_c = from->tip_temperature_c,
 		.energy_j = from->energy_j,
 		.sequence = from->sequence,

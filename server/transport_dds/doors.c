@@ -20,6 +20,7 @@ cau_status cau_dds_open_topics(cau_dds *dds, cau_error *error)
 		const dds_topic_descriptor_t *type;
 	} topics[TOPIC_COUNT] = {
 		[TOPIC_STATE] = {"cautery/tool_state", &cautery_ToolState_desc},
+		[TOPIC_GRASP] = {"cautery/tool_grasp", &cautery_ToolGrasp_desc},
 		[TOPIC_STATUS] = {"cautery/session_status", &cautery_SessionStatus_desc},
 		[TOPIC_TOPOLOGY] = {"cautery/topology", &cautery_Frame_desc},
 		[TOPIC_KEY_FRAME] = {"cautery/key_frame", &cautery_Frame_desc},
@@ -131,9 +132,8 @@ static void open_writers(cau_dds *dds, cau_dds_session *session)
 		cau_topic topic;
 		const dds_qos_t *qos;
 	} outlets[] = {
-		{&session->state, TOPIC_STATE, kept},
-		{&stream->topology, TOPIC_TOPOLOGY, kept},
-		{&stream->key, TOPIC_KEY_FRAME, kept},
+		{&session->state, TOPIC_STATE, kept},      {&session->grasp, TOPIC_GRASP, kept},
+		{&stream->topology, TOPIC_TOPOLOGY, kept}, {&stream->key, TOPIC_KEY_FRAME, kept},
 		{&stream->delta, TOPIC_DELTA, chain},
 	};
 	uint32_t number = cau_hosted_number(session->hosted);
@@ -192,8 +192,8 @@ static void close_writers(cau_dds *dds, cau_dds_session *session)
 	snprintf(gone.session, sizeof gone.session, "%s", cau_hosted_id(session->hosted));
 	if (session->status_writer > 0)
 		dds_dispose(session->status_writer, &gone);
-	cau_dds_outlet *at_once[] = {&session->state, &session->stream.topology, &session->stream.key,
-	                             &session->stream.delta};
+	cau_dds_outlet *at_once[] = {&session->state, &session->grasp, &session->stream.topology,
+	                             &session->stream.key, &session->stream.delta};
 	for (size_t i = 0; i < sizeof at_once / sizeof at_once[0]; i++)
 		cau_dds_close_outlet(at_once[i]);
 	cau_dds_bid_farewell(dds, session->publisher, session->status_writer);
@@ -255,6 +255,8 @@ static void open_ros_writers(cau_dds *dds, uint32_t session, cau_dds_tool *tool,
 		{&tool->force_topic, &tool->force, "measured_cf",
 	     &geometry_msgs_msg_dds__WrenchStamped__desc},
 		{&tool->jaw_topic, &tool->jaw, "jaw/measured_js", &sensor_msgs_msg_dds__JointState__desc},
+		{&tool->asked_jaw_topic, &tool->asked_jaw, "jaw/setpoint_js",
+	     &sensor_msgs_msg_dds__JointState__desc},
 	};
 	for (size_t i = 0; i < sizeof outlets / sizeof outlets[0]; i++) {
 		*outlets[i].topic = ros_topic(dds, prefix, outlets[i].name, outlets[i].type);
@@ -318,8 +320,10 @@ void cau_dds_close_tool(cau_dds *dds, cau_dds_tool *tool)
 	cau_dds_close_outlet(&tool->asked);
 	cau_dds_close_outlet(&tool->force);
 	cau_dds_close_outlet(&tool->jaw);
+	cau_dds_close_outlet(&tool->asked_jaw);
 	const dds_entity_t made[] = {tool->operating_writer, tool->pose_topic, tool->asked_topic,
-	                             tool->force_topic,      tool->jaw_topic,  tool->operating_topic};
+	                             tool->force_topic,      tool->jaw_topic,  tool->asked_jaw_topic,
+	                             tool->operating_topic};
 	for (size_t i = 0; i < sizeof made / sizeof made[0]; i++)
 		if (made[i] > 0)
 			dds_delete(made[i]);

@@ -1,9 +1,10 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// What the server says of tools: cautery/tool_state, measured_cp, setpoint_cp, measured_cf,
-// jaw/measured_js.
+// What the server says of tools: cautery/tool_state, cautery/tool_grasp, measured_cp, setpoint_cp,
+// measured_cf, jaw/measured_js, jaw/setpoint_js.
 #include <math.h>
 #include <string.h>
 
+#include "cautery/assert.h"
 #include "ros2.h"
 #include "transport_dds/internal.h"
 
@@ -41,6 +42,32 @@ static void publish_state(const cau_dds_session *session, const cau_hosted_tool 
 	dds_write(session->state.writer, &sample);
 }
 
+static void publish_grasp(const cau_dds_session *session, const cau_tool_state *state,
+                          uint64_t tick)
+{
+	cautery_ToolGrasp sample = {
+		.tick = tick,
+		.jaw = state->jaw,
+		.asked_jaw = state->asked_jaw,
+		.jaw_force_n = state->jaw_force_n,
+		.grasped_vertices = (uint32_t)state->grasped_vertices,
+		.grasping = state->grasping,
+		.slipping = state->slipping,
+	};
+	snprintf(sample.session, sizeof sample.session, "%s", cau_hosted_id(session->hosted));
+	snprintf(sample.tool, sizeof sample.tool, "%s", state->name);
+	dds_write(session->grasp.writer, &sample);
+}
+
+static bool has_jaws(const cau_tool_state *state)
+{
+#define X(code, word, hot, jaws, ...) jaws,
+	static const bool any[] = {CAU_TOOL_SHAPE_TABLE(X)};
+#undef X
+	CAU_ASSERT_INDEX(state->definition.shape, CAU_TOOL_SHAPE_COUNT);
+	return any[state->definition.shape];
+}
+
 static std_msgs_msg_dds__Header_ header_now(void)
 {
 	int64_t now_us = cau_wall_us();
@@ -66,6 +93,18 @@ static void publish_pose(cau_dds_outlet *outlet, const cau_pose *pose, bool chan
 	dds_write(outlet->writer, &sample);
 }
 
+static void publish_joint(cau_dds_outlet *outlet, double angle_rad, double *moment_nm, bool changed)
+{
+	if (!is_due(outlet, changed))
+		return;
+	sensor_msgs_msg_dds__JointState_ jaw = {.header_ = header_now(),
+	                                        .name_ = {1, 1, &jaw_name, false},
+	                                        .position_ = {1, 1, &angle_rad, false}};
+	if (moment_nm)
+		jaw.effort_ = (dds_sequence_double){1, 1, moment_nm, false};
+	dds_write(outlet->writer, &jaw);
+}
+
 static void publish_measured(cau_dds_tool *wire, const cau_tool_state *state, bool changed)
 {
 	const double *f = state->force_n, *t = state->torque_nm;
@@ -76,13 +115,10 @@ static void publish_measured(cau_dds_tool *wire, const cau_tool_state *state, bo
 		                                               {{f[0], f[1], f[2]}, {t[0], t[1], t[2]}}};
 		dds_write(wire->force.writer, &force);
 	}
-	if (is_due(&wire->jaw, changed)) {
-		double angle_rad = state->jaw * state->definition.jaw_open_rad;
-		sensor_msgs_msg_dds__JointState_ jaw = {.header_ = header_now(),
-		                                        .name_ = {1, 1, &jaw_name, false},
-		                                        .position_ = {1, 1, &angle_rad, false}};
-		dds_write(wire->jaw.writer, &jaw);
-	}
+	const double open_rad = state->definition.jaw_open_rad;
+	double moment_nm = state->jaw_force_n * state->definition.tip_length_m;
+	publish_joint(&wire->jaw, state->jaw * open_rad, &moment_nm, changed);
+	publish_joint(&wire->asked_jaw, state->asked_jaw * open_rad, NULL, changed);
 }
 
 void cau_dds_unpublish(const cau_dds_session *session, const char *tool)
@@ -91,6 +127,10 @@ void cau_dds_unpublish(const cau_dds_session *session, const char *tool)
 	snprintf(gone.session, sizeof gone.session, "%s", cau_hosted_id(session->hosted));
 	snprintf(gone.tool, sizeof gone.tool, "%s", tool);
 	dds_dispose(session->state.writer, &gone);
+	cautery_ToolGrasp nothing = {0};
+	memcpy(nothing.session, gone.session, sizeof nothing.session);
+	memcpy(nothing.tool, gone.tool, sizeof nothing.tool);
+	dds_dispose(session->grasp.writer, &nothing);
 }
 
 // What a late joiner must not be told of wrongly, not for a second.
@@ -109,6 +149,8 @@ void cau_dds_publish(cau_dds_session *session, const cau_hosted_tool *tools, int
                      uint64_t tick, double time_s, double now_s)
 {
 	bool is_read = cau_dds_is_read(&session->state);
+	bool grasp_is_read = cau_dds_is_read(&session->grasp);
+	bool grasps = cau_dds_take_newcomers(&session->grasp);
 	bool all = cau_dds_take_newcomers(&session->state) || now_s >= cau_dds_states_due(session);
 	if (all) {
 		session->states_owed = false;
@@ -124,6 +166,12 @@ void cau_dds_publish(cau_dds_session *session, const cau_hosted_tool *tools, int
 			publish_state(session, &tools[i], tick, time_s);
 		else
 			session->states_owed |= changed;
+		if (has_jaws(&tools[i].state)) {
+			if (all || grasps || (changed && grasp_is_read))
+				publish_grasp(session, &tools[i].state, tick);
+			else
+				session->states_owed |= changed;
+		}
 		*last = tools[i];
 		if (wire)
 			publish_measured(wire, &tools[i].state, changed);

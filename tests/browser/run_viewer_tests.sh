@@ -34,7 +34,7 @@ browser | pictures)
 		exec nice npm run --silent browser
 	fi
 	npm run --silent build
-	npm run --silent browser -- layers first_view
+	npm run --silent browser -- layers first_view asked
 	for picture in pictures/*.png; do
 		cp "$CAUTERY_SCREENSHOTS/$(basename "$picture")" pictures/
 	done

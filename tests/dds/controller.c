@@ -47,8 +47,9 @@ typedef struct controller {
 	uint64_t sequence;
 	double position_m[3], aim_m[3];
 	double last_write_s;
-	dds_entity_t participant, publisher, command, pose, level, state_reader;
+	dds_entity_t participant, publisher, command, pose, level, state_reader, grasp_reader;
 	cautery_ToolState state;
+	cautery_ToolGrasp holding;
 	crtk crtk; // ros
 	bool crtk_asked;
 	double storm_hz; // 0: writes good samples if any
@@ -91,9 +92,11 @@ static void open_wire(controller *c, uint32_t domain, int deadline_ms)
 	} else {
 		open_native(c, publisher_of(c->participant, c->session), deadline_ms);
 	}
-	c->state_reader =
-		native_reader(subscriber_of(c->participant, c->session), &cautery_ToolState_desc,
-	                  "cautery/tool_state", DDS_DURABILITY_TRANSIENT_LOCAL, 1);
+	dds_entity_t subscriber = subscriber_of(c->participant, c->session);
+	c->state_reader = native_reader(subscriber, &cautery_ToolState_desc, "cautery/tool_state",
+	                                DDS_DURABILITY_TRANSIENT_LOCAL, 1);
+	c->grasp_reader = native_reader(subscriber, &cautery_ToolGrasp_desc, "cautery/tool_grasp",
+	                                DDS_DURABILITY_TRANSIENT_LOCAL, 1);
 }
 
 static bool is_matched(dds_entity_t writer)
@@ -219,13 +222,17 @@ static void write_strangers(controller *c)
 static void tell_state(const controller *c, const char *event)
 {
 	const cautery_ToolState *s = &c->state;
+	const cautery_ToolGrasp *h = &c->holding;
 	printf("{\"event\":\"%s\",\"has\":%s,\"stormed\":%llu,\"tick\":%llu,\"sequence\":%llu,"
 	       "\"position_m\":[%.6f,%.6f,%.6f],\"energized\":%s,\"energy_off\":%d,\"driver\":%u,"
-	       "\"driver_name\":\"%s\",\"grasping\":%s}\n",
+	       "\"driver_name\":\"%s\",\"grasping\":%s,\"jaw\":%.6f,\"asked_jaw\":%.6f,"
+	       "\"jaw_force_n\":%.6f,\"held\":%u,\"slipping\":%s,\"holding\":%s}\n",
 	       event, c->has_state ? "true" : "false", (unsigned long long)c->stormed,
 	       (unsigned long long)s->tick, (unsigned long long)s->sequence_number, s->position_m[0],
 	       s->position_m[1], s->position_m[2], s->energized ? "true" : "false", (int)s->energy_off,
-	       s->driver, s->driver_name, s->grasping ? "true" : "false");
+	       s->driver, s->driver_name, s->grasping ? "true" : "false", h->jaw, h->asked_jaw,
+	       h->jaw_force_n, h->grasped_vertices, h->slipping ? "true" : "false",
+	       h->grasping ? "true" : "false");
 }
 
 static void take_state(void *user, const void *sample)
@@ -240,6 +247,14 @@ static void take_state(void *user, const void *sample)
 	c->has_state = true;
 	if (changed)
 		tell_state(c, "changed");
+}
+
+static void take_grasp(void *user, const void *sample)
+{
+	controller *c = user;
+	const cautery_ToolGrasp *s = sample;
+	if (strcmp(s->tool, c->tool) == 0)
+		c->holding = *s;
 }
 
 static void obey(void *user, const char *line)
@@ -284,6 +299,7 @@ static void run(controller *c)
 	double next_s = clock_s(CLOCK_MONOTONIC);
 	while (console_listen(&input, next_s - clock_s(CLOCK_MONOTONIC), obey, c)) {
 		take_each(c->state_reader, take_state, c);
+		take_each(c->grasp_reader, take_grasp, c);
 		if (c->ros)
 			crtk_read(&c->crtk);
 		if (clock_s(CLOCK_MONOTONIC) < next_s)

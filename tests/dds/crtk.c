@@ -40,6 +40,8 @@ void crtk_open(crtk *c, dds_entity_t participant, const char *session, const cha
 		{&c->state_reader, "operating_state", &crtk_msgs_msg_dds__OperatingState__desc, false,
 	     true},
 		{&c->jaw_reader, "jaw/measured_js", &sensor_msgs_msg_dds__JointState__desc, false, false},
+		{&c->asked_jaw_reader, "jaw/setpoint_js", &sensor_msgs_msg_dds__JointState__desc, false,
+	     false},
 		{&c->pose_reader, "measured_cp", &geometry_msgs_msg_dds__PoseStamped__desc, false, false},
 		{&c->asked_reader, "setpoint_cp", &geometry_msgs_msg_dds__PoseStamped__desc, false, false},
 	};
@@ -77,6 +79,16 @@ static void take_jaw(void *user, const void *sample)
 	const sensor_msgs_msg_dds__JointState_ *jaw = sample;
 	if (jaw->position_._length == 1 && jaw->name_._length == 1)
 		c->jaw_rad = jaw->position_._buffer[0];
+	if (jaw->effort_._length == 1)
+		c->jaw_nm = jaw->effort_._buffer[0];
+}
+
+static void take_asked_jaw(void *user, const void *sample)
+{
+	crtk *c = user;
+	const sensor_msgs_msg_dds__JointState_ *jaw = sample;
+	if (jaw->position_._length == 1 && jaw->effort_._length == 0)
+		c->asked_jaw_rad = jaw->position_._buffer[0];
 }
 
 static void take_pose(void *user, const void *sample)
@@ -104,6 +116,7 @@ void crtk_read(crtk *c)
 {
 	take_each(c->state_reader, take_state, c);
 	take_each(c->jaw_reader, take_jaw, c);
+	take_each(c->asked_jaw_reader, take_asked_jaw, c);
 	take_each(c->pose_reader, take_pose, c);
 	take_each(c->asked_reader, take_asked, c);
 }
@@ -127,8 +140,9 @@ void crtk_jaw(const crtk *c, double angle_rad)
 void crtk_tell(const crtk *c)
 {
 	printf("{\"event\":\"crtk\",\"state\":\"%s\",\"homed\":%s,\"busy\":%s,\"states\":%d,"
-	       "\"jaw_rad\":%.6f,\"position_m\":[%.6f,%.6f,%.6f],\"asked_m\":[%.6f,%.6f,%.6f]}\n",
+	       "\"jaw_rad\":%.6f,\"asked_jaw_rad\":%.6f,\"jaw_nm\":%.6f,\"position_m\":[%.6f,%.6f,%.6f]"
+	       ",\"asked_m\":[%.6f,%.6f,%.6f]}\n",
 	       c->state, c->homed ? "true" : "false", c->busy ? "true" : "false", c->states, c->jaw_rad,
-	       c->position_m[0], c->position_m[1], c->position_m[2], c->asked_m[0], c->asked_m[1],
-	       c->asked_m[2]);
+	       c->asked_jaw_rad, c->jaw_nm, c->position_m[0], c->position_m[1], c->position_m[2],
+	       c->asked_m[0], c->asked_m[1], c->asked_m[2]);
 }

@@ -6,11 +6,13 @@
 #include <stdbool.h>
 
 typedef struct crtk {
-	dds_entity_t command_writer, jaw_writer, state_reader, jaw_reader, pose_reader, asked_reader;
+	dds_entity_t command_writer, jaw_writer, state_reader, jaw_reader, pose_reader, asked_reader,
+		asked_jaw_reader;
 	char state[16];
 	bool homed, busy;
-	int states, poses;                         // samples that came
-	double jaw_rad, position_m[3], asked_m[3]; // the last two of measured_cp and setpoint_cp
+	int states, poses; // samples that came
+	double jaw_rad, asked_jaw_rad, jaw_nm, position_m[3],
+		asked_m[3]; // the last two of measured_cp and setpoint_cp
 } crtk;
 
 // A topic of ROS 2: rt/SESSION/TOOL/NAME, each `-` a `_`.

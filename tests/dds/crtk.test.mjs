@@ -151,13 +151,46 @@ test('a paused session is told as paused tools', async (t) => {
 	await robot.untilCrtk((c) => c.state === 'ENABLED');
 });
 
-test('the jaw goes where servo_jp says, and measured_js, measured_cp and setpoint_cp tell', async (t) => {
+test('the jaw goes where servo_jp says, and measured_js, setpoint_js, measured_cp and setpoint_cp tell', async (t) => {
 	const seen = await driven(t, 'jaw');
 	const { session, robot } = seen;
 	const aim = [0.01, -0.01, 0.02];
 	await follows(seen, aim);
 	robot.tell('jaw 0.2');
-	await robot.untilCrtk((c) => Math.abs(c.jaw_rad - 0.2) < 1e-5 && far(c.position_m, aim) < AT_AIM_M && far(c.asked_m, aim) < AT_AIM_M);
+	await robot.untilCrtk((c) => Math.abs(c.jaw_rad - 0.2) < 1e-5 && Math.abs(c.asked_jaw_rad - 0.2) < 1e-5 && far(c.position_m, aim) < AT_AIM_M && far(c.asked_m, aim) < AT_AIM_M);
 	await refusesOne(session, robot, 'jaw 0.6');
 	assert.ok(Math.abs((await robot.crtk()).jaw_rad - 0.2) < 1e-5);
+});
+
+// Of a WebSocket client that drives: what the jaws do is told to whoever listens.
+test('jaws tell how far they are open, how hard they press, what they hold and that it slips', async (t) => {
+	const SLIP_N = 0.05, PULL_M = 0.01, NEAR_RAD = 1e-5;
+	const client = await daemon.connect({ hello: { client: 'hand' } });
+	const definition = await smallScene(client);
+	const at = (z) => ({ tool: 'grasper', position_m: [0, 0, z], rotation: [1, 0, 0, 0], jaw: 1 });
+	Object.assign(definition.tools[0], { name: 'grasper', shape: 'grasper', jaw_open_rad: JAW_OPEN_RAD, slip_force_n: SLIP_N, ...at(-0.003) });
+	for (const word of ['tool', 'jaw']) delete definition.tools[0][word];
+	const session = (await client.call('session.create', { name: 'holds', definition })).summary.session;
+	t.after(async () => {
+		await Controller.killAll();
+		await client.call('session.destroy', { session });
+		await client.close();
+	});
+	await client.join(session);
+	const listener = await controller(session);
+	let sequence = 0;
+	const tell = (method, more = {}) => client.call(method, { session, tool: 'grasper', sequence: ++sequence, ...more });
+	await listener.until((s) => s.jaw === 1 && s.held === 0 && !s.holding);
+	await client.call('tool.take_over', { session, tool: 'grasper' });
+	await tell('tool.grasp');
+	const held = await listener.until((s) => s.holding && s.held > 0 && s.asked_jaw === 0 && s.jaw < 0.9);
+	assert.ok(held.jaw > 0, `open by ${held.jaw}`);
+	const told = await listener.untilCrtk((c) => c.asked_jaw_rad === 0 && c.jaw_rad < 0.9 * JAW_OPEN_RAD);
+	assert.ok(told.jaw_rad > 0 && told.jaw_nm >= 0);
+	await tell('tool.move', at(-0.003 + PULL_M));
+	await listener.until((s) => s.slipping);
+	await listener.until((s) => s.holding && s.held === 0); // empty
+	await tell('tool.release');
+	await listener.until((s) => !s.holding && s.jaw === 1 && s.asked_jaw === 1 && s.jaw_force_n === 0);
+	await listener.untilCrtk((c) => Math.abs(c.jaw_rad - JAW_OPEN_RAD) < NEAR_RAD && c.jaw_nm === 0);
 });

@@ -193,8 +193,12 @@ export interface Inspection {
   driving: boolean;
   energized: boolean;
   tip: readonly number[];
-  /** of the tool in hand: 0 closed, 1 open; whether it holds tissue */
+  /** where the tool in hand is led to, and whether it is drawn there too */
+  asked: readonly number[];
+  ghost: boolean;
+  /** of the tool in hand: 0 closed, 1 open; where it is led to; whether it holds tissue */
   jaw: number;
+  askedJaw: number;
   grasping: boolean;
   tipTemperatureC: number | null;
   /** definition of the tool in hand */
@@ -229,6 +233,9 @@ const inspection: Inspection = {
   get driving() { return model.driving; },
   get energized() { return model.toolState?.energized ?? false; },
   get tip() { return model.toolState?.positionM ?? []; },
+  get asked() { return model.toolState?.asked.positionM ?? []; },
+  get ghost() { return model.toolState !== null && viewport.ghostOf(model.toolState.name); },
+  get askedJaw() { return model.toolState?.askedJaw ?? 1; },
   get jaw() { return model.toolState?.jaw ?? 1; },
   get grasping() { return model.toolState?.grasping ?? false; },
   get tipTemperatureC() { return model.toolState?.tipTemperatureC ?? null; },

@@ -168,7 +168,7 @@ typedef struct cau_tool_state {
 	char name[CAU_NAME_BYTES];
 	cau_tool_def definition;
 	cau_pose pose; // where it is: tissue stops it
-	double jaw;
+	double jaw;    // where it is: what the jaws hold stops it
 	bool energized;
 	bool grasping;            // jaws commanded closed on tissue
 	bool slipping;            // some of what they hold slid in the last step
@@ -186,6 +186,9 @@ typedef struct cau_tool_state {
 	cau_pose asked_pose;
 	int32_t slips; // times that it was left behind so far that it let go of what stopped it
 	int32_t unused;
+	// Where its jaws are led to, within their speed; and with how much they press what they hold,
+	// N at their tips, close_force_n at most.
+	double asked_jaw, jaw_force_n;
 } cau_tool_state;
 
 typedef struct cau_statistics {

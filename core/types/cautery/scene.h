@@ -237,7 +237,8 @@ typedef struct cau_selection {
 	X(drag_ns_m, 0.05, 0.0, 100.0, "N s/m", "viscous drag of the hot part on each vertex in it")   \
 	X(grasp_stiffness_n_m, 200.0, 1.0, 1e6, "N/m", "of the attachment of one grasped vertex")      \
 	X(slip_force_n, 2.0, 0.0, 1000.0, "N", "an attached vertex slips above this force")            \
-	X(force_max_n, 20.0, 0.01, 1000.0, "N", "it pushes with this at most, as told to drivers")
+	X(force_max_n, 20.0, 0.01, 1000.0, "N", "it pushes with this at most, as told to drivers")     \
+	X(close_force_n, 8.0, 0.01, 1000.0, "N", "its jaws press what they hold with this at most")
 
 typedef struct cau_pose {
 	double position_m[3];

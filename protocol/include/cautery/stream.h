@@ -77,7 +77,9 @@ typedef struct cau_stream_tool {
 	cau_pose pose;       // single precision on the wire, like all that follows
 	bool behind;         // tissue keeps it from where it is led to
 	cau_pose asked_pose; // where that is; of a decoder's tools also where they are not behind
-	double jaw;          // 0 closed to 1 open
+	double jaw;          // 0 closed to 1 open: what the jaws hold keeps it so
+	double asked_jaw;    // where it is led to
+	double jaw_force_n;  // with which the jaws press what they hold, at their tips
 	double force_n[3];
 	double torque_nm[3]; // about the tip
 	double tip_temperature_c;

@@ -49,7 +49,8 @@ static void jaws_smaller_than_a_cell_hold_and_pull(void **state)
 	int32_t held = stage_tool(session, "jaws")->grasped_vertices;
 	assert_in_range(held, 1, 4);
 	assert_true(session->tool[0].grasp[0].face >= 0);
-	assert_true(stage_tool(session, "jaws")->jaw == 0);
+	assert_true(stage_tool(session, "jaws")->asked_jaw == 0);
+	assert_true(stage_tool(session, "jaws")->jaw < 0.3); // half a millimetre of sheet
 	cau_vec3 start = center_of_holds(session);
 	for (int tick = 1; tick <= 40; tick++) {
 		stage_move(session, "jaws", 0.004, 0.003, -0.002 + fmin(speed_m * tick, way_m));
@@ -90,8 +91,141 @@ static void empty_jaws_close_whole_and_say_so(void **state)
 	const cau_tool_state *jaws = stage_tool(session, "jaws");
 	assert_true(jaws->grasping && !jaws->slipping);
 	assert_int_equal(jaws->grasped_vertices, 0);
-	assert_true(jaws->jaw == 0);
+	assert_true(jaws->jaw == 0 && jaws->asked_jaw == 0 && jaws->jaw_force_n == 0);
 	cau_session_destroy(session);
+	free(scene);
+}
+
+// ---- jaws that stop at what lies between them
+
+// A block on a pinned floor, 3 mm wide in x: jaws that are open reach around it.
+static cau_scene_def *block_scene(int shape, double young_pa)
+{
+	const double size[3] = {0.003, 0.012, 0.012},
+				 floor_m[2][3] = {{-1, -1, -0.0121}, {1, 1, -0.0119}};
+	const int32_t cells[3] = {3, 8, 8};
+	cau_scene_def *scene = stage_scene(CAU_PRECISION_SINGLE);
+	scene->iterations = 30;
+	scene->damping_per_s = 20;
+	cau_fat_material *fat = stage_add_slab(scene, "block", size, cells)->fat;
+	fat->young_modulus_pa = young_pa;
+	fat->poisson_ratio = 0.3;
+	stage_pin_box(scene, floor_m[0], floor_m[1]);
+	cau_tool_def *jaws = stage_add_tool(scene, "jaws", shape, 0, 0, -0.006);
+	if (shape == CAU_TOOL_SHEARS)
+		jaws->pose.position_m[0] = -0.0015 - jaws->hot_radius_m; // the blade beside it
+	jaws->grasp_stiffness_n_m = 2000;
+	jaws->slip_force_n = 1000;
+	jaws->force_max_n = 1000;
+	return scene;
+}
+
+typedef struct closing {
+	double jaw, force_n, width_m; // at the end; of the block where it is held
+	double most_n;                // at any time
+} closing;
+
+static double width_held_m(const cau_session *session)
+{
+	const cau_tool *tool = &session->tool[0];
+	double least = HUGE_VAL, most = -HUGE_VAL;
+	for (int32_t k = 0; k < tool->grasp_count; k++) {
+		cau_contact_row row = cau_session_row_of_hold(session, &tool->grasp[k], 0);
+		double x = cau_contact_point(&row, session->position).x;
+		least = fmin(least, x);
+		most = fmax(most, x);
+	}
+	return most - least;
+}
+
+static closing close_on(int shape, double young_pa, double close_force_n)
+{
+	enum { TICKS = 240 };
+	const double rounding_n = 1e-3, jump_m = 5e-4;
+	closing c = {0};
+	cau_scene_def *scene = block_scene(shape, young_pa);
+	scene->tools[0].close_force_n = close_force_n;
+	cau_session *session = stage_open(scene, 2);
+	stage_grasp(session, "jaws");
+	size_t bytes = 3 * (size_t)stage_info(session).vertex_count * sizeof(double);
+	double *before = malloc(bytes);
+	assert_non_null(before);
+	for (int tick = 0; tick < TICKS; tick++) {
+		memcpy(before, stage_frame(session).position, bytes);
+		stage_step(session, 1);
+		cau_frame frame = stage_frame(session);
+		assert_true(stage_farthest(&frame, before, stage_info(session).vertex_count) < jump_m);
+		c.most_n = fmax(c.most_n, stage_tool(session, "jaws")->jaw_force_n);
+	}
+	const cau_tool_state *jaws = stage_tool(session, "jaws");
+	c.jaw = jaws->jaw;
+	c.force_n = jaws->jaw_force_n;
+	c.width_m = width_held_m(session);
+	print_message("%.0f kPa, %.1f N: open by %.3f, %.2f N (%.2f at most), %.2f mm wide, %d held\n",
+	              young_pa / 1000, close_force_n, c.jaw, c.force_n, c.most_n, 1000 * c.width_m,
+	              jaws->grasped_vertices);
+	assert_true(jaws->grasped_vertices > 10 && jaws->asked_jaw == 0);
+	assert_true(c.most_n <= close_force_n + rounding_n);
+	free(before);
+	cau_session_destroy(session);
+	free(scene);
+	return c;
+}
+
+// What is stiff stops them early, at the force that they have; what is soft late.
+static void jaws_stop_where_tissue_bears_what_they_press_with(void **state)
+{
+	(void)state;
+	const double reached = 0.98, wide_m = 0.003, least_share = 0.4;
+	closing soft = close_on(CAU_TOOL_GRASPER, 5e3, 8);
+	closing firm = close_on(CAU_TOOL_GRASPER, 2e6, 8);
+	closing weak = close_on(CAU_TOOL_GRASPER, 2e6, 4);
+	assert_true(firm.force_n > reached * 8 && weak.force_n > reached * 4);
+	assert_true(firm.jaw > soft.jaw + 0.02 && weak.jaw > firm.jaw + 0.02);
+	assert_true(soft.width_m < firm.width_m && firm.width_m < weak.width_m);
+	assert_true(weak.width_m < wide_m);
+	// It fills the jaws near the hinge: they stop at its least thickness, pressing with less.
+	assert_true(fabs(soft.jaw - least_share) < 0.01 && soft.force_n < 1);
+}
+
+static void every_shape_with_jaws_stops(void **state)
+{
+	(void)state;
+	closing bipolar = close_on(CAU_TOOL_BIPOLAR, 1e6, 4);
+	closing shears = close_on(CAU_TOOL_SHEARS, 1e6, 4);
+	assert_true(bipolar.jaw > 0.05 && bipolar.force_n > 3.9);
+	assert_true(shears.jaw > 0.05 && shears.force_n > 3.9);
+}
+
+static void held_jaws_rest_and_open_again(void **state)
+{
+	(void)state;
+	cau_scene_def *scene = block_scene(CAU_TOOL_GRASPER, 1e5);
+	cau_session *session = stage_open(scene, 1), *other = stage_open(scene, 4);
+	stage_grasp(session, "jaws");
+	stage_step(session, 6); // on their way
+	stage_bytes shot = stage_snapshot(session);
+	bool exact = false;
+	cau_error error = {0};
+	assert_int_equal(cau_session_restore(other, shot.bytes, shot.count, &exact, &error), CAU_OK);
+	assert_true(exact);
+	free(shot.bytes);
+	for (int tick = 0; tick < 100; tick++) {
+		stage_step(session, 1);
+		stage_step(other, 1);
+		assert_true(cau_session_hash(session) == cau_session_hash(other));
+	}
+	int tick = 0;
+	for (; tick < 2000 && !stage_frame(session).statistics.resting; tick++)
+		stage_step(session, 1);
+	assert_true(stage_frame(session).statistics.resting);
+	assert_true(stage_tool(session, "jaws")->jaw > 0);
+	stage_release(session, "jaws");
+	stage_step(session, 20);
+	assert_true(stage_tool(session, "jaws")->jaw == 1);
+	assert_true(stage_tool(session, "jaws")->jaw_force_n == 0);
+	cau_session_destroy(session);
+	cau_session_destroy(other);
 	free(scene);
 }
 
@@ -142,6 +276,9 @@ int main(void)
 	const struct CMUnitTest tests[] = {
 		cmocka_unit_test(jaws_smaller_than_a_cell_hold_and_pull),
 		cmocka_unit_test(empty_jaws_close_whole_and_say_so),
+		cmocka_unit_test(jaws_stop_where_tissue_bears_what_they_press_with),
+		cmocka_unit_test(every_shape_with_jaws_stops),
+		cmocka_unit_test(held_jaws_rest_and_open_again),
 		cmocka_unit_test(what_is_pulled_too_hard_slips_and_is_lost),
 		cmocka_unit_test(a_hold_goes_with_its_face),
 	};

@@ -190,6 +190,59 @@ static void written_anew_it_is_exact(void **state)
 		is_exact_anew(&of_version[i]);
 }
 
+// ---- versions 6 and 7, in which jaws closed whole: tests/data/held_snapshot_6.bin and _7.bin are
+// a sheet held by closed jaws, with shears on their way in a command for tick 40.
+
+static cau_scene_def *held_scene(void)
+{
+	cau_scene_def *scene = stage_scene(CAU_PRECISION_DOUBLE);
+	stage_add_sheet(scene, "sheet", 0.06, 0.05, 6, 5)->sheet[0].limit_stiffness_pa = 1e6;
+	cau_default_selection(&scene->pins[scene->pin_count++], CAU_SELECT_RIM);
+	cau_tool_def *jaws = stage_add_tool(scene, "jaws", CAU_TOOL_GRASPER, 0.004, 0.003, -0.002);
+	jaws->shaft_radius_m = 1e-3;
+	jaws->tip_length_m = 4e-3;
+	jaws->grid_cells = 8;
+	return scene;
+}
+
+static void go_on_holding(const char *snapshot, const char *then)
+{
+	cau_scene_def *scene = held_scene();
+	cau_session *session = stage_open(scene, 1);
+	stage_bytes older = read_data(snapshot), next = read_data(then);
+	cau_error error = {0};
+	bool exact = true;
+	if (cau_session_restore(session, older.bytes, older.count, &exact, &error))
+		fail_msg("%s: %s", snapshot, error.reason);
+	assert_false(exact);
+	const cau_tool_state *jaws = stage_tool(session, "jaws");
+	assert_true(jaws->jaw == 0 && jaws->asked_jaw == 0 && jaws->grasping);
+	assert_int_equal(jaws->grasped_vertices, 2);
+	assert_true(jaws->definition.close_force_n == 8 && jaws->definition.force_max_n == 20);
+	int32_t n = stage_info(session).vertex_count;
+	assert_int_equal(next.count, (size_t)n * 3 * sizeof(double));
+	stage_step(session, 1);
+	cau_frame frame = stage_frame(session);
+	double off = stage_farthest(&frame, (const double *)(void *)next.bytes, n);
+	if (!(off < 5e-6)) // as above
+		fail_msg("%s: a vertex is %.1e m off", snapshot, off);
+	stage_step(session, 12);
+	const cau_tool_def *shears = &stage_tool(session, "shears")->definition;
+	assert_true(shears->friction == 0.5 && shears->close_force_n == 8);
+	assert_true(shears->pose.position_m[2] == 0.05 && shears->pose.rotation[0] == 1);
+	free(older.bytes);
+	free(next.bytes);
+	cau_session_destroy(session);
+	free(scene);
+}
+
+static void jaws_that_closed_whole_go_on_holding(void **state)
+{
+	(void)state;
+	go_on_holding("held_snapshot_6.bin", "held_snapshot_6_next.bin");
+	go_on_holding("held_snapshot_7.bin", "held_snapshot_7_next.bin");
+}
+
 // ---- a pair of today's
 
 static void write_data(const char *folder, const char *name, const void *bytes, size_t count)
@@ -227,6 +280,7 @@ int main(int count, char **argument)
 		cmocka_unit_test(it_goes_on_as_that_build_did),
 		cmocka_unit_test(it_is_what_the_commands_lead_to),
 		cmocka_unit_test(written_anew_it_is_exact),
+		cmocka_unit_test(jaws_that_closed_whole_go_on_holding),
 	};
 	return cmocka_run_group_tests(tests, NULL, NULL);
 }

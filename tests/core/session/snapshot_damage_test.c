@@ -121,9 +121,9 @@ static void copy_piece(unsigned char **to, const unsigned char **from, size_t ke
 	*from += kept + left_out;
 }
 
-// The payload as versions before 6 had it: without what each tool's pose hangs on and the heat
-// fields around its innermost one, and without tears and holds on faces, which it ends with.
-// Returns its length.
+// The payload as versions before 6 had it: without what each tool's jaws press with, what its pose
+// hangs on and the heat fields around its innermost one, and without tears and holds on faces,
+// which it ends with. Returns its length.
 static size_t payload_of_version_5(const stage_bytes *shot, const cau_session *session,
                                    unsigned char *payload)
 {
@@ -132,7 +132,8 @@ static size_t payload_of_version_5(const stage_bytes *shot, const cau_session *s
 	const size_t since_6 =
 		(size_t)session->scene->layer_count * (2 * CAU_MAX_MATERIALS + 1) * sizeof(double) +
 		(size_t)session->tool_count * CAU_MAX_GRASPED * on_face;
-	const size_t state = offsetof(cau_tool_state, asked_pose);
+	const size_t state = offsetof(cau_tool_state, asked_pose),
+				 force = offsetof(cau_tool_state, definition.close_force_n);
 	snapshot_header header;
 	memcpy(&header, shot->bytes, sizeof header);
 	const unsigned char *from = shot->bytes + sizeof header, *end = shot->bytes + shot->count;
@@ -142,9 +143,12 @@ static size_t payload_of_version_5(const stage_bytes *shot, const cau_session *s
 	for (int32_t i = 0; i < header.tool_count; i++) {
 		const cau_tool *tool = &session->tool[i];
 		size_t n = (size_t)header.grid_nodes[i], field = n * n * n * sizeof(float);
+		copy_piece(&to, &from, force, sizeof(double));
 		copy_piece(&to, &from,
-		           state + sizeof tool->target + sizeof tool->jaw_target + sizeof tool->pose_before,
-		           sizeof tool->state - state + sizeof tool->anchor + sizeof tool->pace);
+		           state - force - sizeof(double) + sizeof tool->target + sizeof tool->jaw_target +
+		               sizeof tool->pose_before,
+		           sizeof tool->state - state + sizeof tool->anchor + sizeof tool->pace +
+		               sizeof tool->least_open_rad);
 		copy_piece(&to, &from,
 		           sizeof tool->grasp_count + CAU_MAX_GRASPED * grasp +
 		               sizeof tool->grid.field[0].origin + field,

@@ -427,6 +427,33 @@ static void test_between_jaws(void **state)
 	}
 }
 
+// What goes with a jaw as it turns stays on its face, and as far from the hinge.
+static void test_turning_with_jaws(void **state)
+{
+	(void)state;
+	static const int shapes[] = {CAU_TOOL_BIPOLAR, CAU_TOOL_SHEARS, CAU_TOOL_GRASPER};
+	for (int i = 0; i < 3; i++) {
+		cau_tool_def tool = tool_with_defaults(shapes[i]);
+		cau_tool_jaws jaws = cau_tool_describe_jaws(&tool);
+		assert_near(jaws.share[0] + jaws.share[1], 1, 1e-12);
+		double arm = tool.tip_length_m / 2;
+		double off = shapes[i] == CAU_TOOL_SHEARS ? tool.hot_radius_m * 0.18 : 1e-9; // 1 - cos 0.6
+		for (int side = 0; side < 2; side++) {
+			double sign = side ? 1 : -1;
+			cau_vec3 p = {jaws.face_m, 1e-3, tool.tip_length_m - arm};
+			assert_near(cau_tool_jaw_angle(&jaws, p), 0, 1e-12);
+			for (double jaw = 0.25; jaw <= 1; jaw += 0.25) {
+				double angle = sign * jaws.share[side] * jaw * tool.jaw_open_rad;
+				p = cau_tool_turn_with_jaw(&jaws, p, angle);
+				assert_near(cau_tool_jaw_angle(&jaws, p), angle, 1e-12);
+				assert_near(hypot(p.x - jaws.face_m, p.z - jaws.hinge_m), arm, 1e-12);
+				assert_near(cau_tool_distance(&tool, jaw, CAU_PART_BOTH, p, NULL), 0, off);
+				assert_near(p.y, 1e-3, 1e-15);
+			}
+		}
+	}
+}
+
 int main(void)
 {
 	const struct CMUnitTest tests[] = {
@@ -443,6 +470,7 @@ int main(void)
 		cmocka_unit_test(test_segments_against_sampling),
 		cmocka_unit_test(test_segment_is_exact),
 		cmocka_unit_test(test_between_jaws),
+		cmocka_unit_test(test_turning_with_jaws),
 	};
 	return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -3,7 +3,8 @@
 
 They are @final: with a member more or less, or of another type, programs that were built before take
 no sample any more. So such a change is a new version: raise CAU_FRAME_VERSION, give the new types
-names of their own, and keep what this program prints with --print as version_N.txt.
+names of their own, and keep what this program prints with --print as version_N.txt. A type that no
+topic had before is no such change: it is added to the file of the version.
 
 Usage: types_test.py ROOT [--print]
 """

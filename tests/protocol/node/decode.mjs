@@ -175,6 +175,8 @@ function readTool(view, at, name) {
     asked: floats(8, 3),
     askedRotation: floats(20, 4),
     jaw: floats(36, 1),
+    askedJaw: floats(36, 1),
+    jawForce: [0],
     force: floats(40, 3),
     torque: floats(52, 3),
     temperature: floats(64, 1),
@@ -240,6 +242,10 @@ export class StreamDecoder {
       const view = new DataView(payload.buffer, payload.byteOffset, payload.byteLength);
       const floats = (at, count) => Array.from({ length: count }, (_, k) => view.getFloat32(at + 4 * k, true));
       this.tools.forEach((tool, i) => Object.assign(tool, { asked: floats(28 * i, 3), askedRotation: floats(28 * i + 12, 4) }));
+    } else if (type === 33) {
+      if (payload.length !== 8 * this.tools.length) fail('not as many jaws as tools');
+      const view = new DataView(payload.buffer, payload.byteOffset, payload.byteLength);
+      this.tools.forEach((tool, i) => Object.assign(tool, { askedJaw: [view.getFloat32(8 * i, true)], jawForce: [view.getFloat32(8 * i + 4, true)] }));
     } else if (type === 8) {
       this.statistics = readStatistics(payload);
     }

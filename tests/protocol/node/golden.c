@@ -81,6 +81,8 @@ static void write_tool(FILE *out, const cau_stream_tool *tool)
 	write_floats(out, "asked", tool->asked_pose.position_m, 3);
 	write_floats(out, "askedRotation", tool->asked_pose.rotation, 4);
 	write_floats(out, "jaw", &tool->jaw, 1);
+	write_floats(out, "askedJaw", &tool->asked_jaw, 1);
+	write_floats(out, "jawForce", &tool->jaw_force_n, 1);
 	write_floats(out, "force", tool->force_n, 3);
 	write_floats(out, "torque", tool->torque_nm, 3);
 	write_floats(out, "temperature", &tool->tip_temperature_c, 1);

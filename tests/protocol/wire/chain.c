@@ -75,6 +75,8 @@ static void assert_tools_equal(const cau_stream_tool *a, const cau_stream_tool *
 		assert_true((float)a->force_n[i] == (float)b->force_n[i]);
 		assert_true((float)a->torque_nm[i] == (float)b->torque_nm[i]);
 	}
+	assert_true((float)a->jaw == (float)b->jaw && (float)a->asked_jaw == (float)b->asked_jaw);
+	assert_true((float)a->jaw_force_n == (float)b->jaw_force_n);
 	assert_true((float)a->tip_temperature_c == (float)b->tip_temperature_c);
 }
 

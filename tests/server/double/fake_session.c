@@ -264,6 +264,7 @@ static void move_tool(cau_session *s, int32_t i)
 		tool->pose.position_m[k] += share * way[k];
 	memcpy(tool->pose.rotation, s->state.target[i].rotation, sizeof tool->pose.rotation);
 	tool->asked_pose = tool->pose; // nothing stops it
+	tool->asked_jaw = tool->jaw;
 }
 
 static void cut(cau_session *s, const cau_tool_state *tool)

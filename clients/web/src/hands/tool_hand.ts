@@ -262,13 +262,13 @@ export class ToolHand {
     this.movedAt = performance.now();
   }
 
-  /** Takes the tool's present pose up, if this page may move it. */
+  /** Takes the tool's present pose up, if this page may move it; jaws that grasp are open once they let go. */
   private begin(): boolean {
     const state = this.model.toolState;
     if (!this.model.driving || !state || this.past.shown) return false;
     if (this.wanted && (!this.way.empty || performance.now() - this.movedAt < ECHO_MS)) return true;
     const [w, x, y, z] = state.rotation;
-    this.wanted = { position: new Vector3(...state.asked.positionM), rotation: new Quaternion(x, y, z, w), jaw: state.jaw };
+    this.wanted = { position: new Vector3(...state.asked.positionM), rotation: new Quaternion(x, y, z, w), jaw: state.grasping ? 1 : state.askedJaw };
     this.sequence = Math.max(this.sequence, state.sequence);
     return true;
   }

@@ -112,7 +112,8 @@ export function toolsPanel(control: Control, hand: ToolHand): Panel {
     if (!tool) return;
     const energy = tool.energized ? 'energy on' : OFF_WORDS[tool.energyOff];
     const force = Math.hypot(...tool.forceN);
-    const grasp = !tool.grasping ? '' : tool.graspedVertices === 0 ? ', jaws empty' : `, holds ${tool.graspedVertices} points${tool.slipping ? ', slipping' : ''}`;
+    const pressed = tool.jawForceN < LEAST_FORCE_N ? '' : ` pressed with ${short(tool.jawForceN, 2)} N`;
+    const grasp = !tool.grasping ? '' : tool.graspedVertices === 0 ? ', jaws empty' : `, holds ${tool.graspedVertices} points${pressed}${tool.slipping ? ', slipping' : ''}`;
     const text = `${energy}${grasp}; ${tool.tipTemperatureC.toFixed(0)} °C, ${force < LEAST_FORCE_N ? '0' : short(force, 2)} N, ${short(tool.energyJ, 3)} J`;
     if (state.value !== text) state.value = text;
   });

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // One instrument: its solids from the definition, jaws that turn, metal that glows a little when hot. As a
-// ghost it is where its driver wants it while tissue keeps it elsewhere.
+// ghost it is where its driver wants it while tissue keeps it elsewhere, which is inside the tissue or behind
+// it: so a ghost is seen through everything, as a rim of light around its solids.
 import { BufferGeometry, Color, GLSL3, Group, Mesh, ShaderMaterial, Vector3, type IUniform } from 'three';
 
 import { toolParts, toolSizes, type ToolPart } from '../model/tool_parts';
@@ -27,7 +28,6 @@ uniform vec3 light;
 uniform vec3 base;
 uniform float mirror;
 uniform float heat;
-uniform float opacity;
 void main() {
   vec3 normal = normalize(vNormalWorld);
   vec3 view = normalize(cameraPosition - vWorld);
@@ -38,25 +38,39 @@ void main() {
   float shine = pow(max(dot(normal, normalize(toLight + view)), 0.0), 70.0);
   vec3 colour = base * mix(0.22 + 0.8 * diffuse, room + 0.25 * diffuse, mirror) + shine * (0.3 + mirror) * 0.7;
   colour = mix(colour, vec3(1.0, 0.42, 0.12) * (0.5 + 0.5 * diffuse), 0.22 * heat) + heat * vec3(0.10, 0.025, 0.0);
-  fragment = linearToOutputTexel(vec4(colour, opacity));
+  fragment = linearToOutputTexel(vec4(colour, 1.0));
 }`;
 
-const GHOST_OPACITY = 0.25;
+const GHOST_FRAGMENT = /* glsl */ `
+precision highp float;
+in vec3 vNormalWorld;
+in vec3 vWorld;
+out vec4 fragment;
+void main() {
+  float facing = abs(dot(normalize(vNormalWorld), normalize(cameraPosition - vWorld)));
+  float rim = pow(1.0 - facing, 2.0);
+  fragment = linearToOutputTexel(vec4(vec3(0.08, 0.75, 1.0), 0.18 + 0.80 * rim));
+}`;
+const LAST = 10; // of what is drawn: over tissue, cloth and instruments
 
 export class ToolView {
   readonly group = new Group();
   private readonly jaws: { pivot: Group; side: number; share: number }[] = [];
   private readonly heat: IUniform<number> = { value: 0 };
   private shown: readonly number[] = [];
+  private readonly still: Mesh[] = []; // what does not turn with jaws
   private readonly materials: ShaderMaterial[] = [];
   private readonly jawOpen: number;
+  private readonly tip: number;
 
   constructor(
     readonly definition: Tool,
     light: IUniform<Vector3>,
     private readonly ghost = false,
   ) {
-    this.jawOpen = toolSizes(definition).jawOpen;
+    const sizes = toolSizes(definition);
+    this.jawOpen = sizes.jawOpen;
+    this.tip = sizes.tip;
     const steel = this.makeMaterial(light, new Color(0.62, 0.64, 0.67), 0.85, { value: 0 });
     const hot = this.makeMaterial(light, new Color(0.70, 0.66, 0.60), 0.7, this.heat);
     const sleeve = this.makeMaterial(light, new Color(0.035, 0.038, 0.045), 0.12, { value: 0 });
@@ -72,8 +86,8 @@ export class ToolView {
   }
 
   /** Says whether anything is drawn otherwise than before; heat is 0 cold to 1 glowing. */
-  set(position: readonly number[], rotation: readonly number[], jaw: number, heat: number): boolean {
-    const now = [...position, ...rotation, jaw, heat];
+  set(position: readonly number[], rotation: readonly number[], jaw: number, heat: number, jawsAlone = false): boolean {
+    const now = [...position, ...rotation, jaw, heat, Number(jawsAlone)];
     if (this.group.visible && now.every((value, i) => value === this.shown[i])) return false;
     this.shown = now;
     const [w, x, y, z] = rotation;
@@ -82,7 +96,13 @@ export class ToolView {
     this.group.quaternion.set(x, y, z, w);
     this.setJaw(jaw);
     this.heat.value = heat;
+    for (const mesh of this.still) mesh.visible = !jawsAlone;
     return true;
+  }
+
+  /** How far a jaw's end goes by a share of the opening; 0 without jaws. */
+  jawWayM(share: number): number {
+    return this.jaws.length === 0 ? 0 : Math.abs(share) * this.jawOpen * this.tip;
   }
 
   /** Says whether it was drawn. */
@@ -108,7 +128,9 @@ export class ToolView {
   }
 
   private place(mesh: Mesh, part: ToolPart): void {
+    if (this.ghost) mesh.renderOrder = LAST;
     if (!part.jaw) {
+      this.still.push(mesh);
       this.group.add(mesh);
       return;
     }
@@ -126,10 +148,11 @@ export class ToolView {
     const material = new ShaderMaterial({
       glslVersion: GLSL3,
       vertexShader: VERTEX,
-      fragmentShader: FRAGMENT,
-      uniforms: { light, base: { value: base }, mirror: { value: mirror }, heat, opacity: { value: this.ghost ? GHOST_OPACITY : 1 } },
+      fragmentShader: this.ghost ? GHOST_FRAGMENT : FRAGMENT,
+      uniforms: { light, base: { value: base }, mirror: { value: mirror }, heat },
       transparent: this.ghost,
       depthWrite: !this.ghost,
+      depthTest: !this.ghost,
     });
     this.materials.push(material);
     return material;

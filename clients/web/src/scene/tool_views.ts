@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // The instruments of a session, each drawn where it is and, where tissue keeps it from where its driver wants
-// it, once more as a ghost there.
+// it, once more as a ghost there; of jaws that what they hold keeps open, the jaws alone.
 import type { IUniform, Scene, Vector3 } from 'three';
 
 import type { Tool } from '../wire/messages.gen';
@@ -34,16 +34,24 @@ export class ToolViews {
   }
 
   /** Where one is drawn: the hand's pose goes before the server's, but by as much as tissue keeps the tool from
-   * it. Says whether the picture is another than before. */
+   * it. Jaws that hold go by the server alone. Says whether the picture is another than before. */
   pose(state: ToolState, hand: ToolPose | undefined, heat: number): boolean {
-    const asked = hand ?? { ...state.asked, jaw: state.jaw };
+    const solid = this.solid.get(state.name);
+    const ghost = this.ghosts.get(state.name);
+    if (!solid || !ghost) return false;
+    const asked = hand ?? { ...state.asked, jaw: state.askedJaw };
     const off = state.positionM.map((x, i) => x - state.asked.positionM[i]);
     const at = asked.positionM.map((x, i) => x + off[i]);
-    const moved = this.solid.get(state.name)?.set(at, hand?.rotation ?? state.rotation, asked.jaw, heat);
-    const ghost = this.ghosts.get(state.name);
+    const open = state.jaw - state.askedJaw;
+    const askedJaw = state.grasping ? state.askedJaw : asked.jaw;
+    const moved = solid.set(at, hand?.rotation ?? state.rotation, askedJaw + open, heat);
     const behind = Math.hypot(...off) > GHOST_M;
-    const shown = behind ? ghost?.set(asked.positionM, asked.rotation, asked.jaw, 0) : ghost?.hide();
-    return moved === true || shown === true;
+    const shown = behind || solid.jawWayM(open) > GHOST_M ? ghost.set(asked.positionM, asked.rotation, askedJaw, 0, !behind) : ghost.hide();
+    return moved || shown;
+  }
+
+  ghostOf(name: string): boolean {
+    return this.ghosts.get(name)?.group.visible ?? false;
   }
 
   private add(tool: Tool): void {

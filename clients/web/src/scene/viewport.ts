@@ -157,6 +157,11 @@ export class Viewport {
     return this.tissue ? this.tissue.take(frame) : null;
   }
 
+  /** Whether an instrument is drawn where it is led to, too. */
+  ghostOf(name: string): boolean {
+    return this.tools.ghostOf(name);
+  }
+
   /** Where instruments are drawn. */
   poseTools(poses: ReadonlyMap<string, Pose>): void {
     let changed = false;

@@ -3,7 +3,7 @@
 import { applyElements, type Runs } from './elements';
 import { readHeader, readSections, WireError, type FrameHeader } from './header';
 import { SCALARS, SECTION, type ScalarName } from './messages.gen';
-import { readAsked, readStatistics, readToolNames, readTools, type Statistics, type ToolName, type ToolState } from './records';
+import { readAsked, readJaws, readStatistics, readToolNames, readTools, type Statistics, type ToolName, type ToolState } from './records';
 
 export interface StreamShape {
   session_number: number;
@@ -152,6 +152,8 @@ export class FrameDecoder {
     if (tools) this.state.tools = readTools(tools, this.names);
     const asked = sections.get(SECTION.tools_asked);
     if (asked) this.state.tools = readAsked(asked, this.state.tools);
+    const jaws = sections.get(SECTION.tool_jaws);
+    if (jaws) this.state.tools = readJaws(jaws, this.state.tools);
     const statistics = sections.get(SECTION.statistics);
     if (statistics) this.state.statistics = readStatistics(statistics);
   }

@@ -858,6 +858,8 @@ export interface Tool {
   slip_force_n?: number;
   /** it pushes with this at most, as told to drivers (0.01 to 1000 N) */
   force_max_n?: number;
+  /** its jaws press what they hold with this at most (0.01 to 1000 N) */
+  close_force_n?: number;
   /** first place of the tip (-100 to 100 m) */
   position_m?: [number, number, number];
   /** unit quaternion w, x, y, z: tool frame (shaft along +z) to world */
@@ -1279,6 +1281,8 @@ export interface ToolAdd {
   slip_force_n?: number;
   /** it pushes with this at most, as told to drivers (0.01 to 1000 N) */
   force_max_n?: number;
+  /** its jaws press what they hold with this at most (0.01 to 1000 N) */
+  close_force_n?: number;
   /** name of the tool */
   name: string;
   /** first place of the tip (-100 to 100 m) */
@@ -1347,6 +1351,8 @@ export interface ToolConfigure {
   slip_force_n?: number;
   /** it pushes with this at most, as told to drivers (0.01 to 1000 N) */
   force_max_n?: number;
+  /** its jaws press what they hold with this at most (0.01 to 1000 N) */
+  close_force_n?: number;
 }
 
 /** moves it, at its speed limit; needs to be its driver */
@@ -1904,6 +1910,7 @@ export const SECTION = {
   texture: 18,
   rest: 19,
   tools_asked: 32,
+  tool_jaws: 33,
 } as const;
 
 /** Scalars of the vertices: n in a frame stands for least + step n in the unit, n is at most `most`.
@@ -2000,6 +2007,8 @@ export const PARAMETERS = {
       meaning: "an attached vertex slips above this force" },
     { name: 'force_max_n', unit: 'N', least: 0.01, most: 1000, default: 20,
       meaning: "it pushes with this at most, as told to drivers" },
+    { name: 'close_force_n', unit: 'N', least: 0.01, most: 1000, default: 8,
+      meaning: "its jaws press what they hold with this at most" },
   ],
   fascia: [
     { name: 'thickness_m', unit: 'm', least: 1e-06, most: 0.05, default: 0.0005,

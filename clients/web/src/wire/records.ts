@@ -18,7 +18,9 @@ export interface ToolState extends ToolName {
   positionM: Vector;
   rotation: Quaternion;
   asked: { positionM: Vector; rotation: Quaternion }; // where it is led to: elsewhere where tissue stops it
-  jaw: number;
+  jaw: number; // what the jaws hold keeps it so
+  askedJaw: number; // where it is led to
+  jawForceN: number; // with which the jaws press what they hold; 0 from servers that do not tell it
   forceN: Vector;
   torqueNm: Vector;
   tipTemperatureC: number;
@@ -62,6 +64,7 @@ export interface Statistics {
 
 const TOOL_BYTES = 84;
 const ASKED_BYTES = 28;
+const JAW_BYTES = 8;
 const STATISTICS_BYTES = 88; // without what servers have added since: energyGainJ, resting, error, contactsLeftOut, elementsTorn, touchingCutShort
 const TOOLS_MAX = 8;
 
@@ -103,6 +106,8 @@ function readTool(view: DataView, offset: number, name: ToolName): ToolState {
     ...pose,
     asked: pose,
     jaw: view.getFloat32(offset + 36, true),
+    askedJaw: view.getFloat32(offset + 36, true),
+    jawForceN: 0,
     forceN: readVector(view, offset + 40),
     torqueNm: readVector(view, offset + 52),
     tipTemperatureC: view.getFloat32(offset + 64, true),
@@ -123,6 +128,13 @@ export function readTools(payload: Uint8Array, names: readonly ToolName[]): Tool
   if (payload.byteLength !== names.length * TOOL_BYTES) throw new WireError('tool records do not match their names');
   const view = viewOf(payload);
   return names.map((name, i) => readTool(view, i * TOOL_BYTES, name));
+}
+
+/** Without the section jaws are where they are asked to be, as readTools tells. */
+export function readJaws(payload: Uint8Array, tools: readonly ToolState[]): ToolState[] {
+  if (payload.byteLength !== tools.length * JAW_BYTES) throw new WireError('jaws do not match their tools');
+  const view = viewOf(payload);
+  return tools.map((tool, i) => ({ ...tool, askedJaw: view.getFloat32(i * JAW_BYTES, true), jawForceN: view.getFloat32(i * JAW_BYTES + 4, true) }));
 }
 
 // Without the section every tool is where it is asked to be, as readTools tells.

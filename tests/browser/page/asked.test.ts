@@ -1,0 +1,92 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// What tissue stops is drawn twice: where it is, and as a ghost where it is led to; tools, and jaws on what they hold.
+import { Stage } from './stage';
+import type { Colour, ViewerPage } from './viewer_page';
+
+type Point = [number, number, number];
+const MIDDLE: Point = [0, 0, 0]; // of the slab's surface
+const OVER_M = 0.008; // that a tool hovers over it
+const BEHIND_M = 0.002; // the pinned floor of the slab stops the tool when it is led on
+const NOTCHES = 4; // of the wheel at a time
+const NOTCH_M = 0.0005;
+const LIFT = 20; // notches
+const BESIDE: Point = [-0.02, 0, 0]; // where the tool in the middle hides no jaws
+const ZOOM = 4, ZOOM_JAWS = 1; // notches: they fill some of the picture
+const RIM = 0.92; // of the ball's radius
+const RIM_BLUE = 10; // of 255, blue less red: 40 of the ghost, -50 of metal and tissue without it
+
+const blue = ([r, , b]: Colour): number => b - r;
+
+describe('what tissue stops', () => {
+  const stage = new Stage(['--demo', 'fat']);
+  let viewer: ViewerPage;
+
+  const turnWheel = async (notches: number): Promise<void> => {
+    for (let i = 0; i < Math.abs(notches); i++) await viewer.page.mouse.wheel(0, -100 * Math.sign(notches));
+  };
+  const lookAt = async (place: Point, notches: number): Promise<void> => {
+    const before = await viewer.project(place);
+    await viewer.page.mouse.move(before.x, before.y);
+    await viewer.zoom(notches);
+    const { x, y } = await viewer.project(place);
+    await viewer.page.mouse.move(x, y);
+  };
+
+  beforeAll(async () => {
+    viewer = await stage.open();
+    await viewer.live('d1-fat');
+    await viewer.page.evaluate(() => (document.querySelector<HTMLElement>('#cue')!.style.display = 'none'));
+  });
+
+  it('a tool that is pressed on is drawn where it is, and as a ghost where it is led to, until it is drawn back', async () => {
+    const { page } = viewer;
+    await page.getByRole('button', { name: 'Move', exact: true }).click();
+    await lookAt(MIDDLE, ZOOM);
+    await page.mouse.down();
+    await viewer.until((near) => Math.hypot(window.cautery.tip[0], window.cautery.tip[1]) < near, OVER_M, 'it is over the slab');
+    expect((await viewer.state()).ghost).toBe(false);
+    let notches = 0;
+    for (let { tip, asked } = await viewer.state(); tip[2] < asked[2] + BEHIND_M; { tip, asked } = await viewer.state()) {
+      await turnWheel(NOTCHES);
+      notches += NOTCHES;
+      await viewer.drawn();
+    }
+    expect((await viewer.state()).ghost).toBe(true);
+    await viewer.screenshot('asked-ghost');
+    const { asked: [ax, ay, az], tool } = await viewer.state();
+    const off = RIM * (tool?.hot_radius_m ?? 0);
+    const rim = (await viewer.coloursAt([[ax - off, ay, az], [ax + off, ay, az]], 1)).map(blue);
+    expect((rim[0] + rim[1]) / 2).toBeGreaterThan(RIM_BLUE);
+    await turnWheel(-notches);
+    await viewer.until(() => !window.cautery.ghost, null, 'it is where it is led to');
+    await page.mouse.up();
+  });
+
+  it('jaws stop at what they hold, with a ghost where they are led to, and the page says what they hold', async () => {
+    const { page } = viewer;
+    await page.getByRole('tab', { name: 'Tools' }).click();
+    await page.getByText('Another tool').click();
+    await page.locator('#panel-tools details').getByRole('button', { name: 'Add', exact: true }).click();
+    await viewer.until(() => window.cautery.tool?.name === 'grasper' && window.cautery.driving, null, 'a grasper is in hand');
+    await page.locator('[data-press=work]').click();
+    await lookAt(BESIDE, ZOOM_JAWS);
+    await page.mouse.down();
+    await viewer.until(() => window.cautery.grasping && window.cautery.askedJaw === 0, null, 'the jaws have closed');
+    await viewer.until(() => window.cautery.ghost, null, 'their ghost is closed');
+    const { jaw } = await viewer.state();
+    expect(jaw).toBeGreaterThan(0);
+    expect(jaw).toBeLessThan(1);
+    await viewer.until(() => /holds \d+ points pressed with [\d.]+ N/.test(document.querySelector('#panel-tools')?.textContent ?? ''), null, 'the page says so');
+    await page.getByText('Tool in hand').scrollIntoViewIfNeeded();
+    await viewer.drawn();
+    await viewer.screenshot('asked-jaws');
+    await turnWheel(-LIFT);
+    await viewer.until((z) => window.cautery.tip[2] > z, LIFT * NOTCH_M / 2, 'they have been lifted');
+    await viewer.until(() => /holds \d+ points/.test(document.querySelector('#panel-tools')?.textContent ?? ''), null, 'they hold what they pull');
+    await viewer.drawn();
+    await viewer.screenshot('asked-pull');
+    await turnWheel(LIFT);
+    await page.mouse.up();
+    await viewer.until(() => window.cautery.jaw === 1 && !window.cautery.ghost, null, 'they are open, and no ghost is there');
+  });
+});
