@@ -163,7 +163,7 @@ static void stop_pairs(cau_collide *collide, const double *x)
 static bool limit(cau_collide *collide, bool by_reach, double *longest)
 {
 	const cau_surface_parts *vertices = &collide->surface.vertices;
-	double most = fmax(cau_collide_most_step_m, collide->thickness_m), longest2 = 0;
+	double most = cau_collide_most_step(collide), longest2 = 0;
 	bool shortened = false;
 	for (int32_t k = 0; k < vertices->count; k++) {
 		int32_t v = vertices->item[k];
@@ -175,15 +175,16 @@ static bool limit(cau_collide *collide, bool by_reach, double *longest)
 	return shortened;
 }
 
-// Finds the pairs. Returns whether steps had to be shortened for want of room.
-static bool find(cau_collide *collide, cau_pool *pool, const double *x)
+// Sees to it that the pairs are known. Returns whether steps had to be shortened for want of room.
+static bool know(cau_collide *collide, cau_pool *pool, const double *x, cau_collide_need need)
 {
 	int32_t before = collide->cut_short_count;
 	double longest;
-	cau_collide_find(collide, pool, x, true);
+	if (cau_collide_covers(collide, x, need))
+		return false;
+	cau_collide_find(collide, pool, x, need);
 	cau_collide_see(collide, pool, x);
-	bool shortened = collide->cut_short_count > before && limit(collide, true, &longest);
-	return shortened;
+	return collide->cut_short_count > before && limit(collide, true, &longest);
 }
 
 // Where pairs found no room, a corner has what its reach allows.
@@ -196,39 +197,57 @@ static void take_room(cau_collide *collide)
 	}
 }
 
-// Moves back what comes too near, after which steps may be as long as their room. Returns whether
-// anything did.
-static bool part_pairs(cau_collide *collide, const double *x, double away_m)
+// Moves back what comes too near, after which steps may be as long as their room.
+static void part_pairs(cau_collide *collide, const double *x)
 {
 	look l;
-	bool again = true, parted = false;
+	bool again = true;
+	take_room(collide);
 	for (int pass = 0; pass < PASSES && again; pass++) {
 		again = false;
 		for (int32_t i = 0; i < collide->pair_count; i++) {
 			if (is_clear(collide, i) || !comes_near(collide, &collide->pair[i], x, &l))
 				continue;
-			if (!parted) {
-				take_room(collide);
-				collide->away_m = away_m;
-			}
 			part(collide, &collide->pair[i], &l);
-			again = parted = true;
+			again = true;
 		}
 	}
-	return parted;
+}
+
+static bool is_any_near(cau_collide *collide, const double *x)
+{
+	look l;
+	for (int32_t i = 0; i < collide->pair_count; i++)
+		if (!is_clear(collide, i) && comes_near(collide, &collide->pair[i], x, &l))
+			return true;
+	return false;
+}
+
+// Whether no step from here, where vertices have been farther away by `away_m`, leads out of what
+// is known.
+static bool is_within(const cau_collide *collide, double longest)
+{
+	return collide->found && collide->slack_m - collide->away_m >= longest;
 }
 
 bool cau_collide_filter(cau_collide *collide, cau_pool *pool, const double *x, bool guess)
 {
 	double longest;
 	collide->kept_share = guess ? kept_by_guess : kept_share;
+	CAU_ASSERT(cau_collide_away(collide, x) <= collide->away_m + 1e-9 * collide->thickness_m,
+	           "somebody is farther than %g m from where the tick began", collide->away_m);
 	bool changed = limit(collide, false, &longest);
-	if (!cau_collide_covers(collide, x, true))
-		changed |= find(collide, pool, x);
+	if (!is_within(collide, longest))
+		changed |= know(collide, pool, x, CAU_COLLIDE_STEP);
 	collide->out_of_reach = changed;
-	double away = cau_collide_away(collide, x);
-	collide->away_m = away + longest;
-	changed |= part_pairs(collide, x, away + cau_collide_most_room(collide, longest));
+	collide->away_m += longest;
+	if (is_any_near(collide, x)) {
+		collide->away_m -= longest;
+		changed = true;
+		collide->out_of_reach |= know(collide, pool, x, CAU_COLLIDE_ROOM);
+		collide->away_m += cau_collide_most_room(collide, longest);
+		part_pairs(collide, x);
+	}
 	if (changed)
 		stop_pairs(collide, x);
 	collide->ahead = true;
