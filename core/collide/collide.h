@@ -99,6 +99,7 @@ typedef struct cau_collide {
 	// Of the last evaluation.
 	double energy_j;        // of pairs, without friction
 	int32_t touching_count; // pairs nearer than their thickness
+	double steepest;        // their curvature over their stiffness, at most
 	uint64_t touching_hash; // of which are pressed
 	int32_t loaded_count;
 	uint8_t *is_loaded; // (n)

@@ -138,6 +138,7 @@ static void add_pairs(cau_collide *collide, const double *x)
 {
 	collide->energy_j = 0;
 	collide->touching_count = 0;
+	collide->steepest = 0;
 	collide->touching_hash = CAU_HASH_START;
 	for (int32_t i = 0; i < collide->pair_count; i++) {
 		const cau_collide_pair *pair = &collide->pair[i];
@@ -148,6 +149,7 @@ static void add_pairs(cau_collide *collide, const double *x)
 		collide->energy_j +=
 			potential(pair->stiffness, pair->thickness_m, distance, &slope, &curvature);
 		collide->touching_count++;
+		collide->steepest = fmax(collide->steepest, pair->curvature / pair->stiffness);
 		if (distance < pair->thickness_m / 2)
 			collide->touching_hash =
 				cau_hash_bytes(collide->touching_hash, pair->vertex, sizeof pair->vertex);

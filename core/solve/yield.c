@@ -9,6 +9,7 @@
 #include "solve/solver.h"
 
 static const double enough = 0.01; // of r.z, at which the solution serves as a step
+static const double surely = 0.5;  // of that, where it is foreseen
 enum { MOST_SWEEPS = 12 };
 
 cau_status cau_solver_make_yield(cau_step_solver *solver, cau_arena *arena, cau_error *error)
@@ -81,6 +82,18 @@ static double apply(cau_step_solver *solver, double scale)
 	return along;
 }
 
+// Whether what a sweep more would tell is foreseen: that the solution serves. After the first step,
+// with p.K p the share `stiffer` of p.A p, r.z is at most that share times the largest eigenvalue
+// of A^-1 K, of which the steepest pair tells: a pair is about as stiff as A is where it acts,
+// before it is pressed together. Later steps take off E at least as much less each as the last did.
+static bool is_foreseen(const cau_step_solver *solver, int sweep, double stiffer,
+                        const double taken[3])
+{
+	if (!sweep)
+		return stiffer * solver->collide->steepest <= surely * enough;
+	return taken[2] * taken[2] <= surely * enough * taken[0] * taken[1];
+}
+
 void cau_solver_yield(cau_step_solver *solver)
 {
 	cau_yield *y = &solver->yield;
@@ -92,13 +105,20 @@ void cau_solver_yield(cau_step_solver *solver)
 	memcpy(y->image, y->residual, bytes);
 	memcpy(y->direction, solver->increment, bytes);
 	double size = dot(solver, y->residual, solver->increment), first = size;
+	double taken[3] = {0}; // off E, J: by the first step, the last but one, the last
 	memset(solver->increment, 0, bytes);
 	for (int sweep = 0; size > 0 && sweep < MOST_SWEEPS; sweep++) {
-		double stiff = apply(solver, 0) + dot(solver, y->direction, y->image);
-		double step = size / stiff;
-		if (!(stiff > 0))
+		double touching = apply(solver, 0), own = dot(solver, y->direction, y->image);
+		if (!(touching + own > 0))
 			return;
+		double step = size / (touching + own);
 		add(solver, solver->increment, step, y->direction);
+		taken[1] = taken[2];
+		taken[2] = step * size / 2;
+		if (!sweep)
+			taken[0] = taken[1] = taken[2];
+		if (is_foreseen(solver, sweep, touching / own, taken))
+			return;
 		add(solver, y->residual, -step, y->image);
 		apply(solver, step);
 		cau_solver_apply_inverse(solver, y->residual, y->solved, 1);
