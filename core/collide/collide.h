@@ -65,12 +65,12 @@ typedef struct cau_collide_slice { // of a block: what it found, and whether tha
 	bool full;
 } cau_collide_slice;
 
-// What pairs are to be known for beyond a place: nothing, the step from there, or all that corners
-// may be moved when pairs are parted.
+// What pairs are to be known for: a place; the step from there too, with all that the corners which
+// are pushed may be moved beyond it; or, if there is room, the steps of a tick that begins.
 typedef enum cau_collide_need {
 	CAU_COLLIDE_PLACE,
 	CAU_COLLIDE_STEP,
-	CAU_COLLIDE_ROOM,
+	CAU_COLLIDE_TICK,
 } cau_collide_need;
 
 typedef struct cau_collide {
@@ -87,8 +87,8 @@ typedef struct cau_collide {
 	double *anchor;  // m, (n x 3)
 	double *reach_m; // (n)
 	bool ahead;      // they are where the filter let the last step lead
-	double *seen;    // m, (n x 3): where the tick began, and
-	double *apart_m; // (most_pairs): how far apart pairs were there at least
+	double *seen;    // m, (n x 3): where pairs were measured last, and
+	double *apart_m; // (most_pairs): how far apart they were there at least
 	double slack_m;  // what is left there of every vertex's reach, at least
 	double away_m;   // how far any vertex is from there where we are, at most
 	int32_t pair_count, most_pairs;
@@ -123,8 +123,13 @@ typedef struct cau_collide {
 	// and scratch
 	int32_t touched_count, *touched; // blocks with a fresh part
 	uint8_t *is_touched;             // (blocks)
-	bool *stopped;                   // (most_pairs): filter.c: scratch
-	double *room_m;                  // (n): likewise, where drawn
+	// filter.c: scratch
+	bool *stopped;   // (most_pairs)
+	double *wanted;  // m, (n x 3): the step before it was changed
+	double *room_m;  // (n): where pushed
+	uint8_t *pushed; // (n): corners of pairs that came near; none but while a step is filtered
+	bool pushes_more;
+	int32_t unclear_count, *unclear; // (most_pairs)
 } cau_collide;
 
 // The caller sets `fixed` and `start`, for good.
@@ -150,6 +155,17 @@ void cau_collide_stand(cau_collide *collide, const double *x);
 // way, nor, of a first guess, comes nearer than the thickness. Returns whether it had to.
 bool cau_collide_filter(cau_collide *collide, cau_pool *pool, const double *x, bool guess);
 
+// Measures how far pairs are apart at x, where we are: what follows is near it.
+void cau_collide_see(cau_collide *collide, cau_pool *pool, const double *x);
+
+// The filter without a look at all vertices, for the steps of an iteration, most of which are
+// short. Of one that is no longer than this, m, from where we are on: whether it surely leads
+// nobody out of what is known. Then `collide->step` has to be given at the corners of the `unclear`
+// pairs alone, and cau_collide_lets_pass tells whether the step may be taken as it is. If either is
+// false, it is to be filtered.
+bool cau_collide_foresee(cau_collide *collide, double longest_m);
+bool cau_collide_lets_pass(cau_collide *collide, const double *x, double longest_m);
+
 // ---- between the files of this room
 
 // find.c: looks for the pairs of what `surface.changed` tells. False where they find no room.
@@ -167,8 +183,7 @@ double cau_collide_most_room(const cau_collide *collide, double step_m); // of a
 // What died since is looked at again.
 void cau_collide_forget_dead(cau_collide *collide);
 
-// energy.c: measures how far pairs are apart at x, from where `away_m` counts.
-void cau_collide_see(cau_collide *collide, cau_pool *pool, const double *x);
+// energy.c: how far any vertex is from where pairs were measured last, m, at most.
 double cau_collide_away(const cau_collide *collide, const double *x);
 // Whether a pair is at least this far apart wherever vertices have been.
 static inline bool cau_collide_is_far(const cau_collide *collide, int32_t pair, double away_m,

@@ -285,8 +285,8 @@ void cau_collide_begin(cau_collide *collide, cau_pool *pool, const double *x)
 	collide->held_back = false;
 	collide->grip_count = 0;
 	cau_collide_forget_dead(collide);
-	if (has_changed(collide) || !cau_collide_covers(collide, x, CAU_COLLIDE_STEP))
-		cau_collide_find(collide, pool, x, CAU_COLLIDE_STEP);
+	if (has_changed(collide) || !cau_collide_covers(collide, x, CAU_COLLIDE_TICK))
+		cau_collide_find(collide, pool, x, CAU_COLLIDE_TICK);
 	cau_collide_see(collide, pool, x);
 	collide->ahead = true;
 	collide->start_energy_j = cau_collide_evaluate(collide, pool, x);

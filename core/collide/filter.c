@@ -88,11 +88,17 @@ static bool shorten(cau_collide *collide, int32_t vertex, double most)
 	return true;
 }
 
+// Moves a corner that is known to be pushed; else has it noted for the next time.
 static void move_corner(cau_collide *collide, int32_t vertex, double by, cau_vec3 normal)
 {
 	double *step = collide->step + 3 * (size_t)vertex;
 	if (collide->fixed[vertex])
 		return;
+	if (!collide->pushed[vertex]) {
+		collide->pushed[vertex] = 1;
+		collide->pushes_more = true;
+		return;
+	}
 	cau_vec3_to(cau_add_scaled(cau_vec3_of(step), by, normal), step);
 	shorten(collide, vertex, collide->room_m[vertex]);
 }
@@ -176,13 +182,13 @@ static bool limit(cau_collide *collide, bool by_reach, double *longest)
 }
 
 // Sees to it that the pairs are known. Returns whether steps had to be shortened for want of room.
-static bool know(cau_collide *collide, cau_pool *pool, const double *x, cau_collide_need need)
+static bool know(cau_collide *collide, cau_pool *pool, const double *x)
 {
 	int32_t before = collide->cut_short_count;
 	double longest;
-	if (cau_collide_covers(collide, x, need))
+	if (cau_collide_covers(collide, x, CAU_COLLIDE_STEP))
 		return false;
-	cau_collide_find(collide, pool, x, need);
+	cau_collide_find(collide, pool, x, CAU_COLLIDE_STEP);
 	cau_collide_see(collide, pool, x);
 	return collide->cut_short_count > before && limit(collide, true, &longest);
 }
@@ -193,7 +199,8 @@ static void take_room(cau_collide *collide)
 	const cau_surface_parts *vertices = &collide->surface.vertices;
 	for (int32_t k = 0; k < vertices->count; k++) {
 		int32_t v = vertices->item[k];
-		collide->room_m[v] = fmin(cau_collide_room(collide, v), just * collide->reach_m[v]);
+		if (collide->pushed[v])
+			collide->room_m[v] = fmin(cau_collide_room(collide, v), just * collide->reach_m[v]);
 	}
 }
 
@@ -203,7 +210,8 @@ static void part_pairs(cau_collide *collide, const double *x)
 	look l;
 	bool again = true;
 	take_room(collide);
-	for (int pass = 0; pass < PASSES && again; pass++) {
+	collide->pushes_more = false;
+	for (int pass = 0; pass < PASSES && again && !collide->pushes_more; pass++) {
 		again = false;
 		for (int32_t i = 0; i < collide->pair_count; i++) {
 			if (is_clear(collide, i) || !comes_near(collide, &collide->pair[i], x, &l))
@@ -214,20 +222,78 @@ static void part_pairs(cau_collide *collide, const double *x)
 	}
 }
 
-static bool is_any_near(cau_collide *collide, const double *x)
+// Notes the corners of pairs that come near. Returns whether any does.
+static bool note_pushed(cau_collide *collide, const double *x)
 {
 	look l;
-	for (int32_t i = 0; i < collide->pair_count; i++)
-		if (!is_clear(collide, i) && comes_near(collide, &collide->pair[i], x, &l))
-			return true;
-	return false;
+	bool any = false;
+	for (int32_t i = 0; i < collide->pair_count; i++) {
+		const int32_t *vertex = collide->pair[i].vertex;
+		if (is_clear(collide, i) || !comes_near(collide, &collide->pair[i], x, &l))
+			continue;
+		for (int k = 0; k < 4; k++)
+			collide->pushed[vertex[k]] = 1;
+		any = true;
+	}
+	return any;
 }
 
-// Whether no step from here, where vertices have been farther away by `away_m`, leads out of what
-// is known.
+// What is pushed may be moved farther than it wanted, and pairs have to be known for that: where
+// others turn out to be pushed besides, it begins again with the step as it was wanted. Returns
+// whether steps had to be shortened for want of room.
+static bool part_known_pairs(cau_collide *collide, cau_pool *pool, const double *x, double longest)
+{
+	size_t n = (size_t)collide->tissue->vertex_count, bytes = 3 * n * sizeof(double);
+	double away = collide->away_m;
+	bool shortened = false;
+	do {
+		collide->away_m = away;
+		shortened |= know(collide, pool, x);
+		away = collide->away_m;
+		collide->away_m += cau_collide_most_room(collide, longest);
+		memcpy(collide->wanted, collide->step, bytes);
+		part_pairs(collide, x);
+		if (collide->pushes_more)
+			memcpy(collide->step, collide->wanted, bytes);
+	} while (collide->pushes_more);
+	memset(collide->pushed, 0, n);
+	return shortened;
+}
+
+// Whether no step from where we are leads out of what is known.
 static bool is_within(const cau_collide *collide, double longest)
 {
 	return collide->found && collide->slack_m - collide->away_m >= longest;
+}
+
+static void end(cau_collide *collide, bool changed)
+{
+	collide->ahead = true;
+	collide->held_back = changed;
+}
+
+bool cau_collide_foresee(cau_collide *collide, double longest)
+{
+	collide->kept_share = kept_share;
+	collide->unclear_count = 0;
+	if (longest > cau_collide_most_step(collide) || !is_within(collide, longest))
+		return false;
+	for (int32_t i = 0; i < collide->pair_count; i++)
+		if (!cau_collide_is_far(collide, i, collide->away_m + longest,
+		                        kept_share * collide->pair[i].thickness_m))
+			collide->unclear[collide->unclear_count++] = i;
+	return true;
+}
+
+bool cau_collide_lets_pass(cau_collide *collide, const double *x, double longest)
+{
+	look l;
+	for (int32_t k = 0; k < collide->unclear_count; k++)
+		if (comes_near(collide, &collide->pair[collide->unclear[k]], x, &l))
+			return false;
+	collide->away_m += longest;
+	end(collide, false);
+	return true;
 }
 
 bool cau_collide_filter(cau_collide *collide, cau_pool *pool, const double *x, bool guess)
@@ -238,20 +304,17 @@ bool cau_collide_filter(cau_collide *collide, cau_pool *pool, const double *x, b
 	           "somebody is farther than %g m from where the tick began", collide->away_m);
 	bool changed = limit(collide, false, &longest);
 	if (!is_within(collide, longest))
-		changed |= know(collide, pool, x, CAU_COLLIDE_STEP);
+		changed |= know(collide, pool, x);
 	collide->out_of_reach = changed;
 	collide->away_m += longest;
-	if (is_any_near(collide, x)) {
+	if (note_pushed(collide, x)) {
 		collide->away_m -= longest;
+		collide->out_of_reach |= part_known_pairs(collide, pool, x, longest);
 		changed = true;
-		collide->out_of_reach |= know(collide, pool, x, CAU_COLLIDE_ROOM);
-		collide->away_m += cau_collide_most_room(collide, longest);
-		part_pairs(collide, x);
 	}
 	if (changed)
 		stop_pairs(collide, x);
-	collide->ahead = true;
-	collide->held_back = changed;
+	end(collide, changed);
 	collide->held_back_count += changed && !guess;
 	return changed;
 }

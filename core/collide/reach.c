@@ -10,6 +10,7 @@
 
 static const double least_room = 0.4;   // of the thickness: where no step is asked for
 static const double room_of_step = 1.5; // what others push is moved farther than it wanted
+static const double room_of_tick = 0.1; // of the thickness: for the steps of an iteration
 static const double least_reach = 0.3;  // of the thickness, beyond that: for the ticks to come
 static const double foresight = 0.5;    // of the step, likewise, where tissue moves on
 static const double used_up = 0.6;      // of that: then anchored anew with those beyond it
@@ -44,7 +45,9 @@ static double needed(const cau_collide *collide, cau_collide_need need, int32_t 
 {
 	if (need == CAU_COLLIDE_PLACE)
 		return 0;
-	return need == CAU_COLLIDE_STEP ? step_of(collide, vertex) : cau_collide_room(collide, vertex);
+	double besides = need == CAU_COLLIDE_TICK ? room_of_tick * collide->thickness_m : 0;
+	return besides +
+	       (collide->pushed[vertex] ? cau_collide_room(collide, vertex) : step_of(collide, vertex));
 }
 
 // Whether x is within a share of a vertex's reach, less what is needed beyond.
@@ -85,12 +88,14 @@ static void anchor_used_up(cau_collide *collide, const double *x, cau_collide_ne
 	}
 }
 
-// Only what is asked for, or a share of it. Who knows of more has all of this, so nobody who finds
-// that there is no room for it would have had any.
+// Only what has to be known, or a share of it. Who knows of more has all of this, so nobody who
+// finds that there is no room for it would have had any.
 static bool search_least(cau_collide *collide, cau_pool *pool, const double *x,
                          cau_collide_need need, double share)
 {
 	const cau_surface_parts *vertices = &collide->surface.vertices;
+	if (need == CAU_COLLIDE_TICK)
+		need = CAU_COLLIDE_STEP;
 	for (int32_t k = 0; k < vertices->count; k++) {
 		int32_t v = vertices->item[k];
 		anchor(collide, x, v, share > 0 ? share * needed(collide, need, v) : 0);
