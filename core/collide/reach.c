@@ -11,8 +11,7 @@
 static const double least_room = 0.4;   // of the thickness: where no step is asked for
 static const double room_of_step = 1.5; // what others push is moved farther than it wanted
 static const double room_of_tick = 0.1; // of the thickness: for the steps of an iteration
-static const double least_reach = 0.3;  // of the thickness, beyond that: for the ticks to come
-static const double foresight = 0.5;    // of the step, likewise, where tissue moves on
+static const double ahead = 0.3;        // of the thickness, beyond that: for the ticks to come
 static const double used_up = 0.6;      // of that: then anchored anew with those beyond it
 enum { TRIES = 12 };
 
@@ -76,15 +75,12 @@ static void look_at_all(cau_collide *collide)
 static void anchor_used_up(cau_collide *collide, const double *x, cau_collide_need need)
 {
 	const cau_surface_parts *vertices = &collide->surface.vertices;
-	double least = least_reach * collide->thickness_m;
-	double most = cau_collide_most_step(collide);
+	double besides = ahead * collide->thickness_m;
 	for (int32_t k = 0; k < vertices->count; k++) {
 		int32_t v = vertices->item[k];
 		if (collide->found && is_enough(collide, x, need, v, used_up))
 			continue;
-		double way = need == CAU_COLLIDE_PLACE ? 0 : step_of(collide, v);
-		double room = needed(collide, need, v);
-		anchor(collide, x, v, room + fmax(fmin(foresight * way, most), least));
+		anchor(collide, x, v, needed(collide, need, v) + besides);
 	}
 }
 
