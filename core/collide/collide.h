@@ -174,6 +174,8 @@ bool cau_collide_search(cau_collide *collide, cau_pool *pool);
 void cau_collide_find(cau_collide *collide, cau_pool *pool, const double *x, cau_collide_need need);
 // Whether they are known.
 bool cau_collide_covers(const cau_collide *collide, const double *x, cau_collide_need need);
+// Whether they are for what is pushed, where they are for the step.
+bool cau_collide_covers_pushed(const cau_collide *collide, const double *x);
 // What is left of every vertex's reach at x, m, at least.
 double cau_collide_slack(const cau_collide *collide, const double *x);
 double cau_collide_most_step(const cau_collide *collide); // m

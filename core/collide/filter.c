@@ -181,13 +181,11 @@ static bool limit(cau_collide *collide, bool by_reach, double *longest)
 	return shortened;
 }
 
-// Sees to it that the pairs are known. Returns whether steps had to be shortened for want of room.
-static bool know(cau_collide *collide, cau_pool *pool, const double *x)
+// Finds the pairs. Returns whether steps had to be shortened for want of room.
+static bool find(cau_collide *collide, cau_pool *pool, const double *x)
 {
 	int32_t before = collide->cut_short_count;
 	double longest;
-	if (cau_collide_covers(collide, x, CAU_COLLIDE_STEP))
-		return false;
 	cau_collide_find(collide, pool, x, CAU_COLLIDE_STEP);
 	cau_collide_see(collide, pool, x);
 	return collide->cut_short_count > before && limit(collide, true, &longest);
@@ -248,7 +246,8 @@ static bool part_known_pairs(cau_collide *collide, cau_pool *pool, const double 
 	bool shortened = false;
 	do {
 		collide->away_m = away;
-		shortened |= know(collide, pool, x);
+		if (!cau_collide_covers_pushed(collide, x))
+			shortened |= find(collide, pool, x);
 		away = collide->away_m;
 		collide->away_m += cau_collide_most_room(collide, longest);
 		memcpy(collide->wanted, collide->step, bytes);
@@ -303,8 +302,8 @@ bool cau_collide_filter(cau_collide *collide, cau_pool *pool, const double *x, b
 	CAU_ASSERT(cau_collide_away(collide, x) <= collide->away_m + 1e-9 * collide->thickness_m,
 	           "somebody is farther than %g m from where the tick began", collide->away_m);
 	bool changed = limit(collide, false, &longest);
-	if (!is_within(collide, longest))
-		changed |= know(collide, pool, x);
+	if (!is_within(collide, longest) && !cau_collide_covers(collide, x, CAU_COLLIDE_STEP))
+		changed |= find(collide, pool, x);
 	collide->out_of_reach = changed;
 	collide->away_m += longest;
 	if (note_pushed(collide, x)) {

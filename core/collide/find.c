@@ -193,34 +193,55 @@ static void list(cau_collide *collide, int32_t block, cau_gap_kind kind, cau_col
 	collide->list[kind][(size_t)block * CAU_COLLIDE_SLICE + (size_t)slice->count[kind]++] = found;
 }
 
-// Of a block's parts those that meet a box: of all, or of the fresh or the others alone.
-enum { ALL, FRESH, STALE };
-
-typedef struct near_parts {
+// Parts of one kind of a block: all that are fresh, or those that meet a box.
+typedef struct some_parts {
 	int32_t count, item[3 * CAU_SURFACE_FACES];
-} near_parts;
+} some_parts;
 
-static void list_near(const cau_collide *collide, const parts *p, int32_t block, int which,
-                      const cau_collide_box *within, near_parts *near)
+static void list_fresh(const cau_collide *collide, int what, int32_t block, some_parts *fresh)
+{
+	parts p = parts_of(collide, what);
+	fresh->count = 0;
+	for (int32_t i = p.list->first[block]; i < p.list->first[block + 1]; i++)
+		if (is_fresh(collide, &p, p.list->item[i]))
+			fresh->item[fresh->count++] = p.list->item[i];
+}
+
+static void list_near(const cau_collide *collide, const parts *p, const int32_t *item,
+                      int32_t count, const cau_collide_box *within, some_parts *near)
 {
 	near->count = 0;
-	for (int32_t i = p->list->first[block]; i < p->list->first[block + 1]; i++) {
-		int32_t part = p->list->item[i];
-		if (meets(within, &p->box[part], collide->thickness_m) &&
-		    (which == ALL || is_fresh(collide, p, part) == (which == FRESH)))
-			near->item[near->count++] = part;
-	}
+	for (int32_t i = 0; i < count; i++)
+		if (meets(within, &p->box[item[i]], collide->thickness_m))
+			near->item[near->count++] = item[i];
+}
+
+static void leave_out(const cau_collide *collide, const parts *p, bool fresh, some_parts *near)
+{
+	int32_t kept = 0;
+	for (int32_t i = 0; i < near->count; i++)
+		if (is_fresh(collide, p, near->item[i]) != fresh)
+			near->item[kept++] = near->item[i];
+	near->count = kept;
+}
+
+static void list_near_of(const cau_collide *collide, const parts *p, int32_t block,
+                         const cau_collide_box *within, some_parts *near)
+{
+	int32_t first = p->list->first[block];
+	list_near(collide, p, p->list->item + first, p->list->first[block + 1] - first, within, near);
 }
 
 // Two blocks of which the first's parts of one kind are held against the second's of another: those
-// that are fresh against all, or the others against those of the second that are fresh.
+// that are fresh (`fresh`, by kind) against all, or the others (NULL) against those of the second
+// that are fresh.
 typedef struct meeting {
 	parts own, others;
-	near_parts own_near, others_near;
+	some_parts own_near, others_near;
 } meeting;
 
-static bool meet(const cau_collide *collide, const int32_t block[2], const int what[2], bool fresh,
-                 meeting *m)
+static bool meet(const cau_collide *collide, const int32_t block[2], const int what[2],
+                 const some_parts *fresh, meeting *m)
 {
 	cau_collide_box *const *own_box = fresh ? collide->fresh_box : collide->block_box,
 						   *const *box = fresh ? collide->block_box : collide->fresh_box;
@@ -229,13 +250,20 @@ static bool meet(const cau_collide *collide, const int32_t block[2], const int w
 		return false;
 	m->own = parts_of(collide, what[0]);
 	m->others = parts_of(collide, what[1]);
-	list_near(collide, &m->own, block[0], fresh ? FRESH : STALE, others, &m->own_near);
-	if (m->own_near.count)
-		list_near(collide, &m->others, block[1], fresh ? ALL : FRESH, own, &m->others_near);
+	list_near_of(collide, &m->others, block[1], own, &m->others_near);
+	if (fresh) {
+		const some_parts *candidates = &fresh[what[0]];
+		list_near(collide, &m->own, candidates->item, candidates->count, others, &m->own_near);
+	} else {
+		leave_out(collide, &m->others, false, &m->others_near);
+		list_near_of(collide, &m->own, block[0], others, &m->own_near);
+		leave_out(collide, &m->own, true, &m->own_near);
+	}
 	return m->own_near.count && m->others_near.count;
 }
 
-static void look_at_vertices(cau_collide *collide, int32_t block, int32_t other, bool fresh)
+static void look_at_vertices(cau_collide *collide, int32_t block, int32_t other,
+                             const some_parts *fresh)
 {
 	meeting m;
 	if (!meet(collide, (int32_t[]){block, other}, (int[]){VERTICES, FACES}, fresh, &m))
@@ -254,7 +282,8 @@ static void look_at_vertices(cau_collide *collide, int32_t block, int32_t other,
 }
 
 // The edge of the lower block first, within a block the lower edge; each pair once.
-static void look_at_edges(cau_collide *collide, int32_t block, int32_t other, bool fresh)
+static void look_at_edges(cau_collide *collide, int32_t block, int32_t other,
+                          const some_parts *fresh)
 {
 	meeting m;
 	if (!meet(collide, (int32_t[]){block, other}, (int[]){EDGES, EDGES}, fresh, &m))
@@ -277,11 +306,24 @@ static void look_at_edges(cau_collide *collide, int32_t block, int32_t other, bo
 	}
 }
 
-static void look_at(cau_collide *collide, int32_t block, int32_t other, bool fresh)
+static void look_at(cau_collide *collide, int32_t block, int32_t other, const some_parts *fresh)
 {
+	const cau_collide_box *own = fresh ? collide->fresh_box[FACES] : collide->block_box[FACES],
+						  *others = fresh ? collide->block_box[FACES] : collide->fresh_box[FACES];
+	if (!meets(&own[block], &others[other], collide->thickness_m)) // which hold all other parts
+		return;
 	look_at_vertices(collide, block, other, fresh);
 	if (other > block || (other == block && fresh))
 		look_at_edges(collide, block, other, fresh);
+}
+
+static void look_at_fresh(cau_collide *collide, int32_t block)
+{
+	some_parts fresh[3];
+	for (int what = FACES; what <= VERTICES; what++)
+		list_fresh(collide, what, block, &fresh[what]);
+	for (int32_t other = 0; other < collide->surface.block_count; other++)
+		look_at(collide, block, other, fresh);
 }
 
 // ---- what a block keeps
@@ -333,11 +375,10 @@ static void search_part(void *context, int32_t block)
 	if (slice->count[0] || slice->count[1])
 		keep(collide, block);
 	int32_t kept[] = {slice->count[0], slice->count[1]};
-	for (int32_t other = 0; other < collide->surface.block_count && collide->is_touched[block];
-	     other++)
-		look_at(collide, block, other, true);
+	if (collide->is_touched[block])
+		look_at_fresh(collide, block);
 	for (int32_t k = 0; k < collide->touched_count; k++)
-		look_at(collide, block, collide->touched[k], false);
+		look_at(collide, block, collide->touched[k], NULL);
 	for (int kind = 0; kind < 2; kind++)
 		if (slice->count[kind] > kept[kind])
 			sort(collide->list[kind] + (size_t)block * CAU_COLLIDE_SLICE, slice->count[kind]);

@@ -129,6 +129,19 @@ bool cau_collide_covers(const cau_collide *collide, const double *x, cau_collide
 	return true;
 }
 
+bool cau_collide_covers_pushed(const cau_collide *collide, const double *x)
+{
+	const cau_surface_parts *vertices = &collide->surface.vertices;
+	if (!collide->found)
+		return false;
+	for (int32_t k = 0; k < vertices->count; k++) {
+		int32_t v = vertices->item[k];
+		if (collide->pushed[v] && !is_enough(collide, x, CAU_COLLIDE_STEP, v, 1))
+			return false;
+	}
+	return true;
+}
+
 double cau_collide_slack(const cau_collide *collide, const double *x)
 {
 	const cau_surface_parts *vertices = &collide->surface.vertices;
