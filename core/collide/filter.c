@@ -265,8 +265,11 @@ static bool is_within(const cau_collide *collide, double longest)
 	return collide->found && collide->slack_m - collide->away_m >= longest;
 }
 
+// Where the step leads, in numbers that may be rounded to single precision.
 static void end(cau_collide *collide, bool changed)
 {
+	const double rounding = 1 + 1e-6;
+	collide->away_m *= rounding;
 	collide->ahead = true;
 	collide->held_back = changed;
 }
