@@ -57,7 +57,6 @@ typedef struct cau_collide_box {
 
 typedef struct cau_collide_found { // a pair as find.c lists it
 	int32_t first, second;         // vertex and face, or edges, of the tissue
-	int32_t block;                 // that lists the second
 	double thickness_m, stiffness;
 } cau_collide_found;
 
@@ -65,6 +64,14 @@ typedef struct cau_collide_slice { // of a block: what it found, and whether tha
 	int32_t count[2];              // by cau_gap_kind
 	bool full;
 } cau_collide_slice;
+
+// What pairs are to be known for: a place; the step from there too, with all that the corners which
+// are pushed may be moved beyond it; or, if there is room, the steps of a tick that begins.
+typedef enum cau_collide_need {
+	CAU_COLLIDE_PLACE,
+	CAU_COLLIDE_STEP,
+	CAU_COLLIDE_TICK,
+} cau_collide_need;
 
 typedef struct cau_collide {
 	const cau_tissue *tissue;
@@ -80,9 +87,10 @@ typedef struct cau_collide {
 	double *anchor;  // m, (n x 3)
 	double *reach_m; // (n)
 	bool ahead;      // they are where the filter let the last step lead
-	double *seen;    // m, (n x 3): where the tick began, and
-	double *apart_m; // (most_pairs): how far apart pairs were there at least
-	double away_m;   // how far any vertex has been from there since, at most
+	double *seen;    // m, (n x 3): where pairs were measured last, and
+	double *apart_m; // (most_pairs): how far apart they were there at least
+	double slack_m;  // what is left there of every vertex's reach, at least
+	double away_m;   // how far any vertex is from there where we are, at most
 	int32_t pair_count, most_pairs;
 	cau_collide_pair *pair; // (most_pairs)
 	int32_t grip_count;
@@ -91,6 +99,7 @@ typedef struct cau_collide {
 	// Of the last evaluation.
 	double energy_j;        // of pairs, without friction
 	int32_t touching_count; // pairs nearer than their thickness
+	double steepest;        // their curvature over their stiffness, at most
 	uint64_t touching_hash; // of which are pressed
 	int32_t loaded_count;
 	uint8_t *is_loaded; // (n)
@@ -107,15 +116,20 @@ typedef struct cau_collide {
 	double start_energy_j;
 	// find.c: what is known
 	cau_collide_box *face_box, *edge_box, *vertex_box; // of the tissue's, where they are drawn
-	cau_collide_box *block_box[3];                     // faces, edges, vertices of a block
-	cau_collide_slice *slice;                          // (blocks)
-	cau_collide_found *list[2];                        // by kind, (blocks x CAU_COLLIDE_SLICE)
-	uint8_t *alive_before[CAU_PRIMITIVE_KINDS];        // as they were when it was found
+	cau_collide_box *block_box[3], *fresh_box[3]; // faces, edges, vertices of a block; those fresh
+	cau_collide_slice *slice;                     // (blocks)
+	cau_collide_found *list[2];                   // by kind, (blocks x CAU_COLLIDE_SLICE)
+	uint8_t *alive_before[CAU_PRIMITIVE_KINDS];   // as they were when it was found
 	// and scratch
-	uint8_t *moved;                  // (n): anchored anew
-	int32_t changed_count, *changed; // blocks
-	bool *stopped;                   // (most_pairs): filter.c: scratch
-	double *room_m;                  // (n): likewise, where drawn
+	int32_t touched_count, *touched; // blocks with a fresh part
+	uint8_t *is_touched;             // (blocks)
+	// filter.c: scratch
+	bool *stopped;   // (most_pairs)
+	double *wanted;  // m, (n x 3): the step before it was changed
+	double *room_m;  // (n): where pushed
+	uint8_t *pushed; // (n): corners of pairs that came near; none but while a step is filtered
+	bool pushes_more;
+	int32_t unclear_count, *unclear; // (most_pairs)
 } cau_collide;
 
 // The caller sets `fixed` and `start`, for good.
@@ -133,24 +147,45 @@ double cau_collide_evaluate(cau_collide *collide, cau_pool *pool, const double *
 // energy without what is negative of it.
 void cau_collide_apply(cau_collide *collide);
 
-// Changes `collide->step` (n x 3), wanted from x on, so that nothing crosses on the way, nor, of a
-// first guess, comes nearer than the thickness. Returns whether it had to.
+// From here on x is where we are, which else is where energy was evaluated last or the last filter
+// has led.
+void cau_collide_stand(cau_collide *collide, const double *x);
+
+// Changes `collide->step` (n x 3), wanted from x, where we are, on, so that nothing crosses on the
+// way, nor, of a first guess, comes nearer than the thickness. Returns whether it had to.
 bool cau_collide_filter(cau_collide *collide, cau_pool *pool, const double *x, bool guess);
+
+// Measures how far pairs are apart at x, where we are: what follows is near it.
+void cau_collide_see(cau_collide *collide, cau_pool *pool, const double *x);
+
+// The filter without a look at all vertices, for the steps of an iteration, most of which are
+// short. Of one that is no longer than this, m, from where we are on: whether it surely leads
+// nobody out of what is known. Then `collide->step` has to be given at the corners of the `unclear`
+// pairs alone, and cau_collide_lets_pass tells whether the step may be taken as it is. If either is
+// false, it is to be filtered.
+bool cau_collide_foresee(cau_collide *collide, double longest_m);
+bool cau_collide_lets_pass(cau_collide *collide, const double *x, double longest_m);
 
 // ---- between the files of this room
 
-// find.c: the pairs for x and, `stepping`, for all steps from there within each vertex's room.
-void cau_collide_find(cau_collide *collide, cau_pool *pool, const double *x, bool stepping);
+// find.c: looks for the pairs of what `surface.changed` tells. False where they find no room.
+bool cau_collide_search(cau_collide *collide, cau_pool *pool);
+// reach.c: the pairs for x and for what is needed beyond.
+void cau_collide_find(cau_collide *collide, cau_pool *pool, const double *x, cau_collide_need need);
 // Whether they are known.
-bool cau_collide_covers(const cau_collide *collide, const double *x, bool stepping);
+bool cau_collide_covers(const cau_collide *collide, const double *x, cau_collide_need need);
+// Whether they are for what is pushed, where they are for the step.
+bool cau_collide_covers_pushed(const cau_collide *collide, const double *x);
+// What is left of every vertex's reach at x, m, at least.
+double cau_collide_slack(const cau_collide *collide, const double *x);
+double cau_collide_most_step(const cau_collide *collide); // m
 // How far a filtered step may lead, m, where `collide->step` is wanted.
 double cau_collide_room(const cau_collide *collide, int32_t vertex);
 double cau_collide_most_room(const cau_collide *collide, double step_m); // of a step so long
 // What died since is looked at again.
 void cau_collide_forget_dead(cau_collide *collide);
 
-// energy.c: measures how far pairs are apart at x, from where `away_m` counts.
-void cau_collide_see(cau_collide *collide, cau_pool *pool, const double *x);
+// energy.c: how far any vertex is from where pairs were measured last, m, at most.
 double cau_collide_away(const cau_collide *collide, const double *x);
 // Whether a pair is at least this far apart wherever vertices have been.
 static inline bool cau_collide_is_far(const cau_collide *collide, int32_t pair, double away_m,

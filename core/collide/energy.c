@@ -138,6 +138,7 @@ static void add_pairs(cau_collide *collide, const double *x)
 {
 	collide->energy_j = 0;
 	collide->touching_count = 0;
+	collide->steepest = 0;
 	collide->touching_hash = CAU_HASH_START;
 	for (int32_t i = 0; i < collide->pair_count; i++) {
 		const cau_collide_pair *pair = &collide->pair[i];
@@ -148,6 +149,7 @@ static void add_pairs(cau_collide *collide, const double *x)
 		collide->energy_j +=
 			potential(pair->stiffness, pair->thickness_m, distance, &slope, &curvature);
 		collide->touching_count++;
+		collide->steepest = fmax(collide->steepest, pair->curvature / pair->stiffness);
 		if (distance < pair->thickness_m / 2)
 			collide->touching_hash =
 				cau_hash_bytes(collide->touching_hash, pair->vertex, sizeof pair->vertex);
@@ -180,6 +182,7 @@ void cau_collide_see(cau_collide *collide, cau_pool *pool, const double *x)
 	measuring work = {collide, x};
 	memcpy(collide->seen, x, 3 * (size_t)collide->tissue->vertex_count * sizeof *x);
 	collide->away_m = 0;
+	collide->slack_m = cau_collide_slack(collide, x);
 	cau_pool_run(pool, share_count(collide), see_part, &work);
 }
 
@@ -196,17 +199,22 @@ double cau_collide_away(const cau_collide *collide, const double *x)
 	return sqrt(most2);
 }
 
+void cau_collide_stand(cau_collide *collide, const double *x)
+{
+	collide->away_m = cau_collide_away(collide, x);
+}
+
 double cau_collide_evaluate(cau_collide *collide, cau_pool *pool, const double *x)
 {
 	bool ahead = collide->ahead;
 	collide->ahead = false;
-	CAU_ASSERT(!ahead || cau_collide_covers(collide, x, false), "%d pairs are not those of x",
-	           collide->pair_count);
-	if (!ahead && !cau_collide_covers(collide, x, false)) {
-		cau_collide_find(collide, pool, x, false);
+	CAU_ASSERT(!ahead || cau_collide_covers(collide, x, CAU_COLLIDE_PLACE),
+	           "%d pairs are not those of x", collide->pair_count);
+	if (!ahead && !cau_collide_covers(collide, x, CAU_COLLIDE_PLACE)) {
+		cau_collide_find(collide, pool, x, CAU_COLLIDE_PLACE);
 		cau_collide_see(collide, pool, x);
 	} else if (!ahead) {
-		collide->away_m = cau_collide_away(collide, x);
+		cau_collide_stand(collide, x);
 	}
 	measuring work = {collide, x};
 	cau_pool_run(pool, share_count(collide), measure_part, &work);
@@ -267,7 +275,7 @@ static void take_grips(cau_collide *collide)
 
 static bool has_changed(const cau_collide *collide)
 {
-	return memchr(collide->surface.changed, 1, (size_t)collide->surface.block_count) != NULL;
+	return memchr(collide->surface.changed, 1, (size_t)collide->tissue->vertex_count) != NULL;
 }
 
 void cau_collide_begin(cau_collide *collide, cau_pool *pool, const double *x)
@@ -277,8 +285,8 @@ void cau_collide_begin(cau_collide *collide, cau_pool *pool, const double *x)
 	collide->held_back = false;
 	collide->grip_count = 0;
 	cau_collide_forget_dead(collide);
-	if (has_changed(collide) || !cau_collide_covers(collide, x, true))
-		cau_collide_find(collide, pool, x, true);
+	if (has_changed(collide) || !cau_collide_covers(collide, x, CAU_COLLIDE_TICK))
+		cau_collide_find(collide, pool, x, CAU_COLLIDE_TICK);
 	cau_collide_see(collide, pool, x);
 	collide->ahead = true;
 	collide->start_energy_j = cau_collide_evaluate(collide, pool, x);

@@ -88,11 +88,17 @@ static bool shorten(cau_collide *collide, int32_t vertex, double most)
 	return true;
 }
 
+// Moves a corner that is known to be pushed; else has it noted for the next time.
 static void move_corner(cau_collide *collide, int32_t vertex, double by, cau_vec3 normal)
 {
 	double *step = collide->step + 3 * (size_t)vertex;
 	if (collide->fixed[vertex])
 		return;
+	if (!collide->pushed[vertex]) {
+		collide->pushed[vertex] = 1;
+		collide->pushes_more = true;
+		return;
+	}
 	cau_vec3_to(cau_add_scaled(cau_vec3_of(step), by, normal), step);
 	shorten(collide, vertex, collide->room_m[vertex]);
 }
@@ -163,7 +169,7 @@ static void stop_pairs(cau_collide *collide, const double *x)
 static bool limit(cau_collide *collide, bool by_reach, double *longest)
 {
 	const cau_surface_parts *vertices = &collide->surface.vertices;
-	double most = fmax(cau_collide_most_step_m, collide->thickness_m), longest2 = 0;
+	double most = cau_collide_most_step(collide), longest2 = 0;
 	bool shortened = false;
 	for (int32_t k = 0; k < vertices->count; k++) {
 		int32_t v = vertices->item[k];
@@ -180,10 +186,9 @@ static bool find(cau_collide *collide, cau_pool *pool, const double *x)
 {
 	int32_t before = collide->cut_short_count;
 	double longest;
-	cau_collide_find(collide, pool, x, true);
+	cau_collide_find(collide, pool, x, CAU_COLLIDE_STEP);
 	cau_collide_see(collide, pool, x);
-	bool shortened = collide->cut_short_count > before && limit(collide, true, &longest);
-	return shortened;
+	return collide->cut_short_count > before && limit(collide, true, &longest);
 }
 
 // Where pairs found no room, a corner has what its reach allows.
@@ -192,47 +197,126 @@ static void take_room(cau_collide *collide)
 	const cau_surface_parts *vertices = &collide->surface.vertices;
 	for (int32_t k = 0; k < vertices->count; k++) {
 		int32_t v = vertices->item[k];
-		collide->room_m[v] = fmin(cau_collide_room(collide, v), just * collide->reach_m[v]);
+		if (collide->pushed[v])
+			collide->room_m[v] = fmin(cau_collide_room(collide, v), just * collide->reach_m[v]);
 	}
 }
 
-// Moves back what comes too near, after which steps may be as long as their room. Returns whether
-// anything did.
-static bool part_pairs(cau_collide *collide, const double *x, double away_m)
+// Moves back what comes too near, after which steps may be as long as their room.
+static void part_pairs(cau_collide *collide, const double *x)
 {
 	look l;
-	bool again = true, parted = false;
-	for (int pass = 0; pass < PASSES && again; pass++) {
+	bool again = true;
+	take_room(collide);
+	collide->pushes_more = false;
+	for (int pass = 0; pass < PASSES && again && !collide->pushes_more; pass++) {
 		again = false;
 		for (int32_t i = 0; i < collide->pair_count; i++) {
 			if (is_clear(collide, i) || !comes_near(collide, &collide->pair[i], x, &l))
 				continue;
-			if (!parted) {
-				take_room(collide);
-				collide->away_m = away_m;
-			}
 			part(collide, &collide->pair[i], &l);
-			again = parted = true;
+			again = true;
 		}
 	}
-	return parted;
+}
+
+// Notes the corners of pairs that come near. Returns whether any does.
+static bool note_pushed(cau_collide *collide, const double *x)
+{
+	look l;
+	bool any = false;
+	for (int32_t i = 0; i < collide->pair_count; i++) {
+		const int32_t *vertex = collide->pair[i].vertex;
+		if (is_clear(collide, i) || !comes_near(collide, &collide->pair[i], x, &l))
+			continue;
+		for (int k = 0; k < 4; k++)
+			collide->pushed[vertex[k]] = 1;
+		any = true;
+	}
+	return any;
+}
+
+// What is pushed may be moved farther than it wanted, and pairs have to be known for that: where
+// others turn out to be pushed besides, it begins again with the step as it was wanted. Returns
+// whether steps had to be shortened for want of room.
+static bool part_known_pairs(cau_collide *collide, cau_pool *pool, const double *x, double longest)
+{
+	size_t n = (size_t)collide->tissue->vertex_count, bytes = 3 * n * sizeof(double);
+	double away = collide->away_m;
+	bool shortened = false;
+	do {
+		collide->away_m = away;
+		if (!cau_collide_covers_pushed(collide, x))
+			shortened |= find(collide, pool, x);
+		away = collide->away_m;
+		collide->away_m += cau_collide_most_room(collide, longest);
+		memcpy(collide->wanted, collide->step, bytes);
+		part_pairs(collide, x);
+		if (collide->pushes_more)
+			memcpy(collide->step, collide->wanted, bytes);
+	} while (collide->pushes_more);
+	memset(collide->pushed, 0, n);
+	return shortened;
+}
+
+// Whether no step from where we are leads out of what is known.
+static bool is_within(const cau_collide *collide, double longest)
+{
+	return collide->found && collide->slack_m - collide->away_m >= longest;
+}
+
+// Where the step leads, in numbers that may be rounded to single precision.
+static void end(cau_collide *collide, bool changed)
+{
+	const double rounding = 1 + 1e-6;
+	collide->away_m *= rounding;
+	collide->ahead = true;
+	collide->held_back = changed;
+}
+
+bool cau_collide_foresee(cau_collide *collide, double longest)
+{
+	collide->kept_share = kept_share;
+	collide->unclear_count = 0;
+	if (longest > cau_collide_most_step(collide) || !is_within(collide, longest))
+		return false;
+	for (int32_t i = 0; i < collide->pair_count; i++)
+		if (!cau_collide_is_far(collide, i, collide->away_m + longest,
+		                        kept_share * collide->pair[i].thickness_m))
+			collide->unclear[collide->unclear_count++] = i;
+	return true;
+}
+
+bool cau_collide_lets_pass(cau_collide *collide, const double *x, double longest)
+{
+	look l;
+	for (int32_t k = 0; k < collide->unclear_count; k++)
+		if (comes_near(collide, &collide->pair[collide->unclear[k]], x, &l))
+			return false;
+	collide->away_m += longest;
+	end(collide, false);
+	return true;
 }
 
 bool cau_collide_filter(cau_collide *collide, cau_pool *pool, const double *x, bool guess)
 {
 	double longest;
 	collide->kept_share = guess ? kept_by_guess : kept_share;
+	CAU_ASSERT(cau_collide_away(collide, x) <= collide->away_m + 1e-9 * collide->thickness_m,
+	           "somebody is farther than %g m from where the tick began", collide->away_m);
 	bool changed = limit(collide, false, &longest);
-	if (!cau_collide_covers(collide, x, true))
+	if (!is_within(collide, longest) && !cau_collide_covers(collide, x, CAU_COLLIDE_STEP))
 		changed |= find(collide, pool, x);
 	collide->out_of_reach = changed;
-	double away = cau_collide_away(collide, x);
-	collide->away_m = away + longest;
-	changed |= part_pairs(collide, x, away + cau_collide_most_room(collide, longest));
+	collide->away_m += longest;
+	if (note_pushed(collide, x)) {
+		collide->away_m -= longest;
+		collide->out_of_reach |= part_known_pairs(collide, pool, x, longest);
+		changed = true;
+	}
 	if (changed)
 		stop_pairs(collide, x);
-	collide->ahead = true;
-	collide->held_back = changed;
+	end(collide, changed);
 	collide->held_back_count += changed && !guess;
 	return changed;
 }

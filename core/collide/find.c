@@ -3,94 +3,118 @@
 // reach of where it was anchored. Boxes of parts, grown by what their corners may move, are held
 // against boxes of blocks and then against each other.
 //
-// Pairs live on from tick to tick. Where a vertex has left its reach, those that have used up some
-// of theirs are anchored anew, and the blocks they belong to, as those that list other parts since
-// a cut, are looked at again; all else is kept. What a block finds is ordered by parts alone. So
-// which pairs touch, and in what order, does not depend on when they were found.
+// Pairs live on. A part with a corner that was anchored anew, that lost a joint, or whose face is
+// drawn or hidden now (surface->changed) is fresh: its pairs are dropped and looked for again, all
+// other pairs are kept. Pairs are ordered by their parts alone, so which pairs touch, and in what
+// order, does not depend on when they were found.
 #include <math.h>
 #include <string.h>
 
 #include "cautery/assert.h"
 #include "collide/collide.h"
 
-static const double least_room = 0.4;   // of the thickness: where no step is asked for
-static const double room_of_step = 1.5; // what others push is moved farther than it wanted
-static const double least_reach = 0.3;  // of the thickness, beyond that: for the ticks to come
-static const double foresight = 2;      // of the step, likewise, where tissue moves on
-static const double used_up = 0.2;      // of that: then anchored anew with those beyond it
 // A pair keeps at most so much of the distance that it has at rest: neighbours, between which the
 // surface itself may be drawn together, less than others.
 static const double near_share = 0.1, far_share = 0.5;
 static const double least_thickness = 0.002; // of the surface's: below, a pair is left out
-enum { TRIES = 12 };
+
+// ---- parts of a block, by what they are
+enum { FACES, EDGES, VERTICES };
+
+typedef struct parts {
+	const cau_surface_parts *list;
+	cau_collide_box *box;
+	const int32_t *corner; // NULL: of itself
+	int corners;
+} parts;
+
+static parts parts_of(const cau_collide *collide, int what)
+{
+	const cau_surface *surface = &collide->surface;
+	const cau_tissue *tissue = collide->tissue;
+	if (what == FACES)
+		return (parts){&surface->faces, collide->face_box, tissue->faces.vertex, 3};
+	if (what == EDGES)
+		return (parts){&surface->edges, collide->edge_box, tissue->edges.vertex, 2};
+	return (parts){&surface->vertices, collide->vertex_box, NULL, 1};
+}
+
+static const int32_t *corners_of(const parts *p, const int32_t *part)
+{
+	return p->corner ? p->corner + (size_t)p->corners * (size_t)*part : part;
+}
+
+static bool is_fresh(const cau_collide *collide, const parts *p, int32_t part)
+{
+	const int32_t *corner = corners_of(p, &part);
+	uint8_t fresh = 0;
+	for (int k = 0; k < p->corners; k++)
+		fresh |= collide->surface.changed[corner[k]];
+	return fresh;
+}
 
 // ---- boxes
+static const cau_collide_box nowhere = {{1e300, 1e300, 1e300}, {-1e300, -1e300, -1e300}};
+
+static double lesser(double a, double b)
+{
+	return a < b ? a : b;
+}
+
+static double greater(double a, double b)
+{
+	return a > b ? a : b;
+}
+
 static cau_collide_box box_round(const cau_collide *collide, const int32_t *vertex, int count)
 {
 	const double *x = collide->anchor;
-	cau_collide_box box = {{1e300, 1e300, 1e300}, {-1e300, -1e300, -1e300}};
+	cau_collide_box box = nowhere;
 	for (int k = 0; k < count; k++) {
 		size_t v = (size_t)vertex[k];
 		for (size_t c = 0; c < 3; c++) {
-			box.least[c] = fmin(box.least[c], x[3 * v + c] - collide->reach_m[v]);
-			box.most[c] = fmax(box.most[c], x[3 * v + c] + collide->reach_m[v]);
+			box.least[c] = lesser(box.least[c], x[3 * v + c] - collide->reach_m[v]);
+			box.most[c] = greater(box.most[c], x[3 * v + c] + collide->reach_m[v]);
 		}
 	}
 	return box;
 }
 
-static cau_collide_box box_of_all(const cau_collide_box *box, const cau_surface_parts *parts,
-                                  int32_t block)
+static void widen(cau_collide_box *box, const cau_collide_box *by)
 {
-	cau_collide_box all = {{1e300, 1e300, 1e300}, {-1e300, -1e300, -1e300}};
-	for (int32_t i = parts->first[block]; i < parts->first[block + 1]; i++)
-		for (int c = 0; c < 3; c++) {
-			all.least[c] = fmin(all.least[c], box[parts->item[i]].least[c]);
-			all.most[c] = fmax(all.most[c], box[parts->item[i]].most[c]);
-		}
-	return all;
+	for (int c = 0; c < 3; c++) {
+		box->least[c] = lesser(box->least[c], by->least[c]);
+		box->most[c] = greater(box->most[c], by->most[c]);
+	}
 }
 
 static bool meets(const cau_collide_box *a, const cau_collide_box *b, double by_m)
 {
-	return a->least[0] - by_m <= b->most[0] && b->least[0] - by_m <= a->most[0] &&
-	       a->least[1] - by_m <= b->most[1] && b->least[1] - by_m <= a->most[1] &&
-	       a->least[2] - by_m <= b->most[2] && b->least[2] - by_m <= a->most[2];
+	return (a->least[0] - by_m <= b->most[0]) & (b->least[0] - by_m <= a->most[0]) &
+	       (a->least[1] - by_m <= b->most[1]) & (b->least[1] - by_m <= a->most[1]) &
+	       (a->least[2] - by_m <= b->most[2]) & (b->least[2] - by_m <= a->most[2]);
 }
 
-static const int32_t *face_corners(const cau_collide *collide, int32_t face)
-{
-	return collide->tissue->faces.vertex + 3 * (size_t)face;
-}
-
-static const int32_t *edge_corners(const cau_collide *collide, int32_t edge)
-{
-	return collide->tissue->edges.vertex + 2 * (size_t)edge;
-}
-
+// Boxes of a block's fresh parts, of all these, and of all that it has.
 static void box_part(void *context, int32_t index)
 {
 	cau_collide *collide = context;
-	const cau_surface *surface = &collide->surface;
-	int32_t block = collide->changed[index];
-	const int32_t *faces = surface->faces.first + block, *edges = surface->edges.first + block,
-				  *vertices = surface->vertices.first + block;
-	CAU_ASSERT_INDEX(block, surface->block_count);
-	for (int32_t i = faces[0]; i < faces[1]; i++) {
-		int32_t f = surface->faces.item[i];
-		collide->face_box[f] = box_round(collide, face_corners(collide, f), 3);
+	int32_t block = collide->touched[index];
+	CAU_ASSERT_INDEX(block, collide->surface.block_count);
+	for (int what = FACES; what <= VERTICES; what++) {
+		parts p = parts_of(collide, what);
+		cau_collide_box all = nowhere, fresh = nowhere;
+		for (int32_t i = p.list->first[block]; i < p.list->first[block + 1]; i++) {
+			int32_t part = p.list->item[i];
+			if (is_fresh(collide, &p, part)) {
+				p.box[part] = box_round(collide, corners_of(&p, &part), p.corners);
+				widen(&fresh, &p.box[part]);
+			}
+			widen(&all, &p.box[part]);
+		}
+		collide->block_box[what][block] = all;
+		collide->fresh_box[what][block] = fresh;
 	}
-	for (int32_t i = edges[0]; i < edges[1]; i++) {
-		int32_t e = surface->edges.item[i];
-		collide->edge_box[e] = box_round(collide, edge_corners(collide, e), 2);
-	}
-	for (int32_t i = vertices[0]; i < vertices[1]; i++) {
-		int32_t v = surface->vertices.item[i];
-		collide->vertex_box[v] = box_round(collide, &v, 1);
-	}
-	collide->block_box[0][block] = box_of_all(collide->face_box, &surface->faces, block);
-	collide->block_box[1][block] = box_of_all(collide->edge_box, &surface->edges, block);
-	collide->block_box[2][block] = box_of_all(collide->vertex_box, &surface->vertices, block);
 }
 
 // ---- what a pair is
@@ -169,100 +193,178 @@ static void list(cau_collide *collide, int32_t block, cau_gap_kind kind, cau_col
 	collide->list[kind][(size_t)block * CAU_COLLIDE_SLICE + (size_t)slice->count[kind]++] = found;
 }
 
-// Parts of a block that meet another one's box: most of a neighbour do not.
-typedef struct near_parts {
+// Parts of one kind of a block: all that are fresh, or those that meet a box.
+typedef struct some_parts {
 	int32_t count, item[3 * CAU_SURFACE_FACES];
-} near_parts;
+} some_parts;
 
-static void list_near(const cau_collide *collide, const cau_collide_box *within,
-                      const cau_surface_parts *parts, const cau_collide_box *box, int32_t block,
-                      near_parts *near)
+static void list_fresh(const cau_collide *collide, int what, int32_t block, some_parts *fresh)
 {
-	near->count = 0;
-	for (int32_t i = parts->first[block]; i < parts->first[block + 1]; i++)
-		if (meets(within, &box[parts->item[i]], collide->thickness_m))
-			near->item[near->count++] = parts->item[i];
+	parts p = parts_of(collide, what);
+	fresh->count = 0;
+	for (int32_t i = p.list->first[block]; i < p.list->first[block + 1]; i++)
+		if (is_fresh(collide, &p, p.list->item[i]))
+			fresh->item[fresh->count++] = p.list->item[i];
 }
 
-static void look_at_vertices(cau_collide *collide, int32_t block, int32_t other)
+static void list_near(const cau_collide *collide, const parts *p, const int32_t *item,
+                      int32_t count, const cau_collide_box *within, some_parts *near)
 {
-	const cau_surface *surface = &collide->surface;
-	near_parts vertices, faces;
-	list_near(collide, &collide->block_box[0][other], &surface->vertices, collide->vertex_box,
-	          block, &vertices);
-	list_near(collide, &collide->block_box[2][block], &surface->faces, collide->face_box, other,
-	          &faces);
-	for (int32_t i = 0; i < vertices.count; i++) {
-		int32_t v = vertices.item[i];
-		const cau_collide_box *box = &collide->vertex_box[v];
-		for (int32_t j = 0; j < faces.count; j++) {
-			cau_collide_found found = {v, faces.item[j], other, 0, 0};
-			const int32_t *c = face_corners(collide, found.second);
-			if (meets(box, &collide->face_box[found.second], collide->thickness_m) && c[0] != v &&
-			    c[1] != v && c[2] != v &&
+	near->count = 0;
+	for (int32_t i = 0; i < count; i++)
+		if (meets(within, &p->box[item[i]], collide->thickness_m))
+			near->item[near->count++] = item[i];
+}
+
+static void leave_out(const cau_collide *collide, const parts *p, bool fresh, some_parts *near)
+{
+	int32_t kept = 0;
+	for (int32_t i = 0; i < near->count; i++)
+		if (is_fresh(collide, p, near->item[i]) != fresh)
+			near->item[kept++] = near->item[i];
+	near->count = kept;
+}
+
+static void list_near_of(const cau_collide *collide, const parts *p, int32_t block,
+                         const cau_collide_box *within, some_parts *near)
+{
+	int32_t first = p->list->first[block];
+	list_near(collide, p, p->list->item + first, p->list->first[block + 1] - first, within, near);
+}
+
+// Two blocks of which the first's parts of one kind are held against the second's of another: those
+// that are fresh (`fresh`, by kind) against all, or the others (NULL) against those of the second
+// that are fresh.
+typedef struct meeting {
+	parts own, others;
+	some_parts own_near, others_near;
+} meeting;
+
+static bool meet(const cau_collide *collide, const int32_t block[2], const int what[2],
+                 const some_parts *fresh, meeting *m)
+{
+	cau_collide_box *const *own_box = fresh ? collide->fresh_box : collide->block_box,
+						   *const *box = fresh ? collide->block_box : collide->fresh_box;
+	const cau_collide_box *own = &own_box[what[0]][block[0]], *others = &box[what[1]][block[1]];
+	if (!meets(own, others, collide->thickness_m))
+		return false;
+	m->own = parts_of(collide, what[0]);
+	m->others = parts_of(collide, what[1]);
+	list_near_of(collide, &m->others, block[1], own, &m->others_near);
+	if (fresh) {
+		const some_parts *candidates = &fresh[what[0]];
+		list_near(collide, &m->own, candidates->item, candidates->count, others, &m->own_near);
+	} else {
+		leave_out(collide, &m->others, false, &m->others_near);
+		list_near_of(collide, &m->own, block[0], others, &m->own_near);
+		leave_out(collide, &m->own, true, &m->own_near);
+	}
+	return m->own_near.count && m->others_near.count;
+}
+
+static void look_at_vertices(cau_collide *collide, int32_t block, int32_t other,
+                             const some_parts *fresh)
+{
+	meeting m;
+	if (!meet(collide, (int32_t[]){block, other}, (int[]){VERTICES, FACES}, fresh, &m))
+		return;
+	for (int32_t i = 0; i < m.own_near.count; i++) {
+		int32_t v = m.own_near.item[i];
+		for (int32_t j = 0; j < m.others_near.count; j++) {
+			cau_collide_found found = {v, m.others_near.item[j], 0, 0};
+			const int32_t *c = corners_of(&m.others, &found.second);
+			if (meets(&m.own.box[v], &m.others.box[found.second], collide->thickness_m) &&
+			    c[0] != v && c[1] != v && c[2] != v &&
 			    may_touch(collide, CAU_GAP_VERTEX_FACE, (int32_t[]){v, c[0], c[1], c[2]}, &found))
 				list(collide, block, CAU_GAP_VERTEX_FACE, found);
 		}
 	}
 }
 
-static void look_at_edges(cau_collide *collide, int32_t block, int32_t other)
+// The edge of the lower block first, within a block the lower edge; each pair once.
+static void look_at_edges(cau_collide *collide, int32_t block, int32_t other,
+                          const some_parts *fresh)
 {
-	const cau_surface *surface = &collide->surface;
-	near_parts own, others;
-	list_near(collide, &collide->block_box[1][other], &surface->edges, collide->edge_box, block,
-	          &own);
-	list_near(collide, &collide->block_box[1][block], &surface->edges, collide->edge_box, other,
-	          &others);
-	for (int32_t i = 0; i < own.count; i++) {
-		const int32_t *a = edge_corners(collide, own.item[i]);
-		const cau_collide_box *box = &collide->edge_box[own.item[i]];
-		for (int32_t j = block == other ? i + 1 : 0; j < others.count; j++) {
-			cau_collide_found found = {own.item[i], others.item[j], other, 0, 0};
-			const int32_t *b = edge_corners(collide, found.second);
-			if (meets(box, &collide->edge_box[found.second], collide->thickness_m) &&
-			    a[0] != b[0] && a[0] != b[1] && a[1] != b[0] && a[1] != b[1] &&
+	meeting m;
+	if (!meet(collide, (int32_t[]){block, other}, (int[]){EDGES, EDGES}, fresh, &m))
+		return;
+	for (int32_t i = 0; i < m.own_near.count; i++) {
+		int32_t e = m.own_near.item[i];
+		for (int32_t j = 0; j < m.others_near.count; j++) {
+			int32_t f = m.others_near.item[j];
+			if (!meets(&m.own.box[e], &m.others.box[f], collide->thickness_m) ||
+			    (block == other && f <= e && is_fresh(collide, &m.own, f)))
+				continue;
+			bool turned = block == other && f < e;
+			cau_collide_found found = {turned ? f : e, turned ? e : f, 0, 0};
+			const int32_t *a = corners_of(&m.own, &found.first),
+						  *b = corners_of(&m.own, &found.second);
+			if (a[0] != b[0] && a[0] != b[1] && a[1] != b[0] && a[1] != b[1] &&
 			    may_touch(collide, CAU_GAP_EDGE_EDGE, (int32_t[]){a[0], a[1], b[0], b[1]}, &found))
 				list(collide, block, CAU_GAP_EDGE_EDGE, found);
 		}
 	}
 }
 
-static void look_at(cau_collide *collide, int32_t block, int32_t other)
+static void look_at(cau_collide *collide, int32_t block, int32_t other, const some_parts *fresh)
 {
-	if (meets(&collide->block_box[2][block], &collide->block_box[0][other], collide->thickness_m))
-		look_at_vertices(collide, block, other);
-	if (other >= block &&
-	    meets(&collide->block_box[1][block], &collide->block_box[1][other], collide->thickness_m))
-		look_at_edges(collide, block, other);
+	const cau_collide_box *own = fresh ? collide->fresh_box[FACES] : collide->block_box[FACES],
+						  *others = fresh ? collide->block_box[FACES] : collide->fresh_box[FACES];
+	if (!meets(&own[block], &others[other], collide->thickness_m)) // which hold all other parts
+		return;
+	look_at_vertices(collide, block, other, fresh);
+	if (other > block || (other == block && fresh))
+		look_at_edges(collide, block, other, fresh);
+}
+
+static void look_at_fresh(cau_collide *collide, int32_t block)
+{
+	some_parts fresh[3];
+	for (int what = FACES; what <= VERTICES; what++)
+		list_fresh(collide, what, block, &fresh[what]);
+	for (int32_t other = 0; other < collide->surface.block_count; other++)
+		look_at(collide, block, other, fresh);
 }
 
 // ---- what a block keeps
 
-// Takes out what it had with blocks that have changed.
+// Takes out what it had of parts that are fresh.
 static void keep(cau_collide *collide, int32_t block)
 {
 	cau_collide_slice *slice = &collide->slice[block];
+	parts vertices = parts_of(collide, VERTICES), edges = parts_of(collide, EDGES),
+		  faces = parts_of(collide, FACES);
 	for (int kind = 0; kind < 2; kind++) {
 		cau_collide_found *found = collide->list[kind] + (size_t)block * CAU_COLLIDE_SLICE;
+		const parts *first = kind == CAU_GAP_VERTEX_FACE ? &vertices : &edges,
+					*second = kind == CAU_GAP_VERTEX_FACE ? &faces : &edges;
 		int32_t kept = 0;
 		for (int32_t k = 0; k < slice->count[kind]; k++)
-			if (!collide->surface.changed[found[k].block])
+			if (!is_fresh(collide, first, found[k].first) &&
+			    !is_fresh(collide, second, found[k].second))
 				found[kept++] = found[k];
 		slice->count[kind] = kept;
 	}
+	slice->full = false;
 }
 
-// By the other block; what is of one block stays in its order.
+static bool is_before(const cau_collide_found *a, const cau_collide_found *b)
+{
+	return a->first != b->first ? a->first < b->first : a->second < b->second;
+}
+
+// By parts [Shell 1959; gaps of Ciura 2001]: most are in order already.
 static void sort(cau_collide_found *found, int32_t count)
 {
-	for (int32_t i = 1; i < count; i++) {
-		cau_collide_found moved = found[i];
-		int32_t at = i;
-		for (; at > 0 && found[at - 1].block > moved.block; at--)
-			found[at] = found[at - 1];
-		found[at] = moved;
-	}
+	static const int32_t gaps[] = {701, 301, 132, 57, 23, 10, 4, 1};
+	for (size_t g = 0; g < sizeof gaps / sizeof *gaps; g++)
+		for (int32_t gap = gaps[g], i = gap; i < count; i++) {
+			cau_collide_found moved = found[i];
+			int32_t at = i;
+			for (; at >= gap && is_before(&moved, &found[at - gap]); at -= gap)
+				found[at] = found[at - gap];
+			found[at] = moved;
+		}
 }
 
 static void search_part(void *context, int32_t block)
@@ -270,18 +372,16 @@ static void search_part(void *context, int32_t block)
 	cau_collide *collide = context;
 	cau_collide_slice *slice = &collide->slice[block];
 	CAU_ASSERT_INDEX(block, collide->surface.block_count);
-	if (collide->surface.changed[block]) {
-		*slice = (cau_collide_slice){0};
-		for (int32_t other = 0; other < collide->surface.block_count; other++)
-			look_at(collide, block, other);
-		return;
-	}
 	if (slice->count[0] || slice->count[1])
 		keep(collide, block);
-	for (int32_t k = 0; k < collide->changed_count; k++)
-		look_at(collide, block, collide->changed[k]);
+	int32_t kept[] = {slice->count[0], slice->count[1]};
+	if (collide->is_touched[block])
+		look_at_fresh(collide, block);
+	for (int32_t k = 0; k < collide->touched_count; k++)
+		look_at(collide, block, collide->touched[k], NULL);
 	for (int kind = 0; kind < 2; kind++)
-		sort(collide->list[kind] + (size_t)block * CAU_COLLIDE_SLICE, slice->count[kind]);
+		if (slice->count[kind] > kept[kind])
+			sort(collide->list[kind] + (size_t)block * CAU_COLLIDE_SLICE, slice->count[kind]);
 }
 
 static bool gather(cau_collide *collide)
@@ -303,160 +403,44 @@ static bool gather(cau_collide *collide)
 				pair->slope = 0;
 				pair->vertex[0] = found->first;
 				if (kind == CAU_GAP_VERTEX_FACE) {
-					memcpy(pair->vertex + 1, face_corners(collide, found->second),
+					memcpy(pair->vertex + 1,
+					       collide->tissue->faces.vertex + 3 * (size_t)found->second,
 					       3 * sizeof(int32_t));
 				} else {
-					memcpy(pair->vertex, edge_corners(collide, found->first), 2 * sizeof(int32_t));
-					memcpy(pair->vertex + 2, edge_corners(collide, found->second),
+					memcpy(pair->vertex, collide->tissue->edges.vertex + 2 * (size_t)found->first,
+					       2 * sizeof(int32_t));
+					memcpy(pair->vertex + 2,
+					       collide->tissue->edges.vertex + 2 * (size_t)found->second,
 					       2 * sizeof(int32_t));
 				}
 			}
 	return true;
 }
 
-// Looks at the blocks that have changed. Returns whether there was room for all that is there.
-static bool search(cau_collide *collide, cau_pool *pool)
+// Blocks that list a fresh part.
+static void list_touched(cau_collide *collide)
+{
+	parts faces = parts_of(collide, FACES);
+	collide->touched_count = 0;
+	for (int32_t b = 0; b < collide->surface.block_count; b++) {
+		bool touched = false;
+		for (int32_t i = faces.list->first[b]; i < faces.list->first[b + 1] && !touched; i++)
+			touched = is_fresh(collide, &faces, faces.list->item[i]);
+		collide->is_touched[b] = touched;
+		if (touched)
+			collide->touched[collide->touched_count++] = b;
+	}
+}
+
+bool cau_collide_search(cau_collide *collide, cau_pool *pool)
 {
 	const cau_surface *surface = &collide->surface;
-	collide->changed_count = 0;
-	for (int32_t b = 0; b < surface->block_count; b++)
-		if (surface->changed[b])
-			collide->changed[collide->changed_count++] = b;
-	if (!collide->changed_count)
-		return true;
-	cau_pool_run(pool, collide->changed_count, box_part, collide);
-	cau_pool_run(pool, surface->block_count, search_part, collide);
 	bool room = true;
+	list_touched(collide);
+	cau_pool_run(pool, collide->touched_count, box_part, collide);
+	cau_pool_run(pool, surface->block_count, search_part, collide);
 	for (int32_t b = 0; b < surface->block_count; b++)
 		room &= !collide->slice[b].full;
-	memset(surface->changed, 0, (size_t)surface->block_count);
+	memset(surface->changed, 0, (size_t)collide->tissue->vertex_count);
 	return gather(collide) && room;
-}
-
-// ---- where they are valid
-
-double cau_collide_most_room(const cau_collide *collide, double step_m)
-{
-	double room = room_of_step * step_m, least = least_room * collide->thickness_m;
-	return room > least ? room : least;
-}
-
-double cau_collide_room(const cau_collide *collide, int32_t vertex)
-{
-	cau_vec3 step = cau_vec3_of(collide->step + 3 * (size_t)vertex);
-	double least = least_room * collide->thickness_m, way2 = cau_dot(step, step);
-	if (room_of_step * room_of_step * way2 <= least * least)
-		return least;
-	return cau_collide_most_room(collide, sqrt(way2));
-}
-
-// Whether x is within a share of a vertex's reach, less the room for, `stepping`, a step from x.
-static bool is_enough(const cau_collide *collide, const double *x, bool stepping, int32_t v,
-                      double share)
-{
-	cau_vec3 from = cau_vec3_of(collide->anchor + 3 * (size_t)v);
-	cau_vec3 away = cau_sub(cau_vec3_of(x + 3 * (size_t)v), from);
-	double left = share * (collide->reach_m[v] - (stepping ? cau_collide_room(collide, v) : 0));
-	return left >= 0 && cau_dot(away, away) <= left * left;
-}
-
-static void anchor(cau_collide *collide, const double *x, int32_t v, double reach_m)
-{
-	const double rounding = 1 + 1e-6; // a place that uses up all of it is within
-	memcpy(collide->anchor + 3 * (size_t)v, x + 3 * (size_t)v, 3 * sizeof *x);
-	collide->reach_m[v] = rounding * reach_m;
-	collide->moved[v] = 1;
-}
-
-// Blocks of faces with a corner that was anchored anew change.
-static void note_moved(cau_collide *collide)
-{
-	const cau_surface_parts *faces = &collide->surface.faces;
-	for (int32_t b = 0; b < collide->surface.block_count; b++)
-		for (int32_t i = faces->first[b]; i < faces->first[b + 1] && !collide->surface.changed[b];
-		     i++) {
-			const int32_t *c = face_corners(collide, faces->item[i]);
-			collide->surface.changed[b] =
-				collide->moved[c[0]] | collide->moved[c[1]] | collide->moved[c[2]];
-		}
-	memset(collide->moved, 0, (size_t)collide->tissue->vertex_count);
-}
-
-static void anchor_used_up(cau_collide *collide, const double *x, bool stepping)
-{
-	const cau_surface_parts *vertices = &collide->surface.vertices;
-	double least = least_reach * collide->thickness_m;
-	double most = fmax(cau_collide_most_step_m, collide->thickness_m);
-	for (int32_t k = 0; k < vertices->count; k++) {
-		int32_t v = vertices->item[k];
-		if (collide->found && is_enough(collide, x, stepping, v, used_up))
-			continue;
-		double way = stepping ? cau_length(cau_vec3_of(collide->step + 3 * (size_t)v)) : 0;
-		double room = stepping ? cau_collide_room(collide, v) : 0;
-		anchor(collide, x, v, room + fmax(fmin(foresight * way, most), least));
-	}
-}
-
-// Only what is asked for, or a share of it. Who knows of more has all of this, so nobody who finds
-// that there is no room for it would have had any.
-static bool search_least(cau_collide *collide, cau_pool *pool, const double *x, double share)
-{
-	const cau_surface_parts *vertices = &collide->surface.vertices;
-	for (int32_t k = 0; k < vertices->count; k++) {
-		int32_t v = vertices->item[k];
-		anchor(collide, x, v, share > 0 ? share * cau_collide_room(collide, v) : 0);
-	}
-	note_moved(collide);
-	memset(collide->surface.changed, 1, (size_t)collide->surface.block_count);
-	return search(collide, pool);
-}
-
-void cau_collide_find(cau_collide *collide, cau_pool *pool, const double *x, bool stepping)
-{
-	CAU_ASSERT(collide->surface.listed, "%d faces drawn", collide->surface.faces.count);
-	collide->search_count++;
-	anchor_used_up(collide, x, stepping);
-	note_moved(collide);
-	if (!collide->found)
-		memset(collide->surface.changed, 1, (size_t)collide->surface.block_count);
-	collide->found = true;
-	double share = stepping;
-	if (search(collide, pool) || search_least(collide, pool, x, share))
-		return;
-	collide->cut_short_count++;
-	for (int tries = 0; tries < TRIES && stepping; tries++)
-		if (search_least(collide, pool, x, share /= 2))
-			return;
-	collide->found = search_least(collide, pool, x, 0); // else not even what touches has room
-}
-
-bool cau_collide_covers(const cau_collide *collide, const double *x, bool stepping)
-{
-	const cau_surface_parts *vertices = &collide->surface.vertices;
-	if (!collide->found)
-		return false;
-	for (int32_t k = 0; k < vertices->count; k++)
-		if (!is_enough(collide, x, stepping, vertices->item[k], 1))
-			return false;
-	return true;
-}
-
-// ---- what has died
-
-void cau_collide_forget_dead(cau_collide *collide)
-{
-	const cau_primitives *all = &collide->tissue->primitives;
-	const int32_t count[] = {all->triangle_count, all->tetrahedron_count, all->link_count};
-	const int32_t *vertex[] = {all->triangle, all->tetrahedron, all->link}, corners[] = {3, 4, 2};
-	for (int kind = 0; kind < CAU_PRIMITIVE_KINDS; kind++) {
-		const uint8_t *alive = collide->alive[kind];
-		uint8_t *before = collide->alive_before[kind];
-		if (!alive || memcmp(alive, before, (size_t)count[kind]) == 0)
-			continue;
-		for (int32_t i = 0; i < count[kind]; i++)
-			for (int32_t k = 0; k < corners[kind] && alive[i] != before[i]; k++)
-				collide->moved[vertex[kind][(size_t)i * (size_t)corners[kind] + (size_t)k]] = 1;
-		memcpy(before, alive, (size_t)count[kind]);
-	}
-	note_moved(collide);
 }

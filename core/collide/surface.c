@@ -89,7 +89,7 @@ static bool make_lists(cau_surface *surface, cau_arena *arena)
 {
 	const cau_tissue *tissue = surface->tissue;
 	int32_t blocks = surface->block_count;
-	surface->changed = cau_arena_array(arena, (size_t)blocks, 1);
+	surface->changed = cau_arena_array(arena, (size_t)tissue->vertex_count, 1);
 	return surface->changed &&
 	       make_parts(&surface->faces, tissue->faces.face_count, blocks, arena) &&
 	       make_parts(&surface->edges, tissue->edges.edge_count, blocks, arena) &&
@@ -142,13 +142,19 @@ static void take_face(cau_surface *surface, int32_t face, int32_t block)
 	}
 }
 
+static void note_changed(cau_surface *surface, const int32_t *corner, int count)
+{
+	for (int k = 0; k < count; k++)
+		surface->changed[corner[k]] = 1;
+}
+
 static void list_block(cau_surface *surface, const uint32_t *face_mask, int32_t block)
 {
 	for (int32_t i = surface->own[block]; i < surface->own[block + 1]; i++) {
 		int32_t face = surface->order[i];
 		uint32_t bit = face_mask[face >> 5] >> (face & 31) & 1;
 		if (bit != (surface->mask[face >> 5] >> (face & 31) & 1))
-			surface->changed[block] = 1;
+			note_changed(surface, surface->tissue->faces.vertex + 3 * (size_t)face, 3);
 		if (!bit)
 			take_face(surface, face, block);
 	}
@@ -166,13 +172,16 @@ static void turn_over(int32_t *block[2], int32_t count)
 	memset(block[0], 0xff, (size_t)count * sizeof(int32_t));
 }
 
-// Both the block that no longer lists a part and the one that does list others now.
-static void compare_places(cau_surface *surface, int32_t *const block[2], int32_t count)
+// Edges and vertices that are listed by another block, or by none, or were.
+static void compare_places(cau_surface *surface)
 {
-	for (int32_t i = 0; i < count; i++)
-		for (int k = 0; k < 2 && block[0][i] != block[1][i]; k++)
-			if (block[k][i] >= 0)
-				surface->changed[block[k][i]] = 1;
+	int32_t *const *edge = surface->edge_block, *const *vertex = surface->vertex_block;
+	for (int32_t e = 0; e < surface->tissue->edges.edge_count; e++)
+		if (edge[0][e] != edge[1][e])
+			note_changed(surface, surface->tissue->edges.vertex + 2 * (size_t)e, 2);
+	for (int32_t v = 0; v < surface->tissue->vertex_count; v++)
+		if (vertex[0][v] != vertex[1][v])
+			note_changed(surface, &v, 1);
 }
 
 void cau_surface_list(cau_surface *surface, const uint32_t *face_mask)
@@ -186,8 +195,7 @@ void cau_surface_list(cau_surface *surface, const uint32_t *face_mask)
 	turn_over(surface->vertex_block, tissue->vertex_count);
 	for (int32_t block = 0; block < surface->block_count; block++)
 		list_block(surface, face_mask, block);
-	compare_places(surface, surface->edge_block, tissue->edges.edge_count);
-	compare_places(surface, surface->vertex_block, tissue->vertex_count);
+	compare_places(surface);
 	memcpy(surface->mask, face_mask, bytes);
 	surface->listed = true;
 }

@@ -77,25 +77,32 @@ static void go_in_legs(cau_session *session, const double *guess, double *at)
 	}
 }
 
-void cau_session_begin_collide(cau_session *session)
+// The first guess as far as tissue lets it go.
+static void stop_guess(cau_session *session, double *guess)
 {
 	cau_step_solver *solver = &session->solver;
 	cau_collide *collide = solver->collide;
-	if (!collide)
-		return;
-	size_t bytes = 3 * (size_t)session->tissue.vertex_count * sizeof(double);
-	double *guess = solver->position, *at = solver->position_before; // free until the solve
-	exempt_held(session);
-	cau_surface_list(&collide->surface, session->dissection.face_mask);
-	ask_for(session, session->position_start, guess);
-	cau_collide_begin(collide, session->pool, session->position_start);
-	if (!cau_collide_filter(collide, session->pool, session->position_start, true))
-		return;
-	memcpy(at, session->position_start, bytes);
+	double *at = solver->position_before; // free until the solve
+	memcpy(at, session->position_start, 3 * (size_t)session->tissue.vertex_count * sizeof(double));
 	go_in_legs(session, guess, at);
 	for (int32_t k = 0; k < collide->surface.vertices.count; k++) {
 		size_t v = (size_t)collide->surface.vertices.item[k];
 		if (!session->fixed[v])
 			memcpy(guess + 3 * v, at + 3 * v, 3 * sizeof(double));
 	}
+}
+
+void cau_session_begin_collide(cau_session *session)
+{
+	cau_collide *collide = session->solver.collide;
+	double *guess = session->solver.position;
+	if (!collide)
+		return;
+	exempt_held(session);
+	cau_surface_list(&collide->surface, session->dissection.face_mask);
+	ask_for(session, session->position_start, guess);
+	cau_collide_begin(collide, session->pool, session->position_start);
+	if (cau_collide_filter(collide, session->pool, session->position_start, true))
+		stop_guess(session, guess);
+	cau_collide_see(collide, session->pool, guess); // from here on steps are short
 }

@@ -90,6 +90,7 @@ static void move_apart(cau_step_solver *solver, double scale)
 {
 	use_plain_step(solver);
 	scale_trial(solver, scale);
+	cau_collide_stand(solver->collide, solver->position_before);
 	cau_solver_keep_apart(solver, solver->position_before);
 	move_to(solver, 1);
 }

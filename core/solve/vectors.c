@@ -2,6 +2,7 @@
 // Compiled twice: CAU_SINGLE is the precision, CAU_VECTORS the name of the table it makes.
 #include "solve/vectors.h"
 
+#include <math.h>
 #include <string.h>
 
 #include "base/simd.h"
@@ -28,6 +29,21 @@ static void add(cau_reals *vector, int32_t vertex, const double value[3])
 	real *to = (real *)vector + 4 * (int64_t)vertex;
 	for (int c = 0; c < 3; c++)
 		to[c] = (real)((double)to[c] + value[c]);
+}
+
+// By turns in four numbers, none of which waits for the one before.
+static double longest(const cau_reals *vector, int32_t count)
+{
+	const real *d = (const real *)vector;
+	real most[4] = {0};
+	CAU_ASSERT(count >= 0, "%d vertices", count);
+	for (int32_t v = 0; v < count; v++) {
+		const real *at = d + 4 * (int64_t)v;
+		real square = at[0] * at[0] + at[1] * at[1] + at[2] * at[2];
+		most[v & 3] = square > most[v & 3] ? square : most[v & 3];
+	}
+	real low = most[0] > most[1] ? most[0] : most[1], high = most[2] > most[3] ? most[2] : most[3];
+	return sqrt((double)(low > high ? low : high)) * (1 + 1e-6); // by any rounding
 }
 
 static void take_coordinate(cau_reals *column, const cau_reals *vector, int c, int32_t count)
@@ -161,6 +177,7 @@ const cau_vectors CAU_VECTORS = {
 	.at = at,
 	.read = read,
 	.add = add,
+	.longest = longest,
 	.take_coordinate = take_coordinate,
 	.displace = displace,
 	.step = step,

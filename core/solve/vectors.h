@@ -24,6 +24,8 @@ typedef struct cau_vectors {
 	double (*at)(const cau_reals *array, int64_t index);
 	void (*read)(const cau_reals *vector, int32_t vertex, double value[3]);
 	void (*add)(cau_reals *vector, int32_t vertex, const double value[3]);
+	// The length of the longest of `count` vertices' values.
+	double (*longest)(const cau_reals *vector, int32_t count);
 	// column[v] = coordinate c of vertex v, for v below `count`
 	void (*take_coordinate)(cau_reals *column, const cau_reals *vector, int c, int32_t count);
 

@@ -9,6 +9,7 @@
 #include "solve/solver.h"
 
 static const double enough = 0.01; // of r.z, at which the solution serves as a step
+static const double surely = 0.5;  // of that, where it is foreseen
 enum { MOST_SWEEPS = 12 };
 
 cau_status cau_solver_make_yield(cau_step_solver *solver, cau_arena *arena, cau_error *error)
@@ -58,49 +59,88 @@ static double dot(cau_step_solver *solver, const cau_reals *a, const cau_reals *
 	return all;
 }
 
-// residual -= scale * K direction, and returns direction . K direction where scale is 0.
-static double apply(cau_step_solver *solver, double scale)
+// direction . K direction; what K makes of it is kept where tissue touches.
+static double touch(cau_step_solver *solver, const cau_reals *direction)
 {
 	cau_collide *collide = solver->collide;
-	const cau_vectors *vectors = solver->kernels->vectors;
 	double along = 0;
-	for (int32_t k = 0; k < collide->loaded_count && scale == 0; k++)
-		vectors->read(solver->yield.direction, collide->loaded[k],
-		              collide->probe + 3 * (size_t)collide->loaded[k]);
-	if (scale == 0)
-		cau_collide_apply(collide);
+	for (int32_t k = 0; k < collide->loaded_count; k++)
+		solver->kernels->vectors->read(direction, collide->loaded[k],
+		                               collide->probe + 3 * (size_t)collide->loaded[k]);
+	cau_collide_apply(collide);
 	for (int32_t k = 0; k < collide->loaded_count; k++) {
-		int32_t v = collide->loaded[k];
-		const double *probe = collide->probe + 3 * (size_t)v,
-					 *force = collide->answer + 3 * (size_t)v;
-		along += probe[0] * force[0] + probe[1] * force[1] + probe[2] * force[2];
-		if (scale != 0 && !solver->fixed[v])
-			vectors->add(solver->yield.residual, v,
-			             (double[]){-scale * force[0], -scale * force[1], -scale * force[2]});
+		size_t at = 3 * (size_t)collide->loaded[k];
+		for (size_t i = at; i < at + 3; i++)
+			along += collide->probe[i] * collide->answer[i];
 	}
 	return along;
 }
 
-void cau_solver_yield(cau_step_solver *solver)
+// residual -= scale * what K made
+static void take_off(cau_step_solver *solver, double scale)
+{
+	const cau_collide *collide = solver->collide;
+	for (int32_t k = 0; k < collide->loaded_count; k++) {
+		int32_t v = collide->loaded[k];
+		const double *force = collide->answer + 3 * (size_t)v;
+		if (!solver->fixed[v])
+			solver->kernels->vectors->add(
+				solver->yield.residual, v,
+				(double[]){-scale * force[0], -scale * force[1], -scale * force[2]});
+	}
+}
+
+// With p.K p the share `stiffer` of p.A p, what the first step leaves of r.z is at most that share
+// times the largest eigenvalue of A^-1 K, of which the steepest pair tells: before it is pressed
+// together, a pair is about as stiff as A is where it acts.
+static bool first_serves(const cau_step_solver *solver, double stiffer)
+{
+	return stiffer * solver->collide->steepest <= surely * enough;
+}
+
+// Steps take off E at least as much less each as the last one did: off[0] J the first one did,
+// off[1] the last but one, off[2] the last.
+static bool last_served(const double off[3])
+{
+	return off[2] * off[2] <= surely * enough * off[0] * off[1];
+}
+
+static void begin(cau_step_solver *solver)
 {
 	cau_yield *y = &solver->yield;
 	size_t bytes = 4 * (size_t)solver->tissue->vertex_count * solver->kernels->vectors->real_bytes;
-	CAU_ASSERT(y->residual != NULL, "%d parts touch", solver->collide->touching_count);
 	// r = -gradient, z = p = A^-1 r is the increment as it is, A p = r
 	memset(y->residual, 0, bytes);
 	add(solver, y->residual, -1, solver->gradient);
 	memcpy(y->image, y->residual, bytes);
 	memcpy(y->direction, solver->increment, bytes);
-	double size = dot(solver, y->residual, solver->increment), first = size;
 	memset(solver->increment, 0, bytes);
-	for (int sweep = 0; size > 0 && sweep < MOST_SWEEPS; sweep++) {
-		double stiff = apply(solver, 0) + dot(solver, y->direction, y->image);
-		double step = size / stiff;
-		if (!(stiff > 0))
-			return;
+}
+
+void cau_solver_yield(cau_step_solver *solver)
+{
+	cau_yield *y = &solver->yield;
+	CAU_ASSERT(y->residual != NULL, "%d parts touch", solver->collide->touching_count);
+	double size = -dot(solver, solver->gradient, solver->increment), first = size, off[3] = {0};
+	double touching = touch(solver, solver->increment), own = size;
+	if (!(size > 0) || !(touching >= 0))
+		return;
+	if (first_serves(solver, touching / own)) {
+		add(solver, solver->increment, size / (touching + own) - 1, solver->increment);
+		return;
+	}
+	begin(solver);
+	for (int sweep = 0; sweep < MOST_SWEEPS; sweep++) {
+		double step = size / (touching + own);
 		add(solver, solver->increment, step, y->direction);
+		off[1] = sweep ? off[2] : step * size;
+		off[2] = step * size;
+		if (!sweep)
+			off[0] = off[2];
+		else if (last_served(off))
+			return;
 		add(solver, y->residual, -step, y->image);
-		apply(solver, step);
+		take_off(solver, step);
 		cau_solver_apply_inverse(solver, y->residual, y->solved, 1);
 		double next = dot(solver, y->residual, y->solved);
 		if (!(next > enough * first))
@@ -108,5 +148,9 @@ void cau_solver_yield(cau_step_solver *solver)
 		turn(solver, y->direction, next / size, y->solved);
 		turn(solver, y->image, next / size, y->residual);
 		size = next;
+		touching = touch(solver, y->direction);
+		own = dot(solver, y->direction, y->image);
+		if (!(touching + own > 0))
+			return;
 	}
 }

@@ -72,7 +72,7 @@ static void foresight_changes_nothing(void **state)
 	for (int32_t i = 0; i < 3 * s.r.tissue.vertex_count; i++)
 		s.collide.step[i] = 5e-4 * sheets_draw(&s);
 	s.collide.found = false;
-	cau_collide_find(&s.collide, s.pool, s.x, true);
+	cau_collide_find(&s.collide, s.pool, s.x, CAU_COLLIDE_STEP);
 	assert_true(cau_collide_evaluate(&s.collide, s.pool, s.x) == energy && energy > 0);
 	assert_true(pairs > 0);
 	rig_finish(&s.r);

@@ -30,6 +30,8 @@ static void test_what_is_added_is_read(void **state)
 		}
 		vectors->read(vector, 3, got); // its neighbour
 		assert_true(got[0] == 0 && got[1] == 0 && got[2] == 0);
+		assert_near(vectors->longest(vector, VERTICES),
+		            sqrt(third[0] * third[0] + third[1] * third[1] + third[2] * third[2]), 1e-5);
 		// a float and what is left of a third differ by its rounding
 		vectors->add(vector, 2, back);
 		vectors->read(vector, 2, got);

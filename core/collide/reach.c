@@ -1,0 +1,176 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// For which places the pairs are known: each vertex within its reach of where it was anchored. One
+// that has left it is anchored anew, with those that have used up some of theirs, and what they
+// belong to is looked for again (find.c).
+#include <math.h>
+#include <string.h>
+
+#include "cautery/assert.h"
+#include "collide/collide.h"
+
+static const double least_room = 0.4;   // of the thickness: where no step is asked for
+static const double room_of_step = 1.5; // what others push is moved farther than it wanted
+static const double room_of_tick = 0.1; // of the thickness: for the steps of an iteration
+static const double ahead = 0.3;        // of the thickness, beyond that: for the ticks to come
+static const double used_up = 0.6;      // of that: then anchored anew with those beyond it
+enum { TRIES = 12 };
+
+double cau_collide_most_room(const cau_collide *collide, double step_m)
+{
+	double room = room_of_step * step_m, least = least_room * collide->thickness_m;
+	return room > least ? room : least;
+}
+
+double cau_collide_most_step(const cau_collide *collide)
+{
+	return collide->thickness_m > cau_collide_most_step_m ? collide->thickness_m
+	                                                      : cau_collide_most_step_m;
+}
+
+// How long a vertex's step is once it is no longer than it may be.
+static double step_of(const cau_collide *collide, int32_t vertex)
+{
+	cau_vec3 step = cau_vec3_of(collide->step + 3 * (size_t)vertex);
+	double way = sqrt(cau_dot(step, step)), most = cau_collide_most_step(collide);
+	return way < most ? way : most;
+}
+
+double cau_collide_room(const cau_collide *collide, int32_t vertex)
+{
+	return cau_collide_most_room(collide, step_of(collide, vertex));
+}
+
+static double needed(const cau_collide *collide, cau_collide_need need, int32_t vertex)
+{
+	if (need == CAU_COLLIDE_PLACE)
+		return 0;
+	double besides = need == CAU_COLLIDE_TICK ? room_of_tick * collide->thickness_m : 0;
+	return besides +
+	       (collide->pushed[vertex] ? cau_collide_room(collide, vertex) : step_of(collide, vertex));
+}
+
+// Whether x is within a share of a vertex's reach, less what is needed beyond.
+static bool is_enough(const cau_collide *collide, const double *x, cau_collide_need need, int32_t v,
+                      double share)
+{
+	cau_vec3 from = cau_vec3_of(collide->anchor + 3 * (size_t)v);
+	cau_vec3 away = cau_sub(cau_vec3_of(x + 3 * (size_t)v), from);
+	double left = share * (collide->reach_m[v] - needed(collide, need, v));
+	return left >= 0 && cau_dot(away, away) <= left * left;
+}
+
+static void anchor(cau_collide *collide, const double *x, int32_t v, double reach_m)
+{
+	const double rounding = 1 + 1e-5; // so that all that is needed is within, by any rounding
+	memcpy(collide->anchor + 3 * (size_t)v, x + 3 * (size_t)v, 3 * sizeof *x);
+	collide->reach_m[v] = rounding * reach_m;
+	collide->surface.changed[v] = 1;
+}
+
+static void look_at_all(cau_collide *collide)
+{
+	memset(collide->surface.changed, 1, (size_t)collide->tissue->vertex_count);
+}
+
+static void anchor_used_up(cau_collide *collide, const double *x, cau_collide_need need)
+{
+	const cau_surface_parts *vertices = &collide->surface.vertices;
+	double besides = ahead * collide->thickness_m;
+	for (int32_t k = 0; k < vertices->count; k++) {
+		int32_t v = vertices->item[k];
+		if (collide->found && is_enough(collide, x, need, v, used_up))
+			continue;
+		anchor(collide, x, v, needed(collide, need, v) + besides);
+	}
+}
+
+// Only what has to be known, or a share of it. Who knows of more has all of this, so nobody who
+// finds that there is no room for it would have had any.
+static bool search_least(cau_collide *collide, cau_pool *pool, const double *x,
+                         cau_collide_need need, double share)
+{
+	const cau_surface_parts *vertices = &collide->surface.vertices;
+	if (need == CAU_COLLIDE_TICK)
+		need = CAU_COLLIDE_STEP;
+	for (int32_t k = 0; k < vertices->count; k++) {
+		int32_t v = vertices->item[k];
+		anchor(collide, x, v, share > 0 ? share * needed(collide, need, v) : 0);
+	}
+	look_at_all(collide);
+	return cau_collide_search(collide, pool);
+}
+
+void cau_collide_find(cau_collide *collide, cau_pool *pool, const double *x, cau_collide_need need)
+{
+	CAU_ASSERT(collide->surface.listed, "%d faces drawn", collide->surface.faces.count);
+	collide->search_count++;
+	anchor_used_up(collide, x, need);
+	if (!collide->found)
+		look_at_all(collide);
+	collide->found = true;
+	double share = 1;
+	if (cau_collide_search(collide, pool) || search_least(collide, pool, x, need, share))
+		return;
+	collide->cut_short_count++;
+	for (int tries = 0; tries < TRIES && need != CAU_COLLIDE_PLACE; tries++)
+		if (search_least(collide, pool, x, need, share /= 2))
+			return;
+	collide->found = search_least(collide, pool, x, need, 0); // else not even what touches has room
+}
+
+bool cau_collide_covers(const cau_collide *collide, const double *x, cau_collide_need need)
+{
+	const cau_surface_parts *vertices = &collide->surface.vertices;
+	if (!collide->found)
+		return false;
+	for (int32_t k = 0; k < vertices->count; k++)
+		if (!is_enough(collide, x, need, vertices->item[k], 1))
+			return false;
+	return true;
+}
+
+bool cau_collide_covers_pushed(const cau_collide *collide, const double *x)
+{
+	const cau_surface_parts *vertices = &collide->surface.vertices;
+	if (!collide->found)
+		return false;
+	for (int32_t k = 0; k < vertices->count; k++) {
+		int32_t v = vertices->item[k];
+		if (collide->pushed[v] && !is_enough(collide, x, CAU_COLLIDE_STEP, v, 1))
+			return false;
+	}
+	return true;
+}
+
+double cau_collide_slack(const cau_collide *collide, const double *x)
+{
+	const cau_surface_parts *vertices = &collide->surface.vertices;
+	double least = INFINITY;
+	for (int32_t k = 0; k < vertices->count; k++) {
+		size_t v = (size_t)vertices->item[k];
+		cau_vec3 away = cau_sub(cau_vec3_of(x + 3 * v), cau_vec3_of(collide->anchor + 3 * v));
+		double left = collide->reach_m[v] - sqrt(cau_dot(away, away));
+		least = left < least ? left : least;
+	}
+	return least;
+}
+
+// ---- what has died
+
+void cau_collide_forget_dead(cau_collide *collide)
+{
+	const cau_primitives *all = &collide->tissue->primitives;
+	const int32_t count[] = {all->triangle_count, all->tetrahedron_count, all->link_count};
+	const int32_t *vertex[] = {all->triangle, all->tetrahedron, all->link}, corners[] = {3, 4, 2};
+	for (int kind = 0; kind < CAU_PRIMITIVE_KINDS; kind++) {
+		const uint8_t *alive = collide->alive[kind];
+		uint8_t *before = collide->alive_before[kind];
+		if (!alive || memcmp(alive, before, (size_t)count[kind]) == 0)
+			continue;
+		for (int32_t i = 0; i < count[kind]; i++)
+			for (int32_t k = 0; k < corners[kind] && alive[i] != before[i]; k++)
+				collide->surface
+					.changed[vertex[kind][(size_t)i * (size_t)corners[kind] + (size_t)k]] = 1;
+		memcpy(before, alive, (size_t)count[kind]);
+	}
+}
