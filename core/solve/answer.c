@@ -40,6 +40,11 @@ void cau_contact_move(cau_contact_set *set, const cau_contact_row *row, cau_vec3
 	}
 }
 
+double cau_contact_slips_at(const cau_contact_set *set, const cau_contact_row *row)
+{
+	return fmin(set->tool[row->tool].def->slip_force_n, cau_most_at_a_point_n);
+}
+
 double cau_contact_bears(const cau_contact_set *set, const cau_contact_row *row)
 {
 	const double of_the_tools = 2;

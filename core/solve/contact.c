@@ -214,7 +214,7 @@ static cau_vec3 attachment_reaction(const cau_contact_set *set, cau_contact_row 
 	double compliance = 1 / def->grasp_stiffness_n_m;
 	CAU_ASSERT(compliance > 0, "a compliance of %g m/N", compliance);
 	cau_vec3 r = cau_scale(1 / (s + compliance), cau_sub(cau_scale(s, old), away));
-	return clamp_length(r, def->slip_force_n, &row->slipping);
+	return clamp_length(r, cau_contact_slips_at(set, row), &row->slipping);
 }
 
 // Normal part from the gap, tangential part from the slip, clamped to the friction cone.

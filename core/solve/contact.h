@@ -189,6 +189,14 @@ const double *cau_contact_answer(const cau_contact_set *set, const cau_contact_r
 // A load (N) on the row more: where the columns' vertices go by it.
 void cau_contact_move(cau_contact_set *set, const cau_contact_row *row, cau_vec3 by);
 
+// No point of tissue that is held bears more, N: over a cell of 2 mm it would be 12 MPa, at which
+// fascia breaks. What jaws that never slip hold of torn or crushed tissue would bear hundreds, in
+// steps that are far from their solution, and be thrown about until nothing is left of it.
+static const double cau_most_at_a_point_n = 50;
+
+// At what force (N) a held point slips.
+double cau_contact_slips_at(const cau_contact_set *set, const cau_contact_row *row);
+
 // What a row pushes with at most, N. A tool has less; but of tissue that is caught between its
 // sides rows push against each other, and would without end.
 double cau_contact_bears(const cau_contact_set *set, const cau_contact_row *row);

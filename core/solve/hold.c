@@ -91,7 +91,7 @@ static bool would_slip(const cau_contact_set *set, double dr[3][CAU_MAX_HELD])
 		const cau_contact_row *row = &set->row[set->hold_row[i]];
 		cau_vec3 by = {dr[0][i], dr[1][i], dr[2][i]};
 		if (row->slipping ||
-		    cau_length(cau_add(cau_vec3_of(row->reaction), by)) > tool_of(set, row)->slip_force_n)
+		    cau_length(cau_add(cau_vec3_of(row->reaction), by)) > cau_contact_slips_at(set, row))
 			return true;
 	}
 	return false;
