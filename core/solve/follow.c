@@ -50,7 +50,7 @@ static bool shorten(double tilt[3][3], double way[3])
 		column[l] = (cau_vec3){(l == 0) + tilt[0][l], (l == 1) + tilt[1][l], (l == 2) + tilt[2][l]};
 	cau_vec3 right = cau_vec3_of(way);
 	double whole = cau_dot(column[0], cau_cross(column[1], column[2]));
-	if (!(whole >= 1)) // L and S are positive: so is what they make larger
+	if (!(whole > 0.5)) // it is 1 at least, as L and S are positive
 		return false;
 	way[0] = cau_dot(right, cau_cross(column[1], column[2])) / whole;
 	way[1] = cau_dot(column[0], cau_cross(right, column[2])) / whole;

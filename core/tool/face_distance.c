@@ -51,7 +51,7 @@ static cau_vec3 weighted(const cau_vec3 corner[3], const double weight[3])
 // On from a distance d a point goes d and the tip's radius against the gradient: to the middle of
 // what is round there, from which its nearest point on the triangle is the answer at once.
 enum { STEPS_DOWN = 24 };
-static const double near_enough_m = 1e-7;
+static const double near_enough_m = 1e-7, stays_m = 1e-10;
 
 double cau_tool_face_distance(const cau_tool_def *tool, double jaw, cau_tool_part part,
                               const cau_vec3 corner[3], double weight[3], cau_vec3 *gradient)
@@ -66,6 +66,9 @@ double cau_tool_face_distance(const cau_tool_def *tool, double jaw, cau_tool_par
 		double far = fmax(least + inside, near_enough_m);
 		cau_nearest_on_triangle(cau_add_scaled(at, -far, *gradient), corner, next_weight);
 		cau_vec3 next = weighted(corner, next_weight);
+		// What is nearest to a point is so to all between that and itself.
+		if (cau_length(cau_sub(next, at)) < stays_m)
+			break;
 		double distance = cau_tool_distance(tool, jaw, part, next, &next_gradient);
 		if (!(distance < least)) {
 			inside /= 4; // too far: what is round there is smaller

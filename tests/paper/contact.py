@@ -159,7 +159,7 @@ def run(sim, folder, quick):
                **{f"contact.sliding.{cells}_cells": change([row["force_n"] for row in rows])
                   for cells, rows in of_kind(found, "slides").items()},
                "contact.vertices_inside_mm": 1e3 * max(deepest(rows, "vertex_depth_m") for rows in rest.values()),
-               "contact.faces_inside_cells": max(1e3 * deepest(rows, "face_depth_m") / cell for (_, cell), rows in rest.items()),
+               "contact.faces_inside_mm": max(1e3 * deepest(rows, "face_depth_m") for rows in rest.values()),
                "contact.crossed": sum(crossed for _, _, _, crossed, _ in found["matrix"][0])}
     if not quick:
         draw(folder, found)
@@ -279,8 +279,8 @@ def rest_said(rest):
     vertices = 1e3 * max(deepest(rows, "vertex_depth_m") for rows in rest.values())
     above = [key for key in faces if faces[key] > INSIDE_MM]
     (ball, cell), deep = max(faces.items(), key=lambda item: item[1])
-    faces_said = (f"Faces are deeper than that in {len(above)} of {len(faces)}: a ball stands on vertices, and faces between them dip "
-                  "into it" if above else "No face is deeper than that either")
+    faces_said = (f"Faces are deeper than that in {len(above)} of {len(faces)}: flat as they are, they dip into "
+                  "what is round" if above else "No face is deeper than that either")
     without = [row["left_out"] > 0 for rows in rest.values() for row in rows]
     (restless, its_cell), most = max(((key, wobble(rows)) for key, rows in rest.items()), key=lambda item: item[1])
     return paragraph(f"Asked is {INSIDE_MM:g} mm at most. Vertices are inside by {vertices:.0e} mm at most, "
