@@ -159,6 +159,10 @@ void cau_session_find_contacts(cau_session *session);
 // After the solve: whether tissue is inside a tool, by what the rows say, or met it where there is
 // no row, which there is now.
 bool cau_session_find_missed(cau_session *session);
+// Whether holding faces has thrown tissue farther than it went without that, by more than a tip is
+// wide and goes itself: then it has not held it, though it may be out of the tool,
+// and all tools count as passing.
+bool cau_session_find_thrown(cau_session *session);
 // Takes the step back to what it was before the first face was found missed, and forgets all sides:
 // tools pass where tissue would not be held.
 void cau_session_let_through(cau_session *session);

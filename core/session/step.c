@@ -100,7 +100,7 @@ static cau_status descend(cau_session *session, cau_error *error)
 	return cau_fail(error, status, NULL, "%s", refusal.reason);
 }
 
-// Returns whether tools would pass tissue in what it ends with.
+// Returns whether tools would pass tissue in what it ends with, or have thrown it about.
 static bool hold(cau_session *session, int rounds, cau_status *status, cau_error *error)
 {
 	cau_step_solver *solver = &session->solver;
@@ -112,7 +112,8 @@ static bool hold(cau_session *session, int rounds, cau_status *status, cau_error
 		solver->objective = cau_solver_evaluate(solver);
 		*status = descend(session, error);
 	}
-	return false;
+	session->contact.crossing = !*status && cau_session_find_thrown(session);
+	return session->contact.crossing;
 }
 
 static void begin_again(cau_session *session)
@@ -124,6 +125,17 @@ static void begin_again(cau_session *session)
 	solver->objective = cau_solver_evaluate(solver);
 }
 
+// What lies between them is out of one only into the other.
+static bool has_open_jaws(const cau_session *session)
+{
+	for (int32_t i = 0; i < session->tool_count; i++) {
+		const cau_tool_state *tool = &session->tool[i].state;
+		if (cau_tool_has_jaws(&tool->definition) && tool->jaw > 0)
+			return true;
+	}
+	return false;
+}
+
 static cau_status solve(cau_session *session, cau_error *error)
 {
 	cau_step_solver *solver = &session->solver;
@@ -132,7 +144,8 @@ static cau_status solve(cau_session *session, cau_error *error)
 	for (int attempt = 0; hold(session, rounds, &status, error); attempt++) {
 		if (cau_session_hold_back(session, attempt)) { // proxy.c
 			begin_again(session);
-			rounds = attempt == CAU_ATTEMPTS - 1 ? LAST_ROUNDS : MOST_ROUNDS;
+			bool last = attempt == CAU_ATTEMPTS - 1 && !has_open_jaws(session);
+			rounds = last ? LAST_ROUNDS : MOST_ROUNDS;
 			continue;
 		}
 		if (!session->contact.crossing)

@@ -57,7 +57,7 @@ HELD = (
     ("faces inside a ball at rest", "0.1 mm",
      (("tests/core/session/proxy_matrix_test.c", "nothing_crosses"), ("tests/core/session/crossing_test.c", "nothing_crosses"),
       (QUICK, "contact.faces_inside"))),
-    ("no press of the matrix crosses: a ninth of them in each run, all 224 in `core_session_proxy_matrix_all` (long)", "none",
+    ("no press of the matrix crosses: a ninth of them in each run, all 280 in `core_session_proxy_matrix_all` (long)", "none",
      (("tests/core/session/proxy_matrix_test.c", "nothing_crosses"), ("tests/core/session/crossing_test.c", "nothing_crosses"),
       ("tests/core/session/crossing_test.c", "what_a_tick_takes_past_a_face_is_held_too"), (QUICK, "contact.crossed"))),
     ("what cannot yield stops a tool, which pushes with `force_max_n` at most", "as said",

@@ -224,6 +224,9 @@ static void held_jaws_rest_and_open_again(void **state)
 	stage_step(session, 20);
 	assert_true(stage_tool(session, "jaws")->jaw == 1);
 	assert_true(stage_tool(session, "jaws")->jaw_force_n == 0);
+	cau_frame frame = stage_frame(session); // and what they held is where it was
+	cau_session_info info = stage_info(session);
+	assert_true(stage_farthest(&frame, info.rest_position, info.vertex_count) < 2e-3);
 	cau_session_destroy(session);
 	cau_session_destroy(other);
 	free(scene);
