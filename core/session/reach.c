@@ -302,22 +302,28 @@ static void search_block(reach *r, int32_t block)
 			offer(r, near->face[i]);
 }
 
-// How far a point of the tissue goes at most, seen from the tool.
-static double most_way(const cau_session *session, const cau_tool *tool, double reach_m)
+double cau_session_farthest(const cau_session *session, const double *position)
 {
 	double most2 = 0;
 	for (size_t v = 0; v < (size_t)session->tissue.vertex_count; v++) {
-		cau_vec3 way = cau_sub(cau_vec3_of(session->position + 3 * v),
-		                       cau_vec3_of(session->position_start + 3 * v));
+		cau_vec3 way =
+			cau_sub(cau_vec3_of(position + 3 * v), cau_vec3_of(session->position_start + 3 * v));
 		double way2 = cau_dot(way, way);
-		most2 = way2 > most2 ? way2 : most2;
+		most2 = way2 > most2 || isnan(way2) ? way2 : most2;
 	}
+	return sqrt(most2);
+}
+
+// How far a point of the tissue goes at most, seen from the tool.
+static double most_way(const cau_session *session, const cau_tool *tool, double reach_m)
+{
 	const cau_pose *from = &tool->pose_before, *to = &tool->state.pose;
 	double way = cau_length(cau_sub(cau_vec3_of(to->position_m), cau_vec3_of(from->position_m)));
 	double turn = 0;
 	for (int i = 0; i < 4; i++)
 		turn += from->rotation[i] * to->rotation[i];
-	return sqrt(most2) + way + 2 * reach_m * sqrt(fmax(1 - turn * turn, 0));
+	return cau_session_farthest(session, session->position) + way +
+	       2 * reach_m * sqrt(fmax(1 - turn * turn, 0));
 }
 
 static int compare(const void *a, const void *b)

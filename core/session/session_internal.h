@@ -187,6 +187,8 @@ static const double cau_missed_share = 0.5;
 // which tissue lies between and inside); the scratch that it needs; rows for the faces that the
 // part of a tool pushed in the last step; and, after the solve, rows for those that it has passed,
 // or that are deep inside.
+// Also how far (m) a vertex is at most from where the tick began; not a number if one is nowhere.
+double cau_session_farthest(const cau_session *session, const double *position);
 bool cau_session_feels_faces(const cau_tool *tool);
 struct cau_candidate *cau_session_make_reach(cau_arena *arena);
 void cau_session_reach_again(cau_session *session, int32_t index, cau_tool_part part);

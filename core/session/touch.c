@@ -256,21 +256,11 @@ bool cau_session_find_missed(cau_session *session)
 		keep_unheld(session, rows);
 	if (set->row_count > rows)
 		cau_contact_prepare(set, &session->solver);
-	set->crossing = set->row_count > rows ||
-	                cau_contact_is_deep(set, &session->solver, missed_m, cau_missed_share);
-	return cau_contact_is_deep(set, &session->solver, missed_m, 0) || set->row_count > rows;
-}
-
-static double farthest2(const cau_session *session, const double *position)
-{
-	double most = 0;
-	for (size_t v = 0; v < (size_t)session->tissue.vertex_count; v++) {
-		cau_vec3 way =
-			cau_sub(cau_vec3_of(position + 3 * v), cau_vec3_of(session->position_start + 3 * v));
-		double way2 = cau_dot(way, way);
-		most = way2 > most || isnan(way2) ? way2 : most;
-	}
-	return most;
+	bool more = set->row_count > rows;
+	bool deep = cau_contact_is_deep(set, &session->solver, missed_m, 0);
+	set->crossing =
+		more || (deep && cau_contact_is_deep(set, &session->solver, missed_m, cau_missed_share));
+	return more || deep;
 }
 
 bool cau_session_find_thrown(cau_session *session)
@@ -284,8 +274,8 @@ bool cau_session_find_thrown(cau_session *session)
 		double way = cau_length(cau_sub(cau_vec3_of(tool->anchor.position_m), from));
 		room = fmax(room, way + 2 * tool->state.definition.hot_radius_m);
 	}
-	double unheld = sqrt(farthest2(session, session->position_unheld));
-	bool thrown = !(sqrt(farthest2(session, session->position)) <= unheld + room);
+	double unheld = cau_session_farthest(session, session->position_unheld);
+	bool thrown = !(cau_session_farthest(session, session->position) <= unheld + room);
 	for (int32_t i = 0; i < session->tool_count && thrown; i++)
 		session->contact.tool[i].passing = true;
 	return thrown;

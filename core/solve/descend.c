@@ -269,6 +269,15 @@ static cau_status find_increment(cau_step_solver *solver, cau_error *error)
 	return cau_newton_increment(solver, error);
 }
 
+static void forget_increments(cau_step_solver *solver)
+{
+	if (solver->contact)
+		cau_contact_begin(solver->contact);
+	cau_anderson_start(solver);
+	cau_accuracy_begin(&solver->accuracy);
+	solver->accuracy.newton = cau_newton_is_called_for(solver);
+}
+
 cau_status cau_solver_descend(cau_step_solver *solver, cau_error *error)
 {
 	CAU_ASSERT(solver->iterations > 0, "%d iterations", solver->iterations);
@@ -277,11 +286,7 @@ cau_status cau_solver_descend(cau_step_solver *solver, cau_error *error)
 	uint64_t touching = solver->collide ? solver->collide->touching_hash : 0;
 	int32_t backtracks_before = solver->backtracks; // of the tick's earlier rounds
 	solver->spared = false;
-	if (solver->contact)
-		cau_contact_begin(solver->contact);
-	cau_anderson_start(solver);
-	cau_accuracy_begin(&solver->accuracy);
-	solver->accuracy.newton = cau_newton_is_called_for(solver);
+	forget_increments(solver);
 	// Tissue that was guessed into tissue may have more energy than it began with.
 	if (solver->collide && solver->collide->energy_j > solver->collide->start_energy_j)
 		go_back(solver, &objective);

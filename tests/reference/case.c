@@ -183,6 +183,16 @@ cau_status cau_reference_case_read(const char *path, cau_reference_case *referen
 	return status;
 }
 
+int32_t cau_reference_case_top(const cau_reference_case *reference, int32_t *vertex)
+{
+	const double rounding_m = 1e-9;
+	int32_t count = 0;
+	for (int32_t v = 0; v < reference->vertex_count; v++)
+		if (reference->position[3 * (size_t)v + 2] > -rounding_m)
+			vertex[count++] = v;
+	return count;
+}
+
 void cau_reference_case_finish(cau_reference_case *reference)
 {
 	free(reference->position);

@@ -42,4 +42,6 @@ typedef struct cau_reference_case {
 // Errors: CAU_IO, CAU_BAD_SYNTAX naming the section, CAU_BAD_VALUE for a vertex out of range.
 cau_status cau_reference_case_read(const char *path, cau_reference_case *reference,
                                    cau_error *error);
+// Vertices at z = 0, in `vertex` (vertex_count of room); returns how many.
+int32_t cau_reference_case_top(const cau_reference_case *reference, int32_t *vertex);
 void cau_reference_case_finish(cau_reference_case *reference); // a zeroed one is fine

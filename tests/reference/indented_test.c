@@ -19,15 +19,6 @@
 
 static const double same = 1e-5; // of the force: digits of the files
 
-static int32_t top_of(const cau_reference_case *reference, int32_t *surface)
-{
-	int32_t count = 0;
-	for (int32_t v = 0; v < reference->vertex_count; v++)
-		if (reference->position[3 * (size_t)v + 2] > -1e-9)
-			surface[count++] = v;
-	return count;
-}
-
 // The ball comes down in stages: at once it would turn elements inside out.
 static void solve(const cau_reference_case *reference, const cau_indented_body *body,
                   cau_indented *out)
@@ -73,7 +64,7 @@ static void compare(const char *name)
 		fixed[reference.fixed[k]] = true;
 	cau_indented_body body = {.vertex_count = reference.vertex_count,
 	                          .tetrahedron_count = reference.tetrahedron_count,
-	                          .surface_count = top_of(&reference, surface),
+	                          .surface_count = cau_reference_case_top(&reference, surface),
 	                          .rest = reference.position,
 	                          .tetrahedron = reference.tetrahedron,
 	                          .surface = surface,

@@ -172,15 +172,6 @@ static double force_error(cau_session *session, const cau_reference_case *refere
 
 // ---- the ball on faces
 
-static int32_t top_of(const cau_reference_case *reference, int32_t *surface)
-{
-	int32_t count = 0;
-	for (int32_t v = 0; v < reference->vertex_count; v++)
-		if (reference->position[3 * (size_t)v + 2] > -1e-9)
-			surface[count++] = v;
-	return count;
-}
-
 static int32_t top_faces_of(const cau_reference_case *reference, int32_t *face)
 {
 	int32_t count = 0;
@@ -217,7 +208,7 @@ static void let_faces_bear(cau_reference_case *reference)
 		position[i] = reference->position[i] + reference->displacement[i];
 	cau_indented_body body = {.vertex_count = reference->vertex_count,
 	                          .tetrahedron_count = reference->tetrahedron_count,
-	                          .surface_count = top_of(reference, surface),
+	                          .surface_count = cau_reference_case_top(reference, surface),
 	                          .rest = reference->position,
 	                          .tetrahedron = reference->tetrahedron,
 	                          .surface = surface,
