@@ -11,7 +11,7 @@ static const cli_option common[] = {
 	{"token-file", "F", "file with the access token (default: the context's, CAUTERYD_TOKEN)"},
 	{"context", "NAME", "a daemon of `cautery context ls` (default: the current one)"},
 	{"label", "L", "the daemon of this label behind a proxy; for ls several, as in d1,d2"},
-	{"timeout", "S", "seconds to wait for an answer (default 30)"},
+	{"timeout", "S", "seconds to wait for an answer or a sign of life (default 30)"},
 	{"json", NULL, "one JSON object a line on standard output, the last one the result"},
 	{"help", NULL, "this text; -h does the same"},
 	{"version", NULL, "which version this is, and which protocol it speaks"},

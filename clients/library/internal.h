@@ -108,6 +108,11 @@ void cau_client_greeted(cau_client *client);
 
 // wait.c
 bool cau_client_wait_for(cau_client *client, const bool *done, double until_s);
+// Until a request of `user` is answered, `timeout_s` at most; what costs the server much (building,
+// going back, files) takes the time it takes there, and is waited for while heartbeats are
+// answered.
+cau_status cau_client_await(cau_client *client, cau_method method, const bool *done,
+                            const void *user, cau_error *error);
 
 // hello.c
 cau_status cau_hello_send(cau_client *client, cau_error *error);

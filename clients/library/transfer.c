@@ -172,14 +172,8 @@ cau_status cau_client_download(cau_client *client, cau_method method, const void
 	client->fault.code = 0;
 	client->incoming = &d.incoming;
 	cau_status status = cau_client_send(client, method, params, announced, &d, error);
-	if (!status &&
-	    !cau_client_wait_for(client, &d.answered, cau_client_now() + client->def.timeout_s)) {
-		for (cau_client_pending *p = client->first_pending; p; p = p->next)
-			if (p->user == &d)
-				p->answer = NULL;
-		status = cau_fail(error, CAU_IO, NULL, "no answer to %s within %g s",
-		                  cau_method_describe(method)->name, client->def.timeout_s);
-	}
+	if (!status)
+		status = cau_client_await(client, method, &d.answered, &d, error);
 	if (!status && d.error.status) {
 		status = d.error.status;
 		if (error)

@@ -27,20 +27,48 @@ static void take_answer(void *user, const cau_rpc_message *answer, const cau_err
 }
 
 // Whoever stops waiting must not be answered any more: what he waits with is gone.
-static void abandon(cau_client *client, const waiting *w)
+static void abandon(cau_client *client, const void *user)
 {
 	for (cau_client_pending *p = client->first_pending; p; p = p->next)
-		if (p->user == w)
+		if (p->user == user)
 			p->answer = NULL;
+}
+
+static bool wait_once(cau_client *client, const bool *done)
+{
+	return cau_client_wait_for(client, done, cau_client_now() + client->def.timeout_s);
+}
+
+// Whether the server answers to a heartbeat.
+static bool is_heard(cau_client *client)
+{
+	waiting w = {.method = CAU_METHOD_HEARTBEAT};
+	bool sent = !cau_client_send(client, CAU_METHOD_HEARTBEAT,
+	                             &(cau_wire_heartbeat){.visible = true}, take_answer, &w, NULL);
+	bool answered = sent && wait_once(client, &w.done);
+	abandon(client, &w);
+	return answered && !w.error.status;
+}
+
+cau_status cau_client_await(cau_client *client, cau_method method, const bool *done,
+                            const void *user, cau_error *error)
+{
+	const cau_method_info *info = cau_method_describe(method);
+	bool answered = wait_once(client, done);
+	while (!answered && info->cost != CAU_COST_CHEAP && is_heard(client))
+		answered = *done || wait_once(client, done);
+	if (answered || *done)
+		return CAU_OK;
+	abandon(client, user);
+	return cau_fail(error, CAU_IO, NULL, "no answer to %s within %g s", info->name,
+	                client->def.timeout_s);
 }
 
 static cau_status wait(cau_client *client, waiting *w, cau_error *error)
 {
-	if (!cau_client_wait_for(client, &w->done, cau_client_now() + client->def.timeout_s)) {
-		abandon(client, w);
-		return cau_fail(error, CAU_IO, NULL, "no answer to %s within %g s",
-		                cau_method_describe(w->method)->name, client->def.timeout_s);
-	}
+	cau_status status = cau_client_await(client, w->method, &w->done, w, error);
+	if (status)
+		return status;
 	if (w->error.status && error)
 		*error = w->error;
 	return w->error.status;

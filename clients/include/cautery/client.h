@@ -92,7 +92,8 @@ typedef struct cau_client_def {
 	int role;              // CAU_ROLE_* wanted at most; -1: what the token gives
 	bool reconnect;        // come back after a lost connection: resume, join again, resend
 	bool follow;           // go after a session that moves to another daemon; true by default
-	double timeout_s;      // of connecting and of each call that waits
+	double timeout_s;      // of connecting and of each call that waits; one that costs the server
+	                       // much (cau_method_cost) goes on while heartbeats are answered in it
 	void *user;            // for the callbacks, each of which may be NULL
 	void (*on_condition)(void *user, cau_client *client, cau_client_condition condition);
 	void (*on_notification)(void *user, cau_client *client, const cau_rpc_message *message);

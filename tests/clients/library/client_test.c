@@ -179,6 +179,57 @@ static void a_call_without_answer_ends_in_time(void **state)
 	fixture_end(&f);
 }
 
+// A server that goes back to tick 0 for as long as two heartbeats take to come.
+typedef struct long_work {
+	cau_rpc_message reset;
+	int heartbeats;
+	bool deaf; // to heartbeats after the first
+} long_work;
+
+static bool work_long(scripted_peer *peer, const cau_rpc_message *message, const char *text)
+{
+	long_work *work = scripted_user(peer);
+	(void)text;
+	if (message->method == CAU_METHOD_SESSION_RESET)
+		work->reset = (cau_rpc_message){.id = message->id, .method = message->method};
+	if (message->method == CAU_METHOD_HEARTBEAT && ++work->heartbeats == 2 && !work->deaf)
+		scripted_result(peer, &work->reset, CAU_METHOD_SESSION_RESET,
+		                &(cau_wire_restored){.tick = 0, .epoch = 7});
+	return message->method == CAU_METHOD_SESSION_RESET || (work->deaf && work->heartbeats > 1);
+}
+
+static cau_status reset_of(long_work *work, fixture *f, cau_wire_restored *restored)
+{
+	fixture_begin(f, &(scripted_script){.text = work_long, .user = work});
+	f->def.timeout_s = 0.5; // for hello and each heartbeat, too
+	assert_int_equal(fixture_connect(f), CAU_OK);
+	return cau_client_call(f->client, CAU_METHOD_SESSION_RESET, &(cau_wire_session_change){0},
+	                       restored, &f->error);
+}
+
+static void what_costs_much_is_waited_for_while_the_server_is_heard(void **state)
+{
+	(void)state;
+	fixture f;
+	long_work work = {0};
+	cau_wire_restored restored = {0};
+	assert_int_equal(reset_of(&work, &f, &restored), CAU_OK);
+	assert_int_equal(restored.epoch, 7);
+	assert_int_equal(work.heartbeats, 2);
+	fixture_end(&f);
+}
+
+static void what_costs_much_ends_with_a_server_that_is_not_heard(void **state)
+{
+	(void)state;
+	fixture f;
+	long_work work = {.deaf = true};
+	assert_int_equal(reset_of(&work, &f, NULL), CAU_IO);
+	assert_non_null(strstr(f.error.reason, "session.reset"));
+	assert_int_equal(work.heartbeats, 2);
+	fixture_end(&f);
+}
+
 // ---- coming back -------------------------------------------------------------------------------
 typedef struct breaking {
 	greeting greeting;
@@ -322,6 +373,8 @@ int main(void)
 		cmocka_unit_test(an_error_answer_is_told_whole),
 		cmocka_unit_test(params_out_of_range_never_leave),
 		cmocka_unit_test(a_call_without_answer_ends_in_time),
+		cmocka_unit_test(what_costs_much_is_waited_for_while_the_server_is_heard),
+		cmocka_unit_test(what_costs_much_ends_with_a_server_that_is_not_heard),
 		cmocka_unit_test(a_lost_connection_resumes_and_resends_what_acts_once),
 		cmocka_unit_test(without_reconnect_a_loss_is_final_and_says_so),
 		cmocka_unit_test(some_close_codes_mean_it),
