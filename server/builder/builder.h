@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Work that takes long and that no session's pace may wait for: sessions are built here, states
-// read back from the store, files made. Done at the system's lowest priority, so that it gets what
-// workers leave.
+// read back from the store, files made. Done at a low priority, so that it gets what workers
+// leave.
 //
 // One thread takes short jobs alone, so that these never stand behind large tissue, whose stages
 // (CHOLMOD, METIS) nobody can interrupt. The others take long jobs, and short ones while there is
