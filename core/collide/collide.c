@@ -41,6 +41,7 @@ static bool make_arrays(cau_collide *collide, cau_arena *arena)
 		size_t count, bytes;
 	} arrays[] = {
 		{(void **)&collide->exempt, n, 1},
+		{(void **)&collide->exempt_before, n, 1},
 		{(void **)&collide->stiffness, n, sizeof(double)},
 		{(void **)&collide->anchor, 3 * n, sizeof(double)},
 		{(void **)&collide->reach_m, n, sizeof(double)},
@@ -69,6 +70,7 @@ static bool make_arrays(cau_collide *collide, cau_arena *arena)
 		{(void **)&collide->fresh_box[0], blocks, box},
 		{(void **)&collide->fresh_box[1], blocks, box},
 		{(void **)&collide->fresh_box[2], blocks, box},
+		{(void **)&collide->place_box, blocks, box},
 		{(void **)&collide->touched, blocks, sizeof(int32_t)},
 		{(void **)&collide->is_touched, blocks, 1},
 		{(void **)&collide->alive_before[0], (size_t)tissue->triangle_count, 1},
@@ -101,5 +103,6 @@ cau_status cau_collide_create(cau_collide *collide, const cau_tissue *tissue, do
 	if (!make_arrays(collide, arena))
 		return cau_fail(error, CAU_NO_MEMORY, NULL, "no memory for tissue against tissue");
 	find_stiffness(collide, step_s);
+	cau_collide_forget_crossed(collide);
 	return CAU_OK;
 }

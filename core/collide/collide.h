@@ -77,7 +77,8 @@ typedef struct cau_collide {
 	const cau_tissue *tissue;
 	double thickness_m, friction;
 	const uint8_t *fixed; // (n): borrowed; vertices that no step moves
-	uint8_t *exempt;      // (n): vertices that touch nothing, as those in jaws
+	uint8_t *exempt;      // (n): vertices that touch nothing in this tick: what jaws hold, what is
+	                      // inside out, what is thrown; of no pair, and led by no filter
 	// What joins parts while it lives: triangles, tetrahedra, links; borrowed, NULL: all do.
 	const uint8_t *alive[CAU_PRIMITIVE_KINDS];
 	double *stiffness; // N/m, (n): of a vertex
@@ -120,9 +121,11 @@ typedef struct cau_collide {
 	cau_collide_slice *slice;                     // (blocks)
 	cau_collide_found *list[2];                   // by kind, (blocks x CAU_COLLIDE_SLICE)
 	uint8_t *alive_before[CAU_PRIMITIVE_KINDS];   // as they were when it was found
+	uint8_t *exempt_before;                       // likewise
 	// and scratch
 	int32_t touched_count, *touched; // blocks with a fresh part
 	uint8_t *is_touched;             // (blocks)
+	cau_collide_box *place_box;      // (blocks): crossed.c, of a block where it is
 	// filter.c: scratch
 	bool *stopped;   // (most_pairs)
 	double *wanted;  // m, (n x 3): the step before it was changed
@@ -136,7 +139,11 @@ typedef struct cau_collide {
 cau_status cau_collide_create(cau_collide *collide, const cau_tissue *tissue, double thickness_m,
                               double friction, double step_s, cau_arena *arena, cau_error *error);
 
-// Begins a tick at positions x (m, n x 3): what is drawn has been listed, `exempt` filled. Steps as
+// Longer than this, m, a filtered step is not.
+double cau_collide_most_step(const cau_collide *collide);
+
+// Begins a tick at positions x (m, n x 3): what is drawn has been listed, `exempt` filled,
+// `cut_short_count` set to whether anything that is exempt is to be told of. Steps as
 // long as `collide->step` are foreseen. Measures the energy there and takes the grips.
 void cau_collide_begin(cau_collide *collide, cau_pool *pool, const double *x);
 
@@ -146,6 +153,17 @@ double cau_collide_evaluate(cau_collide *collide, cau_pool *pool, const double *
 // Of the last evaluation: answer = K probe over the vertices that are loaded, K the Hessian of the
 // energy without what is negative of it.
 void cau_collide_apply(cau_collide *collide);
+
+// Where something is to touch again that was exempt: what crosses at x is exempt besides. Before a
+// tick begins.
+void cau_collide_exempt_crossed(cau_collide *collide, const double *x);
+bool cau_collide_touches_again(const cau_collide *collide);
+// What crosses at the next tick is not known.
+void cau_collide_forget_crossed(cau_collide *collide);
+
+// Within a tick: a vertex touches nothing from here on. What its pairs had of energy is gone at the
+// next evaluation.
+void cau_collide_let_go(cau_collide *collide, int32_t vertex);
 
 // From here on x is where we are, which else is where energy was evaluated last or the last filter
 // has led.
@@ -178,12 +196,12 @@ bool cau_collide_covers(const cau_collide *collide, const double *x, cau_collide
 bool cau_collide_covers_pushed(const cau_collide *collide, const double *x);
 // What is left of every vertex's reach at x, m, at least.
 double cau_collide_slack(const cau_collide *collide, const double *x);
-double cau_collide_most_step(const cau_collide *collide); // m
 // How far a filtered step may lead, m, where `collide->step` is wanted.
 double cau_collide_room(const cau_collide *collide, int32_t vertex);
 double cau_collide_most_room(const cau_collide *collide, double step_m); // of a step so long
-// What died since is looked at again.
+// What died since is looked at again; and, crossed.c, what is exempt now or is so no longer.
 void cau_collide_forget_dead(cau_collide *collide);
+void cau_collide_note_exempt(cau_collide *collide);
 
 // energy.c: how far any vertex is from where pairs were measured last, m, at most.
 double cau_collide_away(const cau_collide *collide, const double *x);

@@ -192,6 +192,8 @@ double cau_collide_away(const cau_collide *collide, const double *x)
 	double most2 = 0;
 	for (int32_t k = 0; k < vertices->count; k++) {
 		size_t at = 3 * (size_t)vertices->item[k];
+		if (collide->exempt[vertices->item[k]])
+			continue;
 		cau_vec3 way = cau_sub(cau_vec3_of(x + at), cau_vec3_of(collide->seen + at));
 		double way2 = cau_dot(way, way);
 		most2 = way2 > most2 ? way2 : most2;
@@ -281,10 +283,10 @@ static bool has_changed(const cau_collide *collide)
 void cau_collide_begin(cau_collide *collide, cau_pool *pool, const double *x)
 {
 	collide->held_back_count = collide->search_count = 0;
-	collide->cut_short_count = 0;
 	collide->held_back = false;
 	collide->grip_count = 0;
 	cau_collide_forget_dead(collide);
+	cau_collide_note_exempt(collide);
 	if (has_changed(collide) || !cau_collide_covers(collide, x, CAU_COLLIDE_TICK))
 		cau_collide_find(collide, pool, x, CAU_COLLIDE_TICK);
 	cau_collide_see(collide, pool, x);

@@ -82,7 +82,7 @@ static bool shorten(cau_collide *collide, int32_t vertex, double most)
 {
 	double *step = collide->step + 3 * (size_t)vertex;
 	double length2 = cau_dot(cau_vec3_of(step), cau_vec3_of(step));
-	if (length2 <= most * most || collide->fixed[vertex])
+	if (length2 <= most * most || collide->fixed[vertex] || collide->exempt[vertex])
 		return false;
 	cau_vec3_to(cau_scale(most / sqrt(length2), cau_vec3_of(step)), step);
 	return true;
@@ -173,6 +173,8 @@ static bool limit(cau_collide *collide, bool by_reach, double *longest)
 	bool shortened = false;
 	for (int32_t k = 0; k < vertices->count; k++) {
 		int32_t v = vertices->item[k];
+		if (collide->exempt[v])
+			continue;
 		shortened |= shorten(collide, v, by_reach ? just * collide->reach_m[v] : most);
 		cau_vec3 step = cau_vec3_of(collide->step + 3 * (size_t)v);
 		longest2 = cau_dot(step, step) > longest2 ? cau_dot(step, step) : longest2;

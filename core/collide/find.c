@@ -167,6 +167,8 @@ static bool may_touch(const cau_collide *collide, cau_gap_kind kind, const int32
 	int firsts = cau_gap_first(kind);
 	for (int i = 0; i < 4; i++) {
 		int part = i >= firsts;
+		if (collide->exempt[vertex[i]])
+			return false;
 		corner[i] = cau_vec3_of(collide->anchor + 3 * (size_t)vertex[i]);
 		middle[part] = cau_add_scaled(middle[part], 1.0 / (part ? 4 - firsts : firsts), corner[i]);
 		reach[part] = fmax(reach[part], collide->reach_m[vertex[i]]);

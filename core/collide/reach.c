@@ -53,6 +53,8 @@ static double needed(const cau_collide *collide, cau_collide_need need, int32_t 
 static bool is_enough(const cau_collide *collide, const double *x, cau_collide_need need, int32_t v,
                       double share)
 {
+	if (collide->exempt[v])
+		return true;
 	cau_vec3 from = cau_vec3_of(collide->anchor + 3 * (size_t)v);
 	cau_vec3 away = cau_sub(cau_vec3_of(x + 3 * (size_t)v), from);
 	double left = share * (collide->reach_m[v] - needed(collide, need, v));
@@ -148,6 +150,8 @@ double cau_collide_slack(const cau_collide *collide, const double *x)
 	double least = INFINITY;
 	for (int32_t k = 0; k < vertices->count; k++) {
 		size_t v = (size_t)vertices->item[k];
+		if (collide->exempt[v])
+			continue;
 		cau_vec3 away = cau_sub(cau_vec3_of(x + 3 * v), cau_vec3_of(collide->anchor + 3 * v));
 		double left = collide->reach_m[v] - sqrt(cau_dot(away, away));
 		least = left < least ? left : least;

@@ -29,20 +29,6 @@ cau_status cau_session_make_collide(cau_session *session, cau_error *error)
 	return CAU_OK;
 }
 
-// What jaws hold lies between and inside them, where its folds have no room to keep apart.
-static void exempt_held(cau_session *session)
-{
-	uint8_t *exempt = session->collide.exempt;
-	memset(exempt, 0, (size_t)session->tissue.vertex_count);
-	for (int32_t i = 0; i < session->tool_count; i++)
-		for (int32_t k = 0; k < session->tool[i].grasp_count; k++) {
-			const cau_grasp *grasp = &session->tool[i].grasp[k];
-			for (int c = 0; c < 3; c++)
-				if (grasp->vertex[c] >= 0) // one, or a face's corners
-					exempt[grasp->vertex[c]] = 1;
-		}
-}
-
 static void ask_for(cau_session *session, const double *from, const double *to)
 {
 	const cau_surface_parts *surface = &session->collide.surface.vertices;
@@ -94,12 +80,17 @@ static void stop_guess(cau_session *session, double *guess)
 
 void cau_session_begin_collide(cau_session *session)
 {
-	cau_collide *collide = session->solver.collide;
+	cau_collide *collide = &session->collide;
 	double *guess = session->solver.position;
-	if (!collide)
+	if (session->scene->contact_thickness_m == 0)
 		return;
-	exempt_held(session);
 	cau_surface_list(&collide->surface, session->dissection.face_mask);
+	double most_m = MOST_LEGS * cau_collide_most_step(collide);
+	bool cut_short, touches = cau_session_exempt(session, guess, most_m, &cut_short);
+	session->solver.collide = touches ? collide : NULL;
+	collide->cut_short_count = cut_short;
+	if (!touches)
+		return;
 	ask_for(session, session->position_start, guess);
 	cau_collide_begin(collide, session->pool, session->position_start);
 	if (cau_collide_filter(collide, session->pool, session->position_start, true))

@@ -215,6 +215,9 @@ void cau_session_read_pinch(cau_session *session, cau_tool *tool, int32_t index)
 // begins, and the first guess as far as that lets it go.
 cau_status cau_session_make_collide(cau_session *session, cau_error *error);
 void cau_session_begin_collide(cau_session *session);
+// exempt.c: what touches nothing in this tick, as what is guessed to go farther than `most_m`.
+// *told: whether some of it is thrown or inside out. False: nothing touches anything.
+bool cau_session_exempt(cau_session *session, const double *guess, double most_m, bool *told);
 // burn.c: heat, exposure, parting.
 void cau_session_burn(cau_session *session);
 // Takes what was removed from element `first` of the tick's list on out of the local step, and puts

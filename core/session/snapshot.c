@@ -379,6 +379,8 @@ cau_status cau_session_restore(cau_session *session, const void *bytes, size_t b
 		cau_contact_clear(&session->contact);
 		session->refusal_count = 0;
 		session->watch.left_m = 0;
+		if (session->scene->contact_thickness_m > 0)
+			cau_collide_forget_crossed(&session->collide);
 		session->energy.stale = session->spin.stale = true;
 		if (!status)
 			status = replay_factor(session, &header, error);

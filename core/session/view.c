@@ -166,7 +166,7 @@ static void fill_statistics(const cau_session *session, cau_statistics *statisti
 		.factor_operations = session->update.operation_count,
 		.contacts = session->contact.row_count,
 		.contacts_left_out = session->contact.left_out_count,
-		.touching_cut_short = session->solver.collide ? session->collide.cut_short_count : 0,
+		.touching_cut_short = session->collide.cut_short_count,
 		.frozen_vertices = session->frozen_count,
 		.energy_gain_j = session->energy.gain_j,
 		.error = solver->accuracy.error,

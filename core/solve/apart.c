@@ -1,5 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // The step as tissue against tissue allows it: between the solver's reals and the room collide.
+#include <math.h>
+
 #include "cautery/assert.h"
 #include "solve/solver.h"
 
@@ -23,7 +25,63 @@ static bool passes(cau_step_solver *solver, const double *from)
 	return cau_collide_lets_pass(collide, from, longest);
 }
 
-bool cau_solver_keep_apart(cau_step_solver *solver, const double *from)
+// How far the step leads anything at most that can touch, m.
+static double longest_drawn(const cau_step_solver *solver, const cau_reals *step)
+{
+	const cau_collide *collide = solver->collide;
+	const cau_surface_parts *surface = &collide->surface.vertices;
+	double longest2 = 0, way[3];
+	for (int32_t k = 0; k < surface->count; k++) {
+		if (collide->exempt[surface->item[k]])
+			continue;
+		solver->kernels->vectors->read(step, surface->item[k], way);
+		longest2 = fmax(longest2, cau_dot(cau_vec3_of(way), cau_vec3_of(way)));
+	}
+	return sqrt(longest2);
+}
+
+// The filter shortens steps corner by corner. One that is much longer than it lets pass is
+// shortened as a whole first: else it would no longer be one that leads to less energy, and turn
+// tissue inside out.
+static const double much_longer = 2;
+
+static bool shorten(cau_step_solver *solver)
+{
+	const cau_vectors *vectors = solver->kernels->vectors;
+	int32_t n = solver->tissue->vertex_count;
+	double most = much_longer * cau_collide_most_step(solver->collide);
+	if (!(vectors->longest(solver->trial_increment, n) > most))
+		return false;
+	double longest = longest_drawn(solver, solver->trial_increment);
+	if (!(longest > most))
+		return false;
+	solver->kernels->add_scaled(solver->trial_increment, most / longest - 1,
+	                            solver->trial_increment, 4 * (int64_t)n);
+	return true;
+}
+
+bool cau_solver_let_go(cau_step_solver *solver)
+{
+	cau_collide *collide = solver->collide;
+	const cau_surface_parts *surface = &collide->surface.vertices;
+	double most = solver->iterations * cau_collide_most_step(collide), way[3];
+	bool any = false;
+	if (!(solver->kernels->vectors->longest(solver->increment, solver->tissue->vertex_count) >
+	      most))
+		return false;
+	for (int32_t k = 0; k < surface->count; k++) {
+		int32_t v = surface->item[k];
+		solver->kernels->vectors->read(solver->increment, v, way);
+		if (collide->exempt[v] || !(cau_length(cau_vec3_of(way)) > most))
+			continue;
+		cau_collide_let_go(collide, v);
+		any = true;
+	}
+	collide->cut_short_count += any;
+	return any;
+}
+
+static bool filter(cau_step_solver *solver, const double *from)
 {
 	cau_collide *collide = solver->collide;
 	const cau_vectors *vectors = solver->kernels->vectors;
@@ -44,4 +102,14 @@ bool cau_solver_keep_apart(cau_step_solver *solver, const double *from)
 		vectors->add(solver->trial_increment, v, change);
 	}
 	return true;
+}
+
+bool cau_solver_keep_apart(cau_step_solver *solver, const double *from)
+{
+	bool shorter = shorten(solver), changed = filter(solver, from);
+	if (shorter && !changed) {
+		solver->collide->held_back = true;
+		solver->collide->held_back_count++;
+	}
+	return shorter || changed;
 }

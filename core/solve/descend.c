@@ -269,6 +269,16 @@ static cau_status find_increment(cau_step_solver *solver, cau_error *error)
 	return cau_newton_increment(solver, error);
 }
 
+// Likewise; what it throws touches nothing from here on, and then it is another one.
+static cau_status find_first_increment(cau_step_solver *solver, double *objective, cau_error *error)
+{
+	cau_status status = find_increment(solver, error);
+	if (status || !solver->collide || !cau_solver_let_go(solver))
+		return status;
+	*objective = cau_solver_evaluate(solver);
+	return find_increment(solver, error);
+}
+
 static void forget_increments(cau_step_solver *solver)
 {
 	if (solver->contact)
@@ -291,7 +301,8 @@ cau_status cau_solver_descend(cau_step_solver *solver, cau_error *error)
 	if (solver->collide && solver->collide->energy_j > solver->collide->start_energy_j)
 		go_back(solver, &objective);
 	for (int32_t k = 0; k < solver->iterations; k++) {
-		cau_status status = find_increment(solver, error);
+		cau_status status =
+			k ? find_increment(solver, error) : find_first_increment(solver, &objective, error);
 		if (status)
 			return status;
 		double norm = step_norm(solver);

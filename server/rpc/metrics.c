@@ -32,7 +32,8 @@
 	X("session_contacts_left_out", GAUGE, "",                                                      \
 	  "Vertices near tools that the last step's contact had no place for", c->contacts_left_out)   \
 	X("session_touching_cut_short", GAUGE, "",                                                     \
-	  "Times in the last step that tissue touching tissue found no room", c->touching_cut_short)   \
+	  "Times in the last step that tissue touching tissue found no room or was thrown",            \
+	  c->touching_cut_short)                                                                       \
 	X("session_paused", GAUGE, "", "1 while it is paused", s->state == CAU_SESSION_PAUSED)         \
 	X("session_faulted", GAUGE, "", "1 after a fault", s->state == CAU_SESSION_FAULTED)
 

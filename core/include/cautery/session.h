@@ -209,7 +209,9 @@ typedef struct cau_statistics {
 	// right, and a tool may stand deeper in tissue than it should. 0: contact is whole.
 	int32_t contacts_left_out;
 	// Times that tissue near tissue, in a scene with a contact thickness, was in more pairs than
-	// there is room for: the step was held up there, though nothing crossed. 0: contact is whole.
+	// there is room for: the step was held up there, though nothing crossed; and that some was
+	// thrown faster than it can be kept apart, or too much of it inside out, and touched nothing.
+	// 0: contact is whole.
 	int32_t touching_cut_short;
 	int32_t frozen_vertices;
 	// Energy that the step made out of nothing: kinetic, elastic and gravitational energy at its

@@ -224,6 +224,49 @@ static void many_motions_of_tools_that_grasp(void **state)
 	run_tools(6 * TOOL_MOTIONS, 6 * LOOK, true);
 }
 
+// Jaws that never slip draw at `layers` at 5 m/s: it is thrown faster than it can be kept apart,
+// and turned inside out. That is told of; let go, it finds its way back, and all of it touches
+// again.
+static void what_is_thrown_finds_its_way_back(void **state)
+{
+	(void)state;
+	enum { DRAWN = 20, TICKS = 100 };
+	cau_scene_def *scene = stage_scene_light("layers");
+	scene->contact_thickness_m = THICKNESS_M;
+	for (int32_t i = 0; i < scene->layer_count; i++) // and nothing tears
+		scene->layers[i].sheet[0].heat.tear_energy_j_m2 =
+			scene->layers[i].fat[0].heat.tear_energy_j_m2 =
+				scene->layers[i].link.heat.tear_energy_j_m2 = 0;
+	cau_tool_def *jaws = stage_add_tool(scene, "jaws", CAU_TOOL_GRASPER, 0.01, 0.005, -0.002);
+	jaws->max_speed_m_s = 5;
+	jaws->slip_force_n = jaws->force_max_n = 1000;
+	jaws->grasp_stiffness_n_m = 1e4;
+	cau_session *session = stage_open(scene, 2);
+	int told = 0, most_inverted = 0, exempt = 0;
+	stage_step(session, 20);
+	stage_grasp(session, "jaws");
+	stage_step(session, 1);
+	stage_move(session, "jaws", 0.11, 0.005, -0.002);
+	for (int tick = 0; tick < TICKS; tick++) {
+		if (tick == DRAWN) {
+			stage_release(session, "jaws");
+			stage_move(session, "jaws", 0.01, 0.005, 0.2);
+		}
+		stage_step(session, 1);
+		told += stage_frame(session).statistics.touching_cut_short;
+		most_inverted = session->inverted > most_inverted ? session->inverted : most_inverted;
+	}
+	for (int32_t v = 0; v < session->tissue.vertex_count; v++)
+		exempt += session->collide.exempt[v];
+	print_message("told of %d times, %d inside out; at last %d, and %d touch nothing\n", told,
+	              most_inverted, session->inverted, exempt);
+	assert_true(told > 0 && most_inverted > 100);
+	assert_int_equal(session->inverted, 0);
+	assert_int_equal(exempt, 0);
+	cau_session_destroy(session);
+	free(scene);
+}
+
 // Pairs beyond the room there is are told of, hold the tissue up, and cross nothing.
 static void want_of_room_is_told(void **state)
 {
@@ -307,6 +350,7 @@ int main(int count, char **argument)
 		cmocka_unit_test(lips_that_are_pushed_together_never_cross),
 		cmocka_unit_test(a_hanging_sheet_folds_and_never_crosses),
 		cmocka_unit_test(tools_over_a_cut_scene),
+		cmocka_unit_test(what_is_thrown_finds_its_way_back),
 		cmocka_unit_test(want_of_room_is_told),
 		cmocka_unit_test(the_same_bits),
 		cmocka_unit_test(what_begins_crossed_stays_calm),

@@ -1,0 +1,80 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// What touches nothing in a tick, though tissue keeps from tissue (collide/collide.h). What jaws
+// hold has no room to keep apart. What goes faster than the legs of a first guess lead can only be
+// followed at a price that nobody waits for. What is inside out has its surface inside: what it
+// touched would keep it there. And what came to cross something while it was one of these is looked
+// for when it is to touch again, and left alone until it has found its way out.
+#include <string.h>
+
+#include "session/session_internal.h"
+
+// Where more of the tetrahedra are inside out, tissue touches nothing at all: it has to find its
+// way back first, and takes its elasticity alone for that.
+static const double most_inverted_share = 0.01;
+
+static void exempt_held(cau_session *session)
+{
+	uint8_t *exempt = session->collide.exempt;
+	for (int32_t i = 0; i < session->tool_count; i++)
+		for (int32_t k = 0; k < session->tool[i].grasp_count; k++) {
+			const cau_grasp *grasp = &session->tool[i].grasp[k];
+			for (int c = 0; c < 3; c++)
+				if (grasp->vertex[c] >= 0) // one, or a face's corners
+					exempt[grasp->vertex[c]] = 1;
+		}
+}
+
+static bool is_inverted(const double *position, const int32_t vertex[4])
+{
+	cau_vec3 from = cau_vec3_of(position + 3 * (size_t)vertex[0]), side[3];
+	for (int k = 0; k < 3; k++)
+		side[k] = cau_sub(cau_vec3_of(position + 3 * (size_t)vertex[k + 1]), from);
+	return !(cau_dot(side[0], cau_cross(side[1], side[2])) > 0); // at rest it is (mesh/mesh.h)
+}
+
+// Returns whether too much is inside out.
+static bool exempt_inverted(cau_session *session)
+{
+	const cau_tissue *tissue = &session->tissue;
+	const uint8_t *alive = session->dissection.alive.element[CAU_ELEMENT_TETRAHEDRON];
+	int32_t count = 0;
+	for (int32_t i = 0; i < tissue->tetrahedron_count; i++) {
+		const int32_t *vertex = tissue->primitives.tetrahedron + 4 * (size_t)i;
+		if (!alive[i] || !is_inverted(session->position_start, vertex))
+			continue;
+		for (int k = 0; k < 4; k++)
+			session->collide.exempt[vertex[k]] = 1;
+		count++;
+	}
+	return count > most_inverted_share * tissue->tetrahedron_count;
+}
+
+// Returns whether anything is thrown.
+static bool exempt_thrown(cau_session *session, const double *guess, double most_m)
+{
+	const cau_surface_parts *surface = &session->collide.surface.vertices;
+	bool any = false;
+	for (int32_t k = 0; k < surface->count; k++) {
+		size_t v = (size_t)surface->item[k];
+		cau_vec3 from = cau_vec3_of(session->position_start + 3 * v);
+		if (!(cau_length(cau_sub(cau_vec3_of(guess + 3 * v), from)) > most_m))
+			continue;
+		session->collide.exempt[v] = 1;
+		any = true;
+	}
+	return any;
+}
+
+bool cau_session_exempt(cau_session *session, const double *guess, double most_m, bool *told)
+{
+	cau_collide *collide = &session->collide;
+	memset(collide->exempt, 0, (size_t)session->tissue.vertex_count);
+	exempt_held(session);
+	bool all = exempt_inverted(session);
+	*told = exempt_thrown(session, guess, most_m) || all;
+	if (all)
+		cau_collide_forget_crossed(collide);
+	else if (cau_collide_touches_again(collide))
+		cau_collide_exempt_crossed(collide, session->position_start);
+	return !all;
+}

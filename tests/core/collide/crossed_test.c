@@ -1,0 +1,114 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// What crosses is found, and nothing else: one sheet is put through the other at random, and each
+// vertex that is exempt belongs to an edge that pierces a face, or to that face.
+#include "core/collide/sheets.h"
+
+#include <stdlib.h>
+
+static const double THICKNESS_M = 1e-3;
+
+static double volume(const double *a, const double *b, const double *c, const double *d)
+{
+	cau_vec3 o = cau_vec3_of(a);
+	return cau_dot(cau_sub(cau_vec3_of(b), o),
+	               cau_cross(cau_sub(cau_vec3_of(c), o), cau_sub(cau_vec3_of(d), o)));
+}
+
+static bool pierces(const double *x, const int32_t *edge, const int32_t *face)
+{
+	const double *a = x + 3 * edge[0], *b = x + 3 * edge[1], *c = x + 3 * face[0],
+				 *d = x + 3 * face[1], *e = x + 3 * face[2];
+	for (int k = 0; k < 3; k++)
+		if (face[k] == edge[0] || face[k] == edge[1])
+			return false;
+	if (volume(a, c, d, e) * volume(b, c, d, e) >= 0)
+		return false;
+	double p = volume(a, b, c, d), q = volume(a, b, d, e), r = volume(a, b, e, c);
+	return (p > 0 && q > 0 && r > 0) || (p < 0 && q < 0 && r < 0);
+}
+
+// Every edge against every face.
+static int mark(const sheets *s, uint8_t *expected)
+{
+	const cau_tissue *t = &s->r.tissue;
+	int count = 0;
+	for (int32_t e = 0; e < t->edges.edge_count; e++)
+		for (int32_t f = 0; f < t->triangle_count; f++) {
+			const int32_t *edge = t->edges.vertex + 2 * (size_t)e;
+			const int32_t *face = t->triangle + 3 * (size_t)f;
+			if (!pierces(s->x, edge, face))
+				continue;
+			expected[edge[0]] = expected[edge[1]] = 1;
+			expected[face[0]] = expected[face[1]] = expected[face[2]] = 1;
+			count++;
+		}
+	return count;
+}
+
+static void what_crosses_is_exempt(void **state)
+{
+	(void)state;
+	enum { WAYS = 20 };
+	sheets s;
+	sheets_begin(&s, THICKNESS_M, 0, 2e-3);
+	size_t n = (size_t)s.r.tissue.vertex_count;
+	uint8_t *expected = malloc(n);
+	assert_non_null(expected);
+	int crossings = 0;
+	for (int way = 0; way < WAYS; way++) {
+		memset(expected, 0, n);
+		memset(s.collide.exempt, 0, n);
+		sheets_shake(&s, 1e-3);
+		crossings += mark(&s, expected);
+		cau_collide_exempt_crossed(&s.collide, s.x);
+		assert_memory_equal(s.collide.exempt, expected, n);
+	}
+	assert_true(crossings > 100);
+	free(expected);
+	rig_finish(&s.r);
+}
+
+static void sheets_apart_cross_nothing(void **state)
+{
+	(void)state;
+	sheets s;
+	sheets_begin(&s, THICKNESS_M, 0, 1e-4);
+	size_t n = (size_t)s.r.tissue.vertex_count;
+	memset(s.collide.exempt, 0, n);
+	cau_collide_exempt_crossed(&s.collide, s.x);
+	for (size_t v = 0; v < n; v++)
+		assert_false(s.collide.exempt[v]);
+	rig_finish(&s.r);
+}
+
+// It is looked for where something touches again, and in the first tick, of which nothing is known.
+static void it_is_looked_for_where_something_touches_again(void **state)
+{
+	(void)state;
+	sheets s;
+	sheets_begin(&s, THICKNESS_M, 0, 2e-3);
+	assert_true(cau_collide_touches_again(&s.collide));
+	cau_collide_begin(&s.collide, s.pool, s.x);
+	assert_false(cau_collide_touches_again(&s.collide));
+	s.collide.exempt[3] = 1; // jaws close
+	assert_false(cau_collide_touches_again(&s.collide));
+	cau_collide_begin(&s.collide, s.pool, s.x);
+	s.collide.exempt[3] = 0; // and open
+	assert_true(cau_collide_touches_again(&s.collide));
+	cau_collide_begin(&s.collide, s.pool, s.x);
+	cau_collide_let_go(&s.collide, 4);
+	assert_true(s.collide.exempt[4]);
+	s.collide.exempt[4] = 0; // of the next tick
+	assert_true(cau_collide_touches_again(&s.collide));
+	rig_finish(&s.r);
+}
+
+int main(void)
+{
+	const struct CMUnitTest tests[] = {
+		cmocka_unit_test(what_crosses_is_exempt),
+		cmocka_unit_test(sheets_apart_cross_nothing),
+		cmocka_unit_test(it_is_looked_for_where_something_touches_again),
+	};
+	return cmocka_run_group_tests(tests, NULL, NULL);
+}
