@@ -358,7 +358,8 @@ void cau_contact_load(cau_contact_set *set, cau_step_solver *solver)
 
 static void read_step(cau_contact_set *set, const cau_step_solver *solver)
 {
-	for (int32_t k = 0; k < set->column_count; k++) {
+	for (int32_t i = 0; i < set->used_count; i++) {
+		int32_t k = set->used[i];
 		double step[3];
 		solver->kernels->vectors->read(solver->increment, set->column_vertex[k], step);
 		for (int32_t c = 0; c < 3; c++)
