@@ -46,16 +46,12 @@ INLINE sym3 plastic_flow(const cau_fat_group *group, m3 h, sym3 z, sym3 plastic,
 	              scale * p.a01, scale * p.a02, scale * p.a12};
 }
 
-// (I + 2 e_p)^(-1/2) - I. The strain is bounded so that I + 2 e_p stays positive definite.
-INLINE sym3 plastic_map(sym3 p)
+// I + 2 e_p, bounded so that it stays positive definite.
+INLINE sym3 plastic_metric(sym3 p)
 {
 	vreal size = sym3_norm(p), most = v_set((real)0.45);
 	vreal s = 2 * v_select(size > most, most / size, v_set(1));
-	sym3 c = {1 + s * p.a00, 1 + s * p.a11, 1 + s * p.a22, s * p.a01, s * p.a02, s * p.a12};
-	sym3 z;
-	sym3_sqrt(c, &z);
-	z.a00 -= 1, z.a11 -= 1, z.a22 -= 1;
-	return z;
+	return (sym3){1 + s * p.a00, 1 + s * p.a11, 1 + s * p.a22, s * p.a01, s * p.a02, s * p.a12};
 }
 
 static void sym3_store(void *const array[6], int32_t slot, sym3 a)
@@ -68,12 +64,25 @@ static void sym3_store(void *const array[6], int32_t slot, sym3 a)
 	v_store(array[5], slot, a.a12);
 }
 
+// C_p^(-1/2) - I of what has flowed at two slots, which may be the same.
+INLINE void plastic_maps(const cau_fat_set *set, const int32_t slot[2])
+{
+	sym3 z[2];
+	for (int k = 0; k < 2; k++)
+		z[k] = plastic_metric(sym3_load(set->plastic_strain, slot[k]));
+	sym3_inverse_roots(z);
+	for (int k = 0; k < 2; k++) {
+		z[k].a00 -= 1, z[k].a11 -= 1, z[k].a22 -= 1;
+		sym3_store(set->plastic, slot[k], z[k]);
+	}
+}
+
 // Slots [first, last) of one group; returns how many live ones are inverted.
 static int32_t settle_kernel(const cau_elements *elements, const cau_fat_group *group,
                              int32_t first, int32_t last, const real *displacement)
 {
 	const cau_fat_set *set = &elements->fat;
-	int32_t inverted = 0;
+	int32_t inverted = 0, waiting[2], wait = 0; // for their maps
 	for (int32_t slot = first; slot < last; slot += LANES) {
 		fat_face face = fat_face_gather(set, slot, displacement);
 		m3 h = fat_displacement_gradient(set, slot, &face, displacement);
@@ -90,7 +99,12 @@ static int32_t settle_kernel(const cau_elements *elements, const cau_fat_group *
 			continue;
 		set->flowed[slot / CAU_BATCH] = 1;
 		sym3_store(set->plastic_strain, slot, p);
-		sym3_store(set->plastic, slot, plastic_map(p));
+		waiting[wait++] = slot;
+		if (wait == 2)
+			plastic_maps(set, waiting);
+		wait %= 2;
 	}
+	if (wait)
+		plastic_maps(set, (int32_t[]){waiting[0], waiting[0]});
 	return inverted;
 }

@@ -93,13 +93,17 @@ INLINE v3 polar_half_turn(m3 r, m3 a, vmask *hard)
 	            inverse * (c02 * axial.x + c12 * axial.y + c22 * axial.z)};
 }
 
-// As many of Newton's steps as a far turn takes; cau_polar_robust decides where they do not serve.
-static __attribute__((noinline)) void polar_far(const m3 *a, rotation_lanes *q)
+// As many of Newton's steps as a far turn takes, of which the first is known: its half turn, and
+// where that is void. cau_polar_robust decides where they do not serve.
+static __attribute__((noinline)) void polar_far(const m3 *a, const v3 *first, const vmask *is_void,
+                                                rotation_lanes *q)
 {
 	vmask robust = v_set(0) > v_set(1); // none
 	for (int step = 0; step < POLAR_STEPS; step++) {
-		vmask hard;
-		v3 h = polar_half_turn(rotation_matrix(*q), *a, &hard);
+		vmask hard = *is_void;
+		v3 h = *first;
+		if (step)
+			h = polar_half_turn(rotation_matrix(*q), *a, &hard);
 		robust |= hard;
 		h = v3_select(robust, v3_zero(), h);
 		rotation_lanes p = rotation_turn(*q, h);
@@ -124,7 +128,7 @@ INLINE m3 polar_rotation(m3 a, rotation_lanes *q)
 	v3 h = polar_half_turn(r, a, &hard);
 	vreal turn2 = v3_dot(h, h);
 	if (__builtin_expect(v_any(hard | (turn2 > v_set(POLAR_NEAR))), 0)) {
-		polar_far(&a, q);
+		polar_far(&a, &h, &hard, q);
 		return rotation_matrix(*q);
 	}
 	if (!v_any(turn2 > v_set(POLAR_SETTLED)))

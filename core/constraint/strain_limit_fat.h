@@ -49,24 +49,38 @@ INLINE vreal sym3_distance(sym3 a, sym3 b)
 	             v_max(v_abs(a.a01 - b.a01), v_max(v_abs(a.a02 - b.a02), v_abs(a.a12 - b.a12))));
 }
 
-// Square root of a symmetric positive definite 3x3, and its inverse, by the Denman-Beavers
+// Square roots of symmetric positive definite 3x3, and their inverses, by the Denman-Beavers
 // iteration. It converges quadratically: after a step of the square root of rounding (1e-4 of 1e-8,
 // 1e-9 of 1e-16) nothing is left to do. Ten steps are enough for stretches from 1/30 to 30.
-INLINE sym3 sym3_sqrt(sym3 a, sym3 *inverse)
+enum { SQRT_STEPS = 10 };
+
+// Returns whether another step is needed.
+INLINE int sym3_sqrt_step(sym3 *root, sym3 *inverse)
 {
-	enum { STEPS = 10 };
 	const real small = CAU_SINGLE ? (real)1e-4 : (real)1e-9;
+	sym3 last = *root, y = sym3_mean(last, sym3_inverse(*inverse));
+	*inverse = sym3_mean(*inverse, sym3_inverse(last));
+	*root = y;
+	return v_any(sym3_distance(y, last) > small * (y.a00 + y.a11 + y.a22));
+}
+
+// Turns two into the inverses of their square roots. Side by side, as a step mostly waits for the
+// one before it.
+INLINE void sym3_inverse_roots(sym3 a[2])
+{
 	vreal one = v_set(1), zero = v_set(0);
-	sym3 y = a, z = {one, one, one, zero, zero, zero};
-	for (int i = 0; i < STEPS; i++) {
-		sym3 last = y;
-		y = sym3_mean(y, sym3_inverse(z));
-		z = sym3_mean(z, sym3_inverse(last));
-		if (!v_any(sym3_distance(y, last) > small * (y.a00 + y.a11 + y.a22)))
-			break;
+	const sym3 unit = {one, one, one, zero, zero, zero};
+	sym3 inverse[2] = {unit, unit};
+	int step = 0, more[2] = {1, 1};
+	for (; step < SQRT_STEPS && more[0] && more[1]; step++) {
+		more[0] = sym3_sqrt_step(&a[0], &inverse[0]);
+		more[1] = sym3_sqrt_step(&a[1], &inverse[1]);
 	}
-	*inverse = z;
-	return y;
+	for (int k = 0; k < 2; k++) {
+		for (int alone = step; alone < SQRT_STEPS && more[k]; alone++)
+			more[k] = sym3_sqrt_step(&a[k], &inverse[k]);
+		a[k] = inverse[k];
+	}
 }
 
 // RANGE, like sheet_range_residual, of three stretches and three shears.

@@ -218,8 +218,9 @@ bool cau_box_meets(const cau_box *box, cau_vec3 center, double radius_m)
 	const double c[3] = {center.x, center.y, center.z};
 	double squared = 0;
 	for (int i = 0; i < 3; i++) {
-		double outside = fmax(fmax((double)box->least[i] - c[i], c[i] - (double)box->most[i]), 0);
-		squared += outside * outside;
+		double below = (double)box->least[i] - c[i], above = c[i] - (double)box->most[i];
+		double outside = below > above ? below : above; // fmax would be a library's call
+		squared += outside > 0 ? outside * outside : 0;
 	}
 	double reach = radius_m + 1e-6; // boxes are in float
 	return squared <= reach * reach;

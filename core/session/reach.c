@@ -41,7 +41,8 @@ typedef struct reach {
 	const cau_tool_def *def;
 	int32_t index;
 	cau_tool_part part;
-	double most_way;
+	double most_way; // m
+	double turning;  // m for each m that a point is further from the tool than its parts reach
 	int32_t count;
 	bool kept_missed;    // a face whose side was known is among them
 	cau_candidate *list; // (CANDIDATES)
@@ -260,8 +261,8 @@ static bool is_drawn(const cau_session *session, int32_t face)
 	return !(session->dissection.face_mask[face >> 5] >> (face & 31) & 1);
 }
 
-// Whether any of the box's points may come near: the distance changes by no more than one goes.
-static bool may_meet(const reach *r, const cau_box *box)
+// Where the middle of the box is, and how far from there its corners are.
+static cau_vec3 middle_of(const cau_box *box, double *half_m)
 {
 	cau_vec3 middle, half;
 	double *m = &middle.x, *h = &half.x;
@@ -269,29 +270,58 @@ static bool may_meet(const reach *r, const cau_box *box)
 		m[c] = 0.5 * ((double)box->least[c] + (double)box->most[c]);
 		h[c] = 0.5 * ((double)box->most[c] - (double)box->least[c]);
 	}
-	double distance = cau_tool_distance_at(r->def, &r->tool->state.pose, r->tool->state.jaw,
-	                                       r->part, middle, NULL);
-	return !(distance > cau_length(half) + r->most_way);
+	*half_m = cau_length(half);
+	return middle;
 }
 
-// Whether the face was at the tick's start as near as it can have come since: whatever is further
-// is_missed refuses, after a search.
-static bool may_be_met(const reach *r, int32_t face)
+bool cau_session_may_meet(const cau_tool *tool, cau_tool_part part, const cau_box *box,
+                          double margin_m)
 {
-	const int32_t *vertex = r->session->tissue.faces.vertex + 3 * (size_t)face;
+	double half_m;
+	cau_vec3 middle = middle_of(box, &half_m);
+	double distance = cau_tool_distance_at(&tool->state.definition, &tool->state.pose,
+	                                       tool->state.jaw, part, middle, NULL);
+	return !(distance > half_m + margin_m);
+}
+
+// A face's middle, and how far (m) its corners are from there at most.
+static cau_vec3 middle_of_face(const double *position, const int32_t *vertex, double *radius_m)
+{
 	cau_vec3 corner[3], middle = {0, 0, 0};
 	double radius2 = 0;
 	for (int32_t k = 0; k < 3; k++) {
-		corner[k] = cau_vec3_of(r->session->position + 3 * (size_t)vertex[k]);
+		corner[k] = cau_vec3_of(position + 3 * (size_t)vertex[k]);
 		middle = cau_add_scaled(middle, 1.0 / 3, corner[k]);
 	}
 	for (int32_t k = 0; k < 3; k++) {
 		cau_vec3 half = cau_sub(corner[k], middle);
-		radius2 = fmax(radius2, cau_dot(half, half));
+		double half2 = cau_dot(half, half);
+		radius2 = half2 > radius2 ? half2 : radius2;
 	}
-	double distance = cau_tool_distance_at(r->def, &r->tool->state.pose, r->tool->state.jaw,
-	                                       r->part, middle, NULL);
-	return !(distance > sqrt(radius2) + 2 * r->most_way + 2 * touch_m);
+	*radius_m = sqrt(radius2);
+	return middle;
+}
+
+static double distance_of(const reach *r, const cau_pose *pose, cau_vec3 point)
+{
+	return cau_tool_distance_at(r->def, pose, r->tool->state.jaw, r->part, point, NULL);
+}
+
+// Whether the face was as near at the tick's start as it can have come since: whatever is further
+// is_missed refuses, after a search. A corner that is further from the tool than its parts reach is
+// taken further where the tool turns. Then whether it may have been as far from where it is now.
+static bool may_be_met(const reach *r, int32_t face)
+{
+	const int32_t *vertex = r->session->tissue.faces.vertex + 3 * (size_t)face;
+	double radius;
+	cau_vec3 middle = middle_of_face(r->session->position_start, vertex, &radius);
+	double distance = distance_of(r, &r->tool->pose_before, middle);
+	double beyond = fabs(distance) + 2 * radius;
+	if (distance > radius + r->most_way + r->turning * beyond + 2 * touch_m)
+		return false;
+	middle = middle_of_face(r->session->position, vertex, &radius);
+	distance = distance_of(r, &r->tool->state.pose, middle);
+	return !(distance > radius + 2 * r->most_way + 2 * touch_m);
 }
 
 static void search_block(reach *r, int32_t block)
@@ -302,28 +332,36 @@ static void search_block(reach *r, int32_t block)
 			offer(r, near->face[i]);
 }
 
-double cau_session_farthest(const cau_session *session, const double *position)
+// By turns in four numbers, none of which waits for the one before; their sums are not numbers
+// where one way is not.
+double cau_session_farthest(const cau_session *session)
 {
-	double most2 = 0;
-	for (size_t v = 0; v < (size_t)session->tissue.vertex_count; v++) {
-		cau_vec3 way =
-			cau_sub(cau_vec3_of(position + 3 * v), cau_vec3_of(session->position_start + 3 * v));
+	const double *position = session->position, *start = session->position_start;
+	double most2[4] = {0}, sum[4] = {0};
+	for (int32_t v = 0; v < session->tissue.vertex_count; v++) {
+		size_t at = 3 * (size_t)v;
+		cau_vec3 way = cau_sub(cau_vec3_of(position + at), cau_vec3_of(start + at));
 		double way2 = cau_dot(way, way);
-		most2 = way2 > most2 || isnan(way2) ? way2 : most2;
+		most2[v & 3] = way2 > most2[v & 3] ? way2 : most2[v & 3];
+		sum[v & 3] += way2;
 	}
-	return sqrt(most2);
+	double low = most2[0] > most2[1] ? most2[0] : most2[1];
+	double high = most2[2] > most2[3] ? most2[2] : most2[3];
+	double all = sum[0] + sum[1] + sum[2] + sum[3];
+	return isnan(all) ? all : sqrt(low > high ? low : high);
 }
 
 // How far a point of the tissue goes at most, seen from the tool.
-static double most_way(const cau_session *session, const cau_tool *tool, double reach_m)
+static void find_most_way(reach *r, double reach_m)
 {
-	const cau_pose *from = &tool->pose_before, *to = &tool->state.pose;
+	const cau_pose *from = &r->tool->pose_before, *to = &r->tool->state.pose;
 	double way = cau_length(cau_sub(cau_vec3_of(to->position_m), cau_vec3_of(from->position_m)));
 	double turn = 0;
 	for (int i = 0; i < 4; i++)
 		turn += from->rotation[i] * to->rotation[i];
-	return cau_session_farthest(session, session->position) + way +
-	       2 * reach_m * sqrt(fmax(1 - turn * turn, 0));
+	double half_turn = sqrt(fmax(1 - turn * turn, 0));
+	r->turning = 2 * half_turn;
+	r->most_way = r->session->farthest_m + way + 2 * reach_m * half_turn;
 }
 
 static int compare(const void *a, const void *b)
@@ -375,9 +413,9 @@ void cau_session_reach(cau_session *session, int32_t index, cau_tool_part part)
 	cau_vec3 center;
 	double radius;
 	cau_tool_bound(r.def, part, &center, &radius);
-	r.most_way = most_way(session, r.tool, cau_length(center) + radius);
+	find_most_way(&r, cau_length(center) + radius);
 	for (int32_t b = 0; b < session->near.block_count; b++)
-		if (may_meet(&r, &session->near.edge_box[b]))
+		if (cau_session_may_meet(r.tool, part, &session->near.edge_box[b], r.most_way))
 			search_block(&r, b);
 	session->contact.tool[index].passing = r.count > 0;
 	qsort(r.list, (size_t)r.count, sizeof *r.list, compare);

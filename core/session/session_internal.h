@@ -95,6 +95,8 @@ struct cau_session {
 	cau_collide collide;             // meet.c: where solver.collide points, if anywhere
 	struct cau_candidate *candidate; // reach.c: scratch
 	double *position_unheld;         // m, (n x 3): touch.c, as a step was before faces were missed
+	// touch.c: cau_session_farthest as a solve ended, and as it had ended before faces were missed
+	double farthest_m, unheld_farthest_m;
 	cau_frame_state frame;
 
 	uint64_t tick;
@@ -188,8 +190,12 @@ static const double cau_missed_share = 0.5;
 // part of a tool pushed in the last step; and, after the solve, rows for those that it has passed,
 // or that are deep inside.
 // Also how far (m) a vertex is at most from where the tick began; not a number if one is nowhere.
-double cau_session_farthest(const cau_session *session, const double *position);
+double cau_session_farthest(const cau_session *session);
 bool cau_session_feels_faces(const cau_tool *tool);
+// Whether the part may be within the margin (m) of any of the box's points: the distance changes by
+// no more than one goes.
+bool cau_session_may_meet(const cau_tool *tool, cau_tool_part part, const cau_box *box,
+                          double margin_m);
 struct cau_candidate *cau_session_make_reach(cau_arena *arena);
 void cau_session_reach_again(cau_session *session, int32_t index, cau_tool_part part);
 void cau_session_reach(cau_session *session, int32_t index, cau_tool_part part);

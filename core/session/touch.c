@@ -91,6 +91,8 @@ static void list_touching(cau_session *session, cau_touching *list, int32_t *cou
 		list[least] = touching;
 }
 
+static const double in_float_m = 1e-6; // that boxes are off by less than
+
 // Collects the vertices within the margin of the pushing part: those that are held too, where the
 // tool is what gives way.
 static int32_t collect(cau_session *session, int32_t index, cau_touching *list)
@@ -103,7 +105,9 @@ static int32_t collect(cau_session *session, int32_t index, cau_touching *list)
 	cau_tool_bound(def, pushing_part(tool), &center, &radius);
 	center = cau_pose_to_world(&tool->state.pose, center);
 	for (int32_t b = 0; b < session->near.block_count; b++) {
-		if (!cau_box_meets(&session->near.vertex_box[b], center, radius + margin))
+		const cau_box *box = &session->near.vertex_box[b];
+		if (!cau_box_meets(box, center, radius + margin) ||
+		    !cau_session_may_meet(tool, pushing_part(tool), box, margin + in_float_m))
 			continue;
 		int32_t last = (b + 1) * CAU_NEAR_BLOCK;
 		for (int32_t i = b * CAU_NEAR_BLOCK; i < last && i < session->tissue.vertex_count; i++) {
@@ -225,6 +229,7 @@ static void keep_unheld(cau_session *session, int32_t rows)
 	size_t bytes = 3 * (size_t)session->tissue.vertex_count * sizeof(double);
 	set->begun_count = rows;
 	memcpy(session->position_unheld, session->position, bytes);
+	session->unheld_farthest_m = session->farthest_m;
 	for (int32_t i = 0; i < rows; i++)
 		memcpy(set->begun_reaction[i], set->row[i].reaction, sizeof set->begun_reaction[i]);
 	for (int32_t i = 0; i < set->tool_count; i++)
@@ -247,6 +252,7 @@ bool cau_session_find_missed(cau_session *session)
 	if (!feeling)
 		return false;
 	cau_near_refit(&session->near, session->position);
+	session->farthest_m = cau_session_farthest(session);
 	for (int32_t i = 0; i < session->tool_count; i++)
 		if (cau_session_feels_faces(&session->tool[i]))
 			cau_session_reach(session, i, pushing_part(&session->tool[i]));
@@ -274,8 +280,7 @@ bool cau_session_find_thrown(cau_session *session)
 		double way = cau_length(cau_sub(cau_vec3_of(tool->anchor.position_m), from));
 		room = fmax(room, way + 2 * tool->state.definition.hot_radius_m);
 	}
-	double unheld = cau_session_farthest(session, session->position_unheld);
-	bool thrown = !(cau_session_farthest(session, session->position) <= unheld + room);
+	bool thrown = !(session->farthest_m <= session->unheld_farthest_m + room);
 	for (int32_t i = 0; i < session->tool_count && thrown; i++)
 		session->contact.tool[i].passing = true;
 	return thrown;

@@ -1,10 +1,27 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // What a load on a row of contact moves: S W^T, by the columns' places; and where that takes the
 // row's point.
-#include <string.h>
-
 #include "cautery/assert.h"
 #include "solve/contact.h"
+
+// Whether rows use so many of the columns that all are taken, two by two, in less time.
+static bool all_are_used(const cau_contact_set *set)
+{
+	CAU_ASSERT(set->used_count <= set->column_count, "%d of %d columns are used", set->used_count,
+	           set->column_count);
+	return set->used_count == set->column_count;
+}
+
+// answer += weight * s
+static void add_weighted(const cau_contact_set *set, double *answer, double weight, const double *s)
+{
+	if (all_are_used(set))
+		for (int32_t c = 0; c < set->column_count; c++)
+			answer[c] += weight * s[c];
+	else
+		for (int32_t i = 0; i < set->used_count; i++)
+			answer[set->used[i]] += weight * s[set->used[i]];
+}
 
 void cau_contact_find_answer(cau_contact_set *set, int32_t row)
 {
@@ -12,14 +29,12 @@ void cau_contact_find_answer(cau_contact_set *set, int32_t row)
 	if (of->answer < 0 || of->answer == CAU_MAX_POINT_ROWS)
 		return;
 	double *answer = set->answer + (size_t)of->answer * CAU_MAX_COLUMNS;
-	memset(answer, 0, (size_t)set->column_count * sizeof *answer);
-	for (int32_t k = 0; k < of->corner_count; k++) {
-		if (of->column[k] < 0 || of->weight[k] == 0)
-			continue;
-		const double *s = set->inverse + (size_t)of->column[k] * CAU_MAX_COLUMNS;
-		for (int32_t c = 0; c < set->column_count; c++)
-			answer[c] += of->weight[k] * s[c];
-	}
+	for (int32_t i = 0; i < set->used_count; i++)
+		answer[set->used[i]] = 0;
+	for (int32_t k = 0; k < of->corner_count; k++)
+		if (of->column[k] >= 0 && of->weight[k] != 0)
+			add_weighted(set, answer, of->weight[k],
+			             set->inverse + (size_t)of->column[k] * CAU_MAX_COLUMNS);
 }
 
 const double *cau_contact_answer(const cau_contact_set *set, const cau_contact_row *row)
@@ -29,15 +44,23 @@ const double *cau_contact_answer(const cau_contact_set *set, const cau_contact_r
 	return set->answer + (size_t)row->answer * CAU_MAX_COLUMNS;
 }
 
+static inline void move_vertex(double *step, int32_t column, double answer, cau_vec3 by)
+{
+	step[column] += answer * by.x;
+	step[CAU_MAX_COLUMNS + column] += answer * by.y;
+	step[2 * CAU_MAX_COLUMNS + column] += answer * by.z;
+}
+
 void cau_contact_move(cau_contact_set *set, const cau_contact_row *row, cau_vec3 by)
 {
 	const double *answer = cau_contact_answer(set, row);
-	double *x = set->step, *y = x + CAU_MAX_COLUMNS, *z = y + CAU_MAX_COLUMNS;
-	for (int32_t c = 0; c < set->column_count; c++) {
-		x[c] += answer[c] * by.x;
-		y[c] += answer[c] * by.y;
-		z[c] += answer[c] * by.z;
-	}
+	double *step = set->step;
+	if (all_are_used(set))
+		for (int32_t c = 0; c < set->column_count; c++)
+			move_vertex(step, c, answer[c], by);
+	else
+		for (int32_t i = 0; i < set->used_count; i++)
+			move_vertex(step, set->used[i], answer[set->used[i]], by);
 }
 
 double cau_contact_slips_at(const cau_contact_set *set, const cau_contact_row *row)

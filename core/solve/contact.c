@@ -271,23 +271,37 @@ static double relax_rows(cau_contact_set *set, const cau_step_solver *solver)
 	return size > 0 ? change / size : 0;
 }
 
-// increment += C W^T dr over a chunk of vertices
+// increment += C W^T dr by the columns on which something changed
 typedef struct spread {
-	const cau_contact_set *set;
 	cau_step_solver *solver;
+	int32_t count;
+	const cau_reals *column[CAU_WHOLE_COLUMNS];
+	double load[3 * CAU_WHOLE_COLUMNS];
 } spread;
 
 static void spread_part(void *context, int32_t chunk)
 {
 	const spread *work = context;
-	const cau_contact_set *set = work->set;
 	cau_step_solver *solver = work->solver;
 	int32_t first, last = cau_solver_chunk_end(solver, chunk, &first);
+	solver->kernels->spread(solver->increment, work->column, work->load, work->count, first, last);
+}
+
+static void spread_changes(const cau_contact_set *set, cau_step_solver *solver)
+{
+	spread work;
+	work.solver = solver;
+	work.count = 0;
+	CAU_ASSERT_INDEX(set->column_count, CAU_WHOLE_COLUMNS + 1);
 	for (int32_t c = 0; c < set->column_count; c++) {
 		const double *load = set->change + 3 * (size_t)c;
-		if (load[0] != 0 || load[1] != 0 || load[2] != 0)
-			solver->kernels->spread(solver->increment, set->column[c], load, first, last);
+		if (load[0] == 0 && load[1] == 0 && load[2] == 0)
+			continue;
+		memcpy(work.load + 3 * work.count, load, 3 * sizeof *load);
+		work.column[work.count++] = set->column[c];
 	}
+	if (work.count)
+		cau_pool_run(solver->pool, solver->chunk_count, spread_part, &work);
 }
 
 // The same by A^-1 of all loads at once: of the columns beyond CAU_WHOLE_COLUMNS S alone is kept.
@@ -344,7 +358,8 @@ void cau_contact_load(cau_contact_set *set, cau_step_solver *solver)
 
 static void read_step(cau_contact_set *set, const cau_step_solver *solver)
 {
-	for (int32_t k = 0; k < set->column_count; k++) {
+	for (int32_t i = 0; i < set->used_count; i++) {
+		int32_t k = set->used[i];
 		double step[3];
 		solver->kernels->vectors->read(solver->increment, set->column_vertex[k], step);
 		for (int32_t c = 0; c < 3; c++)
@@ -403,7 +418,7 @@ void cau_contact_correct(cau_contact_set *set, cau_step_solver *solver)
 	if (wide)
 		substitute_back(set, solver);
 	else
-		cau_pool_run(solver->pool, solver->chunk_count, spread_part, &(spread){set, solver});
+		spread_changes(set, solver);
 }
 
 bool cau_contact_is_deep(cau_contact_set *set, const cau_step_solver *solver, double most_m,

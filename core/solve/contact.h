@@ -117,8 +117,12 @@ struct cau_contact_set {
 	int32_t column_vertex[CAU_MAX_COLUMNS];
 	uint64_t column_version[CAU_MAX_COLUMNS]; // of the factor they were made from
 	cau_reals *column[CAU_WHOLE_COLUMNS];     // (vertex_count), m/N
-	uint64_t epoch;                           // of the factor: another one empties the columns
-	int32_t corner_count;                     // distinct vertices of the rows that are free
+	// Those that rows have, ascending, where these are few; else all: answers and steps are of
+	// them.
+	int32_t used_count;
+	int32_t used[CAU_MAX_COLUMNS];
+	uint64_t epoch;       // of the factor: another one empties the columns
+	int32_t corner_count; // distinct vertices of the rows that are free
 	int32_t corner[CAU_MAX_COLUMNS];
 	double *inverse;    // (CAU_MAX_COLUMNS x CAU_MAX_COLUMNS): S by columns' places, m/N
 	double *answer;     // (CAU_MAX_POINT_ROWS + 1 x CAU_MAX_COLUMNS): S W^T, m/N; the last is 0
@@ -183,7 +187,7 @@ void cau_contact_prepare(cau_contact_set *set, cau_step_solver *solver);
 // S W^T of a row, after its weights changed.
 void cau_contact_find_answer(cau_contact_set *set, int32_t row);
 
-// The same, to read (column_count): what a load on the row moves, m/N.
+// The same, to read (column_count, of the used ones): what a load on the row moves, m/N.
 const double *cau_contact_answer(const cau_contact_set *set, const cau_contact_row *row);
 
 // A load (N) on the row more: where the columns' vertices go by it.

@@ -12,6 +12,7 @@
 #include "constraint/sheet_kernel.h"
 #include "solve/newton_kernel.h"
 #include "solve/pack_kernel.h"
+#include "solve/spread_kernel.h"
 #include "solve/sweep_kernel.h"
 
 // Displacements (m) of the share's records.
@@ -204,16 +205,6 @@ static void combine(const cau_history *history, int64_t first, int64_t n, const 
 		for (int64_t k = 0; k < n; k++)
 			step[k] -= w * h[k];
 	}
-}
-
-static void spread(cau_reals *increment, const cau_reals *column, const double force[3],
-                   int32_t first, int32_t last)
-{
-	vertex_reals *out = (vertex_reals *)increment;
-	const real *weight = (const real *)column;
-	vertex_reals f = {(real)force[0], (real)force[1], (real)force[2], 0};
-	for (int32_t v = first; v < last; v++)
-		out[v] += weight[v] * f;
 }
 
 extern const cau_vectors CAU_VECTORS;

@@ -59,9 +59,10 @@ typedef struct cau_kernels {
 	void (*newton_solve)(const cau_newton *newton);
 	// Dot product in double of n reals from `first` on, in a fixed order.
 	double (*dot)(const cau_reals *a, const cau_reals *b, int64_t first, int64_t n);
-	// increment[v] += column[v] * force for v in [first, last); the column has one real a vertex.
-	void (*spread)(cau_reals *increment, const cau_reals *column, const double force[3],
-	               int32_t first, int32_t last);
+	// increment[v] += sum of column[k][v] * load k, in the order of the `count` columns, for v in
+	// [first, last); a column has one real a vertex, a load is x, y, z.
+	void (*spread)(cau_reals *increment, const cau_reals *const *column, const double *load,
+	               int32_t count, int32_t first, int32_t last);
 	// y += s x over n reals
 	void (*add_scaled)(cau_reals *y, double s, const cau_reals *x, int64_t n);
 	// Anderson acceleration over n reals from `first` on (anderson.c): a new column from the last

@@ -269,6 +269,73 @@ static void test_dot_and_add_scaled(void **state)
 	assert_true(y[MOST - 1] == expected && fy[MOST - 1] == (float)expected);
 }
 
+enum { SPREAD_VERTICES = 45, SPREAD_COLUMNS = 37 }; // strips of 4 to 16, and some that are over
+
+typedef struct spread_case {
+	_Alignas(64) unsigned char increment[4 * SPREAD_VERTICES * sizeof(double)];
+	unsigned char weight[SPREAD_COLUMNS][SPREAD_VERTICES * sizeof(double)];
+	const cau_reals *column[SPREAD_COLUMNS];
+	double load[3 * SPREAD_COLUMNS];
+} spread_case;
+
+static void make_spread_case(spread_case *of, bool single)
+{
+	uint64_t random = 3;
+	for (int i = 0; i < 4 * SPREAD_VERTICES; i++)
+		cau_real_set(of->increment, single, i, i % 4 < 3 ? random_between(&random, -1, 1) : 0);
+	for (int k = 0; k < SPREAD_COLUMNS; k++) {
+		of->column[k] = (const cau_reals *)of->weight[k];
+		for (int v = 0; v < SPREAD_VERTICES; v++)
+			cau_real_set(of->weight[k], single, v, random_between(&random, 0, 1));
+	}
+	for (int i = 0; i < 3 * SPREAD_COLUMNS; i++)
+		of->load[i] = random_between(&random, -1, 1);
+}
+
+static double spread_expected(const spread_case *of, bool single, int count, int first, int last,
+                              int i)
+{
+	double sum = cau_real_get(of->increment, single, i);
+	int v = i / 4, c = i % 4;
+	for (int k = 0; k < count && v >= first && v < last && c < 3; k++)
+		sum += cau_real_get(of->weight[k], single, v) * of->load[3 * k + c];
+	return sum;
+}
+
+// Any number of columns at once give the sums, and the very bits of one after the other.
+static void compare_spread(const cau_kernels *kernels, int count, int first, int last)
+{
+	static spread_case together, apart;
+	// as many additions, each rounded by 6e-8 or 1.1e-16 of a sum of at most 40
+	double tolerance = kernels->single ? 6e-8 * 40 * 40 : 1.1e-16 * 40 * 40;
+	make_spread_case(&together, kernels->single);
+	make_spread_case(&apart, kernels->single);
+	kernels->spread((cau_reals *)together.increment, together.column, together.load, count, first,
+	                last);
+	for (int i = 0; i < 4 * SPREAD_VERTICES; i++)
+		assert_near(cau_real_get(together.increment, kernels->single, i),
+		            spread_expected(&apart, kernels->single, count, first, last, i), tolerance);
+	for (int k = 0; k < count; k++)
+		for (int v = first; v < last; v++)
+			kernels->spread((cau_reals *)apart.increment, apart.column + k, apart.load + 3 * k, 1,
+			                v, v + 1);
+	assert_memory_equal(together.increment, apart.increment, sizeof apart.increment);
+}
+
+static void test_columns_are_spread_in_their_order(void **state)
+{
+	(void)state;
+	static const char *const tiers[] = {"baseline", "avx2", "avx512"};
+	static const int counts[] = {0, 1, 15, 16, 17, SPREAD_COLUMNS};
+	static const int ranges[][2] = {{0, SPREAD_VERTICES}, {3, 42}, {7, 8}, {5, 5}};
+	for (int t = 0; t < 3; t++)
+		for (int single = 0; single < 2; single++)
+			for (size_t c = 0; c < sizeof counts / sizeof *counts; c++)
+				for (size_t k = 0; k < sizeof ranges / sizeof *ranges; k++)
+					compare_spread(cau_kernels_choose(single, tiers[t]), counts[c], ranges[k][0],
+					               ranges[k][1]);
+}
+
 int main(void)
 {
 	const struct CMUnitTest tests[] = {
@@ -280,6 +347,7 @@ int main(void)
 		cmocka_unit_test(test_single_agrees_with_double),
 		cmocka_unit_test(test_every_instruction_set_agrees),
 		cmocka_unit_test(test_dot_and_add_scaled),
+		cmocka_unit_test(test_columns_are_spread_in_their_order),
 	};
 	return cmocka_run_group_tests(tests, NULL, NULL);
 }
