@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Boxes side by side, eight to a group, so that one is held against eight at a time. They are kept
-// as floats, rounded outward: what these leave out is surely apart, what they let pass is looked at
-// again in double.
+// as floats. Rounding keeps order: what meets in double still does, and what is let pass beside
+// that is told apart in double by who asks.
 #pragma once
 
 #include <stdint.h>
@@ -24,21 +24,20 @@ typedef struct cau_collide_asking {
 	cau_lane_quad least[3], most[3];
 } cau_collide_asking;
 
-// Outward by more than the rounding to float; what is beyond all measure is at the same bound.
-static inline float cau_lane_outward(double value, double sign)
+// What is beyond all measure is at a bound of it, so that it is a float.
+static inline float cau_lane_float(double value)
 {
-	const double most = 1e30, rounding = 1.2e-7, least = 1e-30;
+	const double most = 1e30;
 	value = value < most ? value : most;
-	value = value > -most ? value : -most;
-	return (float)(value + sign * (rounding * (value < 0 ? -value : value) + least));
+	return (float)(value > -most ? value : -most);
 }
 
 static inline void cau_lanes_put(cau_collide_lanes *to, int lane, const double least[3],
                                  const double most[3], double thickness_m)
 {
 	for (int c = 0; c < 3; c++) {
-		to->least[c][lane] = cau_lane_outward(least[c] - thickness_m, -1);
-		to->most[c][lane] = cau_lane_outward(most[c], 1);
+		to->least[c][lane] = cau_lane_float(least[c] - thickness_m);
+		to->most[c][lane] = cau_lane_float(most[c]);
 	}
 }
 
