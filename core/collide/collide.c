@@ -30,11 +30,25 @@ static void find_stiffness(cau_collide *collide, double step_s)
 		}
 }
 
+static void find_longest(cau_collide *collide)
+{
+	const cau_edge_table *edges = &collide->tissue->edges;
+	for (int32_t e = 0; e < edges->edge_count; e++) {
+		const int32_t *v = edges->vertex + 2 * (size_t)e;
+		cau_vec3 from = cau_vec3_of(collide->tissue->rest + 3 * (size_t)v[0]);
+		cau_vec3 to = cau_vec3_of(collide->tissue->rest + 3 * (size_t)v[1]);
+		double long_m = cau_length(cau_sub(to, from));
+		for (int k = 0; k < 2; k++)
+			collide->longest_m[v[k]] = fmax(collide->longest_m[v[k]], long_m);
+	}
+}
+
 static bool make_arrays(cau_collide *collide, cau_arena *arena)
 {
 	const cau_tissue *tissue = collide->tissue;
 	size_t n = (size_t)tissue->vertex_count, blocks = (size_t)collide->surface.block_count;
 	size_t pairs = (size_t)collide->most_pairs, box = sizeof(cau_collide_box);
+	size_t lanes = sizeof(cau_collide_lanes);
 	bool made = true;
 	struct {
 		void **array;
@@ -43,6 +57,7 @@ static bool make_arrays(cau_collide *collide, cau_arena *arena)
 		{(void **)&collide->exempt, n, 1},
 		{(void **)&collide->exempt_before, n, 1},
 		{(void **)&collide->stiffness, n, sizeof(double)},
+		{(void **)&collide->longest_m, n, sizeof(double)},
 		{(void **)&collide->anchor, 3 * n, sizeof(double)},
 		{(void **)&collide->reach_m, n, sizeof(double)},
 		{(void **)&collide->seen, 3 * n, sizeof(double)},
@@ -71,6 +86,8 @@ static bool make_arrays(cau_collide *collide, cau_arena *arena)
 		{(void **)&collide->fresh_box[1], blocks, box},
 		{(void **)&collide->fresh_box[2], blocks, box},
 		{(void **)&collide->place_box, blocks, box},
+		{(void **)&collide->block_lane, blocks / CAU_LANES + 1, lanes},
+		{(void **)&collide->touched_lane, blocks / CAU_LANES + 1, lanes},
 		{(void **)&collide->touched, blocks, sizeof(int32_t)},
 		{(void **)&collide->is_touched, blocks, 1},
 		{(void **)&collide->alive_before[0], (size_t)tissue->triangle_count, 1},
@@ -82,6 +99,23 @@ static bool make_arrays(cau_collide *collide, cau_arena *arena)
 	for (size_t i = 0; i < sizeof arrays / sizeof *arrays; i++) {
 		*arrays[i].array = cau_arena_array(arena, arrays[i].count, arrays[i].bytes);
 		made &= *arrays[i].array != NULL;
+	}
+	return made;
+}
+
+// Boxes side by side: every block begins a group of its own.
+static bool make_lanes(cau_collide *collide, cau_arena *arena)
+{
+	const cau_tissue *tissue = collide->tissue;
+	size_t blocks = (size_t)collide->surface.block_count;
+	int32_t count[] = {tissue->faces.face_count, tissue->edges.edge_count, tissue->vertex_count};
+	bool made = true;
+	for (int what = 0; what < 3; what++) {
+		size_t groups = (size_t)count[what] / CAU_LANES + blocks + 1;
+		collide->lane[what] = cau_arena_array(arena, groups, sizeof *collide->lane[what]);
+		collide->fresh_lane[what] = cau_arena_array(arena, groups, 1);
+		collide->lane_first[what] = cau_arena_array(arena, blocks + 1, sizeof(int32_t));
+		made &= collide->lane[what] && collide->fresh_lane[what] && collide->lane_first[what];
 	}
 	return made;
 }
@@ -100,9 +134,10 @@ cau_status cau_collide_create(cau_collide *collide, const cau_tissue *tissue, do
 	cau_status status = cau_surface_create(&collide->surface, tissue, arena, error);
 	if (status)
 		return status;
-	if (!make_arrays(collide, arena))
+	if (!make_arrays(collide, arena) || !make_lanes(collide, arena))
 		return cau_fail(error, CAU_NO_MEMORY, NULL, "no memory for tissue against tissue");
 	find_stiffness(collide, step_s);
 	cau_collide_forget_crossed(collide);
+	find_longest(collide);
 	return CAU_OK;
 }

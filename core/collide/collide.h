@@ -20,8 +20,11 @@
 // has any of it.
 #pragma once
 
+#include <stdatomic.h>
+
 #include "base/pool.h"
 #include "collide/gap.h"
+#include "collide/lanes.h"
 #include "collide/surface.h"
 
 enum { CAU_COLLIDE_SLICE = 2048 }; // pairs of a kind that a block may have
@@ -82,6 +85,7 @@ typedef struct cau_collide {
 	// What joins parts while it lives: triangles, tetrahedra, links; borrowed, NULL: all do.
 	const uint8_t *alive[CAU_PRIMITIVE_KINDS];
 	double *stiffness; // N/m, (n): of a vertex
+	double *longest_m; // (n): of its edges at rest
 	cau_surface surface;
 	// Where the pairs are valid.
 	bool found;
@@ -122,10 +126,19 @@ typedef struct cau_collide {
 	cau_collide_found *list[2];                   // by kind, (blocks x CAU_COLLIDE_SLICE)
 	uint8_t *alive_before[CAU_PRIMITIVE_KINDS];   // as they were when it was found
 	uint8_t *exempt_before;                       // likewise
+	// The parts' boxes side by side, in the order in which blocks list them; each block begins a
+	// group. And which of a group are fresh, a bit each, where the block is touched.
+	cau_collide_lanes *lane[3];
+	uint8_t *fresh_lane[3];
+	int32_t *lane_first[3]; // (blocks + 1): the lists' as they were when that was laid out
 	// and scratch
-	int32_t touched_count, *touched; // blocks with a fresh part
-	uint8_t *is_touched;             // (blocks)
-	cau_collide_box *place_box;      // (blocks): crossed.c, of a block where it is
+	int32_t touched_count, *touched;              // blocks with a fresh part
+	cau_collide_lanes *block_lane, *touched_lane; // all faces of blocks; fresh ones of `touched`
+	uint8_t *is_touched;                          // (blocks)
+	cau_collide_box *place_box;                   // (blocks): crossed.c, of a block where it is
+	bool may_give_up;                             // nobody takes what a search leaves that fails
+	atomic_bool fails;                            // and it surely does
+	atomic_int listed_count;                      // pairs of the blocks that are done
 	// filter.c: scratch
 	bool *stopped;   // (most_pairs)
 	double *wanted;  // m, (n x 3): the step before it was changed
@@ -188,6 +201,10 @@ bool cau_collide_lets_pass(cau_collide *collide, const double *x, double longest
 
 // find.c: looks for the pairs of what `surface.changed` tells. False where they find no room.
 bool cau_collide_search(cau_collide *collide, cau_pool *pool);
+// pair.c: whether corners may come nearer than their thickness with all that they may move. If so,
+// the pair's thickness and stiffness.
+bool cau_collide_may_touch(const cau_collide *collide, cau_gap_kind kind, const int32_t vertex[4],
+                           cau_collide_found *found);
 // reach.c: the pairs for x and for what is needed beyond.
 void cau_collide_find(cau_collide *collide, cau_pool *pool, const double *x, cau_collide_need need);
 // Whether they are known.

@@ -13,11 +13,6 @@
 #include "cautery/assert.h"
 #include "collide/collide.h"
 
-// A pair keeps at most so much of the distance that it has at rest: neighbours, between which the
-// surface itself may be drawn together, less than others.
-static const double near_share = 0.1, far_share = 0.5;
-static const double least_thickness = 0.002; // of the surface's: below, a pair is left out
-
 // ---- parts of a block, by what they are
 enum { FACES, EDGES, VERTICES };
 
@@ -117,72 +112,103 @@ static void box_part(void *context, int32_t index)
 	}
 }
 
-// ---- what a pair is
+// ---- boxes side by side
 
-static bool is_shared(const cau_collide *collide, int kind, int32_t edge)
+static int32_t first_group(const parts *p, int32_t block)
 {
-	const cau_edge_table *edges = &collide->tissue->edges;
-	CAU_ASSERT_INDEX(edge, edges->edge_count);
-	for (int32_t k = edges->first[kind][edge]; k < edges->first[kind][edge + 1]; k++)
-		if (!collide->alive[kind] || collide->alive[kind][edges->sharer[kind][k]])
+	return (p->list->first[block] + CAU_LANES - 1) / CAU_LANES + block;
+}
+
+static cau_collide_asking ask(const cau_collide *collide, const cau_collide_box *box)
+{
+	cau_collide_lanes alone;
+	cau_lanes_put(&alone, 0, box->least, box->most, collide->thickness_m);
+	return cau_lanes_ask(&alone, 0);
+}
+
+static void lay(const cau_collide *collide, int what, int32_t block)
+{
+	parts p = parts_of(collide, what);
+	int32_t end = p.list->first[block + 1], g = first_group(&p, block);
+	for (int32_t i = p.list->first[block]; i < end; i += CAU_LANES, g++) {
+		int32_t count = end - i < CAU_LANES ? end - i : CAU_LANES;
+		collide->fresh_lane[what][g] = 0;
+		for (int32_t k = 0; k < count; k++) {
+			const cau_collide_box *box = &p.box[p.list->item[i + k]];
+			cau_lanes_put(&collide->lane[what][g], k, box->least, box->most, collide->thickness_m);
+			collide->fresh_lane[what][g] |=
+				(uint8_t)(is_fresh(collide, &p, p.list->item[i + k]) << k);
+		}
+		cau_lanes_close(&collide->lane[what][g], count);
+	}
+}
+
+static void lay_touched(void *context, int32_t index)
+{
+	cau_collide *collide = context;
+	for (int what = FACES; what <= VERTICES; what++)
+		lay(collide, what, collide->touched[index]);
+}
+
+static void lay_block(void *context, int32_t block)
+{
+	cau_collide *collide = context;
+	for (int what = FACES; what <= VERTICES; what++)
+		lay(collide, what, block);
+}
+
+// Whether blocks begin elsewhere than when they were laid out. (Where they do not, a block that
+// lists anything else than before is touched.)
+static bool begin_elsewhere(cau_collide *collide)
+{
+	bool elsewhere = false;
+	for (int what = FACES; what <= VERTICES; what++) {
+		size_t bytes = ((size_t)collide->surface.block_count + 1) * sizeof(int32_t);
+		const int32_t *first = parts_of(collide, what).list->first;
+		elsewhere |= memcmp(collide->lane_first[what], first, bytes) != 0;
+		memcpy(collide->lane_first[what], first, bytes);
+	}
+	return elsewhere;
+}
+
+static void lay_boxes(const cau_collide *collide, cau_collide_lanes *to, const int32_t *block,
+                      int32_t count, const cau_collide_box *box)
+{
+	for (int32_t k = 0; k < count; k++) {
+		const cau_collide_box *of = &box[block ? block[k] : k];
+		cau_lanes_put(&to[k / CAU_LANES], k % CAU_LANES, of->least, of->most, collide->thickness_m);
+	}
+	cau_lanes_close(&to[count / CAU_LANES], count % CAU_LANES);
+}
+
+static void lay_out(cau_collide *collide, cau_pool *pool)
+{
+	int32_t blocks = collide->surface.block_count;
+	if (begin_elsewhere(collide))
+		cau_pool_run(pool, blocks, lay_block, collide);
+	else
+		cau_pool_run(pool, collide->touched_count, lay_touched, collide);
+	lay_boxes(collide, collide->block_lane, NULL, blocks, collide->block_box[FACES]);
+	lay_boxes(collide, collide->touched_lane, collide->touched, collide->touched_count,
+	          collide->fresh_box[FACES]);
+}
+
+// ---- pairs
+
+// A search that finds no room is made again for less, of everything (reach.c), and nothing of it is
+// used: unless it was for no reach at all.
+static bool may_give_up(const cau_collide *collide)
+{
+	const cau_surface_parts *vertices = &collide->surface.vertices;
+	for (int32_t k = 0; k < vertices->count; k++)
+		if (collide->reach_m[vertices->item[k]] > 0)
 			return true;
 	return false;
 }
 
-// How much of its distance at rest a pair keeps: by what joins its parts and is alive.
-static double share_of(const cau_collide *collide, cau_gap_kind kind, const int32_t vertex[4])
+static bool gives_up(const cau_collide *collide)
 {
-	int firsts = cau_gap_first(kind);
-	for (int i = 0; i < firsts; i++)
-		for (int j = firsts; j < 4; j++) {
-			int32_t edge = cau_edge_table_find(&collide->tissue->edges, vertex[i], vertex[j]);
-			for (int k = 0; k < CAU_PRIMITIVE_KINDS && edge >= 0; k++)
-				if (is_shared(collide, k, edge))
-					return near_share;
-		}
-	return far_share;
-}
-
-static void describe(const cau_collide *collide, cau_gap_kind kind, const int32_t vertex[4],
-                     cau_collide_found *found)
-{
-	cau_vec3 corner[4];
-	for (int i = 0; i < 4; i++)
-		corner[i] = cau_vec3_of(collide->tissue->rest + 3 * (size_t)vertex[i]);
-	double apart = cau_gap_between(kind, corner).distance;
-	found->thickness_m = fmin(collide->thickness_m, share_of(collide, kind, vertex) * apart);
-	found->stiffness = INFINITY;
-	for (int i = 0; i < 4; i++)
-		found->stiffness = fmin(found->stiffness, collide->stiffness[vertex[i]]);
-}
-
-// ---- pairs
-// Whether corners may come nearer than their thickness with all that they may move: first along the
-// line between the parts' middles, which tells most.
-static bool may_touch(const cau_collide *collide, cau_gap_kind kind, const int32_t vertex[4],
-                      cau_collide_found *found)
-{
-	cau_vec3 corner[4], middle[2] = {{0, 0, 0}, {0, 0, 0}};
-	double reach[2] = {0, 0};
-	int firsts = cau_gap_first(kind);
-	for (int i = 0; i < 4; i++) {
-		int part = i >= firsts;
-		if (collide->exempt[vertex[i]])
-			return false;
-		corner[i] = cau_vec3_of(collide->anchor + 3 * (size_t)vertex[i]);
-		middle[part] = cau_add_scaled(middle[part], 1.0 / (part ? 4 - firsts : firsts), corner[i]);
-		reach[part] = fmax(reach[part], collide->reach_m[vertex[i]]);
-	}
-	double may_move = reach[0] + reach[1], most = collide->thickness_m + may_move;
-	cau_vec3 way = cau_sub(middle[0], middle[1]);
-	if (cau_gap_along(kind, corner, way) > most * cau_length(way))
-		return false;
-	double apart = cau_gap_between(kind, corner).distance;
-	if (apart > most)
-		return false;
-	describe(collide, kind, vertex, found);
-	return found->thickness_m >= least_thickness * collide->thickness_m &&
-	       apart <= found->thickness_m + may_move;
+	return collide->may_give_up && atomic_load_explicit(&collide->fails, memory_order_relaxed);
 }
 
 static void list(cau_collide *collide, int32_t block, cau_gap_kind kind, cau_collide_found found)
@@ -190,130 +216,138 @@ static void list(cau_collide *collide, int32_t block, cau_gap_kind kind, cau_col
 	cau_collide_slice *slice = &collide->slice[block];
 	if (slice->count[kind] == CAU_COLLIDE_SLICE) {
 		slice->full = true;
+		collide->fails = true;
 		return;
 	}
 	collide->list[kind][(size_t)block * CAU_COLLIDE_SLICE + (size_t)slice->count[kind]++] = found;
 }
 
-// Parts of one kind of a block: all that are fresh, or those that meet a box.
-typedef struct some_parts {
+// Parts of a block that are near another's, with their boxes.
+typedef struct near_parts {
 	int32_t count, item[3 * CAU_SURFACE_FACES];
-} some_parts;
+	cau_collide_lanes lane[3 * CAU_SURFACE_FACES / CAU_LANES + 1];
+} near_parts;
 
-static void list_fresh(const cau_collide *collide, int what, int32_t block, some_parts *fresh)
+typedef enum wanted_parts { ALL, FRESH, NOT_FRESH } wanted_parts;
+
+static uint32_t wanted_of(const cau_collide *collide, int what, int32_t block, int32_t group,
+                          wanted_parts wanted)
+{
+	uint32_t fresh = collide->is_touched[block] ? collide->fresh_lane[what][group] : 0;
+	return wanted == ALL ? ~0U : wanted == FRESH ? fresh : ~fresh;
+}
+
+static void take(near_parts *near, int32_t item, const cau_collide_lanes *from, int lane)
+{
+	cau_lanes_copy(&near->lane[near->count / CAU_LANES], near->count % CAU_LANES, from, lane);
+	near->item[near->count++] = item;
+}
+
+static bool list_near(const cau_collide *collide, int what, int32_t block, wanted_parts wanted,
+                      const cau_collide_box *within, near_parts *near)
 {
 	parts p = parts_of(collide, what);
-	fresh->count = 0;
-	for (int32_t i = p.list->first[block]; i < p.list->first[block + 1]; i++)
-		if (is_fresh(collide, &p, p.list->item[i]))
-			fresh->item[fresh->count++] = p.list->item[i];
-}
-
-static void list_near(const cau_collide *collide, const parts *p, const int32_t *item,
-                      int32_t count, const cau_collide_box *within, some_parts *near)
-{
+	int32_t first = first_group(&p, block), end = p.list->first[block + 1];
+	cau_collide_asking asking = ask(collide, within);
 	near->count = 0;
-	for (int32_t i = 0; i < count; i++)
-		if (meets(within, &p->box[item[i]], collide->thickness_m))
-			near->item[near->count++] = item[i];
-}
-
-static void leave_out(const cau_collide *collide, const parts *p, bool fresh, some_parts *near)
-{
-	int32_t kept = 0;
-	for (int32_t i = 0; i < near->count; i++)
-		if (is_fresh(collide, p, near->item[i]) != fresh)
-			near->item[kept++] = near->item[i];
-	near->count = kept;
-}
-
-static void list_near_of(const cau_collide *collide, const parts *p, int32_t block,
-                         const cau_collide_box *within, some_parts *near)
-{
-	int32_t first = p->list->first[block];
-	list_near(collide, p, p->list->item + first, p->list->first[block + 1] - first, within, near);
+	for (int32_t i = p.list->first[block], g = first; i < end; i += CAU_LANES, g++) {
+		const cau_collide_lanes *group = &collide->lane[what][g];
+		uint32_t met = cau_lanes_meet(group, &asking) & wanted_of(collide, what, block, g, wanted);
+		for (; met; met &= met - 1)
+			take(near, p.list->item[i + __builtin_ctz(met)], group, __builtin_ctz(met));
+	}
+	cau_lanes_close(&near->lane[near->count / CAU_LANES], near->count % CAU_LANES);
+	return near->count > 0;
 }
 
 // Two blocks of which the first's parts of one kind are held against the second's of another: those
-// that are fresh (`fresh`, by kind) against all, or the others (NULL) against those of the second
-// that are fresh.
+// that are fresh against all, or the others against those of the second that are fresh.
 typedef struct meeting {
-	parts own, others;
-	some_parts own_near, others_near;
+	near_parts own, others;
 } meeting;
 
-static bool meet(const cau_collide *collide, const int32_t block[2], const int what[2],
-                 const some_parts *fresh, meeting *m)
+static bool meet(const cau_collide *collide, const int32_t block[2], const int what[2], bool fresh,
+                 meeting *m)
 {
 	cau_collide_box *const *own_box = fresh ? collide->fresh_box : collide->block_box,
 						   *const *box = fresh ? collide->block_box : collide->fresh_box;
 	const cau_collide_box *own = &own_box[what[0]][block[0]], *others = &box[what[1]][block[1]];
-	if (!meets(own, others, collide->thickness_m))
-		return false;
-	m->own = parts_of(collide, what[0]);
-	m->others = parts_of(collide, what[1]);
-	list_near_of(collide, &m->others, block[1], own, &m->others_near);
-	if (fresh) {
-		const some_parts *candidates = &fresh[what[0]];
-		list_near(collide, &m->own, candidates->item, candidates->count, others, &m->own_near);
-	} else {
-		leave_out(collide, &m->others, false, &m->others_near);
-		list_near_of(collide, &m->own, block[0], others, &m->own_near);
-		leave_out(collide, &m->own, true, &m->own_near);
-	}
-	return m->own_near.count && m->others_near.count;
+	return meets(own, others, collide->thickness_m) &&
+	       list_near(collide, what[0], block[0], fresh ? FRESH : NOT_FRESH, others, &m->own) &&
+	       list_near(collide, what[1], block[1], fresh ? ALL : FRESH, own, &m->others);
 }
 
-static void look_at_vertices(cau_collide *collide, int32_t block, int32_t other,
-                             const some_parts *fresh)
+static bool shares_corner(const int32_t *a, int a_count, const int32_t *b, int b_count)
+{
+	bool shares = false;
+	for (int i = 0; i < a_count; i++)
+		for (int j = 0; j < b_count; j++)
+			shares |= a[i] == b[j];
+	return shares;
+}
+
+static void look_at_vertex(cau_collide *collide, int32_t block, int32_t v, int32_t face)
+{
+	cau_collide_found found = {v, face, 0, 0};
+	const int32_t *c = collide->tissue->faces.vertex + 3 * (size_t)face;
+	if (!shares_corner(&v, 1, c, 3) &&
+	    meets(&collide->vertex_box[v], &collide->face_box[face], collide->thickness_m) &&
+	    cau_collide_may_touch(collide, CAU_GAP_VERTEX_FACE, (int32_t[]){v, c[0], c[1], c[2]},
+	                          &found))
+		list(collide, block, CAU_GAP_VERTEX_FACE, found);
+}
+
+static void look_at_edge(cau_collide *collide, int32_t block, int32_t e, int32_t f)
+{
+	cau_collide_found found = {e, f, 0, 0};
+	const int32_t *a = collide->tissue->edges.vertex + 2 * (size_t)e;
+	const int32_t *b = collide->tissue->edges.vertex + 2 * (size_t)f;
+	if (!shares_corner(a, 2, b, 2) &&
+	    meets(&collide->edge_box[e], &collide->edge_box[f], collide->thickness_m) &&
+	    cau_collide_may_touch(collide, CAU_GAP_EDGE_EDGE, (int32_t[]){a[0], a[1], b[0], b[1]},
+	                          &found))
+		list(collide, block, CAU_GAP_EDGE_EDGE, found);
+}
+
+static void look_at_vertices(cau_collide *collide, int32_t block, int32_t other, bool fresh)
 {
 	meeting m;
 	if (!meet(collide, (int32_t[]){block, other}, (int[]){VERTICES, FACES}, fresh, &m))
 		return;
-	for (int32_t i = 0; i < m.own_near.count; i++) {
-		int32_t v = m.own_near.item[i];
-		for (int32_t j = 0; j < m.others_near.count; j++) {
-			cau_collide_found found = {v, m.others_near.item[j], 0, 0};
-			const int32_t *c = corners_of(&m.others, &found.second);
-			if (meets(&m.own.box[v], &m.others.box[found.second], collide->thickness_m) &&
-			    c[0] != v && c[1] != v && c[2] != v &&
-			    may_touch(collide, CAU_GAP_VERTEX_FACE, (int32_t[]){v, c[0], c[1], c[2]}, &found))
-				list(collide, block, CAU_GAP_VERTEX_FACE, found);
-		}
+	for (int32_t i = 0; i < m.own.count; i++) {
+		cau_collide_asking asking = cau_lanes_ask(&m.own.lane[i / CAU_LANES], i % CAU_LANES);
+		for (int32_t j = 0; j < m.others.count; j += CAU_LANES)
+			for (uint32_t met = cau_lanes_meet(&m.others.lane[j / CAU_LANES], &asking); met;
+			     met &= met - 1)
+				look_at_vertex(collide, block, m.own.item[i],
+				               m.others.item[j + __builtin_ctz(met)]);
 	}
 }
 
 // The edge of the lower block first, within a block the lower edge; each pair once.
-static void look_at_edges(cau_collide *collide, int32_t block, int32_t other,
-                          const some_parts *fresh)
+static void look_at_edges(cau_collide *collide, int32_t block, int32_t other, bool fresh)
 {
+	parts edges = parts_of(collide, EDGES);
 	meeting m;
 	if (!meet(collide, (int32_t[]){block, other}, (int[]){EDGES, EDGES}, fresh, &m))
 		return;
-	for (int32_t i = 0; i < m.own_near.count; i++) {
-		int32_t e = m.own_near.item[i];
-		for (int32_t j = 0; j < m.others_near.count; j++) {
-			int32_t f = m.others_near.item[j];
-			if (!meets(&m.own.box[e], &m.others.box[f], collide->thickness_m) ||
-			    (block == other && f <= e && is_fresh(collide, &m.own, f)))
-				continue;
-			bool turned = block == other && f < e;
-			cau_collide_found found = {turned ? f : e, turned ? e : f, 0, 0};
-			const int32_t *a = corners_of(&m.own, &found.first),
-						  *b = corners_of(&m.own, &found.second);
-			if (a[0] != b[0] && a[0] != b[1] && a[1] != b[0] && a[1] != b[1] &&
-			    may_touch(collide, CAU_GAP_EDGE_EDGE, (int32_t[]){a[0], a[1], b[0], b[1]}, &found))
-				list(collide, block, CAU_GAP_EDGE_EDGE, found);
-		}
+	for (int32_t i = 0; i < m.own.count; i++) {
+		int32_t e = m.own.item[i];
+		cau_collide_asking asking = cau_lanes_ask(&m.own.lane[i / CAU_LANES], i % CAU_LANES);
+		for (int32_t j = 0; j < m.others.count; j += CAU_LANES)
+			for (uint32_t met = cau_lanes_meet(&m.others.lane[j / CAU_LANES], &asking); met;
+			     met &= met - 1) {
+				int32_t f = m.others.item[j + __builtin_ctz(met)];
+				if (block != other || f > e)
+					look_at_edge(collide, block, e, f);
+				else if (!is_fresh(collide, &edges, f))
+					look_at_edge(collide, block, f, e);
+			}
 	}
 }
 
-static void look_at(cau_collide *collide, int32_t block, int32_t other, const some_parts *fresh)
+static void look_at(cau_collide *collide, int32_t block, int32_t other, bool fresh)
 {
-	const cau_collide_box *own = fresh ? collide->fresh_box[FACES] : collide->block_box[FACES],
-						  *others = fresh ? collide->block_box[FACES] : collide->fresh_box[FACES];
-	if (!meets(&own[block], &others[other], collide->thickness_m)) // which hold all other parts
-		return;
 	look_at_vertices(collide, block, other, fresh);
 	if (other > block || (other == block && fresh))
 		look_at_edges(collide, block, other, fresh);
@@ -321,11 +355,20 @@ static void look_at(cau_collide *collide, int32_t block, int32_t other, const so
 
 static void look_at_fresh(cau_collide *collide, int32_t block)
 {
-	some_parts fresh[3];
-	for (int what = FACES; what <= VERTICES; what++)
-		list_fresh(collide, what, block, &fresh[what]);
-	for (int32_t other = 0; other < collide->surface.block_count; other++)
-		look_at(collide, block, other, fresh);
+	cau_collide_asking asking = ask(collide, &collide->fresh_box[FACES][block]);
+	for (int32_t b = 0; b < collide->surface.block_count; b += CAU_LANES)
+		for (uint32_t met = cau_lanes_meet(&collide->block_lane[b / CAU_LANES], &asking);
+		     met && !gives_up(collide); met &= met - 1)
+			look_at(collide, block, b + __builtin_ctz(met), true);
+}
+
+static void look_at_others(cau_collide *collide, int32_t block)
+{
+	cau_collide_asking asking = ask(collide, &collide->block_box[FACES][block]);
+	for (int32_t k = 0; k < collide->touched_count; k += CAU_LANES)
+		for (uint32_t met = cau_lanes_meet(&collide->touched_lane[k / CAU_LANES], &asking);
+		     met && !gives_up(collide); met &= met - 1)
+			look_at(collide, block, collide->touched[k + __builtin_ctz(met)], false);
 }
 
 // ---- what a block keeps
@@ -374,19 +417,23 @@ static void search_part(void *context, int32_t block)
 	cau_collide *collide = context;
 	cau_collide_slice *slice = &collide->slice[block];
 	CAU_ASSERT_INDEX(block, collide->surface.block_count);
+	if (gives_up(collide))
+		return;
 	if (slice->count[0] || slice->count[1])
 		keep(collide, block);
 	int32_t kept[] = {slice->count[0], slice->count[1]};
 	if (collide->is_touched[block])
 		look_at_fresh(collide, block);
-	for (int32_t k = 0; k < collide->touched_count; k++)
-		look_at(collide, block, collide->touched[k], NULL);
+	look_at_others(collide, block);
 	for (int kind = 0; kind < 2; kind++)
 		if (slice->count[kind] > kept[kind])
 			sort(collide->list[kind] + (size_t)block * CAU_COLLIDE_SLICE, slice->count[kind]);
+	int32_t count = slice->count[0] + slice->count[1];
+	if (atomic_fetch_add(&collide->listed_count, count) + count > collide->most_pairs)
+		collide->fails = true;
 }
 
-static bool gather(cau_collide *collide)
+static void gather(cau_collide *collide)
 {
 	collide->pair_count = 0;
 	for (int32_t b = 0; b < collide->surface.block_count; b++)
@@ -395,7 +442,7 @@ static bool gather(cau_collide *collide)
 				const cau_collide_found *found =
 					&collide->list[kind][(size_t)b * CAU_COLLIDE_SLICE + (size_t)k];
 				if (collide->pair_count == collide->most_pairs)
-					return false;
+					return;
 				collide->apart_m[collide->pair_count] = 0; // not known
 				cau_collide_pair *pair = &collide->pair[collide->pair_count++];
 				pair->kind = (cau_gap_kind)kind;
@@ -416,7 +463,6 @@ static bool gather(cau_collide *collide)
 					       2 * sizeof(int32_t));
 				}
 			}
-	return true;
 }
 
 // Blocks that list a fresh part.
@@ -436,13 +482,16 @@ static void list_touched(cau_collide *collide)
 
 bool cau_collide_search(cau_collide *collide, cau_pool *pool)
 {
-	const cau_surface *surface = &collide->surface;
-	bool room = true;
 	list_touched(collide);
 	cau_pool_run(pool, collide->touched_count, box_part, collide);
-	cau_pool_run(pool, surface->block_count, search_part, collide);
-	for (int32_t b = 0; b < surface->block_count; b++)
-		room &= !collide->slice[b].full;
-	memset(surface->changed, 0, (size_t)collide->tissue->vertex_count);
-	return gather(collide) && room;
+	lay_out(collide, pool);
+	collide->may_give_up = may_give_up(collide);
+	collide->fails = false;
+	collide->listed_count = 0;
+	cau_pool_run(pool, collide->surface.block_count, search_part, collide);
+	memset(collide->surface.changed, 0, (size_t)collide->tissue->vertex_count);
+	bool room = !collide->fails;
+	if (room || !collide->may_give_up)
+		gather(collide);
+	return room;
 }

@@ -72,39 +72,41 @@ static void nearest_on_edges(const cau_vec3 *corner, double *s, double *t)
 	}
 }
 
-cau_gap cau_gap_between(cau_gap_kind kind, const cau_vec3 *corner)
+// From the second part's nearest place to the first's.
+static cau_vec3 nearest(cau_gap_kind kind, const cau_vec3 *corner, double weight[4])
 {
 	CAU_ASSERT(kind == CAU_GAP_VERTEX_FACE || kind == CAU_GAP_EDGE_EDGE, "a gap of kind %d", kind);
-	cau_gap gap;
 	if (kind == CAU_GAP_VERTEX_FACE) {
 		double b[3];
 		nearest_on_face(corner, b);
-		gap.weight[0] = 1;
+		weight[0] = 1;
 		for (int i = 0; i < 3; i++)
-			gap.weight[i + 1] = -b[i];
+			weight[i + 1] = -b[i];
 	} else {
 		double s, t;
 		nearest_on_edges(corner, &s, &t);
-		gap.weight[0] = 1 - s;
-		gap.weight[1] = s;
-		gap.weight[2] = t - 1;
-		gap.weight[3] = -t;
+		weight[0] = 1 - s;
+		weight[1] = s;
+		weight[2] = t - 1;
+		weight[3] = -t;
 	}
 	cau_vec3 way = {0, 0, 0};
 	for (int i = 0; i < 4; i++)
-		way = cau_add_scaled(way, gap.weight[i], corner[i]);
+		way = cau_add_scaled(way, weight[i], corner[i]);
+	return way;
+}
+
+cau_gap cau_gap_between(cau_gap_kind kind, const cau_vec3 *corner)
+{
+	cau_gap gap;
+	cau_vec3 way = nearest(kind, corner, gap.weight);
 	gap.distance = cau_length(way);
 	gap.normal = cau_unit_or(way, (cau_vec3){0, 0, 0});
 	return gap;
 }
 
-double cau_gap_along(cau_gap_kind kind, const cau_vec3 *corner, cau_vec3 direction)
+double cau_gap_distance(cau_gap_kind kind, const cau_vec3 *corner)
 {
-	double along[4];
-	for (int i = 0; i < 4; i++)
-		along[i] = cau_dot(corner[i], direction);
-	double second = along[2] > along[3] ? along[2] : along[3];
-	if (kind == CAU_GAP_VERTEX_FACE)
-		return along[0] - (along[1] > second ? along[1] : second);
-	return (along[0] < along[1] ? along[0] : along[1]) - second;
+	double weight[4];
+	return cau_length(nearest(kind, corner, weight));
 }

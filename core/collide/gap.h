@@ -20,6 +20,7 @@ typedef struct cau_gap {
 
 // `corner`: four.
 cau_gap cau_gap_between(cau_gap_kind kind, const cau_vec3 *corner);
+double cau_gap_distance(cau_gap_kind kind, const cau_vec3 *corner); // of it alone, m
 
 // How many of the corners are the first part's.
 static inline int cau_gap_first(cau_gap_kind kind)
@@ -29,4 +30,13 @@ static inline int cau_gap_first(cau_gap_kind kind)
 
 // How far the parts are apart along a unit direction: of the first's corners the least, less the
 // most of the second's, m. Never more than the distance.
-double cau_gap_along(cau_gap_kind kind, const cau_vec3 *corner, cau_vec3 direction);
+static inline double cau_gap_along(cau_gap_kind kind, const cau_vec3 *corner, cau_vec3 direction)
+{
+	double along[4];
+	for (int i = 0; i < 4; i++)
+		along[i] = cau_dot(corner[i], direction);
+	double second = along[2] > along[3] ? along[2] : along[3];
+	if (kind == CAU_GAP_VERTEX_FACE)
+		return along[0] - (along[1] > second ? along[1] : second);
+	return (along[0] < along[1] ? along[0] : along[1]) - second;
+}

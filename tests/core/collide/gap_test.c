@@ -49,6 +49,7 @@ static void expect_least(cau_gap_kind kind, const cau_vec3 corner[4])
 		way = cau_add_scaled(way, gap.weight[i], corner[i]);
 	}
 	assert_true(fabs(sum) < ROUNDING);
+	assert_true(cau_gap_distance(kind, corner) == gap.distance); // to the bit
 	assert_true(gap.distance <= grid + ROUNDING && gap.distance >= grid - GRID_STEP);
 	assert_true(cau_length(cau_add_scaled(way, -gap.distance, gap.normal)) < ROUNDING);
 	assert_true(cau_gap_along(kind, corner, gap.normal) >= gap.distance - ROUNDING);

@@ -1,0 +1,117 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// What a pair is, and whether its parts may come near each other: asked of all whose boxes meet
+// (find.c), so what is cheap and tells most comes first.
+#include <math.h>
+
+#include "cautery/assert.h"
+#include "collide/collide.h"
+
+// A pair keeps at most so much of the distance that it has at rest: neighbours, between which the
+// surface itself may be drawn together, less than others.
+static const double near_share = 0.1, far_share = 0.5;
+static const double least_thickness = 0.002; // of the surface's: below, a pair is left out
+// Rounding of a distance: more than any.
+static const double surely = 1 + 1e-6;
+
+static double lesser(double a, double b)
+{
+	return a < b ? a : b;
+}
+
+static double greater(double a, double b)
+{
+	return a > b ? a : b;
+}
+
+static bool is_shared(const cau_collide *collide, int kind, int32_t edge)
+{
+	const cau_edge_table *edges = &collide->tissue->edges;
+	CAU_ASSERT_INDEX(edge, edges->edge_count);
+	for (int32_t k = edges->first[kind][edge]; k < edges->first[kind][edge + 1]; k++)
+		if (!collide->alive[kind] || collide->alive[kind][edges->sharer[kind][k]])
+			return true;
+	return false;
+}
+
+// Whether vertices are near enough at rest to be joined by an edge.
+static bool may_be_joined(const cau_collide *collide, int32_t v, int32_t w)
+{
+	const double *rest = collide->tissue->rest;
+	cau_vec3 way = cau_sub(cau_vec3_of(rest + 3 * (size_t)v), cau_vec3_of(rest + 3 * (size_t)w));
+	double most = surely * lesser(collide->longest_m[v], collide->longest_m[w]);
+	return cau_dot(way, way) <= most * most;
+}
+
+// How much of its distance at rest a pair keeps: by what joins its parts and is alive.
+static double share_of(const cau_collide *collide, cau_gap_kind kind, const int32_t vertex[4])
+{
+	int firsts = cau_gap_first(kind);
+	for (int i = 0; i < firsts; i++)
+		for (int j = firsts; j < 4; j++) {
+			if (!may_be_joined(collide, vertex[i], vertex[j]))
+				continue;
+			int32_t edge = cau_edge_table_find(&collide->tissue->edges, vertex[i], vertex[j]);
+			for (int k = 0; k < CAU_PRIMITIVE_KINDS && edge >= 0; k++)
+				if (is_shared(collide, k, edge))
+					return near_share;
+		}
+	return far_share;
+}
+
+// Along the line between the parts' middles, which tells most: whether they are no farther apart.
+static bool is_within(cau_gap_kind kind, const cau_vec3 corner[4], double most)
+{
+	int firsts = cau_gap_first(kind);
+	cau_vec3 middle[2] = {{0, 0, 0}, {0, 0, 0}};
+	for (int i = 0; i < 4; i++)
+		middle[i >= firsts] = cau_add_scaled(middle[i >= firsts],
+		                                     1.0 / (i >= firsts ? 4 - firsts : firsts), corner[i]);
+	cau_vec3 way = cau_sub(middle[0], middle[1]);
+	return !(cau_gap_along(kind, corner, way) > most * cau_length(way));
+}
+
+// The pair's thickness, or 0 where it is less than `least`. What joins the parts is looked for only
+// where it matters.
+static double thickness_of(const cau_collide *collide, cau_gap_kind kind, const int32_t vertex[4],
+                           double least)
+{
+	double whole = collide->thickness_m;
+	cau_vec3 corner[4];
+	for (int i = 0; i < 4; i++)
+		corner[i] = cau_vec3_of(collide->tissue->rest + 3 * (size_t)vertex[i]);
+	if (!is_within(kind, corner, surely * whole / near_share))
+		return whole;
+	double apart = cau_gap_distance(kind, corner);
+	if (near_share * apart >= whole)
+		return whole;
+	if (lesser(whole, far_share * apart) < least)
+		return 0;
+	double thickness_m = lesser(whole, share_of(collide, kind, vertex) * apart);
+	return thickness_m < least ? 0 : thickness_m;
+}
+bool cau_collide_may_touch(const cau_collide *collide, cau_gap_kind kind, const int32_t vertex[4],
+                           cau_collide_found *found)
+{
+	cau_vec3 corner[4];
+	double reach[2] = {0, 0};
+	int firsts = cau_gap_first(kind);
+	for (int i = 0; i < 4; i++) {
+		if (collide->exempt[vertex[i]])
+			return false;
+		corner[i] = cau_vec3_of(collide->anchor + 3 * (size_t)vertex[i]);
+		reach[i >= firsts] = greater(reach[i >= firsts], collide->reach_m[vertex[i]]);
+	}
+	double whole = collide->thickness_m, may_move = reach[0] + reach[1];
+	if (!is_within(kind, corner, whole + may_move))
+		return false;
+	double apart = cau_gap_distance(kind, corner);
+	if (apart > whole + may_move)
+		return false;
+	found->thickness_m = thickness_of(collide, kind, vertex, least_thickness * whole);
+	if (found->thickness_m <= 0 || apart > found->thickness_m + may_move)
+		return false;
+	found->stiffness = INFINITY;
+	for (int i = 0; i < 4; i++)
+		found->stiffness = lesser(found->stiffness, collide->stiffness[vertex[i]]);
+	return true;
+}
