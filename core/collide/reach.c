@@ -27,44 +27,54 @@ double cau_collide_most_step(const cau_collide *collide)
 	                                                      : cau_collide_most_step_m;
 }
 
-// How long a vertex's step is once it is no longer than it may be.
-static double step_of(const cau_collide *collide, int32_t vertex)
+// A vertex's step once it is no longer than it may be.
+static cau_vec3 step_of(const cau_collide *collide, int32_t vertex)
 {
 	cau_vec3 step = cau_vec3_of(collide->step + 3 * (size_t)vertex);
-	double way = sqrt(cau_dot(step, step)), most = cau_collide_most_step(collide);
-	return way < most ? way : most;
+	double way = cau_length(step), most = cau_collide_most_step(collide);
+	return way < most ? step : cau_scale(most / way, step);
 }
 
 double cau_collide_room(const cau_collide *collide, int32_t vertex)
 {
-	return cau_collide_most_room(collide, step_of(collide, vertex));
+	return cau_collide_most_room(collide, cau_length(step_of(collide, vertex)));
 }
 
-static double needed(const cau_collide *collide, cau_collide_need need, int32_t vertex)
+// What has to be known of a vertex at x: all places that are no farther than `reach_m` from
+// `middle`. Of a step these are the ball about its way; what is pushed may go any way.
+typedef struct ball {
+	cau_vec3 middle;
+	double reach_m;
+} ball;
+
+static ball needed(const cau_collide *collide, const double *x, cau_collide_need need, int32_t v)
 {
+	cau_vec3 at = cau_vec3_of(x + 3 * (size_t)v);
 	if (need == CAU_COLLIDE_PLACE)
-		return 0;
+		return (ball){at, 0};
 	double besides = need == CAU_COLLIDE_TICK ? room_of_tick * collide->thickness_m : 0;
-	return besides +
-	       (collide->pushed[vertex] ? cau_collide_room(collide, vertex) : step_of(collide, vertex));
+	if (collide->pushed[v])
+		return (ball){at, besides + cau_collide_room(collide, v)};
+	cau_vec3 half = cau_scale(0.5, step_of(collide, v));
+	return (ball){cau_add(at, half), besides + cau_length(half)};
 }
 
-// Whether x is within a share of a vertex's reach, less what is needed beyond.
+// Whether what is needed of a vertex is within a share of its reach.
 static bool is_enough(const cau_collide *collide, const double *x, cau_collide_need need, int32_t v,
                       double share)
 {
 	if (collide->exempt[v])
 		return true;
-	cau_vec3 from = cau_vec3_of(collide->anchor + 3 * (size_t)v);
-	cau_vec3 away = cau_sub(cau_vec3_of(x + 3 * (size_t)v), from);
-	double left = share * (collide->reach_m[v] - needed(collide, need, v));
+	ball b = needed(collide, x, need, v);
+	cau_vec3 away = cau_sub(b.middle, cau_vec3_of(collide->anchor + 3 * (size_t)v));
+	double left = share * (collide->reach_m[v] - b.reach_m);
 	return left >= 0 && cau_dot(away, away) <= left * left;
 }
 
-static void anchor(cau_collide *collide, const double *x, int32_t v, double reach_m)
+static void anchor(cau_collide *collide, int32_t v, cau_vec3 middle, double reach_m)
 {
 	const double rounding = 1 + 1e-5; // so that all that is needed is within, by any rounding
-	memcpy(collide->anchor + 3 * (size_t)v, x + 3 * (size_t)v, 3 * sizeof *x);
+	cau_vec3_to(middle, collide->anchor + 3 * (size_t)v);
 	collide->reach_m[v] = rounding * reach_m;
 	collide->surface.changed[v] = 1;
 }
@@ -82,7 +92,8 @@ static void anchor_used_up(cau_collide *collide, const double *x, cau_collide_ne
 		int32_t v = vertices->item[k];
 		if (collide->found && is_enough(collide, x, need, v, used_up))
 			continue;
-		anchor(collide, x, v, needed(collide, need, v) + besides);
+		ball b = needed(collide, x, need, v);
+		anchor(collide, v, b.middle, b.reach_m + besides);
 	}
 }
 
@@ -96,7 +107,12 @@ static bool search_least(cau_collide *collide, cau_pool *pool, const double *x,
 		need = CAU_COLLIDE_STEP;
 	for (int32_t k = 0; k < vertices->count; k++) {
 		int32_t v = vertices->item[k];
-		anchor(collide, x, v, share > 0 ? share * needed(collide, need, v) : 0);
+		ball b = needed(collide, x, need, v);
+		if (share < 1) { // no step leads farther from x then (filter.c)
+			double way = collide->pushed[v] ? b.reach_m : cau_length(step_of(collide, v));
+			b = (ball){cau_vec3_of(x + 3 * (size_t)v), share * way};
+		}
+		anchor(collide, v, b.middle, b.reach_m);
 	}
 	look_at_all(collide);
 	return cau_collide_search(collide, pool);
