@@ -201,6 +201,9 @@ bool cau_collide_lets_pass(cau_collide *collide, const double *x, double longest
 
 // find.c: looks for the pairs of what `surface.changed` tells. False where they find no room.
 bool cau_collide_search(cau_collide *collide, cau_pool *pool);
+// order.c: by their parts; no two are of the same.
+void cau_collide_sort(cau_collide_found *found, int32_t count);
+void cau_collide_gather(cau_collide *collide); // the pairs, as many as there is room for
 // pair.c: whether corners may come nearer than their thickness with all that they may move. If so,
 // the pair's thickness and stiffness.
 bool cau_collide_may_touch(const cau_collide *collide, cau_gap_kind kind, const int32_t vertex[4],

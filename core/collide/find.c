@@ -286,14 +286,16 @@ static bool shares_corner(const int32_t *a, int a_count, const int32_t *b, int b
 	return shares;
 }
 
+// Of those whose boxes meet as floats: that they do in double is asked last, as it is seldom not
+// so.
 static void look_at_vertex(cau_collide *collide, int32_t block, int32_t v, int32_t face)
 {
 	cau_collide_found found = {v, face, 0, 0};
 	const int32_t *c = collide->tissue->faces.vertex + 3 * (size_t)face;
 	if (!shares_corner(&v, 1, c, 3) &&
-	    meets(&collide->vertex_box[v], &collide->face_box[face], collide->thickness_m) &&
 	    cau_collide_may_touch(collide, CAU_GAP_VERTEX_FACE, (int32_t[]){v, c[0], c[1], c[2]},
-	                          &found))
+	                          &found) &&
+	    meets(&collide->vertex_box[v], &collide->face_box[face], collide->thickness_m))
 		list(collide, block, CAU_GAP_VERTEX_FACE, found);
 }
 
@@ -303,9 +305,9 @@ static void look_at_edge(cau_collide *collide, int32_t block, int32_t e, int32_t
 	const int32_t *a = collide->tissue->edges.vertex + 2 * (size_t)e;
 	const int32_t *b = collide->tissue->edges.vertex + 2 * (size_t)f;
 	if (!shares_corner(a, 2, b, 2) &&
-	    meets(&collide->edge_box[e], &collide->edge_box[f], collide->thickness_m) &&
 	    cau_collide_may_touch(collide, CAU_GAP_EDGE_EDGE, (int32_t[]){a[0], a[1], b[0], b[1]},
-	                          &found))
+	                          &found) &&
+	    meets(&collide->edge_box[e], &collide->edge_box[f], collide->thickness_m))
 		list(collide, block, CAU_GAP_EDGE_EDGE, found);
 }
 
@@ -393,25 +395,6 @@ static void keep(cau_collide *collide, int32_t block)
 	slice->full = false;
 }
 
-static bool is_before(const cau_collide_found *a, const cau_collide_found *b)
-{
-	return a->first != b->first ? a->first < b->first : a->second < b->second;
-}
-
-// By parts [Shell 1959; gaps of Ciura 2001]: most are in order already.
-static void sort(cau_collide_found *found, int32_t count)
-{
-	static const int32_t gaps[] = {701, 301, 132, 57, 23, 10, 4, 1};
-	for (size_t g = 0; g < sizeof gaps / sizeof *gaps; g++)
-		for (int32_t gap = gaps[g], i = gap; i < count; i++) {
-			cau_collide_found moved = found[i];
-			int32_t at = i;
-			for (; at >= gap && is_before(&moved, &found[at - gap]); at -= gap)
-				found[at] = found[at - gap];
-			found[at] = moved;
-		}
-}
-
 static void search_part(void *context, int32_t block)
 {
 	cau_collide *collide = context;
@@ -427,42 +410,11 @@ static void search_part(void *context, int32_t block)
 	look_at_others(collide, block);
 	for (int kind = 0; kind < 2; kind++)
 		if (slice->count[kind] > kept[kind])
-			sort(collide->list[kind] + (size_t)block * CAU_COLLIDE_SLICE, slice->count[kind]);
+			cau_collide_sort(collide->list[kind] + (size_t)block * CAU_COLLIDE_SLICE,
+			                 slice->count[kind]);
 	int32_t count = slice->count[0] + slice->count[1];
 	if (atomic_fetch_add(&collide->listed_count, count) + count > collide->most_pairs)
 		collide->fails = true;
-}
-
-static void gather(cau_collide *collide)
-{
-	collide->pair_count = 0;
-	for (int32_t b = 0; b < collide->surface.block_count; b++)
-		for (int kind = 0; kind < 2; kind++)
-			for (int32_t k = 0; k < collide->slice[b].count[kind]; k++) {
-				const cau_collide_found *found =
-					&collide->list[kind][(size_t)b * CAU_COLLIDE_SLICE + (size_t)k];
-				if (collide->pair_count == collide->most_pairs)
-					return;
-				collide->apart_m[collide->pair_count] = 0; // not known
-				cau_collide_pair *pair = &collide->pair[collide->pair_count++];
-				pair->kind = (cau_gap_kind)kind;
-				pair->thickness_m = found->thickness_m;
-				pair->stiffness = found->stiffness;
-				pair->plane = (cau_vec3){0, 0, 0};
-				pair->slope = 0;
-				pair->vertex[0] = found->first;
-				if (kind == CAU_GAP_VERTEX_FACE) {
-					memcpy(pair->vertex + 1,
-					       collide->tissue->faces.vertex + 3 * (size_t)found->second,
-					       3 * sizeof(int32_t));
-				} else {
-					memcpy(pair->vertex, collide->tissue->edges.vertex + 2 * (size_t)found->first,
-					       2 * sizeof(int32_t));
-					memcpy(pair->vertex + 2,
-					       collide->tissue->edges.vertex + 2 * (size_t)found->second,
-					       2 * sizeof(int32_t));
-				}
-			}
 }
 
 // Blocks that list a fresh part.
@@ -492,6 +444,6 @@ bool cau_collide_search(cau_collide *collide, cau_pool *pool)
 	memset(collide->surface.changed, 0, (size_t)collide->tissue->vertex_count);
 	bool room = !collide->fails;
 	if (room || !collide->may_give_up)
-		gather(collide);
+		cau_collide_gather(collide);
 	return room;
 }

@@ -13,6 +13,9 @@ static const double least_thickness = 0.002; // of the surface's: below, a pair 
 // Rounding of a distance: more than any.
 static const double surely = 1 + 1e-6;
 
+// Of one kind at a time, which the compiler knows then.
+#define INLINE static inline __attribute__((always_inline))
+
 static double lesser(double a, double b)
 {
 	return a < b ? a : b;
@@ -59,7 +62,7 @@ static double share_of(const cau_collide *collide, cau_gap_kind kind, const int3
 }
 
 // Along the line between the parts' middles, which tells most: whether they are no farther apart.
-static bool is_within(cau_gap_kind kind, const cau_vec3 corner[4], double most)
+INLINE bool is_within(cau_gap_kind kind, const cau_vec3 corner[4], double most)
 {
 	int firsts = cau_gap_first(kind);
 	cau_vec3 middle[2] = {{0, 0, 0}, {0, 0, 0}};
@@ -89,8 +92,8 @@ static double thickness_of(const cau_collide *collide, cau_gap_kind kind, const 
 	double thickness_m = lesser(whole, share_of(collide, kind, vertex) * apart);
 	return thickness_m < least ? 0 : thickness_m;
 }
-bool cau_collide_may_touch(const cau_collide *collide, cau_gap_kind kind, const int32_t vertex[4],
-                           cau_collide_found *found)
+INLINE bool may_touch(const cau_collide *collide, cau_gap_kind kind, const int32_t vertex[4],
+                      cau_collide_found *found)
 {
 	cau_vec3 corner[4];
 	double reach[2] = {0, 0};
@@ -114,4 +117,11 @@ bool cau_collide_may_touch(const cau_collide *collide, cau_gap_kind kind, const 
 	for (int i = 0; i < 4; i++)
 		found->stiffness = lesser(found->stiffness, collide->stiffness[vertex[i]]);
 	return true;
+}
+
+bool cau_collide_may_touch(const cau_collide *collide, cau_gap_kind kind, const int32_t vertex[4],
+                           cau_collide_found *found)
+{
+	return kind == CAU_GAP_VERTEX_FACE ? may_touch(collide, CAU_GAP_VERTEX_FACE, vertex, found)
+	                                   : may_touch(collide, CAU_GAP_EDGE_EDGE, vertex, found);
 }
