@@ -64,21 +64,17 @@ bool cau_solver_let_go(cau_step_solver *solver)
 {
 	cau_collide *collide = solver->collide;
 	const cau_surface_parts *surface = &collide->surface.vertices;
-	double most = solver->iterations * cau_collide_most_step(collide), way[3];
-	bool any = false;
-	if (!(solver->kernels->vectors->longest(solver->increment, solver->tissue->vertex_count) >
-	      most))
+	double step = cau_collide_most_step(collide), way[3];
+	if (!(longest_drawn(solver, solver->increment) > solver->iterations * step))
 		return false;
 	for (int32_t k = 0; k < surface->count; k++) {
 		int32_t v = surface->item[k];
 		solver->kernels->vectors->read(solver->increment, v, way);
-		if (collide->exempt[v] || !(cau_length(cau_vec3_of(way)) > most))
-			continue;
-		cau_collide_let_go(collide, v);
-		any = true;
+		if (!collide->exempt[v] && cau_length(cau_vec3_of(way)) > much_longer * step)
+			cau_collide_let_go(collide, v);
 	}
-	collide->cut_short_count += any;
-	return any;
+	collide->cut_short_count++;
+	return true;
 }
 
 static bool filter(cau_step_solver *solver, const double *from)

@@ -135,8 +135,9 @@ void cau_solver_yield(cau_step_solver *solver);
 // apart.c: shortens trial_increment, to be taken from positions `from`, so that tissue crosses no
 // tissue. Returns whether it had to.
 bool cau_solver_keep_apart(cau_step_solver *solver, const double *from);
-// Of a first increment: what it throws farther than all that a tick's iterations may lead together
-// touches nothing in this tick. Returns whether there is any: then the increment is another.
+// Where a first increment throws anything farther than all that a tick's iterations may lead
+// together, what it would have to be shortened for touches nothing in this tick. Returns whether
+// that is so: then the increment is another.
 bool cau_solver_let_go(cau_step_solver *solver);
 // The vertices of a share of a vertex loop: [first, returned).
 int32_t cau_solver_chunk_end(const cau_step_solver *solver, int32_t chunk, int32_t *first);
