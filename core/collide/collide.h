@@ -125,7 +125,7 @@ typedef struct cau_collide {
 	cau_collide_slice *slice;                     // (blocks)
 	cau_collide_found *list[2];                   // by kind, (blocks x CAU_COLLIDE_SLICE)
 	uint8_t *alive_before[CAU_PRIMITIVE_KINDS];   // as they were when it was found
-	uint8_t *exempt_before;                       // likewise
+	uint8_t *exempt_before; // likewise, or as the last tick ended; all: it is not known
 	// The parts' boxes side by side, in the order in which blocks list them; each block begins a
 	// group. And which of a group are fresh, a bit each, where the block is touched.
 	cau_collide_lanes *lane[3];
@@ -171,8 +171,9 @@ void cau_collide_apply(cau_collide *collide);
 // tick begins.
 void cau_collide_exempt_crossed(cau_collide *collide, const double *x);
 bool cau_collide_touches_again(const cau_collide *collide);
-// What crosses at the next tick is not known.
+// What crosses at the next tick is not known; nor, of the second, which pairs there are.
 void cau_collide_forget_crossed(cau_collide *collide);
+void cau_collide_forget(cau_collide *collide);
 
 // Within a tick: a vertex touches nothing from here on. What its pairs had of energy is gone at the
 // next evaluation.

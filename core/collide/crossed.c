@@ -151,6 +151,12 @@ void cau_collide_forget_crossed(cau_collide *collide)
 	memset(collide->exempt_before, 1, (size_t)collide->tissue->vertex_count);
 }
 
+void cau_collide_forget(cau_collide *collide)
+{
+	collide->found = false;
+	cau_collide_forget_crossed(collide);
+}
+
 void cau_collide_let_go(cau_collide *collide, int32_t vertex)
 {
 	CAU_ASSERT_INDEX(vertex, collide->tissue->vertex_count);

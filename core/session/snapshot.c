@@ -95,6 +95,8 @@ static cau_status pass_state(snapshot_archive *archive, cau_session *session, ca
 		cau_snapshot_pass_tears(archive, session);
 		cau_snapshot_pass_faces_held(archive, session);
 	}
+	if (archive->version >= CAU_SNAPSHOT_EXEMPT && session->scene->contact_thickness_m > 0)
+		snapshot_pass(archive, session->collide.exempt_before, n);
 	return status;
 }
 
@@ -367,6 +369,8 @@ cau_status cau_session_restore(cau_session *session, const void *bytes, size_t b
 		status = restore_tools(session, &header, &archive, error);
 	if (!status) {
 		restore_counts(session, &header, head);
+		if (session->scene->contact_thickness_m > 0)
+			cau_collide_forget(&session->collide);
 		status = pass_state(&archive, session, error);
 		cau_elements_set_laws(&session->solver.elements, &session->tissue);
 		cau_elements_mark_targets(&session->solver.elements, &session->solver.slots);
@@ -379,8 +383,6 @@ cau_status cau_session_restore(cau_session *session, const void *bytes, size_t b
 		cau_contact_clear(&session->contact);
 		session->refusal_count = 0;
 		session->watch.left_m = 0;
-		if (session->scene->contact_thickness_m > 0)
-			cau_collide_forget_crossed(&session->collide);
 		session->energy.stale = session->spin.stale = true;
 		if (!status)
 			status = replay_factor(session, &header, error);

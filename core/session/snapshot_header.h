@@ -6,11 +6,13 @@
 #include "session/session_internal.h"
 
 enum {
-	// 8 has jaws that stop at what they hold. Still read are 7, without these; 6, without columns
+	// 9 has what touches no tissue. Still read are 8, without it; 7, without jaws that stop at what
+	// they hold; 6, without columns
 	// of A^-1 of which only S is kept; 5, without nested heat fields, tears, what materials bear,
 	// what tools' forces have taught and the poses that tools are asked to take; 4, without the
 	// sides of faces; 3, without rest and accuracy; 1, elements by slot.
-	CAU_SNAPSHOT_VERSION = 8,
+	CAU_SNAPSHOT_VERSION = 9,
+	CAU_SNAPSHOT_EXEMPT = 9,   // the first with what touches no tissue
 	CAU_SNAPSHOT_JAWS = 8,     // the first with jaws that stop at what they hold
 	CAU_SNAPSHOT_WIDE = 7,     // the first with columns of S alone
 	CAU_SNAPSHOT_NESTED = 6,   // the first with nested heat fields

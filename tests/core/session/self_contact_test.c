@@ -224,6 +224,25 @@ static void many_motions_of_tools_that_grasp(void **state)
 	run_tools(6 * TOOL_MOTIONS, 6 * LOOK, true);
 }
 
+// A session that is restored to where this one is comes to the same bits, though it knows nothing
+// of how it came there.
+static void expect_the_same_after_a_restore(cau_session *session)
+{
+	enum { TICKS = 4 };
+	cau_session *other = stage_open(session->scene, 1);
+	stage_bytes shot = stage_snapshot(session);
+	bool exact = false;
+	stage_step(other, 2);
+	assert_int_equal(cau_session_restore(other, shot.bytes, shot.count, &exact, NULL), CAU_OK);
+	assert_true(exact);
+	stage_step(other, TICKS);
+	uint64_t hash = cau_session_hash(other);
+	cau_session_destroy(other);
+	stage_step(session, TICKS);
+	assert_true(cau_session_hash(session) == hash);
+	free(shot.bytes);
+}
+
 // Jaws that never slip draw at `layers` at 5 m/s: it is thrown faster than it can be kept apart,
 // and turned inside out. That is told of; let go, it finds its way back, and all of it touches
 // again.
@@ -255,6 +274,8 @@ static void what_is_thrown_finds_its_way_back(void **state)
 		stage_step(session, 1);
 		told += stage_frame(session).statistics.touching_cut_short;
 		most_inverted = session->inverted > most_inverted ? session->inverted : most_inverted;
+		if (tick == DRAWN + 5)
+			expect_the_same_after_a_restore(session);
 	}
 	for (int32_t v = 0; v < session->tissue.vertex_count; v++)
 		exempt += session->collide.exempt[v];
