@@ -7,26 +7,6 @@
 
 static const double THICKNESS_M = 1e-3;
 
-static double volume(const double *a, const double *b, const double *c, const double *d)
-{
-	cau_vec3 o = cau_vec3_of(a);
-	return cau_dot(cau_sub(cau_vec3_of(b), o),
-	               cau_cross(cau_sub(cau_vec3_of(c), o), cau_sub(cau_vec3_of(d), o)));
-}
-
-static bool pierces(const double *x, const int32_t *edge, const int32_t *face)
-{
-	const double *a = x + 3 * edge[0], *b = x + 3 * edge[1], *c = x + 3 * face[0],
-				 *d = x + 3 * face[1], *e = x + 3 * face[2];
-	for (int k = 0; k < 3; k++)
-		if (face[k] == edge[0] || face[k] == edge[1])
-			return false;
-	if (volume(a, c, d, e) * volume(b, c, d, e) >= 0)
-		return false;
-	double p = volume(a, b, c, d), q = volume(a, b, d, e), r = volume(a, b, e, c);
-	return (p > 0 && q > 0 && r > 0) || (p < 0 && q < 0 && r < 0);
-}
-
 // Every edge against every face.
 static int mark(const sheets *s, uint8_t *expected)
 {
@@ -36,7 +16,7 @@ static int mark(const sheets *s, uint8_t *expected)
 		for (int32_t f = 0; f < t->triangle_count; f++) {
 			const int32_t *edge = t->edges.vertex + 2 * (size_t)e;
 			const int32_t *face = t->triangle + 3 * (size_t)f;
-			if (!pierces(s->x, edge, face))
+			if (!sheets_pierce(s->x, edge, face))
 				continue;
 			expected[edge[0]] = expected[edge[1]] = 1;
 			expected[face[0]] = expected[face[1]] = expected[face[2]] = 1;

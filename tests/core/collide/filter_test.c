@@ -8,23 +8,6 @@
 
 enum { STEPS = 60 };
 
-static double volume(const double *a, const double *b, const double *c, const double *d)
-{
-	cau_vec3 o = cau_vec3_of(a);
-	return cau_dot(cau_sub(cau_vec3_of(b), o),
-	               cau_cross(cau_sub(cau_vec3_of(c), o), cau_sub(cau_vec3_of(d), o)));
-}
-
-static int pierces(const double *x, const int32_t *edge, const int32_t *face)
-{
-	const double *a = x + 3 * edge[0], *b = x + 3 * edge[1], *c = x + 3 * face[0],
-				 *d = x + 3 * face[1], *e = x + 3 * face[2];
-	if (volume(a, c, d, e) * volume(b, c, d, e) >= 0)
-		return 0;
-	double p = volume(a, b, c, d), q = volume(a, b, d, e), r = volume(a, b, e, c);
-	return (p > 0 && q > 0 && r > 0) || (p < 0 && q < 0 && r < 0);
-}
-
 static int crossings(const sheets *s, const double *x)
 {
 	const cau_tissue *t = &s->r.tissue;
@@ -32,9 +15,7 @@ static int crossings(const sheets *s, const double *x)
 	for (int32_t e = 0; e < t->edges.edge_count; e++)
 		for (int32_t f = 0; f < t->triangle_count; f++) {
 			const int32_t *a = t->edges.vertex + 2 * (size_t)e, *b = t->triangle + 3 * (size_t)f;
-			if (a[0] != b[0] && a[0] != b[1] && a[0] != b[2] && a[1] != b[0] && a[1] != b[1] &&
-			    a[1] != b[2])
-				count += pierces(x, a, b);
+			count += sheets_pierce(x, a, b);
 		}
 	return count;
 }

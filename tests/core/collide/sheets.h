@@ -51,3 +51,26 @@ static inline void sheets_shake(sheets *s, double by_m)
 	for (int32_t i = 0; i < 3 * s->r.tissue.vertex_count; i++)
 		s->x[i] += by_m * sheets_draw(s);
 }
+
+static inline double sheets_volume(const double *a, const double *b, const double *c,
+                                   const double *d)
+{
+	cau_vec3 o = cau_vec3_of(a);
+	return cau_dot(cau_sub(cau_vec3_of(b), o),
+	               cau_cross(cau_sub(cau_vec3_of(c), o), cau_sub(cau_vec3_of(d), o)));
+}
+
+// Whether an edge pierces a face with which it shares no vertex.
+static inline bool sheets_pierce(const double *x, const int32_t *edge, const int32_t *face)
+{
+	const double *a = x + 3 * edge[0], *b = x + 3 * edge[1], *c = x + 3 * face[0],
+				 *d = x + 3 * face[1], *e = x + 3 * face[2];
+	for (int k = 0; k < 3; k++)
+		if (face[k] == edge[0] || face[k] == edge[1])
+			return false;
+	if (sheets_volume(a, c, d, e) * sheets_volume(b, c, d, e) >= 0)
+		return false;
+	double p = sheets_volume(a, b, c, d), q = sheets_volume(a, b, d, e),
+		   r = sheets_volume(a, b, e, c);
+	return (p > 0 && q > 0 && r > 0) || (p < 0 && q < 0 && r < 0);
+}
