@@ -38,6 +38,8 @@ static bool exempt_inverted(cau_session *session)
 	const cau_tissue *tissue = &session->tissue;
 	const uint8_t *alive = session->dissection.alive.element[CAU_ELEMENT_TETRAHEDRON];
 	int32_t count = 0;
+	if (!session->inverted) // the last tick ended with none
+		return false;
 	for (int32_t i = 0; i < tissue->tetrahedron_count; i++) {
 		const int32_t *vertex = tissue->primitives.tetrahedron + 4 * (size_t)i;
 		if (!alive[i] || !is_inverted(session->position_start, vertex))
