@@ -1,4 +1,4 @@
-// SPDX-License-Identifier: GPL-3.0-or-later
+// SPDX-License-Identifier: Apache-2.0
 // A client's life, from being made to its end.
 #include <stdlib.h>
 #include <string.h>

@@ -1,4 +1,4 @@
-// SPDX-License-Identifier: GPL-3.0-or-later
+// SPDX-License-Identifier: Apache-2.0
 // A connection of a client: opening it, greeting, losing it, coming back.
 #include <math.h>
 #include <stdio.h>

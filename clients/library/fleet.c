@@ -1,4 +1,4 @@
-// SPDX-License-Identifier: GPL-3.0-or-later
+// SPDX-License-Identifier: Apache-2.0
 // Which daemons stand behind an address: one GET of /api/fleet, which the proxy in front of several
 // answers. A daemon alone answers that it is, or 404 if it is older. No token goes along.
 #include <stdlib.h>

@@ -1,4 +1,4 @@
-// SPDX-License-Identifier: GPL-3.0-or-later
+// SPDX-License-Identifier: Apache-2.0
 // Following a session that has moved to another daemon: the connection is given up for one to that
 // daemon, where tools are resumed, streams joined again and requests sent again that were answered
 // with `moved`. What the program says of the old id is said of the new one from then on.

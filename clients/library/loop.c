@@ -1,4 +1,4 @@
-// SPDX-License-Identifier: GPL-3.0-or-later
+// SPDX-License-Identifier: Apache-2.0
 // Time, and waiting in the event loop that socket.c makes.
 #include <stdlib.h>
 #include <time.h>

@@ -1,4 +1,4 @@
-// SPDX-License-Identifier: GPL-3.0-or-later
+// SPDX-License-Identifier: Apache-2.0
 // What leaves: messages for the socket, and the end of it.
 #include "library/internal.h"
 

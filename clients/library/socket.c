@@ -1,4 +1,4 @@
-// SPDX-License-Identifier: GPL-3.0-or-later
+// SPDX-License-Identifier: Apache-2.0
 // The WebSocket, as libwebsockets tells of it: messages put together, messages written, and how it
 // ended. The event loop, which libwebsockets wants to know that from, is made here.
 #include <stdio.h>

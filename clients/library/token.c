@@ -1,4 +1,4 @@
-// SPDX-License-Identifier: GPL-3.0-or-later
+// SPDX-License-Identifier: Apache-2.0
 // Tokens come from files: on a command line every user of the machine would see them.
 #include <errno.h>
 #include <stdio.h>

@@ -1,4 +1,4 @@
-// SPDX-License-Identifier: GPL-3.0-or-later
+// SPDX-License-Identifier: Apache-2.0
 // The end of a program that broke its own rules. The only place in core and protocol that writes to
 // the console or ends the process; Release builds never come here.
 #include "cautery/assert.h"

@@ -1,4 +1,4 @@
-// SPDX-License-Identifier: GPL-3.0-or-later
+// SPDX-License-Identifier: Apache-2.0
 #include <stdlib.h>
 #include <string.h>
 
@@ -405,6 +405,9 @@ static void write_document(cau_json_writer *writer, const model *from)
 	cau_json_string(writer, "description",
 	                "Generated from protocol/include/cautery/*.def and the codec's tables. "
 	                "protocol/README.md is the normative text.");
+	cau_json_open(writer, "license", '{');
+	cau_json_string(writer, "name", "Apache-2.0");
+	cau_json_close(writer);
 	cau_json_close(writer);
 	cau_json_string(writer, "defaultContentType", "application/json");
 	write_servers(writer);

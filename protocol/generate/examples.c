@@ -1,4 +1,4 @@
-// SPDX-License-Identifier: GPL-3.0-or-later
+// SPDX-License-Identifier: Apache-2.0
 // Worked examples, made by the codecs themselves: three vertices and one face, one tool.
 #include <stdlib.h>
 #include <string.h>

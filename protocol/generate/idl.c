@@ -1,4 +1,4 @@
-// SPDX-License-Identifier: GPL-3.0-or-later
+// SPDX-License-Identifier: Apache-2.0
 #include <ctype.h>
 
 #include "cautery/stream.h"
@@ -6,7 +6,7 @@
 
 void write_idl(FILE *out)
 {
-	fputs("// SPDX-License-Identifier: GPL-3.0-or-later\n"
+	fputs("// SPDX-License-Identifier: Apache-2.0\n"
 	      "// Generated from core/types/cautery/channels.h; do not edit. After a change there, "
 	      "build\n"
 	      "// the target `messages`. Constants, and no types: what a frame's `stream.channels` "

@@ -1,4 +1,4 @@
-// SPDX-License-Identifier: GPL-3.0-or-later
+// SPDX-License-Identifier: Apache-2.0
 // Writes everything that is made from the message tables and the codecs: generate DIRECTORY.
 #include <stdlib.h>
 

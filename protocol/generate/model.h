@@ -1,4 +1,4 @@
-// SPDX-License-Identifier: GPL-3.0-or-later
+// SPDX-License-Identifier: Apache-2.0
 // Every JSON type of the wire in one form: objects of messages.def, commands, scenes. What is
 // printed for people, other languages and machines all comes from here.
 #pragma once

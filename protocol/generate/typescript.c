@@ -1,4 +1,4 @@
-// SPDX-License-Identifier: GPL-3.0-or-later
+// SPDX-License-Identifier: Apache-2.0
 #include <string.h>
 
 #include "cautery/frame_codec.h"
@@ -240,7 +240,7 @@ static void write_parameters(FILE *out, const model *from, const char *key, cons
 
 void write_typescript(FILE *out, const model *from)
 {
-	fputs("// SPDX-License-Identifier: GPL-3.0-or-later\n"
+	fputs("// SPDX-License-Identifier: Apache-2.0\n"
 	      "// Generated from protocol/include/cautery/*.def and the codec's tables; do not edit.\n"
 	      "// After a change there, build the target `messages`.\n\n",
 	      out);

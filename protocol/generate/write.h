@@ -1,4 +1,4 @@
-// SPDX-License-Identifier: GPL-3.0-or-later
+// SPDX-License-Identifier: Apache-2.0
 // The generated files, each from the model or, the examples, from the codecs.
 #pragma once
 

@@ -1,4 +1,4 @@
-// SPDX-License-Identifier: GPL-3.0-or-later
+// SPDX-License-Identifier: Apache-2.0
 // Scenes and commands inside larger documents: the wire's requests carry them as members.
 #pragma once
 

@@ -1,4 +1,4 @@
-// SPDX-License-Identifier: GPL-3.0-or-later
+// SPDX-License-Identifier: Apache-2.0
 // Shorthand for the tables of fields. STRUCT is defined as the struct whose fields follow. All but
 // SCALAR go inside braces, where more members (.required, .kinds) may follow.
 #pragma once

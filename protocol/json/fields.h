@@ -1,4 +1,4 @@
-// SPDX-License-Identifier: GPL-3.0-or-later
+// SPDX-License-Identifier: Apache-2.0
 // The tables of scenes and commands: what each JSON object may hold. Where members depend on a
 // kind, the first field of the record is that kind.
 #pragma once

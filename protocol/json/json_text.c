@@ -1,4 +1,4 @@
-// SPDX-License-Identifier: GPL-3.0-or-later
+// SPDX-License-Identifier: Apache-2.0
 // The strict scan: a pushdown automaton over bytes, without recursion and without allocation.
 #include "cautery/json_text.h"
 

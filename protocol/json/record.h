@@ -1,4 +1,4 @@
-// SPDX-License-Identifier: GPL-3.0-or-later
+// SPDX-License-Identifier: Apache-2.0
 // Structs told by tables: one table per struct serves reading, writing, the check for unknown
 // members and the documentation.
 #pragma once

@@ -1,4 +1,4 @@
-// SPDX-License-Identifier: GPL-3.0-or-later
+// SPDX-License-Identifier: Apache-2.0
 // Typed, strict access to parsed JSON for protocol's own readers. This header and the files that
 // include it are the only places that know cJSON.
 #pragma once

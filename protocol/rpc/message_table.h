@@ -1,4 +1,4 @@
-// SPDX-License-Identifier: GPL-3.0-or-later
+// SPDX-License-Identifier: Apache-2.0
 // messages.def as data: reading, checking, writing and describing messages all go by it.
 #pragma once
 

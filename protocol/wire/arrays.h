@@ -1,4 +1,4 @@
-// SPDX-License-Identifier: GPL-3.0-or-later
+// SPDX-License-Identifier: Apache-2.0
 // The channels that are arrays (positions, mask, scalars): what encoder, thinner and decoder keep
 // of each as 32-bit words, by CAU_CHANNEL_INDEX_*. Channels with records have arrays of no
 // elements.

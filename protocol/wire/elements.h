@@ -1,4 +1,4 @@
-// SPDX-License-Identifier: GPL-3.0-or-later
+// SPDX-License-Identifier: Apache-2.0
 // The element sections of frames: some elements of an array, chosen by a run list, as numbers of 1,
 // 2 or 4 bytes, plain or in meshoptimizer's vertex codec. See protocol/README.md, "Elements".
 #pragma once

@@ -15,6 +15,7 @@ import examples
 import formatting
 import includes
 import layout
+import licences
 import symbols
 import text_rules
 
@@ -72,6 +73,12 @@ class TextRules(Tree):
             self.assertEqual(len(self.found(name, "x\n")), 1, name)
         self.assertEqual(len(self.found("run", "#!/bin/sh\ntrue\n")), 1)
         self.assertEqual(self.found("run", "#!/bin/sh\n# " + self.LICENCE[3:]), [])
+
+    def test_the_edges_have_another_licence(self):
+        apache = self.LICENCE.replace("GPL-3.0-or-later", "Apache-2.0")
+        self.assertEqual(self.found("protocol/a.c", apache), [])
+        self.assertEqual(len(self.found("protocol/a.c", self.LICENCE)), 1)
+        self.assertEqual(len(self.found("core/a.c", apache)), 1)
 
     def test_leftovers(self):
         for word in ("TO" "DO", "FIX" "ME", "XX" "X"):
@@ -239,6 +246,75 @@ class Circles(Compiled):
         self.assertEqual(self.found(("clients/x/a.c", self.needing("a", "b")), ("clients/x/b.c", self.needing("b")),
                                     ("clients/y/b.c", self.needing("b", "c")), ("clients/y/c.c", self.needing("c", "a"))),
                          [])
+
+
+class Licences(Compiled):
+    APACHE = "// SPDX-License-Identifier: Apache-2.0\n"
+    GPL = "// SPDX-License-Identifier: GPL-3.0-or-later\n"
+    FILES = {
+        "protocol/LICENSE": "the text",
+        "deploy/debian/copyright": "".join(f"Files: {folder}*\n" for folder in licences.EDGES),
+        "core/types/cautery/status.h": APACHE,
+        "core/include/cautery/session.h": GPL + '#include "cautery/status.h"\n',
+        "core/mesh/mesh.h": GPL,
+        "protocol/json/scan.h": APACHE,
+        "protocol/json/scan.c": APACHE + '#include "json/scan.h"\n#include <cjson/cJSON.h>\n#include "cautery/status.h"\n',
+        "clients/web/src/wire/header.ts": APACHE + "import { decode } from 'meshoptimizer/decoder';\n",
+        "clients/web/src/wire/decoder.ts": APACHE + "import { header } from './header';\n",
+        "clients/web/src/wire/worker.ts": GPL + "import { model } from '../model/model';\n",
+        "clients/web/src/model/model.ts": GPL + "import { header } from '../wire/header';\n",
+    }
+    LINKS = [("core", "cautery_types", ["cautery_compiler"]), ("core", "cautery_core", ["cautery_types", "cholmod"]),
+             ("protocol", "cautery_protocol", ["cautery_types", "cautery_compiler", "PkgConfig::CJSON"])]
+
+    def found(self, files=(), links=(), objects=(), without=()):
+        every = {name: text for name, text in {**self.FILES, **dict(files)}.items() if name not in without}
+        for path, content in every.items():
+            self.write(path, content)
+        return licences.violations(self.root, sorted(every), [self.compiled(*o) for o in objects],
+                                   [*self.LINKS, *links])
+
+    def test_edges_that_stand_alone_pass(self):
+        self.assertEqual(self.found(objects=[("protocol/a.c", self.needing("a", "b")),
+                                             ("core/types/b.c", self.needing("b")),
+                                             ("core/c.c", self.needing("c", "a"))]), [])
+
+    def test_a_file_under_the_licence_of_the_other_side(self):
+        for name, text in (("protocol/a.c", self.GPL), ("core/a.c", self.APACHE), ("clients/include/a.h", self.GPL),
+                           ("clients/web/src/wire/new.ts", self.GPL), ("clients/web/src/wire/worker.ts", self.APACHE),
+                           ("protocol/idl/a.idl", self.GPL), ("protocol/include/cautery/a.def", self.GPL),
+                           ("protocol/make.sh", "#!/bin/sh\n# " + self.GPL[3:])):
+            self.assertEqual(len(self.found({name: text})), 1, name)
+
+    def test_an_include_or_import_of_what_is_under_the_gpl(self):
+        for name, line in (("protocol/json/a.c", "#include <cautery/session.h>"),
+                           ("protocol/json/a.c", '#  include "../../core/mesh/mesh.h"'),
+                           ("protocol/json/a.c", '#include "mesh/mesh.h"'),
+                           ("clients/library/a.c", '#include "cautery/session.h"'),
+                           ("core/types/cautery/a.h", '#include "mesh/mesh.h"'),
+                           ("core/types/cautery/a.h", "#include <suitesparse/cholmod.h>"),
+                           ("clients/web/src/wire/a.ts", "import { model } from '../model/model';"),
+                           ("clients/web/src/wire/a.ts", "import type { Model } from '../model/model';"),
+                           ("clients/web/src/wire/a.ts", 'export * from "./worker";'),
+                           ("clients/web/src/wire/a.ts", "const late = await import('../model/model');"),
+                           ("clients/web/src/wire/a.ts", "import '../model/model.ts';"),
+                           ("clients/web/src/wire/a.ts", "new Worker(new URL('./worker.ts', import.meta.url));")):
+            self.assertEqual(len(self.found({name: self.APACHE + line + "\n"})), 1, line)
+
+    def test_a_call_of_what_is_under_the_gpl(self):
+        found = self.found(objects=[("protocol/a.c", self.needing("a", "b")), ("core/b.c", self.needing("b"))])
+        self.assertEqual(len(found), 1)
+        self.assertIn("calls cau_b", found[0])
+
+    def test_a_link_to_what_is_under_the_gpl(self):
+        for folder, target, named in (("clients/library", "cautery_client", ["cautery_core"]),
+                                      ("clients/library", "cautery_client", ["cautery_types", "SuiteSparse::CHOLMOD"]),
+                                      ("protocol/json", "cautery_json", ["cautery_protocol", "cholmod"])):
+            self.assertEqual(len(self.found(links=[(folder, target, named)])), 1, named)
+
+    def test_the_text_and_the_package_go_with_it(self):
+        self.assertEqual(len(self.found(without=["protocol/LICENSE"])), 1)
+        self.assertEqual(len(self.found({"deploy/debian/copyright": "Files: *\n"})), 3)
 
 
 class Arrows(Compiled):

@@ -9,6 +9,7 @@ import os
 import re
 import sys
 
+import licences
 import project
 
 # Written in pieces, so that this file passes its own rules.
@@ -18,8 +19,8 @@ REGISTRY = re.compile(r"registry\.(np" r"mjs|ya" r"rnpkg)\.|art" r"ifactory", re
 
 PAGE = re.compile(r"(?<![\w/.:\"'$}*-])((?:[\w-]+/)*[\w-]+\.md)\b(?![.\w])")
 
-LICENCE_LINE = "SPDX-License-Identifier: GPL-3.0-or-later"
-LICENSED = {".c", ".h", ".cc", ".cpp", ".idl", ".mjs", ".py", ".sh", ".ts"}
+LICENCE_LINE = "SPDX-License-Identifier: "
+LICENSED = {".c", ".def", ".h", ".cc", ".cpp", ".idl", ".mjs", ".py", ".sh", ".ts"}
 LICENCE_WITHIN_LINES = 3  # a #! line may come first
 
 # Checksums can spell anything.
@@ -61,8 +62,9 @@ def violations_of(name, text):
         if REGISTRY.search(line):
             found.append(f"{where}: package registry host: {line.strip()[:80]}")
     head = text.splitlines()[:LICENCE_WITHIN_LINES]
-    if needs_licence(name, text) and not any(LICENCE_LINE in line for line in head):
-        found.append(f"{name}: no line '{LICENCE_LINE}' at the top")
+    licence_line = LICENCE_LINE + licences.licence_of(name)
+    if needs_licence(name, text) and not any(licence_line in line for line in head):
+        found.append(f"{name}: no line '{licence_line}' at the top")
     return found
 
 

@@ -1,4 +1,4 @@
-// SPDX-License-Identifier: GPL-3.0-or-later
+// SPDX-License-Identifier: Apache-2.0
 // A connection to cauteryd: hello, requests, streams decoded to the newest state, files, and coming
 // back after a lost connection. protocol/README.md tells what travels.
 //

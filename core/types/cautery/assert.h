@@ -1,4 +1,4 @@
-// SPDX-License-Identifier: GPL-3.0-or-later
+// SPDX-License-Identifier: Apache-2.0
 // What a function takes for granted, said so that a debug build checks it.
 //
 // An assertion is about this program's own mistakes: an index beyond its array, a call out of

@@ -1,4 +1,4 @@
-// SPDX-License-Identifier: GPL-3.0-or-later
+// SPDX-License-Identifier: Apache-2.0
 // The channels of a stream, one row each. What knows of channels is made of these rows: the words
 // and bits that a subscriber chooses by, the sections of frames, encoder, thinner and decoder, what
 // the core hands over, and what `ninja messages` prints: TypeScript, IDL, JSON and pages. What a

@@ -1,4 +1,4 @@
-// SPDX-License-Identifier: GPL-3.0-or-later
+// SPDX-License-Identifier: Apache-2.0
 // Typed commands to a session: what a driver or an operator can ask of a tissue. Shared by core
 // (which applies them at tick borders) and protocol (which reads and writes them as JSON).
 //

@@ -1,4 +1,4 @@
-// SPDX-License-Identifier: GPL-3.0-or-later
+// SPDX-License-Identifier: Apache-2.0
 // Definitions with every member at its default. Scalars come from the tables of scene.h; what
 // stands beside the tables (vectors, choices, what differs by kind of tissue) stands here and
 // nowhere else. Shared by core and protocol, hence inline.

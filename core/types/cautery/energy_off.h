@@ -1,4 +1,4 @@
-// SPDX-License-Identifier: GPL-3.0-or-later
+// SPDX-License-Identifier: Apache-2.0
 // Why a tool's energy is off; shared by core, protocol and the server's watchdog.
 //
 //     #include "cautery/energy_off.h"

@@ -1,4 +1,4 @@
-// SPDX-License-Identifier: GPL-3.0-or-later
+// SPDX-License-Identifier: Apache-2.0
 // The rule for names of scenes, meshes, layers, sessions and tools: they become ROS names,
 // partitions and URLs.
 //

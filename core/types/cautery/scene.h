@@ -1,4 +1,4 @@
-// SPDX-License-Identifier: GPL-3.0-or-later
+// SPDX-License-Identifier: Apache-2.0
 // A scene: the plain data from which a session is made. Shared by core (which checks and builds it)
 // and protocol (which reads and writes it as JSON). SI units; temperatures in degrees Celsius.
 //

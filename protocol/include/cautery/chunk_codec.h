@@ -1,4 +1,4 @@
-// SPDX-License-Identifier: GPL-3.0-or-later
+// SPDX-License-Identifier: Apache-2.0
 // Binary chunks of files: client to server for uploads, server to client for exports.
 //
 //     #include <string.h>

@@ -1,4 +1,4 @@
-// SPDX-License-Identifier: GPL-3.0-or-later
+// SPDX-License-Identifier: Apache-2.0
 // Commands as JSON, the same on the wire, in logs and in scripts:
 //
 //     {"tick": 60, "command": "tool.move", "tool": "hook",

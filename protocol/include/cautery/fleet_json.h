@@ -1,4 +1,4 @@
-// SPDX-License-Identifier: GPL-3.0-or-later
+// SPDX-License-Identifier: Apache-2.0
 // The labels of a fleet's daemons, as the proxy in front of them tells at /api/fleet:
 // {"labels": ["d1", "d2"]}.
 //

@@ -1,4 +1,4 @@
-// SPDX-License-Identifier: GPL-3.0-or-later
+// SPDX-License-Identifier: Apache-2.0
 // Binary frames: positions, face mask, scalars and tools of one session, as key frames and as
 // deltas against what the decoder holds. Pure functions over the caller's buffers; nothing is
 // allocated.

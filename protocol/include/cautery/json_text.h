@@ -1,4 +1,4 @@
-// SPDX-License-Identifier: GPL-3.0-or-later
+// SPDX-License-Identifier: Apache-2.0
 // Strict RFC 8259: what passes this scan means the same to every JSON reader.
 //
 //     #include <stdbool.h>

@@ -1,4 +1,4 @@
-// SPDX-License-Identifier: GPL-3.0-or-later
+// SPDX-License-Identifier: Apache-2.0
 // Writes JSON into a caller's buffer: no allocation, numbers that read back to the same bits.
 //
 //     #include "cautery/json_writer.h"

@@ -1,4 +1,4 @@
-// SPDX-License-Identifier: GPL-3.0-or-later
+// SPDX-License-Identifier: Apache-2.0
 // Words that messages choose from. Each table is X(code, wire name); tables of scenes, channels and
 // reasons for energy off stand with their types.
 //

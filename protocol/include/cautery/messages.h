@@ -1,4 +1,4 @@
-// SPDX-License-Identifier: GPL-3.0-or-later
+// SPDX-License-Identifier: Apache-2.0
 // The messages as C types, made from messages.def: object `hello` there is cau_wire_hello here. An
 // optional member f has a bool has_f before it. Text is UTF-8 with a closing zero.
 //

@@ -1,4 +1,4 @@
-// SPDX-License-Identifier: GPL-3.0-or-later
+// SPDX-License-Identifier: Apache-2.0
 // What somebody meant who wrote a word that is none: members of an object, options, commands.
 //
 //     #include <stdio.h>

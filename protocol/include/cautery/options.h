@@ -1,4 +1,4 @@
-// SPDX-License-Identifier: GPL-3.0-or-later
+// SPDX-License-Identifier: Apache-2.0
 // A program's command line as one table: what is read, what --help says and what a complaint names
 // come from the same rows.
 //

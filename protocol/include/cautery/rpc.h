@@ -1,4 +1,4 @@
-// SPDX-License-Identifier: GPL-3.0-or-later
+// SPDX-License-Identifier: Apache-2.0
 // JSON-RPC 2.0 messages, read and written by the tables of messages.h. Reading allocates one
 // document that cau_rpc_finish gives back; writing goes into the caller's buffer.
 //

@@ -1,4 +1,4 @@
-// SPDX-License-Identifier: GPL-3.0-or-later
+// SPDX-License-Identifier: Apache-2.0
 // Error codes of answers and close codes of connections.
 //
 //     #include "cautery/rpc_errors.h"

@@ -1,4 +1,4 @@
-// SPDX-License-Identifier: GPL-3.0-or-later
+// SPDX-License-Identifier: Apache-2.0
 // Scenes as JSON. Names are the field names of cautery/scene.h, choices are the JSON names of its
 // tables; deploy/scenes/README.md lists all of them. Absent members keep their defaults
 // (cautery/defaults.h; a layer's by its kind), unknown ones are errors. A layer's own material

@@ -1,4 +1,4 @@
-// SPDX-License-Identifier: GPL-3.0-or-later
+// SPDX-License-Identifier: Apache-2.0
 // The hash by which files that travel in chunks are checked, and identities are told apart.
 //
 //     #include <string.h>

@@ -1,4 +1,4 @@
-// SPDX-License-Identifier: GPL-3.0-or-later
+// SPDX-License-Identifier: Apache-2.0
 // What a stream carries: its description, what the server puts in at a tick, and what a client
 // holds after decoding. Byte layouts stand in protocol/README.md. SI units, degrees Celsius.
 //

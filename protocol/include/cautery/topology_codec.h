@@ -1,4 +1,4 @@
-// SPDX-License-Identifier: GPL-3.0-or-later
+// SPDX-License-Identifier: Apache-2.0
 // The frame that says what never changes in a session: faces, their layers, texture coordinates and
 // rest positions. Sent once after session.join, before the first key frame. Nothing is allocated.
 //

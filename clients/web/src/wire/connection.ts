@@ -1,4 +1,4 @@
-// SPDX-License-Identifier: GPL-3.0-or-later
+// SPDX-License-Identifier: Apache-2.0
 // One lasting connection to a daemon: hello, requests and answers, and coming back after a loss with
 // back-off, the same client identity and the resume token. Knows no page: sockets are given to it.
 import { CHANGING_METHODS, CLOSE_REASONS, SUBPROTOCOL, WIRE_VERSION } from './messages.gen';

@@ -1,4 +1,4 @@
-// SPDX-License-Identifier: GPL-3.0-or-later
+// SPDX-License-Identifier: Apache-2.0
 // A section of elements: which elements of an array change (run list) and their numbers, plain or in
 // meshoptimizer's vertex codec, as values or as differences; see "Elements" in protocol/README.md.
 import { MeshoptDecoder } from 'meshoptimizer/decoder';

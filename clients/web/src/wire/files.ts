@@ -1,4 +1,4 @@
-// SPDX-License-Identifier: GPL-3.0-or-later
+// SPDX-License-Identifier: Apache-2.0
 // Files in both directions: uploads in chunks with progress, exports put together and checked.
 import type { Chunk } from './chunk';
 import { writeChunk } from './chunk';

@@ -1,4 +1,4 @@
-// SPDX-License-Identifier: GPL-3.0-or-later
+// SPDX-License-Identifier: Apache-2.0
 // The daemons behind this address, where a proxy stands in front of several. A connection serves one of them, so the
 // sessions of each other are asked on a connection of its own, which is closed again.
 import { Connection, type ConnectionOptions, type Socket } from './connection';

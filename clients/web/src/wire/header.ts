@@ -1,4 +1,4 @@
-// SPDX-License-Identifier: GPL-3.0-or-later
+// SPDX-License-Identifier: Apache-2.0
 // The fixed start of every frame and the walk over its sections; layouts in protocol/README.md.
 import { FRAME_KIND, WIRE_VERSION } from './messages.gen';
 

@@ -1,4 +1,4 @@
-// SPDX-License-Identifier: GPL-3.0-or-later
+// SPDX-License-Identifier: Apache-2.0
 // Generated from protocol/include/cautery/*.def and the codec's tables; do not edit.
 // After a change there, build the target `messages`.
 

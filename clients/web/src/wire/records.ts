@@ -1,4 +1,4 @@
-// SPDX-License-Identifier: GPL-3.0-or-later
+// SPDX-License-Identifier: Apache-2.0
 // Tool names, tool records and the statistics record of a frame.
 import { viewOf, WireError } from './header';
 import { ENERGY_OFF_REASONS, TOOL_SHAPES } from './messages.gen';

@@ -1,4 +1,4 @@
-// SPDX-License-Identifier: GPL-3.0-or-later
+// SPDX-License-Identifier: Apache-2.0
 // The stream of one session: join, topology, frames, acknowledgement, and a key frame after a gap.
 import type { Connection } from './connection';
 import { FrameDecoder, type Changes, type StreamState } from './decoder';

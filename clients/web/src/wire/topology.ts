@@ -1,4 +1,4 @@
-// SPDX-License-Identifier: GPL-3.0-or-later
+// SPDX-License-Identifier: Apache-2.0
 // The frame that says what never changes: faces, their layers, texture, rest positions.
 import type { StreamShape } from './decoder';
 import { applyElements } from './elements';
