@@ -18,6 +18,7 @@ import layout
 import licences
 import symbols
 import text_rules
+import words
 
 
 class Tree(unittest.TestCase):
@@ -98,6 +99,77 @@ class TextRules(Tree):
 
     def test_registry_hosts(self):
         self.assertEqual(len(self.found("package-lock.json", "https://registry.np" "mjs.org/x")), 1)
+
+
+class Words(Tree):
+    SHORT = "A session runs. It has a tissue. A client joins it.\n"
+    LONG = "One " + "word more " * 10 + "ends here. "
+
+    def found(self, page, open_pages=(), name="a.md", others=()):
+        self.write(name, page)
+        for other, text in dict(others).items():
+            self.write(other, text)
+        return words.violations(self.root, sorted({name, *dict(others)}), dict(open_pages), {})
+
+    def test_short_sentences_pass(self):
+        self.assertEqual(self.found(self.SHORT), [])
+
+    def test_long_sentences_fail_wherever_they_stand(self):
+        for page in (self.LONG * 3, "- " + "\n- ".join([self.LONG] * 3), f"| a |\n|---|\n| {self.LONG} |\n| {self.LONG * 2} |\n",
+                     "> " + self.LONG * 3, "  " + self.LONG * 3, "1. " + self.LONG + "\n\n   " + self.LONG * 2,
+                     (self.LONG * 3).replace("here.", "here!"), (self.LONG * 3).replace("word", "**word**")):
+            found = self.found(page)
+            self.assertEqual(len(found), 1, page)
+            self.assertIn("words in the mean sentence", found[0])
+
+    def test_what_is_no_sentence_does_not_shorten_the_mean(self):
+        for filler in ("## A heading\n\n" * 20, "```\nOne. Two. Three.\n```\n" * 20, "| a | b |\n|---|---|\n" + "| x. | y. |\n" * 20,
+                       "    cautery ls. Two. Three.\n\n" * 20):
+            self.assertEqual(len(self.found(filler + "\n" + self.LONG * 3)), 1, filler)
+
+    def test_house_words(self):
+        for text in ("The clients are told so.", "It is dark.", "Energy is *lit* again.", "It goes\nback.", "There is no room for it.",
+                     "| state | meaning |\n|---|---|\n| off | it is made anew |\n", "# Somebody\n", "See [what it tells](a.md).",
+                     "A thrown vertex.", "A contact row.", "Likewise, it ends."):
+            found = self.found(self.SHORT + "\n" + text)
+            self.assertEqual(len(found), 1, text)
+            self.assertIn("house word", found[0])
+
+    def test_words_of_the_field_and_code_pass(self):
+        for text in ("The dark theme.", "Two rows of a table.", "The `dark` flag.", "```\ncautery tell\n```\n", "The rows of the matrix.",
+                     "Legend, darkness-free and tellurium."):
+            self.assertEqual(self.found(self.SHORT + "\n" + text), [], text)
+
+    def test_the_list_shrinks_only(self):
+        page = self.LONG * 3 + "The client is told. It is told.\n"
+        mean = words.up(words.mean_words(page))
+        self.assertEqual(self.found(page, {"a.md": (mean, 2)}), [])
+        self.assertEqual(len(self.found(page, {"a.md": (mean, 1)})), 1)
+        self.assertEqual(len(self.found(self.LONG * 9, {"a.md": (mean, 2)})), 1)
+        self.assertIn("take it off", self.found(self.SHORT, {"a.md": (mean, 2)})[0])
+        self.assertIn("no page", self.found(self.SHORT, {"gone.md": (20.0, 2)})[0])
+
+    def test_links(self):
+        others = {"b/c.md": "# The heading: one, `two`\n# Twice\n# Twice\n", "b/d.c": "int a;\n"}
+        for link, broken in (("b/c.md", 0), ("b/", 0), ("b", 0), ("b/c.md#the-heading-one-two", 0), ("b/c.md#twice-1", 0),
+                             ("https://example.org/x", 0), ("#here", 0), ("b/e.md", 1), ("c.md", 1), ("b/c.md#other", 1),
+                             ("b/c.md#twice-2", 1), ("#there", 1), ("b/d.c#here", 1), ("../b/c.md", 1)):
+            for page in (f"# Here\n[text]({link})\n", f'# Here\n[text]({link} "title")\n', f"# Here\n[text][1]\n\n[1]: {link}\n",
+                         f'# Here\n<img src="{link}" alt="x">\n', f"# Here\n| [a]({link}) |\n"):
+                self.assertEqual(len(self.found(page, others=others)), broken, page)
+        self.assertEqual(self.found("```\n[text](gone.md)\n```\n`[text](gone.md)`\n"), [])
+
+    def test_strings_that_users_read(self):
+        for name, text, count in (("server/a/a.c", 'say("who is told");', 1), ("server/a/a.c", "// who is told\n", 0),
+                                  ("server/a/a.c", '#include "told/a b.h"\n', 0), ("server/a/a.c", 'say("the client"\n " is told");', 1),
+                                  ("clients/web/src/a.ts", "say('who is told');", 1), ("clients/web/src/a.ts", "say(`who is ${x} told`);", 1),
+                                  ("clients/web/src/a.ts", "const dark = 'dark'; // who is told\n", 0),
+                                  ("protocol/include/cautery/a.def", 'X(a, "it is made anew")', 1), ("core/heat/a.c", 'x("who is told");', 0)):
+            self.write(name, text)
+            folder = words.folder_of(name)
+            self.assertEqual(len(words.violations(self.root, [name], {}, {})), count, text)
+            self.assertEqual(words.violations(self.root, [name], {}, {folder: count}), [], text)
+            self.assertEqual(len(words.violations(self.root, [name], {}, {folder: 5})), 0 if count else 1, text)
 
 
 @unittest.skipUnless(shutil.which("clang-format"), "clang-format is not installed")
