@@ -14,6 +14,7 @@ import citation
 import examples
 import formatting
 import includes
+import known_bugs
 import layout
 import licences
 import symbols
@@ -99,6 +100,20 @@ class TextRules(Tree):
 
     def test_registry_hosts(self):
         self.assertEqual(len(self.found("package-lock.json", "https://registry.np" "mjs.org/x")), 1)
+
+
+class KnownBugs(Tree):
+    def found(self, *rows):
+        self.write(known_bugs.PAGE, "| bug | test |\n|---|---|\n" + "".join(f"{row}\n" for row in rows))
+        self.write("tests/a/CMakeLists.txt", "cautery_test(NAME a_test SOURCES a.c)\nadd_test(NAME other_test COMMAND x)\n")
+        return known_bugs.violations(self.root, [known_bugs.PAGE, "tests/a/CMakeLists.txt"])
+
+    def test_bugs_with_their_tests_pass(self):
+        self.assertEqual(self.found("| It leaks. | `a_test` |", "| It hangs. | `other_test` |"), [])
+
+    def test_a_bug_without_a_test(self):
+        for row in ("| It leaks. | |", "| It leaks `a_test`. | by hand |", "| It leaks. | `gone_test` |", "| It leaks. | `a_tes` |"):
+            self.assertEqual(len(self.found("| It hangs. | `a_test` |", row)), 1, row)
 
 
 class Words(Tree):

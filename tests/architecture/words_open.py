@@ -4,7 +4,6 @@
 # page: (words in the mean sentence, house words)
 PAGES = {
     "CHANGELOG.md": (25.4, 65),
-    "README.md": (15.0, 4),
     "clients/README.md": (20.3, 9),
     "clients/web/README.md": (22.1, 20),
     "core/EXPERIMENTS.md": (19.1, 22),

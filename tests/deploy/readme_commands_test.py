@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Every command that a README shows is run by a test: here, or by the one that is named for it below.
+"""Every command that a README, a project page or the manual shows is run by a test: here, or by the one that is named below.
 
 Usage: readme_commands_test.py SOURCES PROGRAMS      (PROGRAMS: the folder of the built programs)
 
@@ -49,6 +49,9 @@ ELSEWHERE = {  # command: (file, words in it...)
         ('tests/e2e/move.test.mjs', "'move', session, 'd2'", "'--to-url'"),
     "deploy/run.sh": (FIRST_HOUR, '"deploy/run.sh"'),
     "deploy/test.sh": (FIRST_HOUR, '"deploy/test.sh"'),
+    "deploy/test.sh --no-install --only protocol_wire_frame_size": (FIRST_HOUR, '"deploy/test.sh", "--no-install", "--only", SMALL_TEST',
+                                                                    'SMALL_TEST = "^protocol_wire_frame_size$"'),
+    "deploy/test.sh --no-install --only architecture": (FIRST_HOUR, '"deploy/test.sh", "--no-install", "--only"'),  # that small test
     "cmake -S . -B build -DCMAKE_BUILD_TYPE=Release && cmake --build build":
         ("deploy/package.sh", 'cmake -S "$source_folder" -B "$tree" -DCMAKE_BUILD_TYPE=Release'),  # deploy_packages
     "ctest --test-dir build": (FIRST_HOUR, '"ctest", "--test-dir", "build"'),
@@ -91,7 +94,7 @@ def shown():
     """{command: [pages]} of all READMEs, without the sections that tests/steps follows."""
     with open(os.path.join(SOURCES, "tests/steps/CMakeLists.txt"), encoding="utf-8") as file:
         steps = re.findall(r'PAGE (\S+) SECTION "([^"]+)"', file.read())
-    listed = subprocess.run(["git", "-C", SOURCES, "ls-files", "*README.md"], check=True, text=True, stdout=subprocess.PIPE)
+    listed = subprocess.run(["git", "-C", SOURCES, "ls-files", "*README.md", ".github/*.md", "deploy/manual/*.md"], check=True, text=True, stdout=subprocess.PIPE)
     found = {}
     for name in listed.stdout.split():
         with open(os.path.join(SOURCES, name), encoding="utf-8") as file:
