@@ -4,7 +4,6 @@
 # page: (words in the mean sentence, house words)
 PAGES = {
     "CHANGELOG.md": (25.4, 65),
-    "clients/README.md": (20.3, 9),
     "clients/web/README.md": (22.1, 20),
     "core/EXPERIMENTS.md": (19.1, 22),
     "core/README.md": (24.9, 79),
@@ -15,7 +14,7 @@ PAGES = {
     "deploy/fleet/README.md": (20.2, 13),
     "deploy/monitoring/README.md": (13.2, 7),
     "deploy/scenes/README.md": (15.6, 6),
-    "protocol/README.md": (18.2, 54),
+    "protocol/README.md": (17.5, 54),
     "protocol/examples.md": (17.4, 2),
     "protocol/idl/README.md": (20.9, 13),
     "protocol/messages.md": (10.1, 26),
