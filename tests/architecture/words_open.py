@@ -8,7 +8,6 @@ PAGES = {
     "core/README.md": (24.9, 79),
     "core/heat/README.md": (25.7, 0),
     "core/tool/README.md": (21.2, 0),
-    "deploy/README.md": (24.2, 2),
     "deploy/dds/README.md": (18.5, 2),
     "deploy/fleet/README.md": (20.2, 13),
     "deploy/monitoring/README.md": (13.2, 7),
