@@ -89,7 +89,7 @@ cau_status cau_scene_check(const cau_scene_def *scene, cau_error *error);
 
 // ---- life ---------------------------------------------------------------------------------------
 // Loads meshes, builds layers, factors the system, relaxes built-in tension to rest
-// (core/README.md, "Built-in tension").
+// (core/DECISIONS.md, "Built-in tension").
 cau_status cau_session_create(const cau_session_def *def, cau_session **session, cau_error *error);
 void cau_session_destroy(cau_session *session); // takes NULL
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Nothing crosses (core/README.md, "Contact"): balls smaller and larger than the mesh's cells,
+// Nothing crosses (core/DECISIONS.md, "Contact"): balls smaller and larger than the mesh's cells,
 // pressed into a sheet and a slab slowly and so fast that a tick takes them to the other side.
 #include "core/session/stage.h"
 

@@ -238,7 +238,7 @@ static void assert_falls_alike(int fineness, int by_new_factor)
 	assert_true(fallen > 0.5);
 	assert_true(apart <= fall_tolerance * fallen);
 	assert_int_equal(a.statistics.deferred_max_s > 0, by_new_factor);
-	assert_true(a.statistics.deferred_max_s <= 0.05); // core/README.md, "What a cut does"
+	assert_true(a.statistics.deferred_max_s <= 0.05); // core/DECISIONS.md, "What a cut does"
 	cau_session_destroy(kept);
 	cau_session_destroy(fresh);
 	free(scene);

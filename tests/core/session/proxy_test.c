@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// A tool has a pose that is asked and a pose that is (core/README.md, "Contact"): tissue that does
-// not yield stops it, up to force_max_n, and past that it stays behind until it lets go.
+// A tool has a pose that is asked and a pose that is (core/DECISIONS.md, "Contact"): tissue that
+// does not yield stops it, up to force_max_n, and past that it stays behind until it lets go.
 #include <stdio.h>
 
 #include "core/session/pressing.h"

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Tools that touch (core/README.md, "Contact"): nothing is inside them, friction keeps to its cone,
-// forces balance, jaws hold up to their slip force.
+// Tools that touch (core/DECISIONS.md, "Contact"): nothing is inside them, friction keeps to its
+// cone, forces balance, jaws hold up to their slip force.
 #include "core/session/stage.h"
 
 #include <stdio.h>
