@@ -216,9 +216,9 @@ const cli_command cli_create = {
 	.arguments = "SCENE | FILE | --definition FILE | --mesh FILE",
 	.summary = "makes a session and prints its id",
 	.help =
-		"SCENE is one of `cautery scenes`. FILE is told by its ending: .json is a scene, .msh,\n"
-		".obj and .vtk are meshes. A scene file's meshes are uploaded. Around a mesh a scene is\n"
-		"made: its lowest tenth pinned (a sheet: its rim), a hot ball as tool.\n",
+		"SCENE is one of `cautery scenes`. The ending of FILE says what it is: .json is a scene,\n"
+		".msh, .obj and .vtk are meshes. The meshes of a scene file are uploaded. A mesh alone\n"
+		"gets a scene: its lowest tenth (of a sheet: its rim) is pinned, and the tool is a ball.\n",
 	.most = 1,
 	.options = {{"name", "N", "wanted name, without the daemon's label"},
                 {"paused", NULL, "starts paused"},

@@ -119,7 +119,7 @@ static cli_exit run_fork(cli *c)
 const cli_command cli_rewind = {.name = "rewind",
                                 .arguments = "[SESSION] TICK",
                                 .summary = "back to a tick, on a new branch; energy goes off",
-                                .help = "`cautery events` tells how far back one can go.\n",
+                                .help = "`cautery events` shows the earliest tick.\n",
                                 .least = 1,
                                 .most = 1,
                                 .session_optional = true,
@@ -145,7 +145,7 @@ const cli_command cli_snapshot = {.name = "snapshot",
 const cli_command cli_snapshots = {.name = "snapshot ls",
                                    .also = "snapshots",
                                    .arguments = "[SESSION]",
-                                   .summary = "lists the states that `restore` goes back to",
+                                   .summary = "lists the snapshots that `restore` can restore",
                                    .session_optional = true,
                                    .run = run_snapshots};
 

@@ -24,7 +24,7 @@ static void print_drivers(const cli *c, const cau_wire_session_description *d)
 			fprintf(c->out, "driven by %s (client %lld)", drivers[i].name,
 			        (long long)drivers[i].client);
 		else
-			fputs("driven by nobody", c->out);
+			fputs("no driver", c->out);
 		if (drivers[i].energized)
 			fputs(", energy on\n", c->out);
 		else
@@ -72,7 +72,7 @@ static cli_exit run(cli *c)
 
 const cli_command cli_info = {.name = "info",
                               .arguments = "[SESSION]",
-                              .summary = "tells what a session is: tissue, tools, drivers",
+                              .summary = "describes a session: tissue, tools, drivers",
                               .help = "With --json also the whole scene, with its present "
                                       "materials and tools.\n",
                               .session_optional = true,

@@ -179,8 +179,7 @@ const cli_command cli_material = {
 	.name = "material",
 	.arguments = "SESSION LAYER [NAME=VALUE...]",
 	.summary = "shows a layer's material, or changes members of it",
-	.help =
-		"Without NAME=VALUE it lists the members; deploy/scenes/README.md tells what they mean.\n",
+	.help = "Without NAME=VALUE it lists the members; deploy/scenes/README.md explains them.\n",
 	.least = 2,
 	.most = CLI_ARGUMENTS_MAX,
 	.options = {{"region", "R", "of the mesh file (default: the layer's own material)"}},

@@ -247,7 +247,7 @@ static cli_exit hand_over(courier *m)
 		return cli_fail(m->c);
 	code = deliver(m, decision.proof);
 	if (!code && !m->c->json)
-		fprintf(m->c->complaints, "%s stood still for %.3f s at tick %lld; %.1f MB moved%s\n",
+		fprintf(m->c->complaints, "%s was suspended for %.3f s at tick %lld; %.1f MB moved%s\n",
 		        m->from_ref.session, cau_client_now() - m->stood_s, (long long)held.tick,
 		        m->bytes * 1e-6, m->exact ? "" : ", not bit-exact");
 	return code;
@@ -297,15 +297,12 @@ const cli_command cli_move = {
 	.name = "move",
 	.arguments = "SESSION LABEL",
 	.summary = "moves a session to the daemon LABEL; wants role admin on both",
-	.help = "Behind a proxy one address leads to both daemons; else --to-url says where LABEL is. "
-			"What is\n"
-			"there goes over while the session is served, then it stands still, dark, for as long "
-			"as the\n"
-			"rest takes, and is served there. Who asks for it by its old id is led there. Killed "
-			"anywhere,\n"
-			"the same command again ends what was begun; --cancel does only that: it stays where "
-			"it is,\n"
-			"unless it has moved already.\n",
+	.help =
+		"Behind a proxy one address leads to both daemons; otherwise --to-url is the address of\n"
+		"LABEL. First the history is copied while the session runs. Then the session is\n"
+		"suspended, with energy off, until the rest is copied and LABEL serves it. Clients that\n"
+		"use the old id are sent there. If this command is killed, run it again to finish the\n"
+		"move. --cancel ends it: the session stays where it is, unless it has moved already.\n",
 	.least = 2,
 	.most = 2,
 	.options = {{"to-url", "U", "where the daemon LABEL is, as clients are to reach it"},

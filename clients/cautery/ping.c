@@ -66,7 +66,7 @@ static cli_exit run(cli *c)
 
 const cli_command cli_ping = {.name = "ping",
                               .arguments = "",
-                              .summary = "tells how long a request takes there and back",
+                              .summary = "measures the round trip of a request",
                               .options = {{"count", "N", "requests to send (default 4)"},
                                           {"every", "S", "seconds between them (default 0.25)"}},
                               .run = run};

@@ -181,8 +181,7 @@ static const char *trouble(const runner *r)
 	if (r->stream->ended)
 		return "the session is gone";
 	if (state->synced && state->epoch != r->epoch)
-		return "the session went back in time or was restarted: the script's ticks mean nothing "
-			   "now";
+		return "the session was rewound or restarted, so the script's ticks no longer apply";
 	if (state->flags & CAU_FRAME_FAULTED)
 		return "the session is faulted: rewind or reset it";
 	return NULL;

@@ -122,8 +122,8 @@ const cli_command cli_token = {
 	.arguments = "view|operate|admin",
 	.summary = "makes an access token, and prints the line for the daemon's file of tokens",
 	.help =
-		"The token itself goes into a new file, for --token-file of whoever is to have it; the\n"
-		"line holds its hash alone. The daemon reads its file when it is told to reload.\n",
+		"The token is written into a new file, for the --token-file of its user. The line holds\n"
+		"its hash alone. The daemon reads its file of tokens again when it reloads (SIGHUP).\n",
 	.least = 1,
 	.most = 1,
 	.options = {{"out", "FILE", "a new file for the token"},

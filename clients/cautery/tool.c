@@ -196,7 +196,7 @@ static cli_exit act_give(hand *h)
 	if (cau_client_call(c->client, CAU_METHOD_TOOL_HAND_OVER, &params, NULL, &c->error))
 		return cli_fail(c);
 	if (!c->json)
-		fprintf(c->out, "%s is nobody's\n", h->tool);
+		fprintf(c->out, "%s has no driver now\n", h->tool);
 	return CLI_DONE;
 }
 

@@ -121,5 +121,5 @@ cau_status load_daemon_memory(const char *url, const char *token, double *bytes,
 		*bytes = strtod(found + sizeof metric - 1, NULL);
 	free(text);
 	return found ? CAU_OK
-	             : cau_fail(error, CAU_NOT_FOUND, NULL, "/metrics does not tell resident memory");
+	             : cau_fail(error, CAU_NOT_FOUND, NULL, "/metrics does not report resident memory");
 }

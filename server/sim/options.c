@@ -59,7 +59,7 @@ bool sim_options_read(int argument_count, char **arguments, sim_options *options
 	if (options->help || options->version)
 		return true;
 	if (!options->scene) {
-		fputs("cautery-sim: --scene is needed (--help tells more)\n", complaints);
+		fputs("cautery-sim: --scene is needed (see --help)\n", complaints);
 		return false;
 	}
 	if (options->cut && options->script) {

@@ -179,6 +179,8 @@ class Words(Tree):
                                   ("server/a/a.c", '#include "told/a b.h"\n', 0), ("server/a/a.c", 'say("the client"\n " is told");', 1),
                                   ("clients/web/src/a.ts", "say('who is told');", 1), ("clients/web/src/a.ts", "say(`who is ${x} told`);", 1),
                                   ("clients/web/src/a.ts", "const dark = 'dark'; // who is told\n", 0),
+                                  ("clients/web/src/a.ts", "x(`precision highp float; vec3 lit;`);", 0),
+                                  ("server/store/a.c", 'say("%d rows committed");', 0),
                                   ("protocol/include/cautery/a.def", 'X(a, "it is made anew")', 1), ("core/heat/a.c", 'x("who is told");', 0)):
             self.write(name, text)
             folder = words.folder_of(name)

@@ -51,7 +51,8 @@ HOUSE = [(re.compile(rf"(?<![\w-])(?:{words})(?![\w-])", re.IGNORECASE), instead
 FIELD = re.compile(
     r"(?:light|dark) (?:and|or) (?:light|dark)|dark (?:theme|mode|colou?rs?)|(?:in|of|the) the dark theme"
     r"|(?:table|matrix|database|SQL) rows?|rows? (?:of|in) (?:a|the|each|this|that) (?:\w+ )?(?:table|matrix|system|store|list)s?"
-    r"|telltale", re.IGNORECASE)
+    r"|prefers-color-scheme: dark|rows? (?:committed|retired|that were removed)|(?:no|a) row (?:for|of the session)"
+    r"|within a row|row is of no known table", re.IGNORECASE)
 
 FENCE = re.compile(r"^\s*(```|~~~)")
 LINK = re.compile(r"!?\[(?:[^\]\[]|\[[^\]]*\])*\]\(([^)\s]+)(?:\s+\"[^\"]*\")?\)")
@@ -66,6 +67,7 @@ READ_BY_USERS = (("protocol/include/", (".def", ".h")), ("protocol/json/", (".c"
                  ("protocol/options/", (".c",)), ("core/types/", (".h",)), ("server/", (".c", ".h")),
                  ("clients/", (".c", ".h")), ("clients/web/src/", (".ts",)))
 STRING = {".ts": re.compile(r"'((?:[^'\\\n]|\\.)*)'|\"((?:[^\"\\\n]|\\.)*)\"|`((?:[^`\\]|\\.)*)`")}
+SHADER = re.compile(r"\bprecision highp\b|\bgl_\w|\bvec[234]\b")  # a program for the graphics card
 C_STRING = re.compile(r'"((?:[^"\\\n]|\\.)*)"')
 C_COMMENT = re.compile(r"//[^\n]*|/\*.*?\*/|'(?:[^'\\\n]|\\.)'", re.DOTALL)
 TS_COMMENT = re.compile(r"(?<![:'\"])//[^\n]*|/\*.*?\*/", re.DOTALL)
@@ -203,7 +205,7 @@ def strings_of(name, text):
     else:
         text = re.sub(r"^\s*#\s*include.*$", "", C_COMMENT.sub(lambda m: " ", text), flags=re.MULTILINE)
         found = C_STRING.findall(re.sub(r'"\s*\n?\s*"', "", text))
-    return [string for string in found if " " in string]
+    return [string for string in found if " " in string and not SHADER.search(string)]
 
 
 def folder_of(name):

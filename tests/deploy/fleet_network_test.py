@@ -268,7 +268,7 @@ async def sessions_move(fleet):
     people = [one for one in fleet.people if one.session in moving]
     for session in moving:
         told = await fleet.cautery("move", session, "d2")
-        fleet.stood_s.append(float(re.search(r"stood still for ([0-9.]+) s", told).group(1)))
+        fleet.stood_s.append(float(re.search(r"suspended for ([0-9.]+) s", told).group(1)))
     moved = time.monotonic()
     await await_true("all have followed", lambda: all(one.followed for one in people))
     return "d2", moved

@@ -210,7 +210,7 @@ test('cautery move carries a running session, and the library goes after it', as
 	const mover = await run(['move', session, 'd2', '--url', at(d1), '--to-url', at(d2)]);
 	assert.equal(mover.status, 0, mover.stderr);
 	assert.match(mover.stdout, /d1-knee is d2-knee now/);
-	const stood = Number(/stood still for ([0-9.]+) s/.exec(mover.stderr)[1]);
+	const stood = Number(/was suspended for ([0-9.]+) s/.exec(mover.stderr)[1]);
 	if (process.env.E2E_SLOW !== '1')
 		assert.ok(stood < 1, `${stood} s`);
 	const { summary } = await two.call('session.describe', { session: 'd2-knee' });

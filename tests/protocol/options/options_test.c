@@ -122,7 +122,7 @@ static void mistakes_say_what_would_be_right(void **state)
 		{"a b --cut=1", "example: --cut takes no value\n"},
 		{"a b --secnods 1", "example: there is no option --secnods: did you mean --seconds?\n"},
 		{"a b --annihilate", "example: there is no option --annihilate (--help lists them)\n"},
-		{"a", "example: wants SESSION TOOL (--help tells more)\n"},
+		{"a", "example: wants SESSION TOOL (see --help)\n"},
 		{"a b c", "example: \"c\" belongs to no option\n"},
 	};
 	for (size_t i = 0; i < sizeof cases / sizeof *cases; i++) {
