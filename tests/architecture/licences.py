@@ -1,12 +1,12 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """The edges that others link or generate from are under Apache-2.0, and nothing under the GPL gets into them.
 
-Usage: licences.py ROOT OBJECT_LIST LINK_LIST
+Usage: licences.py ROOT OBJECT_LIST LINK_LIST SOURCE_LIST
 
 Everything else is under GPL-3.0-or-later, because it is, or embeds, the core, which needs CHOLMOD. Each
 file says its own licence. A file of the edges includes, imports and calls only files of the edges, and
-a target of the edges links no target that is outside them. OBJECT_LIST and LINK_LIST are as in arrows.py.
-deploy/manual/licences.md says what this means for those who use Cautery.
+a target of the edges is made from and links nothing that is outside them. OBJECT_LIST and LINK_LIST are as in
+arrows.py; SOURCE_LIST has the sources of each target in the form of LINK_LIST. deploy/manual/licences.md says what this means for those who use Cautery.
 """
 
 import os
@@ -27,15 +27,16 @@ EDGES = ("protocol/", "core/types/", "clients/library/", "clients/include/", "cl
 OUTSIDE = {"clients/web/src/wire/" + name
            for name in ("feed.ts", "link.ts", "mcap_worker.ts", "worker.ts", "worker_messages.ts")}
 
-# Targets that are built from files of the edges in a folder outside, and build flags, which hold no code.
-EDGE_TARGETS = {"cautery_types"}
+# Targets that are built from files of the edges in a folder outside (the second is what is installed), and build
+# flags, which hold no code.
+EDGE_TARGETS = {"cautery_types", "cautery-client"}
 NO_CODE = {"cautery_compiler"}
 # Libraries under the GPL, as link lines and includes name them.
 GPL_LIBRARY = re.compile(r"(?i)(cholmod|suitesparse|amd\.h|camd\.h|colamd)")
 
 LICENCE = re.compile(r"SPDX-License-Identifier: ([\w.-]+)")
 INCLUDE = re.compile(r'^\s*#\s*include\s*[<"]([^>"]+)[>"]', re.MULTILINE)
-IMPORT = re.compile(r"""(?:\bfrom|\bimport|\bimport\(|\brequire\(|\bnew URL\()\s*['"](\.[^'"]+)['"]""")
+IMPORT = re.compile(r"""(?:\bfrom|\bimport|\bimport\(|\brequire\(|\bnew URL\(|<reference path=)\s*['"](\.[^'"]+)['"]""")
 INCLUDE_FOLDERS = ("core/include", "core/types", "protocol/include", "clients/include", "core", "protocol",
                    "server", "clients", "tests")
 HEAD_LINES = 3  # a #! line may come first
@@ -92,12 +93,34 @@ def call_violations(objects):
             for other, names in sorted(others.items()) if not is_edge(other)]
 
 
+def edge_targets(lines):
+    return {target for folder, target, _ in lines if is_edge(folder + "/")} | EDGE_TARGETS
+
+
+def is_built(path):
+    return path.startswith("build")
+
+
 def link_violations(links):
-    edges = {target for folder, target, _ in links if is_edge(folder + "/")} | EDGE_TARGETS
+    edges = edge_targets(links)
     ours = {target for _, target, _ in links} | NO_CODE
     return [f"{folder}: {target} links {name}, which is under the GPL"
             for folder, target, named in links if target in edges for name in named
             if (name in ours and name not in edges | NO_CODE) or GPL_LIBRARY.search(name)]
+
+
+def source_violations(root, sources):
+    """`sources`: (folder, target, its sources), each a path, a target's objects, or a path in a build tree."""
+    edges = edge_targets(sources)
+    found = []
+    for folder, target, named in sources:
+        for name in named if target in edges else []:
+            objects = re.fullmatch(r"\$<TARGET_OBJECTS:([\w-]+)>", name)
+            path = posixpath.relpath(posixpath.join(root, folder, name), root)
+            ours = not path.startswith("..") and os.path.exists(os.path.join(root, path))
+            if (objects and objects.group(1) not in edges) or (ours and not is_edge(path) and not is_built(path)):
+                found.append(f"{folder}: {target} is made from {name}, which is under {GPL}")
+    return found
 
 
 def text_violations(root, files):
@@ -109,12 +132,14 @@ def text_violations(root, files):
     return found
 
 
-def violations(root, files, objects, links):
+def violations(root, files, objects, links, sources):
     return (file_violations(root, files) + call_violations(objects) + link_violations(links)
-            + text_violations(root, files))
+            + source_violations(root, sources) + text_violations(root, files))
 
 
 if __name__ == "__main__":
     every = project.all_files(sys.argv[1])
     pairs, missing = symbols.read_list(sys.argv[2])
-    project.finish(missing or violations(sys.argv[1], every, pairs, arrows.read_links(sys.argv[3])), len(every))
+    links, sources = arrows.read_links(sys.argv[3]), arrows.read_links(sys.argv[4])
+    missing += [f"{name}: lists no target" for name, lines in zip(sys.argv[3:5], (links, sources)) if not lines]
+    project.finish(missing or violations(sys.argv[1], every, pairs, links, sources), len(every))

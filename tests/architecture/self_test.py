@@ -356,12 +356,12 @@ class Licences(Compiled):
     LINKS = [("core", "cautery_types", ["cautery_compiler"]), ("core", "cautery_core", ["cautery_types", "cholmod"]),
              ("protocol", "cautery_protocol", ["cautery_types", "cautery_compiler", "PkgConfig::CJSON"])]
 
-    def found(self, files=(), links=(), objects=(), without=()):
+    def found(self, files=(), links=(), objects=(), without=(), sources=()):
         every = {name: text for name, text in {**self.FILES, **dict(files)}.items() if name not in without}
         for path, content in every.items():
             self.write(path, content)
         return licences.violations(self.root, sorted(every), [self.compiled(*o) for o in objects],
-                                   [*self.LINKS, *links])
+                                   [*self.LINKS, *links], list(sources))
 
     def test_edges_that_stand_alone_pass(self):
         self.assertEqual(self.found(objects=[("protocol/a.c", self.needing("a", "b")),
@@ -387,7 +387,8 @@ class Licences(Compiled):
                            ("clients/web/src/wire/a.ts", 'export * from "./worker";'),
                            ("clients/web/src/wire/a.ts", "const late = await import('../model/model');"),
                            ("clients/web/src/wire/a.ts", "import '../model/model.ts';"),
-                           ("clients/web/src/wire/a.ts", "new Worker(new URL('./worker.ts', import.meta.url));")):
+                           ("clients/web/src/wire/a.ts", "new Worker(new URL('./worker.ts', import.meta.url));"),
+                           ("clients/web/src/wire/a.ts", '/// <reference path="../model/model.ts" />')):
             self.assertEqual(len(self.found({name: self.APACHE + line + "\n"})), 1, line)
 
     def test_a_call_of_what_is_under_the_gpl(self):
@@ -400,6 +401,18 @@ class Licences(Compiled):
                                       ("clients/library", "cautery_client", ["cautery_types", "SuiteSparse::CHOLMOD"]),
                                       ("protocol/json", "cautery_json", ["cautery_protocol", "cholmod"])):
             self.assertEqual(len(self.found(links=[(folder, target, named)])), 1, named)
+
+    def test_a_target_that_is_made_from_what_is_under_the_gpl(self):
+        self.write("core/mesh/mesh.c", "")
+        self.write("build/protocol/generated.c", "")
+        for sources in (["json/scan.c"], ["$<TARGET_OBJECTS:cautery_types>"], ["../build/protocol/generated.c"],
+                        [os.path.join(self.root, "protocol/json/scan.c")]):
+            self.assertEqual(self.found(sources=[("protocol", "cautery_protocol", sources)]), [], sources)
+        for sources in (["../core/mesh/mesh.c"], ["$<TARGET_OBJECTS:cautery_core>"],
+                        [os.path.join(self.root, "core/mesh/mesh.c")]):
+            for folder, target in (("protocol", "cautery_protocol"), ("deploy", "cautery-client"), ("core", "cautery_types")):
+                self.assertEqual(len(self.found(sources=[(folder, target, sources)])), 1, sources)
+            self.assertEqual(self.found(sources=[("deploy", "other", sources)]), [])
 
     def test_the_text_and_the_package_go_with_it(self):
         self.assertEqual(len(self.found(without=["protocol/LICENSE"])), 1)
