@@ -12,7 +12,7 @@ enum { FAR_M = 100 };
 #define KIND(code) (1u << CAU_COMMAND_##code)
 #define NEEDS_TOOL                                                                                 \
 	(KIND(TOOL_REMOVE) | KIND(TOOL_CONFIGURE) | KIND(TOOL_MOVE) | KIND(TOOL_ENERGIZE) |            \
-	 KIND(TOOL_GRASP) | KIND(TOOL_RELEASE))
+	 KIND(TOOL_GRASP) | KIND(TOOL_RELEASE) | KIND(TOOL_HOLD))
 
 // clang-format off: rows of tables
 static const cau_field command_fields[] = {
@@ -56,6 +56,11 @@ RECORD(cau_move_record, "a move", move_fields, NULL)
 
 static const cau_field energize_fields[] = {
 	{.name = "energized", .type = CAU_FIELD_FLAG, .required = true, MEANS("", "on or off")},
+	{.name = "ticks",
+     .type = CAU_FIELD_INTEGER,
+     RANGE(0.0, INT32_MAX),
+     .offset = offsetof(cau_command, as.ticks) - offsetof(cau_command, as.energized),
+     MEANS("1", "of an enable: its energy goes off after so many ticks; 0: no limit")},
 };
 RECORD(cau_energize_record, "energy", energize_fields, NULL)
 

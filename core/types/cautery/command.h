@@ -17,7 +17,7 @@
 
 #include "cautery/scene.h"
 
-// code, JSON name
+// code, JSON name. Stores keep the number of a row, so new rows come last.
 #define CAU_COMMAND_TABLE(X)                                                                       \
 	X(TOOL_ADD, "tool.add")                                                                        \
 	X(TOOL_REMOVE, "tool.remove")                                                                  \
@@ -30,7 +30,8 @@
 	X(UNPIN, "unpin")                                                                              \
 	X(SET_MATERIAL, "material.set")                                                                \
 	X(SET_GRAVITY, "gravity.set")                                                                  \
-	X(SET_FORCE, "force.set")
+	X(SET_FORCE, "force.set")                                                                      \
+	X(TOOL_HOLD, "tool.hold")
 
 typedef enum cau_command_kind {
 #define X(code, name) CAU_COMMAND_##code,
@@ -51,7 +52,10 @@ typedef struct cau_command {
 			cau_pose pose;
 			double jaw;          // 0 closed to 1 open
 		} move;                  // TOOL_MOVE
-		int32_t energized;       // TOOL_ENERGIZE
+		struct {
+			int32_t energized; // TOOL_ENERGIZE
+			int32_t ticks;     // of an enable: energy is off again after so many; 0: no limit
+		};
 		cau_selection selection; // PIN, UNPIN
 		struct {
 			char layer[CAU_NAME_BYTES];

@@ -9,9 +9,10 @@
 //     tool.remove      tool
 //     tool.configure   tool, shape, sizes as in a scene's tool: replaces all, defaults where absent
 //     tool.move        tool, position_m, rotation, jaw (0)
-//     tool.energize    tool, energized (true or false)
+//     tool.energize    tool, energized (true or false), ticks (of an enable: off after so many)
 //     tool.grasp       tool
 //     tool.release     tool
+//     tool.hold        tool
 //     pin, unpin       selection
 //     material.set     layer, kind (the layer's), region (0), and the members of such a material
 //     gravity.set      gravity_m_s2

@@ -38,6 +38,8 @@ static const char *const commands[] = {
 	"{\"command\":\"gravity.set\",\"gravity_m_s2\":[0,-9.81,0]}",
 	"{\"command\":\"force.set\",\"selection\":{\"kind\":\"nearest\",\"center_m\":[0,0,0]},"
 	"\"force_n\":[0,0,-1]}",
+	"{\"command\":\"tool.hold\",\"tool\":\"hook\"}",
+	"{\"command\":\"tool.energize\",\"tool\":\"hook\",\"energized\":true,\"ticks\":180}",
 };
 
 static void every_command_comes_back(void **state)
@@ -85,6 +87,9 @@ static void members_land_where_they_belong(void **state)
 	read_ok(commands[13], &c);
 	assert_true(c.as.force.force_n[2] == -1.0);
 	assert_int_equal(c.as.force.selection.kind, CAU_SELECT_NEAREST);
+	read_ok(commands[15], &c);
+	assert_int_equal(c.as.energized, 1);
+	assert_int_equal(c.as.ticks, 180);
 }
 
 typedef struct refusal {
@@ -96,8 +101,10 @@ static const refusal refused[] = {
 	{"3", "", "an object is needed, not 3"},
 	{"{\"command\":\"tool.mvoe\"}", "command",
      "\"tool.mvoe\" is none of tool.add, tool.remove, tool.configure, tool.move, tool.energize, "
-     "tool.grasp, tool.release, pin, unpin, material.set, gravity.set, force.set; did you mean "
-     "\"tool.move\"?"},
+     "tool.grasp, tool.release, pin, unpin, material.set, gravity.set, force.set, tool.hold; did "
+     "you mean \"tool.move\"?"},
+	{"{\"command\":\"tool.energize\",\"tool\":\"a\",\"energized\":true,\"ticks\":-1}", "ticks",
+     "-1 is outside 0 to 2147483647"},
 	{"{\"command\":\"tool.move\",\"position_m\":[0,0,0]}", "tool", "missing: a string is needed"},
 	{"{\"command\":\"tool.move\",\"tool\":\"a\"}", "position_m",
      "missing: an array of 3 is needed"},

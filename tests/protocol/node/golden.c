@@ -322,7 +322,7 @@ static void write_command(FILE *out, const cau_method_info *info, int layer_kind
 	cau_default_command(&command, kind);
 	if (kind == CAU_COMMAND_TOOL_ADD)
 		strcpy(command.as.definition.name, "hook");
-	else if (kind <= CAU_COMMAND_TOOL_RELEASE)
+	else if (kind <= CAU_COMMAND_TOOL_RELEASE || kind == CAU_COMMAND_TOOL_HOLD)
 		strcpy(command.tool, "hook");
 	if (kind == CAU_COMMAND_SET_MATERIAL) {
 		strcpy(command.as.material.layer, "skin");

@@ -235,7 +235,7 @@ static void make_command(cau_command *command, int kind)
 	command->tick = 9;
 	if (kind == CAU_COMMAND_TOOL_ADD)
 		strcpy(command->as.definition.name, "hook");
-	else if (kind <= CAU_COMMAND_TOOL_RELEASE)
+	else if (kind <= CAU_COMMAND_TOOL_RELEASE || kind == CAU_COMMAND_TOOL_HOLD)
 		strcpy(command->tool, "hook");
 	if (kind == CAU_COMMAND_SET_MATERIAL)
 		strcpy(command->as.material.layer, "skin");

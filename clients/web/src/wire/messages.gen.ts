@@ -1375,7 +1375,7 @@ export interface ToolMove {
   jaw?: number;
 }
 
-/** energy on (driver only) or off */
+/** energy on (driver only), for as many ticks as `ticks` says; or off */
 export interface ToolEnergize {
   /** its id; that of the connection's URL by default */
   session?: string;
@@ -1389,6 +1389,8 @@ export interface ToolEnergize {
   tool: string;
   /** on or off */
   energized: boolean;
+  /** of an enable: its energy goes off after so many ticks; 0: no limit (0 to 2147483647) */
+  ticks?: number;
 }
 
 /** closes the jaws on what is between them; driver only */
@@ -1407,6 +1409,20 @@ export interface ToolGrasp {
 
 /** opens them; driver only */
 export interface ToolRelease {
+  /** its id; that of the connection's URL by default */
+  session?: string;
+  /** see session_change (1 to 9007199254740991) */
+  client_sequence?: number;
+  /** applied at the first tick border at or after this; 0: the next (0 to 9007199254740991) */
+  tick?: number;
+  /** the driver's own count (0 to 9007199254740991) */
+  sequence?: number;
+  /** which tool */
+  tool: string;
+}
+
+/** keeps the tool where it is, until it is moved again; driver only */
+export interface ToolHold {
   /** its id; that of the connection's URL by default */
   session?: string;
   /** see session_change (1 to 9007199254740991) */
@@ -1732,12 +1748,14 @@ export interface Requests {
   'tool.configure': { params: ToolConfigure; result: CommandResult };
   /** moves it, at its speed limit; needs to be its driver */
   'tool.move': { params: ToolMove; result: CommandResult };
-  /** energy on (driver only) or off */
+  /** energy on (driver only), for as many ticks as `ticks` says; or off */
   'tool.energize': { params: ToolEnergize; result: CommandResult };
   /** closes the jaws on what is between them; driver only */
   'tool.grasp': { params: ToolGrasp; result: CommandResult };
   /** opens them; driver only */
   'tool.release': { params: ToolRelease; result: CommandResult };
+  /** keeps the tool where it is, until it is moved again; driver only */
+  'tool.hold': { params: ToolHold; result: CommandResult };
   /** becomes the driver: of a tool that nobody drives, or with role admin; energy off */
   'tool.take_over': { params: ToolRef; result: Driver };
   /** asks its driver, who sees takeover.requested */
@@ -1832,6 +1850,7 @@ export const CHANGING_METHODS: ReadonlySet<string> = new Set<string>([
   'tool.energize',
   'tool.grasp',
   'tool.release',
+  'tool.hold',
   'tool.take_over',
   'tool.hand_over',
   'pin',
