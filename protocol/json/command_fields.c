@@ -56,13 +56,16 @@ RECORD(cau_move_record, "a move", move_fields, NULL)
 
 static const cau_field energize_fields[] = {
 	{.name = "energized", .type = CAU_FIELD_FLAG, .required = true, MEANS("", "on or off")},
+};
+RECORD(cau_energize_record, "energy", energize_fields, NULL)
+
+static const cau_field energize_limit_fields[] = {
 	{.name = "ticks",
      .type = CAU_FIELD_INTEGER,
      RANGE(0.0, INT32_MAX),
-     .offset = offsetof(cau_command, as.ticks) - offsetof(cau_command, as.energized),
      MEANS("1", "of an enable: its energy goes off after so many ticks; 0: no limit")},
 };
-RECORD(cau_energize_record, "energy", energize_fields, NULL)
+RECORD(cau_energize_limit_record, "a limit", energize_limit_fields, NULL)
 
 static const cau_field material_fields[] = {
 	{INSIDE(kind, material), .type = CAU_FIELD_CHOICE, .choices = &material_kind_choices,
@@ -141,7 +144,8 @@ int cau_command_parts(cau_command *command, cau_part parts[CAU_MAX_PARTS])
 		return 2;
 	case CAU_COMMAND_TOOL_ENERGIZE:
 		parts[1] = (cau_part){&cau_energize_record, &command->as.energized, 0};
-		return 2;
+		parts[2] = (cau_part){&cau_energize_limit_record, &command->as.ticks, 0};
+		return 3;
 	case CAU_COMMAND_SET_GRAVITY:
 		parts[1] = (cau_part){&cau_gravity_record, command->as.gravity_m_s2, 0};
 		return 2;
@@ -151,6 +155,14 @@ int cau_command_parts(cau_command *command, cau_part parts[CAU_MAX_PARTS])
 	default:
 		return 1;
 	}
+}
+
+int cau_command_parts_to_write(cau_command *command, cau_part parts[CAU_MAX_PARTS])
+{
+	int count = cau_command_parts(command, parts);
+	CAU_ASSERT(count > 0, "command %d has no parts", command->kind);
+	bool unlimited = command->kind == CAU_COMMAND_TOOL_ENERGIZE && !command->as.ticks;
+	return unlimited ? count - 1 : count;
 }
 
 cau_selection *cau_command_selection(cau_command *command)

@@ -21,7 +21,7 @@ void cau_write_command(cau_json_writer *writer, const char *key, const cau_comma
 		return;
 	}
 	cau_json_open(writer, key, '{');
-	cau_write_parts(writer, parts, cau_command_parts(shared, parts));
+	cau_write_parts(writer, parts, cau_command_parts_to_write(shared, parts));
 	const cau_selection *selection = cau_command_selection(shared);
 	if (selection)
 		cau_write_selection(writer, "selection", selection);

@@ -24,6 +24,7 @@ extern const cau_record cau_cut_record;             // cau_cut_def
 extern const cau_record cau_command_record;         // cau_command without `as`, by kind
 extern const cau_record cau_move_record;            // cau_command.as.move
 extern const cau_record cau_energize_record;        // cau_command.as.energized
+extern const cau_record cau_energize_limit_record;  // cau_command.as.ticks
 extern const cau_record cau_material_record;        // cau_command.as.material without its materials
 extern const cau_record cau_material_region_record; // int32_t: the region, 0 if absent
 extern const cau_record cau_gravity_record;         // cau_command.as.gravity_m_s2
@@ -37,5 +38,7 @@ int cau_material_parts(int layer_kind, cau_sheet_material *sheet, cau_fat_materi
 // All parts of a command: its head, then what its kind has. Of SET_MATERIAL, the material's kind
 // must be set already.
 int cau_command_parts(cau_command *command, cau_part parts[CAU_MAX_PARTS]);
+// The same, without what older builds do not know and what says nothing: no limit of an enable.
+int cau_command_parts_to_write(cau_command *command, cau_part parts[CAU_MAX_PARTS]);
 // The selection of a command that has one, else NULL.
 cau_selection *cau_command_selection(cau_command *command);

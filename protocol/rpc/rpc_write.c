@@ -63,7 +63,7 @@ static void write_command_members(cau_json_writer *writer, const cau_command *co
 {
 	cau_part parts[CAU_MAX_PARTS];
 	cau_command *shared = (cau_command *)command; // parts are not const; writing leaves it alone
-	int count = cau_command_parts(shared, parts);
+	int count = cau_command_parts_to_write(shared, parts);
 	cau_record head = *parts[0].record;
 	head.fields++;
 	head.field_count--;
