@@ -23,6 +23,10 @@ static cau_status check_values(const cau_session *session, const cau_command *co
 			return cau_fail(error, CAU_BAD_VALUE, "jaw", "%g is not between 0 and 1",
 			                command->as.move.jaw);
 		return cau_pose_check(&command->as.move.pose, "pose", error);
+	case CAU_COMMAND_TOOL_ENERGIZE:
+		if (command->as.energized && command->as.ticks < 0)
+			return cau_fail(error, CAU_BAD_VALUE, "ticks", "%d is below 0", command->as.ticks);
+		return CAU_OK;
 	case CAU_COMMAND_PIN:
 	case CAU_COMMAND_UNPIN:
 		return cau_selection_check(&command->as.selection, "selection", error);
@@ -51,6 +55,30 @@ static cau_status check_values(const cau_session *session, const cau_command *co
 	}
 }
 
+static bool is_added(const cau_session *session, const char *tool)
+{
+	for (int32_t k = 0; k < session->command_count; k++)
+		if (session->command[k].kind == CAU_COMMAND_TOOL_ADD &&
+		    strcmp(session->command[k].as.definition.name, tool) == 0)
+			return true;
+	return cau_session_find_tool(session, tool) >= 0;
+}
+
+// An off or a hold that is due acts at once and needs no room (still.c). Of a tool that is not
+// there it is queued after all, for the tick to refuse it.
+static bool acts_at_once(cau_session *session, const cau_command *command)
+{
+	bool off = command->kind == CAU_COMMAND_TOOL_ENERGIZE && !command->as.energized;
+	bool hold = command->kind == CAU_COMMAND_TOOL_HOLD;
+	if (!(off || hold) || command->tick > session->tick)
+		return false;
+	if (off)
+		cau_session_energy_off(session, command->tool, command->sequence);
+	else
+		cau_session_hold_still(session, command->tool, command->sequence);
+	return is_added(session, command->tool);
+}
+
 cau_status cau_session_submit(cau_session *session, const cau_command *command, cau_error *error)
 {
 	if (command->kind < 0 || command->kind >= CAU_COMMAND_COUNT)
@@ -58,10 +86,15 @@ cau_status cau_session_submit(cau_session *session, const cau_command *command, 
 	cau_status status = check_values(session, command, error);
 	if (status)
 		return status;
+	if (acts_at_once(session, command))
+		return CAU_OK;
 	if (session->command_count == session->command_capacity)
 		return cau_fail(error, CAU_LIMIT, NULL, "%d commands are waiting already",
 		                session->command_count);
-	session->command[session->command_count++] = *command;
+	cau_command *queued = &session->command[session->command_count++];
+	*queued = *command;
+	if (queued->kind == CAU_COMMAND_TOOL_ENERGIZE && !queued->as.energized)
+		queued->as.ticks = 0; // of an enable alone
 	return CAU_OK;
 }
 
@@ -70,6 +103,8 @@ static cau_status configure_tool(cau_session *session, cau_tool *tool, const cau
                                  cau_error *error)
 {
 	cau_heat_grid grid;
+	if (cau_session_has_definition(tool, def))
+		return CAU_OK;
 	cau_status status = cau_heat_grid_create(&grid, def, session->scene->ambient_c,
 	                                         session->solver.step_s, &tool->state.pose, error);
 	if (status)
@@ -86,13 +121,15 @@ static cau_status configure_tool(cau_session *session, cau_tool *tool, const cau
 
 static cau_status apply_to_tool(cau_session *session, const cau_command *command, cau_error *error)
 {
-	CAU_ASSERT(command->kind > CAU_COMMAND_TOOL_ADD && command->kind <= CAU_COMMAND_TOOL_RELEASE,
-	           "command %d is for no tool", command->kind);
+	CAU_ASSERT(command->tool[0] != 0, "command %d is for no tool", command->kind);
 	int32_t index = cau_session_find_tool(session, command->tool);
 	if (index < 0)
 		return cau_fail(error, CAU_NOT_FOUND, "tool", "there is no tool \"%s\"", command->tool);
 	cau_tool *tool = &session->tool[index];
-	tool->state.sequence = command->sequence;
+	bool ends = command->kind == CAU_COMMAND_TOOL_HOLD ||
+	            (command->kind == CAU_COMMAND_TOOL_ENERGIZE && !command->as.energized);
+	if (command->sequence || !ends) // the server's own have none
+		tool->state.sequence = command->sequence;
 	switch (command->kind) {
 	case CAU_COMMAND_TOOL_REMOVE:
 		cau_session_drop_tool(session, index);
@@ -108,39 +145,14 @@ static cau_status apply_to_tool(cau_session *session, const cau_command *command
 		tool->state.energized = command->as.energized != 0;
 		return CAU_OK;
 	case CAU_COMMAND_TOOL_GRASP:
-		return cau_session_grasp(session, tool, error);
+		return tool->state.grasping ? CAU_OK : cau_session_grasp(session, tool, error);
+	case CAU_COMMAND_TOOL_HOLD:
+		cau_session_stay(tool);
+		return CAU_OK;
 	default:
 		cau_session_release(tool);
 		return CAU_OK;
 	}
-}
-
-// Where the region's material stands; the first, which is the default, if the region has none.
-static int32_t find_material(const cau_layer_def *def, bool fat, int32_t region)
-{
-	CAU_ASSERT(def->material_count >= 1 && def->material_count <= CAU_MAX_MATERIALS, "%d materials",
-	           def->material_count);
-	for (int32_t m = 0; m < def->material_count; m++)
-		if ((fat ? def->fat[m].region : def->sheet[m].region) == region)
-			return m;
-	return 0;
-}
-
-bool cau_layer_take_material(cau_layer_def *def, const cau_command *command)
-{
-	bool fat = def->kind == CAU_LAYER_FAT, links = def->kind == CAU_LAYER_LINKS;
-	int given = command->as.material.kind;
-	if (fat != (given == CAU_LAYER_FAT) || links != (given == CAU_LAYER_LINKS))
-		return false;
-	if (fat)
-		def->fat[find_material(def, fat, command->as.material.fat.region)] =
-			command->as.material.fat;
-	else if (links)
-		def->link = command->as.material.link;
-	else
-		def->sheet[find_material(def, fat, command->as.material.sheet.region)] =
-			command->as.material.sheet;
-	return true;
 }
 
 static cau_status set_material(cau_session *session, const cau_command *command, cau_error *error)
@@ -153,6 +165,8 @@ static cau_status set_material(cau_session *session, const cau_command *command,
 	if (!cau_layer_take_material(&changed, command))
 		return cau_fail(error, CAU_BAD_VALUE, "kind", "layer \"%s\" is of another kind of tissue",
 		                changed.name);
+	if (cau_session_has_material(session, command))
+		return CAU_OK;
 	cau_matrix_update_stop(&session->update); // the factor in the making reads the materials
 	session->tissue.layer[index].def = changed;
 	cau_elements_set_materials(&session->solver.elements, &session->solver.slots, &session->tissue,
@@ -200,6 +214,19 @@ static cau_status apply(cau_session *session, const cau_command *command, cau_er
 	}
 }
 
+// What waits for a later tick and must not undo this command goes; returns how many of `kept` stay.
+static int32_t void_older(cau_session *session, const cau_command *command, int32_t kept)
+{
+	CAU_ASSERT(kept >= 0 && kept <= session->command_count, "%d commands kept of %d", kept,
+	           session->command_count);
+	if (command->kind == CAU_COMMAND_TOOL_ENERGIZE)
+		return cau_session_void(session->command, kept, command->tool,
+		                        command->as.energized ? CAU_VOID_LIMITS : CAU_VOID_ENABLES);
+	if (command->kind == CAU_COMMAND_TOOL_REMOVE || command->kind == CAU_COMMAND_TOOL_HOLD)
+		return cau_session_void(session->command, kept, command->tool, CAU_VOID_ALL);
+	return kept;
+}
+
 // A command that does not fit the present state is refused and reported; only numerical trouble and
 // a lack of memory end the step.
 cau_status cau_session_apply_commands(cau_session *session, cau_error *error)
@@ -207,13 +234,16 @@ cau_status cau_session_apply_commands(cau_session *session, cau_error *error)
 	cau_status status = CAU_OK;
 	int32_t kept = 0;
 	for (int32_t k = 0; k < session->command_count; k++) {
-		const cau_command *command = &session->command[k];
-		if (status || command->tick > session->tick) {
-			session->command[kept++] = *command;
+		const cau_command command = session->command[k];
+		if (status || command.tick > session->tick) {
+			session->command[kept++] = command;
 			continue;
 		}
 		cau_error refusal = {0};
-		cau_status applied = apply(session, command, &refusal);
+		kept = void_older(session, &command, kept);
+		cau_status applied = apply(session, &command, &refusal);
+		if (!applied && cau_session_limit_energy(&command, session->tick, &session->command[kept]))
+			kept++; // in the place of the enable, or of one before it
 		if (applied == CAU_NUMERICAL || applied == CAU_NO_MEMORY) {
 			status = applied;
 			if (error)

@@ -16,8 +16,8 @@
 // - nothing was cut, nothing shrank, no cut waited for the factor, no factor was in the making,
 // - no step was cut short lest tissue cross tissue.
 //
-// It wakes at a command that is due, and where supports are led; but not at a move that leads a
-// tool where it is already, which drivers send at the rate of their screens.
+// It wakes at a command that is due, and where supports are led; but not at one that states what is
+// so already (level.c), as a tool's pose, which drivers send at the rate of their screens.
 #include <math.h>
 #include <string.h>
 
@@ -138,26 +138,14 @@ void cau_session_fall_asleep(cau_session *session)
 
 // ---- waking
 
-// Whether a command leads a tool where it is already.
-static bool changes_nothing(const cau_session *session, const cau_command *command)
-{
-	int32_t index =
-		command->kind == CAU_COMMAND_TOOL_MOVE ? cau_session_find_tool(session, command->tool) : -1;
-	if (index < 0)
-		return false;
-	const cau_tool *tool = &session->tool[index];
-	return is_same_pose(&command->as.move.pose, &tool->target) &&
-	       (tool->state.grasping || command->as.move.jaw == tool->jaw_target);
-}
-
-static bool is_disturbed(const cau_session *session)
+static bool is_disturbed(cau_session *session)
 {
 	CAU_ASSERT(session->driven_count >= 0, "%d vertices led", session->driven_count);
 	if (session->driven_count)
 		return true;
 	for (int32_t k = 0; k < session->command_count; k++)
 		if (session->command[k].tick <= session->tick &&
-		    !changes_nothing(session, &session->command[k]))
+		    !cau_session_changes_nothing(session, &session->command[k]))
 			return true;
 	return false;
 }

@@ -139,7 +139,22 @@ struct cau_session {
 
 // command.c: applies the queued commands that are due.
 cau_status cau_session_apply_commands(cau_session *session, cau_error *error);
-// Puts the material of a SET_MATERIAL into the layer; false: it is of another kind of tissue.
+// level.c: whether the command states what is so already, or will be refused; the same of a
+// CONFIGURE's definition and of a SET_MATERIAL alone.
+bool cau_session_changes_nothing(cau_session *session, const cau_command *command);
+bool cau_session_has_definition(const cau_tool *tool, const cau_tool_def *def);
+bool cau_session_has_material(const cau_session *session, const cau_command *command);
+// still.c: takes commands about the tool out of a queue, and returns how many are left of `count`:
+// what ends an enable's ticks; enables and these; all.
+typedef enum cau_void { CAU_VOID_LIMITS, CAU_VOID_ENABLES, CAU_VOID_ALL } cau_void;
+int32_t cau_session_void(cau_command *queue, int32_t count, const char *tool, cau_void which);
+// Of an enable with `ticks` that acts at this tick, the command that ends it. False: it has none.
+bool cau_session_limit_energy(const cau_command *enable, uint64_t tick, cau_command *end);
+// The tool's target becomes where it is; whether it is that already.
+void cau_session_stay(cau_tool *tool);
+bool cau_session_stays(const cau_tool *tool);
+// layer_material.c: puts the material of a SET_MATERIAL into the layer; false: it is of another
+// kind of tissue.
 bool cau_layer_take_material(cau_layer_def *def, const cau_command *command);
 // tool_motion.c: tools follow their drivers, within their speed limits.
 void cau_session_move_tools(cau_session *session);

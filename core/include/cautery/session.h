@@ -118,6 +118,21 @@ void cau_session_set_threads(cau_session *session, int32_t thread_count);
 // refusals.
 cau_status cau_session_submit(cau_session *session, const cau_command *command, cau_error *error);
 
+// What must never fail, and needs no room in the queue. Both act at once, while nothing is stepped;
+// submitting the command that is due does the same. `sequence` is then the tool's last applied one;
+// 0: that stays. A tool that is not there is left alone.
+// Energy off. Enables of the tool that wait in the queue go, and so does what would end one.
+void cau_session_energy_off(cau_session *session, const char *tool, uint64_t sequence);
+// The tool is led to where it is. All commands about it that wait in the queue go.
+void cau_session_hold_still(cau_session *session, const char *tool, uint64_t sequence);
+// Commands about the tool that wait in the queue.
+int32_t cau_session_waiting(const cau_session *session, const char *tool);
+// The first tool that a step may heat and that is not one of the `count` names allowed: it is on,
+// or a queued command would turn it on. NULL: there is none. The name is the session's, until the
+// next call that changes it.
+const char *cau_session_heats_beyond(const cau_session *session, const char *const *allowed,
+                                     int32_t count);
+
 // Moves pinned vertices to position (m, count x 3) during the next step, and leaves them there: a
 // support that moves, a prescribed displacement. A later call before that step replaces this one;
 // it is not a command, so it is neither queued nor part of a snapshot. CAU_BAD_STATE names a vertex

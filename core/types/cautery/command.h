@@ -50,8 +50,8 @@ typedef struct cau_command {
 		cau_tool_def definition; // TOOL_ADD, TOOL_CONFIGURE (its pose is ignored)
 		struct {
 			cau_pose pose;
-			double jaw;          // 0 closed to 1 open
-		} move;                  // TOOL_MOVE
+			double jaw; // 0 closed to 1 open
+		} move;         // TOOL_MOVE
 		struct {
 			int32_t energized; // TOOL_ENERGIZE
 			int32_t ticks;     // of an enable: energy is off again after so many; 0: no limit

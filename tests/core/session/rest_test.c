@@ -49,10 +49,15 @@ static cau_scene_def *make_hanging_block(int precision)
 	return scene;
 }
 
-// A command that changes nothing and yet wakes.
+// What changes nothing and yet wakes.
 static void keep_awake(cau_session *session)
 {
-	stage_gravity(session, 0, 0, gravity_z);
+	int32_t vertex = 0;
+	while (!session->pinned[vertex])
+		vertex++;
+	double at[3]; // a support that is led to where it is
+	memcpy(at, session->position + 3 * (size_t)vertex, sizeof at);
+	assert_int_equal(cau_session_drive(session, 1, &vertex, at, NULL), CAU_OK);
 }
 
 static void every_bit_stays(void **state)
@@ -164,8 +169,9 @@ static void by_grasp(cau_session *session)
 	stage_grasp(session, "jaws");
 }
 
-static void by_release(cau_session *session)
+static void by_release(cau_session *session) // of jaws that are closed
 {
+	session->tool[cau_session_find_tool(session, "jaws")].state.grasping = true;
 	stage_release(session, "jaws");
 }
 
@@ -256,6 +262,7 @@ static void a_command_wakes_at_its_tick(void **state)
 	cau_session *session = stage_open(scene, 1);
 	step_to_rest(session);
 	cau_command later = stage_command(CAU_COMMAND_SET_GRAVITY);
+	later.as.gravity_m_s2[0] = 1;
 	later.tick = stage_frame(session).tick + 5;
 	stage_submit(session, &later);
 	stage_step(session, 5);

@@ -1,0 +1,116 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Commands that state a level: where a tool is led, whether it is on, what a material is. Stated
+// again while it holds, a level changes nothing: drivers repeat themselves, and a connection that
+// was lost may send a command twice. So such a command neither acts again nor wakes tissue that
+// rests.
+#include <string.h>
+
+#include "cautery/assert.h"
+#include "session/session_internal.h"
+
+bool cau_session_has_definition(const cau_tool *tool, const cau_tool_def *def)
+{
+	const cau_tool_def *now = &tool->state.definition;
+	bool same = now->shape == def->shape;
+#define COMPARE(field, ...) same = same && now->field == def->field;
+	CAU_TOOL_TABLE(COMPARE)
+#undef COMPARE
+	return same;
+}
+
+static bool has_pose(const cau_session *session, const cau_tool *tool, const cau_command *command)
+{
+	const cau_pose *pose = &command->as.move.pose;
+	CAU_ASSERT(session->tool_count > 0, "a move of %s, and no tool", command->tool);
+	return cau_pose_is_same_place(pose, &tool->target) &&
+	       cau_pose_is_same_turn(pose, &tool->target) &&
+	       (tool->state.grasping || command->as.move.jaw == tool->jaw_target);
+}
+
+// A tool that is not there is changed by nothing: its commands are refused.
+static bool has_tool_level(const cau_session *session, const cau_command *command)
+{
+	int32_t index = cau_session_find_tool(session, command->tool);
+	if (index < 0)
+		return true;
+	const cau_tool *tool = &session->tool[index];
+	switch (command->kind) {
+	case CAU_COMMAND_TOOL_CONFIGURE:
+		return cau_session_has_definition(tool, &command->as.definition);
+	case CAU_COMMAND_TOOL_MOVE:
+		return has_pose(session, tool, command);
+	case CAU_COMMAND_TOOL_ENERGIZE:
+		return tool->state.energized == (command->as.energized != 0);
+	case CAU_COMMAND_TOOL_GRASP:
+		return tool->state.grasping;
+	case CAU_COMMAND_TOOL_RELEASE:
+		return !tool->state.grasping && tool->jaw_target == 1;
+	case CAU_COMMAND_TOOL_HOLD:
+		return cau_session_stays(tool);
+	default:
+		return false;
+	}
+}
+
+bool cau_session_has_material(const cau_session *session, const cau_command *command)
+{
+	int32_t index = cau_tissue_find_layer(&session->tissue, command->as.material.layer);
+	if (index < 0)
+		return true;
+	cau_layer_def changed = session->tissue.layer[index].def;
+	return !cau_layer_take_material(&changed, command) ||
+	       memcmp(&changed, &session->tissue.layer[index].def, sizeof changed) == 0;
+}
+
+static bool has_pins(cau_session *session, const cau_command *command)
+{
+	uint8_t pin = command->kind == CAU_COMMAND_PIN;
+	size_t n = (size_t)session->tissue.vertex_count;
+	memset(session->chosen, 0, n);
+	cau_tissue_select(&session->tissue, &command->as.selection, session->chosen);
+	for (size_t v = 0; v < n; v++)
+		if (session->chosen[v] && session->pinned[v] != pin)
+			return false;
+	return true;
+}
+
+static bool has_force(cau_session *session, const cau_command *command)
+{
+	const double *force = command->as.force.force_n;
+	size_t n = (size_t)session->tissue.vertex_count;
+	memset(session->chosen, 0, n);
+	cau_tissue_select(&session->tissue, &command->as.force.selection, session->chosen);
+	for (size_t v = 0; v < n; v++)
+		for (int c = 0; c < 3; c++)
+			if (session->chosen[v] && session->external[3 * v + (size_t)c] != force[c])
+				return false;
+	return true;
+}
+
+static bool has_gravity(const cau_session *session, const cau_command *command)
+{
+	for (int c = 0; c < 3; c++)
+		if (session->scene->gravity_m_s2[c] != command->as.gravity_m_s2[c])
+			return false;
+	return true;
+}
+
+bool cau_session_changes_nothing(cau_session *session, const cau_command *command)
+{
+	CAU_ASSERT_INDEX(command->kind, CAU_COMMAND_COUNT);
+	switch (command->kind) {
+	case CAU_COMMAND_TOOL_ADD:
+		return cau_session_find_tool(session, command->as.definition.name) >= 0;
+	case CAU_COMMAND_PIN:
+	case CAU_COMMAND_UNPIN:
+		return has_pins(session, command);
+	case CAU_COMMAND_SET_MATERIAL:
+		return cau_session_has_material(session, command);
+	case CAU_COMMAND_SET_GRAVITY:
+		return has_gravity(session, command);
+	case CAU_COMMAND_SET_FORCE:
+		return has_force(session, command);
+	default:
+		return has_tool_level(session, command);
+	}
+}

@@ -1,0 +1,150 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Energy off, and a tool that is held where it is: calls that cannot fail and need no room. They
+// act at once, not at the next tick. Commands that wait for a later tick must not undo them, so
+// those are taken out of the queue: enables by an off, everything about the tool by a hold and a
+// removal.
+//
+// cau_session_submit of such a command that is due does the same, so a log that holds it replays to
+// the same bits.
+#include <string.h>
+
+#include "cautery/assert.h"
+#include "session/session_internal.h"
+
+// ---- commands that wait
+
+static bool is_about(const cau_command *command, const char *tool)
+{
+	bool about_tool =
+		(command->kind > CAU_COMMAND_TOOL_ADD && command->kind <= CAU_COMMAND_TOOL_RELEASE) ||
+		command->kind == CAU_COMMAND_TOOL_HOLD;
+	return about_tool && strcmp(command->tool, tool) == 0;
+}
+
+// The end of an enable's ticks waits in the queue, in the place that the enable had.
+static bool is_limit(const cau_command *command)
+{
+	return command->kind == CAU_COMMAND_TOOL_ENERGIZE && !command->as.energized &&
+	       command->as.ticks > 0;
+}
+
+static bool is_enable(const cau_command *command)
+{
+	return command->kind == CAU_COMMAND_TOOL_ENERGIZE && command->as.energized;
+}
+
+static bool is_void(const cau_command *command, const char *tool, cau_void which)
+{
+	if (!is_about(command, tool))
+		return false;
+	return which == CAU_VOID_ALL || is_limit(command) ||
+	       (which == CAU_VOID_ENABLES && is_enable(command));
+}
+
+int32_t cau_session_void(cau_command *queue, int32_t count, const char *tool, cau_void which)
+{
+	CAU_ASSERT(count >= 0, "a queue of %d commands", count);
+	int32_t kept = 0;
+	for (int32_t k = 0; k < count; k++)
+		if (!is_void(&queue[k], tool, which))
+			queue[kept++] = queue[k];
+	return kept;
+}
+
+int32_t cau_session_waiting(const cau_session *session, const char *tool)
+{
+	int32_t count = 0;
+	for (int32_t k = 0; k < session->command_count; k++)
+		count += is_about(&session->command[k], tool);
+	return count;
+}
+
+bool cau_session_limit_energy(const cau_command *enable, uint64_t tick, cau_command *end)
+{
+	if (!is_enable(enable) || enable->as.ticks <= 0)
+		return false;
+	*end = *enable;
+	end->tick = tick + (uint64_t)enable->as.ticks;
+	end->sequence = 0;
+	end->as.energized = 0;
+	return true;
+}
+
+// ---- what cannot fail
+
+static void disturb(cau_session *session)
+{
+	session->rest.resting = false;
+	session->rest.quiet_ticks = 0;
+}
+
+static void take_out(cau_session *session, const char *tool, cau_void which)
+{
+	session->command_count =
+		cau_session_void(session->command, session->command_count, tool, which);
+}
+
+void cau_session_energy_off(cau_session *session, const char *tool, uint64_t sequence)
+{
+	int32_t index = cau_session_find_tool(session, tool);
+	take_out(session, tool, CAU_VOID_ENABLES);
+	if (index < 0)
+		return;
+	cau_tool_state *state = &session->tool[index].state;
+	if (state->energized)
+		disturb(session);
+	state->energized = false;
+	if (sequence)
+		state->sequence = sequence;
+}
+
+void cau_session_stay(cau_tool *tool)
+{
+	tool->target = tool->state.pose;
+	if (!tool->state.grasping)
+		tool->jaw_target = tool->state.jaw;
+}
+
+bool cau_session_stays(const cau_tool *tool)
+{
+	return cau_pose_is_same_place(&tool->state.pose, &tool->target) &&
+	       cau_pose_is_same_turn(&tool->state.pose, &tool->target) &&
+	       (tool->state.grasping || tool->jaw_target == tool->state.jaw);
+}
+
+void cau_session_hold_still(cau_session *session, const char *tool, uint64_t sequence)
+{
+	int32_t index = cau_session_find_tool(session, tool);
+	take_out(session, tool, CAU_VOID_ALL);
+	if (index < 0)
+		return;
+	cau_tool *held = &session->tool[index];
+	if (!cau_session_stays(held))
+		disturb(session);
+	cau_session_stay(held);
+	if (sequence)
+		held->state.sequence = sequence;
+}
+
+// ---- who may heat
+
+static bool is_among(const char *name, const char *const *names, int32_t count)
+{
+	for (int32_t i = 0; i < count; i++)
+		if (strcmp(names[i], name) == 0)
+			return true;
+	return false;
+}
+
+const char *cau_session_heats_beyond(const cau_session *session, const char *const *allowed,
+                                     int32_t count)
+{
+	for (int32_t i = 0; i < session->tool_count; i++)
+		if (session->tool[i].state.energized &&
+		    !is_among(session->tool[i].state.name, allowed, count))
+			return session->tool[i].state.name;
+	for (int32_t k = 0; k < session->command_count; k++)
+		if (is_enable(&session->command[k]) && !is_among(session->command[k].tool, allowed, count))
+			return session->command[k].tool;
+	return NULL;
+}
