@@ -13,9 +13,9 @@
 
 enum {
 	SCRIPT_BYTES_MAX = 1 << 28,
-	LEAD_TICKS = 8,        // commands leave so long before they are due
-	OUTSTANDING_MAX = 128, // requests without answer
-	TOLD_MAX = 10,         // refusals told one by one
+	LEAD_TICKS = 8,       // commands leave so long before they are due
+	OUTSTANDING_MAX = 64, // requests without answer: as many may wait for later ticks
+	TOLD_MAX = 10,        // refusals told one by one
 };
 
 typedef struct script_line {

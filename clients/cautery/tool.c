@@ -158,21 +158,30 @@ static cli_exit act_line(hand *h)
 	return code ? code : send_pose(h, "at the end of the line");
 }
 
-static cli_exit switch_energy(hand *h, int32_t on)
+static cli_exit switch_energy(hand *h, int32_t on, int32_t ticks)
 {
 	cau_command command = command_of(h, CAU_COMMAND_TOOL_ENERGIZE);
 	command.as.energized = on;
+	command.as.ticks = ticks;
 	return send(h, &command, on ? "energy on" : "energy off");
 }
 
+// A number behind it is a limit, in ticks.
 static cli_exit act_on(hand *h)
 {
-	return switch_energy(h, 1);
+	double ticks = 0;
+	const char *next = h->at < h->c->argument_count ? h->c->arguments[h->at] : "";
+	if (*next >= '0' && *next <= '9') {
+		if (!cli_read_number(h->c, "on", next, 0, INT32_MAX, &ticks))
+			return CLI_USAGE;
+		h->at++;
+	}
+	return switch_energy(h, 1, (int32_t)ticks);
 }
 
 static cli_exit act_off(hand *h)
 {
-	return switch_energy(h, 0);
+	return switch_energy(h, 0, 0);
 }
 
 static cli_exit act_grasp(hand *h)
@@ -261,11 +270,12 @@ const cli_command cli_tool = {
 	.name = "tool",
 	.arguments = "SESSION TOOL ACTION...",
 	.summary = "adds, moves, energizes a tool: actions one after the other",
-	.help = "Actions: add SHAPE, remove, take, give, move X Y Z, line X Y Z SPEED, turn W X Y Z,\n"
-			"jaw J, on, off, grasp, release, wait S. Metres, m/s, a unit quaternion, 0 to 1,\n"
-			"seconds. What needs the driver takes the tool first. Energy goes off when the\n"
-			"command ends:\n"
-			"  cautery tool d1-demo hook move 0 0 0 on wait 3 line 0.02 0 0 0.002 off\n",
+	.help =
+		"Actions: add SHAPE, remove, take, give, move X Y Z, line X Y Z SPEED, turn W X Y Z,\n"
+		"jaw J, on [TICKS], off, grasp, release, wait S. Metres, m/s, a unit quaternion, 0 to 1,\n"
+		"seconds; TICKS limits the energy. What needs the driver takes the tool first. Energy\n"
+		"goes off when the command ends:\n"
+		"  cautery tool d1-demo hook move 0 0 0 on wait 3 line 0.02 0 0 0.002 off\n",
 	.least = 3,
 	.most = CLI_ARGUMENTS_MAX,
 	.run = run};

@@ -43,7 +43,7 @@ static void note(cau_hosted *h, const cau_order *order, const cau_action *action
 	}
 }
 
-// A faulted core takes no commands, and needs none to be dark.
+// The log of a faulted session ends with the fault; its core goes dark all the same.
 static bool is_off_of_faulted(const cau_hosted *h, const cau_command *command)
 {
 	return cau_decided_state(h) == CAU_SESSION_FAULTED &&
@@ -74,7 +74,7 @@ cau_outcome_kind cau_apply_command(cau_hosted *h, cau_order *order, const cau_ac
 	cau_command *command = &order->as.command;
 	if (command->tick < h->tick)
 		command->tick = h->tick;
-	if (!is_off_of_faulted(h, command) && cau_session_submit(h->core, command, &error)) {
+	if (!cau_drive_does(h, command) && cau_session_submit(h->core, command, &error)) {
 		cau_hosted_refuse_order(h, order, &error, 0);
 		return CAU_NOT_DONE;
 	}

@@ -83,14 +83,19 @@ static void perform(cau_hosted *h, const cau_effects *effects, const cau_order *
 
 // Into the trace, if there is one, goes each call before it is made and what came of it, under the
 // lock: it is the order of both that counts.
-static void take(cau_hosted *h, const cau_logic_event *event, const cau_order *submitted,
-                 cau_effects *effects, const cau_effect **own)
+static void apply(cau_hosted *h, const cau_logic_event *event, cau_effects *effects)
 {
-	pthread_mutex_lock(&h->deciding);
 	cau_trace_take(h->trace, event);
 	cau_logic_take(h->logic, event, effects);
 	cau_trace_effects(h->trace, effects);
 	tell(h, effects);
+}
+
+static void take(cau_hosted *h, const cau_logic_event *event, const cau_order *submitted,
+                 cau_effects *effects, const cau_effect **own)
+{
+	pthread_mutex_lock(&h->deciding);
+	apply(h, event, effects);
 	pthread_mutex_unlock(&h->deciding);
 	perform(h, effects, submitted, own);
 }
@@ -115,7 +120,72 @@ cau_status cau_decide_order(cau_hosted *h, cau_order *order, const cau_asked *as
 	return own->error.status;
 }
 
+// ---- what waits for later ticks -----------------------------------------------------------------
+
+// A ticket in the queue is an order that lives: orders leave it under the lock.
+static void describe_later(const cau_waiting *waiting, cau_wire_waiting_command *to)
+{
+	const cau_asked *asked = &waiting->asked;
+	const cau_order *order = order_of(asked->ticket);
+	*to = (cau_wire_waiting_command){.number = (int64_t)waiting->moment,
+	                                 .tick = (int64_t)asked->tick,
+	                                 .has_tool = *asked->tool != 0,
+	                                 .sequence = (int64_t)order->as.command.sequence,
+	                                 .client = asked->asker.client};
+	snprintf(to->method, sizeof to->method, "%s", cau_method_describe(order->reply.method)->name);
+	memcpy(to->tool, asked->tool, sizeof to->tool);
+	snprintf(to->name, sizeof to->name, "%.64s", asked->asker.name);
+}
+
+int32_t cau_hosted_waiting(cau_hosted *h, cau_wire_waiting_command *list, int32_t capacity)
+{
+	int32_t count = 0, place = 0;
+	pthread_mutex_lock(&h->deciding);
+	for (const cau_waiting *waiting; (waiting = cau_logic_later(h->logic, &place));)
+		if (count < capacity)
+			describe_later(waiting, &list[count++]);
+	pthread_mutex_unlock(&h->deciding);
+	return count;
+}
+
+static int32_t count_later(const cau_logic *logic)
+{
+	int32_t count = 0, place = 0;
+	while (cau_logic_later(logic, &place))
+		count++;
+	return count;
+}
+
+int32_t cau_hosted_cancel(cau_hosted *h, uint32_t client, uint64_t number)
+{
+	cau_effects effects;
+	cau_logic_event event = {
+		.kind = CAU_LOGIC_CANCEL, .time_s = cau_monotonic_s(), .client = client, .number = number};
+	pthread_mutex_lock(&h->deciding);
+	int32_t before = count_later(h->logic);
+	apply(h, &event, &effects);
+	int32_t cancelled = before - count_later(h->logic);
+	pthread_mutex_unlock(&h->deciding);
+	perform(h, &effects, NULL, NULL);
+	return cancelled;
+}
+
 // ---- the worker's side --------------------------------------------------------------------------
+
+// Whether the core heats what the machine has on, and nothing else, in the tick that is to begin.
+// Under the lock, so that no cut comes between.
+static void compare(cau_hosted *h)
+{
+	const char *allowed[CAU_MAX_TOOLS];
+	int32_t count = 0;
+	for (int32_t i = 0; i < h->logic->drive_count; i++) {
+		const cau_drive *drive = &h->logic->drives[i];
+		if (drive->enabled && drive->lit && !drive->freeze)
+			allowed[count++] = drive->tool;
+	}
+	const char *odd = cau_session_heats_beyond(h->core, allowed, count);
+	snprintf(h->odd_tool, sizeof h->odd_tool, "%s", odd ? odd : "");
+}
 
 void cau_decide_next(cau_hosted *h, cau_action *action)
 {
@@ -126,6 +196,8 @@ void cau_decide_next(cau_hosted *h, cau_action *action)
 	cau_logic_next(h->logic, now_s, action, &effects);
 	h->late_s = h->logic->state == CAU_SESSION_RUNNING ? now_s - due_s : -1;
 	cau_trace_action(h->trace, action);
+	if (action->act == CAU_ACT_STEP)
+		compare(h);
 	cau_trace_effects(h->trace, &effects);
 	tell(h, &effects);
 	pthread_mutex_unlock(&h->deciding);
@@ -165,7 +237,9 @@ void cau_decide_arrived(cau_hosted *h, int state, const char *cause)
 	cau_session_frame(h->core, &frame);
 	for (int32_t i = 0; i < frame.tool_count; i++) {
 		memcpy(tools[i].name, frame.tools[i].name, sizeof tools[i].name);
-		tools[i].lit = frame.tools[i].energized;
+		// what waits in a core of an older build's store may light or move it yet: that goes too
+		tools[i].lit =
+			frame.tools[i].energized || cau_session_waiting(h->core, frame.tools[i].name) > 0;
 	}
 	cau_decide(h, &(cau_logic_event){.kind = CAU_LOGIC_ARRIVED,
 	                                 .time_s = cau_monotonic_s(),

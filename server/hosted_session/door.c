@@ -57,8 +57,10 @@ static void describe(const cau_order *order, cau_asked *asked)
 	                     .asker = order->asker,
 	                     .numbered = order->client_sequence && !order->motion};
 	name_tool(order, asked);
-	if (asked->ask == CAU_ASK_ENERGY_ON || asked->ask == CAU_ASK_ENERGY_OFF)
+	if (order->kind == CAU_ORDER_COMMAND)
 		asked->tick = order->as.command.tick;
+	if (asked->ask == CAU_ASK_ENERGY_ON)
+		asked->limit = (uint64_t)order->as.command.as.ticks;
 	if (asked->ask == CAU_ASK_STEP)
 		asked->ticks = order->as.ticks;
 	if (asked->ask == CAU_ASK_SPEED)

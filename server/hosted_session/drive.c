@@ -8,46 +8,39 @@
 
 // ---- cuts ---------------------------------------------------------------------------------------
 
-static const cau_tool_state *tool_state(const cau_frame *frame, const char *name)
+bool cau_drive_does(cau_hosted *h, const cau_command *command)
 {
-	for (int32_t i = 0; i < frame->tool_count; i++)
-		if (strcmp(frame->tools[i].name, name) == 0)
-			return &frame->tools[i];
-	return NULL;
-}
-
-// A command of the daemon's own: logged for nobody.
-static void tell_core(cau_hosted *h, const cau_command *command)
-{
-	cau_error error = {0};
-	cau_command now = *command;
-	now.tick = h->tick;
-	if (cau_session_submit(h->core, &now, &error))
-		cau_log(CAU_LOG_ERROR, h->id, "command_lost", "tool=%s reason=\"%s\"", now.tool,
-		        error.reason);
+	bool off = command->kind == CAU_COMMAND_TOOL_ENERGIZE && !command->as.energized;
+	bool hold = command->kind == CAU_COMMAND_TOOL_HOLD;
+	int32_t waited = off || hold ? cau_session_waiting(h->core, command->tool) : 0;
+	if (off)
+		cau_session_energy_off(h->core, command->tool, command->sequence);
+	else if (hold)
+		cau_session_hold_still(h->core, command->tool, command->sequence);
 	else
-		cau_record_command(h, &now, NULL, NULL, 0);
+		return false;
+	int32_t voided = waited - cau_session_waiting(h->core, command->tool);
+	if (voided)
+		cau_log(CAU_LOG_INFO, h->id, "commands_void", "tick=%llu tool=%s count=%d",
+		        (unsigned long long)h->tick, command->tool, voided);
+	return true;
 }
 
-static void energy_off_command(cau_hosted *h, const char *tool)
+// A command of the daemon's own: logged for nobody, with no driver's number. It cannot fail.
+static void tell_core(cau_hosted *h, int kind, const char *tool)
 {
-	cau_command off;
-	cau_default_command(&off, CAU_COMMAND_TOOL_ENERGIZE);
-	snprintf(off.tool, sizeof off.tool, "%s", tool);
-	off.as.energized = 0;
-	tell_core(h, &off);
+	cau_command command;
+	cau_default_command(&command, kind); // of energy: off
+	snprintf(command.tool, sizeof command.tool, "%s", tool);
+	command.tick = h->tick;
+	cau_drive_does(h, &command);
+	if (cau_decided_state(h) != CAU_SESSION_FAULTED) // there the log ends
+		cau_record_command(h, &command, NULL, NULL, 0);
 }
 
-// The tool's aim becomes where it is.
-static void freeze_command(cau_hosted *h, const cau_tool_state *state)
+void cau_drive_darken(cau_hosted *h, const char *tool)
 {
-	cau_command stay;
-	cau_default_command(&stay, CAU_COMMAND_TOOL_MOVE);
-	memcpy(stay.tool, state->name, sizeof stay.tool);
-	stay.sequence = state->sequence;
-	stay.as.move.pose = state->pose; // where it is: it is not pulled any farther either
-	stay.as.move.jaw = state->jaw;
-	tell_core(h, &stay);
+	tell_core(h, CAU_COMMAND_TOOL_ENERGIZE, tool);
 }
 
 static void count_cut(cau_hosted *h, const cau_drive *drive)
@@ -68,14 +61,10 @@ static void count_cut(cau_hosted *h, const cau_drive *drive)
 void cau_drive_do_cut(cau_hosted *h, const cau_action *action)
 {
 	const cau_drive *drive = &action->drive;
-	cau_frame frame;
-	cau_session_frame(h->core, &frame);
-	const cau_tool_state *state = tool_state(&frame, drive->tool);
-	bool sound = cau_decided_state(h) != CAU_SESSION_FAULTED; // a faulted core takes no command
-	if (sound && action->was_lit)
-		energy_off_command(h, drive->tool);
-	if (sound && state && drive->freeze)
-		freeze_command(h, state);
+	if (action->was_lit)
+		cau_drive_darken(h, drive->tool);
+	if (drive->freeze)
+		tell_core(h, CAU_COMMAND_TOOL_HOLD, drive->tool);
 	if (action->was_lit)
 		count_cut(h, drive);
 	h->dirty = true;

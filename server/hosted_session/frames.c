@@ -15,9 +15,8 @@ static void add_drives(cau_hosted *h, cau_stream_tool *tools, int32_t count)
 {
 	for (int32_t i = 0; i < count; i++) {
 		cau_drive drive = {.energy_off = CAU_ENERGY_OFF_NEVER_ENABLED};
-		bool known = cau_decide_find(h, tools[i].name, &drive);
+		cau_decide_find(h, tools[i].name, &drive);
 		tools[i].driver = drive.driver.client;
-		tools[i].energized = tools[i].energized && (!known || drive.enabled);
 		tools[i].frozen = drive.frozen;
 		tools[i].energy_off = (uint8_t)drive.energy_off;
 	}

@@ -137,6 +137,11 @@ void cau_hosted_store_takes(cau_hosted *hosted, bool takes, const char *reason);
 // Cuts the energy of drivers that are silent for too long. Returns the time when it must look
 // again, INFINITY if nothing is energized.
 double cau_hosted_watch(cau_hosted *hosted, double now_s);
+// Its commands that wait for later ticks, in the order in which they came; returns how many. And
+// takes such back: the client's (0: anybody's), of this number or (0) all of them; they are
+// answered at the next border. Returns how many.
+int32_t cau_hosted_waiting(cau_hosted *hosted, cau_wire_waiting_command *list, int32_t capacity);
+int32_t cau_hosted_cancel(cau_hosted *hosted, uint32_t client, uint64_t number);
 
 // The client will not come back: a session that is still built for it ends at the next border of
 // its stages.

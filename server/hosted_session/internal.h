@@ -108,6 +108,7 @@ struct cau_hosted {
 	double window_s; // realtime_factor's window
 	uint64_t window_tick;
 	double step_cost_s, realtime_factor;
+	char odd_tool[CAU_NAME_BYTES]; // that the core would heat and the machine does not
 	double late_s; // how late the tick that is to be made began; below 0: the clock does not say
 	double waiting_s[WAITING_COUNT]; // when commands came that no frame has shown yet
 	int32_t waiting_count;
@@ -242,6 +243,7 @@ void cau_decide(cau_hosted *h, const cau_logic_event *event);
 cau_status cau_decide_order(cau_hosted *h, cau_order *order, const cau_asked *asked,
                             cau_error *error);
 // What the worker is to do now, and what came of it.
+// Of CAU_ACT_STEP: h->odd_tool is "" if the core heats what the machine has on, and nothing else.
 void cau_decide_next(cau_hosted *h, cau_action *action);
 void cau_decide_done(cau_hosted *h, cau_outcome_kind outcome);
 void cau_decide_stepped(cau_hosted *h, const char *fault);
@@ -307,6 +309,10 @@ void cau_drive_tell_refusals(cau_hosted *h, double now_s);
 // ---- drive.c: what the core and the log are told of them
 // Energy off and the tool where it is, as was decided.
 void cau_drive_do_cut(cau_hosted *h, const cau_action *action);
+// Does an off or a hold, which cannot fail. False: the command is another.
+bool cau_drive_does(cau_hosted *h, const cau_command *command);
+// Energy off by the daemon itself, in the log for nobody.
+void cau_drive_darken(cau_hosted *h, const char *tool);
 
 // ---- shown.c
 // What a core shows of its tick; the sample points into the rest, and into the core.

@@ -104,6 +104,24 @@ static void step(cau_hosted *h)
 	pthread_mutex_unlock(&h->mutex);
 }
 
+// The core would heat a tool that is not on by the machine's books. Nobody can say how that came
+// about, so nothing of it goes on: all tools go dark, and the session is faulted, alone.
+static void stop_unsound(cau_hosted *h)
+{
+	cau_error error = {0};
+	cau_frame frame;
+	cau_session_frame(h->core, &frame);
+	for (int32_t i = 0; i < frame.tool_count; i++)
+		cau_drive_darken(h, frame.tools[i].name);
+	cau_drive_darken(h, h->odd_tool); // which may be still to be added
+	cau_fail(&error, CAU_FAULTED, "", "tool %s had energy on without an enable that counts",
+	         h->odd_tool);
+	cau_log(CAU_LOG_ERROR, h->id, "energy_disagrees", "tick=%llu tool=%s",
+	        (unsigned long long)h->tick, h->odd_tool);
+	cau_decide_stepped(h, error.reason);
+	cau_hosted_tell_fault(h, &error);
+}
+
 // ---- what is to be done now
 static cau_outcome_kind act(cau_hosted *h, const cau_action *action)
 {
@@ -149,6 +167,10 @@ static void act_until_tick(cau_hosted *h)
 		cau_decide_next(h, &action);
 		if (action.act == CAU_ACT_NOTHING)
 			return;
+		if (action.act == CAU_ACT_STEP && *h->odd_tool) {
+			stop_unsound(h);
+			continue;
+		}
 		if (action.act == CAU_ACT_STEP) {
 			step(h);
 			if (cau_decided_state(h) == CAU_SESSION_RUNNING) {

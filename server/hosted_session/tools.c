@@ -21,12 +21,12 @@ void cau_hosted_publish_tools(cau_hosted *h)
 
 static void copy_tool(cau_hosted *h, const cau_tool_state *state, cau_hosted_tool *tool)
 {
-	*tool = (cau_hosted_tool){.state = *state, .energy_off = CAU_ENERGY_OFF_NEVER_ENABLED};
+	*tool = (cau_hosted_tool){
+		.state = *state, .energized = state->energized, .energy_off = CAU_ENERGY_OFF_NEVER_ENABLED};
 	cau_drive drive;
 	if (!cau_decide_find(h, state->name, &drive))
 		return;
 	tool->driver = drive.driver;
-	tool->energized = drive.enabled;
 	tool->energy_off = drive.energy_off;
 }
 

@@ -8,7 +8,7 @@
 typedef struct cau_hosted_tool {
 	cau_tool_state state; // of the newest tick
 	cau_asker driver;     // client 0: nobody
-	bool energized;       // as the watchdog sees it
+	bool energized;       // the core's own flag, of the last slice
 	int energy_off;       // CAU_ENERGY_OFF_*
 } cau_hosted_tool;
 

@@ -229,6 +229,54 @@ void cau_call_session_fork(cau_call *call)
 	submit(call, order);
 }
 
+void cau_call_session_waiting(cau_call *call)
+{
+	cau_error error = {0};
+	cau_wire_session_ref params = {0};
+	int32_t capacity = (int32_t)call->peer->service->config->queue_commands;
+	cau_wire_waiting_list result = {
+		.commands = {calloc((size_t)capacity, sizeof(cau_wire_waiting_command)), 0, capacity}};
+	cau_hosted *hosted = cau_call_session(call);
+	if (!hosted) {
+		free(result.commands.items);
+		return;
+	}
+	if (!result.commands.items)
+		cau_fail(&error, CAU_NO_MEMORY, "", "no memory for the list");
+	else if (!cau_rpc_params(call->message, &params, &error))
+		result.commands.count = cau_hosted_waiting(hosted, result.commands.items, capacity);
+	if (error.status)
+		cau_call_fail(call, &error, 0);
+	else
+		cau_call_result(call, &result);
+	cau_hosted_release(hosted);
+	free(result.commands.items);
+}
+
+void cau_call_session_cancel(cau_call *call)
+{
+	cau_error error = {0};
+	cau_wire_session_cancel params = {0};
+	cau_wire_cancelled result = {0};
+	const cau_asker *asker = &call->peer->client.asker;
+	cau_hosted *hosted = cau_call_session(call);
+	if (!hosted)
+		return;
+	if (!cau_rpc_params(call->message, &params, &error)) {
+		bool anybodys = params.has_number && asker->role == CAU_ROLE_ADMIN;
+		uint64_t number = params.has_number ? (uint64_t)params.number : 0;
+		result.count = cau_hosted_cancel(hosted, anybodys ? 0 : asker->client, number);
+		if (number && !result.count)
+			cau_fail(&error, CAU_NOT_FOUND, "params.number",
+			         "no command of yours with this number waits");
+	}
+	if (error.status)
+		cau_call_fail(call, &error, 0);
+	else
+		cau_call_result(call, &result);
+	cau_hosted_release(hosted);
+}
+
 void cau_call_session_timeline(cau_call *call)
 {
 	cau_wire_session_timeline params = {0};

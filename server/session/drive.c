@@ -52,6 +52,7 @@ static void go_dark(cau_drive *drive, int energy_off, const char *cause, cau_eff
 	if (!drive->enabled)
 		return;
 	drive->enabled = false;
+	drive->limit_tick = 0;
 	drive->energy_off = energy_off;
 	cau_effect_tell(effects, drive);
 	CAU_ASSERT(!drive->enabled, "tool %s is told dark and is not", drive->tool);
@@ -109,6 +110,18 @@ void cau_drive_cut_silent(cau_logic *logic, double now_s, cau_effects *effects)
 		cau_drive *drive = &logic->drives[i];
 		if (cau_drive_is_silent(drive, now_s))
 			cut_lost(drive, "its driver is silent", effects); // the silence cut of the watchdog
+	}
+}
+
+// An enable that came in since and waits still counts: the limit was of the one before.
+void cau_drive_cut_limits(cau_logic *logic, cau_effects *effects)
+{
+	for (int32_t i = 0; i < logic->drive_count; i++) {
+		cau_drive *drive = &logic->drives[i];
+		CAU_ASSERT(drive->enabled || !drive->limit_tick, "tool %s is off and has a limit",
+		           drive->tool);
+		if (drive->limit_tick && drive->limit_tick <= logic->tick)
+			go_dark(drive, CAU_ENERGY_OFF_COMMANDED, "its ticks are over", effects);
 	}
 }
 
@@ -256,6 +269,23 @@ static bool allows_take_over(const cau_drive *drive, const cau_asked *asked, cau
 	return refuse(action, CAU_BAD_STATE, CAU_RPC_FORBIDDEN, reason);
 }
 
+// A tool of this name is there, or there are as many as can be: the core would not take it.
+bool cau_drive_may_be_added(cau_logic *logic, const char *tool, cau_action *action)
+{
+	char reason[160];
+	if (cau_drive_find(logic, tool)) {
+		snprintf(reason, sizeof reason, "there is a tool \"%s\"", tool);
+		refuse(action, CAU_ALREADY_EXISTS, 0, reason);
+	} else if (logic->drive_count == CAU_MAX_TOOLS) {
+		snprintf(reason, sizeof reason, "a session has at most %d tools", CAU_MAX_TOOLS);
+		refuse(action, CAU_LIMIT, 0, reason);
+	} else {
+		return true;
+	}
+	snprintf(action->error.path, sizeof action->error.path, "params.name");
+	return false;
+}
+
 bool cau_drive_allows(cau_logic *logic, const cau_waiting *order, cau_action *action)
 {
 	const cau_asked *asked = &order->asked;
@@ -303,15 +333,19 @@ bool cau_drive_change(cau_drive *drive, const cau_waiting *order, const cau_aske
 	return true;
 }
 
-void cau_drive_enabled(cau_drive *drive, const cau_waiting *order, cau_effects *effects)
+void cau_drive_enabled(cau_logic *logic, cau_drive *drive, const cau_waiting *order,
+                       cau_effects *effects)
 {
 	CAU_ASSERT(order->asked.ask == CAU_ASK_ENERGY_ON, "order %d lights tool %s",
 	           (int)order->asked.ask, drive->tool);
 	drive->lit = true;
 	drive->alive_s = fmax(drive->alive_s, order->alive_s);
 	bool drives = drive->driver.client == order->asked.asker.client;
-	if (!drives || !counts(drive, order) || drive->enabled)
+	if (!drives || !counts(drive, order))
 		return; // cut while the core took it: the cut is the worker's next act
+	drive->limit_tick = order->asked.limit ? logic->tick + order->asked.limit : 0;
+	if (drive->enabled)
+		return;
 	drive->enabled = true;
 	drive->frozen = drive->freeze = false;
 	cau_effect_tell(effects, drive);
@@ -324,8 +358,7 @@ void cau_drive_add(cau_logic *logic, const cau_waiting *order)
 {
 	CAU_ASSERT(order->asked.tool[0] != 0, "a tool without a name, by order %llu",
 	           (unsigned long long)order->asked.ticket);
-	if (logic->drive_count == CAU_MAX_TOOLS)
-		return; // the core takes no more either
+	CAU_ASSERT_INDEX(logic->drive_count, CAU_MAX_TOOLS); // cau_drive_may_be_added
 	cau_drive *made = &logic->drives[logic->drive_count++];
 	*made = (cau_drive){.alive_s = order->alive_s,
 	                    .energy_off = CAU_ENERGY_OFF_NEVER_ENABLED,
@@ -367,6 +400,7 @@ void cau_drive_match(cau_logic *logic, const cau_logic_event *event)
 		memcpy(made->tool, event->tools[i].name, sizeof made->tool);
 		made->cut_moment = newest(made->cut_moment, logic->dark_moment);
 		made->enabled = made->frozen = made->by_order = false;
+		made->limit_tick = 0;
 		made->lit = made->freeze = event->tools[i].lit;
 		made->cut_off = CAU_ENERGY_OFF_RESTORED;
 		snprintf(made->cut_cause, sizeof made->cut_cause, "%s", event->cause ? event->cause : "");

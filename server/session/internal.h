@@ -35,18 +35,30 @@ void cau_drive_cut_itself(cau_logic *logic, const char *tool);
 bool cau_drive_is_to_cut(const cau_logic *logic);
 // Whether the order may do what it asks with its tool; false after filling the action's refusal.
 bool cau_drive_allows(cau_logic *logic, const cau_waiting *order, cau_action *action);
+// Whether the core has room for a tool of this name; false after filling the action's refusal.
+bool cau_drive_may_be_added(cau_logic *logic, const char *tool, cau_action *action);
 // Another drives, or nobody. False: it is lit, and its cut comes first.
 bool cau_drive_change(cau_drive *drive, const cau_waiting *order, const cau_asker *to,
                       cau_effects *effects);
-void cau_drive_enabled(cau_drive *drive, const cau_waiting *order, cau_effects *effects);
+void cau_drive_enabled(cau_logic *logic, cau_drive *drive, const cau_waiting *order,
+                       cau_effects *effects);
+// Off where the ticks of an enable are over.
+void cau_drive_cut_limits(cau_logic *logic, cau_effects *effects);
 void cau_drive_add(cau_logic *logic, const cau_waiting *order);
 void cau_drive_remove(cau_logic *logic, const char *tool);
 
 // ---- queue.c
 void cau_queue_take(cau_logic *logic, const cau_asked *asked, cau_effects *effects);
 void cau_queue_alive(cau_logic *logic, uint32_t client, const char *tool, double time_s);
-void cau_queue_cut(cau_logic *logic, uint32_t client);      // its enables do not count any more
-void cau_queue_cut_silent(cau_logic *logic, double now_s);  // nor do those of who is silent now
+// What moves, holds or heats a tool and waits is void where its asker is lost, and so is what that
+// client asked for at later ticks: of all tools, of those whose driver is silent now, of one that
+// changes hands or is removed (what came in before `moment`). An off is void only if its asker
+// drives the tool. Of a client that will not come back all that is for later is void.
+void cau_queue_cut(cau_logic *logic, uint32_t client);
+void cau_queue_cut_silent(cau_logic *logic, double now_s);
+void cau_queue_change_hands(cau_logic *logic, const cau_drive *drive, uint64_t moment);
+void cau_queue_remove_tool(cau_logic *logic, const char *tool, uint64_t moment);
+void cau_queue_cancel(cau_logic *logic, uint32_t client, uint64_t number, cau_effects *effects);
 void cau_queue_overtake(cau_logic *logic, uint64_t moment); // orders to resume from before it
 void cau_queue_forget(cau_logic *logic, uint32_t client);
 // Enables from before `moment` of a tool that is not there do not count any more.

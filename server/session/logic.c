@@ -12,7 +12,7 @@
 size_t cau_logic_bytes(int32_t capacity)
 {
 	CAU_ASSERT(capacity > 0, "a queue of %d", capacity);
-	return sizeof(cau_logic) + (size_t)capacity * sizeof(cau_waiting);
+	return sizeof(cau_logic) + 2 * (size_t)capacity * sizeof(cau_waiting);
 }
 
 void cau_logic_init(cau_logic *logic, int32_t capacity)
@@ -30,8 +30,8 @@ void cau_logic_init(cau_logic *logic, int32_t capacity)
 // looked at, cut or stepped is so by the worker alone.
 static void expect_sound(const cau_logic *logic)
 {
-	CAU_ASSERT(logic->count >= 0 && logic->count <= logic->capacity, "%d orders in a queue of %d",
-	           logic->count, logic->capacity);
+	CAU_ASSERT(logic->count >= 0 && logic->count <= 2 * logic->capacity,
+	           "%d orders in a queue of %d", logic->count, logic->capacity);
 	CAU_ASSERT(logic->drive_count >= 0 && logic->drive_count <= CAU_MAX_TOOLS, "%d tools",
 	           logic->drive_count);
 	CAU_ASSERT(logic->steps_left >= 0, "%lld steps left", (long long)logic->steps_left);
@@ -126,17 +126,22 @@ void cau_logic_take(cau_logic *logic, const cau_logic_event *event, cau_effects 
 	case CAU_LOGIC_AWAY:
 		cau_drive_cut_client(logic, event->client, cause, effects);
 		cau_queue_cut(logic, event->client);
+		cau_effect_wake(effects); // what is void now is to be refused
 		break;
 	case CAU_LOGIC_FORGET:
 		cau_drive_forget(logic, event->client, effects);
 		cau_queue_cut(logic, event->client);
 		cau_queue_forget(logic, event->client);
+		cau_effect_wake(effects);
 		break;
 	case CAU_LOGIC_TIME:
 		cut_silent(logic, event->time_s, effects);
 		break;
 	case CAU_LOGIC_STORE:
 		take_store(logic, event, effects);
+		break;
+	case CAU_LOGIC_CANCEL:
+		cau_queue_cancel(logic, event->client, event->number, effects);
 		break;
 	case CAU_LOGIC_COMMITTED:
 		cau_queue_committed(logic, effects);
@@ -225,10 +230,26 @@ static bool change_driver(cau_logic *logic, const cau_waiting *order, cau_action
 	if (takes && order->gone)
 		return refuse(action, CAU_BAD_STATE, 0, "", "who asked for it is gone");
 	action->changed = drive->driver.client != to.client;
+	const cau_drive before = *drive;
 	if (action->changed && !cau_drive_change(drive, order, &to, effects))
 		return !cau_drive_next_cut(logic, true, action); // false: there is a cut, see its `lit`
+	if (action->changed)
+		cau_queue_change_hands(logic, &before, order->moment);
 	action->drive = *drive;
 	return true;
+}
+
+// What waited and was overtaken. An enable's refusal says what cut it (drive.c).
+static bool refuse_void(const cau_waiting *order, cau_action *action)
+{
+	static const char *const causes[] = {
+#define X(code, words) words,
+		CAU_VOID_CAUSE_TABLE(X)
+#undef X
+	};
+	CAU_ASSERT(order->cut_moment != 0, "order %llu is void since no moment",
+	           (unsigned long long)order->asked.ticket);
+	return refuse(action, CAU_BAD_STATE, 0, "", causes[order->void_cause]);
 }
 
 // Fills the action with what is to be done about the order. True: the order itself, which is served
@@ -246,10 +267,15 @@ static bool decide(cau_logic *logic, const cau_waiting *order, cau_action *actio
 		action->act = CAU_ACT_LOOK;
 		return false;
 	}
+	if (order->cut_moment &&
+	    (asked->ask != CAU_ASK_ENERGY_ON || order->void_cause != CAU_VOIDED_LOST))
+		return refuse_void(order, action);
 	if (is_about_tool(asked->ask) && !cau_drive_allows(logic, order, action))
 		return false;
 	if (logic->state == CAU_SESSION_FAULTED && needs_sound_core(asked->ask))
 		return refuse(action, CAU_FAULTED, 0, "", logic->fault);
+	if (asked->ask == CAU_ASK_TOOL_ADD && !cau_drive_may_be_added(logic, asked->tool, action))
+		return false;
 	const cau_drive *drive = cau_logic_drive(logic, asked->tool);
 	action->was_lit = drive && drive->lit;
 	switch (asked->ask) {
@@ -303,6 +329,7 @@ static bool next_tick(cau_logic *logic, double now_s, cau_action *action, cau_ef
 	if (!cau_time_is_due(logic, now_s))
 		return false;
 	cut_silent(logic, now_s, effects);
+	cau_drive_cut_limits(logic, effects);
 	if (cau_drive_next_cut(logic, true, action))
 		return true;
 	const cau_waiting *waits = cau_queue_find_ask(logic, CAU_ASK_PAUSE);
@@ -403,7 +430,7 @@ static void take_effect(cau_logic *logic, cau_effects *effects)
 		break;
 	case CAU_ASK_TOOL_REMOVE:
 		cau_drive_remove(logic, order->asked.tool);
-		cau_queue_darken(logic, order->asked.tool, order->moment);
+		cau_queue_remove_tool(logic, order->asked.tool, order->moment);
 		break;
 	case CAU_ASK_TOOL_USE:
 	case CAU_ASK_MOTION:
@@ -412,7 +439,7 @@ static void take_effect(cau_logic *logic, cau_effects *effects)
 		break;
 	case CAU_ASK_ENERGY_ON:
 		CAU_ASSERT(drive != NULL, "tool %s was enabled and is not there", order->asked.tool);
-		cau_drive_enabled(drive, order, effects);
+		cau_drive_enabled(logic, drive, order, effects);
 		break;
 	case CAU_ASK_ENERGY_OFF:
 		CAU_ASSERT(drive != NULL, "tool %s was turned off and is not there", order->asked.tool);

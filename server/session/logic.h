@@ -60,17 +60,32 @@ typedef struct cau_asked {
 	cau_asker asker;
 	cau_asker to;              // HAND_OVER; client 0: nobody
 	char tool[CAU_NAME_BYTES]; // "" if it is about none
-	uint64_t tick;             // ENERGY_ON, OFF: wanted at this tick border; 0: the next one
+	uint64_t tick;             // commands: wanted at this tick border; 0: the next one
+	uint64_t limit;            // ENERGY_ON: energy is off again after so many ticks; 0: no limit
 	bool numbered;             // it may be a resend of one that was answered; never MOTION
 	int64_t ticks;             // STEP
 	double speed;              // SPEED: simulated over wall time
 } cau_asked;
 
+// Why an order that waits will not be done.
+#define CAU_VOID_CAUSE_TABLE(X)                                                                    \
+	X(NOT, "")                                                                                     \
+	X(LOST, "its asker was lost after this was asked")                                             \
+	X(CHANGED_HANDS, "its tool changed hands after this was asked")                                \
+	X(REMOVED, "its tool was removed after this was asked")                                        \
+	X(CANCELLED, "it was cancelled")
+typedef enum cau_void_cause {
+#define X(code, words) CAU_VOIDED_##code,
+	CAU_VOID_CAUSE_TABLE(X)
+#undef X
+} cau_void_cause;
+
 // An order in the queue.
 typedef struct cau_waiting {
 	cau_asked asked;
 	uint64_t moment;     // of its coming in
-	uint64_t cut_moment; // its asker was lost since, or its tool: an enable does not count; 0: no
+	uint64_t cut_moment; // since when it is void, an enable does not count; 0: it is not
+	cau_void_cause void_cause;
 	uint64_t off_moment; // TOOL_ADD: the newest order since to turn the coming tool off; 0: none
 	double alive_s;      // its asker's newest sign of life
 	bool gone, to_gone;  // the asker, or the one it hands over to, will not come back
@@ -89,6 +104,7 @@ typedef struct cau_drive {
 	cau_asker driver;    // client 0: nobody
 	double alive_s;      // the driver's last sign of life
 	bool enabled;        // its newest event about energy is an enable that counts
+	uint64_t limit_tick; // while enabled: its energy goes off at this border; 0: it has no limit
 	bool lit;            // the core was told to heat it
 	bool freeze;         // the tool is to stay where it is, from the next border on
 	bool frozen;         // and does, until its driver moves it
@@ -108,6 +124,7 @@ typedef enum cau_logic_event_kind {
 	CAU_LOGIC_FORGET,    // client: it will not come back
 	CAU_LOGIC_TIME,      // time has passed: drivers may be silent for too long
 	CAU_LOGIC_STORE,     // store_takes, cause
+	CAU_LOGIC_CANCEL,    // client, number: its order for a later tick; client 0: anybody's
 	CAU_LOGIC_COMMITTED, // nothing of this session is on its way to the disk any more
 	CAU_LOGIC_ARRIVED,   // tools, tick, state: after a start, rewind, reset or restore
 	CAU_LOGIC_STAYED,    // what was to be gone to cannot be
@@ -126,6 +143,7 @@ typedef struct cau_logic_event {
 	cau_logic_event_kind kind;
 	double time_s; // monotonic, of every event; never goes back by more than threads race
 	uint32_t client;
+	uint64_t number;          // CANCEL: of cau_logic_later; 0: all of the client's
 	const char *tool, *cause; // borrowed for the call; NULL: ""
 	const cau_asked *asked;   // likewise
 	bool store_takes;
@@ -195,7 +213,7 @@ typedef enum cau_outcome_kind {
 // ---- the machine --------------------------------------------------------------------------------
 
 typedef struct cau_logic {
-	int32_t capacity; // of the queue
+	int32_t capacity; // of the queue, for orders of the next border; as many wait for later ticks
 	uint64_t moment;  // of the newest event
 	double now_s;     // of the newest event
 	// time
@@ -222,8 +240,12 @@ typedef struct cau_logic {
 	cau_waiting serving;    // ACT_ORDER, LOOK
 	char cutting[CAU_NAME_BYTES];
 	int32_t count;
-	cau_waiting waiting[]; // capacity; what is beyond `count` means nothing
+	cau_waiting waiting[]; // twice the capacity; what is beyond `count` means nothing
 } cau_logic;
+
+// Orders for later ticks that one client may have waiting.
+enum { CAU_LATER_OF_CLIENT = 64 };
+int32_t cau_logic_later_most(int32_t capacity); // the same with a queue so small
 
 // Bytes of a machine whose queue holds so many orders.
 size_t cau_logic_bytes(int32_t capacity);
@@ -246,5 +268,8 @@ double cau_logic_due_s(const cau_logic *logic);
 double cau_logic_look_s(const cau_logic *logic);
 // The drive of this tool, or NULL.
 const cau_drive *cau_logic_drive(const cau_logic *logic, const char *tool);
-// Orders that wait, postponed ones too.
+// Orders that wait, postponed ones and those for later ticks too.
 int32_t cau_logic_waiting(const cau_logic *logic);
+// The next order for a later tick at or behind the place *i, which moves behind it; NULL: there is
+// none. Its moment is its number.
+const cau_waiting *cau_logic_later(const cau_logic *logic, int32_t *i);

@@ -4,6 +4,10 @@
 // What comes in is refused here for want of room alone (queue, store, the session's end). Energy
 // off and pause never are: there is a place for off in each tool and for pause in the session.
 // Signs of life, looking away and departures concern what waits as well as what is.
+//
+// Every command for a later tick waits here, none in the core: it must not act if its asker or its
+// tool is lost before. These have room of their own, and a client no more than its share of it, so
+// that nobody keeps out what is to act now, or another's commands for later.
 #include <math.h>
 #include <stdio.h>
 
@@ -13,18 +17,39 @@
 
 // ---- the list -----------------------------------------------------------------------------------
 
-// Energy that is asked for at a later tick waits here, not in the core: it must be dark then if its
-// driver is lost before.
 static bool is_for_later(const cau_logic *logic, const cau_asked *asked)
 {
 	CAU_ASSERT_INDEX(asked->ask, CAU_ASK_COUNT);
-	bool energy = asked->ask == CAU_ASK_ENERGY_ON || asked->ask == CAU_ASK_ENERGY_OFF;
-	return energy && asked->tick > logic->tick && !logic->ended;
+	return asked->tick > logic->tick && !logic->ended;
+}
+
+// What is void waits no more, but for its refusal.
+static bool waits_for_later(const cau_logic *logic, const cau_waiting *order)
+{
+	return is_for_later(logic, &order->asked) && !order->cut_moment;
 }
 
 static bool is_ready(const cau_logic *logic, const cau_waiting *order)
 {
-	return (!order->postponed || logic->ended) && !is_for_later(logic, &order->asked);
+	return (!order->postponed || logic->ended) && !waits_for_later(logic, order);
+}
+
+int32_t cau_logic_later_most(int32_t capacity)
+{
+	CAU_ASSERT(capacity > 0, "a queue of %d", capacity);
+	int32_t quarter = capacity < 4 ? 1 : capacity / 4;
+	return quarter < CAU_LATER_OF_CLIENT ? quarter : CAU_LATER_OF_CLIENT;
+}
+
+const cau_waiting *cau_logic_later(const cau_logic *logic, int32_t *i)
+{
+	CAU_ASSERT(*i >= 0, "place %d", *i);
+	while (*i < logic->count) {
+		const cau_waiting *order = &logic->waiting[(*i)++];
+		if (waits_for_later(logic, order))
+			return order;
+	}
+	return NULL;
 }
 
 cau_waiting *cau_queue_head(cau_logic *logic)
@@ -58,7 +83,7 @@ bool cau_queue_off_waits(const cau_logic *logic, const char *tool)
 	for (int32_t i = 0; i < logic->count; i++) {
 		const cau_asked *asked = &logic->waiting[i].asked;
 		if (asked->ask == CAU_ASK_ENERGY_OFF && strcmp(asked->tool, tool) == 0 &&
-		    !is_for_later(logic, asked))
+		    !is_for_later(logic, asked) && !logic->waiting[i].cut_moment)
 			return true;
 	}
 	return false;
@@ -106,10 +131,43 @@ void cau_queue_alive(cau_logic *logic, uint32_t client, const char *tool, double
 	bring_to_life(&logic->serving, client, tool, time_s);
 }
 
+// The first cause is told; the moment is the newest.
+static void make_void(cau_logic *logic, cau_waiting *order, cau_void_cause cause)
+{
+	CAU_ASSERT(cause != CAU_VOIDED_NOT, "order %llu is void for no cause",
+	           (unsigned long long)order->asked.ticket);
+	order->cut_moment = logic->moment;
+	if (order->void_cause == CAU_VOIDED_NOT)
+		order->void_cause = cause;
+}
+
+// Whether it goes with its asker's hold on its tool: what uses the tool, and all that is for later.
+// Anybody's off stays; one of the driver itself was the end of its own use.
+static bool is_of_hold(cau_logic *logic, const cau_waiting *order)
+{
+	const cau_asked *asked = &order->asked;
+	switch (asked->ask) {
+	case CAU_ASK_ENERGY_ON:
+	case CAU_ASK_TOOL_USE:
+	case CAU_ASK_MOTION:
+		return true;
+	case CAU_ASK_TOOL_KEEP:
+	case CAU_ASK_TOOL_REMOVE:
+		return waits_for_later(logic, order);
+	case CAU_ASK_ENERGY_OFF: {
+		const cau_drive *drive = cau_drive_find(logic, asked->tool);
+		bool drives = drive && drive->driver.client == asked->asker.client;
+		return drives && waits_for_later(logic, order);
+	}
+	default:
+		return false;
+	}
+}
+
 static void cut_order(cau_logic *logic, cau_waiting *order, uint32_t client)
 {
-	if (order->asked.asker.client == client)
-		order->cut_moment = logic->moment;
+	if (order->asked.asker.client == client && is_of_hold(logic, order))
+		make_void(logic, order, CAU_VOIDED_LOST);
 }
 
 void cau_queue_cut(cau_logic *logic, uint32_t client)
@@ -122,9 +180,48 @@ void cau_queue_cut(cau_logic *logic, uint32_t client)
 static void cut_silent(cau_logic *logic, cau_waiting *order, double now_s)
 {
 	const cau_drive *drive = cau_drive_find(logic, order->asked.tool);
-	if (order->asked.ask == CAU_ASK_ENERGY_ON && drive && cau_drive_is_silent(drive, now_s) &&
-	    order->asked.asker.client == drive->driver.client)
-		order->cut_moment = logic->moment;
+	if (drive && cau_drive_is_silent(drive, now_s) &&
+	    order->asked.asker.client == drive->driver.client && is_of_hold(logic, order))
+		make_void(logic, order, CAU_VOIDED_LOST);
+}
+
+void cau_queue_change_hands(cau_logic *logic, const cau_drive *drive, uint64_t moment)
+{
+	CAU_ASSERT(drive->tool[0] != 0, "a tool without a name changes hands at %llu",
+	           (unsigned long long)moment);
+	for (int32_t i = 0; i < logic->count; i++) {
+		cau_waiting *order = &logic->waiting[i];
+		bool its_own = drive->driver.client && order->asked.asker.client == drive->driver.client &&
+		               strcmp(order->asked.tool, drive->tool) == 0;
+		bool off = order->asked.ask == CAU_ASK_ENERGY_OFF && waits_for_later(logic, order);
+		if (its_own && order->moment < moment && (off || is_of_hold(logic, order)))
+			make_void(logic, order, CAU_VOIDED_CHANGED_HANDS);
+	}
+}
+
+void cau_queue_remove_tool(cau_logic *logic, const char *tool, uint64_t moment)
+{
+	CAU_ASSERT(!cau_drive_find(logic, tool), "tool %s is removed and is there", tool);
+	for (int32_t i = 0; i < logic->count; i++) {
+		cau_waiting *order = &logic->waiting[i];
+		bool about = order->asked.ask >= CAU_ASK_TOOL_KEEP &&
+		             order->asked.ask <= CAU_ASK_ENERGY_OFF && strcmp(order->asked.tool, tool) == 0;
+		bool off = order->asked.ask == CAU_ASK_ENERGY_OFF && waits_for_later(logic, order);
+		if (about && order->moment < moment && (off || is_of_hold(logic, order)))
+			make_void(logic, order, CAU_VOIDED_REMOVED);
+	}
+}
+
+void cau_queue_cancel(cau_logic *logic, uint32_t client, uint64_t number, cau_effects *effects)
+{
+	for (int32_t i = 0; i < logic->count; i++) {
+		cau_waiting *order = &logic->waiting[i];
+		bool its_own = !client || order->asked.asker.client == client;
+		if (!its_own || (number && order->moment != number) || !waits_for_later(logic, order))
+			continue;
+		make_void(logic, order, CAU_VOIDED_CANCELLED);
+		cau_effect_wake(effects);
+	}
 }
 
 // A sign of life that comes after the silence does not bring back what was asked for before it.
@@ -143,8 +240,10 @@ void cau_queue_overtake(cau_logic *logic, uint64_t moment)
 			logic->waiting[i].overtaken = true;
 }
 
-static void forget_order(cau_waiting *order, uint32_t client)
+static void forget_order(cau_logic *logic, cau_waiting *order, uint32_t client)
 {
+	if (order->asked.asker.client == client && waits_for_later(logic, order))
+		make_void(logic, order, CAU_VOIDED_LOST);
 	order->gone = order->gone || order->asked.asker.client == client;
 	order->to_gone = order->to_gone || order->asked.to.client == client;
 }
@@ -152,8 +251,8 @@ static void forget_order(cau_waiting *order, uint32_t client)
 void cau_queue_forget(cau_logic *logic, uint32_t client)
 {
 	for (int32_t i = 0; i < logic->count; i++)
-		forget_order(&logic->waiting[i], client);
-	forget_order(&logic->serving, client);
+		forget_order(logic, &logic->waiting[i], client);
+	forget_order(logic, &logic->serving, client);
 }
 
 void cau_queue_darken(cau_logic *logic, const char *tool, uint64_t moment)
@@ -163,7 +262,7 @@ void cau_queue_darken(cau_logic *logic, const char *tool, uint64_t moment)
 		cau_waiting *order = &logic->waiting[i];
 		if (order->asked.ask == CAU_ASK_ENERGY_ON && order->moment < moment &&
 		    strcmp(order->asked.tool, tool) == 0)
-			order->cut_moment = logic->moment;
+			make_void(logic, order, CAU_VOIDED_LOST);
 	}
 }
 
@@ -185,8 +284,33 @@ void cau_queue_committed(cau_logic *logic, cau_effects *effects)
 
 // ---- coming in ----------------------------------------------------------------------------------
 
+// Orders that wait for a later tick, of one client or (0) of all.
+static int32_t count_later(const cau_logic *logic, uint32_t client)
+{
+	int32_t count = 0;
+	for (int32_t i = 0; i < logic->count; i++)
+		count += waits_for_later(logic, &logic->waiting[i]) &&
+		         (!client || logic->waiting[i].asked.asker.client == client);
+	return count;
+}
+
+static cau_status no_room_for_later(const cau_logic *logic, uint32_t client, cau_error *error)
+{
+	int32_t most = cau_logic_later_most(logic->capacity);
+	if (count_later(logic, client) >= most)
+		return cau_fail(error, CAU_LIMIT, "params.tick",
+		                "%d of this client's commands wait for later ticks already "
+		                "(session.waiting lists them, session.cancel takes them back)",
+		                most);
+	if (count_later(logic, 0) >= logic->capacity || logic->count >= 2 * logic->capacity)
+		return cau_fail(error, CAU_LIMIT, "params.tick",
+		                "%d commands of all clients wait for later ticks already", logic->capacity);
+	return CAU_OK;
+}
+
 // Why there is no room for it; CAU_OK: there is.
-static cau_status no_room(const cau_logic *logic, int32_t *code, cau_error *error)
+static cau_status no_room(const cau_logic *logic, const cau_asked *asked, int32_t *code,
+                          cau_error *error)
 {
 	*code = 0;
 	if (logic->draining)
@@ -195,7 +319,9 @@ static cau_status no_room(const cau_logic *logic, int32_t *code, cau_error *erro
 		*code = CAU_RPC_STORE_FULL;
 		return cau_fail(error, CAU_IO, "", "the store has no room: %s", logic->store_reason);
 	}
-	if (logic->count >= logic->capacity)
+	if (is_for_later(logic, asked))
+		return no_room_for_later(logic, asked->asker.client, error);
+	if (logic->count - count_later(logic, 0) >= logic->capacity)
 		return cau_fail(error, CAU_LIMIT, "",
 		                "the session's queue is full (setting queue_commands)");
 	return CAU_OK;
@@ -250,10 +376,12 @@ static cau_waiting *superseded(cau_logic *logic, const cau_asked *asked)
 	cau_waiting *found = NULL;
 	for (int32_t i = 0; i < logic->count; i++) {
 		cau_waiting *order = &logic->waiting[i];
+		if (waits_for_later(logic, order))
+			continue;
 		bool same = strcmp(order->asked.tool, asked->tool) == 0;
 		bool apart = order->asked.ask == CAU_ASK_TISSUE || (*order->asked.tool && !same);
 		if (!apart)
-			found = same && order->asked.ask == CAU_ASK_MOTION &&
+			found = same && order->asked.ask == CAU_ASK_MOTION && !order->cut_moment &&
 			                order->asked.asker.client == asked->asker.client
 			            ? order
 			            : NULL;
@@ -263,7 +391,7 @@ static cau_waiting *superseded(cau_logic *logic, const cau_asked *asked)
 
 static void append(cau_logic *logic, const cau_asked *asked)
 {
-	CAU_ASSERT_INDEX(logic->count, logic->capacity);
+	CAU_ASSERT_INDEX(logic->count, 2 * logic->capacity);
 	logic->waiting[logic->count++] =
 		(cau_waiting){.asked = *asked, .moment = logic->moment, .alive_s = logic->now_s};
 }
@@ -271,8 +399,8 @@ static void append(cau_logic *logic, const cau_asked *asked)
 void cau_queue_take(cau_logic *logic, const cau_asked *asked, cau_effects *effects)
 {
 	CAU_ASSERT_INDEX(asked->ask, CAU_ASK_COUNT);
-	CAU_ASSERT(logic->count >= 0 && logic->count <= logic->capacity, "%d orders in a queue of %d",
-	           logic->count, logic->capacity);
+	CAU_ASSERT(logic->count >= 0 && logic->count <= 2 * logic->capacity,
+	           "%d orders in a queue of %d", logic->count, logic->capacity);
 	cau_error error = {0};
 	int32_t code;
 	if (logic->ended) {
@@ -280,9 +408,10 @@ void cau_queue_take(cau_logic *logic, const cau_asked *asked, cau_effects *effec
 		refuse(effects, asked->ticket, &error, CAU_RPC_NOT_HERE);
 		return;
 	}
-	cau_waiting *older = asked->ask == CAU_ASK_MOTION ? superseded(logic, asked) : NULL;
-	cau_status status = no_room(logic, &code, &error);
-	if (asked->ask == CAU_ASK_ENERGY_OFF && (status || !is_for_later(logic, asked)))
+	bool later = is_for_later(logic, asked);
+	cau_waiting *older = asked->ask == CAU_ASK_MOTION && !later ? superseded(logic, asked) : NULL;
+	cau_status status = no_room(logic, asked, &code, &error);
+	if (asked->ask == CAU_ASK_ENERGY_OFF && (status || !later))
 		turn_off(logic, asked, !status, effects);
 	if (status && take_without_room(logic, asked, effects))
 		return;

@@ -38,12 +38,13 @@ const char *const cau_trace_what_words[CAU_TRACE_WHAT_COUNT] = {
 };
 
 static const char *const event_words[CAU_LOGIC_EVENT_COUNT] = {
-	[CAU_LOGIC_ORDER] = "order",         [CAU_LOGIC_ALIVE] = "alive",
-	[CAU_LOGIC_AWAY] = "away",           [CAU_LOGIC_FORGET] = "forget",
-	[CAU_LOGIC_TIME] = "time",           [CAU_LOGIC_STORE] = "store",
-	[CAU_LOGIC_COMMITTED] = "committed", [CAU_LOGIC_ARRIVED] = "arrived",
-	[CAU_LOGIC_STAYED] = "stayed",       [CAU_LOGIC_FAULT] = "fault",
-	[CAU_LOGIC_DRAIN] = "drain",         [CAU_LOGIC_END] = "end",
+	[CAU_LOGIC_ORDER] = "order",     [CAU_LOGIC_ALIVE] = "alive",
+	[CAU_LOGIC_AWAY] = "away",       [CAU_LOGIC_FORGET] = "forget",
+	[CAU_LOGIC_TIME] = "time",       [CAU_LOGIC_STORE] = "store",
+	[CAU_LOGIC_CANCEL] = "cancel",   [CAU_LOGIC_COMMITTED] = "committed",
+	[CAU_LOGIC_ARRIVED] = "arrived", [CAU_LOGIC_STAYED] = "stayed",
+	[CAU_LOGIC_FAULT] = "fault",     [CAU_LOGIC_DRAIN] = "drain",
+	[CAU_LOGIC_END] = "end",
 };
 
 static const char *const ask_words[CAU_ASK_COUNT] = {
@@ -118,6 +119,7 @@ static const field call_fields[] = {
 	CALL(REAL, "step_s", step_s),
 	CHOICE(cau_trace_call, "event", event, event_words),
 	CALL(UNSIGNED, "client", client),
+	CALL(UNSIGNED, "number", number),
 	CALL(TEXT, "subject", subject),
 	CALL(TEXT, "cause", cause),
 	CALL(TRUTH, "store_takes", store_takes),
@@ -129,6 +131,7 @@ static const field call_fields[] = {
 	ASKER(cau_trace_call, "to", asked.to),
 	CALL(TEXT, "tool", asked.tool),
 	CALL(UNSIGNED, "at", asked.tick),
+	CALL(UNSIGNED, "limit", asked.limit),
 	CALL(TRUTH, "numbered", asked.numbered),
 	CALL(SIGNED, "ticks", asked.ticks),
 	CALL(REAL, "speed", asked.speed),
@@ -166,6 +169,7 @@ static const field drive_fields[] = {
 	ASKER(cau_drive, "drive.driver", driver),
 	REAL(cau_drive, "drive.alive_s", alive_s),
 	TRUTH(cau_drive, "drive.enabled", enabled),
+	UNSIGNED(cau_drive, "drive.limit_tick", limit_tick),
 	TRUTH(cau_drive, "drive.lit", lit),
 	TRUTH(cau_drive, "drive.freeze", freeze),
 	TRUTH(cau_drive, "drive.frozen", frozen),

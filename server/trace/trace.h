@@ -34,6 +34,7 @@ typedef struct cau_trace_call {
 	double step_s;
 	cau_logic_event_kind event;
 	uint32_t client;
+	uint64_t number;
 	char subject[CAU_NAME_BYTES]; // the event's tool
 	char cause[320];              // of an event, or a step's fault
 	bool store_takes;

@@ -107,6 +107,7 @@ void cau_trace_take(FILE *to, const cau_logic_event *event)
 	                       .time_s = event->time_s,
 	                       .event = event->kind,
 	                       .client = event->client,
+	                       .number = event->number,
 	                       .store_takes = event->store_takes,
 	                       .state = event->state,
 	                       .tick = event->tick,

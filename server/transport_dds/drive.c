@@ -129,7 +129,7 @@ static bool may_drive(const cau_dds_hand *hand)
 	        cau_monotonic_s() < hand->claim_until_s);
 }
 
-void cau_dds_energy(cau_dds_hand *hand, const cau_dds_writer *writer, bool level)
+void cau_dds_energy(cau_dds_hand *hand, const cau_dds_writer *writer, bool level, int32_t ticks)
 {
 	if (!level) {
 		hand->energy_ready = true;
@@ -149,8 +149,7 @@ void cau_dds_energy(cau_dds_hand *hand, const cau_dds_writer *writer, bool level
 		cau_dds_refuse(hand->session, hand->tool->name, writer, hand->past.sequence, &error);
 		return;
 	}
-	hand->energy_asked =
-		cau_dds_order_command(hand, CAU_COMMAND_TOOL_ENERGIZE, CAU_METHOD_TOOL_ENERGIZE, true);
+	hand->energy_asked = cau_dds_order_energy(hand, ticks);
 	hand->energy_ready = !hand->energy_asked;
 }
 

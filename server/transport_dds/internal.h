@@ -412,6 +412,8 @@ cau_order *cau_dds_make_order(const cau_dds_hand *hand, cau_order_kind kind, cau
 // Takes the order; false: the session refused it, which is logged.
 bool cau_dds_submit(const cau_dds_hand *hand, cau_order *order);
 bool cau_dds_order_command(const cau_dds_hand *hand, int kind, cau_method method, bool on);
+// Energy on, for as many ticks (0 or less: no limit).
+bool cau_dds_order_energy(const cau_dds_hand *hand, int32_t ticks);
 // False: the session refused it, and has counted it.
 bool cau_dds_order_move(const cau_dds_hand *hand, const cau_pose *pose, double jaw,
                         uint64_t sequence);
@@ -433,7 +435,7 @@ void cau_dds_count_dropped(cau_dds_session *session);
 // Checks and submits a motion; feeds the watchdog if all is well. NULL: refused, and counted.
 cau_dds_hand *cau_dds_move(cau_dds *dds, const cau_door *door, cau_dds_tool *tool,
                            cau_dds_writer *writer, cau_dds_motion motion);
-void cau_dds_energy(cau_dds_hand *hand, const cau_dds_writer *writer, bool level);
+void cau_dds_energy(cau_dds_hand *hand, const cau_dds_writer *writer, bool level, int32_t ticks);
 void cau_dds_grasp(cau_dds_hand *hand, bool level);
 
 // ---- native.c, ros2.c: samples

@@ -35,9 +35,9 @@ void cau_dds_take_command(cau_dds *dds, cau_door *door, cau_dds_writer *writer, 
 	memcpy(motion.pose.rotation, sample->rotation, sizeof motion.pose.rotation);
 	cau_dds_hand *hand = cau_dds_move(dds, door, tool, writer, motion);
 	if (hand) {
-		cau_dds_energy(hand, writer, sample->energy);
+		cau_dds_energy(hand, writer, sample->energy, 0);
 		cau_dds_grasp(hand, sample->grasp);
 	} else if (!sample->energy && (hand = cau_dds_find_hand(writer->client, tool))) {
-		cau_dds_energy(hand, writer, false); // off is heard in any sample that is in order
+		cau_dds_energy(hand, writer, false, 0); // off is heard in any sample that is in order
 	}
 }

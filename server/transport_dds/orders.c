@@ -41,6 +41,19 @@ bool cau_dds_order_command(const cau_dds_hand *hand, int kind, cau_method method
 	return cau_dds_submit(hand, order);
 }
 
+bool cau_dds_order_energy(const cau_dds_hand *hand, int32_t ticks)
+{
+	cau_order *order = cau_dds_make_order(hand, CAU_ORDER_COMMAND, CAU_METHOD_TOOL_ENERGIZE);
+	if (!order)
+		return false;
+	cau_default_command(&order->as.command, CAU_COMMAND_TOOL_ENERGIZE);
+	memcpy(order->as.command.tool, hand->tool->name, sizeof hand->tool->name);
+	order->as.command.sequence = hand->past.sequence;
+	order->as.command.as.energized = 1;
+	order->as.command.as.ticks = ticks > 0 ? ticks : 0;
+	return cau_dds_submit(hand, order);
+}
+
 bool cau_dds_hand_over(cau_dds_hand *hand, const cau_asker *to)
 {
 	cau_order *order = cau_dds_make_order(hand, CAU_ORDER_HAND_OVER, CAU_METHOD_TOOL_HAND_OVER);
@@ -76,11 +89,6 @@ bool cau_dds_order_move(const cau_dds_hand *hand, const cau_pose *pose, double j
 }
 
 // ---- CRTK's states
-static void stay(const cau_dds_hand *hand, const cau_tool_state *state)
-{
-	cau_dds_order_move(hand, &state->pose, state->jaw, hand->past.sequence);
-}
-
 void cau_dds_stop_tool(cau_dds_session *session, cau_dds_tool *tool, const cau_asker *by)
 {
 	cau_hosted_tool state;
@@ -93,7 +101,7 @@ void cau_dds_stop_tool(cau_dds_session *session, cau_dds_tool *tool, const cau_a
 		                      false);
 	for (cau_dds_hand *hand = tool->hands; hand; hand = hand->next) {
 		if (state.driver.client == hand->client->asker.client)
-			stay(hand, &state.state);
+			cau_dds_order_command(hand, CAU_COMMAND_TOOL_HOLD, CAU_METHOD_TOOL_HOLD, false);
 		hand->past.has_pose = hand->energy_ready = hand->energy_asked = false;
 	}
 }

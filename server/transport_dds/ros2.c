@@ -73,7 +73,8 @@ void cau_dds_take_energize(cau_dds *dds, cau_door *door, cau_dds_writer *writer,
 	const cau_dds_tool *tool = cau_dds_find_tool(door->session, door->tool);
 	cau_dds_hand *hand = tool ? cau_dds_find_hand(writer->client, tool) : NULL;
 	(void)dds;
+	const dds_sequence_long *buttons = &sample->buttons_;
 	if (hand) // no button is a button let go
-		cau_dds_energy(hand, writer,
-		               sample->buttons_._length > 0 && sample->buttons_._buffer[0] > 0);
+		cau_dds_energy(hand, writer, buttons->_length > 0 && buttons->_buffer[0] > 0,
+		               buttons->_length > 1 ? buttons->_buffer[1] : 0);
 }

@@ -188,15 +188,102 @@ static int32_t find_tool(const cau_session *s, const char *name)
 	return -1;
 }
 
+static bool is_about_tool(const cau_command *c)
+{
+	return (c->kind >= CAU_COMMAND_TOOL_REMOVE && c->kind <= CAU_COMMAND_TOOL_RELEASE) ||
+	       c->kind == CAU_COMMAND_TOOL_HOLD;
+}
+
+static bool is_off(const cau_command *c)
+{
+	return c->kind == CAU_COMMAND_TOOL_ENERGIZE && !c->as.energized;
+}
+
+static void take_out(cau_session *s, const char *tool, bool enables_only)
+{
+	int32_t kept = 0;
+	for (int32_t i = 0; i < s->state.queued; i++) {
+		const cau_command *c = &s->state.queue[i];
+		bool which = !enables_only || c->kind == CAU_COMMAND_TOOL_ENERGIZE;
+		if (!is_about_tool(c) || strcmp(c->tool, tool) != 0 || !which)
+			s->state.queue[kept++] = *c;
+	}
+	s->state.queued = kept;
+}
+
+void cau_session_energy_off(cau_session *s, const char *tool, uint64_t sequence)
+{
+	int32_t i = find_tool(s, tool);
+	if (cau_fake_hooks_set.breaks_off && cau_fake_hooks_set.breaks_off())
+		return;
+	take_out(s, tool, true);
+	if (i < 0)
+		return;
+	s->state.tools[i].energized = false;
+	s->state.tools[i].tip_temperature_c = 37;
+	if (sequence)
+		s->state.tools[i].sequence = sequence;
+}
+
+void cau_session_hold_still(cau_session *s, const char *tool, uint64_t sequence)
+{
+	int32_t i = find_tool(s, tool);
+	take_out(s, tool, false);
+	if (i < 0)
+		return;
+	s->state.target[i] = s->state.tools[i].pose;
+	if (sequence)
+		s->state.tools[i].sequence = sequence;
+}
+
+int32_t cau_session_waiting(const cau_session *s, const char *tool)
+{
+	int32_t count = 0;
+	for (int32_t i = 0; i < s->state.queued; i++)
+		count += is_about_tool(&s->state.queue[i]) && strcmp(s->state.queue[i].tool, tool) == 0;
+	return count;
+}
+
+static bool is_among(const char *name, const char *const *names, int32_t count)
+{
+	for (int32_t i = 0; i < count; i++)
+		if (strcmp(names[i], name) == 0)
+			return true;
+	return false;
+}
+
+const char *cau_session_heats_beyond(const cau_session *s, const char *const *allowed,
+                                     int32_t count)
+{
+	for (int32_t i = 0; i < s->state.tool_count; i++)
+		if (s->state.tools[i].energized && !is_among(s->state.tools[i].name, allowed, count))
+			return s->state.tools[i].name;
+	for (int32_t i = 0; i < s->state.queued; i++) {
+		const cau_command *c = &s->state.queue[i];
+		if (c->kind == CAU_COMMAND_TOOL_ENERGIZE && c->as.energized &&
+		    !is_among(c->tool, allowed, count))
+			return c->tool;
+	}
+	return NULL;
+}
+
 cau_status cau_session_submit(cau_session *s, const cau_command *c, cau_error *error)
 {
 	if (cau_fake_hooks_set.submit)
 		cau_fake_hooks_set.submit(c);
-	bool about_tool = c->kind >= CAU_COMMAND_TOOL_REMOVE && c->kind <= CAU_COMMAND_TOOL_RELEASE;
+	bool about_tool = is_about_tool(c);
 	if (about_tool && find_tool(s, c->tool) < 0)
 		return cau_fail(error, CAU_NOT_FOUND, "tool", "no tool %s", c->tool);
 	if (c->kind == CAU_COMMAND_TOOL_ADD && find_tool(s, c->as.definition.name) >= 0)
 		return cau_fail(error, CAU_ALREADY_EXISTS, "name", "taken");
+	if (is_off(c) && c->tick <= s->state.tick) {
+		cau_session_energy_off(s, c->tool, c->sequence);
+		return CAU_OK;
+	}
+	if (c->kind == CAU_COMMAND_TOOL_HOLD && c->tick <= s->state.tick) {
+		cau_session_hold_still(s, c->tool, c->sequence);
+		return CAU_OK;
+	}
 	if (s->state.queued == QUEUE)
 		return cau_fail(error, CAU_LIMIT, NULL, "queue full");
 	s->state.queue[s->state.queued++] = *c;

@@ -17,6 +17,8 @@ typedef struct cau_fake_hooks {
 	void (*submit)(const cau_command *command);
 	// A tick is being computed; the commands that were due are in the tools.
 	void (*step)(const cau_session *session);
+	// Energy is about to be turned off; true: the double is broken, and leaves it on.
+	bool (*breaks_off)(void);
 } cau_fake_hooks;
 
 extern cau_fake_hooks cau_fake_hooks_set;

@@ -64,6 +64,10 @@ static const sequence found[] = {
       0x0000008d, 0x00000073, 0x00000073, 0x0000008d, 0x0000002a, 0x00000073, 0x00000073,
       0x00000073, 0x00000073, 0x00000073, 0x00000073, 0x0000008d, 0x00000073, 0x00000073},
      28}, // asked to light, removed, and added by an order that came before
+	{{0x008101c0, 0x00000094, 0x000000b4, 0x00000094, 0x000000b4, 0x01200060, 0x01200000,
+      0x00000012, 0x00000012, 0x00000214, 0x000000b4, 0x000000b4, 0x000000b4, 0x000000b4,
+      0x000000b4, 0x000000b4, 0x000000ed, 0x000000b4, 0x000000b4},
+     19}, // the store was full while the session went to a state that has the tool
 };
 
 static bool holds(world *w, const sequence *s)

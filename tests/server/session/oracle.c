@@ -43,9 +43,14 @@ static bool is_enabled(const world *w, const tool_book *tool)
 	return tool->enable && stands(w, tool, tool->enabler, tool->enable);
 }
 
+static bool is_over(const world *w, const tool_book *tool)
+{
+	return tool->limit && w->tick >= tool->limit;
+}
+
 static bool should_be_lit(const world *w, const tool_book *tool)
 {
-	return is_enabled(w, tool) && is_alive(w, tool, tool->enabler);
+	return is_enabled(w, tool) && !is_over(w, tool) && is_alive(w, tool, tool->enabler);
 }
 
 static bool is_silent(const world *w, const tool_book *tool)
@@ -66,6 +71,8 @@ void oracle_check_tick(world *w)
 			world_wrong(w, "a tick begins with %s dark, though it was enabled",
 			            world_tool_names[i]);
 		w->lit_steps += tool->lit;
+		if (is_over(w, tool))
+			w->tools[i].enable = w->tools[i].limit = 0;
 	}
 	for (int i = 0; i < w->ticket_count; i++)
 		if (w->tickets[i].asked.ask == CAU_ASK_PAUSE && w->tickets[i].kept &&
@@ -73,6 +80,123 @@ void oracle_check_tick(world *w)
 			world_wrong(w, "a tick begins while a pause waits");
 	w->steps++;
 }
+
+// ---- what was overtaken -------------------------------------------------------------------------
+
+static bool is_for_later(const world *w, const ticket_book *ticket)
+{
+	return ticket->asked.tick > w->tick;
+}
+
+// What goes with its asker's hold on its tool: its use, and what was asked for at later ticks.
+static bool is_of_hold(const world *w, const ticket_book *ticket)
+{
+	cau_ask ask = ticket->asked.ask;
+	bool uses = ask == CAU_ASK_TOOL_USE || ask == CAU_ASK_MOTION || ask == CAU_ASK_ENERGY_ON;
+	bool keeps = ask == CAU_ASK_TOOL_KEEP || ask == CAU_ASK_TOOL_REMOVE;
+	return uses || (keeps && is_for_later(w, ticket));
+}
+
+static bool is_later_off(const world *w, const ticket_book *ticket)
+{
+	return ticket->asked.ask == CAU_ASK_ENERGY_OFF && is_for_later(w, ticket);
+}
+
+static bool is_from(const ticket_book *ticket, int client)
+{
+	return !ticket->answers && (int)ticket->asked.asker.client == client;
+}
+
+static void void_of_driver(world *w, const char *name, int driver, uint64_t before, bool doubted)
+{
+	for (int i = 0; i < w->ticket_count; i++) {
+		ticket_book *ticket = &w->tickets[i];
+		if (!is_from(ticket, driver) || ticket->came >= before ||
+		    strcmp(ticket->asked.tool, name) != 0 ||
+		    !(is_of_hold(w, ticket) || is_later_off(w, ticket)))
+			continue;
+		if (doubted)
+			ticket->doubted = true;
+		else
+			ticket->voided = true;
+	}
+}
+
+void oracle_note_loss(world *w, int client, bool for_good)
+{
+	for (int i = 0; i < w->ticket_count; i++) {
+		ticket_book *ticket = &w->tickets[i];
+		const tool_book *tool = oracle_book(w, ticket->asked.tool);
+		bool off = tool && tool->there && tool->driver == client && is_later_off(w, ticket);
+		if (is_from(ticket, client) &&
+		    (is_of_hold(w, ticket) || off || (for_good && is_for_later(w, ticket))))
+			ticket->voided = true;
+	}
+}
+
+void oracle_note_cancel(world *w, int client, uint64_t number)
+{
+	for (int i = 0; i < w->ticket_count; i++)
+		if (is_from(&w->tickets[i], client) && is_for_later(w, &w->tickets[i]) &&
+		    (!number || number == (uint64_t)i + 1))
+			w->tickets[i].voided = true;
+}
+
+static int count_waiting(const world *w, int client, bool later)
+{
+	int count = 0;
+	for (int i = 0; i < w->ticket_count; i++) {
+		const ticket_book *ticket = &w->tickets[i];
+		bool served =
+			w->working && w->action.ticket == (uint64_t)i + 1 && w->action.act != CAU_ACT_LOOK;
+		bool waits = ticket->kept && !ticket->answers && !served && !ticket->stepping;
+		bool is_later = is_for_later(w, ticket) && !ticket->voided;
+		count +=
+			waits && is_later == later && (!client || (int)ticket->asked.asker.client == client);
+	}
+	return count;
+}
+
+// Of a tool that is not there: what was asked for before will not light it once it is.
+void oracle_note_off_of_none(world *w, const char *tool)
+{
+	for (int i = 0; i < w->ticket_count; i++)
+		if (!w->tickets[i].answers && w->tickets[i].asked.ask == CAU_ASK_ENERGY_ON &&
+		    strcmp(w->tickets[i].asked.tool, tool) == 0)
+			w->tickets[i].voided = true;
+}
+
+void oracle_check_room(world *w, const ticket_book *ticket)
+{
+	bool off = ticket->asked.ask == CAU_ASK_ENERGY_OFF,
+		 motion = ticket->asked.ask == CAU_ASK_MOTION;
+	int client = (int)ticket->asked.asker.client, bound = cau_logic_later_most(QUEUE);
+	if (w->ended || !w->store_takes || off || ticket->asked.ask == CAU_ASK_PAUSE)
+		return;
+	for (int i = 0; i < w->ticket_count; i++) // it counts there or here
+		if (w->tickets[i].doubted && !w->tickets[i].answers && is_for_later(w, &w->tickets[i]))
+			return;
+	if (w->working && w->action.act == CAU_ACT_ORDER) // what it overtakes is counted with its end
+		return;
+	bool later = is_for_later(w, ticket), full;
+	if (later) // beside itself
+		full = count_waiting(w, client, true) - ticket->kept >= bound ||
+		       count_waiting(w, 0, true) - ticket->kept >= QUEUE ||
+		       count_waiting(w, 0, true) + count_waiting(w, 0, false) - ticket->kept >= 2 * QUEUE;
+	else
+		full = count_waiting(w, 0, false) - ticket->kept >= QUEUE;
+	if (!ticket->kept && !full)
+		world_wrong(w, "%s of c%d finds no room, and there is some",
+		            world_ask_names[ticket->asked.ask], client);
+	if (later && ticket->kept && full)
+		world_wrong(w, "%s of c%d waits for later, beyond the bound",
+		            world_ask_names[ticket->asked.ask], client);
+	if (!later && ticket->kept && full && !motion)
+		world_wrong(w, "%s of c%d waits, beyond the bound", world_ask_names[ticket->asked.ask],
+		            client);
+}
+
+// ---- decisions ----------------------------------------------------------------------------------
 
 // Whether the order may be done, as the page has it.
 static bool may(const world *w, const ticket_book *ticket)
@@ -82,6 +206,8 @@ static bool may(const world *w, const ticket_book *ticket)
 	int client = (int)asked->asker.client;
 	bool drives = tool && tool->there && tool->driver == client;
 	switch (asked->ask) {
+	case CAU_ASK_TOOL_ADD:
+		return !tool->there;
 	case CAU_ASK_TOOL_KEEP:
 	case CAU_ASK_TOOL_REMOVE:
 		return drives || (tool->there && !tool->driver);
@@ -137,8 +263,10 @@ void oracle_note_silence(world *w)
 {
 	for (int i = 0; i < TOOLS; i++) {
 		tool_book *tool = &w->tools[i];
-		if (is_silent(w, tool))
-			tool->silent[tool->enabler] = w->came;
+		if (!is_silent(w, tool))
+			continue;
+		tool->silent[tool->enabler] = w->came;
+		void_of_driver(w, world_tool_names[i], tool->driver, w->came + 1, false);
 	}
 }
 
@@ -184,8 +312,10 @@ void oracle_note_cut(world *w)
 	const cau_drive *drive = &w->action.drive;
 	tool_book *tool = oracle_book(w, drive->tool);
 	for (int i = 0; i < TOOLS; i++)
-		if (is_silent(w, &w->tools[i]))
+		if (is_silent(w, &w->tools[i])) {
 			w->tools[i].looked = w->came;
+			void_of_driver(w, world_tool_names[i], w->tools[i].driver, w->came + 1, true);
+		}
 	if (is_cut_of_pause(w) || !w->action.was_lit)
 		return;
 	uint64_t change =
@@ -195,6 +325,8 @@ void oracle_note_cut(world *w)
 		cut(tool, change);
 	else if (strcmp(drive->cut_cause, "its driver is silent") == 0 && tool->looked > tool->enable)
 		*silent = tool->looked > *silent ? tool->looked : *silent;
+	else if (strcmp(drive->cut_cause, "its ticks are over") == 0 && is_over(w, tool))
+		tool->enable = tool->limit = 0;
 	else if (should_be_lit(w, tool))
 		world_wrong(w, "%s is cut for nothing: %s", drive->tool, drive->cut_cause);
 }
@@ -209,6 +341,8 @@ static void change_driver(world *w, const ticket_book *ticket, int to)
 	if (tool->lit)
 		world_wrong(w, "%s changes hands while it is lit", ticket->asked.tool);
 	oracle_darken(tool, ticket->came);
+	if (tool->driver)
+		void_of_driver(w, ticket->asked.tool, tool->driver, ticket->came, false);
 	tool->driver = to;
 }
 
@@ -217,7 +351,7 @@ void oracle_note_done(world *w, ticket_book *ticket)
 {
 	const cau_asked *asked = &ticket->asked;
 	tool_book *tool = oracle_book(w, asked->tool);
-	int client = (int)asked->asker.client, to = (int)asked->to.client;
+	int client = (int)asked->asker.client;
 	switch (asked->ask) {
 	case CAU_ASK_TOOL_ADD:
 		tool->there = true;
@@ -229,15 +363,13 @@ void oracle_note_done(world *w, ticket_book *ticket)
 		tool->there = tool->lit = false;
 		cut(tool, ticket->came);
 		tool->driver = 0;
-		break;
-	case CAU_ASK_TAKE_OVER:
-		change_driver(w, ticket, ticket->came > w->gone[client] ? client : 0);
-		break;
-	case CAU_ASK_HAND_OVER:
-		change_driver(w, ticket, to && ticket->came < w->gone[to] ? 0 : to);
+		for (int i = 1; i <= CLIENTS; i++)
+			void_of_driver(w, asked->tool, i, ticket->came, false);
 		break;
 	case CAU_ASK_ENERGY_ON:
 		tool->lit = true;
+		if (stands(w, tool, client, ticket->came))
+			tool->limit = asked->limit ? w->tick + asked->limit : 0;
 		if (ticket->came > tool->enable) {
 			tool->enable = ticket->came;
 			tool->enabler = client;
@@ -253,6 +385,9 @@ void oracle_note_done(world *w, ticket_book *ticket)
 	case CAU_ASK_RESUME:
 		w->state = CAU_SESSION_RUNNING;
 		break;
+	case CAU_ASK_STEP:
+		ticket->stepping = true;
+		break;
 	case CAU_ASK_GO:
 		w->going = true;
 		for (int i = 0; i < TOOLS; i++)
@@ -264,6 +399,16 @@ void oracle_note_done(world *w, ticket_book *ticket)
 	default:
 		break;
 	}
+}
+
+// It changes hands with the decision.
+static void note_change(world *w, const ticket_book *ticket)
+{
+	int client = (int)ticket->asked.asker.client, to = (int)ticket->asked.to.client;
+	if (ticket->asked.ask == CAU_ASK_TAKE_OVER)
+		change_driver(w, ticket, ticket->came > w->gone[client] ? client : 0);
+	else if (ticket->asked.ask == CAU_ASK_HAND_OVER)
+		change_driver(w, ticket, to && ticket->came < w->gone[to] ? 0 : to);
 }
 
 // It is dark from the decision on. One that was for this tick, or waited for the disk, takes off
@@ -282,6 +427,14 @@ void oracle_check_decision(world *w)
 	cau_ask ask = ticket->asked.ask;
 	bool orders = w->action.act == CAU_ACT_ORDER;
 	if (w->ended)
+		return;
+	if (orders && is_for_later(w, ticket))
+		world_wrong(w, "%s of c%u is done before its tick", world_ask_names[ask],
+		            ticket->asked.asker.client);
+	if (orders && ticket->voided)
+		world_wrong(w, "%s of c%u is done, and it was overtaken", world_ask_names[ask],
+		            ticket->asked.asker.client);
+	if (!orders && (ticket->voided || ticket->doubted))
 		return;
 	if (ask == CAU_ASK_ENERGY_ON) {
 		const tool_book *tool = oracle_book(w, ticket->asked.tool);
@@ -303,4 +456,6 @@ void oracle_check_decision(world *w)
 		world_wrong(w, "%s of c%u is refused, and it may: %s", world_ask_names[ask],
 		            ticket->asked.asker.client, w->action.error.reason);
 	}
+	if (orders && may(w, ticket))
+		note_change(w, ticket);
 }

@@ -16,6 +16,12 @@ void oracle_darken_all(world *w, uint64_t came);
 void oracle_note_coming(world *w, const ticket_book *ticket);
 void oracle_answered(world *w, uint64_t number);
 void oracle_note_done(world *w, ticket_book *ticket);
+// It was or was not refused when it came in: there is room unless others have taken it.
+void oracle_check_room(world *w, const ticket_book *ticket);
+// A client is lost; it takes back what it asked for at later ticks: one order, or (0) all.
+void oracle_note_loss(world *w, int client, bool for_good);
+void oracle_note_off_of_none(world *w, const char *tool);
+void oracle_note_cancel(world *w, int client, uint64_t ticket);
 // Somebody looked for silence: a later sign of life does not undo it.
 void oracle_note_silence(world *w);
 // The worker cuts a tool: something that came in must be the reason.

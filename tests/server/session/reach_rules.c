@@ -231,7 +231,9 @@ static void note_cut_begun(reach_move *m)
 		bool by_order = pauses || (changes && order->tool == i);
 		if (!m->before->drives[i].enabled || m->logic->drives[i].enabled)
 			continue;
-		if (by_order)
+		if (m->books.pause_place) // it has no place of its own among the orders
+			reach_darken_before(&m->books, i, m->books.pause_place);
+		else if (by_order)
 			reach_darken_before(&m->books, i, place);
 		else
 			reach_darken(&m->books, i, m->books.tools[i].driver);
@@ -388,7 +390,7 @@ static void check_state(reach_move *m)
 	const cau_logic *logic = m->logic;
 	bool answers_owed = logic->count > 0 || logic->stepping;
 	bool work_waits = reach_head(&m->books) || logic->stepping || logic->pause_moment;
-	must(m, logic->count >= 0 && logic->count <= logic->capacity, "the queue is overfull");
+	must(m, logic->count >= 0 && logic->count <= 2 * logic->capacity, "the queue is overfull");
 	must(m, m->effects.count <= CAU_EFFECTS_MOST, "too many effects");
 	for (int i = 0; i < logic->drive_count; i++) {
 		const cau_drive *drive = &logic->drives[i];

@@ -71,7 +71,10 @@ static void decode_order(const reach_order *from, int place, cau_waiting *to)
 	to->postponed = from->postponed;
 	to->moment = moment_of_place(place);
 	to->overtaken = from->ask == CAU_ASK_RESUME && from->cut;
-	to->cut_moment = from->cut ? 2 * (REACH_QUEUE + 2) : 0;
+	if (from->cut && from->ask != CAU_ASK_RESUME) {
+		to->cut_moment = 2 * (REACH_QUEUE + 2);
+		to->void_cause = CAU_VOIDED_LOST;
+	}
 	to->alive_s = alive_of(from->fresh);
 	to->gone = from->gone;
 	to->to_gone = from->to_gone;
@@ -161,13 +164,14 @@ static void encode_order(const cau_logic *logic, const cau_waiting *from, reach_
 {
 	const cau_asked *asked = &from->asked;
 	bool on = asked->ask == CAU_ASK_ENERGY_ON, takes = asked->ask == CAU_ASK_TAKE_OVER;
-	bool hands = asked->ask == CAU_ASK_HAND_OVER;
+	bool hands = asked->ask == CAU_ASK_HAND_OVER, off = asked->ask == CAU_ASK_ENERGY_OFF;
 	to->ask = (uint8_t)asked->ask;
-	to->client = on || takes || hands ? (uint8_t)asked->asker.client : 1;
+	bool of_later = off && asked->tick > logic->tick;
+	to->client = on || takes || hands || of_later ? (uint8_t)asked->asker.client : 1;
 	to->tool = (uint8_t)reach_tool_index(asked->tool);
 	to->to = (uint8_t)asked->to.client;
 	to->fresh = (on || takes) && reach_is_fresh(from->alive_s, logic->now_s);
-	to->cut = (on && from->cut_moment) || from->overtaken;
+	to->cut = ((on || off) && from->cut_moment) || from->overtaken;
 	to->gone = takes && from->gone;
 	to->to_gone = hands && from->to_gone;
 	to->later = asked->tick > logic->tick ? (uint8_t)(asked->tick - logic->tick) : 0;

@@ -15,8 +15,9 @@
 //   - The two tools differ by name and by who is cut first. A state stands for the one with the
 //     tools in each other's place too, and events are tried on both: so all that is reachable in
 //     either order is found.
-//   - The queue holds one order or two beside the one that is served, and two tools are not
-//     searched with two orders: bounds, no symmetries. The generated sequences have queues of six.
+//   - The queue holds one order or two beside the one that is served, or one and one for a later
+//     tick, and two tools are not searched with two orders: bounds, no symmetries. The generated
+//     sequences have queues of six.
 // Left to the generated sequences (logic_test.c): tools that come and go, motion, and what only
 // passes through the queue (tissue, snapshots, questions, speed).
 //     test_server_session_reach [--long | STATES_MOST]
@@ -57,18 +58,22 @@ typedef struct search {
 // multiplies the states of the others; and the whole of both, which takes long or is too much.
 static const search searches[] = {
 	{"one tool, a queue of one", 1, 1, ALL & ~(unsigned)(RESEND | STEP | LATER | END), SHORT},
-	{"one tool, a queue of one, resends and later ticks", 1, 1,
-     ALL & ~(unsigned)(STEP | END | HAND | FAULT), SHORT},
+	{"one tool, a queue of one, resends", 1, 1,
+     ALL & ~(unsigned)(STEP | END | HAND | FAULT | LATER), SHORT},
+	{"one tool, a queue of one, later ticks, pause and store", 1, 1, OFF | PAUSE | STORE | LATER,
+     SHORT},
 	{"two tools, drivers", 2, 1, OFF | HAND, SHORT},
 	{"two tools, pause and step", 2, 1, OFF | PAUSE | STEP, SHORT},
 	{"two tools, losses", 2, 1, OFF | LOSS, SHORT},
 	{"two tools, store and going back", 2, 1, STORE | GO, SHORT},
 	{"two tools, later ticks", 2, 1, LATER, SHORT},
 	{"one tool, a queue of two, pause and store", 1, 2, OFF | PAUSE | STORE, SHORT},
-	{"one tool, a queue of two, resends and later ticks", 1, 2, OFF | RESEND | LATER, SHORT},
-	{"one tool, a queue of one, everything", 1, 1, ALL, LONG},
-	{"one tool, a queue of two, everything", 1, 2, ALL, PART},
-	{"two tools, a queue of one, everything", 2, 1, ALL, LONG}, // 51,696,545 states
+	{"one tool, a queue of two, resends", 1, 2, OFF | RESEND, SHORT},
+	{"one tool, off at later ticks, losses", 1, 1, OFF | LOSS | HAND | LATER, SHORT},
+	{"one tool, a queue of one, all but later ticks", 1, 1, ALL & ~(unsigned)LATER, LONG},
+	{"one tool, a queue of one, everything", 1, 1, ALL, PART},
+	{"one tool, a queue of two, all but later ticks", 1, 2, ALL & ~(unsigned)LATER, PART},
+	{"two tools, a queue of one, all but later ticks", 2, 1, ALL & ~(unsigned)LATER, LONG},
 };
 
 // ---- the alphabet -------------------------------------------------------------------------------

@@ -106,13 +106,19 @@ static void order(world *w, cau_ask ask, int client, int tool, uint32_t more)
 		snprintf(ticket->asked.tool, sizeof ticket->asked.tool, "%s", world_tool_names[tool]);
 	if (ask == CAU_ASK_HAND_OVER)
 		ticket->asked.to = asker_of((int)(more % (CLIENTS + 1)));
-	if ((ask == CAU_ASK_ENERGY_ON || ask == CAU_ASK_ENERGY_OFF) && more % 5 == 0)
+	if (ask <= CAU_ASK_ENERGY_OFF && more % 5 == 0)
 		ticket->asked.tick = w->tick + 1 + more % 2;
-	say(w, "c%d: %s %s%s (%d)\n", client, world_ask_names[ask],
+	if (ask == CAU_ASK_ENERGY_ON && more % 7 == 0)
+		ticket->asked.limit = 1 + more % 3;
+	say(w, "c%d: %s %s%s%s (%d)\n", client, world_ask_names[ask],
 	    about_tool ? world_tool_names[tool] : "", ticket->asked.tick ? " later" : "",
-	    w->ticket_count);
+	    ticket->asked.limit ? " for some ticks" : "", w->ticket_count);
 	oracle_note_coming(w, ticket);
 	take(w, (cau_logic_event){.kind = CAU_LOGIC_ORDER, .asked = &ticket->asked});
+	oracle_check_room(w, ticket);
+	bool now = ticket->answers || ticket->asked.tick <= w->tick;
+	if (ask == CAU_ASK_ENERGY_OFF && now && !w->tools[tool].there && !w->ended)
+		oracle_note_off_of_none(w, world_tool_names[tool]);
 	if (ask == CAU_ASK_ENERGY_OFF && ticket->answers) // it found no room, and acts at once
 		oracle_darken(&w->tools[tool], ticket->came);
 	if (ask == CAU_ASK_PAUSE && ticket->answers && !w->ended)
@@ -134,6 +140,7 @@ static void lose(world *w, int client, bool for_good)
 {
 	say(w, "c%d %s\n", client, for_good ? "is gone" : "looks away");
 	w->away[client] = w->came;
+	oracle_note_loss(w, client, for_good);
 	for (int i = 0; i < TOOLS && for_good; i++)
 		if (w->tools[i].driver == client)
 			w->tools[i].driver = 0;
@@ -204,6 +211,42 @@ static void arrive(world *w, bool lit)
 	                          .tool_count = count});
 }
 
+// The program is killed: what waits is lost, nobody drives, and the core comes up with everything
+// on that was ever on.
+static void restart(world *w)
+{
+	if (w->ended)
+		return;
+	say(w, "killed, and restarted\n");
+	for (int i = 0; i < w->ticket_count; i++)
+		if (!w->tickets[i].answers)
+			w->tickets[i].answers = 1; // nobody hears it
+	for (int i = 0; i < TOOLS; i++) {
+		w->tools[i].driver = 0;
+		w->tools[i].enable = 0;
+	}
+	oracle_darken_all(w, w->came);
+	w->working = w->pausing = false;
+	w->store_takes = true;
+	w->paused = 0;
+	w->state = CAU_SESSION_STARTING;
+	cau_logic_init(w->logic, QUEUE);
+	w->logic->step_s = TICK_S;
+	arrive(w, true);
+}
+
+static void cancel(world *w, int client, uint32_t more)
+{
+	int32_t place = 0;
+	const cau_waiting *first = cau_logic_later(w->logic, &place);
+	uint64_t ticket = more % 2 && first ? first->asked.ticket : 0;
+	say(w, "c%d cancels %s\n", client, ticket ? "one" : "all");
+	oracle_note_cancel(w, client, ticket);
+	take(w, (cau_logic_event){.kind = CAU_LOGIC_CANCEL,
+	                          .client = (uint32_t)client,
+	                          .number = ticket ? first->moment : 0});
+}
+
 static void begin_work(world *w)
 {
 	cau_logic_next(w->logic, w->now_s, &w->action, &w->effects);
@@ -231,11 +274,10 @@ static void begin_work(world *w)
 static cau_outcome_kind finish_order(world *w, uint32_t more)
 {
 	ticket_book *ticket = oracle_ticket(w, w->action.ticket);
-	bool core_may_refuse = ticket->asked.ask == CAU_ASK_TOOL_ADD ||
-	                       ticket->asked.ask == CAU_ASK_TISSUE || ticket->asked.ask == CAU_ASK_GO;
-	const tool_book *tool = oracle_book(w, ticket->asked.tool);
-	bool there_already = ticket->asked.ask == CAU_ASK_TOOL_ADD && tool->there;
-	bool done = !there_already && !(core_may_refuse && more % 4 == 0);
+	// Every call of the core that returns a status may refuse; turning energy off returns none.
+	bool core_may_refuse =
+		ticket->asked.ask < CAU_ASK_ENERGY_OFF || ticket->asked.ask == CAU_ASK_GO;
+	bool done = !(core_may_refuse && more % 4 == 0);
 	if (ticket->asked.ask != CAU_ASK_STEP)
 		oracle_answered(w, w->action.ticket);
 	if (done)
@@ -363,6 +405,10 @@ bool world_do(world *w, uint32_t code)
 		store(w, !w->store_takes);
 	else if (what == 18)
 		take(w, (cau_logic_event){.kind = CAU_LOGIC_COMMITTED});
+	else if (what == 19 && more % 8 == 0)
+		restart(w);
+	else if (what == 19 && more % 8 == 1)
+		cancel(w, client, more / 8);
 	else
 		work(w, more);
 	return !*w->wrong;

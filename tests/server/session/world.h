@@ -25,6 +25,7 @@ typedef struct tool_book {
 	bool there, lit; // in the core
 	int driver;      // client; 0: nobody
 	double deadline_s;
+	uint64_t limit;  // tick at which the enable ends; 0: it has no limit
 	uint64_t dark;   // coming in of the newest thing that darkens it
 	uint64_t enable; // coming in of the newest enable that the core took
 	int enabler;
@@ -37,7 +38,10 @@ typedef struct ticket_book {
 	uint64_t came; // 0: there is none
 	cau_asked asked;
 	int answers;
-	bool kept; // it was not refused when it came in
+	bool kept;     // it was not refused when it came in
+	bool stepping; // session.step, which is under way
+	bool voided;   // it was overtaken: it must be refused
+	bool doubted;  // the worker may have looked for silence: either will do
 } ticket_book;
 
 typedef struct world {

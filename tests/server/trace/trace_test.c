@@ -37,6 +37,7 @@ static cau_trace_call full_call(cau_trace_what what)
 	                       .step_s = 0.1,
 	                       .event = CAU_LOGIC_ARRIVED,
 	                       .client = 0xfffffff1,
+	                       .number = 77,
 	                       .subject = "hook",
 	                       .cause = "a \"quoted\" \\ and\ttabbed\nreason, für alle",
 	                       .store_takes = true,
@@ -51,6 +52,7 @@ static cau_trace_call full_call(cau_trace_what what)
 	                         .to = asker_of(4),
 	                         .tool = "jaws",
 	                         .tick = 99,
+	                         .limit = 180,
 	                         .numbered = true,
 	                         .ticks = INT64_MIN,
 	                         .speed = INFINITY};

@@ -592,6 +592,44 @@ export interface MoveList {
   moves: MoveEntry[];
 }
 
+/** a command that waits for a later tick */
+export interface WaitingCommand {
+  /** its own, for session.cancel (1 to 9007199254740991) */
+  number: number;
+  /** when it acts (1 to 9007199254740991) */
+  tick: number;
+  /** what it is, as tool.move */
+  method: string;
+  /** the tool that it is about */
+  tool?: string;
+  /** the driver's own count (0 to 9007199254740991) */
+  sequence: number;
+  /** the client that asked for it (1 to 4294967295) */
+  client: number;
+  /** that client's name */
+  name: string;
+}
+
+/** the commands of a session that wait for later ticks */
+export interface WaitingList {
+  /** in the order in which they came; at most 64 of a client */
+  commands: WaitingCommand[];
+}
+
+/** takes back commands that wait for later ticks */
+export interface SessionCancel {
+  /** its id; that of the connection's URL by default */
+  session?: string;
+  /** the command's, of session.waiting; without it all of the caller's (1 to 9007199254740991) */
+  number?: number;
+}
+
+/** what was taken back */
+export interface Cancelled {
+  /** commands (0 to 9007199254740991) */
+  count: number;
+}
+
 /** asks for frames */
 export interface SessionJoin {
   /** its id; that of the connection's URL by default */
@@ -1738,6 +1776,10 @@ export interface Requests {
   'session.frame_at': { params: SessionFrameAt; result: PastFrame };
   /** gives up the client's session.frame_at that is under way, if there is one */
   'session.frame_cancel': { params: SessionRef; result: Nothing };
+  /** the commands that wait for later ticks */
+  'session.waiting': { params: SessionRef; result: WaitingList };
+  /** takes back commands that wait for later ticks: the caller's own; with a number and role admin anybody's. Each is answered with `bad_state` */
+  'session.cancel': { params: SessionCancel; result: Cancelled };
   /** asks for a key frame; at most one a second */
   'stream.key_frame': { params: SessionRef; result: Nothing };
   /** a new tool, driven by the caller */

@@ -1,0 +1,107 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// A core that heats what nobody has turned on, here since the double loses an off: no tick is
+// computed with it, and that session alone is faulted.
+#include <setjmp.h>
+#include <stdarg.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include <cmocka.h>
+
+#include "cautery/defaults.h"
+#include "server/double/fake_session.h"
+#include "server/hosted_session/hosted_fixture.h"
+
+enum { CREATED, TAKEN, ON, STEPPED, OFF, FAULTED, RESET };
+
+static atomic_bool is_broken;
+
+static bool breaks_off(void)
+{
+	return is_broken;
+}
+
+static const hosted_answer *ask(int asked, cau_order *order)
+{
+	order->asker.deadline_s = 1000;
+	hosted_submit(order);
+	return hosted_await(asked);
+}
+
+static const hosted_answer *step(int asked, int64_t ticks)
+{
+	cau_order *order = hosted_new_order(asked, CAU_ORDER_STEP, CAU_METHOD_SESSION_STEP);
+	order->as.ticks = ticks;
+	return ask(asked, order);
+}
+
+static const hosted_answer *energize(int asked, bool on)
+{
+	cau_order *order = hosted_new_order(asked, CAU_ORDER_COMMAND, CAU_METHOD_TOOL_ENERGIZE);
+	cau_default_command(&order->as.command, CAU_COMMAND_TOOL_ENERGIZE);
+	snprintf(order->as.command.tool, sizeof order->as.command.tool, "hook");
+	order->as.command.as.energized = on;
+	return ask(asked, order);
+}
+
+static void turn_on_and_step(void)
+{
+	hosted_begin(NOWHERE, CREATED);
+	assert_int_equal(hosted_await(CREATED)->status, CAU_OK);
+	cau_order *order = hosted_new_order(TAKEN, CAU_ORDER_TAKE_OVER, CAU_METHOD_TOOL_TAKE_OVER);
+	snprintf(order->as.tool.tool, sizeof order->as.tool.tool, "hook");
+	assert_int_equal(ask(TAKEN, order)->status, CAU_OK);
+	assert_int_equal(energize(ON, true)->status, CAU_OK);
+	assert_int_equal(step(STEPPED, 3)->status, CAU_OK);
+}
+
+static void no_tick_begins_with_energy_that_nobody_turned_on(void **state)
+{
+	(void)state;
+	turn_on_and_step();
+	is_broken = true;
+	assert_int_equal(energize(OFF, false)->status, CAU_OK);
+	assert_int_not_equal(step(FAULTED, 5)->status, CAU_OK);
+	assert_int_equal(cau_decided_state(t.h), CAU_SESSION_FAULTED);
+	assert_int_equal(t.h->tick, 3);
+	// whoever goes back has a sound session again
+	is_broken = false;
+	cau_order *order = hosted_new_order(RESET, CAU_ORDER_RESET, CAU_METHOD_SESSION_RESET);
+	assert_int_equal(ask(RESET, order)->status, CAU_OK);
+	assert_int_equal(cau_decided_state(t.h), CAU_SESSION_PAUSED);
+	assert_int_equal(t.h->tick, 0);
+}
+
+static void what_is_on_is_stepped(void **state)
+{
+	(void)state;
+	turn_on_and_step();
+	assert_int_equal(energize(OFF, false)->status, CAU_OK);
+	assert_int_equal(step(FAULTED, 5)->status, CAU_OK);
+	assert_int_equal(t.h->tick, 8);
+}
+
+static void nobody_watches(void *user)
+{
+	(void)user;
+}
+
+static int open_broken(void **state)
+{
+	is_broken = false;
+	int failed = hosted_open_surroundings(state);
+	cau_fake_hooks_set.breaks_off = breaks_off;
+	t.around.armed = nobody_watches;
+	return failed;
+}
+
+int main(void)
+{
+	const struct CMUnitTest tests[] = {
+		cmocka_unit_test_setup_teardown(no_tick_begins_with_energy_that_nobody_turned_on,
+	                                    open_broken, hosted_close_surroundings),
+		cmocka_unit_test_setup_teardown(what_is_on_is_stepped, open_broken,
+	                                    hosted_close_surroundings),
+	};
+	return cmocka_run_group_tests(tests, NULL, NULL);
+}
