@@ -17,6 +17,7 @@
 //     strangers COUNT  so many samples, each of another made-up tool or session
 //     state          prints the newest tool state, soon
 // and by way of ros:
+//     ticks COUNT    the limit that it writes with the level
 //     command WORD   a state_command                  jaw RAD          a jaw/servo_jp
 //     crtk           prints the operating state, the jaw and the pose as ROS 2's topics tell them
 // On standard output it tells, one JSON object a line: matched, silent, strangers (all are
@@ -44,6 +45,7 @@ enum { STRANGERS_SHARE = 500 }; // of one period
 typedef struct controller {
 	char session[NAME_BYTES], tool[NAME_BYTES];
 	bool ros, sensor, loose, mistyped, writing, energy, grasp, has_state, matched, state_asked;
+	int32_t ticks; // with the level; 0: none
 	uint64_t sequence;
 	double position_m[3], aim_m[3];
 	double last_write_s;
@@ -135,9 +137,10 @@ static void write_ros_pose(controller *c, const double p[3])
 static void write_ros_level(controller *c)
 {
 	char frame[] = "";
-	int32_t button = c->energy;
+	int32_t buttons[2] = {c->energy, c->ticks};
+	uint32_t count = c->ticks ? 2 : 1;
 	sensor_msgs_msg_dds__Joy_ sample = {.header_ = {{0, 0}, frame},
-	                                    .buttons_ = {1, 1, &button, false}};
+	                                    .buttons_ = {count, count, buttons, false}};
 	checked(dds_write(c->level, &sample));
 }
 
@@ -268,6 +271,8 @@ static void obey(void *user, const char *line)
 	bool on = strcmp(value, "1") == 0 || strcmp(value, "on") == 0;
 	if (strcmp(word, "energy") == 0)
 		c->energy = on;
+	else if (strcmp(word, "ticks") == 0)
+		c->ticks = atoi(value);
 	else if (strcmp(word, "grasp") == 0)
 		c->grasp = on;
 	else if (strcmp(word, "once") == 0)

@@ -103,6 +103,24 @@ for (const [stop, state, go] of [['pause', 'PAUSED', 'resume'], ['disable', 'DIS
 		await energize(seen);
 	});
 
+test('a second button limits the energy in ticks; energy comes back with a new rise alone', async (t) => {
+	const TICKS = 30;
+	const world = await driven(t, 'limited');
+	const { client, stream, robot, session } = world;
+	robot.tell(`ticks ${TICKS}`);
+	await energize(world);
+	await client.until(() => !stream.tools[0].energized, 'energy off');
+	assert.equal(stream.tools[0].energyOff, 'commanded');
+	const { events } = await client.call('session.timeline', { session });
+	const [on, off] = ['energy_on', 'energy_off'].map((kind) => events.find((event) => event.kind === kind).tick);
+	assert.equal(off - on, TICKS);
+	const { tick } = stream; // the level is written as 1 all the while
+	await client.until(() => {
+		assert.equal(stream.tools[0].energized, false);
+		return stream.tick > tick + TICKS;
+	}, 'some ticks');
+});
+
 test('unhome and home; commands without a transition change nothing, unknown ones are refused', async (t) => {
 	const seen = await driven(t, 'homing');
 	const { session, robot } = seen;

@@ -12,7 +12,7 @@ import { AT_REST, cutMiddle, smallSession } from './wire/scene.mjs';
 
 const run = promisify(execFile);
 // as server/session/logic.h has them
-const EVENTS = ['order', 'alive', 'away', 'forget', 'time', 'store', 'committed', 'arrived', 'stayed', 'fault', 'drain', 'end'];
+const EVENTS = ['order', 'alive', 'away', 'forget', 'time', 'store', 'cancel', 'committed', 'arrived', 'stayed', 'fault', 'drain', 'end'];
 const DEADLINE_S = 0.3;
 const hook = (session) => ({ session, tool: 'hook' });
 const forHook = (kind, session, more = {}) => [kind, { ...hook(session), ...more }];
@@ -44,8 +44,11 @@ async function useSession(daemon, name) {
 	await admin.until(() => !stream.tools[0].energized && stream.tools[0].energyOff === 'watchdog', 'it is cut for silence');
 	await assert.rejects(call(second, forHook('tool.energize', session, { energized: true })));
 	await call(second, forHook('tool.request_takeover', session));
+	const far = call(first, forHook('tool.release', session, { tick: 1e9 })).catch((error) => error);
+	await first.call('session.cancel', { session });
+	await far;
 	await call(first, forHook('tool.hand_over', session, { client: second.hello.client }));
-	await call(second, forHook('tool.energize', session, { energized: true }));
+	await call(second, forHook('tool.energize', session, { energized: true, ticks: 1000 }));
 	second.notify('heartbeat', { visible: false });
 	await call(admin, forHook('tool.take_over', session));
 	await admin.call('session.pause', { session });
@@ -81,7 +84,7 @@ test('all that a session decides is written down and plays again, also of a daem
 	assert.deepEqual(files.map((file) => file.slice(folder.length + 1)).sort(), [`${session}.1.trace`, `${session}.2.trace`]);
 	const { events, acts, effects, of } = await replay(files.find((file) => file.includes('.1.')));
 	assert.ok(of.order >= 30, `${of.order} orders`);
-	for (const event of ['alive', 'away', 'forget', 'time', 'committed'])
+	for (const event of ['alive', 'away', 'forget', 'time', 'cancel', 'committed'])
 		assert.ok(of[event] > 0, `no event '${event}'`);
 	assert.ok(of.arrived >= 3, `${of.arrived} arrivals: start, rewind, restore`);
 	assert.ok(events > 50 && acts > 100 && effects > 50, `${events} events, ${acts} acts, ${effects} effects`);
