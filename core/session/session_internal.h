@@ -139,6 +139,9 @@ struct cau_session {
 
 // command.c: applies the queued commands that are due.
 cau_status cau_session_apply_commands(cau_session *session, cau_error *error);
+// command.c: whether the values of a command of a known kind are in their ranges.
+cau_status cau_command_check(const cau_session *session, const cau_command *command,
+                             cau_error *error);
 // Puts the material of a SET_MATERIAL into the layer; false: it is of another kind of tissue.
 bool cau_layer_take_material(cau_layer_def *def, const cau_command *command);
 // tool_motion.c: tools follow their drivers, within their speed limits.
@@ -236,9 +239,8 @@ cau_status cau_session_relax(cau_session *session, cau_error *error);
 // pins.c: a new set of pinned vertices, and the systems that follow from it.
 cau_status cau_session_set_pins(cau_session *session, const cau_selection *selection, int pin,
                                 cau_error *error);
-// Analyses and factors the system anew; `permutation` as in cau_factor_create.
-cau_status cau_session_rebuild_system(cau_session *session, const int32_t *permutation,
-                                      cau_error *error);
+// Analyses and factors the system of session->pinned. Its order follows from the pins alone.
+cau_status cau_session_rebuild_system(cau_session *session, cau_error *error);
 // view.c: scalars of the vertices that are watched, after a tick; all of them anew after a restore.
 void cau_session_show_scalars(cau_session *session);
 void cau_session_renew_scalars(cau_session *session);
@@ -284,6 +286,8 @@ void cau_session_stage_end(cau_session *session, int stage);
 // check.c
 cau_status cau_tool_check(const cau_tool_def *tool, const char *path, double step_s,
                           cau_error *error);
+// One of a layer's materials, of the layer's kind.
+const void *cau_layer_material(const cau_layer_def *layer, int32_t index);
 cau_status cau_material_check(int kind, const void *material, const char *path, cau_error *error);
 cau_status cau_selection_check(const cau_selection *selection, const char *path, cau_error *error);
 cau_status cau_pose_check(const cau_pose *pose, const char *path, cau_error *error);
