@@ -251,6 +251,8 @@ void cau_session_lead_driven(cau_session *session);
 // stray.c: vertices that have gone too far stop; the size of all tissue at rest, m.
 void cau_session_stop_strays(cau_session *session);
 double cau_session_size(const cau_session *session);
+// How far (m) from its rest position a vertex may be.
+double cau_session_farthest_from_rest(const cau_session *session);
 // possible.c: its arrays; refuses a state that no tissue can have (CAU_NUMERICAL, with the tick and
 // the layer), by the vertices' moves and the edges' lengths, and by the count of inverted elements.
 cau_status cau_session_make_watch(cau_session *session, cau_error *error);

@@ -151,11 +151,23 @@ static cau_status check_head(const cau_session *session, const snapshot_head *he
 
 // ---- what goes together
 
-static bool are_vertices_right(const snapshot_state *state)
+// No vertex is farther from its rest position than strays are stopped at (stray.c), nor is on a way
+// of more than that in a tick.
+static bool is_near(const cau_session *session, const snapshot_state *state, int32_t vertex)
+{
+	const double rounding = 1 + 1e-9;
+	double most = rounding * cau_session_farthest_from_rest(session);
+	cau_vec3 at = cau_vec3_of(state->position + 3 * (size_t)vertex);
+	cau_vec3 way = cau_sub(at, cau_vec3_of(session->tissue.rest + 3 * (size_t)vertex));
+	cau_vec3 velocity = cau_vec3_of(state->velocity + 3 * (size_t)vertex);
+	return cau_length(way) <= most && cau_length(velocity) * session->solver.step_s <= 2 * most;
+}
+
+static bool are_vertices_right(const cau_session *session, const snapshot_state *state)
 {
 	int32_t free_count = 0;
 	for (int32_t v = 0; v < state->head.vertex_count; v++) {
-		if (state->pinned[v] && !state->fixed[v])
+		if ((state->pinned[v] && !state->fixed[v]) || !is_near(session, state, v))
 			return false;
 		free_count += !state->pinned[v];
 	}
@@ -237,13 +249,25 @@ static bool is_shrinkage_right(const snapshot_state *state)
 	return once;
 }
 
+// A load moves no pinned vertex.
+static bool moves_a_pin(const cau_session *session, const snapshot_state *state, int32_t column)
+{
+	const cau_vectors *vectors = session->solver.kernels->vectors;
+	for (int32_t v = 0; v < session->tissue.vertex_count; v++)
+		if (state->pinned[v] && vectors->at(state->column[column], v) != 0)
+			return true;
+	return false;
+}
+
+// Columns are of different vertices that have a row.
 static bool are_columns_right(const cau_session *session, const snapshot_state *state)
 {
 	uint8_t *taken = calloc((size_t)session->tissue.vertex_count + 1, 1);
 	bool right = taken != NULL;
 	for (int32_t k = 0; k < state->head.column_count && right; k++) {
 		int32_t vertex = state->column_vertex[k];
-		right = !state->pinned[vertex] && !taken[vertex];
+		right = !state->pinned[vertex] && !taken[vertex] &&
+		        (k >= CAU_WHOLE_COLUMNS || !moves_a_pin(session, state, k));
 		taken[vertex] = 1;
 	}
 	free(taken);
@@ -266,8 +290,8 @@ static bool are_sides_right(const snapshot_state *state)
 static cau_status check_arrays(const cau_session *session, const snapshot_state *state,
                                cau_error *error)
 {
-	if (!are_vertices_right(state))
-		return corrupt(error, "its pins hold what they cannot");
+	if (!are_vertices_right(session, state))
+		return corrupt(error, "a vertex is held, or is where it cannot be");
 	uint8_t *alive[CAU_ELEMENT_KINDS], *marks = find_alive(session, state, alive);
 	if (!marks)
 		return cau_fail(error, CAU_NO_MEMORY, NULL, "no memory to restore");
