@@ -180,10 +180,33 @@ void cau_dissection_lose_edge(cau_dissection *dissection, int32_t edge, uint16_t
 }
 
 // ---- recount
-static bool has_parted_by_dose(const cau_dissection *dissection, int primitive, int32_t index)
+
+// Marks what parted edges take along.
+static void mark_parted(const cau_tissue *tissue, const uint16_t *parted,
+                        uint8_t *const alive[CAU_ELEMENT_KINDS])
 {
-	return dissection->doses.dose && primitive < CAU_PRIMITIVE_LINK &&
-	       dissection->doses.gone[cau_doses_place(dissection->tissue, primitive, index)];
+	const cau_edge_table *edges = &tissue->edges;
+	for (int32_t e = 0; e < edges->edge_count; e++)
+		for (int p = 0; p < CAU_PRIMITIVE_KINDS && parted[e]; p++)
+			for (int32_t k = edges->first[p][e]; k < edges->first[p][e + 1]; k++) {
+				int32_t index = edges->sharer[p][k];
+				if (parted[e] >> cau_dissection_layer_of(tissue, p, index) & 1)
+					alive[element_kind(p)][index] = 0;
+			}
+}
+
+void cau_dissection_find_alive(const cau_tissue *tissue, const uint16_t *parted,
+                               const uint8_t *gone, uint8_t *const alive[CAU_ELEMENT_KINDS])
+{
+	for (int p = 0; p < CAU_PRIMITIVE_KINDS; p++)
+		for (int32_t i = 0; i < cau_dissection_count_of(tissue, p); i++)
+			alive[element_kind(p)][i] =
+				!gone || p == CAU_PRIMITIVE_LINK || !gone[cau_doses_place(tissue, p, i)];
+	mark_parted(tissue, parted, alive);
+	const uint8_t *triangle = alive[CAU_ELEMENT_TRIANGLE];
+	for (int32_t h = 0; h < tissue->hinge_count; h++)
+		alive[CAU_ELEMENT_HINGE][h] =
+			triangle[tissue->hinge_triangle[2 * h]] & triangle[tissue->hinge_triangle[2 * h + 1]];
 }
 
 static void recount_shares(cau_dissection *dissection)
@@ -205,20 +228,6 @@ static void recount_shares(cau_dissection *dissection)
 				           "primitive %d of kind %d loses edge %d, and has none", index, p, e);
 				dissection->share_count[p][index]--;
 			}
-	for (int p = 0; p < CAU_PRIMITIVE_KINDS; p++)
-		for (int32_t i = 0; i < cau_dissection_count_of(dissection->tissue, p); i++)
-			dissection->alive.element[element_kind(p)][i] =
-				dissection->share_count[p][i] == edges_of[p] &&
-				!has_parted_by_dose(dissection, p, i);
-}
-
-static void recount_hinges(cau_dissection *dissection)
-{
-	const cau_tissue *tissue = dissection->tissue;
-	const uint8_t *triangle = dissection->alive.element[CAU_ELEMENT_TRIANGLE];
-	for (int32_t h = 0; h < tissue->hinge_count; h++)
-		dissection->alive.element[CAU_ELEMENT_HINGE][h] =
-			triangle[tissue->hinge_triangle[2 * h]] & triangle[tissue->hinge_triangle[2 * h + 1]];
 }
 
 static void recount_faces(cau_dissection *dissection)
@@ -249,6 +258,7 @@ static void recount_faces(cau_dissection *dissection)
 void cau_dissection_recount(cau_dissection *dissection)
 {
 	recount_shares(dissection);
-	recount_hinges(dissection);
+	cau_dissection_find_alive(dissection->tissue, dissection->parted, dissection->doses.gone,
+	                          dissection->alive.element);
 	recount_faces(dissection);
 }

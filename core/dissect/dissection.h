@@ -98,6 +98,11 @@ int32_t cau_tears_capacity(const cau_tissue *tissue);
 void cau_dissection_tear(cau_dissection *dissection, const double *position, bool converged,
                          cau_pool *pool);
 
+// Marks the elements, by kind, that live by what has parted: `parted` (edge_count, a bit for each
+// layer) and, where elements part one by one, `gone` (dose_count; else NULL).
+void cau_dissection_find_alive(const cau_tissue *tissue, const uint16_t *parted,
+                               const uint8_t *gone, uint8_t *const alive[CAU_ELEMENT_KINDS]);
+
 // Recounts everything that follows from `parted` and `gone` (after a restore): share counts, alive,
 // faces, vertices.
 void cau_dissection_recount(cau_dissection *dissection);

@@ -66,7 +66,7 @@ static void origin_for(const cau_heat_grid *grid, const cau_tool_def *tool, cons
 			whole_cells(world[axis] / grid->field[0].step_m - (grid->nodes - 1) / 2.0 + 0.5);
 }
 
-static cau_status check(const cau_tool_def *tool, double tick_s, cau_error *error)
+cau_status cau_heat_grid_check(const cau_tool_def *tool, double tick_s, cau_error *error)
 {
 	double step = tool->grid_step_m;
 	double thinnest = cau_tool_thinnest_hot_m(tool);
@@ -116,7 +116,7 @@ cau_status cau_heat_grid_create(cau_heat_grid *grid, const cau_tool_def *tool, d
                                 double tick_s, const cau_pose *pose, cau_error *error)
 {
 	*grid = (cau_heat_grid){0};
-	cau_status status = check(tool, tick_s, error);
+	cau_status status = cau_heat_grid_check(tool, tick_s, error);
 	if (status != CAU_OK)
 		return status;
 	grid->nodes = (int32_t)tool->grid_cells;

@@ -31,10 +31,13 @@ typedef struct cau_heat_grid {
 	float *fall;                           // (N x N): for the outermost field's boundary
 } cau_heat_grid;
 
-// Refuses (CAU_BAD_VALUE, path "grid_step_m", "grid_cells" or "diffusivity_m2_s") a step above the
-// thinnest hot radius, a pair (dl, alpha) that would need more than 64 substeps of `tick_s`
-// (dt_heat <= dl^2 / (6 alpha)) and fewer than 3 nodes along an axis. The caller finishes what was
-// created; a refused grid needs no finish.
+// Whether a tool's grid is possible. Refused (CAU_BAD_VALUE, path "grid_step_m", "grid_cells" or
+// "diffusivity_m2_s") are a step above the thinnest hot radius, a pair (dl, alpha) that needs more
+// than 64 substeps of `tick_s` (dt_heat <= dl^2 / (6 alpha)), and fewer than 3 nodes along an axis.
+cau_status cau_heat_grid_check(const cau_tool_def *tool, double tick_s, cau_error *error);
+
+// Makes the grid of a tool, all of it at ambient. Refuses what cau_heat_grid_check refuses, and
+// CAU_NO_MEMORY. The caller finishes a grid that was created; a refused one needs no finish.
 cau_status cau_heat_grid_create(cau_heat_grid *grid, const cau_tool_def *tool, double ambient_c,
                                 double tick_s, const cau_pose *pose, cau_error *error);
 void cau_heat_grid_finish(cau_heat_grid *grid);

@@ -234,13 +234,9 @@ cau_status cau_tool_check(const cau_tool_def *object, const char *path, double s
 		status = cau_pose_check(&object->pose, path, error);
 	if (status)
 		return status;
-	cau_heat_grid grid; // the grid knows its own stability limits
-	cau_error inner = {0};
-	status = cau_heat_grid_create(&grid, object, 37, step_s, &object->pose, &inner);
-	if (status)
-		return refuse_within(&inner, path, error);
-	cau_heat_grid_finish(&grid);
-	return CAU_OK;
+	cau_error inner = {0}; // the grid knows its own stability limits
+	status = cau_heat_grid_check(object, step_s, &inner);
+	return status ? refuse_within(&inner, path, error) : CAU_OK;
 }
 
 cau_status cau_selection_check(const cau_selection *selection, const char *path, cau_error *error)
@@ -304,6 +300,14 @@ static cau_status check_layer_links(const cau_scene_def *scene, const cau_layer_
 	                                         : CAU_OK;
 }
 
+const void *cau_layer_material(const cau_layer_def *layer, int32_t index)
+{
+	CAU_ASSERT_INDEX(index, CAU_MAX_MATERIALS);
+	if (layer->kind == CAU_LAYER_FAT)
+		return &layer->fat[index];
+	return layer->kind == CAU_LAYER_LINKS ? (const void *)&layer->link : &layer->sheet[index];
+}
+
 static cau_status check_layer(const cau_scene_def *scene, int32_t index, cau_error *error)
 {
 	const cau_layer_def *layer = &scene->layers[index];
@@ -326,10 +330,7 @@ static cau_status check_layer(const cau_scene_def *scene, int32_t index, cau_err
 			snprintf(inner, sizeof inner, "layers[%d].regions[%d]", index, m - 1);
 		else
 			snprintf(inner, sizeof inner, "layers[%d]", index);
-		const void *material = layer->kind == CAU_LAYER_FAT     ? (const void *)&layer->fat[m]
-		                       : layer->kind == CAU_LAYER_LINKS ? (const void *)&layer->link
-		                                                        : (const void *)&layer->sheet[m];
-		status = cau_material_check(layer->kind, material, inner, error);
+		status = cau_material_check(layer->kind, cau_layer_material(layer, m), inner, error);
 	}
 	return status ? status : check_layer_links(scene, layer, path, error);
 }

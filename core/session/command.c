@@ -7,8 +7,8 @@
 #include "session/session_internal.h"
 
 // ---- submission
-static cau_status check_values(const cau_session *session, const cau_command *command,
-                               cau_error *error)
+cau_status cau_command_check(const cau_session *session, const cau_command *command,
+                             cau_error *error)
 {
 	switch (command->kind) {
 	case CAU_COMMAND_TOOL_ADD:
@@ -83,7 +83,7 @@ cau_status cau_session_submit(cau_session *session, const cau_command *command, 
 {
 	if (command->kind < 0 || command->kind >= CAU_COMMAND_COUNT)
 		return cau_fail(error, CAU_BAD_VALUE, "command", "%d is no command", command->kind);
-	cau_status status = check_values(session, command, error);
+	cau_status status = cau_command_check(session, command, error);
 	if (status)
 		return status;
 	if (acts_at_once(session, command))

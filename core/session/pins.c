@@ -7,8 +7,7 @@
 #include "cautery/assert.h"
 #include "session/session_internal.h"
 
-cau_status cau_session_rebuild_system(cau_session *session, const int32_t *permutation,
-                                      cau_error *error)
+cau_status cau_session_rebuild_system(cau_session *session, cau_error *error)
 {
 	CAU_ASSERT(session->contact.solution != NULL, "a system of %d vertices before its contacts",
 	           session->tissue.vertex_count);
@@ -31,7 +30,7 @@ cau_status cau_session_rebuild_system(cau_session *session, const int32_t *permu
 	cau_status status =
 		cau_system_create(&solver->system, &session->tissue, session->pinned, arena, error);
 	if (!status)
-		status = cau_solver_factor(solver, &session->dissection.alive, permutation, arena, error);
+		status = cau_solver_factor(solver, &session->dissection.alive, NULL, arena, error);
 	if (!status)
 		status = cau_matrix_update_create(&session->update, solver, &session->dissection.alive,
 		                                  arena, error);
@@ -59,5 +58,5 @@ cau_status cau_session_set_pins(cau_session *session, const cau_selection *selec
 	if (!changed)
 		return CAU_OK;
 	cau_session_drop_frozen_grasps(session);
-	return cau_session_rebuild_system(session, NULL, error);
+	return cau_session_rebuild_system(session, error);
 }

@@ -67,8 +67,10 @@ bool cau_session_hold_back(cau_session *session, int attempt)
 		tool->pace = fmax(slower * tool->pace, least_pace);
 		lead(tool, attempt == CAU_ATTEMPTS - 1 ? 0 : tool->pace);
 	}
+	// Supports stay where they are led. What is frozen goes back too: a column that lags behind its
+	// freezing may have moved it.
 	for (size_t v = 0; v < (size_t)session->tissue.vertex_count && any; v++)
-		if (!session->fixed[v])
+		if (!session->pinned[v])
 			memcpy(session->position + 3 * v, session->position_start + 3 * v, 3 * sizeof(double));
 	return any;
 }

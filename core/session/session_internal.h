@@ -139,6 +139,9 @@ struct cau_session {
 
 // command.c: applies the queued commands that are due.
 cau_status cau_session_apply_commands(cau_session *session, cau_error *error);
+// command.c: whether the values of a command of a known kind are in their ranges.
+cau_status cau_command_check(const cau_session *session, const cau_command *command,
+                             cau_error *error);
 // level.c: whether the command states what is so already, or will be refused; the same of a
 // CONFIGURE's definition and of a SET_MATERIAL alone.
 bool cau_session_changes_nothing(cau_session *session, const cau_command *command);
@@ -251,9 +254,8 @@ cau_status cau_session_relax(cau_session *session, cau_error *error);
 // pins.c: a new set of pinned vertices, and the systems that follow from it.
 cau_status cau_session_set_pins(cau_session *session, const cau_selection *selection, int pin,
                                 cau_error *error);
-// Analyses and factors the system anew; `permutation` as in cau_factor_create.
-cau_status cau_session_rebuild_system(cau_session *session, const int32_t *permutation,
-                                      cau_error *error);
+// Analyses and factors the system of session->pinned. Its order follows from the pins alone.
+cau_status cau_session_rebuild_system(cau_session *session, cau_error *error);
 // view.c: scalars of the vertices that are watched, after a tick; all of them anew after a restore.
 void cau_session_show_scalars(cau_session *session);
 void cau_session_renew_scalars(cau_session *session);
@@ -264,6 +266,8 @@ void cau_session_lead_driven(cau_session *session);
 // stray.c: vertices that have gone too far stop; the size of all tissue at rest, m.
 void cau_session_stop_strays(cau_session *session);
 double cau_session_size(const cau_session *session);
+// How far (m) from its rest position a vertex may be.
+double cau_session_farthest_from_rest(const cau_session *session);
 // possible.c: its arrays; refuses a state that no tissue can have (CAU_NUMERICAL, with the tick and
 // the layer), by the vertices' moves and the edges' lengths, and by the count of inverted elements.
 cau_status cau_session_make_watch(cau_session *session, cau_error *error);
@@ -299,6 +303,8 @@ void cau_session_stage_end(cau_session *session, int stage);
 // check.c
 cau_status cau_tool_check(const cau_tool_def *tool, const char *path, double step_s,
                           cau_error *error);
+// One of a layer's materials, of the layer's kind.
+const void *cau_layer_material(const cau_layer_def *layer, int32_t index);
 cau_status cau_material_check(int kind, const void *material, const char *path, cau_error *error);
 cau_status cau_selection_check(const cau_selection *selection, const char *path, cau_error *error);
 cau_status cau_pose_check(const cau_pose *pose, const char *path, cau_error *error);

@@ -26,13 +26,18 @@ double cau_session_size(const cau_session *session)
 	return sqrt(squared);
 }
 
+double cau_session_farthest_from_rest(const cau_session *session)
+{
+	CAU_ASSERT(session->size_m > 0, "tissue of %g m", session->size_m);
+	return farthest_sizes * session->size_m;
+}
+
 static void stop(cau_session *session, size_t vertex, cau_vec3 way)
 {
 	CAU_ASSERT(!session->fixed[vertex], "vertex %zu is stopped twice", vertex);
 	double *position = session->position + 3 * vertex;
 	cau_vec3 rest = cau_vec3_of(session->tissue.rest + 3 * vertex);
-	double reach_m = farthest_sizes * session->size_m;
-	CAU_ASSERT(reach_m > 0, "a stray beyond %g m", reach_m);
+	double reach_m = cau_session_farthest_from_rest(session);
 	cau_vec3_to(cau_add_scaled(rest, reach_m / cau_length(way), way), position);
 	memset(session->velocity + 3 * vertex, 0, 3 * sizeof(double));
 	session->fixed[vertex] = 1;
@@ -44,7 +49,7 @@ void cau_session_stop_strays(cau_session *session)
 	CAU_ASSERT(session->frozen_count <= session->tissue.vertex_count, "%d vertices frozen of %d",
 	           session->frozen_count, session->tissue.vertex_count);
 	bool stopped = false;
-	double reach_m = farthest_sizes * session->size_m;
+	double reach_m = cau_session_farthest_from_rest(session);
 	for (size_t v = 0; v < (size_t)session->tissue.vertex_count; v++) {
 		cau_vec3 way = cau_sub(cau_vec3_of(session->position + 3 * v),
 		                       cau_vec3_of(session->tissue.rest + 3 * v));

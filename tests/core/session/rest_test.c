@@ -2,9 +2,9 @@
 // Rest: tissue that has stopped is held to the bit, in every run at the same tick; what it is held
 // at is where it would have come to; and whatever could move it wakes it.
 #include "core/session/stage.h"
+#include "session/session_internal.h"
 
 #include "base/hash.h"
-#include "session/snapshot_header.h"
 
 enum { LONGEST = 3000 };
 static const double gravity_z = -9.81;
@@ -393,44 +393,6 @@ static void threads_and_restores_change_no_bit(void **state)
 	free(scene);
 }
 
-// A snapshot from before there was rest is read as one of tissue that has just moved.
-static void a_snapshot_without_rest_is_read(void **state)
-{
-	(void)state;
-	enum { VERSION_AT = 8, HASH_AT = 48, PAYLOAD_BYTES_AT = 56 };
-	const size_t rest_bytes = sizeof(snapshot_header) - offsetof(snapshot_header, resting);
-	const size_t tears = (2 * CAU_MAX_MATERIALS + 1) * sizeof(double); // of the one layer
-	cau_scene_def *scene = make_hanging_block(CAU_PRECISION_SINGLE);
-	cau_session *session = stage_open(scene, 1), *other = stage_open(scene, 1);
-	stage_step(session, 3);
-	assert_int_equal(session->rest.quiet_ticks, 0);
-	stage_bytes shot = stage_snapshot(session);
-	uint64_t payload_bytes;
-	memcpy(&payload_bytes, shot.bytes + PAYLOAD_BYTES_AT, sizeof payload_bytes);
-	size_t head = shot.count - payload_bytes - rest_bytes;
-	memmove(shot.bytes + head, shot.bytes + head + rest_bytes, payload_bytes);
-	payload_bytes -= tears;
-	memcpy(shot.bytes + PAYLOAD_BYTES_AT, &payload_bytes, sizeof payload_bytes);
-	shot.count -= rest_bytes + tears;
-	const uint32_t version = 3;
-	memcpy(shot.bytes + VERSION_AT, &version, sizeof version);
-	memset(shot.bytes + HASH_AT, 0, sizeof(uint64_t));
-	uint64_t hash = cau_hash_bytes(cau_hash_bytes(CAU_HASH_START, shot.bytes, head),
-	                               shot.bytes + head, payload_bytes);
-	memcpy(shot.bytes + HASH_AT, &hash, sizeof hash);
-	bool exact = true;
-	cau_error error = {0};
-	if (cau_session_restore(other, shot.bytes, shot.count, &exact, &error))
-		fail_msg("%s", error.reason);
-	assert_false(exact);
-	assert_true(cau_session_hash(other) == cau_session_hash(session));
-	assert_true(cau_session_restore(other, shot.bytes, head - 1, &exact, &error) == CAU_CORRUPT);
-	free(shot.bytes);
-	cau_session_destroy(session);
-	cau_session_destroy(other);
-	free(scene);
-}
-
 int main(void)
 {
 	const struct CMUnitTest tests[] = {
@@ -443,7 +405,6 @@ int main(void)
 		cmocka_unit_test(heat_keeps_it_awake),
 		cmocka_unit_test(a_cut_is_done_before_it_rests),
 		cmocka_unit_test(threads_and_restores_change_no_bit),
-		cmocka_unit_test(a_snapshot_without_rest_is_read),
 	};
 	return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -1,0 +1,455 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Reading a snapshot into copies, and what its parts must be to each other. A snapshot may come
+// from another machine: nothing in it is believed because its hash is right.
+#include <stdlib.h>
+#include <string.h>
+
+#include "cautery/assert.h"
+#include "session/snapshot_records.h"
+#include "session/snapshot_state.h"
+
+static cau_status corrupt(cau_error *error, const char *why)
+{
+	return cau_fail(error, CAU_CORRUPT, NULL, "this is no snapshot of this session: %s", why);
+}
+
+static cau_status refuse(const snapshot_archive *archive, cau_error *error)
+{
+	if (!strcmp(archive->wrong, "version"))
+		return cau_fail(error, CAU_CORRUPT, NULL,
+		                "the snapshot is of another version than %d, which this build reads: "
+		                "restore it with the build that wrote it",
+		                CAU_SNAPSHOT_VERSION);
+	return cau_fail(error, CAU_CORRUPT, NULL,
+	                "this is no snapshot of this session: %s, at byte %zu, is missing or outside "
+	                "its range",
+	                archive->wrong, archive->at);
+}
+
+// ---- copies
+
+typedef struct copier {
+	cau_arena *arena;
+	bool missing;
+} copier;
+
+static void *array(copier *copies, size_t count, size_t size)
+{
+	void *made = cau_arena_array(copies->arena, count, size);
+	copies->missing |= !made;
+	return made;
+}
+
+// A copy of what the session has, so that padding is there too.
+static void copy_reals(copier *copies, void **reals, int count, int32_t slots, bool single)
+{
+	for (int i = 0; i < count; i++) {
+		reals[i] = cau_arena_copy(copies->arena, reals[i], (size_t)slots, cau_real_bytes(single));
+		copies->missing |= !reals[i];
+	}
+}
+
+static void copy_elements(copier *copies, cau_elements *elements)
+{
+	cau_sheet_set *sheet = &elements->sheet;
+	cau_fat_set *fat = &elements->fat;
+	bool single = elements->single;
+	copy_reals(copies, sheet->target, 3, sheet->slot_count, single);
+	copy_reals(copies, sheet->polar, 6, sheet->slot_count, single);
+	copy_reals(copies, &fat->limit_weight, 1, fat->slot_count, single);
+	copy_reals(copies, fat->target, 6, fat->slot_count, single);
+	copy_reals(copies, fat->polar, 4, fat->slot_count, single);
+	copy_reals(copies, fat->plastic, 6, fat->slot_count, single);
+	copy_reals(copies, fat->plastic_strain, 6, fat->slot_count, single);
+	fat->limited = array(copies, (size_t)(fat->slot_count / CAU_BATCH), 1);
+	fat->flowed = array(copies, (size_t)(fat->slot_count / CAU_BATCH), 1);
+}
+
+static void make_columns(copier *copies, const cau_session *session, snapshot_state *state)
+{
+	size_t count = (size_t)state->head.column_count;
+	size_t n = (size_t)session->tissue.vertex_count;
+	state->column_vertex = array(copies, count, sizeof(int32_t));
+	state->column_version = array(copies, count, sizeof(uint64_t));
+	state->column = array(copies, CAU_WHOLE_COLUMNS, sizeof *state->column);
+	state->inverse = array(copies, count * CAU_MAX_COLUMNS, sizeof(double));
+	for (size_t i = 0; i < count && i < CAU_WHOLE_COLUMNS && !copies->missing; i++)
+		state->column[i] = array(copies, n, cau_real_bytes(state->elements.single));
+}
+
+// Arrays of the sizes that the head announces, which cau_snapshot_read has compared with what the
+// session has room for.
+static cau_status make_copies(const cau_session *session, snapshot_state *state, cau_error *error)
+{
+	copier copies = {.arena = &state->copies};
+	const snapshot_head *head = &state->head;
+	const cau_tissue *tissue = &session->tissue;
+	size_t n = (size_t)tissue->vertex_count, edges = (size_t)tissue->edges.edge_count;
+	size_t doses = (size_t)cau_dissection_dose_count(&session->dissection);
+	state->pinned = array(&copies, n, 1);
+	state->fixed = array(&copies, n, 1);
+	state->exempt_before = array(&copies, n, 1);
+	state->position = array(&copies, 3 * n, sizeof(double));
+	state->velocity = array(&copies, 3 * n, sizeof(double));
+	state->external = array(&copies, 3 * n, sizeof(double));
+	state->quiet_from = array(&copies, 3 * n, sizeof(double));
+	state->diagonal = array(&copies, n, sizeof(double));
+	state->exposure = array(&copies, edges, sizeof(double));
+	state->parted = array(&copies, edges, sizeof(uint16_t));
+	state->dose = array(&copies, doses, sizeof(double));
+	state->gone = array(&copies, doses, 1);
+	state->shrunk[0] = array(&copies, (size_t)tissue->triangle_count, 1);
+	state->shrunk[1] = array(&copies, (size_t)tissue->tetrahedron_count, 1);
+	state->active = array(&copies, (size_t)head->active_count, sizeof *state->active);
+	state->command = array(&copies, (size_t)head->command_count, sizeof *state->command);
+	state->waiting = array(&copies, (size_t)head->waiting_count, sizeof *state->waiting);
+	state->operation = array(&copies, (size_t)head->operation_count, sizeof *state->operation);
+	state->tool = array(&copies, (size_t)head->tool_count, sizeof *state->tool);
+	state->memory = array(&copies, (size_t)head->memory_count, sizeof *state->memory);
+	state->over = array(&copies, (size_t)head->over_count, sizeof *state->over);
+	state->layer = array(&copies, (size_t)tissue->layer_count, sizeof *state->layer);
+	for (int32_t i = 0; i < tissue->layer_count && state->layer; i++)
+		state->layer[i] = tissue->layer[i].def;
+	state->elements = session->solver.elements;
+	copy_elements(&copies, &state->elements);
+	make_columns(&copies, session, state);
+	return copies.missing ? cau_fail(error, CAU_NO_MEMORY, NULL, "no memory to restore") : CAU_OK;
+}
+
+void cau_snapshot_drop(snapshot_state *state)
+{
+	for (int32_t i = 0; i < state->head.tool_count && state->tool; i++)
+		cau_heat_grid_finish(&state->tool[i].grid);
+	cau_arena_finish(&state->copies);
+	*state = (snapshot_state){0};
+}
+
+// ---- the head
+
+static cau_status check_head(const cau_session *session, const snapshot_head *head,
+                             cau_error *error)
+{
+	const cau_matrix_update *update = &session->update;
+	if (head->single != session->solver.elements.single)
+		return corrupt(error, "it is of another precision");
+	if (head->definition_hash != session->definition_hash ||
+	    head->vertex_count != session->tissue.vertex_count ||
+	    head->edge_count != session->tissue.edges.edge_count)
+		return corrupt(error, "it is of another tissue");
+	if (head->command_count > session->command_capacity ||
+	    head->active_count > session->shrink.active_capacity ||
+	    head->over_count > cau_tears_capacity(&session->tissue) ||
+	    head->waiting_count > update->waiting_capacity ||
+	    head->waiting_at_start > head->waiting_count ||
+	    head->inverted > session->tissue.tetrahedron_count || (head->resting && !head->quiet_ticks))
+		return corrupt(error, "a count is outside its range");
+	if (head->making &&
+	    (session->scene->solver == CAU_SOLVER_DIAGONAL || head->swap_tick < head->tick))
+		return corrupt(error, "no factor can be in the making");
+	return CAU_OK;
+}
+
+// ---- what goes together
+
+// No vertex is farther from its rest position than strays are stopped at (stray.c), nor is on a way
+// of more than that in a tick.
+static bool is_near(const cau_session *session, const snapshot_state *state, int32_t vertex)
+{
+	const double rounding = 1 + 1e-9;
+	double most = rounding * cau_session_farthest_from_rest(session);
+	cau_vec3 at = cau_vec3_of(state->position + 3 * (size_t)vertex);
+	cau_vec3 way = cau_sub(at, cau_vec3_of(session->tissue.rest + 3 * (size_t)vertex));
+	cau_vec3 velocity = cau_vec3_of(state->velocity + 3 * (size_t)vertex);
+	return cau_length(way) <= most && cau_length(velocity) * session->solver.step_s <= 2 * most;
+}
+
+static bool are_vertices_right(const cau_session *session, const snapshot_state *state)
+{
+	int32_t free_count = 0;
+	for (int32_t v = 0; v < state->head.vertex_count; v++) {
+		if ((state->pinned[v] && !state->fixed[v]) || !is_near(session, state, v))
+			return false;
+		free_count += !state->pinned[v];
+	}
+	return free_count > 0;
+}
+
+// Elements by kind: 1 while they live by what has parted. The caller frees them.
+static uint8_t *find_alive(const cau_session *session, const snapshot_state *state,
+                           uint8_t *alive[CAU_ELEMENT_KINDS])
+{
+	size_t total = 1;
+	for (int kind = 0; kind < CAU_ELEMENT_KINDS; kind++)
+		total += (size_t)cau_tissue_element_count(&session->tissue, kind);
+	uint8_t *marks = malloc(total), *next = marks;
+	for (int kind = 0; kind < CAU_ELEMENT_KINDS && marks; kind++) {
+		alive[kind] = next;
+		next += cau_tissue_element_count(&session->tissue, kind);
+	}
+	if (marks)
+		cau_dissection_find_alive(&session->tissue, state->parted, state->gone, alive);
+	return marks;
+}
+
+// An element that left the factor, or is to, is dead, and is listed once. Marks it.
+static bool takes(uint8_t *const alive[CAU_ELEMENT_KINDS], int32_t kind, int32_t element)
+{
+	bool dead = !alive[kind][element];
+	alive[kind][element] = 1;
+	return dead;
+}
+
+// Marks in `alive`, which is scratch from then on, what is listed.
+static bool are_lists_right(const snapshot_state *state, uint8_t *const alive[CAU_ELEMENT_KINDS])
+{
+	for (int32_t k = 0; k < state->head.waiting_count; k++)
+		if (!takes(alive, state->waiting[k].kind, state->waiting[k].element) ||
+		    (k && state->waiting[k].tick < state->waiting[k - 1].tick))
+			return false;
+	for (int32_t k = 0; k < state->head.operation_count; k++)
+		if (!takes(alive, state->operation[k].kind, state->operation[k].element) ||
+		    state->operation[k].group >= state->head.group_count ||
+		    (k && state->operation[k].group < state->operation[k - 1].group))
+			return false;
+	for (int32_t k = 1; k < state->head.over_count; k++)
+		if (state->over[k].place <= state->over[k - 1].place)
+			return false;
+	return true;
+}
+
+static int compare_shrinking(const void *a, const void *b)
+{
+	const cau_shrinking *x = a, *y = b;
+	if (x->kind != y->kind)
+		return x->kind < y->kind ? -1 : 1;
+	return (x->element > y->element) - (x->element < y->element);
+}
+
+static bool is_shrinkage_right(const snapshot_state *state)
+{
+	for (int32_t k = 0; k < state->head.active_count; k++) {
+		const cau_shrinking *active = &state->active[k];
+		if (!state->shrunk[active->kind][active->element])
+			return false;
+		int diagonal = active->kind == CAU_ELEMENT_TRIANGLE ? 2 : 3;
+		for (int i = 0; i < diagonal; i++)
+			if (!(active->from[i] > 0 && active->to[i] > 0))
+				return false;
+	}
+	size_t count = (size_t)state->head.active_count;
+	cau_shrinking *sorted = malloc((count + 1) * sizeof *sorted);
+	if (!sorted)
+		return false;
+	memcpy(sorted, state->active, count * sizeof *sorted);
+	qsort(sorted, count, sizeof *sorted, compare_shrinking);
+	bool once = true;
+	for (size_t k = 1; k < count; k++)
+		once &= compare_shrinking(&sorted[k - 1], &sorted[k]) != 0;
+	free(sorted);
+	return once;
+}
+
+// A load moves no pinned vertex.
+static bool moves_a_pin(const cau_session *session, const snapshot_state *state, int32_t column)
+{
+	const cau_vectors *vectors = session->solver.kernels->vectors;
+	for (int32_t v = 0; v < session->tissue.vertex_count; v++)
+		if (state->pinned[v] && vectors->at(state->column[column], v) != 0)
+			return true;
+	return false;
+}
+
+// Columns are of different vertices that have a row.
+static bool are_columns_right(const cau_session *session, const snapshot_state *state)
+{
+	uint8_t *taken = calloc((size_t)session->tissue.vertex_count + 1, 1);
+	bool right = taken != NULL;
+	for (int32_t k = 0; k < state->head.column_count && right; k++) {
+		int32_t vertex = state->column_vertex[k];
+		right = !state->pinned[vertex] && !taken[vertex] &&
+		        (k >= CAU_WHOLE_COLUMNS || !moves_a_pin(session, state, k));
+		taken[vertex] = 1;
+	}
+	free(taken);
+	return right;
+}
+
+static bool are_sides_right(const snapshot_state *state)
+{
+	for (int32_t k = 0; k < state->head.memory_count; k++) {
+		const cau_contact_memory *memory = &state->memory[k], *before = memory - 1;
+		if (!memory->above)
+			return false;
+		if (k && (memory->tool < before->tool ||
+		          (memory->tool == before->tool && memory->face <= before->face)))
+			return false;
+	}
+	return true;
+}
+
+static cau_status check_arrays(const cau_session *session, const snapshot_state *state,
+                               cau_error *error)
+{
+	if (!are_vertices_right(session, state))
+		return corrupt(error, "a vertex is held, or is where it cannot be");
+	uint8_t *alive[CAU_ELEMENT_KINDS], *marks = find_alive(session, state, alive);
+	if (!marks)
+		return cau_fail(error, CAU_NO_MEMORY, NULL, "no memory to restore");
+	bool right = are_lists_right(state, alive);
+	free(marks);
+	if (!right)
+		return corrupt(error, "an element is in the factor and is not");
+	if (!is_shrinkage_right(state))
+		return corrupt(error, "an element shrinks twice, or to nothing");
+	if (!are_columns_right(session, state) || !are_sides_right(state))
+		return corrupt(error, "what tools touched is not in order");
+	return CAU_OK;
+}
+
+// ---- records
+
+static bool is_grasp_right(const cau_session *session, const cau_grasp *grasp)
+{
+	const int32_t *corner =
+		session->tissue.faces.vertex + 3 * (size_t)(grasp->face < 0 ? 0 : grasp->face);
+	if (grasp->face < 0)
+		return grasp->vertex[1] == -1 && grasp->vertex[2] == -1;
+	double sum = 0;
+	for (int k = 0; k < 3; k++) {
+		if (grasp->vertex[k] != corner[k])
+			return false;
+		sum += grasp->weight[k];
+	}
+	return sum > 0.99 && sum < 1.01;
+}
+
+// A pose that is no turn is refused as a command's would be.
+static bool are_poses_right(const cau_tool *tool)
+{
+	const cau_pose *poses[] = {&tool->state.pose, &tool->state.asked_pose, &tool->target,
+	                           &tool->anchor, &tool->pose_before};
+	cau_error why = {0};
+	for (size_t i = 0; i < sizeof poses / sizeof *poses; i++)
+		if (cau_pose_check(poses[i], "", &why))
+			return false;
+	return true;
+}
+
+static bool has_jaws(const cau_tool_def *def)
+{
+	static const bool jaws[] = {
+#define JAWS(code, word, hot, jaws, text) jaws,
+		CAU_TOOL_SHAPE_TABLE(JAWS)
+#undef JAWS
+	};
+	return jaws[def->shape];
+}
+
+static cau_status check_tool(const cau_session *session, const snapshot_state *state, int32_t index,
+                             cau_error *error)
+{
+	const cau_tool *tool = &state->tool[index];
+	cau_error why = {0};
+	if (cau_tool_check(&tool->state.definition, "tool", session->solver.step_s, &why))
+		return corrupt(error, why.reason);
+	if (strcmp(tool->state.name, tool->state.definition.name) != 0 || !are_poses_right(tool))
+		return corrupt(error, "a tool is not where or what it says");
+	for (int32_t i = 0; i < index; i++)
+		if (!strcmp(state->tool[i].state.name, tool->state.name))
+			return corrupt(error, "two tools have one name");
+	if ((tool->state.grasping && !has_jaws(&tool->state.definition)) ||
+	    (tool->grasp_count && !tool->state.grasping))
+		return corrupt(error, "a tool holds what it cannot");
+	for (int32_t k = 0; k < tool->grasp_count; k++)
+		if (!is_grasp_right(session, &tool->grasp[k]))
+			return corrupt(error, "a tool holds what it cannot");
+	return CAU_OK;
+}
+
+static cau_status check_command(const cau_session *session, const cau_command *command,
+                                cau_error *error)
+{
+	cau_error why = {0};
+	if (cau_command_check(session, command, &why))
+		return corrupt(error, why.reason);
+	return CAU_OK;
+}
+
+static cau_status check_records(const cau_session *session, const snapshot_state *state,
+                                cau_error *error)
+{
+	cau_status status = CAU_OK;
+	cau_error why = {0};
+	for (int32_t i = 0; i < session->tissue.layer_count && !status; i++) {
+		const cau_layer_def *layer = &state->layer[i];
+		for (int32_t m = 0; m < layer->material_count && !status; m++)
+			if (cau_material_check(layer->kind, cau_layer_material(layer, m), "material", &why))
+				status = corrupt(error, why.reason);
+	}
+	for (int32_t i = 0; i < state->head.tool_count && !status; i++)
+		status = check_tool(session, state, i, error);
+	for (int32_t i = 0; i < state->head.command_count && !status; i++)
+		status = check_command(session, &state->command[i], error);
+	return status;
+}
+
+static cau_status make_grids(const cau_session *session, snapshot_state *state, cau_error *error)
+{
+	cau_status status = CAU_OK;
+	for (int32_t i = 0; i < state->head.tool_count && !status; i++) {
+		cau_tool *tool = &state->tool[i];
+		status =
+			cau_heat_grid_create(&tool->grid, &tool->state.definition, session->scene->ambient_c,
+		                         session->solver.step_s, &tool->state.pose, error);
+	}
+	return status;
+}
+
+// ---- all of it
+
+static cau_status read_arrays(const cau_session *session, snapshot_archive *archive,
+                              snapshot_state *state, cau_error *error)
+{
+	cau_snapshot_pass_state(archive, session, state);
+	if (archive->wrong)
+		return refuse(archive, error);
+	cau_status status = check_arrays(session, state, error);
+	if (!status)
+		status = check_records(session, state, error);
+	if (!status)
+		status = make_grids(session, state, error);
+	if (status)
+		return status;
+	cau_snapshot_pass_grids(archive, state);
+	if (archive->wrong)
+		return refuse(archive, error);
+	return archive->at == archive->capacity ? CAU_OK : corrupt(error, "bytes are left over");
+}
+
+cau_status cau_snapshot_read(const cau_session *session, const void *bytes, size_t byte_count,
+                             snapshot_state *state, cau_error *error)
+{
+	*state = (snapshot_state){0};
+	if (byte_count < CAU_SNAPSHOT_HASH_BYTES)
+		return corrupt(error, "it is too short");
+	snapshot_archive archive = {.mode = SNAPSHOT_READ,
+	                            .bytes = (unsigned char *)(uintptr_t)bytes,
+	                            .capacity = byte_count - CAU_SNAPSHOT_HASH_BYTES};
+	snapshot_head head = {0};
+	cau_snapshot_pass_head(&archive, &head);
+	if (archive.wrong)
+		return refuse(&archive, error);
+	snapshot_archive end = archive;
+	uint64_t hash = 0;
+	end.at = archive.capacity;
+	end.capacity = byte_count;
+	snapshot_words(&end, "hash", &hash, 1, UINT64_MAX);
+	if (hash != cau_snapshot_hash(bytes, archive.capacity))
+		return corrupt(error, "its bytes have changed");
+	cau_status status = check_head(session, &head, error);
+	if (status)
+		return status;
+	state->head = head;
+	status = make_copies(session, state, error);
+	return status ? status : read_arrays(session, &archive, state, error);
+}

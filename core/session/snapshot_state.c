@@ -1,0 +1,379 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "session/snapshot_state.h"
+
+#include <stdio.h>
+#include <string.h>
+
+#include "base/hash.h"
+#include "cautery/assert.h"
+#include "session/snapshot_records.h"
+
+static const char magic[8] = "CAUSNAP";
+
+// ---- the head
+
+static uint64_t build_hash(void)
+{
+	static const char words[] = __VERSION__ " " __DATE__;
+	return cau_hash_bytes(CAU_HASH_START, words, sizeof words);
+}
+
+static int32_t kept_columns(const cau_session *session)
+{
+	CAU_ASSERT_INDEX(session->contact.column_count, CAU_MAX_COLUMNS + 1);
+	return session->contact.epoch == session->solver.factor_epoch ? session->contact.column_count
+	                                                              : 0;
+}
+
+static void view_counts(const cau_session *session, snapshot_head *head)
+{
+	const cau_matrix_update *update = &session->update;
+	head->vertex_count = session->tissue.vertex_count;
+	head->edge_count = session->tissue.edges.edge_count;
+	head->tool_count = session->tool_count;
+	head->command_count = session->command_count;
+	head->active_count = session->shrink.active_count;
+	head->column_count = kept_columns(session);
+	head->memory_count = session->contact.memory_count;
+	head->over_count = session->dissection.tears.over_count;
+	head->waiting_count = update->waiting_count;
+	head->operation_count = update->operation_count;
+	head->group_count = update->group_count;
+	head->waiting_at_start = update->making ? update->waiting_at_start : 0;
+	head->refactorisations = update->refactorisations;
+	head->inverted = session->inverted;
+	head->edges_parted = session->dissection.edges_parted;
+	head->elements_removed = session->dissection.elements_removed;
+	head->elements_torn = session->dissection.tears.elements_torn;
+	head->quiet_ticks = session->rest.quiet_ticks;
+}
+
+static void view_head(const cau_session *session, snapshot_head *head)
+{
+	const cau_accuracy *accuracy = &session->solver.accuracy;
+	*head = (snapshot_head){.version = CAU_SNAPSHOT_VERSION,
+	                        .single = session->solver.elements.single,
+	                        .build = build_hash(),
+	                        .definition_hash = session->definition_hash,
+	                        .tick = session->tick,
+	                        .swap_tick = session->update.making ? session->update.swap_tick : 0,
+	                        .longest_wait = session->update.longest_wait,
+	                        .factor_version = session->solver.factor_version,
+	                        .making = session->update.making,
+	                        .faulted = session->faulted,
+	                        .resting = session->rest.resting,
+	                        .shallow_steps = accuracy->shallow_steps,
+	                        .accuracy = accuracy->wanted,
+	                        .force_left = accuracy->force_left};
+	view_counts(session, head);
+	snprintf(head->instruction_set, sizeof head->instruction_set, "%s",
+	         session->solver.kernels->instruction_set);
+	memcpy(head->gravity_m_s2, session->scene->gravity_m_s2, sizeof head->gravity_m_s2);
+	memcpy(head->amplification, accuracy->amplification, sizeof head->amplification);
+	memcpy(head->force_before, accuracy->force_before, sizeof head->force_before);
+}
+
+bool cau_snapshot_is_exact(const cau_session *session, const snapshot_head *head)
+{
+	return head->build == build_hash() && head->accuracy == session->solver.accuracy.wanted &&
+	       !strcmp(head->instruction_set, session->solver.kernels->instruction_set);
+}
+
+// Of what goes on counting: half of what an integer holds, so that no count overflows soon.
+enum { MOST_COUNTED = INT32_MAX / 2 };
+
+static void pass_counts(snapshot_archive *archive, snapshot_head *head)
+{
+	struct {
+		const char *what;
+		int32_t *count;
+		int64_t most;
+	} counts[] = {
+		{"vertices", &head->vertex_count, MOST_COUNTED},
+		{"edges", &head->edge_count, MOST_COUNTED},
+		{"tools", &head->tool_count, CAU_MAX_TOOLS},
+		{"commands", &head->command_count, MOST_COUNTED},
+		{"shrinking elements", &head->active_count, MOST_COUNTED},
+		{"columns", &head->column_count, CAU_MAX_COLUMNS},
+		{"faces at tools", &head->memory_count, CAU_MAX_MEMORY},
+		{"stretched elements", &head->over_count, MOST_COUNTED},
+		{"waiting elements", &head->waiting_count, MOST_COUNTED},
+		{"factor operations", &head->operation_count, CAU_DOWNDATES_AT_MOST},
+		{"operation groups", &head->group_count, CAU_DOWNDATES_AT_MOST},
+		{"waiting elements at the start", &head->waiting_at_start, MOST_COUNTED},
+		{"refactorisations", &head->refactorisations, MOST_COUNTED},
+		{"inverted elements", &head->inverted, MOST_COUNTED},
+		{"parted edges", &head->edges_parted, MOST_COUNTED},
+		{"removed elements", &head->elements_removed, MOST_COUNTED},
+		{"torn elements", &head->elements_torn, MOST_COUNTED},
+		{"quiet ticks", &head->quiet_ticks, MOST_COUNTED},
+		{"shallow steps", &head->shallow_steps, MOST_COUNTED},
+	};
+	for (size_t i = 0; i < sizeof counts / sizeof *counts; i++)
+		snapshot_ints(archive, counts[i].what, counts[i].count, 1, 0, counts[i].most);
+}
+
+void cau_snapshot_pass_head(snapshot_archive *archive, snapshot_head *head)
+{
+	static const double least_learned = 1e-12, most_learned = 1e12, most_gravity = 1000;
+	char word[sizeof magic];
+	memcpy(word, magic, sizeof word);
+	snapshot_text(archive, "first bytes", word, sizeof word);
+	if (memcmp(word, magic, sizeof word) != 0)
+		snapshot_refuse(archive, "first bytes");
+	int32_t version = (int32_t)head->version;
+	snapshot_ints(archive, "version", &version, 1, CAU_SNAPSHOT_VERSION, CAU_SNAPSHOT_VERSION);
+	head->version = (uint32_t)version;
+	snapshot_bool(archive, "precision", &head->single);
+	snapshot_text(archive, "instruction set", head->instruction_set, sizeof head->instruction_set);
+	uint64_t *words[] = {&head->build, &head->definition_hash};
+	for (size_t i = 0; i < sizeof words / sizeof *words; i++)
+		snapshot_words(archive, "hash", words[i], 1, UINT64_MAX);
+	uint64_t *ticks[] = {&head->tick, &head->swap_tick, &head->longest_wait, &head->factor_version};
+	for (size_t i = 0; i < sizeof ticks / sizeof *ticks; i++)
+		snapshot_words(archive, "tick", ticks[i], 1, UINT64_MAX / 2);
+	pass_counts(archive, head);
+	bool *flags[] = {&head->making, &head->faulted, &head->resting};
+	for (size_t i = 0; i < sizeof flags / sizeof *flags; i++)
+		snapshot_bool(archive, "flag", flags[i]);
+	snapshot_doubles(archive, "gravity", head->gravity_m_s2, 3, -most_gravity, most_gravity);
+	snapshot_doubles(archive, "accuracy", &head->accuracy, 1, 0, 1);
+	snapshot_doubles(archive, "amplification", head->amplification, CAU_ACCURACY_DEPTHS,
+	                 least_learned, most_learned);
+	snapshot_doubles(archive, "force_left", &head->force_left, 1, least_learned, most_learned);
+	snapshot_doubles(archive, "force_before", head->force_before[0], 3 * CAU_ACCURACY_TOOLS,
+	                 -most_learned, most_learned);
+}
+
+// ---- the arrays
+
+void cau_snapshot_view(const cau_session *session, cau_layer_def *layer, snapshot_state *state)
+{
+	cau_session *own = (cau_session *)(uintptr_t)session; // only read: see the header
+	for (int32_t i = 0; i < session->tissue.layer_count; i++)
+		layer[i] = session->tissue.layer[i].def;
+	*state = (snapshot_state){.pinned = own->pinned,
+	                          .fixed = own->fixed,
+	                          .position = own->position,
+	                          .velocity = own->velocity,
+	                          .external = own->external,
+	                          .diagonal = own->solver.system.diagonal,
+	                          .exposure = own->dissection.exposure,
+	                          .parted = own->dissection.parted,
+	                          .dose = own->dissection.doses.dose,
+	                          .gone = own->dissection.doses.gone,
+	                          .shrunk = {own->shrink.shrunk[0], own->shrink.shrunk[1]},
+	                          .active = own->shrink.active,
+	                          .command = own->command,
+	                          .layer = layer,
+	                          .elements = own->solver.elements,
+	                          .waiting = own->update.waiting,
+	                          .operation = own->update.operation,
+	                          .tool = own->tool,
+	                          .memory = own->contact.memory,
+	                          .over = own->dissection.tears.over,
+	                          .column_vertex = own->contact.column_vertex,
+	                          .column_version = own->contact.column_version,
+	                          .column = own->contact.column,
+	                          .inverse = own->contact.inverse,
+	                          .quiet_from = own->rest.from,
+	                          .exempt_before = own->collide.exempt_before};
+	view_head(session, &state->head);
+}
+
+static void pass_vertices(snapshot_archive *archive, const cau_session *session,
+                          snapshot_state *state)
+{
+	static const double farthest_m = 1e6, fastest_m_s = 1e9, most_force_n = 1e6;
+	size_t n = (size_t)session->tissue.vertex_count;
+	snapshot_octets(archive, "pinned vertex", state->pinned, n, 1);
+	snapshot_octets(archive, "fixed vertex", state->fixed, n, 1);
+	snapshot_doubles(archive, "position", state->position, 3 * n, -farthest_m, farthest_m);
+	snapshot_doubles(archive, "velocity", state->velocity, 3 * n, -fastest_m_s, fastest_m_s);
+	snapshot_doubles(archive, "force", state->external, 3 * n, -most_force_n, most_force_n);
+	snapshot_doubles(archive, "diagonal", state->diagonal, n, 1e-30, SNAPSHOT_ANY);
+	if (state->head.quiet_ticks && !state->head.resting)
+		snapshot_doubles(archive, "position at rest", state->quiet_from, 3 * n, -farthest_m,
+		                 farthest_m);
+	if (session->scene->contact_thickness_m > 0)
+		snapshot_octets(archive, "vertex excluded from contact", state->exempt_before, n, 1);
+}
+
+static void pass_dissection(snapshot_archive *archive, const cau_session *session,
+                            snapshot_state *state)
+{
+	const cau_tissue *tissue = &session->tissue;
+	size_t edges = (size_t)tissue->edges.edge_count;
+	size_t doses = (size_t)cau_dissection_dose_count(&session->dissection);
+	snapshot_doubles(archive, "exposure", state->exposure, edges, 0, SNAPSHOT_ANY);
+	snapshot_shorts(archive, "parted edge", state->parted, edges,
+	                (uint16_t)((1u << tissue->layer_count) - 1));
+	snapshot_doubles(archive, "dose", state->dose, doses, 0, SNAPSHOT_ANY);
+	snapshot_octets(archive, "parted element", state->gone, doses, 1);
+	for (int32_t i = 0; i < state->head.over_count && !archive->wrong; i++) {
+		snapshot_ints(archive, "stretched element", &state->over[i].place, 1, 0,
+		              (int64_t)cau_tears_capacity(tissue) - 1);
+		snapshot_ints(archive, "ticks of a stretched element", &state->over[i].counted, 1, 0,
+		              INT32_MAX / 2);
+	}
+}
+
+// The kinds of elements that shrink: triangles and tetrahedra.
+static void pass_shrinking(snapshot_archive *archive, const cau_session *session,
+                           snapshot_state *state)
+{
+	static const double most_stretch = 1e3, oldest_s = 1;
+	size_t count[] = {(size_t)session->tissue.triangle_count,
+	                  (size_t)session->tissue.tetrahedron_count};
+	for (int k = 0; k < 2; k++)
+		snapshot_octets(archive, "shrunk element", state->shrunk[k], count[k], 1);
+	for (int32_t i = 0; i < state->head.active_count && !archive->wrong; i++) {
+		cau_shrinking *active = &state->active[i];
+		snapshot_ints(archive, "kind of a shrinking element", &active->kind, 1,
+		              CAU_ELEMENT_TRIANGLE, CAU_ELEMENT_TETRAHEDRON);
+		if (archive->wrong)
+			return;
+		snapshot_ints(archive, "shrinking element", &active->element, 1, 0,
+		              (int64_t)cau_tissue_element_count(&session->tissue, active->kind) - 1);
+		snapshot_doubles(archive, "target of shrinkage", active->from, 6, -most_stretch,
+		                 most_stretch);
+		snapshot_doubles(archive, "target of shrinkage", active->to, 6, -most_stretch,
+		                 most_stretch);
+		snapshot_doubles(archive, "age of shrinkage", &active->age_s, 1, 0, oldest_s);
+	}
+}
+
+// A mark of a whole batch, for each of its elements.
+static void pass_marks(snapshot_archive *archive, const char *what, uint8_t *mark,
+                       const int32_t *slot_of, int32_t count)
+{
+	for (int32_t e = 0; e < count && !archive->wrong; e++)
+		snapshot_octets(archive, what, &mark[slot_of[e] / CAU_BATCH], 1, 1);
+}
+
+static void pass_elements(snapshot_archive *archive, const cau_session *session,
+                          snapshot_state *state)
+{
+	static const double most_stretch = 1e3, unit = 2;
+	const struct {
+		const char *what;
+		void *const *array;
+		int count, kind;
+		double least, most;
+	} fields[] = {
+		{"target of a triangle", state->elements.sheet.target, 3, CAU_ELEMENT_TRIANGLE,
+	     -most_stretch, most_stretch},
+		{"rotation of a triangle", state->elements.sheet.polar, 6, CAU_ELEMENT_TRIANGLE, -unit,
+	     unit},
+		{"limit of a tetrahedron", &state->elements.fat.limit_weight, 1, CAU_ELEMENT_TETRAHEDRON, 0,
+	     SNAPSHOT_ANY},
+		{"target of a tetrahedron", state->elements.fat.target, 6, CAU_ELEMENT_TETRAHEDRON,
+	     -most_stretch, most_stretch},
+		{"rotation of a tetrahedron", state->elements.fat.polar, 4, CAU_ELEMENT_TETRAHEDRON, -unit,
+	     unit},
+		{"plastic strain", state->elements.fat.plastic, 6, CAU_ELEMENT_TETRAHEDRON, -most_stretch,
+	     most_stretch},
+		{"plastic strain", state->elements.fat.plastic_strain, 6, CAU_ELEMENT_TETRAHEDRON,
+	     -most_stretch, most_stretch},
+	};
+	int32_t *const *slot_of = session->solver.slots.slot_of;
+	for (size_t f = 0; f < sizeof fields / sizeof *fields; f++)
+		for (int i = 0; i < fields[f].count; i++)
+			snapshot_slots(archive, fields[f].what, fields[f].array[i], state->elements.single,
+			               slot_of[fields[f].kind],
+			               (size_t)cau_tissue_element_count(&session->tissue, fields[f].kind),
+			               fields[f].least, fields[f].most);
+	const int32_t *fat = slot_of[CAU_ELEMENT_TETRAHEDRON];
+	int32_t count = session->tissue.tetrahedron_count;
+	pass_marks(archive, "mark of a limit", state->elements.fat.limited, fat, count);
+	pass_marks(archive, "mark of plastic strain", state->elements.fat.flowed, fat, count);
+}
+
+static void pass_element(snapshot_archive *archive, const cau_session *session, const char *what,
+                         int32_t *kind, int32_t *element)
+{
+	snapshot_ints(archive, what, kind, 1, 0, CAU_ELEMENT_KINDS - 1);
+	if (!archive->wrong)
+		snapshot_ints(archive, what, element, 1, 0,
+		              (int64_t)cau_tissue_element_count(&session->tissue, *kind) - 1);
+}
+
+static void pass_update(snapshot_archive *archive, const cau_session *session,
+                        snapshot_state *state)
+{
+	for (int32_t i = 0; i < state->head.waiting_count && !archive->wrong; i++) {
+		cau_waiting *waiting = &state->waiting[i];
+		pass_element(archive, session, "waiting element", &waiting->kind, &waiting->element);
+		snapshot_words(archive, "tick of a waiting element", &waiting->tick, 1, state->head.tick);
+	}
+	for (int32_t i = 0; i < state->head.operation_count && !archive->wrong; i++) {
+		cau_operation *operation = &state->operation[i];
+		pass_element(archive, session, "factor operation", &operation->kind, &operation->element);
+		snapshot_ints(archive, "operation group", &operation->group, 1, 0,
+		              CAU_DOWNDATES_AT_MOST - 1);
+	}
+}
+
+// S is symmetric: the lower triangle, by columns' places.
+static void pass_columns(snapshot_archive *archive, const cau_session *session,
+                         snapshot_state *state)
+{
+	int32_t count = state->head.column_count;
+	snapshot_ints(archive, "vertex of a column", state->column_vertex, (size_t)count, 0,
+	              session->tissue.vertex_count - 1);
+	snapshot_words(archive, "version of a column", state->column_version, (size_t)count,
+	               state->head.factor_version);
+	for (int32_t i = 0; i < count && i < CAU_WHOLE_COLUMNS; i++)
+		snapshot_reals(archive, "column", state->column[i], state->elements.single,
+		               (size_t)session->tissue.vertex_count);
+	for (int32_t i = 0; i < count; i++) {
+		double *row = state->inverse + (size_t)i * CAU_MAX_COLUMNS;
+		snapshot_doubles(archive, "compliance", row, (size_t)i, -SNAPSHOT_ANY, SNAPSHOT_ANY);
+		snapshot_doubles(archive, "compliance", row + i, 1, 1e-30, SNAPSHOT_ANY);
+	}
+}
+
+static void pass_memory(snapshot_archive *archive, const cau_session *session,
+                        snapshot_state *state)
+{
+	for (int32_t i = 0; i < state->head.memory_count && !archive->wrong; i++) {
+		cau_contact_memory *memory = &state->memory[i];
+		snapshot_ints(archive, "tool at a face", &memory->tool, 1, 0,
+		              (int64_t)state->head.tool_count - 1);
+		snapshot_ints(archive, "face at a tool", &memory->face, 1, 0,
+		              (int64_t)session->tissue.faces.face_count - 1);
+		snapshot_ints(archive, "pushed face", &memory->pushed, 1, 0, 1);
+		snapshot_ints(archive, "side of a face", &memory->above, 1, -1, 1);
+		snapshot_ints(archive, "points of a face", &memory->point_count, 1, 0, CAU_MAX_POINTS);
+		snapshot_doubles(archive, "point of a face", memory->point[0], 3 * CAU_MAX_POINTS, 0, 1);
+	}
+}
+
+void cau_snapshot_pass_state(snapshot_archive *archive, const cau_session *session,
+                             snapshot_state *state)
+{
+	pass_vertices(archive, session, state);
+	pass_dissection(archive, session, state);
+	pass_shrinking(archive, session, state);
+	for (int32_t i = 0; i < session->tissue.layer_count; i++)
+		cau_snapshot_pass_layer(archive, &state->layer[i]);
+	pass_elements(archive, session, state);
+	pass_update(archive, session, state);
+	pass_columns(archive, session, state);
+	pass_memory(archive, session, state);
+	for (int32_t i = 0; i < state->head.command_count && !archive->wrong; i++)
+		cau_snapshot_pass_command(archive, &state->command[i]);
+	for (int32_t i = 0; i < state->head.tool_count && !archive->wrong; i++)
+		cau_snapshot_pass_tool(archive, session, &state->tool[i]);
+}
+
+void cau_snapshot_pass_grids(snapshot_archive *archive, snapshot_state *state)
+{
+	for (int32_t i = 0; i < state->head.tool_count && !archive->wrong; i++)
+		cau_snapshot_pass_grid(archive, &state->tool[i].grid);
+}
+
+uint64_t cau_snapshot_hash(const void *bytes, size_t count)
+{
+	return cau_hash_bytes(CAU_HASH_START, bytes, count);
+}
