@@ -75,7 +75,7 @@ struct cau_client {
 	cau_wire_hello_result server;
 	uint64_t connections;
 	int attempts; // to connect, since the last hello
-	bool keep_alive;
+	bool keep_alive; // see cau_client_keep_alive
 	bool following; // on the way to the daemon that has the session now
 	int ways;       // that it has gone for that, to where the session has not arrived yet
 	double arrives_until_s;
@@ -100,6 +100,7 @@ cau_status cau_socket_send(cau_client *client, bool binary, const void *head, si
 // connection.c
 void cau_client_begin(cau_client *client);
 void cau_client_forget_timers(cau_client *client);
+void cau_client_beat(cau_client *client); // a heartbeat with the clock of this machine
 void cau_client_opened(cau_client *client);
 void cau_client_not_opened(cau_client *client, struct lws *wsi, const char *in, size_t bytes);
 void cau_client_lost(cau_client *client, const char *reason);

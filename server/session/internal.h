@@ -44,6 +44,8 @@ void cau_drive_remove(cau_logic *logic, const char *tool);
 
 // ---- queue.c
 void cau_queue_take(cau_logic *logic, const cau_asked *asked, cau_effects *effects);
+// When the order's asker was alive; `now_s` is the time of its coming in.
+double cau_order_alive_s(const cau_asked *asked, double now_s);
 void cau_queue_alive(cau_logic *logic, uint32_t client, const char *tool, double time_s);
 void cau_queue_cut(cau_logic *logic, uint32_t client);      // its enables do not count any more
 void cau_queue_cut_silent(cau_logic *logic, double now_s);  // nor do those of who is silent now

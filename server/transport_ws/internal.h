@@ -30,7 +30,9 @@ struct cau_network {
 	bool started;
 	atomic_bool woken, ending;
 	cau_close_code ending_code;
-	double ending_until_s, ticked_s;
+	double ending_until_s;
+	double ran_s;                          // when this thread last came round
+	double stopped_s, stopped_until_s;     // it did not run from then on, see sent_after
 	int input; // epoll descriptor, see input.c
 	uint64_t last_id;
 	cau_connection *connections; // open ones
@@ -53,6 +55,10 @@ int cau_ws_callback(struct lws *wsi, enum lws_callback_reasons reason, void *use
                     size_t bytes);
 int cau_input_callback(struct lws *wsi, enum lws_callback_reasons reason, void *user, void *in,
                        size_t bytes);
+
+// ---- network.c
+// The thread comes round: notes whether it did not for long.
+void cau_network_comes_round(cau_network *network);
 
 // ---- input.c
 bool cau_input_open(cau_network *network);

@@ -94,9 +94,25 @@ cau_status cau_network_create(cau_network **made, const cau_network_def *def, ca
 	return status;
 }
 
+void cau_network_comes_round(cau_network *network)
+{
+	double now_s = cau_monotonic_s(), deadline_s = network->def.config->browser_deadline_s;
+	if (network->ran_s > 0 && now_s - network->ran_s > deadline_s) {
+		network->stopped_s = network->ran_s;
+		network->stopped_until_s = now_s + deadline_s;
+	}
+	network->ran_s = now_s;
+}
+
+double cau_network_sent_after_s(const cau_network *network, double now_s)
+{
+	return now_s < network->stopped_until_s ? network->stopped_s : now_s;
+}
+
 static void tick(lws_sorted_usec_list_t *sul)
 {
 	cau_network *network = lws_container_of(sul, cau_network, sul);
+	cau_network_comes_round(network);
 	double now_s = cau_monotonic_s();
 	network->def.handler.tick(network->def.handler.user);
 	for (cau_connection *c = network->connections; c; c = c->next)
