@@ -31,8 +31,8 @@ typedef struct cau_sign_of_life {
 } cau_sign_of_life;
 
 // Notes a message with a clock. `arrival_s` is monotonic and never goes back; `client_s` is what
-// the sender's clock showed, from any origin; `deadline_s` is the silence after which energy is cut.
-// Returns when the sender gave its newest sign of life: at most `arrival_s`, never less than the
-// last answer.
+// the sender's clock showed, from any origin; `deadline_s` is the silence after which energy is
+// cut. Returns when the sender gave its newest sign of life: at most `arrival_s`, never less than
+// the last answer.
 double cau_sign_of_life_hear(cau_sign_of_life *sign, double arrival_s, double client_s,
                              double deadline_s);

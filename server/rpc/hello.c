@@ -131,23 +131,6 @@ void cau_call_hello(cau_call *call)
 	answer(call);
 }
 
-double cau_peer_alive_s(const cau_peer *peer)
-{
-	return peer->sign.clocked
-	           ? peer->sign.alive_s
-	           : cau_network_sent_after_s(peer->service->network, cau_monotonic_s());
-}
-
-// A clock of a heartbeat that may have waited for long cannot be the first: nothing shows how long
-// it did.
-static void hear_clock(cau_peer *peer, int64_t client_time_us)
-{
-	double now_s = cau_monotonic_s();
-	if (peer->sign.clocked || cau_network_sent_after_s(peer->service->network, now_s) >= now_s)
-		cau_sign_of_life_hear(&peer->sign, now_s, 1e-6 * (double)client_time_us,
-		                      peer->client.asker.deadline_s);
-}
-
 void cau_call_heartbeat(cau_call *call)
 {
 	cau_peer *peer = call->peer;
@@ -158,7 +141,7 @@ void cau_call_heartbeat(cau_call *call)
 		return;
 	}
 	if (params.has_client_time_us)
-		hear_clock(peer, params.client_time_us);
+		cau_peer_hear_clock(peer, params.client_time_us);
 	cau_hub_heartbeat(peer->service->hub, peer->client.asker.client, params.visible,
 	                  cau_peer_alive_s(peer));
 	cau_wire_heartbeat_result result = {.server_time_us = (int64_t)(cau_monotonic_s() * 1e6),

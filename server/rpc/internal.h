@@ -7,9 +7,9 @@
 
 #include "cautery/chunk_codec.h"
 #include "clock/clock.h"
+#include "hub/sign_of_life.h"
 #include "log/log.h"
 #include "metrics/exposition.h"
-#include "hub/sign_of_life.h"
 #include "rpc/service.h"
 #include "rpc/uploads.h"
 
@@ -105,10 +105,12 @@ void cau_peer_fault(cau_peer *peer, const cau_rpc_id *id, const cau_rpc_fault *f
 // Counts a message that was none; MALFORMED_MOST of them close the connection.
 void cau_peer_malformed(cau_peer *peer);
 
-// ---- hello.c
-// When the peer gave its newest sign of life, monotonic: now, if it has never sent its clock and the
-// network thread was not stopped.
+// ---- life.c
+// When the peer gave its newest sign of life, monotonic: now, if it has never sent its clock and
+// the network thread was not stopped.
 double cau_peer_alive_s(const cau_peer *peer);
+// A heartbeat came, with what the peer's clock showed when it was sent.
+void cau_peer_hear_clock(cau_peer *peer, int64_t client_time_us);
 
 // ---- mailbox.c
 void cau_service_answer(void *user, const cau_reply *reply, const cau_outcome *outcome);

@@ -64,7 +64,7 @@ typedef struct cau_asked {
 	bool numbered;             // it may be a resend of one that was answered; never MOTION
 	int64_t ticks;             // STEP
 	double speed;              // SPEED: simulated over wall time
-	double alive_s; // its asker's newest sign of life, monotonic; 0: this order is one
+	double alive_s;            // its asker's newest sign of life, monotonic; 0: this order is one
 } cau_asked;
 
 // An order in the queue.
@@ -125,7 +125,7 @@ typedef struct cau_arrived_tool {
 
 typedef struct cau_logic_event {
 	cau_logic_event_kind kind;
-	double time_s; // monotonic, of every event; never goes back by more than threads race
+	double time_s;  // monotonic, of every event; never goes back by more than threads race
 	double alive_s; // ALIVE: when the client gave the sign, at most time_s; 0: at time_s
 	uint32_t client;
 	const char *tool, *cause; // borrowed for the call; NULL: ""

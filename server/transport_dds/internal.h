@@ -163,7 +163,7 @@ typedef struct cau_dds_client {
 	int32_t writers;                     // matched ones that are its own
 	bool accepted;                       // a motion of it was
 	uint64_t connection;                 // for the hub
-	double alive_s; // its newest sign of life, monotonic; 0: none was heard
+	double alive_s;                      // its newest sign of life, monotonic; 0: none was heard
 	cau_asker asker;
 	struct cau_dds_hand *hands;
 } cau_dds_client;

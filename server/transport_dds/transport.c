@@ -4,6 +4,7 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "config/named_file.h"
 #include "transport_dds/internal.h"
 #include "transport_dds/leave.h"
 #include "transport_dds/local.h"
@@ -154,7 +155,15 @@ static const char no_linger[] =
 static cau_status open_domain(cau_dds *dds, cau_error *error)
 {
 	const cau_config *config = dds->config;
-	char given[CONFIG_BYTES];
+	char given[CONFIG_BYTES], reason[CAU_NAMED_FILE_REASON_BYTES];
+	FILE *settings = *config->dds_config ? cau_named_file_open(config->dds_config,
+	                                                           CAU_NAMED_FILE_BYTES, NULL, reason)
+	                                     : NULL;
+	if (*config->dds_config && !settings)
+		return cau_fail(error, CAU_IO, "dds_config", "cannot open %.160s: %s", config->dds_config,
+		                reason);
+	if (settings)
+		fclose(settings); // Cyclone opens it by itself, and would wait for the writer of a FIFO
 	if (*config->dds_config)
 		snprintf(given, sizeof given, "file://%s,%s", config->dds_config, no_linger);
 	else

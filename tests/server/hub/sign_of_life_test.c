@@ -18,7 +18,8 @@ static double send(cau_sign_of_life *sign, double from_s, double to_s, double de
 {
 	double alive_s = 0;
 	for (double sent_s = from_s; sent_s < to_s; sent_s += PERIOD_S)
-		alive_s = cau_sign_of_life_hear(sign, sent_s + delay_s, AHEAD_S + rate * sent_s, DEADLINE_S);
+		alive_s =
+			cau_sign_of_life_hear(sign, sent_s + delay_s, AHEAD_S + rate * sent_s, DEADLINE_S);
 	return alive_s;
 }
 

@@ -74,8 +74,8 @@ static void note_coming(reach_move *m, const reach_event *e, bool queued)
 static void expect_silence_cut(reach_move *m)
 {
 	cau_effects ignored;
-	cau_logic_take(m->before,
-	               &(cau_logic_event){.kind = CAU_LOGIC_TIME, .time_s = REACH_NOW_S}, &ignored);
+	cau_logic_take(m->before, &(cau_logic_event){.kind = CAU_LOGIC_TIME, .time_s = REACH_NOW_S},
+	               &ignored);
 }
 
 static void do_order(reach_move *m, const reach_event *e)

@@ -128,8 +128,10 @@ static void alive(world *w, int client, int tool, int lag)
 	double alive_s = fmax(w->life_s[client], w->now_s - lag * DEADLINE_S / 3);
 	oracle_note_life(w, client, name, alive_s);
 	say(w, "c%d lives%s\n", client, alive_s < w->now_s ? ", as it did before" : "");
-	take(w, (cau_logic_event){
-				.kind = CAU_LOGIC_ALIVE, .client = (uint32_t)client, .tool = name, .alive_s = alive_s});
+	take(w, (cau_logic_event){.kind = CAU_LOGIC_ALIVE,
+	                          .client = (uint32_t)client,
+	                          .tool = name,
+	                          .alive_s = alive_s});
 }
 
 static void lose(world *w, int client, bool for_good)
