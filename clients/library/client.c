@@ -152,6 +152,8 @@ uint64_t cau_client_connections(const cau_client *client)
 void cau_client_keep_alive(cau_client *client, bool on)
 {
 	client->keep_alive = on;
+	if (on && client->condition == CAU_CLIENT_READY)
+		cau_client_beat(client);
 }
 
 void cau_client_read(cau_client *client, bool on)

@@ -36,13 +36,20 @@ static lws_usec_t tick_us(const cau_client *client)
 	return (lws_usec_t)fmin(CAU_CLIENT_TICK_US, fmax(least_us, wanted_us));
 }
 
+void cau_client_beat(cau_client *client)
+{
+	const cau_wire_heartbeat beat = {.visible = true,
+	                                 .has_client_time_us = true,
+	                                 .client_time_us = (int64_t)(1e6 * cau_client_now())};
+	cau_client_notify(client, CAU_METHOD_HEARTBEAT, &beat, NULL);
+}
+
 static void tick(lws_sorted_usec_list_t *timer)
 {
 	cau_client *client = lws_container_of(timer, cau_client, tick);
 	lws_sul_schedule(client->loop->context, 0, &client->tick, tick, tick_us(client));
 	if (client->keep_alive)
-		cau_client_notify(client, CAU_METHOD_HEARTBEAT, &(cau_wire_heartbeat){.visible = true},
-		                  NULL);
+		cau_client_beat(client);
 	cau_streams_tick(client);
 }
 

@@ -74,10 +74,10 @@ struct cau_client {
 	int64_t last_id, last_sequence;
 	cau_wire_hello_result server;
 	uint64_t connections;
-	int attempts; // to connect, since the last hello
-	bool keep_alive;
-	bool following; // on the way to the daemon that has the session now
-	int ways;       // that it has gone for that, to where the session has not arrived yet
+	int attempts;    // to connect, since the last hello
+	bool keep_alive; // see cau_client_keep_alive
+	bool following;  // on the way to the daemon that has the session now
+	int ways;        // that it has gone for that, to where the session has not arrived yet
 	double arrives_until_s;
 	char kept_resume[65]; // of the daemon that had it, until the session is found; "": found
 	char moved_from[CAU_NAME_BYTES], moved_to[CAU_NAME_BYTES]; // the id that the program knows, and
@@ -100,6 +100,7 @@ cau_status cau_socket_send(cau_client *client, bool binary, const void *head, si
 // connection.c
 void cau_client_begin(cau_client *client);
 void cau_client_forget_timers(cau_client *client);
+void cau_client_beat(cau_client *client); // a heartbeat with the clock of this machine
 void cau_client_opened(cau_client *client);
 void cau_client_not_opened(cau_client *client, struct lws *wsi, const char *in, size_t bytes);
 void cau_client_lost(cau_client *client, const char *reason);

@@ -11,6 +11,7 @@
 #include "auth/auth.h"
 #include "cautery/sha256.h"
 #include "clock/clock.h"
+#include "config/named_file.h"
 #include "config/role.h"
 
 enum {
@@ -32,6 +33,7 @@ typedef struct token {
 	cau_role role;
 	cau_auth_bounds bounds;
 	uint64_t grant; // stays as long as the token is in the file
+	int line;       // of the file
 } token;
 
 typedef struct token_list {
@@ -123,6 +125,25 @@ static cau_status read_field(token *made, const char *word, int number, cau_erro
 	                number);
 }
 
+static bool same_bytes(const char *a, const char *b, size_t bytes)
+{
+	unsigned char difference = 0;
+	for (size_t i = 0; i < bytes; i++)
+		difference |= (unsigned char)(a[i] ^ b[i]);
+	return difference == 0;
+}
+
+// By its hash; every token of the list is looked at, so that a wrong one takes as long as a right
+// one.
+static const token *find_hash(const token_list *list, const char *hash)
+{
+	const token *found = NULL;
+	for (int i = 0; i < list->count; i++)
+		if (same_bytes(list->tokens[i].hash, hash, sizeof list->tokens[i].hash))
+			found = &list->tokens[i];
+	return found;
+}
+
 static cau_status read_line(token_list *list, char *line, int number, cau_error *error)
 {
 	char role[16], word[WORD_BYTES + 1];
@@ -143,6 +164,12 @@ static cau_status read_line(token_list *list, char *line, int number, cau_error 
 	explicit_bzero(word, sizeof word);
 	if (status)
 		return status;
+	const token *twin = find_hash(list, made.hash);
+	if (twin)
+		return cau_fail(error, CAU_BAD_VALUE, "tokens",
+		                "line %d has the token of line %d: which role and limits count?", number,
+		                twin->line);
+	made.line = number;
 	if (list->count == MAX_TOKENS)
 		return cau_fail(error, CAU_LIMIT, "tokens", "more than %d tokens", MAX_TOKENS);
 	list->tokens[list->count++] = made;
@@ -152,12 +179,10 @@ static cau_status read_line(token_list *list, char *line, int number, cau_error 
 static cau_status read_tokens(token_list *list, const char *file, cau_error *error)
 {
 	struct stat info;
-	FILE *stream = fopen(file, "r");
-	if (!stream || fstat(fileno(stream), &info)) {
-		if (stream)
-			fclose(stream);
-		return cau_fail(error, CAU_IO, "tokens", "cannot open %.200s", file);
-	}
+	char reason[CAU_NAMED_FILE_REASON_BYTES];
+	FILE *stream = cau_named_file_open(file, CAU_NAMED_FILE_BYTES, &info, reason);
+	if (!stream)
+		return cau_fail(error, CAU_IO, "tokens", "cannot open %.200s: %s", file, reason);
 	cau_status status = CAU_OK;
 	if (info.st_mode & (S_IRWXG | S_IRWXO))
 		status =
@@ -174,25 +199,6 @@ static cau_status read_tokens(token_list *list, const char *file, cau_error *err
 	if (status && error)
 		snprintf(error->file, sizeof error->file, "%s", file);
 	return status;
-}
-
-static bool same_bytes(const char *a, const char *b, size_t bytes)
-{
-	unsigned char difference = 0;
-	for (size_t i = 0; i < bytes; i++)
-		difference |= (unsigned char)(a[i] ^ b[i]);
-	return difference == 0;
-}
-
-// By its hash; every token of the list is looked at, so that a wrong one takes as long as a right
-// one.
-static const token *find_hash(const token_list *list, const char *hash)
-{
-	const token *found = NULL;
-	for (int i = 0; i < list->count; i++)
-		if (same_bytes(list->tokens[i].hash, hash, sizeof list->tokens[i].hash))
-			found = &list->tokens[i];
-	return found;
 }
 
 // Puts a list that has been read in the place of the one before. A token that was in both keeps its

@@ -6,15 +6,17 @@
 
 #include "cautery/json_text.h"
 #include "config/config.h"
+#include "config/named_file.h"
 #include "config/setting.h"
 
 enum { FILE_MAX_BYTES = 65536 };
 
 static cau_status read_whole(const char *file, char *text, size_t *bytes, cau_error *error)
 {
-	FILE *stream = fopen(file, "rb");
+	char reason[CAU_NAMED_FILE_REASON_BYTES];
+	FILE *stream = cau_named_file_open(file, FILE_MAX_BYTES, NULL, reason);
 	if (!stream)
-		return cau_fail(error, CAU_IO, "config", "cannot open %.200s", file);
+		return cau_fail(error, CAU_IO, "config", "cannot open %.200s: %s", file, reason);
 	*bytes = fread(text, 1, FILE_MAX_BYTES + 1, stream);
 	bool failed = ferror(stream);
 	fclose(stream);

@@ -55,7 +55,8 @@ static void describe(const cau_order *order, cau_asked *asked)
 	*asked = (cau_asked){.ticket = (uintptr_t)order,
 	                     .ask = ask_of(order),
 	                     .asker = order->asker,
-	                     .numbered = order->client_sequence && !order->motion};
+	                     .numbered = order->client_sequence && !order->motion,
+	                     .alive_s = order->alive_s};
 	name_tool(order, asked);
 	if (order->kind == CAU_ORDER_COMMAND)
 		asked->tick = order->as.command.tick;
@@ -91,15 +92,16 @@ cau_status cau_hosted_submit(cau_hosted *h, cau_order *order, cau_error *error)
 	return status;
 }
 
-void cau_hosted_feed(cau_hosted *h, uint32_t client)
+void cau_hosted_feed(cau_hosted *h, uint32_t client, double alive_s)
 {
-	cau_hosted_feed_tool(h, client, "");
+	cau_hosted_feed_tool(h, client, "", alive_s);
 }
 
-void cau_hosted_feed_tool(cau_hosted *h, uint32_t client, const char *tool)
+void cau_hosted_feed_tool(cau_hosted *h, uint32_t client, const char *tool, double alive_s)
 {
 	cau_decide(h, &(cau_logic_event){.kind = CAU_LOGIC_ALIVE,
 	                                 .time_s = cau_monotonic_s(),
+	                                 .alive_s = alive_s,
 	                                 .client = client,
 	                                 .tool = tool});
 }

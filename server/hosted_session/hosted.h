@@ -125,8 +125,9 @@ void cau_hosted_give_up(cau_hosted *hosted);
 
 // ---- drivers
 
-// A sign of life of a client: its tools' watchdogs start anew.
-void cau_hosted_feed(cau_hosted *hosted, uint32_t client);
+// A client gave a sign of life at `alive_s`, monotonic. It extends the time that its tools may have
+// energy, and brings none back that a silence has ended by now.
+void cau_hosted_feed(cau_hosted *hosted, uint32_t client, double alive_s);
 // The client is gone or looks away: no tick that begins from now on is computed with its energy,
 // and everybody is told now; its tools stay where they are. `tell` names the reason in events.
 void cau_hosted_cut(cau_hosted *hosted, uint32_t client, const char *tell);

@@ -50,6 +50,7 @@ typedef struct cau_order {
 	cau_asker asker;
 	int64_t client_sequence; // 0: none
 	double came_s;           // to the session; set by cau_hosted_submit
+	double alive_s;          // its asker's newest sign of life, monotonic; 0: this order is one
 	cau_reply reply;
 	union {
 		cau_command command;

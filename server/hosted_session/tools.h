@@ -18,8 +18,8 @@ int32_t cau_hosted_tools(cau_hosted *hosted, cau_hosted_tool *tools, uint64_t *t
                          double *time_s);
 // One of them. False: there is none of this name.
 bool cau_hosted_find_tool(cau_hosted *hosted, const char *name, cau_hosted_tool *tool);
-// The driver of one tool gives a sign of life for it.
-void cau_hosted_feed_tool(cau_hosted *hosted, uint32_t client, const char *tool);
+// As cau_hosted_feed, for one tool ("": all that the client drives).
+void cau_hosted_feed_tool(cau_hosted *hosted, uint32_t client, const char *tool, double alive_s);
 // Counts motion that a transport refused before it became an order.
 void cau_hosted_refuse(cau_hosted *hosted, const char *tool, const cau_asker *asker,
                        uint64_t sequence, const cau_error *error);

@@ -7,7 +7,9 @@
 #include <stdlib.h>
 #include <string.h>
 
-enum { HEAD_BYTES = 2048, CHUNK_BYTES = 16384 };
+#include "cautery/assert.h"
+
+enum { HEAD_BYTES = 2048, CHUNK_BYTES = 16384, OBJECT_BYTES = 1024 };
 
 static const char content_security_policy[] =
 	"default-src 'none'; script-src 'self' 'wasm-unsafe-eval'; worker-src "
@@ -40,6 +42,7 @@ static const char *phrase_of(unsigned status)
 		{406, "Not Acceptable"},
 		{421, "Misdirected Request"},
 		{426, "Upgrade Required"},
+		{431, "Request Header Fields Too Large"},
 		{503, "Service Unavailable"},
 	};
 	for (size_t i = 0; i < sizeof phrases / sizeof *phrases; i++)
@@ -121,21 +124,37 @@ int cau_http_answer_continue(struct lws *wsi, cau_http_body *body)
 	return lws_http_transaction_completed(wsi) ? -1 : 0;
 }
 
+// All of it are the program's own words: nothing that would have to be escaped.
+static int write_object(const cau_http_refusal *refusal, char *text, size_t capacity)
+{
+	return snprintf(text, capacity,
+	                "{\"status\": %u, \"error\": \"%s\", \"where\": \"%s\", \"reason\": \"%s\", "
+	                "\"remedy\": \"%s\"}\n",
+	                refusal->status, refusal->name, refusal->where, refusal->reason,
+	                refusal->remedy);
+}
+
+size_t cau_http_write_refusal(const cau_http_refusal *refusal, char *text, size_t capacity)
+{
+	char object[OBJECT_BYTES];
+	int length = write_object(refusal, object, sizeof object);
+	int bytes =
+		snprintf(text, capacity,
+	             "HTTP/1.1 %u %s\r\ncontent-type: application/json\r\n"
+	             "cache-control: no-store\r\nx-content-type-options: nosniff\r\n"
+	             "cautery-reason: %s\r\nconnection: close\r\ncontent-length: %d\r\n\r\n%s",
+	             refusal->status, phrase_of(refusal->status), refusal->reason, length, object);
+	CAU_ASSERT(bytes > 0 && (size_t)bytes < capacity, "a refusal of %d bytes", bytes);
+	return (size_t)bytes;
+}
+
 int cau_http_answer_refusal(struct lws *wsi, cau_http_body *body, const cau_http_refusal *refusal,
                             bool last)
 {
-	enum { TEXT_BYTES = 1024 };
-	char *text = malloc(TEXT_BYTES);
+	char *text = malloc(OBJECT_BYTES);
 	if (!text)
 		return -1;
-	// All of it are the program's own words: nothing that would have to be
-	// escaped.
-	int length =
-		snprintf(text, TEXT_BYTES,
-	             "{\"status\": %u, \"error\": \"%s\", \"where\": "
-	             "\"%s\", \"reason\": \"%s\", "
-	             "\"remedy\": \"%s\"}\n",
-	             refusal->status, refusal->name, refusal->where, refusal->reason, refusal->remedy);
+	int length = write_object(refusal, text, OBJECT_BYTES);
 	cau_http_answer answer = {.status = refusal->status,
 	                          .content_type = "application/json",
 	                          .reason = refusal->reason,

@@ -52,4 +52,9 @@ typedef struct cau_http_refusal {
 int cau_http_answer_refusal(struct lws *wsi, cau_http_body *body, const cau_http_refusal *refusal,
                             bool last);
 
+// The same as bytes for a socket, with the connection's end; returns how many. `capacity`:
+// CAU_HTTP_REFUSAL_BYTES.
+enum { CAU_HTTP_REFUSAL_BYTES = 2048 };
+size_t cau_http_write_refusal(const cau_http_refusal *refusal, char *text, size_t capacity);
+
 void cau_http_body_finish(cau_http_body *body);

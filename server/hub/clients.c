@@ -119,15 +119,21 @@ void cau_hub_detach(cau_hub *hub, uint32_t number, uint64_t connection)
 		cau_hub_each(hub, cut_one, &(cut){number, "its connection is lost"});
 }
 
+typedef struct sign {
+	uint32_t client;
+	double alive_s;
+} sign;
+
 static void feed_one(void *user, cau_hosted *hosted)
 {
-	cau_hosted_feed(hosted, *(uint32_t *)user);
+	const sign *given = user;
+	cau_hosted_feed(hosted, given->client, given->alive_s);
 }
 
-void cau_hub_heartbeat(cau_hub *hub, uint32_t number, bool visible)
+void cau_hub_heartbeat(cau_hub *hub, uint32_t number, bool visible, double alive_s)
 {
 	if (visible)
-		cau_hub_each(hub, feed_one, &number);
+		cau_hub_each(hub, feed_one, &(sign){number, alive_s});
 	else
 		cau_hub_each(hub, cut_one, &(cut){number, "its page is hidden"});
 }

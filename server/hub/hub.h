@@ -63,8 +63,9 @@ typedef struct cau_client {
 bool cau_hub_attach(cau_hub *hub, cau_client *client, const char *resume, uint64_t *replaced);
 // The connection is gone: energy off at once; tools are kept for `resume_s`.
 void cau_hub_detach(cau_hub *hub, uint32_t number, uint64_t connection);
-// A sign of life for all tools that the client drives; not visible: energy off at once.
-void cau_hub_heartbeat(cau_hub *hub, uint32_t number, bool visible);
+// A sign of life at `alive_s`, monotonic, for all tools that the client drives; not visible: energy
+// off at once.
+void cau_hub_heartbeat(cau_hub *hub, uint32_t number, bool visible, double alive_s);
 // A copy of a client's asker, for handing tools over. False: no such client.
 bool cau_hub_find_client(cau_hub *hub, uint32_t number, cau_asker *asker);
 

@@ -6,6 +6,7 @@
 #include <string.h>
 
 #include "cautery/scene_json.h"
+#include "config/named_file.h"
 
 enum { MOST_SCENES = 256, PATH_BYTES = 1024 };
 
@@ -22,9 +23,10 @@ static int is_scene(const struct dirent *entry)
 
 static cau_status read_text(const char *path, char *text, size_t *bytes, cau_error *error)
 {
-	FILE *stream = fopen(path, "rb");
+	char reason[CAU_NAMED_FILE_REASON_BYTES];
+	FILE *stream = cau_named_file_open(path, CAU_SCENE_JSON_MAX_BYTES, NULL, reason);
 	if (!stream)
-		return cau_fail(error, CAU_IO, "scenes", "cannot open %.250s", path);
+		return cau_fail(error, CAU_IO, "scenes", "cannot open %.160s: %s", path, reason);
 	*bytes = fread(text, 1, CAU_SCENE_JSON_MAX_BYTES + 1, stream);
 	fclose(stream);
 	return CAU_OK;

@@ -121,7 +121,7 @@ void cau_call_hello(cau_call *call)
 	}
 	replace(service, replaced);
 	peer->greeted = peer->connection->served = true;
-	cau_hub_heartbeat(service->hub, asker->client, true);
+	cau_hub_heartbeat(service->hub, asker->client, true, cau_peer_alive_s(peer));
 	char whose[CAU_AUTH_NAME_BYTES];
 	cau_auth_grant_name(service->auth, peer->grant, whose);
 	cau_log(CAU_LOG_INFO, NULL, "hello",
@@ -133,13 +133,17 @@ void cau_call_hello(cau_call *call)
 
 void cau_call_heartbeat(cau_call *call)
 {
+	cau_peer *peer = call->peer;
 	cau_error error = {0};
 	cau_wire_heartbeat params = {0};
 	if (cau_rpc_params(call->message, &params, &error)) {
 		cau_call_fail(call, &error, 0);
 		return;
 	}
-	cau_hub_heartbeat(call->peer->service->hub, call->peer->client.asker.client, params.visible);
+	if (params.has_client_time_us)
+		cau_peer_hear_clock(peer, params.client_time_us);
+	cau_hub_heartbeat(peer->service->hub, peer->client.asker.client, params.visible,
+	                  cau_peer_alive_s(peer));
 	cau_wire_heartbeat_result result = {.server_time_us = (int64_t)(cau_monotonic_s() * 1e6),
 	                                    .has_client_time_us = params.has_client_time_us,
 	                                    .client_time_us = params.client_time_us};

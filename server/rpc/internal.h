@@ -7,6 +7,7 @@
 
 #include "cautery/chunk_codec.h"
 #include "clock/clock.h"
+#include "hub/sign_of_life.h"
 #include "log/log.h"
 #include "metrics/exposition.h"
 #include "rpc/service.h"
@@ -42,6 +43,7 @@ typedef struct cau_peer {
 	uint64_t grant; // of the token that it came with
 	cau_auth_bounds bounds;
 	cau_client client;
+	cau_sign_of_life sign;
 	char session[CAU_NAME_BYTES]; // of the URL
 	int malformed;
 	int64_t motions;
@@ -102,6 +104,13 @@ cau_reply cau_call_reply(const cau_call *call); // for answers that come later
 void cau_peer_fault(cau_peer *peer, const cau_rpc_id *id, const cau_rpc_fault *fault);
 // Counts a message that was none; MALFORMED_MOST of them close the connection.
 void cau_peer_malformed(cau_peer *peer);
+
+// ---- life.c
+// When the peer gave its newest sign of life, monotonic: now, if it has never sent its clock and
+// the network thread was not stopped.
+double cau_peer_alive_s(const cau_peer *peer);
+// A heartbeat came, with what the peer's clock showed when it was sent.
+void cau_peer_hear_clock(cau_peer *peer, int64_t client_time_us);
 
 // ---- mailbox.c
 void cau_service_answer(void *user, const cau_reply *reply, const cau_outcome *outcome);

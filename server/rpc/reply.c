@@ -175,6 +175,7 @@ cau_order *cau_call_order(const cau_call *call, cau_order_kind kind)
 	}
 	order->kind = kind;
 	order->asker = call->peer->client.asker;
+	order->alive_s = cau_peer_alive_s(call->peer);
 	if (call->method->changes && call->envelope.has_client_sequence)
 		order->client_sequence = call->envelope.client_sequence;
 	order->reply = cau_call_reply(call);

@@ -73,9 +73,16 @@ static bool admit(cau_call *call)
 	return false;
 }
 
+// Before hello no version is agreed on, so which methods there are is not said.
+static const cau_rpc_fault hello_comes_first = {.code = CAU_RPC_HELLO_REQUIRED,
+                                                .status = "hello_required",
+                                                .reason = "the first message must be hello"};
+
 static void refuse_message(cau_peer *peer, const cau_rpc_message *message,
                            const cau_rpc_fault *fault)
 {
+	if (!peer->greeted && fault->code == CAU_RPC_METHOD_NOT_FOUND)
+		fault = &hello_comes_first;
 	if (message->kind != CAU_RPC_NOTIFICATION) {
 		cau_answers_count(peer->service, CAU_METHOD_COUNT, fault->code);
 		cau_peer_fault(peer, &message->id, fault);

@@ -7,11 +7,32 @@
 enum { TIMELINE_COUNT = 1024 }; // events of an answer that asks for no number of them
 
 // ---- session.list
+// Sessions may come while they are listed, so that no count before would do.
+static bool make_room(cau_wire_list *list)
+{
+	enum { FIRST_PLACES = 16 };
+	if (list->count < list->capacity)
+		return true;
+	int32_t capacity = list->capacity ? 2 * list->capacity : FIRST_PLACES;
+	void *grown = realloc(list->items, (size_t)capacity * sizeof(cau_wire_session_summary));
+	if (!grown)
+		return false;
+	list->items = grown;
+	list->capacity = capacity;
+	return true;
+}
+
+typedef struct listing {
+	cau_wire_list list;
+	bool failed; // memory ran out
+} listing;
+
 static void list_one(void *user, cau_hosted *hosted)
 {
-	cau_wire_list *list = user;
-	if (list->count < list->capacity)
-		cau_hosted_summary(hosted, (cau_wire_session_summary *)list->items + list->count++);
+	listing *l = user;
+	l->failed = l->failed || !make_room(&l->list);
+	if (!l->failed)
+		cau_hosted_summary(hosted, (cau_wire_session_summary *)l->list.items + l->list.count++);
 }
 
 static int by_id(const void *a, const void *b)
@@ -33,21 +54,18 @@ static void keep_allowed(const cau_peer *peer, cau_wire_list *list)
 
 void cau_call_session_list(cau_call *call)
 {
-	cau_hub *hub = call->peer->service->hub;
-	int32_t capacity = cau_hub_count(hub) + 8;
-	cau_wire_session_list result = {
-		.sessions = {calloc((size_t)capacity, sizeof(cau_wire_session_summary)), 0, capacity}};
-	if (!result.sessions.items) {
-		cau_error error = {.status = CAU_NO_MEMORY};
+	cau_error error = {.status = CAU_NO_MEMORY};
+	listing l = {.failed = false};
+	cau_hub_each(call->peer->service->hub, list_one, &l);
+	if (l.failed) {
 		cau_call_fail(call, &error, 0);
-		return;
+	} else {
+		keep_allowed(call->peer, &l.list);
+		if (l.list.count)
+			qsort(l.list.items, (size_t)l.list.count, sizeof(cau_wire_session_summary), by_id);
+		cau_call_result(call, &(cau_wire_session_list){.sessions = l.list});
 	}
-	cau_hub_each(hub, list_one, &result.sessions);
-	keep_allowed(call->peer, &result.sessions);
-	qsort(result.sessions.items, (size_t)result.sessions.count, sizeof(cau_wire_session_summary),
-	      by_id);
-	cau_call_result(call, &result);
-	free(result.sessions.items);
+	free(l.list.items);
 }
 
 // ---- session.create

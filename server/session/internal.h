@@ -49,6 +49,8 @@ void cau_drive_remove(cau_logic *logic, const char *tool);
 
 // ---- queue.c
 void cau_queue_take(cau_logic *logic, const cau_asked *asked, cau_effects *effects);
+// When the order's asker was alive; `now_s` is the time of its coming in.
+double cau_order_alive_s(const cau_asked *asked, double now_s);
 void cau_queue_alive(cau_logic *logic, uint32_t client, const char *tool, double time_s);
 // What moves, holds or heats a tool and waits is void where its asker is lost, and so is what that
 // client asked for at later ticks: of all tools, of those whose driver is silent now, of one that

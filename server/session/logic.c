@@ -100,6 +100,9 @@ static void fault(cau_logic *logic, const char *reason, cau_effects *effects)
 	                  effects);
 }
 
+// Also before every sign of life: one that is read after the deadline does not undo the silence,
+// however late the watchdog is. After a stop of the whole process the signs that waited in sockets
+// may be read before the watchdog runs.
 static void cut_silent(cau_logic *logic, double now_s, cau_effects *effects)
 {
 	cau_queue_cut_silent(logic, now_s);
@@ -116,12 +119,15 @@ void cau_logic_take(cau_logic *logic, const cau_logic_event *event, cau_effects 
 	logic->now_s = fmax(logic->now_s, event->time_s);
 	switch (event->kind) {
 	case CAU_LOGIC_ORDER:
+		cut_silent(logic, event->time_s, effects);
 		if (*event->asked->tool) // any message about a tool is a sign of life
-			take_life(logic, event->asked->asker.client, event->asked->tool, event->time_s);
+			take_life(logic, event->asked->asker.client, event->asked->tool,
+			          cau_order_alive_s(event->asked, event->time_s));
 		cau_queue_take(logic, event->asked, effects);
 		break;
 	case CAU_LOGIC_ALIVE:
-		take_life(logic, event->client, tool, event->time_s);
+		cut_silent(logic, event->time_s, effects);
+		take_life(logic, event->client, tool, event->alive_s > 0 ? event->alive_s : event->time_s);
 		break;
 	case CAU_LOGIC_AWAY:
 		cau_drive_cut_client(logic, event->client, cause, effects);

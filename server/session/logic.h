@@ -65,6 +65,7 @@ typedef struct cau_asked {
 	bool numbered;             // it may be a resend of one that was answered; never MOTION
 	int64_t ticks;             // STEP
 	double speed;              // SPEED: simulated over wall time
+	double alive_s;            // its asker's newest sign of life, monotonic; 0: this order is one
 } cau_asked;
 
 // Why an order that waits will not be done.
@@ -119,7 +120,7 @@ typedef struct cau_drive {
 
 typedef enum cau_logic_event_kind {
 	CAU_LOGIC_ORDER,     // asked
-	CAU_LOGIC_ALIVE,     // client; tool: "" for all that it drives
+	CAU_LOGIC_ALIVE,     // client, alive_s; tool: "" for all that it drives
 	CAU_LOGIC_AWAY,      // client, cause: it looks away, or its connection is lost
 	CAU_LOGIC_FORGET,    // client: it will not come back
 	CAU_LOGIC_TIME,      // time has passed: drivers may be silent for too long
@@ -141,7 +142,8 @@ typedef struct cau_arrived_tool {
 
 typedef struct cau_logic_event {
 	cau_logic_event_kind kind;
-	double time_s; // monotonic, of every event; never goes back by more than threads race
+	double time_s;  // monotonic, of every event; never goes back by more than threads race
+	double alive_s; // ALIVE: when the client gave the sign, at most time_s; 0: at time_s
 	uint32_t client;
 	uint64_t number;          // CANCEL: of cau_logic_later; 0: all of the client's
 	const char *tool, *cause; // borrowed for the call; NULL: ""

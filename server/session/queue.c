@@ -124,6 +124,11 @@ static void bring_to_life(cau_waiting *order, uint32_t client, const char *tool,
 		order->alive_s = fmax(order->alive_s, time_s);
 }
 
+double cau_order_alive_s(const cau_asked *asked, double now_s)
+{
+	return asked->alive_s > 0 ? fmin(asked->alive_s, now_s) : now_s;
+}
+
 void cau_queue_alive(cau_logic *logic, uint32_t client, const char *tool, double time_s)
 {
 	for (int32_t i = 0; i < logic->count; i++)
@@ -393,7 +398,9 @@ static void append(cau_logic *logic, const cau_asked *asked)
 {
 	CAU_ASSERT_INDEX(logic->count, 2 * logic->capacity);
 	logic->waiting[logic->count++] =
-		(cau_waiting){.asked = *asked, .moment = logic->moment, .alive_s = logic->now_s};
+		(cau_waiting){.asked = *asked,
+	                  .moment = logic->moment,
+	                  .alive_s = cau_order_alive_s(asked, logic->now_s)};
 }
 
 void cau_queue_take(cau_logic *logic, const cau_asked *asked, cau_effects *effects)
@@ -424,7 +431,7 @@ void cau_queue_take(cau_logic *logic, const cau_asked *asked, cau_effects *effec
 	if (older) {
 		cau_effect_add(effects, CAU_EFFECT_REPLACED, older->asked.ticket);
 		older->asked = *asked;
-		older->alive_s = logic->now_s;
+		older->alive_s = fmax(older->alive_s, cau_order_alive_s(asked, logic->now_s));
 		return;
 	}
 	append(logic, asked);

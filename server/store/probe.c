@@ -49,7 +49,10 @@ static cau_status check_version(int64_t version, cau_error *error)
 static cau_status check_header(const char *path, cau_error *error)
 {
 	unsigned char header[HEADER_BYTES];
-	int descriptor = open(path, O_RDONLY | O_CLOEXEC);
+	struct stat info;
+	if (stat(path, &info) == 0 && !S_ISREG(info.st_mode)) // opening a FIFO waits for a writer
+		return cau_fail(error, CAU_IO, NULL, "it is no regular file");
+	int descriptor = open(path, O_RDONLY | O_NONBLOCK | O_CLOEXEC);
 	if (descriptor < 0)
 		return cau_fail(error, CAU_IO, NULL, "cannot read it: %s", strerrordesc_np(errno));
 	ssize_t count = pread(descriptor, header, sizeof header, 0);

@@ -115,6 +115,7 @@ static_assert(CAU_MAX_TOOLS == 8, "a row for each tool below");
 
 static const field call_fields[] = {
 	CALL(REAL, "time_s", time_s),
+	CALL(REAL, "alive_s", alive_s),
 	CALL(SIGNED, "capacity", capacity),
 	CALL(REAL, "step_s", step_s),
 	CHOICE(cau_trace_call, "event", event, event_words),
@@ -135,6 +136,7 @@ static const field call_fields[] = {
 	CALL(TRUTH, "numbered", asked.numbered),
 	CALL(SIGNED, "ticks", asked.ticks),
 	CALL(REAL, "speed", asked.speed),
+	CALL(REAL, "asker.alive_s", asked.alive_s),
 	CALL(SIGNED, "tool_count", tool_count),
 	TOOL(0),
 	TOOL(1),

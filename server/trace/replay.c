@@ -49,6 +49,7 @@ static void take(replay *r, const cau_trace_call *call, cau_effects *effects)
 	cau_logic_take(r->logic,
 	               &(cau_logic_event){.kind = call->event,
 	                                  .time_s = call->time_s,
+	                                  .alive_s = call->alive_s,
 	                                  .client = call->client,
 	                                  .number = call->number,
 	                                  .tool = call->subject,

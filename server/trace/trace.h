@@ -29,7 +29,7 @@ typedef enum cau_trace_what {
 // A call of the machine with all that it was given, and without a pointer out of it.
 typedef struct cau_trace_call {
 	cau_trace_what what;
-	double time_s;
+	double time_s, alive_s;
 	int32_t capacity;
 	double step_s;
 	cau_logic_event_kind event;

@@ -105,6 +105,7 @@ void cau_trace_take(FILE *to, const cau_logic_event *event)
 		return;
 	cau_trace_call call = {.what = CAU_TRACE_TAKE,
 	                       .time_s = event->time_s,
+	                       .alive_s = event->alive_s,
 	                       .event = event->kind,
 	                       .client = event->client,
 	                       .number = event->number,

@@ -104,6 +104,8 @@ cau_dds_hand *cau_dds_move(cau_dds *dds, const cau_door *door, cau_dds_tool *too
 	if (!status) {
 		bool now = would_drive(tool, writer->client, state.driver.client, now_s);
 		hand = cau_dds_take_hand(dds, writer, door->session, tool, now, &error);
+		if (hand)
+			hand->client->alive_s = writer->sign.alive_s;
 		status = hand ? claim(hand, &state, now_s, &error) : CAU_LIMIT; // or memory: error has it
 	}
 	if (!status)
@@ -116,7 +118,8 @@ cau_dds_hand *cau_dds_move(cau_dds *dds, const cau_door *door, cau_dds_tool *too
 	if (!cau_dds_order_move(hand, &motion.pose, motion.jaw, motion.sequence))
 		return NULL;
 	note_motion(hand, &motion, now_s);
-	cau_hosted_feed_tool(door->session->hosted, hand->client->asker.client, tool->name);
+	cau_hosted_feed_tool(door->session->hosted, hand->client->asker.client, tool->name,
+	                     writer->sign.alive_s);
 	return hand;
 }
 

@@ -12,6 +12,7 @@
 #include "cautery/messages.h"
 #include "clock/clock.h"
 #include "hosted_session/tools.h"
+#include "hub/sign_of_life.h"
 #include "log/log.h"
 #include "transport_dds/checks.h"
 #include "transport_dds/dds_transport.h"
@@ -162,6 +163,7 @@ typedef struct cau_dds_client {
 	int32_t writers;                     // matched ones that are its own
 	bool accepted;                       // a motion of it was
 	uint64_t connection;                 // for the hub
+	double alive_s;                      // its newest sign of life, monotonic; 0: none was heard
 	cau_asker asker;
 	struct cau_dds_hand *hands;
 } cau_dds_client;
@@ -177,6 +179,7 @@ typedef struct cau_dds_writer {
 	char subject[CAU_DDS_SUBJECT_BYTES];
 	cau_asker asker;        // without a number; that is its client's
 	cau_dds_client *client; // NULL: it has no place
+	cau_sign_of_life sign;  // by the source timestamps of its samples
 	double retry_s;         // it was denied one, until this
 	double requests_s;      // the second in which so many requests came
 	int64_t requests;

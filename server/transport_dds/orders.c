@@ -23,6 +23,7 @@ cau_order *cau_dds_make_order(const cau_dds_hand *hand, cau_order_kind kind, cau
 	if (order) {
 		order->kind = kind;
 		order->asker = hand->client->asker;
+		order->alive_s = hand->client->alive_s;
 		order->reply.method = method;
 	}
 	return order;

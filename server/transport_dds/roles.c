@@ -6,6 +6,7 @@
 #include <sys/stat.h>
 
 #include "cautery/sha256.h"
+#include "config/named_file.h"
 #include "config/role.h"
 
 enum { LINE_BYTES = 512 };
@@ -53,12 +54,10 @@ static cau_status read_line(cau_dds_roles *roles, char *line, int number, cau_er
 static cau_status read_file(cau_dds_roles *roles, const char *file, cau_error *error)
 {
 	struct stat info;
-	FILE *stream = fopen(file, "r");
-	if (!stream || fstat(fileno(stream), &info)) {
-		if (stream)
-			fclose(stream);
-		return cau_fail(error, CAU_IO, "dds_roles", "cannot open %.200s", file);
-	}
+	char reason[CAU_NAMED_FILE_REASON_BYTES];
+	FILE *stream = cau_named_file_open(file, CAU_NAMED_FILE_BYTES, &info, reason);
+	if (!stream)
+		return cau_fail(error, CAU_IO, "dds_roles", "cannot open %.200s: %s", file, reason);
 	cau_status status = CAU_OK;
 	if (info.st_mode & (S_IWGRP | S_IWOTH))
 		status = cau_fail(error, CAU_BAD_VALUE, "dds_roles",

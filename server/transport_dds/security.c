@@ -6,6 +6,7 @@
 #include <string.h>
 #include <unistd.h>
 
+#include "config/named_file.h"
 #include "dds_identity/identity.h"
 #include "transport_dds/security.h"
 
@@ -60,23 +61,36 @@ static void set_plugins(dds_qos_t *qos)
 	}
 }
 
+// Cyclone opens it by itself, and would wait for the writer of a FIFO.
+static cau_status check_file(const char *folder, const char *name, cau_error *error)
+{
+	char reason[CAU_NAMED_FILE_REASON_BYTES];
+	char path[FILE_BYTES];
+	snprintf(path, sizeof path, "%s/%s", folder, name);
+	FILE *stream = cau_named_file_open(path, CAU_NAMED_FILE_BYTES, NULL, reason);
+	if (!stream)
+		return cau_fail(error, CAU_NOT_FOUND, "dds_security", "cannot read %s in %.*s: %s", name,
+		                PATH_KEPT, folder, reason);
+	fclose(stream);
+	return CAU_OK;
+}
+
 static cau_status set_identity(dds_qos_t *qos, const char *folder, cau_error *error)
 {
 	for (size_t i = 0; i < sizeof identity / sizeof identity[0]; i++) {
 		char uri[FILE_BYTES];
 		snprintf(uri, sizeof uri, "file:%s/%s", folder, identity[i].file);
-		const char *path = uri + strlen("file:");
-		if (access(path, R_OK) != 0)
-			return cau_fail(error, CAU_NOT_FOUND, "dds_security", "cannot read %s in %.*s",
-			                identity[i].file, PATH_KEPT, folder);
+		cau_status status = check_file(folder, identity[i].file, error);
+		if (status)
+			return status;
 		dds_qset_prop(qos, identity[i].property, uri);
 	}
 	char uri[FILE_BYTES];
 	snprintf(uri, sizeof uri, "file:%s/%s", folder, revoked);
-	if (access(uri + strlen("file:"), F_OK) ==
-	    0) // one that cannot be read is no reason to go without
-		dds_qset_prop(qos, revoked_property, uri);
-	return CAU_OK;
+	if (access(uri + strlen("file:"), F_OK) != 0)
+		return CAU_OK;
+	dds_qset_prop(qos, revoked_property, uri); // one that cannot be read is no reason to go without
+	return check_file(folder, revoked, error);
 }
 
 cau_status cau_dds_secure(dds_qos_t *qos, const cau_config *config, cau_error *error)

@@ -4,6 +4,7 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "config/named_file.h"
 #include "transport_dds/internal.h"
 #include "transport_dds/leave.h"
 #include "transport_dds/local.h"
@@ -38,6 +39,19 @@ static void on_sliced(void *user, uint32_t session)
 }
 
 // ---- samples
+// Every sample has its writer's clock, unless the writer's DDS leaves it out.
+static void hear(cau_dds_writer *writer, dds_time_t source_timestamp)
+{
+	double now_s = cau_monotonic_s();
+	if (source_timestamp > 0)
+		cau_sign_of_life_hear(&writer->sign, now_s, 1e-9 * (double)source_timestamp,
+		                      writer->asker.deadline_s);
+	else if (!writer->sign.clocked)
+		writer->sign.alive_s = now_s;
+	if (writer->client)
+		writer->client->alive_s = writer->sign.alive_s;
+}
+
 static void serve(cau_dds *dds, cau_door *door)
 {
 	static void (*const takers[])(cau_dds *, cau_door *, cau_dds_writer *, const void *) = {
@@ -56,8 +70,10 @@ static void serve(cau_dds *dds, cau_door *door)
 		if (!infos[i].valid_data)
 			continue;
 		cau_dds_writer *writer = cau_dds_writer_of(dds, door, infos[i].publication_handle);
-		if (writer && !(door->best_effort && writer->reliable))
-			takers[door->kind](dds, door, writer, samples[i]);
+		if (!writer || (door->best_effort && writer->reliable))
+			continue;
+		hear(writer, infos[i].source_timestamp);
+		takers[door->kind](dds, door, writer, samples[i]);
 	}
 	if (count > 0)
 		dds_return_loan(door->reader, samples, count);
@@ -139,7 +155,15 @@ static const char no_linger[] =
 static cau_status open_domain(cau_dds *dds, cau_error *error)
 {
 	const cau_config *config = dds->config;
-	char given[CONFIG_BYTES];
+	char given[CONFIG_BYTES], reason[CAU_NAMED_FILE_REASON_BYTES];
+	FILE *settings = *config->dds_config ? cau_named_file_open(config->dds_config,
+	                                                           CAU_NAMED_FILE_BYTES, NULL, reason)
+	                                     : NULL;
+	if (*config->dds_config && !settings)
+		return cau_fail(error, CAU_IO, "dds_config", "cannot open %.160s: %s", config->dds_config,
+		                reason);
+	if (settings)
+		fclose(settings); // Cyclone opens it by itself, and would wait for the writer of a FIFO
 	if (*config->dds_config)
 		snprintf(given, sizeof given, "file://%s,%s", config->dds_config, no_linger);
 	else

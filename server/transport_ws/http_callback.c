@@ -4,19 +4,22 @@
 #include "log/log.h"
 #include "transport_ws/internal.h"
 
+void cau_refuse_request(struct lws *wsi, const cau_http_refusal *refusal)
+{
+	cau_http_body body = {0};
+	cau_note_refusal(cau_network_of(wsi), refusal);
+	if (!cau_http_answer_refusal(wsi, &body, refusal, true))
+		cau_http_answer_continue(wsi, &body);
+	cau_http_body_finish(&body);
+}
+
 // Below 0: the upgrade was refused, and the connection ends behind the answer.
 static int confirm_upgrade(cau_network *network, struct lws *wsi)
 {
-	cau_http_body body = {0};
 	cau_http_refusal refusal = cau_handshake_check(network, wsi);
 	if (!refusal.status)
 		return 0;
-	network->counts.refused_handshakes++;
-	cau_log(CAU_LOG_INFO, NULL, "handshake_refused", "status=%u error=%s reason=\"%s\"",
-	        refusal.status, refusal.name, refusal.reason);
-	if (!cau_http_answer_refusal(wsi, &body, &refusal, true))
-		cau_http_answer_continue(wsi, &body);
-	cau_http_body_finish(&body);
+	cau_refuse_request(wsi, &refusal);
 	return -1;
 }
 
@@ -36,15 +39,25 @@ int cau_http_callback(struct lws *wsi, enum lws_callback_reasons reason, void *u
 		if (network->tls)
 			cau_tls_configure(network->tls, user);
 		return 0;
+	case LWS_CALLBACK_SERVER_NEW_CLIENT_INSTANTIATED:
+		return cau_unread_add(network, wsi) ? 0 : -1;
 	case LWS_CALLBACK_HTTP:
+		cau_unread_remove(network, wsi);
 		return cau_http_serve(network, wsi, body, in);
 	case LWS_CALLBACK_HTTP_WRITEABLE:
 		return cau_http_answer_continue(wsi, body);
+	case LWS_CALLBACK_HTTP_DROP_PROTOCOL: // answered: the next request of this connection may come
+		return cau_unread_add(network, wsi) ? 0 : -1;
 	case LWS_CALLBACK_CLOSED_HTTP:
+		cau_unread_remove(network, wsi);
 		if (body)
 			cau_http_body_finish(body);
 		return 0;
+	case LWS_CALLBACK_RAW_ADOPT: // CONNECT: the library would pass bytes on to nobody
+		cau_refuse_unread(network, wsi, false);
+		return -1;
 	case LWS_CALLBACK_HTTP_CONFIRM_UPGRADE:
+		cau_unread_remove(network, wsi);
 		return confirm_upgrade(network, wsi);
 	case LWS_CALLBACK_EVENT_WAIT_CANCELLED:
 		if (network->ending)

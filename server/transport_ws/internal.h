@@ -30,7 +30,11 @@ struct cau_network {
 	bool started;
 	atomic_bool woken, ending;
 	cau_close_code ending_code;
-	double ending_until_s, ticked_s;
+	double ending_until_s;
+	double ran_s;                      // when this thread last came round
+	double stopped_s, stopped_until_s; // it did not run from then on, see sent_after
+	struct lws **unread; // by descriptor: whose request is still to come; see unread.c
+	int unread_capacity;
 	int input; // epoll descriptor, see input.c
 	uint64_t last_id;
 	cau_connection *connections; // open ones
@@ -54,6 +58,22 @@ int cau_ws_callback(struct lws *wsi, enum lws_callback_reasons reason, void *use
 int cau_input_callback(struct lws *wsi, enum lws_callback_reasons reason, void *user, void *in,
                        size_t bytes);
 
+// ---- rounds.c
+// The thread comes round: notes whether it did not for long.
+void cau_network_comes_round(cau_network *network);
+
+// ---- http_callback.c
+void cau_refuse_request(struct lws *wsi, const cau_http_refusal *refusal);
+
+// ---- unread.c
+void cau_note_refusal(cau_network *network, const cau_http_refusal *refusal);
+// Answers past the library, which is about to end the connection.
+void cau_refuse_unread(cau_network *network, struct lws *wsi, bool large);
+bool cau_unread_add(cau_network *network, struct lws *wsi); // false: no memory
+void cau_unread_remove(cau_network *network, struct lws *wsi);
+// The library logs this line of the connection that it serves.
+void cau_unread_complaint(cau_network *network, const char *line);
+
 // ---- input.c
 bool cau_input_open(cau_network *network);
 bool cau_input_begin(cau_connection *connection);
@@ -71,6 +91,10 @@ bool cau_connection_has_more(const cau_connection *connection);
 void cau_connection_put(cau_connection *connection, const void *bytes, size_t count);
 // Tells the peer that nothing follows.
 void cau_connection_shut(cau_connection *connection);
+
+// The last bytes of a connection that libwebsockets is about to end; what its peer still sends does
+// not take them from it.
+void cau_wsi_last_words(struct lws *wsi, const void *bytes, size_t count);
 
 // ---- sending.c
 void cau_connection_pong(cau_connection *connection, const void *payload, size_t bytes);

@@ -11,8 +11,13 @@
 
 enum { TICK_MS = 100 };
 
+// The library has no context for its log: a thread serves one network.
+static _Thread_local cau_network *own;
+
 static void log_library(int level, const char *line)
 {
+	if (own)
+		cau_unread_complaint(own, line);
 	cau_log(level == LLL_ERR ? CAU_LOG_ERROR : CAU_LOG_WARNING, NULL, "libwebsockets",
 	        "text=\"%.*s\"", (int)strcspn(line, "\n"), line);
 }
@@ -97,6 +102,7 @@ cau_status cau_network_create(cau_network **made, const cau_network_def *def, ca
 static void tick(lws_sorted_usec_list_t *sul)
 {
 	cau_network *network = lws_container_of(sul, cau_network, sul);
+	cau_network_comes_round(network);
 	double now_s = cau_monotonic_s();
 	network->def.handler.tick(network->def.handler.user);
 	for (cau_connection *c = network->connections; c; c = c->next)
@@ -110,6 +116,7 @@ static void *serve(void *argument)
 	pthread_setname_np(pthread_self(), "cautery-net");
 	cau_thread_set_nice(CAU_NICE_FIRST);
 	lws_sul_schedule(network->context, 0, &network->sul, tick, TICK_MS * LWS_US_PER_MS);
+	own = network;
 	while (!network->ending || ((network->connections || network->lingering) &&
 	                            cau_monotonic_s() < network->ending_until_s))
 		if (lws_service(network->context, 0) < 0)
@@ -151,6 +158,7 @@ void cau_network_destroy(cau_network *network)
 	if (network->input >= 0)
 		close(network->input);
 	cau_tls_destroy(network->tls);
+	free(network->unread);
 	free(network);
 }
 

@@ -98,6 +98,7 @@ int cau_input_callback(struct lws *wsi, enum lws_callback_reasons reason, void *
 	(void)user, (void)in, (void)bytes;
 	if (reason != LWS_CALLBACK_RAW_RX_FILE)
 		return 0;
+	cau_network_comes_round(cau_network_of(wsi));
 	struct epoll_event events[EVENTS_AT_ONCE];
 	int count = epoll_wait(cau_network_of(wsi)->input, events, EVENTS_AT_ONCE, 0);
 	for (int i = 0; i < count; i++)

@@ -9,9 +9,14 @@
 
 #include "transport_ws/internal.h"
 
+static SSL *tls_of_wsi(struct lws *wsi)
+{
+	return cau_network_of(wsi)->tls ? lws_get_ssl(wsi) : NULL;
+}
+
 static SSL *tls_of(const cau_connection *c)
 {
-	return c->network->tls ? lws_get_ssl(c->wsi) : NULL;
+	return tls_of_wsi(c->wsi);
 }
 
 static ssize_t receive_tls(SSL *tls, void *bytes, size_t most)
@@ -46,13 +51,30 @@ bool cau_connection_has_more(const cau_connection *c)
 	return tls && SSL_pending(tls) > 0;
 }
 
-void cau_connection_put(cau_connection *c, const void *bytes, size_t count)
+static void put(SSL *tls, int descriptor, const void *bytes, size_t count)
 {
-	SSL *tls = tls_of(c);
 	ERR_clear_error();
 	if (tls ? SSL_write(tls, bytes, (int)count) <= 0
-	        : send(c->descriptor, bytes, count, MSG_DONTWAIT | MSG_NOSIGNAL) < 0)
-		return; // the peer is gone
+	        : send(descriptor, bytes, count, MSG_DONTWAIT | MSG_NOSIGNAL) < 0)
+		ERR_clear_error(); // the peer is gone
+}
+
+void cau_connection_put(cau_connection *c, const void *bytes, size_t count)
+{
+	put(tls_of(c), c->descriptor, bytes, count);
+}
+
+// A socket that is closed with bytes unread is reset, which may overtake what was sent.
+void cau_wsi_last_words(struct lws *wsi, const void *bytes, size_t count)
+{
+	enum { DROPPED_MOST = 256, PIECE_BYTES = 4096 };
+	char dropped[PIECE_BYTES];
+	int descriptor = lws_get_socket_fd(wsi);
+	put(tls_of_wsi(wsi), descriptor, bytes, count);
+	shutdown(descriptor, SHUT_WR);
+	for (int i = 0; i < DROPPED_MOST; i++)
+		if (recv(descriptor, dropped, sizeof dropped, MSG_DONTWAIT) <= 0)
+			return;
 }
 
 void cau_connection_shut(cau_connection *c)

@@ -1,14 +1,14 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "transport_ws/tls.h"
 
-#include <errno.h>
 #include <openssl/err.h>
 #include <openssl/pem.h>
 #include <openssl/x509.h>
 #include <pthread.h>
 #include <stdlib.h>
 #include <string.h>
-#include <sys/stat.h>
+
+#include "config/named_file.h"
 
 enum { CHAIN_MOST = 16 };
 
@@ -50,9 +50,10 @@ static void forget(pair *p)
 
 static cau_status read_certificate(pair *p, const char *file, cau_error *error)
 {
-	FILE *stream = fopen(file, "re");
+	char reason[CAU_NAMED_FILE_REASON_BYTES];
+	FILE *stream = cau_named_file_open(file, CAU_NAMED_FILE_BYTES, NULL, reason);
 	if (!stream)
-		return fail_file(error, CAU_IO, "tls_certificate", file, strerror(errno));
+		return fail_file(error, CAU_IO, "tls_certificate", file, reason);
 	p->certificate = PEM_read_X509_AUX(stream, NULL, NULL, NULL);
 	p->chain = sk_X509_new_null();
 	X509 *next = NULL;
@@ -78,10 +79,11 @@ static int no_passphrase(char *buffer, int size, int writing, void *user)
 static cau_status read_key(pair *p, const char *file, cau_error *error)
 {
 	struct stat info;
-	FILE *stream = fopen(file, "re");
+	char reason[CAU_NAMED_FILE_REASON_BYTES];
+	FILE *stream = cau_named_file_open(file, CAU_NAMED_FILE_BYTES, &info, reason);
 	if (!stream)
-		return fail_file(error, CAU_IO, "tls_key", file, strerror(errno));
-	bool open_to_all = fstat(fileno(stream), &info) != 0 || (info.st_mode & S_IRWXO);
+		return fail_file(error, CAU_IO, "tls_key", file, reason);
+	bool open_to_all = (info.st_mode & S_IRWXO) != 0;
 	if (!open_to_all)
 		p->key = PEM_read_PrivateKey(stream, NULL, no_passphrase, NULL);
 	fclose(stream);

@@ -14,7 +14,7 @@ after(() => daemon.end());
 
 function request(change = {}) {
 	const headers = {
-		Host: `127.0.0.1:${daemon.port}`, Upgrade: 'websocket', Connection: 'Upgrade',
+		Host: `127.0.0.1:${daemon?.port}`, Upgrade: 'websocket', Connection: 'Upgrade',
 		'Sec-WebSocket-Key': 'dGhlIHNhbXBsZSBub25jZQ==', 'Sec-WebSocket-Version': '13',
 		'Sec-WebSocket-Protocol': 'cautery.v1', ...change.headers,
 	};
@@ -99,6 +99,59 @@ for (const [what, change, expected] of [
 		}
 		await stillServes();
 	});
+
+const BROKEN = {
+	'bytes that are no text': ['\x00\x01\x02\r\n\r\n', 400],
+	'a method that there is not': ['FETCH / HTTP/1.1\r\n\r\n', 400],
+	'an absolute URI': ['GET http://127.0.0.1/ HTTP/1.1\r\nHost: a\r\n\r\n', 400],
+	'an absolute URI of a handshake': [request({ path: 'http://127.0.0.1/v1' }), 404],
+	'the preface of HTTP/2': ['PRI * HTTP/2.0\r\n\r\nSM\r\n\r\n', 400],
+	'an escape that is none': [request({ path: '/%zz' }), 400],
+	'CONNECT': ['CONNECT a:1 HTTP/1.1\r\nHost: a\r\n\r\n', 400],
+	'no method': ['\r\n\r\n', 400],
+	'the hello of TLS': ['\x16\x03\x01\x02\x00\x01\x00\x01\xfc\x03\x03', 400],
+	'a long header': [request({ headers: { Cookie: 'a'.repeat(20000) } }), 431],
+	'a long header that nobody knows': [request({ headers: { 'X-Own': 'a'.repeat(200000) } }), 431],
+	'many headers': [request({ headers: Object.fromEntries([...Array(2000).keys()].map((i) => [`X-${i}`, 'y'])) }), 431],
+	'a long path': [request({ path: `/${'a'.repeat(8000)}` }), 431],
+	'many arguments': [request({ path: `/v1?${'a=1&'.repeat(900)}` }), 431],
+};
+for (const [what, [text, expected]] of Object.entries(BROKEN))
+	test(`what is no request is answered: ${what}`, async () => {
+		const answer = await raw(text.replaceAll(':undefined', `:${daemon.port}`));
+		const [head, body] = answer.toString().split('\r\n\r\n');
+		assert.match(head, new RegExp(`^HTTP/1\\.1 ${expected} [A-Z]`));
+		assert.match(head, /\r\nconnection: [a-z, ]*close/i);
+		const told = JSON.parse(body);
+		assert.equal(told.status, expected);
+		assert.ok(head.includes(`cautery-reason: ${told.reason}`) && told.where && told.remedy, head);
+		await stillServes();
+	});
+
+test('a second request of a connection that is no request is answered, too', async () => {
+	const first = `GET /healthz HTTP/1.1\r\nHost: 127.0.0.1:${daemon.port}\r\n\r\n`;
+	const socket = net.connect(daemon.port, '127.0.0.1');
+	let text = '';
+	const ended = new Promise((resolve, reject) => socket.on('error', reject).on('close', resolve));
+	socket.on('data', (data) => {
+		text += data;
+		if (text.endsWith('}\n') && !text.includes(' 431 '))
+			socket.write(request({ headers: { Cookie: 'a'.repeat(20000) } }));
+	});
+	socket.write(first);
+	await ended;
+	assert.match(text, /^HTTP\/1.1 200 [^]*HTTP\/1.1 431 /);
+});
+
+test('before hello every method is answered alike, known or not', async () => {
+	const client = new Client(daemon.url());
+	await client.opened;
+	for (const method of ['session.list', 'session.nothing', 'nothing', 'tool.energize', ''])
+		await assert.rejects(client.call(method, {}), { code: -32041 }, method);
+	await client.call('hello', { version: 1, client: 'late' });
+	await assert.rejects(client.call('session.nothing', {}), { code: -32601 });
+	await client.close();
+});
 
 for (const [what, change] of [
 	['no Origin', {}],

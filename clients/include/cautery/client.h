@@ -142,7 +142,9 @@ bool cau_client_follows(const cau_client *client);
 // The id by which messages name a session that the program calls so: another once it has moved.
 const char *cau_client_called(const cau_client *client, const char *session);
 
-// While on, sends a heartbeat every 100 ms: whoever drives an energized tool needs it.
+// While on, sends heartbeats, the first at once and five in the time that a driver may be silent:
+// the driver of an energized tool needs them. They carry this machine's monotonic clock, and the
+// server then counts no other message of this connection as a sign of life.
 void cau_client_keep_alive(cau_client *client, bool on);
 
 // Stops and starts reading from the socket, as a slow reader does.

@@ -175,7 +175,7 @@ static void *watch(void *user)
 	(void)user;
 	while (!threads.ended) {
 		cau_hosted_watch(threads.h, cau_monotonic_s());
-		cau_hosted_feed(threads.h, 1);
+		cau_hosted_feed(threads.h, 1, cau_monotonic_s());
 		threads_await_steps(1);
 	}
 	return NULL;

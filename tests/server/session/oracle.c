@@ -246,28 +246,49 @@ void oracle_answered(world *w, uint64_t number)
 		world_wrong(w, "order %llu is answered twice", (unsigned long long)number);
 }
 
-void oracle_note_coming(world *w, const ticket_book *ticket)
-{
-	const cau_asked *asked = &ticket->asked;
-	tool_book *tool = oracle_book(w, asked->tool);
-	if (!tool)
-		return;
-	// any message about a tool is a sign of life
-	tool->alive_s[asked->asker.client] = w->now_s;
-	if (asked->ask == CAU_ASK_ENERGY_OFF && asked->tick <= w->tick)
-		oracle_darken(tool, ticket->came);
-}
-
-// Once a silence was looked at, a sign of life does not undo it.
-void oracle_note_silence(world *w)
+static void note_silence(world *w, uint64_t came)
 {
 	for (int i = 0; i < TOOLS; i++) {
 		tool_book *tool = &w->tools[i];
 		if (!is_silent(w, tool))
 			continue;
-		tool->silent[tool->enabler] = w->came;
-		void_of_driver(w, world_tool_names[i], tool->driver, w->came + 1, false);
+		tool->silent[tool->enabler] = came;
+		void_of_driver(w, world_tool_names[i], tool->driver, came + 1, false);
 	}
+}
+
+// Once a silence was looked at, a sign of life does not undo it.
+void oracle_note_silence(world *w)
+{
+	note_silence(w, w->came);
+}
+
+// Nor does one that comes in after the deadline, whether anybody has looked or not. What comes in
+// with it counts, and what came in before does not.
+void oracle_note_life(world *w, int client, const char *name, double alive_s)
+{
+	note_silence(w, w->came - 1);
+	for (int i = 0; i < TOOLS; i++) {
+		double *newest_s = &w->tools[i].alive_s[client];
+		bool about = !*name || strcmp(world_tool_names[i], name) == 0;
+		if (about && alive_s > *newest_s)
+			*newest_s = alive_s;
+	}
+	if (alive_s > w->life_s[client])
+		w->life_s[client] = alive_s;
+}
+
+void oracle_note_coming(world *w, const ticket_book *ticket)
+{
+	const cau_asked *asked = &ticket->asked;
+	tool_book *tool = oracle_book(w, asked->tool);
+	note_silence(w, w->came - 1);
+	if (!tool)
+		return;
+	oracle_note_life(w, (int)asked->asker.client, asked->tool,
+	                 asked->alive_s > 0 ? asked->alive_s : w->now_s);
+	if (asked->ask == CAU_ASK_ENERGY_OFF && asked->tick <= w->tick)
+		oracle_darken(tool, ticket->came);
 }
 
 // ---- cuts ---------------------------------------------------------------------------------------

@@ -24,6 +24,8 @@ void oracle_note_off_of_none(world *w, const char *tool);
 void oracle_note_cancel(world *w, int client, uint64_t ticket);
 // Somebody looked for silence: a later sign of life does not undo it.
 void oracle_note_silence(world *w);
+// A sign of life that was given at `alive_s` comes in; `name` "": for all tools.
+void oracle_note_life(world *w, int client, const char *name, double alive_s);
 // The worker cuts a tool: something that came in must be the reason.
 void oracle_note_cut(world *w);
 

@@ -70,6 +70,14 @@ static void note_coming(reach_move *m, const reach_event *e, bool queued)
 		                                                        .later = (uint8_t)e->later};
 }
 
+// What the machine is compared with: before, with those dark who were silent by now.
+static void expect_silence_cut(reach_move *m)
+{
+	cau_effects ignored;
+	cau_logic_take(m->before, &(cau_logic_event){.kind = CAU_LOGIC_TIME, .time_s = REACH_NOW_S},
+	               &ignored);
+}
+
 static void do_order(reach_move *m, const reach_event *e)
 {
 	bool about_tool = e->ask >= CAU_ASK_TOOL_ADD && e->ask <= CAU_ASK_REQUEST_TAKEOVER;
@@ -82,12 +90,14 @@ static void do_order(reach_move *m, const reach_event *e)
 	                   .numbered = e->numbered};
 	if (about_tool)
 		strcpy(asked.tool, reach_tool_names[e->tool]);
+	reach_note_silence(&m->books); // one that comes after the deadline does not undo the silence
 	take(m, (cau_logic_event){.kind = CAU_LOGIC_ORDER, .asked = &asked});
 	bool off = e->ask == CAU_ASK_ENERGY_OFF, pause = e->ask == CAU_ASK_PAUSE;
 	bool refused = has_effect(m, CAU_EFFECT_REFUSE);
 	bool queued = m->logic->count > m->before->count;
 	must(m, !refused || !(off || pause) || m->before->ended, "energy off or pause is refused");
 	must(m, refused || !m->before->ended, "what has ended takes an order");
+	expect_silence_cut(m);
 	must(m, !refused || (!queued && drives_are_as_before(m, true)), "refused, and yet it changed");
 	must(m, refused + queued + has_effect(m, CAU_EFFECT_UNSTORED) == 1, "not one answer");
 	note_coming(m, e, queued);
@@ -411,6 +421,7 @@ void reach_do(reach_move *m, const reach_event *e)
 		do_order(m, e);
 		break;
 	case REACH_ALIVE:
+		reach_note_silence(&m->books);
 		take(m, (cau_logic_event){.kind = CAU_LOGIC_ALIVE, .client = (uint32_t)e->client});
 		break;
 	case REACH_AWAY:

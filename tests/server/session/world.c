@@ -104,6 +104,8 @@ static void order(world *w, cau_ask ask, int client, int tool, uint32_t more)
 	                            .speed = 1};
 	if (about_tool)
 		snprintf(ticket->asked.tool, sizeof ticket->asked.tool, "%s", world_tool_names[tool]);
+	if (more / 16 % 4 == 0) // it sends its clock: its orders are no signs of life
+		ticket->asked.alive_s = w->life_s[client];
 	if (ask == CAU_ASK_HAND_OVER)
 		ticket->asked.to = asker_of((int)(more % (CLIENTS + 1)));
 	if (ask <= CAU_ASK_ENERGY_OFF && more % 5 == 0)
@@ -125,15 +127,17 @@ static void order(world *w, cau_ask ask, int client, int tool, uint32_t more)
 		w->paused = ticket->came;
 }
 
-static void alive(world *w, int client, int tool)
+// A sign of life that was `lag` thirds of the deadline on its way.
+static void alive(world *w, int client, int tool, int lag)
 {
-	for (int i = 0; i < TOOLS; i++)
-		if (tool < 0 || tool == i)
-			w->tools[i].alive_s[client] = w->now_s;
-	say(w, "c%d lives\n", client);
+	const char *name = tool < 0 ? "" : world_tool_names[tool];
+	double alive_s = fmax(w->life_s[client], w->now_s - lag * DEADLINE_S / 3);
+	oracle_note_life(w, client, name, alive_s);
+	say(w, "c%d lives%s\n", client, alive_s < w->now_s ? ", as it did before" : "");
 	take(w, (cau_logic_event){.kind = CAU_LOGIC_ALIVE,
 	                          .client = (uint32_t)client,
-	                          .tool = tool < 0 ? "" : world_tool_names[tool]});
+	                          .tool = name,
+	                          .alive_s = alive_s});
 }
 
 static void lose(world *w, int client, bool for_good)
@@ -394,7 +398,7 @@ bool world_do(world *w, uint32_t code)
 	if (what < 10)
 		order_of_code(w, more);
 	else if (what < 12)
-		alive(w, client, (int)(more / 8 % (TOOLS + 1)) - 1);
+		alive(w, client, (int)(more / 8 % (TOOLS + 1)) - 1, (int)(more / 64 % 8));
 	else if (what == 12)
 		lose(w, client, more / 8 % 4 == 0);
 	else if (what < 17)

@@ -51,6 +51,7 @@ typedef struct world {
 	double now_s;
 	uint64_t came; // counts what comes in
 	uint64_t away[CLIENTS + 1], gone[CLIENTS + 1];
+	double life_s[CLIENTS + 1]; // newest sign of life, about whatever tool
 	uint64_t paused; // coming in of the newest pause that found no room and waits; 0: none
 	uint64_t served; // of the one that the worker is at
 	bool pausing;    // the worker makes the cuts of a pause

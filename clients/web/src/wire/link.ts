@@ -48,6 +48,7 @@ export class Link {
   }
 
   call<M extends keyof Requests>(method: M, params: Requests[M]['params']): Promise<Requests[M]['result']> {
+    if (method === 'tool.energize') this.heartbeat(true); // its clock says how fresh the request is
     return new Promise((resolve, reject) => {
       const call = this.remember({ resolve: resolve, reject });
       this.send({ type: 'call', call, method, params });
@@ -59,7 +60,7 @@ export class Link {
   }
 
   heartbeat(visible: boolean): void {
-    this.send({ type: 'heartbeat', visible });
+    this.send({ type: 'heartbeat', visible, atUs: Math.round(1000 * (performance.timeOrigin + performance.now())) });
   }
 
   watch(session: string | null, channels: Channels, colour: 'stress' | 'temperature'): void {

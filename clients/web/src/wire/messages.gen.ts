@@ -84,7 +84,7 @@ export interface HelloResult {
 export interface Heartbeat {
   /** false: the page is hidden or blurred, energy is cut at once */
   visible: boolean;
-  /** the client's clock, returned (0 to 9007199254740991 us) */
+  /** the client's clock, one that is never set, from any origin; returned. Once it was sent, only heartbeats with it are signs of life on this connection (0 to 9007199254740991 us) */
   client_time_us?: number;
 }
 

@@ -43,15 +43,15 @@ function fail(call: number, error: unknown): void {
  * energy. Now and then it is a request, whose answer shows the offset of the clocks; the least delay of
  * several shows it best.
  */
-async function heartbeat(visible: boolean): Promise<void> {
+async function heartbeat(visible: boolean, atUs: number): Promise<void> {
   const sent = nowUs();
   if (!connection?.online) return;
   if (sent < nextMeasureUs) {
-    connection.notify('heartbeat', { visible });
+    connection.notify('heartbeat', { visible, client_time_us: atUs });
     return;
   }
   nextMeasureUs = sent + CLOCK_US;
-  const { server_time_us: server } = await connection.request('heartbeat', { visible, client_time_us: sent });
+  const { server_time_us: server } = await connection.request('heartbeat', { visible, client_time_us: atUs });
   const delay = nowUs() - sent;
   if (delay > leastDelayUs) return;
   leastDelayUs = delay;
@@ -241,7 +241,7 @@ async function receive(message: ToWorker): Promise<void> {
       connection?.notify(message.method, message.params as never);
       break;
     case 'heartbeat':
-      await heartbeat(message.visible).catch(() => undefined); // lost: the link's state says so
+      await heartbeat(message.visible, message.atUs).catch(() => undefined); // lost: the link's state says so
       break;
     case 'watch':
       watch(message);

@@ -15,7 +15,8 @@ export type ToWorker =
   | { type: 'follow'; url: string }
   | { type: 'call'; call: number; method: keyof Requests; params: object }
   | { type: 'notice'; method: keyof Notices; params: object }
-  | { type: 'heartbeat'; visible: boolean }
+  /** `atUs`: when the page gave this sign of life, by its own clock that never goes back */
+  | { type: 'heartbeat'; visible: boolean; atUs: number }
   | { type: 'watch'; session: string | null; channels: Channels; colour: 'stress' | 'temperature' }
   | { type: 'inspect'; call: number; vertex: number }
   | { type: 'past'; call: number; session: string; tick: number }

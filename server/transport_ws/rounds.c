@@ -1,0 +1,19 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Whether the network thread ran without a stop, and so when what it reads was sent.
+#include "clock/clock.h"
+#include "transport_ws/internal.h"
+
+void cau_network_comes_round(cau_network *network)
+{
+	double now_s = cau_monotonic_s(), deadline_s = network->def.config->browser_deadline_s;
+	if (network->ran_s > 0 && now_s - network->ran_s > deadline_s) {
+		network->stopped_s = network->ran_s;
+		network->stopped_until_s = now_s + deadline_s;
+	}
+	network->ran_s = now_s;
+}
+
+double cau_network_sent_after_s(const cau_network *network, double now_s)
+{
+	return now_s < network->stopped_until_s ? network->stopped_s : now_s;
+}

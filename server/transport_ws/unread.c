@@ -1,0 +1,98 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Requests that libwebsockets 4.1.6 refuses or gives up by itself. It answers some with HTTP/1.0
+// 403 and no reason, and ends the others without a word: those whose headers are longer than it
+// reads, or that name nothing. It has no callback for either. But it calls two of its own public
+// functions by their names in the program's table of symbols, so that those of this file stand in
+// their place, and it logs what it gives up, while it reads that connection and before it ends it.
+#include <dlfcn.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "log/log.h"
+#include "transport_ws/internal.h"
+
+static const cau_http_refusal bad_request = {
+	400, "bad_request", "the request", "this is no request in HTTP/1.1 for a path of this daemon",
+	"speak HTTP/1.1, and name the path alone, beginning with /"};
+static const cau_http_refusal too_large = {
+	431, "too_large", "the headers",
+	"the request and its headers are longer than this daemon reads",
+	"send fewer or shorter headers: all of them in less than 4096 bytes"};
+
+// The descriptor that this thread's libwebsockets serves; -1: none.
+static _Thread_local int served = -1;
+
+void cau_note_refusal(cau_network *network, const cau_http_refusal *refusal)
+{
+	network->counts.refused_handshakes++;
+	cau_log(CAU_LOG_INFO, NULL, "handshake_refused", "status=%u error=%s reason=\"%s\"",
+	        refusal->status, refusal->name, refusal->reason);
+}
+
+void cau_refuse_unread(cau_network *network, struct lws *wsi, bool large)
+{
+	const cau_http_refusal *refusal = large ? &too_large : &bad_request;
+	char text[CAU_HTTP_REFUSAL_BYTES];
+	cau_note_refusal(network, refusal);
+	cau_wsi_last_words(wsi, text, cau_http_write_refusal(refusal, text, sizeof text));
+}
+
+// ---- in the library's place
+int lws_return_http_status(struct lws *wsi, unsigned int code, const char *html_body)
+{
+	(void)code, (void)html_body;
+	cau_refuse_request(wsi, &bad_request);
+	return -1;
+}
+
+int lws_service_fd_tsi(struct lws_context *context, struct lws_pollfd *pollfd, int tsi)
+{
+	typedef int service(struct lws_context * context, struct lws_pollfd * pollfd, int tsi);
+	static _Thread_local service *library;
+	if (!library)
+		*(void **)&library = dlsym(RTLD_NEXT, "lws_service_fd_tsi"); // as POSIX has it
+	served = pollfd ? pollfd->fd : -1;
+	int result = library(context, pollfd, tsi);
+	served = -1;
+	return result;
+}
+
+// ---- connections whose request is still to come
+bool cau_unread_add(cau_network *network, struct lws *wsi)
+{
+	int descriptor = lws_get_socket_fd(wsi);
+	if (descriptor < 0)
+		return true; // it has ended
+	if (descriptor >= network->unread_capacity) {
+		int capacity = 2 * (descriptor + 1);
+		struct lws **grown = realloc(network->unread, (size_t)capacity * sizeof(struct lws *));
+		if (!grown)
+			return false;
+		memset(grown + network->unread_capacity, 0,
+		       (size_t)(capacity - network->unread_capacity) * sizeof(struct lws *));
+		network->unread = grown;
+		network->unread_capacity = capacity;
+	}
+	network->unread[descriptor] = wsi;
+	return true;
+}
+
+void cau_unread_remove(cau_network *network, struct lws *wsi)
+{
+	int descriptor = lws_get_socket_fd(wsi);
+	if (descriptor >= 0 && descriptor < network->unread_capacity)
+		network->unread[descriptor] = NULL;
+}
+
+void cau_unread_complaint(cau_network *network, const char *line)
+{
+	bool large = strstr(line, "header data space") || strstr(line, "hdr frags");
+	bool formless =
+		strstr(line, "Missing URI") || strstr(line, "saw NUL") || strstr(line, "Duplicated method");
+	struct lws *wsi =
+		served >= 0 && served < network->unread_capacity ? network->unread[served] : NULL;
+	if (!wsi || (!large && !formless))
+		return;
+	cau_unread_remove(network, wsi); // once
+	cau_refuse_unread(network, wsi, large);
+}
