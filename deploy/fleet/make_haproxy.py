@@ -22,6 +22,7 @@ TAKEN_LABELS = {"api", "assets"}
 ADDRESS = re.compile(r"([A-Za-z0-9.-]+|\[[0-9A-Fa-f:.]+\]):([0-9]{1,5})")
 HOST = re.compile(r"[A-Za-z0-9.-]+|\[[0-9A-Fa-f:.]+\]")
 FILE = re.compile(r"[A-Za-z0-9_./@+-]+")  # nothing that HAProxy would read otherwise
+USER = re.compile(r"[a-z_][a-z0-9_-]*")
 EACH = re.compile(r"^[ \t]*# for each daemon\n(.*?)^[ \t]*# end\n", re.MULTILINE | re.DOTALL)
 
 
@@ -93,6 +94,12 @@ def read_arguments(arguments):
     parser.add_argument("--bind", help="where to listen (*:443; without TLS 127.0.0.1:8740)")
     parser.add_argument("--socket", default="/run/haproxy/admin.sock",
                         help="HAProxy's own socket, for its operator (%(default)s)")
+    parser.add_argument("--user", default="haproxy",
+                        help="HAProxy starts as root and serves as this user and its group of the same name "
+                             "(%(default)s, which Debian's package makes)")
+    parser.add_argument("--chroot", default="/var/lib/haproxy", help="the folder that it is confined to (%(default)s)")
+    parser.add_argument("--without-root", action="store_true",
+                        help="for HAProxy that is not started as root: it stays who it is, in no folder of its own")
     parser.add_argument("--template", default=TEMPLATE, help="the template (%(default)s)")
     given = parser.parse_args(arguments)
     given.bind = given.bind or ("127.0.0.1:8740" if given.no_tls else "*:443")
@@ -102,11 +109,20 @@ def read_arguments(arguments):
 def check_words(given):
     for text, form, what in ((given.host, HOST, "host's name"),
                              (given.socket, FILE, "file's name that HAProxy takes"),
+                             (given.chroot, FILE, "folder's name that HAProxy takes"),
+                             (given.user, USER, "user's name"),
                              (given.certificate or "x", FILE, "file's name that HAProxy takes")):
         if not form.fullmatch(text):
             raise Refused(f"{text!r} is no {what}")
     if not re.fullmatch(r"(\*|" + HOST.pattern + r"):[0-9]{1,5}", given.bind):
         raise Refused(f"{given.bind!r} is no ADDRESS:PORT")
+
+
+def rights(given):
+    """Whose rights HAProxy serves with. It needs root's to take port 443 and to read the certificate's key."""
+    if given.without_root:
+        return "# started without root's rights: no user, group or chroot"
+    return f"chroot {given.chroot}\n\tuser {given.user}\n\tgroup {given.user}"
 
 
 def main(arguments):
@@ -122,6 +138,7 @@ def main(arguments):
         return 2
     common = {"bind": given.bind, "host": given.host, "scheme": "http" if given.no_tls else "https",
               "tls": "" if given.no_tls else f"ssl crt {given.certificate} alpn http/1.1",
+              "rights": rights(given),
               "socket": f"stats socket {given.socket} mode 600 level admin"}
     sys.stdout.write(make(template, daemons, common))
     return 0

@@ -4,9 +4,11 @@ Usage: fleet_test.py SOURCE_FOLDER, with the environment of tests/clients/e2e/pr
 
 import base64
 import csv
+import grp
 import http.client
 import json
 import os
+import pwd
 import shutil
 import signal
 import socket
@@ -51,7 +53,8 @@ def make(folder, lines, *options):
     listing = os.path.join(folder, "daemons")
     with open(listing, "w", encoding="utf-8") as file:
         file.write("".join(line + "\n" for line in lines))
-    return subprocess.run([sys.executable, "-B", MAKE, listing, "--host", NAME, *options],
+    rights = [] if os.geteuid() == 0 else ["--without-root"]
+    return subprocess.run([sys.executable, "-B", MAKE, listing, "--host", NAME, *rights, *options],
                           capture_output=True, text=True, check=False)
 
 
@@ -65,6 +68,23 @@ def make_certificate(folder):
     with open(both, "a", encoding="utf-8") as out, open(key, encoding="utf-8") as secret:
         out.write(secret.read())
     return both
+
+
+def is_served(port):
+    connection = http.client.HTTPConnection("127.0.0.1", port, timeout=programs.PATIENCE_S)
+    try:
+        connection.request("GET", "/healthz", headers={"Host": NAME})
+        return connection.getresponse().status == 200
+    except OSError:
+        return False
+    finally:
+        connection.close()
+
+
+def ids_of(process, what):
+    with open(f"/proc/{process}/status", encoding="ascii") as file:
+        line = next(line for line in file if line.startswith(what + ":"))
+    return {int(word) for word in line.split()[1:]}
 
 
 class Folder(unittest.TestCase):
@@ -98,6 +118,43 @@ class Configuration(Folder):
     def test_haproxy_would_not_take_anything(self):
         made = make(self.folder, ["d1 10.0.0.1:8740 8741"], "--no-tls")
         self.assertNotEqual(self.check(made.stdout.replace("use_backend", "use_backends")).returncode, 0)
+
+    def test_it_keeps_what_debians_file_has(self):
+        made = make(self.folder, ["d1 10.0.0.1:8740 8741"], "--no-tls", "--user", "haproxy")
+        words = [" ".join(line.split()) for line in made.stdout.splitlines()]
+        kept = ["daemon", "log /dev/log local0", "log /dev/log local1 notice", "stats timeout 30s", "ca-base /etc/ssl/certs",
+                "crt-base /etc/ssl/private"]
+        if os.geteuid() == 0:
+            kept += ["chroot /var/lib/haproxy", "user haproxy", "group haproxy"]
+        for line in kept:
+            self.assertEqual(words.count(line), 1, line)
+
+    @unittest.skipIf(os.geteuid() != 0, "only root can give its rights up")
+    def test_it_does_not_serve_as_root(self):
+        """As systemd's unit of Debian starts it: a master, and a worker that serves."""
+        port, = free_ports(1)
+        made = make(self.folder, ["d1 127.0.0.1:1 2"], "--no-tls", "--bind", f"127.0.0.1:{port}",
+                    "--socket", os.path.join(self.folder, "admin.sock"))
+        path = os.path.join(self.folder, "haproxy.cfg")
+        with open(path, "w", encoding="utf-8") as file:
+            file.write(made.stdout)
+        proxy = subprocess.Popen([HAPROXY, "-W", "-db", "-f", path], stderr=subprocess.DEVNULL)
+        self.addCleanup(proxy.wait)
+        self.addCleanup(proxy.terminate)
+        await_true("it serves", lambda: is_served(port))
+        with open(f"/proc/{proxy.pid}/task/{proxy.pid}/children", encoding="ascii") as file:
+            workers = file.read().split()
+        self.assertEqual(len(workers), 1)
+        user, group = pwd.getpwnam("haproxy").pw_uid, grp.getgrnam("haproxy").gr_gid
+        self.assertEqual(ids_of(workers[0], "Uid"), {user})
+        self.assertEqual(ids_of(workers[0], "Gid"), {group})
+        self.assertLessEqual(ids_of(workers[0], "Groups"), {group})
+        self.assertEqual(os.readlink(f"/proc/{workers[0]}/root"), "/var/lib/haproxy")
+
+    def test_names_that_are_none_are_refused(self):
+        for options in (["--user", "root # x"], ["--user", ""], ["--chroot", "/var lib"]):
+            made = make(self.folder, ["d1 10.0.0.1:8740 8741"], "--no-tls", *options)
+            self.assertEqual((made.returncode, made.stdout), (2, ""))
 
     def test_the_example_and_addresses_of_ipv6(self):
         with open(os.path.join(SOURCE, "deploy", "fleet", "daemons.example"), encoding="utf-8") as file:
