@@ -42,7 +42,7 @@ cau_status cau_session_snapshot(const cau_session *session, void *bytes, size_t 
 	CAU_ASSERT(archive.at + CAU_SNAPSHOT_HASH_BYTES == needed, "%zu bytes written of %zu announced",
 	           archive.at, needed);
 	uint64_t hash = cau_snapshot_hash(bytes, archive.at);
-	snapshot_words(&archive, "hash", &hash, 1, UINT64_MAX);
+	cau_snapshot_words(&archive, "hash", &hash, 1, UINT64_MAX);
 	*byte_count = archive.at;
 	return CAU_OK;
 }

@@ -6,7 +6,7 @@
 
 #include "cautery/assert.h"
 
-void snapshot_refuse(snapshot_archive *archive, const char *what)
+void cau_snapshot_refuse(snapshot_archive *archive, const char *what)
 {
 	if (!archive->wrong)
 		archive->wrong = what;
@@ -20,7 +20,7 @@ static unsigned char *take(snapshot_archive *archive, const char *what, size_t c
 	if (archive->mode != SNAPSHOT_COUNT && count > (archive->capacity - archive->at) / size) {
 		CAU_ASSERT(archive->mode == SNAPSHOT_READ, "no room to write %zu numbers of %s", count,
 		           what);
-		snapshot_refuse(archive, what);
+		cau_snapshot_refuse(archive, what);
 		return NULL;
 	}
 	unsigned char *bytes = archive->bytes + (archive->mode == SNAPSHOT_COUNT ? 0 : archive->at);
@@ -118,59 +118,59 @@ static int64_t get_long(const unsigned char *from)
 		}                                                                                          \
 		type number = get(bytes + i * sizeof(type));                                               \
 		if (!(allowed)) {                                                                          \
-			snapshot_refuse(archive, what);                                                        \
+			cau_snapshot_refuse(archive, what);                                                    \
 			return;                                                                                \
 		}                                                                                          \
 		place = number;                                                                            \
 	}
 
-void snapshot_doubles(snapshot_archive *archive, const char *what, double *value, size_t count,
-                      double least, double most)
+void cau_snapshot_doubles(snapshot_archive *archive, const char *what, double *value, size_t count,
+                          double least, double most)
 {
 	PASS_NUMBERS(double, put_double, get_double, value[i], number >= least && number <= most)
 }
 
-void snapshot_floats(snapshot_archive *archive, const char *what, float *value, size_t count,
-                     double least, double most)
+void cau_snapshot_floats(snapshot_archive *archive, const char *what, float *value, size_t count,
+                         double least, double most)
 {
 	PASS_NUMBERS(float, put_float, get_float, value[i],
 	             (double)number >= least && (double)number <= most)
 }
 
-void snapshot_ints(snapshot_archive *archive, const char *what, int32_t *value, size_t count,
-                   int64_t least, int64_t most)
+void cau_snapshot_ints(snapshot_archive *archive, const char *what, int32_t *value, size_t count,
+                       int64_t least, int64_t most)
 {
 	PASS_NUMBERS(int32_t, put_int, get_int, value[i], number >= least && number <= most)
 }
 
-void snapshot_longs(snapshot_archive *archive, const char *what, int64_t *value, size_t count,
-                    int64_t least, int64_t most)
+void cau_snapshot_longs(snapshot_archive *archive, const char *what, int64_t *value, size_t count,
+                        int64_t least, int64_t most)
 {
 	PASS_NUMBERS(int64_t, put_long, get_long, value[i], number >= least && number <= most)
 }
 
-void snapshot_words(snapshot_archive *archive, const char *what, uint64_t *value, size_t count,
-                    uint64_t most)
+void cau_snapshot_words(snapshot_archive *archive, const char *what, uint64_t *value, size_t count,
+                        uint64_t most)
 {
 	PASS_NUMBERS(uint64_t, put64, get64, value[i], number <= most)
 }
 
-void snapshot_shorts(snapshot_archive *archive, const char *what, uint16_t *value, size_t count,
-                     uint16_t most)
+void cau_snapshot_shorts(snapshot_archive *archive, const char *what, uint16_t *value, size_t count,
+                         uint16_t most)
 {
 	PASS_NUMBERS(uint16_t, put16, get16, value[i], number <= most)
 }
 
-void snapshot_octets(snapshot_archive *archive, const char *what, uint8_t *value, size_t count,
-                     uint8_t most)
+void cau_snapshot_octets(snapshot_archive *archive, const char *what, uint8_t *value, size_t count,
+                         uint8_t most)
 {
 	PASS_NUMBERS(uint8_t, put_octet, get_octet, value[i], number <= most)
 }
 
-void snapshot_bool(snapshot_archive *archive, const char *what, bool *value)
+void cau_snapshot_bool(snapshot_archive *archive, const char *what, bool *value)
 {
 	uint8_t octet = archive->mode == SNAPSHOT_WRITE && *value;
-	snapshot_octets(archive, what, &octet, 1, 1);
+	cau_snapshot_octets(archive, what, &octet, 1, 1);
 	if (archive->mode == SNAPSHOT_READ && !archive->wrong)
 		*value = octet;
 }
@@ -189,8 +189,8 @@ static void pass_double_slots(snapshot_archive *archive, const char *what, doubl
 	             number >= least && number <= most)
 }
 
-void snapshot_slots(snapshot_archive *archive, const char *what, void *array, bool single,
-                    const int32_t *slot_of, size_t count, double least, double most)
+void cau_snapshot_slots(snapshot_archive *archive, const char *what, void *array, bool single,
+                        const int32_t *slot_of, size_t count, double least, double most)
 {
 	if (single)
 		pass_float_slots(archive, what, array, slot_of, count, least, most);
@@ -198,16 +198,16 @@ void snapshot_slots(snapshot_archive *archive, const char *what, void *array, bo
 		pass_double_slots(archive, what, array, slot_of, count, least, most);
 }
 
-void snapshot_reals(snapshot_archive *archive, const char *what, void *array, bool single,
-                    size_t count)
+void cau_snapshot_reals(snapshot_archive *archive, const char *what, void *array, bool single,
+                        size_t count)
 {
 	if (single)
-		snapshot_floats(archive, what, array, count, -SNAPSHOT_ANY, SNAPSHOT_ANY);
+		cau_snapshot_floats(archive, what, array, count, -SNAPSHOT_ANY, SNAPSHOT_ANY);
 	else
-		snapshot_doubles(archive, what, array, count, -SNAPSHOT_ANY, SNAPSHOT_ANY);
+		cau_snapshot_doubles(archive, what, array, count, -SNAPSHOT_ANY, SNAPSHOT_ANY);
 }
 
-void snapshot_text(snapshot_archive *archive, const char *what, char *text, size_t size)
+void cau_snapshot_text(snapshot_archive *archive, const char *what, char *text, size_t size)
 {
 	unsigned char *bytes = take(archive, what, size, 1);
 	if (!bytes)
@@ -220,7 +220,7 @@ void snapshot_text(snapshot_archive *archive, const char *what, char *text, size
 		return;
 	}
 	if (!memchr(bytes, 0, size))
-		snapshot_refuse(archive, what);
+		cau_snapshot_refuse(archive, what);
 	else
 		memcpy(text, bytes, size);
 }

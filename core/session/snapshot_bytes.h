@@ -22,32 +22,32 @@ typedef struct snapshot_archive {
 
 // Each passes `count` numbers at `value`, named `what` in a refusal. least to most are allowed,
 // both included; NaN never is.
-void snapshot_doubles(snapshot_archive *archive, const char *what, double *value, size_t count,
-                      double least, double most);
-void snapshot_floats(snapshot_archive *archive, const char *what, float *value, size_t count,
-                     double least, double most);
-void snapshot_ints(snapshot_archive *archive, const char *what, int32_t *value, size_t count,
-                   int64_t least, int64_t most);
-void snapshot_longs(snapshot_archive *archive, const char *what, int64_t *value, size_t count,
-                    int64_t least, int64_t most);
-void snapshot_words(snapshot_archive *archive, const char *what, uint64_t *value, size_t count,
-                    uint64_t most);
-void snapshot_shorts(snapshot_archive *archive, const char *what, uint16_t *value, size_t count,
-                     uint16_t most);
-void snapshot_octets(snapshot_archive *archive, const char *what, uint8_t *value, size_t count,
-                     uint8_t most);
-void snapshot_bool(snapshot_archive *archive, const char *what, bool *value);
+void cau_snapshot_doubles(snapshot_archive *archive, const char *what, double *value, size_t count,
+                          double least, double most);
+void cau_snapshot_floats(snapshot_archive *archive, const char *what, float *value, size_t count,
+                         double least, double most);
+void cau_snapshot_ints(snapshot_archive *archive, const char *what, int32_t *value, size_t count,
+                       int64_t least, int64_t most);
+void cau_snapshot_longs(snapshot_archive *archive, const char *what, int64_t *value, size_t count,
+                        int64_t least, int64_t most);
+void cau_snapshot_words(snapshot_archive *archive, const char *what, uint64_t *value, size_t count,
+                        uint64_t most);
+void cau_snapshot_shorts(snapshot_archive *archive, const char *what, uint16_t *value, size_t count,
+                         uint16_t most);
+void cau_snapshot_octets(snapshot_archive *archive, const char *what, uint8_t *value, size_t count,
+                         uint8_t most);
+void cau_snapshot_bool(snapshot_archive *archive, const char *what, bool *value);
 
 // A real of the session's precision for each of `count` elements; element e stands in slot
 // slot_of[e] of `array` (floats if `single`, else doubles).
-void snapshot_slots(snapshot_archive *archive, const char *what, void *array, bool single,
-                    const int32_t *slot_of, size_t count, double least, double most);
+void cau_snapshot_slots(snapshot_archive *archive, const char *what, void *array, bool single,
+                        const int32_t *slot_of, size_t count, double least, double most);
 // `count` reals, one after the other.
-void snapshot_reals(snapshot_archive *archive, const char *what, void *array, bool single,
-                    size_t count);
+void cau_snapshot_reals(snapshot_archive *archive, const char *what, void *array, bool single,
+                        size_t count);
 
 // `size` bytes of text with at least one zero; what follows the first zero is written as zeros.
-void snapshot_text(snapshot_archive *archive, const char *what, char *text, size_t size);
+void cau_snapshot_text(snapshot_archive *archive, const char *what, char *text, size_t size);
 
 // Ends reading with a refusal that names `what`.
-void snapshot_refuse(snapshot_archive *archive, const char *what);
+void cau_snapshot_refuse(snapshot_archive *archive, const char *what);

@@ -443,7 +443,7 @@ cau_status cau_snapshot_read(const cau_session *session, const void *bytes, size
 	uint64_t hash = 0;
 	end.at = archive.capacity;
 	end.capacity = byte_count;
-	snapshot_words(&end, "hash", &hash, 1, UINT64_MAX);
+	cau_snapshot_words(&end, "hash", &hash, 1, UINT64_MAX);
 	if (hash != cau_snapshot_hash(bytes, archive.capacity))
 		return corrupt(error, "its bytes have changed");
 	cau_status status = check_head(session, &head, error);

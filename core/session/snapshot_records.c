@@ -15,13 +15,13 @@ static const double most_turn = 100;   // jaws: rad, or a share
 
 static void pass_any(snapshot_archive *archive, const char *what, double *value, size_t count)
 {
-	snapshot_doubles(archive, what, value, count, -SNAPSHOT_ANY, SNAPSHOT_ANY);
+	cau_snapshot_doubles(archive, what, value, count, -SNAPSHOT_ANY, SNAPSHOT_ANY);
 }
 
 static void pass_int(snapshot_archive *archive, const char *what, int32_t *value, int64_t least,
                      int64_t most)
 {
-	snapshot_ints(archive, what, value, 1, least, most);
+	cau_snapshot_ints(archive, what, value, 1, least, most);
 }
 
 static void pass_choice(snapshot_archive *archive, const char *what, int *value, int count)
@@ -33,7 +33,7 @@ static void pass_choice(snapshot_archive *archive, const char *what, int *value,
 
 // Members of a table with ranges (scene.h).
 #define PASS_FIELD(field, default_, least, most, unit, meaning)                                    \
-	snapshot_doubles(archive, #field, &object->field, 1, least, most);
+	cau_snapshot_doubles(archive, #field, &object->field, 1, least, most);
 
 // ---- materials
 
@@ -92,13 +92,13 @@ void cau_snapshot_pass_layer(snapshot_archive *archive, cau_layer_def *layer)
 
 static void pass_pose(snapshot_archive *archive, const char *what, cau_pose *pose)
 {
-	snapshot_doubles(archive, what, pose->position_m, 3, -farthest_m, farthest_m);
-	snapshot_doubles(archive, what, pose->rotation, 4, -1.001, 1.001);
+	cau_snapshot_doubles(archive, what, pose->position_m, 3, -farthest_m, farthest_m);
+	cau_snapshot_doubles(archive, what, pose->rotation, 4, -1.001, 1.001);
 }
 
 static void pass_definition(snapshot_archive *archive, cau_tool_def *object)
 {
-	snapshot_text(archive, "name of a tool", object->name, sizeof object->name);
+	cau_snapshot_text(archive, "name of a tool", object->name, sizeof object->name);
 	pass_choice(archive, "shape", &object->shape, CAU_TOOL_SHAPE_COUNT);
 	CAU_TOOL_TABLE(PASS_FIELD)
 	pass_pose(archive, "first pose of a tool", &object->pose);
@@ -111,37 +111,38 @@ static void pass_measured(snapshot_archive *archive, cau_tool_state *state)
 	pass_int(archive, "touched_layers", &state->touched_layers, 0, (1 << CAU_MAX_LAYERS) - 1);
 	double *loads[] = {state->force_n, state->torque_nm, state->raw_force_n, state->raw_torque_nm};
 	for (size_t i = 0; i < sizeof loads / sizeof *loads; i++)
-		snapshot_doubles(archive, "load on a tool", loads[i], 3, -most_force, most_force);
-	snapshot_doubles(archive, "jaw_force_n", &state->jaw_force_n, 1, -most_force, most_force);
-	snapshot_doubles(archive, "tip_temperature_c", &state->tip_temperature_c, 1, coldest_c,
-	                 warmest_c);
+		cau_snapshot_doubles(archive, "load on a tool", loads[i], 3, -most_force, most_force);
+	cau_snapshot_doubles(archive, "jaw_force_n", &state->jaw_force_n, 1, -most_force, most_force);
+	cau_snapshot_doubles(archive, "tip_temperature_c", &state->tip_temperature_c, 1, coldest_c,
+	                     warmest_c);
 	pass_any(archive, "energy_j", &state->energy_j, 1);
 	pass_int(archive, "slips", &state->slips, 0, INT32_MAX / 2);
 }
 
 static void pass_state(snapshot_archive *archive, cau_tool_state *state)
 {
-	snapshot_text(archive, "name of a tool", state->name, sizeof state->name);
+	cau_snapshot_text(archive, "name of a tool", state->name, sizeof state->name);
 	pass_definition(archive, &state->definition);
 	pass_pose(archive, "pose", &state->pose);
 	pass_pose(archive, "commanded pose", &state->asked_pose);
-	snapshot_doubles(archive, "jaw", &state->jaw, 1, 0, 1);
-	snapshot_doubles(archive, "commanded jaw", &state->asked_jaw, 1, 0, 1);
-	snapshot_bool(archive, "energized", &state->energized);
-	snapshot_bool(archive, "grasping", &state->grasping);
-	snapshot_bool(archive, "slipping", &state->slipping);
-	snapshot_words(archive, "sequence", &state->sequence, 1, UINT64_MAX);
+	cau_snapshot_doubles(archive, "jaw", &state->jaw, 1, 0, 1);
+	cau_snapshot_doubles(archive, "commanded jaw", &state->asked_jaw, 1, 0, 1);
+	cau_snapshot_bool(archive, "energized", &state->energized);
+	cau_snapshot_bool(archive, "grasping", &state->grasping);
+	cau_snapshot_bool(archive, "slipping", &state->slipping);
+	cau_snapshot_words(archive, "sequence", &state->sequence, 1, UINT64_MAX);
 	pass_measured(archive, state);
 }
 
 static void pass_grasp(snapshot_archive *archive, const cau_tissue *tissue, cau_grasp *grasp)
 {
 	pass_int(archive, "face in jaws", &grasp->face, -1, (int64_t)tissue->faces.face_count - 1);
-	snapshot_ints(archive, "vertex in jaws", grasp->vertex, 1, 0, tissue->vertex_count - 1);
-	snapshot_ints(archive, "vertex in jaws", grasp->vertex + 1, 2, -1, tissue->vertex_count - 1);
-	snapshot_doubles(archive, "weight in jaws", grasp->weight, 3, 0, 1);
-	snapshot_doubles(archive, "anchor in jaws", grasp->local, 3, -farthest_m, farthest_m);
-	snapshot_doubles(archive, "anchor in jaws", grasp->start, 3, -farthest_m, farthest_m);
+	cau_snapshot_ints(archive, "vertex in jaws", grasp->vertex, 1, 0, tissue->vertex_count - 1);
+	cau_snapshot_ints(archive, "vertex in jaws", grasp->vertex + 1, 2, -1,
+	                  tissue->vertex_count - 1);
+	cau_snapshot_doubles(archive, "weight in jaws", grasp->weight, 3, 0, 1);
+	cau_snapshot_doubles(archive, "anchor in jaws", grasp->local, 3, -farthest_m, farthest_m);
+	cau_snapshot_doubles(archive, "anchor in jaws", grasp->start, 3, -farthest_m, farthest_m);
 }
 
 void cau_snapshot_pass_tool(snapshot_archive *archive, const cau_session *session, cau_tool *tool)
@@ -150,10 +151,10 @@ void cau_snapshot_pass_tool(snapshot_archive *archive, const cau_session *sessio
 	pass_pose(archive, "target of a tool", &tool->target);
 	pass_pose(archive, "anchor of a tool", &tool->anchor);
 	pass_pose(archive, "last pose of a tool", &tool->pose_before);
-	snapshot_doubles(archive, "target of jaws", &tool->jaw_target, 1, 0, 1);
-	snapshot_doubles(archive, "least opening of jaws", &tool->least_open_rad, 1, -most_turn,
-	                 most_turn);
-	snapshot_doubles(archive, "pace of a tool", &tool->pace, 1, 0, 1);
+	cau_snapshot_doubles(archive, "target of jaws", &tool->jaw_target, 1, 0, 1);
+	cau_snapshot_doubles(archive, "least opening of jaws", &tool->least_open_rad, 1, -most_turn,
+	                     most_turn);
+	cau_snapshot_doubles(archive, "pace of a tool", &tool->pace, 1, 0, 1);
 	pass_int(archive, "points in jaws", &tool->grasp_count, 0, CAU_MAX_GRASPED);
 	for (int32_t k = 0; k < tool->grasp_count && !archive->wrong; k++)
 		pass_grasp(archive, &session->tissue, &tool->grasp[k]);
@@ -163,11 +164,11 @@ void cau_snapshot_pass_tool(snapshot_archive *archive, const cau_session *sessio
 void cau_snapshot_pass_grid(snapshot_archive *archive, cau_heat_grid *grid)
 {
 	size_t nodes = (size_t)grid->nodes * (size_t)grid->nodes * (size_t)grid->nodes;
-	snapshot_longs(archive, "origin of a heat grid", grid->field[0].origin, 3, -(int64_t)most_cells,
-	               (int64_t)most_cells);
+	cau_snapshot_longs(archive, "origin of a heat grid", grid->field[0].origin, 3,
+	                   -(int64_t)most_cells, (int64_t)most_cells);
 	for (int k = 0; k < CAU_HEAT_FIELDS; k++)
-		snapshot_floats(archive, "temperature", grid->field[k].temperature, nodes, coldest_c,
-		                warmest_c);
+		cau_snapshot_floats(archive, "temperature", grid->field[k].temperature, nodes, coldest_c,
+		                    warmest_c);
 }
 
 // ---- commands
@@ -175,7 +176,7 @@ void cau_snapshot_pass_grid(snapshot_archive *archive, cau_heat_grid *grid)
 static void pass_selection(snapshot_archive *archive, cau_selection *selection)
 {
 	pass_choice(archive, "select", &selection->kind, CAU_SELECT_COUNT);
-	snapshot_text(archive, "layer of a selection", selection->layer, sizeof selection->layer);
+	cau_snapshot_text(archive, "layer of a selection", selection->layer, sizeof selection->layer);
 	pass_any(archive, "least_m", selection->least_m, 3);
 	pass_any(archive, "most_m", selection->most_m, 3);
 	pass_any(archive, "center_m", selection->center_m, 3);
@@ -184,8 +185,8 @@ static void pass_selection(snapshot_archive *archive, cau_selection *selection)
 
 static void pass_material_command(snapshot_archive *archive, cau_command *command)
 {
-	snapshot_text(archive, "layer of a material", command->as.material.layer,
-	              sizeof command->as.material.layer);
+	cau_snapshot_text(archive, "layer of a material", command->as.material.layer,
+	                  sizeof command->as.material.layer);
 	pass_int(archive, "kind of a material", &command->as.material.kind, 0, CAU_LAYER_COUNT - 1);
 	if (archive->wrong)
 		return;
@@ -206,7 +207,7 @@ static void pass_values(snapshot_archive *archive, cau_command *command)
 		break;
 	case CAU_COMMAND_TOOL_MOVE:
 		pass_pose(archive, "pose", &command->as.move.pose);
-		snapshot_doubles(archive, "jaw", &command->as.move.jaw, 1, 0, 1);
+		cau_snapshot_doubles(archive, "jaw", &command->as.move.jaw, 1, 0, 1);
 		break;
 	case CAU_COMMAND_TOOL_ENERGIZE:
 		pass_int(archive, "energized", &command->as.energized, INT32_MIN, INT32_MAX);
@@ -234,9 +235,9 @@ static void pass_values(snapshot_archive *archive, cau_command *command)
 void cau_snapshot_pass_command(snapshot_archive *archive, cau_command *command)
 {
 	pass_choice(archive, "kind of a command", &command->kind, CAU_COMMAND_COUNT);
-	snapshot_words(archive, "tick of a command", &command->tick, 1, UINT64_MAX);
-	snapshot_words(archive, "sequence of a command", &command->sequence, 1, UINT64_MAX);
-	snapshot_text(archive, "tool of a command", command->tool, sizeof command->tool);
+	cau_snapshot_words(archive, "tick of a command", &command->tick, 1, UINT64_MAX);
+	cau_snapshot_words(archive, "sequence of a command", &command->sequence, 1, UINT64_MAX);
+	cau_snapshot_text(archive, "tool of a command", command->tool, sizeof command->tool);
 	if (!archive->wrong)
 		pass_values(archive, command);
 }

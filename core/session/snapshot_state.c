@@ -110,7 +110,7 @@ static void pass_counts(snapshot_archive *archive, snapshot_head *head)
 		{"shallow steps", &head->shallow_steps, MOST_COUNTED},
 	};
 	for (size_t i = 0; i < sizeof counts / sizeof *counts; i++)
-		snapshot_ints(archive, counts[i].what, counts[i].count, 1, 0, counts[i].most);
+		cau_snapshot_ints(archive, counts[i].what, counts[i].count, 1, 0, counts[i].most);
 }
 
 void cau_snapshot_pass_head(snapshot_archive *archive, snapshot_head *head)
@@ -118,31 +118,32 @@ void cau_snapshot_pass_head(snapshot_archive *archive, snapshot_head *head)
 	static const double least_learned = 1e-12, most_learned = 1e12, most_gravity = 1000;
 	char word[sizeof magic];
 	memcpy(word, magic, sizeof word);
-	snapshot_text(archive, "first bytes", word, sizeof word);
+	cau_snapshot_text(archive, "first bytes", word, sizeof word);
 	if (memcmp(word, magic, sizeof word) != 0)
-		snapshot_refuse(archive, "first bytes");
+		cau_snapshot_refuse(archive, "first bytes");
 	int32_t version = (int32_t)head->version;
-	snapshot_ints(archive, "version", &version, 1, CAU_SNAPSHOT_VERSION, CAU_SNAPSHOT_VERSION);
+	cau_snapshot_ints(archive, "version", &version, 1, CAU_SNAPSHOT_VERSION, CAU_SNAPSHOT_VERSION);
 	head->version = (uint32_t)version;
-	snapshot_bool(archive, "precision", &head->single);
-	snapshot_text(archive, "instruction set", head->instruction_set, sizeof head->instruction_set);
+	cau_snapshot_bool(archive, "precision", &head->single);
+	cau_snapshot_text(archive, "instruction set", head->instruction_set,
+	                  sizeof head->instruction_set);
 	uint64_t *words[] = {&head->build, &head->definition_hash};
 	for (size_t i = 0; i < sizeof words / sizeof *words; i++)
-		snapshot_words(archive, "hash", words[i], 1, UINT64_MAX);
+		cau_snapshot_words(archive, "hash", words[i], 1, UINT64_MAX);
 	uint64_t *ticks[] = {&head->tick, &head->swap_tick, &head->longest_wait, &head->factor_version};
 	for (size_t i = 0; i < sizeof ticks / sizeof *ticks; i++)
-		snapshot_words(archive, "tick", ticks[i], 1, UINT64_MAX / 2);
+		cau_snapshot_words(archive, "tick", ticks[i], 1, UINT64_MAX / 2);
 	pass_counts(archive, head);
 	bool *flags[] = {&head->making, &head->faulted, &head->resting};
 	for (size_t i = 0; i < sizeof flags / sizeof *flags; i++)
-		snapshot_bool(archive, "flag", flags[i]);
-	snapshot_doubles(archive, "gravity", head->gravity_m_s2, 3, -most_gravity, most_gravity);
-	snapshot_doubles(archive, "accuracy", &head->accuracy, 1, 0, 1);
-	snapshot_doubles(archive, "amplification", head->amplification, CAU_ACCURACY_DEPTHS,
-	                 least_learned, most_learned);
-	snapshot_doubles(archive, "force_left", &head->force_left, 1, least_learned, most_learned);
-	snapshot_doubles(archive, "force_before", head->force_before[0], 3 * CAU_ACCURACY_TOOLS,
-	                 -most_learned, most_learned);
+		cau_snapshot_bool(archive, "flag", flags[i]);
+	cau_snapshot_doubles(archive, "gravity", head->gravity_m_s2, 3, -most_gravity, most_gravity);
+	cau_snapshot_doubles(archive, "accuracy", &head->accuracy, 1, 0, 1);
+	cau_snapshot_doubles(archive, "amplification", head->amplification, CAU_ACCURACY_DEPTHS,
+	                     least_learned, most_learned);
+	cau_snapshot_doubles(archive, "force_left", &head->force_left, 1, least_learned, most_learned);
+	cau_snapshot_doubles(archive, "force_before", head->force_before[0], 3 * CAU_ACCURACY_TOOLS,
+	                     -most_learned, most_learned);
 }
 
 // ---- the arrays
@@ -186,17 +187,17 @@ static void pass_vertices(snapshot_archive *archive, const cau_session *session,
 {
 	static const double farthest_m = 1e6, fastest_m_s = 1e9, most_force_n = 1e6;
 	size_t n = (size_t)session->tissue.vertex_count;
-	snapshot_octets(archive, "pinned vertex", state->pinned, n, 1);
-	snapshot_octets(archive, "fixed vertex", state->fixed, n, 1);
-	snapshot_doubles(archive, "position", state->position, 3 * n, -farthest_m, farthest_m);
-	snapshot_doubles(archive, "velocity", state->velocity, 3 * n, -fastest_m_s, fastest_m_s);
-	snapshot_doubles(archive, "force", state->external, 3 * n, -most_force_n, most_force_n);
-	snapshot_doubles(archive, "diagonal", state->diagonal, n, 1e-30, SNAPSHOT_ANY);
+	cau_snapshot_octets(archive, "pinned vertex", state->pinned, n, 1);
+	cau_snapshot_octets(archive, "fixed vertex", state->fixed, n, 1);
+	cau_snapshot_doubles(archive, "position", state->position, 3 * n, -farthest_m, farthest_m);
+	cau_snapshot_doubles(archive, "velocity", state->velocity, 3 * n, -fastest_m_s, fastest_m_s);
+	cau_snapshot_doubles(archive, "force", state->external, 3 * n, -most_force_n, most_force_n);
+	cau_snapshot_doubles(archive, "diagonal", state->diagonal, n, 1e-30, SNAPSHOT_ANY);
 	if (state->head.quiet_ticks && !state->head.resting)
-		snapshot_doubles(archive, "position at rest", state->quiet_from, 3 * n, -farthest_m,
-		                 farthest_m);
+		cau_snapshot_doubles(archive, "position at rest", state->quiet_from, 3 * n, -farthest_m,
+		                     farthest_m);
 	if (session->scene->contact_thickness_m > 0)
-		snapshot_octets(archive, "vertex excluded from contact", state->exempt_before, n, 1);
+		cau_snapshot_octets(archive, "vertex excluded from contact", state->exempt_before, n, 1);
 }
 
 static void pass_dissection(snapshot_archive *archive, const cau_session *session,
@@ -205,16 +206,16 @@ static void pass_dissection(snapshot_archive *archive, const cau_session *sessio
 	const cau_tissue *tissue = &session->tissue;
 	size_t edges = (size_t)tissue->edges.edge_count;
 	size_t doses = (size_t)cau_dissection_dose_count(&session->dissection);
-	snapshot_doubles(archive, "exposure", state->exposure, edges, 0, SNAPSHOT_ANY);
-	snapshot_shorts(archive, "parted edge", state->parted, edges,
-	                (uint16_t)((1u << tissue->layer_count) - 1));
-	snapshot_doubles(archive, "dose", state->dose, doses, 0, SNAPSHOT_ANY);
-	snapshot_octets(archive, "parted element", state->gone, doses, 1);
+	cau_snapshot_doubles(archive, "exposure", state->exposure, edges, 0, SNAPSHOT_ANY);
+	cau_snapshot_shorts(archive, "parted edge", state->parted, edges,
+	                    (uint16_t)((1u << tissue->layer_count) - 1));
+	cau_snapshot_doubles(archive, "dose", state->dose, doses, 0, SNAPSHOT_ANY);
+	cau_snapshot_octets(archive, "parted element", state->gone, doses, 1);
 	for (int32_t i = 0; i < state->head.over_count && !archive->wrong; i++) {
-		snapshot_ints(archive, "stretched element", &state->over[i].place, 1, 0,
-		              (int64_t)cau_tears_capacity(tissue) - 1);
-		snapshot_ints(archive, "ticks of a stretched element", &state->over[i].counted, 1, 0,
-		              INT32_MAX / 2);
+		cau_snapshot_ints(archive, "stretched element", &state->over[i].place, 1, 0,
+		                  (int64_t)cau_tears_capacity(tissue) - 1);
+		cau_snapshot_ints(archive, "ticks of a stretched element", &state->over[i].counted, 1, 0,
+		                  INT32_MAX / 2);
 	}
 }
 
@@ -226,20 +227,20 @@ static void pass_shrinking(snapshot_archive *archive, const cau_session *session
 	size_t count[] = {(size_t)session->tissue.triangle_count,
 	                  (size_t)session->tissue.tetrahedron_count};
 	for (int k = 0; k < 2; k++)
-		snapshot_octets(archive, "shrunk element", state->shrunk[k], count[k], 1);
+		cau_snapshot_octets(archive, "shrunk element", state->shrunk[k], count[k], 1);
 	for (int32_t i = 0; i < state->head.active_count && !archive->wrong; i++) {
 		cau_shrinking *active = &state->active[i];
-		snapshot_ints(archive, "kind of a shrinking element", &active->kind, 1,
-		              CAU_ELEMENT_TRIANGLE, CAU_ELEMENT_TETRAHEDRON);
+		cau_snapshot_ints(archive, "kind of a shrinking element", &active->kind, 1,
+		                  CAU_ELEMENT_TRIANGLE, CAU_ELEMENT_TETRAHEDRON);
 		if (archive->wrong)
 			return;
-		snapshot_ints(archive, "shrinking element", &active->element, 1, 0,
-		              (int64_t)cau_tissue_element_count(&session->tissue, active->kind) - 1);
-		snapshot_doubles(archive, "target of shrinkage", active->from, 6, -most_stretch,
-		                 most_stretch);
-		snapshot_doubles(archive, "target of shrinkage", active->to, 6, -most_stretch,
-		                 most_stretch);
-		snapshot_doubles(archive, "age of shrinkage", &active->age_s, 1, 0, oldest_s);
+		cau_snapshot_ints(archive, "shrinking element", &active->element, 1, 0,
+		                  (int64_t)cau_tissue_element_count(&session->tissue, active->kind) - 1);
+		cau_snapshot_doubles(archive, "target of shrinkage", active->from, 6, -most_stretch,
+		                     most_stretch);
+		cau_snapshot_doubles(archive, "target of shrinkage", active->to, 6, -most_stretch,
+		                     most_stretch);
+		cau_snapshot_doubles(archive, "age of shrinkage", &active->age_s, 1, 0, oldest_s);
 	}
 }
 
@@ -248,7 +249,7 @@ static void pass_marks(snapshot_archive *archive, const char *what, uint8_t *mar
                        const int32_t *slot_of, int32_t count)
 {
 	for (int32_t e = 0; e < count && !archive->wrong; e++)
-		snapshot_octets(archive, what, &mark[slot_of[e] / CAU_BATCH], 1, 1);
+		cau_snapshot_octets(archive, what, &mark[slot_of[e] / CAU_BATCH], 1, 1);
 }
 
 static void pass_elements(snapshot_archive *archive, const cau_session *session,
@@ -279,10 +280,10 @@ static void pass_elements(snapshot_archive *archive, const cau_session *session,
 	int32_t *const *slot_of = session->solver.slots.slot_of;
 	for (size_t f = 0; f < sizeof fields / sizeof *fields; f++)
 		for (int i = 0; i < fields[f].count; i++)
-			snapshot_slots(archive, fields[f].what, fields[f].array[i], state->elements.single,
-			               slot_of[fields[f].kind],
-			               (size_t)cau_tissue_element_count(&session->tissue, fields[f].kind),
-			               fields[f].least, fields[f].most);
+			cau_snapshot_slots(archive, fields[f].what, fields[f].array[i], state->elements.single,
+			                   slot_of[fields[f].kind],
+			                   (size_t)cau_tissue_element_count(&session->tissue, fields[f].kind),
+			                   fields[f].least, fields[f].most);
 	const int32_t *fat = slot_of[CAU_ELEMENT_TETRAHEDRON];
 	int32_t count = session->tissue.tetrahedron_count;
 	pass_marks(archive, "mark of a limit", state->elements.fat.limited, fat, count);
@@ -292,10 +293,10 @@ static void pass_elements(snapshot_archive *archive, const cau_session *session,
 static void pass_element(snapshot_archive *archive, const cau_session *session, const char *what,
                          int32_t *kind, int32_t *element)
 {
-	snapshot_ints(archive, what, kind, 1, 0, CAU_ELEMENT_KINDS - 1);
+	cau_snapshot_ints(archive, what, kind, 1, 0, CAU_ELEMENT_KINDS - 1);
 	if (!archive->wrong)
-		snapshot_ints(archive, what, element, 1, 0,
-		              (int64_t)cau_tissue_element_count(&session->tissue, *kind) - 1);
+		cau_snapshot_ints(archive, what, element, 1, 0,
+		                  (int64_t)cau_tissue_element_count(&session->tissue, *kind) - 1);
 }
 
 static void pass_update(snapshot_archive *archive, const cau_session *session,
@@ -304,13 +305,14 @@ static void pass_update(snapshot_archive *archive, const cau_session *session,
 	for (int32_t i = 0; i < state->head.waiting_count && !archive->wrong; i++) {
 		cau_waiting *waiting = &state->waiting[i];
 		pass_element(archive, session, "waiting element", &waiting->kind, &waiting->element);
-		snapshot_words(archive, "tick of a waiting element", &waiting->tick, 1, state->head.tick);
+		cau_snapshot_words(archive, "tick of a waiting element", &waiting->tick, 1,
+		                   state->head.tick);
 	}
 	for (int32_t i = 0; i < state->head.operation_count && !archive->wrong; i++) {
 		cau_operation *operation = &state->operation[i];
 		pass_element(archive, session, "factor operation", &operation->kind, &operation->element);
-		snapshot_ints(archive, "operation group", &operation->group, 1, 0,
-		              CAU_DOWNDATES_AT_MOST - 1);
+		cau_snapshot_ints(archive, "operation group", &operation->group, 1, 0,
+		                  CAU_DOWNDATES_AT_MOST - 1);
 	}
 }
 
@@ -319,17 +321,17 @@ static void pass_columns(snapshot_archive *archive, const cau_session *session,
                          snapshot_state *state)
 {
 	int32_t count = state->head.column_count;
-	snapshot_ints(archive, "vertex of a column", state->column_vertex, (size_t)count, 0,
-	              session->tissue.vertex_count - 1);
-	snapshot_words(archive, "version of a column", state->column_version, (size_t)count,
-	               state->head.factor_version);
+	cau_snapshot_ints(archive, "vertex of a column", state->column_vertex, (size_t)count, 0,
+	                  session->tissue.vertex_count - 1);
+	cau_snapshot_words(archive, "version of a column", state->column_version, (size_t)count,
+	                   state->head.factor_version);
 	for (int32_t i = 0; i < count && i < CAU_WHOLE_COLUMNS; i++)
-		snapshot_reals(archive, "column", state->column[i], state->elements.single,
-		               (size_t)session->tissue.vertex_count);
+		cau_snapshot_reals(archive, "column", state->column[i], state->elements.single,
+		                   (size_t)session->tissue.vertex_count);
 	for (int32_t i = 0; i < count; i++) {
 		double *row = state->inverse + (size_t)i * CAU_MAX_COLUMNS;
-		snapshot_doubles(archive, "compliance", row, (size_t)i, -SNAPSHOT_ANY, SNAPSHOT_ANY);
-		snapshot_doubles(archive, "compliance", row + i, 1, 1e-30, SNAPSHOT_ANY);
+		cau_snapshot_doubles(archive, "compliance", row, (size_t)i, -SNAPSHOT_ANY, SNAPSHOT_ANY);
+		cau_snapshot_doubles(archive, "compliance", row + i, 1, 1e-30, SNAPSHOT_ANY);
 	}
 }
 
@@ -338,14 +340,15 @@ static void pass_memory(snapshot_archive *archive, const cau_session *session,
 {
 	for (int32_t i = 0; i < state->head.memory_count && !archive->wrong; i++) {
 		cau_contact_memory *memory = &state->memory[i];
-		snapshot_ints(archive, "tool at a face", &memory->tool, 1, 0,
-		              (int64_t)state->head.tool_count - 1);
-		snapshot_ints(archive, "face at a tool", &memory->face, 1, 0,
-		              (int64_t)session->tissue.faces.face_count - 1);
-		snapshot_ints(archive, "pushed face", &memory->pushed, 1, 0, 1);
-		snapshot_ints(archive, "side of a face", &memory->above, 1, -1, 1);
-		snapshot_ints(archive, "points of a face", &memory->point_count, 1, 0, CAU_MAX_POINTS);
-		snapshot_doubles(archive, "point of a face", memory->point[0], 3 * CAU_MAX_POINTS, 0, 1);
+		cau_snapshot_ints(archive, "tool at a face", &memory->tool, 1, 0,
+		                  (int64_t)state->head.tool_count - 1);
+		cau_snapshot_ints(archive, "face at a tool", &memory->face, 1, 0,
+		                  (int64_t)session->tissue.faces.face_count - 1);
+		cau_snapshot_ints(archive, "pushed face", &memory->pushed, 1, 0, 1);
+		cau_snapshot_ints(archive, "side of a face", &memory->above, 1, -1, 1);
+		cau_snapshot_ints(archive, "points of a face", &memory->point_count, 1, 0, CAU_MAX_POINTS);
+		cau_snapshot_doubles(archive, "point of a face", memory->point[0], 3 * CAU_MAX_POINTS, 0,
+		                     1);
 	}
 }
 

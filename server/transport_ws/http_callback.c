@@ -1,17 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include <string.h>
-
-#include "log/log.h"
 #include "transport_ws/internal.h"
-
-void cau_refuse_request(struct lws *wsi, const cau_http_refusal *refusal)
-{
-	cau_http_body body = {0};
-	cau_note_refusal(cau_network_of(wsi), refusal);
-	if (!cau_http_answer_refusal(wsi, &body, refusal, true))
-		cau_http_answer_continue(wsi, &body);
-	cau_http_body_finish(&body);
-}
 
 // Below 0: the upgrade was refused, and the connection ends behind the answer.
 static int confirm_upgrade(cau_network *network, struct lws *wsi)

@@ -62,11 +62,11 @@ int cau_input_callback(struct lws *wsi, enum lws_callback_reasons reason, void *
 // The thread comes round: notes whether it did not for long.
 void cau_network_comes_round(cau_network *network);
 
-// ---- http_callback.c
+// ---- refusals.c
+void cau_note_refusal(cau_network *network, const cau_http_refusal *refusal);
 void cau_refuse_request(struct lws *wsi, const cau_http_refusal *refusal);
 
 // ---- unread.c
-void cau_note_refusal(cau_network *network, const cau_http_refusal *refusal);
 // Answers past the library, which is about to end the connection.
 void cau_refuse_unread(cau_network *network, struct lws *wsi, bool large);
 bool cau_unread_add(cau_network *network, struct lws *wsi); // false: no memory

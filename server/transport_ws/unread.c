@@ -8,7 +8,6 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "log/log.h"
 #include "transport_ws/internal.h"
 
 static const cau_http_refusal bad_request = {
@@ -21,13 +20,6 @@ static const cau_http_refusal too_large = {
 
 // The descriptor that this thread's libwebsockets serves; -1: none.
 static _Thread_local int served = -1;
-
-void cau_note_refusal(cau_network *network, const cau_http_refusal *refusal)
-{
-	network->counts.refused_handshakes++;
-	cau_log(CAU_LOG_INFO, NULL, "handshake_refused", "status=%u error=%s reason=\"%s\"",
-	        refusal->status, refusal->name, refusal->reason);
-}
 
 void cau_refuse_unread(cau_network *network, struct lws *wsi, bool large)
 {
