@@ -186,8 +186,9 @@ static uint8_t *find_alive(const cau_session *session, const snapshot_state *sta
 		alive[kind] = next;
 		next += cau_tissue_element_count(&session->tissue, kind);
 	}
+	const uint8_t *gone = cau_dissection_dose_count(&session->dissection) ? state->gone : NULL;
 	if (marks)
-		cau_dissection_find_alive(&session->tissue, state->parted, state->gone, alive);
+		cau_dissection_find_alive(&session->tissue, state->parted, gone, alive);
 	return marks;
 }
 

@@ -14,7 +14,8 @@ typedef struct forgery {
 	unsigned char *bytes;            // scratch, as long as the longest shot
 } forgery;
 
-forgery *forgery_create(void);
+// `parting`: CAU_PARTING_*.
+forgery *forgery_create(int parting);
 void forgery_destroy(forgery *f);
 
 // Copies a shot into f->bytes and makes the changes that `data` says, at most one for each nine
