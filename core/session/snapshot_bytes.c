@@ -23,9 +23,9 @@ static unsigned char *take(snapshot_archive *archive, const char *what, size_t c
 		cau_snapshot_refuse(archive, what);
 		return NULL;
 	}
-	unsigned char *bytes = archive->bytes + (archive->mode == SNAPSHOT_COUNT ? 0 : archive->at);
+	size_t at = archive->at;
 	archive->at += count * size;
-	return archive->mode == SNAPSHOT_COUNT ? NULL : bytes;
+	return archive->mode == SNAPSHOT_COUNT ? NULL : archive->bytes + at;
 }
 
 // One number of each width, to and from its bytes.

@@ -1,0 +1,21 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Forged snapshots with a right hash: the bytes say which numbers of a good snapshot change
+// (forgery.h). One in sixteen of those that are restored is stepped, which takes longest.
+#include "core/session/forgery.h"
+#include "fuzz/fuzz_target.h"
+
+enum { STEPPED = 16 };
+
+int LLVMFuzzerTestOneInput(const uint8_t *data, size_t bytes)
+{
+	static forgery *of[CAU_PARTING_COUNT];
+	if (!bytes)
+		return -1;
+	size_t parting = data[0] / FORGERY_SHOTS % CAU_PARTING_COUNT;
+	if (!of[parting])
+		of[parting] = forgery_create((int)parting);
+	forgery *f = of[parting];
+	if (!forgery_restore(f, forgery_make(f, data, bytes)) && data[bytes - 1] % STEPPED == 0)
+		forgery_step(f);
+	return 0;
+}
