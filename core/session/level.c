@@ -55,11 +55,7 @@ static bool has_tool_level(const cau_session *session, const cau_command *comman
 bool cau_session_has_material(const cau_session *session, const cau_command *command)
 {
 	int32_t index = cau_tissue_find_layer(&session->tissue, command->as.material.layer);
-	if (index < 0)
-		return true;
-	cau_layer_def changed = session->tissue.layer[index].def;
-	return !cau_layer_take_material(&changed, command) ||
-	       memcmp(&changed, &session->tissue.layer[index].def, sizeof changed) == 0;
+	return index < 0 || cau_layer_has_material(&session->tissue.layer[index].def, command);
 }
 
 static bool has_pins(cau_session *session, const cau_command *command)

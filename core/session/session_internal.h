@@ -159,6 +159,8 @@ bool cau_session_stays(const cau_tool *tool);
 // layer_material.c: puts the material of a SET_MATERIAL into the layer; false: it is of another
 // kind of tissue.
 bool cau_layer_take_material(cau_layer_def *def, const cau_command *command);
+// Whether the command would change nothing of the layer.
+bool cau_layer_has_material(const cau_layer_def *def, const cau_command *command);
 // tool_motion.c: tools follow their drivers, within their speed limits.
 void cau_session_move_tools(cau_session *session);
 cau_status cau_session_add_tool(cau_session *session, const cau_tool_def *def, cau_error *error);

@@ -45,6 +45,8 @@ double cau_sign_of_life_hear(cau_sign_of_life *sign, double arrival_s, double cl
                              double deadline_s)
 {
 	CAU_ASSERT(deadline_s >= 0, "a deadline of %g s", deadline_s);
+	CAU_ASSERT(arrival_s >= sign->arrival_s, "arrived at %g s, after %g s", arrival_s,
+	           sign->arrival_s);
 	double difference_s = arrival_s - client_s;
 	if (!sign->clocked)
 		begin(sign, arrival_s, difference_s);

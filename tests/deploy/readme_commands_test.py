@@ -38,6 +38,7 @@ SHELLS = {"sh", "bash", "shell", "console"}  # of a block's fence: every line is
 NOT_RUN = {  # command: why
     "systemctl reload haproxy": "a container has no service manager",
     "systemctl restart prometheus": "a container has no service manager",
+    "ps -C haproxy -o user=,args=": "a container has no HAProxy that systemd started",
     "OMP_NUM_THREADS=1 /usr/bin/python3 tests/reference/generate.py":
         "ten minutes of finite elements, with packages of their own; what it wrote is in the tree, and tests read it",
 }
@@ -250,6 +251,9 @@ class Commands(unittest.TestCase):
         here = (("/etc/", f"{self.folder}/etc/"),)
         self.run_it("deploy/fleet/make_haproxy.py daemons --host cautery.example.org "
                     "--certificate /etc/haproxy/cautery.pem > haproxy.cfg", instead=here)
+        shutil.copy("/etc/haproxy/haproxy.cfg", os.path.dirname(certificate))  # Debian's
+        self.run_it("cp --no-clobber /etc/haproxy/haproxy.cfg /etc/haproxy/haproxy.cfg.debian",
+                    instead=(("/etc/haproxy/haproxy.cfg /etc/", f"{self.folder}/etc/haproxy/haproxy.cfg {self.folder}/etc/"),))
         self.run_it("haproxy -c -f haproxy.cfg && install -m 644 haproxy.cfg /etc/haproxy/haproxy.cfg", instead=here)
 
     def test_7_packages_exist(self):
