@@ -156,6 +156,8 @@ bool cau_session_limit_energy(const cau_command *enable, uint64_t tick, cau_comm
 // The tool's target becomes where it is; whether it is that already.
 void cau_session_stay(cau_tool *tool);
 bool cau_session_stays(const cau_tool *tool);
+// sound.c: what holds of tools, energy and waiting commands as a step begins, in every build.
+cau_status cau_session_check_sound(const cau_session *session, cau_error *error);
 // layer_material.c: puts the material of a SET_MATERIAL into the layer; false: it is of another
 // kind of tissue.
 bool cau_layer_take_material(cau_layer_def *def, const cau_command *command);

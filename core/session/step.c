@@ -195,6 +195,11 @@ cau_status cau_session_step(cau_session *session, cau_error *error)
 {
 	if (session->faulted)
 		return cau_fail(error, CAU_FAULTED, NULL, "the session is faulted: restore a snapshot");
+	cau_status sound = cau_session_check_sound(session, error); // sound.c
+	if (sound) {
+		session->faulted = true; // and nothing of it is touched
+		return sound;
+	}
 	if (cau_session_rests(session)) // rest.c
 		return cau_session_rest_tick(session, error);
 	cau_session_stage_begin(session);

@@ -1,11 +1,13 @@
 // SPDX-License-Identifier: Apache-2.0
 // The end of a program that broke its own rules. The only place in core and protocol that writes to
-// the console or ends the process; Release builds never come here.
+// the console or ends the process. Release builds come here only for a safety rule that is
+// broken outside every guard.
 #include "cautery/assert.h"
 
 #include <stdarg.h>
 #include <stdio.h>
 #include <stdlib.h>
+#include <string.h>
 
 enum { WORDS_BYTES = 512 }; // of the sentence; longer ones are cut
 
@@ -19,4 +21,43 @@ void cau_assert_failed(const char *condition, const char *file, int line, const 
 	va_end(arguments);
 	fprintf(stderr, "%s:%d: %s: %s does not hold: %s\n", file, line, function, condition, words);
 	abort();
+}
+
+// ---- safety rules -------------------------------------------------------------------------------
+
+static _Thread_local cau_rule_guard *innermost;
+
+void cau_rule_enter(cau_rule_guard *guard)
+{
+	guard->outer = innermost;
+	guard->reason[0] = 0;
+	innermost = guard;
+}
+
+void cau_rule_leave(cau_rule_guard *guard)
+{
+	CAU_ASSERT(innermost == guard, "a guard is left that another lies in: %s", guard->reason);
+	innermost = guard->outer;
+}
+
+// The place without the folders: who reads a log knows no build tree.
+static const char *base_of(const char *file)
+{
+	const char *slash = strrchr(file, '/');
+	return slash ? slash + 1 : file;
+}
+
+void cau_rule_broken(const char *condition, const char *file, int line, const char *function,
+                     const char *format, ...)
+{
+	char words[CAU_RULE_REASON_BYTES];
+	va_list arguments;
+	va_start(arguments, format);
+	vsnprintf(words, sizeof words, format, arguments);
+	va_end(arguments);
+	if (!innermost)
+		cau_assert_failed(condition, file, line, function, "%s", words);
+	snprintf(innermost->reason, sizeof innermost->reason, "%.40s:%d: %.60s does not hold: %.180s",
+	         base_of(file), line, condition, words);
+	longjmp(innermost->place, 1);
 }

@@ -59,7 +59,7 @@ static size_t next_changed(const elements_source *source, size_t element)
 // One past the last element of the run that starts at `element`.
 static size_t run_end(const elements_source *source, size_t element)
 {
-	CAU_ASSERT(element < source->count, "a run from %zu of %zu", element, source->count);
+	CAU_RULE(element < source->count, "a run from %zu of %zu", element, source->count);
 	if (source->all)
 		return source->count;
 	size_t end = element + 1;
@@ -74,7 +74,7 @@ static size_t run_end(const elements_source *source, size_t element)
 // component in the element before it in the section, or SIZE_MAX.
 static uint32_t number_of(const elements_source *source, size_t i, size_t previous)
 {
-	CAU_ASSERT(previous == SIZE_MAX || previous < i, "element %zu is told from %zu", i, previous);
+	CAU_RULE(previous == SIZE_MAX || previous < i, "element %zu is told from %zu", i, previous);
 	switch (source->reference) {
 	case ELEMENTS_HELD:
 		return source->now[i] - (source->held ? source->held[i] : 0);
@@ -98,8 +98,8 @@ static uint32_t width_of(uint32_t number, bool is_difference)
 static uint32_t gather(const elements_source *source, size_t begin, size_t end, size_t *last,
                        uint32_t *numbers)
 {
-	CAU_ASSERT(begin < end && end <= source->count, "elements %zu to %zu of %zu", begin, end,
-	           source->count);
+	CAU_RULE(begin < end && end <= source->count, "elements %zu to %zu of %zu", begin, end,
+	         source->count);
 	uint32_t widest = 1;
 	for (size_t element = begin; element < end; element++) {
 		for (uint32_t c = 0; c < source->components; c++) {
@@ -117,7 +117,7 @@ static uint32_t gather(const elements_source *source, size_t begin, size_t end, 
 
 static void store_number(uint8_t *at, uint32_t number, uint32_t width, bool is_difference)
 {
-	CAU_ASSERT(width == 1 || width == 2 || width == 4, "a number of %u bytes", width);
+	CAU_RULE(width == 1 || width == 2 || width == 4, "a number of %u bytes", width);
 	uint32_t balance = is_difference ? ELEMENTS_BALANCE >> (32 - 8 * width) : 0;
 	uint32_t digits = (number + balance) ^ balance;
 	if (width == 1)
@@ -133,8 +133,8 @@ static void narrow(uint8_t *scratch, size_t count, size_t components, uint32_t w
                    bool is_difference)
 {
 	size_t element_bytes = components * width;
-	CAU_ASSERT(element_bytes <= stride && stride <= 4 * components,
-	           "elements of %zu bytes, %zu apart", element_bytes, stride);
+	CAU_RULE(element_bytes <= stride && stride <= 4 * components,
+	         "elements of %zu bytes, %zu apart", element_bytes, stride);
 	for (size_t element = 0; element < count; element++) {
 		uint8_t *to = scratch + element * stride;
 		for (size_t c = 0; c < components; c++) {
@@ -150,7 +150,7 @@ static void narrow(uint8_t *scratch, size_t count, size_t components, uint32_t w
 static void pack(uint8_t *out, const uint8_t *scratch, size_t count, size_t element_bytes,
                  size_t stride)
 {
-	CAU_ASSERT(element_bytes <= stride, "elements of %zu bytes, %zu apart", element_bytes, stride);
+	CAU_RULE(element_bytes <= stride, "elements of %zu bytes, %zu apart", element_bytes, stride);
 	for (size_t element = 0; element < count; element++)
 		memcpy(out + element * element_bytes, scratch + element * stride, element_bytes);
 	size_t bytes = count * element_bytes;
@@ -174,7 +174,7 @@ static size_t try_meshopt(const uint8_t *scratch, size_t bytes, size_t stride, s
 static size_t write_data(const elements_source *source, uint8_t *scratch, size_t count,
                          uint32_t width, uint8_t *out, uint8_t *coding)
 {
-	CAU_ASSERT(count <= source->count, "%zu of %zu elements", count, source->count);
+	CAU_RULE(count <= source->count, "%zu of %zu elements", count, source->count);
 	size_t element_bytes = (size_t)source->components * width;
 	size_t stride = stride_bytes(source->components, width);
 	narrow(scratch, count, source->components, width, stride, source->reference != ELEMENTS_NONE);
@@ -193,8 +193,8 @@ static size_t write_data(const elements_source *source, uint8_t *scratch, size_t
 size_t cau_elements_encode(const elements_source *source, uint8_t *scratch, uint8_t *out,
                            size_t *written)
 {
-	CAU_ASSERT(source->components >= 1 && source->components <= 6, "%u components",
-	           source->components);
+	CAU_RULE(source->components >= 1 && source->components <= 6, "%u components",
+	         source->components);
 	uint8_t *run = out + ELEMENTS_HEAD_BYTES;
 	size_t count = 0;
 	size_t behind = 0; // one past the last run
@@ -210,12 +210,12 @@ size_t cau_elements_encode(const elements_source *source, uint8_t *scratch, uint
 		width = widest > width ? widest : width;
 		count += end - begin;
 		behind = end;
-		CAU_ASSERT(count <= source->count, "%zu of %zu elements", count, source->count);
+		CAU_RULE(count <= source->count, "%zu of %zu elements", count, source->count);
 	}
 	size_t run_bytes = (size_t)(run - out) - ELEMENTS_HEAD_BYTES;
-	CAU_ASSERT(run_bytes + ELEMENTS_HEAD_BYTES <=
-	               cau_elements_bytes_max(source->count, source->components),
-	           "%zu bytes of runs", run_bytes);
+	CAU_RULE(run_bytes + ELEMENTS_HEAD_BYTES <=
+	             cau_elements_bytes_max(source->count, source->components),
+	         "%zu bytes of runs", run_bytes);
 	for (; (run - out) % 4; run++)
 		*run = 0;
 	out[0] = (uint8_t)width;

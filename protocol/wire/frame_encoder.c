@@ -169,8 +169,8 @@ static void quantise_scalar(cau_frame_encoder *encoder, const cau_stream_sample 
 	uint32_t *next = encoder->next[channel];
 	double least = info->least, most = info->most;
 	double steps_per_unit = 1.0 / cau_channel_step(&encoder->def, channel);
-	CAU_ASSERT(steps_per_unit > 0 && values, "channel %d: %g steps a unit", (int)channel,
-	           steps_per_unit);
+	CAU_RULE(steps_per_unit > 0 && values, "channel %d: %g steps a unit", (int)channel,
+	         steps_per_unit);
 	for (int32_t vertex = 0; vertex < encoder->def.vertex_count; vertex++) {
 		double steps = ((double)values[vertex] - least) * steps_per_unit;
 		steps = steps > 0.0 ? steps : 0.0;
@@ -200,7 +200,7 @@ static cau_status take_arrays(cau_frame_encoder *encoder, const cau_stream_sampl
 
 bool cau_tool_sets_differ(const cau_tool_set *set, const cau_stream_tool *tools, int32_t count)
 {
-	CAU_ASSERT(count >= 0 && count <= CAU_MAX_TOOLS, "%d tools", count);
+	CAU_RULE(count >= 0 && count <= CAU_MAX_TOOLS, "%d tools", count);
 	bool differ = set->count != count;
 	for (int32_t i = 0; i < count && !differ; i++)
 		differ = tools[i].shape != set->tools[i].shape ||
@@ -210,8 +210,8 @@ bool cau_tool_sets_differ(const cau_tool_set *set, const cau_stream_tool *tools,
 
 static bool take_tools(cau_frame_encoder *encoder, const cau_stream_sample *sample)
 {
-	CAU_ASSERT(sample->tool_count >= 0 && sample->tool_count <= CAU_MAX_TOOLS, "%d tools",
-	           sample->tool_count);
+	CAU_RULE(sample->tool_count >= 0 && sample->tool_count <= CAU_MAX_TOOLS, "%d tools",
+	         sample->tool_count);
 	cau_tool_set *held = &encoder->tools;
 	bool renamed = cau_tool_sets_differ(held, sample->tools, sample->tool_count);
 	for (int32_t i = 0; i < sample->tool_count; i++)
@@ -235,7 +235,7 @@ static uint8_t *section_payload(const frame_writer *writer)
 
 static void end_section(frame_writer *writer, cau_section type, size_t payload_bytes)
 {
-	CAU_ASSERT(payload_bytes % 4 == 0, "a section of %zu bytes", payload_bytes);
+	CAU_RULE(payload_bytes % 4 == 0, "a section of %zu bytes", payload_bytes);
 	cau_section_head_write(writer->at, type, payload_bytes);
 	writer->at += CAU_FRAME_SECTION_BYTES + payload_bytes;
 	writer->section_count++;
@@ -310,16 +310,16 @@ static void write_sections(const cau_frame_encoder *encoder, frame_part part, fr
 static size_t end_frame(const cau_frame_encoder *encoder, frame_writer *writer, cau_frame_kind kind,
                         uint64_t base_sequence)
 {
-	CAU_ASSERT(writer->at >= writer->start + CAU_FRAME_HEADER_BYTES,
-	           "a frame shorter than its header, of %u sections", writer->section_count);
-	CAU_ASSERT(base_sequence <= encoder->header.sequence, "frame %llu builds on %llu",
-	           (unsigned long long)encoder->header.sequence, (unsigned long long)base_sequence);
+	CAU_RULE(writer->at >= writer->start + CAU_FRAME_HEADER_BYTES,
+	         "a frame shorter than its header, of %u sections", writer->section_count);
+	CAU_RULE(base_sequence <= encoder->header.sequence, "frame %llu builds on %llu",
+	         (unsigned long long)encoder->header.sequence, (unsigned long long)base_sequence);
 	cau_frame_header header = encoder->header;
 	header.kind = (uint8_t)kind;
 	header.byte_count = (uint32_t)(writer->at - writer->start);
-	CAU_ASSERT(header.byte_count <= cau_frame_bytes_max(&encoder->def),
-	           "a frame of %u bytes, at most %zu", header.byte_count,
-	           cau_frame_bytes_max(&encoder->def));
+	CAU_RULE(header.byte_count <= cau_frame_bytes_max(&encoder->def),
+	         "a frame of %u bytes, at most %zu", header.byte_count,
+	         cau_frame_bytes_max(&encoder->def));
 	header.base_sequence = base_sequence;
 	header.section_count = writer->section_count;
 	cau_frame_header_write(writer->start, &header);
@@ -352,8 +352,8 @@ size_t cau_encoder_write_delta(const cau_frame_encoder *encoder,
                                uint32_t *const base[CAU_CHANNEL_COUNT], uint64_t base_sequence,
                                bool names, void *bytes)
 {
-	CAU_ASSERT(base_sequence < encoder->header.sequence, "frame %llu builds on %llu",
-	           (unsigned long long)encoder->header.sequence, (unsigned long long)base_sequence);
+	CAU_RULE(base_sequence < encoder->header.sequence, "frame %llu builds on %llu",
+	         (unsigned long long)encoder->header.sequence, (unsigned long long)base_sequence);
 	frame_writer writer = begin_frame(bytes);
 	write_sections(encoder, (frame_part){.base = base, .names = names}, &writer);
 	return end_frame(encoder, &writer, CAU_FRAME_DELTA, base_sequence);
@@ -375,8 +375,8 @@ static void advance(cau_frame_encoder *encoder, const cau_stream_sample *sample)
 		encoder->statistics = *sample->statistics;
 }
 
-cau_status cau_frame_encode(cau_frame_encoder *encoder, const cau_stream_sample *sample,
-                            void *bytes, size_t capacity, size_t *byte_count, cau_error *error)
+static cau_status encode(cau_frame_encoder *encoder, const cau_stream_sample *sample, void *bytes,
+                         size_t capacity, size_t *byte_count, cau_error *error)
 {
 	cau_status status = cau_encoder_check_capacity(encoder, capacity, error);
 	if (!status)
@@ -395,8 +395,22 @@ cau_status cau_frame_encode(cau_frame_encoder *encoder, const cau_stream_sample 
 	return CAU_OK;
 }
 
-cau_status cau_frame_encode_key(const cau_frame_encoder *encoder, void *bytes, size_t capacity,
-                                size_t *byte_count, cau_error *error)
+cau_status cau_frame_encode(cau_frame_encoder *encoder, const cau_stream_sample *sample,
+                            void *bytes, size_t capacity, size_t *byte_count, cau_error *error)
+{
+	cau_rule_guard guard;
+	cau_status status;
+	cau_rule_enter(&guard);
+	if (setjmp(guard.place) == 0)
+		status = encode(encoder, sample, bytes, capacity, byte_count, error);
+	else
+		status = cau_fail(error, CAU_FAULTED, NULL, "%s", guard.reason);
+	cau_rule_leave(&guard);
+	return status;
+}
+
+static cau_status encode_key(const cau_frame_encoder *encoder, void *bytes, size_t capacity,
+                             size_t *byte_count, cau_error *error)
 {
 	cau_status status = cau_encoder_check_capacity(encoder, capacity, error);
 	if (status)
@@ -405,4 +419,18 @@ cau_status cau_frame_encode_key(const cau_frame_encoder *encoder, void *bytes, s
 		return cau_fail(error, CAU_BAD_STATE, NULL, "there is no state before the first frame");
 	*byte_count = write_key(encoder, bytes);
 	return CAU_OK;
+}
+
+cau_status cau_frame_encode_key(const cau_frame_encoder *encoder, void *bytes, size_t capacity,
+                                size_t *byte_count, cau_error *error)
+{
+	cau_rule_guard guard;
+	cau_status status;
+	cau_rule_enter(&guard);
+	if (setjmp(guard.place) == 0)
+		status = encode_key(encoder, bytes, capacity, byte_count, error);
+	else
+		status = cau_fail(error, CAU_FAULTED, NULL, "%s", guard.reason);
+	cau_rule_leave(&guard);
+	return status;
 }

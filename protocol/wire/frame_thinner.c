@@ -42,8 +42,8 @@ cau_status cau_frame_thinner_init(void *storage, size_t storage_bytes,
 
 static void keep(cau_frame_thinner *thinner)
 {
-	CAU_ASSERT(thinner->encoder->header.sequence % CAU_FRAME_THINNING == 0, "frame %llu is kept",
-	           (unsigned long long)thinner->encoder->header.sequence);
+	CAU_RULE(thinner->encoder->header.sequence % CAU_FRAME_THINNING == 0, "frame %llu is kept",
+	         (unsigned long long)thinner->encoder->header.sequence);
 	const cau_frame_encoder *encoder = thinner->encoder;
 	thinner->epoch = encoder->header.epoch;
 	thinner->sequence = encoder->header.sequence;
@@ -55,8 +55,8 @@ static void keep(cau_frame_thinner *thinner)
 	}
 }
 
-cau_status cau_frame_thin(cau_frame_thinner *thinner, void *bytes, size_t capacity,
-                          size_t *byte_count, cau_error *error)
+static cau_status thin(cau_frame_thinner *thinner, void *bytes, size_t capacity, size_t *byte_count,
+                       cau_error *error)
 {
 	const cau_frame_encoder *encoder = thinner->encoder;
 	uint64_t sequence = encoder->header.sequence;
@@ -66,8 +66,8 @@ cau_status cau_frame_thin(cau_frame_thinner *thinner, void *bytes, size_t capaci
 		return status;
 	bool follows = thinner->epoch == encoder->header.epoch &&
 	               thinner->sequence + CAU_FRAME_THINNING == sequence;
-	CAU_ASSERT(!follows || thinner->sequence < sequence, "frame %llu follows %llu",
-	           (unsigned long long)sequence, (unsigned long long)thinner->sequence);
+	CAU_RULE(!follows || thinner->sequence < sequence, "frame %llu follows %llu",
+	         (unsigned long long)sequence, (unsigned long long)thinner->sequence);
 	if (follows) {
 		bool names =
 			cau_tool_sets_differ(&thinner->tools, encoder->tools.tools, encoder->tools.count);
@@ -76,4 +76,18 @@ cau_status cau_frame_thin(cau_frame_thinner *thinner, void *bytes, size_t capaci
 	}
 	keep(thinner);
 	return CAU_OK;
+}
+
+cau_status cau_frame_thin(cau_frame_thinner *thinner, void *bytes, size_t capacity,
+                          size_t *byte_count, cau_error *error)
+{
+	cau_rule_guard guard;
+	cau_status status;
+	cau_rule_enter(&guard);
+	if (setjmp(guard.place) == 0)
+		status = thin(thinner, bytes, capacity, byte_count, error);
+	else
+		status = cau_fail(error, CAU_FAULTED, NULL, "%s", guard.reason);
+	cau_rule_leave(&guard);
+	return status;
 }

@@ -10,9 +10,9 @@ static const uint8_t magic[4] = {'C', 'A', 'U', 'F'};
 
 void cau_frame_header_write(uint8_t *out, const cau_frame_header *header)
 {
-	CAU_ASSERT(header->kind >= CAU_FRAME_KEY && header->kind <= CAU_FRAME_TOPOLOGY,
-	           "a frame of kind %d", header->kind);
-	CAU_ASSERT(header->epoch != 0, "frame %llu of no epoch", (unsigned long long)header->sequence);
+	CAU_RULE(header->kind >= CAU_FRAME_KEY && header->kind <= CAU_FRAME_TOPOLOGY,
+	         "a frame of kind %d", header->kind);
+	CAU_RULE(header->epoch != 0, "frame %llu of no epoch", (unsigned long long)header->sequence);
 	memcpy(out, magic, sizeof magic);
 	out[4] = CAU_FRAME_VERSION;
 	out[5] = header->kind;

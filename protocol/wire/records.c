@@ -67,9 +67,8 @@ static uint8_t *store_vector(uint8_t *at, const double *value, int count)
 
 static void store_tool(uint8_t *at, const cau_stream_tool *tool)
 {
-	CAU_ASSERT_INDEX(tool->shape, CAU_TOOL_SHAPE_COUNT);
-	CAU_ASSERT(tool->energy_off < CAU_ENERGY_OFF_COUNT, "reason %d for energy off",
-	           tool->energy_off);
+	CAU_RULE_INDEX(tool->shape, CAU_TOOL_SHAPE_COUNT);
+	CAU_RULE(tool->energy_off < CAU_ENERGY_OFF_COUNT, "reason %d for energy off", tool->energy_off);
 	store_u64(at, tool->sequence);
 	at = store_vector(at + 8, tool->pose.position_m, 3);
 	at = store_vector(at, tool->pose.rotation, 4);
@@ -117,7 +116,7 @@ const char *cau_stream_tool_check(const cau_stream_tool *tool)
 
 size_t cau_tools_write(uint8_t *out, const cau_stream_tool *tools, int32_t count)
 {
-	CAU_ASSERT(count >= 0 && count <= CAU_MAX_TOOLS, "%d tools", count);
+	CAU_RULE(count >= 0 && count <= CAU_MAX_TOOLS, "%d tools", count);
 	for (int32_t i = 0; i < count; i++)
 		store_tool(out + (size_t)i * TOOL_RECORD_BYTES, &tools[i]);
 	return (size_t)count * TOOL_RECORD_BYTES;
@@ -125,7 +124,7 @@ size_t cau_tools_write(uint8_t *out, const cau_stream_tool *tools, int32_t count
 
 size_t cau_tools_asked_write(uint8_t *out, const cau_stream_tool *tools, int32_t count)
 {
-	CAU_ASSERT(count >= 0 && count <= CAU_MAX_TOOLS, "%d tools", count);
+	CAU_RULE(count >= 0 && count <= CAU_MAX_TOOLS, "%d tools", count);
 	bool any = false;
 	for (int32_t i = 0; i < count; i++)
 		any = any || tools[i].behind;
@@ -140,7 +139,7 @@ size_t cau_tools_asked_write(uint8_t *out, const cau_stream_tool *tools, int32_t
 
 size_t cau_tool_jaws_write(uint8_t *out, const cau_stream_tool *tools, int32_t count)
 {
-	CAU_ASSERT(count >= 0 && count <= CAU_MAX_TOOLS, "%d tools", count);
+	CAU_RULE(count >= 0 && count <= CAU_MAX_TOOLS, "%d tools", count);
 	bool any = false;
 	for (int32_t i = 0; i < count; i++)
 		any = any || (float)tools[i].asked_jaw != (float)tools[i].jaw || tools[i].jaw_force_n > 0;

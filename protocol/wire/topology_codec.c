@@ -83,8 +83,8 @@ static void write_section(topology_writer *writer, cau_section type, const uint3
 	                          .all = count > 0};
 	size_t bytes =
 		cau_elements_encode(&source, writer->scratch, writer->at + CAU_FRAME_SECTION_BYTES, NULL);
-	CAU_ASSERT(bytes % 4 == 0 && bytes <= cau_elements_bytes_max(count, components),
-	           "a section of %zu bytes", bytes);
+	CAU_RULE(bytes % 4 == 0 && bytes <= cau_elements_bytes_max(count, components),
+	         "a section of %zu bytes", bytes);
 	cau_section_head_write(writer->at, type, bytes);
 	writer->at += CAU_FRAME_SECTION_BYTES + bytes;
 	writer->section_count++;
@@ -93,7 +93,7 @@ static void write_section(topology_writer *writer, cau_section type, const uint3
 static void write_faces(const cau_stream_def *def, const cau_topology *topology, uint32_t *values,
                         topology_writer *writer)
 {
-	CAU_ASSERT(def->face_count >= 0, "%d faces", def->face_count);
+	CAU_RULE(def->face_count >= 0, "%d faces", def->face_count);
 	size_t faces = (size_t)def->face_count;
 	if (faces > 0)
 		memcpy(values, topology->face, faces * CORNERS * 4);
@@ -107,9 +107,9 @@ static void write_faces(const cau_stream_def *def, const cau_topology *topology,
 	write_section(writer, CAU_SECTION_TEXTURE, values, faces, TEXTURE_COMPONENTS, ELEMENTS_NONE);
 }
 
-cau_status cau_topology_encode(const cau_stream_def *def, uint64_t epoch,
-                               const cau_topology *topology, void *scratch, void *bytes,
-                               size_t capacity, size_t *byte_count, cau_error *error)
+static cau_status encode(const cau_stream_def *def, uint64_t epoch, const cau_topology *topology,
+                         void *scratch, void *bytes, size_t capacity, size_t *byte_count,
+                         cau_error *error)
 {
 	uint32_t *values = scratch;
 	cau_status status = cau_stream_def_check(def, error);
@@ -137,6 +137,21 @@ cau_status cau_topology_encode(const cau_stream_def *def, uint64_t epoch,
 	                           .section_count = writer.section_count};
 	cau_frame_header_write(bytes, &header);
 	return CAU_OK;
+}
+
+cau_status cau_topology_encode(const cau_stream_def *def, uint64_t epoch,
+                               const cau_topology *topology, void *scratch, void *bytes,
+                               size_t capacity, size_t *byte_count, cau_error *error)
+{
+	cau_rule_guard guard;
+	cau_status status;
+	cau_rule_enter(&guard);
+	if (setjmp(guard.place) == 0)
+		status = encode(def, epoch, topology, scratch, bytes, capacity, byte_count, error);
+	else
+		status = cau_fail(error, CAU_FAULTED, NULL, "%s", guard.reason);
+	cau_rule_leave(&guard);
+	return status;
 }
 
 // ---- reading ------------------------------------------------------------------------------------

@@ -187,6 +187,16 @@ static void compare(cau_hosted *h)
 	snprintf(h->odd_tool, sizeof h->odd_tool, "%s", odd ? odd : "");
 }
 
+bool cau_decide_broken(cau_hosted *h, char *reason, size_t bytes)
+{
+	pthread_mutex_lock(&h->deciding);
+	bool broken = *h->logic->broken, first = broken && !h->rule_reported;
+	snprintf(reason, bytes, "%s", h->logic->fault);
+	pthread_mutex_unlock(&h->deciding);
+	h->rule_reported = broken;
+	return first;
+}
+
 void cau_decide_next(cau_hosted *h, cau_action *action)
 {
 	cau_effects effects;

@@ -109,6 +109,7 @@ struct cau_hosted {
 	uint64_t window_tick;
 	double step_cost_s, realtime_factor;
 	char odd_tool[CAU_NAME_BYTES]; // that the core would heat and the machine does not
+	bool rule_reported;            // that a safety rule of the decisions was broken
 	double late_s; // how late the tick that is to be made began; below 0: the clock does not say
 	double waiting_s[WAITING_COUNT]; // when commands came that no frame has shown yet
 	int32_t waiting_count;
@@ -243,6 +244,8 @@ void cau_decide(cau_hosted *h, const cau_logic_event *event);
 cau_status cau_decide_order(cau_hosted *h, cau_order *order, const cau_asked *asked,
                             cau_error *error);
 // What the worker is to do now, and what came of it.
+// Whether a safety rule was broken, the first time that this is asked. `reason`: 320 bytes.
+bool cau_decide_broken(cau_hosted *h, char *reason, size_t bytes);
 // Of CAU_ACT_STEP: h->odd_tool is "" if the core heats what the machine has on, and nothing else.
 void cau_decide_next(cau_hosted *h, cau_action *action);
 void cau_decide_done(cau_hosted *h, cau_outcome_kind outcome);

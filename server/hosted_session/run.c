@@ -122,6 +122,20 @@ static void stop_unsound(cau_hosted *h)
 	cau_hosted_tell_fault(h, &error);
 }
 
+// A safety rule of the decisions was broken. They have faulted the session by themselves, and their
+// cuts follow as ordinary acts.
+static void report_broken_rule(cau_hosted *h)
+{
+	cau_error error = {0};
+	char reason[320];
+	if (!cau_decide_broken(h, reason, sizeof reason))
+		return;
+	cau_fail(&error, CAU_FAULTED, "", "%s", reason);
+	cau_log(CAU_LOG_ERROR, h->id, "rule_broken", "tick=%llu rule=\"%s\"",
+	        (unsigned long long)h->tick, reason);
+	cau_hosted_tell_fault(h, &error);
+}
+
 // ---- what is to be done now
 static cau_outcome_kind act(cau_hosted *h, const cau_action *action)
 {
@@ -165,6 +179,7 @@ static void act_until_tick(cau_hosted *h)
 	double end_s = cau_monotonic_s() + STEPPING_SLICE_S;
 	while (!h->ended && !h->leaving) {
 		cau_decide_next(h, &action);
+		report_broken_rule(h);
 		if (action.act == CAU_ACT_NOTHING)
 			return;
 		if (action.act == CAU_ACT_STEP && *h->odd_tool) {

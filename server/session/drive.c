@@ -15,8 +15,8 @@
 
 cau_drive *cau_drive_find(cau_logic *logic, const char *tool)
 {
-	CAU_ASSERT(logic->drive_count >= 0 && logic->drive_count <= CAU_MAX_TOOLS, "%d tools",
-	           logic->drive_count);
+	CAU_RULE(logic->drive_count >= 0 && logic->drive_count <= CAU_MAX_TOOLS, "%d tools",
+	         logic->drive_count);
 	for (int32_t i = 0; i < logic->drive_count; i++)
 		if (strcmp(logic->drives[i].tool, tool) == 0)
 			return &logic->drives[i];
@@ -40,7 +40,7 @@ static uint64_t newest(uint64_t a, uint64_t b)
 
 static void go_dark(cau_drive *drive, int energy_off, const char *cause, cau_effects *effects)
 {
-	CAU_ASSERT_INDEX(energy_off, CAU_ENERGY_OFF_COUNT);
+	CAU_RULE_INDEX(energy_off, CAU_ENERGY_OFF_COUNT);
 	drive->cut_off = energy_off;
 	drive->by_order = false;
 	snprintf(drive->cut_cause, sizeof drive->cut_cause, "%s", cause);
@@ -55,17 +55,17 @@ static void go_dark(cau_drive *drive, int energy_off, const char *cause, cau_eff
 	drive->limit_tick = 0;
 	drive->energy_off = energy_off;
 	cau_effect_tell(effects, drive);
-	CAU_ASSERT(!drive->enabled, "tool %s is told dark and is not", drive->tool);
+	CAU_RULE(!drive->enabled, "tool %s is told dark and is not", drive->tool);
 }
 
 void cau_drive_cut(cau_drive *drive, uint64_t moment, int energy_off, const char *cause,
                    cau_effects *effects)
 {
-	CAU_ASSERT(cause[0] != 0, "tool %s is cut for no cause", drive->tool);
+	CAU_RULE(cause[0] != 0, "tool %s is cut for no cause", drive->tool);
 	drive->cut_moment = newest(drive->cut_moment, moment);
 	go_dark(drive, energy_off, cause, effects);
-	CAU_ASSERT(!drive->enabled && drive->cut_moment >= moment,
-	           "tool %s is cut at %llu and is not dark", drive->tool, (unsigned long long)moment);
+	CAU_RULE(!drive->enabled && drive->cut_moment >= moment,
+	         "tool %s is cut at %llu and is not dark", drive->tool, (unsigned long long)moment);
 }
 
 void cau_drive_cut_lit(cau_logic *logic, uint64_t moment, int energy_off, const char *cause,
@@ -118,8 +118,8 @@ void cau_drive_cut_limits(cau_logic *logic, cau_effects *effects)
 {
 	for (int32_t i = 0; i < logic->drive_count; i++) {
 		cau_drive *drive = &logic->drives[i];
-		CAU_ASSERT(drive->enabled || !drive->limit_tick, "tool %s is off and has a limit",
-		           drive->tool);
+		CAU_RULE(drive->enabled || !drive->limit_tick, "tool %s is off and has a limit",
+		         drive->tool);
 		if (drive->limit_tick && drive->limit_tick <= logic->tick)
 			go_dark(drive, CAU_ENERGY_OFF_COMMANDED, "its ticks are over", effects);
 	}
@@ -180,8 +180,8 @@ bool cau_drive_next_cut(cau_logic *logic, bool forced, cau_action *action)
 			.act = CAU_ACT_CUT, .was_lit = drive->lit && !drive->enabled, .drive = *drive};
 		memcpy(logic->cutting, drive->tool, sizeof logic->cutting);
 		drive->freeze = false; // one asked for meanwhile is another
-		CAU_ASSERT(action->act == CAU_ACT_CUT, "tool %s is cut by act %d", drive->tool,
-		           (int)action->act);
+		CAU_RULE(action->act == CAU_ACT_CUT, "tool %s is cut by act %d", drive->tool,
+		         (int)action->act);
 		return true;
 	}
 	return false;
@@ -190,8 +190,8 @@ bool cau_drive_next_cut(cau_logic *logic, bool forced, cau_action *action)
 void cau_drive_cut_done(cau_logic *logic, cau_effects *effects)
 {
 	cau_drive *drive = cau_drive_find(logic, logic->cutting);
-	CAU_ASSERT(drive != NULL, "tool %s is gone; tools come and go by the worker's own acts",
-	           logic->cutting);
+	CAU_RULE(drive != NULL, "tool %s is gone; tools come and go by the worker's own acts",
+	         logic->cutting);
 	drive->frozen = drive->cut_off == CAU_ENERGY_OFF_WATCHDOG;
 	if (!drive->lit || drive->enabled)
 		return;
@@ -296,7 +296,7 @@ bool cau_drive_allows(cau_logic *logic, const cau_waiting *order, cau_action *ac
 		return refuse(action, CAU_NOT_FOUND, 0, reason);
 	}
 	bool drives = drive->driver.client && drive->driver.client == asked->asker.client;
-	CAU_ASSERT_INDEX(asked->ask, CAU_ASK_COUNT);
+	CAU_RULE_INDEX(asked->ask, CAU_ASK_COUNT);
 	switch (asked->ask) {
 	case CAU_ASK_TOOL_KEEP:
 	case CAU_ASK_TOOL_REMOVE:
@@ -324,8 +324,7 @@ bool cau_drive_change(cau_drive *drive, const cau_waiting *order, const cau_aske
 	cau_drive_cut(drive, order->moment, CAU_ENERGY_OFF_TAKEN_OVER, "another driver", effects);
 	if (drive->lit)
 		return false;
-	CAU_ASSERT(!drive->lit && !drive->enabled, "tool %s changes hands while it is lit",
-	           drive->tool);
+	CAU_RULE(!drive->lit && !drive->enabled, "tool %s changes hands while it is lit", drive->tool);
 	drive->driver = *to;
 	// Who is handed a tool has given no sign of life for it yet.
 	drive->alive_s = to->client == order->asked.asker.client ? order->alive_s : 0;
@@ -336,8 +335,8 @@ bool cau_drive_change(cau_drive *drive, const cau_waiting *order, const cau_aske
 void cau_drive_enabled(cau_logic *logic, cau_drive *drive, const cau_waiting *order,
                        cau_effects *effects)
 {
-	CAU_ASSERT(order->asked.ask == CAU_ASK_ENERGY_ON, "order %d lights tool %s",
-	           (int)order->asked.ask, drive->tool);
+	CAU_RULE(order->asked.ask == CAU_ASK_ENERGY_ON, "order %d lights tool %s",
+	         (int)order->asked.ask, drive->tool);
 	drive->lit = true;
 	drive->alive_s = fmax(drive->alive_s, order->alive_s);
 	bool drives = drive->driver.client == order->asked.asker.client;
@@ -356,9 +355,9 @@ void cau_drive_enabled(cau_logic *logic, cau_drive *drive, const cau_waiting *or
 // all went dark or it was itself turned off, does not light it.
 void cau_drive_add(cau_logic *logic, const cau_waiting *order)
 {
-	CAU_ASSERT(order->asked.tool[0] != 0, "a tool without a name, by order %llu",
-	           (unsigned long long)order->asked.ticket);
-	CAU_ASSERT_INDEX(logic->drive_count, CAU_MAX_TOOLS); // cau_drive_may_be_added
+	CAU_RULE(order->asked.tool[0] != 0, "a tool without a name, by order %llu",
+	         (unsigned long long)order->asked.ticket);
+	CAU_RULE_INDEX(logic->drive_count, CAU_MAX_TOOLS); // cau_drive_may_be_added
 	cau_drive *made = &logic->drives[logic->drive_count++];
 	*made = (cau_drive){.alive_s = order->alive_s,
 	                    .energy_off = CAU_ENERGY_OFF_NEVER_ENABLED,
@@ -378,7 +377,7 @@ void cau_drive_remove(cau_logic *logic, const char *tool)
 	size_t after = (size_t)(&logic->drives[logic->drive_count] - (gone + 1));
 	memmove(gone, gone + 1, after * sizeof *gone);
 	logic->drive_count--;
-	CAU_ASSERT(logic->drive_count >= 0, "%d tools", logic->drive_count);
+	CAU_RULE(logic->drive_count >= 0, "%d tools", logic->drive_count);
 }
 
 // One entry for each tool that is there; drivers stay with tools of the same name. All are dark,
@@ -388,8 +387,8 @@ void cau_drive_match(cau_logic *logic, const cau_logic_event *event)
 	cau_drive old[CAU_MAX_TOOLS];
 	int32_t old_count = logic->drive_count;
 	memcpy(old, logic->drives, sizeof old);
-	CAU_ASSERT(event->tool_count >= 0 && event->tool_count <= CAU_MAX_TOOLS, "%d tools arrived",
-	           event->tool_count);
+	CAU_RULE(event->tool_count >= 0 && event->tool_count <= CAU_MAX_TOOLS, "%d tools arrived",
+	         event->tool_count);
 	logic->drive_count = event->tool_count;
 	for (int32_t i = 0; i < event->tool_count; i++) {
 		cau_drive *made = &logic->drives[i];

@@ -4,7 +4,7 @@
 
 cau_effect *cau_effect_add(cau_effects *effects, cau_effect_kind kind, uint64_t ticket)
 {
-	CAU_ASSERT_INDEX(effects->count, CAU_EFFECTS_MOST); // see there for why it has room
+	CAU_RULE_INDEX(effects->count, CAU_EFFECTS_MOST); // see there for why it has room
 	cau_effect *made = &effects->list[effects->count++];
 	made->kind = kind;
 	made->ticket = ticket;
@@ -15,7 +15,7 @@ cau_effect *cau_effect_add(cau_effects *effects, cau_effect_kind kind, uint64_t 
 // Once for each event is enough: a later telling of the same tool takes the place of the earlier.
 void cau_effect_tell(cau_effects *effects, const cau_drive *drive)
 {
-	CAU_ASSERT(drive->tool[0] != 0, "a tool without a name, among %d effects", effects->count);
+	CAU_RULE(drive->tool[0] != 0, "a tool without a name, among %d effects", effects->count);
 	for (int32_t i = 0; i < effects->count; i++) {
 		cau_effect *told = &effects->list[i];
 		if (told->kind == CAU_EFFECT_TELL && strcmp(told->drive.tool, drive->tool) == 0) {
@@ -28,7 +28,7 @@ void cau_effect_tell(cau_effects *effects, const cau_drive *drive)
 
 static void add_once(cau_effects *effects, cau_effect_kind kind)
 {
-	CAU_ASSERT(kind == CAU_EFFECT_WAKE || kind == CAU_EFFECT_ARMED, "effect %d once", (int)kind);
+	CAU_RULE(kind == CAU_EFFECT_WAKE || kind == CAU_EFFECT_ARMED, "effect %d once", (int)kind);
 	for (int32_t i = 0; i < effects->count; i++)
 		if (effects->list[i].kind == kind)
 			return;

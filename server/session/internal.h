@@ -85,3 +85,16 @@ bool cau_time_step(cau_logic *logic, const cau_asked *asked, cau_action *action)
 bool cau_time_go(const cau_logic *logic, cau_action *action);
 void cau_time_speed(cau_logic *logic, double speed, double now_s);
 double cau_time_due_s(const cau_logic *logic);
+
+// ---- sound.c
+// The session stands still with this reason, and its tools are to be cut.
+void cau_logic_fault(cau_logic *logic, const char *reason, cau_effects *effects);
+// What holds between two calls, whatever came in.
+void cau_logic_expect_sound(const cau_logic *logic);
+// After a broken rule: makes the machine sound again, faulted, with every tool to be cut. The order
+// of `ticket` (0: none) is refused unless it waits. `give_up`: what waits is dropped if a rule was
+// broken before. The worker's act, if there is one, is still to be ended.
+void cau_logic_break_off(cau_logic *logic, const char *reason, uint64_t ticket, bool give_up,
+                         cau_effects *effects);
+// The worker's act is over.
+void cau_logic_end_act(cau_logic *logic);

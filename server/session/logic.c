@@ -26,31 +26,6 @@ void cau_logic_init(cau_logic *logic, int32_t capacity)
 	logic->store_takes = true;
 }
 
-// What holds between two calls, whatever came in. A tool that is enabled is lit; one that is being
-// looked at, cut or stepped is so by the worker alone.
-static void expect_sound(const cau_logic *logic)
-{
-	CAU_ASSERT(logic->count >= 0 && logic->count <= 2 * logic->capacity,
-	           "%d orders in a queue of %d", logic->count, logic->capacity);
-	CAU_ASSERT(logic->drive_count >= 0 && logic->drive_count <= CAU_MAX_TOOLS, "%d tools",
-	           logic->drive_count);
-	CAU_ASSERT(logic->steps_left >= 0, "%lld steps left", (long long)logic->steps_left);
-	CAU_ASSERT(logic->dark_moment <= logic->moment, "all went dark at moment %llu of %llu",
-	           (unsigned long long)logic->dark_moment, (unsigned long long)logic->moment);
-	for (int32_t i = 0; i < logic->drive_count; i++) {
-		const cau_drive *drive = &logic->drives[i];
-		CAU_ASSERT(!drive->enabled || drive->lit, "tool %s is enabled and not lit", drive->tool);
-		CAU_ASSERT(!drive->enabled || drive->driver.client, "tool %s is enabled by nobody",
-		           drive->tool);
-		CAU_ASSERT(drive->cut_moment <= logic->moment, "tool %s is cut at moment %llu of %llu",
-		           drive->tool, (unsigned long long)drive->cut_moment,
-		           (unsigned long long)logic->moment);
-	}
-	for (int32_t i = 1; i < logic->count; i++)
-		CAU_ASSERT(logic->waiting[i - 1].moment <= logic->waiting[i].moment,
-		           "order %d came in before the one ahead of it", i);
-}
-
 // ---- events -------------------------------------------------------------------------------------
 
 static void take_life(cau_logic *logic, uint32_t client, const char *tool, double time_s)
@@ -71,9 +46,10 @@ static void take_store(cau_logic *logic, const cau_logic_event *event, cau_effec
 
 static void take_arrival(cau_logic *logic, const cau_logic_event *event, cau_effects *effects)
 {
-	CAU_ASSERT(event->step_s > 0, "arrived with ticks of %g s", event->step_s);
+	CAU_RULE(event->step_s > 0, "arrived with ticks of %g s", event->step_s);
 	cau_drive_match(logic, event);
 	logic->state = event->state;
+	logic->broken[0] = 0; // whoever goes elsewhere has a sound session again
 	logic->tick = event->tick;
 	logic->step_s = event->step_s;
 	logic->next_step_s = event->time_s;
@@ -91,15 +67,6 @@ static void take_stay(cau_logic *logic, double time_s, cau_effects *effects)
 	cau_effect_wake(effects);
 }
 
-static void fault(cau_logic *logic, const char *reason, cau_effects *effects)
-{
-	logic->state = CAU_SESSION_FAULTED;
-	logic->steps_left = 0;
-	snprintf(logic->fault, sizeof logic->fault, "%s", reason);
-	cau_drive_cut_lit(logic, logic->moment, CAU_ENERGY_OFF_WATCHDOG, "the session is faulted",
-	                  effects);
-}
-
 // Also before every sign of life: one that is read after the deadline does not undo the silence,
 // however late the watchdog is. After a stop of the whole process the signs that waited in sockets
 // may be read before the watchdog runs.
@@ -109,10 +76,11 @@ static void cut_silent(cau_logic *logic, double now_s, cau_effects *effects)
 	cau_drive_cut_silent(logic, now_s, effects);
 }
 
-void cau_logic_take(cau_logic *logic, const cau_logic_event *event, cau_effects *effects)
+static void take(cau_logic *logic, const cau_logic_event *event, cau_effects *effects)
 {
-	CAU_ASSERT(event->kind != CAU_LOGIC_ORDER || event->asked, "event %d without an order",
-	           (int)event->kind);
+	cau_logic_expect_sound(logic);
+	CAU_RULE(event->kind != CAU_LOGIC_ORDER || event->asked, "event %d without an order",
+	         (int)event->kind);
 	const char *tool = event->tool ? event->tool : "", *cause = event->cause ? event->cause : "";
 	effects->count = 0;
 	logic->moment++;
@@ -160,7 +128,7 @@ void cau_logic_take(cau_logic *logic, const cau_logic_event *event, cau_effects 
 		break;
 	case CAU_LOGIC_FAULT:
 		logic->going = false;
-		fault(logic, cause, effects);
+		cau_logic_fault(logic, cause, effects);
 		break;
 	case CAU_LOGIC_DRAIN:
 		logic->draining = true;
@@ -173,9 +141,21 @@ void cau_logic_take(cau_logic *logic, const cau_logic_event *event, cau_effects 
 		cau_effect_wake(effects);
 		break;
 	case CAU_LOGIC_EVENT_COUNT:
-		CAU_ASSERT(false, "event %d is none", (int)event->kind);
+		CAU_RULE(false, "event %d is none", (int)event->kind);
 	}
-	expect_sound(logic);
+	cau_logic_expect_sound(logic);
+}
+
+void cau_logic_take(cau_logic *logic, const cau_logic_event *event, cau_effects *effects)
+{
+	cau_rule_guard guard;
+	cau_rule_enter(&guard);
+	if (setjmp(guard.place) == 0)
+		take(logic, event, effects);
+	else
+		cau_logic_break_off(logic, guard.reason, event->asked ? event->asked->ticket : 0, false,
+		                    effects);
+	cau_rule_leave(&guard);
 }
 
 // ---- what the worker does now -------------------------------------------------------------------
@@ -220,7 +200,7 @@ static bool pause(cau_logic *logic, const cau_waiting *order, cau_action *action
 static void turn_off(cau_logic *logic, const cau_waiting *order, cau_effects *effects)
 {
 	cau_drive *drive = cau_drive_find(logic, order->asked.tool);
-	CAU_ASSERT(drive != NULL, "tool %s was allowed to go dark and is not there", order->asked.tool);
+	CAU_RULE(drive != NULL, "tool %s was allowed to go dark and is not there", order->asked.tool);
 	if (drive->enabled || drive->cut_moment < order->moment)
 		cau_drive_cut(drive, order->moment, CAU_ENERGY_OFF_COMMANDED, "turned off", effects);
 }
@@ -230,7 +210,7 @@ static bool change_driver(cau_logic *logic, const cau_waiting *order, cau_action
 {
 	const cau_asked *asked = &order->asked;
 	cau_drive *drive = cau_drive_find(logic, asked->tool);
-	CAU_ASSERT(drive != NULL, "tool %s was allowed to change hands and is not there", asked->tool);
+	CAU_RULE(drive != NULL, "tool %s was allowed to change hands and is not there", asked->tool);
 	bool takes = asked->ask == CAU_ASK_TAKE_OVER;
 	cau_asker to = takes || !order->to_gone ? takes ? asked->asker : asked->to : (cau_asker){0};
 	if (takes && order->gone)
@@ -253,8 +233,8 @@ static bool refuse_void(const cau_waiting *order, cau_action *action)
 		CAU_VOID_CAUSE_TABLE(X)
 #undef X
 	};
-	CAU_ASSERT(order->cut_moment != 0, "order %llu is void since no moment",
-	           (unsigned long long)order->asked.ticket);
+	CAU_RULE(order->cut_moment != 0, "order %llu is void since no moment",
+	         (unsigned long long)order->asked.ticket);
 	return refuse(action, CAU_BAD_STATE, 0, "", causes[order->void_cause]);
 }
 
@@ -264,11 +244,13 @@ static bool decide(cau_logic *logic, const cau_waiting *order, cau_action *actio
                    cau_effects *effects)
 {
 	const cau_asked *asked = &order->asked;
-	CAU_ASSERT_INDEX(asked->ask, CAU_ASK_COUNT);
+	CAU_RULE_INDEX(asked->ask, CAU_ASK_COUNT);
 	action->act = CAU_ACT_ORDER;
 	if (logic->ended)
 		return refuse(action, CAU_NOT_FOUND, CAU_RPC_NOT_HERE, "params.session",
 		              "the session is destroyed");
+	if (*logic->broken && asked->ask != CAU_ASK_DESTROY && asked->ask != CAU_ASK_GO)
+		return refuse(action, CAU_FAULTED, 0, "", logic->fault);
 	if (asked->numbered && !order->looked) {
 		action->act = CAU_ACT_LOOK;
 		return false;
@@ -309,8 +291,8 @@ static bool decide(cau_logic *logic, const cau_waiting *order, cau_action *actio
 
 static void serve(cau_logic *logic, cau_waiting *order)
 {
-	CAU_ASSERT(logic->serving.moment == 0, "order %llu is being served still",
-	           (unsigned long long)logic->serving.asked.ticket);
+	CAU_RULE(logic->serving.moment == 0, "order %llu is being served still",
+	         (unsigned long long)logic->serving.asked.ticket);
 	logic->serving = *order;
 	cau_queue_remove(logic, order);
 }
@@ -344,8 +326,8 @@ static bool next_tick(cau_logic *logic, double now_s, cau_action *action, cau_ef
 		return next_order(logic, action, effects);
 	}
 	cau_time_begin_tick(logic, now_s);
-	CAU_ASSERT(!cau_drive_is_to_cut(logic), "tick %llu begins with energy that was cut",
-	           (unsigned long long)logic->tick);
+	CAU_RULE(!cau_drive_is_to_cut(logic), "tick %llu begins with energy that was cut",
+	         (unsigned long long)logic->tick);
 	logic->border = false;
 	action->act = CAU_ACT_STEP;
 	return true;
@@ -353,7 +335,7 @@ static bool next_tick(cau_logic *logic, double now_s, cau_action *action, cau_ef
 
 static bool next_end_of_steps(cau_logic *logic, cau_action *action)
 {
-	CAU_ASSERT(logic->steps_left >= 0, "%lld steps left", (long long)logic->steps_left);
+	CAU_RULE(logic->steps_left >= 0, "%lld steps left", (long long)logic->steps_left);
 	bool faulted = logic->state == CAU_SESSION_FAULTED || logic->ended;
 	if (!logic->stepping || (logic->steps_left && !faulted))
 		return false;
@@ -393,9 +375,10 @@ static bool next_act(cau_logic *logic, double now_s, cau_action *action, cau_eff
 	       next_order(logic, action, effects) || next_tick(logic, now_s, action, effects);
 }
 
-void cau_logic_next(cau_logic *logic, double now_s, cau_action *action, cau_effects *effects)
+static void next(cau_logic *logic, double now_s, cau_action *action, cau_effects *effects)
 {
-	CAU_ASSERT(logic->acting == CAU_ACT_NOTHING, "act %d is not done", (int)logic->acting);
+	cau_logic_expect_sound(logic);
+	CAU_RULE(logic->acting == CAU_ACT_NOTHING, "act %d is not done", (int)logic->acting);
 	effects->count = 0;
 	*action = (cau_action){.act = CAU_ACT_NOTHING};
 	logic->moment++;
@@ -406,7 +389,21 @@ void cau_logic_next(cau_logic *logic, double now_s, cau_action *action, cau_effe
 	if (!next_act(logic, now_s, action, effects))
 		logic->border = false;
 	logic->acting = action->act;
-	expect_sound(logic);
+	cau_logic_expect_sound(logic);
+}
+
+void cau_logic_next(cau_logic *logic, double now_s, cau_action *action, cau_effects *effects)
+{
+	cau_rule_guard guard;
+	cau_rule_enter(&guard);
+	if (setjmp(guard.place) == 0) {
+		next(logic, now_s, action, effects);
+	} else {
+		*action = (cau_action){.act = CAU_ACT_NOTHING};
+		cau_logic_break_off(logic, guard.reason, logic->serving.asked.ticket, true, effects);
+		cau_logic_end_act(logic);
+	}
+	cau_rule_leave(&guard);
 }
 
 // ---- what came of it ----------------------------------------------------------------------------
@@ -414,8 +411,8 @@ void cau_logic_next(cau_logic *logic, double now_s, cau_action *action, cau_effe
 static void looked(cau_logic *logic, cau_outcome_kind outcome)
 {
 	cau_waiting *order = cau_queue_find(logic, logic->serving.asked.ticket);
-	CAU_ASSERT(order != NULL, "order %llu is gone; only the worker takes orders out",
-	           (unsigned long long)logic->serving.asked.ticket);
+	CAU_RULE(order != NULL, "order %llu is gone; only the worker takes orders out",
+	         (unsigned long long)logic->serving.asked.ticket);
 	if (outcome == CAU_DONE)
 		order->looked = true;
 	else if (outcome == CAU_POSTPONED)
@@ -428,8 +425,8 @@ static void take_effect(cau_logic *logic, cau_effects *effects)
 {
 	const cau_waiting *order = &logic->serving;
 	cau_drive *drive = cau_drive_find(logic, order->asked.tool);
-	CAU_ASSERT(order->moment != 0, "order %llu never came in",
-	           (unsigned long long)order->asked.ticket);
+	CAU_RULE(order->moment != 0, "order %llu never came in",
+	         (unsigned long long)order->asked.ticket);
 	switch (order->asked.ask) {
 	case CAU_ASK_TOOL_ADD:
 		cau_drive_add(logic, order);
@@ -440,15 +437,15 @@ static void take_effect(cau_logic *logic, cau_effects *effects)
 		break;
 	case CAU_ASK_TOOL_USE:
 	case CAU_ASK_MOTION:
-		CAU_ASSERT(drive != NULL, "tool %s was moved and is not there", order->asked.tool);
+		CAU_RULE(drive != NULL, "tool %s was moved and is not there", order->asked.tool);
 		drive->frozen = false;
 		break;
 	case CAU_ASK_ENERGY_ON:
-		CAU_ASSERT(drive != NULL, "tool %s was enabled and is not there", order->asked.tool);
+		CAU_RULE(drive != NULL, "tool %s was enabled and is not there", order->asked.tool);
 		cau_drive_enabled(logic, drive, order, effects);
 		break;
 	case CAU_ASK_ENERGY_OFF:
-		CAU_ASSERT(drive != NULL, "tool %s was turned off and is not there", order->asked.tool);
+		CAU_RULE(drive != NULL, "tool %s was turned off and is not there", order->asked.tool);
 		drive->lit = false;
 		drive->by_order = drive->by_order && cau_queue_off_waits(logic, order->asked.tool);
 		break;
@@ -466,13 +463,14 @@ static void take_effect(cau_logic *logic, cau_effects *effects)
 	}
 }
 
-void cau_logic_done(cau_logic *logic, double now_s, cau_outcome_kind outcome, cau_effects *effects)
+static void done(cau_logic *logic, double now_s, cau_outcome_kind outcome, cau_effects *effects)
 {
+	cau_logic_expect_sound(logic);
 	cau_act act = logic->acting;
 	effects->count = 0;
 	logic->moment++;
 	logic->now_s = fmax(logic->now_s, now_s);
-	CAU_ASSERT(act != CAU_ACT_NOTHING && act != CAU_ACT_STEP, "act %d is done", (int)act);
+	CAU_RULE(act != CAU_ACT_NOTHING && act != CAU_ACT_STEP, "act %d is done", (int)act);
 	if (act == CAU_ACT_LOOK)
 		looked(logic, outcome);
 	else if (act == CAU_ACT_CUT)
@@ -481,23 +479,49 @@ void cau_logic_done(cau_logic *logic, double now_s, cau_outcome_kind outcome, ca
 		take_effect(logic, effects);
 	if (outcome != CAU_DONE && logic->serving.asked.ask == CAU_ASK_ENERGY_OFF)
 		cau_drive_cut_itself(logic, logic->serving.asked.tool);
-	memset(&logic->serving, 0, sizeof logic->serving);
-	logic->acting = CAU_ACT_NOTHING;
-	expect_sound(logic);
+	cau_logic_end_act(logic);
+	cau_logic_expect_sound(logic);
 }
 
-void cau_logic_stepped(cau_logic *logic, double now_s, const char *reason, cau_effects *effects)
+void cau_logic_done(cau_logic *logic, double now_s, cau_outcome_kind outcome, cau_effects *effects)
 {
-	CAU_ASSERT(logic->acting == CAU_ACT_STEP, "act %d was no step", (int)logic->acting);
+	cau_rule_guard guard;
+	cau_rule_enter(&guard);
+	if (setjmp(guard.place) == 0) {
+		done(logic, now_s, outcome, effects);
+	} else {
+		cau_logic_break_off(logic, guard.reason, 0, false, effects);
+		cau_logic_end_act(logic);
+	}
+	cau_rule_leave(&guard);
+}
+
+static void stepped(cau_logic *logic, double now_s, const char *reason, cau_effects *effects)
+{
+	cau_logic_expect_sound(logic);
+	CAU_RULE(logic->acting == CAU_ACT_STEP, "act %d was no step", (int)logic->acting);
 	effects->count = 0;
 	logic->moment++;
 	logic->now_s = fmax(logic->now_s, now_s);
 	if (reason)
-		fault(logic, reason, effects);
+		cau_logic_fault(logic, reason, effects);
 	else
 		cau_time_end_tick(logic);
-	logic->acting = CAU_ACT_NOTHING;
-	expect_sound(logic);
+	cau_logic_end_act(logic);
+	cau_logic_expect_sound(logic);
+}
+
+void cau_logic_stepped(cau_logic *logic, double now_s, const char *reason, cau_effects *effects)
+{
+	cau_rule_guard guard;
+	cau_rule_enter(&guard);
+	if (setjmp(guard.place) == 0) {
+		stepped(logic, now_s, reason, effects);
+	} else {
+		cau_logic_break_off(logic, guard.reason, 0, false, effects);
+		cau_logic_end_act(logic);
+	}
+	cau_rule_leave(&guard);
 }
 
 double cau_logic_due_s(const cau_logic *logic)

@@ -17,6 +17,7 @@
 //     off is never refused, order is kept, newest motion wins       queue.c
 //     when a tick begins, pause, step, speed                        time.c
 //     one answer to each order, refused means unchanged             logic.c
+//     what holds between two calls, and what follows if it does not sound.c
 #pragma once
 
 #include <stdbool.h>
@@ -228,6 +229,7 @@ typedef struct cau_logic {
 	int64_t steps_left;
 	uint64_t stepping; // ticket of session.step; 0: none
 	char fault[320];   // FAULTED: why
+	char broken[320];  // the safety rule that was broken (cautery/assert.h); "": none was
 	// the store
 	bool store_takes;
 	char store_reason[160];
@@ -253,6 +255,10 @@ int32_t cau_logic_later_most(int32_t capacity); // the same with a queue so smal
 size_t cau_logic_bytes(int32_t capacity);
 // `bytes` is what cau_logic_bytes said. It is starting, and takes orders.
 void cau_logic_init(cau_logic *logic, int32_t capacity);
+
+// The four calls below check safety rules in every build. If one is broken the session is faulted:
+// all tools are to be cut, and `broken` says why. Orders but GO and DESTROY are refused until it
+// has gone elsewhere in time.
 
 // Takes one event. `effects` is emptied first; they are to be done in order, before the lock is
 // given back if others must not see them turned round.

@@ -19,7 +19,7 @@
 
 static bool is_for_later(const cau_logic *logic, const cau_asked *asked)
 {
-	CAU_ASSERT_INDEX(asked->ask, CAU_ASK_COUNT);
+	CAU_RULE_INDEX(asked->ask, CAU_ASK_COUNT);
 	return asked->tick > logic->tick && !logic->ended;
 }
 
@@ -91,11 +91,11 @@ bool cau_queue_off_waits(const cau_logic *logic, const char *tool)
 
 void cau_queue_remove(cau_logic *logic, cau_waiting *order)
 {
-	CAU_ASSERT_INDEX(order - logic->waiting, logic->count);
+	CAU_RULE_INDEX(order - logic->waiting, logic->count);
 	size_t after = (size_t)(logic->waiting + logic->count - (order + 1));
 	memmove(order, order + 1, after * sizeof *order);
 	logic->count--;
-	CAU_ASSERT(logic->count >= 0, "%d orders", logic->count);
+	CAU_RULE(logic->count >= 0, "%d orders", logic->count);
 }
 
 int32_t cau_logic_waiting(const cau_logic *logic)
@@ -139,8 +139,8 @@ void cau_queue_alive(cau_logic *logic, uint32_t client, const char *tool, double
 // The first cause is told; the moment is the newest.
 static void make_void(cau_logic *logic, cau_waiting *order, cau_void_cause cause)
 {
-	CAU_ASSERT(cause != CAU_VOIDED_NOT, "order %llu is void for no cause",
-	           (unsigned long long)order->asked.ticket);
+	CAU_RULE(cause != CAU_VOIDED_NOT, "order %llu is void for no cause",
+	         (unsigned long long)order->asked.ticket);
 	order->cut_moment = logic->moment;
 	if (order->void_cause == CAU_VOIDED_NOT)
 		order->void_cause = cause;
@@ -192,8 +192,8 @@ static void cut_silent(cau_logic *logic, cau_waiting *order, double now_s)
 
 void cau_queue_change_hands(cau_logic *logic, const cau_drive *drive, uint64_t moment)
 {
-	CAU_ASSERT(drive->tool[0] != 0, "a tool without a name changes hands at %llu",
-	           (unsigned long long)moment);
+	CAU_RULE(drive->tool[0] != 0, "a tool without a name changes hands at %llu",
+	         (unsigned long long)moment);
 	for (int32_t i = 0; i < logic->count; i++) {
 		cau_waiting *order = &logic->waiting[i];
 		bool its_own = drive->driver.client && order->asked.asker.client == drive->driver.client &&
@@ -206,7 +206,7 @@ void cau_queue_change_hands(cau_logic *logic, const cau_drive *drive, uint64_t m
 
 void cau_queue_remove_tool(cau_logic *logic, const char *tool, uint64_t moment)
 {
-	CAU_ASSERT(!cau_drive_find(logic, tool), "tool %s is removed and is there", tool);
+	CAU_RULE(!cau_drive_find(logic, tool), "tool %s is removed and is there", tool);
 	for (int32_t i = 0; i < logic->count; i++) {
 		cau_waiting *order = &logic->waiting[i];
 		bool about = order->asked.ask >= CAU_ASK_TOOL_KEEP &&
@@ -262,7 +262,7 @@ void cau_queue_forget(cau_logic *logic, uint32_t client)
 
 void cau_queue_darken(cau_logic *logic, const char *tool, uint64_t moment)
 {
-	CAU_ASSERT(!cau_drive_find(logic, tool), "tool %s is there and keeps its own moments", tool);
+	CAU_RULE(!cau_drive_find(logic, tool), "tool %s is there and keeps its own moments", tool);
 	for (int32_t i = 0; i < logic->count; i++) {
 		cau_waiting *order = &logic->waiting[i];
 		if (order->asked.ask == CAU_ASK_ENERGY_ON && order->moment < moment &&
@@ -334,8 +334,8 @@ static cau_status no_room(const cau_logic *logic, const cau_asked *asked, int32_
 
 static void refuse(cau_effects *effects, uint64_t ticket, const cau_error *error, int32_t code)
 {
-	CAU_ASSERT(error->status != CAU_OK, "order %llu is refused for no reason",
-	           (unsigned long long)ticket);
+	CAU_RULE(error->status != CAU_OK, "order %llu is refused for no reason",
+	         (unsigned long long)ticket);
 	cau_effect *effect = cau_effect_add(effects, CAU_EFFECT_REFUSE, ticket);
 	effect->error = *error;
 	effect->code = code;
@@ -344,7 +344,7 @@ static void refuse(cau_effects *effects, uint64_t ticket, const cau_error *error
 // Energy is off from this moment on, whatever becomes of the order itself.
 static void turn_off(cau_logic *logic, const cau_asked *asked, bool queued, cau_effects *effects)
 {
-	CAU_ASSERT(asked->ask == CAU_ASK_ENERGY_OFF, "order %d turns energy off", (int)asked->ask);
+	CAU_RULE(asked->ask == CAU_ASK_ENERGY_OFF, "order %d turns energy off", (int)asked->ask);
 	char cause[CAU_CAUSE_BYTES];
 	cau_drive *drive = cau_drive_find(logic, asked->tool);
 	snprintf(cause, sizeof cause, "turned off by %.24s", asked->asker.name);
@@ -362,8 +362,8 @@ static void turn_off(cau_logic *logic, const cau_asked *asked, bool queued, cau_
 // True if it needs no place in the queue: it was done, or its place is elsewhere.
 static bool take_without_room(cau_logic *logic, const cau_asked *asked, cau_effects *effects)
 {
-	CAU_ASSERT(logic->moment > 0, "an order before the first event, of ticket %llu",
-	           (unsigned long long)asked->ticket);
+	CAU_RULE(logic->moment > 0, "an order before the first event, of ticket %llu",
+	         (unsigned long long)asked->ticket);
 	if (asked->ask == CAU_ASK_PAUSE)
 		logic->pause_moment = logic->moment;
 	else if (asked->ask != CAU_ASK_ENERGY_OFF)
@@ -377,7 +377,7 @@ static bool take_without_room(cau_logic *logic, const cau_asked *asked, cau_effe
 // stands between the two, and the newer pose counts.
 static cau_waiting *superseded(cau_logic *logic, const cau_asked *asked)
 {
-	CAU_ASSERT(asked->ask == CAU_ASK_MOTION, "order %d takes the place of motion", (int)asked->ask);
+	CAU_RULE(asked->ask == CAU_ASK_MOTION, "order %d takes the place of motion", (int)asked->ask);
 	cau_waiting *found = NULL;
 	for (int32_t i = 0; i < logic->count; i++) {
 		cau_waiting *order = &logic->waiting[i];
@@ -396,7 +396,7 @@ static cau_waiting *superseded(cau_logic *logic, const cau_asked *asked)
 
 static void append(cau_logic *logic, const cau_asked *asked)
 {
-	CAU_ASSERT_INDEX(logic->count, 2 * logic->capacity);
+	CAU_RULE_INDEX(logic->count, 2 * logic->capacity);
 	logic->waiting[logic->count++] =
 		(cau_waiting){.asked = *asked,
 	                  .moment = logic->moment,
@@ -405,9 +405,9 @@ static void append(cau_logic *logic, const cau_asked *asked)
 
 void cau_queue_take(cau_logic *logic, const cau_asked *asked, cau_effects *effects)
 {
-	CAU_ASSERT_INDEX(asked->ask, CAU_ASK_COUNT);
-	CAU_ASSERT(logic->count >= 0 && logic->count <= 2 * logic->capacity,
-	           "%d orders in a queue of %d", logic->count, logic->capacity);
+	CAU_RULE_INDEX(asked->ask, CAU_ASK_COUNT);
+	CAU_RULE(logic->count >= 0 && logic->count <= 2 * logic->capacity, "%d orders in a queue of %d",
+	         logic->count, logic->capacity);
 	cau_error error = {0};
 	int32_t code;
 	if (logic->ended) {

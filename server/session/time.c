@@ -18,11 +18,11 @@ void cau_time_begin_tick(cau_logic *logic, double now_s)
 {
 	if (logic->state == CAU_SESSION_PAUSED) {
 		logic->steps_left--;
-		CAU_ASSERT(logic->steps_left >= 0, "%lld steps left", (long long)logic->steps_left);
+		CAU_RULE(logic->steps_left >= 0, "%lld steps left", (long long)logic->steps_left);
 		return;
 	}
 	double period_s = logic->step_s / logic->speed;
-	CAU_ASSERT(period_s > 0, "a tick of %g s at speed %g", logic->step_s, logic->speed);
+	CAU_RULE(period_s > 0, "a tick of %g s at speed %g", logic->step_s, logic->speed);
 	logic->next_step_s += period_s;
 	if (now_s - logic->next_step_s > fmax(BEHIND_MOST_S, period_s))
 		logic->next_step_s = now_s;
@@ -30,7 +30,7 @@ void cau_time_begin_tick(cau_logic *logic, double now_s)
 
 void cau_time_end_tick(cau_logic *logic)
 {
-	CAU_ASSERT(logic->tick < UINT64_MAX, "tick %llu", (unsigned long long)logic->tick);
+	CAU_RULE(logic->tick < UINT64_MAX, "tick %llu", (unsigned long long)logic->tick);
 	logic->tick++;
 }
 
@@ -64,7 +64,7 @@ bool cau_time_step(cau_logic *logic, const cau_asked *asked, cau_action *action)
 	if (logic->state != CAU_SESSION_PAUSED || logic->stepping)
 		return refuse(action, CAU_BAD_STATE, "only a paused session is stepped, once at a time");
 	logic->steps_left = asked->ticks;
-	CAU_ASSERT(logic->steps_left > 0, "%lld steps are asked for", (long long)logic->steps_left);
+	CAU_RULE(logic->steps_left > 0, "%lld steps are asked for", (long long)logic->steps_left);
 	logic->stepping = asked->ticket;
 	return true;
 }
@@ -76,7 +76,7 @@ bool cau_time_go(const cau_logic *logic, cau_action *action)
 
 void cau_time_speed(cau_logic *logic, double speed, double now_s)
 {
-	CAU_ASSERT(speed > 0, "a speed of %g", speed);
+	CAU_RULE(speed > 0, "a speed of %g", speed);
 	logic->speed = speed;
 	logic->next_step_s = now_s;
 }

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// What a function takes for granted, said so that a debug build checks it.
+// What a function takes for granted, said so that a build checks it: assertions in debug builds,
+// safety rules in every build.
 //
 // An assertion is about this program's own mistakes: an index beyond its array, a call out of
 // order, a count below zero, a table without a row for a kind. What a scene, a client, a file or a
@@ -21,6 +22,7 @@
 //     }
 #pragma once
 
+#include <setjmp.h>
 #include <stdint.h>
 
 // Writes "FILE:LINE: FUNCTION: CONDITION does not hold: " and the words to stderr, in one write,
@@ -47,3 +49,56 @@ static inline int cau_is_index(int64_t index, int64_t count)
 #define CAU_ASSERT_INDEX(index, count)                                                             \
 	CAU_ASSERT(cau_is_index((int64_t)(index), (int64_t)(count)), "number %lld of %lld",            \
 	           (long long)(index), (long long)(count))
+
+// ---- safety rules -------------------------------------------------------------------------------
+
+// What holds for energy, tools and the bounds of frames is checked in every build. A rule that is
+// broken is a mistake of this program too, but a daemon that serves other sessions must not end for
+// it. So it leaves the work that the thread is at, and goes back to the guard around it. The
+// guard's owner makes its state safe and reports. What lies between must own nothing: no lock, no
+// memory, no file.
+//
+//     static int take(const int *order, int count)
+//     {
+//         CAU_RULE(count > 0, "%d orders", count);
+//         return order[count - 1];
+//     }
+//
+//     int take_safely(const int *order, int count, cau_rule_guard *guard)
+//     {
+//         int taken = 0;
+//         cau_rule_enter(guard);
+//         if (setjmp(guard->place) == 0)
+//             taken = take(order, count);
+//         cau_rule_leave(guard); // guard->reason is "" unless a rule was broken
+//         return taken;
+//     }
+
+enum { CAU_RULE_REASON_BYTES = 320 };
+
+typedef struct cau_rule_guard {
+	jmp_buf place; // the owner calls setjmp(guard.place) right after cau_rule_enter
+	struct cau_rule_guard *outer;
+	char reason[CAU_RULE_REASON_BYTES]; // the broken rule, its place, and the words
+} cau_rule_guard;
+
+// Makes `guard` the calling thread's innermost one. cau_rule_leave must follow in the same
+// function.
+void cau_rule_enter(cau_rule_guard *guard);
+// Makes the guard around `guard` the innermost one again. `guard` must be the innermost.
+void cau_rule_leave(cau_rule_guard *guard);
+
+// Fills the reason of the thread's innermost guard and goes back to its setjmp, which returns 1. A
+// thread without a guard ends the program, as cau_assert_failed does.
+__attribute__((noreturn, cold, format(printf, 5, 6))) void
+cau_rule_broken(const char *condition, const char *file, int line, const char *function,
+                const char *format, ...);
+
+// CAU_RULE(condition, format, ...): the words say what was the case, with the numbers.
+#define CAU_RULE(condition, ...)                                                                   \
+	((condition) ? (void)0 : cau_rule_broken(#condition, __FILE__, __LINE__, __func__, __VA_ARGS__))
+
+// 0 <= index < count, for integers of any kind.
+#define CAU_RULE_INDEX(index, count)                                                               \
+	CAU_RULE(cau_is_index((int64_t)(index), (int64_t)(count)), "number %lld of %lld",              \
+	         (long long)(index), (long long)(count))

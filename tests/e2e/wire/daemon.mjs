@@ -49,6 +49,8 @@ export class Daemon {
 
 	onLine(line) {
 		this.lines.push(line);
+		if (line.includes('event=rule_broken')) // whatever the test looks for, it has found a mistake
+			process.exitCode = 1, console.error(line);
 		if (process.env.E2E_LOG)
 			console.error(line);
 		this.waiters = this.waiters.filter((w) => !(w.pattern.test(line) && (w.resolve(line), true)));

@@ -10,7 +10,9 @@
 
 #include <cmocka.h>
 
+#include "cautery/assert.h"
 #include "protocol/wire/chain.h"
+#include "wire/frame_encoder.h"
 
 static void test_refused_frames_leave_the_state(void **unused)
 {
@@ -208,6 +210,59 @@ static void test_definitions_are_checked(void **unused)
 	                 CAU_LIMIT);
 }
 
+// A chain whose memory is spoilt makes no frame, and ends no program, in any build.
+static void test_a_spoilt_chain_makes_no_frame(void **unused)
+{
+	(void)unused;
+	for (int i = 0; i < 3; i++) {
+		chain of;
+		chain_init(&of, 6, 6);
+		chain_pass(&of);
+		tissue_move(&of.tissue, 1, 0.05);
+		cau_stream_sample sample = tissue_sample(&of.tissue);
+		cau_error error = {0};
+		size_t bytes;
+		cau_frame_encoder spared = *of.encoder;
+		if (i == 0)
+			of.encoder->header.epoch = 0;
+		else if (i == 1)
+			of.encoder->tools.count = CAU_MAX_TOOLS + 1;
+		else
+			of.encoder->tools.tools[0].shape = -1;
+		cau_status status =
+			i == 0 ? cau_frame_encode(of.encoder, &sample, of.bytes, of.capacity, &bytes, &error)
+				   : cau_frame_encode_key(of.encoder, of.bytes, of.capacity, &bytes, &error);
+		assert_int_equal(status, CAU_FAULTED);
+		assert_non_null(strstr(error.reason, "does not hold"));
+		*of.encoder = spared;
+		chain_finish(&of);
+	}
+}
+
+// The innermost guard is the one that is gone back to; the outer one serves again after it.
+static void test_guards_lie_in_one_another(void **unused)
+{
+	(void)unused;
+	cau_rule_guard outer, inner;
+	volatile int order = 0;
+	cau_rule_enter(&outer);
+	if (setjmp(outer.place) == 0) {
+		cau_rule_enter(&inner);
+		if (setjmp(inner.place) == 0)
+			CAU_RULE(order < 0, "order %d", order);
+		else
+			order = order * 10 + 1;
+		cau_rule_leave(&inner);
+		CAU_RULE_INDEX(order, 1);
+	} else {
+		order = order * 10 + 2;
+	}
+	cau_rule_leave(&outer);
+	assert_int_equal(order, 12);
+	assert_non_null(strstr(inner.reason, "order < 0 does not hold: order 0"));
+	assert_non_null(strstr(outer.reason, "number 1 of 1"));
+}
+
 int main(void)
 {
 	const struct CMUnitTest tests[] = {
@@ -217,6 +272,8 @@ int main(void)
 		cmocka_unit_test(test_a_damaged_frame_asks_for_a_key_frame),
 		cmocka_unit_test(test_flipped_bits_never_do_harm),
 		cmocka_unit_test(test_a_bad_sample_leaves_the_chain),
+		cmocka_unit_test(test_a_spoilt_chain_makes_no_frame),
+		cmocka_unit_test(test_guards_lie_in_one_another),
 		cmocka_unit_test(test_definitions_are_checked),
 	};
 	return cmocka_run_group_tests(tests, NULL, NULL);

@@ -72,6 +72,31 @@ static void no_tick_begins_with_energy_that_nobody_turned_on(void **state)
 	assert_int_equal(t.h->tick, 0);
 }
 
+// A broken safety rule ends no daemon: in every build this session alone is faulted, its tool is
+// cut, and who asks is answered.
+static void a_broken_rule_faults_the_session(void **state)
+{
+	(void)state;
+	turn_on_and_step();
+	pthread_mutex_lock(&t.h->deciding);
+	t.h->logic->steps_left = -7;
+	pthread_mutex_unlock(&t.h->deciding);
+	cau_error error = {0};
+	cau_order *finder = hosted_new_order(OFF, CAU_ORDER_PAUSE, CAU_METHOD_SESSION_PAUSE);
+	assert_int_equal(cau_hosted_submit(t.h, finder, &error), CAU_FAULTED);
+	assert_non_null(strstr(error.reason, "safety rule"));
+	free(finder);
+	const hosted_answer *answer = step(FAULTED, 5);
+	assert_int_equal(answer->status, CAU_FAULTED);
+	assert_non_null(strstr(answer->reason, "safety rule"));
+	assert_int_equal(cau_decided_state(t.h), CAU_SESSION_FAULTED);
+	assert_int_equal(t.h->tick, 3);
+	cau_order *order = hosted_new_order(RESET, CAU_ORDER_RESET, CAU_METHOD_SESSION_RESET);
+	assert_int_equal(ask(RESET, order)->status, CAU_OK);
+	assert_int_equal(cau_decided_state(t.h), CAU_SESSION_PAUSED);
+	assert_false(t.h->rule_reported);
+}
+
 static void what_is_on_is_stepped(void **state)
 {
 	(void)state;
@@ -100,6 +125,8 @@ int main(void)
 	const struct CMUnitTest tests[] = {
 		cmocka_unit_test_setup_teardown(no_tick_begins_with_energy_that_nobody_turned_on,
 	                                    open_broken, hosted_close_surroundings),
+		cmocka_unit_test_setup_teardown(a_broken_rule_faults_the_session, open_broken,
+	                                    hosted_close_surroundings),
 		cmocka_unit_test_setup_teardown(what_is_on_is_stepped, open_broken,
 	                                    hosted_close_surroundings),
 	};

@@ -46,6 +46,7 @@ static void take(reach_move *m, cau_logic_event taken)
 {
 	taken.time_s = REACH_NOW_S;
 	cau_logic_take(m->logic, &taken, &m->effects);
+	must(m, !*m->logic->broken, "a safety rule is broken");
 	bool idle = m->before->acting == CAU_ACT_NOTHING;
 	bool newly_due = cau_logic_due_s(m->before) > 0 && cau_logic_due_s(m->logic) == 0;
 	must(m, !idle || !newly_due || has_effect(m, CAU_EFFECT_WAKE), "the worker is not woken");

@@ -415,6 +415,8 @@ bool world_do(world *w, uint32_t code)
 		cancel(w, client, more / 8);
 	else
 		work(w, more);
+	if (*w->logic->broken)
+		world_wrong(w, "a rule was broken: %s", w->logic->broken);
 	return !*w->wrong;
 }
 
