@@ -215,10 +215,10 @@ tell_running() {
 		  open      $url
 		  look      curl ${url}api/sessions
 	END_OF_TEXT
-	if [ -x build/bin/cautery ]; then
+	if [ -x build/bin/cautery ] && [ -x build/bin/cautery-sim ]; then
 		cat <<-END_OF_TEXT
 			  next      build/bin/cautery --url ws${url#http} watch d1-layers
-			            build/bin/cautery --url ws${url#http} run d1-layers deploy/scenes/scripts/layers-cut.jsonl
+			            build/bin/cautery-sim --scene layers --print-cut | build/bin/cautery --url ws${url#http} run d1-layers -
 		END_OF_TEXT
 	fi
 	if [ "$detach" = yes ]; then

@@ -1,8 +1,8 @@
-# cautery_light_scenes(FROM TO): the scenes of a folder, and what lies beside them, with half as many cells
+# cautery_light_scenes(FROM TO): the scenes of a folder, with half as many cells
 # along each axis of every sheet and slab: the same layers, laws, tools and cuts in an eighth of the elements.
 # For tests under sanitizers, where a step takes thirty times as long, whose bounds do not know the resolution.
 function(cautery_light_scenes from to)
-  file(GLOB_RECURSE files RELATIVE "${from}" CONFIGURE_DEPENDS "${from}/*.json" "${from}/*.jsonl")
+  file(GLOB_RECURSE files RELATIVE "${from}" CONFIGURE_DEPENDS "${from}/*.json")
   foreach(file IN LISTS files)
     configure_file("${from}/${file}" "${to}/${file}" COPYONLY) # which configures anew when it changes
     if(file MATCHES "\\.json$")

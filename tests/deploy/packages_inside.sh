@@ -63,7 +63,7 @@ run_daemon
 session=$(cautery create fascia)
 cautery ls | grep -q "$session" || fail "the session is not listed"
 cautery speed "$session" 10 >/dev/null
-cautery run "$session" /usr/share/cautery/scenes/scripts/fascia-cut.jsonl 2>/dev/null | tee /tmp/run
+cautery-sim --scene fascia --print-cut | cautery run "$session" - 2>/dev/null | tee /tmp/run
 grep -q ' [1-9][0-9]* faces gone' /tmp/run || fail "nothing was cut"
 cautery pause "$session"
 vertices >/tmp/before

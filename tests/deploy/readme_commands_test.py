@@ -182,7 +182,7 @@ class Commands(unittest.TestCase):
         self.run_it("curl http://127.0.0.1:8740/api/sessions", '"d1-layers"', at)
         for _ in range(2):
             self.run_it("build/bin/cautery --url ws://127.0.0.1:8740/ watch d1-layers", r"tick \d+ .*hook", at, until=True)
-        self.run_it("build/bin/cautery --url ws://127.0.0.1:8740/ run d1-layers deploy/scenes/scripts/layers-cut.jsonl",
+        self.run_it("build/bin/cautery-sim --scene layers --print-cut | build/bin/cautery --url ws://127.0.0.1:8740/ run d1-layers -",
                     r"\d", at, until=True)
 
     def test_2_the_command_line(self):
@@ -191,7 +191,7 @@ class Commands(unittest.TestCase):
         self.run_it("cautery create layers --name demo", "d1-demo", at)
 
         def drive():
-            self.run_it("cautery run d1-demo deploy/scenes/scripts/layers-cut.jsonl", r"\d", at, until=True)
+            self.run_it("cautery-sim --scene layers --print-cut | cautery run d1-demo -", r"\d", at, until=True)
             self.run_it("cautery tool d1-demo hook move 0 0 0 on wait 3 line 0.02 0 0 0.002 off", "", at)
 
         def look():

@@ -54,7 +54,7 @@ static inline int cau_is_index(int64_t index, int64_t count)
 
 // What holds for energy, tools and the bounds of frames is checked in every build. A rule that is
 // broken is a mistake of this program too, but a daemon that serves other sessions must not end for
-// it. So it leaves the work that the thread is at, and goes back to the guard around it. The
+// it. So it leaves the work that the thread is at, and returns to the guard around it. The
 // guard's owner makes its state safe and reports. What lies between must own nothing: no lock, no
 // memory, no file.
 //

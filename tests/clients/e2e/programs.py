@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """The clients' programs and daemons for them. Where they are comes from the environment:
-PROGRAMS (folder of cautery, cautery-load, cautery-teaching, cauteryd), DOUBLE (a cauteryd without
+PROGRAMS (folder of cautery, cautery-load, cautery-teaching, cautery-sim, cauteryd), DOUBLE (a cauteryd without
 physics) and SCENES."""
 
 import json

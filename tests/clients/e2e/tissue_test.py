@@ -27,9 +27,9 @@ class Tissue(programs.Case):
 
     def test_the_script_of_a_scene_cuts_it(self):
         session = self.create("fascia")
-        with open(os.path.join(os.environ["SCENES"], "scripts", "fascia-cut.jsonl"),
-                  encoding="utf-8") as lines:
-            first = [line for line in lines if json.loads(line)["tick"] <= 420]
+        scene = os.path.join(os.environ["SCENES"], "fascia.json")
+        script, _ = self.program("cautery-sim", "--scene", scene, "--print-cut")
+        first = [line for line in script.splitlines(True) if json.loads(line)["tick"] <= 420]
         result = self.json("run", session, self.path("cut.jsonl", "".join(first)))
         self.assertEqual(result["refused"], 0)
         self.assertGreater(result["faces_gone"], 0)
