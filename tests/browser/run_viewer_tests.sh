@@ -1,6 +1,6 @@
 #!/usr/bin/env bash
 # SPDX-License-Identifier: GPL-3.0-or-later
-# One stage of the viewer's tests: run_viewer_tests.sh types|lint|unit|build|browser; or `pictures`, which
+# One stage of the viewer's tests: run_viewer_tests.sh types|lint|unit|build|browser|firefox; or `pictures`, which
 # makes clients/web/pictures anew from those of the browser tests that take them.
 # Exit code 77: skipped, with the reason. ctest sets the environment (tests/browser/CMakeLists.txt).
 set -euo pipefail
@@ -31,7 +31,7 @@ browser | pictures)
 	[ -x "${CAUTERYD:-}" ] || skip "the daemon is not built here"
 	mkdir -p "$CAUTERY_SCREENSHOTS"
 	if [ "$1" = browser ]; then
-		exec nice npm run --silent browser
+		exec nice npm run --silent browser -- --exclude '**/holds_firefox.test.ts'
 	fi
 	npm run --silent build
 	npm run --silent browser -- layers first_view asked
@@ -39,8 +39,13 @@ browser | pictures)
 		cp "$CAUTERY_SCREENSHOTS/$(basename "$picture")" pictures/
 	done
 	;;
+firefox)
+	[ -x /usr/bin/firefox-esr ] || skip "no /usr/bin/firefox-esr"
+	[ -x "${CAUTERYD:-}" ] || skip "the daemon is not built here"
+	exec nice npm run --silent browser -- holds_firefox
+	;;
 *)
-	echo "usage: run_viewer_tests.sh types|lint|unit|build|browser|pictures" >&2
+	echo "usage: run_viewer_tests.sh types|lint|unit|build|browser|firefox|pictures" >&2
 	exit 2
 	;;
 esac

@@ -12,8 +12,8 @@ source_folder=$(cd "$(dirname "${BASH_SOURCE[0]}")/../.." && pwd)
 folder=${1:?usage: packages.sh FOLDER}
 mirror=${CAUTERY_MIRROR:-http://deb.debian.org/debian}
 base=$folder/base root=$folder/root
-# The first whose snapshots (version 10) are read today.
-pinned=298366c
+# The first that had packages: snapshots of version 4, a store without what came since, no TLS.
+pinned=3637652
 
 skip() {
 	echo "skipped: $*"

@@ -3,6 +3,7 @@
 import { Box3 } from 'three';
 
 import { Aim } from './hands/aim';
+import { watchHolds } from './hands/hold_watch';
 import { Keys } from './hands/keys';
 import { Pedal } from './hands/pedal';
 import { Pointer } from './hands/pointer';
@@ -41,7 +42,9 @@ import type { Layer, Tool } from './wire/messages.gen';
 import { errorWords } from './model/sentences';
 
 const model = new Model();
-const viewport = new Viewport(byId<HTMLCanvasElement>('picture'), () => byId('picture').getBoundingClientRect().bottom - byId('handles').getBoundingClientRect().top);
+const picture = byId<HTMLCanvasElement>('picture');
+const handles = byId('handles');
+const viewport = new Viewport(picture, () => picture.getBoundingClientRect().bottom - handles.getBoundingClientRect().top);
 const address = readAddress();
 viewport.wantedPose = address.camera;
 
@@ -74,14 +77,15 @@ const control = new Control(model, link);
 const hand = new ToolHand(model, control, viewport);
 const ruler = new Ruler(new Aim(viewport));
 const pointer = new Pointer(viewport.canvas, viewport, hand, ruler);
-const pedal = new Pedal(() => hand.hold('pedal'), () => hand.letGo('pedal'));
+const pedal = new Pedal((event) => hand.take(event));
+watchHolds(hand);
 let spaceMouse: SpaceMouse | null = null;
 const makeSpaceMouse = (changed: () => void): SpaceMouse => {
   spaceMouse = new SpaceMouse({
     nudge: (right, up, nearer) => hand.nudge(right, up, nearer),
     turn: (aboutShaft, tilt) => hand.turn(aboutShaft, tilt),
-    hold: () => hand.hold('cap'),
-    letGo: () => hand.letGo('cap'),
+    hold: () => hand.take({ type: 'press', by: 'cap', id: 'cap', place: null, ripe: true }),
+    letGo: (unplugged) => hand.take({ type: 'release', id: 'cap', why: unplugged ? 'unplugged' : 'released' }),
   }, changed);
   return spaceMouse;
 };
@@ -163,7 +167,7 @@ connect();
 
 const sizes = new ResizeObserver(() => viewport.resize());
 sizes.observe(viewport.canvas);
-sizes.observe(byId('handles'));
+sizes.observe(handles);
 
 function animate(): void {
   keys.advance();

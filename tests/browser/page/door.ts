@@ -40,6 +40,9 @@ export class Door {
     await once(this.server, 'close');
   }
 
+  /** Told of each call or notification of a page, as it arrives here. */
+  heard: ((method: string, params: Readonly<Record<string, unknown>>) => void) | null = null;
+
   /** Changes what the daemon says to pages. */
   change: ((text: string) => string) | null = null;
 
@@ -69,8 +72,9 @@ export class Door {
     for (const socket of [page, daemon]) this.sockets.add(socket);
     const names = new Map<number, string>();
     page.onText = (text) => {
-      const { id, method } = JSON.parse(text) as { id?: number; method: string };
+      const { id, method, params } = JSON.parse(text) as { id?: number; method: string; params: Record<string, unknown> };
       this.asked.push(method);
+      this.heard?.(method, params);
       if (id !== undefined) names.set(id, method);
       daemon.sendText(text);
     };

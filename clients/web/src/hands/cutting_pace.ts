@@ -2,12 +2,15 @@
 // How far a hot tool may go on: as fast as its heat parts the tissue under it. That takes simulated time, so
 // the frames tell it: on a machine that simulates at half the clock's rate a cut takes twice as long and looks
 // the same.
+import type { Vector3 } from 'three';
+
 import type { Model } from '../model/model';
 import { toolSizes } from '../model/tool_parts';
 import type { Scene, Tool } from '../wire/messages.gen';
 
 const SAVED_S = 0.1; // of simulated time that a tool may catch up with at once
 const SLOWEST_M_S = 0.001;
+const ARRIVED_M = 0.001;
 const FASTEST_M_S = 0.01; // the hottest tip leaves much behind it beyond this
 const BODY_C = 37;
 const USUAL_C = 170; // of a tip
@@ -38,6 +41,8 @@ export function cuttingSpeed(scene: Scene, tool: Tool): { metresPerS: number; st
 }
 
 export class CuttingPace {
+  /** where a cut begins, until the tool is there */
+  from: Vector3 | null = null;
   private last: { epoch: string; timeS: number } | null = null;
   private savedS = 0;
 
@@ -48,13 +53,17 @@ export class CuttingPace {
     });
   }
 
-  /** The tool is where a cut begins, and stays there first. */
-  begin(): void {
-    this.savedS = -this.speed.stayS;
+  /** How far a hot tool may go: fast to where the cut begins, not a step beyond it, and slowly from there on. */
+  metresFrom(position: Vector3): number {
+    const left = this.from?.distanceTo(position) ?? 0;
+    if (left > ARRIVED_M) return left;
+    if (this.from) this.savedS = -this.speed.stayS; // it stays there first
+    this.from = null;
+    return this.take();
   }
 
   /** Metres since this was asked last. */
-  take(): number {
+  private take(): number {
     if (this.savedS <= 0) return 0;
     const metres = this.speed.metresPerS * this.savedS;
     this.savedS = 0;

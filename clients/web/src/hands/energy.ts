@@ -3,18 +3,17 @@
 // seconds at most. Who lets go of everything has switched off. What was held and went dark all the same is
 // said at once, with what brings it back, and comes back only by a fresh press.
 //
-// The latch's limit is the daemon's: with the latch goes an order to switch off at a later tick, which the
-// daemon keeps whatever becomes of this page. Such an order cannot be taken back. One whose latch has ended
-// before may darken what was pressed since; that alone is switched on again by itself.
+// The latch's limit is the daemon's: it goes with the enable, and the daemon keeps it whatever becomes of this
+// page. The page never enables energy without a press.
 import type { Control } from '../model/control';
 import type { Model } from '../model/model';
 import { nameOf } from '../model/person';
 import type { EnergyOff, ToolState } from '../wire/records';
 import type { Frame } from '../wire/worker_messages';
 import { errorWords } from '../model/sentences';
+import { LATCH, type Held, type Holds, type Lost } from './holds';
 
-/** What can be held, and how to hold it anew. */
-export type Held = 'space' | 'button' | 'trigger' | 'pointer' | 'pedal' | 'cap' | 'latch';
+/** How to hold it again. */
 const AGAIN: Readonly<Record<Held, string>> = {
   space: 'Let go of Space and press it again.',
   button: 'Let go of Energy and press it again.',
@@ -31,37 +30,43 @@ const LOST_WORDS: Readonly<Record<EnergyOff, string>> = {
   never_enabled: 'the simulation cut it before it came on',
   commanded: 'somebody switched it off',
 };
+/** Why a hold ended that nobody ended by letting go. */
+const LET_GO_WORDS: Readonly<Record<Exclude<Lost, 'released'>, string>> = {
+  buttons: 'a second button was pressed. Release both and press again.',
+  cancelled: 'the browser took the press over. Press again.',
+  second: 'a second finger came. Lift both and press again.',
+  focus: 'the focus went to another control. Press again.',
+  typing: 'the focus went to a field. Press again.',
+  menu: 'a menu was asked for. Press again.',
+  dialog: 'a dialog opened. Press again.',
+  blur: 'the page lost the focus. Press again.',
+  hidden: 'the page was out of sight. Press again.',
+  gone: 'the control that was held cannot be used any more.',
+  unplugged: 'the device is not connected any more.',
+  past: 'you look at the past.',
+};
 const PAUSED = 'the session is paused';
 const KEY = 'energy';
 /** Simulated seconds, in which heat does what it does: a long cut of a hand, not one that was forgotten. */
 export const LATCH_S = 15;
 
-/** An order to switch off that waits at the daemon. */
-interface Limit {
-  session: string | null;
-  tool: string;
-  tick: number;
-}
-
 type State = 'off' | 'asked' | 'on' | 'lost';
 
 export class Energy {
-  private readonly held = new Set<Held>();
   private state: State = 'off';
   private tool: string | null = null;
   /** counts enables, so that a late answer to an earlier one is told from that to the last */
   private enables = 0;
   /** where the last enable took effect */
   private since: { epoch: string; tick: number } | null = null;
-  /** of the latch that is on */
-  private limit: Limit | null = null;
-  /** of latches that ended before */
-  private stale: Limit[] = [];
+  /** of the last enable, in ticks from where it took effect; null: it has no limit */
+  private limit: number | null = null;
 
   constructor(
     private readonly model: Model,
     private readonly control: Control,
     private readonly sequence: () => number,
+    private readonly holds: Holds,
     /** told when nothing holds any more although nobody let go: a latch has ended */
     private readonly ended: () => void,
   ) {
@@ -74,7 +79,7 @@ export class Energy {
 
   /** Something is held that should keep energy on. */
   get wanted(): boolean {
-    return this.held.size > 0;
+    return this.holds.held;
   }
 
   /** Energy was asked for and, as far as this page knows, not cut since. */
@@ -83,19 +88,13 @@ export class Energy {
   }
 
   get latched(): boolean {
-    return this.held.has('latch');
+    return this.holds.latched;
   }
 
   /** Simulated seconds until the latch ends. */
   get latchedForS(): number {
-    const { limit, model } = this;
-    return limit && model.frame ? Math.max(0, (limit.tick - model.frame.tick) * this.stepS) : LATCH_S;
-  }
-
-  hold(by: Held): void {
-    if (this.held.has(by)) return;
-    this.held.add(by);
-    if (by === 'latch' && this.alive) this.setLimit();
+    const { limit, since, model } = this;
+    return limit !== null && since && model.frame ? Math.max(0, (since.tick + limit - model.frame.tick) * this.stepS) : LATCH_S;
   }
 
   /** Switches on if something is held; `fresh`: it has just been pressed, which also brings back what was cut. */
@@ -109,9 +108,32 @@ export class Energy {
       this.lose(PAUSED);
       return;
     }
+    this.ask(tool);
+    this.model.emit('tools', undefined);
+  }
+
+  /** Energy that is on already gets the latch's limit, because the latch was pressed as well. */
+  limitByLatch(): void {
+    if (this.tool !== null && this.alive && this.latched) this.ask(this.tool);
+  }
+
+  /** Nothing is held any more. What nobody let go of gets its words. */
+  off(why: Lost): void {
+    const had = this.alive;
+    this.end();
+    if (had && why !== 'released') this.model.say('warning', `Energy is off: ${LET_GO_WORDS[why]}`);
+  }
+
+  private get stepS(): number {
+    return this.model.summary?.step_s ?? 1 / 60;
+  }
+
+  private ask(tool: string): void {
     const epoch = this.model.frame?.epoch ?? '';
     const enable = ++this.enables;
-    this.control.call('tool.energize', { tool, sequence: this.sequence(), energized: true }).then(
+    this.limit = this.latched ? Math.round(LATCH_S / this.stepS) : null;
+    const ticks = this.limit === null ? {} : { ticks: this.limit };
+    this.control.call('tool.energize', { tool, sequence: this.sequence(), energized: true, ...ticks }).then(
       ({ tick }) => {
         if (enable === this.enables) this.since = { epoch, tick };
       },
@@ -119,62 +141,14 @@ export class Energy {
         if (enable === this.enables) this.lose(error instanceof Error ? error.message : String(error));
       },
     );
-    if (this.latched) this.setLimit();
-    this.model.emit('tools', undefined);
   }
 
-  release(by: Held): void {
-    if (!this.held.delete(by)) return;
-    if (by === 'latch') this.forgetLimit();
-    if (!this.wanted) this.off();
-    else this.model.emit('tools', undefined);
-  }
-
-  /** Everything is let go at once: the page is out of sight, or another tool is in hand. */
-  releaseAll(): boolean {
-    const had = this.alive;
-    this.held.clear();
-    this.forgetLimit();
-    this.off();
-    return had;
-  }
-
-  private get stepS(): number {
-    return this.model.summary?.step_s ?? 1 / 60;
-  }
-
-  /** Has the daemon switch off when the latch's time is up. */
-  private setLimit(): void {
-    const { model, tool } = this;
-    if (this.limit || tool === null || !model.frame) return;
-    const tick = model.frame.tick + Math.round(LATCH_S / this.stepS);
-    this.limit = { session: model.session, tool, tick };
-    this.control.call('tool.energize', { tool, sequence: this.sequence(), energized: false, tick }).catch((error: unknown) => {
-      if (this.limit?.tick === tick) this.lose(`its limit was not taken: ${errorWords(error)}`);
-    });
-  }
-
-  /** The latch has ended; its order waits on. */
-  private forgetLimit(): void {
-    if (this.limit) this.stale.push(this.limit);
-    this.limit = null;
-  }
-
-  /** Whether it was an order of a latch long ended that has darkened what is held now. */
-  private endedByStale({ tick }: Frame): boolean {
-    const { since, tool, model } = this;
-    const before = this.stale.length;
-    const due = (one: Limit): boolean => one.session === model.session && one.tool === tool && one.tick <= tick;
-    const hit = this.stale.some((one) => due(one) && since !== null && one.tick > since.tick);
-    this.stale = this.stale.filter((one) => !due(one));
-    return hit && this.stale.length < before;
-  }
-
-  private off(): void {
+  private end(): void {
     const { tool, state } = this;
     this.model.unsay(KEY);
     this.state = 'off';
     this.since = null;
+    this.limit = null;
     this.tool = null;
     if (tool === null || state === 'off') return;
     // Off is also said after a loss, should an enable still be under way; but never to somebody else's tool.
@@ -196,16 +170,8 @@ export class Energy {
   }
 
   private wentDark(frame: Frame, state: ToolState | undefined): void {
-    const commanded = state?.energyOff === 'commanded';
-    if (commanded && this.limit && frame.tick >= this.limit.tick) {
-      this.limit = null; // it has been carried out
-      this.lose(`it stays on for ${LATCH_S} s at most`);
-    } else if (commanded && this.endedByStale(frame)) {
-      this.state = 'off';
-      this.enable(this.tool!, true);
-    } else {
-      this.lose(this.reason(state));
-    }
+    const over = state?.energyOff === 'commanded' && this.limit !== null && frame.tick >= this.since!.tick + this.limit;
+    this.lose(over ? `it stays on for ${LATCH_S} s at most` : this.reason(state));
   }
 
   /** Frames tell why energy went off; of what never came on they tell only the reason of the time before. */
@@ -227,11 +193,10 @@ export class Energy {
     if (!this.alive) return;
     this.state = 'lost';
     this.enables++;
-    const [by] = this.held;
-    this.held.delete('latch');
-    this.forgetLimit();
+    const [by] = this.holds.by;
+    this.holds.take({ type: 'release', id: LATCH });
     if (!this.wanted) {
-      this.off();
+      this.end();
       this.ended();
     }
     // What is held has its words until it is let go; a latch is gone with its energy.

@@ -1,7 +1,9 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Keys while the picture or nothing has the focus, and a gamepad. What they do stands in KEY_HELP.
+// Keys while the picture or nothing has the focus, and what a gamepad does besides. What they do stands in KEY_HELP.
 import type { Viewport } from '../scene/viewport';
 import { LATCH_S } from './energy';
+import { Pad } from './gamepad';
+import { keyId } from './holds';
 import type { ToolHand } from './tool_hand';
 
 export const KEY_HELP: readonly (readonly [string, string])[] = [
@@ -22,7 +24,9 @@ export const KEY_HELP: readonly (readonly [string, string])[] = [
 const SPEED_M_S = 0.03;
 const TURN_RAD_S = 1.2;
 const ZOOM_PER_S = 2.5;
-const STICK_REST = 0.12;
+const PAD_SPEED = 1.5; // of the keys'
+
+const TRIGGER = 'trigger';
 
 /** Keys that work as long as they are held. */
 const HELD = new Set([
@@ -35,8 +39,10 @@ export const WORKING_KEYS: ReadonlySet<string> = new Set([...HELD, 'Space', 'Key
 
 export class Keys {
   private readonly down = new Set<string>();
-  private padEnergy = false;
-  private padGrasp = false;
+  private readonly pad: Pad;
+  /** metres and radians of the present time step */
+  private step = 0;
+  private turn = 0;
   private last = performance.now();
 
   constructor(
@@ -48,10 +54,18 @@ export class Keys {
     // A page that has just come up has the focus nowhere: keys work there too.
     const meant = (event: KeyboardEvent): boolean => event.target === canvas || event.target === document.body;
     window.addEventListener('keydown', (event) => meant(event) && this.press(event));
-    window.addEventListener('keyup', (event) => this.release(event));
-    window.addEventListener('keydown', (event) => event.code === 'Escape' && hand.letGo('latch'), { capture: true }); // wherever the focus is
-    canvas.addEventListener('blur', () => this.letGo());
-    window.addEventListener('blur', () => this.letGo());
+    window.addEventListener('keyup', (event) => this.down.delete(event.code));
+    canvas.addEventListener('blur', () => this.down.clear());
+    window.addEventListener('blur', () => this.down.clear());
+    this.pad = new Pad({
+      lead: (right, up, nearer, turn) => {
+        const step = PAD_SPEED * this.step;
+        this.apply(right * step, up * step, nearer * step, turn * this.turn, 0);
+      },
+      hold: () => hand.take({ type: 'press', by: 'trigger', id: TRIGGER, place: null, ripe: true }),
+      letGo: (unplugged) => hand.take({ type: 'release', id: TRIGGER, why: unplugged ? 'unplugged' : 'released' }),
+      grasp: () => hand.jaws.grasp(!grasping()),
+    });
   }
 
   /** What held keys and sticks do in a time; once per animation frame. */
@@ -60,8 +74,8 @@ export class Keys {
     const seconds = Math.min((now - this.last) / 1000, 0.1);
     this.last = now;
     const axis = (less: string, more: string): number => Number(this.down.has(more)) - Number(this.down.has(less));
-    const step = SPEED_M_S * seconds;
-    const turn = TURN_RAD_S * seconds;
+    const step = (this.step = SPEED_M_S * seconds);
+    const turn = (this.turn = TURN_RAD_S * seconds);
     this.apply(
       axis('ArrowLeft', 'ArrowRight') * step,
       axis('ArrowDown', 'ArrowUp') * step,
@@ -74,27 +88,12 @@ export class Keys {
       this.viewport.orbit.zoom(ZOOM_PER_S ** (zoom * seconds));
       this.viewport.invalidate();
     }
-    this.gamepad(step * 1.5, turn);
+    this.pad.advance();
   }
 
   private apply(right: number, up: number, nearer: number, turn: number, tilt: number): void {
     if (right !== 0 || up !== 0 || nearer !== 0) this.hand.nudge(right, up, nearer);
     if (turn !== 0 || tilt !== 0) this.hand.turn(turn, tilt);
-  }
-
-  /** Left stick moves, right stick is depth and turn; right trigger energy, A grasp. */
-  private gamepad(step: number, turn: number): void {
-    const pad = navigator.getGamepads().find((candidate) => candidate?.mapping === 'standard');
-    if (!pad) return;
-    const stick = (i: number): number => (Math.abs(pad.axes[i]) > STICK_REST ? pad.axes[i] : 0);
-    this.apply(stick(0) * step, -stick(1) * step, stick(3) * step, stick(2) * turn, 0);
-    const energy = pad.buttons[7].value > 0.5;
-    if (energy && !this.padEnergy) this.hand.hold('trigger');
-    else if (!energy && this.padEnergy) this.hand.letGo('trigger');
-    this.padEnergy = energy;
-    const grasp = pad.buttons[0].pressed;
-    if (grasp && !this.padGrasp) this.hand.jaws.grasp(!this.grasping());
-    this.padGrasp = grasp;
   }
 
   private press(event: KeyboardEvent): void {
@@ -104,7 +103,7 @@ export class Keys {
     } else if (event.repeat) {
       if (event.code !== 'Space') return;
     } else if (event.code === 'Space') {
-      this.hand.hold('space');
+      this.hand.take({ type: 'press', by: 'space', id: keyId('Space'), place: 'picture', ripe: true });
     } else if (event.code === 'KeyL') {
       this.hand.latch();
     } else if (event.code === 'KeyG') {
@@ -116,15 +115,5 @@ export class Keys {
       return;
     }
     event.preventDefault();
-  }
-
-  private release(event: KeyboardEvent): void {
-    this.down.delete(event.code);
-    if (event.code === 'Space') this.hand.letGo('space');
-  }
-
-  private letGo(): void {
-    this.down.clear();
-    this.hand.letGo('space');
   }
 }

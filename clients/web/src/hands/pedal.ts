@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // A foot pedal: most of them are keyboards with one key to a browser. Which key is kept by the browser.
-
+import { takesTyping } from './hold_watch';
+import { keyId, type HoldEvent } from './holds';
 import { WORKING_KEYS } from './keys';
 
 const KEPT = 'pedal';
@@ -17,12 +18,9 @@ export class Pedal {
   private asked: ((words: string | null) => void) | null = null;
 
   constructor(
-    private readonly press: () => void,
-    private readonly letGo: () => void,
+    private readonly take: (event: HoldEvent) => void,
   ) {
     window.addEventListener('keydown', (event) => this.down(event), { capture: true });
-    window.addEventListener('keyup', (event) => event.code === this.code && this.letGo(), { capture: true });
-    window.addEventListener('blur', () => this.letGo());
   }
 
   /** the key's place on a keyboard, as browsers name it; null: there is no pedal */
@@ -37,21 +35,21 @@ export class Pedal {
 
   forget(): void {
     this.asked = null;
+    if (this.code !== null) this.take({ type: 'release', id: keyId(this.code) });
     localStorage.removeItem(KEPT);
-    this.letGo();
   }
 
   private down(event: KeyboardEvent): void {
     if (this.asked) {
-      this.take(event);
-    } else if (event.code === this.code && !isTyping(event.target)) {
+      this.learn(event);
+    } else if (event.code === this.code && !takesTyping(event.target)) {
       event.preventDefault();
       event.stopPropagation();
-      if (!event.repeat) this.press();
+      if (!event.repeat) this.take({ type: 'press', by: 'pedal', id: keyId(event.code), place: null, ripe: true });
     }
   }
 
-  private take(event: KeyboardEvent): void {
+  private learn(event: KeyboardEvent): void {
     const told = this.asked!;
     event.preventDefault();
     event.stopPropagation();
@@ -63,8 +61,4 @@ export class Pedal {
     localStorage.setItem(KEPT, event.code);
     told(null);
   }
-}
-
-function isTyping(target: EventTarget | null): boolean {
-  return target instanceof HTMLInputElement && !['range', 'checkbox', 'button', 'file'].includes(target.type);
 }

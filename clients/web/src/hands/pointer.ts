@@ -3,6 +3,7 @@
 // works there. Beside the tissue a press turns the camera, as the right button does everywhere; the middle
 // one or Shift moves it; two fingers turn, pinch for depth or zoom.
 import type { Viewport } from '../scene/viewport';
+import { pointerId } from './holds';
 import type { Ruler } from './ruler';
 import type { ToolHand } from './tool_hand';
 
@@ -30,7 +31,6 @@ export class Pointer {
   last: { x: number; y: number } | null = null;
   private readonly fingers = new Map<number, Finger>();
   private drag: Drag = 'none';
-  private soon: ReturnType<typeof setTimeout> | undefined;
 
   constructor(
     private readonly canvas: HTMLCanvasElement,
@@ -43,7 +43,10 @@ export class Pointer {
     for (const end of ['pointerup', 'pointercancel', 'lostpointercapture'] as const) canvas.addEventListener(end, (event) => this.up(event));
     canvas.addEventListener('wheel', (event) => this.wheel(event), { passive: false });
     canvas.addEventListener('contextmenu', (event) => event.preventDefault());
-    window.addEventListener('blur', () => this.letGo());
+    window.addEventListener('blur', () => {
+      this.fingers.clear(); // where they are lifted, this page may not see
+      this.drag = 'none';
+    });
   }
 
   private down(event: PointerEvent): void {
@@ -52,7 +55,7 @@ export class Pointer {
     this.fingers.set(event.pointerId, { x: event.clientX, y: event.clientY });
     this.last = { x: event.clientX, y: event.clientY };
     if (this.fingers.size > 1) {
-      this.letGo();
+      this.drag = 'none';
       return;
     }
     this.drag = this.dragOf(event);
@@ -61,9 +64,15 @@ export class Pointer {
     if (this.drag !== 'tool') return;
     this.hand.press();
     if (!this.hand.pointAt(x, y)) this.drag = 'none';
-    else if (this.press !== 'work') return;
-    else if (event.pointerType === 'touch') this.soon = setTimeout(() => this.hand.hold('pointer'), FINGER_MS);
-    else this.hand.hold('pointer');
+    else if (this.press === 'work') this.hold(event);
+  }
+
+  private hold({ pointerId: pointer, pointerType, button }: PointerEvent): void {
+    if (button !== 0) return;
+    const id = pointerId(pointer);
+    const finger = pointerType === 'touch';
+    this.hand.take({ type: 'press', by: 'pointer', id, place: 'picture', ripe: !finger });
+    if (finger) setTimeout(() => this.hand.take({ type: 'ripe', id }), FINGER_MS);
   }
 
   private dragOf(event: PointerEvent): Drag {
@@ -103,13 +112,6 @@ export class Pointer {
 
   private up(event: PointerEvent): void {
     this.fingers.delete(event.pointerId);
-    this.letGo();
-    if (this.fingers.size === 0) this.drag = 'none';
-  }
-
-  private letGo(): void {
-    clearTimeout(this.soon);
-    this.hand.letGo('pointer');
     this.drag = 'none';
   }
 

@@ -13,8 +13,6 @@ export class Presence {
   constructor(
     private readonly link: Link,
     private readonly holding: () => boolean,
-    /** told when the page goes out of sight or out of hand */
-    private readonly gone: () => void,
   ) {
     setInterval(() => this.beat(), HELD_MS);
     document.addEventListener('visibilitychange', () => document.hidden && this.hide());
@@ -32,6 +30,5 @@ export class Presence {
 
   private hide(): void {
     this.link.heartbeat(false);
-    this.gone();
   }
 }

@@ -33,13 +33,16 @@ export interface LedByCap {
   nudge(right: number, up: number, nearer: number): void;
   turn(aboutShaft: number, tilt: number): void;
   hold(): void;
-  letGo(): void;
+  letGo(unplugged: boolean): void;
 }
 
 export class SpaceMouse {
   /** shares of the way: right, towards the hand, down; and turns about them */
   private readonly axes = [0, 0, 0, 0, 0, 0];
   private device: HidDevice | null = null;
+  private pressed = false;
+  /** the button was down when the mouse was unplugged; no press counts until it was seen up */
+  private stuck = false;
   private last = performance.now();
 
   constructor(
@@ -98,8 +101,7 @@ export class SpaceMouse {
 
   private take({ reportId, data }: InputReport): void {
     if (reportId === BUTTONS) {
-      if (data.byteLength > 0 && (data.getUint8(0) & 1) !== 0) this.led.hold();
-      else this.led.letGo();
+      this.press(data.byteLength > 0 && (data.getUint8(0) & 1) !== 0);
       return;
     }
     if (reportId !== MOVED && reportId !== TURNED) return;
@@ -109,10 +111,21 @@ export class SpaceMouse {
     for (let i = 0; i < count; i++) this.axes[first + i] = Math.min(Math.max(data.getInt16(AXIS_BYTES * i, true) / FULL, -1), 1);
   }
 
+  /** Every change of any button reports all of them: only the first one's own press is a press. */
+  private press(down: boolean): void {
+    this.stuck &&= down;
+    if (this.stuck) return;
+    if (down && !this.pressed) this.led.hold();
+    if (!down && this.pressed) this.led.letGo(false);
+    this.pressed = down;
+  }
+
   private lose(): void {
     this.device = null;
+    this.stuck ||= this.pressed;
+    this.pressed = false;
     this.axes.fill(0);
-    this.led.letGo();
+    this.led.letGo(true);
     this.changed();
   }
 }

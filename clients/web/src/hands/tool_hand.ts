@@ -11,7 +11,8 @@ import type { Pose, Viewport } from '../scene/viewport';
 import { Aim } from './aim';
 import { CuttingPace } from './cutting_pace';
 import { Depths } from './depth';
-import { Energy, type Held } from './energy';
+import { Energy } from './energy';
+import { Holds, LATCH, type HoldEvent, type Lost, type Press } from './holds';
 import { Jaws } from './jaws';
 import { Motion, type Wanted } from './motion';
 import { Past } from './past';
@@ -24,13 +25,13 @@ export type Guide = 'surface' | 'plane';
 const ECHO_MS = 400; // after this without a motion the server's pose is drawn
 const POINTED_MAX = 400; // as many as a way holds
 const HOVER_M = 0.003; // between tissue and the hot part of a tool that does not work
-const ARRIVED_M = 0.001;
 
 export class ToolHand {
   /** over the surface, or in the plane of the picture through the tip */
   guide: Guide = 'surface';
   readonly depths = new Depths();
   readonly energy: Energy;
+  private readonly holds = new Holds();
   readonly jaws: Jaws;
   readonly way = new Way();
   private readonly motion: Motion;
@@ -48,8 +49,6 @@ export class ToolHand {
   private lastAdvance = performance.now();
   private tool: string | null = null;
   private driven = false;
-  /** where a cut begins, until the tool is there */
-  private cutFrom: Vector3 | null = null;
   /** it has gone down to work, and not risen since */
   private down = false;
 
@@ -59,15 +58,18 @@ export class ToolHand {
     private readonly viewport: Viewport,
   ) {
     const sequence = (): number => ++this.sequence;
-    this.energy = new Energy(model, control, sequence, () => this.rest());
+    this.energy = new Energy(model, control, sequence, this.holds, () => this.rest());
     this.jaws = new Jaws(model, control, sequence);
     this.motion = new Motion(control, sequence);
     this.taking = new Taking(model, control);
     this.places = new Aim(viewport);
     this.pace = new CuttingPace(model);
     model.on('tools', () => this.follow());
-    this.past = new Past(model, () => this.leave('you look at the past.'));
-    new Presence(control.link, () => this.energy.wanted, () => this.leave('the page lost the focus. Press again.'));
+    this.past = new Past(model, () => {
+      this.take({ type: 'leave', why: 'past' });
+      this.rest();
+    });
+    new Presence(control.link, () => this.energy.wanted);
   }
 
   get driving(): boolean { return this.model.driving; }
@@ -106,29 +108,39 @@ export class ToolHand {
     return true;
   }
 
-  /** Something is pressed and held that makes the tool work. */
-  hold(by: Held): void {
-    if (this.past.refuses()) return;
-    const working = this.energy.wanted && this.energy.alive;
-    this.energy.hold(by);
-    if (!this.model.driving) {
-      if (!this.taking.use()) this.energy.release(by);
-    } else if (!working) {
-      this.work(true);
-    }
+  /** Something is held, or is about to count as held. */
+  get pressed(): boolean { return this.holds.pressed; }
+
+  /** Takes what happens to that which is held: the tool works as long as anything is. */
+  take(event: HoldEvent): void {
+    if (event.type === 'press' && this.past.refuses()) return;
+    const lost = this.holds.take(event);
+    if (lost) this.lost(lost);
+    else if ((event.type === 'press' && event.ripe) || event.type === 'ripe') this.hold(event);
   }
 
   /** Keeps energy on without anything held, or ends that. */
   latch(): void {
-    if (this.energy.latched) this.letGo('latch');
-    else this.hold('latch');
+    if (this.holds.latched) this.take({ type: 'release', id: LATCH });
+    else this.take({ type: 'press', by: 'latch', id: LATCH, place: 'latch', ripe: true });
   }
 
-  letGo(by: Held): void {
+  private hold({ id, type }: Press | { type: 'ripe'; id: string }): void {
+    if (!this.holds.held) return;
+    if (!this.model.driving) {
+      if (!this.taking.use()) this.holds.take({ type: 'release', id });
+    } else if (!this.energy.alive) {
+      this.work(true);
+    } else if (type === 'press' && id === LATCH) {
+      this.energy.limitByLatch();
+    }
+  }
+
+  /** Nothing is held any more. */
+  private lost(why: Lost): void {
     this.pointed = this.pointed.slice(-1); // a tool that is still being taken only comes there
-    const worked = this.energy.wanted;
-    this.energy.release(by);
-    if (worked && !this.energy.wanted) this.rest();
+    this.energy.off(why);
+    this.rest();
   }
 
   /** Moves by metres to the picture's right, up, and towards the eye. */
@@ -192,17 +204,8 @@ export class ToolHand {
     if (this.energy.wanted && !this.energy.alive && this.mayHeat) way.clear(); // what went dark does not go on
     if (way.empty) return;
     const fastest = toolSizes(this.model.tool!).maxSpeed * seconds;
-    way.follow(wanted.position, this.energy.alive ? Math.min(this.hotMetres(wanted.position), fastest) : fastest);
+    way.follow(wanted.position, this.energy.alive ? Math.min(this.pace.metresFrom(wanted.position), fastest) : fastest);
     this.moved();
-  }
-
-  /** How far a hot tool may go: fast to where the cut begins, not a step beyond it, and slowly from there on. */
-  private hotMetres(position: Vector3): number {
-    const left = this.cutFrom?.distanceTo(position) ?? 0;
-    if (left > ARRIVED_M) return left;
-    if (this.cutFrom) this.pace.begin();
-    this.cutFrom = null;
-    return this.pace.take();
   }
 
   private work(fresh: boolean): void {
@@ -215,7 +218,7 @@ export class ToolHand {
   /** What was held is let go of: the rest of the way is dropped, and the tool rises. */
   private rest(): void {
     this.jaws.letGo();
-    this.cutFrom = null;
+    this.pace.from = null;
     this.way.clear();
     if (this.down && this.wanted && this.guide === 'surface') this.rise();
     this.down = false;
@@ -228,8 +231,8 @@ export class ToolHand {
     const aim = this.aim ?? this.places.under(this.wanted.position);
     this.aim = aim;
     this.down = true;
-    this.cutFrom = this.over(aim);
-    this.moveTo(this.cutFrom, true);
+    this.pace.from = this.over(aim);
+    this.moveTo(this.pace.from, true);
   }
 
   /** Up from where it is now, which may be behind where the hand is. */
@@ -278,16 +281,10 @@ export class ToolHand {
     this.motion.unsent = true;
   }
 
-  /** The tissue is out of sight or out of hand: energy goes off here and at the daemon. */
-  private leave(why: string): void {
-    const lit = this.energy.releaseAll();
-    this.rest();
-    if (lit) this.model.say('warning', `Energy is off: ${why}`);
-  }
-
   private follow(): void {
     if (this.tool !== this.model.selectedTool) {
-      this.energy.releaseAll();
+      this.holds.take({ type: 'leave', why: 'released' });
+      this.energy.off('released');
       this.tool = this.model.selectedTool;
       this.drop();
       this.sequence = 0;
@@ -313,7 +310,7 @@ export class ToolHand {
   }
 
   private drop(): void {
-    this.wanted = this.aim = this.cutFrom = null;
+    this.wanted = this.aim = this.pace.from = null;
     this.down = false;
     this.way.clear();
   }

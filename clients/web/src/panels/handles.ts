@@ -2,6 +2,7 @@
 // The tool's buttons over the picture: what a press on the tissue does, energy while held, jaws, depth.
 import { depthWords } from '../hands/depth';
 import { LATCH_S } from '../hands/energy';
+import { keyId, pointerId } from '../hands/holds';
 import type { Pointer, Press } from '../hands/pointer';
 import type { ToolHand } from '../hands/tool_hand';
 import type { Control } from '../model/control';
@@ -41,27 +42,30 @@ function pressChoice(control: Control, pointer: Pointer): HTMLElement {
 function energyButton(control: Control, hand: ToolHand): HTMLButtonElement {
   const { model } = control;
   const energy = button('Energy', () => undefined, { id: 'energy', class: 'energy', aria: { pressed: 'false' } });
+  const press = (id: string): void => hand.take({ type: 'press', by: 'button', id, place: 'energy', ripe: true });
   energy.addEventListener('pointerdown', (event) => {
+    if (event.button !== 0) return;
+    energy.focus(); // a second finger on the picture takes it away again, and that is no loss
     energy.setPointerCapture(event.pointerId);
-    hand.hold('button');
+    press(pointerId(event.pointerId));
   });
-  for (const end of ['pointerup', 'pointercancel', 'lostpointercapture', 'blur'] as const) energy.addEventListener(end, () => hand.letGo('button'));
+  energy.addEventListener('mousedown', (event) => event.preventDefault()); // some browsers would take the focus away
   energy.addEventListener('keydown', (event) => {
-    if ((event.code === 'Space' || event.code === 'Enter') && !event.repeat) hand.hold('button');
+    if ((event.code === 'Space' || event.code === 'Enter') && !event.repeat) press(keyId(event.code));
   });
-  energy.addEventListener('keyup', () => hand.letGo('button'));
   energy.addEventListener('contextmenu', (event) => event.preventDefault());
   model.on('tools', () => {
     energy.hidden = model.tool !== null && !hasHeat(model.tool.shape);
     energy.disabled = !hand.usable;
     energy.title = hand.usable ? 'Hold for energy (Space)' : 'Only who uses the tool may';
   });
+  const around = byId('picture').parentElement;
   model.on('frame', () => {
     const on = model.toolState?.energized === true;
     if (energy.getAttribute('aria-pressed') === String(on)) return;
     energy.setAttribute('aria-pressed', String(on));
     energy.textContent = on ? 'Energy on' : 'Energy';
-    byId('picture').parentElement?.classList.toggle('hot', on);
+    around?.classList.toggle('hot', on);
   });
   return energy;
 }

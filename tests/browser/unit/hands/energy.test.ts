@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Energy that is held and cut by somebody else is said at once, with what brings it back; it comes back by
 // a fresh press alone, and letting go never switches off what somebody else has on.
-import { Energy, LATCH_S, type Held } from '../../../../clients/web/src/hands/energy';
+import { Energy, LATCH_S } from '../../../../clients/web/src/hands/energy';
+import { Holds, type Held } from '../../../../clients/web/src/hands/holds';
 import type { Control } from '../../../../clients/web/src/model/control';
 import { Model, type Said } from '../../../../clients/web/src/model/model';
 import type { EnergyOff, ToolState } from '../../../../clients/web/src/wire/records';
@@ -12,6 +13,8 @@ const ME = 7;
 /** The daemon's answer to an enable, both resolved when the page has taken it. */
 interface Told {
   energized: boolean;
+  /** the limit that goes with it */
+  ticks: number | undefined;
   /** the tick for which it was ordered */
   tick: number | undefined;
   answer(tick: number): Promise<void>;
@@ -26,6 +29,7 @@ class Bench {
   readonly model = new Model();
   readonly told: Told[] = [];
   readonly said = new Map<string, string>();
+  readonly holds = new Holds();
   readonly energy: Energy;
   /** how often a latch has ended without a hand */
   ends = 0;
@@ -38,16 +42,17 @@ class Bench {
     this.driver(ME);
     model.on('said', ({ key, words }: Said) => this.said.set(key ?? '', words));
     model.on('unsaid', (key) => this.said.delete(key));
-    const call = (_method: string, { energized, tick: ordered }: { energized: boolean; tick?: number }): Promise<unknown> =>
+    const call = (_method: string, { energized, ticks, tick: ordered }: { energized: boolean; ticks?: number; tick?: number }): Promise<unknown> =>
       new Promise((resolve, reject) => {
         this.told.push({
           energized,
+          ticks,
           tick: ordered,
           answer: (tick) => (resolve({ tick }), taken()),
           refuse: (words) => (reject(new Error(words)), taken()),
         });
       });
-    this.energy = new Energy(model, { call } as unknown as Control, () => 1, () => this.ends++);
+    this.energy = new Energy(model, { call } as unknown as Control, () => 1, this.holds, () => this.ends++);
   }
 
   driver(client: number): void {
@@ -56,8 +61,18 @@ class Bench {
   }
 
   press(by: Held = 'space'): void {
-    this.energy.hold(by);
+    this.hold(by);
     this.energy.enable('hook', true);
+  }
+
+  hold(by: Held): void {
+    this.holds.take({ type: 'press', by, id: by, place: null, ripe: true });
+    if (by === 'latch') this.energy.limitByLatch();
+  }
+
+  release(by: Held): void {
+    const why = this.holds.take({ type: 'release', id: by });
+    if (why) this.energy.off(why);
   }
 
   frame(tick: number, energized: boolean, energyOff: EnergyOff = 'commanded', more: Partial<Frame> = {}): void {
@@ -92,7 +107,7 @@ describe('energy that is held', () => {
     expect(bench.energy.alive).toBe(false);
     bench.energy.enable('hook', false); // a key that goes on being held brings nothing back
     expect(bench.told.length).toBe(1);
-    bench.energy.release(by);
+    bench.release(by);
     expect(bench.said.size).toBe(0);
     bench.press(by);
     expect(bench.energy.alive).toBe(true);
@@ -120,7 +135,7 @@ describe('energy that is held', () => {
     const bench = new Bench();
     bench.frame(10, false);
     bench.press();
-    bench.energy.release('space');
+    bench.release('space');
     bench.press();
     await bench.told[0].answer(11);
     bench.frame(12, false);
@@ -151,7 +166,7 @@ describe('energy that is held', () => {
     await bench.lit();
     bench.driver(ME + 1);
     expect(bench.said.get('energy')).toContain('Birch 27 took the tool over');
-    bench.energy.release('space');
+    bench.release('space');
     expect(bench.told.length).toBe(1);
   });
 
@@ -165,10 +180,10 @@ describe('energy that is held', () => {
   it('stays on until the last of two holds ends', async () => {
     const bench = new Bench();
     await bench.lit();
-    bench.energy.hold('pointer');
-    bench.energy.release('space');
+    bench.hold('pointer');
+    bench.release('space');
     expect(bench.energy.alive).toBe(true);
-    bench.energy.release('pointer');
+    bench.release('pointer');
     expect(bench.told.at(-1)?.energized).toBe(false);
     expect(bench.energy.alive).toBe(false);
   });
@@ -177,14 +192,14 @@ describe('energy that is held', () => {
 describe('energy that is latched', () => {
   const TICKS = 60 * LATCH_S;
 
-  it('has a limit that the daemon is told with it', async () => {
+  it('has a limit that goes with the enable', async () => {
     const bench = new Bench();
     await bench.lit('latch');
-    expect(bench.told.map(({ energized, tick }) => [energized, tick])).toEqual([[true, undefined], [false, 10 + TICKS]]);
+    expect(bench.told.map(({ energized, ticks, tick }) => [energized, ticks, tick])).toEqual([[true, TICKS, undefined]]);
     expect(bench.energy.latched).toBe(true);
-    bench.frame(10 + TICKS - 60, true);
+    bench.frame(11 + TICKS - 60, true);
     expect(bench.energy.latchedForS).toBe(1);
-    bench.frame(10 + TICKS + 1, false);
+    bench.frame(11 + TICKS, false);
     expect(bench.said.get('')).toBe(`Energy is off: it stays on for ${LATCH_S} s at most. Press Keep on for more.`);
     expect([bench.energy.latched, bench.energy.wanted, bench.energy.alive]).toEqual([false, false, false]);
     expect(bench.ends).toBe(1);
@@ -193,18 +208,19 @@ describe('energy that is latched', () => {
   it('by whom holds something already has the limit from then on', async () => {
     const bench = new Bench();
     await bench.lit('space');
-    bench.energy.hold('latch');
-    bench.energy.release('space');
+    bench.hold('latch');
+    bench.release('space');
     expect(bench.energy.alive).toBe(true);
-    expect(bench.told.at(-1)).toMatchObject({ energized: false, tick: 12 + TICKS });
+    expect(bench.told.at(-1)).toMatchObject({ energized: true, ticks: TICKS });
   });
 
-  it('ends where somebody ends it, at once', async () => {
+  it('ends where somebody ends it, at once, whatever else is held', async () => {
     const bench = new Bench();
     await bench.lit('latch');
-    bench.energy.release('latch');
+    bench.press('pointer');
+    bench.release('latch');
     expect(bench.told.at(-1)).toMatchObject({ energized: false, tick: undefined });
-    expect(bench.energy.latched).toBe(false);
+    expect([bench.energy.latched, bench.energy.alive]).toEqual([false, false]);
     expect(bench.said.size).toBe(0);
   });
 
@@ -215,28 +231,27 @@ describe('energy that is latched', () => {
     expect(bench.said.get('')).toContain('heard nothing from this page in time, which a busy machine can cause. Press Keep on for more.');
     expect(bench.energy.latched).toBe(false);
     bench.press('space');
-    bench.energy.release('space');
+    bench.release('space');
     expect(bench.energy.alive).toBe(false);
   });
 
-  it('leaves an order behind that darkens a later press, which alone goes on by itself', async () => {
-    const bench = new Bench();
-    await bench.lit('latch');
-    bench.energy.release('latch');
-    bench.frame(100, false);
-    bench.press('pointer');
-    await bench.told.at(-1)!.answer(101);
-    bench.frame(102, true);
-    const calls = bench.told.length;
-    bench.frame(10 + TICKS, false, 'commanded'); // the order of the latch long ended
-    expect(bench.told.slice(calls).map(({ energized }) => energized)).toEqual([true]);
-    expect(bench.said.size).toBe(0);
-    await bench.told.at(-1)!.answer(11 + TICKS);
-    bench.frame(12 + TICKS, true);
-    bench.frame(13 + TICKS, false, 'commanded'); // somebody else's is no such order
-    expect(bench.said.get('energy')).toContain('somebody switched it off');
-    expect(bench.told.length).toBe(calls + 1);
-  });
+  it.each([['pointer', 'commanded'], ['space', 'watchdog'], ['latch', 'commanded'], ['trigger', 'restored']] as const)(
+    'does not come on again by itself: %s, %s, at any later tick',
+    async (by, energyOff) => {
+      const bench = new Bench();
+      await bench.lit('latch');
+      bench.release('latch');
+      bench.frame(100, false);
+      bench.press(by);
+      await bench.told.at(-1)!.answer(101);
+      bench.frame(102, true);
+      const enables = (): number => bench.told.filter(({ energized }) => energized).length;
+      expect(enables()).toBe(2);
+      for (const tick of [103, 10 + TICKS, 11 + TICKS, 12 + TICKS, 101 + TICKS, 200 + TICKS]) bench.frame(tick, false, energyOff);
+      expect(enables()).toBe(2);
+      expect(bench.energy.alive).toBe(false);
+    },
+  );
 
   it('is not taken in a paused session', () => {
     const bench = new Bench();
