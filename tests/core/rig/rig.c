@@ -6,6 +6,7 @@
 #include <string.h>
 
 #include "cautery/session.h"
+#include "core/rig/tier.h"
 
 enum { TEXT_BYTES = 1 << 16 };
 
@@ -138,7 +139,8 @@ void rig_build(rig *r, const char *tier, int32_t threads)
 	expect_ok(cau_tissue_make(r->scene, &r->arena, &r->tissue, &error), &error);
 	size_t n = 3 * (size_t)r->tissue.vertex_count;
 	cau_step_solver *solver = &r->solver;
-	solver->kernels = cau_kernels_choose(r->scene->precision == CAU_PRECISION_SINGLE, tier);
+	bool single = r->scene->precision == CAU_PRECISION_SINGLE;
+	solver->kernels = cau_kernels_choose(single, tier ? tier : test_tier());
 	solver->pool = cau_pool_create(threads);
 	r->fixed = cau_arena_copy(&r->arena, r->tissue.pinned, (size_t)r->tissue.vertex_count, 1);
 	solver->fixed = r->fixed;

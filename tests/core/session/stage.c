@@ -5,6 +5,7 @@
 #include <time.h>
 
 #include "cautery/scene_json.h"
+#include "core/rig/tier.h"
 
 const double stage_absurd[STAGE_ABSURD_COUNT] = {NAN, INFINITY, -INFINITY, 1e300, -1e300};
 
@@ -191,6 +192,7 @@ cau_session *stage_open(const cau_scene_def *scene, int32_t threads)
 	cau_session_def def = cau_default_session_def();
 	def.scene = scene;
 	def.thread_count = threads;
+	def.instruction_set = test_tier();
 	cau_session *session = NULL;
 	cau_error error = {0};
 	expect_ok(cau_session_create(&def, &session, &error), &error);

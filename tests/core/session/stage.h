@@ -53,6 +53,7 @@ cau_selection stage_box(const double least_m[3], const double most_m[3]);
 cau_selection stage_everything(void);
 
 // ---- sessions
+// On the kernels of test_tier() (rig/tier.h).
 cau_session *stage_open(const cau_scene_def *scene, int32_t threads);
 // The creation is refused with this status; *error says why.
 void stage_refuse(const cau_scene_def *scene, cau_status status, cau_error *error);
