@@ -14,7 +14,7 @@ export interface Hello {
   version: number;
   /** name and version of the client program, for logs and other users */
   client: string;
-  /** the client's own lasting identity; names the stored answers of client_sequence */
+  /** the client's own lasting identity, among those of its token's owner; names the stored answers of client_sequence */
   client_id?: string;
   /** access token, where the server asks for one */
   token?: string;
