@@ -124,6 +124,14 @@ bool cau_hub_attach(cau_hub *hub, cau_client *client, const char *resume, uint64
 	return attached;
 }
 
+bool cau_hub_keeps(cau_hub *hub, const char *resume)
+{
+	pthread_mutex_lock(&hub->mutex);
+	bool kept = find_token(hub, resume) != NULL;
+	pthread_mutex_unlock(&hub->mutex);
+	return kept;
+}
+
 typedef struct cut {
 	uint32_t client;
 	const char *cause;

@@ -68,6 +68,8 @@ bool cau_hub_bind_client_id(char client_id[65], const char *owner);
 // this client says another client_id than the earlier one did.
 // False: too many clients, no memory, or the system has no random bytes.
 bool cau_hub_attach(cau_hub *hub, cau_client *client, const char *resume, uint64_t *replaced);
+// Whether that token would resume a client.
+bool cau_hub_keeps(cau_hub *hub, const char *resume);
 // The connection is gone: energy off at once; tools are kept for `resume_s`.
 void cau_hub_detach(cau_hub *hub, uint32_t number, uint64_t connection);
 // A sign of life at `alive_s`, monotonic, for all tools that the client drives; not visible: energy

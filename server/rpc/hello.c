@@ -108,6 +108,11 @@ void cau_call_hello(cau_call *call)
 		refuse_token(call); // it was taken back at this very moment
 		return;
 	}
+	bool resumes = params.has_resume && cau_hub_keeps(service->hub, params.resume);
+	if (!cau_connection_has_place(peer->connection, resumes)) {
+		cau_connection_close(peer->connection, CAU_CLOSE_FULL, CAU_NO_PLACE); // says it all
+		return;
+	}
 	cau_asker *asker = &peer->client.asker;
 	asker->role = params.has_role && params.role < (int32_t)role ? (cau_role)params.role : role;
 	asker->deadline_s = service->config->browser_deadline_s;
@@ -121,7 +126,8 @@ void cau_call_hello(cau_call *call)
 		return;
 	}
 	replace(service, replaced);
-	peer->greeted = peer->connection->served = true;
+	peer->greeted = true;
+	cau_connection_serve(peer->connection);
 	cau_hub_heartbeat(service->hub, asker->client, true, cau_peer_alive_s(peer));
 	char whose[CAU_AUTH_NAME_BYTES];
 	cau_auth_grant_name(service->auth, peer->grant, whose);
