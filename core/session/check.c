@@ -91,12 +91,12 @@ static cau_status check_interval(const double *least, const double *most, int co
 {
 	CAU_ASSERT(count == 2 || count == 3, "strains along %d axes", count);
 	for (int i = 0; i < count; i++)
-		if (!(least[i] > -1 && least[i] <= most[i] && most[i] <= 100)) {
+		if (!(least[i] >= CAU_STRAIN_LEAST && least[i] <= most[i] && most[i] <= CAU_STRAIN_MOST)) {
 			char full[PATH_BYTES];
 			join(full, path, "strain_min");
 			return cau_fail(error, CAU_BAD_VALUE, full,
-			                "axis %d: [%g, %g] is no interval of strains above -1 and up to 100", i,
-			                least[i], most[i]);
+			                "axis %d: [%g, %g] is no interval of strains from %g to %g", i,
+			                least[i], most[i], CAU_STRAIN_LEAST, CAU_STRAIN_MOST);
 		}
 	return CAU_OK;
 }
@@ -105,12 +105,12 @@ static cau_status check_shrink(const double *shrink, int count, const char *path
 {
 	CAU_ASSERT(count == 2 || count == 3, "shrinkage along %d axes", count);
 	for (int i = 0; i < count; i++)
-		if (!(shrink[i] >= 0.01 && shrink[i] <= 4)) {
+		if (!(shrink[i] >= CAU_SHRINK_LEAST && shrink[i] <= CAU_SHRINK_MOST)) {
 			char full[PATH_BYTES];
 			join(full, path, "shrink");
 			return cau_fail(error, CAU_BAD_VALUE, full,
-			                "component %d, %g, is not between 0.01 and 4 (squared stretch)", i,
-			                shrink[i]);
+			                "component %d, %g, is not between %g and %g (squared stretch)", i,
+			                shrink[i], CAU_SHRINK_LEAST, CAU_SHRINK_MOST);
 		}
 	return CAU_OK;
 }
@@ -172,7 +172,7 @@ static cau_status check_fat(const cau_fat_material *object, const char *path, ca
 		status = check_interval(object->strain_min, object->strain_max, 3, path, error);
 	double eigen[3], axes[3][3];
 	if (!status)
-		status = finite_vector(object->target, 6, 100, path, "target", error);
+		status = finite_vector(object->target, 6, CAU_TARGET_MOST, path, "target", error);
 	if (!status) {
 		cau_symmetric_eigen3(object->target, eigen, axes);
 		status = check_target(eigen, 3, path, error);
@@ -207,7 +207,8 @@ cau_status cau_material_check(int kind, const void *material, const char *path, 
 // ---- tools, selections, poses
 cau_status cau_pose_check(const cau_pose *pose, const char *path, cau_error *error)
 {
-	cau_status status = finite_vector(pose->position_m, 3, 1000, path, "position_m", error);
+	cau_status status =
+		finite_vector(pose->position_m, 3, CAU_PLACE_MOST_M, path, "position_m", error);
 	if (!status)
 		status = finite_vector(pose->rotation, 4, 1.001, path, "rotation", error);
 	double squared = 0;
@@ -245,13 +246,13 @@ cau_status cau_selection_check(const cau_selection *selection, const char *path,
 	if (!status && selection->layer[0])
 		status = check_name(selection->layer, path, "layer", error);
 	if (!status)
-		status = finite_vector(selection->least_m, 3, 1000, path, "least_m", error);
+		status = finite_vector(selection->least_m, 3, CAU_PLACE_MOST_M, path, "least_m", error);
 	if (!status)
-		status = finite_vector(selection->most_m, 3, 1000, path, "most_m", error);
+		status = finite_vector(selection->most_m, 3, CAU_PLACE_MOST_M, path, "most_m", error);
 	if (!status)
-		status = finite_vector(selection->center_m, 3, 1000, path, "center_m", error);
+		status = finite_vector(selection->center_m, 3, CAU_PLACE_MOST_M, path, "center_m", error);
 	if (!status)
-		status = in_range(selection->radius_m, 0, 1000, "m", path, "radius_m", error);
+		status = in_range(selection->radius_m, 0, CAU_PLACE_MOST_M, "m", path, "radius_m", error);
 	return status;
 }
 
@@ -320,7 +321,7 @@ static cau_status check_layer(const cau_scene_def *scene, int32_t index, cau_err
 	if (!status)
 		status = is_choice(layer->kind, CAU_LAYER_COUNT, path, "kind", error);
 	if (!status)
-		status = finite_vector(layer->fibre, 3, 1e6, path, "fibre", error);
+		status = finite_vector(layer->fibre, 3, CAU_FIBRE_MOST, path, "fibre", error);
 	if (!status && !(layer->material_count >= 1 && layer->material_count <= CAU_MAX_MATERIALS))
 		status = cau_fail(error, CAU_BAD_VALUE, path, "%d materials; at least 1, at most %d",
 		                  layer->material_count, CAU_MAX_MATERIALS);
@@ -347,9 +348,10 @@ static cau_status check_mesh(const cau_scene_def *scene, int32_t index, cau_erro
 	if (!status)
 		status = is_choice(mesh->source, CAU_MESH_SOURCE_COUNT, path, "source", error);
 	if (!status)
-		status = finite_vector(mesh->translate_m, 3, 1000, path, "translate_m", error);
+		status = finite_vector(mesh->translate_m, 3, CAU_PLACE_MOST_M, path, "translate_m", error);
 	if (!status)
-		status = in_range(mesh->unit_m, 1e-9, 1e6, "m", path, "unit_m", error);
+		status = in_range(mesh->unit_m, CAU_MESH_UNIT_LEAST_M, CAU_MESH_UNIT_MOST_M, "m", path,
+		                  "unit_m", error);
 	cau_error inner = {0};
 	if (!status && cau_mesh_check_cells(mesh->source, mesh->cells, &inner))
 		status = refuse_within(&inner, path, error);
@@ -380,15 +382,16 @@ static cau_status check_time(const cau_scene_def *object, cau_error *error)
 	const char *path = "";
 	cau_status status = CAU_OK;
 	CAU_TIME_TABLE(CHECK_FIELD)
-	if (!status && !(object->iterations >= 1 && object->iterations <= 1000))
-		status = cau_fail(error, CAU_BAD_VALUE, "iterations", "%d is not between 1 and 1000",
-		                  object->iterations);
+	if (!status && !(object->iterations >= 1 && object->iterations <= CAU_ITERATIONS_MOST))
+		status = cau_fail(error, CAU_BAD_VALUE, "iterations", "%d is not between 1 and %d",
+		                  object->iterations, CAU_ITERATIONS_MOST);
 	if (!status)
 		status = is_choice(object->solver, CAU_SOLVER_COUNT, path, "solver", error);
 	if (!status)
 		status = is_choice(object->precision, CAU_PRECISION_COUNT, path, "precision", error);
 	if (!status)
-		status = finite_vector(object->gravity_m_s2, 3, 1000, path, "gravity_m_s2", error);
+		status = finite_vector(object->gravity_m_s2, 3, CAU_GRAVITY_MOST_M_S2, path, "gravity_m_s2",
+		                       error);
 	return status;
 }
 
@@ -398,16 +401,18 @@ static cau_status check_scripts(const cau_scene_def *scene, cau_error *error)
 	if (scene->pull.present) {
 		status = cau_selection_check(&scene->pull.selection, "pull.selection", error);
 		if (!status)
-			status = finite_vector(scene->pull.move_m, 3, 1, "pull", "move_m", error);
+			status = finite_vector(scene->pull.move_m, 3, CAU_PULL_MOST_M, "pull", "move_m", error);
 		if (!status)
-			status = in_range(scene->pull.duration_s, 1e-3, 3600, "s", "pull", "duration_s", error);
+			status = in_range(scene->pull.duration_s, CAU_PULL_LEAST_S, CAU_PULL_MOST_S, "s",
+			                  "pull", "duration_s", error);
 	}
 	if (!status && scene->cut.present) {
-		status = finite_vector(scene->cut.from_m, 3, 1000, "cut", "from_m", error);
+		status = finite_vector(scene->cut.from_m, 3, CAU_PLACE_MOST_M, "cut", "from_m", error);
 		if (!status)
-			status = finite_vector(scene->cut.to_m, 3, 1000, "cut", "to_m", error);
+			status = finite_vector(scene->cut.to_m, 3, CAU_PLACE_MOST_M, "cut", "to_m", error);
 		if (!status)
-			status = in_range(scene->cut.speed_m_s, 1e-6, 10, "m/s", "cut", "speed_m_s", error);
+			status = in_range(scene->cut.speed_m_s, CAU_CUT_LEAST_M_S, CAU_CUT_MOST_M_S, "m/s",
+			                  "cut", "speed_m_s", error);
 	}
 	return status;
 }

@@ -40,15 +40,15 @@ cau_status cau_command_check(const cau_session *session, const cau_command *comm
 	}
 	case CAU_COMMAND_SET_GRAVITY:
 		for (int c = 0; c < 3; c++)
-			if (!(fabs(command->as.gravity_m_s2[c]) <= 1000))
-				return cau_fail(error, CAU_BAD_VALUE, "gravity_m_s2", "%g is not within 1000 m/s^2",
-				                command->as.gravity_m_s2[c]);
+			if (!(fabs(command->as.gravity_m_s2[c]) <= CAU_GRAVITY_MOST_M_S2))
+				return cau_fail(error, CAU_BAD_VALUE, "gravity_m_s2", "%g is not within %g m/s^2",
+				                command->as.gravity_m_s2[c], CAU_GRAVITY_MOST_M_S2);
 		return CAU_OK;
 	case CAU_COMMAND_SET_FORCE:
 		for (int c = 0; c < 3; c++)
-			if (!(fabs(command->as.force.force_n[c]) <= 1000))
-				return cau_fail(error, CAU_BAD_VALUE, "force_n", "%g is not within 1000 N",
-				                command->as.force.force_n[c]);
+			if (!(fabs(command->as.force.force_n[c]) <= CAU_FORCE_MOST_N))
+				return cau_fail(error, CAU_BAD_VALUE, "force_n", "%g is not within %g N",
+				                command->as.force.force_n[c], CAU_FORCE_MOST_N);
 		return cau_selection_check(&command->as.force.selection, "selection", error);
 	default:
 		return CAU_OK;

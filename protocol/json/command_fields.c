@@ -7,8 +7,6 @@
 CHOICES(command_choices, CAU_COMMAND_TABLE)
 CHOICES(material_kind_choices, CAU_LAYER_TABLE)
 
-enum { FAR_M = 100 };
-
 #define KIND(code) (1u << CAU_COMMAND_##code)
 #define NEEDS_TOOL                                                                                 \
 	(KIND(TOOL_REMOVE) | KIND(TOOL_CONFIGURE) | KIND(TOOL_MOVE) | KIND(TOOL_ENERGIZE) |            \
@@ -40,7 +38,7 @@ static const cau_field move_fields[] = {
 	{.name = "position_m",
      .type = CAU_FIELD_NUMBER,
      .count = 3,
-     RANGE(-FAR_M, FAR_M),
+     RANGE(-CAU_PLACE_MOST_M, CAU_PLACE_MOST_M),
      .offset = offsetof(cau_command, as.move.pose.position_m) - offsetof(cau_command, as.move),
      .required = true,
      MEANS("m", "place of the tip")},
@@ -87,14 +85,14 @@ static const cau_field gravity_fields[] = {
      .type = CAU_FIELD_NUMBER,
      .count = 3,
      .required = true,
-     RANGE(-100.0, 100.0),
+     RANGE(-CAU_GRAVITY_MOST_M_S2, CAU_GRAVITY_MOST_M_S2),
      MEANS("m/s^2", "gravity")},
 };
 RECORD(cau_gravity_record, "gravity", gravity_fields, NULL)
 
 static const cau_field force_fields[] = {
 	{INSIDE(force_n, force), .type = CAU_FIELD_NUMBER, .count = 3, .required = true,
-     RANGE(-1e4, 1e4), MEANS("N", "on each chosen vertex")},
+     RANGE(-CAU_FORCE_MOST_N, CAU_FORCE_MOST_N), MEANS("N", "on each chosen vertex")},
 };
 RECORD(cau_force_record, "a force", force_fields, NULL)
 // clang-format on

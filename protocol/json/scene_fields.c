@@ -15,22 +15,20 @@ CHOICES(layer_kind_choices, CAU_LAYER_TABLE)
 CHOICES(select_kind_choices, CAU_SELECT_TABLE)
 CHOICES_OF_WORDS(tool_shape_choices, CAU_TOOL_SHAPE_TABLE)
 
-enum { FAR_M = 100 }; // places and ways
-
 // clang-format off: rows of tables
 #define STRUCT cau_scene_def
 static const cau_field scene_fields[] = {
 	{OTHER(name, NAME, "name of the scene"), .required = true},
 	{OTHER(description, TEXT, "a sentence for people")},
-	CAU_TIME_TABLE(SCALAR){
-		INTEGER(iterations, 1, 1000, "iterations of a step at most; with `accuracy` 0, of each")},
+	CAU_TIME_TABLE(SCALAR){INTEGER(iterations, 1, CAU_ITERATIONS_MOST,
+                                   "iterations of a step at most; with `accuracy` 0, of each")},
 	{CHOICE(solver, solver_choices, "global system; `newton`: of free sheets, each step's own")},
 	{CHOICE(precision, precision_choices, "of the local and global steps")},
 	{CHOICE(parting, parting_choices,
             "what heat parts: edges with all that share them, as in the paper, or "
             "elements one by one, so that a cut does not depend on the mesh")},
 	{OTHER(seed, COUNT, "of everything drawn at random")},
-	{VECTOR(gravity_m_s2, 3, -100.0, 100.0, "m/s^2", "gravity")},
+	{VECTOR(gravity_m_s2, 3, -CAU_GRAVITY_MOST_M_S2, CAU_GRAVITY_MOST_M_S2, "m/s^2", "gravity")},
 };
 #undef STRUCT
 RECORD(cau_scene_record, "a scene", scene_fields, NULL)
@@ -42,15 +40,18 @@ static const cau_field mesh_fields[] = {
 	{OTHER(name, NAME, "name of the mesh"), .required = true},
 	{VECTOR(size_m, 3, 1e-6, 10.0, "m", "extent, centred in x and y, top at z = 0"),
      .least_count = 1, .kinds = KIND(SHEET) | KIND(SLAB) | KIND(PATTERN)},
-	{INTEGER(cells, 1, 1000, "cells along each axis; of a pattern, triangles of the fan"),
+	{INTEGER(cells, 1, 1000,
+             "cells along each axis; of a pattern, triangles of the fan, 3 at least"),
      .count = 3, .least_count = 1, .kinds = KIND(SHEET) | KIND(SLAB) | KIND(PATTERN)},
 	{SCALAR_OF(texture_turn_rad, -6.3, 6.3, "rad", "turns the UV axes against the mesh's axes"),
      .kinds = KIND(SHEET) | KIND(PATTERN)},
 	{OTHER(file, TEXT, ".msh, .obj or .vtk, relative to the scene file"), .required = true,
      .kinds = KIND(FILE) | KIND(BYTES)},
-	{SCALAR_OF(unit_m, 1e-9, 1000.0, "m", "metres in one unit of the file"),
+	{SCALAR_OF(unit_m, CAU_MESH_UNIT_LEAST_M, CAU_MESH_UNIT_MOST_M, "m",
+               "metres in one unit of the file"),
      .kinds = KIND(FILE) | KIND(BYTES)},
-	{VECTOR(translate_m, 3, -FAR_M, FAR_M, "m", "moves the mesh, after the unit")},
+	{VECTOR(translate_m, 3, -CAU_PLACE_MOST_M, CAU_PLACE_MOST_M, "m",
+            "moves the mesh, after the unit")},
 };
 #undef STRUCT
 #undef KIND
@@ -66,7 +67,7 @@ static const cau_field layer_fields[] = {
 	{OTHER(of, NAME, "membrane: the fat whose boundary it is; links: the upper layer"),
      .kinds = KIND(MEMBRANE) | KIND(LINKS)},
 	{OTHER(to, NAME, "the lower layer"), .kinds = KIND(LINKS)},
-	{VECTOR(fibre, 3, -1e6, 1e6, "1",
+	{VECTOR(fibre, 3, -CAU_FIBRE_MOST, CAU_FIBRE_MOST, "1",
             "material direction where the mesh has no UV; fat: first axis"),
      .kinds = KIND(FASCIA) | KIND(FAT) | KIND(MEMBRANE)},
 };
@@ -88,12 +89,12 @@ RECORD(cau_region_record, "a region", region_fields, NULL)
 #define LIMIT_FIELDS(entries, entry_names, axes)                                                   \
 	{CHOICE(limit, limit_choices, "strain limit")},                                                \
 		{CHOICE(projection, projection_choices, "how a target is projected")},                     \
-		{VECTOR(target, entries, -100.0, 100.0, "1",                                               \
+		{VECTOR(target, entries, -CAU_TARGET_MOST, CAU_TARGET_MOST, "1",                           \
 	            "target: " entry_names " of F^T F; positive definite")},                           \
-		{VECTOR(strain_min, axes, -0.99, 0.0, "1",                                                 \
+		{VECTOR(strain_min, axes, CAU_STRAIN_LEAST, 0.0, "1",                                      \
 	            "range: least engineering strain along each axis")},                               \
-		{VECTOR(strain_max, axes, 0.0, 100.0, "1", "range: largest")},                             \
-		{VECTOR(shrink, axes, 1e-3, 10.0, "1",                                                     \
+		{VECTOR(strain_max, axes, 0.0, CAU_STRAIN_MOST, "1", "range: largest")},                   \
+		{VECTOR(shrink, axes, CAU_SHRINK_LEAST, CAU_SHRINK_MOST, "1",                              \
 	            "S of eq. 21: squared stretches; 1: no shrinkage")},
 
 #define STRUCT cau_sheet_material
@@ -124,12 +125,14 @@ RECORD(cau_heat_record, "a heated material", heat_fields, NULL)
 static const cau_field selection_fields[] = {
 	{CHOICE(kind, select_kind_choices, "which vertices"), .required = true},
 	{OTHER(layer, NAME, "only of this layer; any if absent")},
-	{VECTOR(least_m, 3, -FAR_M, FAR_M, "m", "least corner of the box"), .required = true,
-     .kinds = KIND(BOX)},
-	{VECTOR(most_m, 3, -FAR_M, FAR_M, "m", "largest corner"), .required = true, .kinds = KIND(BOX)},
-	{VECTOR(center_m, 3, -FAR_M, FAR_M, "m", "centre of the sphere, or the place"),
+	{VECTOR(least_m, 3, -CAU_PLACE_MOST_M, CAU_PLACE_MOST_M, "m", "least corner of the box"),
+     .required = true, .kinds = KIND(BOX)},
+	{VECTOR(most_m, 3, -CAU_PLACE_MOST_M, CAU_PLACE_MOST_M, "m", "largest corner"),
+     .required = true, .kinds = KIND(BOX)},
+	{VECTOR(center_m, 3, -CAU_PLACE_MOST_M, CAU_PLACE_MOST_M, "m",
+            "centre of the sphere, or the place"),
      .required = true, .kinds = KIND(SPHERE) | KIND(NEAREST)},
-	{SCALAR_OF(radius_m, 0.0, FAR_M, "m", "radius of the sphere"), .required = true,
+	{SCALAR_OF(radius_m, 0.0, CAU_PLACE_MOST_M, "m", "radius of the sphere"), .required = true,
      .kinds = KIND(SPHERE)},
 };
 #undef STRUCT
@@ -149,7 +152,7 @@ RECORD(cau_tool_record, "a tool", tool_fields, NULL)
 
 #define STRUCT cau_pose
 static const cau_field pose_fields[] = {
-	{VECTOR(position_m, 3, -FAR_M, FAR_M, "m", "first place of the tip")},
+	{VECTOR(position_m, 3, -CAU_PLACE_MOST_M, CAU_PLACE_MOST_M, "m", "first place of the tip")},
 	{OTHER(rotation, ROTATION, "unit quaternion w, x, y, z: tool frame (shaft along +z) to world")},
 };
 #undef STRUCT
@@ -157,8 +160,8 @@ RECORD(cau_pose_record, "a pose", pose_fields, NULL)
 
 #define STRUCT cau_pull_def
 static const cau_field pull_fields[] = {
-	{VECTOR(move_m, 3, -FAR_M, FAR_M, "m", "way of the chosen vertices")},
-	{SCALAR_OF(duration_s, 1e-3, 3600.0, "s", "time of the way")},
+	{VECTOR(move_m, 3, -CAU_PULL_MOST_M, CAU_PULL_MOST_M, "m", "way of the chosen vertices")},
+	{SCALAR_OF(duration_s, CAU_PULL_LEAST_S, CAU_PULL_MOST_S, "s", "time of the way")},
 };
 #undef STRUCT
 RECORD(cau_pull_record, "a pull", pull_fields, NULL)
@@ -166,11 +169,13 @@ RECORD(cau_pull_record, "a pull", pull_fields, NULL)
 #define STRUCT cau_cut_def
 static const cau_field cut_fields[] = {
 	{OTHER(tool, NAME, "tool of the scene"), .required = true},
-	{VECTOR(from_m, 3, -FAR_M, FAR_M, "m", "where the tip dwells"), .required = true},
-	{VECTOR(to_m, 3, -FAR_M, FAR_M, "m", "where it is drawn to"), .required = true},
+	{VECTOR(from_m, 3, -CAU_PLACE_MOST_M, CAU_PLACE_MOST_M, "m", "where the tip dwells"),
+     .required = true},
+	{VECTOR(to_m, 3, -CAU_PLACE_MOST_M, CAU_PLACE_MOST_M, "m", "where it is drawn to"),
+     .required = true},
 	{OTHER(rotation, ROTATION, "unit quaternion w, x, y, z of the tool")},
-	{SCALAR_OF(dwell_s, 0.0, 3600.0, "s", "time before it is drawn")},
-	{SCALAR_OF(speed_m_s, 1e-5, 1.0, "m/s", "speed of drawing")},
+	{SCALAR_OF(dwell_s, 0.0, CAU_DWELL_MOST_S, "s", "time before it is drawn")},
+	{SCALAR_OF(speed_m_s, CAU_CUT_LEAST_M_S, CAU_CUT_MOST_M_S, "m/s", "speed of drawing")},
 };
 #undef STRUCT
 RECORD(cau_cut_record, "a cut", cut_fields, NULL)

@@ -13,7 +13,7 @@
 
 typedef struct cau_auth cau_auth;
 
-enum { CAU_AUTH_NAME_BYTES = 48, CAU_AUTH_SESSIONS_BYTES = 152 };
+enum { CAU_AUTH_NAME_BYTES = 48, CAU_AUTH_OWNER_BYTES = 80, CAU_AUTH_SESSIONS_BYTES = 152 };
 
 // What a token's line bounds besides its role.
 typedef struct cau_auth_bounds {
@@ -45,6 +45,9 @@ bool cau_auth_role(const cau_auth *auth, const char *token, size_t bytes, cau_ro
 uint64_t cau_auth_grant(const cau_auth *auth, const char *token, size_t bytes);
 // The role that the token behind a grant has now; false if it was taken back or has expired.
 bool cau_auth_grant_role(const cau_auth *auth, uint64_t grant, cau_role *role);
+// Who owns the token, in a word for machines: the name of its line, else its hash. Tokens of one
+// name have one owner. "": no token is asked for, or it was taken back.
+void cau_auth_grant_owner(const cau_auth *auth, uint64_t grant, char owner[CAU_AUTH_OWNER_BYTES]);
 // Whose token it is, by its line; "": not said.
 void cau_auth_grant_name(const cau_auth *auth, uint64_t grant, char name[CAU_AUTH_NAME_BYTES]);
 

@@ -316,6 +316,16 @@ void cau_auth_grant_name(const cau_auth *auth, uint64_t grant, char name[CAU_AUT
 	snprintf(name, CAU_AUTH_NAME_BYTES, "%s", known ? found.name : "");
 }
 
+void cau_auth_grant_owner(const cau_auth *auth, uint64_t grant, char owner[CAU_AUTH_OWNER_BYTES])
+{
+	token found;
+	bool known = auth->required && look_up(auth, NULL, grant, &found);
+	if (known && *found.name)
+		snprintf(owner, CAU_AUTH_OWNER_BYTES, "name:%s", found.name);
+	else
+		snprintf(owner, CAU_AUTH_OWNER_BYTES, "%s", known ? found.hash : "");
+}
+
 bool cau_auth_grant_bounds(const cau_auth *auth, uint64_t grant, cau_auth_bounds *bounds)
 {
 	token found;

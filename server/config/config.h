@@ -79,6 +79,7 @@ enum { CAU_CONFIG_TEXT_BYTES = 512 };
 	INTEGER(dds_domain, 0, 0, 230, "DDS domain")                                                   \
 	TEXT(dds_config, "", "file of Cyclone DDS settings; empty: loopback only")                     \
 	TEXT(dds_security, "", "folder of this daemon's DDS identity; empty: no DDS Security")         \
+	SWITCH(dds_optional, false, "serve WebSocket alone where DDS cannot be opened")                \
 	SWITCH(dds_network, false, "let dds_config take DDS off loopback without DDS Security")        \
 	TEXT(dds_role, "operate", "role of DDS participants: view, operate or admin")                  \
 	TEXT(dds_roles, "", "file of roles, `ROLE SUBJECT` a line, for identities of DDS Security")    \

@@ -266,6 +266,19 @@ static cau_status find_files(cau_config *config, cau_error *error)
 	                "no folder ../share/cautery/scenes beside this program: say where they are");
 }
 
+// With `dds_optional` the daemon goes without DDS where the machine lacks ports or an interface for
+// it. Wrong settings, roles or identities end the daemon with and without `dds_optional`.
+static cau_status open_dds(cau_daemon *daemon, cau_error *error)
+{
+	cau_status status = cau_dds_create(&daemon->dds, daemon->config, daemon->hub, error);
+	bool missing = status == CAU_LIMIT || status == CAU_IO || status == CAU_UNSUPPORTED;
+	if (!status || !daemon->config->dds_optional || !missing || strcmp(error->path, "dds") != 0)
+		return status;
+	cau_log(CAU_LOG_WARNING, NULL, "dds_not_open", "reason=\"%s\"", error->reason);
+	daemon->config->dds = false;
+	return CAU_OK;
+}
+
 static cau_status open_all(cau_daemon *daemon, cau_error *error)
 {
 	int32_t resumed = 0;
@@ -286,7 +299,7 @@ static cau_status open_all(cau_daemon *daemon, cau_error *error)
 	if (!status)
 		status = open_network(daemon, error);
 	if (!status && config->dds)
-		status = cau_dds_create(&daemon->dds, config, daemon->hub, error);
+		status = open_dds(daemon, error);
 	if (daemon->dds)
 		cau_service_add_metrics(daemon->service, cau_dds_write_metrics, daemon->dds);
 	if (!status)

@@ -4,12 +4,12 @@
 #include <string.h>
 #include <sys/random.h>
 
+#include "cautery/sha256.h"
 #include "hub/internal.h"
 
-enum { CLIENTS_MOST = 1 << 20 };
+enum { CLIENTS_MOST = 1 << 20, OWNER_MOST_BYTES = 512 };
 
-// Fresh random bytes in hex at every call: what one client may see of another, as its client_id,
-// must tell nothing of that one's token.
+// Fresh random bytes in hex at every call: a client_id must reveal nothing of the secret.
 static bool make_random(char hex[CAU_RESUME_BYTES])
 {
 	unsigned char bytes[(CAU_RESUME_BYTES - 1) / 2];
@@ -20,16 +20,48 @@ static bool make_random(char hex[CAU_RESUME_BYTES])
 	return true;
 }
 
-// A client that says no id gets one, so that its requests can be told from those of others.
-static bool fill_client_id(cau_asker *asker)
+bool cau_hub_bind_client_id(char client_id[65], const char *owner)
 {
+	char both[OWNER_MOST_BYTES + 65];
+	if (!*owner)
+		return true;
+	// The zero between the two is in neither, so that no two pairs make one text.
+	int at = snprintf(both, OWNER_MOST_BYTES, "%s", owner) + 1;
+	int bytes = snprintf(both + at, 65, "%.64s", client_id);
+	bool bound = cau_sha256(both, (size_t)at + (size_t)bytes, client_id);
+	if (!bound)
+		*client_id = 0;
+	return bound;
+}
+
+// Who resumes goes on under the client_id of before, so that a request sent again acts once.
+static bool keeps_client_id(const cau_client *client, const cau_client *kept)
+{
+	return *kept->asker.client_id &&
+	       (!*client->said_id || !*kept->said_id || strcmp(client->said_id, kept->said_id) == 0);
+}
+
+// A client that says no id gets one, which distinguishes its requests from those of others.
+static bool fill_client_id(cau_client *client, const cau_client *kept)
+{
+	cau_asker *asker = &client->asker;
 	char hex[CAU_RESUME_BYTES];
+	if (keeps_client_id(client, kept)) {
+		const char *said = *kept->said_id ? kept->said_id : kept->asker.client_id;
+		if (!*client->said_id)
+			snprintf(client->said_id, sizeof client->said_id, "%s", said);
+		memcpy(asker->client_id, kept->asker.client_id, sizeof asker->client_id);
+		return true;
+	}
 	if (*asker->client_id)
 		return true;
-	if (!make_random(hex))
-		return false;
-	snprintf(asker->client_id, sizeof asker->client_id, "made-%s", hex);
-	return true;
+	if (!*client->said_id) {
+		if (!make_random(hex))
+			return false;
+		snprintf(client->said_id, sizeof client->said_id, "made-%s", hex);
+	}
+	memcpy(asker->client_id, client->said_id, sizeof asker->client_id);
+	return cau_hub_bind_client_id(asker->client_id, client->owner);
 }
 
 static cau_client *find_number(cau_hub *hub, uint32_t number)
@@ -71,9 +103,7 @@ static cau_client *add_client(cau_hub *hub)
 static bool take_place(cau_client *client, cau_client *kept)
 {
 	client->asker.client = kept->asker.client;
-	if (!*client->asker.client_id)
-		memcpy(client->asker.client_id, kept->asker.client_id, sizeof kept->asker.client_id);
-	if (!make_random(client->resume) || !fill_client_id(&client->asker))
+	if (!make_random(client->resume) || !fill_client_id(client, kept))
 		return false;
 	client->lost = false;
 	*kept = *client;
@@ -92,6 +122,14 @@ bool cau_hub_attach(cau_hub *hub, cau_client *client, const char *resume, uint64
 	bool attached = kept && take_place(client, kept);
 	pthread_mutex_unlock(&hub->mutex);
 	return attached;
+}
+
+bool cau_hub_keeps(cau_hub *hub, const char *resume)
+{
+	pthread_mutex_lock(&hub->mutex);
+	bool kept = find_token(hub, resume) != NULL;
+	pthread_mutex_unlock(&hub->mutex);
+	return kept;
 }
 
 typedef struct cut {

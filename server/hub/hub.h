@@ -46,21 +46,30 @@ const cau_scenes *cau_hub_scenes(const cau_hub *hub);
 cau_quota *cau_hub_quota(cau_hub *hub);
 
 // ---- clients
-enum { CAU_RESUME_BYTES = 33 };
+enum { CAU_RESUME_BYTES = 33, CAU_OWNER_BYTES = 80 };
 
 typedef struct cau_client {
-	cau_asker asker; // number, name, client_id, role, deadline
+	cau_asker asker;  // number, name, role, deadline; its client_id is that of the stored answers
+	char said_id[65]; // the client_id of its hello, or one made for it
+	char owner[CAU_OWNER_BYTES]; // of its token; "": nobody, where no token is asked for
 	char resume[CAU_RESUME_BYTES];
 	uint64_t connection; // the transport's own
 	bool lost;
 	double lost_s;
 } cau_client;
 
-// Registers a client: fills its number, a client_id if it has none, and its token for resuming.
-// `resume` (may be NULL) is the token of an earlier one: if that is still kept its number and tools
-// become this client's, and *replaced is its connection (0: it was lost already).
-// False: too many clients, or the system has no random bytes.
+// Makes of a client_id one that no other owner can have: stored answers are found by it. With the
+// owner "" it stays as it is. False, and "": no memory.
+bool cau_hub_bind_client_id(char client_id[65], const char *owner);
+// Registers a client: fills its number, its token for resuming, said_id if it is "", and
+// asker.client_id if that is "". `resume` (may be NULL) is the token of an earlier client. If that
+// is still kept, its number and tools become this client's, and *replaced is its connection (0: it
+// was lost already). Its asker.client_id becomes this client's too, whoever owns the token, unless
+// this client says another client_id than the earlier one did.
+// False: too many clients, no memory, or the system has no random bytes.
 bool cau_hub_attach(cau_hub *hub, cau_client *client, const char *resume, uint64_t *replaced);
+// Whether that token would resume a client.
+bool cau_hub_keeps(cau_hub *hub, const char *resume);
 // The connection is gone: energy off at once; tools are kept for `resume_s`.
 void cau_hub_detach(cau_hub *hub, uint32_t number, uint64_t connection);
 // A sign of life at `alive_s`, monotonic, for all tools that the client drives; not visible: energy

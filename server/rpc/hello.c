@@ -55,7 +55,7 @@ static void answer(const cau_call *call)
 	};
 	snprintf(result.server, sizeof result.server, "cauteryd %s", CAUTERY_VERSION);
 	snprintf(result.daemon, sizeof result.daemon, "%.48s", service->config->label);
-	memcpy(result.client_id, asker->client_id, sizeof result.client_id);
+	memcpy(result.client_id, call->peer->client.said_id, sizeof result.client_id);
 	snprintf(result.resume, sizeof result.resume, "%s", call->peer->client.resume);
 	fill_limits(service->config, &result.limits);
 	cau_call_result(call, &result);
@@ -108,11 +108,17 @@ void cau_call_hello(cau_call *call)
 		refuse_token(call); // it was taken back at this very moment
 		return;
 	}
+	bool resumes = params.has_resume && cau_hub_keeps(service->hub, params.resume);
+	if (!cau_connection_has_place(peer->connection, resumes)) {
+		cau_connection_close(peer->connection, CAU_CLOSE_FULL, CAU_NO_PLACE); // says it all
+		return;
+	}
 	cau_asker *asker = &peer->client.asker;
 	asker->role = params.has_role && params.role < (int32_t)role ? (cau_role)params.role : role;
 	asker->deadline_s = service->config->browser_deadline_s;
 	memcpy(asker->name, params.client, sizeof asker->name);
-	memcpy(asker->client_id, params.client_id, sizeof asker->client_id);
+	memcpy(peer->client.said_id, params.client_id, sizeof peer->client.said_id);
+	cau_auth_grant_owner(service->auth, peer->grant, peer->client.owner);
 	peer->client.connection = peer->connection->id;
 	if (!cau_hub_attach(service->hub, &peer->client, params.has_resume ? params.resume : NULL,
 	                    &replaced)) {
@@ -120,7 +126,8 @@ void cau_call_hello(cau_call *call)
 		return;
 	}
 	replace(service, replaced);
-	peer->greeted = peer->connection->served = true;
+	peer->greeted = true;
+	cau_connection_serve(peer->connection);
 	cau_hub_heartbeat(service->hub, asker->client, true, cau_peer_alive_s(peer));
 	char whose[CAU_AUTH_NAME_BYTES];
 	cau_auth_grant_name(service->auth, peer->grant, whose);

@@ -43,12 +43,17 @@ static void write_network(cau_service *service, const exposition *to)
 {
 	cau_network_counts n = cau_network_count(service->network);
 	gauge(to, "connections", "", "WebSocket connections open", (double)n.connections);
+	gauge(to, "connections_served", "", "WebSocket connections that have said hello",
+	      (double)n.served);
 	counter(to, "connections_accepted", "", "WebSocket connections accepted", (double)n.accepted);
 	counter(to, "handshakes_refused", "", "Upgrade requests refused", (double)n.refused_handshakes);
 	counter(to, "connections_closed_slow", "", "Connections closed for slowness",
 	        (double)n.closed_slow);
 	counter(to, "connections_closed_error", "", "Connections closed for a rule broken",
 	        (double)n.closed_errors);
+	counter(to, "connections_closed_without_hello", "",
+	        "Connections without hello that were closed for newer ones",
+	        (double)n.strangers_closed);
 	counter(to, "messages_received", "", "Messages from clients", (double)n.messages_in);
 	counter(to, "received_bytes", "bytes", "Bytes of messages from clients", (double)n.bytes_in);
 	counter(to, "messages_sent", "", "Messages to clients", (double)n.messages_out);

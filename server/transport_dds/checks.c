@@ -35,8 +35,10 @@ cau_status cau_motion_check_pose(cau_pose *pose, double jaw, cau_error *error)
 {
 	double squared = 0;
 	for (int i = 0; i < 3; i++)
-		if (!isfinite(pose->position_m[i]))
-			return cau_fail(error, CAU_BAD_VALUE, "position_m", "is not finite");
+		if (!(fabs(pose->position_m[i]) <= CAU_PLACE_MOST_M))
+			return cau_fail(error, CAU_BAD_VALUE, "position_m",
+			                "component %d, %g, is not within %g m", i, pose->position_m[i],
+			                CAU_PLACE_MOST_M);
 	for (int i = 0; i < 4; i++)
 		squared += pose->rotation[i] * pose->rotation[i];
 	double length = sqrt(squared);

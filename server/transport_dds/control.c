@@ -260,6 +260,13 @@ static bool is_too_fast(const cau_dds *dds, cau_dds_writer *writer)
 	return ++writer->requests > dds->config->max_requests_per_s;
 }
 
+// Who owns the client_ids of a participant. Where clients of WebSocket need tokens, a participant
+// without a proved name must not have the client_id of one of them.
+static const char *owner_of(const cau_config *config, const cau_dds_writer *writer)
+{
+	return *writer->subject ? writer->subject : *config->tokens ? "dds:" : "";
+}
+
 // Several daemons may hear a request: it is for the one whose label begins the session's id.
 static bool is_ours(const cau_dds *dds, const cautery_SessionRequest *sample)
 {
@@ -288,7 +295,7 @@ void cau_dds_take_request(cau_dds *dds, cau_door *door, cau_dds_writer *writer, 
 	           .asker = writer->asker};
 	if (*sample->client_id)
 		memcpy(a.asker.client_id, sample->client_id, sizeof a.asker.client_id);
-	cau_dds_bind_client_id(a.asker.client_id, writer->subject);
+	cau_hub_bind_client_id(a.asker.client_id, owner_of(dds->config, writer));
 	cau_status status = CAU_OK;
 	if (!request) {
 		unkept = cau_dds_describe_request(writer, sample);

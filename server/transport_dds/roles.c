@@ -5,7 +5,6 @@
 #include <string.h>
 #include <sys/stat.h>
 
-#include "cautery/sha256.h"
 #include "config/named_file.h"
 #include "config/role.h"
 
@@ -87,17 +86,4 @@ cau_role cau_dds_roles_find(const cau_dds_roles *roles, const char *subject)
 		if (strcmp(roles->identities[i].subject, subject) == 0)
 			return roles->identities[i].role;
 	return subject ? roles->role_else : (cau_role)0;
-}
-
-// The hash of both, since a subject is longer than a client_id may be. The zero between them is in
-// neither, so that no two pairs are one text.
-void cau_dds_bind_client_id(char client_id[65], const char *subject)
-{
-	char both[CAU_DDS_SUBJECT_BYTES + 65];
-	if (!*subject)
-		return;
-	int at = snprintf(both, CAU_DDS_SUBJECT_BYTES, "%s", subject) + 1;
-	int bytes = snprintf(both + at, 65, "%.64s", client_id);
-	if (!cau_sha256(both, (size_t)at + (size_t)bytes, client_id))
-		*client_id = 0; // memory ran out: no answer of anybody's is found
 }

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// What an authenticated identity has: its role, and client_ids of its own.
+// The role that an authenticated identity has.
 #pragma once
 
 #include "cautery/message_choices.h"
@@ -26,7 +26,3 @@ cau_status cau_dds_roles_read(cau_dds_roles *roles, const cau_config *config, ca
 
 // The role of who has proved this subject name; NULL: of who has proved none.
 cau_role cau_dds_roles_find(const cau_dds_roles *roles, const char *subject);
-
-// Makes of a client_id one that nobody has who has proved another subject name: answers to requests
-// are kept under it. Without a name ("") it stays as it is.
-void cau_dds_bind_client_id(char client_id[65], const char *subject);

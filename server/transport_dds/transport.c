@@ -5,6 +5,7 @@
 #include <string.h>
 
 #include "config/named_file.h"
+#include "transport_dds/indices.h"
 #include "transport_dds/internal.h"
 #include "transport_dds/leave.h"
 #include "transport_dds/local.h"
@@ -170,7 +171,7 @@ static cau_status open_domain(cau_dds *dds, cau_error *error)
 		snprintf(given, sizeof given, "%s,%s", cau_dds_loopback, no_linger);
 	dds->domain = dds_create_domain((dds_domainid_t)config->dds_domain, given);
 	if (dds->domain < 0)
-		return fail(error, "no domain", dds->domain);
+		return cau_dds_explain_domain(config, dds_strretcode(dds->domain), error);
 	dds_qos_t *qos = dds_create_qos();
 	cau_status status = *config->dds_config ? CAU_OK : cau_dds_stay_local(error);
 	if (!status)
@@ -178,11 +179,11 @@ static cau_status open_domain(cau_dds *dds, cau_error *error)
 	if (!status)
 		dds->participant = dds_create_participant((dds_domainid_t)config->dds_domain, qos, NULL);
 	dds_delete_qos(qos);
+	if (!status && dds->participant < 0 && *config->dds_security)
+		return cau_fail(error, CAU_IO, "dds_security", "no participant with this dds_security: %s",
+		                dds_strretcode(dds->participant));
 	if (!status && dds->participant < 0)
-		return fail(error,
-		            *config->dds_security ? "no participant with this dds_security"
-		                                  : "no participant",
-		            dds->participant);
+		return fail(error, "no participant", dds->participant);
 	return status;
 }
 

@@ -72,6 +72,7 @@ void cau_connection_leave(cau_connection *c)
 	cau_connection_unlink(&network->connections, c);
 	cau_connection_link(&network->lingering, c);
 	network->counts.connections--;
+	network->counts.served -= c->served;
 	bound_lingering(network);
 }
 
@@ -122,6 +123,8 @@ void cau_connection_timer(cau_connection *c)
 	} else if (c->closing) {
 		cau_connection_leave(c);
 		lws_set_timer_usecs(c->wsi, CLOSE_WITHIN_S * LWS_US_PER_SEC);
+	} else if (!c->served && c->unplaced) {
+		cau_connection_close(c, CAU_CLOSE_FULL, CAU_NO_PLACE);
 	} else if (!c->served) {
 		cau_connection_close(c, CAU_CLOSE_NO_HELLO, NULL);
 	}

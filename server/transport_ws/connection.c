@@ -3,6 +3,7 @@
 // queues what is written, reading.c reads, closing.c ends.
 #include "transport_ws/connection.h"
 
+#include <math.h>
 #include <netinet/in.h>
 #include <netinet/tcp.h>
 #include <stdlib.h>
@@ -54,12 +55,13 @@ static int opened(cau_network *network, struct lws *wsi, cau_connection **slot)
 	network->counts.connections++;
 	network->counts.accepted++;
 	const char *asked = lws_get_urlarg_by_name(wsi, "session=", session, sizeof session);
-	lws_set_timer_usecs(wsi, (lws_usec_t)(network->def.config->hello_timeout_s * 1e6));
+	c->unplaced = !cau_connection_has_place(c, false);
+	double hello_s = network->def.config->hello_timeout_s;
+	lws_set_timer_usecs(wsi, (lws_usec_t)((c->unplaced ? fmin(hello_s, 1) : hello_s) * 1e6));
 	if (!cau_input_begin(c) ||
 	    !network->def.handler.opened(network->def.handler.user, c, asked ? asked : ""))
 		return -1;
-	if (network->counts.connections > (uint64_t)network->def.config->max_connections)
-		cau_connection_close(c, CAU_CLOSE_FULL, "too many connections (setting max_connections)");
+	cau_strangers_bound_silent(network, c->address);
 	return 0;
 }
 

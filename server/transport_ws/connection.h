@@ -13,6 +13,8 @@
 struct lws;
 typedef struct cau_network cau_network;
 
+#define CAU_NO_PLACE "too many connections (setting max_connections)"
+
 enum {
 	CAU_ADDRESS_BYTES = 64,
 	CAU_CLOSE_REASON_BYTES = 124,     // RFC 6455 allows 123 and this a zero
@@ -34,7 +36,8 @@ typedef struct cau_connection {
 	struct cau_connection *previous, *next;
 	void *peer; // the handler's own
 	double opened_s, last_taken_s;
-	bool served; // hello was answered: the hello timeout is off
+	bool served;   // hello was accepted: the hello timeout is off
+	bool unplaced; // as many as may be were served when it came: it may only resume
 	int descriptor;
 	char address[CAU_ADDRESS_BYTES]; // the peer's, as text; "" if nobody knows it
 
@@ -64,6 +67,10 @@ typedef struct cau_connection {
 	bool resetting;
 } cau_connection;
 
+// Whether one more connection may be served; `resumes`: one that comes back to its tools.
+bool cau_connection_has_place(const cau_connection *connection, bool resumes);
+// Its hello was accepted.
+void cau_connection_serve(cau_connection *connection);
 // Queues a text message; takes the buffer. A connection whose replies pile up
 // beyond CAU_CONTROL_BYTES_MAX is closed.
 void cau_connection_send(cau_connection *connection, cau_buffer *buffer);

@@ -19,6 +19,13 @@ enum {
 	CAU_CLOSE_FRAME_BYTES = 4 + CAU_CLOSE_REASON_BYTES,
 };
 
+// One whose request is still to come.
+typedef struct cau_unread {
+	struct lws *wsi; // NULL: none has this descriptor
+	double since_s;
+	char address[CAU_ADDRESS_BYTES];
+} cau_unread;
+
 struct cau_network {
 	cau_network_def def;
 	cau_tls *tls; // NULL: without
@@ -33,7 +40,7 @@ struct cau_network {
 	double ending_until_s;
 	double ran_s;                      // when this thread last came round
 	double stopped_s, stopped_until_s; // it did not run from then on, see sent_after
-	struct lws **unread; // by descriptor: whose request is still to come; see unread.c
+	cau_unread *unread;                // by descriptor, see unread.c
 	int unread_capacity;
 	int input; // epoll descriptor, see input.c
 	uint64_t last_id;
@@ -73,6 +80,12 @@ bool cau_unread_add(cau_network *network, struct lws *wsi); // false: no memory
 void cau_unread_remove(cau_network *network, struct lws *wsi);
 // The library logs this line of the connection that it serves.
 void cau_unread_complaint(cau_network *network, const char *line);
+
+// ---- strangers.c
+// Closes the oldest connection whose request has not come, or that has said no hello, if there are
+// too many of this address or of all.
+void cau_strangers_bound_unread(cau_network *network, const char *address);
+void cau_strangers_bound_silent(cau_network *network, const char *address);
 
 // ---- input.c
 bool cau_input_open(cau_network *network);

@@ -69,6 +69,7 @@ cau_connection *cau_network_find(cau_network *network, uint64_t id);
 double cau_network_sent_after_s(const cau_network *network, double now_s);
 
 typedef struct cau_network_counts {
+	uint64_t served, strangers_closed;
 	uint64_t connections, accepted, refused_handshakes, closed_slow, closed_errors;
 	uint64_t refused_tokens; // of pages
 	uint64_t messages_in, bytes_in, messages_out, bytes_out, frames_out;

@@ -8,6 +8,7 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "clock/clock.h"
 #include "transport_ws/internal.h"
 
 static const cau_http_refusal bad_request = {
@@ -57,15 +58,19 @@ bool cau_unread_add(cau_network *network, struct lws *wsi)
 		return true; // it has ended
 	if (descriptor >= network->unread_capacity) {
 		int capacity = 2 * (descriptor + 1);
-		struct lws **grown = realloc(network->unread, (size_t)capacity * sizeof(struct lws *));
+		cau_unread *grown = realloc(network->unread, (size_t)capacity * sizeof *grown);
 		if (!grown)
 			return false;
 		memset(grown + network->unread_capacity, 0,
-		       (size_t)(capacity - network->unread_capacity) * sizeof(struct lws *));
+		       (size_t)(capacity - network->unread_capacity) * sizeof *grown);
 		network->unread = grown;
 		network->unread_capacity = capacity;
 	}
-	network->unread[descriptor] = wsi;
+	cau_unread *unread = &network->unread[descriptor];
+	*unread = (cau_unread){.wsi = wsi, .since_s = cau_monotonic_s()};
+	lws_get_peer_simple(wsi, unread->address, sizeof unread->address);
+	cau_auth_find_address(network->def.config, NULL, unread->address, sizeof unread->address);
+	cau_strangers_bound_unread(network, unread->address);
 	return true;
 }
 
@@ -73,7 +78,7 @@ void cau_unread_remove(cau_network *network, struct lws *wsi)
 {
 	int descriptor = lws_get_socket_fd(wsi);
 	if (descriptor >= 0 && descriptor < network->unread_capacity)
-		network->unread[descriptor] = NULL;
+		network->unread[descriptor] = (cau_unread){0};
 }
 
 void cau_unread_complaint(cau_network *network, const char *line)
@@ -82,7 +87,7 @@ void cau_unread_complaint(cau_network *network, const char *line)
 	bool formless =
 		strstr(line, "Missing URI") || strstr(line, "saw NUL") || strstr(line, "Duplicated method");
 	struct lws *wsi =
-		served >= 0 && served < network->unread_capacity ? network->unread[served] : NULL;
+		served >= 0 && served < network->unread_capacity ? network->unread[served].wsi : NULL;
 	if (!wsi || (!large && !formless))
 		return;
 	cau_unread_remove(network, wsi); // once

@@ -53,6 +53,34 @@ test('no method reaches another, nor tells whether it is there', async () => {
 	await anna.call('session.step', { session: 'd1-anna-1', ticks: 1 });
 });
 
+const greet = (token, more) => daemon.connect({ hello: { token, ...more } });
+const step = (client, sequence, ticks) => client.call('session.step', { session: 'd1-demo', ticks, client_sequence: sequence });
+
+test('the client_id of another owner gets neither its answers nor its numbers', async () => {
+	const [surgeon, stranger] = [await greet(ADMIN, { client_id: 'surgeon' }), await greet(ANNA, { client_id: 'surgeon' })];
+	assert.equal(stranger.hello.client_id, 'surgeon');
+	const first = await step(surgeon, 1, 1);
+	assert.deepEqual(await step(stranger, 1, 2), { tick: first.tick + 2 }); // no answer of the surgeon's
+	assert.deepEqual(await step(stranger, 1000, 1), { tick: first.tick + 3 });
+	assert.deepEqual(await step(surgeon, 2, 1), { tick: first.tick + 4 }); // its 2 is not past
+	assert.deepEqual(await step(surgeon, 1, 1), first);
+	await surgeon.close();
+	await stranger.close();
+});
+
+test('who resumes with another token keeps the client_id: what is sent again acts once', async () => {
+	const surgeon = await greet(ADMIN, { client_id: 'lasting' });
+	const answer = await step(surgeon, 1, 1);
+	surgeon.terminate();
+	const again = await greet(BOUNDED_ADMIN, { client_id: 'lasting', resume: surgeon.hello.resume });
+	assert.deepEqual(await step(again, 1, 1), answer);
+	assert.deepEqual(await step(again, 2, 1), { tick: answer.tick + 1 });
+	await again.close();
+	const stranger = await greet(BOUNDED_ADMIN, { client_id: 'lasting' }); // without the secret
+	assert.deepEqual(await step(stranger, 1, 1), { tick: answer.tick + 2 });
+	await stranger.close();
+});
+
 test('what it makes must have such a name', async () => {
 	const definition = await smallScene(anna);
 	await assert.rejects(anna.call('session.create', { name: 'theirs', definition, paused: true }), FORBIDDEN);

@@ -246,7 +246,7 @@ test('of many that do not close their side few linger', async (t) => {
 	const own = await Daemon.start();
 	t.after(() => own.end());
 	await untilSockets(own.port, 0);
-	const many = await Promise.all(Array.from({ length: 150 }, () => Raw.open(own.port)));
+	const many = await Promise.all(Array.from({ length: 120 }, () => Raw.open(own.port)));
 	for (const raw of many)
 		raw.socket.write(frame(0x83));
 	await Promise.all(many.map((raw) => raw.until(() => raw.ended || raw.gone, 'the end')));

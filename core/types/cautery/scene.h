@@ -39,6 +39,27 @@ enum {
 
 #define CAU_FIELD(field, default_, least, most, unit, meaning) double field;
 
+// ---- ranges of vectors, of scripts and of forces; those of scalars are in the tables below ----
+// The parameter tables of protocol/json document these ranges, and the core enforces them.
+#define CAU_PLACE_MOST_M 100.0 // absolute value of each coordinate of a place or a displacement
+#define CAU_GRAVITY_MOST_M_S2 100.0
+#define CAU_FORCE_MOST_N 1000.0 // absolute value of each component of an outer force on one vertex
+#define CAU_FIBRE_MOST 1e6
+#define CAU_TARGET_MOST 100.0 // absolute value of each entry of a target
+#define CAU_STRAIN_LEAST (-0.99)
+#define CAU_STRAIN_MOST 100.0
+#define CAU_SHRINK_LEAST 0.01 // squared stretch
+#define CAU_SHRINK_MOST 4.0
+#define CAU_MESH_UNIT_LEAST_M 1e-9
+#define CAU_MESH_UNIT_MOST_M 1000.0
+#define CAU_ITERATIONS_MOST 1000
+#define CAU_PULL_MOST_M 1.0
+#define CAU_PULL_LEAST_S 1e-3
+#define CAU_PULL_MOST_S 3600.0
+#define CAU_DWELL_MOST_S 3600.0
+#define CAU_CUT_LEAST_M_S 1e-5
+#define CAU_CUT_MOST_M_S 1.0
+
 // ---- time and solver ------------------------------------------------------------------------
 #define CAU_TIME_TABLE(X)                                                                          \
 	X(step_s, 1.0 / 60.0, 1.0 / 1000.0, 1.0 / 30.0, "s", "time step; one tick")                    \
@@ -229,7 +250,8 @@ typedef struct cau_selection {
 	X(jaw_open_rad, 0.6, 0.05, 1.5, "rad", "angle between open jaws")                              \
 	X(temperature_c, 170.0, 0.0, 1500.0, "degC", "temperature of the hot part while energized")    \
 	X(grid_cells, 16.0, 8.0, 64.0, "1", "nodes of the heat grid along each axis")                  \
-	X(grid_step_m, 1e-3, 5e-5, 0.01, "m", "spacing dl of the heat grid; at most the hot radius")   \
+	X(grid_step_m, 1e-3, 5e-5, 0.01, "m",                                                          \
+	  "spacing dl of the heat grid; at most the thinnest hot radius")                              \
 	X(diffusivity_m2_s, 4.2e-6, 0.0, 1e-3, "m^2/s", "alpha of eq. 18")                             \
 	X(max_speed_m_s, 0.5, 1e-3, 5.0, "m/s", "faster commands are followed at this speed")          \
 	X(max_turn_rad_s, 12.0, 0.1, 100.0, "rad/s", "likewise for turning")                           \

@@ -49,13 +49,19 @@ static int close_hub(void **state)
 	return rmdir(folder);
 }
 
-static cau_client attach(const char *client_id, const char *resume)
+static cau_client attach_of(const char *owner, const char *client_id, const char *resume)
 {
 	uint64_t replaced;
 	cau_client client = {0};
-	strcpy(client.asker.client_id, client_id);
+	strcpy(client.said_id, client_id);
+	strcpy(client.owner, owner);
 	assert_true(cau_hub_attach(hub, &client, resume, &replaced));
 	return client;
+}
+
+static cau_client attach(const char *client_id, const char *resume)
+{
+	return attach_of("", client_id, resume);
 }
 
 // Whether any SHARED_DIGITS of the secret stand in the text.
@@ -107,7 +113,50 @@ static void a_client_id_that_is_said_stays(void **state)
 	(void)state;
 	cau_client client = attach("surgeon", NULL);
 	assert_string_equal(client.asker.client_id, "surgeon");
+	assert_string_equal(client.said_id, "surgeon");
 	assert_int_not_equal(attach("", "").asker.client, client.asker.client);
+}
+
+// Stored answers are found by the client_id: no owner has that of another.
+static void client_ids_are_bound_to_their_owner(void **state)
+{
+	(void)state;
+	const struct {
+		const char *owner, *client_id;
+	} cases[] = {{"CN=a", "robot"},
+	             {"CN=b", "robot"},
+	             {"CN=a", "robot2"},
+	             {"CN=a", "x"},
+	             {"CN=arobot", "x"}};
+	enum { CASES = sizeof cases / sizeof cases[0] };
+	cau_client of[CASES];
+	for (int i = 0; i < CASES; i++) {
+		of[i] = attach_of(cases[i].owner, cases[i].client_id, NULL);
+		assert_string_equal(of[i].said_id, cases[i].client_id);
+		assert_string_not_equal(of[i].asker.client_id, cases[i].client_id);
+		for (int j = 0; j < i; j++)
+			assert_string_not_equal(of[i].asker.client_id, of[j].asker.client_id);
+	}
+	cau_client again = attach_of("CN=a", "robot", NULL);
+	assert_string_equal(again.asker.client_id, of[0].asker.client_id);
+	cau_client made = attach_of("CN=a", "", NULL), said = attach_of("CN=a", made.said_id, NULL);
+	assert_string_equal(said.asker.client_id, made.asker.client_id);
+	assert_string_not_equal(attach_of("CN=b", made.said_id, NULL).asker.client_id,
+	                        made.asker.client_id);
+}
+
+// Another token after a lost connection: what is sent again must still act once.
+static void resuming_keeps_the_client_id_whoever_owns_the_token(void **state)
+{
+	(void)state;
+	cau_client first = attach_of("name:a", "surgeon", NULL);
+	cau_client same = attach_of("name:b", "surgeon", first.resume);
+	assert_string_equal(same.asker.client_id, first.asker.client_id);
+	cau_client silent = attach_of("name:c", "", same.resume);
+	assert_string_equal(silent.asker.client_id, first.asker.client_id);
+	assert_string_equal(silent.said_id, "surgeon");
+	cau_client other = attach_of("name:c", "nurse", silent.resume);
+	assert_string_equal(other.asker.client_id, attach_of("name:c", "nurse", NULL).asker.client_id);
 }
 
 int main(void)
@@ -117,6 +166,8 @@ int main(void)
 		cmocka_unit_test(no_two_clients_are_given_the_same),
 		cmocka_unit_test(who_resumes_keeps_number_and_id_and_gets_another_secret),
 		cmocka_unit_test(a_client_id_that_is_said_stays),
+		cmocka_unit_test(client_ids_are_bound_to_their_owner),
+		cmocka_unit_test(resuming_keeps_the_client_id_whoever_owns_the_token),
 	};
 	return cmocka_run_group_tests(tests, open_hub, close_hub);
 }

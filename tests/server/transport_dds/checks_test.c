@@ -102,6 +102,22 @@ static void poses_are_finite_and_rotations_unit(void **state)
 	assert_true(near.rotation[1] == 1);
 }
 
+// The same range as that of tool.move on WebSocket.
+static void each_coordinate_is_within_its_range(void **state)
+{
+	(void)state;
+	cau_error error = {0};
+	for (int c = 0; c < 3; c++)
+		for (int sign = -1; sign <= 1; sign += 2) {
+			cau_pose end = {{0, 0, 0}, {1, 0, 0, 0}}, beyond = end;
+			end.position_m[c] = sign * CAU_PLACE_MOST_M;
+			beyond.position_m[c] = nextafter(end.position_m[c], sign * HUGE_VAL);
+			assert_int_equal(cau_motion_check_pose(&end, 0.5, &error), CAU_OK);
+			assert_int_equal(cau_motion_check_pose(&beyond, 0.5, &error), CAU_BAD_VALUE);
+			assert_string_equal(error.path, "position_m");
+		}
+}
+
 static void jaws_are_within_their_range(void **state)
 {
 	(void)state;
@@ -109,7 +125,7 @@ static void jaws_are_within_their_range(void **state)
 	cau_pose pose = {{0, 0, 0}, {1, 0, 0, 0}};
 	assert_int_equal(cau_motion_check_pose(&pose, 0, &error), CAU_OK);
 	assert_int_equal(cau_motion_check_pose(&pose, 1, &error), CAU_OK);
-	const double bad[] = {-0.01, 1.01, NAN};
+	const double bad[] = {nextafter(0, -1), nextafter(1, 2), NAN};
 	for (size_t i = 0; i < sizeof bad / sizeof bad[0]; i++) {
 		assert_int_equal(cau_motion_check_pose(&pose, bad[i], &error), CAU_BAD_VALUE);
 		assert_string_equal(error.path, "jaw");
@@ -156,6 +172,7 @@ int main(void)
 		cmocka_unit_test(times_are_near_and_go_on),
 		cmocka_unit_test(a_step_back_locks_out_for_a_deadline_only),
 		cmocka_unit_test(poses_are_finite_and_rotations_unit),
+		cmocka_unit_test(each_coordinate_is_within_its_range),
 		cmocka_unit_test(jaws_are_within_their_range),
 		cmocka_unit_test(leaps_are_refused),
 		cmocka_unit_test(a_first_pose_is_anywhere_and_a_quaternion_has_two_signs),

@@ -94,32 +94,9 @@ static void a_file_that_is_not_there_or_too_long_is_refused(void **state)
 	assert_int_equal(cau_dds_roles_read(&roles, &config, &error), CAU_IO);
 }
 
-// Answers to requests are kept by client_id: nobody has another identity's.
-static void client_ids_are_bound_to_who_has_proved_a_name(void **state)
-{
-	(void)state;
-	const struct {
-		const char *subject, *client_id;
-	} cases[] = {
-		{"CN=a", "robot"}, {"CN=b", "robot"}, {"CN=a", "robot2"}, {"CN=a", ""}, {"CN=arobot", ""}};
-	char bound[5][65];
-	for (int i = 0; i < 5; i++) {
-		snprintf(bound[i], sizeof bound[i], "%s", cases[i].client_id);
-		cau_dds_bind_client_id(bound[i], cases[i].subject);
-		for (int j = 0; j < i; j++)
-			assert_string_not_equal(bound[i], bound[j]);
-	}
-	char again[65] = "robot", unbound[65] = "robot";
-	cau_dds_bind_client_id(again, "CN=a");
-	assert_string_equal(again, bound[0]);
-	cau_dds_bind_client_id(unbound, "");
-	assert_string_equal(unbound, "robot");
-}
-
 int main(void)
 {
 	const struct CMUnitTest tests[] = {
-		cmocka_unit_test(client_ids_are_bound_to_who_has_proved_a_name),
 		cmocka_unit_test_setup(without_a_file_everybody_has_the_one_role, set_up),
 		cmocka_unit_test_setup(a_file_names_identities_and_who_proves_none_may_view, set_up),
 		cmocka_unit_test_setup(what_cannot_be_read_is_refused_with_its_line, set_up),

@@ -14,7 +14,7 @@ export interface Hello {
   version: number;
   /** name and version of the client program, for logs and other users */
   client: string;
-  /** the client's own lasting identity; names the stored answers of client_sequence */
+  /** the client's own lasting identity, among those of its token's owner; names the stored answers of client_sequence */
   client_id?: string;
   /** access token, where the server asks for one */
   token?: string;
@@ -830,7 +830,7 @@ export interface Mesh {
   name: string;
   /** extent, centred in x and y, top at z = 0 (1e-06 to 10 m) */
   size_m?: number[];
-  /** cells along each axis; of a pattern, triangles of the fan (1 to 1000) */
+  /** cells along each axis; of a pattern, triangles of the fan, 3 at least (1 to 1000) */
   cells?: number[];
   /** turns the UV axes against the mesh's axes (-6.3 to 6.3 rad) */
   texture_turn_rad?: number;
@@ -878,7 +878,7 @@ export interface Tool {
   temperature_c?: number;
   /** nodes of the heat grid along each axis (8 to 64) */
   grid_cells?: number;
-  /** spacing dl of the heat grid; at most the hot radius (5e-05 to 0.01 m) */
+  /** spacing dl of the heat grid; at most the thinnest hot radius (5e-05 to 0.01 m) */
   grid_step_m?: number;
   /** alpha of eq. 18 (0 to 0.001 m^2/s) */
   diffusivity_m2_s?: number;
@@ -906,7 +906,7 @@ export interface Tool {
 
 /** a scripted pull, for measurements */
 export interface Pull {
-  /** way of the chosen vertices (-100 to 100 m) */
+  /** way of the chosen vertices (-1 to 1 m) */
   move_m?: [number, number, number];
   /** time of the way (0.001 to 3600 s) */
   duration_s?: number;
@@ -957,7 +957,7 @@ export interface FasciaRegion {
   strain_min?: [number, number];
   /** range: largest (0 to 100) */
   strain_max?: [number, number];
-  /** S of eq. 21: squared stretches; 1: no shrinkage (0.001 to 10) */
+  /** S of eq. 21: squared stretches; 1: no shrinkage (0.01 to 4) */
   shrink?: [number, number];
   /** it parts when its exposure exceeds this (1 to 2000 degC) */
   ignition_c?: number;
@@ -1001,7 +1001,7 @@ export interface FasciaLayer {
   strain_min?: [number, number];
   /** range: largest (0 to 100) */
   strain_max?: [number, number];
-  /** S of eq. 21: squared stretches; 1: no shrinkage (0.001 to 10) */
+  /** S of eq. 21: squared stretches; 1: no shrinkage (0.01 to 4) */
   shrink?: [number, number];
   /** it parts when its exposure exceeds this (1 to 2000 degC) */
   ignition_c?: number;
@@ -1041,7 +1041,7 @@ export interface MembraneRegion {
   strain_min?: [number, number];
   /** range: largest (0 to 100) */
   strain_max?: [number, number];
-  /** S of eq. 21: squared stretches; 1: no shrinkage (0.001 to 10) */
+  /** S of eq. 21: squared stretches; 1: no shrinkage (0.01 to 4) */
   shrink?: [number, number];
   /** it parts when its exposure exceeds this (1 to 2000 degC) */
   ignition_c?: number;
@@ -1087,7 +1087,7 @@ export interface MembraneLayer {
   strain_min?: [number, number];
   /** range: largest (0 to 100) */
   strain_max?: [number, number];
-  /** S of eq. 21: squared stretches; 1: no shrinkage (0.001 to 10) */
+  /** S of eq. 21: squared stretches; 1: no shrinkage (0.01 to 4) */
   shrink?: [number, number];
   /** it parts when its exposure exceeds this (1 to 2000 degC) */
   ignition_c?: number;
@@ -1133,7 +1133,7 @@ export interface FatRegion {
   strain_min?: [number, number, number];
   /** range: largest (0 to 100) */
   strain_max?: [number, number, number];
-  /** S of eq. 21: squared stretches; 1: no shrinkage (0.001 to 10) */
+  /** S of eq. 21: squared stretches; 1: no shrinkage (0.01 to 4) */
   shrink?: [number, number, number];
   /** it parts when its exposure exceeds this (1 to 2000 degC) */
   ignition_c?: number;
@@ -1183,7 +1183,7 @@ export interface FatLayer {
   strain_min?: [number, number, number];
   /** range: largest (0 to 100) */
   strain_max?: [number, number, number];
-  /** S of eq. 21: squared stretches; 1: no shrinkage (0.001 to 10) */
+  /** S of eq. 21: squared stretches; 1: no shrinkage (0.01 to 4) */
   shrink?: [number, number, number];
   /** it parts when its exposure exceeds this (1 to 2000 degC) */
   ignition_c?: number;
@@ -1301,7 +1301,7 @@ export interface ToolAdd {
   temperature_c?: number;
   /** nodes of the heat grid along each axis (8 to 64) */
   grid_cells?: number;
-  /** spacing dl of the heat grid; at most the hot radius (5e-05 to 0.01 m) */
+  /** spacing dl of the heat grid; at most the thinnest hot radius (5e-05 to 0.01 m) */
   grid_step_m?: number;
   /** alpha of eq. 18 (0 to 0.001 m^2/s) */
   diffusivity_m2_s?: number;
@@ -1371,7 +1371,7 @@ export interface ToolConfigure {
   temperature_c?: number;
   /** nodes of the heat grid along each axis (8 to 64) */
   grid_cells?: number;
-  /** spacing dl of the heat grid; at most the hot radius (5e-05 to 0.01 m) */
+  /** spacing dl of the heat grid; at most the thinnest hot radius (5e-05 to 0.01 m) */
   grid_step_m?: number;
   /** alpha of eq. 18 (0 to 0.001 m^2/s) */
   diffusivity_m2_s?: number;
@@ -1540,7 +1540,7 @@ export interface MaterialSetFascia {
   strain_min?: [number, number];
   /** range: largest (0 to 100) */
   strain_max?: [number, number];
-  /** S of eq. 21: squared stretches; 1: no shrinkage (0.001 to 10) */
+  /** S of eq. 21: squared stretches; 1: no shrinkage (0.01 to 4) */
   shrink?: [number, number];
   /** it parts when its exposure exceeds this (1 to 2000 degC) */
   ignition_c?: number;
@@ -1590,7 +1590,7 @@ export interface MaterialSetMembrane {
   strain_min?: [number, number];
   /** range: largest (0 to 100) */
   strain_max?: [number, number];
-  /** S of eq. 21: squared stretches; 1: no shrinkage (0.001 to 10) */
+  /** S of eq. 21: squared stretches; 1: no shrinkage (0.01 to 4) */
   shrink?: [number, number];
   /** it parts when its exposure exceeds this (1 to 2000 degC) */
   ignition_c?: number;
@@ -1646,7 +1646,7 @@ export interface MaterialSetFat {
   strain_min?: [number, number, number];
   /** range: largest (0 to 100) */
   strain_max?: [number, number, number];
-  /** S of eq. 21: squared stretches; 1: no shrinkage (0.001 to 10) */
+  /** S of eq. 21: squared stretches; 1: no shrinkage (0.01 to 4) */
   shrink?: [number, number, number];
   /** it parts when its exposure exceeds this (1 to 2000 degC) */
   ignition_c?: number;
@@ -1718,7 +1718,7 @@ export interface ForceSet {
   tick?: number;
   /** the driver's own count (0 to 9007199254740991) */
   sequence?: number;
-  /** on each chosen vertex (-10000 to 10000 N) */
+  /** on each chosen vertex (-1000 to 1000 N) */
   force_n: [number, number, number];
   /** which vertices */
   selection: Selection;
@@ -2051,7 +2051,7 @@ export const PARAMETERS = {
     { name: 'grid_cells', unit: '1', least: 8, most: 64, default: 16,
       meaning: "nodes of the heat grid along each axis" },
     { name: 'grid_step_m', unit: 'm', least: 5e-05, most: 0.01, default: 0.001,
-      meaning: "spacing dl of the heat grid; at most the hot radius" },
+      meaning: "spacing dl of the heat grid; at most the thinnest hot radius" },
     { name: 'diffusivity_m2_s', unit: 'm^2/s', least: 0, most: 0.001, default: 4.2e-06,
       meaning: "alpha of eq. 18" },
     { name: 'max_speed_m_s', unit: 'm/s', least: 0.001, most: 5, default: 0.5,

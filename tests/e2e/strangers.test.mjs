@@ -1,0 +1,75 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Connections without hello keep nobody out who has a token.
+import assert from 'node:assert/strict';
+import { fork } from 'node:child_process';
+import { mkdtempSync, rmSync, writeFileSync } from 'node:fs';
+import { tmpdir } from 'node:os';
+import { join } from 'node:path';
+import { after, before, test } from 'node:test';
+import { Client } from './wire/client.mjs';
+import { Daemon } from './wire/daemon.mjs';
+import { AT_REST, smallSession } from './wire/scene.mjs';
+
+const TOKEN = 'driver-token-0123456789', STRANGERS = 1150, TRIES = 60, CLASS = 40;
+const WITHIN_S = process.env.E2E_SLOW === '1' ? 10 : 1;
+const folder = mkdtempSync(join(tmpdir(), 'cautery-strangers-'));
+let daemon;
+before(async () => {
+	writeFileSync(join(folder, 'tokens'), `operate ${TOKEN}\n`, { mode: 0o600 });
+	daemon = await Daemon.start({ settings: { tokens: join(folder, 'tokens') } });
+});
+after(async () => {
+	await daemon.end();
+	rmSync(folder, { recursive: true });
+});
+
+async function crowd(t, address, kind) {
+	const program = fork(new URL('wire/strangers.mjs', import.meta.url), [daemon.port, address, STRANGERS, kind]);
+	t.after(() => program.kill('SIGKILL'));
+	await new Promise((resolve) => program.once('message', resolve));
+}
+
+async function enter() {
+	const began = performance.now();
+	const client = await daemon.connect({ hello: { token: TOKEN } });
+	return { client, seconds: (performance.now() - began) / 1000 };
+}
+
+for (const kind of ['upgrade', 'silent'])
+	for (const address of ['127.0.0.1', '127.0.0.2'])
+		test(`beside ${STRANGERS} connections (${kind}) of ${address} that never say hello, a driver gets in each time`, async (t) => {
+			await crowd(t, address, kind);
+			const failures = [];
+			let longest = 0;
+			for (let i = 0; i < TRIES; i++)
+				await enter().then(({ client, seconds }) => {
+					longest = Math.max(longest, seconds);
+					return client.close();
+				}, (error) => failures.push(error.message));
+			t.diagnostic(`longest ${longest.toFixed(3)} s, ${failures.length} of ${TRIES} failed`);
+			assert.deepEqual(failures, []);
+			assert.ok(longest < WITHIN_S, `${longest} s`);
+		});
+
+test(`${CLASS} drivers of one address get in at once, beside the strangers of another`, async (t) => {
+	await crowd(t, '127.0.0.2', 'upgrade');
+	const all = await Promise.all(Array.from({ length: CLASS }, enter));
+	assert.ok(all.every(({ seconds }) => seconds < 2 * WITHIN_S), `${Math.max(...all.map(({ seconds }) => seconds))} s`);
+	await Promise.all(all.map(({ client }) => client.close()));
+});
+
+test('a driver that lost its connection comes back to its tools where all places are taken since', async (t) => {
+	const own = await Daemon.start({ settings: { max_connections: 2 } });
+	t.after(() => own.end());
+	const [driver, other] = [await own.connect(), await own.connect()];
+	const session = await smallSession(driver, 'kept', { paused: true });
+	await driver.call('tool.take_over', { session, tool: 'hook' });
+	driver.terminate();
+	await driver.closed;
+	const third = await own.connect();
+	const beyond = new Client(own.url());
+	assert.equal((await beyond.closed).code, 1013);
+	const again = await own.connect({ hello: { resume: driver.hello.resume } });
+	await again.call('tool.move', { session, tool: 'hook', position_m: [0, 0, 0.02], rotation: AT_REST });
+	await Promise.all([other, third, again].map((client) => client.close()));
+});
