@@ -19,9 +19,12 @@ static const struct {
 	int face_count;
 	int8_t face[FACES_MAX][4];
 } shapes[CAU_SHAPE_COUNT] = {
-	[CAU_SHAPE_PYRAMID] = {5, {{0, 3, 2, 1}, {0, 1, 4, -1}, {1, 2, 4, -1}, {2, 3, 4, -1}, {3, 0, 4, -1}}},
-	[CAU_SHAPE_WEDGE] = {5, {{0, 2, 1, -1}, {3, 4, 5, -1}, {0, 1, 4, 3}, {1, 2, 5, 4}, {2, 0, 3, 5}}},
-	[CAU_SHAPE_HEXAHEDRON] = {6, {{0, 3, 2, 1}, {4, 5, 6, 7}, {0, 1, 5, 4}, {1, 2, 6, 5}, {2, 3, 7, 6}, {3, 0, 4, 7}}},
+	[CAU_SHAPE_PYRAMID] =
+		{5, {{0, 3, 2, 1}, {0, 1, 4, -1}, {1, 2, 4, -1}, {2, 3, 4, -1}, {3, 0, 4, -1}}},
+	[CAU_SHAPE_WEDGE] = {5,
+                         {{0, 2, 1, -1}, {3, 4, 5, -1}, {0, 1, 4, 3}, {1, 2, 5, 4}, {2, 0, 3, 5}}},
+	[CAU_SHAPE_HEXAHEDRON] =
+		{6, {{0, 3, 2, 1}, {4, 5, 6, 7}, {0, 1, 5, 4}, {1, 2, 6, 5}, {2, 3, 7, 6}, {3, 0, 4, 7}}},
 };
 
 // The number of the corner whose vertex has the lowest representative.
@@ -76,8 +79,8 @@ static int add_cone(int32_t apex, const int32_t triangle[3], const int32_t *map,
 static int cone_cell(const cau_cell *cell, const int32_t *map, int32_t tetrahedron[12][4])
 {
 	int count = 0;
-	int32_t apex = cell->vertex[lowest_corner(
-		cell->vertex, cau_shape_corners((cau_shape)cell->shape), map)];
+	int32_t apex =
+		cell->vertex[lowest_corner(cell->vertex, cau_shape_corners((cau_shape)cell->shape), map)];
 	for (int f = 0; f < shapes[cell->shape].face_count; f++) {
 		const int8_t *face = shapes[cell->shape].face[f];
 		int corners = face[3] < 0 ? 3 : 4;

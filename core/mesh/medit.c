@@ -106,8 +106,7 @@ static void read_cells(cau_mesh_builder *builder, const cau_medit_kind *kind)
 		int64_t node[NODES_MAX];
 		for (int n = 0; n < kind->nodes; n++)
 			node[n] = next_integer(scan, "a vertex number", 0, INT32_MAX);
-		cau_medit_add(builder, kind, node,
-		              next_integer(scan, "a reference", INT32_MIN, INT32_MAX));
+		cau_medit_add(builder, kind, node, next_integer(scan, "a reference", INT32_MIN, INT32_MAX));
 	}
 }
 
@@ -126,8 +125,7 @@ static void skip_block(cau_mesh_builder *builder, cau_word keyword)
 	         keyword.text);
 	cau_word count = cau_scan_peek(scan);
 	if (count.length && !is_keyword(count) && count.text[0] != '#')
-		cau_mesh_builder_skip(builder, name,
-		                      cau_scan_text_integer(scan, "a count", 0, INT32_MAX));
+		cau_mesh_builder_skip(builder, name, cau_scan_text_integer(scan, "a count", 0, INT32_MAX));
 	while (!scan->status) {
 		cau_scan ahead = *scan;
 		cau_word word = next_word(&ahead);

@@ -48,8 +48,8 @@ static const cau_mesh_format obj = {cau_mesh_read_obj, "OBJ", NULL, true};
 static const cau_mesh_format tetgen = {cau_mesh_read_tetgen, "TetGen", NULL, true};
 static const cau_mesh_format medit = {cau_mesh_read_medit, "Medit", NULL, true};
 static const cau_mesh_format gmsh = {cau_mesh_read_gmsh, "Gmsh", NULL, true};
-static const cau_mesh_format nifti = {
-	NULL, NULL, "a volume of voxels (NIfTI): save its surface as STL", false};
+static const cau_mesh_format nifti = {NULL, NULL,
+                                      "a volume of voxels (NIfTI): save its surface as STL", false};
 static const cau_mesh_format dicom = {
 	NULL, NULL, "a DICOM image: segment it and save the surface as STL", false};
 
@@ -63,8 +63,8 @@ static bool is_binary_stl(const unsigned char *bytes, size_t byte_count)
 	for (int i = 3; i >= 0; i--)
 		facets = facets << 8 | bytes[80 + i];
 	uint64_t whole = STL_HEADER_BYTES + STL_FACET_BYTES * facets;
-	return facets && (byte_count == whole ||
-	                  (byte_count > whole && memchr(bytes, 0, STL_HEADER_BYTES)));
+	return facets &&
+	       (byte_count == whole || (byte_count > whole && memchr(bytes, 0, STL_HEADER_BYTES)));
 }
 
 static bool is_text(const unsigned char *bytes, size_t byte_count)
@@ -76,8 +76,8 @@ static bool is_text(const unsigned char *bytes, size_t byte_count)
 static const cau_mesh_format *format_of_text(const unsigned char *bytes, size_t byte_count)
 {
 	static const char *const keywords[] = {"v", "vn", "vt", "f", "mtllib", "usemtl", "o", "g", "s"};
-	cau_scan scan = cau_scan_make(
-		bytes, byte_count < LOOKED_AT_BYTES ? byte_count : LOOKED_AT_BYTES, NULL);
+	cau_scan scan =
+		cau_scan_make(bytes, byte_count < LOOKED_AT_BYTES ? byte_count : LOOKED_AT_BYTES, NULL);
 	for (; cau_scan_left(&scan); cau_scan_skip_line(&scan)) {
 		cau_word word = cau_scan_word_of_line(&scan);
 		if (!word.length || word.text[0] == '#')
@@ -105,10 +105,10 @@ const cau_mesh_format *cau_mesh_format_of(const unsigned char *bytes, size_t byt
 	for (size_t i = 0; i < sizeof starts / sizeof *starts; i++) {
 		size_t from = starts[i].format.text ? blank : 0;
 		const char *at = (const char *)bytes + from;
-		bool is_this = byte_count - from >= starts[i].byte_count &&
-		               (starts[i].format.text
-		                    ? !strncasecmp(at, starts[i].bytes, starts[i].byte_count)
-		                    : !memcmp(at, starts[i].bytes, starts[i].byte_count));
+		bool is_this =
+			byte_count - from >= starts[i].byte_count &&
+			(starts[i].format.text ? !strncasecmp(at, starts[i].bytes, starts[i].byte_count)
+		                           : !memcmp(at, starts[i].bytes, starts[i].byte_count));
 		if (is_this)
 			return &starts[i].format;
 	}

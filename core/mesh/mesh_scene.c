@@ -74,6 +74,7 @@ static cau_status read_report(const cau_mesh_wish *wish, cau_mesh_def *def, cau_
 	def->unit_m = report->proposed_unit_m;
 	status = cau_mesh_make(def, "", &mesh, report, error);
 	cau_mesh_finish(&mesh);
+	report->unit_guessed = 1;
 	return status;
 }
 
@@ -83,9 +84,10 @@ static cau_status add_layers(const cau_mesh_wish *wish, const cau_mesh_report *r
 	bool solid = report->tetrahedron_count > 0;
 	bool fat = wish->layer_kind < 0 ? solid : wish->layer_kind == CAU_LAYER_FAT;
 	if (fat && !solid)
-		return cau_fail(error, CAU_BAD_VALUE, "as",
-		                "this file has a surface and no tetrahedra: make a sheet of it (as fascia), "
-		                "or fill it with tetrahedra first, as TetGen and gmsh -3 do");
+		return cau_fail(
+			error, CAU_BAD_VALUE, "as",
+			"this file has a surface and no tetrahedra: make a sheet of it (as fascia), "
+			"or fill it with tetrahedra first, as TetGen and gmsh -3 do");
 	if (!fat && !report->triangle_count)
 		return cau_fail(error, CAU_BAD_VALUE, "as",
 		                "this file has tetrahedra and no triangles: make a solid of it (as fat)");
@@ -126,8 +128,7 @@ static void add_tools(const cau_mesh_report *report, cau_scene_def *scene)
 	cau_tool_def *ball = &scene->tools[scene->tool_count++];
 	cau_default_tool_def(ball, CAU_TOOL_SPHERE);
 	snprintf(ball->name, sizeof ball->name, "ball");
-	ball->hot_radius_m =
-		fmin(fmax(ball->hot_radius_m, report->mean_edge_m), ball_radius_most_m);
+	ball->hot_radius_m = fmin(fmax(ball->hot_radius_m, report->mean_edge_m), ball_radius_most_m);
 	ball->grid_step_m = ball->hot_radius_m / 3;
 	cau_tool_def *grasper = &scene->tools[scene->tool_count++];
 	cau_default_tool_def(grasper, CAU_TOOL_GRASPER);

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Medit's binary form (.meshb), versions 1 to 4: libMeshb's documentation. Version 1 has floats, the
-// others doubles; from 3 on positions in the file have 8 bytes, in 4 whole numbers too.
+// Medit's binary form (.meshb), versions 1 to 4: libMeshb's documentation. Version 1 has floats,
+// the others doubles; from 3 on positions in the file have 8 bytes, in 4 whole numbers too.
 #include "mesh/medit_kinds.h"
 #include "mesh/readers.h"
 
@@ -40,8 +40,7 @@ static void read_cells(meshb *m, const cau_medit_kind *kind)
 		int64_t node[NODES_MAX];
 		for (int n = 0; n < kind->nodes; n++)
 			node[n] = read_whole(m, "a vertex number", 0, INT32_MAX);
-		cau_medit_add(m->builder, kind, node,
-		              read_whole(m, "a reference", INT32_MIN, INT32_MAX));
+		cau_medit_add(m->builder, kind, node, read_whole(m, "a reference", INT32_MIN, INT32_MAX));
 	}
 }
 

@@ -43,12 +43,11 @@ static void read_type(cau_scan *scan, property *made, int *list_bytes)
 		const char *name;
 		int bytes;
 		bool real;
-	} types[] = {{"char", 1, false},   {"int8", 1, false},    {"uchar", -1, false},
-	             {"uint8", -1, false}, {"short", 2, false},   {"int16", 2, false},
-	             {"ushort", -2, false}, {"uint16", -2, false}, {"int", 4, false},
-	             {"int32", 4, false},  {"uint", -4, false},   {"uint32", -4, false},
-	             {"float", 4, true},   {"float32", 4, true},  {"double", 8, true},
-	             {"float64", 8, true}};
+	} types[] = {
+		{"char", 1, false},  {"int8", 1, false},   {"uchar", -1, false},  {"uint8", -1, false},
+		{"short", 2, false}, {"int16", 2, false},  {"ushort", -2, false}, {"uint16", -2, false},
+		{"int", 4, false},   {"int32", 4, false},  {"uint", -4, false},   {"uint32", -4, false},
+		{"float", 4, true},  {"float32", 4, true}, {"double", 8, true},   {"float64", 8, true}};
 	cau_word word = cau_scan_word_of_line(scan);
 	for (size_t i = 0; i < sizeof types / sizeof *types; i++)
 		if (cau_word_is(word, types[i].name)) {
@@ -106,8 +105,8 @@ static void read_element_line(ply *p)
 	}
 	element *made = &p->element[p->element_count++];
 	cau_word name = cau_scan_word_of_line(scan);
-	snprintf(made->name, sizeof made->name, "%.*s elements", name.length < 20 ? (int)name.length : 20,
-	         name.length ? name.text : "");
+	snprintf(made->name, sizeof made->name, "%.*s elements",
+	         name.length < 20 ? (int)name.length : 20, name.length ? name.text : "");
 	made->kind = cau_word_is(name, "vertex") ? VERTEX : cau_word_is(name, "face") ? FACE : PASSED;
 	made->count = cau_scan_word_integer(scan, cau_scan_word_of_line(scan), "number of elements", 0,
 	                                    INT32_MAX);
@@ -211,8 +210,8 @@ static void read_one(ply *p, const element *of)
 	else if (of->kind == FACE && corner_count >= 3)
 		cau_mesh_builder_polygon(p->builder, corner, corner_count, region, NULL);
 	else
-		cau_mesh_builder_skip(
-			p->builder, of->kind == FACE ? "faces of fewer than 3 corners" : of->name, 1);
+		cau_mesh_builder_skip(p->builder,
+		                      of->kind == FACE ? "faces of fewer than 3 corners" : of->name, 1);
 }
 
 static void read_elements(ply *p)

@@ -10,7 +10,8 @@
 #include "mesh/mesh_memory.h"
 
 // ---- regions
-// The place of a region in the list, which ascends; where it is not listed, the place it would have.
+// The place of a region in the list, which ascends; where it is not listed, the place it would
+// have.
 static int32_t place_of(const cau_mesh_region *list, int32_t count, int32_t dimension,
                         int32_t region)
 {
@@ -37,8 +38,8 @@ static void count_regions(const int32_t *region, int32_t count, int32_t dimensio
                           cau_mesh_report *report)
 {
 	cau_mesh_region *list = report->region;
-	int32_t listed = report->region_count < CAU_MESH_REGION_MAX ? report->region_count
-	                                                            : CAU_MESH_REGION_MAX;
+	int32_t listed =
+		report->region_count < CAU_MESH_REGION_MAX ? report->region_count : CAU_MESH_REGION_MAX;
 	int32_t place = -1;
 	for (int32_t i = 0; i < count; i++) {
 		if (place >= 0 && is_at(list, listed, place, dimension, region[i])) {
@@ -81,8 +82,8 @@ static void copy_name(cau_word word, char name[static CAU_MESH_NAME_BYTES])
 void cau_mesh_report_regions(const cau_mesh_builder *builder, cau_mesh_report *report)
 {
 	count_all(&builder->mesh, report);
-	int32_t listed = report->region_count < CAU_MESH_REGION_MAX ? report->region_count
-	                                                            : CAU_MESH_REGION_MAX;
+	int32_t listed =
+		report->region_count < CAU_MESH_REGION_MAX ? report->region_count : CAU_MESH_REGION_MAX;
 	for (int32_t i = 0; i < builder->name_count; i++) {
 		const cau_region_name *named = &builder->name[i];
 		for (int32_t dimension = 2; dimension <= 3; dimension++) {
@@ -97,8 +98,8 @@ void cau_mesh_report_regions(const cau_mesh_builder *builder, cau_mesh_report *r
 // Counts again after mending; regions of which nothing is left go.
 static void recount_regions(const cau_mesh *mesh, cau_mesh_report *report)
 {
-	int32_t listed = report->region_count < CAU_MESH_REGION_MAX ? report->region_count
-	                                                            : CAU_MESH_REGION_MAX;
+	int32_t listed =
+		report->region_count < CAU_MESH_REGION_MAX ? report->region_count : CAU_MESH_REGION_MAX;
 	for (int32_t i = 0; i < listed; i++)
 		report->region[i].element_count = 0;
 	report->region_count = listed;
@@ -226,10 +227,10 @@ cau_status cau_mesh_report_measure(const cau_mesh *mesh, double unit_m, cau_mesh
 	int32_t *parent = cau_mesh_array((size_t)mesh->vertex_count, sizeof *parent);
 	if (!parent)
 		return cau_fail(error, CAU_NO_MEMORY, NULL, "no memory for the report of a mesh");
-	report->component_count = count_components(
-		solid ? mesh->tetrahedron : mesh->triangle,
-		solid ? mesh->tetrahedron_count : mesh->triangle_count, solid ? 4 : 3, mesh->vertex_count,
-		parent);
+	report->component_count =
+		count_components(solid ? mesh->tetrahedron : mesh->triangle,
+	                     solid ? mesh->tetrahedron_count : mesh->triangle_count, solid ? 4 : 3,
+	                     mesh->vertex_count, parent);
 	free(parent);
 	recount_regions(mesh, report);
 	measure_quality(mesh, report);

@@ -71,14 +71,15 @@ static void put_mesh(const cau_mesh_report *report, text *out)
 static void put_size(const cau_mesh_report *report, text *out)
 {
 	const double *a = report->least_m, *b = report->most_m;
-	put(out, "size: %.4g x %.4g x %.4g m, unit_m %g (%s)\n", b[0] - a[0], b[1] - a[1], b[2] - a[2],
-	    report->unit_m, cau_unit_name(report->unit_m));
+	put(out, "size: %.4g x %.4g x %.4g m, unit_m %g (%s%s)\n", b[0] - a[0], b[1] - a[1],
+	    b[2] - a[2], report->unit_m, cau_unit_name(report->unit_m),
+	    report->unit_guessed ? ", guessed" : "");
 }
 
 static void put_regions(const cau_mesh_report *report, text *out)
 {
-	int32_t listed = report->region_count < CAU_MESH_REGION_MAX ? report->region_count
-	                                                            : CAU_MESH_REGION_MAX;
+	int32_t listed =
+		report->region_count < CAU_MESH_REGION_MAX ? report->region_count : CAU_MESH_REGION_MAX;
 	for (int32_t i = 0; i < listed; i++) {
 		const cau_mesh_region *r = &report->region[i];
 		put(out, "%s%d%s%s%s (%d %s)", i ? ", " : "regions: ", r->region, r->name[0] ? " \"" : "",

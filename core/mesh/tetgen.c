@@ -93,9 +93,9 @@ static void read_element(cau_mesh_builder *builder, cau_shape shape, int64_t nod
 		return;
 	bool reduced = nodes > corners;
 	cau_mesh_builder_cell(builder, shape, vertex, (int32_t)region,
-	                      reduced                        ? "10-node tetrahedra"
+	                      reduced                       ? "10-node tetrahedra"
 	                      : shape == CAU_SHAPE_TRIANGLE ? "triangles"
-	                                                     : "tetrahedra",
+	                                                    : "tetrahedra",
 	                      reduced);
 }
 

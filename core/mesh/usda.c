@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// USD as text (.usda): the prims UsdGeomTetMesh and UsdGeomMesh, each a region with the prim's name.
-// Where the layer says metersPerUnit, positions are scaled to metres. Transforms are passed over.
-// Schema: UsdGeom.TetMesh, UsdGeom.Mesh.
+// USD as text (.usda): the prims UsdGeomTetMesh and UsdGeomMesh, each a region with the prim's
+// name. Where the layer says metersPerUnit, positions are scaled to metres. Transforms are passed
+// over. Schema: UsdGeom.TetMesh, UsdGeom.Mesh.
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
@@ -89,9 +89,8 @@ static void add_number(usda *u, numbers *to, double number)
 {
 	if (to->count == to->capacity) {
 		int32_t capacity = to->capacity ? 2 * to->capacity : 64;
-		double *grown = capacity <= NUMBERS_MAX
-		                    ? realloc(to->number, (size_t)capacity * sizeof *grown)
-		                    : NULL;
+		double *grown =
+			capacity <= NUMBERS_MAX ? realloc(to->number, (size_t)capacity * sizeof *grown) : NULL;
 		if (!grown) {
 			cau_scan_fail(u->scan, CAU_NO_MEMORY, "no memory for %d numbers", capacity);
 			return;
@@ -142,8 +141,8 @@ static void add_tetrahedra(usda *u, int32_t first)
 		for (int c = 0; c < 4; c++)
 			vertex[c] = vertex_at(u, from, i + c, first);
 		if (!u->scan->status)
-			cau_mesh_builder_cell(u->builder, CAU_SHAPE_TETRAHEDRON, vertex, u->prims,
-			                      "tetrahedra", false);
+			cau_mesh_builder_cell(u->builder, CAU_SHAPE_TETRAHEDRON, vertex, u->prims, "tetrahedra",
+			                      false);
 	}
 }
 

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // VTK's XML files: unstructured grids (.vtu) and surfaces (.vtp), all their pieces. Format: "VTK
-// File Formats", XML formats. Only as much of XML is read as these files have: tags with attributes.
+// File Formats", XML formats. Only as much of XML is read as these files have: tags with
+// attributes.
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
@@ -69,7 +70,7 @@ static bool next_tag(cau_scan *scan, tag *found)
 	scan->mark = (size_t)(open - scan->bytes);
 	scan->at = (size_t)(close - scan->bytes) + 1;
 	const char *name = (const char *)open + 1, *at = name;
-	while (at < (const char *)close && *at > ' ')
+	while (at<(const char *)close && * at> ' ')
 		at++;
 	found->name = (cau_word){name, (size_t)(at - name)};
 	found->inside = (cau_word){at, (size_t)((const char *)close - at)};
@@ -210,8 +211,12 @@ static void add_cells(vtu *v, const cau_vtu_array *array, int64_t type, int64_t 
 			break;
 		}
 		bool known = type || (types[i] >= 0 && types[i] <= 255);
-		add_cell(v, type ? type : known ? (int64_t)types[i] : 255, corner + (int64_t)from,
-		         (int64_t)offset[i] - (int64_t)from, first, i < region_count ? region[i] : 0);
+		add_cell(v,
+		         type    ? type
+		         : known ? (int64_t)types[i]
+		                 : 255,
+		         corner + (int64_t)from, (int64_t)offset[i] - (int64_t)from, first,
+		         i < region_count ? region[i] : 0);
 		from = floor(offset[i]);
 	}
 	free(corner);
@@ -240,9 +245,9 @@ static void read_tag(vtu *v, const tag *at, bool *surface)
 	static const struct {
 		const char *name;
 		section in;
-	} sections[] = {{"Points", POINTS},      {"Cells", CELLS},   {"CellData", CELL_DATA},
-	                {"Polys", POLYS},        {"Strips", STRIPS}, {"PointData", OTHER},
-	                {"Verts", OTHER},        {"Lines", OTHER}};
+	} sections[] = {{"Points", POINTS}, {"Cells", CELLS},   {"CellData", CELL_DATA},
+	                {"Polys", POLYS},   {"Strips", STRIPS}, {"PointData", OTHER},
+	                {"Verts", OTHER},   {"Lines", OTHER}};
 	if (cau_word_is(at->name, "VTKFile"))
 		read_head(v, at);
 	else if (cau_word_is(at->name, "PolyData"))
@@ -254,7 +259,8 @@ static void read_tag(vtu *v, const tag *at, bool *surface)
 	for (size_t i = 0; i < sizeof sections / sizeof *sections; i++)
 		if (cau_word_is(at->name, sections[i].name))
 			v->in = sections[i].in;
-	static const char *const passed[][2] = {{"NumberOfVerts", "points"}, {"NumberOfLines", "lines"}};
+	static const char *const passed[][2] = {{"NumberOfVerts", "points"},
+	                                        {"NumberOfLines", "lines"}};
 	for (size_t i = 0; i < 2 && cau_word_is(at->name, "Piece"); i++) {
 		cau_word word = value_of(at, passed[i][0]);
 		int64_t count =

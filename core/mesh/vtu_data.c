@@ -9,8 +9,8 @@
 #include "mesh/mesh_memory.h"
 
 enum {
-	DEFLATE_RATIO_MAX = 1032,     // no stream of zlib grows by more
-	DATA_BYTES_MAX = 1 << 30,     // of one array
+	DEFLATE_RATIO_MAX = 1032,    // no stream of zlib grows by more
+	DATA_BYTES_MAX = 1 << 30,    // of one array
 	NUMBER_TEXT_BYTES_LEAST = 2, // a digit and a blank
 };
 
@@ -171,8 +171,8 @@ static const struct {
 	const char *name;
 	int bytes;
 	bool real, is_signed;
-} types[] = {{"Float64", 8, true, true}, {"Float32", 4, true, true},  {"Int64", 8, false, true},
-             {"Int32", 4, false, true},  {"UInt8", 1, false, false},  {"Int8", 1, false, true},
+} types[] = {{"Float64", 8, true, true},  {"Float32", 4, true, true}, {"Int64", 8, false, true},
+             {"Int32", 4, false, true},   {"UInt8", 1, false, false}, {"Int8", 1, false, true},
              {"UInt16", 2, false, false}, {"Int16", 2, false, true},  {"UInt32", 4, false, false},
              {"UInt64", 8, false, false}};
 
@@ -211,8 +211,8 @@ static double *convert(const cau_vtu_coding *coding, const bytes *from, int type
 			number[i] = cau_scan_real(&scan, "a number", types[type].bytes);
 			continue;
 		}
-		number[i] = (double)cau_scan_integer(&scan, "a number", types[type].bytes, INT64_MIN,
-		                                     INT64_MAX);
+		number[i] =
+			(double)cau_scan_integer(&scan, "a number", types[type].bytes, INT64_MIN, INT64_MAX);
 		if (!types[type].is_signed && number[i] < 0)
 			number[i] += (double)((uint64_t)1 << (8 * width - 1)) * 2;
 	}
@@ -232,8 +232,7 @@ double *cau_vtu_numbers(const cau_vtu_coding *coding, const cau_vtu_array *array
 		if (!cau_word_is(array->type, types[i].name))
 			continue;
 		bytes data = take_bytes(coding, array);
-		double *number =
-			coding->scan->status ? NULL : convert(coding, &data, (int)i, count);
+		double *number = coding->scan->status ? NULL : convert(coding, &data, (int)i, count);
 		free(data.data);
 		return number;
 	}

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Arrays of numbers in VTK's XML files: text, base64 or appended bytes, as they are or compressed by
-// zlib. Format: "VTK File Formats", XML formats.
+// Arrays of numbers in VTK's XML files: text, base64 or appended bytes, as they are or compressed
+// by zlib. Format: "VTK File Formats", XML formats.
 #pragma once
 
 #include "mesh/scan.h"

@@ -48,6 +48,6 @@ cau_status cau_region_list_check(const cau_region_list *list, const char *layer,
 	if (list->count && length >= sizeof names - 24)
 		snprintf(names + length, sizeof names - length, ", ...");
 	return cau_fail(error, CAU_NOT_FOUND, path,
-	                "the mesh of layer \"%.48s\" has no region %d; its regions are: %s", layer, region,
-	                names);
+	                "the mesh of layer \"%.48s\" has no region %d; its regions are: %s", layer,
+	                region, names);
 }

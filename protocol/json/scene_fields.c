@@ -46,9 +46,11 @@ static const cau_field mesh_fields[] = {
      .count = 3, .least_count = 1, .kinds = KIND(SHEET) | KIND(SLAB) | KIND(PATTERN)},
 	{SCALAR_OF(texture_turn_rad, -6.3, 6.3, "rad", "turns the UV axes against the mesh's axes"),
      .kinds = KIND(SHEET) | KIND(PATTERN)},
-	{OTHER(file, TEXT, ".msh, .obj or .vtk, relative to the scene file"), .required = true,
+	{OTHER(file, TEXT, "a mesh file, relative to the scene file"), .required = true,
      .kinds = KIND(FILE) | KIND(BYTES)},
 	{SCALAR_OF(unit_m, 1e-9, 1000.0, "m", "metres in one unit of the file"),
+     .kinds = KIND(FILE) | KIND(BYTES)},
+	{INTEGER(strict, 0, 1, "1: refuses a mesh that would have to be mended"),
      .kinds = KIND(FILE) | KIND(BYTES)},
 	{VECTOR(translate_m, 3, -FAR_M, FAR_M, "m", "moves the mesh, after the unit")},
 };

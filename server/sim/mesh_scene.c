@@ -6,6 +6,7 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "cautery/mesh_scene.h"
 #include "cautery/session.h"
 
 // What a scene around a mesh must know of it.
@@ -200,6 +201,15 @@ static void add_motions(const extent *e, cau_scene_def *scene)
 	pull->selection.radius_m = 0.1 * (e->most[longer_axis(e)] - e->least[longer_axis(e)]);
 }
 
+static void print_report(const char *file, const cau_mesh_report *report)
+{
+	char text[CAU_MESH_TEXT_BYTES];
+	if (!report)
+		return;
+	cau_mesh_report_text(report, text);
+	fprintf(stderr, "cautery-sim: %s\n%s", file, text);
+}
+
 // Loads the scene so far and measures its mesh.
 static cau_status probe(const cau_scene_def *scene, extent *e, cau_error *error)
 {
@@ -211,6 +221,7 @@ static cau_status probe(const cau_scene_def *scene, extent *e, cau_error *error)
 	if (status)
 		return status;
 	cau_session_describe(session, &info);
+	print_report(scene->meshes[0].file, info.mesh_report);
 	measure_box(&info, e);
 	double from[3], to[3];
 	cut_end(e, -1.0, from);
@@ -219,6 +230,21 @@ static cau_status probe(const cau_scene_def *scene, extent *e, cau_error *error)
 	e->to_z = surface_height(&info, e, to);
 	status = measure_edges(&info, e, error);
 	cau_session_destroy(session);
+	return status;
+}
+
+// The user wrote no scene that a path could point into, and knows units as an option.
+static cau_status in_own_words(const char *file, cau_status status, cau_error *error)
+{
+	char *at = error ? strstr(error->reason, "(unit_m ") : NULL;
+	if (!error)
+		return status;
+	error->path[0] = 0;
+	snprintf(error->file, sizeof error->file, "%.255s", file);
+	if (at && strlen(error->reason) + 3 < sizeof error->reason) {
+		memmove(at + 3, at + 1, strlen(at + 1) + 1);
+		memcpy(at, "(--unit-m", 9);
+	}
 	return status;
 }
 
@@ -236,7 +262,7 @@ cau_status sim_mesh_scene(const char *file, double unit_m, cau_scene_def *scene,
 			status = probe(scene, &e, error);
 	}
 	if (status)
-		return status;
+		return in_own_words(file, status, error);
 	add_pins(&e, !tetrahedra && e.has_rim, scene);
 	add_motions(&e, scene);
 	return CAU_OK;

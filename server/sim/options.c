@@ -7,7 +7,7 @@
 
 static const cau_option rows[] = {
 	{"scene", "S", CAU_OPTION_TEXT, AT(scene),
-     .meaning = "a scene's name, a scene file (.json) or a mesh (.msh, .obj, .vtk)"},
+     .meaning = "a scene's name, a scene file (.json) or a mesh file"},
 	{"scenes", "DIR", CAU_OPTION_TEXT, AT(scenes),
      .meaning = "where names are looked up (default: the installed scenes)"},
 	{"script", "FILE", CAU_OPTION_TEXT, AT(script),

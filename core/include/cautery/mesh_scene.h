@@ -34,8 +34,8 @@ typedef struct cau_mesh_wish {
 	int32_t strict;     // refuse what would have to be mended
 } cau_mesh_wish;
 
-// Reads the mesh and makes a scene around it: its lowest tenth pinned, or the rim of an open sheet; a
-// hot ball and a grasper above it; no gravity, as a scanned organ has its shape under its weight
+// Reads the mesh and makes a scene around it: its lowest tenth pinned, or the rim of an open sheet;
+// a hot ball and a grasper above it; no gravity, as a scanned organ has its shape under its weight
 // already. Errors: as for reading; CAU_BAD_MESH at "unit_m" with a proposal where the unit is not
 // clear; CAU_BAD_VALUE at "as" where the file lacks the elements of the layer. Threads: any.
 cau_status cau_mesh_scene(const cau_mesh_wish *wish, cau_scene_def *scene, cau_mesh_report *report,

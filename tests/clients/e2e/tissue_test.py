@@ -53,9 +53,9 @@ class Tissue(programs.Case):
         self.assertEqual(info["summary"]["scene"], "left-knee")
         self.assertEqual(info["summary"]["vertex_count"], 169)
         self.assertEqual(info["triangle_count"], 288)
-        self.assertEqual([d["tool"] for d in info["drivers"]], ["ball"])
+        self.assertEqual([d["tool"] for d in info["drivers"]], ["ball", "grasper"])
         self.assertAlmostEqual(info["definition"]["tools"][0]["position_m"][0], 0.03, places=4)
-        self.assertEqual(len(self.json("ls")["sessions"]), 1)  # the one that only measured is gone
+        self.assertEqual(len(self.json("ls")["sessions"]), 1)
 
     def test_a_scene_file_brings_its_mesh(self):
         self.path("flat.obj", sheet(4, 0.05))
@@ -68,7 +68,28 @@ class Tissue(programs.Case):
     def test_a_bad_mesh_is_refused(self):
         file = self.path("bad.obj", "v 0 0 0\nv 1 0 0\nv 2 0 0\nf 1 2 3\n")
         _, told = self.cautery("create", "--mesh", file, code=1)
-        self.assertIn("mesh", told)
+        self.assertIn("every element is degenerate", told)
+        self.assertNotIn("params", told)
+
+    def test_a_mesh_needs_no_option(self):
+        """By its content, whatever its name; the report says what became of it."""
+        file = self.path("LEFT", sheet(4, 0.05).replace("f ", "f 1/1 2/2 2/2\nf ", 1))
+        session, told = self.cautery("create", file)
+        self.assertIn("1 degenerate triangles left out", told)
+        self.assertIn("open surface with 16 edges on its rim", told)
+        self.assertIn("(--as fascia); for a solid", told)
+        self.assertEqual(self.json("info", session.strip())["triangle_count"], 32)
+        _, told = self.cautery("create", file, "--strict", code=1)
+        self.assertIn("this mesh needs mending: 1 degenerate triangles left out", told)
+        _, told = self.cautery("create", file, "--as", "fat", code=1)
+        self.assertIn("a surface and no tetrahedra", told)
+
+    def test_a_unit_is_proposed(self):
+        _, told = self.cautery("create", self.path("large.obj", sheet(4, 160)), code=1)
+        self.assertIn("did you mean millimetres (--unit-m 0.001)?", told)
+        self.assertNotIn("params", told)
+        _, told = self.cautery("create", self.path("mean.obj", sheet(4, 8)))
+        self.assertIn("--unit-m 0.01 (centimetres, guessed)", told)
 
 
 class Forces(programs.Case):

@@ -17,9 +17,9 @@ static void turn(int32_t vertex[8], unsigned way)
 	static const int quarter[8] = {1, 2, 3, 0, 5, 6, 7, 4}, roll[8] = {3, 2, 6, 7, 0, 1, 5, 4};
 	static const int mirror[8] = {4, 5, 6, 7, 0, 1, 2, 3};
 	for (unsigned step = 0; step < 10; step++) {
-		const int *map = step < way % 4       ? quarter
-		                 : step < 4           ? NULL
-		                 : step < 4 + way / 4 % 4 ? roll
+		const int *map = step < way % 4              ? quarter
+		                 : step < 4                  ? NULL
+		                 : step < 4 + way / 4 % 4    ? roll
 		                 : step == 9 && way % 3 == 0 ? mirror
 		                                             : NULL;
 		int32_t old[8];
@@ -63,9 +63,11 @@ static void make_block(cau_mesh_builder *builder, unsigned seed, bool wedges)
 			continue;
 		}
 		cau_mesh_builder_cell(builder, CAU_SHAPE_WEDGE,
-		                      (int32_t[]){v[0], v[1], v[2], v[4], v[5], v[6]}, cell, "wedges", false);
+		                      (int32_t[]){v[0], v[1], v[2], v[4], v[5], v[6]}, cell, "wedges",
+		                      false);
 		cau_mesh_builder_cell(builder, CAU_SHAPE_WEDGE,
-		                      (int32_t[]){v[0], v[2], v[3], v[4], v[6], v[7]}, cell, "wedges", false);
+		                      (int32_t[]){v[0], v[2], v[3], v[4], v[6], v[7]}, cell, "wedges",
+		                      false);
 	}
 }
 
