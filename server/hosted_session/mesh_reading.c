@@ -85,7 +85,9 @@ static void fill(reading *what, cau_wire_mesh_report *to)
 	to->unit_m = from->unit_m;
 	for (int i = 0; i < CAU_MESH_QUALITY_BINS; i++)
 		to->quality[i] = from->quality[i];
-	to->least_quality = from->least_quality < 0 ? 0 : from->least_quality > 1 ? 1 : from->least_quality;
+	to->least_quality = from->least_quality < 0   ? 0
+	                    : from->least_quality > 1 ? 1
+	                                              : from->least_quality;
 	fill_lists(what, to);
 }
 
@@ -95,11 +97,12 @@ static void note(const reading *what, cau_wire_mesh_reading *result)
 	const cau_mesh_report *report = &what->report;
 	result->has_note = !report->tetrahedron_count && what->asked.layer_kind < 0;
 	if (result->has_note)
-		snprintf(result->note, sizeof result->note,
-		         "%s (as fascia); for a solid, fill the surface with tetrahedra first, as TetGen and "
-		         "gmsh -3 do",
-		         report->open_edge_count ? "the surface became a sheet"
-		                                 : "the closed surface became a hollow sheet");
+		snprintf(
+			result->note, sizeof result->note,
+			"%s (as fascia); for a solid, fill the surface with tetrahedra first, as TetGen and "
+			"gmsh -3 do",
+			report->open_edge_count ? "the surface became a sheet"
+									: "the closed surface became a hollow sheet");
 }
 
 // One line of the log for each line of the report.

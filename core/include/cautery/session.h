@@ -38,7 +38,7 @@
 #include "cautery/command.h"
 #include "cautery/defaults.h" // cau_default_*_def(): definitions with every member at its default
 #include "cautery/energy_off.h"
-#include "cautery/mesh_report.h"
+#include "cautery/mesh_scene.h"
 #include "cautery/scene.h"
 #include "cautery/status.h"
 
