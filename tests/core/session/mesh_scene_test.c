@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // A scene that is made around a mesh alone: the tissue stands for 60 s, is held by the grasper, and
-// is cut by the ball. A block and a hollow box made here, and the files of CAUTERY_MESHES where there
-// are any.
+// is cut by the ball. A block and a hollow box made here, and the files of CAUTERY_MESHES where
+// there are any.
 #include "core/session/stage.h"
 
 #include <dirent.h>
@@ -132,10 +132,8 @@ static void blocks_live(void **state)
 	static char text[1 << 16];
 	for (int solid = 0; solid < 2; solid++) {
 		size_t count = write_block(solid, text, sizeof text);
-		live(&(cau_mesh_wish){.file = solid ? "block" : "box",
-		                      .bytes = text,
-		                      .byte_count = count,
-		                      .layer_kind = -1});
+		live(&(cau_mesh_wish){
+			.file = solid ? "block" : "box", .bytes = text, .byte_count = count, .layer_kind = -1});
 	}
 }
 

@@ -15,7 +15,7 @@ const UPLOAD_NAME = 'mesh';
 export function uploadForm(control: Control, link: Link): HTMLElement {
   const { model } = control;
   const problem = problemPlace();
-  const file = element('input', { type: 'file', name: 'mesh', accept: '.msh,.obj,.vtk', required: true });
+  const file = element('input', { type: 'file', name: 'mesh', accept: '.msh,.obj,.vtk,.vtu,.vtp,.stl,.ply,.mesh,.meshb,.usda', required: true });
   const kind = element('select', { name: 'kind' }, ...MESH_KINDS.map(([value, words]) => element('option', { value }, words)));
   const size = element('input', { type: 'number', name: 'unit', value: '10', min: '1e-6', max: '1000000', step: 'any', required: true });
   const bar = element('progress', { max: 1, value: 0, hidden: true, aria: { label: 'Upload' } });
@@ -45,7 +45,7 @@ export function uploadForm(control: Control, link: Link): HTMLElement {
   const form = element(
     'form',
     { class: 'form' },
-    field('Mesh file', file, '', 'Gmsh .msh, Wavefront .obj or legacy .vtk'),
+    field('Mesh file', file, '', 'Gmsh, VTK, VTU, OBJ, STL, PLY, Medit or USD text'),
     field('Tissue', kind),
     field('One unit is', size, 'mm', 'length of the file’s unit: 1 for millimetres, 1000 for metres'),
     submit,
