@@ -70,8 +70,10 @@ bool cli_is_mesh_file(const char *argument)
 // The words of the wire in `text` as those of the command line.
 static void use_own_words(char *text, size_t bytes)
 {
-	static const char *const words[][2] = {
-		{"unit_m", "--unit-m"}, {"(as fascia)", "(--as fascia)"}, {"(as fat)", "(--as fat)"}};
+	static const char *const words[][2] = {{"unit_m", "--unit-m"},
+	                                       {"strict refuses", "--strict refuses"},
+	                                       {"(as fascia)", "(--as fascia)"},
+	                                       {"(as fat)", "(--as fat)"}};
 	for (size_t i = 0; i < sizeof words / sizeof *words; i++) {
 		char *at = strstr(text, words[i][0]);
 		size_t from = strlen(words[i][0]), to = strlen(words[i][1]);

@@ -134,6 +134,7 @@ cau_status cau_mesh_report_refuse(const cau_mesh_report *report, cau_error *erro
 			    report->kind[i].name);
 			before = ", ";
 		}
-	return found[0] ? cau_fail(error, CAU_BAD_MESH, "strict", "this mesh needs mending: %s", found)
+	return found[0] ? cau_fail(error, CAU_BAD_MESH, "strict",
+	                           "strict refuses to mend this mesh: %s", found)
 	                : CAU_OK;
 }

@@ -80,7 +80,7 @@ class Tissue(programs.Case):
         self.assertIn("(--as fascia); for a solid", told)
         self.assertEqual(self.json("info", session.strip())["triangle_count"], 32)
         _, told = self.cautery("create", file, "--strict", code=1)
-        self.assertIn("this mesh needs mending: 1 degenerate triangles left out", told)
+        self.assertIn("--strict refuses to mend this mesh: 1 degenerate triangles left out", told)
         _, told = self.cautery("create", file, "--as", "fat", code=1)
         self.assertIn("a surface and no tetrahedra", told)
 

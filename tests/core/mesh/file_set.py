@@ -202,11 +202,11 @@ def all_mending():
     strict = ("--strict",)
     case("strict-clean.msh", gmsh_2(BOX, [(15, 0, (0,)), *tets]), *tetrahedra("Gmsh 2.2", passed="passed over: 1 points"), arguments=strict)
     case("strict-duplicates.msh", gmsh_2(loose, [(4, 0, range(4 * i, 4 * i + 4)) for i in range(6)]),
-         "refused: strict: this mesh needs mending: 16 duplicate vertices merged", arguments=strict)
+         "refused: strict: strict refuses to mend this mesh: 16 duplicate vertices merged", arguments=strict)
     case("strict-hexahedron.msh", gmsh_2(BOX, [(5, 1, HEXAHEDRON)]),
-         "refused: strict: this mesh needs mending: 1 hexahedra split into tetrahedra", arguments=strict)
+         "refused: strict: strict refuses to mend this mesh: 1 hexahedra split into tetrahedra", arguments=strict)
     case("strict-degenerate.msh", gmsh_2(BOX, [*tets, (4, 0, (0, 1, 2, 3))]),
-         "refused: strict: this mesh needs mending: 1 degenerate tetrahedra left out", arguments=strict)
+         "refused: strict: strict refuses to mend this mesh: 1 degenerate tetrahedra left out", arguments=strict)
 
 
 # ---- units -----------------------------------------------------------------------------------------
