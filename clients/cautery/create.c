@@ -9,15 +9,13 @@
 #include "cautery/progress.h"
 #include "cautery/scene_json.h"
 
-// Uploads the mesh file and makes the mesh say so. `folder` is where relative names start.
-static cli_exit upload_mesh(cli *c, const char *folder, cau_mesh_def *mesh)
+// Uploads `file`, and makes the mesh one of source bytes.
+static cli_exit upload_mesh(cli *c, const char *file, cau_mesh_def *mesh)
 {
-	char file[2 * CAU_TEXT_BYTES], *bytes = NULL;
+	char *bytes = NULL;
 	size_t byte_count = 0;
 	cau_wire_upload_result result = {0};
 	cli_progress progress;
-	bool beside = *folder && mesh->file[0] != '/';
-	snprintf(file, sizeof file, "%s%s%s", beside ? folder : "", beside ? "/" : "", mesh->file);
 	if (cli_read_mesh_file(file, &bytes, &byte_count, &c->error))
 		return cli_fail_file(c);
 	const char *slash = strrchr(file, '/');
@@ -34,12 +32,23 @@ static cli_exit upload_mesh(cli *c, const char *folder, cau_mesh_def *mesh)
 	return CLI_DONE;
 }
 
+// The mesh files of a scene file. Relative names start at the folder of the scene file.
 static cli_exit upload_meshes(cli *c, cau_scene_def *scene)
 {
 	cli_exit code = CLI_DONE;
-	for (int32_t i = 0; !code && i < scene->mesh_count; i++)
-		if (scene->meshes[i].source == CAU_MESH_FILE)
-			code = upload_mesh(c, scene->directory, &scene->meshes[i]);
+	for (int32_t i = 0; !code && i < scene->mesh_count; i++) {
+		cau_mesh_def *mesh = &scene->meshes[i];
+		char file[2 * CAU_TEXT_BYTES];
+		bool beside = scene->directory[0] && mesh->file[0] != '/';
+		if (mesh->source != CAU_MESH_FILE)
+			continue;
+		snprintf(file, sizeof file, "%s%s%s", beside ? scene->directory : "", beside ? "/" : "",
+		         mesh->file);
+		mesh->strict |= cli_value(c, "strict") != NULL;
+		code = upload_mesh(c, file, mesh);
+		if (!code)
+			code = cli_mesh_report(c, file, mesh);
+	}
 	return code;
 }
 
@@ -87,8 +96,7 @@ static cli_exit make_mesh_scene(cli *c, const char *file, cau_scene_def *scene)
 		cli_complain(c, "a file name of more than %zu bytes", sizeof mesh.file - 1);
 		return CLI_USAGE;
 	}
-	snprintf(mesh.file, sizeof mesh.file, "%s", file);
-	cli_exit code = upload_mesh(c, "", &mesh);
+	cli_exit code = upload_mesh(c, file, &mesh);
 	return code ? code : cli_mesh_scene(c, file, mesh.name, scene);
 }
 

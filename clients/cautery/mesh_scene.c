@@ -87,50 +87,72 @@ static void use_own_words(char *text, size_t bytes)
 	}
 }
 
+// A reading, with room for its lists.
+typedef struct mesh_reading {
+	cau_wire_mesh_reading wire;
+	cau_wire_mesh_kind kinds[KINDS_MAX];
+	cau_wire_mesh_mend mends[MENDS_MAX];
+	cau_wire_mesh_region regions[REGIONS_MAX];
+} mesh_reading;
+
 // The file and the reason: the user wrote no params that a path could point into.
 static cli_exit fail_reading(cli *c, const char *file)
 {
 	c->error.path[0] = 0;
-	use_own_words(c->error.reason, sizeof c->error.reason);
 	snprintf(c->error.file, sizeof c->error.file, "%.255s", file);
 	return cli_fail(c);
 }
 
-static void print_report(cli *c, const char *file, cau_wire_mesh_reading *reading)
+// Asks for the report and prints it. `options`: the user chose by options, which the words name.
+static cli_exit read_mesh(cli *c, const char *file, const cau_wire_mesh_read *params, bool options,
+                          cau_scene_def *scene)
 {
-	use_own_words(reading->report.text, sizeof reading->report.text);
-	use_own_words(reading->note, sizeof reading->note);
-	fprintf(c->complaints, "%s\n%s", file, reading->report.text);
-	if (reading->has_note)
-		fprintf(c->complaints, "note: %s\n", reading->note);
+	mesh_reading *reading = calloc(1, sizeof *reading);
+	if (!reading)
+		return cli_fail_memory(c);
+	cau_wire_mesh_report *report = &reading->wire.report;
+	reading->wire.definition = scene;
+	report->kinds = (cau_wire_list){reading->kinds, 0, KINDS_MAX};
+	report->mended = (cau_wire_list){reading->mends, 0, MENDS_MAX};
+	report->regions = (cau_wire_list){reading->regions, 0, REGIONS_MAX};
+	cau_status status =
+		cau_client_call(c->client, CAU_METHOD_MESH_READ, params, &reading->wire, &c->error);
+	if (options) {
+		use_own_words(report->text, sizeof report->text);
+		use_own_words(reading->wire.note, sizeof reading->wire.note);
+		use_own_words(c->error.reason, sizeof c->error.reason);
+	}
+	if (!status)
+		fprintf(c->complaints, "%s\n%s", file, report->text);
+	if (!status && options && reading->wire.has_note)
+		fprintf(c->complaints, "note: %s\n", reading->wire.note);
+	free(reading);
+	return status ? fail_reading(c, file) : CLI_DONE;
 }
 
 cli_exit cli_mesh_scene(cli *c, const char *file, const char *name, cau_scene_def *scene)
 {
-	cau_wire_mesh_kind kinds[KINDS_MAX];
-	cau_wire_mesh_mend mends[MENDS_MAX];
-	cau_wire_mesh_region regions[REGIONS_MAX];
 	cau_wire_mesh_read params = {0};
 	bool bad = false;
 	const char *kind = cli_value(c, "as");
-	cau_wire_mesh_reading *reading = calloc(1, sizeof *reading);
-	if (!reading)
-		return cli_fail_memory(c);
-	reading->definition = scene;
-	reading->report.kinds = (cau_wire_list){kinds, 0, KINDS_MAX};
-	reading->report.mended = (cau_wire_list){mends, 0, MENDS_MAX};
-	reading->report.regions = (cau_wire_list){regions, 0, REGIONS_MAX};
 	snprintf(params.upload, sizeof params.upload, "%s", name);
 	params.has_unit_m = cli_value(c, "unit-m") != NULL;
 	params.unit_m = cli_number(c, "unit-m", 1e-9, 1000, 1, &bad);
 	params.has_as = kind != NULL;
 	params.as = kind && strcmp(kind, "fat") == 0 ? CAU_LAYER_FAT : CAU_LAYER_FASCIA;
 	params.has_strict = params.strict = cli_value(c, "strict") != NULL;
-	cli_exit code = bad ? CLI_USAGE : CLI_DONE;
-	if (!code && cau_client_call(c->client, CAU_METHOD_MESH_READ, &params, reading, &c->error))
-		code = fail_reading(c, file);
-	else if (!code)
-		print_report(c, file, reading);
-	free(reading);
+	return bad ? CLI_USAGE : read_mesh(c, file, &params, true, scene);
+}
+
+cli_exit cli_mesh_report(cli *c, const char *file, const cau_mesh_def *mesh)
+{
+	cau_wire_mesh_read params = {
+		.has_unit_m = true, .unit_m = mesh->unit_m, .has_strict = true, .strict = mesh->strict};
+	snprintf(params.upload, sizeof params.upload, "%s", mesh->name);
+	cau_scene_def *unused = calloc(1, sizeof *unused);
+	if (!unused)
+		return cli_fail_memory(c);
+	cli_exit code = read_mesh(c, file, &params, false, unused);
+	free(unused);
 	return code;
 }

@@ -16,3 +16,7 @@ bool cli_is_mesh_file(const char *argument);
 // report, and fills *scene with a scene around it. Failures are printed in the words of these
 // options.
 cli_exit cli_mesh_scene(cli *c, const char *file, const char *name, cau_scene_def *scene);
+
+// Has the upload of `file`, a mesh of a scene file, read with the unit and the strictness that the
+// scene says, and prints the report.
+cli_exit cli_mesh_report(cli *c, const char *file, const cau_mesh_def *mesh);

@@ -5,7 +5,7 @@
 #include <string.h>
 
 #include "cautery/mesh_scene.h"
-#include "hosted_session/hosted.h"
+#include "hosted_session/internal.h"
 #include "log/log.h"
 
 #define READ_BYTES_PER_S 20e6 // about, of text: for the builder's order
@@ -105,17 +105,6 @@ static void note(const reading *what, cau_wire_mesh_reading *result)
 									: "the closed surface became a hollow sheet");
 }
 
-// One line of the log for each line of the report.
-static void log_report(const char *file, const char *text)
-{
-	for (const char *line = text; *line;) {
-		size_t length = strcspn(line, "\n");
-		cau_log(CAU_LOG_INFO, NULL, "mesh_read", "file=\"%s\" report=\"%.*s\"", file, (int)length,
-		        line);
-		line += length + (line[length] == '\n');
-	}
-}
-
 static cau_status read_mesh(reading *what, cau_outcome *done, cau_error *error)
 {
 	cau_mesh_wish wish = {.file = what->asked.file_name,
@@ -132,7 +121,6 @@ static cau_status read_mesh(reading *what, cau_outcome *done, cau_error *error)
 	         what->asked.upload);
 	fill(what, &result.report);
 	note(what, &result);
-	log_report(what->asked.file_name, result.report.text);
 	done->text = cau_answer_text(what->reply.method, &result, &done->text_bytes, error);
 	return done->text ? CAU_OK : error->status;
 }
@@ -169,4 +157,21 @@ cau_status cau_mesh_ask(cau_builder *builder, const cau_mesh_asked *asked, const
 	what->reply = *reply;
 	cau_builder_submit(builder, &what->job);
 	return CAU_OK;
+}
+
+void cau_mesh_log(const char *session, const cau_scene_def *scene, const cau_mesh_report *report)
+{
+	char text[CAU_MESH_TEXT_BYTES];
+	for (int32_t i = 0; report && i < scene->mesh_count; i++) {
+		const cau_mesh_def *mesh = &scene->meshes[i];
+		if (mesh->source != CAU_MESH_FILE && mesh->source != CAU_MESH_BYTES)
+			continue;
+		cau_mesh_report_text(&report[i], text);
+		for (const char *line = text; *line;) {
+			size_t length = strcspn(line, "\n");
+			cau_log(CAU_LOG_INFO, session, "mesh_read", "mesh=%s report=\"%.*s\"", mesh->name,
+			        (int)length, line);
+			line += length + (line[length] == '\n');
+		}
+	}
 }

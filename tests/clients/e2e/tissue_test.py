@@ -65,6 +65,39 @@ class Tissue(programs.Case):
         session = self.create("--definition", self.path("flat.json", json.dumps(scene)))
         self.assertEqual(self.json("info", session)["summary"]["vertex_count"], 25)
 
+    def test_the_meshes_of_a_scene_file_are_reported(self):
+        """On standard error and in the log, and in the words of a scene file."""
+        mend = sheet(4, 0.05).replace("f ", "f 1/1 2/2 2/2\nf ", 1)
+        scene = {"name": "flat", "meshes": [{"source": "file", "name": "flat", "file": "mend.obj"}],
+                 "layers": [{"kind": "fascia", "name": "fascia", "mesh": "flat"}],
+                 "pins": [{"kind": "rim", "layer": "fascia"}]}
+        file = self.path("mend.json", json.dumps(scene))
+        self.path("mend.obj", mend)
+        with open(self.path("log"), "w", encoding="utf-8") as log:
+            daemon = programs.Daemon(real=True, log=log, log_level="info")
+        self.addCleanup(daemon.stop)
+        _, told = self.cautery("create", file, url=daemon.url)
+        with open(self.path("log"), encoding="utf-8") as log:
+            lines = [line for line in log if "event=mesh_read" in line]
+        for report in told, "".join(lines):
+            self.assertIn("1 degenerate triangles left out", report)
+            self.assertIn("mesh: 25 vertices, 32 triangles", report)
+        self.assertEqual(len([line for line in lines if "mesh=flat" in line]), len(lines))
+        _, told = self.cautery("create", file, "--strict", code=1)
+        self.assertIn("mend.obj: the mesh", told)
+        self.assertIn("strict refuses to mend this mesh: 1 degenerate triangles left out", told)
+        self.path("mend.obj", sheet(4, 160))
+        _, told = self.cautery("create", file, code=1)
+        self.assertIn("did you mean millimetres (unit_m 0.001)?", told)
+
+    def test_regions_that_no_mesh_has_are_refused(self):
+        file = self.path("parts.obj", sheet(4, 0.05).replace("f ", "usemtl liver\nf ", 1))
+        session = self.create(file)
+        change = "material", session, "fascia", "thickness_m=0.001", "--region"
+        self.cautery(*change, 1)
+        _, told = self.cautery(*change, 99, code=1)
+        self.assertIn("has no region 99; its regions are: 1", told)
+
     def test_a_bad_mesh_is_refused(self):
         file = self.path("bad.obj", "v 0 0 0\nv 1 0 0\nv 2 0 0\nf 1 2 3\n")
         _, told = self.cautery("create", "--mesh", file, code=1)
