@@ -131,9 +131,12 @@ void cau_cell_split(cau_mesh_builder *builder)
 	if (!builder->cell_count || builder->scan->status)
 		return;
 	int32_t *map = cau_mesh_array((size_t)builder->mesh.vertex_count, sizeof *map);
-	if (!map || !cau_vertex_merge_near(builder->mesh.position, builder->mesh.vertex_count, map))
+	if (!map || !cau_vertex_merge_near(builder->mesh.position, builder->mesh.vertex_count, map)) {
 		cau_scan_fail(builder->scan, CAU_NO_MEMORY, "no memory for splitting %d cells",
 		              builder->cell_count);
+		free(map);
+		return;
+	}
 	for (int32_t i = 0; i < builder->cell_count && !builder->scan->status; i++) {
 		cau_cell cell = builder->cell[i];
 		if (cell.shape == CAU_SHAPE_QUADRANGLE)

@@ -103,7 +103,7 @@ static void read_cells(cau_mesh_builder *builder, const cau_medit_kind *kind)
 	int64_t count = next_integer(scan, "number of elements", 0, INT32_MAX);
 	cau_scan_check_count(scan, "number of elements", count, 2 * kind->nodes);
 	for (int64_t i = 0; i < count && !scan->status; i++) {
-		int64_t node[NODES_MAX];
+		int64_t node[NODES_MAX] = {0};
 		for (int n = 0; n < kind->nodes; n++)
 			node[n] = next_integer(scan, "a vertex number", 0, INT32_MAX);
 		cau_medit_add(builder, kind, node, next_integer(scan, "a reference", INT32_MIN, INT32_MAX));

@@ -194,8 +194,11 @@ void cau_mesh_builder_polygon(cau_mesh_builder *builder, const int32_t *vertex, 
 	kind_of(builder, count == 3 ? "triangles" : count == 4 ? "quadrangles" : "polygons")->read++;
 	builder->report.split_polygons += count > 3;
 	int32_t(*cut)[3] = cau_mesh_array((size_t)count - 2, sizeof *cut);
-	if (!cut || !cau_polygon_cut(builder->mesh.position, vertex, count, cut))
+	if (!cut || !cau_polygon_cut(builder->mesh.position, vertex, count, cut)) {
 		cau_scan_fail(builder->scan, CAU_NO_MEMORY, "no memory for a polygon of %d corners", count);
+		free(cut);
+		return;
+	}
 	for (int32_t i = 0; i < count - 2 && !builder->scan->status; i++) {
 		int32_t corner[3];
 		double uv[6] = {0};

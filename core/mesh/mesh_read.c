@@ -69,11 +69,13 @@ static cau_status end_reading(cau_mesh_builder *builder)
 	char found[160];
 	size_t length =
 		(size_t)snprintf(found, sizeof found, "%d vertices", builder->mesh.vertex_count);
-	for (int32_t i = 0; i < report->kind_count && length < sizeof found; i++)
-		if (report->kind[i].passed || report->kind[i].read)
-			length += (size_t)snprintf(found + length, sizeof found - length, ", %lld %s",
-			                           (long long)(report->kind[i].passed + report->kind[i].read),
+	for (int32_t i = 0; i < report->kind_count && length < sizeof found; i++) {
+		long long count = report->kind[i].passed;
+		count += report->kind[i].read;
+		if (count)
+			length += (size_t)snprintf(found + length, sizeof found - length, ", %lld %s", count,
 			                           report->kind[i].name);
+	}
 	cau_scan_fail(builder->scan, CAU_BAD_MESH,
 	              "no surface and no volume elements in this file, but %s", found);
 	return builder->scan->status;

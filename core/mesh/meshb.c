@@ -37,7 +37,7 @@ static void read_cells(meshb *m, const cau_medit_kind *kind)
 	int64_t count = read_whole(m, "number of elements", 0, INT32_MAX);
 	cau_scan_check_count(m->scan, "number of elements", count, 4 * kind->nodes);
 	for (int64_t i = 0; i < count && !m->scan->status; i++) {
-		int64_t node[NODES_MAX];
+		int64_t node[NODES_MAX] = {0};
 		for (int n = 0; n < kind->nodes; n++)
 			node[n] = read_whole(m, "a vertex number", 0, INT32_MAX);
 		cau_medit_add(m->builder, kind, node, read_whole(m, "a reference", INT32_MIN, INT32_MAX));

@@ -76,12 +76,12 @@ static void read_element(cau_mesh_builder *builder, cau_shape shape, int64_t nod
 	double region = 0;
 	next_integer(scan, "an element's number", 0, INT32_MAX);
 	for (int64_t n = 0; n < nodes; n++) {
-		int64_t number = next_integer(scan, "a point's number", first, INT32_MAX) - first;
-		if (!scan->status && number >= builder->mesh.vertex_count)
+		int64_t number = next_integer(scan, "a point's number", first, INT32_MAX);
+		if (!scan->status && number - first >= builder->mesh.vertex_count)
 			cau_scan_fail(scan, CAU_BAD_MESH, "an element names point %lld, but there are %d",
-			              (long long)(number + first), builder->mesh.vertex_count);
+			              (long long)number, builder->mesh.vertex_count);
 		if (n < corners)
-			vertex[n] = (int32_t)number;
+			vertex[n] = (int32_t)(number - first);
 	}
 	for (int64_t a = 0; a < attributes && !scan->status; a++) {
 		double attribute = next_real(scan, "an attribute");

@@ -17,7 +17,6 @@ static void read_header(cau_vtk *vtk)
 		cau_scan_expect(scan, start[i]);
 	double version = cau_scan_word_real(scan, cau_scan_word(scan), "a version");
 	vtk->offsets = version > 5.05;
-	snprintf(vtk->builder->report.format, sizeof vtk->builder->report.format, "VTK %.1f", version);
 	cau_scan_skip_line(scan);
 	cau_scan_skip_line(scan);
 	cau_word form = cau_scan_word(scan);
@@ -28,8 +27,8 @@ static void read_header(cau_vtk *vtk)
 	cau_word kind = cau_scan_word(scan);
 	if (!cau_word_is(kind, "UNSTRUCTURED_GRID") && !cau_word_is(kind, "POLYDATA"))
 		cau_scan_fail(scan, CAU_UNSUPPORTED, "only UNSTRUCTURED_GRID and POLYDATA are read");
-	if (binary)
-		strcat(vtk->builder->report.format, " binary");
+	snprintf(vtk->builder->report.format, sizeof vtk->builder->report.format, "VTK %.1f%s", version,
+	         binary ? " binary" : "");
 	scan->binary = binary;
 	scan->swap = binary && __BYTE_ORDER__ == __ORDER_LITTLE_ENDIAN__; // numbers are big-endian
 }

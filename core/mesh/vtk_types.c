@@ -103,7 +103,8 @@ static void add_strip(cau_mesh_builder *builder, const int64_t *corner, int64_t 
 static void add_known(cau_mesh_builder *builder, int64_t type, const int64_t *corner,
                       int64_t corners, int32_t cell)
 {
-	int32_t vertex[CAU_CORNERS_MAX], wanted = cau_shape_corners(types[type].shape);
+	int32_t vertex[CAU_CORNERS_MAX] = {0};
+	int32_t wanted = cau_shape_corners(types[type].shape);
 	if (corners < wanted) {
 		cau_scan_fail(builder->scan, CAU_BAD_MESH, "cell %d has %lld corners, its type has %d",
 		              cell, (long long)corners, wanted);
