@@ -35,6 +35,12 @@ cau_status cli_read_mesh_file(const char *file, char **bytes, size_t *byte_count
 	char partner[2 * CAU_TEXT_BYTES], *other = NULL;
 	size_t other_count = 0, length = strlen(file);
 	cau_status status = cli_read_file(file, MESH_BYTES_MAX, bytes, byte_count, error);
+	if (!status && !*byte_count) {
+		free(*bytes);
+		*bytes = NULL;
+		status = cau_fail(error, CAU_BAD_MESH, NULL, "the file is empty");
+		snprintf(error->file, sizeof error->file, "%.255s", file);
+	}
 	if (status || !find_partner(file, partner, sizeof partner))
 		return status;
 	status = cli_read_file(partner, MESH_BYTES_MAX, &other, &other_count, error);

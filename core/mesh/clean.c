@@ -313,6 +313,57 @@ static cau_status drop_repeated(cau_mesh *mesh, int32_t *dropped, cau_error *err
 	return CAU_OK;
 }
 
+// Marks dropped[i] where two tetrahedra of lower numbers that stay have a face of tetrahedron i.
+// key: the four faces of each, sorted by `order`. Returns how many.
+static int32_t mark_thirds(const int32_t *key, const int32_t *order, int32_t face_count,
+                           bool *dropped)
+{
+	int32_t marked = 0, kept = 0;
+	for (int32_t i = 0; i < face_count; i++) {
+		const int32_t *face = key + 3 * (size_t)order[i];
+		const int32_t *before = i ? key + 3 * (size_t)order[i - 1] : NULL;
+		bool *at = &dropped[order[i] / 4];
+		if (!before || memcmp(face, before, 3 * sizeof *face) != 0)
+			kept = 0;
+		if (*at)
+			continue;
+		*at = kept == 2;
+		marked += *at;
+		kept += !*at;
+	}
+	return marked;
+}
+
+// A face lies between two tetrahedra at most: further ones overlap these.
+static cau_status drop_thirds(cau_mesh *mesh, int32_t *thirds, cau_error *error)
+{
+	int32_t faces = 4 * mesh->tetrahedron_count;
+	int32_t *key = cau_mesh_array((size_t)faces, 3 * sizeof *key);
+	int32_t *order = cau_mesh_array((size_t)faces, sizeof *order);
+	bool *dropped = cau_mesh_array((size_t)mesh->tetrahedron_count, sizeof *dropped);
+	cau_status status = CAU_OK;
+	for (int32_t f = 0; f < faces && key; f++) {
+		int32_t *row = key + 3 * (size_t)f;
+		for (int c = 0, n = 0; c < 4; c++)
+			if (c != f % 4)
+				row[n++] = mesh->tetrahedron[4 * (size_t)(f / 4) + (size_t)c];
+		cau_index_order_row(row, 3);
+	}
+	if (!key || !order || !dropped || !cau_index_sort(key, 3, faces, mesh->vertex_count, order)) {
+		status = cau_fail(error, CAU_NO_MEMORY, NULL, "no memory for the faces of a mesh");
+	} else {
+		memset(dropped, 0, (size_t)mesh->tetrahedron_count * sizeof *dropped);
+		int32_t marked = mark_thirds(key, order, faces, dropped);
+		*thirds += marked;
+		if (marked)
+			keep_tetrahedra(mesh, dropped);
+	}
+	free(key);
+	free(order);
+	free(dropped);
+	return status;
+}
+
 cau_status cau_mesh_clean(cau_mesh *mesh, cau_mesh_report *report, cau_error *error)
 {
 	cau_mesh_report unwanted = {0}, *done = report ? report : &unwanted;
@@ -330,6 +381,8 @@ cau_status cau_mesh_clean(cau_mesh *mesh, cau_mesh_report *report, cau_error *er
 		status = drop_degenerate(mesh, done, error);
 	if (!status)
 		status = drop_repeated(mesh, &repeated, error);
+	if (!status)
+		status = drop_thirds(mesh, &done->third_tetrahedra, error);
 	if (!status)
 		unused = drop_unused(mesh, map); // of what was left out
 	done->unused_vertices += unused;

@@ -85,11 +85,11 @@ static cau_status add_layers(const cau_mesh_wish *wish, const cau_mesh_report *r
 	bool fat = wish->layer_kind < 0 ? solid : wish->layer_kind == CAU_LAYER_FAT;
 	if (fat && !solid)
 		return cau_fail(
-			error, CAU_BAD_VALUE, "as",
+			error, CAU_BAD_MESH, "as",
 			"this file has a surface and no tetrahedra: make a sheet of it (as fascia), "
 			"or fill it with tetrahedra first, as TetGen and gmsh -3 do");
 	if (!fat && !report->triangle_count)
-		return cau_fail(error, CAU_BAD_VALUE, "as",
+		return cau_fail(error, CAU_BAD_MESH, "as",
 		                "this file has tetrahedra and no triangles: make a solid of it (as fat)");
 	cau_layer_def *layer = &scene->layers[scene->layer_count++];
 	cau_default_layer_def(layer, fat ? CAU_LAYER_FAT : CAU_LAYER_FASCIA);

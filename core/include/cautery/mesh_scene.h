@@ -57,6 +57,7 @@ typedef struct cau_mesh_region {
 	X(degenerate_triangles, 1, "degenerate triangles left out")                                    \
 	X(degenerate_tetrahedra, 1, "degenerate tetrahedra left out")                                  \
 	X(duplicate_elements, 1, "repeated elements left out")                                         \
+	X(third_tetrahedra, 1, "tetrahedra left out that were the third at a face")                    \
 	X(degenerate_textures, 1, "degenerate texture triangles left out")                             \
 	X(split_polygons, 1, "quadrangles and polygons split into triangles")                          \
 	X(split_hexahedra, 1, "hexahedra split into tetrahedra")                                       \
@@ -102,7 +103,7 @@ typedef struct cau_mesh_wish {
 // Reads the mesh and makes a scene around it: its lowest tenth pinned, or the rim of an open sheet;
 // a hot ball and a grasper above it; no gravity, as a scanned organ has its shape under its weight
 // already. Errors: as for reading; CAU_BAD_MESH at "unit_m" with a proposal where the unit is not
-// clear; CAU_BAD_VALUE at "as" where the file lacks the elements of the layer. Threads: any.
+// clear; CAU_BAD_MESH at "as" where the file lacks the elements of the layer. Threads: any.
 cau_status cau_mesh_scene(const cau_mesh_wish *wish, cau_scene_def *scene, cau_mesh_report *report,
                           cau_error *error);
 

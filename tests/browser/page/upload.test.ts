@@ -42,6 +42,8 @@ describe('a mesh of one’s own', () => {
     const problem = viewer.page.locator('#upload .problem');
     await problem.waitFor({ state: 'visible' });
     expect(await problem.textContent()).toMatch(/\w+ \w+/);
+    await give('none.stl', '');
+    await viewer.page.locator('#upload .problem', { hasText: 'The file is empty.' }).waitFor({ state: 'visible' });
     expect((await viewer.state()).session).toBeNull();
   });
 

@@ -103,6 +103,8 @@ class Tissue(programs.Case):
         _, told = self.cautery("create", "--mesh", file, code=1)
         self.assertIn("every element is degenerate", told)
         self.assertNotIn("params", told)
+        _, told = self.cautery("create", self.path("none.stl", ""), code=4)
+        self.assertRegex(told, "none.stl: .*the file is empty")
 
     def test_a_mesh_needs_no_option(self):
         """By its content, whatever its name; the report says what became of it."""

@@ -193,6 +193,9 @@ def all_mending():
          *tetrahedra("Gmsh 2.2", read="read: 8 tetrahedra", mended="mended: 2 degenerate tetrahedra left out"))
     case("repeated.msh", gmsh_2(BOX, [*tets, tets[0], (4, 0, (TETRAHEDRA[1][2], *TETRAHEDRA[1][:2], TETRAHEDRA[1][3]))]),
          *tetrahedra("Gmsh 2.2", read="read: 8 tetrahedra", mended="mended: 2 repeated elements left out"))
+    third = (*sorted(set(TETRAHEDRA[0]) & set(TETRAHEDRA[1]), reverse=True), next(iter(set(range(8)) - set(TETRAHEDRA[0]) - set(TETRAHEDRA[1]))))
+    case("third-at-a-face.msh", gmsh_2(BOX, [*tets, (4, 0, third)]),
+         *tetrahedra("Gmsh 2.2", read="read: 7 tetrahedra", mended="mended: 1 tetrahedra left out that were the third at a face"))
     case("unused.msh", gmsh_2([*BOX, (9, 9, 9)], tets), *tetrahedra("Gmsh 2.2", vertices=9, mended="mended: 1 unused vertices left out"))
     case("all-degenerate.msh", gmsh_2(BOX, [(4, 0, (0, 1, 2, 3))]), "refused: every element is degenerate: 0 flat triangles, 1 flat tetrahedra")
     far = [(x + .1, y, z) for x, y, z in BOX]

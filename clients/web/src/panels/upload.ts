@@ -19,6 +19,7 @@ const UPLOAD_NAME = 'mesh';
 function chosen(files: FileList | null): File {
   const [first, second, ...more] = [...(files ?? [])].sort((a, b) => Number(b.name.endsWith('.node')) - Number(a.name.endsWith('.node')));
   if (!first) throw new Error('choose a mesh file first');
+  if (first.size === 0) throw new Error('the file is empty');
   if (!second) return first;
   if (more.length > 0 || !first.name.endsWith('.node')) throw new Error('choose one mesh file, or the .node and the .ele file of TetGen');
   return new File([first, '\n', second], first.name);
