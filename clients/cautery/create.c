@@ -9,18 +9,14 @@
 #include "cautery/progress.h"
 #include "cautery/scene_json.h"
 
-enum { MESH_BYTES_MAX = 1 << 30 };
-
-// Uploads the mesh file and makes the mesh say so. `folder` is where relative names start.
-static cli_exit upload_mesh(cli *c, const char *folder, cau_mesh_def *mesh)
+// Uploads `file`, and makes the mesh one of source bytes.
+static cli_exit upload_mesh(cli *c, const char *file, cau_mesh_def *mesh)
 {
-	char file[2 * CAU_TEXT_BYTES], *bytes = NULL;
+	char *bytes = NULL;
 	size_t byte_count = 0;
 	cau_wire_upload_result result = {0};
 	cli_progress progress;
-	bool beside = *folder && mesh->file[0] != '/';
-	snprintf(file, sizeof file, "%s%s%s", beside ? folder : "", beside ? "/" : "", mesh->file);
-	if (cli_read_file(file, MESH_BYTES_MAX, &bytes, &byte_count, &c->error))
+	if (cli_read_mesh_file(file, &bytes, &byte_count, &c->error))
 		return cli_fail_file(c);
 	const char *slash = strrchr(file, '/');
 	cli_progress_begin(&progress, c->complaints, file);
@@ -36,12 +32,23 @@ static cli_exit upload_mesh(cli *c, const char *folder, cau_mesh_def *mesh)
 	return CLI_DONE;
 }
 
+// The mesh files of a scene file. Relative names start at the folder of the scene file.
 static cli_exit upload_meshes(cli *c, cau_scene_def *scene)
 {
 	cli_exit code = CLI_DONE;
-	for (int32_t i = 0; !code && i < scene->mesh_count; i++)
-		if (scene->meshes[i].source == CAU_MESH_FILE)
-			code = upload_mesh(c, scene->directory, &scene->meshes[i]);
+	for (int32_t i = 0; !code && i < scene->mesh_count; i++) {
+		cau_mesh_def *mesh = &scene->meshes[i];
+		char file[2 * CAU_TEXT_BYTES];
+		bool beside = scene->directory[0] && mesh->file[0] != '/';
+		if (mesh->source != CAU_MESH_FILE)
+			continue;
+		snprintf(file, sizeof file, "%s%s%s", beside ? scene->directory : "", beside ? "/" : "",
+		         mesh->file);
+		mesh->strict |= cli_value(c, "strict") != NULL;
+		code = upload_mesh(c, file, mesh);
+		if (!code)
+			code = cli_mesh_report(c, file, mesh);
+	}
 	return code;
 }
 
@@ -77,62 +84,20 @@ static cli_exit create(cli *c, cau_wire_session_create *params, cau_wire_session
 }
 
 // ---- a scene around a mesh ---------------------------------------------------------------------
-static cli_exit destroy(cli *c, const char *session)
+static cli_exit make_mesh_scene(cli *c, const char *file, cau_scene_def *scene)
 {
-	cau_wire_session_change params = {.has_session = true, .has_client_sequence = true};
-	snprintf(params.session, sizeof params.session, "%s", session);
-	params.client_sequence = cau_client_next_sequence(c->client);
-	return cau_client_call(c->client, CAU_METHOD_SESSION_DESTROY, &params, NULL, &c->error)
-	           ? cli_fail(c)
-	           : CLI_DONE;
-}
-
-// How large the tissue is, from a paused session that is only made to ask.
-static cli_exit measure(cli *c, cau_scene_def *scene, cau_wire_session_description *d,
-                        double least_m[3], double most_m[3])
-{
-	cau_wire_session_create params = {
-		.has_definition = true, .definition = scene, .has_paused = true, .paused = true};
-	cau_wire_session_join join = {.has_session = true};
-	cau_client_stream *stream;
-	cli_exit code = create(c, &params, d);
-	if (code)
-		return code;
-	memcpy(join.session, d->summary.session, sizeof join.session);
-	if (cau_client_join(c->client, &join, &stream, &c->error))
-		code = cli_fail(c);
-	else
-		cli_mesh_scene_measure(stream, least_m, most_m);
-	cli_exit destroyed = destroy(c, d->summary.session);
-	return code ? code : destroyed;
-}
-
-static cli_exit make_mesh_scene(cli *c, const char *file, cau_scene_def *scene,
-                                cau_wire_session_description *d)
-{
-	double least_m[3], most_m[3];
-	bool bad = false, fat = true;
 	const char *kind = cli_value(c, "as");
-	double unit_m = cli_number(c, "unit-m", 1e-9, 1000, 1, &bad);
 	if (kind && strcmp(kind, "fat") != 0 && strcmp(kind, "fascia") != 0) {
 		cli_complain(c, "--as wants fat or fascia, not \"%s\"", kind);
-		bad = true;
-	}
-	const char *ending = strrchr(file, '.');
-	fat = kind ? strcmp(kind, "fat") == 0 : !(ending && strcmp(ending, ".obj") == 0);
-	if (bad)
 		return CLI_USAGE;
-	if (cli_mesh_scene_begin(scene, file, unit_m, fat, &c->error))
-		return cli_fail_file(c);
-	cli_exit code = upload_meshes(c, scene);
-	cau_mesh_def uploaded = scene->meshes[0];
-	if (!code)
-		code = measure(c, scene, d, least_m, most_m);
-	if (code)
-		return code;
-	scene->meshes[0] = uploaded; // it is kept until it is discarded
-	cli_mesh_scene_end(scene, least_m, most_m);
-	return CLI_DONE;
+	}
+	cau_mesh_def mesh = {.name = "mesh", .source = CAU_MESH_FILE};
+	if (strlen(file) >= sizeof mesh.file) {
+		cli_complain(c, "a file name of more than %zu bytes", sizeof mesh.file - 1);
+		return CLI_USAGE;
+	}
+	cli_exit code = upload_mesh(c, file, &mesh);
+	return code ? code : cli_mesh_scene(c, file, mesh.name, scene);
 }
 
 // ---- the command -------------------------------------------------------------------------------
@@ -142,23 +107,18 @@ static bool ends_with(const char *text, const char *ending)
 	return length > tail && strcmp(text + length - tail, ending) == 0;
 }
 
-// What the option `kind` says, or the argument if it is such a file by its name.
+// What the option `kind` says, or the argument if it is such a file.
 static const char *source_of(const cli *c, const char *kind)
 {
-	static const char *const definitions[] = {".json", NULL};
-	static const char *const meshes[] = {".msh", ".obj", ".vtk", NULL};
 	const char *said = cli_value(c, kind);
 	if (said || !c->argument_count)
 		return said;
-	const char *const *ending = strcmp(kind, "mesh") == 0 ? meshes : definitions;
-	for (; *ending; ending++)
-		if (ends_with(c->arguments[0], *ending))
-			return c->arguments[0];
-	return NULL;
+	bool fits = strcmp(kind, "mesh") == 0 ? cli_is_mesh_file(c->arguments[0])
+	                                      : ends_with(c->arguments[0], ".json");
+	return fits ? c->arguments[0] : NULL;
 }
 
-static cli_exit fill_params(cli *c, cau_wire_session_create *params, cau_scene_def *scene,
-                            cau_wire_session_description *d)
+static cli_exit fill_params(cli *c, cau_wire_session_create *params, cau_scene_def *scene)
 {
 	const char *definition = source_of(c, "definition"), *mesh = source_of(c, "mesh");
 	const char *name = cli_value(c, "name");
@@ -175,7 +135,7 @@ static cli_exit fill_params(cli *c, cau_wire_session_create *params, cau_scene_d
 	params->definition = scene;
 	cli_exit code = definition ? read_scene(c, definition, scene) : CLI_DONE;
 	if (!code)
-		code = mesh ? make_mesh_scene(c, mesh, scene, d) : upload_meshes(c, scene);
+		code = mesh ? make_mesh_scene(c, mesh, scene) : upload_meshes(c, scene);
 	return code;
 }
 
@@ -196,7 +156,7 @@ static cli_exit run(cli *c)
 	d.definition = calloc(1, sizeof *d.definition);
 	cli_exit code = scene && d.definition ? cli_connect(c) : cli_fail_memory(c);
 	if (!code)
-		code = fill_params(c, &params, scene, &d);
+		code = fill_params(c, &params, scene);
 	if (!code) {
 		code = create(c, &params, &d);
 		if (params.has_definition)
@@ -216,14 +176,17 @@ const cli_command cli_create = {
 	.arguments = "SCENE | FILE | --definition FILE | --mesh FILE",
 	.summary = "makes a session and prints its id",
 	.help =
-		"SCENE is one of `cautery scenes`. The ending of FILE says what it is: .json is a scene,\n"
-		".msh, .obj and .vtk are meshes. The meshes of a scene file are uploaded. A mesh alone\n"
-		"gets a scene: its lowest tenth (of a sheet: its rim) is pinned, and the tool is a ball.\n",
+		"SCENE is one of `cautery scenes`. FILE is a scene (.json) or a mesh: Gmsh, VTK, VTU,\n"
+		"OBJ, STL, PLY, Medit, TetGen or USD text. The meshes of a scene file are uploaded. For\n"
+		"a mesh alone, its report is printed and a scene is made: its lowest tenth (of an open\n"
+		"sheet: its rim) is pinned, the tools are a hot ball and a grasper, without gravity.\n",
 	.most = 1,
 	.options = {{"name", "N", "wanted name, without the daemon's label"},
                 {"paused", NULL, "starts paused"},
                 {"definition", "FILE", "a scene file (.json) here"},
                 {"mesh", "FILE", "a mesh file here"},
-                {"as", "KIND", "fat (tetrahedra) or fascia (triangles); default: .obj is fascia"},
-                {"unit-m", "U", "metres in one unit of the mesh (default 1)"}},
+                {"as", "KIND",
+                 "fat (tetrahedra) or fascia (triangles); default: fat where it can be"},
+                {"strict", NULL, "refuses a mesh that would have to be mended"},
+                {"unit-m", "U", "metres in one unit of the mesh (0.001 for millimetres)"}},
 	.run = run};

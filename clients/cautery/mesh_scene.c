@@ -1,94 +1,164 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "cautery/mesh_scene.h"
 
-#include <math.h>
-#include <stdio.h>
+#include <stdlib.h>
 #include <string.h>
+#include <strings.h>
+#include <sys/stat.h>
+#include <unistd.h>
 
-#include "cautery/defaults.h"
+#include "cautery/local_file.h"
+#include "cautery/name.h"
 
-static const double tool_height_m = 0.03;
+enum { MESH_BYTES_MAX = 1 << 30, KINDS_MAX = 24, MENDS_MAX = 16, REGIONS_MAX = 64 };
 
-static void name_after_file(const char *file, char name[CAU_NAME_BYTES])
+// ---- files
+// The other of TetGen's two files. False: this is no such file, or the other one is not there.
+static bool find_partner(const char *file, char *partner, size_t bytes)
 {
-	const char *slash = strrchr(file, '/');
-	size_t used = 0;
-	for (const char *at = slash ? slash + 1 : file; *at && *at != '.' && used < CAU_NAME_BYTES - 1;
-	     at++) {
-		char c = *at >= 'A' && *at <= 'Z' ? (char)(*at - 'A' + 'a') : *at;
-		bool letter = c >= 'a' && c <= 'z', digit = c >= '0' && c <= '9';
-		if (letter || (digit && used))
-			name[used++] = c;
-		else if (used && name[used - 1] != '-')
-			name[used++] = '-';
+	static const char *const pairs[][2] = {
+		{".node", ".ele"}, {".node", ".face"}, {".ele", ".node"}, {".face", ".node"}};
+	size_t length = strlen(file);
+	for (size_t i = 0; i < sizeof pairs / sizeof *pairs; i++) {
+		size_t ending = strlen(pairs[i][0]);
+		if (length < ending || strcasecmp(file + length - ending, pairs[i][0]) != 0)
+			continue;
+		snprintf(partner, bytes, "%.*s%s", (int)(length - ending), file, pairs[i][1]);
+		if (access(partner, R_OK) == 0)
+			return true;
 	}
-	while (used && name[used - 1] == '-')
-		used--;
-	name[used] = 0;
-	if (!used)
-		memcpy(name, "mesh", sizeof "mesh");
+	return false;
 }
 
-cau_status cli_mesh_scene_begin(cau_scene_def *scene, const char *file, double unit_m, bool fat,
-                                cau_error *error)
+cau_status cli_read_mesh_file(const char *file, char **bytes, size_t *byte_count, cau_error *error)
 {
-	cau_default_scene_def(scene);
-	scene->parting = CAU_PARTING_ELEMENTS; // whoever made the mesh did not make it for its edges
-	name_after_file(file, scene->name);
-	cau_mesh_def *mesh = &scene->meshes[scene->mesh_count++];
-	cau_default_mesh_def(mesh);
-	snprintf(mesh->name, sizeof mesh->name, "mesh");
-	mesh->source = CAU_MESH_FILE;
-	mesh->unit_m = unit_m;
-	if (strlen(file) >= sizeof mesh->file)
-		return cau_fail(error, CAU_LIMIT, NULL, "a file name of more than %zu bytes",
-		                sizeof mesh->file - 1);
-	snprintf(mesh->file, sizeof mesh->file, "%s", file);
-	cau_layer_def *layer = &scene->layers[scene->layer_count++];
-	cau_default_layer_def(layer, fat ? CAU_LAYER_FAT : CAU_LAYER_FASCIA);
-	snprintf(layer->name, sizeof layer->name, "%s", fat ? "fat" : "fascia");
-	snprintf(layer->mesh, sizeof layer->mesh, "mesh");
-	if (fat) {
-		cau_layer_def *membrane = &scene->layers[scene->layer_count++];
-		cau_default_layer_def(membrane, CAU_LAYER_MEMBRANE);
-		snprintf(membrane->name, sizeof membrane->name, "membrane");
-		snprintf(membrane->of, sizeof membrane->of, "fat");
+	char partner[2 * CAU_TEXT_BYTES], *other = NULL;
+	size_t other_count = 0, length = strlen(file);
+	cau_status status = cli_read_file(file, MESH_BYTES_MAX, bytes, byte_count, error);
+	if (!status && !*byte_count) {
+		free(*bytes);
+		*bytes = NULL;
+		status = cau_fail(error, CAU_BAD_MESH, NULL, "the file is empty");
+		snprintf(error->file, sizeof error->file, "%.255s", file);
 	}
-	return CAU_OK;
+	if (status || !find_partner(file, partner, sizeof partner))
+		return status;
+	status = cli_read_file(partner, MESH_BYTES_MAX, &other, &other_count, error);
+	bool points = length >= 5 && strcasecmp(file + length - 5, ".node") == 0;
+	const char *first = points ? *bytes : other, *second = points ? other : *bytes;
+	size_t first_count = points ? *byte_count : other_count;
+	size_t second_count = points ? other_count : *byte_count;
+	char *joined = status ? NULL : malloc(first_count + second_count + 1);
+	if (joined) {
+		memcpy(joined, first, first_count);
+		joined[first_count] = '\n';
+		memcpy(joined + first_count + 1, second, second_count);
+	} else if (!status) {
+		status = cau_fail(error, CAU_NO_MEMORY, NULL, "no memory for two files");
+	}
+	free(*bytes);
+	free(other);
+	*bytes = joined;
+	*byte_count = first_count + second_count + 1;
+	return status;
 }
 
-void cli_mesh_scene_measure(const cau_client_stream *stream, double least_m[3], double most_m[3])
+bool cli_is_mesh_file(const char *argument)
 {
-	for (int a = 0; a < 3; a++) {
-		least_m[a] = INFINITY;
-		most_m[a] = -INFINITY;
-	}
-	for (int32_t i = 0; stream->has_topology && i < stream->def.vertex_count; i++)
-		for (int a = 0; a < 3; a++) {
-			double x = stream->def.origin_m[a] +
-			           stream->def.step_m * stream->topology.rest[3 * (size_t)i + (size_t)a];
-			least_m[a] = fmin(least_m[a], x);
-			most_m[a] = fmax(most_m[a], x);
+	struct stat about;
+	const char *ending = strrchr(argument, '.');
+	if (ending && strcasecmp(ending, ".json") == 0)
+		return false;
+	return (stat(argument, &about) == 0 && S_ISREG(about.st_mode)) || !cau_name_is_valid(argument);
+}
+
+// ---- words
+// The words of the wire in `text` as those of the command line.
+static void use_own_words(char *text, size_t bytes)
+{
+	static const char *const words[][2] = {{"unit_m", "--unit-m"},
+	                                       {"strict refuses", "--strict refuses"},
+	                                       {"(as fascia)", "(--as fascia)"},
+	                                       {"(as fat)", "(--as fat)"}};
+	for (size_t i = 0; i < sizeof words / sizeof *words; i++) {
+		char *at = strstr(text, words[i][0]);
+		size_t from = strlen(words[i][0]), to = strlen(words[i][1]);
+		for (; at; at = strstr(at + to, words[i][0])) {
+			size_t rest = strlen(at + from) + 1;
+			if ((size_t)(at - text) + to + rest > bytes)
+				return;
+			memmove(at + to, at + from, rest);
+			memcpy(at, words[i][1], to);
 		}
+	}
 }
 
-void cli_mesh_scene_end(cau_scene_def *scene, const double least_m[3], const double most_m[3])
+// A reading, with room for its lists.
+typedef struct mesh_reading {
+	cau_wire_mesh_reading wire;
+	cau_wire_mesh_kind kinds[KINDS_MAX];
+	cau_wire_mesh_mend mends[MENDS_MAX];
+	cau_wire_mesh_region regions[REGIONS_MAX];
+} mesh_reading;
+
+// The file and the reason: the user wrote no params that a path could point into.
+static cli_exit fail_reading(cli *c, const char *file)
 {
-	bool sheet = scene->layers[0].kind == CAU_LAYER_FASCIA;
-	cau_selection *pin = &scene->pins[scene->pin_count++];
-	cau_default_selection(pin, sheet ? CAU_SELECT_RIM : CAU_SELECT_BOX);
-	snprintf(pin->layer, sizeof pin->layer, "%s", sheet ? "fascia" : "");
-	double margin_m = 1e-3;
-	for (int a = 0; a < 3 && !sheet; a++) {
-		pin->least_m[a] = least_m[a] - margin_m;
-		pin->most_m[a] = most_m[a] + margin_m;
+	c->error.path[0] = 0;
+	snprintf(c->error.file, sizeof c->error.file, "%.255s", file);
+	return cli_fail(c);
+}
+
+// Asks for the report and prints it. `options`: the user chose by options, which the words name.
+static cli_exit read_mesh(cli *c, const char *file, const cau_wire_mesh_read *params, bool options,
+                          cau_scene_def *scene)
+{
+	mesh_reading *reading = calloc(1, sizeof *reading);
+	if (!reading)
+		return cli_fail_memory(c);
+	cau_wire_mesh_report *report = &reading->wire.report;
+	reading->wire.definition = scene;
+	report->kinds = (cau_wire_list){reading->kinds, 0, KINDS_MAX};
+	report->mended = (cau_wire_list){reading->mends, 0, MENDS_MAX};
+	report->regions = (cau_wire_list){reading->regions, 0, REGIONS_MAX};
+	cau_status status =
+		cau_client_call(c->client, CAU_METHOD_MESH_READ, params, &reading->wire, &c->error);
+	if (options) {
+		use_own_words(report->text, sizeof report->text);
+		use_own_words(reading->wire.note, sizeof reading->wire.note);
+		use_own_words(c->error.reason, sizeof c->error.reason);
 	}
-	if (!sheet)
-		pin->most_m[2] = least_m[2] + 0.1 * (most_m[2] - least_m[2]);
-	cau_tool_def *tool = &scene->tools[scene->tool_count++];
-	cau_default_tool_def(tool, CAU_TOOL_SPHERE);
-	strcpy(tool->name, "ball");
-	for (int a = 0; a < 2; a++)
-		tool->pose.position_m[a] = 0.5 * (least_m[a] + most_m[a]);
-	tool->pose.position_m[2] = most_m[2] + tool_height_m;
+	if (!status)
+		fprintf(c->complaints, "%s\n%s", file, report->text);
+	if (!status && options && reading->wire.has_note)
+		fprintf(c->complaints, "note: %s\n", reading->wire.note);
+	free(reading);
+	return status ? fail_reading(c, file) : CLI_DONE;
+}
+
+cli_exit cli_mesh_scene(cli *c, const char *file, const char *name, cau_scene_def *scene)
+{
+	cau_wire_mesh_read params = {0};
+	bool bad = false;
+	const char *kind = cli_value(c, "as");
+	snprintf(params.upload, sizeof params.upload, "%s", name);
+	params.has_unit_m = cli_value(c, "unit-m") != NULL;
+	params.unit_m = cli_number(c, "unit-m", 1e-9, 1000, 1, &bad);
+	params.has_as = kind != NULL;
+	params.as = kind && strcmp(kind, "fat") == 0 ? CAU_LAYER_FAT : CAU_LAYER_FASCIA;
+	params.has_strict = params.strict = cli_value(c, "strict") != NULL;
+	return bad ? CLI_USAGE : read_mesh(c, file, &params, true, scene);
+}
+
+cli_exit cli_mesh_report(cli *c, const char *file, const cau_mesh_def *mesh)
+{
+	cau_wire_mesh_read params = {
+		.has_unit_m = true, .unit_m = mesh->unit_m, .has_strict = true, .strict = mesh->strict};
+	snprintf(params.upload, sizeof params.upload, "%s", mesh->name);
+	cau_scene_def *unused = calloc(1, sizeof *unused);
+	if (!unused)
+		return cli_fail_memory(c);
+	cli_exit code = read_mesh(c, file, &params, false, unused);
+	free(unused);
+	return code;
 }

@@ -1,18 +1,22 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// A scene around a mesh file.
+// A scene around a mesh file: the daemon reads it, reports what became of it, and makes the scene.
 #pragma once
 
-#include <stdbool.h>
+#include "cautery/cli.h"
 
-#include "cautery/client.h"
+// Reads a mesh file; of TetGen's two files of one name (.node, .ele or .face) both, points first.
+// The caller frees *bytes.
+cau_status cli_read_mesh_file(const char *file, char **bytes, size_t *byte_count, cau_error *error);
 
-// Mesh and layers: fat with its membrane, or fascia. The mesh is still a file here. Errors:
-// CAU_LIMIT (a name too long).
-cau_status cli_mesh_scene_begin(cau_scene_def *scene, const char *file, double unit_m, bool fat,
-                                cau_error *error);
+// Whether `argument` means a mesh file: one that is there and no scene file, or what is no scene's
+// name.
+bool cli_is_mesh_file(const char *argument);
 
-// The box around the rest positions, m.
-void cli_mesh_scene_measure(const cau_client_stream *stream, double least_m[3], double most_m[3]);
+// Has the upload `name` of `file` read with the options --as, --unit-m and --strict, prints the
+// report, and fills *scene with a scene around it. Failures are printed in the words of these
+// options.
+cli_exit cli_mesh_scene(cli *c, const char *file, const char *name, cau_scene_def *scene);
 
-// Pins and tool, from the box.
-void cli_mesh_scene_end(cau_scene_def *scene, const double least_m[3], const double most_m[3]);
+// Has the upload of `file`, a mesh of a scene file, read with the unit and the strictness that the
+// scene says, and prints the report.
+cli_exit cli_mesh_report(cli *c, const char *file, const cau_mesh_def *mesh);

@@ -4,6 +4,7 @@
 #include <string.h>
 
 #include "cautery/assert.h"
+#include "mesh/geometry.h"
 #include "mesh/index_sort.h"
 #include "mesh/mesh_memory.h"
 #include "mesh/vertex_merge.h"
@@ -12,7 +13,6 @@
 // 6 V / L^3. Coordinates written with six digits make flat elements come out near 1e-7.
 static const double flat_triangle = 1e-6;
 static const double flat_tetrahedron = 1e-8;
-static const double merge_distance = 1e-9; // of the bounding diagonal
 static const double diagonal_min_m = 1e-9;
 static const double diagonal_max_m = 1e6;
 
@@ -22,31 +22,14 @@ static const double *position_of(const cau_mesh *mesh, int32_t vertex)
 	return mesh->position + 3 * (size_t)vertex;
 }
 
-static void subtract(const double *a, const double *b, double out[3])
-{
-	for (int c = 0; c < 3; c++)
-		out[c] = a[c] - b[c];
-}
-
-static void cross(const double a[3], const double b[3], double out[3])
-{
-	for (int c = 0; c < 3; c++)
-		out[c] = a[(c + 1) % 3] * b[(c + 2) % 3] - a[(c + 2) % 3] * b[(c + 1) % 3];
-}
-
-static double dot(const double a[3], const double b[3])
-{
-	return a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
-}
-
 static double longest_edge(const cau_mesh *mesh, const int32_t *element, int corners)
 {
 	double longest = 0;
 	for (int i = 0; i < corners; i++)
 		for (int j = 0; j < i; j++) {
 			double edge[3];
-			subtract(position_of(mesh, element[i]), position_of(mesh, element[j]), edge);
-			longest = fmax(longest, dot(edge, edge));
+			cau_subtract3(position_of(mesh, element[i]), position_of(mesh, element[j]), edge);
+			longest = fmax(longest, cau_dot3(edge, edge));
 		}
 	CAU_ASSERT(longest > 0, "an element whose %d corners lie on one point", corners);
 	return sqrt(longest);
@@ -57,9 +40,9 @@ static double relative_height(const cau_mesh *mesh, const int32_t *t)
 {
 	double e[2][3], normal[3], longest = longest_edge(mesh, t, 3);
 	for (int i = 0; i < 2; i++)
-		subtract(position_of(mesh, t[i + 1]), position_of(mesh, t[0]), e[i]);
-	cross(e[0], e[1], normal);
-	return sqrt(dot(normal, normal)) / (longest * longest);
+		cau_subtract3(position_of(mesh, t[i + 1]), position_of(mesh, t[0]), e[i]);
+	cau_cross3(e[0], e[1], normal);
+	return sqrt(cau_dot3(normal, normal)) / (longest * longest);
 }
 
 // 6 V / L^3 of a tetrahedron of four vertices, with its sign.
@@ -67,9 +50,9 @@ static double relative_volume(const cau_mesh *mesh, const int32_t *t)
 {
 	double e[3][3], normal[3], longest = longest_edge(mesh, t, 4);
 	for (int i = 0; i < 3; i++)
-		subtract(position_of(mesh, t[i + 1]), position_of(mesh, t[0]), e[i]);
-	cross(e[0], e[1], normal);
-	return dot(normal, e[2]) / (longest * longest * longest);
+		cau_subtract3(position_of(mesh, t[i + 1]), position_of(mesh, t[0]), e[i]);
+	cau_cross3(e[0], e[1], normal);
+	return cau_dot3(normal, e[2]) / (longest * longest * longest);
 }
 
 static cau_status check_indices(const char *kind, const int32_t *element, int32_t count,
@@ -94,10 +77,6 @@ static cau_status check_numbers(const cau_mesh *mesh, cau_error *error)
 		if (!isfinite(mesh->position[i]))
 			return cau_fail(error, CAU_BAD_MESH, NULL, "vertex %zu: its %c is not finite", i / 3,
 			                "xyz"[i % 3]);
-	for (size_t i = 0; mesh->texture && i < 6 * (size_t)mesh->triangle_count; i++)
-		if (!isfinite(mesh->texture[i]))
-			return cau_fail(error, CAU_BAD_MESH, NULL,
-			                "triangle %zu: a texture coordinate is not finite", i / 6);
 	cau_status status = check_indices("triangle", mesh->triangle, mesh->triangle_count, 3,
 	                                  mesh->vertex_count, error);
 	if (!status)
@@ -137,57 +116,39 @@ static int32_t drop_unused(cau_mesh *mesh, int32_t *map)
 	return dropped;
 }
 
-typedef struct bounds {
-	double least[3];
-	double most[3];
-	double diagonal;
-} bounds;
-
-static bounds bounds_of(const cau_mesh *mesh)
+// The bounding diagonal must be a size that numbers can hold.
+static cau_status check_bounds(const cau_mesh *mesh, cau_error *error)
 {
-	CAU_ASSERT(mesh->vertex_count > 0, "the box of %d vertices", mesh->vertex_count);
-	bounds b;
-	double extent[3];
-	for (int c = 0; c < 3; c++)
-		b.least[c] = b.most[c] = mesh->position[c];
-	for (size_t i = 3; i < 3 * (size_t)mesh->vertex_count; i++) {
-		b.least[i % 3] = fmin(b.least[i % 3], mesh->position[i]);
-		b.most[i % 3] = fmax(b.most[i % 3], mesh->position[i]);
-	}
-	subtract(b.most, b.least, extent);
-	b.diagonal = hypot(hypot(extent[0], extent[1]), extent[2]);
-	return b;
-}
-
-static cau_status check_bounds(const bounds *b, cau_error *error)
-{
+	double least[3] = {INFINITY, INFINITY, INFINITY}, most[3] = {-INFINITY, -INFINITY, -INFINITY};
 	double far = 0;
-	for (int c = 0; c < 3; c++)
-		far = fmax(far, fmax(fabs(b->least[c]), fabs(b->most[c])));
-	if (b->diagonal == 0)
+	for (size_t i = 0; i < 3 * (size_t)mesh->vertex_count; i++) {
+		least[i % 3] = fmin(least[i % 3], mesh->position[i]);
+		most[i % 3] = fmax(most[i % 3], mesh->position[i]);
+		far = fmax(far, fabs(mesh->position[i]));
+	}
+	double diagonal = hypot(hypot(most[0] - least[0], most[1] - least[1]), most[2] - least[2]);
+	if (diagonal == 0)
 		return cau_fail(error, CAU_BAD_MESH, NULL, "all vertices lie on one point");
-	if (b->diagonal < diagonal_min_m)
+	if (diagonal < diagonal_min_m)
 		return cau_fail(error, CAU_BAD_MESH, NULL,
 		                "the mesh is %.3g m from corner to corner, less than %.0e m (is its unit "
 		                "right?)",
-		                b->diagonal, diagonal_min_m);
-	if (!(b->diagonal <= diagonal_max_m) || !(far <= diagonal_max_m))
+		                diagonal, diagonal_min_m);
+	if (!(diagonal <= diagonal_max_m) || !(far <= diagonal_max_m))
 		return cau_fail(error, CAU_BAD_MESH, NULL,
 		                "the mesh is %.3g m from corner to corner and reaches %.3g m from the "
 		                "origin, more than %.0e m (is its unit right?)",
-		                b->diagonal, far, diagonal_max_m);
+		                diagonal, far, diagonal_max_m);
 	return CAU_OK;
 }
 
 // Lets every vertex near one of a lower number become that one. The position stays the lower one's.
 static cau_status merge_vertices(cau_mesh *mesh, int32_t *map, int32_t *merged, cau_error *error)
 {
-	bounds b = bounds_of(mesh);
-	cau_status status = check_bounds(&b, error);
+	cau_status status = check_bounds(mesh, error);
 	if (status)
 		return status;
-	if (!cau_vertex_merge(mesh->position, mesh->vertex_count, b.least, merge_distance * b.diagonal,
-	                      map))
+	if (!cau_vertex_merge_near(mesh->position, mesh->vertex_count, map))
 		return cau_fail(error, CAU_NO_MEMORY, NULL, "no memory for merging vertices");
 	map_corners(mesh, map);
 	*merged = drop_unused(mesh, map); // exactly the merged ones: all the rest are used
@@ -205,55 +166,95 @@ static bool has_corner_twice(const int32_t *element, int corners)
 	return false;
 }
 
-static cau_status refuse_degenerate(const char *kind, int32_t number, const char *why,
-                                    cau_error *error)
+// ---- elements that are left out: marked, and then dropped together
+static void keep_triangles(cau_mesh *mesh, const bool *dropped)
 {
-	return cau_fail(error, CAU_BAD_MESH, NULL, "%s %d (counted from 0) is degenerate: %s", kind,
-	                number, why);
+	size_t kept = 0;
+	for (size_t t = 0; t < (size_t)mesh->triangle_count; t++) {
+		if (dropped[t])
+			continue;
+		memmove(mesh->triangle + 3 * kept, mesh->triangle + 3 * t, 3 * sizeof *mesh->triangle);
+		mesh->triangle_region[kept] = mesh->triangle_region[t];
+		if (mesh->texture)
+			memmove(mesh->texture + 6 * kept, mesh->texture + 6 * t, 6 * sizeof *mesh->texture);
+		kept++;
+	}
+	mesh->triangle_count = (int32_t)kept;
 }
 
-static const char *const coincide = "two of its corners coincide";
-
-static cau_status check_triangles(const cau_mesh *mesh, cau_error *error)
+static void keep_tetrahedra(cau_mesh *mesh, const bool *dropped)
 {
+	size_t kept = 0;
+	for (size_t t = 0; t < (size_t)mesh->tetrahedron_count; t++) {
+		if (dropped[t])
+			continue;
+		memmove(mesh->tetrahedron + 4 * kept, mesh->tetrahedron + 4 * t,
+		        4 * sizeof *mesh->tetrahedron);
+		mesh->tetrahedron_region[kept++] = mesh->tetrahedron_region[t];
+	}
+	mesh->tetrahedron_count = (int32_t)kept;
+}
+
+static int32_t drop_flat_triangles(cau_mesh *mesh, bool *dropped)
+{
+	int32_t count = 0;
 	for (int32_t i = 0; i < mesh->triangle_count; i++) {
 		const int32_t *t = mesh->triangle + 3 * (size_t)i;
-		if (has_corner_twice(t, 3))
-			return refuse_degenerate("triangle", i, coincide, error);
-		double height = relative_height(mesh, t);
-		if (height < flat_triangle) {
-			char why[120];
-			snprintf(why, sizeof why, "its height is %.2g of its longest edge, less than %.0e",
-			         height, flat_triangle);
-			return refuse_degenerate("triangle", i, why, error);
-		}
+		dropped[i] = has_corner_twice(t, 3) || relative_height(mesh, t) < flat_triangle;
+		count += dropped[i];
 	}
-	return CAU_OK;
+	if (count)
+		keep_triangles(mesh, dropped);
+	return count;
 }
 
 // Also turns inverted ones to positive volume, and counts them.
-static cau_status turn_tetrahedra(cau_mesh *mesh, int32_t *turned, cau_error *error)
+static int32_t drop_flat_tetrahedra(cau_mesh *mesh, bool *dropped, int32_t *turned)
 {
+	int32_t count = 0;
 	for (int32_t i = 0; i < mesh->tetrahedron_count; i++) {
-		int32_t *t = mesh->tetrahedron + 4 * (size_t)i;
-		if (has_corner_twice(t, 4))
-			return refuse_degenerate("tetrahedron", i, coincide, error);
-		double volume = relative_volume(mesh, t);
-		if (fabs(volume) < flat_tetrahedron) {
-			char why[120];
-			snprintf(why, sizeof why,
-			         "six volumes are %.2g of the cube of its longest edge, less than %.0e",
-			         fabs(volume), flat_tetrahedron);
-			return refuse_degenerate("tetrahedron", i, why, error);
-		}
-		if (volume < 0) {
-			int32_t third = t[2];
-			t[2] = t[3];
-			t[3] = third;
-			++*turned;
-		}
+		int32_t *t = mesh->tetrahedron + 4 * (size_t)i, third = t[2];
+		double volume = has_corner_twice(t, 4) ? 0 : relative_volume(mesh, t);
+		dropped[i] = fabs(volume) < flat_tetrahedron;
+		count += dropped[i];
+		if (dropped[i] || volume > 0)
+			continue;
+		t[2] = t[3];
+		t[3] = third;
+		++*turned;
 	}
+	if (count)
+		keep_tetrahedra(mesh, dropped);
+	return count;
+}
+
+static cau_status drop_degenerate(cau_mesh *mesh, cau_mesh_report *done, cau_error *error)
+{
+	int32_t triangles = mesh->triangle_count, tetrahedra = mesh->tetrahedron_count;
+	bool *dropped = cau_mesh_array((size_t)(triangles > tetrahedra ? triangles : tetrahedra), 1);
+	if (!dropped)
+		return cau_fail(error, CAU_NO_MEMORY, NULL, "no memory for cleaning a mesh");
+	done->degenerate_triangles += drop_flat_triangles(mesh, dropped);
+	done->degenerate_tetrahedra += drop_flat_tetrahedra(mesh, dropped, &done->inverted_tetrahedra);
+	free(dropped);
+	if (!mesh->triangle_count && !mesh->tetrahedron_count)
+		return cau_fail(error, CAU_BAD_MESH, NULL,
+		                "every element is degenerate: %d flat triangles, %d flat tetrahedra",
+		                triangles, tetrahedra);
 	return CAU_OK;
+}
+
+// A texture triangle without area gives no material direction: it becomes zeros.
+static int32_t drop_flat_textures(cau_mesh *mesh)
+{
+	int32_t count = 0;
+	for (size_t t = 0; t < (size_t)mesh->triangle_count && mesh->texture; t++) {
+		if (!cau_texture_is_flat(mesh->texture + 6 * t))
+			continue;
+		memset(mesh->texture + 6 * t, 0, 6 * sizeof *mesh->texture);
+		count++;
+	}
+	return count;
 }
 
 // Marks repeated[i] where an element of a lower number has the same vertices. Returns how many, or
@@ -288,37 +289,6 @@ done:
 	return marked;
 }
 
-static void keep_triangles(cau_mesh *mesh, const bool *repeated)
-{
-	size_t kept = 0;
-	for (size_t t = 0; t < (size_t)mesh->triangle_count; t++) {
-		if (repeated[t])
-			continue;
-		memmove(mesh->triangle + 3 * kept, mesh->triangle + 3 * t, 3 * sizeof *mesh->triangle);
-		mesh->triangle_region[kept] = mesh->triangle_region[t];
-		if (mesh->texture)
-			memmove(mesh->texture + 6 * kept, mesh->texture + 6 * t, 6 * sizeof *mesh->texture);
-		kept++;
-	}
-	mesh->triangle_count = (int32_t)kept;
-	CAU_ASSERT(mesh->triangle_count > 0, "all triangles repeat %d others", mesh->triangle_count);
-}
-
-static void keep_tetrahedra(cau_mesh *mesh, const bool *repeated)
-{
-	size_t kept = 0;
-	for (size_t t = 0; t < (size_t)mesh->tetrahedron_count; t++) {
-		if (repeated[t])
-			continue;
-		memmove(mesh->tetrahedron + 4 * kept, mesh->tetrahedron + 4 * t,
-		        4 * sizeof *mesh->tetrahedron);
-		mesh->tetrahedron_region[kept++] = mesh->tetrahedron_region[t];
-	}
-	mesh->tetrahedron_count = (int32_t)kept;
-	CAU_ASSERT(mesh->tetrahedron_count > 0, "all tetrahedra repeat %d others",
-	           mesh->tetrahedron_count);
-}
-
 // Keeps the first of elements with the same vertices, whatever their order.
 static cau_status drop_repeated(cau_mesh *mesh, int32_t *dropped, cau_error *error)
 {
@@ -343,26 +313,82 @@ static cau_status drop_repeated(cau_mesh *mesh, int32_t *dropped, cau_error *err
 	return CAU_OK;
 }
 
+// Marks dropped[i] where two tetrahedra of lower numbers that stay have a face of tetrahedron i.
+// key: the four faces of each, sorted by `order`. Returns how many.
+static int32_t mark_thirds(const int32_t *key, const int32_t *order, int32_t face_count,
+                           bool *dropped)
+{
+	int32_t marked = 0, kept = 0;
+	for (int32_t i = 0; i < face_count; i++) {
+		const int32_t *face = key + 3 * (size_t)order[i];
+		const int32_t *before = i ? key + 3 * (size_t)order[i - 1] : NULL;
+		bool *at = &dropped[order[i] / 4];
+		if (!before || memcmp(face, before, 3 * sizeof *face) != 0)
+			kept = 0;
+		if (*at)
+			continue;
+		*at = kept == 2;
+		marked += *at;
+		kept += !*at;
+	}
+	return marked;
+}
+
+// A face lies between two tetrahedra at most: further ones overlap these.
+static cau_status drop_thirds(cau_mesh *mesh, int32_t *thirds, cau_error *error)
+{
+	int32_t faces = 4 * mesh->tetrahedron_count;
+	int32_t *key = cau_mesh_array((size_t)faces, 3 * sizeof *key);
+	int32_t *order = cau_mesh_array((size_t)faces, sizeof *order);
+	bool *dropped = cau_mesh_array((size_t)mesh->tetrahedron_count, sizeof *dropped);
+	cau_status status = CAU_OK;
+	for (int32_t f = 0; f < faces && key; f++) {
+		int32_t *row = key + 3 * (size_t)f;
+		for (int c = 0, n = 0; c < 4; c++)
+			if (c != f % 4)
+				row[n++] = mesh->tetrahedron[4 * (size_t)(f / 4) + (size_t)c];
+		cau_index_order_row(row, 3);
+	}
+	if (!key || !order || !dropped || !cau_index_sort(key, 3, faces, mesh->vertex_count, order)) {
+		status = cau_fail(error, CAU_NO_MEMORY, NULL, "no memory for the faces of a mesh");
+	} else {
+		memset(dropped, 0, (size_t)mesh->tetrahedron_count * sizeof *dropped);
+		int32_t marked = mark_thirds(key, order, faces, dropped);
+		*thirds += marked;
+		if (marked)
+			keep_tetrahedra(mesh, dropped);
+	}
+	free(key);
+	free(order);
+	free(dropped);
+	return status;
+}
+
 cau_status cau_mesh_clean(cau_mesh *mesh, cau_mesh_report *report, cau_error *error)
 {
-	cau_mesh_report done = {0};
+	cau_mesh_report unwanted = {0}, *done = report ? report : &unwanted;
+	int32_t unused = 0, repeated = 0;
 	int32_t *map = cau_mesh_array((size_t)mesh->vertex_count, sizeof *map);
 	if (!map)
 		return cau_fail(error, CAU_NO_MEMORY, NULL, "no memory for cleaning a mesh");
 
 	cau_status status = check_numbers(mesh, error);
 	if (!status) {
-		done.unused_vertices = drop_unused(mesh, map);
-		status = merge_vertices(mesh, map, &done.duplicate_vertices, error);
+		done->unused_vertices += drop_unused(mesh, map);
+		status = merge_vertices(mesh, map, &done->duplicate_vertices, error);
 	}
 	if (!status)
-		status = check_triangles(mesh, error);
+		status = drop_degenerate(mesh, done, error);
 	if (!status)
-		status = turn_tetrahedra(mesh, &done.inverted_tetrahedra, error);
+		status = drop_repeated(mesh, &repeated, error);
 	if (!status)
-		status = drop_repeated(mesh, &done.duplicate_elements, error);
+		status = drop_thirds(mesh, &done->third_tetrahedra, error);
+	if (!status)
+		unused = drop_unused(mesh, map); // of what was left out
+	done->unused_vertices += unused;
+	done->duplicate_elements += repeated;
+	if (!status)
+		done->degenerate_textures += drop_flat_textures(mesh);
 	free(map);
-	if (report)
-		*report = done;
 	return status;
 }

@@ -1,80 +1,78 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Gmsh files (.msh) of versions 1, 2.2 (2.0, 2.1) and 4.1: types of elements, what each version has
-// between a section's name and its end, then the walk over the sections. Formats: Gmsh's reference
-// manual, "File formats" (4.1) and "Legacy formats" (1 and 2.2). All failures go to the scan.
-#include "mesh/gmsh.h"
-
+// Gmsh files (.msh) of versions 1, 2.2 (2.0, 2.1), 4.0 and 4.1: types of elements, what each
+// version has between a section's name and its end, then the walk over the sections. Formats:
+// Gmsh's reference manual, "File formats" (4.1) and "Legacy formats" (1 and 2.2). All failures go
+// to the scan.
 #include <stdlib.h>
 #include <string.h>
 
 #include "cautery/assert.h"
 #include "mesh/mesh_memory.h"
 #include "mesh/node_map.h"
+#include "mesh/readers.h"
 
-enum { TRIANGLE = 2, TETRAHEDRON = 4, KNOWN_TYPES = 32 }; // the format's own numbers
+enum { KNOWN_TYPES = 32, NODES_MAX = 64 };
 
 typedef struct gmsh_file {
 	cau_scan *scan;
 	cau_mesh_builder *builder;
 	cau_node_map nodes;
 	bool has_nodes;
-	int size_bytes; // of a size_t in a binary file of version 4.1
+	int size_bytes; // of a size_t in a binary file of version 4
+	bool is_4_0;    // version 4.0: other orders, and four-byte numbers of nodes and elements
 	struct entity {
 		int32_t dimension;
 		int32_t tag;
 		int32_t region;
-	} * entity; // version 4.1: entities with a physical group, in ascending order
+	} * entity; // version 4: entities with a physical group, in ascending order
 	int32_t entity_count;
 	int32_t entity_capacity;
 } gmsh_file;
 
 // ---- elements and positions, as all versions have them
+// The corners of an element are its first nodes.
 static const struct {
 	int nodes;
+	cau_shape shape; // CAU_SHAPE_COUNT: passed over
 	const char *name;
 } types[KNOWN_TYPES] = {
-	[1] = {2, "lines"},
-	[2] = {3, "triangles"},
-	[3] = {4, "quadrangles"},
-	[4] = {4, "tetrahedra"},
-	[5] = {8, "hexahedra"},
-	[6] = {6, "prisms"},
-	[7] = {5, "pyramids"},
-	[8] = {3, "3-node lines"},
-	[9] = {6, "6-node triangles"},
-	[10] = {9, "9-node quadrangles"},
-	[11] = {10, "10-node tetrahedra"},
-	[12] = {27, "27-node hexahedra"},
-	[13] = {18, "18-node prisms"},
-	[14] = {14, "14-node pyramids"},
-	[15] = {1, "points"},
-	[16] = {8, "8-node quadrangles"},
-	[17] = {20, "20-node hexahedra"},
-	[18] = {15, "15-node prisms"},
-	[19] = {13, "13-node pyramids"},
-	[20] = {9, "9-node triangles"},
-	[21] = {10, "10-node triangles"},
-	[22] = {12, "12-node triangles"},
-	[23] = {15, "15-node triangles"},
-	[24] = {15, "incomplete 15-node triangles"},
-	[25] = {21, "21-node triangles"},
-	[26] = {4, "4-node lines"},
-	[27] = {5, "5-node lines"},
-	[28] = {6, "6-node lines"},
-	[29] = {20, "20-node tetrahedra"},
-	[30] = {35, "35-node tetrahedra"},
-	[31] = {56, "56-node tetrahedra"},
+	[1] = {2, CAU_SHAPE_COUNT, "lines"},
+	[2] = {3, CAU_SHAPE_TRIANGLE, "triangles"},
+	[3] = {4, CAU_SHAPE_QUADRANGLE, "quadrangles"},
+	[4] = {4, CAU_SHAPE_TETRAHEDRON, "tetrahedra"},
+	[5] = {8, CAU_SHAPE_HEXAHEDRON, "hexahedra"},
+	[6] = {6, CAU_SHAPE_WEDGE, "wedges"},
+	[7] = {5, CAU_SHAPE_PYRAMID, "pyramids"},
+	[8] = {3, CAU_SHAPE_COUNT, "3-node lines"},
+	[9] = {6, CAU_SHAPE_TRIANGLE, "6-node triangles"},
+	[10] = {9, CAU_SHAPE_QUADRANGLE, "9-node quadrangles"},
+	[11] = {10, CAU_SHAPE_TETRAHEDRON, "10-node tetrahedra"},
+	[12] = {27, CAU_SHAPE_HEXAHEDRON, "27-node hexahedra"},
+	[13] = {18, CAU_SHAPE_WEDGE, "18-node wedges"},
+	[14] = {14, CAU_SHAPE_PYRAMID, "14-node pyramids"},
+	[15] = {1, CAU_SHAPE_COUNT, "points"},
+	[16] = {8, CAU_SHAPE_QUADRANGLE, "8-node quadrangles"},
+	[17] = {20, CAU_SHAPE_HEXAHEDRON, "20-node hexahedra"},
+	[18] = {15, CAU_SHAPE_WEDGE, "15-node wedges"},
+	[19] = {13, CAU_SHAPE_PYRAMID, "13-node pyramids"},
+	[20] = {9, CAU_SHAPE_TRIANGLE, "9-node triangles"},
+	[21] = {10, CAU_SHAPE_TRIANGLE, "10-node triangles"},
+	[22] = {12, CAU_SHAPE_TRIANGLE, "12-node triangles"},
+	[23] = {15, CAU_SHAPE_TRIANGLE, "15-node triangles"},
+	[24] = {15, CAU_SHAPE_TRIANGLE, "incomplete 15-node triangles"},
+	[25] = {21, CAU_SHAPE_TRIANGLE, "21-node triangles"},
+	[26] = {4, CAU_SHAPE_COUNT, "4-node lines"},
+	[27] = {5, CAU_SHAPE_COUNT, "5-node lines"},
+	[28] = {6, CAU_SHAPE_COUNT, "6-node lines"},
+	[29] = {20, CAU_SHAPE_TETRAHEDRON, "20-node tetrahedra"},
+	[30] = {35, CAU_SHAPE_TETRAHEDRON, "35-node tetrahedra"},
+	[31] = {56, CAU_SHAPE_TETRAHEDRON, "56-node tetrahedra"},
 };
 
 // Nodes of an element of this type, or 0 for a type that is not known.
 static int nodes_of_type(int64_t type)
 {
 	return type > 0 && type < KNOWN_TYPES ? types[type].nodes : 0;
-}
-
-static const char *name_of_type(int type)
-{
-	return nodes_of_type(type) ? types[type].name : "elements of unknown type";
 }
 
 // Reads x, y, z and appends the vertex.
@@ -90,7 +88,7 @@ static void read_position(gmsh_file *gmsh)
 static void skip_element(gmsh_file *gmsh, int64_t type, int number_bytes)
 {
 	int nodes = nodes_of_type(type);
-	cau_mesh_builder_skip(gmsh->builder, nodes ? type : 0, 1);
+	cau_mesh_builder_skip(gmsh->builder, nodes ? types[type].name : "elements of unknown type", 1);
 	if (!gmsh->scan->binary)
 		cau_scan_skip_line(gmsh->scan);
 	else if (nodes)
@@ -100,8 +98,8 @@ static void skip_element(gmsh_file *gmsh, int64_t type, int number_bytes)
 		              (long long)type);
 }
 
-// Reads the nodes of one element (numbers of number_bytes each in a binary file) and appends it, or
-// passes over it when it is of another type.
+// Reads the nodes of one element (numbers of number_bytes each in a binary file) and appends its
+// corners, or passes over it when it is of another type.
 static void read_element(gmsh_file *gmsh, int64_t number, int64_t type, int32_t region,
                          int number_bytes)
 {
@@ -109,23 +107,21 @@ static void read_element(gmsh_file *gmsh, int64_t number, int64_t type, int32_t 
 	CAU_ASSERT(number_bytes == 4 || number_bytes == 8, "node numbers of %d bytes", number_bytes);
 	if (scan->status)
 		return;
-	if (type != TRIANGLE && type != TETRAHEDRON) {
+	if (!nodes_of_type(type) || types[type].shape == CAU_SHAPE_COUNT) {
 		skip_element(gmsh, type, number_bytes);
 		return;
 	}
-	int32_t vertex[4] = {0};
-	CAU_ASSERT(types[type].nodes <= 4, "%d nodes of an element", types[type].nodes);
-	for (int i = 0; i < types[type].nodes; i++) {
+	int32_t vertex[NODES_MAX] = {0};
+	int corners = cau_shape_corners(types[type].shape);
+	for (int i = 0; i < types[type].nodes && !scan->status; i++) {
 		int64_t node = cau_scan_integer(scan, "a node number", number_bytes, 0, INT64_MAX);
-		vertex[i] = cau_node_map_find(&gmsh->nodes, node);
+		vertex[i] = i < corners ? cau_node_map_find(&gmsh->nodes, node) : 0;
 		if (vertex[i] < 0)
 			cau_scan_fail(scan, CAU_BAD_MESH, "element %lld names node %lld, which is not there",
 			              (long long)number, (long long)node);
 	}
-	if (type == TRIANGLE)
-		cau_mesh_builder_triangle(gmsh->builder, vertex, region, NULL);
-	else
-		cau_mesh_builder_tetrahedron(gmsh->builder, vertex, region);
+	cau_mesh_builder_cell(gmsh->builder, types[type].shape, vertex, region, types[type].name,
+	                      types[type].nodes > corners);
 }
 
 // ---- version 1: text only; its $NOD is as version 2.2's $Nodes
@@ -262,16 +258,50 @@ static void add_entity(gmsh_file *gmsh, struct entity entity)
 	gmsh->entity[gmsh->entity_count++] = entity;
 }
 
+static int compare_entities(const void *left, const void *right)
+{
+	const struct entity *a = left, *b = right;
+	int dimensions = (a->dimension > b->dimension) - (a->dimension < b->dimension);
+	return dimensions ? dimensions : (a->tag > b->tag) - (a->tag < b->tag);
+}
+
+// The region of an entity that is listed, else 0.
+static int32_t region_of(const gmsh_file *gmsh, int32_t dimension, int32_t tag)
+{
+	if (!gmsh->entity_count)
+		return 0;
+	struct entity key = {.dimension = dimension, .tag = tag};
+	const struct entity *found =
+		bsearch(&key, gmsh->entity, (size_t)gmsh->entity_count, sizeof key, compare_entities);
+	return found ? found->region : 0;
+}
+
+// Of a partitioned entity: parent's dimension(int) and tag(int), number of partitions(size; int in
+// some files of 4.0 is the same in text), partitions(int). Where the entity has no physical group
+// of its own, its parent's is its region.
+static void read_partition(gmsh_file *gmsh, struct entity *entity)
+{
+	cau_scan *scan = gmsh->scan;
+	int32_t dimension = read_int(gmsh, "a parent's dimension", -1, 3);
+	int32_t tag = read_int(gmsh, "a parent's tag", INT32_MIN, INT32_MAX);
+	int64_t count = read_count(gmsh, "number of partitions", 2, 4);
+	for (int64_t i = 0; i < count && !scan->status; i++)
+		read_int(gmsh, "a partition", INT32_MIN, INT32_MAX);
+	entity->region = dimension == entity->dimension ? region_of(gmsh, dimension, tag) : 0;
+}
+
 // tag(int), x y z or a box of six reals, number of physical groups(size), groups(int), and but for
 // points number of bounding entities(size), entities(int). The first group is the region; a
 // negative one is the same group with turned orientation.
-static void read_entity(gmsh_file *gmsh, int32_t dimension)
+static void read_entity(gmsh_file *gmsh, int32_t dimension, bool partitioned)
 {
 	CAU_ASSERT(dimension >= 0 && dimension <= 3, "an entity of dimension %d", dimension);
 	cau_scan *scan = gmsh->scan;
 	struct entity entity = {.dimension = dimension};
 	entity.tag = read_int(gmsh, "an entity's tag", INT32_MIN, INT32_MAX);
-	for (int i = 0; i < (dimension ? 6 : 3); i++)
+	if (partitioned)
+		read_partition(gmsh, &entity);
+	for (int i = 0; i < (dimension || gmsh->is_4_0 ? 6 : 3); i++)
 		cau_scan_real(scan, "an entity's bound", 8);
 	int64_t group_count = read_count(gmsh, "number of physical groups", 2, 4);
 	for (int64_t i = 0; i < group_count && !scan->status; i++) {
@@ -286,50 +316,72 @@ static void read_entity(gmsh_file *gmsh, int32_t dimension)
 		add_entity(gmsh, entity);
 }
 
-static int compare_entities(const void *left, const void *right)
-{
-	const struct entity *a = left, *b = right;
-	int dimensions = (a->dimension > b->dimension) - (a->dimension < b->dimension);
-	return dimensions ? dimensions : (a->tag > b->tag) - (a->tag < b->tag);
-}
-
 // Numbers of points, curves, surfaces and volumes (size each), then these.
-static void read_entities_4(gmsh_file *gmsh)
+static void read_entity_list(gmsh_file *gmsh, bool partitioned)
 {
 	int64_t count[4];
 	for (int dimension = 0; dimension < 4; dimension++)
 		count[dimension] = read_count(gmsh, "number of entities", 8, 28);
 	for (int32_t dimension = 0; dimension < 4; dimension++)
 		for (int64_t i = 0; i < count[dimension] && !gmsh->scan->status; i++)
-			read_entity(gmsh, dimension);
+			read_entity(gmsh, dimension, partitioned);
 	if (gmsh->entity_count)
 		qsort(gmsh->entity, (size_t)gmsh->entity_count, sizeof *gmsh->entity, compare_entities);
 }
 
-static int32_t region_of(const gmsh_file *gmsh, int32_t dimension, int32_t tag)
+static void read_entities_4(gmsh_file *gmsh)
 {
-	if (!gmsh->entity_count)
-		return 0;
-	struct entity key = {.dimension = dimension, .tag = tag};
-	const struct entity *found =
-		bsearch(&key, gmsh->entity, (size_t)gmsh->entity_count, sizeof key, compare_entities);
-	return found ? found->region : 0;
+	read_entity_list(gmsh, false);
+}
+
+// number of partitions(size), number of ghost entities(size), of each tag(int) and partition(int);
+// then the entities.
+static void read_partitioned_entities(gmsh_file *gmsh)
+{
+	read_size(gmsh, "number of partitions");
+	int64_t ghosts = read_count(gmsh, "number of ghost entities", 3, 8);
+	for (int64_t i = 0; i < 2 * ghosts && !gmsh->scan->status; i++)
+		read_int(gmsh, "a ghost entity", INT32_MIN, INT32_MAX);
+	read_entity_list(gmsh, true);
+}
+
+// Dimension and tag of an entity, which version 4.0 has in the other order.
+static void read_entity_of_block(gmsh_file *gmsh, int32_t *dimension, int32_t *tag)
+{
+	if (gmsh->is_4_0)
+		*tag = read_int(gmsh, "an entity's tag", INT32_MIN, INT32_MAX);
+	*dimension = read_int(gmsh, "an entity's dimension", 0, 3);
+	if (!gmsh->is_4_0)
+		*tag = read_int(gmsh, "an entity's tag", INT32_MIN, INT32_MAX);
+}
+
+static int number_bytes(const gmsh_file *gmsh)
+{
+	return gmsh->is_4_0 ? 4 : gmsh->size_bytes;
+}
+
+static void read_node_number(gmsh_file *gmsh)
+{
+	int64_t number =
+		cau_scan_integer(gmsh->scan, "a node number", number_bytes(gmsh), 0, INT64_MAX);
+	cau_node_map_add(&gmsh->nodes, number, gmsh->scan);
 }
 
 // dimension(int) tag(int) parametric(int) number of nodes(size), all node numbers(size), then all
 // positions: x y z and, where parametric, one more real per dimension.
+// In 4.0: tag(int) dimension(int), and number and position of each node together.
 static void read_node_block(gmsh_file *gmsh)
 {
 	cau_scan *scan = gmsh->scan;
-	int32_t dimension = read_int(gmsh, "an entity's dimension", 0, 3);
-	read_int(gmsh, "an entity's tag", INT32_MIN, INT32_MAX);
+	int32_t dimension = 0, tag = 0;
+	read_entity_of_block(gmsh, &dimension, &tag);
 	int32_t parametric = read_int(gmsh, "0 or 1 (parametric)", 0, 1);
-	int64_t count = read_count(gmsh, "number of nodes", 8, 24 + gmsh->size_bytes);
+	int64_t count = read_count(gmsh, "number of nodes", 8, 24 + number_bytes(gmsh));
+	for (int64_t i = 0; i < count && !scan->status && !gmsh->is_4_0; i++)
+		read_node_number(gmsh);
 	for (int64_t i = 0; i < count && !scan->status; i++) {
-		int64_t number = read_size(gmsh, "a node number");
-		cau_node_map_add(&gmsh->nodes, number, scan);
-	}
-	for (int64_t i = 0; i < count && !scan->status; i++) {
+		if (gmsh->is_4_0)
+			read_node_number(gmsh);
 		read_position(gmsh);
 		for (int32_t p = 0; p < parametric * dimension; p++)
 			cau_scan_real(scan, "a parametric coordinate", 8);
@@ -344,9 +396,11 @@ static void read_nodes_4(gmsh_file *gmsh)
 		cau_scan_fail(scan, CAU_BAD_SYNTAX, "the nodes stand twice");
 	gmsh->has_nodes = true;
 	int64_t block_count = read_count(gmsh, "number of blocks", 8, 12 + gmsh->size_bytes);
-	int64_t node_count = read_count(gmsh, "number of nodes", 8, 24 + gmsh->size_bytes);
-	read_size(gmsh, "the least node number");
-	read_size(gmsh, "the greatest node number");
+	int64_t node_count = read_count(gmsh, "number of nodes", 8, 24 + number_bytes(gmsh));
+	if (!gmsh->is_4_0) {
+		read_size(gmsh, "the least node number");
+		read_size(gmsh, "the greatest node number");
+	}
 	for (int64_t i = 0; i < block_count && !scan->status; i++)
 		read_node_block(gmsh);
 	if (gmsh->nodes.count != node_count)
@@ -359,14 +413,15 @@ static void read_nodes_4(gmsh_file *gmsh)
 static void read_element_block(gmsh_file *gmsh)
 {
 	cau_scan *scan = gmsh->scan;
-	int32_t dimension = read_int(gmsh, "an entity's dimension", 0, 3);
-	int32_t tag = read_int(gmsh, "an entity's tag", INT32_MIN, INT32_MAX);
+	int32_t dimension = 0, tag = 0;
+	read_entity_of_block(gmsh, &dimension, &tag);
 	int32_t type = read_int(gmsh, "a type of element", 1, INT32_MAX);
 	int32_t region = region_of(gmsh, dimension, tag);
-	int64_t count = read_count(gmsh, "number of elements", 4, 2 * gmsh->size_bytes);
+	int64_t count = read_count(gmsh, "number of elements", 4, 2 * number_bytes(gmsh));
 	for (int64_t i = 0; i < count && !scan->status; i++) {
-		int64_t number = read_size(gmsh, "an element number");
-		read_element(gmsh, number, type, region, gmsh->size_bytes);
+		int64_t number =
+			cau_scan_integer(scan, "an element number", number_bytes(gmsh), 0, INT64_MAX);
+		read_element(gmsh, number, type, region, number_bytes(gmsh));
 	}
 }
 
@@ -375,14 +430,35 @@ static void read_elements_4(gmsh_file *gmsh)
 {
 	cau_scan *scan = gmsh->scan;
 	int64_t block_count = read_count(gmsh, "number of blocks", 8, 12 + gmsh->size_bytes);
-	read_count(gmsh, "number of elements", 4, 2 * gmsh->size_bytes);
-	read_size(gmsh, "the least element number");
-	read_size(gmsh, "the greatest element number");
+	read_count(gmsh, "number of elements", 4, 2 * number_bytes(gmsh));
+	if (!gmsh->is_4_0) {
+		read_size(gmsh, "the least element number");
+		read_size(gmsh, "the greatest element number");
+	}
 	for (int64_t i = 0; i < block_count && !scan->status; i++)
 		read_element_block(gmsh);
 }
 
 // ---- the sections of each version
+
+// As text in binary files too: number of names, then of each dimension, number, "name".
+static void read_names(gmsh_file *gmsh)
+{
+	cau_scan *scan = gmsh->scan;
+	int64_t count = cau_scan_count(scan, "number of names", 4);
+	for (int64_t i = 0; i < count && !scan->status; i++) {
+		int64_t dimension = cau_scan_text_integer(scan, "a dimension", 0, 3);
+		int64_t number = cau_scan_text_integer(scan, "a physical group", INT32_MIN, INT32_MAX);
+		cau_word name = cau_scan_word_of_line(scan), word = name;
+		while (word.length) { // a name may have blanks
+			name.length = (size_t)(word.text - name.text) + word.length;
+			word = cau_scan_word_of_line(scan);
+		}
+		if (dimension >= 2)
+			cau_mesh_builder_name(gmsh->builder, (int32_t)dimension, (int32_t)number, name);
+	}
+}
+
 typedef struct section {
 	const char *name, *end;
 	void (*read)(gmsh_file *gmsh);
@@ -390,12 +466,17 @@ typedef struct section {
 
 static const section sections_1[] = {
 	{"$NOD", "$ENDNOD", read_nodes_2}, {"$ELM", "$ENDELM", read_elements_1}, {0}};
-static const section sections_2[] = {
-	{"$Nodes", "$EndNodes", read_nodes_2}, {"$Elements", "$EndElements", read_elements_2}, {0}};
-static const section sections_4[] = {{"$Entities", "$EndEntities", read_entities_4},
-                                     {"$Nodes", "$EndNodes", read_nodes_4},
-                                     {"$Elements", "$EndElements", read_elements_4},
+static const section sections_2[] = {{"$PhysicalNames", "$EndPhysicalNames", read_names},
+                                     {"$Nodes", "$EndNodes", read_nodes_2},
+                                     {"$Elements", "$EndElements", read_elements_2},
                                      {0}};
+static const section sections_4[] = {
+	{"$PhysicalNames", "$EndPhysicalNames", read_names},
+	{"$PartitionedEntities", "$EndPartitionedEntities", read_partitioned_entities},
+	{"$Entities", "$EndEntities", read_entities_4},
+	{"$Nodes", "$EndNodes", read_nodes_4},
+	{"$Elements", "$EndElements", read_elements_4},
+	{0}};
 
 // The number one in binary, from which the byte order is known.
 static void read_byte_order(cau_scan *scan)
@@ -414,9 +495,12 @@ static const section *read_header(gmsh_file *gmsh)
 {
 	cau_scan *scan = gmsh->scan;
 	double version = cau_scan_word_real(scan, cau_scan_word(scan), "a version");
-	bool is_2 = version >= 2 && version<3, is_4 = version> 4.05 && version < 4.15;
+	bool is_2 = version >= 2 && version < 3, is_4 = version >= 4 && version < 4.15;
+	gmsh->is_4_0 = version < 4.05;
 	if (!is_2 && !is_4)
-		cau_scan_fail(scan, CAU_UNSUPPORTED, "Gmsh version %g: 1, 2.2 and 4.1 are read", version);
+		cau_scan_fail(scan, CAU_UNSUPPORTED,
+		              "Gmsh version %g: 1, 2.2, 4.0 and 4.1 are read (gmsh -save -format msh41)",
+		              version);
 	bool binary = cau_scan_text_integer(scan, "0 (text) or 1 (binary)", 0, 1);
 	gmsh->size_bytes = (int)cau_scan_text_integer(scan, "4 or 8 (bytes of a number)", 4, 8);
 	if (gmsh->size_bytes != 8 && (gmsh->size_bytes != 4 || is_2))
@@ -424,6 +508,8 @@ static const section *read_header(gmsh_file *gmsh)
 	if (binary)
 		read_byte_order(scan);
 	cau_scan_expect(scan, "$EndMeshFormat");
+	snprintf(gmsh->builder->report.format, sizeof gmsh->builder->report.format, "Gmsh %.1f%s",
+	         version, binary ? " binary" : "");
 	return is_2 ? sections_2 : sections_4;
 }
 
@@ -469,13 +555,13 @@ cau_status cau_mesh_read_gmsh(cau_mesh_builder *builder)
 	cau_scan *scan = builder->scan;
 	gmsh_file gmsh = {.scan = scan, .builder = builder};
 	const section *known = sections_1;
+	snprintf(builder->report.format, sizeof builder->report.format, "Gmsh 1");
 	if (cau_word_is(cau_scan_peek(scan), "$MeshFormat")) {
 		cau_scan_word(scan);
 		known = read_header(&gmsh);
 	}
 	for (cau_word name = cau_scan_word(scan); name.length; name = cau_scan_word(scan))
 		read_section(&gmsh, known, name);
-	cau_mesh_builder_check(builder, name_of_type);
 	cau_node_map_finish(&gmsh.nodes);
 	free(gmsh.entity);
 	return scan->status;

@@ -6,6 +6,7 @@
 
 #include "cautery/assert.h"
 #include "mesh/mesh_memory.h"
+#include "mesh/polygon.h"
 
 // Makes *array (of items of item_bytes) hold `capacity`. False: memory ran out.
 static bool grow_array(void *array, size_t item_bytes, int32_t capacity)
@@ -115,26 +116,146 @@ void cau_mesh_builder_tetrahedron(cau_mesh_builder *builder, const int32_t verte
 	mesh->tetrahedron_region[t] = region;
 }
 
-void cau_mesh_builder_skip(cau_mesh_builder *builder, int64_t kind, int64_t count)
+// ---- cells of every shape
+static const struct {
+	int corners;
+	const char *name;
+} shapes[CAU_SHAPE_COUNT] = {
+	[CAU_SHAPE_TRIANGLE] = {3, "triangles"},     [CAU_SHAPE_QUADRANGLE] = {4, "quadrangles"},
+	[CAU_SHAPE_TETRAHEDRON] = {4, "tetrahedra"}, [CAU_SHAPE_PYRAMID] = {5, "pyramids"},
+	[CAU_SHAPE_WEDGE] = {6, "wedges"},           [CAU_SHAPE_HEXAHEDRON] = {8, "hexahedra"},
+};
+
+int cau_shape_corners(cau_shape shape)
 {
-	CAU_ASSERT(count >= 0, "%lld elements passed over", (long long)count);
-	if (kind >= 0 && kind < CAU_SKIPPED_KINDS)
-		builder->skipped[kind] += count;
+	CAU_ASSERT_INDEX((int)shape, CAU_SHAPE_COUNT);
+	return shapes[shape].corners;
 }
 
-void cau_mesh_builder_check(cau_mesh_builder *builder, const char *(*name_of)(int kind))
+const char *cau_shape_name(cau_shape shape)
 {
-	CAU_ASSERT(name_of != NULL, "no names for what was passed over, and %d vertices",
-	           builder->mesh.vertex_count);
-	if (builder->scan->status || builder->mesh.triangle_count || builder->mesh.tetrahedron_count)
+	CAU_ASSERT_INDEX((int)shape, CAU_SHAPE_COUNT);
+	return shapes[shape].name;
+}
+
+// The report's entry of a kind; the last entry takes what there is no room for.
+static cau_mesh_kind *kind_of(cau_mesh_builder *builder, const char *name)
+{
+	cau_mesh_report *report = &builder->report;
+	for (int32_t i = 0; i < report->kind_count; i++)
+		if (!strcmp(report->kind[i].name, name))
+			return &report->kind[i];
+	if (report->kind_count == CAU_MESH_KIND_MAX)
+		return &report->kind[CAU_MESH_KIND_MAX - 1];
+	cau_mesh_kind *made = &report->kind[report->kind_count++];
+	snprintf(made->name, sizeof made->name, "%s",
+	         report->kind_count == CAU_MESH_KIND_MAX ? "other elements" : name);
+	return made;
+}
+
+static void add_cell(cau_mesh_builder *builder, const cau_cell *cell)
+{
+	if (builder->cell_count == builder->cell_capacity) {
+		int32_t capacity = next_capacity(builder->cell_capacity, CAU_MESH_MAX_ELEMENTS);
+		bool memory = capacity && grow_array(&builder->cell, sizeof *builder->cell, capacity);
+		if (!has_grown(builder, capacity, memory, "elements"))
+			return;
+		builder->cell_capacity = capacity;
+	}
+	builder->cell[builder->cell_count++] = *cell;
+}
+
+void cau_mesh_builder_cell(cau_mesh_builder *builder, cau_shape shape, const int32_t *vertex,
+                           int32_t region, const char *kind, bool reduced)
+{
+	CAU_ASSERT_INDEX((int)shape, CAU_SHAPE_COUNT);
+	if (builder->scan->status)
 		return;
-	char found[160] = "nothing";
-	size_t length = 0;
-	for (int kind = 0; kind < CAU_SKIPPED_KINDS && length < sizeof found; kind++)
-		if (builder->skipped[kind])
-			length += (size_t)snprintf(found + length, sizeof found - length, "%s%lld %s",
-			                           length ? ", " : "", (long long)builder->skipped[kind],
-			                           name_of(kind));
-	cau_scan_fail(builder->scan, CAU_BAD_MESH,
-	              "no three-node triangles or four-node tetrahedra in this file, but %s", found);
+	kind_of(builder, kind)->read++;
+	builder->report.reduced_elements += reduced;
+	cau_cell cell = {.shape = (int32_t)shape, .region = region};
+	memcpy(cell.vertex, vertex, (size_t)shapes[shape].corners * sizeof *vertex);
+	for (int c = 0; c < shapes[shape].corners; c++)
+		CAU_ASSERT_INDEX(vertex[c], builder->mesh.vertex_count);
+	if (shape == CAU_SHAPE_TRIANGLE)
+		cau_mesh_builder_triangle(builder, cell.vertex, region, NULL);
+	else if (shape == CAU_SHAPE_TETRAHEDRON)
+		cau_mesh_builder_tetrahedron(builder, cell.vertex, region);
+	else
+		add_cell(builder, &cell);
+}
+
+void cau_mesh_builder_polygon(cau_mesh_builder *builder, const int32_t *vertex, int32_t count,
+                              int32_t region, const double *texture)
+{
+	CAU_ASSERT(count >= 3, "a polygon of %d corners", count);
+	if (builder->scan->status)
+		return;
+	kind_of(builder, count == 3 ? "triangles" : count == 4 ? "quadrangles" : "polygons")->read++;
+	builder->report.split_polygons += count > 3;
+	int32_t(*cut)[3] = cau_mesh_array((size_t)count - 2, sizeof *cut);
+	if (!cut || !cau_polygon_cut(builder->mesh.position, vertex, count, cut)) {
+		cau_scan_fail(builder->scan, CAU_NO_MEMORY, "no memory for a polygon of %d corners", count);
+		free(cut);
+		return;
+	}
+	for (int32_t i = 0; i < count - 2 && !builder->scan->status; i++) {
+		int32_t corner[3];
+		double uv[6] = {0};
+		for (int c = 0; c < 3; c++) {
+			corner[c] = vertex[cut[i][c]];
+			if (texture)
+				memcpy(uv + 2 * c, texture + 2 * (size_t)cut[i][c], 2 * sizeof *uv);
+		}
+		cau_mesh_builder_triangle(builder, corner, region, texture ? uv : NULL);
+	}
+	free(cut);
+}
+
+void cau_mesh_builder_skip(cau_mesh_builder *builder, const char *kind, int64_t count)
+{
+	CAU_ASSERT(count >= 0, "%lld %s passed over", (long long)count, kind);
+	if (count)
+		kind_of(builder, kind)->passed += count;
+}
+
+void cau_mesh_builder_name(cau_mesh_builder *builder, int32_t dimension, int32_t region,
+                           cau_word name)
+{
+	CAU_ASSERT(builder->name_count <= builder->name_capacity, "%d names in room for %d",
+	           builder->name_count, builder->name_capacity);
+	if (builder->scan->status)
+		return;
+	if (builder->name_count == builder->name_capacity) {
+		int32_t capacity = next_capacity(builder->name_capacity, CAU_REGION_NAMES_MAX);
+		bool memory = capacity && grow_array(&builder->name, sizeof *builder->name, capacity);
+		if (!has_grown(builder, capacity, memory, "names of regions"))
+			return;
+		builder->name_capacity = capacity;
+	}
+	builder->name[builder->name_count++] = (cau_region_name){dimension, region, name};
+}
+
+static void map_regions(int32_t *region, int32_t count, const int32_t *of, int64_t of_count)
+{
+	for (int32_t i = 0; i < count; i++)
+		region[i] = region[i] >= 0 && region[i] < of_count ? of[region[i]] : 0;
+}
+
+void cau_mesh_builder_map_regions(cau_mesh_builder *builder, const int32_t *of, int64_t count)
+{
+	cau_mesh *mesh = &builder->mesh;
+	map_regions(mesh->triangle_region, mesh->triangle_count, of, count);
+	map_regions(mesh->tetrahedron_region, mesh->tetrahedron_count, of, count);
+	for (int32_t i = 0; i < builder->cell_count; i++)
+		map_regions(&builder->cell[i].region, 1, of, count);
+}
+
+void cau_mesh_builder_finish(cau_mesh_builder *builder)
+{
+	cau_mesh_finish(&builder->mesh);
+	free(builder->cell);
+	free(builder->name);
+	builder->cell = NULL;
+	builder->name = NULL;
 }

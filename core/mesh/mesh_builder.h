@@ -1,30 +1,77 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// A mesh that grows while a file is read. Failures go to the scan, which tells where.
+// A mesh that grows while a file is read. Failures go to the scan, which reports where.
 #pragma once
 
 #include "mesh/mesh.h"
 #include "mesh/scan.h"
 
-enum { CAU_SKIPPED_KINDS = 256 };
+// Shapes of cells. Corners are numbered as Gmsh and VTK number them.
+typedef enum cau_shape {
+	CAU_SHAPE_TRIANGLE,
+	CAU_SHAPE_QUADRANGLE,
+	CAU_SHAPE_TETRAHEDRON,
+	CAU_SHAPE_PYRAMID,
+	CAU_SHAPE_WEDGE,
+	CAU_SHAPE_HEXAHEDRON,
+	CAU_SHAPE_COUNT, // none of them
+} cau_shape;
+
+enum { CAU_CORNERS_MAX = 8, CAU_REGION_NAMES_MAX = 4096 };
+
+// A cell that is split once all vertices are known.
+typedef struct cau_cell {
+	int32_t shape; // cau_shape
+	int32_t region;
+	int32_t vertex[CAU_CORNERS_MAX];
+} cau_cell;
+
+// A region's name, as the file has it.
+typedef struct cau_region_name {
+	int32_t dimension; // 2 or 3; 0: of both
+	int32_t region;
+	cau_word name;
+} cau_region_name;
 
 typedef struct cau_mesh_builder {
-	cau_scan *scan; // borrowed
-	cau_mesh mesh;  // texture follows the triangles where `texture` is set
+	cau_scan *scan;         // borrowed
+	cau_mesh_report report; // format, kinds, what was split and reduced
+	cau_mesh mesh;          // texture follows the triangles where `texture` is set
 	bool texture;
 	int32_t vertex_capacity;
 	int32_t triangle_capacity;
 	int32_t tetrahedron_capacity;
-	int64_t skipped[CAU_SKIPPED_KINDS]; // elements of other kinds, by the file's own number
+	cau_cell *cell; // (cell_count)
+	int32_t cell_count;
+	int32_t cell_capacity;
+	cau_region_name *name; // (name_count)
+	int32_t name_count;
+	int32_t name_capacity;
 } cau_mesh_builder;
+
+// Corners of a shape.
+int cau_shape_corners(cau_shape shape);
+// "triangles", "hexahedra", ...
+const char *cau_shape_name(cau_shape shape);
 
 // Appends; refuses coordinates that are not finite.
 void cau_mesh_builder_vertex(cau_mesh_builder *builder, const double position[3]);
-// `vertex` must be inside the vertices so far; `texture` (3 x 2) or NULL.
+// `vertex` must be inside the vertices so far; `texture` (3 x 2) or NULL. Counts no kind.
 void cau_mesh_builder_triangle(cau_mesh_builder *builder, const int32_t vertex[3], int32_t region,
                                const double *texture);
 void cau_mesh_builder_tetrahedron(cau_mesh_builder *builder, const int32_t vertex[4],
                                   int32_t region);
-void cau_mesh_builder_skip(cau_mesh_builder *builder, int64_t kind, int64_t count);
+// A polygon of at least three corners as triangles; `texture` (count x 2) or NULL. Counts its kind.
+void cau_mesh_builder_polygon(cau_mesh_builder *builder, const int32_t *vertex, int32_t count,
+                              int32_t region, const double *texture);
+// A cell of any shape; `kind` is the name that the report counts it under. `reduced`: it had nodes
+// beside its corners.
+void cau_mesh_builder_cell(cau_mesh_builder *builder, cau_shape shape, const int32_t *vertex,
+                           int32_t region, const char *kind, bool reduced);
+// Counts elements that are passed over.
+void cau_mesh_builder_skip(cau_mesh_builder *builder, const char *kind, int64_t count);
+void cau_mesh_builder_name(cau_mesh_builder *builder, int32_t dimension, int32_t region,
+                           cau_word name);
+// Replaces every region r by of[r], or by 0 where r is not below `count`.
+void cau_mesh_builder_map_regions(cau_mesh_builder *builder, const int32_t *of, int64_t count);
 
-// Fails where neither triangles nor tetrahedra were found, saying what was; name_of names a kind.
-void cau_mesh_builder_check(cau_mesh_builder *builder, const char *(*name_of)(int kind));
+void cau_mesh_builder_finish(cau_mesh_builder *builder); // frees everything

@@ -3,13 +3,16 @@
 
 #include <errno.h>
 #include <fcntl.h>
+#include <stdbool.h>
 #include <string.h>
+#include <strings.h>
 #include <sys/stat.h>
 #include <unistd.h>
 
 #include "cautery/assert.h"
 #include "mesh/mesh_memory.h"
 
+enum { PATH_BYTES = 600 };
 static const long long most_bytes = 1LL << 30;
 
 // Reads until `wanted` bytes are there. Returns how many came, or -1 with errno set.
@@ -53,13 +56,70 @@ static cau_status load(int file, const char *path, void **bytes, size_t *byte_co
 	return CAU_OK;
 }
 
-cau_status cau_mesh_file_load(const char *path, void **bytes, size_t *byte_count, cau_error *error)
+static cau_status load_one(const char *path, void **bytes, size_t *byte_count, cau_error *error)
 {
-	CAU_ASSERT(path[0] != 0, "a file without a name, for %p", (void *)bytes);
 	int file = open(path, O_RDONLY | O_CLOEXEC | O_NONBLOCK); // a pipe would wait for its writer
 	if (file < 0)
 		return cau_fail(error, CAU_IO, NULL, "cannot open '%.180s': %s", path, strerror(errno));
 	cau_status status = load(file, path, bytes, byte_count, error);
 	close(file);
 	return status;
+}
+
+// TetGen writes points and elements as two files of one name: the other one's path. False: this is
+// no such file, or the other one is not there.
+static bool find_partner(const char *path, char partner[static PATH_BYTES], bool *points)
+{
+	static const char *const pairs[][2] = {
+		{".node", ".ele"}, {".node", ".face"}, {".ele", ".node"}, {".face", ".node"}};
+	size_t length = strlen(path);
+	for (size_t i = 0; i < sizeof pairs / sizeof *pairs; i++) {
+		size_t ending = strlen(pairs[i][0]);
+		if (length < ending || strcasecmp(path + length - ending, pairs[i][0]) != 0)
+			continue;
+		int written =
+			snprintf(partner, PATH_BYTES, "%.*s%s", (int)(length - ending), path, pairs[i][1]);
+		*points = strcasecmp(pairs[i][0], ".node") == 0;
+		if (written > 0 && written < PATH_BYTES && access(partner, R_OK) == 0)
+			return true;
+	}
+	return false;
+}
+
+// The first bytes, a line feed, and the second ones. Frees both.
+static cau_status join(char *first, size_t first_count, char *second, size_t second_count,
+                       void **bytes, size_t *byte_count, cau_error *error)
+{
+	char *joined = cau_mesh_array(first_count + 1 + second_count, 1);
+	if (joined) {
+		memcpy(joined, first, first_count);
+		joined[first_count] = '\n';
+		memcpy(joined + first_count + 1, second, second_count);
+		*bytes = joined;
+		*byte_count = first_count + 1 + second_count;
+	}
+	free(first);
+	free(second);
+	return joined ? CAU_OK : cau_fail(error, CAU_NO_MEMORY, NULL, "no memory for two files");
+}
+
+cau_status cau_mesh_file_load(const char *path, void **bytes, size_t *byte_count, cau_error *error)
+{
+	CAU_ASSERT(path[0] != 0, "a file without a name, for %p", (void *)bytes);
+	char partner[PATH_BYTES];
+	bool points = false;
+	cau_status status = load_one(path, bytes, byte_count, error);
+	if (status || !find_partner(path, partner, &points))
+		return status;
+	void *other = NULL;
+	size_t other_count = 0;
+	status = load_one(partner, &other, &other_count, error);
+	if (status) {
+		free(*bytes);
+		*bytes = NULL;
+		return status;
+	}
+	if (points)
+		return join(*bytes, *byte_count, other, other_count, bytes, byte_count, error);
+	return join(other, other_count, *bytes, *byte_count, bytes, byte_count, error);
 }

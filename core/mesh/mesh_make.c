@@ -5,6 +5,7 @@
 #include "cautery/assert.h"
 #include "mesh/mesh_file.h"
 #include "mesh/mesh_memory.h"
+#include "mesh/report.h"
 
 // `file` with `directory` before it unless it is absolute.
 static cau_status join_path(const char *directory, const char *file, char path[static 600],
@@ -18,7 +19,7 @@ static cau_status join_path(const char *directory, const char *file, char path[s
 }
 
 static cau_status read_file(const cau_mesh_def *def, const char *directory, cau_mesh *mesh,
-                            cau_error *error)
+                            cau_mesh_report *report, cau_error *error)
 {
 	CAU_ASSERT(def->source == CAU_MESH_FILE, "a mesh of source %d is read from a file",
 	           def->source);
@@ -29,13 +30,13 @@ static cau_status read_file(const cau_mesh_def *def, const char *directory, cau_
 	if (!status)
 		status = cau_mesh_file_load(path, &bytes, &byte_count, error);
 	if (!status)
-		status = cau_mesh_read(def->file, bytes, byte_count, mesh, error);
+		status = cau_mesh_read(def->file, bytes, byte_count, mesh, report, error);
 	free(bytes);
 	return status;
 }
 
 static cau_status make_raw(const cau_mesh_def *def, const char *directory, cau_mesh *mesh,
-                           cau_error *error)
+                           cau_mesh_report *report, cau_error *error)
 {
 	switch (def->source) {
 	case CAU_MESH_SHEET:
@@ -45,9 +46,9 @@ static cau_status make_raw(const cau_mesh_def *def, const char *directory, cau_m
 	case CAU_MESH_PATTERN:
 		return cau_mesh_make_pattern(def, mesh, error);
 	case CAU_MESH_FILE:
-		return read_file(def, directory, mesh, error);
+		return read_file(def, directory, mesh, report, error);
 	case CAU_MESH_BYTES:
-		return cau_mesh_read(def->file, def->bytes, def->byte_count, mesh, error);
+		return cau_mesh_read(def->file, def->bytes, def->byte_count, mesh, report, error);
 	default:
 		return cau_fail(error, CAU_BAD_VALUE, "source", "no source of meshes has this number");
 	}
@@ -77,20 +78,41 @@ static void place(const cau_mesh_def *def, cau_mesh *mesh)
 		mesh->position[i] = unit_m * mesh->position[i] + def->translate_m[i % 3];
 }
 
+// What asks for another answer than a mended mesh: a size that no tissue has, and a strict reading.
+static cau_status judge(const cau_mesh_def *def, const cau_mesh_report *report, cau_error *error)
+{
+	if (!is_read(def))
+		return CAU_OK;
+	double longest_m = 0;
+	for (int c = 0; c < 3; c++)
+		longest_m = fmax(longest_m, report->most_m[c] - report->least_m[c]);
+	if (report->proposed_unit_m > 0)
+		return cau_fail(
+			error, CAU_BAD_MESH, "unit_m",
+			"this mesh is %.3g m long, which no tissue is: did you mean %s (unit_m %g)?", longest_m,
+			cau_unit_name(report->proposed_unit_m), report->proposed_unit_m);
+	return def->strict ? cau_mesh_report_refuse(report, error) : CAU_OK;
+}
+
 cau_status cau_mesh_make(const cau_mesh_def *def, const char *directory, cau_mesh *mesh,
                          cau_mesh_report *report, cau_error *error)
 {
+	cau_mesh_report unwanted;
+	report = report ? report : &unwanted;
 	*mesh = (cau_mesh){0};
-	if (report)
-		*report = (cau_mesh_report){0};
+	*report = (cau_mesh_report){0};
 	cau_status status = check_place(def, error);
 	if (status)
 		return status;
-	status = make_raw(def, directory, mesh, error);
+	status = make_raw(def, directory, mesh, report, error);
 	if (!status) {
 		place(def, mesh);
 		status = cau_mesh_clean(mesh, report, error);
 	}
+	if (!status)
+		status = cau_mesh_report_measure(mesh, is_read(def) ? def->unit_m : 1, report, error);
+	if (!status)
+		status = judge(def, report, error);
 	if (status) {
 		cau_mesh_finish(mesh);
 		if (error && is_read(def))

@@ -1,28 +1,12 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// From bytes to a mesh, by the ending of the file's name.
+// From bytes to a mesh and its report. The format is found from the bytes.
 #include <string.h>
-#include <strings.h>
 
 #include "cautery/assert.h"
-#include "mesh/gmsh.h"
+#include "mesh/cell_split.h"
+#include "mesh/mesh_format.h"
 #include "mesh/mesh_memory.h"
-#include "mesh/obj.h"
-#include "mesh/vtk.h"
-
-static const struct {
-	const char *ending;
-	cau_status (*read)(cau_mesh_builder *builder);
-} formats[] = {
-	{".msh", cau_mesh_read_gmsh},
-	{".obj", cau_mesh_read_obj},
-	{".vtk", cau_mesh_read_vtk},
-};
-
-static bool has_ending(const char *name, const char *ending)
-{
-	size_t name_length = strlen(name), length = strlen(ending);
-	return name_length >= length && !strcasecmp(name + name_length - length, ending);
-}
+#include "mesh/report.h"
 
 // The readers leave room for growth.
 static cau_status copy_tight(const cau_mesh *from, cau_mesh *mesh, cau_error *error)
@@ -49,22 +33,92 @@ static cau_status copy_tight(const cau_mesh *from, cau_mesh *mesh, cau_error *er
 	return CAU_OK;
 }
 
+static cau_status refuse_format(const char *name, const cau_mesh_format *format, cau_error *error)
+{
+	if (format)
+		return cau_fail(error, CAU_UNSUPPORTED, NULL, "'%.80s' is %s", name, format->refusal);
+	return cau_fail(
+		error, CAU_UNSUPPORTED, NULL,
+		"'%.80s' is in none of the formats that are read: Gmsh, VTK, VTU, OBJ, STL, PLY, "
+		"Medit, TetGen and USD (.usda)",
+		name);
+}
+
+// A text whose lines end in carriage returns alone gets line feeds. Returns a copy that the caller
+// frees, or NULL where none is needed or memory ran out (the text then has one line, and is
+// refused).
+static unsigned char *with_line_feeds(const unsigned char *bytes, size_t byte_count)
+{
+	if (memchr(bytes, '\n', byte_count) || !memchr(bytes, '\r', byte_count))
+		return NULL;
+	unsigned char *copy = malloc(byte_count);
+	for (size_t i = 0; copy && i < byte_count; i++)
+		copy[i] = bytes[i] == '\r' ? '\n' : bytes[i];
+	return copy;
+}
+
+// Splits the cells. Then fails where there are neither triangles nor tetrahedra, with what there
+// was instead.
+static cau_status end_reading(cau_mesh_builder *builder)
+{
+	cau_mesh_report *report = &builder->report;
+	report->vertices_read = builder->mesh.vertex_count;
+	cau_cell_split(builder);
+	if (builder->scan->status || builder->mesh.triangle_count || builder->mesh.tetrahedron_count)
+		return builder->scan->status;
+	char found[160];
+	size_t length =
+		(size_t)snprintf(found, sizeof found, "%d vertices", builder->mesh.vertex_count);
+	for (int32_t i = 0; i < report->kind_count && length < sizeof found; i++) {
+		long long count = report->kind[i].passed;
+		count += report->kind[i].read;
+		if (count)
+			length += (size_t)snprintf(found + length, sizeof found - length, ", %lld %s", count,
+			                           report->kind[i].name);
+	}
+	cau_scan_fail(builder->scan, CAU_BAD_MESH,
+	              "no surface and no volume elements in this file, but %s", found);
+	return builder->scan->status;
+}
+
+static cau_status read_as(const cau_mesh_format *format, const unsigned char *bytes,
+                          size_t byte_count, cau_mesh *mesh, cau_mesh_report *report,
+                          cau_error *error)
+{
+	unsigned char *copy = format->text ? with_line_feeds(bytes, byte_count) : NULL;
+	cau_scan scan = cau_scan_make(copy ? copy : bytes, byte_count, error);
+	cau_mesh_builder builder = {.scan = &scan};
+	snprintf(builder.report.format, sizeof builder.report.format, "%s", format->name);
+	cau_status status = format->read(&builder);
+	if (!status)
+		status = end_reading(&builder);
+	if (!status)
+		status = copy_tight(&builder.mesh, mesh, error);
+	if (!status)
+		cau_mesh_report_regions(&builder, &builder.report);
+	if (report)
+		*report = builder.report;
+	cau_mesh_builder_finish(&builder);
+	free(copy);
+	return status;
+}
+
 cau_status cau_mesh_read(const char *name, const void *bytes, size_t byte_count, cau_mesh *mesh,
-                         cau_error *error)
+                         cau_mesh_report *report, cau_error *error)
 {
 	CAU_ASSERT(bytes || !byte_count, "%zu bytes that are nowhere", byte_count);
+	static const unsigned char byte_order_mark[] = {0xef, 0xbb, 0xbf};
+	const unsigned char *from = bytes;
 	*mesh = (cau_mesh){0};
-	for (size_t i = 0; i < sizeof formats / sizeof formats[0]; i++) {
-		if (!has_ending(name, formats[i].ending))
-			continue;
-		cau_scan scan = cau_scan_make(bytes, byte_count, error);
-		cau_mesh_builder builder = {.scan = &scan};
-		cau_status status = formats[i].read(&builder);
-		if (!status)
-			status = copy_tight(&builder.mesh, mesh, error);
-		cau_mesh_finish(&builder.mesh);
-		return status;
+	if (byte_count >= sizeof byte_order_mark &&
+	    !memcmp(from, byte_order_mark, sizeof byte_order_mark)) {
+		from += sizeof byte_order_mark;
+		byte_count -= sizeof byte_order_mark;
 	}
-	return cau_fail(error, CAU_UNSUPPORTED, NULL,
-	                "a mesh file ends in .msh, .obj or .vtk; this one is called '%.100s'", name);
+	if (!byte_count)
+		return cau_fail(error, CAU_BAD_SYNTAX, NULL, "'%.80s' is empty", name);
+	const cau_mesh_format *format = cau_mesh_format_of(from, byte_count);
+	if (!format || !format->read)
+		return refuse_format(name, format, error);
+	return read_as(format, from, byte_count, mesh, report, error);
 }

@@ -1,13 +1,12 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "mesh/obj.h"
-
 #include <stdlib.h>
 #include <string.h>
 
 #include "cautery/assert.h"
 #include "mesh/mesh_memory.h"
+#include "mesh/readers.h"
 
-enum { MAX_REGIONS = 256 };
+enum { MAX_REGIONS = 256, MAX_CORNERS = 1 << 20 };
 
 typedef struct obj {
 	cau_scan *scan;
@@ -19,7 +18,10 @@ typedef struct obj {
 	const char *region_keyword;
 	cau_word region_name[MAX_REGIONS];
 	int32_t region_count;
-	int32_t region; // of the faces that follow
+	int32_t region;         // of the faces that follow
+	int32_t *corner_vertex; // of the face that is read, (corner_capacity)
+	double *corner_texture; // (corner_capacity x 2)
+	int32_t corner_capacity;
 } obj;
 
 typedef struct corner {
@@ -94,34 +96,46 @@ static corner read_corner(obj *o, cau_word word)
 	return read;
 }
 
-static void add_triangle(obj *o, const corner c[3])
+// Makes room for one corner more of a face. False: there is none, and the scan has failed.
+static bool reserve_corner(obj *o, int32_t count)
 {
-	const int32_t vertex[3] = {c[0].vertex, c[1].vertex, c[2].vertex};
-	const double texture[6] = {c[0].texture[0], c[0].texture[1], c[1].texture[0],
-	                           c[1].texture[1], c[2].texture[0], c[2].texture[1]};
-	cau_mesh_builder_triangle(o->builder, vertex, o->region, texture);
+	if (count < o->corner_capacity)
+		return true;
+	int32_t capacity = o->corner_capacity ? 2 * o->corner_capacity : 16;
+	int32_t *vertex = NULL;
+	double *texture = NULL;
+	if (capacity <= MAX_CORNERS) {
+		vertex = realloc(o->corner_vertex, (size_t)capacity * sizeof *vertex);
+		o->corner_vertex = vertex ? vertex : o->corner_vertex;
+		texture = realloc(o->corner_texture, 2 * (size_t)capacity * sizeof *texture);
+		o->corner_texture = texture ? texture : o->corner_texture;
+	}
+	if (vertex && texture)
+		o->corner_capacity = capacity;
+	else
+		cau_scan_fail(o->scan, CAU_LIMIT, "a face of more than %d corners", count);
+	return vertex && texture;
 }
 
-// A polygon, as a fan round its first corner.
 static void read_face(obj *o)
 {
 	size_t line = o->scan->mark;
-	corner fan[3];
-	int corner_count = 0;
+	int32_t count = 0;
 	for (;;) {
 		cau_word word = cau_scan_word_of_line(o->scan);
-		if (!word.length || word.text[0] == '#')
+		if (!word.length || word.text[0] == '#' || !reserve_corner(o, count))
 			break;
-		fan[corner_count < 2 ? corner_count : 2] = read_corner(o, word);
-		if (++corner_count < 3)
-			continue;
-		add_triangle(o, fan);
-		fan[1] = fan[2];
-		corner_count = 3;
+		corner read = read_corner(o, word);
+		o->corner_vertex[count] = read.vertex;
+		memcpy(o->corner_texture + 2 * (size_t)count++, read.texture, sizeof read.texture);
 	}
 	o->scan->mark = line;
-	if (corner_count < 3)
-		cau_scan_fail(o->scan, CAU_BAD_SYNTAX, "a face of %d corners", corner_count);
+	if (o->scan->status)
+		return;
+	if (count < 3)
+		cau_mesh_builder_skip(o->builder, "faces of fewer than 3 corners", 1);
+	else
+		cau_mesh_builder_polygon(o->builder, o->corner_vertex, count, o->region, o->corner_texture);
 }
 
 // Makes the rest of the line the name of the region of the faces that follow.
@@ -144,6 +158,7 @@ static void read_region(obj *o)
 	}
 	o->region_name[o->region_count++] = name;
 	o->region = o->region_count;
+	cau_mesh_builder_name(o->builder, 2, o->region, name);
 }
 
 static void read_line(obj *o)
@@ -156,7 +171,9 @@ static void read_line(obj *o)
 	else if (cau_word_is(keyword, "f"))
 		read_face(o);
 	else if (cau_word_is(keyword, "l") || cau_word_is(keyword, "p"))
-		cau_mesh_builder_skip(o->builder, keyword.text[0], 1);
+		cau_mesh_builder_skip(o->builder, cau_word_is(keyword, "l") ? "lines" : "points", 1);
+	else if (cau_word_is(keyword, "curv") || cau_word_is(keyword, "surf"))
+		cau_mesh_builder_skip(o->builder, "free-form curves and surfaces", 1);
 	else if (cau_word_is(keyword, o->region_keyword))
 		read_region(o);
 	cau_scan_skip_line(o->scan);
@@ -172,11 +189,6 @@ static bool has_keyword(cau_scan scan, const char *keyword)
 	return false;
 }
 
-static const char *name_of_skipped(int kind)
-{
-	return kind == 'l' ? "lines" : "points";
-}
-
 cau_status cau_mesh_read_obj(cau_mesh_builder *builder)
 {
 	cau_scan *scan = builder->scan;
@@ -185,8 +197,11 @@ cau_status cau_mesh_read_obj(cau_mesh_builder *builder)
 	builder->texture = true;
 	while (cau_scan_left(scan) && !scan->status)
 		read_line(&o);
-	cau_mesh_builder_check(builder, name_of_skipped);
 	free(o.texture);
+	free(o.corner_vertex);
+	free(o.corner_texture);
+	if (o.bare && o.texture_count)
+		cau_mesh_builder_skip(builder, "texture points of some corners", o.texture_count);
 	if (o.bare) {
 		free(builder->mesh.texture);
 		builder->mesh.texture = NULL;

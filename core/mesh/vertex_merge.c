@@ -3,8 +3,12 @@
 // farther than `distance` from each other, so that a cell holds few.
 #include "mesh/vertex_merge.h"
 
+#include <math.h>
+
 #include "cautery/assert.h"
 #include "mesh/mesh_memory.h"
+
+static const double near = 1e-5; // of the bounding diagonal
 
 typedef struct grid {
 	const double *position;
@@ -88,4 +92,19 @@ bool cau_vertex_merge(const double *position, int32_t vertex_count, const double
 	free(g.bucket);
 	free(g.next);
 	return done;
+}
+
+bool cau_vertex_merge_near(const double *position, int32_t vertex_count, int32_t *map)
+{
+	double least[3] = {INFINITY, INFINITY, INFINITY}, most[3] = {-INFINITY, -INFINITY, -INFINITY};
+	for (size_t i = 0; i < 3 * (size_t)vertex_count; i++) {
+		least[i % 3] = fmin(least[i % 3], position[i]);
+		most[i % 3] = fmax(most[i % 3], position[i]);
+	}
+	double diagonal = hypot(hypot(most[0] - least[0], most[1] - least[1]), most[2] - least[2]);
+	if (diagonal > 0 && isfinite(diagonal))
+		return cau_vertex_merge(position, vertex_count, least, near * diagonal, map);
+	for (int32_t v = 0; v < vertex_count; v++)
+		map[v] = v;
+	return true;
 }

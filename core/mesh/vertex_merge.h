@@ -9,3 +9,7 @@
 // `origin`. O(vertex_count). False: memory ran out.
 bool cau_vertex_merge(const double *position, int32_t vertex_count, const double origin[3],
                       double distance, int32_t *map);
+
+// The same for the distance below which two vertices of a file are one: 1e-5 of the diagonal of the
+// bounding box. A file of single precision, or with six digits, has its vertices within 1e-6.
+bool cau_vertex_merge_near(const double *position, int32_t vertex_count, int32_t *map);

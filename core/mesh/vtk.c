@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Legacy VTK: the header and the walk over the sections. Format: "VTK File Formats", simple legacy
 // formats.
-#include "mesh/vtk.h"
-
 #include <stdlib.h>
 #include <string.h>
 
+#include "mesh/readers.h"
 #include "mesh/vtk_part.h"
+#include "mesh/vtk_types.h"
 
 // Four lines: version, title, ASCII or BINARY, and the kind of DATASET.
 static void read_header(cau_vtk *vtk)
@@ -27,35 +27,10 @@ static void read_header(cau_vtk *vtk)
 	cau_word kind = cau_scan_word(scan);
 	if (!cau_word_is(kind, "UNSTRUCTURED_GRID") && !cau_word_is(kind, "POLYDATA"))
 		cau_scan_fail(scan, CAU_UNSUPPORTED, "only UNSTRUCTURED_GRID and POLYDATA are read");
+	snprintf(vtk->builder->report.format, sizeof vtk->builder->report.format, "VTK %.1f%s", version,
+	         binary ? " binary" : "");
 	scan->binary = binary;
 	scan->swap = binary && __BYTE_ORDER__ == __ORDER_LITTLE_ENDIAN__; // numbers are big-endian
-}
-
-// Names of cells that are passed over: VTK's own numbers, or past them the sections of POLYDATA.
-enum { VERTICES = 253, LINES, STRIPS };
-
-static const char *name_of_skipped(int kind)
-{
-	static const char *const names[] = {
-		[1] = "vertices",
-		[2] = "vertex groups",
-		[3] = "lines",
-		[4] = "polylines",
-		[6] = "strips",
-		[7] = "polygons",
-		[8] = "pixels",
-		[9] = "quadrangles",
-		[11] = "voxels",
-		[12] = "hexahedra",
-		[13] = "wedges",
-		[14] = "pyramids",
-		[22] = "6-node triangles",
-		[24] = "10-node tetrahedra",
-	};
-	if (kind >= VERTICES)
-		return kind == VERTICES ? "vertices" : kind == LINES ? "lines" : "strips";
-	bool known = kind < (int)(sizeof names / sizeof names[0]) && names[kind];
-	return known ? names[kind] : "cells of unknown type";
 }
 
 // METADATA goes on until an empty line.
@@ -76,13 +51,13 @@ static bool read_geometry(cau_vtk *vtk, cau_word keyword)
 	else if (cau_word_is(keyword, "CELL_TYPES"))
 		cau_vtk_read_cell_types(vtk);
 	else if (cau_word_is(keyword, "POLYGONS"))
-		cau_vtk_read_polygons(vtk);
+		cau_vtk_read_polygons(vtk, CAU_VTK_POLYGON);
 	else if (cau_word_is(keyword, "VERTICES"))
-		cau_vtk_read_other_cells(vtk, VERTICES);
+		cau_vtk_read_other_cells(vtk, "points");
 	else if (cau_word_is(keyword, "LINES"))
-		cau_vtk_read_other_cells(vtk, LINES);
+		cau_vtk_read_other_cells(vtk, "lines");
 	else if (cau_word_is(keyword, "TRIANGLE_STRIPS"))
-		cau_vtk_read_other_cells(vtk, STRIPS);
+		cau_vtk_read_polygons(vtk, CAU_VTK_STRIP);
 	else
 		return false;
 	return true;
@@ -107,13 +82,6 @@ static void read_sections(cau_vtk *vtk)
 	}
 }
 
-// Turns the cell that each element has in its place of region into that cell's region.
-static void fill_regions(const cau_vtk *vtk, int32_t *region, int32_t count)
-{
-	for (int32_t i = 0; i < count; i++)
-		region[i] = region[i] < vtk->region_count ? vtk->cell_region[region[i]] : 0;
-}
-
 cau_status cau_mesh_read_vtk(cau_mesh_builder *builder)
 {
 	cau_vtk vtk = {.scan = builder->scan, .builder = builder};
@@ -121,9 +89,7 @@ cau_status cau_mesh_read_vtk(cau_mesh_builder *builder)
 	read_sections(&vtk);
 	if (vtk.first)
 		cau_scan_fail(vtk.scan, CAU_BAD_SYNTAX, "CELLS without CELL_TYPES");
-	cau_mesh_builder_check(builder, name_of_skipped);
-	fill_regions(&vtk, builder->mesh.triangle_region, builder->mesh.triangle_count);
-	fill_regions(&vtk, builder->mesh.tetrahedron_region, builder->mesh.tetrahedron_count);
+	cau_mesh_builder_map_regions(builder, vtk.cell_region, vtk.region_count);
 	free(vtk.corner);
 	free(vtk.first);
 	free(vtk.cell_region);

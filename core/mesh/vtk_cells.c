@@ -5,8 +5,7 @@
 #include "cautery/assert.h"
 #include "mesh/mesh_memory.h"
 #include "mesh/vtk_part.h"
-
-enum { VTK_TRIANGLE = 5, VTK_TETRAHEDRON = 10 }; // the format's own numbers
+#include "mesh/vtk_types.h"
 
 // Cells as lists of points: cell i has corner[first[i]] .. corner[first[i + 1]).
 typedef struct cell_list {
@@ -126,53 +125,19 @@ static cell_list read_list(cau_vtk *vtk)
 	return list;
 }
 
-// The point as a vertex. Fails where there is none of this number.
-static int32_t vertex_of(cau_vtk *vtk, int64_t point, int32_t cell)
-{
-	CAU_ASSERT(point >= 0, "point %lld of cell %d", (long long)point, cell);
-	int32_t count = vtk->builder->mesh.vertex_count;
-	if (point < count)
-		return (int32_t)point;
-	cau_scan_fail(vtk->scan, CAU_BAD_MESH, "cell %d names point %lld, but there are %d so far",
-	              cell, (long long)point, count);
-	return 0;
-}
-
-// Adds a polygon as a fan, or a tetrahedron; the region is the cell for now.
-static void add_polygon(cau_vtk *vtk, const int64_t *corner, int64_t corners, int32_t cell)
-{
-	if (corners < 3)
-		cau_scan_fail(vtk->scan, CAU_BAD_MESH, "cell %d is a polygon of %lld corners", cell,
-		              (long long)corners);
-	for (int64_t c = 2; c < corners && !vtk->scan->status; c++) {
-		const int32_t vertex[3] = {vertex_of(vtk, corner[0], cell),
-		                           vertex_of(vtk, corner[c - 1], cell),
-		                           vertex_of(vtk, corner[c], cell)};
-		cau_mesh_builder_triangle(vtk->builder, vertex, cell, NULL);
-	}
-}
-
-static void add_tetrahedron(cau_vtk *vtk, const int64_t *corner, int32_t cell)
-{
-	int32_t vertex[4];
-	for (int c = 0; c < 4; c++)
-		vertex[c] = vertex_of(vtk, corner[c], cell);
-	cau_mesh_builder_tetrahedron(vtk->builder, vertex, cell);
-}
-
-void cau_vtk_read_polygons(cau_vtk *vtk)
+void cau_vtk_read_polygons(cau_vtk *vtk, int type)
 {
 	cell_list list = read_list(vtk);
 	CAU_ASSERT(list.count >= 0, "%lld polygons", (long long)list.count);
 	for (int64_t i = 0; i < list.count && !vtk->scan->status; i++)
-		add_polygon(vtk, list.corner + list.first[i], list.first[i + 1] - list.first[i],
-		            vtk->cell_count++);
+		cau_vtk_add_cell(vtk->builder, type, list.corner + list.first[i],
+		                 list.first[i + 1] - list.first[i], vtk->cell_count++);
 	finish_list(&list);
 }
 
-void cau_vtk_read_other_cells(cau_vtk *vtk, int kind)
+void cau_vtk_read_other_cells(cau_vtk *vtk, const char *kind)
 {
-	CAU_ASSERT_INDEX(kind, CAU_SKIPPED_KINDS);
+	CAU_ASSERT(vtk->cell_count >= 0, "%d cells", vtk->cell_count);
 	cell_list list = read_list(vtk);
 	cau_mesh_builder_skip(vtk->builder, kind, list.count);
 	vtk->cell_count += (int32_t)list.count;
@@ -191,23 +156,6 @@ void cau_vtk_read_cells(cau_vtk *vtk)
 	vtk->waiting_count = list.count;
 }
 
-static void add_cell(cau_vtk *vtk, int64_t type, const int64_t *corner, int64_t corners)
-{
-	CAU_ASSERT(corners >= 0, "a cell of %lld corners", (long long)corners);
-	CAU_ASSERT(vtk->cell_count < CAU_MESH_MAX_ELEMENTS, "%d cells", vtk->cell_count);
-	int32_t cell = vtk->cell_count++;
-	int64_t wanted = type == VTK_TRIANGLE ? 3 : type == VTK_TETRAHEDRON ? 4 : corners;
-	if (corners != wanted)
-		cau_scan_fail(vtk->scan, CAU_BAD_MESH, "cell %d has %lld corners, its type has %lld", cell,
-		              (long long)corners, (long long)wanted);
-	else if (type == VTK_TRIANGLE)
-		add_polygon(vtk, corner, corners, cell);
-	else if (type == VTK_TETRAHEDRON)
-		add_tetrahedron(vtk, corner, cell);
-	else
-		cau_mesh_builder_skip(vtk->builder, type, 1);
-}
-
 void cau_vtk_read_cell_types(cau_vtk *vtk)
 {
 	cau_scan *scan = vtk->scan;
@@ -220,7 +168,8 @@ void cau_vtk_read_cell_types(cau_vtk *vtk)
 	for (int64_t i = 0; fits && i < count && !scan->status; i++) {
 		int64_t type = cau_scan_integer(scan, "a type of cell", 4, 0, 255);
 		if (!scan->status)
-			add_cell(vtk, type, vtk->corner + vtk->first[i], vtk->first[i + 1] - vtk->first[i]);
+			cau_vtk_add_cell(vtk->builder, type, vtk->corner + vtk->first[i],
+			                 vtk->first[i + 1] - vtk->first[i], vtk->cell_count++);
 	}
 	free(vtk->first);
 	free(vtk->corner);

@@ -60,9 +60,10 @@ int64_t cau_vtk_read_data_count(cau_vtk *vtk)
 	return cau_scan_text_integer(vtk->scan, "number of items", 0, INT32_MAX);
 }
 
-static bool is_region_name(cau_word name)
+bool cau_vtk_is_region_name(cau_word name)
 {
-	static const char *const names[] = {"region", "material", "MaterialIds", "CellEntityIds"};
+	static const char *const names[] = {"region",        "material",      "MaterialIds",
+	                                    "CellEntityIds", "gmsh:physical", "medit:ref"};
 	for (size_t i = 0; i < sizeof names / sizeof names[0]; i++)
 		if (cau_word_is(name, names[i]))
 			return true;
@@ -125,7 +126,7 @@ static void read_array(cau_vtk *vtk, cau_word name, const cau_vtk_type *type, in
 	if (components > INT32_MAX || count > INT32_MAX)
 		cau_scan_fail(vtk->scan, CAU_BAD_SYNTAX, "an array of %lld items with %lld numbers each",
 		              (long long)count, (long long)components);
-	else if (cells && components == 1 && is_region_name(name))
+	else if (cells && components == 1 && cau_vtk_is_region_name(name))
 		read_regions(vtk, type, count);
 	else
 		skip_numbers(vtk->scan, type, count * components);

@@ -35,9 +35,12 @@ void cau_vtk_read_points(cau_vtk *vtk);
 // CELLS of an unstructured grid, then CELL_TYPES.
 void cau_vtk_read_cells(cau_vtk *vtk);
 void cau_vtk_read_cell_types(cau_vtk *vtk);
-// POLYGONS of POLYDATA, and its other cells, which are only counted.
-void cau_vtk_read_polygons(cau_vtk *vtk);
-void cau_vtk_read_other_cells(cau_vtk *vtk, int kind);
+// POLYGONS and TRIANGLE_STRIPS of POLYDATA, and its other cells, which are only counted.
+void cau_vtk_read_polygons(cau_vtk *vtk, int type);
+void cau_vtk_read_other_cells(cau_vtk *vtk, const char *kind);
+
+// Whether the regions of cells may have this name.
+bool cau_vtk_is_region_name(cau_word name);
 
 // CELL_DATA or POINT_DATA has begun: how many items follow.
 int64_t cau_vtk_read_data_count(cau_vtk *vtk);

@@ -5,8 +5,28 @@
 
 #include "cautery/assert.h"
 #include "session/session_internal.h"
+#include "tissue/regions.h"
 
 // ---- submission
+// Region 0 means the layer's default where its mesh has no such region.
+static cau_status check_material(const cau_session *session, const cau_command *command,
+                                 cau_error *error)
+{
+	int kind = command->as.material.kind;
+	bool fat = kind == CAU_LAYER_FAT, links = kind == CAU_LAYER_LINKS;
+	const void *material = fat     ? (const void *)&command->as.material.fat
+	                       : links ? (const void *)&command->as.material.link
+	                               : (const void *)&command->as.material.sheet;
+	cau_status status = cau_material_check(kind, material, "material", error);
+	int32_t index = cau_tissue_find_layer(&session->tissue, command->as.material.layer);
+	int32_t region = fat ? command->as.material.fat.region : command->as.material.sheet.region;
+	if (status || links || !region || index < 0)
+		return status;
+	const cau_tissue_layer *layer = &session->tissue.layer[index];
+	return cau_region_list_check(&layer->regions, layer->def.name, region, "material.region",
+	                             error);
+}
+
 cau_status cau_command_check(const cau_session *session, const cau_command *command,
                              cau_error *error)
 {
@@ -30,14 +50,8 @@ cau_status cau_command_check(const cau_session *session, const cau_command *comm
 	case CAU_COMMAND_PIN:
 	case CAU_COMMAND_UNPIN:
 		return cau_selection_check(&command->as.selection, "selection", error);
-	case CAU_COMMAND_SET_MATERIAL: {
-		int kind = command->as.material.kind;
-		const void *material = kind == CAU_LAYER_FAT ? (const void *)&command->as.material.fat
-		                       : kind == CAU_LAYER_LINKS
-		                           ? (const void *)&command->as.material.link
-		                           : (const void *)&command->as.material.sheet;
-		return cau_material_check(kind, material, "material", error);
-	}
+	case CAU_COMMAND_SET_MATERIAL:
+		return check_material(session, command, error);
 	case CAU_COMMAND_SET_GRAVITY:
 		for (int c = 0; c < 3; c++)
 			if (!(fabs(command->as.gravity_m_s2[c]) <= CAU_GRAVITY_MOST_M_S2))

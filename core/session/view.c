@@ -46,6 +46,7 @@ void cau_session_describe(const cau_session *session, cau_session_info *info)
 		.tetrahedron = tissue->tetrahedron,
 		.link = tissue->link,
 		.instruction_set = session->solver.kernels->instruction_set,
+		.mesh_report = session->tissue.mesh_report,
 	};
 	memcpy(info->name, session->scene->name, sizeof info->name);
 	memcpy(info->description, session->scene->description, sizeof info->description);

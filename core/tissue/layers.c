@@ -4,6 +4,8 @@
 
 #include "base/vector.h"
 #include "cautery/assert.h"
+#include "mesh/geometry.h"
+#include "tissue/regions.h"
 #include "tissue/tissue_internal.h"
 
 // Meshes of the scene while it is being gathered: a mesh that several layers use has one copy of
@@ -30,14 +32,14 @@ static int32_t find_layer(const cau_scene_def *scene, const char *name)
 	return -1;
 }
 
-static cau_status make_meshes(gathering *work, const cau_scene_def *scene, cau_error *error)
+static cau_status make_meshes(gathering *work, const cau_scene_def *scene, cau_mesh_report *report,
+                              cau_error *error)
 {
 	CAU_ASSERT(scene->mesh_count <= CAU_MAX_MESHES, "%d meshes", scene->mesh_count);
 	for (int32_t i = 0; i < scene->mesh_count; i++) {
-		cau_mesh_report report;
 		cau_error inner = {0};
 		cau_status status =
-			cau_mesh_make(&scene->meshes[i], scene->directory, &work->mesh[i], &report, &inner);
+			cau_mesh_make(&scene->meshes[i], scene->directory, &work->mesh[i], &report[i], &inner);
 		if (!status)
 			continue;
 		char path[sizeof inner.path];
@@ -191,8 +193,8 @@ static void copy_triangles(cau_tissue *tissue, int32_t layer_index, const cau_me
 static bool texture_frame(double edge[2][3], const double uv[6], double frame[6])
 {
 	double a = uv[2] - uv[0], b = uv[4] - uv[0], c = uv[3] - uv[1], d = uv[5] - uv[1];
-	double det = a * d - b * c, scale = (a * a + c * c) + (b * b + d * d);
-	if (!(fabs(det) > 1e-9 * scale)) // the texture spans a line: no direction across it
+	double det = a * d - b * c;
+	if (cau_texture_is_flat(uv))
 		return false;
 	cau_vec3 j = cau_vec3_of(edge[0]), k = cau_vec3_of(edge[1]);
 	cau_vec3 u = cau_sub(cau_scale(d / det, j), cau_scale(c / det, k));
@@ -223,8 +225,8 @@ static void fibre_frame(double edge[2][3], const double fibre[3], double frame[6
 	cau_vec3_to(cau_cross(n, u), frame + 3);
 }
 
-static cau_status make_frames(cau_tissue *tissue, int32_t layer_index, const cau_mesh *mesh,
-                              cau_error *error)
+// From the texture where it has a direction, else from the layer's fibre.
+static void make_frames(cau_tissue *tissue, int32_t layer_index, const cau_mesh *mesh)
 {
 	const cau_tissue_layer *layer = &tissue->layer[layer_index];
 	for (int32_t t = 0; t < layer->triangle_count; t++) {
@@ -236,14 +238,10 @@ static cau_status make_frames(cau_tissue *tissue, int32_t layer_index, const cau
 			for (int i = 0; i < 3; i++)
 				edge[e][i] = tissue->rest[3 * vertex[e + 1] + i] - tissue->rest[3 * vertex[0] + i];
 		double *frame = tissue->triangle_frame + 6 * triangle;
-		if (!mesh->texture || layer->def.of[0])
+		if (!mesh->texture || layer->def.of[0] ||
+		    !texture_frame(edge, mesh->texture + 6 * t, frame))
 			fibre_frame(edge, layer->def.fibre, frame);
-		else if (!texture_frame(edge, mesh->texture + 6 * t, frame))
-			return cau_fail(error, CAU_BAD_MESH, NULL,
-			                "layer \"%s\": triangle %d has degenerate texture coordinates",
-			                layer->def.name, t);
 	}
-	return CAU_OK;
 }
 
 static cau_status allocate(cau_tissue *tissue, cau_arena *arena, cau_error *error)
@@ -274,8 +272,32 @@ static cau_status allocate(cau_tissue *tissue, cau_arena *arena, cau_error *erro
 	return CAU_OK;
 }
 
-static cau_status copy_layers(cau_tissue *tissue, const gathering *work, const cau_scene_def *scene,
-                              cau_error *error)
+// The regions of a layer's elements; its materials may name no others.
+static cau_status find_regions(cau_tissue *tissue, int32_t index, const gathering *work,
+                               const cau_scene_def *scene, cau_arena *arena, cau_error *error)
+{
+	cau_tissue_layer *layer = &tissue->layer[index];
+	int32_t m = mesh_of(scene, index);
+	if (m < 0)
+		return CAU_OK;
+	bool solid = layer->def.kind == CAU_LAYER_FAT || layer->def.of[0];
+	const cau_mesh *mesh = &work->mesh[m];
+	cau_status status = cau_region_list_make(
+		&layer->regions, solid ? mesh->tetrahedron_region : mesh->triangle_region,
+		solid ? mesh->tetrahedron_count : mesh->triangle_count, arena, error);
+	for (int32_t k = 1; k < layer->def.material_count && !status; k++) {
+		char path[80];
+		snprintf(path, sizeof path, "layers[%d].regions[%d].region", index, k - 1);
+		status =
+			cau_region_list_check(&layer->regions, layer->def.name,
+		                          layer->def.kind == CAU_LAYER_FAT ? layer->def.fat[k].region
+		                                                           : layer->def.sheet[k].region,
+		                          path, error);
+	}
+	return status;
+}
+
+static void copy_layers(cau_tissue *tissue, const gathering *work, const cau_scene_def *scene)
 {
 	for (int32_t m = 0; m < scene->mesh_count; m++)
 		if (work->first_vertex[m] >= 0)
@@ -293,11 +315,8 @@ static cau_status copy_layers(cau_tissue *tissue, const gathering *work, const c
 			copy_boundary(tissue, i, &work->mesh[m], &work->boundary[i]);
 		else
 			copy_triangles(tissue, i, &work->mesh[m]);
-		cau_status status = make_frames(tissue, i, &work->mesh[m], error);
-		if (status)
-			return status;
+		make_frames(tissue, i, &work->mesh[m]);
 	}
-	return CAU_OK;
 }
 
 cau_status cau_tissue_gather(cau_tissue *tissue, const cau_scene_def *scene, cau_arena *arena,
@@ -307,17 +326,21 @@ cau_status cau_tissue_gather(cau_tissue *tissue, const cau_scene_def *scene, cau
 	gathering *work = cau_arena_array(arena, 1, sizeof *work);
 	tissue->layer_count = scene->layer_count;
 	tissue->layer = cau_arena_array(arena, (size_t)scene->layer_count, sizeof *tissue->layer);
-	if (!work || !tissue->layer)
+	tissue->mesh_report =
+		cau_arena_array(arena, (size_t)scene->mesh_count, sizeof *tissue->mesh_report);
+	if (!work || !tissue->layer || !tissue->mesh_report)
 		return cau_fail(error, CAU_NO_MEMORY, NULL, "no memory for the layers");
 	for (int32_t m = 0; m < CAU_MAX_MESHES; m++)
 		work->first_vertex[m] = -1;
-	cau_status status = make_meshes(work, scene, error);
+	cau_status status = make_meshes(work, scene, tissue->mesh_report, error);
 	if (!status)
 		status = count_layers(tissue, work, scene, error);
+	for (int32_t i = 0; i < scene->layer_count && !status; i++)
+		status = find_regions(tissue, i, work, scene, arena, error);
 	if (!status)
 		status = allocate(tissue, arena, error);
 	if (!status)
-		status = copy_layers(tissue, work, scene, error);
+		copy_layers(tissue, work, scene);
 	for (int32_t m = 0; m < scene->mesh_count; m++)
 		cau_mesh_finish(&work->mesh[m]);
 	for (int32_t i = 0; i < scene->layer_count; i++)

@@ -13,12 +13,19 @@
 #include "mesh/edge_table.h"
 #include "mesh/mesh.h"
 
+// Regions of a layer's elements in the file that its mesh comes from.
+typedef struct cau_region_list {
+	int32_t count;
+	int32_t *region; // (count), ascending
+} cau_region_list;
+
 typedef struct cau_tissue_layer {
 	cau_layer_def def; // name, kind, materials
 	int32_t first_triangle, triangle_count;
 	int32_t first_tetrahedron, tetrahedron_count;
 	int32_t first_link, link_count;
 	int32_t first_vertex, vertex_count; // of its mesh's copy; a membrane `of` fat has the fat's
+	cau_region_list regions;
 } cau_tissue_layer;
 
 typedef struct cau_tissue {
@@ -29,6 +36,7 @@ typedef struct cau_tissue {
 
 	int32_t layer_count;
 	cau_tissue_layer *layer;
+	cau_mesh_report *mesh_report; // of each of the scene's meshes
 
 	int32_t triangle_count;
 	int32_t *triangle;       // (triangle_count x 3)

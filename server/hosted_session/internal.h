@@ -424,3 +424,7 @@ cau_status cau_events_read(const cau_hosted *h, int64_t branch, uint64_t from_ti
 // Numerical trouble outside a step. The session is faulted; everybody is told.
 void cau_hosted_fault(cau_hosted *h, const cau_error *error);
 void cau_hosted_tell_fault(cau_hosted *h, const cau_error *error);
+
+// Logs what became of the mesh files of a scene that was built: one line for each line of a report.
+// report: of each mesh, or NULL.
+void cau_mesh_log(const char *session, const cau_scene_def *scene, const cau_mesh_report *report);

@@ -256,6 +256,8 @@ void cau_hosted_start(cau_hosted *h)
 	size_t shared = cau_session_share(h->core);
 	cau_log(CAU_LOG_INFO, h->id, "built", "seconds=%.3f vertices=%d shared_bytes=%zu",
 	        cau_monotonic_s() - began_s, h->info.vertex_count, shared);
+	if (h->origin.kind == CAU_ORIGIN_SCENE)
+		cau_mesh_log(h->id, h->scene, h->info.mesh_report);
 	if (!h->replaying && !h->incoming)
 		cau_hosted_started(h);
 }

@@ -11,6 +11,7 @@
 #include "cautery/messages.h"
 #include "config/config.h"
 #include "hosted_session/hosted.h"
+#include "hosted_session/mesh_reading.h"
 #include "hub/quota.h"
 #include "hub/scenes.h"
 
@@ -157,6 +158,10 @@ uint32_t cau_hub_expect(cau_hub *hub, const cau_client *client);
 // *meshes is NULL if it has none. And back, after reading both from the store.
 cau_status cau_meshes_pack(cau_scene_def *scene, void **meshes, size_t *bytes, cau_error *error);
 cau_status cau_meshes_unpack(cau_scene_def *scene, const void *meshes, size_t bytes,
+                             cau_error *error);
+
+// Has an upload read as a mesh, on the builder. Takes the bytes, on failure too.
+cau_status cau_hub_read_mesh(cau_hub *hub, const cau_mesh_asked *asked, const cau_reply *reply,
                              cau_error *error);
 
 // Has a copy of the store made, under a name ("": the time), in the folder of the settings. On

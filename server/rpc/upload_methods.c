@@ -52,6 +52,13 @@ void cau_peer_chunk(cau_peer *peer, const void *bytes, size_t byte_count)
 		cau_upload_take(upload, chunk.offset, chunk.data, chunk.byte_count);
 }
 
+// What a mesh of source bytes says in `file`: the upload's name with the file's ending.
+static void name_upload(const cau_upload *upload, char *name, size_t bytes)
+{
+	const char *ending = strrchr(upload->file_name, '.');
+	snprintf(name, bytes, "%s%.16s", upload->name, ending ? ending : "");
+}
+
 // What fails its check is gone; the client begins anew.
 static cau_status end(cau_peer *peer, const cau_wire_upload_end *params, cau_upload **ended,
                       cau_error *error)
@@ -80,10 +87,43 @@ void cau_call_upload_end(cau_call *call)
 		return;
 	}
 	cau_wire_upload_result result = {.byte_count = (int64_t)upload->byte_count};
-	const char *ending = strrchr(upload->file_name, '.');
 	memcpy(result.name, upload->name, sizeof result.name);
-	snprintf(result.file, sizeof result.file, "%s%.16s", upload->name, ending ? ending : "");
+	name_upload(upload, result.file, sizeof result.file);
 	cau_call_result(call, &result);
+}
+
+static cau_status ask_for_mesh(cau_call *call, const cau_wire_mesh_read *params, cau_error *error)
+{
+	cau_peer *peer = call->peer;
+	const cau_upload *upload = cau_uploads_find(&peer->uploads, params->upload);
+	cau_reply reply = cau_call_reply(call);
+	cau_mesh_asked asked = {.unit_m = params->has_unit_m ? params->unit_m : 0,
+	                        .layer_kind = params->has_as ? (int)params->as : -1,
+	                        .strict = params->strict};
+	if (!upload || !upload->complete)
+		return cau_fail(error, CAU_NOT_FOUND, "params.upload",
+		                "no upload of this connection is named `%.48s`", params->upload);
+	if (params->has_as && params->as != CAU_LAYER_FAT && params->as != CAU_LAYER_FASCIA)
+		return cau_fail(error, CAU_BAD_VALUE, "params.as", "fat or fascia");
+	asked.bytes = malloc(upload->byte_count);
+	if (!asked.bytes)
+		return cau_fail(error, CAU_NO_MEMORY, "", "no memory for a mesh");
+	memcpy(asked.bytes, upload->bytes, upload->byte_count); // the upload may be discarded meanwhile
+	asked.byte_count = upload->byte_count;
+	memcpy(asked.file_name, upload->file_name, sizeof asked.file_name);
+	name_upload(upload, asked.upload, sizeof asked.upload);
+	return cau_hub_read_mesh(peer->service->hub, &asked, &reply, error);
+}
+
+void cau_call_mesh_read(cau_call *call)
+{
+	cau_error error = {0};
+	cau_wire_mesh_read params = {0};
+	cau_status status = cau_rpc_params(call->message, &params, &error);
+	if (!status)
+		status = ask_for_mesh(call, &params, &error);
+	if (status)
+		cau_call_fail(call, &error, 0);
 }
 
 void cau_call_upload_discard(cau_call *call)

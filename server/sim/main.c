@@ -62,7 +62,8 @@ int main(int argument_count, char **arguments)
 	cau_scene_def *scene = malloc(sizeof *scene);
 	if (!scene)
 		return SIM_FAILED;
-	if (sim_scene_load(options.scene, options.scenes, options.unit_m, scene, &error) ||
+	if (sim_scene_load(options.scene, options.scenes, options.unit_m, options.strict, scene,
+	                   &error) ||
 	    get_script(&options, scene, &text, &bytes, &error)) {
 		sim_report_error(stderr, &error);
 		if (options.json)

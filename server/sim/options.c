@@ -7,7 +7,7 @@
 
 static const cau_option rows[] = {
 	{"scene", "S", CAU_OPTION_TEXT, AT(scene),
-     .meaning = "a scene's name, a scene file (.json) or a mesh (.msh, .obj, .vtk)"},
+     .meaning = "a scene's name, a scene file (.json) or a mesh file"},
 	{"scenes", "DIR", CAU_OPTION_TEXT, AT(scenes),
      .meaning = "where names are looked up (default: the installed scenes)"},
 	{"script", "FILE", CAU_OPTION_TEXT, AT(script),
@@ -21,7 +21,9 @@ static const cau_option rows[] = {
 	{"threads", "N", CAU_OPTION_WHOLE, AT(threads), 1, 16,
      .meaning = "1 to 16 threads; the hash does not depend on it (default 1)"},
 	{"unit-m", "U", CAU_OPTION_NUMBER, AT(unit_m), 1e-9, 1000,
-     .meaning = "metres in one unit of a mesh file (default 1)"},
+     .meaning = "metres in one unit of a mesh file (default: guessed where it is clear)"},
+	{"strict", NULL, CAU_OPTION_FLAG, AT(strict),
+     .meaning = "refuses a mesh file that would have to be mended"},
 	{"snapshot-at", "K", CAU_OPTION_LONG, AT(snapshot_at), 0, 1e9,
      .meaning = "at tick K, go on from a snapshot in a fresh session"},
 	{"vtu", "DIR", CAU_OPTION_TEXT, AT(vtu),
@@ -52,8 +54,7 @@ void sim_options_help(FILE *out)
 
 bool sim_options_read(int argument_count, char **arguments, sim_options *options, FILE *complaints)
 {
-	*options = (sim_options){
-		.unit_m = 1.0, .seconds = -1.0, .threads = 1, .vtu_every = 10, .snapshot_at = -1};
+	*options = (sim_options){.seconds = -1.0, .threads = 1, .vtu_every = 10, .snapshot_at = -1};
 	if (!cau_options_read(&line, argument_count, arguments, options, NULL, complaints))
 		return false;
 	if (options->help || options->version)

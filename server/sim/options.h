@@ -21,11 +21,12 @@ typedef struct sim_options {
 	const char *script; // NULL: none
 	const char *vtu;    // folder; NULL: none
 	const char *csv;    // NULL: none
-	double unit_m;      // of a mesh file
+	double unit_m;      // of a mesh file; 0: guessed
 	double seconds;     // below 0: to the script's end and one second more
 	int32_t threads;
 	int32_t vtu_every;   // ticks
 	int64_t snapshot_at; // tick; below 0: never
+	bool strict;         // refuse a mesh file that needs mending
 	bool cut;            // run the scene's own cut in place of a script
 	bool print_cut;      // print the scene's cut as a script and end
 	bool json;

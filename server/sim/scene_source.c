@@ -109,14 +109,15 @@ static cau_status load_name(const char *name, const char *folder, cau_scene_def 
 	return load_file(path, scene, error);
 }
 
-cau_status sim_scene_load(const char *source, const char *folder, double unit_m,
+cau_status sim_scene_load(const char *source, const char *folder, double unit_m, bool strict,
                           cau_scene_def *scene, cau_error *error)
 {
-	static const char *const meshes[] = {".msh", ".obj", ".vtk"};
-	for (size_t i = 0; i < sizeof meshes / sizeof *meshes; i++)
-		if (ends_with(source, meshes[i]))
-			return sim_mesh_scene(source, unit_m, scene, error);
+	struct stat about;
 	if (ends_with(source, ".json"))
 		return load_file(source, scene, error);
+	if (stat(source, &about) == 0 && S_ISREG(about.st_mode))
+		return sim_mesh_scene(
+			&(cau_mesh_wish){.file = source, .unit_m = unit_m, .strict = strict, .layer_kind = -1},
+			scene, error);
 	return load_name(source, folder, scene, error);
 }

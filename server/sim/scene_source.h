@@ -12,8 +12,8 @@
 cau_status sim_read_file(const char *path, size_t most, char **text, size_t *bytes,
                          cau_error *error);
 
-// Fills *scene from `source`: a mesh file (.msh, .obj, .vtk; units of unit_m metres), a file that
-// ends in .json, or a name in `folder` (NULL: the installed scenes, or the source's where none
-// are). Errors name file, path and reason.
-cau_status sim_scene_load(const char *source, const char *folder, double unit_m,
+// Fills *scene from `source`: a file that ends in .json, any other file as a mesh (units of unit_m
+// metres, 0: guessed; strict: refused where it needs mending), or a name in `folder` (NULL: the
+// installed scenes, or the source's where none are). Errors name file, path and reason.
+cau_status sim_scene_load(const char *source, const char *folder, double unit_m, bool strict,
                           cau_scene_def *scene, cau_error *error);

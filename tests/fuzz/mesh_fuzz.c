@@ -1,32 +1,19 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Any bytes as a mesh file: the first byte picks the format. What is read and cleaned must keep the
-// promises that everything after it relies on.
+// Any bytes as a mesh file, whose format is found from the bytes. What is read and cleaned must
+// keep the promises that everything after it relies on.
 #include <math.h>
 #include <stdlib.h>
+#include <string.h>
 
 #include "fuzz/fuzz_target.h"
 #include "mesh/edge_table.h"
 #include "mesh/mesh.h"
+#include "mesh/report.h"
 
 static void demand(int promise)
 {
 	if (!promise)
 		abort();
-}
-
-static const char *name_of_format(uint8_t byte)
-{
-	static const char *const names[] = {"fuzz.msh", "fuzz.obj", "fuzz.vtk"};
-	switch (byte) {
-	case 'm':
-		return names[0];
-	case 'o':
-		return names[1];
-	case 'v':
-		return names[2];
-	default:
-		return names[byte % 3];
-	}
 }
 
 static double volume6(const double *position, const int32_t *t)
@@ -72,11 +59,24 @@ static void check_tables(const cau_mesh *mesh)
 	cau_face_table_finish(&faces);
 }
 
-static void check_clean(cau_mesh *mesh)
+// The report accounts for every element.
+static void check_report(const cau_mesh *mesh, const cau_mesh_report *report)
 {
-	cau_mesh_report report, again;
+	char text[CAU_MESH_TEXT_BYTES];
+	int64_t counted = 0, elements = mesh->triangle_count + (int64_t)mesh->tetrahedron_count;
+	for (int32_t i = 0; i < report->region_count && i < CAU_MESH_REGION_MAX; i++)
+		counted += report->region[i].element_count;
+	demand(report->region_count > CAU_MESH_REGION_MAX ? counted <= elements : counted == elements);
+	demand(report->component_count >= 1);
+	cau_mesh_report_text(report, text);
+	demand(strlen(text) < sizeof text);
+}
+
+static void check_clean(cau_mesh *mesh, cau_mesh_report *report)
+{
+	cau_mesh_report again = {0};
 	cau_error error = {0};
-	if (cau_mesh_clean(mesh, &report, &error)) {
+	if (cau_mesh_clean(mesh, report, &error)) {
 		demand(error.reason[0] != 0);
 		return;
 	}
@@ -86,21 +86,22 @@ static void check_clean(cau_mesh *mesh)
 	check_tables(mesh);
 	demand(!cau_mesh_clean(mesh, &again, &error));
 	demand(again.unused_vertices == 0 && again.inverted_tetrahedra == 0);
+	demand(!cau_mesh_report_measure(mesh, 1, report, &error));
+	check_report(mesh, report);
 }
 
 int LLVMFuzzerTestOneInput(const uint8_t *data, size_t bytes)
 {
-	if (bytes == 0)
-		return 0;
 	cau_mesh mesh;
+	cau_mesh_report report;
 	cau_error error = {0};
-	cau_status status = cau_mesh_read(name_of_format(data[0]), data + 1, bytes - 1, &mesh, &error);
+	cau_status status = cau_mesh_read("fuzz", data, bytes, &mesh, &report, &error);
 	if (status) {
 		demand(error.status == status && error.reason[0] != 0 && !mesh.position);
 		return 0;
 	}
 	check_read(&mesh);
-	check_clean(&mesh);
+	check_clean(&mesh, &report);
 	cau_mesh_finish(&mesh);
 	return 0;
 }

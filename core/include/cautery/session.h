@@ -38,6 +38,7 @@
 #include "cautery/command.h"
 #include "cautery/defaults.h" // cau_default_*_def(): definitions with every member at its default
 #include "cautery/energy_off.h"
+#include "cautery/mesh_scene.h"
 #include "cautery/scene.h"
 #include "cautery/status.h"
 
@@ -169,6 +170,7 @@ typedef struct cau_session_info {
 	const int32_t *tetrahedron;  // (tetrahedron_count x 4), for export
 	const int32_t *link;         // (link_count x 2)
 	const char *instruction_set; // "avx512", "avx2", "baseline"
+	const cau_mesh_report *mesh_report; // of each of the scene's meshes
 } cau_session_info;
 
 void cau_session_describe(const cau_session *session, cau_session_info *info);

@@ -87,7 +87,7 @@ enum {
 	X(SHEET, "sheet")     /* size_m[0..1], cells[0..1]: two triangles a cell, UV along x and y */  \
 	X(SLAB, "slab")       /* size_m, cells: six tetrahedra a cell */                               \
 	X(PATTERN, "pattern") /* figure 5: a small fan of cells[0] triangles round one vertex */       \
-	X(FILE, "file")       /* .msh, .obj, .vtk */                                                   \
+	X(FILE, "file")       /* a mesh file: core/mesh/README.md */                                   \
 	X(BYTES, "bytes")     /* an uploaded file, in memory */
 
 typedef struct cau_mesh_def {
@@ -99,6 +99,7 @@ typedef struct cau_mesh_def {
 	char file[CAU_TEXT_BYTES]; // FILE: relative to the scene file. BYTES: name, for its ending
 	double unit_m;             // metres in one unit of the file (0.001 for millimetres)
 	double translate_m[3];     // applied after the unit
+	int32_t strict;            // read meshes: refuse what would have to be mended
 	const void *bytes;         // BYTES: borrowed until the session is created
 	size_t byte_count;
 } cau_mesh_def;

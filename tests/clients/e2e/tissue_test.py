@@ -53,9 +53,9 @@ class Tissue(programs.Case):
         self.assertEqual(info["summary"]["scene"], "left-knee")
         self.assertEqual(info["summary"]["vertex_count"], 169)
         self.assertEqual(info["triangle_count"], 288)
-        self.assertEqual([d["tool"] for d in info["drivers"]], ["ball"])
+        self.assertEqual([d["tool"] for d in info["drivers"]], ["ball", "grasper"])
         self.assertAlmostEqual(info["definition"]["tools"][0]["position_m"][0], 0.03, places=4)
-        self.assertEqual(len(self.json("ls")["sessions"]), 1)  # the one that only measured is gone
+        self.assertEqual(len(self.json("ls")["sessions"]), 1)
 
     def test_a_scene_file_brings_its_mesh(self):
         self.path("flat.obj", sheet(4, 0.05))
@@ -65,10 +65,66 @@ class Tissue(programs.Case):
         session = self.create("--definition", self.path("flat.json", json.dumps(scene)))
         self.assertEqual(self.json("info", session)["summary"]["vertex_count"], 25)
 
+    def test_the_meshes_of_a_scene_file_are_reported(self):
+        """On standard error and in the log, and in the words of a scene file."""
+        mend = sheet(4, 0.05).replace("f ", "f 1/1 2/2 2/2\nf ", 1)
+        scene = {"name": "flat", "meshes": [{"source": "file", "name": "flat", "file": "mend.obj"}],
+                 "layers": [{"kind": "fascia", "name": "fascia", "mesh": "flat"}],
+                 "pins": [{"kind": "rim", "layer": "fascia"}]}
+        file = self.path("mend.json", json.dumps(scene))
+        self.path("mend.obj", mend)
+        with open(self.path("log"), "w", encoding="utf-8") as log:
+            daemon = programs.Daemon(real=True, log=log, log_level="info")
+        self.addCleanup(daemon.stop)
+        _, told = self.cautery("create", file, url=daemon.url)
+        with open(self.path("log"), encoding="utf-8") as log:
+            lines = [line for line in log if "event=mesh_read" in line]
+        for report in told, "".join(lines):
+            self.assertIn("1 degenerate triangles left out", report)
+            self.assertIn("mesh: 25 vertices, 32 triangles", report)
+        self.assertEqual(len([line for line in lines if "mesh=flat" in line]), len(lines))
+        _, told = self.cautery("create", file, "--strict", code=1)
+        self.assertIn("mend.obj: the mesh", told)
+        self.assertIn("strict refuses to mend this mesh: 1 degenerate triangles left out", told)
+        self.path("mend.obj", sheet(4, 160))
+        _, told = self.cautery("create", file, code=1)
+        self.assertIn("did you mean millimetres (unit_m 0.001)?", told)
+
+    def test_regions_that_no_mesh_has_are_refused(self):
+        file = self.path("parts.obj", sheet(4, 0.05).replace("f ", "usemtl liver\nf ", 1))
+        session = self.create(file)
+        change = "material", session, "fascia", "thickness_m=0.001", "--region"
+        self.cautery(*change, 1)
+        _, told = self.cautery(*change, 99, code=1)
+        self.assertIn("has no region 99; its regions are: 1", told)
+
     def test_a_bad_mesh_is_refused(self):
         file = self.path("bad.obj", "v 0 0 0\nv 1 0 0\nv 2 0 0\nf 1 2 3\n")
         _, told = self.cautery("create", "--mesh", file, code=1)
-        self.assertIn("mesh", told)
+        self.assertIn("every element is degenerate", told)
+        self.assertNotIn("params", told)
+        _, told = self.cautery("create", self.path("none.stl", ""), code=4)
+        self.assertRegex(told, "none.stl: .*the file is empty")
+
+    def test_a_mesh_needs_no_option(self):
+        """By its content, whatever its name; the report says what became of it."""
+        file = self.path("LEFT", sheet(4, 0.05).replace("f ", "f 1/1 2/2 2/2\nf ", 1))
+        session, told = self.cautery("create", file)
+        self.assertIn("1 degenerate triangles left out", told)
+        self.assertIn("open surface with 16 edges on its rim", told)
+        self.assertIn("(--as fascia); for a solid", told)
+        self.assertEqual(self.json("info", session.strip())["triangle_count"], 32)
+        _, told = self.cautery("create", file, "--strict", code=1)
+        self.assertIn("--strict refuses to mend this mesh: 1 degenerate triangles left out", told)
+        _, told = self.cautery("create", file, "--as", "fat", code=1)
+        self.assertIn("a surface and no tetrahedra", told)
+
+    def test_a_unit_is_proposed(self):
+        _, told = self.cautery("create", self.path("large.obj", sheet(4, 160)), code=1)
+        self.assertIn("did you mean millimetres (--unit-m 0.001)?", told)
+        self.assertNotIn("params", told)
+        _, told = self.cautery("create", self.path("mean.obj", sheet(4, 8)))
+        self.assertIn("--unit-m 0.01 (centimetres, guessed)", told)
 
 
 class Forces(programs.Case):

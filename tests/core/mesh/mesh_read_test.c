@@ -12,10 +12,13 @@ static const struct {
 	const char *file;
 	int32_t vertex_count, triangle_count, tetrahedron_count, duplicate_vertices;
 	int has_texture;
+	double unit_m;
 } meshes[] = {
-	{"liver.msh", 181, 0, 596, 0, 0},           {"liver_low_volume.msh", 863, 0, 2839, 0, 0},
-	{"msh4_cube.msh", 14, 24, 24, 0, 0},        {"liver-smoothUV.obj", 2194, 4384, 0, 0, 1},
-	{"Cautery-Hook.obj", 790, 1208, 0, 127, 1},
+	{"liver.msh", 181, 0, 596, 0, 0, 0.01},
+	{"liver_low_volume.msh", 863, 0, 2839, 0, 0, 0.01},
+	{"msh4_cube.msh", 14, 24, 24, 0, 0, 0.01},
+	{"liver-smoothUV.obj", 2194, 4384, 0, 0, 1, 0.01},
+	{"Cautery-Hook.obj", 747, 1208, 0, 170, 1, 0.001},
 };
 
 static void check_tables(const cau_mesh *mesh)
@@ -41,7 +44,7 @@ static void real_meshes_load(void **state)
 	for (size_t i = 0; i < sizeof meshes / sizeof meshes[0]; i++) {
 		cau_mesh_def def = fixture_def(1, 1, 1);
 		def.source = CAU_MESH_FILE;
-		def.unit_m = 0.01;
+		def.unit_m = meshes[i].unit_m;
 		snprintf(def.file, sizeof def.file, "%s", meshes[i].file);
 		cau_mesh mesh;
 		cau_mesh_report report;

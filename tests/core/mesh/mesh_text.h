@@ -8,7 +8,7 @@ static inline cau_status read_text(const char *name, const char *text, cau_mesh 
                                    cau_error *error)
 {
 	*error = (cau_error){0};
-	return cau_mesh_read(name, text, strlen(text), mesh, error);
+	return cau_mesh_read(name, text, strlen(text), mesh, NULL, error);
 }
 
 // The text is refused with this status, and the reason holds `part`.
@@ -35,7 +35,7 @@ static inline void refuse_beginnings(const char *name, const void *bytes, size_t
 		memcpy(part, bytes, count);
 		cau_mesh mesh;
 		cau_error error = {0};
-		cau_status status = cau_mesh_read(name, part, count, &mesh, &error);
+		cau_status status = cau_mesh_read(name, part, count, &mesh, NULL, &error);
 		if (count < least && (status == CAU_OK || !error.reason[0]))
 			fail_msg("%zu of %zu bytes gave %s", count, byte_count, cau_status_name(status));
 		cau_mesh_finish(&mesh);
@@ -91,7 +91,7 @@ static inline cau_status read_bytes(const char *name, const byte_file *file, cau
                                     cau_error *error)
 {
 	*error = (cau_error){0};
-	return cau_mesh_read(name, file->bytes, file->count, mesh, error);
+	return cau_mesh_read(name, file->bytes, file->count, mesh, NULL, error);
 }
 
 #define PUT_INTS(file, ...)                                                                        \

@@ -89,10 +89,10 @@ static void failures_name_line_and_reason(void **state)
 		cau_status status;
 		const char *part;
 	} cases[] = {
-		{"", CAU_BAD_MESH, "but nothing"},
-		{SQUARE "l 1 2\np 3\n", CAU_BAD_MESH, "1 lines, 1 points"},
-		{SQUARE "f 1 2\n", CAU_BAD_SYNTAX, "line 5: a face of 2 corners"},
-		{SQUARE "f\n", CAU_BAD_SYNTAX, "line 5: a face of 0 corners"},
+		{"", CAU_BAD_SYNTAX, "is empty"},
+		{SQUARE "l 1 2\np 3\n", CAU_BAD_MESH, "but 4 vertices, 1 lines, 1 points"},
+		{SQUARE "f 1 2\n", CAU_BAD_MESH, "but 4 vertices, 1 faces of fewer than 3 corners"},
+		{SQUARE "f\n", CAU_BAD_MESH, "1 faces of fewer than 3 corners"},
 		{SQUARE "f 1 2 5\n", CAU_BAD_MESH, "line 5: 5 as a vertex number: there are 4"},
 		{SQUARE "f 1 2 0\n", CAU_BAD_MESH, "line 5: 0 as a vertex number"},
 		{SQUARE "f 1 2 -5\n", CAU_BAD_MESH, "line 5: -5 as a vertex number"},

@@ -158,7 +158,7 @@ static void failures_name_line_and_reason(void **state)
 		cau_status status;
 		const char *part;
 	} cases[] = {
-		{"", CAU_BAD_SYNTAX, "expected #"},
+		{"", CAU_BAD_SYNTAX, "is empty"},
 		{"# vtk DataFile Version 3.0\nt\nASCII\nDATASET RECTILINEAR_GRID\n", CAU_UNSUPPORTED,
 	     "line 4: only UNSTRUCTURED_GRID and POLYDATA"},
 		{"# vtk DataFile Version 3.0\nt\nXML\n", CAU_BAD_SYNTAX,
@@ -174,8 +174,9 @@ static void failures_name_line_and_reason(void **state)
 		{HEAD("POLYDATA") POINTS "POLYGONS 1 4\n4 0 1 2 3\n", CAU_BAD_SYNTAX,
 	     "line 9: expected number of corners, which cannot be 4"},
 		{HEAD("POLYDATA") POINTS "POLYGONS 1 4\n3 0 1 5\n", CAU_BAD_MESH, "cell 0 names point 5"},
-		{HEAD("POLYDATA") POINTS "POLYGONS 1 3\n2 0 1\n", CAU_BAD_MESH, "polygon of 2 corners"},
-		{HEAD("POLYDATA") POINTS "LINES 1 3\n2 0 1\n", CAU_BAD_MESH, "but 1 lines"},
+		{HEAD("POLYDATA") POINTS "POLYGONS 1 3\n2 0 1\n", CAU_BAD_MESH,
+	     "but 5 vertices, 1 polygons of fewer than 3 corners"},
+		{HEAD("POLYDATA") POINTS "LINES 1 3\n2 0 1\n", CAU_BAD_MESH, "vertices, 1 lines"},
 		{HEAD("POLYDATA") "SURPRISE\n", CAU_BAD_SYNTAX, "line 5: 'SURPRISE' is not"},
 		{HEAD("UNSTRUCTURED_GRID") POINTS "CELLS 1 4\n3 0 1 2\n", CAU_BAD_SYNTAX,
 	     "CELLS without CELL_TYPES"},
@@ -184,8 +185,10 @@ static void failures_name_line_and_reason(void **state)
 		{HEAD("UNSTRUCTURED_GRID") POINTS "CELL_TYPES 1\n5\n", CAU_BAD_SYNTAX, "for 0 CELLS"},
 		{HEAD("UNSTRUCTURED_GRID") POINTS "CELLS 1 4\n3 0 1 2\nCELL_TYPES 1\n10\n", CAU_BAD_MESH,
 	     "cell 0 has 3 corners, its type has 4"},
-		{HEAD("UNSTRUCTURED_GRID") POINTS "CELLS 1 5\n4 0 1 2 3\nCELL_TYPES 1\n9\n", CAU_BAD_MESH,
-	     "but 1 quadrangles"},
+		{HEAD("UNSTRUCTURED_GRID") POINTS "CELLS 1 2\n1 0\nCELL_TYPES 1\n1\n", CAU_BAD_MESH,
+	     "vertices, 1 points"},
+		{HEAD("UNSTRUCTURED_GRID") POINTS "CELLS 1 5\n4 0 1 2 3\nCELL_TYPES 1\n15\n", CAU_BAD_MESH,
+	     "vertices, 1 pentagonal prisms"},
 		{HEAD_5 POINTS "CELLS 2 3\nOFFSETS vtktypeint64\n0 4\nCONNECTIVITY vtktypeint64\n0 1 2\n",
 	     CAU_BAD_SYNTAX, "OFFSETS do not ascend"},
 		{HEAD_5 POINTS "CELLS 3 3\nOFFSETS vtktypeint64\n0 3 1\nCONNECTIVITY vtktypeint64\n0 1 2\n",

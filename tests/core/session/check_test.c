@@ -274,7 +274,8 @@ static void bad_meshes(void **state)
 	open_mesh("t.obj", "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n", CAU_LAYER_FAT, CAU_BAD_MESH, &error);
 	open_mesh("t.obj", "v 0 0 nan\nv 1 0 0\nv 0 1 0\nf 1 2 3\n", CAU_LAYER_FASCIA, CAU_BAD_MESH,
 	          &error);
-	open_mesh("t.stl", "solid", CAU_LAYER_FASCIA, CAU_UNSUPPORTED, &error);
+	open_mesh("t.stl", "solid", CAU_LAYER_FASCIA, CAU_BAD_SYNTAX, &error);
+	open_mesh("t.txt", "a letter", CAU_LAYER_FASCIA, CAU_UNSUPPORTED, &error);
 	open_mesh("t.obj", "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n", CAU_LAYER_FASCIA, CAU_OK, &error);
 }
 
@@ -284,7 +285,45 @@ static void degenerate_texture(void **state)
 	(void)state;
 	cau_error error;
 	open_mesh("t.obj", "v 0 0 0\nv 1 0 0\nv 0 1 0\nvt 0 0\nvt 1 1\nvt 2 2\nf 1/1 2/2 3/3\n",
-	          CAU_LAYER_FASCIA, CAU_BAD_MESH, &error);
+	          CAU_LAYER_FASCIA, CAU_OK, &error);
+}
+
+// A region that the layer's mesh does not have, in its definition and in a command, is refused with
+// those that exist. Region 0 is the default.
+static void regions_that_no_mesh_has(void **state)
+{
+	(void)state;
+	cau_error error = {0};
+	cau_session *session = NULL;
+	cau_scene_def *scene = stage_scene(CAU_PRECISION_DOUBLE);
+	const double size_m[3] = {0.04, 0.03, 0.01};
+	stage_add_slab(scene, "fat", size_m, (int32_t[3]){2, 2, 1});
+	cau_session_def def = cau_default_session_def();
+	def.scene = scene;
+	int32_t layer = 0;
+	while (scene->layers[layer].kind != CAU_LAYER_FAT)
+		layer++;
+	scene->layers[layer].material_count = 2;
+	scene->layers[layer].fat[1] = scene->layers[layer].fat[0];
+	scene->layers[layer].fat[1].region = 99;
+	assert_int_equal(cau_session_create(&def, &session, &error), CAU_NOT_FOUND);
+	assert_non_null(strstr(error.path, ".regions[0].region"));
+	assert_non_null(strstr(error.reason, "no region 99; its regions are: 0"));
+
+	scene->layers[layer].material_count = 1;
+	assert_int_equal(cau_session_create(&def, &session, &error), CAU_OK);
+	cau_command command;
+	cau_default_command(&command, CAU_COMMAND_SET_MATERIAL);
+	command.as.material.kind = CAU_LAYER_FAT;
+	memcpy(command.as.material.layer, scene->layers[layer].name, CAU_NAME_BYTES);
+	command.as.material.fat = scene->layers[layer].fat[0];
+	assert_int_equal(cau_session_submit(session, &command, &error), CAU_OK);
+	command.as.material.fat.region = 99;
+	assert_int_equal(cau_session_submit(session, &command, &error), CAU_NOT_FOUND);
+	assert_string_equal(error.path, "material.region");
+	assert_non_null(strstr(error.reason, "no region 99; its regions are: 0"));
+	cau_session_destroy(session);
+	free(scene);
 }
 
 // Sheets that lie on each other: their links have no length.
@@ -351,6 +390,7 @@ int main(void)
 		cmocka_unit_test(everything_pinned_and_let_go),
 		cmocka_unit_test(bad_meshes),
 		cmocka_unit_test(degenerate_texture),
+		cmocka_unit_test(regions_that_no_mesh_has),
 		cmocka_unit_test(links_without_length),
 		cmocka_unit_test(a_million_links),
 	};

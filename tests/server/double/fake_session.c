@@ -11,6 +11,7 @@
 #include <time.h>
 
 #include "cautery/defaults.h"
+#include "cautery/mesh_scene.h"
 #include "cautery/session.h"
 
 enum {
@@ -538,4 +539,18 @@ cau_status cau_session_balance(cau_session *s, cau_balance *balance)
 	(void)s;
 	*balance = (cau_balance){0};
 	return CAU_OK;
+}
+
+cau_status cau_mesh_scene(const cau_mesh_wish *wish, cau_scene_def *scene, cau_mesh_report *report,
+                          cau_error *error)
+{
+	(void)scene;
+	(void)report;
+	return cau_fail(error, CAU_UNSUPPORTED, "", "the double reads no mesh, not %s", wish->file);
+}
+
+void cau_mesh_report_text(const cau_mesh_report *report, char bytes[static CAU_MESH_TEXT_BYTES])
+{
+	(void)report;
+	bytes[0] = 0;
 }

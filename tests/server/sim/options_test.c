@@ -38,7 +38,7 @@ static void defaults_stand(void **state)
 	assert_true(read_words((const char *[]){"sim", "--scene", "fat", NULL}, &o, complaint,
 	                       sizeof complaint));
 	assert_string_equal(o.scene, "fat");
-	assert_true(o.seconds < 0.0 && o.threads == 1 && o.unit_m == 1.0 && o.snapshot_at < 0);
+	assert_true(o.seconds < 0.0 && o.threads == 1 && o.unit_m == 0 && o.snapshot_at < 0);
 	assert_null(o.script);
 	assert_false(o.cut || o.json || o.help || o.print_cut);
 }

@@ -8,11 +8,12 @@ static void scenes_are_found_by_name_and_by_file(void **state)
 	(void)state;
 	cau_scene_def *scene = malloc(sizeof *scene);
 	cau_error error = {0};
-	assert_int_equal(sim_scene_load("layers", CAU_TEST_SCENES, 1.0, scene, &error), CAU_OK);
+	assert_int_equal(sim_scene_load("layers", CAU_TEST_SCENES, 1.0, false, scene, &error), CAU_OK);
 	assert_string_equal(scene->name, "layers");
 	assert_string_equal(scene->directory, CAU_TEST_SCENES);
 	fixture_write(fixture_path("mine.json"), "{\"name\":\"own\"}");
-	assert_int_equal(sim_scene_load(fixture_path("mine.json"), NULL, 1.0, scene, &error), CAU_OK);
+	assert_int_equal(sim_scene_load(fixture_path("mine.json"), NULL, 1.0, false, scene, &error),
+	                 CAU_OK);
 	assert_string_equal(scene->name, "own");
 	assert_string_equal(scene->directory, fixture_folder());
 	free(scene);
@@ -23,7 +24,7 @@ static void expect_failure(const char *source, cau_status status, const char *fi
 {
 	cau_scene_def *scene = malloc(sizeof *scene);
 	cau_error error = {0};
-	assert_int_equal(sim_scene_load(source, CAU_TEST_SCENES, 1.0, scene, &error), status);
+	assert_int_equal(sim_scene_load(source, CAU_TEST_SCENES, 1.0, false, scene, &error), status);
 	assert_string_equal(error.file, file);
 	if (!strstr(error.reason, reason))
 		fail_msg("%s: \"%s\" does not say \"%s\"", source, error.reason, reason);

@@ -29,3 +29,10 @@ export function errorWords(error: unknown): string {
   const member = memberOf(path);
   return member === '' ? sentence(words) : sentence(`${memberWords(member)}: ${words}`);
 }
+
+/** What the daemon says of a mesh file, in the words of the form that uploads one. */
+export function meshWords(words: string): string {
+  return words
+    .replace(/\bunit_m ([0-9.]+(?:e[-+]?[0-9]+)?)/g, (_said, unit: string) => `one unit is ${Number((1000 * Number(unit)).toPrecision(6))} mm`)
+    .replace(/\(as (fat|fascia)\)/g, '(tissue $1)');
+}

@@ -714,7 +714,7 @@ export interface CommandResult {
 export interface UploadBegin {
   /** for scenes: meshes[].file of source bytes, with file_name's ending */
   name: string;
-  /** its ending tells the format: .msh, .obj, .vtk */
+  /** for messages and the names of sessions; the format is found from the bytes */
   file_name: string;
   /** of the file, exactly (1 to 9007199254740991 B) */
   byte_count: number;
@@ -734,6 +734,96 @@ export interface UploadEnd {
   transfer: number;
   /** of the file, 64 lower-case hex digits */
   sha256: string;
+}
+
+/** an upload is a mesh to report on */
+export interface MeshRead {
+  /** as in upload.begin; whole */
+  upload: string;
+  /** metres in one unit of the file; guessed by default where it is clear (1e-09 to 1000 m) */
+  unit_m?: number;
+  /** fat (tetrahedra) or fascia (triangles); by default fat where there are tetrahedra */
+  as?: 'fascia' | 'membrane' | 'fat' | 'links';
+  /** refuses a mesh that would have to be mended; false by default */
+  strict?: boolean;
+}
+
+/** elements of one kind in the file */
+export interface MeshKind {
+  /** the kind: hexahedra */
+  name: string;
+  /** became elements of the mesh (0 to 9007199254740991) */
+  read: number;
+  /** were passed over (0 to 9007199254740991) */
+  passed: number;
+}
+
+/** something that was mended */
+export interface MeshMend {
+  /** in words: duplicate vertices merged */
+  what: string;
+  /** how many (1 to 9007199254740991) */
+  count: number;
+}
+
+/** a region of the mesh */
+export interface MeshRegion {
+  /** 2: of triangles, 3: of tetrahedra (2 to 3) */
+  dimension: number;
+  /** its number, as layers name it (-2147483648 to 2147483647) */
+  region: number;
+  /** elements (0 to 9007199254740991) */
+  element_count: number;
+  /** of the file, or empty */
+  name: string;
+}
+
+/** what became of a mesh file */
+export interface MeshReport {
+  /** the whole report in words, one fact a line */
+  text: string;
+  /** Gmsh 4.1 */
+  format: string;
+  /** vertices in the file (0 to 9007199254740991) */
+  vertices_read: number;
+  /** elements in the file */
+  kinds: MeshKind[];
+  /** what was mended */
+  mended: MeshMend[];
+  /** vertices of the mesh (0 to 9007199254740991) */
+  vertex_count: number;
+  /** triangles (0 to 9007199254740991) */
+  triangle_count: number;
+  /** tetrahedra (0 to 9007199254740991) */
+  tetrahedron_count: number;
+  /** connected pieces (0 to 9007199254740991) */
+  component_count: number;
+  /** edges on the rim of a surface without tetrahedra; 0: closed (0 to 9007199254740991) */
+  open_edge_count: number;
+  /** the first regions */
+  regions: MeshRegion[];
+  /** of all regions (0 to 9007199254740991) */
+  region_count: number;
+  /** corner of the bounding box (-1000000 to 1000000 m) */
+  least_m: [number, number, number];
+  /** the opposite corner (-1000000 to 1000000 m) */
+  most_m: [number, number, number];
+  /** metres in one unit of the file, as used (1e-09 to 1000 m) */
+  unit_m: number;
+  /** elements by quality in tenths from 0 to 1 (mean ratio) (0 to 9007199254740991) */
+  quality: number[];
+  /** of all elements (0 to 1) */
+  least_quality: number;
+}
+
+/** a mesh that was read */
+export interface MeshReading {
+  /** what became of the file */
+  report: MeshReport;
+  /** a scene around the upload, for session.create */
+  definition: Scene;
+  /** a choice that the user has: a closed surface became a sheet */
+  note?: string;
 }
 
 /** an upload is not needed any more */
@@ -834,10 +924,12 @@ export interface Mesh {
   cells?: number[];
   /** turns the UV axes against the mesh's axes (-6.3 to 6.3 rad) */
   texture_turn_rad?: number;
-  /** .msh, .obj or .vtk, relative to the scene file */
+  /** a mesh file, relative to the scene file */
   file?: string;
   /** metres in one unit of the file (1e-09 to 1000 m) */
   unit_m?: number;
+  /** 1: refuses a mesh that would have to be mended (0 to 1) */
+  strict?: number;
   /** moves the mesh, after the unit (-100 to 100 m) */
   translate_m?: [number, number, number];
 }
@@ -1818,6 +1910,8 @@ export interface Requests {
   'upload.begin': { params: UploadBegin; result: UploadBeginResult };
   /** checks its length and hash */
   'upload.end': { params: UploadEnd; result: UploadResult };
+  /** reads an upload as a mesh: the report, and a scene around it for session.create */
+  'mesh.read': { params: MeshRead; result: MeshReading };
   /** forgets it; sessions made of it stay */
   'upload.discard': { params: UploadDiscard; result: Nothing };
   /** copies the daemon's store while everybody goes on, to a file on its machine; one at a time */

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-import { errorWords, memberWords, sentence } from '../../../../clients/web/src/model/sentences';
+import { errorWords, memberWords, meshWords, sentence } from '../../../../clients/web/src/model/sentences';
 import { nameOf } from '../../../../clients/web/src/model/person';
 import { cameraText, readCamera } from '../../../../clients/web/src/panels/address';
 import { RpcError } from '../../../../clients/web/src/wire/connection';
@@ -27,6 +27,19 @@ describe('errors for people', () => {
     expect(nameOf({ name: 'Birch 27, viewer 0.1.0', client: 3 })).toBe('Birch 27');
     expect(nameOf({ name: 'cautery 0.1.0', client: 3 })).toBe('cautery 0.1.0');
     expect(nameOf({ name: '', client: 3 })).toBe('client 3');
+  });
+});
+
+describe('what is said of a mesh', () => {
+  it('proposes a unit as the form asks for it', () => {
+    expect(meshWords('did you mean millimetres (unit_m 0.001)?')).toBe('did you mean millimetres (one unit is 1 mm)?');
+    expect(meshWords('size: 0.1 x 0.1 x 0 m, unit_m 0.01 (centimetres, guessed)')).toBe('size: 0.1 x 0.1 x 0 m, one unit is 10 mm (centimetres, guessed)');
+    expect(meshWords('unit_m 1e-06 (micrometres)')).toBe('one unit is 0.001 mm (micrometres)');
+    expect(meshWords('unit_m 1e+03.')).toBe('one unit is 1000000 mm.');
+  });
+
+  it('names the choice of tissue', () => {
+    expect(meshWords('make a sheet of it (as fascia), or a solid (as fat)')).toBe('make a sheet of it (tissue fascia), or a solid (tissue fat)');
   });
 });
 

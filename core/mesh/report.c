@@ -1,0 +1,240 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "mesh/report.h"
+
+#include <math.h>
+#include <string.h>
+
+#include "cautery/assert.h"
+#include "mesh/edge_table.h"
+#include "mesh/geometry.h"
+#include "mesh/mesh_memory.h"
+
+// ---- regions
+// The place of a region in the list, which ascends; where it is not listed, the place it would
+// have.
+static int32_t place_of(const cau_mesh_region *list, int32_t count, int32_t dimension,
+                        int32_t region)
+{
+	int32_t low = 0, high = count;
+	while (low < high) {
+		int32_t middle = low + (high - low) / 2;
+		const cau_mesh_region *at = &list[middle];
+		bool before = at->dimension != dimension ? at->dimension < dimension : at->region < region;
+		low = before ? middle + 1 : low;
+		high = before ? high : middle;
+	}
+	return low;
+}
+
+static bool is_at(const cau_mesh_region *list, int32_t count, int32_t place, int32_t dimension,
+                  int32_t region)
+{
+	return place < count && list[place].dimension == dimension && list[place].region == region;
+}
+
+// The elements of one dimension. A list that is full counts the runs of regions that it has no
+// place for as one region each.
+static void count_regions(const int32_t *region, int32_t count, int32_t dimension,
+                          cau_mesh_report *report)
+{
+	cau_mesh_region *list = report->region;
+	int32_t listed =
+		report->region_count < CAU_MESH_REGION_MAX ? report->region_count : CAU_MESH_REGION_MAX;
+	int32_t place = -1;
+	for (int32_t i = 0; i < count; i++) {
+		if (place >= 0 && is_at(list, listed, place, dimension, region[i])) {
+			list[place].element_count++;
+			continue;
+		}
+		place = place_of(list, listed, dimension, region[i]);
+		if (!is_at(list, listed, place, dimension, region[i])) {
+			if (listed == CAU_MESH_REGION_MAX) {
+				report->region_count += i == 0 || region[i] != region[i - 1];
+				continue;
+			}
+			memmove(list + place + 1, list + place, (size_t)(listed - place) * sizeof *list);
+			list[place] = (cau_mesh_region){.dimension = dimension, .region = region[i]};
+			report->region_count = ++listed;
+		}
+		list[place].element_count++;
+	}
+}
+
+static void count_all(const cau_mesh *mesh, cau_mesh_report *report)
+{
+	count_regions(mesh->triangle_region, mesh->triangle_count, 2, report);
+	count_regions(mesh->tetrahedron_region, mesh->tetrahedron_count, 3, report);
+}
+
+// Copies a name as far as it prints: control characters become '?', quotes around it go.
+static void copy_name(cau_word word, char name[static CAU_MESH_NAME_BYTES])
+{
+	if (word.length >= 2 && word.text[0] == '"' && word.text[word.length - 1] == '"') {
+		word.text++;
+		word.length -= 2;
+	}
+	size_t length = word.length < CAU_MESH_NAME_BYTES - 1 ? word.length : CAU_MESH_NAME_BYTES - 1;
+	for (size_t i = 0; i < length; i++)
+		name[i] = (char)(word.text[i] >= ' ' && word.text[i] <= '~' ? word.text[i] : '?');
+	name[length] = 0;
+}
+
+void cau_mesh_report_regions(const cau_mesh_builder *builder, cau_mesh_report *report)
+{
+	count_all(&builder->mesh, report);
+	int32_t listed =
+		report->region_count < CAU_MESH_REGION_MAX ? report->region_count : CAU_MESH_REGION_MAX;
+	for (int32_t i = 0; i < builder->name_count; i++) {
+		const cau_region_name *named = &builder->name[i];
+		for (int32_t dimension = 2; dimension <= 3; dimension++) {
+			int32_t place = place_of(report->region, listed, dimension, named->region);
+			if ((!named->dimension || named->dimension == dimension) &&
+			    is_at(report->region, listed, place, dimension, named->region))
+				copy_name(named->name, report->region[place].name);
+		}
+	}
+}
+
+// Counts again after mending; regions of which nothing is left go.
+static void recount_regions(const cau_mesh *mesh, cau_mesh_report *report)
+{
+	int32_t listed =
+		report->region_count < CAU_MESH_REGION_MAX ? report->region_count : CAU_MESH_REGION_MAX;
+	for (int32_t i = 0; i < listed; i++)
+		report->region[i].element_count = 0;
+	report->region_count = listed;
+	count_all(mesh, report);
+	int32_t kept = 0;
+	for (int32_t i = 0; i < listed; i++)
+		if (report->region[i].element_count)
+			report->region[kept++] = report->region[i];
+	report->region_count -= listed - kept;
+}
+
+// ---- components
+static int32_t root_of(int32_t *parent, int32_t vertex)
+{
+	while (parent[vertex] != vertex) {
+		parent[vertex] = parent[parent[vertex]];
+		vertex = parent[vertex];
+	}
+	return vertex;
+}
+
+// Connected pieces of the elements. Returns how many vertices' trees are left.
+static int32_t count_components(const int32_t *element, int32_t count, int corners,
+                                int32_t vertex_count, int32_t *parent)
+{
+	int32_t components = 0;
+	for (int32_t v = 0; v < vertex_count; v++)
+		parent[v] = -1; // of no element
+	for (size_t i = 0; i < (size_t)count * (size_t)corners; i++)
+		if (parent[element[i]] < 0) {
+			parent[element[i]] = element[i];
+			components++;
+		}
+	for (size_t i = 0; i < (size_t)count; i++)
+		for (int c = 1; c < corners; c++) {
+			const int32_t *corner = element + i * (size_t)corners;
+			int32_t a = root_of(parent, corner[0]), b = root_of(parent, corner[c]);
+			components -= a != b;
+			parent[a > b ? a : b] = a > b ? b : a;
+		}
+	return components;
+}
+
+// ---- surface
+static cau_status count_open_edges(const cau_mesh *mesh, cau_mesh_report *report, cau_error *error)
+{
+	cau_primitives triangles = {.vertex_count = mesh->vertex_count,
+	                            .triangle_count = mesh->triangle_count,
+	                            .triangle = mesh->triangle};
+	cau_edge_table edges;
+	int32_t *layer = cau_mesh_array((size_t)mesh->triangle_count, sizeof *layer);
+	cau_status status = layer ? cau_edge_table_make(&triangles, layer, &edges, error)
+	                          : cau_fail(error, CAU_NO_MEMORY, NULL, "no memory for the edges");
+	free(layer);
+	if (status)
+		return status;
+	const int32_t *first = edges.first[CAU_PRIMITIVE_TRIANGLE];
+	for (int32_t e = 0; e < edges.edge_count; e++)
+		report->open_edge_count += first[e + 1] - first[e] == 1;
+	cau_edge_table_finish(&edges);
+	return CAU_OK;
+}
+
+// ---- quality
+static void count_quality(double quality, cau_mesh_report *report)
+{
+	int bin = (int)(quality * CAU_MESH_QUALITY_BINS);
+	report->quality[bin < 0 ? 0 : bin < CAU_MESH_QUALITY_BINS ? bin : CAU_MESH_QUALITY_BINS - 1]++;
+	report->least_quality = fmin(report->least_quality, quality);
+}
+
+// The mean ratio: Liu and Joe, "Relationship between tetrahedron shape measures" (1994), and its
+// like for a triangle, 4 sqrt(3) A over the sum of the squares of its edges.
+static void measure_quality(const cau_mesh *mesh, cau_mesh_report *report)
+{
+	const double *x = mesh->position;
+	bool solid = mesh->tetrahedron_count > 0;
+	double squares = 0; // of all edges, m^2
+	report->least_quality = 1;
+	for (size_t i = 0; i < (size_t)mesh->tetrahedron_count; i++) {
+		const int32_t *t = mesh->tetrahedron + 4 * i;
+		double volume = fabs(cau_tetrahedron_volume6(x, t)) / 6;
+		double own = cau_edge_squares(x, t, 4);
+		count_quality(12 * pow(3 * volume, 2.0 / 3.0) / own, report);
+		squares += own;
+	}
+	for (size_t i = 0; i < (size_t)mesh->triangle_count && !solid; i++) {
+		const int32_t *t = mesh->triangle + 3 * i;
+		double normal[3];
+		cau_triangle_normal(x, t, normal);
+		double own = cau_edge_squares(x, t, 3);
+		count_quality(2 * sqrt(3) * sqrt(cau_dot3(normal, normal)) / own, report);
+		squares += own;
+	}
+	report->mean_edge_m =
+		sqrt(squares / (solid ? 6.0 * mesh->tetrahedron_count : 3.0 * mesh->triangle_count));
+}
+
+// ---- size
+static void measure_size(const cau_mesh *mesh, double unit_m, cau_mesh_report *report)
+{
+	double longest_m = 0;
+	for (size_t c = 0; c < 3; c++) {
+		report->least_m[c] = INFINITY;
+		report->most_m[c] = -INFINITY;
+		for (size_t v = 0; v < (size_t)mesh->vertex_count; v++) {
+			report->least_m[c] = fmin(report->least_m[c], mesh->position[3 * v + c]);
+			report->most_m[c] = fmax(report->most_m[c], mesh->position[3 * v + c]);
+		}
+		longest_m = fmax(longest_m, report->most_m[c] - report->least_m[c]);
+	}
+	report->unit_m = unit_m;
+	report->proposed_unit_m =
+		cau_is_tissue_size(longest_m) ? 0 : cau_guess_unit(longest_m / unit_m);
+}
+
+cau_status cau_mesh_report_measure(const cau_mesh *mesh, double unit_m, cau_mesh_report *report,
+                                   cau_error *error)
+{
+	CAU_ASSERT(mesh->vertex_count > 0, "a report of %d vertices", mesh->vertex_count);
+	report->vertex_count = mesh->vertex_count;
+	report->triangle_count = mesh->triangle_count;
+	report->tetrahedron_count = mesh->tetrahedron_count;
+	bool solid = mesh->tetrahedron_count > 0;
+	int32_t *parent = cau_mesh_array((size_t)mesh->vertex_count, sizeof *parent);
+	if (!parent)
+		return cau_fail(error, CAU_NO_MEMORY, NULL, "no memory for the report of a mesh");
+	report->component_count =
+		count_components(solid ? mesh->tetrahedron : mesh->triangle,
+	                     solid ? mesh->tetrahedron_count : mesh->triangle_count, solid ? 4 : 3,
+	                     mesh->vertex_count, parent);
+	free(parent);
+	recount_regions(mesh, report);
+	measure_quality(mesh, report);
+	measure_size(mesh, unit_m, report);
+	report->open_edge_count = 0;
+	return solid ? CAU_OK : count_open_edges(mesh, report, error);
+}

@@ -1,0 +1,21 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// mesh.read: an upload as a mesh, read on the builder.
+#pragma once
+
+#include "builder/builder.h"
+#include "hosted_session/sink.h"
+
+// What is to be read.
+typedef struct cau_mesh_asked {
+	unsigned char *bytes; // malloc'ed, taken
+	size_t byte_count;
+	char file_name[129]; // as the user calls it
+	char upload[160];    // what a mesh of source bytes says in `file`
+	double unit_m;       // 0: guessed
+	int layer_kind;      // -1: by the elements
+	bool strict;
+} cau_mesh_asked;
+
+// Has it read, and answers through `reply`. Takes the bytes, on failure too.
+cau_status cau_mesh_ask(cau_builder *builder, const cau_mesh_asked *asked, const cau_reply *reply,
+                        cau_error *error);

@@ -1,0 +1,163 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// A scene that is made around a mesh alone: the tissue stands for 60 s, is held by the grasper, and
+// is cut by the ball. A block and a hollow box made here, and the files of CAUTERY_MESHES where
+// there are any.
+#include "core/session/stage.h"
+
+#include <dirent.h>
+#include <stdio.h>
+
+#include "cautery/mesh_scene.h"
+
+static const double stand_s = 60;
+static const double drift_most = 0.02; // of the size, that standing tissue may move
+
+// A block of 4 x 4 x 4 hexahedra, 60 mm wide, or its surface as quadrangles.
+static size_t write_block(bool solid, char *text, size_t bytes)
+{
+	enum { N = 5 };
+	FILE *out = fmemopen(text, bytes, "w");
+	assert_non_null(out);
+	fprintf(out, "MeshVersionFormatted 2\nDimension 3\nVertices %d\n", N * N * N);
+	for (int i = 0; i < N * N * N; i++)
+		fprintf(out, "%g %g %g 0\n", 0.015 * (i % N), 0.015 * (i / N % N), 0.015 * (i / N / N));
+	int axis[3] = {1, N, N * N};
+	if (solid)
+		fprintf(out, "Hexahedra 64\n");
+	for (int c = 0; c < 64 && solid; c++) {
+		int v = 1 + c % 4 + c / 4 % 4 * N + c / 16 * N * N;
+		fprintf(out, "%d %d %d %d %d %d %d %d 1\n", v, v + 1, v + 1 + N, v + N, v + N * N,
+		        v + 1 + N * N, v + 1 + N + N * N, v + N + N * N);
+	}
+	if (!solid)
+		fprintf(out, "Quadrilaterals 96\n");
+	for (int q = 0; q < 96 && !solid; q++) {
+		int a = axis[q / 32], b = axis[(q / 32 + 1) % 3], far = q / 16 % 2;
+		int v = 1 + far * 4 * axis[(q / 32 + 2) % 3] + q % 4 * a + q / 4 % 4 * b;
+		fprintf(out, "%d %d %d %d 1\n", v, far ? v + a : v + b, v + a + b, far ? v + b : v + a);
+	}
+	fprintf(out, "End\n");
+	long count = ftell(out);
+	fclose(out);
+	return (size_t)count;
+}
+
+static void assert_finite(const cau_frame *frame, int32_t vertex_count)
+{
+	for (int32_t i = 0; i < 3 * vertex_count; i++)
+		assert_true(isfinite(frame->position[i]));
+}
+
+// Nothing moves far, and nothing ends the session.
+static void stand(cau_session *session, const cau_session_info *info, double size_m)
+{
+	stage_step(session, (int)(stand_s / info->step_s));
+	cau_frame frame = stage_frame(session);
+	assert_finite(&frame, info->vertex_count);
+	for (int32_t i = 0; i < 3 * info->vertex_count; i++)
+		assert_true(fabs(frame.position[i] - info->rest_position[i]) < drift_most * size_m);
+}
+
+// The ball goes through the upper half, from side to side.
+static int32_t cut(cau_session *session, const cau_session_info *info, const cau_mesh_report *r)
+{
+	double radius_m = stage_tool(session, "ball")->definition.hot_radius_m;
+	double cut_s = (r->most_m[0] - r->least_m[0] + 2 * radius_m) / (radius_m / 2);
+	int ticks = (int)(cut_s / info->step_s);
+	double z = 0.3 * r->least_m[2] + 0.7 * r->most_m[2];
+	stage_energize(session, "ball", 1);
+	for (int tick = 0; tick < ticks; tick++) {
+		double s = (tick + 1.0) / ticks;
+		stage_move(session, "ball",
+		           r->least_m[0] - radius_m + s * (r->most_m[0] - r->least_m[0] + 2 * radius_m),
+		           0.5 * (r->least_m[1] + r->most_m[1]), z);
+		stage_step(session, 1);
+	}
+	cau_frame frame = stage_frame(session);
+	assert_finite(&frame, info->vertex_count);
+	return frame.statistics.elements_removed + frame.statistics.edges_parted;
+}
+
+// The jaws close around the highest vertex, deeper and deeper until they hold something.
+static int32_t grasp(cau_session *session, const cau_session_info *info)
+{
+	cau_frame frame = stage_frame(session);
+	int32_t top = 0;
+	for (int32_t v = 1; v < info->vertex_count; v++)
+		top = frame.position[3 * v + 2] > frame.position[3 * top + 2] ? v : top;
+	int32_t held = 0;
+	for (int mm = 2; mm <= 10 && !held; mm += 2) {
+		stage_move(session, "grasper", frame.position[3 * top], frame.position[3 * top + 1],
+		           info->rest_position[3 * top + 2] - 1e-3 * mm);
+		stage_step(session, (int)(0.5 / info->step_s));
+		stage_grasp(session, "grasper");
+		stage_step(session, (int)(0.3 / info->step_s));
+		held = stage_tool(session, "grasper")->grasped_vertices;
+		if (!held)
+			stage_release(session, "grasper");
+		stage_step(session, 1);
+		frame = stage_frame(session);
+	}
+	return held;
+}
+
+static void live(const cau_mesh_wish *wish)
+{
+	static cau_mesh_report report;
+	cau_error error = {0};
+	cau_scene_def *scene = malloc(sizeof *scene);
+	assert_non_null(scene);
+	if (cau_mesh_scene(wish, scene, &report, &error))
+		fail_msg("%s: %s: %s", wish->file, error.path, error.reason);
+	cau_session *session = stage_open(scene, 1);
+	cau_session_info info = stage_info(session);
+	double size_m = 0;
+	for (int c = 0; c < 3; c++)
+		size_m = fmax(size_m, report.most_m[c] - report.least_m[c]);
+	stand(session, &info, size_m);
+	int32_t held = grasp(session, &info);
+	stage_release(session, "grasper");
+	int32_t parted = cut(session, &info, &report);
+	print_message("%s: stood, %d vertices held, %d elements and edges parted\n", wish->file, held,
+	              parted);
+	assert_true(held > 0);
+	assert_true(parted > 0);
+	cau_session_destroy(session);
+	free(scene);
+}
+
+static void blocks_live(void **state)
+{
+	(void)state;
+	static char text[1 << 16];
+	for (int solid = 0; solid < 2; solid++) {
+		size_t count = write_block(solid, text, sizeof text);
+		live(&(cau_mesh_wish){
+			.file = solid ? "block" : "box", .bytes = text, .byte_count = count, .layer_kind = -1});
+	}
+}
+
+static void real_files_live(void **state)
+{
+	static const char *const files[] = {"liver.msh", "liver_low_volume.msh", "liver-smoothUV.obj"};
+	const char *folder = getenv("CAUTERY_MESHES");
+	(void)state;
+	for (size_t i = 0; i < sizeof files / sizeof *files; i++) {
+		char path[600];
+		snprintf(path, sizeof path, "%s/%s", folder ? folder : "", files[i]);
+		FILE *file = folder ? fopen(path, "r") : NULL;
+		if (!file) {
+			print_message("skipped: %s is not in the folder that CAUTERY_MESHES names\n", files[i]);
+			continue;
+		}
+		fclose(file);
+		live(&(cau_mesh_wish){.file = path, .layer_kind = -1});
+	}
+}
+
+int main(void)
+{
+	const struct CMUnitTest tests[] = {cmocka_unit_test(blocks_live),
+	                                   cmocka_unit_test(real_files_live)};
+	return cmocka_run_group_tests(tests, NULL, NULL);
+}
