@@ -215,7 +215,7 @@ static void add_cells(vtu *v, const cau_vtu_array *array, int64_t type, int64_t 
 		         type    ? type
 		         : known ? (int64_t)types[i]
 		                 : 255,
-		         corner + (int64_t)from, (int64_t)offset[i] - (int64_t)from, first,
+		         corner ? corner + (int64_t)from : NULL, (int64_t)offset[i] - (int64_t)from, first,
 		         i < region_count ? region[i] : 0);
 		from = floor(offset[i]);
 	}
