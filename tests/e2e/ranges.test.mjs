@@ -77,11 +77,12 @@ const WITH = {
 	grid_step_m: { hot_radius_m: 0.05, diffusivity_m2_s: 1e-8 },
 	diffusivity_m2_s: { hot_radius_m: 0.05, grid_step_m: 0.01 },
 };
-// Rules in words shut ends out: a quaternion's length is 1, a target is positive definite, a tick is of the past.
+// Rules in words shut ends out: a quaternion's length is 1, a target is positive definite, a tick is of the past,
+// a region is one of the layer's mesh.
 const IN_WORDS = ['rotation', 'target'];
 const OF_THE_PAST = ['session.fork', 'session.rewind', 'session.frame_at'];
 const isShutOut = ({ method }, { name }, end) =>
-	IN_WORDS.includes(name) || (OF_THE_PAST.includes(method) && name === 'tick' && end > 0);
+	IN_WORDS.includes(name) || (name === 'region' && end > 0) || (OF_THE_PAST.includes(method) && name === 'tick' && end > 0);
 
 function withValue(params, { name, property }, value) {
 	if (property.type !== 'array')

@@ -74,7 +74,8 @@ static bool is_word_bound(const cau_field *field, double value)
 {
 	bool definite = strcmp(field->name, "target") == 0;        // "positive definite"
 	bool fan = strcmp(field->name, "cells") == 0 && value < 3; // "of a pattern, 3 at least"
-	return definite || fan;
+	bool region = strcmp(field->name, "region") == 0 && value > 0; // "of the layer's mesh"
+	return definite || fan || region;
 }
 
 static void try_scene_value(cau_scene_def *scene, const cau_field *field, void *base, int32_t c,
