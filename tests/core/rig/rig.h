@@ -46,7 +46,8 @@ cau_layer_def *rig_add_links(rig *r, int32_t of, int32_t to, double reach_m);
 // Pins the vertices at rest inside the box.
 void rig_pin_box(rig *r, const double least_m[3], const double most_m[3]);
 
-// Tissue, laws and solver; kernels up to `tier` (NULL: test_tier() of rig/tier.h), a pool of `threads`.
+// Tissue, laws and solver; kernels up to `tier` (NULL: test_tier() of rig/tier.h), a pool of
+// `threads`.
 void rig_build(rig *r, const char *tier, int32_t threads);
 // The factor and what keeps it in step with cuts.
 void rig_factor(rig *r);
