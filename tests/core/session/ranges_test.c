@@ -72,8 +72,8 @@ static void make_way(cau_tool_def *tool, const cau_field *field)
 
 static bool is_word_bound(const cau_field *field, double value)
 {
-	bool definite = strcmp(field->name, "target") == 0;        // "positive definite"
-	bool fan = strcmp(field->name, "cells") == 0 && value < 3; // "of a pattern, 3 at least"
+	bool definite = strcmp(field->name, "target") == 0;            // "positive definite"
+	bool fan = strcmp(field->name, "cells") == 0 && value < 3;     // "of a pattern, 3 at least"
 	bool region = strcmp(field->name, "region") == 0 && value > 0; // "of the layer's mesh"
 	return definite || fan || region;
 }
