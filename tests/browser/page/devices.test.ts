@@ -72,6 +72,11 @@ describe('devices beside mouse and keys', () => {
     expect(await page.locator('#space-mouse').textContent()).toContain('A 3D mouse leads');
     await page.evaluate(() => (window as unknown as { plugIn(): void }).plugIn()); // nobody has to choose it again
     await page.locator('#space-mouse').getByText('Test SpaceMouse leads the tool').waitFor();
+    await report(3, [1]); // still down from before: no press
+    const { tick } = await viewer.state();
+    await viewer.until((from) => window.cautery.tick > from + 30, tick, 'half a second passes');
+    expect((await viewer.state()).energized).toBe(false);
+    await report(3, [0]);
     await report(3, [1]);
     await viewer.until(() => window.cautery.energized, null, 'energy is on again');
     await report(3, [0]);

@@ -94,7 +94,10 @@ static void a_broken_rule_faults_the_session(void **state)
 	cau_order *order = hosted_new_order(RESET, CAU_ORDER_RESET, CAU_METHOD_SESSION_RESET);
 	assert_int_equal(ask(RESET, order)->status, CAU_OK);
 	assert_int_equal(cau_decided_state(t.h), CAU_SESSION_PAUSED);
-	assert_false(t.h->rule_reported);
+	pthread_mutex_lock(&t.h->deciding);
+	bool reported = t.h->rule_reported;
+	pthread_mutex_unlock(&t.h->deciding);
+	assert_false(reported);
 }
 
 static void what_is_on_is_stepped(void **state)

@@ -111,7 +111,7 @@ def build(folder, root, compiler):
     subprocess.run(
         [compiler, "-O1", "-DNDEBUG", "-D_GNU_SOURCE", "-std=gnu17",
          "-I" + os.path.dirname(os.path.dirname(folder)) + "/server", "-I" + root + "/core/types",
-         "-I" + root + "/protocol/include", "-I" + root + "/tests", *sources, "-lm", "-o", program],
+         "-I" + root + "/protocol/include", "-I" + root + "/tests", *sources, root + "/core/types/assert.c", "-lm", "-o", program],
         check=True)
     return program
 

@@ -40,9 +40,8 @@ export class SpaceMouse {
   /** shares of the way: right, towards the hand, down; and turns about them */
   private readonly axes = [0, 0, 0, 0, 0, 0];
   private device: HidDevice | null = null;
+  /** as last reported; it outlives an unplugged mouse, so that no press counts until the button was up */
   private pressed = false;
-  /** the button was down when the mouse was unplugged; no press counts until it was seen up */
-  private stuck = false;
   private last = performance.now();
 
   constructor(
@@ -113,8 +112,6 @@ export class SpaceMouse {
 
   /** Every change of any button reports all of them: only the first one's own press is a press. */
   private press(down: boolean): void {
-    this.stuck &&= down;
-    if (this.stuck) return;
     if (down && !this.pressed) this.led.hold();
     if (!down && this.pressed) this.led.letGo(false);
     this.pressed = down;
@@ -122,8 +119,6 @@ export class SpaceMouse {
 
   private lose(): void {
     this.device = null;
-    this.stuck ||= this.pressed;
-    this.pressed = false;
     this.axes.fill(0);
     this.led.letGo(true);
     this.changed();
