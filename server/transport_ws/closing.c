@@ -83,8 +83,11 @@ static void begin_closing(cau_connection *c, int code, const char *reason)
 {
 	c->closing = code;
 	snprintf(c->closing_reason, sizeof c->closing_reason, "%s", reason);
-	cau_log(CAU_LOG_INFO, NULL, "connection_closing", "connection=%llu code=%d reason=\"%s\"",
-	        (unsigned long long)c->id, c->closing, c->closing_reason);
+	if (c->served)
+		cau_log(CAU_LOG_INFO, NULL, "connection_closing", "connection=%llu code=%d reason=\"%s\"",
+		        (unsigned long long)c->id, c->closing, c->closing_reason);
+	else
+		cau_outsiders_note(c->network, c->owner, c->closing_reason);
 	lws_set_timer_usecs(c->wsi, 1);
 	lws_callback_on_writable(c->wsi);
 }

@@ -40,6 +40,7 @@ static cau_connection *make(cau_network *network, struct lws *wsi)
 	bool told = cau_request_header(wsi, WSI_TOKEN_X_FORWARDED_FOR, forwarded, sizeof forwarded);
 	cau_auth_find_address(network->def.config, told ? forwarded : NULL, c->address,
 	                      sizeof c->address);
+	cau_address_owner(c->address, c->owner);
 	return c;
 }
 
@@ -61,7 +62,7 @@ static int opened(cau_network *network, struct lws *wsi, cau_connection **slot)
 	if (!cau_input_begin(c) ||
 	    !network->def.handler.opened(network->def.handler.user, c, asked ? asked : ""))
 		return -1;
-	cau_strangers_bound_silent(network, c->address);
+	cau_strangers_bound_silent(network, c);
 	return 0;
 }
 

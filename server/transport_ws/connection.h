@@ -40,6 +40,7 @@ typedef struct cau_connection {
 	bool unplaced; // as many as may be were served when it came: it may only resume
 	int descriptor;
 	char address[CAU_ADDRESS_BYTES]; // the peer's, as text; "" if nobody knows it
+	char owner[CAU_ADDRESS_BYTES];   // who has this address, see cau_address_owner
 
 	// what comes in
 	cau_reading reading;

@@ -17,14 +17,25 @@ enum {
 	HEADER_BYTES = 512,
 	NOTSENT_LOWAT_BYTES = 16384, // see set_socket in connection.c
 	CAU_CLOSE_FRAME_BYTES = 4 + CAU_CLOSE_REASON_BYTES,
+	CAU_OUTSIDERS_MOST = 64,
 };
 
 // One whose request is still to come.
 typedef struct cau_unread {
 	struct lws *wsi; // NULL: none has this descriptor
 	double since_s;
+	bool has_sent; // bytes have come; this thread has yet to read them
 	char address[CAU_ADDRESS_BYTES];
+	char owner[CAU_ADDRESS_BYTES]; // see cau_address_owner
 } cau_unread;
+
+// What ended without hello, of one owner of addresses, since the last line of the log.
+typedef struct cau_outsider {
+	char owner[CAU_ADDRESS_BYTES]; // "": the row is free
+	char reason[CAU_CLOSE_REASON_BYTES];
+	uint64_t count;
+	double told_s;
+} cau_outsider;
 
 struct cau_network {
 	cau_network_def def;
@@ -47,6 +58,7 @@ struct cau_network {
 	cau_connection *connections; // open ones
 	cau_connection *lingering;   // ending ones, which the handler has left
 	cau_network_counts counts;
+	cau_outsider outsiders[CAU_OUTSIDERS_MOST];
 	lws_sorted_usec_list_t sul;
 };
 
@@ -70,7 +82,7 @@ int cau_input_callback(struct lws *wsi, enum lws_callback_reasons reason, void *
 void cau_network_comes_round(cau_network *network);
 
 // ---- refusals.c
-void cau_note_refusal(cau_network *network, const cau_http_refusal *refusal);
+void cau_note_refusal(cau_network *network, struct lws *wsi, const cau_http_refusal *refusal);
 void cau_refuse_request(struct lws *wsi, const cau_http_refusal *refusal);
 
 // ---- unread.c
@@ -82,10 +94,18 @@ void cau_unread_remove(cau_network *network, struct lws *wsi);
 void cau_unread_complaint(cau_network *network, const char *line);
 
 // ---- strangers.c
+// Who has an address, as text: of IPv6 the network of 64 bits, else the address itself.
+void cau_address_owner(const char *address, char owner[CAU_ADDRESS_BYTES]);
 // Closes the oldest connection whose request has not come, or that has said no hello, if there are
-// too many of this address or of all.
-void cau_strangers_bound_unread(cau_network *network, const char *address);
-void cau_strangers_bound_silent(cau_network *network, const char *address);
+// too many of this one's owner or of all.
+void cau_strangers_bound_unread(cau_network *network, const cau_unread *newest);
+void cau_strangers_bound_silent(cau_network *network, const cau_connection *newest);
+
+// ---- outsiders.c
+// A connection of `owner` ended without hello.
+void cau_outsiders_note(cau_network *network, const char *owner, const char *reason);
+// Writes the lines that are due; several times a minute.
+void cau_outsiders_tick(cau_network *network, double now_s);
 
 // ---- input.c
 bool cau_input_open(cau_network *network);

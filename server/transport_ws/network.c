@@ -104,6 +104,7 @@ static void tick(lws_sorted_usec_list_t *sul)
 	cau_network *network = lws_container_of(sul, cau_network, sul);
 	cau_network_comes_round(network);
 	double now_s = cau_monotonic_s();
+	cau_outsiders_tick(network, now_s);
 	network->def.handler.tick(network->def.handler.user);
 	for (cau_connection *c = network->connections; c; c = c->next)
 		cau_connection_watch(c, now_s);

@@ -4,8 +4,9 @@
 // request has not come yet are counted apart from WebSocket connections. Beyond a limit the oldest
 // is closed, because a client that means to say hello does so at once.
 #include <arpa/inet.h>
+#include <poll.h>
+#include <stdio.h>
 #include <string.h>
-#include <sys/socket.h>
 
 #include "auth/list.h"
 #include "transport_ws/internal.h"
@@ -14,47 +15,69 @@ enum {
 	STRANGERS_MOST = 256,
 	OF_ADDRESS_MOST = 128,
 	NETWORK_BYTES = 8, // of an IPv6 address: its owner chooses the rest
+	POLLED_AT_ONCE = 64,
 	RESUMES_MOST = 16, // beyond max_connections, for clients that come back to their tools
 };
 
-static bool is_same_owner(const char *a, const char *b)
+void cau_address_owner(const char *address, char owner[CAU_ADDRESS_BYTES])
 {
-	struct in6_addr first, second;
-	if (inet_pton(AF_INET6, a, &first) == 1 && inet_pton(AF_INET6, b, &second) == 1)
-		return memcmp(&first, &second, NETWORK_BYTES) == 0;
-	return strcmp(a, b) == 0;
-}
-
-// Whether bytes have come that this thread has yet to read: such a one is not closed.
-static bool has_input(int descriptor)
-{
-	char byte;
-	return recv(descriptor, &byte, 1, MSG_PEEK | MSG_DONTWAIT) > 0;
+	struct in6_addr parsed;
+	snprintf(owner, CAU_ADDRESS_BYTES, "%s", address);
+	if (inet_pton(AF_INET6, address, &parsed) != 1)
+		return;
+	memset(parsed.s6_addr + NETWORK_BYTES, 0, sizeof parsed.s6_addr - NETWORK_BYTES);
+	inet_ntop(AF_INET6, &parsed, owner, CAU_ADDRESS_BYTES);
 }
 
 // ---- connections whose request has not come yet
-// The oldest that has sent nothing, of an address or (NULL) of all; NULL if at most `most` are
-// open.
-static cau_unread *find_unread(const cau_network *network, const char *address, int most)
+static bool is_unread(const cau_unread *unread, const char *owner)
+{
+	return unread->wsi && (!owner || strcmp(unread->owner, owner) == 0);
+}
+
+// Asks the kernel which have sent something. Asked once for each: what has come is read soon.
+static void look_at_input(cau_network *network, const char *owner)
+{
+	struct pollfd polled[POLLED_AT_ONCE];
+	int count = 0;
+	for (int i = 0; i <= network->unread_capacity; i++) {
+		bool is_last = i == network->unread_capacity;
+		if (!is_last && is_unread(&network->unread[i], owner) && !network->unread[i].has_sent)
+			polled[count++] = (struct pollfd){.fd = i, .events = POLLIN};
+		if (count < POLLED_AT_ONCE && !is_last)
+			continue;
+		poll(polled, (nfds_t)count, 0);
+		while (count > 0) {
+			count--;
+			network->unread[polled[count].fd].has_sent = polled[count].revents & POLLIN;
+		}
+	}
+}
+
+// The oldest that has sent nothing, of an owner or (NULL) of all; NULL if at most `most` are open.
+static cau_unread *find_unread(cau_network *network, const char *owner, int most)
 {
 	cau_unread *oldest = NULL;
 	int count = 0;
+	for (int i = 0; i < network->unread_capacity; i++)
+		count += is_unread(&network->unread[i], owner);
+	if (count <= most)
+		return NULL;
+	look_at_input(network, owner);
 	for (int i = 0; i < network->unread_capacity; i++) {
 		cau_unread *unread = &network->unread[i];
-		if (!unread->wsi || (address && !is_same_owner(unread->address, address)))
-			continue;
-		count++;
-		if ((!oldest || unread->since_s < oldest->since_s) && !has_input(i))
+		if (is_unread(unread, owner) && !unread->has_sent &&
+		    (!oldest || unread->since_s < oldest->since_s))
 			oldest = unread;
 	}
-	return count > most ? oldest : NULL;
+	return oldest;
 }
 
 // Behind a proxy the address is known with the request; until then it is the proxy's.
-void cau_strangers_bound_unread(cau_network *network, const char *address)
+void cau_strangers_bound_unread(cau_network *network, const cau_unread *newest)
 {
-	bool is_proxy = cau_list_has(network->def.config->trusted_proxies, address);
-	cau_unread *oldest = is_proxy ? NULL : find_unread(network, address, OF_ADDRESS_MOST);
+	bool is_proxy = cau_list_has(network->def.config->trusted_proxies, newest->address);
+	cau_unread *oldest = is_proxy ? NULL : find_unread(network, newest->owner, OF_ADDRESS_MOST);
 	if (!oldest)
 		oldest = find_unread(network, NULL, STRANGERS_MOST);
 	if (!oldest)
@@ -66,26 +89,36 @@ void cau_strangers_bound_unread(cau_network *network, const char *address)
 }
 
 // ---- WebSocket connections without hello
-static bool is_silent(const cau_connection *c, const char *address)
+static bool is_silent(const cau_connection *c, const char *owner)
 {
-	return !c->served && !c->closing && (!address || is_same_owner(c->address, address));
+	return !c->served && !c->closing && (!owner || strcmp(c->owner, owner) == 0);
 }
 
-static cau_connection *find_silent(const cau_network *network, const char *address, int most)
+// Whether bytes have come that this thread has yet to read: such a one is not closed.
+static bool has_input(int descriptor)
 {
-	cau_connection *oldest = NULL;
+	struct pollfd polled = {.fd = descriptor, .events = POLLIN};
+	return poll(&polled, 1, 0) > 0 && polled.revents & POLLIN;
+}
+
+// New ones come first in the list; the oldest without input is soon found from its end.
+static cau_connection *find_silent(const cau_network *network, const char *owner, int most)
+{
+	cau_connection *last = NULL;
 	int count = 0;
-	for (cau_connection *c = network->connections; c; c = c->next)
-		count += is_silent(c, address);
-	for (cau_connection *c = network->connections; c && count > most; c = c->next)
-		if (is_silent(c, address) && !has_input(c->descriptor))
-			oldest = c; // new ones come first
-	return oldest;
+	for (cau_connection *c = network->connections; c; c = c->next) {
+		count += is_silent(c, owner);
+		last = c;
+	}
+	for (cau_connection *c = last; c && count > most; c = c->previous)
+		if (is_silent(c, owner) && !has_input(c->descriptor))
+			return c;
+	return NULL;
 }
 
-void cau_strangers_bound_silent(cau_network *network, const char *address)
+void cau_strangers_bound_silent(cau_network *network, const cau_connection *newest)
 {
-	cau_connection *oldest = find_silent(network, address, OF_ADDRESS_MOST);
+	cau_connection *oldest = find_silent(network, newest->owner, OF_ADDRESS_MOST);
 	if (!oldest)
 		oldest = find_silent(network, NULL, STRANGERS_MOST);
 	if (!oldest)

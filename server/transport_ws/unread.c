@@ -26,7 +26,7 @@ void cau_refuse_unread(cau_network *network, struct lws *wsi, bool large)
 {
 	const cau_http_refusal *refusal = large ? &too_large : &bad_request;
 	char text[CAU_HTTP_REFUSAL_BYTES];
-	cau_note_refusal(network, refusal);
+	cau_note_refusal(network, wsi, refusal);
 	cau_wsi_last_words(wsi, text, cau_http_write_refusal(refusal, text, sizeof text));
 }
 
@@ -70,7 +70,8 @@ bool cau_unread_add(cau_network *network, struct lws *wsi)
 	*unread = (cau_unread){.wsi = wsi, .since_s = cau_monotonic_s()};
 	lws_get_peer_simple(wsi, unread->address, sizeof unread->address);
 	cau_auth_find_address(network->def.config, NULL, unread->address, sizeof unread->address);
-	cau_strangers_bound_unread(network, unread->address);
+	cau_address_owner(unread->address, unread->owner);
+	cau_strangers_bound_unread(network, unread);
 	return true;
 }
 
