@@ -44,7 +44,7 @@ static void note(cau_hosted *h, const cau_order *order, const cau_action *action
 }
 
 // The log of a faulted session ends with the fault; its core goes dark all the same.
-static bool is_off_of_faulted(const cau_hosted *h, const cau_command *command)
+static bool is_off_of_faulted(cau_hosted *h, const cau_command *command)
 {
 	return cau_decided_state(h) == CAU_SESSION_FAULTED &&
 	       command->kind == CAU_COMMAND_TOOL_ENERGIZE && !command->as.energized;

@@ -192,8 +192,8 @@ bool cau_decide_broken(cau_hosted *h, char *reason, size_t bytes)
 	pthread_mutex_lock(&h->deciding);
 	bool broken = *h->logic->broken, first = broken && !h->rule_reported;
 	snprintf(reason, bytes, "%s", h->logic->fault);
-	pthread_mutex_unlock(&h->deciding);
 	h->rule_reported = broken;
+	pthread_mutex_unlock(&h->deciding);
 	return first;
 }
 
@@ -306,6 +306,26 @@ void cau_decide_flush_trace(cau_hosted *h)
 }
 
 // ---- from any thread ----------------------------------------------------------------------------
+
+int cau_decided_state(cau_hosted *h)
+{
+	pthread_mutex_lock(&h->deciding);
+	int state = h->logic->state;
+	pthread_mutex_unlock(&h->deciding);
+	return state;
+}
+
+cau_decided cau_decided_now(cau_hosted *h)
+{
+	pthread_mutex_lock(&h->deciding);
+	cau_decided now = {.state = h->logic->state,
+	                   .speed = h->logic->speed,
+	                   .steps_left = h->logic->steps_left,
+	                   .drive_count = h->logic->drive_count};
+	memcpy(now.fault, h->logic->fault, sizeof now.fault);
+	pthread_mutex_unlock(&h->deciding);
+	return now;
+}
 
 bool cau_decide_find(cau_hosted *h, const char *tool, cau_drive *drive)
 {

@@ -51,10 +51,11 @@ void cau_frames_publish(cau_hosted *h, double now_s)
 	bool made = false;
 	p.hosted = h;
 	follow_channels(h);
+	cau_decided decided = cau_decided_now(h);
 	cau_stream_moment moment = {
 		.now_s = now_s,
 		.all = atomic_exchange(&h->dirty, false), // what changes from here on is shown next time
-		.moving = cau_decided_state(h) == CAU_SESSION_RUNNING || h->logic->steps_left,
+		.moving = decided.state == CAU_SESSION_RUNNING || decided.steps_left,
 		.sample = fill_sample,
 		.user = &p,
 	};

@@ -259,11 +259,17 @@ void cau_decide_arrived(cau_hosted *h, int state, const char *cause);
 bool cau_decide_find(cau_hosted *h, const char *tool, cau_drive *drive);
 // Copies of all, at most CAU_MAX_TOOLS.
 int32_t cau_decide_drives(cau_hosted *h, cau_drive *drives);
-// CAU_SESSION_*. On the session's worker, which alone changes it.
-static inline int cau_decided_state(const cau_hosted *h)
-{
-	return h->logic->state;
-}
+// CAU_SESSION_*. Any thread whose event breaks a safety rule makes it CAU_SESSION_FAULTED.
+int cau_decided_state(cau_hosted *h);
+// A copy of all that is decided but for the queue.
+typedef struct cau_decided {
+	int state;
+	double speed;
+	int64_t steps_left;
+	int32_t drive_count;
+	char fault[sizeof((cau_logic *)0)->fault];
+} cau_decided;
+cau_decided cau_decided_now(cau_hosted *h);
 
 // ---- apply.c: what each order does. Takes the order if it is done or answered.
 cau_outcome_kind cau_hosted_apply(cau_hosted *h, cau_order *order, const cau_action *action);

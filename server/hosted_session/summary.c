@@ -6,24 +6,25 @@
 
 void cau_hosted_publish_summary(cau_hosted *h)
 {
+	cau_decided decided = cau_decided_now(h);
 	cau_wire_session_summary now = {
-		.state = h->starting ? CAU_SESSION_STARTING : cau_decided_state(h),
+		.state = h->starting ? CAU_SESSION_STARTING : decided.state,
 		.tick = (int64_t)h->tick,
 		.time_s = (double)h->tick * h->scene->step_s,
 		.step_s = h->scene->step_s,
-		.speed = h->logic->speed,
+		.speed = decided.speed,
 		.realtime_factor = h->realtime_factor,
 		.vertex_count = h->info.vertex_count,
 		.face_count = h->info.face_count,
-		.tool_count = h->logic->drive_count,
+		.tool_count = decided.drive_count,
 		.epoch = h->epoch,
-		.has_fault = cau_decided_state(h) == CAU_SESSION_FAULTED && *h->logic->fault,
+		.has_fault = decided.state == CAU_SESSION_FAULTED && *decided.fault,
 	};
 	now.has_stage = *h->stage;
 	snprintf(now.stage, sizeof now.stage, "%s", h->stage);
 	memcpy(now.session, h->id, sizeof now.session);
 	memcpy(now.scene, h->scene->name, sizeof now.scene);
-	snprintf(now.fault, sizeof now.fault, "%.319s", h->logic->fault);
+	snprintf(now.fault, sizeof now.fault, "%.319s", decided.fault);
 	pthread_mutex_lock(&h->mutex);
 	h->summary = now;
 	h->counts.realtime_factor = h->realtime_factor;

@@ -60,12 +60,13 @@ void cau_time_stepped(cau_hosted *h, cau_order *order, bool failed)
 {
 	cau_wire_tick_result result = {(int64_t)h->tick, 0};
 	cau_error error = {0};
-	if (failed && !*h->logic->fault) { // it is gone
+	cau_decided decided = cau_decided_now(h);
+	if (failed && !*decided.fault) { // it is gone
 		cau_hosted_refuse_gone(h, order);
 		return;
 	}
 	if (failed) {
-		cau_fail(&error, CAU_FAULTED, "", "%s", h->logic->fault);
+		cau_fail(&error, CAU_FAULTED, "", "%s", decided.fault);
 		cau_answer_fail(order, &error, CAU_RPC_FAULTED);
 		return;
 	}

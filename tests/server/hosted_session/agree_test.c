@@ -12,7 +12,7 @@
 #include "server/double/fake_session.h"
 #include "server/hosted_session/hosted_fixture.h"
 
-enum { CREATED, TAKEN, ON, STEPPED, OFF, FAULTED, RESET };
+enum { CREATED, TAKEN, ON, STEPPED, OFF, FAULTED, RESET, AGAIN };
 
 static atomic_bool is_broken;
 
@@ -94,6 +94,8 @@ static void a_broken_rule_faults_the_session(void **state)
 	cau_order *order = hosted_new_order(RESET, CAU_ORDER_RESET, CAU_METHOD_SESSION_RESET);
 	assert_int_equal(ask(RESET, order)->status, CAU_OK);
 	assert_int_equal(cau_decided_state(t.h), CAU_SESSION_PAUSED);
+	// the worker's next act forgets the report, so that another broken rule is reported
+	assert_int_equal(step(AGAIN, 1)->status, CAU_OK);
 	pthread_mutex_lock(&t.h->deciding);
 	bool reported = t.h->rule_reported;
 	pthread_mutex_unlock(&t.h->deciding);
