@@ -307,26 +307,6 @@ void cau_decide_flush_trace(cau_hosted *h)
 
 // ---- from any thread ----------------------------------------------------------------------------
 
-int cau_decided_state(cau_hosted *h)
-{
-	pthread_mutex_lock(&h->deciding);
-	int state = h->logic->state;
-	pthread_mutex_unlock(&h->deciding);
-	return state;
-}
-
-cau_decided cau_decided_now(cau_hosted *h)
-{
-	pthread_mutex_lock(&h->deciding);
-	cau_decided now = {.state = h->logic->state,
-	                   .speed = h->logic->speed,
-	                   .steps_left = h->logic->steps_left,
-	                   .drive_count = h->logic->drive_count};
-	memcpy(now.fault, h->logic->fault, sizeof now.fault);
-	pthread_mutex_unlock(&h->deciding);
-	return now;
-}
-
 bool cau_decide_find(cau_hosted *h, const char *tool, cau_drive *drive)
 {
 	pthread_mutex_lock(&h->deciding);

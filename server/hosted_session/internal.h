@@ -259,6 +259,8 @@ void cau_decide_arrived(cau_hosted *h, int state, const char *cause);
 bool cau_decide_find(cau_hosted *h, const char *tool, cau_drive *drive);
 // Copies of all, at most CAU_MAX_TOOLS.
 int32_t cau_decide_drives(cau_hosted *h, cau_drive *drives);
+
+// ---- decided.c
 // CAU_SESSION_*. Any thread whose event breaks a safety rule makes it CAU_SESSION_FAULTED.
 int cau_decided_state(cau_hosted *h);
 // A copy of all that is decided but for the queue.

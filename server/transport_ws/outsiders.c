@@ -18,8 +18,8 @@ static void write_line(cau_outsider *o, double now_s)
 	o->told_s = now_s;
 }
 
-// The row of an owner: its own, or a free one, or, where all are in use, the first, which is for all
-// who have none.
+// The row of an owner: its own, or a free one, or, where all are in use, the first, which is for
+// all who have none.
 static cau_outsider *find_row(cau_network *network, const char *owner)
 {
 	cau_outsider *free_row = NULL;

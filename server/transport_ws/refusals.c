@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// A request that is refused: a count, its part in a line of the log, and the answer through libwebsockets.
+// A request that is refused: a count, its part in a line of the log, and the answer through
+// libwebsockets.
 #include <stdio.h>
 
 #include "transport_ws/internal.h"
