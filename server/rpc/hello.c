@@ -12,12 +12,11 @@ enum { WIRE_VERSION = 1 };
 
 #define REFUSALS_TOLD_S 1. // between log lines: whoever tries tokens does not fill the log
 
-static void refuse(const cau_call *call, int32_t code, cau_close_code close, const char *reason)
+static void answer_refusal(const cau_call *call, int32_t code, const char *reason)
 {
 	cau_error error = {0};
 	cau_fail(&error, CAU_BAD_VALUE, "", "%s", reason);
 	cau_call_fail(call, &error, code);
-	cau_connection_close(call->peer->connection, close, NULL);
 }
 
 static void fill_limits(const cau_config *config, cau_wire_limits *limits)
@@ -68,7 +67,8 @@ static void replace(cau_service *service, uint64_t connection)
 		cau_connection_close(old, CAU_CLOSE_RESUMED, NULL);
 }
 
-static void refuse_token(const cau_call *call)
+// Whoever guesses tokens hears a second later that one was wrong. Without a token nobody guesses.
+static void refuse_token(const cau_call *call, bool is_guess)
 {
 	cau_service *service = call->peer->service;
 	double now_s = cau_monotonic_s();
@@ -78,8 +78,11 @@ static void refuse_token(const cau_call *call)
 		cau_log(CAU_LOG_WARNING, NULL, "token_refused", "address=%s total=%llu",
 		        call->peer->connection->address, (unsigned long long)service->tokens_refused);
 	}
-	refuse(call, CAU_RPC_UNAUTHORIZED, CAU_CLOSE_UNAUTHORIZED,
-	       "the token is not known, or has expired");
+	answer_refusal(call, CAU_RPC_UNAUTHORIZED, "the token is not known, or has expired");
+	if (is_guess)
+		cau_connection_close_late(call->peer->connection, CAU_CLOSE_UNAUTHORIZED);
+	else
+		cau_connection_close(call->peer->connection, CAU_CLOSE_UNAUTHORIZED, NULL);
 }
 
 void cau_call_hello(cau_call *call)
@@ -100,12 +103,12 @@ void cau_call_hello(cau_call *call)
 		return;
 	}
 	if (!cau_auth_role(service->auth, params.token, strlen(params.token), &role)) {
-		refuse_token(call);
+		refuse_token(call, *params.token);
 		return;
 	}
 	peer->grant = cau_auth_grant(service->auth, params.token, strlen(params.token));
 	if (!cau_auth_grant_bounds(service->auth, peer->grant, &peer->bounds)) {
-		refuse_token(call); // it was taken back at this very moment
+		refuse_token(call, true); // it was taken back at this very moment
 		return;
 	}
 	bool resumes = params.has_resume && cau_hub_keeps(service->hub, params.resume);
@@ -122,7 +125,8 @@ void cau_call_hello(cau_call *call)
 	peer->client.connection = peer->connection->id;
 	if (!cau_hub_attach(service->hub, &peer->client, params.has_resume ? params.resume : NULL,
 	                    &replaced)) {
-		refuse(call, CAU_RPC_LIMIT, CAU_CLOSE_FULL, "too many clients");
+		answer_refusal(call, CAU_RPC_LIMIT, "too many clients");
+		cau_connection_close(peer->connection, CAU_CLOSE_FULL, NULL);
 		return;
 	}
 	replace(service, replaced);

@@ -15,6 +15,7 @@
 enum {
 	CLOSE_WITHIN_S = 2, // a round trip around the world and a busy peer
 	LINGERING_MOST = 64,
+	MUTED_S = 1, // between two guesses of a token
 	UNHEARD_PINGS = 3,
 	CLOSE_FRAME = 0x88,
 	CODE_BYTES = 2,
@@ -103,6 +104,12 @@ void cau_connection_close(cau_connection *c, cau_close_code code, const char *re
 	begin_closing(c, (int)code, reason ? reason : cau_close_reason(code));
 }
 
+void cau_connection_close_late(cau_connection *c, cau_close_code code)
+{
+	c->muted = !c->closing;
+	cau_connection_close(c, code, NULL);
+}
+
 void cau_connection_closed_by_peer(cau_connection *c, int code)
 {
 	c->peer_ended = true; // it sends nothing after its close frame
@@ -121,11 +128,15 @@ void cau_connection_ended_by_peer(cau_connection *c)
 
 void cau_connection_timer(cau_connection *c)
 {
-	if (c->closing && c->left) {
+	if (c->muted && c->left) {
+		c->muted = false;
+		lws_callback_on_writable(c->wsi);
+		lws_set_timer_usecs(c->wsi, CLOSE_WITHIN_S * LWS_US_PER_SEC);
+	} else if (c->closing && c->left) {
 		reset(c);
 	} else if (c->closing) {
 		cau_connection_leave(c);
-		lws_set_timer_usecs(c->wsi, CLOSE_WITHIN_S * LWS_US_PER_SEC);
+		lws_set_timer_usecs(c->wsi, (c->muted ? MUTED_S : CLOSE_WITHIN_S) * LWS_US_PER_SEC);
 	} else if (!c->served && c->unplaced) {
 		cau_connection_close(c, CAU_CLOSE_FULL, CAU_NO_PLACE);
 	} else if (!c->served) {

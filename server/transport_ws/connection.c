@@ -129,6 +129,8 @@ static int writable(cau_network *network, cau_connection *c)
 {
 	if (c->reading < CAU_READING_OURS && !take_over(c))
 		return -1;
+	if (c->muted)
+		return 0;
 	if (c->pong_due && !c->close_sent)
 		return write_pong(c);
 	cau_buffer *buffer = take_control(c);

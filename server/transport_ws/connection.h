@@ -60,6 +60,7 @@ typedef struct cau_connection {
 	// how it ends, see closing.c
 	int closing; // a close code, 0 while open
 	char closing_reason[CAU_CLOSE_REASON_BYTES];
+	bool muted;      // nothing is written to it for a second
 	bool close_sent; // what still comes in is read and dropped until the peer has
 	                 // ended
 	bool peer_ended; // it sends no more
@@ -80,3 +81,5 @@ void cau_connection_want_frame(cau_connection *connection);
 // Sends what is queued, then closes; the handler hears of the end a moment
 // later, not from within. The first reason stands; NULL is the code's own.
 void cau_connection_close(cau_connection *connection, cau_close_code code, const char *reason);
+// The same, but all that is queued waits for a second: for answers that tell whoever guesses.
+void cau_connection_close_late(cau_connection *connection, cau_close_code code);

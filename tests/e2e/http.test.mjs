@@ -94,7 +94,9 @@ test('a token gives its role, and none is refused with 4002', async () => {
 	for (const token of ['wrong-token-0123456789', undefined]) {
 		const client = new Client(daemon.url());
 		await client.opened;
+		const began = performance.now();
 		await assert.rejects(client.call('hello', { version: 1, client: 'x', token }), { code: -32042 });
+		assert.ok(!token || performance.now() - began > 900, 'a wrong one is answered after a second');
 		assert.equal((await client.closed).code, 4002);
 	}
 	await Promise.all([admin.close(), viewer.close()]);

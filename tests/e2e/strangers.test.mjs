@@ -3,6 +3,7 @@
 import assert from 'node:assert/strict';
 import { fork } from 'node:child_process';
 import { mkdtempSync, rmSync, writeFileSync } from 'node:fs';
+import { connect } from 'node:net';
 import { tmpdir } from 'node:os';
 import { join } from 'node:path';
 import { after, before, test } from 'node:test';
@@ -81,4 +82,34 @@ test('a driver that lost its connection comes back to its tools where all places
 	const again = await own.connect({ hello: { resume: driver.hello.resume } });
 	await again.call('tool.move', { session, tool: 'hook', position_m: [0, 0, 0.02], rotation: AT_REST });
 	await Promise.all([other, third, again].map((client) => client.close()));
+});
+
+const UPGRADE = 'GET /v1 HTTP/1.1\r\nHost: 127.0.0.1\r\nConnection: Upgrade\r\nUpgrade: websocket\r\n'
+	+ 'Sec-WebSocket-Version: 13\r\nSec-WebSocket-Key: dGhlIHNhbXBsZSBub25jZQ==\r\nSec-WebSocket-Protocol: cautery.v1\r\n\r\n';
+
+/** Opens a WebSocket from an address, or is refused, and goes. */
+function comeAndGo(port, address, request) {
+	return new Promise((resolve) => {
+		const socket = connect({ port, host: '127.0.0.1', localAddress: address });
+		socket.on('connect', () => socket.write(request));
+		socket.once('data', () => socket.destroy());
+		socket.on('error', () => {});
+		socket.on('close', resolve);
+	});
+}
+
+test('whoever says no hello writes one line a minute, and all beyond 63 addresses write one together', async (t) => {
+	const own = await Daemon.start();
+	t.after(() => own.end());
+	const began = performance.now();
+	for (let i = 0; i < 300; i++)
+		await comeAndGo(own.port, `127.0.1.${1 + i % 100}`, i % 2 ? UPGRADE : UPGRADE.replace('cautery.v1', 'nobody'));
+	await own.log(/event=ended_without_hello address=others/);
+	await (await own.connect()).close();
+	const addresses = own.lines.filter((line) => line.includes('event=ended_without_hello'))
+		.map((line) => /address=(\S+)/.exec(line)[1]);
+	assert.ok(performance.now() - began < 60_000, 'all of it came within the first minute');
+	assert.equal(new Set(addresses).size, 64);
+	assert.equal(addresses.length, 64);
+	assert.ok(!own.lines.some((line) => /handshake_refused|connection_closing.*without hello/.test(line)));
 });
