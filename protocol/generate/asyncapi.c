@@ -301,7 +301,7 @@ static void write_channel(cau_json_writer *writer)
 	cau_json_string(writer, "address", "/v1");
 	cau_json_string(writer, "description",
 	                "WebSocket with subprotocol " CAU_SUBPROTOCOL
-	                ". Binary messages are told in README.md.");
+	                ". README.md describes binary messages.");
 	cau_json_open(writer, "messages", '{');
 	for (int i = 0; i < CAU_METHOD_COUNT; i++) {
 		const cau_method_info *info = cau_method_describe((cau_method)i);

@@ -76,13 +76,14 @@ static void write_frames(FILE *out)
 	                            .tool_count = 1,
 	                            .tools = &tool};
 	check(cau_frame_encoder_init(storage, sizeof storage, &def, epoch, &encoder, NULL));
-	fputs("\n## A key frame\n\nSession 7, profile 1, epoch 0123456789abcdef, tick 60. Steps of "
-	      "0.05 mm. "
-	      "Vertices at (0, 0, 0), (1, 0, 0) and (0, 1, -0.05) mm: (0, 0, 0), (20, 0, 0) and (0, "
-	      "20, -1) "
-	      "steps, told as differences to the vertex before: (0, 0, 0), (20, 0, 0), (-20, 20, -1). "
-	      "One tool, `hook`, driven by client 2.\n",
-	      out);
+	fputs(
+		"\n## A key frame\n\nSession 7, profile 1, epoch 0123456789abcdef, tick 60. Steps of "
+		"0.05 mm. "
+		"Vertices at (0, 0, 0), (1, 0, 0) and (0, 1, -0.05) mm: (0, 0, 0), (20, 0, 0) and (0, "
+		"20, -1) "
+		"steps, written as differences to the vertex before: (0, 0, 0), (20, 0, 0), (-20, 20, -1). "
+		"One tool, `hook`, driven by client 2.\n",
+		out);
 	encode(out, encoder, &sample);
 	position[3] += 0.0002;
 	exposure[2] = 1.0f;
@@ -260,7 +261,7 @@ static void write_dialogue(FILE *out)
 	      "is on, and how "
 	      "it stays so. A request is answered once, by its id, a notification (without one) never; "
 	      "what the "
-	      "server tells by itself, such as `tool.driver_changed` and `event`, comes between "
+	      "server sends by itself, such as `tool.driver_changed` and `event`, comes between "
 	      "answers in no "
 	      "fixed order.\n\n```\n",
 	      out);

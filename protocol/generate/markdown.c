@@ -177,7 +177,7 @@ static void write_channels(FILE *out)
 	fputs(
 		"\n## Channels\n\nBit: in a DDS frame's `channels`. Section: in frames. Those marked with "
 		"a star are in a stream that says nothing of channels. A scalar is one number n a vertex, "
-		"in an element section of 1 component; the fourth column tells its value.\n\n"
+		"in an element section of 1 component; the fourth column explains its value.\n\n"
 		"| channel | bit | section | value of n | meaning |\n|---|---:|---:|---|---|\n",
 		out);
 	for (int i = 0; i < CAU_CHANNEL_COUNT; i++) {

@@ -144,7 +144,7 @@ static void write_scalars(FILE *out)
 {
 	fputs("\n/** Scalars of the vertices: n in a frame stands for least + step n in the unit, n is "
 	      "at "
-	      "most `most`.\n * Step 0: the stream tells it, as stress_step_pa. */\n"
+	      "most `most`.\n * Step 0: the stream states it, as stress_step_pa. */\n"
 	      "export const SCALARS = {\n",
 	      out);
 	for (int i = 0; i < CAU_CHANNEL_COUNT; i++) {

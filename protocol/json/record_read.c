@@ -111,7 +111,7 @@ void cau_read_parts(cau_reader *reader, const cJSON *object, const cau_part *par
 	}
 	for (int i = 0; i < other_count && key_count < MAX_KEYS; i++)
 		keys[key_count++] = others[i];
-	CAU_ASSERT(key_count < MAX_KEYS, "%d names, and room for %d", key_count, MAX_KEYS);
+	CAU_ASSERT(key_count < MAX_KEYS, "%d names, at most %d", key_count, MAX_KEYS);
 	cau_read_no_others(reader, object, keys, key_count);
 	for (int p = 0; p < part_count; p++)
 		for (int i = 0; i < parts[p].record->field_count; i++)

@@ -65,7 +65,7 @@ static void read_list(cau_reader *reader, const cJSON *value, const cau_wire_fie
                       cau_wire_list *list, bool strict)
 {
 	CAU_ASSERT_INDEX(field->object, CAU_WIRE_OBJECT_COUNT);
-	CAU_ASSERT(list->items || !list->capacity, "room for %d objects that is nowhere",
+	CAU_ASSERT(list->items || !list->capacity, "capacity for %d objects at no address",
 	           list->capacity);
 	list->count = 0;
 	if (!cau_read_array(reader, value, 0, field->count) || !value)
@@ -73,7 +73,7 @@ static void read_list(cau_reader *reader, const cJSON *value, const cau_wire_fie
 	size_t bytes = cau_wire_shapes[field->object].bytes;
 	for (const cJSON *element = value->child; element; element = element->next) {
 		if (list->count >= list->capacity) {
-			cau_reader_fail(reader, CAU_LIMIT, NULL, "more than the %d that there is room for",
+			cau_reader_fail(reader, CAU_LIMIT, NULL, "more than the capacity of %d",
 			                list->capacity);
 			return;
 		}

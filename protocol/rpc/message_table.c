@@ -109,8 +109,8 @@ static const cau_method_info methods[CAU_METHOD_COUNT] = {
 
 const cau_method_info *cau_method_describe(cau_method method)
 {
-	CAU_ASSERT((unsigned)method >= CAU_METHOD_COUNT || methods[method].name, "method %d has no row",
-	           (int)method);
+	CAU_ASSERT((unsigned)method >= CAU_METHOD_COUNT || methods[method].name,
+	           "method %d is not in the table", (int)method);
 	return (unsigned)method < CAU_METHOD_COUNT ? &methods[method] : NULL;
 }
 

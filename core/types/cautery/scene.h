@@ -255,12 +255,12 @@ typedef struct cau_selection {
 	  "spacing dl of the heat grid; at most the thinnest hot radius")                              \
 	X(diffusivity_m2_s, 4.2e-6, 0.0, 1e-3, "m^2/s", "alpha of eq. 18")                             \
 	X(max_speed_m_s, 0.5, 1e-3, 5.0, "m/s", "faster commands are followed at this speed")          \
-	X(max_turn_rad_s, 12.0, 0.1, 100.0, "rad/s", "likewise for turning")                           \
+	X(max_turn_rad_s, 12.0, 0.1, 100.0, "rad/s", "fastest turning of the tool")                    \
 	X(friction, 0.2, 0.0, 2.0, "1", "Coulomb coefficient of the cold parts")                       \
 	X(drag_ns_m, 0.05, 0.0, 100.0, "N s/m", "viscous drag of the hot part on each vertex in it")   \
 	X(grasp_stiffness_n_m, 200.0, 1.0, 1e6, "N/m", "of the attachment of one grasped vertex")      \
 	X(slip_force_n, 2.0, 0.0, 1000.0, "N", "an attached vertex slips above this force")            \
-	X(force_max_n, 20.0, 0.01, 1000.0, "N", "it pushes with this at most, as told to drivers")     \
+	X(force_max_n, 20.0, 0.01, 1000.0, "N", "the tool pushes with this at most; drivers read it")  \
 	X(close_force_n, 8.0, 0.01, 1000.0, "N", "its jaws press what they hold with this at most")
 
 typedef struct cau_pose {

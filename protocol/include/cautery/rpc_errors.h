@@ -37,10 +37,10 @@
 	X(-32042, UNAUTHORIZED, "unauthorized", "the token is missing or not known")                   \
 	X(-32043, FORBIDDEN, "forbidden", "the role does not allow this")                              \
 	X(-32044, VERSION, "version", "the server does not speak this version")                        \
-	X(-32045, NOT_DRIVER, "not_driver", "somebody else drives this tool")                          \
+	X(-32045, NOT_DRIVER, "not_driver", "another client drives this tool")                         \
 	X(-32046, RATE, "rate", "too many messages a second")                                          \
 	X(-32047, DRAINING, "draining", "the server is shutting down")                                 \
-	X(-32048, STORE_FULL, "store_full", "the store has no room")                                   \
+	X(-32048, STORE_FULL, "store_full", "the store is full")                                       \
 	X(-32049, SEQUENCE_PAST, "sequence_past",                                                      \
 	  "the answer to this client_sequence is no longer kept")                                      \
 	X(-32050, SEQUENCE_CONFLICT, "sequence_conflict",                                              \

@@ -40,7 +40,7 @@ describe('devices beside mouse and keys', () => {
     await viewer.page.locator('#devices > summary').click();
   });
 
-  it('a pedal is told to the page once, and is energy while it is down, wherever the focus is', async () => {
+  it('a pedal reaches the page once, and is energy while it is down, wherever the focus is', async () => {
     const { page } = viewer;
     await page.getByRole('button', { name: 'Choose the pedal’s key' }).click();
     await page.keyboard.press('w');

@@ -23,7 +23,7 @@ describe('looking closely', () => {
     await viewer.page.getByRole('tab', { name: 'View' }).click();
   });
 
-  it('tells layer, vertex, place and temperature under the pointer', async () => {
+  it('shows layer, vertex, place and temperature under the pointer', async () => {
     const { page } = viewer;
     await page.getByLabel('Tell what is under the pointer').check();
     await pointAt([0.03, 0.02, 0]);
@@ -48,7 +48,7 @@ describe('looking closely', () => {
     expect(await page.locator('#inspected').isVisible()).toBe(false);
   });
 
-  it('tells stress of fat', async () => {
+  it('shows stress of fat', async () => {
     const pulled = await daemonForTest(['--demo', 'fat-neohookean']);
     const other = await ViewerPage.open(stage.browser, pulled.url);
     await other.live('d1-fat-neohookean');
@@ -113,7 +113,7 @@ describe('looking closely', () => {
     await page.locator('#panel-view').getByRole('button', { name: 'Home' }).click();
   });
 
-  it('is for researchers: whoever goes to Operate has the whole tissue again, and is told nothing', async () => {
+  it('is for researchers: Operate shows the whole tissue again, without a message', async () => {
     const { page } = viewer;
     const places: [number, number, number][] = [[0.03, 0.035, 0], [0.03, -0.035, 0]];
     await viewer.until(() => window.cautery.idle, null, 'the picture of the half');

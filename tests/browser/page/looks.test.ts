@@ -86,7 +86,7 @@ describe('the picture of the demo', () => {
     await viewer.close();
   });
 
-  it('tells by a ring under the tip how high the tip is', async () => {
+  it('shows by a ring under the tip how high the tip is', async () => {
     const viewer = await stage.openFirst();
     await viewer.live('d1-layers');
     await viewer.page.getByRole('button', { name: 'Take the tool' }).click();

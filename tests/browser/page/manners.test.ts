@@ -139,7 +139,7 @@ describe('manners', () => {
     },
   );
 
-  it('goes back along the timeline by finger', async () => {
+  it('rewinds along the timeline by finger', async () => {
     const viewer = await stage.openFirst(PHONE);
     await viewer.live('d1-layers');
     const box = (await viewer.page.locator('#tick').boundingBox())!;

@@ -50,7 +50,7 @@ describe('looking back', () => {
     expect(await viewer.faces()).toBe(FACES);
   });
 
-  it('and nobody else sees any of it', async () => {
+  it('and no other client sees any of it', async () => {
     expect((await other.state()).past).toBeNull();
     expect(await other.faces()).toBe(left);
     expect(await other.page.locator('#past').isVisible()).toBe(false);

@@ -71,7 +71,7 @@ describe('plots over the session', () => {
     expect(celsius).toBeGreaterThan(BODY_C + 5); // it cools until the session pauses
   });
 
-  it('share a cursor that tells the values where it points, and holds the timeline there', async () => {
+  it('share a cursor that shows the values where it points, and holds the timeline there', async () => {
     const { page } = viewer;
     const newest = await told();
     const box = (await page.locator('[aria-label="Over the session"] .u-over').nth(1).boundingBox())!;

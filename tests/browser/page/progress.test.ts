@@ -72,7 +72,7 @@ describe('while something is under way', () => {
     await seen();
   });
 
-  it('going back in time is said, with where to', async () => {
+  it('a rewind is announced, with its tick', async () => {
     const { page } = viewer;
     await page.getByRole('button', { name: 'd1-fascia', exact: true }).click();
     await viewer.live('d1-fascia');

@@ -16,7 +16,7 @@ describe('energy that a busy machine cuts', () => {
     await viewer.live('d1-fascia');
   });
 
-  it('is not dark without a word: what held it is named, and a fresh press brings it back', async () => {
+  it('explains why energy is off, and a fresh press brings it back', async () => {
     const { page } = viewer;
     await page.keyboard.down('Space');
     await viewer.until(() => window.cautery.energized, null, 'energy is on');

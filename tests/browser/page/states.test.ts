@@ -141,7 +141,7 @@ describe('a daemon with tokens', () => {
     expect(await page.locator('dialog[open]').count()).toBe(0);
   });
 
-  it('who may only look on is told so where they press', async () => {
+  it('a client that may only view sees so where it presses', async () => {
     const at = await viewer.project([0, 0, 0]);
     await viewer.page.mouse.move(at.x, at.y);
     await viewer.page.mouse.down();

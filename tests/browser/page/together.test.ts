@@ -39,7 +39,7 @@ describe('two pages on one session', () => {
     expect((await watcher.state()).driving).toBe(false);
   });
 
-  it('says at the tool who has it, by a name of their own, and offers to ask', async () => {
+  it('names the driver at the tool, and offers to ask', async () => {
     const { page } = watcher;
     const at = await watcher.project([0.01, 0.01, 0]);
     await page.mouse.move(at.x, at.y);

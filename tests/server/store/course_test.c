@@ -53,7 +53,7 @@ static int live_through(int64_t cadence)
 	return most;
 }
 
-// The bounds of server/README.md, "Going back".
+// The bounds of server/README.md, "Rewinding and history".
 static void the_number_of_checkpoints_grows_with_the_logarithm_of_time(void **state)
 {
 	(void)state;

@@ -166,9 +166,9 @@ export interface SessionSummary {
   epoch: string;
   /** why it is faulted */
   fault?: string;
-  /** false, in an answer to session.pause: the store had no room; it pauses all the same */
+  /** false, in an answer to session.pause: the store was full; the session pauses all the same */
   stored?: boolean;
-  /** while it is starting or goes back: what the builder does (meshing, ordering, factoring, settling; reading, restoring, replaying) */
+  /** while it is starting or is rewound or restored: what the builder does (meshing, ordering, factoring, settling; reading, restoring, replaying) */
   stage?: string;
 }
 
@@ -210,7 +210,7 @@ export interface LayerDescription {
 export interface Driver {
   /** the tool */
   tool: string;
-  /** the driving connection's number; 0: nobody (0 to 4294967295) */
+  /** the driving connection's number; 0: no driver (0 to 4294967295) */
   client: number;
   /** the client's name in its hello, or the DDS participant's */
   name: string;
@@ -314,7 +314,7 @@ export interface SnapshotList {
   snapshots: NamedSnapshot[];
 }
 
-/** goes back to a snapshot, energy off; a new branch */
+/** restores a snapshot, energy off; a new branch */
 export interface SessionRestore {
   /** its id; that of the connection's URL by default */
   session?: string;
@@ -324,7 +324,7 @@ export interface SessionRestore {
   name: string;
 }
 
-/** goes back to a tick, energy off; a new branch */
+/** rewinds to a tick, energy off; a new branch */
 export interface SessionRewind {
   /** its id; that of the connection's URL by default */
   session?: string;
@@ -334,7 +334,7 @@ export interface SessionRewind {
   tick: number;
 }
 
-/** where a session is after going back */
+/** where a session is after a rewind, restore or reset */
 export interface Restored {
   /** of the state (0 to 9007199254740991) */
   tick: number;
@@ -472,7 +472,7 @@ export interface PastFrame {
   stress_step_pa: number;
 }
 
-/** how far a look at the past is */
+/** how far a past view is */
 export interface FrameProgress {
   /** its id */
   session: string;
@@ -696,7 +696,7 @@ export interface ToolHandOver {
   client_sequence?: number;
   /** its name */
   tool: string;
-  /** to this connection; to nobody by default (1 to 4294967295) */
+  /** to this connection; by default the tool has no driver (1 to 4294967295) */
   client?: number;
 }
 
@@ -706,7 +706,7 @@ export interface CommandResult {
   tick: number;
   /** as given (0 to 9007199254740991) */
   sequence: number;
-  /** false: the store had no room; energy is off all the same */
+  /** false: the store was full; energy is off all the same */
   stored?: boolean;
 }
 
@@ -892,7 +892,7 @@ export interface ToolRefused {
   reason: string;
 }
 
-/** somebody asks the driver for a tool; answer with tool.hand_over or not at all */
+/** another client asks the driver for a tool; answer with tool.hand_over or not at all */
 export interface TakeoverRequested {
   /** its id */
   session: string;
@@ -976,7 +976,7 @@ export interface Tool {
   diffusivity_m2_s?: number;
   /** faster commands are followed at this speed (0.001 to 5 m/s) */
   max_speed_m_s?: number;
-  /** likewise for turning (0.1 to 100 rad/s) */
+  /** fastest turning of the tool (0.1 to 100 rad/s) */
   max_turn_rad_s?: number;
   /** Coulomb coefficient of the cold parts (0 to 2) */
   friction?: number;
@@ -986,7 +986,7 @@ export interface Tool {
   grasp_stiffness_n_m?: number;
   /** an attached vertex slips above this force (0 to 1000 N) */
   slip_force_n?: number;
-  /** it pushes with this at most, as told to drivers (0.01 to 1000 N) */
+  /** the tool pushes with this at most; drivers read it (0.01 to 1000 N) */
   force_max_n?: number;
   /** its jaws press what they hold with this at most (0.01 to 1000 N) */
   close_force_n?: number;
@@ -1399,7 +1399,7 @@ export interface ToolAdd {
   diffusivity_m2_s?: number;
   /** faster commands are followed at this speed (0.001 to 5 m/s) */
   max_speed_m_s?: number;
-  /** likewise for turning (0.1 to 100 rad/s) */
+  /** fastest turning of the tool (0.1 to 100 rad/s) */
   max_turn_rad_s?: number;
   /** Coulomb coefficient of the cold parts (0 to 2) */
   friction?: number;
@@ -1409,7 +1409,7 @@ export interface ToolAdd {
   grasp_stiffness_n_m?: number;
   /** an attached vertex slips above this force (0 to 1000 N) */
   slip_force_n?: number;
-  /** it pushes with this at most, as told to drivers (0.01 to 1000 N) */
+  /** the tool pushes with this at most; drivers read it (0.01 to 1000 N) */
   force_max_n?: number;
   /** its jaws press what they hold with this at most (0.01 to 1000 N) */
   close_force_n?: number;
@@ -1469,7 +1469,7 @@ export interface ToolConfigure {
   diffusivity_m2_s?: number;
   /** faster commands are followed at this speed (0.001 to 5 m/s) */
   max_speed_m_s?: number;
-  /** likewise for turning (0.1 to 100 rad/s) */
+  /** fastest turning of the tool (0.1 to 100 rad/s) */
   max_turn_rad_s?: number;
   /** Coulomb coefficient of the cold parts (0 to 2) */
   friction?: number;
@@ -1479,7 +1479,7 @@ export interface ToolConfigure {
   grasp_stiffness_n_m?: number;
   /** an attached vertex slips above this force (0 to 1000 N) */
   slip_force_n?: number;
-  /** it pushes with this at most, as told to drivers (0.01 to 1000 N) */
+  /** the tool pushes with this at most; drivers read it (0.01 to 1000 N) */
   force_max_n?: number;
   /** its jaws press what they hold with this at most (0.01 to 1000 N) */
   close_force_n?: number;
@@ -1852,7 +1852,7 @@ export interface Requests {
   'session.fork': { params: SessionFork; result: SessionDescription };
   /** stores the state under a name */
   'session.snapshot': { params: SessionSnapshot; result: SnapshotResult };
-  /** the states that session.restore can go back to, those of other branches too */
+  /** the snapshots that session.restore can restore, those of other branches too */
   'session.snapshots': { params: SessionRef; result: SnapshotList };
   /** back to a snapshot */
   'session.restore': { params: SessionRestore; result: Restored };
@@ -1864,7 +1864,7 @@ export interface Requests {
   'session.log': { params: SessionLog; result: Transfer };
   /** cuts and other events */
   'session.timeline': { params: SessionTimeline; result: Timeline };
-  /** the key frame of a past tick; nobody is rewound; binary chunks follow. Asked anew, the client's earlier one is given up */
+  /** the key frame of a past tick; nothing is rewound; binary chunks follow. A second request of a client cancels its first */
   'session.frame_at': { params: SessionFrameAt; result: PastFrame };
   /** gives up the client's session.frame_at that is under way, if there is one */
   'session.frame_cancel': { params: SessionRef; result: Nothing };
@@ -1890,7 +1890,7 @@ export interface Requests {
   'tool.release': { params: ToolRelease; result: CommandResult };
   /** keeps the tool where it is, until it is moved again; driver only */
   'tool.hold': { params: ToolHold; result: CommandResult };
-  /** becomes the driver: of a tool that nobody drives, or with role admin; energy off */
+  /** becomes the driver: of a tool without a driver, or with role admin; energy off */
   'tool.take_over': { params: ToolRef; result: Driver };
   /** asks its driver, who sees takeover.requested */
   'tool.request_takeover': { params: ToolRef; result: Nothing };
@@ -1920,7 +1920,7 @@ export interface Requests {
   'move.begin': { params: MoveBegin; result: MoveBegun };
   /** the next piece of it; binary chunks follow */
   'move.read': { params: MoveRef; result: Transfer };
-  /** it stands still, dark; what is asked of it waits */
+  /** suspends the session, energy off; requests to it wait */
   'move.hold': { params: MoveRef; result: MoveHeld };
   /** the other daemon has all of it on its disk: it ends here, and the answer is what lets it be served there */
   'move.commit': { params: MoveRef; result: MoveDecision };
@@ -2069,7 +2069,7 @@ export const SECTION = {
 } as const;
 
 /** Scalars of the vertices: n in a frame stands for least + step n in the unit, n is at most `most`.
- * Step 0: the stream tells it, as stress_step_pa. */
+ * Step 0: the stream states it, as stress_step_pa. */
 export const SCALARS = {
   /** the largest of the vertex's edges': heat taken up over what ignites it, 0 to 1 */
   exposure: { section: 3, byDefault: true, least: 0, step: 0.00392156862745098, most: 255, unit: '1' },
@@ -2151,7 +2151,7 @@ export const PARAMETERS = {
     { name: 'max_speed_m_s', unit: 'm/s', least: 0.001, most: 5, default: 0.5,
       meaning: "faster commands are followed at this speed" },
     { name: 'max_turn_rad_s', unit: 'rad/s', least: 0.1, most: 100, default: 12,
-      meaning: "likewise for turning" },
+      meaning: "fastest turning of the tool" },
     { name: 'friction', unit: '1', least: 0, most: 2, default: 0.2,
       meaning: "Coulomb coefficient of the cold parts" },
     { name: 'drag_ns_m', unit: 'N s/m', least: 0, most: 100, default: 0.05,
@@ -2161,7 +2161,7 @@ export const PARAMETERS = {
     { name: 'slip_force_n', unit: 'N', least: 0, most: 1000, default: 2,
       meaning: "an attached vertex slips above this force" },
     { name: 'force_max_n', unit: 'N', least: 0.01, most: 1000, default: 20,
-      meaning: "it pushes with this at most, as told to drivers" },
+      meaning: "the tool pushes with this at most; drivers read it" },
     { name: 'close_force_n', unit: 'N', least: 0.01, most: 1000, default: 8,
       meaning: "its jaws press what they hold with this at most" },
   ],
