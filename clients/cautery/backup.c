@@ -26,10 +26,10 @@ static cli_exit run(cli *c)
 const cli_command cli_backup = {
 	.name = "backup",
 	.arguments = "[NAME]",
-	.summary = "has the daemon copy its store while it goes on; prints the file",
+	.summary = "makes the running daemon copy its store; prints the file",
 	.help =
 		"The copy is on the daemon's machine, in the folder of its setting `backups`, as NAME.db\n"
-		"(by default the time). It is checked, and nothing is replaced. Wants role admin. To\n"
+		"(by default the time). It is checked, and nothing is replaced. Needs role admin. To\n"
 		"restore: stop the daemon, put the copy in the place of its store, start it.\n",
 	.most = 1,
 	.run = run};

@@ -229,6 +229,6 @@ const cli_command cli_events = {
 	.session_optional = true,
 	.options = {{"from", "TICK", "first tick (default 0)"},
                 {"count", "N", "newest events (default 1024)"},
-                {"follow", NULL, "go on with what happens, until Ctrl-C"},
+                {"follow", NULL, "print new events until Ctrl-C"},
                 {"seconds", "T", "how long to follow (default: until Ctrl-C)"}},
 	.run = run};

@@ -67,15 +67,15 @@ static cli_exit run_log(cli *c)
 	return download(c, CAU_METHOD_SESSION_LOG, &params, c->arguments[0]);
 }
 
-const cli_command cli_export = {
-	.name = "export",
-	.arguments = "[SESSION] FILE",
-	.summary = "writes the tissue as it is: .vtu for ParaView, .obj for others",
-	.least = 1,
-	.most = 1,
-	.session_optional = true,
-	.options = {{"format", "F", "vtu or obj (default: FILE's ending)"}},
-	.run = run_export};
+const cli_command cli_export = {.name = "export",
+                                .arguments = "[SESSION] FILE",
+                                .summary =
+                                    "writes the present tissue: .vtu for ParaView, .obj for others",
+                                .least = 1,
+                                .most = 1,
+                                .session_optional = true,
+                                .options = {{"format", "F", "vtu or obj (default: FILE's ending)"}},
+                                .run = run_export};
 
 const cli_command cli_log = {.name = "log",
                              .arguments = "[SESSION] FILE",

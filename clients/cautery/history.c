@@ -118,7 +118,7 @@ static cli_exit run_fork(cli *c)
 
 const cli_command cli_rewind = {.name = "rewind",
                                 .arguments = "[SESSION] TICK",
-                                .summary = "back to a tick, on a new branch; energy goes off",
+                                .summary = "rewinds to a tick, on a new branch; energy goes off",
                                 .help = "`cautery events` shows the earliest tick.\n",
                                 .least = 1,
                                 .most = 1,
@@ -151,7 +151,7 @@ const cli_command cli_snapshots = {.name = "snapshot ls",
 
 const cli_command cli_restore = {.name = "restore",
                                  .arguments = "[SESSION] NAME",
-                                 .summary = "back to a snapshot, on a new branch",
+                                 .summary = "restores a snapshot, on a new branch; energy goes off",
                                  .least = 1,
                                  .most = 1,
                                  .session_optional = true,

@@ -104,8 +104,8 @@ static cli_exit deliver(courier *m, const char *proof)
 	if (!cau_client_call(m->to, CAU_METHOD_MOVE_ACCEPT, &params, NULL, &m->c->error))
 		return CLI_DONE;
 	cli_complain(m->c,
-	             "it has left and is %s's, which does not serve it yet: the same command "
-	             "again ends this",
+	             "the session is %s's, which does not serve it yet: run the same command "
+	             "again to finish the move",
 	             m->label);
 	return fail_to(m);
 }
@@ -227,8 +227,8 @@ static cli_exit prepare(courier *m)
 	if (m->exact || cli_value(m->c, "inexact"))
 		return CLI_DONE;
 	cli_complain(m->c,
-	             "%s is another build, or its processor has another instruction set: it would "
-	             "go on, but not to the last bit; --inexact moves it all the same",
+	             "%s is another build, or its processor has another instruction set: its bits "
+	             "would differ from here on. --inexact moves it all the same",
 	             m->label);
 	return CLI_REFUSED;
 }
@@ -296,7 +296,7 @@ static cli_exit run(cli *c)
 const cli_command cli_move = {
 	.name = "move",
 	.arguments = "SESSION LABEL",
-	.summary = "moves a session to the daemon LABEL; wants role admin on both",
+	.summary = "moves a session to the daemon LABEL; needs role admin on both",
 	.help =
 		"Behind a proxy one address leads to both daemons; otherwise --to-url is the address of\n"
 		"LABEL. First the history is copied while the session runs. Then the session is\n"
@@ -305,7 +305,7 @@ const cli_command cli_move = {
 		"move. --cancel ends it: the session stays where it is, unless it has moved already.\n",
 	.least = 2,
 	.most = 2,
-	.options = {{"to-url", "U", "where the daemon LABEL is, as clients are to reach it"},
+	.options = {{"to-url", "U", "address of the daemon LABEL for its clients"},
                 {"to-token-file", "F", "token for it (default: the same)"},
                 {"name", "NAME", "its name there (default: as it is)"},
                 {"inexact", NULL, "also to another build or instruction set"},

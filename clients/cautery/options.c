@@ -11,10 +11,10 @@ static const cli_option common[] = {
 	{"token-file", "F", "file with the access token (default: the context's, CAUTERYD_TOKEN)"},
 	{"context", "NAME", "a daemon of `cautery context ls` (default: the current one)"},
 	{"label", "L", "the daemon of this label behind a proxy; for ls several, as in d1,d2"},
-	{"timeout", "S", "seconds to wait for an answer or a sign of life (default 30)"},
+	{"timeout", "S", "seconds to wait for an answer or a progress report (default 30)"},
 	{"json", NULL, "one JSON object a line on standard output, the last one the result"},
 	{"help", NULL, "this text; -h does the same"},
-	{"version", NULL, "which version this is, and which protocol it speaks"},
+	{"version", NULL, "version of this program and of its protocol"},
 	{0},
 };
 
@@ -53,12 +53,12 @@ void cli_help(const cli *c)
 	fputs("cautery COMMAND [arguments]\nTalks to a cauteryd.\n\n", c->out);
 	for (int i = 0; c->commands[i]; i++)
 		fprintf(c->out, "  %-12s %s\n", c->commands[i]->name, c->commands[i]->summary);
-	fputs("\nWhere SESSION may be left out, it is the only one that the daemon has.\n"
+	fputs("\nSESSION may be left out where the daemon has only one.\n"
 	      "`cautery COMMAND --help` says more. All commands take:\n\n",
 	      c->out);
 	print_options(c->out, common, COMMON_COUNT);
 	fputs("\nExit code: 0 done; 1 the server refused, or the session is faulted or gone;\n"
-	      "2 arguments; 3 no server, no answer or connection lost; 4 a file here;\n"
+	      "2 wrong arguments; 3 no server, no answer or connection lost; 4 a local file;\n"
 	      "5 a script was refused in part, lost its energy, or was interrupted.\n",
 	      c->out);
 }

@@ -107,6 +107,6 @@ const cli_command cli_speed = {.name = "speed",
 
 const cli_command cli_reset = {.name = "reset",
                                .arguments = "[SESSION]",
-                               .summary = "back to tick 0, on a new branch",
+                               .summary = "resets to tick 0, on a new branch; energy goes off",
                                .session_optional = true,
                                .run = run_reset};

@@ -127,20 +127,19 @@ const cli_command cli_pin = {.name = "pin",
 
 const cli_command cli_unpin = {.name = "unpin",
                                .arguments = "[SESSION]",
-                               .summary = "lets pinned vertices go",
+                               .summary = "releases pinned vertices",
                                .session_optional = true,
                                .options = {SELECTION_OPTIONS},
                                .run = run_unpin};
 
-const cli_command cli_force = {
-	.name = "force",
-	.arguments = "[SESSION] FX FY FZ",
-	.summary = "pulls at vertices, N on each, until it is set again; 0 0 0 ends it",
-	.least = 3,
-	.most = 3,
-	.session_optional = true,
-	.options = {SELECTION_OPTIONS},
-	.run = run_force};
+const cli_command cli_force = {.name = "force",
+                               .arguments = "[SESSION] FX FY FZ",
+                               .summary = "pulls at vertices, in N on each; 0 0 0 ends it",
+                               .least = 3,
+                               .most = 3,
+                               .session_optional = true,
+                               .options = {SELECTION_OPTIONS},
+                               .run = run_force};
 
 const cli_command cli_gravity = {.name = "gravity",
                                  .arguments = "[SESSION] GX GY GZ",

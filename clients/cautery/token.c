@@ -127,9 +127,8 @@ const cli_command cli_token = {
 	.least = 1,
 	.most = 1,
 	.options = {{"out", "FILE", "a new file for the token"},
-                {"name", "N", "whose it is, for the daemon's log"},
-                {"sessions", "LIST",
-                 "ids that it is for, with commas; d1-anna-* for all that begin so"},
+                {"name", "N", "its owner, for the daemon's log"},
+                {"sessions", "LIST", "ids that it is for, with commas; d1-anna-* for a prefix"},
                 {"quota", "N", "expensive requests a minute (default: those of its role)"},
                 {"days", "D", "until it expires (default: never)"}},
 	.run = run};

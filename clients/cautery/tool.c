@@ -273,7 +273,8 @@ const cli_command cli_tool = {
 	.help =
 		"Actions: add SHAPE, remove, take, give, move X Y Z, line X Y Z SPEED, turn W X Y Z,\n"
 		"jaw J, on [TICKS], off, grasp, release, wait S. Metres, m/s, a unit quaternion, 0 to 1,\n"
-		"seconds; TICKS limits the energy. What needs the driver takes the tool first. Energy\n"
+		"seconds; TICKS limits the energy. Actions that need the driver take the tool first. "
+		"Energy\n"
 		"goes off when the command ends:\n"
 		"  cautery tool d1-demo hook move 0 0 0 on wait 3 line 0.02 0 0 0.002 off\n",
 	.least = 3,

@@ -279,10 +279,11 @@ static cli_exit run(cli *c)
 const cli_command cli_watch = {
 	.name = "watch",
 	.arguments = "[SESSION]",
-	.summary = "shows a session live: tick, rate, vertices moved, faces gone, edges parted",
-	.help = "On a terminal one line is kept fresh; elsewhere every line stands. Ctrl-C ends it.\n"
-			"moved: vertices in the newest frame; gone: faces drawn when watching began, not now;\n"
-			"parted, removed: since creation.\n",
+	.summary = "shows a session live: tick, rate, vertices moved, faces removed, edges parted",
+	.help =
+		"On a terminal it updates one line; elsewhere it prints lines. Ctrl-C ends it.\n"
+		"moved: vertices in the newest frame; gone: faces drawn when watching began and not now;\n"
+		"parted, removed: since creation.\n",
 	.session_optional = true,
 	.options = {{"seconds", "T", "how long (default: until Ctrl-C)"},
                 {"rate", "HZ", "lines a second (default 10 on a terminal, else 1)"},

@@ -14,7 +14,7 @@ static const cau_option rows[] = {
      .meaning = "m: start of the line (default 0,0,0.02)"},
 	{"to", "X,Y,Z", CAU_OPTION_POINT, AT(to_m), .meaning = "m: its end (default: its start)"},
 	{"dwell", "S", CAU_OPTION_NUMBER, AT(dwell_s), 0, 3600,
-     .meaning = "at the start of the line (default 0)"},
+     .meaning = "seconds to stay at the start of the line (default 0)"},
 	{"speed", "V", CAU_OPTION_NUMBER, AT(speed_m_s), 1e-4, 1,
      .meaning = "m/s, on the line and to the start (default 0.02)"},
 	{"energy", NULL, CAU_OPTION_FLAG, AT(energy), .meaning = "energy on while on the trajectory"},
@@ -23,9 +23,9 @@ static const cau_option rows[] = {
 	{"rate", "HZ", CAU_OPTION_NUMBER, AT(rate_hz), 1, 5000,
      .meaning = "commands a second (default 1000)"},
 	{"deadline", "S", CAU_OPTION_NUMBER, AT(deadline_s), 0.02, 1,
-     .meaning = "declared to the server (default 0.05)"},
+     .meaning = "deadline declared to the server, s (default 0.05)"},
 	{"seconds", "S", CAU_OPTION_NUMBER, AT(seconds), 0, 1e6,
-     .meaning = "ends after this (default: with the trajectory)"},
+     .meaning = "end after so long (default: with the trajectory)"},
 	{"standby", NULL, CAU_OPTION_FLAG, AT(standby),
      .meaning = "holds the tool once its driver is gone or silent; never energizes"},
 	{"domain", "N", CAU_OPTION_WHOLE, AT(domain), 0, 230,
@@ -33,7 +33,7 @@ static const cau_option rows[] = {
 	{"json", NULL, CAU_OPTION_FLAG, AT(json),
      .meaning = "one JSON object as the last line of output"},
 	{"help", NULL, CAU_OPTION_HELP, AT(help), .meaning = "this text"},
-	{"version", NULL, CAU_OPTION_HELP, AT(version), .meaning = "which version this is"},
+	{"version", NULL, CAU_OPTION_HELP, AT(version), .meaning = "version of this program"},
 };
 
 static const cau_command_line line = {
@@ -43,8 +43,7 @@ static const cau_command_line line = {
 	.summary =
 		"Drives a tool over DDS: along a trajectory, or along a line; prints how late it woke "
 		"and\nhow long each command took to show in the tool's state.\n",
-	.closing =
-		"Exit code: 0 done; 1 refused or lost the tool; 2 options; 3 no such tool on the wire.\n",
+	.closing = "Exit code: 0 done; 1 refused or lost the tool; 2 options; 3 no such tool found.\n",
 	.rows = rows,
 	.row_count = sizeof rows / sizeof *rows,
 };

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// What cauteryd can be told, from one table: flags over environment over a JSON file over defaults.
+// The settings of cauteryd, from one table: flags over environment over a JSON file over defaults.
 //
 //     setting `max_sessions`: flag --max-sessions 8, environment CAUTERY_MAX_SESSIONS=8,
 //     file {"max_sessions": 8}
@@ -16,8 +16,8 @@ enum { CAU_CONFIG_TEXT_BYTES = 512 };
 // TEXT(name, default, meaning) INTEGER(name, default, least, most, meaning)
 // REAL(name, default, least, most, meaning) SWITCH(name, default, meaning)
 #define CAU_CONFIG_TABLE(TEXT, INTEGER, REAL, SWITCH)                                              \
-	TEXT(listen, "127.0.0.1", "address to listen on; others than loopback need tokens, TLS")       \
-	INTEGER(port, 8740, 0, 65535, "port of HTTP and WebSocket; 0: any free one")                   \
+	TEXT(listen, "127.0.0.1", "address to listen on; beyond loopback it needs tokens and TLS")     \
+	INTEGER(port, 8740, 0, 65535, "port of HTTP and WebSocket; 0: any free port")                  \
 	INTEGER(agent_port, 0, 0, 65535, "port of HAProxy's agent-check, at `listen`; 0: none")        \
 	TEXT(store, "cautery.db", "file of the store")                                                 \
 	TEXT(backups, "", "folder of the store's copies; empty: `backups` beside the store")           \
@@ -25,28 +25,29 @@ enum { CAU_CONFIG_TEXT_BYTES = 512 };
 	TEXT(viewer, "", "folder of viewer files to serve; empty: the installed one")                  \
 	TEXT(label, "d1", "this daemon's label, first part of its sessions' ids; no `-`")              \
 	TEXT(etcd, "", "addresses of etcd (http://HOST:PORT,...): no label is served twice")           \
-	REAL(etcd_ttl_s, 15, 2, 3600, "etcd gives the label away that was not renewed for this")       \
-	SWITCH(take_label, false, "serve the label by a store that etcd does not know as the newest")  \
-	TEXT(demo, "", "scene of which a session exists at start, made if the store has none")         \
-	TEXT(tokens, "", "file of tokens, a line each (cautery token); empty: loopback is admin")      \
+	REAL(etcd_ttl_s, 15, 2, 3600, "etcd frees the label if it was not renewed for so long")        \
+	SWITCH(take_label, false, "serve this store although etcd knows a newer one of the label")     \
+	TEXT(demo, "", "scene of a session that is created at start if the store has none")            \
+	TEXT(tokens, "", "file of access tokens, a line each; empty: every client is admin")           \
 	TEXT(tls_certificate, "", "file of the certificate and its chain (PEM); empty: no TLS")        \
 	TEXT(tls_key, "", "file of the certificate's key (PEM)")                                       \
-	SWITCH(tls_by_proxy, false, "a proxy does TLS: listen beyond loopback without")                \
-	TEXT(trusted_proxies, "", "addresses whose X-Forwarded-For is believed, separated by commas")  \
+	SWITCH(tls_by_proxy, false, "allow plain HTTP beyond loopback: a proxy terminates TLS")        \
+	TEXT(trusted_proxies, "", "proxies whose X-Forwarded-For is trusted, separated by commas")     \
 	TEXT(hosts, "", "more accepted Host names, separated by commas")                               \
 	TEXT(origins, "", "more accepted Origins, separated by commas")                                \
 	TEXT(log_level, "info", "least level logged: debug, info, notice, warning, error")             \
 	TEXT(log_format, "text", "how lines are logged: text (key=value) or json")                     \
-	TEXT(trace_session, "", "folder where each session writes all that it decides; empty: none")   \
+	TEXT(trace_session, "", "folder for a trace of each session's decisions; empty: none")         \
 	INTEGER(workers, 0, 0, 256, "threads that step sessions; 0: one a core")                       \
 	INTEGER(session_threads, 1, 1, 16, "threads one session's step may use")                       \
 	INTEGER(max_sessions, 64, 1, 4096, "sessions at once")                                         \
 	INTEGER(max_session_vertices, 4000000, 3, 100000000, "vertices of one session")                \
 	INTEGER(max_session_elements, 16000000, 1, 1000000000, "elements of one session")              \
 	INTEGER(max_session_bytes, 4000000000, 1000000, 1000000000000, "memory of one session, about") \
-	INTEGER(max_sessions_bytes, 16000000000, 1000000, 1000000000000, "of all sessions, about")     \
+	INTEGER(max_sessions_bytes, 16000000000, 1000000, 1000000000000,                               \
+	        "memory of all sessions, about")                                                       \
 	INTEGER(look_bytes, 67108864, 0, 1000000000000,                                                \
-	        "states a session keeps for looks at its past")                                        \
+	        "bytes of states that a session keeps for past views")                                 \
 	INTEGER(max_connections, 1024, 1, 65536, "WebSocket connections at once")                      \
 	INTEGER(max_subscribers, 128, 1, 4096, "streams of one session at once")                       \
 	INTEGER(max_message_bytes, 1048576, 4096, 67108864, "largest message of a client")             \
@@ -64,26 +65,29 @@ enum { CAU_CONFIG_TEXT_BYTES = 512 };
 	INTEGER(quota_admin, 1200, 1, 1000000, "expensive requests a minute of all admins")            \
 	INTEGER(quota_all, 2400, 1, 1000000, "expensive requests a minute in all")                     \
 	INTEGER(subscriber_bytes, 196608, 16384, 16777216, "frames in flight to one subscriber")       \
-	REAL(hello_timeout_s, 5, 0.05, 60, "a connection without hello is closed after this")          \
-	REAL(browser_deadline_s, 0.25, 0.02, 10, "silence of a browser's driver to energy off")        \
-	REAL(resume_s, 10, 0, 600, "a lost connection's driver role is kept for this")                 \
-	REAL(ping_s, 10, 0.5, 3600, "a silent connection is pinged after this, hung up after three")   \
-	REAL(slow_close_s, 30, 1, 3600, "a subscriber that takes no frame for this is closed")         \
-	REAL(checkpoint_s, 10, 0.1, 3600, "between checkpoints of a session that somebody drives")     \
-	REAL(retention_h, 24, 0.01, 8760, "what a rewind left behind is kept for this")                \
-	INTEGER(retention_bytes, 1073741824, 1048576, 1099511627776, "most of a session in the store") \
+	REAL(hello_timeout_s, 5, 0.05, 60, "a connection without hello is closed after so long")       \
+	REAL(browser_deadline_s, 0.25, 0.02, 10,                                                       \
+	     "energy goes off if a WebSocket driver is silent for so long")                            \
+	REAL(resume_s, 10, 0, 600, "a lost client keeps its tools for so long")                        \
+	REAL(ping_s, 10, 0.5, 3600, "silence before a ping; three unanswered pings close")             \
+	REAL(slow_close_s, 30, 1, 3600, "a subscriber that takes no frame for so long is closed")      \
+	REAL(checkpoint_s, 10, 0.1, 3600, "time between checkpoints of a driven session")              \
+	REAL(retention_h, 24, 0.01, 8760, "branches that a rewind left are kept for so long")          \
+	INTEGER(retention_bytes, 1073741824, 1048576, 1099511627776,                                   \
+	        "largest size of a session in the store")                                              \
 	INTEGER(store_bytes, 17179869184, 0, 1125899906842624,                                         \
-	        "most of all sessions in the store; 0: no bound")                                      \
-	REAL(drain_s, 10, 0.1, 600, "longest wait for checkpoints when told to end")                   \
+	        "largest size of all sessions in the store; 0: no bound")                              \
+	REAL(drain_s, 10, 0.1, 600, "longest wait for checkpoints at shutdown")                        \
 	SWITCH(dds, false, "open the DDS transport")                                                   \
 	INTEGER(dds_domain, 0, 0, 230, "DDS domain")                                                   \
 	TEXT(dds_config, "", "file of Cyclone DDS settings; empty: loopback only")                     \
 	TEXT(dds_security, "", "folder of this daemon's DDS identity; empty: no DDS Security")         \
 	SWITCH(dds_optional, false, "serve WebSocket alone where DDS cannot be opened")                \
-	SWITCH(dds_network, false, "let dds_config take DDS off loopback without DDS Security")        \
+	SWITCH(dds_network, false,                                                                     \
+	       "allow DDS beyond loopback without DDS Security: a guarded network")                    \
 	TEXT(dds_role, "operate", "role of DDS participants: view, operate or admin")                  \
 	TEXT(dds_roles, "", "file of roles, `ROLE SUBJECT` a line, for identities of DDS Security")    \
-	REAL(dds_deadline_s, 0.25, 0.02, 1, "silence to energy off of a DDS driver without deadline")
+	REAL(dds_deadline_s, 0.25, 0.02, 1, "energy goes off after so much silence of a DDS driver")
 
 #define CAU_CONFIG_TEXT(name, default_, meaning) char name[CAU_CONFIG_TEXT_BYTES];
 #define CAU_CONFIG_INTEGER(name, default_, least, most, meaning) int64_t name;

@@ -87,9 +87,9 @@ void cau_config_help(FILE *stream)
 	      "  --config FILE                  a JSON object of the settings below\n"
 	      "  --print-config                 print the settings in force and end\n"
 	      "  --settings-schema              print a JSON Schema of the settings and end\n"
-	      "  --backup FILE                  copy the store, which a daemon may be using, and end\n"
+	      "  --backup FILE                  copy the store, even of a running daemon, and end\n"
 	      "  --json                         print one line of JSON with the address once ready\n"
-	      "  --version                      which version this is\n"
+	      "  --version                      version of this program\n"
 	      "  --help                         this text\n\n"
 	      "Settings (flag over CAUTERY_SETTING in the environment over file over default):\n\n",
 	      stream);
@@ -101,7 +101,8 @@ void cau_config_help(FILE *stream)
 			*c = *c == '_' ? '-' : *c;
 		fprintf(stream, "  --%-28s %s [%s]\n", flag, s->meaning, s->default_text);
 	}
-	fputs("\nExit code: 0 ended by a signal; 1 it could not start, and the last line of the log "
-	      "says why;\n2 the settings are wrong.\n",
+	fputs("\nExit code: 0 ended by a signal; 1 it could not start or lost its label, and the last "
+	      "line of "
+	      "the log says why;\n2 the settings are wrong.\n",
 	      stream);
 }

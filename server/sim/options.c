@@ -11,7 +11,7 @@ static const cau_option rows[] = {
 	{"scenes", "DIR", CAU_OPTION_TEXT, AT(scenes),
      .meaning = "where names are looked up (default: the installed scenes)"},
 	{"script", "FILE", CAU_OPTION_TEXT, AT(script),
-     .meaning = "commands, one JSON object a line, with ticks that never fall"},
+     .meaning = "commands, one JSON object a line, in the order of their ticks"},
 	{"cut", NULL, CAU_OPTION_FLAG, AT(cut),
      .meaning = "in place of a script: the cut that the scene describes"},
 	{"print-cut", NULL, CAU_OPTION_FLAG, AT(print_cut),
@@ -21,11 +21,11 @@ static const cau_option rows[] = {
 	{"threads", "N", CAU_OPTION_WHOLE, AT(threads), 1, 16,
      .meaning = "1 to 16 threads; the hash does not depend on it (default 1)"},
 	{"unit-m", "U", CAU_OPTION_NUMBER, AT(unit_m), 1e-9, 1000,
-     .meaning = "metres in one unit of a mesh file (default: guessed where it is clear)"},
+     .meaning = "metres in one unit of a mesh file (default: guessed where clear)"},
 	{"strict", NULL, CAU_OPTION_FLAG, AT(strict),
-     .meaning = "refuses a mesh file that would have to be mended"},
+     .meaning = "refuses a mesh file that needs repair"},
 	{"snapshot-at", "K", CAU_OPTION_LONG, AT(snapshot_at), 0, 1e9,
-     .meaning = "at tick K, go on from a snapshot in a fresh session"},
+     .meaning = "at tick K, continue from a snapshot in a new session"},
 	{"vtu", "DIR", CAU_OPTION_TEXT, AT(vtu),
      .meaning = "write the tissue for ParaView, with a collection cautery.pvd"},
 	{"vtu-every", "N", CAU_OPTION_WHOLE, AT(vtu_every), 1, 1e9,
@@ -34,7 +34,7 @@ static const cau_option rows[] = {
 	{"json", NULL, CAU_OPTION_FLAG, AT(json),
      .meaning = "one JSON object as the last line of output"},
 	{"help", NULL, CAU_OPTION_HELP, AT(help), .meaning = "this text"},
-	{"version", NULL, CAU_OPTION_HELP, AT(version), .meaning = "which version this is"},
+	{"version", NULL, CAU_OPTION_HELP, AT(version), .meaning = "version of this program"},
 };
 
 static const cau_command_line line = {

@@ -10,7 +10,6 @@ PAGES = {
 # folder: house words in strings that users read
 STRINGS = {
     "clients/web/": 24,
-    "server/config/": 2,
     "server/hosted_session/": 10,
     "server/hub/": 4,
     "server/rpc/": 3,
