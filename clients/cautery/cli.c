@@ -250,7 +250,7 @@ cli_exit cli_find_fleet(cli *c, cau_fleet *fleet)
 cli_exit cli_connect(cli *c)
 {
 	if (c->label && strchr(c->label, ',')) {
-		cli_complain(c, "--label wants one label here; `ls` alone takes several");
+		cli_complain(c, "--label takes one label here; only `ls` takes several");
 		return CLI_USAGE;
 	}
 	cli_exit code = cli_connect_to(c, named_session(c), c->label);

@@ -61,7 +61,7 @@ static cli_exit set(cli *c, cJSON *all)
 	const char *name = c->arguments[0];
 	bool first = !cli_contexts_of(all)->child;
 	if (!cau_name_is_valid(name)) {
-		cli_complain(c, "\"%s\" is no name: %s", name, CAU_NAME_RULE);
+		cli_complain(c, "\"%s\" is not a valid name: %s", name, CAU_NAME_RULE);
 		return CLI_USAGE;
 	}
 	cJSON_DeleteItemFromObjectCaseSensitive(cli_contexts_of(all), name);

@@ -26,7 +26,7 @@ static cau_status find_folder(char *folder, size_t bytes, cau_error *error)
 	const char *config = getenv("XDG_CONFIG_HOME"), *home = getenv("HOME");
 	bool set = config && config[0] == '/'; // a relative one is to be ignored (XDG)
 	if (!has_folder())
-		return cau_fail(error, CAU_IO, NULL, "neither XDG_CONFIG_HOME nor HOME says where it is");
+		return cau_fail(error, CAU_IO, NULL, "neither XDG_CONFIG_HOME nor HOME is set");
 	int length =
 		snprintf(folder, bytes, "%s%s/cautery", set ? config : home, set ? "" : "/.config");
 	if (length < 0 || (size_t)length >= bytes)
@@ -77,7 +77,8 @@ cau_status cli_contexts_read(cJSON **all, cau_error *error)
 	cJSON_Delete(*all);
 	*all = NULL;
 	snprintf(error->file, sizeof error->file, "%.255s", file);
-	return cau_fail(error, CAU_BAD_SYNTAX, NULL, "it holds no contexts: mend it or remove it");
+	return cau_fail(error, CAU_BAD_SYNTAX, NULL,
+	                "the file is not a list of contexts: repair or remove it");
 }
 
 cau_status cli_contexts_write(const cJSON *all, cau_error *error)

@@ -166,7 +166,7 @@ static cli_exit wait_for_end(follower *f, const cau_client_stream *stream, doubl
 			return cli_fail(c);
 		}
 		if (stream && stream->ended) {
-			cli_complain(c, "%s is gone", c->session);
+			cli_complain(c, "session %s no longer exists", c->session);
 			return CLI_REFUSED;
 		}
 		if (f->answered && (f->failure.status || !stream))

@@ -141,7 +141,7 @@ static cli_exit run_rm(cli *c)
 		params.client_sequence = cau_client_next_sequence(c->client);
 		code = cli_call(c, CAU_METHOD_SESSION_DESTROY, &params, NULL);
 		if (!code && !c->json)
-			fprintf(c->out, "%s is gone\n", c->arguments[i]);
+			fprintf(c->out, "session %s was destroyed\n", c->arguments[i]);
 	}
 	return code;
 }

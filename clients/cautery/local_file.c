@@ -25,7 +25,7 @@ static cau_status read_all(FILE *file, const char *name, size_t bytes_max, char 
 		if (ferror(file))
 			return fail(name, CAU_IO, strerror(errno), error);
 		if (*byte_count > bytes_max)
-			return fail(name, CAU_LIMIT, "larger than is taken", error);
+			return fail(name, CAU_LIMIT, "the file is too large", error);
 		if (*byte_count < capacity - 1) {
 			grown[*byte_count] = 0;
 			return CAU_OK;

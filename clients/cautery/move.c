@@ -47,7 +47,7 @@ static cli_exit check_label(courier *m, const char *session)
 		return CLI_USAGE;
 	}
 	if (strncmp(session, m->label, bytes) == 0 && session[bytes] == '-') {
-		cli_complain(m->c, "%s is of %s already", session, m->label);
+		cli_complain(m->c, "%s is on %s already", session, m->label);
 		return CLI_USAGE;
 	}
 	return CLI_DONE;

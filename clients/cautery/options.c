@@ -204,7 +204,7 @@ static bool check_arguments(const cli *c)
 	if (*c->command->arguments)
 		cli_complain(c, "the arguments are: %s", c->command->arguments);
 	else
-		cli_complain(c, "\"%s\" is too much: it takes no arguments", c->arguments[0]);
+		cli_complain(c, "\"%s\": this command takes no arguments", c->arguments[0]);
 	return false;
 }
 
@@ -240,7 +240,7 @@ bool cli_read(cli *c, int argument_count, char **arguments)
 	if (c->help || c->version)
 		return true;
 	if (!c->command) {
-		cli_complain(c, "which command? --help lists them");
+		cli_complain(c, "no command given; --help lists them");
 		return false;
 	}
 	return check_arguments(c);

@@ -42,8 +42,8 @@ static void print_end(const cli *c, const round_trips *trips)
 		        "{\"count\": %d, \"least_ms\": %.3f, \"mean_ms\": %.3f, \"most_ms\": %.3f}\n",
 		        trips->count, trips->least_ms, mean_ms, trips->most_ms);
 	else
-		fprintf(c->out, "%d there and back: least %.2f ms, mean %.2f ms, most %.2f ms\n",
-		        trips->count, trips->least_ms, mean_ms, trips->most_ms);
+		fprintf(c->out, "%d round trips: least %.2f ms, mean %.2f ms, most %.2f ms\n", trips->count,
+		        trips->least_ms, mean_ms, trips->most_ms);
 }
 
 static cli_exit run(cli *c)

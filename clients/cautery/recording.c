@@ -113,7 +113,7 @@ static cau_status read_bytes(cli_recording *recording, uint32_t byte_count, cau_
 		}
 		uint32_t wanted = room - done;
 		if (fread(recording->buffer + done, 1, wanted, recording->file) != wanted)
-			return cau_fail(error, CAU_CORRUPT, NULL, "is cut short");
+			return cau_fail(error, CAU_CORRUPT, NULL, "is truncated");
 		done = room;
 	}
 	return CAU_OK;
@@ -128,7 +128,7 @@ cau_status cli_recording_next(cli_recording *recording, uint32_t *kind, uint32_t
 	if (bytes == 0 && feof(recording->file))
 		return CAU_OK;
 	if (bytes < HEAD_BYTES)
-		return cau_fail(error, CAU_CORRUPT, NULL, "is cut short");
+		return cau_fail(error, CAU_CORRUPT, NULL, "is truncated");
 	uint32_t found = (uint32_t)get(head, 4);
 	*byte_count = (uint32_t)get(head + 4, 4);
 	recording->received_us = get(head + 8, 8);

@@ -300,9 +300,9 @@ const cli_command cli_run = {
 	.arguments = "[SESSION] SCRIPT",
 	.summary = "runs a script of commands at their ticks, counted from now",
 	.help = "SCRIPT has one command as JSON on each line, as `cautery log` and\n"
-			"`cautery-sim --print-cut` write them; - reads standard input. Tools that the script "
-			"uses are\n"
-			"taken over first. late counts commands that reached the server after their tick,\n"
+			"`cautery-sim --print-cut` write them; - reads standard input.\n"
+			"Tools that the script uses are taken over first. late counts commands that reached "
+			"the server after their tick,\n"
 			"watchdog_cuts how often it was silent so long that its energy was cut.\n",
 	.least = 1,
 	.most = 1,

@@ -155,7 +155,7 @@ cau_status cli_scene_update_write(FILE *out, const cau_client_stream *stream, ui
 {
 	const cau_stream_state *state = stream->state;
 	char id[CAU_NAME_BYTES + 8];
-	CAU_ASSERT(state->synced && state->face_mask && stream->has_topology, "%s is not whole",
+	CAU_ASSERT(state->synced && state->face_mask && stream->has_topology, "%s is incomplete",
 	           stream->description.session);
 	// Everything is told anew: whoever begins to read in the middle has the whole scene.
 	fputs("{\"deletions\":[{", out);

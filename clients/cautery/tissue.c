@@ -115,7 +115,7 @@ static cli_exit run_gravity(cli *c)
 	cau_default_command(&command, CAU_COMMAND_SET_GRAVITY);
 	bool read = read_vector(c, "GRAVITY", 100, command.as.gravity_m_s2);
 	cli_exit code = read ? cli_connect(c) : CLI_USAGE;
-	return code ? code : cli_command_session(c, &command, "gravity is another");
+	return code ? code : cli_command_session(c, &command, "gravity was changed");
 }
 
 const cli_command cli_pin = {.name = "pin",

@@ -96,11 +96,11 @@ static cli_exit run(cli *c)
 	if (bad || !is_role(c, c->arguments[0]))
 		return CLI_USAGE;
 	if (!file) {
-		cli_complain(c, "where is the token to go? --out FILE");
+		cli_complain(c, "--out FILE is missing: the file for the token");
 		return CLI_USAGE;
 	}
 	if (name && (!cau_name_is_valid(name) || strlen(name) >= CAU_NAME_BYTES - 1)) {
-		cli_complain(c, "\"%s\" is no name: %s", name, CAU_NAME_RULE);
+		cli_complain(c, "\"%s\" is not a valid name: %s", name, CAU_NAME_RULE);
 		return CLI_USAGE;
 	}
 	if (!make_token(text) || !cau_sha256(text, strlen(text), hash)) {

@@ -92,7 +92,7 @@ static cli_exit act_take(hand *h)
 {
 	cli_exit code = cli_take(h->c, h->stream, h->tool);
 	if (!code && !h->c->json)
-		fprintf(h->c->out, "%s is ours\n", h->tool);
+		fprintf(h->c->out, "%s: taken over\n", h->tool);
 	return code;
 }
 
@@ -245,7 +245,7 @@ static cli_exit run(cli *c)
 	snprintf(c->session, sizeof c->session, "%s", c->arguments[0]);
 	h.tool = c->arguments[1];
 	if (!cau_name_is_valid(h.tool)) {
-		cli_complain(c, "\"%s\" is no name: %s", h.tool, CAU_NAME_RULE);
+		cli_complain(c, "\"%s\" is not a valid name: %s", h.tool, CAU_NAME_RULE);
 		return CLI_USAGE;
 	}
 	cli_watch_signals();
@@ -273,9 +273,8 @@ const cli_command cli_tool = {
 	.help =
 		"Actions: add SHAPE, remove, take, give, move X Y Z, line X Y Z SPEED, turn W X Y Z,\n"
 		"jaw J, on [TICKS], off, grasp, release, wait S. Metres, m/s, a unit quaternion, 0 to 1,\n"
-		"seconds; TICKS limits the energy. Actions that need the driver take the tool first. "
-		"Energy\n"
-		"goes off when the command ends:\n"
+		"seconds; TICKS limits the energy. Actions that need the driver take the tool first.\n"
+		"Energy goes off when the command ends:\n"
 		"  cautery tool d1-demo hook move 0 0 0 on wait 3 line 0.02 0 0 0.002 off\n",
 	.least = 3,
 	.most = CLI_ARGUMENTS_MAX,

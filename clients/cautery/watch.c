@@ -162,7 +162,7 @@ static cli_exit show_stream(cli *c, const cau_client_stream *stream, double seco
 		return cli_fail(c);
 	}
 	if (stream->ended)
-		cli_complain(c, "%s is gone", c->session);
+		cli_complain(c, "session %s no longer exists", c->session);
 	return stream->ended ? CLI_REFUSED : CLI_DONE;
 }
 

@@ -15,7 +15,8 @@ cau_status cau_outbox_add(cau_outbox *outbox, bool binary, const void *head, siz
 {
 	size_t bytes = head_bytes + body_bytes;
 	if (bytes > CAU_OUTBOX_BYTES_MAX - outbox->byte_count)
-		return cau_fail(error, CAU_LIMIT, NULL, "the connection takes no more: %zu bytes wait",
+		return cau_fail(error, CAU_LIMIT, NULL,
+		                "the connection is too slow: %zu bytes wait to be sent",
 		                outbox->byte_count);
 	cau_outbox_message *message = malloc(sizeof *message + LWS_PRE + bytes);
 	if (!message)

@@ -69,7 +69,7 @@ static int receive(cau_client *client, const void *in, size_t bytes)
 {
 	if (!append(client, in, bytes)) {
 		snprintf(client->close_reason, sizeof client->close_reason,
-		         "the server sent a message larger than any that is expected");
+		         "the server sent a message larger than the protocol allows");
 		return -1;
 	}
 	if (lws_is_final_fragment(client->wsi) && lws_remaining_packet_payload(client->wsi) == 0)

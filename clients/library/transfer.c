@@ -17,7 +17,7 @@ static cau_status wait_for_room(cau_client *client, size_t most, cau_error *erro
 	for (double now_s; client->wsi && client->outbox.byte_count > most;) {
 		now_s = cau_client_now();
 		if (now_s >= until_s)
-			return cau_fail(error, CAU_IO, NULL, "the server took nothing for %g s",
+			return cau_fail(error, CAU_IO, NULL, "the server accepted no data for %g s",
 			                client->def.timeout_s);
 		cau_loop_wait(client->loop, until_s - now_s);
 	}
@@ -101,7 +101,7 @@ static void announced(void *user, const cau_rpc_message *answer, const cau_error
 	if (cau_rpc_result(answer, d->method, d->transfer, &d->error))
 		return;
 	if (d->transfer->byte_count > CAU_CLIENT_BINARY_MAX) {
-		cau_fail(&d->error, CAU_LIMIT, NULL, "a file of %lld bytes is more than is taken",
+		cau_fail(&d->error, CAU_LIMIT, NULL, "a file of %lld bytes is too large",
 		         (long long)d->transfer->byte_count);
 		return;
 	}

@@ -56,7 +56,7 @@ cau_status cau_url_read(const char *text, cau_url *url, cau_error *error)
 	if (!host || bytes == 0 || bytes >= sizeof url->host)
 		return refuse(text, "names no host", error);
 	if (!is_host(host, bytes, host[-1] == '['))
-		return refuse(text, "the host has bytes that no host has", error);
+		return refuse(text, "the host has invalid characters", error);
 	memcpy(url->host, host, bytes);
 	url->port = url->tls ? DEFAULT_TLS_PORT : DEFAULT_PORT;
 	if (*end == ':') {
@@ -68,7 +68,7 @@ cau_status cau_url_read(const char *text, cau_url *url, cau_error *error)
 		end = after;
 	}
 	if (strcmp(end, "") != 0 && strcmp(end, "/") != 0 && strcmp(end, "/v1") != 0)
-		return refuse(text, "nothing but /v1 may follow host and port; a session is named apart",
+		return refuse(text, "only /v1 may follow host and port; give the session as an argument",
 		              error);
 	return CAU_OK;
 }

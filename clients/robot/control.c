@@ -99,7 +99,7 @@ static const char *why_lost(const control *c, double now_s, bool energy)
 	if (c->options->standby || (c->driving_s == 0 && now_s - c->begun_s < ANSWER_S))
 		return NULL;
 	if (!robot_link_drives(c->link))
-		return "another drives the tool";
+		return "another client drives the tool";
 	if (energy && !c->link->state.energized && now_s - c->following_s > ANSWER_S)
 		return "energy is off";
 	return NULL;

@@ -167,8 +167,7 @@ static cau_status read_line(token_list *list, char *line, int number, cau_error 
 	const token *twin = find_hash(list, made.hash);
 	if (twin)
 		return cau_fail(error, CAU_BAD_VALUE, "tokens",
-		                "line %d has the token of line %d: which role and limits count?", number,
-		                twin->line);
+		                "line %d has the token of line %d: keep one of them", number, twin->line);
 	made.line = number;
 	if (list->count == MAX_TOKENS)
 		return cau_fail(error, CAU_LIMIT, "tokens", "more than %d tokens", MAX_TOKENS);
@@ -185,8 +184,8 @@ static cau_status read_tokens(token_list *list, const char *file, cau_error *err
 		return cau_fail(error, CAU_IO, "tokens", "cannot open %.200s: %s", file, reason);
 	cau_status status = CAU_OK;
 	if (info.st_mode & (S_IRWXG | S_IRWXO))
-		status =
-			cau_fail(error, CAU_BAD_VALUE, "tokens", "%.200s is open to others: chmod 600", file);
+		status = cau_fail(error, CAU_BAD_VALUE, "tokens",
+		                  "%.200s can be read by other users: chmod 600", file);
 	char line[512];
 	for (int number = 1; !status && fgets(line, sizeof line, stream); number++)
 		status = strlen(line) + 1 < sizeof line

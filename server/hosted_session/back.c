@@ -90,7 +90,7 @@ static void arrive(cau_hosted *h, int64_t branch, cau_order *order)
 	cau_event_add(h, event, NULL, order->asker.name, 0, NULL);
 	cau_record_checkpoint(h, NULL, NULL);
 	cau_decide_arrived(h, state == CAU_SESSION_FAULTED ? CAU_SESSION_PAUSED : state,
-	                   "the session went back");
+	                   "the session was rewound");
 	cau_frames_restart(h);
 	cau_record_state(h);
 	h->window_s = cau_monotonic_s();
@@ -110,7 +110,7 @@ static cau_status return_to_present(going *g, cau_error *error)
 		return CAU_OK;
 	g->hosted->tick = g->present_tick;
 	if (!g->present)
-		return cau_fail(error, CAU_FAULTED, "", "it was faulted before, and stays so");
+		return cau_fail(error, CAU_FAULTED, "", "the session was faulted before, and still is");
 	return cau_session_restore(g->hosted->core, g->present, g->present_bytes, &exact, error);
 }
 
@@ -227,7 +227,7 @@ static void run(cau_job *job)
 	cau_hosted *h = g->hosted;
 	cau_error error = {0};
 	bool over = true;
-	cau_status status = cau_building_check(h, "went back", stage_names[g->stage], &error);
+	cau_status status = cau_building_check(h, "was rewound", stage_names[g->stage], &error);
 	tell_stage(h, stage_names[g->stage]);
 	if (!status && g->stage == READING)
 		status = read_past(g, &error);
@@ -273,15 +273,17 @@ cau_outcome_kind cau_apply_back(cau_hosted *h, cau_order *order, const cau_actio
 	if (order->kind == CAU_ORDER_RESTORE) {
 		const cau_named_snapshot *snapshot = cau_snapshot_find(h, order->as.name);
 		if (!snapshot)
-			return fail(order, CAU_NOT_FOUND, "params.name", "no snapshot has this name");
+			return fail(order, CAU_NOT_FOUND, "params.name",
+			            "the session has no snapshot of this name");
 		branch = snapshot->branch;
 		tick = snapshot->tick;
 	} else if (tick > h->tick) {
-		return fail(order, CAU_BAD_VALUE, "params.tick", "beyond the present");
+		return fail(order, CAU_BAD_VALUE, "params.tick",
+		            "the tick is later than the session's present tick");
 	}
 	going *g = malloc(sizeof *g);
 	if (!g)
-		return fail(order, CAU_NO_MEMORY, "", "no memory to go back");
+		return fail(order, CAU_NO_MEMORY, "", "no memory for the rewind");
 	cau_event_end_cut(h);
 	*g = (going){.job = {.run = run, .drop = drop, .expected_s = READ_EXPECTED_S},
 	             .hosted = cau_hosted_share(h),
@@ -313,7 +315,8 @@ cau_outcome_kind cau_apply_fork(cau_hosted *h, cau_order *order, const cau_actio
 	if (!order->as.fork.has_tick)
 		order->as.fork.tick = h->tick;
 	if (order->as.fork.tick > h->tick)
-		return fail(order, CAU_BAD_VALUE, "params.tick", "beyond the present");
+		return fail(order, CAU_BAD_VALUE, "params.tick",
+		            "the tick is later than the session's present tick");
 	if (order->as.fork.tick == h->tick)
 		cau_record_checkpoint(h, NULL, NULL);
 	end_gap(h);

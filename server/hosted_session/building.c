@@ -124,8 +124,8 @@ static cau_status check_wanted(cau_hosted *h, const char *next, cau_error *error
 {
 	cau_status status = cau_building_check(h, "was being built", next, error);
 	if (!status && h->abandoned)
-		status =
-			cau_fail(error, CAU_BAD_STATE, "", "its creator is gone; it ended before %s", next);
+		status = cau_fail(error, CAU_BAD_STATE, "", "its creator disconnected; it ended before %s",
+		                  next);
 	h->unwanted = status != CAU_OK;
 	return status;
 }

@@ -77,7 +77,9 @@ cau_status cau_hosted_create(cau_hosted **made, const cau_surroundings *around,
 		return cau_fail(error, CAU_NO_MEMORY, NULL, "no memory for a session");
 	init(h, around, def);
 	if (!cau_worker_pool_add(around->pool, &h->task)) {
-		status = cau_fail(error, CAU_LIMIT, NULL, "the daemon has as many sessions as it may");
+		status = cau_fail(
+			error, CAU_LIMIT, NULL,
+			"the daemon has as many sessions as it may (setting max_sessions): destroy one");
 		goto give_up;
 	}
 	note_store(h);

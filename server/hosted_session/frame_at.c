@@ -130,8 +130,9 @@ static cau_status check(void *user, cau_error *error)
 	bool given_up = looks->given_up;
 	pthread_mutex_unlock(&h->mutex);
 	if (given_up)
-		return cau_fail(error, CAU_BAD_STATE, "",
-		                "given up on the way: another was asked for, or none");
+		return cau_fail(
+			error, CAU_BAD_STATE, "",
+			"cancelled on the way: the client asked for another past view, or cancelled this one");
 	return CAU_OK;
 }
 
@@ -272,9 +273,10 @@ void cau_apply_frame_at(cau_hosted *h, cau_order *order)
 	cau_error error = {0};
 	cau_looks *looks = looks_of(h);
 	if (!looks)
-		cau_fail(&error, CAU_NO_MEMORY, "", "no memory to look at the past");
+		cau_fail(&error, CAU_NO_MEMORY, "", "no memory for a past view");
 	else if (order->as.frame_at.tick > h->tick)
-		cau_fail(&error, CAU_BAD_VALUE, "params.tick", "beyond the present");
+		cau_fail(&error, CAU_BAD_VALUE, "params.tick",
+		         "the tick is later than the session's present tick");
 	if (error.status) {
 		cau_answer_fail(order, &error, 0);
 		return;

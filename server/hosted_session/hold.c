@@ -55,7 +55,7 @@ static void run_stop(cau_job *job)
 	holding->order = NULL;
 	holding->job.run = holding->job.drop = run_on;
 	if (!stored)
-		cau_fail(&error, CAU_IO, "", "the store has not taken all that happened: try again later");
+		cau_fail(&error, CAU_IO, "", "the store has not stored all commands yet: try again later");
 	outcome.text = text;
 	outcome.error = text ? NULL : &error;
 	cau_reply_answer(&order->reply, &outcome); // from here on the session may go on or away
@@ -86,10 +86,10 @@ cau_outcome_kind cau_apply_hold(cau_hosted *h, cau_order *order, const cau_actio
 {
 	(void)action;
 	if (cau_decided_state(h) == CAU_SESSION_FAULTED)
-		return refuse(order, CAU_FAULTED, "a faulted session does not move: rewind or reset it");
+		return refuse(order, CAU_FAULTED, "a faulted session cannot move: rewind or reset it");
 	cau_holding *holding = calloc(1, sizeof *holding);
 	if (!holding)
-		return refuse(order, CAU_NO_MEMORY, "no memory to let it stand still");
+		return refuse(order, CAU_NO_MEMORY, "no memory to suspend the session");
 	holding->job = (cau_job){.run = run_stop, .drop = drop_stop, .expected_s = STOPS_EXPECTED_S};
 	holding->hosted = cau_hosted_share(h);
 	holding->order = order;
@@ -106,7 +106,7 @@ cau_outcome_kind cau_apply_hold(cau_hosted *h, cau_order *order, const cau_actio
 
 void cau_hosted_go_on(cau_hosted *h)
 {
-	CAU_ASSERT(h->holding && !h->holding->order, "session %s does not stand still", h->id);
+	CAU_ASSERT(h->holding && !h->holding->order, "session %s is not suspended", h->id);
 	cau_builder_submit(h->around->mover, &h->holding->job);
 }
 
@@ -129,7 +129,7 @@ static void run_away(cau_job *job)
 
 void cau_hosted_go_away(cau_hosted *h, const cau_moved_to *to)
 {
-	CAU_ASSERT(h->holding && !h->holding->order, "session %s does not stand still", h->id);
+	CAU_ASSERT(h->holding && !h->holding->order, "session %s is not suspended", h->id);
 	h->moved = *to;
 	h->holding->job.run = h->holding->job.drop = run_away;
 	cau_builder_submit(h->around->mover, &h->holding->job);

@@ -17,7 +17,7 @@ cau_hosted *cau_hosted_share(cau_hosted *h)
 void cau_reply_moved(const cau_reply *reply, const cau_moved_to *to)
 {
 	cau_error error = {0};
-	cau_fail(&error, CAU_NOT_FOUND, "params.session", "it is `%s` now", to->session);
+	cau_fail(&error, CAU_NOT_FOUND, "params.session", "the session is now `%s`", to->session);
 	cau_outcome outcome = {.error = &error, .code = CAU_RPC_MOVED, .moved = to};
 	cau_reply_answer(reply, &outcome);
 }

@@ -31,7 +31,9 @@ void cau_looks_give_up(cau_hosted *h, uint32_t client)
 	pthread_mutex_unlock(&h->mutex);
 	if (!order)
 		return;
-	cau_fail(&error, CAU_BAD_STATE, "", "given up before it began: another was asked for, or none");
+	cau_fail(
+		&error, CAU_BAD_STATE, "",
+		"cancelled before it began: the client asked for another past view, or cancelled this one");
 	cau_answer_fail(order, &error, 0);
 }
 
@@ -52,8 +54,8 @@ void cau_looks_finish(cau_looks *looks)
 {
 	if (!looks)
 		return;
-	CAU_ASSERT(!looks->busy && !looks->waiting, "session %s goes while somebody looks at its past",
-	           looks->hosted->id);
+	CAU_ASSERT(!looks->busy && !looks->waiting,
+	           "session %s is destroyed while a client views its past", looks->hosted->id);
 	cau_past_finish(&looks->past);
 	free(looks);
 }

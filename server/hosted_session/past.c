@@ -27,7 +27,7 @@ static cau_status hold_memory(cau_past *past, int64_t bytes, cau_error *error)
 	if (more > 0 && all > around->config->max_sessions_bytes) {
 		atomic_fetch_sub(around->memory_held, more);
 		return cau_fail(error, CAU_LIMIT, "",
-		                "a look at the past takes about %.0f MB of memory, all sessions then %.0f "
+		                "a past view takes about %.0f MB of memory, all sessions then %.0f "
 		                "MB; they may take %.0f MB (setting max_sessions_bytes)",
 		                (double)bytes / MEGABYTE, (double)all / MEGABYTE,
 		                (double)around->config->max_sessions_bytes / MEGABYTE);
@@ -66,7 +66,7 @@ static cau_status begin_at_kept(cau_past *past, const cau_kept_state *kept, cau_
 	cau_replay *replay = &past->replay;
 	void *copy = malloc(kept->byte_count);
 	if (!copy)
-		return cau_fail(error, CAU_NO_MEMORY, "", "no memory to look at the past");
+		return cau_fail(error, CAU_NO_MEMORY, "", "no memory for a past view");
 	memcpy(copy, kept->bytes, kept->byte_count);
 	free(replay->snapshot);
 	replay->snapshot = copy;
@@ -131,8 +131,7 @@ static void keep(cau_past *past)
 
 cau_status cau_past_slice(cau_past *past, double seconds, bool *over, cau_error *error)
 {
-	CAU_ASSERT(past->somewhere, "the past of session %s is followed from nowhere",
-	           past->hosted->id);
+	CAU_ASSERT(past->somewhere, "the past view of session %s has no start", past->hosted->id);
 	cau_status status = cau_replay_slice(&past->replay, past->core, seconds, over, error);
 	past->somewhere = !status;
 	if (!status)

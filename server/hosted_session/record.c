@@ -259,7 +259,7 @@ void cau_record_commit(cau_hosted *h)
 	cau_pending *pending = reversed(h->pending);
 	h->pending = NULL;
 	if (!h->batch) {
-		answer_all(pending, pending ? CAU_NO_MEMORY : CAU_OK, "nothing could be stored");
+		answer_all(pending, pending ? CAU_NO_MEMORY : CAU_OK, "no command could be stored");
 		return;
 	}
 	commit *travelling = malloc(sizeof *travelling);

@@ -14,7 +14,7 @@ cau_status cau_replay_check(cau_hosted *h, int64_t branch, bool present, uint64_
 	uint64_t lost_from = h->lost_from;
 	if (present && tick > lost_from)
 		return cau_fail(error, CAU_BAD_VALUE, "params.tick",
-		                "what happened from tick %llu on could not be stored",
+		                "commands from tick %llu on could not be stored",
 		                (unsigned long long)lost_from);
 	return cau_store_check_reach(h->around->store, h->id, branch, tick, error);
 }

@@ -31,7 +31,7 @@ void cau_hosted_refuse_order(cau_hosted *h, cau_order *order, const cau_error *e
 void cau_hosted_refuse_rest(cau_hosted *h)
 {
 	cau_action action;
-	CAU_ASSERT(h->logic->ended, "what waits for session %s is refused while it lives", h->id);
+	CAU_ASSERT(h->logic->ended, "orders of session %s are refused before it ends", h->id);
 	for (cau_decide_next(h, &action); action.act != CAU_ACT_NOTHING; cau_decide_next(h, &action)) {
 		cau_order *order = (cau_order *)(uintptr_t)action.ticket;
 		if (action.act == CAU_ACT_REFUSE)

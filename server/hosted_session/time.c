@@ -105,7 +105,7 @@ cau_outcome_kind cau_apply_snapshot(cau_hosted *h, cau_order *order, const cau_a
 		return fail(order, CAU_ALREADY_EXISTS, "params.name", "a snapshot has this name");
 	}
 	if (h->snapshot_count == SNAPSHOT_COUNT) {
-		return fail(order, CAU_LIMIT, "params.name", "the session has 64 snapshots");
+		return fail(order, CAU_LIMIT, "params.name", "the session has 64 snapshots, the most");
 	}
 	cau_record_checkpoint(h, &result.hash, &bytes);
 	cau_named_snapshot *made = &h->snapshots[h->snapshot_count++];

@@ -108,7 +108,8 @@ static arrival *enlist(cau_hub *hub, const cau_move_asked *asked, const contents
 	for (const arrival *a = hub->arrivals; a; a = a->next)
 		waiting += !cau_coming_serves(&a->coming);
 	if (waiting >= ARRIVALS_MOST) {
-		cau_fail(error, CAU_LIMIT, "", "%d sessions are on their way here", waiting);
+		cau_fail(error, CAU_LIMIT, "", "%d sessions are already moving here: try again later",
+		         waiting);
 		return NULL;
 	}
 	arrival *a = calloc(1, sizeof *a);
@@ -142,8 +143,8 @@ static arrival *begin_piece(cau_hub *hub, const cau_move_asked *asked, const con
 	         a->pieces != found->index || a->coming.state == CAU_COMING_WHOLE) {
 		cau_fail(error, CAU_BAD_STATE, "params.upload",
 		         waits && strcmp(a->move, asked->move) != 0
-		             ? "another move brings this session: `cautery move` of it ends that"
-		             : "this piece is not the next one");
+		             ? "another move of this session is under way: finish it with `cautery move`"
+		             : "pieces must come in order, and this one is not the next");
 		a = NULL;
 	}
 	if (a)

@@ -106,7 +106,8 @@ static arrival *begin_build(cau_move_job *job, cau_status *status, cau_error *er
 	cau_coming_state state = a ? a->coming.state : CAU_COMING_NOT;
 	bool waits = state == CAU_COMING_INCOMING || state == CAU_COMING_WHOLE;
 	if (!waits || a->writing)
-		*status = cau_fail(error, CAU_BAD_STATE, "params.move", "there is nothing to build");
+		*status = cau_fail(error, CAU_BAD_STATE, "params.move",
+		                   "no such move waits here, or a piece is being written");
 	else if (a->hosted && !a->ready)
 		*status = cau_fail(error, CAU_BAD_STATE, "", "it is being built");
 	else if (a->hosted)
@@ -309,7 +310,7 @@ static void describe(cau_move_job *job)
 	if (status) {
 		free(order);
 		cau_move_fail(&job->reply, CAU_NOT_FOUND, CAU_RPC_NOT_HERE, "params.session",
-		              "it was accepted before, and is not here any more");
+		              "the session was accepted before, and is no longer on this daemon");
 	}
 	cau_hosted_release(hosted);
 }
@@ -324,16 +325,17 @@ void cau_arrival_accept(cau_move_job *job)
 	if (!a)
 		status = cau_fail(&error, CAU_BAD_STATE, "params.move", "no such move is known here");
 	else if (job->hub->moves_end)
-		status = cau_fail(&error, CAU_BAD_STATE, "", "the server is shutting down: ask again");
+		status = cau_fail(&error, CAU_BAD_STATE, "",
+		                  "the daemon is shutting down: ask again when it is back");
 	else if (!opens(a, job->asked.proof))
-		status = cau_fail(&error, CAU_BAD_VALUE, "params.proof", "it is not that of this move");
+		status = cau_fail(&error, CAU_BAD_VALUE, "params.proof", "the proof is of another move");
 	else if (a->writing || (a->hosted && !a->ready && !cau_hosted_ended(a->hosted)))
-		status = cau_fail(&error, CAU_BAD_STATE, "", "it is being built: ask again");
+		status = cau_fail(&error, CAU_BAD_STATE, "", "the session is being built: ask again");
 	else
 		act = cau_coming_take(&a->coming, CAU_COMING_PROOF, true);
 	if (!status && act == CAU_COMING_REFUSE)
-		status =
-			cau_fail(&error, CAU_BAD_STATE, "", "not all of it is here, or it is accepted now");
+		status = cau_fail(&error, CAU_BAD_STATE, "",
+		                  "not all pieces have come, or the session is being accepted");
 	if (!status && act == CAU_COMING_DO_WRITE)
 		status = write_accepted(job, a, &error);
 	pthread_mutex_unlock(&job->hub->moves_mutex);
@@ -405,7 +407,7 @@ void cau_arrival_forget(cau_move_job *job)
 	bool whole = a && a->coming.state == CAU_COMING_WHOLE;
 	bool busy = a && (a->writing || (a->hosted && !a->ready && !cau_hosted_ended(a->hosted)));
 	if (busy)
-		status = cau_fail(&error, CAU_BAD_STATE, "", "it is being built: ask again");
+		status = cau_fail(&error, CAU_BAD_STATE, "", "the session is being built: ask again");
 	else if (!a || cau_coming_take(&a->coming, CAU_COMING_FORGET, true) != CAU_COMING_DO_FORGET)
 		status = cau_fail(&error, CAU_BAD_STATE, "params.move",
 		                  "no such move is known here, or the session is this daemon's");

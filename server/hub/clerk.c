@@ -85,12 +85,11 @@ static cau_status check_place(cau_hub *hub, const cau_creation *creation, const 
 	if (other)
 		return cau_fail(error, CAU_ALREADY_EXISTS, "params.name", "`%s` exists", id);
 	if (creation->origin.kind != CAU_ORIGIN_STORE && cau_hub_moved(hub, id, &to))
-		return cau_fail(error, CAU_ALREADY_EXISTS, "params.name",
-		                "`%s` has moved and is `%s` now: who asks for it is led there", id,
-		                to.session);
+		return cau_fail(error, CAU_ALREADY_EXISTS, "params.name", "`%s` has moved and is `%s` now",
+		                id, to.session);
 	if (creation->origin.kind != CAU_ORIGIN_STORE && cau_arrivals_have(hub, id))
 		return cau_fail(error, CAU_ALREADY_EXISTS, "params.name",
-		                "`%s` is on its way here from another daemon", id);
+		                "`%s` is moving here from another daemon", id);
 	if (cau_hub_count(hub) >= hub->def.config->max_sessions)
 		return cau_fail(error, CAU_LIMIT, "", "the daemon has %lld sessions (setting max_sessions)",
 		                (long long)hub->def.config->max_sessions);
@@ -115,8 +114,9 @@ cau_status cau_clerk_make(cau_hub *hub, cau_creation *creation, const char *id, 
 	                      .reply = creation->reply};
 	pthread_mutex_lock(&hub->mutex);
 	bool room = (size_t)hub->session_count < SLOTS(hub->def.config);
-	status = room ? cau_hosted_create(&hosted, &hub->around, &def, error)
-	              : cau_fail(error, CAU_LIMIT, "", "sessions are still being cleared away");
+	status =
+		room ? cau_hosted_create(&hosted, &hub->around, &def, error)
+			 : cau_fail(error, CAU_LIMIT, "", "the store is still removing sessions: try again");
 	if (!status) {
 		hub->sessions[hub->session_count++] = hosted;
 		creation->scene = NULL;

@@ -49,7 +49,7 @@ static void cleared(void *user, cau_status status, const char *reason)
 	cau_leaving_act act =
 		cau_leaving_take(&d->leaving, status ? CAU_LEAVING_REFUSED : CAU_LEAVING_WRITTEN, true);
 	if (status) {
-		cau_move_fail(&d->waiting, CAU_IO, CAU_RPC_STORE_FULL, "", "the store has no room");
+		cau_move_fail(&d->waiting, CAU_IO, CAU_RPC_STORE_FULL, "", "the store is full");
 		d->waiting = (cau_reply){0};
 		d->held_s = cau_monotonic_s(); // asked again later
 	} else {
@@ -185,7 +185,7 @@ void cau_departure_hold(cau_move_job *job)
 		cau_departure_fail_unknown(&job->reply);
 	else if (!stops)
 		cau_move_fail(&job->reply, CAU_BAD_STATE, 0, "",
-		              "it stands still already, or what was there has not been read yet");
+		              "it is suspended already, or its first part has not been read yet");
 	else
 		ask_to_hold(job, hosted);
 	cau_hosted_release(hosted);
@@ -281,11 +281,11 @@ void cau_departure_commit(cau_move_job *job)
 		cau_move_fail(&job->reply, CAU_BAD_STATE, CAU_RPC_DRAINING, "",
 		              "the server is shutting down");
 	} else if (!d->all_sent) {
-		cau_move_fail(&job->reply, CAU_BAD_STATE, 0, "", "not all of it has been read");
+		cau_move_fail(&job->reply, CAU_BAD_STATE, 0, "", "not all pieces have been read");
 	} else if (cau_leaving_take(&d->leaving, CAU_LEAVING_COMMIT, true) == CAU_LEAVING_DO_WRITE) {
 		write_tombstone(job->hub, d, &job->reply);
 	} else {
-		cau_move_fail(&job->reply, CAU_BAD_STATE, 0, "", "it is being decided: ask again");
+		cau_move_fail(&job->reply, CAU_BAD_STATE, 0, "", "the move is being decided: ask again");
 	}
 	pthread_mutex_unlock(&job->hub->moves_mutex);
 }
@@ -305,7 +305,7 @@ static void cancel(cau_move_job *job, departure *d)
 	cau_leaving_state from = d->leaving.state;
 	cau_leaving_act act = cau_leaving_take(&d->leaving, CAU_LEAVING_CANCEL, true);
 	if (act == CAU_LEAVING_NOTHING) {
-		cau_move_fail(&job->reply, CAU_BAD_STATE, 0, "", "it is being decided: ask again");
+		cau_move_fail(&job->reply, CAU_BAD_STATE, 0, "", "the move is being decided: ask again");
 		return;
 	}
 	d->waiting = job->reply;
@@ -320,7 +320,7 @@ void cau_departure_cancel(cau_move_job *job)
 		cancel(job, d);
 	else if (!is_of_this_daemon(job->hub, job->asked.session))
 		cau_move_fail(&job->reply, CAU_NOT_FOUND, CAU_RPC_NOT_HERE, "params.session",
-		              "it is not of this daemon");
+		              "the session's label is not this daemon's");
 	else if (!show(job))
 		cau_move_decided(&job->reply, NULL);
 	pthread_mutex_unlock(&job->hub->moves_mutex);

@@ -54,7 +54,7 @@ void cau_departure_take_out(cau_hub *hub, departure *d)
 void cau_departure_fail_unknown(const cau_reply *reply)
 {
 	cau_move_fail(reply, CAU_BAD_STATE, 0, "params.move",
-	              "no such move is under way here: begin anew");
+	              "no such move is under way here: begin again");
 }
 
 // ---- begin --------------------------------------------------------------------------------------
@@ -77,7 +77,8 @@ static cau_status fill(departure *d, const cau_move_asked *asked, cau_error *err
 		return cau_fail(error, CAU_BAD_VALUE, "params.target", "it does not begin with `%s-`",
 		                asked->label);
 	if (strcmp(asked->to.session, asked->session) == 0)
-		return cau_fail(error, CAU_BAD_VALUE, "params.target", "it is there already");
+		return cau_fail(error, CAU_BAD_VALUE, "params.target",
+		                "the session is on that daemon already");
 	memcpy(d->id, asked->session, sizeof d->id);
 	memcpy(d->label, asked->label, sizeof d->label);
 	memcpy(d->becomes.id, asked->session, sizeof d->becomes.id);
@@ -102,7 +103,7 @@ static cau_hosted *find_hosted(cau_move_job *job)
 		cau_reply_moved(&job->reply, &to);
 	else
 		cau_move_fail(&job->reply, CAU_NOT_FOUND, CAU_RPC_NOT_HERE, "params.session",
-		              "this daemon does not have it");
+		              "this daemon has no such session");
 	cau_hosted_release(hosted);
 	return NULL;
 }
@@ -112,8 +113,9 @@ static cau_status enlist(cau_hub *hub, departure *d, cau_error *error)
 	cau_status status = CAU_OK;
 	pthread_mutex_lock(&hub->moves_mutex);
 	if (find(hub, d->id))
-		status = cau_fail(error, CAU_BAD_STATE, "params.session",
-		                  "it is being moved already: `cautery move --cancel` ends that");
+		status = cau_fail(
+			error, CAU_BAD_STATE, "params.session",
+			"the session is being moved already: cancel that with `cautery move --cancel`");
 	else if (hub->tombstone_count >= TOMBSTONES_MOST)
 		status = cau_fail(error, CAU_LIMIT, "", "%d sessions have moved away from this daemon",
 		                  TOMBSTONES_MOST);
@@ -222,9 +224,9 @@ static departure *begin_reading(cau_move_job *job, bool *held)
 	if (d && d->reading)
 		why = "another piece is being read";
 	else if (d && d->all_sent)
-		why = "all of it has been read";
+		why = "all pieces have been read";
 	else if (d && d->part_sent && !*held)
-		why = "the rest is read when it stands still";
+		why = "the rest can be read when it is suspended (move.hold)";
 	if (d && !why) {
 		d->reading = true;
 		d->touched_s = cau_monotonic_s();

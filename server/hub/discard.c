@@ -14,7 +14,7 @@ void cau_clerk_answer_missing(cau_hub *hub, const cau_reply *reply, const char *
 		cau_reply_moved(reply, &to);
 		return;
 	}
-	cau_fail(&error, CAU_NOT_FOUND, "params.session", "this daemon does not have `%.48s`", id);
+	cau_fail(&error, CAU_NOT_FOUND, "params.session", "no session `%.48s` on this daemon", id);
 	cau_reply_fail(reply, &error, CAU_RPC_NOT_HERE);
 }
 
@@ -93,7 +93,7 @@ void cau_clerk_discard(cau_hub *hub, const cau_creation *asked)
 	cau_error error = {0};
 	if (cau_arrivals_have(hub, asked->name)) {
 		cau_fail(&error, CAU_BAD_STATE, "params.session",
-		         "it is on its way here from another daemon: `cautery move` again ends that");
+		         "the session is moving here from another daemon: finish it with `cautery move`");
 		cau_reply_fail(&asked->reply, &error, 0);
 		return;
 	}

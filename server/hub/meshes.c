@@ -50,7 +50,7 @@ cau_status cau_meshes_unpack(cau_scene_def *scene, const void *meshes, size_t by
 		if (left >= sizeof length)
 			memcpy(&length, at, sizeof length);
 		if (left < sizeof length || length > left - sizeof length)
-			return cau_fail(error, CAU_CORRUPT, "", "the stored meshes are too short");
+			return cau_fail(error, CAU_CORRUPT, "", "the stored meshes are cut short");
 		mesh->bytes = at + sizeof length;
 		mesh->byte_count = length;
 		at += sizeof length + length;

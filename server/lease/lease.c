@@ -132,7 +132,7 @@ static cau_status judge(cau_lease *lease, cau_etcd_value *generation, cau_etcd_v
 	if (generation->is_there &&
 	    (!cau_generation_read(generation->text, generation->bytes, &claim.known) ||
 	     claim.known.number == 0))
-		return cau_fail(error, CAU_CORRUPT, "etcd", "what etcd has at %.80s is no generation",
+		return cau_fail(error, CAU_CORRUPT, "etcd", "the value of %.80s in etcd is no generation",
 		                lease->keys.generation);
 	claim.is_held = holder->is_there;
 	claim.is_held_here = holder->bytes == strlen(lease->holder) &&
@@ -140,8 +140,8 @@ static cau_status judge(cau_lease *lease, cau_etcd_value *generation, cau_etcd_v
 	cau_verdict verdict = cau_lease_judge(&claim, error);
 	*again = verdict == CAU_VERDICT_WAIT;
 	if (verdict == CAU_VERDICT_WAIT)
-		return cau_fail(error, CAU_BAD_STATE, "etcd", "%.60s is served by another: %.80s",
-		                lease->label, holder->text);
+		return cau_fail(error, CAU_BAD_STATE, "etcd",
+		                "another daemon serves the label %.60s: %.80s", lease->label, holder->text);
 	if (verdict == CAU_VERDICT_REFUSE)
 		return error->status;
 	uint64_t mark = 0;
@@ -175,8 +175,8 @@ static cau_status try_to_take(cau_lease *lease, bool *again, cau_error *error)
 		status = cau_etcd_claim(lease->etcd, &lease->keys, &generation, &holder, next,
 		                        lease->holder, granted.id, lease->rules.limit_s, &taken, error);
 	if (!status && !taken)
-		status = cau_fail(error, CAU_BAD_STATE, "etcd", "another took %.60s in the same moment",
-		                  lease->label);
+		status = cau_fail(error, CAU_BAD_STATE, "etcd",
+		                  "another daemon took the label %.60s at the same moment", lease->label);
 	if (status)
 		return status;
 	*again = false;

@@ -50,7 +50,7 @@ void cau_answers_write(cau_service *service, cau_metrics_format format, FILE *ou
 {
 	static const cau_metric_family family = {
 		"answers", CAU_METRIC_COUNTER, "",
-		"Answers on WebSocket by method and code; method none: to what was no request"};
+		"Answers on WebSocket by method and code; method none: answers to invalid requests"};
 	cau_metrics_begin(out, format, &family);
 	for (int m = 0; m <= CAU_METHOD_COUNT; m++)
 		for (int c = 0; c < CAU_ANSWER_COLUMNS; c++) {

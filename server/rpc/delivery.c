@@ -21,7 +21,8 @@ static void refuse_join(cau_peer *peer, cau_post *post)
 {
 	cau_error error = {0};
 	cau_rpc_fault fault;
-	cau_fail(&error, CAU_LIMIT, "", "the connection has %d streams: leave one, or open another",
+	cau_fail(&error, CAU_LIMIT, "",
+	         "the connection has %d streams: leave one, or open another connection",
 	         STREAMS_OF_PEER);
 	cau_rpc_fault_of_error(&fault, &error);
 	cau_peer_fault(peer, &post->id, &fault);

@@ -78,7 +78,9 @@ static void refuse_token(const cau_call *call, bool is_guess)
 		cau_log(CAU_LOG_WARNING, NULL, "token_refused", "address=%s total=%llu",
 		        call->peer->connection->address, (unsigned long long)service->tokens_refused);
 	}
-	answer_refusal(call, CAU_RPC_UNAUTHORIZED, "the token is not known, or has expired");
+	answer_refusal(
+		call, CAU_RPC_UNAUTHORIZED,
+		"the token is unknown or has expired: ask the daemon's administrator for a new one");
 	if (is_guess)
 		cau_connection_close_late(call->peer->connection, CAU_CLOSE_UNAUTHORIZED);
 	else
@@ -98,7 +100,7 @@ void cau_call_hello(cau_call *call)
 		return;
 	}
 	if (peer->greeted) {
-		cau_fail(&error, CAU_BAD_STATE, "", "hello was said already");
+		cau_fail(&error, CAU_BAD_STATE, "", "hello must come only once");
 		cau_call_fail(call, &error, 0);
 		return;
 	}

@@ -13,26 +13,26 @@
 #define SESSION_METRICS(X)                                                                         \
 	X("session_steps", COUNTER, "", "Steps computed", c->steps)                                    \
 	X("session_step_seconds", COUNTER, "seconds", "Wall time spent in steps", c->step_seconds)     \
-	X("session_energy_gain_joules", COUNTER, "joules", "Energy that steps made out of nothing",    \
+	X("session_energy_gain_joules", COUNTER, "joules", "Energy that steps added without a source", \
 	  c->energy_gain_j)                                                                            \
 	X("session_realtime_factor", GAUGE, "", "Simulated over wall time", c->realtime_factor)        \
-	X("session_speed", GAUGE, "", "Simulated over wall time that is aimed at", s->speed)           \
+	X("session_speed", GAUGE, "", "Wanted ratio of simulated to wall time", s->speed)              \
 	X("session_running", GAUGE, "", "1 while its clock runs", s->state == CAU_SESSION_RUNNING)     \
 	X("session_frames", COUNTER, "", "Delta frames encoded", c->frames)                            \
 	X("session_frame_bytes", COUNTER, "bytes", "Bytes of delta frames", c->frame_bytes)            \
 	X("session_key_frames", COUNTER, "", "Key frames encoded", c->key_frames)                      \
 	X("session_commands", COUNTER, "", "Commands applied", c->commands)                            \
 	X("session_motions", COUNTER, "", "Tool motions applied", c->motions)                          \
-	X("session_refused", COUNTER, "", "Motions refused, and what DDS did not let in", c->refused)  \
+	X("session_refused", COUNTER, "", "Motions refused, and DDS samples refused", c->refused)      \
 	X("session_watchdog_cuts", COUNTER, "", "Times a driver's silence cut energy",                 \
 	  c->watchdog_cuts)                                                                            \
 	X("session_subscribers", GAUGE, "", "Streams joined", s->subscriber_count)                     \
 	X("session_subscribers_half_rate", GAUGE, "", "Streams served at half rate", c->half_rate)     \
 	X("session_resting", GAUGE, "", "1 while its tissue is at rest", c->resting)                   \
 	X("session_contacts_left_out", GAUGE, "",                                                      \
-	  "Vertices near tools that the last step's contact had no place for", c->contacts_left_out)   \
+	  "Vertices near tools beyond the capacity of the last step's contact", c->contacts_left_out)  \
 	X("session_touching_cut_short", GAUGE, "",                                                     \
-	  "Times in the last step that tissue touching tissue found no room or was thrown",            \
+	  "Times in the last step that tissue contact exceeded its capacity or diverged",              \
 	  c->touching_cut_short)                                                                       \
 	X("session_paused", GAUGE, "", "1 while it is paused", s->state == CAU_SESSION_PAUSED)         \
 	X("session_faulted", GAUGE, "", "1 after a fault", s->state == CAU_SESSION_FAULTED)

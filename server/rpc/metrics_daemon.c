@@ -49,7 +49,7 @@ static void write_network(cau_service *service, const exposition *to)
 	counter(to, "handshakes_refused", "", "Upgrade requests refused", (double)n.refused_handshakes);
 	counter(to, "connections_closed_slow", "", "Connections closed for slowness",
 	        (double)n.closed_slow);
-	counter(to, "connections_closed_error", "", "Connections closed for a rule broken",
+	counter(to, "connections_closed_error", "", "Connections closed because they broke a rule",
 	        (double)n.closed_errors);
 	counter(to, "connections_closed_without_hello", "",
 	        "Connections without hello that were closed for newer ones",
@@ -59,7 +59,7 @@ static void write_network(cau_service *service, const exposition *to)
 	counter(to, "messages_sent", "", "Messages to clients", (double)n.messages_out);
 	counter(to, "sent_bytes", "bytes", "Bytes of messages to clients", (double)n.bytes_out);
 	counter(to, "requests", "", "Text messages read", (double)service->requests);
-	counter(to, "request_errors", "", "Requests answered at once with an error",
+	counter(to, "request_errors", "", "Requests refused before they reached a session",
 	        (double)service->errors);
 }
 
@@ -98,15 +98,17 @@ static void write_store(cau_service *service, const exposition *to)
 	gauge(to, "store_database_bytes", "bytes", "Size of the store", (double)m.database_bytes);
 	gauge(to, "store_log_bytes", "bytes", "Size of the store's write-ahead log",
 	      (double)m.wal_bytes);
-	counter(to, "store_retired_rows", "", "Rows that were removed to keep the store's bounds",
+	counter(to, "store_retired_rows", "", "Records removed to keep the store's bounds",
 	        (double)m.retired_rows);
-	gauge(to, "store_kept_bytes", "bytes", "What sessions, logs and checkpoints take, in all",
+	gauge(to, "store_kept_bytes", "bytes", "Size of sessions, logs and checkpoints together",
 	      (double)m.kept_bytes);
-	gauge(to, "store_budget_bytes", "bytes", "What they may take; 0: no bound",
+	gauge(to, "store_budget_bytes", "bytes",
+	      "Largest size of sessions, logs and checkpoints; 0: no bound",
 	      (double)service->config->store_bytes);
 	counter(to, "store_budget_checkpoints", "", "Checkpoints removed to keep the store's budget",
 	        (double)m.budget_dropped);
-	gauge(to, "store_beyond_budget", "", "1 if they take more and nothing is left that may go",
+	gauge(to, "store_beyond_budget", "",
+	      "1 if sessions exceed the store's budget and nothing can be removed",
 	      m.budget == CAU_STORE_BUDGET_BEYOND);
 	write_commits(to, &m);
 }
@@ -187,8 +189,8 @@ static void write_process(const exposition *to)
 
 static void write_build(const cau_service *service, const exposition *to)
 {
-	static const cau_metric_family family = {"build_info", CAU_METRIC_GAUGE, "",
-	                                         "1: what runs, and whether it has its DDS open"};
+	static const cau_metric_family family = {
+		"build_info", CAU_METRIC_GAUGE, "", "Always 1; labels: the build, and whether DDS is open"};
 	const cau_metric_label labels[] = {{"version", CAUTERY_VERSION},
 	                                   {"compiler", __VERSION__},
 	                                   {"dds", service->config->dds ? "on" : "off"}};
@@ -218,7 +220,7 @@ static void write_times(const cau_hosted_times *times, const exposition *to)
 	      "How late a tick of a running session begins"},
 	     &times->lateness},
 		{{"command_to_frame_seconds", CAU_METRIC_HISTOGRAM, "seconds",
-	      "From a command's arrival to the first frame that shows it, where somebody watches"},
+	      "From a command's arrival to the first frame that shows it, where a client watches"},
 	     &times->command_to_frame},
 	};
 	const cau_metric_family stage = {"step_stage_seconds", CAU_METRIC_HISTOGRAM, "seconds",

@@ -37,7 +37,7 @@ static void fail_moved(const cau_call *call, const cau_moved_to *to)
 	char reason[2 * CAU_NAME_BYTES];
 	if (call->message->kind == CAU_RPC_NOTIFICATION)
 		return;
-	snprintf(reason, sizeof reason, "it is `%s` now", to->session);
+	snprintf(reason, sizeof reason, "the session is now `%s`", to->session);
 	cau_rpc_fault_of_code(&fault, CAU_RPC_MOVED, reason);
 	snprintf(fault.path, sizeof fault.path, "params.session");
 	memcpy(fault.moved_to, to->session, sizeof fault.moved_to);
@@ -159,7 +159,7 @@ cau_hosted *cau_call_session(const cau_call *call)
 		fail_moved(call, &to);
 		return NULL;
 	}
-	cau_fail(&error, CAU_NOT_FOUND, "params.session", "this daemon does not have `%.48s`", id);
+	cau_fail(&error, CAU_NOT_FOUND, "params.session", "no session `%.48s` on this daemon", id);
 	cau_call_fail(call, &error, CAU_RPC_NOT_HERE);
 	return NULL;
 }

@@ -35,10 +35,10 @@ static bool afford(const cau_call *call)
 	if (call->method->cost == CAU_COST_CHEAP)
 		return true;
 	if (call->method->cost == CAU_COST_FILE && !cau_peer_has_room_for_file(peer)) {
-		cau_fail(&error, CAU_LIMIT, "",
-		         "%d files of this connection are under way, as many as may be: try again when one "
-		         "has come",
-		         FILES_OF_PEER);
+		cau_fail(
+			&error, CAU_LIMIT, "",
+			"%d files of this connection are under way, the most: try again when one has arrived",
+			FILES_OF_PEER);
 		cau_call_fail(call, &error, 0);
 		return false;
 	}
@@ -62,7 +62,8 @@ static bool admit(cau_call *call)
 	else if (peer->service->draining && call->method->changes)
 		refuse(call, CAU_BAD_STATE, CAU_RPC_DRAINING, "the server is shutting down");
 	else if (!hello && peer->client.asker.role < call->method->role)
-		refuse(call, CAU_BAD_STATE, CAU_RPC_FORBIDDEN, "the role does not allow this");
+		refuse(call, CAU_BAD_STATE, CAU_RPC_FORBIDDEN,
+		       "the connection's role does not allow this method: use a token with a higher role");
 	else if (!handlers[call->message->method])
 		refuse(call, CAU_BAD_VALUE, CAU_RPC_METHOD_NOT_FOUND, "only the server sends this");
 	else if (cau_rpc_params_known(call->message, &error) ||
@@ -185,11 +186,11 @@ static void check_tokens(cau_service *service)
 			continue;
 		if (!cau_auth_grant_role(service->auth, peer->grant, &role) ||
 		    !cau_auth_grant_bounds(service->auth, peer->grant, &bounds))
-			revoke(service, peer, "the token was taken back or has expired");
+			revoke(service, peer, "the token was revoked or has expired");
 		else if (role < peer->client.asker.role)
-			revoke(service, peer, "the token's role is less than it was: connect again");
+			revoke(service, peer, "the token's role was lowered: connect again");
 		else if (strcmp(bounds.sessions, peer->bounds.sessions) != 0)
-			revoke(service, peer, "the token's sessions are others now: connect again");
+			revoke(service, peer, "the token's sessions were changed: connect again");
 		else
 			peer->bounds = bounds;
 	}

@@ -86,8 +86,9 @@ static cau_status choose_scene(cau_peer *peer, const cau_wire_session_create *pa
 	}
 	for (int32_t i = 0; i < scene->mesh_count; i++)
 		if (scene->meshes[i].source == CAU_MESH_FILE)
-			return cau_fail(error, CAU_UNSUPPORTED, "params.definition.meshes",
-			                "mesh files of the daemon are for its own scenes; upload the mesh");
+			return cau_fail(
+				error, CAU_UNSUPPORTED, "params.definition.meshes",
+				"only the daemon's own scenes may name its mesh files: upload the mesh");
 	return cau_peer_fill_meshes(peer, scene, error);
 }
 
@@ -286,7 +287,7 @@ void cau_call_session_cancel(cau_call *call)
 		result.count = cau_hosted_cancel(hosted, anybodys ? 0 : asker->client, number);
 		if (number && !result.count)
 			cau_fail(&error, CAU_NOT_FOUND, "params.number",
-			         "no command of yours with this number waits");
+			         "no waiting command of this client has this number");
 	}
 	if (error.status)
 		cau_call_fail(call, &error, 0);

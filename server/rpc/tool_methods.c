@@ -50,7 +50,7 @@ static cau_status choose_next(const cau_call *call, const cau_wire_tool_hand_ove
 	if (!cau_hub_find_client(call->peer->service->hub, (uint32_t)params->client, &to) ||
 	    to.role < CAU_ROLE_OPERATE)
 		return cau_fail(error, CAU_NOT_FOUND, "params.client",
-		                "no such client, or it may not operate");
+		                "no such client in this session, or its role is below operate");
 	order->as.tool.to = to.client;
 	memcpy(order->as.tool.to_name, to.name, sizeof order->as.tool.to_name);
 	order->as.tool.to_deadline_s = to.deadline_s;

@@ -104,7 +104,7 @@ static cau_status ask_for_mesh(cau_call *call, const cau_wire_mesh_read *params,
 		return cau_fail(error, CAU_NOT_FOUND, "params.upload",
 		                "no upload of this connection is named `%.48s`", params->upload);
 	if (params->has_as && params->as != CAU_LAYER_FAT && params->as != CAU_LAYER_FASCIA)
-		return cau_fail(error, CAU_BAD_VALUE, "params.as", "fat or fascia");
+		return cau_fail(error, CAU_BAD_VALUE, "params.as", "must be fat or fascia");
 	asked.bytes = malloc(upload->byte_count);
 	if (!asked.bytes)
 		return cau_fail(error, CAU_NO_MEMORY, "", "no memory for a mesh");

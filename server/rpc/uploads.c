@@ -144,6 +144,7 @@ cau_status cau_upload_check(const cau_upload *upload, const char *expected, cau_
 		                "%zu bytes came of the %zu announced", upload->received,
 		                upload->byte_count);
 	if (!cau_sha256(upload->bytes, upload->byte_count, sha256) || strcmp(sha256, expected) != 0)
-		return cau_fail(error, CAU_BAD_VALUE, "params.sha256", "what came has another hash");
+		return cau_fail(error, CAU_BAD_VALUE, "params.sha256",
+		                "the SHA-256 of the received bytes is not the announced one");
 	return CAU_OK;
 }

@@ -55,7 +55,7 @@ static void go_dark(cau_drive *drive, int energy_off, const char *cause, cau_eff
 	drive->limit_tick = 0;
 	drive->energy_off = energy_off;
 	cau_effect_tell(effects, drive);
-	CAU_RULE(!drive->enabled, "tool %s is told dark and is not", drive->tool);
+	CAU_RULE(!drive->enabled, "tool %s is reported off and is on", drive->tool);
 }
 
 void cau_drive_cut(cau_drive *drive, uint64_t moment, int energy_off, const char *cause,
@@ -65,7 +65,8 @@ void cau_drive_cut(cau_drive *drive, uint64_t moment, int energy_off, const char
 	drive->cut_moment = newest(drive->cut_moment, moment);
 	go_dark(drive, energy_off, cause, effects);
 	CAU_RULE(!drive->enabled && drive->cut_moment >= moment,
-	         "tool %s is cut at %llu and is not dark", drive->tool, (unsigned long long)moment);
+	         "tool %s is cut at %llu and its energy is on", drive->tool,
+	         (unsigned long long)moment);
 }
 
 void cau_drive_cut_lit(cau_logic *logic, uint64_t moment, int energy_off, const char *cause,
@@ -121,7 +122,7 @@ void cau_drive_cut_limits(cau_logic *logic, cau_effects *effects)
 		CAU_RULE(drive->enabled || !drive->limit_tick, "tool %s is off and has a limit",
 		         drive->tool);
 		if (drive->limit_tick && drive->limit_tick <= logic->tick)
-			go_dark(drive, CAU_ENERGY_OFF_COMMANDED, "its ticks are over", effects);
+			go_dark(drive, CAU_ENERGY_OFF_COMMANDED, "its limit of ticks is over", effects);
 	}
 }
 
@@ -225,7 +226,7 @@ static bool refuse_stranger(const cau_drive *drive, cau_action *action)
 	char reason[160];
 	if (!drive->driver.client)
 		return refuse(action, CAU_BAD_STATE, CAU_RPC_NOT_DRIVER,
-		              "nobody drives it: tool.take_over comes first");
+		              "it has no driver: call tool.take_over first");
 	snprintf(reason, sizeof reason, "%s drives it", drive->driver.name);
 	return refuse(action, CAU_BAD_STATE, CAU_RPC_NOT_DRIVER, reason);
 }
@@ -242,19 +243,19 @@ static bool allows_enable(const cau_logic *logic, const cau_drive *drive, const 
 	char reason[160];
 	double alive_s = fmax(drive->alive_s, order->alive_s);
 	if (!logic->store_takes) {
-		snprintf(reason, sizeof reason, "the store has no room: %.120s", logic->store_reason);
+		snprintf(reason, sizeof reason, "the store is full: %.120s", logic->store_reason);
 		return refuse(action, CAU_IO, CAU_RPC_STORE_FULL, reason);
 	}
 	// One that is followed by its own off is taken, so that both are answered and logged in order;
 	// it enables nothing, and the off follows it into the core before a tick begins.
 	bool off_follows = drive->by_order && !order->cut_moment;
 	if (!counts(drive, order) && !off_follows) {
-		snprintf(reason, sizeof reason, "its energy was cut after this was asked: %s",
-		         *drive->cut_cause ? drive->cut_cause : "its driver was away");
+		snprintf(reason, sizeof reason, "its energy was cut after this request: %s",
+		         *drive->cut_cause ? drive->cut_cause : "its driver had left");
 		return refuse(action, CAU_BAD_STATE, 0, reason);
 	}
 	if (alive_s + drive->driver.deadline_s <= logic->now_s)
-		return refuse(action, CAU_BAD_STATE, 0, "its driver has been silent since");
+		return refuse(action, CAU_BAD_STATE, 0, "its driver fell silent after this request");
 	return true;
 }
 
@@ -309,8 +310,8 @@ bool cau_drive_allows(cau_logic *logic, const cau_waiting *order, cau_action *ac
 	case CAU_ASK_TAKE_OVER:
 		return allows_take_over(drive, asked, action);
 	case CAU_ASK_HAND_OVER:
-		return drives ||
-		       refuse(action, CAU_BAD_STATE, CAU_RPC_NOT_DRIVER, "only its driver gives it up");
+		return drives || refuse(action, CAU_BAD_STATE, CAU_RPC_NOT_DRIVER,
+		                        "only its driver can hand it over");
 	default: // off, and questions: anybody who may operate
 		return true;
 	}
@@ -324,7 +325,8 @@ bool cau_drive_change(cau_drive *drive, const cau_waiting *order, const cau_aske
 	cau_drive_cut(drive, order->moment, CAU_ENERGY_OFF_TAKEN_OVER, "another driver", effects);
 	if (drive->lit)
 		return false;
-	CAU_RULE(!drive->lit && !drive->enabled, "tool %s changes hands while it is lit", drive->tool);
+	CAU_RULE(!drive->lit && !drive->enabled, "tool %s changes its driver while its energy is on",
+	         drive->tool);
 	drive->driver = *to;
 	// Who is handed a tool has given no sign of life for it yet.
 	drive->alive_s = to->client == order->asked.asker.client ? order->alive_s : 0;

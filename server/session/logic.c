@@ -40,7 +40,7 @@ static void take_store(cau_logic *logic, const cau_logic_event *event, cau_effec
 	snprintf(logic->store_reason, sizeof logic->store_reason, "%s",
 	         event->cause ? event->cause : "");
 	if (!event->store_takes) // nobody could steer what burns
-		cau_drive_cut_lit(logic, logic->moment, CAU_ENERGY_OFF_WATCHDOG, "the store has no room",
+		cau_drive_cut_lit(logic, logic->moment, CAU_ENERGY_OFF_WATCHDOG, "the store is full",
 		                  effects);
 }
 
@@ -200,7 +200,8 @@ static bool pause(cau_logic *logic, const cau_waiting *order, cau_action *action
 static void turn_off(cau_logic *logic, const cau_waiting *order, cau_effects *effects)
 {
 	cau_drive *drive = cau_drive_find(logic, order->asked.tool);
-	CAU_RULE(drive != NULL, "tool %s was allowed to go dark and is not there", order->asked.tool);
+	CAU_RULE(drive != NULL, "the energy of tool %s was to go off, and there is no such tool",
+	         order->asked.tool);
 	if (drive->enabled || drive->cut_moment < order->moment)
 		cau_drive_cut(drive, order->moment, CAU_ENERGY_OFF_COMMANDED, "turned off", effects);
 }
@@ -210,11 +211,12 @@ static bool change_driver(cau_logic *logic, const cau_waiting *order, cau_action
 {
 	const cau_asked *asked = &order->asked;
 	cau_drive *drive = cau_drive_find(logic, asked->tool);
-	CAU_RULE(drive != NULL, "tool %s was allowed to change hands and is not there", asked->tool);
+	CAU_RULE(drive != NULL, "tool %s was to change its driver, and there is no such tool",
+	         asked->tool);
 	bool takes = asked->ask == CAU_ASK_TAKE_OVER;
 	cau_asker to = takes || !order->to_gone ? takes ? asked->asker : asked->to : (cau_asker){0};
 	if (takes && order->gone)
-		return refuse(action, CAU_BAD_STATE, 0, "", "who asked for it is gone");
+		return refuse(action, CAU_BAD_STATE, 0, "", "the client that asked for it is gone");
 	action->changed = drive->driver.client != to.client;
 	const cau_drive before = *drive;
 	if (action->changed && !cau_drive_change(drive, order, &to, effects))
@@ -452,7 +454,7 @@ static void take_effect(cau_logic *logic, cau_effects *effects)
 	case CAU_ASK_GO:
 		logic->going = true;
 		cau_drive_cut_lit(logic, order->moment, CAU_ENERGY_OFF_RESTORED,
-		                  "the session went elsewhere", effects);
+		                  "the session was rewound or reset", effects);
 		break;
 	case CAU_ASK_DESTROY:
 		logic->ended = true;

@@ -308,8 +308,10 @@ static cau_status no_room_for_later(const cau_logic *logic, uint32_t client, cau
 		                "(session.waiting lists them, session.cancel takes them back)",
 		                most);
 	if (count_later(logic, 0) >= logic->capacity || logic->count >= 2 * logic->capacity)
-		return cau_fail(error, CAU_LIMIT, "params.tick",
-		                "%d commands of all clients wait for later ticks already", logic->capacity);
+		return cau_fail(
+			error, CAU_LIMIT, "params.tick",
+			"%d commands of all clients wait for later ticks already (setting queue_commands)",
+			logic->capacity);
 	return CAU_OK;
 }
 
@@ -322,7 +324,7 @@ static cau_status no_room(const cau_logic *logic, const cau_asked *asked, int32_
 		return cau_fail(error, CAU_BAD_STATE, "", "the daemon is ending");
 	if (!logic->store_takes) {
 		*code = CAU_RPC_STORE_FULL;
-		return cau_fail(error, CAU_IO, "", "the store has no room: %s", logic->store_reason);
+		return cau_fail(error, CAU_IO, "", "the store is full: %s", logic->store_reason);
 	}
 	if (is_for_later(logic, asked))
 		return no_room_for_later(logic, asked->asker.client, error);

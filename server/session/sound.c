@@ -24,8 +24,10 @@ void cau_logic_fault(cau_logic *logic, const char *reason, cau_effects *effects)
 static void expect_sound_drive(const cau_logic *logic, const cau_drive *drive)
 {
 	CAU_RULE(drive->tool[0] != 0, "a tool of %d has no name", logic->drive_count);
-	CAU_RULE(!drive->enabled || drive->lit, "tool %s is enabled and not lit", drive->tool);
-	CAU_RULE(!drive->enabled || drive->driver.client, "tool %s is enabled by nobody", drive->tool);
+	CAU_RULE(!drive->enabled || drive->lit, "tool %s is enabled and its energy is off",
+	         drive->tool);
+	CAU_RULE(!drive->enabled || drive->driver.client, "tool %s is enabled without a driver",
+	         drive->tool);
 	CAU_RULE(drive->driver.deadline_s >= 0, "tool %s has a deadline of %g s", drive->tool,
 	         drive->driver.deadline_s);
 	CAU_RULE(drive->cut_moment <= logic->moment, "tool %s is cut at moment %llu of %llu",
@@ -41,7 +43,7 @@ void cau_logic_expect_sound(const cau_logic *logic)
 	CAU_RULE(logic->steps_left >= 0, "%lld steps left", (long long)logic->steps_left);
 	CAU_RULE(logic->step_s > 0 && logic->speed > 0, "ticks of %g s at speed %g", logic->step_s,
 	         logic->speed);
-	CAU_RULE(logic->dark_moment <= logic->moment, "all went dark at moment %llu of %llu",
+	CAU_RULE(logic->dark_moment <= logic->moment, "all energy went off at moment %llu of %llu",
 	         (unsigned long long)logic->dark_moment, (unsigned long long)logic->moment);
 	for (int32_t i = 0; i < logic->drive_count; i++)
 		expect_sound_drive(logic, &logic->drives[i]);

@@ -48,7 +48,7 @@ bool cau_time_resume(cau_logic *logic, const cau_waiting *order, cau_action *act
 	if (logic->steps_left)
 		return refuse(action, CAU_BAD_STATE, "the session is being stepped");
 	if (order->overtaken)
-		return refuse(action, CAU_BAD_STATE, "a pause was asked for after this");
+		return refuse(action, CAU_BAD_STATE, "a later pause replaced this");
 	action->changed = logic->state == CAU_SESSION_PAUSED;
 	if (action->changed) {
 		logic->state = CAU_SESSION_RUNNING;
@@ -62,7 +62,9 @@ bool cau_time_step(cau_logic *logic, const cau_asked *asked, cau_action *action)
 	if (logic->state == CAU_SESSION_FAULTED)
 		return refuse(action, CAU_FAULTED, logic->fault);
 	if (logic->state != CAU_SESSION_PAUSED || logic->stepping)
-		return refuse(action, CAU_BAD_STATE, "only a paused session is stepped, once at a time");
+		return refuse(
+			action, CAU_BAD_STATE,
+			"session.step needs a paused session without another step under way: pause it first");
 	logic->steps_left = asked->ticks;
 	CAU_RULE(logic->steps_left > 0, "%lld steps are asked for", (long long)logic->steps_left);
 	logic->stepping = asked->ticket;

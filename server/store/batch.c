@@ -30,7 +30,7 @@ size_t cau_store_batch_bytes(const cau_store_batch *batch)
 
 bool cau_store_record_request(const struct record *record, const char **client, uint64_t *sequence)
 {
-	CAU_ASSERT(client && sequence, "a request of kind %d for nobody", (int)record->kind);
+	CAU_ASSERT(client && sequence, "a request of kind %d without a client", (int)record->kind);
 	if (record->kind == RECORD_COMMAND) {
 		*client = record->as.command.client;
 		*sequence = record->as.command.sequence;

@@ -53,7 +53,7 @@ cau_status cau_store_integer(sqlite3 *database, const char *sql, int64_t *value,
 	if (code == SQLITE_ROW)
 		*value = sqlite3_column_int64(statement, 0);
 	else if (code == SQLITE_DONE)
-		status = cau_fail(error, CAU_NOT_FOUND, NULL, "%s: no row", sql);
+		status = cau_fail(error, CAU_NOT_FOUND, NULL, "%s: no result", sql);
 	else
 		status = cau_store_fault(database, code, sql, error);
 	sqlite3_finalize(statement);

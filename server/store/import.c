@@ -125,7 +125,7 @@ static cau_status make_session(struct importing *to, const cau_row *row, cau_err
 	status = run(to->database, statement, error);
 	sqlite3_finalize(statement);
 	if (status == CAU_ALREADY_EXISTS)
-		return cau_fail(error, status, "id", "there is a session '%s'", to->id);
+		return cau_fail(error, status, "id", "session '%s' exists already", to->id);
 	if (!status)
 		to->key = sqlite3_last_insert_rowid(to->database);
 	return status;
@@ -151,7 +151,7 @@ static cau_status put_row(struct importing *to, const cau_row *row, cau_error *e
 	sqlite3_bind_int64(*statement, 9, to->key);
 	status = run(to->database, *statement, error);
 	if (status == CAU_ALREADY_EXISTS)
-		return cau_fail(error, CAU_BAD_VALUE, "rows", "a row of the session comes twice");
+		return cau_fail(error, CAU_BAD_VALUE, "rows", "a record of the session comes twice");
 	return status;
 }
 

@@ -104,7 +104,7 @@ static cau_status hold(struct cau_store_lock *lock, const char *path, cau_error 
 	if (stat(path, &file) || !S_ISREG(file.st_mode))
 		return CAU_OK; // none yet, or nothing that the probe would take
 	if (is_held_here(&file))
-		return cau_fail(error, CAU_BAD_STATE, NULL, "in use by this process under another name");
+		return cau_fail(error, CAU_BAD_STATE, NULL, "this process has it open under another name");
 	int descriptor = open(path, O_RDWR | O_CLOEXEC);
 	if (descriptor < 0)
 		return CAU_OK; // not to be written by us: what opens it for writing says why

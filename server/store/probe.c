@@ -67,7 +67,7 @@ static cau_status check_header(const char *path, cau_error *error)
 		return cau_fail(error, CAU_CORRUPT, NULL, "not a database");
 	if (word_at(header, APPLICATION_ID_AT) != CAU_STORE_APPLICATION_ID)
 		return cau_fail(error, CAU_UNSUPPORTED, NULL,
-		                "another program's database (application id %#x)",
+		                "it is another program's database (application id %#x)",
 		                word_at(header, APPLICATION_ID_AT));
 	return check_version((int32_t)word_at(header, USER_VERSION_AT), error);
 }

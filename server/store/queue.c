@@ -65,7 +65,7 @@ void cau_store_flush(cau_store *store)
 	while (store->answered < target)
 		pthread_cond_wait(&store->answer, &store->mutex);
 	store->flushing--;
-	CAU_ASSERT(store->flushing >= 0, "%d wait for the disk", (int)store->flushing);
+	CAU_ASSERT(store->flushing >= 0, "%d batches wait for the disk", (int)store->flushing);
 	pthread_mutex_unlock(&store->mutex);
 }
 

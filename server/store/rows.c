@@ -43,7 +43,7 @@ static void set64(unsigned char *at, uint64_t value)
 // ---- reading --------------------------------------------------------------------------
 static cau_status corrupt(cau_error *error, const char *why)
 {
-	return cau_fail(error, CAU_CORRUPT, NULL, "this is no piece of a session: %s", why);
+	return cau_fail(error, CAU_CORRUPT, NULL, "not a piece of a moved session: %s", why);
 }
 
 cau_status cau_rows_open(cau_rows_reader *reader, const void *bytes, size_t byte_count,
@@ -84,7 +84,7 @@ static cau_status read_column(cau_rows_reader *reader, cau_column *column, cau_e
 {
 	*column = (cau_column){CAU_COLUMN_NULL, 0, NULL, 0};
 	if (reader->at == reader->end)
-		return corrupt(error, "it ends within a row");
+		return corrupt(error, "it ends within a record");
 	switch (*reader->at++) {
 	case CAU_COLUMN_NULL:
 		return CAU_OK;
@@ -137,11 +137,11 @@ cau_status cau_rows_next(cau_rows_reader *reader, cau_row *row, cau_error *error
 	if (reader->at == reader->end)
 		return CAU_NOT_FOUND;
 	if (reader->end - reader->at < 2)
-		return corrupt(error, "it ends within a row");
+		return corrupt(error, "it ends within a record");
 	unsigned table = reader->at[0], count = reader->at[1];
 	reader->at += 2;
 	if (table >= CAU_ROWS_COUNT || count != strlen(columns_of[table]))
-		return corrupt(error, "a row is of no known table");
+		return corrupt(error, "a record of an unknown table");
 	row->table = (cau_rows_table)table;
 	row->column_count = (int)count;
 	for (unsigned i = 0; i < count; i++) {

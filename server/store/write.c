@@ -181,7 +181,7 @@ static cau_status apply_session(struct cau_store_writer *writer, const cau_store
 	bind_blob(statement, 6, session->mesh);
 	cau_status status = run(writer, ADD_SESSION, "a session", error);
 	if (status == CAU_ALREADY_EXISTS)
-		return cau_fail(error, status, "id", "there is a session '%s'", session->id);
+		return cau_fail(error, status, "id", "session '%s' exists already", session->id);
 	if (status)
 		return status;
 	int64_t key = sqlite3_last_insert_rowid(writer->database);
@@ -384,7 +384,7 @@ static cau_status apply_branch(struct cau_store_writer *writer, const cau_store_
 	if (!status)
 		status = add_branch(writer, key, branch->branch, parent, branch->fork_tick, now_ms, error);
 	if (status == CAU_ALREADY_EXISTS)
-		return cau_fail(error, status, "branch", "there is a branch %lld",
+		return cau_fail(error, status, "branch", "branch %lld exists already",
 		                (long long)branch->branch);
 	if (status)
 		return status;

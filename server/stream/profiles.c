@@ -213,7 +213,8 @@ cau_status cau_streams_join(cau_streams *streams, const cau_stream_wish *wish,
 		if (stream)
 			cau_streams_leave(streams,
 			                  &(cau_subscriber){.stream = (int32_t)(stream - streams->stream)});
-		return cau_fail(error, CAU_LIMIT, "", "the session has as many streams as it may");
+		return cau_fail(error, CAU_LIMIT, "",
+		                "the session has as many streams as it may (setting max_subscribers)");
 	}
 	*joined = stream;
 	if (stream)

@@ -111,7 +111,7 @@ static const char *const status_words[] = {CAU_STATUS_TABLE(X)};
 		REAL(type, prefix ".deadline_s", member.deadline_s)
 #define TOOL(i)                                                                                    \
 	CALL(TEXT, "tools." #i ".name", tools[i].name), CALL(TRUTH, "tools." #i ".lit", tools[i].lit)
-static_assert(CAU_MAX_TOOLS == 8, "a row for each tool below");
+static_assert(CAU_MAX_TOOLS == 8, "one entry for each tool below");
 
 static const field call_fields[] = {
 	CALL(REAL, "time_s", time_s),

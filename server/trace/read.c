@@ -7,7 +7,7 @@
 
 static cau_status no_meaning(cau_error *error, const char *at)
 {
-	return cau_fail(error, CAU_BAD_SYNTAX, "", "'%.60s' has no meaning here", at);
+	return cau_fail(error, CAU_BAD_SYNTAX, "", "'%.60s' is not valid here", at);
 }
 
 // ---- one value: moves *at behind it; false if it is none

@@ -28,7 +28,8 @@ static cau_status differs(const replay *r, const char *said, const char *says, c
 {
 	char path[32];
 	snprintf(path, sizeof path, "line %llu", (unsigned long long)r->number);
-	return cau_fail(error, CAU_CORRUPT, path, "it said '%.120s' and says '%.120s'", said, says);
+	return cau_fail(error, CAU_CORRUPT, path, "the trace has '%.120s', the replay '%.120s'", said,
+	                says);
 }
 
 // ---- a call -------------------------------------------------------------------------------------
@@ -122,7 +123,7 @@ static cau_status replay_call(replay *r, bool *more, cau_error *error)
 	if (!status && call.what == CAU_TRACE_INIT)
 		status = begin(r, &call, error);
 	if (!status && !r->logic)
-		status = cau_fail(error, CAU_BAD_SYNTAX, "", "it does not begin with 'init'");
+		status = cau_fail(error, CAU_BAD_SYNTAX, "", "the trace does not begin with 'init'");
 	if (status)
 		return status;
 	FILE *to = open_memstream(&answer, &answer_bytes);
@@ -143,7 +144,7 @@ cau_status cau_trace_replay(FILE *trace, cau_trace_counts *counts, cau_error *er
 	*counts = (cau_trace_counts){0};
 	bool more = next_line(&r);
 	if (!more)
-		status = cau_fail(error, CAU_BAD_SYNTAX, "", "it has no line");
+		status = cau_fail(error, CAU_BAD_SYNTAX, "", "the trace is empty");
 	while (!status && more) {
 		uint64_t number = r.number;
 		status = replay_call(&r, &more, error);

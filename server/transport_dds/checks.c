@@ -22,7 +22,7 @@ cau_status cau_motion_check_order(const cau_motion_past *past, uint64_t sequence
 		return cau_fail(error, CAU_BAD_VALUE, "sequence_number", "%llu is beyond 2^53",
 		                (unsigned long long)sequence);
 	if (!anew && source_time_ns < past->source_time_ns)
-		return cau_fail(error, CAU_BAD_VALUE, "source_time_ns", "goes back by %.6f s",
+		return cau_fail(error, CAU_BAD_VALUE, "source_time_ns", "is earlier by %.6f s",
 		                1e-9 * ((double)past->source_time_ns - (double)source_time_ns));
 	double age_s = 1e-9 * ((double)now_ns - (double)source_time_ns);
 	if (fabs(age_s) > limit_s)

@@ -133,10 +133,10 @@ static cau_status fail_missing(const asked *a, int32_t *code, cau_error *error)
 	if (cau_hub_moved(a->dds->hub, a->sample->session, &to)) {
 		*code = CAU_RPC_MOVED;
 		memcpy(a->request->session, to.session, sizeof to.session);
-		return cau_fail(error, CAU_NOT_FOUND, "session", "it is `%s` now", to.session);
+		return cau_fail(error, CAU_NOT_FOUND, "session", "the session is now `%s`", to.session);
 	}
 	*code = CAU_RPC_NOT_HERE;
-	return cau_fail(error, CAU_NOT_FOUND, "session", "this daemon does not have `%.48s`",
+	return cau_fail(error, CAU_NOT_FOUND, "session", "no session `%.48s` on this daemon",
 	                a->sample->session);
 }
 
@@ -235,7 +235,8 @@ static cau_status serve(asked *a, int32_t *code, cau_error *error)
 	cautery_SessionOperation operation = a->sample->operation;
 	if (a->asker.role < a->method->role) {
 		*code = CAU_RPC_FORBIDDEN;
-		return cau_fail(error, CAU_BAD_STATE, "", "the role does not allow this");
+		return cau_fail(error, CAU_BAD_STATE, "",
+		                "the role does not allow this (setting dds_role or dds_roles)");
 	}
 	if (operation == cautery_LIST) {
 		cau_dds_reply_list(a->dds, a->request);

@@ -146,7 +146,8 @@ void cau_dds_energy(cau_dds_hand *hand, const cau_dds_writer *writer, bool level
 		return;
 	cau_status status = cau_dds_check_ready(hand->session, hand->tool->name, &error);
 	if (!status && !may_drive(hand))
-		status = cau_fail(&error, CAU_BAD_STATE, "tool", "energy is for who drives the tool");
+		status =
+			cau_fail(&error, CAU_BAD_STATE, "tool", "only the tool's driver may switch energy on");
 	if (status) {
 		hand->energy_ready = false;
 		cau_dds_refuse(hand->session, hand->tool->name, writer, hand->past.sequence, &error);

@@ -266,7 +266,7 @@ cau_status cau_dds_watch_peers(cau_dds *dds, cau_error *error)
 	dds_delete_listener(listener);
 	return dds->peer_writers > 0 && dds->peer_readers > 0
 	           ? CAU_OK
-	           : cau_fail(error, CAU_IO, "dds", "no readers of who is in the domain");
+	           : cau_fail(error, CAU_IO, "dds", "cannot read the participants of the domain");
 }
 
 void cau_dds_forget_peers(cau_dds *dds)

@@ -41,7 +41,8 @@ cau_status cau_dds_check_role(const cau_dds_writer *writer, cau_error *error)
 {
 	return writer->asker.role >= CAU_ROLE_OPERATE
 	           ? CAU_OK
-	           : cau_fail(error, CAU_BAD_STATE, "", "the role does not allow this");
+	           : cau_fail(error, CAU_BAD_STATE, "",
+	                      "the role does not allow this (setting dds_role or dds_roles)");
 }
 
 // ---- clients
@@ -162,9 +163,10 @@ static cau_status check_quota(cau_dds *dds, const cau_dds_writer *writer, cau_er
 	for (const cau_dds_client *client = dds->clients; client; client = client->next)
 		if (is_same(client, writer) && is_idle(client) && ++idle == IDLE_OF_ONE_MOST)
 			return cau_fail(error, CAU_LIMIT, "",
-			                "its participant or identity has %d clients that drive nothing", idle);
+			                "its participant or identity has %d clients without a tool, the most",
+			                idle);
 	if (dds->counts.clients >= cau_dds_places_most(dds->config))
-		return cau_fail(error, CAU_LIMIT, "", "there are too many clients");
+		return cau_fail(error, CAU_LIMIT, "", "the daemon has too many DDS clients");
 	return CAU_OK;
 }
 
@@ -223,7 +225,7 @@ cau_dds_client *cau_dds_admit(cau_dds *dds, cau_dds_writer *writer, bool drives_
 	if (writer->client)
 		return writer->client;
 	if (!drives_now && cau_monotonic_s() < writer->retry_s) {
-		cau_fail(error, CAU_LIMIT, "", "it has no place among those that stand by");
+		cau_fail(error, CAU_LIMIT, "", "too many writers stand by for the tool");
 		return NULL;
 	}
 	if (check_quota(dds, writer, error)) {

@@ -60,7 +60,7 @@ static cau_status read_file(cau_dds_roles *roles, const char *file, cau_error *e
 	cau_status status = CAU_OK;
 	if (info.st_mode & (S_IWGRP | S_IWOTH))
 		status = cau_fail(error, CAU_BAD_VALUE, "dds_roles",
-		                  "%.200s can be written by others: chmod go-w", file);
+		                  "%.200s can be written by other users: chmod go-w", file);
 	char line[LINE_BYTES];
 	for (int number = 1; !status && fgets(line, sizeof line, stream); number++)
 		status = strlen(line) + 1 < sizeof line
@@ -74,7 +74,7 @@ cau_status cau_dds_roles_read(cau_dds_roles *roles, const cau_config *config, ca
 {
 	*roles = (cau_dds_roles){.named = *config->dds_roles != 0};
 	if (!cau_role_read(config->dds_role, &roles->role_else))
-		return cau_fail(error, CAU_BAD_VALUE, "dds_role", "is no role");
+		return cau_fail(error, CAU_BAD_VALUE, "dds_role", "is no role: view, operate or admin");
 	return roles->named ? read_file(roles, config->dds_roles, error) : CAU_OK;
 }
 

@@ -124,16 +124,17 @@ void cau_dds_write_metrics(void *user, FILE *out, cau_metrics_format format)
 		cau_metric_family family;
 		double value;
 	} rows[] = {
-		{{"dds_clients", CAU_METRIC_GAUGE, "", "Drivers on DDS that have a place"},
+		{{"dds_clients", CAU_METRIC_GAUGE, "", "DDS clients that hold a place"},
 	     (double)dds->counts.clients},
-		{{"dds_clients_most", CAU_METRIC_GAUGE, "", "Places for drivers on DDS"},
+		{{"dds_clients_most", CAU_METRIC_GAUGE, "", "Capacity for DDS clients"},
 	     (double)cau_dds_places_most(dds->config)},
-		{{"dds_places_denied", CAU_METRIC_COUNTER, "", "Times a writer on DDS got no place"},
+		{{"dds_places_denied", CAU_METRIC_COUNTER, "", "Times a DDS writer was refused a place"},
 	     (double)dds->counts.denied},
-		{{"dds_places_evicted", CAU_METRIC_COUNTER, "", "Idle clients on DDS that made way"},
+		{{"dds_places_evicted", CAU_METRIC_COUNTER, "",
+	      "Idle DDS clients that lost their place to a driver"},
 	     (double)dds->counts.evicted},
 		{{"dds_peers_incompatible", CAU_METRIC_COUNTER, "",
-	      "Readers and writers of others on our topics that DDS cannot match"},
+	      "Readers and writers of other programs on Cautery's topics that DDS cannot match"},
 	     (double)dds->counts.incompatible},
 	};
 	for (size_t i = 0; i < sizeof rows / sizeof rows[0]; i++) {

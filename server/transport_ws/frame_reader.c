@@ -56,7 +56,7 @@ static bool check_first_byte(cau_frame_reader *r)
 	if (r->head[0] & RESERVED)
 		return fail(r, CAU_CLOSE_PROTOCOL, "a reserved bit is set: extensions are not used");
 	if ((r->opcode > BINARY && r->opcode < CONTROL) || r->opcode > PONG)
-		return fail(r, CAU_CLOSE_PROTOCOL, "an opcode that nobody has defined");
+		return fail(r, CAU_CLOSE_PROTOCOL, "an undefined opcode");
 	if (r->opcode >= CONTROL && !r->final)
 		return fail(r, CAU_CLOSE_PROTOCOL, "a control frame in fragments");
 	if (r->opcode == CONTINUATION && !r->in_message)

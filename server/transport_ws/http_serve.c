@@ -88,7 +88,7 @@ int cau_http_serve(cau_network *network, struct lws *wsi, cau_http_body *body, c
 	                                            "this is for WebSocket",
 	                                            "connect with a WebSocket client"};
 	static const cau_http_refusal not_found = {404, "not_found", "the path",
-	                                           "nothing has this path", "see the page at /"};
+	                                           "no page has this path", "see the page at /"};
 	cau_http_refusal refusal = cau_request_check(network, wsi);
 	if (refusal.status)
 		return cau_http_answer_refusal(wsi, body, &refusal, false);

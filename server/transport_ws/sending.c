@@ -18,7 +18,7 @@ void cau_connection_send(cau_connection *c, cau_buffer *buffer)
 	c->control_last = buffer;
 	c->control_bytes += buffer->byte_count;
 	if (c->control_bytes > CAU_CONTROL_BYTES_MAX)
-		cau_connection_close(c, CAU_CLOSE_TOO_SLOW, "replies are not being read");
+		cau_connection_close(c, CAU_CLOSE_TOO_SLOW, "the client does not read its replies");
 	lws_callback_on_writable(c->wsi);
 }
 

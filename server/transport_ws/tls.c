@@ -89,7 +89,7 @@ static cau_status read_key(pair *p, const char *file, cau_error *error)
 	fclose(stream);
 	if (open_to_all)
 		return fail_file(error, CAU_BAD_VALUE, "tls_key", file,
-		                 "everybody may use it: chmod 600 or 640");
+		                 "other users can read it: chmod 600 or 640");
 	if (!p->key)
 		return fail_file(error, CAU_BAD_SYNTAX, "tls_key", file,
 		                 "it holds no private key in PEM, or one behind a passphrase");

@@ -12,7 +12,7 @@
 #include "transport_ws/internal.h"
 
 static const cau_http_refusal bad_request = {
-	400, "bad_request", "the request", "this is no request in HTTP/1.1 for a path of this daemon",
+	400, "bad_request", "the request", "the request is not HTTP/1.1 with a path",
 	"speak HTTP/1.1, and name the path alone, beginning with /"};
 static const cau_http_refusal too_large = {
 	431, "too_large", "the headers",

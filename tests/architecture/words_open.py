@@ -10,13 +10,6 @@ PAGES = {
 # folder: house words in strings that users read
 STRINGS = {
     "clients/web/": 24,
-    "server/hosted_session/": 10,
-    "server/hub/": 4,
-    "server/rpc/": 3,
-    "server/session/": 12,
-    "server/store/": 2,
-    "server/transport_dds/": 1,
-    "server/transport_ws/": 1,
 }
 
 # Pages that list the house words themselves.

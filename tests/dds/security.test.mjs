@@ -248,7 +248,7 @@ test('the daemon says what is wrong with a file of roles, and does not start', (
 	refuses('view CN=a\nadmin CN=a\n', /line 2: CN=a has a role already/);
 	const open = rolesFile('open', 'view CN=a\n');
 	chmodSync(open, 0o666);
-	assert.match(start('--dds-security', enclave('daemon'), '--dds-roles', open).stderr, /can be written by others/);
+	assert.match(start('--dds-security', enclave('daemon'), '--dds-roles', open).stderr, /can be written by other users/);
 	const alone = start('--dds-roles', open);
 	assert.equal(alone.status, 2);
 	assert.match(alone.stderr, /path="dds_roles" .*needs dds_security/);

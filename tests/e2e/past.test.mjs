@@ -72,7 +72,7 @@ test('who may only look may look back; what is not there is refused in words', a
 	const { session, stream, tick } = await recorded(daemon, 'refused');
 	const viewer = await daemon.connect({ hello: { role: 'view' } });
 	await assert.rejects(viewer.past(session, tick + 1), (error) =>
-		error.data.path === 'params.tick' && /beyond the present/.test(error.data.reason));
+		error.data.path === 'params.tick' && /later than the session's present tick/.test(error.data.reason));
 	const past = await viewer.past(session, 100, { channels: ['positions', 'temperature'], step_m: 1e-3 });
 	assert.ok(past.temperature.some((steps) => 0.25 * steps - 20 > 40), 'some of it is hot');
 	assert.equal(past.tools.length, 0);

@@ -76,7 +76,7 @@ test('a token that is taken back ends its connection at once, energy off; others
 	await reload(`admin ${ADMIN}\nview ${OTHER}\n`);
 	const { code, reason } = await driver.closed;
 	assert.equal(code, 4002);
-	assert.match(reason, /taken back/);
+	assert.match(reason, /was revoked/);
 	await admin.until(() => !stream.tools[0].energized, 'energy off');
 	assert.ok(performance.now() - started < 5000, 'long before its deadline');
 	await isRefused(DRIVER);
@@ -119,7 +119,7 @@ test('a role that becomes less ends the connections that have more, and no other
 	await reload(`admin ${ADMIN}\nview ${DRIVER}\n`);
 	const { code, reason } = await driver.closed;
 	assert.equal(code, 4002);
-	assert.match(reason, /less than it was/);
+	assert.match(reason, /was lowered/);
 	await looker.call('session.list');
 	const again = await greet(DRIVER);
 	assert.equal(again.hello.role, 'view');
@@ -136,7 +136,7 @@ test('a broken file changes nothing, and the log says what is wrong and where', 
 		[`admin ${ADMIN}\n\nking ${OTHER}\n`, 0o600, 'line 3: roles are'],
 		[`admin ${ADMIN}\noperate short\n`, 0o600, 'line 2: a token has'],
 		['', 0o600, 'has no token'],
-		[`admin ${OTHER}\n`, 0o644, 'open to others'],
+		[`admin ${OTHER}\n`, 0o644, 'read by other users'],
 	]) {
 		const lines = await reload(text, mode);
 		const failed = lines.find((line) => /event=reload_failed/.test(line));

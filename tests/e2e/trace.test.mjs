@@ -101,7 +101,7 @@ test('a trace that tells another story is found out', async () => {
 	writeFileSync(other, darkened);
 	await assert.rejects(run(process.env.REPLAY_TRACE, [other]), ({ code, stderr }) => {
 		assert.equal(code, 1);
-		assert.match(stderr, /line \d+: it said '.*effect=tell/);
+		assert.match(stderr, /line \d+: the trace has '.*effect=tell/);
 		return true;
 	});
 });

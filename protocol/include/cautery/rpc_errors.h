@@ -35,7 +35,7 @@
 	X(-32040, NOT_HERE, "not_here", "this daemon does not have the session")                       \
 	X(-32041, HELLO_REQUIRED, "hello_required", "the first message must be hello")                 \
 	X(-32042, UNAUTHORIZED, "unauthorized", "the token is missing or not known")                   \
-	X(-32043, FORBIDDEN, "forbidden", "the role does not allow this")                              \
+	X(-32043, FORBIDDEN, "forbidden", "the role or the token does not allow this")                 \
 	X(-32044, VERSION, "version", "the server does not speak this version")                        \
 	X(-32045, NOT_DRIVER, "not_driver", "another client drives this tool")                         \
 	X(-32046, RATE, "rate", "too many messages a second")                                          \

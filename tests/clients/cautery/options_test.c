@@ -75,10 +75,10 @@ static void mistakes_are_told(void **state)
 	const struct {
 		const char *line, *said;
 	} cases[] = {
-		{"", "which command"},
+		{"", "no command given"},
 		{"fly", "no command \"fly\"; --help"},
 		{"crate fascia", "no command \"crate\"; did you mean \"create\"?"},
-		{"ls d1-knee", "\"d1-knee\" is too much: it takes no arguments"},
+		{"ls d1-knee", "\"d1-knee\": this command takes no arguments"},
 		{"ls --josn", "no option \"--josn\"; did you mean \"--json\"?"},
 		{"fork --pausd", "did you mean \"--paused\"?"},
 		{"context use", "the arguments are: NAME"},

@@ -201,7 +201,7 @@ class Streams(programs.Case):
         with open(file, "r+b") as stream:
             stream.seek(-20, os.SEEK_END)
             stream.truncate()
-        self.assertIn("cut short", self.cautery("watch", "--recording", file, code=4)[1])
+        self.assertIn("truncated", self.cautery("watch", "--recording", file, code=4)[1])
 
     def test_a_recording_as_mcap_ends_whole(self):
         session = self.create("fascia")
@@ -242,7 +242,7 @@ class Streams(programs.Case):
         self.cautery("rm", session)
         _, told = watch.communicate(timeout=programs.PATIENCE_S)
         self.assertEqual(watch.returncode, 1)
-        self.assertIn("is gone", told)
+        self.assertIn("no longer exists", told)
 
     def test_export(self):
         session = self.create("fascia")

@@ -68,11 +68,11 @@ class Contexts(programs.Case):
         self.assertIn("did you mean \"theatre\"?", self.context("use", "theater", code=2)[1])
         self.assertIn("`cautery context ls` lists them", self.cautery(
             "ls", "--context", "nowhere", environment=self.at_home, code=4)[1])
-        self.assertIn("is no name", self.context("set", "no name", code=2)[1])
+        self.assertIn("is not a valid name", self.context("set", "no name", code=2)[1])
         self.assertIn("no command", self.cautery("contxt", environment=self.at_home, code=2)[1])
         with open(os.path.join(self.config, "cautery", "contexts.json"), "w", encoding="utf-8") as file:
             file.write("{")
-        self.assertIn("mend it or remove it", self.context("ls", code=4)[1])
+        self.assertIn("repair or remove it", self.context("ls", code=4)[1])
         self.cautery("ls", environment=self.at_home, code=4)
         self.cautery("ls", "--url", self.daemon.url, environment=self.at_home)  # does not need it
 

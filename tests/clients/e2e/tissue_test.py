@@ -214,7 +214,7 @@ class Tools(programs.Case):
         self.assertIn("no action", self.cautery("tool", session, "hook", "fly", code=2)[1])
         self.assertIn("3 numbers", self.cautery("tool", session, "hook", "move", 1, 2, code=2)[1])
         self.assertIn("shape", self.cautery("tool", session, "a", "add", "spoon", code=2)[1])
-        self.assertIn("is no name", self.cautery("tool", session, "A B", "on", code=2)[1])
+        self.assertIn("is not a valid name", self.cautery("tool", session, "A B", "on", code=2)[1])
         self.assertIn("params.tool", self.cautery("tool", session, "nobody", "off", code=1)[1])
 
 

@@ -114,7 +114,7 @@ static void more_than_a_fleet_needs_is_not_taken(void **state)
 	                    CAU_FLEET_JSON_MAX_BYTES + 1);
 	memset(answer + head, ' ', CAU_FLEET_JSON_MAX_BYTES + 1);
 	assert_int_equal(ask(answer, patience_s, &fleet, &error), CAU_IO);
-	assert_non_null(strstr(error.reason, "more than"));
+	assert_non_null(strstr(error.reason, "too long"));
 }
 
 int main(void)

@@ -232,7 +232,7 @@ static void a_broken_file_changes_nothing(void **state)
 		{long_line, 0600, "line 1 is too long"},
 		{"# none\n", 0600, "has no token"},
 		{"", 0600, "has no token"},
-		{"view aaaaaaaaaaaaaaaa\n", 0640, "open to others"},
+		{"view aaaaaaaaaaaaaaaa\n", 0640, "read by other users"},
 	};
 	for (size_t i = 0; i < sizeof broken / sizeof broken[0]; i++) {
 		cau_error error = {0};

@@ -122,7 +122,7 @@ static void destroyed_while_it_goes_back_it_ends(void **state)
 	hosted_destroy(OTHER, 0);
 	hosted_turn_off_at_tick_1000(NEXT);
 	hosted_go_on();
-	assert_non_null(strstr(hosted_await(BACK)->reason, "while it went back, before replaying"));
+	assert_non_null(strstr(hosted_await(BACK)->reason, "while it was rewound, before replaying"));
 	assert_int_equal(hosted_await(OTHER)->status, CAU_OK);
 	assert_int_equal(hosted_await(NEXT)->code, CAU_RPC_NOT_HERE);
 	assert_true(cau_hosted_ended(t.h));

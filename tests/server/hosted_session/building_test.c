@@ -159,7 +159,7 @@ static void whose_creator_is_gone_for_good_it_ends(void **state)
 	cau_hosted_abandon(t.h, CREATOR + 1); // somebody else
 	cau_hosted_abandon(t.h, CREATOR);
 	hosted_go_on();
-	assert_non_null(strstr(hosted_await(0)->reason, "its creator is gone"));
+	assert_non_null(strstr(hosted_await(0)->reason, "its creator disconnected"));
 	assert_int_equal(hosted_stored_sessions(), 0);
 }
 

@@ -346,7 +346,7 @@ void oracle_note_cut(world *w)
 		cut(tool, change);
 	else if (strcmp(drive->cut_cause, "its driver is silent") == 0 && tool->looked > tool->enable)
 		*silent = tool->looked > *silent ? tool->looked : *silent;
-	else if (strcmp(drive->cut_cause, "its ticks are over") == 0 && is_over(w, tool))
+	else if (strcmp(drive->cut_cause, "its limit of ticks is over") == 0 && is_over(w, tool))
 		tool->enable = tool->limit = 0;
 	else if (should_be_lit(w, tool))
 		world_wrong(w, "%s is cut for nothing: %s", drive->tool, drive->cut_cause);
@@ -360,7 +360,7 @@ static void change_driver(world *w, const ticket_book *ticket, int to)
 	if (tool->driver == to)
 		return;
 	if (tool->lit)
-		world_wrong(w, "%s changes hands while it is lit", ticket->asked.tool);
+		world_wrong(w, "%s changes its driver while its energy is on", ticket->asked.tool);
 	oracle_darken(tool, ticket->came);
 	if (tool->driver)
 		void_of_driver(w, ticket->asked.tool, tool->driver, ticket->came, false);

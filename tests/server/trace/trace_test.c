@@ -150,7 +150,7 @@ static void test_a_line_without_meaning_is_named(void **state)
 		cau_error error = {0};
 		if (cau_trace_read(lines[i], &call, &error) != CAU_BAD_SYNTAX)
 			fail_msg("'%s' was read", lines[i]);
-		assert_non_null(strstr(error.reason, "has no meaning here"));
+		assert_non_null(strstr(error.reason, "is not valid here"));
 	}
 }
 

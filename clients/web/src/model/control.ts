@@ -11,7 +11,7 @@ const CHANNELS: Channels = ['positions', 'mask', 'exposure', 'charring', 'tools'
 /** Channels that cost the daemon work of their own: joined only while they are shown. */
 export type ExtraChannel = 'stress' | 'temperature';
 export class Control {
-  /** what the user waits for, in words: "Going back to 12.3 s" */
+  /** what the user waits for, in words: "Rewinding to 12.3 s" */
   readonly busy: string[] = [];
   private colour: ExtraChannel | null = null;
   private inspecting = false;
