@@ -9,7 +9,6 @@ PAGES = {
 
 # folder: house words in strings that users read
 STRINGS = {
-    "clients/web/": 24,
 }
 
 # Pages that list the house words themselves.

@@ -69,7 +69,7 @@ const link: Link = new Link({
   },
   push: (method, params) => control.push(method, params),
   file: (name, mediaType, bytes, sound) => {
-    if (!sound) model.notice('error', `${name} was damaged on its way.`);
+    if (!sound) model.notice('error', `${name} was damaged in transfer. Try again.`);
     else saveReceived(name, mediaType, bytes);
   },
 });

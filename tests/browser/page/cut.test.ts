@@ -42,7 +42,7 @@ describe('a cut in the demo', () => {
     const cut = (await moments.locator('option').allTextContents()).find((words) => /^\d+\.\d\d s: cut, hook$/.test(words));
     expect(cut).toBeDefined();
     await moments.selectOption({ label: cut! });
-    await viewer.until((at) => document.querySelector('#rewind')?.textContent === `Go back to ${at}`, cut!.split(':')[0], 'the moment of the cut is offered');
+    await viewer.until((at) => document.querySelector('#rewind')?.textContent === `Rewind to ${at}`, cut!.split(':')[0], 'the moment of the cut is offered');
     await viewer.page.getByRole('button', { name: 'Return to live' }).click();
     await viewer.until(() => window.cautery.past === null, null, 'the present is shown');
   });
@@ -67,7 +67,7 @@ describe('a cut in the demo', () => {
     await viewer.page.keyboard.press('Escape'); // it asks first
     expect((await viewer.state()).epoch).toBe(epoch);
     await viewer.page.locator('#rewind').click();
-    await viewer.page.locator('dialog').getByRole('button', { name: 'Go back' }).click();
+    await viewer.page.locator('dialog').getByRole('button', { name: 'Rewind' }).click();
     await viewer.until((before) => window.cautery.epoch !== before, epoch, 'another epoch');
     await viewer.until((count) => Object.values(window.cautery.drawnFaces).reduce((a, b) => a + b, 0) === count, FACES, 'whole again');
     expect((await viewer.state()).energized).toBe(false);

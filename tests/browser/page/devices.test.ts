@@ -44,7 +44,7 @@ describe('devices beside mouse and keys', () => {
     const { page } = viewer;
     await page.getByRole('button', { name: 'Choose the pedal’s key' }).click();
     await page.keyboard.press('w');
-    expect(await page.locator('#pedal').textContent()).toContain('W has other work');
+    expect(await page.locator('#pedal').textContent()).toContain('W is already used');
     await page.keyboard.press('F9');
     expect(await page.locator('#pedal').textContent()).toContain('The pedal is F9');
     await page.reload();

@@ -25,7 +25,7 @@ describe('looking closely', () => {
 
   it('shows layer, vertex, place and temperature under the pointer', async () => {
     const { page } = viewer;
-    await page.getByLabel('Tell what is under the pointer').check();
+    await page.getByLabel('Show what is under the pointer').check();
     await pointAt([0.03, 0.02, 0]);
     await viewer.until(() => document.querySelector('#inspected')?.checkVisibility() === true && document.querySelector('#inspected')!.textContent.includes('°C'), null, 'it is told');
     const [what, where, temperature, stress, heat] = ((await page.locator('#inspected').textContent()) ?? '').split('\n');
@@ -33,7 +33,7 @@ describe('looking closely', () => {
     const at = where.replace(' mm', '').split(', ').map(Number);
     expect(Math.hypot(at[0] - 30, at[1] - 20)).toBeLessThan(2);
     expect(temperature).toBe('37.0 °C');
-    expect(stress).toBe('stress: told of fat only');
+    expect(stress).toBe('stress: only of fat');
     expect(heat).toBe('0 % of the heat that parts it');
     const answered = await page.evaluate(() => {
       const canvas = document.querySelector('#picture')!;
@@ -43,7 +43,7 @@ describe('looking closely', () => {
     });
     await viewer.until((tick) => window.cautery.tick > tick, answered, 'the answer was on its way meanwhile');
     expect(await page.locator('#inspected').isVisible()).toBe(false);
-    await page.getByLabel('Tell what is under the pointer').uncheck();
+    await page.getByLabel('Show what is under the pointer').uncheck();
     await pointAt([0.03, 0.02, 0]);
     expect(await page.locator('#inspected').isVisible()).toBe(false);
   });
@@ -59,7 +59,7 @@ describe('looking closely', () => {
     await forces.getByLabel('Force on each z').fill('1');
     await forces.getByRole('button', { name: 'Apply the force' }).click();
     await other.page.getByRole('tab', { name: 'View' }).click();
-    await other.page.getByLabel('Tell what is under the pointer').check();
+    await other.page.getByLabel('Show what is under the pointer').check();
     const { x, y } = await other.project([0.004, 0.003, 0]);
     await other.page.mouse.move(x, y);
     const stress = (): boolean => Number(/([\d.e+-]+) kPa/.exec(document.querySelector('#inspected')?.textContent ?? '')?.[1] ?? 0) > 0;
@@ -81,7 +81,7 @@ describe('looking closely', () => {
     expect(Math.abs(parseFloat(told) - 50)).toBeLessThan(NEAR_MM);
     await viewer.screenshot('ruler');
     expect((await viewer.state()).energized).toBe(false);
-    await page.getByRole('button', { name: 'Take the ruler away' }).click();
+    await page.getByRole('button', { name: 'Remove the ruler' }).click();
     await viewer.until(() => document.querySelector('#ruler')?.checkVisibility() === false, null, 'it is gone');
     await page.getByRole('button', { name: 'Cut', exact: true }).click();
   });
@@ -97,7 +97,7 @@ describe('looking closely', () => {
     const change = half.map((colour, i) => Math.hypot(...colour.map((value, c) => value - whole[i][c])));
     expect(change[0]).toBeGreaterThan(ANOTHER_COLOUR);
     expect(change[1]).toBeLessThan(ANOTHER_COLOUR / 2);
-    await page.getByLabel('Tell what is under the pointer').check();
+    await page.getByLabel('Show what is under the pointer').check();
     await pointAt(places[1]);
     await viewer.until(() => document.querySelector('#inspected')?.checkVisibility() === true, null, 'what is left is told');
     await pointAt(places[0]);
@@ -125,7 +125,7 @@ describe('looking closely', () => {
     expect(Math.hypot(...whole[0].map((value, c) => value - half[0][c]))).toBeGreaterThan(ANOTHER_COLOUR);
     expect(await page.locator('#inspected').isVisible()).toBe(false);
     await page.getByRole('button', { name: 'Research' }).click();
-    expect(await page.getByLabel('Tell what is under the pointer').isChecked()).toBe(false);
+    expect(await page.getByLabel('Show what is under the pointer').isChecked()).toBe(false);
     expect(await page.getByLabel('Cut away').inputValue()).toBe('');
   });
 

@@ -71,7 +71,7 @@ describe('panels', () => {
     const { epoch } = await viewer.state();
     await page.getByRole('tab', { name: 'Sessions' }).click();
     await page.locator('#restore').click();
-    await page.locator('#snapshot [role=status]').getByText('Back at flat').waitFor();
+    await page.locator('#snapshot [role=status]').getByText('Restored flat').waitFor();
     await viewer.until((before) => window.cautery.epoch !== before, epoch, 'another epoch');
     await viewer.until(([edge]) => window.cautery.extent().least[0] < edge, [-0.0595], 'the sheet is as wide as it was');
     await page.locator('#snapshot input').fill('never-taken');

@@ -85,7 +85,7 @@ describe('plots over the session', () => {
     await page.mouse.down();
     await page.mouse.up();
     await viewer.until(() => document.querySelector('#rewind')?.checkVisibility() === true, null, 'that moment is offered');
-    const offered = /^Go back to ([\d.]+) s$/.exec((await page.locator('#rewind').textContent()) ?? '')?.[1];
+    const offered = /^Rewind to ([\d.]+) s$/.exec((await page.locator('#rewind').textContent()) ?? '')?.[1];
     expect(Math.abs(Number(offered) - before.seconds)).toBeLessThan(FRAMES_APART_S);
     await viewer.screenshot('plots');
   });

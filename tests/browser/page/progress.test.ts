@@ -51,7 +51,7 @@ describe('while something is under way', () => {
     door.change = (text) => text.replace(/("session": ?"d1-second"[^{}]*?"state": ?)"(running|paused)"/g, '$1"starting"');
     await viewer.until(() => window.location.search.includes('session=d1-second'), null, 'the address');
     await page.reload(); // it comes back to d1-second
-    await told(/^d1-second is being made: its tissue is put together…$/);
+    await told(/^d1-second is being built…$/);
     door.change = null;
     await page.reload();
     await viewer.live('d1-second');
@@ -80,10 +80,10 @@ describe('while something is under way', () => {
     door.hold('session.rewind');
     await page.locator('#tick').focus();
     await page.keyboard.press('Home');
-    const to = ((await page.locator('#rewind').textContent()) ?? '').replace('Go back to ', '');
+    const to = ((await page.locator('#rewind').textContent()) ?? '').replace('Rewind to ', '');
     await page.locator('#rewind').click();
-    await page.locator('dialog').getByRole('button', { name: 'Go back' }).click();
-    await told(new RegExp(`^Going back to ${to.replace('.', '\\.')}…$`));
+    await page.locator('dialog').getByRole('button', { name: 'Rewind' }).click();
+    await told(new RegExp(`^Rewinding to ${to.replace('.', '\\.')}…$`));
     door.letGo();
     await viewer.until((before) => window.cautery.epoch !== before, epoch, 'another epoch');
     await seen();
@@ -94,7 +94,7 @@ describe('while something is under way', () => {
     door.hold('session.reset');
     await page.getByRole('button', { name: 'Start over' }).click();
     await page.locator('dialog').getByRole('button', { name: 'Start over' }).click();
-    await told(/^Starting over…$/);
+    await told(/^Resetting…$/);
     door.letGo();
     await seen();
     expect(viewer.complaints).toEqual([]);

@@ -26,8 +26,8 @@ describe('energy that a busy machine cuts', () => {
     }, BUSY_MS);
     await viewer.until(() => document.querySelector('#said')?.textContent?.includes('Energy is off') === true, null, 'it is said');
     const said = await page.locator('#said').textContent();
-    expect(said).toContain('heard nothing from this page in time');
-    expect(said).toContain('Let go of Space and press it again.');
+    expect(said).toContain('this page sent no heartbeat in time');
+    expect(said).toContain('Release Space and press it again.');
     expect((await viewer.state()).energized).toBe(false);
     const { tick } = await viewer.state();
     await viewer.until((later) => window.cautery.tick > later, tick + 60, 'a second later');

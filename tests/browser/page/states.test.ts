@@ -47,7 +47,7 @@ describe('a picture that is not live', () => {
       Object.assign(window, { loser });
       loser.loseContext();
     });
-    await veil(viewer, 'has dropped the picture');
+    await veil(viewer, 'has lost the picture');
     await viewer.page.evaluate(() => (window as unknown as { loser: WEBGL_lose_context }).loser.restoreContext());
     await unveiled(viewer);
     await viewer.until(() => window.cautery.idle, null, 'drawn again');
@@ -92,7 +92,7 @@ describe('the address', () => {
     await other.live('d1-fascia');
     const { epoch } = await other.state();
     await other.until(() => document.querySelector('#rewind')?.checkVisibility() === true, null, 'the moment is offered');
-    expect(await other.page.locator('#rewind').textContent()).toMatch(/^Go back to \d+\.\d\d s$/);
+    expect(await other.page.locator('#rewind').textContent()).toMatch(/^Rewind to \d+\.\d\d s$/);
     expect((await other.state()).epoch).toBe(epoch); // and nobody was moved
     await other.close();
 
@@ -145,7 +145,7 @@ describe('a daemon with tokens', () => {
     const at = await viewer.project([0, 0, 0]);
     await viewer.page.mouse.move(at.x, at.y);
     await viewer.page.mouse.down();
-    await viewer.until(() => document.querySelector('#said')?.textContent?.includes('You are looking on') === true, null, 'it is said');
+    await viewer.until(() => document.querySelector('#said')?.textContent?.includes('You can only watch') === true, null, 'it is said');
     await viewer.page.mouse.up();
     expect((await viewer.state()).driving).toBe(false);
     expect(await viewer.page.locator('#cue').isVisible()).toBe(false);

@@ -15,20 +15,20 @@ import { LATCH, type Held, type Holds, type Lost } from './holds';
 
 /** How to hold it again. */
 const AGAIN: Readonly<Record<Held, string>> = {
-  space: 'Let go of Space and press it again.',
-  button: 'Let go of Energy and press it again.',
-  trigger: 'Let go of the trigger and pull it again.',
+  space: 'Release Space and press it again.',
+  button: 'Release Energy and press it again.',
+  trigger: 'Release the trigger and pull it again.',
   pointer: 'Lift and press again.',
   pedal: 'Lift the pedal and press it again.',
-  cap: 'Let go of the 3D mouse’s button and press it again.',
+  cap: 'Release the 3D mouse’s button and press it again.',
   latch: 'Press Keep on for more.',
 };
 const LOST_WORDS: Readonly<Record<EnergyOff, string>> = {
-  watchdog: 'the simulation heard nothing from this page in time, which a busy machine can cause',
-  taken_over: 'somebody else took the tool over',
-  restored: 'the session went back in time or was restarted',
+  watchdog: 'this page sent no heartbeat in time, which a busy machine can cause',
+  taken_over: 'another user took the tool over',
+  restored: 'the session was rewound or restarted',
   never_enabled: 'the simulation cut it before it came on',
-  commanded: 'somebody switched it off',
+  commanded: 'another user switched it off',
 };
 /** Why a hold ended that nobody ended by letting go. */
 const LET_GO_WORDS: Readonly<Record<Exclude<Lost, 'released'>, string>> = {
@@ -37,13 +37,13 @@ const LET_GO_WORDS: Readonly<Record<Exclude<Lost, 'released'>, string>> = {
   second: 'a second finger came. Lift both and press again.',
   focus: 'the focus went to another control. Press again.',
   typing: 'the focus went to a field. Press again.',
-  menu: 'a menu was asked for. Press again.',
+  menu: 'a menu opened. Press again.',
   dialog: 'a dialog opened. Press again.',
   blur: 'the page lost the focus. Press again.',
   hidden: 'the page was out of sight. Press again.',
-  gone: 'the control that was held cannot be used any more.',
-  unplugged: 'the device is not connected any more.',
-  past: 'you look at the past.',
+  gone: 'the control that was held is no longer usable.',
+  unplugged: 'the device was disconnected.',
+  past: 'this is a past view.',
 };
 const PAUSED = 'the session is paused';
 const KEY = 'energy';
@@ -185,7 +185,7 @@ export class Energy {
     if (!this.alive || this.tool === null || this.model.link.state !== 'online') return;
     const driver = this.model.drivers.get(this.tool);
     if (!driver) this.lose('the tool was taken away');
-    else if (driver.client === 0) this.lose('nobody drives the tool any more');
+    else if (driver.client === 0) this.lose('the tool has no driver any more');
     else if (!this.model.drives(this.tool)) this.lose(`${nameOf(driver)} took the tool over`);
   }
 

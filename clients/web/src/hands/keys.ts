@@ -14,7 +14,7 @@ export const KEY_HELP: readonly (readonly [string, string])[] = [
   ['Wheel, W S', 'depth; W deeper, S nearer'],
   ['Q E, R F', 'turn the tool, tilt it'],
   ['L', `keep energy on, for ${LATCH_S} s at most; L or Escape ends it`],
-  ['G', 'grasp or let go'],
+  ['G', 'grasp or release'],
   ['Right drag, Shift + drag', 'turn or move the camera'],
   ['Ctrl + wheel, + −', 'zoom'],
   ['H', 'camera home'],

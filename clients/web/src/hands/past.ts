@@ -18,7 +18,7 @@ export class Past {
 
   /** Says so to a hand that tries. */
   refuses(): boolean {
-    if (this.shown) this.model.say('info', 'This is the past, to look at. Return to live to work.');
+    if (this.shown) this.model.say('info', 'This is a past view. Return to live to work.');
     return this.shown;
   }
 }

@@ -42,7 +42,7 @@ export class Taking {
   private obstacle(): string | null {
     const { model } = this;
     if (model.link.state !== 'online') return 'There is no connection: the tool cannot be moved.';
-    if (!model.mayOperate) return 'You are looking on: your token does not let you use the tools.';
+    if (!model.mayOperate) return 'You can only watch: your token does not allow the use of tools.';
     if (!model.joined) return null; // the picture says what it waits for
     if (model.tools.length === 0) return 'This session has no tools.';
     return model.driver ? `${nameOf(model.driver)} is using the ${model.driver.tool}.` : null;

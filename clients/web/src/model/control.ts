@@ -77,7 +77,7 @@ export class Control {
 
   async rewind(tick: number): Promise<void> {
     const step = this.model.summary?.step_s ?? 0;
-    await this.during(`Going back to ${(tick * step).toFixed(2)} s`, this.link.call('session.rewind', { ...this.here(), tick }));
+    await this.during(`Rewinding to ${(tick * step).toFixed(2)} s`, this.link.call('session.rewind', { ...this.here(), tick }));
     await this.loadTimeline();
   }
 
@@ -94,11 +94,11 @@ export class Control {
   }
 
   async reset(): Promise<void> {
-    await this.during('Starting over', this.link.call('session.reset', this.here()));
+    await this.during('Resetting', this.link.call('session.reset', this.here()));
   }
 
   async restore(name: string): Promise<number> {
-    const { tick } = await this.during(`Going back to ${name}`, this.link.call('session.restore', { ...this.here(), name }));
+    const { tick } = await this.during(`Restoring ${name}`, this.link.call('session.restore', { ...this.here(), name }));
     return tick;
   }
 
@@ -215,7 +215,7 @@ export class Control {
 
   private left(session: string): void {
     if (session !== this.model.session) return;
-    this.model.notice('info', `${session} is gone.`);
+    this.model.notice('info', `${session} no longer exists.`);
     this.watch(this.model.sessions.find((other) => other.session !== session)?.session ?? null);
   }
 

@@ -19,7 +19,7 @@ function pedalPart(pedal: Pedal): HTMLElement {
   });
   const show = (): void => {
     const { code } = pedal;
-    words.textContent = code === null ? 'A foot pedal is a keyboard to the browser: tell the page which key it presses.' : `The pedal is ${keyWords(code)}: energy while it is down.`;
+    words.textContent = code === null ? 'A foot pedal is a keyboard to the browser. Choose here which key it presses.' : `The pedal is ${keyWords(code)}: energy while it is down.`;
     forget.hidden = code === null;
   };
   show();

@@ -21,7 +21,7 @@ export function drivingButtons(control: Control, problem: HTMLElement): { place:
       if (done !== null) said.textContent = 'Asked. The driver may hand it over.';
     });
   });
-  const give = button('Let it go', () => void attempt(problem, () => control.handOver(chosen()), give), { class: 'give' });
+  const give = button('Give it up', () => void attempt(problem, () => control.handOver(chosen()), give), { class: 'give' });
   const refresh = (): void => {
     const driver = model.drivers.get(chosen());
     const others = driver !== undefined && driver.client !== 0 && !model.driving;

@@ -101,7 +101,7 @@ export function forcesSection(control: Control): HTMLElement {
     return press;
   };
   const buttons = [
-    doing('Pin', 'Held where they are.', () => control.call('pin', { selection: selection.read() })),
+    doing('Pin', 'Pinned.', () => control.call('pin', { selection: selection.read() })),
     doing('Unpin', 'Let go.', () => control.call('unpin', { selection: selection.read() })),
     doing('Apply the force', 'The force acts until it is changed.', () =>
       control.call('force.set', { selection: selection.read(), force_n: force.read() })),

@@ -57,7 +57,7 @@ function energyButton(control: Control, hand: ToolHand): HTMLButtonElement {
   model.on('tools', () => {
     energy.hidden = model.tool !== null && !hasHeat(model.tool.shape);
     energy.disabled = !hand.usable;
-    energy.title = hand.usable ? 'Hold for energy (Space)' : 'Only who uses the tool may';
+    energy.title = hand.usable ? 'Hold for energy (Space)' : 'Only the user of the tool may';
   });
   const around = byId('picture').parentElement;
   model.on('frame', () => {
@@ -87,7 +87,7 @@ function latchButton(control: Control, hand: ToolHand): HTMLButtonElement {
   model.on('tools', () => {
     latch.hidden = model.tool !== null && !hasHeat(model.tool.shape);
     latch.disabled = !hand.usable;
-    latch.title = hand.usable ? `Energy without holding, for ${LATCH_S} s at most (L)` : 'Only who uses the tool may';
+    latch.title = hand.usable ? `Energy without holding, for ${LATCH_S} s at most (L)` : 'Only the user of the tool may';
     show();
   });
   model.on('frame', show);

@@ -30,7 +30,7 @@ function find(viewport: Viewport, x: number, y: number): Found | null {
 function words({ layer, vertex, stressed }: Found, state: VertexState, position: ArrayLike<number>): string {
   const at = [0, 1, 2].map((c) => (MM * position[3 * vertex + c]).toFixed(1)).join(', ');
   const temperature = state.temperatureC === null ? '' : `${state.temperatureC.toFixed(1)} °C`;
-  const stress = state.stressPa === null ? '' : stressed ? `${short(state.stressPa / 1000, 3)} kPa` : 'stress: told of fat only';
+  const stress = state.stressPa === null ? '' : stressed ? `${short(state.stressPa / 1000, 3)} kPa` : 'stress: only of fat';
   const heat = `${Math.round(100 * state.exposure)} % of the heat that parts it`;
   return [`${layer}, vertex ${vertex}`, `${at} mm`, temperature, stress, heat].filter((part) => part !== '').join('\n');
 }
@@ -72,7 +72,7 @@ export function showInspected(control: Control, viewport: Viewport): { switch: H
     place.hidden = true;
     control.inspect(now);
   };
-  const box = check('Tell what is under the pointer', 'inspect', set);
+  const box = check('Show what is under the pointer', 'inspect', set);
   const off = (): void => {
     box.querySelector('input')!.checked = false;
     set(false);

@@ -7,7 +7,7 @@ export type Mode = 'operate' | 'research';
 
 const MODES: readonly (readonly [Mode, string, string])[] = [
   ['operate', 'Operate', 'Instrument, power, time and camera'],
-  ['research', 'Research', 'Sessions, materials, limits and plots besides'],
+  ['research', 'Research', 'Also sessions, materials, limits and plots'],
 ];
 const KEPT = 'mode';
 

@@ -74,7 +74,7 @@ function person(control: Control, rename: () => void): HTMLElement {
     const named = [...control.model.drivers.values()].filter(({ client, tool }) => client !== 0 && !control.model.drives(tool));
     others.textContent = named.map((driver) => `${nameOf(driver)} uses the ${driver.tool}.`).join(' ');
   });
-  return element('section', { aria: { label: 'You' } }, element('h2', {}, 'You'), field('Your name', name, '', 'as the others in the session see it'), others);
+  return element('section', { aria: { label: 'You' } }, element('h2', {}, 'You'), field('Your name', name, '', 'as others in the session see it'), others);
 }
 
 function session(control: Control): HTMLElement {

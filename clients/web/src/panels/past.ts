@@ -8,7 +8,7 @@ import { button, byId, element } from './dom';
 
 const SETTLED_MS = 250; // a hand that drags along the timeline asks for where it rests
 
-const STAGE_WORDS = { building: 'a second tissue is made for it', reading: 'it is looked up', restoring: 'it is brought back', replaying: 'what happened is repeated' };
+const STAGE_WORDS = { building: 'a second tissue is made for it', reading: 'it is read', restoring: 'it is restored', replaying: 'the commands are replayed' };
 
 export function showPast(control: Control): void {
   const { model } = control;
@@ -27,7 +27,7 @@ export function showPast(control: Control): void {
   };
   const there = (): boolean => wanted !== null && model.frame?.past?.tick === wanted;
   const tell = (): void => {
-    if (wanted !== null && there()) say(`Viewing ${at(wanted)}. Nobody is rewound.`, false);
+    if (wanted !== null && there()) say(`Viewing ${at(wanted)}. The session goes on.`, false);
   };
   const ask = async (tick: number): Promise<void> => {
     try {

@@ -15,7 +15,7 @@ export function showRuler(ruler: Ruler, viewport: Viewport): () => void {
   svg.setAttribute('aria-hidden', 'true');
   svg.append(line);
   const words = element('output');
-  const away = button('×', () => ruler.clear(), { aria: { label: 'Take the ruler away' } });
+  const away = button('×', () => ruler.clear(), { aria: { label: 'Remove the ruler' } });
   const label = element('p', {}, words, away);
   place.append(svg, label);
   let shown = '';

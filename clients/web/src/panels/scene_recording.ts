@@ -78,11 +78,11 @@ export function sceneRecordingButton(model: Model, viewport: Viewport, problem: 
       step: -1,
       seen: null,
     };
-    worker.addEventListener('error', () => finish(recording, 'The recording was given up: its worker has failed.'));
+    worker.addEventListener('error', () => finish(recording, 'The recording has failed: its worker stopped.'));
     worker.addEventListener('message', ({ data }: MessageEvent<FromMcap>) => {
-      if (data.type === 'failure') finish(recording, `The recording was given up: ${data.message}`);
+      if (data.type === 'failure') finish(recording, `The recording has failed: ${data.message}`);
       if (data.type === 'full') {
-        model.notice('warning', 'The recording has reached 1 GB. What there is has been saved.');
+        model.notice('warning', 'The recording has reached 1 GB, the most. It has been saved.');
         end();
       }
       if (data.type !== 'file') return;

@@ -36,7 +36,7 @@ export function sessionPlots(model: Model): SessionPlots {
     const tick = pointed ?? model.held;
     const moment = tick === null ? model.history.moments.at(-1) : model.history.at(tick);
     const each = [...(moment?.tools ?? [])].map(([name, { temperatureC, forceN, energyJ }]) => `${name} ${temperatureC.toFixed(0)} °C, ${short(forceN, 2)} N, ${short(energyJ, 3)} J`);
-    const when = moment ? `${(moment.tick * step()).toFixed(2)} s` : 'Nothing is known of that time';
+    const when = moment ? `${(moment.tick * step()).toFixed(2)} s` : 'No values of that time';
     const words = `${when}${moment ? ': ' : ''}${each.join('; ')}`;
     if (told.value !== words) told.value = words;
   };

@@ -21,7 +21,7 @@ function row(control: Control, summary: SessionSummary, problem: HTMLElement): H
     aria: here ? { current: 'true' } : {},
   });
   const destroy = button('Destroy', () => {
-    const lost = `Its tissue, its ${summary.time_s.toFixed(1)} s of time, snapshots and script go for good, for everybody.`;
+    const lost = `This deletes its tissue, its ${summary.time_s.toFixed(1)} s of history, snapshots and script, for everyone.`;
     void ask(`Destroy ${summary.session}?`, lost, 'Destroy').then((sure) => {
       if (sure) void attempt(problem, () => control.destroy(summary.session), destroy);
     });

@@ -25,11 +25,11 @@ export function snapshotSection(control: Control): HTMLElement {
     known.replaceChildren(...taken.map((value) => element('option', { value })));
   };
   const take = element('button', { type: 'submit' }, 'Take a snapshot');
-  const back = button('Go back to it', () => {
+  const back = button('Restore it', () => {
     const work = async (): Promise<void> => {
-      if (name.value === '') throw new Error('name the snapshot to go back to');
+      if (name.value === '') throw new Error('name the snapshot to restore');
       const tick = await control.restore(name.value);
-      said.textContent = `Back at ${name.value}, ${seconds(tick)}; energy is off.`;
+      said.textContent = `Restored ${name.value}, ${seconds(tick)}; energy is off.`;
       await control.loadTimeline();
     };
     void attempt(problem, work, back);

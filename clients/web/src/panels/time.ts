@@ -56,18 +56,18 @@ export function timeBar(control: Control, shared: number | null): void {
   }, { id: 'pause' });
   const step = button('Step', () => void attempt(problem, () => control.call('session.step', { ticks: 1 }), step), { id: 'step', class: 'research-only' });
   const reset = button('Start over', () => {
-    void ask('Start over?', 'The tissue is whole again, for everybody in the session.', 'Start over').then((sure) => {
+    void ask('Start over?', 'This resets the tissue for everyone in the session.', 'Start over').then((sure) => {
       if (sure) void attempt(problem, () => control.reset(), reset);
     });
   }, { id: 'reset', title: 'Whole tissue, from the start' });
   const speed = element('select', { name: 'speed', class: 'research-only', aria: { label: 'Speed' } }, ...SPEEDS.map((s) => element('option', { value: String(s) }, `${s} ×`)));
   speed.value = '1';
   speed.addEventListener('change', () => void attempt(problem, () => control.call('session.speed', { speed: Number(speed.value) })));
-  const slider = element('input', { type: 'range', name: 'tick', id: 'tick', min: '0', max: '1', value: '1', aria: { label: 'Timeline: time to look back at' } });
+  const slider = element('input', { type: 'range', name: 'tick', id: 'tick', min: '0', max: '1', value: '1', aria: { label: 'Timeline: time to view' } });
   const track = element('div', { class: 'track' }, slider);
   const rewind = button('Rewind here', () => {
     const tick = slider.valueAsNumber;
-    void ask(`Go back to ${seconds(tick)}?`, 'Everybody in the session goes there, and leaves what came after it.', 'Go back').then((sure) => {
+    void ask(`Rewind to ${seconds(tick)}?`, 'This rewinds the session for everyone. Later history stays on the old branch.', 'Rewind').then((sure) => {
       if (sure) void attempt(problem, () => control.rewind(tick).then(() => model.hold(null)), rewind);
     });
   }, { id: 'rewind', hidden: true });
@@ -76,7 +76,7 @@ export function timeBar(control: Control, shared: number | null): void {
   const now = element('output', { class: 'now', id: 'now' });
   const seconds = (tick: number): string => `${(tick * (model.summary?.step_s ?? 1 / 60)).toFixed(2)} s`;
   const tell = (): void => {
-    rewind.textContent = `Go back to ${seconds(slider.valueAsNumber)}`;
+    rewind.textContent = `Rewind to ${seconds(slider.valueAsNumber)}`;
     slider.setAttribute('aria-valuetext', seconds(slider.valueAsNumber));
   };
   slider.addEventListener('input', () => {

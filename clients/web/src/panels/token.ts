@@ -11,7 +11,7 @@ export function askForToken(model: Model, connect: (token: string) => void): () 
   const problem = problemPlace();
   const submit = element('button', { type: 'submit' }, 'Connect');
   const form = element('form', { class: 'form' }, user, field('Access token', token), problem, element('div', { class: 'buttons' }, submit, button('Close', () => dialog.close())));
-  const dialog = element('dialog', { id: 'token', class: 'ask', aria: { label: 'Access token' } }, element('p', {}, 'This simulation asks for a token. Whoever runs it has it.'), form);
+  const dialog = element('dialog', { id: 'token', class: 'ask', aria: { label: 'Access token' } }, element('p', {}, 'This simulation needs a token. Ask its administrator for one.'), form);
   document.body.append(dialog);
   let given = false;
   const open = (): void => {
@@ -37,11 +37,11 @@ export function askForToken(model: Model, connect: (token: string) => void): () 
     }
     if (link.state === 'connecting') return;
     busy(false);
-    if (link.state === 'lost' && given) say(`There was no answer: ${link.words}. It is tried again by itself.`);
+    if (link.state === 'lost' && given) say(`No answer: ${link.words}. The page tries again.`);
     if (link.state !== 'refused' || link.status !== 'unauthorized') return;
     open();
     if (!given) return;
-    say('This token was not accepted. Look for missing letters, and that it is whole.');
+    say('This token was not accepted. Check that it is complete and not expired.');
     token.select();
   });
   const say = (words: string): void => {

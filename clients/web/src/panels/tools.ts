@@ -15,8 +15,8 @@ const LEAST_FORCE_N = 1e-4; // below it a hand feels nothing
 const OFF_WORDS = {
   never_enabled: 'off',
   commanded: 'off',
-  watchdog: 'off: no sign of life from the driver',
-  restored: 'off: the session went back',
+  watchdog: 'off: no heartbeat from the driver',
+  restored: 'off: the session was rewound',
   taken_over: 'off: taken over',
 } as const;
 
@@ -31,7 +31,7 @@ function editForm(control: Control, problem: HTMLElement): { form: HTMLElement; 
   const apply = element('button', { type: 'submit' }, 'Apply');
   const remove = button('Remove', () => {
     const tool = model.selectedTool ?? '';
-    void ask(`Remove the ${tool}?`, 'It goes for everybody in the session.', 'Remove').then((sure) => {
+    void ask(`Remove the ${tool}?`, 'This removes it for everyone in the session.', 'Remove').then((sure) => {
       if (sure) void attempt(problem, () => control.removeTool(tool), remove);
     });
   });

@@ -82,7 +82,7 @@ export function uploadForm(control: Control, link: Link): HTMLElement {
     field('Mesh file', file, '', 'Gmsh, VTK, VTU, OBJ, STL, PLY, Medit, USD text, or both files of TetGen'),
     field('Tissue', kind, '', 'by the file: fat where there are tetrahedra'),
     field('One unit is', size, 'mm', 'length of the file’s unit: 1 for millimetres, 1000 for metres; guessed where its size is clear'),
-    check('Strict: refuse a mesh that needs mending', 'strict', (on) => (strict = on)),
+    check('Strict: refuse a mesh that needs repair', 'strict', (on) => (strict = on)),
     submit,
     bar,
     problem,

@@ -22,11 +22,11 @@ function graphics(viewport: Viewport): Veil | null {
   switch (viewport.graphics) {
     case 'none':
       return {
-        words: 'This browser offers no WebGL 2, which the picture needs. Turn on hardware acceleration in its settings, or take another browser. Everything but the picture works.',
+        words: 'This browser offers no WebGL 2, which the picture needs. Turn on hardware acceleration in its settings, or use another browser. Everything but the picture works.',
         busy: false,
       };
     case 'lost':
-      return { words: 'The graphics card has dropped the picture. It is being drawn anew.', busy: true, action: RELOAD };
+      return { words: 'The graphics card has lost the picture. It is being drawn again.', busy: true, action: RELOAD };
     case 'ready':
       return null;
   }
@@ -57,8 +57,8 @@ export function showVeil(control: Control, viewport: Viewport, enterToken: () =>
     else busySince ??= now;
     if (busySince !== null && now - busySince >= QUICK_MS) return { words: `${control.busy[0]}…`, busy: true };
     if (model.link.state !== 'online') return null;
-    if (model.session === null) return { words: 'No session is open. Research, Sessions, New session makes one.', busy: false };
-    if (model.summary?.state === 'starting') return { words: `${model.session} is being made: its tissue is put together…`, busy: true };
+    if (model.session === null) return { words: 'No session is open. Create one under Research > Sessions > New session.', busy: false };
+    if (model.summary?.state === 'starting') return { words: `${model.session} is being built…`, busy: true };
     if (model.frame?.session !== model.session) return now - framedAt < QUICK_MS ? null : { words: `Opening ${model.session}…`, busy: true };
     if (model.frame.paused || model.frame.faulted || document.hidden || now - framedAt < SILENT_MS) return null;
     return { words: `Nothing new from the simulation for ${((now - framedAt) / 1000).toFixed(0)} s. What you see is from before.`, busy: true };

@@ -37,7 +37,7 @@ export function videoButton(model: Model, viewport: Viewport, problem: HTMLEleme
     const recorder = new MediaRecorder(stream, { mimeType: kind.type, videoBitsPerSecond: BITS_A_SECOND });
     const parts: Blob[] = [];
     recorder.addEventListener('dataavailable', ({ data }) => parts.push(data));
-    recorder.addEventListener('error', () => model.notice('error', 'The browser has given up recording. What it has is saved.'));
+    recorder.addEventListener('error', () => model.notice('error', 'The browser has stopped recording. The part so far is saved.'));
     recorder.addEventListener('stop', () => {
       stop();
       save(name, new Blob(parts, { type: kind.type }));

@@ -19,7 +19,7 @@ const COLOURINGS: readonly (readonly [ViewOptions['colouring'], string])[] = [
 ];
 const TITLES: Readonly<Record<Scalar, string>> = {
   exposure: 'Heat exposure over ignition',
-  charring: 'Char: share of edges burnt through',
+  charring: 'Char: share of parted edges',
   stress: 'Von Mises stress',
   temperature: 'Temperature',
 };
@@ -38,7 +38,7 @@ function endsOf(scalar: Scalar, frame: Frame | null): readonly [string, string] 
   if (scalar === 'stress') return ['0', `${short(frame?.stressScalePa ?? 0, 2)} Pa`];
   if (scalar !== 'temperature') return ['0', '1'];
   const range = frame?.temperatureRangeC;
-  return range ? [`${range[0].toFixed(0)} °C`, `${range[1].toFixed(0)} °C`] : ['not told', ''];
+  return range ? [`${range[0].toFixed(0)} °C`, `${range[1].toFixed(0)} °C`] : ['no values', ''];
 }
 
 function legend(control: Control, options: () => ViewOptions): () => void {

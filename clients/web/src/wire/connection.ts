@@ -153,7 +153,7 @@ export class Connection {
       const sequenced = CHANGING_METHODS.has(method) ? { ...params, client_sequence: ++this.clientSequence } : params;
       const text = JSON.stringify({ jsonrpc: '2.0', id, method, params: sequenced });
       if (!this.online && method !== 'hello' && !outlivesLoss(method)) {
-        reject(new RpcError('lost', 'the daemon cannot be reached just now'));
+        reject(new RpcError('lost', 'the daemon cannot be reached at the moment'));
         return;
       }
       this.pending.set(id, { method, text, resolve: resolve, reject });

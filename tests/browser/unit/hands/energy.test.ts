@@ -95,14 +95,14 @@ class Bench {
 
 describe('energy that is held', () => {
   it.each([
-    ['space', 'Let go of Space and press it again.'],
-    ['trigger', 'Let go of the trigger and pull it again.'],
+    ['space', 'Release Space and press it again.'],
+    ['trigger', 'Release the trigger and pull it again.'],
     ['pointer', 'Lift and press again.'],
   ] as const)('cut by the watchdog while %s is down: said with the next frame, with what brings it back', async (by, again) => {
     const bench = new Bench();
     await bench.lit(by);
     bench.frame(40, false, 'watchdog');
-    expect(bench.said.get('energy')).toContain('Energy is off: the simulation heard nothing from this page in time');
+    expect(bench.said.get('energy')).toContain('Energy is off: this page sent no heartbeat in time');
     expect(bench.said.get('energy')).toContain(again);
     expect(bench.energy.alive).toBe(false);
     bench.energy.enable('hook', false); // a key that goes on being held brings nothing back
@@ -128,7 +128,7 @@ describe('energy that is held', () => {
     const bench = new Bench();
     bench.press();
     await bench.told[0].refuse('the store is full');
-    expect(bench.said.get('energy')).toBe('Energy is off: the store is full. Let go of Space and press it again.');
+    expect(bench.said.get('energy')).toBe('Energy is off: the store is full. Release Space and press it again.');
   });
 
   it('a late answer to an earlier press does not count', async () => {
@@ -145,7 +145,7 @@ describe('energy that is held', () => {
 
   it.each([
     ['paused', 13, { paused: true }, 'the session is paused'],
-    ['rewound', 3, { epoch: 'f' }, 'went back in time'],
+    ['rewound', 3, { epoch: 'f' }, 'was rewound or restarted'],
   ] as const)('%s: says so', async (_name, tick, more, words) => {
     const bench = new Bench();
     await bench.lit();
@@ -228,7 +228,7 @@ describe('energy that is latched', () => {
     const bench = new Bench();
     await bench.lit('latch');
     bench.frame(40, false, 'watchdog');
-    expect(bench.said.get('')).toContain('heard nothing from this page in time, which a busy machine can cause. Press Keep on for more.');
+    expect(bench.said.get('')).toContain('this page sent no heartbeat in time, which a busy machine can cause. Press Keep on for more.');
     expect(bench.energy.latched).toBe(false);
     bench.press('space');
     bench.release('space');
