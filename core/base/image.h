@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Memory that sessions of equal tissue have in common: an image is a copy of one session's pages,
-// in a file in memory that nobody can write any more. Another session's pages that are equal to it,
-// byte by byte, give way to private mappings of it; the first write makes a page the writer's own
-// again, so that nobody sees what another does. What is equal need not be known beforehand.
+// in a file in memory that is no longer writable. Private mappings of it replace another session's
+// pages with equal bytes. The first write copies a page for the writer, so no session sees writes
+// of another. The equal pages need not be known beforehand.
 //
 // Images live in one list for the whole program, and as long as a session holds them. Any thread
 // may call these; who owns the pages calls for them, while nothing else reads or writes them.

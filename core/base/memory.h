@@ -18,7 +18,7 @@ typedef struct cau_arena {
 // cau_arena_finish.
 void *cau_arena_array(cau_arena *arena, size_t count, size_t size);
 
-// Copy of `count` elements of `size` bytes, likewise.
+// Copy of `count` elements of `size` bytes, in an array like that of cau_arena_array.
 void *cau_arena_copy(cau_arena *arena, const void *source, size_t count, size_t size);
 
 void cau_arena_finish(cau_arena *arena);

@@ -8,16 +8,15 @@
 //
 // continuous with its slope and curvature [offset geometric contact, Chen et al. 2025]. Below a
 // hundredth of h the force grows linearly, so that it is finite where tissue was crossed before.
-// Friction opposes the way since the tick's start with the force that the pair had then.
+// Friction opposes the motion since the tick's start, with the force that the pair had then.
 //
-// No step is taken that crosses (filter.c): a pair is separated by a plane before and after every
-// move, and so all the way, as corners move straight. What would pass is moved back to its side of
-// the plane, and stopped where that is not enough.
+// No step crosses (filter.c). A plane separates a pair before and after every move. Corners move
+// straight, so it separates them all the way. A corner that would pass the plane is moved back to
+// its side, and stopped where that is not enough.
 //
-// Pairs are known (find.c) for all places where no vertex is farther than its `reach_m` from its
-// `anchor`, from tick to tick; where a place beyond is asked for, they are looked for again. Which
-// pairs touch, and in what order their forces are added up, does not depend on that, so no snapshot
-// has any of it.
+// Pairs are valid (find.c) for all positions at which no vertex is farther than its `reach_m` from
+// its `anchor`, from tick to tick. Positions beyond need another search. Neither the touching pairs
+// nor the order in which their forces are added depends on that, so no snapshot contains it.
 #pragma once
 
 #include <stdatomic.h>
@@ -28,23 +27,23 @@
 #include "collide/surface.h"
 
 enum { CAU_COLLIDE_SLICE = 2048 }; // pairs of a kind that a block may have
-// A filtered step is no longer than this, or than the thickness if that is more: then pairs need
-// be known no further.
+// The longest filtered step, m, unless the thickness is longer. It limits how far pairs are
+// searched.
 static const double cau_collide_most_step_m = 1e-3;
 
 typedef struct cau_collide_pair {
 	cau_gap_kind kind;
 	int32_t vertex[4];  // corners
-	double thickness_m; // less than the surface's where it is as near at rest
+	double thickness_m; // less than the surface's where the pair is nearer at rest
 	double stiffness;   // k, N/m
 	cau_vec3 plane;     // unit: a direction that separated the parts when they were last measured
 	double slope;       // dE/dd of the last evaluation, N; 0: apart
-	double curvature;   // likewise, N/m
-	double weight[4];   // likewise, of the gap
+	double curvature;   // d2E/dd2 of the last evaluation, N/m
+	double weight[4];   // of the corners in the gap, of the last evaluation
 	cau_vec3 normal;
 } cau_collide_pair;
 
-// What a pair that touched at the tick's start resists of sliding.
+// The friction of a pair that touched at the tick's start.
 typedef struct cau_collide_grip {
 	int32_t vertex[4];
 	double weight[4];
@@ -68,8 +67,9 @@ typedef struct cau_collide_slice { // of a block: what it found, and whether tha
 	bool full;
 } cau_collide_slice;
 
-// What pairs are to be known for: a place; the step from there too, with all that the corners which
-// are pushed may be moved beyond it; or, if there is room, the steps of a tick that begins.
+// For which motion pairs must be valid: for a position; also for the step from there, with all by
+// which pushed corners may be moved beyond it; or, within the capacity, for the steps of a tick
+// that begins.
 typedef enum cau_collide_need {
 	CAU_COLLIDE_PLACE,
 	CAU_COLLIDE_STEP,
@@ -80,8 +80,9 @@ typedef struct cau_collide {
 	const cau_tissue *tissue;
 	double thickness_m, friction;
 	const uint8_t *fixed; // (n): borrowed; vertices that no step moves
-	uint8_t *exempt;      // (n): vertices that touch nothing in this tick: what jaws hold, what is
-	                      // inside out, what is thrown; of no pair, and led by no filter
+	// (n): vertices excluded from contact in this tick: held by jaws, inverted, diverged. They are
+	// in no pair, and no filter moves them.
+	uint8_t *exempt;
 	// What joins parts while it lives: triangles, tetrahedra, links; borrowed, NULL: all do.
 	const uint8_t *alive[CAU_PRIMITIVE_KINDS];
 	double *stiffness; // N/m, (n): of a vertex
@@ -116,7 +117,7 @@ typedef struct cau_collide {
 	double kept_share;            // filter.c: of its distance, a pair keeps at least
 	bool held_back, out_of_reach; // it shortened; because the pairs are known for no further
 	int32_t held_back_count, search_count;
-	int32_t cut_short_count; // the pairs found no room: steps were shorter than asked for
+	int32_t cut_short_count; // times that pairs exceeded the capacity, so that steps were shortened
 	double *step;            // m, (n x 3): for filter
 	double start_energy_j;
 	// find.c: what is known
@@ -125,7 +126,7 @@ typedef struct cau_collide {
 	cau_collide_slice *slice;                     // (blocks)
 	cau_collide_found *list[2];                   // by kind, (blocks x CAU_COLLIDE_SLICE)
 	uint8_t *alive_before[CAU_PRIMITIVE_KINDS];   // as they were when it was found
-	uint8_t *exempt_before; // likewise, or as the last tick ended; all: it is not known
+	uint8_t *exempt_before; // `exempt` when it was found, or as the last tick ended; all: unknown
 	// The parts' boxes side by side, in the order in which blocks list them; each block begins a
 	// group. And which of a group are fresh, a bit each, where the block is touched.
 	cau_collide_lanes *lane[3];
@@ -136,7 +137,7 @@ typedef struct cau_collide {
 	cau_collide_lanes *block_lane, *touched_lane; // all faces of blocks; fresh ones of `touched`
 	uint8_t *is_touched;                          // (blocks)
 	cau_collide_box *place_box;                   // (blocks): crossed.c, of a block where it is
-	bool may_give_up;                             // nobody takes what a search leaves that fails
+	bool may_give_up;                             // the result of a failed search is not used
 	atomic_bool fails;                            // and it surely does
 	atomic_int listed_count;                      // pairs of the blocks that are done
 	// filter.c: scratch
@@ -152,66 +153,69 @@ typedef struct cau_collide {
 cau_status cau_collide_create(cau_collide *collide, const cau_tissue *tissue, double thickness_m,
                               double friction, double step_s, cau_arena *arena, cau_error *error);
 
-// Longer than this, m, a filtered step is not.
+// Length of the longest filtered step, m.
 double cau_collide_most_step(const cau_collide *collide);
 
-// Begins a tick at positions x (m, n x 3): what is drawn has been listed, `exempt` filled,
-// `cut_short_count` set to whether anything that is exempt is to be told of. Steps as
-// long as `collide->step` are foreseen. Measures the energy there and takes the grips.
+// Begins a tick at positions x (m, n x 3). Before it the caller has listed the drawn surface,
+// filled `exempt`, and set `cut_short_count` to 1 if an exclusion is to be reported, else 0.
+// Searches pairs for steps as long as `collide->step`. Measures the energy at x and takes the
+// grips.
 void cau_collide_begin(cau_collide *collide, cau_pool *pool, const double *x);
 
 // Energy at x, J, friction's included; the gradient is kept.
 double cau_collide_evaluate(cau_collide *collide, cau_pool *pool, const double *x);
 
-// Of the last evaluation: answer = K probe over the vertices that are loaded, K the Hessian of the
-// energy without what is negative of it.
+// answer = K probe over the loaded vertices. K is the Hessian of the energy of the last evaluation,
+// without its negative part.
 void cau_collide_apply(cau_collide *collide);
 
-// Where something is to touch again that was exempt: what crosses at x is exempt besides. Before a
-// tick begins.
+// Call before a tick begins in which an excluded vertex takes part in contact again. Excludes also
+// the vertices that cross at x.
 void cau_collide_exempt_crossed(cau_collide *collide, const double *x);
 bool cau_collide_touches_again(const cau_collide *collide);
-// What crosses at the next tick is not known; nor, of the second, which pairs there are.
+// Marks the crossings of the next tick as unknown. The second marks the pairs as unknown too.
 void cau_collide_forget_crossed(cau_collide *collide);
 void cau_collide_forget(cau_collide *collide);
 
-// Within a tick: a vertex touches nothing from here on. What its pairs had of energy is gone at the
+// Excludes a vertex from contact for the rest of the tick. The energy of its pairs is gone at the
 // next evaluation.
 void cau_collide_let_go(cau_collide *collide, int32_t vertex);
 
-// From here on x is where we are, which else is where energy was evaluated last or the last filter
-// has led.
+// Makes x the present positions. Otherwise these are the positions of the last evaluation, or those
+// to which the last filter led.
 void cau_collide_stand(cau_collide *collide, const double *x);
 
-// Changes `collide->step` (n x 3), wanted from x, where we are, on, so that nothing crosses on the
-// way, nor, of a first guess, comes nearer than the thickness. Returns whether it had to.
+// Changes `collide->step` (m, n x 3), a wanted step from the present positions x, so that no pair
+// crosses on the way. With `guess` also so that no pair comes nearer than the thickness. Returns
+// whether it changed the step.
 bool cau_collide_filter(cau_collide *collide, cau_pool *pool, const double *x, bool guess);
 
-// Measures how far pairs are apart at x, where we are: what follows is near it.
+// Measures how far pairs are apart at the present positions x, for the steps near it.
 void cau_collide_see(cau_collide *collide, cau_pool *pool, const double *x);
 
-// The filter without a look at all vertices, for the steps of an iteration, most of which are
-// short. Of one that is no longer than this, m, from where we are on: whether it surely leads
-// nobody out of what is known. Then `collide->step` has to be given at the corners of the `unclear`
-// pairs alone, and cau_collide_lets_pass tells whether the step may be taken as it is. If either is
-// false, it is to be filtered.
+// A quick filter for the steps of an iteration, most of which are short; it does not visit all
+// vertices. Whether a step of at most `longest_m` from the present positions surely keeps every
+// vertex within its reach. If so, fill `collide->step` only at the corners of the `unclear` pairs.
+// cau_collide_lets_pass then returns whether the step may be taken unchanged. If either returns
+// false, call cau_collide_filter.
 bool cau_collide_foresee(cau_collide *collide, double longest_m);
 bool cau_collide_lets_pass(cau_collide *collide, const double *x, double longest_m);
 
 // ---- between the files of this room
 
-// find.c: looks for the pairs of what `surface.changed` tells. False where they find no room.
+// find.c: searches the pairs of the vertices in `surface.changed`. False if they exceed the
+// capacity.
 bool cau_collide_search(cau_collide *collide, cau_pool *pool);
-// order.c: by their parts; no two are of the same.
+// order.c: sorts pairs by their parts; no two pairs have the same parts.
 void cau_collide_sort(cau_collide_found *found, int32_t count);
-void cau_collide_gather(cau_collide *collide); // the pairs, as many as there is room for
-// pair.c: whether corners may come nearer than their thickness with all that they may move. If so,
-// the pair's thickness and stiffness.
+void cau_collide_gather(cau_collide *collide); // the pairs, up to the capacity
+// pair.c: whether corners may come nearer than their thickness by any allowed motion. If so, *found
+// gets the pair's thickness and stiffness.
 bool cau_collide_may_touch(const cau_collide *collide, cau_gap_kind kind, const int32_t vertex[4],
                            cau_collide_found *found);
-// reach.c: the pairs for x and for what is needed beyond.
+// reach.c: finds the pairs for x and for the motion `need`.
 void cau_collide_find(cau_collide *collide, cau_pool *pool, const double *x, cau_collide_need need);
-// Whether they are known.
+// Whether the pairs are valid for x and for the motion `need`.
 bool cau_collide_covers(const cau_collide *collide, const double *x, cau_collide_need need);
 // Whether they are for what is pushed, where they are for the step.
 bool cau_collide_covers_pushed(const cau_collide *collide, const double *x);

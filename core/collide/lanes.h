@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Boxes side by side, eight to a group, so that one is held against eight at a time. They are kept
-// as floats. Rounding keeps order: what meets in double still does, and what is let pass beside
-// that is told apart in double by who asks.
+// Boxes side by side, eight to a group, so that one box is tested against eight at a time. They are
+// floats. Rounding keeps order: boxes that meet in double still meet. The caller sorts out in
+// double the pairs that meet only in float.
 #pragma once
 
 #include <stdint.h>

@@ -32,8 +32,8 @@ typedef struct cau_surface {
 	int32_t *face_edge; // (face_count x 3): found when a face is first drawn; -1
 	// Blocks that list an edge or a vertex, -1: none; of this list and of the one before.
 	int32_t *edge_block[2], *vertex_block[2];
-	// (vertex_count): corners of parts that are listed no longer, anew or by another block; who
-	// looks clears it
+	// (vertex_count): corners of parts whose listing changed: ended, began, or went to another
+	// block. The reader clears it
 	uint8_t *changed;
 } cau_surface;
 

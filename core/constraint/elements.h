@@ -80,8 +80,8 @@ typedef struct cau_fat_set {
 	void *plastic[6];        // real: C_p^(-1/2) - I
 	void *plastic_strain[6]; // real: e_p, with C_p = I + 2 e_p
 	uint8_t *limited;  // (slot_count / CAU_BATCH): some slot of the batch has limit_weight > 0
-	uint8_t *targeted; // likewise: some slot's target is not its group's
-	uint8_t *flowed;   // likewise: some slot has plastic strain
+	uint8_t *targeted; // (slot_count / CAU_BATCH): some slot's target is not its group's
+	uint8_t *flowed;   // (slot_count / CAU_BATCH): some slot has plastic strain
 	void *position_scale;
 } cau_fat_set;
 

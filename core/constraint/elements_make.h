@@ -36,7 +36,7 @@ void cau_elements_set_laws(cau_elements *elements, const cau_tissue *tissue);
 // Marks batches whose targets are not their group's (`targeted`), after laws or targets changed.
 void cau_elements_mark_targets(cau_elements *elements, const cau_element_slots *slots);
 
-// Sets weights and laws anew from the tissue's materials, keeping removed elements removed
+// Sets weights and laws again from the tissue's materials, keeping removed elements removed
 // (`alive`) and shrunk targets (`shrunk`: bytes by triangle and tetrahedron).
 void cau_elements_set_materials(cau_elements *elements, const cau_element_slots *slots,
                                 const cau_tissue *tissue, uint8_t *const alive[CAU_ELEMENT_KINDS],

@@ -3,15 +3,15 @@
 // stress P = dPsi/dF (Pa) of F = I + H. Written in H so that both are exactly zero at rest.
 // Strain here is (F^T F - I)/2, with the half.
 //
-// Each law, a row of CAU_MODEL_TABLE, is one function of this form: it returns P and sets *density
-// to Psi. `polar` is the slot's rotation, which a law that keeps one reads and writes.
+// Each law, an entry of CAU_MODEL_TABLE, is one function of this form: it returns P and sets
+// *density to Psi. `polar` is the slot's rotation, which a law that keeps one reads and writes.
 //
 //     INLINE m3 word_stress(law_terms t, rotation_lanes *polar, vreal *density)
 #pragma once
 
 #include "constraint/polar.h"
 
-// What a law is made of: F and H = F - I, the Lame parameters that its row asks for, and the
+// What a law is made of: F and H = F - I, the Lame parameters that its entry asks for, and the
 // stiffness k of its part of A (Pa).
 typedef struct law_terms {
 	m3 f, h;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// What the solver has to know of a law of fat besides its stress: a row of CAU_MODEL_TABLE.
+// Properties of a law of fat that the solver needs besides its stress: an entry of CAU_MODEL_TABLE.
 #pragma once
 
 #include <stdbool.h>

@@ -46,7 +46,7 @@ INLINE vreal range_shear(v3 f1, v3 f2, sym2 k, double most, v3 *residual1, v3 *r
 	vreal r = v_sqrt(v_max(a * a - (4 - 4 * tiny) * x * x, v_set(REAL_TINY)));
 	vreal distance = 2 * x * x / (a + r), slope = x / r, bend = limit / area;
 	vreal sign = v_select(k.a01 < v_set(0), v_set(-1), v_set(1));
-	// half of dD/df_1 = own_1 f_1 + other f_2, and likewise for f_2
+	// half of dD/df_1 = own_1 f_1 + other f_2; half of dD/df_2 = other f_1 + own_2 f_2
 	vreal other = slope * (across * sign + bend * k.a01), less = distance / r, flat = 2 * tiny * a;
 	vreal own1 = -less - slope * bend * (k.a11 + flat),
 		  own2 = -less - slope * bend * (k.a00 + flat);

@@ -18,7 +18,7 @@ typedef struct cau_removed {
 typedef struct cau_doses {
 	double *dose;          // integral of u at the middle dt while that chars, degC s
 	uint8_t *gone;         // has parted
-	double widest_m;       // greatest half width of a cut that an element can tell
+	double widest_m;       // greatest half width of a cut that an element can resolve
 	int32_t touched_count; // of the present tick
 	int32_t *touched;
 	uint8_t *touched_mark;

@@ -11,8 +11,9 @@ typedef struct cau_shrinking { // an element on its way to its target
 	double age_s;
 } cau_shrinking;
 
-// A cut lays bare a strip at a time, and each element is on its way for 0.2 s: an eighth of all is
-// far more than that, and small tissues have room for all. What finds no room arrives at once.
+// A cut bares a strip at a time, and each element shrinks for 0.2 s. An eighth of all elements is
+// far more than that, and small tissues have capacity for all. An element beyond the capacity gets
+// its target at once.
 enum { CAU_SHRINKING_LEAST = 1024, CAU_SHRINKING_SHARE = 8 };
 
 typedef struct cau_shrink {

@@ -32,10 +32,11 @@ cau_status cau_frame_create(cau_frame_state *frame, const cau_tissue *tissue,
 void cau_frame_update(cau_frame_state *frame, const cau_dissection *dissection, const double *from,
                       const double *to);
 
-// After a tick at rest: nothing moved, nothing was cut.
+// After a tick at rest: no vertex moved and no element was cut.
 void cau_frame_stand_still(cau_frame_state *frame);
 
-// Everything anew, with every vertex marked as moved and every word as changed (creation, restore).
+// Computes everything again, with every vertex marked as moved and every word as changed (creation,
+// restore).
 void cau_frame_rebuild(cau_frame_state *frame, const cau_dissection *dissection);
 
 // Von Mises stress of the fat, volume weighted at the vertices, Pa.

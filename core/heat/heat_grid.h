@@ -23,7 +23,7 @@ typedef struct cau_heat_grid {
 	double ambient_c;
 	float
 		coldest_c; // over the nodes after the last advance; the innermost field's while one is held
-	float warmest_c;  // likewise; equal to coldest_c where every node is at ambient
+	float warmest_c;  // over the same nodes; equal to coldest_c where every node is at ambient
 	bool outer_rests; // only the innermost field has nodes off ambient
 	cau_pages pages;  // of all that follows
 	cau_heat_field field[CAU_HEAT_FIELDS]; // the innermost first: its step is dl

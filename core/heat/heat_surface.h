@@ -13,7 +13,7 @@ typedef struct cau_heat_surface {
 	float *distance; // cells, (N x N x N): of the nodes to it, negative within, while held; exact
 	                 // within a cell of it, elsewhere only the sign counts
 	float *rate;     // scratch, (N x N x N): for cau_diffuse_around
-	float *pull;     // likewise
+	float *pull;     // scratch, (N x N x N): for cau_diffuse_around
 } cau_heat_surface;
 
 // Where the hot part's surface is at `pose`. From then on it is held.
@@ -24,7 +24,7 @@ void cau_heat_surface_find(cau_heat_surface *surface, const cau_heat_field *fiel
 void cau_heat_surface_hold(cau_heat_surface *surface, cau_heat_field *field, int32_t nodes,
                            double rate);
 
-// The field in a cell: its temperature within, outside as much below that as the distance tells
-// from the nodes outside. Trilinear interpolation where the surface is not near.
+// The field in a cell, degC: within the surface the tool's temperature; outside it falls with the
+// distance, as the nodes outside give it. Trilinear interpolation where the surface is not near.
 double cau_heat_surface_at(const cau_heat_surface *surface, const cau_heat_field *field,
                            int32_t nodes, const cau_heat_cell *cell);

@@ -25,7 +25,7 @@ typedef enum cau_primitive_kind {
 } cau_primitive_kind;
 
 // Unique edges (a < b), sorted by (a, b), and for each kind the primitives that share each edge, in
-// compressed rows: primitives of edge e are sharer[kind][first[kind][e] .. first[kind][e + 1]).
+// compressed lists: primitives of edge e are sharer[kind][first[kind][e] .. first[kind][e + 1]).
 typedef struct cau_edge_table {
 	int32_t edge_count;
 	int32_t *vertex;                     // (edge_count x 2)

@@ -10,7 +10,7 @@
 // False: memory ran out.
 bool cau_index_sort(const int32_t *tuple, int width, int32_t count, int32_t bound, int32_t *order);
 
-// Puts the entries of a small row in ascending order.
+// Puts the entries of a small list in ascending order.
 static inline void cau_index_order_row(int32_t *row, int width)
 {
 	for (int i = 1; i < width; i++)

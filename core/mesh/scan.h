@@ -13,7 +13,7 @@ typedef struct cau_scan {
 	const unsigned char *bytes; // borrowed
 	size_t count;
 	size_t at;
-	size_t mark; // start of the last item read: failures are told from here
+	size_t mark; // start of the last item read: failures are reported from here
 	bool binary; // cau_scan_integer and cau_scan_real read binary numbers
 	bool swap;   // whose byte order is not this machine's
 	cau_status status;

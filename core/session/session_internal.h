@@ -22,25 +22,25 @@ typedef struct cau_grasp { // one attached vertex, or a point of a face between 
 	int32_t vertex[3];     // the face's corners; the vertex
 	double weight[3];      // their shares in the point
 	double local[3];       // m, anchor in the tool's frame
-	double start[3];       // m, where it was taken hold of
+	double start[3];       // m, where the grasp began
 } cau_grasp;
 
 typedef struct cau_tool {
 	cau_tool_state state;
-	cau_pose target; // where the driver wants it, and state.asked_pose within its speed limits
+	cau_pose target; // wanted by the driver; state.asked_pose follows within its speed limits
 	double jaw_target;
 	double jaw_before;    // at the start of the tick
-	cau_pose pose_before; // likewise
-	cau_pose anchor,
-		anchor_before; // proxy.c: what it hangs on, at the end and the start of the tick
-	double pace; // share of the anchor's way that it goes in a tick; 1 but after it was held back
+	cau_pose pose_before; // at the start of the tick
+	// proxy.c: the other end of the virtual coupling, at the end and the start of the tick
+	cau_pose anchor, anchor_before;
+	double pace; // share of the anchor's motion that it follows in a tick; below 1 when held back
 	cau_heat_grid grid;
 	int32_t grasp_count;
 	cau_grasp grasp[CAU_MAX_GRASPED];
-	double least_open_rad; // pinch.c: what the jaws hold lets them close no further
+	double least_open_rad; // pinch.c: held tissue keeps the jaws open at least so far
 } cau_tool;
 
-// energy.c: what a tick makes out of nothing, and the shares whose laws it changed.
+// energy.c: energy that a tick added without a source, and the shares whose laws it changed.
 typedef struct cau_energy {
 	double gain_j;    // of the last tick
 	double elastic_j; // at its start
@@ -60,15 +60,15 @@ typedef struct cau_rest {
 
 // spin.c: the pieces that living elements join.
 typedef struct cau_spin {
-	bool stale;      // they are to be found anew
-	int32_t removed; // elements that were gone when they were found
+	bool stale;      // the pieces must be found again
+	int32_t removed; // elements that were removed when they were found
 	int32_t piece_count;
 	int32_t *piece;  // (n): of a vertex
 	int32_t *member; // (n): vertices, by piece
 	int32_t *first;  // (piece_count + 1): into `member`
 } cau_spin;
 
-// What possible.c knows of the last look at the edges, and its scratch.
+// Results of possible.c's last check of the edges, and its scratch.
 typedef struct cau_watch {
 	double left_m;        // vertices may still go half as far before an edge can be too long
 	double *farthest2_m2; // by chunk of vertices: square of the farthest move of the tick
@@ -81,7 +81,7 @@ typedef struct cau_watch {
 struct cau_session {
 	cau_arena arena;
 	cau_arena rebuilt_arena; // the system since pins last changed: pins.c
-	cau_image *image;        // share.c: what it has in common with others; NULL: nothing
+	cau_image *image;        // share.c: memory shared with other sessions; NULL: none
 	cau_scene_def *scene;
 	uint64_t definition_hash;
 	cau_tissue tissue;
@@ -142,21 +142,22 @@ cau_status cau_session_apply_commands(cau_session *session, cau_error *error);
 // command.c: whether the values of a command of a known kind are in their ranges.
 cau_status cau_command_check(const cau_session *session, const cau_command *command,
                              cau_error *error);
-// level.c: whether the command states what is so already, or will be refused; the same of a
-// CONFIGURE's definition and of a SET_MATERIAL alone.
+// level.c: whether the command states what holds already, or will be refused. The second is for a
+// CONFIGURE's definition, the third for a SET_MATERIAL.
 bool cau_session_changes_nothing(cau_session *session, const cau_command *command);
 bool cau_session_has_definition(const cau_tool *tool, const cau_tool_def *def);
 bool cau_session_has_material(const cau_session *session, const cau_command *command);
-// still.c: takes commands about the tool out of a queue, and returns how many are left of `count`:
-// what ends an enable's ticks; enables and these; all.
+// still.c: removes commands about the tool from a queue, and returns how many of `count` remain. It
+// removes those that end an enable's ticks; enables and these; or all.
 typedef enum cau_void { CAU_VOID_LIMITS, CAU_VOID_ENABLES, CAU_VOID_ALL } cau_void;
 int32_t cau_session_void(cau_command *queue, int32_t count, const char *tool, cau_void which);
 // Of an enable with `ticks` that acts at this tick, the command that ends it. False: it has none.
 bool cau_session_limit_energy(const cau_command *enable, uint64_t tick, cau_command *end);
-// The tool's target becomes where it is; whether it is that already.
+// Makes the tool's actual pose its target; whether it is that already.
 void cau_session_stay(cau_tool *tool);
 bool cau_session_stays(const cau_tool *tool);
-// sound.c: what holds of tools, energy and waiting commands as a step begins, in every build.
+// sound.c: checks the rules about tools, energy and waiting commands as a step begins, in every
+// build.
 cau_status cau_session_check_sound(const cau_session *session, cau_error *error);
 // layer_material.c: puts the material of a SET_MATERIAL into the layer; false: it is of another
 // kind of tissue.
@@ -168,26 +169,28 @@ void cau_session_move_tools(cau_session *session);
 cau_status cau_session_add_tool(cau_session *session, const cau_tool_def *def, cau_error *error);
 void cau_session_drop_tool(cau_session *session, int32_t index);
 int32_t cau_session_find_tool(const cau_session *session, const char *name);
-// proxy.c: a tool's anchor goes where it is asked to be, and the guess of its pose with it; both
-// for the solve; where the tools are by that. And where they would pass tissue that is not held:
-// the tick begins again with them led a part of their way, on the last attempt not at all (false:
-// there is no such tool, or no attempt left); those that were not held back in a tick go on faster.
+// proxy.c, in this order. cau_session_lead_tool moves a tool's anchor to its commanded pose, and
+// the start of its pose with it. cau_session_couple gives both to the solve. cau_session_take_poses
+// reads the tools' poses from the solve. cau_session_hold_back begins the tick again for tools that
+// would pass tissue that is not held: they move a part of their motion, on the last attempt none.
+// It returns false if there is no such tool, or no attempt left. cau_session_let_follow speeds up
+// tools that were not held back in a tick.
 enum { CAU_ATTEMPTS = 2 };
 void cau_session_lead_tool(cau_session *session, cau_tool *tool, const cau_pose *asked_before);
 void cau_session_couple(cau_session *session);
 void cau_session_take_poses(cau_session *session);
 bool cau_session_hold_back(cau_session *session, int attempt);
 void cau_session_let_follow(cau_session *session);
-// touch.c: contact rows, attachments and drag before the solve; forces after it.
+// touch.c: contact constraints, attachments and drag before the solve; forces after it.
 void cau_session_find_contacts(cau_session *session);
-// After the solve: whether tissue is inside a tool, by what the rows say, or met it where there is
-// no row, which there is now.
+// After the solve: whether tissue is inside a tool by its contact constraints, or met a tool
+// without a constraint; it then adds one.
 bool cau_session_find_missed(cau_session *session);
-// Whether holding faces has thrown tissue farther than it went without that, by more than a tip is
-// wide and goes itself: then it has not held it, though it may be out of the tool,
-// and all tools count as passing.
+// Whether tissue diverged because faces were held: it moved farther than without that, by more than
+// a tip's width and the tip's own motion. Then the faces were not held, even if they are outside
+// the tool, and all tools count as passing.
 bool cau_session_find_thrown(cau_session *session);
-// Takes the step back to what it was before the first face was found missed, and forgets all sides:
+// Restores the step as it was before the first missed face was found, and forgets all sides. So
 // tools pass where tissue would not be held.
 void cau_session_let_through(cau_session *session);
 
@@ -197,61 +200,69 @@ typedef struct cau_touching {
 	int32_t vertex, place; // place: along the broad phase's curve
 	double gap;
 } cau_touching;
-// thin.c: how near (m) to a tool tissue may come to touch it within a tick.
+// thin.c: the distance, m, from a tool within which tissue may touch it in a tick.
 double cau_session_margin(const cau_tool_def *def);
-// Leaves in front of the list those that are to become rows, where so many are `taken` already: of
-// all CAU_NEAR_ROWS, of those that touch CAU_MAX_VERTEX_ROWS at most, the deepest first unless they
-// are spread. Returns how many, and how many that touch are `left_out`.
+// Moves to the front of the list the vertices that get a contact constraint, where `taken` exist
+// already. At most CAU_NEAR_ROWS of all get one, and CAU_MAX_VERTEX_ROWS of those that touch. The
+// deepest come first unless they are spread. Returns their number; *left_out gets the number of
+// touching vertices without one.
 int32_t cau_session_thin(const cau_session *session, cau_touching *list, int32_t count,
                          int32_t taken, int32_t *left_out);
 
-// Of the tip's radius: a face that is deeper in it is missed.
+// Share of the tip's radius. A face that is deeper inside counts as missed.
 static const double cau_missed_share = 0.5;
-// reach.c: whether a tool's contact is with faces as well as with vertices (not if it has jaws,
-// which tissue lies between and inside); the scratch that it needs; rows for the faces that the
-// part of a tool pushed in the last step; and, after the solve, rows for those that it has passed,
-// or that are deep inside.
-// Also how far (m) a vertex is at most from where the tick began; not a number if one is nowhere.
+// reach.c: contact with faces.
+
+// The greatest distance, m, of a vertex from its position at the tick's start; not a number if a
+// position is none.
 double cau_session_farthest(const cau_session *session);
+// Whether a tool has contact with faces as well as with vertices. Tools with jaws have not, because
+// tissue lies between and inside jaws.
 bool cau_session_feels_faces(const cau_tool *tool);
-// Whether the part may be within the margin (m) of any of the box's points: the distance changes by
-// no more than one goes.
+// Whether the part may be within the margin, m, of any point of the box. The distance changes by no
+// more than the point moves.
 bool cau_session_may_meet(const cau_tool *tool, cau_tool_part part, const cau_box *box,
                           double margin_m);
+// Allocates the scratch of reach.c; NULL when memory ran out.
 struct cau_candidate *cau_session_make_reach(cau_arena *arena);
+// Adds contact constraints for the faces that the part of a tool pushed in the last step.
 void cau_session_reach_again(cau_session *session, int32_t index, cau_tool_part part);
+// After the solve: adds contact constraints for the faces that the part has passed, or that are
+// deep inside it.
 void cau_session_reach(cau_session *session, int32_t index, cau_tool_part part);
 void cau_session_read_forces(cau_session *session);
 cau_status cau_session_grasp(cau_session *session, cau_tool *tool, cau_error *error);
 void cau_session_release(cau_tool *tool);
 void cau_session_drop_frozen_grasps(cau_session *session);
-// grasp.c: a hold on a vertex; the row of a hold, without its anchor; the hold that a row is of, or
-// NULL; whether what it is on is left.
+// grasp.c: a hold on a vertex; the contact constraint of a hold, without its anchor; the hold of a
+// constraint, or NULL; whether the held vertex or face still exists.
 cau_grasp cau_session_hold_vertex(int32_t vertex);
 cau_contact_row cau_session_row_of_hold(const cau_session *session, const cau_grasp *grasp,
                                         int32_t tool);
 cau_grasp *cau_session_hold_of_row(cau_tool *tool, const cau_contact_row *row);
 bool cau_session_hold_is_left(const cau_session *session, const cau_grasp *grasp);
-// Takes hold of faces between the jaws of which no corner is held.
+// Grasps faces between the jaws of which no corner is held.
 void cau_session_grasp_faces(const cau_session *session, cau_tool *tool);
-// pinch.c: once jaws have taken hold; as a tick begins they turn towards where they are asked to
-// be, as far as what they hold lets them, and take it along; after the solve, how hard they press.
+// pinch.c: begins when jaws have grasped. As a tick begins, turns the jaws towards their commanded
+// opening, as far as the held tissue allows, and takes it along. After the solve, reads the force
+// with which they press.
 void cau_session_begin_pinch(const cau_session *session, cau_tool *tool);
 void cau_session_turn_jaws(cau_tool *tool, double step_s);
 void cau_session_read_pinch(cau_session *session, cau_tool *tool, int32_t index);
-// meet.c: tissue against tissue: its arrays, if the scene wants it; what touches as the tick
-// begins, and the first guess as far as that lets it go.
+// meet.c: tissue contact. Makes its arrays if the scene asks for it. As the tick begins, finds the
+// touching pairs and filters the start of the step by them.
 cau_status cau_session_make_collide(cau_session *session, cau_error *error);
 void cau_session_begin_collide(cau_session *session);
-// exempt.c: what touches nothing in this tick, as what is guessed to go farther than `most_m`.
-// *told: whether some of it is thrown or inside out. False: nothing touches anything.
+// exempt.c: excludes vertices from contact for this tick, as those whose `guess` (m, n x 3) is
+// farther than `most_m` away. *told: whether a diverged or inverted vertex is among them. Returns
+// false if tissue contact is off for the tick.
 bool cau_session_exempt(cau_session *session, const double *guess, double most_m, bool *told);
 // burn.c: heat, exposure, parting.
 void cau_session_burn(cau_session *session);
-// Takes what was removed from element `first` of the tick's list on out of the local step, and puts
-// it on the list of the factor.
+// Removes the elements from number `first` of the tick's list on from the local step, and puts them
+// on the list of the factor.
 void cau_session_take_out(cau_session *session, int32_t first);
-// tear.c: what is stretched beyond what it bears parts.
+// tear.c: tears elements that are stretched more than their layer bears.
 void cau_session_tear(cau_session *session);
 // relax.c: built-in tension brought to its equilibrium.
 cau_status cau_session_relax(cau_session *session, cau_error *error);
@@ -260,17 +271,18 @@ cau_status cau_session_set_pins(cau_session *session, const cau_selection *selec
                                 cau_error *error);
 // Analyses and factors the system of session->pinned. Its order follows from the pins alone.
 cau_status cau_session_rebuild_system(cau_session *session, cau_error *error);
-// view.c: scalars of the vertices that are watched, after a tick; all of them anew after a restore.
+// view.c: computes the watched scalars of the vertices that changed in a tick; all of them again
+// after a restore.
 void cau_session_show_scalars(cau_session *session);
 void cau_session_renew_scalars(cau_session *session);
 // view.c: layer and texture of the faces.
 cau_status cau_session_make_faces(cau_session *session, cau_error *error);
-// drive.c: pinned vertices go where the caller wants them in this tick.
+// drive.c: moves pinned vertices to the positions of cau_session_drive in this tick.
 void cau_session_lead_driven(cau_session *session);
-// stray.c: vertices that have gone too far stop; the size of all tissue at rest, m.
+// stray.c: stops vertices that have moved too far; the size of all tissue at rest, m.
 void cau_session_stop_strays(cau_session *session);
 double cau_session_size(const cau_session *session);
-// How far (m) from its rest position a vertex may be.
+// Greatest allowed distance of a vertex from its rest position, m.
 double cau_session_farthest_from_rest(const cau_session *session);
 // possible.c: its arrays; refuses a state that no tissue can have (CAU_NUMERICAL, with the tick and
 // the layer), by the vertices' moves and the edges' lengths, and by the count of inverted elements.

@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
-// A connection to cauteryd: hello, requests, streams decoded to the newest state, files, and coming
-// back after a lost connection. protocol/README.md tells what travels.
+// A connection to cauteryd: hello, requests, streams decoded to the newest state, files, and
+// reconnecting after a lost connection. protocol/README.md describes the messages.
 //
 //     #include "cautery/client.h"
 //
-//     // Shows a session until it is gone.
+//     // Shows a session until it ends.
 //     static cau_status watch(const char *url, const char *session, cau_error *error)
 //     {
 //         cau_loop *loop = NULL;
@@ -57,7 +57,7 @@ typedef struct cau_client_stream cau_client_stream;
 cau_status cau_loop_create(cau_loop **loop, cau_error *error);
 void cau_loop_destroy(cau_loop *loop); // after its clients; takes NULL
 
-// Waits until something happens, `seconds` at most, and handles it; 0: what is there already.
+// Waits for events for `seconds` at most, and handles them. With 0 it handles the present ones.
 void cau_loop_wait(cau_loop *loop, double seconds);
 
 double cau_client_now(void); // s, CLOCK_MONOTONIC
@@ -68,10 +68,10 @@ typedef enum cau_client_condition {
 	CAU_CLIENT_CONNECTING, // up to the answer to hello
 	CAU_CLIENT_READY,
 	CAU_CLIENT_LOST,   // waits before it connects again
-	CAU_CLIENT_CLOSED, // for good; cau_client_trouble says why
+	CAU_CLIENT_CLOSED, // it does not reconnect; cau_client_trouble has the reason
 } cau_client_condition;
 
-// A frame as it came, after it was decoded.
+// A received frame, after decoding.
 typedef struct cau_client_frame {
 	cau_frame_header header;
 	const void *bytes; // borrowed for the call
@@ -84,16 +84,16 @@ typedef struct cau_client_frame {
 // Strings are copied by cau_client_create; NULL where there is none.
 typedef struct cau_client_def {
 	const char *url;       // ws://, wss://, http:// or https://; host, port
-	const char *session;   // that messages mean when they name none; for proxies, too
-	const char *label;     // of the daemon that is meant behind a proxy, where no session says it
+	const char *session;   // session of messages that name none; a proxy reads it, too
+	const char *label;     // label of the daemon behind a proxy, if `session` does not name it
 	const char *token;     // access token
 	const char *name;      // of the program, for logs and other users
 	const char *client_id; // lasting identity; by default one from the server
 	int role;              // CAU_ROLE_* wanted at most; -1: what the token gives
-	bool reconnect;        // come back after a lost connection: resume, join again, resend
-	bool follow;           // go after a session that moves to another daemon; true by default
-	double timeout_s;      // of connecting and of each call that waits; one that costs the server
-	                       // much (cau_method_cost) goes on while heartbeats are answered in it
+	bool reconnect;        // reconnect after a lost connection: resume, join again, resend
+	bool follow;           // follow a session that moves to another daemon; true by default
+	double timeout_s;      // of connecting and of each waiting call. An expensive call
+	                       // (cau_method_cost) goes on while the server answers heartbeats
 	void *user;            // for the callbacks, each of which may be NULL
 	void (*on_condition)(void *user, cau_client *client, cau_client_condition condition);
 	void (*on_notification)(void *user, cau_client *client, const cau_rpc_message *message);
@@ -105,28 +105,30 @@ cau_client_def cau_default_client_def(void);
 
 enum { CAU_CLIENT_TOKEN_BYTES = 512 }; // more than any token has
 
-// The token in a file's first line. Errors: CAU_IO, CAU_BAD_VALUE (it holds none); error->file says
-// which file.
+// Reads the token in a file's first line. Errors: CAU_IO, CAU_BAD_VALUE (no token); error->file
+// names the file.
 cau_status cau_client_read_token(const char *file, char token[CAU_CLIENT_TOKEN_BYTES],
                                  cau_error *error);
 
 // Errors: CAU_BAD_VALUE (the URL), CAU_NO_MEMORY.
 cau_status cau_client_create(cau_loop *loop, const cau_client_def *def, cau_client **client,
                              cau_error *error);
-// Takes NULL. Cuts what is open; cau_client_close before it is more polite.
+// Destroys the client; takes NULL. Drops an open connection without a close frame, so call
+// cau_client_close before.
 void cau_client_destroy(cau_client *client);
 
 // Connects, says hello and waits for the answer. Errors: CAU_IO (no server, no answer, refused: the
 // reason says), or the status of the server's error.
 cau_status cau_client_connect(cau_client *client, cau_error *error);
 
-// Starts connecting without waiting; on_condition tells the rest.
+// Starts connecting without waiting. on_condition reports the progress.
 void cau_client_start(cau_client *client);
 
 // Sends what is queued and closes; waits a second at most. The client may connect again.
 void cau_client_close(cau_client *client);
 
-// Drops the connection without a word, as a cable pulled would; with `reconnect` it comes back.
+// Drops the connection without a close frame, as a pulled cable does. With `reconnect` the client
+// reconnects.
 void cau_client_drop(cau_client *client);
 
 cau_client_condition cau_client_get_condition(const cau_client *client);
@@ -134,28 +136,27 @@ const cau_error *cau_client_trouble(const cau_client *client); // of the last lo
 const cau_wire_hello_result *cau_client_server(const cau_client *client);
 uint64_t cau_client_connections(const cau_client *client); // hellos answered so far
 
-// Whether it is on its way after a session that has moved to another daemon: that one's streams are
-// joined again there, and its old id means the new one from then on. A client does so whose
-// session, or whose streams, are of that session alone; others are told `moved`. The condition is
-// LOST or CONNECTING meanwhile.
+// Whether the client is following a session that moved to another daemon. It then joins the
+// session's streams there again, and the old id means the new one from then on. A client follows if
+// its `session`, or all its streams, are of that session alone. Other clients get the error
+// `moved`. The condition is LOST or CONNECTING meanwhile.
 bool cau_client_follows(const cau_client *client);
-// The id by which messages name a session that the program calls so: another once it has moved.
+// The present id of a session that the program knows as `session`; another one after a move.
 const char *cau_client_called(const cau_client *client, const char *session);
 
-// While on, sends heartbeats, the first at once and five in the time that a driver may be silent:
-// the driver of an energized tool needs them. They carry this machine's monotonic clock, and the
-// server then counts no other message of this connection as a sign of life.
+// While on, sends heartbeats: the first at once, then five in each deadline of a driver. The driver
+// of an energized tool needs them. They carry this machine's monotonic clock. From then on the
+// server counts no other message of this connection as a heartbeat.
 void cau_client_keep_alive(cau_client *client, bool on);
 
 // Stops and starts reading from the socket, as a slow reader does.
 void cau_client_read(cau_client *client, bool on);
 
 // ---- fleets ------------------------------------------------------------------------------------
-// The labels of the daemons behind an address: those that the proxy in front of them tells. None
-// (*fleet has no labels) where one daemon answers. A connection
-// serves one label (cau_client_def), so who wants all lists connects to each. Waits, `timeout_s` at
-// most. Errors: CAU_BAD_VALUE (the URL), CAU_IO (no answer), CAU_NO_MEMORY; those of
-// cau_fleet_from_json.
+// Asks the proxy at an address for the labels of its daemons. *fleet has no labels where a single
+// daemon answers. A connection serves one label (cau_client_def); connect to each one to list all
+// sessions. Waits `timeout_s` at most. Errors: CAU_BAD_VALUE (the URL), CAU_IO (no answer),
+// CAU_NO_MEMORY; those of cau_fleet_from_json.
 cau_status cau_client_find_fleet(cau_loop *loop, const char *url, double timeout_s,
                                  cau_fleet *fleet, cau_error *error);
 
@@ -163,8 +164,8 @@ cau_status cau_client_find_fleet(cau_loop *loop, const char *url, double timeout
 // Called once for each request: with the answer, or with an error and NULL.
 typedef void cau_client_answer(void *user, const cau_rpc_message *answer, const cau_error *error);
 
-// The next client_sequence: a request that has one is sent again after a lost connection and acts
-// once all the same. Requests that change something and have none fail then.
+// The next client_sequence. After a lost connection the client sends requests with a
+// client_sequence again, and they act once. Requests that change something and have none then fail.
 int64_t cau_client_next_sequence(cau_client *client);
 
 // Sends without waiting. Errors: CAU_BAD_VALUE (params), CAU_LIMIT (too much is queued), CAU_IO
@@ -201,19 +202,20 @@ enum { CAU_CLIENT_STREAMS_MAX = 16 };
 struct cau_client_stream {
 	cau_wire_stream_description description; // of the last join
 	cau_stream_def def;
-	const cau_stream_state *state; // the newest; state->synced tells whether there is any
+	const cau_stream_state *state; // the newest; state->synced: it holds a state
 	cau_topology_arrays topology;
 	bool has_topology;
-	bool ended; // left, or the session is gone
+	bool ended; // left, or the session ended
 	uint64_t frames, key_frames, bytes;
 	uint64_t gaps;     // times that the chain of deltas broke
-	uint64_t skipped;  // frames that did not fit
-	uint64_t damaged;  // frames that were no frames
-	double received_s; // when the newest came
+	uint64_t skipped;  // frames that did not fit the state
+	uint64_t damaged;  // frames that could not be decoded
+	double received_s; // cau_client_now() of the newest
 };
 
-// Asks for frames and waits for the first key frame. After a lost connection the client joins again
-// by itself. Joining a session again changes the profile; the stream is the same.
+// Asks for frames and waits for the first key frame. The client owns *stream. After a lost
+// connection the client joins again by itself. Joining a session again changes the profile of the
+// same stream. Errors: those of cau_client_call; CAU_LIMIT (CAU_CLIENT_STREAMS_MAX).
 cau_status cau_client_join(cau_client *client, const cau_wire_session_join *params,
                            cau_client_stream **stream, cau_error *error);
 // The same without waiting: the stream's state is synced when the first key frame is there.
@@ -223,19 +225,19 @@ cau_status cau_client_send_join(cau_client *client, const cau_wire_session_join 
                                 cau_error *error);
 cau_status cau_client_leave(cau_client *client, cau_client_stream *stream, cau_error *error);
 
-// Faces that are drawn now: those whose bit in the mask is not set.
+// Number of drawn faces: those whose bit in the mask is clear.
 int64_t cau_client_faces_drawn(const cau_client_stream *stream);
 
 // ---- files -------------------------------------------------------------------------------------
 typedef void cau_client_progress(void *user, uint64_t done, uint64_t total); // bytes
 
-// Sends a mesh file; result->file is what a mesh of source bytes says. It takes the place of an
-// earlier one of this name. `progress` may be NULL.
+// Sends a mesh file. A scene's mesh of source `bytes` names it by result->file. It replaces an
+// earlier upload of this name. `progress` may be NULL. Errors: those of cau_client_call.
 cau_status cau_client_upload(cau_client *client, const char *name, const char *file_name,
                              const void *bytes, size_t byte_count, cau_client_progress *progress,
                              void *user, cau_wire_upload_result *result, cau_error *error);
 
-// Tells the server that an upload is not needed any more. Sessions that were made of it stay.
+// Discards an upload on the server. Sessions made of it stay.
 cau_status cau_client_discard_upload(cau_client *client, const char *name, cau_error *error);
 
 // session.export or session.log: asks, receives and checks the hash. The caller frees *bytes.
@@ -251,6 +253,6 @@ typedef struct cau_client_clock {
 	double error_s;  // at most, half the shortest round trip
 } cau_client_clock;
 
-// Measures by `count` heartbeats; the shortest round trip counts.
+// Measures the offset of the server's clock by `count` heartbeats; the shortest round trip counts.
 cau_status cau_client_measure_clock(cau_client *client, int32_t count, cau_client_clock *clock,
                                     cau_error *error);

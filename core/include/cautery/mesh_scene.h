@@ -82,7 +82,7 @@ typedef struct cau_mesh_report {
 	cau_mesh_region region[CAU_MESH_REGION_MAX];
 	double least_m[3], most_m[3]; // bounding box
 	double unit_m;                // metres in one unit of the file, as used
-	int32_t unit_guessed;         // nobody said the unit
+	int32_t unit_guessed;         // 1: neither scene nor file states the unit
 	double proposed_unit_m;       // a unit that makes the size that of tissue; 0: none is needed
 	// Elements by quality, (0 to 0.1, ... 0.9 to 1): the mean ratio, 1 for a regular element.
 	int32_t quality[CAU_MESH_QUALITY_BINS];

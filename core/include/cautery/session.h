@@ -45,8 +45,8 @@
 typedef struct cau_session cau_session;
 
 // ---- definition -------------------------------------------------------------------------------
-// What creating a session comes to, one after the other. None can be interrupted: between two,
-// `border` is asked.
+// The stages of creating a session, in this order. A stage cannot be interrupted. Before each one
+// the session calls `border`.
 #define CAU_BUILD_STAGE_TABLE(X)                                                                   \
 	X(MESH, "meshing")     /* meshes, layers, edges */                                             \
 	X(ORDER, "ordering")   /* the system's pattern, its order and the factor's size */             \
@@ -59,29 +59,31 @@ typedef enum cau_build_stage {
 		CAU_BUILD_STAGE_COUNT
 } cau_build_stage;
 
-// What is known before a stage begins; 0: not yet.
+// What is known before the stage `next` begins. A count that is not known yet is 0.
 typedef struct cau_build_border {
 	cau_build_stage next;
 	int64_t vertex_count;
 	int64_t element_count;  // triangles, tetrahedra, links and hinges
-	int64_t factor_entries; // from FACTOR on: what the analysis says
-	size_t bytes; // of memory that the session will take, about: an estimate before FACTOR
+	int64_t factor_entries; // entries of the factor, by its analysis; known from FACTOR on
+	size_t bytes;           // memory of the session; an estimate, rough before FACTOR
 } cau_build_border;
 
 typedef struct cau_session_def {
 	const cau_scene_def *scene; // borrowed during create
 	int32_t thread_count;       // 1 to 16 threads used by step, the caller's among them
 	int32_t command_capacity;   // queued commands; more are refused with CAU_LIMIT
-	// A snapshot will be restored, so built-in tension is not brought to rest, which mostly takes
-	// longer than all else: the session is faulted until a restore succeeds.
+	// Skips the stage REST, mostly the longest, because a snapshot will be restored. The session is
+	// faulted until a restore succeeds.
 	bool unsettled;
-	// Asked before each stage; anything but CAU_OK ends the creation with that status and *error.
+	// Called before each stage, on the creating thread. Any result but CAU_OK ends the creation
+	// with that status and *error.
 	cau_status (*border)(void *user, const cau_build_border *border, cau_error *error); // or NULL
 	void *user;
 	const char
 		*instruction_set; // highest tier to use: "baseline", "avx2", "avx512"; NULL: the best
 } cau_session_def;
 
+// A definition with every member at its default; `scene` is NULL.
 cau_session_def cau_default_session_def(void);
 
 // Checks every range, name and reference without building anything. The path in *error is the JSON
@@ -89,60 +91,62 @@ cau_session_def cau_default_session_def(void);
 cau_status cau_scene_check(const cau_scene_def *scene, cau_error *error);
 
 // ---- life ---------------------------------------------------------------------------------------
-// Loads meshes, builds layers, factors the system, relaxes built-in tension to rest
-// (core/DECISIONS.md, "Built-in tension").
+// Loads meshes, builds layers, factors the system and relaxes built-in tension to rest
+// (core/DECISIONS.md, "Built-in tension"). The caller destroys *session. On an error *session is
+// unchanged. Errors: CAU_BAD_VALUE, CAU_NOT_FOUND, CAU_BAD_MESH, CAU_IO, CAU_LIMIT, CAU_NO_MEMORY,
+// CAU_NUMERICAL, and the status that `border` returned.
 cau_status cau_session_create(const cau_session_def *def, cau_session **session, cau_error *error);
 void cau_session_destroy(cau_session *session); // takes NULL
 
-// Whether its scene has built-in tension, which its creation brought to rest unless it was
-// unsettled.
+// Whether the session's scene has built-in tension. Creation brings it to rest, unless the session
+// was created `unsettled`.
 bool cau_session_has_tension(const cau_session *session);
-// Hash of what its meshes came to, the material of each element among it. Sessions of equal scenes
-// for which it is equal come to rest alike, to the bit.
+// Hash of the built meshes and of the material of each element. Two sessions of equal scenes with
+// an equal hash come to rest with the same bits.
 uint64_t cau_session_tissue_hash(const cau_session *session);
 
-// Lets the session share memory with the others of equal tissue in this program for which it was
-// called: where pages are equal, byte by byte, there is one of them, and the first write makes a
-// page the writer's own. Steps, results and hashes are as without. Once, when the session is
-// what it begins as. Returns the bytes that it has in common with what others may have, 0 where the
-// system has no such memory; they last until what is written makes them the session's own.
+// Shares memory with other sessions of equal tissue in this program that also called this. Pages
+// with equal bytes exist once. The first write to a shared page copies it for the writer. Steps,
+// results and hashes do not change. Call it once, before the first step. Returns the bytes that are
+// shared now; writes make them fewer. Returns 0 where the system has no such memory.
 size_t cau_session_share(cau_session *session);
 
-// Makes the session's helper threads anew, children of the caller: they have the priority of who
-// steps it, whoever created it. Waits for what they do.
+// Creates the session's helper threads again, as threads of the caller. So they have the priority
+// of the thread that steps the session. Waits for their present work. Errors: CAU_NO_MEMORY.
 cau_status cau_session_adopt(cau_session *session, cau_error *error);
-// Threads that step may use from now on; results do not depend on it.
+// Sets the number of threads, 1 to 16, that steps use from now on. Results do not depend on it.
 void cau_session_set_threads(cau_session *session, int32_t thread_count);
 
-// Queues a copy of the command. CAU_BAD_VALUE / CAU_NOT_FOUND / CAU_LIMIT say why it was refused;
-// what can only be known at its tick (a tool removed meanwhile) is reported by the frame's
-// refusals.
+// Queues a copy of the command. Errors: CAU_BAD_VALUE, CAU_NOT_FOUND (no such tool or layer),
+// CAU_LIMIT (the queue is full). A command can also be refused at its tick, as when its tool was
+// removed meanwhile. The frame's refusals report that.
 cau_status cau_session_submit(cau_session *session, const cau_command *command, cau_error *error);
 
-// What must never fail, and needs no room in the queue. Both act at once, while nothing is stepped;
-// submitting the command that is due does the same. `sequence` is then the tool's last applied one;
-// 0: that stays. A tool that is not there is left alone.
-// Energy off. Enables of the tool that wait in the queue go, and so does what would end one.
+// cau_session_energy_off and cau_session_hold_still cannot fail and need no capacity in the queue.
+// They act at once; call them between steps. `sequence` becomes the tool's last applied one; 0
+// keeps the present one. A name without a tool has no effect.
+
+// Turns the tool's energy off. Removes the tool's queued enables, and the queued ends of enables.
 void cau_session_energy_off(cau_session *session, const char *tool, uint64_t sequence);
-// The tool is led to where it is. All commands about it that wait in the queue go.
+// Makes the tool's actual pose its commanded pose. Removes all queued commands about the tool.
 void cau_session_hold_still(cau_session *session, const char *tool, uint64_t sequence);
-// Commands about the tool that wait in the queue.
+// Number of queued commands about the tool.
 int32_t cau_session_waiting(const cau_session *session, const char *tool);
-// The first tool that a step may heat and that is not one of the `count` names allowed: it is on,
-// or a queued command would turn it on. NULL: there is none. The name is the session's, until the
-// next call that changes it.
+// The first tool that a step may heat and that is not among the `count` allowed names. A step may
+// heat a tool whose energy is on or that a queued command would turn on. NULL if there is none. The
+// name is borrowed, until the next call that changes the session.
 const char *cau_session_heats_beyond(const cau_session *session, const char *const *allowed,
                                      int32_t count);
 
-// Moves pinned vertices to position (m, count x 3) during the next step, and leaves them there: a
-// support that moves, a prescribed displacement. A later call before that step replaces this one;
-// it is not a command, so it is neither queued nor part of a snapshot. CAU_BAD_STATE names a vertex
+// Moves the pinned vertices `vertex` (count) to `position` (m, count x 3) during the next step, and
+// leaves them there: a prescribed displacement. A later call before that step replaces this one. It
+// is no command: it is neither queued nor part of a snapshot. Errors: CAU_BAD_STATE names a vertex
 // that is not pinned.
 cau_status cau_session_drive(cau_session *session, int32_t count, const int32_t *vertex,
                              const double *position, cau_error *error);
 
-// Advances one tick. CAU_NUMERICAL marks the session faulted: steps return CAU_FAULTED until
-// restore.
+// Advances the session by one tick. Errors: CAU_NUMERICAL, which makes the session faulted;
+// CAU_FAULTED, while it is faulted. A restore ends that.
 cau_status cau_session_step(cau_session *session, cau_error *error);
 
 // ---- what never changes -----------------------------------------------------------------------
@@ -175,17 +179,17 @@ typedef struct cau_session_info {
 
 void cau_session_describe(const cau_session *session, cau_session_info *info);
 
-// Brings `scene`, a copy of the definition, up to date with what commands have changed: gravity,
-// materials and tools, as they are in force once the queued commands have acted. Tools stand where
-// they are at this tick.
+// Updates `scene`, a copy of the session's definition, with what commands have changed: gravity,
+// materials and tools, as they are once the queued commands have acted. Tools have their present
+// poses.
 void cau_session_present(const cau_session *session, cau_scene_def *scene);
 
 // ---- what a tick made ---------------------------------------------------------------------------
 typedef struct cau_tool_state {
 	char name[CAU_NAME_BYTES];
 	cau_tool_def definition;
-	cau_pose pose; // where it is: tissue stops it
-	double jaw;    // where it is: what the jaws hold stops it
+	cau_pose pose; // actual pose: tissue can stop the tool
+	double jaw;    // actual opening, 0 closed to 1 open: held tissue can stop the jaws
 	bool energized;
 	bool grasping;            // jaws commanded closed on tissue
 	bool slipping;            // some of what they hold slid in the last step
@@ -199,12 +203,12 @@ typedef struct cau_tool_state {
 	double tip_temperature_c;
 	double energy_j;   // heat taken up by tissue, rough
 	uint64_t sequence; // last applied command's
-	// Where it is led to, within its speed limits. It is pulled there with force_max_n at most.
+	// Commanded pose, within the speed limits. The tool is pulled there with force_max_n at most.
 	cau_pose asked_pose;
-	int32_t slips; // times that it was left behind so far that it let go of what stopped it
+	int32_t slips; // times that the tool fell so far behind that it released what stopped it
 	int32_t unused;
-	// Where its jaws are led to, within their speed; and with how much they press what they hold,
-	// N at their tips, close_force_n at most.
+	// Commanded opening of the jaws, within their speed; and the force with which they press what
+	// they hold, N at their tips, close_force_n at most.
 	double asked_jaw, jaw_force_n;
 } cau_tool_state;
 
@@ -221,24 +225,24 @@ typedef struct cau_statistics {
 	double deferred_max_s;     // longest such wait so far, in simulated seconds
 	int32_t refactorisations;  // since creation
 	int32_t factor_operations; // since the last canonical factorisation
-	int32_t contacts;          // rows of the last step: vertices near tools or held, faces met
-	// Vertices and faces at a tool that the step had no row for: what it did without them is not
-	// right, and a tool may stand deeper in tissue than it should. 0: contact is whole.
+	int32_t contacts; // contact constraints of the last step: vertices near tools or held, faces
+	// Vertices and faces at a tool beyond the capacity for contact constraints. If it is not 0, the
+	// step is not right, and a tool may be deeper in tissue than it should.
 	int32_t contacts_left_out;
-	// Times that tissue near tissue, in a scene with a contact thickness, was in more pairs than
-	// there is room for: the step was held up there, though nothing crossed; and that some was
-	// thrown faster than it can be kept apart, or too much of it inside out, and touched nothing.
-	// 0: contact is whole.
+	// Number of two events of tissue contact in the last step. First: more pairs than the capacity;
+	// tissue then moves less than it should, and none crosses. Second: tissue diverged, or too much
+	// of it was inverted; it was then excluded from contact.
 	int32_t touching_cut_short;
 	int32_t frozen_vertices;
-	// Energy that the step made out of nothing: kinetic, elastic and gravitational energy at its
-	// end less those at its start, and less the work of tools, led supports and commanded forces.
-	// What cuts, shrinkage and commands change between steps does not count; plastic flow counts as
-	// loss. A converged step reads 0 or less but for rounding (and buckling). 0 where a law has no
-	// energy (linearised limits, model energy, the diagonal system).
+	// Energy that the step added without a source, J: kinetic, elastic and gravitational energy at
+	// its end less those at its start, and less the work of tools, led supports and commanded
+	// forces. Changes by cuts, shrinkage and commands between steps do not count. Plastic flow
+	// counts as loss. In a converged step it is 0 or less but for rounding (and buckling). It is 0
+	// where a law has no energy (linearised limits, model energy, the diagonal system).
 	double energy_gain_j;
-	// What the step is off its solution, relative to its own motion: of all vertices or of the
-	// worst chunk of them, an estimate (solve/accuracy.h). 0 where the scene's accuracy is 0.
+	// Reported error: the step's estimated distance to its solution, relative to its own motion, of
+	// all vertices or of the worst chunk of them (solve/accuracy.h). 0 where the scene's accuracy
+	// is 0.
 	double error;
 	// The tissue is at rest: the step changed nothing, and none will until something wakes it.
 	bool resting;
@@ -273,8 +277,8 @@ typedef struct cau_frame {
 	int32_t mask_changed_count;      // words that changed in this step
 	const int32_t *mask_changed;     // ascending
 	const uint8_t *vertex_visible;   // (vertex_count): 1 if on a drawn face
-	CAU_SCALAR_MEMBERS(const float); // (vertex_count) each, in the unit of its row; NULL if nobody
-	                                 // watches it and it costs work of its own
+	CAU_SCALAR_MEMBERS(const float); // (vertex_count) each, in the channel's unit; NULL for a
+	                                 // costly channel that is not watched
 	int32_t tool_count;
 	const cau_tool_state *tools;
 	int32_t refusal_count; // commands refused at their tick in this step
@@ -284,26 +288,28 @@ typedef struct cau_frame {
 
 void cau_session_frame(const cau_session *session, cau_frame *frame);
 
-// Switches stage timing (off by default; needs a clock that the caller gives, in seconds).
+// Turns stage timing on with the caller's clock `now_s` (s), or off with NULL, the default.
 void cau_session_set_clock(cau_session *session, double (*now_s)(void));
-// Says which scalars somebody watches (CAU_CHANNEL_* bits; others do not matter; none at first).
-// Those that cost work of their own are made from now on, at once and after each step.
+// Sets the watched scalars (CAU_CHANNEL_* bits; other bits are ignored; none by default). Watched
+// scalars that cost work of their own are computed at once, and after each step.
 void cau_session_watch(cau_session *session, uint32_t channels);
 
-// Elements alive, as bytes 0/1, (tetrahedron_count), (triangle_count), (link_count): for export.
+// Which elements exist, as bytes 0 or 1, borrowed until the next call that changes the session:
+// (tetrahedron_count), (triangle_count), (link_count): for export.
 void cau_session_alive(const cau_session *session, const uint8_t **tetrahedron,
                        const uint8_t **triangle, const uint8_t **link);
 
 // ---- snapshots
 
-// The whole state at a tick border, queued commands among it, tagged with version, instruction set
-// and a hash of the definition. Restoring and stepping gives the same bits as never having stopped.
+// A snapshot is the whole state at a tick border with the queued commands. It is tagged with
+// version, instruction set and a hash of the definition. Steps after a restore give the same bits
+// as steps without it.
 size_t cau_session_snapshot_bytes(const cau_session *session); // an upper bound
 cau_status cau_session_snapshot(const cau_session *session, void *bytes, size_t capacity,
                                 size_t *byte_count, cau_error *error);
-// CAU_CORRUPT: damaged, of another session or of another version; the session is as it was. After
-// another failure (CAU_NO_MEMORY, CAU_NUMERICAL) it may be half restored and is faulted then, until
-// a restore succeeds. *exact is false if another instruction set or build wrote the snapshot.
+// Restores a snapshot. *exact is false if another instruction set or build wrote it. Errors:
+// CAU_CORRUPT (damaged, of another session or version): the session is unchanged. CAU_NO_MEMORY,
+// CAU_NUMERICAL: the session may be half restored, and is faulted until a restore succeeds.
 cau_status cau_session_restore(cau_session *session, const void *bytes, size_t byte_count,
                                bool *exact, cau_error *error);
 

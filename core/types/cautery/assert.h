@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
-// What a function takes for granted, said so that a build checks it: assertions in debug builds,
-// safety rules in every build.
+// Conditions that a function relies on, written so that a build checks them: assertions in debug
+// builds, safety rules in every build.
 //
 // An assertion is about this program's own mistakes: an index beyond its array, a call out of
-// order, a count below zero, a table without a row for a kind. What a scene, a client, a file or a
-// machine can get wrong is checked and answered with a status instead, in every build.
+// order, a count below zero, a table without an entry for a kind. Errors of a scene, a client, a
+// file or a machine are checked and answered with a status instead, in every build.
 //
 // CAU_ASSERTIONS is defined in Debug builds and wherever a sanitizer is on. Elsewhere the condition
 // is compiled and never evaluated, so an assertion costs nothing and must change nothing.
@@ -52,11 +52,10 @@ static inline int cau_is_index(int64_t index, int64_t count)
 
 // ---- safety rules -------------------------------------------------------------------------------
 
-// What holds for energy, tools and the bounds of frames is checked in every build. A rule that is
-// broken is a mistake of this program too, but a daemon that serves other sessions must not end for
-// it. So it leaves the work that the thread is at, and returns to the guard around it. The
-// guard's owner makes its state safe and reports. What lies between must own nothing: no lock, no
-// memory, no file.
+// Rules about energy, tools and the bounds of frames are checked in every build. A broken rule is a
+// mistake of this program too, but a daemon with other sessions must not end for it. So a broken
+// rule abandons the thread's present work and returns to the guard around it. The guard's owner
+// makes its state safe and reports. The functions in between must own no lock, memory or file.
 //
 //     static int take(const int *order, int count)
 //     {
@@ -88,7 +87,7 @@ void cau_rule_enter(cau_rule_guard *guard);
 // Makes the guard around `guard` the innermost one again. `guard` must be the innermost.
 void cau_rule_leave(cau_rule_guard *guard);
 
-// Fills the reason of the thread's innermost guard and goes back to its setjmp, which returns 1. A
+// Fills the reason of the thread's innermost guard and returns to its setjmp, which returns 1. A
 // thread without a guard ends the program, as cau_assert_failed does.
 __attribute__((noreturn, cold, format(printf, 5, 6))) void
 cau_rule_broken(const char *condition, const char *file, int line, const char *function,

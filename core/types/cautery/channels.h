@@ -1,23 +1,23 @@
 // SPDX-License-Identifier: Apache-2.0
-// The channels of a stream, one row each. What knows of channels is made of these rows: the words
-// and bits that a subscriber chooses by, the sections of frames, encoder, thinner and decoder, what
-// the core hands over, and what `ninja messages` prints: TypeScript, IDL, JSON and pages. What a
-// new row wants besides is told in protocol/README.md, "Adding a channel".
+// The channels of a stream, one table entry each. All code about channels is made of these entries:
+// the words and bits by which a subscriber chooses, the sections of frames, encoder, thinner and
+// decoder, the members of cau_frame, and what `ninja messages` prints (TypeScript, IDL, JSON,
+// pages). protocol/README.md, "Adding a channel", says what else a new entry needs.
 //
 //     OWN(X, CODE, name, section, when, meaning)
 //     SCALAR(X, CODE, name, section, when, least, step, most, unit, meaning)
 //
 // OWN is a channel with a layout of its own. A SCALAR is one number a vertex: a float in the core,
 // on the wire the nearest whole number n of steps above `least`, saturated at 0 and `most`.
-//     X        what whoever uses the table hands on to every row; may be empty
-//     CODE     CAU_CHANNEL_<CODE>, its bit; the order of the rows gives the bits, so a new row is
-//              the last
+//     X        passed on to every entry by the user of the table; may be empty
+//     CODE     CAU_CHANNEL_<CODE>, its bit; the order of the entries gives the bits, so a new entry
+//              is the last
 //     name     the word on the wire; of a scalar also the member of cau_frame and the like
-//     section  its number in frames; ascends from row to row, see CAU_SECTION_* for the others
+//     section  its number in frames; ascends from entry to entry, see CAU_SECTION_* for the others
 //     when     BY_DEFAULT: in a stream that says nothing of channels. ON_REQUEST: only where it is
-//              named. A new row is ON_REQUEST: clients that do not know it must not meet it
+//              named. A new entry is ON_REQUEST: clients that do not know it must not receive it
 //     least    in `unit`, what n = 0 stands for
-//     step     in `unit`, one step; 0: told by the stream, as stress_step_pa
+//     step     in `unit`, one step; 0: the stream states it, as stress_step_pa
 //     most     the largest n: 255 or 65535
 //
 // In use:
@@ -55,7 +55,7 @@
 
 enum { CAU_ON_REQUEST, CAU_BY_DEFAULT };
 
-// For tables of some rows only.
+// For tables of some entries only.
 #define CAU_NO_ROW(...)
 
 // ---- bits ---------------------------------------------------------------------------------------
@@ -76,8 +76,8 @@ enum { CAU_CHANNELS_BY_DEFAULT = 0 CAU_CHANNEL_ROWS(ROW, ROW, ) };
 typedef enum cau_scalar { CAU_CHANNEL_ROWS(CAU_NO_ROW, ROW, ) CAU_SCALAR_COUNT } cau_scalar;
 #undef ROW
 
-// Members of a struct that has something of every scalar, (vertex_count) each: x.stress is the same
-// as x.scalar[CAU_SCALAR_STRESS].
+// Members of a struct with one array (vertex_count) of every scalar. x.stress is the same as
+// x.scalar[CAU_SCALAR_STRESS].
 #define CAU_SCALAR_MEMBER(type, code, name, ...) type *name;
 #define CAU_SCALAR_MEMBERS(type)                                                                   \
 	union {                                                                                        \

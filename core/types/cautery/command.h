@@ -17,7 +17,7 @@
 
 #include "cautery/scene.h"
 
-// code, JSON name. Stores keep the number of a row, so new rows come last.
+// code, JSON name. Stores keep the number of an entry, so new entries come last.
 #define CAU_COMMAND_TABLE(X)                                                                       \
 	X(TOOL_ADD, "tool.add")                                                                        \
 	X(TOOL_REMOVE, "tool.remove")                                                                  \

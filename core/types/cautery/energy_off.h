@@ -3,7 +3,7 @@
 //
 //     #include "cautery/energy_off.h"
 //
-//     // Whether somebody must look at the tool before its energy comes back.
+//     // Whether a user must look at the tool before its energy comes back.
 //     static int was_lost(cau_energy_off reason)
 //     {
 //         return reason == CAU_ENERGY_OFF_WATCHDOG || reason == CAU_ENERGY_OFF_TAKEN_OVER;

@@ -106,9 +106,9 @@ typedef struct cau_mesh_def {
 
 // ---- materials ------------------------------------------------------------------------------
 
-// The laws of fat, one row each: code, word in JSON, largest Poisson's ratio, whether its stress is
-// the gradient of an energy, whether it keeps a rotation from evaluation to evaluation, a and b of
-// the Lame parameters lambda + a mu and b mu that it is evaluated with (0 and 1: those of small
+// The laws of fat, one entry each: code, word in JSON, largest Poisson's ratio, whether its stress
+// is the gradient of an energy, whether it keeps a rotation from evaluation to evaluation, a and b
+// of the Lame parameters lambda + a mu and b mu that it is evaluated with (0 and 1: those of small
 // strain), and what it is. The stress of the law `word` is word_stress in
 // core/constraint/fat_energy.h.
 #define CAU_MODEL_TABLE(X)                                                                         \
@@ -230,9 +230,9 @@ typedef struct cau_selection {
 } cau_selection;
 
 // ---- tools ----------------------------------------------------------------------------------
-// One row each: code, word in JSON, whether it has a hot part, whether it has jaws that grasp, and
-// what it is. Frames tell a shape by its row's number, so new rows come last. The signed distances
-// of the shape `word` are cau_shape_word in core/tool.
+// The shapes of tools, one entry each: code, word in JSON, whether it has a hot part, whether it
+// has jaws that grasp, and what it is. Frames name a shape by its entry's number, so new entries
+// come last. The signed distances of the shape `word` are cau_shape_word in core/tool.
 #define CAU_TOOL_SHAPE_TABLE(X)                                                                    \
 	X(SPHERE, sphere, true, false, "hot ball at the tip, cold shaft")                              \
 	X(CAPSULE, capsule, true, false, "hot needle of tip_length_m, cold shaft")                     \

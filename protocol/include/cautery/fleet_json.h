@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The labels of a fleet's daemons, as the proxy in front of them tells at /api/fleet:
+// The labels of a fleet's daemons, as the proxy in front of them answers at /api/fleet:
 // {"labels": ["d1", "d2"]}.
 //
 //     #include "cautery/fleet_json.h"

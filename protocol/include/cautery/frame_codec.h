@@ -56,7 +56,7 @@ typedef enum cau_frame_kind {
 	X(TEXTURE, 18, "texture")                                                                      \
 	X(REST, 19, "rest")                                                                            \
 	X(TOOLS_ASKED, 32, "tools_asked") /* of the channel tools */                                   \
-	X(TOOL_JAWS, 33, "tool_jaws")     /* likewise */
+	X(TOOL_JAWS, 33, "tool_jaws")     /* of tools, too */
 #define ROW(X, code, name, section, ...) CAU_SECTION_##code = (section),
 #define X(code, number, name) CAU_SECTION_##code = (number),
 typedef enum cau_section { CAU_CHANNEL_ROWS(ROW, ROW, ) CAU_OTHER_SECTION_TABLE(X) } cau_section;

@@ -94,13 +94,13 @@ typedef enum cau_method_form {
 typedef enum cau_method_cost {
 	CAU_COST_CHEAP,
 	CAU_COST_COSTLY, // counted by the quotas of expensive requests
-	CAU_COST_FILE,   // likewise; a file follows the answer
+	CAU_COST_FILE,   // counted by these quotas, too; a file follows the answer
 } cau_method_cost;
 
 typedef struct cau_method_info {
 	const char *name;
 	cau_method_form form;
-	cau_wire_object params; // CAU_WIRE_nothing of commands: cautery/command_json.h tells theirs
+	cau_wire_object params; // CAU_WIRE_nothing of commands: see cautery/command_json.h
 	cau_wire_object result; // CAU_WIRE_nothing where there is none; commands: command_result
 	cau_role role;          // the least that may call it
 	bool changes;           // stored; client_sequence applies

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// What somebody meant who wrote a word that is none: members of an object, options, commands.
+// Finds the known word that is nearest to a misspelt one: members of an object, options, commands.
 //
 //     #include <stdio.h>
 //
@@ -15,8 +15,8 @@
 
 #include <stddef.h>
 
-// The first of `words` with the fewest slips away from `word` (letters added, left out, taken for
-// others or turned round; case ignored), a slip for each three of its letters and one more at most.
-// Where the word is the beginning of another that counts as one. NULL if none is near, or the word
-// is longer than 63 bytes.
+// The first of `words` with the fewest slips from `word`. A slip is a letter added, left out,
+// replaced, or swapped with the next; case is ignored. A word may differ by one slip, and one more
+// for each three letters. If `word` is the beginning of another word, that counts as one slip.
+// Returns NULL if no word is near, or if `word` is longer than 63 bytes.
 const char *cau_nearest(const char *word, const char *const *words, size_t count);

@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// A program's command line as one table: what is read, what --help says and what a complaint names
-// come from the same rows.
+// A program's command line as one table. Reading, --help and complaints use the same entries.
 //
 //     #include <stddef.h>
 //
@@ -37,7 +36,7 @@
 // What an option's value is, and with it the type of the member that it is read into.
 typedef enum cau_option_kind {
 	CAU_OPTION_FLAG,   // bool: true where it is named; takes no value
-	CAU_OPTION_HELP,   // bool: as FLAG; nothing else is looked at then. -h is the first of them
+	CAU_OPTION_HELP,   // bool: as FLAG; other arguments are then ignored. -h is the first one
 	CAU_OPTION_TEXT,   // const char *, which points into the arguments
 	CAU_OPTION_NUMBER, // double, from `least` to `most`
 	CAU_OPTION_WHOLE,  // int32_t, from `least` to `most`

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // JSON-RPC 2.0 messages, read and written by the tables of messages.h. Reading allocates one
-// document that cau_rpc_finish gives back; writing goes into the caller's buffer.
+// document, which cau_rpc_finish frees. Writing goes into the caller's buffer.
 //
 //     #include "cautery/rpc.h"
 //
@@ -30,7 +30,7 @@
 #include "cautery/messages.h"
 #include "cautery/rpc_errors.h"
 
-// Of the WebSocket: what clients ask for in Sec-WebSocket-Protocol.
+// The WebSocket subprotocol that clients offer in Sec-WebSocket-Protocol.
 #define CAU_SUBPROTOCOL "cautery.v1"
 
 enum { CAU_RPC_ID_BYTES = 65 };
@@ -57,7 +57,7 @@ typedef struct cau_rpc_message {
 		CAU_RPC_REQUEST,
 		CAU_RPC_NOTIFICATION,
 		CAU_RPC_RESULT, // answers, as clients read them: read by cau_rpc_result
-		CAU_RPC_ERROR,  // `fault` tells it
+		CAU_RPC_ERROR,  // `fault` describes it
 	} kind;
 	cau_rpc_id id;
 	cau_method method; // of requests and notifications
@@ -80,8 +80,8 @@ void cau_rpc_finish(cau_rpc_message *message); // may be called twice
 // scenes that it borrows. Error paths start with "params".
 cau_status cau_rpc_params(const cau_rpc_message *message, void *params, cau_error *error);
 
-// Refuses members of params that the method does not have: for methods whose handlers have nothing
-// to read there. A command's are checked by cau_rpc_command.
+// Refuses members of params that the method does not have, for handlers that read no params.
+// cau_rpc_command checks those of commands. Errors: CAU_BAD_VALUE with the member's path.
 cau_status cau_rpc_params_known(const cau_rpc_message *message, cau_error *error);
 
 // Members that methods share.
@@ -92,7 +92,7 @@ typedef struct cau_rpc_envelope {
 	int64_t client_sequence;
 } cau_rpc_envelope;
 
-// Reads these two of any method's params, and nothing else.
+// Reads only these two members of any method's params.
 cau_status cau_rpc_envelope_read(const cau_rpc_message *message, cau_rpc_envelope *envelope,
                                  cau_error *error);
 

@@ -56,7 +56,7 @@ typedef enum cau_rpc_error_code {
 // The code for a status: one of the same word, else CAU_RPC_INTERNAL.
 cau_rpc_error_code cau_rpc_error_of_status(cau_status status);
 const char *cau_rpc_error_word(int code);     // "internal" for unknown codes
-const char *cau_rpc_error_sentence(int code); // likewise
+const char *cau_rpc_error_sentence(int code); // that of "internal" for unknown codes
 
 // number, code, reason sent
 #define CAU_CLOSE_TABLE(X)                                                                         \

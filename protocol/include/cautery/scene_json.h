@@ -34,7 +34,7 @@ cau_status cau_scene_from_json(const char *name, const char *text, size_t bytes,
 
 // Writes every member, defaults too: reading it back gives an equal *scene (but for the directory
 // and the bytes of uploaded meshes). *bytes (may be NULL) is the text's length without its closing
-// zero, also when it did not fit. Errors: CAU_LIMIT (capacity), CAU_BAD_VALUE (not a scene that can
-// be told).
+// zero, also when it did not fit. Errors: CAU_LIMIT (capacity), CAU_BAD_VALUE (the scene has a
+// value that JSON cannot hold).
 cau_status cau_scene_to_json(const cau_scene_def *scene, char *buffer, size_t capacity,
                              size_t *bytes, cau_error *error);

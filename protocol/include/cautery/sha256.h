@@ -1,14 +1,14 @@
 // SPDX-License-Identifier: Apache-2.0
-// The hash by which files that travel in chunks are checked, and identities are told apart.
+// SHA-256, which checks files sent in chunks and distinguishes identities.
 //
 //     #include <string.h>
 //
 //     #include "cautery/sha256.h"
 //
-//     static bool is_whole(const void *file, size_t bytes, const char *told)
+//     static bool is_whole(const void *file, size_t bytes, const char *wanted)
 //     {
 //         char hash[CAU_SHA256_TEXT_BYTES];
-//         return cau_sha256(file, bytes, hash) && strcmp(hash, told) == 0;
+//         return cau_sha256(file, bytes, hash) && strcmp(hash, wanted) == 0;
 //     }
 #pragma once
 

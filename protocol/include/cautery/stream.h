@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// What a stream carries: its description, what the server puts in at a tick, and what a client
-// holds after decoding. Byte layouts stand in protocol/README.md. SI units, degrees Celsius.
+// A stream: its description, the sample that the server encodes at a tick, and the state that a
+// client holds after decoding. protocol/README.md has the byte layouts. SI units, degrees Celsius.
 //
 //     #include "cautery/stream.h"
 //
@@ -55,19 +55,19 @@ typedef struct cau_stream_def {
 cau_stream_def cau_default_stream_def(void);
 cau_status cau_stream_def_check(const cau_stream_def *def, cau_error *error);
 
-// A row of cautery/channels.h.
+// One channel, as its entry in cautery/channels.h describes it.
 typedef struct cau_channel_info {
 	const char *name; // on the wire
 	int section;      // its type in frames
 	bool by_default;
 	int scalar;         // CAU_SCALAR_*, or -1: it has a layout of its own and none of the following
-	double least, step; // in `unit`: n on the wire is least + step n; step 0: the stream tells it
+	double least, step; // in `unit`: n on the wire is least + step n; step 0: the stream states it
 	uint32_t most;      // the largest n
 	const char *unit, *meaning;
 } cau_channel_info;
 
 const cau_channel_info *cau_channel_describe(cau_channel_index channel);
-// The step of a scalar in such a stream.
+// The step of a scalar in a stream of this definition, in the channel's unit.
 double cau_channel_step(const cau_stream_def *def, cau_channel_index channel);
 
 // One tool as a frame shows it.
@@ -75,21 +75,21 @@ typedef struct cau_stream_tool {
 	char name[CAU_NAME_BYTES];
 	int32_t shape;       // CAU_TOOL_*
 	cau_pose pose;       // single precision on the wire, like all that follows
-	bool behind;         // tissue keeps it from where it is led to
-	cau_pose asked_pose; // where that is; of a decoder's tools also where they are not behind
-	double jaw;          // 0 closed to 1 open: what the jaws hold keeps it so
-	double asked_jaw;    // where it is led to
+	bool behind;         // tissue keeps the tool from its commanded pose
+	cau_pose asked_pose; // commanded pose; a decoder fills it also where `behind` is false
+	double jaw;          // actual opening, 0 closed to 1 open
+	double asked_jaw;    // commanded opening
 	double jaw_force_n;  // with which the jaws press what they hold, at their tips
 	double force_n[3];
 	double torque_nm[3]; // about the tip
 	double tip_temperature_c;
 	double energy_j;
 	uint64_t sequence; // of the last applied command
-	uint32_t driver;   // the driving client's number; 0: nobody
+	uint32_t driver;   // the driving client's number; 0: no driver
 	bool energized;
 	bool grasping;
 	bool slipping;             // some of what its jaws hold slid in the last step
-	bool frozen;               // its watchdog fired: it stands still until a new command
+	bool frozen;               // its watchdog fired: it does not move until a new command
 	uint8_t energy_off;        // CAU_ENERGY_OFF_*; meaningless while energized
 	uint16_t grasped_vertices; // saturates
 	uint16_t contact_vertices; // saturates
@@ -113,16 +113,16 @@ typedef struct cau_stream_statistics {
 	uint32_t contacts;
 	uint32_t frozen_vertices;
 	uint32_t refused_commands;   // since creation
-	float energy_gain_j;         // 0 where the sender does not tell it
-	uint32_t resting;            // 1: the tissue is at rest; 0 where the sender does not tell it
-	float error;                 // of the last step, estimated; 0 where the sender does not tell it
-	uint32_t contacts_left_out;  // 0 where the sender does not tell it
-	uint32_t elements_torn;      // 0 where the sender does not tell it
-	uint32_t touching_cut_short; // 0 where the sender does not tell it
+	float energy_gain_j;         // 0 where the sender does not send it
+	uint32_t resting;            // 1: the tissue is at rest; 0 where the sender does not send it
+	float error;                 // of the last step, estimated; 0 where the sender does not send it
+	uint32_t contacts_left_out;  // 0 where the sender does not send it
+	uint32_t elements_torn;      // 0 where the sender does not send it
+	uint32_t touching_cut_short; // 0 where the sender does not send it
 } cau_stream_statistics;
 
-// What the server knows at a tick; everything is borrowed for the call. Arrays whose channel the
-// stream lacks may be NULL.
+// The server's state at a tick. All pointers are borrowed for the call. Arrays of a channel that
+// the stream lacks may be NULL.
 typedef struct cau_stream_sample {
 	uint64_t tick;
 	double time_s;                   // simulated
@@ -131,17 +131,16 @@ typedef struct cau_stream_sample {
 	const double *position;          // m, (vertex_count x 3)
 	const uint8_t *vertex_visible;   // (vertex_count), 1: on a drawn face; NULL: all are
 	const uint32_t *face_mask;       // ((face_count + 31) / 32), a set bit: not drawn
-	CAU_SCALAR_MEMBERS(const float); // (vertex_count) each, in the unit of its row
+	CAU_SCALAR_MEMBERS(const float); // (vertex_count) each, in the channel's unit
 	int32_t tool_count;              // at most CAU_MAX_TOOLS
 	const cau_stream_tool *tools;
 	const cau_stream_statistics *statistics;
 } cau_stream_sample;
 
-// What a decoder holds; borrowed, valid until the next decode. Positions and scalars are those of
-// `tick` at every vertex of a face that is drawn (its bit in face_mask is clear), the first time
-// with the frame that draws it. At a vertex that no drawn face uses they are of the last frame
-// in which it was on one, or of the epoch's first. In a stream without the mask they are of `tick`
-// at every vertex.
+// The state of a decoder; borrowed, valid until the next decode. A face is drawn if its bit in
+// face_mask is clear. At the vertices of drawn faces, positions and scalars are those of `tick`. At
+// other vertices they are those of the last frame in which a drawn face used the vertex, or of the
+// epoch's first frame. In a stream without the mask they are of `tick` at every vertex.
 typedef struct cau_stream_state {
 	bool synced; // false: nothing to draw yet, or damaged: a key frame is needed
 	uint64_t epoch;
