@@ -3,8 +3,6 @@
 
 # page: (words in the mean sentence, house words)
 PAGES = {
-    "tests/paper/README.md": (24.8, 17),
-    "tests/paper/validation.md": (19.6, 12),
 }
 
 # folder: house words in strings that users read

@@ -39,9 +39,9 @@ def draw(folder, flights, swings):
     series = [(f"{what}, {name}", plots.thinned([(t["time_s"], t[of] - 1) for t in ticks]))
               for name, ticks in flights.items() for what, of in (("angular momentum", "angular_kept"),
                                                                   ("energy", "energy_kept"))]
-    plots.plot(plots.picture(folder, "flight"), "A free block, thrown and set spinning", "time, s", "gained or lost, of itself", series,
+    plots.plot(plots.picture(folder, "flight"), "A free block that moves and spins", "time, s", "gained or lost, of itself", series,
                extra=["set key below"])
-    plots.plot(plots.picture(folder, "swing"), "Energy of a block that is let go", "time, s",
+    plots.plot(plots.picture(folder, "swing"), "Energy of a block that is released", "time, s",
                "left of what it had more than at rest",
                [(f"{rate} steps a second", plots.thinned([(t["time_s"], t["kept"]) for t in ticks]))
                 for rate, ticks in swings.items()])
@@ -58,8 +58,8 @@ def page(found):
     build/tests/paper_probe flight ACCURACY
     build/tests/paper_probe swing STEPS_PER_S
 
-A block of 40 x 40 x 20 mm that nothing holds, without weight, thrown at 0.11 m/s and set spinning at 10 rad/s about an
-axis that is none of its own: what it has of each after ten seconds, 600 steps.
+A block of 40 x 40 x 20 mm without pins and weight starts at 0.11 m/s and spins at 10 rad/s about an
+axis that is none of its own. The table has the three quantities after ten seconds, 600 steps.
 
 | steps | momentum changed by, of itself | angular momentum along what it was | changed by, of itself | energy kept |
 |---|---:|---:|---:|---:|
@@ -67,11 +67,11 @@ axis that is none of its own: what it has of each after ten seconds, 600 steps.
 
 ![Angular momentum and energy of a free block](validation-flight.svg)
 
-A block of 80 x 20 x 20 mm, held at one end, is let go level. Nothing damps it but the method: implicit Euler takes energy
-off whatever moves, the more the longer its step. What is left of kinetic, elastic and potential energy, of what it has more
-when it is let go than at rest, sunk; and what all steps made out of nothing.
+A block of 80 x 20 x 20 mm, held at one end, is released level. Only the method damps it: implicit Euler takes energy
+from motion, the more the longer its step. The table has the share that is left of the kinetic, elastic and potential
+energy above the sunk state at rest. The last column is the energy that all steps added without a source.
 
-| steps a second | after 0.5 s | after 1 s | made out of nothing |
+| steps a second | after 0.5 s | after 1 s | added without a source |
 |---:|---:|---:|---:|
 {chr(10).join(swings)}
 

@@ -286,10 +286,10 @@ def rest_said(rest):
     return paragraph(f"Asked is {INSIDE_MM:g} mm at most. Vertices are inside by {vertices:.0e} mm at most, "
                      f"{'within' if vertices <= INSIDE_MM else 'above'} that.",
                      f"{faces_said}; the deepest is {deep:.2f} mm (ball of {ball.radius:g} mm, cells of {cell:g} mm).",
-                     f"At {sum(without)} of {len(without)} places something touched that found no row." if any(without) else
-                     "All that touched had its row.",
-                     f"A force changes by {most:.1%} at most though its ball stands still (ball of {restless.radius:g} mm, cells of "
-                     f"{its_cell:g} mm).", "A `-` is where more vertices would touch than have rows.")
+                     f"At {sum(without)} of {len(without)} places touching tissue had no contact constraint." if any(without) else
+                     "All of it had its contact constraint.",
+                     f"A force changes by {most:.1%} at most though its ball does not move (ball of {restless.radius:g} mm, cells of "
+                     f"{its_cell:g} mm).", "A `-` is where more vertices would touch than the capacity for contact constraints.")
 
 
 def cost_said(costs):
@@ -313,7 +313,7 @@ def narrow_said(rows):
     through = sum(row["least_n"] <= 0 for row in rows)  # what has let it through does not push it back
     return paragraph(f"Beyond that matrix: the ball of {BALLS[0].radius:g} mm without friction, {REST_DEPTH_MM} mm deep in a slab "
                      f"{2 * NARROW_HALF_MM} mm wide of cells of {NARROW_CELL_MM} mm, where it rests on faces, at {len(rows)} places.",
-                     f"**It is let through while it rests at {through} of them.**" if through else "It is held at all of them.")
+                     f"**It passes through while it rests at {through} of them.**" if through else "It is held at all of them.")
 
 
 def page(details):
@@ -326,7 +326,7 @@ def page(details):
     PROXY_MATRIX={EVERY} build/tests/test_core_session_proxy_matrix
 
 Rigid balls without friction, pressed into a slab of {THICK_MM} mm that is bonded to its floor, E {1e-3 * YOUNG_MODULUS_PA:g} kPa and nu {POISSON:g} (stable
-neo-Hookean), until all rests, by steps of an accuracy of 1e-4. Cells are equal below the ball and grow outwards; they are counted
+neo-Hookean), until all rests, by steps of an accuracy of 1e-4. Cells are equal below the ball and grow outwards. They are counted
 along the diameter of the patch that the ball has by Hertz, 2 sqrt(R d). *Solution*: the same mesh by Newton's method with an
 active set, in double, of which nothing is core's ([tests/reference](../reference/README.md)). *Hertz*: his force with the
 correction of Dimitriadis et al. (2002) for a thin layer, for small strains.
@@ -339,7 +339,7 @@ correction of Dimitriadis et al. (2002) for a thin layer, for small strains.
 
 ![Force by depth](validation-contact-force.svg)
 
-The same by mesh: off Hertz, mean of {PLACES} places along a cell; last, from the least to the most at all these places on meshes of
+The same by mesh: off Hertz, mean of {PLACES} places along a cell. The last column is the range at all these places on meshes of
 {ENOUGH_CELLS} cells a patch and more.
 
 | ball, mm | depth, mm | {' | '.join(f'{cells} cells' for cells in MESHES)} | least to most |
@@ -350,7 +350,7 @@ The same by mesh: off Hertz, mean of {PLACES} places along a cell; last, from th
 
 ![Force by mesh](validation-contact-meshes.svg)
 
-A ball of {SLIDING.radius:g} mm, {SLIDING.usual:g} mm deep, nu {SLIDING_POISSON:g}, at {SLIDING_PLACES} places along a cell: how much its force changes, from least to most, of the mean.
+A ball of {SLIDING.radius:g} mm, {SLIDING.usual:g} mm deep, nu {SLIDING_POISSON:g}, at {SLIDING_PLACES} places along a cell. The table has the range of its force, of the mean.
 
 | cells a patch | changes by | the mesh's solution by | asked | reached |
 |---:|---:|---:|---:|---|
@@ -360,9 +360,9 @@ A ball of {SLIDING.radius:g} mm, {SLIDING.usual:g} mm deep, nu {SLIDING_POISSON:
 
 ![Force along a cell](validation-contact-sliding.svg)
 
-How deep tissue is inside a ball that rests {REST_DEPTH_MM} mm deep in a slab {2 * REST_HALF_MM} mm wide or more, mm, the deepest within half a second at
-{PLACES} places: vertices on all meshes, then faces by their cells. Last, how much the force changes in that time, from least to most, at
-the worst of the places.
+A ball rests {REST_DEPTH_MM} mm deep in a slab {2 * REST_HALF_MM} mm wide or more. The table has the depth of tissue inside it, mm, the deepest within
+half a second at {PLACES} places: vertices on all meshes, then faces by their cells. The last columns have the range of the force
+in that time, at the worst of the places.
 
 | ball, mm | vertices | {' | '.join(f'faces, {cell} mm' for cell in REST_CELLS_MM)} | {' | '.join(f'force, {cell} mm' for cell in REST_CELLS_MM)} |
 |---:|---:|{'---:|' * 2 * len(REST_CELLS_MM)}
@@ -370,8 +370,8 @@ the worst of the places.
 
 {rest_said(rest)}
 
-What a ball costs that is drawn through `fat`: processor's time of a step of ten iterations on one thread, with it and with
-one that hangs above, by turns, mean of {COST_TICKS} steps each. Vertices: how many it touches.
+A ball is drawn through `fat`. The table has the processor time of a step of ten iterations on one thread, with the ball and
+with one that hangs above. Steps alternate; the mean is of {COST_TICKS} steps each. "Vertices" is the number that it touches.
 
 | ball, mm | depth, mm | mm/s | vertices | with it, ms | without, ms | it costs, ms |
 |---:|---:|---:|---:|---:|---:|---:|
@@ -380,8 +380,8 @@ one that hangs above, by turns, mean of {COST_TICKS} steps each. Vertices: how m
 {cost_said(costs)}
 
 Balls of 0.25 to 40 mm, a capsule, a hook and closed jaws, pressed at 0.01 to 1.5 m/s into a taut sheet, a slab and `layers` on
-cells of 4, 2 and 1 mm, five radii deep but at most 4 mm: every third press, none into the slab of 1 mm cells;
-`core_session_proxy_matrix_all` tries all. Crossed is what has a face above it where it came from.
+cells of 4, 2 and 1 mm, five radii deep but at most 4 mm. These are every third press, without the slab of 1 mm cells;
+`core_session_proxy_matrix_all` tries all. A tool crossed if a face is above it, on the side from which it came.
 
 {crossing_said(*found["matrix"])}
 

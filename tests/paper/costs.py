@@ -49,20 +49,23 @@ def page(found):
     machine = found["fat"]["one"]["machine"]
     return f"""## Section 7.2: what a cut costs the linear system
 
-The elements nearest to the scene's line of cut are taken out of A, in three ways, each until the next solve can begin:
-by exact downdates of the factor (rank 8; what a tick does with a few elements); by factoring the numbers anew with the
-pattern that there is (what a thread in the background does with many); and by ordering, analysing and factoring anew,
-which a method must do whose cuts add vertices. That method's re-meshing is not in its time, so the last column flatters
-it. ms, one thread, the least of five.
+The elements nearest to the scene's line of cut are removed from A, in three ways, each until the next solve can begin:
 
-| scene | elements | downdates | numbers anew | order, pattern and numbers anew | times the cheaper of ours |
+- exact downdates of the factor (rank 8), as a tick does with a few elements;
+- factoring the numbers again with the same pattern, as a background thread does with many;
+- ordering, analysing and factoring again, as a method must whose cuts add vertices.
+
+The third method's re-meshing is not in its time, so the last column flatters it. Times are in ms, one thread, the least of
+five.
+
+| scene | elements | downdates | numbers again | order, pattern and numbers again | times the cheaper of ours |
 |---|---:|---:|---:|---:|---:|
 {chr(10).join(updates)}
 
 ## Section 7.3: frames a second
 
-Theirs, on a machine that they do not name, against steps a second here with ten iterations each, contact and a hot tool
-included, nothing drawn.
+The table has the paper's frames, on a machine that it does not name, and steps a second here. Ours have ten iterations each,
+contact and a hot tool included, and no drawing.
 
 | scene | triangles / tetrahedra | theirs | one thread | two threads |
 |---|---:|---:|---:|---:|

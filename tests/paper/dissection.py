@@ -254,32 +254,32 @@ def page(cuts):
              f"{c['mean_mm']:.1f}, {c['most_mm']:.1f} | {c['gone']} | {c['charred']} |" for c in cuts]
     return f"""## Figure 7: fascia and fat under the instrument
 
-Drawn from the states that `cautery-sim` writes, from above (the viewer's pictures follow): the top layer's border, what is open dark,
-what has taken more than {CHARRED:.0%} of its ignition's dose brown, the hot part a ring. The paper's scenes as they are,
-then with other ways of the tool and an uneven ignition:
+Drawn from the states that `cautery-sim` writes, from above (the viewer's pictures follow). The top layer has a border, openings are black, triangles with
+more than {CHARRED:.0%} of their ignition's dose are brown, and the hot part is a ring. First come the paper's scenes as they
+are, then two with other paths of the tool and an uneven ignition:
 
-- *fascia, frayed*: the fibres lie across the cut; they ignite in bundles of 2 mm, at 160 degC with the spread of the
-  paper's table, 17 degC; the hook's radius is 2 mm instead of 3, drawn at 4 mm/s instead of 2.
-- *fat, frayed*: cut across its tension instead of along it, at 4 mm/s instead of 2; the membrane is taut as the fat is
-  (T = 0.3 along x); both ignite in bundles of 2 mm with the table's spreads, 4.1 and 2.9 degC.
+- *fascia, frayed*: the fibres lie across the cut. They ignite in bundles of 2 mm, at 160 degC with the spread of the
+  paper's table, 17 degC. The hook's radius is 2 mm instead of 3, drawn at 4 mm/s instead of 2.
+- *fat, frayed*: cut across its tension instead of along it, at 4 mm/s instead of 2. The membrane is taut as the fat is
+  (T = 0.3 along x). Both ignite in bundles of 2 mm with the table's spreads, 4.1 and 2.9 degC.
 
-All else is the paper's: temperatures, mean ignition, absorption, shrinkage, tension. Of the tool's size, speed and way
-the paper says nothing. These ways, the bundles' width and the seed were chosen by looking at about fifty runs; another seed at
-the same setting left two strands instead of three.
+All else is the paper's: temperatures, mean ignition, absorption, shrinkage, tension. The paper does not
+state the tool's size, speed and path. These paths, the bundles' width and the seed were chosen from about fifty runs.
+Another seed at the same setting left two strands instead of three.
 
 ![Four cuts, each at four times](figure-7.svg)
 
 {chr(10).join(rows)}
 
-A strand is a piece of tissue that joins both sides of a strip {2e3 * HALF_WIDTH_M:.0f} mm wide about the tool's way. Roughness is the
-root mean square of a lip's distance from its own running mean over {1e3 * WINDOW_M:.0f} mm. Open is what no triangle covers, at {STATIONS}
-stations along the middle nine tenths of the cut, {REST_S} s after the tool has gone through. Triangles gone and charred are of the
-layer that is seen.
+A strand is a piece of tissue that joins both sides of a strip {2e3 * HALF_WIDTH_M:.0f} mm wide about the tool's path. Roughness is the
+root mean square of a lip's distance from its own running mean over {1e3 * WINDOW_M:.0f} mm. Open is the width without triangles, at {STATIONS}
+stations along the middle nine tenths of the cut, {REST_S} s after the tool has passed. Triangles gone and charred are of the
+visible layer.
 
-At 2 mm/s every bundle gets more than it can take: the fascia opens as a smooth ellipse, the fat as a straight trench. The
-table's spread alone changes that little: with the shipped hook no strand stays at 2 to 3.5 mm/s. With the thinner hook
+At 2 mm/s every bundle gets more than it can take. The fascia opens as a smooth ellipse, the fat as a straight trench. The
+table's spread alone changes that little. With the shipped hook no strand stays at 2 to 3.5 mm/s. With the thinner hook
 and 4 mm/s some bundles outlast their dose and stay across (the last of them where the cut ends). They hold the gap
-together beside them: most of the roughness is the scallops between strands, and the lips' own teeth are a cell or two
-long, 2 to 4 mm, which is as fine as a sheet of 6,000 triangles can fray. The fat, whose spread is a quarter of the
-fascia's, parts whole, with uneven lips, no strands, and more char; tension across the cut opens it.
+together beside them. Most of the roughness is the scallops between strands. The lips' own teeth are a cell or two
+long, 2 to 4 mm, which is as fine as a sheet of 6,000 triangles can fray. The fat's spread is a quarter of the fascia's. It
+parts whole, with uneven lips, one strand at most, and more char; tension across the cut opens it.
 """

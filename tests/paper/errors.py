@@ -80,7 +80,7 @@ def pulled_rows(pulled):
 
 def not_to_be_trusted(pulled):
     names = [scene for scene, of in pulled if of["reference_residual"] > CONVERGED]
-    return (f"The reference of {', '.join(names)} has not converged in a thousand iterations: its errors tell little. " if names else "")
+    return (f"The reference of {', '.join(names)} has not converged in a thousand iterations: its errors mean little. " if names else "")
 
 
 def page(found):
@@ -92,8 +92,8 @@ def page(found):
     build/bin/cautery-bench --scene NAME --steps {QUICK_STEPS} --error
     build/bin/cautery-bench --scene NAME --steps {STEPS} --accuracy {WANTED}
 
-Mean error of steps of so many iterations against the converged step from the same state, of the step's own motion, under
-the scene's pull. `strain-xy-on` is a sheet that hangs free, with the system that all scenes share, and by Newton's steps
+Mean error of steps of so many iterations, under the scene's pull, against the converged step from the same state. It is
+relative to the step's own motion. `strain-xy-on` is a sheet that hangs free, with the system that all scenes share, and by Newton's steps
 (`solver: "newton"`).
 
 {chr(10).join(pulled_rows(found["pulled"]))}
@@ -105,12 +105,13 @@ Newton's steps come near under their own weight (next table), but slowly under t
 
 ![Error by time](validation-error-by-time.svg)
 
-Times are medians on one thread, on {machine['name']}, family {machine['family']} model {machine['model']}, which others used too (load {machine['load_before']:.1f} before, {machine['others']:.0%} of the
-cores' time meanwhile): compare the lines with each other, not with another machine's.
+Times are medians on one thread, on {machine['name']}, family {machine['family']} model {machine['model']}, with other load ({machine['load_before']:.1f} before, {machine['others']:.0%} of
+the cores' time meanwhile). Compare the lines with each other, not with another machine's.
 
-Steps that end where they estimate {WANTED:.0%} (at most 40 iterations; Newton's 40 too), {STEPS} of them: what 95 % of sampled steps are off their
-converged step, of all vertices or of the worst chunk of 256; iterations; speed as a multiple of ten iterations', by turns
-in one run. Tools stand by as the scene has them. A hanging sheet lies level, held along one edge, and is let go.
+Steps that end where they estimate {WANTED:.0%} (at most 40 iterations; Newton's 40 too), {STEPS} of them. The table has the distance
+to their converged step below which 95 % of sampled steps are, of all vertices or of the worst chunk of 256. It also has the
+iterations, and the speed as a multiple of that of ten iterations, alternating in one run. Tools are where the scene has
+them. A hanging sheet lies level, held along one edge, and is released.
 
 | scene | 95 % are off by less than | iterations | speed over ten iterations |
 |---|---:|---:|---:|

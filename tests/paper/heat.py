@@ -85,10 +85,10 @@ solution's peak.
 |---|---:|
 {chr(10).join(gaussian)}
 
-A ball of {1e3 * BALL_M:g} mm, held at {HOT_C} degC in tissue of {AMBIENT_C} degC from the beginning: at a distance r from its middle the closed form of an
-infinite medium is R / r erfc((r - R) / (2 sqrt(alpha t))) of tool minus ambient. Read at vertices of a strip of tissue
-that lies through the ball, 0.25 mm apart, as far as {1e3 * REACH_M:g} mm: the largest error outside the ball, of tool minus ambient ({HOT_C - AMBIENT_C}
-degC). The first row is what tools have by default.
+A ball of {1e3 * BALL_M:g} mm, held at {HOT_C} degC in tissue of {AMBIENT_C} degC from the beginning. At a distance r from its middle the closed form of an
+infinite medium is R / r erfc((r - R) / (2 sqrt(alpha t))) of tool minus ambient. It is read at vertices of a strip of
+tissue through the ball, 0.25 mm apart, as far as {1e3 * REACH_M:g} mm. The table has the largest error outside the ball, of tool minus
+ambient ({HOT_C - AMBIENT_C} degC). The first line is the default of tools.
 
 | grid | after 1 s | 3 s | 10 s |
 |---|---:|---:|---:|

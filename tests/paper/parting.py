@@ -32,12 +32,12 @@ def page(found):
             f"{of['most_mm']:.1f} |" for name, of in found]
     return f"""## Section 6.1: two rules of parting
 
-A scene says what heat parts (`parting`). *edges* is the paper's rule: an edge gathers heat over its length (eq. 20), and all
-that share a parted edge go with it. It is what the paper's scenes have, and what all other figures of this page are made
-by. *elements* is ours: each triangle and tetrahedron parts by the dose at its own middle, with its ignition drawn from a
-field over the rest shape. `layers` and scenes made of mesh files have it, because by edges what a cut takes depends
-on how fine the mesh is: half a cell all round goes with what the heat has parted ([validation.md](validation.md), "What a cut
-depends on"). Figure 7's cuts by both, at their end:
+A scene says what heat parts (`parting`). *edges* is the paper's rule: an edge gathers heat over its length (eq. 20), and
+its elements part with it. The paper's scenes have it, and so have all other figures of this page. *elements* is ours: each
+triangle and tetrahedron parts by the dose at its own middle, with its ignition drawn from a field over the rest shape.
+`layers` and scenes made of mesh files have it. By edges, the size of a cut depends on the mesh: half a cell all round is
+removed with what the heat has parted ([validation.md](validation.md), "What a cut depends on"). Figure 7's cuts by both,
+at their end:
 
 ![The cuts of figure 7 by both rules](parting.svg)
 
@@ -45,8 +45,8 @@ depends on"). Figure 7's cuts by both, at their end:
 |---|---:|---:|---:|---:|---:|
 {chr(10).join(rows)}
 
-Columns are explained at figure 7. By elements no more goes than the heat reaches, so the same way of the tool takes less, and
-bundles that outlast their dose stay as bridges: the frayed fascia opens by a third of what it opens by edges, the frayed fat,
-drawn at 4 mm/s, is hardly divided. (Bridges that hang together beside the gap count as one strand.) Where every
-bundle gets more than it can take, as in the paper's two cuts, the rules differ by a row of cells.
+Figure 7 explains the columns. By elements only what the heat reaches is removed. So the same path of the tool takes less, and
+bundles that outlast their dose stay as bridges. The frayed fascia opens by a third of what it opens by edges. The frayed
+fat, drawn at 4 mm/s, is hardly divided. (Bridges that hang together beside the gap count as one strand.) In the paper's
+two cuts every bundle gets more than it can take; there the rules differ by the width of one cell.
 """

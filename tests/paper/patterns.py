@@ -130,18 +130,18 @@ def page(fans):
     return f"""## Figure 5: patterns of incision
 
 Fans of triangles about one vertex, at rest. A needle of {1e3 * NEEDLE_M:.1f} mm is held on one edge for {DOSE_S} s: the
-edge parts, and what has it goes, so a dose takes single edges. Then {fans[0]['strokes']} random strokes of the needle, the
-same for every fan, straight, of {1e3 * SPEEDS_M_S[0]:.1f} to {1e3 * SPEEDS_M_S[1]:.0f} mm/s: how many different sets of
-triangles they leave by the edge rule and its heat, and by a rule that removes each triangle which the needle touches.
+edge parts, and its triangles are removed, so a dose takes single edges. Then the needle makes {fans[0]['strokes']} random strokes, straight,
+of {1e3 * SPEEDS_M_S[0]:.1f} to {1e3 * SPEEDS_M_S[1]:.0f} mm/s, the same for every fan. The table counts the different sets of triangles that
+they leave: by the edge rule and its heat, and by a rule that removes each triangle which the needle touches.
 
 ![Fans after one dose, and after one stroke by either rule](figure-5.svg)
 
 {chr(10).join(rows)}
 
 The paper says that its structure makes more patterns than those that remove polygons (section 7.1). {verdict(fans)} The
-last column says how many sets no stroke left by touch: a dose leaves triangles whose edges had too little, beside some
-that had enough, where touch takes all. The other way round a rule by touch has patterns of its own, single triangles
-that were brushed; so "more" is a matter of the strokes, and "others" is what can be said of both.
+last column counts the sets that no stroke left by touch. A dose leaves triangles whose edges had too little heat, beside
+some that had enough, where touch takes all. A rule by touch has patterns of its own, too: single triangles that were
+brushed. So "more" depends on the strokes; "others" holds for both.
 """
 
 

@@ -51,22 +51,22 @@ NOT_QUICK = {"viewer"}  # the browser's own tests hold the viewer; what is cut i
 
 PAPER_HEAD = """# The paper, reproduced
 
-What *Energized Soft Tissue Dissection in Surgery Simulation* shows and a simulation can make, made here: their figures
-and numbers beside ours, every parameter, and in plain words where ours differs. This page, and [validation.md](validation.md)
-beside it, are written by
+This page reproduces what *Energized Soft Tissue Dissection in Surgery Simulation* shows, as far as a simulation can. It
+has their figures and numbers beside ours, every parameter, and the differences in plain words. One command writes this page
+and [validation.md](validation.md) beside it:
 
     tests/paper/run.py
 
-from the shipped scenes ([deploy/scenes](../../deploy/scenes/README.md)) through `cautery-sim` and the viewer. `tests/paper/run.py
---quick` is the same code in a small form; the test `paper_quick` holds its figures to `expected.json`, each within the
-tolerance that stands there; `--only NAME` makes one part. Section and equation numbers are the paper's.
+It uses the shipped scenes ([deploy/scenes](../../deploy/scenes/README.md)), `cautery-sim` and the viewer. `tests/paper/run.py
+--quick` is the same code in a small form. The test `paper_quick` compares its figures with `expected.json`, each within the
+tolerance given there. `--only NAME` makes one part. Section and equation numbers are the paper's.
 """
 
 VALIDATION_HEAD = """# The method, validated
 
-What the method is off where an answer is known, and what its results depend on. Written by `tests/paper/run.py`, with
-[the paper's page](README.md); each section names the command that makes its numbers. The test `paper_quick` holds some of each
-in a small form (`expected.json`).
+This page has the method's errors where an answer is known, and shows on what its results depend. `tests/paper/run.py` writes
+it, with [the paper's page](README.md). Each section names the command that makes its numbers. The test `paper_quick` checks
+some of each in a small form (`expected.json`).
 """
 
 

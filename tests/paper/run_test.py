@@ -124,8 +124,8 @@ class Validation(unittest.TestCase):
         deep = press | {"face_depth_m": 2e-4, "left_out": 3, "most_n": 3}
         said = contact.rest_said({(ball, 2): [press], (ball, 4): [deep]}).replace("\n", " ")
         self.assertIn("in 1 of 2", said)
-        self.assertIn("changes by 100.0% at most though its ball stands still (ball of 1.5 mm, cells of 4 mm)", said)
-        self.assertIn("At 1 of 2 places something touched that found no row", said)
+        self.assertIn("changes by 100.0% at most though its ball does not move (ball of 1.5 mm, cells of 4 mm)", said)
+        self.assertIn("At 1 of 2 places touching tissue had no contact constraint", said)
 
     def test_the_closed_form_is_hot_at_the_ball_and_comes_to_r_over_r(self):
         self.assertEqual(heat.exact_c(heat.BALL_M, 1), heat.HOT_C)

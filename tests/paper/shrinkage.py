@@ -76,9 +76,9 @@ def page(cuts):
     return f"""## Figure 6: shrinkage beside the cut
 
 The scene `fascia` (tool 170 degC, ignition 160 degC, xi 0.4, the paper's) with a cut of {2e3 * HALF_M:.0f} mm along and
-across the sheet at {1e3 * SPEED_M_S:.0f} mm/s, without shrinkage (S = 1) and with the paper's S of 0.1 and 0.3: in a sheet
-that is mildly taut (T = 0.8, so it wants to be nine tenths of its length) and in the paper's (T = 0.1, a third). Widths
-are areas over the cut's length: what burnt away, at rest; and the opening in the end.
+across the sheet at {1e3 * SPEED_M_S:.0f} mm/s, without shrinkage (S = 1) and with the paper's S of 0.1 and 0.3. One sheet is
+mildly taut (T = 0.8, so it tends to nine tenths of its length), the other is the paper's (T = 0.1, a third). Widths
+are areas over the cut's length: the removed area, at rest; and the opening in the end.
 
 ![Borders of the incisions](figure-6.svg)
 
@@ -86,8 +86,8 @@ are areas over the cut's length: what burnt away, at rest; and the opening in th
 
 Mildly taut, shrinkage moves the lips apart by {widening(cuts, 'mild', 'along'):.1f} mm along and
 {widening(cuts, 'mild', 'across'):.1f} mm across. In the paper's sheet it changes the opening by
-{widening(cuts, 'taut', 'along'):+.1f} mm: tension opens the cut by far more than what shrinks beside it, so figure 6 has to
-be looked at where tension is small. (A sheet without tension gives way to the hook and is not cut at all.)
+{widening(cuts, 'taut', 'along'):+.1f} mm. Tension opens the cut by far more than the shrinkage beside it, so figure 6 shows the
+effect only where tension is small. (A sheet without tension gives way to the hook and is not cut at all.)
 """
 
 

@@ -69,16 +69,16 @@ def page(sheets):
     moved = max(sheet["moved_mm"] for sheet in sheets)
     return f"""## Figure 4: strain limits by axis
 
-Six sheets of 100 mm hang by the ends of their upper edge for {HANGING_S} s, {ITERATIONS} iterations a step, uncut. Rows:
-60 % allowed along both material axes; 2 % along the first; 2 % along both. Columns: the axes turned by 0.5 rad against
-the mesh's, and on them. As in the paper, the first row hangs long, the second shears or narrows to follow its stiff
-fibres, the third keeps its shape.
+Six sheets of 100 mm hang by the ends of their upper edge for {HANGING_S} s, {ITERATIONS} iterations a step, uncut. From top
+to bottom: 60 % allowed along both material axes; 2 % along the first; 2 % along both. Left: the axes turned by 0.5 rad
+against the mesh's. Right: on them. As in the paper, the top sheets hang long. The middle ones shear or narrow to follow
+their stiff fibres. The bottom ones keep their shape.
 
 ![Six hanging sheets](figure-4.svg)
 
 {chr(10).join(rows)}
 
 Strain is |F a| - 1 of each triangle along its material axis a. The paper gives no numbers. A limit is a stiffness
-beyond it (`limit_stiffness_pa`), not a wall: few triangles, those beside the two pins that carry the whole weight, are
-strained beyond it. In the last two seconds no vertex moved further than {moved:.2g} mm.
+beyond it (`limit_stiffness_pa`), not a wall. Few triangles are strained beyond it: those beside the two pins that carry
+the whole weight. In the last two seconds no vertex moved further than {moved:.2g} mm.
 """

@@ -76,11 +76,11 @@ def page(cases):
                                             for k, time in enumerate(times)), ""]).strip())
     return f"""### Figure 7 by the viewer
 
-The same four cuts, run command by command by `cauteryd` and looked at obliquely in the viewer ([clients/web](../../clients/web/README.md)),
-in headless Chromium, at the times of the drawing. What lies around the tissue, char in blotches and fringes of torn fibres
-along a lip are the viewer's, drawn from the same states; which tissue is there is the daemon's. Figures 4 to 6
-stay drawings: which triangles go and lips that move by a millimetre are not seen better in pictures. As in the paper's figure 7, the fascia gapes and
-the fat opens with its membrane drawn back.
+`cauteryd` runs the same four cuts command by command. The viewer ([clients/web](../../clients/web/README.md)) shows them
+obliquely, in headless Chromium, at the times of the drawing. The viewer adds the surroundings, char in blotches and
+fringes of torn fibres along a lip, drawn from the same states. The daemon alone decides which tissue exists. Figures 4 to 6
+stay drawings, because pictures do not show single triangles and a millimetre's motion better. As in the paper's figure 7,
+the fascia gapes and the fat opens with its membrane drawn back.
 
 | | cutting | | | at rest |
 |---|---|---|---|---|
