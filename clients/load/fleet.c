@@ -171,8 +171,10 @@ cau_status load_fleet_run(load_fleet *fleet, double seconds)
 {
 	cau_status status = CAU_OK;
 	double until_s = cau_client_now() + seconds;
-	for (double now_s; !status && (now_s = cau_client_now()) < until_s;) {
-		double next_s = until_s;
+	while (!status && !*fleet->options->interrupted) {
+		double now_s = cau_client_now(), next_s = until_s;
+		if (now_s >= until_s)
+			break;
 		status = drive_all(fleet, now_s, &next_s);
 		cau_loop_wait(fleet->loop, fmax(0, next_s - cau_client_now()));
 	}

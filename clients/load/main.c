@@ -5,6 +5,21 @@
 #include "load/machine.h"
 #include "load/report.h"
 
+static volatile sig_atomic_t interrupted;
+
+static void on_signal(int signal_number)
+{
+	interrupted = signal_number;
+}
+
+// The first signal ends the window, the second one the program.
+static void catch_signals(void)
+{
+	struct sigaction action = {.sa_handler = on_signal, .sa_flags = (int)SA_RESETHAND};
+	sigaction(SIGINT, &action, NULL);
+	sigaction(SIGTERM, &action, NULL);
+}
+
 static double daemon_memory(load_fleet *fleet)
 {
 	double bytes = NAN;
@@ -64,6 +79,9 @@ static cau_status run(load_fleet *fleet, load_result *result)
 		status = load_fleet_add_viewers(fleet);
 	if (!status)
 		status = load_fleet_run(fleet, options->warm_up_s);
+	if (!status && interrupted)
+		status = cau_fail(&fleet->error, CAU_BAD_STATE, NULL,
+		                  "interrupted before anything was measured");
 	if (!status)
 		status = measure(fleet, result);
 	if (status)
@@ -97,6 +115,8 @@ int main(int argument_count, char **arguments)
 	}
 	if (options.token_file)
 		options.token = token;
+	catch_signals();
+	options.interrupted = &interrupted;
 	cau_status status = load_fleet_start(&fleet, &options);
 	if (!status)
 		status = run(&fleet, &result);

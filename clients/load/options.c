@@ -20,7 +20,7 @@ static const cau_option rows[] = {
 	{"viewers", "V", CAU_OPTION_WHOLE, AT(viewers), 1, 4096,
      .meaning = "viewers of each session; the first drives its tool (default 1)"},
 	{"seconds", "T", CAU_OPTION_NUMBER, AT(seconds), 0.5, 86400,
-     .meaning = "seconds to measure (default 10)"},
+     .meaning = "seconds to measure (default 10); Ctrl-C ends them early"},
 	{"warm-up", "W", CAU_OPTION_NUMBER, AT(warm_up_s), 0, 3600,
      .meaning = "seconds before measuring (default 2)"},
 	{"slow", "P", CAU_OPTION_NUMBER, AT(slow_pct), 0, 100,

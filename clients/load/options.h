@@ -2,6 +2,7 @@
 // What cautery-load was asked to do.
 #pragma once
 
+#include <signal.h>
 #include <stdbool.h>
 #include <stdint.h>
 #include <stdio.h>
@@ -25,6 +26,8 @@ typedef struct load_options {
 	double slow_pct; // of the viewers that do not drive
 	double rate_hz;
 	bool json, help, version;
+	const volatile sig_atomic_t
+		*interrupted; // not 0: end the window now, report, remove the sessions
 } load_options;
 
 // On a mistake, says it on `complaints` and returns false.
