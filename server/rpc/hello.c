@@ -133,7 +133,7 @@ void cau_call_hello(cau_call *call)
 	}
 	replace(service, replaced);
 	peer->greeted = true;
-	cau_connection_serve(peer->connection);
+	cau_connection_serve(peer->connection, asker->role);
 	cau_hub_heartbeat(service->hub, asker->client, true, cau_peer_alive_s(peer));
 	char whose[CAU_AUTH_NAME_BYTES];
 	cau_auth_grant_name(service->auth, peer->grant, whose);

@@ -85,6 +85,7 @@ struct cau_service {
 	uint64_t calls[CAU_METHOD_COUNT];
 	_Atomic uint64_t answers[CAU_METHOD_COUNT + 1][CAU_ANSWER_COLUMNS]; // the last: of no method
 	cau_upload_total uploads;                                           // the network thread's
+	cau_buffer **scene_answers; // in the order of the scenes
 	void (*write_more_metrics)(void *user, FILE *out, cau_metrics_format format); // may be NULL
 	void *more_metrics_user;
 };
@@ -100,6 +101,11 @@ typedef struct cau_call {
 // ---- reply.c
 void cau_call_fail(const cau_call *call, const cau_error *error, int32_t code);
 void cau_call_result(const cau_call *call, const void *result);
+// The text of an answer, or NULL and the error.
+cau_buffer *cau_result_text(const cau_rpc_id *id, cau_method method, const void *result,
+                            cau_error *error);
+// Answers with a text that is made; takes it. NULL: memory ran out, and nothing is sent.
+void cau_call_answer(const cau_call *call, cau_buffer *text);
 cau_reply cau_call_reply(const cau_call *call); // for answers that come later
 void cau_peer_fault(cau_peer *peer, const cau_rpc_id *id, const cau_rpc_fault *fault);
 // Counts a message that was none; MALFORMED_MOST of them close the connection.
@@ -112,7 +118,16 @@ double cau_peer_alive_s(const cau_peer *peer);
 // A heartbeat came, with what the peer's clock showed when it was sent.
 void cau_peer_hear_clock(cau_peer *peer, int64_t client_time_us);
 
+// ---- scene_methods.c
+// The answers to scene.get, made once: their text is the longest that the network thread sends
+// itself. False: no memory.
+bool cau_scene_answers_make(cau_service *service);
+void cau_scene_answers_free(cau_service *service);
+
 // ---- mailbox.c
+// A copy of an answer with another id in it, or NULL. Answers that are kept, and those of sessions,
+// are made with an id that stands for the asker's.
+cau_buffer *cau_answer_with_id(const char *text, size_t bytes, const cau_rpc_id *id);
 void cau_service_answer(void *user, const cau_reply *reply, const cau_outcome *outcome);
 void cau_service_notify(void *user, cau_audience audience, cau_buffer *text);
 void cau_service_frames(void *user);

@@ -5,7 +5,7 @@
 double cau_peer_alive_s(const cau_peer *peer)
 {
 	return peer->sign.clocked ? peer->sign.alive_s
-	                          : cau_network_sent_after_s(peer->service->network, cau_monotonic_s());
+	                          : cau_connection_sent_after_s(peer->connection, cau_monotonic_s());
 }
 
 // A clock of a heartbeat that may have waited for long cannot be the first: nothing shows how long
@@ -13,7 +13,7 @@ double cau_peer_alive_s(const cau_peer *peer)
 void cau_peer_hear_clock(cau_peer *peer, int64_t client_time_us)
 {
 	double now_s = cau_monotonic_s();
-	if (peer->sign.clocked || cau_network_sent_after_s(peer->service->network, now_s) >= now_s)
+	if (peer->sign.clocked || cau_connection_sent_after_s(peer->connection, now_s) >= now_s)
 		cau_sign_of_life_hear(&peer->sign, now_s, 1e-6 * (double)client_time_us,
 		                      peer->client.asker.deadline_s);
 }

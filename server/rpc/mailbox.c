@@ -37,8 +37,7 @@ static size_t write_id(char text[ID_BYTES], const cau_rpc_id *id)
 	return bytes;
 }
 
-// Answers are made, and stored, with their method's name as id; here each asker's own goes in.
-static cau_buffer *with_id(const char *text, size_t bytes, const cau_rpc_id *id)
+cau_buffer *cau_answer_with_id(const char *text, size_t bytes, const cau_rpc_id *id)
 {
 	static const char member[] = "\"id\":";
 	char own[ID_BYTES];
@@ -101,8 +100,9 @@ void cau_service_answer(void *user, const cau_reply *reply, const cau_outcome *o
 	post->connection = reply->connection;
 	post->id = reply->id;
 	post->method = reply->method;
-	post->text = outcome->error ? fault_text(&reply->id, outcome)
-	                            : with_id(outcome->text, outcome->text_bytes, &reply->id);
+	post->text = outcome->error
+	                 ? fault_text(&reply->id, outcome)
+	                 : cau_answer_with_id(outcome->text, outcome->text_bytes, &reply->id);
 	if (!outcome->error && outcome->file)
 		post->file = cau_buffer_share(outcome->file);
 	post->transfer = outcome->transfer;

@@ -60,32 +60,44 @@ void cau_call_fail(const cau_call *call, const cau_error *error, int32_t code)
 	cau_peer_fault(call->peer, &call->message->id, &fault);
 }
 
-void cau_call_result(const cau_call *call, const void *result)
+cau_buffer *cau_result_text(const cau_rpc_id *id, cau_method method, const void *result,
+                            cau_error *error)
 {
 	size_t capacity = FIRST_BYTES;
-	cau_error error = {0};
-	cau_status status = CAU_LIMIT;
-	if (call->message->kind == CAU_RPC_NOTIFICATION)
-		return;
-	for (int attempt = 0; attempt < 2 && status == CAU_LIMIT; attempt++) {
+	for (int attempt = 0; attempt < 2; attempt++) {
 		cau_buffer *buffer = cau_buffer_create(capacity, false);
 		if (!buffer) {
-			status = cau_fail(&error, CAU_NO_MEMORY, "", "no memory for the answer");
-			break;
+			cau_fail(error, CAU_NO_MEMORY, "", "no memory for the answer");
+			return NULL;
 		}
 		cau_rpc_buffer out = {(char *)cau_buffer_bytes(buffer), capacity, 0};
-		status =
-			cau_rpc_write_result(&out, &call->message->id, call->message->method, result, &error);
+		cau_status status = cau_rpc_write_result(&out, id, method, result, error);
 		buffer->byte_count = out.bytes;
 		capacity = out.bytes + 1;
-		if (!status) {
-			cau_answers_count(call->peer->service, call->message->method, 0);
-			cau_connection_send(call->peer->connection, buffer);
-		} else {
-			cau_buffer_release(buffer);
-		}
+		if (!status)
+			return buffer;
+		cau_buffer_release(buffer);
+		if (status != CAU_LIMIT)
+			return NULL;
 	}
-	if (status)
+	return NULL;
+}
+
+void cau_call_answer(const cau_call *call, cau_buffer *text)
+{
+	cau_answers_count(call->peer->service, call->message->method, 0);
+	cau_connection_send(call->peer->connection, text);
+}
+
+void cau_call_result(const cau_call *call, const void *result)
+{
+	cau_error error = {0};
+	if (call->message->kind == CAU_RPC_NOTIFICATION)
+		return;
+	cau_buffer *text = cau_result_text(&call->message->id, call->message->method, result, &error);
+	if (text)
+		cau_call_answer(call, text);
+	else
 		cau_call_fail(call, &error, CAU_RPC_INTERNAL);
 }
 

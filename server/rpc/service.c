@@ -237,6 +237,8 @@ cau_status cau_service_create(cau_service **made, const cau_config *config, cons
 	service->hub = hub;
 	service->store = store;
 	pthread_mutex_init(&service->mutex, NULL);
+	if (!cau_scene_answers_make(service))
+		return cau_fail(error, CAU_NO_MEMORY, NULL, "no memory for the scenes");
 	cau_hub_add_sink(hub, &(cau_sink){service, cau_service_notify, cau_service_frames, NULL});
 	return CAU_OK;
 }
@@ -253,6 +255,7 @@ void cau_service_destroy(cau_service *service)
 		free(service->first);
 	}
 	pthread_mutex_destroy(&service->mutex);
+	cau_scene_answers_free(service);
 	free(service);
 }
 

@@ -187,6 +187,8 @@ void cau_connection_dropped(cau_connection *c)
 
 void cau_connection_watch(cau_connection *c, double now_s)
 {
+	if (c->waits && !cau_turns_blocked(c)) // what it has sent waits for its turn
+		c->heard_s = now_s;
 	if (now_s - c->heard_s > UNHEARD_PINGS * c->network->def.config->ping_s)
 		cau_connection_close(c, CAU_CLOSE_NO_ANSWER, NULL);
 }

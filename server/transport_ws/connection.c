@@ -41,6 +41,10 @@ static cau_connection *make(cau_network *network, struct lws *wsi)
 	cau_auth_find_address(network->def.config, told ? forwarded : NULL, c->address,
 	                      sizeof c->address);
 	cau_address_owner(c->address, c->owner);
+	if (!cau_share_open(&network->shares, &c->share, c->owner, CAU_STANDING_UNKNOWN, c->opened_s)) {
+		free(c);
+		return NULL;
+	}
 	return c;
 }
 
@@ -76,6 +80,8 @@ static void closed(cau_network *network, cau_connection *c)
 		cau_buffer_release(b);
 	}
 	cau_frame_reader_finish(&c->reader);
+	cau_share_close(&c->share);
+	free(c->held);
 	free(c);
 }
 
@@ -133,7 +139,9 @@ static int writable(cau_network *network, cau_connection *c)
 		return 0;
 	if (c->pong_due && !c->close_sent)
 		return write_pong(c);
+	double began_s = cau_thread_cpu_s();
 	cau_buffer *buffer = take_control(c);
+	bool reply = buffer;
 	if (!buffer && c->closing)
 		return cau_connection_write_close(c);
 	if (!buffer)
@@ -141,6 +149,10 @@ static int writable(cau_network *network, cau_connection *c)
 	if (!buffer)
 		return 0;
 	int failed = write_buffer(network, c, buffer);
+	if (reply) {
+		cau_share_charge(&c->share, cau_thread_cpu_s() - began_s, cau_monotonic_s());
+		cau_turns_resume(c);
+	}
 	cau_buffer_release(buffer);
 	if (!failed)
 		lws_callback_on_writable(c->wsi);

@@ -9,6 +9,7 @@
 #include "buffer/buffer.h"
 #include "cautery/rpc_errors.h"
 #include "transport_ws/frame_reader.h"
+#include "transport_ws/shares.h"
 
 struct lws;
 typedef struct cau_network cau_network;
@@ -46,6 +47,15 @@ typedef struct cau_connection {
 	cau_reading reading;
 	cau_frame_reader reader;
 	double heard_s; // when something came last
+	// its turns, see turns.c
+	cau_share share;
+	struct cau_connection *next_waiting;
+	bool waits;          // for a turn
+	bool polled;         // epoll reports what comes
+	unsigned char *held; // what was received in a turn and is for the next one; NULL: nothing
+	size_t held_at, held_bytes;
+	double empty_s;      // when its socket was known to be empty last
+	double sent_after_s; // what is handled now was sent after this moment
 	// messages, control frames and short fragments of the present second
 	double rate_start_s;
 	int64_t rate_count;
@@ -71,8 +81,11 @@ typedef struct cau_connection {
 
 // Whether one more connection may be served; `resumes`: one that comes back to its tools.
 bool cau_connection_has_place(const cau_connection *connection, bool resumes);
-// Its hello was accepted.
-void cau_connection_serve(cau_connection *connection);
+// Its hello was accepted, with this role.
+void cau_connection_serve(cau_connection *connection, cau_role role);
+// A moment that the message at hand was sent after, for all that the network thread knows. It is
+// `now_s`, unless the thread was stopped or the message waited for its turn. Monotonic clock.
+double cau_connection_sent_after_s(const cau_connection *connection, double now_s);
 // Queues a text message; takes the buffer. A connection whose replies pile up
 // beyond CAU_CONTROL_BYTES_MAX is closed.
 void cau_connection_send(cau_connection *connection, cau_buffer *buffer);

@@ -16,6 +16,8 @@
 enum {
 	HEADER_BYTES = 512,
 	NOTSENT_LOWAT_BYTES = 16384, // see set_socket in connection.c
+	// Writing replies is charged after the turn: this bounds what a turn can owe.
+	CAU_TURN_REPLY_BYTES = 65536,
 	CAU_CLOSE_FRAME_BYTES = 4 + CAU_CLOSE_REASON_BYTES,
 	CAU_OUTSIDERS_MOST = 64,
 };
@@ -57,6 +59,9 @@ struct cau_network {
 	uint64_t last_id;
 	cau_connection *connections; // open ones
 	cau_connection *lingering;   // ending ones, which the handler has left
+	cau_connection *waiting;     // those with something to read, see turns.c
+	cau_shares shares;
+	lws_sorted_usec_list_t turns;
 	cau_network_counts counts;
 	cau_outsider outsiders[CAU_OUTSIDERS_MOST];
 	lws_sorted_usec_list_t sul;
@@ -80,6 +85,10 @@ int cau_input_callback(struct lws *wsi, enum lws_callback_reasons reason, void *
 // ---- rounds.c
 // The thread comes round: notes whether it did not for long.
 void cau_network_comes_round(cau_network *network);
+// A moment that what is read now was sent after, for all that this thread knows: `now_s`, unless
+// the thread did not run for the deadline of a browser's driver. What it reads for one deadline
+// from then on may have waited since it last ran.
+double cau_network_sent_after_s(const cau_network *network, double now_s);
 
 // ---- refusals.c
 void cau_note_refusal(cau_network *network, struct lws *wsi, const cau_http_refusal *refusal);
@@ -114,6 +123,22 @@ bool cau_input_begin(cau_connection *connection);
 // connection must end.
 bool cau_input_take_over(cau_connection *connection);
 void cau_input_end(cau_connection *connection);
+
+// Whether epoll reports what comes for the connection.
+bool cau_input_poll(cau_connection *connection, bool polled);
+
+// There is something to read for the connection: it waits for a turn.
+void cau_input_wait(cau_connection *connection);
+void cau_input_forget(cau_connection *connection);
+
+// ---- turns.c
+// Some of its replies have been taken.
+void cau_turns_resume(cau_connection *connection);
+
+// ---- reading.c
+// Reads for the connection until the thread's processor time is `until_s`. Returns whether more
+// is there to be read at once.
+bool cau_connection_read(cau_connection *connection, double until_s);
 
 // ---- socket.c
 // As recv() does: what is there, at most so many bytes; 0 behind the last one; -1 with EAGAIN.
@@ -152,6 +177,14 @@ void cau_connection_watch(cau_connection *connection, double now_s);
 
 // Serves a plain HTTP request.
 int cau_http_serve(cau_network *network, struct lws *wsi, cau_http_body *body, const char *path);
+
+// Whether the connection's turn ends, and the next one waits, until its replies have been taken. A
+// driver is read all the same: energy off must not wait for what its client does not read.
+static inline bool cau_turns_blocked(const cau_connection *c)
+{
+	return c->control_bytes > CAU_TURN_REPLY_BYTES && !c->closing &&
+	       c->share.standing < CAU_STANDING_DRIVER;
+}
 
 static inline cau_network *cau_network_of(struct lws *wsi)
 {

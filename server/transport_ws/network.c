@@ -123,6 +123,7 @@ static void *serve(void *argument)
 		if (lws_service(network->context, 0) < 0)
 			break;
 	lws_sul_schedule(network->context, 0, &network->sul, NULL, LWS_SET_TIMER_USEC_CANCEL);
+	lws_sul_schedule(network->context, 0, &network->turns, NULL, LWS_SET_TIMER_USEC_CANCEL);
 	return NULL;
 }
 
@@ -160,6 +161,7 @@ void cau_network_destroy(cau_network *network)
 		close(network->input);
 	cau_tls_destroy(network->tls);
 	free(network->unread);
+	cau_shares_finish(&network->shares);
 	free(network);
 }
 

@@ -62,12 +62,6 @@ cau_connection *cau_network_first(cau_network *network);
 // An open connection by id, or NULL; on the network thread.
 cau_connection *cau_network_find(cau_network *network, uint64_t id);
 
-// A moment that what is read now was sent after, for all that this thread knows: `now_s`, unless
-// the thread did not run for the deadline of a browser's driver. What it reads for one deadline
-// from then on may have waited since it last ran. On the network thread; all on the monotonic
-// clock.
-double cau_network_sent_after_s(const cau_network *network, double now_s);
-
 typedef struct cau_network_counts {
 	uint64_t served, strangers_closed;
 	uint64_t connections, accepted, refused_handshakes, closed_slow, closed_errors;

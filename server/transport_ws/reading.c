@@ -1,15 +1,14 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // What comes in over the sockets that input.c took over: frames, and what they lead to.
 #include <errno.h>
-#include <sys/epoll.h>
+#include <stdlib.h>
+#include <string.h>
 
 #include "clock/clock.h"
 #include "transport_ws/internal.h"
 
 enum {
-	EVENTS_AT_ONCE = 32,
-	READ_BYTES = 65536, // of one connection at a time: the others have their turn
-	                    // in between
+	READ_BYTES = 65536, // at once
 };
 
 static bool within_rate(cau_connection *c)
@@ -60,13 +59,15 @@ static void handle(cau_connection *c, cau_frame_event event)
 	}
 }
 
-static void take(cau_connection *c, const unsigned char *bytes, size_t count)
+// Returns how many of the bytes were handled when the turn was over.
+static size_t take(cau_connection *c, const unsigned char *bytes, size_t count, double until_s)
 {
 	const unsigned char *at = bytes, *end = bytes + count;
+	bool in_time = true;
 	c->heard_s = cau_monotonic_s();
 	// A connection that is being closed is read on, so that its peer gets to the
 	// close frame, but nothing is done for it.
-	while (at < end && !c->closing) {
+	while (at < end && !c->closing && in_time) {
 		cau_frame_event event = cau_frame_reader_next(&c->reader, &at, end);
 		bool counts =
 			event != CAU_FRAME_MORE && event != CAU_FRAME_CLOSE && event != CAU_FRAME_BROKEN;
@@ -74,34 +75,56 @@ static void take(cau_connection *c, const unsigned char *bytes, size_t count)
 			cau_connection_close(c, CAU_CLOSE_RATE, NULL);
 		else
 			handle(c, event);
+		in_time =
+			event == CAU_FRAME_MORE || (cau_thread_cpu_s() < until_s && !cau_turns_blocked(c));
 	}
+	return c->closing ? count : (size_t)(at - bytes);
 }
 
-static void read_some(cau_connection *c)
+static void hold(cau_connection *c, const unsigned char *bytes, size_t count)
+{
+	c->held = malloc(count);
+	if (!c->held) {
+		cau_connection_close(c, CAU_CLOSE_FULL, "no memory for a message");
+		return;
+	}
+	memcpy(c->held, bytes, count);
+	c->held_at = 0;
+	c->held_bytes = count;
+}
+
+static void take_held(cau_connection *c, double until_s)
+{
+	c->held_at += take(c, c->held + c->held_at, c->held_bytes - c->held_at, until_s);
+	if (c->held_at < c->held_bytes)
+		return;
+	free(c->held);
+	c->held = NULL;
+}
+
+static bool receive(cau_connection *c, double until_s)
 {
 	static unsigned char bytes[READ_BYTES]; // the network thread's alone, more than a record of TLS
-	ssize_t got;
-	do {
-		got = cau_connection_receive(c, bytes, sizeof bytes);
-		if (got > 0)
-			take(c, bytes, (size_t)got);
-		else if (got == 0 || (errno != EAGAIN && errno != EINTR))
+	ssize_t got = cau_connection_receive(c, bytes, sizeof bytes);
+	if (got <= 0) {
+		if (got == 0 || (errno != EAGAIN && errno != EINTR))
 			cau_connection_ended_by_peer(c);
-	} while (got > 0 && cau_connection_has_more(c));
+		return false;
+	}
+	c->sent_after_s = c->empty_s;
+	if (got < READ_BYTES)
+		c->empty_s = cau_monotonic_s();
+	size_t taken = take(c, bytes, (size_t)got, until_s);
+	if (taken < (size_t)got)
+		hold(c, bytes + taken, (size_t)got - taken);
+	return true;
 }
 
-// No connection is freed in here: ends are asked for, and made by
-// libwebsockets' loop.
-int cau_input_callback(struct lws *wsi, enum lws_callback_reasons reason, void *user, void *in,
-                       size_t bytes)
+bool cau_connection_read(cau_connection *c, double until_s)
 {
-	(void)user, (void)in, (void)bytes;
-	if (reason != LWS_CALLBACK_RAW_RX_FILE)
-		return 0;
-	cau_network_comes_round(cau_network_of(wsi));
-	struct epoll_event events[EVENTS_AT_ONCE];
-	int count = epoll_wait(cau_network_of(wsi)->input, events, EVENTS_AT_ONCE, 0);
-	for (int i = 0; i < count; i++)
-		read_some(events[i].data.ptr);
-	return 0;
+	if (c->held)
+		take_held(c, until_s);
+	else if (!receive(c, until_s))
+		return false;
+	return c->held || cau_connection_has_more(c);
 }

@@ -3,6 +3,8 @@
 #include "clock/clock.h"
 #include "transport_ws/internal.h"
 
+#define WAITED_S 0.02 // a message that waited for so long counts as one that was sent before
+
 void cau_network_comes_round(cau_network *network)
 {
 	double now_s = cau_monotonic_s(), deadline_s = network->def.config->browser_deadline_s;
@@ -11,6 +13,12 @@ void cau_network_comes_round(cau_network *network)
 		network->stopped_until_s = now_s + deadline_s;
 	}
 	network->ran_s = now_s;
+}
+
+double cau_connection_sent_after_s(const cau_connection *c, double now_s)
+{
+	double after_s = cau_network_sent_after_s(c->network, now_s);
+	return now_s - c->sent_after_s > WAITED_S ? fmin(after_s, c->sent_after_s) : after_s;
 }
 
 double cau_network_sent_after_s(const cau_network *network, double now_s)

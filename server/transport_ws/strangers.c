@@ -9,6 +9,7 @@
 #include <string.h>
 
 #include "auth/list.h"
+#include "clock/clock.h"
 #include "transport_ws/internal.h"
 
 enum {
@@ -111,7 +112,7 @@ static cau_connection *find_silent(const cau_network *network, const char *owner
 		last = c;
 	}
 	for (cau_connection *c = last; c && count > most; c = c->previous)
-		if (is_silent(c, owner) && !has_input(c->descriptor))
+		if (is_silent(c, owner) && !c->waits && !has_input(c->descriptor))
 			return c;
 	return NULL;
 }
@@ -134,8 +135,9 @@ bool cau_connection_has_place(const cau_connection *c, bool resumes)
 	return c->network->counts.served < most + (resumes ? RESUMES_MOST : 0);
 }
 
-void cau_connection_serve(cau_connection *c)
+void cau_connection_serve(cau_connection *c, cau_role role)
 {
+	cau_share_promote(&c->share, cau_standing_of_role(role), cau_monotonic_s());
 	c->network->counts.served += !c->served;
 	c->served = true;
 }

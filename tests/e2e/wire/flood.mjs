@@ -3,9 +3,9 @@
 // what they cost themselves is not taken for what they cost the daemon.
 //
 // As a program: flood.mjs URL SPEC, the JSON of start()'s second argument. Each of the viewers keeps
-// `pipeline` loops going: of requests, in turn; of sessions, created and destroyed; or of fragments
-// without content, which end the connection again and again. When standard input ends it prints
-// {asked, answered, refused: {reason: count}}.
+// `pipeline` loops going: of requests, in turn; of bursts of one request, which wait for no answer; of
+// sessions, created and destroyed; or of fragments without content, which end the connection again and
+// again. When standard input ends it prints {asked, answered, refused: {reason: count}}.
 import { spawn } from 'node:child_process';
 import { cpus } from 'node:os';
 import { createInterface } from 'node:readline';
@@ -13,11 +13,11 @@ import { fileURLToPath, pathToFileURL } from 'node:url';
 import { Client } from './client.mjs';
 
 export class Flood {
-	static async start(url, { what = 'requests', viewers = 2, pipeline = 4, hello = { role: 'view' }, requests, definition }) {
+	static async start(url, { what = 'requests', viewers = 2, pipeline = 4, hello = { role: 'view' }, join, requests, definition }) {
 		const flood = new Flood();
 		const last = String(cpus().length - 1);
-		flood.process = spawn('taskset', ['-c', last, process.execPath, fileURLToPath(import.meta.url), url,
-			JSON.stringify({ what, viewers, pipeline, hello, requests, definition })], { stdio: ['pipe', 'pipe', 'inherit'] });
+		flood.process = spawn('taskset', ['-c', last, 'nice', '-n', '19', process.execPath, fileURLToPath(import.meta.url), url,
+			JSON.stringify({ what, viewers, pipeline, hello, join, requests, definition })], { stdio: ['pipe', 'pipe', 'inherit'] });
 		flood.lines = createInterface({ input: flood.process.stdout })[Symbol.asyncIterator]();
 		await flood.lines.next(); // it floods
 		return flood;
@@ -66,6 +66,29 @@ async function ask(client, method, params) {
 // Fragments in one go: more than a second's messages of a client.
 const FRAGMENTS = 4000;
 
+// A burst and its period: the most that max_requests_per_s of 2000 allows in any second.
+const BURST = 390, BURST_MS = 250;
+
+const count = () => told.answered++; // an answer to a burst, not parsed
+
+// Sends the requests as one batch of packets. A socket that the daemon does not read is left alone.
+async function burst({ url, hello, state, requests: [[method, params]] }) {
+	if (state.client.closeCode) {
+		refuse(new Error(`closed ${state.client.closeCode}`));
+		state.client = await open(url, hello);
+		state.client.onText = count;
+	}
+	const { client } = state, began = performance.now();
+	if (client.socket.bufferedAmount < 1 << 20) {
+		client.socket._socket.cork();
+		for (let i = 0; i < BURST; i++)
+			client.socket.send(JSON.stringify({ jsonrpc: '2.0', id: 1e6 + i, method, params }));
+		client.socket._socket.uncork();
+		told.asked += BURST;
+	}
+	await new Promise((resolve) => setTimeout(resolve, BURST_MS - (performance.now() - began)));
+}
+
 // What a loop does in a turn.
 const WAYS = {
 	requests: async ({ client, turn, requests }) => ask(client, ...requests[turn % requests.length]),
@@ -74,6 +97,7 @@ const WAYS = {
 		if (made)
 			await ask(client, 'session.destroy', { session: made.summary.session });
 	},
+	bursts: burst,
 	fragments: async ({ url, hello }) => {
 		told.asked++;
 		const client = await open(url, hello).catch(refuse);
@@ -84,12 +108,17 @@ const WAYS = {
 	},
 };
 
-async function flood(url, { what, viewers, pipeline, hello, requests, definition }) {
+async function flood(url, { what, viewers, pipeline, hello, join, requests, definition }) {
 	for (let v = 0; v < viewers; v++) {
 		const client = await open(url, hello);
+		if (join)
+			await client.call('session.join', { session: join });
+		const state = { client };
+		if (what === 'bursts')
+			client.onText = count;
 		const loop = async () => {
 			for (let turn = 0; ; turn++)
-				await WAYS[what]({ url, hello, client, turn, requests, definition });
+				await WAYS[what]({ url, hello, client, state, turn, requests, definition });
 		};
 		for (let p = 0; p < pipeline; p++)
 			void loop();

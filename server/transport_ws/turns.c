@@ -1,0 +1,105 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Which connection is read next. Connections with something to read wait in a list. A turn is
+// about a millisecond of processor time, and is charged to the connection's share (shares.h).
+// Drivers go first, so that energy off and heartbeats do not wait behind what others ask; then
+// the connection that has used the least. One whose share is used up waits until some of it is
+// given back. Meanwhile epoll does not report it, and its messages stay in the socket.
+#include <math.h>
+#include <sys/epoll.h>
+
+#include "clock/clock.h"
+#include "transport_ws/internal.h"
+
+enum { EVENTS_AT_ONCE = 64 };
+
+#define TURN_S 1e-3
+#define ROUND_S 4e-3 // then libwebsockets writes and looks for new input
+#define REST_S 5e-3  // the least wait: for less than a millisecond libwebsockets does not sleep
+
+// One that is closing is read to its end, which costs next to nothing and is over soon.
+static double wait_s(cau_connection *c, double now_s)
+{
+	double seconds = cau_share_wait_s(&c->share, now_s);
+	if (cau_turns_blocked(c))
+		return INFINITY;
+	return c->closing ? 0 : seconds;
+}
+
+static cau_connection *find_next(const cau_network *network, double now_s)
+{
+	cau_connection *next = NULL;
+	for (cau_connection *c = network->waiting; c; c = c->next_waiting)
+		if (wait_s(c, now_s) <= 0 && (!next || cau_share_precedes(&c->share, &next->share)))
+			next = c;
+	return next;
+}
+
+static void give_turn(cau_connection *c)
+{
+	double began_s = cau_thread_cpu_s();
+	bool more = cau_connection_read(c, began_s + TURN_S);
+	cau_share_charge(&c->share, cau_thread_cpu_s() - began_s, cau_monotonic_s());
+	if (!more) {
+		cau_input_forget(c);
+		cau_input_poll(c, true);
+	}
+}
+
+static void run_again(lws_sorted_usec_list_t *turns);
+
+// Connections that still wait are not polled, since they are known to have something.
+static void wait_for_turns(cau_network *network, double now_s)
+{
+	double soonest_s = INFINITY;
+	for (cau_connection *c = network->waiting; c; c = c->next_waiting) {
+		cau_input_poll(c, false);
+		soonest_s = fmin(soonest_s, wait_s(c, now_s));
+	}
+	if (soonest_s > 0)
+		soonest_s = fmax(soonest_s, REST_S);
+	lws_sul_schedule(network->context, 0, &network->turns, run_again,
+	                 isinf(soonest_s) ? LWS_SET_TIMER_USEC_CANCEL
+	                                  : 1 + (lws_usec_t)(soonest_s * LWS_US_PER_SEC));
+}
+
+static void give_turns(cau_network *network)
+{
+	double now_s = cau_monotonic_s(), until_s = now_s + ROUND_S;
+	cau_connection *next = find_next(network, now_s);
+	while (next && now_s < until_s) {
+		give_turn(next);
+		now_s = cau_monotonic_s();
+		next = find_next(network, now_s);
+	}
+	wait_for_turns(network, now_s);
+}
+
+static void run_again(lws_sorted_usec_list_t *turns)
+{
+	cau_network *network = lws_container_of(turns, cau_network, turns);
+	cau_network_comes_round(network);
+	give_turns(network);
+}
+
+void cau_turns_resume(cau_connection *c)
+{
+	if (c->waits && !cau_turns_blocked(c))
+		lws_sul_schedule(c->network->context, 0, &c->network->turns, run_again, 1);
+}
+
+// No connection is freed in here: ends are asked for, and made by
+// libwebsockets' loop.
+int cau_input_callback(struct lws *wsi, enum lws_callback_reasons reason, void *user, void *in,
+                       size_t bytes)
+{
+	(void)user, (void)in, (void)bytes;
+	if (reason != LWS_CALLBACK_RAW_RX_FILE)
+		return 0;
+	cau_network_comes_round(cau_network_of(wsi));
+	struct epoll_event events[EVENTS_AT_ONCE];
+	int count = epoll_wait(cau_network_of(wsi)->input, events, EVENTS_AT_ONCE, 0);
+	for (int i = 0; i < count; i++)
+		cau_input_wait(events[i].data.ptr);
+	give_turns(cau_network_of(wsi));
+	return 0;
+}
