@@ -76,7 +76,7 @@ enum { CAU_CONFIG_TEXT_BYTES = 512 };
 	INTEGER(retention_bytes, 1073741824, 1048576, 1099511627776,                                   \
 	        "largest size of a session in the store")                                              \
 	INTEGER(store_bytes, 17179869184, 0, 1125899906842624,                                         \
-	        "largest size of all sessions in the store; 0: no bound")                              \
+	        "largest size of the store, all tables; 0: no bound")                                  \
 	REAL(drain_s, 10, 0.1, 600, "longest wait for checkpoints at shutdown")                        \
 	SWITCH(dds, false, "open the DDS transport")                                                   \
 	INTEGER(dds_domain, 0, 0, 230, "DDS domain")                                                   \

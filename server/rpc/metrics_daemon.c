@@ -100,10 +100,9 @@ static void write_store(cau_service *service, const exposition *to)
 	      (double)m.wal_bytes);
 	counter(to, "store_retired_rows", "", "Records removed to keep the store's bounds",
 	        (double)m.retired_rows);
-	gauge(to, "store_kept_bytes", "bytes", "Size of sessions, logs and checkpoints together",
+	gauge(to, "store_kept_bytes", "bytes", "Size of the pages in use in the store, all tables",
 	      (double)m.kept_bytes);
-	gauge(to, "store_budget_bytes", "bytes",
-	      "Largest size of sessions, logs and checkpoints; 0: no bound",
+	gauge(to, "store_budget_bytes", "bytes", "Largest size of the pages in use; 0: no bound",
 	      (double)service->config->store_bytes);
 	counter(to, "store_budget_checkpoints", "", "Checkpoints removed to keep the store's budget",
 	        (double)m.budget_dropped);

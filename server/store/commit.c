@@ -15,7 +15,9 @@ enum {
 	SPARE_BYTES = 1000000, // asked for on top of what failed, before a full store is tried again
 	FOLD_PATIENCE = 4,
 	CHORE_PAUSE_MS = 5, // between small steps of retention
+	OVERDRAWN_MS = 10,  // commits wait for so long while the budget is overdrawn
 	MAX_FAILED_BYTES = 1 << 30,
+	UNSEEN_SHARE = 100, // of the budget: what may be committed between two looks at it
 };
 
 // ---- one group ------------------------------------------------------------------------
@@ -51,12 +53,14 @@ static void roll_back(struct cau_store *store)
 // Writes and commits store->committing. Batches with a fault of their own have it in batch->error.
 static cau_status write_group(struct cau_store *store, cau_error *error)
 {
+	uint64_t bytes = 0;
 	CAU_ASSERT(store->committing != NULL, "nothing to write, in state %d", (int)store->state);
 	int64_t now_ms = store->config.wall_clock_ms();
 	int count = 0;
 	cau_status status = cau_store_execute(store->writing, "BEGIN IMMEDIATE", "writing", error);
 	for (struct cau_store_batch *batch = store->committing; batch && !status; batch = batch->next) {
 		status = write_batch(store, batch, now_ms, error);
+		bytes += batch->bytes;
 		count++;
 	}
 	double start_s = cau_store_monotonic_s();
@@ -66,6 +70,7 @@ static cau_status write_group(struct cau_store *store, cau_error *error)
 		roll_back(store);
 	else
 		cau_store_count_commit(store, count, cau_store_monotonic_s() - start_s);
+	store->unseen_bytes += status ? 0 : bytes;
 	return status;
 }
 
@@ -113,6 +118,24 @@ static void fold_log(struct cau_store *store)
 		store->fold_due_s = cau_store_monotonic_s() + 1e-3 * store->config.full_retry_ms;
 }
 
+// One step; while the budget is overdrawn more of them, so that removal keeps pace with what is
+// written.
+static cau_status take_steps(struct cau_store *store, int64_t *rows, cau_error *error)
+{
+	double until_s = cau_store_monotonic_s() + 1e-3 * OVERDRAWN_MS;
+	int64_t more = 0;
+	cau_store_budget_state before = store->budget.state;
+	cau_status status;
+	do {
+		status =
+			cau_store_retention_step(store->writing, &store->config, &store->budget, &more, error);
+		*rows += more;
+	} while (!status && more && before == CAU_STORE_BUDGET_SHRINKING &&
+	         store->budget.state == before && store->budget.bytes > store->config.store_bytes &&
+	         cau_store_monotonic_s() < until_s);
+	return status;
+}
+
 static void retire(struct cau_store *store)
 {
 	CAU_ASSERT(store->state == CAU_STORE_READY, "retention in state %d", (int)store->state);
@@ -120,8 +143,8 @@ static void retire(struct cau_store *store)
 	int64_t rows = 0;
 	int pause_ms = store->config.retention_interval_ms;
 	cau_store_budget_state before = store->budget.state;
-	cau_status status =
-		cau_store_retention_step(store->writing, &store->config, &store->budget, &rows, &error);
+	store->unseen_bytes = 0;
+	cau_status status = take_steps(store, &rows, &error);
 	if (status == CAU_CORRUPT) {
 		block(store, &error);
 		cau_store_queue_answer(store);
@@ -141,6 +164,15 @@ static void retire(struct cau_store *store)
 		store->config.on_budget(store->config.user, store->budget.state, store->budget.bytes,
 		                        store->budget.dropped);
 	store->chore_due_s = cau_store_monotonic_s() + 1e-3 * pause_ms;
+}
+
+// Whether it is time to look for what may go. Much that was written is looked at sooner, so that
+// the budget is not overdrawn between two looks.
+static bool chore_is_due(const struct cau_store *store, double now_s)
+{
+	int64_t most = store->config.store_bytes;
+	return now_s >= store->chore_due_s ||
+	       (most && store->unseen_bytes >= (uint64_t)most / UNSEEN_SHARE);
 }
 
 static bool has_room(const struct cau_store *store)
@@ -193,7 +225,7 @@ void *cau_store_commit_run(void *context)
 		if (store->state != CAU_STORE_READY)
 			continue;
 		fold_log(store);
-		if (now_s >= store->chore_due_s)
+		if (chore_is_due(store, now_s))
 			retire(store);
 	}
 }

@@ -179,7 +179,7 @@ static cau_status take_out(sqlite3 *database, const cau_store_moved *moved, int6
 	const char *const row[] = {moved->id,  moved->move,  moved->target, moved->label,
 	                           moved->url, moved->proof, NULL};
 	cau_status status = run_texts(
-		database, "UPDATE sessions SET deleted = 1 WHERE id = ?1 AND deleted = 0", id, 0, 0, error);
+		database, "UPDATE sessions SET deleted = 2 WHERE id = ?1 AND deleted = 0", id, 0, 0, error);
 	if (!status && sqlite3_changes(database) == 0)
 		return cau_fail(error, CAU_NOT_FOUND, "session", "no session '%s'", moved->id);
 	if (!status)
@@ -211,6 +211,10 @@ static cau_status put_arrival(sqlite3 *database, const cau_store_arrival *arriva
 	sqlite3_bind_int64(statement, 8, now_ms);
 	status = run(database, statement, error);
 	sqlite3_finalize(statement);
+	if (!status) // it brings its answers back: those that are still here stay
+		status =
+			run_texts(database, "UPDATE sessions SET deleted = 1 WHERE id = ?1 AND deleted = 2", id,
+		              0, 0, error);
 	if (!status && arrival->state == CAU_STORE_ACCEPTED)
 		status = run_texts(database, "DELETE FROM moved WHERE id = ?1", id, 0, 0, error);
 	return status;

@@ -14,6 +14,7 @@
 
 enum {
 	FREED_SHARE = 20,          // of the budget, once it was overdrawn
+	ANSWER_SHARE = 4,          // of the budget: what answers may keep when it is overdrawn
 	LEAST_SPACING_TICKS = 600, // thinning does not look closer: 10 s at 60 Hz, replayed in 3
 };
 
@@ -21,6 +22,9 @@ enum {
 static cau_status remove_deleted(sqlite3 *database, int64_t *rows, cau_error *error)
 {
 	static const char *const removals[] = {
+		"DELETE FROM answers WHERE (client, sequence) IN (SELECT a.client, a.sequence"
+		" FROM sessions AS s JOIN moved AS m ON m.id = s.id JOIN answers AS a ON a.session = s.id"
+		" WHERE s.key = ?1 AND s.deleted = 2 AND a.time_ms <= m.time_ms " CAU_STORE_ROWS ")",
 		"DELETE FROM commands WHERE session = ?1 AND (branch, tick, position) IN"
 		" (SELECT branch, tick, position FROM commands WHERE session = ?1 " CAU_STORE_ROWS ")",
 		"DELETE FROM checkpoints WHERE rowid IN"
@@ -37,7 +41,7 @@ static cau_status remove_deleted(sqlite3 *database, int64_t *rows, cau_error *er
 	};
 	struct cau_store_outcome found, removed = {0};
 	cau_status status = cau_store_run(
-		database, "SELECT key FROM sessions WHERE deleted = 1 LIMIT 1", NULL, &found, error);
+		database, "SELECT key FROM sessions WHERE deleted > 0 LIMIT 1", NULL, &found, error);
 	if (status || !found.rows)
 		return status;
 	for (size_t i = 0; i < sizeof removals / sizeof *removals && !status && !removed.rows; i++)
@@ -110,10 +114,54 @@ static cau_status thin_sessions(sqlite3 *database, int64_t limit, int64_t *rows,
 	return CAU_OK;
 }
 
+// ---- old answers and events -----------------------------------------------------------
+static cau_status remove_old(sqlite3 *database, const char *sql, int64_t before_ms, int64_t *rows,
+                             cau_error *error)
+{
+	struct cau_store_outcome removed;
+	cau_status status = cau_store_run(database, sql, &before_ms, &removed, error);
+	*rows = status ? 0 : removed.rows;
+	return status;
+}
+
+#define OLD_ANSWERS "FROM answers WHERE time_ms < ?1 ORDER BY time_ms " CAU_STORE_ROWS
+
+// What is forgotten is remembered as such, so that a late resend does not act again.
+static cau_status forget_answers(sqlite3 *database, int64_t before_ms, int64_t *rows,
+                                 cau_error *error)
+{
+	struct cau_store_outcome noted;
+	cau_status status = cau_store_run(
+		database,
+		"INSERT INTO forgotten SELECT client, max(sequence), max(time_ms)"
+		" FROM (SELECT client, sequence, time_ms " OLD_ANSWERS ") WHERE true GROUP BY client"
+		" ON CONFLICT(client) DO UPDATE SET sequence = max(sequence, excluded.sequence),"
+		" time_ms = max(time_ms, excluded.time_ms)",
+		&before_ms, &noted, error);
+	if (status)
+		return status;
+	return remove_old(database,
+	                  "DELETE FROM answers WHERE (client, sequence) IN"
+	                  " (SELECT client, sequence " OLD_ANSWERS ")",
+	                  before_ms, rows, error);
+}
+
+#define OLD_FORGOTTEN                                                                              \
+	"DELETE FROM forgotten WHERE client IN (SELECT client FROM forgotten"                          \
+	" WHERE time_ms < ?1 ORDER BY time_ms " CAU_STORE_ROWS ")"
+
+// Events are written in the order of time, near enough: only the oldest keys need a look.
+#define OLD_EVENTS                                                                                 \
+	"DELETE FROM events WHERE key IN (SELECT key FROM (SELECT key, time_ms"                        \
+	" FROM events AS e WHERE NOT EXISTS(SELECT 1 FROM marks AS m WHERE m.session = e.session"      \
+	"  AND m.branch = e.branch AND m.tick = e.tick) ORDER BY key " CAU_STORE_ROWS                  \
+	") WHERE time_ms < ?1)"
+
 // ---- the budget of the whole store -----------------------------------------------------
+// All pages of the file that are in use: every table and index counts.
 #define SPENT                                                                                      \
-	"SELECT (SELECT coalesce(sum(bytes), 0) FROM branches)"                                        \
-	" + (SELECT coalesce(sum(length(definition) + length(mesh)), 0) FROM sessions)"
+	"SELECT (p.page_count - f.freelist_count) * s.page_size, (SELECT bytes FROM sizes)"            \
+	" FROM pragma_page_count AS p, pragma_freelist_count AS f, pragma_page_size AS s"
 
 // A present line's checkpoint, and how early it was written among all.
 struct oldest {
@@ -165,16 +213,13 @@ static cau_status walk(sqlite3 *database, bool trim, struct oldest *oldest, int6
 	return CAU_OK;
 }
 
-// What was left goes first, then of all sessions the checkpoint that was written first and may go,
-// then the oldest log of the biggest session that has some to give.
-static cau_status shrink_store(sqlite3 *database, struct cau_store_budget *budget, int64_t *rows,
-                               cau_error *error)
+// Of all sessions the checkpoint that was written first and may go, then the oldest log of the
+// biggest session that has some to give.
+static cau_status shrink_sessions(sqlite3 *database, struct cau_store_budget *budget, int64_t *rows,
+                                  cau_error *error)
 {
 	struct oldest oldest = {.row = INT64_MAX};
-	cau_status status = cau_store_trim_left(database, INT64_MAX, 0, rows, error);
-	if (status || *rows)
-		return status;
-	status = walk(database, false, &oldest, rows, error);
+	cau_status status = walk(database, false, &oldest, rows, error);
 	if (!status && oldest.row < INT64_MAX) {
 		status = cau_store_drop_point(database, oldest.session, &oldest.point, rows, error);
 		budget->dropped += status ? 0 : *rows;
@@ -184,64 +229,49 @@ static cau_status shrink_store(sqlite3 *database, struct cau_store_budget *budge
 	return status;
 }
 
-static cau_status keep_budget(sqlite3 *database, int64_t most, struct cau_store_budget *budget,
-                              int64_t *rows, cau_error *error)
+// What was left goes first, then answers beyond their share, then what sessions can give, then the
+// other answers and events. That a request was answered is not forgotten for the budget, so that a
+// late resend does not act again.
+static cau_status shrink_store(sqlite3 *database, struct cau_store_budget *budget,
+                               int64_t answer_bytes, int64_t most, int64_t *rows, cau_error *error)
 {
-	struct cau_store_outcome spent;
-	cau_status status = cau_store_run(database, SPENT, NULL, &spent, error);
-	if (status)
-		return status;
-	budget->bytes = spent.value[0];
+	cau_status status = cau_store_trim_left(database, INT64_MAX, 0, rows, error);
+	if (!status && !*rows && answer_bytes > most / ANSWER_SHARE)
+		status = forget_answers(database, INT64_MAX, rows, error);
+	if (!status && !*rows)
+		status = shrink_sessions(database, budget, rows, error);
+	if (!status && !*rows)
+		status = forget_answers(database, INT64_MAX, rows, error);
+	if (!status && !*rows)
+		status = remove_old(database, OLD_EVENTS, INT64_MAX, rows, error);
+	return status;
+}
+
+static cau_status keep_budget(sqlite3 *database, int64_t most, int64_t answer_bytes,
+                              struct cau_store_budget *budget, int64_t *rows, cau_error *error)
+{
 	// Once beyond it, some room is made, so that not every checkpoint begins this anew.
 	int64_t bound = budget->state == CAU_STORE_BUDGET_KEPT ? most : most - most / FREED_SHARE;
 	if (!most || budget->bytes <= bound) {
 		budget->state = CAU_STORE_BUDGET_KEPT;
 		return CAU_OK;
 	}
-	status = shrink_store(database, budget, rows, error);
+	cau_status status = shrink_store(database, budget, answer_bytes, most, rows, error);
 	budget->state = *rows                   ? CAU_STORE_BUDGET_SHRINKING
 	                : budget->bytes <= most ? CAU_STORE_BUDGET_KEPT
 	                                        : CAU_STORE_BUDGET_BEYOND;
 	return status;
 }
 
-// ---- old answers and events -----------------------------------------------------------
-static cau_status remove_old(sqlite3 *database, const char *sql, int64_t before_ms, int64_t *rows,
-                             cau_error *error)
-{
-	struct cau_store_outcome removed;
-	cau_status status = cau_store_run(database, sql, &before_ms, &removed, error);
-	*rows = status ? 0 : removed.rows;
-	return status;
-}
-
-#define OLD_ANSWERS "FROM answers WHERE time_ms < ?1 ORDER BY time_ms " CAU_STORE_ROWS
-
-// What is forgotten is remembered as such, so that a late resend does not act again.
-static cau_status forget_answers(sqlite3 *database, int64_t before_ms, int64_t *rows,
-                                 cau_error *error)
-{
-	struct cau_store_outcome noted;
-	cau_status status = cau_store_run(
-		database,
-		"INSERT INTO forgotten SELECT client, max(sequence), max(time_ms)"
-		" FROM (SELECT client, sequence, time_ms " OLD_ANSWERS ") WHERE true GROUP BY client"
-		" ON CONFLICT(client) DO UPDATE SET sequence = max(sequence, excluded.sequence),"
-		" time_ms = max(time_ms, excluded.time_ms)",
-		&before_ms, &noted, error);
-	if (status)
-		return status;
-	return remove_old(database,
-	                  "DELETE FROM answers WHERE (client, sequence) IN"
-	                  " (SELECT client, sequence " OLD_ANSWERS ")",
-	                  before_ms, rows, error);
-}
-
 static cau_status step(sqlite3 *database, const cau_store_config *config,
                        struct cau_store_budget *budget, int64_t *rows, cau_error *error)
 {
 	int64_t now_ms = config->wall_clock_ms();
-	cau_status status = remove_deleted(database, rows, error);
+	struct cau_store_outcome spent;
+	cau_status status = cau_store_run(database, SPENT, NULL, &spent, error);
+	budget->bytes = status ? budget->bytes : spent.value[0];
+	if (!status)
+		status = remove_deleted(database, rows, error);
 	if (!status && !*rows)
 		status = cau_store_trim_left(database, now_ms - config->retention_age_ms, 0, rows, error);
 	if (!status && !*rows)
@@ -249,23 +279,13 @@ static cau_status step(sqlite3 *database, const cau_store_config *config,
 	if (!status && !*rows)
 		status = thin_sessions(database, config->retention_bytes, rows, error);
 	if (!status && !*rows)
-		status = keep_budget(database, config->store_bytes, budget, rows, error);
+		status = keep_budget(database, config->store_bytes, spent.value[1], budget, rows, error);
 	if (!status && !*rows)
 		status = forget_answers(database, now_ms - config->answer_age_ms, rows, error);
 	if (!status && !*rows)
-		status = remove_old(database,
-		                    "DELETE FROM forgotten WHERE client IN (SELECT client FROM forgotten"
-		                    " WHERE time_ms < ?1 " CAU_STORE_ROWS ")",
-		                    now_ms - config->event_age_ms, rows, error);
-	// Events are written in the order of time, near enough: only the oldest keys need a look.
+		status = remove_old(database, OLD_FORGOTTEN, now_ms - config->event_age_ms, rows, error);
 	if (!status && !*rows)
-		status = remove_old(database,
-		                    "DELETE FROM events WHERE key IN (SELECT key FROM (SELECT key, time_ms"
-		                    " FROM events AS e WHERE NOT EXISTS(SELECT 1 FROM marks AS m"
-		                    "  WHERE m.session = e.session AND m.branch = e.branch"
-		                    "  AND m.tick = e.tick) ORDER BY key " CAU_STORE_ROWS
-		                    ") WHERE time_ms < ?1)",
-		                    now_ms - config->event_age_ms, rows, error);
+		status = remove_old(database, OLD_EVENTS, now_ms - config->event_age_ms, rows, error);
 	return status;
 }
 

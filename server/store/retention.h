@@ -9,7 +9,7 @@
 // The budget of the whole store, from step to step; zeroed at the start.
 struct cau_store_budget {
 	cau_store_budget_state state;
-	int64_t bytes;   // that sessions, logs and checkpoints took at the last look
+	int64_t bytes;   // of the file in use at the last look
 	int64_t dropped; // checkpoints, for the budget, so far
 };
 

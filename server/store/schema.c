@@ -7,7 +7,8 @@
 static const char first_step[] =
 	"CREATE TABLE meta(name TEXT PRIMARY KEY, value) WITHOUT ROWID;"
 
-	// deleted: the rows of this session are being removed in small steps.
+	// deleted: the rows of this session are being removed in small steps; 2: its answers too, since
+    // another daemon has them.
 	"CREATE TABLE sessions(key INTEGER PRIMARY KEY, id TEXT NOT NULL, name TEXT NOT NULL,"
 	" state TEXT NOT NULL, branch INTEGER NOT NULL, created_ms INTEGER NOT NULL,"
 	" deleted INTEGER NOT NULL DEFAULT 0, definition BLOB NOT NULL, mesh BLOB NOT NULL);"
@@ -80,5 +81,23 @@ static const char fifth_step[] =
 	" source TEXT NOT NULL, label TEXT NOT NULL, pieces INTEGER NOT NULL, state INTEGER NOT NULL,"
 	" time_ms INTEGER NOT NULL) WITHOUT ROWID;";
 
+// What the stored answers take, counted as rows come and go, since they have a share of the budget.
+// An answer is in the table and in two indices; a long one has pages of its own.
+#define ANSWER_BYTES(row)                                                                          \
+	"length(" row "result) + 4096 * (length(" row "result) > 900) + 3 * length(" row               \
+	"client) + 2 * coalesce(length(" row "session), 0)"                                            \
+	" + 100"
+static const char sixth_step[] =
+	"CREATE INDEX answer_by_session ON answers(session);"
+	"CREATE TABLE sizes(name TEXT PRIMARY KEY, bytes INTEGER NOT NULL) WITHOUT ROWID;"
+	"INSERT INTO sizes SELECT 'answers', coalesce(sum(" ANSWER_BYTES(
+		"") "), 0) FROM answers;"
+			"CREATE TRIGGER answer_added AFTER INSERT ON answers BEGIN"
+			" UPDATE sizes SET bytes = bytes + " ANSWER_BYTES(
+				"new.") " WHERE name = 'answers'; END;"
+						"CREATE TRIGGER answer_removed AFTER DELETE ON answers BEGIN"
+						" UPDATE sizes SET bytes = bytes - (" ANSWER_BYTES(
+							"old.") ") WHERE name = 'answers'; END;";
+
 const char *const cau_store_schema_steps[CAU_STORE_SCHEMA_VERSION] = {
-	first_step, second_step, third_step, fourth_step, fifth_step};
+	first_step, second_step, third_step, fourth_step, fifth_step, sixth_step};

@@ -54,7 +54,7 @@ typedef enum cau_store_state {
 
 const char *cau_store_state_name(cau_store_state state);
 
-// What sessions, logs and checkpoints take in all, against config.store_bytes.
+// What all tables take, against config.store_bytes.
 typedef enum cau_store_budget_state {
 	CAU_STORE_BUDGET_KEPT,
 	CAU_STORE_BUDGET_SHRINKING, // the oldest go, until a twentieth of the budget is free
@@ -63,18 +63,18 @@ typedef enum cau_store_budget_state {
 
 // ---- life -----------------------------------------------------------------------------
 typedef struct cau_store_config {
-	const char *path;        // the database; "-wal", "-shm" and "-lock" files stand beside it
-	const char *label;       // the daemon's label; NULL takes the stored one; another is refused,
-	                         // and one with a `-` in a new store
-	int32_t commit_delay_ms; // 0 to 10: how long a batch may wait for company
-	int32_t queue_batches;   // bound on batches not yet answered
-	size_t queue_bytes;      // bound on their bytes
-	int32_t full_retry_ms;   // between attempts while full, at least 1
-	int64_t retention_bytes; // per session; beyond it the oldest of what may go goes first
-	int64_t store_bytes;     // of all sessions; beyond it the oldest of any goes first; 0: no bound
-	int64_t retention_age_ms;      // left branches
-	int64_t answer_age_ms;         // recorded answers
-	int64_t event_age_ms;          // events
+	const char *path;         // the database; "-wal", "-shm" and "-lock" files stand beside it
+	const char *label;        // the daemon's label; NULL takes the stored one; another is refused,
+	                          // and one with a `-` in a new store
+	int32_t commit_delay_ms;  // 0 to 10: how long a batch may wait for company
+	int32_t queue_batches;    // bound on batches not yet answered
+	size_t queue_bytes;       // bound on their bytes
+	int32_t full_retry_ms;    // between attempts while full, at least 1
+	int64_t retention_bytes;  // per session; beyond it the oldest of what may go goes first
+	int64_t store_bytes;      // of all tables; beyond it the oldest of any goes first; 0: no bound
+	int64_t retention_age_ms; // left branches
+	int64_t answer_age_ms;    // recorded answers
+	int64_t event_age_ms;     // events
 	int32_t retention_interval_ms; // between looks for something to remove, at least 1
 	size_t wal_bytes; // the write-ahead log is folded into the file when it grows past this
 	int64_t (*wall_clock_ms)(void); // Unix time; NULL: the system's
@@ -392,7 +392,7 @@ typedef struct cau_store_metrics {
 	uint64_t failed_batches;
 	uint64_t refused_batches;                     // by submit
 	uint64_t retired_rows;                        // removed by retention
-	uint64_t kept_bytes;                          // of all sessions, at retention's last look
+	uint64_t kept_bytes;                          // of the file in use, at retention's last look
 	uint64_t budget_dropped;                      // checkpoints that went for the budget
 	cau_store_budget_state budget;                // now
 	uint64_t full_count;                          // times the disk was found full

@@ -34,6 +34,7 @@ struct cau_store {
 	double fold_due_s;  // monotonic: the log is not folded here before
 	double chore_due_s; // monotonic: next look for something to remove
 	struct cau_store_budget budget;
+	uint64_t unseen_bytes; // committed since retention's last look
 	double retry_due_s;    // monotonic: next attempt while full
 	uint64_t wanted_bytes; // free space that an attempt while full asks for
 

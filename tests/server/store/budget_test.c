@@ -36,7 +36,8 @@ static bool has(cau_store *store, const char *session, uint64_t tick)
 	return newest == tick;
 }
 
-// Checkpoints of two sessions at ticks 0 to 6000, by turns; knee's at 1000 is marked. 1.4 MB.
+// Checkpoints of two sessions at ticks 0 to 6000, by turns; knee's at 1000 is marked. 1.4 MB, and
+// 0.1 MB of tables and indices.
 static cau_store *fill(struct fixture *fixture)
 {
 	cau_store *store = retention_open(fixture);
@@ -52,11 +53,12 @@ static void of_all_sessions_the_oldest_goes_first(void **state)
 {
 	struct fixture *fixture = *state;
 	struct removal removal;
-	fixture->config.store_bytes = 1000000;
-	cau_store *store = retention_retire(fixture, fill(fixture), &removal);
-	assert_int_equal(removal.budget.dropped, 5); // to 950 kB, so that some room is there
+	cau_store *store = fill(fixture);
+	fixture->config.store_bytes = 1100000;
+	store = retention_retire(fixture, store, &removal);
+	assert_int_equal(removal.budget.dropped, 5); // to 1,045 kB, so that some room is there
 	assert_int_equal(removal.budget.state, CAU_STORE_BUDGET_KEPT);
-	assert_in_range(removal.budget.bytes, 900000, 950000);
+	assert_in_range(removal.budget.bytes, 945000, 1045000);
 	for (uint64_t tick = 0; tick <= 6000; tick += 1000) {
 		assert_int_equal(has(store, "knee", tick), tick < 2000 || tick > 3000);
 		assert_int_equal(has(store, "hip", tick), tick == 0 || tick > 3000);
@@ -68,8 +70,9 @@ static void within_its_budget_and_without_one_nothing_goes(void **state)
 {
 	struct fixture *fixture = *state;
 	struct removal removal;
+	cau_store *store = fill(fixture);
 	fixture->config.store_bytes = 1500000;
-	cau_store *store = retention_retire(fixture, fill(fixture), &removal);
+	store = retention_retire(fixture, store, &removal);
 	assert_int_equal(removal.rows, 0);
 	assert_in_range(removal.budget.bytes, 1400000, 1500000);
 	fixture->config.store_bytes = 0;
@@ -115,6 +118,70 @@ static void what_may_not_go_is_beyond_it(void **state)
 	cau_store_close(store);
 }
 
+// ---- answers
+static void put_answers(cau_store *store, const char *client, uint64_t first, int count)
+{
+	static const char result[800];
+	cau_store_batch *batch = cau_store_batch_create();
+	for (int i = 0; i < count; i++) {
+		cau_store_answer answer = {.client = client,
+		                           .sequence = first + (uint64_t)i,
+		                           .session = "knee",
+		                           .result = {result, sizeof result}};
+		assert_int_equal(cau_store_put_answer(batch, &answer, NULL), CAU_OK);
+	}
+	assert_int_equal(write_batch(store, batch, NULL), CAU_OK);
+}
+
+static cau_status ignore_answer(void *user, const cau_store_answer *answer)
+{
+	(void)user, (void)answer;
+	return CAU_OK;
+}
+
+static cau_status look_for(cau_store *store, const char *client, uint64_t sequence)
+{
+	return cau_store_read_answer(store, client, sequence, ignore_answer, NULL, NULL);
+}
+
+// Answers have a quarter of the budget. The oldest go first, and checkpoints stay.
+static void answers_beyond_their_share_go_before_checkpoints(void **state)
+{
+	struct fixture *fixture = *state;
+	struct removal removal;
+	cau_store *store = fill(fixture);
+	for (int i = 0; i < 20; i++) { // 2 MB
+		put_answers(store, "anna", 1 + 100 * (uint64_t)i, 100);
+		retention_clock_ms += 1000;
+	}
+	fixture->config.store_bytes = 2500000;
+	store = retention_retire(fixture, store, &removal);
+	assert_int_equal(removal.budget.state, CAU_STORE_BUDGET_KEPT);
+	assert_int_equal(removal.budget.dropped, 0);
+	assert_true(removal.budget.bytes <= 2500000);
+	assert_int_equal(look_for(store, "anna", 1), CAU_ALREADY_EXISTS); // it must not act again
+	assert_int_equal(look_for(store, "anna", 2000), CAU_OK);
+	assert_int_equal(look_for(store, "anna", 2001), CAU_NOT_FOUND);
+	for (uint64_t tick = 0; tick <= 6000; tick += 1000)
+		assert_true(has(store, "hip", tick));
+	cau_store_close(store);
+}
+
+// Within their share they stay, and sessions give.
+static void answers_within_their_share_stay(void **state)
+{
+	struct fixture *fixture = *state;
+	struct removal removal;
+	cau_store *store = fill(fixture);
+	put_answers(store, "anna", 1, 200); // 0.2 MB
+	fixture->config.store_bytes = 1300000;
+	store = retention_retire(fixture, store, &removal);
+	assert_int_equal(removal.budget.state, CAU_STORE_BUDGET_KEPT);
+	assert_true(removal.budget.dropped > 0);
+	assert_int_equal(look_for(store, "anna", 1), CAU_OK);
+	cau_store_close(store);
+}
+
 // ---- told by a store that runs
 typedef struct told {
 	atomic_int count;
@@ -141,7 +208,7 @@ static void the_daemon_is_told_when_it_begins_and_when_it_is_over(void **state)
 	cau_store_metrics metrics;
 	memset(&heard, 0, sizeof heard);
 	cau_store_close(fill(fixture));
-	fixture->config.store_bytes = 1000000;
+	fixture->config.store_bytes = 1100000;
 	fixture->config.retention_interval_ms = 10;
 	fixture->config.on_budget = note;
 	fixture->config.user = &heard;
@@ -152,7 +219,7 @@ static void the_daemon_is_told_when_it_begins_and_when_it_is_over(void **state)
 	assert_int_equal(heard.states[0], CAU_STORE_BUDGET_SHRINKING);
 	assert_true(heard.bytes[0] > 1400000);
 	assert_int_equal(heard.states[1], CAU_STORE_BUDGET_KEPT);
-	assert_true(heard.bytes[1] <= 950000);
+	assert_true(heard.bytes[1] <= 1045000);
 	assert_int_equal(heard.dropped[1], 5);
 	cau_store_get_metrics(store, &metrics);
 	assert_int_equal(metrics.budget_dropped, 5);
@@ -168,6 +235,8 @@ int main(void)
 		TEST(within_its_budget_and_without_one_nothing_goes),
 		TEST(after_checkpoints_the_log_of_the_biggest_goes),
 		TEST(what_may_not_go_is_beyond_it),
+		TEST(answers_beyond_their_share_go_before_checkpoints),
+		TEST(answers_within_their_share_stay),
 		TEST(the_daemon_is_told_when_it_begins_and_when_it_is_over),
 	};
 	return cmocka_run_group_tests(tests, NULL, NULL);

@@ -5,12 +5,14 @@
 
 #include <stdlib.h>
 #include <string.h>
+#include <unistd.h>
 
 #include "store/dump.h"
 #include "store/rows.h"
 
 #define TEST(name) cmocka_unit_test_setup_teardown(name, fixture_setup, fixture_teardown)
 
+enum { PATIENCE_MS = 30000 };
 enum { PIECE_BYTES = 300 }; // small, so that a session takes several
 
 static void put_request(cau_store_batch *batch, uint64_t tick, uint64_t sequence)
@@ -252,6 +254,71 @@ static cau_status put_arrival(cau_store *store, cau_store_arrival_state wanted)
 	return write_batch(store, batch, NULL);
 }
 
+// ---- answers
+static cau_status ignore_answer(void *user, const cau_store_answer *answer)
+{
+	(void)user, (void)answer;
+	return CAU_OK;
+}
+
+static cau_status look_for_answer(cau_store *store, const char *client)
+{
+	return cau_store_read_answer(store, client, 11, ignore_answer, NULL, NULL);
+}
+
+// Moves the session away; its client's request 11 is answered, and so is one of no session. Nothing
+// is removed yet.
+static cau_store *move_away(struct fixture *fixture)
+{
+	fixture->config.retention_interval_ms = INT32_MAX;
+	cau_store *store = open_store(&fixture->config);
+	const cau_store_moved row = moved_row();
+	cau_store_answer other = {.client = "other", .sequence = 11, .result = {"ok", 2}};
+	fill_first(store);
+	cau_store_batch *batch = cau_store_batch_create();
+	assert_int_equal(cau_store_put_answer(batch, &other, NULL), CAU_OK);
+	assert_int_equal(cau_store_put_moved(batch, &row, NULL), CAU_OK);
+	assert_int_equal(write_batch(store, batch, NULL), CAU_OK);
+	return store;
+}
+
+// Opens the store again, and waits until it has removed something. Answers go first.
+static cau_store *retire_some(struct fixture *fixture, cau_store *store)
+{
+	cau_store_metrics metrics = {0};
+	cau_store_close(store);
+	fixture->config.retention_interval_ms = 10;
+	store = open_store(&fixture->config);
+	for (int waited = 0; !metrics.retired_rows && waited < PATIENCE_MS; waited++) {
+		usleep(1000);
+		cau_store_get_metrics(store, &metrics);
+	}
+	assert_true(metrics.retired_rows > 0);
+	return store;
+}
+
+static void answers_leave_with_their_session(void **state)
+{
+	struct fixture *fixture = *state;
+	cau_store *store = move_away(fixture);
+	assert_int_equal(look_for_answer(store, "anna"), CAU_OK);
+	store = retire_some(fixture, store);
+	assert_int_equal(look_for_answer(store, "anna"), CAU_NOT_FOUND);
+	assert_int_equal(look_for_answer(store, "other"), CAU_OK);
+	cau_store_close(store);
+}
+
+// A session that comes back before its old rows are gone has its answers.
+static void answers_of_a_session_that_comes_back_stay(void **state)
+{
+	struct fixture *fixture = *state;
+	cau_store *store = move_away(fixture);
+	assert_int_equal(put_arrival(store, CAU_STORE_WHOLE), CAU_OK);
+	store = retire_some(fixture, store);
+	assert_int_equal(look_for_answer(store, "anna"), CAU_OK);
+	cau_store_close(store);
+}
+
 // One that comes back is led elsewhere by its old row until it is accepted.
 static void an_old_row_goes_when_the_session_is_accepted_here_again(void **state)
 {
@@ -311,6 +378,8 @@ int main(void)
 	const struct CMUnitTest tests[] = {
 		TEST(a_session_arrives_whole_and_each_row_once),
 		TEST(a_session_goes_in_the_transaction_that_says_where),
+		TEST(answers_leave_with_their_session),
+		TEST(answers_of_a_session_that_comes_back_stay),
 		TEST(an_old_row_goes_when_the_session_is_accepted_here_again),
 		TEST(rows_that_come_twice_fail_their_batch_alone),
 	};
