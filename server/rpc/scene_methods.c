@@ -58,8 +58,9 @@ void cau_call_scene_get(cau_call *call)
 		scene++;
 	if (scene < count) {
 		cau_buffer *answer = service->scene_answers[scene];
-		cau_call_answer(call, cau_answer_with_id((const char *)cau_buffer_bytes(answer),
-		                                         answer->byte_count, &call->message->id));
+		if (call->message->kind == CAU_RPC_REQUEST)
+			cau_call_answer(call, cau_answer_with_id((const char *)cau_buffer_bytes(answer),
+			                                         answer->byte_count, &call->message->id));
 		return;
 	}
 	cau_fail(&error, CAU_NOT_FOUND, "params.scene", "there is no scene `%.48s`", params.scene);

@@ -150,6 +150,18 @@ test('a notification with an unknown member does nothing', async () => {
 	await own.close();
 });
 
+test('a notification gets no answer, whatever the method', async () => {
+	const own = await daemon.connect();
+	const stray = [];
+	own.onText = (onText => (text) => (stray.push(JSON.parse(text)), onText.call(own, text)))(own.onText);
+	own.notify('scene.get', { scene: 'fascia' });
+	own.notify('scene.list', {});
+	own.notify('scene.get', { scene: 'none' });
+	await own.call('session.list');
+	assert.deepEqual(stray.filter((message) => !message.method).length, 1, 'the answer to session.list alone');
+	await own.close();
+});
+
 // Every object of a value, as a function that puts the stranger there and one that takes it out.
 function* objectsOf(value, path = '') {
 	if (!value || typeof value !== 'object')
