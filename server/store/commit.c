@@ -15,7 +15,8 @@ enum {
 	SPARE_BYTES = 1000000, // asked for on top of what failed, before a full store is tried again
 	FOLD_PATIENCE = 4,
 	CHORE_PAUSE_MS = 5, // between small steps of retention
-	OVERDRAWN_MS = 10,  // commits wait for so long while the budget is overdrawn
+	OVERDRAWN_MS = 10,  // commits wait for so long while the budget is exceeded
+	BEYOND_SHARE = 10,  // of the budget: beyond it by so much, commits wait until it is not
 	MAX_FAILED_BYTES = 1 << 30,
 	UNSEEN_SHARE = 100, // of the budget: what may be committed between two looks at it
 };
@@ -118,7 +119,16 @@ static void fold_log(struct cau_store *store)
 		store->fold_due_s = cau_store_monotonic_s() + 1e-3 * store->config.full_retry_ms;
 }
 
-// One step; while the budget is overdrawn more of them, so that removal keeps pace with what is
+// Whether commits wait for more removal. The bound of time alone would let a slow machine write
+// faster than it removes.
+static bool must_shrink(const struct cau_store *store, double until_s)
+{
+	int64_t most = store->config.store_bytes, bytes = store->budget.bytes;
+	return bytes > most + most / BEYOND_SHARE ||
+	       (bytes > most && cau_store_monotonic_s() < until_s);
+}
+
+// One step; while the budget is exceeded more of them, so that removal keeps pace with what is
 // written.
 static cau_status take_steps(struct cau_store *store, int64_t *rows, cau_error *error)
 {
@@ -131,8 +141,7 @@ static cau_status take_steps(struct cau_store *store, int64_t *rows, cau_error *
 			cau_store_retention_step(store->writing, &store->config, &store->budget, &more, error);
 		*rows += more;
 	} while (!status && more && before == CAU_STORE_BUDGET_SHRINKING &&
-	         store->budget.state == before && store->budget.bytes > store->config.store_bytes &&
-	         cau_store_monotonic_s() < until_s);
+	         store->budget.state == before && must_shrink(store, until_s));
 	return status;
 }
 

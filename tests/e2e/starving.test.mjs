@@ -13,7 +13,8 @@ import { AT_REST } from './wire/scene.mjs';
 
 const { operations, components: { messages, schemas } } = JSON.parse(readFileSync(process.env.ASYNCAPI));
 const ALL = process.env.E2E_ALL === '1';
-const VIEWERS = 8, SECONDS = ALL ? 2 : 1, FRAMES_LEAST = 0.95, OFF_MOST_S = 0.05, ANSWER_MOST_S = 0.05, PERIOD_MS = 50;
+const sanitized = process.env.E2E_SLOW === '1'; // figures of time mean nothing there: off is answered, and no race is found
+const VIEWERS = 8, SECONDS = ALL ? 2 : sanitized ? 0.3 : 1, FRAMES_LEAST = 0.95, OFF_MOST_S = 0.05, ANSWER_MOST_S = 0.05, PERIOD_MS = 50;
 const TOKENS = { view: 'viewer-token-0123456789', operate: 'driver-token-0123456789' };
 const viewing = { token: TOKENS.view };
 
@@ -87,7 +88,7 @@ test("a viewer's scene.get does not wait for those of others", async (t) => {
 	await flood.stop();
 	const most = Math.max(...took);
 	t.diagnostic(`answered after ${(1e3 * most).toFixed(1)} ms at most of ${took.length}`);
-	assert.ok(most <= ANSWER_MOST_S, `answered after ${most} s`);
+	assert.ok(sanitized || most <= ANSWER_MOST_S, `answered after ${most} s`);
 });
 
 const methods = Object.entries(operations).filter(([, { action }]) => action === 'receive').map(([name]) => name);
@@ -112,6 +113,9 @@ async function flood(t, method) {
 		t.diagnostic(`asked ${asked} times, answered ${answered}`)));
 	t.diagnostic(`${calm.rate.toFixed(1)} frames/s, flooded ${flooded.rate.toFixed(1)}; `
 		+ `off after ${(1e3 * calm.off).toFixed(1)} ms at most, flooded ${(1e3 * flooded.off).toFixed(1)} of ${flooded.offs}`);
+	assert.ok(flooded.offs > 0);
+	if (sanitized)
+		return;
 	assert.ok(flooded.rate >= FRAMES_LEAST * calm.rate, `${flooded.rate} of ${calm.rate} frames a second`);
 	assert.ok(flooded.off <= OFF_MOST_S, `off is answered after ${flooded.off} s`);
 }

@@ -1,0 +1,70 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Memory does not grow where sessions and clients come and go: rounds in which sessions are made, watched,
+// cut, rewound, forked, exported and destroyed, and in which clients end in every way there is. Then the live
+// heap is where it was after the first rounds. E2E_ROUNDS sets the number of rounds.
+import assert from 'node:assert/strict';
+import { test } from 'node:test';
+import { Daemon } from './wire/daemon.mjs';
+import { AT_REST, cutMiddle, smallSession } from './wire/scene.mjs';
+
+const sanitized = process.env.E2E_SLOW === '1'; // which look for leaks themselves, when the daemon ends
+const ROUNDS = Number(process.env.E2E_ROUNDS ?? (sanitized ? 2 : 12)), AT_ONCE = 3;
+const WARM_UP = sanitized ? 1 : 6; // rounds, after which the store's page caches are full
+const GROWTH_MOST = 1e6; // bytes
+
+// Ways for a client to end. Each but the first leaves something behind for the daemon to clear away.
+const ENDS = [
+	(client) => client.close(),
+	(client) => client.terminate(),
+	(client) => client.send('no JSON'.repeat(1000)) ?? client.terminate(),
+	(client, session) => {
+		client.notify('tool.move', { session, tool: 'hook', position_m: [0, 0, 0.05], rotation: AT_REST, tick: 1e9 });
+		client.terminate();
+	},
+];
+
+async function life(daemon, name) {
+	const owner = await daemon.connect(), viewers = [await daemon.connect(), await daemon.connect(), await daemon.connect()];
+	const session = await smallSession(owner, name, { paused: true });
+	for (const viewer of viewers)
+		await viewer.join(session, { rate_hz: 30 });
+	await cutMiddle(owner, session, 60);
+	await owner.call('session.snapshot', { session, name: 'cut' });
+	await owner.file('session.export', { session, format: 'vtu' });
+	await owner.file('session.log', { session });
+	await owner.call('session.rewind', { session, tick: 40 });
+	const { summary: { session: fork } } = await owner.call('session.fork', { session, name: `${name}-fork` });
+	await owner.call('session.restore', { session, name: 'cut' });
+	await owner.call('session.resume', { session });
+	for (const id of [fork, session])
+		await owner.call('session.destroy', { session: id });
+	viewers.forEach((viewer, index) => ENDS[index + 1](viewer, session));
+	await owner.close();
+}
+
+const round = (daemon, number) => Promise.all(Array.from({ length: AT_ONCE }, (_, i) => life(daemon, `r${number}-${i}`)));
+
+// The live heap, once the daemon has cleared away what ended.
+async function heap(daemon) {
+	for (let before = Infinity; ;) {
+		const bytes = await daemon.metric('heap_bytes');
+		if (bytes >= before && await daemon.metric('connections') === 0 && await daemon.metric('sessions') === 0)
+			return bytes;
+		before = bytes;
+		await new Promise((resolve) => setTimeout(resolve, 500)); // nothing reports that memory was freed
+	}
+}
+
+test(`${ROUNDS} rounds of ${AT_ONCE} sessions leave the heap as it was`, async (t) => {
+	const daemon = await Daemon.start({ settings: { quota_admin: 1000000, quota_all: 1000000, resume_s: 0 } });
+	const start = await heap(daemon);
+	for (let i = 0; i < WARM_UP; i++)
+		await round(daemon, i);
+	const warm = await heap(daemon);
+	for (let i = 0; i < ROUNDS; i++)
+		await round(daemon, WARM_UP + i);
+	const end = await heap(daemon), mb = (bytes) => (1e-6 * bytes).toFixed(2);
+	t.diagnostic(`live heap: ${mb(start)} MB at the start, ${mb(warm)} after ${WARM_UP} rounds, ${mb(end)} after ${ROUNDS} more`);
+	assert.ok(end - warm <= GROWTH_MOST, `the heap grew by ${mb(end - warm)} MB`);
+	await daemon.end();
+});
