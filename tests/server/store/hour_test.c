@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // A store that takes 2,000 requests a second stays within its budget: all that it keeps counts, the
 // answers too. The clock is the test's; requests are written as fast as the disk takes them. The
-// argument is the number of minutes: five by default, one under sanitizers.
+// argument is the number of minutes: two by default, one under sanitizers.
 #include <sched.h>
 #include <stdlib.h>
 #include <string.h>
@@ -17,7 +17,7 @@ enum {
 	WAL_BYTES = 1000000, // small, so that the file shows what is in use
 };
 
-static int minutes = CAU_TEST_SANITIZED ? 1 : 5;
+static int minutes = CAU_TEST_SANITIZED ? 1 : 2;
 static _Atomic int64_t clock_ms = 1700000000000;
 
 static int64_t test_clock_ms(void)
