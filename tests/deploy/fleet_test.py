@@ -423,7 +423,7 @@ class CommandLine(Fleet):
                                       (("ls", "--label", "d1,d3"), 3, "no daemon of this fleet has the label"),
                                       (("ls", "--label", "d1,,d2"), 2, '"" is no label'),
                                       (("ls", "--label", "D 1"), 2, '"D 1" is no label'),
-                                      (("create", "fascia", "--label", "d1,d2"), 2, "wants one label")):
+                                      (("create", "fascia", "--label", "d1,d2"), 2, "takes one label here")):
             with self.subTest(arguments=arguments):
                 self.assertIn(said, self.cautery(*arguments, code=code))
 

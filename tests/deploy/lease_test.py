@@ -112,7 +112,7 @@ class Lease(WithStores):
     def test_nobody_takes_a_label_that_is_held(self):
         first = self.start("a.db")
         began = time.monotonic()
-        self.assertIn("d1 is served by another", self.refusal("b.db", ["--take-label"]))
+        self.assertIn("another daemon serves the label d1", self.refusal("b.db", ["--take-label"]))
         self.assertGreaterEqual(time.monotonic() - began, 2 * TTL_S - MARGIN_S)
         self.assertEqual(self.cautery(first, "create", "fascia", "--name", "knee", "--paused"), "d1-knee")
 
