@@ -29,6 +29,12 @@ enum {
 	CAU_MAX_GROUPS = CAU_MAX_LAYERS * CAU_MAX_MATERIALS,
 };
 
+// A triangle is slack where its stiffness along some direction is less than this share of the one
+// that A has of it. Sheets that are cut or hang free have such triangles, taut ones have none:
+// measured on fascia, a tenth misses tabs along a cut, and four tenths take in sheets that A
+// serves.
+static const double CAU_SLACK = 0.25;
+
 // One law over a range of slots.
 typedef struct cau_sheet_group {
 	int32_t first_slot, slot_count, layer, material;
@@ -114,6 +120,7 @@ typedef struct cau_elements {
 	int32_t record_count;
 	int32_t *record_vertex; // 4 x vertex of each; of padding's, 0
 	double *energy;         // J, of each share
+	bool *slack;            // of each share: whether some triangle is slack
 } cau_elements;
 
 static inline double cau_real_get(const void *array, bool single, int64_t index)

@@ -32,7 +32,8 @@ cau_status cau_elements_make_work(cau_elements *elements, cau_element_slots *slo
 		slot_count / CAU_SHARE + elements->sheet.group_count + elements->fat.group_count + 2;
 	slots->work = cau_arena_array(arena, (size_t)most, sizeof *slots->work);
 	elements->energy = cau_arena_array(arena, (size_t)most, sizeof *elements->energy);
-	if (!slots->work || !elements->energy)
+	elements->slack = cau_arena_array(arena, (size_t)most, sizeof *elements->slack);
+	if (!slots->work || !elements->energy || !elements->slack)
 		return no_memory(error);
 	for (int32_t g = 0; g < elements->fat.group_count; g++) {
 		const cau_fat_group *group = &elements->fat.group[g];

@@ -35,20 +35,22 @@ INLINE sheet_gradient sheet_linearised_residual(sheet_gradient f, sym2 k, sym2 t
 INLINE sheet_gradient sheet_residual(const cau_sheet_group *group, sheet_gradient f, sym2 k,
                                      sym2 target_root, sheet_gradient *polar,
                                      const vreal dm_inverse[4], vreal g2, bool diagonal,
-                                     vreal *squared)
+                                     vreal *squared, vmask *slack)
 {
 	vmask targeted = target_root.a00 > v_set(0);
 	sheet_gradient r, range = {{v3_zero(), v3_zero()}};
 	vreal range_squared = v_set(0);
 	if (group->limit == CAU_LIMIT_TARGET && group->projection == CAU_PROJECTION_LINEARISED) {
 		r = sheet_linearised_residual(f, k, target_root, dm_inverse, g2, diagonal);
+		*slack = (vmask){0};
 		*squared = v3_dot(r.c[0], r.c[0]) + v3_dot(r.c[1], r.c[1]);
 		return r;
 	}
 	if (group->limit == CAU_LIMIT_RANGE)
 		range = sheet_range_residual(f, k, group->stretch_min, group->stretch_max, group->shear_max,
 		                             &range_squared);
-	r = sheet_target_residual(f, k, target_root, polar);
+	r = sheet_target_residual(f, k, target_root, polar, slack);
+	*slack &= targeted;
 	for (int a = 0; a < 2; a++)
 		r.c[a] = v3_select(targeted, r.c[a], range.c[a]);
 	if (diagonal) {
@@ -88,7 +90,8 @@ INLINE sheet_gradient sheet_displacement_gradient(const cau_sheet_set *set, int3
 
 // w R in F = F_0 + H (N m); adds twice the energy (J).
 INLINE sheet_gradient sheet_stress(const cau_sheet_set *set, const cau_sheet_group *group,
-                                   int32_t slot, sheet_gradient h, bool diagonal, vreal *energy)
+                                   int32_t slot, sheet_gradient h, bool diagonal, vreal *energy,
+                                   vmask *slack)
 {
 	v3 f0[2];
 	vreal m[4];
@@ -109,7 +112,8 @@ INLINE sheet_gradient sheet_stress(const cau_sheet_set *set, const cau_sheet_gro
 	             v_load(set->target[2], slot)};
 	vreal g2 = diagonal ? v_load(set->position_scale, slot) : v_set(0);
 	vreal squared;
-	sheet_gradient r = sheet_residual(group, f, k, root, &polar, m, g2, diagonal, &squared);
+	vmask loose;
+	sheet_gradient r = sheet_residual(group, f, k, root, &polar, m, g2, diagonal, &squared, &loose);
 	for (int a = 0; a < 2; a++) {
 		v_store(set->polar[3 * a], slot, polar.c[a].x);
 		v_store(set->polar[3 * a + 1], slot, polar.c[a].y);
@@ -117,6 +121,7 @@ INLINE sheet_gradient sheet_stress(const cau_sheet_set *set, const cau_sheet_gro
 	}
 	vreal w = v_load(set->weight, slot);
 	*energy += w * squared;
+	*slack |= loose & (w > v_set(0));
 	return (sheet_gradient){{v3_scale(w, r.c[0]), v3_scale(w, r.c[1])}};
 }
 
@@ -131,7 +136,7 @@ INLINE v3 sheet_vertex_gradient(const cau_sheet_set *set, int32_t slot, sheet_gr
 // One vector of pairs, whose second halves are a batch behind their first: returns twice the
 // energies (J) and adds the gradient on their four vertices.
 INLINE vreal sheet_pairs(const cau_sheet_set *set, const cau_sheet_group *group, int32_t slot,
-                         const real *displacement, bool diagonal, real *records)
+                         const real *displacement, bool diagonal, real *records, vmask *slack)
 {
 	sheet_edge edge = sheet_edge_gather(set, slot, displacement);
 	v3 on_edge[2] = {v3_zero(), v3_zero()};
@@ -139,7 +144,7 @@ INLINE vreal sheet_pairs(const cau_sheet_set *set, const cau_sheet_group *group,
 #pragma GCC unroll 1
 	for (int32_t half = slot; half <= slot + CAU_BATCH; half += CAU_BATCH) {
 		sheet_gradient h = sheet_displacement_gradient(set, half, &edge, displacement);
-		sheet_gradient stress = sheet_stress(set, group, half, h, diagonal, &energy);
+		sheet_gradient stress = sheet_stress(set, group, half, h, diagonal, &energy, slack);
 		v3 apex = sheet_vertex_gradient(set, half, stress, 1);
 		v3 second = sheet_vertex_gradient(set, half, stress, 0);
 		v3_add_to(records, set->record_at[2] + half, apex);
@@ -171,18 +176,21 @@ INLINE void sheet_prefetch(const cau_sheet_set *set, int32_t slot)
 }
 
 // Slots [first, last) of one group: returns their energy, J. `displacement` is u = x - X, m,
-// of the share's records, `records` where the gradients on them are added up.
+// of the share's records, `records` where the gradients on them are added up. *slack: whether
+// some triangle hardly resists (CAU_SLACK).
 static double sheet_kernel(const cau_elements *elements, const cau_sheet_group *group,
                            int32_t first, int32_t last, const real *displacement, real *records,
-                           bool diagonal)
+                           bool diagonal, bool *slack)
 {
 	vsum energy = {0};
+	vmask loose = {0};
 	for (int32_t batch = first; batch < last; batch += 2 * CAU_BATCH) {
 		if (batch + 2 * CAU_BATCH < group->first_slot + group->slot_count)
 			sheet_prefetch(&elements->sheet, batch + 2 * CAU_BATCH);
 		for (int32_t slot = batch; slot < batch + CAU_BATCH; slot += LANES)
-			energy += v_widen(
-				sheet_pairs(&elements->sheet, group, slot, displacement, diagonal, records));
+			energy += v_widen(sheet_pairs(&elements->sheet, group, slot, displacement, diagonal,
+			                              records, &loose));
 	}
+	*slack = v_any(loose);
 	return 0.5 * v_total(energy);
 }

@@ -37,9 +37,10 @@ INLINE sheet_gradient sheet_times(sheet_gradient f, sym2 b)
 // TARGET in closed form: P = Q T^(1/2), Q the orthonormal polar factor of F T^(1/2). With K = F^T F
 // and S = (T^(1/2) K T^(1/2))^(1/2), Q = F T^(1/2) S^-1, so R = F (I - T^(1/2) S^-1 T^(1/2)). At
 // rest with T = I this is exactly zero. Where F has lost rank Q is not defined: the last one
-// (`polar`) is kept.
+// (`polar`) is kept. `slack` gets the lanes where the law hardly resists along the normal: there
+// the stiffness is w (I - T^(1/2) S^-1 T^(1/2)).
 INLINE sheet_gradient sheet_target_residual(sheet_gradient f, sym2 k, sym2 target_root,
-                                            sheet_gradient *polar)
+                                            sheet_gradient *polar, vmask *slack)
 {
 	vreal s;
 	sym2 m = sym2_sandwich(target_root, k);
@@ -50,6 +51,7 @@ INLINE sheet_gradient sheet_target_residual(sheet_gradient f, sym2 k, sym2 targe
 	vreal inverse = 1 / v_select(full, s, v_set(1));
 	sym2 root_inverse = {root.a11 * inverse, root.a00 * inverse, -root.a01 * inverse};
 	sym2 b = sym2_sandwich(target_root, root_inverse);
+	*slack = ~full | (v_max(b.a00, b.a11) + v_abs(b.a01) > v_set((real)(1 - CAU_SLACK)));
 	sheet_gradient q = sheet_times(sheet_times(f, target_root), root_inverse);
 	for (int a = 0; a < 2; a++)
 		polar->c[a] = v3_select(full, q.c[a], polar->c[a]);

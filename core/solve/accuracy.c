@@ -21,8 +21,6 @@ static const double untaught_force = 1;     // likewise of forces: all of them m
 static const double most_amplified = 300;
 static const double slack = 1.2;       // a contraction that is measured flatters a little
 static const double slowest = 0.999;   // contraction that can be told from none
-static const double newton_left = 1;   // of an increment of Newton's, at least,
-static const double newton_bent = 6;   // and more where the way to the solution is not straight
 static const double bound_share = 0.5; // one mode alone reaches the bound, seldom what is left
 static const double forgetting = 0.1;  // of an amplification's logarithm, a step that shows less
 static const double worth_learning = 0.05; // lengths below are rounding
@@ -200,18 +198,6 @@ static double amplification(const cau_accuracy *accuracy, int32_t count)
 	return accuracy->amplification[(count < CAU_ACCURACY_DEPTHS ? count : CAU_ACCURACY_DEPTHS) - 1];
 }
 
-// What Newton's last increment leaves, relative to what is wanted: it converges ever faster, but
-// not before it is near, which it is not while steps have to be shortened (`bent`). What A has
-// taught says nothing of it.
-static double estimate_newton(const cau_accuracy *accuracy, bool bent)
-{
-	int32_t last = accuracy->count - 1;
-	const double *norm = accuracy->norm;
-	CAU_ASSERT(last >= 0, "an estimate of %d increments", accuracy->count);
-	double a = last && norm[last - 1] > 0 ? fmin(norm[last] / norm[last - 1], slowest) : 0;
-	return fmax(slack * a / (1 - a), bent ? newton_bent : newton_left) * accuracy->length[last];
-}
-
 // The error after the increments so far, relative to what is wanted; that of the step alone is
 // kept.
 static double estimate(cau_accuracy *accuracy, double bound)
@@ -257,8 +243,7 @@ bool cau_accuracy_is_reached(cau_step_solver *solver, double norm)
 	// What an iteration that stalls mixes may be as good as nothing while its increments stay.
 	double length = accuracy->length[at] = at >= 2 ? fmax(of.length, smooth) : of.length;
 	accuracy->norm[at] = norm;
-	double error = accuracy->newton ? estimate_newton(accuracy, solver->backtracks > 0)
-	                                : estimate(accuracy, bound);
+	double error = estimate(accuracy, bound);
 	if (length > 0) {
 		double told = at >= 2 ? fmax(of.told, accuracy->wanted * smooth) : of.told;
 		accuracy->error = error * told / length;
@@ -283,7 +268,7 @@ static void teach(double *amplification, double shown)
 void cau_accuracy_learn(cau_accuracy *accuracy)
 {
 	double most = 0, left = accuracy->left;
-	if (accuracy->wanted == 0 || accuracy->newton)
+	if (accuracy->wanted == 0)
 		return;
 	if (accuracy->count > 1)
 		teach(&accuracy->force_left,

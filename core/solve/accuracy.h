@@ -44,7 +44,6 @@ typedef struct cau_accuracy {
 	double force_left; // of a tool's force, what the first increment leaves it off
 	double force_before[CAU_ACCURACY_TOOLS][3]; // N, of the tools at the last step's end
 	// Of this step; lengths and estimates relative to what is wanted.
-	bool newton;                               // increments are Newton's (newton.h)
 	bool moves;                                // there is something to learn from
 	int32_t count;                             // increments
 	double length[CAU_ACCURACY_STEPS];         // s_j, and |d| where that is more

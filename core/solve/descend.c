@@ -100,17 +100,12 @@ static void move_apart(cau_step_solver *solver, double scale)
 // stiffer than A, and halving alone would not come down to it in the few tries there are. But a
 // parabola says little of such a law either: one answer may take off half of the part at least, so
 // that the tries lead somewhere, and leaves a hundredth of it, so that none gives the step up.
-//
-// Newton's step rises otherwise: it is straight, and a sheet that turns along it is stretched by
-// the square of its part, which makes E rise by the fourth power.
-static double shorter(double scale, double before, double after, double slope, bool newton)
+static double shorter(double scale, double before, double after, double slope)
 {
 	CAU_ASSERT(scale > 0 && scale <= 1, "a part of %g of the step", scale);
 	CAU_ASSERT(!(slope > 0), "a slope of %g J", slope);
 	double rise = after - before - slope * scale;
 	double bottom = isfinite(after) && rise > 0 ? -slope * scale / (2 * rise) : 0;
-	if (newton) // of E + slope t + c t^4 instead of E + slope t + c t^2
-		bottom = cbrt(bottom / 2);
 	return scale * fmin(fmax(bottom, 0.01), 0.5);
 }
 
@@ -156,7 +151,7 @@ static bool take_step(cau_step_solver *solver, bool accelerated, double slope, d
 			use_plain_step(solver);
 			accelerated = false;
 		} else {
-			scale = shorter(scale, *objective, value, slope, solver->accuracy.newton);
+			scale = shorter(scale, *objective, value, slope);
 		}
 		if (tries == CAU_MAX_BACKTRACKS)
 			move_to(solver, 0);
@@ -258,25 +253,24 @@ cau_status cau_solver_run(cau_step_solver *solver, cau_error *error)
 	return cau_solver_descend(solver, error);
 }
 
-// By A, or by Newton's method, whose steps need no mixing: then the history is forgotten.
-static cau_status find_increment(cau_step_solver *solver, cau_error *error)
+// By A, and by Newton's method where tissue is loose.
+static void find_increment(cau_step_solver *solver)
 {
-	if (!solver->accuracy.newton) {
+	if (solver->loose.region.n && !solver->loose.given_up)
+		cau_loose_increment(solver);
+	else
 		cau_solver_global(solver);
-		return CAU_OK;
-	}
-	cau_anderson_start(solver);
-	return cau_newton_increment(solver, error);
 }
 
-// Likewise; what it throws touches nothing from here on, and then it is another one.
-static cau_status find_first_increment(cau_step_solver *solver, double *objective, cau_error *error)
+// The first is A's own: what moves as a whole, as in a free fall, it carries exactly. What it
+// throws touches nothing from here on, and then it is another one.
+static void find_first_increment(cau_step_solver *solver, double *objective)
 {
-	cau_status status = find_increment(solver, error);
-	if (status || !solver->collide || !cau_solver_let_go(solver))
-		return status;
+	cau_solver_global(solver);
+	if (!solver->collide || !cau_solver_let_go(solver))
+		return;
 	*objective = cau_solver_evaluate(solver);
-	return find_increment(solver, error);
+	cau_solver_global(solver);
 }
 
 static void forget_increments(cau_step_solver *solver)
@@ -285,75 +279,130 @@ static void forget_increments(cau_step_solver *solver)
 		cau_contact_begin(solver->contact);
 	cau_anderson_start(solver);
 	cau_accuracy_begin(&solver->accuracy);
-	solver->accuracy.newton = cau_newton_is_called_for(solver);
+}
+
+// What the iterations of a round hand on.
+typedef struct descent {
+	double objective, first, last; // J; norms of the first increment and of the last
+	int32_t steps;                 // since the history was forgotten
+	int32_t backtracks_before;     // of the tick's earlier rounds
+	uint64_t touching;
+	bool near; // the last increment was within the accuracy
+} descent;
+
+static void forget_history(cau_step_solver *solver, descent *d)
+{
+	cau_anderson_start(solver);
+	d->steps = 0;
+}
+
+// Mixes the increment into the history. Returns whether the step is accelerated.
+static bool mix(cau_step_solver *solver, descent *d, int32_t k, double norm)
+{
+	if (k == 1 && solver->loose.region.n) // by M from here on
+		forget_history(solver, d);
+	// Steps of an iteration that converges get shorter. Without an energy to tell a bad mix by,
+	// a step that has doubled says that the history misleads: it is forgotten.
+	if (!solver->conservative && k && norm > 2 * d->last)
+		cau_anderson_start(solver);
+	d->last = norm;
+	return cau_anderson_mix(solver, d->steps++);
+}
+
+// Takes the last step of a round without an evaluation where that can do no harm.
+static bool spare(cau_step_solver *solver, descent *d, double norm)
+{
+	if (!is_harmless(solver, norm, d->objective) ||
+	    (solver->collide && cau_solver_keep_apart(solver, solver->position)))
+		return false;
+	leave(solver);
+	solver->spared = true;
+	d->objective -= norm * norm / 2;
+	return true;
+}
+
+// Takes the mixed step, then settles what is loose. Returns whether the round ends.
+static bool advance(cau_step_solver *solver, descent *d, int32_t k, bool accelerated, double norm,
+                    cau_status *status, cau_error *error)
+{
+	cau_loose *loose = &solver->loose;
+	int32_t backtracks = solver->backtracks;
+	cau_anderson_keep(solver);
+	bool taken = take_step(solver, accelerated, -norm * norm, &d->objective);
+	bool back = !k && solver->backtracks > d->backtracks_before && go_back(solver, &d->objective);
+	if (back) {
+		d->steps = 0;
+		cau_accuracy_begin(&solver->accuracy);
+	}
+	bool straight = taken && solver->backtracks == backtracks && !is_held_back(solver);
+	if (d->near && straight && loose->settled)
+		return true;
+	if (loose->region.n && !loose->given_up)
+		*status = cau_loose_settle(solver, &d->objective, error);
+	if (*status || (!taken && !back && !loose->moved))
+		return true;
+	if (d->near && straight && loose->settled && !loose->moved)
+		return true;
+	if (solver->collide && forget_touching(solver, &d->touching))
+		forget_history(solver, d);
+	return false;
+}
+
+// One iteration. Returns whether the round ends.
+static bool iterate(cau_step_solver *solver, descent *d, int32_t k, cau_status *status,
+                    cau_error *error)
+{
+	if (k)
+		find_increment(solver);
+	else
+		find_first_increment(solver, &d->objective);
+	double norm = step_norm(solver);
+	if (!isfinite(norm) || !isfinite(d->objective)) {
+		*status =
+			cau_fail(error, CAU_NUMERICAL, NULL, "the state is not finite after %d iterations", k);
+		return true;
+	}
+	if (!k)
+		d->first = norm;
+	solver->residual = d->first > 0 ? norm / d->first : 0;
+	solver->iterations_done = k + 1;
+	if (norm == 0 || (k && solver->residual <= solver->tolerance))
+		return true;
+	bool accelerated = mix(solver, d, k, norm);
+	if (meets_others(solver))
+		cau_accuracy_begin(&solver->accuracy);
+	d->near = cau_accuracy_is_reached(solver, norm) && !touches_elsewhere(solver);
+	bool ends = (d->near && solver->loose.settled) || k + 1 == solver->iterations;
+	return (ends && spare(solver, d, norm)) ||
+	       advance(solver, d, k, accelerated, norm, status, error);
 }
 
 cau_status cau_solver_descend(cau_step_solver *solver, cau_error *error)
 {
 	CAU_ASSERT(solver->iterations > 0, "%d iterations", solver->iterations);
-	double objective = solver->objective, first = 0, last = 0;
-	int32_t steps = 0; // since the guess, or since it was forgotten
-	uint64_t touching = solver->collide ? solver->collide->touching_hash : 0;
-	int32_t backtracks_before = solver->backtracks; // of the tick's earlier rounds
+	descent d = {.objective = solver->objective, .backtracks_before = solver->backtracks};
+	d.touching = solver->collide ? solver->collide->touching_hash : 0;
 	solver->spared = false;
 	forget_increments(solver);
+	cau_status status = cau_loose_choose(solver, error);
+	if (status)
+		return status;
 	// Tissue that was guessed into tissue may have more energy than it began with.
 	if (solver->collide && solver->collide->energy_j > solver->collide->start_energy_j)
-		go_back(solver, &objective);
-	for (int32_t k = 0; k < solver->iterations; k++) {
-		cau_status status =
-			k ? find_increment(solver, error) : find_first_increment(solver, &objective, error);
-		if (status)
-			return status;
-		double norm = step_norm(solver);
-		if (!isfinite(norm) || !isfinite(objective))
-			return cau_fail(error, CAU_NUMERICAL, NULL,
-			                "the state is not finite after %d iterations", k);
-		if (!k)
-			first = norm;
-		solver->residual = first > 0 ? norm / first : 0;
-		solver->iterations_done = k + 1;
-		if (norm == 0 || (k && solver->residual <= solver->tolerance))
+		go_back(solver, &d.objective);
+	for (int32_t k = 0; k < solver->iterations; k++)
+		if (iterate(solver, &d, k, &status, error))
 			break;
-		// Steps of an iteration that converges get shorter. Without an energy to tell a bad mix by,
-		// a step that has doubled says that the history misleads: it is forgotten.
-		if (!solver->conservative && k && norm > 2 * last)
-			cau_anderson_start(solver);
-		last = norm;
-		bool accelerated = cau_anderson_mix(solver, solver->accuracy.newton ? 0 : steps++);
-		int32_t backtracks = solver->backtracks;
-		if (meets_others(solver))
-			cau_accuracy_begin(&solver->accuracy);
-		bool enough = cau_accuracy_is_reached(solver, norm) && !touches_elsewhere(solver);
-		if ((enough || k + 1 == solver->iterations) && is_harmless(solver, norm, objective) &&
-		    !(solver->collide && cau_solver_keep_apart(solver, solver->position))) {
-			leave(solver);
-			solver->spared = true;
-			objective -= norm * norm / 2;
-			break;
-		}
-		cau_anderson_keep(solver);
-		bool taken = take_step(solver, accelerated, -norm * norm, &objective);
-		bool back = !k && solver->backtracks > backtracks_before && go_back(solver, &objective);
-		if (!taken && !back)
-			break;
-		if (back) {
-			steps = 0;
-			cau_accuracy_begin(&solver->accuracy);
-		}
-		if (enough && solver->backtracks == backtracks && !is_held_back(solver))
-			break;
-		if (solver->collide && forget_touching(solver, &touching)) {
-			cau_anderson_start(solver);
-			steps = 0;
-		}
-	}
-	CAU_ASSERT(solver->backtracks - backtracks_before <=
+	if (status)
+		return status;
+	CAU_ASSERT(solver->backtracks - d.backtracks_before <=
 	               solver->iterations * (CAU_MAX_BACKTRACKS + 1),
-	           "%d backtracks in %d iterations", solver->backtracks - backtracks_before,
+	           "%d backtracks in %d iterations", solver->backtracks - d.backtracks_before,
 	           solver->iterations);
 	cau_accuracy_learn(&solver->accuracy);
-	solver->objective = objective;
+	if (solver->accuracy.wanted > 0)
+		solver->accuracy.error = fmax(solver->accuracy.error, solver->loose.left);
+	solver->objective = d.objective;
 	cau_solver_displace(solver);
 	return CAU_OK;
 }

@@ -43,8 +43,9 @@ static void local(const cau_elements *elements, const cau_local_work *work,
 	memset(records, 0, (size_t)work->record_count * sizeof(vertex_reals));
 	switch (work->kind) {
 	case CAU_ELEMENT_TRIANGLE:
-		*energy = sheet_kernel(elements, &elements->sheet.group[work->group], work->first,
-		                       work->last, taken, records, diagonal);
+		*energy =
+			sheet_kernel(elements, &elements->sheet.group[work->group], work->first, work->last,
+		                 taken, records, diagonal, &elements->slack[work->number]);
 		break;
 	case CAU_ELEMENT_TETRAHEDRON:
 		*energy = fat_kernel(elements, &elements->fat.group[work->group], work->first, work->last,

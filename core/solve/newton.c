@@ -1,57 +1,312 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "solve/newton.h"
 
+#include <math.h>
+#include <stdlib.h>
 #include <string.h>
 
 #include "cautery/assert.h"
-#include "solve/contact.h"
 #include "solve/solver.h"
 
-bool cau_newton_is_called_for(const cau_step_solver *solver)
-{
-	return solver->newton_chosen && (!solver->contact || !solver->contact->row_count) &&
-	       (!solver->collide || !solver->collide->touching_count);
-}
+// R is settled where a step moves none of its vertices by more than a tenth of what it may be off:
+// of the wanted share of its motion, and at least of half a micrometre (accuracy.c).
+static const double SETTLED = 0.1, SETTLED_M = 5e-8;
+static const double SETTLED_EXACTLY_M = 1e-12; // where a step has no accuracy to reach: rounding
+// A motion that is none, m: it may be off by half a micrometre, which is 1 % of this.
+static const double NOTHING_M = 5e-5;
+// Newton's steps of R in one iteration, and of the part that still moves after each. A tab that
+// comes free and buckles takes up to 25.
+enum { MOST_STEPS = 4, MOST_PART_STEPS = 12 };
+// A step must bring this share of the decrease that its slope promises [Armijo 1966].
+static const double ARMIJO = 1e-4;
+// Of a quadratic a step takes off half of what its slope promises. Where it takes off more than
+// this, it was too short: the next leaves negative eigenvalues out.
+static const double TOO_SHORT = 0.8;
 
-// By row, and back: the gradient of a fixed vertex is 0, and so is what comes of it.
-static void take_gradient(cau_newton *newton, const cau_step_solver *solver)
+// ---- vectors by row
+
+static void clear_rows(const cau_newton *newton, const cau_step_solver *solver, cau_reals *of)
 {
-	for (int32_t v = 0; v < solver->tissue->vertex_count; v++) {
-		if (newton->place[v] < 0)
-			continue;
-		double *to = newton->field + 4 * (int64_t)newton->place[v];
-		solver->kernels->vectors->read(solver->gradient, v, to);
+	for (int32_t i = 0; i < newton->n; i++) {
+		double is[3];
+		solver->kernels->vectors->read(of, newton->vertex[i], is);
 		for (int c = 0; c < 3; c++)
-			to[c] = -to[c];
-		to[3] = 0;
+			is[c] = -is[c];
+		solver->kernels->vectors->add(of, newton->vertex[i], is);
 	}
 }
 
-static void give_increment(const cau_newton *newton, cau_step_solver *solver)
+static void add_rows(const cau_newton *newton, const cau_step_solver *solver, cau_reals *to,
+                     const double *of)
 {
-	size_t count = 4 * (size_t)solver->tissue->vertex_count;
-	memset(solver->increment, 0, count * solver->kernels->vectors->real_bytes);
-	for (int32_t v = 0; v < solver->tissue->vertex_count; v++)
-		if (newton->place[v] >= 0 && !solver->fixed[v])
-			solver->kernels->vectors->add(solver->increment, v,
-			                              newton->field + 4 * (int64_t)newton->place[v]);
+	for (int32_t i = 0; i < newton->n; i++)
+		solver->kernels->vectors->add(to, newton->vertex[i], of + 4 * (int64_t)i);
 }
 
-cau_status cau_newton_increment(cau_step_solver *solver, cau_error *error)
+// field = -H_RR^-1 (gradient + H_RN d_N), d_N of `increment`; NULL: of none.
+static void solve(cau_newton *newton, const cau_step_solver *solver, const cau_reals *increment)
 {
-	cau_newton *newton = &solver->newton;
-	CAU_ASSERT(solver->newton_chosen, "Newton's step of %d tetrahedra",
-	           solver->tissue->tetrahedron_count);
-	if (!newton->n) {
-		cau_status status = cau_newton_create(newton, solver, error);
-		if (status)
-			return status;
+	for (int64_t i = 0; i < 4 * (int64_t)newton->n; i++)
+		newton->field[i] = -newton->gradient[i];
+	for (int32_t k = 0; increment && k < newton->coupling_count; k++) {
+		const cau_newton_coupling *by = &newton->coupling[k];
+		double d[3], *to = newton->field + 4 * (int64_t)by->row;
+		solver->kernels->vectors->read(increment, by->vertex, d);
+		for (int r = 0; r < 3; r++)
+			to[r] -=
+				by->block[3 * r] * d[0] + by->block[3 * r + 1] * d[1] + by->block[3 * r + 2] * d[2];
 	}
-	cau_newton_assemble(newton, solver);
-	if (!solver->kernels->newton_factor(newton))
-		return cau_fail(error, CAU_NUMERICAL, NULL, "a sheet's Hessian is not positive definite");
-	take_gradient(newton, solver);
 	solver->kernels->newton_solve(newton);
-	give_increment(newton, solver);
-	return CAU_OK;
+}
+
+// gradient_N += scale H_NR of
+static void spread(const cau_newton *newton, cau_step_solver *solver, double scale,
+                   const double *of)
+{
+	for (int32_t k = 0; k < newton->coupling_count; k++) {
+		const cau_newton_coupling *by = &newton->coupling[k];
+		const double *d = of + 4 * (int64_t)by->row;
+		double load[3];
+		for (int c = 0; c < 3; c++)
+			load[c] =
+				scale * (by->block[c] * d[0] + by->block[3 + c] * d[1] + by->block[6 + c] * d[2]);
+		solver->kernels->vectors->add(solver->gradient, by->vertex, load);
+	}
+}
+
+static double length2(const double *of)
+{
+	return of[0] * of[0] + of[1] * of[1] + of[2] * of[2];
+}
+
+// ---- settle
+
+static void move_rows(const cau_newton *newton, cau_step_solver *solver, double scale)
+{
+	for (int32_t i = 0; i < newton->n; i++)
+		for (int c = 0; c < 3; c++)
+			solver->position[3 * newton->vertex[i] + c] =
+				newton->from[4 * i + c] + scale * newton->field[4 * i + c];
+}
+
+static void keep_rows(const cau_newton *newton, const cau_step_solver *solver)
+{
+	for (int32_t i = 0; i < newton->n; i++)
+		memcpy(newton->from + 4 * (int64_t)i, solver->position + 3 * (int64_t)newton->vertex[i],
+		       3 * sizeof(double));
+}
+
+// The part of the step to try next: the least of E + slope t + c t^4. A sheet that turns along a
+// straight step is stretched by the square of the part, so E rises by its fourth power.
+static double shorter(double scale, double rise, double slope)
+{
+	double least = rise > 0 && isfinite(rise) ? cbrt(-slope * scale / (4 * rise)) : 0;
+	return scale * fmin(fmax(least, 0.05), 0.5);
+}
+
+// Takes the step in `field`, or a part of it, so that the energy falls. False: none does.
+static bool take_step(cau_newton *newton, cau_step_solver *solver)
+{
+	double energy = newton->energy, slope = 0, scale = 1;
+	double noise = 1e-13 * fabs(energy); // rounding of the sum
+	for (int64_t i = 0; i < 4 * (int64_t)newton->n; i++)
+		slope += newton->field[i] * newton->gradient[i];
+	keep_rows(newton, solver);
+	for (int tries = 0; tries <= CAU_MAX_BACKTRACKS; tries++) {
+		move_rows(newton, solver, scale);
+		cau_newton_measure(newton, solver);
+		double fall = newton->energy - energy;
+		if (fall <= ARMIJO * scale * slope + noise) {
+			newton->negative = tries || fall > TOO_SHORT * slope;
+			return true;
+		}
+		scale = shorter(scale, newton->energy - energy - slope * scale, slope);
+	}
+	move_rows(newton, solver, 0);
+	return false;
+}
+
+typedef enum outcome { STILL, MOVED, STUCK, NO_MEMORY } outcome;
+
+// One of Newton's steps. STILL: it would move nothing; H is factored where R is.
+static outcome step(cau_newton *newton, cau_step_solver *solver)
+{
+	double most2 = 0, still = solver->loose.still_m;
+	solver->loose.work += newton->element_count;
+	if (!cau_newton_assemble(newton, solver))
+		return NO_MEMORY;
+	if (!solver->kernels->newton_factor(newton))
+		return STUCK; // the state is not finite
+	solve(newton, solver, NULL);
+	for (int32_t i = 0; i < newton->n; i++)
+		most2 = fmax(most2, length2(newton->field + 4 * (int64_t)i));
+	if (most2 <= still * still)
+		return STILL;
+	return take_step(newton, solver) ? MOVED : STUCK;
+}
+
+// Whether this step of the session has done as much in R as it may.
+static bool is_spent(const cau_step_solver *solver)
+{
+	return !solver->newton_chosen && solver->loose.work >= CAU_NEWTON_WORK;
+}
+
+// What moved in R's last step.
+static void choose_part(cau_loose *loose)
+{
+	const cau_newton *region = &loose->region;
+	double still2 = loose->still_m * loose->still_m;
+	for (int32_t i = 0; i < region->n; i++)
+		loose->part.chosen[region->vertex[i]] = length2(region->field + 4 * (int64_t)i) > still2;
+}
+
+// Newton's steps of the part of R that moves, the rest held: most of R is soon settled.
+static outcome settle_part(cau_step_solver *solver)
+{
+	cau_loose *loose = &solver->loose;
+	outcome last = MOVED;
+	choose_part(loose);
+	if (!cau_newton_create(&loose->part, solver, &loose->region))
+		return NO_MEMORY;
+	for (int k = 0; k < MOST_PART_STEPS && last == MOVED && loose->part.n && !is_spent(solver); k++)
+		last = step(&loose->part, solver);
+	return last;
+}
+
+// How far R has moved since the tick began, m, root mean square.
+static double motion_of(const cau_step_solver *solver)
+{
+	const cau_newton *region = &solver->loose.region;
+	double motion = 0;
+	for (int32_t i = 0; i < region->n && solver->position_start; i++)
+		for (size_t at = 3 * (size_t)region->vertex[i], c = at; c < at + 3; c++) {
+			double way = solver->position[c] - solver->position_start[c];
+			motion += way * way;
+		}
+	return sqrt(motion / region->n);
+}
+
+// How far R's last step moved it, relative to that.
+static double left_to_do(const cau_step_solver *solver)
+{
+	const cau_newton *region = &solver->loose.region;
+	double last = 0;
+	for (int32_t i = 0; i < region->n; i++)
+		last += length2(region->field + 4 * (int64_t)i);
+	return sqrt(last / region->n) / fmax(motion_of(solver), NOTHING_M);
+}
+
+static outcome settle(cau_step_solver *solver)
+{
+	cau_loose *loose = &solver->loose;
+	outcome last = MOVED;
+	loose->left = 0;
+	loose->region.negative = loose->part.negative = 1;
+	loose->still_m = solver->accuracy.wanted > 0
+	                     ? fmax(SETTLED_M, SETTLED * solver->accuracy.wanted * motion_of(solver))
+	                     : SETTLED_EXACTLY_M;
+	for (int k = 0; k < MOST_STEPS && last == MOVED && !is_spent(solver); k++) {
+		last = step(&loose->region, solver);
+		loose->left = last == STILL ? 0 : left_to_do(solver);
+		if (last == MOVED && k + 1 < MOST_STEPS && settle_part(solver) == NO_MEMORY)
+			return NO_MEMORY;
+	}
+	loose->settled = last == STILL;
+	return last;
+}
+
+// Back to where R was: its rows are left to A for the rest of the step.
+static void give_up(cau_step_solver *solver, const double *from, double *objective)
+{
+	const cau_newton *region = &solver->loose.region;
+	for (int32_t i = 0; i < region->n; i++)
+		memcpy(solver->position + 3 * (int64_t)region->vertex[i], from + 4 * (int64_t)i,
+		       3 * sizeof(double));
+	solver->loose.given_up = true;
+	*objective = cau_solver_evaluate(solver);
+}
+
+static bool has_moved(const cau_step_solver *solver, const double *from)
+{
+	const cau_newton *region = &solver->loose.region;
+	for (int32_t i = 0; i < region->n; i++)
+		for (int c = 0; c < 3; c++)
+			if (solver->position[3 * region->vertex[i] + c] != from[4 * i + c])
+				return true;
+	return false;
+}
+
+cau_status cau_loose_settle(cau_step_solver *solver, double *objective, cau_error *error)
+{
+	cau_loose *loose = &solver->loose;
+	cau_newton *region = &loose->region;
+	size_t bytes = 4 * (size_t)region->n * sizeof(double);
+	double *from = malloc(bytes), before = *objective;
+	CAU_ASSERT(region->n > 0, "%d rows to settle", region->n);
+	if (!from)
+		return cau_fail(error, CAU_NO_MEMORY, NULL, "no memory for Newton's steps");
+	keep_rows(region, solver);
+	memcpy(from, region->from, bytes);
+	outcome last = settle(solver);
+	bool moved = has_moved(solver, from);
+	loose->moved = moved;
+	loose->fresh = last == STILL;
+	if (moved)
+		*objective = cau_solver_evaluate(solver);
+	double noise = solver->kernels->vectors->rounding * fabs(cau_solver_elastic_energy(solver));
+	if (last != NO_MEMORY && !(*objective <= before + noise))
+		give_up(solver, from, objective);
+	loose->given_up |= is_spent(solver);
+	free(from);
+	return last == NO_MEMORY ? cau_fail(error, CAU_NO_MEMORY, NULL, "no memory for Newton's steps")
+	                         : CAU_OK;
+}
+
+// ---- increment
+
+// M does not let a body that nothing holds keep its momentum, as A does. So the increment is
+// shifted to where its mean is that of s: forces between its parts do not move it.
+static void keep_momentum(cau_step_solver *solver)
+{
+	const cau_tissue *tissue = solver->tissue;
+	double mass = 0, sum[3] = {0}, d[3];
+	if (solver->system.row_count < tissue->vertex_count || solver->drag_count || solver->contact)
+		return; // something holds it
+	for (int32_t v = 0; v < tissue->vertex_count; v++) {
+		double m = solver->fixed[v] ? 0 : tissue->mass[v];
+		solver->kernels->vectors->read(solver->increment, v, d);
+		mass += m;
+		for (int c = 0; c < 3; c++)
+			sum[c] += m * (solver->position[3 * v + c] + d[c] - solver->predicted[3 * v + c]);
+	}
+	for (int c = 0; c < 3; c++)
+		sum[c] /= -mass;
+	for (int32_t v = 0; v < tissue->vertex_count; v++)
+		if (!solver->fixed[v])
+			solver->kernels->vectors->add(solver->increment, v, sum);
+}
+
+void cau_loose_increment(cau_step_solver *solver)
+{
+	cau_newton *region = &solver->loose.region;
+	bool ready = solver->loose.fresh ||
+	             (cau_newton_assemble(region, solver) && solver->kernels->newton_factor(region));
+	if (!ready) {
+		solver->loose.given_up = true;
+		cau_solver_global(solver);
+		return;
+	}
+	solver->loose.work += solver->loose.fresh ? 0 : region->element_count;
+	solve(region, solver, NULL);
+	double *e = region->from;
+	memcpy(e, region->field, 4 * (size_t)region->n * sizeof *e);
+	clear_rows(region, solver, solver->gradient);
+	spread(region, solver, 1, e);
+	cau_solver_global(solver);
+	spread(region, solver, -1, e);
+	add_rows(region, solver, solver->gradient, region->gradient);
+	solve(region, solver, solver->increment);
+	clear_rows(region, solver, solver->increment);
+	add_rows(region, solver, solver->increment, region->field);
+	keep_momentum(solver);
 }

@@ -1,12 +1,28 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Newton's step for sheets that hang free: d = -H^-1 grad E, H the Hessian of eq. 4 with what is
-// negative of each element's left out [Smith et al. 2019, Kim 2020].
+// Newton's method in loose tissue. A, which x, y and z share, takes a sheet to be as stiff across
+// its plane as within it. A tab along a cut, a flap or a sheet that hangs by an edge is soft there:
+// only mass and tension resist, and a step by A leaves 70 to 90 % of its motion undone.
 //
-// A, which x, y and z share, takes a sheet to be as stiff across its plane as within it. A sheet
-// that is held on one side only is soft there: nothing but mass and tension resists, and the
-// iteration by A leaves 70 to 90 % of such a step undone. H has a block of 3 x 3 for each pair of
-// vertices, is made anew for each iteration and factored in blocks, in the order that was found for
-// A. Nothing of it is kept from one iteration to the next, so that a snapshot has none of it.
+// So the vertices of slack triangles (CAU_SLACK) make up a region R. N is all the rest. Each
+// iteration has two parts:
+//
+//   settle     moves R to where E is least with N held still, by Newton's method in double with a
+//              line search of R's own share of E;
+//   increment  d = -M^-1 grad E, where M has the Hessian H in R and between R and N, and in N the
+//              Schur complement of A. With A = [A_RR A_RN; A_NR A_NN] it takes one solve by H_RR,
+//              one by A, and another by H_RR:
+//                  e = -H_RR^-1 g_R,   d_N = -(A^-1 (0; g_N + H_NR e))_N,
+//                  d_R = -H_RR^-1 (g_R + H_RN d_N).
+//
+// M is symmetric and positive definite, so Anderson acceleration works in its norm. Vertices near
+// a tool and those of fat belong to N: contact keeps its columns of A^-1. Scenes with tissue
+// contact have no R.
+//
+// H has a block of 3 x 3 for each pair of vertices. Of each element's part the negative eigenvalues
+// are taken by their size or left out, as the last step went [Chen, Xu and Jacobson 2024]. A tab
+// that is pressed together buckles: left out, they let it fly too far; taken by their size where
+// other elements make up for them, they make steps too short. Nothing is kept from step to step, so
+// snapshots have none.
 #pragma once
 
 #include <stdbool.h>
@@ -18,13 +34,32 @@ typedef struct cau_step_solver cau_step_solver;
 
 enum {
 	CAU_BLOCK = 12, // doubles of a 3 x 3 block: three columns of four, the last of each 0
+	// Rows of a region: ten of Newton's steps of so many take a tick of 60 Hz. A scene that asks
+	// for Newton's method has no such limit.
+	CAU_NEWTON_ROWS = 1024,
+	// Elements that Newton's steps assemble in one step of a session, about ten milliseconds. Then
+	// A takes over, and the error that the step reports has what is left. Same exception.
+	CAU_NEWTON_WORK = 24000,
 };
 
-// H = L D L^T in blocks, one row of blocks a free vertex, in the order of the factor of A. Before
-// it is factored `block` and `pivot` hold H.
+// A slot of a share of the local step.
+typedef struct cau_newton_element {
+	int32_t work, slot;
+} cau_newton_element;
+
+// A block of H between a row and a free vertex outside R.
+typedef struct cau_newton_coupling {
+	int32_t row, vertex;
+	double block[9]; // N/m, row-major
+} cau_newton_coupling;
+
+// H_RR = L D L^T in blocks, one row of blocks a vertex of R, in the order of the factor of A.
+// Before it is factored `block` and `pivot` hold H_RR.
 typedef struct cau_newton {
-	int32_t n;                 // rows of blocks; 0: not made yet
-	int32_t *place;            // (vertex_count): row of each vertex, -1 where it is pinned
+	int32_t n;                 // rows; 0: R is empty
+	uint8_t *chosen;           // (vertex_count): R
+	int32_t *place;            // (vertex_count): row of each vertex, -1 outside R
+	int32_t *vertex;           // (n)
 	int32_t *first;            // (n + 1): blocks of each column of L below its diagonal
 	int32_t *row;              // (first[n]): ascending
 	double *block;             // (first[n] x CAU_BLOCK): N/m
@@ -32,20 +67,54 @@ typedef struct cau_newton {
 	double *inverse;           // (n x CAU_BLOCK): D^-1, m/N
 	double *column;            // (n x CAU_BLOCK): the column that is worked on, by row
 	double *field;             // (n x 4): right-hand side and solution
+	double *gradient;          // (n x 4): of E, N
+	double *from;              // (n x 4): positions before a step, m; or a solution, kept
 	int32_t *next, *head, *at; // (n): which columns have come to which row
+	int32_t row_room, block_room, element_room, coupling_room;
+	int32_t element_count, coupling_count;
+	cau_newton_element *element; // those with a vertex in R
+	cau_newton_coupling *coupling;
+	double energy;   // J: R's share of E, all elements with a vertex in it, its inertia and drag
+	double negative; // what a negative eigenvalue of size 1 counts: 1, or 0
 } cau_newton;
 
-// Whether this step is taken by Newton's method: the scene asks for it, its tissue is sheets with
-// energies and what ties them, and no tool touches it, for contact is corrected by columns of A^-1.
-bool cau_newton_is_called_for(const cau_step_solver *solver);
-// increment = -H^-1 gradient at the present position. CAU_NO_MEMORY: at the first step only.
-// CAU_NUMERICAL: H is not positive definite, as where the state is not finite.
-cau_status cau_newton_increment(cau_step_solver *solver, cau_error *error);
-void cau_newton_finish(cau_newton *newton);
+// What a solver keeps for Newton's steps.
+typedef struct cau_loose {
+	cau_newton region, part; // R, and the part of it that still moves
+	uint8_t *before;         // (vertex_count): R of the last step,
+	uint64_t epoch;          // and which factor it took its order from
+	uint8_t *in_fat;         // (vertex_count)
+	int32_t share_count;     // shares of the local step with triangles of sheets that are on no fat
+	int32_t *share;
+	int64_t work;   // elements assembled so far in this step
+	bool settled;   // R is where its share of E is least,
+	bool moved;     // and was not before
+	double left;    // else how far the last step moved it, relative to its motion in the tick
+	bool fresh;     // H is factored where R is
+	bool given_up;  // in this step: R is left to A
+	double still_m; // R is settled where a step moves none of its vertices by more
+} cau_loose;
+
+// Chooses R for this step, at the guess from which it starts. CAU_NO_MEMORY.
+cau_status cau_loose_choose(cau_step_solver *solver, cau_error *error);
+// Settles R, with all else held. Changes position, displacement and gradient, and *objective.
+// CAU_NO_MEMORY.
+cau_status cau_loose_settle(cau_step_solver *solver, double *objective, cau_error *error);
+// increment = -M^-1 gradient. R has been settled.
+void cau_loose_increment(cau_step_solver *solver);
+void cau_loose_finish(cau_loose *loose);
 
 // ---- stages, in files of their own
 
-// newton_pattern.c: room for H and its factor.
-cau_status cau_newton_create(cau_newton *newton, const cau_step_solver *solver, cau_error *error);
-// newton_hessian.c: H at the present position.
-void cau_newton_assemble(cau_newton *newton, const cau_step_solver *solver);
+// newton_pattern.c: the region of the `chosen` vertices: rows, pattern of the factor, and elements:
+// those of `from` that have a row, NULL: of all shares. False: no memory.
+bool cau_newton_create(cau_newton *newton, const cau_step_solver *solver, const cau_newton *from);
+void cau_newton_finish(cau_newton *newton);
+// newton_hessian.c: H, gradient and energy at the present position; the last two alone. False: no
+// memory.
+bool cau_newton_assemble(cau_newton *newton, const cau_step_solver *solver);
+void cau_newton_measure(cau_newton *newton, const cau_step_solver *solver);
+// The share of A's stiffness that a triangle has where it has least. 1 without a target: Newton's
+// straight steps leave a range, in which a triangle resists nothing, and are shortened time and
+// again.
+double cau_newton_stiffness(const cau_step_solver *solver, const cau_newton_element *triangle);

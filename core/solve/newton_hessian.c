@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The Hessian of eq. 4 in blocks: inertia, drag, and of each element w K in its own F, positive
-// semidefinite as what is negative is left out.
+// A region's share of eq. 4 in double: its energy, gradient and Hessian: inertia, drag, and of each
+// element w K in its own F, whose negative eigenvalues count by their size or not at all.
 //
 // Of a triangle's target, E = w/2 |F - Q T^(1/2)|^2, Q the polar factor of F T^(1/2) = Q S. When F
 // changes by dF, Q turns in its plane by <C, dF> / tr S, C = Q J T^(1/2), J the quarter turn, and
@@ -8,6 +8,7 @@
 // I - T^(1/2) S^-1 T^(1/2) along the normal: in closed form, without eigenvalues of more than
 // 2 x 2.
 #include <math.h>
+#include <stdlib.h>
 #include <string.h>
 
 #include "base/vector.h"
@@ -42,17 +43,22 @@ static void add_identity(matrix3 *to, double s)
 		to->at[c][c] += s;
 }
 
-// What is not negative of a symmetric 2 x 2.
-static symmetric2 positive_part(symmetric2 m)
+// An eigenvalue as it counts in H.
+static double counted(double value, double negative)
+{
+	return value < 0 ? -negative * value : value;
+}
+
+// A symmetric 2 x 2 with its eigenvalues so.
+static symmetric2 filtered(symmetric2 m, double negative)
 {
 	double mean = (m.a00 + m.a11) / 2, half = (m.a00 - m.a11) / 2;
-	double away = sqrt(half * half + m.a01 * m.a01), low = mean - away, high = mean + away;
-	if (low >= 0)
-		return m;
-	if (high <= 0)
-		return (symmetric2){0};
-	double s = high / (2 * away); // high times the projector on its own direction
-	return (symmetric2){s * (away + half), s * (away - half), s * m.a01};
+	double away = sqrt(half * half + m.a01 * m.a01);
+	double low = counted(mean - away, negative), high = counted(mean + away, negative);
+	if (!(away > 0))
+		return (symmetric2){high, high, 0};
+	double sum = (high + low) / 2, along = (high - low) / (2 * away);
+	return (symmetric2){sum + along * half, sum - along * half, along * m.a01};
 }
 
 static symmetric2 sandwich(symmetric2 b, symmetric2 a)
@@ -69,55 +75,103 @@ static cau_vec3 combine(double a, cau_vec3 x, double b, cau_vec3 y)
 	return (cau_vec3){a * x.x + b * y.x, a * x.y + b * y.y, a * x.z + b * y.z};
 }
 
-// Where F has lost rank Q is kept, and K is the identity.
-static void add_target(sheet_hessian *to, const cau_vec3 f[2], symmetric2 root)
+// What the law of a triangle makes of F: R = F - P by columns, |R|^2, and, where `to` is not NULL,
+// K.
+typedef struct sheet_answer {
+	cau_vec3 residual[2];
+	double squared;
+	sheet_hessian *to;
+	double negative; // as in cau_newton
+} sheet_answer;
+
+// The polar factor of F T^(1/2) = Q S. full: F has its rank; else Q is the one that was kept.
+typedef struct sheet_polar {
+	bool full;
+	double stretches;   // tr S
+	symmetric2 inverse; // S^-1
+	cau_vec3 q[2];
+} sheet_polar;
+
+static sheet_polar find_polar(const cau_vec3 f[2], symmetric2 root, const cau_vec3 kept[2])
 {
 	symmetric2 metric = {cau_dot(f[0], f[0]), cau_dot(f[1], f[1]), cau_dot(f[0], f[1])};
 	symmetric2 m = sandwich(root, metric);
 	double area = sqrt(fmax(m.a00 * m.a11 - m.a01 * m.a01, 0)), trace = m.a00 + m.a11;
+	sheet_polar polar = {.q = {kept[0], kept[1]}};
+	polar.full = area > 1e-3 * trace; // as the local step has it
+	if (!polar.full)
+		return polar;
+	polar.stretches = sqrt(trace + 2 * area);
+	// S^-1, from S = (M + area I) / tr S of determinant `area`
+	double s = 1 / (polar.stretches * area);
+	polar.inverse = (symmetric2){s * (m.a11 + area), s * (m.a00 + area), -s * m.a01};
+	// Q = F T^(1/2) S^-1
+	cau_vec3 fr[2] = {combine(root.a00, f[0], root.a01, f[1]),
+	                  combine(root.a01, f[0], root.a11, f[1])};
+	polar.q[0] = combine(polar.inverse.a00, fr[0], polar.inverse.a01, fr[1]);
+	polar.q[1] = combine(polar.inverse.a01, fr[0], polar.inverse.a11, fr[1]);
+	return polar;
+}
+
+static symmetric2 normal_stiffness(const sheet_polar *polar, symmetric2 root)
+{
+	symmetric2 b = sandwich(root, polar->inverse);
+	return (symmetric2){1 - b.a00, 1 - b.a11, -b.a01};
+}
+
+static void add_target_hessian(sheet_hessian *to, const cau_vec3 f[2], symmetric2 root,
+                               const sheet_polar *polar, double negative)
+{
 	add_identity(&to->k[0], 1);
 	add_identity(&to->k[1], 1);
-	if (!(area > 1e-3 * trace)) // as the local step has it
+	if (!polar->full) // Q is kept, and K is the identity
 		return;
-	double stretches = sqrt(trace + 2 * area); // tr S
-	// S^-1, from S = (M + area I) / tr S of determinant `area`
-	double s = 1 / (stretches * area);
-	symmetric2 inverse = {s * (m.a11 + area), s * (m.a00 + area), -s * m.a01};
-	symmetric2 b = sandwich(root, inverse);
-	symmetric2 normal = positive_part((symmetric2){1 - b.a00, 1 - b.a11, -b.a01});
+	symmetric2 normal = filtered(normal_stiffness(polar, root), negative);
 	cau_vec3 n = cau_unit_or(cau_cross(f[0], f[1]), (cau_vec3){0});
 	add_outer(&to->k[0], normal.a00 - 1, n, n);
 	add_outer(&to->k[1], normal.a11 - 1, n, n);
 	add_outer(&to->k[2], normal.a01, n, n);
-	// Q = F T^(1/2) S^-1, and C = Q J T^(1/2) with J (1, 0) = (0, 1), J (0, 1) = (-1, 0)
-	cau_vec3 fr[2] = {combine(root.a00, f[0], root.a01, f[1]),
-	                  combine(root.a01, f[0], root.a11, f[1])};
-	cau_vec3 q[2] = {combine(inverse.a00, fr[0], inverse.a01, fr[1]),
-	                 combine(inverse.a01, fr[0], inverse.a11, fr[1])};
-	cau_vec3 c[2] = {combine(root.a00, q[1], -root.a01, q[0]),
-	                 combine(root.a01, q[1], -root.a11, q[0])};
+	// C = Q J T^(1/2) with J (1, 0) = (0, 1), J (0, 1) = (-1, 0)
+	cau_vec3 c[2] = {combine(root.a00, polar->q[1], -root.a01, polar->q[0]),
+	                 combine(root.a01, polar->q[1], -root.a11, polar->q[0])};
 	double target = root.a00 * root.a00 + root.a11 * root.a11 + 2 * root.a01 * root.a01;
-	double turn = -fmin(1 / stretches, 1 / target);
+	double turn = (counted(1 - target / polar->stretches, negative) - 1) / target;
 	add_outer(&to->k[0], turn, c[0], c[0]);
 	add_outer(&to->k[1], turn, c[1], c[1]);
 	add_outer(&to->k[2], turn, c[0], c[1]);
 }
 
+static void add_target(sheet_answer *answer, const cau_vec3 f[2], symmetric2 root,
+                       const cau_vec3 kept[2])
+{
+	sheet_polar polar = find_polar(f, root, kept);
+	answer->residual[0] = cau_sub(f[0], combine(root.a00, polar.q[0], root.a01, polar.q[1]));
+	answer->residual[1] = cau_sub(f[1], combine(root.a01, polar.q[0], root.a11, polar.q[1]));
+	answer->squared = cau_dot(answer->residual[0], answer->residual[0]) +
+	                  cau_dot(answer->residual[1], answer->residual[1]);
+	if (answer->to)
+		add_target_hessian(answer->to, f, root, &polar, answer->negative);
+}
+
 // Strains kept in a range (strain_range.h): of a column beyond it, its direction in full, and
-// across it what tension there is.
-static void add_stretch(matrix3 *to, cau_vec3 f, double least, double most)
+// across it what tension or pressure there is.
+static void add_stretch(sheet_answer *answer, int a, cau_vec3 f, double least, double most)
 {
 	double length = cau_length(f), kept = fmin(fmax(length, least), most);
 	if (kept == length || !(length > 0))
 		return;
-	double across = fmax(1 - kept / length, 0);
-	add_identity(to, across);
-	add_outer(to, (1 - across) / (length * length), f, f);
+	answer->squared += (length - kept) * (length - kept);
+	answer->residual[a] = cau_add_scaled(answer->residual[a], 1 - kept / length, f);
+	if (!answer->to)
+		return;
+	double across = fmin(counted(1 - kept / length, answer->negative), 1);
+	add_identity(&answer->to->k[a], across);
+	add_outer(&answer->to->k[a], (1 - across) / (length * length), f, f);
 }
 
 // Of a shear beyond it, the direction of its residual r alone [Gauss and Newton]: half a squared
 // distance has the gradient r, and r / |r| is the gradient of the distance.
-static void add_shear(sheet_hessian *to, const cau_vec3 f[2], double most)
+static void add_shear(sheet_answer *answer, const cau_vec3 f[2], double most)
 {
 	double k00 = cau_dot(f[0], f[0]), k11 = cau_dot(f[1], f[1]), k01 = cau_dot(f[0], f[1]);
 	double across = sqrt(1 - most * most), a = k00 + k11;
@@ -129,19 +183,22 @@ static void add_shear(sheet_hessian *to, const cau_vec3 f[2], double most)
 	double other = slope * (copysign(across, k01) + most * k01 / area);
 	cau_vec3 of[2] = {combine(-less - slope * most * k11 / area, f[0], other, f[1]),
 	                  combine(-less - slope * most * k00 / area, f[1], other, f[0])};
+	answer->squared += 2 * x * x / (a + r);
+	for (int c = 0; c < 2; c++)
+		answer->residual[c] = cau_add(answer->residual[c], of[c]);
 	double size = cau_dot(of[0], of[0]) + cau_dot(of[1], of[1]);
-	if (!(size > 1e-20 * a))
+	if (!(size > 1e-20 * a) || !answer->to)
 		return;
-	add_outer(&to->k[0], 1 / size, of[0], of[0]);
-	add_outer(&to->k[1], 1 / size, of[1], of[1]);
-	add_outer(&to->k[2], 1 / size, of[0], of[1]);
+	add_outer(&answer->to->k[0], 1 / size, of[0], of[0]);
+	add_outer(&answer->to->k[1], 1 / size, of[1], of[1]);
+	add_outer(&answer->to->k[2], 1 / size, of[0], of[1]);
 }
 
-static void add_range(sheet_hessian *to, const cau_vec3 f[2], const cau_sheet_group *group)
+static void add_range(sheet_answer *answer, const cau_vec3 f[2], const cau_sheet_group *group)
 {
 	for (int a = 0; a < 2; a++)
-		add_stretch(&to->k[a], f[a], group->stretch_min[a], group->stretch_max[a]);
-	add_shear(to, f, group->shear_max);
+		add_stretch(answer, a, f[a], group->stretch_min[a], group->stretch_max[a]);
+	add_shear(answer, f, group->shear_max);
 }
 
 // Element vertices, G by vertex and column of F, and weight.
@@ -150,11 +207,18 @@ typedef struct sheet_element {
 	double g[3][2]; // 1/m
 	double weight;  // N m
 	symmetric2 root;
+	cau_vec3 rest[2], kept[2]; // columns of F at rest, and of the Q that the local step has kept
 } sheet_element;
 
 static double get(const cau_step_solver *solver, const void *array, int32_t slot)
 {
 	return cau_real_get(array, solver->elements.single, slot);
+}
+
+static cau_vec3 get3(const cau_step_solver *solver, void *const arrays[3], int32_t slot)
+{
+	return (cau_vec3){get(solver, arrays[0], slot), get(solver, arrays[1], slot),
+	                  get(solver, arrays[2], slot)};
 }
 
 static int32_t vertex_of(const cau_elements *elements, const cau_local_work *work, uint16_t record)
@@ -177,24 +241,81 @@ static sheet_element sheet_at(const cau_step_solver *solver, const cau_local_wor
 	element.root =
 		(symmetric2){get(solver, set->target[0], slot), get(solver, set->target[1], slot),
 	                 get(solver, set->target[2], slot)};
+	for (int c = 0; c < 2; c++) {
+		element.rest[c] = get3(solver, set->rest + 3 * c, slot);
+		element.kept[c] = get3(solver, set->polar + 3 * c, slot);
+	}
 	return element;
 }
 
-static cau_vec3 place_of(const cau_step_solver *solver, int32_t vertex)
+// u = x - X, m
+static cau_vec3 displacement_of(const cau_step_solver *solver, int32_t vertex)
 {
 	const double *x = solver->position + 3 * (int64_t)vertex;
-	return (cau_vec3){x[0], x[1], x[2]};
+	const double *rest = solver->tissue->rest + 3 * (int64_t)vertex;
+	return (cau_vec3){x[0] - rest[0], x[1] - rest[1], x[2] - rest[2]};
 }
 
-// ---- into H
+// F = F_0 + [du_1 du_2] D_m'^-1 by columns, as the local step has it.
+static void find_gradient(const cau_step_solver *solver, const sheet_element *element,
+                          cau_vec3 f[2])
+{
+	cau_vec3 u0 = displacement_of(solver, element->vertex[0]);
+	cau_vec3 du1 = cau_sub(displacement_of(solver, element->vertex[1]), u0);
+	cau_vec3 du2 = cau_sub(displacement_of(solver, element->vertex[2]), u0);
+	for (int c = 0; c < 2; c++)
+		f[c] = cau_add(element->rest[c], combine(element->g[1][c], du1, element->g[2][c], du2));
+}
+
+double cau_newton_stiffness(const cau_step_solver *solver, const cau_newton_element *triangle)
+{
+	const cau_local_work *work = &solver->slots.work[triangle->work];
+	CAU_ASSERT(work->kind == CAU_ELEMENT_TRIANGLE, "share %d has no triangles", triangle->work);
+	sheet_element element = sheet_at(solver, work, triangle->slot);
+	cau_vec3 f[2];
+	if (!(element.root.a00 > 0))
+		return 1;
+	find_gradient(solver, &element, f);
+	sheet_polar polar = find_polar(f, element.root, element.kept);
+	symmetric2 k = normal_stiffness(&polar, element.root);
+	double half = (k.a00 - k.a11) / 2;
+	return polar.full ? (k.a00 + k.a11) / 2 - sqrt(half * half + k.a01 * k.a01) : 0;
+}
+
+// ---- into the region
+
+static void add_force(cau_newton *newton, int32_t vertex, double scale, cau_vec3 of)
+{
+	if (newton->place[vertex] < 0)
+		return;
+	double *to = newton->gradient + 4 * (int64_t)newton->place[vertex];
+	to[0] += scale * of.x;
+	to[1] += scale * of.y;
+	to[2] += scale * of.z;
+}
+
+// The free vertex outside the region is coupled to the row by m, or by its transpose.
+static void couple(cau_newton *newton, int32_t row, int32_t vertex, const matrix3 *m, bool turned)
+{
+	CAU_ASSERT_INDEX(newton->coupling_count, newton->coupling_room);
+	cau_newton_coupling *to = &newton->coupling[newton->coupling_count++];
+	*to = (cau_newton_coupling){.row = row, .vertex = vertex};
+	for (int r = 0; r < 3; r++)
+		for (int c = 0; c < 3; c++)
+			to->block[3 * r + c] = turned ? m->at[c][r] : m->at[r][c];
+}
 
 // H += m in the rows of vertex a and the columns of b, and its transpose where those are not one.
 static void add_block(cau_newton *newton, const cau_step_solver *solver, int32_t a, int32_t b,
                       const matrix3 *m)
 {
 	int32_t row = newton->place[a], column = newton->place[b];
-	if (row < 0 || column < 0 || solver->fixed[a] || solver->fixed[b])
+	if ((row < 0 && column < 0) || solver->fixed[a] || solver->fixed[b])
 		return;
+	if (column < 0 || row < 0) {
+		couple(newton, column < 0 ? row : column, column < 0 ? b : a, m, row < 0);
+		return;
+	}
 	bool turned = row < column;
 	double *to = newton->pivot + (int64_t)CAU_BLOCK * row;
 	if (row != column)
@@ -206,8 +327,8 @@ static void add_block(cau_newton *newton, const cau_step_solver *solver, int32_t
 			to[4 * c + r] += turned ? m->at[c][r] : m->at[r][c];
 }
 
-static void add_sheet(cau_newton *newton, const cau_step_solver *solver,
-                      const sheet_element *element, const sheet_hessian *hessian)
+static void add_sheet_hessian(cau_newton *newton, const cau_step_solver *solver,
+                              const sheet_element *element, const sheet_hessian *hessian)
 {
 	for (int i = 0; i < 3; i++)
 		for (int j = i; j < 3; j++) {
@@ -223,32 +344,33 @@ static void add_sheet(cau_newton *newton, const cau_step_solver *solver,
 		}
 }
 
-static void add_sheets(cau_newton *newton, const cau_step_solver *solver,
-                       const cau_local_work *work)
+static void add_sheet(cau_newton *newton, const cau_step_solver *solver, const cau_local_work *work,
+                      int32_t slot, bool hessian)
 {
 	const cau_sheet_group *group = &solver->elements.sheet.group[work->group];
-	for (int32_t slot = work->first; slot < work->last; slot++) {
-		sheet_element element = sheet_at(solver, work, slot);
-		if (!(element.weight > 0))
-			continue;
-		cau_vec3 x0 = place_of(solver, element.vertex[0]);
-		cau_vec3 along[2] = {cau_sub(place_of(solver, element.vertex[1]), x0),
-		                     cau_sub(place_of(solver, element.vertex[2]), x0)};
-		cau_vec3 f[2];
-		for (int c = 0; c < 2; c++)
-			f[c] = combine(element.g[1][c], along[0], element.g[2][c], along[1]);
-		sheet_hessian hessian = {0};
-		if (element.root.a00 > 0)
-			add_target(&hessian, f, element.root);
-		else if (group->limit == CAU_LIMIT_RANGE)
-			add_range(&hessian, f, group);
-		add_sheet(newton, solver, &element, &hessian);
-	}
+	sheet_element element = sheet_at(solver, work, slot);
+	sheet_hessian k = {0};
+	sheet_answer answer = {.to = hessian ? &k : NULL, .negative = newton->negative};
+	cau_vec3 f[2];
+	if (!(element.weight > 0))
+		return;
+	find_gradient(solver, &element, f);
+	if (element.root.a00 > 0)
+		add_target(&answer, f, element.root, element.kept);
+	else if (group->limit == CAU_LIMIT_RANGE)
+		add_range(&answer, f, group);
+	newton->energy += element.weight / 2 * answer.squared;
+	for (int i = 0; i < 3; i++)
+		add_force(
+			newton, element.vertex[i], element.weight,
+			combine(element.g[i][0], answer.residual[0], element.g[i][1], answer.residual[1]));
+	if (hessian)
+		add_sheet_hessian(newton, solver, &element, &k);
 }
 
-// w (e e^T / |e|^2 + (1 - L / |e|) (I - e e^T / |e|^2)), the second only where it is stretched: of
-// a link, or of the e = sum of c_i x_i that a hinge has.
-static matrix3 length_hessian(cau_vec3 e, double rest, double weight)
+// w (e e^T / |e|^2 + |1 - L / |e|| (I - e e^T / |e|^2)): of a link, or of the e = sum of c_i x_i
+// that a hinge has.
+static matrix3 length_hessian(cau_vec3 e, double rest, double weight, double negative)
 {
 	matrix3 m = {0};
 	double length = cau_length(e);
@@ -256,70 +378,125 @@ static matrix3 length_hessian(cau_vec3 e, double rest, double weight)
 		add_identity(&m, weight);
 		return m;
 	}
-	double across = fmax(1 - rest / length, 0);
+	double across = fmin(counted(1 - rest / length, negative), 1);
 	add_identity(&m, weight * across);
 	add_outer(&m, weight * (1 - across) / (length * length), e, e);
 	return m;
 }
 
-static void add_lengths(cau_newton *newton, const cau_step_solver *solver,
-                        const cau_local_work *work)
+typedef struct length_element {
+	int count;
+	int32_t vertex[4];
+	double c[4], rest_length, weight; // weight: N/m
+	cau_vec3 rest, moved;             // e at rest, and by how much it has changed, m
+} length_element;
+
+static length_element length_at(const cau_step_solver *solver, const cau_local_work *work,
+                                int32_t slot)
 {
 	bool link = work->kind == CAU_ELEMENT_LINK;
 	const cau_link_set *links = &solver->elements.link;
 	const cau_hinge_set *hinges = &solver->elements.hinge;
-	int count = link ? 2 : 4;
-	for (int32_t slot = work->first; slot < work->last; slot++) {
-		double weight = get(solver, link ? links->weight : hinges->weight, slot), c[4] = {-1, 1};
-		int32_t vertex[4];
-		cau_vec3 e = {0};
-		if (!(weight > 0))
-			continue;
-		for (int i = 0; i < count; i++) {
-			uint16_t record = (link ? links->record_at[i] : hinges->record_at[i])[slot];
-			vertex[i] = vertex_of(&solver->elements, work, record);
-			if (!link)
-				c[i] = get(solver, hinges->coefficient[i], slot);
-			e = combine(1, e, c[i], place_of(solver, vertex[i]));
+	length_element of = {.count = link ? 2 : 4, .c = {-1, 1}};
+	of.weight = get(solver, link ? links->weight : hinges->weight, slot);
+	of.rest_length = get(solver, link ? links->rest_length : hinges->rest_length, slot);
+	of.rest = get3(solver, link ? links->rest : hinges->rest, slot);
+	for (int i = 0; i < of.count; i++) {
+		uint16_t record = (link ? links->record_at[i] : hinges->record_at[i])[slot];
+		of.vertex[i] = vertex_of(&solver->elements, work, record);
+		if (!link)
+			of.c[i] = get(solver, hinges->coefficient[i], slot);
+		of.moved = cau_add_scaled(of.moved, of.c[i], displacement_of(solver, of.vertex[i]));
+	}
+	return of;
+}
+
+// R as link_kernel.h has it: exactly 0 at rest.
+static cau_vec3 length_residual(const length_element *of, cau_vec3 e)
+{
+	double length = cau_length(e);
+	double longer = 2 * cau_dot(of->rest, of->moved) + cau_dot(of->moved, of->moved);
+	return of->rest_length > 0 && length > 0
+	           ? cau_scale(longer / ((length + of->rest_length) * length), e)
+	           : of->moved;
+}
+
+static void add_length(cau_newton *newton, const cau_step_solver *solver,
+                       const cau_local_work *work, int32_t slot, bool hessian)
+{
+	length_element of = length_at(solver, work, slot);
+	if (!(of.weight > 0))
+		return;
+	cau_vec3 e = cau_add(of.rest, of.moved), residual = length_residual(&of, e);
+	newton->energy += of.weight / 2 * cau_dot(residual, residual);
+	for (int i = 0; i < of.count; i++)
+		add_force(newton, of.vertex[i], of.weight * of.c[i], residual);
+	for (int i = 0; i < of.count && hessian; i++)
+		for (int j = i; j < of.count; j++) {
+			matrix3 m =
+				length_hessian(e, of.rest_length, of.weight * of.c[i] * of.c[j], newton->negative);
+			add_block(newton, solver, of.vertex[i], of.vertex[j], &m);
 		}
-		double rest = get(solver, link ? links->rest_length : hinges->rest_length, slot);
-		for (int i = 0; i < count; i++)
-			for (int j = i; j < count; j++) {
-				matrix3 m = length_hessian(e, rest, weight * c[i] * c[j]);
-				add_block(newton, solver, vertex[i], vertex[j], &m);
-			}
+}
+
+// Inertia about s of eq. 4, or drag about its target: k/2 |x - centre|^2.
+static void add_spring(cau_newton *newton, const cau_step_solver *solver, int32_t vertex, double k,
+                       const double *centre)
+{
+	const double *x = solver->position + 3 * (int64_t)vertex;
+	int32_t row = newton->place[vertex];
+	for (int c = 0; c < 3 && row >= 0; c++) {
+		double away = x[c] - centre[c];
+		newton->energy += k / 2 * away * away;
+		newton->gradient[4 * row + c] += k * away;
+		newton->pivot[(int64_t)CAU_BLOCK * row + 5 * c] += k;
 	}
 }
 
-static void add_inertia(cau_newton *newton, const cau_step_solver *solver)
+static void evaluate(cau_newton *newton, const cau_step_solver *solver, bool hessian)
 {
 	double scale = 1 / (solver->step_s * solver->step_s);
-	for (int32_t v = 0; v < solver->tissue->vertex_count; v++) {
-		if (newton->place[v] < 0)
-			continue;
-		double *to = newton->pivot + (int64_t)CAU_BLOCK * newton->place[v];
-		for (int c = 0; c < 3; c++)
-			to[5 * c] += scale * solver->tissue->mass[v];
-	}
-	for (int32_t k = 0; k < solver->drag_count; k++) {
-		matrix3 m = {0};
-		add_identity(&m, solver->drag[k].coefficient);
-		add_block(newton, solver, solver->drag[k].vertex, solver->drag[k].vertex, &m);
+	newton->energy = 0;
+	newton->coupling_count = 0;
+	memset(newton->gradient, 0, 4 * (size_t)newton->n * sizeof(double));
+	memset(newton->pivot, 0, (size_t)newton->n * CAU_BLOCK * sizeof(double));
+	for (int32_t i = 0; i < newton->n; i++)
+		add_spring(newton, solver, newton->vertex[i],
+		           scale * solver->tissue->mass[newton->vertex[i]],
+		           solver->predicted + 3 * (int64_t)newton->vertex[i]);
+	for (int32_t k = 0; k < solver->drag_count; k++)
+		add_spring(newton, solver, solver->drag[k].vertex, solver->drag[k].coefficient,
+		           solver->drag[k].target);
+	for (int32_t k = 0; k < newton->element_count; k++) {
+		const cau_newton_element *element = &newton->element[k];
+		const cau_local_work *work = &solver->slots.work[element->work];
+		CAU_ASSERT(work->kind != CAU_ELEMENT_TETRAHEDRON, "fat in Newton's element %d", k);
+		if (work->kind == CAU_ELEMENT_TRIANGLE)
+			add_sheet(newton, solver, work, element->slot, hessian);
+		else
+			add_length(newton, solver, work, element->slot, hessian);
 	}
 }
 
-void cau_newton_assemble(cau_newton *newton, const cau_step_solver *solver)
+// Blocks that an element may have between the region and the rest: a hinge's 2 x 2.
+enum { MOST_COUPLED = 4 };
+
+bool cau_newton_assemble(cau_newton *newton, const cau_step_solver *solver)
 {
-	size_t bytes = CAU_BLOCK * sizeof(double);
-	memset(newton->block, 0, (size_t)newton->first[newton->n] * bytes);
-	memset(newton->pivot, 0, (size_t)newton->n * bytes);
-	add_inertia(newton, solver);
-	for (int32_t w = 0; w < solver->slots.work_count; w++) {
-		const cau_local_work *work = &solver->slots.work[w];
-		CAU_ASSERT(work->kind != CAU_ELEMENT_TETRAHEDRON, "fat in Newton's share %d", w);
-		if (work->kind == CAU_ELEMENT_TRIANGLE)
-			add_sheets(newton, solver, work);
-		else
-			add_lengths(newton, solver, work);
+	int32_t most = MOST_COUPLED * newton->element_count;
+	if (most > newton->coupling_room) {
+		free(newton->coupling);
+		newton->coupling = malloc(2 * (size_t)most * sizeof *newton->coupling);
+		newton->coupling_room = newton->coupling ? 2 * most : 0;
+		if (!newton->coupling)
+			return false;
 	}
+	memset(newton->block, 0, (size_t)newton->first[newton->n] * CAU_BLOCK * sizeof(double));
+	evaluate(newton, solver, true);
+	return true;
+}
+
+void cau_newton_measure(cau_newton *newton, const cau_step_solver *solver)
+{
+	evaluate(newton, solver, false);
 }

@@ -1,13 +1,155 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The pattern of the factor of H in blocks: that of A's, as both couple the same vertices. Found
-// here from the pattern of A, since A's own factor may be in the making on another thread; its
-// order may be read at any time.
+// A region's rows, elements, and the pattern of the factor of its H. Vertices are coupled where A
+// couples them, and rows are in the order of A's factor, which may be in the making on another
+// thread: its order may be read at any time.
 #include <stdlib.h>
 #include <string.h>
 
 #include "cautery/assert.h"
 #include "solve/newton.h"
 #include "solve/solver.h"
+
+// ---- room
+
+// Room for `count` items of `bytes`, and as many again; what was there is gone. False: no memory.
+static bool make_room(void *array, size_t count, size_t bytes)
+{
+	void **at = array;
+	size_t all = (2 * count * bytes + 127) / 64 * 64;
+	free(*at);
+	return (*at = aligned_alloc(64, all)) != NULL;
+}
+
+static bool make_rows(cau_newton *newton, int32_t n)
+{
+	const size_t block = CAU_BLOCK * sizeof(double), four = 4 * sizeof(double);
+	size_t count = (size_t)n;
+	if (n <= newton->row_room)
+		return true;
+	newton->row_room = 2 * n;
+	return make_room(&newton->vertex, count, sizeof(int32_t)) &&
+	       make_room(&newton->first, count + 1, sizeof(int32_t)) &&
+	       make_room(&newton->pivot, count, block) && make_room(&newton->inverse, count, block) &&
+	       make_room(&newton->column, count, block) && make_room(&newton->field, count, four) &&
+	       make_room(&newton->gradient, count, four) && make_room(&newton->from, count, four) &&
+	       make_room(&newton->next, count, sizeof(int32_t)) &&
+	       make_room(&newton->head, count, sizeof(int32_t)) &&
+	       make_room(&newton->at, count, sizeof(int32_t));
+}
+
+static bool make_blocks(cau_newton *newton, int32_t count)
+{
+	if (count <= newton->block_room)
+		return true;
+	int32_t room = 2 * count, *row = realloc(newton->row, (size_t)room * sizeof *row);
+	if (!row)
+		return false;
+	newton->row = row;
+	newton->block_room = room;
+	return make_room(&newton->block, (size_t)count, CAU_BLOCK * sizeof(double));
+}
+
+// ---- rows
+
+static void add_vertex(cau_newton *newton, int32_t vertex)
+{
+	newton->place[vertex] = newton->n;
+	newton->vertex[newton->n++] = vertex;
+}
+
+static bool place_part(cau_newton *newton, const cau_newton *from)
+{
+	if (!make_rows(newton, from->n))
+		return false;
+	for (int32_t i = 0; i < from->n; i++)
+		if (newton->chosen[from->vertex[i]])
+			add_vertex(newton, from->vertex[i]);
+	return true;
+}
+
+static bool place_all(cau_newton *newton, const cau_step_solver *solver)
+{
+	const cau_system *system = &solver->system;
+	const int32_t *places = cau_factor_places(solver->factor);
+	int32_t count = 0, *vertex_at = malloc((size_t)system->row_count * sizeof *vertex_at);
+	if (!vertex_at)
+		return false;
+	for (int32_t row = 0; row < system->row_count; row++) {
+		vertex_at[places[row]] = system->vertex_of_row[row];
+		count += newton->chosen[system->vertex_of_row[row]];
+	}
+	bool room = make_rows(newton, count);
+	for (int32_t i = 0; i < system->row_count && room; i++)
+		if (newton->chosen[vertex_at[i]])
+			add_vertex(newton, vertex_at[i]);
+	free(vertex_at);
+	return room;
+}
+
+static bool place_vertices(cau_newton *newton, const cau_step_solver *solver,
+                           const cau_newton *from)
+{
+	size_t bytes = (size_t)solver->tissue->vertex_count * sizeof *newton->place;
+	if (!newton->place && !(newton->place = malloc(bytes)))
+		return false;
+	memset(newton->place, -1, bytes);
+	newton->n = 0;
+	return from ? place_part(newton, from) : place_all(newton, solver);
+}
+
+// ---- elements
+
+static bool add_element(cau_newton *newton, cau_newton_element element)
+{
+	if (newton->element_count == newton->element_room) {
+		int32_t room = 2 * newton->element_room + 256;
+		cau_newton_element *more = realloc(newton->element, (size_t)room * sizeof *more);
+		if (!more)
+			return false;
+		newton->element = more;
+		newton->element_room = room;
+	}
+	newton->element[newton->element_count++] = element;
+	return true;
+}
+
+static bool has_row(const cau_newton *newton, const cau_step_solver *solver,
+                    cau_newton_element element)
+{
+	const cau_elements *elements = &solver->elements;
+	const cau_local_work *work = &solver->slots.work[element.work];
+	uint16_t *const *records = work->kind == CAU_ELEMENT_TRIANGLE ? elements->sheet.record_at
+	                           : work->kind == CAU_ELEMENT_LINK   ? elements->link.record_at
+	                                                              : elements->hinge.record_at;
+	int count = work->kind == CAU_ELEMENT_TRIANGLE ? 3 : work->kind == CAU_ELEMENT_LINK ? 2 : 4;
+	for (int i = 0; i < count; i++) {
+		int32_t record = work->first_record + records[i][element.slot] / 4;
+		if (newton->place[elements->record_vertex[record] / 4] >= 0)
+			return true;
+	}
+	return false;
+}
+
+static bool find_elements(cau_newton *newton, const cau_step_solver *solver, const cau_newton *from)
+{
+	newton->element_count = 0;
+	for (int32_t k = 0; from && k < from->element_count; k++)
+		if (has_row(newton, solver, from->element[k]) && !add_element(newton, from->element[k]))
+			return false;
+	for (int32_t w = 0; !from && w < solver->slots.work_count; w++) {
+		const cau_local_work *work = &solver->slots.work[w];
+		if (work->kind == CAU_ELEMENT_TETRAHEDRON)
+			continue;
+		for (int32_t slot = work->first; slot < work->last; slot++) {
+			cau_newton_element element = {w, slot};
+			if (has_row(newton, solver, element) && !add_element(newton, element))
+				return false;
+		}
+	}
+	return true;
+}
+
+// ---- the factor
 
 static int compare_rows(const void *a, const void *b)
 {
@@ -34,10 +176,12 @@ static void add_row(growth *of, int32_t column, int32_t row)
 }
 
 // Rows of a column of L: A's, and those of its children but itself.
-static void grow(growth *of, int32_t column)
+static bool grow(growth *of, int32_t column)
 {
 	cau_newton *newton = of->newton;
 	int32_t first = of->count;
+	if (!make_blocks(newton, of->count + newton->n))
+		return false;
 	newton->first[column] = first;
 	of->mark[column] = column;
 	for (int32_t k = of->below_first[column]; k < of->below_first[column + 1]; k++)
@@ -47,50 +191,59 @@ static void grow(growth *of, int32_t column)
 			add_row(of, column, newton->row[k]);
 	newton->first[column + 1] = of->count;
 	if (of->count == first)
-		return;
+		return true;
 	qsort(newton->row + first, (size_t)(of->count - first), sizeof *newton->row, compare_rows);
 	int32_t parent = newton->row[first];
 	of->sibling[column] = of->child[parent];
 	of->child[parent] = column;
+	return true;
 }
 
-// A's entries below the diagonal, each in the column that comes first in the factor's order.
-static void permute(growth *of, const cau_matrix *matrix, const int32_t *places)
+// A's entries below the diagonal between rows of the region, each in the column that comes first.
+static void permute(growth *of, const cau_system *system)
 {
+	const cau_matrix *matrix = &system->matrix;
+	const cau_newton *newton = of->newton;
 	for (int pass = 0; pass < 2; pass++) {
-		for (int32_t c = 0; c < matrix->n; c++)
-			for (int32_t k = matrix->first[c]; k < matrix->first[c + 1]; k++) {
-				int32_t a = places[c], b = places[matrix->row[k]];
-				int32_t column = a < b ? a : b;
-				if (a == b)
+		for (int32_t a = 0; a < newton->n; a++) {
+			int32_t column = system->row_of_vertex[newton->vertex[a]];
+			for (int32_t k = matrix->first[column]; k < matrix->first[column + 1]; k++) {
+				int32_t b = newton->place[system->vertex_of_row[matrix->row[k]]];
+				int32_t least = a < b ? a : b;
+				if (a == b || b < 0)
 					continue;
 				if (!pass)
-					of->below_first[column + 2]++;
+					of->below_first[least + 2]++;
 				else
-					of->below[of->below_first[column + 1]++] = a < b ? b : a;
+					of->below[of->below_first[least + 1]++] = a < b ? b : a;
 			}
-		for (int32_t c = 0; !pass && c < matrix->n; c++)
+		}
+		for (int32_t c = 0; !pass && c < newton->n; c++)
 			of->below_first[c + 2] += of->below_first[c + 1];
 	}
 }
 
-static bool find_pattern(cau_newton *newton, const cau_matrix *matrix, const int32_t *places)
+static bool find_pattern(cau_newton *newton, const cau_system *system)
 {
-	size_t n = (size_t)matrix->n;
+	size_t n = (size_t)newton->n, entries = 1;
+	for (size_t i = 0; i < n; i++) {
+		int32_t column = system->row_of_vertex[newton->vertex[i]];
+		entries += (size_t)(system->matrix.first[column + 1] - system->matrix.first[column]);
+	}
 	growth of = {.newton = newton,
 	             .below_first = calloc(n + 2, sizeof(int32_t)),
-	             .below = calloc((size_t)matrix->first[matrix->n], sizeof(int32_t)),
-	             .child = malloc(n * sizeof(int32_t)),
-	             .sibling = malloc(n * sizeof(int32_t)),
-	             .mark = malloc(n * sizeof(int32_t))};
+	             .below = calloc(entries, sizeof(int32_t)),
+	             .child = malloc((n + 1) * sizeof(int32_t)),
+	             .sibling = malloc((n + 1) * sizeof(int32_t)),
+	             .mark = malloc((n + 1) * sizeof(int32_t))};
 	bool room = of.below_first && of.below && of.child && of.sibling && of.mark;
 	if (room) {
 		memset(of.child, -1, n * sizeof(int32_t));
 		memset(of.sibling, -1, n * sizeof(int32_t));
 		memset(of.mark, -1, n * sizeof(int32_t));
-		permute(&of, matrix, places);
-		for (int32_t c = 0; c < matrix->n; c++)
-			grow(&of, c);
+		permute(&of, system);
+		for (int32_t c = 0; c < newton->n && room; c++)
+			room = grow(&of, c);
 	}
 	free(of.below_first);
 	free(of.below);
@@ -100,57 +253,23 @@ static bool find_pattern(cau_newton *newton, const cau_matrix *matrix, const int
 	return room;
 }
 
-static bool make_room(cau_newton *newton, size_t vertices, size_t n, size_t blocks)
+bool cau_newton_create(cau_newton *newton, const cau_step_solver *solver, const cau_newton *from)
 {
-	size_t block = CAU_BLOCK * sizeof(double);
-	newton->place = malloc(vertices * sizeof(int32_t));
-	newton->first = malloc((n + 1) * sizeof(int32_t));
-	newton->row = malloc((blocks + 1) * sizeof(int32_t));
-	newton->block = aligned_alloc(64, (blocks * block + 64) / 64 * 64);
-	newton->pivot = aligned_alloc(64, (n * block + 64) / 64 * 64);
-	newton->inverse = aligned_alloc(64, (n * block + 64) / 64 * 64);
-	newton->column = aligned_alloc(64, (n * block + 64) / 64 * 64);
-	newton->field = aligned_alloc(64, (4 * n * sizeof(double) + 64) / 64 * 64);
-	newton->next = malloc(n * sizeof(int32_t));
-	newton->head = malloc(n * sizeof(int32_t));
-	newton->at = malloc(n * sizeof(int32_t));
-	return newton->place && newton->first && newton->row && newton->block && newton->pivot &&
-	       newton->inverse && newton->column && newton->field && newton->next && newton->head &&
-	       newton->at;
-}
-
-cau_status cau_newton_create(cau_newton *newton, const cau_step_solver *solver, cau_error *error)
-{
-	const cau_system *system = &solver->system;
-	size_t n = (size_t)system->row_count, vertices = (size_t)solver->tissue->vertex_count;
-	size_t entries = (size_t)cau_factor_entries(solver->factor);
-	const int32_t *places = cau_factor_places(solver->factor);
-	CAU_ASSERT(!newton->n && entries >= n, "%zu entries of %zu rows", entries, n);
-	if (!make_room(newton, vertices, n, entries - n) ||
-	    !find_pattern(newton, &system->matrix, places)) {
-		cau_newton_finish(newton);
-		return cau_fail(error, CAU_NO_MEMORY, NULL, "no memory for Newton's steps");
-	}
-	CAU_ASSERT((size_t)newton->first[n] + n == entries, "%d blocks and %zu rows, not %zu",
-	           newton->first[n], n, entries);
-	for (size_t v = 0; v < vertices; v++)
-		newton->place[v] = system->row_of_vertex[v] < 0 ? -1 : places[system->row_of_vertex[v]];
-	newton->n = system->row_count;
-	return CAU_OK;
+	if (place_vertices(newton, solver, from) && find_elements(newton, solver, from) &&
+	    find_pattern(newton, &solver->system))
+		return true;
+	newton->n = 0;
+	return false;
 }
 
 void cau_newton_finish(cau_newton *newton)
 {
-	free(newton->place);
-	free(newton->first);
-	free(newton->row);
-	free(newton->block);
-	free(newton->pivot);
-	free(newton->inverse);
-	free(newton->column);
-	free(newton->field);
-	free(newton->next);
-	free(newton->head);
-	free(newton->at);
+	void *arrays[] = {newton->chosen,  newton->place, newton->vertex,   newton->first,
+	                  newton->row,     newton->block, newton->pivot,    newton->inverse,
+	                  newton->column,  newton->field, newton->gradient, newton->from,
+	                  newton->next,    newton->head,  newton->at,       newton->element,
+	                  newton->coupling};
+	for (size_t i = 0; i < sizeof arrays / sizeof *arrays; i++)
+		free(arrays[i]);
 	*newton = (cau_newton){0};
 }

@@ -95,8 +95,8 @@ cau_status cau_solver_create(cau_step_solver *solver, const cau_scene_def *scene
 	solver->diagonal = scene->solver == CAU_SOLVER_DIAGONAL;
 	solver->whole_panels = CAU_WHOLE_PANELS;
 	solver->conservative = cau_solver_is_conservative(tissue, solver->diagonal);
-	solver->newton_chosen = scene->solver == CAU_SOLVER_NEWTON && solver->conservative &&
-	                        !tissue->tetrahedron_count && tissue->vertex_count > 0;
+	solver->none_loose = scene->contact_thickness_m > 0;
+	solver->newton_chosen = scene->solver == CAU_SOLVER_NEWTON && solver->conservative;
 	cau_status status =
 		cau_elements_make(tissue, single, arena, &solver->elements, &solver->slots, error);
 	if (!status)
@@ -155,7 +155,7 @@ int32_t cau_solver_chunk_end(const cau_step_solver *solver, int32_t chunk, int32
 
 void cau_solver_finish(cau_step_solver *solver)
 {
-	cau_newton_finish(&solver->newton);
+	cau_loose_finish(&solver->loose);
 	cau_sweep_finish(&solver->sweep);
 	cau_factor_destroy(solver->factor);
 	solver->factor = NULL;

@@ -44,14 +44,15 @@ struct cau_step_solver {
 	cau_system system;
 	cau_factor *factor;
 	cau_sweep sweep;
-	cau_newton newton;       // made by the first step that needs it
+	cau_loose loose;         // made by the first step
 	int64_t whole_panels;    // bytes: larger panels of single precision are narrow
 	uint64_t factor_version; // counts every change of the factor
 	uint64_t factor_epoch;   // counts those that leave nothing of the old one
 
 	bool diagonal;      // CAU_SOLVER_DIAGONAL
 	bool conservative;  // every law is the gradient of an energy
-	bool newton_chosen; // CAU_SOLVER_NEWTON, all laws have energies, and there is no fat
+	bool newton_chosen; // CAU_SOLVER_NEWTON: all sheets are taken for loose
+	bool none_loose;    // the scene has tissue contact: no sheet is, at rest neither
 	int32_t iterations; // at most
 	double tolerance, step_s;
 	cau_accuracy accuracy;

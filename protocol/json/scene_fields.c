@@ -22,7 +22,7 @@ static const cau_field scene_fields[] = {
 	{OTHER(description, TEXT, "a sentence for people")},
 	CAU_TIME_TABLE(SCALAR){INTEGER(iterations, 1, CAU_ITERATIONS_MOST,
                                    "iterations of a step at most; with `accuracy` 0, of each")},
-	{CHOICE(solver, solver_choices, "global system; `newton`: of free sheets, each step's own")},
+	{CHOICE(solver, solver_choices, "global system; `newton`: and Newton's method for all sheets")},
 	{CHOICE(precision, precision_choices, "of the local and global steps")},
 	{CHOICE(parting, parting_choices,
             "what heat parts: edges with all that share them, as in the paper, or "

@@ -78,13 +78,14 @@ static double hang(int iterations)
 	return t.gained_j;
 }
 
-// It weighs 20 mN: falling by a centimetre brings 0.2 mJ.
-static void a_hanging_sheet_gains_where_it_has_not_converged(void **state)
+// It weighs 20 mN: falling by a centimetre brings 0.2 mJ. Its few iterations are enough, since what
+// hangs loose is settled by Newton's method in each of them.
+static void a_hanging_sheet_gains_nothing(void **state)
 {
 	(void)state;
-	double fall_j = 2e-4, few_j = hang(FEW), many_j = hang(CONVERGED);
-	assert_true(few_j > 0.01 * fall_j); // told
-	assert_true(many_j < ROUNDING * fall_j);
+	double fall_j = 2e-4;
+	assert_true(hang(FEW) < ROUNDING * fall_j);
+	assert_true(hang(CONVERGED) < ROUNDING * fall_j);
 }
 
 // ---- work: the block is drawn out slowly, and what it has then was brought in. Implicit Euler
@@ -219,7 +220,7 @@ int main(void)
 {
 	const struct CMUnitTest tests[] = {
 		cmocka_unit_test(rest_reads_nothing),
-		cmocka_unit_test(a_hanging_sheet_gains_where_it_has_not_converged),
+		cmocka_unit_test(a_hanging_sheet_gains_nothing),
 		cmocka_unit_test(a_led_support_brings_in_what_is_held),
 		cmocka_unit_test(tools_and_forces_bring_in_what_is_held),
 		cmocka_unit_test(a_snapshot_changes_nothing),

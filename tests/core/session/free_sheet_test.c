@@ -110,6 +110,47 @@ static void a_hanging_sheet_is_right(void **state)
 	expect_right("range, double", CAU_PRECISION_DOUBLE, 1e6, true);
 }
 
+// ---- a flap of 40 mm, as wide as half of that, by the solver of every scene
+
+// Ticks until its free edge has fallen by nine tenths of its length.
+static int ticks_to_fall(int iterations, double accuracy, double tolerance, double contact_m)
+{
+	enum { MOST_TICKS = 200 };
+	const double least[3] = {-1, -1, -1}, most[3] = {-0.0199, 1, 1};
+	cau_scene_def *scene = stage_scene(CAU_PRECISION_SINGLE);
+	cau_sheet_material *sheet = &stage_add_sheet(scene, "fascia", 0.04, 0.02, 20, 10)->sheet[0];
+	sheet->limit_stiffness_pa = 1e6;
+	cau_default_gravity(scene->gravity_m_s2);
+	scene->iterations = iterations;
+	scene->accuracy = accuracy;
+	scene->tolerance = tolerance;
+	scene->contact_thickness_m = contact_m;
+	stage_pin_box(scene, least, most);
+	cau_session *session = stage_open(scene, 1);
+	int ticks = 0;
+	double lowest = 0;
+	for (; ticks < MOST_TICKS && lowest > -0.9 * 0.04; ticks++) {
+		stage_step(session, 1);
+		for (int32_t v = 0; v < session->tissue.vertex_count; v++)
+			lowest = fmin(lowest, session->position[3 * v + 2]);
+	}
+	cau_session_destroy(session);
+	free(scene);
+	return ticks;
+}
+
+static void a_flap_falls_in_time(void **state)
+{
+	(void)state;
+	int ticks = ticks_to_fall(10, 0.01, 0, 0), converged = ticks_to_fall(CONVERGED, 0, 1e-7, 0);
+	print_message("a flap falls in %d ticks, converged in %d\n", ticks, converged);
+	assert_true(ticks <= 1.1 * converged && converged <= 1.1 * ticks);
+	// A known bug: with tissue contact it is left to A, and lags.
+	int lagging = ticks_to_fall(10, 0.01, 0, 5e-4);
+	print_message("with tissue contact it falls in %d ticks\n", lagging);
+	assert_true(lagging > 2 * converged);
+}
+
 // ---- bits
 
 static uint64_t hash_after(const cau_scene_def *scene, int32_t threads, int restored_at)
@@ -142,8 +183,6 @@ static void bits_depend_on_nothing_else(void **state)
 		assert_true(hash_after(scene, 3, -1) == hash);
 		assert_true(hash_after(scene, 1, 1) == hash);
 		assert_true(hash_after(scene, 2, 7) == hash);
-		scene->solver = CAU_SOLVER_CHOLESKY;
-		assert_true(hash_after(scene, 1, -1) != hash); // it was Newton's
 		free(scene);
 	}
 }
@@ -158,14 +197,14 @@ static void pins_and_tools_are_heeded(void **state)
 	stage_add_tool(scene, "hook", CAU_TOOL_HOOK, 0, 0, 0.03);
 	cau_session *session = stage_open(scene, 1);
 	stage_step(session, 3);
-	int32_t rows = session->solver.newton.n;
+	int32_t rows = session->solver.loose.region.n;
 	assert_true(rows > 0);
 	cau_command pin = stage_command(CAU_COMMAND_PIN);
 	const double least[3] = {-1, -1, -1}, most[3] = {1, -0.0299, 1};
 	pin.as.selection = stage_box(least, most);
 	stage_submit(session, &pin);
 	stage_step(session, 2);
-	assert_true(session->solver.newton.n == 0 || session->solver.newton.n == rows - 21);
+	assert_int_equal(session->solver.loose.region.n, rows - 21);
 	bool touched = false;
 	for (int k = 0; k < 60; k++) {
 		stage_move(session, "hook", 0, 0, 0.03 - 1e-3 * k);
@@ -181,6 +220,7 @@ int main(void)
 {
 	const struct CMUnitTest tests[] = {
 		cmocka_unit_test(a_hanging_sheet_is_right),
+		cmocka_unit_test(a_flap_falls_in_time),
 		cmocka_unit_test(bits_depend_on_nothing_else),
 		cmocka_unit_test(pins_and_tools_are_heeded),
 	};

@@ -142,7 +142,8 @@ static void real_files_live(void **state)
 	static const char *const files[] = {"liver.msh", "liver_low_volume.msh", "liver-smoothUV.obj"};
 	const char *folder = getenv("CAUTERY_MESHES");
 	(void)state;
-	for (size_t i = 0; i < sizeof files / sizeof *files; i++) {
+	size_t count = CAU_TEST_SANITIZED ? 1 : sizeof files / sizeof *files;
+	for (size_t i = 0; i < count; i++) {
 		char path[600];
 		snprintf(path, sizeof path, "%s/%s", folder ? folder : "", files[i]);
 		FILE *file = folder ? fopen(path, "r") : NULL;

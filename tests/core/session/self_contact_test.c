@@ -246,10 +246,13 @@ static void expect_the_same_after_a_restore(cau_session *session)
 // Jaws that never slip draw at `layers` at 5 m/s: it is thrown faster than it can be kept apart,
 // and turned inside out. That is told of; let go, it finds its way back, and all of it touches
 // again.
+// Nothing stays inside out. What came to cross something meanwhile touches nothing as long as it
+// does, on some processors to the end (.github/KNOWN_BUGS.md); nothing else crosses anything.
 static void what_is_thrown_finds_its_way_back(void **state)
 {
 	(void)state;
 	enum { DRAWN = 20, TICKS = 100 };
+	const double least_inverted = 0.003; // of all tetrahedra: it was thrown
 	cau_scene_def *scene = stage_scene_light("layers");
 	scene->contact_thickness_m = THICKNESS_M;
 	for (int32_t i = 0; i < scene->layer_count; i++) // and nothing tears
@@ -279,11 +282,13 @@ static void what_is_thrown_finds_its_way_back(void **state)
 	}
 	for (int32_t v = 0; v < session->tissue.vertex_count; v++)
 		exempt += session->collide.exempt[v];
-	print_message("told of %d times, %d inside out; at last %d, and %d touch nothing\n", told,
-	              most_inverted, session->inverted, exempt);
-	assert_true(told > 0 && most_inverted > 100);
+	int crossings = surface_crossings(session);
+	print_message("told of %d times, %d inside out; at last %d, %d touch nothing, %d crossings\n",
+	              told, most_inverted, session->inverted, exempt, crossings);
+	assert_true(told > 0 && most_inverted > least_inverted * session->tissue.tetrahedron_count);
 	assert_int_equal(session->inverted, 0);
-	assert_int_equal(exempt, 0);
+	assert_int_equal(surface_crossings_but(session, session->collide.exempt), 0);
+	assert_true(exempt == 0 || crossings > 0);
 	cau_session_destroy(session);
 	free(scene);
 }
@@ -380,6 +385,10 @@ int main(int count, char **argument)
 		cmocka_unit_test(many_motions_of_tools),
 		cmocka_unit_test(many_motions_of_tools_that_grasp),
 	};
+#ifdef __SANITIZE_THREAD__ // the loops on two threads; the others are the same ones on fewer
+	const struct CMUnitTest threaded[] = {cmocka_unit_test(the_same_bits)};
+	return cmocka_run_group_tests(threaded, NULL, NULL);
+#endif
 	if (count > 1 && !strcmp(argument[1], "--long"))
 		return cmocka_run_group_tests(long_tests, NULL, NULL);
 	return cmocka_run_group_tests(tests, NULL, NULL);

@@ -1343,7 +1343,7 @@ export interface Scene {
   contact_friction?: number;
   /** iterations of a step at most; with `accuracy` 0, of each (1 to 1000) */
   iterations?: number;
-  /** global system; `newton`: of free sheets, each step's own */
+  /** global system; `newton`: and Newton's method for all sheets */
   solver?: 'cholesky' | 'diagonal' | 'newton';
   /** of the local and global steps */
   precision?: 'single' | 'double';

@@ -1,0 +1,180 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Which vertices a step leaves to Newton's method: those of sheets that are slack, but for fat's
+// and those near a tool. Scenes with tissue contact have none: what settles there would pass other
+// tissue, and steps that are shortened lest it does leave it unsettled.
+#include <stdlib.h>
+#include <string.h>
+
+#include "cautery/assert.h"
+#include "solve/contact.h"
+#include "solve/newton.h"
+#include "solve/solver.h"
+
+static int32_t vertex_of(const cau_step_solver *solver, const cau_local_work *work, int32_t slot,
+                         int corner)
+{
+	const cau_elements *elements = &solver->elements;
+	return elements
+	           ->record_vertex[work->first_record + elements->sheet.record_at[corner][slot] / 4] /
+	       4;
+}
+
+static double weight_of(const cau_step_solver *solver, int32_t slot)
+{
+	return cau_real_get(solver->elements.sheet.weight, solver->elements.single, slot);
+}
+
+static bool is_on_fat(const cau_step_solver *solver, const cau_local_work *work, int32_t slot)
+{
+	for (int i = 0; i < 3; i++)
+		if (solver->loose.in_fat[vertex_of(solver, work, slot, i)])
+			return true;
+	return false;
+}
+
+// Shares with triangles that are on no fat: only these are looked at.
+static bool list_shares(cau_step_solver *solver)
+{
+	cau_loose *loose = &solver->loose;
+	const cau_element_slots *slots = &solver->slots;
+	loose->share = calloc((size_t)slots->work_count + 1, sizeof *loose->share);
+	for (int32_t w = 0; loose->share && w < slots->work_count; w++) {
+		const cau_local_work *work = &slots->work[w];
+		bool any = false;
+		for (int32_t slot = work->first; slot < work->last && !any; slot++)
+			any = work->kind == CAU_ELEMENT_TRIANGLE && !is_on_fat(solver, work, slot);
+		if (any)
+			loose->share[loose->share_count++] = w;
+	}
+	return loose->share != NULL;
+}
+
+static bool make_loose(cau_step_solver *solver)
+{
+	cau_loose *loose = &solver->loose;
+	const cau_tissue *tissue = solver->tissue;
+	size_t n = (size_t)tissue->vertex_count;
+	if (loose->share)
+		return true;
+	loose->region.chosen = calloc(n, 1);
+	loose->part.chosen = calloc(n, 1);
+	loose->before = calloc(n, 1);
+	loose->in_fat = calloc(n, 1);
+	if (!loose->region.chosen || !loose->part.chosen || !loose->before || !loose->in_fat)
+		return false;
+	for (int64_t i = 0; i < 4 * (int64_t)tissue->tetrahedron_count; i++)
+		loose->in_fat[tissue->tetrahedron[i]] = 1;
+	return list_shares(solver);
+}
+
+static void choose_slack(const cau_step_solver *solver, int32_t share, uint8_t *chosen)
+{
+	const cau_local_work *work = &solver->slots.work[share];
+	bool all = solver->newton_chosen;
+	if (!all && !solver->elements.slack[work->number])
+		return;
+	for (int32_t slot = work->first; slot < work->last; slot++) {
+		if (!(weight_of(solver, slot) > 0) || is_on_fat(solver, work, slot))
+			continue;
+		if (all || cau_newton_stiffness(solver, &(cau_newton_element){share, slot}) < CAU_SLACK)
+			for (int i = 0; i < 3; i++)
+				chosen[vertex_of(solver, work, slot, i)] = 1;
+	}
+}
+
+enum { CHOSEN = 1, LEFT_OUT = 2, BESIDE = 4 };
+
+// Vertices with a triangle in common with what is left out.
+static void leave_out_ring(const cau_step_solver *solver, uint8_t *chosen)
+{
+	const cau_loose *loose = &solver->loose;
+	for (int32_t k = 0; k < loose->share_count; k++) {
+		const cau_local_work *work = &solver->slots.work[loose->share[k]];
+		for (int32_t slot = work->first; slot < work->last; slot++) {
+			int32_t vertex[3];
+			int any = 0;
+			for (int i = 0; i < 3; i++)
+				any |= chosen[vertex[i] = vertex_of(solver, work, slot, i)];
+			for (int i = 0; (any & LEFT_OUT) && weight_of(solver, slot) > 0 && i < 3; i++)
+				chosen[vertex[i]] |= BESIDE;
+		}
+	}
+	for (int32_t v = 0; v < solver->tissue->vertex_count; v++)
+		if (chosen[v] & BESIDE)
+			chosen[v] = LEFT_OUT;
+}
+
+// Rings of vertices around a tool's that stay with A too: what settles beside a tool might pass it.
+enum { RINGS = 2 };
+
+// What contact is corrected at stays with A, whose columns it has.
+static void leave_out(const cau_step_solver *solver, uint8_t *chosen)
+{
+	const cau_contact_set *contact = solver->contact;
+	for (int32_t i = 0; contact && i < contact->corner_count; i++)
+		chosen[contact->corner[i]] = LEFT_OUT;
+	for (int ring = 0; contact && contact->corner_count && ring < RINGS; ring++)
+		leave_out_ring(solver, chosen);
+	for (int32_t v = 0; v < solver->tissue->vertex_count; v++)
+		chosen[v] = chosen[v] == CHOSEN && !solver->fixed[v];
+}
+
+static int64_t count_chosen(const cau_step_solver *solver)
+{
+	int64_t count = 0;
+	for (int32_t v = 0; v < solver->tissue->vertex_count; v++)
+		count += solver->loose.region.chosen[v];
+	return count;
+}
+
+cau_status cau_loose_choose(cau_step_solver *solver, cau_error *error)
+{
+	cau_loose *loose = &solver->loose;
+	size_t n = (size_t)solver->tissue->vertex_count;
+	loose->settled = true; // where there is no region
+	loose->given_up = loose->moved = false;
+	loose->left = 0;
+	loose->work = 0;
+	if (solver->diagonal || solver->none_loose || !solver->tissue->triangle_count) {
+		loose->region.n = 0;
+		return CAU_OK;
+	}
+	if (!make_loose(solver)) {
+		cau_loose_finish(loose);
+		return cau_fail(error, CAU_NO_MEMORY, NULL, "no memory for Newton's steps");
+	}
+	memset(loose->region.chosen, 0, n);
+	for (int32_t k = 0; k < loose->share_count; k++)
+		choose_slack(solver, loose->share[k], loose->region.chosen);
+	int64_t count = count_chosen(solver);
+	if (count) {
+		leave_out(solver, loose->region.chosen);
+		count = count_chosen(solver);
+	}
+	if (count > CAU_NEWTON_ROWS && !solver->newton_chosen)
+		count = 0;
+	if (!count) {
+		loose->region.n = 0;
+		return CAU_OK;
+	}
+	loose->settled = false;
+	if (loose->region.n && loose->epoch == solver->factor_epoch &&
+	    !memcmp(loose->region.chosen, loose->before, n))
+		return CAU_OK;
+	loose->epoch = solver->factor_epoch;
+	memcpy(loose->before, loose->region.chosen, n);
+	loose->region.n = 0;
+	if (!cau_newton_create(&loose->region, solver, NULL))
+		return cau_fail(error, CAU_NO_MEMORY, NULL, "no memory for Newton's steps");
+	return CAU_OK;
+}
+
+void cau_loose_finish(cau_loose *loose)
+{
+	cau_newton_finish(&loose->region);
+	cau_newton_finish(&loose->part);
+	free(loose->before);
+	free(loose->in_fat);
+	free(loose->share);
+	*loose = (cau_loose){0};
+}
