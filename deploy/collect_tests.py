@@ -6,7 +6,8 @@ Usage: collect_tests.py SUITE NAME TREE LABELS WITHOUT TIMEOUT_FACTOR [BUILD COM
 Appends the tests of the configured build tree TREE whose labels match the regular expression LABELS
 (all with an empty one) and not WITHOUT (none with an empty one) to SUITE/CTestTestfile.cmake, each
 named NAME.<test>, with NAME as a further label and its time limit multiplied by TIMEOUT_FACTOR. With
-a command, building the tree is a test of its own, NAME.build, which the others wait for.
+a command, building the tree is a test of its own, NAME.build, which the others wait for. In place of
+the word "programs" the command gets the targets that these tests run.
 
 How the tests share the machine. The suite is run with `--parallel 12`, six slots for each of two
 cores. First comes what measures times (RUN_SERIAL in its tree): one at a time, with eleven slots. What
@@ -23,6 +24,8 @@ import re
 import subprocess
 import sys
 
+from programs_of_tests import programs
+
 OWN_NAMES = ("DEPENDS", "FIXTURES_SETUP", "FIXTURES_REQUIRED", "FIXTURES_CLEANUP")
 SCHEDULE = ("COST", "PROCESSORS", "RUN_SERIAL")
 DERIVED = ("CONFIGURATIONS",)
@@ -34,7 +37,7 @@ GIVING_WAY = ["chrt", "--idle", "0"]  # below any nice value
 BUILD_COST, TIMING_COST = 1e6, 1e5  # above any time limit, which is the cost of the others
 UNKNOWN_COST = 60  # of a test without a time limit
 LATE_COST_PER_S = 1e-4  # below any other test; of these clang-tidy, which takes a minute, before fuzzing
-BUILD_LIMIT_S = 3600
+BUILD_LIMIT_S = 7200  # it gives way to all else
 
 
 def list_tests(tree, labels, without):
@@ -136,6 +139,12 @@ def render(test, command, suite_name, timeout_factor, needs_build, timing):
     return define(f"{suite_name}.{test['name']}", command, properties)
 
 
+def with_programs(command, tree, tests):
+    """`command` with the targets that the tests run in place of the word "programs"."""
+    names = {test["name"] for test in tests}
+    return [part for word in command for part in (programs(tree, names) if word == "programs" else [word])]
+
+
 def render_build(suite_name, command):
     return define(f"{suite_name}.build", " ".join(bracket(part) for part in [*GIVING_WAY, *command]), {
         "LABELS": [suite_name, "build"], "FIXTURES_SETUP": f"{suite_name}.tree", "RESOURCE_LOCK": "build",
@@ -158,7 +167,7 @@ def main(suite, suite_name, tree, labels, without, timeout_factor, *build):
     timing = known_timing(suite, [f"{suite_name}.{test['name']}" for test in tests if measures_times(given_properties(test))])
     with open(os.path.join(suite, "CTestTestfile.cmake"), "a", encoding="utf-8") as file:
         if build:
-            file.write(render_build(suite_name, build))
+            file.write(render_build(suite_name, with_programs(build, tree, tests)))
         file.writelines(render(test, commands[test["name"]], suite_name, float(timeout_factor), bool(build), timing)
                         for test in tests)
 

@@ -35,10 +35,9 @@ def definitions(tree):
                                       file.read(), re.MULTILINE)
 
 
-def programs(tree, regex):
-    wanted, found = names(tree, regex), set()
-    if not wanted:
-        sys.exit(f"no test's name matches '{regex}'")
+def programs(tree, wanted):
+    """The targets that the tests whose names are in `wanted` run."""
+    found = set()
     paths = {re.escape(path) for path in (os.path.abspath(tree), os.path.realpath(tree))}
     program = re.compile(f"(?:{'|'.join(paths)}){PROGRAM}")
     for name, line in definitions(tree):
@@ -47,5 +46,12 @@ def programs(tree, regex):
     return sorted(found)
 
 
+def main(tree, regex):
+    wanted = names(tree, regex)
+    if not wanted:
+        sys.exit(f"no test's name matches '{regex}'")
+    print("\n".join(programs(tree, wanted)))
+
+
 if __name__ == "__main__":
-    print("\n".join(programs(*sys.argv[1:])))
+    main(*sys.argv[1:])

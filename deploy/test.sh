@@ -16,7 +16,7 @@ Usage: deploy/test.sh [--fast | --full | --long] [--no-install]
   --fast        the Release suite alone
   --full        adds the thread sanitizer over the unit, determinism and e2e tests, clang-tidy,
                 tests labelled full, clang's warnings on every source
-  --long        as --full, with tests labelled long, and 600 s of fuzzing
+  --long        as --full, with tests labelled long, clang's analyzer on tests, and 600 s of fuzzing
   --only REGEX  the tests whose names match, in one tree: builds what these run and nothing else
   --preset NAME with --only: the tree of this preset instead of release's (asan-ubsan, tsan, dev)
   --fleet       three daemons, etcd and HAProxy in network namespaces, 60 sessions, and what goes
@@ -25,8 +25,8 @@ Usage: deploy/test.sh [--fast | --full | --long] [--no-install]
   --no-install  fail if a package of deploy/packages.txt is missing, instead of installing it
   --help        this text
 
-On two cores, with nothing built before, --full takes about 20 minutes; the default and --fast less,
-of which the browser's tests take four. Tests of one tree run while the next is built. One source
+On two cores, with nothing built before, --full takes about an hour; the default and --fast less,
+of which the browser's tests take seven. Tests of one tree run while the next is built. One source
 changed: --only, in seconds.
 
 Build trees: build, build-asan, build-fuzz, build-tsan. Logs of the stages: build/log.
@@ -108,16 +108,16 @@ configure() {
 	watched "configure-$preset" cmake --preset "$preset" "${fresh[@]}" "$@"
 }
 
-# collect NAME PRESET LABELS WITHOUT TIMEOUT_FACTOR [TARGET]: adds a tree's tests to the suite; with a
-# target, building it is one of them, so that these tests begin when their tree is there.
+# collect NAME PRESET LABELS WITHOUT TIMEOUT_FACTOR [TARGET]: adds a tree's tests to the suite; with a target,
+# building it is one of them, so that these tests begin when their tree is there. "programs": what these tests run.
 collect() {
 	local name=$1 preset=$2 tree build=()
 	tree=$(tree_of "$preset")
 	if [ -n "${6:-}" ]; then
 		build=("$source_folder/deploy/build_tree.sh" "$logs/build-$name.log"
-			cmake --build "$source_folder/$tree" --target "$6" --parallel "$jobs")
+			cmake --build "$source_folder/$tree" --parallel "$jobs" --target "$6")
 	fi
-	python3 deploy/collect_tests.py "$suite" "$name" "$tree" "${@:3:3}" "${build[@]}"
+	python3 -B deploy/collect_tests.py "$suite" "$name" "$tree" "${@:3:3}" "${build[@]}"
 }
 
 # follow CTEST_ARGUMENTS...: runs tests, and says what is running where ctest is silent.
@@ -156,7 +156,7 @@ configure_all() {
 	configure release -DCAUTERY_LONG=$long
 	if [ "$level" != fast ]; then
 		configure asan-ubsan
-		configure fuzz -DCAUTERY_FUZZ_SECONDS=$fuzz_seconds -DCAUTERY_TIDY=$tidy
+		configure fuzz -DCAUTERY_FUZZ_SECONDS=$fuzz_seconds -DCAUTERY_TIDY=$tidy -DCAUTERY_LONG=$long
 	fi
 	if [ "$level" = full ] || [ "$level" = long ]; then
 		configure tsan
@@ -168,11 +168,11 @@ collect_all() {
 	rm -rf "$suite"
 	collect release release '' "$without" 1
 	if [ "$level" != fast ]; then
-		collect asan asan-ubsan 'unit|e2e' "$sanitizers_without" 4 all
+		collect asan asan-ubsan 'unit|e2e' "$sanitizers_without" 4 programs
 		collect clang fuzz 'fuzz|tidy' '' 1 fuzz_targets
 	fi
 	if [ "$level" = full ] || [ "$level" = long ]; then
-		collect tsan tsan 'unit|determinism|e2e' "unthreaded|$sanitizers_without" 10 all
+		collect tsan tsan 'unit|determinism|e2e' "unthreaded|$sanitizers_without" 10 programs
 	fi
 }
 

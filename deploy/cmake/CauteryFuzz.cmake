@@ -1,7 +1,7 @@
 # cautery_fuzz(NAME mesh_msh SOURCES msh_fuzz.c LIBRARIES cautery::core SEEDS seeds/msh)
 #
 # A fuzz target for one parser or decoder; its source defines LLVMFuzzerTestOneInput() and includes
-# "fuzz/fuzz_target.h". SEEDS names a folder of small inputs (optional).
+# "fuzz/fuzz_target.h". SEEDS names a folder of small inputs (optional). THREADS: it makes some.
 #   -DCAUTERY_FUZZ=ON  (clang): the test fuzz_NAME mutates the seeds for CAUTERY_FUZZ_SECONDS
 #                      and keeps a minimised corpus in the tree.
 #   otherwise:         the test replay_NAME runs the target over the seeds, the empty input and a
@@ -10,7 +10,7 @@ set(CAUTERY_FUZZ_SECONDS 10 CACHE STRING "Seconds that each fuzz test runs")
 add_custom_target(fuzz_targets) # all of them, and nothing else
 
 function(cautery_fuzz)
-  cmake_parse_arguments(F "" "NAME;SEEDS" "SOURCES;LIBRARIES" ${ARGN})
+  cmake_parse_arguments(F "THREADS" "NAME;SEEDS" "SOURCES;LIBRARIES" ${ARGN})
   if(F_SEEDS)
     cmake_path(ABSOLUTE_PATH F_SEEDS BASE_DIRECTORY "${CMAKE_CURRENT_SOURCE_DIR}")
   endif()
@@ -26,7 +26,10 @@ function(cautery_fuzz)
   if(NOT CAUTERY_FUZZ)
     target_sources(fuzz_${F_NAME} PRIVATE "${PROJECT_SOURCE_DIR}/tests/fuzz/replay.c")
     add_test(NAME replay_${F_NAME} COMMAND fuzz_${F_NAME} ${F_SEEDS})
-    set_tests_properties(replay_${F_NAME} PROPERTIES LABELS unit TIMEOUT 120)
+    if(NOT F_THREADS)
+      cautery_without_threads(fuzz_${F_NAME})
+    endif()
+    set_tests_properties(replay_${F_NAME} PROPERTIES LABELS "unit;unthreaded" TIMEOUT 120)
     return()
   endif()
 

@@ -27,7 +27,7 @@ unit)
 	exec npm run --silent unit
 	;;
 browser | pictures)
-	[ -x /usr/bin/chromium ] || skip "no /usr/bin/chromium"
+	[ -x /usr/bin/chromium-headless-shell ] || skip "no /usr/bin/chromium"
 	[ -x "${CAUTERYD:-}" ] || skip "the daemon is not built here"
 	mkdir -p "$CAUTERY_SCREENSHOTS"
 	if [ "$1" = browser ]; then

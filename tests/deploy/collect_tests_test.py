@@ -78,9 +78,19 @@ def labels_limits_and_slots(deploy, cmake, folder):
     assert later["tsan.timed"]["DEPENDS"] == ["tsan.build"], later["tsan.timed"]
 
 
+def builds_what_the_tests_run(deploy, cmake, folder):
+    """Of the programs in the tree, those of the tests that were chosen."""
+    tree = make_tree(cmake, os.path.join(folder, "programs"), "${CMAKE_BINARY_DIR}/tests/test_chosen")
+    with open(os.path.join(folder, "programs", "CMakeLists.txt"), "a", encoding="utf-8") as file:
+        file.write("add_test(NAME other COMMAND ${CMAKE_BINARY_DIR}/tests/test_other)\n")
+    subprocess.run([cmake, tree], check=True, stdout=subprocess.DEVNULL)
+    tests = collect(deploy, os.path.join(folder, "programs-suite"), "tsan", tree, "unit", "", "1", "make", "programs", "-k")
+    assert tests["tsan.build"]["command"][-3:] == ["make", "test_chosen", "-k"], tests["tsan.build"]
+
+
 def main(deploy, cmake):
     with tempfile.TemporaryDirectory() as folder:
-        for check in (commands_are_the_trees_own, labels_limits_and_slots):
+        for check in (commands_are_the_trees_own, labels_limits_and_slots, builds_what_the_tests_run):
             check(deploy, cmake, folder)
             print("ok", check.__name__)
 

@@ -7,11 +7,14 @@ import { join } from 'node:path';
 import { test } from 'node:test';
 import { Daemon } from './wire/daemon.mjs';
 import { Driver } from './wire/driver.mjs';
+import { slowness } from './wire/machine.mjs';
 import { smallSession } from './wire/scene.mjs';
 import { checkSilences, measureSilences, missedHeartbeat } from './wire/silences.mjs';
 
 const sanitized = process.env.E2E_SLOW === '1'; // there a slice takes some thirty times as long
-const CELLS = sanitized ? 30 : 200; // of each side: 40,401 vertices, of which a restore takes 80 ms
+// Of each side: 22,801 vertices, of which a restore takes 45 ms, twice what a slice may take. What a slice does take with
+// them is half of that, so that a machine that is busy with other things passes.
+const CELLS = sanitized ? 30 : 150;
 const SLICE_MOST_S = 0.02; // CAU_SLICE_MOST_S of server/worker/pool.h
 const DEADLINE_S = sanitized ? 2.5 : 0.25;
 const TRIALS = sanitized ? 3 : 12;
@@ -74,7 +77,8 @@ test('no slice but a step is long, and energy goes off in time, beside a large s
 	checkSilences(t, took, DEADLINE_S);
 	assert.ok(longest_s > 0, 'slices are measured');
 	// Processor time, which others that use the machine do not add to.
-	assert.ok(sanitized || longest_s <= SLICE_MOST_S, `${longest_s} s`);
+	const most_s = SLICE_MOST_S * slowness();
+	assert.ok(sanitized || longest_s <= most_s, `${longest_s} s, of ${most_s}`);
 	await daemon.end();
 });
 

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // View tokens that flood one method cannot slow a driver down. Every method of protocol/asyncapi.json is
-// flooded in turn by eight viewers (in the short form, those that viewers may call, and one that they may not). The driver keeps its frames, and the daemon answers "energy off" soon.
+// flooded in turn by eight viewers (in the short form, those that viewers may call, and one that they may not). The
+// driver keeps its frames, and the daemon answers "energy off" soon.
 import assert from 'node:assert/strict';
 import { mkdtempSync, readFileSync, rmSync, writeFileSync } from 'node:fs';
 import { tmpdir } from 'node:os';
@@ -9,12 +10,14 @@ import { after, before, test } from 'node:test';
 import { Daemon } from './wire/daemon.mjs';
 import { Driver, now } from './wire/driver.mjs';
 import { Flood } from './wire/flood.mjs';
+import { slowness } from './wire/machine.mjs';
 import { AT_REST } from './wire/scene.mjs';
 
 const { operations, components: { messages, schemas } } = JSON.parse(readFileSync(process.env.ASYNCAPI));
 const ALL = process.env.E2E_ALL === '1';
 const sanitized = process.env.E2E_SLOW === '1'; // figures of time mean nothing there: off is answered, and no race is found
-const VIEWERS = 8, SECONDS = ALL ? 2 : sanitized ? 0.3 : 1, FRAMES_LEAST = 0.95, OFF_MOST_S = 0.05, ANSWER_MOST_S = 0.05, PERIOD_MS = 50;
+const VIEWERS = 8, SECONDS = ALL ? 2 : sanitized ? 0.3 : 1, FRAMES_LEAST = 0.95, PERIOD_MS = 50;
+const OFF_MOST_S = 0.05 * slowness(), ANSWER_MOST_S = 0.05 * slowness();
 const TOKENS = { view: 'viewer-token-0123456789', operate: 'driver-token-0123456789' };
 const viewing = { token: TOKENS.view };
 

@@ -8,7 +8,7 @@ import { Daemon } from './wire/daemon.mjs';
 import { now } from './wire/driver.mjs';
 import { AT_REST, smallSession } from './wire/scene.mjs';
 
-const slow = process.env.E2E_SLOW === '1', trials = Number(process.env.E2E_STOPS ?? (slow ? 1 : 6));
+const slow = process.env.E2E_SLOW === '1', trials = Number(process.env.E2E_STOPS ?? (slow ? 1 : 3));
 const DEADLINE_S = slow ? 2.5 : 0.25, STOP_S = 2.8 * DEADLINE_S, BEAT_MS = 200 * DEADLINE_S, MOST_TICKS = 3;
 
 let daemon, watcher;

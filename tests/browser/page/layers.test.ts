@@ -13,7 +13,8 @@ const SESSION = 'd1-layers';
 const RATE_HZ = 60;
 const DRAWN = 240; // ticks in which the hook is drawn along the cut
 const TICKS = 300; // and a second in which it is lifted
-const WORK_MS_MAX = 4; // of the page's main thread for a frame of the stream
+const WORK_MS_MAX = 4; // of the page's main thread for a frame of the stream, where a calculation takes as long as CALCULATION_MS
+const CALCULATION_MS = 5;
 /** A page that takes a tenth longer than a frame lasts is 500 ms behind after these frames. */
 const BEHIND_MS_MAX = 400;
 const HOT_C = 1200; // does in four seconds what half a minute does at 170 degC
@@ -65,6 +66,19 @@ async function taskMs(session: CDPSession): Promise<number> {
   return 1000 * (metrics.find(({ name }) => name === 'TaskDuration')?.value ?? NaN);
 }
 
+/** By how much longer than CALCULATION_MS the calculation takes in this page: the least of some trials, at least 1. */
+function slowness(viewer: ViewerPage): Promise<number> {
+  return viewer.page.evaluate((least) => {
+    const times = Array.from({ length: 20 }, () => {
+      const began = performance.now();
+      let x = 0.5;
+      for (let i = 0; i < 3_000_000; i++) x = 3.9 * x * (1 - x);
+      return x > 0 ? performance.now() - began : 0;
+    });
+    return Math.max(1, Math.min(...times) / least);
+  }, CALCULATION_MS);
+}
+
 /** Pieces of fascia on the line of the cut with a gap on both sides. */
 function strandsAcross(viewer: ViewerPage): Promise<number> {
   return viewer.page.evaluate(([reach, step]) => {
@@ -91,9 +105,11 @@ describe('the layers scene, cut', () => {
   it('is decoded whole at 60 Hz and drawn without falling behind, with little work for the page', async () => {
     const replay = new Replay(stage.daemon.url, recording, RATE_HZ);
     const viewer = await ViewerPage.open(stage.browser, await replay.start());
-    await viewer.until(() => window.cautery.tick > 0, null, 'the stream has begun');
+    await viewer.until(() => window.cautery.framesDecoded > 0, null, 'the key frame is there');
+    await viewer.drawn();
     const meter = await ThreadMeter.on(viewer);
     const first = await viewer.state();
+    replay.play();
     await viewer.until((last) => window.cautery.tick === last, replay.lastTick, 'the last frame is on the page');
     const busyMs = await meter.busyMs();
     await viewer.drawn();
@@ -115,7 +131,7 @@ describe('the layers scene, cut', () => {
     expect(last.drawnFaces['fascia']).toBeLessThan(first.drawnFaces['fascia']);
     expect(late).toBeLessThan(BEHIND_MS_MAX);
     expect(last.picturesDrawn).toBeGreaterThan(first.picturesDrawn);
-    expect(busyPerFrameMs).toBeLessThan(WORK_MS_MAX);
+    expect(busyPerFrameMs).toBeLessThan(WORK_MS_MAX * (await slowness(viewer)));
     await viewer.close();
     await replay.end();
   });

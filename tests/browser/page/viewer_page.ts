@@ -26,7 +26,7 @@ const STILL = { viewport: { width: 1100, height: 720 }, colorScheme: 'dark', red
 export const MOVING = { reducedMotion: 'no-preference' } as const;
 
 export function launch(): Promise<Browser> {
-  return chromium.launch({ executablePath: '/usr/bin/chromium', headless: true, args: FLAGS });
+  return chromium.launch({ executablePath: '/usr/bin/chromium-headless-shell', headless: true, args: FLAGS });
 }
 
 export class ViewerPage {

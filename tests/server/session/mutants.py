@@ -7,7 +7,6 @@ piece is not in the source any more, is a failure of this test.
 """
 
 import os
-import shutil
 import subprocess
 import sys
 import tempfile
@@ -105,38 +104,54 @@ MUTANTS = (
 )
 
 
-def build(folder, root, compiler):
-    sources = [os.path.join(folder, name) for name in sorted(os.listdir(folder)) if name.endswith(".c")]
-    program = os.path.join(folder, "mutant")
-    subprocess.run(
-        [compiler, "-O1", "-DNDEBUG", "-D_GNU_SOURCE", "-std=gnu17",
-         "-I" + os.path.dirname(os.path.dirname(folder)) + "/server", "-I" + root + "/core/types",
-         "-I" + root + "/protocol/include", "-I" + root + "/tests", *sources, root + "/core/types/assert.c", "-lm", "-o", program],
-        check=True)
-    return program
+class Bench:
+    """The property test's objects, of the sources as they are, and what makes a program of them and a mutant."""
 
+    def __init__(self, folder, root, compiler):
+        self.folder, self.root = folder, root
+        self.compile = [compiler, "-O1", "-DNDEBUG", "-D_GNU_SOURCE", "-std=gnu17", "-I" + root + "/server",
+                        "-I" + root + "/core/types", "-I" + root + "/protocol/include", "-I" + root + "/tests"]
+        tests = [os.path.join("tests", ROOM, name) for name in ("logic_test.c", "oracle.c", "world.c")]
+        rooms = [os.path.join(ROOM, name) for name in os.listdir(os.path.join(root, ROOM)) if name.endswith(".c")]
+        self.objects = {}
+        for source in [*tests, *rooms, "core/types/assert.c"]:
+            name = os.path.basename(source)
+            self.objects[name] = self.make(os.path.join(root, source), source, name + ".o")
 
-def survives(root, compiler, mutant):
-    _, name, piece, instead = mutant
-    with tempfile.TemporaryDirectory() as top:
-        folder = os.path.join(top, ROOM)
-        shutil.copytree(os.path.join(root, ROOM), folder)
-        for test in ("logic_test.c", "oracle.c", "world.c"):
-            shutil.copy(os.path.join(root, "tests", ROOM, test), folder)
-        path = os.path.join(folder, name)
-        with open(path, encoding="utf-8") as file:
+    def make(self, path, source, name):
+        """The object of the text at PATH, which stands for SOURCE and sees what lies beside it."""
+        made = os.path.join(self.folder, name)
+        beside = "-iquote" + os.path.join(self.root, os.path.dirname(source))
+        subprocess.run([*self.compile, beside, "-c", path, "-o", made], check=True)
+        return made
+
+    def program(self, mutant):
+        """The path of the program with MUTANT in it; None where its piece is not in its source once."""
+        _, name, piece, instead = mutant
+        source = os.path.join("tests" if name == "world.c" else "", ROOM, name)
+        with open(os.path.join(self.root, source), encoding="utf-8") as file:
             text = file.read()
         if text.count(piece) != 1:
             print(f"not in {name} once: {piece!r}")
-            return True
-        with open(path, "w", encoding="utf-8") as file:
+            return None
+        changed = os.path.join(self.folder, name)
+        with open(changed, "w", encoding="utf-8") as file:
             file.write(text.replace(piece, instead))
-        done = subprocess.run([build(folder, root, compiler), SEQUENCES], capture_output=True, check=False)
-        return done.returncode == 0
+        objects = {**self.objects, name: self.make(changed, source, "mutant.o")}
+        program = os.path.join(self.folder, "mutant")
+        subprocess.run([self.compile[0], *objects.values(), "-lm", "-o", program], check=True)
+        return program
+
+
+def survives(bench, mutant):
+    program = bench.program(mutant)
+    return not program or subprocess.run([program, SEQUENCES], capture_output=True, check=False).returncode == 0
 
 
 def main(root, compiler):
-    lived = [mutant[0] for mutant in MUTANTS if survives(root, compiler, mutant)]
+    with tempfile.TemporaryDirectory() as folder:
+        bench = Bench(folder, root, compiler)
+        lived = [mutant[0] for mutant in MUTANTS if survives(bench, mutant)]
     for name in lived:
         print(f"nobody noticed: {name}")
     print(f"{len(MUTANTS) - len(lived)} of {len(MUTANTS)} mutants were noticed")

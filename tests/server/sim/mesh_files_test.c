@@ -44,7 +44,8 @@ int main(int argument_count, char **arguments)
 		puts("skipped: CAUTERY_MESHES names no folder with real meshes");
 		return 77;
 	}
-	for (size_t i = 0; i < sizeof files / sizeof *files; i++) {
+	size_t count = CAU_TEST_SANITIZED ? 2 : sizeof files / sizeof *files; // a solid and a surface
+	for (size_t i = 0; i < count; i++) {
 		int removed = removed_elements(arguments[1], folder, &files[i]);
 		printf("%s: %d elements removed\n", files[i].name, removed);
 		failures += removed <= 0;
