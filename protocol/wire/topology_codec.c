@@ -90,9 +90,12 @@ static void write_section(topology_writer *writer, cau_section type, const uint3
 	writer->section_count++;
 }
 
-static void write_faces(const cau_stream_def *def, const cau_topology *topology, uint32_t *values,
-                        topology_writer *writer)
+static cau_status write_faces(const cau_stream_def *def, const cau_topology *topology,
+                              uint32_t *values, topology_writer *writer, cau_error *error)
 {
+	cau_status status = check_faces(def, topology, error);
+	if (status)
+		return status;
 	CAU_RULE(def->face_count >= 0, "%d faces", def->face_count);
 	size_t faces = (size_t)def->face_count;
 	if (faces > 0)
@@ -102,9 +105,39 @@ static void write_faces(const cau_stream_def *def, const cau_topology *topology,
 		values[i] = topology->face_layer[i];
 	write_section(writer, CAU_SECTION_FACE_LAYERS, values, faces, 1, ELEMENTS_NONE);
 	if (!topology->texture || faces == 0)
-		return;
+		return CAU_OK;
 	memcpy(values, topology->texture, faces * TEXTURE_COMPONENTS * 4);
 	write_section(writer, CAU_SECTION_TEXTURE, values, faces, TEXTURE_COMPONENTS, ELEMENTS_NONE);
+	return CAU_OK;
+}
+
+// Faces, layers and texture as a frame has them that was encoded before.
+static cau_status copy_faces(const cau_stream_def *def, const cau_topology *topology,
+                             topology_writer *writer, cau_error *error)
+{
+	cau_frame_header header;
+	cau_status status =
+		cau_frame_header_read(topology->known, topology->known_bytes, &header, error);
+	if (status)
+		return status;
+	if (header.kind != CAU_FRAME_TOPOLOGY || header.session != def->session)
+		return cau_fail(error, CAU_BAD_STATE, "known", "the frame is not this session's topology");
+	size_t room = cau_topology_bytes_max(def) - CAU_FRAME_HEADER_BYTES - CAU_FRAME_SECTION_BYTES -
+	              cau_elements_bytes_max(shape_of(def).vertices, 3);
+	section_cursor cursor = cau_sections_begin(topology->known, &header);
+	while (cau_sections_next(&cursor)) {
+		if (cursor.type == CAU_SECTION_REST)
+			continue;
+		size_t bytes = CAU_FRAME_SECTION_BYTES + cursor.payload_bytes;
+		if (bytes > room)
+			return cau_fail(error, CAU_LIMIT, "known", "the frame is of more faces");
+		room -= bytes;
+		cau_section_head_write(writer->at, (cau_section)cursor.type, cursor.payload_bytes);
+		memcpy(writer->at + CAU_FRAME_SECTION_BYTES, cursor.payload, cursor.payload_bytes);
+		writer->at += bytes;
+		writer->section_count++;
+	}
+	return cursor.wrong ? cau_fail(error, CAU_CORRUPT, "known", "%s", cursor.wrong) : CAU_OK;
 }
 
 static cau_status encode(const cau_stream_def *def, uint64_t epoch, const cau_topology *topology,
@@ -112,18 +145,17 @@ static cau_status encode(const cau_stream_def *def, uint64_t epoch, const cau_to
                          cau_error *error)
 {
 	uint32_t *values = scratch;
+	topology_writer writer = {(uint8_t *)bytes + CAU_FRAME_HEADER_BYTES,
+	                          coding_scratch(def, scratch), 0};
 	cau_status status = cau_stream_def_check(def, error);
 	if (!status && capacity < cau_topology_bytes_max(def))
 		status = cau_fail(error, CAU_LIMIT, NULL, "topology may need %zu bytes",
 		                  cau_topology_bytes_max(def));
 	if (!status)
-		status = check_faces(def, topology, error);
-	if (status)
-		return status;
-	topology_writer writer = {(uint8_t *)bytes + CAU_FRAME_HEADER_BYTES,
-	                          coding_scratch(def, scratch), 0};
-	write_faces(def, topology, values, &writer);
-	status = quantise_rest(def, topology->rest_position, values, error);
+		status = topology->known ? copy_faces(def, topology, &writer, error)
+		                         : write_faces(def, topology, values, &writer, error);
+	if (!status)
+		status = quantise_rest(def, topology->rest_position, values, error);
 	if (status)
 		return status;
 	write_section(&writer, CAU_SECTION_REST, values, (size_t)def->vertex_count, 3,

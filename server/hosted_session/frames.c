@@ -74,20 +74,24 @@ void cau_frames_restart(cau_hosted *h)
 }
 
 // ---- subscribers
-static cau_status join(cau_hosted *h, const cau_order *order, const cau_stream **stream,
-                       cau_error *error)
+cau_stream_shape cau_frames_shape(const cau_session_info *info)
 {
-	const cau_session_info *info = &h->info;
-	bool woken = false;
-	cau_stream_wish wish = {.rate_hz = order->as.join.rate_hz,
-	                        .step_m = order->as.join.step_m,
-	                        .channels = order->as.join.channels};
-	cau_stream_shape shape = {.vertex_count = info->vertex_count,
+	return (cau_stream_shape){.vertex_count = info->vertex_count,
 	                          .face_count = info->face_count,
 	                          .face = info->face,
 	                          .face_layer = info->face_layer,
 	                          .texture = info->texture,
 	                          .rest_position = info->rest_position};
+}
+
+static cau_status join(cau_hosted *h, const cau_order *order, const cau_stream **stream,
+                       cau_error *error)
+{
+	bool woken = false;
+	cau_stream_wish wish = {.rate_hz = order->as.join.rate_hz,
+	                        .step_m = order->as.join.step_m,
+	                        .channels = order->as.join.channels};
+	cau_stream_shape shape = cau_frames_shape(&h->info);
 	cau_status status = cau_streams_join(&h->streams, &wish, &shape, stream, &woken, error);
 	if (woken)
 		h->dirty = true;

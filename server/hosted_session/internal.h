@@ -338,6 +338,7 @@ void cau_show(const cau_session *core, cau_shown *shown);
 // ---- frames.c: the session's side of its streams
 void cau_frames_publish(cau_hosted *h, double now_s); // those that are due
 void cau_frames_restart(cau_hosted *h);               // a new epoch
+cau_stream_shape cau_frames_shape(const cau_session_info *info);
 
 // ---- times.c: what is measured of all sessions
 void cau_times_stepped(cau_hosted *h, const cau_statistics *statistics); // after each step

@@ -14,14 +14,14 @@ enum { PIECES = 2 };
 static void stock_shelves(cau_hosted *h)
 {
 	cau_error refused = {0};
-	int32_t vertices = h->info.vertex_count, faces = h->info.face_count;
+	cau_stream_shape shape = cau_frames_shape(&h->info);
 	size_t snapshot = cau_session_snapshot_bytes(h->core), copy = cau_export_copy_bytes(&h->info);
-	size_t opening = cau_streams_opening_bytes(vertices, faces);
+	size_t opening = cau_streams_opening_bytes(shape.vertex_count, shape.face_count);
 	if (cau_building_hold(h, PIECES * (snapshot + copy) + opening, &refused))
 		return;
 	cau_shelf_stock(h->snapshot_shelf, snapshot, PIECES);
 	cau_shelf_stock(h->copy_shelf, copy, PIECES);
-	cau_streams_stock(&h->streams, vertices, faces);
+	cau_streams_stock(&h->streams, &shape);
 }
 
 static cau_status create(cau_hosted *h, bool unsettled, cau_error *error)

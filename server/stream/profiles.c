@@ -29,6 +29,7 @@ void cau_streams_finish(cau_streams *streams)
 {
 	for (int i = 0; i < CAU_STREAM_PROFILES_MAX; i++)
 		close_stream(&streams->stream[i]);
+	cau_buffer_release(streams->topology);
 	cau_shelf_release(streams->profile_shelf);
 	cau_shelf_release(streams->opening_shelf);
 	pthread_mutex_destroy(&streams->mutex);
@@ -105,41 +106,60 @@ static cau_stream_def usual_def(int32_t vertex_count, int32_t face_count)
 size_t cau_streams_opening_bytes(int32_t vertex_count, int32_t face_count)
 {
 	cau_stream_def def = usual_def(vertex_count, face_count);
-	return profile_bytes(&def) + topology_work_bytes(&def);
+	return profile_bytes(&def) + topology_work_bytes(&def) + cau_topology_bytes_max(&def);
 }
 
-void cau_streams_stock(cau_streams *streams, int32_t vertex_count, int32_t face_count)
+// The topology of a stream: its faces, layers and texture are coded once for a session.
+static cau_status encode_topology(cau_streams *streams, const cau_stream_def *def,
+                                  const cau_stream_shape *shape, cau_buffer **made,
+                                  cau_error *error)
 {
-	cau_stream_def def = usual_def(vertex_count, face_count);
-	if (!streams->profile_shelf || !streams->opening_shelf)
-		return;
-	cau_shelf_stock(streams->profile_shelf, profile_bytes(&def), 1);
-	cau_shelf_stock(streams->opening_shelf, topology_work_bytes(&def), 1);
-}
-
-static cau_status encode_topology(const cau_streams *streams, cau_stream *stream,
-                                  const cau_stream_shape *shape, cau_error *error)
-{
-	size_t most = cau_topology_bytes_max(&stream->def), bytes = 0;
-	unsigned char *scratch =
-		cau_shelf_take(streams->opening_shelf, topology_work_bytes(&stream->def));
+	size_t most = cau_topology_bytes_max(def), bytes = 0;
+	unsigned char *scratch = cau_shelf_take(streams->opening_shelf, topology_work_bytes(def));
 	if (!scratch)
 		return cau_fail(error, CAU_NO_MEMORY, NULL, "no memory for a topology");
-	unsigned char *encoded = scratch + aligned(cau_topology_scratch_bytes(&stream->def));
+	unsigned char *encoded = scratch + aligned(cau_topology_scratch_bytes(def));
 	uint8_t *layers = encoded + aligned(most);
 	for (int32_t i = 0; i < shape->face_count; i++)
 		layers[i] = (uint8_t)shape->face_layer[i];
-	cau_topology topology = {shape->face, layers, shape->texture, shape->rest_position};
-	cau_status status = cau_topology_encode(&stream->def, streams->epoch, &topology, scratch,
-	                                        encoded, most, &bytes, error);
+	cau_topology topology = {.face = shape->face,
+	                         .face_layer = layers,
+	                         .texture = shape->texture,
+	                         .rest_position = shape->rest_position};
+	if (streams->topology) {
+		topology.known = cau_buffer_bytes(streams->topology);
+		topology.known_bytes = streams->topology->byte_count;
+	}
+	cau_status status =
+		cau_topology_encode(def, streams->epoch, &topology, scratch, encoded, most, &bytes, error);
 	if (!status)
-		stream->topology = cau_buffer_create(bytes, true);
-	if (stream->topology)
-		memcpy(cau_buffer_bytes(stream->topology), encoded, bytes);
+		*made = cau_buffer_create(bytes, true);
+	if (*made)
+		memcpy(cau_buffer_bytes(*made), encoded, bytes);
 	else if (!status)
 		status = cau_fail(error, CAU_NO_MEMORY, NULL, "no memory for a topology");
 	cau_shelf_give_back(scratch);
 	return status;
+}
+
+// Later topologies are made from this one.
+static void keep_topology(cau_streams *streams, cau_buffer *topology)
+{
+	cau_buffer_release(streams->topology);
+	streams->topology = topology;
+}
+
+void cau_streams_stock(cau_streams *streams, const cau_stream_shape *shape)
+{
+	cau_stream_def def = usual_def(shape->vertex_count, shape->face_count);
+	cau_buffer *topology = NULL;
+	if (!streams->profile_shelf || !streams->opening_shelf)
+		return;
+	def.session = streams->session;
+	cau_shelf_stock(streams->profile_shelf, profile_bytes(&def), 1);
+	cau_shelf_stock(streams->opening_shelf, topology_work_bytes(&def), 1);
+	if (!encode_topology(streams, &def, shape, &topology, NULL))
+		keep_topology(streams, topology);
 }
 
 static cau_status open_stream(cau_streams *streams, int slot, const cau_stream_wish *wish,
@@ -166,11 +186,12 @@ static cau_status open_stream(cau_streams *streams, int slot, const cau_stream_w
 		status = cau_frame_encoder_init(made.storage, bytes, &made.def, streams->epoch,
 		                                &made.encoder, error);
 	if (!status)
-		status = encode_topology(streams, &made, shape, error);
+		status = encode_topology(streams, &made.def, shape, &made.topology, error);
 	if (status) {
 		close_stream(&made);
 		return status;
 	}
+	keep_topology(streams, cau_buffer_share(made.topology));
 	pthread_mutex_lock(&streams->mutex);
 	close_stream(&streams->stream[slot]);
 	streams->stream[slot] = made;

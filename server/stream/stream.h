@@ -61,7 +61,8 @@ typedef struct cau_streams {
 	pthread_mutex_t mutex;    // held for moments; no other lock is taken under it
 	cau_stream stream[CAU_STREAM_PROFILES_MAX];
 	cau_shelf *profile_shelf, *opening_shelf; // memory of a profile, and for opening one
-	cau_stream_counts counts;                 // mutex; those of now are 0 here
+	cau_buffer *topology;     // worker; the newest, from which the next is made; NULL: none yet
+	cau_stream_counts counts; // mutex; those of now are 0 here
 } cau_streams;
 
 // One stream of one connection; zeroed but for `stream` at the start.
@@ -84,10 +85,6 @@ typedef struct cau_subscriber {
 void cau_streams_init(cau_streams *streams);
 void cau_streams_finish(cau_streams *streams);
 
-// What opening a profile takes of memory, and the making of it beforehand: on the builder.
-size_t cau_streams_opening_bytes(int32_t vertex_count, int32_t face_count);
-void cau_streams_stock(cau_streams *streams, int32_t vertex_count, int32_t face_count);
-
 // ---- profiles.c: on the worker
 
 // What a subscriber asks for.
@@ -103,6 +100,12 @@ typedef struct cau_stream_shape {
 	const float *texture;             // (face_count x 3 x 2)
 	const double *rest_position;      // m, (vertex_count x 3)
 } cau_stream_shape;
+
+// What opening a profile takes of memory, and the making of it beforehand: on the builder. The
+// topology is encoded there, so that no slice of a worker does it; without memory for that, the
+// first joining client's slice does.
+size_t cau_streams_opening_bytes(int32_t vertex_count, int32_t face_count);
+void cau_streams_stock(cau_streams *streams, const cau_stream_shape *shape);
 
 // A stream that fits, opened if need be, with the subscriber counted; it ends with
 // cau_streams_leave. *woken: nothing was published there, so a frame is due now. CAU_LIMIT: the

@@ -41,7 +41,8 @@ static int write_topology(const char *folder, const cau_stream_def *def, const t
 			texture[6 * i + 2 * c + 1] = -0.5f * (float)c;
 		}
 	}
-	cau_topology topology = {face, layer, texture, of->position};
+	cau_topology topology = {
+		.face = face, .face_layer = layer, .texture = texture, .rest_position = of->position};
 	failed = failed || cau_topology_encode(def, stream_epoch, &topology, scratch, bytes, capacity,
 	                                       &count, NULL);
 	failed = failed || write_file(folder, "topology", 0, bytes, count, "wb");

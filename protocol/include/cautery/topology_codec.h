@@ -22,13 +22,18 @@ typedef struct cau_topology {
 	const uint8_t *face_layer;   // (face_count)
 	const float *texture;        // (face_count x 3 x 2), or NULL
 	const double *rest_position; // m, (vertex_count x 3)
+	// A topology frame of this session that this process encoded before, or NULL. Its faces, layers
+	// and texture are copied, and those above are not read. Coding them takes most of the time.
+	const void *known;
+	size_t known_bytes;
 } cau_topology;
 
 size_t cau_topology_bytes_max(const cau_stream_def *def);
 size_t cau_topology_scratch_bytes(const cau_stream_def *def);
 
 // `scratch` is working memory of cau_topology_scratch_bytes. Errors: CAU_LIMIT, CAU_BAD_VALUE (a
-// face with a vertex that is not there), CAU_NUMERICAL (rest positions).
+// face with a vertex that is not there), CAU_NUMERICAL (rest positions), CAU_BAD_STATE (`known` is
+// another session's), CAU_CORRUPT and CAU_LIMIT (`known`).
 cau_status cau_topology_encode(const cau_stream_def *def, uint64_t epoch,
                                const cau_topology *topology, void *scratch, void *bytes,
                                size_t capacity, size_t *byte_count, cau_error *error);

@@ -261,7 +261,8 @@ static void write_topology(void)
 	float *texture = calloc(6 * faces, sizeof *texture);
 	void *scratch = malloc(cau_topology_scratch_bytes(&def));
 	fill_faces(&of, face, layer, texture);
-	cau_topology topology = {face, layer, texture, of.position};
+	cau_topology topology = {
+		.face = face, .face_layer = layer, .texture = texture, .rest_position = of.position};
 	check(cau_topology_encode(&def, 1, &topology, scratch, bytes, capacity, &count, NULL) == CAU_OK,
 	      "topology");
 	write_bytes("topology.bin", bytes, count);

@@ -52,7 +52,10 @@ static fixture *new_fixture(void)
 		made->rest[3 * v + 1] = 0.002 * row;
 		made->rest[3 * v + 2] = 0.001 * sin(v);
 	}
-	made->topology = (cau_topology){made->face, made->face_layer, made->texture, made->rest};
+	made->topology = (cau_topology){.face = made->face,
+	                                .face_layer = made->face_layer,
+	                                .texture = made->texture,
+	                                .rest_position = made->rest};
 	made->scratch = malloc(cau_topology_scratch_bytes(&made->def));
 	made->capacity = cau_topology_bytes_max(&made->def);
 	made->bytes = malloc(made->capacity);
@@ -164,6 +167,47 @@ static void test_hostile_topology_is_refused(void **unused)
 	free_fixture(of);
 }
 
+// For another profile, epoch and step it has the bytes that encoding everything gives.
+static void test_a_known_frame_is_used(void **unused)
+{
+	(void)unused;
+	fixture *of = new_fixture(), *other = new_fixture();
+	assert_int_equal(encode(of, NULL), CAU_OK);
+	other->def.profile = 3;
+	other->def.step_m *= 4;
+	assert_int_equal(encode(other, NULL), CAU_OK);
+	uint8_t *whole = malloc(other->byte_count);
+	size_t whole_bytes = other->byte_count;
+	memcpy(whole, other->bytes, whole_bytes);
+	other->topology.known = of->bytes;
+	other->topology.known_bytes = of->byte_count;
+	other->face[0] = VERTICES; // is not read
+	assert_int_equal(encode(other, NULL), CAU_OK);
+	assert_int_equal(other->byte_count, whole_bytes);
+	assert_memory_equal(other->bytes, whole, whole_bytes);
+	free(whole);
+	free_fixture(of);
+	free_fixture(other);
+}
+
+static void test_an_unfit_known_frame_is_refused(void **unused)
+{
+	(void)unused;
+	fixture *of = new_fixture(), *other = new_fixture();
+	assert_int_equal(encode(of, NULL), CAU_OK);
+	other->topology.known = of->bytes;
+	other->topology.known_bytes = of->byte_count - 4;
+	assert_int_equal(encode(other, NULL), CAU_CORRUPT);
+	other->topology.known_bytes = of->byte_count;
+	other->def.face_count = 1;
+	assert_int_equal(encode(other, NULL), CAU_LIMIT);
+	other->def.face_count = of->def.face_count;
+	other->def.session++;
+	assert_int_equal(encode(other, NULL), CAU_BAD_STATE);
+	free_fixture(of);
+	free_fixture(other);
+}
+
 static void test_a_session_without_faces(void **unused)
 {
 	(void)unused;
@@ -184,6 +228,8 @@ int main(void)
 		cmocka_unit_test(test_texture_may_be_absent),
 		cmocka_unit_test(test_bad_faces_and_positions_are_refused),
 		cmocka_unit_test(test_hostile_topology_is_refused),
+		cmocka_unit_test(test_a_known_frame_is_used),
+		cmocka_unit_test(test_an_unfit_known_frame_is_refused),
 		cmocka_unit_test(test_a_session_without_faces),
 	};
 	return cmocka_run_group_tests(tests, NULL, NULL);

@@ -27,7 +27,8 @@ static int write_topology(const char *folder, const cau_stream_def *def, const t
 	static float texture[SEED_FACES * 6];
 	for (int32_t i = 0; i < SEED_FACES * 3; i++)
 		face[i] = (i * 7) % SEED_VERTICES;
-	cau_topology topology = {face, layer, texture, of->position};
+	cau_topology topology = {
+		.face = face, .face_layer = layer, .texture = texture, .rest_position = of->position};
 	size_t capacity = cau_topology_bytes_max(def), count;
 	uint8_t *bytes = malloc(capacity);
 	void *scratch = malloc(cau_topology_scratch_bytes(def));
