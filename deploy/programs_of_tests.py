@@ -14,7 +14,7 @@ import subprocess
 import sys
 
 # Where CMake puts programs, libraries to preload included: a target is named as its file.
-PROGRAM = r"/(?:bin|tests|fuzz)/(?:lib)?([\w-]+)(?:\.so)?(?=[\";\s]|$)"
+PROGRAM = r"/(?:bin|tests|fuzz|protocol/generate)/(?:lib)?([\w-]+)(?:\.so)?(?=[\";\s]|$)"
 # Tests that look at, or install, what the whole project was compiled to.
 EVERYTHING = re.compile(r"/(?:objects\.txt|cmake_install\.cmake)")
 

@@ -34,8 +34,8 @@ typedef struct cau_step_solver cau_step_solver;
 
 enum {
 	CAU_BLOCK = 12, // doubles of a 3 x 3 block: three columns of four, the last of each 0
-	// Rows of a region: ten of Newton's steps of so many take a tick of 60 Hz. A scene that asks
-	// for Newton's method has no such limit.
+	// Rows of a region at most. With 2,050 rows a step of a session took 28 ms (DECISIONS.md), more
+	// than a tick of 60 Hz. A scene that asks for Newton's method has no such limit.
 	CAU_NEWTON_ROWS = 1024,
 	// Elements that Newton's steps assemble in one step of a session, about ten milliseconds. Then
 	// A takes over, and the error that the step reports has what is left. Same exception.

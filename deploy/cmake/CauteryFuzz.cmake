@@ -1,7 +1,8 @@
 # cautery_fuzz(NAME mesh_msh SOURCES msh_fuzz.c LIBRARIES cautery::core SEEDS seeds/msh)
 #
 # A fuzz target for one parser or decoder; its source defines LLVMFuzzerTestOneInput() and includes
-# "fuzz/fuzz_target.h". SEEDS names a folder of small inputs (optional). THREADS: it makes some.
+# "fuzz/fuzz_target.h". SEEDS names a folder of small inputs (optional). THREADS: the target makes threads.
+# Without it a target that makes one ends with an error (cautery_without_threads() in tests/CMakeLists.txt).
 #   -DCAUTERY_FUZZ=ON  (clang): the test fuzz_NAME mutates the seeds for CAUTERY_FUZZ_SECONDS
 #                      and keeps a minimised corpus in the tree.
 #   otherwise:         the test replay_NAME runs the target over the seeds, the empty input and a

@@ -27,7 +27,7 @@ unit)
 	exec npm run --silent unit
 	;;
 browser | pictures)
-	[ -x /usr/bin/chromium-headless-shell ] || skip "no /usr/bin/chromium"
+	[ -x /usr/bin/chromium-headless-shell ] || skip "no /usr/bin/chromium-headless-shell"
 	[ -x "${CAUTERYD:-}" ] || skip "the daemon is not built here"
 	mkdir -p "$CAUTERY_SCREENSHOTS"
 	if [ "$1" = browser ]; then
@@ -42,7 +42,7 @@ browser | pictures)
 firefox)
 	[ -x /usr/bin/firefox-esr ] || skip "no /usr/bin/firefox-esr"
 	[ -x "${CAUTERYD:-}" ] || skip "the daemon is not built here"
-	exec nice npm run --silent browser -- holds_firefox
+	exec npm run --silent browser -- holds_firefox
 	;;
 *)
 	echo "usage: run_viewer_tests.sh types|lint|unit|build|browser|firefox|pictures" >&2

@@ -89,6 +89,22 @@ function samplesOf(families, family, ending = '', wanted = {}) {
 }
 const valueOf = (...asked) => samplesOf(...asked).reduce((sum, { value }) => sum + value, 0);
 
+// Stages are parts of a step: never more than it, and most of it. A tick at rest has no stages, so gravity changes before
+// each try, and the tissue is at rest again after half a second at the earliest. Both are times of the wall clock. Where
+// other programs take the processor between two stages, stages are a smaller share; not in each of five tries.
+async function expectStagesToMakeUpTheSteps(session) {
+	const shares = [];
+	for (let i = 0; i < 5; i++) {
+		await client.call('gravity.set', { session, gravity_m_s2: [0, 0, i % 2 ? -9.81 : 9.81] });
+		const earlier = await scrape(false);
+		await client.call('session.step', { session, ticks: 10 });
+		const later = await scrape(false);
+		const grown = (family) => valueOf(later, family, '_sum') - valueOf(earlier, family, '_sum');
+		shares.push(grown('step_stage_seconds') / grown('step_seconds'));
+	}
+	assert.ok(Math.max(...shares) <= 1.001 && Math.max(...shares) > 0.9, `stages are ${shares} of the steps`);
+}
+
 test('steps, their stages, lateness and commits are counted by how long they take', async () => {
 	const session = await smallSession(client, 'timed', { paused: true });
 	const earlier = await scrape(false);
@@ -101,9 +117,7 @@ test('steps, their stages, lateness and commits are counted by how long they tak
 	assert.deepEqual(stages, ['commands', 'predict', 'local', 'global', 'contact', 'heat', 'dissect', 'frame']);
 	for (const stage of stages)
 		assert.equal(grown('step_stage_seconds', '_count', { stage }), 50, stage);
-	// stages are parts of the step: not more than it, and most of it
-	const share = grown('step_stage_seconds', '_sum') / grown('step_seconds', '_sum');
-	assert.ok(share > 0.5 && share <= 1.001, `stages are ${share} of the steps`);
+	await expectStagesToMakeUpTheSteps(session);
 	assert.equal(grown('lateness_seconds', '_count'), 0, 'the clock does not say when a paused session steps');
 	assert.ok(grown('store_commit_seconds', '_count') >= 1);
 	assert.equal(valueOf(later, 'store_commit_seconds', '_count'), valueOf(later, 'store_commits_total'));

@@ -4,6 +4,7 @@
 // show it as latency that grows with the stream. Then the cut itself is looked at; README.md shows it.
 import type { CDPSession } from 'playwright-core';
 
+import { slowness } from '../../e2e/wire/machine.mjs';
 import { record, type Command, type Recording } from './recording';
 import { Replay } from './replay';
 import { Stage } from './stage';
@@ -13,8 +14,7 @@ const SESSION = 'd1-layers';
 const RATE_HZ = 60;
 const DRAWN = 240; // ticks in which the hook is drawn along the cut
 const TICKS = 300; // and a second in which it is lifted
-const WORK_MS_MAX = 4; // of the page's main thread for a frame of the stream, where a calculation takes as long as CALCULATION_MS
-const CALCULATION_MS = 5;
+const WORK_MS_MAX = 4; // of the page's main thread for a frame of the stream, times slowness()
 /** A page that takes a tenth longer than a frame lasts is 500 ms behind after these frames. */
 const BEHIND_MS_MAX = 400;
 const HOT_C = 1200; // does in four seconds what half a minute does at 170 degC
@@ -64,19 +64,6 @@ class ThreadMeter {
 async function taskMs(session: CDPSession): Promise<number> {
   const { metrics } = await session.send('Performance.getMetrics');
   return 1000 * (metrics.find(({ name }) => name === 'TaskDuration')?.value ?? NaN);
-}
-
-/** By how much longer than CALCULATION_MS the calculation takes in this page: the least of some trials, at least 1. */
-function slowness(viewer: ViewerPage): Promise<number> {
-  return viewer.page.evaluate((least) => {
-    const times = Array.from({ length: 20 }, () => {
-      const began = performance.now();
-      let x = 0.5;
-      for (let i = 0; i < 3_000_000; i++) x = 3.9 * x * (1 - x);
-      return x > 0 ? performance.now() - began : 0;
-    });
-    return Math.max(1, Math.min(...times) / least);
-  }, CALCULATION_MS);
 }
 
 /** Pieces of fascia on the line of the cut with a gap on both sides. */
@@ -131,7 +118,7 @@ describe('the layers scene, cut', () => {
     expect(last.drawnFaces['fascia']).toBeLessThan(first.drawnFaces['fascia']);
     expect(late).toBeLessThan(BEHIND_MS_MAX);
     expect(last.picturesDrawn).toBeGreaterThan(first.picturesDrawn);
-    expect(busyPerFrameMs).toBeLessThan(WORK_MS_MAX * (await slowness(viewer)));
+    expect(busyPerFrameMs).toBeLessThan(WORK_MS_MAX * slowness());
     await viewer.close();
     await replay.end();
   });

@@ -243,16 +243,18 @@ static void expect_the_same_after_a_restore(cau_session *session)
 	free(shot.bytes);
 }
 
-// Jaws that never slip draw at `layers` at 5 m/s: it is thrown faster than it can be kept apart,
-// and turned inside out. That is told of; let go, it finds its way back, and all of it touches
-// again.
-// Nothing stays inside out. What came to cross something meanwhile touches nothing as long as it
-// does, on some processors to the end (.github/KNOWN_BUGS.md); nothing else crosses anything.
+// Jaws that never slip pull `layers` at 5 m/s. Tissue cannot be kept apart at that speed, and
+// tetrahedra turn inside out. Frames report it. After the release nothing is inside out any more,
+// and no vertex is excluded from contact. A vertex is excluded while it crosses other tissue. With
+// the kernels below AVX-512 some stay so to the end (.github/KNOWN_BUGS.md); there the test checks
+// that no other vertex crosses anything.
 static void what_is_thrown_finds_its_way_back(void **state)
 {
 	(void)state;
 	enum { DRAWN = 20, TICKS = 100 };
-	const double least_inverted = 0.003; // of all tetrahedra: it was thrown
+	// With fewer inverted tetrahedra the pull would be no test: one of 300, which are 100 of the
+	// 30,000 that `layers` has in full.
+	enum { LEAST_INVERTED = 300 };
 	cau_scene_def *scene = stage_scene_light("layers");
 	scene->contact_thickness_m = THICKNESS_M;
 	for (int32_t i = 0; i < scene->layer_count; i++) // and nothing tears
@@ -285,9 +287,14 @@ static void what_is_thrown_finds_its_way_back(void **state)
 	int crossings = surface_crossings(session);
 	print_message("told of %d times, %d inside out; at last %d, %d touch nothing, %d crossings\n",
 	              told, most_inverted, session->inverted, exempt, crossings);
-	assert_true(told > 0 && most_inverted > least_inverted * session->tissue.tetrahedron_count);
+	assert_true(told > 0);
+	assert_true(most_inverted > session->tissue.tetrahedron_count / LEAST_INVERTED);
 	assert_int_equal(session->inverted, 0);
 	assert_int_equal(surface_crossings_but(session, session->collide.exempt), 0);
+	cau_session_info info;
+	cau_session_describe(session, &info);
+	if (!strcmp(info.instruction_set, "avx512"))
+		assert_int_equal(exempt, 0);
 	assert_true(exempt == 0 || crossings > 0);
 	cau_session_destroy(session);
 	free(scene);
