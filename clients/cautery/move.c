@@ -17,7 +17,9 @@ typedef struct courier {
 	cau_wire_move_ref from_ref, to_ref; // the move, as each of them knows the session
 	bool exact;
 	double bytes;
-	double stood_s; // when it came to stand still
+	bool arrives;     // the other daemon has a piece
+	char receipt[65]; // of the last piece
+	double stood_s;   // when it came to stand still
 	char token[CAU_CLIENT_TOKEN_BYTES];
 } courier;
 
@@ -69,6 +71,15 @@ static cli_exit name_target(courier *m, const char *session)
 	return CLI_DONE;
 }
 
+static cli_exit check_daemon(courier *m, cau_client *client, const char *option)
+{
+	const char *daemon = cau_client_server(client)->daemon;
+	if (strcmp(daemon, m->label) == 0)
+		return CLI_DONE;
+	cli_complain(m->c, "that is the daemon `%s`: %s says where `%s` is", daemon, option, m->label);
+	return CLI_USAGE;
+}
+
 static cli_exit connect_target(courier *m)
 {
 	cli *c = m->c;
@@ -84,12 +95,7 @@ static cli_exit connect_target(courier *m)
 	def.label = url ? NULL : m->label; // behind a proxy one address leads to all
 	if (cau_client_create(c->loop, &def, &m->to, &c->error) || cau_client_connect(m->to, &c->error))
 		return fail_to(m);
-	const char *daemon = cau_client_server(m->to)->daemon;
-	if (strcmp(daemon, m->label) == 0)
-		return CLI_DONE;
-	cli_complain(c, "%s is the daemon `%s`: --to-url says where `%s` is", url ? url : "there",
-	             daemon, m->label);
-	return CLI_USAGE;
+	return check_daemon(m, m->to, "--to-url");
 }
 
 // ---- deciding -----------------------------------------------------------------------------------
@@ -121,46 +127,101 @@ static cli_exit tell_moved(courier *m)
 	return CLI_DONE;
 }
 
-// Asks the daemon that it was at what became of the move, and tells the other. `moved`: it has.
-static cli_exit settle(courier *m, bool *moved)
+// `release`: of the other daemon; NULL: that one is lost.
+static cli_exit forget(courier *m, const char *release)
+{
+	cau_wire_move_forget params = {.has_release = release != NULL,
+	                               .has_source_lost = release == NULL,
+	                               .source_lost = release == NULL};
+	memcpy(params.session, m->to_ref.session, sizeof params.session);
+	memcpy(params.move, m->to_ref.move, sizeof params.move);
+	snprintf(params.release, sizeof params.release, "%s", release ? release : "");
+	if (cau_client_call(m->to, CAU_METHOD_MOVE_FORGET, &params, NULL, &m->c->error))
+		return fail_to(m);
+	return CLI_DONE;
+}
+
+// Asks the daemon that it was at what became of the move, and tells the other, if that knows of it.
+// `moved`: it has.
+static cli_exit settle(courier *m, bool known_there, bool *moved)
 {
 	cau_wire_move_decision decision = {0};
 	*moved = false;
 	if (ask_from(m, CAU_METHOD_MOVE_CANCEL, &decision))
 		return cli_fail(m->c);
-	if (decision.moved) {
-		*moved = true;
+	*moved = decision.moved;
+	if (decision.moved)
 		return deliver(m, decision.proof);
-	}
-	if (ask_to(m, CAU_METHOD_MOVE_FORGET, NULL))
-		return fail_to(m);
-	return CLI_DONE;
+	return known_there ? forget(m, decision.release) : CLI_DONE;
 }
 
-// What an earlier courier has left behind of this session.
-static cli_exit settle_earlier(courier *m, bool *moved)
+// The move of this session that `client`'s daemon lists and that is not over. `id`: what it calls
+// the session, or "" and what the other daemon calls it.
+static cau_status find_move(courier *m, cau_client *client, const char *id, const char *other,
+                            cau_wire_move_entry *found)
 {
 	cau_wire_move_list list = {
 		.moves = {calloc(MOVES_MOST, sizeof(cau_wire_move_entry)), 0, MOVES_MOST}};
-	const cau_wire_move_entry *entries = list.moves.items, *found = NULL;
-	cli_exit code = CLI_DONE;
-	*moved = false;
+	const cau_wire_move_entry *entries = list.moves.items;
+	*found = (cau_wire_move_entry){0};
 	if (!entries)
-		return cli_fail_memory(m->c);
-	if (cau_client_call(m->to, CAU_METHOD_MOVE_LIST, &(cau_wire_nothing){0}, &list, &m->c->error))
-		code = fail_to(m);
-	for (int32_t i = 0; !code && i < list.moves.count; i++)
-		if (strcmp(entries[i].other, m->from_ref.session) == 0 &&
+		return cau_fail(&m->c->error, CAU_NO_MEMORY, "", "no memory for the list of moves");
+	cau_status status =
+		cau_client_call(client, CAU_METHOD_MOVE_LIST, &(cau_wire_nothing){0}, &list, &m->c->error);
+	for (int32_t i = 0; !status && i < list.moves.count; i++)
+		if (strcmp(*id ? entries[i].session : entries[i].other, *id ? id : other) == 0 &&
 		    strcmp(entries[i].state, "gone") != 0)
-			found = &entries[i];
-	if (found) {
-		memcpy(m->to_ref.session, found->session, sizeof m->to_ref.session);
-		memcpy(m->to_ref.move, found->move, sizeof m->to_ref.move);
-		memcpy(m->from_ref.move, found->move, sizeof m->from_ref.move);
-		code = settle(m, moved);
-	}
+			*found = entries[i];
 	free(list.moves.items);
-	return code;
+	return status;
+}
+
+static void take_move(courier *m, const cau_wire_move_entry *found)
+{
+	memcpy(m->to_ref.session, found->session, sizeof m->to_ref.session);
+	memcpy(m->to_ref.move, found->move, sizeof m->to_ref.move);
+	memcpy(m->from_ref.move, found->move, sizeof m->from_ref.move);
+}
+
+// What an earlier courier has left behind of this session. It may have gone before the other daemon
+// had a piece: then only this one knows of the move.
+static cli_exit settle_earlier(courier *m, bool *moved)
+{
+	cau_wire_move_entry found;
+	*moved = false;
+	if (find_move(m, m->to, "", m->from_ref.session, &found))
+		return fail_to(m);
+	if (*found.move) {
+		take_move(m, &found);
+		return settle(m, true, moved);
+	}
+	if (!cli_value(m->c, "cancel"))
+		return CLI_DONE;
+	if (find_move(m, m->c->client, m->from_ref.session, "", &found))
+		return cli_fail(m->c);
+	memcpy(m->from_ref.move, found.move, sizeof m->from_ref.move);
+	return *found.move ? settle(m, false, moved) : CLI_DONE;
+}
+
+// There is nobody to ask any more: what the other daemon has of the session goes.
+static cli_exit give_up(courier *m)
+{
+	cau_wire_move_entry found;
+	cli_exit code = cli_connect_to(m->c, NULL, m->label);
+	if (!code)
+		code = check_daemon(m, m->c->client, "--url");
+	if (code)
+		return code;
+	m->to = m->c->client; // which the caller of this command closes
+	if (find_move(m, m->to, "", m->from_ref.session, &found))
+		return cli_fail(m->c);
+	if (!*found.move) {
+		cli_complain(m->c, "%s has nothing of %s that waits for another daemon", m->label,
+		             m->from_ref.session);
+		return CLI_REFUSED;
+	}
+	take_move(m, &found);
+	return forget(m, NULL);
 }
 
 // ---- carrying -----------------------------------------------------------------------------------
@@ -172,6 +233,7 @@ static cli_exit carry_piece(courier *m, unsigned *flags)
 	cau_wire_transfer transfer = {0};
 	cau_wire_upload_result uploaded = {0};
 	cau_wire_move_receive receive = {.upload = "piece"};
+	cau_wire_move_received received = {0};
 	if (cau_client_download(c->client, CAU_METHOD_MOVE_READ, &m->from_ref, NULL, NULL, &transfer,
 	                        &bytes, &c->error))
 		return cli_fail(c);
@@ -183,8 +245,10 @@ static cli_exit carry_piece(courier *m, unsigned *flags)
 	cau_status status = cau_client_upload(m->to, "piece", "piece.caum", bytes, count, NULL, NULL,
 	                                      &uploaded, &c->error);
 	if (!status)
-		status = cau_client_call(m->to, CAU_METHOD_MOVE_RECEIVE, &receive,
-		                         &(cau_wire_move_received){0}, &c->error);
+		status = cau_client_call(m->to, CAU_METHOD_MOVE_RECEIVE, &receive, &received, &c->error);
+	m->arrives = m->arrives || !status;
+	if (!status && received.has_receipt)
+		memcpy(m->receipt, received.receipt, sizeof m->receipt);
 	free(bytes);
 	return status ? fail_to(m) : CLI_DONE;
 }
@@ -237,13 +301,17 @@ static cli_exit hand_over(courier *m)
 {
 	cau_wire_move_held held = {0};
 	cau_wire_move_decision decision = {0};
+	cau_wire_move_commit commit = {0};
 	m->stood_s = cau_client_now();
 	if (ask_from(m, CAU_METHOD_MOVE_HOLD, &held))
 		return cli_fail(m->c);
 	cli_exit code = carry_until(m, ENDS);
 	if (code)
 		return code;
-	if (ask_from(m, CAU_METHOD_MOVE_COMMIT, &decision))
+	memcpy(commit.session, m->from_ref.session, sizeof commit.session);
+	memcpy(commit.move, m->from_ref.move, sizeof commit.move);
+	memcpy(commit.receipt, m->receipt, sizeof commit.receipt);
+	if (cau_client_call(m->c->client, CAU_METHOD_MOVE_COMMIT, &commit, &decision, &m->c->error))
 		return cli_fail(m->c);
 	code = deliver(m, decision.proof);
 	if (!code && !m->c->json)
@@ -269,7 +337,7 @@ static cli_exit move(courier *m)
 		code = hand_over(m);
 	if (!code)
 		return tell_moved(m);
-	cli_exit settled = settle(m, &moved); // what failed may have been the answer alone
+	cli_exit settled = settle(m, m->arrives, &moved); // what failed may have been the answer alone
 	return !settled && moved ? tell_moved(m) : code;
 }
 
@@ -281,6 +349,8 @@ static cli_exit run(cli *c)
 	cli_exit code = check_label(&m, session);
 	if (!code)
 		code = name_target(&m, session);
+	if (!code && cli_value(c, "source-lost"))
+		return give_up(&m);
 	if (!code)
 		code = cli_connect(c);
 	if (!code)
@@ -302,7 +372,10 @@ const cli_command cli_move = {
 		"LABEL. First the history is copied while the session runs. Then the session is\n"
 		"suspended, with energy off, until the rest is copied and LABEL serves it. Clients that\n"
 		"use the old id are sent there. If this command is killed, run it again to finish the\n"
-		"move. --cancel ends it: the session stays where it is, unless it has moved already.\n",
+		"move. --cancel ends it: the session stays where it is, unless it has moved already.\n"
+		"If the daemon that has SESSION is gone for good, --source-lost with LABEL's address as\n"
+		"--url removes what LABEL has of an unfinished move. If the other daemon had decided the\n"
+		"move, the session is lost then.\n",
 	.least = 2,
 	.most = 2,
 	.options = {{"to-url", "U", "address of the daemon LABEL for its clients"},
@@ -310,5 +383,7 @@ const cli_command cli_move = {
                 {"name", "NAME", "its name there (default: as it is)"},
                 {"inexact", NULL, "also to another build or instruction set"},
                 {"cancel", NULL, "ends what an earlier move has begun, and moves nothing"},
+                {"source-lost", NULL,
+                 "LABEL forgets an unfinished move; the other daemon is not asked"},
                 {0}},
 	.run = run};

@@ -5,7 +5,6 @@
 #include <string.h>
 
 #include "cautery/name.h"
-#include "cautery/sha256.h"
 #include "hub/fault_point.h"
 #include "hub/internal.h"
 #include "session/handover.h"
@@ -20,8 +19,9 @@ typedef cau_arrival_hand hand;
 typedef struct contents {
 	uint32_t index, flags;
 	bool has_header;
-	char move[CAU_NAME_BYTES], lock[CAU_SHA256_TEXT_BYTES], source[CAU_NAME_BYTES],
-		label[CAU_NAME_BYTES];
+	char move[CAU_NAME_BYTES], source[CAU_NAME_BYTES], label[CAU_NAME_BYTES];
+	cau_move_hash lock, unlock;
+	cau_move_hash seal; // as the piece carries it
 	hand hands[CAU_MAX_TOOLS];
 	int32_t hand_count;
 	double speed; // 0: it does not say
@@ -34,6 +34,7 @@ static void take_header(const cau_row *row, contents *found)
 	cau_rows_text(row, 1, found->lock, sizeof found->lock);
 	cau_rows_text(row, 2, found->source, sizeof found->source);
 	cau_rows_text(row, 3, found->label, sizeof found->label);
+	cau_rows_text(row, 5, found->unlock, sizeof found->unlock);
 }
 
 static void take_hand(const cau_row *row, contents *found)
@@ -49,6 +50,16 @@ static void take_hand(const cau_row *row, contents *found)
 	// It waits, dark, for one who says hello with a role of his own.
 	asker->role = CAU_ROLE_OPERATE;
 	asker->deadline_s = (double)row->column[5].integer * 1e-6;
+}
+
+// Takes the seal off the end of the piece.
+static cau_status take_seal(cau_move_asked *asked, contents *found, cau_error *error)
+{
+	if (asked->piece_bytes < CAU_SEAL_BYTES)
+		return cau_fail(error, CAU_CORRUPT, "params.upload", "it is no piece of a session");
+	asked->piece_bytes -= CAU_SEAL_BYTES;
+	memcpy(found->seal, asked->piece + asked->piece_bytes, CAU_SEAL_BYTES);
+	return CAU_OK;
 }
 
 static cau_status read_contents(const cau_move_asked *asked, contents *found, cau_error *error)
@@ -71,8 +82,8 @@ static cau_status read_contents(const cau_move_asked *asked, contents *found, ca
 	if (status != CAU_NOT_FOUND)
 		return status;
 	bool begins = found->has_header && strcmp(found->move, asked->move) == 0 &&
-	              strlen(found->lock) == CAU_SHA256_TEXT_BYTES - 1 &&
-	              cau_name_is_valid(found->source);
+	              strlen(found->lock) == CAU_SEAL_BYTES &&
+	              strlen(found->unlock) == CAU_SEAL_BYTES && cau_name_is_valid(found->source);
 	if (found->has_header != (found->index == 0) || (found->has_header && !begins))
 		return cau_fail(error, CAU_BAD_VALUE, "params.upload", "the piece is of another move");
 	return CAU_OK;
@@ -122,6 +133,7 @@ static arrival *enlist(cau_hub *hub, const cau_move_asked *asked, const contents
 	memcpy(a->id, asked->session, sizeof a->id);
 	memcpy(a->move, asked->move, sizeof a->move);
 	memcpy(a->lock, found->lock, sizeof a->lock);
+	memcpy(a->unlock, found->unlock, sizeof a->unlock);
 	memcpy(a->source, found->source, sizeof a->source);
 	memcpy(a->label, found->label, sizeof a->label);
 	a->speed = 1;
@@ -130,22 +142,68 @@ static arrival *enlist(cau_hub *hub, const cau_move_asked *asked, const contents
 	return a;
 }
 
-// The arrival that takes this piece next, marked as writing; NULL: *error says why not.
-static arrival *begin_piece(cau_hub *hub, const cau_move_asked *asked, const contents *found,
-                            cau_error *error)
+// Whether the piece is as the source sent it, after those that are here.
+static cau_status check_seal(const cau_move_asked *asked, const char *before, const contents *found,
+                             cau_error *error)
 {
+	cau_move_hash seal;
+	if (!cau_move_seal(before, asked->piece, asked->piece_bytes, seal))
+		return cau_fail(error, CAU_NO_MEMORY, "", "no memory for a piece");
+	if (strcmp(seal, found->seal) != 0)
+		return cau_fail(error, CAU_CORRUPT, "params.upload",
+		                "the piece was damaged on its way, or belongs elsewhere: cancel the move "
+		                "and begin again");
+	return CAU_OK;
+}
+
+static cau_status check_turn(const arrival *a, const cau_move_asked *asked, const contents *found,
+                             cau_error *error)
+{
+	if (a && strcmp(a->move, asked->move) != 0)
+		return cau_fail(error, CAU_BAD_STATE, "params.upload",
+		                "another move of this session is under way: finish it with `cautery move`");
+	if (a ? a->writing || a->pieces != found->index || a->coming.state == CAU_COMING_WHOLE
+	      : found->index > 0)
+		return cau_fail(error, CAU_BAD_STATE, "params.upload",
+		                "pieces must come in order, and this one is not the next");
+	return CAU_OK;
+}
+
+// A courier that has not heard of its newest piece sends it again: it is here.
+static bool is_repeated(const arrival *a, const cau_move_asked *asked, const contents *found)
+{
+	return a && strcmp(a->move, asked->move) == 0 && !a->writing &&
+	       a->pieces == (int64_t)found->index + 1 && strcmp(a->seal, found->seal) == 0;
+}
+
+// With the lock.
+static void answer_received(const arrival *a, const cau_reply *reply)
+{
+	cau_wire_move_received result = {.pieces = a->pieces,
+	                                 .has_receipt = a->coming.state == CAU_COMING_WHOLE};
+	if (result.has_receipt && !cau_move_receipt(a->move, a->seal, result.receipt))
+		cau_move_fail(reply, CAU_NO_MEMORY, 0, "", "no memory for the answer");
+	else
+		cau_move_answer(reply, &result);
+}
+
+// The arrival that takes this piece next, marked as writing; NULL: *error says why not, or the
+// piece was here before, and that is answered.
+static arrival *begin_piece(cau_move_job *job, const contents *found, cau_error *error)
+{
+	cau_hub *hub = job->hub;
 	pthread_mutex_lock(&hub->moves_mutex);
-	arrival *a = cau_arrival_find(hub, asked->session);
-	bool waits = a && !cau_coming_serves(&a->coming);
-	if (!waits && found->index == 0)
-		a = enlist(hub, asked, found, error);
-	else if (!waits || strcmp(a->move, asked->move) != 0 || a->writing ||
-	         a->pieces != found->index || a->coming.state == CAU_COMING_WHOLE) {
-		cau_fail(error, CAU_BAD_STATE, "params.upload",
-		         waits && strcmp(a->move, asked->move) != 0
-		             ? "another move of this session is under way: finish it with `cautery move`"
-		             : "pieces must come in order, and this one is not the next");
+	arrival *a = cau_arrival_find(hub, job->asked.session);
+	if (a && cau_coming_serves(&a->coming))
+		a = NULL; // it came before, and is gone
+	if (is_repeated(a, &job->asked, found)) {
+		answer_received(a, &job->reply);
 		a = NULL;
+	} else if (check_turn(a, &job->asked, found, error) ||
+	           check_seal(&job->asked, a ? a->seal : "", found, error)) {
+		a = NULL;
+	} else {
+		a = a ? a : enlist(hub, &job->asked, found, error);
 	}
 	if (a)
 		a->writing = true;
@@ -173,7 +231,6 @@ static void piece_written(void *user, cau_status status, const char *reason)
 {
 	at_disk *done = user;
 	arrival *a = done->arrival;
-	cau_wire_move_received result = {0};
 	bool last = done->found.flags & CAU_ROWS_ENDS;
 	cau_fault_point(last ? "move_last_piece" : "move_piece");
 	pthread_mutex_lock(&done->hub->moves_mutex);
@@ -181,15 +238,15 @@ static void piece_written(void *user, cau_status status, const char *reason)
 	if (!status) {
 		cau_coming_take(&a->coming, last ? CAU_COMING_LAST : CAU_COMING_PIECE, true);
 		note_contents(a, &done->found);
-		result.pieces = ++a->pieces;
-	} else if (a->pieces == 0) {
-		cau_arrival_take_out(done->hub, a);
+		memcpy(a->seal, done->found.seal, sizeof a->seal);
+		a->pieces++;
+		answer_received(a, &done->reply);
+	} else {
+		if (a->pieces == 0)
+			cau_arrival_take_out(done->hub, a);
+		cau_move_fail(&done->reply, status, cau_hosted_commit_code(status), "", reason);
 	}
 	pthread_mutex_unlock(&done->hub->moves_mutex);
-	if (status)
-		cau_move_fail(&done->reply, status, cau_hosted_commit_code(status), "", reason);
-	else
-		cau_move_answer(&done->reply, &result);
 	free(done);
 }
 
@@ -198,6 +255,7 @@ static cau_status write_piece(cau_move_job *job, at_disk *travelling, cau_error 
 	bool last = travelling->found.flags & CAU_ROWS_ENDS;
 	cau_store_arrival row = cau_arrival_row(travelling->arrival, travelling->found.index + 1,
 	                                        last ? CAU_STORE_WHOLE : CAU_STORE_ARRIVING);
+	row.seal = travelling->found.seal;
 	cau_store_batch *batch = cau_store_batch_create();
 	if (!batch)
 		return cau_fail(error, CAU_NO_MEMORY, "", "no memory for a piece");
@@ -217,13 +275,14 @@ static cau_status write_piece(cau_move_job *job, at_disk *travelling, cau_error 
 void cau_arrival_receive(cau_move_job *job)
 {
 	cau_error error = {0};
-	cau_status status = CAU_NO_MEMORY;
 	at_disk *travelling = calloc(1, sizeof *travelling);
-	if (travelling)
+	cau_status status = travelling ? take_seal(&job->asked, &travelling->found, &error)
+	                               : cau_fail(&error, CAU_NO_MEMORY, "", "no memory for a piece");
+	if (!status)
 		status = read_contents(&job->asked, &travelling->found, &error);
 	if (!status && travelling->found.index == 0)
 		status = check_room(job->hub, job->asked.session, &error);
-	arrival *a = status ? NULL : begin_piece(job->hub, &job->asked, &travelling->found, &error);
+	arrival *a = status ? NULL : begin_piece(job, &travelling->found, &error);
 	if (a) {
 		travelling->hub = job->hub;
 		travelling->arrival = a;
@@ -234,6 +293,7 @@ void cau_arrival_receive(cau_move_job *job)
 		piece_written(travelling, status, error.reason);
 		return;
 	}
-	cau_reply_fail(&job->reply, &error, 0);
+	if (error.status)
+		cau_reply_fail(&job->reply, &error, 0);
 	free(travelling);
 }

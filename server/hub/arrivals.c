@@ -6,7 +6,6 @@
 #include <string.h>
 
 #include "cautery/name.h"
-#include "cautery/sha256.h"
 #include "hub/fault_point.h"
 #include "hub/internal.h"
 #include "session/handover.h"
@@ -37,6 +36,8 @@ cau_store_arrival cau_arrival_row(const arrival *a, int64_t pieces, cau_store_ar
 	return (cau_store_arrival){.id = a->id,
 	                           .move = a->move,
 	                           .lock = a->lock,
+	                           .unlock = a->unlock,
+	                           .seal = a->seal,
 	                           .source = a->source,
 	                           .label = a->label,
 	                           .pieces = pieces,
@@ -289,12 +290,6 @@ static cau_status write_accepted(cau_move_job *job, arrival *a, cau_error *error
 	return status;
 }
 
-static bool opens(const arrival *a, const char *proof)
-{
-	char hash[CAU_SHA256_TEXT_BYTES] = "";
-	return cau_sha256(proof, strlen(proof), hash) && strcmp(hash, a->lock) == 0;
-}
-
 // Accepted before: as it is now.
 static void describe(cau_move_job *job)
 {
@@ -327,7 +322,7 @@ void cau_arrival_accept(cau_move_job *job)
 	else if (job->hub->moves_end)
 		status = cau_fail(&error, CAU_BAD_STATE, "",
 		                  "the daemon is shutting down: ask again when it is back");
-	else if (!opens(a, job->asked.proof))
+	else if (!cau_move_opens(job->asked.key, a->lock))
 		status = cau_fail(&error, CAU_BAD_VALUE, "params.proof", "the proof is of another move");
 	else if (a->writing || (a->hosted && !a->ready && !cau_hosted_ended(a->hosted)))
 		status = cau_fail(&error, CAU_BAD_STATE, "", "the session is being built: ask again");
@@ -398,6 +393,18 @@ static cau_status write_forgotten(cau_move_job *job, arrival *a, bool whole, cau
 	return status;
 }
 
+// The source says that it goes on with the session; or somebody here says that there is no source
+// any more, which may be wrong.
+static bool may_forget(const cau_move_job *job, const arrival *a)
+{
+	if (!job->asked.source_lost)
+		return cau_move_opens(job->asked.key, a->unlock);
+	cau_log(CAU_LOG_WARNING, a->id, "forgotten_unproved",
+	        "move=%s from=%s whole=%d risk=\"if %s has decided this move, the session is lost\"",
+	        a->move, a->source, a->coming.state == CAU_COMING_WHOLE, a->label);
+	return true;
+}
+
 void cau_arrival_forget(cau_move_job *job)
 {
 	cau_error error = {0};
@@ -408,6 +415,10 @@ void cau_arrival_forget(cau_move_job *job)
 	bool busy = a && (a->writing || (a->hosted && !a->ready && !cau_hosted_ended(a->hosted)));
 	if (busy)
 		status = cau_fail(&error, CAU_BAD_STATE, "", "the session is being built: ask again");
+	else if (a && !may_forget(job, a))
+		status = cau_fail(&error, CAU_BAD_VALUE, "params.release",
+		                  "it is not the one that move.cancel of the other daemon gives for this "
+		                  "move");
 	else if (!a || cau_coming_take(&a->coming, CAU_COMING_FORGET, true) != CAU_COMING_DO_FORGET)
 		status = cau_fail(&error, CAU_BAD_STATE, "params.move",
 		                  "no such move is known here, or the session is this daemon's");

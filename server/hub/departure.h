@@ -12,7 +12,8 @@ struct cau_departure {
 	cau_hosted *hosted; // shared
 	char id[CAU_NAME_BYTES], label[CAU_NAME_BYTES];
 	cau_tombstone becomes;
-	char lock[CAU_SHA256_TEXT_BYTES];
+	cau_move_hash lock, unlock, release;
+	cau_move_hash seal; // of the pieces that were read
 	cau_store_dump *dump;
 	uint32_t pieces;
 	bool part_sent, rest_begun, all_sent;

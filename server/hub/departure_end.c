@@ -29,7 +29,7 @@ static void let_go(cau_hub *hub, departure *d, cau_leaving_state from, cau_leavi
 	        d->becomes.move);
 	if (from != CAU_LEAVING_SENDS)
 		cau_hosted_go_on(d->hosted);
-	cau_move_decided(&d->waiting, NULL);
+	cau_move_kept(&d->waiting, d->release);
 	cau_departure_take_out(hub, d);
 }
 
@@ -202,10 +202,7 @@ static bool is_own_fault(cau_status status)
 // With the lock.
 static void go_away(cau_hub *hub, departure *d)
 {
-	if (!cau_tombstone_put(hub, &d->becomes))
-		cau_log(CAU_LOG_ERROR, d->id, "moved_forgotten",
-		        "to=%s reason=\"no memory; it is in the store, and known after a restart\"",
-		        d->becomes.to.session);
+	cau_tombstone_put(hub, &d->becomes);
 	cau_hosted_go_away(d->hosted, &d->becomes.to);
 	cau_move_decided(&d->waiting, &d->becomes);
 	cau_departure_take_out(hub, d);
@@ -245,8 +242,9 @@ static void write_tombstone(cau_hub *hub, departure *d, const cau_reply *reply)
 	                         .url = row->to.url,
 	                         .proof = row->proof};
 	cau_store_batch *batch = cau_store_batch_create();
-	cau_status status = batch ? cau_store_put_moved(batch, &moved, &error)
-	                          : cau_fail(&error, CAU_NO_MEMORY, "", "no memory for a commit");
+	cau_status status = batch && cau_tombstones_reserve(hub)
+	                        ? cau_store_put_moved(batch, &moved, &error)
+	                        : cau_fail(&error, CAU_NO_MEMORY, "", "no memory for a commit");
 	d->waiting = *reply;
 	if (!status)
 		status = submit(hub, d, batch, decided, &error);
@@ -270,6 +268,13 @@ static bool show(cau_move_job *job)
 	return own;
 }
 
+// Whether the target has said that all pieces are on its disk.
+static bool is_received(const departure *d, const char *receipt)
+{
+	cau_move_hash wanted;
+	return cau_move_receipt(d->becomes.move, d->seal, wanted) && strcmp(receipt, wanted) == 0;
+}
+
 void cau_departure_commit(cau_move_job *job)
 {
 	pthread_mutex_lock(&job->hub->moves_mutex);
@@ -282,6 +287,10 @@ void cau_departure_commit(cau_move_job *job)
 		              "the server is shutting down");
 	} else if (!d->all_sent) {
 		cau_move_fail(&job->reply, CAU_BAD_STATE, 0, "", "not all pieces have been read");
+	} else if (!is_received(d, job->asked.key)) {
+		cau_move_fail(
+			&job->reply, CAU_BAD_VALUE, 0, "params.receipt",
+			"it is not the one that the other daemon gives for the last piece of this move");
 	} else if (cau_leaving_take(&d->leaving, CAU_LEAVING_COMMIT, true) == CAU_LEAVING_DO_WRITE) {
 		write_tombstone(job->hub, d, &job->reply);
 	} else {
@@ -312,6 +321,16 @@ static void cancel(cau_move_job *job, departure *d)
 	let_go(job->hub, d, from, act);
 }
 
+// No such move is under way or was decided, so it never will be: its proof was in memory alone.
+static void keep(cau_move_job *job)
+{
+	cau_move_hash release;
+	if (cau_move_release(job->hub->move_secret, job->asked.move, release))
+		cau_move_kept(&job->reply, release);
+	else
+		cau_move_fail(&job->reply, CAU_NO_MEMORY, 0, "", "no memory for the answer");
+}
+
 void cau_departure_cancel(cau_move_job *job)
 {
 	pthread_mutex_lock(&job->hub->moves_mutex);
@@ -322,6 +341,6 @@ void cau_departure_cancel(cau_move_job *job)
 		cau_move_fail(&job->reply, CAU_NOT_FOUND, CAU_RPC_NOT_HERE, "params.session",
 		              "the session's label is not this daemon's");
 	else if (!show(job))
-		cau_move_decided(&job->reply, NULL);
+		keep(job);
 	pthread_mutex_unlock(&job->hub->moves_mutex);
 }

@@ -16,6 +16,10 @@ enum {
 	TOMBSTONES_MOST = 100000,
 };
 
+// A move of which the target has nothing: a courier that has read the first piece and asked for no
+// more for so long has gone.
+#define FIRST_PIECE_MOST_S 2.
+
 typedef struct cau_departure departure;
 
 static void destroy(departure *d)
@@ -69,7 +73,8 @@ static bool make_hex(char *hex, size_t bytes)
 	return true;
 }
 
-static cau_status fill(departure *d, const cau_move_asked *asked, cau_error *error)
+static cau_status fill(const cau_hub *hub, departure *d, const cau_move_asked *asked,
+                       cau_error *error)
 {
 	size_t label_bytes = strlen(asked->label);
 	if (strncmp(asked->to.session, asked->label, label_bytes) != 0 ||
@@ -84,9 +89,12 @@ static cau_status fill(departure *d, const cau_move_asked *asked, cau_error *err
 	memcpy(d->becomes.id, asked->session, sizeof d->becomes.id);
 	d->becomes.to = asked->to;
 	d->becomes.move[0] = 'm'; // a name begins with a letter
-	if (!make_hex(d->becomes.move + 1, 16) || !make_hex(d->becomes.proof, 32) ||
-	    !cau_sha256(d->becomes.proof, strlen(d->becomes.proof), d->lock))
+	if (!make_hex(d->becomes.move + 1, 16) || !make_hex(d->becomes.proof, 32))
 		return cau_fail(error, CAU_UNSUPPORTED, "", "the system has no random bytes");
+	if (!cau_sha256(d->becomes.proof, strlen(d->becomes.proof), d->lock) ||
+	    !cau_move_release(hub->move_secret, d->becomes.move, d->release) ||
+	    !cau_sha256(d->release, strlen(d->release), d->unlock))
+		return cau_fail(error, CAU_NO_MEMORY, "", "no memory for a move");
 	return CAU_OK;
 }
 
@@ -108,10 +116,31 @@ static cau_hosted *find_hosted(cau_move_job *job)
 	return NULL;
 }
 
+// Whether the courier of this move has gone before the target had a piece. Then the target does
+// not know of it, and no later courier would hear of it there.
+static bool is_left(const departure *d, double now_s)
+{
+	bool waits = d->part_sent && now_s - d->touched_s <= FIRST_PIECE_MOST_S;
+	return d->leaving.state == CAU_LEAVING_SENDS && !d->reading && d->pieces <= 1 && !waits;
+}
+
+// With the lock.
+static void give_way(cau_hub *hub, const char *id)
+{
+	departure *d = find(hub, id);
+	if (!d || !is_left(d, cau_monotonic_s()))
+		return;
+	cau_leaving_take(&d->leaving, CAU_LEAVING_LATE, true);
+	cau_log(CAU_LOG_NOTICE, d->id, "move_ended", "move=%s reason=\"its courier has gone\"",
+	        d->becomes.move);
+	cau_departure_take_out(hub, d);
+}
+
 static cau_status enlist(cau_hub *hub, departure *d, cau_error *error)
 {
 	cau_status status = CAU_OK;
 	pthread_mutex_lock(&hub->moves_mutex);
+	give_way(hub, d->id);
 	if (find(hub, d->id))
 		status = cau_fail(
 			error, CAU_BAD_STATE, "params.session",
@@ -143,7 +172,7 @@ void cau_departure_begin(cau_move_job *job)
 		return;
 	}
 	d->hosted = hosted;
-	cau_status status = fill(d, &job->asked, &error);
+	cau_status status = fill(job->hub, d, &job->asked, &error);
 	cau_store_flush(job->hub->def.store); // one that was made just now is on its way there
 	if (!status)
 		status = cau_store_dump_open(job->hub->def.store, d->id, &d->dump, &error);
@@ -200,16 +229,23 @@ static cau_status write_part(cau_hub *hub, departure *d, bool held, cau_rows_wri
 	return CAU_OK;
 }
 
+static bool seal_piece(departure *d, cau_rows_writer *writer)
+{
+	bool sealed = cau_move_seal(d->seal, writer->bytes, writer->byte_count, d->seal);
+	cau_rows_seal(writer, d->seal);
+	return sealed && !writer->failed;
+}
+
 static cau_status write_piece(cau_hub *hub, departure *d, bool held, cau_rows_writer *writer,
                               cau_error *error)
 {
 	cau_rows_begin(writer, d->pieces);
 	if (d->pieces == 0)
 		cau_rows_put_values(writer, CAU_ROWS_HEADER, d->becomes.move, d->lock, d->id,
-		                    hub->def.config->label, cau_hosted_scene(d->hosted)->name);
+		                    hub->def.config->label, cau_hosted_scene(d->hosted)->name, d->unlock);
 	d->pieces++;
 	cau_status status = write_part(hub, d, held, writer, error);
-	if (!status && writer->failed)
+	if (!status && (writer->failed || !seal_piece(d, writer)))
 		status = cau_fail(error, CAU_NO_MEMORY, "", "no memory for a piece of the session");
 	return status;
 }

@@ -138,10 +138,11 @@ typedef enum {
 typedef struct cau_move_asked {
 	cau_move_what what;
 	char session[CAU_NAME_BYTES], move[CAU_NAME_BYTES];
-	cau_moved_to to;             // BEGIN
-	char label[CAU_NAME_BYTES];  // BEGIN
-	char proof[CAU_PROOF_BYTES]; // ACCEPT
-	unsigned char *piece;        // RECEIVE: malloc'ed, taken
+	cau_moved_to to;            // BEGIN
+	char label[CAU_NAME_BYTES]; // BEGIN
+	char key[CAU_PROOF_BYTES];  // ACCEPT: proof, COMMIT: receipt, FORGET: release or ""
+	bool source_lost;           // FORGET
+	unsigned char *piece;       // RECEIVE: malloc'ed, taken
 	size_t piece_bytes;
 } cau_move_asked;
 

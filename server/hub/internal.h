@@ -5,9 +5,9 @@
 #include <pthread.h>
 #include <stdatomic.h>
 
-#include "cautery/sha256.h"
 #include "clock/clock.h"
 #include "hub/hub.h"
+#include "hub/move_seals.h"
 #include "log/log.h"
 #include "session/handover.h"
 
@@ -46,6 +46,7 @@ struct cau_hub {
 	pthread_mutex_t moves_mutex; // guards what follows; inside no other lock but the hub's
 	struct cau_departure *departures;
 	struct cau_arrival *arrivals;
+	cau_move_hash move_secret;        // of the store
 	struct cau_tombstone *tombstones; // by id
 	int32_t tombstone_count, tombstone_capacity;
 	bool moves_end; // the daemon ends: no move is begun or goes on
@@ -83,9 +84,12 @@ typedef struct cau_tombstone {
 } cau_tombstone;
 // Of the store, at the start.
 cau_status cau_tombstones_read(cau_hub *hub, cau_error *error);
-// All three: with the moves' lock.
+// All four: with the moves' lock.
 const cau_tombstone *cau_tombstone_find(const cau_hub *hub, const char *id);
-bool cau_tombstone_put(cau_hub *hub, const cau_tombstone *made); // false: no memory
+// Memory for one more for each move that may be decided: a decided move that is not known here
+// would be taken for one that never was. False: there is none.
+bool cau_tombstones_reserve(cau_hub *hub);
+void cau_tombstone_put(cau_hub *hub, const cau_tombstone *made); // takes what was reserved
 void cau_tombstone_drop(cau_hub *hub, const char *id);
 
 // Who drove a tool, and may come back to it here.
@@ -98,7 +102,8 @@ typedef struct cau_arrival {
 	struct cau_arrival *next;
 	cau_coming coming;
 	char id[CAU_NAME_BYTES], move[CAU_NAME_BYTES], source[CAU_NAME_BYTES], label[CAU_NAME_BYTES];
-	char lock[CAU_SHA256_TEXT_BYTES];
+	cau_move_hash lock, unlock;
+	cau_move_hash seal; // of the pieces that are here
 	int64_t pieces;
 	bool writing;       // a piece, or what becomes of it, is on its way to the disk
 	bool forgotten;     // only its core is still to be cleared away
@@ -119,7 +124,8 @@ bool cau_arrivals_have(cau_hub *hub, const char *id);
 void cau_move_fail(const cau_reply *reply, cau_status status, int32_t code, const char *path,
                    const char *reason);
 void cau_move_answer(const cau_reply *reply, const void *result);
-void cau_move_decided(const cau_reply *reply, const cau_tombstone *moved); // NULL: it stays
+void cau_move_decided(const cau_reply *reply, const cau_tombstone *moved);
+void cau_move_kept(const cau_reply *reply, const char *release);
 // ---- moves.c
 // One request about a move, on the mover.
 typedef struct cau_move_job {

@@ -28,11 +28,15 @@ void cau_move_answer(const cau_reply *reply, const void *result)
 
 void cau_move_decided(const cau_reply *reply, const cau_tombstone *moved)
 {
-	cau_wire_move_decision result = {
-		.moved = moved != NULL, .has_target = moved != NULL, .has_proof = moved != NULL};
-	if (moved) {
-		memcpy(result.target, moved->to.session, sizeof result.target);
-		memcpy(result.proof, moved->proof, sizeof result.proof);
-	}
+	cau_wire_move_decision result = {.moved = true, .has_target = true, .has_proof = true};
+	memcpy(result.target, moved->to.session, sizeof result.target);
+	memcpy(result.proof, moved->proof, sizeof result.proof);
+	cau_move_answer(reply, &result);
+}
+
+void cau_move_kept(const cau_reply *reply, const char *release)
+{
+	cau_wire_move_decision result = {.moved = false, .has_release = true};
+	snprintf(result.release, sizeof result.release, "%s", release);
 	cau_move_answer(reply, &result);
 }

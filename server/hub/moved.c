@@ -4,7 +4,8 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "hub/internal.h"
+#include "cautery/assert.h"
+#include "hub/departure.h"
 
 // The first whose id is not before this one's.
 static int32_t place_of(const cau_hub *hub, const char *id)
@@ -31,11 +32,11 @@ const cau_tombstone *cau_tombstone_find(const cau_hub *hub, const char *id)
 	return is_at(hub, place, id) ? &hub->tombstones[place] : NULL;
 }
 
-static bool make_room(cau_hub *hub)
+static bool make_room(cau_hub *hub, int32_t count)
 {
-	if (hub->tombstone_count < hub->tombstone_capacity)
+	if (hub->tombstone_count + count <= hub->tombstone_capacity)
 		return true;
-	int32_t capacity = hub->tombstone_capacity ? 2 * hub->tombstone_capacity : 16;
+	int32_t capacity = 2 * hub->tombstone_capacity + count + 15;
 	cau_tombstone *grown = realloc(hub->tombstones, (size_t)capacity * sizeof *grown);
 	if (!grown)
 		return false;
@@ -44,18 +45,24 @@ static bool make_room(cau_hub *hub)
 	return true;
 }
 
-bool cau_tombstone_put(cau_hub *hub, const cau_tombstone *made)
+bool cau_tombstones_reserve(cau_hub *hub)
+{
+	int32_t count = 0;
+	for (const struct cau_departure *d = hub->departures; d; d = d->next)
+		count++;
+	return make_room(hub, count);
+}
+
+void cau_tombstone_put(cau_hub *hub, const cau_tombstone *made)
 {
 	int32_t place = place_of(hub, made->id);
 	if (!is_at(hub, place, made->id)) {
-		if (!make_room(hub))
-			return false;
+		CAU_ASSERT(hub->tombstone_count < hub->tombstone_capacity, "no capacity for %s", made->id);
 		memmove(&hub->tombstones[place + 1], &hub->tombstones[place],
 		        (size_t)(hub->tombstone_count - place) * sizeof *made);
 		hub->tombstone_count++;
 	}
 	hub->tombstones[place] = *made;
-	return true;
 }
 
 void cau_tombstone_drop(cau_hub *hub, const char *id)
@@ -76,12 +83,16 @@ static cau_status take(void *user, const cau_store_moved *row)
 	snprintf(made.to.session, sizeof made.to.session, "%.48s", row->target);
 	snprintf(made.to.url, sizeof made.to.url, "%s", row->url);
 	snprintf(made.proof, sizeof made.proof, "%s", row->proof);
-	return cau_tombstone_put(user, &made) ? CAU_OK : CAU_NO_MEMORY;
+	if (!make_room(user, 1))
+		return CAU_NO_MEMORY;
+	cau_tombstone_put(user, &made);
+	return CAU_OK;
 }
 
 cau_status cau_tombstones_read(cau_hub *hub, cau_error *error)
 {
-	return cau_store_read_moved(hub->def.store, take, hub, error);
+	cau_status status = cau_store_move_secret(hub->def.store, hub->move_secret, error);
+	return status ? status : cau_store_read_moved(hub->def.store, take, hub, error);
 }
 
 bool cau_hub_moved(cau_hub *hub, const char *id, cau_moved_to *to)
@@ -124,6 +135,8 @@ static cau_status take_arrival(void *user, const cau_store_arrival *row)
 	snprintf(a->source, sizeof a->source, "%.48s", row->source);
 	snprintf(a->label, sizeof a->label, "%.48s", row->label);
 	snprintf(a->lock, sizeof a->lock, "%s", row->lock);
+	snprintf(a->unlock, sizeof a->unlock, "%s", row->unlock);
+	snprintf(a->seal, sizeof a->seal, "%s", row->seal);
 	a->pieces = row->pieces;
 	a->speed = 1;
 	a->coming = cau_coming_after_restart(true, row->state != CAU_STORE_ARRIVING,

@@ -62,11 +62,6 @@ void cau_call_move_hold(cau_call *call)
 	submit_ref(call, CAU_MOVE_HOLD);
 }
 
-void cau_call_move_commit(cau_call *call)
-{
-	submit_ref(call, CAU_MOVE_COMMIT);
-}
-
 void cau_call_move_cancel(cau_call *call)
 {
 	submit_ref(call, CAU_MOVE_CANCEL);
@@ -77,14 +72,29 @@ void cau_call_move_ready(cau_call *call)
 	submit_ref(call, CAU_MOVE_READY);
 }
 
-void cau_call_move_forget(cau_call *call)
-{
-	submit_ref(call, CAU_MOVE_FORGET);
-}
-
 void cau_call_move_list(cau_call *call)
 {
 	submit(call, &(cau_move_asked){.what = CAU_MOVE_LIST});
+}
+
+static void submit_key(cau_call *call, cau_move_asked *asked, const char *session, const char *move,
+                       const char *key)
+{
+	snprintf(asked->session, sizeof asked->session, "%s", session);
+	snprintf(asked->move, sizeof asked->move, "%s", move);
+	snprintf(asked->key, sizeof asked->key, "%s", key);
+	submit(call, asked);
+}
+
+void cau_call_move_commit(cau_call *call)
+{
+	cau_error error = {0};
+	cau_wire_move_commit params = {0};
+	cau_move_asked asked = {.what = CAU_MOVE_COMMIT};
+	if (cau_rpc_params(call->message, &params, &error))
+		cau_call_fail(call, &error, 0);
+	else
+		submit_key(call, &asked, params.session, params.move, params.receipt);
 }
 
 void cau_call_move_accept(cau_call *call)
@@ -92,14 +102,27 @@ void cau_call_move_accept(cau_call *call)
 	cau_error error = {0};
 	cau_wire_move_accept params = {0};
 	cau_move_asked asked = {.what = CAU_MOVE_ACCEPT};
-	if (cau_rpc_params(call->message, &params, &error)) {
+	if (cau_rpc_params(call->message, &params, &error))
 		cau_call_fail(call, &error, 0);
-		return;
-	}
-	memcpy(asked.session, params.session, sizeof asked.session);
-	memcpy(asked.move, params.move, sizeof asked.move);
-	snprintf(asked.proof, sizeof asked.proof, "%s", params.proof);
-	submit(call, &asked);
+	else
+		submit_key(call, &asked, params.session, params.move, params.proof);
+}
+
+void cau_call_move_forget(cau_call *call)
+{
+	cau_error error = {0};
+	cau_wire_move_forget params = {0};
+	cau_move_asked asked = {.what = CAU_MOVE_FORGET};
+	cau_status status = cau_rpc_params(call->message, &params, &error);
+	asked.source_lost = params.has_source_lost && params.source_lost;
+	if (!status && !params.has_release && !asked.source_lost)
+		status = cau_fail(&error, CAU_BAD_VALUE, "params.release",
+		                  "missing: move.cancel of the daemon that it came from gives it");
+	if (status)
+		cau_call_fail(call, &error, 0);
+	else
+		submit_key(call, &asked, params.session, params.move,
+		           params.has_release ? params.release : "");
 }
 
 // The upload's bytes go with the request; the connection has it no more.

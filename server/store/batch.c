@@ -421,7 +421,8 @@ cau_status cau_store_put_arrival(cau_store_batch *batch, const cau_store_arrival
 	TRY(check_text("source", arrival->source, true, error));
 	TRY(check_text("label", arrival->label, true, error));
 	size_t bytes = text_bytes(arrival->id) + text_bytes(arrival->move) + text_bytes(arrival->lock) +
-	               text_bytes(arrival->source) + text_bytes(arrival->label);
+	               text_bytes(arrival->source) + text_bytes(arrival->label) +
+	               text_bytes(arrival->unlock) + text_bytes(arrival->seal);
 	struct record *record = append(batch, RECORD_ARRIVAL, bytes, error);
 	if (!record)
 		return CAU_NO_MEMORY;
@@ -433,6 +434,8 @@ cau_status cau_store_put_arrival(cau_store_batch *batch, const cau_store_arrival
 	copy->lock = copy_text(&at, arrival->lock);
 	copy->source = copy_text(&at, arrival->source);
 	copy->label = copy_text(&at, arrival->label);
+	copy->unlock = copy_text(&at, arrival->unlock);
+	copy->seal = copy_text(&at, arrival->seal);
 	return CAU_OK;
 }
 

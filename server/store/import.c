@@ -198,7 +198,7 @@ static cau_status put_arrival(sqlite3 *database, const cau_store_arrival *arriva
 	const char *const id[] = {arrival->id, NULL};
 	cau_status status = prepare(database,
 	                            "INSERT OR REPLACE INTO arrivals"
-	                            " VALUES(?1, ?2, ?3, ?4, ?5, ?6, ?7, ?8)",
+	                            " VALUES(?1, ?2, ?3, ?4, ?5, ?6, ?7, ?8, ?9, ?10)",
 	                            &statement, error);
 	if (status)
 		return status;
@@ -209,6 +209,8 @@ static cau_status put_arrival(sqlite3 *database, const cau_store_arrival *arriva
 	sqlite3_bind_int64(statement, 6, arrival->pieces);
 	sqlite3_bind_int64(statement, 7, arrival->state);
 	sqlite3_bind_int64(statement, 8, now_ms);
+	sqlite3_bind_text(statement, 9, arrival->unlock ? arrival->unlock : "", -1, SQLITE_STATIC);
+	sqlite3_bind_text(statement, 10, arrival->seal ? arrival->seal : "", -1, SQLITE_STATIC);
 	status = run(database, statement, error);
 	sqlite3_finalize(statement);
 	if (!status) // it brings its answers back: those that are still here stay

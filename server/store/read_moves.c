@@ -1,5 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Reading what has moved away, and what has come or is coming.
+#include <stdio.h>
+
 #include "fault.h"
 #include "read.h"
 
@@ -35,7 +37,8 @@ cau_status cau_store_read_arrivals(cau_store *store, cau_store_visit_arrival vis
 	pthread_mutex_lock(&store->reading_mutex);
 	cau_status status = cau_store_prepare(
 		store,
-		"SELECT id, move, lock, source, label, pieces, state, time_ms FROM arrivals ORDER BY id",
+		"SELECT id, move, lock, source, label, pieces, state, time_ms, unlock, seal FROM arrivals"
+		" ORDER BY id",
 		&statement, error);
 	while (!status && !visited && !(status = cau_store_next_row(store, statement, error))) {
 		cau_store_arrival arrival = {.id = cau_store_column_text(statement, 0),
@@ -46,10 +49,27 @@ cau_status cau_store_read_arrivals(cau_store *store, cau_store_visit_arrival vis
 		                             .pieces = sqlite3_column_int64(statement, 5),
 		                             .state =
 		                                 (cau_store_arrival_state)sqlite3_column_int(statement, 6),
-		                             .time_ms = sqlite3_column_int64(statement, 7)};
+		                             .time_ms = sqlite3_column_int64(statement, 7),
+		                             .unlock = cau_store_column_text(statement, 8),
+		                             .seal = cau_store_column_text(statement, 9)};
 		visited = visit(user, &arrival);
 	}
 	sqlite3_finalize(statement);
 	pthread_mutex_unlock(&store->reading_mutex);
 	return visited ? visited : cau_store_end_is_fine(status);
+}
+
+cau_status cau_store_move_secret(cau_store *store, char secret[65], cau_error *error)
+{
+	sqlite3_stmt *statement = NULL;
+	pthread_mutex_lock(&store->reading_mutex);
+	cau_status status = cau_store_prepare(store, "SELECT value FROM secrets WHERE name = 'move'",
+	                                      &statement, error);
+	if (!status)
+		status = cau_store_next_row(store, statement, error);
+	if (!status)
+		snprintf(secret, 65, "%s", cau_store_column_text(statement, 0));
+	sqlite3_finalize(statement);
+	pthread_mutex_unlock(&store->reading_mutex);
+	return status;
 }

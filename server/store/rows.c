@@ -229,6 +229,14 @@ void cau_rows_flag(cau_rows_writer *writer, uint32_t flags)
 		set32(writer->bytes + 12, get32(writer->bytes + 12) | flags);
 }
 
+void cau_rows_seal(cau_rows_writer *writer, const char *seal)
+{
+	size_t bytes = strlen(seal);
+	unsigned char *at = grow(writer, bytes);
+	if (at)
+		memcpy(at, seal, bytes);
+}
+
 void cau_rows_put(cau_rows_writer *writer, const cau_row *row)
 {
 	CAU_ASSERT(row->column_count == (int)strlen(columns_of[row->table]), "%d columns of table %d",

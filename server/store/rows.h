@@ -4,7 +4,8 @@
 //
 // A piece is a head of 16 bytes (magic "CAUM", u32 version, u32 index, u32 flags) and then rows to
 // its end. A row is u8 table, u8 column count, and its columns: u8 type, then an i64 of 8 bytes, or
-// u32 length and so many bytes of text or blob, or nothing. All numbers are little-endian.
+// u32 length and so many bytes of text or blob, or nothing. All numbers are little-endian. On its
+// way a piece has a seal of 64 hex digits after its end (server/hub/move_seals.h).
 #pragma once
 
 #include <stdbool.h>
@@ -13,7 +14,7 @@
 
 #include "cautery/status.h"
 
-#define CAU_ROWS_VERSION 1
+#define CAU_ROWS_VERSION 2
 #define CAU_ROWS_HEAD_BYTES 16
 #define CAU_ROWS_COLUMNS_MOST 8
 
@@ -21,10 +22,10 @@
 // short text (at most 127 bytes), n the same or null, t a text, b bytes. The order is that in which
 // rows travel.
 #define CAU_ROWS_TABLE(X)                                                                          \
-	X(HEADER, "sssss")      /* move, lock, the source's id, its label, the session's name */       \
-	X(SESSION, "sub")       /* state, created_ms, definition */                                    \
-	X(MESH, "b")            /* of the definition */                                                \
-	X(PRESENT, "su")        /* state, branch: as they are when the session stands still */         \
+	X(HEADER, "ssssss") /* move, lock, the source's id, its label, the session's name, unlock */   \
+	X(SESSION, "sub")   /* state, created_ms, definition */                                        \
+	X(MESH, "b")        /* of the definition */                                                    \
+	X(PRESENT, "su")    /* state, branch: as they are when the session stands still */             \
 	X(BRANCHES, "uiuuuuu")  /* branch, parent, fork_tick, opened_ms, left_ms, bytes, end_tick */   \
 	X(COMMANDS, "uuuinkb")  /* branch, tick, position, kind, client, sequence, payload */          \
 	X(CHECKPOINTS, "uuiub") /* branch, tick, hash, bytes, snapshot */                              \
@@ -92,3 +93,5 @@ void cau_rows_put(cau_rows_writer *writer, const cau_row *row);
 // A row of texts and integers, by its table's columns: const char *, int64_t.
 void cau_rows_put_values(cau_rows_writer *writer, cau_rows_table table, ...);
 void cau_rows_flag(cau_rows_writer *writer, uint32_t flags);
+// After the last row; whoever reads the piece takes it off before. `seal` without its zero.
+void cau_rows_seal(cau_rows_writer *writer, const char *seal);

@@ -99,5 +99,13 @@ static const char sixth_step[] =
 						" UPDATE sizes SET bytes = bytes - (" ANSWER_BYTES(
 							"old.") ") WHERE name = 'answers'; END;";
 
+// secrets: random texts that are this store's alone. unlock and seal: what a move's pieces are
+// checked by, and what lets them be forgotten (server/hub/move_seals.h).
+static const char seventh_step[] =
+	"CREATE TABLE secrets(name TEXT PRIMARY KEY, value TEXT NOT NULL) WITHOUT ROWID;"
+	"INSERT INTO secrets VALUES('move', lower(hex(randomblob(32))));"
+	"ALTER TABLE arrivals ADD COLUMN unlock TEXT NOT NULL DEFAULT '';"
+	"ALTER TABLE arrivals ADD COLUMN seal TEXT NOT NULL DEFAULT '';";
+
 const char *const cau_store_schema_steps[CAU_STORE_SCHEMA_VERSION] = {
-	first_step, second_step, third_step, fourth_step, fifth_step, sixth_step};
+	first_step, second_step, third_step, fourth_step, fifth_step, sixth_step, seventh_step};

@@ -4,6 +4,6 @@
 #pragma once
 
 #define CAU_STORE_APPLICATION_ID 0x43617574 // "Caut", SQLite's application_id
-#define CAU_STORE_SCHEMA_VERSION 6          // SQLite's user_version
+#define CAU_STORE_SCHEMA_VERSION 7          // SQLite's user_version
 
 extern const char *const cau_store_schema_steps[CAU_STORE_SCHEMA_VERSION];

@@ -262,6 +262,8 @@ typedef struct cau_store_arrival {
 	const char *id;             // here
 	const char *move;           // which move it is
 	const char *lock;           // SHA-256 of the proof, 64 hex digits
+	const char *unlock;         // SHA-256 of the release; "": of an older version
+	const char *seal;           // of the pieces that are here; "": none
 	const char *source, *label; // its id there, and that daemon's label
 	int64_t pieces;             // that are here
 	cau_store_arrival_state state;
@@ -373,6 +375,8 @@ cau_status cau_store_read_moved(cau_store *store, cau_store_visit_moved visit, v
 typedef cau_status (*cau_store_visit_arrival)(void *user, const cau_store_arrival *arrival);
 cau_status cau_store_read_arrivals(cau_store *store, cau_store_visit_arrival visit, void *user,
                                    cau_error *error);
+// A random text that is this store's alone, from which it makes proofs for other daemons.
+cau_status cau_store_move_secret(cau_store *store, char secret[65], cau_error *error);
 
 // ---- health and metrics ---------------------------------------------------------------
 typedef struct cau_store_health {

@@ -4,6 +4,7 @@
 import assert from 'node:assert/strict';
 import { execFile, spawn } from 'node:child_process';
 import { test } from 'node:test';
+import { setTimeout } from 'node:timers/promises';
 import { Courier } from './wire/courier.mjs';
 import { Daemon } from './wire/daemon.mjs';
 import { AT_REST, cutMiddle, picture, smallSession } from './wire/scene.mjs';
@@ -197,6 +198,79 @@ test('what does not fit is refused, and nothing is served before its time', asyn
 	assert.equal((await rejection(operator.call('move.list'))).data.status, 'forbidden');
 	assert.equal(await settled(d1, d2), false);
 	await end(d1, d2);
+});
+
+test('a courier that dies before the target has a piece leaves nothing that stands in the way', async () => {
+	const [d1, d2] = await daemons();
+	const { one, two, session } = await startMove(d1, d2);
+	const dead = new Courier(one, two, session, 'd2-knee');
+	for (let i = 0; i < 3; i++)
+		await dead.begin();
+	await one.file('move.read', dead.ofSource());
+	assert.equal((await rejection(new Courier(one, two, session, 'd2-knee').begin())).data.status, 'bad_state');
+	await setTimeout(2500); // FIRST_PIECE_MOST_S of server/hub/departures.c, and a little
+	await new Courier(one, two, session, 'd2-knee').walk('part');
+	// Of one that only the source knows of, the command line ends what it can.
+	assert.equal(await settled(d1, d2), false);
+	await dead.begin();
+	await one.file('move.read', dead.ofSource());
+	const at = (daemon) => `ws://127.0.0.1:${daemon.port}`;
+	const cancelled = await run(['move', session, 'd2', '--cancel', '--url', at(d1), '--to-url', at(d2)]);
+	assert.equal(cancelled.status, 0, cancelled.stderr);
+	assert.deepEqual((await one.call('move.list')).moves, []);
+	await end(d1, d2);
+});
+
+test('a piece that is sent again is answered again, and a damaged one is refused', async () => {
+	const [d1, d2] = await daemons();
+	const { one, two, session } = await startMove(d1, d2);
+	const courier = new Courier(one, two, session, 'd2-knee');
+	const give = async (bytes) => {
+		await two.upload('piece', 'piece.caum', bytes);
+		return two.call('move.receive', { ...courier.ofTarget(), upload: 'piece' });
+	};
+	await courier.walk('hold');
+	const last = await one.file('move.read', courier.ofSource());
+	for (const place of [0, 12, 40, last.length >> 1, last.length - 65, last.length - 1]) {
+		const damaged = Buffer.from(last);
+		damaged[place] ^= 4;
+		assert.match((await rejection(give(damaged))).data.status, /corrupt|unsupported|bad_value/, `at ${place}`);
+	}
+	assert.equal((await rejection(courier.commit())).data.path, 'params.receipt');
+	const [first, second] = [await give(last), await give(last)];
+	assert.match(first.receipt, /^[0-9a-f]{64}$/);
+	assert.deepEqual(second, first);
+	Object.assign(courier, first);
+	await courier.commit();
+	await courier.accept();
+	assert.equal(await settled(d1, d2), true);
+	await end(d1, d2);
+});
+
+test('what is in doubt is forgotten by the source\'s word alone, or where that is lost for good', async () => {
+	let [d1, d2] = await daemons();
+	const { one, two, session } = await startMove(d1, d2);
+	const courier = new Courier(one, two, session, 'd2-knee');
+	await courier.walk('rest');
+	const forget = (more) => rejection(two.call('move.forget', { ...courier.ofTarget(), ...more }));
+	assert.equal((await forget({})).data.path, 'params.release');
+	assert.equal((await forget({ release: '0'.repeat(64) })).data.path, 'params.release');
+	assert.equal((await forget({ source_lost: false })).data.path, 'params.release');
+	// A source that was killed knows the move by its name alone, and still has the right word.
+	await d1.kill();
+	d1 = await again(d1, 'd1');
+	assert.equal(await settled(d1, d2), false);
+
+	const later = await d1.connect();
+	await new Courier(later, two, session, 'd2-knee').walk('rest');
+	await d1.kill();
+	const lost = await run(['move', session, 'd2', '--source-lost', '--url', `ws://127.0.0.1:${d2.port}`]);
+	assert.equal(lost.status, 0, lost.stderr);
+	await d2.log(/session=d2-knee event=forgotten_unproved .* whole=1 risk="if d1 has decided this move, the session is lost"/);
+	assert.deepEqual((await two.call('move.list')).moves, []);
+	const nothing = await run(['move', session, 'd2', '--source-lost', '--url', `ws://127.0.0.1:${d2.port}`]);
+	assert.equal(nothing.status, 1);
+	await end(d2);
 });
 
 test('cautery move carries a running session, and the library goes after it', async () => {

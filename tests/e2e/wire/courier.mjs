@@ -27,7 +27,7 @@ export class Courier {
 	async piece() {
 		const bytes = await this.from.file('move.read', this.ofSource());
 		await this.to.upload('piece', 'piece.caum', bytes);
-		await this.to.call('move.receive', { ...this.ofTarget(), upload: 'piece' });
+		({ receipt: this.receipt } = await this.to.call('move.receive', { ...this.ofTarget(), upload: 'piece' }));
 		return bytes.readUInt32LE(12);
 	}
 
@@ -52,7 +52,7 @@ export class Courier {
 	}
 
 	async commit() {
-		({ proof: this.proof } = await this.from.call('move.commit', this.ofSource()));
+		({ proof: this.proof } = await this.from.call('move.commit', { ...this.ofSource(), receipt: this.receipt ?? '' }));
 	}
 
 	async accept() {
@@ -76,7 +76,7 @@ export class Courier {
 			if (decision.moved)
 				await to.call('move.accept', { session: target, move, proof: decision.proof });
 			else if (state !== 'accepting')
-				await to.call('move.forget', { session: target, move });
+				await to.call('move.forget', { session: target, move, release: decision.release });
 		}
 	}
 }

@@ -12,7 +12,7 @@ static cau_rows_writer make_piece(void)
 {
 	cau_rows_writer piece;
 	cau_rows_begin(&piece, 3);
-	cau_rows_put_values(&piece, CAU_ROWS_HEADER, "m1", "lock", "d1-knee", "d1", "knee");
+	cau_rows_put_values(&piece, CAU_ROWS_HEADER, "m1", "lock", "d1-knee", "d1", "knee", "unlock");
 	cau_row row = {.table = CAU_ROWS_COMMANDS, .column_count = 7};
 	for (int i = 0; i < 4; i++)
 		row.column[i] = (cau_column){CAU_COLUMN_INTEGER, 5 + i, NULL, 0};
@@ -80,10 +80,11 @@ static void other_versions_flags_and_types_are_refused(void **state)
 		unsigned char is;
 		cau_status status;
 	} changes[] = {
-		{0, 'X', CAU_CORRUPT}, {4, 2, CAU_UNSUPPORTED}, {12, 4, CAU_CORRUPT},
-		{16, 99, CAU_CORRUPT}, {17, 4, CAU_CORRUPT},    {18, CAU_COLUMN_BLOB, CAU_CORRUPT},
-		{18, 9, CAU_CORRUPT},  {19, 200, CAU_CORRUPT},  {22, 0xff, CAU_CORRUPT},
-		{23, 0, CAU_CORRUPT}, // a zero within a text
+		{0, 'X', CAU_CORRUPT},   {4, CAU_ROWS_VERSION + 1, CAU_UNSUPPORTED},
+		{12, 4, CAU_CORRUPT},    {16, 99, CAU_CORRUPT},
+		{17, 4, CAU_CORRUPT},    {18, CAU_COLUMN_BLOB, CAU_CORRUPT},
+		{18, 9, CAU_CORRUPT},    {19, 200, CAU_CORRUPT},
+		{22, 0xff, CAU_CORRUPT}, {23, 0, CAU_CORRUPT}, // a zero within a text
 	};
 	cau_rows_writer piece = make_piece();
 	for (size_t i = 0; i < sizeof changes / sizeof *changes; i++) {

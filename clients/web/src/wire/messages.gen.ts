@@ -544,6 +544,8 @@ export interface MoveDecision {
   target?: string;
   /** lets the other daemon serve it */
   proof?: string;
+  /** where it stays: lets the other daemon forget the move */
+  release?: string;
 }
 
 /** a piece of a session */
@@ -560,6 +562,30 @@ export interface MoveReceive {
 export interface MoveReceived {
   /** that are (0 to 9007199254740991) */
   pieces: number;
+  /** of the last piece: proves that all are, for move.commit */
+  receipt?: string;
+}
+
+/** the other daemon has all of a session */
+export interface MoveCommit {
+  /** its id here */
+  session: string;
+  /** of move.begin */
+  move: string;
+  /** of the other daemon's last move.receive */
+  receipt: string;
+}
+
+/** what has come of a session is to go */
+export interface MoveForget {
+  /** its id here */
+  session: string;
+  /** of move.begin */
+  move: string;
+  /** of move.cancel */
+  release?: string;
+  /** without a release: the daemon that it came from is gone for good. If that daemon has decided the move, the session is lost */
+  source_lost?: boolean;
 }
 
 /** a session is to be served here */
@@ -1922,8 +1948,8 @@ export interface Requests {
   'move.read': { params: MoveRef; result: Transfer };
   /** suspends the session, energy off; requests to it wait */
   'move.hold': { params: MoveRef; result: MoveHeld };
-  /** the other daemon has all of it on its disk: it ends here, and the answer is what lets it be served there */
-  'move.commit': { params: MoveRef; result: MoveDecision };
+  /** the other daemon has all of it on its disk, as its receipt proves: it ends here, and the answer is what lets it be served there */
+  'move.commit': { params: MoveCommit; result: MoveDecision };
   /** it stays, unless it has moved: the answer says which */
   'move.cancel': { params: MoveRef; result: MoveDecision };
   /** an upload is a piece of a session that comes here; answered when it is on the disk */
@@ -1932,8 +1958,8 @@ export interface Requests {
   'move.ready': { params: MoveRef; result: MoveHeld };
   /** it is this daemon's, by the proof of move.commit; answered when it is served */
   'move.accept': { params: MoveAccept; result: SessionDescription };
-  /** what has come goes; only after move.cancel has said that the session stays where it was */
-  'move.forget': { params: MoveRef; result: Nothing };
+  /** what has come goes, by the release of move.cancel */
+  'move.forget': { params: MoveForget; result: Nothing };
   /** sessions that come, are in doubt, are leaving, or have gone */
   'move.list': { params: Nothing; result: MoveList };
 }
