@@ -156,6 +156,21 @@ static const cli_command *find_command(const cli *c, const char *name)
 	return NULL;
 }
 
+// Words of other programs and of the protocol for what a command here does.
+static const char *usual_name(const char *word)
+{
+	static const char *const others[][2] = {
+		{"destroy", "rm"},     {"delete", "rm"},     {"remove", "rm"},    {"list", "ls"},
+		{"describe", "info"},  {"show", "info"},     {"status", "info"},  {"new", "create"},
+		{"start", "create"},   {"open", "create"},   {"stop", "pause"},   {"continue", "resume"},
+		{"advance", "step"},   {"save", "snapshot"}, {"load", "restore"}, {"undo", "rewind"},
+		{"download", "export"}};
+	for (size_t i = 0; i < sizeof others / sizeof others[0]; i++)
+		if (strcmp(word, others[i][0]) == 0)
+			return others[i][1];
+	return NULL;
+}
+
 static bool take_command(cli *c, const char *word)
 {
 	enum { MOST = 64 };
@@ -167,7 +182,11 @@ static bool take_command(cli *c, const char *word)
 		return true;
 	for (; c->commands[count] && count < MOST; count++)
 		names[count] = c->commands[count]->name;
-	cli_complain_unknown(c, "command", word, names, count);
+	const char *usual = usual_name(word);
+	if (usual)
+		cli_complain(c, "no command \"%s\"; that is \"%s\" here. --help lists them", word, usual);
+	else
+		cli_complain_unknown(c, "command", word, names, count);
 	return false;
 }
 
@@ -196,13 +215,26 @@ static bool take_word(cli *c, const char *word)
 	return true;
 }
 
+// Those that are the command's own, with their values.
+static void list_options(const cli_command *command, char *text, size_t bytes)
+{
+	size_t used = 0;
+	*text = 0;
+	for (const cli_option *o = command->options; o->name && used < bytes; o++)
+		used += (size_t)snprintf(text + used, bytes - used, "%s--%s%s%s", used ? ", " : "", o->name,
+		                         o->argument ? " " : "", o->argument ? o->argument : "");
+}
+
 static bool check_arguments(const cli *c)
 {
 	int most = c->command->most + c->command->session_optional;
 	if (c->argument_count >= c->command->least && c->argument_count <= most)
 		return true;
+	char options[256];
+	list_options(c->command, options, sizeof options);
 	if (*c->command->arguments)
-		cli_complain(c, "the arguments are: %s", c->command->arguments);
+		cli_complain(c, "the arguments are: %s%s%s", c->command->arguments,
+		             *options ? "; options are " : "", options);
 	else
 		cli_complain(c, "\"%s\": this command takes no arguments", c->arguments[0]);
 	return false;

@@ -227,16 +227,18 @@ void cau_read_rotation(cau_reader *reader, const cJSON *value, double rotation[4
 		return;
 	for (int i = 0; i < 4; i++) {
 		size_t mark = cau_reader_enter(reader, NULL, i);
-		read[i] = cau_read_number(reader, cJSON_GetArrayItem(value, i), -1.001, 1.001, "");
+		read[i] = cau_read_number(reader, cJSON_GetArrayItem(value, i), -1 - CAU_UNIT_TOLERANCE,
+		                          1 + CAU_UNIT_TOLERANCE, "");
 		square += read[i] * read[i];
 		cau_reader_leave(reader, mark);
 	}
 	if (reader->status)
 		return;
 	double length = sqrt(square);
-	if (fabs(length - 1.0) > 1e-3) {
+	if (fabs(length - 1.0) > CAU_UNIT_TOLERANCE) {
 		cau_reader_fail(reader, CAU_BAD_VALUE, NULL,
-		                "a quaternion of length %.6g, not within 0.001 of 1", length);
+		                "a quaternion of length %.6g, not within %g of 1", length,
+		                CAU_UNIT_TOLERANCE);
 		return;
 	}
 	// Within rounding it is left alone, so that writing and reading again changes no bit.

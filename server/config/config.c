@@ -74,6 +74,12 @@ static bool read_request(cau_config_request *request, const char *flag)
 	return false;
 }
 
+// `--dds` alone is `--dds true`.
+static bool is_switch_value(const char *text)
+{
+	return strcmp(text, "true") == 0 || strcmp(text, "false") == 0;
+}
+
 // One pass over the flags: only --config if `file` is given, else all but --config.
 static cau_status read_flags(cau_config *config, cau_config_request *request, const char **file,
                              int count, char *const *arguments, cau_error *error)
@@ -81,7 +87,8 @@ static cau_status read_flags(cau_config *config, cau_config_request *request, co
 	for (int i = 1; i < count; i++) {
 		const char *flag = arguments[i];
 		if (strncmp(flag, "--", 2) != 0)
-			return cau_fail(error, CAU_BAD_SYNTAX, flag, "flags begin with --");
+			return cau_fail(error, CAU_BAD_SYNTAX, flag,
+			                "is no flag: flags begin with --, and one value may follow each");
 		if (read_request(request, flag))
 			continue;
 		char name[64];
@@ -93,7 +100,7 @@ static cau_status read_flags(cau_config *config, cau_config_request *request, co
 			return cau_fail(error, CAU_NOT_FOUND, flag, "there is no such flag; see --help");
 		const char *text = equals ? equals + 1 : NULL;
 		if (!text && found && found->kind == SETTING_SWITCH)
-			text = "true";
+			text = i + 1 < count && is_switch_value(arguments[i + 1]) ? arguments[++i] : "true";
 		else if (!text && i + 1 < count)
 			text = arguments[++i];
 		if (!text)

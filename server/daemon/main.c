@@ -38,9 +38,11 @@ static int fail(const char *event, const cau_error *error)
 
 static void print_ready(const cau_config *config)
 {
-	printf("{\"address\": \"%s\", \"port\": %lld, \"url\": \"%s://%s:%lld/\", \"pid\": %d}\n",
+	bool bracketed = strchr(config->listen, ':') != NULL; // RFC 3986: an IPv6 address
+	printf("{\"address\": \"%s\", \"port\": %lld, \"url\": \"%s://%s%s%s:%lld/\", \"pid\": %d}\n",
 	       config->listen, (long long)config->port, *config->tls_certificate ? "https" : "http",
-	       config->listen, (long long)config->port, getpid());
+	       bracketed ? "[" : "", config->listen, bracketed ? "]" : "", (long long)config->port,
+	       getpid());
 	fflush(stdout);
 }
 

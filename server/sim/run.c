@@ -135,7 +135,9 @@ static cau_status create_session(run *r, cau_session **session)
 	def.scene = r->scene;
 	def.thread_count = r->options->threads;
 	cau_status status = cau_session_create(&def, session, r->error);
-	if (!status && r->options->csv)
+	if (status) // not of the script, which was read before
+		snprintf(r->error->file, sizeof r->error->file, "%s", r->options->scene);
+	else if (r->options->csv)
 		cau_session_set_clock(*session, now_s);
 	return status;
 }

@@ -5,8 +5,6 @@
 
 #include "transport_dds/checks.h"
 
-static const double unit_tolerance = 0.01; // of a quaternion's length: float32 on the way
-
 cau_status cau_motion_check_order(const cau_motion_past *past, uint64_t sequence,
                                   int64_t source_time_ns, int64_t now_ns, double now_s,
                                   double limit_s, cau_error *error)
@@ -42,7 +40,7 @@ cau_status cau_motion_check_pose(cau_pose *pose, double jaw, cau_error *error)
 	for (int i = 0; i < 4; i++)
 		squared += pose->rotation[i] * pose->rotation[i];
 	double length = sqrt(squared);
-	if (!(fabs(length - 1) <= unit_tolerance))
+	if (!(fabs(length - 1) <= CAU_UNIT_TOLERANCE))
 		return cau_fail(error, CAU_BAD_VALUE, "rotation", "is no unit quaternion: length %g",
 		                length);
 	if (!(jaw >= 0 && jaw <= 1))

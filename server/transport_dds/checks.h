@@ -32,7 +32,7 @@ cau_status cau_motion_check_order(const cau_motion_past *past, uint64_t sequence
                                   int64_t source_time_ns, int64_t now_ns, double now_s,
                                   double limit_s, cau_error *error);
 // Each coordinate lies within CAU_PLACE_MOST_M, as on WebSocket, and the jaw within 0 to 1. The
-// rotation is a unit quaternion within 1 %, and is then normalised.
+// rotation is a unit quaternion within CAU_UNIT_TOLERANCE, and is then normalised.
 cau_status cau_motion_check_pose(cau_pose *pose, double jaw, cau_error *error);
 // Not farther from the last pose than the tool's speed limits allow in the time since, and a grace.
 cau_status cau_motion_check_leap(const cau_motion_past *past, const cau_pose *pose, double now_s,

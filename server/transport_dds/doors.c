@@ -240,29 +240,58 @@ static dds_entity_t ros_topic(cau_dds *dds, const char *prefix, const char *name
 	return dds_create_topic(dds->participant, type, topic, NULL, NULL);
 }
 
-static void open_ros_writers(cau_dds *dds, uint32_t session, cau_dds_tool *tool, const char *prefix,
-                             const dds_qos_t *qos)
+typedef struct ros_outlet {
+	dds_entity_t *topic;
+	cau_dds_outlet *outlet;
+	const char *name;
+	const dds_topic_descriptor_t *type;
+} ros_outlet;
+
+typedef struct ros_door {
+	cau_door *door;
+	cau_door_kind kind;
+	const char *name;
+	const dds_topic_descriptor_t *type;
+} ros_door;
+
+// The beginning of the names of the tool's topics; false: another tool or session has it.
+static bool ros_prefix(const cau_dds_session *session, const cau_dds_tool *tool,
+                       char prefix[2 * CAU_NAME_BYTES])
 {
-	const struct {
-		dds_entity_t *topic;
-		cau_dds_outlet *outlet;
-		const char *name;
-		const dds_topic_descriptor_t *type;
-	} outlets[] = {
-		{&tool->pose_topic, &tool->pose, "measured_cp", &geometry_msgs_msg_dds__PoseStamped__desc},
-		{&tool->asked_topic, &tool->asked, "setpoint_cp",
-	     &geometry_msgs_msg_dds__PoseStamped__desc},
-		{&tool->force_topic, &tool->force, "measured_cf",
-	     &geometry_msgs_msg_dds__WrenchStamped__desc},
-		{&tool->jaw_topic, &tool->jaw, "jaw/measured_js", &sensor_msgs_msg_dds__JointState__desc},
-		{&tool->asked_jaw_topic, &tool->asked_jaw, "jaw/setpoint_js",
-	     &sensor_msgs_msg_dds__JointState__desc},
-	};
-	for (size_t i = 0; i < sizeof outlets / sizeof outlets[0]; i++) {
+	char name[CAU_NAME_BYTES];
+	if (!session->has_ros_name || !ros_tool_name(session, tool, name))
+		return false;
+	snprintf(prefix, 2 * (size_t)CAU_NAME_BYTES, "%.48s/%.48s", session->ros_name, name);
+	return true;
+}
+
+static void open_ros_outlets(cau_dds *dds, const cau_dds_session *session, const char *prefix,
+                             const ros_outlet *outlets, size_t count)
+{
+	dds_qos_t *qos = reliable_qos(ROS2_KEPT);
+	for (size_t i = 0; i < count; i++) {
 		*outlets[i].topic = ros_topic(dds, prefix, outlets[i].name, outlets[i].type);
-		cau_dds_open_outlet(dds, outlets[i].outlet, session, dds->publisher, *outlets[i].topic,
-		                    qos);
+		cau_dds_open_outlet(dds, outlets[i].outlet, cau_hosted_number(session->hosted),
+		                    dds->publisher, *outlets[i].topic, qos);
 	}
+	dds_delete_qos(qos);
+}
+
+static void open_ros_doors(cau_dds *dds, cau_dds_session *session, const cau_dds_tool *tool,
+                           const char *prefix, const ros_door *doors, size_t count)
+{
+	dds_qos_t *qos = reliable_qos(ROS2_KEPT);
+	for (size_t i = 0; i < count; i++) {
+		*doors[i].door = (cau_door){.kind = doors[i].kind, .session = session};
+		memcpy(doors[i].door->tool, tool->name, sizeof tool->name);
+		doors[i].door->topic = ros_topic(dds, prefix, doors[i].name, doors[i].type);
+		open_door(dds, doors[i].door, dds->subscriber, qos);
+	}
+	dds_delete_qos(qos);
+}
+
+static void open_operating(cau_dds *dds, cau_dds_tool *tool, const char *prefix)
+{
 	dds_qos_t *latched = reliable_qos(1); // late joiners want it, CRTK's clients ask for it
 	dds_qset_durability(latched, DDS_DURABILITY_TRANSIENT_LOCAL);
 	tool->operating_topic =
@@ -274,58 +303,85 @@ static void open_ros_writers(cau_dds *dds, uint32_t session, cau_dds_tool *tool,
 
 void cau_dds_open_tool(cau_dds *dds, cau_dds_session *session, cau_dds_tool *tool)
 {
-	char name[CAU_NAME_BYTES], prefix[2 * CAU_NAME_BYTES];
+	char prefix[2 * CAU_NAME_BYTES];
 	if (!session->has_ros_name)
 		return;
-	if (!ros_tool_name(session, tool, name)) {
+	if (!ros_prefix(session, tool, prefix)) {
 		cau_log(CAU_LOG_WARNING, cau_hosted_id(session->hosted), "dds_name_taken",
-		        "tool=%s name=%s reason=\"another tool has it: no ROS 2 topics\"", tool->name,
-		        name);
+		        "tool=%s reason=\"another tool has its ROS 2 name: no ROS 2 topics\"", tool->name);
 		return;
 	}
-	snprintf(prefix, sizeof prefix, "%.48s/%.48s", session->ros_name, name);
-	dds->ends_changed = true;
-	const struct {
-		cau_door *door;
-		cau_door_kind kind;
-		const char *name;
-		const dds_topic_descriptor_t *type;
-	} doors[] = {
+	const ros_door doors[] = {
 		{&tool->servo_cp, DOOR_SERVO_CP, "servo_cp", &geometry_msgs_msg_dds__PoseStamped__desc},
-		{&tool->servo_jp, DOOR_SERVO_JP, "jaw/servo_jp", &sensor_msgs_msg_dds__JointState__desc},
 		{&tool->energize, DOOR_ENERGIZE, "energize", &sensor_msgs_msg_dds__Joy__desc},
 		{&tool->state_command, DOOR_STATE_COMMAND, "state_command",
 	     &crtk_msgs_msg_dds__StringStamped__desc},
 	};
-	dds_qos_t *qos = reliable_qos(ROS2_KEPT);
-	for (size_t i = 0; i < sizeof doors / sizeof doors[0]; i++) {
-		*doors[i].door = (cau_door){.kind = doors[i].kind, .session = session};
-		memcpy(doors[i].door->tool, tool->name, sizeof tool->name);
-		doors[i].door->topic = ros_topic(dds, prefix, doors[i].name, doors[i].type);
-		open_door(dds, doors[i].door, dds->subscriber, qos);
+	const ros_outlet outlets[] = {
+		{&tool->pose_topic, &tool->pose, "measured_cp", &geometry_msgs_msg_dds__PoseStamped__desc},
+		{&tool->asked_topic, &tool->asked, "setpoint_cp",
+	     &geometry_msgs_msg_dds__PoseStamped__desc},
+		{&tool->force_topic, &tool->force, "measured_cf",
+	     &geometry_msgs_msg_dds__WrenchStamped__desc},
+	};
+	dds->ends_changed = true;
+	open_ros_doors(dds, session, tool, prefix, doors, sizeof doors / sizeof doors[0]);
+	open_ros_outlets(dds, session, prefix, outlets, sizeof outlets / sizeof outlets[0]);
+	open_operating(dds, tool, prefix);
+}
+
+static void delete_topics(dds_entity_t *const *topics, size_t count)
+{
+	for (size_t i = 0; i < count; i++) {
+		if (*topics[i] > 0)
+			dds_delete(*topics[i]);
+		*topics[i] = 0;
 	}
-	open_ros_writers(dds, cau_hosted_number(session->hosted), tool, prefix, qos);
-	dds_delete_qos(qos);
+}
+
+static void close_jaws(cau_dds *dds, cau_dds_tool *tool)
+{
+	dds_entity_t *const topics[] = {&tool->jaw_topic, &tool->asked_jaw_topic};
+	close_door(dds, &tool->loose_jp);
+	close_door(dds, &tool->servo_jp);
+	cau_dds_close_outlet(&tool->jaw);
+	cau_dds_close_outlet(&tool->asked_jaw);
+	delete_topics(topics, sizeof topics / sizeof topics[0]);
+}
+
+void cau_dds_follow_jaws(cau_dds *dds, cau_dds_session *session, cau_dds_tool *tool, bool has_jaws)
+{
+	char prefix[2 * CAU_NAME_BYTES];
+	const ros_door doors[] = {
+		{&tool->servo_jp, DOOR_SERVO_JP, "jaw/servo_jp", &sensor_msgs_msg_dds__JointState__desc}};
+	const ros_outlet outlets[] = {
+		{&tool->jaw_topic, &tool->jaw, "jaw/measured_js", &sensor_msgs_msg_dds__JointState__desc},
+		{&tool->asked_jaw_topic, &tool->asked_jaw, "jaw/setpoint_js",
+	     &sensor_msgs_msg_dds__JointState__desc},
+	};
+	if (has_jaws == (tool->servo_jp.reader > 0) || tool->servo_cp.reader <= 0)
+		return;
+	dds->ends_changed = true;
+	if (!has_jaws) {
+		close_jaws(dds, tool);
+	} else if (ros_prefix(session, tool, prefix)) {
+		open_ros_doors(dds, session, tool, prefix, doors, sizeof doors / sizeof doors[0]);
+		open_ros_outlets(dds, session, prefix, outlets, sizeof outlets / sizeof outlets[0]);
+	}
 }
 
 void cau_dds_close_tool(cau_dds *dds, cau_dds_tool *tool)
 {
+	close_jaws(dds, tool);
 	close_door(dds, &tool->loose_cp);
-	close_door(dds, &tool->loose_jp);
 	close_door(dds, &tool->servo_cp);
-	close_door(dds, &tool->servo_jp);
 	close_door(dds, &tool->energize);
 	close_door(dds, &tool->state_command);
 	cau_dds_close_outlet(&tool->pose);
 	cau_dds_close_outlet(&tool->asked);
 	cau_dds_close_outlet(&tool->force);
-	cau_dds_close_outlet(&tool->jaw);
-	cau_dds_close_outlet(&tool->asked_jaw);
-	const dds_entity_t made[] = {tool->operating_writer, tool->pose_topic, tool->asked_topic,
-	                             tool->force_topic,      tool->jaw_topic,  tool->asked_jaw_topic,
-	                             tool->operating_topic};
-	for (size_t i = 0; i < sizeof made / sizeof made[0]; i++)
-		if (made[i] > 0)
-			dds_delete(made[i]);
+	dds_entity_t *const made[] = {&tool->operating_writer, &tool->pose_topic, &tool->asked_topic,
+	                              &tool->force_topic, &tool->operating_topic};
+	delete_topics(made, sizeof made / sizeof made[0]);
 	*tool = (cau_dds_tool){0};
 }

@@ -346,6 +346,9 @@ cau_status cau_dds_open_control(cau_dds *dds, cau_error *error);
 cau_status cau_dds_open_session(cau_dds *dds, cau_dds_session *session);
 void cau_dds_close_session(cau_dds *dds, cau_dds_session *session);
 void cau_dds_open_tool(cau_dds *dds, cau_dds_session *session, cau_dds_tool *tool);
+// The topics jaw/..., which exist while the tool has jaws.
+void cau_dds_follow_jaws(cau_dds *dds, cau_dds_session *session, cau_dds_tool *tool, bool has_jaws);
+bool cau_dds_has_jaws(const cau_tool_state *state);
 void cau_dds_close_tool(cau_dds *dds, cau_dds_tool *tool);
 
 // A reader of best effort beside the door `reliable` of this tool.

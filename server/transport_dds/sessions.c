@@ -103,6 +103,11 @@ static void follow_tools(cau_dds *dds, cau_dds_session *session, const cau_hoste
 	for (int32_t i = 0; i < count; i++)
 		if (!cau_dds_find_tool(session, tools[i].state.name))
 			add_tool(dds, session, tools[i].state.name);
+	for (int32_t i = 0; i < count; i++) {
+		cau_dds_tool *known = cau_dds_find_tool(session, tools[i].state.name);
+		if (known)
+			cau_dds_follow_jaws(dds, session, known, cau_dds_has_jaws(&tools[i].state));
+	}
 	let_tools_in(session);
 }
 

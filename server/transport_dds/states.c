@@ -59,7 +59,7 @@ static void publish_grasp(const cau_dds_session *session, const cau_tool_state *
 	dds_write(session->grasp.writer, &sample);
 }
 
-static bool has_jaws(const cau_tool_state *state)
+bool cau_dds_has_jaws(const cau_tool_state *state)
 {
 #define X(code, word, hot, jaws, ...) jaws,
 	static const bool any[] = {CAU_TOOL_SHAPE_TABLE(X)};
@@ -166,7 +166,7 @@ void cau_dds_publish(cau_dds_session *session, const cau_hosted_tool *tools, int
 			publish_state(session, &tools[i], tick, time_s);
 		else
 			session->states_owed |= changed;
-		if (has_jaws(&tools[i].state)) {
+		if (cau_dds_has_jaws(&tools[i].state)) {
 			if (all || grasps || (changed && grasp_is_read))
 				publish_grasp(session, &tools[i].state, tick);
 			else

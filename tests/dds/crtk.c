@@ -57,10 +57,20 @@ void crtk_open(crtk *c, dds_entity_t participant, const char *session, const cha
 
 bool crtk_matched(const crtk *c)
 {
-	dds_publication_matched_status_t command, jaw;
+	dds_publication_matched_status_t command;
 	return !dds_get_publication_matched_status(c->command_writer, &command) &&
-	       !dds_get_publication_matched_status(c->jaw_writer, &jaw) && command.current_count > 0 &&
-	       jaw.current_count > 0 && c->states > 0 && c->poses > 0;
+	       command.current_count > 0 && c->states > 0 && c->poses > 0;
+}
+
+// Those of jaw/... that the daemon has at its end.
+static int count_jaw_topics(const crtk *c)
+{
+	dds_publication_matched_status_t asks;
+	dds_subscription_matched_status_t measured, asked;
+	checked(dds_get_publication_matched_status(c->jaw_writer, &asks));
+	checked(dds_get_subscription_matched_status(c->jaw_reader, &measured));
+	checked(dds_get_subscription_matched_status(c->asked_jaw_reader, &asked));
+	return (asks.current_count > 0) + (measured.current_count > 0) + (asked.current_count > 0);
 }
 
 static void take_state(void *user, const void *sample)
@@ -141,8 +151,8 @@ void crtk_tell(const crtk *c)
 {
 	printf("{\"event\":\"crtk\",\"state\":\"%s\",\"homed\":%s,\"busy\":%s,\"states\":%d,"
 	       "\"jaw_rad\":%.6f,\"asked_jaw_rad\":%.6f,\"jaw_nm\":%.6f,\"position_m\":[%.6f,%.6f,%.6f]"
-	       ",\"asked_m\":[%.6f,%.6f,%.6f]}\n",
+	       ",\"asked_m\":[%.6f,%.6f,%.6f],\"jaw_topics\":%d}\n",
 	       c->state, c->homed ? "true" : "false", c->busy ? "true" : "false", c->states, c->jaw_rad,
 	       c->asked_jaw_rad, c->jaw_nm, c->position_m[0], c->position_m[1], c->position_m[2],
-	       c->asked_m[0], c->asked_m[1], c->asked_m[2]);
+	       c->asked_m[0], c->asked_m[1], c->asked_m[2], count_jaw_topics(c));
 }

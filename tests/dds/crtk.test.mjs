@@ -16,8 +16,8 @@ before(async () => {
 });
 after(() => daemon.end());
 
-// A session with one grasper, and a ROS 2 controller that drives it.
-async function driven(t, name) {
+// A session with one grasper, and a ROS 2 controller that has found it.
+async function found(t, name) {
 	const client = await daemon.connect({ hello: { client: 'admin' } });
 	const definition = await smallScene(client);
 	Object.assign(definition.tools[0], { name: 'grasper', shape: 'grasper', jaw_open_rad: JAW_OPEN_RAD });
@@ -29,9 +29,16 @@ async function driven(t, name) {
 	});
 	const stream = await client.join(session);
 	const robot = await controller(session);
-	robot.tell('write on');
-	await robot.until((s) => s.driver_name.startsWith('ros '));
+	await robot.untilCrtk((c) => c.jaw_topics === 3);
 	return { client, session, stream, robot };
+}
+
+// The same, and the controller drives it.
+async function driven(t, name) {
+	const seen = await found(t, name);
+	seen.robot.tell('write on');
+	await seen.robot.until((s) => s.driver_name.startsWith('ros '));
+	return seen;
 }
 
 const controller = (session) => Controller.start({ domain: DOMAIN, session, tool: 'grasper', via: 'ros' });
@@ -167,6 +174,20 @@ test('a paused session is told as paused tools', async (t) => {
 	await robot.untilCrtk((c) => c.state === 'PAUSED');
 	await client.call('session.resume', { session });
 	await robot.untilCrtk((c) => c.state === 'ENABLED');
+});
+
+test('topics of the jaw are there while the tool has jaws', async (t) => {
+	const { client, session, robot } = await found(t, 'jaws');
+	const shape = (word) => client.call('tool.configure', { session, tool: 'grasper', shape: word });
+	await client.call('tool.take_over', { session, tool: 'grasper' });
+	await shape('hook');
+	await robot.untilCrtk((c) => c.jaw_topics === 0);
+	await shape('grasper');
+	await robot.untilCrtk((c) => c.jaw_topics === 3);
+	await shape('hook');
+	await robot.untilCrtk((c) => c.jaw_topics === 0);
+	const late = await controller(session);
+	assert.equal((await late.crtk()).jaw_topics, 0);
 });
 
 test('the jaw goes where servo_jp says, and measured_js, setpoint_js, measured_cp and setpoint_cp tell', async (t) => {

@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Pages, viewer files, tokens, and the program's own flags.
 import assert from 'node:assert/strict';
-import { spawnSync } from 'node:child_process';
+import { spawn, spawnSync } from 'node:child_process';
+import { once } from 'node:events';
 import { chmodSync, mkdirSync, mkdtempSync, rmSync, writeFileSync } from 'node:fs';
 import { tmpdir } from 'node:os';
 import { join } from 'node:path';
@@ -145,6 +146,17 @@ test('a port that is taken ends the daemon with the reason', () => {
 	const ended = run(['--port', String(daemon.port), '--store', join(folder, 'other.db'), '--scenes', process.env.SCENES]);
 	assert.equal(ended.status, 1);
 	assert.match(ended.stderr, /cannot listen/);
+});
+
+test('the address of an IPv6 daemon has brackets, and leads to it', async () => {
+	const started = spawn(process.env.CAUTERYD, ['--json', '--listen', '::1', '--port', '0', '--store', join(folder, 'six.db'),
+		'--scenes', process.env.SCENES], { stdio: ['ignore', 'pipe', 'ignore'] });
+	const [line] = await once(started.stdout, 'data');
+	const { url, address, port } = JSON.parse(line);
+	assert.deepEqual([url, address], [`http://[::1]:${port}/`, '::1']);
+	assert.equal((await fetch(`${url}healthz`)).status, 200);
+	started.kill();
+	await once(started, 'exit');
 });
 
 test('--help tells every setting', () => {

@@ -41,7 +41,8 @@ enum {
 
 // ---- ranges of vectors, of scripts and of forces; those of scalars are in the tables below ----
 // The parameter tables of protocol/json document these ranges, and the core enforces them.
-#define CAU_PLACE_MOST_M 100.0 // absolute value of each coordinate of a place or a displacement
+#define CAU_UNIT_TOLERANCE 1e-3 // of the length of a unit quaternion, on every way in
+#define CAU_PLACE_MOST_M 100.0  // absolute value of each coordinate of a place or a displacement
 #define CAU_GRAVITY_MOST_M_S2 100.0
 #define CAU_FORCE_MOST_N 1000.0 // absolute value of each component of an outer force on one vertex
 #define CAU_FIBRE_MOST 1e6

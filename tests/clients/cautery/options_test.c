@@ -51,6 +51,25 @@ static void words_and_options_are_told_apart(void **state)
 	free(r.said);
 }
 
+static void expect_said(const char *line, const char *said)
+{
+	reading r = read_line(line);
+	assert_false(r.read);
+	assert_string_equal(r.said, said);
+	free(r.said);
+}
+
+static void mistakes_are_told_with_what_is_right(void **state)
+{
+	(void)state;
+	expect_said("destroy d1-knee",
+	            "cautery: no command \"destroy\"; that is \"rm\" here. --help lists them\n");
+	expect_said("rewnd",
+	            "cautery: no command \"rewnd\"; did you mean \"rewind\"? --help lists them\n");
+	expect_said("step d1-knee 10",
+	            "cautery step: the arguments are: [SESSION]; options are --ticks N\n");
+}
+
 static void options_of_a_command_have_values(void **state)
 {
 	(void)state;
@@ -163,6 +182,7 @@ int main(void)
 {
 	const struct CMUnitTest tests[] = {
 		cmocka_unit_test(words_and_options_are_told_apart),
+		cmocka_unit_test(mistakes_are_told_with_what_is_right),
 		cmocka_unit_test(options_of_a_command_have_values),
 		cmocka_unit_test(mistakes_are_told),
 		cmocka_unit_test(commands_of_two_words_are_found),

@@ -53,6 +53,10 @@ static void flags_are_spelled_both_ways(void **state)
 	assert_int_equal(config.max_sessions, 7);
 	assert_true(config.checkpoint_s == 2.5);
 	assert_true(config.dds);
+	char *off[] = {"cauteryd", "--dds", "false", "--port", "81"};
+	assert_int_equal(load(&config, 5, off, no_environment, NULL), CAU_OK);
+	assert_false(config.dds);
+	assert_int_equal(config.port, 81);
 }
 
 static void environment_is_below_flags(void **state)

@@ -37,6 +37,22 @@ static void exit_codes_are_as_documented(void **state)
 	}
 }
 
+// What the core refuses of a scene is told with the scene's file, whatever script it was to run.
+static void a_bad_scene_is_told_with_its_file(void **state)
+{
+	(void)state;
+	char output[4096], arguments[600];
+	fixture_write(
+		fixture_path("bad.json"),
+		"{\"name\":\"bad\",\"meshes\":[{\"name\":\"m\",\"source\":\"sheet\",\"size_m\":[0.06,0.04],"
+		"\"cells\":[4,4]}],\"layers\":[{\"name\":\"a\",\"kind\":\"fascia\",\"mesh\":\"none\"}],"
+		"\"tools\":[{\"name\":\"hook\",\"shape\":\"hook\"}],"
+		"\"cut\":{\"tool\":\"hook\",\"from_m\":[0,0,0],\"to_m\":[0.01,0,0]}}");
+	snprintf(arguments, sizeof arguments, "--scene %s --cut --json", fixture_path("bad.json"));
+	assert_int_equal(run_program(arguments, output, sizeof output), 3);
+	assert_non_null(strstr(output, "bad.json\",\"path\":\"layers[0].mesh\""));
+}
+
 // A column's number by its name, or -1.
 static int column_of(const char *head, const char *name)
 {
@@ -175,6 +191,7 @@ int main(int argument_count, char **arguments)
 {
 	const struct CMUnitTest tests[] = {
 		cmocka_unit_test(exit_codes_are_as_documented),
+		cmocka_unit_test(a_bad_scene_is_told_with_its_file),
 		cmocka_unit_test(print_cut_prints_commands_of_the_scenes_tool),
 		cmocka_unit_test(files_change_nothing),
 		cmocka_unit_test(ticks_tell_energies_and_times),

@@ -96,7 +96,7 @@ static void poses_are_finite_and_rotations_unit(void **state)
 			*(part < 3 ? &pose.position_m[part] : &pose.rotation[part - 3]) = bad[i];
 			assert_int_equal(cau_motion_check_pose(&pose, 0.5, &error), CAU_BAD_VALUE);
 		}
-	cau_pose off = {{0, 0, 0}, {1.02, 0, 0, 0}}, near = {{0, 0, 0}, {0, 1.005, 0, 0}};
+	cau_pose off = {{0, 0, 0}, {1.002, 0, 0, 0}}, near = {{0, 0, 0}, {0, 1.0005, 0, 0}};
 	assert_int_equal(cau_motion_check_pose(&off, 0.5, &error), CAU_BAD_VALUE);
 	assert_int_equal(cau_motion_check_pose(&near, 0.5, &error), CAU_OK);
 	assert_true(near.rotation[1] == 1);
