@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // A small scene in which everything happens at once: fascia tied by links to a slab of fat in its
-// membrane, built-in tension, plasticity, bending, shrinkage, tearing, ignition drawn by seed, a
-// hook that cuts faster than downdates can follow, a grasper that pulls, gravity that turns.
+// membrane, built-in tension, plasticity, bending, shrinkage, ignition drawn by seed, a hook that
+// cuts faster than downdates can follow, a grasper that pulls, gravity that turns.
 #pragma once
 
 #include "core/session/stage.h"
@@ -12,7 +12,6 @@ static inline void busy_heat(cau_heat_material *heat)
 {
 	heat->absorption_per_s = 8; // parts within ticks instead of seconds
 	heat->ignition_spread_c = 10;
-	heat->tear_energy_j_m2 = 50;
 }
 
 static inline cau_scene_def *busy_scene(void)
@@ -46,6 +45,16 @@ static inline cau_scene_def *busy_scene(void)
 	stage_add_tool(scene, "hook", CAU_TOOL_HOOK, -0.025, 0, 0.03);
 	stage_add_tool(scene, "jaws", CAU_TOOL_GRASPER, 0.015, 0.004, 0.012);
 	return scene;
+}
+
+// Tissue tears as well, also after the commands have ended, so not every test wants it.
+static inline void busy_tear(cau_scene_def *scene)
+{
+	const double tear_j_m2 = 50;
+	for (int32_t i = 0; i < scene->layer_count; i++)
+		scene->layers[i].sheet[0].heat.tear_energy_j_m2 =
+			scene->layers[i].fat[0].heat.tear_energy_j_m2 =
+				scene->layers[i].link.heat.tear_energy_j_m2 = tear_j_m2;
 }
 
 // The commands of the tick that comes next: the same for every session at that tick.

@@ -8,6 +8,7 @@ static void the_hash_does_not_know_the_threads(void **state)
 {
 	(void)state;
 	cau_scene_def *scene = busy_scene();
+	busy_tear(scene);
 	cau_session *session[3];
 	for (int i = 0; i < 3; i++)
 		session[i] = stage_open(scene, i + 1);
@@ -28,6 +29,7 @@ static void threads_may_change_on_the_way(void **state)
 {
 	(void)state;
 	cau_scene_def *scene = busy_scene();
+	busy_tear(scene);
 	cau_session *steady = stage_open(scene, 1), *changing = stage_open(scene, 3);
 	for (int tick = 0; tick < 60; tick++) {
 		cau_session_set_threads(changing, 1 + tick % 4);
