@@ -7,7 +7,7 @@ exec </dev/null
 
 usage() {
 	cat <<'END'
-Usage: deploy/test.sh [--fast | --full | --long] [--no-install]
+Usage: deploy/test.sh [--fast | --full | --long | --campaign] [--no-install]
        deploy/test.sh --only REGEX [--preset NAME] [--no-install]
        deploy/test.sh --fleet [--no-install]
 
@@ -22,6 +22,8 @@ Usage: deploy/test.sh [--fast | --full | --long] [--no-install]
   --fleet       three daemons, etcd and HAProxy in network namespaces, 60 sessions, and what goes
                 wrong with them; ends in a table. As root; a minute. Exit code 77, and a word on why,
                 where the system allows no namespaces
+  --campaign    300 kills, 10,000 moves with faults, 20,000 energy sequences and 300 rounds of sessions
+                that come and go, at once; prints their figures (an hour; tests/README.md)
   --no-install  fail if a package of deploy/packages.txt is missing, instead of installing it
   --help        this text
 
@@ -39,11 +41,13 @@ level=default
 install=yes
 only=
 fleet=
+campaign=
 only_preset=release
 while [ $# -gt 0 ]; do
 	case $1 in
 	--fast | --full | --long) level=${1#--} ;;
 	--fleet) fleet=yes ;;
+	--campaign) campaign=yes ;;
 	--no-install) install=no ;;
 	--only | --preset)
 		if [ -z "${2:-}" ]; then
@@ -127,17 +131,33 @@ follow() {
 		python3 -u deploy/follow_tests.py "$logs"
 }
 
+# build_for PRESET REGEX CONFIGURE_ARGUMENTS...: what the tests with these names run, and nothing else.
+build_for() {
+	local preset=$1 regex=$2 tree programs
+	tree=$(tree_of "$preset")
+	heading "build in $tree what the tests '$regex' run"
+	configure "$preset" "${@:3}"
+	mapfile -t programs < <(python3 deploy/programs_of_tests.py "$tree" "$regex")
+	if [ ${#programs[@]} -gt 0 ]; then
+		watched "build-$preset" cmake --build "$tree" --target "${programs[@]}" --parallel "$jobs"
+	fi
+}
+
 # test_only: what --only says.
 test_only() {
-	local tree programs
-	tree=$(tree_of "$only_preset")
-	heading "build in $tree what the tests '$only' run"
-	configure "$only_preset"
-	mapfile -t programs < <(python3 deploy/programs_of_tests.py "$tree" "$only")
-	if [ ${#programs[@]} -gt 0 ]; then
-		watched "build-$only_preset" cmake --build "$tree" --target "${programs[@]}" --parallel "$jobs"
-	fi
-	follow --test-dir "$tree" -R "$only" --parallel "$jobs"
+	build_for "$only_preset" "$only"
+	follow --test-dir "$(tree_of "$only_preset")" -R "$only" --parallel "$jobs"
+	exit
+}
+
+# test_campaign: what --campaign says. Half of each test is waiting for disks and connections.
+test_campaign() {
+	local regex='^e2e_(kills|couriers_long|sequences_long|churn_long)$'
+	build_for release "$regex" -DCAUTERY_LONG=ON
+	follow --test-dir build -R "$regex" --parallel "$((2 * jobs))"
+	heading "figures"
+	grep '^ℹ' build/Testing/Temporary/LastTest.log |
+		grep -vE '^ℹ (tests|suites|pass|fail|cancelled|skipped|todo|duration_ms) '
 	exit
 }
 
@@ -197,6 +217,9 @@ if [ -n "$only" ]; then
 fi
 if [ -n "$fleet" ]; then
 	test_fleet
+fi
+if [ -n "$campaign" ]; then
+	test_campaign
 fi
 
 heading "configure (logs in build/log)"

@@ -32,6 +32,7 @@ import { saveReceived, sessionsPanel } from './panels/sessions';
 import { showPast } from './panels/past';
 import { makeTabs } from './panels/tabs';
 import { timeBar } from './panels/time';
+import { keepToken, takeToken } from './panels/invite';
 import { askForToken } from './panels/token';
 import { toolsPanel } from './panels/tools';
 import { showVeil } from './panels/veil';
@@ -106,7 +107,7 @@ const placeSaid = showSaid(model, viewport, pointer);
 showNotices(control);
 showReading(control);
 showHelp();
-operatePanel(control, hand, viewport, () => connect(lastToken), devicesSection(pedal, makeSpaceMouse));
+operatePanel(control, hand, viewport, { token: () => lastToken, rename: () => connect(lastToken) }, devicesSection(pedal, makeSpaceMouse));
 modeSwitch((mode) => {
   tabs.show(mode === 'research');
   if (mode === 'research') return;
@@ -163,7 +164,8 @@ showLink(control);
 const openToken = askForToken(model, connect);
 showVeil(control, viewport, openToken);
 keepFleet(model, clientWords(__VIEWER_VERSION__), () => lastToken);
-connect();
+keepToken(model, () => lastToken);
+connect(takeToken());
 
 const sizes = new ResizeObserver(() => viewport.resize());
 sizes.observe(viewport.canvas);

@@ -152,7 +152,7 @@ describe('manners', () => {
     await viewer.close();
   });
 
-  it.each([['a desktop', { viewport: { width: 1280, height: 800 } }], ['a phone', PHONE]])('holds text twice as large on %s', async (_name, options) => {
+  it.each([['a desktop', { viewport: { width: 1280, height: 800 } }], ['a small window', { viewport: { width: 1000, height: 620 } }], ['a phone', PHONE]])('holds text twice as large on %s', async (_name, options) => {
     const viewer = await stage.openFirst(options);
     const session = await viewer.page.context().newCDPSession(viewer.page);
     await session.send('Page.setFontSizes', { fontSizes: { standard: 32 } });
@@ -166,6 +166,12 @@ describe('manners', () => {
           .map((one) => one.outerHTML.slice(0, 90)),
       );
       expect(clipped, mode).toEqual([]);
+      const outside = await viewer.page.evaluate(() =>
+        [...document.querySelectorAll<HTMLElement>('.bar button, .time button')]
+          .filter((one) => one.checkVisibility() && (one.getBoundingClientRect().right > window.innerWidth || one.getBoundingClientRect().bottom > document.documentElement.scrollHeight))
+          .map((one) => one.outerHTML.slice(0, 90)),
+      );
+      expect(outside, mode).toEqual([]);
       expect(await viewer.page.evaluate(() => document.documentElement.scrollWidth - window.innerWidth), mode).toBeLessThanOrEqual(0);
     }
     await viewer.screenshot(`text-200-${_name.replace('a ', '')}`);
@@ -191,9 +197,12 @@ describe('manners', () => {
     await viewer.close();
   });
 
-  it('reaches every control by Tab', async () => {
+  it('reaches every control by Tab, and hits each slider', async () => {
     const viewer = await stage.open();
     await viewer.live('d1-layers');
+    const low = await viewer.page.evaluate(() =>
+      [...document.querySelectorAll('input[type=range]')].filter((one) => one.checkVisibility() && one.getBoundingClientRect().height < 24).map((one) => one.outerHTML.slice(0, 90)));
+    expect(low).toEqual([]); // WCAG 2.2, 2.5.8
     for (const tab of TABS) {
       await viewer.page.getByRole('tab', { name: tab }).click();
       await openAll(viewer);

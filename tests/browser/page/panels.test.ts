@@ -30,7 +30,10 @@ describe('panels', () => {
     await page.getByLabel('Name of the fork').fill('');
     await page.getByRole('tab', { name: 'Tools' }).click();
     expect(await page.getByLabel('Hot radius').inputValue()).toBe('3');
-    expect(await page.getByLabel('Jaw open').inputValue()).toBe('34.3774677');
+    await page.locator('#panel-tools form select[name=shape]').first().selectOption('grasper');
+    expect(await page.getByLabel('Jaw open').inputValue()).toBe('34.377');
+    await page.locator('#panel-tools form select[name=shape]').first().selectOption('hook');
+    expect(await page.getByLabel('Jaw open').isVisible()).toBe(false);
     expect(await page.locator('#panel-tools').getByText('mm/s').count()).toBe(1);
     await page.getByRole('tab', { name: 'Sessions' }).click();
   });

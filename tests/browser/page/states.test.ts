@@ -27,6 +27,17 @@ describe('a picture that is not live', () => {
   const stage = new Stage(['--demo', 'fascia']);
 
 
+  it('is covered until tissue is drawn', async () => {
+    const viewer = await stage.openFirst();
+    await veil(viewer, 'Opening d1-fascia');
+    await unveiled(viewer);
+    const early = await viewer.coloursAt([[0.02, 0.02, 0]]);
+    await viewer.live('d1-fascia');
+    const [[r, g, b]] = await viewer.coloursAt([[0.02, 0.02, 0]]);
+    expect(Math.hypot(r - early[0][0], g - early[0][1], b - early[0][2])).toBeLessThan(30);
+    await viewer.close();
+  });
+
   it('without WebGL says so, and everything else works', async () => {
     const viewer = await stage.openFirst();
     await viewer.page.addInitScript(withoutWebGl);
@@ -139,6 +150,30 @@ describe('a daemon with tokens', () => {
     await page.getByRole('button', { name: 'Connect' }).click();
     await viewer.live('d1-fascia');
     expect(await page.locator('dialog[open]').count()).toBe(0);
+  });
+
+  it('asks once in a tab, and never with a link that holds the token', async () => {
+    const { page } = viewer;
+    await page.reload();
+    await viewer.live('d1-fascia');
+    expect(await page.locator('#token[open]').count()).toBe(0);
+    await page.getByRole('button', { name: 'Operate' }).click();
+    expect(await page.locator('#operate').getByText('With your access you can watch').count()).toBe(1);
+    await page.getByRole('button', { name: 'Invite others' }).click();
+    const link = await page.getByLabel('Link to this session').inputValue();
+    expect(link).toMatch(/\?session=d1-fascia#token=only-looking-0123456789abcdef$/);
+    expect(await page.locator('#invite .code').isVisible()).toBe(true);
+    await viewer.screenshot('invite');
+    await page.getByRole('button', { name: 'Close' }).click();
+    const guest = await ViewerPage.openFirst(stage.browser, link);
+    await guest.live('d1-fascia');
+    expect(guest.page.url()).not.toContain('token');
+    await guest.close();
+    const stranger = await stage.openFirst();
+    await stranger.page.locator('#token input[type=password]').waitFor();
+    expect(await stranger.page.locator('#link').textContent()).toBe('An access token is needed');
+    expect(await stranger.page.locator('#token .problem').isVisible()).toBe(false);
+    await stranger.close();
   });
 
   it('a client that may only view sees so where it presses', async () => {

@@ -93,6 +93,7 @@ export class ViewerPage {
   async live(session: string): Promise<void> {
     await this.until((wanted) => window.cautery.session === wanted && window.cautery.tick > 0, session, `${session} is live`);
     await this.drawn();
+    await this.until(() => document.querySelector('#veil')?.checkVisibility() === false, null, 'the picture is uncovered');
   }
 
   /** The newest frame is in the picture. */

@@ -3,12 +3,17 @@
 
 export const NAME_RULE = 'A name begins with a small letter and goes on with small letters and digits, with single - or _ between them, as in knee-2';
 const EXPRESSION = '[a-z]'; // the daemon's own rule for names
-const UNIT = /_(m_s|m2_s|m2|m|c|pa|rad_s|rad|per_s|n_m|ns_m|n|nm|kg_m3|s)$/;
+const UNIT = /_(j_m2|j|m_s|m2_s|m2|m|c|pa|rad_s|rad|per_s|n_m|ns_m|n|nm|kg_m3|s)$/;
 
 /** "hot_radius_m" as people say it: "Hot radius". */
 export function memberWords(name: string): string {
   const bare = name.replace(UNIT, '');
   return bare.charAt(0).toUpperCase() + bare.slice(1).replaceAll('_', ' ');
+}
+
+/** "J/m^2" as people write it: "J/m²". */
+export function unitText(unit: string): string {
+  return unit.replace('^2', '²').replace('^3', '³');
 }
 
 /** With a capital at its beginning and a stop at its end. */

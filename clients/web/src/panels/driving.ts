@@ -2,11 +2,12 @@
 // Who drives the chosen tool, and taking it, asking for it, letting it go.
 import type { Control } from '../model/control';
 import { nameOf } from '../model/person';
+import { ask } from './ask';
 import { attempt, button, element } from './dom';
 
 function driverWords(control: Control, tool: string): string {
   const driver = control.model.drivers.get(tool);
-  if (!driver || driver.client === 0) return `The ${tool} is free: use it, and it is yours.`;
+  if (!driver || driver.client === 0) return control.model.mayOperate ? `The ${tool} is free: use it, and it is yours.` : `The ${tool} is free. With your access you can watch.`;
   if (driver.client === control.model.hello?.client) return `You use the ${tool}.`;
   return `${nameOf(driver)} uses the ${tool}.`;
 }
@@ -15,9 +16,15 @@ export function drivingButtons(control: Control, problem: HTMLElement): { place:
   const { model } = control;
   const said = element('p', { class: 'about', aria: { role: 'status' } });
   const chosen = (): string => model.selectedTool ?? '';
-  const take = button('Take the tool', () => void attempt(problem, () => control.takeOver(chosen()), take), { class: 'take' });
-  const ask = button('Ask its driver', () => {
-    void attempt(problem, () => control.ask(chosen()), ask).then((done) => {
+  const take = button('Take the tool', () => {
+    const driver = model.drivers.get(chosen());
+    const asked = driver && driver.client !== 0 ? ask(`Take the ${chosen()} from ${nameOf(driver)}?`, 'Its energy goes off, and it no longer follows its driver.', 'Take it') : Promise.resolve(true);
+    void asked.then((sure) => {
+      if (sure) void attempt(problem, () => control.takeOver(chosen()), take);
+    });
+  }, { class: 'take' });
+  const request = button('Ask its driver', () => {
+    void attempt(problem, () => control.ask(chosen()), request).then((done) => {
       if (done !== null) said.textContent = 'Asked. The driver may hand it over.';
     });
   });
@@ -27,9 +34,9 @@ export function drivingButtons(control: Control, problem: HTMLElement): { place:
     const others = driver !== undefined && driver.client !== 0 && !model.driving;
     said.textContent = model.tool ? driverWords(control, model.tool.name) : 'This session has no tools.';
     take.hidden = model.driving || (others && model.hello?.role !== 'admin');
-    ask.hidden = !others;
+    request.hidden = !others;
     give.hidden = !model.driving;
-    for (const one of [take, ask, give]) one.disabled = !model.mayOperate || !model.tool;
+    for (const one of [take, request, give]) one.disabled = !model.mayOperate || !model.tool;
   };
-  return { place: element('div', {}, said, element('div', { class: 'buttons' }, take, ask, give)), refresh };
+  return { place: element('div', {}, said, element('div', { class: 'buttons' }, take, request, give)), refresh };
 }

@@ -9,6 +9,7 @@ import { PARAMETERS } from '../wire/messages.gen';
 import { cameraButtons } from './camera';
 import { attempt, byId, element, field, problemPlace } from './dom';
 import { drivingButtons } from './driving';
+import { inviteButton } from './invite';
 
 const POWER_LEAST_C = 60;
 const POWER_MOST_C = 400; // a spark's heat is beyond what tissue shows
@@ -62,19 +63,25 @@ function power(control: Control, hand: ToolHand, problem: HTMLElement): HTMLElem
   return section;
 }
 
-function person(control: Control, rename: () => void): HTMLElement {
+/** This client, as the daemon knows it. */
+export interface Self {
+  token: () => string | undefined;
+  rename: () => void;
+}
+
+function person(control: Control, self: Self): HTMLElement {
   const name = element('input', { name: 'person', value: ownName(), maxLength: NAME_MAX, autocomplete: 'off' });
   name.addEventListener('change', () => {
     setOwnName(name.value);
     name.value = ownName();
-    rename();
+    self.rename();
   });
   const others = element('p', { class: 'about' });
   control.model.on('tools', () => {
     const named = [...control.model.drivers.values()].filter(({ client, tool }) => client !== 0 && !control.model.drives(tool));
     others.textContent = named.map((driver) => `${nameOf(driver)} uses the ${driver.tool}.`).join(' ');
   });
-  return element('section', { aria: { label: 'You' } }, element('h2', {}, 'You'), field('Your name', name, '', 'as others in the session see it'), others);
+  return element('section', { aria: { label: 'You' } }, element('h2', {}, 'You'), field('Your name', name, '', 'as others in the session see it'), others, element('div', { class: 'buttons' }, inviteButton(control.model, self.token)));
 }
 
 function session(control: Control): HTMLElement {
@@ -91,8 +98,8 @@ function session(control: Control): HTMLElement {
   return section;
 }
 
-export function operatePanel(control: Control, hand: ToolHand, viewport: Viewport, rename: () => void, devices: HTMLElement): void {
+export function operatePanel(control: Control, hand: ToolHand, viewport: Viewport, self: Self, devices: HTMLElement): void {
   const problem = problemPlace();
-  byId('operate').append(problem, session(control), instrument(control, problem), power(control, hand, problem), element('section', { aria: { label: 'Camera' } }, element('h2', {}, 'Camera'), cameraButtons(viewport)), person(control, rename), devices);
+  byId('operate').append(problem, session(control), instrument(control, problem), power(control, hand, problem), element('section', { aria: { label: 'Camera' } }, element('h2', {}, 'Camera'), cameraButtons(viewport)), person(control, self), devices);
   control.model.emit('tools', undefined);
 }

@@ -20,7 +20,7 @@ function linkWords(link: LinkState): string {
     case 'lost':
       return `No connection: ${link.words}. Trying again.`;
     case 'refused':
-      return link.words;
+      return link.status === 'unauthorized' ? 'An access token is needed' : link.words;
   }
 }
 

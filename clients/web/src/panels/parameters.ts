@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Numbers of a table as inputs with unit, range and meaning.
-import { memberWords } from '../model/sentences';
+import { memberWords, unitText } from '../model/sentences';
 import type { Parameter } from '../wire/messages.gen';
 import { element, field, short } from './dom';
 
@@ -10,6 +10,8 @@ export interface ParameterInputs {
   read(): Record<string, number>;
   /** what is in force; a number that somebody has typed and not applied yet stays */
   show(values: Readonly<Record<string, unknown>>): void;
+  /** those that make no sense for what is shown are hidden, and keep their values */
+  offer(makesSense: (name: string) => boolean): void;
   /** forgets what was typed */
   clear(): void;
 }
@@ -33,34 +35,43 @@ const SHOWN: Readonly<Record<string, Shown>> = {
   '1': { unit: '', scale: 1 },
 };
 const DIGITS = 9; // what a number keeps there and back: more than anybody types
+const SHOWN_DIGITS = 5; // of a number that nobody has changed: it is not rounded where it is applied
 
 const rounded = (value: number): number => Number(value.toPrecision(DIGITS));
 
 export function parameterInputs(parameters: readonly Parameter[]): ParameterInputs {
   const inputs = parameters.map((parameter) => {
-    const { unit, scale } = SHOWN[parameter.unit] ?? { unit: parameter.unit, scale: 1 };
+    const { unit, scale } = SHOWN[parameter.unit] ?? { unit: unitText(parameter.unit), scale: 1 };
     const [least, most] = [rounded(parameter.least * scale), rounded(parameter.most * scale)];
     const input = element('input', { type: 'number', name: parameter.name, min: String(least), max: String(most), step: 'any' });
     const title = `${parameter.meaning}; ${short(least)} to ${short(most)}`;
-    return { parameter, scale, unit, least, most, input, label: field(memberWords(parameter.name), input, unit, title), shown: '' };
+    return { parameter, scale, unit, least, most, input, label: field(memberWords(parameter.name), input, unit, title), shown: '', exact: 0 };
   });
   return {
     fields: inputs.map(({ label }) => label),
     show(values) {
       for (const one of inputs) {
         const value = values[one.parameter.name];
-        const next = String(rounded(one.scale * (typeof value === 'number' ? value : one.parameter.default)));
+        one.exact = typeof value === 'number' ? value : one.parameter.default;
+        const next = String(Number((one.scale * one.exact).toPrecision(SHOWN_DIGITS)));
         if (one.input.value === one.shown) one.input.value = next;
         one.shown = next;
       }
+    },
+    offer(makesSense) {
+      for (const { parameter, label } of inputs) label.hidden = !makesSense(parameter.name);
     },
     clear() {
       for (const one of inputs) one.input.value = one.shown = '';
     },
     read() {
       const values: Record<string, number> = {};
-      for (const { parameter, scale, unit, least, most, input } of inputs) {
+      for (const { parameter, scale, unit, least, most, input, shown, exact } of inputs) {
         const value = input.valueAsNumber;
+        if (input.value === shown) {
+          values[parameter.name] = exact;
+          continue;
+        }
         if (!(value >= least && value <= most))
           throw new Error(`${memberWords(parameter.name)} (${parameter.meaning}) must be from ${short(least)} to ${short(most)} ${unit}`.trimEnd());
         values[parameter.name] = Math.min(Math.max(value / scale, parameter.least), parameter.most);

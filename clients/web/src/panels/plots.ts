@@ -64,8 +64,8 @@ export function plotsPanel(model: Model): Panel {
     });
     const seconds = last.atS - (recent[0]?.atS ?? last.atS);
     const bytes = recent.reduce((sum, sample) => sum + sample.bytes, 0);
-    const rate = seconds > 0 ? `${(recent.length / seconds).toFixed(0)} frames/s, ${(bytes / seconds / 1000).toFixed(0)} KB/s` : '';
-    counts.value = `${rate}; ${model.frame?.framesSkipped ?? 0} skipped`;
+    const rate = seconds > 0 ? [`${(recent.length / seconds).toFixed(0)} frames/s`, `${(bytes / seconds / 1000).toFixed(0)} KB/s`] : ['no frames in this time'];
+    counts.value = [...rate, `${model.frame?.framesSkipped ?? 0} skipped`].join(', ');
   };
   setInterval(draw, DRAW_MS);
   new ResizeObserver(() => {

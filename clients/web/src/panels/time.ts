@@ -1,23 +1,13 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Time: pause, step, speed, and the timeline with its events, along which a session goes back.
 import type { Control } from '../model/control';
+import { EVENT_WORDS, momentsOf } from '../model/moments';
 import type { TimelineEvent } from '../wire/messages.gen';
 import { ask } from './ask';
 import { attempt, button, byId, element, problemPlace } from './dom';
 
 const SPEEDS = [0.1, 0.25, 0.5, 1, 2];
 const REFRESH_MS = 2000;
-const EVENT_WORDS: Partial<Record<TimelineEvent['kind'], string>> = {
-  cut: 'cut',
-  tear: 'tear',
-  energy_on: 'energy on',
-  energy_off: 'energy off',
-  watchdog: 'watchdog',
-  fault: 'fault',
-  snapshot: 'snapshot',
-  rewind: 'rewind',
-  reset: 'reset',
-};
 
 const research = (): boolean => document.body.dataset['mode'] === 'research';
 
@@ -37,13 +27,13 @@ function marks(events: readonly TimelineEvent[], least: number, most: number): S
   return svg;
 }
 
-/** "3.20 s: cut, hook" for each event, the newest first. */
+/** What happened, to choose from. */
 function nameMoments(place: HTMLSelectElement, events: readonly TimelineEvent[], seconds: (tick: number) => string): void {
+  const last = String(events.at(-1)?.tick);
   place.hidden = events.length === 0;
-  if (place.options.length === events.length + 1 && place.dataset['last'] === String(events.at(-1)?.tick)) return;
-  place.dataset['last'] = String(events.at(-1)?.tick);
-  const options = [...events].reverse().map(({ kind, tick, tool }) =>
-    element('option', { value: String(tick) }, `${seconds(tick)}: ${EVENT_WORDS[kind] ?? kind}${tool === undefined || tool === '' ? '' : `, ${tool}`}`));
+  if (place.dataset['last'] === last && place.dataset['count'] === String(events.length)) return;
+  Object.assign(place.dataset, { last, count: String(events.length) });
+  const options = momentsOf(events, seconds).map(({ tick, words }) => element('option', { value: String(tick) }, words));
   place.replaceChildren(element('option', { value: '', disabled: true, selected: true }, 'What happened'), ...options);
 }
 

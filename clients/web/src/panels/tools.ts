@@ -2,6 +2,7 @@
 // Tools: which one the hand holds, who drives it, its shape and sizes, new ones.
 import type { ToolHand } from '../hands/tool_hand';
 import type { Control } from '../model/control';
+import { hasHeat, hasJaws } from '../model/tool_parts';
 import { PARAMETERS, TOOL_SHAPES, type Tool } from '../wire/messages.gen';
 import { ask } from './ask';
 import { attempt, button, element, field, problemPlace, short } from './dom';
@@ -11,6 +12,8 @@ import { parameterInputs } from './parameters';
 import type { Panel } from './tabs';
 
 const SHOWN = ['temperature_c', 'hot_radius_m', 'tip_length_m', 'shaft_radius_m', 'jaw_open_rad', 'max_speed_m_s', 'friction'];
+const OF_JAWS = ['jaw_open_rad'];
+const OF_HEAT = ['temperature_c', 'hot_radius_m'];
 const LEAST_FORCE_N = 1e-4; // below it a hand feels nothing
 const OFF_WORDS = {
   never_enabled: 'off',
@@ -36,6 +39,11 @@ function editForm(control: Control, problem: HTMLElement): { form: HTMLElement; 
     });
   });
   const form = element('form', { class: 'form' }, field('Shape', shape), ...sizes.fields, element('div', { class: 'buttons' }, apply, remove));
+  const offer = (): void => {
+    const wanted = shape.value as Tool['shape'];
+    sizes.offer((name) => (OF_JAWS.includes(name) ? hasJaws(wanted) : !OF_HEAT.includes(name) || hasHeat(wanted)));
+  };
+  shape.addEventListener('change', offer);
   let shown: Tool | null = null;
   const forget = (): void => {
     shown = null;
@@ -60,6 +68,7 @@ function editForm(control: Control, problem: HTMLElement): { form: HTMLElement; 
     if (tool.name !== shown?.name) forget();
     if (tool.shape !== shown?.shape) shape.value = tool.shape;
     sizes.show({ ...tool });
+    offer();
     shown = tool;
   };
   return { form, refresh };

@@ -49,6 +49,10 @@ export function showVeil(control: Control, viewport: Viewport, enterToken: () =>
   const action = button('', () => undefined);
   place.append(element('div', { class: 'veil-card' }, words, bar, action));
   let framedAt = performance.now();
+  let joinedAt = framedAt;
+  let everShown = false; // an empty picture is never bare
+  // In a page that nobody sees, nothing is drawn.
+  const shows = (session: string): boolean => viewport.shown.session === session || document.hidden;
   let busySince: number | null = null;
 
   const waiting = (): Veil | null => {
@@ -59,7 +63,11 @@ export function showVeil(control: Control, viewport: Viewport, enterToken: () =>
     if (model.link.state !== 'online') return null;
     if (model.session === null) return { words: 'No session is open. Create one under Research > Sessions > New session.', busy: false };
     if (model.summary?.state === 'starting') return { words: `${model.session} is being built…`, busy: true };
-    if (model.frame?.session !== model.session) return now - framedAt < QUICK_MS ? null : { words: `Opening ${model.session}…`, busy: true };
+    if (model.frame?.session !== model.session || !shows(model.session)) {
+      const quick = everShown && now - joinedAt < QUICK_MS;
+      return quick ? null : { words: `Opening ${model.session}…`, busy: true };
+    }
+    everShown = true;
     if (model.frame.paused || model.frame.faulted || document.hidden || now - framedAt < SILENT_MS) return null;
     return { words: `Nothing new from the simulation for ${((now - framedAt) / 1000).toFixed(0)} s. What you see is from before.`, busy: true };
   };
@@ -75,7 +83,8 @@ export function showVeil(control: Control, viewport: Viewport, enterToken: () =>
     action.onclick = veil.action.press;
   };
   model.on('frame', () => (framedAt = performance.now()));
-  model.on('joined', () => (framedAt = performance.now()));
+  model.on('joined', () => (framedAt = joinedAt = performance.now()));
   model.on('link', show);
+  show();
   setInterval(show, LOOK_MS);
 }

@@ -13,6 +13,7 @@ import { framedPoints } from './framing';
 import { Orbit, type CameraPose } from './orbit';
 import { Pace } from './pace';
 import { placeShadows } from './shadows';
+import { Shown } from './shown';
 import { Smoke } from './smoke';
 import { makeSharedUniforms, mapTexture, TissueView } from './tissue_view';
 import { ToolViews } from './tool_views';
@@ -51,10 +52,13 @@ export class Viewport {
   private readonly renderer: WebGLRenderer | null;
   tissue: TissueView | null = null;
   picturesDrawn = 0;
+  readonly shown = new Shown();
+  private taken = false; // a frame of the session has come
   readonly pace: Pace | null;
   private contextLost = false;
   /** of moving pictures, from pace */
   private scale = 1;
+  private rescale = false; // where the next picture is drawn: that clears the canvas
   /** the picture shown is in full although moving ones are not */
   private sharp = false;
   private changedAt = 0;
@@ -86,9 +90,13 @@ export class Viewport {
     this.renderer = makeRenderer(canvas);
     this.pace = this.renderer && new Pace(this.renderer.getContext() as WebGL2RenderingContext, (scale) => {
       this.scale = scale;
-      this.resize();
+      this.rescale = true;
+      this.invalidate();
     });
-    canvas.addEventListener('webglcontextlost', () => (this.contextLost = true));
+    canvas.addEventListener('webglcontextlost', () => {
+      this.contextLost = true;
+      this.shown.lose();
+    });
     canvas.addEventListener('webglcontextrestored', () => {
       this.contextLost = false;
       this.pace?.reset();
@@ -122,6 +130,7 @@ export class Viewport {
       this.tissue.dispose();
       this.tissue = null;
     }
+    this.taken = false;
     this.setTools([]);
     this.field.place(joined?.surroundings ?? null);
     if (joined) {
@@ -148,6 +157,7 @@ export class Viewport {
   /** Draws a frame next; returns arrays to give back. */
   takeFrame(frame: Frame): FrameBuffers | null {
     this.states = frame.past?.tools ?? frame.tools;
+    this.taken = this.tissue !== null;
     if (!this.framed && this.tissue) {
       this.frameTissue();
       if (this.wantedPose) this.orbit.restore(this.wantedPose);
@@ -200,17 +210,17 @@ export class Viewport {
   /** Draws if anything changed; called once per animation frame. */
   draw(): void {
     const now = performance.now();
-    const seconds = Math.min((now - this.lastDrawn) / 1000, 0.1);
-    if (this.smoke.advance(seconds, this.smoking())) this.dirty = true;
+    if (this.smoke.advance(Math.min((now - this.lastDrawn) / 1000, 0.1), this.smoking())) this.dirty = true;
     this.lastDrawn = now;
     if (!this.pace || this.contextLost || !this.pace.ready()) return;
+    this.shown.make();
     if (!this.dirty) {
       this.sharpen(now);
       return;
     }
     this.dirty = false;
     this.changedAt = now;
-    if (this.sharp) this.setScale(this.scale);
+    if (this.sharp || this.rescale) this.setScale(this.scale);
     this.render();
     this.pace.drawn(now);
   }
@@ -232,6 +242,7 @@ export class Viewport {
     this.placeLamp();
     this.placeArrow();
     this.renderer?.render(this.scene, this.orbit.camera);
+    this.shown.ask(this.taken ? this.session : null);
     this.picturesDrawn++;
   }
 
@@ -240,7 +251,7 @@ export class Viewport {
     this.renderer?.setPixelRatio(Math.min(window.devicePixelRatio, 2) * scale);
     this.renderer?.setSize(clientWidth, clientHeight, false);
     this.smoke.resize(this.canvas.height);
-    this.sharp = false;
+    this.sharp = this.rescale = false;
   }
 
   /** milliseconds that the last picture took to be there */

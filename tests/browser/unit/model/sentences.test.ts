@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-import { errorWords, memberWords, meshWords, sentence } from '../../../../clients/web/src/model/sentences';
+import { errorWords, memberWords, meshWords, sentence, unitText } from '../../../../clients/web/src/model/sentences';
 import { nameOf } from '../../../../clients/web/src/model/person';
 import { cameraText, readCamera } from '../../../../clients/web/src/panels/address';
+import { PARAMETERS } from '../../../../clients/web/src/wire/messages.gen';
 import { RpcError } from '../../../../clients/web/src/wire/connection';
 
 describe('errors for people', () => {
@@ -15,6 +16,12 @@ describe('errors for people', () => {
     const refused = new RpcError('bad_params', 'Invalid params', 'params.layers[2].young_modulus_pa', 'must be positive');
     expect(errorWords(refused)).toBe('Young modulus: must be positive.');
     expect(memberWords('hot_radius_m')).toBe('Hot radius');
+  });
+
+  it('have no unit left in the name of a number, nor a caret in its unit', () => {
+    const all = Object.values(PARAMETERS).flat();
+    const left = all.filter(({ name, unit }) => / [a-z]{1,2}\d?$| per s$|_/.test(memberWords(name)) || unitText(unit).includes('^'));
+    expect(left.map(({ name }) => memberWords(name))).toEqual([]);
   });
 
   it('show no rule of a program', () => {

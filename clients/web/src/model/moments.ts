@@ -1,0 +1,37 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// The events of a timeline as people would list them: what goes on without anything else between is one line.
+import type { TimelineEvent } from '../wire/messages.gen';
+
+export const EVENT_WORDS: Partial<Record<TimelineEvent['kind'], string>> = {
+  cut: 'cut',
+  tear: 'tear',
+  energy_on: 'energy on',
+  energy_off: 'energy off',
+  watchdog: 'watchdog',
+  fault: 'fault',
+  snapshot: 'snapshot',
+  rewind: 'rewind',
+  reset: 'reset',
+};
+const GOES_ON: readonly TimelineEvent['kind'][] = ['cut', 'tear'];
+
+export interface Moment {
+  /** of the first of its events */
+  tick: number;
+  words: string;
+}
+
+/** "3.20 s: energy on, hook" and "3.50 to 7.90 s: cut, hook", the newest first. */
+export function momentsOf(events: readonly TimelineEvent[], seconds: (tick: number) => string): Moment[] {
+  const found: { first: TimelineEvent; last: TimelineEvent }[] = [];
+  for (const event of events) {
+    const before = found.at(-1);
+    const goesOn = before !== undefined && GOES_ON.includes(event.kind) && before.first.kind === event.kind && before.first.tool === event.tool;
+    if (goesOn) before.last = event;
+    else found.push({ first: event, last: event });
+  }
+  return found.reverse().map(({ first: { kind, tick, tool }, last }) => {
+    const when = last.tick === tick ? seconds(tick) : `${seconds(tick).replace(/ s$/, '')} to ${seconds(last.tick)}`;
+    return { tick, words: `${when}: ${EVENT_WORDS[kind] ?? kind}${tool === undefined || tool === '' ? '' : `, ${tool}`}` };
+  });
+}

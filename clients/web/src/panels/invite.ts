@@ -1,0 +1,70 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Inviting others, and the access token of this tab. A link carries the token in its fragment, which no browser sends
+// to a server. The page takes it from the address at once, and keeps it in this tab alone, so that it asks once.
+import { encode } from 'uqr';
+
+import type { Model } from '../model/model';
+import { button, element } from './dom';
+
+const FRAGMENT = /^#token=(.+)$/;
+const KEPT = 'token';
+const EDGE = 2; // modules of white around the code, for cameras
+
+/** The token of a link, or of this tab before it was reloaded. */
+export function takeToken(): string | undefined {
+  const given = FRAGMENT.exec(window.location.hash)?.[1];
+  if (given === undefined) return sessionStorage.getItem(KEPT) ?? undefined;
+  window.history.replaceState(null, '', window.location.pathname + window.location.search);
+  return decodeURIComponent(given);
+}
+
+/** Keeps a token that was accepted, and forgets one that was refused. */
+export function keepToken(model: Model, token: () => string | undefined): void {
+  model.on('link', (link) => {
+    const now = token();
+    if (link.state === 'online' && now !== undefined) sessionStorage.setItem(KEPT, now);
+    if (link.state === 'refused' && link.status === 'unauthorized') sessionStorage.removeItem(KEPT);
+  });
+}
+
+function joinLink(model: Model, token: string | undefined): string {
+  const link = new URL(window.location.pathname, window.location.href);
+  if (model.session !== null) link.searchParams.set('session', model.session);
+  if (token !== undefined) link.hash = `token=${encodeURIComponent(token)}`;
+  return link.href;
+}
+
+function picture(text: string): SVGElement {
+  const { data, size } = encode(text, { border: EDGE });
+  const svg = document.createElementNS('http://www.w3.org/2000/svg', 'svg');
+  svg.setAttribute('viewBox', `0 0 ${size} ${size}`);
+  svg.setAttribute('class', 'code');
+  svg.setAttribute('role', 'img');
+  svg.setAttribute('aria-label', 'The link as a QR code');
+  const dark = document.createElementNS('http://www.w3.org/2000/svg', 'path');
+  const squares = data.flatMap((row, y) => row.map((filled, x) => (filled ? `M${x} ${y}h1v1h-1z` : '')));
+  dark.setAttribute('d', squares.join(''));
+  svg.append(dark);
+  return svg;
+}
+
+/** A button that shows the link, to copy or to photograph. */
+export function inviteButton(model: Model, token: () => string | undefined): HTMLButtonElement {
+  return button('Invite others', () => {
+    const own = token();
+    const link = joinLink(model, own);
+    const text = element('input', { readOnly: true, value: link, aria: { label: 'Link to this session' } });
+    const said = element('p', { class: 'about', aria: { role: 'status' } });
+    const copy = button('Copy the link', () => {
+      text.select();
+      void navigator.clipboard.writeText(link).then(() => (said.textContent = 'Copied.'), () => (said.textContent = 'This browser does not let pages copy: press Ctrl+C.'));
+    }, { autofocus: true });
+    const warning = own === undefined ? 'Whoever opens it comes to this session.' : 'It holds your access token: whoever has it can do what you can. Give it to nobody else.';
+    const dialog = element('dialog', { class: 'ask', id: 'invite', aria: { label: 'Invite others' } },
+      element('p', { class: 'question' }, 'Invite others'), element('p', {}, warning), picture(link), text, said,
+      element('div', { class: 'buttons' }, copy, button('Close', () => dialog.close())));
+    dialog.addEventListener('close', () => dialog.remove());
+    document.body.append(dialog);
+    dialog.showModal();
+  }, { class: 'invite' });
+}
