@@ -59,7 +59,7 @@ export function inviteButton(model: Model, token: () => string | undefined): HTM
       text.select();
       void navigator.clipboard.writeText(link).then(() => (said.textContent = 'Copied.'), () => (said.textContent = 'This browser does not let pages copy: press Ctrl+C.'));
     }, { autofocus: true });
-    const warning = own === undefined ? 'Whoever opens it comes to this session.' : 'It holds your access token: whoever has it can do what you can. Give it to nobody else.';
+    const warning = own === undefined ? 'Whoever opens it comes to this session.' : 'It holds your access token: whoever has it can do what you can. Give it only to people you trust.';
     const dialog = element('dialog', { class: 'ask', id: 'invite', aria: { label: 'Invite others' } },
       element('p', { class: 'question' }, 'Invite others'), element('p', {}, warning), picture(link), text, said,
       element('div', { class: 'buttons' }, copy, button('Close', () => dialog.close())));
