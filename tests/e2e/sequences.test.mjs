@@ -165,6 +165,7 @@ class Lane {
 		const who = this.random(2), kind = CUTS[this.random(CUTS.length)];
 		for (let left = 1 + this.random(STEPS_MOST); left > 0; left--)
 			await this.step();
+		await this.settle(this.clients[1 - who]); // else its own take_over may come after this one
 		await refused(this.clients[who].call('tool.take_over', this.hook));
 		this.energize(who, true);
 		this.energize(who, true, 1 + this.random(LATER_MOST));
