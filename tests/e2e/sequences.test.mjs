@@ -65,10 +65,7 @@ class Lane {
 
 	energize(who, energized, later = 0) {
 		const params = { ...this.hook, energized, ...(later && { tick: this.stream.tick + later }) };
-		if (this.random(2))
-			void refused(this.clients[who].call('tool.energize', params));
-		else
-			this.clients[who].notify('tool.energize', params);
+		void refused(this.clients[who].call('tool.energize', params));
 	}
 
 	// What a sequence is made of. Nothing here waits for an answer, but for those of the store.
