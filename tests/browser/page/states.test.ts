@@ -29,7 +29,7 @@ describe('a picture that is not live', () => {
 
   it('is covered until tissue is drawn', async () => {
     const viewer = await stage.openFirst();
-    await veil(viewer, 'Opening d1-fascia');
+    await viewer.until(() => document.querySelector('.veil-card') !== null, null, 'the page has begun');
     await unveiled(viewer);
     const early = await viewer.coloursAt([[0.02, 0.02, 0]]);
     await viewer.live('d1-fascia');
