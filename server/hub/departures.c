@@ -232,7 +232,7 @@ static cau_status write_part(cau_hub *hub, departure *d, bool held, cau_rows_wri
 static bool seal_piece(departure *d, cau_rows_writer *writer)
 {
 	bool sealed = cau_move_seal(d->seal, writer->bytes, writer->byte_count, d->seal);
-	cau_rows_seal(writer, d->seal);
+	cau_rows_append(writer, d->seal, CAU_SEAL_BYTES);
 	return sealed && !writer->failed;
 }
 

@@ -229,12 +229,11 @@ void cau_rows_flag(cau_rows_writer *writer, uint32_t flags)
 		set32(writer->bytes + 12, get32(writer->bytes + 12) | flags);
 }
 
-void cau_rows_seal(cau_rows_writer *writer, const char *seal)
+void cau_rows_append(cau_rows_writer *writer, const void *bytes, size_t byte_count)
 {
-	size_t bytes = strlen(seal);
-	unsigned char *at = grow(writer, bytes);
+	unsigned char *at = grow(writer, byte_count);
 	if (at)
-		memcpy(at, seal, bytes);
+		memcpy(at, bytes, byte_count);
 }
 
 void cau_rows_put(cau_rows_writer *writer, const cau_row *row)
