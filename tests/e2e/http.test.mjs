@@ -148,9 +148,10 @@ test('a port that is taken ends the daemon with the reason', () => {
 	assert.match(ended.stderr, /cannot listen/);
 });
 
-test('the address of an IPv6 daemon has brackets, and leads to it', async () => {
+test('the address of an IPv6 daemon has brackets, and leads to it', async (t) => {
 	const started = spawn(process.env.CAUTERYD, ['--json', '--listen', '::1', '--port', '0', '--store', join(folder, 'six.db'),
-		'--scenes', process.env.SCENES], { stdio: ['ignore', 'pipe', 'ignore'] });
+		'--scenes', process.env.SCENES], { stdio: ['ignore', 'pipe', 'inherit'], env: { PATH: process.env.PATH } });
+	t.after(() => started.kill());
 	const [line] = await once(started.stdout, 'data');
 	const { url, address, port } = JSON.parse(line);
 	assert.deepEqual([url, address], [`http://[::1]:${port}/`, '::1']);
