@@ -23,7 +23,7 @@ Usage: deploy/test.sh [--fast | --full | --long | --campaign] [--no-install]
                 wrong with them; ends in a table. As root; a minute. Exit code 77, and a word on why,
                 where the system allows no namespaces
   --campaign    300 kills, 10,000 moves with faults, 20,000 energy sequences and 300 rounds of sessions
-                that come and go, at once; prints their figures (an hour; tests/README.md)
+                that come and go, at once; prints their figures (half an hour; tests/README.md)
   --no-install  fail if a package of deploy/packages.txt is missing, instead of installing it
   --help        this text
 
@@ -113,7 +113,7 @@ configure() {
 }
 
 # collect NAME PRESET LABELS WITHOUT TIMEOUT_FACTOR [TARGET]: adds a tree's tests to the suite; with a target,
-# building it is one of them, so that these tests begin when their tree is there. "programs": what these tests run.
+# a first test builds it, and the others wait for it. TARGET "programs": the programs that these tests run.
 collect() {
 	local name=$1 preset=$2 tree build=()
 	tree=$(tree_of "$preset")
@@ -131,7 +131,7 @@ follow() {
 		python3 -u deploy/follow_tests.py "$logs"
 }
 
-# build_for PRESET REGEX CONFIGURE_ARGUMENTS...: what the tests with these names run, and nothing else.
+# build_for PRESET REGEX CONFIGURE_ARGUMENTS...: builds only the programs that the tests with these names run.
 build_for() {
 	local preset=$1 regex=$2 tree programs
 	tree=$(tree_of "$preset")
@@ -150,7 +150,7 @@ test_only() {
 	exit
 }
 
-# test_campaign: what --campaign says. Half of each test is waiting for disks and connections.
+# test_campaign: serves --campaign. Each test waits for disks and connections half of its time, so twice as many run.
 test_campaign() {
 	local regex='^e2e_(kills|couriers_long|sequences_long|churn_long)$'
 	build_for release "$regex" -DCAUTERY_LONG=ON

@@ -141,8 +141,8 @@ static cli_exit forget(courier *m, const char *release)
 	return CLI_DONE;
 }
 
-// Asks the daemon that it was at what became of the move, and tells the other, if that knows of it.
-// `moved`: it has.
+// Asks the source about the outcome of the move, and passes it to the target if the target knows
+// the move. *moved: the session is the target's.
 static cli_exit settle(courier *m, bool known_there, bool *moved)
 {
 	cau_wire_move_decision decision = {0};
@@ -155,8 +155,8 @@ static cli_exit settle(courier *m, bool known_there, bool *moved)
 	return known_there ? forget(m, decision.release) : CLI_DONE;
 }
 
-// The move of this session that `client`'s daemon lists and that is not over. `id`: what it calls
-// the session, or "" and what the other daemon calls it.
+// The unfinished move of this session in the list of `client`'s daemon; its name is "" if there is
+// none. `id` is the session's id on that daemon. If it is "", `other` is the id on the other one.
 static cau_status find_move(courier *m, cau_client *client, const char *id, const char *other,
                             cau_wire_move_entry *found)
 {
@@ -183,8 +183,8 @@ static void take_move(courier *m, const cau_wire_move_entry *found)
 	memcpy(m->from_ref.move, found->move, sizeof m->from_ref.move);
 }
 
-// What an earlier courier has left behind of this session. It may have gone before the other daemon
-// had a piece: then only this one knows of the move.
+// Ends the move that an earlier courier has left unfinished. If that courier died before the target
+// had a piece, only the source knows the move.
 static cli_exit settle_earlier(courier *m, bool *moved)
 {
 	cau_wire_move_entry found;
@@ -203,7 +203,7 @@ static cli_exit settle_earlier(courier *m, bool *moved)
 	return *found.move ? settle(m, false, moved) : CLI_DONE;
 }
 
-// There is nobody to ask any more: what the other daemon has of the session goes.
+// The source is lost: the target removes what it holds of the session.
 static cli_exit give_up(courier *m)
 {
 	cau_wire_move_entry found;
@@ -337,7 +337,7 @@ static cli_exit move(courier *m)
 		code = hand_over(m);
 	if (!code)
 		return tell_moved(m);
-	cli_exit settled = settle(m, m->arrives, &moved); // what failed may have been the answer alone
+	cli_exit settled = settle(m, m->arrives, &moved); // perhaps only an answer was lost
 	return !settled && moved ? tell_moved(m) : code;
 }
 

@@ -385,7 +385,7 @@ cau_status cau_mesh_clean(cau_mesh *mesh, cau_mesh_report *report, cau_error *er
 		status = drop_thirds(mesh, &done->third_tetrahedra, error);
 	if (!status)
 		unused = drop_unused(mesh, map); // of what was left out
-	if (!status)                         // what is left may be far smaller than the whole was
+	if (!status)                         // the rest may be far smaller than the whole mesh was
 		status = check_bounds(mesh, error);
 	done->unused_vertices += unused;
 	done->duplicate_elements += repeated;

@@ -262,8 +262,9 @@ static void find_increment(cau_step_solver *solver)
 		cau_solver_global(solver);
 }
 
-// The first is A's own: what moves as a whole, as in a free fall, it carries exactly. What it
-// throws touches nothing from here on, and then it is another one.
+// The first increment is A's own. It moves a free piece exactly, as in a free fall. Vertices that
+// it would move farther than contact can follow are excluded from tissue contact. Then it is
+// computed again.
 static void find_first_increment(cau_step_solver *solver, double *objective)
 {
 	cau_solver_global(solver);
@@ -281,7 +282,7 @@ static void forget_increments(cau_step_solver *solver)
 	cau_accuracy_begin(&solver->accuracy);
 }
 
-// What the iterations of a round hand on.
+// The state between iterations of a round.
 typedef struct descent {
 	double objective, first, last; // J; norms of the first increment and of the last
 	int32_t steps;                 // since the history was forgotten
@@ -321,7 +322,7 @@ static bool spare(cau_step_solver *solver, descent *d, double norm)
 	return true;
 }
 
-// Takes the mixed step, then settles what is loose. Returns whether the round ends.
+// Takes the mixed step, then settles the loose region. Returns whether the round ends.
 static bool advance(cau_step_solver *solver, descent *d, int32_t k, bool accelerated, double norm,
                     cau_status *status, cau_error *error)
 {

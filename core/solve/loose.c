@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Which vertices a step leaves to Newton's method: those of sheets that are slack, but for fat's
-// and those near a tool. Scenes with tissue contact have none: what settles there would pass other
-// tissue, and steps that are shortened lest it does leave it unsettled.
+// Which vertices a step leaves to Newton's method: vertices of slack sheets, but none of fat and
+// none near a tool. Scenes with tissue contact have no such vertices. Settling would move them
+// through other tissue, and steps that are shortened to prevent it leave them unsettled.
 #include <stdlib.h>
 #include <string.h>
 
@@ -84,7 +84,7 @@ static void choose_slack(const cau_step_solver *solver, int32_t share, uint8_t *
 
 enum { CHOSEN = 1, LEFT_OUT = 2, BESIDE = 4 };
 
-// Vertices with a triangle in common with what is left out.
+// Leaves out the vertices that share a triangle with a vertex that is left out.
 static void leave_out_ring(const cau_step_solver *solver, uint8_t *chosen)
 {
 	const cau_loose *loose = &solver->loose;
@@ -104,10 +104,11 @@ static void leave_out_ring(const cau_step_solver *solver, uint8_t *chosen)
 			chosen[v] = LEFT_OUT;
 }
 
-// Rings of vertices around a tool's that stay with A too: what settles beside a tool might pass it.
+// Rings of vertices around a tool's contact that stay with A. Settled vertices beside a tool might
+// pass through it.
 enum { RINGS = 2 };
 
-// What contact is corrected at stays with A, whose columns it has.
+// Vertices of contact constraints stay with A, because contact is corrected by columns of A^-1.
 static void leave_out(const cau_step_solver *solver, uint8_t *chosen)
 {
 	const cau_contact_set *contact = solver->contact;

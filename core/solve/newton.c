@@ -8,8 +8,9 @@
 #include "cautery/assert.h"
 #include "solve/solver.h"
 
-// R is settled where a step moves none of its vertices by more than a tenth of what it may be off:
-// of the wanted share of its motion, and at least of half a micrometre (accuracy.c).
+// R is settled once a step of Newton's method moves none of its vertices by more than a tenth of
+// the error that the session's step may have. That error is `accuracy` times the motion of the
+// tick, and at least half a micrometre (accuracy.c).
 static const double SETTLED = 0.1, SETTLED_M = 5e-8;
 static const double SETTLED_EXACTLY_M = 1e-12; // where a step has no accuracy to reach: rounding
 // A motion that is none, m: it may be off by half a micrometre, which is 1 % of this.
@@ -19,8 +20,8 @@ static const double NOTHING_M = 5e-5;
 enum { MOST_STEPS = 4, MOST_PART_STEPS = 12 };
 // A step must bring this share of the decrease that its slope promises [Armijo 1966].
 static const double ARMIJO = 1e-4;
-// Of a quadratic a step takes off half of what its slope promises. Where it takes off more than
-// this, it was too short: the next leaves negative eigenvalues out.
+// On a quadratic, a full step lowers the energy by half of what the slope predicts. A step that
+// lowers it by more than this share was too short. The next step leaves negative eigenvalues out.
 static const double TOO_SHORT = 0.8;
 
 // ---- vectors by row
@@ -151,7 +152,7 @@ static bool is_spent(const cau_step_solver *solver)
 	return !solver->newton_chosen && solver->loose.work >= CAU_NEWTON_WORK;
 }
 
-// What moved in R's last step.
+// Chooses the vertices that the last step of Newton's method has moved.
 static void choose_part(cau_loose *loose)
 {
 	const cau_newton *region = &loose->region;

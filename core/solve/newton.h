@@ -18,11 +18,11 @@
 // a tool and those of fat belong to N: contact keeps its columns of A^-1. Scenes with tissue
 // contact have no R.
 //
-// H has a block of 3 x 3 for each pair of vertices. Of each element's part the negative eigenvalues
-// are taken by their size or left out, as the last step went [Chen, Xu and Jacobson 2024]. A tab
-// that is pressed together buckles: left out, they let it fly too far; taken by their size where
-// other elements make up for them, they make steps too short. Nothing is kept from step to step, so
-// snapshots have none.
+// H has a block of 3 x 3 for each pair of vertices. A negative eigenvalue of an element's part is
+// replaced by its size, or by 0 if the last step was too short [Chen, Xu and Jacobson 2024]. A tab
+// that is pressed together buckles. With 0 it flies too far. With sizes alone, steps are too short
+// where other elements outweigh the negative ones. No result depends on an earlier step, so
+// snapshots hold nothing of this.
 #pragma once
 
 #include <stdbool.h>
@@ -37,8 +37,9 @@ enum {
 	// Rows of a region at most. With 2,050 rows a step of a session took 28 ms (DECISIONS.md), more
 	// than a tick of 60 Hz. A scene that asks for Newton's method has no such limit.
 	CAU_NEWTON_ROWS = 1024,
-	// Elements that Newton's steps assemble in one step of a session, about ten milliseconds. Then
-	// A takes over, and the error that the step reports has what is left. Same exception.
+	// Elements that Newton's steps assemble in one step of a session, about ten milliseconds.
+	// Beyond them the step goes on by A, and its reported error includes the motion left undone. A
+	// scene that asks for Newton's method has no such limit.
 	CAU_NEWTON_WORK = 24000,
 };
 
@@ -75,10 +76,10 @@ typedef struct cau_newton {
 	cau_newton_element *element; // those with a vertex in R
 	cau_newton_coupling *coupling;
 	double energy;   // J: R's share of E, all elements with a vertex in it, its inertia and drag
-	double negative; // what a negative eigenvalue of size 1 counts: 1, or 0
+	double negative; // a negative eigenvalue is replaced by this times its size: 1 or 0
 } cau_newton;
 
-// What a solver keeps for Newton's steps.
+// The solver's state of Newton's method.
 typedef struct cau_loose {
 	cau_newton region, part; // R, and the part of it that still moves
 	uint8_t *before;         // (vertex_count): R of the last step,
@@ -92,7 +93,7 @@ typedef struct cau_loose {
 	double left;    // else how far the last step moved it, relative to its motion in the tick
 	bool fresh;     // H is factored where R is
 	bool given_up;  // in this step: R is left to A
-	double still_m; // R is settled where a step moves none of its vertices by more
+	double still_m; // R is settled once no vertex moves farther in a step of Newton's method
 } cau_loose;
 
 // Chooses R for this step, at the guess from which it starts. CAU_NO_MEMORY.

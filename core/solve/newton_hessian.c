@@ -75,8 +75,7 @@ static cau_vec3 combine(double a, cau_vec3 x, double b, cau_vec3 y)
 	return (cau_vec3){a * x.x + b * y.x, a * x.y + b * y.y, a * x.z + b * y.z};
 }
 
-// What the law of a triangle makes of F: R = F - P by columns, |R|^2, and, where `to` is not NULL,
-// K.
+// The residual of a triangle's law at F: R = F - P by columns, |R|^2, and K if `to` is not NULL.
 typedef struct sheet_answer {
 	cau_vec3 residual[2];
 	double squared;
@@ -153,8 +152,8 @@ static void add_target(sheet_answer *answer, const cau_vec3 f[2], symmetric2 roo
 		add_target_hessian(answer->to, f, root, &polar, answer->negative);
 }
 
-// Strains kept in a range (strain_range.h): of a column beyond it, its direction in full, and
-// across it what tension or pressure there is.
+// Strains kept in a range (strain_range.h). A column beyond it adds stiffness along itself. Across
+// itself it adds the stiffness of its tension or pressure.
 static void add_stretch(sheet_answer *answer, int a, cau_vec3 f, double least, double most)
 {
 	double length = cau_length(f), kept = fmin(fmax(length, least), most);

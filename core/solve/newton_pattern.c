@@ -11,7 +11,8 @@
 
 // ---- room
 
-// Room for `count` items of `bytes`, and as many again; what was there is gone. False: no memory.
+// Replaces *array by one for twice `count` items of `bytes`. Old contents are lost. False: no
+// memory.
 static bool make_room(void *array, size_t count, size_t bytes)
 {
 	void **at = array;

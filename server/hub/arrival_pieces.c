@@ -169,7 +169,7 @@ static cau_status check_turn(const arrival *a, const cau_move_asked *asked, cons
 	return CAU_OK;
 }
 
-// A courier that has not heard of its newest piece sends it again: it is here.
+// A courier that missed the answer to its newest piece sends the piece again.
 static bool is_repeated(const arrival *a, const cau_move_asked *asked, const contents *found)
 {
 	return a && strcmp(a->move, asked->move) == 0 && !a->writing &&
@@ -195,7 +195,7 @@ static arrival *begin_piece(cau_move_job *job, const contents *found, cau_error 
 	pthread_mutex_lock(&hub->moves_mutex);
 	arrival *a = cau_arrival_find(hub, job->asked.session);
 	if (a && cau_coming_serves(&a->coming))
-		a = NULL; // it came before, and is gone
+		a = NULL; // of an earlier move that was accepted
 	if (is_repeated(a, &job->asked, found)) {
 		answer_received(a, &job->reply);
 		a = NULL;

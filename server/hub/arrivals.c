@@ -393,8 +393,8 @@ static cau_status write_forgotten(cau_move_job *job, arrival *a, bool whole, cau
 	return status;
 }
 
-// The source says that it goes on with the session; or somebody here says that there is no source
-// any more, which may be wrong.
+// A release proves that the source keeps the session. With `source_lost` an administrator says that
+// the source is gone for good, which may be wrong.
 static bool may_forget(const cau_move_job *job, const arrival *a)
 {
 	if (!job->asked.source_lost)

@@ -16,8 +16,7 @@ enum {
 	TOMBSTONES_MOST = 100000,
 };
 
-// A move of which the target has nothing: a courier that has read the first piece and asked for no
-// more for so long has gone.
+// A courier that has read the first piece and asks for no more within this time is taken for dead.
 #define FIRST_PIECE_MOST_S 2.
 
 typedef struct cau_departure departure;
@@ -116,8 +115,8 @@ static cau_hosted *find_hosted(cau_move_job *job)
 	return NULL;
 }
 
-// Whether the courier of this move has gone before the target had a piece. Then the target does
-// not know of it, and no later courier would hear of it there.
+// Whether the courier of this move has died before the target had a piece. Then the target's list
+// does not name the move, and no later courier would find it there.
 static bool is_left(const departure *d, double now_s)
 {
 	bool waits = d->part_sent && now_s - d->touched_s <= FIRST_PIECE_MOST_S;

@@ -86,10 +86,10 @@ typedef struct cau_tombstone {
 cau_status cau_tombstones_read(cau_hub *hub, cau_error *error);
 // All four: with the moves' lock.
 const cau_tombstone *cau_tombstone_find(const cau_hub *hub, const char *id);
-// Memory for one more for each move that may be decided: a decided move that is not known here
-// would be taken for one that never was. False: there is none.
+// Makes capacity for a tombstone of each move under way. Without it a decided move could not be
+// kept in memory, and move.cancel would answer that the session stays. False: no memory.
 bool cau_tombstones_reserve(cau_hub *hub);
-void cau_tombstone_put(cau_hub *hub, const cau_tombstone *made); // takes what was reserved
+void cau_tombstone_put(cau_hub *hub, const cau_tombstone *made); // within the reserved capacity
 void cau_tombstone_drop(cau_hub *hub, const char *id);
 
 // Who drove a tool, and may come back to it here.

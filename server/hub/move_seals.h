@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// What the two daemons of a move can prove to each other through a courier that they need not
-// trust. All are SHA-256 hashes as 64 hex digits.
+// Proofs between the two daemons of a move. A courier carries them, and need not be trusted. All
+// are 64 hex digits; `release`, `seal` and `receipt` are SHA-256 hashes.
 //
 //     proof    a random number of the source. It shows it once the session is the target's; its
 //              hash came with the first piece.

@@ -33,7 +33,7 @@ typedef enum cau_leaving_event {
 	CAU_LEAVING_HOLD,    // asked for by the courier
 	CAU_LEAVING_STOPPED, // it stands still, all that it was is on the disk
 	CAU_LEAVING_NOT_STOPPED,
-	CAU_LEAVING_COMMIT,  // the target has all, says the courier
+	CAU_LEAVING_COMMIT,  // the courier has shown the target's receipt for all pieces
 	CAU_LEAVING_WRITTEN, // the tombstone, or the other commit
 	CAU_LEAVING_REFUSED, // by the disk
 	CAU_LEAVING_UNSENT,  // the store did not even take it: nothing was written
@@ -84,7 +84,7 @@ typedef enum cau_coming_event {
 	CAU_COMING_PROOF, // shown, and it opens the lock
 	CAU_COMING_WRITTEN,
 	CAU_COMING_REFUSED, // by the disk
-	CAU_COMING_FORGET,  // the source has said that this move will never be, says the courier
+	CAU_COMING_FORGET,  // the courier has shown the source's release
 } cau_coming_event;
 
 typedef enum cau_coming_act {

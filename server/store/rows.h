@@ -93,5 +93,5 @@ void cau_rows_put(cau_rows_writer *writer, const cau_row *row);
 // A row of texts and integers, by its table's columns: const char *, int64_t.
 void cau_rows_put_values(cau_rows_writer *writer, cau_rows_table table, ...);
 void cau_rows_flag(cau_rows_writer *writer, uint32_t flags);
-// What comes after the last row, which whoever reads the piece takes off before.
+// Appends bytes after the last row. A reader removes them before it opens the piece.
 void cau_rows_append(cau_rows_writer *writer, const void *bytes, size_t byte_count);

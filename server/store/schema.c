@@ -99,8 +99,8 @@ static const char sixth_step[] =
 						" UPDATE sizes SET bytes = bytes - (" ANSWER_BYTES(
 							"old.") ") WHERE name = 'answers'; END;";
 
-// secrets: random texts that are this store's alone. unlock and seal: what a move's pieces are
-// checked by, and what lets them be forgotten (server/hub/move_seals.h).
+// secrets: random texts of this store. arrivals.unlock is the hash of the release that lets the
+// move be forgotten; arrivals.seal is the seal of the pieces so far (server/hub/move_seals.h).
 static const char seventh_step[] =
 	"CREATE TABLE secrets(name TEXT PRIMARY KEY, value TEXT NOT NULL) WITHOUT ROWID;"
 	"INSERT INTO secrets VALUES('move', lower(hex(randomblob(32))));"

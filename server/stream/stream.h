@@ -101,9 +101,9 @@ typedef struct cau_stream_shape {
 	const double *rest_position;      // m, (vertex_count x 3)
 } cau_stream_shape;
 
-// What opening a profile takes of memory, and the making of it beforehand: on the builder. The
-// topology is encoded there, so that no slice of a worker does it; without memory for that, the
-// first joining client's slice does.
+// Bytes that opening a profile takes; and, on the builder, allocating them beforehand. The builder
+// also encodes the topology, so that no slice of a worker does it. If that fails for lack of
+// memory, the slice of the first session.join encodes it.
 size_t cau_streams_opening_bytes(int32_t vertex_count, int32_t face_count);
 void cau_streams_stock(cau_streams *streams, const cau_stream_shape *shape);
 

@@ -11,8 +11,8 @@ import { smallSession } from './wire/scene.mjs';
 const INDICES = 120;
 let held = [];
 
-// Binds the ports that `count` other programs would hold. One that somebody has already, as programs get them at random
-// from the same range, is held too.
+// Binds the ports that `count` other DDS programs would hold. Programs get random ports of the same range, so some may be
+// taken already. A taken port serves as well.
 async function crowd(count) {
 	await Promise.all([...Array(2 * count).keys()].map((i) => new Promise((resolve, reject) => {
 		const socket = createSocket('udp4');

@@ -24,7 +24,7 @@ function randomOf(seed) {
 	};
 }
 
-// Two daemons that may be killed, an admin's connection to each, and what couriers have ever seen.
+// Two daemons that may be killed, an admin's connection to each, and all pieces, keys and moves that couriers have seen.
 class Field {
 	constructor() {
 		Object.assign(this, { daemons: [], clients: [], seen: { pieces: [], keys: [''], moves: ['m0'] }, counts: {} });
@@ -45,7 +45,7 @@ class Field {
 	}
 }
 
-// What fails is what a courier has to live with. A closed connection is a daemon that has died by itself: that fails the test.
+// A courier goes on after a refusal. A closed connection fails the test: a daemon has died by itself.
 async function attempt(promise) {
 	try {
 		return await promise;
@@ -143,7 +143,7 @@ class Mischief {
 			this.saw(this.release = decision.release ?? '', this.proof = decision.proof ?? '');
 	}
 
-	// Only this daemon's own keys open anything: the override for a source that is lost is not for couriers.
+	// Never with `source_lost`, which may lose a session by design.
 	forget() {
 		return this.ask(this.to, 'move.forget', { ...this.ref(this.to), release: this.key(this.release) });
 	}
@@ -197,7 +197,7 @@ async function settle(field, from) {
 
 const list = async (client) => (await client.call('session.list')).sessions.filter(({ state }) => state !== 'starting');
 
-// Which daemon has it: exactly one, and nothing else of it is anywhere.
+// The daemon that serves the session. There is exactly one, and no move of it is unfinished.
 async function whoServes(field, name) {
 	const at = [];
 	for (const [i, client] of field.clients.entries()) {

@@ -12,6 +12,7 @@ import { AT_REST, cutMiddle, picture, smallSession } from './wire/scene.mjs';
 const settings = (label) => ({ label });
 const daemons = async () => Promise.all(['d1', 'd2'].map((label) => Daemon.start({ settings: settings(label) })));
 const again = (daemon, label) => Daemon.start({ folder: daemon.folder, settings: settings(label) });
+const at = (daemon) => `ws://127.0.0.1:${daemon.port}`; // for the command line
 const rejection = (promise) => promise.then(() => null, (error) => error);
 const serves = async (client, session) =>
 	(await client.call('session.list')).sessions.some((s) => s.session === session && s.state !== 'starting');
@@ -210,11 +211,10 @@ test('a courier that dies before the target has a piece leaves nothing that stan
 	assert.equal((await rejection(new Courier(one, two, session, 'd2-knee').begin())).data.status, 'bad_state');
 	await setTimeout(2500); // FIRST_PIECE_MOST_S of server/hub/departures.c, and a little
 	await new Courier(one, two, session, 'd2-knee').walk('part');
-	// Of one that only the source knows of, the command line ends what it can.
+	// The command line also ends a move that only the source knows.
 	assert.equal(await settled(d1, d2), false);
 	await dead.begin();
 	await one.file('move.read', dead.ofSource());
-	const at = (daemon) => `ws://127.0.0.1:${daemon.port}`;
 	const cancelled = await run(['move', session, 'd2', '--cancel', '--url', at(d1), '--to-url', at(d2)]);
 	assert.equal(cancelled.status, 0, cancelled.stderr);
 	assert.deepEqual((await one.call('move.list')).moves, []);
@@ -264,11 +264,11 @@ test('what is in doubt is forgotten by the source\'s word alone, or where that i
 	const later = await d1.connect();
 	await new Courier(later, two, session, 'd2-knee').walk('rest');
 	await d1.kill();
-	const lost = await run(['move', session, 'd2', '--source-lost', '--url', `ws://127.0.0.1:${d2.port}`]);
+	const lost = await run(['move', session, 'd2', '--source-lost', '--url', at(d2)]);
 	assert.equal(lost.status, 0, lost.stderr);
 	await d2.log(/session=d2-knee event=forgotten_unproved .* whole=1 risk="if d1 has decided this move, the session is lost"/);
 	assert.deepEqual((await two.call('move.list')).moves, []);
-	const nothing = await run(['move', session, 'd2', '--source-lost', '--url', `ws://127.0.0.1:${d2.port}`]);
+	const nothing = await run(['move', session, 'd2', '--source-lost', '--url', at(d2)]);
 	assert.equal(nothing.status, 1);
 	await end(d2);
 });
@@ -277,7 +277,6 @@ test('cautery move carries a running session, and the library goes after it', as
 	const [d1, d2] = await daemons();
 	const one = await d1.connect(), two = await d2.connect();
 	const session = await smallSession(one, 'knee');
-	const at = (daemon) => `ws://127.0.0.1:${daemon.port}`;
 	const watching = spawn(process.env.CAUTERY, ['events', session, '--follow', '--url', at(d1)]);
 	const seen = new Promise((resolve) => watching.stdout.on('data', (text) => /snapshot/.test(text) && resolve()));
 	await one.until(() => one.notice('session.changed'), 'the session');
@@ -378,7 +377,6 @@ test('to another kind of processor it goes only where that is asked for, and goe
 	if (tier === 'baseline')
 		return t.skip('this processor knows the lowest tier alone');
 	const stream = await one.join(session);
-	const at = (daemon) => `ws://127.0.0.1:${daemon.port}`;
 	const words = ['move', session, 'd2', '--url', at(d1), '--to-url', at(d2)];
 
 	const refused = await run(words);
@@ -407,7 +405,6 @@ test('to another kind of processor it goes only where that is asked for, and goe
 test('cautery-load, driver and viewers, goes after its session and removes it where it is', async () => {
 	const [d1, d2] = await daemons();
 	const one = await d1.connect(), two = await d2.connect();
-	const at = (daemon) => `ws://127.0.0.1:${daemon.port}`;
 	const load = execFile(process.env.CAUTERY_LOAD, ['--url', at(d1), '--viewers', '3', '--seconds', '600', '--warm-up', '0']);
 	const ended = new Promise((resolve) => load.on('exit', resolve));
 	const made = await one.until(() => one.notice('session.changed', (p) => p.change === 'created'), 'its session');

@@ -83,7 +83,7 @@ export class HoldStage {
     }, null);
   }
 
-  /** A pair that was too slow is played again: on a busy machine the fastest one tells what the page takes. */
+  /** A pair that was too slow is played again. On a busy machine the fastest play is nearest to the time that the page takes. */
   async pair(way: Way, loss: Loss, does: 'off' | 'stays'): Promise<void> {
     let fastest = Infinity;
     for (let played = 0; played < PLAYS && fastest > LIMIT_MS; played++) fastest = Math.min(fastest, await this.play(way, loss, does));

@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// A stream at exactly its rate, whatever the machine's load: what was recorded of a real session is played to
-// a page by a door in front of the daemon, from where the test says so. Everything else that the page says goes
-// to the daemon and back.
+// A stream at exactly its rate, whatever the machine's load. A proxy in front of the daemon plays the recorded frames of a
+// real session to the page, from the moment that the test chooses. It passes all other messages on.
 import { Door, type Said } from './door';
 import { tickOf, type Recording } from './recording';
 import { MessageSocket } from './socket';

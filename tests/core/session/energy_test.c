@@ -78,8 +78,8 @@ static double hang(int iterations)
 	return t.gained_j;
 }
 
-// It weighs 20 mN: falling by a centimetre brings 0.2 mJ. Its few iterations are enough, since what
-// hangs loose is settled by Newton's method in each of them.
+// It weighs 20 mN: falling by a centimetre brings 0.2 mJ. Its few iterations are enough, because
+// Newton's method settles the loose sheet in each of them.
 static void a_hanging_sheet_gains_nothing(void **state)
 {
 	(void)state;

@@ -247,8 +247,8 @@ static void expect_the_same_after_a_restore(cau_session *session)
 // tetrahedra turn inside out. Frames report it. After the release nothing is inside out any more,
 // and no vertex is excluded from contact. A vertex is excluded while it crosses other tissue. This
 // depends on rounding: with kernels below AVX-512, or without the compiler's optimisation, some
-// vertices stay excluded to the end (.github/KNOWN_BUGS.md). What holds everywhere is that no other
-// vertex crosses anything.
+// vertices stay excluded to the end (.github/KNOWN_BUGS.md). On every
+// processor no other vertex crosses anything.
 static void what_is_thrown_finds_its_way_back(void **state)
 {
 	(void)state;

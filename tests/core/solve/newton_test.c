@@ -165,7 +165,7 @@ static void what_is_removed_is_not_in_it(void **state)
 	rig_finish(&r);
 }
 
-// Every other column of vertices is in the region: what couples it to the rest is in M.
+// Every other column of vertices is in the region, so M has couplings between it and the rest.
 static void choose_half(rig *r)
 {
 	cau_loose *loose = &r->solver.loose;
@@ -252,7 +252,8 @@ static void settling_leaves_no_force(void **state)
 	}
 }
 
-// A taut sheet is left to A; with a corner crumpled, what is slack there is not. A range is A's.
+// A taut sheet is left to A. With a crumpled corner, its slack triangles make up a region. A sheet
+// with a range is left to A.
 static void what_is_slack_is_loose(void **state)
 {
 	(void)state;

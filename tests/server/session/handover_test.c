@@ -326,8 +326,8 @@ static void settle(world *w)
 	}
 }
 
-// What `cautery move --resume` does, with both up: asks the target what is in doubt, the source
-// about it, and takes its word to the target. Without anything in doubt time does it.
+// What `cautery move` does for an unfinished move, with both up: asks the target what is in doubt,
+// the source about it, and takes its word to the target. Without anything in doubt time does it.
 static void resume(world w)
 {
 	w.source_up = w.target_up = true;

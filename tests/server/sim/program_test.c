@@ -37,7 +37,7 @@ static void exit_codes_are_as_documented(void **state)
 	}
 }
 
-// What the core refuses of a scene is told with the scene's file, whatever script it was to run.
+// The message names the file of a scene that the core refuses, not the script.
 static void a_bad_scene_is_told_with_its_file(void **state)
 {
 	(void)state;

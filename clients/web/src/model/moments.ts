@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The events of a timeline as people would list them: what goes on without anything else between is one line.
+// The events of a timeline, as a list for people. Cuts of one tool one after another are one line.
 import type { TimelineEvent } from '../wire/messages.gen';
 
 export const EVENT_WORDS: Partial<Record<TimelineEvent['kind'], string>> = {

@@ -1,36 +1,17 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Inviting others, and the access token of this tab. A link carries the token in its fragment, which no browser sends
-// to a server. The page takes it from the address at once, and keeps it in this tab alone, so that it asks once.
+// Invites others to the session, by a link to copy or to photograph. The link holds the access token of this tab.
 import { encode } from 'uqr';
 
+import { tokenFragment } from '../model/kept_token';
 import type { Model } from '../model/model';
 import { button, element } from './dom';
 
-const FRAGMENT = /^#token=(.+)$/;
-const KEPT = 'token';
 const EDGE = 2; // modules of white around the code, for cameras
-
-/** The token of a link, or of this tab before it was reloaded. */
-export function takeToken(): string | undefined {
-  const given = FRAGMENT.exec(window.location.hash)?.[1];
-  if (given === undefined) return sessionStorage.getItem(KEPT) ?? undefined;
-  window.history.replaceState(null, '', window.location.pathname + window.location.search);
-  return decodeURIComponent(given);
-}
-
-/** Keeps a token that was accepted, and forgets one that was refused. */
-export function keepToken(model: Model, token: () => string | undefined): void {
-  model.on('link', (link) => {
-    const now = token();
-    if (link.state === 'online' && now !== undefined) sessionStorage.setItem(KEPT, now);
-    if (link.state === 'refused' && link.status === 'unauthorized') sessionStorage.removeItem(KEPT);
-  });
-}
 
 function joinLink(model: Model, token: string | undefined): string {
   const link = new URL(window.location.pathname, window.location.href);
   if (model.session !== null) link.searchParams.set('session', model.session);
-  if (token !== undefined) link.hash = `token=${encodeURIComponent(token)}`;
+  if (token !== undefined) link.hash = tokenFragment(token);
   return link.href;
 }
 

@@ -10,7 +10,7 @@ export interface ParameterInputs {
   read(): Record<string, number>;
   /** what is in force; a number that somebody has typed and not applied yet stays */
   show(values: Readonly<Record<string, unknown>>): void;
-  /** those that make no sense for what is shown are hidden, and keep their values */
+  /** hides parameters that the shown tool does not have; they keep their values */
   offer(makesSense: (name: string) => boolean): void;
   /** forgets what was typed */
   clear(): void;
@@ -35,7 +35,7 @@ const SHOWN: Readonly<Record<string, Shown>> = {
   '1': { unit: '', scale: 1 },
 };
 const DIGITS = 9; // what a number keeps there and back: more than anybody types
-const SHOWN_DIGITS = 5; // of a number that nobody has changed: it is not rounded where it is applied
+const SHOWN_DIGITS = 5; // of an unchanged number, which is applied with all its digits
 
 const rounded = (value: number): number => Number(value.toPrecision(DIGITS));
 

@@ -27,7 +27,7 @@ function marks(events: readonly TimelineEvent[], least: number, most: number): S
   return svg;
 }
 
-/** What happened, to choose from. */
+/** Fills the list of past moments. */
 function nameMoments(place: HTMLSelectElement, events: readonly TimelineEvent[], seconds: (tick: number) => string): void {
   const last = String(events.at(-1)?.tick);
   place.hidden = events.length === 0;

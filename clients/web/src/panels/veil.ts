@@ -51,7 +51,7 @@ export function showVeil(control: Control, viewport: Viewport, enterToken: () =>
   let framedAt = performance.now();
   let joinedAt = framedAt;
   let everShown = false; // an empty picture is never bare
-  // In a page that nobody sees, nothing is drawn.
+  // A hidden page draws nothing.
   const shows = (session: string): boolean => viewport.shown.session === session || document.hidden;
   let busySince: number | null = null;
 

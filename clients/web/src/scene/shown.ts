@@ -1,24 +1,24 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Whose tissue the screen shows. A picture is there a little after it was asked for.
+// The session whose tissue the screen shows. A picture appears on it some frames after its drawing commands.
 
 export class Shown {
   /** null: no tissue yet */
   session: string | null = null;
-  private made: string | null = null;
-  private asked: string | null = null;
+  private finished: string | null = null;
+  private drawn: string | null = null;
 
-  /** A picture was asked for, with the tissue of a session or with none. */
-  ask(session: string | null): void {
-    this.asked = session;
+  /** Drawing commands of a picture were given, with the tissue of a session or without. */
+  draw(session: string | null): void {
+    this.drawn = session;
   }
 
-  /** What was asked for is made; called once per animation frame. */
-  make(): void {
-    this.session = this.made;
-    this.made = this.asked;
+  /** The graphics card has finished the last picture. The screen shows it from the next call on; one per animation frame. */
+  finish(): void {
+    this.session = this.finished;
+    this.finished = this.drawn;
   }
 
   lose(): void {
-    this.session = this.made = this.asked = null;
+    this.session = this.finished = this.drawn = null;
   }
 }

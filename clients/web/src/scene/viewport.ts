@@ -213,7 +213,7 @@ export class Viewport {
     if (this.smoke.advance(Math.min((now - this.lastDrawn) / 1000, 0.1), this.smoking())) this.dirty = true;
     this.lastDrawn = now;
     if (!this.pace || this.contextLost || !this.pace.ready()) return;
-    this.shown.make();
+    this.shown.finish();
     if (!this.dirty) {
       this.sharpen(now);
       return;
@@ -242,7 +242,7 @@ export class Viewport {
     this.placeLamp();
     this.placeArrow();
     this.renderer?.render(this.scene, this.orbit.camera);
-    this.shown.ask(this.taken ? this.session : null);
+    this.shown.draw(this.taken ? this.session : null);
     this.picturesDrawn++;
   }
 

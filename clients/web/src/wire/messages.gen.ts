@@ -562,11 +562,11 @@ export interface MoveReceive {
 export interface MoveReceived {
   /** that are (0 to 9007199254740991) */
   pieces: number;
-  /** of the last piece: proves that all are, for move.commit */
+  /** of the last piece: proves to the other daemon that all are here */
   receipt?: string;
 }
 
-/** the other daemon has all of a session */
+/** the other daemon has all pieces of a session */
 export interface MoveCommit {
   /** its id here */
   session: string;
@@ -576,7 +576,7 @@ export interface MoveCommit {
   receipt: string;
 }
 
-/** what has come of a session is to go */
+/** the pieces of a move are to be removed */
 export interface MoveForget {
   /** its id here */
   session: string;
@@ -584,7 +584,7 @@ export interface MoveForget {
   move: string;
   /** of move.cancel */
   release?: string;
-  /** without a release: the daemon that it came from is gone for good. If that daemon has decided the move, the session is lost */
+  /** instead of a release: the other daemon is gone for good. If it had decided the move, the session is lost */
   source_lost?: boolean;
 }
 
@@ -1948,7 +1948,7 @@ export interface Requests {
   'move.read': { params: MoveRef; result: Transfer };
   /** suspends the session, energy off; requests to it wait */
   'move.hold': { params: MoveRef; result: MoveHeld };
-  /** the other daemon has all of it on its disk, as its receipt proves: it ends here, and the answer is what lets it be served there */
+  /** by the receipt that the other daemon has all pieces on its disk, the session ends here; the answer lets the other daemon serve it */
   'move.commit': { params: MoveCommit; result: MoveDecision };
   /** it stays, unless it has moved: the answer says which */
   'move.cancel': { params: MoveRef; result: MoveDecision };
@@ -1958,7 +1958,7 @@ export interface Requests {
   'move.ready': { params: MoveRef; result: MoveHeld };
   /** it is this daemon's, by the proof of move.commit; answered when it is served */
   'move.accept': { params: MoveAccept; result: SessionDescription };
-  /** what has come goes, by the release of move.cancel */
+  /** removes the pieces of a move, by the release of move.cancel */
   'move.forget': { params: MoveForget; result: Nothing };
   /** sessions that come, are in doubt, are leaving, or have gone */
   'move.list': { params: Nothing; result: MoveList };
