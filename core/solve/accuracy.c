@@ -19,6 +19,7 @@ static const double force_slack = 3;        // other rows may do worse than thos
 static const double untaught = 3;           // amplification before anything is known
 static const double untaught_force = 1;     // likewise of forces: all of them may be wrong
 static const double most_amplified = 300;
+static const double resolved = 0.2;    // of what is wanted: an estimate below is not resolved
 static const double slack = 1.2;       // a contraction that is measured flatters a little
 static const double slowest = 0.999;   // contraction that can be told from none
 static const double bound_share = 0.5; // one mode alone reaches the bound, seldom what is left
@@ -246,7 +247,9 @@ bool cau_accuracy_is_reached(cau_step_solver *solver, double norm)
 	double error = estimate(accuracy, bound);
 	if (length > 0) {
 		double told = at >= 2 ? fmax(of.told, accuracy->wanted * smooth) : of.told;
-		accuracy->error = error * told / length;
+		// One or two increments cannot resolve a smaller error: some ticks that reported less had a
+		// true error of three times that and more.
+		accuracy->error = fmax(error * told / length, resolved * accuracy->wanted);
 		error = fmax(error, estimate_forces(accuracy, changed, drift, error / length));
 	}
 	if (!at)

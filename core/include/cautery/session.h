@@ -241,8 +241,8 @@ typedef struct cau_statistics {
 	// where a law has no energy (linearised limits, model energy, the diagonal system).
 	double energy_gain_j;
 	// Reported error: the step's estimated distance to its solution, relative to its own motion, of
-	// all vertices or of the worst chunk of them (solve/accuracy.h). 0 where the scene's accuracy
-	// is 0.
+	// all vertices or of the worst chunk of them (solve/accuracy.h). Where tissue moves it is at
+	// least a fifth of the scene's accuracy. 0 where that is 0.
 	double error;
 	// The tissue is at rest: the step changed nothing, and none will until something wakes it.
 	bool resting;
