@@ -34,7 +34,8 @@ static const start starts[] = {
 	{STARTS("PXR-USDC"), {NULL, NULL, "binary USD: convert it with usdcat -o FILE.usda", false}},
 	{STARTS("PK\3\4"), {NULL, NULL, "a zip archive (USDZ, 3MF): unpack it first", false}},
 	{STARTS("\x1f\x8b"), {NULL, NULL, "compressed with gzip: unpack it first", false}},
-	{STARTS("NRRD"), {NULL, NULL, "a volume of voxels (NRRD): save its surface as STL", false}},
+	{STARTS("NRRD"),
+     {NULL, NULL, "a volume of voxels (NRRD): make tetrahedra of it with cautery-mesh", false}},
 	{STARTS("\x89HDF"), {NULL, NULL, "HDF5: save the mesh as VTU or Gmsh", false}},
 	{STARTS("glTF"), {NULL, NULL, "glTF: save the mesh as PLY or OBJ", false}},
 	{STARTS("ISO-10303-21"), {NULL, NULL, "STEP: mesh it first, as with gmsh -3", false}},
@@ -48,14 +49,14 @@ static const cau_mesh_format obj = {cau_mesh_read_obj, "OBJ", NULL, true};
 static const cau_mesh_format tetgen = {cau_mesh_read_tetgen, "TetGen", NULL, true};
 static const cau_mesh_format medit = {cau_mesh_read_medit, "Medit", NULL, true};
 static const cau_mesh_format gmsh = {cau_mesh_read_gmsh, "Gmsh", NULL, true};
-static const cau_mesh_format nifti = {NULL, NULL,
-                                      "a volume of voxels (NIfTI): save its surface as STL", false};
+static const cau_mesh_format nifti = {
+	NULL, NULL, "a volume of voxels (NIfTI): make tetrahedra of it with cautery-mesh", false};
 static const cau_mesh_format dicom = {
-	NULL, NULL, "a DICOM image: segment it and save the surface as STL", false};
+	NULL, NULL, "a DICOM image: segment it, and save the segmentation as NRRD or NIfTI", false};
 
-// A binary STL may begin with "solid": its length decides. What follows the facets is tolerated
-// where the bytes cannot be text.
-static bool is_binary_stl(const unsigned char *bytes, size_t byte_count)
+// A binary STL may begin with any text: its length decides. `more`: bytes may follow the facets,
+// where the bytes before cannot be text.
+static bool is_binary_stl(const unsigned char *bytes, size_t byte_count, bool more)
 {
 	if (byte_count < STL_HEADER_BYTES)
 		return false;
@@ -63,8 +64,27 @@ static bool is_binary_stl(const unsigned char *bytes, size_t byte_count)
 	for (int i = 3; i >= 0; i--)
 		facets = facets << 8 | bytes[80 + i];
 	uint64_t whole = STL_HEADER_BYTES + STL_FACET_BYTES * facets;
-	return facets &&
-	       (byte_count == whole || (byte_count > whole && memchr(bytes, 0, STL_HEADER_BYTES)));
+	return facets && (byte_count == whole ||
+	                  (more && byte_count > whole && memchr(bytes, 0, STL_HEADER_BYTES)));
+}
+
+// The format that the first bytes tell, or NULL.
+static const cau_mesh_format *format_of_start(const unsigned char *bytes, size_t byte_count)
+{
+	size_t blank = 0; // before the first word of a text
+	while (blank < byte_count && (bytes[blank] == ' ' || (bytes[blank] >= 9 && bytes[blank] <= 13)))
+		blank++;
+	for (size_t i = 0; i < sizeof starts / sizeof *starts; i++) {
+		size_t from = starts[i].format.text ? blank : 0;
+		const char *at = (const char *)bytes + from;
+		bool is_this =
+			byte_count - from >= starts[i].byte_count &&
+			(starts[i].format.text ? !strncasecmp(at, starts[i].bytes, starts[i].byte_count)
+		                           : !memcmp(at, starts[i].bytes, starts[i].byte_count));
+		if (is_this)
+			return &starts[i].format;
+	}
+	return NULL;
 }
 
 static bool is_text(const unsigned char *bytes, size_t byte_count)
@@ -97,21 +117,15 @@ static const cau_mesh_format *format_of_text(const unsigned char *bytes, size_t 
 const cau_mesh_format *cau_mesh_format_of(const unsigned char *bytes, size_t byte_count)
 {
 	CAU_ASSERT(bytes || !byte_count, "%zu bytes that are nowhere", byte_count);
-	if (is_binary_stl(bytes, byte_count))
+	if (is_binary_stl(bytes, byte_count, false))
 		return &stl_binary;
-	size_t blank = 0; // before the first word of a text
-	while (blank < byte_count && (bytes[blank] == ' ' || (bytes[blank] >= 9 && bytes[blank] <= 13)))
-		blank++;
-	for (size_t i = 0; i < sizeof starts / sizeof *starts; i++) {
-		size_t from = starts[i].format.text ? blank : 0;
-		const char *at = (const char *)bytes + from;
-		bool is_this =
-			byte_count - from >= starts[i].byte_count &&
-			(starts[i].format.text ? !strncasecmp(at, starts[i].bytes, starts[i].byte_count)
-		                           : !memcmp(at, starts[i].bytes, starts[i].byte_count));
-		if (is_this)
-			return &starts[i].format;
-	}
+	const cau_mesh_format *told = format_of_start(bytes, byte_count);
+	if (told && told->read != cau_mesh_read_stl)
+		return told;
+	if (is_binary_stl(bytes, byte_count, true))
+		return &stl_binary;
+	if (told)
+		return told;
 	if (byte_count > 348 && (!memcmp(bytes + 344, "n+1", 4) || !memcmp(bytes + 344, "ni1", 4)))
 		return &nifti;
 	if (byte_count > 132 && !memcmp(bytes + 128, "DICM", 4))

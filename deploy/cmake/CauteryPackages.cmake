@@ -60,8 +60,9 @@ and DDS, and streams moved vertices and removed faces to thin clients, a
 viewer for browsers among them, which it serves itself.
 
 This package has the daemon with its scenes and its viewer, the unit
-files, and cautery-sim, which runs a scene without a server. It is for
-training and research, and no medical device.")
+files, cautery-sim, which runs a scene without a server, and
+cautery-mesh, which fills surfaces with tetrahedra. It is for training
+and research, and no medical device.")
 package(clients cautery-clients science ""
   "command line, load generator and robot controller for cauteryd
 cauteryd simulates the dissection of soft tissue with energized

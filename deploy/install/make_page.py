@@ -23,6 +23,7 @@ ABOUT = {
     "cauteryd.json.5": ("settings of cauteryd", ["cauteryd(8)"]),
     "cautery.1": ("command line of cauteryd", ["cauteryd(8)", "cautery-load(1)"]),
     "cautery-sim.1": ("run a scene of Cautery without a server", ["cauteryd(8)", "cautery(1)"]),
+    "cautery-mesh.1": ("fill a surface or a segmentation with tetrahedra", ["cautery(1)", "cauteryd(8)"]),
     "cautery-load.1": ("load a running cauteryd and measure what its clients see", ["cauteryd(8)", "cautery(1)"]),
     "cautery-robot.1": ("drive a tool of cauteryd over DDS", ["cauteryd(8)", "cautery(1)"]),
 }

@@ -36,7 +36,7 @@ LIBRARIES = (
     (r"libwebsockets\.h|lws.*\.h", ("server/", "clients/")),
     (r"(dds|ddsc)/.*|dds\.h", ("server/", "clients/")),
     (r"sqlite3\.h", ("server/",)),
-    (r"zlib\.h", ("core/mesh/vtu_data.c", "server/")),
+    (r"zlib\.h", ("core/mesh/vtu_data.c", "core/solid/unpack.c", "server/")),
     (r"curl/.*", ("server/lease/etcd.c",)),
     (r"systemd/.*", ("server/",)),
     (r"openssl/.*", ("protocol/wire/sha256.c", "server/")),

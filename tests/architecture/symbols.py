@@ -20,7 +20,7 @@ LIBRARIES = (
     ("libwebsockets", r"_?lws\w*", ("server/", "clients/")),
     ("Cyclone DDS", r"dds_\w+", ("server/", "clients/")),
     ("SQLite", r"sqlite3_\w+", ("server/",)),
-    ("zlib", r"(un)?compress2?|(in|de)flate\w*", ("core/mesh/vtu_data.c", "server/")),
+    ("zlib", r"(un)?compress2?|(in|de)flate\w*", ("core/mesh/vtu_data.c", "core/solid/unpack.c", "server/")),
     ("libcurl", r"curl_\w+", ("server/lease/etcd.c",)),
     ("systemd", r"sd_\w+", ("server/",)),
     ("OpenSSL", r"(SSL|EVP|BIO|ERR|X509|RAND|PEM)_\w+|SHA\d+\w*", ("protocol/wire/sha256.c", "server/")),

@@ -19,7 +19,7 @@ CMAKE, TREE, SOURCES = sys.argv[1:]
 PATIENCE_S = 120
 CLEAN = {name: value for name, value in os.environ.items()
          if not name.startswith(("CAUTERY", "CMAKE_", "PKG_CONFIG", "MAN"))}
-PROGRAMS = {"cauteryd": 8, "cautery-sim": 1, "cautery": 1, "cautery-load": 1, "cautery-robot": 1}
+PROGRAMS = {"cauteryd": 8, "cautery-sim": 1, "cautery-mesh": 1, "cautery": 1, "cautery-load": 1, "cautery-robot": 1}
 
 
 def run(*command, **options):

@@ -1,0 +1,37 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// What is to be meshed: a label for each place. The mesher asks for nothing else, so that open,
+// crossing and partly turned surfaces and voxels are all the same to it.
+#pragma once
+
+#include <stdbool.h>
+#include <stdint.h>
+
+#include "mesh/mesh.h"
+#include "solid/volume.h"
+
+typedef struct cau_domain cau_domain;
+
+// Labels are numbered from 1; 0 is outside.
+struct cau_domain {
+	int32_t label_count;
+	double least[3], most[3]; // a box around all labels
+	// The label at x. Labels with passed[label] set do not count, 0 neither: what is left decides,
+	// and 0 is the answer where nothing is left. NULL: all count.
+	int32_t (*label_at)(const cau_domain *domain, const double x[3], const bool *passed);
+	void (*finish)(cau_domain *domain);
+	void *own;
+};
+
+// Inside a surface: places with a generalized winding number above a half [Jacobson et al. 2013;
+// far triangles as dipoles, Barill et al. 2018]. The triangles are borrowed, and turned in place so
+// that they look outward; *turned: how many were.
+cau_status cau_domain_of_surface(cau_mesh *surface, cau_domain *domain, int32_t *turned,
+                                 cau_error *error);
+// The voxels around a place vote, by a cubic B-spline's weights. The volume is borrowed.
+void cau_domain_of_volume(const cau_volume *volume, cau_domain *domain);
+
+static inline void cau_domain_finish(cau_domain *domain)
+{
+	if (domain->finish)
+		domain->finish(domain);
+}

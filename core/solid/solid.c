@@ -1,0 +1,272 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// From a wish to a solid: read, choose an edge, mesh, write, report.
+#include "cautery/solid.h"
+
+#include <math.h>
+#include <stdarg.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "cautery/assert.h"
+#include "mesh/mesh_file.h"
+#include "mesh/report.h"
+#include "solid/gmsh_writer.h"
+#include "solid/tets.h"
+
+// What a session steps in real time on one core, with room for a cut.
+enum { TETRAHEDRA_CHOSEN = 8000, SAMPLES = 24 };
+// Edges of the lattice are as long as its spacing (2 of 6) or sqrt(3)/2 of it (4 of 6).
+static const double spacing_of_edge = 1.0 / 0.911;
+static const double tetrahedra_of_cell = 12;
+
+typedef struct work {
+	const cau_solid_wish *wish;
+	cau_solid *solid;
+	cau_mesh surface;
+	cau_volume volume;
+	bool is_volume;
+	cau_domain domain;
+	cau_tets tets;
+	size_t text_bytes;
+} work;
+
+__attribute__((format(printf, 2, 3))) static void put(work *of, const char *format, ...)
+{
+	size_t left = CAU_SOLID_TEXT_BYTES - of->text_bytes;
+	va_list arguments;
+	va_start(arguments, format);
+	int length = vsnprintf(of->solid->text + of->text_bytes, left, format, arguments);
+	va_end(arguments);
+	of->text_bytes += length < 0 ? 0 : (size_t)length < left ? (size_t)length : left - 1;
+}
+
+static void tell(const work *of, const char *stage, double share)
+{
+	if (of->wish->progress)
+		of->wish->progress(of->wish->user, stage, share);
+}
+
+static void tell_cutting(void *user, double share)
+{
+	tell(user, "cutting", share);
+}
+
+// ---- reading
+static const char *letters_of(const cau_volume *volume, char letters[4])
+{
+	static const char *const both[3] = {"LR", "PA", "IS"};
+	for (int i = 0; i < 3; i++) {
+		int along = 0;
+		for (int c = 1; c < 3; c++)
+			along = fabs(volume->axis[i][c]) > fabs(volume->axis[i][along]) ? c : along;
+		letters[i] = both[along][volume->axis[i][along] > 0];
+	}
+	letters[3] = 0;
+	return letters;
+}
+
+static cau_status read_volume(work *of, const void *bytes, size_t byte_count, cau_error *error)
+{
+	cau_volume *volume = &of->volume;
+	char letters[4];
+	cau_status status = cau_volume_read(bytes, byte_count, volume, error);
+	if (status)
+		return status;
+	double step[3];
+	for (int i = 0; i < 3; i++)
+		step[i] =
+			sqrt(volume->axis[i][0] * volume->axis[i][0] + volume->axis[i][1] * volume->axis[i][1] +
+		         volume->axis[i][2] * volume->axis[i][2]);
+	put(of, "format: %s, %d x %d x %d voxels of %.3g x %.3g x %.3g mm\n", volume->format,
+	    volume->size[0], volume->size[1], volume->size[2], step[0], step[1], step[2]);
+	if (volume->framed)
+		put(of,
+		    "orientation: the file's axes run to %s; of the mesh x is right, y front, z head "
+		    "(RAS)\n",
+		    letters_of(volume, letters));
+	else
+		put(of, "orientation: the file states none, so that left and right may be exchanged\n");
+	if (of->wish->labels && *of->wish->labels)
+		status = cau_volume_keep(volume, of->wish->labels, error);
+	if (!status)
+		cau_domain_of_volume(volume, &of->domain);
+	of->solid->unit_m = 1e-3;
+	return status;
+}
+
+static cau_status judge_surface(const work *of, int32_t turned, const cau_mesh_report *report,
+                                cau_error *error)
+{
+	if (!of->wish->strict)
+		return CAU_OK;
+	if (report->open_edge_count)
+		return cau_fail(error, CAU_BAD_MESH, "strict",
+		                "strict refuses to fill an open surface: %d edges on its rim",
+		                report->open_edge_count);
+	if (turned)
+		return cau_fail(error, CAU_BAD_MESH, "strict",
+		                "strict refuses to turn %d triangles that look inward", turned);
+	return cau_mesh_report_refuse(report, error);
+}
+
+static cau_status read_surface(work *of, const void *bytes, size_t byte_count, cau_error *error)
+{
+	cau_mesh *surface = &of->surface;
+	cau_mesh_report *report = calloc(1, sizeof *report);
+	int32_t turned = 0;
+	if (!report)
+		return cau_fail(error, CAU_NO_MEMORY, NULL, "no memory for a report");
+	cau_status status = CAU_OK;
+	if (of->wish->labels && *of->wish->labels)
+		status = cau_fail(error, CAU_BAD_VALUE, "labels", "a surface has none");
+	if (!status)
+		status = cau_mesh_read(of->wish->file, bytes, byte_count, surface, report, error);
+	if (!status)
+		status = cau_mesh_clean(surface, report, error);
+	if (!status)
+		status = cau_mesh_report_measure(surface, 1, report, error);
+	if (!status && surface->tetrahedron_count)
+		status = cau_fail(error, CAU_BAD_MESH, NULL,
+		                  "this file has tetrahedra already: nothing is left to fill");
+	if (!status)
+		status = cau_domain_of_surface(surface, &of->domain, &turned, error);
+	if (!status)
+		status = judge_surface(of, turned, report, error);
+	if (!status) {
+		put(of, "surface: %d triangles, %d %s, %d open edges", surface->triangle_count,
+		    report->component_count, report->component_count == 1 ? "component" : "components",
+		    report->open_edge_count);
+		put(of, turned ? ", %d triangles turned outward\n" : "\n", turned);
+	}
+	free(report);
+	return status;
+}
+
+static cau_status read_domain(work *of, cau_error *error)
+{
+	const void *bytes = of->wish->bytes;
+	size_t byte_count = of->wish->byte_count;
+	void *own = NULL;
+	cau_status status = CAU_OK;
+	tell(of, "reading", 0);
+	if (!bytes) {
+		status = cau_mesh_file_load(of->wish->file, &own, &byte_count, error);
+		bytes = own;
+	}
+	of->is_volume = !status && cau_solid_is_volume(bytes, byte_count);
+	if (!status)
+		status = (of->is_volume ? read_volume : read_surface)(of, bytes, byte_count, error);
+	free(own);
+	return status;
+}
+
+// ---- meshing
+// The volume inside, by asking at the middles of SAMPLES^3 cells of the box.
+static double volume_inside(const cau_domain *domain)
+{
+	double cell = 1;
+	int inside = 0;
+	for (int c = 0; c < 3; c++)
+		cell *= (domain->most[c] - domain->least[c]) / SAMPLES;
+	for (int i = 0; i < SAMPLES * SAMPLES * SAMPLES; i++) {
+		const int index[3] = {i % SAMPLES, i / SAMPLES % SAMPLES, i / (SAMPLES * SAMPLES)};
+		double x[3];
+		for (int c = 0; c < 3; c++)
+			x[c] = domain->least[c] +
+			       (index[c] + 0.5) * (domain->most[c] - domain->least[c]) / SAMPLES;
+		inside += domain->label_at(domain, x, NULL) != 0;
+	}
+	return cell * inside;
+}
+
+static cau_status choose_spacing(work *of, double *spacing, cau_error *error)
+{
+	double edge = of->wish->edge, volume = volume_inside(&of->domain), longest = 0;
+	for (int c = 0; c < 3; c++)
+		longest = fmax(longest, of->domain.most[c] - of->domain.least[c]);
+	if (!(edge >= 0) || !isfinite(edge))
+		return cau_fail(error, CAU_BAD_VALUE, "edge", "must be above zero");
+	if (!(volume > 0) && edge == 0)
+		return cau_fail(
+			error, CAU_BAD_MESH, NULL,
+			"nothing is inside this %s: it is open, or thinner than a %dth of its box; make "
+			"a sheet of it (as fascia), or choose an edge",
+			of->is_volume ? "segmentation" : "surface", SAMPLES);
+	*spacing =
+		edge > 0 ? edge * spacing_of_edge : cbrt(tetrahedra_of_cell * volume / TETRAHEDRA_CHOSEN);
+	put(of, "edge: %.3g of a longest side of %.3g (%s)\n", *spacing / spacing_of_edge, longest,
+	    edge > 0 ? "asked for" : "chosen");
+	return CAU_OK;
+}
+
+static cau_status make_tets(work *of, cau_error *error)
+{
+	double spacing = 0;
+	cau_status status = choose_spacing(of, &spacing, error);
+	if (!status) {
+		tell(of, "lattice", 0.1);
+		status = cau_lattice(&of->domain, spacing, &of->tets, error);
+	}
+	if (!status)
+		status = cau_stuff(&of->domain, &of->tets, tell_cutting, of, error);
+	if (!status && !of->tets.count)
+		status = cau_fail(error, CAU_BAD_VALUE, "edge",
+		                  "%.3g is longer than the tissue is thick: choose a shorter one",
+		                  spacing / spacing_of_edge);
+	if (!status) {
+		tell(of, "smoothing", 0.6);
+		status = cau_smooth(&of->domain, &of->tets, error);
+	}
+	return status;
+}
+
+// ---- the report
+static void put_labels(work *of)
+{
+	int64_t count[CAU_SOLID_LABEL_MAX + 1] = {0};
+	for (int32_t i = 0; i < of->tets.count; i++)
+		count[of->tets.label[i]]++;
+	put(of, "solid: %d vertices, %d tetrahedra, least angle between faces %.1f degrees\n",
+	    of->tets.vertex_count, of->tets.count, cau_least_angle_deg(&of->tets));
+	for (int32_t k = 1; k <= of->volume.label_count; k++) {
+		const cau_label *label = &of->volume.label[k];
+		put(of, "label %d%s%s%s: %lld voxels, %lld tetrahedra%s\n", label->value,
+		    label->name[0] ? " \"" : "", label->name, label->name[0] ? "\"" : "",
+		    (long long)label->voxel_count, (long long)count[k],
+		    count[k] ? "" : " (lost: thinner than an edge; choose a shorter one)");
+	}
+}
+
+cau_status cau_solid_make(const cau_solid_wish *wish, cau_solid *solid, cau_error *error)
+{
+	CAU_ASSERT(wish->file != NULL, "a solid of %zu bytes without a name", wish->byte_count);
+	*solid = (cau_solid){0};
+	work *of = calloc(1, sizeof *of);
+	if (!of)
+		return cau_fail(error, CAU_NO_MEMORY, NULL, "no memory for meshing");
+	of->wish = wish;
+	of->solid = solid;
+	cau_status status = read_domain(of, error);
+	if (!status)
+		status = make_tets(of, error);
+	if (!status) {
+		put_labels(of);
+		status = cau_gmsh_write(&of->tets, &of->volume, &solid->bytes, &solid->byte_count, error);
+	}
+	if (!status)
+		tell(of, "done", 1);
+	cau_domain_finish(&of->domain);
+	cau_tets_finish(&of->tets);
+	cau_volume_finish(&of->volume);
+	cau_mesh_finish(&of->surface);
+	free(of);
+	return status;
+}
+
+void cau_solid_finish(cau_solid *solid)
+{
+	free(solid->bytes);
+	solid->bytes = NULL;
+	solid->byte_count = 0;
+}

@@ -1,0 +1,220 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// A surface as a domain: how often it winds around a place.
+#include <float.h>
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "cautery/assert.h"
+#include "mesh/geometry.h"
+#include "solid/domain.h"
+#include "solid/orient.h"
+
+enum { LEAF = 8, STACK = 160, UNEVEN = 8 }; // 8 keeps the depth below 125
+static const double far_radii = 2.5;        // a node so many radii away counts as one dipole
+
+typedef struct node {
+	double centre[3];     // mean of the triangles' centres by area
+	double dipole[3];     // sum of area normals
+	double radius;        // of all corners about the centre
+	int32_t first, count; // triangles; count 0: children at `first` and `first` + 1
+} node;
+
+typedef struct tree {
+	const cau_mesh *surface;
+	int32_t *order; // triangles
+	double *middle; // (triangle_count x 3)
+	node *node;
+	int32_t node_count;
+} tree;
+
+// ---- building
+static void fill_node(tree *of, node *at)
+{
+	const double *x = of->surface->position;
+	double area = 0;
+	for (int32_t i = at->first; i < at->first + at->count; i++) {
+		double normal[3];
+		cau_triangle_normal(x, of->surface->triangle + 3 * (size_t)of->order[i], normal);
+		double own = sqrt(cau_dot3(normal, normal)) / 2;
+		area += own;
+		for (int c = 0; c < 3; c++) {
+			at->dipole[c] += normal[c] / 2;
+			at->centre[c] += own * of->middle[3 * (size_t)of->order[i] + (size_t)c];
+		}
+	}
+	for (int c = 0; c < 3; c++)
+		at->centre[c] = area > 0 ? at->centre[c] / area
+		                         : of->middle[3 * (size_t)of->order[at->first] + (size_t)c];
+	for (int32_t i = at->first; i < at->first + at->count; i++)
+		for (int k = 0; k < 3; k++) {
+			double away[3];
+			int32_t corner = of->surface->triangle[3 * (size_t)of->order[i] + (size_t)k];
+			cau_subtract3(x + 3 * (size_t)corner, at->centre, away);
+			at->radius = fmax(at->radius, sqrt(cau_dot3(away, away)));
+		}
+}
+
+// The axis along which the triangles' centres spread most, and the middle of that spread.
+static int widest_axis(const tree *of, const node *at, double *middle)
+{
+	int axis = 0;
+	double widest = -1;
+	for (int c = 0; c < 3; c++) {
+		double least = INFINITY, most = -INFINITY;
+		for (int32_t i = at->first; i < at->first + at->count; i++) {
+			double x = of->middle[3 * (size_t)of->order[i] + (size_t)c];
+			least = fmin(least, x);
+			most = fmax(most, x);
+		}
+		if (most - least > widest) {
+			widest = most - least;
+			axis = c;
+			*middle = (least + most) / 2;
+		}
+	}
+	return axis;
+}
+
+// Puts the triangles below the middle first. Returns how many; half of them where a side has next
+// to none, so that the tree's depth is bounded.
+static int32_t divide(tree *of, const node *at)
+{
+	double middle = 0;
+	size_t axis = (size_t)widest_axis(of, at, &middle);
+	int32_t low = at->first;
+	for (int32_t i = at->first; i < at->first + at->count; i++)
+		if (of->middle[3 * (size_t)of->order[i] + axis] < middle) {
+			int32_t own = of->order[i];
+			of->order[i] = of->order[low];
+			of->order[low++] = own;
+		}
+	int32_t below = low - at->first;
+	bool even = below > at->count / UNEVEN && below < at->count - at->count / UNEVEN;
+	return even ? below : at->count / 2;
+}
+
+static void build(tree *of)
+{
+	of->node[0] = (node){.count = of->surface->triangle_count};
+	of->node_count = 1;
+	for (int32_t n = 0; n < of->node_count; n++) {
+		node *at = &of->node[n];
+		fill_node(of, at);
+		if (at->count <= LEAF)
+			continue;
+		int32_t below = divide(of, at), child = of->node_count;
+		CAU_ASSERT(below > 0 && below < at->count, "%d of %d triangles below", below, at->count);
+		of->node[child] = (node){.first = at->first, .count = below};
+		of->node[child + 1] = (node){.first = at->first + below, .count = at->count - below};
+		at->first = child;
+		at->count = 0;
+		of->node_count += 2;
+	}
+}
+
+// ---- asking
+// The solid angle of a triangle over 4 pi [van Oosterom and Strackee 1983].
+static double wind(const tree *of, int32_t triangle, const double x[3])
+{
+	double r[3][3], length[3], normal[3];
+	for (int k = 0; k < 3; k++) {
+		int32_t corner = of->surface->triangle[3 * (size_t)triangle + (size_t)k];
+		cau_subtract3(of->surface->position + 3 * (size_t)corner, x, r[k]);
+		length[k] = sqrt(cau_dot3(r[k], r[k]));
+	}
+	cau_cross3(r[1], r[2], normal);
+	double above = cau_dot3(r[0], normal);
+	double below = length[0] * length[1] * length[2] + cau_dot3(r[0], r[1]) * length[2] +
+	               cau_dot3(r[1], r[2]) * length[0] + cau_dot3(r[2], r[0]) * length[1];
+	return atan2(above, below) / (2 * M_PI);
+}
+
+static double winding_number(const tree *of, const double x[3])
+{
+	int32_t stack[STACK], depth = 0;
+	double sum = 0;
+	stack[depth++] = 0;
+	while (depth) {
+		const node *at = &of->node[stack[--depth]];
+		double away[3];
+		cau_subtract3(at->centre, x, away);
+		double distance2 = cau_dot3(away, away), reach = far_radii * at->radius;
+		if (distance2 > reach * reach && distance2 > 0) {
+			sum += cau_dot3(at->dipole, away) / (4 * M_PI * distance2 * sqrt(distance2));
+		} else if (at->count) {
+			for (int32_t i = at->first; i < at->first + at->count; i++)
+				sum += wind(of, of->order[i], x);
+		} else {
+			CAU_ASSERT(depth + 2 <= STACK, "a tree deeper than %d", depth);
+			stack[depth++] = at->first;
+			stack[depth++] = at->first + 1;
+		}
+	}
+	return sum;
+}
+
+static int32_t label_at(const cau_domain *domain, const double x[3], const bool *passed)
+{
+	(void)passed; // the one label is never passed
+	for (int c = 0; c < 3; c++)
+		if (x[c] < domain->least[c] || x[c] > domain->most[c])
+			return 0;
+	return winding_number(domain->own, x) > 0.5;
+}
+
+static void finish(cau_domain *domain)
+{
+	tree *of = domain->own;
+	if (of) {
+		free(of->order);
+		free(of->middle);
+		free(of->node);
+	}
+	free(of);
+	domain->own = NULL;
+}
+
+static void measure(const cau_mesh *surface, cau_domain *domain, double *middle)
+{
+	for (int c = 0; c < 3; c++) {
+		domain->least[c] = INFINITY;
+		domain->most[c] = -INFINITY;
+	}
+	for (size_t v = 0; v < 3 * (size_t)surface->vertex_count; v++) {
+		domain->least[v % 3] = fmin(domain->least[v % 3], surface->position[v]);
+		domain->most[v % 3] = fmax(domain->most[v % 3], surface->position[v]);
+	}
+	for (size_t t = 0; t < (size_t)surface->triangle_count; t++)
+		for (size_t c = 0; c < 3; c++)
+			for (size_t k = 0; k < 3; k++)
+				middle[3 * t + c] +=
+					surface->position[3 * (size_t)surface->triangle[3 * t + k] + c] / 3;
+}
+
+cau_status cau_domain_of_surface(cau_mesh *surface, cau_domain *domain, int32_t *turned,
+                                 cau_error *error)
+{
+	size_t count = (size_t)surface->triangle_count;
+	CAU_ASSERT(count > 0, "a surface of %zu triangles", count);
+	*domain = (cau_domain){.label_count = 1, .label_at = label_at, .finish = finish};
+	cau_status status = cau_orient(surface, turned, error);
+	if (status)
+		return status;
+	tree *of = domain->own = calloc(1, sizeof *of);
+	if (of) {
+		of->surface = surface;
+		of->order = malloc(count * sizeof *of->order);
+		of->middle = calloc(3 * count, sizeof *of->middle);
+		of->node = malloc(2 * count * sizeof *of->node);
+	}
+	if (!of || !of->order || !of->middle || !of->node) {
+		cau_domain_finish(domain);
+		return cau_fail(error, CAU_NO_MEMORY, NULL, "no memory for a tree of %zu triangles", count);
+	}
+	for (size_t t = 0; t < count; t++)
+		of->order[t] = (int32_t)t;
+	measure(surface, domain, of->middle);
+	build(of);
+	return CAU_OK;
+}

@@ -1,0 +1,64 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// A segmentation: a label for each voxel. Of a file's header nothing is kept but sizes, axes,
+// frame, unit and the names of segments, as the rest may name a patient.
+#pragma once
+
+#include <stdbool.h>
+#include <stddef.h>
+#include <stdint.h>
+
+#include "cautery/solid.h"
+#include "cautery/status.h"
+
+enum { CAU_LABEL_NAME_BYTES = 48 };
+
+typedef struct cau_label {
+	int32_t value; // in the file
+	int64_t voxel_count;
+	char name[CAU_LABEL_NAME_BYTES]; // of the file, or ""
+} cau_label;
+
+typedef struct cau_volume {
+	const char *format; // "NRRD"
+	int32_t size[3];
+	uint8_t *voxel; // index in `label`, 0: outside; the first axis fastest
+	int32_t label_count;
+	cau_label label[CAU_SOLID_LABEL_MAX + 1]; // [0] is unused
+	double axis[3][3];    // of each index, one step in mm: to the right, to the front, to the head
+	double origin[3];     // mm, centre of the first voxel
+	bool framed;          // the file says where right, front and head are
+	double inverse[3][3]; // from mm to indices
+} cau_volume;
+
+// How the file holds its numbers.
+typedef struct cau_voxels {
+	enum { CAU_VOXEL_SIGNED, CAU_VOXEL_UNSIGNED, CAU_VOXEL_FLOATING } kind;
+	int bytes; // of one
+	bool swap, packed, text;
+	const unsigned char *data; // borrowed
+	size_t byte_count;
+} cau_voxels;
+
+bool cau_is_nrrd(const unsigned char *bytes, size_t byte_count);
+bool cau_is_nifti(const unsigned char *bytes, size_t byte_count); // packed or not
+
+// Reads a file's bytes. The caller finishes *volume, on failure too.
+cau_status cau_volume_read(const unsigned char *bytes, size_t byte_count, cau_volume *volume,
+                           cau_error *error);
+void cau_volume_finish(cau_volume *volume);
+
+// Keeps the labels that are listed ("1,3") alone. CAU_BAD_VALUE at "labels".
+cau_status cau_volume_keep(cau_volume *volume, const char *labels, cau_error *error);
+
+// The readers. Each fills size, axes and frame, says where the numbers are, and leaves names of
+// labels in `label` by their values (label_count of them), which decoding then completes.
+cau_status cau_nrrd_read(const unsigned char *bytes, size_t byte_count, cau_volume *volume,
+                         cau_voxels *voxels, cau_error *error);
+cau_status cau_nifti_read(const unsigned char *bytes, size_t byte_count, cau_volume *volume,
+                          cau_voxels *voxels, cau_error *error);
+// Checks sizes, and fills inverse from axis. CAU_BAD_MESH, CAU_LIMIT.
+cau_status cau_volume_check(cau_volume *volume, cau_error *error);
+
+// Unpacks zlib's or gzip's data up to `most` bytes. The caller frees *out.
+cau_status cau_unpack(const unsigned char *bytes, size_t byte_count, size_t most,
+                      unsigned char **out, size_t *out_count, cau_error *error);

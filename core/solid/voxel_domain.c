@@ -1,0 +1,117 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Labels of voxels as a domain. The nearest voxel alone would make stairs of every surface. So the
+// 64 voxels around a place vote, each with the weight of a cubic B-spline there.
+#include <math.h>
+
+#include "cautery/assert.h"
+#include "solid/domain.h"
+
+enum { REACH = 4 }; // voxels along each axis that vote
+
+static int32_t voxel_at(const cau_volume *volume, const int64_t index[3])
+{
+	int64_t place = 0;
+	for (int c = 2; c >= 0; c--) {
+		if (index[c] < 0 || index[c] >= volume->size[c])
+			return 0;
+		place = place * volume->size[c] + index[c];
+	}
+	return volume->voxel[place];
+}
+
+static void weights_of(double t, double weight[REACH])
+{
+	double s = 1 - t;
+	weight[0] = s * s * s / 6;
+	weight[1] = (4 - 6 * t * t + 3 * t * t * t) / 6;
+	weight[2] = (4 - 6 * s * s + 3 * s * s * s) / 6;
+	weight[3] = t * t * t / 6;
+}
+
+// The label of the eight voxels next to the place, where it is the same: they have more than half
+// of all weights. Else -1.
+static int32_t label_of_inner(const cau_volume *volume, const int64_t first[3])
+{
+	int32_t label = -1;
+	for (int i = 0; i < 8; i++) {
+		const int64_t index[3] = {first[0] + 1 + (i & 1), first[1] + 1 + (i >> 1 & 1),
+		                          first[2] + 1 + (i >> 2)};
+		int32_t own = voxel_at(volume, index);
+		if (i && own != label)
+			return -1;
+		label = own;
+	}
+	return label;
+}
+
+static int32_t vote(const cau_volume *volume, const int64_t first[3], double weight[3][REACH],
+                    const bool *passed)
+{
+	double votes[CAU_SOLID_LABEL_MAX + 1] = {0};
+	for (int k = 0; k < REACH; k++)
+		for (int j = 0; j < REACH; j++)
+			for (int i = 0; i < REACH; i++) {
+				const int64_t index[3] = {first[0] + i, first[1] + j, first[2] + k};
+				votes[voxel_at(volume, index)] += weight[0][i] * weight[1][j] * weight[2][k];
+			}
+	int32_t best = 0;
+	double most = passed && passed[0] ? 0 : votes[0];
+	for (int32_t label = 1; label <= volume->label_count; label++)
+		if (votes[label] > most && !(passed && passed[label])) {
+			most = votes[label];
+			best = label;
+		}
+	return best;
+}
+
+static int32_t label_at(const cau_domain *domain, const double x[3], const bool *passed)
+{
+	const cau_volume *volume = domain->own;
+	int64_t first[3];
+	double weight[3][REACH];
+	for (int i = 0; i < 3; i++) {
+		double index = 0;
+		for (int c = 0; c < 3; c++)
+			index += volume->inverse[i][c] * (x[c] - volume->origin[c]);
+		if (!(index > -REACH && index < volume->size[i] + REACH))
+			return 0;
+		first[i] = (int64_t)floor(index) - 1;
+		weights_of(index - floor(index), weight[i]);
+	}
+	int32_t inner = label_of_inner(volume, first);
+	if (inner >= 0 && !(passed && passed[inner]))
+		return inner;
+	return vote(volume, first, weight, passed);
+}
+
+void cau_domain_of_volume(const cau_volume *volume, cau_domain *domain)
+{
+	*domain = (cau_domain){
+		.label_count = volume->label_count, .label_at = label_at, .own = (void *)volume};
+	int32_t least[3] = {INT32_MAX, INT32_MAX, INT32_MAX}, most[3] = {-1, -1, -1};
+	const uint8_t *at = volume->voxel;
+	for (int32_t k = 0; k < volume->size[2]; k++)
+		for (int32_t j = 0; j < volume->size[1]; j++)
+			for (int32_t i = 0; i < volume->size[0]; i++) {
+				const int32_t index[3] = {i, j, k};
+				if (!*at++)
+					continue;
+				for (int c = 0; c < 3; c++) {
+					least[c] = index[c] < least[c] ? index[c] : least[c];
+					most[c] = index[c] > most[c] ? index[c] : most[c];
+				}
+			}
+	CAU_ASSERT(most[0] >= 0, "a volume of %d labels without a voxel", volume->label_count);
+	for (int c = 0; c < 3; c++) {
+		domain->least[c] = INFINITY;
+		domain->most[c] = -INFINITY;
+	}
+	for (int corner = 0; corner < 8; corner++)
+		for (int c = 0; c < 3; c++) {
+			double x = volume->origin[c];
+			for (int i = 0; i < 3; i++)
+				x += volume->axis[i][c] * (corner >> i & 1 ? most[i] + 1 : least[i] - 1);
+			domain->least[c] = fmin(domain->least[c], x);
+			domain->most[c] = fmax(domain->most[c], x);
+		}
+}
