@@ -8,9 +8,12 @@
 #include "cautery/defaults.h"
 #include "mesh/mesh.h"
 
-// From 3 to 20 units only centimetres make an organ: 3 to 20 cm, where millimetres make 3 to 20 mm.
-// Beyond that both may, and the user is asked.
+// Units are guessed where one alone makes an organ. From 3 to 20 units these are centimetres, as
+// millimetres make 3 to 20 mm. Beyond that they are millimetres for what has an inside: scanners and
+// segmentations write these. A sheet of 20 to 80 cm may be what somebody means, so that one of so
+// many units asks.
 static const double centimetres_most = 20;
+static const double sheet_millimetres_least = 80;
 static const double ball_radius_most_m = 0.03;
 static const double tool_height_m = 0.03;
 
@@ -59,23 +62,51 @@ static cau_status add_mesh(const cau_mesh_wish *wish, cau_scene_def *scene, cau_
 	return CAU_OK;
 }
 
-// Reads the mesh for its report. Where no unit was said, and metres make no tissue but centimetres
-// make an organ, these are taken.
+static bool may_guess(const cau_mesh_report *report)
+{
+	bool body = report->tetrahedron_count > 0 || report->opening <= CAU_NEARLY_CLOSED;
+	double longest = longest_of(report); // in units, which were taken for metres
+	if (report->proposed_unit_m == 0.01)
+		return longest <= centimetres_most;
+	return report->proposed_unit_m == 0.001 &&
+	       longest >= (body ? centimetres_most : sheet_millimetres_least);
+}
+
+// Reads the mesh for its report. Where no unit was said and metres make no tissue, a unit is
+// guessed.
 static cau_status read_report(const cau_mesh_wish *wish, cau_mesh_def *def, cau_mesh_report *report,
                               cau_error *error)
 {
 	cau_mesh mesh;
 	cau_status status = cau_mesh_make(def, "", &mesh, report, error);
 	cau_mesh_finish(&mesh);
-	bool centimetres = status == CAU_BAD_MESH && report->proposed_unit_m == 0.01 &&
-	                   !(wish->unit_m > 0) && longest_of(report) <= centimetres_most;
-	if (!centimetres)
+	if (status != CAU_BAD_MESH || wish->unit_m > 0 || !may_guess(report))
 		return status;
 	def->unit_m = report->proposed_unit_m;
 	status = cau_mesh_make(def, "", &mesh, report, error);
 	cau_mesh_finish(&mesh);
 	report->unit_guessed = 1;
 	return status;
+}
+
+// A material of its own for each region, as far as there is room, so that it can be changed alone.
+static void add_materials(const cau_mesh_report *report, bool fat, cau_layer_def *layer)
+{
+	int32_t listed =
+		report->region_count < CAU_MESH_REGION_MAX ? report->region_count : CAU_MESH_REGION_MAX;
+	for (int32_t i = 0; i < listed && layer->material_count < CAU_MAX_MATERIALS; i++) {
+		const cau_mesh_region *region = &report->region[i];
+		if (region->dimension != (fat ? 3 : 2) || report->region_count < 2)
+			continue;
+		int32_t at = layer->material_count++;
+		if (fat) {
+			layer->fat[at] = layer->fat[0];
+			layer->fat[at].region = region->region;
+		} else {
+			layer->sheet[at] = layer->sheet[0];
+			layer->sheet[at].region = region->region;
+		}
+	}
 }
 
 static cau_status add_layers(const cau_mesh_wish *wish, const cau_mesh_report *report,
@@ -87,7 +118,7 @@ static cau_status add_layers(const cau_mesh_wish *wish, const cau_mesh_report *r
 		return cau_fail(
 			error, CAU_BAD_MESH, "as",
 			"this file has a surface and no tetrahedra: make a sheet of it (as fascia), "
-			"or fill it with tetrahedra first, as TetGen and gmsh -3 do");
+			"or fill it with tetrahedra first (cautery-mesh)");
 	if (!fat && !report->triangle_count)
 		return cau_fail(error, CAU_BAD_MESH, "as",
 		                "this file has tetrahedra and no triangles: make a solid of it (as fat)");
@@ -95,6 +126,7 @@ static cau_status add_layers(const cau_mesh_wish *wish, const cau_mesh_report *r
 	cau_default_layer_def(layer, fat ? CAU_LAYER_FAT : CAU_LAYER_FASCIA);
 	snprintf(layer->name, sizeof layer->name, "%s", fat ? "fat" : "fascia");
 	snprintf(layer->mesh, sizeof layer->mesh, "mesh");
+	add_materials(report, fat, layer);
 	if (!fat)
 		return CAU_OK;
 	cau_layer_def *membrane = &scene->layers[scene->layer_count++];
@@ -104,21 +136,57 @@ static cau_status add_layers(const cau_mesh_wish *wish, const cau_mesh_report *r
 	return CAU_OK;
 }
 
-// The lowest tenth, or the rim of an open sheet.
-static void add_pins(const cau_mesh_report *report, cau_scene_def *scene)
+// The outermost tenth of a side.
+static void pin_side(const cau_mesh_report *report, int axis, bool high, cau_selection *pin)
 {
-	bool sheet = scene->layers[0].kind == CAU_LAYER_FASCIA;
-	bool rim = sheet && report->open_edge_count && !report->tetrahedron_count;
 	double margin_m = 0.01 * longest_of(report);
-	cau_selection *pin = &scene->pins[scene->pin_count++];
-	cau_default_selection(pin, rim ? CAU_SELECT_RIM : CAU_SELECT_BOX);
-	snprintf(pin->layer, sizeof pin->layer, "%s", rim ? "fascia" : "");
-	for (int c = 0; c < 3 && !rim; c++) {
+	double width_m = report->most_m[axis] - report->least_m[axis];
+	cau_default_selection(pin, CAU_SELECT_BOX);
+	for (int c = 0; c < 3; c++) {
 		pin->least_m[c] = report->least_m[c] - margin_m;
 		pin->most_m[c] = report->most_m[c] + margin_m;
 	}
-	if (!rim)
-		pin->most_m[2] = report->least_m[2] + 0.1 * (report->most_m[2] - report->least_m[2]);
+	if (high)
+		pin->least_m[axis] = report->most_m[axis] - 0.1 * width_m;
+	else
+		pin->most_m[axis] = report->least_m[axis] + 0.1 * width_m;
+}
+
+static cau_status pin_sides(const char *sides, const cau_mesh_report *report, cau_scene_def *scene,
+                            cau_error *error)
+{
+	static const char *const names[] = {"left", "right", "front", "back", "bottom", "top"};
+	for (const char *at = sides; *at;) {
+		size_t length = strcspn(at, ","), side = 0;
+		while (side < 6 && (strlen(names[side]) != length || memcmp(at, names[side], length) != 0))
+			side++;
+		bool none = length == 4 && memcmp(at, "none", 4) == 0;
+		if (side == 6 && !none)
+			return cau_fail(error, CAU_BAD_VALUE, "pin",
+			                "'%.*s' is no side: bottom, top, left, right, front, back or none",
+			                (int)(length < 40 ? length : 40), at);
+		if (!none && scene->pin_count == CAU_MAX_PINS)
+			return cau_fail(error, CAU_LIMIT, "pin", "more than %d sides", CAU_MAX_PINS);
+		if (!none)
+			pin_side(report, (int)(side / 2), side % 2, &scene->pins[scene->pin_count++]);
+		at += length + (at[length] == ',');
+	}
+	return CAU_OK;
+}
+
+// What was wished; else the lowest tenth, or the rim of an open sheet.
+static cau_status add_pins(const cau_mesh_wish *wish, const cau_mesh_report *report,
+                           cau_scene_def *scene, cau_error *error)
+{
+	bool sheet = scene->layers[0].kind == CAU_LAYER_FASCIA;
+	bool rim = sheet && report->open_edge_count && !report->tetrahedron_count;
+	bool chosen = !wish->pins || !wish->pins[0];
+	if (!chosen || !rim)
+		return pin_sides(chosen ? "bottom" : wish->pins, report, scene, error);
+	cau_selection *pin = &scene->pins[scene->pin_count++];
+	cau_default_selection(pin, CAU_SELECT_RIM);
+	snprintf(pin->layer, sizeof pin->layer, "fascia");
+	return CAU_OK;
 }
 
 // The ball grows with the mesh: an edge that sticks out of it on both sides stays cool at its ends
@@ -154,9 +222,9 @@ cau_status cau_mesh_scene(const cau_mesh_wish *wish, cau_scene_def *scene, cau_m
 		status = read_report(wish, &scene->meshes[0], report, error);
 	if (!status)
 		status = add_layers(wish, report, scene, error);
-	if (status)
-		return status;
-	add_pins(report, scene);
-	add_tools(report, scene);
-	return CAU_OK;
+	if (!status)
+		status = add_pins(wish, report, scene, error);
+	if (!status)
+		add_tools(report, scene);
+	return status;
 }

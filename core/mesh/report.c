@@ -144,23 +144,80 @@ static int32_t count_components(const int32_t *element, int32_t count, int corne
 }
 
 // ---- surface
-static cau_status count_open_edges(const cau_mesh *mesh, cau_mesh_report *report, cau_error *error)
+
+// Adds the vector area of what an open edge borders to that of its hole: of all edges around a hole
+// it is the hole's own, wherever the origin is.
+static void add_to_hole(const cau_mesh *mesh, const cau_edge_table *edges, int32_t e,
+                        int32_t *parent, double *hole)
+{
+	const double *x = mesh->position;
+	const int32_t *end = edges->vertex + 2 * (size_t)e;
+	const int32_t *t =
+		mesh->triangle +
+		3 * (size_t)edges->sharer[CAU_PRIMITIVE_TRIANGLE][edges->first[CAU_PRIMITIVE_TRIANGLE][e]];
+	double turn = 1, area[3], from[2][3];
+	for (int k = 0; k < 3; k++)
+		turn = t[k] == end[1] && t[(k + 1) % 3] == end[0] ? -1 : turn;
+	for (int k = 0; k < 2; k++) // from a vertex of the mesh, for accuracy
+		cau_subtract3(x + 3 * (size_t)end[k], x, from[k]);
+	cau_cross3(from[0], from[1], area);
+	for (int c = 0; c < 3; c++)
+		hole[3 * (size_t)root_of(parent, end[0]) + (size_t)c] += turn * area[c] / 2;
+}
+
+static bool is_open(const cau_edge_table *edges, int32_t e)
+{
+	const int32_t *first = edges->first[CAU_PRIMITIVE_TRIANGLE];
+	return first[e + 1] - first[e] == 1;
+}
+
+// The holes' areas over the surface's.
+static double measure_opening(const cau_mesh *mesh, const cau_edge_table *edges, int32_t *parent,
+                              double *hole)
+{
+	double open = 0, all = 0;
+	for (int32_t v = 0; v < mesh->vertex_count; v++)
+		parent[v] = v;
+	for (int32_t e = 0; e < edges->edge_count; e++) {
+		const int32_t *end = edges->vertex + 2 * (size_t)e;
+		if (is_open(edges, e))
+			parent[root_of(parent, end[0])] = root_of(parent, end[1]);
+	}
+	for (int32_t e = 0; e < edges->edge_count; e++)
+		if (is_open(edges, e))
+			add_to_hole(mesh, edges, e, parent, hole);
+	for (size_t v = 0; v < (size_t)mesh->vertex_count; v++)
+		open += sqrt(cau_dot3(hole + 3 * v, hole + 3 * v));
+	for (size_t t = 0; t < (size_t)mesh->triangle_count; t++) {
+		double normal[3];
+		cau_triangle_normal(mesh->position, mesh->triangle + 3 * t, normal);
+		all += sqrt(cau_dot3(normal, normal)) / 2;
+	}
+	return all > 0 ? open / all : 1;
+}
+
+static cau_status measure_rim(const cau_mesh *mesh, cau_mesh_report *report, cau_error *error)
 {
 	cau_primitives triangles = {.vertex_count = mesh->vertex_count,
 	                            .triangle_count = mesh->triangle_count,
 	                            .triangle = mesh->triangle};
 	cau_edge_table edges;
 	int32_t *layer = cau_mesh_array((size_t)mesh->triangle_count, sizeof *layer);
-	cau_status status = layer ? cau_edge_table_make(&triangles, layer, &edges, error)
-	                          : cau_fail(error, CAU_NO_MEMORY, NULL, "no memory for the edges");
+	int32_t *parent = cau_mesh_array((size_t)mesh->vertex_count, sizeof *parent);
+	double *hole = cau_mesh_array((size_t)mesh->vertex_count, 3 * sizeof *hole);
+	cau_status status = layer && parent && hole
+	                        ? cau_edge_table_make(&triangles, layer, &edges, error)
+	                        : cau_fail(error, CAU_NO_MEMORY, NULL, "no memory for the edges");
+	for (int32_t e = 0; !status && e < edges.edge_count; e++)
+		report->open_edge_count += is_open(&edges, e);
+	if (!status) {
+		report->opening = measure_opening(mesh, &edges, parent, hole);
+		cau_edge_table_finish(&edges);
+	}
 	free(layer);
-	if (status)
-		return status;
-	const int32_t *first = edges.first[CAU_PRIMITIVE_TRIANGLE];
-	for (int32_t e = 0; e < edges.edge_count; e++)
-		report->open_edge_count += first[e + 1] - first[e] == 1;
-	cau_edge_table_finish(&edges);
-	return CAU_OK;
+	free(parent);
+	free(hole);
+	return status;
 }
 
 // ---- quality
@@ -236,5 +293,6 @@ cau_status cau_mesh_report_measure(const cau_mesh *mesh, double unit_m, cau_mesh
 	measure_quality(mesh, report);
 	measure_size(mesh, unit_m, report);
 	report->open_edge_count = 0;
-	return solid ? CAU_OK : count_open_edges(mesh, report, error);
+	report->opening = 0;
+	return solid ? CAU_OK : measure_rim(mesh, report, error);
 }

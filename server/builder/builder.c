@@ -128,6 +128,14 @@ void cau_builder_stop(cau_builder *builder)
 	drop_all(&builder->longs);
 }
 
+bool cau_builder_is_stopping(cau_builder *builder)
+{
+	pthread_mutex_lock(&builder->mutex);
+	bool stopping = builder->stopping;
+	pthread_mutex_unlock(&builder->mutex);
+	return stopping;
+}
+
 void cau_builder_destroy(cau_builder *builder)
 {
 	if (!builder)

@@ -39,5 +39,7 @@ void cau_builder_submit(cau_builder *builder, cau_job *job);
 void cau_builder_stop(cau_builder *builder);
 // After cau_builder_stop, when nobody submits any more. Takes NULL.
 void cau_builder_destroy(cau_builder *builder);
+// Whether cau_builder_stop has been called: what a long job asks now and then.
+bool cau_builder_is_stopping(cau_builder *builder);
 // Jobs that wait or are under way.
 int cau_builder_busy(cau_builder *builder);

@@ -55,6 +55,8 @@ enum { CAU_CONFIG_TEXT_BYTES = 512 };
 	INTEGER(max_connection_upload_bytes, 134217728, 65536, 17179869184,                            \
 	        "one connection's uploads")                                                            \
 	INTEGER(max_all_upload_bytes, 536870912, 65536, 1099511627776, "all connections' uploads")     \
+	INTEGER(mesh_memory_mb, 2048, 64, 1000000, "memory that filling one upload may take")          \
+	INTEGER(mesh_time_s, 20, 1, 3600, "processor time that filling one upload may take")           \
 	INTEGER(max_requests_per_s, 2000, 1, 1000000, "messages of one client in a second")            \
 	INTEGER(queue_commands, 256, 8, 65536, "commands that wait for a session's tick border")       \
 	INTEGER(queue_reads, 64, 8, 65536, "requests that only read, waiting for a session")           \

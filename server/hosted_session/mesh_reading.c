@@ -5,6 +5,7 @@
 #include <string.h>
 
 #include "cautery/mesh_scene.h"
+#include "cautery/solid.h"
 #include "hosted_session/internal.h"
 #include "log/log.h"
 
@@ -14,6 +15,7 @@ enum { MENDS_MAX = 16 };
 
 typedef struct reading {
 	cau_job job; // first
+	cau_builder *builder;
 	cau_mesh_asked asked;
 	cau_reply reply;
 	cau_scene_def scene;
@@ -21,6 +23,8 @@ typedef struct reading {
 	cau_wire_mesh_kind kind[CAU_MESH_KIND_MAX];
 	cau_wire_mesh_mend mend[MENDS_MAX];
 	cau_wire_mesh_region region[CAU_MESH_REGION_MAX];
+	cau_wire_mesh_reading result;
+	char filled[CAU_FILL_REPORT_BYTES]; // what became of the inside; "": nothing did
 } reading;
 
 static void finish(reading *what, const cau_error *error, const cau_outcome *done)
@@ -29,6 +33,7 @@ static void finish(reading *what, const cau_error *error, const cau_outcome *don
 		cau_reply_fail(&what->reply, error, 0);
 	else
 		cau_reply_answer(&what->reply, done);
+	cau_filling_release(what->asked.filling);
 	free(what->asked.bytes);
 	free(what);
 }
@@ -71,7 +76,6 @@ static void fill_lists(reading *what, cau_wire_mesh_report *to)
 static void fill(reading *what, cau_wire_mesh_report *to)
 {
 	const cau_mesh_report *from = &what->report;
-	cau_mesh_report_text(from, to->text);
 	snprintf(to->format, sizeof to->format, "%s", from->format);
 	to->vertices_read = from->vertices_read;
 	to->vertex_count = from->vertex_count;
@@ -91,38 +95,156 @@ static void fill(reading *what, cau_wire_mesh_report *to)
 	fill_lists(what, to);
 }
 
+// The report in words: of the file, of what filled it, and of the mesh that came of it.
+static void put_text(const reading *what, const cau_mesh_report *file, char *text, size_t bytes)
+{
+	char own[CAU_MESH_TEXT_BYTES], solid[CAU_MESH_TEXT_BYTES];
+	own[0] = 0;
+	if (file->format[0])
+		cau_mesh_report_text(file, own);
+	if (!what->filled[0]) {
+		snprintf(text, bytes, "%s", own);
+		return;
+	}
+	cau_mesh_report_text(&what->report, solid);
+	const char *mesh = strstr(solid, "mesh: ");
+	snprintf(text, bytes, "%s%s%s", own, what->filled, mesh ? mesh : solid);
+}
+
 // What the user may not expect of the scene.
 static void note(const reading *what, cau_wire_mesh_reading *result)
 {
 	const cau_mesh_report *report = &what->report;
-	result->has_note = !report->tetrahedron_count && what->asked.layer_kind < 0;
-	if (result->has_note)
-		snprintf(
-			result->note, sizeof result->note,
-			"%s (as fascia); for a solid, fill the surface with tetrahedra first, as TetGen and "
-			"gmsh -3 do",
-			report->open_edge_count ? "the surface became a sheet"
-									: "the closed surface became a hollow sheet");
+	const char *words = NULL;
+	if (what->asked.layer_kind < 0 && what->filled[0] && result->report.triangle_count)
+		words = "the surface was filled with tetrahedra (as fat); it can be a sheet (as fascia)";
+	else if (what->asked.layer_kind < 0 && !report->tetrahedron_count)
+		words = "the surface became a sheet (as fascia), as its holes are too wide to fill it";
+	result->has_note = words != NULL;
+	snprintf(result->note, sizeof result->note, "%s", words ? words : "");
 }
 
-static cau_status read_mesh(reading *what, cau_outcome *done, cau_error *error)
+static bool is_over(void *user)
+{
+	return cau_builder_is_stopping(user);
+}
+
+static cau_status fill_upload(reading *what, double unit_m, cau_error *error)
+{
+	const cau_mesh_asked *asked = &what->asked;
+	cau_fill_wish wish = {.bytes = asked->bytes,
+	                      .byte_count = asked->byte_count,
+	                      .file_name = asked->file_name,
+	                      .edge = asked->edge_m / unit_m,
+	                      .labels = asked->labels,
+	                      .strict = asked->strict,
+	                      .memory_mb = asked->memory_mb,
+	                      .time_s = asked->time_s,
+	                      .most_bytes = asked->most_bytes,
+	                      .is_over = is_over,
+	                      .user = what->builder};
+	return cau_fill(asked->filling, &wish, what->filled, error);
+}
+
+// Reads bytes with a scene around them.
+static cau_status read_bytes(reading *what, const void *bytes, size_t byte_count, double unit_m,
+                             cau_error *error)
 {
 	cau_mesh_wish wish = {.file = what->asked.file_name,
-	                      .bytes = what->asked.bytes,
-	                      .byte_count = what->asked.byte_count,
-	                      .unit_m = what->asked.unit_m,
+	                      .bytes = bytes,
+	                      .byte_count = byte_count,
+	                      .unit_m = unit_m,
 	                      .layer_kind = what->asked.layer_kind,
-	                      .strict = what->asked.strict};
-	cau_wire_mesh_reading result = {.definition = &what->scene};
-	cau_status status = cau_mesh_scene(&wish, &what->scene, &what->report, error);
-	if (status)
+	                      .strict = what->asked.strict,
+	                      .pins = what->asked.pin};
+	return cau_mesh_scene(&wish, &what->scene, &what->report, error);
+}
+
+static cau_status read_solid(reading *what, double unit_m, cau_error *error)
+{
+	const void *bytes;
+	size_t byte_count;
+	cau_status status = fill_upload(what, unit_m, error);
+	int guessed = what->report.unit_guessed;
+	if (status || !cau_filling_solid(what->asked.filling, &bytes, &byte_count))
 		return status;
-	snprintf(what->scene.meshes[0].file, sizeof what->scene.meshes[0].file, "%s",
-	         what->asked.upload);
-	fill(what, &result.report);
-	note(what, &result);
-	done->text = cau_answer_text(what->reply.method, &result, &done->text_bytes, error);
-	return done->text ? CAU_OK : error->status;
+	status = read_bytes(what, bytes, byte_count, unit_m, error);
+	what->report.unit_guessed = guessed;
+	return status;
+}
+
+// A surface is read as it is first, for its report and its unit. `as` may ask for a solid of it.
+static cau_status read_surface(reading *what, bool *has_inside, cau_error *error)
+{
+	int32_t kind = what->asked.layer_kind;
+	if (!what->asked.as_it_is && kind == CAU_LAYER_FAT)
+		what->asked.layer_kind = -1;
+	cau_status status =
+		read_bytes(what, what->asked.bytes, what->asked.byte_count, what->asked.unit_m, error);
+	what->asked.layer_kind = kind;
+	const cau_mesh_report *report = &what->report;
+	bool wanted = kind == CAU_LAYER_FAT || (kind < 0 && report->opening <= CAU_NEARLY_CLOSED);
+	*has_inside =
+		!status && !what->asked.as_it_is && wanted && !report->tetrahedron_count;
+	return status;
+}
+
+static cau_status read_mesh(reading *what, cau_mesh_report *file, cau_error *error)
+{
+	const cau_mesh_asked *asked = &what->asked;
+	bool volume = cau_solid_is_volume(asked->bytes, asked->byte_count), has_inside = volume;
+	if (volume && asked->layer_kind == CAU_LAYER_FASCIA)
+		return cau_fail(error, CAU_BAD_VALUE, "as",
+		                "a segmentation has no sheet: make a solid of it (as fat)");
+	if (!volume && asked->labels[0])
+		return cau_fail(error, CAU_BAD_VALUE, "labels", "this file is no segmentation");
+	cau_status status = volume ? CAU_OK : read_surface(what, &has_inside, error);
+	*file = what->report;
+	if (status || !has_inside)
+		return status;
+	return read_solid(what, !volume ? file->unit_m : asked->unit_m > 0 ? asked->unit_m : 1e-3,
+	                  error);
+}
+
+// What a report says of the file is that of the file that was uploaded, not of the solid made of it.
+static void keep_of_file(reading *what, const cau_mesh_report *file)
+{
+	cau_mesh_report *to = &what->report;
+	to->vertices_read = file->vertices_read;
+	to->kind_count = file->kind_count;
+	memcpy(to->kind, file->kind, sizeof to->kind);
+#define X(field, strict, words) to->field = file->field;
+	CAU_MESH_MEND_TABLE(X)
+#undef X
+	to->triangle_count = file->triangle_count;
+	to->open_edge_count = file->open_edge_count;
+	if (file->format[0])
+		snprintf(to->format, sizeof to->format, "%s", file->format);
+	else if (sscanf(what->filled, "format: %31[^,]", to->format) != 1)
+		to->format[0] = 0;
+}
+
+static cau_status read_and_answer(reading *what, cau_outcome *done, cau_error *error)
+{
+	cau_wire_mesh_reading *result = &what->result;
+	cau_mesh_report *file = calloc(1, sizeof *file);
+	if (!file)
+		return cau_fail(error, CAU_NO_MEMORY, "", "no memory for a report");
+	cau_status status = read_mesh(what, file, error);
+	if (!status) {
+		result->definition = &what->scene;
+		snprintf(what->scene.meshes[0].file, sizeof what->scene.meshes[0].file, "%s",
+		         what->asked.upload);
+		put_text(what, file, result->report.text, sizeof result->report.text);
+		if (what->filled[0])
+			keep_of_file(what, file);
+		fill(what, &result->report);
+		note(what, result);
+		done->text = cau_answer_text(what->reply.method, result, &done->text_bytes, error);
+		status = done->text ? CAU_OK : error->status;
+	}
+	free(file);
+	return status;
 }
 
 static void run(cau_job *job)
@@ -130,7 +252,7 @@ static void run(cau_job *job)
 	reading *what = (reading *)job;
 	cau_error error = {0};
 	cau_outcome done = {0};
-	cau_status status = read_mesh(what, &done, &error);
+	cau_status status = read_and_answer(what, &done, &error);
 	char *text = (char *)done.text;
 	if (status) {
 		char path[sizeof error.path];
@@ -148,11 +270,13 @@ cau_status cau_mesh_ask(cau_builder *builder, const cau_mesh_asked *asked, const
 {
 	reading *what = calloc(1, sizeof *what);
 	if (!what) {
+		cau_filling_release(asked->filling);
 		free(asked->bytes);
 		return cau_fail(error, CAU_NO_MEMORY, "", "no memory for reading a mesh");
 	}
 	what->job = (cau_job){
 		.run = run, .drop = drop, .expected_s = (double)asked->byte_count / READ_BYTES_PER_S};
+	what->builder = builder;
 	what->asked = *asked;
 	what->reply = *reply;
 	cau_builder_submit(builder, &what->job);

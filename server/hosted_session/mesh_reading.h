@@ -3,6 +3,7 @@
 #pragma once
 
 #include "builder/builder.h"
+#include "fill/fill.h"
 #include "hosted_session/sink.h"
 
 // What is to be read.
@@ -14,8 +15,14 @@ typedef struct cau_mesh_asked {
 	double unit_m;       // 0: guessed
 	int layer_kind;      // -1: by the elements
 	bool strict;
+	bool as_it_is;        // never filled
+	double edge_m;        // 0: chosen
+	char labels[256];     // of a segmentation; "": all
+	char pin[64];         // sides; "": chosen
+	cau_filling *filling; // taken: where the solid goes, if it becomes one
+	int64_t memory_mb, time_s, most_bytes; // bounds of filling
 } cau_mesh_asked;
 
-// Has it read, and answers through `reply`. Takes the bytes, on failure too.
+// Has it read, and answers through `reply`. Takes the bytes and the filling, on failure too.
 cau_status cau_mesh_ask(cau_builder *builder, const cau_mesh_asked *asked, const cau_reply *reply,
                         cau_error *error);

@@ -161,7 +161,7 @@ cau_status cau_meshes_pack(cau_scene_def *scene, void **meshes, size_t *bytes, c
 cau_status cau_meshes_unpack(cau_scene_def *scene, const void *meshes, size_t bytes,
                              cau_error *error);
 
-// Has an upload read as a mesh, on the builder. Takes the bytes, on failure too.
+// Has an upload read as a mesh, on the builder. Takes bytes and filling, on failure too.
 cau_status cau_hub_read_mesh(cau_hub *hub, const cau_mesh_asked *asked, const cau_reply *reply,
                              cau_error *error);
 

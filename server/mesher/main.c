@@ -20,7 +20,7 @@ enum { EXIT_USAGE = 2, EXIT_INPUT = 3, EXIT_OUTPUT = 4 };
 static const double a_while_s = 0.5; // between lines of progress
 
 typedef struct asked {
-	const char *out, *labels;
+	const char *out, *labels, *name;
 	double edge;
 	int32_t memory_mb, time_s;
 	bool strict, with_parent, help, version;
@@ -35,6 +35,8 @@ static const cau_option rows[] = {
                 "default: as long as makes about 8,000 tetrahedra"},
 	{"labels", "A,B", CAU_OPTION_TEXT, AT(labels),
      .meaning = "labels of a segmentation to keep (default: all but 0)"},
+	{"name", "N", CAU_OPTION_TEXT, AT(name),
+     .meaning = "what messages call standard input (default: \"standard input\")"},
 	{"strict", NULL, CAU_OPTION_FLAG, AT(strict),
      .meaning = "refuses a surface that is open or has to be mended"},
 	{"memory-mb", "N", CAU_OPTION_WHOLE, AT(memory_mb), 64, 1e6,
@@ -68,10 +70,17 @@ static bool bound(int resource, rlim_t most)
 	return setrlimit((__rlimit_resource_t)resource, &limit) == 0;
 }
 
+// Sanitizers reserve more address space than any machine has memory.
+#if defined(__SANITIZE_ADDRESS__) || defined(__SANITIZE_THREAD__)
+static const bool bounds_memory = false;
+#else
+static const bool bounds_memory = true;
+#endif
+
 static bool take_bounds(const asked *options)
 {
 	bool taken = true;
-	if (options->memory_mb)
+	if (options->memory_mb && bounds_memory)
 		taken = bound(RLIMIT_AS, (rlim_t)options->memory_mb << 20);
 	if (options->time_s)
 		taken &= bound(RLIMIT_CPU, (rlim_t)options->time_s);
@@ -173,6 +182,8 @@ static int run(const asked *options, const char *file)
 	cau_solid solid;
 	shown last = {.terminal = isatty(STDERR_FILENO)};
 	bool piped = strcmp(file, "-") == 0;
+	if (piped)
+		file = options->name ? options->name : "standard input";
 	cau_solid_wish wish = {.file = file,
 	                       .edge = options->edge,
 	                       .labels = options->labels,

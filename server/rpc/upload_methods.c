@@ -92,26 +92,54 @@ void cau_call_upload_end(cau_call *call)
 	cau_call_result(call, &result);
 }
 
-static cau_status ask_for_mesh(cau_call *call, const cau_wire_mesh_read *params, cau_error *error)
+static cau_status check_wish(const cau_wire_mesh_read *params, const cau_upload *upload,
+                             cau_error *error)
 {
-	cau_peer *peer = call->peer;
-	const cau_upload *upload = cau_uploads_find(&peer->uploads, params->upload);
-	cau_reply reply = cau_call_reply(call);
-	cau_mesh_asked asked = {.unit_m = params->has_unit_m ? params->unit_m : 0,
-	                        .layer_kind = params->has_as ? (int)params->as : -1,
-	                        .strict = params->strict};
 	if (!upload || !upload->complete)
 		return cau_fail(error, CAU_NOT_FOUND, "params.upload",
 		                "no upload of this connection is named `%.48s`", params->upload);
 	if (params->has_as && params->as != CAU_LAYER_FAT && params->as != CAU_LAYER_FASCIA)
 		return cau_fail(error, CAU_BAD_VALUE, "params.as", "must be fat or fascia");
+	return CAU_OK;
+}
+
+static void fill_asked(const cau_wire_mesh_read *params, const cau_upload *upload,
+                       const cau_config *config, cau_mesh_asked *asked)
+{
+	asked->unit_m = params->has_unit_m ? params->unit_m : 0;
+	asked->layer_kind = params->has_as ? (int)params->as : -1;
+	asked->strict = params->strict;
+	asked->as_it_is = params->as_it_is;
+	asked->edge_m = params->has_edge_m ? params->edge_m : 0;
+	snprintf(asked->labels, sizeof asked->labels, "%s", params->has_labels ? params->labels : "");
+	snprintf(asked->pin, sizeof asked->pin, "%s", params->has_pin ? params->pin : "");
+	memcpy(asked->file_name, upload->file_name, sizeof asked->file_name);
+	name_upload(upload, asked->upload, sizeof asked->upload);
+	asked->memory_mb = config->mesh_memory_mb;
+	asked->time_s = config->mesh_time_s;
+	asked->most_bytes = config->max_upload_bytes;
+}
+
+static cau_status ask_for_mesh(cau_call *call, const cau_wire_mesh_read *params, cau_error *error)
+{
+	cau_peer *peer = call->peer;
+	cau_upload *upload = cau_uploads_find(&peer->uploads, params->upload);
+	cau_reply reply = cau_call_reply(call);
+	cau_mesh_asked asked = {0};
+	cau_status status = check_wish(params, upload, error);
+	if (status)
+		return status;
+	fill_asked(params, upload, peer->service->config, &asked);
 	asked.bytes = malloc(upload->byte_count);
-	if (!asked.bytes)
+	asked.filling = cau_filling_create();
+	if (!asked.bytes || !asked.filling) {
+		free(asked.bytes);
+		cau_filling_release(asked.filling);
 		return cau_fail(error, CAU_NO_MEMORY, "", "no memory for a mesh");
+	}
 	memcpy(asked.bytes, upload->bytes, upload->byte_count); // the upload may be discarded meanwhile
 	asked.byte_count = upload->byte_count;
-	memcpy(asked.file_name, upload->file_name, sizeof asked.file_name);
-	name_upload(upload, asked.upload, sizeof asked.upload);
+	cau_upload_refill(upload, cau_filling_share(asked.filling));
 	return cau_hub_read_mesh(peer->service->hub, &asked, &reply, error);
 }
 
@@ -162,6 +190,8 @@ cau_status cau_peer_fill_meshes(cau_peer *peer, cau_scene_def *scene, cau_error 
 			                "no upload of this connection is named `%.48s`", name);
 		mesh->bytes = upload->bytes;
 		mesh->byte_count = upload->byte_count;
+		if (upload->filling) // the solid inside, once it is there
+			cau_filling_solid(upload->filling, &mesh->bytes, &mesh->byte_count);
 	}
 	return CAU_OK;
 }

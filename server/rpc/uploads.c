@@ -100,8 +100,17 @@ void cau_uploads_drop(cau_uploads *uploads, cau_upload_total *total, cau_upload 
 	*at = upload->next;
 	uploads->bytes -= charge_of((int64_t)upload->byte_count);
 	total->bytes -= charge_of((int64_t)upload->byte_count);
+	cau_upload_refill(upload, NULL);
 	free(upload->bytes);
 	free(upload);
+}
+
+void cau_upload_refill(cau_upload *upload, cau_filling *filling)
+{
+	if (upload->filling)
+		cau_filling_cancel(upload->filling);
+	cau_filling_release(upload->filling);
+	upload->filling = filling;
 }
 
 void cau_uploads_drop_all(cau_uploads *uploads, cau_upload_total *total)

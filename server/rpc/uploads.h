@@ -10,6 +10,7 @@
 
 #include "cautery/messages.h"
 #include "config/config.h"
+#include "fill/fill.h"
 
 // What an upload counts for at least, so that countless small ones are bounded too.
 enum { CAU_UPLOAD_LEAST_BYTES = 65536 };
@@ -22,6 +23,7 @@ typedef struct cau_upload {
 	unsigned char *bytes; // NULL once it is spoilt
 	size_t byte_count, received;
 	bool complete;
+	cau_filling *filling; // of the last mesh.read that may fill it; NULL: none
 	char trouble[160]; // what spoilt it; told by upload.end
 } cau_upload;
 
@@ -50,5 +52,7 @@ void cau_upload_take(cau_upload *upload, uint64_t offset, const void *data, size
 // Whether all has come and has this hash; tells why not.
 cau_status cau_upload_check(const cau_upload *upload, const char *sha256, cau_error *error);
 
+// Another filling (taken; NULL: none) in the place of the one before, which is cancelled.
+void cau_upload_refill(cau_upload *upload, cau_filling *filling);
 void cau_uploads_drop(cau_uploads *uploads, cau_upload_total *total, cau_upload *upload);
 void cau_uploads_drop_all(cau_uploads *uploads, cau_upload_total *total);

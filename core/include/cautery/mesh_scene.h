@@ -78,6 +78,7 @@ typedef struct cau_mesh_report {
 	int32_t vertex_count, triangle_count, tetrahedron_count;
 	int32_t component_count; // connected pieces
 	int32_t open_edge_count; // edges of one triangle only; of meshes without tetrahedra
+	double opening;          // area of the holes that they surround, over the surface's area
 	int32_t region_count;    // of all regions, listed or not
 	cau_mesh_region region[CAU_MESH_REGION_MAX];
 	double least_m[3], most_m[3]; // bounding box
@@ -98,12 +99,18 @@ typedef struct cau_mesh_wish {
 	double unit_m;      // metres in one unit; 0: guessed where it is clear
 	int32_t layer_kind; // CAU_LAYER_FAT or CAU_LAYER_FASCIA; -1: fat where there are tetrahedra
 	int32_t strict;     // refuse what would have to be mended
+	const char *pins;   // sides whose outermost tenth is pinned, of bottom, top, left, right, front
+	                    // and back, with commas, or "none"; NULL or "": chosen
 } cau_mesh_wish;
 
+// A surface whose holes have no more than this share of its area is nearly closed: it has an inside.
+#define CAU_NEARLY_CLOSED 0.1
+
 // Reads the mesh and makes a scene around it: its lowest tenth pinned, or the rim of an open sheet;
-// a hot ball and a grasper above it; no gravity, as a scanned organ has its shape under its weight
-// already. Errors: as for reading; CAU_BAD_MESH at "unit_m" with a proposal where the unit is not
-// clear; CAU_BAD_MESH at "as" where the file lacks the elements of the layer. Threads: any.
+// a material for each of the first regions; a hot ball and a grasper above it; no gravity, as a
+// scanned organ has its shape under its weight already. Errors: as for reading; CAU_BAD_MESH at
+// "unit_m" with a proposal where the unit is not clear; CAU_BAD_MESH at "as" where the file lacks
+// the elements of the layer; CAU_BAD_VALUE at "pin". Threads: any.
 cau_status cau_mesh_scene(const cau_mesh_wish *wish, cau_scene_def *scene, cau_mesh_report *report,
                           cau_error *error);
 

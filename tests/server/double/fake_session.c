@@ -12,6 +12,7 @@
 
 #include "cautery/defaults.h"
 #include "cautery/mesh_scene.h"
+#include "cautery/solid.h"
 #include "cautery/session.h"
 
 enum {
@@ -547,6 +548,13 @@ cau_status cau_mesh_scene(const cau_mesh_wish *wish, cau_scene_def *scene, cau_m
 	(void)scene;
 	(void)report;
 	return cau_fail(error, CAU_UNSUPPORTED, "", "the double reads no mesh, not %s", wish->file);
+}
+
+bool cau_solid_is_volume(const void *bytes, size_t byte_count)
+{
+	(void)bytes;
+	(void)byte_count;
+	return false; // the double reads meshes alone
 }
 
 void cau_mesh_report_text(const cau_mesh_report *report, char bytes[static CAU_MESH_TEXT_BYTES])

@@ -768,10 +768,18 @@ export interface MeshRead {
   upload: string;
   /** metres in one unit of the file; guessed by default where it is clear (1e-09 to 1000 m) */
   unit_m?: number;
-  /** fat (tetrahedra) or fascia (triangles); by default fat where there are tetrahedra */
+  /** fat (tetrahedra) or fascia (triangles); by default fat where there are tetrahedra, or an inside */
   as?: 'fascia' | 'membrane' | 'fat' | 'links';
   /** refuses a mesh that would have to be mended; false by default */
   strict?: boolean;
+  /** never fills the mesh with tetrahedra, for a scene of one's own; false by default */
+  as_it_is?: boolean;
+  /** length of an edge of the tetrahedra that fill it; about 8,000 of them by default (1e-06 to 10 m) */
+  edge_m?: number;
+  /** of a segmentation: labels to keep, as in 1,3; all by default */
+  labels?: string;
+  /** sides that are pinned: bottom, top, left, right, front, back, with commas, or none; the bottom by default */
+  pin?: string;
 }
 
 /** elements of one kind in the file */
@@ -848,7 +856,7 @@ export interface MeshReading {
   report: MeshReport;
   /** a scene around the upload, for session.create */
   definition: Scene;
-  /** a choice that the user has: a closed surface became a sheet */
+  /** a choice that the user has: the surface was filled */
   note?: string;
 }
 
