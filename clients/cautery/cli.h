@@ -18,7 +18,7 @@ typedef enum cli_exit {
 	CLI_INCOMPLETE = 5, // a script was refused in part, lost its energy, or was interrupted
 } cli_exit;
 
-enum { CLI_ARGUMENTS_MAX = 128, CLI_OPTIONS_MAX = 8 };
+enum { CLI_ARGUMENTS_MAX = 128, CLI_OPTIONS_MAX = 12 };
 
 typedef struct cli cli;
 

@@ -9,5 +9,5 @@ const cli_command *const cli_commands[] = {
 	&cli_restore,     &cli_events,     &cli_pin,    &cli_unpin,      &cli_force,
 	&cli_gravity,     &cli_material,   &cli_ping,   &cli_context_ls, &cli_context_set,
 	&cli_context_use, &cli_context_rm, &cli_backup, &cli_move,       &cli_token,
-	&cli_completion,  &cli_complete,   NULL,
+	&cli_mesh,        &cli_completion, &cli_complete,   NULL,
 };

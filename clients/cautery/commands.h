@@ -28,4 +28,5 @@ extern const cli_command cli_ping;                                   // ping.c
 extern const cli_command cli_context_ls, cli_context_set;            // context.c
 extern const cli_command cli_context_use, cli_context_rm;            // context.c
 extern const cli_command cli_token;                                  // token.c
+extern const cli_command cli_mesh;                                   // mesh.c
 extern const cli_command cli_completion, cli_complete;               // completion.c

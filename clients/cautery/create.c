@@ -177,9 +177,11 @@ const cli_command cli_create = {
 	.summary = "makes a session and prints its id",
 	.help =
 		"SCENE is one of `cautery scenes`. FILE is a scene (.json) or a mesh: Gmsh, VTK, VTU,\n"
-		"OBJ, STL, PLY, Medit, TetGen or USD text. The meshes of a scene file are uploaded. For\n"
+		"OBJ, STL, PLY, Medit, TetGen, USD text, NRRD or NIfTI. The meshes of a scene file are uploaded. For\n"
 		"a mesh alone, its report is printed and a scene is made: its lowest tenth (of an open\n"
-		"sheet: its rim) is pinned, the tools are a hot ball and a grasper, without gravity.\n",
+		"sheet: its rim) is pinned, the tools are a hot ball and a grasper, without gravity.\n"
+		"A closed or nearly closed surface, and a segmentation (NRRD, NIfTI), is filled with\n"
+		"tetrahedra.\n",
 	.most = 1,
 	.options = {{"name", "N", "wanted name, without the daemon's label"},
                 {"paused", NULL, "starts paused"},
@@ -188,5 +190,9 @@ const cli_command cli_create = {
                 {"as", "KIND",
                  "fat (tetrahedra) or fascia (triangles); default: fat where possible"},
                 {"strict", NULL, "refuses a mesh that needs repair"},
-                {"unit-m", "U", "metres in one unit of the mesh (0.001 for millimetres)"}},
+                {"unit-m", "U", "metres in one unit of the mesh (0.001 for millimetres)"},
+                {"edge-mm", "L", "length of an edge of tetrahedra that fill a mesh"},
+                {"labels", "A,B", "labels of a segmentation to keep (default: all)"},
+                {"pin", "SIDES",
+                 "bottom, top, left, right, front, back, with commas, or none (default: bottom)"}},
 	.run = run};

@@ -136,6 +136,14 @@ static cli_exit read_mesh(cli *c, const char *file, const cau_wire_mesh_read *pa
 	return status ? fail_reading(c, file) : CLI_DONE;
 }
 
+// An option's text, which the server checks. False: it is not given.
+static bool take_text(const cli *c, const char *option, char *text, size_t bytes)
+{
+	const char *value = cli_value(c, option);
+	snprintf(text, bytes, "%s", value ? value : "");
+	return value != NULL;
+}
+
 cli_exit cli_mesh_scene(cli *c, const char *file, const char *name, cau_scene_def *scene)
 {
 	cau_wire_mesh_read params = {0};
@@ -147,13 +155,18 @@ cli_exit cli_mesh_scene(cli *c, const char *file, const char *name, cau_scene_de
 	params.has_as = kind != NULL;
 	params.as = kind && strcmp(kind, "fat") == 0 ? CAU_LAYER_FAT : CAU_LAYER_FASCIA;
 	params.has_strict = params.strict = cli_value(c, "strict") != NULL;
+	params.has_edge_m = cli_value(c, "edge-mm") != NULL;
+	params.edge_m = 1e-3 * cli_number(c, "edge-mm", 1e-3, 10000, 1, &bad);
+	params.has_labels = take_text(c, "labels", params.labels, sizeof params.labels);
+	params.has_pin = take_text(c, "pin", params.pin, sizeof params.pin);
 	return bad ? CLI_USAGE : read_mesh(c, file, &params, true, scene);
 }
 
 cli_exit cli_mesh_report(cli *c, const char *file, const cau_mesh_def *mesh)
 {
 	cau_wire_mesh_read params = {
-		.has_unit_m = true, .unit_m = mesh->unit_m, .has_strict = true, .strict = mesh->strict};
+		.has_unit_m = true, .unit_m = mesh->unit_m, .has_strict = true, .strict = mesh->strict,
+		.has_as_it_is = true, .as_it_is = true};
 	snprintf(params.upload, sizeof params.upload, "%s", mesh->name);
 	cau_scene_def *unused = calloc(1, sizeof *unused);
 	if (!unused)

@@ -105,7 +105,7 @@ static cau_status lay_out(grid *of, cau_error *error)
 	}
 	if (cells > cells_most)
 		return cau_fail(error, CAU_LIMIT, "edge",
-		                "asks for %.3g cells, of %.3g at most: choose a longer edge", cells,
+		                "an edge so short makes %.3g cells, of %.3g at most: choose a longer one", cells,
 		                cells_most);
 	return CAU_OK;
 }

@@ -119,7 +119,7 @@ static cau_status read_surface(work *of, const void *bytes, size_t byte_count, c
 		return cau_fail(error, CAU_NO_MEMORY, NULL, "no memory for a report");
 	cau_status status = CAU_OK;
 	if (of->wish->labels && *of->wish->labels)
-		status = cau_fail(error, CAU_BAD_VALUE, "labels", "a surface has none");
+		status = cau_fail(error, CAU_BAD_VALUE, "labels", "a surface has no labels");
 	if (!status)
 		status = cau_mesh_read(of->wish->file, bytes, byte_count, surface, report, error);
 	if (!status)
@@ -186,7 +186,7 @@ static cau_status choose_spacing(work *of, double *spacing, cau_error *error)
 	for (int c = 0; c < 3; c++)
 		longest = fmax(longest, of->domain.most[c] - of->domain.least[c]);
 	if (!(edge >= 0) || !isfinite(edge))
-		return cau_fail(error, CAU_BAD_VALUE, "edge", "must be above zero");
+		return cau_fail(error, CAU_BAD_VALUE, "edge", "an edge must be above zero");
 	if (!(volume > 0) && edge == 0)
 		return cau_fail(
 			error, CAU_BAD_MESH, NULL,
@@ -212,7 +212,7 @@ static cau_status make_tets(work *of, cau_error *error)
 		status = cau_stuff(&of->domain, &of->tets, tell_cutting, of, error);
 	if (!status && !of->tets.count)
 		status = cau_fail(error, CAU_BAD_VALUE, "edge",
-		                  "%.3g is longer than the tissue is thick: choose a shorter one",
+		                  "an edge of %.3g is longer than the tissue is thick: choose a shorter one",
 		                  spacing / spacing_of_edge);
 	if (!status) {
 		tell(of, "smoothing", 0.6);

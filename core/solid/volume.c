@@ -274,7 +274,7 @@ static cau_status mark_listed(const cau_volume *volume, const char *labels, bool
 		bool found = false;
 		if (end == at || (*end && *end != ','))
 			return cau_fail(error, CAU_BAD_VALUE, "labels",
-			                "must be numbers with commas, as in 1,3");
+			                "labels must be numbers with commas, as in 1,3");
 		for (int32_t k = 1; k <= volume->label_count; k++)
 			if (volume->label[k].value == value)
 				found = kept[k] = true;

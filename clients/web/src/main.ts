@@ -6,6 +6,7 @@ import { Aim } from './hands/aim';
 import { watchHolds } from './hands/hold_watch';
 import { Keys } from './hands/keys';
 import { Pedal } from './hands/pedal';
+import { PinBrush } from './hands/pin_brush';
 import { Pointer } from './hands/pointer';
 import { Ruler } from './hands/ruler';
 import { SpaceMouse } from './hands/space_mouse';
@@ -77,7 +78,10 @@ const link: Link = new Link({
 const control = new Control(model, link);
 const hand = new ToolHand(model, control, viewport);
 const ruler = new Ruler(new Aim(viewport));
-const pointer = new Pointer(viewport.canvas, viewport, hand, ruler);
+const pins = new PinBrush(new Aim(viewport), (selection) => {
+  control.call('pin', { selection }).catch((error: unknown) => model.notice('error', errorWords(error)));
+});
+const pointer = new Pointer(viewport.canvas, viewport, hand, ruler, pins);
 const pedal = new Pedal((event) => hand.take(event));
 watchHolds(hand);
 let spaceMouse: SpaceMouse | null = null;
@@ -99,7 +103,7 @@ model.on('joined', (joined) => {
 
 const inspect = showInspected(control, viewport);
 const clip = clipFields(control, viewport);
-const tabs = makeTabs([sessionsPanel(control, link), toolsPanel(control, hand), materialsPanel(control), viewPanel(control, viewport, inspect.switch, clip.fields), plotsPanel(model)]);
+const tabs = makeTabs([sessionsPanel(control, link, () => toResearch('sessions')), toolsPanel(control, hand), materialsPanel(control), viewPanel(control, viewport, inspect.switch, clip.fields), plotsPanel(model)]);
 timeBar(control, address.tick);
 showPast(control);
 showHandles(control, hand, pointer);
@@ -108,16 +112,21 @@ showNotices(control);
 showReading(control);
 showHelp();
 operatePanel(control, hand, viewport, { token: () => lastToken, rename: () => connect(lastToken) }, devicesSection(pedal, makeSpaceMouse));
-modeSwitch((mode) => {
+const chooseMode = modeSwitch((mode) => {
   tabs.show(mode === 'research');
   if (mode === 'research') return;
   // Trainees have none of the tools that look closely, so nothing of them may stay behind.
   clip.off();
   inspect.off();
-  if (pointer.press !== 'measure') return;
+  if (pointer.press !== 'measure' && pointer.press !== 'pin') return;
   pointer.press = 'work';
   model.emit('tools', undefined);
 });
+/** Brings a panel to the front. */
+function toResearch(panel: string): void {
+  chooseMode('research');
+  tabs.open(panel);
+}
 const placeCue = showCue(control, viewport);
 const placeRuler = showRuler(ruler, viewport);
 keepAddress(model, viewport);

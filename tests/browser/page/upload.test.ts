@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Upload a mesh, get a session of it, cut it. And what the daemon refuses is said in words.
 
+import { Door } from './door';
 import { Stage } from './stage';
 import { ViewerPage } from './viewer_page';
 
@@ -16,6 +17,26 @@ function sheetObj(width: number): string {
   for (let y = 0; y < CELLS; y++)
     for (let x = 0; x < CELLS; x++)
       lines.push(`f ${v(x, y)} ${v(x + 1, y)} ${v(x + 1, y + 1)}`, `f ${v(x, y)} ${v(x + 1, y + 1)} ${v(x, y + 1)}`);
+  return lines.join('\n');
+}
+
+const BALL = 16; // rows of triangles
+
+/** A closed ball around `middle`, units. */
+function ballObj(radius: number, middle: number): string {
+  const around = 2 * BALL;
+  const lines = [`v 0 0 ${middle + radius}`, `v 0 0 ${middle - radius}`];
+  for (let row = 1; row < BALL; row++)
+    for (let k = 0; k < around; k++) {
+      const [down, turn] = [(Math.PI * row) / BALL, (2 * Math.PI * k) / around];
+      lines.push(`v ${radius * Math.sin(down) * Math.cos(turn)} ${radius * Math.sin(down) * Math.sin(turn)} ${middle + radius * Math.cos(down)}`);
+    }
+  const v = (row: number, k: number): number => (row === 0 ? 1 : row === BALL ? 2 : 3 + (row - 1) * around + (k % around));
+  for (let row = 0; row < BALL; row++)
+    for (let k = 0; k < around; k++) {
+      if (row > 0) lines.push(`f ${v(row, k)} ${v(row + 1, k)} ${v(row, k + 1)}`);
+      if (row < BALL - 1) lines.push(`f ${v(row + 1, k)} ${v(row + 1, k + 1)} ${v(row, k + 1)}`);
+    }
   return lines.join('\n');
 }
 
@@ -48,7 +69,7 @@ describe('a mesh of one’s own', () => {
   });
 
   it('asks for the unit of a mesh that is larger than tissue, and proposes one', async () => {
-    await give('large.obj', sheetObj(96));
+    await give('large.obj', sheetObj(40));
     const problem = viewer.page.locator('#upload .problem', { hasText: 'did you mean millimetres (one unit is 1 mm)?' });
     await problem.waitFor({ state: 'visible' });
     expect(await problem.textContent()).not.toContain('unit_m');
@@ -86,5 +107,72 @@ describe('a mesh of one’s own', () => {
     await viewer.cut(0.002, 0, -0.015, -0.01, 1);
     expect(await viewer.faces()).toBeLessThan(2 * CELLS * CELLS);
     await viewer.screenshot('uploaded-cut');
+  });
+});
+
+describe('a body of one’s own', () => {
+  const stage = new Stage([]);
+  let viewer: ViewerPage;
+  let door: Door;
+  const errors: string[] = [];
+
+  const drop = async (name: string, text: string): Promise<void> => {
+    await viewer.page.evaluate(
+      ({ name: fileName, text: content }) => {
+        const data = new DataTransfer();
+        data.items.add(new File([content], fileName));
+        document.body.dispatchEvent(new DragEvent('dragover', { dataTransfer: data, bubbles: true, cancelable: true }));
+        document.body.dispatchEvent(new DragEvent('drop', { dataTransfer: data, bubbles: true, cancelable: true }));
+      },
+      { name, text },
+    );
+  };
+
+  beforeAll(async () => {
+    door = new Door(stage.daemon.url);
+    door.change = (text) => {
+      if (/"error":/.test(text)) errors.push(text);
+      return text;
+    };
+    viewer = await ViewerPage.open(stage.browser, await door.start(), {}, 'operate');
+    await viewer.until(() => window.cautery.link === 'online', null, 'online');
+  });
+
+  afterAll(async () => {
+    await viewer.close();
+    await door.end();
+  });
+
+  it('is filled with tetrahedra where it is dropped on the page, whatever the page shows', async () => {
+    await drop('ball.obj', ballObj(30, 0));
+    await viewer.until(() => window.cautery.session?.startsWith('d1-ball') === true && window.cautery.tick > 0, null, 'the body is live');
+    const report = viewer.page.locator('#upload .report');
+    await report.waitFor({ state: 'visible' });
+    const words = await report.textContent();
+    expect(words).toContain('one unit is 1 mm (millimetres, guessed)');
+    expect(words).toMatch(/mesh: \d+ vertices, \d+ tetrahedra, 1 component/);
+    expect(words).toContain('filled with tetrahedra (tissue fat)');
+  });
+
+  it('is pinned where it is pointed at', async () => {
+    const { page } = viewer;
+    const before = door.asked.length;
+    await viewer.drawn();
+    await page.getByRole('button', { name: 'Pin', exact: true }).first().click();
+    const top = await viewer.project([0, 0, 0.03]);
+    await page.mouse.move(top.x, top.y);
+    await page.mouse.down();
+    await page.mouse.up();
+    await expect.poll(() => door.asked.slice(before).includes('pin')).toBe(true);
+    expect(errors).toEqual([]);
+  });
+
+  it('is not made where the user cancels', async () => {
+    const { page } = viewer;
+    await page.locator('#upload input[name=edge]').fill('0.4');
+    await drop('fine.obj', ballObj(30, 0));
+    await page.locator('#upload').getByRole('button', { name: 'Cancel' }).click();
+    await page.locator('#upload .problem', { hasText: 'Cancelled' }).waitFor({ state: 'visible' });
+    expect((await viewer.state()).session).toMatch(/^d1-ball/);
   });
 });

@@ -72,6 +72,12 @@ class Case(unittest.TestCase):
                 file.write(text)
         return path
 
+    def file(self, name, data):
+        path = os.path.join(self.folder, name)
+        with open(path, "wb") as file:
+            file.write(data)
+        return path
+
     def program(self, name, *arguments, code=0, url=None, environment=None, **options):
         """Runs a client and expects its exit code. Returns (standard output, standard error).
         With an `environment` that alone is added to a clean one, and no URL."""

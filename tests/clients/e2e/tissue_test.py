@@ -3,9 +3,16 @@
 
 import json
 import os
+import signal
+import subprocess
+import sys
+import time
 import unittest
 
 import programs
+
+sys.path.insert(0, os.path.join(os.path.dirname(os.path.abspath(__file__)), "..", "..", "server", "mesher"))
+import solid_files  # noqa: E402
 
 
 def sheet(cells, size):
@@ -112,19 +119,170 @@ class Tissue(programs.Case):
         session, told = self.cautery("create", file)
         self.assertIn("1 degenerate triangles left out", told)
         self.assertIn("open surface with 16 edges on its rim", told)
-        self.assertIn("(--as fascia); for a solid", told)
+        self.assertIn("a sheet (--as fascia)", told)
         self.assertEqual(self.json("info", session.strip())["triangle_count"], 32)
         _, told = self.cautery("create", file, "--strict", code=1)
         self.assertIn("--strict refuses to mend this mesh: 1 degenerate triangles left out", told)
         _, told = self.cautery("create", file, "--as", "fat", code=1)
-        self.assertIn("a surface and no tetrahedra", told)
+        self.assertIn("nothing is inside this surface", told)
 
     def test_a_unit_is_proposed(self):
-        _, told = self.cautery("create", self.path("large.obj", sheet(4, 160)), code=1)
+        _, told = self.cautery("create", self.path("large.obj", sheet(4, 40)), code=1)
         self.assertIn("did you mean millimetres (--unit-m 0.001)?", told)
         self.assertNotIn("params", told)
         _, told = self.cautery("create", self.path("mean.obj", sheet(4, 8)))
         self.assertIn("--unit-m 0.01 (centimetres, guessed)", told)
+
+
+def meshers(daemon):
+    """Processes of cautery-mesh that a daemon has."""
+    children = f"/proc/{daemon.process.pid}/task"
+    found = []
+    for task in os.listdir(children):
+        with open(f"{children}/{task}/children", encoding="ascii") as file:
+            found += file.read().split()
+    return found
+
+
+def wait_until(holds, seconds=60):
+    end = time.monotonic() + seconds
+    while not holds() and time.monotonic() < end:
+        time.sleep(0.05)
+    return holds()
+
+
+class Solids(programs.Case):
+    """What has an inside becomes a solid."""
+    real = True
+
+    def test_a_closed_surface_is_filled(self):
+        session, told = self.cautery("create", self.file("ball.stl", solid_files.stl(solid_files.ball())))
+        for line in ("--unit-m 0.001 (millimetres, guessed)", "surface: 1520 triangles, 1 component, 0 open edges",
+                     "solid: ", "least angle between faces", "the surface was filled with tetrahedra (--as fat); it can be a sheet (--as fascia)"):
+            self.assertIn(line, told)
+        info = self.json("info", session.strip())
+        self.assertGreater(info["tetrahedron_count"], 5000)
+        self.assertEqual([layer["kind"] for layer in info["definition"]["layers"]], ["fat", "membrane"])
+
+    def test_a_nearly_closed_one_too_and_a_wide_hole_makes_a_sheet(self):
+        ball = solid_files.ball()
+        _, told = self.cautery("create", self.file("hole.stl", solid_files.stl(ball[40:])), "--as", "fat", "--edge-mm", 6)
+        self.assertIn("edge: 6 of a longest side of 40 (asked for)", told)
+        _, told = self.cautery("create", self.file("bowl.stl", solid_files.stl(ball[len(ball) // 2:])), "--unit-m", 0.001)
+        self.assertIn("the surface became a sheet (--as fascia), as its holes are too wide to fill it", told)
+        _, told = self.cautery("create", self.path("sheet.stl"), code=4)
+        _, told = self.cautery("create", self.file("ball.stl", solid_files.stl(ball)), "--as", "fascia")
+        self.assertIn("mesh: 762 vertices, 1520 triangles", told)
+
+    def test_a_segmentation_is_filled_with_its_names(self):
+        """Nothing of its header is kept, said or logged but the names of segments."""
+        data = next(data for name, data, *_ in solid_files.CASES if name == "gzip.nrrd")
+        with open(self.path("log"), "w", encoding="utf-8") as log:
+            daemon = programs.Daemon(real=True, log=log, log_level="debug")
+        self.addCleanup(daemon.stop)
+        session, told = self.cautery("create", self.file("gzip.nrrd", data), url=daemon.url)
+        self.assertIn('regions: 2 "liver" (', told)
+        self.assertIn("orientation: the file's axes run to LPS", told)
+        info = self.json("info", session.strip(), url=daemon.url)
+        self.assertEqual([r["region"] for r in info["definition"]["layers"][0]["regions"]], [2, 7])
+        _, only = self.cautery("create", self.path("gzip.nrrd"), "--labels", "7", url=daemon.url)
+        self.assertIn('regions: 7 "vena cava" (', only)
+        with open(self.path("log"), encoding="utf-8") as log:
+            said = log.read() + told + only
+        self.assertIn("event=mesh_read", said)
+        self.assertNotIn("Jane", said)
+        for name in os.listdir(daemon.folder):
+            with open(os.path.join(daemon.folder, name), "rb") as file:
+                self.assertNotIn(b"Jane", file.read(), name)
+
+    def test_pins_are_at_named_sides(self):
+        file = self.file("ball.stl", solid_files.stl(solid_files.ball()))
+        session = self.create(file, "--pin", "left,top")
+        pins = self.json("info", session)["definition"]["pins"]
+        self.assertEqual(len(pins), 2)
+        self.assertAlmostEqual(pins[0]["most_m"][0], -0.016, places=3)
+        self.assertAlmostEqual(pins[1]["least_m"][2], 0.016, places=3)
+        self.assertEqual(self.json("info", self.create(file, "--pin", "none"))["definition"]["pins"], [])
+        self.assertIn("'up' is no side", self.cautery("create", file, "--pin", "up", code=1)[1])
+
+    def test_refusals_have_remedies(self):
+        ball = self.file("ball.stl", solid_files.stl(solid_files.ball()))
+        cases = {name: data for name, data, *_ in solid_files.CASES}
+        segmentation = self.file("raw.nrrd", cases["raw.nrrd"])
+        for arguments, words in (((ball, "--edge-mm", 300), "an edge of 300 is longer than the tissue is thick: choose a shorter one"),
+                                 ((ball, "--edge-mm", 0.01), "choose a longer one"),
+                                 ((ball, "--labels", 1), "this file is no segmentation"),
+                                 ((segmentation, "--labels", 5), "no voxel has label 5"),
+                                 ((segmentation, "--as", "fascia"), "a segmentation has no sheet: make a solid of it (--as fat)"),
+                                 ((self.file("image.nrrd", cases["image.nrrd"]),), "this is an image and no segmentation"),
+                                 ((self.file("short.nrrd", cases["short_file.nrrd"]),), "the file ends early"),
+                                 ((self.file("mixed.obj", solid_files.obj(solid_files.turned(solid_files.ball(), 7)).encode()), "--strict"),
+                                  "--strict refuses to turn 218 triangles that look inward")):
+            with self.subTest(arguments):
+                _, told = self.cautery("create", *arguments, code=1)
+                self.assertIn(words, told)
+                self.assertNotIn("params", told)
+
+    def test_the_command_fills_a_file_without_a_daemon(self):
+        file = self.file("ball.stl", solid_files.stl(solid_files.ball()))
+        _, told = self.cautery("mesh", file, "--out", self.path("ball.msh"), "--edge", 5, url="ws://127.0.0.1:1")
+        self.assertIn("edge: 5 of a longest side of 40 (asked for)", told)
+        session, told = self.cautery("create", self.path("ball.msh"))
+        self.assertIn("format: Gmsh 2.2", told)
+        self.assertGreater(self.json("info", session.strip())["tetrahedron_count"], 1000)
+        self.assertIn("nothing is inside", self.cautery("mesh", self.path("flat.obj", sheet(4, 5)), "--out", self.path("flat.msh"), code=3)[1])
+
+
+class Bounds(programs.Case):
+    """Of the process that fills an upload."""
+    real = True
+    settings = {"mesh_time_s": 600}
+
+    def heavy(self, daemon):
+        """A client whose upload takes seconds to fill."""
+        file = self.file("fine.stl", solid_files.stl(solid_files.ball(n=60)))
+        command = [os.path.join(programs.PROGRAMS, "cautery"), "--url", daemon.url, "create", file, "--edge-mm", "0.25", "--unit-m", "0.001"]
+        return subprocess.Popen(command, env=programs.CLEAN, stdout=subprocess.DEVNULL, stderr=subprocess.PIPE, text=True)
+
+    def test_it_ends_with_its_client(self):
+        client = self.heavy(self.daemon)
+        self.assertTrue(wait_until(lambda: meshers(self.daemon)))
+        client.kill()
+        client.communicate()
+        self.assertTrue(wait_until(lambda: not meshers(self.daemon)))
+        self.json("ls")
+
+    def test_it_ends_with_its_daemon(self):
+        daemon = programs.Daemon(real=True, mesh_time_s=600)
+        client = self.heavy(daemon)
+        self.assertTrue(wait_until(lambda: meshers(daemon)))
+        pid = meshers(daemon)[0]
+        daemon.process.send_signal(signal.SIGKILL)
+        daemon.kill()
+        client.communicate()
+        self.assertTrue(wait_until(lambda: not os.path.exists(f"/proc/{pid}")))
+
+    def test_a_daemon_ends_soon_beside_it(self):
+        daemon = programs.Daemon(real=True, mesh_time_s=600)
+        client = self.heavy(daemon)
+        self.assertTrue(wait_until(lambda: meshers(daemon)))
+        daemon.stop()
+        client.communicate()
+
+    def test_time_is_bounded(self):
+        daemon = programs.Daemon(real=True, mesh_time_s=1)
+        self.addCleanup(daemon.stop)
+        _, told = self.heavy(daemon).communicate()
+        self.assertIn("meshing took more than 1 s (setting mesh_time_s): choose a longer edge", told)
+        self.json("ls", url=daemon.url)
+
+    @unittest.skipIf(os.environ.get("E2E_SLOW") == "1", "sanitizers reserve more than any bound on memory")
+    def test_memory_is_bounded(self):
+        daemon = programs.Daemon(real=True, mesh_memory_mb=64, mesh_time_s=600)
+        self.addCleanup(daemon.stop)
+        _, told = self.heavy(daemon).communicate()
+        self.assertIn("meshing needs more than 64 MB (setting mesh_memory_mb)", told)
+        self.json("ls", url=daemon.url)
 
 
 class Forces(programs.Case):

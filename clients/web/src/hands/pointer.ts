@@ -4,18 +4,19 @@
 // one or Shift moves it; two fingers turn, pinch for depth or zoom.
 import type { Viewport } from '../scene/viewport';
 import { pointerId } from './holds';
+import type { PinBrush } from './pin_brush';
 import type { Ruler } from './ruler';
 import type { ToolHand } from './tool_hand';
 
 /** What a press on the tissue does. */
-export type Press = 'work' | 'move' | 'look' | 'measure';
+export type Press = 'work' | 'move' | 'look' | 'measure' | 'pin';
 
 interface Finger {
   x: number;
   y: number;
 }
 
-type Drag = 'tool' | 'turn' | 'pan' | 'ruler' | 'none';
+type Drag = 'tool' | 'turn' | 'pan' | 'ruler' | 'pins' | 'none';
 
 const TURN_RAD = 3.4; // for a drag over the picture's height
 const WHEEL_DEPTH_M = 0.0005; // a notch
@@ -37,6 +38,7 @@ export class Pointer {
     private readonly viewport: Viewport,
     private readonly hand: ToolHand,
     private readonly ruler: Ruler,
+    private readonly pins: PinBrush,
   ) {
     canvas.addEventListener('pointerdown', (event) => this.down(event));
     canvas.addEventListener('pointermove', (event) => this.move(event));
@@ -61,6 +63,7 @@ export class Pointer {
     this.drag = this.dragOf(event);
     const { x, y } = this.place(event);
     if (this.drag === 'ruler') this.ruler.begin(x, y);
+    if (this.drag === 'pins') this.pins.begin(x, y);
     if (this.drag !== 'tool') return;
     this.hand.press();
     if (!this.hand.pointAt(x, y)) this.drag = 'none';
@@ -79,6 +82,7 @@ export class Pointer {
     if (event.button === 1 || event.shiftKey) return 'pan';
     const { x, y } = this.place(event);
     if (event.button === 2 || this.press === 'look' || !this.hand.overTissue(x, y)) return 'turn';
+    if (this.press === 'pin') return 'pins';
     return this.press === 'measure' ? 'ruler' : 'tool';
   }
 
@@ -100,6 +104,9 @@ export class Pointer {
     } else if (this.drag === 'ruler') {
       const { x, y } = this.place(event);
       this.ruler.reach(x, y);
+    } else if (this.drag === 'pins') {
+      const { x, y } = this.place(event);
+      this.pins.reach(x, y);
     } else if (this.drag === 'turn') {
       this.viewport.orbit.turn(-TURN_RAD * dx, TURN_RAD * dy);
     } else if (this.drag === 'pan') {

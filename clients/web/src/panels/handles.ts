@@ -15,7 +15,10 @@ const PRESSES: readonly (readonly [Press, string, string])[] = [
   ['move', 'Move', 'A press on the tissue leads the tool there without energy'],
   ['look', 'Look', 'A drag turns the view; the tool stays'],
   ['measure', 'Measure', 'A drag over the tissue is a ruler; the tool stays'],
+  ['pin', 'Pin', 'A drag over the tissue holds it where it is, within 5 mm; the tool stays'],
 ];
+
+const RESEARCH: readonly Press[] = ['measure', 'pin'];
 
 function pressChoice(control: Control, pointer: Pointer): HTMLElement {
   const group = element('div', { class: 'choice', aria: { role: 'group', label: 'What a press on the tissue does' } });
@@ -23,7 +26,7 @@ function pressChoice(control: Control, pointer: Pointer): HTMLElement {
     const choose = button(words, () => {
       pointer.press = press;
       show();
-    }, { title, class: press === 'measure' ? 'research-only' : '', data: { press }, aria: { pressed: String(press === pointer.press) } });
+    }, { title, class: RESEARCH.includes(press) ? 'research-only' : '', data: { press }, aria: { pressed: String(press === pointer.press) } });
     return choose;
   });
   const show = (): void => {

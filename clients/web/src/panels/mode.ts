@@ -11,18 +11,21 @@ const MODES: readonly (readonly [Mode, string, string])[] = [
 ];
 const KEPT = 'mode';
 
-export function modeSwitch(changed: (mode: Mode) => void): void {
+/** Returns what chooses one. */
+export function modeSwitch(changed: (mode: Mode) => void): (mode: Mode) => void {
   const place = byId('mode');
   const show = (mode: Mode): void => {
     document.body.dataset['mode'] = mode;
     for (const press of place.children) press.setAttribute('aria-pressed', String((press as HTMLElement).dataset['mode'] === mode));
     changed(mode);
   };
+  const choose = (mode: Mode): void => {
+    localStorage.setItem(KEPT, mode);
+    show(mode);
+  };
   for (const [mode, words, title] of MODES) {
-    place.append(button(words, () => {
-      localStorage.setItem(KEPT, mode);
-      show(mode);
-    }, { title, data: { mode } }));
+    place.append(button(words, () => choose(mode), { title, data: { mode } }));
   }
   show(localStorage.getItem(KEPT) === 'research' ? 'research' : 'operate');
+  return choose;
 }

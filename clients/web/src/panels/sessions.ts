@@ -133,7 +133,7 @@ function forkAndFiles(control: Control, problem: HTMLElement): HTMLElement {
   return element('div', { class: 'buttons' }, name, ...buttons);
 }
 
-export function sessionsPanel(control: Control, link: Link): Panel {
+export function sessionsPanel(control: Control, link: Link, reveal: () => void): Panel {
   const { model } = control;
   const problem = problemPlace();
   const list = element('ul', { class: 'sessions', aria: { label: 'Sessions' } });
@@ -164,7 +164,7 @@ export function sessionsPanel(control: Control, link: Link): Panel {
     forkAndFiles(control, problem),
     snapshotSection(control),
     createForm(control, problem),
-    uploadForm(control, link),
+    uploadForm(control, link, reveal),
   );
   let visible = true;
   setInterval(() => {

@@ -10,8 +10,8 @@ export interface Panel {
   shown?: (visible: boolean) => void;
 }
 
-/** Returns what shows or hides them all. */
-export function makeTabs(panels: readonly Panel[]): { show(visible: boolean): void } {
+/** Returns what shows or hides them all, and what brings one to the front. */
+export function makeTabs(panels: readonly Panel[]): { show(visible: boolean): void; open(id: string): void } {
   const list = byId('tabs');
   const place = byId('panels');
   const tabs = panels.map((panel) => {
@@ -52,6 +52,9 @@ export function makeTabs(panels: readonly Panel[]): { show(visible: boolean): vo
       all = visible;
       list.hidden = place.hidden = !visible;
       show(shown, false);
+    },
+    open(id) {
+      show(panels.findIndex((panel) => panel.id === id), false);
     },
   };
 }

@@ -1,16 +1,20 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Your own mesh: the file travels in chunks, the daemon reports what became of it, and a session is
-// made of the scene that the daemon puts around it.
+// Your own mesh, chosen or dropped on the page: the file travels in chunks, the daemon reports what became
+// of it, and a session is made of the scene that the daemon puts around it.
 import type { Control } from '../model/control';
 import { meshWords } from '../model/sentences';
 import type { Link } from '../wire/link';
 import type { MeshRead, MeshReading } from '../wire/messages.gen';
-import { attempt, check, element, field, problemPlace } from './dom';
+import { attempt, button, check, element, field, problemPlace } from './dom';
 
 const TISSUES: readonly (readonly [string, string])[] = [
   ['', 'by the file'],
   ['fat', 'fat (tetrahedra)'],
   ['fascia', 'fascia (triangles)'],
+];
+const SIDES: readonly (readonly [string, string])[] = [
+  ['', 'by the file'],
+  ...['bottom', 'top', 'left', 'right', 'front', 'back', 'left,right', 'front,back', 'none'].map((side) => [side, side.replace(',', ' and ')] as const),
 ];
 
 const UPLOAD_NAME = 'mesh';
@@ -30,60 +34,119 @@ function reportWords({ report, note }: MeshReading): string {
   return meshWords(note === undefined ? report.text : `${report.text}note: ${note}\n`);
 }
 
-export function uploadForm(control: Control, link: Link): HTMLElement {
+function choice(name: string, of: readonly (readonly [string, string])[]): HTMLSelectElement {
+  return element('select', { name }, ...of.map(([value, words]) => element('option', { value }, words)));
+}
+
+interface WishFields {
+  fields: HTMLElement[];
+  read(): MeshRead;
+}
+
+/** How the file is to be read. */
+function wishFields(): WishFields {
+  const kind = choice('kind', TISSUES);
+  const size = element('input', { type: 'number', name: 'unit', placeholder: 'guess', min: '1e-6', max: '1000000', step: 'any' });
+  const edge = element('input', { type: 'number', name: 'edge', placeholder: 'choose', min: '0.001', max: '10000', step: 'any' });
+  const labels = element('input', { type: 'text', name: 'labels', placeholder: 'all', maxLength: 255 });
+  const pin = choice('pin', SIDES);
+  let strict = false;
+  return {
+    fields: [
+      field('Tissue', kind, '', 'by the file: fat where there are tetrahedra or an inside'),
+      field('One unit is', size, 'mm', 'length of the file’s unit: 1 for millimetres, 1000 for metres; guessed where its size is clear'),
+      field('Edge', edge, 'mm', 'length of an edge of the tetrahedra that fill a surface or a segmentation'),
+      field('Labels', labels, '', 'of a segmentation, as in 1,3'),
+      field('Pinned', pin, '', 'by the file: the bottom, or the rim of a sheet; more pins with the press Pin on the picture'),
+      check('Strict: refuse a mesh that needs repair', 'strict', (on) => (strict = on)),
+    ],
+    read: () => ({
+      upload: UPLOAD_NAME,
+      strict,
+      ...(kind.value === 'fat' || kind.value === 'fascia' ? { as: kind.value } : {}),
+      ...(size.value === '' ? {} : { unit_m: size.valueAsNumber / 1000 }),
+      ...(edge.value === '' ? {} : { edge_m: edge.valueAsNumber / 1000 }),
+      ...(labels.value === '' ? {} : { labels: labels.value }),
+      ...(pin.value === '' ? {} : { pin: pin.value }),
+    }),
+  };
+}
+
+/** A file that is dropped anywhere on the page goes where `take` puts it. */
+function watchDrops(may: () => boolean, take: (files: FileList) => void): void {
+  const holdsFiles = (event: DragEvent): boolean => event.dataTransfer?.types.includes('Files') === true;
+  window.addEventListener('dragover', (event) => {
+    if (!holdsFiles(event)) return;
+    event.preventDefault(); // else the browser opens the file in the page's place
+    if (event.dataTransfer) event.dataTransfer.dropEffect = may() ? 'copy' : 'none';
+  });
+  window.addEventListener('drop', (event) => {
+    if (!holdsFiles(event)) return;
+    event.preventDefault();
+    const files = event.dataTransfer?.files;
+    if (may() && files && files.length > 0) take(files);
+  });
+}
+
+/** `reveal` brings the panel to the front. */
+export function uploadForm(control: Control, link: Link, reveal: () => void): HTMLElement {
   const { model } = control;
   const problem = problemPlace();
   const file = element('input', { type: 'file', name: 'mesh', multiple: true, required: true });
-  const kind = element('select', { name: 'kind' }, ...TISSUES.map(([value, words]) => element('option', { value }, words)));
-  const size = element('input', { type: 'number', name: 'unit', placeholder: 'guess', min: '1e-6', max: '1000000', step: 'any' });
+  const wish = wishFields();
   const bar = element('progress', { max: 1, value: 0, hidden: true, aria: { label: 'Upload' } });
   const report = element('pre', { class: 'report', hidden: true, aria: { role: 'status' } });
   const submit = element('button', { type: 'submit' }, 'Upload and create');
-  let strict = false;
+  let cancelled = false;
+  const discard = (): void => {
+    link.call('upload.discard', { name: UPLOAD_NAME }).catch(() => undefined);
+  };
+  const cancel = button('Cancel', () => {
+    cancelled = true;
+    discard(); // what fills it on the daemon ends with it
+  }, { hidden: true });
 
-  const wish = (): MeshRead => ({
-    upload: UPLOAD_NAME,
-    strict,
-    ...(kind.value === 'fat' || kind.value === 'fascia' ? { as: kind.value } : {}),
-    ...(size.value === '' ? {} : { unit_m: size.valueAsNumber / 1000 }),
-  });
   /** A refusal names no member of a message: the form has words of its own. */
   const read = async (): Promise<MeshReading> => {
     try {
-      return await link.call('mesh.read', wish());
+      return await link.call('mesh.read', wish.read());
     } catch (error) {
       throw new Error(meshWords(error instanceof Error ? error.message : String(error)), { cause: error });
+    }
+  };
+  const create = async (mesh: File): Promise<void> => {
+    await link.upload(UPLOAD_NAME, mesh, (sent, total) => (bar.value = sent / total));
+    try {
+      bar.removeAttribute('value'); // how long filling takes is not known
+      const reading = await read();
+      report.textContent = reportWords(reading);
+      report.hidden = false;
+      await control.create({ definition: reading.definition });
+    } finally {
+      // The session has its own copy, and another attempt sends the file again. If this is lost, the
+      // next upload takes the place of this one, and the last goes with the connection.
+      discard();
     }
   };
   const work = async (): Promise<void> => {
     const mesh = chosen(file.files);
     report.hidden = true;
-    bar.hidden = false;
+    cancelled = cancel.hidden = bar.hidden = false;
     bar.value = 0;
     try {
-      await link.upload(UPLOAD_NAME, mesh, (sent, total) => (bar.value = sent / total));
-      try {
-        const reading = await read();
-        report.textContent = reportWords(reading);
-        report.hidden = false;
-        await control.create({ definition: reading.definition });
-      } finally {
-        // The session has its own copy, and another attempt sends the file again. If this is lost, the
-        // next upload takes the place of this one, and the last goes with the connection.
-        link.call('upload.discard', { name: UPLOAD_NAME }).catch(() => undefined);
-      }
+      await create(mesh);
+    } catch (error) {
+      throw cancelled ? new Error('cancelled', { cause: error }) : error;
     } finally {
-      bar.hidden = true;
+      bar.hidden = cancel.hidden = true;
     }
   };
   const form = element(
     'form',
     { class: 'form' },
-    field('Mesh file', file, '', 'Gmsh, VTK, VTU, OBJ, STL, PLY, Medit, USD text, or both files of TetGen'),
-    field('Tissue', kind, '', 'by the file: fat where there are tetrahedra'),
-    field('One unit is', size, 'mm', 'length of the file’s unit: 1 for millimetres, 1000 for metres; guessed where its size is clear'),
-    check('Strict: refuse a mesh that needs repair', 'strict', (on) => (strict = on)),
-    submit,
+    field('Mesh file', file, '', 'Gmsh, VTK, VTU, OBJ, STL, PLY, Medit, USD text, NRRD, NIfTI, or both files of TetGen'),
+    ...wish.fields,
+    element('div', { class: 'buttons' }, submit, cancel),
     bar,
     problem,
     report,
@@ -92,10 +155,19 @@ export function uploadForm(control: Control, link: Link): HTMLElement {
     event.preventDefault();
     void attempt(problem, work, submit);
   });
+  const may = (): boolean => model.mayOperate && model.hello?.capabilities.includes('upload') === true;
   const refresh = (): void => {
-    submit.disabled = !model.mayOperate || model.hello?.capabilities.includes('upload') !== true;
+    submit.disabled = !may();
   };
   model.on('link', refresh);
   refresh();
-  return element('details', { class: 'section', id: 'upload' }, element('summary', {}, 'Your own mesh'), form);
+  const section = element('details', { class: 'section', id: 'upload' }, element('summary', {}, 'Your own mesh'), form);
+  watchDrops(may, (files) => {
+    file.files = files;
+    section.open = true;
+    reveal();
+    section.scrollIntoView({ block: 'nearest' });
+    if (!submit.disabled) form.requestSubmit();
+  });
+  return section;
 }
