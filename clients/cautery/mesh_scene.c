@@ -164,9 +164,12 @@ cli_exit cli_mesh_scene(cli *c, const char *file, const char *name, cau_scene_de
 
 cli_exit cli_mesh_report(cli *c, const char *file, const cau_mesh_def *mesh)
 {
-	cau_wire_mesh_read params = {
-		.has_unit_m = true, .unit_m = mesh->unit_m, .has_strict = true, .strict = mesh->strict,
-		.has_as_it_is = true, .as_it_is = true};
+	cau_wire_mesh_read params = {.has_unit_m = true,
+	                             .unit_m = mesh->unit_m,
+	                             .has_strict = true,
+	                             .strict = mesh->strict,
+	                             .has_as_it_is = true,
+	                             .as_it_is = true};
 	snprintf(params.upload, sizeof params.upload, "%s", mesh->name);
 	cau_scene_def *unused = calloc(1, sizeof *unused);
 	if (!unused)

@@ -105,8 +105,8 @@ static cau_status lay_out(grid *of, cau_error *error)
 	}
 	if (cells > cells_most)
 		return cau_fail(error, CAU_LIMIT, "edge",
-		                "an edge so short makes %.3g cells, of %.3g at most: choose a longer one", cells,
-		                cells_most);
+		                "an edge so short makes %.3g cells, of %.3g at most: choose a longer one",
+		                cells, cells_most);
 	return CAU_OK;
 }
 

@@ -211,9 +211,10 @@ static cau_status make_tets(work *of, cau_error *error)
 	if (!status)
 		status = cau_stuff(&of->domain, &of->tets, tell_cutting, of, error);
 	if (!status && !of->tets.count)
-		status = cau_fail(error, CAU_BAD_VALUE, "edge",
-		                  "an edge of %.3g is longer than the tissue is thick: choose a shorter one",
-		                  spacing / spacing_of_edge);
+		status =
+			cau_fail(error, CAU_BAD_VALUE, "edge",
+		             "an edge of %.3g is longer than the tissue is thick: choose a shorter one",
+		             spacing / spacing_of_edge);
 	if (!status) {
 		tell(of, "smoothing", 0.6);
 		status = cau_smooth(&of->domain, &of->tets, error);

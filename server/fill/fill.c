@@ -185,9 +185,8 @@ static cau_status start(process *of, const cau_fill_wish *wish, cau_error *error
 	of->said = pipes[0];
 	int failed = spawn(of, &line, pipes[1]);
 	close(pipes[1]);
-	return failed
-	           ? cau_fail(error, CAU_IO, "", "cautery-mesh does not start: %s", strerror(failed))
-	           : CAU_OK;
+	return failed ? cau_fail(error, CAU_IO, "", "cautery-mesh does not start: %s", strerror(failed))
+	              : CAU_OK;
 }
 
 // Takes what it says. False: it has ended.
@@ -279,8 +278,7 @@ static cau_status judge(const process *of, int state, const char *why, const cau
 {
 	if (why && *why)
 		return cau_fail(error, CAU_BAD_STATE, "", "%s", why);
-	if (why || (WIFSIGNALED(state) &&
-	            (WTERMSIG(state) == SIGXCPU || WTERMSIG(state) == SIGKILL)))
+	if (why || (WIFSIGNALED(state) && (WTERMSIG(state) == SIGXCPU || WTERMSIG(state) == SIGKILL)))
 		return cau_fail(error, CAU_LIMIT, "",
 		                "meshing took more than %lld s (setting mesh_time_s): choose a longer edge",
 		                (long long)wish->time_s);

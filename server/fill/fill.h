@@ -35,7 +35,8 @@ typedef struct cau_fill_wish {
 	void *user;
 } cau_fill_wish;
 
-// Fills *filling, and waits for it. The report has a fact a line. Errors: what cautery-mesh says, at
-// "edge_m", "labels" or "strict"; CAU_LIMIT naming the setting where a bound was reached; CAU_IO.
+// Fills *filling, and waits for it. The report has a fact a line. Errors: what cautery-mesh says,
+// at "edge_m", "labels" or "strict"; CAU_LIMIT naming the setting where a bound was reached;
+// CAU_IO.
 cau_status cau_fill(cau_filling *filling, const cau_fill_wish *wish,
                     char report[static CAU_FILL_REPORT_BYTES], cau_error *error);

@@ -184,8 +184,7 @@ static cau_status read_surface(reading *what, bool *has_inside, cau_error *error
 	what->asked.layer_kind = kind;
 	const cau_mesh_report *report = &what->report;
 	bool wanted = kind == CAU_LAYER_FAT || (kind < 0 && report->opening <= CAU_NEARLY_CLOSED);
-	*has_inside =
-		!status && !what->asked.as_it_is && wanted && !report->tetrahedron_count;
+	*has_inside = !status && !what->asked.as_it_is && wanted && !report->tetrahedron_count;
 	return status;
 }
 
@@ -202,11 +201,15 @@ static cau_status read_mesh(reading *what, cau_mesh_report *file, cau_error *err
 	*file = what->report;
 	if (status || !has_inside)
 		return status;
-	return read_solid(what, !volume ? file->unit_m : asked->unit_m > 0 ? asked->unit_m : 1e-3,
+	return read_solid(what,
+	                  !volume             ? file->unit_m
+	                  : asked->unit_m > 0 ? asked->unit_m
+	                                      : 1e-3,
 	                  error);
 }
 
-// What a report says of the file is that of the file that was uploaded, not of the solid made of it.
+// What a report says of the file is that of the file that was uploaded, not of the solid made of
+// it.
 static void keep_of_file(reading *what, const cau_mesh_report *file)
 {
 	cau_mesh_report *to = &what->report;

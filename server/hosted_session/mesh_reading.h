@@ -15,11 +15,11 @@ typedef struct cau_mesh_asked {
 	double unit_m;       // 0: guessed
 	int layer_kind;      // -1: by the elements
 	bool strict;
-	bool as_it_is;        // never filled
-	double edge_m;        // 0: chosen
-	char labels[256];     // of a segmentation; "": all
-	char pin[64];         // sides; "": chosen
-	cau_filling *filling; // taken: where the solid goes, if it becomes one
+	bool as_it_is;                         // never filled
+	double edge_m;                         // 0: chosen
+	char labels[256];                      // of a segmentation; "": all
+	char pin[64];                          // sides; "": chosen
+	cau_filling *filling;                  // taken: where the solid goes, if it becomes one
 	int64_t memory_mb, time_s, most_bytes; // bounds of filling
 } cau_mesh_asked;
 

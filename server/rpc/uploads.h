@@ -24,7 +24,7 @@ typedef struct cau_upload {
 	size_t byte_count, received;
 	bool complete;
 	cau_filling *filling; // of the last mesh.read that may fill it; NULL: none
-	char trouble[160]; // what spoilt it; told by upload.end
+	char trouble[160];    // what spoilt it; told by upload.end
 } cau_upload;
 
 // Of all connections together; the network thread's alone.

@@ -103,7 +103,8 @@ typedef struct cau_mesh_wish {
 	                    // and back, with commas, or "none"; NULL or "": chosen
 } cau_mesh_wish;
 
-// A surface whose holes have no more than this share of its area is nearly closed: it has an inside.
+// A surface whose holes have no more than this share of its area is nearly closed: it has an
+// inside.
 #define CAU_NEARLY_CLOSED 0.1
 
 // Reads the mesh and makes a scene around it: its lowest tenth pinned, or the rim of an open sheet;

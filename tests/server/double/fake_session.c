@@ -12,8 +12,8 @@
 
 #include "cautery/defaults.h"
 #include "cautery/mesh_scene.h"
-#include "cautery/solid.h"
 #include "cautery/session.h"
+#include "cautery/solid.h"
 
 enum {
 	CELLS = 16,

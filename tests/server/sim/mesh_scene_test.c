@@ -106,7 +106,7 @@ static void refusals_name_the_options(void **state)
 	(void)state;
 	cau_error error = {0};
 	cau_scene_def *scene = malloc(sizeof *scene);
-	cau_mesh_wish wish = wish_of(write_block("large.mesh"), 0);
+	cau_mesh_wish wish = wish_of(write_block("large.mesh"), 1); // of 120 m
 	assert_int_equal(sim_mesh_scene(&wish, scene, &error), CAU_BAD_MESH);
 	assert_non_null(strstr(error.reason, "did you mean millimetres (--unit-m 0.001)?"));
 	assert_string_equal(error.path, "");
