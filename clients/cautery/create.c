@@ -178,7 +178,7 @@ const cli_command cli_create = {
 	.help =
 		"SCENE is one of `cautery scenes`. FILE is a scene (.json) or a mesh: Gmsh, VTK, VTU,\n"
 		"OBJ, STL, PLY, Medit, TetGen, USD text, NRRD or NIfTI. The meshes of a scene file are "
-        "uploaded. For\n"
+		"uploaded. For\n"
 		"a mesh alone, its report is printed and a scene is made: its lowest tenth (of an open\n"
 		"sheet: its rim) is pinned, the tools are a hot ball and a grasper, without gravity.\n"
 		"A closed or nearly closed surface, and a segmentation (NRRD, NIfTI), is filled with\n"

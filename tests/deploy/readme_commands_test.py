@@ -22,6 +22,8 @@ import threading
 import unittest
 
 SOURCES, PROGRAMS = sys.argv[1:3]
+sys.path.insert(0, os.path.join(SOURCES, "tests/server/mesher"))
+import solid_files  # noqa: E402
 PATIENCE_S = 120
 FIRST = re.compile(
     r"\(?(cmake|ctest|npm|cd|curl|cautery(-robot|-load|-sim|-bench)?|cauteryd(?! is )|apt-get|install|systemctl|promtool|haproxy|export|node|python3"
@@ -211,6 +213,15 @@ class Commands(unittest.TestCase):
         with open(os.path.join(self.folder, name), "w", encoding="ascii") as file:
             file.write("$MeshFormat\n2.2 0 8\n$EndMeshFormat\n$Nodes\n4\n1 0 0 0\n2 20 0 0\n3 0 20 0\n4 0 0 20\n"
                        "$EndNodes\n$Elements\n1\n1 4 2 1 1 1 2 3 4\n$EndElements\n")
+
+    def test_2b_your_own_anatomy(self):
+        at = self.start()
+        for name, like in (("liver.stl", "ball.stl"), ("liver.nrrd", "raw.nrrd")):
+            with open(os.path.join(self.folder, name), "wb") as file:
+                file.write(next(data for other, data, *_ in solid_files.CASES if other == like))
+        self.run_it("cautery create liver.stl", "d1-liver", at)
+        self.run_it("cautery create liver.nrrd --labels 2,7 --pin bottom,left", "d1-liver", at)
+        self.run_it("cautery mesh liver.nrrd --out liver.msh")
 
     def test_3_settings(self):
         self.run_it("build/bin/cauteryd --help", "--listen")
