@@ -1,13 +1,14 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // A scene that is made around a mesh alone: the tissue stands for 60 s, is held by the grasper, and
-// is cut by the ball. A block and a hollow box made here, and the files of CAUTERY_MESHES where
-// there are any.
+// is cut by the ball. A block, a hollow box and organs made here, and the files of CAUTERY_MESHES
+// where there are any. With --long 30 organs.
 #include "core/session/stage.h"
 
 #include <dirent.h>
 #include <stdio.h>
 
 #include "cautery/mesh_scene.h"
+#include "cautery/solid.h"
 
 static const double stand_s = 60;
 static const double drift_most = 0.02; // of the size, that standing tissue may move
@@ -156,9 +157,126 @@ static void real_files_live(void **state)
 	}
 }
 
-int main(void)
+// ---- organs: bumpy, stretched balls in millimetres, as segmentations give them
+enum { ROWS = 24, FACETS = 2 * ROWS * (2 * ROWS) - 4 * ROWS, ORGANS = 30, BUMPS = 5 };
+
+// The next of a row of numbers from 0 to 1 [Knuth's MMIX].
+static double next(uint64_t *state)
+{
+	*state = *state * 6364136223846793005u + 1442695040888963407u;
+	return (double)(*state >> 11) / 9007199254740992.0;
+}
+
+typedef struct organ {
+	double size[3], bump[BUMPS], turn[BUMPS];
+	int missing; // facets of a hole
+	bool turned; // some facets look inward
+} organ;
+
+static organ organ_of(int number)
+{
+	organ of = {0};
+	uint64_t state = 7919u * (uint64_t)(number + 1);
+	for (int k = 0; k < 8; k++)
+		next(&state);
+	for (int c = 0; c < 3; c++)
+		of.size[c] = 25 + 45 * next(&state);
+	for (int k = 0; k < BUMPS; k++) {
+		of.bump[k] = 0.09 * next(&state);
+		of.turn[k] = 6.28 * next(&state);
+	}
+	of.missing = number % 3 == 2 ? 20 + (int)(60 * next(&state)) : 0;
+	of.turned = number % 4 == 1;
+	return of;
+}
+
+static void place_on(const organ *of, int row, int column, float x[3])
+{
+	double down = M_PI * row / ROWS, turn = M_PI * (column % (2 * ROWS)) / ROWS;
+	double radius = 1;
+	for (int k = 0; k < BUMPS; k++)
+		radius += of->bump[k] * sin(down) * sin(down) * sin((k + 1) * turn + of->turn[k]);
+	x[0] = (float)(of->size[0] * radius * sin(down) * cos(turn));
+	x[1] = (float)(of->size[1] * radius * sin(down) * sin(turn));
+	x[2] = (float)(of->size[2] * radius * cos(down));
+}
+
+static size_t put_facet(const organ *of, const int corner[3][2], int number, unsigned char *at)
+{
+	float facet[4][3] = {{0}};
+	bool inward = of->turned && number % 9 == 4;
+	for (int k = 0; k < 3; k++)
+		place_on(of, corner[inward ? 2 - k : k][0], corner[inward ? 2 - k : k][1], facet[k + 1]);
+	memcpy(at, facet, sizeof facet);
+	memset(at + sizeof facet, 0, 2);
+	return sizeof facet + 2;
+}
+
+static size_t write_organ(const organ *of, unsigned char *bytes)
+{
+	size_t used = 84;
+	int number = 0;
+	memset(bytes, 0, used);
+	for (int row = 0; row < ROWS; row++)
+		for (int column = 0; column < 2 * ROWS; column++)
+			for (int half = 0; half < 2; half++) {
+				const int corner[2][3][2] = {
+					{{row, column}, {row + 1, column}, {row, column + 1}},
+					{{row + 1, column}, {row + 1, column + 1}, {row, column + 1}}};
+				if ((half == 0 && row == 0) || (half == 1 && row == ROWS - 1))
+					continue; // at a pole it is a line
+				if (number++ >= of->missing)
+					used += put_facet(of, corner[half], number, bytes + used);
+			}
+	uint32_t facets = (uint32_t)((used - 84) / 50);
+	memcpy(bytes + 80, &facets, sizeof facets);
+	return used;
+}
+
+// As the server does it: the unit is guessed of the surface, which is then filled.
+static void organ_lives(int number)
+{
+	static unsigned char bytes[84 + 50 * FACETS];
+	static cau_mesh_report report;
+	cau_solid solid;
+	cau_error error = {0};
+	organ of = organ_of(number);
+	char name[32];
+	snprintf(name, sizeof name, "organ-%d.stl", number);
+	size_t count = write_organ(&of, bytes);
+	cau_mesh_wish wish = {.file = name, .bytes = bytes, .byte_count = count, .layer_kind = -1};
+	cau_scene_def *scene = malloc(sizeof *scene);
+	assert_non_null(scene);
+	if (cau_mesh_scene(&wish, scene, &report, &error))
+		fail_msg("%s: %s", name, error.reason);
+	free(scene);
+	assert_true(report.unit_guessed && report.unit_m == 0.001);
+	assert_true(report.opening <= CAU_NEARLY_CLOSED);
+	cau_solid_wish asked = {.file = name, .bytes = bytes, .byte_count = count};
+	if (cau_solid_make(&asked, &solid, &error))
+		fail_msg("%s: %s", name, error.reason);
+	wish.bytes = solid.bytes;
+	wish.byte_count = solid.byte_count;
+	wish.unit_m = report.unit_m;
+	live(&wish);
+	cau_solid_finish(&solid);
+}
+
+static bool all_organs;
+
+static void organs_live(void **state)
+{
+	(void)state;
+	static const int some[] = {5, 17}; // with a hole; with facets that look inward, too
+	for (int k = 0; k < (all_organs ? ORGANS : CAU_TEST_SANITIZED ? 1 : 2); k++)
+		organ_lives(all_organs ? k : some[k]);
+}
+
+int main(int argument_count, char **arguments)
 {
 	const struct CMUnitTest tests[] = {cmocka_unit_test(blocks_live),
-	                                   cmocka_unit_test(real_files_live)};
+	                                   cmocka_unit_test(real_files_live),
+	                                   cmocka_unit_test(organs_live)};
+	all_organs = argument_count > 1 && strcmp(arguments[1], "--long") == 0;
 	return cmocka_run_group_tests(tests, NULL, NULL);
 }
