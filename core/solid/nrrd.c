@@ -146,9 +146,9 @@ static cau_status read_space(header *of, const char *text)
 		         strpbrk(text, "Ii") ? "inferior" : "superior");
 	for (int c = 0; c < 3; c++) {
 		const char *word = strtok_r(c ? NULL : words, "-", &rest);
-		if (!word || (strcasecmp(word, to_mesh[c][0]) && strcasecmp(word, to_mesh[c][1])))
+		if (!word || (strcasecmp(word, to_mesh[c][0]) != 0 && strcasecmp(word, to_mesh[c][1]) != 0))
 			return CAU_OK; // scanner-xyz and the like: where right and left are is not known
-		turn[c] = strcasecmp(word, to_mesh[c][0]) ? -1 : 1;
+		turn[c] = strcasecmp(word, to_mesh[c][0]) == 0 ? 1 : -1;
 	}
 	memcpy(of->turn, turn, sizeof turn);
 	of->volume->framed = true;

@@ -49,8 +49,6 @@ static bool find_walls(smoother *of)
 	int32_t faces = 4 * of->tets->count;
 	int32_t *key = malloc(((size_t)faces + 1) * 3 * sizeof *key);
 	int32_t *order = malloc(((size_t)faces + 1) * sizeof *order);
-	of->face = malloc(((size_t)faces + 1) * 3 * sizeof *of->face);
-	of->wall = malloc(((size_t)faces + 1) * sizeof *of->wall);
 	bool done = key && order && of->face && of->wall;
 	for (int32_t f = 0; f < faces && done; f++) {
 		for (int k = 0; k < 3; k++)
@@ -212,6 +210,9 @@ static void improve(const smoother *of, int32_t vertex)
 cau_status cau_smooth(const cau_domain *domain, cau_tets *tets, cau_error *error)
 {
 	smoother of = {.domain = domain, .tets = tets};
+	size_t faces = 4 * (size_t)tets->count + 1;
+	of.face = malloc(faces * 3 * sizeof *of.face);
+	of.wall = malloc(faces * sizeof *of.wall);
 	bool done = cau_around_make(&of.around, tets->vertex, tets->count, 4, tets->vertex_count) &&
 	            find_walls(&of);
 	for (int round = 0; round < ROUNDS && done; round++)

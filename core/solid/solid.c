@@ -33,9 +33,9 @@ typedef struct work {
 
 __attribute__((format(printf, 2, 3))) static void put(work *of, const char *format, ...)
 {
-	size_t left = CAU_SOLID_TEXT_BYTES - of->text_bytes;
 	va_list arguments;
 	va_start(arguments, format);
+	size_t left = CAU_SOLID_TEXT_BYTES - of->text_bytes;
 	int length = vsnprintf(of->solid->text + of->text_bytes, left, format, arguments);
 	va_end(arguments);
 	of->text_bytes += length < 0 ? 0 : (size_t)length < left ? (size_t)length : left - 1;
@@ -137,7 +137,9 @@ static cau_status read_surface(work *of, const void *bytes, size_t byte_count, c
 		put(of, "surface: %d triangles, %d %s, %d open edges", surface->triangle_count,
 		    report->component_count, report->component_count == 1 ? "component" : "components",
 		    report->open_edge_count);
-		put(of, turned ? ", %d triangles turned outward\n" : "\n", turned);
+		if (turned)
+			put(of, ", %d triangles turned outward", turned);
+		put(of, "\n");
 	}
 	free(report);
 	return status;

@@ -23,7 +23,7 @@ static const double wall_share = 4; // of the processor time: a busy machine giv
 
 struct cau_filling {
 	atomic_int holders;
-	atomic_bool cancelled;
+	atomic_bool cancelled, ended;
 	atomic_bool done; // after bytes and byte_count
 	void *bytes;
 	size_t byte_count;
@@ -59,6 +59,16 @@ void cau_filling_cancel(cau_filling *filling)
 bool cau_filling_is_cancelled(const cau_filling *filling)
 {
 	return atomic_load(&filling->cancelled);
+}
+
+void cau_filling_end(cau_filling *filling)
+{
+	atomic_store(&filling->ended, true);
+}
+
+bool cau_filling_has_ended(const cau_filling *filling)
+{
+	return atomic_load(&filling->ended);
 }
 
 bool cau_filling_solid(const cau_filling *filling, const void **bytes, size_t *byte_count)

@@ -20,6 +20,9 @@ void cau_filling_release(cau_filling *filling); // takes NULL
 // The upload is gone, or something else is wanted of it: the process ends soon.
 void cau_filling_cancel(cau_filling *filling);
 bool cau_filling_is_cancelled(const cau_filling *filling);
+// Nothing is done for it any more, whatever came of it.
+void cau_filling_end(cau_filling *filling);
+bool cau_filling_has_ended(const cau_filling *filling);
 // The solid's bytes, valid as long as the filling is held. False: it is not there (yet).
 bool cau_filling_solid(const cau_filling *filling, const void **bytes, size_t *byte_count);
 

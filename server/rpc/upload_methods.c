@@ -5,6 +5,8 @@
 
 #include "rpc/internal.h"
 
+enum { READINGS_OF_PEER = 2 };
+
 void cau_call_upload_begin(cau_call *call)
 {
 	cau_error error = {0};
@@ -92,14 +94,29 @@ void cau_call_upload_end(cau_call *call)
 	cau_call_result(call, &result);
 }
 
-static cau_status check_wish(const cau_wire_mesh_read *params, const cau_upload *upload,
-                             cau_error *error)
+// Readings of a connection that are under way or wait: each may take a builder's thread for long.
+static int readings_of(const cau_uploads *uploads, const cau_upload *but)
+{
+	int count = 0;
+	for (const cau_upload *upload = uploads->first; upload; upload = upload->next)
+		count += upload != but && upload->filling && !cau_filling_has_ended(upload->filling);
+	return count;
+}
+
+static cau_status check_wish(const cau_wire_mesh_read *params, const cau_uploads *uploads,
+                             const cau_upload *upload, cau_error *error)
 {
 	if (!upload || !upload->complete)
 		return cau_fail(error, CAU_NOT_FOUND, "params.upload",
 		                "no upload of this connection is named `%.48s`", params->upload);
 	if (params->has_as && params->as != CAU_LAYER_FAT && params->as != CAU_LAYER_FASCIA)
 		return cau_fail(error, CAU_BAD_VALUE, "params.as", "must be fat or fascia");
+	if (readings_of(uploads, upload) >= READINGS_OF_PEER)
+		return cau_fail(
+			error, CAU_LIMIT, "",
+			"%d readings of this connection are under way: wait for an answer, or discard "
+			"an upload",
+			READINGS_OF_PEER);
 	return CAU_OK;
 }
 
@@ -126,7 +143,7 @@ static cau_status ask_for_mesh(cau_call *call, const cau_wire_mesh_read *params,
 	cau_upload *upload = cau_uploads_find(&peer->uploads, params->upload);
 	cau_reply reply = cau_call_reply(call);
 	cau_mesh_asked asked = {0};
-	cau_status status = check_wish(params, upload, error);
+	cau_status status = check_wish(params, &peer->uploads, upload, error);
 	if (status)
 		return status;
 	fill_asked(params, upload, peer->service->config, &asked);
