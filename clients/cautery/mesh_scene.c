@@ -78,6 +78,7 @@ static void use_own_words(char *text, size_t bytes)
 {
 	static const char *const words[][2] = {{"unit_m", "--unit-m"},
 	                                       {"strict refuses", "--strict refuses"},
+	                                       {"(labels)", "(--labels)"},
 	                                       {"(as fascia)", "(--as fascia)"},
 	                                       {"(as fat)", "(--as fat)"}};
 	for (size_t i = 0; i < sizeof words / sizeof *words; i++) {

@@ -40,7 +40,7 @@ static cau_status refuse_format(const char *name, const cau_mesh_format *format,
 	return cau_fail(
 		error, CAU_UNSUPPORTED, NULL,
 		"'%.80s' is in none of the formats that are read: Gmsh, VTK, VTU, OBJ, STL, PLY, "
-		"Medit, TetGen and USD (.usda)",
+		"Medit, TetGen, USD (.usda), and segmentations in NRRD or NIfTI",
 		name);
 }
 

@@ -15,6 +15,7 @@ typedef struct cau_domain cau_domain;
 struct cau_domain {
 	int32_t label_count;
 	double least[3], most[3]; // a box around all labels
+	double volume;            // of all labels, about
 	// The label at x. Labels with passed[label] set do not count, 0 neither: what is left decides,
 	// and 0 is the answer where nothing is left. NULL: all count.
 	int32_t (*label_at)(const cau_domain *domain, const double x[3], const bool *passed);

@@ -113,10 +113,10 @@ static cau_status lay_out(grid *of, cau_error *error)
 cau_status cau_lattice(const cau_domain *domain, double spacing, cau_tets *tets, cau_error *error)
 {
 	grid of = {.domain = domain, .spacing = spacing};
+	tets->spacing = spacing;
 	cau_status status = lay_out(&of, error);
 	if (status)
 		return status;
-	tets->spacing = spacing;
 	for (int kind = 0; kind < 2; kind++) {
 		size_t count = 1;
 		for (int c = 0; c < 3; c++)

@@ -20,8 +20,6 @@ typedef struct header {
 	bool has_directions, has_spacing, has_sizes, has_type, has_encoding;
 	double turn[3]; // of each axis of the file's frame: 1, or -1 to reach right, front, head
 	double unit_mm; // of the frame
-	int32_t value[CAU_SOLID_LABEL_MAX]; // of segments, -1: not stated
-	char name[CAU_SOLID_LABEL_MAX][CAU_LABEL_NAME_BYTES];
 	cau_error *error;
 } header;
 
@@ -216,17 +214,23 @@ static const struct {
 static void read_segment(header *of, const char *key, const char *text)
 {
 	char *end;
-	long segment = strncmp(key, "Segment", 7) ? -1 : strtol(key + 7, &end, 10);
-	if (segment < 0 || segment >= CAU_SOLID_LABEL_MAX || end == key + 7)
+	long number = strncmp(key, "Segment", 7) != 0 ? -1 : strtol(key + 7, &end, 10);
+	if (number < 0 || number >= CAU_SEGMENT_MAX || end == key + 7)
 		return;
-	if (!strncmp(end, "_LabelValue", 11)) {
-		long value = strtol(text, NULL, 10);
-		of->value[segment] = value > 0 && value <= 65535 ? (int32_t)value : -1;
-	}
-	if (!strncmp(end, "_Name:", 6) || !strcmp(end, "_Name"))
-		for (size_t i = 0; text[i] && i < CAU_LABEL_NAME_BYTES - 1; i++)
-			of->name[segment][i] =
-				text[i] >= ' ' && text[i] <= '~' && text[i] != '"' ? text[i] : '?';
+	if (!of->volume->segment)
+		of->volume->segment = calloc(CAU_SEGMENT_MAX, sizeof *of->volume->segment);
+	if (!of->volume->segment)
+		return; // no names, then
+	cau_segment *segment = &of->volume->segment[number];
+	long value = strtol(text, NULL, 10);
+	if (strcmp(end, "_LabelValue") == 0 && value > 0 && value <= CAU_LABEL_VALUE_MAX)
+		segment->value = (int32_t)value;
+	if (strcmp(end, "_Name") != 0)
+		return;
+	size_t length = strlen(text) < CAU_LABEL_NAME_BYTES ? strlen(text) : CAU_LABEL_NAME_BYTES - 1;
+	for (size_t i = 0; i < length; i++)
+		segment->name[i] = text[i] >= ' ' && text[i] <= '~' && text[i] != '"' ? text[i] : '?';
+	segment->name[length] = 0;
 }
 
 static cau_status read_line(header *of, char *line)
@@ -292,40 +296,20 @@ static void turn_axes(header *of)
 	}
 }
 
-static void name_labels(const header *of)
-{
-	cau_volume *volume = of->volume;
-	for (int k = 0; k < CAU_SOLID_LABEL_MAX; k++) {
-		if (of->value[k] < 0)
-			continue;
-		CAU_ASSERT(of->value[k] <= 65535, "a label of value %d", of->value[k]);
-		cau_label *label = &volume->label[++volume->label_count];
-		label->value = of->value[k];
-		memcpy(label->name, of->name[k], sizeof label->name);
-	}
-}
-
 cau_status cau_nrrd_read(const unsigned char *bytes, size_t byte_count, cau_volume *volume,
                          cau_voxels *voxels, cau_error *error)
 {
-	header *of = calloc(1, sizeof *of);
-	size_t data = 0;
-	if (!of)
-		return cau_fail(error, CAU_NO_MEMORY, NULL, "no memory for a header");
-	*of = (header){
+	header of = {
 		.volume = volume, .voxels = voxels, .turn = {1, 1, 1}, .unit_mm = 1, .error = error};
-	for (int k = 0; k < CAU_SOLID_LABEL_MAX; k++)
-		of->value[k] = -1;
+	size_t data = 0;
 	volume->format = "NRRD";
-	cau_status status = read_lines(of, bytes, byte_count, &data);
-	if (!status && !(of->dimension && of->has_sizes && of->has_type && of->has_encoding))
-		status = fail(of, "the header does not state %s", "type, dimension, sizes and encoding");
-	if (!status) {
-		turn_axes(of);
-		name_labels(of);
-		voxels->data = bytes + data;
-		voxels->byte_count = byte_count - data;
-	}
-	free(of);
-	return status;
+	cau_status status = read_lines(&of, bytes, byte_count, &data);
+	if (!status && !(of.dimension && of.has_sizes && of.has_type && of.has_encoding))
+		status = fail(&of, "the header does not state %s", "type, dimension, sizes and encoding");
+	if (status)
+		return status;
+	turn_axes(&of);
+	voxels->data = bytes + data;
+	voxels->byte_count = byte_count - data;
+	return CAU_OK;
 }

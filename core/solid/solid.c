@@ -15,17 +15,18 @@
 #include "solid/tets.h"
 
 // What a session steps in real time on one core, with room for a cut.
-enum { TETRAHEDRA_CHOSEN = 8000, SAMPLES = 24 };
+enum { TETRAHEDRA_CHOSEN = 8000, SAMPLES = 24, SAMPLES_LEAST = 200, TRIES = 5 };
 // Edges of the lattice are as long as its spacing (2 of 6) or sqrt(3)/2 of it (4 of 6).
 static const double spacing_of_edge = 1.0 / 0.911;
 static const double tetrahedra_of_cell = 12;
+static const double spacing_least = 1e-4; // of the longest side: less is what rounding leaves
 
 typedef struct work {
 	const cau_solid_wish *wish;
 	cau_solid *solid;
 	cau_mesh surface;
 	cau_volume volume;
-	bool is_volume;
+	bool is_volume, is_closed; // closed: a volume, or a surface without a rim
 	cau_domain domain;
 	cau_tets tets;
 	size_t text_bytes;
@@ -70,7 +71,7 @@ static cau_status read_volume(work *of, const void *bytes, size_t byte_count, ca
 {
 	cau_volume *volume = &of->volume;
 	char letters[4];
-	cau_status status = cau_volume_read(bytes, byte_count, volume, error);
+	cau_status status = cau_volume_read(bytes, byte_count, of->wish->labels, volume, error);
 	if (status)
 		return status;
 	double step[3];
@@ -87,12 +88,10 @@ static cau_status read_volume(work *of, const void *bytes, size_t byte_count, ca
 		    letters_of(volume, letters));
 	else
 		put(of, "orientation: the file states none, so that left and right may be exchanged\n");
-	if (of->wish->labels && *of->wish->labels)
-		status = cau_volume_keep(volume, of->wish->labels, error);
-	if (!status)
-		cau_domain_of_volume(volume, &of->domain);
+	cau_domain_of_volume(volume, &of->domain);
+	of->is_closed = true;
 	of->solid->unit_m = 1e-3;
-	return status;
+	return CAU_OK;
 }
 
 static cau_status judge_surface(const work *of, int32_t turned, const cau_mesh_report *report,
@@ -131,6 +130,7 @@ static cau_status read_surface(work *of, const void *bytes, size_t byte_count, c
 		                  "this file has tetrahedra already: nothing is left to fill");
 	if (!status)
 		status = cau_domain_of_surface(surface, &of->domain, &turned, error);
+	of->is_closed = !report->open_edge_count;
 	if (!status)
 		status = judge_surface(of, turned, report, error);
 	if (!status) {
@@ -164,8 +164,9 @@ static cau_status read_domain(work *of, cau_error *error)
 }
 
 // ---- meshing
-// The volume inside, by asking at the middles of SAMPLES^3 cells of the box.
-static double volume_inside(const cau_domain *domain)
+// The volume inside, by asking at the middles of SAMPLES^3 cells of the box. Where few of them are
+// inside, what is meant is thin, and the domain's own figure is better, if it is closed.
+static double volume_inside(const cau_domain *domain, bool closed)
 {
 	double cell = 1;
 	int inside = 0;
@@ -179,49 +180,70 @@ static double volume_inside(const cau_domain *domain)
 			       (index[c] + 0.5) * (domain->most[c] - domain->least[c]) / SAMPLES;
 		inside += domain->label_at(domain, x, NULL) != 0;
 	}
-	return cell * inside;
+	return inside >= SAMPLES_LEAST || !closed ? cell * inside : domain->volume;
+}
+
+static double longest_side(const cau_domain *domain)
+{
+	double longest = 0;
+	for (int c = 0; c < 3; c++)
+		longest = fmax(longest, domain->most[c] - domain->least[c]);
+	return longest;
 }
 
 static cau_status choose_spacing(work *of, double *spacing, cau_error *error)
 {
-	double edge = of->wish->edge, volume = volume_inside(&of->domain), longest = 0;
-	for (int c = 0; c < 3; c++)
-		longest = fmax(longest, of->domain.most[c] - of->domain.least[c]);
+	double edge = of->wish->edge;
 	if (!(edge >= 0) || !isfinite(edge))
 		return cau_fail(error, CAU_BAD_VALUE, "edge", "an edge must be above zero");
-	if (!(volume > 0) && edge == 0)
-		return cau_fail(
-			error, CAU_BAD_MESH, NULL,
-			"nothing is inside this %s: it is open, or thinner than a %dth of its box; make "
-			"a sheet of it (as fascia), or choose an edge",
-			of->is_volume ? "segmentation" : "surface", SAMPLES);
+	if (edge > 0) {
+		*spacing = edge * spacing_of_edge;
+		return CAU_OK;
+	}
 	*spacing =
-		edge > 0 ? edge * spacing_of_edge : cbrt(tetrahedra_of_cell * volume / TETRAHEDRA_CHOSEN);
-	put(of, "edge: %.3g of a longest side of %.3g (%s)\n", *spacing / spacing_of_edge, longest,
-	    edge > 0 ? "asked for" : "chosen");
-	return CAU_OK;
+		cbrt(tetrahedra_of_cell * volume_inside(&of->domain, of->is_closed) / TETRAHEDRA_CHOSEN);
+	if (*spacing > spacing_least * longest_side(&of->domain) && isfinite(*spacing))
+		return CAU_OK;
+	return cau_fail(error, CAU_BAD_MESH, NULL,
+	                "nothing is inside this %s: make a sheet of it (as fascia), or choose an edge",
+	                of->is_volume ? "segmentation" : "surface");
 }
 
+static cau_status mesh_with(work *of, double spacing, cau_error *error)
+{
+	cau_tets_finish(&of->tets);
+	tell(of, "lattice", 0.1);
+	cau_status status = cau_lattice(&of->domain, spacing, &of->tets, error);
+	return status ? status : cau_stuff(&of->domain, &of->tets, tell_cutting, of, error);
+}
+
+static cau_status too_thin(const work *of, cau_error *error)
+{
+	return cau_fail(error, CAU_BAD_VALUE, "edge",
+	                "an edge of %.3g is longer than the tissue is thick: choose a shorter one%s",
+	                of->tets.spacing / spacing_of_edge,
+	                of->wish->edge > 0 ? "" : ", or crop the file");
+}
+
+// Tissue thinner than the edge vanishes. An edge that was chosen here is halved, then.
 static cau_status make_tets(work *of, cau_error *error)
 {
 	double spacing = 0;
 	cau_status status = choose_spacing(of, &spacing, error);
-	if (!status) {
-		tell(of, "lattice", 0.1);
-		status = cau_lattice(&of->domain, spacing, &of->tets, error);
+	int tries = of->wish->edge > 0 ? 1 : TRIES;
+	for (int k = 0; k < tries && !status && !of->tets.count; k++) {
+		status = mesh_with(of, spacing / (1 << k), error);
+		if (status == CAU_LIMIT && k)
+			return too_thin(of, error);
 	}
-	if (!status)
-		status = cau_stuff(&of->domain, &of->tets, tell_cutting, of, error);
 	if (!status && !of->tets.count)
-		status =
-			cau_fail(error, CAU_BAD_VALUE, "edge",
-		             "an edge of %.3g is longer than the tissue is thick: choose a shorter one",
-		             spacing / spacing_of_edge);
-	if (!status) {
-		tell(of, "smoothing", 0.6);
-		status = cau_smooth(&of->domain, &of->tets, error);
-	}
-	return status;
+		return too_thin(of, error);
+	if (status)
+		return status;
+	put(of, "edge: %.3g of a longest side of %.3g (%s)\n", of->tets.spacing / spacing_of_edge,
+	    longest_side(&of->domain), of->wish->edge > 0 ? "asked for" : "chosen");
+	tell(of, "smoothing", 0.6);
+	return cau_smooth(&of->domain, &of->tets, error);
 }
 
 // ---- the report

@@ -185,11 +185,18 @@ static void measure(const cau_mesh *surface, cau_domain *domain, double *middle)
 		domain->least[v % 3] = fmin(domain->least[v % 3], surface->position[v]);
 		domain->most[v % 3] = fmax(domain->most[v % 3], surface->position[v]);
 	}
-	for (size_t t = 0; t < (size_t)surface->triangle_count; t++)
+	double six = 0; // times the volume that it encloses
+	for (size_t t = 0; t < (size_t)surface->triangle_count; t++) {
+		double normal[3], from[3];
 		for (size_t c = 0; c < 3; c++)
 			for (size_t k = 0; k < 3; k++)
 				middle[3 * t + c] +=
 					surface->position[3 * (size_t)surface->triangle[3 * t + k] + c] / 3;
+		cau_triangle_normal(surface->position, surface->triangle + 3 * t, normal);
+		cau_subtract3(middle + 3 * t, domain->least, from);
+		six += cau_dot3(from, normal);
+	}
+	domain->volume = fabs(six) / 6;
 }
 
 cau_status cau_domain_of_surface(cau_mesh *surface, cau_domain *domain, int32_t *turned,

@@ -8,7 +8,7 @@
 
 #include "cautery/assert.h"
 
-enum { VALUE_MAX = 65535, SIDE_MAX = 8192 };
+enum { SIDE_MAX = 8192, NEW_LABEL = 255 }; // NEW_LABEL: of a value that counts and has no place yet
 static const int64_t voxels_most = 1LL << 29;
 
 bool cau_solid_is_volume(const void *bytes, size_t byte_count)
@@ -86,13 +86,13 @@ static cau_status refuse_value(double value, cau_error *error)
 		error, CAU_BAD_MESH, NULL,
 		"a voxel holds %g, and labels are whole numbers from 0 to %d: this is an image and "
 		"no segmentation; segment it first",
-		value, VALUE_MAX);
+		value, CAU_LABEL_VALUE_MAX);
 }
 
-// The place of a value among the labels, made where it is new; 0 of the value 0; -1: no place left.
+// The place of a value among the labels, made where it is new; -1: no place left.
 static int32_t place_of(cau_volume *volume, uint8_t *of_value, int32_t value)
 {
-	if (!value || of_value[value])
+	if (of_value[value] != NEW_LABEL)
 		return of_value[value];
 	if (volume->label_count == CAU_SOLID_LABEL_MAX)
 		return -1;
@@ -104,14 +104,15 @@ static int32_t place_of(cau_volume *volume, uint8_t *of_value, int32_t value)
 static cau_status take_value(cau_volume *volume, uint8_t *of_value, double value, uint8_t *voxel,
                              cau_error *error)
 {
-	if (!(value >= 0 && value <= VALUE_MAX) || value != floor(value))
+	if (!(value >= 0 && value <= CAU_LABEL_VALUE_MAX) || value != floor(value))
 		return refuse_value(value, error);
 	int32_t place = place_of(volume, of_value, (int32_t)value);
 	if (place < 0)
-		return cau_fail(error, CAU_BAD_MESH, NULL,
-		                "more than %d different labels: this is an image and no segmentation, or "
-		                "choose fewer labels before saving it",
-		                CAU_SOLID_LABEL_MAX);
+		return cau_fail(
+			error, CAU_BAD_MESH, NULL,
+			"more than %d different labels: choose some of them (labels), if this is no "
+			"image that must be segmented first",
+			CAU_SOLID_LABEL_MAX);
 	CAU_ASSERT_INDEX(place, CAU_SOLID_LABEL_MAX + 1);
 	volume->label[place].voxel_count++;
 	*voxel = (uint8_t)place;
@@ -173,53 +174,95 @@ static cau_status decode_binary(const cau_voxels *voxels, cau_volume *volume, si
 	return CAU_OK;
 }
 
-// Names without a voxel go; labels are in the order of their values.
+// Labels are in the order of their values, with the names that the header has.
 static void order_labels(cau_volume *volume)
 {
 	uint8_t place[CAU_SOLID_LABEL_MAX + 1] = {0};
-	cau_label kept[CAU_SOLID_LABEL_MAX + 1] = {{0}};
-	int32_t count = 0;
-	for (int32_t value = 0, next = 0; next >= 0; value = next) {
-		next = -1;
-		for (int32_t k = 1; k <= volume->label_count; k++)
-			if (volume->label[k].voxel_count && volume->label[k].value > value &&
-			    (next < 0 || volume->label[k].value < next))
-				next = volume->label[k].value;
-		for (int32_t k = 1; k <= volume->label_count && next >= 0; k++)
-			if (volume->label[k].value == next && volume->label[k].voxel_count) {
-				place[k] = (uint8_t)++count;
-				kept[count] = volume->label[k];
-			}
+	cau_label before[CAU_SOLID_LABEL_MAX + 1];
+	memcpy(before, volume->label, sizeof before);
+	for (int32_t k = 1; k <= volume->label_count; k++) {
+		int32_t at = 1;
+		for (int32_t other = 1; other <= volume->label_count; other++)
+			at += before[other].value < before[k].value;
+		place[k] = (uint8_t)at;
+		volume->label[at] = before[k];
 	}
 	size_t voxels = (size_t)volume->size[0] * (size_t)volume->size[1] * (size_t)volume->size[2];
 	for (size_t i = 0; i < voxels; i++)
 		volume->voxel[i] = place[volume->voxel[i]];
-	memcpy(volume->label, kept, sizeof kept);
-	volume->label_count = count;
+	for (int32_t s = 0; volume->segment && s < CAU_SEGMENT_MAX; s++)
+		for (int32_t k = 1; k <= volume->label_count && volume->segment[s].value; k++)
+			if (volume->label[k].value == volume->segment[s].value)
+				memcpy(volume->label[k].name, volume->segment[s].name, CAU_LABEL_NAME_BYTES);
 }
 
-static cau_status decode(const cau_voxels *voxels, cau_volume *volume, cau_error *error)
+// Marks the values that count.
+static cau_status mark_values(const char *labels, uint8_t *of_value, cau_error *error)
+{
+	if (!labels || !labels[0]) {
+		memset(of_value + 1, NEW_LABEL, CAU_LABEL_VALUE_MAX);
+		return CAU_OK;
+	}
+	for (const char *at = labels; *at;) {
+		char *end;
+		long value = strtol(at, &end, 10);
+		if (end == at || (*end && *end != ',') || value < 1 || value > CAU_LABEL_VALUE_MAX)
+			return cau_fail(error, CAU_BAD_VALUE, "labels",
+			                "labels must be numbers from 1 to %d with commas, as in 1,3",
+			                CAU_LABEL_VALUE_MAX);
+		of_value[value] = NEW_LABEL;
+		at = *end ? end + 1 : end;
+	}
+	return CAU_OK;
+}
+
+// The first value that was asked for, and that no voxel has.
+static cau_status check_found(const char *labels, const uint8_t *of_value, cau_error *error)
+{
+	for (const char *at = labels ? labels : ""; *at; at += strcspn(at, ","), at += *at == ',') {
+		long value = strtol(at, NULL, 10);
+		CAU_ASSERT(value >= 1 && value <= CAU_LABEL_VALUE_MAX, "label %ld", value);
+		if (of_value[value] == NEW_LABEL)
+			return cau_fail(error, CAU_BAD_VALUE, "labels", "no voxel has label %ld", value);
+	}
+	return CAU_OK;
+}
+
+static cau_status unpack_voxels(const cau_voxels *voxels, size_t count, cau_voxels *plain,
+                                unsigned char **unpacked, cau_error *error)
+{
+	enum { TEXT_BYTES = 24 }; // of a number written as text, at most
+	*plain = *voxels;
+	if (!voxels->packed)
+		return CAU_OK;
+	size_t most = (voxels->text ? TEXT_BYTES : (size_t)voxels->bytes) * count;
+	cau_status status =
+		cau_unpack(voxels->data, voxels->byte_count, most, unpacked, &plain->byte_count, error);
+	plain->data = *unpacked;
+	return status;
+}
+
+static cau_status decode(const cau_voxels *voxels, const char *labels, cau_volume *volume,
+                         cau_error *error)
 {
 	size_t count = (size_t)volume->size[0] * (size_t)volume->size[1] * (size_t)volume->size[2];
-	cau_voxels plain = *voxels;
+	cau_voxels plain;
 	unsigned char *unpacked = NULL;
-	uint8_t *of_value = calloc(VALUE_MAX + 1, 1);
+	uint8_t *of_value = calloc(CAU_LABEL_VALUE_MAX + 1, 1);
 	CAU_ASSERT(count > 0, "a volume of %zu voxels", count);
 	volume->voxel = calloc(count, 1);
 	cau_status status = CAU_OK;
 	if (!of_value || !volume->voxel)
 		status = cau_fail(error, CAU_NO_MEMORY, NULL, "no memory for %zu voxels", count);
-	if (!status && voxels->packed) {
-		size_t most = voxels->text ? 24 * count : (size_t)voxels->bytes * count;
-		status =
-			cau_unpack(voxels->data, voxels->byte_count, most, &unpacked, &plain.byte_count, error);
-		plain.data = unpacked;
-	}
-	for (int32_t k = 1; k <= volume->label_count && !status; k++)
-		of_value[volume->label[k].value] = (uint8_t)k;
+	if (!status)
+		status = mark_values(labels, of_value, error);
+	if (!status)
+		status = unpack_voxels(voxels, count, &plain, &unpacked, error);
 	if (!status)
 		status =
 			(voxels->text ? decode_text : decode_binary)(&plain, volume, count, of_value, error);
+	if (!status)
+		status = check_found(labels, of_value, error);
 	if (!status)
 		order_labels(volume);
 	free(unpacked);
@@ -227,8 +270,8 @@ static cau_status decode(const cau_voxels *voxels, cau_volume *volume, cau_error
 	return status;
 }
 
-cau_status cau_volume_read(const unsigned char *bytes, size_t byte_count, cau_volume *volume,
-                           cau_error *error)
+cau_status cau_volume_read(const unsigned char *bytes, size_t byte_count, const char *labels,
+                           cau_volume *volume, cau_error *error)
 {
 	cau_voxels voxels = {0};
 	unsigned char *unpacked = NULL;
@@ -249,7 +292,7 @@ cau_status cau_volume_read(const unsigned char *bytes, size_t byte_count, cau_vo
 	if (!status)
 		status = cau_volume_check(volume, error);
 	if (!status)
-		status = decode(&voxels, volume, error);
+		status = decode(&voxels, labels, volume, error);
 	free(unpacked);
 	if (!status && !volume->label_count)
 		return cau_fail(error, CAU_BAD_MESH, NULL,
@@ -260,38 +303,6 @@ cau_status cau_volume_read(const unsigned char *bytes, size_t byte_count, cau_vo
 void cau_volume_finish(cau_volume *volume)
 {
 	free(volume->voxel);
+	free(volume->segment);
 	*volume = (cau_volume){0};
-}
-
-// ---- choosing
-// Marks the places of the labels that are listed. Returns the first that is not there, or -1.
-static cau_status mark_listed(const cau_volume *volume, const char *labels, bool *kept,
-                              cau_error *error)
-{
-	for (const char *at = labels; *at;) {
-		char *end;
-		long value = strtol(at, &end, 10);
-		bool found = false;
-		if (end == at || (*end && *end != ','))
-			return cau_fail(error, CAU_BAD_VALUE, "labels",
-			                "labels must be numbers with commas, as in 1,3");
-		for (int32_t k = 1; k <= volume->label_count; k++)
-			if (volume->label[k].value == value)
-				found = kept[k] = true;
-		if (!found)
-			return cau_fail(error, CAU_BAD_VALUE, "labels", "no voxel has label %ld", value);
-		at = *end ? end + 1 : end;
-	}
-	return CAU_OK;
-}
-
-cau_status cau_volume_keep(cau_volume *volume, const char *labels, cau_error *error)
-{
-	bool kept[CAU_SOLID_LABEL_MAX + 1] = {0};
-	cau_status status = mark_listed(volume, labels, kept, error);
-	for (int32_t k = 1; k <= volume->label_count && !status; k++)
-		volume->label[k].voxel_count = kept[k] ? volume->label[k].voxel_count : 0;
-	if (!status)
-		order_labels(volume);
-	return status;
 }

@@ -10,7 +10,11 @@
 #include "cautery/solid.h"
 #include "cautery/status.h"
 
-enum { CAU_LABEL_NAME_BYTES = 48 };
+enum {
+	CAU_LABEL_NAME_BYTES = 48,
+	CAU_LABEL_VALUE_MAX = 65535, // in a file
+	CAU_SEGMENT_MAX = 512,       // names in a header that are kept
+};
 
 typedef struct cau_label {
 	int32_t value; // in the file
@@ -18,12 +22,19 @@ typedef struct cau_label {
 	char name[CAU_LABEL_NAME_BYTES]; // of the file, or ""
 } cau_label;
 
+// A segment that a header names.
+typedef struct cau_segment {
+	int32_t value; // of its voxels; 0: not stated
+	char name[CAU_LABEL_NAME_BYTES];
+} cau_segment;
+
 typedef struct cau_volume {
 	const char *format; // "NRRD"
 	int32_t size[3];
 	uint8_t *voxel; // index in `label`, 0: outside; the first axis fastest
 	int32_t label_count;
 	cau_label label[CAU_SOLID_LABEL_MAX + 1]; // [0] is unused
+	cau_segment *segment;                     // (CAU_SEGMENT_MAX), or NULL: the file has no names
 	double axis[3][3];    // of each index, one step in mm: to the right, to the front, to the head
 	double origin[3];     // mm, centre of the first voxel
 	bool framed;          // the file says where right, front and head are
@@ -42,16 +53,13 @@ typedef struct cau_voxels {
 bool cau_is_nrrd(const unsigned char *bytes, size_t byte_count);
 bool cau_is_nifti(const unsigned char *bytes, size_t byte_count); // packed or not
 
-// Reads a file's bytes. The caller finishes *volume, on failure too.
-cau_status cau_volume_read(const unsigned char *bytes, size_t byte_count, cau_volume *volume,
-                           cau_error *error);
+// Reads a file's bytes. `labels` ("1,3"; NULL or "": all) says which values count; others are
+// outside. CAU_BAD_VALUE at "labels". The caller finishes *volume, on failure too.
+cau_status cau_volume_read(const unsigned char *bytes, size_t byte_count, const char *labels,
+                           cau_volume *volume, cau_error *error);
 void cau_volume_finish(cau_volume *volume);
 
-// Keeps the labels that are listed ("1,3") alone. CAU_BAD_VALUE at "labels".
-cau_status cau_volume_keep(cau_volume *volume, const char *labels, cau_error *error);
-
-// The readers. Each fills size, axes and frame, says where the numbers are, and leaves names of
-// labels in `label` by their values (label_count of them), which decoding then completes.
+// The readers. Each fills size, axes, frame and segments, and says where the numbers are.
 cau_status cau_nrrd_read(const unsigned char *bytes, size_t byte_count, cau_volume *volume,
                          cau_voxels *voxels, cau_error *error);
 cau_status cau_nifti_read(const unsigned char *bytes, size_t byte_count, cau_volume *volume,

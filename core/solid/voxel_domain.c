@@ -4,6 +4,7 @@
 #include <math.h>
 
 #include "cautery/assert.h"
+#include "mesh/geometry.h"
 #include "solid/domain.h"
 
 enum { REACH = 4 }; // voxels along each axis that vote
@@ -84,6 +85,14 @@ static int32_t label_at(const cau_domain *domain, const double x[3], const bool 
 	return vote(volume, first, weight, passed);
 }
 
+// The volume of a voxel.
+static double cell_of(const cau_volume *volume)
+{
+	double normal[3];
+	cau_cross3(volume->axis[0], volume->axis[1], normal);
+	return fabs(cau_dot3(normal, volume->axis[2]));
+}
+
 void cau_domain_of_volume(const cau_volume *volume, cau_domain *domain)
 {
 	*domain = (cau_domain){
@@ -101,6 +110,8 @@ void cau_domain_of_volume(const cau_volume *volume, cau_domain *domain)
 					most[c] = index[c] > most[c] ? index[c] : most[c];
 				}
 			}
+	for (int32_t label = 1; label <= volume->label_count; label++)
+		domain->volume += (double)volume->label[label].voxel_count * cell_of(volume);
 	CAU_ASSERT(most[0] >= 0, "a volume of %d labels without a voxel", volume->label_count);
 	for (int c = 0; c < 3; c++) {
 		domain->least[c] = INFINITY;

@@ -20,7 +20,7 @@ REGISTRY = re.compile(r"registry\.(np" r"mjs|ya" r"rnpkg)\.|art" r"ifactory", re
 PAGE = re.compile(r"(?<![\w/.:\"'$}*-])((?:[\w-]+/)*[\w-]+\.md)\b(?![.\w])")
 
 LICENCE_LINE = "SPDX-License-Identifier: "
-LICENSED = {".c", ".def", ".h", ".cc", ".cpp", ".idl", ".mjs", ".py", ".sh", ".ts"}
+LICENSED = {".c", ".def", ".h", ".hpp", ".cc", ".cpp", ".idl", ".mjs", ".py", ".sh", ".ts"}
 LICENCE_WITHIN_LINES = 3  # a #! line may come first
 
 # Checksums can spell anything.

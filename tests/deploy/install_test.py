@@ -112,6 +112,18 @@ class Installed(unittest.TestCase):
             os.path.join(SOURCES, "tests/deploy/client/greet.c"), *flags)
         self.assertRegex(run(program, url).stdout, r"^cauteryd \d")
 
+    def test_a_client_in_cpp(self):
+        """The headers' functions have C linkage, and client.hpp frees what it owns and throws what failed."""
+        url = f"ws://127.0.0.1:{self.start()}"
+        config = {"PKG_CONFIG_PATH": os.path.dirname(self.one("lib/**/cautery-client.pc"))}
+        flags = run("pkg-config", "--cflags", "--libs", "cautery-client", environment=config).stdout.split()
+        program = os.path.join(self.folder, "session")
+        run("c++", "-Wall", "-Wextra", "-Werror", "-std=c++17", "-o", program,
+            os.path.join(SOURCES, "tests/deploy/client/session.cc"), *flags)
+        said = run(program, url).stdout.splitlines()
+        self.assertRegex(said[0], r"^tick \d+, [1-9]\d+ vertices$")
+        self.assertRegex(said[1], r"^refused: .*name")
+
     def test_first_client_of_the_readme(self):
         """In C, by the command that stands above it, but for where this daemon listens."""
         with open(os.path.join(SOURCES, "README.md"), encoding="utf-8") as file:

@@ -46,6 +46,10 @@
 #include "cautery/stream.h"
 #include "cautery/topology_codec.h"
 
+#ifdef __cplusplus
+extern "C" {
+#endif
+
 #define CAU_CLIENT_DEFAULT_URL "ws://127.0.0.1:8740"
 
 typedef struct cau_loop cau_loop;
@@ -256,3 +260,7 @@ typedef struct cau_client_clock {
 // Measures the offset of the server's clock by `count` heartbeats; the shortest round trip counts.
 cau_status cau_client_measure_clock(cau_client *client, int32_t count, cau_client_clock *clock,
                                     cau_error *error);
+
+#ifdef __cplusplus
+}
+#endif

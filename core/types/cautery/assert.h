@@ -25,6 +25,10 @@
 #include <setjmp.h>
 #include <stdint.h>
 
+#ifdef __cplusplus
+extern "C" {
+#endif
+
 // Writes "FILE:LINE: FUNCTION: CONDITION does not hold: " and the words to stderr, in one write,
 // and aborts. Any thread may call it.
 __attribute__((noreturn, cold, format(printf, 5, 6))) void
@@ -101,3 +105,7 @@ cau_rule_broken(const char *condition, const char *file, int line, const char *f
 #define CAU_RULE_INDEX(index, count)                                                               \
 	CAU_RULE(cau_is_index((int64_t)(index), (int64_t)(count)), "number %lld of %lld",              \
 	         (long long)(index), (long long)(count))
+
+#ifdef __cplusplus
+}
+#endif

@@ -21,6 +21,10 @@
 #include "cautery/command.h"
 #include "cautery/scene.h"
 
+#ifdef __cplusplus
+extern "C" {
+#endif
+
 #define CAU_SET_DEFAULT(field, default_, least, most, unit, meaning) def->field = (default_);
 
 static inline void cau_default_gravity(double gravity_m_s2[3])
@@ -195,3 +199,7 @@ static inline void cau_default_command(cau_command *def, int kind)
 }
 
 #undef CAU_SET_DEFAULT
+
+#ifdef __cplusplus
+}
+#endif

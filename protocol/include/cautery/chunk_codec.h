@@ -25,6 +25,10 @@
 
 #include "cautery/status.h"
 
+#ifdef __cplusplus
+extern "C" {
+#endif
+
 enum {
 	CAU_CHUNK_HEADER_BYTES = 16,
 	CAU_CHUNK_BYTES_MAX = 262144, // of data in one chunk
@@ -42,3 +46,7 @@ cau_status cau_chunk_read(const void *bytes, size_t byte_count, cau_chunk *chunk
 
 // Writes the header that goes before the data.
 void cau_chunk_header_write(uint8_t header[CAU_CHUNK_HEADER_BYTES], const cau_chunk *chunk);
+
+#ifdef __cplusplus
+}
+#endif

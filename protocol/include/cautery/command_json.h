@@ -43,6 +43,10 @@
 #include "cautery/command.h"
 #include "cautery/status.h"
 
+#ifdef __cplusplus
+extern "C" {
+#endif
+
 enum { CAU_COMMAND_JSON_MAX_BYTES = 16384 };
 
 // Errors: CAU_BAD_SYNTAX, CAU_LIMIT, CAU_NO_MEMORY, CAU_BAD_VALUE with the member's path.
@@ -69,3 +73,7 @@ void cau_script_begin(cau_script *script, const char *name, const char *text, si
 // Reads the next command. *end is true (and *command untouched) after the last one. The reason of
 // an error starts with the script's line; reading may go on after it.
 cau_status cau_script_next(cau_script *script, cau_command *command, bool *end, cau_error *error);
+
+#ifdef __cplusplus
+}
+#endif

@@ -21,6 +21,10 @@
 #include "cautery/name.h"
 #include "cautery/status.h"
 
+#ifdef __cplusplus
+extern "C" {
+#endif
+
 enum { CAU_FLEET_LABELS_MAX = 1024, CAU_FLEET_JSON_MAX_BYTES = 1 << 16 };
 
 typedef struct cau_fleet {
@@ -32,3 +36,7 @@ typedef struct cau_fleet {
 // that it does not know are skipped. On an error *fleet has no labels. Errors: CAU_BAD_SYNTAX,
 // CAU_LIMIT, CAU_NO_MEMORY, CAU_BAD_VALUE with the path of the member.
 cau_status cau_fleet_from_json(const char *text, size_t bytes, cau_fleet *fleet, cau_error *error);
+
+#ifdef __cplusplus
+}
+#endif

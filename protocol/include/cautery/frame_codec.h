@@ -30,6 +30,10 @@
 #include "cautery/status.h"
 #include "cautery/stream.h"
 
+#ifdef __cplusplus
+extern "C" {
+#endif
+
 enum {
 	CAU_FRAME_VERSION = 1,
 	CAU_FRAME_HEADER_BYTES = 72,
@@ -159,3 +163,7 @@ const cau_stream_def *cau_frame_decoder_def(const cau_frame_decoder *decoder);
 
 // Positions in metres, (vertex_count x 3), into the caller's array.
 void cau_frame_decoder_position(const cau_frame_decoder *decoder, double *position);
+
+#ifdef __cplusplus
+}
+#endif

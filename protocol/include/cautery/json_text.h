@@ -17,6 +17,10 @@
 
 #include "cautery/status.h"
 
+#ifdef __cplusplus
+extern "C" {
+#endif
+
 enum {
 	CAU_JSON_MAX_DEPTH = 64,        // arrays and objects inside each other
 	CAU_JSON_MAX_MEMBERS = 256,     // of one object
@@ -32,3 +36,7 @@ enum {
 // CAU_BAD_SYNTAX, CAU_LIMIT; the reason starts "line 3, column 7 (byte 42): ", lines and columns
 // counted from 1 (columns in bytes), bytes from 0.
 cau_status cau_json_scan(const char *text, size_t bytes, size_t bytes_max, cau_error *error);
+
+#ifdef __cplusplus
+}
+#endif

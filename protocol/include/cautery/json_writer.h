@@ -23,6 +23,10 @@
 
 #include "cautery/json_text.h"
 
+#ifdef __cplusplus
+extern "C" {
+#endif
+
 typedef struct cau_json_writer {
 	char *buffer;    // borrowed until cau_json_end
 	size_t capacity; // bytes of the buffer, the closing zero included
@@ -61,3 +65,7 @@ void cau_json_fail(cau_json_writer *writer, cau_status status, const char *reaso
 // it did not fit. Errors: CAU_LIMIT (the buffer is too small), CAU_BAD_VALUE (a number or string
 // that JSON cannot carry), CAU_BAD_STATE (levels left open or closed too often).
 cau_status cau_json_end(cau_json_writer *writer, size_t *bytes, cau_error *error);
+
+#ifdef __cplusplus
+}
+#endif

@@ -19,6 +19,10 @@
 #include "cautery/message_choices.h"
 #include "cautery/scene.h"
 
+#ifdef __cplusplus
+extern "C" {
+#endif
+
 // Objects of one kind. Writers take `count` of them. Readers fill `items`, which the caller gives
 // with its `capacity`, and set `count`; more objects than that are CAU_LIMIT.
 typedef struct cau_wire_list {
@@ -111,3 +115,7 @@ typedef struct cau_method_info {
 
 const cau_method_info *cau_method_describe(cau_method method); // NULL beyond the table
 int32_t cau_method_find(const char *name);                     // CAU_METHOD_*, or -1
+
+#ifdef __cplusplus
+}
+#endif

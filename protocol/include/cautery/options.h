@@ -33,6 +33,10 @@
 #include <stdint.h>
 #include <stdio.h>
 
+#ifdef __cplusplus
+extern "C" {
+#endif
+
 // What an option's value is, and with it the type of the member that it is read into.
 typedef enum cau_option_kind {
 	CAU_OPTION_FLAG,   // bool: true where it is named; takes no value
@@ -73,3 +77,7 @@ bool cau_options_read(const cau_command_line *line, int argument_count, char **a
                       void *into, const char **words, FILE *complaints);
 
 void cau_options_help(const cau_command_line *line, FILE *out);
+
+#ifdef __cplusplus
+}
+#endif

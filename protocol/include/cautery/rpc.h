@@ -30,6 +30,10 @@
 #include "cautery/messages.h"
 #include "cautery/rpc_errors.h"
 
+#ifdef __cplusplus
+extern "C" {
+#endif
+
 // The WebSocket subprotocol that clients offer in Sec-WebSocket-Protocol.
 #define CAU_SUBPROTOCOL "cautery.v1"
 
@@ -129,3 +133,7 @@ cau_status cau_rpc_write_result(cau_rpc_buffer *out, const cau_rpc_id *id, cau_m
 // `id` of kind NONE is written as null.
 cau_status cau_rpc_write_error(cau_rpc_buffer *out, const cau_rpc_id *id,
                                const cau_rpc_fault *fault, cau_error *error);
+
+#ifdef __cplusplus
+}
+#endif

@@ -14,6 +14,10 @@
 
 #include "cautery/status.h"
 
+#ifdef __cplusplus
+extern "C" {
+#endif
+
 // number, code, word in data.status, sentence in message
 #define CAU_RPC_ERROR_TABLE(X)                                                                     \
 	X(-32700, PARSE, "bad_syntax", "the text is not well formed")                                  \
@@ -84,3 +88,7 @@ typedef enum cau_close_code {
 } cau_close_code;
 
 const char *cau_close_reason(cau_close_code code);
+
+#ifdef __cplusplus
+}
+#endif

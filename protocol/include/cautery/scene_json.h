@@ -21,6 +21,10 @@
 #include "cautery/scene.h"
 #include "cautery/status.h"
 
+#ifdef __cplusplus
+extern "C" {
+#endif
+
 enum { CAU_SCENE_JSON_MAX_BYTES = 1 << 20 };
 
 // Fills *scene from the text. `name` (a file's, say; may be NULL) goes into error->file. Checks
@@ -38,3 +42,7 @@ cau_status cau_scene_from_json(const char *name, const char *text, size_t bytes,
 // value that JSON cannot hold).
 cau_status cau_scene_to_json(const cau_scene_def *scene, char *buffer, size_t capacity,
                              size_t *bytes, cau_error *error);
+
+#ifdef __cplusplus
+}
+#endif

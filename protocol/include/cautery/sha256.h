@@ -15,7 +15,15 @@
 #include <stdbool.h>
 #include <stddef.h>
 
+#ifdef __cplusplus
+extern "C" {
+#endif
+
 enum { CAU_SHA256_TEXT_BYTES = 65 };
 
 // 64 lower-case hex digits and a zero (FIPS 180-4). False if memory ran out.
 bool cau_sha256(const void *bytes, size_t byte_count, char text[CAU_SHA256_TEXT_BYTES]);
+
+#ifdef __cplusplus
+}
+#endif

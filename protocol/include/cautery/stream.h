@@ -27,6 +27,10 @@
 #include "cautery/scene.h"
 #include "cautery/status.h"
 
+#ifdef __cplusplus
+extern "C" {
+#endif
+
 enum {
 	CAU_STREAM_PROFILES_MAX = 4,       // of a session
 	CAU_STREAM_ELEMENTS_MAX = 1 << 24, // vertices, and faces
@@ -158,3 +162,7 @@ typedef struct cau_stream_state {
 	const cau_stream_tool *tools;
 	cau_stream_statistics statistics;
 } cau_stream_state;
+
+#ifdef __cplusplus
+}
+#endif

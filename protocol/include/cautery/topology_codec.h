@@ -17,6 +17,10 @@
 
 #include "cautery/frame_codec.h"
 
+#ifdef __cplusplus
+extern "C" {
+#endif
+
 typedef struct cau_topology {
 	const int32_t *face;         // vertices, (face_count x 3)
 	const uint8_t *face_layer;   // (face_count)
@@ -50,3 +54,7 @@ typedef struct cau_topology_arrays {
 // Fills the caller's arrays. Errors: CAU_CORRUPT, CAU_UNSUPPORTED, CAU_BAD_STATE (another session).
 cau_status cau_topology_decode(const cau_stream_def *def, const void *bytes, size_t byte_count,
                                void *scratch, cau_topology_arrays *arrays, cau_error *error);
+
+#ifdef __cplusplus
+}
+#endif

@@ -15,6 +15,10 @@
 #include <stdbool.h>
 #include <stddef.h>
 
+#ifdef __cplusplus
+extern "C" {
+#endif
+
 // Bytes of the valid character at the start of `text` (1 to 4), or 0 if there is none.
 size_t cau_utf8_length(const char *text, size_t bytes);
 
@@ -23,3 +27,7 @@ bool cau_utf8_is_start(const char *text, size_t bytes);
 
 // Writes `code` (not a surrogate, at most 0x10FFFF) into out[4]; returns how many bytes.
 size_t cau_utf8_encode(unsigned code, char out[4]);
+
+#ifdef __cplusplus
+}
+#endif

@@ -480,6 +480,7 @@ def all_others():
     case("noise.stl", bytes(range(256)) * 2, "refused: 'noise.stl' is in none of the formats that are read")
     case("volume.nrrd", "NRRD0004\ntype: uchar\n", "refused: 'volume.nrrd' is a volume of voxels (NRRD): make tetrahedra of it with cautery-mesh")
     case("volume.nii", bytes(344) + b"n+1\0" + bytes(100), "refused: 'volume.nii' is a volume of voxels (NIfTI): make tetrahedra of it with cautery-mesh")
+    case("volume.mha", "ObjectType = Image\nNDims = 3\n", "refused: 'volume.mha' is a MetaImage: save the segmentation as NRRD or NIfTI")
     case("packed.msh.gz", b"\x1f\x8b\x08\x00" + bytes(40), "refused: 'packed.msh.gz' is compressed with gzip: unpack it first")
     case("utf16.obj", obj(TRIANGLES).encode("utf-16"), "refused: 'utf16.obj' is text in UTF-16: save it as UTF-8")
 

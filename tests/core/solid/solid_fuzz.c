@@ -21,7 +21,7 @@ static void read_volume(const uint8_t *data, size_t bytes)
 	cau_volume volume;
 	cau_domain domain;
 	cau_error error = {0};
-	cau_status status = cau_volume_read(data, bytes, &volume, &error);
+	cau_status status = cau_volume_read(data, bytes, NULL, &volume, &error);
 	demand(!status || error.reason[0]);
 	if (!status) {
 		cau_domain_of_volume(&volume, &domain);

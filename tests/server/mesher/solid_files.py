@@ -61,6 +61,8 @@ def all_surfaces():
     case("two.stl", stl(ball() + ball(centre=(50, 0, 0))), "surface: 3040 triangles, 2 components", volume=2 * BALL)
     case("crossing.stl", stl(ball() + ball(centre=(20.1, 0, 0))), "surface: 3040 triangles, 2 components", volume=BALL * (2 - 5 / 16))
     case("cavity.stl", stl(ball() + turned(ball(10))), "surface: 3040 triangles, 2 components", volume=BALL * 7 / 8)
+    pipe = [tuple((x, y, 40 * z) for x, y, z in t) for t in ball(0.5, 24)]
+    case("pipe.stl", stl([tuple((x + (z / 8) ** 3, y, z) for x, y, z in t) for t in pipe]), "surface: 2208 triangles, 1 component, 0 open edges", "edge: ", "solid: ")
     case("edge.stl", stl(ball()), "surface: ", "edge: 5 of a longest side of 40 (asked for)", arguments=("--edge", "5"))
     case("strict.obj", obj(ball()), *closed, arguments=("--strict",))
     case("strict_open.stl", stl(ball()[40:]), "--strict refuses to fill an open surface: 40 edges on its rim", arguments=("--strict",), code=3)
@@ -155,12 +157,16 @@ def all_segmentations():
     many = bytes(0 if v == 0 else 1 + (k % 63) for k, v in enumerate(VOXELS))
     long_names = "".join(f"Segment{k}_Name:={'a' * 44}{k:03}\nSegment{k}_LabelValue:={k + 1}\n" for k in range(63))
     case("names.nrrd", nrrd(many, extra=long_names), "format: ", "orientation: ", "edge: ", "solid: ", *(f'label {k + 1} "{"a" * 44}{k:03}": ' for k in range(63)))
+    atlas = bytes(0 if v == 0 else 5 if v == 2 else 20 + k % 200 for k, v in enumerate(VOXELS))
+    late = "Segment99_Name:=spleen\nSegment99_LabelValue:=5\n"
+    case("atlas.nrrd", nrrd(atlas, extra=late), "format: ", "orientation: ", "edge: ", "solid: ", 'label 5 "spleen": ', arguments=("--labels", "5"),
+         volume=VOXELS.count(2), regions=[(5, "spleen")])
     complaint = {"code": 3}
     case("missing.nrrd", nrrd(small), "--labels: no voxel has label 5", arguments=("--labels", "2,5"), **complaint)
-    case("words.nrrd", nrrd(small), "--labels: labels must be numbers with commas", arguments=("--labels", "liver"), **complaint)
+    case("words.nrrd", nrrd(small), "--labels: labels must be numbers from 1 to 65535 with commas", arguments=("--labels", "liver"), **complaint)
     case("short_file.nrrd", nrrd(small[:-9]), "the file ends early: 26991 bytes of voxels, of 27000 that its header promises", **complaint)
     case("broken_gzip.nrrd", nrrd(b"\x1f\x8b\x08\x00" + bytes(60), encoding="gzip"), "the packed data are damaged", **complaint)
-    case("image.nrrd", nrrd(bytes(k % 200 for k in range(SIDE ** 3))), "more than 63 different labels: this is an image and no segmentation", **complaint)
+    case("image.nrrd", nrrd(bytes(k % 200 for k in range(SIDE ** 3))), "more than 63 different labels: choose some of them (labels), if this is no image", **complaint)
     case("negative.nrrd", nrrd(struct.pack("<27000h", *(v - 1000 for v in VOXELS)), kind="short"), "a voxel holds -1000", **complaint)
     case("empty.nrrd", nrrd(bytes(SIDE ** 3)), "all voxels of this volume are 0", **complaint)
     case("layers.nrrd", nrrd(small, dimension="4"), "this volume has 4 axes, and 3 are read", **complaint)
