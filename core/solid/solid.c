@@ -3,7 +3,6 @@
 #include "cautery/solid.h"
 
 #include <math.h>
-#include <stdarg.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
@@ -32,15 +31,16 @@ typedef struct work {
 	size_t text_bytes;
 } work;
 
-__attribute__((format(printf, 2, 3))) static void put(work *of, const char *format, ...)
+// What snprintf has put at the end of the report, or would have put.
+static void advance(work *of, int length)
 {
-	va_list arguments;
-	va_start(arguments, format);
 	size_t left = CAU_SOLID_TEXT_BYTES - of->text_bytes;
-	int length = vsnprintf(of->solid->text + of->text_bytes, left, format, arguments);
-	va_end(arguments);
 	of->text_bytes += length < 0 ? 0 : (size_t)length < left ? (size_t)length : left - 1;
 }
+
+#define PUT(of, ...)                                                                               \
+	advance(of, snprintf((of)->solid->text + (of)->text_bytes,                                     \
+	                     CAU_SOLID_TEXT_BYTES - (of)->text_bytes, __VA_ARGS__))
 
 static void tell(const work *of, const char *stage, double share)
 {
@@ -79,15 +79,15 @@ static cau_status read_volume(work *of, const void *bytes, size_t byte_count, ca
 		step[i] =
 			sqrt(volume->axis[i][0] * volume->axis[i][0] + volume->axis[i][1] * volume->axis[i][1] +
 		         volume->axis[i][2] * volume->axis[i][2]);
-	put(of, "format: %s, %d x %d x %d voxels of %.3g x %.3g x %.3g mm\n", volume->format,
+	PUT(of, "format: %s, %d x %d x %d voxels of %.3g x %.3g x %.3g mm\n", volume->format,
 	    volume->size[0], volume->size[1], volume->size[2], step[0], step[1], step[2]);
 	if (volume->framed)
-		put(of,
+		PUT(of,
 		    "orientation: the file's axes run to %s; of the mesh x is right, y front, z head "
 		    "(RAS)\n",
 		    letters_of(volume, letters));
 	else
-		put(of, "orientation: the file states none, so that left and right may be exchanged\n");
+		PUT(of, "orientation: the file states none, so that left and right may be exchanged\n");
 	cau_domain_of_volume(volume, &of->domain);
 	of->is_closed = true;
 	of->solid->unit_m = 1e-3;
@@ -134,12 +134,12 @@ static cau_status read_surface(work *of, const void *bytes, size_t byte_count, c
 	if (!status)
 		status = judge_surface(of, turned, report, error);
 	if (!status) {
-		put(of, "surface: %d triangles, %d %s, %d open edges", surface->triangle_count,
+		PUT(of, "surface: %d triangles, %d %s, %d open edges", surface->triangle_count,
 		    report->component_count, report->component_count == 1 ? "component" : "components",
 		    report->open_edge_count);
 		if (turned)
-			put(of, ", %d triangles turned outward", turned);
-		put(of, "\n");
+			PUT(of, ", %d triangles turned outward", turned);
+		PUT(of, "\n");
 	}
 	free(report);
 	return status;
@@ -240,7 +240,7 @@ static cau_status make_tets(work *of, cau_error *error)
 		return too_thin(of, error);
 	if (status)
 		return status;
-	put(of, "edge: %.3g of a longest side of %.3g (%s)\n", of->tets.spacing / spacing_of_edge,
+	PUT(of, "edge: %.3g of a longest side of %.3g (%s)\n", of->tets.spacing / spacing_of_edge,
 	    longest_side(&of->domain), of->wish->edge > 0 ? "asked for" : "chosen");
 	tell(of, "smoothing", 0.6);
 	return cau_smooth(&of->domain, &of->tets, error);
@@ -252,11 +252,11 @@ static void put_labels(work *of)
 	int64_t count[CAU_SOLID_LABEL_MAX + 1] = {0};
 	for (int32_t i = 0; i < of->tets.count; i++)
 		count[of->tets.label[i]]++;
-	put(of, "solid: %d vertices, %d tetrahedra, least angle between faces %.1f degrees\n",
+	PUT(of, "solid: %d vertices, %d tetrahedra, least angle between faces %.1f degrees\n",
 	    of->tets.vertex_count, of->tets.count, cau_least_angle_deg(&of->tets));
 	for (int32_t k = 1; k <= of->volume.label_count; k++) {
 		const cau_label *label = &of->volume.label[k];
-		put(of, "label %d%s%s%s: %lld voxels, %lld tetrahedra%s\n", label->value,
+		PUT(of, "label %d%s%s%s: %lld voxels, %lld tetrahedra%s\n", label->value,
 		    label->name[0] ? " \"" : "", label->name, label->name[0] ? "\"" : "",
 		    (long long)label->voxel_count, (long long)count[k],
 		    count[k] ? "" : " (lost: thinner than an edge; choose a shorter one)");

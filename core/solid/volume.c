@@ -246,7 +246,7 @@ static cau_status decode(const cau_voxels *voxels, const char *labels, cau_volum
                          cau_error *error)
 {
 	size_t count = (size_t)volume->size[0] * (size_t)volume->size[1] * (size_t)volume->size[2];
-	cau_voxels plain;
+	cau_voxels plain = {0};
 	unsigned char *unpacked = NULL;
 	uint8_t *of_value = calloc(CAU_LABEL_VALUE_MAX + 1, 1);
 	CAU_ASSERT(count > 0, "a volume of %zu voxels", count);

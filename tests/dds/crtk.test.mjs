@@ -92,15 +92,28 @@ test('the operating state is there for who comes late, enabled and homed', async
 	assert.deepEqual([told.state, told.homed, told.busy], ['ENABLED', true, false]);
 });
 
-for (const [stop, state, go] of [['pause', 'PAUSED', 'resume'], ['disable', 'DISABLED', 'enable']])
-	test(`${stop} stops the tool and its energy, ${go} lets it move, energy wants its own enable`, async (t) => {
-		const seen = await driven(t, stop);
-		const { client, stream, robot } = seen;
-		await follows(seen, [0.01, 0, 0.02]);
+// Energy goes off by a command of the controller. On a machine that stands still for a second the
+// deadline may come first, which is right and not what is tested: then once more.
+async function commandedOff(seen, stop) {
+	const { client, stream, robot } = seen;
+	for (let tries = 3; ; tries--) {
 		await energize(seen);
 		robot.tell(`command ${stop}`);
 		await client.until(() => !stream.tools[0].energized, 'energy off');
-		assert.equal(stream.tools[0].energyOff, 'commanded');
+		if (stream.tools[0].energyOff !== 'watchdog' || tries === 1)
+			return stream.tools[0].energyOff;
+		const { state } = await robot.untilCrtk((c) => c.state !== 'ENABLED');
+		robot.tell(`command ${state === 'PAUSED' ? 'resume' : 'enable'}`);
+		await robot.untilCrtk((c) => c.state === 'ENABLED');
+	}
+}
+
+for (const [stop, state, go] of [['pause', 'PAUSED', 'resume'], ['disable', 'DISABLED', 'enable']])
+	test(`${stop} stops the tool and its energy, ${go} lets it move, energy wants its own enable`, async (t) => {
+		const seen = await driven(t, stop);
+		const { stream, robot } = seen;
+		await follows(seen, [0.01, 0, 0.02]);
+		assert.equal(await commandedOff(seen, stop), 'commanded');
 		await robot.untilCrtk((c) => c.state === state);
 		await refuses(seen, [-0.01, 0, 0.02]);
 		robot.tell(`command ${go}`);

@@ -83,9 +83,14 @@ static void a_broken_rule_faults_the_session(void **state)
 	pthread_mutex_unlock(&t.h->deciding);
 	cau_error error = {0};
 	cau_order *finder = hosted_new_order(OFF, CAU_ORDER_PAUSE, CAU_METHOD_SESSION_PAUSE);
-	assert_int_equal(cau_hosted_submit(t.h, finder, &error), CAU_FAULTED);
-	assert_non_null(strstr(error.reason, "safety rule"));
-	free(finder);
+	cau_status found = cau_hosted_submit(t.h, finder, &error);
+	if (found) { // else the worker, which was still at its last slice, has found it before
+		assert_int_equal(found, CAU_FAULTED);
+		assert_non_null(strstr(error.reason, "safety rule"));
+		free(finder);
+	} else {
+		hosted_await(OFF);
+	}
 	const hosted_answer *answer = step(FAULTED, 5);
 	assert_int_equal(answer->status, CAU_FAULTED);
 	assert_non_null(strstr(answer->reason, "safety rule"));
