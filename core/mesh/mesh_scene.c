@@ -9,9 +9,9 @@
 #include "mesh/mesh.h"
 
 // Units are guessed where one alone makes an organ. From 3 to 20 units these are centimetres, as
-// millimetres make 3 to 20 mm. Beyond that they are millimetres for what has an inside: scanners
-// and segmentations write these. A sheet of 20 to 80 cm may be what somebody means, so that one of
-// so many units asks.
+// millimetres make 3 to 20 mm. Beyond 20 units they are millimetres for a body, as scanners and
+// segmentations write millimetres. A sheet of 20 to 80 units may be in centimetres too, so that its
+// unit is asked for.
 static const double centimetres_most = 20;
 static const double sheet_millimetres_least = 80;
 static const double ball_radius_most_m = 0.03;

@@ -16,8 +16,8 @@ struct cau_domain {
 	int32_t label_count;
 	double least[3], most[3]; // a box around all labels
 	double volume;            // of all labels, about
-	// The label at x. Labels with passed[label] set do not count, 0 neither: what is left decides,
-	// and 0 is the answer where nothing is left. NULL: all count.
+	// The label at x. Labels with passed[label] set are not candidates. passed[0] does the same for
+	// the outside. Where no candidate is near, the answer is 0. passed NULL: all are candidates.
 	int32_t (*label_at)(const cau_domain *domain, const double x[3], const bool *passed);
 	void (*finish)(cau_domain *domain);
 	void *own;

@@ -12,7 +12,7 @@
 #include "solid/tets.h"
 
 enum { ROUNDS = 8, HALVINGS = 10 };
-static const double good = 0.8;         // nobody moves for more
+static const double good = 0.8;         // quality above which a vertex is left alone
 static const double better = 1e-3;      // a move must make at least this much of a difference
 static const double reach_share = 0.25; // of the lattice's spacing: how far the interface is sought
 static const double steps[] = {1, 0.5, 0.25, 0.1};
@@ -169,8 +169,8 @@ typedef struct place {
 	double normal[3];
 } place;
 
-// Moves the vertex by a share of `to` if that makes the worst around it better than `was`. Returns
-// what it is then.
+// Moves the vertex by a share of `to` if the least quality around it becomes better than `was`.
+// Returns the least quality afterwards.
 static double try_move(const smoother *of, int32_t vertex, const place *at, const double to[3],
                        double share, double was)
 {

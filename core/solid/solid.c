@@ -165,7 +165,7 @@ static cau_status read_domain(work *of, cau_error *error)
 
 // ---- meshing
 // The volume inside, by asking at the middles of SAMPLES^3 cells of the box. Where few of them are
-// inside, what is meant is thin, and the domain's own figure is better, if it is closed.
+// inside, the tissue is thin, and the domain's own figure is better, if the domain is closed.
 static double volume_inside(const cau_domain *domain, bool closed)
 {
 	double cell = 1;

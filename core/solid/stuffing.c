@@ -4,7 +4,7 @@
 // - vertices are inside (1), outside (-1), or on the interface (0);
 // - an edge from inside to outside is cut where the label changes. A vertex near such a place moves
 //   there, if the tetrahedra around it stay good; its edges are then not cut;
-// - tetrahedra that are cut are divided. What is inside is decided for good.
+// - tetrahedra with a cut edge are divided. Parts inside keep the label of the pass.
 // A later pass may divide faces of an earlier label's tetrahedra: these are divided with them.
 #include <math.h>
 #include <stdlib.h>
@@ -297,7 +297,7 @@ static sides sides_of(const pass *of, const int32_t vertex[4])
 	return at;
 }
 
-// One corner alone against `count` others: its tip, and what is left of them.
+// One corner alone on its side: a tip is cut off. `count` corners are on the other side.
 static void divide_tip(pass *of, int32_t tip, const int32_t *others, int count, const int32_t *on,
                        int32_t tip_label, int32_t label)
 {

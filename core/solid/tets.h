@@ -48,8 +48,8 @@ double cau_least_angle_deg(const cau_tets *tets);
 // A body-centred cubic lattice over the domain, without tetrahedra that lie outside at all corners.
 // CAU_LIMIT at "edge".
 cau_status cau_lattice(const cau_domain *domain, double spacing, cau_tets *tets, cau_error *error);
-// Cuts the lattice along the outside and then along each label, and keeps what is in a label
-// (isosurface stuffing, Labelle and Shewchuk 2007).
+// Cuts the lattice along the surface of the tissue, then the tissue along each label. Tetrahedra
+// outside the tissue are left out (isosurface stuffing, Labelle and Shewchuk 2007).
 cau_status cau_stuff(const cau_domain *domain, cau_tets *tets,
                      void (*progress)(void *user, double share), void *user, cau_error *error);
 // Moves vertices where that makes the worst tetrahedron around them better; those of an interface

@@ -5,7 +5,7 @@
 #include "cautery/assert.h"
 #include "solid/volume.h"
 
-// More room for what is unpacked, up to `most`.
+// Enlarges the output, up to `most` bytes.
 static bool grow(unsigned char **out, size_t *room, size_t most)
 {
 	size_t wanted = *room ? 2 * *room : 1 << 16;

@@ -83,7 +83,7 @@ bool cau_filling_solid(const cau_filling *filling, const void **bytes, size_t *b
 // ---- the process
 typedef struct process {
 	pid_t pid;
-	int in, out, said; // files of what it reads and writes, and a pipe of what it says
+	int in, out, said;                    // files: standard input and output; pipe: standard error
 	char text[CAU_FILL_REPORT_BYTES - 1]; // room for the line feed that the last line may lack
 	size_t text_bytes;
 } process;
@@ -199,7 +199,7 @@ static cau_status start(process *of, const cau_fill_wish *wish, cau_error *error
 	              : CAU_OK;
 }
 
-// Takes what it says. False: it has ended.
+// Reads output of the process from its pipe. False: the process has ended.
 static bool hear(process *of)
 {
 	size_t room = sizeof of->text - 1 - of->text_bytes;
@@ -218,7 +218,7 @@ static double now_s(void)
 	return (double)now.tv_sec + 1e-9 * (double)now.tv_nsec;
 }
 
-// Waits until it ends, or ends it. Returns its state; *why: what ended it before its time.
+// Waits until the process ends, or kills it. Returns its exit state. *why: the reason of a kill.
 static int wait_for(process *of, const cau_filling *filling, const cau_fill_wish *wish,
                     const char **why)
 {
@@ -244,7 +244,7 @@ static int wait_for(process *of, const cau_filling *filling, const cau_fill_wish
 	return state;
 }
 
-// ---- what it said
+// ---- reports and complaints of the process
 // Leaves out lines of progress.
 static void take_report(char *text, char *report)
 {

@@ -33,7 +33,7 @@ typedef struct cau_fill_wish {
 	double edge;           // in units of the file; 0: chosen
 	const char *labels;    // "": all
 	bool strict;
-	int64_t memory_mb, time_s, most_bytes; // bounds of the process, and of what it makes
+	int64_t memory_mb, time_s, most_bytes; // bounds of the process, and of the solid's file
 	bool (*is_over)(void *user);           // asked about ten times a second: the daemon ends
 	void *user;
 } cau_fill_wish;

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// client.h for C++17: what owns is destroyed with its scope, and a failure is an exception.
+// client.h for C++17: a loop and a client are destroyed with their scope, and a failure is an
+// exception.
 //
 //     #include "cautery/client.hpp"
 //
@@ -33,7 +34,7 @@
 namespace cautery
 {
 
-// What a call failed of. what() is the reason; `told` has place and status, too.
+// A failed call. what() is the reason; `told` has place and status, too.
 class error : public std::runtime_error
 {
   public:
