@@ -266,6 +266,8 @@ static cau_status write_line(void *user, const cau_store_command *row)
 	size_t bytes = 0;
 	cau_command command;
 	cau_error error;
+	if (row->kind == CAU_STORE_REACHED)
+		return CAU_OK;
 	cau_status status =
 		cau_command_from_json(row->payload.data, row->payload.bytes, &command, &error);
 	if (!status && command.tick < row->tick)

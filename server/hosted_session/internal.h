@@ -32,9 +32,10 @@ typedef struct cau_refused_motion {
 	cau_error error;
 } cau_refused_motion;
 
-// A command of the log that is being replayed.
+// An entry of the log that is being replayed.
 typedef struct cau_replayed {
 	uint64_t tick;
+	bool acts; // it has a command: see CAU_STORE_REACHED
 	cau_command command;
 } cau_replayed;
 
@@ -87,8 +88,9 @@ struct cau_hosted {
 	bool pause_at_start;
 	uint64_t tick, first_tick;
 	int64_t branch, next_branch;
-	uint64_t logged_tick; // of the last log entry
-	uint32_t logged_order;
+	uint64_t logged_tick;  // of the last log entry
+	uint32_t logged_order; // entries of that tick
+	bool logged_acts;      // some of these are commands
 	uint64_t epoch;
 	cau_replay replay;
 	bool replaying; // after a restart or a fork, on the workers
@@ -356,6 +358,8 @@ void cau_record_command(cau_hosted *h, const cau_command *command, const cau_ord
 void cau_record_answer(cau_hosted *h, const cau_order *order, const char *text, size_t text_bytes);
 void cau_record_state(cau_hosted *h);
 void cau_record_checkpoint(cau_hosted *h, uint64_t *hash, size_t *bytes);
+// Lets a restart come back to the tick of now: by a row of the log, or by a checkpoint.
+void cau_record_reached(cau_hosted *h);
 // Has the store keep the state of this tick, and its events.
 void cau_record_mark(cau_hosted *h);
 void cau_record_event(cau_hosted *h, const cau_wire_timeline_event *event, cau_log_level level);

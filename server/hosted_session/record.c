@@ -7,6 +7,10 @@
 #include "hosted_session/internal.h"
 #include "hosted_session/resend.h"
 
+// Of the store for each tick that a paused session is stepped, besides what the log takes: one that
+// is stepped for long has a checkpoint from time to time, and a restart does not replay all of it.
+enum { REACHED_BYTES = 4096 };
+
 cau_store_batch *cau_record_batch(cau_hosted *h)
 {
 	if (!h->batch) {
@@ -32,6 +36,22 @@ static void gap(cau_hosted *h, const cau_error *error)
 	lose(h, h->batch && h->batch_tick < h->tick ? h->batch_tick : h->tick);
 }
 
+// The next entry of the log, at the tick of now.
+static cau_store_command next_entry(cau_hosted *h, int32_t kind)
+{
+	if (h->logged_tick != h->tick) {
+		h->logged_order = 0;
+		h->logged_acts = false;
+	}
+	h->logged_tick = h->tick;
+	h->logged_acts |= kind != CAU_STORE_REACHED;
+	return (cau_store_command){.session = h->id,
+	                           .branch = h->branch,
+	                           .tick = h->tick,
+	                           .order = h->logged_order++,
+	                           .kind = kind};
+}
+
 void cau_record_command(cau_hosted *h, const cau_command *command, const cau_order *order,
                         const char *text, size_t text_bytes)
 {
@@ -39,15 +59,8 @@ void cau_record_command(cau_hosted *h, const cau_command *command, const cau_ord
 	size_t json_bytes = 0;
 	cau_error error = {0};
 	cau_store_batch *batch = cau_record_batch(h);
-	if (h->logged_tick != h->tick)
-		h->logged_order = 0;
-	h->logged_tick = h->tick;
+	cau_store_command row = next_entry(h, command->kind);
 	h->touched = true;
-	cau_store_command row = {.session = h->id,
-	                         .branch = h->branch,
-	                         .tick = h->tick,
-	                         .order = h->logged_order++,
-	                         .kind = command->kind};
 	if (order && order->client_sequence && text) {
 		row.client = order->asker.client_id;
 		row.sequence = (uint64_t)order->client_sequence;
@@ -86,7 +99,7 @@ void cau_record_state(cau_hosted *h)
 // border is past that: the log leads here from the checkpoint before, and the next border gets one.
 static bool is_past_commands(const cau_hosted *h)
 {
-	return h->logged_tick == h->tick && h->logged_order > 0;
+	return h->logged_tick == h->tick && h->logged_acts;
 }
 
 // What was lost ends with the checkpoint of this tick, in the same batch: nobody is led through it.
@@ -145,6 +158,25 @@ void cau_record_checkpoint(cau_hosted *h, uint64_t *hash, size_t *bytes)
 		*hash = row.hash;
 	if (bytes)
 		*bytes = count;
+}
+
+// A row of the log, unless the log is not whole, or a checkpoint takes no more than such rows have
+// taken since the last one.
+void cau_record_reached(cau_hosted *h)
+{
+	size_t checkpoint = cau_session_snapshot_bytes(h->core);
+	bool whole = h->lost_from == UINT64_MAX && !h->checkpoint_wanted;
+	if (!whole || checkpoint <= REACHED_BYTES * (h->tick - h->checkpoint_tick)) {
+		cau_record_checkpoint(h, NULL, NULL);
+		return;
+	}
+	cau_error error = {0};
+	cau_store_batch *batch = cau_record_batch(h);
+	cau_store_command row = next_entry(h, CAU_STORE_REACHED);
+	cau_status status = batch ? cau_store_put_command(batch, &row, &error)
+	                          : cau_fail(&error, CAU_NO_MEMORY, NULL, "no memory for a batch");
+	if (status)
+		gap(h, &error);
 }
 
 void cau_record_event(cau_hosted *h, const cau_wire_timeline_event *event, cau_log_level level)

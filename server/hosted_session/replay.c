@@ -44,6 +44,9 @@ static cau_status take_command(void *user, const cau_store_command *row)
 	}
 	cau_replayed *made = &replay->commands[replay->count++];
 	made->tick = row->tick;
+	made->acts = row->kind != CAU_STORE_REACHED;
+	if (!made->acts)
+		return CAU_OK;
 	return cau_command_from_json(row->payload.data, row->payload.bytes, &made->command, NULL);
 }
 
@@ -91,7 +94,8 @@ static void submit_due(cau_replay *replay, cau_session *core)
 {
 	for (; replay->at < replay->count && replay->commands[replay->at].tick <= replay->tick;
 	     replay->at++)
-		cau_session_submit(core, &replay->commands[replay->at].command, NULL);
+		if (replay->commands[replay->at].acts)
+			cau_session_submit(core, &replay->commands[replay->at].command, NULL);
 }
 
 cau_status cau_replay_slice(cau_replay *replay, cau_session *core, double seconds, bool *over,

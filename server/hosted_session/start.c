@@ -284,8 +284,12 @@ void cau_hosted_started(cau_hosted *h)
 	if (restarted && h->replay.count) { // go on counting within the last tick of the log
 		h->logged_tick = h->tick;
 		h->logged_order = 0;
-		for (size_t i = 0; i < h->replay.count; i++)
-			h->logged_order += h->replay.commands[i].tick == h->tick;
+		h->logged_acts = false;
+		for (size_t i = 0; i < h->replay.count; i++) {
+			bool now = h->replay.commands[i].tick == h->tick;
+			h->logged_order += now;
+			h->logged_acts |= now && h->replay.commands[i].acts;
+		}
 	}
 	if (restarted)
 		go_on_from_events(h);

@@ -72,7 +72,7 @@ void cau_time_stepped(cau_hosted *h, cau_order *order, bool failed)
 	}
 	cau_event_end_cut(h);
 	h->dirty = true; // the last state is shown, whatever the streams' rates
-	cau_record_checkpoint(h, NULL, NULL);
+	cau_record_reached(h);
 	cau_answer_changed(h, CAU_CHANGE_STEPPED, order->asker.name);
 	cau_answer_order(h, order, &result);
 }

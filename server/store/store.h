@@ -154,6 +154,11 @@ typedef struct cau_store_command {
 	cau_store_bytes result; // with a client: the answer that a resend gets
 } cau_store_command;
 
+// The kind of a row of the log without a command: the session was brought to this tick. Who goes to
+// the end of the log goes as far as that. It takes the place of such a row that is the log's last,
+// and far less room than a checkpoint.
+#define CAU_STORE_REACHED (-1)
+
 // With a client, records the answer in the same batch. Its commit fails with CAU_ALREADY_EXISTS if
 // the tick and order, or the client's sequence, are taken, and with CAU_NOT_FOUND if session or
 // branch are not there.

@@ -20,6 +20,10 @@
 	X(TAKE_BRANCH, "UPDATE sessions SET branch = ?2 WHERE key = ?1")                               \
 	X(GROW_BRANCH, "UPDATE branches SET bytes = bytes + ?3 WHERE session = ?1 AND branch = ?2")    \
 	X(ADD_COMMAND, "INSERT INTO commands VALUES(?1, ?2, ?3, ?4, ?5, ?6, ?7, ?8)")                  \
+	X(FORGET_REACHED,                                                                              \
+	  "DELETE FROM commands WHERE kind = -1 AND session = ?1 AND branch = ?2"                      \
+	  " AND (tick, position) = (SELECT tick, position FROM commands WHERE session = ?1"            \
+	  " AND branch = ?2 ORDER BY tick DESC, position DESC LIMIT 1)")                               \
 	X(ADD_ANSWER, "INSERT INTO answers VALUES(?1, ?2, ?3, ?4, ?5)")                                \
 	X(SEE_CLIENT, "INSERT INTO clients VALUES(?1, ?2, ?3) ON CONFLICT(session, client)"            \
 	              " DO UPDATE SET sequence = max(sequence, excluded.sequence)")                    \
@@ -243,12 +247,30 @@ static cau_status apply_request(struct cau_store_writer *writer, int64_t key,
 	return run(writer, SEE_CLIENT, "a client", error);
 }
 
+// Where the log's last entry says how far the session was brought, this one takes its place, and
+// the branch has no more bytes than before.
+static cau_status take_place(struct cau_store_writer *writer, int64_t key,
+                             const cau_store_command *command, bool *taken, cau_error *error)
+{
+	*taken = false;
+	if (command->kind != CAU_STORE_REACHED)
+		return CAU_OK;
+	sqlite3_bind_int64(writer->statement[FORGET_REACHED], 1, key);
+	sqlite3_bind_int64(writer->statement[FORGET_REACHED], 2, command->branch);
+	cau_status status = run(writer, FORGET_REACHED, "an entry of the log", error);
+	*taken = !status && sqlite3_changes(writer->database) > 0;
+	return status;
+}
+
 static cau_status apply_command(struct cau_store_writer *writer, const cau_store_command *command,
                                 int64_t now_ms, cau_error *error)
 {
 	int64_t key;
+	bool taken;
 	cau_status status = find_session(writer, command->session, &key, error);
 	if (!status)
+		status = take_place(writer, key, command, &taken, error);
+	if (!status && !taken)
 		status = grow_branch(writer, key, command->branch,
 		                     (int64_t)command->payload.bytes + ROW_BYTES, error);
 	if (status)

@@ -6,7 +6,7 @@
 
 #include "batch.h"
 
-enum { CAU_STORE_STATEMENTS = 19 };
+enum { CAU_STORE_STATEMENTS = 20 };
 
 struct cau_store_writer {
 	sqlite3 *database; // borrowed

@@ -34,6 +34,14 @@ print(json.dumps([row[0] for row in store.execute('SELECT id FROM sessions WHERE
 	return JSON.parse(read.stdout);
 }
 
+function storedCheckpoints(daemon, session) {
+	const script = `import sqlite3, sys
+print(sqlite3.connect(sys.argv[1]).execute('SELECT count(*) FROM checkpoints JOIN sessions ON key = session WHERE id = ?', sys.argv[2:]).fetchone()[0])`;
+	const read = spawnSync('python3', ['-c', script, join(daemon.folder, 'store.db'), session], { encoding: 'utf8' });
+	assert.equal(read.status, 0, read.stderr);
+	return Number(read.stdout);
+}
+
 // E2E_KILLS repeats it, each time at another moment of the cut.
 const kills = Number(process.env.E2E_KILLS ?? 1);
 for (let round = 0; round < kills; round++)
@@ -337,6 +345,45 @@ test('rewinding and cutting again the same way makes the same state', async () =
 	assert.deepEqual(listed, [{ name: 'first', tick: first.tick, branch: 0 }, { name: 'second', tick: second.tick, branch: 1 }]);
 	await client.close();
 	await daemon.end();
+});
+
+// Of all threads, to disks.
+const writtenBytes = (daemon) => Number(/^write_bytes: (\d+)$/m.exec(readFileSync(`/proc/${daemon.process.pid}/io`, 'utf8'))[1]);
+
+test('a session that is stepped one by one is where it was after kill -9, and writes little for a step', async (t) => {
+	const STEPS = 300, STEP_BYTES_MOST = 16384, CHECKPOINTS_MOST = 8;
+	let daemon = await Daemon.start();
+	t.after(() => daemon.end());
+	let client = await daemon.connect();
+	const twice = [];
+	for (const name of ['killed', 'whole']) {
+		const { summary } = await client.call('session.create', { name, scene: 'fascia', paused: true });
+		await client.call('tool.take_over', { session: summary.session, tool: 'hook' });
+		await client.call('tool.move', { session: summary.session, tool: 'hook', position_m: [0, 0, 0.001], rotation: AT_REST });
+		twice.push(summary.session);
+	}
+	const [session, whole] = twice;
+	const before = writtenBytes(daemon), rows = await daemon.metric('store_records_total');
+	for (let i = 1; i <= STEPS; i++)
+		assert.deepEqual(await client.call('session.step', { session, ticks: 1 }), { tick: i });
+	const bytes = (writtenBytes(daemon) - before) / STEPS;
+	t.diagnostic(`${bytes.toFixed(0)} bytes a step, ${(await daemon.metric('store_records_total')) - rows} records`);
+	assert.ok(bytes < STEP_BYTES_MOST, `${bytes} bytes a step`);
+	await client.call('session.step', { session: whole, ticks: STEPS });
+	const { hash } = await client.call('session.snapshot', { session: whole, name: 'there' });
+	await daemon.kill();
+	assert.ok(storedCheckpoints(daemon, session) < CHECKPOINTS_MOST);
+	daemon = await Daemon.start({ folder: daemon.folder });
+	client = await daemon.connect();
+	const { sessions } = await client.call('session.list');
+	assert.equal(sessions.find((one) => one.session === session).tick, STEPS);
+	assert.equal((await client.call('session.snapshot', { session, name: 'there' })).hash, hash);
+	assert.deepEqual(await client.call('session.step', { session, ticks: 2 }), { tick: STEPS + 2 });
+	const { summary } = await client.call('session.fork', { session, name: 'child', paused: true });
+	assert.equal(summary.tick, STEPS + 2);
+	const back = await client.call('session.rewind', { session, tick: 7 });
+	assert.equal(back.tick, 7);
+	await client.close();
 });
 
 test('a fork goes on from the state, on its own, energy off', async () => {

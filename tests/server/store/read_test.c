@@ -366,6 +366,37 @@ static void a_visitor_can_stop_and_order_within_a_tick_holds(void **state)
 	cau_store_close(store);
 }
 
+static cau_status see_kind(void *user, const cau_store_command *command)
+{
+	char *text = user;
+	sprintf(text + strlen(text), "%llu:%d ", (unsigned long long)command->tick, command->kind);
+	return CAU_OK;
+}
+
+static void how_far_a_session_came_is_one_entry(void **state)
+{
+	char text[128] = "";
+	const struct {
+		uint64_t tick;
+		int32_t kind;
+	} entries[] = {{1, CAU_STORE_REACHED},
+	               {2, CAU_STORE_REACHED},
+	               {2, 5},
+	               {3, CAU_STORE_REACHED},
+	               {4, CAU_STORE_REACHED}};
+	cau_store *store = open_with_knee(state);
+	for (uint32_t i = 0; i < sizeof entries / sizeof *entries; i++) {
+		cau_store_batch *batch = cau_store_batch_create();
+		cau_store_command command = {
+			.session = "knee", .tick = entries[i].tick, .order = i, .kind = entries[i].kind};
+		assert_int_equal(cau_store_put_command(batch, &command, NULL), CAU_OK);
+		assert_int_equal(write_batch(store, batch, NULL), CAU_OK);
+	}
+	assert_int_equal(cau_store_read_log(store, "knee", 0, 0, 10, see_kind, text, NULL), CAU_OK);
+	assert_string_equal(text, "2:-1 2:5 4:-1 ");
+	cau_store_close(store);
+}
+
 // ---- events ---------------------------------------------------------------------------
 static cau_status see_event(void *user, const cau_store_event *event)
 {
@@ -470,6 +501,7 @@ int main(void)
 		TEST(a_fork_before_the_parents_start_finds_the_owner),
 		TEST(a_long_log_is_read_in_pieces_and_whole),
 		TEST(a_visitor_can_stop_and_order_within_a_tick_holds),
+		TEST(how_far_a_session_came_is_one_entry),
 		TEST(events_come_newest_first),
 		TEST(a_branch_sees_the_events_of_its_line),
 	};
