@@ -26,7 +26,7 @@ enum {
 typedef struct cau_unread {
 	struct lws *wsi; // NULL: none has this descriptor
 	double since_s;
-	bool has_sent; // bytes have come; this thread has yet to read them
+	double sent_round_s; // the round, by its ran_s, in which bytes had come; 0: none
 	char address[CAU_ADDRESS_BYTES];
 	char owner[CAU_ADDRESS_BYTES]; // see cau_address_owner
 } cau_unread;

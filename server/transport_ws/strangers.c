@@ -36,30 +36,40 @@ static bool is_unread(const cau_unread *unread, const char *owner)
 	return unread->wsi && (!owner || strcmp(unread->owner, owner) == 0);
 }
 
-// Asks the kernel which have sent something. Asked once for each: what has come is read soon.
+// What has sent something in this round of the thread is read at its end.
+static bool is_read_soon(const cau_network *network, const cau_unread *unread)
+{
+	return unread->sent_round_s == network->ran_s;
+}
+
+// Asks the kernel which have sent something; in each round once for those that have.
 static void look_at_input(cau_network *network, const char *owner)
 {
 	struct pollfd polled[POLLED_AT_ONCE];
 	int count = 0;
 	for (int i = 0; i <= network->unread_capacity; i++) {
 		bool is_last = i == network->unread_capacity;
-		if (!is_last && is_unread(&network->unread[i], owner) && !network->unread[i].has_sent)
+		if (!is_last && is_unread(&network->unread[i], owner) &&
+		    !is_read_soon(network, &network->unread[i]))
 			polled[count++] = (struct pollfd){.fd = i, .events = POLLIN};
 		if (count < POLLED_AT_ONCE && !is_last)
 			continue;
 		poll(polled, (nfds_t)count, 0);
 		while (count > 0) {
 			count--;
-			network->unread[polled[count].fd].has_sent = polled[count].revents & POLLIN;
+			if (polled[count].revents & POLLIN)
+				network->unread[polled[count].fd].sent_round_s = network->ran_s;
 		}
 	}
 }
 
-// The oldest that has sent nothing, of an owner or (NULL) of all; NULL if at most `most` are open.
+// The oldest of an owner, or (NULL) of all, from which nothing waits to be read; NULL if there are
+// at most `most` of these. Those that are read soon are not counted: beside many of them, one whose
+// request is on its way would be the only one to close.
 static cau_unread *find_unread(cau_network *network, const char *owner, int most)
 {
 	cau_unread *oldest = NULL;
-	int count = 0;
+	int count = 0, quiet = 0;
 	for (int i = 0; i < network->unread_capacity; i++)
 		count += is_unread(&network->unread[i], owner);
 	if (count <= most)
@@ -67,11 +77,13 @@ static cau_unread *find_unread(cau_network *network, const char *owner, int most
 	look_at_input(network, owner);
 	for (int i = 0; i < network->unread_capacity; i++) {
 		cau_unread *unread = &network->unread[i];
-		if (is_unread(unread, owner) && !unread->has_sent &&
-		    (!oldest || unread->since_s < oldest->since_s))
+		if (!is_unread(unread, owner) || is_read_soon(network, unread))
+			continue;
+		quiet++;
+		if (!oldest || unread->since_s < oldest->since_s)
 			oldest = unread;
 	}
-	return oldest;
+	return quiet > most ? oldest : NULL;
 }
 
 // Behind a proxy the address is known with the request; until then it is the proxy's.
@@ -102,19 +114,27 @@ static bool has_input(int descriptor)
 	return poll(&polled, 1, 0) > 0 && polled.revents & POLLIN;
 }
 
-// New ones come first in the list; the oldest without input is soon found from its end.
+// The oldest from which nothing waits to be read; NULL if none is to be closed. New ones come first
+// in the list. The newest `most` are never closed: their hello may be on its way. Beyond twice as
+// many the oldest is closed although something of it waits to be read.
 static cau_connection *find_silent(const cau_network *network, const char *owner, int most)
 {
-	cau_connection *last = NULL;
+	cau_connection *last = NULL, *oldest = NULL;
 	int count = 0;
 	for (cau_connection *c = network->connections; c; c = c->next) {
 		count += is_silent(c, owner);
 		last = c;
 	}
-	for (cau_connection *c = last; c && count > most; c = c->previous)
-		if (is_silent(c, owner) && !c->waits && !has_input(c->descriptor))
+	bool too_many = count > 2 * most;
+	for (cau_connection *c = last; c && count > most; c = c->previous) {
+		if (!is_silent(c, owner))
+			continue;
+		count--;
+		oldest = oldest ? oldest : c;
+		if (!c->waits && !has_input(c->descriptor))
 			return c;
-	return NULL;
+	}
+	return too_many ? oldest : NULL;
 }
 
 void cau_strangers_bound_silent(cau_network *network, const cau_connection *newest)

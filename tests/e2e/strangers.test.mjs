@@ -2,6 +2,7 @@
 // Connections without hello keep nobody out who has a token.
 import assert from 'node:assert/strict';
 import { fork } from 'node:child_process';
+import { once } from 'node:events';
 import { mkdtempSync, rmSync, writeFileSync } from 'node:fs';
 import { connect } from 'node:net';
 import { tmpdir } from 'node:os';
@@ -45,7 +46,7 @@ async function enterAndLeave(into) {
 	return seconds;
 }
 
-for (const kind of ['upgrade', 'silent'])
+for (const kind of ['silent', 'partial', 'upgrade', 'chatty'])
 	for (const address of ['127.0.0.1', '127.0.0.2'])
 		test(`beside ${STRANGERS} connections (${kind}) of ${address} that never say hello, a driver gets in each time`, async (t) => {
 			await crowd(t, address, kind);
@@ -87,6 +88,43 @@ test('a driver that lost its connection comes back to its tools where all places
 
 const UPGRADE = 'GET /v1 HTTP/1.1\r\nHost: 127.0.0.1\r\nConnection: Upgrade\r\nUpgrade: websocket\r\n'
 	+ 'Sec-WebSocket-Version: 13\r\nSec-WebSocket-Key: dGhlIHNhbXBsZSBub25jZQ==\r\nSec-WebSocket-Protocol: cautery.v1\r\n\r\n';
+
+/** A socket that is connected, has sent `text`, and tells by `ended` that the daemon ended it. */
+async function rawSocket(port, text) {
+	const socket = connect({ port, host: '127.0.0.1' });
+	socket.on('error', () => {});
+	socket.ended = false;
+	socket.on('close', () => {
+		socket.ended = true;
+	});
+	await once(socket, 'connect');
+	if (text)
+		await new Promise((resolve) => socket.write(text, resolve));
+	return socket;
+}
+
+// The daemon stands still meanwhile: it meets all of them in one round, and reads none before it has met the last.
+for (const [what, text] of [['a request', UPGRADE], ['the beginning of a request', UPGRADE.slice(0, 20)]])
+	test(`who is slow to send its request is not ended for 200 that came before with ${what}`, async (t) => {
+		const own = await Daemon.start();
+		t.after(() => own.end());
+		own.process.kill('SIGSTOP');
+		const strangers = [];
+		for (let i = 0; i < 200; i++)
+			strangers.push(await rawSocket(own.port, text));
+		const drivers = [await rawSocket(own.port)];
+		own.process.kill('SIGCONT');
+		await (await own.connect()).close(); // it has met them
+		for (let i = 0; i < 5; i++)
+			drivers.push(await rawSocket(own.port));
+		await (await own.connect()).close();
+		for (const driver of drivers) {
+			assert.equal(driver.ended, false);
+			driver.write(UPGRADE);
+			assert.match((await once(driver, 'data')).toString(), /^HTTP\/1.1 101 /);
+		}
+		[...strangers, ...drivers].forEach((socket) => socket.destroy());
+	});
 
 /** Opens a WebSocket from an address, or is refused, and goes. */
 function comeAndGo(port, address, request) {
