@@ -20,6 +20,9 @@ interface Order {
   at: number;
 }
 
+/** None came while a page may take. Where a busy machine holds a page up for long, its daemon has ended the energy before. */
+class NoOrder extends Error {}
+
 /** The commands about energy that pass a door. */
 class Wire {
   readonly orders: Order[] = [];
@@ -36,7 +39,7 @@ class Wire {
   /** The first order from a place of the list on that says so. */
   order(from: number, energized: boolean): Promise<Order> {
     return new Promise((resolve, reject) => {
-      const late = setTimeout(() => reject(new Error(`no order ${energized ? 'on' : 'off'} came`)), PATIENCE_MS);
+      const late = setTimeout(() => reject(new NoOrder(`no order ${energized ? 'on' : 'off'} came`)), PATIENCE_MS);
       this.look = () => {
         const found = this.orders.slice(from).find((order) => order.energized === energized);
         if (!found) return;
@@ -86,7 +89,11 @@ export class HoldStage {
   /** A pair that was too slow is played again. On a busy machine the fastest play is nearest to the time that the page takes. */
   async pair(way: Way, loss: Loss, does: 'off' | 'stays'): Promise<void> {
     let fastest = Infinity;
-    for (let played = 0; played < PLAYS && fastest > LIMIT_MS; played++) fastest = Math.min(fastest, await this.play(way, loss, does));
+    for (let played = 0; played < PLAYS && fastest > LIMIT_MS; played++)
+      fastest = Math.min(fastest, await this.play(way, loss, does).catch((error: unknown) => {
+        if (error instanceof NoOrder) return Infinity;
+        throw error;
+      }));
     expect(fastest, 'ms until the command was sent').toBeLessThan(LIMIT_MS);
     if (does === 'off') this.latencies.push(fastest);
   }
