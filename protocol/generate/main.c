@@ -11,6 +11,11 @@ static void typescript(FILE *out)
 	write_typescript(out, &messages);
 }
 
+static void python(FILE *out)
+{
+	write_python(out, &messages);
+}
+
 static void asyncapi(FILE *out)
 {
 	write_asyncapi(out, &messages);
@@ -46,6 +51,7 @@ int main(int argument_count, char **arguments)
 	}
 	model_make(&messages);
 	int failed = write_file(arguments[1], "messages.gen.ts", typescript);
+	failed |= write_file(arguments[1], "messages.py", python);
 	failed |= write_file(arguments[1], "asyncapi.json", asyncapi);
 	failed |= write_file(arguments[1], "messages.md", markdown);
 	failed |= write_file(arguments[1], "examples.md", write_examples);

@@ -7,6 +7,7 @@
 #include "generate/model.h"
 
 void write_typescript(FILE *out, const model *from);
+void write_python(FILE *out, const model *from);
 void write_asyncapi(FILE *out, const model *from);
 void write_markdown(FILE *out, const model *from);
 void write_examples(FILE *out);

@@ -187,6 +187,12 @@ class Commands(unittest.TestCase):
         self.run_it("build/bin/cautery-sim --scene layers --print-cut | build/bin/cautery --url ws://127.0.0.1:8740/ run d1-layers -",
                     r"\d", at, until=True)
 
+    def test_1_the_python_package(self):
+        os.makedirs(os.path.join(self.folder, "clients"), exist_ok=True)
+        os.symlink(os.path.join(SOURCES, "clients/python"), os.path.join(self.folder, "clients/python"))
+        self.run_it("PYTHONPATH=clients/python /usr/bin/python3 -c 'import cautery; help(cautery.Client.session_create)'",
+                    "makes a session")
+
     def test_2_the_command_line(self):
         at = self.start()
         self.make_mesh("knee.msh")

@@ -44,7 +44,7 @@ DIRECTIVE = re.compile(r"\b((?:Make|[Ii]n) `[^`]+`(?:, (?:above|below|in place o
 
 # What `ninja messages` writes.
 GENERATED = {"protocol/asyncapi.json", "protocol/messages.md", "protocol/examples.md", "protocol/idl/channels.idl",
-             "clients/web/src/wire/messages.gen.ts"}
+             "clients/web/src/wire/messages.gen.ts", "clients/python/cautery/messages.py"}
 SHARED_PACKAGES = "clients/web/node_modules"  # what `npm ci` made there serves the copy too
 
 

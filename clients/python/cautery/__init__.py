@@ -1,0 +1,19 @@
+# SPDX-License-Identifier: Apache-2.0
+"""Client of cauteryd, the simulation server for energized soft-tissue dissection.
+
+    import cautery
+
+    with cautery.Client("ws://127.0.0.1:8740") as client:
+        print(client.scene_list())
+
+Streams are numpy arrays. README.md has a first cut; `messages` has every message of the wire.
+"""
+
+from .client import Client
+from .errors import (BadFrame, ConnectionClosed, ConnectionRefused, Error, NoAnswer,
+                     RequestError)
+from .stream import State, Stream, Tool
+
+__all__ = ["BadFrame", "Client", "ConnectionClosed", "ConnectionRefused", "Error", "NoAnswer", "RequestError",
+           "State", "Stream", "Tool"]
+__version__ = "0.1.0.dev0"

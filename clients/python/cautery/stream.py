@@ -1,0 +1,324 @@
+# SPDX-License-Identifier: Apache-2.0
+"""A session's stream as numpy arrays: decodes frames as protocol/README.md describes them."""
+
+from __future__ import annotations
+
+import struct
+import threading
+import time
+from dataclasses import dataclass
+from typing import Iterator, Mapping
+
+import numpy as np
+import numpy.typing as npt
+
+from .errors import BadFrame, NoAnswer
+from .messages import (ENERGY_OFF_REASONS, FRAME_KIND, SCALARS, SECTION, TOOL_SHAPES, WIRE_VERSION,
+                       StreamDescription)
+from .vertex_codec import decode_vertices
+
+Floats = npt.NDArray[np.float64]
+
+_HEAD = struct.Struct("<4sBBHIIQQQQdQHHI")
+_PAUSED, _FAULTED = 1, 2
+_MESHOPT = 1
+_PREVIOUS, _HELD = 1, 2
+_ENERGIZED, _GRASPING, _FROZEN, _SLIPPING = 1, 2, 4, 8
+
+_TOOL = np.dtype([
+    ("sequence", "<u8"), ("position_m", "<f4", 3), ("rotation", "<f4", 4), ("jaw", "<f4"), ("force_n", "<f4", 3),
+    ("torque_nm", "<f4", 3), ("tip_temperature_c", "<f4"), ("energy_j", "<f4"), ("driver", "<u4"), ("flags", "u1"),
+    ("energy_off", "u1"), ("grasped_vertices", "<u2"), ("contact_vertices", "<u2"), ("touched_layers", "<u2")])
+_STATISTICS = np.dtype([
+    ("realtime_factor", "<f4"), ("step_cost_s", "<f4"), ("stage_s", "<f4", 8), ("residual", "<f4"),
+    ("deferred_max_s", "<f4"), ("iterations", "<u4"), ("backtracks", "<u4"), ("inverted", "<u4"),
+    ("edges_parted", "<u4"), ("elements_removed", "<u4"), ("pending_downdates", "<u4"), ("refactorisations", "<u4"),
+    ("contacts", "<u4"), ("frozen_vertices", "<u4"), ("refused_commands", "<u4"), ("energy_gain_j", "<f4"),
+    ("resting", "<u4"), ("error", "<f4"), ("contacts_left_out", "<u4"), ("elements_torn", "<u4"),
+    ("touching_cut_short", "<u4")])
+
+
+@dataclass(frozen=True)
+class Tool:
+    """A tool in a frame. Metres, newtons, radians; `rotation` is w, x, y, z."""
+
+    name: str
+    shape: str
+    position_m: Floats  # (3,)
+    rotation: Floats  # (4,)
+    jaw: float  # 0 closed to 1 open
+    force_n: Floats  # (3,), of the tissue on the tool
+    torque_nm: Floats  # (3,), about the tip
+    tip_temperature_c: float
+    energy_j: float  # taken up by tissue
+    driver: int  # the client's number; 0: no driver
+    energized: bool
+    grasping: bool
+    frozen: bool  # by the watchdog
+    slipping: bool
+    energy_off: str  # why energy went off last
+    sequence: int  # of the last command that was applied
+
+
+@dataclass(frozen=True)
+class State:
+    """What a frame showed. The arrays are copies; V vertices, F faces."""
+
+    tick: int
+    time_s: float
+    paused: bool
+    faulted: bool
+    positions: Floats  # (V, 3), m; of vertices that no drawn face uses they are old
+    removed: npt.NDArray[np.bool_]  # (F,): faces that are not drawn
+    scalars: Mapping[str, Floats]  # (V,) for each channel of the stream, as in `messages.SCALARS`
+    tools: Mapping[str, Tool]
+    statistics: Mapping[str, float]
+
+
+@dataclass(frozen=True)
+class _Header:
+    kind: int
+    flags: int
+    session: int
+    epoch: int
+    sequence: int
+    base: int
+    tick: int
+    time_s: float
+    profile: int
+
+
+def session_number(frame: bytes) -> int:
+    """Which stream of the connection a frame is of."""
+    return int.from_bytes(frame[12:16], "little")
+
+
+def _sections(frame: bytes) -> tuple[_Header, Iterator[tuple[int, bytes]]]:
+    if len(frame) < _HEAD.size:
+        raise BadFrame("shorter than a frame's header")
+    (magic, version, kind, flags, count, session, epoch, sequence, base, tick, time_s, _published, profile, sections,
+     _reserved) = _HEAD.unpack_from(frame)
+    if magic != b"CAUF" or version != WIRE_VERSION or count != len(frame):
+        raise BadFrame("no frame of this version")
+
+    def each() -> Iterator[tuple[int, bytes]]:
+        at = _HEAD.size
+        for _ in range(sections):
+            number, length = frame[at], int.from_bytes(frame[at + 4:at + 8], "little")
+            if at + 8 + length > len(frame):
+                raise BadFrame("a section ends beyond the frame")
+            yield number, frame[at + 8:at + 8 + length]
+            at += 8 + length
+
+    return _Header(kind, flags, session, epoch, sequence, base, tick, time_s, profile), each()
+
+
+def _indices(runs: bytes, count: int, most: int) -> npt.NDArray[np.int64]:
+    """The elements of a run list, (count,)."""
+    numbers, value, shift = [], 0, 0
+    for byte in runs:
+        value |= (byte & 127) << shift
+        shift += 7
+        if byte < 128:
+            numbers.append(value)
+            value = shift = 0
+    skips, lengths = np.array(numbers[0::2], np.int64), np.array(numbers[1::2], np.int64)
+    if len(skips) != len(lengths) or lengths.sum() != count or skips.sum() + count > most:
+        raise BadFrame("runs and count differ")
+    return np.repeat(np.cumsum(skips), lengths) + np.arange(count)
+
+
+def _numbers(data: bytes, count: int, width: int, components: int, coding: int) -> npt.NDArray[np.int64]:
+    """The numbers of a section, (count, components)."""
+    kind = {1: "u1", 2: "<u2", 4: "<u4"}[width]
+    if coding != _MESHOPT:
+        return np.frombuffer(data, kind, count * components).reshape(count, components).astype(np.int64)
+    packed = data[4:4 + int.from_bytes(data[:4], "little")]
+    if components == 1:
+        rows = decode_vertices(packed, -(-count * width // 4), 4)
+        return rows.copy().reshape(-1).view(kind)[:count].reshape(count, 1).astype(np.int64)
+    rows = decode_vertices(packed, count, width * components + 3 & ~3)
+    return rows[:, :width * components].copy().view(kind).astype(np.int64)
+
+
+def _wrap(values: npt.NDArray[np.int64]) -> npt.NDArray[np.int32]:
+    """Modulo 2^32."""
+    return (values & 0xFFFFFFFF).astype(np.uint32).view(np.int32)
+
+
+def _take_elements(payload: bytes, held: npt.NDArray[np.int32]) -> None:
+    """Writes a section's elements into `held`, (N, components)."""
+    width, components, coding, reference = payload[:4]
+    count, run_bytes = struct.unpack_from("<II", payload, 4)
+    if components != held.shape[1] or width not in (1, 2, 4):
+        raise BadFrame("elements of another kind")
+    if count == 0:
+        return
+    indices = _indices(payload[12:12 + run_bytes], count, len(held))
+    values = _numbers(payload[12 + (run_bytes + 3 & ~3):], count, width, components, coding)
+    if reference in (_PREVIOUS, _HELD):
+        balance = {1: 0x80, 2: 0x8080, 4: 0x80808080}[width]
+        values = (values ^ balance) - balance
+    if reference == _PREVIOUS:
+        values = np.cumsum(values, axis=0)
+    elif reference == _HELD:
+        values = values + held[indices]
+    held[indices] = _wrap(values)
+
+
+class Stream:
+    """One joined session. `wait` gives what a frame showed; `faces`, `layers` and `rest` stay as they are.
+
+    Its state is filled by the client's thread; all functions may be called from any thread.
+    """
+
+    def __init__(self, description: StreamDescription) -> None:
+        self.description = description
+        vertices, faces = description["vertex_count"], description["face_count"]
+        self.faces = np.zeros((faces, 3), np.int32)  # vertices of each face
+        self.face_layers = np.zeros(faces, np.int32)  # of each face: which layer of the scene
+        self.rest = np.zeros((vertices, 3))  # m
+        self.texture: npt.NDArray[np.float32] | None = None  # (F, 3, 2): u, v of each corner
+        self.skipped = 0  # deltas that did not apply
+        self._held = {
+            SECTION["positions"]: np.zeros((vertices, 3), np.int32),
+            SECTION["mask"]: np.zeros((-(-faces // 32), 1), np.int32),
+            **{scalar.section: np.zeros((vertices, 1), np.int32) for scalar in SCALARS.values()}}
+        self._header: _Header | None = None
+        self._names: list[tuple[str, str]] = []
+        self._tools: dict[str, Tool] = {}
+        self._statistics: dict[str, float] = {}
+        self._changed = threading.Condition()
+        self._over: Exception | None = None
+
+    # ---- for users
+    def wait(self, tick: int = 0, timeout_s: float = 30.0) -> State:
+        """The state of the first frame at `tick` or later. Raises NoAnswer, or what ended the connection."""
+        end_s = time.monotonic() + timeout_s
+        with self._changed:
+            while self._header is None or self._header.tick < tick:
+                if self._over:
+                    raise self._over
+                if not self._changed.wait(end_s - time.monotonic()) and time.monotonic() >= end_s:
+                    raise NoAnswer(f"no frame of tick {tick} came within {timeout_s:g} s")
+            return self._state(self._header)
+
+    def next(self, after: int, timeout_s: float = 30.0) -> State:
+        """The state of the first frame after a tick."""
+        return self.wait(after + 1, timeout_s)
+
+    # ---- for the client
+    def take(self, frame: bytes) -> str:
+        """Decodes a frame. "key", "delta", "topology", or "skipped": it does not build on what is held."""
+        header, sections = _sections(frame)
+        with self._changed:
+            if not self._applies(header):
+                self.skipped += header.kind == FRAME_KIND["delta"]
+                return "skipped"
+            if header.kind == FRAME_KIND["topology"]:
+                self._take_topology(dict(sections))
+                return "topology"
+            if header.kind == FRAME_KIND["key"]:
+                for held in self._held.values():
+                    held.fill(0)
+                self._names = []
+            for number, payload in sections:
+                self._take_section(number, payload)
+            self._header = header
+            self._changed.notify_all()
+            return "key" if header.kind == FRAME_KIND["key"] else "delta"
+
+    def end(self, reason: Exception) -> None:
+        """There are no more frames."""
+        with self._changed:
+            self._over = reason
+            self._changed.notify_all()
+
+    def place(self) -> tuple[str, int] | None:
+        """Epoch and sequence of the last frame, as `stream.ack` has them."""
+        with self._changed:
+            return (f"{self._header.epoch:016x}", self._header.sequence) if self._header else None
+
+    # ---- inside
+    def _applies(self, header: _Header) -> bool:
+        if header.session != self.description["session_number"] or header.profile != self.description["profile"]:
+            return False
+        if header.kind != FRAME_KIND["delta"]:
+            return True
+        held = self._header
+        return held is not None and (held.epoch, held.sequence) == (header.epoch, header.base)
+
+    def _metres(self, quantised: npt.NDArray[np.int32]) -> Floats:
+        return np.asarray(self.description["origin_m"]) + self.description["step_m"] * quantised
+
+    def _take_topology(self, sections: dict[int, bytes]) -> None:
+        rest = np.zeros((len(self.rest), 3), np.int32)
+        layers = np.zeros((len(self.faces), 1), np.int32)
+        texture = np.zeros((len(self.faces), 6), np.int32)
+        into = {SECTION["faces"]: self.faces, SECTION["face_layers"]: layers, SECTION["rest"]: rest,
+                SECTION["texture"]: texture}
+        for number, held in into.items():
+            if number in sections:
+                _take_elements(sections[number], held)
+        self.face_layers = layers[:, 0]
+        self.rest = self._metres(rest)
+        if SECTION["texture"] in sections:
+            self.texture = texture.view(np.float32).reshape(-1, 3, 2)
+
+    def _take_section(self, number: int, payload: bytes) -> None:
+        if number in self._held:
+            _take_elements(payload, self._held[number])
+        elif number == SECTION["tool_names"]:
+            self._names = _tool_names(payload)
+        elif number == SECTION["tools"]:
+            self._tools = _tools(payload, self._names)
+        elif number == SECTION["statistics"]:
+            self._statistics = _statistics(payload)
+
+    def _scalar(self, name: str) -> Floats:
+        scalar = SCALARS[name]
+        step = scalar.step or self.description["stress_step_pa"]
+        values: Floats = scalar.least + step * self._held[scalar.section][:, 0]
+        return values
+
+    def _state(self, header: _Header) -> State:
+        bits = np.unpackbits(self._held[SECTION["mask"]].view(np.uint8).reshape(-1), bitorder="little")
+        channels = self.description["channels"]
+        return State(
+            tick=header.tick, time_s=header.time_s, paused=bool(header.flags & _PAUSED),
+            faulted=bool(header.flags & _FAULTED), positions=self._metres(self._held[SECTION["positions"]]),
+            removed=bits[:len(self.faces)].astype(bool),
+            scalars={name: self._scalar(name) for name in SCALARS if name in channels},
+            tools=dict(self._tools), statistics=dict(self._statistics))
+
+
+def _tool_names(payload: bytes) -> list[tuple[str, str]]:
+    names, at = [], 4
+    for _ in range(int.from_bytes(payload[:4], "little")):
+        shape, length = payload[at], payload[at + 1]
+        word = TOOL_SHAPES[shape] if shape < len(TOOL_SHAPES) else str(shape)
+        names.append((payload[at + 2:at + 2 + length].decode(), word))
+        at += 2 + length
+    return names
+
+
+def _tools(payload: bytes, names: list[tuple[str, str]]) -> dict[str, Tool]:
+    tools = {}
+    for (name, shape), record in zip(names, np.frombuffer(payload, _TOOL, len(names))):
+        flags, off = int(record["flags"]), int(record["energy_off"])
+        tools[name] = Tool(
+            name=name, shape=shape, position_m=record["position_m"].astype(float),
+            rotation=record["rotation"].astype(float), jaw=float(record["jaw"]),
+            force_n=record["force_n"].astype(float), torque_nm=record["torque_nm"].astype(float),
+            tip_temperature_c=float(record["tip_temperature_c"]), energy_j=float(record["energy_j"]),
+            driver=int(record["driver"]), energized=bool(flags & _ENERGIZED), grasping=bool(flags & _GRASPING),
+            frozen=bool(flags & _FROZEN), slipping=bool(flags & _SLIPPING),
+            energy_off=ENERGY_OFF_REASONS[off] if off < len(ENERGY_OFF_REASONS) else str(off),
+            sequence=int(record["sequence"]))
+    return tools
+
+
+def _statistics(payload: bytes) -> dict[str, float]:
+    """Fields that an older daemon does not send are 0."""
+    record = np.frombuffer(payload[:_STATISTICS.itemsize].ljust(_STATISTICS.itemsize, b"\0"), _STATISTICS)[0]
+    return {name: float(record[name]) for name in _STATISTICS.names or () if name != "stage_s"}
