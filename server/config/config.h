@@ -79,6 +79,8 @@ enum { CAU_CONFIG_TEXT_BYTES = 512 };
 	        "largest size of a session in the store")                                              \
 	INTEGER(store_bytes, 17179869184, 0, 1125899906842624,                                         \
 	        "largest size of the store, all tables; 0: no bound")                                  \
+	INTEGER(ephemeral_bytes, 1073741824, 1048576, 1099511627776,                                   \
+	        "largest memory of what ephemeral sessions keep of their past")                        \
 	REAL(drain_s, 10, 0.1, 600, "longest wait for checkpoints at shutdown")                        \
 	SWITCH(dds, false, "open the DDS transport")                                                   \
 	INTEGER(dds_domain, 0, 0, 230, "DDS domain")                                                   \

@@ -39,8 +39,8 @@ struct cau_daemon {
 	cau_auth *auth;
 	cau_static_files *files;
 	cau_scenes *scenes;
-	cau_store *store;
-	cau_lease *lease; // NULL: not wanted
+	cau_store *store, *memory; // memory: of ephemeral sessions
+	cau_lease *lease;          // NULL: not wanted
 	cau_worker_pool *pool;
 	cau_builder *builder, *mover;
 	cau_hub *hub;
@@ -140,14 +140,25 @@ static cau_status take_label(cau_daemon *daemon, cau_error *error)
 	return status;
 }
 
-// On the store's thread.
+static void tell_state(cau_daemon *daemon, bool ephemeral, cau_store_state state,
+                       const char *reason)
+{
+	if (daemon->hub) // sessions first: who reads the log may act on it at once
+		cau_hub_store_takes(daemon->hub, ephemeral, state == CAU_STORE_READY, reason);
+	cau_log(state == CAU_STORE_READY ? CAU_LOG_NOTICE : CAU_LOG_ERROR, NULL,
+	        ephemeral ? "memory_state" : "store_state", "state=%s reason=\"%s\"",
+	        cau_store_state_name(state), reason);
+}
+
+// On the store's thread, as the next one.
 static void on_store_state(void *user, cau_store_state state, const char *reason)
 {
-	cau_daemon *daemon = user;
-	if (daemon->hub) // sessions first: who reads the log may act on it at once
-		cau_hub_store_takes(daemon->hub, state == CAU_STORE_READY, reason);
-	cau_log(state == CAU_STORE_READY ? CAU_LOG_NOTICE : CAU_LOG_ERROR, NULL, "store_state",
-	        "state=%s reason=\"%s\"", cau_store_state_name(state), reason);
+	tell_state(user, false, state, reason);
+}
+
+static void on_memory_state(void *user, cau_store_state state, const char *reason)
+{
+	tell_state(user, true, state, reason);
 }
 
 // On the store's thread.
@@ -179,6 +190,18 @@ static cau_status open_store(cau_daemon *daemon, cau_error *error)
 	return cau_store_open(&store, &daemon->store, error);
 }
 
+// Of ephemeral sessions. Nobody waits for a disk, so no commit waits for company.
+static cau_status open_memory(cau_daemon *daemon, cau_error *error)
+{
+	cau_store_config memory = cau_store_default_config();
+	memory.memory = true;
+	memory.commit_delay_ms = 0;
+	memory.store_bytes = memory.retention_bytes = daemon->config->ephemeral_bytes;
+	memory.on_state = on_memory_state;
+	memory.user = daemon;
+	return cau_store_open(&memory, &daemon->memory, error);
+}
+
 static int32_t count_workers(const cau_config *config)
 {
 	long cores = sysconf(_SC_NPROCESSORS_ONLN);
@@ -204,6 +227,7 @@ static cau_status open_hub(cau_daemon *daemon, cau_error *error)
 		status = cau_builder_create(&daemon->mover, "cautery-move", 1, CAU_NICE_LAST, error);
 	cau_hub_def def = {.config = config,
 	                   .store = daemon->store,
+	                   .memory = daemon->memory,
 	                   .pool = daemon->pool,
 	                   .builder = daemon->builder,
 	                   .mover = daemon->mover,
@@ -292,6 +316,8 @@ static cau_status open_all(cau_daemon *daemon, cau_error *error)
 		status = cau_scenes_load(&daemon->scenes, config->scenes, error);
 	if (!status)
 		status = open_store(daemon, error);
+	if (!status)
+		status = open_memory(daemon, error);
 	if (!status && *config->etcd)
 		status = take_label(daemon, error);
 	if (!status)
@@ -430,6 +456,7 @@ void cau_daemon_stop(cau_daemon *daemon)
 	cau_hub_destroy(daemon->hub);
 	cau_worker_pool_destroy(daemon->pool);
 	cau_store_close(daemon->store);
+	cau_store_close(daemon->memory);
 	cau_lease_give_back(daemon->lease); // nothing is written any more
 	cau_scenes_destroy(daemon->scenes);
 	cau_static_files_destroy(daemon->files);

@@ -166,12 +166,6 @@ bool cau_building_cancel(cau_hosted *h, cau_order *order)
 	return taken;
 }
 
-void cau_hosted_abandon(cau_hosted *h, uint32_t client)
-{
-	if (h->starting && h->origin.kind != CAU_ORIGIN_STORE && h->creator.client == client && client)
-		h->abandoned = true;
-}
-
 // From here on it is the workers', and a session.destroy waits in the queue. Returns those that
 // came before.
 cau_order *cau_building_give_back(cau_hosted *h)

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // What transports, the watchdog and the store tell a session, as events of its decisions.
+#include <stdlib.h>
 #include <string.h>
 
 #include "hosted_session/internal.h"
@@ -136,4 +137,39 @@ void cau_hosted_store_takes(cau_hosted *h, bool takes, const char *reason)
 	                                 .time_s = cau_monotonic_s(),
 	                                 .store_takes = takes,
 	                                 .cause = reason});
+}
+
+// In its maker's name, who is gone: nobody is answered.
+static void destroy_for(cau_hosted *h)
+{
+	cau_error error = {0};
+	cau_order *order = calloc(1, sizeof *order);
+	if (order) {
+		order->kind = CAU_ORDER_DESTROY;
+		order->asker = h->creator;
+	}
+	if (!order || cau_hosted_submit(h, order, &error)) {
+		free(order);
+		cau_hosted_end(h);
+	}
+}
+
+void cau_hosted_abandon(cau_hosted *h, uint32_t client)
+{
+	if (h->origin.kind == CAU_ORIGIN_STORE || h->creator.client != client || !client)
+		return;
+	if (h->starting)
+		h->abandoned = true;
+	else if (h->around->ephemeral)
+		destroy_for(h);
+}
+
+bool cau_hosted_is_ephemeral(const cau_hosted *h)
+{
+	return h->around->ephemeral;
+}
+
+bool cau_hosted_is_own_ephemeral(const cau_hosted *h, uint32_t client)
+{
+	return h->around->ephemeral && h->creator.client == client;
 }

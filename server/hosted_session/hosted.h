@@ -29,6 +29,7 @@ const char *cau_hosted_stage_name(int stage); // "global"
 typedef struct cau_surroundings {
 	const cau_config *config;
 	cau_store *store;
+	bool ephemeral; // the store is in memory: its sessions go with their makers
 	cau_worker_pool *pool;
 	cau_builder *builder;
 	cau_builder *mover;           // for sessions that move; may be the same
@@ -145,8 +146,11 @@ int32_t cau_hosted_waiting(cau_hosted *hosted, cau_wire_waiting_command *list, i
 int32_t cau_hosted_cancel(cau_hosted *hosted, uint32_t client, uint64_t number);
 
 // The client will not come back: a session that is still built for it ends at the next border of
-// its stages.
+// its stages, and an ephemeral one that it made is destroyed.
 void cau_hosted_abandon(cau_hosted *hosted, uint32_t client);
+// Whether it is kept in memory alone.
+bool cau_hosted_is_ephemeral(const cau_hosted *hosted);
+bool cau_hosted_is_own_ephemeral(const cau_hosted *hosted, uint32_t client); // that client's
 
 // ---- streams
 

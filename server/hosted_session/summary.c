@@ -20,6 +20,7 @@ void cau_hosted_publish_summary(cau_hosted *h)
 		.epoch = h->epoch,
 		.has_fault = decided.state == CAU_SESSION_FAULTED && *decided.fault,
 	};
+	now.has_stored = h->around->ephemeral; // and false
 	now.has_stage = *h->stage;
 	snprintf(now.stage, sizeof now.stage, "%s", h->stage);
 	memcpy(now.session, h->id, sizeof now.session);

@@ -114,8 +114,9 @@ cau_status cau_clerk_make(cau_hub *hub, cau_creation *creation, const char *id, 
 	                      .reply = creation->reply};
 	pthread_mutex_lock(&hub->mutex);
 	bool room = (size_t)hub->session_count < SLOTS(hub->def.config);
+	const cau_surroundings *around = creation->ephemeral ? &hub->around_ephemeral : &hub->around;
 	status =
-		room ? cau_hosted_create(&hosted, &hub->around, &def, error)
+		room ? cau_hosted_create(&hosted, around, &def, error)
 			 : cau_fail(error, CAU_LIMIT, "", "the store is still removing sessions: try again");
 	if (!status) {
 		hub->sessions[hub->session_count++] = hosted;
@@ -156,7 +157,8 @@ static cau_status resent(cau_hub *hub, cau_creation *creation, cau_error *error)
 	cau_hub_each(hub, compare_maker, &search);
 	if (search.found)
 		return CAU_BAD_STATE;
-	return cau_store_read_answer(hub->def.store, creation->asker.client_id,
+	cau_store *store = creation->ephemeral ? hub->def.memory : hub->def.store;
+	return cau_store_read_answer(store, creation->asker.client_id,
 	                             (uint64_t)creation->client_sequence, answer_again, creation,
 	                             error);
 }
@@ -230,6 +232,7 @@ void cau_clerk_fork(void *user, cau_hosted *source, int64_t branch, const cau_or
 	*creation->scene = *scene;
 	memcpy(creation->name, order->as.fork.name, sizeof creation->name);
 	creation->paused = order->as.fork.paused;
+	creation->ephemeral = cau_hosted_is_ephemeral(source); // what it begins from is there
 	creation->asker = order->asker;
 	creation->client_sequence = order->client_sequence;
 	creation->reply = order->reply;

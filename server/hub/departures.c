@@ -102,9 +102,13 @@ static cau_hosted *find_hosted(cau_move_job *job)
 {
 	cau_moved_to to;
 	cau_hosted *hosted = cau_hub_find(job->hub, job->asked.session);
-	if (hosted && !cau_hosted_starting(hosted))
+	bool ephemeral = hosted && cau_hosted_is_ephemeral(hosted);
+	if (hosted && !cau_hosted_starting(hosted) && !ephemeral)
 		return hosted;
-	if (hosted)
+	if (ephemeral)
+		cau_move_fail(&job->reply, CAU_BAD_STATE, 0, "params.session",
+		              "it is ephemeral: it is not stored, and cannot move");
+	else if (hosted)
 		cau_move_fail(&job->reply, CAU_BAD_STATE, 0, "params.session", "it is being built");
 	else if (cau_hub_moved(job->hub, job->asked.session, &to))
 		cau_reply_moved(&job->reply, &to);

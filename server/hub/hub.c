@@ -75,6 +75,9 @@ cau_status cau_hub_create(cau_hub **made, const cau_hub_def *def, cau_error *err
 	                                 .armed = armed,
 	                                 .fork = cau_clerk_fork,
 	                                 .user = hub};
+	hub->around_ephemeral = hub->around;
+	hub->around_ephemeral.store = def->memory;
+	hub->around_ephemeral.ephemeral = true;
 	pthread_mutex_init(&hub->mutex, NULL);
 	pthread_mutex_init(&hub->clerk_mutex, NULL);
 	pthread_mutex_init(&hub->moves_mutex, NULL);
@@ -94,6 +97,8 @@ void cau_hub_stop(cau_hub *hub)
 	for (int32_t i = 0; i < hub->session_count; i++)
 		cau_hosted_stop(hub->sessions[i]);
 	cau_store_flush(hub->def.store); // commits on their way know their sessions
+	if (hub->def.memory)
+		cau_store_flush(hub->def.memory);
 	for (int32_t i = 0; i < hub->session_count; i++)
 		cau_hosted_release(hub->sessions[i]);
 	hub->session_count = 0;
@@ -209,21 +214,23 @@ const cau_hosted_times *cau_hub_times(const cau_hub *hub)
 }
 
 typedef struct store_news {
-	bool takes;
+	bool ephemeral, takes;
 	const char *reason;
 } store_news;
 
 static void tell_store(void *user, cau_hosted *hosted)
 {
 	const store_news *news = user;
+	if (cau_hosted_is_ephemeral(hosted) != news->ephemeral)
+		return;
 	cau_hosted_store_takes(hosted, news->takes, news->reason);
 	if (news->takes)
 		cau_hosted_want_checkpoint(hosted);
 }
 
-void cau_hub_store_takes(cau_hub *hub, bool takes, const char *reason)
+void cau_hub_store_takes(cau_hub *hub, bool ephemeral, bool takes, const char *reason)
 {
-	cau_hub_each(hub, tell_store, &(store_news){takes, reason});
+	cau_hub_each(hub, tell_store, &(store_news){ephemeral, takes, reason});
 }
 
 static void drain_one(void *user, cau_hosted *hosted)

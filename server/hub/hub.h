@@ -20,6 +20,7 @@ typedef struct cau_hub cau_hub;
 typedef struct cau_hub_def {
 	const cau_config *config; // borrowed, like all here
 	cau_store *store;
+	cau_store *memory; // of ephemeral sessions; NULL: there are none
 	cau_worker_pool *pool;
 	cau_builder *builder;
 	cau_builder *mover; // for sessions that move, at the workers' priority; NULL: the builder
@@ -103,7 +104,7 @@ typedef struct cau_creation {
 	cau_scene_def *scene;      // malloc'ed, taken
 	void *meshes;              // malloc'ed, taken
 	size_t mesh_bytes;
-	bool paused;
+	bool paused, ephemeral;
 	cau_hosted_origin origin;
 	cau_asker asker;
 	int64_t client_sequence;
@@ -184,7 +185,7 @@ void cau_hub_reap(cau_hub *hub);
 // Of the sessions that the daemon begins with, the store's and the demo, how many are not there
 // yet; whatever clients make.
 int32_t cau_hub_resuming(cau_hub *hub);
-// The store has room again, or has none any more. From the store's thread.
-void cau_hub_store_takes(cau_hub *hub, bool takes, const char *reason);
+// The store, or that of ephemeral sessions, has room again, or has none any more. From its thread.
+void cau_hub_store_takes(cau_hub *hub, bool ephemeral, bool takes, const char *reason);
 // Checkpoints all sessions; returns when they are on the disk or the time is over.
 void cau_hub_drain(cau_hub *hub, double seconds);

@@ -22,6 +22,7 @@ struct cau_hub {
 	_Atomic int64_t memory_held; // by all sessions, bytes, about
 	cau_beginnings beginnings;
 	cau_surroundings around;
+	cau_surroundings around_ephemeral; // the same with the store in memory
 	cau_hosted_times times;
 	cau_sink sinks[MOST_SINKS];
 	int sink_count;

@@ -27,12 +27,28 @@ static void refuse(const cau_call *call, cau_status status, int32_t code, const 
 	cau_call_fail(call, &error, code);
 }
 
+// Who trains on sessions of its own begins again and again: that costs no disk, and it waits for
+// each answer.
+static bool begins_own_again(const cau_call *call)
+{
+	cau_method method = call->message->method;
+	if (method != CAU_METHOD_SESSION_RESET && method != CAU_METHOD_SESSION_RESTORE &&
+	    method != CAU_METHOD_SESSION_REWIND)
+		return false;
+	cau_hosted *hosted =
+		cau_hub_find(call->peer->service->hub,
+	                 call->envelope.has_session ? call->envelope.session : call->peer->session);
+	bool own = hosted && cau_hosted_is_own_ephemeral(hosted, call->peer->client.asker.client);
+	cau_hosted_release(hosted);
+	return own;
+}
+
 // Requests that cost much are for those who have some of their allowances left.
 static bool afford(const cau_call *call)
 {
 	cau_peer *peer = call->peer;
 	cau_error error = {0};
-	if (call->method->cost == CAU_COST_CHEAP)
+	if (call->method->cost == CAU_COST_CHEAP || begins_own_again(call))
 		return true;
 	if (call->method->cost == CAU_COST_FILE && !cau_peer_has_room_for_file(peer)) {
 		cau_fail(

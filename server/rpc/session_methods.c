@@ -105,6 +105,7 @@ static cau_status read_creation(cau_call *call, cau_creation *creation, cau_erro
 		return status;
 	memcpy(creation->name, params.name, sizeof creation->name);
 	creation->paused = params.paused;
+	creation->ephemeral = params.ephemeral;
 	creation->client_sequence = params.client_sequence;
 	creation->asker = call->peer->client.asker;
 	creation->reply = cau_call_reply(call);
@@ -122,7 +123,7 @@ void cau_call_session_create(cau_call *call)
 	                        : cau_fail(&error, CAU_NO_MEMORY, "", "no memory for a scene");
 	cau_store_health health;
 	cau_store_get_health(call->peer->service->store, &health);
-	bool full = health.state != CAU_STORE_READY;
+	bool full = health.state != CAU_STORE_READY && !(creation && creation->ephemeral);
 	if (!status && full)
 		status = cau_fail(&error, CAU_IO, "", "%s", health.reason);
 	bool allowed = status || cau_call_may_make(call, creation->name); // else it is answered

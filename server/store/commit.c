@@ -187,6 +187,8 @@ static bool chore_is_due(const struct cau_store *store, double now_s)
 static bool has_room(const struct cau_store *store)
 {
 	struct statvfs disk;
+	if (store->config.memory) // removal may have made room
+		return true;
 	return statvfs(store->path, &disk) == 0 &&
 	       (uint64_t)disk.f_bavail * disk.f_frsize >= store->wanted_bytes;
 }
@@ -216,7 +218,7 @@ static void try_again(struct cau_store *store)
 void *cau_store_commit_run(void *context)
 {
 	struct cau_store *store = context;
-	pthread_setname_np(pthread_self(), "cautery-store");
+	pthread_setname_np(pthread_self(), store->config.memory ? "cautery-memory" : "cautery-store");
 	for (;;) {
 		switch (cau_store_queue_await(store)) {
 		case TURN_GROUP:

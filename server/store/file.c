@@ -114,6 +114,29 @@ cau_status cau_store_file_open(const char *path, size_t wal_bytes, sqlite3 **dat
 	return status;
 }
 
+cau_status cau_store_memory_open(const char *name, int64_t bytes_most, sqlite3 **database,
+                                 cau_error *error)
+{
+	sqlite3_int64 limit = bytes_most;
+	cau_status status = open_connection(
+		name, SQLITE_OPEN_READWRITE | SQLITE_OPEN_CREATE | SQLITE_OPEN_URI | SQLITE_OPEN_NOMUTEX,
+		database, error);
+	if (status)
+		return status;
+	if (limit)
+		sqlite3_file_control(*database, "main", SQLITE_FCNTL_SIZE_LIMIT, &limit);
+	status = cau_store_execute(*database,
+	                           "PRAGMA journal_mode = MEMORY; PRAGMA synchronous = OFF;"
+	                           "PRAGMA secure_delete = OFF; PRAGMA temp_store = MEMORY;"
+	                           "PRAGMA trusted_schema = OFF",
+	                           "setting up the connection", error);
+	if (status) {
+		sqlite3_close(*database);
+		*database = NULL;
+	}
+	return status;
+}
+
 cau_status cau_store_file_open_reader(const char *path, sqlite3 **database, cau_error *error)
 {
 	return open_connection(path, SQLITE_OPEN_READONLY | SQLITE_OPEN_NOMUTEX, database, error);

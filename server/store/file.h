@@ -4,6 +4,7 @@
 
 #include <sqlite3.h>
 #include <stddef.h>
+#include <stdint.h>
 
 #include "cautery/status.h"
 
@@ -16,4 +17,8 @@ cau_status cau_store_file_open(const char *path, size_t wal_bytes, sqlite3 **dat
                                cau_error *error);
 
 // A connection that only reads.
+// A connection to a database in memory; all with one name share it. `bytes_most`: beyond it it is
+// full; 0: the library's bound.
+cau_status cau_store_memory_open(const char *name, int64_t bytes_most, sqlite3 **database,
+                                 cau_error *error);
 cau_status cau_store_file_open_reader(const char *path, sqlite3 **database, cau_error *error);

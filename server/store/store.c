@@ -77,7 +77,7 @@ static cau_status check_config(const cau_store_config *config, cau_error *error)
 		{"retention_interval_ms", config->retention_interval_ms, 1, INT32_MAX},
 		{"wal_bytes", (int64_t)config->wal_bytes, 0, INT64_MAX},
 	};
-	if (!config->path || !config->path[0])
+	if (!config->memory && (!config->path || !config->path[0]))
 		return cau_fail(error, CAU_BAD_VALUE, "path", "is missing");
 	if (config->label && strnlen(config->label, CAU_STORE_ID_BYTES) == CAU_STORE_ID_BYTES)
 		return cau_fail(error, CAU_BAD_VALUE, "label", "is longer than %d bytes",
@@ -170,11 +170,42 @@ static cau_status check_new_label(const char *label, cau_error *error)
 	return CAU_OK;
 }
 
+// What both kinds of store want once it is open for writing.
+static cau_status prepare(struct cau_store *store, cau_error *error)
+{
+	int64_t page_bytes = 0;
+	cau_status status = cau_store_migrate(store->writing, error);
+	if (!status)
+		status = settle_label(store, error);
+	if (!status)
+		status = note_path(store, error);
+	if (!status)
+		status = cau_store_integer(store->writing, "PRAGMA page_size", &page_bytes, error);
+	store->page_bytes = (size_t)page_bytes;
+	return status;
+}
+
+// Its connections share a database of the library's, which has no log to fold.
+static cau_status open_memory(struct cau_store *store, cau_error *error)
+{
+	sqlite3 **const further[] = {&store->reading, &store->answers};
+	// The budget keeps it below twice its bytes.
+	int64_t most = 2 * store->config.store_bytes;
+	snprintf(store->path, sizeof store->path, "file:/cautery-%p?vfs=memdb", (void *)store);
+	cau_status status = cau_store_memory_open(store->path, most, &store->writing, error);
+	if (!status)
+		status = prepare(store, error);
+	if (!status)
+		status = cau_store_writer_init(&store->writer, store->writing, error);
+	for (size_t i = 0; i < sizeof further / sizeof *further && !status; i++)
+		status = cau_store_memory_open(store->path, most, further[i], error);
+	return status;
+}
+
 // The lock is held: makes or checks the file, opens the connections, migrates.
 static cau_status open_database(struct cau_store *store, cau_error *error)
 {
 	enum cau_store_found found;
-	int64_t page_bytes = 0;
 	cau_status status = cau_store_lock_database(&store->lock, store->path, error);
 	if (!status)
 		status = cau_store_probe(store->path, store->config.label, &found, error);
@@ -190,14 +221,7 @@ static cau_status open_database(struct cau_store *store, cau_error *error)
 	if (status)
 		return status;
 	sqlite3_wal_hook(store->writing, count_wal_pages, store);
-	status = cau_store_migrate(store->writing, error);
-	if (!status)
-		status = settle_label(store, error);
-	if (!status)
-		status = note_path(store, error);
-	if (!status)
-		status = cau_store_integer(store->writing, "PRAGMA page_size", &page_bytes, error);
-	store->page_bytes = (size_t)page_bytes;
+	status = prepare(store, error);
 	// Best effort, so that the file alone tells its schema and a full disk does not prevent a
 	// start.
 	if (!status)
@@ -211,6 +235,14 @@ static cau_status open_database(struct cau_store *store, cau_error *error)
 	if (!status)
 		status = cau_store_file_open(store->path, store->config.wal_bytes, &store->folding, error);
 	return status;
+}
+
+static cau_status open_on_disk(struct cau_store *store, cau_error *error)
+{
+	cau_status status = find_path(store->config.path, store->path, error);
+	if (!status)
+		status = cau_store_lock_take(&store->lock, store->path, error);
+	return status ? status : open_database(store, error);
 }
 
 static void close_database(struct cau_store *store)
@@ -249,10 +281,12 @@ static void destroy(struct cau_store *store)
 
 static cau_status start_threads(struct cau_store *store, cau_error *error)
 {
-	if (cau_store_folder_start(&store->folder, store->folding))
+	bool folds = !store->config.memory;
+	if (folds && cau_store_folder_start(&store->folder, store->folding))
 		return cau_fail(error, CAU_NO_MEMORY, NULL, "no thread to fold the log");
 	if (pthread_create(&store->thread, NULL, cau_store_commit_run, store)) {
-		cau_store_folder_stop(&store->folder);
+		if (folds)
+			cau_store_folder_stop(&store->folder);
 		return cau_fail(error, CAU_NO_MEMORY, NULL, "no thread to commit");
 	}
 	return CAU_OK;
@@ -275,11 +309,7 @@ cau_status cau_store_open(const cau_store_config *config, cau_store **out, cau_e
 	if (!store->config.wall_clock_ms)
 		store->config.wall_clock_ms = system_clock_ms;
 	init_locks(store);
-	status = find_path(config->path, store->path, error);
-	if (!status)
-		status = cau_store_lock_take(&store->lock, store->path, error);
-	if (!status)
-		status = open_database(store, error);
+	status = config->memory ? open_memory(store, error) : open_on_disk(store, error);
 	store->config.path = store->path;
 	store->config.label = store->label;
 	store->chore_due_s = cau_store_monotonic_s() + 1e-3 * store->config.retention_interval_ms;
@@ -301,7 +331,8 @@ void cau_store_close(cau_store *store)
 	pthread_cond_signal(&store->work);
 	pthread_mutex_unlock(&store->mutex);
 	pthread_join(store->thread, NULL);
-	cau_store_folder_stop(&store->folder);
+	if (!store->config.memory)
+		cau_store_folder_stop(&store->folder);
 	destroy(store);
 }
 

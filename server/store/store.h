@@ -64,6 +64,7 @@ typedef enum cau_store_budget_state {
 // ---- life -----------------------------------------------------------------------------
 typedef struct cau_store_config {
 	const char *path;         // the database; "-wal", "-shm" and "-lock" files stand beside it
+	bool memory;              // in memory alone, without a path: it is gone once it is closed
 	const char *label;        // the daemon's label; NULL takes the stored one; another is refused,
 	                          // and one with a `-` in a new store
 	int32_t commit_delay_ms;  // 0 to 10: how long a batch may wait for company

@@ -378,7 +378,7 @@ class SessionSummary(TypedDict):
     # why it is faulted
     fault: NotRequired[str]
 
-    # false, in an answer to session.pause: the store was full; the session pauses all the same
+    # false: the session is ephemeral; or, in an answer to session.pause, the store was full, and the session pauses all the same
     stored: NotRequired[bool]
 
     # while it is starting or is rewound or restored: what the builder does (meshing, ordering, factoring, settling; reading, restoring, replaying)
@@ -409,6 +409,9 @@ class SessionCreate(TypedDict):
 
     # starts paused; false by default
     paused: NotRequired[bool]
+
+    # is never on a disk, and ends with its maker's connection or the daemon; false by default
+    ephemeral: NotRequired[bool]
 
 
 class LayerDescription(TypedDict):
@@ -2797,6 +2800,7 @@ class Calls:
         scene: str | None = None,
         definition: Scene | None = None,
         paused: bool | None = None,
+        ephemeral: bool | None = None,
     ) -> SessionDescription:
         """`session.create`: makes a session
 
@@ -2805,6 +2809,7 @@ class Calls:
         scene: a scene of the daemon; either this or definition
         definition: the scene itself; meshes of source bytes name an upload in file
         paused: starts paused; false by default
+        ephemeral: is never on a disk, and ends with its maker's connection or the daemon; false by default
         """
         return self.call("session.create", {
             "client_sequence": client_sequence,
@@ -2812,6 +2817,7 @@ class Calls:
             "scene": scene,
             "definition": definition,
             "paused": paused,
+            "ephemeral": ephemeral,
         })
 
     def session_describe(

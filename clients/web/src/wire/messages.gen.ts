@@ -166,7 +166,7 @@ export interface SessionSummary {
   epoch: string;
   /** why it is faulted */
   fault?: string;
-  /** false, in an answer to session.pause: the store was full; the session pauses all the same */
+  /** false: the session is ephemeral; or, in an answer to session.pause, the store was full, and the session pauses all the same */
   stored?: boolean;
   /** while it is starting or is rewound or restored: what the builder does (meshing, ordering, factoring, settling; reading, restoring, replaying) */
   stage?: string;
@@ -190,6 +190,8 @@ export interface SessionCreate {
   definition?: Scene;
   /** starts paused; false by default */
   paused?: boolean;
+  /** is never on a disk, and ends with its maker's connection or the daemon; false by default */
+  ephemeral?: boolean;
 }
 
 /** a layer and its range in the face list */
