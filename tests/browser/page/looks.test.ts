@@ -48,6 +48,8 @@ const WET_MOST = 0.12;
 const SPARKS_MOST = 2e-4; // of its pixels; a hundred in a picture would be seen when the camera moves
 const BESIDE_M = 0.001; // a ring is a fifth of that wide
 const HIGHER_M = 0.003;
+const TAP_MS = 50;
+const TAPS_MOST = 400;
 const BRIGHTER = 12; // of 255: a ring takes more than half of what it lies on to white
 
 const light = (colours: readonly Colour[]): number => colours.reduce((sum, [r, g, b]) => sum + (r + g + b) / 3, 0) / colours.length;
@@ -101,9 +103,9 @@ describe('the picture of the demo', () => {
     await viewer.resume();
     await viewer.page.locator('#picture').focus();
     const { tip } = await viewer.state();
-    await viewer.page.keyboard.down('KeyS');
-    await viewer.until((above) => window.cautery.tip[2] > above, tip[2] + HIGHER_M, 'the tool is higher');
-    await viewer.page.keyboard.up('KeyS');
+    // By taps: on a busy machine a key that is held is released late, and the tool is far above the tissue by then.
+    for (let taps = 0; (await viewer.state()).tip[2] < tip[2] + HIGHER_M && taps < TAPS_MOST; taps++) await viewer.page.keyboard.press('KeyS', { delay: TAP_MS });
+    expect((await viewer.state()).tip[2]).toBeGreaterThan(tip[2] + HIGHER_M);
     await viewer.pause();
     await viewer.until(() => window.cautery.idle, null, 'the picture of that');
     const high = await ring(viewer);
