@@ -192,6 +192,8 @@ class Commands(unittest.TestCase):
         os.symlink(os.path.join(SOURCES, "clients/python"), os.path.join(self.folder, "clients/python"))
         self.run_it("PYTHONPATH=clients/python /usr/bin/python3 -c 'import cautery; help(cautery.Client.session_create)'",
                     "makes a session")
+        self.run_it("PYTHONPATH=clients/python /usr/bin/python3 clients/python/examples/learn_part_band.py "
+                    "--daemon build/bin/cauteryd --scenes deploy/scenes", "generation 1:", until=True)
 
     def test_2_the_command_line(self):
         at = self.start()

@@ -1,0 +1,15 @@
+# SPDX-License-Identifier: Apache-2.0
+"""Tasks for learners, with the interface of Gymnasium's environments. Gymnasium itself is not needed.
+
+    from cautery.environments import PartBand
+
+    environment = PartBand()
+    observation, info = environment.reset(seed=1)
+    observation, reward, terminated, truncated, info = environment.step(environment.action_space.sample())
+"""
+
+from .check import check_environment
+from .part_band import PartBand
+from .spaces import Box
+
+__all__ = ["Box", "PartBand", "check_environment"]

@@ -1,0 +1,243 @@
+# SPDX-License-Identifier: Apache-2.0
+"""A band of fascia lies over a second sheet. Part the band from side to side, and burn nothing below."""
+
+from __future__ import annotations
+
+import contextlib
+from typing import Any, Mapping
+
+import numpy as np
+import numpy.typing as npt
+
+from ..client import Client
+from ..errors import Error
+from ..local import LocalDaemon
+from ..stream import State, Stream
+from .spaces import Box
+
+Observation = npt.NDArray[np.float32]
+
+LENGTH_M, WIDTH_M = 0.03, 0.012  # of the band, along x and y
+CELLS = (30, 12)
+GAP_M = 0.004  # from the band down to the sheet
+HOT_RADIUS_M = 0.0008
+TEMPERATURE_C = 700
+REACH_M = (0.012, 0.012, 0.008)  # of the tip: to both sides of the band's middle, and above it
+DEPTH_M = 0.006  # and below
+MOVE_M = 0.0005  # of the tip in a step, along each axis, at most
+TICKS = 4  # of the simulation in a step
+STEPS_MOST = 200  # of an episode
+COLUMNS = 12  # across the band: how much is left in each
+
+_PARTED_REWARD, _BURNT_REWARD, _STEP_REWARD, _DONE_REWARD = 1.0, -0.5, -0.005, 10.0
+_REST = (1.0, 0.0, 0.0, 0.0)
+_CHANNELS = ["positions", "mask", "exposure", "tools"]
+# Of the task's own daemon: a busy machine must not darken a tool that only simulates, and nobody else is kept waiting.
+_OWN = {"browser_deadline_s": 10, "quota_connection": 1000000, "quota_address": 1000000, "quota_operate": 1000000,
+        "quota_admin": 1000000, "quota_all": 1000000}
+
+
+def _sheet(name: str, height_m: float) -> dict[str, Any]:
+    return {"source": "sheet", "name": name, "size_m": [LENGTH_M, WIDTH_M], "cells": list(CELLS),
+            "translate_m": [0, 0, height_m]}
+
+
+def _layer(name: str) -> dict[str, Any]:
+    return {"kind": "fascia", "name": name, "mesh": name, "thickness_m": 0.0005, "density_kg_m3": 1100,
+            "limit_stiffness_pa": 1e6, "limit": "target", "target": [0.9, 0.9, 0], "ignition_c": 120,
+            "ignition_spread_c": 20, "absorption_per_s": 4}
+
+
+def scene(seed: int) -> dict[str, Any]:
+    """The task's scene. `seed`: of where the tissue is tougher."""
+    ends = [{"kind": "box", "layer": "band", "least_m": [x - 1e-4, -1, -1], "most_m": [x + 1e-4, 1, 1]}
+            for x in (-LENGTH_M / 2, LENGTH_M / 2)]
+    tool = {"name": "hook", "shape": "sphere", "hot_radius_m": HOT_RADIUS_M, "temperature_c": TEMPERATURE_C,
+            "grid_step_m": 0.0004, "position_m": [0, 0, REACH_M[2]]}
+    return {"name": "part-band", "description": "A band over a sheet.", "seed": seed, "parting": "elements",
+            "meshes": [_sheet("band", 0.0), _sheet("below", -GAP_M)], "layers": [_layer("band"), _layer("below")],
+            "pins": [*ends, {"kind": "rim", "layer": "below"}], "tools": [tool]}
+
+
+def _is_parted(faces: npt.NDArray[np.int32], ends: tuple[set[int], set[int]]) -> bool:
+    """Whether no chain of faces leads from one end's vertices to the other's."""
+    neighbours: dict[int, set[int]] = {}
+    for face in faces.tolist():
+        for vertex in face:
+            neighbours.setdefault(vertex, set()).update(face)
+    reached, waiting = set(ends[0]), list(ends[0])
+    while waiting:
+        for vertex in neighbours.get(waiting.pop(), ()):
+            if vertex not in reached:
+                reached.add(vertex)
+                waiting.append(vertex)
+    return not reached & ends[1]
+
+
+class PartBand:
+    """Gymnasium's interface: `reset`, `step`, `close`, `action_space`, `observation_space`.
+
+    An action has four numbers from -1 to 1: how the tip moves along x, y and z (1 is 0.5 mm), and the energy, which is
+    on above 0. An observation: the tip's place (3, in shares of its reach), whether energy is on, the share of each of
+    12 columns across the band that has parted, and the largest exposure of the band and of the sheet below (1 parts).
+    Rewards: 1 for each column that parts, 10 for the whole band, -0.5 for each face below that parts, -0.005 a step.
+    It is terminated once the band is parted or a face below is, and truncated after 200 steps.
+
+    `url`: of a daemon; by default the task starts one of its own (`daemon`: its program). Equal seeds and actions make
+    equal episodes. `render()` returns a picture of the band from above, (H, W, 3).
+    """
+
+    metadata: Mapping[str, Any] = {"render_modes": ["rgb_array"], "render_fps": 15}
+    reward_range = (-np.inf, np.inf)
+    spec = None
+
+    def __init__(self, url: str | None = None, *, daemon: str | None = None, render_mode: str | None = None,
+                 **settings: object) -> None:
+        if render_mode not in (None, *self.metadata["render_modes"]):
+            raise ValueError(f"{render_mode!r} is none of {self.metadata['render_modes']}")
+        self.render_mode = render_mode
+        self.action_space = Box(-np.ones(4), np.ones(4))
+        self.observation_space = Box(np.r_[-np.ones(3), np.zeros(COLUMNS + 3)], np.ones(COLUMNS + 6))
+        self._random = np.random.default_rng()
+        self._things = contextlib.ExitStack()
+        self._session = ""
+        self._over = True
+        try:
+            if url is None:
+                url = self._things.enter_context(LocalDaemon(daemon, **{**_OWN, **settings})).url
+            self._client = self._things.enter_context(Client(url, name="cautery part-band"))
+            self._things.enter_context(self._client.heartbeats())
+        except BaseException:
+            self._things.close()
+            raise
+
+    @property
+    def unwrapped(self) -> PartBand:
+        """Itself."""
+        return self
+
+    @property
+    def np_random(self) -> np.random.Generator:
+        """What chances are drawn from."""
+        return self._random
+
+    def close(self) -> None:
+        """Ends the session, and the daemon if it is the task's own."""
+        self._things.close()
+
+    # ---- episodes
+    def reset(self, *, seed: int | None = None, options: Mapping[str, Any] | None = None,
+              ) -> tuple[Observation, dict[str, Any]]:
+        """Begins an episode. `seed`: of it and all that follow; `options`: {"tip_m": [x, y, z]} for where it begins."""
+        if seed is not None:
+            self._random = np.random.default_rng(seed)
+        place = self._random.uniform((-0.006, -0.008, 0.003), (0.006, 0.008, 0.006))
+        toughness = int(self._random.integers(1, 1 << 31))
+        if options and "tip_m" in options:
+            place = np.asarray(options["tip_m"], float)
+        self._begin(toughness)
+        self._tip = place
+        self._energy = False
+        self._steps = 0
+        self._over = False
+        self._state = self._go()
+        self._left = self._columns_left(self._state)
+        return self._observe(), self._info()
+
+    def step(self, action: npt.ArrayLike) -> tuple[Observation, float, bool, bool, dict[str, Any]]:
+        """Moves the tip, and steps the tissue on. See the class for action, observation and reward."""
+        if self._over:
+            raise Error("the episode is over, or none has begun: call reset")
+        wanted = np.asarray(action, float)
+        if wanted.shape != self.action_space.shape or not np.isfinite(wanted).all():
+            raise ValueError(f"an action has {self.action_space.shape[0]} finite numbers")
+        wanted = wanted.clip(-1, 1)
+        least = np.array([-REACH_M[0], -REACH_M[1], -DEPTH_M])
+        self._tip = (self._tip + MOVE_M * wanted[:3]).clip(least, REACH_M)
+        self._energy = bool(wanted[3] > 0)
+        before_left, before_burnt = self._left, self._burnt(self._state)
+        self._state = self._go()
+        self._left = self._columns_left(self._state)
+        self._steps += 1
+        burnt = self._burnt(self._state)
+        parted = self._is_parted()
+        gone = int((before_left > 0).sum() - (self._left > 0).sum())
+        reward = (_PARTED_REWARD * gone + _BURNT_REWARD * (burnt - before_burnt) + _STEP_REWARD
+                  + _DONE_REWARD * (parted and not burnt))
+        terminated = parted or burnt > 0
+        truncated = not terminated and self._steps >= STEPS_MOST
+        self._over = terminated or truncated
+        return self._observe(), float(reward), terminated, truncated, self._info()
+
+    def render(self) -> npt.NDArray[np.uint8] | None:
+        """The band from above, (60, 150, 3); None without a render mode."""
+        if self.render_mode is None:
+            return None
+        picture = np.full((60, 150, 3), 255, np.uint8)
+        middles = self._state.positions[self._stream.faces[self._band]].mean(axis=1)
+        colours = np.where(self._state.removed[self._band][:, None], (40, 20, 20), (220, 150, 130))
+        for (x, y, _), colour in zip(middles, colours):
+            column, row = int((x / LENGTH_M + 0.5) * 149), int((y / WIDTH_M + 0.5) * 59)
+            picture[max(row - 2, 0):row + 3, max(column - 2, 0):column + 3] = colour
+        column, row = int((self._tip[0] / LENGTH_M + 0.5) * 149), int((self._tip[1] / WIDTH_M + 0.5) * 59)
+        picture[max(row - 1, 0):max(row + 2, 0), max(column - 1, 0):max(column + 2, 0)] = (220, 60, 0)
+        return picture
+
+    # ---- the session
+    def _begin(self, toughness: int) -> None:
+        if self._session:
+            self._client.session_destroy(session=self._session)
+        made = self._client.session_create(definition=scene(toughness), paused=True, ephemeral=True)  # type: ignore[arg-type]
+        self._session = made["summary"]["session"]
+        self._stream: Stream = self._client.join(self._session, channels=_CHANNELS, step_m=2e-5)
+        self._client.tool_take_over(session=self._session, tool="hook")
+        self._lit = False
+        self._band = np.flatnonzero(self._stream.face_layers == 0)
+        self._below = np.flatnonzero(self._stream.face_layers == 1)
+        rest = self._stream.rest
+        across = rest[self._stream.faces[self._band]].mean(axis=1)[:, 1] / WIDTH_M + 0.5
+        self._column = (across * COLUMNS).astype(int).clip(0, COLUMNS - 1)
+        self._vertices = [np.unique(self._stream.faces[part]) for part in (self._band, self._below)]
+        band = self._vertices[0]
+        sides = rest[band][:, 0] / LENGTH_M
+        self._ends = (set(band[sides < -0.499].tolist()), set(band[sides > 0.499].tolist()))
+
+    def _go(self) -> State:
+        """The tool goes to the tip's place, and time goes on by a step's ticks."""
+        tool = {"session": self._session, "tool": "hook"}
+        self._client.notify("tool.move", {**tool, "position_m": self._tip.tolist(), "rotation": _REST})
+        if self._energy != self._lit:
+            self._client.tool_energize(**tool, energized=self._energy)
+            self._lit = self._energy
+        tick = self._client.session_step(session=self._session, ticks=TICKS)["tick"]
+        state = self._stream.wait(tick)
+        if state.faulted:
+            raise Error("the tissue's motion became numerically unsound: reset")
+        if state.tools["hook"].energized != self._lit:
+            raise Error(f"energy went off by itself ({state.tools['hook'].energy_off}): this machine is too busy")
+        return state
+
+    # ---- what is seen
+    def _columns_left(self, state: State) -> npt.NDArray[np.int64]:
+        """How many rows of the band still hold in each column: 0 once it is parted there. (COLUMNS,)"""
+        removed = state.removed[self._band]
+        worst = np.zeros(COLUMNS)
+        np.maximum.at(worst, self._column, removed)
+        return (worst < 1).astype(np.int64)
+
+    def _burnt(self, state: State) -> int:
+        return int(state.removed[self._below].sum())
+
+    def _is_parted(self) -> bool:
+        faces = self._stream.faces[self._band][~self._state.removed[self._band]]
+        return bool((self._left == 0).all()) and _is_parted(faces, self._ends)
+
+    def _observe(self) -> Observation:
+        exposure = self._state.scalars["exposure"]
+        most = [exposure[vertices].max() for vertices in self._vertices]
+        tip = self._tip / np.array([*REACH_M[:2], max(REACH_M[2], DEPTH_M)])
+        return np.r_[tip, self._lit, 1 - self._left, most].clip(-1, 1).astype(np.float32)
+
+    def _info(self) -> dict[str, Any]:
+        return {"tick": self._state.tick, "columns_parted": int((self._left == 0).sum()),
+                "faces_burnt_below": self._burnt(self._state), "parted": self._is_parted(), "tip_m": self._tip.copy()}
