@@ -31,6 +31,7 @@
 enum {
 	CLOSING_S = 2, // for connections to take their close frames
 	REAP_MS = 250,
+	SCENES_S = 1,         // between looks at the folder of scenes
 	LAST_WORD_US = 50000, // for the log to take a line
 };
 
@@ -54,6 +55,7 @@ struct cau_daemon {
 	atomic_bool draining, stands_aside;
 	unsigned long ticks_seen;
 	bool network_moved, store_moved, watchdog_moved; // since systemd was last told
+	double scenes_due_s;                             // the next look at the folder of scenes
 };
 
 static void on_armed(void *user)
@@ -375,6 +377,24 @@ static void tell_alive(cau_daemon *daemon)
 	daemon->network_moved = daemon->store_moved = daemon->watchdog_moved = false;
 }
 
+// Scenes are added, changed and removed while it runs. One that cannot be read leaves all as they
+// were, and is told once.
+static void follow_scenes(cau_daemon *daemon)
+{
+	bool changed;
+	cau_error error = {0};
+	double now_s = cau_monotonic_s();
+	if (now_s < daemon->scenes_due_s)
+		return;
+	daemon->scenes_due_s = now_s + SCENES_S;
+	if (cau_scenes_follow(daemon->scenes, &changed, &error))
+		cau_log(CAU_LOG_ERROR, NULL, "scenes_not_read",
+		        "file=\"%s\" path=%s reason=\"%s\" kept=true", error.file, error.path,
+		        error.reason);
+	else if (changed)
+		cau_log(CAU_LOG_NOTICE, NULL, "scenes_read", "folder=\"%s\"", daemon->config->scenes);
+}
+
 int cau_daemon_wait(cau_daemon *daemon, const sigset_t *signals, int *signal_number)
 {
 	struct timespec patience = {0, REAP_MS * 1000000L};
@@ -384,6 +404,7 @@ int cau_daemon_wait(cau_daemon *daemon, const sigset_t *signals, int *signal_num
 	if (got > 0)
 		*signal_number = terminal_gone ? SIGTERM : got;
 	cau_hub_reap(daemon->hub);
+	follow_scenes(daemon);
 	cau_restart_tell(&daemon->restart);
 	tell_alive(daemon);
 	return 0;

@@ -128,7 +128,7 @@ void cau_hub_destroy(cau_hub *hub)
 	free(hub);
 }
 
-const cau_scenes *cau_hub_scenes(const cau_hub *hub)
+cau_scenes *cau_hub_scenes(const cau_hub *hub)
 {
 	return hub->def.scenes;
 }

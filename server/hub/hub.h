@@ -24,7 +24,7 @@ typedef struct cau_hub_def {
 	cau_worker_pool *pool;
 	cau_builder *builder;
 	cau_builder *mover; // for sessions that move, at the workers' priority; NULL: the builder
-	const cau_scenes *scenes;
+	cau_scenes *scenes;
 	void (*armed)(void *user); // energy came on: cau_hub_watch is to be called again
 	void *user;
 } cau_hub_def;
@@ -43,7 +43,7 @@ void cau_hub_add_sink(cau_hub *hub, const cau_sink *sink);
 // Resumes the store's sessions, *resumed of them; reads the store. Then makes the demo if the
 // settings want one.
 cau_status cau_hub_resume(cau_hub *hub, int32_t *resumed, cau_error *error);
-const cau_scenes *cau_hub_scenes(const cau_hub *hub);
+cau_scenes *cau_hub_scenes(const cau_hub *hub);
 // What transports ask before they pass on a request that costs much.
 cau_quota *cau_hub_quota(cau_hub *hub);
 
@@ -111,6 +111,8 @@ typedef struct cau_creation {
 	cau_reply reply;
 } cau_creation;
 
+// One that was not submitted, with what it holds.
+void cau_creation_free(cau_creation *creation);
 // Takes the creation, which is malloc'ed.
 void cau_hub_submit_creation(cau_hub *hub, cau_creation *creation);
 // A request that changes session `id`, which is not here: it may be a resend whose answer is in the

@@ -58,7 +58,6 @@ cau_due cau_clerk_run(cau_task *task);
 // Makes and registers a session; takes the creation.
 cau_status cau_clerk_make(cau_hub *hub, cau_creation *creation, const char *id, cau_error *error);
 void cau_clerk_fork(void *user, cau_hosted *source, int64_t branch, const cau_order *order);
-void cau_creation_free(cau_creation *creation);
 
 // ---- discard.c
 void cau_clerk_answer_missing(cau_hub *hub, const cau_reply *reply, const char *id);

@@ -112,21 +112,21 @@ static void note_scene(void *user, cau_hosted *hosted)
 static cau_status make_demo(cau_hub *hub, cau_error *error)
 {
 	const char *missing = hub->def.config->demo;
-	const cau_scene_def *scene = cau_scenes_find(hub->def.scenes, missing);
 	cau_hub_each(hub, note_scene, &missing);
 	if (!missing)
 		return CAU_OK;
-	if (!scene)
-		return cau_fail(error, CAU_NOT_FOUND, "demo", "there is no scene `%.60s`", missing);
 	cau_creation *creation = calloc(1, sizeof *creation);
 	if (creation)
-		creation->scene = malloc(sizeof *scene);
+		creation->scene = malloc(sizeof *creation->scene);
 	if (!creation || !creation->scene) {
 		free(creation);
 		return cau_fail(error, CAU_NO_MEMORY, "demo", "no memory");
 	}
-	*creation->scene = *scene;
-	snprintf(creation->name, sizeof creation->name, "%s", scene->name);
+	if (!cau_scenes_copy(hub->def.scenes, missing, creation->scene)) {
+		cau_creation_free(creation);
+		return cau_fail(error, CAU_NOT_FOUND, "demo", "there is no scene `%.60s`", missing);
+	}
+	snprintf(creation->name, sizeof creation->name, "%s", creation->scene->name);
 	cau_hub_submit_creation(hub, creation);
 	hub->last_resumed++; // it has the next number, since no client is there yet
 	return CAU_OK;

@@ -2,17 +2,29 @@
 #include "hub/scenes.h"
 
 #include <dirent.h>
+#include <pthread.h>
 #include <stdlib.h>
 #include <string.h>
+#include <sys/stat.h>
 
 #include "cautery/scene_json.h"
 #include "config/named_file.h"
 
 enum { MOST_SCENES = 256, PATH_BYTES = 1024 };
 
-struct cau_scenes {
+// What was read at once.
+typedef struct edition {
 	int32_t count;
 	cau_scene_def *scenes[MOST_SCENES];
+} edition;
+
+struct cau_scenes {
+	char folder[PATH_BYTES];
+	uint64_t stamp; // of the folder when it was read last; one thread's alone
+
+	pthread_mutex_t mutex; // guards what follows
+	edition *now;
+	uint64_t number; // of the edition
 };
 
 static int is_scene(const struct dirent *entry)
@@ -32,7 +44,7 @@ static cau_status read_text(const char *path, char *text, size_t *bytes, cau_err
 	return CAU_OK;
 }
 
-static cau_status read_scene(cau_scenes *scenes, const char *folder, const char *name, char *text,
+static cau_status read_scene(edition *scenes, const char *folder, const char *name, char *text,
                              cau_error *error)
 {
 	char path[PATH_BYTES];
@@ -59,25 +71,92 @@ static int by_name(const void *a, const void *b)
 	return strcmp((*left)->name, (*right)->name);
 }
 
-cau_status cau_scenes_load(cau_scenes **made, const char *folder, cau_error *error)
+static void free_edition(edition *scenes)
 {
-	*made = NULL;
+	for (int32_t i = 0; scenes && i < scenes->count; i++)
+		free(scenes->scenes[i]);
+	free(scenes);
+}
+
+static cau_status read_all(const char *folder, struct dirent **entries, int count, edition *scenes,
+                           cau_error *error)
+{
+	cau_status status = CAU_OK;
+	char *text = malloc(CAU_SCENE_JSON_MAX_BYTES + 1);
+	if (!text)
+		return cau_fail(error, CAU_NO_MEMORY, "scenes", "no memory");
+	for (int i = 0; i < count && !status && scenes->count < MOST_SCENES; i++)
+		status = read_scene(scenes, folder, entries[i]->d_name, text, error);
+	qsort(scenes->scenes, (size_t)scenes->count, sizeof scenes->scenes[0], by_name);
+	free(text);
+	return status;
+}
+
+// FNV-1a over what tells whether a file is another.
+static uint64_t hash(uint64_t sum, const void *bytes, size_t count)
+{
+	for (const unsigned char *b = bytes; count; b++, count--)
+		sum = (sum ^ *b) * UINT64_C(0x100000001B3);
+	return sum;
+}
+
+static uint64_t stamp_of(const char *folder, struct dirent **entries, int count)
+{
+	uint64_t sum = UINT64_C(0xCBF29CE484222325);
+	for (int i = 0; i < count; i++) {
+		char path[PATH_BYTES + 256];
+		struct stat file = {0};
+		snprintf(path, sizeof path, "%s/%s", folder, entries[i]->d_name);
+		if (stat(path, &file))
+			memset(&file, 0, sizeof file);
+		sum = hash(sum, entries[i]->d_name, strlen(entries[i]->d_name));
+		sum = hash(sum, &file.st_mtim, sizeof file.st_mtim);
+		sum = hash(sum, &file.st_size, sizeof file.st_size);
+		sum = hash(sum, &file.st_ino, sizeof file.st_ino);
+	}
+	return sum;
+}
+
+static void free_entries(struct dirent **entries, int count)
+{
+	for (int i = 0; i < count; i++)
+		free(entries[i]);
+	free(entries);
+}
+
+// The folder is as `stamp` says: *made stays NULL. Else *stamp is what it is like now.
+static cau_status read_folder(const char *folder, uint64_t *stamp, edition **made, cau_error *error)
+{
 	struct dirent **entries = NULL;
 	int count = scandir(folder, &entries, is_scene, alphasort);
+	*made = NULL;
 	if (count < 0)
 		return cau_fail(error, CAU_IO, "scenes", "cannot read the folder %.250s", folder);
-	char *text = malloc(CAU_SCENE_JSON_MAX_BYTES + 1);
-	cau_scenes *scenes = calloc(1, sizeof *scenes);
-	cau_status status = text && scenes ? CAU_OK : CAU_NO_MEMORY;
-	for (int i = 0; i < count; i++) {
-		if (!status && scenes->count < MOST_SCENES)
-			status = read_scene(scenes, folder, entries[i]->d_name, text, error);
-		free(entries[i]);
-	}
+	uint64_t before = *stamp;
+	*stamp = stamp_of(folder, entries, count);
+	cau_status status = CAU_OK;
+	edition *scenes = *stamp == before ? NULL : calloc(1, sizeof *scenes);
 	if (scenes)
-		qsort(scenes->scenes, (size_t)scenes->count, sizeof scenes->scenes[0], by_name);
-	free(entries);
-	free(text);
+		status = read_all(folder, entries, count, scenes, error);
+	else if (*stamp != before)
+		status = cau_fail(error, CAU_NO_MEMORY, "scenes", "no memory");
+	free_entries(entries, count);
+	if (status)
+		free_edition(scenes);
+	else
+		*made = scenes;
+	return status;
+}
+
+cau_status cau_scenes_load(cau_scenes **made, const char *folder, cau_error *error)
+{
+	cau_scenes *scenes = calloc(1, sizeof *scenes);
+	*made = NULL;
+	if (!scenes)
+		return cau_fail(error, CAU_NO_MEMORY, "scenes", "no memory");
+	pthread_mutex_init(&scenes->mutex, NULL);
+	snprintf(scenes->folder, sizeof scenes->folder, "%s", folder);
+	cau_status status = read_folder(folder, &scenes->stamp, &scenes->now, error);
 	if (status)
 		cau_scenes_destroy(scenes);
 	else
@@ -87,25 +166,55 @@ cau_status cau_scenes_load(cau_scenes **made, const char *folder, cau_error *err
 
 void cau_scenes_destroy(cau_scenes *scenes)
 {
-	for (int32_t i = 0; scenes && i < scenes->count; i++)
-		free(scenes->scenes[i]);
+	if (!scenes)
+		return;
+	free_edition(scenes->now);
+	pthread_mutex_destroy(&scenes->mutex);
 	free(scenes);
 }
 
-int32_t cau_scenes_count(const cau_scenes *scenes)
+cau_status cau_scenes_follow(cau_scenes *scenes, bool *changed, cau_error *error)
 {
-	return scenes->count;
+	edition *next;
+	cau_status status = read_folder(scenes->folder, &scenes->stamp, &next, error);
+	*changed = next;
+	if (!next)
+		return status;
+	pthread_mutex_lock(&scenes->mutex);
+	edition *before = scenes->now;
+	scenes->now = next;
+	scenes->number++;
+	pthread_mutex_unlock(&scenes->mutex);
+	free_edition(before);
+	return CAU_OK;
 }
 
-const cau_scene_def *cau_scenes_at(const cau_scenes *scenes, int32_t index)
+uint64_t cau_scenes_edition(cau_scenes *scenes)
 {
-	return scenes->scenes[index];
+	pthread_mutex_lock(&scenes->mutex);
+	uint64_t number = scenes->number;
+	pthread_mutex_unlock(&scenes->mutex);
+	return number;
 }
 
-const cau_scene_def *cau_scenes_find(const cau_scenes *scenes, const char *name)
+void cau_scenes_each(cau_scenes *scenes, void (*visit)(void *user, const cau_scene_def *scene),
+                     void *user)
 {
-	for (int32_t i = 0; i < scenes->count; i++)
-		if (strcmp(scenes->scenes[i]->name, name) == 0)
-			return scenes->scenes[i];
-	return NULL;
+	pthread_mutex_lock(&scenes->mutex);
+	for (int32_t i = 0; i < scenes->now->count; i++)
+		visit(user, scenes->now->scenes[i]);
+	pthread_mutex_unlock(&scenes->mutex);
+}
+
+bool cau_scenes_copy(cau_scenes *scenes, const char *name, cau_scene_def *copy)
+{
+	bool found = false;
+	pthread_mutex_lock(&scenes->mutex);
+	for (int32_t i = 0; i < scenes->now->count && !found; i++) {
+		found = strcmp(scenes->now->scenes[i]->name, name) == 0;
+		if (found)
+			*copy = *scenes->now->scenes[i];
+	}
+	pthread_mutex_unlock(&scenes->mutex);
+	return found;
 }

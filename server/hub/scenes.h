@@ -1,6 +1,10 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The scenes that sessions can be made from by name: the JSON files of one folder, read at start.
+// The scenes that sessions can be made from by name: the JSON files of one folder. They are read at
+// the start, and again when files are added, changed or removed. Any thread.
 #pragma once
+
+#include <stdbool.h>
+#include <stdint.h>
 
 #include "cautery/scene.h"
 #include "cautery/status.h"
@@ -11,6 +15,15 @@ typedef struct cau_scenes cau_scenes;
 cau_status cau_scenes_load(cau_scenes **scenes, const char *folder, cau_error *error);
 void cau_scenes_destroy(cau_scenes *scenes); // takes NULL
 
-int32_t cau_scenes_count(const cau_scenes *scenes);
-const cau_scene_def *cau_scenes_at(const cau_scenes *scenes, int32_t index);      // by name
-const cau_scene_def *cau_scenes_find(const cau_scenes *scenes, const char *name); // or NULL
+// Reads the folder anew if it is not as it was read last, or was tried to. After an error the
+// scenes are those from before. *changed: they are others now. Not from a thread that others wait
+// for: it reads files.
+cau_status cau_scenes_follow(cau_scenes *scenes, bool *changed, cau_error *error);
+// Another number whenever they have changed.
+uint64_t cau_scenes_edition(cau_scenes *scenes);
+
+// Visits all, by name; the visitor is under a lock, and must not call these functions.
+void cau_scenes_each(cau_scenes *scenes, void (*visit)(void *user, const cau_scene_def *scene),
+                     void *user);
+// False: there is no such scene.
+bool cau_scenes_copy(cau_scenes *scenes, const char *name, cau_scene_def *copy);

@@ -70,6 +70,8 @@ typedef struct cau_post {
 	int32_t stream;
 } cau_post;
 
+typedef struct cau_scene_answer cau_scene_answer;
+
 struct cau_service {
 	const cau_config *config;
 	const cau_auth *auth;
@@ -85,7 +87,9 @@ struct cau_service {
 	uint64_t calls[CAU_METHOD_COUNT];
 	_Atomic uint64_t answers[CAU_METHOD_COUNT + 1][CAU_ANSWER_COLUMNS]; // the last: of no method
 	cau_upload_total uploads;                                           // the network thread's
-	cau_buffer **scene_answers; // in the order of the scenes
+	cau_scene_answer *scene_answers;                                    // scene_methods.c
+	int32_t scene_count;
+	uint64_t scene_edition; // of which these are
 	void (*write_more_metrics)(void *user, FILE *out, cau_metrics_format format); // may be NULL
 	void *more_metrics_user;
 };

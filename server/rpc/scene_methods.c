@@ -1,4 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
+// Scenes: their answers are made once for each edition, so that many who ask cost the network's
+// thread little.
 #include <stdlib.h>
 #include <string.h>
 
@@ -6,41 +8,80 @@
 
 enum { MOST_SCENES = 256 };
 
+typedef struct listing {
+	cau_wire_scene_summary list[MOST_SCENES];
+	int32_t count;
+} listing;
+
+static void add_summary(void *user, const cau_scene_def *scene)
+{
+	listing *into = user;
+	if (into->count == MOST_SCENES)
+		return;
+	cau_wire_scene_summary *row = &into->list[into->count++];
+	memset(row, 0, sizeof *row);
+	snprintf(row->name, sizeof row->name, "%s", scene->name);
+	snprintf(row->description, sizeof row->description, "%s", scene->description);
+}
+
 void cau_call_scene_list(cau_call *call)
 {
-	static cau_wire_scene_summary list[MOST_SCENES]; // the network thread's alone
-	const cau_scenes *scenes = cau_hub_scenes(call->peer->service->hub);
-	cau_wire_scene_list result = {.scenes = {list, cau_scenes_count(scenes), MOST_SCENES}};
-	for (int32_t i = 0; i < result.scenes.count; i++) {
-		const cau_scene_def *scene = cau_scenes_at(scenes, i);
-		memset(&list[i], 0, sizeof list[i]);
-		snprintf(list[i].name, sizeof list[i].name, "%s", scene->name);
-		snprintf(list[i].description, sizeof list[i].description, "%s", scene->description);
-	}
+	static listing all; // the network thread's alone
+	all.count = 0;
+	cau_scenes_each(cau_hub_scenes(call->peer->service->hub), add_summary, &all);
+	cau_wire_scene_list result = {.scenes = {all.list, all.count, MOST_SCENES}};
 	cau_call_result(call, &result);
+}
+
+struct cau_scene_answer {
+	char name[CAU_NAME_BYTES];
+	cau_buffer *text;
+};
+
+// A scene whose text is not made, for want of memory, is not there.
+static void add_answer(void *user, const cau_scene_def *scene)
+{
+	const cau_rpc_id id = {.kind = CAU_RPC_ID_NUMBER};
+	cau_service *service = user;
+	cau_error error = {0};
+	cau_wire_scene_result result = {.definition = (cau_scene_def *)scene};
+	cau_scene_answer *row = &service->scene_answers[service->scene_count];
+	if (service->scene_count == MOST_SCENES)
+		return;
+	snprintf(row->name, sizeof row->name, "%s", scene->name);
+	row->text = cau_result_text(&id, CAU_METHOD_SCENE_GET, &result, &error);
+	service->scene_count += row->text != NULL;
 }
 
 bool cau_scene_answers_make(cau_service *service)
 {
-	const cau_rpc_id id = {.kind = CAU_RPC_ID_NUMBER};
-	const cau_scenes *scenes = cau_hub_scenes(service->hub);
-	int32_t count = cau_scenes_count(scenes);
-	cau_error error = {0};
-	service->scene_answers = calloc((size_t)count + 1, sizeof(cau_buffer *));
-	for (int32_t i = 0; service->scene_answers && i < count; i++) {
-		cau_wire_scene_result result = {.definition = (cau_scene_def *)cau_scenes_at(scenes, i)};
-		service->scene_answers[i] = cau_result_text(&id, CAU_METHOD_SCENE_GET, &result, &error);
-		if (!service->scene_answers[i])
-			return false;
-	}
+	cau_scenes *scenes = cau_hub_scenes(service->hub);
+	cau_scene_answers_free(service);
+	service->scene_answers = calloc(MOST_SCENES, sizeof *service->scene_answers);
+	service->scene_edition = cau_scenes_edition(scenes);
+	if (service->scene_answers)
+		cau_scenes_each(scenes, add_answer, service);
 	return service->scene_answers;
 }
 
 void cau_scene_answers_free(cau_service *service)
 {
-	for (cau_buffer **answer = service->scene_answers; answer && *answer; answer++)
-		cau_buffer_release(*answer);
+	for (int32_t i = 0; i < service->scene_count; i++)
+		cau_buffer_release(service->scene_answers[i].text);
 	free(service->scene_answers);
+	service->scene_answers = NULL;
+	service->scene_count = 0;
+}
+
+// NULL: there is no such scene.
+static cau_buffer *find_answer(cau_service *service, const char *name)
+{
+	if (service->scene_edition != cau_scenes_edition(cau_hub_scenes(service->hub)))
+		cau_scene_answers_make(service);
+	for (int32_t i = 0; i < service->scene_count; i++)
+		if (strcmp(service->scene_answers[i].name, name) == 0)
+			return service->scene_answers[i].text;
+	return NULL;
 }
 
 void cau_call_scene_get(cau_call *call)
@@ -51,18 +92,12 @@ void cau_call_scene_get(cau_call *call)
 		cau_call_fail(call, &error, 0);
 		return;
 	}
-	const cau_service *service = call->peer->service;
-	const cau_scenes *scenes = cau_hub_scenes(service->hub);
-	int32_t scene = 0, count = cau_scenes_count(scenes);
-	while (scene < count && strcmp(cau_scenes_at(scenes, scene)->name, params.scene) != 0)
-		scene++;
-	if (scene < count) {
-		cau_buffer *answer = service->scene_answers[scene];
-		if (call->message->kind == CAU_RPC_REQUEST)
-			cau_call_answer(call, cau_answer_with_id((const char *)cau_buffer_bytes(answer),
-			                                         answer->byte_count, &call->message->id));
+	cau_buffer *answer = find_answer(call->peer->service, params.scene);
+	if (answer && call->message->kind == CAU_RPC_REQUEST)
+		cau_call_answer(call, cau_answer_with_id((const char *)cau_buffer_bytes(answer),
+		                                         answer->byte_count, &call->message->id));
+	if (answer)
 		return;
-	}
 	cau_fail(&error, CAU_NOT_FOUND, "params.scene", "there is no scene `%.48s`", params.scene);
 	cau_call_fail(call, &error, 0);
 }

@@ -72,17 +72,15 @@ void cau_call_session_list(cau_call *call)
 static cau_status choose_scene(cau_peer *peer, const cau_wire_session_create *params,
                                cau_scene_def *scene, cau_error *error)
 {
-	const cau_scenes *scenes = cau_hub_scenes(peer->service->hub);
+	cau_scenes *scenes = cau_hub_scenes(peer->service->hub);
 	if (params->has_scene == params->has_definition)
 		return cau_fail(error, CAU_BAD_VALUE, "params.scene",
 		                "either scene or definition must be given");
 	if (params->has_scene) {
-		const cau_scene_def *named = cau_scenes_find(scenes, params->scene);
-		if (!named)
-			return cau_fail(error, CAU_NOT_FOUND, "params.scene", "there is no scene `%.48s`",
-			                params->scene);
-		*scene = *named;
-		return CAU_OK;
+		if (cau_scenes_copy(scenes, params->scene, scene))
+			return CAU_OK;
+		return cau_fail(error, CAU_NOT_FOUND, "params.scene", "there is no scene `%.48s`",
+		                params->scene);
 	}
 	for (int32_t i = 0; i < scene->mesh_count; i++)
 		if (scene->meshes[i].source == CAU_MESH_FILE)

@@ -189,16 +189,16 @@ static cau_status create(asked *a, cau_reply reply, cau_error *error)
 	cau_status status = check_params(CAU_METHOD_SESSION_CREATE, &params, error);
 	if (status)
 		return status;
-	const cau_scene_def *scene = cau_scenes_find(cau_hub_scenes(a->dds->hub), a->sample->scene);
-	if (!scene)
-		return cau_fail(error, CAU_NOT_FOUND, "scene", "there is no scene `%.48s`",
-		                a->sample->scene);
 	cau_creation *creation = calloc(1, sizeof *creation);
-	if (!creation || !(creation->scene = malloc(sizeof *scene))) {
+	if (!creation || !(creation->scene = malloc(sizeof *creation->scene))) {
 		free(creation);
 		return cau_fail(error, CAU_NO_MEMORY, "", "no memory for a scene");
 	}
-	*creation->scene = *scene;
+	if (!cau_scenes_copy(cau_hub_scenes(a->dds->hub), a->sample->scene, creation->scene)) {
+		cau_creation_free(creation);
+		return cau_fail(error, CAU_NOT_FOUND, "scene", "there is no scene `%.48s`",
+		                a->sample->scene);
+	}
 	memcpy(creation->name, a->sample->name, sizeof creation->name);
 	creation->paused = a->sample->paused;
 	creation->asker = a->asker;
