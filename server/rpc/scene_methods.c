@@ -76,8 +76,9 @@ void cau_scene_answers_free(cau_service *service)
 // NULL: there is no such scene.
 static cau_buffer *find_answer(cau_service *service, const char *name)
 {
-	if (service->scene_edition != cau_scenes_edition(cau_hub_scenes(service->hub)))
-		cau_scene_answers_make(service);
+	bool old = service->scene_edition != cau_scenes_edition(cau_hub_scenes(service->hub));
+	if (old && !cau_scene_answers_make(service))
+		return NULL;
 	for (int32_t i = 0; i < service->scene_count; i++)
 		if (strcmp(service->scene_answers[i].name, name) == 0)
 			return service->scene_answers[i].text;
