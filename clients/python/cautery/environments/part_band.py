@@ -27,7 +27,7 @@ DEPTH_M = 0.006  # and below
 MOVE_M = 0.0005  # of the tip in a step, along each axis, at most
 TICKS = 4  # of the simulation in a step
 STEPS_MOST = 200  # of an episode
-COLUMNS = 12  # across the band: how much is left in each
+COLUMNS = 12  # across the band: whether each is whole
 
 _PARTED_REWARD, _BURNT_REWARD, _STEP_REWARD, _DONE_REWARD = 1.0, -0.5, -0.005, 10.0
 _REST = (1.0, 0.0, 0.0, 0.0)
@@ -78,8 +78,8 @@ class PartBand:
     """Gymnasium's interface: `reset`, `step`, `close`, `action_space`, `observation_space`.
 
     An action has four numbers from -1 to 1: how the tip moves along x, y and z (1 is 0.5 mm), and the energy, which is
-    on above 0. An observation: the tip's place (3, in shares of its reach), whether energy is on, the share of each of
-    12 columns across the band that has parted, and the largest exposure of the band and of the sheet below (1 parts).
+    on above 0. An observation: the tip's place (3, in shares of its reach), whether energy is on, whether a face has
+    parted in each of 12 columns across the band, and the largest exposure of the band and of the sheet below (1 parts).
     Rewards: 1 for each column that parts, 10 for the whole band, -0.5 for each face below that parts, -0.005 a step.
     It is terminated once the band is parted or a face below is, and truncated after 200 steps.
 
@@ -219,11 +219,10 @@ class PartBand:
 
     # ---- what is seen
     def _columns_left(self, state: State) -> npt.NDArray[np.int64]:
-        """How many rows of the band still hold in each column: 0 once it is parted there. (COLUMNS,)"""
-        removed = state.removed[self._band]
-        worst = np.zeros(COLUMNS)
-        np.maximum.at(worst, self._column, removed)
-        return (worst < 1).astype(np.int64)
+        """1 for each column that is whole, 0 once a face of it has parted. (COLUMNS,)"""
+        left = np.ones(COLUMNS, np.int64)
+        left[self._column[state.removed[self._band]]] = 0
+        return left
 
     def _burnt(self, state: State) -> int:
         return int(state.removed[self._below].sum())
