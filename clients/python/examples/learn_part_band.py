@@ -74,10 +74,13 @@ def learn(environment: PartBand, generations: int, population: int, seed: int) -
     mean, spread = (low + high) / 2, (high - low) / 3
     for generation in range(generations):
         tried = random.normal(mean, spread, (population, len(NUMBERS))).clip(low, high)
-        gained = [play(environment, numbers, int(random.integers(1, 10_000)))[0] for numbers in tried]
+        gained = []
+        for numbers in tried:
+            gained.append(play(environment, numbers, int(random.integers(1, 10_000)))[0])
+            print(f"generation {generation + 1}, episode {len(gained)} of {population}: {gained[-1]:.1f}", flush=True)
         best = tried[np.argsort(gained)[-max(population // 4, 2):]]
         mean, spread = best.mean(axis=0), best.std(axis=0) + 0.02 * (high - low)
-        print(f"generation {generation + 1}: best {max(gained):.1f}, mean {np.mean(gained):.1f}", flush=True)
+        print(f"generation {generation + 1} of {generations}: best {max(gained):.1f}, mean {np.mean(gained):.1f}", flush=True)
     return mean
 
 
