@@ -10,7 +10,7 @@ const upgrade = `GET /v1 HTTP/1.1\r\nHost: 127.0.0.1:${port}\r\nConnection: Upgr
 
 const PING = Buffer.from([0x89, 0x80, 0, 0, 0, 0]);
 const FIRST = { silent: '', partial: upgrade.slice(0, 20), upgrade, chatty: upgrade };
-const PING_MS = 20;
+const PING_MS = 100;
 const open_now = new Set();
 if (kind === 'chatty')
 	setInterval(() => open_now.forEach((socket) => socket.write(PING)), PING_MS);
