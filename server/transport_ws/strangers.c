@@ -114,9 +114,16 @@ static bool has_input(int descriptor)
 	return poll(&polled, 1, 0) > 0 && polled.revents & POLLIN;
 }
 
-// The oldest from which nothing waits to be read; NULL if none is to be closed. New ones come first
-// in the list. The newest `most` are never closed: their hello may be on its way. Beyond twice as
-// many the oldest is closed although something of it waits to be read.
+// A client says hello first. Whoever said something else, or says nothing, may be closed.
+static bool says_no_hello(const cau_connection *c)
+{
+	bool has_spoken = c->heard_s > c->opened_s;
+	return has_spoken || (!c->waits && !has_input(c->descriptor));
+}
+
+// The oldest that says no hello; NULL if none is to be closed. New ones come first in the list. The
+// newest `most` are never closed: their hello may be on its way. Beyond twice as many the oldest is
+// closed although something of it waits to be read.
 static cau_connection *find_silent(const cau_network *network, const char *owner, int most)
 {
 	cau_connection *last = NULL, *oldest = NULL;
@@ -131,7 +138,7 @@ static cau_connection *find_silent(const cau_network *network, const char *owner
 			continue;
 		count--;
 		oldest = oldest ? oldest : c;
-		if (!c->waits && !has_input(c->descriptor))
+		if (says_no_hello(c))
 			return c;
 	}
 	return too_many ? oldest : NULL;

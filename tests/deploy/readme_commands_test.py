@@ -193,7 +193,7 @@ class Commands(unittest.TestCase):
         self.run_it("PYTHONPATH=clients/python /usr/bin/python3 -c 'import cautery; help(cautery.Client.session_create)'",
                     "makes a session")
         self.run_it("PYTHONPATH=clients/python /usr/bin/python3 clients/python/examples/learn_part_band.py "
-                    "--daemon build/bin/cauteryd --scenes deploy/scenes", "generation 1, episode 1 of", until=True)
+                    "--daemon build/bin/cauteryd --scenes deploy/scenes", "generation 1, policy 1 of", until=True)
 
     def test_2_the_command_line(self):
         at = self.start()

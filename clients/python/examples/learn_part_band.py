@@ -22,6 +22,7 @@ NUMBERS = (("height of the tip while it cuts, mm", -3.0, 4.0), ("speed along the
            ("exposure of the sheet below at which energy rests", 0.0, 1.0), ("way beyond a column, mm", 0.0, 2.0))
 
 
+EPISODES = 3  # of a policy in a generation
 EDGE_M = WIDTH_M / 2 + 0.001  # beyond the band
 
 
@@ -74,10 +75,11 @@ def learn(environment: PartBand, generations: int, population: int, seed: int) -
     mean, spread = (low + high) / 2, (high - low) / 3
     for generation in range(generations):
         tried = random.normal(mean, spread, (population, len(NUMBERS))).clip(low, high)
+        seeds = random.integers(1, 10_000, EPISODES).tolist()  # the same for all, so that chance favours none
         gained = []
         for numbers in tried:
-            gained.append(play(environment, numbers, int(random.integers(1, 10_000)))[0])
-            print(f"generation {generation + 1}, episode {len(gained)} of {population}: {gained[-1]:.1f}", flush=True)
+            gained.append(float(np.mean([play(environment, numbers, seed)[0] for seed in seeds])))
+            print(f"generation {generation + 1}, policy {len(gained)} of {population}: {gained[-1]:.1f}", flush=True)
         best = tried[np.argsort(gained)[-max(population // 4, 2):]]
         mean, spread = best.mean(axis=0), best.std(axis=0) + 0.02 * (high - low)
         print(f"generation {generation + 1} of {generations}: best {max(gained):.1f}, mean {np.mean(gained):.1f}", flush=True)
@@ -90,7 +92,7 @@ def main() -> None:
     parser.add_argument("--daemon", help="the cauteryd to start (default: the environment's CAUTERYD, or the path's)")
     parser.add_argument("--scenes", help="its folder of scenes, where it is not installed")
     parser.add_argument("--generations", type=int, default=8)
-    parser.add_argument("--population", type=int, default=16)
+    parser.add_argument("--population", type=int, default=12)
     parser.add_argument("--trials", type=int, default=100, help="unseen seeds that the policy is tried on")
     parser.add_argument("--seed", type=int, default=1)
     given = parser.parse_args()
