@@ -378,7 +378,7 @@ static void tell_alive(cau_daemon *daemon)
 }
 
 // Scenes are added, changed and removed while it runs. One that cannot be read leaves all as they
-// were, and is told once.
+// were, and is logged once.
 static void follow_scenes(cau_daemon *daemon)
 {
 	bool changed;

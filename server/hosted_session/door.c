@@ -139,7 +139,7 @@ void cau_hosted_store_takes(cau_hosted *h, bool takes, const char *reason)
 	                                 .cause = reason});
 }
 
-// In its maker's name, who is gone: nobody is answered.
+// The order names the maker, who is gone: nobody gets an answer.
 static void destroy_for(cau_hosted *h)
 {
 	cau_error error = {0};

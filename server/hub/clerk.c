@@ -232,7 +232,7 @@ void cau_clerk_fork(void *user, cau_hosted *source, int64_t branch, const cau_or
 	*creation->scene = *scene;
 	memcpy(creation->name, order->as.fork.name, sizeof creation->name);
 	creation->paused = order->as.fork.paused;
-	creation->ephemeral = cau_hosted_is_ephemeral(source); // what it begins from is there
+	creation->ephemeral = cau_hosted_is_ephemeral(source); // a copy has its source's store
 	creation->asker = order->asker;
 	creation->client_sequence = order->client_sequence;
 	creation->reply = order->reply;

@@ -111,7 +111,7 @@ typedef struct cau_creation {
 	cau_reply reply;
 } cau_creation;
 
-// One that was not submitted, with what it holds.
+// Frees a creation that was not submitted, and what it owns.
 void cau_creation_free(cau_creation *creation);
 // Takes the creation, which is malloc'ed.
 void cau_hub_submit_creation(cau_hub *hub, cau_creation *creation);
@@ -187,7 +187,8 @@ void cau_hub_reap(cau_hub *hub);
 // Of the sessions that the daemon begins with, the store's and the demo, how many are not there
 // yet; whatever clients make.
 int32_t cau_hub_resuming(cau_hub *hub);
-// The store, or that of ephemeral sessions, has room again, or has none any more. From its thread.
+// A store says that it accepts writes again (takes), or why it refuses them. ephemeral: which of
+// the two stores. Call from the store's thread.
 void cau_hub_store_takes(cau_hub *hub, bool ephemeral, bool takes, const char *reason);
 // Checkpoints all sessions; returns when they are on the disk or the time is over.
 void cau_hub_drain(cau_hub *hub, double seconds);

@@ -92,7 +92,7 @@ static cau_status read_all(const char *folder, struct dirent **entries, int coun
 	return status;
 }
 
-// FNV-1a over what tells whether a file is another.
+// A hash (FNV-1a) of what changes when a file is replaced.
 static uint64_t hash(uint64_t sum, const void *bytes, size_t count)
 {
 	for (const unsigned char *b = bytes; count; b++, count--)
@@ -124,7 +124,8 @@ static void free_entries(struct dirent **entries, int count)
 	free(entries);
 }
 
-// The folder is as `stamp` says: *made stays NULL. Else *stamp is what it is like now.
+// Reads the folder if its stamp differs from *stamp, and sets *stamp. If it is equal, *made stays
+// NULL.
 static cau_status read_folder(const char *folder, uint64_t *stamp, edition **made, cau_error *error)
 {
 	struct dirent **entries = NULL;

@@ -15,9 +15,9 @@ typedef struct cau_scenes cau_scenes;
 cau_status cau_scenes_load(cau_scenes **scenes, const char *folder, cau_error *error);
 void cau_scenes_destroy(cau_scenes *scenes); // takes NULL
 
-// Reads the folder anew if it is not as it was read last, or was tried to. After an error the
-// scenes are those from before. *changed: they are others now. Not from a thread that others wait
-// for: it reads files.
+// Reads the folder again if its files changed since the last call. *changed: whether the scenes
+// were replaced. After an error the old scenes stay. It reads files: call it from a thread for
+// which no other waits.
 cau_status cau_scenes_follow(cau_scenes *scenes, bool *changed, cau_error *error);
 // Another number whenever they have changed.
 uint64_t cau_scenes_edition(cau_scenes *scenes);

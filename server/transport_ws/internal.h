@@ -26,7 +26,7 @@ enum {
 typedef struct cau_unread {
 	struct lws *wsi; // NULL: none has this descriptor
 	double since_s;
-	double sent_round_s; // the round, by its ran_s, in which bytes had come; 0: none
+	double input_s; // when bytes were seen that this thread had yet to read; 0: never
 	char address[CAU_ADDRESS_BYTES];
 	char owner[CAU_ADDRESS_BYTES]; // see cau_address_owner
 } cau_unread;
@@ -184,6 +184,12 @@ static inline bool cau_turns_blocked(const cau_connection *c)
 {
 	return c->control_bytes > CAU_TURN_REPLY_BYTES && !c->closing &&
 	       c->share.standing < CAU_STANDING_DRIVER;
+}
+
+// Whether anything was read of it.
+static inline bool cau_connection_has_spoken(const cau_connection *c)
+{
+	return c->heard_s > c->opened_s;
 }
 
 static inline cau_network *cau_network_of(struct lws *wsi)

@@ -14,11 +14,14 @@
 
 enum {
 	STRANGERS_MOST = 256,
+	UNREAD_MOST = 512, // of two addresses whose requests are late
 	OF_ADDRESS_MOST = 128,
 	NETWORK_BYTES = 8, // of an IPv6 address: its owner chooses the rest
-	POLLED_AT_ONCE = 64,
 	RESUMES_MOST = 16, // beyond max_connections, for clients that come back to their tools
 };
+
+#define READ_WITHIN_S 0.02 // from its coming, of what a connection sends
+#define REQUEST_S 1.0      // from connecting to a request, on a busy machine
 
 void cau_address_owner(const char *address, char owner[CAU_ADDRESS_BYTES])
 {
@@ -36,63 +39,65 @@ static bool is_unread(const cau_unread *unread, const char *owner)
 	return unread->wsi && (!owner || strcmp(unread->owner, owner) == 0);
 }
 
-// What has sent something in this round of the thread is read at its end.
-static bool is_read_soon(const cau_network *network, const cau_unread *unread)
+// This thread reads what has come within moments. One that is slower is asked again.
+static bool is_read_soon(const cau_unread *unread, double now_s)
 {
-	return unread->sent_round_s == network->ran_s;
+	return now_s - unread->input_s < READ_WITHIN_S;
 }
 
-// Asks the kernel which have sent something; in each round once for those that have.
-static void look_at_input(cau_network *network, const char *owner)
+// Whether bytes have come that this thread has yet to read: such a one is not closed.
+static bool has_input(int descriptor)
 {
-	struct pollfd polled[POLLED_AT_ONCE];
-	int count = 0;
-	for (int i = 0; i <= network->unread_capacity; i++) {
-		bool is_last = i == network->unread_capacity;
-		if (!is_last && is_unread(&network->unread[i], owner) &&
-		    !is_read_soon(network, &network->unread[i]))
-			polled[count++] = (struct pollfd){.fd = i, .events = POLLIN};
-		if (count < POLLED_AT_ONCE && !is_last)
-			continue;
-		poll(polled, (nfds_t)count, 0);
-		while (count > 0) {
-			count--;
-			if (polled[count].revents & POLLIN)
-				network->unread[polled[count].fd].sent_round_s = network->ran_s;
-		}
-	}
+	struct pollfd polled = {.fd = descriptor, .events = POLLIN};
+	return poll(&polled, 1, 0) > 0 && polled.revents & POLLIN;
 }
 
-// The oldest of an owner, or (NULL) of all, from which nothing waits to be read; NULL if there are
-// at most `most` of these. Those that are read soon are not counted: beside many of them, one whose
-// request is on its way would be the only one to close.
-static cau_unread *find_unread(cau_network *network, const char *owner, int most)
+// The oldest of an owner, or (NULL) of all, of which nothing is known to have come, and their
+// count.
+static cau_unread *find_oldest(const cau_network *network, const char *owner, double now_s,
+                               int *count)
 {
 	cau_unread *oldest = NULL;
-	int count = 0, quiet = 0;
-	for (int i = 0; i < network->unread_capacity; i++)
-		count += is_unread(&network->unread[i], owner);
-	if (count <= most)
-		return NULL;
-	look_at_input(network, owner);
+	*count = 0;
 	for (int i = 0; i < network->unread_capacity; i++) {
 		cau_unread *unread = &network->unread[i];
-		if (!is_unread(unread, owner) || is_read_soon(network, unread))
+		if (!is_unread(unread, owner) || is_read_soon(unread, now_s))
 			continue;
-		quiet++;
+		++*count;
 		if (!oldest || unread->since_s < oldest->since_s)
 			oldest = unread;
 	}
-	return quiet > most ? oldest : NULL;
+	return oldest;
+}
+
+// The oldest of which nothing has come; NULL if there are at most `most` of these, or at most twice
+// as many while that one is younger than `young_s`. Only the one that would be closed is asked:
+// many connect at once, and this is called for each of them.
+static cau_unread *find_unread(cau_network *network, const char *owner, int most, double young_s)
+{
+	int count;
+	double now_s = cau_monotonic_s();
+	for (;;) {
+		cau_unread *oldest = find_oldest(network, owner, now_s, &count);
+		if (!oldest)
+			return NULL;
+		bool young = now_s - oldest->since_s < young_s;
+		if (count <= (young ? 2 * most : most))
+			return NULL;
+		if (!has_input((int)(oldest - network->unread)))
+			return oldest;
+		oldest->input_s = now_s;
+	}
 }
 
 // Behind a proxy the address is known with the request; until then it is the proxy's.
 void cau_strangers_bound_unread(cau_network *network, const cau_unread *newest)
 {
 	bool is_proxy = cau_list_has(network->def.config->trusted_proxies, newest->address);
-	cau_unread *oldest = is_proxy ? NULL : find_unread(network, newest->owner, OF_ADDRESS_MOST);
+	cau_unread *oldest =
+		is_proxy ? NULL : find_unread(network, newest->owner, OF_ADDRESS_MOST, REQUEST_S);
 	if (!oldest)
-		oldest = find_unread(network, NULL, STRANGERS_MOST);
+		oldest = find_unread(network, NULL, UNREAD_MOST, 0);
 	if (!oldest)
 		return;
 	network->counts.strangers_closed++;
@@ -107,18 +112,10 @@ static bool is_silent(const cau_connection *c, const char *owner)
 	return !c->served && !c->closing && (!owner || strcmp(c->owner, owner) == 0);
 }
 
-// Whether bytes have come that this thread has yet to read: such a one is not closed.
-static bool has_input(int descriptor)
-{
-	struct pollfd polled = {.fd = descriptor, .events = POLLIN};
-	return poll(&polled, 1, 0) > 0 && polled.revents & POLLIN;
-}
-
 // A client says hello first. Whoever said something else, or says nothing, may be closed.
 static bool says_no_hello(const cau_connection *c)
 {
-	bool has_spoken = c->heard_s > c->opened_s;
-	return has_spoken || (!c->waits && !has_input(c->descriptor));
+	return cau_connection_has_spoken(c) || (!c->waits && !has_input(c->descriptor));
 }
 
 // The oldest that says no hello; NULL if none is to be closed. New ones come first in the list. The

@@ -94,7 +94,8 @@ static void files_that_come_and_go_are_followed(void **state)
 	assert_int_not_equal(cau_scenes_follow(scenes, &changed, &error), CAU_OK);
 	assert_non_null(strstr(error.file, "two.json"));
 	assert_int_equal(names_of(scenes).count, 2);
-	assert_int_equal(cau_scenes_follow(scenes, &changed, &error), CAU_OK); // told once
+	assert_int_equal(cau_scenes_follow(scenes, &changed, &error),
+	                 CAU_OK); // an error is reported once
 	assert_false(changed);
 	snprintf(path, sizeof path, "%s/two.json", folder);
 	unlink(path);

@@ -32,7 +32,7 @@ COLUMNS = 12  # across the band: whether each is whole
 _PARTED_REWARD, _BURNT_REWARD, _STEP_REWARD, _DONE_REWARD = 1.0, -0.5, -0.005, 10.0
 _REST = (1.0, 0.0, 0.0, 0.0)
 _CHANNELS = ["positions", "mask", "exposure", "tools"]
-# Of the task's own daemon: a busy machine must not darken a tool that only simulates, and nobody else is kept waiting.
+# Settings of the task's own daemon. A slow machine must not cut energy in a simulation, and the quotas protect nobody here.
 _OWN = {"browser_deadline_s": 10, "quota_connection": 1000000, "quota_address": 1000000, "quota_operate": 1000000,
         "quota_admin": 1000000, "quota_all": 1000000}
 
