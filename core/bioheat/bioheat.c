@@ -1,0 +1,276 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "bioheat/bioheat.h"
+
+#include <math.h>
+
+#include "cautery/assert.h"
+
+static const double water_heat_j_kgk = 4186; // specific heat of water
+static const double boiling_j_kg = 2.257e6;  // enthalpy of evaporation at 100 degC
+static const double dry_w_mk = 0.2;          // conductivity of dried tissue
+static const double electric_per_k = 0.0182; // rise of the electric conductivity, bovine liver
+static const double gas_j_molk = 8.314462618;
+static const double zero_k = 273.15;
+static const double damage_from_c = 43; // below it constants of burns do not hold
+static const double stable_share = 0.9; // of the longest step that is stable
+static const double cold_k = 1e-3;
+
+cau_status cau_bioheat_create(cau_bioheat *bioheat, double side_m, int32_t capacity,
+                              const cau_bioheat_material *material, int32_t material_count,
+                              double ambient_c, cau_arena *arena, cau_error *error)
+{
+	CAU_ASSERT(material_count > 0 && material_count <= CAU_CELL_MATERIALS, "%d materials",
+	           material_count);
+	*bioheat = (cau_bioheat){.material = material,
+	                         .material_count = material_count,
+	                         .ambient_c = ambient_c,
+	                         .cold = true};
+	cau_status status = cau_cells_create(&bioheat->cells, side_m, capacity, arena, error);
+	if (status)
+		return status;
+	size_t most = (size_t)capacity;
+	double **fields[] = {&bioheat->temperature, &bioheat->water, &bioheat->damage,
+	                     &bioheat->power_w, &bioheat->flow_w};
+	bool missing = false;
+	for (size_t i = 0; i < sizeof fields / sizeof *fields; i++) {
+		*fields[i] = cau_arena_array(arena, most, sizeof(double));
+		missing |= !*fields[i];
+	}
+	bioheat->face_w_k = cau_arena_array(arena, CAU_CELL_SIDES * most, sizeof(double));
+	bioheat->gone = cau_arena_array(arena, most, 1);
+	bioheat->contact = cau_arena_array(arena, most, sizeof *bioheat->contact);
+	if (missing || !bioheat->face_w_k || !bioheat->gone || !bioheat->contact)
+		return cau_fail(error, CAU_NO_MEMORY, NULL, "no memory for %d cells of tissue", capacity);
+	return CAU_OK;
+}
+
+int32_t cau_bioheat_add(cau_bioheat *bioheat, const int32_t place[3], uint8_t material, float fill)
+{
+	CAU_ASSERT_INDEX(material, bioheat->material_count);
+	int32_t cell = cau_cells_add(&bioheat->cells, place, material, fill);
+	if (cell < 0)
+		return -1;
+	bioheat->temperature[cell] = bioheat->ambient_c;
+	bioheat->water[cell] = 1;
+	return cell;
+}
+
+// ---- properties as they are now
+
+static const cau_bioheat_material *material_of(const cau_bioheat *bioheat, int32_t cell)
+{
+	CAU_ASSERT_INDEX(cell, bioheat->cells.count);
+	return &bioheat->material[bioheat->cells.material[cell]];
+}
+
+static double mass_of(const cau_bioheat *bioheat, int32_t cell)
+{
+	return material_of(bioheat, cell)->density_kg_m3 * cau_cells_volume(&bioheat->cells, cell);
+}
+
+double cau_bioheat_conductivity(const cau_bioheat *bioheat, int32_t cell)
+{
+	double wet = material_of(bioheat, cell)->conductivity_w_mk;
+	return dry_w_mk + (wet - dry_w_mk) * bioheat->water[cell];
+}
+
+// Rises until it boils, and falls with the square of the water that is left (Archie's law).
+double cau_bioheat_electric(const cau_bioheat *bioheat, int32_t cell)
+{
+	double warm = fmin(bioheat->temperature[cell], CAU_BOILING_C) - CAU_BODY_C;
+	double wet = bioheat->water[cell];
+	return material_of(bioheat, cell)->electric_s_m * (1 + electric_per_k * warm) * wet * wet;
+}
+
+// What is dry keeps its heat capacity; water takes its own along.
+double cau_bioheat_capacity(const cau_bioheat *bioheat, int32_t cell)
+{
+	const cau_bioheat_material *material = material_of(bioheat, cell);
+	double lost = material->water * water_heat_j_kgk * (1 - bioheat->water[cell]);
+	return mass_of(bioheat, cell) * (material->specific_heat_j_kgk - lost);
+}
+
+static double water_mass(const cau_bioheat *bioheat, int32_t cell)
+{
+	return mass_of(bioheat, cell) * material_of(bioheat, cell)->water;
+}
+
+double cau_bioheat_until_dry(const cau_bioheat *bioheat, int32_t cell)
+{
+	double kelvin = CAU_BOILING_C - bioheat->temperature[cell];
+	return fmax(kelvin, 0) * cau_bioheat_capacity(bioheat, cell) +
+	       bioheat->water[cell] * water_mass(bioheat, cell) * boiling_j_kg;
+}
+
+void cau_bioheat_take_out(cau_bioheat *bioheat, int32_t cell)
+{
+	CAU_ASSERT(!bioheat->gone[cell], "cell %d is taken out twice", cell);
+	double content =
+		cau_bioheat_capacity(bioheat, cell) * (bioheat->temperature[cell] - bioheat->ambient_c);
+	bioheat->ledger.stored_j -= content;
+	bioheat->ledger.shed_j += content;
+	bioheat->temperature[cell] = bioheat->ambient_c;
+	bioheat->power_w[cell] = 0;
+	bioheat->gone[cell] = 1;
+	cau_cells_sever(&bioheat->cells, cell);
+}
+
+// ---- one step
+
+// Conductances of a cell's faces (harmonic mean of both sides), and their sum, W/K.
+static double find_faces(cau_bioheat *bioheat, int32_t cell)
+{
+	const cau_cells *cells = &bioheat->cells;
+	double own = cau_bioheat_conductivity(bioheat, cell), sum = 0;
+	for (int side = 0; side < CAU_CELL_SIDES; side++) {
+		int64_t face = cau_cell_side(cell, side);
+		int32_t other = cells->neighbour[face];
+		bioheat->face_w_k[face] = 0;
+		if (other < 0)
+			continue;
+		double others = cau_bioheat_conductivity(bioheat, other);
+		bioheat->face_w_k[face] =
+			cau_cells_face(cells, cell, side) * 2 * own * others / (own + others);
+		sum += bioheat->face_w_k[face];
+	}
+	return sum;
+}
+
+static double contact_w_k(const cau_bioheat *bioheat, const cau_contact_cell *contact)
+{
+	return cau_bioheat_conductivity(bioheat, contact->cell) * contact->over_length_m;
+}
+
+// A cell may lose no more in a part than what brings it to the mean of its neighbours. Cells that
+// boil off change their capacity within a step: the dry one's counts.
+static double longest_part_s(cau_bioheat *bioheat, const cau_blade *blade)
+{
+	double longest = INFINITY;
+	for (int32_t i = 0; i < bioheat->cells.count; i++)
+		bioheat->flow_w[i] = find_faces(bioheat, i);
+	for (int32_t k = 0; blade && k < bioheat->contact_count; k++)
+		bioheat->flow_w[bioheat->contact[k].cell] += contact_w_k(bioheat, &bioheat->contact[k]);
+	for (int32_t i = 0; i < bioheat->cells.count; i++) {
+		const cau_bioheat_material *material = material_of(bioheat, i);
+		double dry = mass_of(bioheat, i) *
+		             (material->specific_heat_j_kgk - material->water * water_heat_j_kgk);
+		double capacity = bioheat->water[i] > 0 ? cau_bioheat_capacity(bioheat, i) : dry;
+		if (bioheat->flow_w[i] > 0)
+			longest = fmin(longest, capacity / bioheat->flow_w[i]);
+	}
+	return stable_share * longest;
+}
+
+// Adds energy to a cell, J: warms it, boils its water, and warms what is dry. Only warm water
+// boils, so a cell that cools keeps what it has left.
+static void take_energy(cau_bioheat *bioheat, int32_t cell, double energy_j)
+{
+	double capacity = cau_bioheat_capacity(bioheat, cell);
+	double *kelvin = &bioheat->temperature[cell], *wet = &bioheat->water[cell];
+	double before = capacity * (*kelvin - bioheat->ambient_c);
+	*kelvin += energy_j / capacity;
+	if (*kelvin > CAU_BOILING_C && *wet > 0) {
+		double over = (*kelvin - CAU_BOILING_C) * capacity, mass = water_mass(bioheat, cell);
+		double share = fmin(over / (mass * boiling_j_kg), *wet);
+		double sensible = share * mass * water_heat_j_kgk * (CAU_BOILING_C - bioheat->ambient_c);
+		over -= share * mass * boiling_j_kg;
+		*wet = share == *wet ? 0 : *wet - share;
+		bioheat->ledger.boiled_j += share * mass * boiling_j_kg + sensible;
+		*kelvin = CAU_BOILING_C + fmax(over, 0) / cau_bioheat_capacity(bioheat, cell);
+	}
+	bioheat->ledger.stored_j +=
+		cau_bioheat_capacity(bioheat, cell) * (*kelvin - bioheat->ambient_c) - before;
+}
+
+static void find_flows(cau_bioheat *bioheat)
+{
+	const int32_t *neighbour = bioheat->cells.neighbour;
+	for (int32_t i = 0; i < bioheat->cells.count; i++) {
+		double flow = 0;
+		for (int64_t face = cau_cell_side(i, 0); face < cau_cell_side(i + 1, 0); face++)
+			if (neighbour[face] >= 0)
+				flow += bioheat->face_w_k[face] *
+				        (bioheat->temperature[neighbour[face]] - bioheat->temperature[i]);
+		bioheat->flow_w[i] = flow;
+	}
+}
+
+static double perfusion_w(const cau_bioheat *bioheat, int32_t cell)
+{
+	if (bioheat->damage[cell] >= 1) // its vessels have closed
+		return 0;
+	return material_of(bioheat, cell)->perfusion_w_m3k * cau_cells_volume(&bioheat->cells, cell) *
+	       (bioheat->temperature[cell] - bioheat->ambient_c);
+}
+
+static void touch_blade(cau_bioheat *bioheat, cau_blade *blade, double part_s)
+{
+	double given = 0;
+	for (int32_t k = 0; k < bioheat->contact_count; k++) {
+		const cau_contact_cell *contact = &bioheat->contact[k];
+		double flow = contact_w_k(bioheat, contact) *
+		              (blade->temperature_c - bioheat->temperature[contact->cell]);
+		bioheat->flow_w[contact->cell] += flow;
+		given += flow;
+	}
+	double cooled = blade->cooling_w_k * (blade->temperature_c - bioheat->ambient_c);
+	bioheat->ledger.blade_j += given * part_s;
+	blade->temperature_c -= (given + cooled) * part_s / blade->heat_capacity_j_k;
+}
+
+static void damage_cell(cau_bioheat *bioheat, int32_t cell, double part_s)
+{
+	double kelvin = bioheat->temperature[cell];
+	const cau_bioheat_material *material = material_of(bioheat, cell);
+	if (kelvin > damage_from_c)
+		bioheat->damage[cell] +=
+			part_s * exp(material->damage_log_rate -
+		                 material->damage_energy_j_mol / (gas_j_molk * (kelvin + zero_k)));
+}
+
+// The set power of a cell in a part: it ends when the cell is dry.
+static double power_into(cau_bioheat *bioheat, int32_t cell, double part_s)
+{
+	double energy = bioheat->power_w[cell] * part_s;
+	double taken = fmin(energy, cau_bioheat_until_dry(bioheat, cell));
+	bioheat->ledger.delivered_j += taken;
+	return taken;
+}
+
+static void step_part(cau_bioheat *bioheat, cau_blade *blade, double part_s)
+{
+	find_flows(bioheat);
+	if (blade)
+		touch_blade(bioheat, blade, part_s);
+	for (int32_t i = 0; i < bioheat->cells.count; i++) {
+		if (bioheat->gone[i])
+			continue;
+		double perfused = perfusion_w(bioheat, i) * part_s;
+		double power = bioheat->power_w[i] > 0 ? power_into(bioheat, i, part_s) : 0;
+		bioheat->ledger.perfused_j += perfused;
+		take_energy(bioheat, i, bioheat->flow_w[i] * part_s - perfused + power);
+		damage_cell(bioheat, i, part_s);
+	}
+}
+
+static bool is_cold(const cau_bioheat *bioheat)
+{
+	for (int32_t i = 0; i < bioheat->cells.count; i++)
+		if (fabs(bioheat->temperature[i] - bioheat->ambient_c) > cold_k || bioheat->power_w[i] > 0)
+			return false;
+	return true;
+}
+
+bool cau_bioheat_step(cau_bioheat *bioheat, cau_blade *blade, double duration_s)
+{
+	CAU_ASSERT(duration_s > 0, "a step of %g s", duration_s);
+	CAU_ASSERT(!blade || blade->heat_capacity_j_k > 0, "a blade of %g J/K",
+	           blade->heat_capacity_j_k);
+	double parts = fmax(ceil(duration_s / longest_part_s(bioheat, blade)), 1);
+	if (!(parts <= CAU_BIOHEAT_PARTS))
+		return false;
+	for (int part = 0; part < (int)parts; part++)
+		step_part(bioheat, blade, duration_s / parts);
+	bioheat->cold = is_cold(bioheat);
+	return true;
+}

@@ -1,0 +1,89 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Heat, water and damage of the cells: Pennes' equation with water that boils off, and a body of
+// metal (blade or jaw) in contact. The model is in README.md.
+#pragma once
+
+#include <stdbool.h>
+
+#include "bioheat/cells.h"
+
+#define CAU_BOILING_C 100.0
+#define CAU_BODY_C 37.0
+
+// Of one kind of tissue, as it is alive. Sources: README.md.
+typedef struct cau_bioheat_material {
+	double conductivity_w_mk; // of heat
+	double density_kg_m3;
+	double specific_heat_j_kgk;
+	double water;               // mass fraction
+	double electric_s_m;        // electric conductivity at 37 degC, at the generator's frequency
+	double perfusion_w_m3k;     // blood flow times its heat capacity
+	double damage_log_rate;     // ln of A, A in 1/s
+	double damage_energy_j_mol; // E_a
+	bool sheet;                 // current spreads in a plane, not in space
+} cau_bioheat_material;
+
+// A body of metal with one temperature.
+typedef struct cau_blade {
+	double temperature_c;
+	double heat_capacity_j_k; // above 0
+	double cooling_w_k;       // to the surroundings
+} cau_blade;
+
+// Where it went, J since creation. delivered + from the blade = sum of the rest (README.md).
+typedef struct cau_ledger {
+	double delivered_j; // by the current, in cells
+	double blade_j;     // from the blade into cells; below 0: the other way
+	double stored_j;    // heat content of all cells above the surroundings
+	double boiled_j;    // taken along by water that boiled off
+	double perfused_j;  // taken along by blood
+	double shed_j;      // of cells that were taken out
+} cau_ledger;
+
+typedef struct cau_contact_cell { // of the blade with a cell
+	int32_t cell;
+	double over_length_m; // area of contact over the length from it to the cell's middle
+} cau_contact_cell;
+
+typedef struct cau_bioheat {
+	cau_cells cells;
+	int32_t material_count;
+	const cau_bioheat_material *material;
+	double ambient_c;    // of blood and of tissue that was not heated
+	double *temperature; // degC, (capacity)
+	double *water;       // share of its first water that a cell still has, (capacity)
+	double *damage;      // Omega, 1, (capacity)
+	double *power_w;     // from outside into each cell in the next step, (capacity); set by callers
+	uint8_t *gone;       // (capacity): taken out
+	int32_t contact_count;
+	cau_contact_cell *contact; // (capacity)
+	cau_ledger ledger;
+	bool cold;                 // every cell is at ambient_c and no power is set
+	double *flow_w, *face_w_k; // scratch: (capacity), (capacity x 6)
+} cau_bioheat;
+
+// `material` is borrowed and has material_count entries, at most CAU_CELL_MATERIALS. CAU_NO_MEMORY.
+cau_status cau_bioheat_create(cau_bioheat *bioheat, double side_m, int32_t capacity,
+                              const cau_bioheat_material *material, int32_t material_count,
+                              double ambient_c, cau_arena *arena, cau_error *error);
+
+// Adds a cell at ambient temperature, with all its water. As cau_cells_add.
+int32_t cau_bioheat_add(cau_bioheat *bioheat, const int32_t place[3], uint8_t material, float fill);
+
+// Takes a cell out with what it holds: it conducts nothing from then on. Once for a cell.
+void cau_bioheat_take_out(cau_bioheat *bioheat, int32_t cell);
+
+// Advances by duration_s: conduction, perfusion, the power that is set, and the blade (NULL: none)
+// through `contact`. Water boils at CAU_BOILING_C. A cell takes no more of its set power than dries
+// it; the ledger has what all took. Explicit, in as many equal parts as stability asks, at most
+// CAU_BIOHEAT_PARTS; returns false, and has not advanced, if that is too few.
+enum { CAU_BIOHEAT_PARTS = 64 };
+bool cau_bioheat_step(cau_bioheat *bioheat, cau_blade *blade, double duration_s);
+
+// W/(m K), S/m and J/K of a cell as it is now.
+double cau_bioheat_conductivity(const cau_bioheat *bioheat, int32_t cell);
+double cau_bioheat_electric(const cau_bioheat *bioheat, int32_t cell);
+double cau_bioheat_capacity(const cau_bioheat *bioheat, int32_t cell);
+
+// J that a cell takes up until it is dry at CAU_BOILING_C.
+double cau_bioheat_until_dry(const cau_bioheat *bioheat, int32_t cell);
