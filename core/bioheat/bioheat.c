@@ -37,9 +37,8 @@ cau_status cau_bioheat_create(cau_bioheat *bioheat, double side_m, int32_t capac
 		missing |= !*fields[i];
 	}
 	bioheat->face_w_k = cau_arena_array(arena, CAU_CELL_SIDES * most, sizeof(double));
-	bioheat->gone = cau_arena_array(arena, most, 1);
 	bioheat->contact = cau_arena_array(arena, most, sizeof *bioheat->contact);
-	if (missing || !bioheat->face_w_k || !bioheat->gone || !bioheat->contact)
+	if (missing || !bioheat->face_w_k || !bioheat->contact)
 		return cau_fail(error, CAU_NO_MEMORY, NULL, "no memory for %d cells of tissue", capacity);
 	return CAU_OK;
 }
@@ -104,14 +103,13 @@ double cau_bioheat_until_dry(const cau_bioheat *bioheat, int32_t cell)
 
 void cau_bioheat_take_out(cau_bioheat *bioheat, int32_t cell)
 {
-	CAU_ASSERT(!bioheat->gone[cell], "cell %d is taken out twice", cell);
+	CAU_ASSERT(!bioheat->cells.severed[cell], "cell %d is taken out twice", cell);
 	double content =
 		cau_bioheat_capacity(bioheat, cell) * (bioheat->temperature[cell] - bioheat->ambient_c);
 	bioheat->ledger.stored_j -= content;
 	bioheat->ledger.shed_j += content;
 	bioheat->temperature[cell] = bioheat->ambient_c;
 	bioheat->power_w[cell] = 0;
-	bioheat->gone[cell] = 1;
 	cau_cells_sever(&bioheat->cells, cell);
 }
 
@@ -143,12 +141,12 @@ static double contact_w_k(const cau_bioheat *bioheat, const cau_contact_cell *co
 
 // A cell may lose no more in a part than what brings it to the mean of its neighbours. Cells that
 // boil off change their capacity within a step: the dry one's counts.
-static double longest_part_s(cau_bioheat *bioheat, const cau_blade *blade)
+static double longest_part_s(cau_bioheat *bioheat)
 {
 	double longest = INFINITY;
 	for (int32_t i = 0; i < bioheat->cells.count; i++)
 		bioheat->flow_w[i] = find_faces(bioheat, i);
-	for (int32_t k = 0; blade && k < bioheat->contact_count; k++)
+	for (int32_t k = 0; k < bioheat->contact_count; k++)
 		bioheat->flow_w[bioheat->contact[k].cell] += contact_w_k(bioheat, &bioheat->contact[k]);
 	for (int32_t i = 0; i < bioheat->cells.count; i++) {
 		const cau_bioheat_material *material = material_of(bioheat, i);
@@ -203,19 +201,22 @@ static double perfusion_w(const cau_bioheat *bioheat, int32_t cell)
 	       (bioheat->temperature[cell] - bioheat->ambient_c);
 }
 
-static void touch_blade(cau_bioheat *bioheat, cau_blade *blade, double part_s)
+static void touch_blades(cau_bioheat *bioheat, cau_blade *blade, int32_t blade_count, double part_s)
 {
-	double given = 0;
+	double given_w[CAU_BLADES] = {0};
 	for (int32_t k = 0; k < bioheat->contact_count; k++) {
 		const cau_contact_cell *contact = &bioheat->contact[k];
+		CAU_ASSERT_INDEX(contact->blade, blade_count);
 		double flow = contact_w_k(bioheat, contact) *
-		              (blade->temperature_c - bioheat->temperature[contact->cell]);
+		              (blade[contact->blade].temperature_c - bioheat->temperature[contact->cell]);
 		bioheat->flow_w[contact->cell] += flow;
-		given += flow;
+		given_w[contact->blade] += flow;
 	}
-	double cooled = blade->cooling_w_k * (blade->temperature_c - bioheat->ambient_c);
-	bioheat->ledger.blade_j += given * part_s;
-	blade->temperature_c -= (given + cooled) * part_s / blade->heat_capacity_j_k;
+	for (int32_t b = 0; b < blade_count; b++) {
+		double cooled = blade[b].cooling_w_k * (blade[b].temperature_c - bioheat->ambient_c);
+		bioheat->ledger.blade_j += given_w[b] * part_s;
+		blade[b].temperature_c -= (given_w[b] + cooled) * part_s / blade[b].heat_capacity_j_k;
+	}
 }
 
 static void damage_cell(cau_bioheat *bioheat, int32_t cell, double part_s)
@@ -237,13 +238,12 @@ static double power_into(cau_bioheat *bioheat, int32_t cell, double part_s)
 	return taken;
 }
 
-static void step_part(cau_bioheat *bioheat, cau_blade *blade, double part_s)
+static void step_part(cau_bioheat *bioheat, cau_blade *blade, int32_t blade_count, double part_s)
 {
 	find_flows(bioheat);
-	if (blade)
-		touch_blade(bioheat, blade, part_s);
+	touch_blades(bioheat, blade, blade_count, part_s);
 	for (int32_t i = 0; i < bioheat->cells.count; i++) {
-		if (bioheat->gone[i])
+		if (bioheat->cells.severed[i])
 			continue;
 		double perfused = perfusion_w(bioheat, i) * part_s;
 		double power = bioheat->power_w[i] > 0 ? power_into(bioheat, i, part_s) : 0;
@@ -261,16 +261,16 @@ static bool is_cold(const cau_bioheat *bioheat)
 	return true;
 }
 
-bool cau_bioheat_step(cau_bioheat *bioheat, cau_blade *blade, double duration_s)
+bool cau_bioheat_step(cau_bioheat *bioheat, cau_blade *blade, int32_t blade_count,
+                      double duration_s)
 {
 	CAU_ASSERT(duration_s > 0, "a step of %g s", duration_s);
-	CAU_ASSERT(!blade || blade->heat_capacity_j_k > 0, "a blade of %g J/K",
-	           blade->heat_capacity_j_k);
-	double parts = fmax(ceil(duration_s / longest_part_s(bioheat, blade)), 1);
+	CAU_ASSERT(blade_count >= 0 && blade_count <= CAU_BLADES, "%d blades", blade_count);
+	double parts = fmax(ceil(duration_s / longest_part_s(bioheat)), 1);
 	if (!(parts <= CAU_BIOHEAT_PARTS))
 		return false;
 	for (int part = 0; part < (int)parts; part++)
-		step_part(bioheat, blade, duration_s / parts);
+		step_part(bioheat, blade, blade_count, duration_s / parts);
 	bioheat->cold = is_cold(bioheat);
 	return true;
 }

@@ -6,6 +6,9 @@
 #include <stdbool.h>
 
 #include "bioheat/cells.h"
+#include "cautery/session.h"
+
+enum { CAU_BLADES = 8 }; // at most
 
 #define CAU_BOILING_C 100.0
 #define CAU_BODY_C 37.0
@@ -30,18 +33,8 @@ typedef struct cau_blade {
 	double cooling_w_k;       // to the surroundings
 } cau_blade;
 
-// Where it went, J since creation. delivered + from the blade = sum of the rest (README.md).
-typedef struct cau_ledger {
-	double delivered_j; // by the current, in cells
-	double blade_j;     // from the blade into cells; below 0: the other way
-	double stored_j;    // heat content of all cells above the surroundings
-	double boiled_j;    // taken along by water that boiled off
-	double perfused_j;  // taken along by blood
-	double shed_j;      // of cells that were taken out
-} cau_ledger;
-
-typedef struct cau_contact_cell { // of the blade with a cell
-	int32_t cell;
+typedef struct cau_contact_cell { // of a blade with a cell
+	int32_t blade, cell;
 	double over_length_m; // area of contact over the length from it to the cell's middle
 } cau_contact_cell;
 
@@ -54,10 +47,9 @@ typedef struct cau_bioheat {
 	double *water;       // share of its first water that a cell still has, (capacity)
 	double *damage;      // Omega, 1, (capacity)
 	double *power_w;     // from outside into each cell in the next step, (capacity); set by callers
-	uint8_t *gone;       // (capacity): taken out
 	int32_t contact_count;
 	cau_contact_cell *contact; // (capacity)
-	cau_ledger ledger;
+	cau_energy_ledger ledger;
 	bool cold;                 // every cell is at ambient_c and no power is set
 	double *flow_w, *face_w_k; // scratch: (capacity), (capacity x 6)
 } cau_bioheat;
@@ -70,15 +62,16 @@ cau_status cau_bioheat_create(cau_bioheat *bioheat, double side_m, int32_t capac
 // Adds a cell at ambient temperature, with all its water. As cau_cells_add.
 int32_t cau_bioheat_add(cau_bioheat *bioheat, const int32_t place[3], uint8_t material, float fill);
 
-// Takes a cell out with what it holds: it conducts nothing from then on. Once for a cell.
+// Takes a cell out with what it holds, and severs it. Once for a cell.
 void cau_bioheat_take_out(cau_bioheat *bioheat, int32_t cell);
 
-// Advances by duration_s: conduction, perfusion, the power that is set, and the blade (NULL: none)
-// through `contact`. Water boils at CAU_BOILING_C. A cell takes no more of its set power than dries
+// Advances by duration_s: conduction, perfusion, the power that is set, and blades through
+// `contact`. Water boils at CAU_BOILING_C. A cell takes no more of its set power than dries
 // it; the ledger has what all took. Explicit, in as many equal parts as stability asks, at most
 // CAU_BIOHEAT_PARTS; returns false, and has not advanced, if that is too few.
-enum { CAU_BIOHEAT_PARTS = 64 };
-bool cau_bioheat_step(cau_bioheat *bioheat, cau_blade *blade, double duration_s);
+enum { CAU_BIOHEAT_PARTS = 512 };
+bool cau_bioheat_step(cau_bioheat *bioheat, cau_blade *blade, int32_t blade_count,
+                      double duration_s);
 
 // W/(m K), S/m and J/K of a cell as it is now.
 double cau_bioheat_conductivity(const cau_bioheat *bioheat, int32_t cell);

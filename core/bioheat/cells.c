@@ -29,9 +29,10 @@ cau_status cau_cells_create(cau_cells *cells, double side_m, int32_t capacity, c
 	cells->material = cau_arena_array(arena, most, 1);
 	cells->fill = cau_arena_array(arena, most, sizeof(float));
 	cells->pull = cau_arena_array(arena, 3 * most, sizeof(float));
+	cells->severed = cau_arena_array(arena, most, 1);
 	cells->bucket = cau_arena_array(arena, (size_t)cells->bucket_count, sizeof(int32_t));
 	if (!cells->place || !cells->neighbour || !cells->material || !cells->fill || !cells->pull ||
-	    !cells->bucket)
+	    !cells->severed || !cells->bucket)
 		return cau_fail(error, CAU_NO_MEMORY, NULL, "no memory for %d cells of tissue", capacity);
 	memset(cells->bucket, -1, (size_t)cells->bucket_count * sizeof(int32_t));
 	return CAU_OK;
@@ -63,6 +64,8 @@ static void join(cau_cells *cells, int32_t cell)
 		memcpy(place, cells->place + 3 * (size_t)cell, sizeof place);
 		place[side / 2] += side % 2 ? 1 : -1;
 		int32_t other = cau_cells_find(cells, place);
+		if (other >= 0 && cells->severed[other])
+			other = -1;
 		cells->neighbour[cau_cell_side(cell, side)] = other;
 		if (other >= 0)
 			cells->neighbour[cau_cell_side(other, side ^ 1)] = cell;
@@ -90,6 +93,7 @@ int32_t cau_cells_add(cau_cells *cells, const int32_t place[3], uint8_t material
 void cau_cells_sever(cau_cells *cells, int32_t cell)
 {
 	CAU_ASSERT_INDEX(cell, cells->count);
+	cells->severed[cell] = 1;
 	for (int side = 0; side < CAU_CELL_SIDES; side++) {
 		int32_t *other = &cells->neighbour[cau_cell_side(cell, side)];
 		if (*other >= 0)

@@ -20,6 +20,7 @@ typedef struct cau_cells {
 	int32_t *neighbour; // (capacity x 6): the cell on each side; -1: none that conducts
 	uint8_t *material;  // (capacity)
 	float *fill;        // (capacity): share of the cube that is tissue, above 0, at most 1
+	uint8_t *severed;   // (capacity): see cau_cells_sever
 	float *pull;        // (capacity x 3): diagonal of J F^-1 F^-T, the pull-back of a conductivity
 	int32_t bucket_count; // a power of two
 	int32_t *bucket;      // (bucket_count): cells by place; -1: empty
@@ -47,7 +48,8 @@ int32_t cau_cells_find(const cau_cells *cells, const int32_t place[3]);
 // number, which stays; -1 if there is no room.
 int32_t cau_cells_add(cau_cells *cells, const int32_t place[3], uint8_t material, float fill);
 
-// Separates a cell from its neighbours: nothing is conducted between them from then on.
+// Separates a cell from its neighbours, also from those that are added later: nothing is conducted
+// between them from then on.
 void cau_cells_sever(cau_cells *cells, int32_t cell);
 
 // Of conduction between a cell and its neighbour on `side`, per unit of conductivity: area over

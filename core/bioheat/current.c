@@ -9,7 +9,7 @@
 
 // A sheet's current spreads in its plane, where the potential falls with the logarithm of the
 // distance: to the return electrode, about this far away.
-static const double return_m = 0.2;
+static const double return_m = 0.03;
 // Tissue that has boiled dry conducts so much of what it did: a matrix needs some.
 static const double dry_share = 1e-4;
 
@@ -21,11 +21,13 @@ cau_status cau_current_create(cau_current *current, const cau_bioheat *bioheat, 
 	current->electrode = cau_arena_array(arena, most, sizeof *current->electrode);
 	current->cell = cau_arena_array(arena, most, sizeof(int32_t));
 	current->slot = cau_arena_array(arena, most, sizeof(int32_t));
+	current->seed = cau_arena_array(arena, most, sizeof(int32_t));
 	current->face_s = cau_arena_array(arena, CAU_CELL_SIDES * most, sizeof(double));
 	double **vectors[] = {&current->potential,  &current->to_electrode_s, &current->to_far_s,
 	                      &current->diagonal_s, &current->source,         &current->vector[0],
 	                      &current->vector[1],  &current->vector[2],      &current->vector[3]};
-	bool missing = !current->electrode || !current->cell || !current->slot || !current->face_s;
+	bool missing = !current->electrode || !current->cell || !current->slot || !current->seed ||
+	               !current->face_s;
 	for (size_t i = 0; i < sizeof vectors / sizeof *vectors; i++) {
 		*vectors[i] = cau_arena_array(arena, most, sizeof(double));
 		missing |= !*vectors[i];
@@ -56,29 +58,31 @@ static cau_vec3 electrodes_middle(const cau_current *current, const cau_cells *c
 	return cau_scale(1 / weight, sum);
 }
 
-static void enter(cau_current *current, int32_t cell)
+static void enter(cau_current *current, int32_t cell, int32_t seed)
 {
 	if (current->slot[cell] >= 0)
 		return;
 	current->slot[cell] = current->count;
+	current->seed[current->count] = seed;
 	current->cell[current->count++] = cell;
 }
 
 // What is joined with the electrodes within reach, in order of distance in cells.
-static void find_region(cau_current *current, const cau_cells *cells, cau_vec3 middle,
-                        double reach_m)
+static void find_region(cau_current *current, const cau_cells *cells, double reach_m)
 {
 	for (int32_t i = 0; i < current->count; i++)
 		current->slot[current->cell[i]] = -1;
 	current->count = 0;
 	for (int32_t k = 0; k < current->electrode_count; k++)
-		enter(current, current->electrode[k].cell);
-	for (int32_t i = 0; i < current->count; i++)
+		enter(current, current->electrode[k].cell, current->electrode[k].cell);
+	for (int32_t i = 0; i < current->count; i++) {
+		cau_vec3 from = middle_of(cells, current->seed[i]);
 		for (int side = 0; side < CAU_CELL_SIDES; side++) {
 			int32_t other = cells->neighbour[cau_cell_side(current->cell[i], side)];
-			if (other >= 0 && cau_length(cau_sub(middle_of(cells, other), middle)) <= reach_m)
-				enter(current, other);
+			if (other >= 0 && cau_length(cau_sub(middle_of(cells, other), from)) <= reach_m)
+				enter(current, other, current->seed[i]);
 		}
+	}
 }
 
 // ---- equations
@@ -207,41 +211,6 @@ static void iterate(cau_current *current, const cau_cells *cells, double *x, dou
 
 // ---- results
 
-static void read_currents(cau_current *current)
-{
-	const double *x = current->vector[0];
-	current->conductance_s = current->returned_s = current->far_w = 0;
-	for (int32_t i = 0; i < current->count; i++) {
-		// From electrodes at 1 V, and to those at 0 V, a cell's share of each is in `source`.
-		double from = current->source[i], back = current->to_electrode_s[i] - from;
-		current->conductance_s += from * (1 - x[i]);
-		current->returned_s += (back + current->to_far_s[i]) * x[i];
-		current->far_w += current->to_far_s[i] * x[i] * x[i];
-	}
-}
-
-void cau_current_solve(cau_current *current, const cau_bioheat *bioheat, double reach_m,
-                       bool grounded, double tolerance, int32_t most)
-{
-	CAU_ASSERT(current->electrode_count > 0, "no electrode");
-	CAU_ASSERT(reach_m < return_m, "a reach of %g m", reach_m);
-	cau_vec3 middle = electrodes_middle(current, &bioheat->cells);
-	find_region(current, &bioheat->cells, middle, reach_m);
-	for (int32_t i = 0; i < current->count; i++)
-		add_faces(current, bioheat, i, grounded, middle);
-	add_electrodes(current, bioheat);
-	double *x = current->vector[0];
-	for (int32_t i = 0; i < current->count; i++) {
-		if (!(current->diagonal_s[i] > 0))
-			current->diagonal_s[i] = 1; // joined with nothing: it stays at 0 V
-		x[i] = current->potential[current->cell[i]];
-	}
-	iterate(current, &bioheat->cells, x, tolerance, most);
-	for (int32_t i = 0; i < current->count; i++)
-		current->potential[current->cell[i]] = x[i];
-	read_currents(current);
-}
-
 // Half of what a face turns into heat goes to each side; contact's all goes to the tissue.
 static double heat_at_1v(const cau_current *current, const cau_cells *cells, int32_t i)
 {
@@ -258,11 +227,46 @@ static double heat_at_1v(const cau_current *current, const cau_cells *cells, int
 	return heat;
 }
 
+// The conductance is the heat at 1 V: so heat and power agree whatever the iteration has left.
+static void read_currents(cau_current *current, const cau_cells *cells)
+{
+	const double *x = current->vector[0];
+	current->conductance_s = current->returned_s = current->far_w = 0;
+	for (int32_t i = 0; i < current->count; i++) {
+		double back = current->to_electrode_s[i] - current->source[i];
+		current->conductance_s += heat_at_1v(current, cells, i);
+		current->returned_s += (back + current->to_far_s[i]) * x[i];
+		current->far_w += current->to_far_s[i] * x[i] * x[i];
+	}
+	current->conductance_s += current->far_w;
+}
+
+void cau_current_solve(cau_current *current, const cau_bioheat *bioheat, double reach_m,
+                       bool grounded, double tolerance, int32_t most)
+{
+	CAU_ASSERT(current->electrode_count > 0, "no electrode");
+	CAU_ASSERT(reach_m < return_m, "a reach of %g m", reach_m);
+	cau_vec3 middle = electrodes_middle(current, &bioheat->cells);
+	find_region(current, &bioheat->cells, reach_m);
+	for (int32_t i = 0; i < current->count; i++)
+		add_faces(current, bioheat, i, grounded, middle);
+	add_electrodes(current, bioheat);
+	double *x = current->vector[0];
+	for (int32_t i = 0; i < current->count; i++) {
+		if (!(current->diagonal_s[i] > 0))
+			current->diagonal_s[i] = 1; // joined with nothing: it stays at 0 V
+		x[i] = current->potential[current->cell[i]];
+	}
+	iterate(current, &bioheat->cells, x, tolerance, most);
+	for (int32_t i = 0; i < current->count; i++)
+		current->potential[current->cell[i]] = x[i];
+	read_currents(current, &bioheat->cells);
+}
+
 void cau_current_heat(const cau_current *current, cau_bioheat *bioheat, double voltage)
 {
 	CAU_ASSERT(voltage >= 0, "%g V", voltage);
-	memset(bioheat->power_w, 0, (size_t)bioheat->cells.count * sizeof(double));
 	for (int32_t i = 0; i < current->count; i++)
-		bioheat->power_w[current->cell[i]] =
+		bioheat->power_w[current->cell[i]] +=
 			heat_at_1v(current, &bioheat->cells, i) * voltage * voltage;
 }

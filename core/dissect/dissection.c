@@ -222,6 +222,32 @@ void cau_dissection_part(cau_dissection *dissection, uint32_t *layers)
 		cau_doses_part(dissection, layers);
 }
 
+void cau_dissection_lose_element(cau_dissection *dissection, int primitive, int32_t index)
+{
+	CAU_ASSERT(dissection->doses.dose != NULL, "an element parts where edges do");
+	cau_doses_lose(dissection, primitive, index);
+}
+
+// The material that asks for most exposure decides.
+void cau_dissection_show_heated(cau_dissection *dissection, int32_t edge, double share)
+{
+	const cau_edge_table *edges = &dissection->tissue->edges;
+	double exposure = dissection->exposure[edge];
+	CAU_ASSERT(share >= 0 && share <= 1, "edge %d is heated by %g", edge, share);
+	for (int p = 0; p < CAU_PRIMITIVE_KINDS; p++) {
+		int32_t k = edges->first[p][edge];
+		if (k == edges->first[p][edge + 1])
+			continue;
+		const cau_heat_material *heat =
+			cau_dissection_heat_of(dissection->tissue, p, edges->sharer[p][k]);
+		if (heat->absorption_per_s > 0)
+			exposure = fmax(exposure, share * heat->ignition_c / heat->absorption_per_s);
+	}
+	if (exposure > dissection->exposure[edge])
+		cau_dissection_touch(dissection, edge);
+	dissection->exposure[edge] = exposure;
+}
+
 double cau_dissection_heated(const cau_dissection *dissection, int32_t edge)
 {
 	CAU_ASSERT_INDEX(edge, dissection->tissue->edges.edge_count);

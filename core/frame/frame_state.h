@@ -51,3 +51,4 @@ void cau_frame_cool(cau_frame_state *frame, const cau_tissue *tissue, double amb
 void cau_frame_cool_heated(cau_frame_state *frame);
 void cau_frame_heat(cau_frame_state *frame, const cau_near *near, const cau_heat_grid *grid,
                     const double *position);
+void cau_frame_heat_vertex(cau_frame_state *frame, int32_t vertex, float temperature);

@@ -37,7 +37,7 @@ static bool boxes_meet(const double least[3], const double most[3], const cau_bo
 	return true;
 }
 
-static void heat_vertex(cau_frame_state *frame, int32_t vertex, float temperature)
+void cau_frame_heat_vertex(cau_frame_state *frame, int32_t vertex, float temperature)
 {
 	CAU_ASSERT(vertex >= 0, "vertex %d", vertex);
 	float *held = &frame->temperature[vertex];
@@ -66,7 +66,7 @@ void cau_frame_heat(cau_frame_state *frame, const cau_near *near, const cau_heat
 			int32_t v = near->vertex[i];
 			CAU_ASSERT_INDEX(v, near->vertex_count);
 			cau_vec3 at = cau_vec3_of(position + 3 * (size_t)v);
-			heat_vertex(frame, v, (float)cau_heat_grid_at(grid, at));
+			cau_frame_heat_vertex(frame, v, (float)cau_heat_grid_at(grid, at));
 		}
 	}
 }

@@ -57,6 +57,10 @@ void cau_session_burn(cau_session *session)
 		                  &session->solver.elements, &session->solver.slots); // eq. 21
 		tool->state.touched_layers = (int32_t)layers;
 	}
+}
+
+void cau_session_end_burn(cau_session *session)
+{
 	cau_session_mark_changed(session); // energy.c
 	cau_shrink_advance(&session->shrink, &session->tissue, session->solver.step_s,
 	                   &session->solver.elements, &session->solver.slots);

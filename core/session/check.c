@@ -437,5 +437,8 @@ cau_status cau_scene_check(const cau_scene_def *scene, cau_error *error)
 		snprintf(path, sizeof path, "tools[%d]", i);
 		status = cau_tool_check(&scene->tools[i], path, scene->step_s, error);
 	}
+	if (!status && scene->energy == CAU_ENERGY_TISSUE && scene->parting != CAU_PARTING_ELEMENTS)
+		status = cau_fail(error, CAU_BAD_VALUE, "parting",
+		                  "energy \"tissue\" parts elements: set parting to \"elements\"");
 	return status ? status : check_scripts(scene, error);
 }

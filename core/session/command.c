@@ -125,6 +125,9 @@ static cau_status configure_tool(cau_session *session, cau_tool *tool, const cau
 		return status;
 	cau_heat_grid_finish(&tool->grid);
 	tool->grid = grid;
+	double blade_c = tool->blade.temperature_c;
+	tool->blade = cau_session_blade_of(session, def);
+	tool->blade.temperature_c = blade_c;
 	cau_pose pose = tool->state.definition.pose;
 	tool->state.definition = *def;
 	tool->state.definition.pose = pose;

@@ -152,6 +152,8 @@ static cau_status make_remainder(cau_session *session, cau_error *error)
 		cau_arena_array(arena, 3 * (size_t)session->tissue.vertex_count, sizeof(double));
 	if (!status && (!session->candidate || !session->position_unheld))
 		status = cau_fail(error, CAU_NO_MEMORY, NULL, "no memory for contacts");
+	if (!status)
+		status = cau_session_make_cells(session, error);
 	for (int32_t i = 0; i < session->scene->tool_count && !status; i++)
 		status = cau_session_add_tool(session, &session->scene->tools[i], error);
 	if (!status && !session->faulted)
@@ -189,6 +191,8 @@ static uint64_t hash_definition(const cau_session *session)
 		const double contact[] = {scene->contact_thickness_m, scene->contact_friction};
 		hash = cau_hash_bytes(hash, contact, sizeof contact);
 	}
+	if (scene->energy != CAU_ENERGY_PAPER)
+		hash = cau_hash_bytes(hash, &scene->cell_m, sizeof scene->cell_m);
 	hash = hash_array(hash, t->rest, t->vertex_count, 3 * sizeof(double));
 	hash = hash_array(hash, t->mass, t->vertex_count, sizeof(double));
 	hash = hash_array(hash, t->triangle, t->triangle_count, 3 * sizeof(int32_t));

@@ -5,6 +5,7 @@
 #include "base/image.h"
 #include "base/memory.h"
 #include "base/pool.h"
+#include "bioheat/tissue_cells.h"
 #include "cautery/session.h"
 #include "dissect/dissection.h"
 #include "dissect/shrink.h"
@@ -35,6 +36,7 @@ typedef struct cau_tool {
 	cau_pose anchor, anchor_before;
 	double pace; // share of the anchor's motion that it follows in a tick; below 1 when held back
 	cau_heat_grid grid;
+	cau_blade blade; // with energy `tissue`: electrosurgery.c
 	int32_t grasp_count;
 	cau_grasp grasp[CAU_MAX_GRASPED];
 	double least_open_rad; // pinch.c: held tissue keeps the jaws open at least so far
@@ -91,6 +93,7 @@ struct cau_session {
 	cau_dissection dissection;
 	cau_shrink shrink;
 	cau_near near;
+	cau_tissue_cells *cells; // of energy `tissue`; NULL: energy `paper`
 	cau_contact_set contact;
 	cau_collide collide;             // meet.c: where solver.collide points, if anywhere
 	struct cau_candidate *candidate; // reach.c: scratch
@@ -257,8 +260,16 @@ void cau_session_begin_collide(cau_session *session);
 // farther than `most_m` away. *told: whether a diverged or inverted vertex is among them. Returns
 // false if tissue contact is off for the tick.
 bool cau_session_exempt(cau_session *session, const double *guess, double most_m, bool *told);
-// burn.c: heat, exposure, parting.
+// electrosurgery.c: energy `tissue`. Makes the cells if the scene asks for it; the blade of a tool
+// that is added; a tick of power, heat and parting; whether all of it has cooled down.
+cau_status cau_session_make_cells(cau_session *session, cau_error *error);
+cau_blade cau_session_blade_of(const cau_session *session, const cau_tool_def *def);
+void cau_session_operate(cau_session *session);
+bool cau_session_has_cooled(const cau_session *session);
+// burn.c: energy `paper`: heat, exposure, parting. Then, with either energy, what follows from what
+// was removed.
 void cau_session_burn(cau_session *session);
+void cau_session_end_burn(cau_session *session);
 // Removes the elements from number `first` of the tick's list on from the local step, and puts them
 // on the list of the factor.
 void cau_session_take_out(cau_session *session, int32_t first);

@@ -113,6 +113,17 @@ static void take_dissection(cau_session *session, const snapshot_state *state)
 	       (size_t)state->head.over_count * sizeof *state->over);
 }
 
+static void take_cells(cau_session *session, snapshot_state *state)
+{
+	if (!session->cells)
+		return;
+	cau_tissue_cells *cells = state->cells;
+	for (int32_t cell = 0; cell < cells->bioheat.cells.count; cell++)
+		if (cells->bioheat.cells.severed[cell])
+			cau_cells_sever(&cells->bioheat.cells, cell);
+	cau_tissue_cells_copy(session->cells, cells);
+}
+
 static void take_reals(void *const *to, void *const *from, int count, int32_t slots, bool single)
 {
 	for (int i = 0; i < count; i++)
@@ -292,6 +303,7 @@ static cau_status take(cau_session *session, snapshot_state *state, cau_error *e
 	take_vertices(session, state);
 	take_elements(session, state);
 	take_contact(session, state);
+	take_cells(session, state);
 	take_lists(session, state);
 	session->watch.left_m = 0;
 	session->energy.stale = session->spin.stale = true;
@@ -331,6 +343,8 @@ uint64_t cau_session_hash(const cau_session *session)
 	size_t doses = (size_t)cau_dissection_dose_count(&session->dissection);
 	hash = cau_hash_bytes(hash, session->dissection.doses.dose, doses * sizeof(double));
 	hash = cau_hash_bytes(hash, session->dissection.doses.gone, doses);
+	if (session->cells)
+		hash = cau_tissue_cells_hash(session->cells, hash);
 	const cau_tears *tears = &session->dissection.tears;
 	if (tears->over_count) // what tears nothing has the hash that it had before there were tears
 		hash = cau_hash_bytes(hash, tears->over, (size_t)tears->over_count * sizeof *tears->over);

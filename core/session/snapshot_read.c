@@ -112,6 +112,12 @@ static cau_status make_copies(const cau_session *session, snapshot_state *state,
 		state->layer[i] = tissue->layer[i].def;
 	state->elements = session->solver.elements;
 	copy_elements(&copies, &state->elements);
+	state->cells = session->cells ? array(&copies, 1, sizeof *state->cells) : NULL;
+	if (state->cells &&
+	    cau_tissue_cells_create(state->cells, &session->tissue, session->scene->cell_m,
+	                            session->cells->bioheat.cells.capacity, session->scene->ambient_c,
+	                            &state->copies, error))
+		copies.missing = true;
 	make_columns(&copies, session, state);
 	return copies.missing ? cau_fail(error, CAU_NO_MEMORY, NULL, "no memory to restore") : CAU_OK;
 }

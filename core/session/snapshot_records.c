@@ -116,6 +116,8 @@ static void pass_measured(snapshot_archive *archive, cau_tool_state *state)
 	cau_snapshot_doubles(archive, "tip_temperature_c", &state->tip_temperature_c, 1, coldest_c,
 	                     warmest_c);
 	pass_any(archive, "energy_j", &state->energy_j, 1);
+	pass_any(archive, "delivered_w", &state->delivered_w, 1);
+	pass_any(archive, "load_ohm", &state->load_ohm, 1);
 	pass_int(archive, "slips", &state->slips, 0, INT32_MAX / 2);
 }
 
@@ -155,6 +157,12 @@ void cau_snapshot_pass_tool(snapshot_archive *archive, const cau_session *sessio
 	cau_snapshot_doubles(archive, "least opening of jaws", &tool->least_open_rad, 1, -most_turn,
 	                     most_turn);
 	cau_snapshot_doubles(archive, "pace of a tool", &tool->pace, 1, 0, 1);
+	double blade_c = tool->blade.temperature_c;
+	cau_snapshot_doubles(archive, "temperature of a blade", &blade_c, 1, coldest_c, warmest_c);
+	if (archive->mode == SNAPSHOT_READ && !archive->wrong) {
+		tool->blade = cau_session_blade_of(session, &tool->state.definition);
+		tool->blade.temperature_c = blade_c;
+	}
 	pass_int(archive, "points in jaws", &tool->grasp_count, 0, CAU_MAX_GRASPED);
 	for (int32_t k = 0; k < tool->grasp_count && !archive->wrong; k++)
 		pass_grasp(archive, &session->tissue, &tool->grasp[k]);

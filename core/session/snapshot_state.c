@@ -178,7 +178,8 @@ void cau_snapshot_view(const cau_session *session, cau_layer_def *layer, snapsho
 	                          .column = own->contact.column,
 	                          .inverse = own->contact.inverse,
 	                          .quiet_from = own->rest.from,
-	                          .exempt_before = own->collide.exempt_before};
+	                          .exempt_before = own->collide.exempt_before,
+	                          .cells = own->cells};
 	view_head(session, &state->head);
 }
 
@@ -352,6 +353,50 @@ static void pass_memory(snapshot_archive *archive, const cau_session *session,
 	}
 }
 
+static void pass_filled(snapshot_archive *archive, cau_tissue_cells *cells)
+{
+	int32_t most = cau_tissue_cells_elements(cells), count = cells->filled_count;
+	cau_snapshot_ints(archive, "elements with cells", &count, 1, 0, most);
+	for (int32_t k = 0; k < count && !archive->wrong; k++) {
+		int32_t element = archive->mode == SNAPSHOT_READ ? 0 : cells->filled[k];
+		cau_snapshot_ints(archive, "element with cells", &element, 1, 0, (int64_t)most - 1);
+		if (archive->mode != SNAPSHOT_READ || archive->wrong)
+			continue;
+		if (cells->is_filled[element] || !cau_tissue_cells_fill(cells, element))
+			cau_snapshot_refuse(archive, "element with cells");
+	}
+}
+
+// Which cells there are follows from the elements in their order. Reading makes them.
+static void pass_cells(snapshot_archive *archive, cau_tissue_cells *cells)
+{
+	static const double coldest_c = -300, hottest_c = 1e6, most_pull = 100;
+	pass_filled(archive, cells);
+	cau_bioheat *bioheat = &cells->bioheat;
+	size_t count = (size_t)bioheat->cells.count;
+	int32_t announced = (int32_t)count;
+	cau_snapshot_ints(archive, "cells", &announced, 1, (int64_t)count, (int64_t)count);
+	if (archive->wrong)
+		return;
+	cau_snapshot_octets(archive, "severed cell", bioheat->cells.severed, count, 1);
+	cau_snapshot_floats(archive, "fill of a cell", bioheat->cells.fill, count, 1e-6, 1);
+	cau_snapshot_floats(archive, "pull of a cell", bioheat->cells.pull, 3 * count, 1 / most_pull,
+	                    most_pull);
+	cau_snapshot_doubles(archive, "temperature of a cell", bioheat->temperature, count, coldest_c,
+	                     hottest_c);
+	cau_snapshot_doubles(archive, "water of a cell", bioheat->water, count, 0, 1);
+	cau_snapshot_doubles(archive, "damage of a cell", bioheat->damage, count, 0, SNAPSHOT_ANY);
+	cau_snapshot_doubles(archive, "potential of a cell", cells->current.potential, count,
+	                     -SNAPSHOT_ANY, SNAPSHOT_ANY);
+	cau_snapshot_bool(archive, "cold cells", &bioheat->cold);
+	cau_energy_ledger *ledger = &bioheat->ledger;
+	double *energy[] = {&ledger->delivered_j, &ledger->far_j,    &ledger->blade_j,
+	                    &ledger->stored_j,    &ledger->boiled_j, &ledger->perfused_j,
+	                    &ledger->shed_j};
+	for (size_t i = 0; i < sizeof energy / sizeof *energy; i++)
+		cau_snapshot_doubles(archive, "energy", energy[i], 1, -SNAPSHOT_ANY, SNAPSHOT_ANY);
+}
+
 void cau_snapshot_pass_state(snapshot_archive *archive, const cau_session *session,
                              snapshot_state *state)
 {
@@ -364,6 +409,8 @@ void cau_snapshot_pass_state(snapshot_archive *archive, const cau_session *sessi
 	pass_update(archive, session, state);
 	pass_columns(archive, session, state);
 	pass_memory(archive, session, state);
+	if (state->cells)
+		pass_cells(archive, state->cells);
 	for (int32_t i = 0; i < state->head.command_count && !archive->wrong; i++)
 		cau_snapshot_pass_command(archive, &state->command[i]);
 	for (int32_t i = 0; i < state->head.tool_count && !archive->wrong; i++)

@@ -12,10 +12,10 @@
 #include "session/snapshot_bytes.h"
 
 enum {
-	// 10: explicit bytes with ranges. Earlier versions were memory as it lay there; no release
-	// wrote
-	// them, and none is read.
-	CAU_SNAPSHOT_VERSION = 10,
+	// 11: a tool's generator and blade; cells of tissue. No release wrote earlier versions, and
+	// none
+	// is read.
+	CAU_SNAPSHOT_VERSION = 11,
 	CAU_SNAPSHOT_HASH_BYTES = 8, // the last
 	CAU_SNAPSHOT_ISA_BYTES = 16,
 };
@@ -64,6 +64,7 @@ typedef struct snapshot_state {
 	double *inverse;                        // (CAU_MAX_COLUMNS x CAU_MAX_COLUMNS)
 	double *quiet_from;                     // m, (vertex_count x 3)
 	uint8_t *exempt_before;                 // (vertex_count), with a contact thickness
+	cau_tissue_cells *cells;                // with energy `tissue`
 	cau_arena copies;                       // read: what all of this lies in
 } snapshot_state;
 

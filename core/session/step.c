@@ -230,7 +230,11 @@ cau_status cau_session_step(cau_session *session, cau_error *error)
 	cau_session_read_forces(session); // touch.c
 	end_solve_stages(session);
 	cau_session_tear(session); // tear.c
-	cau_session_burn(session); // eq. 18-21: burn.c
+	if (session->cells)
+		cau_session_operate(session); // electrosurgery.c
+	else
+		cau_session_burn(session); // eq. 18-21: burn.c
+	cau_session_end_burn(session);
 	cau_session_stage_end(session, CAU_STAGE_HEAT);
 	freeze_isolated(session);
 	cau_session_stop_strays(session); // stray.c

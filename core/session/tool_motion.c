@@ -32,6 +32,7 @@ cau_status cau_session_add_tool(cau_session *session, const cau_tool_def *def, c
 	tool->state.pose = tool->state.asked_pose = tool->anchor = def->pose;
 	tool->target = tool->pose_before = tool->anchor_before = def->pose;
 	tool->pace = 1;
+	tool->blade = cau_session_blade_of(session, def);
 	tool->state.jaw = tool->state.asked_jaw = tool->jaw_target = tool->jaw_before = 1;
 	tool->state.tip_temperature_c = session->scene->ambient_c;
 	session->tool_count++;

@@ -9,10 +9,11 @@
 static const double filter_s = 0.02;   // time constant of the reported force
 static const double drag_share = 0.25; // of a vertex's diagonal in A that drag may add
 
-// Cold parts push; the hot part pushes too while it is off.
-static cau_tool_part pushing_part(const cau_tool *tool)
+// Cold parts push. The hot part pushes too while it is off, and with energy `tissue` always: it is
+// the tissue there that goes.
+static cau_tool_part pushing_part(const cau_session *session, const cau_tool *tool)
 {
-	return tool->state.energized ? CAU_PART_COLD : CAU_PART_BOTH;
+	return tool->state.energized && !session->cells ? CAU_PART_COLD : CAU_PART_BOTH;
 }
 
 static cau_contact_row contact_row(const cau_session *session, const cau_tool *tool, int32_t index,
@@ -26,8 +27,8 @@ static cau_contact_row contact_row(const cau_session *session, const cau_tool *t
 	cau_vec3 start = cau_vec3_of(session->position_start + 3 * (size_t)vertex);
 	cau_vec3 local = cau_pose_to_local(&tool->pose_before, start);
 	cau_vec3_to(cau_pose_to_world(&tool->anchor, local), row.no_slip[0]);
-	double start_m = cau_tool_distance(&tool->state.definition, tool->state.jaw, pushing_part(tool),
-	                                   local, &side);
+	double start_m = cau_tool_distance(&tool->state.definition, tool->state.jaw,
+	                                   pushing_part(session, tool), local, &side);
 	if (cau_session_feels_faces(tool) && start_m > 0)
 		cau_vec3_to(side, row.side); // else it may leave as it can
 	row.slack_m = cau_contact_slack(start_m, session->solver.step_s);
@@ -59,7 +60,7 @@ static double least_gap(const cau_session *session, const cau_tool *tool, int32_
                         double margin_m)
 {
 	const cau_tool_state *state = &tool->state;
-	cau_tool_part part = pushing_part(tool);
+	cau_tool_part part = pushing_part(session, tool);
 	size_t at = 3 * (size_t)vertex;
 	double least = cau_tool_distance_at(&state->definition, &state->pose, state->jaw, part,
 	                                    cau_vec3_of(session->position + at), NULL);
@@ -102,12 +103,12 @@ static int32_t collect(cau_session *session, int32_t index, cau_touching *list)
 	double margin = cau_session_margin(def), radius;
 	int32_t count = 0;
 	cau_vec3 center;
-	cau_tool_bound(def, pushing_part(tool), &center, &radius);
+	cau_tool_bound(def, pushing_part(session, tool), &center, &radius);
 	center = cau_pose_to_world(&tool->state.pose, center);
 	for (int32_t b = 0; b < session->near.block_count; b++) {
 		const cau_box *box = &session->near.vertex_box[b];
 		if (!cau_box_meets(box, center, radius + margin) ||
-		    !cau_session_may_meet(tool, pushing_part(tool), box, margin + in_float_m))
+		    !cau_session_may_meet(tool, pushing_part(session, tool), box, margin + in_float_m))
 			continue;
 		int32_t last = (b + 1) * CAU_NEAR_BLOCK;
 		for (int32_t i = b * CAU_NEAR_BLOCK; i < last && i < session->tissue.vertex_count; i++) {
@@ -142,7 +143,7 @@ static void add_drag(cau_session *session, int32_t index)
 	cau_step_solver *solver = &session->solver;
 	double radius;
 	cau_vec3 center;
-	if (!tool->state.energized || def->drag_ns_m == 0)
+	if (!tool->state.energized || session->cells || def->drag_ns_m == 0)
 		return;
 	cau_tool_bound(def, CAU_PART_HOT, &center, &radius);
 	center = cau_pose_to_world(&tool->state.pose, center);
@@ -178,7 +179,7 @@ static void describe_tools(cau_session *session)
 			.held_back = held_back,
 			.def = &tool->state.definition,
 			.jaw = tool->state.jaw,
-			.part = (int)pushing_part(tool),
+			.part = (int)pushing_part(session, tool),
 		};
 	}
 	cau_session_couple(session);
@@ -216,7 +217,7 @@ void cau_session_find_contacts(cau_session *session)
 	for (int32_t i = 0; i < session->tool_count; i++) {
 		add_vertices(session, i);
 		if (cau_session_feels_faces(&session->tool[i]))
-			cau_session_reach_again(session, i, pushing_part(&session->tool[i]));
+			cau_session_reach_again(session, i, pushing_part(session, &session->tool[i]));
 		add_drag(session, i);
 	}
 	if (session->contact.row_count)
@@ -255,7 +256,7 @@ bool cau_session_find_missed(cau_session *session)
 	session->farthest_m = cau_session_farthest(session);
 	for (int32_t i = 0; i < session->tool_count; i++)
 		if (cau_session_feels_faces(&session->tool[i]))
-			cau_session_reach(session, i, pushing_part(&session->tool[i]));
+			cau_session_reach(session, i, pushing_part(session, &session->tool[i]));
 	if (set->row_count == rows && !set->face_count)
 		return false;
 	if (first)

@@ -93,17 +93,27 @@ static void heat_vertices(cau_session *session)
 		cau_frame_heat(&session->frame, &session->near, &session->tool[i].grid, session->position);
 }
 
+// With energy `tissue` the tools' grids stay at ambient.
+static void heat_by_cells(cau_session *session)
+{
+	for (int32_t v = 0; session->cells && v < session->tissue.vertex_count; v++)
+		cau_frame_heat_vertex(&session->frame, v,
+		                      (float)cau_tissue_cells_temperature(session->cells, v));
+}
+
 static void make_temperature(cau_session *session)
 {
 	cau_frame_cool(&session->frame, &session->tissue, session->scene->ambient_c);
 	cau_near_refit(&session->near, session->position);
 	heat_vertices(session);
+	heat_by_cells(session);
 }
 
 static void follow_temperature(cau_session *session)
 {
 	cau_frame_cool_heated(&session->frame);
 	heat_vertices(session);
+	heat_by_cells(session);
 }
 
 // How a scalar is made while somebody watches it: from the state alone, and after a step that

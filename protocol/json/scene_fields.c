@@ -7,6 +7,7 @@
 CHOICES(solver_choices, CAU_SOLVER_TABLE)
 CHOICES(precision_choices, CAU_PRECISION_TABLE)
 CHOICES(parting_choices, CAU_PARTING_TABLE)
+CHOICES(energy_choices, CAU_ENERGY_TABLE)
 CHOICES(mesh_source_choices, CAU_MESH_SOURCE_TABLE)
 CHOICES_OF_WORDS(model_choices, CAU_MODEL_TABLE)
 CHOICES(limit_choices, CAU_LIMIT_TABLE)
@@ -27,6 +28,9 @@ static const cau_field scene_fields[] = {
 	{CHOICE(parting, parting_choices,
             "what heat parts: edges with all that share them, as in the paper, or "
             "elements one by one, so that a cut does not depend on the mesh")},
+	{CHOICE(energy, energy_choices,
+            "what an energized tool does: `paper` holds a temperature; `tissue` gives power, "
+            "boils water and parts elements, and needs parting `elements`")},
 	{OTHER(seed, COUNT, "of everything drawn at random")},
 	{VECTOR(gravity_m_s2, 3, -CAU_GRAVITY_MOST_M_S2, CAU_GRAVITY_MOST_M_S2, "m/s^2", "gravity")},
 };

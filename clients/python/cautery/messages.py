@@ -1530,6 +1530,18 @@ class Tool(TypedDict):
     # its jaws press what they hold with this at most (0.01 to 1000 N)
     close_force_n: NotRequired[float]
 
+    # power that is set, with energy `tissue` (0 to 400 W)
+    power_w: NotRequired[float]
+
+    # most voltage, peak; from 200 V on it sparks and cuts (1 to 10000 V)
+    peak_v: NotRequired[float]
+
+    # of the voltage: its peak over its root mean square (1.4 to 20)
+    crest_factor: NotRequired[float]
+
+    # most current, root mean square (0.01 to 10 A)
+    current_max_a: NotRequired[float]
+
     # first place of the tip (-100 to 100 m)
     position_m: NotRequired[Sequence[float]]
 
@@ -2036,6 +2048,9 @@ class Scene(TypedDict):
     # of tissue on tissue (0 to 2)
     contact_friction: NotRequired[float]
 
+    # side of the cells of heat, with energy `tissue` (0.0001 to 0.005 m)
+    cell_m: NotRequired[float]
+
     # iterations of a step at most; with `accuracy` 0, of each (1 to 1000)
     iterations: NotRequired[int]
 
@@ -2047,6 +2062,9 @@ class Scene(TypedDict):
 
     # what heat parts: edges with all that share them, as in the paper, or elements one by one, so that a cut does not depend on the mesh
     parting: NotRequired[Literal["edges", "elements"]]
+
+    # what an energized tool does: `paper` holds a temperature; `tissue` gives power, boils water and parts elements, and needs parting `elements`
+    energy: NotRequired[Literal["paper", "tissue"]]
 
     # of everything drawn at random (0 to 9007199254740991)
     seed: NotRequired[int]
@@ -2141,6 +2159,18 @@ class ToolAdd(TypedDict):
 
     # its jaws press what they hold with this at most (0.01 to 1000 N)
     close_force_n: NotRequired[float]
+
+    # power that is set, with energy `tissue` (0 to 400 W)
+    power_w: NotRequired[float]
+
+    # most voltage, peak; from 200 V on it sparks and cuts (1 to 10000 V)
+    peak_v: NotRequired[float]
+
+    # of the voltage: its peak over its root mean square (1.4 to 20)
+    crest_factor: NotRequired[float]
+
+    # most current, root mean square (0.01 to 10 A)
+    current_max_a: NotRequired[float]
 
     # name of the tool
     name: str
@@ -2242,6 +2272,18 @@ class ToolConfigure(TypedDict):
 
     # its jaws press what they hold with this at most (0.01 to 1000 N)
     close_force_n: NotRequired[float]
+
+    # power that is set, with energy `tissue` (0 to 400 W)
+    power_w: NotRequired[float]
+
+    # most voltage, peak; from 200 V on it sparks and cuts (1 to 10000 V)
+    peak_v: NotRequired[float]
+
+    # of the voltage: its peak over its root mean square (1.4 to 20)
+    crest_factor: NotRequired[float]
+
+    # most current, root mean square (0.01 to 10 A)
+    current_max_a: NotRequired[float]
 
 
 class ToolMove(TypedDict):
@@ -3221,6 +3263,10 @@ class Calls:
         slip_force_n: float | None = None,
         force_max_n: float | None = None,
         close_force_n: float | None = None,
+        power_w: float | None = None,
+        peak_v: float | None = None,
+        crest_factor: float | None = None,
+        current_max_a: float | None = None,
         name: str,
         position_m: Sequence[float] | None = None,
         rotation: Sequence[float] | None = None,
@@ -3249,6 +3295,10 @@ class Calls:
         slip_force_n: an attached vertex slips above this force (0 to 1000 N)
         force_max_n: the tool pushes with this at most; drivers read it (0.01 to 1000 N)
         close_force_n: its jaws press what they hold with this at most (0.01 to 1000 N)
+        power_w: power that is set, with energy `tissue` (0 to 400 W)
+        peak_v: most voltage, peak; from 200 V on it sparks and cuts (1 to 10000 V)
+        crest_factor: of the voltage: its peak over its root mean square (1.4 to 20)
+        current_max_a: most current, root mean square (0.01 to 10 A)
         name: name of the tool
         position_m: first place of the tip (-100 to 100 m)
         rotation: unit quaternion w, x, y, z: tool frame (shaft along +z) to world
@@ -3276,6 +3326,10 @@ class Calls:
             "slip_force_n": slip_force_n,
             "force_max_n": force_max_n,
             "close_force_n": close_force_n,
+            "power_w": power_w,
+            "peak_v": peak_v,
+            "crest_factor": crest_factor,
+            "current_max_a": current_max_a,
             "name": name,
             "position_m": position_m,
             "rotation": rotation,
@@ -3332,6 +3386,10 @@ class Calls:
         slip_force_n: float | None = None,
         force_max_n: float | None = None,
         close_force_n: float | None = None,
+        power_w: float | None = None,
+        peak_v: float | None = None,
+        crest_factor: float | None = None,
+        current_max_a: float | None = None,
     ) -> CommandResult:
         """`tool.configure`: replaces shape and sizes
 
@@ -3358,6 +3416,10 @@ class Calls:
         slip_force_n: an attached vertex slips above this force (0 to 1000 N)
         force_max_n: the tool pushes with this at most; drivers read it (0.01 to 1000 N)
         close_force_n: its jaws press what they hold with this at most (0.01 to 1000 N)
+        power_w: power that is set, with energy `tissue` (0 to 400 W)
+        peak_v: most voltage, peak; from 200 V on it sparks and cuts (1 to 10000 V)
+        crest_factor: of the voltage: its peak over its root mean square (1.4 to 20)
+        current_max_a: most current, root mean square (0.01 to 10 A)
         """
         return self.call("tool.configure", {
             "session": session,
@@ -3383,6 +3445,10 @@ class Calls:
             "slip_force_n": slip_force_n,
             "force_max_n": force_max_n,
             "close_force_n": close_force_n,
+            "power_w": power_w,
+            "peak_v": peak_v,
+            "crest_factor": crest_factor,
+            "current_max_a": current_max_a,
         })
 
     def tool_move(

@@ -201,7 +201,7 @@ typedef struct cau_tool_state {
 	double raw_force_n[3];  // unfiltered
 	double raw_torque_nm[3];
 	double tip_temperature_c;
-	double energy_j;   // heat taken up by tissue, rough
+	double energy_j;   // heat taken up by tissue; an estimate, with energy `tissue` by its ledger
 	uint64_t sequence; // last applied command's
 	// Commanded pose, within the speed limits. The tool is pulled there with force_max_n at most.
 	cau_pose asked_pose;
@@ -210,6 +210,8 @@ typedef struct cau_tool_state {
 	// Commanded opening of the jaws, within their speed; and the force with which they press what
 	// they hold, N at their tips, close_force_n at most.
 	double asked_jaw, jaw_force_n;
+	// With energy `tissue`, of the last tick: power given to tissue, and the load, or 0.
+	double delivered_w, load_ohm;
 } cau_tool_state;
 
 typedef struct cau_statistics {
@@ -315,6 +317,19 @@ cau_status cau_session_restore(cau_session *session, const void *bytes, size_t b
 
 // Hash of the whole state (positions, velocities, heat, exposure, removed elements, tools).
 uint64_t cau_session_hash(const cau_session *session);
+
+// Where the energy of instruments went since creation, J (core/bioheat/README.md). delivered_j +
+// blade_j is the sum of the others. All are 0 with energy `paper`.
+typedef struct cau_energy_ledger {
+	double delivered_j; // by current in tissue
+	double far_j;       // by current beyond the cells; not part of the sum
+	double blade_j;     // from blades into tissue; below 0: the other way
+	double stored_j;    // heat content of the tissue above ambient temperature
+	double boiled_j;    // taken along by water that boiled off
+	double perfused_j;  // taken along by blood
+	double shed_j;      // heat content of tissue that was removed
+} cau_energy_ledger;
+void cau_session_read_ledger(const cau_session *session, cau_energy_ledger *ledger);
 
 // Total mechanical quantities, for tests and plots.
 typedef struct cau_balance {

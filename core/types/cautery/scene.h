@@ -70,7 +70,8 @@ enum {
 	X(accuracy, 0.01, 0.0, 1.0, "1", "end a step at this error relative to its motion; 0: never")  \
 	X(contact_thickness_m, 0.0, 0.0, 0.01, "m",                                                    \
 	  "tissue keeps this far from tissue; 0: it crosses")                                          \
-	X(contact_friction, 0.1, 0.0, 2.0, "1", "of tissue on tissue")
+	X(contact_friction, 0.1, 0.0, 2.0, "1", "of tissue on tissue")                                 \
+	X(cell_m, 2.5e-4, 1e-4, 5e-3, "m", "side of the cells of heat, with energy `tissue`")
 
 #define CAU_SOLVER_TABLE(X) /* code, JSON name */                                                  \
 	X(CHOLESKY, "cholesky")                                                                        \
@@ -79,6 +80,9 @@ enum {
 #define CAU_PRECISION_TABLE(X)                                                                     \
 	X(SINGLE, "single")                                                                            \
 	X(DOUBLE, "double")
+#define CAU_ENERGY_TABLE(X)                                                                        \
+	X(PAPER, "paper")   /* a hot part has a temperature; tissue parts by its dose (section 6.2) */ \
+	X(TISSUE, "tissue") /* a generator gives power; tissue parts where its water has boiled off */
 #define CAU_PARTING_TABLE(X)                                                                       \
 	X(EDGES, "edges")       /* the paper's rule: an edge, and with it all that share it */         \
 	X(ELEMENTS, "elements") /* each triangle and tetrahedron by the dose at its middle */
@@ -262,7 +266,11 @@ typedef struct cau_selection {
 	X(grasp_stiffness_n_m, 200.0, 1.0, 1e6, "N/m", "of the attachment of one grasped vertex")      \
 	X(slip_force_n, 2.0, 0.0, 1000.0, "N", "an attached vertex slips above this force")            \
 	X(force_max_n, 20.0, 0.01, 1000.0, "N", "the tool pushes with this at most; drivers read it")  \
-	X(close_force_n, 8.0, 0.01, 1000.0, "N", "its jaws press what they hold with this at most")
+	X(close_force_n, 8.0, 0.01, 1000.0, "N", "its jaws press what they hold with this at most")    \
+	X(power_w, 30.0, 0.0, 400.0, "W", "power that is set, with energy `tissue`")                   \
+	X(peak_v, 1150.0, 1.0, 10000.0, "V", "most voltage, peak; from 200 V on it sparks and cuts")   \
+	X(crest_factor, 1.4, 1.4, 20.0, "1", "of the voltage: its peak over its root mean square")     \
+	X(current_max_a, 2.0, 0.01, 10.0, "A", "most current, root mean square")
 
 typedef struct cau_pose {
 	double position_m[3];
@@ -304,6 +312,7 @@ typedef struct cau_scene_def {
 	int solver;         // CAU_SOLVER_*
 	int precision;      // CAU_PRECISION_* of the local and global steps
 	int parting;        // CAU_PARTING_*: what heat parts
+	int energy;         // CAU_ENERGY_*: what an energized tool does to tissue
 	uint64_t seed;      // of everything drawn at random (ignition temperatures)
 	double gravity_m_s2[3];
 	int32_t mesh_count;
@@ -338,6 +347,12 @@ typedef enum cau_parting {
 #undef X
 		CAU_PARTING_COUNT
 } cau_parting;
+typedef enum cau_energy_law {
+#define X(code, name) CAU_ENERGY_##code,
+	CAU_ENERGY_TABLE(X)
+#undef X
+		CAU_ENERGY_COUNT
+} cau_energy_law;
 typedef enum cau_mesh_source {
 #define X(code, name) CAU_MESH_##code,
 	CAU_MESH_SOURCE_TABLE(X)

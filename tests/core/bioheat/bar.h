@@ -39,5 +39,5 @@ static inline void run(cau_bioheat *bioheat, cau_blade *blade, double seconds)
 {
 	static const double tick_s = 1.0 / 60;
 	for (double left = seconds; left > 1e-9; left -= tick_s)
-		assert_true(cau_bioheat_step(bioheat, blade, left < tick_s ? left : tick_s));
+		assert_true(cau_bioheat_step(bioheat, blade, blade ? 1 : 0, left < tick_s ? left : tick_s));
 }

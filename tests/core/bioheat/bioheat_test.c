@@ -141,7 +141,7 @@ static void a_boiling_front_moves_with_the_root_of_time(void **state)
 	double lambda = front_factor(dry_heat * 200 / (0.7 * BOILING)), time = 0;
 	for (int step = 0; step < 3; step++) {
 		for (double until = time + 10; time < until; time += 0.005)
-			assert_true(cau_bioheat_step(&bar, &wall, 0.005));
+			assert_true(cau_bioheat_step(&bar, &wall, 1, 0.005));
 		double front = 0;
 		for (int i = 0; i < LENGTH; i++)
 			front += (1 - bar.water[i]) * 2e-5;
@@ -202,7 +202,7 @@ static void the_ledger_closes(void **state)
 	run(&bar, &blade, 2);
 	cau_bioheat_take_out(&bar, 30);
 	run(&bar, &blade, 1);
-	const cau_ledger *ledger = &bar.ledger;
+	const cau_energy_ledger *ledger = &bar.ledger;
 	double stored = 0;
 	for (int i = 0; i < LENGTH; i++)
 		stored += cau_bioheat_capacity(&bar, i) * (bar.temperature[i] - 37);
@@ -232,7 +232,7 @@ static void a_step_that_is_too_long_is_refused(void **state)
 	(void)state;
 	cau_arena arena = {0};
 	cau_bioheat bar = bar_of(&plain_tissue, 5, 1e-6, 37, &arena);
-	assert_false(cau_bioheat_step(&bar, NULL, 1));
+	assert_false(cau_bioheat_step(&bar, NULL, 0, 1));
 	cau_arena_finish(&arena);
 }
 

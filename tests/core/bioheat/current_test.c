@@ -75,10 +75,10 @@ static double from_disc(cau_vec3 point, const double *size_m)
 	return hypot(point.x, point.y) - size_m[0];
 }
 
-typedef struct cau_stage {
+typedef struct electrode_stage {
 	cau_bioheat bioheat;
 	cau_current current;
-} cau_stage;
+} electrode_stage;
 
 static cau_vec3 middle_of(int32_t x, int32_t y, int32_t z)
 {
@@ -86,8 +86,8 @@ static cau_vec3 middle_of(int32_t x, int32_t y, int32_t z)
 }
 
 // Tissue outside the electrode, within `reach` cells of it, in `layers` layers of cells.
-static void fill(cau_stage *stage, distance_function *distance, const double *size_m, int reach,
-                 int lowest, int layers)
+static void fill(electrode_stage *stage, distance_function *distance, const double *size_m,
+                 int reach, int lowest, int layers)
 {
 	for (int z = lowest; z < lowest + layers; z++)
 		for (int y = -reach; y < reach; y++)
@@ -100,7 +100,7 @@ static void fill(cau_stage *stage, distance_function *distance, const double *si
 
 // Cells beside the electrode have its potential where its surface is, on the way to the neighbour
 // that is within.
-static void touch(cau_stage *stage, distance_function *distance, const double *size_m)
+static void touch(electrode_stage *stage, distance_function *distance, const double *size_m)
 {
 	const cau_cells *cells = &stage->bioheat.cells;
 	for (int32_t i = 0; i < cells->count; i++) {
@@ -119,16 +119,17 @@ static void touch(cau_stage *stage, distance_function *distance, const double *s
 	}
 }
 
-static cau_stage make_stage(cau_bioheat_material *material, int32_t capacity, cau_arena *arena)
+static electrode_stage make_stage(cau_bioheat_material *material, int32_t capacity,
+                                  cau_arena *arena)
 {
-	cau_stage made;
+	electrode_stage made;
 	assert_int_equal(
 		cau_bioheat_create(&made.bioheat, SIDE_M, capacity, material, 1, 37, arena, NULL), CAU_OK);
 	assert_int_equal(cau_current_create(&made.current, &made.bioheat, arena, NULL), CAU_OK);
 	return made;
 }
 
-static void assert_heat_is_what_the_current_does(cau_stage *stage)
+static void assert_heat_is_what_the_current_does(electrode_stage *stage)
 {
 	double sum = 0;
 	cau_current_heat(&stage->current, &stage->bioheat, 1);
@@ -142,11 +143,11 @@ static void a_sphere_in_tissue_without_end(void **state)
 	(void)state;
 	cau_bioheat_material material = plain_tissue;
 	cau_arena arena = {0};
-	cau_stage stage = make_stage(&material, 48 * 48 * 48, &arena);
+	electrode_stage stage = make_stage(&material, 48 * 48 * 48, &arena);
 	const double size_m[] = {8 * SIDE_M};
 	fill(&stage, from_sphere, size_m, 24, -24, 48);
 	touch(&stage, from_sphere, size_m);
-	solve(&stage.current, &stage.bioheat, 21 * SIDE_M, true);
+	solve(&stage.current, &stage.bioheat, 12 * SIDE_M, true);
 	assert_within(1 / stage.current.conductance_s, 1 / (4 * PI * SIGMA * size_m[0]), 0.01);
 	assert_heat_is_what_the_current_does(&stage);
 	cau_arena_finish(&arena);
@@ -157,11 +158,11 @@ static void a_needle_in_tissue_without_end(void **state)
 	(void)state;
 	cau_bioheat_material material = plain_tissue;
 	cau_arena arena = {0};
-	cau_stage stage = make_stage(&material, 64 * 64 * 64, &arena);
+	electrode_stage stage = make_stage(&material, 64 * 64 * 64, &arena);
 	const double size_m[] = {4 * SIDE_M, 12 * SIDE_M};
 	fill(&stage, from_spheroid, size_m, 32, -32, 64);
 	touch(&stage, from_spheroid, size_m);
-	solve(&stage.current, &stage.bioheat, 29 * SIDE_M, true);
+	solve(&stage.current, &stage.bioheat, 18 * SIDE_M, true);
 	double e = sqrt(1 - 1.0 / 9);
 	assert_within(1 / stage.current.conductance_s, atanh(e) / (4 * PI * SIGMA * size_m[1] * e),
 	              0.01);
@@ -169,20 +170,20 @@ static void a_needle_in_tissue_without_end(void **state)
 	cau_arena_finish(&arena);
 }
 
-// The return electrode is 0.2 m away.
+// The return electrode is 30 mm away.
 static void a_disc_in_a_sheet(void **state)
 {
 	(void)state;
 	cau_bioheat_material material = plain_tissue;
 	material.sheet = true;
 	cau_arena arena = {0};
-	cau_stage stage = make_stage(&material, 80 * 80, &arena);
+	electrode_stage stage = make_stage(&material, 80 * 80, &arena);
 	const double size_m[] = {10 * SIDE_M};
 	fill(&stage, from_disc, size_m, 40, 0, 1);
 	touch(&stage, from_disc, size_m);
-	solve(&stage.current, &stage.bioheat, 37 * SIDE_M, true);
-	assert_within(1 / stage.current.conductance_s, log(0.2 / size_m[0]) / (2 * PI * SIGMA * SIDE_M),
-	              0.01);
+	solve(&stage.current, &stage.bioheat, 27 * SIDE_M, true);
+	assert_within(1 / stage.current.conductance_s,
+	              log(0.03 / size_m[0]) / (2 * PI * SIGMA * SIDE_M), 0.01);
 	cau_arena_finish(&arena);
 }
 

@@ -1026,6 +1026,14 @@ export interface Tool {
   force_max_n?: number;
   /** its jaws press what they hold with this at most (0.01 to 1000 N) */
   close_force_n?: number;
+  /** power that is set, with energy `tissue` (0 to 400 W) */
+  power_w?: number;
+  /** most voltage, peak; from 200 V on it sparks and cuts (1 to 10000 V) */
+  peak_v?: number;
+  /** of the voltage: its peak over its root mean square (1.4 to 20) */
+  crest_factor?: number;
+  /** most current, root mean square (0.01 to 10 A) */
+  current_max_a?: number;
   /** first place of the tip (-100 to 100 m) */
   position_m?: [number, number, number];
   /** unit quaternion w, x, y, z: tool frame (shaft along +z) to world */
@@ -1377,6 +1385,8 @@ export interface Scene {
   contact_thickness_m?: number;
   /** of tissue on tissue (0 to 2) */
   contact_friction?: number;
+  /** side of the cells of heat, with energy `tissue` (0.0001 to 0.005 m) */
+  cell_m?: number;
   /** iterations of a step at most; with `accuracy` 0, of each (1 to 1000) */
   iterations?: number;
   /** global system; `newton`: and Newton's method for all sheets */
@@ -1385,6 +1395,8 @@ export interface Scene {
   precision?: 'single' | 'double';
   /** what heat parts: edges with all that share them, as in the paper, or elements one by one, so that a cut does not depend on the mesh */
   parting?: 'edges' | 'elements';
+  /** what an energized tool does: `paper` holds a temperature; `tissue` gives power, boils water and parts elements, and needs parting `elements` */
+  energy?: 'paper' | 'tissue';
   /** of everything drawn at random (0 to 9007199254740991) */
   seed?: number;
   /** gravity (-100 to 100 m/s^2) */
@@ -1449,6 +1461,14 @@ export interface ToolAdd {
   force_max_n?: number;
   /** its jaws press what they hold with this at most (0.01 to 1000 N) */
   close_force_n?: number;
+  /** power that is set, with energy `tissue` (0 to 400 W) */
+  power_w?: number;
+  /** most voltage, peak; from 200 V on it sparks and cuts (1 to 10000 V) */
+  peak_v?: number;
+  /** of the voltage: its peak over its root mean square (1.4 to 20) */
+  crest_factor?: number;
+  /** most current, root mean square (0.01 to 10 A) */
+  current_max_a?: number;
   /** name of the tool */
   name: string;
   /** first place of the tip (-100 to 100 m) */
@@ -1519,6 +1539,14 @@ export interface ToolConfigure {
   force_max_n?: number;
   /** its jaws press what they hold with this at most (0.01 to 1000 N) */
   close_force_n?: number;
+  /** power that is set, with energy `tissue` (0 to 400 W) */
+  power_w?: number;
+  /** most voltage, peak; from 200 V on it sparks and cuts (1 to 10000 V) */
+  peak_v?: number;
+  /** of the voltage: its peak over its root mean square (1.4 to 20) */
+  crest_factor?: number;
+  /** most current, root mean square (0.01 to 10 A) */
+  current_max_a?: number;
 }
 
 /** moves it, at its speed limit; needs to be its driver */
@@ -2164,6 +2192,8 @@ export const PARAMETERS = {
       meaning: "tissue keeps this far from tissue; 0: it crosses" },
     { name: 'contact_friction', unit: '1', least: 0, most: 2, default: 0.1,
       meaning: "of tissue on tissue" },
+    { name: 'cell_m', unit: 'm', least: 0.0001, most: 0.005, default: 0.00025,
+      meaning: "side of the cells of heat, with energy `tissue`" },
   ],
   tool: [
     { name: 'hot_radius_m', unit: 'm', least: 0.0002, most: 0.05, default: 0.003,
@@ -2200,6 +2230,14 @@ export const PARAMETERS = {
       meaning: "the tool pushes with this at most; drivers read it" },
     { name: 'close_force_n', unit: 'N', least: 0.01, most: 1000, default: 8,
       meaning: "its jaws press what they hold with this at most" },
+    { name: 'power_w', unit: 'W', least: 0, most: 400, default: 30,
+      meaning: "power that is set, with energy `tissue`" },
+    { name: 'peak_v', unit: 'V', least: 1, most: 10000, default: 1150,
+      meaning: "most voltage, peak; from 200 V on it sparks and cuts" },
+    { name: 'crest_factor', unit: '1', least: 1.4, most: 20, default: 1.4,
+      meaning: "of the voltage: its peak over its root mean square" },
+    { name: 'current_max_a', unit: 'A', least: 0.01, most: 10, default: 2,
+      meaning: "most current, root mean square" },
   ],
   fascia: [
     { name: 'thickness_m', unit: 'm', least: 1e-06, most: 0.05, default: 0.0005,

@@ -1,0 +1,473 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "bioheat/tissue_cells.h"
+
+#include <math.h>
+#include <string.h>
+
+#include "base/hash.h"
+#include "cautery/assert.h"
+
+enum { SUBPOINTS = 3 }; // along each axis of a cell: its fill is counted in 27ths
+
+// Places of subpoints are shifted by so much of a cell, so that none lies on a face of a regular
+// mesh, which two elements would count.
+static const double shift[] = {0.0137, -0.0071, 0.0043};
+// Cells may conduct 25 times as well or as badly across an element as at rest. Jaws compress to a
+// fifth; beyond that the element is flat.
+static const double most_pull = 25;
+
+// ---- materials (README.md)
+
+static const cau_bioheat_material sheet_tissue = {.conductivity_w_mk = 0.49,
+                                                  .density_kg_m3 = 1090,
+                                                  .specific_heat_j_kgk = 3421,
+                                                  .water = 0.75,
+                                                  .electric_s_m = 0.4,
+                                                  .perfusion_w_m3k = 12960,
+                                                  .damage_log_rate = 91.8, // of 7.39e39 1/s
+                                                  .damage_energy_j_mol = 2.577e5,
+                                                  .sheet = true};
+static const cau_bioheat_material fat_tissue = {.conductivity_w_mk = 0.21,
+                                                .density_kg_m3 = 911,
+                                                .specific_heat_j_kgk = 2348,
+                                                .water = 0.2,
+                                                .electric_s_m = 0.03,
+                                                .perfusion_w_m3k = 8065,
+                                                .damage_log_rate = 91.8,
+                                                .damage_energy_j_mol = 2.577e5};
+
+// ---- elements at rest
+
+typedef struct element_shape {
+	int count; // of vertices: 3 or 4
+	const int32_t *vertex;
+	uint8_t layer;
+	cau_vec3 rest[4];
+	double half_m; // of a sheet's thickness
+} element_shape;
+
+static element_shape shape_of(const cau_tissue *tissue, int32_t element)
+{
+	element_shape shape = {.count = 3};
+	if (element < tissue->triangle_count) {
+		shape.vertex = tissue->triangle + 3 * (size_t)element;
+		shape.layer = (uint8_t)tissue->triangle_layer[element];
+		shape.half_m = cau_triangle_material(tissue, element)->thickness_m / 2;
+	} else {
+		int32_t tetrahedron = element - tissue->triangle_count;
+		shape.count = 4;
+		shape.vertex = tissue->tetrahedron + 4 * (size_t)tetrahedron;
+		shape.layer = (uint8_t)tissue->tetrahedron_layer[tetrahedron];
+	}
+	for (int i = 0; i < shape.count; i++)
+		shape.rest[i] = cau_vec3_of(tissue->rest + 3 * (size_t)shape.vertex[i]);
+	return shape;
+}
+
+static cau_vec3 normal_of(const cau_vec3 corner[3])
+{
+	cau_vec3 normal = cau_cross(cau_sub(corner[1], corner[0]), cau_sub(corner[2], corner[0]));
+	return cau_unit_or(normal, (cau_vec3){0, 0, 1});
+}
+
+// The third edge of an element's frame: to its fourth vertex, or a triangle's normal.
+static cau_vec3 third_of(const cau_vec3 *corner, int count)
+{
+	return count == 4 ? cau_sub(corner[3], corner[0]) : normal_of(corner);
+}
+
+// Coordinates of a point along the edges from the first corner (Cramer's rule).
+static cau_vec3 coordinates(const element_shape *shape, cau_vec3 point)
+{
+	cau_vec3 a = cau_sub(shape->rest[1], shape->rest[0]);
+	cau_vec3 b = cau_sub(shape->rest[2], shape->rest[0]);
+	cau_vec3 c = third_of(shape->rest, shape->count), d = cau_sub(point, shape->rest[0]);
+	double volume = cau_dot(a, cau_cross(b, c));
+	return (cau_vec3){cau_dot(d, cau_cross(b, c)) / volume, cau_dot(a, cau_cross(d, c)) / volume,
+	                  cau_dot(a, cau_cross(b, d)) / volume};
+}
+
+// `margin_m`: by which a sheet counts as thicker on each side.
+static bool is_inside(const element_shape *shape, cau_vec3 point, double margin_m)
+{
+	cau_vec3 at = coordinates(shape, point);
+	if (at.x < 0 || at.y < 0)
+		return false;
+	if (shape->count == 3)
+		return at.x + at.y <= 1 && fabs(at.z) <= shape->half_m + margin_m;
+	return at.z >= 0 && at.x + at.y + at.z <= 1;
+}
+
+typedef struct cell_box {
+	int32_t least[3], most[3];
+} cell_box;
+
+static cell_box box_of(const element_shape *shape, double side_m)
+{
+	cell_box box;
+	for (int axis = 0; axis < 3; axis++) {
+		double least = INFINITY, most = -INFINITY;
+		for (int i = 0; i < shape->count; i++) {
+			double at = axis == 0   ? shape->rest[i].x
+			            : axis == 1 ? shape->rest[i].y
+			                        : shape->rest[i].z;
+			least = fmin(least, at);
+			most = fmax(most, at);
+		}
+		box.least[axis] = (int32_t)floor((least - shape->half_m) / side_m);
+		box.most[axis] = (int32_t)floor((most + shape->half_m) / side_m);
+	}
+	return box;
+}
+
+// Goes to the box's next place; false: there is none.
+static bool next_place(const cell_box *box, int32_t place[3])
+{
+	for (int axis = 0; axis < 3; axis++) {
+		if (++place[axis] <= box->most[axis])
+			return true;
+		place[axis] = box->least[axis];
+	}
+	return false;
+}
+
+static cau_vec3 point_in(const int32_t place[3], double side_m, const double within[3])
+{
+	return (cau_vec3){(place[0] + within[0]) * side_m, (place[1] + within[1]) * side_m,
+	                  (place[2] + within[2]) * side_m};
+}
+
+static const double in_the_middle[] = {0.5, 0.5, 0.5};
+
+// ---- filling
+
+cau_status cau_tissue_cells_create(cau_tissue_cells *cells, const cau_tissue *tissue, double side_m,
+                                   int32_t capacity, double ambient_c, cau_arena *arena,
+                                   cau_error *error)
+{
+	size_t most = (size_t)capacity;
+	*cells = (cau_tissue_cells){.tissue = tissue};
+	for (int32_t i = 0; i < tissue->layer_count; i++)
+		cells->material[i] = tissue->layer[i].def.kind == CAU_LAYER_FAT ? fat_tissue : sheet_tissue;
+	cau_status status = cau_bioheat_create(&cells->bioheat, side_m, capacity, cells->material,
+	                                       tissue->layer_count, ambient_c, arena, error);
+	if (!status)
+		status = cau_current_create(&cells->current, &cells->bioheat, arena, error);
+	if (status)
+		return status;
+	size_t elements = (size_t)cau_tissue_cells_elements(cells);
+	cells->filled = cau_arena_array(arena, elements, sizeof(int32_t));
+	cells->is_filled = cau_arena_array(arena, elements, 1);
+	cells->owner = cau_arena_array(arena, most, sizeof(int32_t));
+	cells->local = cau_arena_array(arena, 3 * most, sizeof(float));
+	cells->member = cau_arena_array(arena, most, sizeof(int32_t));
+	cells->stamp = cau_arena_array(arena, most, sizeof(int32_t));
+	if (!cells->filled || !cells->is_filled || !cells->owner || !cells->local || !cells->member ||
+	    !cells->stamp)
+		return cau_fail(error, CAU_NO_MEMORY, NULL, "no memory for %d cells of tissue", capacity);
+	return CAU_OK;
+}
+
+int32_t cau_tissue_cells_elements(const cau_tissue_cells *cells)
+{
+	return cells->tissue->triangle_count + cells->tissue->tetrahedron_count;
+}
+
+// Share of a cell that lies in the element.
+static float share_of(const element_shape *shape, const int32_t place[3], double side_m)
+{
+	int inside = 0;
+	for (int k = 0; k < SUBPOINTS * SUBPOINTS * SUBPOINTS; k++) {
+		const int step[] = {k % SUBPOINTS, k / SUBPOINTS % SUBPOINTS, k / SUBPOINTS / SUBPOINTS};
+		double within[3];
+		for (int axis = 0; axis < 3; axis++)
+			within[axis] = (step[axis] + 0.5) / SUBPOINTS + shift[axis];
+		inside += is_inside(shape, point_in(place, side_m, within), 0);
+	}
+	return (float)inside / (SUBPOINTS * SUBPOINTS * SUBPOINTS);
+}
+
+// Whether a cell may have a part in the element: its middle is not farther from it than its
+// corners.
+static bool may_meet(const element_shape *shape, const int32_t place[3], double side_m)
+{
+	cau_vec3 at = coordinates(shape, point_in(place, side_m, in_the_middle));
+	cau_vec3 a = cau_sub(shape->rest[1], shape->rest[0]);
+	cau_vec3 b = cau_sub(shape->rest[2], shape->rest[0]);
+	cau_vec3 c = third_of(shape->rest, shape->count);
+	double volume = fabs(cau_dot(a, cau_cross(b, c))), reach = sqrt(0.75) * side_m;
+	double x = reach * cau_length(cau_cross(b, c)) / volume;
+	double y = reach * cau_length(cau_cross(a, c)) / volume;
+	double z = reach * cau_length(cau_cross(a, b)) / volume;
+	if (at.x < -x || at.y < -y)
+		return false;
+	if (shape->count == 3)
+		return fabs(at.z) <= shape->half_m + reach && at.x + at.y <= 1 + x + y;
+	return at.z >= -z && at.x + at.y + at.z <= 1 + x + y + z;
+}
+
+static void fill_cell(cau_tissue_cells *cells, int32_t element, const element_shape *shape,
+                      const int32_t place[3], float share)
+{
+	cau_cells *grid = &cells->bioheat.cells;
+	int32_t cell = cau_cells_find(grid, place);
+	if (cell >= 0) {
+		if (!grid->severed[cell] && cells->bioheat.water[cell] >= 1)
+			grid->fill[cell] = fminf(grid->fill[cell] + share, 1);
+		return;
+	}
+	cell = cau_bioheat_add(&cells->bioheat, place, shape->layer, share);
+	CAU_ASSERT(cell >= 0, "no room for a cell of element %d", element);
+	cau_vec3 at = coordinates(shape, point_in(place, grid->side_m, in_the_middle));
+	cells->owner[cell] = element;
+	cells->local[cau_cell_axis(cell, 0)] = (float)at.x;
+	cells->local[cau_cell_axis(cell, 1)] = (float)at.y;
+	cells->local[cau_cell_axis(cell, 2)] = (float)at.z;
+}
+
+bool cau_tissue_cells_fill(cau_tissue_cells *cells, int32_t element)
+{
+	CAU_ASSERT_INDEX(element, cau_tissue_cells_elements(cells));
+	if (cells->is_filled[element])
+		return true;
+	double side_m = cells->bioheat.cells.side_m;
+	element_shape shape = shape_of(cells->tissue, element);
+	cell_box box = box_of(&shape, side_m);
+	int32_t place[3], wanted = 0;
+	memcpy(place, box.least, sizeof place);
+	do
+		wanted += may_meet(&shape, place, side_m);
+	while (next_place(&box, place));
+	if (wanted > cells->bioheat.cells.capacity - cells->bioheat.cells.count)
+		return false;
+	memcpy(place, box.least, sizeof place);
+	do {
+		float share = may_meet(&shape, place, side_m) ? share_of(&shape, place, side_m) : 0;
+		if (share > 0)
+			fill_cell(cells, element, &shape, place, share);
+	} while (next_place(&box, place));
+	cells->is_filled[element] = 1;
+	cells->filled[cells->filled_count++] = element;
+	return true;
+}
+
+// ---- where they are
+
+cau_vec3 cau_tissue_cells_at(const cau_tissue_cells *cells, int32_t cell, const double *position)
+{
+	element_shape shape = shape_of(cells->tissue, cells->owner[cell]);
+	const float *local = cells->local + cau_cell_axis(cell, 0);
+	cau_vec3 corner[4];
+	for (int i = 0; i < shape.count; i++)
+		corner[i] = cau_vec3_of(position + 3 * (size_t)shape.vertex[i]);
+	cau_vec3 at = cau_add(corner[0], cau_scale(local[0], cau_sub(corner[1], corner[0])));
+	at = cau_add(at, cau_scale(local[1], cau_sub(corner[2], corner[0])));
+	return cau_add(at, cau_scale(local[2], third_of(corner, shape.count)));
+}
+
+// With edges a, b, c at rest and A, B, C in the world, F^-1 takes A to a, and so on. Row `axis` of
+// F^-1 is combined from the world's reciprocal edges, and its square is the axis' entry of
+// F^-1 F^-T.
+void cau_tissue_cells_stretch(cau_tissue_cells *cells, int32_t cell, const double *position)
+{
+	element_shape shape = shape_of(cells->tissue, cells->owner[cell]);
+	cau_vec3 world[4], rest[3], edge[3];
+	for (int i = 0; i < shape.count; i++)
+		world[i] = cau_vec3_of(position + 3 * (size_t)shape.vertex[i]);
+	for (int i = 0; i < 2; i++) {
+		rest[i] = cau_sub(shape.rest[i + 1], shape.rest[0]);
+		edge[i] = cau_sub(world[i + 1], world[0]);
+	}
+	rest[2] = third_of(shape.rest, shape.count);
+	edge[2] = third_of(world, shape.count);
+	if (shape.count == 3) // a sheet keeps its volume: what it gains in area it loses in thickness
+		edge[2] = cau_scale(cau_length(cau_cross(rest[0], rest[1])) /
+		                        cau_length(cau_cross(edge[0], edge[1])),
+		                    edge[2]);
+	double before = cau_dot(rest[0], cau_cross(rest[1], rest[2]));
+	double now = cau_dot(edge[0], cau_cross(edge[1], edge[2])), ratio = now / before;
+	if (!(ratio > 0) || !isfinite(ratio))
+		return; // inside out or flat: it keeps what it had
+	cau_vec3 across[] = {cau_cross(edge[1], edge[2]), cau_cross(edge[2], edge[0]),
+	                     cau_cross(edge[0], edge[1])};
+	for (int axis = 0; axis < 3; axis++) {
+		cau_vec3 row = {0};
+		for (int i = 0; i < 3; i++) {
+			double along = axis == 0 ? rest[i].x : axis == 1 ? rest[i].y : rest[i].z;
+			row = cau_add(row, cau_scale(along / now, across[i]));
+		}
+		double pull = ratio * cau_dot(row, row);
+		cells->bioheat.cells.pull[cau_cell_axis(cell, axis)] =
+			(float)fmax(fmin(pull, most_pull), 1 / most_pull);
+	}
+}
+
+// ---- what holds together
+
+// Lists the cells whose middles are in the element. A sheet's may be up to half a cell outside.
+static int32_t list_members(cau_tissue_cells *cells, const element_shape *shape)
+{
+	const cau_cells *grid = &cells->bioheat.cells;
+	cell_box box = box_of(shape, grid->side_m);
+	int32_t place[3], count = 0;
+	memcpy(place, box.least, sizeof place);
+	do {
+		int32_t cell = cau_cells_find(grid, place);
+		if (cell >= 0 && !grid->severed[cell] &&
+		    is_inside(shape, point_in(place, grid->side_m, in_the_middle), grid->side_m / 2))
+			cells->member[count++] = cell;
+	} while (next_place(&box, place));
+	return count;
+}
+
+// Marks with a new stamp what of the members is joined with cell `from`. Members have the stamp
+// before it.
+static int32_t mark_joined(cau_tissue_cells *cells, int32_t count, int32_t from)
+{
+	int32_t members = ++cells->last_stamp, joined = ++cells->last_stamp, done = 0, found = 0;
+	for (int32_t i = 0; i < count; i++)
+		cells->stamp[cells->member[i]] = members;
+	cells->stamp[from] = joined;
+	cells->member[found++] = from;
+	while (done < found) {
+		int32_t cell = cells->member[done++];
+		for (int side = 0; side < CAU_CELL_SIDES; side++) {
+			int32_t other = cells->bioheat.cells.neighbour[cau_cell_side(cell, side)];
+			if (other < 0 || cells->stamp[other] != members)
+				continue;
+			cells->stamp[other] = joined;
+			cells->member[found++] = other;
+		}
+	}
+	return joined;
+}
+
+static int32_t cell_at(const cau_cells *grid, cau_vec3 rest)
+{
+	const int32_t place[] = {(int32_t)floor(rest.x / grid->side_m),
+	                         (int32_t)floor(rest.y / grid->side_m),
+	                         (int32_t)floor(rest.z / grid->side_m)};
+	return cau_cells_find(grid, place);
+}
+
+// The cell of an element's corner: between the corner and the element's middle. -1: it is gone.
+static int32_t corner_cell(const cau_tissue_cells *cells, const element_shape *shape, int corner)
+{
+	static const double inwards = 0.4;
+	const cau_cells *grid = &cells->bioheat.cells;
+	cau_vec3 middle = {0};
+	for (int i = 0; i < shape->count; i++)
+		middle = cau_add(middle, cau_scale(1.0 / shape->count, shape->rest[i]));
+	cau_vec3 at = cau_add(cau_scale(1 - inwards, shape->rest[corner]), cau_scale(inwards, middle));
+	int32_t cell = cell_at(grid, at);
+	return cell >= 0 && !grid->severed[cell] ? cell : -1;
+}
+
+bool cau_tissue_cells_separated(cau_tissue_cells *cells, int32_t element)
+{
+	if (!cells->is_filled[element])
+		return false;
+	element_shape shape = shape_of(cells->tissue, element);
+	int32_t first = corner_cell(cells, &shape, 0);
+	if (first < 0)
+		return true;
+	int32_t count = list_members(cells, &shape);
+	int32_t joined = mark_joined(cells, count, first);
+	for (int corner = 1; corner < shape.count; corner++) {
+		int32_t cell = corner_cell(cells, &shape, corner);
+		if (cell < 0 || cells->stamp[cell] != joined)
+			return true;
+	}
+	return false;
+}
+
+bool cau_tissue_cells_meets(const cau_tissue_cells *cells, int32_t element, const int32_t least[3],
+                            const int32_t most[3])
+{
+	element_shape shape = shape_of(cells->tissue, element);
+	cell_box box = box_of(&shape, cells->bioheat.cells.side_m);
+	for (int axis = 0; axis < 3; axis++)
+		if (box.least[axis] > most[axis] || box.most[axis] < least[axis])
+			return false;
+	return true;
+}
+
+int32_t cau_tissue_cells_between(const cau_tissue_cells *cells, int32_t a, int32_t b)
+{
+	const double *rest = cells->tissue->rest;
+	cau_vec3 sum = cau_add(cau_vec3_of(rest + 3 * (size_t)a), cau_vec3_of(rest + 3 * (size_t)b));
+	return cell_at(&cells->bioheat.cells, cau_scale(0.5, sum));
+}
+
+void cau_tissue_cells_remove(cau_tissue_cells *cells, int32_t element)
+{
+	if (!cells->is_filled[element])
+		return;
+	element_shape shape = shape_of(cells->tissue, element);
+	int32_t count = list_members(cells, &shape);
+	for (int32_t i = 0; i < count; i++)
+		cau_bioheat_take_out(&cells->bioheat, cells->member[i]);
+}
+
+// ---- snapshots
+
+static void copy_cells(cau_cells *to, const cau_cells *from)
+{
+	size_t count = (size_t)from->count;
+	to->count = from->count;
+	memcpy(to->place, from->place, 3 * count * sizeof *to->place);
+	memcpy(to->neighbour, from->neighbour, CAU_CELL_SIDES * count * sizeof *to->neighbour);
+	memcpy(to->material, from->material, count);
+	memcpy(to->fill, from->fill, count * sizeof *to->fill);
+	memcpy(to->pull, from->pull, 3 * count * sizeof *to->pull);
+	memcpy(to->severed, from->severed, count);
+	memcpy(to->bucket, from->bucket, (size_t)from->bucket_count * sizeof *to->bucket);
+}
+
+void cau_tissue_cells_copy(cau_tissue_cells *to, const cau_tissue_cells *from)
+{
+	CAU_ASSERT(to->bioheat.cells.capacity == from->bioheat.cells.capacity, "%d cells, not %d",
+	           to->bioheat.cells.capacity, from->bioheat.cells.capacity);
+	size_t count = (size_t)from->bioheat.cells.count;
+	copy_cells(&to->bioheat.cells, &from->bioheat.cells);
+	memcpy(to->bioheat.temperature, from->bioheat.temperature, count * sizeof(double));
+	memcpy(to->bioheat.water, from->bioheat.water, count * sizeof(double));
+	memcpy(to->bioheat.damage, from->bioheat.damage, count * sizeof(double));
+	memcpy(to->current.potential, from->current.potential, count * sizeof(double));
+	to->bioheat.ledger = from->bioheat.ledger;
+	to->bioheat.cold = from->bioheat.cold;
+	memcpy(to->owner, from->owner, count * sizeof *to->owner);
+	memcpy(to->local, from->local, 3 * count * sizeof *to->local);
+	to->filled_count = from->filled_count;
+	memcpy(to->filled, from->filled, (size_t)from->filled_count * sizeof *to->filled);
+	memcpy(to->is_filled, from->is_filled, (size_t)cau_tissue_cells_elements(from));
+}
+
+uint64_t cau_tissue_cells_hash(const cau_tissue_cells *cells, uint64_t hash)
+{
+	const cau_bioheat *bioheat = &cells->bioheat;
+	size_t bytes = (size_t)bioheat->cells.count * sizeof(double);
+	hash = cau_hash_word(hash, (uint64_t)bioheat->cells.count);
+	hash = cau_hash_bytes(hash, bioheat->temperature, bytes);
+	hash = cau_hash_bytes(hash, bioheat->water, bytes);
+	return cau_hash_bytes(hash, bioheat->damage, bytes);
+}
+
+double cau_tissue_cells_temperature(const cau_tissue_cells *cells, int32_t vertex)
+{
+	const cau_cells *grid = &cells->bioheat.cells;
+	const double *rest = cells->tissue->rest + 3 * (size_t)vertex;
+	double sum = 0;
+	int count = 0;
+	for (int corner = 0; corner < 8; corner++) { // the eight cells around it
+		const int32_t place[] = {(int32_t)floor(rest[0] / grid->side_m + (corner & 1) - 0.5),
+		                         (int32_t)floor(rest[1] / grid->side_m + (corner >> 1 & 1) - 0.5),
+		                         (int32_t)floor(rest[2] / grid->side_m + (corner >> 2) - 0.5)};
+		int32_t cell = cau_cells_find(grid, place);
+		if (cell < 0 || grid->severed[cell])
+			continue;
+		sum += cells->bioheat.temperature[cell];
+		count++;
+	}
+	return count ? sum / count : cells->bioheat.ambient_c;
+}

@@ -1,0 +1,64 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// The cells of a tissue: which cells an element fills, where they are in the world, and whether an
+// element still holds its vertices together. Triangles and tetrahedra have cells, links have none.
+#pragma once
+
+#include "base/vector.h"
+#include "bioheat/current.h"
+#include "tissue/tissue.h"
+
+typedef struct cau_tissue_cells {
+	const cau_tissue *tissue;
+	cau_bioheat bioheat;
+	cau_current current;
+	cau_bioheat_material material[CAU_MAX_LAYERS];
+	int32_t filled_count;
+	int32_t *filled;    // elements in the order of filling: triangles, then tetrahedra
+	uint8_t *is_filled; // (elements)
+	int32_t *owner;     // (capacity): the element that a cell moves with
+	float *local;       // (capacity x 3): its middle in the owner, by cau_tissue_cells_at
+	int32_t *member;    // scratch: (capacity)
+	int32_t *stamp;     // scratch: (capacity)
+	int32_t last_stamp;
+} cau_tissue_cells;
+
+// Room for `capacity` cells of side_m; none are there yet. CAU_NO_MEMORY.
+cau_status cau_tissue_cells_create(cau_tissue_cells *cells, const cau_tissue *tissue, double side_m,
+                                   int32_t capacity, double ambient_c, cau_arena *arena,
+                                   cau_error *error);
+
+// Elements that may have cells: triangles, and after them tetrahedra.
+int32_t cau_tissue_cells_elements(const cau_tissue_cells *cells);
+
+// Makes the cells of an element, at ambient temperature. Cells that it shares with elements that
+// were filled before are filled further. Nothing happens if it is filled already. Returns false if
+// there is no room for all its cells: then none is made.
+bool cau_tissue_cells_fill(cau_tissue_cells *cells, int32_t element);
+
+// The cell's middle in the world, where the tissue is at `position` (m, vertex_count x 3).
+cau_vec3 cau_tissue_cells_at(const cau_tissue_cells *cells, int32_t cell, const double *position);
+
+// Sets the cell's pull-back (cells.h) from the deformation of its owner.
+void cau_tissue_cells_stretch(cau_tissue_cells *cells, int32_t cell, const double *position);
+
+// Whether what is left of the element's cells no longer joins its vertices.
+bool cau_tissue_cells_separated(cau_tissue_cells *cells, int32_t element);
+
+// Whether the element may have cells with places from `least` to `most`.
+bool cau_tissue_cells_meets(const cau_tissue_cells *cells, int32_t element, const int32_t least[3],
+                            const int32_t most[3]);
+
+// The cell half way between two vertices at rest, also one that was taken out; -1: none.
+int32_t cau_tissue_cells_between(const cau_tissue_cells *cells, int32_t a, int32_t b);
+
+// Takes out what is left of an element that is no more.
+void cau_tissue_cells_remove(cau_tissue_cells *cells, int32_t element);
+
+// Makes `to` equal to `from`, which is of the same tissue and capacity.
+void cau_tissue_cells_copy(cau_tissue_cells *to, const cau_tissue_cells *from);
+
+// Continues `hash` over what cells hold.
+uint64_t cau_tissue_cells_hash(const cau_tissue_cells *cells, uint64_t hash);
+
+// degC at a vertex: of the cells around its rest position; ambient where there are none.
+double cau_tissue_cells_temperature(const cau_tissue_cells *cells, int32_t vertex);

@@ -1,0 +1,439 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Energy `tissue`: a generator's power goes through the tissue around a tool, heats it, boils its
+// water, and what is dry goes off in sparks (core/bioheat). An element parts when its cells no
+// longer hold its vertices together.
+#include <string.h>
+
+#include "bioheat/generator.h"
+#include "cautery/assert.h"
+#include "session/session_internal.h"
+
+enum {
+	CELLS_MOST = 1 << 16,
+	FILLED_A_TICK = 48, // elements that get cells: about a millisecond of work
+	ITERATIONS = 60,    // of the potential, which begins at that of the tick before
+};
+
+static const double filled_m = 4e-3;      // elements so near to a hot part get cells
+static const double reach_m = 3e-3;       // of the current's cells around an electrode
+static const double residual_most = 1e-3; // of the potential
+static const double spark_v = 200;        // peak, from which a metal electrode sparks to tissue
+static const double spark_v_m = 3e6;      // breakdown of air
+// An arc enters tissue through a spot, of about this radius (no measurement was found). Most of the
+// resistance is there, and most of the heat.
+static const double spot_m = 1e-4;
+static const double cold_k = 0.01;
+// Share of its water with which tissue bursts. Steam that is held by tissue of 1 MPa is at 180
+// degC: of water that is let off from there a sixth boils at once. At the other end all of it has
+// boiled. No measurement was found; a half is between them.
+static const double burst_share = 0.5;
+
+// ---- blades
+
+// Of the metal at the hot part, and what leads its heat away along the shaft: J/K and W/K. A wire
+// of 1 mm and 10 mm length has 0.03 J/K; jaws have cubic millimetres by the hundred.
+static const struct {
+	double heat_capacity_j_k, cooling_w_k;
+} blades[CAU_TOOL_SHAPE_COUNT] = {
+	[CAU_TOOL_SPHERE] = {0.4, 4e-3},  [CAU_TOOL_CAPSULE] = {0.05, 2e-3},
+	[CAU_TOOL_HOOK] = {0.05, 2e-3},   [CAU_TOOL_SPATULA] = {0.1, 3e-3},
+	[CAU_TOOL_BIPOLAR] = {0.5, 1e-2}, [CAU_TOOL_SHEARS] = {0.5, 1.5e-2},
+	[CAU_TOOL_GRASPER] = {0.5, 1e-2},
+};
+
+cau_blade cau_session_blade_of(const cau_session *session, const cau_tool_def *def)
+{
+	CAU_ASSERT_INDEX(def->shape, CAU_TOOL_SHAPE_COUNT);
+	return (cau_blade){.temperature_c = session->scene->ambient_c,
+	                   .heat_capacity_j_k = blades[def->shape].heat_capacity_j_k,
+	                   .cooling_w_k = blades[def->shape].cooling_w_k};
+}
+
+cau_status cau_session_make_cells(cau_session *session, cau_error *error)
+{
+	const cau_scene_def *scene = session->scene;
+	if (scene->energy != CAU_ENERGY_TISSUE)
+		return CAU_OK;
+	session->cells = cau_arena_array(&session->arena, 1, sizeof *session->cells);
+	if (!session->cells)
+		return cau_fail(error, CAU_NO_MEMORY, NULL, "no memory for cells of tissue");
+	return cau_tissue_cells_create(session->cells, &session->tissue, scene->cell_m, CELLS_MOST,
+	                               scene->ambient_c, &session->arena, error);
+}
+
+void cau_session_read_ledger(const cau_session *session, cau_energy_ledger *ledger)
+{
+	*ledger = session->cells ? session->cells->bioheat.ledger : (cau_energy_ledger){0};
+}
+
+bool cau_session_has_cooled(const cau_session *session)
+{
+	if (!session->cells)
+		return true;
+	for (int32_t i = 0; i < session->tool_count; i++)
+		if (fabs(session->tool[i].blade.temperature_c - session->scene->ambient_c) > cold_k)
+			return false;
+	return session->cells->bioheat.cold;
+}
+
+// ---- where a tool is
+
+static bool has_hot_part(const cau_tool *tool)
+{
+	return tool->state.definition.shape != CAU_TOOL_GRASPER;
+}
+
+static bool is_bipolar(const cau_tool *tool)
+{
+	return tool->state.definition.shape == CAU_TOOL_BIPOLAR;
+}
+
+static double hot_distance(const cau_tool *tool, cau_vec3 point)
+{
+	return cau_tool_distance_at(&tool->state.definition, &tool->state.pose, tool->state.jaw,
+	                            CAU_PART_HOT, point, NULL);
+}
+
+// A cell that touches metal has its middle half a cell away, and rounding.
+static double reach_of_metal_m(const cau_session *session)
+{
+	return 0.51 * session->scene->cell_m;
+}
+
+// Tissue that is so near to the hot part touches it, or is reached by its sparks.
+static double touch_m(const cau_session *session, const cau_tool *tool)
+{
+	double peak_v = tool->state.definition.peak_v;
+	return reach_of_metal_m(session) + (peak_v >= spark_v ? peak_v / spark_v_m : 0);
+}
+
+// ---- cells around a tool
+
+// Edges near a tool's hot part are visited: their elements get cells.
+typedef struct edge_visit {
+	cau_session *session;
+	int32_t left;         // elements that may still be filled
+	cau_vec3 least, most; // box at rest around the ends
+} edge_visit;
+
+static void grow(edge_visit *visit, cau_vec3 at)
+{
+	visit->least = (cau_vec3){fmin(visit->least.x, at.x), fmin(visit->least.y, at.y),
+	                          fmin(visit->least.z, at.z)};
+	visit->most =
+		(cau_vec3){fmax(visit->most.x, at.x), fmax(visit->most.y, at.y), fmax(visit->most.z, at.z)};
+}
+
+static void fill_sharers(edge_visit *visit, int32_t edge)
+{
+	const cau_tissue *tissue = &visit->session->tissue;
+	const cau_edge_table *edges = &tissue->edges;
+	for (int p = CAU_PRIMITIVE_TRIANGLE; p <= CAU_PRIMITIVE_TETRAHEDRON; p++)
+		for (int32_t k = edges->first[p][edge]; k < edges->first[p][edge + 1]; k++) {
+			int32_t index = edges->sharer[p][k];
+			int kind = p == CAU_PRIMITIVE_TRIANGLE ? CAU_ELEMENT_TRIANGLE : CAU_ELEMENT_TETRAHEDRON;
+			int32_t element = p == CAU_PRIMITIVE_TRIANGLE ? index : tissue->triangle_count + index;
+			if (!visit->session->dissection.alive.element[kind][index] ||
+			    visit->session->cells->is_filled[element] || visit->left == 0)
+				continue;
+			visit->left -= cau_tissue_cells_fill(visit->session->cells, element);
+		}
+}
+
+// Viewers see what is coagulated as half heated, and what is dry or gone as wholly so.
+static void show_heat(cau_session *session, int32_t edge)
+{
+	const int32_t *end = session->tissue.edges.vertex + 2 * (size_t)edge;
+	const cau_bioheat *bioheat = &session->cells->bioheat;
+	int32_t cell = cau_tissue_cells_between(session->cells, end[0], end[1]);
+	if (cell < 0)
+		return;
+	double coagulated = fmin(bioheat->damage[cell], 1) / 2, dried = 1 - bioheat->water[cell];
+	cau_dissection_show_heated(&session->dissection, edge,
+	                           bioheat->cells.severed[cell] ? 1 : fmax(coagulated, dried));
+}
+
+static void visit_edge(edge_visit *visit, const cau_tool *tool, int32_t edge)
+{
+	cau_session *session = visit->session;
+	const int32_t *end = session->tissue.edges.vertex + 2 * (size_t)edge;
+	cau_vec3 a = cau_vec3_of(session->position + 3 * (size_t)end[0]);
+	cau_vec3 b = cau_vec3_of(session->position + 3 * (size_t)end[1]);
+	cau_vec3 middle = cau_scale(0.5, cau_add(a, b));
+	double half = cau_length(cau_sub(b, a)) / 2;
+	if (hot_distance(tool, middle) > filled_m + half)
+		return;
+	fill_sharers(visit, edge);
+	show_heat(session, edge);
+	grow(visit, cau_vec3_of(session->tissue.rest + 3 * (size_t)end[0]));
+	grow(visit, cau_vec3_of(session->tissue.rest + 3 * (size_t)end[1]));
+}
+
+// Gives cells to elements near the tool, some in a tick, and finds the box at rest that they are
+// in.
+static edge_visit look_around(cau_session *session, const cau_tool *tool)
+{
+	edge_visit visit = {.session = session,
+	                    .left = FILLED_A_TICK,
+	                    .least = {INFINITY, INFINITY, INFINITY},
+	                    .most = {-INFINITY, -INFINITY, -INFINITY}};
+	double radius;
+	cau_vec3 center;
+	cau_tool_bound(&tool->state.definition, CAU_PART_HOT, &center, &radius);
+	center = cau_pose_to_world(&tool->state.pose, center);
+	const cau_near *near = &session->near;
+	for (int32_t block = 0; block < near->block_count; block++) {
+		if (!cau_box_meets(&near->edge_box[block], center, radius + filled_m))
+			continue;
+		for (int32_t k = near->edge_first[block]; k < near->edge_first[block + 1]; k++)
+			visit_edge(&visit, tool, near->edge[k]);
+	}
+	return visit;
+}
+
+static bool is_in_box(const cau_cells *grid, int32_t cell, const edge_visit *visit)
+{
+	const int32_t *place = grid->place + cau_cell_axis(cell, 0);
+	double side = grid->side_m;
+	return place[0] * side <= visit->most.x && (place[0] + 1) * side >= visit->least.x &&
+	       place[1] * side <= visit->most.y && (place[1] + 1) * side >= visit->least.y &&
+	       place[2] * side <= visit->most.z + side && (place[2] + 2) * side >= visit->least.z;
+}
+
+// Through the half cell that lies between the electrode and the middle of a cell that it touches.
+static double contact_over_length(const cau_session *session, int32_t cell, double distance_m)
+{
+	double side = session->scene->cell_m;
+	return side * side * session->cells->bioheat.cells.fill[cell] / fmax(distance_m, side / 2);
+}
+
+// Lists what tool `index` touches; for an electrode its potential too.
+static void touch_cell(cau_session *session, int32_t index, int32_t cell)
+{
+	const cau_tool *tool = &session->tool[index];
+	cau_bioheat *bioheat = &session->cells->bioheat;
+	cau_current *current = &session->cells->current;
+	cau_vec3 at = cau_tissue_cells_at(session->cells, cell, session->position);
+	double distance = hot_distance(tool, at);
+	if (distance > touch_m(session, tool))
+		return;
+	double over = contact_over_length(session, cell, distance);
+	double right = cau_pose_to_local(&tool->state.pose, at).x;
+	current->electrode[current->electrode_count++] = (cau_electrode_cell){
+		.cell = cell, .over_length_m = over, .potential = is_bipolar(tool) && right < 0 ? 0 : 1};
+	// Sparks reach farther than heat goes from metal to tissue.
+	bool pressed = distance <= reach_of_metal_m(session);
+	if (bioheat->contact_count < bioheat->cells.capacity)
+		bioheat->contact[bioheat->contact_count++] =
+			(cau_contact_cell){.blade = index, .cell = cell, .over_length_m = pressed ? over : 0};
+}
+
+// Cells' deformation is looked at in turns: it changes little from tick to tick.
+enum { STRETCH_TURNS = 8 };
+
+// Arcs jump between all the places within their reach: over a tick each has a share of one spot.
+static void strike(cau_current *current)
+{
+	for (int32_t k = 0; k < current->electrode_count; k++)
+		current->electrode[k].over_length_m = 4 * spot_m / current->electrode_count;
+}
+
+static void find_touched(cau_session *session, int32_t index, const edge_visit *visit)
+{
+	cau_tissue_cells *cells = session->cells;
+	const cau_cells *grid = &cells->bioheat.cells;
+	cells->current.electrode_count = 0;
+	for (int32_t cell = 0; cell < grid->count; cell++) {
+		if (grid->severed[cell] || !is_in_box(grid, cell, visit))
+			continue;
+		if ((uint64_t)cell % STRETCH_TURNS == session->tick % STRETCH_TURNS)
+			cau_tissue_cells_stretch(cells, cell, session->position);
+		touch_cell(session, index, cell);
+	}
+}
+
+// ---- power
+
+// An ultrasonic blade is heated by the tissue that it rubs.
+static void rub(const cau_session *session, cau_tool *tool)
+{
+	double power = session->cells->current.electrode_count ? tool->state.definition.power_w : 0;
+	tool->blade.temperature_c += power * session->solver.step_s / tool->blade.heat_capacity_j_k;
+	tool->state.delivered_w = power;
+}
+
+// Whether what is dry at the tool goes off in sparks.
+static bool sparks(const cau_tool *tool)
+{
+	return tool->state.energized && tool->state.definition.peak_v >= spark_v &&
+	       tool->state.definition.shape != CAU_TOOL_SHEARS && !is_bipolar(tool);
+}
+
+static void give_power(cau_session *session, cau_tool *tool)
+{
+	const cau_tool_def *def = &tool->state.definition;
+	cau_current *current = &session->cells->current;
+	cau_bioheat *bioheat = &session->cells->bioheat;
+	cau_generator generator = {.power_w = def->power_w,
+	                           .peak_v = def->peak_v,
+	                           .current_a = def->current_max_a,
+	                           .crest_factor = def->crest_factor};
+	if (sparks(tool))
+		strike(current);
+	cau_current_solve(current, bioheat, reach_m, !is_bipolar(tool), residual_most, ITERATIONS);
+	cau_output output = cau_generator_into(&generator, fmax(current->conductance_s, 0));
+	cau_current_heat(current, bioheat, output.voltage_v);
+	double far_w = current->far_w * output.voltage_v * output.voltage_v;
+	bioheat->ledger.far_j += far_w * session->solver.step_s;
+	tool->state.delivered_w = output.power_w - far_w;
+	tool->state.load_ohm = current->conductance_s > 0 ? 1 / current->conductance_s : 0;
+}
+
+static void energize(cau_session *session, cau_tool *tool)
+{
+	tool->state.delivered_w = tool->state.load_ohm = 0;
+	if (!tool->state.energized)
+		return;
+	if (tool->state.definition.shape == CAU_TOOL_SHEARS)
+		rub(session, tool);
+	else if (session->cells->current.electrode_count)
+		give_power(session, tool);
+}
+
+// ---- what goes
+
+// What has lost so much water and is reached by sparks. Returns whether there was any, and the box
+// of their places.
+static bool vaporise(cau_session *session, int32_t least[3], int32_t most[3])
+{
+	cau_bioheat *bioheat = &session->cells->bioheat;
+	bool any = false;
+	for (int32_t k = 0; k < bioheat->contact_count; k++) {
+		int32_t cell = bioheat->contact[k].cell;
+		if (!sparks(&session->tool[bioheat->contact[k].blade]) ||
+		    bioheat->water[cell] > burst_share || bioheat->cells.severed[cell])
+			continue;
+		for (int axis = 0; axis < 3; axis++) {
+			int32_t at = bioheat->cells.place[cau_cell_axis(cell, axis)];
+			least[axis] = any && least[axis] < at ? least[axis] : at;
+			most[axis] = any && most[axis] > at ? most[axis] : at;
+		}
+		cau_bioheat_take_out(bioheat, cell);
+		any = true;
+	}
+	return any;
+}
+
+static void lose_element(cau_session *session, int32_t element, uint32_t *layers)
+{
+	const cau_tissue *tissue = &session->tissue;
+	bool triangle = element < tissue->triangle_count;
+	int32_t index = triangle ? element : element - tissue->triangle_count;
+	int primitive = triangle ? CAU_PRIMITIVE_TRIANGLE : CAU_PRIMITIVE_TETRAHEDRON;
+	*layers |= 1u << (triangle ? tissue->triangle_layer[index] : tissue->tetrahedron_layer[index]);
+	cau_dissection_lose_element(&session->dissection, primitive, index);
+}
+
+static bool lives(const cau_session *session, int32_t element)
+{
+	const cau_alive *alive = &session->dissection.alive;
+	int32_t triangles = session->tissue.triangle_count;
+	return element < triangles ? alive->element[CAU_ELEMENT_TRIANGLE][element]
+	                           : alive->element[CAU_ELEMENT_TETRAHEDRON][element - triangles];
+}
+
+// Elements of which a cell in the box went, and that are separated by it.
+static void part(cau_session *session, const int32_t least[3], const int32_t most[3],
+                 uint32_t *layers)
+{
+	cau_tissue_cells *cells = session->cells;
+	for (int32_t k = 0; k < cells->filled_count; k++) {
+		int32_t element = cells->filled[k];
+		if (lives(session, element) && cau_tissue_cells_meets(cells, element, least, most) &&
+		    cau_tissue_cells_separated(cells, element))
+			lose_element(session, element, layers);
+	}
+}
+
+// The cells of all elements that were removed in this tick, torn ones too.
+static void remove_cells(cau_session *session)
+{
+	for (int32_t k = 0; k < session->dissection.removed_count; k++) {
+		const cau_removed *removed = &session->dissection.removed[k];
+		if (removed->kind == CAU_ELEMENT_TRIANGLE)
+			cau_tissue_cells_remove(session->cells, removed->element);
+		else if (removed->kind == CAU_ELEMENT_TETRAHEDRON)
+			cau_tissue_cells_remove(session->cells,
+			                        session->tissue.triangle_count + removed->element);
+	}
+}
+
+// ---- a tick
+
+static void begin(cau_session *session)
+{
+	cau_bioheat *bioheat = &session->cells->bioheat;
+	memset(bioheat->power_w, 0, (size_t)bioheat->cells.count * sizeof *bioheat->power_w);
+	bioheat->contact_count = 0;
+}
+
+static void heat(cau_session *session)
+{
+	cau_blade blade[CAU_BLADES];
+	_Static_assert((int)CAU_BLADES >= (int)CAU_MAX_TOOLS, "a blade for each tool");
+	for (int32_t i = 0; i < session->tool_count; i++)
+		blade[i] = session->tool[i].blade;
+	bool stepped = cau_bioheat_step(&session->cells->bioheat, blade, session->tool_count,
+	                                session->solver.step_s);
+	CAU_ASSERT(stepped, "heat needs more than %d parts of a tick", CAU_BIOHEAT_PARTS);
+	(void)stepped;
+	for (int32_t i = 0; i < session->tool_count; i++) {
+		cau_tool *tool = &session->tool[i];
+		if (fabs(blade[i].temperature_c - session->scene->ambient_c) <= cold_k)
+			blade[i].temperature_c = session->scene->ambient_c;
+		tool->blade = blade[i];
+		tool->state.tip_temperature_c = blade[i].temperature_c;
+		tool->state.energy_j += tool->state.delivered_w * session->solver.step_s;
+	}
+}
+
+static bool is_idle(const cau_session *session)
+{
+	for (int32_t i = 0; i < session->tool_count; i++)
+		if (session->tool[i].state.energized)
+			return false;
+	return cau_session_has_cooled(session);
+}
+
+void cau_session_operate(cau_session *session)
+{
+	int32_t first = session->dissection.removed_count, least[3] = {0}, most[3] = {0};
+	uint32_t layers = 0;
+	if (is_idle(session)) {
+		remove_cells(session);
+		return;
+	}
+	begin(session);
+	cau_near_refit(&session->near, session->position);
+	for (int32_t i = 0; i < session->tool_count; i++) {
+		cau_tool *tool = &session->tool[i];
+		if (!has_hot_part(tool))
+			continue;
+		edge_visit visit = look_around(session, tool);
+		find_touched(session, i, &visit);
+		energize(session, tool);
+	}
+	heat(session);
+	if (vaporise(session, least, most))
+		part(session, least, most, &layers);
+	remove_cells(session);
+	cau_session_take_out(session, first);
+	for (int32_t i = 0; i < session->tool_count; i++) {
+		cau_tool *tool = &session->tool[i];
+		tool->state.touched_layers = sparks(tool) ? (int32_t)layers : 0;
+		if (sparks(tool))
+			cau_shrink_expose(&session->shrink, &session->dissection, first, session->position,
+			                  &tool->state.definition, &tool->state.pose, tool->state.jaw,
+			                  &session->solver.elements, &session->solver.slots); // eq. 21
+	}
+}

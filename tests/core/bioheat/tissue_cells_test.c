@@ -1,0 +1,164 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Cells of sheets and solids: their volume, where they are in bent and stretched tissue, and what
+// holds an element together.
+#include "bioheat/tissue_cells.h"
+
+#include <math.h>
+
+#include "core/rig/rig.h"
+
+static const double SIDE_M = 2.5e-4;
+
+static cau_tissue_cells fill_all(rig *r, double side_m, int32_t capacity)
+{
+	cau_tissue_cells cells;
+	assert_int_equal(
+		cau_tissue_cells_create(&cells, &r->tissue, side_m, capacity, 37, &r->arena, NULL), CAU_OK);
+	for (int32_t e = 0; e < cau_tissue_cells_elements(&cells); e++)
+		assert_true(cau_tissue_cells_fill(&cells, e));
+	return cells;
+}
+
+static double volume_of(const cau_tissue_cells *cells)
+{
+	double sum = 0;
+	for (int32_t i = 0; i < cells->bioheat.cells.count; i++)
+		sum += cau_cells_volume(&cells->bioheat.cells, i);
+	return sum;
+}
+
+static rig small_sheet(void)
+{
+	static const double points[] = {0, 0, 0, 2e-3, 0, 0, 0, 2e-3, 0, 2e-3, 2e-3, 0};
+	static const int32_t triangles[] = {0, 1, 2, 1, 3, 2};
+	rig r;
+	rig_begin(&r);
+	rig_add_triangles(&r, 4, points, 2, triangles);
+	rig_build(&r, NULL, 1);
+	return r;
+}
+
+static rig small_slab(void)
+{
+	static const double points[] = {0, 0, 0, 2e-3, 0, 0, 0, 2e-3, 0, 0, 0, 2e-3, 2e-3, 2e-3, 2e-3};
+	static const int32_t tetrahedra[] = {0, 1, 2, 3, 1, 2, 3, 4};
+	rig r;
+	rig_begin(&r);
+	rig_add_tetrahedra(&r, 5, points, 2, tetrahedra);
+	rig_build(&r, NULL, 1);
+	return r;
+}
+
+static void cells_have_the_tissue_s_volume(void **state)
+{
+	(void)state;
+	rig sheet = small_sheet(), slab = small_slab();
+	cau_tissue_cells flat = fill_all(&sheet, SIDE_M, 4000), solid = fill_all(&slab, SIDE_M, 4000);
+	double thickness = sheet.scene->layers[0].sheet[0].thickness_m;
+	assert_near(volume_of(&flat), 4e-6 * thickness, 0.02 * 4e-6 * thickness);
+	double exact = slab.tissue.tetrahedron_volume[0] + slab.tissue.tetrahedron_volume[1];
+	assert_near(volume_of(&solid), exact, 0.02 * exact);
+	rig_finish(&sheet);
+	rig_finish(&slab);
+}
+
+// Under an affine motion every cell goes where its rest place goes; a sheet's thickness does not
+// stretch with it.
+static void cells_move_with_the_tissue(void **state)
+{
+	(void)state;
+	rig r = small_slab();
+	cau_tissue_cells cells = fill_all(&r, SIDE_M, 4000);
+	double *x = calloc(3 * (size_t)r.tissue.vertex_count, sizeof *x);
+	for (int32_t v = 0; v < r.tissue.vertex_count; v++) {
+		const double *rest = r.tissue.rest + 3 * v;
+		x[3 * v] = 1.5 * rest[0] + 0.2 * rest[1] + 0.01;
+		x[3 * v + 1] = 0.8 * rest[1] - 0.1 * rest[2];
+		x[3 * v + 2] = 0.9 * rest[2];
+	}
+	for (int32_t i = 0; i < cells.bioheat.cells.count; i++) {
+		const int32_t *place = cells.bioheat.cells.place + 3 * i;
+		double rest[3];
+		for (int axis = 0; axis < 3; axis++)
+			rest[axis] = (place[axis] + 0.5) * SIDE_M;
+		cau_vec3 at = cau_tissue_cells_at(&cells, i, x);
+		assert_near(at.x, 1.5 * rest[0] + 0.2 * rest[1] + 0.01, 1e-8);
+		assert_near(at.y, 0.8 * rest[1] - 0.1 * rest[2], 1e-8);
+		assert_near(at.z, 0.9 * rest[2], 1e-8);
+	}
+	free(x);
+	rig_finish(&r);
+}
+
+// J F^-1 F^-T of a stretch along the axes; a sheet keeps its volume.
+static void conductivity_is_pulled_back(void **state)
+{
+	(void)state;
+	rig slab = small_slab(), sheet = small_sheet();
+	cau_tissue_cells solid = fill_all(&slab, SIDE_M, 4000), flat = fill_all(&sheet, SIDE_M, 4000);
+	const double stretch[] = {1.5, 0.8, 0.9}, j = 1.5 * 0.8 * 0.9;
+	double x[15], flat_x[12];
+	for (int i = 0; i < 15; i++)
+		x[i] = stretch[i % 3] * slab.tissue.rest[i];
+	for (int i = 0; i < 12; i++)
+		flat_x[i] = stretch[i % 3] * sheet.tissue.rest[i];
+	cau_tissue_cells_stretch(&solid, 0, x);
+	cau_tissue_cells_stretch(&flat, 0, flat_x);
+	for (int axis = 0; axis < 3; axis++) {
+		double squared = stretch[axis] * stretch[axis];
+		assert_near(solid.bioheat.cells.pull[axis], j / squared, 1e-5);
+		double thinner = 1 / (1.5 * 0.8);
+		assert_near(flat.bioheat.cells.pull[axis], axis < 2 ? 1 / squared : 1 / (thinner * thinner),
+		            1e-5);
+	}
+	rig_finish(&slab);
+	rig_finish(&sheet);
+}
+
+// A slit of cells: an element holds until it goes all the way through.
+static void a_slit_separates_an_element(void **state)
+{
+	(void)state;
+	rig r = small_sheet();
+	cau_tissue_cells cells = fill_all(&r, SIDE_M, 4000);
+	int32_t rows = 0;
+	while (!cau_tissue_cells_separated(&cells, 0) && rows < 8) {
+		for (int32_t z = -2; z < 2; z++) {
+			int32_t cell = cau_cells_find(&cells.bioheat.cells, (int32_t[]){3, rows, z});
+			if (cell >= 0)
+				cau_bioheat_take_out(&cells.bioheat, cell);
+		}
+		rows++;
+	}
+	assert_in_range(rows, 4, 5); // where its middle crosses the longest side
+	assert_true(cau_tissue_cells_separated(&cells, 0));
+	assert_false(cau_tissue_cells_separated(&cells, 1));
+	cau_tissue_cells_remove(&cells, 0);
+	int32_t corner = cau_cells_find(&cells.bioheat.cells, (int32_t[]){0, 0, 0});
+	assert_true(cells.bioheat.cells.severed[corner]);
+	rig_finish(&r);
+}
+
+static void there_may_be_no_room(void **state)
+{
+	(void)state;
+	rig r = small_sheet();
+	cau_tissue_cells cells;
+	assert_int_equal(cau_tissue_cells_create(&cells, &r.tissue, SIDE_M, 20, 37, &r.arena, NULL),
+	                 CAU_OK);
+	assert_false(cau_tissue_cells_fill(&cells, 0));
+	assert_int_equal(cells.bioheat.cells.count, 0);
+	rig_finish(&r);
+}
+
+int main(void)
+{
+	const struct CMUnitTest tests[] = {
+		cmocka_unit_test(cells_have_the_tissue_s_volume),
+		cmocka_unit_test(cells_move_with_the_tissue),
+		cmocka_unit_test(conductivity_is_pulled_back),
+		cmocka_unit_test(a_slit_separates_an_element),
+		cmocka_unit_test(there_may_be_no_room),
+	};
+	return cmocka_run_group_tests(tests, NULL, NULL);
+}

@@ -1,0 +1,181 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Energy `tissue`: a needle that cuts a taut sheet by its power, the ledger, what off does, and
+// that all of it is state.
+#include "core/session/stage.h"
+
+#include "session/session_internal.h"
+
+enum { DWELL_TICKS = 60, DRAWN_TICKS = CAU_TEST_SANITIZED ? 30 : 120 };
+static const double speed_m_s = 0.006, before_m = -0.012, under_m = -0.002;
+
+static cau_scene_def *needle_over_sheet(double power_w)
+{
+	cau_scene_def *scene = stage_scene(CAU_PRECISION_SINGLE);
+	scene->energy = CAU_ENERGY_TISSUE;
+	scene->parting = CAU_PARTING_ELEMENTS;
+	cau_layer_def *sheet = stage_add_sheet(scene, "fascia", 0.04, 0.024, 20, 12);
+	sheet->sheet[0].target[0] = sheet->sheet[0].target[1] = 0.1;
+	scene->pin_count = 1;
+	cau_default_selection(&scene->pins[0], CAU_SELECT_RIM);
+	cau_tool_def *needle = stage_add_tool(scene, "hook", CAU_TOOL_CAPSULE, before_m, 0, 1e-3);
+	needle->hot_radius_m = needle->grid_step_m = 5e-4;
+	needle->power_w = power_w;
+	return scene;
+}
+
+static void go(cau_session *session, int first, int end)
+{
+	for (int tick = first; tick < end; tick++) {
+		double drawn = tick < DWELL_TICKS ? 0 : (tick - DWELL_TICKS) * speed_m_s / 60;
+		if (tick == 0)
+			stage_energize(session, "hook", 1);
+		stage_move(session, "hook", before_m + drawn, 0, under_m);
+		stage_step(session, 1);
+	}
+}
+
+static cau_session *cut_with(double power_w, int32_t threads)
+{
+	cau_scene_def *scene = needle_over_sheet(power_w);
+	cau_session *session = stage_open(scene, threads);
+	go(session, 0, DWELL_TICKS + DRAWN_TICKS);
+	free(scene);
+	return session;
+}
+
+static int32_t parted(const cau_session *session)
+{
+	return stage_frame(session).statistics.elements_removed;
+}
+
+// What goes in is found again, by sums that do not know each other; stored heat is counted anew.
+static void assert_ledger_closes(const cau_session *session)
+{
+	cau_energy_ledger ledger;
+	cau_session_read_ledger(session, &ledger);
+	const cau_bioheat *bioheat = &session->cells->bioheat;
+	double stored = 0;
+	for (int32_t i = 0; i < bioheat->cells.count; i++)
+		stored += cau_bioheat_capacity(bioheat, i) * (bioheat->temperature[i] - bioheat->ambient_c);
+	double found = stored + ledger.boiled_j + ledger.perfused_j + ledger.shed_j;
+	assert_true(fabs(ledger.stored_j - stored) <= 1e-6 * ledger.delivered_j);
+	assert_true(fabs(ledger.delivered_j + ledger.blade_j - found) <= 1e-6 * ledger.delivered_j);
+}
+
+// No more is cut than the power can boil: a part of what was delivered went off as steam.
+static void thirty_watts_cut_at_the_hand_s_speed(void **state)
+{
+	(void)state;
+	cau_session *session = cut_with(30, 1);
+	const cau_tool_state *needle = stage_tool(session, "hook");
+	double behind = before_m + (DRAWN_TICKS - 1) * speed_m_s / 60 - needle->pose.position_m[0];
+	assert_true(parted(session) >= (CAU_TEST_SANITIZED ? 4 : 12));
+	assert_true(fabs(behind) < 1e-3);
+	assert_ledger_closes(session);
+	cau_energy_ledger ledger;
+	cau_session_read_ledger(session, &ledger);
+	assert_true(ledger.delivered_j > 1 && ledger.delivered_j < 30 * 3.1);
+	assert_true(ledger.boiled_j > 0.3 * ledger.delivered_j);
+	cau_session_destroy(session);
+}
+
+static void one_watt_holds_the_needle_up(void **state)
+{
+	(void)state;
+	cau_session *session = cut_with(1, 1);
+	assert_int_equal(parted(session), 0);
+	assert_true(stage_tool(session, "hook")->raw_force_n[2] > 0);
+	assert_ledger_closes(session);
+	cau_session_destroy(session);
+}
+
+// Off ends the power in that tick. Stored heat still goes on; then all cools down, and rests.
+static void off_ends_the_power_and_not_the_heat(void **state)
+{
+	(void)state;
+	cau_session *session = cut_with(30, 1);
+	cau_energy_ledger before, after;
+	stage_energize(session, "hook", 0);
+	cau_session_read_ledger(session, &before);
+	stage_step(session, 60);
+	cau_session_read_ledger(session, &after);
+	assert_true(after.delivered_j == before.delivered_j);
+	assert_true(stage_tool(session, "hook")->delivered_w == 0);
+	assert_true(after.stored_j > 0);
+	assert_ledger_closes(session);
+	cau_session_destroy(session);
+}
+
+static void threads_and_a_restore_change_no_bit(void **state)
+{
+	(void)state;
+	cau_session *session = cut_with(30, 1), *threaded = cut_with(30, 2);
+	assert_true(cau_session_hash(session) == cau_session_hash(threaded));
+	stage_bytes bytes = stage_snapshot(session);
+	cau_scene_def *scene = needle_over_sheet(30);
+	cau_session *restored = stage_open(scene, 1);
+	bool exact = false;
+	assert_int_equal(cau_session_restore(restored, bytes.bytes, bytes.count, &exact, NULL), CAU_OK);
+	assert_true(exact);
+	assert_true(cau_session_hash(restored) == cau_session_hash(session));
+	int end = DWELL_TICKS + DRAWN_TICKS;
+	go(session, end, end + 20);
+	go(restored, end, end + 20);
+	assert_true(cau_session_hash(restored) == cau_session_hash(session));
+	assert_ledger_closes(restored);
+	free(bytes.bytes);
+	free(scene);
+	cau_session_destroy(session);
+	cau_session_destroy(threaded);
+	cau_session_destroy(restored);
+}
+
+// Below 200 V nothing sparks: tissue coagulates, and parts nowhere. The temperature channel shows
+// it, and ambient far away.
+static void soft_coagulation_heats_and_parts_nothing(void **state)
+{
+	(void)state;
+	cau_scene_def *scene = needle_over_sheet(30);
+	scene->tools[0].peak_v = 150;
+	cau_session *session = stage_open(scene, 1);
+	cau_session_watch(session, CAU_CHANNEL_TEMPERATURE);
+	go(session, 0, DWELL_TICKS);
+	cau_frame frame = stage_frame(session);
+	float most = 0, least = 1000, damage = 0;
+	for (int32_t v = 0; v < session->tissue.vertex_count; v++) {
+		most = fmaxf(most, frame.temperature[v]);
+		least = fminf(least, frame.temperature[v]);
+	}
+	for (int32_t i = 0; i < session->cells->bioheat.cells.count; i++)
+		damage = fmaxf(damage, (float)session->cells->bioheat.damage[i]);
+	assert_true(most > 60 && most <= 101);
+	assert_true(least == 37);
+	assert_true(damage > 1);
+	assert_int_equal(parted(session), 0);
+	free(scene);
+	cau_session_destroy(session);
+}
+
+static void edges_cannot_part_by_power(void **state)
+{
+	(void)state;
+	cau_error error = {0};
+	cau_scene_def *scene = needle_over_sheet(30);
+	scene->parting = CAU_PARTING_EDGES;
+	stage_refuse(scene, CAU_BAD_VALUE, &error);
+	assert_string_equal(error.path, "parting");
+	free(scene);
+}
+
+int main(void)
+{
+	const struct CMUnitTest tests[] = {
+		cmocka_unit_test(thirty_watts_cut_at_the_hand_s_speed),
+		cmocka_unit_test(one_watt_holds_the_needle_up),
+		cmocka_unit_test(off_ends_the_power_and_not_the_heat),
+		cmocka_unit_test(threads_and_a_restore_change_no_bit),
+		cmocka_unit_test(soft_coagulation_heats_and_parts_nothing),
+		cmocka_unit_test(edges_cannot_part_by_power),
+	};
+	return cmocka_run_group_tests(tests, NULL, NULL);
+}
