@@ -4,14 +4,19 @@
 #
 # Usage: deploy/package.sh [TREE]     TREE: the build tree (default build-package); its packages/ has them
 #
-# What deploy/packages.txt names must be installed, and the viewer built (npm ci && npm run build in
-# clients/web). CAUTERY_PACKAGE_REVISION in the environment is the packages' revision (default 1).
+# What deploy/packages.txt names must be installed, and viewer and manual built (npm ci, npm run build
+# and npm run manual in clients/web). CAUTERY_PACKAGE_REVISION in the environment is the packages' revision (default 1).
 set -euo pipefail
 
 source_folder=$(cd "$(dirname "${BASH_SOURCE[0]}")/.." && pwd)
 tree=${1:-$source_folder/build-package}
 if [ ! -e "$source_folder/clients/web/dist/index.html" ]; then
 	echo "deploy/package.sh: the viewer is not built: (cd clients/web && npm ci && npm run build)" >&2
+	exit 1
+fi
+# With the C interfaces, which are made where there is clang.
+if [ ! -e "$source_folder/clients/web/dist-manual/api/index.html" ]; then
+	echo "deploy/package.sh: the manual is not built, or without clang: (cd clients/web && npm ci && npm run manual)" >&2
 	exit 1
 fi
 # Debian's own flags, prefix and folders.

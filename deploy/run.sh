@@ -119,12 +119,17 @@ build_viewer() {
 		install_npm_packages clients/web
 	fi
 	if [ -d clients/web/node_modules/vite ] && clients/web/with_node.sh true; then
-		heading "build the viewer"
+		heading "build the viewer and the manual"
 		watched build-viewer npm run --silent --prefix clients/web build
+		# Without a manual there is a daemon all the same.
+		(watched build-manual npm run --silent --prefix clients/web manual) || true
 	fi
 	viewer=()
 	if [ -d clients/web/dist ]; then
-		viewer=(--viewer clients/web/dist)
+		viewer+=(--viewer clients/web/dist)
+	fi
+	if [ -d clients/web/dist-manual ]; then
+		viewer+=(--manual clients/web/dist-manual)
 	fi
 }
 
@@ -215,6 +220,9 @@ tell_running() {
 		  open      $url
 		  look      curl ${url}api/sessions
 	END_OF_TEXT
+	if [ -d clients/web/dist-manual ]; then
+		echo "  read      ${url}manual/"
+	fi
 	if [ -x build/bin/cautery ] && [ -x build/bin/cautery-sim ]; then
 		cat <<-END_OF_TEXT
 			  next      build/bin/cautery --url ws${url#http} watch d1-layers

@@ -6,7 +6,7 @@ import { defineConfig, globalIgnores } from 'eslint/config';
 import { configs } from 'typescript-eslint';
 
 export default defineConfig(
-  globalIgnores(['**/dist/', '**/node_modules/', '**/*.js', '**/messages.gen.ts']),
+  globalIgnores(['**/dist/', '**/dist-manual*/', '**/node_modules/', '**/*.js', '**/messages.gen.ts']),
   {
     files: ['clients/web/**/*.ts', 'tests/browser/**/*.ts', 'tests/paper/*.ts'],
     extends: [js.configs.recommended, configs.strictTypeChecked],

@@ -23,6 +23,7 @@ enum { CAU_CONFIG_TEXT_BYTES = 512 };
 	TEXT(backups, "", "folder of the store's copies; empty: `backups` beside the store")           \
 	TEXT(scenes, "", "folder of named scenes; empty: the installed one")                           \
 	TEXT(viewer, "", "folder of viewer files to serve; empty: the installed one")                  \
+	TEXT(manual, "", "folder of the manual to serve at /manual/; empty: the installed one")        \
 	TEXT(label, "d1", "this daemon's label, first part of its sessions' ids; no `-`")              \
 	TEXT(etcd, "", "addresses of etcd (http://HOST:PORT,...): no label is served twice")           \
 	REAL(etcd_ttl_s, 15, 2, 3600, "etcd frees the label if it was not renewed for so long")        \

@@ -39,6 +39,7 @@ struct cau_daemon {
 	cau_config *config;
 	cau_auth *auth;
 	cau_static_files *files;
+	cau_static_files *manual; // NULL: none is installed
 	cau_scenes *scenes;
 	cau_store *store, *memory; // memory: of ephemeral sessions
 	cau_lease *lease;          // NULL: not wanted
@@ -252,6 +253,7 @@ static cau_status open_network(cau_daemon *daemon, cau_error *error)
 	cau_network_def def = {.config = daemon->config,
 	                       .auth = daemon->auth,
 	                       .files = daemon->files,
+	                       .manual = daemon->manual,
 	                       .handler = cau_service_handler(daemon->service)};
 	status = cau_network_create(&daemon->network, &def, error);
 	if (!status)
@@ -281,11 +283,14 @@ static cau_status open_agent(cau_daemon *daemon, cau_error *error)
 	return cau_agent_create(&daemon->agent, &def, error);
 }
 
-// Scenes there must be; without a viewer a plain page says that there is none.
+// Scenes there must be. Without a viewer a plain page says that there is none. Without a manual its
+// addresses do.
 static cau_status find_files(cau_config *config, cau_error *error)
 {
 	if (!*config->viewer)
 		cau_place_find("viewer", config->viewer, sizeof config->viewer);
+	if (!*config->manual)
+		cau_place_find("manual", config->manual, sizeof config->manual);
 	if (*config->scenes || cau_place_find("scenes", config->scenes, sizeof config->scenes))
 		return CAU_OK;
 	return cau_fail(error, CAU_NOT_FOUND, "scenes",
@@ -313,7 +318,9 @@ static cau_status open_all(cau_daemon *daemon, cau_error *error)
 	if (!status)
 		status = cau_auth_create(&daemon->auth, config, error);
 	if (!status)
-		status = cau_static_files_load(&daemon->files, config->viewer, error);
+		status = cau_static_files_load(&daemon->files, "viewer", config->viewer, error);
+	if (!status && *config->manual)
+		status = cau_static_files_load(&daemon->manual, "manual", config->manual, error);
 	if (!status)
 		status = cau_scenes_load(&daemon->scenes, config->scenes, error);
 	if (!status)
@@ -480,6 +487,7 @@ void cau_daemon_stop(cau_daemon *daemon)
 	cau_store_close(daemon->memory);
 	cau_lease_give_back(daemon->lease); // nothing is written any more
 	cau_scenes_destroy(daemon->scenes);
+	cau_static_files_destroy(daemon->manual);
 	cau_static_files_destroy(daemon->files);
 	cau_auth_destroy(daemon->auth);
 	free(daemon);

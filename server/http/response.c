@@ -33,6 +33,7 @@ static const char *phrase_of(unsigned status)
 		const char *phrase;
 	} phrases[] = {
 		{200, "OK"},
+		{301, "Moved Permanently"},
 		{304, "Not Modified"},
 		{400, "Bad Request"},
 		{401, "Unauthorized"},

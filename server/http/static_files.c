@@ -11,6 +11,7 @@
 enum { MAX_FILES = 1024, MAX_BYTES = 64 << 20, MAX_DEPTH = 8 };
 
 struct cau_static_files {
+	const char *setting; // that names the folder, for errors
 	cau_static_file files[MAX_FILES];
 	size_t count;
 	size_t bytes;
@@ -20,7 +21,8 @@ static const char plain_page[] =
 	"<!doctype html>\n<html lang=\"en\"><meta charset=\"utf-8\"><title>cauteryd</title>\n"
 	"<h1>cauteryd is running</h1>\n"
 	"<p>No viewer is installed here (setting <code>viewer</code>). "
-	"<a href=\"/api/sessions\">Sessions</a>, <a href=\"/metrics\">metrics</a>.</p></html>\n";
+	"<a href=\"/manual/\">Manual</a>, <a href=\"/api/sessions\">sessions</a>, <a "
+	"href=\"/metrics\">metrics</a>.</p></html>\n";
 
 static const char *content_type(const char *path)
 {
@@ -49,11 +51,19 @@ static const char *content_type(const char *path)
 	return "application/octet-stream";
 }
 
+// Pictures and fonts of these types are compressed already. Trying costs time at start.
+static bool is_packed(const char *type)
+{
+	return strcmp(type, "image/png") == 0 || strcmp(type, "image/jpeg") == 0 ||
+	       strcmp(type, "image/webp") == 0 || strcmp(type, "font/woff2") == 0;
+}
+
 // Fills file->gzip if that saves a tenth.
 static void compress_file(cau_static_file *file)
 {
 	z_stream z = {0};
-	if (file->plain_bytes < 256 || deflateInit2(&z, 9, Z_DEFLATED, 15 + 16, 9, Z_DEFAULT_STRATEGY))
+	if (file->plain_bytes < 256 || is_packed(file->content_type) ||
+	    deflateInit2(&z, 9, Z_DEFLATED, 15 + 16, 9, Z_DEFAULT_STRATEGY))
 		return;
 	uLong bound = deflateBound(&z, (uLong)file->plain_bytes);
 	void *packed = malloc(bound);
@@ -90,8 +100,8 @@ static cau_status read_file(cau_static_files *files, const char *path, const cha
                             cau_error *error)
 {
 	if (files->count == MAX_FILES || files->bytes + size > MAX_BYTES || strlen(url) >= 256)
-		return cau_fail(error, CAU_LIMIT, "viewer", "more than %d files or %d bytes", MAX_FILES,
-		                MAX_BYTES);
+		return cau_fail(error, CAU_LIMIT, files->setting, "more than %d files or %d bytes",
+		                MAX_FILES, MAX_BYTES);
 	FILE *stream = fopen(path, "rb");
 	void *bytes = malloc(size ? size : 1);
 	size_t got = stream && bytes ? fread(bytes, 1, size, stream) : 0;
@@ -99,7 +109,7 @@ static cau_status read_file(cau_static_files *files, const char *path, const cha
 		fclose(stream);
 	if (!stream || !bytes || got != size) {
 		free(bytes);
-		return cau_fail(error, CAU_IO, "viewer", "cannot read %.200s", path);
+		return cau_fail(error, CAU_IO, files->setting, "cannot read %.200s", path);
 	}
 	return add_file(files, url, bytes, size);
 }
@@ -109,7 +119,7 @@ static cau_status read_folder(cau_static_files *files, const char *folder, const
 {
 	DIR *directory = opendir(folder);
 	if (!directory)
-		return cau_fail(error, CAU_IO, "viewer", "cannot open the folder %.200s", folder);
+		return cau_fail(error, CAU_IO, files->setting, "cannot open the folder %.200s", folder);
 	cau_status status = CAU_OK;
 	for (struct dirent *entry; !status && (entry = readdir(directory));) {
 		char path[1024], entry_url[512];
@@ -127,19 +137,21 @@ static cau_status read_folder(cau_static_files *files, const char *folder, const
 	return status;
 }
 
-cau_status cau_static_files_load(cau_static_files **made, const char *folder, cau_error *error)
+cau_status cau_static_files_load(cau_static_files **made, const char *setting, const char *folder,
+                                 cau_error *error)
 {
 	*made = NULL;
 	cau_static_files *files = calloc(1, sizeof *files);
 	if (!files)
-		return cau_fail(error, CAU_NO_MEMORY, "viewer", "no memory");
+		return cau_fail(error, CAU_NO_MEMORY, setting, "no memory");
+	files->setting = setting;
 	cau_status status = CAU_OK;
 	if (*folder) {
 		status = read_folder(files, folder, "", 0, error);
 	} else {
 		void *page = strdup(plain_page);
 		status = page ? add_file(files, "/index.html", page, sizeof plain_page - 1)
-		              : cau_fail(error, CAU_NO_MEMORY, "viewer", "no memory");
+		              : cau_fail(error, CAU_NO_MEMORY, setting, "no memory");
 	}
 	if (status)
 		cau_static_files_destroy(files);

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The viewer's files, read once at start and held in memory, compressed where that is smaller: the
-// network thread never touches a disk.
+// The files of the viewer and of the manual, read once at start and held in memory, compressed
+// where that is smaller: the network thread never touches a disk.
 #pragma once
 
 #include <stdbool.h>
@@ -21,8 +21,10 @@ typedef struct cau_static_file {
 typedef struct cau_static_files cau_static_files;
 
 // Reads a folder and its folders: at most 1,024 files and 64 MiB; hidden files and links are left
-// out. An empty folder name gives one plain page.
-cau_status cau_static_files_load(cau_static_files **files, const char *folder, cau_error *error);
+// out. An empty folder name gives one plain page. `setting` (borrowed for good) is the path of
+// errors: CAU_IO, CAU_LIMIT, CAU_NO_MEMORY.
+cau_status cau_static_files_load(cau_static_files **files, const char *setting, const char *folder,
+                                 cau_error *error);
 void cau_static_files_destroy(cau_static_files *files);
 
 // The file at a URL path ("/" is "/index.html"), or NULL.

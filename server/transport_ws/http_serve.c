@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Plain HTTP: pages that the handler makes, viewer files from memory.
+// Plain HTTP: pages that the handler makes, files of the viewer and the manual from memory.
 #include <stdlib.h>
 #include <string.h>
 
@@ -80,6 +80,33 @@ static int serve_file(struct lws *wsi, cau_http_body *body, const cau_static_fil
 	return cau_http_answer_start(wsi, body, &answer);
 }
 
+// The manual's pages lie under /manual/. Every other path is the viewer's.
+static int serve_files(cau_network *network, struct lws *wsi, cau_http_body *body, const char *path)
+{
+	static const char manual[] = "/manual";
+	static const cau_http_refusal not_found = {404, "not_found", "the path",
+	                                           "no page has this path", "see the page at /"};
+	static const cau_http_refusal no_manual = {404, "not_found", "the path",
+	                                           "no manual is installed here",
+	                                           "give its folder with the setting manual"};
+	size_t length = sizeof manual - 1;
+	const cau_static_files *files = network->def.files;
+	if (strcmp(path, manual) == 0) {
+		cau_http_answer moved = {
+			.status = 301, .extra_name = "location:", .extra_value = "/manual/"};
+		return cau_http_answer_start(wsi, body, &moved);
+	}
+	if (strncmp(path, manual, length) == 0 && path[length] == '/') {
+		files = network->def.manual;
+		path += length;
+	}
+	if (!files)
+		return cau_http_answer_refusal(wsi, body, &no_manual, false);
+	const cau_static_file *file = cau_static_files_find(files, path);
+	return file ? serve_file(wsi, body, file)
+	            : cau_http_answer_refusal(wsi, body, &not_found, false);
+}
+
 int cau_http_serve(cau_network *network, struct lws *wsi, cau_http_body *body, const char *path)
 {
 	static const cau_http_refusal bad_method = {405, "bad_method", "the method",
@@ -87,8 +114,6 @@ int cau_http_serve(cau_network *network, struct lws *wsi, cau_http_body *body, c
 	static const cau_http_refusal no_upgrade = {426, "bad_handshake", "the path",
 	                                            "this is for WebSocket",
 	                                            "connect with a WebSocket client"};
-	static const cau_http_refusal not_found = {404, "not_found", "the path",
-	                                           "no page has this path", "see the page at /"};
 	cau_http_refusal refusal = cau_request_check(network, wsi);
 	if (refusal.status)
 		return cau_http_answer_refusal(wsi, body, &refusal, false);
@@ -99,8 +124,5 @@ int cau_http_serve(cau_network *network, struct lws *wsi, cau_http_body *body, c
 		return serve_page(network, wsi, body, path);
 	if (strcmp(path, CAU_WS_PATH) == 0)
 		return cau_http_answer_refusal(wsi, body, &no_upgrade, false);
-	const cau_static_file *file = cau_static_files_find(network->def.files, path);
-	if (!file)
-		return cau_http_answer_refusal(wsi, body, &not_found, false);
-	return serve_file(wsi, body, file);
+	return serve_files(network, wsi, body, path);
 }

@@ -39,7 +39,8 @@ typedef struct cau_network_handler {
 typedef struct cau_network_def {
 	cau_config *config; // borrowed; its port becomes the real one
 	const cau_auth *auth;
-	const cau_static_files *files;
+	const cau_static_files *files;  // of the viewer
+	const cau_static_files *manual; // served under /manual/; NULL: none is installed
 	cau_network_handler handler;
 } cau_network_def;
 

@@ -1,6 +1,6 @@
 #!/usr/bin/env bash
 # SPDX-License-Identifier: GPL-3.0-or-later
-# One stage of the viewer's tests: run_viewer_tests.sh types|lint|unit|build|browser|firefox; or `pictures`, which
+# One stage of the viewer's tests: run_viewer_tests.sh types|lint|unit|build|manual|browser|firefox; or `pictures`, which
 # makes clients/web/pictures anew from those of the browser tests that take them.
 # Exit code 77: skipped, with the reason. ctest sets the environment (tests/browser/CMakeLists.txt).
 set -euo pipefail
@@ -21,6 +21,13 @@ case ${1:-} in
 types) exec npm run --silent types ;;
 lint) exec npm run --silent lint ;;
 build) exec npm run --silent build ;;
+manual)
+	[ -d node_modules/temml ] || skip "clients/web/node_modules is of an earlier lock file (npm ci there)"
+	npm run --silent manual
+	# Comments of public headers are checked where there is clang, and there are pages of them.
+	command -v clang >/dev/null || skip "no clang, so the C interfaces were left out"
+	[ -e dist-manual/api/session.html ]
+	;;
 unit)
 	mkdir -p "$CAUTERY_FRAMES"
 	"$CAUTERY_WRITE_FRAMES" "$CAUTERY_FRAMES"
@@ -45,7 +52,7 @@ firefox)
 	exec npm run --silent browser -- holds_firefox
 	;;
 *)
-	echo "usage: run_viewer_tests.sh types|lint|unit|build|browser|firefox|pictures" >&2
+	echo "usage: run_viewer_tests.sh types|lint|unit|build|manual|browser|firefox|pictures" >&2
 	exit 2
 	;;
 esac

@@ -99,6 +99,21 @@ class Installed(unittest.TestCase):
             self.assertFalse(os.path.exists(self.path("share/cautery/viewer")))
             print("note: the viewer is not built (npm run build in clients/web), so a plain page is served")
 
+    def test_manual_is_served(self):
+        """The installed one, without a setting."""
+        manual = os.path.join(SOURCES, "clients/web/dist-manual/index.html")
+        connection = http.client.HTTPConnection("127.0.0.1", self.start(), timeout=PATIENCE_S)
+        connection.request("GET", "/manual/")
+        answer = connection.getresponse()
+        page = answer.read()
+        connection.close()
+        if os.path.exists(manual):
+            with open(manual, "rb") as file:
+                self.assertEqual((answer.status, page), (200, file.read()))
+        else:
+            self.assertEqual(answer.status, 404)
+            print("note: the manual is not built (npm run manual in clients/web)")
+
     def test_scene_without_a_server(self):
         said = run(self.path("bin/cautery-sim"), "--scene", "fascia", "--seconds", "0.1", "--json", cwd="/")
         self.assertIn("hash", json.loads(said.stdout.splitlines()[-1]))

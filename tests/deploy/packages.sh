@@ -29,6 +29,7 @@ command -v debootstrap >/dev/null || skip "debootstrap is not installed"
 unshare --mount true 2>/dev/null || skip "no mount namespaces here"
 git -C "$source_folder" cat-file -e "$pinned^{commit}" 2>/dev/null || skip "the clone is shallow: it has no commit $pinned"
 [ -e "$source_folder/clients/web/dist/index.html" ] || skip "the viewer is not built (npm run build in clients/web)"
+[ -e "$source_folder/clients/web/dist-manual/api/index.html" ] || skip "the manual is not built (npm run manual in clients/web)"
 
 mkdir -p "$folder"
 step "a bare Debian 12"

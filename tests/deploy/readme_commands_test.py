@@ -61,6 +61,8 @@ ELSEWHERE = {  # command: (file, words in it...)
     "kill 15703": (FIRST_HOUR, "os.kill(self.process, 15)"),  # the process that run.sh named
     "cmake --install build --prefix /usr/local": (INSTALL, 'CMAKE, "--install", TREE, "--prefix", "/usr"'),
     "npm run types && npm run lint && npm run unit": (VIEWER, "npm run --silent types", "npm run --silent lint", "npm run --silent unit"),
+    "(cd clients/web && npm run manual)": (VIEWER, 'cd "$web"', "npm run --silent manual"),
+    "npm run manual": (VIEWER, "npm run --silent manual"),
     "npm run browser": (VIEWER, "npm run --silent browser"),
     "cauteryd --dds --dds-config deploy/dds/network.xml --dds-security keys/enclaves/daemon":
         (SECURITY, "'--dds-security', enclave('daemon')"),

@@ -19,10 +19,13 @@ before(async () => {
 	writeFileSync(join(folder, 'viewer', 'index.html'), '<!doctype html><title>viewer</title>');
 	writeFileSync(join(folder, 'viewer', 'assets', 'main-abc.js'), 'export const a = 1;\n'.repeat(200));
 	writeFileSync(join(folder, 'viewer', '.hidden'), 'no');
+	mkdirSync(join(folder, 'manual', 'design'), { recursive: true });
+	writeFileSync(join(folder, 'manual', 'index.html'), '<!doctype html><title>manual</title>');
+	writeFileSync(join(folder, 'manual', 'design', 'a.html'), '<!doctype html><title>a page</title>');
 	writeFileSync(join(folder, 'secret.txt'), 'no');
 	writeFileSync(join(folder, 'tokens'), `# who may what\nadmin ${ADMIN}\nview ${VIEW}\n`);
 	chmodSync(join(folder, 'tokens'), 0o600);
-	daemon = await Daemon.start({ settings: { viewer: join(folder, 'viewer'), tokens: join(folder, 'tokens') } });
+	daemon = await Daemon.start({ settings: { viewer: join(folder, 'viewer'), manual: join(folder, 'manual'), tokens: join(folder, 'tokens') } });
 });
 after(async () => {
 	await daemon.end();
@@ -41,6 +44,27 @@ test('viewer files come from memory, with the strict headers', async () => {
 	assert.match(script.headers['cache-control'], /immutable/);
 	assert.equal(gunzipSync(script.bytes).toString(), 'export const a = 1;\n'.repeat(200));
 	assert.equal((await daemon.get('/assets/main-abc.js')).text.length, 4000);
+});
+
+test('the manual is served at /manual/, without a token, and its names do not mix with the viewer\'s', async () => {
+	for (const [path, title] of [['/manual/', 'manual'], ['/manual/index.html', 'manual'], ['/manual/design/a.html', 'a page']]) {
+		const page = await daemon.get(path);
+		assert.equal(page.status, 200);
+		assert.match(page.text, new RegExp(`<title>${title}`));
+		assert.match(page.headers['content-security-policy'], /default-src 'none'/);
+	}
+	const moved = await daemon.get('/manual');
+	assert.deepEqual([moved.status, moved.headers.location], [301, '/manual/']);
+	for (const path of ['/manual/assets/main-abc.js', '/manual/design', '/manual/../secret.txt', '/design/a.html', '/manuals/'])
+		assert.equal((await daemon.get(path)).status, 404, path);
+});
+
+test('without a manual its addresses say so', async () => {
+	const other = await Daemon.start({ settings: { viewer: join(folder, 'viewer') } });
+	const answer = await other.get('/manual/');
+	await other.end();
+	assert.equal(answer.status, 404);
+	assert.match(JSON.parse(answer.text).reason, /no manual is installed/);
 });
 
 test('HEAD is answered without a body, other methods are refused', async () => {

@@ -27,7 +27,7 @@ static void without_a_folder_there_is_a_page(void **state)
 {
 	(void)state;
 	cau_static_files *files;
-	assert_int_equal(cau_static_files_load(&files, "", NULL), CAU_OK);
+	assert_int_equal(cau_static_files_load(&files, "viewer", "", NULL), CAU_OK);
 	assert_non_null(cau_static_files_find(files, "/"));
 	assert_ptr_equal(cau_static_files_find(files, "/"),
 	                 cau_static_files_find(files, "/index.html"));
@@ -47,8 +47,9 @@ static void a_folder_is_read_whole(void **state)
 	put(folder, "index.html", "<p>hello</p>", 1);
 	put(folder, ".secret", "no", 1);
 	put(sub, "a-1.js", "let a = 1;\n", 100);
+	put(sub, "a-1.png", "a picture ", 100);
 	assert_int_equal(symlink("/etc/passwd", link), 0);
-	assert_int_equal(cau_static_files_load(&files, folder, NULL), CAU_OK);
+	assert_int_equal(cau_static_files_load(&files, "viewer", folder, NULL), CAU_OK);
 	const cau_static_file *page = cau_static_files_find(files, "/");
 	assert_string_equal(page->content_type, "text/html; charset=utf-8");
 	assert_null(page->gzip); // too small to gain
@@ -57,13 +58,14 @@ static void a_folder_is_read_whole(void **state)
 	assert_true(script->hashed);
 	assert_int_equal(script->plain_bytes, 1100);
 	assert_true(script->gzip_bytes > 0 && script->gzip_bytes < 200);
+	assert_null(cau_static_files_find(files, "/assets/a-1.png")->gzip); // packed by itself
 	assert_null(cau_static_files_find(files, "/.secret"));
 	assert_null(cau_static_files_find(files, "/link.txt"));
 	assert_null(cau_static_files_find(files, "/assets"));
 	cau_static_files_destroy(files);
 	snprintf(command, sizeof command, "rm -r %s", folder);
 	assert_int_equal(system(command), 0);
-	assert_int_equal(cau_static_files_load(&files, folder, NULL), CAU_IO);
+	assert_int_equal(cau_static_files_load(&files, "viewer", folder, NULL), CAU_IO);
 }
 
 int main(void)
