@@ -6,10 +6,12 @@ Usage: readme_commands_test.py SOURCES PROGRAMS      (PROGRAMS: the folder of th
 A command is a line of a block that says it is shell, or a line of another block that begins with the name of a
 program of ours, of a shell's own or of Debian's common ones (`FIRST`). One that neither this file nor
 `ELSEWHERE` knows fails the test, and so does an entry that no README shows any more. Of a place elsewhere the
-file must hold the words that run it. What no test runs is listed with its reason, and printed. Steps (`tests/steps`) are run to the letter, whole sections of a page.
+file must hold the words that run it. What no test runs is listed with its reason, and printed. Steps (`tests/steps`) are run to the letter, whole sections of a page. So are
+tutorials of the manual (`TUTORIALS`): programs are saved, commands run, and what is printed is what the page says.
 """
 
 import concurrent.futures
+import glob
 import os
 import re
 import shutil
@@ -44,6 +46,11 @@ NOT_RUN = {  # command: why
     "OMP_NUM_THREADS=1 /usr/bin/python3 tests/reference/generate.py":
         "ten minutes of finite elements, with packages of their own; what it wrote is in the tree, and tests read it",
 }
+
+TUTORIALS = ("deploy/manual/web.md", "deploy/manual/research.md")
+BLOCK = re.compile(r"(?:Save this as `([\w.-]+)`[^:]*:\n\n)?^```(\w+)\n(.*?)^```$", re.DOTALL | re.MULTILINE)
+NUMBER = re.compile(r"(?<![\w.-])\d+(?:\.\d+)?(?![\w-])")
+AS_SAID = 0.2  # numbers that a tutorial prints, relative: processors of another tier part other edges
 
 FIRST_HOUR, INSTALL = "tests/deploy/first_hour_test.py", "tests/deploy/install_test.py"
 VIEWER, SECURITY = "tests/browser/run_viewer_tests.sh", "tests/dds/security.test.mjs"
@@ -180,6 +187,45 @@ class Commands(unittest.TestCase):
             self.assertEqual(process.returncode, 0, f"{text}:\n{said}")
             self.assertRegex(said, says or ".*")
         process.stdout.close()
+        return said
+
+    def follow(self, name):
+        """All blocks of a page in their order. A command that another test has run is not run again."""
+        with open(os.path.join(SOURCES, name), encoding="utf-8") as file:
+            blocks = BLOCK.findall(file.read())
+        at, said, did = None, "", {"sh": 0, "saved": 0, "text": 0}
+        for saved_as, kind, text in blocks:
+            if saved_as:
+                did["saved"] += 1
+                with open(os.path.join(self.folder, saved_as), "w", encoding="utf-8") as file:
+                    file.write(text.replace("127.0.0.1:8740", at or "127.0.0.1:8740"))
+            elif kind == "sh":
+                for command in [command for command in text.splitlines() if command not in self.ran]:
+                    did["sh"] += 1
+                    if command.startswith("cauteryd "):  # in a terminal of its own
+                        at = self.start(*command.split()[1:])
+                        self.ran.add(command)
+                    else:
+                        said = self.run_it(command, at=at)
+            elif kind == "text":
+                did["text"] += 1
+                self.compare(said.splitlines()[-len(text.splitlines()):], text.splitlines())
+            else:
+                self.fail(f"{name}: a block of {kind} that nothing saves")
+        self.assertTrue(all(did.values()), f"{name}: {did}")
+
+    def compare(self, said, shown):
+        for one, other in zip(said, shown, strict=True):
+            self.assertEqual(NUMBER.sub("N", one), NUMBER.sub("N", other))
+            for number, expected in zip(NUMBER.findall(one), NUMBER.findall(other), strict=True):
+                self.assertAlmostEqual(float(number), float(expected), delta=AS_SAID * float(expected), msg=f"{one} / {other}")
+
+    def test_b_tutorials(self):
+        node = glob.glob(os.path.join(SOURCES, "clients/web/node_modules/node-linux-*/bin"))  # Debian's has no WebSocket
+        self.environment["PATH"] = ":".join([*node, self.environment["PATH"]])
+        for name in TUTORIALS:
+            with self.subTest(name):
+                self.follow(name)
 
     def test_1_the_demo(self):
         at = self.start("--demo", "layers")
@@ -218,6 +264,13 @@ class Commands(unittest.TestCase):
             for done in [hands.submit(each) for each in (drive, look, record)]:
                 done.result()
 
+    def test_2c_a_class(self):
+        at = self.start()
+        self.run_it("cautery create layers --name anna", "d1-anna", at)
+        self.run_it("cautery reset d1-anna", "", at)
+        self.run_it("cautery events d1-anna", "", at)
+        self.run_it("cautery backup", r"\.db", at)
+
     def make_mesh(self, name):
         """A tetrahedron of 20 mm, as Gmsh writes it."""
         with open(os.path.join(self.folder, name), "w", encoding="ascii") as file:
@@ -236,6 +289,8 @@ class Commands(unittest.TestCase):
     def test_3_settings(self):
         self.run_it("build/bin/cauteryd --help", "--listen")
         self.run_it("build/bin/cauteryd --print-config", '"listen"')
+        self.run_it("cauteryd --help", "--listen")
+        self.run_it("cauteryd --print-config", '"listen"')
 
     def test_4_identities_for_dds(self):
         make = "deploy/dds/security/make.sh"
@@ -248,6 +303,7 @@ class Commands(unittest.TestCase):
         for name in ("prometheus", "haproxy"):
             os.makedirs(os.path.join(etc, name))
         here = (("/etc/", f"{etc}/"),)
+        self.run_it("cautery token operate --name anna --days 90 --out anna.token", "^operate sha256:")
         self.run_it("cautery token view --name prometheus --days 365 --out cautery.token")
         mine = "install -m 600" if os.getuid() else "install -o root -g root -m 600"
         self.run_it("install -o prometheus -g prometheus -m 600 cautery.token /etc/prometheus/cautery.token",

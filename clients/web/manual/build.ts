@@ -17,12 +17,13 @@ const out = process.argv[2] ?? join(here, '../dist-manual');
 interface Contents {
   title: string;
   pages: string[];
+  folded?: boolean; // one line in the navigation of other pages
 }
 
-/** Shorter than the page's own heading, where that begins with its folder: "core: decisions". */
 function groupsOf(contents: Contents[], site: Site): Group[] {
-  return contents.map(({ title, pages }) => ({
+  return contents.map(({ title, pages, folded = false }) => ({
     title,
+    folded,
     entries: pages.flatMap((path) => {
       const page = site.pages.get(path);
       return page ? [{ title: page.rendered.title, out: page.out }] : [];
@@ -69,7 +70,7 @@ function replace(folder: string, fill: (folder: string) => void): void {
 
 const interfaces = readInterfaces(root);
 const contents = JSON.parse(readFileSync(join(root, MANUAL, 'contents.json'), 'utf8')) as Contents[];
-const all = [...contents, { title: 'C interfaces', pages: interfaces.pages.map(({ path }) => path) }];
+const all = [...contents, { title: 'C interfaces', folded: true, pages: interfaces.pages.map(({ path }) => path) }];
 const site = new Site(root, new Map(interfaces.pages.map(({ path, text }) => [path, text])), interfaces.stands);
 site.add(all.flatMap(({ pages }) => pages));
 const errors = [...interfaces.errors, ...site.errors];

@@ -9,6 +9,7 @@ export interface Entry {
 export interface Group {
   title: string;
   entries: Entry[];
+  folded?: boolean; // only its first entry is shown, except on its own pages
 }
 
 /** The way from one page's folder to another file of the manual. */
@@ -26,7 +27,8 @@ function navigation(groups: Group[], out: string): string {
     const current = entry.out === out ? ' aria-current="page"' : '';
     return `<li><a href="${relative(out, entry.out)}"${current}>${escape(entry.title)}</a></li>`;
   };
-  return groups.map((group) => `<h2>${escape(group.title)}</h2>\n<ul>\n${group.entries.map(item).join('\n')}\n</ul>`).join('\n');
+  const shown = ({ entries, folded }: Group): Entry[] => (folded === true && !entries.some((entry) => entry.out === out) ? entries.slice(0, 1) : entries);
+  return groups.map((group) => `<h2>${escape(group.title)}</h2>\n<ul>\n${shown(group).map(item).join('\n')}\n</ul>`).join('\n');
 }
 
 const LEAST_HEADINGS = 4; // fewer are seen at a glance
