@@ -59,7 +59,7 @@ instruments. It holds many sessions, takes tool commands over WebSocket
 and DDS, and streams moved vertices and removed faces to thin clients, a
 viewer for browsers among them, which it serves itself.
 
-This package has the daemon with its scenes and its viewer, the unit
+This package has the daemon with its scenes, viewer and manual, the unit
 files, cautery-sim, which runs a scene without a server, and
 cautery-mesh, which fills surfaces with tetrahedra. It is for training
 and research, and no medical device.")

@@ -101,6 +101,9 @@ chown cautery: /tmp/tls/*
 run_daemon --tls-certificate /tmp/tls/certificate.pem --tls-key /tmp/tls/key.pem
 port=$(sed -n 's/.*"port": \([0-9]*\).*/\1/p' /tmp/address)
 curl -sS --cacert /tmp/tls/certificate.pem "https://localhost:$port/api/sessions" | grep -q "$session" || fail "no sessions over TLS"
+for page in manual/ manual/api/session.html; do
+	curl -sS --cacert /tmp/tls/certificate.pem "https://localhost:$port/$page" | grep -q "Cautery manual" || fail "no page $page"
+done
 end_daemon
 
 step "a client is built against libcautery-dev"

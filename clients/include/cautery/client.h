@@ -52,8 +52,8 @@ extern "C" {
 
 #define CAU_CLIENT_DEFAULT_URL "ws://127.0.0.1:8740"
 
-typedef struct cau_loop cau_loop;
-typedef struct cau_client cau_client;
+typedef struct cau_loop cau_loop;     // the event loop of one thread; opaque
+typedef struct cau_client cau_client; // one connection; opaque
 typedef struct cau_client_stream cau_client_stream;
 
 // ---- loop --------------------------------------------------------------------------------------
@@ -67,22 +67,23 @@ void cau_loop_wait(cau_loop *loop, double seconds);
 double cau_client_now(void); // s, CLOCK_MONOTONIC
 
 // ---- client ------------------------------------------------------------------------------------
+// What the connection does.
 typedef enum cau_client_condition {
 	CAU_CLIENT_IDLE,       // not connected yet
 	CAU_CLIENT_CONNECTING, // up to the answer to hello
-	CAU_CLIENT_READY,
-	CAU_CLIENT_LOST,   // waits before it connects again
-	CAU_CLIENT_CLOSED, // it does not reconnect; cau_client_trouble has the reason
+	CAU_CLIENT_READY,      // hello is answered: requests are sent
+	CAU_CLIENT_LOST,       // waits before it connects again
+	CAU_CLIENT_CLOSED,     // it does not reconnect; cau_client_trouble has the reason
 } cau_client_condition;
 
 // A received frame, after decoding.
 typedef struct cau_client_frame {
-	cau_frame_header header;
-	const void *bytes; // borrowed for the call
-	size_t byte_count;
-	cau_status status; // of decoding: CAU_BAD_STATE was skipped, CAU_CORRUPT is damaged
-	double received_s; // cau_client_now() when its last byte was there
-	double decoded_s;
+	cau_frame_header header; // as read
+	const void *bytes;       // borrowed for the call
+	size_t byte_count;       // of `bytes`
+	cau_status status;       // of decoding: CAU_BAD_STATE was skipped, CAU_CORRUPT is damaged
+	double received_s;       // cau_client_now() when its last byte was there
+	double decoded_s;        // cau_client_now() after decoding
 } cau_client_frame;
 
 // Strings are copied by cau_client_create; NULL where there is none.
@@ -99,12 +100,16 @@ typedef struct cau_client_def {
 	double timeout_s;      // of connecting and of each waiting call. An expensive call
 	                       // (cau_method_cost) goes on while the server answers heartbeats
 	void *user;            // for the callbacks, each of which may be NULL
+	// The condition is another one.
 	void (*on_condition)(void *user, cau_client *client, cau_client_condition condition);
+	// The server sent a notification; `message` is borrowed for the call.
 	void (*on_notification)(void *user, cau_client *client, const cau_rpc_message *message);
+	// A frame of a stream was received and decoded; it is borrowed for the call.
 	void (*on_frame)(void *user, cau_client *client, cau_client_stream *stream,
 	                 const cau_client_frame *frame);
 } cau_client_def;
 
+// CAU_CLIENT_DEFAULT_URL, and every other member at its default.
 cau_client_def cau_default_client_def(void);
 
 enum { CAU_CLIENT_TOKEN_BYTES = 512 }; // more than any token has
@@ -135,8 +140,10 @@ void cau_client_close(cau_client *client);
 // reconnects.
 void cau_client_drop(cau_client *client);
 
+// The present condition.
 cau_client_condition cau_client_get_condition(const cau_client *client);
 const cau_error *cau_client_trouble(const cau_client *client); // of the last loss
+// The server's answer to the last hello; borrowed.
 const cau_wire_hello_result *cau_client_server(const cau_client *client);
 uint64_t cau_client_connections(const cau_client *client); // hellos answered so far
 
@@ -192,6 +199,7 @@ cau_status cau_client_move(cau_client *client, const char *session, const cau_co
 // of its error if there is one of that name, else CAU_BAD_STATE; cau_client_fault has it whole.
 cau_status cau_client_call(cau_client *client, cau_method method, const void *params, void *result,
                            cau_error *error);
+// The same for a command. `session` may be NULL where the URL names it; so may `result`.
 cau_status cau_client_command(cau_client *client, const char *session, const cau_command *command,
                               cau_wire_command_result *result, cau_error *error);
 
@@ -200,21 +208,21 @@ cau_status cau_client_command(cau_client *client, const char *session, const cau
 const cau_rpc_fault *cau_client_fault(const cau_client *client);
 
 // ---- streams -----------------------------------------------------------------------------------
-enum { CAU_CLIENT_STREAMS_MAX = 16 };
+enum { CAU_CLIENT_STREAMS_MAX = 16 }; // of one client
 
 // Belongs to the client; valid until it is destroyed. Read only.
 struct cau_client_stream {
 	cau_wire_stream_description description; // of the last join
-	cau_stream_def def;
-	const cau_stream_state *state; // the newest; state->synced: it holds a state
-	cau_topology_arrays topology;
-	bool has_topology;
-	bool ended; // left, or the session ended
-	uint64_t frames, key_frames, bytes;
-	uint64_t gaps;     // times that the chain of deltas broke
-	uint64_t skipped;  // frames that did not fit the state
-	uint64_t damaged;  // frames that could not be decoded
-	double received_s; // cau_client_now() of the newest
+	cau_stream_def def;                      // what the decoder was made with
+	const cau_stream_state *state;           // the newest; state->synced: it holds a state
+	cau_topology_arrays topology;            // faces and rest shape
+	bool has_topology;                       // it was received
+	bool ended;                              // left, or the session ended
+	uint64_t frames, key_frames, bytes;      // received
+	uint64_t gaps;                           // times that the chain of deltas broke
+	uint64_t skipped;                        // frames that did not fit the state
+	uint64_t damaged;                        // frames that could not be decoded
+	double received_s;                       // cau_client_now() of the newest
 };
 
 // Asks for frames and waits for the first key frame. The client owns *stream. After a lost
@@ -227,6 +235,8 @@ cau_status cau_client_join(cau_client *client, const cau_wire_session_join *para
 cau_status cau_client_send_join(cau_client *client, const cau_wire_session_join *params,
                                 cau_client_stream **stream, cau_client_answer *answer, void *user,
                                 cau_error *error);
+// Ends the stream: `ended` is true from then on. Waits for the answer. Errors: those of
+// cau_client_call.
 cau_status cau_client_leave(cau_client *client, cau_client_stream *stream, cau_error *error);
 
 // Number of drawn faces: those whose bit in the mask is clear.

@@ -28,10 +28,10 @@
 // ---- the report: what was read, passed over and mended, and what the mesh is. Command line, wire,
 // log and viewer show the same one.
 enum {
-	CAU_MESH_KIND_MAX = 24,   // kinds of elements that a report lists
-	CAU_MESH_REGION_MAX = 64, // regions that a report lists
-	CAU_MESH_QUALITY_BINS = 10,
-	CAU_MESH_NAME_BYTES = 48,
+	CAU_MESH_KIND_MAX = 24,     // kinds of elements that a report lists
+	CAU_MESH_REGION_MAX = 64,   // regions that a report lists
+	CAU_MESH_QUALITY_BINS = 10, // of the histogram of qualities
+	CAU_MESH_NAME_BYTES = 48,   // of the name of a region, with its zero
 	CAU_MESH_TEXT_BYTES = 4096, // of a report as text
 };
 
@@ -44,9 +44,9 @@ typedef struct cau_mesh_kind {
 
 // Elements of one region. Surfaces and volumes have numbers of their own.
 typedef struct cau_mesh_region {
-	int32_t dimension; // 2: triangles, 3: tetrahedra
-	int32_t region;
-	int32_t element_count;
+	int32_t dimension;              // 2: triangles, 3: tetrahedra
+	int32_t region;                 // its number in the file
+	int32_t element_count;          // after mending
 	char name[CAU_MESH_NAME_BYTES]; // of the file, or ""
 } cau_mesh_region;
 
@@ -66,11 +66,12 @@ typedef struct cau_mesh_region {
 	X(reduced_elements, 1, "higher-order elements reduced to their corners")                       \
 	X(unused_vertices, 0, "unused vertices left out")
 
+// What a file held and what became of it.
 typedef struct cau_mesh_report {
-	char format[32]; // "Gmsh 4.1", or "" for a generated mesh
-	int64_t vertices_read;
-	int32_t kind_count;
-	cau_mesh_kind kind[CAU_MESH_KIND_MAX];
+	char format[32];                       // "Gmsh 4.1", or "" for a generated mesh
+	int64_t vertices_read;                 // in the file
+	int32_t kind_count;                    // kinds of elements, listed
+	cau_mesh_kind kind[CAU_MESH_KIND_MAX]; // (kind_count)
 #define X(field, strict, words) int32_t field;
 	CAU_MESH_MEND_TABLE(X)
 #undef X
@@ -80,22 +81,23 @@ typedef struct cau_mesh_report {
 	int32_t open_edge_count; // edges of one triangle only; of meshes without tetrahedra
 	double opening;          // area of the holes that they surround, over the surface's area
 	int32_t region_count;    // of all regions, listed or not
-	cau_mesh_region region[CAU_MESH_REGION_MAX];
-	double least_m[3], most_m[3]; // bounding box
-	double unit_m;                // metres in one unit of the file, as used
-	int32_t unit_guessed;         // 1: neither scene nor file states the unit
-	double proposed_unit_m;       // a unit that makes the size that of tissue; 0: none is needed
+	cau_mesh_region region[CAU_MESH_REGION_MAX]; // the first of them
+	double least_m[3], most_m[3];                // bounding box
+	double unit_m;                               // metres in one unit of the file, as used
+	int32_t unit_guessed;                        // 1: neither scene nor file states the unit
+	double proposed_unit_m; // a unit that makes the size that of tissue; 0: none is needed
 	// Elements by quality, (0 to 0.1, ... 0.9 to 1): the mean ratio, 1 for a regular element.
 	int32_t quality[CAU_MESH_QUALITY_BINS];
-	double least_quality;
-	double mean_edge_m; // root mean square, of the edges of all elements
+	double least_quality; // of all elements
+	double mean_edge_m;   // root mean square, of the edges of all elements
 } cau_mesh_report;
 
 // ---- the scene
+// What cau_mesh_scene makes a scene of.
 typedef struct cau_mesh_wish {
-	const char *file;  // path of a file; with bytes, the name of the upload
-	const void *bytes; // NULL: `file` is read
-	size_t byte_count;
+	const char *file;   // path of a file; with bytes, the name of the upload
+	const void *bytes;  // NULL: `file` is read
+	size_t byte_count;  // of `bytes`
 	double unit_m;      // metres in one unit; 0: guessed where it is clear
 	int32_t layer_kind; // CAU_LAYER_FAT or CAU_LAYER_FASCIA; -1: fat where there are tetrahedra
 	int32_t strict;     // refuse what would have to be mended

@@ -42,7 +42,7 @@
 #include "cautery/scene.h"
 #include "cautery/status.h"
 
-typedef struct cau_session cau_session;
+typedef struct cau_session cau_session; // one simulated tissue with its tools; opaque
 
 // ---- definition -------------------------------------------------------------------------------
 // The stages of creating a session, in this order. A stage cannot be interrupted. Before each one
@@ -52,6 +52,7 @@ typedef struct cau_session cau_session;
 	X(ORDER, "ordering")   /* the system's pattern, its order and the factor's size */             \
 	X(FACTOR, "factoring") /* the factor's numbers */                                              \
 	X(REST, "settling")    /* built-in tension brought to its equilibrium */
+// The stage of a creation.
 typedef enum cau_build_stage {
 #define X(code, name) CAU_BUILD_##code,
 	CAU_BUILD_STAGE_TABLE(X)
@@ -61,13 +62,14 @@ typedef enum cau_build_stage {
 
 // What is known before the stage `next` begins. A count that is not known yet is 0.
 typedef struct cau_build_border {
-	cau_build_stage next;
-	int64_t vertex_count;
+	cau_build_stage next;   // the stage that begins
+	int64_t vertex_count;   // of all meshes
 	int64_t element_count;  // triangles, tetrahedra, links and hinges
 	int64_t factor_entries; // entries of the factor, by its analysis; known from FACTOR on
 	size_t bytes;           // memory of the session; an estimate, rough before FACTOR
 } cau_build_border;
 
+// What cau_session_create makes a session of.
 typedef struct cau_session_def {
 	const cau_scene_def *scene; // borrowed during create
 	int32_t thread_count;       // 1 to 16 threads used by step, the caller's among them
@@ -78,7 +80,7 @@ typedef struct cau_session_def {
 	// Called before each stage, on the creating thread. Any result but CAU_OK ends the creation
 	// with that status and *error.
 	cau_status (*border)(void *user, const cau_build_border *border, cau_error *error); // or NULL
-	void *user;
+	void *user; // passed to `border`
 	const char
 		*instruction_set; // highest tier to use: "baseline", "avx2", "avx512"; NULL: the best
 } cau_session_def;
@@ -150,23 +152,25 @@ cau_status cau_session_drive(cau_session *session, int32_t count, const int32_t 
 cau_status cau_session_step(cau_session *session, cau_error *error);
 
 // ---- what never changes -----------------------------------------------------------------------
+// One layer of a session.
 typedef struct cau_session_layer {
-	char name[CAU_NAME_BYTES];
-	int32_t kind; // CAU_LAYER_*
-	int32_t first_face,
-		face_count; // its range in the face list; FAT: its unique faces; LINKS: none
-	int32_t element_count;
+	char name[CAU_NAME_BYTES]; // the scene's
+	int32_t kind;              // CAU_LAYER_*
+	// Its range in the face list. FAT: its unique faces. LINKS: none.
+	int32_t first_face, face_count;
+	int32_t element_count; // triangles, tetrahedra or links
 } cau_session_layer;
 
+// What never changes in a session. Pointers are borrowed for the session's life.
 typedef struct cau_session_info {
-	char name[CAU_NAME_BYTES];
-	char description[CAU_TEXT_BYTES];
-	double step_s;
-	int32_t vertex_count;
-	int32_t face_count;
-	int32_t triangle_count, tetrahedron_count, link_count, hinge_count, edge_count;
-	int32_t layer_count;
-	cau_session_layer layers[CAU_MAX_LAYERS];
+	char name[CAU_NAME_BYTES];        // the scene's
+	char description[CAU_TEXT_BYTES]; // the scene's
+	double step_s;                    // one tick
+	int32_t vertex_count;             // of the whole tissue
+	int32_t face_count;               // drawn and not
+	int32_t triangle_count, tetrahedron_count, link_count, hinge_count, edge_count; // at creation
+	int32_t layer_count;                      // at most CAU_MAX_LAYERS
+	cau_session_layer layers[CAU_MAX_LAYERS]; // (layer_count)
 	const int32_t *face;         // vertices, (face_count x 3); the session's, for its whole life
 	const int32_t *face_layer;   // (face_count)
 	const double *rest_position; // m, (vertex_count x 3)
@@ -177,6 +181,7 @@ typedef struct cau_session_info {
 	const cau_mesh_report *mesh_report; // of each of the scene's meshes
 } cau_session_info;
 
+// Fills *info.
 void cau_session_describe(const cau_session *session, cau_session_info *info);
 
 // Updates `scene`, a copy of the session's definition, with what commands have changed: gravity,
@@ -185,28 +190,29 @@ void cau_session_describe(const cau_session *session, cau_session_info *info);
 void cau_session_present(const cau_session *session, cau_scene_def *scene);
 
 // ---- what a tick made ---------------------------------------------------------------------------
+// A tool after a step.
 typedef struct cau_tool_state {
-	char name[CAU_NAME_BYTES];
-	cau_tool_def definition;
-	cau_pose pose; // actual pose: tissue can stop the tool
-	double jaw;    // actual opening, 0 closed to 1 open: held tissue can stop the jaws
-	bool energized;
-	bool grasping;            // jaws commanded closed on tissue
-	bool slipping;            // some of what they hold slid in the last step
-	int32_t grasped_vertices; // points held, of faces too; 0 while grasping: the jaws are empty
-	int32_t contact_vertices;
-	int32_t touched_layers; // bit per layer
-	double force_n[3];      // of the tissue on the tool, filtered and clamped
-	double torque_nm[3];    // about the tip
-	double raw_force_n[3];  // unfiltered
-	double raw_torque_nm[3];
-	double tip_temperature_c;
-	double energy_j;   // heat taken up by tissue; an estimate, with energy `tissue` by its ledger
+	char name[CAU_NAME_BYTES]; // of the tool
+	cau_tool_def definition;   // as added or configured last
+	cau_pose pose;             // actual pose: tissue can stop the tool
+	double jaw;                // actual opening, 0 closed to 1 open: held tissue can stop the jaws
+	bool energized;            // energy is on
+	bool grasping;             // jaws commanded closed on tissue
+	bool slipping;             // some of what they hold slid in the last step
+	int32_t grasped_vertices;  // points held, of faces too; 0 while grasping: the jaws are empty
+	int32_t contact_vertices;  // contact constraints of vertices
+	int32_t touched_layers;    // bit per layer
+	double force_n[3];         // of the tissue on the tool, filtered and clamped
+	double torque_nm[3];       // about the tip
+	double raw_force_n[3];     // unfiltered
+	double raw_torque_nm[3];   // unfiltered
+	double tip_temperature_c;  // of the hot part
+	double energy_j;   // heat taken up by tissue; with energy `tissue` by its ledger, else rough
 	uint64_t sequence; // last applied command's
 	// Commanded pose, within the speed limits. The tool is pulled there with force_max_n at most.
 	cau_pose asked_pose;
-	int32_t slips; // times that the tool fell so far behind that it released what stopped it
-	int32_t unused;
+	int32_t slips;  // times that the tool fell so far behind that it released what stopped it
+	int32_t unused; // 0
 	// Commanded opening of the jaws, within their speed; and the force with which they press what
 	// they hold, N at their tips, close_force_n at most.
 	double asked_jaw, jaw_force_n;
@@ -214,13 +220,14 @@ typedef struct cau_tool_state {
 	double delivered_w, load_ohm;
 } cau_tool_state;
 
+// What the last step was and cost.
 typedef struct cau_statistics {
-	double seconds[8]; // of the last step by stage, see CAU_STAGE_TABLE; filled if timing is on
-	int32_t iterations;
-	double residual; // relative, after the last iteration
-	int32_t backtracks;
-	int32_t inverted;          // tetrahedra with negative volume after the step
-	int32_t edges_parted;      // since creation
+	double seconds[8];    // of the last step by stage, see CAU_STAGE_TABLE; filled if timing is on
+	int32_t iterations;   // of the last step
+	double residual;      // relative, after the last iteration
+	int32_t backtracks;   // increments that were refused because they raised the objective
+	int32_t inverted;     // tetrahedra with negative volume after the step
+	int32_t edges_parted; // since creation
 	int32_t elements_removed;  // since creation
 	int32_t elements_torn;     // of these, by being stretched beyond what they bear
 	int32_t pending_downdates; // removed elements the factor still holds
@@ -235,7 +242,7 @@ typedef struct cau_statistics {
 	// tissue then moves less than it should, and none crosses. Second: tissue diverged, or too much
 	// of it was inverted; it was then excluded from contact.
 	int32_t touching_cut_short;
-	int32_t frozen_vertices;
+	int32_t frozen_vertices; // without a live element, or stopped far away; they do not move
 	// Energy that the step added without a source, J: kinetic, elastic and gravitational energy at
 	// its end less those at its start, and less the work of tools, led supports and commanded
 	// forces. Changes by cuts, shrinkage and commands between steps do not count. Plastic flow
@@ -250,6 +257,7 @@ typedef struct cau_statistics {
 	bool resting;
 } cau_statistics;
 
+// The stages of a step, in the order of cau_statistics.seconds.
 #define CAU_STAGE_TABLE(X)                                                                         \
 	X(COMMANDS, "commands")                                                                        \
 	X(PREDICT, "predict")                                                                          \
@@ -259,6 +267,7 @@ typedef struct cau_statistics {
 	X(HEAT, "heat")                                                                                \
 	X(DISSECT, "dissect")                                                                          \
 	X(FRAME, "frame")
+// A stage of a step.
 typedef enum cau_stage {
 #define X(code, name) CAU_STAGE_##code,
 	CAU_STAGE_TABLE(X)
@@ -269,8 +278,8 @@ typedef enum cau_stage {
 // A view into the session after a step: borrowed, valid until the next call that changes the
 // session.
 typedef struct cau_frame {
-	uint64_t tick;
-	double time_s;
+	uint64_t tick;                   // steps since creation
+	double time_s;                   // simulated
 	const double *position;          // m, (vertex_count x 3)
 	const double *velocity;          // m/s, (vertex_count x 3)
 	int32_t moved_count;             // vertices whose position changed in this step
@@ -281,13 +290,14 @@ typedef struct cau_frame {
 	const uint8_t *vertex_visible;   // (vertex_count): 1 if on a drawn face
 	CAU_SCALAR_MEMBERS(const float); // (vertex_count) each, in the channel's unit; NULL for a
 	                                 // costly channel that is not watched
-	int32_t tool_count;
-	const cau_tool_state *tools;
-	int32_t refusal_count; // commands refused at their tick in this step
-	const cau_error *refusals;
-	cau_statistics statistics;
+	int32_t tool_count;              // at most CAU_MAX_TOOLS
+	const cau_tool_state *tools;     // (tool_count)
+	int32_t refusal_count;           // commands refused at their tick in this step
+	const cau_error *refusals;       // (refusal_count)
+	cau_statistics statistics;       // of this step
 } cau_frame;
 
+// Fills *frame.
 void cau_session_frame(const cau_session *session, cau_frame *frame);
 
 // Turns stage timing on with the caller's clock `now_s` (s), or off with NULL, the default.
@@ -307,6 +317,7 @@ void cau_session_alive(const cau_session *session, const uint8_t **tetrahedron,
 // version, instruction set and a hash of the definition. Steps after a restore give the same bits
 // as steps without it.
 size_t cau_session_snapshot_bytes(const cau_session *session); // an upper bound
+// Writes a snapshot into the caller's bytes. Errors: CAU_LIMIT (capacity).
 cau_status cau_session_snapshot(const cau_session *session, void *bytes, size_t capacity,
                                 size_t *byte_count, cau_error *error);
 // Restores a snapshot. *exact is false if another instruction set or build wrote it. Errors:
@@ -329,18 +340,19 @@ typedef struct cau_energy_ledger {
 	double perfused_j;  // taken along by blood
 	double shed_j;      // heat content of tissue that was removed
 } cau_energy_ledger;
+// Writes the session's ledger.
 void cau_session_read_ledger(const cau_session *session, cau_energy_ledger *ledger);
 
 // Total mechanical quantities, for tests and plots.
 typedef struct cau_balance {
-	double momentum[3];   // kg m/s
-	double net_force[3];  // sum of internal forces, N
-	double net_torque[3]; // about the origin, N m
-	double force_sum;     // sum of |f_i|, N
-	double torque_sum;    // sum of |r_i| |f_i|, N m
-	double kinetic_j, elastic_j;
-	double gravitational_j; // above the world's origin
-	double residual_n;      // |gradient of eq. 4| over free vertices at the last step's end
+	double momentum[3];          // kg m/s
+	double net_force[3];         // sum of internal forces, N
+	double net_torque[3];        // about the origin, N m
+	double force_sum;            // sum of |f_i|, N
+	double torque_sum;           // sum of |r_i| |f_i|, N m
+	double kinetic_j, elastic_j; // energies
+	double gravitational_j;      // above the world's origin
+	double residual_n;           // |gradient of eq. 4| over free vertices at the last step's end
 } cau_balance;
 // Changes no bit of the state. CAU_NO_MEMORY: *balance is all 0.
 cau_status cau_session_balance(cau_session *session, cau_balance *balance);

@@ -30,21 +30,23 @@ enum {
 	CAU_SOLID_TEXT_BYTES = 16384, // of the report: a line for each label at most
 };
 
+// What cau_solid_make fills.
 typedef struct cau_solid_wish {
-	const char *file;  // path of a file; with bytes, a name for messages
-	const void *bytes; // NULL: `file` is read
-	size_t byte_count;
+	const char *file;   // path of a file; with bytes, a name for messages
+	const void *bytes;  // NULL: `file` is read
+	size_t byte_count;  // of `bytes`
 	double edge;        // target length of an edge, in units of the file; 0: chosen
 	const char *labels; // "1,3": labels of a segmentation to keep; NULL: all but 0
 	bool strict;        // refuse a surface that is open, or has triangles that would be turned
 	void (*progress)(void *user, const char *stage, double share); // 0 to 1; may be NULL
-	void *user;
+	void *user;                                                    // passed to `progress`
 } cau_solid_wish;
 
+// A solid. Its owner calls cau_solid_finish.
 typedef struct cau_solid {
 	unsigned char *bytes; // a Gmsh 2.2 file, binary; regions are the labels, with their names
-	size_t byte_count;
-	double unit_m; // metres in its unit: of a segmentation 0.001; 0: that of the surface
+	size_t byte_count;    // of `bytes`
+	double unit_m;        // metres in its unit: of a segmentation 0.001; 0: that of the surface
 	char text[CAU_SOLID_TEXT_BYTES]; // the report, one fact a line
 } cau_solid;
 
@@ -55,4 +57,5 @@ bool cau_solid_is_volume(const void *bytes, size_t byte_count);
 // CAU_BAD_VALUE at "edge" or "labels", CAU_LIMIT at "edge" where it asks for too many cells. The
 // caller finishes *solid, on failure too. Threads: any; deterministic.
 cau_status cau_solid_make(const cau_solid_wish *wish, cau_solid *solid, cau_error *error);
+// Frees the bytes.
 void cau_solid_finish(cau_solid *solid);

@@ -44,6 +44,7 @@ cau_assert_failed(const char *condition, const char *file, int line, const char 
 #define CAU_ASSERT(condition, ...) ((void)(0 && (condition)))
 #endif
 
+// 1 where 0 <= index < count.
 static inline int cau_is_index(int64_t index, int64_t count)
 {
 	return index >= 0 && index < count;
@@ -77,11 +78,12 @@ static inline int cau_is_index(int64_t index, int64_t count)
 //         return taken;
 //     }
 
-enum { CAU_RULE_REASON_BYTES = 320 };
+enum { CAU_RULE_REASON_BYTES = 320 }; // of the reason, with its zero
 
+// Where a broken rule returns to. Storage of the owner, for as long as it is entered.
 typedef struct cau_rule_guard {
-	jmp_buf place; // the owner calls setjmp(guard.place) right after cau_rule_enter
-	struct cau_rule_guard *outer;
+	jmp_buf place;                // the owner calls setjmp(guard.place) right after cau_rule_enter
+	struct cau_rule_guard *outer; // the guard around it; private
 	char reason[CAU_RULE_REASON_BYTES]; // the broken rule, its place, and the words
 } cau_rule_guard;
 

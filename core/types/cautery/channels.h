@@ -53,26 +53,32 @@
 	/* a new row goes above this line */
 // clang-format on
 
-enum { CAU_ON_REQUEST, CAU_BY_DEFAULT };
+enum { CAU_ON_REQUEST, CAU_BY_DEFAULT }; // `when` of the table
 
 // For tables of some entries only.
 #define CAU_NO_ROW(...)
 
 // ---- bits ---------------------------------------------------------------------------------------
 #define ROW(X, code, ...) CAU_CHANNEL_INDEX_##code,
+// The number of each channel, which is that of its bit.
 typedef enum cau_channel_index { CAU_CHANNEL_ROWS(ROW, ROW, ) CAU_CHANNEL_COUNT } cau_channel_index;
 #undef ROW
 #define ROW(X, code, ...) CAU_CHANNEL_##code = 1 << CAU_CHANNEL_INDEX_##code,
+// The bit of each channel, and all of them.
 typedef enum cau_channel {
-	CAU_CHANNEL_ROWS(ROW, ROW, ) CAU_CHANNEL_ALL = (1 << CAU_CHANNEL_COUNT) - 1
+	CAU_CHANNEL_ROWS(ROW, ROW, ) CAU_CHANNEL_ALL = (1 << CAU_CHANNEL_COUNT) - 1 // every bit
 } cau_channel;
 #undef ROW
 #define ROW(X, code, name, section, when, ...) | CAU_##when << CAU_CHANNEL_INDEX_##code
-enum { CAU_CHANNELS_BY_DEFAULT = 0 CAU_CHANNEL_ROWS(ROW, ROW, ) };
+enum {
+	// The bits of a stream that names no channels.
+	CAU_CHANNELS_BY_DEFAULT = 0 CAU_CHANNEL_ROWS(ROW, ROW, )
+};
 #undef ROW
 
 // ---- scalars ------------------------------------------------------------------------------------
 #define ROW(X, code, ...) CAU_SCALAR_##code,
+// The number of each scalar channel, among these alone.
 typedef enum cau_scalar { CAU_CHANNEL_ROWS(CAU_NO_ROW, ROW, ) CAU_SCALAR_COUNT } cau_scalar;
 #undef ROW
 

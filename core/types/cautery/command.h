@@ -33,6 +33,7 @@
 	X(SET_FORCE, "force.set")                                                                      \
 	X(TOOL_HOLD, "tool.hold")
 
+// The kind of a command: CAU_COMMAND_TABLE.
 typedef enum cau_command_kind {
 #define X(code, name) CAU_COMMAND_##code,
 	CAU_COMMAND_TABLE(X)
@@ -49,25 +50,25 @@ typedef struct cau_command {
 	union {
 		cau_tool_def definition; // TOOL_ADD, TOOL_CONFIGURE (its pose is ignored)
 		struct {
-			cau_pose pose;
-			double jaw; // 0 closed to 1 open
-		} move;         // TOOL_MOVE
+			cau_pose pose; // commanded pose
+			double jaw;    // 0 closed to 1 open
+		} move;            // TOOL_MOVE
 		struct {
 			int32_t energized; // TOOL_ENERGIZE
 			int32_t ticks;     // of an enable: energy is off again after so many; 0: no limit
 		};
 		cau_selection selection; // PIN, UNPIN
 		struct {
-			char layer[CAU_NAME_BYTES];
-			int32_t kind; // CAU_LAYER_*: which of the three follows
-			cau_sheet_material sheet;
-			cau_fat_material fat;
-			cau_link_material link;
+			char layer[CAU_NAME_BYTES]; // which layer
+			int32_t kind;               // CAU_LAYER_*: which of the three follows
+			cau_sheet_material sheet;   // FASCIA, MEMBRANE
+			cau_fat_material fat;       // FAT
+			cau_link_material link;     // LINKS
 		} material;             // SET_MATERIAL: replaces the layer's material of that region
 		double gravity_m_s2[3]; // SET_GRAVITY
 		struct {
 			cau_selection selection;
 			double force_n[3]; // on each chosen vertex, until set again; zero ends it
 		} force;               // SET_FORCE
-	} as;
+	} as;                      // by kind
 } cau_command;

@@ -27,6 +27,7 @@ extern "C" {
 
 #define CAU_SET_DEFAULT(field, default_, least, most, unit, meaning) def->field = (default_);
 
+// Gravity along -z, m/s^2.
 static inline void cau_default_gravity(double gravity_m_s2[3])
 {
 	gravity_m_s2[0] = 0.0;
@@ -61,12 +62,14 @@ static inline double cau_default_ignition_c(int layer_kind)
 	}
 }
 
+// Every member at its default for this kind of layer.
 static inline void cau_default_heat_material(cau_heat_material *def, int layer_kind)
 {
 	CAU_HEAT_TABLE(CAU_SET_DEFAULT)
 	def->ignition_c = cau_default_ignition_c(layer_kind);
 }
 
+// A target at the rest shape, and no shrinkage. `layer_kind`: CAU_LAYER_FASCIA or MEMBRANE.
 static inline void cau_default_sheet_material(cau_sheet_material *def, int layer_kind)
 {
 	memset(def, 0, sizeof *def);
@@ -82,6 +85,7 @@ static inline void cau_default_sheet_material(cau_sheet_material *def, int layer
 	cau_default_heat_material(&def->heat, layer_kind);
 }
 
+// Stable neo-Hookean fat without limits, shrinkage and plasticity.
 static inline void cau_default_fat_material(cau_fat_material *def)
 {
 	memset(def, 0, sizeof *def);
@@ -98,6 +102,7 @@ static inline void cau_default_fat_material(cau_fat_material *def)
 	cau_default_heat_material(&def->heat, CAU_LAYER_FAT);
 }
 
+// Every member at its default.
 static inline void cau_default_link_material(cau_link_material *def)
 {
 	memset(def, 0, sizeof *def);
@@ -134,6 +139,7 @@ static inline void cau_default_mesh_def(cau_mesh_def *def)
 	def->unit_m = 1.0;
 }
 
+// Every size at its default, at the default pose; the name empty. `shape`: CAU_TOOL_*.
 static inline void cau_default_tool_def(cau_tool_def *def, int shape)
 {
 	memset(def, 0, sizeof *def);
@@ -142,6 +148,7 @@ static inline void cau_default_tool_def(cau_tool_def *def, int shape)
 	cau_default_pose(&def->pose);
 }
 
+// Absent; 25 mm up in half a second where it is made present.
 static inline void cau_default_pull_def(cau_pull_def *def)
 {
 	memset(def, 0, sizeof *def);
@@ -149,6 +156,7 @@ static inline void cau_default_pull_def(cau_pull_def *def)
 	def->duration_s = 0.5;
 }
 
+// Absent; 3 s of dwelling and 2 mm/s where it is made present.
 static inline void cau_default_cut_def(cau_cut_def *def)
 {
 	memset(def, 0, sizeof *def);

@@ -18,6 +18,7 @@
 	X(RESTORED, "restored")                                                                        \
 	X(TAKEN_OVER, "taken_over")
 
+// The reason why energy is off: CAU_ENERGY_OFF_TABLE.
 typedef enum cau_energy_off {
 #define X(code, name) CAU_ENERGY_OFF_##code,
 	CAU_ENERGY_OFF_TABLE(X)

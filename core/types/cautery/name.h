@@ -20,6 +20,7 @@
 
 #define CAU_NAME_RULE "[a-z][a-z0-9]*([_-][a-z0-9]+)*, at most 48 bytes"
 
+// Whether a text is a name by CAU_NAME_RULE.
 static inline bool cau_name_is_valid(const char *name)
 {
 	bool word = false; // the byte before ends a word

@@ -28,13 +28,13 @@
 #include <stdint.h>
 
 enum {
-	CAU_NAME_BYTES = 49, // [a-z][a-z0-9]*([_-][a-z0-9]+)*, at most 48 bytes and a zero
-	CAU_TEXT_BYTES = 256,
-	CAU_MAX_MESHES = 8,
-	CAU_MAX_LAYERS = 12,
+	CAU_NAME_BYTES = 49,    // [a-z][a-z0-9]*([_-][a-z0-9]+)*, at most 48 bytes and a zero
+	CAU_TEXT_BYTES = 256,   // of a description or a file name, with its zero
+	CAU_MAX_MESHES = 8,     // of a scene
+	CAU_MAX_LAYERS = 12,    // of a scene
 	CAU_MAX_MATERIALS = 16, // of one layer: the default and its regions
-	CAU_MAX_PINS = 16,
-	CAU_MAX_TOOLS = 8,
+	CAU_MAX_PINS = 16,      // choices of pinned vertices of a scene
+	CAU_MAX_TOOLS = 8,      // of a session
 };
 
 #define CAU_FIELD(field, default_, least, most, unit, meaning) double field;
@@ -95,8 +95,9 @@ enum {
 	X(FILE, "file")       /* a mesh file: core/mesh/README.md */                                   \
 	X(BYTES, "bytes")     /* an uploaded file, in memory */
 
+// One mesh of a scene: generated, or read.
 typedef struct cau_mesh_def {
-	char name[CAU_NAME_BYTES];
+	char name[CAU_NAME_BYTES]; // by which layers name it
 	int source;                // CAU_MESH_*
 	double size_m[3];          // generated meshes; centred on the origin in x and y, top at z = 0
 	int32_t cells[3];          // generated meshes
@@ -106,7 +107,7 @@ typedef struct cau_mesh_def {
 	double translate_m[3];     // applied after the unit
 	int32_t strict;            // read meshes: refuse what would have to be mended
 	const void *bytes;         // BYTES: borrowed until the session is created
-	size_t byte_count;
+	size_t byte_count;         // of `bytes`
 } cau_mesh_def;
 
 // ---- materials ------------------------------------------------------------------------------
@@ -164,38 +165,42 @@ typedef struct cau_mesh_def {
 	X(reach_m, 5e-3, 1e-6, 1.0, "m", "longest truss")                                              \
 	X(per_vertex, 3.0, 1.0, 8.0, "1", "trusses from each vertex of the upper sheet")
 
+// How heat parts a tissue, and what tears it: the members of CAU_HEAT_TABLE.
 typedef struct cau_heat_material {
 	CAU_HEAT_TABLE(CAU_FIELD)
 } cau_heat_material;
 
+// The material of a fascia or a membrane, or of one region of it.
 typedef struct cau_sheet_material {
 	int32_t region; // of the mesh file; ignored for the layer's first material, its default
 	CAU_SHEET_TABLE(CAU_FIELD)
-	int limit;            // CAU_LIMIT_*
-	int projection;       // CAU_PROJECTION_*
-	double target[3];     // TARGET: t_00, t_11, t_01: squared stretches; T positive definite
-	double strain_min[2]; // RANGE: engineering strain sqrt(k_aa) - 1 along u and v
-	double strain_max[2];
-	double shrink[2]; // S_x, S_y of eq. 21: squared stretches
-	cau_heat_material heat;
+	int limit;              // CAU_LIMIT_*
+	int projection;         // CAU_PROJECTION_*
+	double target[3];       // TARGET: t_00, t_11, t_01: squared stretches; T positive definite
+	double strain_min[2];   // RANGE: engineering strain sqrt(k_aa) - 1 along u and v
+	double strain_max[2];   // RANGE: the upper ends
+	double shrink[2];       // S_x, S_y of eq. 21: squared stretches
+	cau_heat_material heat; // how heat parts it
 } cau_sheet_material;
 
+// The material of fat, or of one region of it.
 typedef struct cau_fat_material {
-	int32_t region;
+	int32_t region; // of the mesh file; ignored for the layer's first material
 	CAU_FAT_TABLE(CAU_FIELD)
-	int model; // CAU_MODEL_*
-	int limit;
-	int projection;
-	double target[6]; // t_00, t_11, t_22, t_01, t_02, t_12 in the material axes
-	double strain_min[3];
-	double strain_max[3];
-	double shrink[3];
-	cau_heat_material heat;
+	int model;              // CAU_MODEL_*
+	int limit;              // CAU_LIMIT_*
+	int projection;         // CAU_PROJECTION_*
+	double target[6];       // t_00, t_11, t_22, t_01, t_02, t_12 in the material axes
+	double strain_min[3];   // RANGE: sqrt(k_aa) - 1 along the material axes
+	double strain_max[3];   // RANGE: the upper ends
+	double shrink[3];       // S_x, S_y, S_z of eq. 21: squared stretches
+	cau_heat_material heat; // how heat parts it
 } cau_fat_material;
 
+// The material of links: trusses between two layers.
 typedef struct cau_link_material {
 	CAU_LINK_TABLE(CAU_FIELD)
-	cau_heat_material heat;
+	cau_heat_material heat; // how heat parts it
 } cau_link_material;
 
 // ---- layers ---------------------------------------------------------------------------------
@@ -205,8 +210,9 @@ typedef struct cau_link_material {
 	X(FAT, "fat")           /* the tetrahedra of its mesh */                                       \
 	X(LINKS, "links")       /* trusses from each vertex of layer `of` to the nearest of `to` */
 
+// One layer of tissue: which part of which mesh it is, and what it is made of.
 typedef struct cau_layer_def {
-	char name[CAU_NAME_BYTES];
+	char name[CAU_NAME_BYTES]; // of the layer
 	int kind;                  // CAU_LAYER_*
 	char mesh[CAU_NAME_BYTES]; // FASCIA, FAT, MEMBRANE without `of`
 	char of[CAU_NAME_BYTES];   // MEMBRANE: a fat layer. LINKS: the upper layer
@@ -225,13 +231,14 @@ typedef struct cau_layer_def {
 	X(SPHERE, "sphere") /* rest position within radius_m of center_m */                            \
 	X(NEAREST, "nearest") /* the one vertex nearest to center_m */
 
+// A choice of vertices by their rest positions.
 typedef struct cau_selection {
 	int kind;                   // CAU_SELECT_*
 	char layer[CAU_NAME_BYTES]; // empty: any layer
-	double least_m[3];
-	double most_m[3];
-	double center_m[3];
-	double radius_m;
+	double least_m[3];          // BOX: its least corner
+	double most_m[3];           // BOX: its greatest corner
+	double center_m[3];         // SPHERE, NEAREST
+	double radius_m;            // SPHERE
 } cau_selection;
 
 // ---- tools ----------------------------------------------------------------------------------
@@ -272,123 +279,139 @@ typedef struct cau_selection {
 	X(crest_factor, 1.4, 1.4, 20.0, "1", "of the voltage: its peak over its root mean square")     \
 	X(current_max_a, 2.0, 0.01, 10.0, "A", "most current, root mean square")
 
+// Where a tool is, and how it is turned.
 typedef struct cau_pose {
-	double position_m[3];
-	double rotation[4]; // unit quaternion w, x, y, z: tool frame to world
+	double position_m[3]; // of the tip, in the world
+	double rotation[4];   // unit quaternion w, x, y, z: tool frame to world
 } cau_pose;
 
+// One tool: its shape, its sizes and its first pose.
 typedef struct cau_tool_def {
-	char name[CAU_NAME_BYTES];
-	int shape; // CAU_TOOL_*
+	char name[CAU_NAME_BYTES]; // of the tool
+	int shape;                 // CAU_TOOL_*
 	CAU_TOOL_TABLE(CAU_FIELD)
 	cau_pose pose; // first pose
 } cau_tool_def;
 
 // ---- the scripted motions that benchmarks and demonstrations share ------------------------------
-typedef struct cau_pull_def { // the vertices chosen are moved by `move_m` in `duration_s`
-	int32_t present;
-	cau_selection selection;
-	double move_m[3];
-	double duration_s;
+// The chosen vertices are moved by `move_m` in `duration_s`.
+typedef struct cau_pull_def {
+	int32_t present;         // 1: the scene has a pull
+	cau_selection selection; // which vertices
+	double move_m[3];        // their way
+	double duration_s;       // how long they take
 } cau_pull_def;
 
-typedef struct cau_cut_def { // the tool dwells at `from_m`, then is drawn to `to_m`
-	int32_t present;
-	char tool[CAU_NAME_BYTES];
-	double from_m[3];
-	double to_m[3];
-	double rotation[4];
-	double dwell_s;
-	double speed_m_s;
+// The tool dwells at `from_m`, then is drawn to `to_m`.
+typedef struct cau_cut_def {
+	int32_t present;           // 1: the scene has a cut
+	char tool[CAU_NAME_BYTES]; // which tool
+	double from_m[3];          // tip at the begin
+	double to_m[3];            // tip at the end
+	double rotation[4];        // unit quaternion w, x, y, z
+	double dwell_s;            // hot, at from_m
+	double speed_m_s;          // of the way
 } cau_cut_def;
 
 // ---- the scene --------------------------------------------------------------------------------
+// A whole scene: the plain data from which a session is made.
 typedef struct cau_scene_def {
-	char name[CAU_NAME_BYTES];
-	char description[CAU_TEXT_BYTES];
-	char directory[CAU_TEXT_BYTES]; // where relative mesh files are looked up; not in the JSON
+	char name[CAU_NAME_BYTES];        // of the scene
+	char description[CAU_TEXT_BYTES]; // in words
+	char directory[CAU_TEXT_BYTES];   // where relative mesh files are looked up; not in the JSON
 	CAU_TIME_TABLE(CAU_FIELD)
-	int32_t iterations; // of a step at most, 1 to 1000
-	int solver;         // CAU_SOLVER_*
-	int precision;      // CAU_PRECISION_* of the local and global steps
-	int parting;        // CAU_PARTING_*: what heat parts
-	int energy;         // CAU_ENERGY_*: what an energized tool does to tissue
-	uint64_t seed;      // of everything drawn at random (ignition temperatures)
-	double gravity_m_s2[3];
-	int32_t mesh_count;
-	cau_mesh_def meshes[CAU_MAX_MESHES];
-	int32_t layer_count;
-	cau_layer_def layers[CAU_MAX_LAYERS];
-	int32_t pin_count;
-	cau_selection pins[CAU_MAX_PINS];
-	int32_t tool_count;
-	cau_tool_def tools[CAU_MAX_TOOLS];
-	cau_pull_def pull;
-	cau_cut_def cut;
-} cau_scene_def; // about 70 KiB: keep it on the heap
+	int32_t iterations;                   // of a step at most, 1 to 1000
+	int solver;                           // CAU_SOLVER_*
+	int precision;                        // CAU_PRECISION_* of the local and global steps
+	int parting;                          // CAU_PARTING_*: what heat parts
+	int energy;                           // CAU_ENERGY_*: what an energized tool does to tissue
+	uint64_t seed;                        // of everything drawn at random (ignition temperatures)
+	double gravity_m_s2[3];               // acceleration
+	int32_t mesh_count;                   // at most CAU_MAX_MESHES
+	cau_mesh_def meshes[CAU_MAX_MESHES];  // (mesh_count)
+	int32_t layer_count;                  // at most CAU_MAX_LAYERS
+	cau_layer_def layers[CAU_MAX_LAYERS]; // (layer_count)
+	int32_t pin_count;                    // at most CAU_MAX_PINS
+	cau_selection pins[CAU_MAX_PINS];     // (pin_count): vertices that do not move
+	int32_t tool_count;                   // at most CAU_MAX_TOOLS
+	cau_tool_def tools[CAU_MAX_TOOLS];    // (tool_count)
+	cau_pull_def pull;                    // for measurements; may be absent
+	cau_cut_def cut;                      // for measurements; may be absent
+} cau_scene_def;                          // about 70 KiB: keep it on the heap
 
 #undef CAU_FIELD
 
+// The global system of a step: CAU_SOLVER_TABLE.
 typedef enum cau_solver {
 #define X(code, name) CAU_SOLVER_##code,
 	CAU_SOLVER_TABLE(X)
 #undef X
 		CAU_SOLVER_COUNT
 } cau_solver;
+// The precision of the local and global steps: CAU_PRECISION_TABLE.
 typedef enum cau_precision {
 #define X(code, name) CAU_PRECISION_##code,
 	CAU_PRECISION_TABLE(X)
 #undef X
 		CAU_PRECISION_COUNT
 } cau_precision;
+// What heat parts: CAU_PARTING_TABLE.
 typedef enum cau_parting {
 #define X(code, name) CAU_PARTING_##code,
 	CAU_PARTING_TABLE(X)
 #undef X
 		CAU_PARTING_COUNT
 } cau_parting;
+// What an energized tool does: CAU_ENERGY_TABLE.
 typedef enum cau_energy_law {
 #define X(code, name) CAU_ENERGY_##code,
 	CAU_ENERGY_TABLE(X)
 #undef X
 		CAU_ENERGY_COUNT
 } cau_energy_law;
+// Where a mesh comes from: CAU_MESH_SOURCE_TABLE.
 typedef enum cau_mesh_source {
 #define X(code, name) CAU_MESH_##code,
 	CAU_MESH_SOURCE_TABLE(X)
 #undef X
 		CAU_MESH_SOURCE_COUNT
 } cau_mesh_source;
+// The law of fat: CAU_MODEL_TABLE.
 typedef enum cau_model {
 #define X(code, ...) CAU_MODEL_##code,
 	CAU_MODEL_TABLE(X)
 #undef X
 		CAU_MODEL_COUNT
 } cau_model;
+// The kind of strain limit: CAU_LIMIT_TABLE.
 typedef enum cau_limit {
 #define X(code, name) CAU_LIMIT_##code,
 	CAU_LIMIT_TABLE(X)
 #undef X
 		CAU_LIMIT_COUNT
 } cau_limit;
+// How a target is projected: CAU_PROJECTION_TABLE.
 typedef enum cau_projection {
 #define X(code, name) CAU_PROJECTION_##code,
 	CAU_PROJECTION_TABLE(X)
 #undef X
 		CAU_PROJECTION_COUNT
 } cau_projection;
+// The kind of tissue: CAU_LAYER_TABLE.
 typedef enum cau_layer_kind {
 #define X(code, name) CAU_LAYER_##code,
 	CAU_LAYER_TABLE(X)
 #undef X
 		CAU_LAYER_COUNT
 } cau_layer_kind;
+// How vertices are chosen: CAU_SELECT_TABLE.
 typedef enum cau_select_kind {
 #define X(code, name) CAU_SELECT_##code,
 	CAU_SELECT_TABLE(X)
 #undef X
 		CAU_SELECT_COUNT
 } cau_select_kind;
+// The shape of a tool: CAU_TOOL_SHAPE_TABLE.
 typedef enum cau_tool_shape_kind {
 #define X(code, ...) CAU_TOOL_##code,
 	CAU_TOOL_SHAPE_TABLE(X)

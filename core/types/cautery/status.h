@@ -36,6 +36,7 @@
 	X(FAULTED, "faulted", "the session is faulted: rewind or reset it")                            \
 	X(CORRUPT, "corrupt", "the data is damaged or of another version")
 
+// What a function returns; CAU_OK is 0.
 typedef enum cau_status {
 #define X(code, name, sentence) CAU_##code,
 	CAU_STATUS_TABLE(X)
@@ -46,12 +47,13 @@ typedef enum cau_status {
 // What went wrong, where, and why. `path` is a path inside a document ("layers[1].poisson_ratio");
 // `file` names the document; either may be empty.
 typedef struct cau_error {
-	cau_status status;
-	char file[256];
-	char path[160];
-	char reason[320];
+	cau_status status; // the kind
+	char file[256];    // the document
+	char path[160];    // the place in it
+	char reason[320];  // a sentence: what is wrong, and what would be right
 } cau_error;
 
+// The word of a status on the wire; "unknown" for what is none.
 static inline const char *cau_status_name(cau_status status)
 {
 	static const char *const names[] = {
@@ -62,6 +64,7 @@ static inline const char *cau_status_name(cau_status status)
 	return (unsigned)status < CAU_STATUS_COUNT ? names[status] : "unknown";
 }
 
+// A status in words.
 static inline const char *cau_status_sentence(cau_status status)
 {
 	static const char *const sentences[] = {

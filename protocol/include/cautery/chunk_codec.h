@@ -30,15 +30,16 @@ extern "C" {
 #endif
 
 enum {
-	CAU_CHUNK_HEADER_BYTES = 16,
+	CAU_CHUNK_HEADER_BYTES = 16,  // before the data
 	CAU_CHUNK_BYTES_MAX = 262144, // of data in one chunk
 };
 
+// A piece of a file.
 typedef struct cau_chunk {
 	uint32_t transfer; // as upload.begin, session.export or session.log answered
 	uint64_t offset;   // of the first byte in the file
 	const void *data;  // borrowed from the message
-	size_t byte_count;
+	size_t byte_count; // of `data`
 } cau_chunk;
 
 // Errors: CAU_CORRUPT (no chunk), CAU_LIMIT (empty or more than CAU_CHUNK_BYTES_MAX).

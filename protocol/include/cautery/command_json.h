@@ -47,7 +47,7 @@
 extern "C" {
 #endif
 
-enum { CAU_COMMAND_JSON_MAX_BYTES = 16384 };
+enum { CAU_COMMAND_JSON_MAX_BYTES = 16384 }; // of one command as text
 
 // Errors: CAU_BAD_SYNTAX, CAU_LIMIT, CAU_NO_MEMORY, CAU_BAD_VALUE with the member's path.
 cau_status cau_command_from_json(const char *text, size_t bytes, cau_command *command,
@@ -62,12 +62,13 @@ cau_status cau_command_to_json(const cau_command *command, char *buffer, size_t 
 typedef struct cau_script {
 	const char *name; // for error->file; may be NULL
 	const char *text; // borrowed
-	size_t bytes;
-	size_t offset; // of the next line
-	int32_t line;  // last read, from 1
-	uint64_t tick; // last read
+	size_t bytes;     // of `text`
+	size_t offset;    // of the next line
+	int32_t line;     // last read, from 1
+	uint64_t tick;    // last read
 } cau_script;
 
+// Begins at the first line of `text`, which is borrowed, as `name` is.
 void cau_script_begin(cau_script *script, const char *name, const char *text, size_t bytes);
 
 // Reads the next command. *end is true (and *command untouched) after the last one. The reason of

@@ -25,11 +25,15 @@
 extern "C" {
 #endif
 
-enum { CAU_FLEET_LABELS_MAX = 1024, CAU_FLEET_JSON_MAX_BYTES = 1 << 16 };
+enum {
+	CAU_FLEET_LABELS_MAX = 1024,        // daemons of a fleet
+	CAU_FLEET_JSON_MAX_BYTES = 1 << 16, // of the answer
+};
 
+// The labels behind an address.
 typedef struct cau_fleet {
-	int32_t count; // 0: no fleet, one daemon alone
-	char labels[CAU_FLEET_LABELS_MAX][CAU_NAME_BYTES];
+	int32_t count;                                     // 0: no fleet, one daemon alone
+	char labels[CAU_FLEET_LABELS_MAX][CAU_NAME_BYTES]; // (count)
 } cau_fleet;
 
 // Reads the answer: labels, each a name without "-", none twice; a daemon alone has none. Members

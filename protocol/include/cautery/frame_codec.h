@@ -35,8 +35,8 @@ extern "C" {
 #endif
 
 enum {
-	CAU_FRAME_VERSION = 1,
-	CAU_FRAME_HEADER_BYTES = 72,
+	CAU_FRAME_VERSION = 1,       // of the layout
+	CAU_FRAME_HEADER_BYTES = 72, // before the first section
 	CAU_FRAME_SECTION_BYTES = 8, // before each section's payload
 };
 
@@ -45,6 +45,7 @@ enum {
 	X(KEY, 1, "key")                                                                               \
 	X(DELTA, 2, "delta")                                                                           \
 	X(TOPOLOGY, 3, "topology")
+// The kind of a frame.
 typedef enum cau_frame_kind {
 #define X(code, number, name) CAU_FRAME_##code = (number),
 	CAU_FRAME_KIND_TABLE(X)
@@ -63,25 +64,26 @@ typedef enum cau_frame_kind {
 	X(TOOL_JAWS, 33, "tool_jaws")     /* of tools, too */
 #define ROW(X, code, name, section, ...) CAU_SECTION_##code = (section),
 #define X(code, number, name) CAU_SECTION_##code = (number),
+// The number of a section.
 typedef enum cau_section { CAU_CHANNEL_ROWS(ROW, ROW, ) CAU_OTHER_SECTION_TABLE(X) } cau_section;
 #undef ROW
 #undef X
 
 // The fixed start of every frame.
 typedef struct cau_frame_header {
-	uint8_t version;
-	uint8_t kind; // CAU_FRAME_*
-	uint16_t flags;
-	uint32_t byte_count; // of the whole frame
-	uint32_t session;
-	uint64_t epoch;
+	uint8_t version;        // CAU_FRAME_VERSION
+	uint8_t kind;           // CAU_FRAME_*
+	uint16_t flags;         // CAU_FRAME_PAUSED, CAU_FRAME_FAULTED
+	uint32_t byte_count;    // of the whole frame
+	uint32_t session;       // the session's number on its daemon
+	uint64_t epoch;         // another after rewind, reset, restore and restart
 	uint64_t sequence;      // counts from 1 in each epoch
 	uint64_t base_sequence; // the state that the frame builds on; in a key frame its own sequence
-	uint64_t tick;
-	double time_s;
-	uint64_t published_us;
-	uint16_t profile;
-	uint16_t section_count;
+	uint64_t tick;          // of the state
+	double time_s;          // simulated
+	uint64_t published_us;  // the server's monotonic clock
+	uint16_t profile;       // of the session
+	uint16_t section_count; // that follow
 } cau_frame_header;
 
 // Reads and checks the header alone, for routing. Errors: CAU_CORRUPT (too short, no frame of ours,
@@ -119,6 +121,7 @@ cau_status cau_frame_encode(cau_frame_encoder *encoder, const cau_stream_sample 
 cau_status cau_frame_encode_key(const cau_frame_encoder *encoder, void *bytes, size_t capacity,
                                 size_t *byte_count, cau_error *error);
 
+// The present epoch, and the sequence of the last frame.
 uint64_t cau_frame_encoder_epoch(const cau_frame_encoder *encoder);
 uint64_t cau_frame_encoder_sequence(const cau_frame_encoder *encoder); // 0 before the first frame
 
@@ -126,8 +129,9 @@ uint64_t cau_frame_encoder_sequence(const cau_frame_encoder *encoder); // 0 befo
 // Follows an encoder and makes deltas over two of its frames, in the same chain: a decoder goes
 // over from one kind to the other at any frame of even sequence, and holds the same state there.
 typedef struct cau_frame_thinner cau_frame_thinner;
-enum { CAU_FRAME_THINNING = 2 };
+enum { CAU_FRAME_THINNING = 2 }; // frames of the encoder in one of the thinner
 
+// Storage for a thinner of such a stream, any alignment that malloc gives.
 size_t cau_frame_thinner_bytes(const cau_stream_def *def);
 // Makes a thinner in `storage`, which it keeps; so it does the encoder. Errors: CAU_LIMIT (storage
 // too small).
@@ -145,7 +149,10 @@ cau_status cau_frame_thin(cau_frame_thinner *thinner, void *bytes, size_t capaci
 // ---- decoder ------------------------------------------------------------------------------------
 typedef struct cau_frame_decoder cau_frame_decoder;
 
+// Storage for a decoder of such a stream, any alignment that malloc gives.
 size_t cau_frame_decoder_bytes(const cau_stream_def *def);
+// Makes a decoder in `storage`, which it keeps. Errors: CAU_BAD_VALUE (the definition), CAU_LIMIT
+// (storage too small).
 cau_status cau_frame_decoder_init(void *storage, size_t storage_bytes, const cau_stream_def *def,
                                   cau_frame_decoder **decoder, cau_error *error);
 
@@ -158,7 +165,9 @@ cau_status cau_frame_decoder_init(void *storage, size_t storage_bytes, const cau
 cau_status cau_frame_decode(cau_frame_decoder *decoder, const void *bytes, size_t byte_count,
                             cau_error *error);
 
+// The decoder's state; borrowed, valid until the next decode.
 const cau_stream_state *cau_frame_decoder_state(const cau_frame_decoder *decoder);
+// The definition that the decoder was made with; borrowed.
 const cau_stream_def *cau_frame_decoder_def(const cau_frame_decoder *decoder);
 
 // Positions in metres, (vertex_count x 3), into the caller's array.

@@ -27,32 +27,35 @@
 extern "C" {
 #endif
 
+// A text that is being written. The members are for the functions below.
 typedef struct cau_json_writer {
 	char *buffer;    // borrowed until cau_json_end
 	size_t capacity; // bytes of the buffer, the closing zero included
 	size_t bytes;    // needed so far, without the closing zero; counts on past the capacity
 	int32_t indent;  // spaces a level; 0: all on one line
-	int32_t depth;
+	int32_t depth;   // open levels
 	char closing[CAU_JSON_MAX_DEPTH];  // '}' or ']' of each open level
 	bool occupied[CAU_JSON_MAX_DEPTH]; // whether the level has a value yet
 	bool flat[CAU_JSON_MAX_DEPTH];     // whether the level stays on its line in spite of `indent`
 	cau_status status;                 // the first failure
-	const char *reason;
+	const char *reason;                // of the first failure; borrowed
 } cau_json_writer;
 
+// Begins a text in `buffer`. `indent`: spaces a level; 0: all on one line.
 void cau_json_begin(cau_json_writer *writer, char *buffer, size_t capacity, int32_t indent);
 
 // `key` is the member's name inside an object and NULL inside an array or at the top.
 // `bracket` is '{' or '['; '(' opens an array that stays on one line.
 void cau_json_open(cau_json_writer *writer, const char *key, char bracket);
-void cau_json_close(cau_json_writer *writer);
+void cau_json_close(cau_json_writer *writer); // the innermost open level
 void cau_json_number(cau_json_writer *writer, const char *key, double value); // must be finite
 void cau_json_integer(cau_json_writer *writer, const char *key,
                       int64_t value); // below 2^53 in size
-void cau_json_unsigned(cau_json_writer *writer, const char *key, uint64_t value); // below 2^53
-void cau_json_bool(cau_json_writer *writer, const char *key, bool value);
-void cau_json_null(cau_json_writer *writer, const char *key);
+void cau_json_unsigned(cau_json_writer *writer, const char *key, uint64_t value);  // below 2^53
+void cau_json_bool(cau_json_writer *writer, const char *key, bool value);          // true or false
+void cau_json_null(cau_json_writer *writer, const char *key);                      // null
 void cau_json_string(cau_json_writer *writer, const char *key, const char *value); // valid UTF-8
+// An array of `count` finite numbers, on one line.
 void cau_json_numbers(cau_json_writer *writer, const char *key, const double *value, int32_t count);
 // Appends text that is JSON already (from another writer).
 void cau_json_raw(cau_json_writer *writer, const char *key, const char *json, size_t bytes);

@@ -100,26 +100,33 @@
 	CHOICE_TABLE(layer_kind, CAU_LAYER_TABLE)
 
 #define X(code, name) CAU_ROLE_##code,
+// What a client may do; each may do what those before it may.
 typedef enum cau_role { CAU_ROLE_TABLE(X) CAU_ROLE_COUNT } cau_role;
 #undef X
 #define X(code, name) CAU_SESSION_##code,
+// What a session does.
 typedef enum cau_session_state {
 	CAU_SESSION_STATE_TABLE(X) CAU_SESSION_STATE_COUNT
 } cau_session_state;
 #undef X
 #define X(code, name) CAU_CHANGE_##code,
+// Why session.changed was sent.
 typedef enum cau_change { CAU_CHANGE_TABLE(X) CAU_CHANGE_COUNT } cau_change;
 #undef X
 #define X(code, name) CAU_EVENT_##code,
+// What an event of the timeline is.
 typedef enum cau_event_kind { CAU_EVENT_TABLE(X) CAU_EVENT_COUNT } cau_event_kind;
 #undef X
 #define X(code, name) CAU_EXPORT_##code,
+// The format of an exported file.
 typedef enum cau_export_format { CAU_EXPORT_TABLE(X) CAU_EXPORT_COUNT } cau_export_format;
 #undef X
 #define X(code, name) CAU_LOOK_##code,
+// How far a past view is.
 typedef enum cau_look_stage { CAU_LOOK_STAGE_TABLE(X) CAU_LOOK_STAGE_COUNT } cau_look_stage;
 #undef X
 #define X(code, name) CAU_CAPABILITY_##code,
+// What a server can do; bit numbers of hello_result.capabilities.
 typedef enum cau_capability {
 	CAU_CAPABILITY_TABLE(X) CAU_CAPABILITY_COUNT
 } cau_capability; // bit numbers of hello_result.capabilities

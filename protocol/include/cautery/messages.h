@@ -26,9 +26,9 @@ extern "C" {
 // Objects of one kind. Writers take `count` of them. Readers fill `items`, which the caller gives
 // with its `capacity`, and set `count`; more objects than that are CAU_LIMIT.
 typedef struct cau_wire_list {
-	void *items;
-	int32_t count;
-	int32_t capacity;
+	void *items;      // of the type cau_wire_* that messages.def names
+	int32_t count;    // of the items
+	int32_t capacity; // of `items`; for readers
 } cau_wire_list;
 
 #define CAU_NEED_R(field)
@@ -58,6 +58,7 @@ typedef struct cau_wire_list {
 #undef CAU_NEED_R
 #undef CAU_NEED_O
 
+// Which object of messages.def.
 typedef enum cau_wire_object {
 #define OBJECT(o, meaning) CAU_WIRE_##o,
 #define OBJECT_END(o)
@@ -77,6 +78,7 @@ typedef enum cau_wire_object {
 	CAU_WIRE_OBJECT_COUNT
 } cau_wire_object;
 
+// Which method of methods.def.
 typedef enum cau_method {
 #define REQUEST(code, ...) CAU_METHOD_##code,
 #define EITHER_WAY(code, ...) CAU_METHOD_##code,
@@ -95,22 +97,24 @@ typedef enum cau_method_form {
 	CAU_FORM_PUSH,       // from the server
 } cau_method_form;
 
+// Whether a request counts as expensive.
 typedef enum cau_method_cost {
-	CAU_COST_CHEAP,
+	CAU_COST_CHEAP,  // not counted by quotas
 	CAU_COST_COSTLY, // counted by the quotas of expensive requests
 	CAU_COST_FILE,   // counted by these quotas, too; a file follows the answer
 } cau_method_cost;
 
+// One method, as its entry in methods.def describes it.
 typedef struct cau_method_info {
-	const char *name;
-	cau_method_form form;
+	const char *name;       // on the wire: "session.step"
+	cau_method_form form;   // who sends it, and whether it is answered
 	cau_wire_object params; // CAU_WIRE_nothing of commands: see cautery/command_json.h
 	cau_wire_object result; // CAU_WIRE_nothing where there is none; commands: command_result
 	cau_role role;          // the least that may call it
 	bool changes;           // stored; client_sequence applies
-	cau_method_cost cost;
-	int32_t command; // CAU_COMMAND_*, to be read with cau_rpc_command; or -1
-	const char *meaning;
+	cau_method_cost cost;   // whether quotas count it
+	int32_t command;        // CAU_COMMAND_*, to be read with cau_rpc_command; or -1
+	const char *meaning;    // in words
 } cau_method_info;
 
 const cau_method_info *cau_method_describe(cau_method method); // NULL beyond the table

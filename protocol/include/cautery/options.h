@@ -49,24 +49,26 @@ typedef enum cau_option_kind {
 	CAU_OPTION_POINT,  // double[3], written X,Y,Z
 } cau_option_kind;
 
+// One option of a program.
 typedef struct cau_option {
-	const char *name;     // without its dashes
-	const char *argument; // what --help calls its value; NULL where it takes none
-	cau_option_kind kind;
+	const char *name;           // without its dashes
+	const char *argument;       // what --help calls its value; NULL where it takes none
+	cau_option_kind kind;       // what its value is
 	size_t member;              // offset of what it is read into
 	double least, most;         // of a number; both included
 	const char *const *choices; // of a choice; ends with NULL
 	const char *meaning;        // in --help; may have several lines
 } cau_option;
 
+// All of a program's command line. Everything is borrowed.
 typedef struct cau_command_line {
 	const char *program; // as it calls itself in complaints
 	const char *words; // what follows the options, as --help and a complaint say it; NULL: nothing
 	int word_count;    // as many as that are
 	const char *summary; // what the program does: whole lines
 	const char *closing; // after the options in --help, such as exit codes: whole lines; NULL: none
-	const cau_option *rows;
-	int row_count;
+	const cau_option *rows; // (row_count)
+	int row_count;          // options of the program
 } cau_command_line;
 
 // Reads arguments[1] and on. Options are `--name value` or `--name=value`, before, between or after
@@ -76,6 +78,7 @@ typedef struct cau_command_line {
 bool cau_options_read(const cau_command_line *line, int argument_count, char **arguments,
                       void *into, const char **words, FILE *complaints);
 
+// Writes what --help prints.
 void cau_options_help(const cau_command_line *line, FILE *out);
 
 #ifdef __cplusplus

@@ -37,12 +37,13 @@ extern "C" {
 // The WebSocket subprotocol that clients offer in Sec-WebSocket-Protocol.
 #define CAU_SUBPROTOCOL "cautery.v1"
 
-enum { CAU_RPC_ID_BYTES = 65 };
+enum { CAU_RPC_ID_BYTES = 65 }; // of an id that is text, with its zero
 
+// The id of a request.
 typedef struct cau_rpc_id {
-	enum { CAU_RPC_ID_NONE, CAU_RPC_ID_NUMBER, CAU_RPC_ID_TEXT } kind;
-	int64_t number;
-	char text[CAU_RPC_ID_BYTES];
+	enum { CAU_RPC_ID_NONE, CAU_RPC_ID_NUMBER, CAU_RPC_ID_TEXT } kind; // which of the two, if any
+	int64_t number;                                                    // NUMBER
+	char text[CAU_RPC_ID_BYTES];                                       // TEXT
 } cau_rpc_id;
 
 // The error member of an answer. `path` starts in the request: "params.rotation[2]".
@@ -56,17 +57,18 @@ typedef struct cau_rpc_fault {
 	char moved_to[CAU_NAME_BYTES], url[256];
 } cau_rpc_fault;
 
+// A message that was read. cau_rpc_finish frees it.
 typedef struct cau_rpc_message {
 	enum {
-		CAU_RPC_REQUEST,
-		CAU_RPC_NOTIFICATION,
-		CAU_RPC_RESULT, // answers, as clients read them: read by cau_rpc_result
-		CAU_RPC_ERROR,  // `fault` describes it
-	} kind;
-	cau_rpc_id id;
-	cau_method method; // of requests and notifications
-	cau_rpc_fault fault;
-	void *document; // private; cau_rpc_finish frees it
+		CAU_RPC_REQUEST,      // has an id, and is to be answered
+		CAU_RPC_NOTIFICATION, // is not answered
+		CAU_RPC_RESULT,       // answers, as clients read them: read by cau_rpc_result
+		CAU_RPC_ERROR,        // `fault` describes it
+	} kind;                   // what it is
+	cau_rpc_id id;            // of requests and answers
+	cau_method method;        // of requests and notifications
+	cau_rpc_fault fault;      // of CAU_RPC_ERROR
+	void *document;           // private; cau_rpc_finish frees it
 } cau_rpc_message;
 
 // Reads a text message of at most `bytes_max` bytes: strict JSON, then the rules of JSON-RPC 2.0.
@@ -90,10 +92,10 @@ cau_status cau_rpc_params_known(const cau_rpc_message *message, cau_error *error
 
 // Members that methods share.
 typedef struct cau_rpc_envelope {
-	bool has_session;
-	char session[CAU_NAME_BYTES];
-	bool has_client_sequence;
-	int64_t client_sequence;
+	bool has_session;             // `session` is there
+	char session[CAU_NAME_BYTES]; // the session's id
+	bool has_client_sequence;     // `client_sequence` is there
+	int64_t client_sequence;      // the client's count of changes
 } cau_rpc_envelope;
 
 // Reads only these two members of any method's params.
@@ -108,26 +110,31 @@ cau_status cau_rpc_command(const cau_rpc_message *message, cau_command *command,
 cau_status cau_rpc_result(const cau_rpc_message *message, cau_method method, void *result,
                           cau_error *error);
 
+// Fills *fault from an error: the code of its status, its path and its reason.
 void cau_rpc_fault_of_error(cau_rpc_fault *fault, const cau_error *error);
+// Fills *fault from a code, without a path.
 void cau_rpc_fault_of_code(cau_rpc_fault *fault, cau_rpc_error_code code, const char *reason);
 
 // ---- writing ------------------------------------------------------------------------------------
 // Into `buffer`, with a closing zero; *bytes is the length without it, also when it did not fit.
 // Errors: CAU_LIMIT (capacity), CAU_BAD_VALUE (a member out of its range, text that is not UTF-8).
 typedef struct cau_rpc_buffer {
-	char *buffer;
-	size_t capacity;
-	size_t bytes; // written
+	char *buffer;    // borrowed
+	size_t capacity; // of `buffer`, with the closing zero
+	size_t bytes;    // written
 } cau_rpc_buffer;
 
+// `params` is the method's C type.
 cau_status cau_rpc_write_request(cau_rpc_buffer *out, int64_t id, cau_method method,
                                  const void *params, cau_error *error);
+// `params` is the method's C type.
 cau_status cau_rpc_write_notification(cau_rpc_buffer *out, cau_method method, const void *params,
                                       cau_error *error);
 // `id` is NULL for a notification; `envelope` may be NULL.
 cau_status cau_rpc_write_command(cau_rpc_buffer *out, const int64_t *id,
                                  const cau_rpc_envelope *envelope, const cau_command *command,
                                  cau_error *error);
+// `result` is the C type of the method's result.
 cau_status cau_rpc_write_result(cau_rpc_buffer *out, const cau_rpc_id *id, cau_method method,
                                 const void *result, cau_error *error);
 // `id` of kind NONE is written as null.

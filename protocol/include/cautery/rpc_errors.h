@@ -51,6 +51,7 @@ extern "C" {
 	  "this client_sequence belongs to another method")                                            \
 	X(-32051, MOVED, "moved", "another daemon has the session now")
 
+// The code of an error: CAU_RPC_ERROR_TABLE.
 typedef enum cau_rpc_error_code {
 #define X(number, code, word, sentence) CAU_RPC_##code = (number),
 	CAU_RPC_ERROR_TABLE(X)
@@ -81,12 +82,14 @@ const char *cau_rpc_error_sentence(int code); // that of "internal" for unknown 
 	X(4007, RESUMED, "another connection resumed this one")                                        \
 	X(4008, GARBAGE, "too many malformed messages")
 
+// The code with which a connection is closed: CAU_CLOSE_TABLE.
 typedef enum cau_close_code {
 #define X(number, code, reason) CAU_CLOSE_##code = (number),
 	CAU_CLOSE_TABLE(X)
 #undef X
 } cau_close_code;
 
+// The reason that is sent with a code.
 const char *cau_close_reason(cau_close_code code);
 
 #ifdef __cplusplus

@@ -25,7 +25,7 @@
 extern "C" {
 #endif
 
-enum { CAU_SCENE_JSON_MAX_BYTES = 1 << 20 };
+enum { CAU_SCENE_JSON_MAX_BYTES = 1 << 20 }; // of one scene as text
 
 // Fills *scene from the text. `name` (a file's, say; may be NULL) goes into error->file. Checks
 // types, ranges, names and what belongs to which kind; references between members are

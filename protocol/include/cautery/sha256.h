@@ -19,7 +19,7 @@
 extern "C" {
 #endif
 
-enum { CAU_SHA256_TEXT_BYTES = 65 };
+enum { CAU_SHA256_TEXT_BYTES = 65 }; // of the hash as text, with its zero
 
 // 64 lower-case hex digits and a zero (FIPS 180-4). False if memory ran out.
 bool cau_sha256(const void *bytes, size_t byte_count, char text[CAU_SHA256_TEXT_BYTES]);

@@ -39,17 +39,17 @@ enum {
 
 // Flags in a frame's header
 enum {
-	CAU_FRAME_PAUSED = 1 << 0,
-	CAU_FRAME_FAULTED = 1 << 1,
+	CAU_FRAME_PAUSED = 1 << 0,  // the session is paused
+	CAU_FRAME_FAULTED = 1 << 1, // the session is faulted
 };
 
 // What encoder and decoder must agree on; sent as stream_description by session.join.
 typedef struct cau_stream_def {
-	uint32_t session;  // the session's number on its daemon
-	uint16_t profile;  // of the session, 0 to CAU_STREAM_PROFILES_MAX - 1
-	uint32_t channels; // CAU_CHANNEL_* bits
-	int32_t vertex_count;
-	int32_t face_count;
+	uint32_t session;      // the session's number on its daemon
+	uint16_t profile;      // of the session, 0 to CAU_STREAM_PROFILES_MAX - 1
+	uint32_t channels;     // CAU_CHANNEL_* bits
+	int32_t vertex_count;  // 1 to CAU_STREAM_ELEMENTS_MAX
+	int32_t face_count;    // 0 to CAU_STREAM_ELEMENTS_MAX
 	double origin_m[3];    // position = origin_m + step_m * quantised
 	double step_m;         // 1e-7 to 1e-2
 	double stress_step_pa; // 1e-3 to 1e9; stress saturates at 65535 steps
@@ -57,41 +57,43 @@ typedef struct cau_stream_def {
 
 // CAU_CHANNELS_BY_DEFAULT, 0.05 mm, 10 Pa, origin 0; counts and numbers zero.
 cau_stream_def cau_default_stream_def(void);
+// Checks every range. Errors: CAU_BAD_VALUE with the path of the member.
 cau_status cau_stream_def_check(const cau_stream_def *def, cau_error *error);
 
 // One channel, as its entry in cautery/channels.h describes it.
 typedef struct cau_channel_info {
-	const char *name; // on the wire
-	int section;      // its type in frames
-	bool by_default;
+	const char *name;   // on the wire
+	int section;        // its type in frames
+	bool by_default;    // in a stream that names no channels
 	int scalar;         // CAU_SCALAR_*, or -1: it has a layout of its own and none of the following
 	double least, step; // in `unit`: n on the wire is least + step n; step 0: the stream states it
 	uint32_t most;      // the largest n
-	const char *unit, *meaning;
+	const char *unit, *meaning; // for people
 } cau_channel_info;
 
+// The entry of a channel, for as long as the program runs.
 const cau_channel_info *cau_channel_describe(cau_channel_index channel);
 // The step of a scalar in a stream of this definition, in the channel's unit.
 double cau_channel_step(const cau_stream_def *def, cau_channel_index channel);
 
 // One tool as a frame shows it.
 typedef struct cau_stream_tool {
-	char name[CAU_NAME_BYTES];
-	int32_t shape;       // CAU_TOOL_*
-	cau_pose pose;       // single precision on the wire, like all that follows
-	bool behind;         // tissue keeps the tool from its commanded pose
-	cau_pose asked_pose; // commanded pose; a decoder fills it also where `behind` is false
-	double jaw;          // actual opening, 0 closed to 1 open
-	double asked_jaw;    // commanded opening
-	double jaw_force_n;  // with which the jaws press what they hold, at their tips
-	double force_n[3];
-	double torque_nm[3]; // about the tip
-	double tip_temperature_c;
-	double energy_j;
-	uint64_t sequence; // of the last applied command
-	uint32_t driver;   // the driving client's number; 0: no driver
-	bool energized;
-	bool grasping;
+	char name[CAU_NAME_BYTES]; // of the tool
+	int32_t shape;             // CAU_TOOL_*
+	cau_pose pose;             // single precision on the wire, like all that follows
+	bool behind;               // tissue keeps the tool from its commanded pose
+	cau_pose asked_pose;       // commanded pose; a decoder fills it also where `behind` is false
+	double jaw;                // actual opening, 0 closed to 1 open
+	double asked_jaw;          // commanded opening
+	double jaw_force_n;        // with which the jaws press what they hold, at their tips
+	double force_n[3];         // of the tissue on the tool
+	double torque_nm[3];       // about the tip
+	double tip_temperature_c;  // of the hot part
+	double energy_j;           // heat taken up by tissue, rough
+	uint64_t sequence;         // of the last applied command
+	uint32_t driver;           // the driving client's number; 0: no driver
+	bool energized;            // energy is on
+	bool grasping;             // jaws commanded closed on tissue
 	bool slipping;             // some of what its jaws hold slid in the last step
 	bool frozen;               // its watchdog fired: it does not move until a new command
 	uint8_t energy_off;        // CAU_ENERGY_OFF_*; meaningless while energized
@@ -102,22 +104,22 @@ typedef struct cau_stream_tool {
 
 // Scalars about the last step; see cau_statistics of the core for their meaning.
 typedef struct cau_stream_statistics {
-	float realtime_factor; // simulated over wall time, last second
-	float step_cost_s;     // wall time of the last step
-	float stage_s[CAU_STREAM_STAGES];
-	float residual;
-	float deferred_max_s;
-	uint32_t iterations;
-	uint32_t backtracks;
-	uint32_t inverted;
-	uint32_t edges_parted;
-	uint32_t elements_removed;
-	uint32_t pending_downdates;
-	uint32_t refactorisations;
-	uint32_t contacts;
-	uint32_t frozen_vertices;
-	uint32_t refused_commands;   // since creation
-	float energy_gain_j;         // 0 where the sender does not send it
+	float realtime_factor;            // simulated over wall time, last second
+	float step_cost_s;                // wall time of the last step
+	float stage_s[CAU_STREAM_STAGES]; // wall time of each stage of the last step
+	float residual;                   // relative
+	float deferred_max_s;             // longest wait for a downdate, simulated
+	uint32_t iterations;              // of the last step
+	uint32_t backtracks;              // increments that were refused
+	uint32_t inverted;                // tetrahedra with negative volume
+	uint32_t edges_parted;            // since creation
+	uint32_t elements_removed;        // since creation
+	uint32_t pending_downdates;       // removed elements that the factor holds
+	uint32_t refactorisations;        // since creation
+	uint32_t contacts;                // contact constraints of the last step
+	uint32_t frozen_vertices;         // that do not move any more
+	uint32_t refused_commands;        // since creation
+	float energy_gain_j;              // 0 where the sender does not send it
 	uint32_t resting;            // 1: the tissue is at rest; 0 where the sender does not send it
 	float error;                 // of the last step, estimated; 0 where the sender does not send it
 	uint32_t contacts_left_out;  // 0 where the sender does not send it
@@ -128,17 +130,17 @@ typedef struct cau_stream_statistics {
 // The server's state at a tick. All pointers are borrowed for the call. Arrays of a channel that
 // the stream lacks may be NULL.
 typedef struct cau_stream_sample {
-	uint64_t tick;
-	double time_s;                   // simulated
-	uint64_t published_us;           // the server's monotonic clock
-	uint16_t flags;                  // CAU_FRAME_*
-	const double *position;          // m, (vertex_count x 3)
-	const uint8_t *vertex_visible;   // (vertex_count), 1: on a drawn face; NULL: all are
-	const uint32_t *face_mask;       // ((face_count + 31) / 32), a set bit: not drawn
-	CAU_SCALAR_MEMBERS(const float); // (vertex_count) each, in the channel's unit
-	int32_t tool_count;              // at most CAU_MAX_TOOLS
-	const cau_stream_tool *tools;
-	const cau_stream_statistics *statistics;
+	uint64_t tick;                           // of the state
+	double time_s;                           // simulated
+	uint64_t published_us;                   // the server's monotonic clock
+	uint16_t flags;                          // CAU_FRAME_*
+	const double *position;                  // m, (vertex_count x 3)
+	const uint8_t *vertex_visible;           // (vertex_count), 1: on a drawn face; NULL: all are
+	const uint32_t *face_mask;               // ((face_count + 31) / 32), a set bit: not drawn
+	CAU_SCALAR_MEMBERS(const float);         // (vertex_count) each, in the channel's unit
+	int32_t tool_count;                      // at most CAU_MAX_TOOLS
+	const cau_stream_tool *tools;            // (tool_count)
+	const cau_stream_statistics *statistics; // of the last step
 } cau_stream_sample;
 
 // The state of a decoder; borrowed, valid until the next decode. A face is drawn if its bit in
@@ -146,21 +148,21 @@ typedef struct cau_stream_sample {
 // other vertices they are those of the last frame in which a drawn face used the vertex, or of the
 // epoch's first frame. In a stream without the mask they are of `tick` at every vertex.
 typedef struct cau_stream_state {
-	bool synced; // false: nothing to draw yet, or damaged: a key frame is needed
-	uint64_t epoch;
-	uint64_t sequence;
-	uint64_t tick;
-	double time_s;
-	uint64_t published_us;
-	uint16_t flags;
-	const int32_t *quantised;           // steps from the origin, (vertex_count x 3)
-	const uint32_t *face_mask;          // ((face_count + 31) / 32)
+	bool synced;               // false: nothing to draw yet, or damaged: a key frame is needed
+	uint64_t epoch;            // of the last frame
+	uint64_t sequence;         // of the last frame
+	uint64_t tick;             // of the last frame
+	double time_s;             // simulated
+	uint64_t published_us;     // the server's monotonic clock
+	uint16_t flags;            // CAU_FRAME_*
+	const int32_t *quantised;  // steps from the origin, (vertex_count x 3)
+	const uint32_t *face_mask; // ((face_count + 31) / 32)
 	CAU_SCALAR_MEMBERS(const uint32_t); // (vertex_count) each, steps from its least value
 	int32_t moved_count;                // vertices that the last frame carried
 	int32_t mask_changed_count;         // mask words that the last frame carried
-	int32_t tool_count;
-	const cau_stream_tool *tools;
-	cau_stream_statistics statistics;
+	int32_t tool_count;                 // at most CAU_MAX_TOOLS
+	const cau_stream_tool *tools;       // (tool_count)
+	cau_stream_statistics statistics;   // of the last frame that has them
 } cau_stream_state;
 
 #ifdef __cplusplus

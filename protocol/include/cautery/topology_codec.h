@@ -21,6 +21,7 @@
 extern "C" {
 #endif
 
+// What a topology frame is made of. All pointers are borrowed.
 typedef struct cau_topology {
 	const int32_t *face;         // vertices, (face_count x 3)
 	const uint8_t *face_layer;   // (face_count)
@@ -30,10 +31,12 @@ typedef struct cau_topology {
 	// and texture are copied, and those above are not read. Encoding them takes 8 of 9 ms for
 	// 40,401 vertices.
 	const void *known;
-	size_t known_bytes;
+	size_t known_bytes; // of `known`
 } cau_topology;
 
+// A capacity that holds any topology frame of such a stream.
 size_t cau_topology_bytes_max(const cau_stream_def *def);
+// The size of the working memory for such a stream.
 size_t cau_topology_scratch_bytes(const cau_stream_def *def);
 
 // `scratch` is working memory of cau_topology_scratch_bytes. Errors: CAU_LIMIT, CAU_BAD_VALUE (a
@@ -43,12 +46,13 @@ cau_status cau_topology_encode(const cau_stream_def *def, uint64_t epoch,
                                const cau_topology *topology, void *scratch, void *bytes,
                                size_t capacity, size_t *byte_count, cau_error *error);
 
+// The caller's arrays for a decoded topology.
 typedef struct cau_topology_arrays {
 	int32_t *face;       // (face_count x 3)
 	uint8_t *face_layer; // (face_count)
 	float *texture;      // (face_count x 3 x 2); zero where the frame has none
 	int32_t *rest;       // quantised, (vertex_count x 3)
-	bool has_texture;
+	bool has_texture;    // the frame has texture
 } cau_topology_arrays;
 
 // Fills the caller's arrays. Errors: CAU_CORRUPT, CAU_UNSUPPORTED, CAU_BAD_STATE (another session).

@@ -74,6 +74,24 @@ describe('the manual', () => {
     await page.close();
   });
 
+  it('is a step from the viewer’s help', async () => {
+    const viewer = await stage.openFirst();
+    await viewer.page.locator('#help').click();
+    const [page] = await Promise.all([viewer.page.waitForEvent('popup'), viewer.page.getByRole('link', { name: 'Manual' }).click()]);
+    await page.getByRole('heading', { name: 'Cautery manual' }).waitFor();
+    expect(viewer.complaints).toEqual([]);
+  });
+
+  it('draws its formulas and its picture', async () => {
+    const page = await open('computation.html');
+    const heights = await page.locator('.equation math').evaluateAll((all) => all.map((each) => each.getBoundingClientRect().height));
+    expect(heights.length).toBeGreaterThan(20);
+    expect(Math.min(...heights)).toBeGreaterThan(12); // px: a line of type at least
+    await page.goto(`${stage.daemon.url}manual/architecture.html`);
+    expect(await page.locator('article img').evaluate((img) => (img as HTMLImageElement).naturalWidth)).toBe(860);
+    await page.close();
+  });
+
   it('is drawn without a complaint of the browser', () => {
     expect(complaints).toEqual([]);
   });

@@ -54,6 +54,7 @@ export function showHelp(): void {
     hint.replaceChildren(
       ...(window.matchMedia('(pointer: coarse)').matches ? FINGER_HINT : MOUSE_HINT).map((words) => element('p', {}, words)),
       element('details', {}, element('summary', {}, 'All keys'), element('dl', {}, ...KEY_HELP.flatMap(([key, what]) => [element('dt', {}, key), element('dd', {}, what)]))),
+      element('p', {}, element('a', { href: 'manual/', target: '_blank', rel: 'noopener' }, 'Manual')), // the daemon's own
       button('Understood', () => (hint.hidden = true)),
     );
     hint.hidden = !hint.hidden;
