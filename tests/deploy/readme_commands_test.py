@@ -342,7 +342,7 @@ class Commands(unittest.TestCase):
         """In a copy: what is there serves other tests."""
         copy = os.path.join(self.folder, "clients/web")
         shutil.copytree(os.path.join(SOURCES, "clients/web"), copy, symlinks=True,
-                        ignore=shutil.ignore_patterns("node_modules", "dist"))
+                        ignore=shutil.ignore_patterns("node_modules", "dist", "dist-manual*"))
         whole = "(cd clients/web && npm ci && npm run build)"
         self.run_it(whole, "built in")
         for part in ("npm ci", "npm run build"):  # of what ran just now

@@ -36,7 +36,7 @@ enum { CAU_LIMIT_ONE = 1, CAU_LIMIT_TWO = 2 }; // of both
 `;
 
 const withClang = spawnSync('clang', ['--version']).status === 0 ? describe : describe.skip;
-withClang('the declarations of a header', () => {
+withClang('the declarations of a header', { timeout: 60_000 }, () => { // clang, on a busy machine
   const root = mkdtempSync(join(tmpdir(), 'cautery-header-'));
   mkdirSync(join(root, 'core/include'), { recursive: true });
   const of = (text: string): ReturnType<typeof declarations> => {
