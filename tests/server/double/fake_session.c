@@ -15,8 +15,12 @@
 #include "cautery/session.h"
 #include "cautery/solid.h"
 
+#ifndef CAU_FAKE_CELLS
+#define CAU_FAKE_CELLS 16
+#endif
+
 enum {
-	CELLS = 16,
+	CELLS = CAU_FAKE_CELLS, // along each side of the sheet
 	SIDE = CELLS + 1,
 	VERTICES = SIDE * SIDE,
 	FACES = 2 * CELLS * CELLS,
@@ -35,10 +39,10 @@ typedef struct fake_state { // all that a snapshot holds
 	int32_t tool_count;
 	cau_tool_state tools[CAU_MAX_TOOLS];
 	cau_pose target[CAU_MAX_TOOLS];
-	int32_t queued;
-	cau_command queue[QUEUE];
 	uint64_t trouble_tick; // a force of 1000 N on anything faults the tick after it
 	bool faulted;
+	int32_t queued;
+	cau_command queue[QUEUE]; // last: snapshots hold what is used of it
 } fake_state;
 
 #define SLOW_STEP_S 0.05 // of wall time: a third of the pace of 60 Hz
@@ -146,6 +150,8 @@ cau_status cau_session_create(const cau_session_def *def, cau_session **made, ca
 	for (int32_t i = 0; i < def->scene->tool_count; i++)
 		add_tool(s, &def->scene->tools[i]);
 	*made = s;
+	if (cau_fake_hooks_set.made)
+		cau_fake_hooks_set.made(def, s);
 	return CAU_OK;
 }
 
@@ -167,6 +173,8 @@ uint64_t cau_session_tissue_hash(const cau_session *s)
 
 void cau_session_destroy(cau_session *s)
 {
+	if (s && cau_fake_hooks_set.going)
+		cau_fake_hooks_set.going(s);
 	free(s);
 }
 
@@ -273,6 +281,8 @@ cau_status cau_session_submit(cau_session *s, const cau_command *c, cau_error *e
 {
 	if (cau_fake_hooks_set.submit)
 		cau_fake_hooks_set.submit(c);
+	if (cau_fake_hooks_set.taking)
+		cau_fake_hooks_set.taking(s, c);
 	bool about_tool = is_about_tool(c);
 	if (about_tool && find_tool(s, c->tool) < 0)
 		return cau_fail(error, CAU_NOT_FOUND, "tool", "no tool %s", c->tool);
@@ -494,43 +504,63 @@ size_t cau_session_snapshot_bytes(const cau_session *s)
 	return sizeof(int32_t) + sizeof s->state;
 }
 
+static size_t used_bytes(const fake_state *state)
+{
+	return offsetof(fake_state, queue) + (size_t)state->queued * sizeof *state->queue;
+}
+
 cau_status cau_session_snapshot(const cau_session *s, void *bytes, size_t capacity, size_t *count,
                                 cau_error *error)
 {
 	int32_t magic = MAGIC;
-	*count = sizeof magic + sizeof s->state;
+	*count = sizeof magic + used_bytes(&s->state);
 	if (capacity < *count)
 		return cau_fail(error, CAU_LIMIT, NULL, "too small");
 	memcpy(bytes, &magic, sizeof magic);
-	memcpy((char *)bytes + sizeof magic, &s->state, sizeof s->state);
+	memcpy((char *)bytes + sizeof magic, &s->state, used_bytes(&s->state));
 	return CAU_OK;
 }
 
 cau_status cau_session_restore(cau_session *s, const void *bytes, size_t count, bool *exact,
                                cau_error *error)
 {
-	int32_t magic = 0;
-	if (count == sizeof magic + sizeof s->state)
+	int32_t magic = 0, queued = -1;
+	const char *state = (const char *)bytes + sizeof magic;
+	if (count >= sizeof magic + offsetof(fake_state, queue)) {
 		memcpy(&magic, bytes, sizeof magic);
-	if (magic != MAGIC)
+		memcpy(&queued, state + offsetof(fake_state, queued), sizeof queued);
+	}
+	bool whole = queued >= 0 && queued <= QUEUE &&
+	             count == sizeof magic + offsetof(fake_state, queue) +
+	                          (size_t)queued * sizeof *s->state.queue;
+	if (magic != MAGIC || !whole)
 		return cau_fail(error, CAU_CORRUPT, NULL, "not a snapshot");
 	cau_status status = cau_fake_hooks_set.restore ? cau_fake_hooks_set.restore() : CAU_OK;
 	if (status) {
 		memset(&s->state.position, 0, sizeof s->state.position);
 		return cau_fail(error, status, NULL, "half restored");
 	}
-	memcpy(&s->state, (const char *)bytes + sizeof magic, sizeof s->state);
+	memcpy(&s->state, state, count - sizeof magic);
 	for (int32_t f = 0; f < FACES; f++)
 		s->alive[f] = !(s->state.mask[f / 32] >> (f % 32) & 1);
 	*exact = true;
 	return CAU_OK;
 }
 
+const double *cau_fake_gravity(const cau_session *s)
+{
+	const double *gravity = s->state.gravity;
+	for (int32_t i = 0; i < s->state.queued; i++)
+		if (s->state.queue[i].kind == CAU_COMMAND_SET_GRAVITY)
+			gravity = s->state.queue[i].as.gravity_m_s2;
+	return gravity;
+}
+
 uint64_t cau_session_hash(const cau_session *s)
 {
 	const unsigned char *byte = (const unsigned char *)&s->state;
 	uint64_t hash = 14695981039346656037u;
-	for (size_t i = 0; i < offsetof(fake_state, queued); i++)
+	for (size_t i = 0; i < offsetof(fake_state, trouble_tick); i++)
 		hash = (hash ^ byte[i]) * 1099511628211u;
 	return hash;
 }

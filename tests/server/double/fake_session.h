@@ -19,6 +19,13 @@ typedef struct cau_fake_hooks {
 	void (*step)(const cau_session *session);
 	// Energy is about to be turned off; true: the double is broken, and leaves it on.
 	bool (*breaks_off)(void);
+	// A session was made, is about to take a command, is about to go.
+	void (*made)(const cau_session_def *def, const cau_session *session);
+	void (*taking)(const cau_session *session, const cau_command *command);
+	void (*going)(const cau_session *session);
 } cau_fake_hooks;
 
 extern cau_fake_hooks cau_fake_hooks_set;
+
+// What gravity.set last set, once what is queued has acted; m/s^2, borrowed.
+const double *cau_fake_gravity(const cau_session *session);

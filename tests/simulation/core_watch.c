@@ -1,0 +1,310 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "simulation/core_watch.h"
+
+#include <assert.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "hosted_session/internal.h"
+#include "server/double/fake_session.h"
+#include "simulation/books.h"
+#include "simulation/faults.h"
+#include "simulation/promises.h"
+
+#define WRAPPED __attribute__((used))
+
+enum { CORES_MOST = 32, FIBERS_WATCHED = 128 };
+// The core may be on for so long after its driver's silence has to be noticed: a tick that was
+// under way, and a thread that stood still.
+#define STILL_ON_MOST_NS (40 * SIM_MS)
+
+// With three sessions of at most 4 ms a step even one worker has a quarter of its time left.
+#define TICK_LATE_MOST_NS (300 * SIM_MS)
+
+typedef struct core_book {
+	const cau_session *core; // NULL: the place is free
+	char id[CAU_NAME_BYTES];
+	int place, life, machine; // place: of the session; -1: none
+	const cau_logic *logic;   // of its session, once it is served
+	bool running;             // by the clock, when the worker decided last
+	int64_t began_ns;         // of its newest tick, or when it began to run
+	bool served;              // the worker decides; false while the past is computed again
+	int64_t wrong_ns[TOOLS];  // since when it is on without a reason; 0: it is not
+} core_book;
+
+// What the present fiber is at.
+typedef struct at_work {
+	uint64_t fiber;
+	cau_hosted *deciding; // within cau_decide_next
+	bool applying;        // an order, or the daemon's own commands
+	bool begun;           // a tick was decided and not stepped yet
+	energy allowed[TOOLS];
+} at_work;
+
+static struct {
+	core_book cores[CORES_MOST];
+	at_work work[FIBERS_WATCHED];
+	sim_random random;
+	sim_profile profile;
+} watched;
+
+static at_work *work_of(uint64_t fiber)
+{
+	at_work *free_one = NULL;
+	for (int i = 0; i < FIBERS_WATCHED; i++) {
+		at_work *w = &watched.work[i];
+		if (w->fiber == fiber)
+			return w;
+		if (!free_one && (!w->fiber || !sim_is_alive(w->fiber)))
+			free_one = w;
+	}
+	assert(free_one);
+	*free_one = (at_work){.fiber = fiber};
+	return free_one;
+}
+
+static core_book *book_of(const cau_session *core)
+{
+	for (int i = 0; i < CORES_MOST; i++)
+		if (watched.cores[i].core == core)
+			return &watched.cores[i];
+	return NULL;
+}
+
+// ---- the double's hooks
+static void on_made(const cau_session_def *def, const cau_session *core)
+{
+	core_book *book = book_of(NULL);
+	assert(book && def->user);
+	*book = (core_book){.core = core, .machine = sim_machine()};
+	snprintf(book->id, sizeof book->id, "%s", cau_hosted_id(def->user));
+	book->place = sim_session_of(book->id);
+	book->life = book->place >= 0 ? sim_sessions[book->place].life : 0;
+}
+
+// Its name was not given anew.
+static bool is_present(const core_book *book)
+{
+	return book && book->place >= 0 && sim_sessions[book->place].life == book->life;
+}
+
+static void on_going(const cau_session *core)
+{
+	core_book *book = book_of(core);
+	if (book)
+		book->core = NULL;
+}
+
+static void on_taking(const cau_session *core, const cau_command *command)
+{
+	const core_book *book = book_of(core);
+	if (!is_present(book) || command->kind != CAU_COMMAND_SET_GRAVITY)
+		return;
+	if (!work_of(sim_self())->applying)
+		promises_counted.replays++;
+	else
+		books_apply(&sim_books[book->place], books_number(command->as.gravity_m_s2[2]));
+}
+
+static const char *promise_of(int place, energy found)
+{
+	const session_book *book = &sim_books[place];
+	return book->full               ? "energy_full"
+	       : book->restarted        ? "energy_restart"
+	       : found == ENERGY_SILENT ? "energy_silent"
+	                                : "energy_cut";
+}
+
+static void check_tool(const core_book *book, const cau_tool_state *tool, const at_work *work)
+{
+	for (int t = 0; t < TOOLS; t++) {
+		if (!tool->energized || strcmp(tool->name, sim_tools[t]) != 0)
+			continue;
+		promises_counted.lit_ticks++;
+		if (work->allowed[t] != ENERGY_ALLOWED)
+			sim_fail(promise_of(book->place, work->allowed[t]), "%s begins a tick with %s on; %s",
+			         book->id, tool->name,
+			         work->allowed[t] == ENERGY_SILENT ? "its driver is silent"
+			                                           : "no enable counts");
+	}
+}
+
+static void on_step(const cau_session *core)
+{
+	cau_frame frame;
+	core_book *book = book_of(core);
+	at_work *work = work_of(sim_self());
+	sim_work(
+		sim_between(&watched.random, watched.profile.step_least_ns, watched.profile.step_most_ns));
+	if (book)
+		book->served = work->begun;
+	if (!is_present(book) || !work->begun)
+		return; // replayed
+	work->begun = false;
+	promises_counted.ticks++;
+	sim_note((uint64_t)books_number(cau_fake_gravity(core)[2]));
+	cau_session_frame(core, &frame);
+	for (int32_t i = 0; i < frame.tool_count; i++)
+		check_tool(book, &frame.tools[i], work);
+}
+
+void core_watch_begin(uint64_t seed, const sim_profile *profile)
+{
+	memset(&watched, 0, sizeof watched);
+	watched.random = sim_random_of(seed, 6);
+	watched.profile = *profile;
+	cau_fake_hooks_set =
+		(cau_fake_hooks){.made = on_made, .going = on_going, .taking = on_taking, .step = on_step};
+}
+
+void core_watch_killed(int machine)
+{
+	for (int i = 0; i < CORES_MOST; i++)
+		if (watched.cores[i].machine == machine)
+			watched.cores[i].core = NULL;
+}
+
+// ---- what a worker is at
+void __real_cau_decide_next(cau_hosted *h, cau_action *action);
+void __wrap_cau_decide_next(cau_hosted *h, cau_action *action);
+WRAPPED void __wrap_cau_decide_next(cau_hosted *h, cau_action *action)
+{
+	at_work *work = work_of(sim_self());
+	work->deciding = h;
+	__real_cau_decide_next(h, action);
+	work->deciding = NULL;
+}
+
+// The first decision after a restart is about the state that the store led to.
+static void compare(const cau_hosted *h, int place)
+{
+	session_book *book = &sim_books[place];
+	if (!book->restarted || !h->core)
+		return;
+	books_compare(book, place, books_number(cau_fake_gravity(h->core)[2]));
+	book->restarted = false;
+}
+
+static void see_server(int place, const char *id)
+{
+	if (sim_sessions[place].machine != sim_machine())
+		sim_fail("one_server", "%s is stepped, and machine %d has it", id,
+		         sim_sessions[place].machine);
+}
+
+static void note_decision(core_book *core, const cau_logic *logic, const cau_action *action)
+{
+	bool running = logic->state == CAU_SESSION_RUNNING && !logic->going && !logic->draining;
+	if (action->act == CAU_ACT_STEP || !running || !core->running)
+		core->began_ns = sim_now();
+	core->running = running;
+	core->served = true;
+	core->logic = logic;
+	int32_t waits = cau_logic_waiting(logic), most = 2 * (int32_t)watched.profile.queue_commands;
+	if (waits > most)
+		sim_fail("budget", "%d orders wait for %s, at most %d may", waits, core->id, most);
+}
+
+// What may be on is asked at the very moment at which the machine decides that a tick begins.
+void __real_cau_logic_next(cau_logic *logic, double now_s, cau_action *action,
+                           cau_effects *effects);
+void __wrap_cau_logic_next(cau_logic *logic, double now_s, cau_action *action,
+                           cau_effects *effects);
+WRAPPED void __wrap_cau_logic_next(cau_logic *logic, double now_s, cau_action *action,
+                                   cau_effects *effects)
+{
+	at_work *work = work_of(sim_self());
+	__real_cau_logic_next(logic, now_s, action, effects);
+	int place = work->deciding ? sim_session_of(cau_hosted_id(work->deciding)) : -1;
+	if (place < 0)
+		return;
+	compare(work->deciding, place);
+	core_book *core = work->deciding->core ? book_of(work->deciding->core) : NULL;
+	if (core)
+		note_decision(core, logic, action);
+	if (action->act != CAU_ACT_STEP)
+		return;
+	work->begun = true;
+	see_server(place, cau_hosted_id(work->deciding));
+	for (int t = 0; t < TOOLS; t++)
+		work->allowed[t] = promises_energy(place, t, sim_now());
+}
+
+cau_outcome_kind __real_cau_hosted_apply(cau_hosted *h, cau_order *order, const cau_action *action);
+cau_outcome_kind __wrap_cau_hosted_apply(cau_hosted *h, cau_order *order, const cau_action *action);
+WRAPPED cau_outcome_kind __wrap_cau_hosted_apply(cau_hosted *h, cau_order *order,
+                                                 const cau_action *action)
+{
+	work_of(sim_self())->applying = true;
+	cau_outcome_kind outcome = __real_cau_hosted_apply(h, order, action);
+	work_of(sim_self())->applying = false;
+	return outcome;
+}
+
+// ---- at any time
+static void look_at(core_book *book, int64_t now_ns)
+{
+	cau_frame frame;
+	cau_session_frame(book->core, &frame);
+	for (int32_t i = 0; i < frame.tool_count; i++)
+		for (int t = 0; t < TOOLS; t++) {
+			if (strcmp(frame.tools[i].name, sim_tools[t]) != 0)
+				continue;
+			energy allowed = promises_energy(book->place, t, now_ns);
+			if (!frame.tools[i].energized || allowed == ENERGY_ALLOWED)
+				book->wrong_ns[t] = 0;
+			else if (!book->wrong_ns[t])
+				book->wrong_ns[t] = now_ns;
+			else if (now_ns - book->wrong_ns[t] > STILL_ON_MOST_NS + watched.profile.step_most_ns)
+				sim_fail(promise_of(book->place, allowed), "%s has %s on for %.3f s after %s",
+				         book->id, sim_tools[t], 1e-9 * (double)(now_ns - book->wrong_ns[t]),
+				         allowed == ENERGY_SILENT ? "its driver's silence" : "its last cut");
+		}
+}
+
+// The clock's pace: sessions that run by it begin a tick in time, whatever others do.
+static void check_pace(const core_book *book, int64_t now_ns)
+{
+	if (book->running && now_ns - book->began_ns > TICK_LATE_MOST_NS)
+		sim_fail("fair", "%s began no tick for %.3f s", book->id,
+		         1e-9 * (double)(now_ns - book->began_ns));
+}
+
+// One that a daemon gives up, or has ready for a move, is stepped by nobody.
+static bool is_served(const core_book *book)
+{
+	return book->served && book->logic && !book->logic->ended &&
+	       sim_sessions[book->place].machine == book->machine;
+}
+
+void core_watch_advance(int64_t to_ns)
+{
+	for (int i = 0; i < CORES_MOST; i++) {
+		core_book *book = &watched.cores[i];
+		if (!book->core || !is_present(book) || !is_served(book))
+			continue;
+		if (book->logic->going) { // suspended: no tick begins
+			book->began_ns = to_ns;
+		} else {
+			look_at(book, to_ns);
+			check_pace(book, to_ns);
+		}
+	}
+}
+
+bool core_watch_state(int place, int machine, int *gravity, int64_t *tick)
+{
+	char id[NAME_MOST];
+	sim_session_id(place, machine, id);
+	for (int i = 0; i < CORES_MOST; i++) {
+		const core_book *book = &watched.cores[i];
+		cau_frame frame;
+		if (!book->core || book->machine != machine || strcmp(book->id, id) != 0)
+			continue;
+		cau_session_frame(book->core, &frame);
+		*gravity = books_number(cau_fake_gravity(book->core)[2]);
+		*tick = (int64_t)frame.tick;
+		return true;
+	}
+	return false;
+}

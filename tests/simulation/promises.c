@@ -1,0 +1,284 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "simulation/promises.h"
+
+#include <assert.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "simulation/books.h"
+#include "simulation/core_watch.h"
+
+#define DEADLINE_NS (250 * SIM_MS) // setting browser_deadline_s
+#define TICK_NS (SIM_SECOND / 60)
+// The clock was read before the lock was taken; a thread may have stood still in between.
+#define SLACK_NS (10 * SIM_MS)
+// A disk may fail for some seconds, and a daemon may be away from a session for as long.
+#define ANSWER_MOST_NS (8 * SIM_SECOND)
+#define LOOK_NS (5 * SIM_MS)
+
+promise_counts promises_counted;
+session_book sim_books[SESSIONS];
+
+static struct {
+	sim_profile profile;
+	int64_t look_ns, calm_ns;
+	uint64_t checked; // requests below this number are answered or given up
+	int64_t calm_tick[SESSIONS];
+} own;
+
+const char *promises_meaning(const char *word)
+{
+#define X(code, meaning)                                                                           \
+	if (strcmp(word, #code) == 0)                                                                  \
+		return meaning;
+	PROMISE_TABLE(X)
+#undef X
+	return NULL;
+}
+
+// ---- energy
+static void void_enables(int place, int tool, int client, int64_t before_ns)
+{
+	for (int t = 0; t < TOOLS; t++)
+		for (int c = 0; c < CLIENTS; c++)
+			if ((tool < 0 || t == tool) && (client == EVERY_CLIENT || c == client) &&
+			    sim_books[place].enabled_ns[t][c] <= before_ns)
+				sim_books[place].enabled_ns[t][c] = 0;
+}
+
+void promises_store_takes(const char *id, bool takes)
+{
+	int place = sim_session_of(id);
+	if (place < 0 || sim_sessions[place].machine != sim_machine())
+		return;
+	sim_books[place].full = !takes;
+	if (!takes)
+		void_enables(place, -1, EVERY_CLIENT, sim_now());
+}
+
+void promises_away(int client)
+{
+	for (int i = 0; i < SESSIONS; i++)
+		void_enables(i, -1, client, sim_now());
+}
+
+energy promises_energy(int place, int tool, int64_t at_ns)
+{
+	energy found = ENERGY_CUT;
+	for (int c = 0; c < CLIENTS; c++) {
+		if (!sim_books[place].enabled_ns[tool][c])
+			continue;
+		if (at_ns - sim_clients[c].heard_ns <= DEADLINE_NS + TICK_NS + SLACK_NS)
+			return ENERGY_ALLOWED;
+		found = ENERGY_SILENT;
+	}
+	return found;
+}
+
+// ---- requests
+// Whether it is about a session that the daemon which gets it has.
+static bool meets_session(const sim_request *r)
+{
+	int gravity;
+	int64_t tick;
+	return r->session >= 0 && r->life == sim_sessions[r->session].life &&
+	       sim_sessions[r->session].machine == r->machine &&
+	       core_watch_state(r->session, r->machine, &gravity, &tick);
+}
+
+void promises_arriving(uint64_t number)
+{
+	sim_request *r = clients_request(number);
+	r->met = meets_session(r);
+	if (r->what == ASK_KEY_FRAME && r->met)
+		streams_key_asked(r->client, r->session);
+	if (!r->met)
+		return;
+	session_book *book = &sim_books[r->session];
+	if (r->what == ASK_ON && !book->full)
+		book->enabled_ns[r->tool][r->client] = r->arriving_ns;
+	if (r->what == ASK_REWIND || r->what == ASK_RESET)
+		books_line_leaves(book);
+}
+
+// Off and pause act whatever the queue and the store say; not those that are sent again.
+void promises_arrived(uint64_t number)
+{
+	const sim_request *r = clients_request(number);
+	if (!r->met || r->first)
+		return;
+	if (r->what == ASK_OFF)
+		void_enables(r->session, r->tool, EVERY_CLIENT, r->arriving_ns);
+	if (r->what == ASK_PAUSE)
+		void_enables(r->session, -1, EVERY_CLIENT, r->arriving_ns);
+}
+
+// The answers of a session that moves go with it, so the daemon that it left has none of them.
+static void check_same(const sim_request *r)
+{
+	if (sim_sessions[r->session].machine != r->machine)
+		return;
+	for (uint64_t i = 1; i <= (uint64_t)sim_request_count; i++) {
+		const sim_request *other = clients_request(i);
+		bool same = other != r && other->client == r->client && other->sequence == r->sequence;
+		if (same && other->answered && other->ok && !other->unstored && !r->unstored && !r->ok &&
+		    !strstr(r->result, "\"moved\"") && !strstr(r->result, "not_here") &&
+		    !strstr(r->result, "store_full") && !strstr(r->result, "draining"))
+			sim_fail("same_answer", "%s was answered with %s, then with %s", r->method,
+			         other->result, r->result);
+		if (same && other->answered && other->ok && r->ok && !other->unstored && !r->unstored &&
+		    strcmp(other->result, r->result) != 0)
+			sim_fail("same_answer", "%s was answered with %s, then with %s", r->method,
+			         other->result, r->result);
+	}
+}
+
+static void check_refusal(const sim_request *r)
+{
+	if (strstr(r->result, "sequence_past") || strstr(r->result, "sequence_conflict") ||
+	    strstr(r->result, "\"faulted\""))
+		sim_fail("sound", "%s is answered with %s", r->method, r->result);
+}
+
+void promises_answered(uint64_t number)
+{
+	sim_request *r = clients_request(number);
+	promises_counted.answers++;
+	if (r->first && r->session >= 0 && r->life == sim_sessions[r->session].life)
+		check_same(r);
+	if (!r->ok)
+		check_refusal(r);
+	if (r->session < 0 || r->life != sim_sessions[r->session].life)
+		return;
+	session_book *book = &sim_books[r->session];
+	if (r->what == ASK_REWIND || r->what == ASK_RESET)
+		books_line_arrives(book);
+	if (!r->ok)
+		return;
+	for (int c = 0; c < CLIENTS && r->what == ASK_TAKE; c++)
+		if (c != r->client && !r->first)
+			void_enables(r->session, r->tool, c, r->arriving_ns - 1);
+	if ((r->what == ASK_REWIND || r->what == ASK_RESET || r->what == ASK_HAND_OVER) && !r->first)
+		void_enables(r->session, r->what == ASK_HAND_OVER ? r->tool : -1,
+		             r->what == ASK_HAND_OVER ? r->client : EVERY_CLIENT, r->arriving_ns - 1);
+	if (r->what == ASK_GRAVITY && !r->unstored) {
+		promises_counted.acknowledged++;
+		books_acknowledge(book, r->gravity);
+	}
+	if (r->what == ASK_CREATE)
+		book->made = true;
+}
+
+void promises_moving(int place, int target)
+{
+	if (sim_sessions[place].machine == target)
+		return;
+	sim_sessions[place].machine = target;
+	void_enables(place, -1, EVERY_CLIENT, sim_now());
+	sim_books[place].restarted = true;
+	sim_books[place].full = false;
+}
+
+// What daemons say of their own accord that must not come about here.
+void promises_told(int client, const char *text)
+{
+	if (strstr(text, "\"session.faulted\""))
+		sim_fail("sound", "client %d is told %s", client, text);
+}
+
+static bool is_due(const sim_request *r, int64_t now_ns)
+{
+	const sim_client *c = &sim_clients[r->client];
+	if (r->session >= 0 && sim_sessions[r->session].moving)
+		return false; // what is asked of it waits
+	int64_t since_ns = r->arriving_ns > c->reads_ns ? r->arriving_ns : c->reads_ns;
+	return r->arrived && !r->answered && c->link && c->connection == r->connection && c->reads &&
+	       now_ns - since_ns > ANSWER_MOST_NS;
+}
+
+static void check_answers(int64_t now_ns)
+{
+	for (uint64_t i = own.checked + 1; i <= (uint64_t)sim_request_count; i++) {
+		const sim_request *r = clients_request(i);
+		if (is_due(r, now_ns))
+			sim_fail("answered", "request %llu, %s %s, waits for %.3f s", (unsigned long long)i,
+			         r->method, r->params, 1e-9 * (double)(now_ns - r->arriving_ns));
+		bool over = r->answered || sim_clients[r->client].connection != r->connection;
+		if (over && i == own.checked + 1)
+			own.checked = i;
+	}
+}
+
+// ---- time
+static void advance(int64_t to_ns)
+{
+	if (to_ns < own.look_ns)
+		return;
+	own.look_ns = to_ns + LOOK_NS;
+	promises_counted.checks++;
+	core_watch_advance(to_ns);
+	check_answers(to_ns);
+}
+
+void promises_begin(const sim_profile *profile)
+{
+	memset(&own, 0, sizeof own);
+	memset(sim_books, 0, sizeof sim_books);
+	promises_counted = (promise_counts){0};
+	own.profile = *profile;
+	sim_on_advance(advance);
+}
+
+// ---- daemons
+void promises_killed(int machine)
+{
+	core_watch_killed(machine);
+	for (int i = 0; i < SESSIONS; i++)
+		if (sim_sessions[i].machine == machine) {
+			void_enables(i, -1, EVERY_CLIENT, sim_now());
+			books_line_arrives(&sim_books[i]);
+			sim_books[i].restarted = true;
+			sim_books[i].full = false;
+		}
+}
+
+void promises_started(int machine)
+{
+	(void)machine;
+	promises_counted.restarts++;
+}
+
+// ---- the end
+void promises_calm(void)
+{
+	own.calm_ns = sim_now();
+	for (int i = 0; i < SESSIONS; i++) {
+		int gravity;
+		own.calm_tick[i] = -1;
+		core_watch_state(i, sim_sessions[i].machine, &gravity, &own.calm_tick[i]);
+	}
+}
+
+// Sessions that were made and not asked to go are there.
+static bool must_be_there(int place)
+{
+	return sim_books[place].made && sim_sessions[place].wanted;
+}
+
+void promises_settled(void)
+{
+	for (int i = 0; i < SESSIONS; i++) {
+		int gravity;
+		int64_t tick;
+		if (must_be_there(i) && !core_watch_state(i, sim_sessions[i].machine, &gravity, &tick))
+			sim_fail("up", "session %d, whose creation was acknowledged, is not there", i);
+	}
+	for (uint64_t i = 1; i <= (uint64_t)sim_request_count; i++) {
+		const sim_request *r = clients_request(i);
+		const sim_client *c = &sim_clients[r->client];
+		if (r->arrived && !r->answered && c->link && c->connection == r->connection &&
+		    r->arriving_ns < own.calm_ns)
+			sim_fail("answered", "request %llu, %s %s, is never answered", (unsigned long long)i,
+			         r->method, r->params);
+	}
+}

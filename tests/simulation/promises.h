@@ -1,0 +1,59 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// The promises of protocol/README.md, as what the simulation checks. It sees what clients send and
+// get, and what the double of the core is told; of the daemon's own books it believes nothing.
+#pragma once
+
+#include <stdint.h>
+
+#include "simulation/network.h"
+#include "simulation/world.h"
+
+// word, what is promised
+#define PROMISE_TABLE(X)                                                                           \
+	X(energy_cut, "no tick that begins after a cut is computed with energy")                       \
+	X(energy_silent, "energy goes off when its driver is silent, within a tick")                   \
+	X(energy_restart, "a restart comes up with energy off")                                        \
+	X(energy_full, "while the store is full energy is off")                                        \
+	X(one_answer, "a request gets one answer")                                                     \
+	X(answered, "a request gets its answer in time")                                               \
+	X(acknowledged, "what was acknowledged is there after a kill and a loss of power")             \
+	X(once, "a request that is sent again acts once")                                              \
+	X(same_answer, "a request that is sent again gets the first answer")                           \
+	X(order, "commands of a connection take effect in the order sent")                             \
+	X(one_server, "at most one daemon serves a session")                                           \
+	X(budget, "queues, sessions and bytes in flight have the stated bounds")                       \
+	X(fair, "a session keeps its pace whatever others do")                                         \
+	X(stream, "frames lead to the daemon's state")                                                 \
+	X(sound, "no session is faulted, no client closed, without a cause")                           \
+	X(up, "a daemon starts again on what its disk kept, and its sessions with it")                 \
+	X(progress, "some thread can go on")                                                           \
+	X(locks, "locks are given back by who took them")                                              \
+	X(crash, "the daemon does not crash")
+
+void promises_begin(const sim_profile *profile);
+const char *promises_meaning(const char *word); // NULL: no such promise
+
+// ---- what clients see (clients.c)
+void promises_arriving(uint64_t number); // the daemon is about to read it
+void promises_arrived(uint64_t number);  // and has
+void promises_answered(uint64_t number);
+void promises_away(int client); // it looks away, or its connection has ended: the daemon knows
+// The source has decided: it is the target's from now on.
+void promises_moving(int session, int target);
+void promises_told(int client, const char *text);
+
+void promises_store_takes(const char *id, bool takes); // the session has been told
+
+// ---- what befalls daemons (daemons.c)
+void promises_killed(int machine); // or it has ended in order
+void promises_started(int machine);
+
+// ---- the end of a run
+void promises_calm(void);    // from now on everything works: all is to be answered, and in pace
+void promises_settled(void); // checks that
+
+typedef struct promise_counts {
+	uint64_t ticks, lit_ticks, cuts_seen, answers, acknowledged, restarts, frames, replays, checks,
+		moves;
+} promise_counts;
+extern promise_counts promises_counted;

@@ -1,0 +1,228 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "simulation/run.h"
+
+#include <assert.h>
+#include <errno.h>
+#include <malloc.h>
+#include <poll.h>
+#include <signal.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+#include <sys/wait.h>
+#include <unistd.h>
+
+#include "simulation/core_watch.h"
+#include "simulation/courier.h"
+#include "simulation/threads.h"
+
+enum { HANG_S = 30 };         // of real time for one seed; it takes a hundredth of a second
+#define LOOK_NS (50 * SIM_MS) // between two looks of the operator at the daemons
+#define CALM_NS (4 * SIM_SECOND)
+#define UP_MOST_NS (60 * SIM_SECOND)
+#define BEGIN_NS (1000 * SIM_SECOND)
+
+extern const sim_end sim_clients_end;
+
+static int result_pipe = -1;
+static run_result now;
+static int machines; // that have a daemon in this run
+
+// ---- the seed's manner
+sim_profile sim_profile_of(uint64_t seed)
+{
+	sim_random r = sim_random_of(seed, 8);
+	sim_profile p = {
+		.length_ns = sim_between(&r, 5, 40) * SIM_SECOND,
+		.workers = (int)sim_between(&r, 1, 3),
+		.step_least_ns = 20000,
+		.step_most_ns = sim_between(&r, 30, 4000) * 1000,
+		.latency_most_ns = sim_between(&r, 1, 30) * SIM_MS,
+		.queue_commands = sim_between(&r, 0, 1) ? 8 : 64,
+		.subscriber_bytes = 16384,
+		.store_bytes = sim_between(&r, 0, 1) ? 0 : 3000000,
+		.checkpoint_s = 0.1 * (double)sim_between(&r, 2, 30),
+		.roughness = {.switch_one_in = sim_between(&r, 3, 60),
+	                  .stall_one_in = sim_between(&r, 0, 1) ? 0 : sim_between(&r, 300, 3000),
+	                  .stall_most_ns = 3 * SIM_MS,
+	                  .wake_early_one_in = sim_between(&r, 0, 1) ? 0 : 50}};
+	return p;
+}
+
+// ---- the end of a run
+static void send_result(void)
+{
+	now.simulated_ns = sim_now() - BEGIN_NS;
+	now.switches = sim_switches();
+	now.trace = sim_trace();
+	now.counts = promises_counted;
+	now.disk = disk_counted;
+	now.requests = sim_request_count;
+	const char *at = (const char *)&now;
+	for (size_t sent = 0; result_pipe >= 0 && sent < sizeof now;) {
+		ssize_t count = write(result_pipe, at + sent, sizeof now - sent);
+		if (count <= 0)
+			break;
+		sent += (size_t)count;
+	}
+}
+
+static void on_failed(const char *promise, const char *text)
+{
+	now.failed = true;
+	snprintf(now.promise, sizeof now.promise, "%s", promise);
+	snprintf(now.text, sizeof now.text, "%s", text);
+	if (result_pipe < 0)
+		fprintf(stderr, "%s: %s\n", promise, text);
+	send_result();
+	_exit(1);
+}
+
+// ---- one run
+static void keep_daemons_up(void)
+{
+	for (int m = 0; m < machines; m++)
+		if (daemons_down(m))
+			daemons_start(m);
+}
+
+// Heartbeats, and an operator who starts what has ended.
+static void pass_until(int64_t until_ns)
+{
+	for (int64_t now_ns = sim_now(); now_ns < until_ns; now_ns = sim_now()) {
+		int64_t due_ns = clients_beat_due(), look_ns = now_ns + LOOK_NS;
+		keep_daemons_up();
+		due_ns = due_ns < look_ns ? due_ns : look_ns;
+		due_ns = due_ns < until_ns ? due_ns : until_ns;
+		sim_sleep(due_ns - now_ns > 1000 ? due_ns - now_ns : 1000);
+		clients_beat();
+		streams_acknowledge();
+	}
+}
+
+static void await_daemons(void)
+{
+	int64_t most_ns = sim_now() + UP_MOST_NS;
+	pass_until(sim_now() + LOOK_NS);
+	while (!daemons_up(0) || !daemons_up(machines - 1)) {
+		pass_until(sim_now() + LOOK_NS);
+		for (int m = 0; m < machines; m++)
+			if (!daemons_up(m) && sim_now() > most_ns)
+				sim_fail("up", "machine %d does not start: %s", m, daemons_trouble(m));
+	}
+}
+
+static void heal(void)
+{
+	for (int m = 0; m < machines; m++)
+		workload_do(&(work_step){.kind = STEP_GOOD_DISK, .a = m});
+	await_daemons();
+	for (int64_t end_ns = sim_now() + UP_MOST_NS; !courier_is_idle() && sim_now() < end_ns;)
+		pass_until(sim_now() + LOOK_NS);
+	for (int c = 0; c < CLIENTS; c++) {
+		workload_do(&(work_step){.kind = STEP_CONNECT, .a = c});
+		workload_do(&(work_step){.kind = STEP_READ, .a = c, .b = 16});
+	}
+}
+
+// What is the case at the end of every run: all works again, is answered, and outlives the loss of
+// power of every machine.
+static void settle(void)
+{
+	heal();
+	promises_calm();
+	pass_until(sim_now() + CALM_NS);
+	promises_settled();
+	for (int m = 0; m < machines; m++)
+		daemons_kill(m, true);
+	await_daemons();
+	pass_until(sim_now() + CALM_NS);
+	promises_settled();
+}
+
+static void do_run(uint64_t seed, const workload *work)
+{
+	sim_profile profile = sim_profile_of(seed);
+	mallopt(M_MMAP_THRESHOLD, 1 << 30); // memory that was given back is used again at once
+	mallopt(M_TRIM_THRESHOLD, 1 << 30);
+	mallopt(M_TOP_PAD, 16 << 20);
+	sim_failed = on_failed;
+	sim_begin(seed, &profile.roughness);
+	sim_threads_begin(seed);
+	disk_begin(seed);
+	disk_vfs_register();
+	sim_network_begin(&sim_clients_end);
+	clients_begin(seed, &profile);
+	promises_begin(&profile);
+	core_watch_begin(seed, &profile);
+	courier_begin();
+	faults_begin(seed);
+	daemons_begin(&profile);
+	streams_begin(&profile);
+	workload_begin();
+	machines = work->machines;
+	await_daemons();
+	int64_t begin_ns = sim_now();
+	for (int i = 0; i < work->count; i++) {
+		if (work->steps[i].left_out)
+			continue;
+		pass_until(begin_ns + work->steps[i].at_ns);
+		workload_do(&work->steps[i]);
+	}
+	settle();
+}
+
+// ---- in a process of its own
+static void read_result(int from, pid_t child, run_result *result)
+{
+	size_t got = 0;
+	struct pollfd ready = {from, POLLIN, 0};
+	while (got < sizeof *result) {
+		int count = poll(&ready, 1, HANG_S * 1000);
+		if (count < 0 && errno == EINTR)
+			continue;
+		ssize_t part = count > 0 ? read(from, (char *)result + got, sizeof *result - got) : 0;
+		if (part <= 0)
+			break;
+		got += (size_t)part;
+	}
+	int status = 0;
+	if (got < sizeof *result)
+		kill(child, SIGKILL); // it hangs, or has ended
+	waitpid(child, &status, 0);
+	if (got == sizeof *result)
+		return;
+	*result = (run_result){.failed = true, .promise = "crash"};
+	if (WIFSIGNALED(status) && WTERMSIG(status) == SIGKILL)
+		snprintf(result->text, sizeof result->text, "no end within %d s", HANG_S);
+	else
+		snprintf(result->text, sizeof result->text, "it ended by itself, status %#x",
+		         (unsigned)status);
+}
+
+void run_seed(uint64_t seed, const workload *work, bool own_process, run_result *result)
+{
+	int ends[2];
+	*result = (run_result){0};
+	if (!own_process) {
+		do_run(seed, work);
+		send_result();
+		*result = now;
+		return;
+	}
+	int code = pipe(ends);
+	assert(code == 0);
+	(void)code;
+	fflush(stdout);
+	pid_t child = fork();
+	if (child == 0) {
+		close(ends[0]);
+		result_pipe = ends[1];
+		do_run(seed, work);
+		send_result();
+		_exit(0);
+	}
+	close(ends[1]);
+	read_result(ends[0], child, result);
+	close(ends[0]);
+}

@@ -1,0 +1,412 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "simulation/scheduler.h"
+
+#include <assert.h>
+#include <stdarg.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+#include <sys/mman.h>
+#include <ucontext.h>
+
+#if defined(__SANITIZE_ADDRESS__)
+#include <sanitizer/common_interface_defs.h>
+#endif
+
+enum {
+	FIBERS_MOST = 96,      // two daemons of 16 threads, twice while one ends, and the world's own
+	STACK_BYTES = 1 << 20, // touched as far as it is used; the sanitizer's frames are the largest
+	GUARD_BYTES = 4096,
+	NAME_BYTES = 16,
+	CLOCK_READ_NS = 50, // so that no loop that looks at the clock runs for ever
+};
+
+typedef enum fiber_state { FREE, READY, WAITING, ENDED } fiber_state;
+
+typedef struct fiber {
+	uint64_t id;
+	fiber_state state;
+	int machine;
+	char name[NAME_BYTES];
+	ucontext_t context;
+	void *stack;
+	const void *waits_for;
+	int64_t until_ns;
+	bool timed_out;
+	bool nobodys; // who ends is not waited for
+	void *(*run)(void *);
+	void *argument, *result;
+	int64_t processor_ns;
+	void *fake_stack; // the address sanitizer's
+} fiber;
+
+static struct {
+	fiber fibers[FIBERS_MOST];
+	int used; // places that were ever taken
+	fiber *present;
+	int ready_count, ready[FIBERS_MOST];
+	uint64_t last_id, trace, switches;
+	int64_t now_ns;
+	sim_random random;
+	sim_roughness roughness;
+	void (*watch)(int64_t);
+	void *spare[FIBERS_MOST]; // stacks of fibers that have ended
+	int spare_count;
+} sim;
+
+bool sim_verbose;
+void (*sim_failed)(const char *promise, const char *text);
+
+// ---- random numbers (splitmix64)
+uint64_t sim_draw(sim_random *random)
+{
+	uint64_t z = random->state += 0x9e3779b97f4a7c15u;
+	z = (z ^ z >> 30) * 0xbf58476d1ce4e5b9u;
+	z = (z ^ z >> 27) * 0x94d049bb133111ebu;
+	return z ^ z >> 31;
+}
+
+sim_random sim_random_of(uint64_t seed, uint64_t purpose)
+{
+	sim_random random = {seed ^ purpose * 0xd1342543de82ef95u};
+	sim_draw(&random);
+	return random;
+}
+
+int64_t sim_between(sim_random *random, int64_t least, int64_t most)
+{
+	assert(least <= most);
+	return least + (int64_t)(sim_draw(random) % (uint64_t)(most - least + 1));
+}
+
+bool sim_chance(sim_random *random, int64_t one_in)
+{
+	return one_in > 0 && sim_draw(random) % (uint64_t)one_in == 0;
+}
+
+// ---- switching
+static void begin_switch(fiber *from, const fiber *to)
+{
+#if defined(__SANITIZE_ADDRESS__)
+	__sanitizer_start_switch_fiber(&from->fake_stack, to->stack, to->stack ? STACK_BYTES : 0);
+#else
+	(void)from, (void)to;
+#endif
+}
+
+static void end_switch(const fiber *here)
+{
+#if defined(__SANITIZE_ADDRESS__)
+	__sanitizer_finish_switch_fiber(here->fake_stack, NULL, NULL);
+#else
+	(void)here;
+#endif
+}
+
+static void go_to(fiber *next)
+{
+	fiber *from = sim.present;
+	sim.trace = (sim.trace ^ next->id ^ (uint64_t)sim.now_ns << 8) * 1099511628211u;
+	sim.switches++;
+	if (next == from)
+		return;
+	sim.present = next;
+	begin_switch(from, next);
+	swapcontext(&from->context, &next->context);
+	end_switch(sim.present);
+}
+
+// Those whose time has come are ready; the earliest time of the others.
+static int64_t wake_due(void)
+{
+	int64_t earliest = SIM_NEVER;
+	sim.ready_count = 0;
+	for (int i = 0; i < sim.used; i++) {
+		fiber *f = &sim.fibers[i];
+		if (f->state == WAITING && f->until_ns <= sim.now_ns) {
+			f->state = READY;
+			f->timed_out = true;
+		}
+		if (f->state == READY)
+			sim.ready[sim.ready_count++] = i;
+		else if (f->state == WAITING && f->until_ns < earliest)
+			earliest = f->until_ns;
+	}
+	return earliest;
+}
+
+static void schedule(void)
+{
+	int64_t earliest = wake_due();
+	while (sim.ready_count == 0) {
+		if (earliest == SIM_NEVER)
+			sim_fail("progress", "every thread waits, none for a time");
+		if (sim.watch)
+			sim.watch(earliest);
+		sim.now_ns = earliest;
+		earliest = wake_due();
+	}
+	int which = sim.ready_count == 1 ? 0 : (int)(sim_draw(&sim.random) % (uint64_t)sim.ready_count);
+	go_to(&sim.fibers[sim.ready[which]]);
+}
+
+// ---- life
+static void live(void)
+{
+	fiber *f = sim.present;
+	end_switch(f);
+	f->result = f->run(f->argument);
+	f->state = ENDED;
+	sim_wake_all(f);
+	schedule();
+	abort(); // nobody goes back to a fiber that has ended
+}
+
+static void give_back(fiber *f)
+{
+	if (f->stack)
+		sim.spare[sim.spare_count++] = f->stack;
+	f->stack = NULL;
+	f->state = FREE;
+}
+
+static fiber *place(void)
+{
+	for (int i = 0; i < FIBERS_MOST; i++) {
+		fiber *f = &sim.fibers[i];
+		if (f->state == ENDED && f->nobodys)
+			give_back(f);
+		if (f->state == FREE && f != sim.present) {
+			sim.used = i >= sim.used ? i + 1 : sim.used;
+			return f;
+		}
+	}
+	fprintf(stderr, "more than %d threads at once\n", FIBERS_MOST);
+	abort();
+}
+
+static void *make_stack(void)
+{
+	char *memory = mmap(NULL, STACK_BYTES + GUARD_BYTES, PROT_READ | PROT_WRITE,
+	                    MAP_PRIVATE | MAP_ANONYMOUS | MAP_NORESERVE, -1, 0);
+	assert(memory != MAP_FAILED);
+	mprotect(memory, GUARD_BYTES, PROT_NONE);
+	return memory + GUARD_BYTES;
+}
+
+uint64_t sim_start(void *(*run)(void *), void *argument)
+{
+	fiber *f = place();
+	*f = (fiber){.id = ++sim.last_id, .state = READY, .machine = sim.present->machine};
+	f->run = run;
+	f->argument = argument;
+	f->stack = sim.spare_count ? sim.spare[--sim.spare_count] : make_stack();
+	getcontext(&f->context);
+	f->context.uc_stack.ss_sp = f->stack;
+	f->context.uc_stack.ss_size = STACK_BYTES;
+	f->context.uc_link = NULL;
+	makecontext(&f->context, live, 0);
+	sim_point();
+	return f->id;
+}
+
+static fiber *find(uint64_t id)
+{
+	for (int i = 0; i < sim.used; i++)
+		if (sim.fibers[i].id == id && sim.fibers[i].state != FREE)
+			return &sim.fibers[i];
+	return NULL;
+}
+
+void *sim_join(uint64_t id)
+{
+	fiber *f = find(id);
+	assert(f);
+	while (f->state != ENDED)
+		sim_wait(f, SIM_NEVER);
+	void *result = f->result;
+	give_back(f);
+	return result;
+}
+
+void sim_let_go(uint64_t id)
+{
+	fiber *f = find(id);
+	if (f)
+		f->nobodys = true;
+}
+
+bool sim_is_alive(uint64_t id)
+{
+	return find(id) != NULL;
+}
+
+void sim_kill_machine(int machine)
+{
+	assert(sim.present->machine != machine);
+	for (int i = 0; i < sim.used; i++)
+		if (sim.fibers[i].state != FREE && sim.fibers[i].machine == machine)
+			give_back(&sim.fibers[i]);
+}
+
+void sim_begin(uint64_t seed, const sim_roughness *roughness)
+{
+	memset(&sim, 0, sizeof sim);
+	sim.random = sim_random_of(seed, 1);
+	sim.roughness = *roughness;
+	sim.now_ns = 1000 * SIM_SECOND; // as on a machine that has been on for a while
+	sim.trace = seed;
+	sim.used = 1;
+	sim.present = &sim.fibers[0];
+	*sim.present = (fiber){.id = ++sim.last_id, .state = READY, .machine = SIM_WORLD};
+	sim_set_name(sim.present->id, "world");
+}
+
+// ---- what fibers ask
+int64_t sim_now(void)
+{
+	sim.now_ns += CLOCK_READ_NS;
+	return sim.now_ns;
+}
+
+void sim_enter_machine(int machine)
+{
+	sim.present->machine = machine;
+}
+
+int sim_machine(void)
+{
+	return sim.present->machine;
+}
+
+uint64_t sim_self(void)
+{
+	return sim.present->id;
+}
+
+void sim_set_name(uint64_t id, const char *name)
+{
+	fiber *f = find(id);
+	if (f)
+		snprintf(f->name, sizeof f->name, "%s", name);
+}
+
+const char *sim_name(void)
+{
+	return sim.present->name;
+}
+
+bool sim_wait(const void *address, int64_t until_ns)
+{
+	fiber *f = sim.present;
+	f->state = WAITING;
+	f->waits_for = address;
+	f->until_ns = until_ns;
+	f->timed_out = false;
+	schedule();
+	f->waits_for = NULL;
+	return !f->timed_out;
+}
+
+int64_t sim_wakes_early(int64_t until_ns)
+{
+	int64_t early_ns = sim.now_ns + sim_between(&sim.random, 1, 20 * SIM_MS);
+	bool early = sim_chance(&sim.random, sim.roughness.wake_early_one_in);
+	return early && early_ns < until_ns ? early_ns : until_ns;
+}
+
+void sim_sleep(int64_t ns)
+{
+	if (ns > 0)
+		sim_wait(NULL, sim.now_ns + ns);
+}
+
+void sim_work(int64_t ns)
+{
+	sim.present->processor_ns += ns;
+	sim_sleep(ns);
+}
+
+int64_t sim_processor_ns(void)
+{
+	return sim.present->processor_ns += CLOCK_READ_NS;
+}
+
+void sim_point(void)
+{
+	fiber *f = sim.present;
+	const sim_roughness *rough = &sim.roughness;
+	if (f->machine != SIM_WORLD && sim_chance(&sim.random, rough->stall_one_in))
+		sim_wait(NULL, sim.now_ns + sim_between(&sim.random, 1000, rough->stall_most_ns));
+	else if (sim_chance(&sim.random, rough->switch_one_in))
+		schedule();
+}
+
+static bool waits_for(const fiber *f, const void *address)
+{
+	return f->state == WAITING && f->waits_for == address;
+}
+
+void sim_wake_all(const void *address)
+{
+	for (int i = 0; i < sim.used; i++)
+		if (waits_for(&sim.fibers[i], address))
+			sim.fibers[i].state = READY;
+}
+
+void sim_wake_one(const void *address)
+{
+	int count = 0, which[FIBERS_MOST];
+	for (int i = 0; i < sim.used; i++)
+		if (waits_for(&sim.fibers[i], address))
+			which[count++] = i;
+	if (count)
+		sim.fibers[which[sim_draw(&sim.random) % (uint64_t)count]].state = READY;
+}
+
+void sim_on_advance(void (*watch)(int64_t))
+{
+	sim.watch = watch;
+}
+
+uint64_t sim_trace(void)
+{
+	return sim.trace;
+}
+
+void sim_note(uint64_t value)
+{
+	sim.trace = (sim.trace ^ value) * 1099511628211u;
+}
+
+uint64_t sim_switches(void)
+{
+	return sim.switches;
+}
+
+// ---- words
+void sim_fail(const char *promise, const char *format, ...)
+{
+	char text[1024];
+	va_list arguments;
+	int at = snprintf(text, sizeof text, "%.6f s, %s: ", 1e-9 * (double)sim.now_ns - 1000,
+	                  sim.present ? sim.present->name : "");
+	va_start(arguments, format);
+	vsnprintf(text + at, sizeof text - (size_t)at, format, arguments);
+	va_end(arguments);
+	sim_failed(promise, text);
+	abort();
+}
+
+void sim_say(const char *format, ...)
+{
+	va_list arguments;
+	if (!sim_verbose)
+		return;
+	fprintf(stderr, "%11.6f %d %-15s ", 1e-9 * (double)sim.now_ns - 1000, sim.present->machine,
+	        sim.present->name);
+	va_start(arguments, format);
+	vfprintf(stderr, format, arguments);
+	va_end(arguments);
+	fputc('\n', stderr);
+}

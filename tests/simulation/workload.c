@@ -1,0 +1,350 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "simulation/workload.h"
+
+#include <assert.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "simulation/books.h"
+#include "simulation/core_watch.h"
+#include "simulation/courier.h"
+#include "simulation/promises.h"
+
+static int gravities; // numbers given
+
+// ---- making
+typedef struct maker {
+	workload *work;
+	sim_random random;
+	int64_t at_ns;
+	bool moves; // sessions move between two machines in this run
+	int machines;
+} maker;
+
+static void add(maker *m, step_kind kind, int a, int b, int c)
+{
+	if (m->work->count < STEPS_MOST)
+		m->work->steps[m->work->count++] = (work_step){m->at_ns, kind, a, b, c, false};
+}
+
+static int pick(maker *m, int count)
+{
+	return (int)sim_between(&m->random, 0, count - 1);
+}
+
+static void pass(maker *m, int64_t most_ms)
+{
+	m->at_ns += sim_between(&m->random, 0, most_ms * 1000) * 1000;
+}
+
+// Somebody drives a tool, energy on, and something befalls it.
+static void drive(maker *m)
+{
+	int client = pick(m, CLIENTS), session = pick(m, SESSIONS), tool = pick(m, TOOLS);
+	add(m, STEP_CONNECT, client, pick(m, m->machines), 0);
+	add(m, STEP_BEAT, client, 0, 0);
+	add(m, STEP_SHOW, client, 0, 0);
+	pass(m, 40);
+	add(m, STEP_TAKE, client, session, tool);
+	if (pick(m, 2))
+		pass(m, 60);
+	add(m, STEP_ON, client, session, tool);
+	if (pick(m, 3) == 0) {
+		pass(m, 100);
+		add(m, STEP_STEP, client, session, 1 + pick(m, 20));
+	}
+	pass(m, 300);
+}
+
+static void befall(maker *m)
+{
+	static const struct {
+		step_kind kind;
+		int weight, a, b, c; // a, b, c: least value beyond 0, see `of`
+	} kinds[] = {
+		{STEP_CUT, 6, CLIENTS, 0, 0},
+		{STEP_HIDE, 6, CLIENTS, 0, 0},
+		{STEP_SILENT, 6, CLIENTS, 0, 0},
+		{STEP_OFF, 5, CLIENTS, SESSIONS, TOOLS},
+		{STEP_PAUSE, 5, CLIENTS, SESSIONS, 0},
+		{STEP_RESUME, 6, CLIENTS, SESSIONS, 0},
+		{STEP_HAND_OVER, 3, CLIENTS, SESSIONS, TOOLS},
+		{STEP_TAKE, 5, CLIENTS, SESSIONS, TOOLS},
+		{STEP_ON, 6, CLIENTS, SESSIONS, TOOLS},
+		{STEP_MOVE, 3, CLIENTS, SESSIONS, TOOLS},
+		{STEP_GRAVITY, 14, CLIENTS, SESSIONS, 0},
+		{STEP_BURST, 2, CLIENTS, SESSIONS, 60},
+		{STEP_STEP, 4, CLIENTS, SESSIONS, 30},
+		{STEP_REWIND, 2, CLIENTS, SESSIONS, 100},
+		{STEP_RESET, 1, CLIENTS, SESSIONS, 0},
+		{STEP_SNAPSHOT, 1, CLIENTS, SESSIONS, 0},
+		{STEP_AGAIN, 8, CLIENTS, 0, 0},
+		{STEP_JOIN, 4, CLIENTS, SESSIONS, 0},
+		{STEP_KEY_FRAME, 1, CLIENTS, SESSIONS, 0},
+		{STEP_STOP_READING, 1, CLIENTS, 0, 0},
+		{STEP_READ, 3, CLIENTS, 16, 0},
+		{STEP_CREATE, 3, CLIENTS, SESSIONS, 2},
+		{STEP_DESTROY, 1, CLIENTS, SESSIONS, 0},
+		{STEP_MOVE_SESSION, 4, SESSIONS, 0, 0},
+		{STEP_KILL, 2, DISK_MACHINES, 0, 0},
+		{STEP_POWER, 2, DISK_MACHINES, 0, 0},
+		{STEP_RESTART, 1, DISK_MACHINES, 0, 0},
+		{STEP_FULL, 1, DISK_MACHINES, 0, 0},
+		{STEP_SLOW_DISK, 1, DISK_MACHINES, 100, 0},
+		{STEP_BAD_DISK, 1, DISK_MACHINES, 0, 20},
+		{STEP_ROOM, 2, DISK_MACHINES, 0, 0},
+		{STEP_GOOD_DISK, 2, DISK_MACHINES, 0, 0},
+	};
+	enum { KINDS = sizeof kinds / sizeof *kinds };
+	int total = 0, i = 0;
+	for (int k = 0; k < KINDS; k++)
+		total += kinds[k].weight;
+	for (int at = pick(m, total); (at -= kinds[i].weight) >= 0;)
+		i++;
+	int a = kinds[i].a ? pick(m, kinds[i].a) : 0;
+	bool of_machine = kinds[i].kind >= STEP_KILL;
+	if ((of_machine && a >= m->machines) || (kinds[i].kind == STEP_MOVE_SESSION && !m->moves))
+		return;
+	add(m, kinds[i].kind, a, kinds[i].b ? pick(m, kinds[i].b) : 0,
+	    kinds[i].c ? pick(m, kinds[i].c) : 0);
+}
+
+void workload_make(workload *work, uint64_t seed, const sim_profile *profile)
+{
+	maker m = {.work = work, .random = sim_random_of(seed, 7)};
+	*work = (workload){0};
+	m.moves = pick(&m, 3) == 0;
+	m.machines = work->machines = m.moves ? 2 : 1;
+	for (int i = 0; i < CLIENTS; i++)
+		add(&m, STEP_CONNECT, i, 0, 0);
+	pass(&m, 50);
+	for (int i = 0; i < SESSIONS; i++)
+		if (i == 0 || pick(&m, 2))
+			add(&m, STEP_CREATE, pick(&m, CLIENTS), i, pick(&m, 2));
+	pass(&m, 200);
+	while (m.at_ns < profile->length_ns && work->count < STEPS_MOST) {
+		if (pick(&m, 4) == 0)
+			drive(&m);
+		befall(&m);
+		if (m.moves && pick(&m, 12) == 0)
+			add(&m, STEP_MOVE_SESSION, pick(&m, SESSIONS), 0, 0);
+		pass(&m, pick(&m, 20) ? 200 : 6000);
+	}
+}
+
+void workload_print(const workload *work)
+{
+	static const char *const words[STEP_KINDS] = {
+#define X(code, word) [STEP_##code] = word,
+		STEP_TABLE(X)
+#undef X
+	};
+	for (int i = 0; i < work->count; i++) {
+		const work_step *s = &work->steps[i];
+		if (!s->left_out)
+			printf("%4d  %8.3f s  %s %d %d %d\n", i, 1e-9 * (double)s->at_ns, words[s->kind], s->a,
+			       s->b, s->c);
+	}
+}
+
+// ---- doing
+void workload_begin(void)
+{
+	gravities = 0;
+}
+
+static bool exists(const work_step *s)
+{
+	return sim_sessions[s->b].wanted;
+}
+
+static void create(const work_step *s)
+{
+	char name[NAME_MOST], params[256];
+	sim_session *made = &sim_sessions[s->b];
+	if (made->wanted || !sim_clients[s->a].link)
+		return;
+	*made =
+		(sim_session){.life = made->life + 1, .machine = sim_clients[s->a].machine, .wanted = true};
+	memset(&sim_books[s->b], 0, sizeof sim_books[s->b]);
+	sim_session_name(s->b, name);
+	snprintf(params, sizeof params, "\"name\":\"%s\",\"scene\":\"sheet\",\"paused\":%s", name,
+	         s->c ? "true" : "false");
+	clients_ask(s->a, ASK_CREATE, "session.create", s->b, -1, true, params);
+}
+
+static void destroy(const work_step *s)
+{
+	if (!exists(s) || !sim_clients[s->a].link || sim_sessions[s->b].moving)
+		return;
+	clients_ask(s->a, ASK_DESTROY, "session.destroy", s->b, -1, true, "");
+	sim_sessions[s->b].wanted = sim_sessions[s->b].made = false;
+}
+
+static void set_gravity(int client, int place)
+{
+	char params[96];
+	if (gravities + 1 >= GRAVITIES_MOST || !sim_clients[client].link)
+		return;
+	snprintf(params, sizeof params, "\"gravity_m_s2\":[0,0,%.6f]", books_gravity(++gravities));
+	uint64_t number = clients_ask(client, ASK_GRAVITY, "gravity.set", place, -1, true, params);
+	clients_request(number)->gravity = gravities;
+}
+
+static void of_tool(const work_step *s, ask what, const char *method, const char *more)
+{
+	char params[160];
+	snprintf(params, sizeof params, "\"tool\":\"%s\"%s", sim_tools[s->c % TOOLS], more);
+	clients_ask(s->a, what, method, s->b, s->c % TOOLS, true, params);
+}
+
+static void move_tool(const work_step *s)
+{
+	char params[256], id[NAME_MOST];
+	sim_session_id(s->b, sim_clients[s->a].machine, id);
+	snprintf(params, sizeof params,
+	         "\"session\":\"%s\",\"tool\":\"%s\",\"position_m\":[0.01,0,0.02],"
+	         "\"rotation\":[1,0,0,0]",
+	         id, sim_tools[s->c]);
+	clients_notify(s->a, "tool.move", params);
+}
+
+static void rewind_session(const work_step *s)
+{
+	char params[64];
+	int gravity;
+	int64_t tick;
+	if (!core_watch_state(s->b, sim_clients[s->a].machine, &gravity, &tick))
+		return;
+	snprintf(params, sizeof params, "\"tick\":%lld", (long long)(tick * s->c / 100));
+	clients_ask(s->a, ASK_REWIND, "session.rewind", s->b, -1, true, params);
+}
+
+static void do_to_session(const work_step *s)
+{
+	char params[64];
+	switch (s->kind) {
+	case STEP_TAKE:
+		of_tool(s, ASK_TAKE, "tool.take_over", "");
+		break;
+	case STEP_ON:
+		of_tool(s, ASK_ON, "tool.energize", ",\"energized\":true");
+		break;
+	case STEP_OFF:
+		of_tool(s, ASK_OFF, "tool.energize", ",\"energized\":false");
+		break;
+	case STEP_HAND_OVER:
+		of_tool(s, ASK_HAND_OVER, "tool.hand_over", "");
+		break;
+	case STEP_MOVE:
+		move_tool(s);
+		break;
+	case STEP_GRAVITY:
+		set_gravity(s->a, s->b);
+		break;
+	case STEP_BURST:
+		for (int i = 0; i < s->c; i++)
+			set_gravity(s->a, s->b);
+		break;
+	case STEP_PAUSE:
+		clients_ask(s->a, ASK_PAUSE, "session.pause", s->b, -1, true, "");
+		break;
+	case STEP_RESUME:
+		clients_ask(s->a, ASK_RESUME, "session.resume", s->b, -1, true, "");
+		break;
+	case STEP_STEP:
+		snprintf(params, sizeof params, "\"ticks\":%d", 1 + s->c);
+		clients_ask(s->a, ASK_STEP, "session.step", s->b, -1, true, params);
+		break;
+	case STEP_REWIND:
+		rewind_session(s);
+		break;
+	case STEP_RESET:
+		clients_ask(s->a, ASK_RESET, "session.reset", s->b, -1, true, "");
+		break;
+	case STEP_SNAPSHOT:
+		clients_ask(s->a, ASK_SNAPSHOT, "session.snapshot", s->b, -1, true, "");
+		break;
+	case STEP_JOIN:
+		clients_ask(s->a, ASK_JOIN, "session.join", s->b, -1, false, "");
+		break;
+	case STEP_KEY_FRAME:
+		clients_ask(s->a, ASK_KEY_FRAME, "stream.key_frame", s->b, -1, false, "");
+		break;
+	default:
+		assert(false);
+	}
+}
+
+static void do_to_client(const work_step *s)
+{
+	sim_client *c = &sim_clients[s->a];
+	switch (s->kind) {
+	case STEP_CONNECT:
+		clients_connect(s->a, s->b);
+		break;
+	case STEP_CUT:
+		clients_cut(s->a);
+		break;
+	case STEP_HIDE:
+	case STEP_SHOW:
+		clients_show(s->a, s->kind == STEP_SHOW);
+		break;
+	case STEP_SILENT:
+	case STEP_BEAT:
+		c->beats = s->kind == STEP_BEAT;
+		c->beat_ns = sim_now();
+		break;
+	case STEP_STOP_READING:
+	case STEP_READ:
+		clients_read(s->a, s->kind == STEP_READ, 1 + s->b);
+		break;
+	default:
+		clients_send_again(s->a);
+	}
+}
+
+static void do_to_machine(const work_step *s)
+{
+	disk_manner *disk = disk_manner_of(s->a);
+	switch (s->kind) {
+	case STEP_KILL:
+	case STEP_POWER:
+		if (!daemons_down(s->a))
+			daemons_kill(s->a, s->kind == STEP_POWER);
+		break;
+	case STEP_RESTART:
+		daemons_end(s->a);
+		break;
+	case STEP_FULL:
+	case STEP_ROOM:
+		disk->full = s->kind == STEP_FULL;
+		break;
+	case STEP_SLOW_DISK:
+		disk->sync_most_ns = (1 + s->b) * SIM_MS;
+		break;
+	case STEP_BAD_DISK:
+		disk->fail_write_one_in = disk->fail_sync_one_in = 5 + s->c;
+		break;
+	default:
+		*disk = (disk_manner){.sync_least_ns = 50000, .sync_most_ns = 2 * SIM_MS};
+	}
+}
+
+void workload_do(const work_step *s)
+{
+	if (s->kind == STEP_CREATE)
+		create(s);
+	else if (s->kind == STEP_DESTROY)
+		destroy(s);
+	else if (s->kind == STEP_MOVE_SESSION)
+		courier_move(s->a);
+	else if (s->kind >= STEP_KILL)
+		do_to_machine(s);
+	else if (s->kind >= STEP_TAKE && s->kind != STEP_AGAIN) {
+		if (exists(s))
+			do_to_session(s);
+	} else
+		do_to_client(s);
+}
