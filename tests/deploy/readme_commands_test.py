@@ -52,9 +52,15 @@ BLOCK = re.compile(r"(?:Save this as `([\w.-]+)`[^:]*:\n\n)?^```(\w+)\n(.*?)^```
 NUMBER = re.compile(r"(?<![\w.-])\d+(?:\.\d+)?(?![\w-])")
 AS_SAID = 0.2  # numbers that a tutorial prints, relative: processors of another tier part other edges
 
+SIMULATION = "tests/simulation/CMakeLists.txt"
 FIRST_HOUR, INSTALL = "tests/deploy/first_hour_test.py", "tests/deploy/install_test.py"
 VIEWER, SECURITY = "tests/browser/run_viewer_tests.sh", "tests/dds/security.test.mjs"
 ELSEWHERE = {  # command: (file, words in it...)
+    "ninja -C build cautery_simulation": (SIMULATION, "add_executable(cautery_simulation"),
+    "build/tests/cautery_simulation --seconds 60": (SIMULATION, 'simulation_test(minute "e2e;full" 180 --seconds 60)'),
+    "build/tests/cautery_simulation --long": (SIMULATION, 'simulation_test(hour "e2e;long" 4200 --long)'),
+    "build/tests/cautery_simulation --faults": (SIMULATION, "simulation_test(list e2e 60 --faults)"),
+    "build/tests/cautery_simulation --help": (SIMULATION, "simulation_test(help e2e 60 --help)"),
     'cautery move d1-knee d2 --to-url wss://other.example.org':
         ('tests/e2e/move.test.mjs', "'move', session, 'd2'", "'--to-url'"),
     "deploy/run.sh": (FIRST_HOUR, '"deploy/run.sh"'),

@@ -12,6 +12,7 @@
 
 enum {
 	NAMES_MOST = 256,
+	INODES_MOST = 4096,   // a daemon that cannot start makes some at each attempt
 	FILE_MOST = 64 << 20, // bytes of addresses for each file; only what is written takes memory
 };
 
@@ -23,7 +24,7 @@ typedef struct name {
 static struct {
 	name names[NAMES_MOST];
 	int name_count, inode_count;
-	disk_inode *inodes[4 * NAMES_MOST];
+	disk_inode *inodes[INODES_MOST];
 	disk_manner manners[DISK_MACHINES];
 	sim_random random;
 } disk;
@@ -82,7 +83,7 @@ static unsigned char *reserve(size_t bytes)
 disk_inode *disk_make_nameless(int machine)
 {
 	disk_inode *inode = calloc(1, sizeof *inode);
-	assert(inode && disk.inode_count < (int)(sizeof disk.inodes / sizeof *disk.inodes));
+	assert(inode && disk.inode_count < INODES_MOST);
 	inode->number = disk.inode_count + 1;
 	inode->machine = machine;
 	inode->bytes = reserve(FILE_MOST);

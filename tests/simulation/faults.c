@@ -286,6 +286,16 @@ WRAPPED void __wrap_cau_logic_init(cau_logic *logic, int32_t capacity)
 	                      sim_planted == FAULT_queue_unbounded ? UNBOUNDED * capacity : capacity);
 }
 
+void __real_cau_hosted_go_away(cau_hosted *h, const cau_moved_to *to);
+void __wrap_cau_hosted_go_away(cau_hosted *h, const cau_moved_to *to);
+WRAPPED void __wrap_cau_hosted_go_away(cau_hosted *h, const cau_moved_to *to)
+{
+	if (faults_act(FAULT_source_serves_on, 1))
+		cau_hosted_go_on(h);
+	else
+		__real_cau_hosted_go_away(h, to);
+}
+
 cau_due __real_cau_hosted_run(cau_task *task);
 cau_due __wrap_cau_hosted_run(cau_task *task);
 WRAPPED cau_due __wrap_cau_hosted_run(cau_task *task)

@@ -13,7 +13,7 @@
 	X(signal_lost, up, "one in eight signals of a condition is lost")                              \
 	X(early_acknowledgement, acknowledged, "answers go out before the commit")                     \
 	X(commit_not_synced, acknowledged, "commits are not synced to the disk")                       \
-	X(row_lost, same_answer, "one in eight commands is not written to the log")                    \
+	X(row_lost, acknowledged, "one in eight commands is not written to the log")                   \
 	X(loss_not_cut, energy_cut, "a lost connection does not turn energy off")                      \
 	X(hidden_page_ignored, energy_cut, "a hidden page does not turn energy off")                   \
 	X(pause_keeps_energy, energy_cut, "a pause does not turn energy off")                          \
@@ -30,6 +30,7 @@
 	X(frame_lost, stream, "one in sixty frames is left out for a subscriber")                      \
 	X(flight_unbounded, budget, "bytes in flight have no bound")                                   \
 	X(queue_unbounded, budget, "a session's queue is eight times as long as is set")               \
+	X(source_serves_on, one_server, "a session that has moved is served on where it was")          \
 	X(session_starved, fair, "a session's next slice is half a second late")
 
 typedef enum sim_fault {

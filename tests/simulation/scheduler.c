@@ -85,10 +85,19 @@ bool sim_chance(sim_random *random, int64_t one_in)
 }
 
 // ---- switching
+#if defined(__SANITIZE_ADDRESS__)
+static struct {
+	const void *bottom;
+	size_t bytes;
+} world_stack; // the program's own
+#endif
+
 static void begin_switch(fiber *from, const fiber *to)
 {
 #if defined(__SANITIZE_ADDRESS__)
-	__sanitizer_start_switch_fiber(&from->fake_stack, to->stack, to->stack ? STACK_BYTES : 0);
+	bool own = to->stack;
+	__sanitizer_start_switch_fiber(&from->fake_stack, own ? to->stack : world_stack.bottom,
+	                               own ? STACK_BYTES : world_stack.bytes);
 #else
 	(void)from, (void)to;
 #endif
@@ -97,7 +106,11 @@ static void begin_switch(fiber *from, const fiber *to)
 static void end_switch(const fiber *here)
 {
 #if defined(__SANITIZE_ADDRESS__)
-	__sanitizer_finish_switch_fiber(here->fake_stack, NULL, NULL);
+	const void *bottom;
+	size_t bytes;
+	__sanitizer_finish_switch_fiber(here->fake_stack, &bottom, &bytes);
+	if (!world_stack.bytes) // the first one to go on does so behind the world
+		world_stack.bottom = bottom, world_stack.bytes = bytes;
 #else
 	(void)here;
 #endif
