@@ -69,9 +69,17 @@ void cau_drive_cut(cau_drive *drive, uint64_t moment, int energy_off, const char
 	         (unsigned long long)moment);
 }
 
+void cau_drive_end_lockstep(cau_logic *logic)
+{
+	if (logic->lockstep)
+		logic->steps_left = 0; // what asked for them is answered next
+	logic->lockstep = 0;
+}
+
 void cau_drive_cut_lit(cau_logic *logic, uint64_t moment, int energy_off, const char *cause,
                        cau_effects *effects)
 {
+	cau_drive_end_lockstep(logic);
 	logic->dark_moment = newest(logic->dark_moment, moment);
 	for (int32_t i = 0; i < logic->drive_count; i++)
 		cau_drive_cut(&logic->drives[i], moment, energy_off, cause, effects);
@@ -89,6 +97,8 @@ static void cut_lost(cau_drive *drive, const char *cause, cau_effects *effects)
 void cau_drive_cut_client(cau_logic *logic, uint32_t client, const char *cause,
                           cau_effects *effects)
 {
+	if (client == logic->lockstep)
+		cau_drive_end_lockstep(logic);
 	for (int32_t i = 0; i < logic->drive_count; i++)
 		if (client && logic->drives[i].driver.client == client)
 			cut_lost(&logic->drives[i], cause, effects);
@@ -100,16 +110,31 @@ static double silent_from_s(const cau_drive *drive)
 	return drive->alive_s + drive->driver.deadline_s;
 }
 
-bool cau_drive_is_silent(const cau_drive *drive, double now_s)
+static bool is_in_lockstep(const cau_logic *logic, const cau_drive *drive)
 {
-	return drive->enabled && silent_from_s(drive) <= now_s;
+	return logic->lockstep && drive->driver.client == logic->lockstep;
+}
+
+// The client of lock-step is silent once a tick is to begin that is as many after its advance as
+// its deadline has. While it asks for no tick none begins, however long it thinks.
+static bool has_overrun(const cau_logic *logic, const cau_drive *drive)
+{
+	double most = fmax(floor(drive->driver.deadline_s / logic->step_s * (1 + 1e-9)), 1);
+	return logic->steps_left > 0 && (double)(logic->tick - logic->advance_tick) >= most;
+}
+
+bool cau_drive_is_silent(const cau_logic *logic, const cau_drive *drive, double now_s)
+{
+	if (!drive->enabled)
+		return false;
+	return is_in_lockstep(logic, drive) ? has_overrun(logic, drive) : silent_from_s(drive) <= now_s;
 }
 
 void cau_drive_cut_silent(cau_logic *logic, double now_s, cau_effects *effects)
 {
 	for (int32_t i = 0; i < logic->drive_count; i++) {
 		cau_drive *drive = &logic->drives[i];
-		if (cau_drive_is_silent(drive, now_s))
+		if (cau_drive_is_silent(logic, drive, now_s))
 			cut_lost(drive, "its driver is silent", effects); // the silence cut of the watchdog
 	}
 }
@@ -130,13 +155,15 @@ double cau_logic_look_s(const cau_logic *logic)
 {
 	double look_s = INFINITY;
 	for (int32_t i = 0; i < logic->drive_count; i++)
-		if (logic->drives[i].enabled)
+		if (logic->drives[i].enabled && !is_in_lockstep(logic, &logic->drives[i]))
 			look_s = fmin(look_s, silent_from_s(&logic->drives[i]));
 	return look_s;
 }
 
 void cau_drive_forget(cau_logic *logic, uint32_t client, cau_effects *effects)
 {
+	if (client == logic->lockstep)
+		cau_drive_end_lockstep(logic);
 	for (int32_t i = 0; i < logic->drive_count; i++) {
 		cau_drive *drive = &logic->drives[i];
 		if (!client || drive->driver.client != client)
@@ -248,13 +275,16 @@ static bool allows_enable(const cau_logic *logic, const cau_drive *drive, const 
 	}
 	// One that is followed by its own off is taken, so that both are answered and logged in order;
 	// it enables nothing, and the off follows it into the core before a tick begins.
-	bool off_follows = drive->by_order && !order->cut_moment;
+	bool advances = order->asked.ask == CAU_ASK_ADVANCE;
+	bool off_follows = drive->by_order && !order->cut_moment && !advances;
 	if (!counts(drive, order) && !off_follows) {
 		snprintf(reason, sizeof reason, "its energy was cut after this request: %s",
 		         *drive->cut_cause ? drive->cut_cause : "its driver had left");
 		return refuse(action, CAU_BAD_STATE, 0, reason);
 	}
-	if (alive_s + drive->driver.deadline_s <= logic->now_s)
+	// In lock-step no time counts but that of ticks, and an advance is the beginning of that.
+	bool by_ticks = advances || is_in_lockstep(logic, drive);
+	if (!by_ticks && alive_s + drive->driver.deadline_s <= logic->now_s)
 		return refuse(action, CAU_BAD_STATE, 0, "its driver fell silent after this request");
 	return true;
 }
@@ -317,6 +347,37 @@ bool cau_drive_allows(cau_logic *logic, const cau_waiting *order, cau_action *ac
 	}
 }
 
+static bool allows_part(cau_logic *logic, const cau_waiting *order, const cau_part *part,
+                        cau_action *action)
+{
+	const cau_drive *drive = cau_drive_find(logic, part->tool);
+	const cau_asker *asker = &order->asked.asker;
+	char reason[160];
+	if (!drive) {
+		snprintf(reason, sizeof reason, "no tool `%s` in this session", part->tool);
+		return refuse(action, CAU_NOT_FOUND, 0, reason);
+	}
+	bool drives = asker->client && drive->driver.client == asker->client;
+	if ((part->uses || part->on) && !drives)
+		return refuse_stranger(drive, action);
+	return !part->on || allows_enable(logic, drive, order, action);
+}
+
+bool cau_drive_allows_parts(cau_logic *logic, const cau_waiting *order, cau_action *action)
+{
+	CAU_RULE(order->asked.part_count >= 0 && order->asked.part_count <= CAU_MAX_TOOLS,
+	         "an advance with %d tools", order->asked.part_count);
+	for (int32_t i = 0; i < order->asked.part_count; i++) {
+		const cau_part *part = &order->asked.parts[i];
+		if (allows_part(logic, order, part, action))
+			continue;
+		snprintf(action->error.path, sizeof action->error.path, "params.commands[%d].tool",
+		         part->command);
+		return false;
+	}
+	return true;
+}
+
 // ---- changes ------------------------------------------------------------------------------------
 
 bool cau_drive_change(cau_drive *drive, const cau_waiting *order, const cau_asker *to,
@@ -334,17 +395,17 @@ bool cau_drive_change(cau_drive *drive, const cau_waiting *order, const cau_aske
 	return true;
 }
 
-void cau_drive_enabled(cau_logic *logic, cau_drive *drive, const cau_waiting *order,
+void cau_drive_enabled(cau_logic *logic, cau_drive *drive, const cau_waiting *order, uint64_t limit,
                        cau_effects *effects)
 {
-	CAU_RULE(order->asked.ask == CAU_ASK_ENERGY_ON, "order %d lights tool %s",
-	         (int)order->asked.ask, drive->tool);
+	CAU_RULE(order->asked.ask == CAU_ASK_ENERGY_ON || order->asked.ask == CAU_ASK_ADVANCE,
+	         "order %d lights tool %s", (int)order->asked.ask, drive->tool);
 	drive->lit = true;
 	drive->alive_s = fmax(drive->alive_s, order->alive_s);
 	bool drives = drive->driver.client == order->asked.asker.client;
 	if (!drives || !counts(drive, order))
 		return; // cut while the core took it: the cut is the worker's next act
-	drive->limit_tick = order->asked.limit ? logic->tick + order->asked.limit : 0;
+	drive->limit_tick = limit ? logic->tick + limit : 0;
 	if (drive->enabled)
 		return;
 	drive->enabled = true;

@@ -21,8 +21,11 @@ void cau_drive_cut_lit(cau_logic *logic, uint64_t moment, int energy_off, const 
                        cau_effects *effects);
 void cau_drive_cut_client(cau_logic *logic, uint32_t client, const char *cause,
                           cau_effects *effects);
-// Lit, by a driver who gave no sign of life for longer than its deadline.
-bool cau_drive_is_silent(const cau_drive *drive, double now_s);
+// Lit, by a driver who gave no sign of life for longer than its deadline; in lock-step, by its
+// client, which has asked for ticks that go beyond as many as its deadline has.
+bool cau_drive_is_silent(const cau_logic *logic, const cau_drive *drive, double now_s);
+// Only the flag and the ticks that are left. Whoever calls it turns off its client's energy.
+void cau_drive_end_lockstep(cau_logic *logic);
 void cau_drive_cut_silent(cau_logic *logic, double now_s, cau_effects *effects);
 void cau_drive_forget(cau_logic *logic, uint32_t client, cau_effects *effects);
 void cau_drive_alive(cau_logic *logic, uint32_t client, const char *tool, double time_s);
@@ -37,10 +40,13 @@ bool cau_drive_is_to_cut(const cau_logic *logic);
 bool cau_drive_allows(cau_logic *logic, const cau_waiting *order, cau_action *action);
 // Whether the core has room for a tool of this name; false after filling the action's refusal.
 bool cau_drive_may_be_added(cau_logic *logic, const char *tool, cau_action *action);
+// The same for all that an ADVANCE does with tools.
+bool cau_drive_allows_parts(cau_logic *logic, const cau_waiting *order, cau_action *action);
 // Another drives, or nobody. False: it is lit, and its cut comes first.
 bool cau_drive_change(cau_drive *drive, const cau_waiting *order, const cau_asker *to,
                       cau_effects *effects);
-void cau_drive_enabled(cau_logic *logic, cau_drive *drive, const cau_waiting *order,
+// The core has taken an enable: an order's, or a part's of an ADVANCE.
+void cau_drive_enabled(cau_logic *logic, cau_drive *drive, const cau_waiting *order, uint64_t limit,
                        cau_effects *effects);
 // Off where the ticks of an enable are over.
 void cau_drive_cut_limits(cau_logic *logic, cau_effects *effects);
@@ -75,13 +81,19 @@ void cau_queue_remove(cau_logic *logic, cau_waiting *order);
 bool cau_queue_is_due(const cau_logic *logic);
 
 // ---- time.c
-// True if a tick may begin now, by the clock or by session.step.
+// True if a tick may begin now, by the clock, by session.step or by session.advance.
 bool cau_time_is_due(const cau_logic *logic, double now_s);
 void cau_time_begin_tick(cau_logic *logic, double now_s);
 void cau_time_end_tick(cau_logic *logic);
 // Orders about time; false after filling the action's refusal.
-bool cau_time_resume(cau_logic *logic, const cau_waiting *order, cau_action *action);
-bool cau_time_step(cau_logic *logic, const cau_asked *asked, cau_action *action);
+bool cau_time_resume(cau_logic *logic, const cau_waiting *order, cau_action *action,
+                     cau_effects *effects);
+bool cau_time_step(cau_logic *logic, const cau_waiting *order, cau_action *action,
+                   cau_effects *effects);
+bool cau_time_advance(cau_logic *logic, const cau_waiting *order, cau_action *action);
+void cau_time_advanced(cau_logic *logic, const cau_waiting *order); // and the core took it
+// What asked for ticks is to be answered.
+bool cau_time_end_of_steps(cau_logic *logic, cau_action *action);
 bool cau_time_go(const cau_logic *logic, cau_action *action);
 void cau_time_speed(cau_logic *logic, double speed, double now_s);
 double cau_time_due_s(const cau_logic *logic);

@@ -54,6 +54,7 @@ static void take_arrival(cau_logic *logic, const cau_logic_event *event, cau_eff
 	logic->step_s = event->step_s;
 	logic->next_step_s = event->time_s;
 	logic->going = false;
+	cau_drive_end_lockstep(logic);
 	for (int32_t i = 0; i < logic->drive_count; i++)
 		cau_effect_tell(effects, &logic->drives[i]);
 	cau_effect_wake(effects);
@@ -88,7 +89,8 @@ static void take(cau_logic *logic, const cau_logic_event *event, cau_effects *ef
 	switch (event->kind) {
 	case CAU_LOGIC_ORDER:
 		cut_silent(logic, event->time_s, effects);
-		if (*event->asked->tool) // any message about a tool is a sign of life
+		// Any message about a tool is a sign of life, and an advance is one for all tools.
+		if (*event->asked->tool || event->asked->ask == CAU_ASK_ADVANCE)
 			take_life(logic, event->asked->asker.client, event->asked->tool,
 			          cau_order_alive_s(event->asked, event->time_s));
 		cau_queue_take(logic, event->asked, effects);
@@ -257,6 +259,9 @@ static bool decide(cau_logic *logic, const cau_waiting *order, cau_action *actio
 		action->act = CAU_ACT_LOOK;
 		return false;
 	}
+	// Whoever is silent by now does not begin to count ticks instead.
+	if (asked->ask == CAU_ASK_ADVANCE && !logic->lockstep)
+		cut_silent(logic, logic->now_s, effects);
 	if (order->cut_moment &&
 	    (asked->ask != CAU_ASK_ENERGY_ON || order->void_cause != CAU_VOIDED_LOST))
 		return refuse_void(order, action);
@@ -278,9 +283,11 @@ static bool decide(cau_logic *logic, const cau_waiting *order, cau_action *actio
 	case CAU_ASK_PAUSE:
 		return pause(logic, order, action, effects);
 	case CAU_ASK_RESUME:
-		return cau_time_resume(logic, order, action);
+		return cau_time_resume(logic, order, action, effects);
 	case CAU_ASK_STEP:
-		return cau_time_step(logic, asked, action);
+		return cau_time_step(logic, order, action, effects);
+	case CAU_ASK_ADVANCE:
+		return cau_time_advance(logic, order, action);
 	case CAU_ASK_GO:
 		return cau_time_go(logic, action);
 	case CAU_ASK_SPEED:
@@ -335,18 +342,6 @@ static bool next_tick(cau_logic *logic, double now_s, cau_action *action, cau_ef
 	return true;
 }
 
-static bool next_end_of_steps(cau_logic *logic, cau_action *action)
-{
-	CAU_RULE(logic->steps_left >= 0, "%lld steps left", (long long)logic->steps_left);
-	bool faulted = logic->state == CAU_SESSION_FAULTED || logic->ended;
-	if (!logic->stepping || (logic->steps_left && !faulted))
-		return false;
-	action->act = faulted ? CAU_ACT_STEP_FAILED : CAU_ACT_STEPPED;
-	action->ticket = logic->stepping;
-	logic->stepping = 0;
-	return true;
-}
-
 // An order to pause that found no room and was answered when it came.
 static bool next_wanted_pause(cau_logic *logic, cau_action *action, cau_effects *effects)
 {
@@ -369,11 +364,11 @@ static bool next_wanted_pause(cau_logic *logic, cau_action *action, cau_effects 
 static bool next_act(cau_logic *logic, double now_s, cau_action *action, cau_effects *effects)
 {
 	if (logic->ended)
-		return next_end_of_steps(logic, action) || next_order(logic, action, effects);
+		return cau_time_end_of_steps(logic, action) || next_order(logic, action, effects);
 	if (logic->state == CAU_SESSION_STARTING || logic->going)
 		return false;
 	return cau_drive_next_cut(logic, logic->state == CAU_SESSION_FAULTED, action) ||
-	       next_wanted_pause(logic, action, effects) || next_end_of_steps(logic, action) ||
+	       next_wanted_pause(logic, action, effects) || cau_time_end_of_steps(logic, action) ||
 	       next_order(logic, action, effects) || next_tick(logic, now_s, action, effects);
 }
 
@@ -423,6 +418,21 @@ static void looked(cau_logic *logic, cau_outcome_kind outcome)
 		cau_queue_remove(logic, order);
 }
 
+// What is off in it went off when it came in, and is cut before it is served.
+static void advance(cau_logic *logic, const cau_waiting *order, cau_effects *effects)
+{
+	for (int32_t i = 0; i < order->asked.part_count; i++) {
+		const cau_part *part = &order->asked.parts[i];
+		cau_drive *drive = cau_drive_find(logic, part->tool);
+		CAU_RULE(drive != NULL, "tool %s was used and is not there", part->tool);
+		if (part->uses)
+			drive->frozen = false;
+		if (part->on)
+			cau_drive_enabled(logic, drive, order, part->limit, effects);
+	}
+	cau_time_advanced(logic, order);
+}
+
 static void take_effect(cau_logic *logic, cau_effects *effects)
 {
 	const cau_waiting *order = &logic->serving;
@@ -444,7 +454,7 @@ static void take_effect(cau_logic *logic, cau_effects *effects)
 		break;
 	case CAU_ASK_ENERGY_ON:
 		CAU_RULE(drive != NULL, "tool %s was enabled and is not there", order->asked.tool);
-		cau_drive_enabled(logic, drive, order, effects);
+		cau_drive_enabled(logic, drive, order, order->asked.limit, effects);
 		break;
 	case CAU_ASK_ENERGY_OFF:
 		CAU_RULE(drive != NULL, "tool %s was turned off and is not there", order->asked.tool);
@@ -459,6 +469,9 @@ static void take_effect(cau_logic *logic, cau_effects *effects)
 	case CAU_ASK_DESTROY:
 		logic->ended = true;
 		cau_drive_cut_lit(logic, logic->moment, CAU_ENERGY_OFF_COMMANDED, "destroyed", effects);
+		break;
+	case CAU_ASK_ADVANCE:
+		advance(logic, order, effects);
 		break;
 	default:
 		break;

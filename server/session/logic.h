@@ -15,7 +15,7 @@
 // The rules, with the file of each:
 //     dark unless enabled, enabled means lit, one driver a tool     drive.c
 //     off is never refused, order is kept, newest motion wins       queue.c
-//     when a tick begins, pause, step, speed                        time.c
+//     when a tick begins, pause, step, lock-step, speed              time.c
 //     one answer to each order, refused means unchanged             logic.c
 //     what holds between two calls, and what follows if it does not sound.c
 #pragma once
@@ -52,8 +52,18 @@ typedef enum cau_ask {
 	CAU_ASK_GO,      // rewind, reset, restore: elsewhere in time
 	CAU_ASK_HISTORY, // snapshot, fork: the present is kept
 	CAU_ASK_DESTROY,
+	CAU_ASK_ADVANCE, // ticks of a paused session, in lock-step, with what its asker does first
 	CAU_ASK_COUNT
 } cau_ask;
+
+// What an ADVANCE does with one tool before its first tick.
+typedef struct cau_part {
+	char tool[CAU_NAME_BYTES];
+	int32_t command; // the first of the request's commands about this tool: where an error points
+	bool uses;       // moves, opens, closes or holds it
+	bool on, off;    // energy; at most one of these
+	uint64_t limit;  // of `on`: energy is off again after so many ticks; 0: no limit
+} cau_part;
 
 typedef struct cau_asked {
 	uint64_t ticket; // the holder's own, given back in effects and actions
@@ -64,9 +74,11 @@ typedef struct cau_asked {
 	uint64_t tick;             // commands: wanted at this tick border; 0: the next one
 	uint64_t limit;            // ENERGY_ON: energy is off again after so many ticks; 0: no limit
 	bool numbered;             // it may be a resend of one that was answered; never MOTION
-	int64_t ticks;             // STEP
+	int64_t ticks;             // STEP, ADVANCE; the latter may ask for none
 	double speed;              // SPEED: simulated over wall time
 	double alive_s;            // its asker's newest sign of life, monotonic; 0: this order is one
+	int32_t part_count;        // ADVANCE: each tool at most once
+	cau_part parts[CAU_MAX_TOOLS];
 } cau_asked;
 
 // Why an order that waits will not be done.
@@ -75,7 +87,8 @@ typedef struct cau_asked {
 	X(LOST, "its asker was lost after this was asked")                                             \
 	X(CHANGED_HANDS, "its tool changed hands after this was asked")                                \
 	X(REMOVED, "its tool was removed after this was asked")                                        \
-	X(CANCELLED, "it was cancelled")
+	X(CANCELLED, "it was cancelled")                                                               \
+	X(DARKENED, "energy that it turns on was turned off after this was asked")
 typedef enum cau_void_cause {
 #define X(code, words) CAU_VOIDED_##code,
 	CAU_VOID_CAUSE_TABLE(X)
@@ -192,7 +205,7 @@ typedef enum cau_act {
 	CAU_ACT_CUT,        // drive, was_lit: energy off and, if drive.freeze, the tool stays
 	CAU_ACT_PAUSE,      // an order to pause that was answered when it came
 	CAU_ACT_STEP,       // a tick begins
-	CAU_ACT_STEPPED,    // ticket: session.step has made its ticks
+	CAU_ACT_STEPPED,    // ticket: session.step or session.advance has made its ticks
 	CAU_ACT_STEP_FAILED // ticket: the session faulted within them, or is gone
 } cau_act;
 
@@ -227,9 +240,13 @@ typedef struct cau_logic {
 	uint64_t tick;
 	double step_s, speed, next_step_s;
 	int64_t steps_left;
-	uint64_t stepping; // ticket of session.step; 0: none
-	char fault[320];   // FAULTED: why
-	char broken[320];  // the safety rule that was broken (cautery/assert.h); "": none was
+	uint64_t stepping; // ticket of session.step or session.advance; 0: none
+	// Lock-step. Its client's silence is counted in ticks. Only its client's advances make ticks,
+	// and when it ends, so do the ticks that are left and all energy of its client.
+	uint32_t lockstep;     // client; 0: none
+	uint64_t advance_tick; // when its newest ADVANCE took effect
+	char fault[320];       // FAULTED: why
+	char broken[320];      // the safety rule that was broken (cautery/assert.h); "": none was
 	// the store
 	bool store_takes;
 	char store_reason[160];

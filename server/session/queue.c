@@ -155,6 +155,7 @@ static bool is_of_hold(cau_logic *logic, const cau_waiting *order)
 	case CAU_ASK_ENERGY_ON:
 	case CAU_ASK_TOOL_USE:
 	case CAU_ASK_MOTION:
+	case CAU_ASK_ADVANCE:
 		return true;
 	case CAU_ASK_TOOL_KEEP:
 	case CAU_ASK_TOOL_REMOVE:
@@ -182,12 +183,17 @@ void cau_queue_cut(cau_logic *logic, uint32_t client)
 	cut_order(logic, &logic->serving, client);
 }
 
+// An advance goes with the hold on any tool, and another order with that on its own.
 static void cut_silent(cau_logic *logic, cau_waiting *order, double now_s)
 {
-	const cau_drive *drive = cau_drive_find(logic, order->asked.tool);
-	if (drive && cau_drive_is_silent(drive, now_s) &&
-	    order->asked.asker.client == drive->driver.client && is_of_hold(logic, order))
-		make_void(logic, order, CAU_VOIDED_LOST);
+	for (int32_t i = 0; i < logic->drive_count; i++) {
+		const cau_drive *drive = &logic->drives[i];
+		bool about =
+			order->asked.ask == CAU_ASK_ADVANCE || strcmp(order->asked.tool, drive->tool) == 0;
+		if (about && cau_drive_is_silent(logic, drive, now_s) &&
+		    order->asked.asker.client == drive->driver.client && is_of_hold(logic, order))
+			make_void(logic, order, CAU_VOIDED_LOST);
+	}
 }
 
 void cau_queue_change_hands(cau_logic *logic, const cau_drive *drive, uint64_t moment)
@@ -260,14 +266,26 @@ void cau_queue_forget(cau_logic *logic, uint32_t client)
 	forget_order(logic, &logic->serving, client);
 }
 
+// Whether it is an advance that enables the tool.
+static bool turns_on(const cau_asked *asked, const char *tool)
+{
+	for (int32_t i = 0; i < asked->part_count; i++)
+		if (asked->parts[i].on && strcmp(asked->parts[i].tool, tool) == 0)
+			return true;
+	return false;
+}
+
 void cau_queue_darken(cau_logic *logic, const char *tool, uint64_t moment)
 {
 	CAU_RULE(!cau_drive_find(logic, tool), "tool %s is there and keeps its own moments", tool);
 	for (int32_t i = 0; i < logic->count; i++) {
 		cau_waiting *order = &logic->waiting[i];
-		if (order->asked.ask == CAU_ASK_ENERGY_ON && order->moment < moment &&
-		    strcmp(order->asked.tool, tool) == 0)
+		if (order->moment >= moment)
+			continue;
+		if (order->asked.ask == CAU_ASK_ENERGY_ON && strcmp(order->asked.tool, tool) == 0)
 			make_void(logic, order, CAU_VOIDED_LOST);
+		else if (turns_on(&order->asked, tool))
+			make_void(logic, order, CAU_VOIDED_DARKENED);
 	}
 }
 
@@ -344,21 +362,31 @@ static void refuse(cau_effects *effects, uint64_t ticket, const cau_error *error
 }
 
 // Energy is off from this moment on, whatever becomes of the order itself.
-static void turn_off(cau_logic *logic, const cau_asked *asked, bool queued, cau_effects *effects)
+static void turn_off(cau_logic *logic, const cau_asked *asked, const char *tool, bool queued,
+                     cau_effects *effects)
 {
-	CAU_RULE(asked->ask == CAU_ASK_ENERGY_OFF, "order %d turns energy off", (int)asked->ask);
+	CAU_RULE(asked->ask == CAU_ASK_ENERGY_OFF || asked->ask == CAU_ASK_ADVANCE,
+	         "order %d turns energy off", (int)asked->ask);
 	char cause[CAU_CAUSE_BYTES];
-	cau_drive *drive = cau_drive_find(logic, asked->tool);
+	cau_drive *drive = cau_drive_find(logic, tool);
 	snprintf(cause, sizeof cause, "turned off by %.24s", asked->asker.name);
 	if (drive) {
 		cau_drive_cut(drive, logic->moment, CAU_ENERGY_OFF_COMMANDED, cause, effects);
 		drive->by_order = queued;
 	} else {
-		cau_queue_darken(logic, asked->tool, logic->moment);
+		cau_queue_darken(logic, tool, logic->moment);
 	}
 	for (int32_t i = 0; i < logic->count; i++)
-		cut_coming(logic, &logic->waiting[i], asked->tool);
-	cut_coming(logic, &logic->serving, asked->tool);
+		cut_coming(logic, &logic->waiting[i], tool);
+	cut_coming(logic, &logic->serving, tool);
+}
+
+// The worker itself cuts what an advance turns off, before it serves the advance.
+static void turn_parts_off(cau_logic *logic, const cau_asked *asked, cau_effects *effects)
+{
+	for (int32_t i = 0; i < asked->part_count; i++)
+		if (asked->parts[i].off)
+			turn_off(logic, asked, asked->parts[i].tool, false, effects);
 }
 
 // True if it needs no place in the queue: it was done, or its place is elsewhere.
@@ -421,7 +449,9 @@ void cau_queue_take(cau_logic *logic, const cau_asked *asked, cau_effects *effec
 	cau_waiting *older = asked->ask == CAU_ASK_MOTION && !later ? superseded(logic, asked) : NULL;
 	cau_status status = no_room(logic, asked, &code, &error);
 	if (asked->ask == CAU_ASK_ENERGY_OFF && (status || !later))
-		turn_off(logic, asked, !status, effects);
+		turn_off(logic, asked, asked->tool, !status, effects);
+	if (asked->ask == CAU_ASK_ADVANCE)
+		turn_parts_off(logic, asked, effects);
 	if (status && take_without_room(logic, asked, effects))
 		return;
 	if (status == CAU_LIMIT && older)

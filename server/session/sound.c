@@ -41,6 +41,11 @@ void cau_logic_expect_sound(const cau_logic *logic)
 	CAU_RULE(logic->drive_count >= 0 && logic->drive_count <= CAU_MAX_TOOLS, "%d tools",
 	         logic->drive_count);
 	CAU_RULE(logic->steps_left >= 0, "%lld steps left", (long long)logic->steps_left);
+	CAU_RULE(!logic->lockstep || (logic->state == CAU_SESSION_PAUSED && !logic->going),
+	         "lock-step of client %u in state %d", logic->lockstep, logic->state);
+	CAU_RULE(!logic->lockstep || logic->advance_tick <= logic->tick,
+	         "advanced at tick %llu of %llu", (unsigned long long)logic->advance_tick,
+	         (unsigned long long)logic->tick);
 	CAU_RULE(logic->step_s > 0 && logic->speed > 0, "ticks of %g s at speed %g", logic->step_s,
 	         logic->speed);
 	CAU_RULE(logic->dark_moment <= logic->moment, "all energy went off at moment %llu of %llu",
@@ -102,6 +107,7 @@ static void mend_queue(cau_logic *logic, bool give_up)
 static void mend_time(cau_logic *logic)
 {
 	logic->steps_left = 0;
+	logic->lockstep = 0;
 	logic->going = false;
 	logic->step_s = logic->step_s > 0 ? logic->step_s : 1.0 / 60;
 	logic->speed = logic->speed > 0 ? logic->speed : 1;

@@ -1,5 +1,12 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// When a tick begins: by the clock while the session runs, by session.step while it is paused.
+// When a tick begins: by the clock while the session runs, by session.step or session.advance while
+// it is paused.
+//
+// session.advance makes a paused session one in lock-step, of the client that asks. While that
+// lasts only its advances make ticks. So its silence is counted in ticks (drive.c), and nothing can
+// burn while it computes. Whatever turns off all energy ends lock-step, and so do the loss of its
+// client and, energy off first, session.step and session.resume. The ticks that were asked for and
+// not made are given up then: no tick begins with the energy of a client that waits no longer.
 #include <math.h>
 
 #include "cautery/assert.h"
@@ -41,14 +48,43 @@ static bool refuse(cau_action *action, cau_status status, const char *reason)
 	return false;
 }
 
-bool cau_time_resume(cau_logic *logic, const cau_waiting *order, cau_action *action)
+bool cau_time_end_of_steps(cau_logic *logic, cau_action *action)
+{
+	CAU_RULE(logic->steps_left >= 0, "%lld steps left", (long long)logic->steps_left);
+	bool faulted = logic->state == CAU_SESSION_FAULTED || logic->ended;
+	if (!logic->stepping || (logic->steps_left && !faulted))
+		return false;
+	action->act = faulted ? CAU_ACT_STEP_FAILED : CAU_ACT_STEPPED;
+	action->ticket = logic->stepping;
+	logic->stepping = 0;
+	return true;
+}
+
+// Energy goes first, by its own act, then the answer to the advance that is under way. The order
+// stays where it is meanwhile.
+static bool leave_lockstep(cau_logic *logic, const cau_waiting *order, cau_action *action,
+                           cau_effects *effects)
+{
+	if (!logic->lockstep)
+		return true;
+	cau_drive_cut_lit(logic, order->moment, CAU_ENERGY_OFF_COMMANDED, "lock-step has ended",
+	                  effects);
+	CAU_RULE(!logic->lockstep && !logic->steps_left, "lock-step goes on, with %lld ticks",
+	         (long long)logic->steps_left);
+	return !cau_drive_next_cut(logic, true, action) && !cau_time_end_of_steps(logic, action);
+}
+
+bool cau_time_resume(cau_logic *logic, const cau_waiting *order, cau_action *action,
+                     cau_effects *effects)
 {
 	if (logic->state == CAU_SESSION_FAULTED)
 		return refuse(action, CAU_FAULTED, logic->fault);
-	if (logic->steps_left)
+	if (logic->steps_left && !logic->lockstep)
 		return refuse(action, CAU_BAD_STATE, "the session is being stepped");
 	if (order->overtaken)
 		return refuse(action, CAU_BAD_STATE, "a later pause replaced this");
+	if (!leave_lockstep(logic, order, action, effects))
+		return false;
 	action->changed = logic->state == CAU_SESSION_PAUSED;
 	if (action->changed) {
 		logic->state = CAU_SESSION_RUNNING;
@@ -57,18 +93,51 @@ bool cau_time_resume(cau_logic *logic, const cau_waiting *order, cau_action *act
 	return true;
 }
 
-bool cau_time_step(cau_logic *logic, const cau_asked *asked, cau_action *action)
+bool cau_time_step(cau_logic *logic, const cau_waiting *order, cau_action *action,
+                   cau_effects *effects)
 {
 	if (logic->state == CAU_SESSION_FAULTED)
 		return refuse(action, CAU_FAULTED, logic->fault);
-	if (logic->state != CAU_SESSION_PAUSED || logic->stepping)
+	if (logic->state != CAU_SESSION_PAUSED || (logic->stepping && !logic->lockstep))
 		return refuse(
 			action, CAU_BAD_STATE,
 			"session.step needs a paused session without another step under way: pause it first");
-	logic->steps_left = asked->ticks;
+	if (!leave_lockstep(logic, order, action, effects))
+		return false;
+	logic->steps_left = order->asked.ticks;
 	CAU_RULE(logic->steps_left > 0, "%lld steps are asked for", (long long)logic->steps_left);
-	logic->stepping = asked->ticket;
+	logic->stepping = order->asked.ticket;
 	return true;
+}
+
+bool cau_time_advance(cau_logic *logic, const cau_waiting *order, cau_action *action)
+{
+	uint32_t client = order->asked.asker.client;
+	if (logic->state == CAU_SESSION_FAULTED)
+		return refuse(action, CAU_FAULTED, logic->fault);
+	if (logic->lockstep && logic->lockstep != client)
+		return refuse(action, CAU_BAD_STATE,
+		              "another client advances this session in lock-step: session.step, "
+		              "session.resume or session.pause ends that");
+	if (logic->state != CAU_SESSION_PAUSED || logic->stepping)
+		return refuse(action, CAU_BAD_STATE,
+		              "session.advance needs a paused session without other ticks under way: "
+		              "pause it, or wait for their answer");
+	return cau_drive_allows_parts(logic, order, action);
+}
+
+// Its client may have been lost while the core took it: then no tick is made for it.
+void cau_time_advanced(cau_logic *logic, const cau_waiting *order)
+{
+	CAU_RULE(!logic->stepping && !logic->steps_left && order->asked.ticks >= 0,
+	         "an advance of %lld ticks while %lld are left", (long long)order->asked.ticks,
+	         (long long)logic->steps_left);
+	logic->stepping = order->asked.ticket;
+	if (order->cut_moment)
+		return;
+	logic->steps_left = order->asked.ticks;
+	logic->lockstep = order->asked.asker.client;
+	logic->advance_tick = logic->tick;
 }
 
 bool cau_time_go(const cau_logic *logic, cau_action *action)

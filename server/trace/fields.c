@@ -66,6 +66,7 @@ static const char *const ask_words[CAU_ASK_COUNT] = {
 	[CAU_ASK_GO] = "go",
 	[CAU_ASK_HISTORY] = "history",
 	[CAU_ASK_DESTROY] = "destroy",
+	[CAU_ASK_ADVANCE] = "advance",
 };
 
 static const char *const act_words[] = {
@@ -111,7 +112,14 @@ static const char *const status_words[] = {CAU_STATUS_TABLE(X)};
 		REAL(type, prefix ".deadline_s", member.deadline_s)
 #define TOOL(i)                                                                                    \
 	CALL(TEXT, "tools." #i ".name", tools[i].name), CALL(TRUTH, "tools." #i ".lit", tools[i].lit)
-static_assert(CAU_MAX_TOOLS == 8, "one entry for each tool below");
+#define PART(i)                                                                                    \
+	CALL(TEXT, "parts." #i ".tool", asked.parts[i].tool),                                          \
+		CALL(SIGNED, "parts." #i ".command", asked.parts[i].command),                              \
+		CALL(TRUTH, "parts." #i ".uses", asked.parts[i].uses),                                     \
+		CALL(TRUTH, "parts." #i ".on", asked.parts[i].on),                                         \
+		CALL(TRUTH, "parts." #i ".off", asked.parts[i].off),                                       \
+		CALL(UNSIGNED, "parts." #i ".limit", asked.parts[i].limit)
+static_assert(CAU_MAX_TOOLS == 8, "one entry for each tool below, and for each part");
 
 static const field call_fields[] = {
 	CALL(REAL, "time_s", time_s),
@@ -137,6 +145,15 @@ static const field call_fields[] = {
 	CALL(SIGNED, "ticks", asked.ticks),
 	CALL(REAL, "speed", asked.speed),
 	CALL(REAL, "asker.alive_s", asked.alive_s),
+	CALL(SIGNED, "part_count", asked.part_count),
+	PART(0),
+	PART(1),
+	PART(2),
+	PART(3),
+	PART(4),
+	PART(5),
+	PART(6),
+	PART(7),
 	CALL(SIGNED, "tool_count", tool_count),
 	TOOL(0),
 	TOOL(1),

@@ -24,8 +24,17 @@ void oracle_darken_all(world *w, uint64_t came)
 		oracle_darken(&w->tools[i], came);
 }
 
+void oracle_end_lockstep(world *w)
+{
+	w->lockstep = 0;
+	w->advance_left = 0;
+}
+
+// In lock-step a client is alive until a tick is to begin that is beyond its deadline's ticks.
 static bool is_alive(const world *w, const tool_book *tool, int client)
 {
+	if (w->lockstep && client == w->lockstep)
+		return !w->advance_left || w->tick - w->advance_tick < DEADLINE_TICKS;
 	return tool->alive_s[client] + tool->deadline_s > w->now_s;
 }
 
@@ -58,6 +67,41 @@ static bool is_silent(const world *w, const tool_book *tool)
 	return is_enabled(w, tool) && !is_alive(w, tool, tool->enabler);
 }
 
+// A paused session makes the ticks that were asked for, in lock-step those of its client alone.
+static void count_steps(world *w)
+{
+	int64_t *left = w->lockstep ? &w->advance_left : &w->steps_left;
+	if (w->state != CAU_SESSION_PAUSED)
+		return;
+	if (!*left)
+		world_wrong(w, "a tick begins in a paused session, and nobody asked for it");
+	else
+		--*left;
+	for (int i = 0; i < TOOLS; i++)
+		w->lit_advances += w->tools[i].lit && w->tools[i].driver == w->lockstep;
+}
+
+static bool waits_to_leave(const world *w)
+{
+	for (int i = 0; i < w->ticket_count; i++) {
+		cau_ask ask = w->tickets[i].asked.ask;
+		bool leaves = ask == CAU_ASK_RESUME || (ask == CAU_ASK_STEP && !w->tickets[i].stepping);
+		if (leaves && w->tickets[i].kept && !w->tickets[i].answers)
+			return true;
+	}
+	return false;
+}
+
+void oracle_check_stepped(world *w)
+{
+	if (oracle_ticket(w, w->action.ticket)->asked.ask != CAU_ASK_ADVANCE || !w->advance_left)
+		return;
+	if (!waits_to_leave(w))
+		world_wrong(w, "an advance ends with %d ticks left", (int)w->advance_left);
+	oracle_end_lockstep(w);
+	w->leaving = true;
+}
+
 void oracle_check_tick(world *w)
 {
 	for (int i = 0; i < TOOLS; i++) {
@@ -78,6 +122,7 @@ void oracle_check_tick(world *w)
 		if (w->tickets[i].asked.ask == CAU_ASK_PAUSE && w->tickets[i].kept &&
 		    !w->tickets[i].answers)
 			world_wrong(w, "a tick begins while a pause waits");
+	count_steps(w);
 	w->steps++;
 }
 
@@ -92,7 +137,8 @@ static bool is_for_later(const world *w, const ticket_book *ticket)
 static bool is_of_hold(const world *w, const ticket_book *ticket)
 {
 	cau_ask ask = ticket->asked.ask;
-	bool uses = ask == CAU_ASK_TOOL_USE || ask == CAU_ASK_MOTION || ask == CAU_ASK_ENERGY_ON;
+	bool uses = ask == CAU_ASK_TOOL_USE || ask == CAU_ASK_MOTION || ask == CAU_ASK_ENERGY_ON ||
+	            ask == CAU_ASK_ADVANCE;
 	bool keeps = ask == CAU_ASK_TOOL_KEEP || ask == CAU_ASK_TOOL_REMOVE;
 	return uses || (keeps && is_for_later(w, ticket));
 }
@@ -105,6 +151,19 @@ static bool is_later_off(const world *w, const ticket_book *ticket)
 static bool is_from(const ticket_book *ticket, int client)
 {
 	return !ticket->answers && (int)ticket->asked.asker.client == client;
+}
+
+// A silent driver's advances go with the rest.
+static void void_advances(world *w, int driver, uint64_t before, bool doubted)
+{
+	for (int i = 0; i < w->ticket_count; i++) {
+		ticket_book *ticket = &w->tickets[i];
+		bool advance = ticket->asked.ask == CAU_ASK_ADVANCE && !ticket->stepping;
+		if (!advance || !is_from(ticket, driver) || ticket->came >= before)
+			continue;
+		ticket->doubted |= doubted;
+		ticket->voided |= !doubted;
+	}
 }
 
 static void void_of_driver(world *w, const char *name, int driver, uint64_t before, bool doubted)
@@ -158,12 +217,16 @@ static int count_waiting(const world *w, int client, bool later)
 }
 
 // Of a tool that is not there: what was asked for before will not light it once it is.
-void oracle_note_off_of_none(world *w, const char *tool)
+void oracle_note_off_of_none(world *w, const char *tool, uint64_t before)
 {
-	for (int i = 0; i < w->ticket_count; i++)
-		if (!w->tickets[i].answers && w->tickets[i].asked.ask == CAU_ASK_ENERGY_ON &&
-		    strcmp(w->tickets[i].asked.tool, tool) == 0)
-			w->tickets[i].voided = true;
+	for (int i = 0; i < w->ticket_count; i++) {
+		ticket_book *ticket = &w->tickets[i];
+		bool on = ticket->asked.ask == CAU_ASK_ENERGY_ON && strcmp(ticket->asked.tool, tool) == 0;
+		for (int32_t k = 0; k < ticket->asked.part_count; k++)
+			on |= ticket->asked.parts[k].on && strcmp(ticket->asked.parts[k].tool, tool) == 0;
+		if (!ticket->answers && on && ticket->came < before)
+			ticket->voided = true;
+	}
 }
 
 void oracle_check_room(world *w, const ticket_book *ticket)
@@ -198,6 +261,31 @@ void oracle_check_room(world *w, const ticket_book *ticket)
 
 // ---- decisions ----------------------------------------------------------------------------------
 
+static bool is_stepping(const world *w)
+{
+	for (int i = 0; i < w->ticket_count; i++)
+		if (w->tickets[i].stepping && !w->tickets[i].answers)
+			return true;
+	return false;
+}
+
+// All that an advance does, and when.
+static bool may_advance(const world *w, const ticket_book *ticket)
+{
+	int client = (int)ticket->asked.asker.client;
+	if (w->state != CAU_SESSION_PAUSED || is_stepping(w) || (w->lockstep && w->lockstep != client))
+		return false;
+	for (int32_t i = 0; i < ticket->asked.part_count; i++) {
+		const cau_part *part = &ticket->asked.parts[i];
+		const tool_book *tool = oracle_book((world *)w, part->tool);
+		bool drives = tool->there && tool->driver == client;
+		bool counts = w->store_takes && stands(w, tool, client, ticket->came);
+		if (!tool->there || ((part->uses || part->on) && !drives) || (part->on && !counts))
+			return false;
+	}
+	return true;
+}
+
 // Whether the order may be done, as the page has it.
 static bool may(const world *w, const ticket_book *ticket)
 {
@@ -221,6 +309,8 @@ static bool may(const world *w, const ticket_book *ticket)
 	case CAU_ASK_TAKE_OVER:
 		return tool->there && (!tool->driver || drives || asked->asker.role == CAU_ROLE_ADMIN) &&
 		       ticket->came > w->gone[client];
+	case CAU_ASK_ADVANCE:
+		return may_advance(w, ticket);
 	default:
 		return true;
 	}
@@ -253,6 +343,7 @@ static void note_silence(world *w, uint64_t came)
 		if (!is_silent(w, tool))
 			continue;
 		tool->silent[tool->enabler] = came;
+		void_advances(w, tool->driver, came + 1, false);
 		void_of_driver(w, world_tool_names[i], tool->driver, came + 1, false);
 	}
 }
@@ -283,6 +374,12 @@ void oracle_note_coming(world *w, const ticket_book *ticket)
 	const cau_asked *asked = &ticket->asked;
 	tool_book *tool = oracle_book(w, asked->tool);
 	note_silence(w, w->came - 1);
+	if (asked->ask == CAU_ASK_ADVANCE)
+		oracle_note_life(w, (int)asked->asker.client, "",
+		                 asked->alive_s > 0 ? asked->alive_s : w->now_s);
+	for (int32_t i = 0; i < asked->part_count; i++)
+		if (asked->parts[i].off)
+			oracle_darken(oracle_book(w, asked->parts[i].tool), ticket->came);
 	if (!tool)
 		return;
 	oracle_note_life(w, (int)asked->asker.client, asked->tool,
@@ -324,7 +421,22 @@ static bool is_cut_of_pause(world *w)
 		return false;
 	for (int i = 0; i < TOOLS && !w->pausing; i++)
 		cut(&w->tools[i], pause);
+	oracle_end_lockstep(w);
 	w->pausing = true;
+	return true;
+}
+
+// So does a step or a resume that ends lock-step; which of them is known once it is decided.
+static bool is_cut_of_leaving(world *w)
+{
+	if (strcmp(w->action.drive.cut_cause, "lock-step has ended") != 0)
+		return false;
+	if (!w->leaving && (!w->lockstep || !waits_to_leave(w)))
+		world_wrong(w, "lock-step ends, and nobody ended it");
+	for (int i = 0; i < TOOLS && !w->leaving; i++)
+		w->tools[i].enable = 0;
+	oracle_end_lockstep(w);
+	w->leaving = true;
 	return true;
 }
 
@@ -335,9 +447,10 @@ void oracle_note_cut(world *w)
 	for (int i = 0; i < TOOLS; i++)
 		if (is_silent(w, &w->tools[i])) {
 			w->tools[i].looked = w->came;
+			void_advances(w, w->tools[i].driver, w->came + 1, true);
 			void_of_driver(w, world_tool_names[i], w->tools[i].driver, w->came + 1, true);
 		}
-	if (is_cut_of_pause(w) || !w->action.was_lit)
+	if (is_cut_of_pause(w) || is_cut_of_leaving(w) || !w->action.was_lit)
 		return;
 	uint64_t change =
 		oldest(waits(w, CAU_ASK_TAKE_OVER, drive->tool), waits(w, CAU_ASK_HAND_OVER, drive->tool));
@@ -367,6 +480,33 @@ static void change_driver(world *w, const ticket_book *ticket, int to)
 	tool->driver = to;
 }
 
+static void note_enable(world *w, tool_book *tool, const ticket_book *ticket, uint64_t limit)
+{
+	int client = (int)ticket->asked.asker.client;
+	tool->lit = true;
+	if (stands(w, tool, client, ticket->came))
+		tool->limit = limit ? w->tick + limit : 0;
+	if (ticket->came > tool->enable) {
+		tool->enable = ticket->came;
+		tool->enabler = client;
+	}
+}
+
+static void note_advance(world *w, ticket_book *ticket)
+{
+	for (int32_t i = 0; i < ticket->asked.part_count; i++) {
+		const cau_part *part = &ticket->asked.parts[i];
+		if (part->on)
+			note_enable(w, oracle_book(w, part->tool), ticket, part->limit);
+	}
+	ticket->stepping = true;
+	if (ticket->voided) // its client was lost while the core took it
+		return;
+	w->lockstep = (int)ticket->asked.asker.client;
+	w->advance_tick = w->tick;
+	w->advance_left = ticket->asked.ticks;
+}
+
 // What an order that was done leads to, as the page has it.
 void oracle_note_done(world *w, ticket_book *ticket)
 {
@@ -374,6 +514,9 @@ void oracle_note_done(world *w, ticket_book *ticket)
 	tool_book *tool = oracle_book(w, asked->tool);
 	int client = (int)asked->asker.client;
 	switch (asked->ask) {
+	case CAU_ASK_ADVANCE:
+		note_advance(w, ticket);
+		break;
 	case CAU_ASK_TOOL_ADD:
 		tool->there = true;
 		tool->driver = ticket->came > w->gone[client] ? client : 0;
@@ -388,13 +531,7 @@ void oracle_note_done(world *w, ticket_book *ticket)
 			void_of_driver(w, asked->tool, i, ticket->came, false);
 		break;
 	case CAU_ASK_ENERGY_ON:
-		tool->lit = true;
-		if (stands(w, tool, client, ticket->came))
-			tool->limit = asked->limit ? w->tick + asked->limit : 0;
-		if (ticket->came > tool->enable) {
-			tool->enable = ticket->came;
-			tool->enabler = client;
-		}
+		note_enable(w, tool, ticket, asked->limit);
 		break;
 	case CAU_ASK_ENERGY_OFF:
 		tool->lit = false;
@@ -408,9 +545,11 @@ void oracle_note_done(world *w, ticket_book *ticket)
 		break;
 	case CAU_ASK_STEP:
 		ticket->stepping = true;
+		w->steps_left = asked->ticks;
 		break;
 	case CAU_ASK_GO:
 		w->going = true;
+		oracle_end_lockstep(w);
 		for (int i = 0; i < TOOLS; i++)
 			cut(&w->tools[i], ticket->came);
 		break;
@@ -442,6 +581,31 @@ static void note_off(world *w, const ticket_book *ticket)
 	cut(tool, ticket->came);
 }
 
+// A pause, a step or a resume ends lock-step with the decision; so it does, refused after its cuts.
+static void note_left(world *w, const ticket_book *ticket, bool orders)
+{
+	cau_ask ask = ticket->asked.ask;
+	bool leaves = ask == CAU_ASK_STEP || ask == CAU_ASK_RESUME;
+	if (leaves && (w->leaving || (orders && w->lockstep))) {
+		for (int i = 0; i < TOOLS; i++)
+			cut(&w->tools[i], ticket->came);
+		w->leaving = false;
+	}
+	if (orders && (leaves || ask == CAU_ASK_PAUSE))
+		oracle_end_lockstep(w);
+}
+
+// The worker looks for silence before lock-step begins. True: the advance is of a silent client.
+static bool note_silence_at_advance(world *w, const ticket_book *ticket)
+{
+	bool silent = false;
+	for (int i = 0; i < TOOLS; i++)
+		silent |=
+			is_silent(w, &w->tools[i]) && w->tools[i].enabler == (int)ticket->asked.asker.client;
+	note_silence(w, w->came);
+	return silent;
+}
+
 void oracle_check_decision(world *w)
 {
 	const ticket_book *ticket = oracle_ticket(w, w->action.ticket);
@@ -449,6 +613,12 @@ void oracle_check_decision(world *w)
 	bool orders = w->action.act == CAU_ACT_ORDER;
 	if (w->ended)
 		return;
+	note_left(w, ticket, orders);
+	if (ask == CAU_ASK_ADVANCE && !w->lockstep && note_silence_at_advance(w, ticket)) {
+		if (orders)
+			world_wrong(w, "a silent client begins lock-step");
+		return;
+	}
 	if (orders && is_for_later(w, ticket))
 		world_wrong(w, "%s of c%u is done before its tick", world_ask_names[ask],
 		            ticket->asked.asker.client);
@@ -460,7 +630,8 @@ void oracle_check_decision(world *w)
 	if (ask == CAU_ASK_ENERGY_ON) {
 		const tool_book *tool = oracle_book(w, ticket->asked.tool);
 		uint32_t client = ticket->asked.asker.client;
-		bool silent = tool->alive_s[client] + tool->deadline_s <= w->now_s;
+		bool counts_ticks = w->lockstep && w->lockstep == (int)client;
+		bool silent = !counts_ticks && tool->alive_s[client] + tool->deadline_s <= w->now_s;
 		if (orders && (tool->driver != (int)client || silent))
 			world_wrong(w, "an enable of c%u is taken, which %s", client,
 			            silent ? "is silent" : "does not drive");

@@ -20,7 +20,8 @@ void oracle_note_done(world *w, ticket_book *ticket);
 void oracle_check_room(world *w, const ticket_book *ticket);
 // A client is lost; it takes back what it asked for at later ticks: one order, or (0) all.
 void oracle_note_loss(world *w, int client, bool for_good);
-void oracle_note_off_of_none(world *w, const char *tool);
+// Of a tool that is not there; `before` the coming in of the off.
+void oracle_note_off_of_none(world *w, const char *tool, uint64_t before);
 void oracle_note_cancel(world *w, int client, uint64_t ticket);
 // Somebody looked for silence: a later sign of life does not undo it.
 void oracle_note_silence(world *w);
@@ -32,3 +33,7 @@ void oracle_note_cut(world *w);
 // The worker is told to do or to refuse an order; to begin a tick.
 void oracle_check_decision(world *w);
 void oracle_check_tick(world *w);
+// Lock-step is over, and with it the ticks that are left.
+void oracle_end_lockstep(world *w);
+// What asked for ticks is answered: they are made, or lock-step has ended.
+void oracle_check_stepped(world *w);

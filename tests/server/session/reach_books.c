@@ -3,12 +3,18 @@
 
 #include <string.h>
 
+static bool enables(const reach_order *order, int tool)
+{
+	bool on =
+		order->ask == CAU_ASK_ENERGY_ON || (order->ask == CAU_ASK_ADVANCE && order->to == REACH_ON);
+	return on && order->tool == tool;
+}
+
 void reach_darken(reach_state *books, int tool, int client)
 {
 	for (int i = 0; i < books->order_count; i++) {
 		reach_order *order = &books->orders[i];
-		if (order->ask == CAU_ASK_ENERGY_ON && order->tool == tool &&
-		    (!client || order->client == client))
+		if (enables(order, tool) && (!client || order->client == client))
 			order->overtaken = 1;
 	}
 	if (!client || books->tools[tool].driver == client)
@@ -24,16 +30,32 @@ void reach_darken_all(reach_state *books, int client)
 void reach_darken_before(reach_state *books, int tool, int place)
 {
 	for (int i = 0; i < place - 1; i++)
-		if (books->orders[i].ask == CAU_ASK_ENERGY_ON && books->orders[i].tool == tool)
+		if (enables(&books->orders[i], tool))
 			books->orders[i].overtaken = 1;
 	books->tools[tool].wanted = 0;
+}
+
+bool reach_is_silent(const reach_state *books, const reach_tool *tool)
+{
+	bool by_ticks = books->lockstep && tool->driver == books->lockstep;
+	return by_ticks ? books->steps && books->since : !tool->fresh;
+}
+
+// They go with the hold on any tool.
+static void overtake_advances(reach_state *books, int client)
+{
+	for (int i = 0; i < books->order_count; i++)
+		if (books->orders[i].ask == CAU_ASK_ADVANCE && books->orders[i].client == client)
+			books->orders[i].overtaken = 1;
 }
 
 void reach_note_silence(reach_state *books)
 {
 	for (int i = 0; i < books->tool_count; i++)
-		if (books->tools[i].wanted && !books->tools[i].fresh)
+		if (books->tools[i].wanted && reach_is_silent(books, &books->tools[i])) {
 			reach_darken(books, i, books->tools[i].driver);
+			overtake_advances(books, books->tools[i].driver);
+		}
 }
 
 void reach_drop_order(reach_state *books, int place)

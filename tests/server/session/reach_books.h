@@ -12,6 +12,8 @@ void reach_darken_all(reach_state *books, int client);
 // What came in before this place does not light the tool.
 void reach_darken_before(reach_state *books, int tool, int place);
 void reach_note_silence(reach_state *books);
+// By ticks where it is in lock-step, else by the clock.
+bool reach_is_silent(const reach_state *books, const reach_tool *tool);
 // The order at this place is answered; places are from 1.
 void reach_drop_order(reach_state *books, int place);
 // The place of the first that may be served, or 0: those for a later tick, and those whose first is

@@ -29,7 +29,8 @@ static bool drives_are_as_before(const reach_move *m, bool but_for_life)
 			return false;
 	}
 	return m->logic->drive_count == m->before->drive_count && m->logic->state == m->before->state &&
-	       m->logic->going == m->before->going && m->logic->stepping == m->before->stepping;
+	       m->logic->lockstep == m->before->lockstep && m->logic->going == m->before->going &&
+	       m->logic->stepping == m->before->stepping;
 }
 
 // ---- what comes in ------------------------------------------------------------------------------
@@ -42,10 +43,23 @@ static bool has_effect(const reach_move *m, cau_effect_kind kind)
 	return false;
 }
 
+static bool has_left(const reach_move *m)
+{
+	return m->before->lockstep && !m->logic->lockstep;
+}
+
+// The ticks that are left go with lock-step.
+static void note_lockstep(reach_move *m)
+{
+	if (has_left(m))
+		m->books.steps = 0;
+}
+
 static void take(reach_move *m, cau_logic_event taken)
 {
 	taken.time_s = REACH_NOW_S;
 	cau_logic_take(m->logic, &taken, &m->effects);
+	note_lockstep(m);
 	must(m, !*m->logic->broken, "a safety rule is broken");
 	bool idle = m->before->acting == CAU_ACT_NOTHING;
 	bool newly_due = cau_logic_due_s(m->before) > 0 && cau_logic_due_s(m->logic) == 0;
@@ -60,6 +74,8 @@ static void note_coming(reach_move *m, const reach_event *e, bool queued)
 		return;
 	if (off && (!e->later || !queued)) // without room one for later acts now
 		reach_darken(&m->books, e->tool, 0);
+	if (e->ask == CAU_ASK_ADVANCE && e->to == REACH_OFF)
+		reach_darken(&m->books, e->tool, 0);
 	if (pause && !queued)
 		reach_darken_all(&m->books, 0);
 	if (pause || (e->ask == CAU_ASK_RESUME && queued))
@@ -68,6 +84,7 @@ static void note_coming(reach_move *m, const reach_event *e, bool queued)
 		m->books.orders[m->books.order_count++] = (reach_order){.ask = (uint8_t)e->ask,
 		                                                        .client = (uint8_t)e->client,
 		                                                        .tool = (uint8_t)e->tool,
+		                                                        .to = (uint8_t)e->to,
 		                                                        .later = (uint8_t)e->later};
 }
 
@@ -82,15 +99,22 @@ static void expect_silence_cut(reach_move *m)
 static void do_order(reach_move *m, const reach_event *e)
 {
 	bool about_tool = e->ask >= CAU_ASK_TOOL_ADD && e->ask <= CAU_ASK_REQUEST_TAKEOVER;
+	bool advances = e->ask == CAU_ASK_ADVANCE, turns_off = advances && e->to == REACH_OFF;
 	cau_asked asked = {.ticket = 50,
 	                   .ask = e->ask,
 	                   .asker = reach_asker(e->client),
-	                   .to = reach_asker(e->to),
+	                   .to = reach_asker(advances ? 0 : e->to),
+	                   .part_count = advances && e->to,
 	                   .tick = e->later ? REACH_TICK + (uint64_t)e->later : 0,
-	                   .ticks = e->ask == CAU_ASK_STEP ? 2 : 0,
+	                   .ticks = e->ask == CAU_ASK_STEP || advances ? 2 : 0,
 	                   .numbered = e->numbered};
 	if (about_tool)
 		strcpy(asked.tool, reach_tool_names[e->tool]);
+	if (asked.part_count) {
+		asked.parts[0].on = e->to == REACH_ON;
+		asked.parts[0].off = turns_off;
+		strcpy(asked.parts[0].tool, reach_tool_names[e->tool]);
+	}
 	reach_note_silence(&m->books); // one that comes after the deadline does not undo the silence
 	take(m, (cau_logic_event){.kind = CAU_LOGIC_ORDER, .asked = &asked});
 	bool off = e->ask == CAU_ASK_ENERGY_OFF, pause = e->ask == CAU_ASK_PAUSE;
@@ -99,7 +123,8 @@ static void do_order(reach_move *m, const reach_event *e)
 	must(m, !refused || !(off || pause) || m->before->ended, "energy off or pause is refused");
 	must(m, refused || !m->before->ended, "what has ended takes an order");
 	expect_silence_cut(m);
-	must(m, !refused || (!queued && drives_are_as_before(m, true)), "refused, and yet it changed");
+	must(m, !refused || (!queued && (turns_off || drives_are_as_before(m, true))),
+	     "refused, and yet it changed");
 	must(m, refused + queued + has_effect(m, CAU_EFFECT_UNSTORED) == 1, "not one answer");
 	note_coming(m, e, queued);
 }
@@ -109,6 +134,7 @@ static void lose(reach_move *m, int client, bool for_good)
 	reach_darken_all(&m->books, client);
 	take(m, (cau_logic_event){.kind = for_good ? CAU_LOGIC_FORGET : CAU_LOGIC_AWAY,
 	                          .client = (uint32_t)client});
+	must(m, m->logic->lockstep != (uint32_t)client, "a lost client is in lock-step");
 }
 
 static void do_store(reach_move *m)
@@ -117,6 +143,7 @@ static void do_store(reach_move *m)
 	if (!takes)
 		reach_darken_all(&m->books, 0);
 	take(m, (cau_logic_event){.kind = CAU_LOGIC_STORE, .store_takes = takes});
+	must(m, takes || !m->logic->lockstep, "a full store leaves lock-step");
 }
 
 static void arrive(reach_move *m, bool lit)
@@ -131,7 +158,7 @@ static void arrive(reach_move *m, bool lit)
 	take(m, (cau_logic_event){.kind = CAU_LOGIC_ARRIVED,
 	                          .state = m->before->state,
 	                          .tick = REACH_TICK,
-	                          .step_s = 0.0625,
+	                          .step_s = REACH_STEP_S,
 	                          .tools = tools,
 	                          .tool_count = m->books.tool_count});
 }
@@ -163,16 +190,16 @@ static void check_step(reach_move *m)
 	must(m, !held || stepped, "a tick begins after a pause");
 	must(m, !stepped || m->books.steps, "a tick that nobody asked for");
 	must(m, !m->before->ended, "a tick begins after the end");
-	if (stepped && m->books.steps)
-		m->books.steps--;
 	for (int i = 0; i < m->books.tool_count; i++) {
 		const reach_tool *tool = &m->books.tools[i];
 		const cau_drive *drive = &m->logic->drives[i];
-		bool should = tool->wanted && tool->driver && tool->fresh;
+		bool should = tool->wanted && tool->driver && !reach_is_silent(&m->books, tool);
 		must(m, !tool->heated || should, "a tick begins with a tool lit that is not to be");
 		must(m, tool->heated || !should, "a tick begins with a tool dark that is to be lit");
 		must(m, !drive->freeze && drive->lit == drive->enabled, "a tick begins with a cut owed");
 	}
+	if (stepped && m->books.steps)
+		m->books.steps--;
 }
 
 // Whoever has work is told to do it: at once, or as soon as a border begins. What has ended owes
@@ -211,6 +238,9 @@ static void check_decision(reach_move *m)
 {
 	switch (m->action.act) {
 	case CAU_ACT_REFUSE:
+		if (m->books.orders[m->action.ticket - 1].ask == CAU_ASK_ADVANCE && !m->before->lockstep &&
+		    !m->before->ended)
+			expect_silence_cut(m);
 		must(m, drives_are_as_before(m, false), "refused, and yet it changed");
 		reach_drop_order(&m->books, (int)m->action.ticket);
 		break;
@@ -240,7 +270,7 @@ static void note_cut_begun(reach_move *m)
 	for (int i = 0; i < m->books.tool_count; i++) {
 		bool pauses = m->before->pause_moment || order->ask == CAU_ASK_PAUSE;
 		bool by_order = pauses || (changes && order->tool == i);
-		if (!m->before->drives[i].enabled || m->logic->drives[i].enabled)
+		if (!m->before->drives[i].enabled || m->logic->drives[i].enabled || has_left(m))
 			continue;
 		if (m->books.pause_place) // it has no place of its own among the orders
 			reach_darken_before(&m->books, i, m->books.pause_place);
@@ -251,9 +281,37 @@ static void note_cut_begun(reach_move *m)
 	}
 }
 
+// Lock-step ends by a pause, a step or a resume, which darken what was asked for before them.
+static void note_left(reach_move *m)
+{
+	int place = reach_head(&m->books), pause = m->books.pause_place;
+	if (!has_left(m))
+		return;
+	cau_ask ask = place ? (cau_ask)m->books.orders[place - 1].ask : CAU_ASK_COUNT;
+	bool leaves = ask == CAU_ASK_PAUSE || ask == CAU_ASK_STEP || ask == CAU_ASK_RESUME;
+	bool by_order = leaves && (!pause || place < pause);
+	must(m, by_order || pause, "lock-step ends, and nobody ended it");
+	for (int i = 0; i < m->books.tool_count; i++)
+		reach_darken_before(&m->books, i, by_order ? place : pause);
+}
+
+// The worker looks for silence before lock-step begins.
+static void note_look(reach_move *m)
+{
+	int place = reach_head(&m->books);
+	bool decided = m->action.ticket == (uint64_t)place &&
+	               (m->action.act == CAU_ACT_ORDER || m->action.act == CAU_ACT_REFUSE);
+	if (place && decided && m->books.orders[place - 1].ask == CAU_ASK_ADVANCE &&
+	    !m->before->lockstep && !m->before->ended && !*m->before->broken)
+		reach_note_silence(&m->books);
+}
+
 static void work(reach_move *m, double now_s)
 {
 	cau_logic_next(m->logic, now_s, &m->action, &m->effects);
+	note_lockstep(m);
+	note_left(m);
+	note_look(m);
 	cau_act act = m->action.act;
 	bool early = now_s < REACH_TICK_S;
 	bool rested = act == CAU_ACT_NOTHING, pending = cau_logic_due_s(m->before) == 0;
@@ -279,7 +337,7 @@ static void note_order_done(reach_move *m, bool done)
 	m->books.serves = 0;
 	if (!done)
 		return;
-	if (order.ask == CAU_ASK_ENERGY_ON) {
+	if (order.ask == CAU_ASK_ENERGY_ON || (order.ask == CAU_ASK_ADVANCE && order.to == REACH_ON)) {
 		tool->heated = 1;
 		tool->wanted = tool->wanted || (!order.overtaken && tool->driver == order.client);
 	} else if (order.ask == CAU_ASK_ENERGY_OFF) {
@@ -313,9 +371,25 @@ static cau_outcome_kind outcome_of(reach_what what)
 	return what == REACH_DONE ? CAU_DONE : what == REACH_NOT_DONE ? CAU_NOT_DONE : CAU_POSTPONED;
 }
 
+// An advance that was overtaken may have lost its client, and then makes no ticks.
+static void note_lockstep_done(reach_move *m, const reach_order *order)
+{
+	bool ends = order->ask == CAU_ASK_PAUSE || order->ask == CAU_ASK_RESUME ||
+	            order->ask == CAU_ASK_STEP || order->ask == CAU_ASK_GO;
+	bool lost = order->overtaken || order->cut;
+	must(m, !ends || !m->logic->lockstep, "lock-step outlives what ends it");
+	if (order->ask != CAU_ASK_ADVANCE)
+		return;
+	must(m, lost || m->logic->lockstep == order->client, "an advance begins no lock-step");
+	must(m, !order->cut || !m->logic->lockstep, "an advance of a lost client begins lock-step");
+	m->books.steps = lost ? (uint8_t)m->logic->steps_left : order->ticks;
+}
+
 static void finish(reach_move *m, reach_what what)
 {
 	int acting = m->books.acting;
+	const reach_order none = {0},
+					  order = m->books.serves ? m->books.orders[m->books.serves - 1] : none;
 	if (acting == CAU_ACT_CUT) {
 		const cau_drive *drive = &m->before->drives[m->books.cutting];
 		if (!drive->enabled)
@@ -326,6 +400,8 @@ static void finish(reach_move *m, reach_what what)
 		note_looked(m, what);
 	}
 	cau_logic_done(m->logic, REACH_NOW_S, outcome_of(what), &m->effects);
+	if (acting == CAU_ACT_ORDER && what == REACH_DONE)
+		note_lockstep_done(m, &order);
 }
 
 static void step(reach_move *m, bool faulted)
@@ -354,7 +430,7 @@ static bool core_may_refuse(const reach_state *state)
 {
 	uint8_t ask = state->serves ? state->orders[state->serves - 1].ask : 0;
 	return state->serves && (ask == CAU_ASK_ENERGY_ON || ask == CAU_ASK_ENERGY_OFF ||
-	                         ask == CAU_ASK_GO || ask == CAU_ASK_DESTROY);
+	                         ask == CAU_ASK_GO || ask == CAU_ASK_DESTROY || ask == CAU_ASK_ADVANCE);
 }
 
 static bool is_postponed(const reach_state *state)
@@ -408,7 +484,9 @@ static void check_state(reach_move *m)
 		must(m, !drive->enabled || drive->driver.client, "enabled, and nobody drives it");
 		must(m, !drive->enabled || drive->lit, "enabled, and the core was not told");
 		must(m, drive->lit == m->books.tools[i].heated, "what the core was told is not known");
-		must(m, !drive->enabled || cau_logic_look_s(logic) < INFINITY, "nobody looks for silence");
+		bool by_ticks = logic->lockstep && drive->driver.client == logic->lockstep;
+		must(m, !drive->enabled || by_ticks || cau_logic_look_s(logic) < INFINITY,
+		     "nobody looks for silence");
 		work_waits |= drive->freeze || (drive->lit && !drive->enabled);
 	}
 	work_waits = logic->ended ? answers_owed : work_waits && !logic->draining;

@@ -61,7 +61,14 @@ static void decode_order(const reach_order *from, int place, cau_waiting *to)
 	to->asked.ticket = (uint64_t)place;
 	to->asked.ask = (cau_ask)from->ask;
 	to->asked.asker = reach_asker(from->client);
-	to->asked.to = reach_asker(from->to);
+	bool advances = from->ask == CAU_ASK_ADVANCE;
+	to->asked.to = reach_asker(advances ? 0 : from->to);
+	to->asked.part_count = advances && from->to;
+	if (to->asked.part_count) {
+		to->asked.parts[0].on = from->to == REACH_ON;
+		to->asked.parts[0].off = from->to == REACH_OFF;
+		strcpy(to->asked.parts[0].tool, reach_tool_names[from->tool]);
+	}
 	bool about_tool = from->ask >= CAU_ASK_TOOL_ADD && from->ask <= CAU_ASK_REQUEST_TAKEOVER;
 	if (about_tool)
 		strcpy(to->asked.tool, reach_tool_names[from->tool]);
@@ -100,6 +107,9 @@ void reach_decode(const reach_state *state, cau_logic *logic)
 	logic->now_s = REACH_NOW_S;
 	logic->next_step_s = REACH_TICK_S;
 	logic->tick = REACH_TICK;
+	logic->step_s = REACH_STEP_S;
+	logic->lockstep = state->lockstep;
+	logic->advance_tick = state->lockstep ? REACH_TICK - state->since : 0;
 	logic->state = state->state;
 	logic->going = state->going;
 	logic->draining = state->draining;
@@ -166,18 +176,22 @@ static void encode_order(const cau_logic *logic, const cau_waiting *from, reach_
 	bool on = asked->ask == CAU_ASK_ENERGY_ON, takes = asked->ask == CAU_ASK_TAKE_OVER;
 	bool hands = asked->ask == CAU_ASK_HAND_OVER, off = asked->ask == CAU_ASK_ENERGY_OFF;
 	to->ask = (uint8_t)asked->ask;
-	bool of_later = off && asked->tick > logic->tick;
-	to->client = on || takes || hands || of_later ? (uint8_t)asked->asker.client : 1;
-	to->tool = (uint8_t)reach_tool_index(asked->tool);
+	bool of_later = off && asked->tick > logic->tick, advances = asked->ask == CAU_ASK_ADVANCE;
+	bool part_on = asked->part_count && asked->parts[0].on;
+	const char *tool = asked->part_count ? asked->parts[0].tool : asked->tool;
+	to->client = on || takes || hands || of_later || advances ? (uint8_t)asked->asker.client : 1;
+	to->tool = (uint8_t)reach_tool_index(tool);
 	to->to = (uint8_t)asked->to.client;
-	to->fresh = (on || takes) && reach_is_fresh(from->alive_s, logic->now_s);
-	to->cut = ((on || off) && from->cut_moment) || from->overtaken;
+	if (asked->part_count)
+		to->to = part_on ? REACH_ON : REACH_OFF;
+	to->fresh = (on || takes || part_on) && reach_is_fresh(from->alive_s, logic->now_s);
+	to->cut = ((on || off || advances) && from->cut_moment) || from->overtaken;
 	to->gone = takes && from->gone;
 	to->to_gone = hands && from->to_gone;
 	to->later = asked->tick > logic->tick ? (uint8_t)(asked->tick - logic->tick) : 0;
 	to->looks = asked->numbered && !from->looked;
 	to->postponed = from->postponed;
-	to->ticks = asked->ask == CAU_ASK_STEP ? (uint8_t)asked->ticks : 0;
+	to->ticks = asked->ask == CAU_ASK_STEP || advances ? (uint8_t)asked->ticks : 0;
 }
 
 // The newest of the orders about this tool's energy that came in by `moment`.
@@ -187,7 +201,10 @@ static uint8_t place_of(const line *orders, const char *tool, uint64_t moment)
 		const cau_waiting *order = orders->orders[i];
 		cau_ask ask = order->asked.ask;
 		bool bears = ask == CAU_ASK_ENERGY_ON || ask == CAU_ASK_ENERGY_OFF;
-		if (bears && order->moment <= moment && strcmp(order->asked.tool, tool) == 0)
+		const char *about = bears                     ? order->asked.tool
+		                    : order->asked.part_count ? order->asked.parts[0].tool
+		                                              : "";
+		if (order->moment <= moment && strcmp(about, tool) == 0)
 			return (uint8_t)(i + 1);
 	}
 	return 0;
@@ -225,6 +242,8 @@ static void encode_time(const cau_logic *logic, const line *orders, reach_state 
 		state->cutting = (uint8_t)reach_tool_index(logic->cutting);
 	state->steps_left = (uint8_t)logic->steps_left;
 	state->stepping = logic->stepping != 0;
+	state->lockstep = (uint8_t)logic->lockstep;
+	state->since = logic->lockstep && logic->tick > logic->advance_tick;
 	if (logic->pause_moment)
 		state->pause_place = (uint8_t)(1 + orders_until(orders, logic->pause_moment));
 	if (logic->border)
@@ -263,7 +282,8 @@ void reach_swap_tools(const reach_state *state, reach_state *swapped)
 	swapped->tools[1] = state->tools[0];
 	for (int i = 0; i < state->order_count; i++) {
 		uint8_t ask = state->orders[i].ask;
-		bool about_tool = ask >= CAU_ASK_TOOL_ADD && ask <= CAU_ASK_REQUEST_TAKEOVER;
+		bool about_tool = (ask >= CAU_ASK_TOOL_ADD && ask <= CAU_ASK_REQUEST_TAKEOVER) ||
+		                  (ask == CAU_ASK_ADVANCE && state->orders[i].to);
 		if (about_tool)
 			swapped->orders[i].tool = !state->orders[i].tool;
 	}

@@ -15,13 +15,15 @@ enum { REACH_TOOLS = 2, REACH_CLIENTS = 2, REACH_QUEUE = 2 };
 #define REACH_TICK_S 101.0 // when the next tick is due; who is fresh now is fresh then
 #define REACH_DEADLINE_S 8.0
 enum { REACH_TICK = 1000, REACH_STEP_TICKET = 60 };
+#define REACH_STEP_S REACH_DEADLINE_S // so in lock-step a deadline is a tick
+enum { REACH_ON = 1, REACH_OFF };
 
 // The members of what follows and how many bits each takes where states are kept, which are many.
 #define REACH_ORDER_MEMBERS(X)                                                                     \
 	X(ask, 5)                                                                                      \
 	X(client, 2)                                                                                   \
 	X(tool, 1)                                                                                     \
-	X(to, 2)                                                                                       \
+	X(to, 2) /* ADVANCE: what it does to its tool's energy, REACH_ON or REACH_OFF */               \
 	X(fresh, 1)                                                                                    \
 	X(cut, 1) /* or a RESUME that was overtaken */                                                 \
 	X(gone, 1)                                                                                     \
@@ -29,7 +31,7 @@ enum { REACH_TICK = 1000, REACH_STEP_TICKET = 60 };
 	X(later, 1)     /* it is wanted so many ticks from now */                                      \
 	X(looks, 1)     /* it may be a resend, and was not looked for yet */                           \
 	X(postponed, 1) /* it is one, whose first is not on the disk yet */                            \
-	X(ticks, 2)     /* STEP */                                                                     \
+	X(ticks, 2)     /* STEP, ADVANCE */                                                            \
 	X(overtaken, 1) /* the test's own: something that darkens its tool came in since */
 
 #define REACH_TOOL_MEMBERS(X)                                                                      \
@@ -61,7 +63,9 @@ enum { REACH_TICK = 1000, REACH_STEP_TICKET = 60 };
 	X(pause_place, 3)  /* 1 + orders before a pause that found no room; 0: there is none */        \
 	X(border_place, 3) /* 1 + orders that the border takes; 0: no border */                        \
 	X(held, 1)         /* the test's own: the newest of pause and resume is a pause */             \
-	X(steps, 2)        /* likewise: ticks that session.step still has to make */
+	X(steps, 2)        /* likewise: ticks that session.step or an advance still has to make */     \
+	X(lockstep, 2)     /* client */                                                                \
+	X(since, 1)        /* a tick was made since its advance: as many as its deadline has */
 
 #define REACH_MEMBER(name, bits) uint8_t name;
 typedef struct reach_order {

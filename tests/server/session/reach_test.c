@@ -30,18 +30,19 @@
 #include "server/session/reach_search.h"
 
 enum {
-	OFF = 1,      // energy is turned off, by anybody
-	HAND = 2,     // tools are handed over
-	LOSS = 4,     // clients look away and are gone
-	STORE = 8,    // it fills, and has room again
-	PAUSE = 16,   // and resume
-	GO = 32,      // rewinds, which arrive or stay
-	FAULT = 64,   // steps end in numerical trouble
-	LATER = 128,  // energy for the tick after
-	RESEND = 256, // orders that may have been sent before
-	STEP = 512,   // session.step
-	END = 1024,   // the session is destroyed or lost, the daemon ends
-	ALL = 2 * END - 1,
+	OFF = 1,           // energy is turned off, by anybody
+	HAND = 2,          // tools are handed over
+	LOSS = 4,          // clients look away and are gone
+	STORE = 8,         // it fills, and has room again
+	PAUSE = 16,        // and resume
+	GO = 32,           // rewinds, which arrive or stay
+	FAULT = 64,        // steps end in numerical trouble
+	LATER = 128,       // energy for the tick after
+	RESEND = 256,      // orders that may have been sent before
+	STEP = 512,        // session.step
+	END = 1024,        // the session is destroyed or lost, the daemon ends
+	ALL = 2 * END - 1, // but for the next
+	LOCKSTEP = 2048,   // session.advance
 	EVENTS_MOST = 128,
 	STATES_OF_PART = 10000000,
 	STATES_HELD = 200000000, // beyond this a search that should close has failed to
@@ -70,6 +71,13 @@ static const search searches[] = {
 	{"one tool, a queue of two, pause and store", 1, 2, OFF | PAUSE | STORE, SHORT},
 	{"one tool, a queue of two, resends", 1, 2, OFF | RESEND, SHORT},
 	{"one tool, off at later ticks, losses", 1, 1, OFF | LOSS | HAND | LATER, SHORT},
+	{"one tool, lock-step, losses, pause and step", 1, 1, OFF | LOSS | PAUSE | STEP | LOCKSTEP,
+     SHORT},
+	{"one tool, lock-step, drivers, store and going back", 1, 1, HAND | STORE | GO | LOCKSTEP,
+     SHORT},
+	{"one tool, a queue of two, lock-step and pause", 1, 2, PAUSE | LOCKSTEP, LONG},
+	{"two tools, lock-step and pause", 2, 1, PAUSE | LOCKSTEP, LONG},
+	{"one tool, lock-step, all but later ticks", 1, 1, (ALL & ~(unsigned)LATER) | LOCKSTEP, PART},
 	{"one tool, a queue of one, all but later ticks", 1, 1, ALL & ~(unsigned)LATER, LONG},
 	{"one tool, a queue of one, everything", 1, 1, ALL, PART},
 	{"one tool, a queue of two, all but later ticks", 1, 2, ALL & ~(unsigned)LATER, PART},
@@ -104,6 +112,21 @@ static void add_energy(const search *s, cau_ask ask, int client, int tool)
 		add((reach_event){.ask = ask, .client = client, .tool = tool, .later = 1});
 }
 
+// Of ticks alone, and with what it does to a tool's energy.
+static void add_advances(const search *s, int client)
+{
+	reach_event advances = {.what = REACH_ORDER, .ask = CAU_ASK_ADVANCE, .client = client};
+	if (!(s->with & LOCKSTEP))
+		return;
+	add(advances);
+	for (advances.tool = 0; advances.tool < s->tools; advances.tool++) {
+		advances.to = REACH_ON;
+		add(advances);
+		advances.to = REACH_OFF;
+		add(advances);
+	}
+}
+
 static void add_tool(const search *s, int client, int tool)
 {
 	reach_event takes = {.ask = CAU_ASK_TAKE_OVER, .client = client, .tool = tool};
@@ -123,6 +146,7 @@ static void add_client(const search *s, int client)
 {
 	for (int tool = 0; tool < s->tools; tool++)
 		add_tool(s, client, tool);
+	add_advances(s, client);
 	add((reach_event){.what = REACH_ALIVE, .client = client});
 	if (!(s->with & LOSS))
 		return;

@@ -31,6 +31,7 @@ const char *const world_ask_names[CAU_ASK_COUNT] = {
 	[CAU_ASK_GO] = "go",
 	[CAU_ASK_HISTORY] = "snapshot",
 	[CAU_ASK_DESTROY] = "destroy",
+	[CAU_ASK_ADVANCE] = "advance",
 };
 
 __attribute__((format(printf, 2, 3))) static void say(world *w, const char *format, ...)
@@ -89,6 +90,36 @@ static cau_asker asker_of(int client)
 	return asker;
 }
 
+// One tool, or both; energy on, for some ticks, off, or as it is.
+static void choose_parts(cau_asked *asked, uint32_t more)
+{
+	enum { ON = 1, LIMITED, OFF };
+	asked->ticks = more / 256 % 8;
+	for (int tool = 0; tool < TOOLS; tool++) {
+		uint32_t energy = more / 4 % 4;
+		bool about = more % 4 == 3 || more % 4 == (uint32_t)tool + 1;
+		cau_part *part = &asked->parts[asked->part_count];
+		more /= 4;
+		if (!about)
+			continue;
+		asked->part_count++;
+		*part = (cau_part){.uses = energy == 0 || more % 3 == 0,
+		                   .on = energy == ON || energy == LIMITED,
+		                   .off = energy == OFF,
+		                   .limit = energy == LIMITED ? 2 : 0};
+		snprintf(part->tool, sizeof part->tool, "%s", world_tool_names[tool]);
+	}
+}
+
+static void note_off_parts(world *w, const ticket_book *ticket)
+{
+	for (int32_t i = 0; i < ticket->asked.part_count; i++) {
+		const cau_part *part = &ticket->asked.parts[i];
+		if (part->off && !oracle_book(w, part->tool)->there && !w->ended)
+			oracle_note_off_of_none(w, part->tool, ticket->came);
+	}
+}
+
 static void order(world *w, cau_ask ask, int client, int tool, uint32_t more)
 {
 	if (w->ticket_count == TICKETS)
@@ -96,14 +127,17 @@ static void order(world *w, cau_ask ask, int client, int tool, uint32_t more)
 	ticket_book *ticket = &w->tickets[w->ticket_count++];
 	bool about_tool = (ask >= CAU_ASK_TOOL_ADD && ask <= CAU_ASK_REQUEST_TAKEOVER);
 	*ticket = (ticket_book){.came = w->came, .kept = true};
-	ticket->asked = (cau_asked){.ticket = (uint64_t)w->ticket_count,
-	                            .ask = ask,
-	                            .asker = asker_of(client),
-	                            .numbered = ask != CAU_ASK_MOTION && more % 4 == 0,
-	                            .ticks = 1 + more % 3,
-	                            .speed = 1};
+	ticket->asked =
+		(cau_asked){.ticket = (uint64_t)w->ticket_count,
+	                .ask = ask,
+	                .asker = asker_of(client),
+	                .numbered = ask != CAU_ASK_MOTION && ask != CAU_ASK_ADVANCE && more % 4 == 0,
+	                .ticks = 1 + more % 3,
+	                .speed = 1};
 	if (about_tool)
 		snprintf(ticket->asked.tool, sizeof ticket->asked.tool, "%s", world_tool_names[tool]);
+	if (ask == CAU_ASK_ADVANCE)
+		choose_parts(&ticket->asked, more);
 	if (more / 16 % 4 == 0) // it sends its clock: its orders are no signs of life
 		ticket->asked.alive_s = w->life_s[client];
 	if (ask == CAU_ASK_HAND_OVER)
@@ -120,7 +154,8 @@ static void order(world *w, cau_ask ask, int client, int tool, uint32_t more)
 	oracle_check_room(w, ticket);
 	bool now = ticket->answers || ticket->asked.tick <= w->tick;
 	if (ask == CAU_ASK_ENERGY_OFF && now && !w->tools[tool].there && !w->ended)
-		oracle_note_off_of_none(w, world_tool_names[tool]);
+		oracle_note_off_of_none(w, world_tool_names[tool], ticket->came);
+	note_off_parts(w, ticket);
 	if (ask == CAU_ASK_ENERGY_OFF && ticket->answers) // it found no room, and acts at once
 		oracle_darken(&w->tools[tool], ticket->came);
 	if (ask == CAU_ASK_PAUSE && ticket->answers && !w->ended)
@@ -144,6 +179,8 @@ static void lose(world *w, int client, bool for_good)
 {
 	say(w, "c%d %s\n", client, for_good ? "is gone" : "looks away");
 	w->away[client] = w->came;
+	if (client == w->lockstep)
+		oracle_end_lockstep(w);
 	oracle_note_loss(w, client, for_good);
 	for (int i = 0; i < TOOLS && for_good; i++)
 		if (w->tools[i].driver == client)
@@ -172,8 +209,10 @@ static void store(world *w, bool takes)
 {
 	say(w, "the store %s\n", takes ? "takes" : "is full");
 	w->store_takes = takes;
-	if (!takes)
+	if (!takes) {
 		w->no_store = w->came;
+		oracle_end_lockstep(w);
+	}
 	take(w, (cau_logic_event){.kind = CAU_LOGIC_STORE, .store_takes = takes, .cause = "full"});
 }
 
@@ -230,7 +269,9 @@ static void restart(world *w)
 		w->tools[i].enable = 0;
 	}
 	oracle_darken_all(w, w->came);
-	w->working = w->pausing = false;
+	oracle_end_lockstep(w);
+	w->steps_left = 0;
+	w->working = w->pausing = w->leaving = false;
 	w->store_takes = true;
 	w->paused = 0;
 	w->state = CAU_SESSION_STARTING;
@@ -264,7 +305,10 @@ static void begin_work(world *w)
 		oracle_note_cut(w);
 	else
 		w->pausing = false;
+	if (w->action.act == CAU_ACT_STEPPED)
+		oracle_check_stepped(w);
 	if (w->action.act == CAU_ACT_PAUSE) {
+		oracle_end_lockstep(w);
 		w->served = w->paused;
 		w->paused = 0;
 	}
@@ -279,10 +323,10 @@ static cau_outcome_kind finish_order(world *w, uint32_t more)
 {
 	ticket_book *ticket = oracle_ticket(w, w->action.ticket);
 	// Every call of the core that returns a status may refuse; turning energy off returns none.
-	bool core_may_refuse =
-		ticket->asked.ask < CAU_ASK_ENERGY_OFF || ticket->asked.ask == CAU_ASK_GO;
+	bool core_may_refuse = ticket->asked.ask < CAU_ASK_ENERGY_OFF ||
+	                       ticket->asked.ask == CAU_ASK_GO || ticket->asked.ask == CAU_ASK_ADVANCE;
 	bool done = !(core_may_refuse && more % 4 == 0);
-	if (ticket->asked.ask != CAU_ASK_STEP)
+	if (ticket->asked.ask != CAU_ASK_STEP && !(ticket->asked.ask == CAU_ASK_ADVANCE && done))
 		oracle_answered(w, w->action.ticket);
 	if (done)
 		oracle_note_done(w, ticket);
@@ -383,7 +427,7 @@ static void order_of_code(world *w, uint32_t code)
 	                                CAU_ASK_TOOL_ADD,  CAU_ASK_ENERGY_OFF, CAU_ASK_GO};
 	uint32_t which = code % 64, more = code >> 18;
 	cau_ask ask = which < 56   ? often[which % (sizeof often / sizeof *often)]
-	              : which < 63 ? (cau_ask)((code >> 6) % (CAU_ASK_COUNT - 1))
+	              : which < 63 ? (cau_ask)((code >> 6) % CAU_ASK_DESTROY)
 	                           : CAU_ASK_DESTROY;
 	bool usual = (code >> 11) % 2;
 	order(w, ask, usual ? 1 : 1 + (int)((code >> 12) % CLIENTS),
@@ -413,6 +457,8 @@ bool world_do(world *w, uint32_t code)
 		restart(w);
 	else if (what == 19 && more % 8 == 1)
 		cancel(w, client, more / 8);
+	else if (what == WORLD_ADVANCES)
+		order(w, CAU_ASK_ADVANCE, client, 0, more / 8);
 	else
 		work(w, more);
 	if (*w->logic->broken)
@@ -441,12 +487,13 @@ void world_begin(world *w)
 {
 	cau_logic *logic = w->logic;
 	FILE *script = w->script;
-	uint64_t steps = w->steps, lit_steps = w->lit_steps;
+	uint64_t steps = w->steps, lit_steps = w->lit_steps, lit_advances = w->lit_advances;
 	memset(w, 0, offsetof(world, tickets));
 	w->logic = logic;
 	w->script = script;
 	w->steps = steps;
 	w->lit_steps = lit_steps;
+	w->lit_advances = lit_advances;
 	w->ticket_count = 0;
 	*w->wrong = 0;
 	w->store_takes = true;

@@ -16,9 +16,12 @@ enum {
 	CLIENTS = 3, // 1 and 2 may operate, 3 is an admin
 	QUEUE = 6,
 	TICKETS = 256,
+	WORLD_WORKS = 20,    // what a code is, modulo 32, in which the worker goes on
+	WORLD_ADVANCES = 28, // and in which somebody advances
 };
 
-#define DEADLINE_S 0.25 // of silence, of every driver
+#define DEADLINE_S 0.25      // of silence, of every driver
+enum { DEADLINE_TICKS = 4 }; // in lock-step
 
 // What the oracle knows of a tool.
 typedef struct tool_book {
@@ -56,15 +59,21 @@ typedef struct world {
 	uint64_t served; // of the one that the worker is at
 	bool pausing;    // the worker makes the cuts of a pause
 	uint64_t no_store;
+	// Lock-step: its client, since which tick, and the ticks of its advance that are left.
+	int lockstep;
+	uint64_t advance_tick;
+	int64_t advance_left;
+	int64_t steps_left; // of session.step
+	bool leaving;       // by session.step or session.resume, which is decided next
 	bool store_takes, working, going, ended;
 	uint64_t tick, going_since;
 	int state;
 	tool_book tools[TOOLS];
 	ticket_book tickets[TICKETS];
 	int ticket_count;
-	uint64_t steps, lit_steps; // how much was seen
-	FILE *script;              // the events in words, or NULL
-	char wrong[200];           // "": nothing
+	uint64_t steps, lit_steps, lit_advances; // how much was seen
+	FILE *script;                            // the events in words, or NULL
+	char wrong[200];                         // "": nothing
 } world;
 
 extern const char *const world_tool_names[TOOLS];
