@@ -93,11 +93,31 @@ static bool acts_at_once(cau_session *session, const cau_command *command)
 	return is_added(session, command->tool);
 }
 
-cau_status cau_session_submit(cau_session *session, const cau_command *command, cau_error *error)
+static cau_status check(const cau_session *session, const cau_command *command, cau_error *error)
 {
 	if (command->kind < 0 || command->kind >= CAU_COMMAND_COUNT)
 		return cau_fail(error, CAU_BAD_VALUE, "command", "%d is no command", command->kind);
-	cau_status status = cau_command_check(session, command, error);
+	return cau_command_check(session, command, error);
+}
+
+cau_status cau_session_may_submit(const cau_session *session, const cau_command *commands,
+                                  int32_t count, int32_t *index, cau_error *error)
+{
+	CAU_ASSERT(count >= 0, "%d commands", count);
+	for (*index = 0; *index < count; ++*index) {
+		cau_status status = check(session, &commands[*index], error);
+		if (status)
+			return status;
+		if (session->command_count + *index >= session->command_capacity)
+			return cau_fail(error, CAU_LIMIT, NULL, "%d commands are waiting already",
+			                session->command_count);
+	}
+	return CAU_OK;
+}
+
+cau_status cau_session_submit(cau_session *session, const cau_command *command, cau_error *error)
+{
+	cau_status status = check(session, command, error);
 	if (status)
 		return status;
 	if (acts_at_once(session, command))

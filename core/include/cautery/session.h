@@ -124,6 +124,11 @@ void cau_session_set_threads(cau_session *session, int32_t thread_count);
 // removed meanwhile. The frame's refusals report that.
 cau_status cau_session_submit(cau_session *session, const cau_command *command, cau_error *error);
 
+// Whether cau_session_submit would take all of the commands, one after the other. Changes nothing.
+// On an error *index is the first that it would not take. Errors: as cau_session_submit.
+cau_status cau_session_may_submit(const cau_session *session, const cau_command *commands,
+                                  int32_t count, int32_t *index, cau_error *error);
+
 // cau_session_energy_off and cau_session_hold_still cannot fail and need no capacity in the queue.
 // They act at once; call them between steps. `sequence` becomes the tool's last applied one; 0
 // keeps the present one. A name without a tool has no effect.
@@ -310,6 +315,17 @@ void cau_session_watch(cau_session *session, uint32_t channels);
 // (tetrahedron_count), (triangle_count), (link_count): for export.
 void cau_session_alive(const cau_session *session, const uint8_t **tetrahedron,
                        const uint8_t **triangle, const uint8_t **link);
+
+// What was removed and what is damaged, in volumes of the tissue at rest. Links have no volume.
+typedef struct cau_damage {
+	int32_t removed_count; // tetrahedra and triangles that are not there any more
+	double removed_m3;     // their rest volume; of a triangle: area times thickness
+	double damaged_m3; // rest volume of the others, each times the mean exposure of its vertices
+} cau_damage;
+// Splits the whole tissue by a region (CAU_SELECT_BOX or CAU_SELECT_SPHERE; its `layer` is not
+// read). An element is inside if its middle is, while the tissue is at rest.
+void cau_session_damage(const cau_session *session, const cau_selection *region, cau_damage *inside,
+                        cau_damage *outside);
 
 // ---- snapshots
 

@@ -277,6 +277,17 @@ const char *cau_session_heats_beyond(const cau_session *s, const char *const *al
 	return NULL;
 }
 
+cau_status cau_session_may_submit(const cau_session *s, const cau_command *commands, int32_t count,
+                                  int32_t *index, cau_error *error)
+{
+	for (*index = 0; *index < count; ++*index)
+		if (is_about_tool(&commands[*index]) && find_tool(s, commands[*index].tool) < 0)
+			return cau_fail(error, CAU_NOT_FOUND, "tool", "no tool %s", commands[*index].tool);
+	if (s->state.queued + count > QUEUE)
+		return cau_fail(error, CAU_LIMIT, NULL, "queue full");
+	return CAU_OK;
+}
+
 cau_status cau_session_submit(cau_session *s, const cau_command *c, cau_error *error)
 {
 	if (cau_fake_hooks_set.submit)
@@ -497,6 +508,13 @@ void cau_session_alive(const cau_session *s, const uint8_t **tetrahedron, const 
 {
 	*tetrahedron = *link = NULL;
 	*triangle = s->alive;
+}
+
+void cau_session_damage(const cau_session *s, const cau_selection *region, cau_damage *inside,
+                        cau_damage *outside)
+{
+	(void)s, (void)region;
+	*inside = *outside = (cau_damage){0};
 }
 
 size_t cau_session_snapshot_bytes(const cau_session *s)
