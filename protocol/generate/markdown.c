@@ -50,7 +50,8 @@ static void write_value(FILE *out, const property *of)
 		break;
 	case PROPERTY_NUMBERS:
 	case PROPERTY_INTEGERS:
-		fprintf(out, "%d %s", of->count, of->kind == PROPERTY_NUMBERS ? "numbers" : "integers");
+		fprintf(out, "%s%d %s", of->least_count ? "" : "at most ", of->count,
+		        of->kind == PROPERTY_NUMBERS ? "numbers" : "integers");
 		write_range(out, of);
 		break;
 	case PROPERTY_ROTATION:

@@ -328,12 +328,13 @@ static void add_commands(model *to)
 // ---- objects of messages.def
 
 static const property_kind kinds[] = {
-	[CAU_WIRE_TYPE_FLAG] = PROPERTY_FLAG,       [CAU_WIRE_TYPE_INTEGER] = PROPERTY_INTEGER,
-	[CAU_WIRE_TYPE_NUMBER] = PROPERTY_NUMBER,   [CAU_WIRE_TYPE_VECTOR] = PROPERTY_NUMBERS,
-	[CAU_WIRE_TYPE_TEXT] = PROPERTY_TEXT,       [CAU_WIRE_TYPE_NAME] = PROPERTY_NAME,
-	[CAU_WIRE_TYPE_HEX64] = PROPERTY_HEX64,     [CAU_WIRE_TYPE_CHOICE] = PROPERTY_CHOICE,
-	[CAU_WIRE_TYPE_CHOICES] = PROPERTY_CHOICES, [CAU_WIRE_TYPE_PART] = PROPERTY_OBJECT,
-	[CAU_WIRE_TYPE_LIST] = PROPERTY_OBJECTS,    [CAU_WIRE_TYPE_SCENE] = PROPERTY_OBJECT,
+	[CAU_WIRE_TYPE_FLAG] = PROPERTY_FLAG,         [CAU_WIRE_TYPE_INTEGER] = PROPERTY_INTEGER,
+	[CAU_WIRE_TYPE_NUMBER] = PROPERTY_NUMBER,     [CAU_WIRE_TYPE_VECTOR] = PROPERTY_NUMBERS,
+	[CAU_WIRE_TYPE_TEXT] = PROPERTY_TEXT,         [CAU_WIRE_TYPE_NAME] = PROPERTY_NAME,
+	[CAU_WIRE_TYPE_HEX64] = PROPERTY_HEX64,       [CAU_WIRE_TYPE_CHOICE] = PROPERTY_CHOICE,
+	[CAU_WIRE_TYPE_CHOICES] = PROPERTY_CHOICES,   [CAU_WIRE_TYPE_PART] = PROPERTY_OBJECT,
+	[CAU_WIRE_TYPE_LIST] = PROPERTY_OBJECTS,      [CAU_WIRE_TYPE_NUMBERS] = PROPERTY_NUMBERS,
+	[CAU_WIRE_TYPE_INTEGERS] = PROPERTY_INTEGERS, [CAU_WIRE_TYPE_SCENE] = PROPERTY_OBJECT,
 };
 
 static char object_names[CAU_WIRE_OBJECT_COUNT][NAME_BYTES];
@@ -350,6 +351,8 @@ static void add_message(model *to, int object)
 		made->least = field->least;
 		made->most = field->most;
 		made->count = made->least_count = field->count;
+		if (field->type == CAU_WIRE_TYPE_NUMBERS || field->type == CAU_WIRE_TYPE_INTEGERS)
+			made->least_count = 0;
 		made->choices = field->choices;
 		made->unit = field->unit ? field->unit : "";
 		if (refers)

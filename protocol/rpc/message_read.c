@@ -61,6 +61,26 @@ static uint32_t read_choices(cau_reader *reader, const cJSON *value, const cau_c
 	return set;
 }
 
+static bool is_list(const cau_wire_field *field)
+{
+	return field->type == CAU_WIRE_TYPE_LIST || field->type == CAU_WIRE_TYPE_NUMBERS ||
+	       field->type == CAU_WIRE_TYPE_INTEGERS;
+}
+
+// Zero, but for the capacity that the caller gives the item's own lists.
+static void clear_item(cau_wire_object object, char *item)
+{
+	const cau_wire_shape *shape = &cau_wire_shapes[object];
+	cau_wire_list kept[CAU_WIRE_FIELDS_MAX];
+	for (int32_t i = 0; i < shape->field_count; i++)
+		if (is_list(&shape->fields[i]))
+			memcpy(&kept[i], item + shape->fields[i].offset, sizeof *kept);
+	memset(item, 0, shape->bytes);
+	for (int32_t i = 0; i < shape->field_count; i++)
+		if (is_list(&shape->fields[i]))
+			memcpy(item + shape->fields[i].offset, &kept[i], sizeof *kept);
+}
+
 static void read_list(cau_reader *reader, const cJSON *value, const cau_wire_field *field,
                       cau_wire_list *list, bool strict)
 {
@@ -79,8 +99,35 @@ static void read_list(cau_reader *reader, const cJSON *value, const cau_wire_fie
 		}
 		size_t mark = cau_reader_enter(reader, NULL, list->count);
 		void *item = (char *)list->items + (size_t)list->count++ * bytes;
-		memset(item, 0, bytes);
+		clear_item(field->object, item);
 		cau_read_message(reader, element, field->object, item, strict);
+		cau_reader_leave(reader, mark);
+	}
+}
+
+// Numbers, or whole ones.
+static void read_numbers(cau_reader *reader, const cJSON *value, const cau_wire_field *field,
+                         cau_wire_list *list)
+{
+	CAU_ASSERT(list->items || !list->capacity, "capacity for %d numbers at no address",
+	           list->capacity);
+	list->count = 0;
+	if (!cau_read_array(reader, value, 0, field->count) || !value)
+		return;
+	for (const cJSON *element = value->child; element; element = element->next) {
+		if (list->count >= list->capacity) {
+			cau_reader_fail(reader, CAU_LIMIT, NULL, "more than the capacity of %d",
+			                list->capacity);
+			return;
+		}
+		size_t mark = cau_reader_enter(reader, NULL, list->count);
+		if (field->type == CAU_WIRE_TYPE_INTEGERS)
+			((int64_t *)list->items)[list->count] =
+				cau_read_integer(reader, element, (int64_t)field->least, (int64_t)field->most);
+		else
+			((double *)list->items)[list->count] =
+				cau_read_number(reader, element, field->least, field->most, field->unit);
+		list->count++;
 		cau_reader_leave(reader, mark);
 	}
 }
@@ -131,6 +178,10 @@ static void read_field(cau_reader *reader, const cJSON *value, const cau_wire_fi
 		break;
 	case CAU_WIRE_TYPE_LIST:
 		read_list(reader, value, field, at, strict);
+		break;
+	case CAU_WIRE_TYPE_NUMBERS:
+	case CAU_WIRE_TYPE_INTEGERS:
+		read_numbers(reader, value, field, at);
 		break;
 	case CAU_WIRE_TYPE_SCENE:
 		read_scene(reader, value, *(cau_scene_def **)at);

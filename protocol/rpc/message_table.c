@@ -55,6 +55,10 @@ CAU_CHOICE_LIST(CHOICE_TABLE)
 	{PLACE(o, field, need, PART, meaning), .object = CAU_WIRE_##object_},
 #define LIST(o, field, need, object_, count_max, meaning)                                          \
 	{PLACE(o, field, need, LIST, meaning), .object = CAU_WIRE_##object_, .count = count_max},
+#define NUMBERS(o, field, need, count_max, least, most, unit, meaning)                             \
+	{PLACE(o, field, need, NUMBERS, meaning), LIMITS(least, most, unit), .count = count_max},
+#define INTEGERS(o, field, need, count_max, least, most, unit, meaning)                            \
+	{PLACE(o, field, need, INTEGERS, meaning), LIMITS(least, most, unit), .count = count_max},
 #define SCENE(o, field, need, meaning) {PLACE(o, field, need, SCENE, meaning)},
 #include "cautery/messages.def"
 
@@ -74,6 +78,8 @@ CAU_CHOICE_LIST(CHOICE_TABLE)
 #define CHOICES(o, field, need, choice, meaning)
 #define PART(o, field, need, object, meaning)
 #define LIST(o, field, need, object, count_max, meaning)
+#define NUMBERS(o, field, need, count_max, least, most, unit, meaning)
+#define INTEGERS(o, field, need, count_max, least, most, unit, meaning)
 #define SCENE(o, field, need, meaning)
 const cau_wire_shape cau_wire_shapes[CAU_WIRE_OBJECT_COUNT] = {
 #include "cautery/messages.def"

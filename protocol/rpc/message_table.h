@@ -17,19 +17,21 @@ typedef enum cau_wire_type {
 	CAU_WIRE_TYPE_CHOICES,
 	CAU_WIRE_TYPE_PART,
 	CAU_WIRE_TYPE_LIST,
+	CAU_WIRE_TYPE_NUMBERS,
+	CAU_WIRE_TYPE_INTEGERS,
 	CAU_WIRE_TYPE_SCENE,
 } cau_wire_type;
 
 typedef struct cau_wire_field {
 	const char *name;
 	const char *unit, *meaning;
-	double least, most;         // INTEGER, NUMBER, VECTOR
+	double least, most;         // INTEGER, NUMBER, VECTOR, NUMBERS, INTEGERS
 	const cau_choices *choices; // CHOICE, CHOICES
 	size_t offset;              // in the C type
 	size_t has_offset;          // of bool has_<name>, where it is optional
 	cau_wire_type type;
 	cau_wire_object object; // PART, LIST
-	int32_t count;          // VECTOR: numbers; TEXT: bytes at most; LIST: objects at most
+	int32_t count; // VECTOR: numbers; TEXT: bytes at most; LIST, NUMBERS, INTEGERS: items at most
 	bool required;
 } cau_wire_field;
 

@@ -1,5 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <inttypes.h>
+#include <locale.h>
+#include <stdio.h>
 #include <string.h>
 
 #include "cautery/assert.h"
@@ -77,6 +79,37 @@ static void write_list(cau_json_writer *writer, const cau_wire_field *field,
 	cau_json_close(writer);
 }
 
+// Many numbers, each with the digits that every double needs to be read back: looking for fewer
+// would take three times as long.
+static void write_exact(cau_json_writer *writer, double value)
+{
+	char text[40];
+	int bytes = snprintf(text, sizeof text, "%.17g", value);
+	char *point = strchr(text, localeconv()->decimal_point[0]);
+	if (point)
+		*point = '.';
+	cau_json_raw(writer, NULL, text, (size_t)bytes);
+}
+
+static void write_numbers(cau_json_writer *writer, const cau_wire_field *field,
+                          const cau_wire_list *list, cau_reader *place)
+{
+	bool whole = field->type == CAU_WIRE_TYPE_INTEGERS;
+	if (list->count < 0 || list->count > field->count)
+		cau_reader_fail(place, CAU_BAD_VALUE, NULL, "%d numbers, at most %d are allowed",
+		                list->count, field->count);
+	cau_json_open(writer, field->name, '(');
+	for (int32_t i = 0; i < list->count && !place->status; i++) {
+		double value = whole ? (double)((int64_t *)list->items)[i] : ((double *)list->items)[i];
+		check_number(place, field, value);
+		if (whole)
+			cau_json_integer(writer, NULL, ((int64_t *)list->items)[i]);
+		else if (!place->status)
+			write_exact(writer, value);
+	}
+	cau_json_close(writer);
+}
+
 static void write_scene(cau_json_writer *writer, const cau_wire_field *field,
                         const cau_scene_def *scene, cau_reader *place)
 {
@@ -124,6 +157,10 @@ static void write_field(cau_json_writer *writer, const cau_wire_field *field, co
 		break;
 	case CAU_WIRE_TYPE_LIST:
 		write_list(writer, field, at, place);
+		break;
+	case CAU_WIRE_TYPE_NUMBERS:
+	case CAU_WIRE_TYPE_INTEGERS:
+		write_numbers(writer, field, at, place);
 		break;
 	case CAU_WIRE_TYPE_SCENE:
 		write_scene(writer, field, *(cau_scene_def *const *)at, place);

@@ -23,8 +23,10 @@
 extern "C" {
 #endif
 
-// Objects of one kind. Writers take `count` of them. Readers fill `items`, which the caller gives
-// with its `capacity`, and set `count`; more objects than that are CAU_LIMIT.
+// Objects of one kind; or numbers: double of NUMBERS, int64_t of INTEGERS. Writers take `count` of
+// them. Readers fill `items`, which the caller gives with its `capacity`, and set `count`; more
+// than that are CAU_LIMIT. An item is zeroed before, but for the items and capacity of its own
+// lists.
 typedef struct cau_wire_list {
 	void *items;      // of the type cau_wire_* that messages.def names
 	int32_t count;    // of the items
@@ -52,6 +54,10 @@ typedef struct cau_wire_list {
 	CAU_NEED_##need(field) uint32_t field; // bit per word
 #define PART(o, field, need, object, meaning) CAU_NEED_##need(field) cau_wire_##object field;
 #define LIST(o, field, need, object, count_max, meaning) CAU_NEED_##need(field) cau_wire_list field;
+#define NUMBERS(o, field, need, count_max, least, most, unit, meaning)                             \
+	CAU_NEED_##need(field) cau_wire_list field;
+#define INTEGERS(o, field, need, count_max, least, most, unit, meaning)                            \
+	CAU_NEED_##need(field) cau_wire_list field;
 // Borrowed. Readers fill what it points to, or skip the member if it is NULL.
 #define SCENE(o, field, need, meaning) CAU_NEED_##need(field) cau_scene_def *field;
 #include "cautery/messages.def"
@@ -73,6 +79,8 @@ typedef enum cau_wire_object {
 #define CHOICES(o, field, need, choice, meaning)
 #define PART(o, field, need, object, meaning)
 #define LIST(o, field, need, object, count_max, meaning)
+#define NUMBERS(o, field, need, count_max, least, most, unit, meaning)
+#define INTEGERS(o, field, need, count_max, least, most, unit, meaning)
 #define SCENE(o, field, need, meaning)
 #include "cautery/messages.def"
 	CAU_WIRE_OBJECT_COUNT

@@ -15,6 +15,16 @@ static void fill_list(const cau_wire_field *field, cau_wire_list *list, fill how
 		fill_message(field->object, (char *)list->items + (size_t)i * bytes, how, scene);
 }
 
+static void fill_numbers(const cau_wire_field *field, cau_wire_list *list, double number)
+{
+	*list = (cau_wire_list){calloc(LIST_ITEMS, 8), LIST_ITEMS, LIST_ITEMS};
+	for (int i = 0; i < LIST_ITEMS; i++)
+		if (field->type == CAU_WIRE_TYPE_INTEGERS)
+			((int64_t *)list->items)[i] = (int64_t)number;
+		else
+			((double *)list->items)[i] = number;
+}
+
 static void fill_text(char *to, int32_t bytes_max, fill how)
 {
 	if (how == FILL_MOST) // two bytes a letter, and what must be escaped
@@ -60,6 +70,10 @@ static void fill_field(const cau_wire_field *field, void *at, fill how, cau_scen
 	case CAU_WIRE_TYPE_LIST:
 		fill_list(field, at, how, scene);
 		break;
+	case CAU_WIRE_TYPE_NUMBERS:
+	case CAU_WIRE_TYPE_INTEGERS:
+		fill_numbers(field, at, number);
+		break;
 	case CAU_WIRE_TYPE_SCENE:
 		*(cau_scene_def **)at = scene;
 		break;
@@ -79,6 +93,17 @@ void fill_message(cau_wire_object object, void *to, fill how, cau_scene_def *sce
 	}
 }
 
+static void *item_of(const cau_wire_field *field, void *list, int k)
+{
+	return (char *)((cau_wire_list *)list)->items +
+	       (size_t)k * cau_wire_shapes[field->object].bytes;
+}
+
+static bool is_numbers(const cau_wire_field *field)
+{
+	return field->type == CAU_WIRE_TYPE_NUMBERS || field->type == CAU_WIRE_TYPE_INTEGERS;
+}
+
 void prepare_message(cau_wire_object object, void *to, cau_scene_def *scene)
 {
 	const cau_wire_shape *shape = &cau_wire_shapes[object];
@@ -92,6 +117,10 @@ void prepare_message(cau_wire_object object, void *to, cau_scene_def *scene)
 		if (field->type == CAU_WIRE_TYPE_LIST)
 			*(cau_wire_list *)at = (cau_wire_list){
 				calloc(LIST_ITEMS, cau_wire_shapes[field->object].bytes), 0, LIST_ITEMS};
+		for (int k = 0; field->type == CAU_WIRE_TYPE_LIST && k < LIST_ITEMS; k++)
+			prepare_message(field->object, item_of(field, at, k), scene);
+		if (is_numbers(field))
+			*(cau_wire_list *)at = (cau_wire_list){calloc(LIST_ITEMS, 8), 0, LIST_ITEMS};
 	}
 }
 
@@ -103,7 +132,10 @@ void release_message(cau_wire_object object, void *of)
 		void *at = (char *)of + field->offset;
 		if (field->type == CAU_WIRE_TYPE_PART)
 			release_message(field->object, at);
-		if (field->type == CAU_WIRE_TYPE_LIST)
+		for (int k = 0; field->type == CAU_WIRE_TYPE_LIST && k < LIST_ITEMS; k++)
+			if (((cau_wire_list *)at)->items)
+				release_message(field->object, item_of(field, at, k));
+		if (field->type == CAU_WIRE_TYPE_LIST || is_numbers(field))
 			free(((cau_wire_list *)at)->items);
 	}
 }
@@ -139,6 +171,12 @@ static bool same_field(const cau_wire_field *field, const void *a, const void *b
 		return same_message(field->object, a, b);
 	case CAU_WIRE_TYPE_LIST:
 		return same_list(field, a, b);
+	case CAU_WIRE_TYPE_NUMBERS:
+	case CAU_WIRE_TYPE_INTEGERS: {
+		const cau_wire_list *one = a, *other = b;
+		return one->count == other->count &&
+		       memcmp(one->items, other->items, 8 * (size_t)one->count) == 0;
+	}
 	case CAU_WIRE_TYPE_SCENE:
 		return true;
 	}
