@@ -38,6 +38,34 @@ static cau_ask ask_of(const cau_order *order)
 	return order->kind == CAU_ORDER_COMMAND ? ask_of_command(order) : asks[order->kind];
 }
 
+static cau_part *part_of(cau_asked *asked, const char *tool, int32_t command)
+{
+	for (int32_t i = 0; i < asked->part_count; i++)
+		if (strcmp(asked->parts[i].tool, tool) == 0)
+			return &asked->parts[i];
+	cau_part *made = &asked->parts[asked->part_count++];
+	memcpy(made->tool, tool, sizeof made->tool);
+	made->command = command;
+	return made;
+}
+
+// What an advance does with each tool. Whoever makes the order sees to it that its commands are
+// about CAU_MAX_TOOLS at most, and that a tool's energy stands in one of them.
+static void describe_parts(const cau_advance *advance, cau_asked *asked)
+{
+	asked->ticks = advance->ticks;
+	for (int32_t i = 0; i < advance->command_count; i++) {
+		const cau_command *command = &advance->commands[i];
+		cau_part *part = part_of(asked, command->tool, i);
+		bool energy = command->kind == CAU_COMMAND_TOOL_ENERGIZE;
+		part->uses |= !energy;
+		part->on |= energy && command->as.energized;
+		part->off |= energy && !command->as.energized;
+		if (energy && command->as.energized)
+			part->limit = (uint64_t)command->as.ticks;
+	}
+}
+
 static void name_tool(const cau_order *order, cau_asked *asked)
 {
 	const char *tool = "";
@@ -63,6 +91,8 @@ static void describe(const cau_order *order, cau_asked *asked)
 		asked->tick = order->as.command.tick;
 	if (asked->ask == CAU_ASK_ENERGY_ON)
 		asked->limit = (uint64_t)order->as.command.as.ticks;
+	if (asked->ask == CAU_ASK_ADVANCE)
+		describe_parts(order->as.advance, asked);
 	if (asked->ask == CAU_ASK_STEP)
 		asked->ticks = order->as.ticks;
 	if (asked->ask == CAU_ASK_SPEED)
@@ -167,6 +197,14 @@ void cau_hosted_abandon(cau_hosted *h, uint32_t client)
 bool cau_hosted_is_ephemeral(const cau_hosted *h)
 {
 	return h->around->ephemeral;
+}
+
+bool cau_hosted_is_advanced_by(cau_hosted *h, uint32_t client)
+{
+	pthread_mutex_lock(&h->deciding);
+	bool advanced = client && h->logic->lockstep == client;
+	pthread_mutex_unlock(&h->deciding);
+	return advanced;
 }
 
 bool cau_hosted_is_own_ephemeral(const cau_hosted *h, uint32_t client)

@@ -151,6 +151,8 @@ void cau_hosted_abandon(cau_hosted *hosted, uint32_t client);
 // Whether it is kept in memory alone.
 bool cau_hosted_is_ephemeral(const cau_hosted *hosted);
 bool cau_hosted_is_own_ephemeral(const cau_hosted *hosted, uint32_t client); // that client's
+// Whether the client has it in lock-step.
+bool cau_hosted_is_advanced_by(cau_hosted *hosted, uint32_t client);
 
 // ---- streams
 

@@ -275,6 +275,16 @@ typedef struct cau_decided {
 } cau_decided;
 cau_decided cau_decided_now(cau_hosted *h);
 
+// ---- advance.c
+// session.advance has made its ticks, or lock-step has ended. Takes the order.
+void cau_advance_answer(cau_hosted *h, cau_order *order);
+
+// ---- observe.c
+// Whether it can be answered. Errors: CAU_BAD_VALUE, CAU_LIMIT.
+cau_status cau_advance_check(const cau_hosted *h, const cau_advance *advance, cau_error *error);
+// The answer of now; malloc'ed, NULL on failure.
+char *cau_advance_text(cau_hosted *h, const cau_order *order, size_t *bytes, cau_error *error);
+
 // ---- apply.c: what each order does. Takes the order if it is done or answered.
 cau_outcome_kind cau_hosted_apply(cau_hosted *h, cau_order *order, const cau_action *action);
 
@@ -360,6 +370,9 @@ void cau_record_state(cau_hosted *h);
 void cau_record_checkpoint(cau_hosted *h, uint64_t *hash, size_t *bytes);
 // Lets a restart come back to the tick of now: by a row of the log, or by a checkpoint.
 void cau_record_reached(cau_hosted *h);
+// Makes a checkpoint if that is due by the ticks since the last one, or the log is not whole. True:
+// it did.
+bool cau_record_far(cau_hosted *h);
 // Has the store keep the state of this tick, and its events.
 void cau_record_mark(cau_hosted *h);
 void cau_record_event(cau_hosted *h, const cau_wire_timeline_event *event, cau_log_level level);

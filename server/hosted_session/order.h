@@ -5,6 +5,7 @@
 
 #include "cautery/command.h"
 #include "cautery/messages.h"
+#include "hosted_session/advance.h"
 #include "hosted_session/sink.h"
 #include "session/asker.h"
 
@@ -17,8 +18,9 @@
 	CHANGE(COMMAND, TISSUE, cau_apply_command) /* as.command */                                    \
 	CHANGE(PAUSE, PAUSE, cau_apply_pause)                                                          \
 	CHANGE(RESUME, RESUME, cau_apply_resume)                                                       \
-	CHANGE(STEP, STEP, cau_apply_step)    /* as.ticks */                                           \
-	CHANGE(SPEED, SPEED, cau_apply_speed) /* as.speed */                                           \
+	CHANGE(STEP, STEP, cau_apply_step)          /* as.ticks */                                     \
+	CHANGE(ADVANCE, ADVANCE, cau_apply_advance) /* as.advance */                                   \
+	CHANGE(SPEED, SPEED, cau_apply_speed)       /* as.speed */                                     \
 	CHANGE(RESET, GO, cau_apply_back)                                                              \
 	CHANGE(REWIND, GO, cau_apply_back)            /* as.tick */                                    \
 	CHANGE(SNAPSHOT, HISTORY, cau_apply_snapshot) /* as.name */                                    \
@@ -55,6 +57,7 @@ typedef struct cau_order {
 	union {
 		cau_command command;
 		int64_t ticks;
+		cau_advance *advance; // behind the order, in the same memory
 		double speed;
 		uint64_t tick;
 		char name[CAU_NAME_BYTES];

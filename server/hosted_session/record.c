@@ -160,16 +160,20 @@ void cau_record_checkpoint(cau_hosted *h, uint64_t *hash, size_t *bytes)
 		*bytes = count;
 }
 
-// A row of the log, unless the log is not whole, or a checkpoint takes no more than such rows have
-// taken since the last one.
-void cau_record_reached(cau_hosted *h)
+bool cau_record_far(cau_hosted *h)
 {
 	size_t checkpoint = cau_session_snapshot_bytes(h->core);
 	bool whole = h->lost_from == UINT64_MAX && !h->checkpoint_wanted;
-	if (!whole || checkpoint <= REACHED_BYTES * (h->tick - h->checkpoint_tick)) {
-		cau_record_checkpoint(h, NULL, NULL);
+	if (whole && checkpoint > REACHED_BYTES * (h->tick - h->checkpoint_tick))
+		return false;
+	cau_record_checkpoint(h, NULL, NULL);
+	return true;
+}
+
+void cau_record_reached(cau_hosted *h)
+{
+	if (cau_record_far(h))
 		return;
-	}
 	cau_error error = {0};
 	cau_store_batch *batch = cau_record_batch(h);
 	cau_store_command row = next_entry(h, CAU_STORE_REACHED);

@@ -193,7 +193,9 @@ static void act_until_tick(cau_hosted *h)
 				return;
 			}
 			cau_frames_publish(h, cau_monotonic_s());
-			if (cau_monotonic_s() >= end_s)
+			// After the last of the ticks that were asked for comes their answer, for the same
+			// commit.
+			if (cau_monotonic_s() >= end_s && cau_decided_now(h).steps_left)
 				return;
 			continue;
 		}

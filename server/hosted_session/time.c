@@ -70,6 +70,10 @@ void cau_time_stepped(cau_hosted *h, cau_order *order, bool failed)
 		cau_answer_fail(order, &error, CAU_RPC_FAULTED);
 		return;
 	}
+	if (order->kind == CAU_ORDER_ADVANCE) {
+		cau_advance_answer(h, order);
+		return;
+	}
 	cau_event_end_cut(h);
 	h->dirty = true; // the last state is shown, whatever the streams' rates
 	cau_record_reached(h);

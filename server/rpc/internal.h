@@ -159,6 +159,8 @@ bool cau_call_may_make(const cau_call *call, const char *name);
 cau_hosted *cau_call_session(const cau_call *call);
 // A zeroed order of the call's client, or NULL after a failure that is answered.
 cau_order *cau_call_order(const cau_call *call, cau_order_kind kind);
+// The same with so many zeroed bytes behind it, in the same memory.
+cau_order *cau_call_order_of(const cau_call *call, cau_order_kind kind, size_t bytes);
 // The same, with the call's params read into `params`, which is zeroed and of the method's type.
 cau_order *cau_call_order_with(const cau_call *call, cau_order_kind kind, void *params);
 // Submits to the call's session; takes the order. A refusal is answered.

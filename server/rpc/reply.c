@@ -178,8 +178,13 @@ cau_hosted *cau_call_session(const cau_call *call)
 
 cau_order *cau_call_order(const cau_call *call, cau_order_kind kind)
 {
+	return cau_call_order_of(call, kind, 0);
+}
+
+cau_order *cau_call_order_of(const cau_call *call, cau_order_kind kind, size_t bytes)
+{
 	cau_error error = {0};
-	cau_order *order = calloc(1, sizeof *order);
+	cau_order *order = calloc(1, sizeof *order + bytes);
 	if (!order) {
 		cau_fail(&error, CAU_NO_MEMORY, "", "no memory for the request");
 		cau_call_fail(call, &error, 0);

@@ -27,18 +27,20 @@ static void refuse(const cau_call *call, cau_status status, int32_t code, const 
 	cau_call_fail(call, &error, code);
 }
 
-// Who trains on sessions of its own begins again and again: that costs no disk, and it waits for
-// each answer.
+// Who trains on sessions of its own, or in lock-step, begins again and again: that is the work it
+// came for, and it waits for each answer.
 static bool begins_own_again(const cau_call *call)
 {
 	cau_method method = call->message->method;
 	if (method != CAU_METHOD_SESSION_RESET && method != CAU_METHOD_SESSION_RESTORE &&
-	    method != CAU_METHOD_SESSION_REWIND)
+	    method != CAU_METHOD_SESSION_REWIND && method != CAU_METHOD_SESSION_FORK)
 		return false;
 	cau_hosted *hosted =
 		cau_hub_find(call->peer->service->hub,
 	                 call->envelope.has_session ? call->envelope.session : call->peer->session);
-	bool own = hosted && cau_hosted_is_own_ephemeral(hosted, call->peer->client.asker.client);
+	uint32_t client = call->peer->client.asker.client;
+	bool own = hosted && (cau_hosted_is_own_ephemeral(hosted, client) ||
+	                      cau_hosted_is_advanced_by(hosted, client));
 	cau_hosted_release(hosted);
 	return own;
 }

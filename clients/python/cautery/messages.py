@@ -496,6 +496,192 @@ class SessionStep(TypedDict):
     ticks: NotRequired[int]
 
 
+class AdvanceCommand(TypedDict):
+    """what the client does with a tool before the first tick; as the method of this name, of which it has the members"""
+
+    # which
+    method: Literal["tool.move", "tool.energize", "tool.grasp", "tool.release", "tool.hold"]
+
+    # one that the client drives; to turn energy off, any
+    tool: str
+
+    # the driver's own count; frames show the last one applied (0 to 9007199254740991)
+    sequence: NotRequired[int]
+
+    # tool.move: place of the tip (-100 to 100 m)
+    position_m: NotRequired[Sequence[float]]
+
+    # tool.move: unit quaternion w, x, y, z (-1.001 to 1.001)
+    rotation: NotRequired[Sequence[float]]
+
+    # tool.move: 0 closed, the default, to 1 open (0 to 1)
+    jaw: NotRequired[float]
+
+    # tool.energize: on or off
+    energized: NotRequired[bool]
+
+    # tool.energize on: energy is off again after so many ticks; 0, the default: no limit (0 to 2147483647)
+    ticks: NotRequired[int]
+
+
+class ObservedRegion(TypedDict):
+    """a box (least_m, most_m) or a ball (center_m, radius_m): the elements whose middle is in it while the tissue is at rest"""
+
+    # given back
+    name: str
+
+    # the box's corner of its least coordinates (-100 to 100 m)
+    least_m: NotRequired[Sequence[float]]
+
+    # of its largest (-100 to 100 m)
+    most_m: NotRequired[Sequence[float]]
+
+    # the ball's middle (-100 to 100 m)
+    center_m: NotRequired[Sequence[float]]
+
+    # of the ball (0 to 100 m)
+    radius_m: NotRequired[float]
+
+
+class Observe(TypedDict):
+    """what session.advance is to answer with, besides tick and time"""
+
+    # positions, mask, tools, and scalars by their names; `statistics` is in frames alone
+    channels: NotRequired[Sequence[Literal["positions", "mask", "exposure", "charring", "stress", "tools", "statistics", "temperature"]]]
+
+    # of positions and scalars: these alone, in this order; all by default (0 to 16777215)
+    vertices: NotRequired[Sequence[int]]
+
+    # where removed volume and damage are reported
+    regions: NotRequired[Sequence[ObservedRegion]]
+
+
+class SessionAdvance(TypedDict):
+    """makes ticks of a paused session in lock-step"""
+
+    # its id; that of the connection's URL by default
+    session: NotRequired[str]
+
+    # how many; 1 by default, 0 to observe alone (0 to 100000)
+    ticks: NotRequired[int]
+
+    # what the client does with tools first: all of it, or nothing and an error; energy is turned off all the same
+    commands: NotRequired[Sequence[AdvanceCommand]]
+
+    # nothing by default
+    observe: NotRequired[Observe]
+
+
+class ObservedScalar(TypedDict):
+    """a scalar channel"""
+
+    # which
+    channel: Literal["positions", "mask", "exposure", "charring", "stress", "tools", "statistics", "temperature"]
+
+    # of the vertices, in the channel's unit (-1e+300 to 1e+300)
+    values: Sequence[float]
+
+
+class ObservedTool(TypedDict):
+    """a tool as it is"""
+
+    # its name
+    tool: str
+
+    # of the tip: the actual pose, which tissue can stop (-1000000 to 1000000 m)
+    position_m: Sequence[float]
+
+    # quaternion w, x, y, z (-1.001 to 1.001)
+    rotation: Sequence[float]
+
+    # actual opening, 0 closed to 1 open (0 to 1)
+    jaw: float
+
+    # whether its energy is on
+    energized: bool
+
+    # while energy is off: why; of the session, not of the simulated state
+    energy_off: NotRequired[Literal["never_enabled", "commanded", "watchdog", "restored", "taken_over"]]
+
+    # of the tissue on the tool, filtered and clamped (-1000000 to 1000000 N)
+    force_n: Sequence[float]
+
+    # about the tip (-1000000 to 1000000 N m)
+    torque_nm: Sequence[float]
+
+    # of the hot part (-300 to 1000000 degC)
+    tip_temperature_c: float
+
+    # heat that tissue has taken up, about (0 to 1000000000000 J)
+    energy_j: float
+
+    # vertices that it touches (0 to 9007199254740991)
+    contact_vertices: int
+
+    # points that its jaws hold (0 to 9007199254740991)
+    grasped_vertices: int
+
+    # of the last command applied (0 to 9007199254740991)
+    sequence: int
+
+
+class ObservedDamage(TypedDict):
+    """what heat and force have done, in volumes of the tissue at rest; links have none"""
+
+    # tetrahedra and triangles that are not there any more (0 to 9007199254740991)
+    removed_count: int
+
+    # their volume (0 to 1000000000 m^3)
+    removed_m3: float
+
+    # volume of those that are there, each weighted by the mean exposure of its vertices (0 to 1000000000 m^3)
+    damaged_m3: float
+
+
+class RegionDamage(TypedDict):
+    """inside a region and outside it"""
+
+    # the region's
+    name: str
+
+    # inside
+    inside: ObservedDamage
+
+    # outside
+    outside: ObservedDamage
+
+
+class Advanced(TypedDict):
+    """the ticks are made, and this is what was asked for"""
+
+    # where the session is now (0 to 9007199254740991)
+    tick: int
+
+    # simulated (0 to 1000000000000 s)
+    time_s: float
+
+    # ticks that were made: fewer than asked for where lock-step ended meanwhile (0 to 100000)
+    ticks: int
+
+    # whether they are on the disk; false for ephemeral sessions
+    stored: bool
+
+    # x, y, z of the vertices (-1000000 to 1000000 m)
+    positions_m: NotRequired[Sequence[float]]
+
+    # words of 32 faces, the lowest bit first; a set bit: not drawn (0 to 4294967295)
+    mask: NotRequired[Sequence[int]]
+
+    # in the order of the channels
+    scalars: NotRequired[Sequence[ObservedScalar]]
+
+    # as they were added
+    tools: NotRequired[Sequence[ObservedTool]]
+
+    # in the order of the request
+    regions: NotRequired[Sequence[RegionDamage]]
+
+
 class SessionSpeed(TypedDict):
     """sets the pace"""
 
@@ -2959,6 +3145,28 @@ class Calls:
             "session": session,
             "client_sequence": client_sequence,
             "ticks": ticks,
+        })
+
+    def session_advance(
+        self,
+        *,
+        session: str | None = None,
+        ticks: int | None = None,
+        commands: Sequence[AdvanceCommand] | None = None,
+        observe: Observe | None = None,
+    ) -> Advanced:
+        """`session.advance`: lock-step: commands, ticks and what came of them in one request. The session must be paused. It has no client_sequence: `tick` says whether it was done
+
+        session: its id; that of the connection's URL by default
+        ticks: how many; 1 by default, 0 to observe alone (0 to 100000)
+        commands: what the client does with tools first: all of it, or nothing and an error; energy is turned off all the same
+        observe: nothing by default
+        """
+        return self.call("session.advance", {
+            "session": session,
+            "ticks": ticks,
+            "commands": commands,
+            "observe": observe,
         })
 
     def session_speed(

@@ -77,6 +77,14 @@
 	X(RESTORING, "restoring")                                                                      \
 	X(REPLAYING, "replaying")
 
+// Commands of session.advance: those of a tool's driver.
+#define CAU_ADVANCE_METHOD_TABLE(X)                                                                \
+	X(TOOL_MOVE, "tool.move")                                                                      \
+	X(TOOL_ENERGIZE, "tool.energize")                                                              \
+	X(TOOL_GRASP, "tool.grasp")                                                                    \
+	X(TOOL_RELEASE, "tool.release")                                                                \
+	X(TOOL_HOLD, "tool.hold")
+
 #define CAU_CAPABILITY_TABLE(X)                                                                    \
 	X(UPLOAD, "upload")                                                                            \
 	X(EXPORT, "export")                                                                            \
@@ -94,6 +102,7 @@
 	CHOICE_TABLE(event_kind, CAU_EVENT_TABLE)                                                      \
 	CHOICE_TABLE(export_format, CAU_EXPORT_TABLE)                                                  \
 	CHOICE_TABLE(look_stage, CAU_LOOK_STAGE_TABLE)                                                 \
+	CHOICE_TABLE(advance_method, CAU_ADVANCE_METHOD_TABLE)                                         \
 	CHOICE_TABLE(capability, CAU_CAPABILITY_TABLE)                                                 \
 	CHOICE_TABLE(channel, CAU_CHANNEL_TABLE)                                                       \
 	CHOICE_TABLE(energy_off, CAU_ENERGY_OFF_TABLE)                                                 \
@@ -124,6 +133,11 @@ typedef enum cau_export_format { CAU_EXPORT_TABLE(X) CAU_EXPORT_COUNT } cau_expo
 #define X(code, name) CAU_LOOK_##code,
 // How far a past view is.
 typedef enum cau_look_stage { CAU_LOOK_STAGE_TABLE(X) CAU_LOOK_STAGE_COUNT } cau_look_stage;
+#undef X
+#define X(code, name) CAU_ADVANCE_##code,
+typedef enum cau_advance_method {
+	CAU_ADVANCE_METHOD_TABLE(X) CAU_ADVANCE_METHOD_COUNT
+} cau_advance_method;
 #undef X
 #define X(code, name) CAU_CAPABILITY_##code,
 // What a server can do; bit numbers of hello_result.capabilities.

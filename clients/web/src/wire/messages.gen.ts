@@ -254,6 +254,142 @@ export interface SessionStep {
   ticks?: number;
 }
 
+/** what the client does with a tool before the first tick; as the method of this name, of which it has the members */
+export interface AdvanceCommand {
+  /** which */
+  method: 'tool.move' | 'tool.energize' | 'tool.grasp' | 'tool.release' | 'tool.hold';
+  /** one that the client drives; to turn energy off, any */
+  tool: string;
+  /** the driver's own count; frames show the last one applied (0 to 9007199254740991) */
+  sequence?: number;
+  /** tool.move: place of the tip (-100 to 100 m) */
+  position_m?: [number, number, number];
+  /** tool.move: unit quaternion w, x, y, z (-1.001 to 1.001) */
+  rotation?: [number, number, number, number];
+  /** tool.move: 0 closed, the default, to 1 open (0 to 1) */
+  jaw?: number;
+  /** tool.energize: on or off */
+  energized?: boolean;
+  /** tool.energize on: energy is off again after so many ticks; 0, the default: no limit (0 to 2147483647) */
+  ticks?: number;
+}
+
+/** a box (least_m, most_m) or a ball (center_m, radius_m): the elements whose middle is in it while the tissue is at rest */
+export interface ObservedRegion {
+  /** given back */
+  name: string;
+  /** the box's corner of its least coordinates (-100 to 100 m) */
+  least_m?: [number, number, number];
+  /** of its largest (-100 to 100 m) */
+  most_m?: [number, number, number];
+  /** the ball's middle (-100 to 100 m) */
+  center_m?: [number, number, number];
+  /** of the ball (0 to 100 m) */
+  radius_m?: number;
+}
+
+/** what session.advance is to answer with, besides tick and time */
+export interface Observe {
+  /** positions, mask, tools, and scalars by their names; `statistics` is in frames alone */
+  channels?: ('positions' | 'mask' | 'exposure' | 'charring' | 'stress' | 'tools' | 'statistics' | 'temperature')[];
+  /** of positions and scalars: these alone, in this order; all by default (0 to 16777215) */
+  vertices?: number[];
+  /** where removed volume and damage are reported */
+  regions?: ObservedRegion[];
+}
+
+/** makes ticks of a paused session in lock-step */
+export interface SessionAdvance {
+  /** its id; that of the connection's URL by default */
+  session?: string;
+  /** how many; 1 by default, 0 to observe alone (0 to 100000) */
+  ticks?: number;
+  /** what the client does with tools first: all of it, or nothing and an error; energy is turned off all the same */
+  commands?: AdvanceCommand[];
+  /** nothing by default */
+  observe?: Observe;
+}
+
+/** a scalar channel */
+export interface ObservedScalar {
+  /** which */
+  channel: 'positions' | 'mask' | 'exposure' | 'charring' | 'stress' | 'tools' | 'statistics' | 'temperature';
+  /** of the vertices, in the channel's unit (-1e+300 to 1e+300) */
+  values: number[];
+}
+
+/** a tool as it is */
+export interface ObservedTool {
+  /** its name */
+  tool: string;
+  /** of the tip: the actual pose, which tissue can stop (-1000000 to 1000000 m) */
+  position_m: [number, number, number];
+  /** quaternion w, x, y, z (-1.001 to 1.001) */
+  rotation: [number, number, number, number];
+  /** actual opening, 0 closed to 1 open (0 to 1) */
+  jaw: number;
+  /** whether its energy is on */
+  energized: boolean;
+  /** while energy is off: why; of the session, not of the simulated state */
+  energy_off?: 'never_enabled' | 'commanded' | 'watchdog' | 'restored' | 'taken_over';
+  /** of the tissue on the tool, filtered and clamped (-1000000 to 1000000 N) */
+  force_n: [number, number, number];
+  /** about the tip (-1000000 to 1000000 N m) */
+  torque_nm: [number, number, number];
+  /** of the hot part (-300 to 1000000 degC) */
+  tip_temperature_c: number;
+  /** heat that tissue has taken up, about (0 to 1000000000000 J) */
+  energy_j: number;
+  /** vertices that it touches (0 to 9007199254740991) */
+  contact_vertices: number;
+  /** points that its jaws hold (0 to 9007199254740991) */
+  grasped_vertices: number;
+  /** of the last command applied (0 to 9007199254740991) */
+  sequence: number;
+}
+
+/** what heat and force have done, in volumes of the tissue at rest; links have none */
+export interface ObservedDamage {
+  /** tetrahedra and triangles that are not there any more (0 to 9007199254740991) */
+  removed_count: number;
+  /** their volume (0 to 1000000000 m^3) */
+  removed_m3: number;
+  /** volume of those that are there, each weighted by the mean exposure of its vertices (0 to 1000000000 m^3) */
+  damaged_m3: number;
+}
+
+/** inside a region and outside it */
+export interface RegionDamage {
+  /** the region's */
+  name: string;
+  /** inside */
+  inside: ObservedDamage;
+  /** outside */
+  outside: ObservedDamage;
+}
+
+/** the ticks are made, and this is what was asked for */
+export interface Advanced {
+  /** where the session is now (0 to 9007199254740991) */
+  tick: number;
+  /** simulated (0 to 1000000000000 s) */
+  time_s: number;
+  /** ticks that were made: fewer than asked for where lock-step ended meanwhile (0 to 100000) */
+  ticks: number;
+  /** whether they are on the disk; false for ephemeral sessions */
+  stored: boolean;
+  /** x, y, z of the vertices (-1000000 to 1000000 m) */
+  positions_m?: number[];
+  /** words of 32 faces, the lowest bit first; a set bit: not drawn (0 to 4294967295) */
+  mask?: number[];
+  /** in the order of the channels */
+  scalars?: ObservedScalar[];
+  /** as they were added */
+  tools?: ObservedTool[];
+  /** in the order of the request */
+  regions?: RegionDamage[];
+}
+
 /** sets the pace */
 export interface SessionSpeed {
   /** its id; that of the connection's URL by default */
@@ -1906,6 +2042,8 @@ export interface Requests {
   'session.resume': { params: SessionChange; result: SessionSummary };
   /** advances a paused session; answered when done */
   'session.step': { params: SessionStep; result: TickResult };
+  /** lock-step: commands, ticks and what came of them in one request. The session must be paused. It has no client_sequence: `tick` says whether it was done */
+  'session.advance': { params: SessionAdvance; result: Advanced };
   /** sets the pace */
   'session.speed': { params: SessionSpeed; result: SessionSummary };
   /** back to tick 0; a new branch */
