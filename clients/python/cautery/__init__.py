@@ -12,8 +12,9 @@ Streams are numpy arrays. README.md has a first cut; `messages` has every messag
 from .client import Client
 from .errors import (BadFrame, ConnectionClosed, ConnectionRefused, Error, NoAnswer,
                      RequestError)
+from .session import Advanced, Session
 from .stream import State, Stream, Tool
 
-__all__ = ["BadFrame", "Client", "ConnectionClosed", "ConnectionRefused", "Error", "NoAnswer", "RequestError",
-           "State", "Stream", "Tool"]
+__all__ = ["Advanced", "BadFrame", "Client", "ConnectionClosed", "ConnectionRefused", "Error", "NoAnswer",
+           "RequestError", "Session", "State", "Stream", "Tool"]
 __version__ = "0.1.0.dev0"

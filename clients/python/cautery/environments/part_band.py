@@ -10,9 +10,11 @@ import numpy as np
 import numpy.typing as npt
 
 from ..client import Client
-from ..errors import Error
+from ..errors import Error, RequestError
 from ..local import LocalDaemon
-from ..stream import State, Stream
+from ..messages import AdvanceCommand
+from ..session import Advanced, Session
+from ..stream import Stream
 from .spaces import Box
 
 Observation = npt.NDArray[np.float32]
@@ -31,10 +33,10 @@ COLUMNS = 12  # across the band: whether each is whole
 
 _PARTED_REWARD, _BURNT_REWARD, _STEP_REWARD, _DONE_REWARD = 1.0, -0.5, -0.005, 10.0
 _REST = (1.0, 0.0, 0.0, 0.0)
-_CHANNELS = ["positions", "mask", "exposure", "tools"]
-# Settings of the task's own daemon. A slow machine must not cut energy in a simulation, and the quotas protect nobody here.
-_OWN = {"browser_deadline_s": 10, "quota_connection": 1000000, "quota_address": 1000000, "quota_operate": 1000000,
-        "quota_admin": 1000000, "quota_all": 1000000}
+_CHANNELS: list[Any] = ["positions", "mask", "exposure", "tools"]  # the first for pictures alone
+# Settings of the task's own daemon: its quotas would protect nobody.
+_OWN = {"quota_connection": 1000000, "quota_address": 1000000, "quota_operate": 1000000, "quota_admin": 1000000,
+        "quota_all": 1000000}
 
 
 def _sheet(name: str, height_m: float) -> dict[str, Any]:
@@ -100,13 +102,12 @@ class PartBand:
         self.observation_space = Box(np.r_[-np.ones(3), np.zeros(COLUMNS + 3)], np.ones(COLUMNS + 6))
         self._random = np.random.default_rng()
         self._things = contextlib.ExitStack()
-        self._session = ""
+        self._session: Session | None = None
         self._over = True
         try:
             if url is None:
                 url = self._things.enter_context(LocalDaemon(daemon, **{**_OWN, **settings})).url
             self._client = self._things.enter_context(Client(url, name="cautery part-band"))
-            self._things.enter_context(self._client.heartbeats())
         except BaseException:
             self._things.close()
             raise
@@ -174,6 +175,7 @@ class PartBand:
         if self.render_mode is None:
             return None
         picture = np.full((60, 150, 3), 255, np.uint8)
+        assert self._state.positions is not None and self._state.removed is not None
         middles = self._state.positions[self._stream.faces[self._band]].mean(axis=1)
         colours = np.where(self._state.removed[self._band][:, None], (40, 20, 20), (220, 150, 130))
         for (x, y, _), colour in zip(middles, colours):
@@ -186,11 +188,12 @@ class PartBand:
     # ---- the session
     def _begin(self, toughness: int) -> None:
         if self._session:
-            self._client.session_destroy(session=self._session)
+            self._client.session_destroy(session=self._session.name)
         made = self._client.session_create(definition=scene(toughness), paused=True, ephemeral=True)  # type: ignore[arg-type]
-        self._session = made["summary"]["session"]
-        self._stream: Stream = self._client.join(self._session, channels=_CHANNELS, step_m=2e-5)
-        self._client.tool_take_over(session=self._session, tool="hook")
+        self._session = Session(self._client, made["summary"])
+        self._stream: Stream = self._client.join(self._session.name)  # for the faces, which stay as they are
+        self._client.session_leave(session=self._session.name)
+        self._client.tool_take_over(session=self._session.name, tool="hook")
         self._lit = False
         self._band = np.flatnonzero(self._stream.face_layers == 0)
         self._below = np.flatnonzero(self._stream.face_layers == 1)
@@ -202,32 +205,38 @@ class PartBand:
         sides = rest[band][:, 0] / LENGTH_M
         self._ends = (set(band[sides < -0.499].tolist()), set(band[sides > 0.499].tolist()))
 
-    def _go(self) -> State:
+    def _go(self) -> Advanced:
         """The tool goes to the tip's place, and time goes on by a step's ticks."""
-        tool = {"session": self._session, "tool": "hook"}
-        self._client.notify("tool.move", {**tool, "position_m": self._tip.tolist(), "rotation": _REST})
+        assert self._session
+        commands: list[AdvanceCommand] = [
+            {"method": "tool.move", "tool": "hook", "position_m": self._tip.tolist(), "rotation": _REST}]
         if self._energy != self._lit:
-            self._client.tool_energize(**tool, energized=self._energy)
-            self._lit = self._energy
-        tick = self._client.session_step(session=self._session, ticks=TICKS)["tick"]
-        state = self._stream.wait(tick)
-        if state.faulted:
-            raise Error("the tissue's motion became numerically unsound: reset")
-        if state.tools["hook"].energized != self._lit:
-            raise Error(f"energy went off by itself ({state.tools['hook'].energy_off}): this machine is too busy")
+            commands.append({"method": "tool.energize", "tool": "hook", "energized": self._energy})
+        try:
+            state = self._session.advance(TICKS, commands, {"channels": _CHANNELS if self.render_mode else _CHANNELS[1:]})
+        except RequestError as error:
+            if error.status == "faulted":
+                raise Error("the tissue's motion became numerically unsound: reset") from error
+            raise
+        self._lit = self._energy
+        if state.tools["hook"]["energized"] != self._lit:
+            raise Error("energy went off by itself: somebody else uses this session")
         return state
 
     # ---- what is seen
-    def _columns_left(self, state: State) -> npt.NDArray[np.int64]:
+    def _columns_left(self, state: Advanced) -> npt.NDArray[np.int64]:
         """1 for each column that is whole, 0 once a face of it has parted. (COLUMNS,)"""
         left = np.ones(COLUMNS, np.int64)
+        assert state.removed is not None
         left[self._column[state.removed[self._band]]] = 0
         return left
 
-    def _burnt(self, state: State) -> int:
+    def _burnt(self, state: Advanced) -> int:
+        assert state.removed is not None
         return int(state.removed[self._below].sum())
 
     def _is_parted(self) -> bool:
+        assert self._state.removed is not None
         faces = self._stream.faces[self._band][~self._state.removed[self._band]]
         return bool((self._left == 0).all()) and _is_parted(faces, self._ends)
 
