@@ -1,6 +1,6 @@
 #!/usr/bin/env bash
 # SPDX-License-Identifier: GPL-3.0-or-later
-# Builds the Debian packages of Cautery: cauteryd, cautery-clients, libcautery-dev.
+# Builds the Debian packages of Cautery (deploy/README.md lists them).
 #
 # Usage: deploy/package.sh [TREE]     TREE: the build tree (default build-package); its packages/ has them
 #

@@ -92,7 +92,7 @@ static void put_regions(const cau_mesh_report *report, text *out)
 		put(out, "\n");
 }
 
-void cau_mesh_report_text(const cau_mesh_report *report, char bytes[static CAU_MESH_TEXT_BYTES])
+void cau_mesh_report_text(const cau_mesh_report *report, char bytes[CAU_MESH_TEXT_BYTES])
 {
 	text out = {bytes, CAU_MESH_TEXT_BYTES};
 	bytes[0] = 0;

@@ -1,4 +1,4 @@
-# Debian packages, one for each component of what is installed: cauteryd, cautery-clients, libcautery-dev.
+# Debian packages, one for each component of what is installed.
 # deploy/package.sh configures a tree for them (prefix /usr, hardened) and runs cpack there.
 set(CAUTERY_PACKAGER "Cautery developers <maintainers@users.noreply.github.com>" CACHE STRING
   "Name and address that packages give as their maintainer's")
@@ -79,6 +79,24 @@ instruments.
 This package has what writing a client takes: an archive with headers,
 pkg-config and CMake files, the message tables (AsyncAPI, IDL), the pages
 of the protocol and an example.")
+package(core libcautery-core0.1 libs ""
+  "simulation of energized soft-tissue dissection, shared library
+The core of cauteryd as a library: programs make sessions of tissue from
+scene files, step them and read positions, without a server.
+
+It is under the GPL, version 3 or later, and so is what contains it. It is
+for training and research, and no medical device.")
+package(coredevelopment libcautery-core-dev libdevel
+  "libcautery-core0.1 (= ${version}), libcautery-dev (= ${version})"
+  "simulation of energized soft-tissue dissection, development files
+The core of cauteryd as a library: programs make sessions of tissue from
+scene files, step them and read positions, without a server.
+
+This package has its headers, pkg-config and CMake files, and its page.")
+# ldconfig is asked, as Debian's own libraries ask it.
+file(WRITE "${CMAKE_BINARY_DIR}/debian/triggers" "activate-noawait ldconfig\n")
+set(CPACK_DEBIAN_CORE_PACKAGE_CONTROL_EXTRA "${CMAKE_BINARY_DIR}/debian/triggers")
+set(CPACK_DEBIAN_CORE_PACKAGE_GENERATE_SHLIBS ON)
 set(CPACK_DEBIAN_DAEMON_PACKAGE_RECOMMENDS cautery-clients)
 set(CPACK_DEBIAN_DAEMON_PACKAGE_CONTROL_EXTRA
   "${debian}/postinst;${debian}/prerm;${debian}/postrm;${debian}/conffiles")

@@ -2,6 +2,7 @@
 // cautery-sim: runs a scene and a script without a server.
 #include <stdlib.h>
 
+#include "embed/whole_file.h"
 #include "sim/cut_script.h"
 #include "sim/options.h"
 #include "sim/report.h"
@@ -17,7 +18,7 @@ static cau_status get_script(const sim_options *options, const cau_scene_def *sc
 	*text = NULL;
 	*bytes = 0;
 	if (options->script)
-		return sim_read_file(options->script, SCRIPT_MAX_BYTES, text, bytes, error);
+		return embed_read_file(options->script, SCRIPT_MAX_BYTES, text, bytes, error);
 	if (options->cut || options->print_cut)
 		return sim_cut_script(scene, text, bytes, error);
 	return CAU_OK;

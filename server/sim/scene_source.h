@@ -3,14 +3,9 @@
 #pragma once
 
 #include <stdbool.h>
-#include <stddef.h>
 
 #include "cautery/scene.h"
 #include "cautery/status.h"
-
-// Reads a whole file of at most `most` bytes; the caller frees *text, which ends with a zero byte.
-cau_status sim_read_file(const char *path, size_t most, char **text, size_t *bytes,
-                         cau_error *error);
 
 // Fills *scene from `source`: a file that ends in .json, any other file as a mesh (units of unit_m
 // metres, 0: guessed; strict: refused where it needs mending), or a name in `folder` (NULL: the

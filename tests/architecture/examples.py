@@ -15,8 +15,8 @@ import tempfile
 import project
 
 PUBLIC = ("core/include/cautery/", "core/types/cautery/", "protocol/include/cautery/",
-          "clients/include/cautery/")
-INCLUDES = ("core/include", "core/types", "protocol/include", "clients/include")
+          "clients/include/cautery/", "server/embed/include/cautery/")
+INCLUDES = ("core/include", "core/types", "protocol/include", "clients/include", "server/embed/include")
 FLAGS = ("-std=gnu17", "-fsyntax-only", "-Wall", "-Wextra", "-Wpedantic", "-Wshadow", "-Wconversion",
          "-Werror", "-Wno-unused-function")
 LINE = re.compile(r"//(?:     (.*))?$")

@@ -166,6 +166,89 @@ class Installed(unittest.TestCase):
         run(CMAKE, "--build", tree)
         self.assertIn("cauteryd", run(os.path.join(tree, "example"), url).stdout)
 
+    def core_flags(self):
+        config = {"PKG_CONFIG_PATH": os.path.dirname(self.one("lib/**/cautery-core.pc"))}
+        return run("pkg-config", "--cflags", "--libs", "cautery-core", environment=config).stdout.split()
+
+    def core_page(self, kind):
+        """The one block of a kind on the page that is installed with the core."""
+        with open(self.path("share/doc/cautery/core/README.md"), encoding="utf-8") as file:
+            [block] = re.findall(rf"^```{kind}\n(.*?)^```$", file.read(), re.DOTALL | re.MULTILINE)
+        return block
+
+    def run_with_core(self, program):
+        """A program that is linked with the core, on the installed scene."""
+        where = {"LD_LIBRARY_PATH": os.path.dirname(self.one("lib/**/libcautery-core.so"))}
+        said = run(program, self.path("share/cautery/scenes/fascia.json"), environment=where).stdout
+        self.assertRegex(said, r"^3111 vertices, the first at -0\.06")
+
+    def test_first_program_with_the_core(self):
+        """Of its page, by the command that the page has; a scene that is none is an error that says where."""
+        source = os.path.join(self.folder, "core.c")
+        with open(source, "w", encoding="utf-8") as file:
+            file.write(self.core_page("c"))
+        with open(self.path("share/doc/cautery/core/README.md"), encoding="utf-8") as file:
+            self.assertIn("`cc core.c $(pkg-config --cflags --libs cautery-core)`", file.read())
+        program = os.path.join(self.folder, "core")
+        run("cc", "-Wall", "-Wextra", "-Wpedantic", "-Werror", "-std=c17", "-o", program, source, *self.core_flags())
+        self.run_with_core(program)
+        where = {**CLEAN, "LD_LIBRARY_PATH": os.path.dirname(self.one("lib/**/libcautery-core.so"))}
+        none = subprocess.run([program, "/nowhere.json"], env=where, capture_output=True, text=True, check=False)
+        self.assertEqual((none.returncode, none.stdout), (1, ""))
+        self.assertIn("/nowhere.json: : cannot open: ", none.stderr)
+
+    def test_find_package_links_the_core(self):
+        folder = os.path.join(self.folder, "with_core")
+        os.makedirs(folder)
+        with open(os.path.join(folder, "core.c"), "w", encoding="utf-8") as file:
+            file.write(self.core_page("c"))
+        with open(os.path.join(folder, "CMakeLists.txt"), "w", encoding="utf-8") as file:
+            file.write("cmake_minimum_required(VERSION 3.25)\nproject(stranger LANGUAGES C)\n"
+                       "add_executable(program core.c)\n" + self.core_page("cmake"))
+        tree = os.path.join(folder, "tree")
+        run(CMAKE, "-S", folder, "-B", tree, f"-DCMAKE_PREFIX_PATH={self.prefix}")
+        run(CMAKE, "--build", tree)
+        self.run_with_core(os.path.join(tree, "program"))
+
+    def test_the_core_in_cpp(self):
+        program = os.path.join(self.folder, "core_in_cpp")
+        run("c++", "-Wall", "-Wextra", "-Werror", "-std=c++17", "-o", program,
+            os.path.join(SOURCES, "tests/deploy/core/session.cc"), *self.core_flags())
+        self.run_with_core(program)
+
+    def core_headers(self):
+        """{header: its text}, of what the component of the core's development adds."""
+        staged = os.path.join(self.folder, "core-development")
+        if not os.path.exists(staged):
+            run(CMAKE, "--install", TREE, "--component", "coredevelopment", "--prefix", "/usr",
+                environment={"DESTDIR": staged})
+        found = {}
+        for file in glob.glob(f"{staged}/usr/include/**/*.*", recursive=True):
+            with open(file, encoding="utf-8") as header:
+                found[os.path.relpath(file, f"{staged}/usr/include")] = header.read()
+        return found
+
+    def test_only_public_headers_of_the_core_are_installed(self):
+        self.assertEqual(sorted(self.core_headers()), [
+            "cautery/embed.h", "cautery/mesh_scene.h", "cautery/session.h", "cautery/solid.h"])
+
+    def test_the_core_exports_what_its_headers_declare(self):
+        """And nothing else, all with its version; the name under which it is found has the version, too."""
+        texts = list(self.core_headers().values())
+        for name in ("scene_json.h", "command_json.h"):
+            with open(self.path("include/cautery", name), encoding="utf-8") as header:
+                texts.append(header.read())
+        code = re.sub(r"//[^\n]*", "", "\n".join(texts))
+        declared = set(re.findall(r"^[a-z][\w *]*?\b(cau_\w+)\(", code, re.MULTILINE))
+        self.assertGreater(len(declared), 40)
+        library = self.one("lib/**/libcautery-core.so")
+        listed = run("nm", "-D", "--defined-only", library).stdout
+        exported = re.findall(r"^\w+ T (\w+)@@(\S+)$", listed, re.MULTILINE)
+        self.assertEqual({name for name, _ in exported}, declared)
+        self.assertEqual({version for _, version in exported}, {"CAUTERY_CORE_0.1"})
+        self.assertEqual(len(listed.splitlines()), len(exported) + 1)  # and the version itself
+        self.assertIn("[libcautery-core.so.0.1]", run("readelf", "-d", library).stdout)
+
     def test_pages(self):
         pages = [f"man{section}/{name}.{section}.gz" for name, section in PROGRAMS.items()]
         for page in [*pages, "man5/cauteryd.json.5.gz"]:

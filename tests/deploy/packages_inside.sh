@@ -111,10 +111,15 @@ apt-get install -q -y --no-install-recommends gcc libc6-dev pkg-config >/dev/nul
 cc -o /tmp/example /usr/share/doc/cautery/examples/teaching.c -D_GNU_SOURCE \
 	$(pkg-config --cflags --libs cautery-client)
 
+step "a program is built against libcautery-core-dev"
+sed -n '/^```c$/,/^```$/p' /usr/share/doc/cautery/core/README.md | sed '1d;$d' >/tmp/core.c
+cc -o /tmp/core /tmp/core.c $(pkg-config --cflags --libs cautery-core)
+/tmp/core /usr/share/cautery/scenes/fascia.json | grep -q '^3111 vertices' || fail "the core's example"
+
 step "remove, then purge"
 dpkg -r cauteryd >/dev/null
 [ -e /var/lib/cautery/cautery.db ] || fail "the store went with the package: that is what purge is for"
-dpkg -P cauteryd cautery-clients libcautery-dev >/dev/null
+dpkg -P cauteryd cautery-clients libcautery-core-dev libcautery-core0.1 libcautery-dev >/dev/null
 for left in /var/lib/cautery /etc/cautery /usr/share/cautery /usr/lib/systemd/system/cauteryd.service; do
 	[ ! -e $left ] || fail "$left is left: $(find $left | head -n 3)"
 done

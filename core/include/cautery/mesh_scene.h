@@ -25,6 +25,10 @@
 #include "cautery/scene.h"
 #include "cautery/status.h"
 
+#ifdef __cplusplus
+extern "C" {
+#endif
+
 // ---- the report: what was read, passed over and mended, and what the mesh is. Command line, wire,
 // log and viewer show the same one.
 enum {
@@ -118,4 +122,8 @@ cau_status cau_mesh_scene(const cau_mesh_wish *wish, cau_scene_def *scene, cau_m
                           cau_error *error);
 
 // The report in words, one fact a line.
-void cau_mesh_report_text(const cau_mesh_report *report, char bytes[static CAU_MESH_TEXT_BYTES]);
+void cau_mesh_report_text(const cau_mesh_report *report, char bytes[CAU_MESH_TEXT_BYTES]);
+
+#ifdef __cplusplus
+}
+#endif

@@ -42,6 +42,10 @@
 #include "cautery/scene.h"
 #include "cautery/status.h"
 
+#ifdef __cplusplus
+extern "C" {
+#endif
+
 typedef struct cau_session cau_session; // one simulated tissue with its tools; opaque
 
 // ---- definition -------------------------------------------------------------------------------
@@ -372,3 +376,7 @@ typedef struct cau_balance {
 } cau_balance;
 // Changes no bit of the state. CAU_NO_MEMORY: *balance is all 0.
 cau_status cau_session_balance(cau_session *session, cau_balance *balance);
+
+#ifdef __cplusplus
+}
+#endif

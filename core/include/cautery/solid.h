@@ -25,6 +25,10 @@
 
 #include "cautery/status.h"
 
+#ifdef __cplusplus
+extern "C" {
+#endif
+
 enum {
 	CAU_SOLID_LABEL_MAX = 63,     // labels of one segmentation
 	CAU_SOLID_TEXT_BYTES = 16384, // of the report: a line for each label at most
@@ -59,3 +63,7 @@ bool cau_solid_is_volume(const void *bytes, size_t byte_count);
 cau_status cau_solid_make(const cau_solid_wish *wish, cau_solid *solid, cau_error *error);
 // Frees the bytes.
 void cau_solid_finish(cau_solid *solid);
+
+#ifdef __cplusplus
+}
+#endif

@@ -43,28 +43,11 @@ static void what_cannot_be_read_is_named(void **state)
 	expect_failure("/nowhere/x.json", CAU_IO, "/nowhere/x.json", "cannot open");
 }
 
-static void files_have_a_largest_size(void **state)
-{
-	(void)state;
-	char *text;
-	size_t bytes;
-	cau_error error = {0};
-	const char *path = fixture_path("ten");
-	fixture_write(path, "0123456789");
-	assert_int_equal(sim_read_file(path, 9, &text, &bytes, &error), CAU_LIMIT);
-	assert_int_equal(sim_read_file(path, 10, &text, &bytes, &error), CAU_OK);
-	assert_int_equal(bytes, 10);
-	assert_string_equal(text, "0123456789");
-	free(text);
-	assert_int_equal(sim_read_file(fixture_folder(), 10, &text, &bytes, &error), CAU_IO);
-}
-
 int main(void)
 {
 	const struct CMUnitTest tests[] = {
 		cmocka_unit_test(scenes_are_found_by_name_and_by_file),
 		cmocka_unit_test(what_cannot_be_read_is_named),
-		cmocka_unit_test(files_have_a_largest_size),
 	};
 	return cmocka_run_group_tests(tests, NULL, fixture_remove);
 }
