@@ -93,6 +93,26 @@ The core of cauteryd as a library: programs make sessions of tissue from
 scene files, step them and read positions, without a server.
 
 This package has its headers, pkg-config and CMake files, and its page.")
+package(python python3-cautery python "python3 (>= 3.11), python3-numpy"
+  "client of cauteryd for Python
+cauteryd simulates the dissection of soft tissue with energized
+instruments.
+
+This package is its client in pure Python: a function for each request,
+streams as numpy arrays, and tasks for learners. It holds nothing of the
+core and is under the Apache licence.")
+package(pythoncore python3-cautery-core python
+  "python3 (>= 3.11), python3-numpy, python3-cautery (= ${version}), libcautery-core0.1 (= ${version})"
+  "simulation of energized soft-tissue dissection in a Python process
+The core of cauteryd for Python: sessions of tissue, steps, snapshots, and
+tasks for learners, without a server.
+
+It is under the GPL, version 3 or later, and so is what contains it. It is
+for training and research, and no medical device.")
+foreach(each PYTHON PYTHONCORE) # no programs
+  set(CPACK_DEBIAN_${each}_PACKAGE_ARCHITECTURE all)
+  set(CPACK_DEBIAN_${each}_PACKAGE_SHLIBDEPS OFF)
+endforeach()
 # ldconfig is asked, as Debian's own libraries ask it.
 file(WRITE "${CMAKE_BINARY_DIR}/debian/triggers" "activate-noawait ldconfig\n")
 set(CPACK_DEBIAN_CORE_PACKAGE_CONTROL_EXTRA "${CMAKE_BINARY_DIR}/debian/triggers")

@@ -38,6 +38,8 @@ GPL_LIBRARY = re.compile(r"(?i)(cholmod|suitesparse|amd\.h|camd\.h|colamd)")
 LICENCE = re.compile(r"SPDX-License-Identifier: ([\w.-]+)")
 INCLUDE = re.compile(r'^\s*#\s*include\s*[<"]([^>"]+)[>"]', re.MULTILINE)
 IMPORT = re.compile(r"""(?:\bfrom|\bimport|\bimport\(|\brequire\(|\bnew URL\(|<reference path=)\s*['"](\.[^'"]+)['"]""")
+# The Python package that loads the core, in an import or in the words of one.
+PYTHON_CORE = re.compile(r"\b(import|from)\s+cautery_core\b|['\"]cautery_core['\"]|\blibcautery-core\b")
 INCLUDE_FOLDERS = ("core/include", "core/types", "protocol/include", "clients/include", "core", "protocol",
                    "server", "clients", "tests")
 HEAD_LINES = 3  # a #! line may come first
@@ -85,6 +87,8 @@ def file_violations(root, files):
                       for other in sorted(needed_files(name, text, known)) if not is_edge(other)]
             found += [f"{name}: includes <{header}>, a library under the GPL"
                       for header in INCLUDE.findall(text) if GPL_LIBRARY.search(header)]
+        if is_edge(name) and name.endswith(".py") and PYTHON_CORE.search(text):
+            found.append(f"{name}: imports the core, which is under {GPL}")
     return found
 
 

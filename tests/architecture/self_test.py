@@ -391,6 +391,15 @@ class Licences(Compiled):
                            ("clients/web/src/wire/a.ts", '/// <reference path="../model/model.ts" />')):
             self.assertEqual(len(self.found({name: self.APACHE + line + "\n"})), 1, line)
 
+    def test_a_python_module_of_the_edges_does_not_load_the_core(self):
+        head = "# SPDX-License-Identifier: "
+        for line in ("import cautery_core", "from cautery_core.environments import PartBand",
+                     "importlib.import_module('cautery_core')", "ctypes.CDLL('libcautery-core.so.0.1')"):
+            self.assertEqual(len(self.found({"clients/python/a.py": f"{head}Apache-2.0\n{line}\n"})), 1, line)
+            self.assertEqual(self.found({"clients/python_core/a.py": f"{head}GPL-3.0-or-later\n{line}\n"},
+                                        without=("clients/python/a.py",)), [], line)
+        self.assertEqual(self.found({"clients/python/a.py": f"{head}Apache-2.0\n\"\"\"Not as cautery_core.\"\"\"\n"}), [])
+
     def test_a_call_of_what_is_under_the_gpl(self):
         found = self.found(objects=[("protocol/a.c", self.needing("a", "b")), ("core/b.c", self.needing("b"))])
         self.assertEqual(len(found), 1)

@@ -216,6 +216,16 @@ class Installed(unittest.TestCase):
             os.path.join(SOURCES, "tests/deploy/core/session.cc"), *self.core_flags())
         self.run_with_core(program)
 
+    def test_python_packages(self):
+        """Both in Debian's own Python, with the library as installed; the wire's without the core."""
+        packages = os.path.dirname(self.one("lib/python3/dist-packages/cautery_core"))
+        where = {"PYTHONPATH": packages, "PYTHONDONTWRITEBYTECODE": "1",
+                 "LIBCAUTERY_CORE": self.one("lib/**/libcautery-core.so.0.1")}
+        program = f"import cautery_core; print(cautery_core.Session('{self.path('share/cautery/scenes/fascia.json')}').step(3))"
+        self.assertEqual(run("/usr/bin/python3", "-c", program, environment=where).stdout, "3\n")
+        program = "import sys, cautery.environments; print('cautery_core' in sys.modules)"
+        self.assertEqual(run("/usr/bin/python3", "-c", program, environment=where).stdout, "False\n")
+
     def core_headers(self):
         """{header: its text}, of what the component of the core's development adds."""
         staged = os.path.join(self.folder, "core-development")

@@ -116,10 +116,15 @@ sed -n '/^```c$/,/^```$/p' /usr/share/doc/cautery/core/README.md | sed '1d;$d' >
 cc -o /tmp/core /tmp/core.c $(pkg-config --cflags --libs cautery-core)
 /tmp/core /usr/share/cautery/scenes/fascia.json | grep -q '^3111 vertices' || fail "the core's example"
 
+step "Python, with the core in process"
+apt-get install -q -y --no-install-recommends /packages/*-2_all.deb >/tmp/apt.log 2>&1 || fail "Python: $(tail -n 3 /tmp/apt.log)"
+python3 -c 'import cautery_core; print(cautery_core.Session("/usr/share/cautery/scenes/fascia.json").step(3))' | grep -qx 3 ||
+	fail "the core in Python"
+
 step "remove, then purge"
 dpkg -r cauteryd >/dev/null
 [ -e /var/lib/cautery/cautery.db ] || fail "the store went with the package: that is what purge is for"
-dpkg -P cauteryd cautery-clients libcautery-core-dev libcautery-core0.1 libcautery-dev >/dev/null
+dpkg -P python3-cautery-core python3-cautery cauteryd cautery-clients libcautery-core-dev libcautery-core0.1 libcautery-dev >/dev/null
 for left in /var/lib/cautery /etc/cautery /usr/share/cautery /usr/lib/systemd/system/cauteryd.service; do
 	[ ! -e $left ] || fail "$left is left: $(find $left | head -n 3)"
 done

@@ -130,10 +130,12 @@ class Commands(unittest.TestCase):
     def setUpClass(cls):
         cls.folder = tempfile.mkdtemp(prefix="cautery-readme-")
         cls.addClassCleanup(shutil.rmtree, cls.folder)
-        for name in ("deploy", "tests"):
+        for name in ("build", "clients"):
+            os.makedirs(os.path.join(cls.folder, name))
+        for name in ("deploy", "tests", "clients/python", "clients/python_core"):
             os.symlink(os.path.join(SOURCES, name), os.path.join(cls.folder, name))
-        os.makedirs(os.path.join(cls.folder, "build"))
         os.symlink(PROGRAMS, os.path.join(cls.folder, "build/bin"))
+        os.symlink(os.path.join(os.path.dirname(PROGRAMS), "deploy"), os.path.join(cls.folder, "build/deploy"))
         cls.environment = {**os.environ, "PATH": f"{PROGRAMS}:{os.environ['PATH']}", "LC_ALL": "C.UTF-8"}
         cls.shown, cls.ran = shown(), set()
 
@@ -242,12 +244,16 @@ class Commands(unittest.TestCase):
                     r"\d", at, until=True)
 
     def test_1_the_python_package(self):
-        os.makedirs(os.path.join(self.folder, "clients"), exist_ok=True)
-        os.symlink(os.path.join(SOURCES, "clients/python"), os.path.join(self.folder, "clients/python"))
         self.run_it("PYTHONPATH=clients/python /usr/bin/python3 -c 'import cautery; help(cautery.Client.session_create)'",
                     "makes a session")
         self.run_it("PYTHONPATH=clients/python /usr/bin/python3 clients/python/examples/learn_part_band.py "
                     "--daemon build/bin/cauteryd --scenes deploy/scenes", "generation 1, policy 1 of", until=True)
+
+    def test_1_the_core_in_python(self):
+        self.run_it("LIBCAUTERY_CORE=build/deploy/libcautery-core.so PYTHONPATH=clients/python:clients/python_core "
+                    "/usr/bin/python3 -c 'import cautery_core; help(cautery_core.Session)'", "A session of a scene")
+        self.run_it("/usr/bin/python3 clients/python_core/benchmark.py --build build", r"\d+ ticks/s here, \d+ in cautery-sim",
+                    until=True)
 
     def test_2_the_command_line(self):
         at = self.start()

@@ -14,6 +14,7 @@ from cautery.environments.part_band import STEPS_MOST
 
 import learn_part_band
 import programs
+from plain_environment import Plain
 
 DAEMON = os.path.join(programs.PROGRAMS, "cauteryd")
 # Numbers of a policy that parts the band: the tip in it, slowly, whatever the sheet below has taken up.
@@ -90,36 +91,6 @@ class Task(unittest.TestCase):
         picture = self.task.render()
         self.assertEqual((picture.shape, picture.dtype), ((60, 150, 3), np.uint8))
         self.assertGreater((picture == (220, 150, 130)).all(axis=2).mean(), 0.5)
-
-
-class Plain:
-    """An environment without a simulation that keeps every rule."""
-
-    metadata = {"render_modes": []}
-    render_mode = None
-
-    def __init__(self):
-        self.action_space = Box([-1.0], [1.0])
-        self.observation_space = Box([-10.0, 0.0], [10.0, 1.0])
-        self.random = np.random.default_rng()
-        self.place = np.zeros(2, np.float32)
-
-    def reset(self, *, seed=None, options=None):
-        del options
-        if seed is not None:
-            self.random = np.random.default_rng(seed)
-        self.place = np.array([self.random.uniform(-1, 1), 0], np.float32)
-        return self.place.copy(), {}
-
-    def step(self, action):
-        self.place[0] = np.clip(self.place[0] + action[0], -10, 10)
-        return self.place.copy(), -abs(float(self.place[0])), bool(abs(self.place[0]) > 9), False, {}
-
-    def render(self):
-        return None
-
-    def close(self):
-        pass
 
 
 def broken(name, **members):

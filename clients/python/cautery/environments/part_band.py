@@ -3,19 +3,14 @@
 
 from __future__ import annotations
 
-import contextlib
 from typing import Any, Mapping
 
 import numpy as np
 import numpy.typing as npt
 
-from ..client import Client
-from ..errors import Error, RequestError
-from ..local import LocalDaemon
-from ..messages import AdvanceCommand
-from ..session import Advanced, Session
-from ..stream import Stream
+from ..errors import Error
 from .spaces import Box
+from .tissue import RemoteTissue, Seen, Tissue
 
 Observation = npt.NDArray[np.float32]
 
@@ -31,12 +26,8 @@ TICKS = 4  # of the simulation in a step
 STEPS_MOST = 200  # of an episode
 COLUMNS = 12  # across the band: whether each is whole
 
+_TISSUES = (1 << 31) - 1  # seeds of a scene
 _PARTED_REWARD, _BURNT_REWARD, _STEP_REWARD, _DONE_REWARD = 1.0, -0.5, -0.005, 10.0
-_REST = (1.0, 0.0, 0.0, 0.0)
-_CHANNELS: list[Any] = ["positions", "mask", "exposure", "tools"]  # the first for pictures alone
-# Settings of the task's own daemon: its quotas would protect nobody.
-_OWN = {"quota_connection": 1000000, "quota_address": 1000000, "quota_operate": 1000000, "quota_admin": 1000000,
-        "quota_all": 1000000}
 
 
 def _sheet(name: str, height_m: float) -> dict[str, Any]:
@@ -85,8 +76,10 @@ class PartBand:
     Rewards: 1 for each column that parts, 10 for the whole band, -0.5 for each face below that parts, -0.005 a step.
     It is terminated once the band is parted or a face below is, and truncated after 200 steps.
 
-    `url`: of a daemon; by default the task starts one of its own (`daemon`: its program). Equal seeds and actions make
-    equal episodes. `render()` returns a picture of the band from above, (H, W, 3).
+    `url`: of a daemon; by default the task starts one of its own (`daemon`: its program, `settings`: its further ones).
+    `tissue`: where the tissue is simulated in the place of a daemon; the package cautery_core has one in process.
+    `tissue_count`: of how many tissues each episode draws one; by default each episode has another. `steps_most`: of an
+    episode. Equal seeds and actions make equal episodes. `render()` returns a picture of the band from above, (H, W, 3).
     """
 
     metadata: Mapping[str, Any] = {"render_modes": ["rgb_array"], "render_fps": 15}
@@ -94,23 +87,19 @@ class PartBand:
     spec = None
 
     def __init__(self, url: str | None = None, *, daemon: str | None = None, render_mode: str | None = None,
+                 tissue: Tissue | None = None, tissue_count: int = _TISSUES, steps_most: int = STEPS_MOST,
                  **settings: object) -> None:
         if render_mode not in (None, *self.metadata["render_modes"]):
             raise ValueError(f"{render_mode!r} is none of {self.metadata['render_modes']}")
+        if not 1 <= tissue_count <= _TISSUES or steps_most < 1:
+            raise ValueError(f"tissue_count is 1 to {_TISSUES}, and steps_most 1 at least")
         self.render_mode = render_mode
         self.action_space = Box(-np.ones(4), np.ones(4))
         self.observation_space = Box(np.r_[-np.ones(3), np.zeros(COLUMNS + 3)], np.ones(COLUMNS + 6))
         self._random = np.random.default_rng()
-        self._things = contextlib.ExitStack()
-        self._session: Session | None = None
+        self._tissue_count, self._steps_most = tissue_count, steps_most
         self._over = True
-        try:
-            if url is None:
-                url = self._things.enter_context(LocalDaemon(daemon, **{**_OWN, **settings})).url
-            self._client = self._things.enter_context(Client(url, name="cautery part-band"))
-        except BaseException:
-            self._things.close()
-            raise
+        self._tissue: Tissue = RemoteTissue(url, daemon, **settings) if tissue is None else tissue
 
     @property
     def unwrapped(self) -> PartBand:
@@ -124,7 +113,7 @@ class PartBand:
 
     def close(self) -> None:
         """Ends the session, and the daemon if it is the task's own."""
-        self._things.close()
+        self._tissue.close()
 
     # ---- episodes
     def reset(self, *, seed: int | None = None, options: Mapping[str, Any] | None = None,
@@ -133,7 +122,7 @@ class PartBand:
         if seed is not None:
             self._random = np.random.default_rng(seed)
         place = self._random.uniform((-0.006, -0.008, 0.003), (0.006, 0.008, 0.006))
-        toughness = int(self._random.integers(1, 1 << 31))
+        toughness = 1 + int(self._random.integers(0, _TISSUES)) % self._tissue_count
         if options and "tip_m" in options:
             place = np.asarray(options["tip_m"], float)
         self._begin(toughness)
@@ -166,7 +155,7 @@ class PartBand:
         reward = (_PARTED_REWARD * gone + _BURNT_REWARD * (burnt - before_burnt) + _STEP_REWARD
                   + _DONE_REWARD * (parted and not burnt))
         terminated = parted or burnt > 0
-        truncated = not terminated and self._steps >= STEPS_MOST
+        truncated = not terminated and self._steps >= self._steps_most
         self._over = terminated or truncated
         return self._observe(), float(reward), terminated, truncated, self._info()
 
@@ -175,8 +164,7 @@ class PartBand:
         if self.render_mode is None:
             return None
         picture = np.full((60, 150, 3), 255, np.uint8)
-        assert self._state.positions is not None and self._state.removed is not None
-        middles = self._state.positions[self._stream.faces[self._band]].mean(axis=1)
+        middles = self._state.positions[self._tissue.faces[self._band]].mean(axis=1)
         colours = np.where(self._state.removed[self._band][:, None], (40, 20, 20), (220, 150, 130))
         for (x, y, _), colour in zip(middles, colours):
             column, row = int((x / LENGTH_M + 0.5) * 149), int((y / WIDTH_M + 0.5) * 59)
@@ -187,64 +175,43 @@ class PartBand:
 
     # ---- the session
     def _begin(self, toughness: int) -> None:
-        if self._session:
-            self._client.session_destroy(session=self._session.name)
-        made = self._client.session_create(definition=scene(toughness), paused=True, ephemeral=True)  # type: ignore[arg-type]
-        self._session = Session(self._client, made["summary"])
-        self._stream: Stream = self._client.join(self._session.name)  # for the faces, which stay as they are
-        self._client.session_leave(session=self._session.name)
-        self._client.tool_take_over(session=self._session.name, tool="hook")
-        self._lit = False
-        self._band = np.flatnonzero(self._stream.face_layers == 0)
-        self._below = np.flatnonzero(self._stream.face_layers == 1)
-        rest = self._stream.rest
-        across = rest[self._stream.faces[self._band]].mean(axis=1)[:, 1] / WIDTH_M + 0.5
+        self._tissue.begin(scene(toughness))
+        faces, rest = self._tissue.faces, self._tissue.rest
+        self._parts = [np.flatnonzero(self._tissue.face_layers == layer) for layer in (0, 1)]
+        self._band, self._below = self._parts
+        across = rest[faces[self._band]].mean(axis=1)[:, 1] / WIDTH_M + 0.5
         self._column = (across * COLUMNS).astype(int).clip(0, COLUMNS - 1)
-        self._vertices = [np.unique(self._stream.faces[part]) for part in (self._band, self._below)]
-        band = self._vertices[0]
+        band = np.unique(faces[self._band])
         sides = rest[band][:, 0] / LENGTH_M
         self._ends = (set(band[sides < -0.499].tolist()), set(band[sides > 0.499].tolist()))
 
-    def _go(self) -> Advanced:
+    def _go(self) -> Seen:
         """The tool goes to the tip's place, and time goes on by a step's ticks."""
-        assert self._session
-        commands: list[AdvanceCommand] = [
-            {"method": "tool.move", "tool": "hook", "position_m": self._tip.tolist(), "rotation": _REST}]
-        if self._energy != self._lit:
-            commands.append({"method": "tool.energize", "tool": "hook", "energized": self._energy})
-        try:
-            state = self._session.advance(TICKS, commands, {"channels": _CHANNELS if self.render_mode else _CHANNELS[1:]})
-        except RequestError as error:
-            if error.status == "faulted":
-                raise Error("the tissue's motion became numerically unsound: reset") from error
-            raise
-        self._lit = self._energy
-        if state.tools["hook"]["energized"] != self._lit:
-            raise Error("energy went off by itself: somebody else uses this session")
-        return state
+        return self._tissue.step(self._tip, self._energy, TICKS)
 
     # ---- what is seen
-    def _columns_left(self, state: Advanced) -> npt.NDArray[np.int64]:
+    def _columns_left(self, state: Seen) -> npt.NDArray[np.int64]:
         """1 for each column that is whole, 0 once a face of it has parted. (COLUMNS,)"""
         left = np.ones(COLUMNS, np.int64)
-        assert state.removed is not None
         left[self._column[state.removed[self._band]]] = 0
         return left
 
-    def _burnt(self, state: Advanced) -> int:
-        assert state.removed is not None
+    def _burnt(self, state: Seen) -> int:
         return int(state.removed[self._below].sum())
 
     def _is_parted(self) -> bool:
-        assert self._state.removed is not None
-        faces = self._stream.faces[self._band][~self._state.removed[self._band]]
+        faces = self._tissue.faces[self._band][~self._state.removed[self._band]]
         return bool((self._left == 0).all()) and _is_parted(faces, self._ends)
 
+    def _most_exposed(self, part: npt.NDArray[np.int64]) -> float:
+        """The largest exposure at the faces of a part that still hold; 1 if none does."""
+        held = self._tissue.faces[part][~self._state.removed[part]]
+        return float(self._state.exposure[held].max(initial=0)) if len(held) else 1.0
+
     def _observe(self) -> Observation:
-        exposure = self._state.scalars["exposure"]
-        most = [exposure[vertices].max() for vertices in self._vertices]
+        most = [self._most_exposed(part) for part in self._parts]
         tip = self._tip / np.array([*REACH_M[:2], max(REACH_M[2], DEPTH_M)])
-        return np.r_[tip, self._lit, 1 - self._left, most].clip(-1, 1).astype(np.float32)
+        return np.r_[tip, self._energy, 1 - self._left, most].clip(-1, 1).astype(np.float32)
 
     def _info(self) -> dict[str, Any]:
         return {"tick": self._state.tick, "columns_parted": int((self._left == 0).sum()),

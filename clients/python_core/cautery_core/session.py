@@ -1,0 +1,356 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""A session of tissue in this process."""
+
+from __future__ import annotations
+
+import ctypes
+import json
+import os
+import threading
+import weakref
+from dataclasses import dataclass
+from typing import Any, Mapping
+
+import numpy as np
+import numpy.typing as npt
+
+from . import layout
+from .errors import CommandRefused, CoreError
+from .library import core
+
+Floats = npt.NDArray[np.float64]
+_REST = (1.0, 0.0, 0.0, 0.0)
+
+
+@dataclass(frozen=True)
+class Layer:
+    """A layer of the tissue. Its faces are `first_face` to `first_face + face_count`."""
+
+    name: str
+    kind: str
+    first_face: int
+    face_count: int
+    element_count: int
+
+
+@dataclass(frozen=True)
+class Tool:
+    """A tool after a step. Metres, newtons, radians; `rotation` is w, x, y, z."""
+
+    name: str
+    shape: str
+    position_m: Floats  # (3,), of the tip: tissue can stop the tool
+    rotation: Floats  # (4,)
+    jaw: float  # 0 closed to 1 open
+    energized: bool
+    grasping: bool  # jaws commanded closed
+    slipping: bool
+    grasped_vertices: int
+    contact_vertices: int
+    force_n: Floats  # (3,), of the tissue on the tool, filtered
+    torque_nm: Floats  # (3,), about the tip
+    tip_temperature_c: float
+    energy_j: float  # taken up by tissue
+    slips: int  # times that it fell too far behind its commanded pose
+    sizes: Mapping[str, float]  # the members of a scene's tool, temperature_c among them
+
+
+def _text(bytes_: bytes) -> str:
+    return bytes_.decode("utf-8", "replace")
+
+
+def _raised(error: layout.Error, kind: type[CoreError] = CoreError) -> CoreError:
+    status = layout.STATUSES[error.status] if 0 <= error.status < len(layout.STATUSES) else str(error.status)
+    return kind(status, _text(error.file), _text(error.path), _text(error.reason))
+
+
+def _json(value: Any) -> bytes:
+    """As JSON; arrays of numpy are lists."""
+    try:
+        return json.dumps(value, allow_nan=False, default=lambda array: array.tolist()).encode()
+    except (AttributeError, RecursionError) as error:
+        raise TypeError(f"this cannot be written as JSON: {error}") from error
+
+
+def _path(path: str | os.PathLike[str]) -> bytes:
+    encoded = os.fsencode(path)
+    if b"\0" in encoded:
+        raise ValueError("a path with a zero byte in it")
+    return encoded
+
+
+def _array(kind: type, address: int | None, *shape: int) -> npt.NDArray[Any]:
+    """A copy of the numbers at an address of the core's."""
+    made = np.empty(shape, np.dtype(kind))
+    if made.size:
+        ctypes.memmove(made.ctypes.data, address, made.nbytes)
+    return made
+
+
+def _sizes(definition: layout.ToolDef) -> dict[str, float]:
+    return {name: getattr(definition, name) for name in layout.TOOL_SIZES}
+
+
+def _tool(state: layout.ToolState) -> Tool:
+    return Tool(
+        name=_text(state.name), shape=layout.SHAPES[state.definition.shape],
+        position_m=np.array(state.pose.position_m), rotation=np.array(state.pose.rotation), jaw=state.jaw,
+        energized=state.energized, grasping=state.grasping, slipping=state.slipping,
+        grasped_vertices=state.grasped_vertices, contact_vertices=state.contact_vertices,
+        force_n=np.array(state.force_n), torque_nm=np.array(state.torque_nm),
+        tip_temperature_c=state.tip_temperature_c, energy_j=state.energy_j, slips=state.slips,
+        sizes=_sizes(state.definition))
+
+
+class Session:
+    """A session of a scene: a file's path, or a dictionary with the members of a scene file.
+
+        with Session("fascia.json") as session:
+            session.move_tool("hook", [0, 0, 0])
+            session.step(60)
+
+    `directory`: where a dictionary's mesh files are looked up. `threads`: used by a step, 1 to 16; results do not depend
+    on it. `instruction_set`: the highest to use ("baseline", "avx2", "avx512"), for equal bits on different machines.
+    Arrays are copies. V vertices, F faces. Functions may be called from any thread; calls on one session wait for each
+    other, and sessions do not wait for other sessions. Errors are CoreError; after `close`, ValueError.
+    """
+
+    def __init__(self, scene: str | os.PathLike[str] | Mapping[str, Any], *, directory: str | None = None,
+                 threads: int = 1, command_capacity: int = 1024, instruction_set: str | None = None) -> None:
+        if instruction_set not in (None, *layout.INSTRUCTION_SETS):
+            raise ValueError(f"{instruction_set!r} is none of {', '.join(layout.INSTRUCTION_SETS)}")
+        self._core = core()
+        self._lock = threading.Lock()
+        definition = self._core.cau_default_session_def()
+        definition.thread_count, definition.command_capacity = threads, command_capacity
+        definition.instruction_set = instruction_set.encode() if instruction_set else None
+        pointer, error = ctypes.c_void_p(), layout.Error()
+        if isinstance(scene, Mapping):
+            text = _json(scene)
+            status = self._core.cau_session_from_json(None, text, len(text), _path(directory) if directory else None,
+                                                      definition, pointer, error)
+        else:
+            status = self._core.cau_session_from_file(_path(scene), definition, pointer, error)
+        if status:
+            raise _raised(error)
+        self._pointer: int | None = pointer.value
+        self._end = weakref.finalize(self, self._core.cau_session_destroy, pointer.value)
+        self._end.atexit = False  # another thread may still be in a step when Python ends
+        self._watched = 0
+        self._describe()
+
+    def _describe(self) -> None:
+        """What never changes."""
+        info = layout.SessionInfo()
+        self._core.cau_session_describe(self._pointer, info)
+        self.name, self.description, self.step_s = _text(info.name), _text(info.description), info.step_s
+        self.vertex_count, self.face_count = info.vertex_count, info.face_count
+        self.faces = _array(layout.INTS, info.face, info.face_count, 3)  # vertices of each face
+        self.face_layers = _array(layout.INTS, info.face_layer, info.face_count)
+        self.rest = _array(layout.DOUBLES, info.rest_position, info.vertex_count, 3)  # m
+        self.tetrahedra = _array(layout.INTS, info.tetrahedron, info.tetrahedron_count, 4)
+        self.links = _array(layout.INTS, info.link, info.link_count, 2)
+        self.instruction_set = _text(info.instruction_set)
+        self.layers = tuple(Layer(_text(one.name), layout.LAYER_KINDS[one.kind], one.first_face, one.face_count,
+                                  one.element_count) for one in info.layers[:info.layer_count])
+
+    def __enter__(self) -> Session:
+        return self
+
+    def __exit__(self, *_: object) -> None:
+        self.close()
+
+    def close(self) -> None:
+        """Ends the session, once what another thread does with it has ended. A second call does nothing."""
+        with self._lock:
+            self._pointer = None
+            self._end()
+
+    def _opened(self) -> int:
+        """The session. The caller holds the lock."""
+        if self._pointer is None:
+            raise ValueError("the session is closed")
+        return self._pointer
+
+    def _frame(self) -> layout.Frame:
+        """A view of the present state. The caller holds the lock; nothing of it is kept beyond that."""
+        frame = layout.Frame()
+        self._core.cau_session_frame(self._opened(), frame)
+        return frame
+
+    # ---- commands
+    def submit(self, command: str, *, tick: int = 0, **members: Any) -> None:
+        """Queues a command: `submit("tool.grasp", tool="grasper")`. It acts at the next tick, or at `tick`.
+
+        The members are those of `cautery/command_json.h` and of the wire. A command that is refused at its tick ends
+        `step` with CommandRefused.
+        """
+        text, error = _json({"command": command, "tick": tick, **members}), layout.Error()
+        with self._lock:
+            if self._core.cau_session_submit_json(self._opened(), text, len(text), error):
+                raise _raised(error)
+
+    def move_tool(self, tool: str, position_m: npt.ArrayLike, rotation: npt.ArrayLike = _REST, jaw: float = 0.0) -> None:
+        """Commands the tool's pose: tip (3,), rotation w, x, y, z (4,), jaw 0 closed to 1 open."""
+        self.submit("tool.move", tool=tool, position_m=np.asarray(position_m, float),
+                    rotation=np.asarray(rotation, float), jaw=jaw)
+
+    def energize(self, tool: str, energized: bool = True) -> None:
+        """Turns the tool's energy on or off."""
+        self.submit("tool.energize", tool=tool, energized=bool(energized))
+
+    def grasp(self, tool: str) -> None:
+        """Closes the tool's jaws on what lies between them."""
+        self.submit("tool.grasp", tool=tool)
+
+    def release(self, tool: str) -> None:
+        """Opens the tool's jaws."""
+        self.submit("tool.release", tool=tool)
+
+    def configure_tool(self, tool: str, **changes: Any) -> None:
+        """Changes members of the tool, such as temperature_c or shape. The others stay as the last step left them."""
+        states = self.tools
+        if tool not in states:
+            raise CoreError("not_found", "", "tool", f'there is no tool "{tool}"')
+        self.submit("tool.configure", tool=tool, **{"shape": states[tool].shape, **states[tool].sizes, **changes})
+
+    # ---- time
+    def step(self, ticks: int = 1) -> int:
+        """Goes on by so many ticks, and returns the tick that is reached.
+
+        Raises CoreError ("numerical", "faulted") where the tissue's motion is no longer sound: `restore` ends that. Raises
+        CommandRefused after the tick at which a command was refused.
+        """
+        for _ in range(ticks):
+            self._step_once()
+        return self.tick
+
+    def _step_once(self) -> None:
+        error = layout.Error()
+        with self._lock:
+            status = self._core.cau_session_step(self._opened(), error)
+            frame = self._frame()
+            refused = _raised(frame.refusals[0], CommandRefused) if frame.refusal_count else None
+        if status:
+            raise _raised(error)
+        if refused:
+            raise refused
+
+    def set_threads(self, threads: int) -> None:
+        """Sets the number of threads, 1 to 16, that steps use from now on. Results do not depend on it."""
+        if not 1 <= threads <= 16:
+            raise ValueError(f"{threads} threads: a session uses 1 to 16")
+        with self._lock:
+            self._core.cau_session_set_threads(self._opened(), threads)
+
+    # ---- what a step made
+    @property
+    def tick(self) -> int:
+        """Steps since the beginning."""
+        with self._lock:
+            return int(self._frame().tick)
+
+    @property
+    def time_s(self) -> float:
+        """Simulated time."""
+        with self._lock:
+            return float(self._frame().time_s)
+
+    @property
+    def positions(self) -> Floats:
+        """(V, 3), m."""
+        return self.read_positions(np.empty((self.vertex_count, 3)))
+
+    def read_positions(self, out: Floats) -> Floats:
+        """Writes the positions into an array of the caller's, (V, 3) doubles in C's order, and returns it."""
+        shape = (self.vertex_count, 3)
+        if not isinstance(out, np.ndarray) or out.shape != shape or out.dtype != np.float64 \
+                or not out.flags.c_contiguous or not out.flags.writeable:
+            raise ValueError(f"positions need an array {shape} of doubles, contiguous in C's order and writeable")
+        with self._lock:
+            ctypes.memmove(out.ctypes.data, self._frame().position, out.nbytes)
+        return out
+
+    @property
+    def velocities(self) -> Floats:
+        """(V, 3), m/s."""
+        with self._lock:
+            return _array(layout.DOUBLES, self._frame().velocity, self.vertex_count, 3)
+
+    @property
+    def removed(self) -> npt.NDArray[np.bool_]:
+        """(F,): faces that are not drawn, because they are cut away or lie inside."""
+        with self._lock:
+            words = _array(layout.WORDS, self._frame().face_mask, -(-self.face_count // 32))
+        bits = np.unpackbits(words.astype("<u4").view(np.uint8), bitorder="little")
+        return bits[:self.face_count].astype(bool)
+
+    @property
+    def visible(self) -> npt.NDArray[np.bool_]:
+        """(V,): vertices of drawn faces."""
+        with self._lock:
+            return _array(layout.BYTES, self._frame().vertex_visible, self.vertex_count).astype(bool)
+
+    def scalar(self, name: str) -> npt.NDArray[np.float32]:
+        """(V,) of "exposure", "charring", "stress" (Pa) or "temperature" (degC).
+
+        From the first call on, steps compute stress or temperature too.
+        """
+        if name not in layout.SCALARS:
+            raise ValueError(f"{name!r} is none of {', '.join(layout.SCALARS)}")
+        with self._lock:
+            pointer = self._opened()
+            if not self._watched & layout.SCALARS[name]:
+                self._watched |= layout.SCALARS[name]
+                self._core.cau_session_watch(pointer, self._watched)
+            return _array(layout.FLOATS, self._frame().scalar[list(layout.SCALARS).index(name)], self.vertex_count)
+
+    @property
+    def tools(self) -> dict[str, Tool]:
+        """The tools by name."""
+        with self._lock:
+            frame = self._frame()
+            states = [_tool(frame.tools[i]) for i in range(frame.tool_count)]
+        return {tool.name: tool for tool in states}
+
+    @property
+    def statistics(self) -> dict[str, float]:
+        """Cost and condition of the last step, as `cautery/session.h` has them."""
+        with self._lock:
+            statistics = self._frame().statistics
+        return {field[0]: getattr(statistics, field[0]) for field in layout.Statistics._fields_
+                if field[0] != "seconds"}
+
+    # ---- snapshots
+    def snapshot(self) -> bytes:
+        """The whole state with the queued commands."""
+        count, error = ctypes.c_size_t(), layout.Error()
+        with self._lock:
+            pointer = self._opened()
+            held = ctypes.create_string_buffer(self._core.cau_session_snapshot_bytes(pointer))
+            if self._core.cau_session_snapshot(pointer, held, len(held), count, error):
+                raise _raised(error)
+            return held.raw[:count.value]
+
+    def restore(self, snapshot: bytes) -> bool:
+        """Restores a snapshot of a session of the same scene. False: of another build or instruction set, so not exact.
+
+        Raises CoreError "corrupt", and the session stays as it was, where the bytes are none of this scene's.
+        """
+        exact, error = ctypes.c_bool(), layout.Error()
+        bytes_ = bytes(snapshot)
+        with self._lock:
+            status = self._core.cau_session_restore(self._opened(), bytes_, len(bytes_), exact, error)
+        if status:
+            raise _raised(error)
+        return bool(exact.value)
+
+    def hash(self) -> int:
+        """Hash of the whole state: equal hashes, equal bits."""
+        with self._lock:
+            return int(self._core.cau_session_hash(self._opened()))
+
+    def share(self) -> int:
+        """Shares memory with other sessions of equal tissue that called this; the bytes shared. Results stay the same."""
+        with self._lock:
+            return int(self._core.cau_session_share(self._opened()))
