@@ -113,10 +113,10 @@ foreach(each PYTHON PYTHONCORE) # no programs
   set(CPACK_DEBIAN_${each}_PACKAGE_ARCHITECTURE all)
   set(CPACK_DEBIAN_${each}_PACKAGE_SHLIBDEPS OFF)
 endforeach()
-# ldconfig is asked, as Debian's own libraries ask it.
+# ldconfig is asked, and dependents find the package, as with Debian's own libraries.
 file(WRITE "${CMAKE_BINARY_DIR}/debian/triggers" "activate-noawait ldconfig\n")
-set(CPACK_DEBIAN_CORE_PACKAGE_CONTROL_EXTRA "${CMAKE_BINARY_DIR}/debian/triggers")
-set(CPACK_DEBIAN_CORE_PACKAGE_GENERATE_SHLIBS ON)
+file(WRITE "${CMAKE_BINARY_DIR}/debian/shlibs" "libcautery-core 0.1 libcautery-core0.1 (>= ${PROJECT_VERSION})\n")
+set(CPACK_DEBIAN_CORE_PACKAGE_CONTROL_EXTRA "${CMAKE_BINARY_DIR}/debian/triggers;${CMAKE_BINARY_DIR}/debian/shlibs")
 set(CPACK_DEBIAN_DAEMON_PACKAGE_RECOMMENDS cautery-clients)
 set(CPACK_DEBIAN_DAEMON_PACKAGE_CONTROL_EXTRA
   "${debian}/postinst;${debian}/prerm;${debian}/postrm;${debian}/conffiles")
