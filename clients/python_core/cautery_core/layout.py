@@ -21,7 +21,8 @@ STAGES = ("commands", "predict", "local", "global", "contact", "heat", "dissect"
 SCALARS = {"exposure": 1 << 2, "charring": 1 << 3, "stress": 1 << 4, "temperature": 1 << 7}
 TOOL_SIZES = ("hot_radius_m", "tip_length_m", "shaft_radius_m", "shaft_length_m", "jaw_open_rad", "temperature_c",
               "grid_cells", "grid_step_m", "diffusivity_m2_s", "max_speed_m_s", "max_turn_rad_s", "friction",
-              "drag_ns_m", "grasp_stiffness_n_m", "slip_force_n", "force_max_n", "close_force_n")
+              "drag_ns_m", "grasp_stiffness_n_m", "slip_force_n", "force_max_n", "close_force_n", "power_w", "peak_v", "crest_factor",
+              "current_max_a")
 
 
 class Error(Structure):
@@ -87,7 +88,8 @@ class ToolState(Structure):
                 ("contact_vertices", c_int32), ("touched_layers", c_int32), ("force_n", c_double * 3),
                 ("torque_nm", c_double * 3), ("raw_force_n", c_double * 3), ("raw_torque_nm", c_double * 3),
                 ("tip_temperature_c", c_double), ("energy_j", c_double), ("sequence", c_uint64), ("asked_pose", Pose),
-                ("slips", c_int32), ("unused", c_int32), ("asked_jaw", c_double), ("jaw_force_n", c_double)]
+                ("slips", c_int32), ("unused", c_int32), ("asked_jaw", c_double), ("jaw_force_n", c_double),
+                ("delivered_w", c_double), ("load_ohm", c_double)]
 
 
 class Statistics(Structure):
