@@ -36,7 +36,7 @@ function weigh(): void {
   const weight: Weight = { plain: false, calls: 0, triangles: 0, textureBytes: 0, pictures: 0 };
   window.weight = weight;
   performance.now = () => 0; // or pictures get coarser where they take long
-  const BODY = ['float zone = 3.0', 'mix(1.15, 0.55, vTip)', 'thread < 0.36']; // of the shaders of flesh, edge and fringe
+  const BODY = ['float zone = 3.0', 'mix(1.15, 0.55, vTip)', 'thread < 0.47']; // of the shaders of flesh, edge and fringe
   const gl = WebGL2RenderingContext.prototype;
   const sources = new WeakMap<WebGLShader, string>();
   const ofBody = new WeakSet<WebGLProgram>();

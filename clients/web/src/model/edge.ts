@@ -1,16 +1,21 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // The edge of a sheet, which has no thickness in the daemon's mesh: a wall as high as the sheet is thick, down
-// from every side at which it ends, at its border or beside faces that are gone. Only sight.
-import { bandIndex, FRINGE_FLOATS, writeRecord, type FringeShape, type FringeSource } from './fringe';
+// from every side at its border. Cuts have lips of their own (lips.ts). Only sight.
+import { SURFACE_FLOATS, writeRecord, type SurfaceShape, type SurfaceSource } from './surface';
+
+/** Of two triangles for each pair of rows, between their upper (2 row) and lower (2 row + 1) records. */
+function bandIndex(pairs: readonly (readonly [number, number])[]): Uint32Array<ArrayBuffer> {
+  return Uint32Array.from(pairs.flatMap(([a, b]) => [2 * a, 2 * b, 2 * b + 1, 2 * a, 2 * b + 1, 2 * a + 1]));
+}
 
 export class Edge {
   private vertices: number[] = [];
   private index = new Uint32Array(0);
 
   constructor(
-    private readonly source: FringeSource,
+    private readonly source: SurfaceSource,
     private readonly layerFaces: Int32Array,
-    /** see makeNeighbours */
+    /** see makeNeighbours in surface.ts */
     private readonly neighbours: Int32Array,
     private readonly thicknessM: number,
   ) {}
@@ -34,16 +39,15 @@ export class Edge {
     this.layerFaces.forEach((face, i) => {
       if (hidden[face]) return;
       for (let c = 0; c < 3; c++) {
-        const beyond = this.neighbours[3 * i + c];
-        if (beyond < 0 || hidden[beyond]) pairs.push([row(faces[3 * face + c]), row(faces[3 * face + ((c + 1) % 3)])]);
+        if (this.neighbours[3 * i + c] < 0) pairs.push([row(faces[3 * face + c]), row(faces[3 * face + ((c + 1) % 3)])]);
       }
     });
     this.index = bandIndex(pairs);
   }
 
   /** The wall where the tissue is now; index is shared with later shapes until faces change. */
-  shape(): FringeShape {
-    const records = new Float32Array(2 * FRINGE_FLOATS * this.vertices.length);
+  shape(): SurfaceShape {
+    const records = new Float32Array(2 * SURFACE_FLOATS * this.vertices.length);
     const { normal } = this.source;
     this.vertices.forEach((vertex, i) => {
       // Down is where the ground is, whichever side the mesh calls its front.

@@ -41,7 +41,7 @@ export function lobeValues(size: number): Uint8Array {
   return values;
 }
 
-const REACH = 6; // texels from a vessel's wall to where nothing is told of it
+const FALL = 18; // squared texels from a vessel's wall to where nothing is told of it, over a half
 const TRUNKS = 4;
 const STEP = 2.2; // texels
 const RISE = 16; // steps
@@ -99,12 +99,13 @@ interface Piece {
 }
 
 function mark(values: Uint8Array, size: number, { x, y, dx, dy }: Piece, radius: number): void {
-  const reach = REACH + STEP + 2;
+  const reach = Math.sqrt(FALL) + STEP + 2;
   for (let j = Math.floor(y - reach); j <= y + reach; j++) {
     for (let i = Math.floor(x - reach); i <= x + reach; i++) {
       const share = Math.min(Math.max(((i - x) * dx + (j - y) * dy) / (STEP * STEP), 0), 1);
       const [ax, ay] = [i - x - share * dx, j - y - share * dy];
-      const inside = 0.5 + (radius - Math.sqrt(ax * ax + ay * ay)) / REACH;
+      // By the square of the distance: a ridge with a kink would be lost between texels, and the vessel be dotted.
+      const inside = 0.5 + (radius * radius - ax * ax - ay * ay) / FALL;
       const at = (((j % size) + size) % size) * size + (((i % size) + size) % size);
       values[at] = Math.max(values[at], Math.round(255 * Math.min(Math.max(inside, 0), 1)));
     }

@@ -5,8 +5,10 @@
 import type { Changes, StreamState } from '../wire/decoder';
 import { SCALARS, type LayerDescription } from '../wire/messages.gen';
 import type { Topology } from '../wire/topology';
+import { CutSides, cornersOf } from './cut_sides';
 import { Edge } from './edge';
-import { Fringe, makeNeighbours } from './fringe';
+import { Lips } from './lips';
+import { makeNeighbours } from './surface';
 import { makeVertexFaces, markInnerFaces, type VertexFaces } from './topology_tables';
 
 export interface Batch {
@@ -50,9 +52,14 @@ export class Tissue {
   readonly temperatureRangeC: [number, number] = [BOILING_C, BOILING_C];
   /** drawn faces of each batch; made anew where changed */
   readonly drawnIndex: Uint32Array[];
-  /** what hangs off the rims of each batch, and its edge; null where it is no sheet */
-  readonly fringes: (Fringe | null)[];
+  /** how many of the drawn faces, the first ones, are drawn as they are; the others are drawn finer, as lips */
+  readonly plainFaces: Int32Array;
+  /** what a cut lays bare of each batch; null where nothing is drawn finer */
+  readonly lips: (Lips | null)[];
+  /** of sheets, at their borders */
   readonly edges: (Edge | null)[];
+  /** of sheets: the face beyond each side of each face */
+  private readonly neighbours: (Int32Array | null)[];
   private readonly vertexFaces: VertexFaces;
   private readonly batchOfFace: Int32Array;
   private readonly hidden: Uint8Array;
@@ -73,9 +80,16 @@ export class Tissue {
     this.faceMark = new Int32Array(faceCount);
     this.batches = makeBatches(source);
     this.drawnIndex = this.batches.map(() => new Uint32Array(0));
-    const sheets = this.batches.map((batch) => this.makeSheet(batch));
-    this.fringes = sheets.map((sheet) => sheet?.fringe ?? null);
-    this.edges = sheets.map((sheet) => sheet?.edge ?? null);
+    this.plainFaces = new Int32Array(this.batches.length);
+    this.neighbours = this.batches.map(({ kind, faces }) => (isSheet(kind) ? makeNeighbours(topology.faces, faces, vertexCount) : null));
+    const { material } = source;
+    const surface = { faces: topology.faces, material, position: this.position, normal: this.normal, burn: this.burn, hidden: this.hidden };
+    const thick = (batch: Batch): number => source.thicknessM[batch.layer] ?? USUAL_SHEET_M;
+    this.lips = this.batches.map((batch) => (isSheet(batch.kind) ? new Lips(surface, thick(batch)) : batch.bared ? new Lips(surface, 0) : null));
+    this.edges = this.batches.map((batch, b) => {
+      const beyond = this.neighbours[b];
+      return beyond && new Edge(surface, batch.faces, beyond, thick(batch));
+    });
     this.batchOfFace = new Int32Array(faceCount);
     this.batches.forEach((batch, b) => {
       for (const face of batch.faces) this.batchOfFace[face] = b;
@@ -92,7 +106,6 @@ export class Tissue {
     if (changes.scalars) this.updateBurn(state);
     for (const batch of changedBatches) {
       this.updateIndex(batch);
-      this.fringes[batch]?.rebuild();
       this.edges[batch]?.rebuild();
     }
     return [...changedBatches];
@@ -106,16 +119,6 @@ export class Tissue {
       counts[name] = this.drawnIndex[b].length / 3;
     });
     return counts;
-  }
-
-  private makeSheet(batch: Batch): { fringe: Fringe; edge: Edge } | null {
-    if (batch.kind !== 'fascia' && batch.kind !== 'membrane') return null;
-    const { position, normal, burn, hidden } = this;
-    const { topology, material, vertexCount } = this.source;
-    const source = { faces: topology.faces, material, position, normal, burn, burnBytes: BURN_BYTES, hidden };
-    const neighbours = makeNeighbours(topology.faces, batch.faces, vertexCount);
-    const thicknessM = this.source.thicknessM[batch.layer] ?? USUAL_SHEET_M;
-    return { fringe: new Fringe(source, batch.faces, neighbours), edge: new Edge(source, batch.faces, neighbours, thicknessM) };
   }
 
   private touchFace(face: number, touched: number[]): void {
@@ -246,11 +249,20 @@ export class Tissue {
 
   private updateIndex(b: number): void {
     const { faces } = this.source.topology;
-    const drawn = this.batches[b].faces.filter((face) => !this.hidden[face]);
-    const index = new Uint32Array(3 * drawn.length);
-    drawn.forEach((face, i) => index.set(faces.subarray(3 * face, 3 * face + 3), 3 * i));
-    this.drawnIndex[b] = index;
+    const { faces: own, bared } = this.batches[b];
+    const drawn = own.filter((face) => !this.hidden[face]);
+    const beyond = this.neighbours[b];
+    const cuts = new CutSides(faces, beyond ? own : new Int32Array(0), beyond ?? new Int32Array(0), this.hidden);
+    const finer = bared ? drawn : drawn.filter((face) => cuts.touches(face));
+    const plain = bared ? new Int32Array(0) : drawn.filter((face) => !cuts.touches(face));
+    this.plainFaces[b] = plain.length;
+    this.drawnIndex[b] = Uint32Array.from([...cornersOf(faces, plain), ...cornersOf(faces, finer)]);
+    this.lips[b]?.rebuild(cornersOf(faces, finer), (u, v) => !bared && !cuts.has(u, v));
   }
+}
+
+function isSheet(kind: Batch['kind']): boolean {
+  return kind === 'fascia' || kind === 'membrane';
 }
 
 function range(first: number, count: number): Int32Array {

@@ -8,7 +8,7 @@ import type { ToolState } from '../wire/records';
 import { CAPSULES_MAX, GLOWS_MAX, type SharedUniforms } from './tissue_view';
 import type { ToolView } from './tool_view';
 
-const GLOW = 0.8; // of a tip at its hottest
+const GLOW = 0.12; // of a tip at its hottest
 
 export function placeShadows(
   shared: SharedUniforms,

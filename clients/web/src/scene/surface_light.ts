@@ -17,7 +17,7 @@ void main() {
   gl_Position = projectionMatrix * viewMatrix * vec4(position, 1.0);
 }`;
 
-export const FRINGE_VERTEX = /* glsl */ `
+export const SURFACE_VERTEX = /* glsl */ `
 in vec3 material;
 in vec4 burn;
 in float tip;
@@ -60,7 +60,7 @@ uniform vec4 tips[4];     // xyz of tips and the radius of what works there; 0: 
 float n(vec3 p) { return texture(noise, p).r; }
 float lobed(vec3 p) { return texture(lobes, p).r; }
 // Vessels in a plane of 14 cm; they lie in what they run through, so that only their middle is dark.
-float vessel(vec2 at) { return smoothstep(0.45, 0.56, texture(vessels, at / 0.14).r); }
+float vessel(vec2 at) { return smoothstep(0.45, 0.55, texture(vessels, at / 0.14).r); }
 
 // Share of the sky that a capsule leaves (after Quilez), and of the lamp.
 float openness(vec3 p, vec3 normal, vec3 a, vec3 b, float r) {
@@ -133,26 +133,25 @@ vec3 shade(Surface s, vec3 view) {
   return colour;
 }
 
-// Heat first dries and blanches, then browns; where it has burnt edges through, blotches and streaks of
-// char. What a tissue is browned to is its own: collagen to tan, fat to amber.
-void burnt(inout Surface s, vec3 browned, float blotch) {
+// Heat first dries and blanches, then browns; char is only where next to nothing is left of what was there. All of it
+// goes from one to the next without a step. What a tissue blanches and
+// is browned to is its own: collagen to cream and tan, fat to straw and amber.
+void burnt(inout Surface s, vec3 pale, vec3 browned, float blotch) {
+  blotch = clamp(2.2 * blotch - 0.6, 0.0, 1.0);
   // Heat made every rim: what is left of a parted edge is burnt even where its own nodes took up less.
-  float e = max(vBurn.x, 0.9 * vBurn.z * vBurn.z);
+  float e = max(vBurn.x, 0.85 * vBurn.z * vBurn.z);
   e += 0.3 * (blotch - 0.5) * smoothstep(0.05, 0.3, e);
-  s.colour = mix(s.colour, vec3(0.74, 0.60, 0.45), 0.45 * smoothstep(0.12, 0.45, e));
-  s.colour = mix(s.colour, browned, 0.85 * smoothstep(0.45, 0.9, e));
-  // On the wall of a cut a third to a half of a vertex's edges are gone: that is as black as it gets.
-  // With the dose it goes from what it is browned to over dark brown to black, in blotches.
-  float c = clamp(min(2.0 * vBurn.y, 1.0) + 0.45 * vBurn.z, 0.0, 1.3) * (0.35 + 1.1 * blotch);
-  s.colour = mix(s.colour, browned * vec3(0.42, 0.36, 0.34), 0.85 * smoothstep(0.30, 0.85, c));
-  s.colour = mix(s.colour, vec3(0.030, 0.019, 0.014), 0.94 * smoothstep(0.62, 1.15, c));
-  s.wet *= 1.0 - 0.55 * smoothstep(0.3, 0.8, e);
+  s.colour = mix(s.colour, pale, 0.60 * smoothstep(0.08, 0.50, e));
+  s.colour = mix(s.colour, browned, 0.55 * smoothstep(0.60, 1.10, e));
+  // Where a cut went a third to a half of a vertex's edges are gone: brown there, narrowly at the lip itself, and
+  // black only where nearly all are gone.
+  float lip = smoothstep(0.55, 1.0, vBurn.z);
+  float c = (vBurn.y + 0.30 * lip) * (0.40 + 1.2 * blotch);
+  s.colour = mix(s.colour, browned * vec3(0.62, 0.52, 0.46), 0.85 * smoothstep(0.18, 0.60, c));
+  s.colour = mix(s.colour, browned * vec3(0.20, 0.17, 0.16), 0.85 * smoothstep(0.55, 1.00, c));
+  s.colour = mix(s.colour, vec3(0.030, 0.019, 0.014), 0.85 * smoothstep(0.95, 1.25, c));
+  s.wet *= 1.0 - 0.45 * smoothstep(0.3, 0.9, e);
   s.alpha = mix(s.alpha, 1.0, smoothstep(0.3, 0.7, e));
-}
-
-// Cut sheets end in fibres: near a rim, what lies between the fibres is gone.
-void fray(float fibre) {
-  if (vBurn.z > 0.72 + 0.62 * fibre) discard;
 }
 
 // As film does (after Narkowicz): bright places keep their colour instead of running into white.

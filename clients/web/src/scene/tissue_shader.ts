@@ -19,7 +19,9 @@ Surface fascia(vec3 normal, vec3 view, vec3 m, out float fibre, out float blotch
   vec2 rise = vec2(weave(along + over.x, unused, unused), weave(along + over.y, unused, unused)) - here;
   // It is uneven by some tenths of a millimetre, which breaks what it mirrors into wet patches.
   blotch = n(m * 34.0);
-  vec2 uneven = vec2(n((m + over.x) * 34.0), n((m + over.y) * 34.0)) - blotch;
+  // A difference over more than a texel of the noise: over less it has a step at each, which mirrors as squares.
+  Steps wide = steps(0.0009);
+  vec2 uneven = (vec2(n((m + wide.x) * 34.0), n((m + wide.y) * 34.0)) - blotch) * over.longer / wide.longer;
   fibre = 0.5 * bundle + 0.5 * strand;
   float dense = smoothstep(0.34, 0.66, 0.84 * here + 0.16 * blotch);
   Surface s;
@@ -34,6 +36,7 @@ Surface fascia(vec3 normal, vec3 view, vec3 m, out float fibre, out float blotch
   s.wet = mix(0.26, 0.66, smoothstep(0.40, 0.62, blotch)); // the film lies in patches
   return s;
 }
+const vec3 CREAM = vec3(0.78, 0.66, 0.51);
 const vec3 TAN = vec3(0.40, 0.235, 0.115);
 `;
 
@@ -44,8 +47,7 @@ void main() {
   if (dot(normal, view) < 0.0) normal = -normal;
   float fibre, blotch;
   Surface s = fascia(normal, view, vMaterial, fibre, blotch);
-  fray(fibre);
-  burnt(s, TAN, 0.6 * fibre + 0.4 * blotch);
+  burnt(s, CREAM, TAN, 0.6 * fibre + 0.4 * blotch);
   finish(s, view);
 }`;
 
@@ -57,16 +59,17 @@ void main() {
   vec3 normal = normalize(vNormal);
   if (dot(normal, view) < 0.0) normal = -normal;
   vec3 wave = vMaterial + 0.0005 * vTip * (vec3(n(vMaterial * 90.0), n(vMaterial * 90.0 + 0.4), 0.5) - 0.5);
-  float coarse = n(wave * 330.0 + 0.71);
-  float fine = n(wave * 900.0 + 0.13);
+  // Threads are long along the fibre and a tenth of a millimetre wide.
+  float coarse = n(vec3(60.0, 420.0, 420.0) * wave + 0.71);
+  float fine = n(vec3(90.0, 1100.0, 1100.0) * wave + 0.13);
   float thread = 0.62 * coarse + 0.38 * fine;
-  if (thread < 0.36 + 0.26 * vTip) discard;
+  if (thread < 0.47 + 0.16 * vTip) discard;
   float fibre, blotch;
   Surface s = fascia(normal, view, wave, fibre, blotch);
   s.colour *= 0.75 + 0.5 * fine;
   s.alpha = 1.0;
   s.wet = 0.1;
-  burnt(s, TAN, 0.35 + 0.3 * vTip + 0.35 * fine);
+  burnt(s, CREAM, TAN, 0.35 + 0.3 * vTip + 0.35 * fine);
   finish(s, view);
 }`;
 
@@ -75,19 +78,19 @@ const EDGE = /* glsl */ `
 in float vTip;
 void main() {
   vec3 view = normalize(cameraPosition - vWorld);
-  vec3 normal = normalize(cross(dFdx(vWorld), dFdy(vWorld)));
+  vec3 normal = normalize(vNormal);
   if (dot(normal, view) < 0.0) normal = -normal;
   float fibre, blotch;
   Surface s = fascia(normal, view, vMaterial, fibre, blotch);
-  fray(fibre);
-  s.colour *= mix(1.15, 0.55, vTip) * (0.75 + 0.5 * fibre);
+  s.colour *= mix(1.15, 0.55, vTip) * (0.80 + 0.4 * fibre);
   s.alpha = 1.0;
-  burnt(s, TAN, 0.6 * fibre + 0.4 * blotch);
+  burnt(s, CREAM, TAN, 0.6 * fibre + 0.4 * blotch);
   finish(s, view);
 }`;
 
 // Lobes of fat, domed, with septa between them.
 const FAT_LOOK = /* glsl */ `
+const vec3 STRAW = vec3(0.80, 0.57, 0.25);
 float domes(vec3 m) { return lobed(m * 33.0) + 0.22 * lobed(m * 91.0); }
 Surface fat(vec3 normal, vec3 m, float bulge, out float grain) {
   vec3 bent = m + 0.0024 * (n(m * 27.0) - 0.5) * vec3(1.0, -0.8, 0.6);
@@ -126,8 +129,7 @@ void main() {
   if (dot(normal, view) < 0.0) normal = -normal;
   float film;
   Surface s = membrane(normal, vMaterial, film);
-  fray(film);
-  burnt(s, vec3(0.46, 0.185, 0.07), 0.5 * film + 0.5 * n(vMaterial * 70.0));
+  burnt(s, vec3(0.78, 0.62, 0.42), vec3(0.46, 0.185, 0.07), 0.5 * film + 0.5 * n(vMaterial * 70.0));
   finish(s, view);
 }`;
 
@@ -138,22 +140,34 @@ void main() {
   if (dot(normal, view) < 0.0) normal = -normal;
   float grain;
   Surface s = fat(normal, vMaterial, 0.0015, grain);
-  burnt(s, vec3(0.54, 0.235, 0.065), 0.5 * grain + 0.5 * n(vMaterial * 60.0 + 0.5));
+  burnt(s, STRAW, vec3(0.54, 0.235, 0.065), 0.5 * grain + 0.5 * n(vMaterial * 60.0 + 0.5));
   finish(s, view);
 }`;
 
-// The inside of fat, laid open: flat pieces, moist, with torn septa and a little blood.
+// The inside of fat, laid open: small lobules, moist, browned from the septa between them, with a little blood. It lies
+// in a hollow, where less light comes from all around.
 const BARED = /* glsl */ `
+float lobules(vec3 m) { return lobed(m * 52.0) + 0.30 * lobed(m * 117.0); }
 void main() {
   vec3 view = normalize(cameraPosition - vWorld);
-  vec3 normal = normalize(cross(dFdx(vWorld), dFdy(vWorld)));
+  vec3 normal = normalize(vNormal);
   if (dot(normal, view) < 0.0) normal = -normal;
-  float grain;
-  Surface s = fat(normal, vMaterial, 0.0018, grain);
-  float blood = n(vMaterial * 24.0 + 0.23);
-  s.colour = mix(s.colour, vec3(0.45, 0.06, 0.04), 0.5 * smoothstep(0.50, 0.66, blood));
-  s.wet = 0.55;
-  burnt(s, vec3(0.42, 0.20, 0.05), 0.5 * grain + 0.5 * n(vMaterial * 60.0 + 0.5));
+  vec3 bent = vMaterial + 0.0016 * (n(vMaterial * 41.0) - 0.5) * vec3(1.0, -0.8, 0.6);
+  float here = lobules(bent);
+  Steps over = steps(0.0003);
+  vec2 rise = vec2(lobules(bent + over.x), lobules(bent + over.y)) - here;
+  float dome = smoothstep(0.10, 0.80, here);
+  float patchy = smoothstep(0.30, 0.70, n(vMaterial * 60.0 + 0.5));
+  Surface s;
+  s.normal = bend(normal, over, rise, 0.0017);
+  s.colour = mix(vec3(0.62, 0.30, 0.10), vec3(0.90, 0.65, 0.26), dome) * (0.92 + 0.16 * n(vMaterial * 120.0));
+  s.alpha = 1.0;
+  s.gloss = 50.0;
+  s.wet = 0.5;
+  burnt(s, STRAW, vec3(0.47, 0.24, 0.075), 0.55 * (1.0 - dome) + 0.45 * patchy);
+  float blood = smoothstep(0.54, 0.68, n(vMaterial * 24.0 + 0.23)) * (1.0 - 0.6 * dome);
+  s.colour = mix(s.colour, vec3(0.33, 0.045, 0.03), 0.45 * blood);
+  s.colour *= vec3(0.56, 0.50, 0.44) + vec3(0.38, 0.44, 0.48) * dome;
   finish(s, view);
 }`;
 
@@ -173,7 +187,7 @@ vec3 inside(vec3 m, float zone, float film, float pixel, Steps over, out vec2 ri
   colour = mix(colour, vec3(0.93, 0.72, 0.36), 0.4 * smoothstep(0.6, 1.0, lobe));
   colour = mix(colour * (0.93 + 0.14 * film), vec3(0.74, 0.38, 0.31), 0.30);
   float blood = textureLod(vessels, (m.yx + vec2(0.031, 0.012)) / 0.14, log2(1371.0 * pixel)).r;
-  colour = mix(colour, vec3(0.34, 0.03, 0.035), 0.7 * smoothstep(0.45, 0.56, blood));
+  colour = mix(colour, vec3(0.34, 0.03, 0.035), 0.7 * smoothstep(0.45, 0.55, blood));
   colour = mix(colour, vec3(0.62, 0.20, 0.13), 0.45 * smoothstep(0.45, 0.65, blotch));
   float stripe = near(noise, vec3(28.0 * m.x, 260.0 * m.y + 70.0 * blotch, 40.0 * m.z), 5000.0 * pixel);
   vec3 muscle = mix(vec3(0.27, 0.040, 0.032), vec3(0.38, 0.075, 0.058), smoothstep(0.3, 0.7, stripe));

@@ -21,8 +21,8 @@ import { colourRow, type ColourMap } from '../model/colour_maps';
 import { BURN_BYTES, SCALAR } from '../model/tissue';
 import type { Frame, Joined } from '../wire/worker_messages';
 import { makeLobes, makeNoise, makeVessels } from './noise';
-import { FringeView } from './fringe_view';
 import { VERTEX } from './surface_light';
+import { SurfaceView } from './surface_view';
 import { FRAGMENTS, type SurfaceKind } from './tissue_shader';
 
 export const CAPSULES_MAX = 8;
@@ -90,8 +90,9 @@ export class TissueView {
   readonly normal: BufferAttribute;
   private readonly burn: BufferAttribute;
   private readonly meshes: Mesh<BufferGeometry, ShaderMaterial>[];
-  private readonly fringes: (FringeView | null)[];
-  private readonly edges: (FringeView | null)[];
+  /** of each batch: the surface that cuts lay bare, its lips, and what frays from them */
+  private readonly lips: (Record<'band' | 'wall' | 'fringe', SurfaceView> | null)[];
+  private readonly edges: (SurfaceView | null)[];
 
   constructor(
     readonly joined: Joined,
@@ -110,18 +111,22 @@ export class TissueView {
       geometry.setAttribute('burn', this.burn);
       geometry.setAttribute('material', material);
       geometry.setIndex(new BufferAttribute(new Uint32Array(0), 1));
-      const kind: SurfaceKind = batch.bared ? 'bared' : batch.kind === 'links' ? 'membrane' : batch.kind;
+      const kind = surfaceKind(batch);
       const mesh = new Mesh(geometry, makeMaterial(kind, shared));
       mesh.frustumCulled = false;
       mesh.renderOrder = kind === 'fascia' ? 2 : 1;
       this.group.add(mesh);
       return mesh;
     });
-    const views = (of: 'fringe' | 'edge'): (FringeView | null)[] =>
-      joined.batches.map(({ kind }) => (kind === 'fascia' || kind === 'membrane' ? new FringeView(shared, of) : null));
-    this.fringes = views('fringe');
-    this.edges = views('edge');
-    for (const view of [...this.fringes, ...this.edges]) if (view) this.group.add(view.mesh);
+    const sheet = ({ kind }: Joined['batches'][number]): boolean => kind === 'fascia' || kind === 'membrane';
+    this.lips = joined.batches.map((batch) => {
+      if (!sheet(batch) && !batch.bared) return null;
+      return { band: new SurfaceView(shared, surfaceKind(batch)), wall: new SurfaceView(shared, 'edge'), fringe: new SurfaceView(shared, 'fringe') };
+    });
+    this.edges = joined.batches.map((batch) => (sheet(batch) ? new SurfaceView(shared, 'edge') : null));
+    joined.batches.forEach((_batch, b) => {
+      for (const view of this.beside(b)) this.group.add(view.mesh);
+    });
   }
 
   /** Takes a frame over; returns the arrays that were drawn before, to be given back. */
@@ -135,8 +140,9 @@ export class TissueView {
     this.normal.array = frame.buffers.normal;
     this.burn.array = frame.buffers.burn;
     for (const attribute of [this.position, this.normal, this.burn]) attribute.needsUpdate = true;
-    for (const { batch, index } of frame.drawn) this.setIndex(batch, index);
-    for (const { batch, ...shape } of frame.fringes) this.fringes[batch]?.take(shape);
+    for (const { batch, index, plain } of frame.drawn) this.setIndex(batch, index, plain);
+    for (const { batch, ...shape } of frame.lips)
+      for (const part of ['band', 'wall', 'fringe'] as const) this.lips[batch]?.[part].take(shape[part]);
     for (const { batch, ...shape } of frame.edges) this.edges[batch]?.take(shape);
     return before;
   }
@@ -145,14 +151,15 @@ export class TissueView {
     this.joined.batches.forEach((batch, b) => {
       if (batch.layer !== layer) return;
       this.meshes[b].visible = visible;
-      this.fringes[b]?.show(visible);
-      this.edges[b]?.show(visible);
+      for (const view of this.beside(b)) view.show(visible);
     });
   }
 
   setWireframe(wireframe: boolean): void {
-    for (const mesh of this.meshes) mesh.material.wireframe = wireframe;
-    for (const view of [...this.fringes, ...this.edges]) view?.setWireframe(wireframe);
+    this.meshes.forEach((mesh, b) => {
+      mesh.material.wireframe = wireframe;
+      for (const view of this.beside(b)) view.setWireframe(wireframe);
+    });
   }
 
   /** Indices of what can be seen, for picking. */
@@ -186,14 +193,22 @@ export class TissueView {
   }
 
   dispose(): void {
-    for (const mesh of this.meshes) {
+    this.meshes.forEach((mesh, b) => {
       mesh.geometry.dispose();
       mesh.material.dispose();
-    }
-    for (const view of [...this.fringes, ...this.edges]) view?.dispose();
+      for (const view of this.beside(b)) view.dispose();
+    });
   }
 
-  private setIndex(batch: number, index: Uint32Array): void {
+  /** What is drawn of a batch beside its own faces. */
+  private beside(batch: number): SurfaceView[] {
+    const lips = this.lips[batch];
+    const edge = this.edges[batch];
+    return [...(lips ? [lips.band, lips.wall, lips.fringe] : []), ...(edge ? [edge] : [])];
+  }
+
+  /** `plain`: how many of the faces are drawn as they are. */
+  private setIndex(batch: number, index: Uint32Array, plain: number): void {
     this.indices[batch] = index;
     const { geometry } = this.meshes[batch];
     const attribute = geometry.getIndex()!;
@@ -204,8 +219,12 @@ export class TissueView {
       attribute.array.set(index);
       attribute.needsUpdate = true;
     }
-    geometry.setDrawRange(0, index.length);
+    geometry.setDrawRange(0, 3 * plain);
   }
+}
+
+function surfaceKind(batch: Joined['batches'][number]): SurfaceKind {
+  return batch.bared ? 'bared' : batch.kind === 'links' ? 'membrane' : batch.kind;
 }
 
 /** Whether a point is inside a triangle seen along z. */

@@ -37,7 +37,9 @@ void main() {
   float diffuse = clamp((dot(normal, toLight) + 0.2) / 1.2, 0.0, 1.0);
   float shine = pow(max(dot(normal, normalize(toLight + view)), 0.0), 70.0);
   vec3 colour = base * mix(0.22 + 0.8 * diffuse, room + 0.25 * diffuse, mirror) + shine * (0.3 + mirror) * 0.7;
-  colour = mix(colour, vec3(1.0, 0.42, 0.12) * (0.5 + 0.5 * diffuse), 0.22 * heat) + heat * vec3(0.10, 0.025, 0.0);
+  // Steel glows only far above what cuts tissue: a trace of warmth, no colour of its own.
+  colour *= mix(vec3(1.0), vec3(1.04, 0.97, 0.88), heat);
+  colour += heat * vec3(0.020, 0.008, 0.0);
   fragment = linearToOutputTexel(vec4(colour, 1.0));
 }`;
 

@@ -17,7 +17,8 @@ export class Feed {
   readonly joined: Joined;
   private readonly tissue: Tissue;
   private readonly stale = new Set<number>();
-  private readonly fringed = new Set<number>();
+  /** batches whose lips were shown when they were last handed over */
+  private readonly lipped = new Set<number>();
   private spare: FrameBuffers | null;
   private newest: StreamState | null = null;
   private last: StreamState | null = null;
@@ -99,10 +100,10 @@ export class Feed {
     buffers.position.set(tissue.position);
     buffers.normal.set(tissue.normal);
     buffers.burn.set(tissue.burn);
-    const drawn = [...this.stale].map((batch) => ({ batch, index: tissue.drawnIndex[batch] }));
+    const drawn = [...this.stale].map((batch) => ({ batch, index: tissue.drawnIndex[batch], plain: tissue.plainFaces[batch] }));
     this.stale.clear();
     const { samples, changed } = this;
-    const fringes = changed ? this.fringes() : [];
+    const lips = changed ? this.lips() : [];
     const edges = changed ? this.edges() : [];
     this.samples = [];
     this.changed = false;
@@ -117,7 +118,7 @@ export class Feed {
       changed,
       buffers,
       drawn,
-      fringes,
+      lips,
       edges,
       drawnFaces: tissue.drawnFaceCounts(),
       stressScalePa: tissue.stressScale * this.stream.stress_step_pa,
@@ -134,13 +135,13 @@ export class Feed {
     return this.tissue.edges.flatMap((edge, batch) => (edge ? [{ batch, ...edge.shape() }] : []));
   }
 
-  /** Of all batches that have a rim, or had one when they were last handed over. */
-  private fringes(): Frame['fringes'] {
-    return this.tissue.fringes.flatMap((fringe, batch) => {
-      if (!fringe || (fringe.rimVertexCount === 0 && !this.fringed.has(batch))) return [];
-      if (fringe.rimVertexCount === 0) this.fringed.delete(batch);
-      else this.fringed.add(batch);
-      return [{ batch, ...fringe.shape() }];
+  /** Of all batches that have any, or had when they were last handed over. */
+  private lips(): Frame['lips'] {
+    return this.tissue.lips.flatMap((lips, batch) => {
+      if (!lips || (lips.empty && !this.lipped.has(batch))) return [];
+      if (lips.empty) this.lipped.delete(batch);
+      else this.lipped.add(batch);
+      return [{ batch, ...lips.shape() }];
     });
   }
 }

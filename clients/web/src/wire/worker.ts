@@ -62,7 +62,8 @@ function handOver(): void {
   const frame = feed?.handOver(subscription?.framesDecoded ?? 0, subscription?.framesSkipped ?? 0);
   if (!frame) return;
   const { position, normal, burn } = frame.buffers;
-  scope.postMessage({ type: 'frame', frame }, [position.buffer, normal.buffer, burn.buffer]);
+  const lips = frame.lips.flatMap(({ band, wall, fringe }) => [band, wall, fringe].map(({ records }) => records.buffer));
+  scope.postMessage({ type: 'frame', frame }, [position.buffer, normal.buffer, burn.buffer, ...lips]);
 }
 
 function sampleOf(state: StreamState, bytes: number, decodeMs: number): Sample {

@@ -1,8 +1,9 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // What page and worker say to each other.
 import type { Surroundings } from '../model/field_shape';
-import type { FringeShape } from '../model/fringe';
 import type { Moment } from '../model/history';
+import type { LipShape } from '../model/lips';
+import type { SurfaceShape } from '../model/surface';
 import type { Batch } from '../model/tissue';
 import type { LinkState } from './connection';
 import type { Pushes, Requests, Notices, SessionDescription, SessionJoin, StreamDescription } from './messages.gen';
@@ -87,12 +88,13 @@ export interface Frame {
   /** tissue looks other than in the frame that was handed over before */
   changed: boolean;
   buffers: FrameBuffers;
-  /** index of drawn faces by batch, where they changed since the last frame that was handed over */
-  drawn: { batch: number; index: Uint32Array }[];
-  /** torn fibres at the rims of cut sheets, by batch; changed: those that have or had any */
-  fringes: ({ batch: number } & FringeShape)[];
-  /** walls at the edges of sheets, by batch */
-  edges: ({ batch: number } & FringeShape)[];
+  /** index of drawn faces by batch, where they changed since the last frame that was handed over; `plain` faces of
+   * them, the first ones, are drawn as they are, the others as lips */
+  drawn: { batch: number; index: Uint32Array; plain: number }[];
+  /** what cuts lay bare, by batch; changed: those that have or had any */
+  lips: ({ batch: number } & LipShape)[];
+  /** walls at the borders of sheets, by batch */
+  edges: ({ batch: number } & SurfaceShape)[];
   drawnFaces: Record<string, number>;
   stressScalePa: number;
   /** of the colours, degC; null where the stream has no temperature */

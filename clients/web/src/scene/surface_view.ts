@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The torn fibres at the rims of one sheet, or its edge, in three.js: records of the model as they come.
+// A surface that is drawn beside the mesh's own faces, in three.js: a layer's lips, their edge, fibres that fray from
+// it, or a sheet's border. Records of the model as they come.
 import {
   BufferAttribute,
   BufferGeometry,
@@ -12,43 +13,46 @@ import {
   ShaderMaterial,
 } from 'three';
 
-import { FRINGE_FLOATS, type FringeShape } from '../model/fringe';
-import { FRINGE_VERTEX } from './surface_light';
+import { SURFACE_FLOATS, type SurfaceShape } from '../model/surface';
+import { SURFACE_VERTEX } from './surface_light';
 import { FRAGMENTS } from './tissue_shader';
 import type { SharedUniforms } from './tissue_view';
 
 const ATTRIBUTES = [['position', 3, 0], ['material', 3, 3], ['normal', 3, 6], ['burn', 4, 9], ['tip', 1, 13]] as const;
 const GROWTH = 1.5; // of the arrays on the card, so that a cut does not make them anew with every face
 
-export class FringeView {
+export class SurfaceView {
   readonly mesh: Mesh<BufferGeometry, ShaderMaterial>;
   private records = new Float32Array(0);
   private interleaved: InterleavedBuffer | null = null;
   private index: BufferAttribute | null = null;
   private shown = true;
 
-  constructor(shared: SharedUniforms, kind: 'fringe' | 'edge') {
+  constructor(shared: SharedUniforms, kind: Exclude<keyof typeof FRAGMENTS, 'flesh' | 'cloth'>) {
     const material = new ShaderMaterial({
       glslVersion: GLSL3,
-      vertexShader: FRINGE_VERTEX,
+      vertexShader: SURFACE_VERTEX,
       fragmentShader: FRAGMENTS[kind],
       uniforms: shared,
       side: DoubleSide,
+      transparent: kind === 'fascia',
     });
     this.mesh = new Mesh(new BufferGeometry(), material);
     this.mesh.frustumCulled = false;
     this.mesh.visible = false;
-    this.mesh.renderOrder = 2;
+    this.mesh.renderOrder = kind === 'membrane' || kind === 'bared' ? 1 : 2;
   }
 
-  take({ records, index }: FringeShape): void {
-    if (records.length > this.records.length || index.length > (this.index?.array.length ?? 0)) this.grow(records.length, index.length);
+  take({ records, index }: SurfaceShape): void {
+    const indices = index?.length ?? 0;
+    if (records.length > this.records.length || indices > (this.index?.array.length ?? 0)) this.grow(records.length, indices);
     this.records.set(records);
-    this.index?.array.set(index);
     if (this.interleaved) this.interleaved.needsUpdate = true;
+    if (!index) return;
+    this.index?.array.set(index);
     if (this.index) this.index.needsUpdate = true;
-    this.mesh.geometry.setDrawRange(0, index.length);
-    this.mesh.visible = this.shown && index.length > 0;
+    this.mesh.geometry.setDrawRange(0, indices);
+    this.mesh.visible = this.shown && indices > 0;
   }
 
   show(shown: boolean): void {
@@ -67,8 +71,8 @@ export class FringeView {
 
   private grow(floats: number, indices: number): void {
     this.mesh.geometry.dispose();
-    this.records = new Float32Array(FRINGE_FLOATS * Math.ceil((GROWTH * floats) / FRINGE_FLOATS));
-    this.interleaved = new InterleavedBuffer(this.records, FRINGE_FLOATS).setUsage(DynamicDrawUsage);
+    this.records = new Float32Array(SURFACE_FLOATS * Math.ceil((GROWTH * floats) / SURFACE_FLOATS));
+    this.interleaved = new InterleavedBuffer(this.records, SURFACE_FLOATS).setUsage(DynamicDrawUsage);
     this.index = new BufferAttribute(new Uint32Array(3 * Math.ceil((GROWTH * indices) / 3)), 1).setUsage(DynamicDrawUsage);
     const geometry = new BufferGeometry();
     for (const [name, size, offset] of ATTRIBUTES)

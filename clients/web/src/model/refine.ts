@@ -1,0 +1,308 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// A patch of triangles as a smooth surface, finer than the mesh: Loop's subdivision (1987). Inside it tends to a
+// surface of smooth curvature. Rims tend to the cubic B-spline of the rim's vertices, which depends on nothing
+// beside the rim. What hangs together does so afterwards, and what is apart stays apart. Only sight.
+
+/** Of edges and vertices. */
+export const SMOOTH = 0;
+export const RIM = 1; // the surface ends here
+export const STILL = 2; // stays on the mesh: the surface goes on there unrefined
+
+/** One step: vertex i is the sum of weight[k] times vertex from[k], k from start[i] to start[i + 1] - 1. */
+interface Step {
+  start: Int32Array;
+  from: Int32Array;
+  weight: Float32Array;
+}
+
+export interface Refinement {
+  /** vertex of the mesh of each vertex of the patch; one on which the patch only pinches is there once a side */
+  roots: Int32Array;
+  steps: Step[];
+  vertexCount: number;
+  /** fine triangles (x 3) */
+  faces: Uint32Array;
+  /** fine edges (x 2) at which the surface ends, the surface on their left, seen from where faces turn left */
+  rims: Uint32Array;
+  /** SMOOTH, RIM or STILL for each fine vertex */
+  kinds: Uint8Array;
+  /** fine vertices on edges that stay on the mesh: the two vertices of the patch that they lie between, and where */
+  still: { vertex: Int32Array; between: Int32Array; share: Float32Array };
+}
+
+/** A mesh on its way: edges with their faces' third vertices, faces with their edges. */
+interface Net {
+  vertexCount: number;
+  vertexKind: Uint8Array;
+  faces: Uint32Array;
+  /** edge from corner c to the next, by face */
+  faceEdges: Uint32Array;
+  edges: Uint32Array;
+  edgeKind: Uint8Array;
+}
+
+class Rows {
+  private readonly start: number[] = [0];
+  private readonly from: number[] = [];
+  private readonly weight: number[] = [];
+
+  add(vertex: number, weight: number): void {
+    this.from.push(vertex);
+    this.weight.push(weight);
+  }
+
+  end(): void {
+    this.start.push(this.from.length);
+  }
+
+  step(): Step {
+    return { start: Int32Array.from(this.start), from: Int32Array.from(this.from), weight: Float32Array.from(this.weight) };
+  }
+}
+
+/** What a vertex with so many neighbours takes of each (Loop). */
+function ringWeight(count: number): number {
+  const turn = 3 / 8 + Math.cos((2 * Math.PI) / count) / 4;
+  return (5 / 8 - turn * turn) / count;
+}
+
+/** Neighbours of each vertex along edges that `of` takes. */
+function neighboursBy(net: Net, of: (kind: number) => boolean): number[][] {
+  const lists: number[][] = Array.from({ length: net.vertexCount }, () => []);
+  for (let e = 0; e < net.edgeKind.length; e++) {
+    if (!of(net.edgeKind[e])) continue;
+    lists[net.edges[2 * e]].push(net.edges[2 * e + 1]);
+    lists[net.edges[2 * e + 1]].push(net.edges[2 * e]);
+  }
+  return lists;
+}
+
+/** Vertices of the next net: those that were, moved, then one on each edge. */
+function stepOf(net: Net): Step {
+  const rows = new Rows();
+  const ring = neighboursBy(net, () => true);
+  const along = neighboursBy(net, (kind) => kind === RIM);
+  for (let v = 0; v < net.vertexCount; v++) {
+    const kind = net.vertexKind[v];
+    const around = kind === RIM ? along[v] : ring[v];
+    const share = kind === STILL ? 0 : kind === RIM ? 1 / 8 : ringWeight(around.length);
+    rows.add(v, 1 - share * around.length);
+    if (share > 0) for (const other of around) rows.add(other, share);
+    rows.end();
+  }
+  const third: number[][] = Array.from({ length: net.edgeKind.length }, () => []);
+  for (let i = 0; i < net.faceEdges.length; i++) third[net.faceEdges[i]].push(net.faces[i - (i % 3) + ((i + 2) % 3)]);
+  for (let e = 0; e < net.edgeKind.length; e++) {
+    const inside = net.edgeKind[e] === SMOOTH;
+    for (const end of [0, 1]) rows.add(net.edges[2 * e + end], inside ? 3 / 8 : 1 / 2);
+    if (inside) for (const vertex of third[e]) rows.add(vertex, 1 / 8);
+    rows.end();
+  }
+  return rows.step();
+}
+
+/** Evens out what the mesh's cells leave of teeth: each vertex to the middle between where it is and where those beside
+ * it are, at a rim those along it. */
+function evened(net: Net): Step {
+  const rows = new Rows();
+  const ring = neighboursBy(net, () => true);
+  const along = neighboursBy(net, (kind) => kind === RIM);
+  net.vertexKind.forEach((kind, v) => {
+    const around = kind === STILL ? [] : kind === RIM ? along[v] : ring[v];
+    rows.add(v, around.length > 0 ? 1 / 2 : 1);
+    for (const other of around) rows.add(other, 1 / (2 * around.length));
+    rows.end();
+  });
+  return rows.step();
+}
+
+/** Each face in four: one at each corner, one between the middles of its edges. */
+function split(net: Net): Net {
+  const { vertexCount: base, faces, faceEdges, edges, edgeKind } = net;
+  const edgeCount = edgeKind.length;
+  const faceCount = faces.length / 3;
+  const half = (edge: number, vertex: number): number => 2 * edge + (edges[2 * edge] === vertex ? 0 : 1);
+  const next: Net = {
+    vertexCount: base + edgeCount,
+    vertexKind: new Uint8Array(base + edgeCount),
+    faces: new Uint32Array(12 * faceCount),
+    faceEdges: new Uint32Array(12 * faceCount),
+    edges: new Uint32Array(2 * (2 * edgeCount + 3 * faceCount)),
+    edgeKind: new Uint8Array(2 * edgeCount + 3 * faceCount),
+  };
+  next.vertexKind.set(net.vertexKind);
+  next.vertexKind.set(edgeKind, base);
+  for (let e = 0; e < edgeCount; e++) {
+    next.edges.set([edges[2 * e], base + e, base + e, edges[2 * e + 1]], 4 * e);
+    next.edgeKind.fill(edgeKind[e], 2 * e, 2 * e + 2);
+  }
+  for (let f = 0; f < faceCount; f++) {
+    const inner = 2 * edgeCount + 3 * f;
+    for (let c = 0; c < 3; c++) {
+      const [vertex, after, before] = [faces[3 * f + c], faceEdges[3 * f + c], faceEdges[3 * f + ((c + 2) % 3)]];
+      next.edges.set([base + after, base + before], 2 * (inner + c));
+      next.faces.set([vertex, base + after, base + before], 12 * f + 3 * c);
+      next.faceEdges.set([half(after, vertex), inner + c, half(before, vertex)], 12 * f + 3 * c);
+    }
+    next.faces.set([0, 1, 2].map((c) => base + faceEdges[3 * f + c]), 12 * f + 9);
+    next.faceEdges.set([inner + 1, inner + 2, inner], 12 * f + 9);
+  }
+  return next;
+}
+
+/** Sides of faces (3 face + corner) by their edge. */
+function sidesByEdge(faces: ArrayLike<number>, vertexCount: number): Map<number, number[]> {
+  const sides = new Map<number, number[]>();
+  for (let i = 0; i < faces.length; i++) {
+    const [a, b] = [faces[i], faces[i - (i % 3) + ((i + 1) % 3)]];
+    const key = a < b ? a * vertexCount + b : b * vertexCount + a;
+    const known = sides.get(key);
+    if (known) known.push(i);
+    else sides.set(key, [i]);
+  }
+  return sides;
+}
+
+/** The faces, each turned as the one beside it is: faces between tetrahedra come in any turn. */
+function turnedAlike(given: ArrayLike<number>, vertexCount: number): Int32Array {
+  const faces = Int32Array.from(given);
+  const beside = new Map<number, number[]>();
+  for (const sides of sidesByEdge(given, vertexCount).values()) {
+    if (sides.length !== 2) continue;
+    for (const end of [0, 1]) beside.set(sides[end], [sides[1 - end]]);
+  }
+  const seen = new Uint8Array(faces.length / 3);
+  const turned = new Uint8Array(faces.length / 3);
+  for (let first = 0; first < seen.length; first++) {
+    const queue = seen[first] ? [] : [first];
+    seen[first] = 1;
+    for (let face = queue.pop(); face !== undefined; face = queue.pop()) {
+      for (let c = 0; c < 3; c++) {
+        const [side] = beside.get(3 * face + c) ?? [-1];
+        const other = Math.trunc(side / 3);
+        if (side < 0 || seen[other]) continue;
+        seen[other] = 1;
+        turned[other] = turned[face] ^ Number(given[3 * face + c] === given[side]);
+        queue.push(other);
+      }
+    }
+  }
+  turned.forEach((turn, face) => {
+    if (turn) faces.set([given[3 * face], given[3 * face + 2], given[3 * face + 1]], 3 * face);
+  });
+  return faces;
+}
+
+/** Corners of faces that hang together around a vertex are one vertex of the patch. */
+function weld(faces: Int32Array, sides: Map<number, number[]>): { roots: Int32Array; corners: Uint32Array } {
+  const parent = Int32Array.from(faces, (_, i) => i);
+  const find = (corner: number): number => {
+    while (parent[corner] !== corner) corner = parent[corner] = parent[parent[corner]];
+    return corner;
+  };
+  const after = (side: number): number => side - (side % 3) + ((side + 1) % 3);
+  for (const pair of sides.values()) {
+    if (pair.length !== 2) continue;
+    const [mine, other] = [[pair[0], after(pair[0])], [pair[1], after(pair[1])]];
+    const crossed = faces[mine[0]] === faces[other[0]] ? 0 : 1;
+    for (const end of [0, 1]) parent[find(mine[end])] = find(other[end ^ crossed]);
+  }
+  const number = new Int32Array(faces.length).fill(-1);
+  const roots: number[] = [];
+  const corners = Uint32Array.from(faces, (vertex, corner) => {
+    const found = find(corner);
+    if (number[found] < 0) number[found] = roots.push(vertex) - 1;
+    return number[found];
+  });
+  return { roots: Int32Array.from(roots), corners };
+}
+
+function netOf(given: ArrayLike<number>, vertexCount: number, goesOn: (a: number, b: number) => boolean): { net: Net; roots: Int32Array } {
+  const turned = turnedAlike(given, vertexCount);
+  const sides = sidesByEdge(turned, vertexCount);
+  const { roots, corners } = weld(turned, sides);
+  const faceEdges = new Uint32Array(turned.length);
+  const edges: number[] = [];
+  const edgeKind: number[] = [];
+  for (const of of sides.values()) {
+    const [a, b] = [turned[of[0]], turned[of[0] - (of[0] % 3) + ((of[0] + 1) % 3)]];
+    const kind = of.length === 2 ? SMOOTH : goesOn(a, b) ? STILL : RIM;
+    // Where more than two faces meet, each ends.
+    for (const side of of.length === 2 ? of.slice(0, 1) : of) {
+      for (const same of of.length === 2 ? of : [side]) faceEdges[same] = edgeKind.length;
+      edges.push(corners[side], corners[side - (side % 3) + ((side + 1) % 3)]);
+      edgeKind.push(kind);
+    }
+  }
+  const net: Net = { vertexCount: roots.length, vertexKind: new Uint8Array(roots.length), faces: corners, faceEdges, edges: Uint32Array.from(edges), edgeKind: Uint8Array.from(edgeKind) };
+  markVertices(net);
+  return { net, roots };
+}
+
+/** A vertex where a rim begins or where the surface goes on unrefined stays. */
+function markVertices(net: Net): void {
+  const rims = new Uint8Array(net.vertexCount);
+  net.edgeKind.forEach((kind, e) => {
+    if (kind === SMOOTH) return;
+    for (const end of [0, 1]) {
+      const vertex = net.edges[2 * e + end];
+      if (kind === STILL) net.vertexKind[vertex] = STILL;
+      else rims[vertex]++;
+    }
+  });
+  rims.forEach((count, vertex) => {
+    if (count > 0 && net.vertexKind[vertex] !== STILL) net.vertexKind[vertex] = count === 2 ? RIM : STILL;
+  });
+}
+
+/** Of edges that stay: on which of them each vertex lies, from the first step on. */
+function stillOf(first: Net, last: Net, levels: number): Refinement['still'] {
+  const vertex: number[] = [];
+  const between: number[] = [];
+  const share: number[] = [];
+  first.edgeKind.forEach((kind, e) => {
+    if (kind !== STILL) return;
+    const parts = 1 << levels;
+    // Edge e of a net is edges 2 e and 2 e + 1 of the next, in order.
+    for (let part = 0; part < parts; part++) {
+      const fine = parts * e + part;
+      vertex.push(last.edges[2 * fine]);
+      between.push(first.edges[2 * e], first.edges[2 * e + 1]);
+      share.push(part / parts);
+    }
+    vertex.push(first.edges[2 * e + 1]);
+    between.push(first.edges[2 * e], first.edges[2 * e + 1]);
+    share.push(1);
+  });
+  return { vertex: Int32Array.from(vertex), between: Int32Array.from(between), share: Float32Array.from(share) };
+}
+
+/** Triangles (x 3) after so many steps, each of which divides sides in two, and before them so many that even the
+ * patch's vertices out; `goesOn`: whether the surface goes on beyond an edge at which the patch ends. */
+export function refine(faces: ArrayLike<number>, vertexCount: number, levels: number, evenings: number, goesOn: (a: number, b: number) => boolean): Refinement {
+  const { net: first, roots } = netOf(faces, vertexCount, goesOn);
+  let net = first;
+  const steps: Step[] = Array.from({ length: evenings }, () => evened(net));
+  for (let level = 0; level < levels; level++) {
+    steps.push(stepOf(net));
+    net = split(net);
+  }
+  const rims: number[] = [];
+  net.edgeKind.forEach((kind, e) => {
+    if (kind === RIM) rims.push(net.edges[2 * e], net.edges[2 * e + 1]);
+  });
+  return { roots, steps, vertexCount: net.vertexCount, faces: net.faces, rims: Uint32Array.from(rims), kinds: net.vertexKind, still: stillOf(first, net, levels) };
+}
+
+/** Values of the fine vertices (x width) from those of the patch's (x width). */
+export function refined({ steps }: Refinement, coarse: Float32Array<ArrayBuffer>, width: number): Float32Array<ArrayBuffer> {
+  let values = coarse;
+  for (const { start, from, weight } of steps) {
+    const next = new Float32Array(width * (start.length - 1));
+    for (let i = 0; i + 1 < start.length; i++)
+      for (let k = start[i]; k < start[i + 1]; k++)
+        for (let c = 0; c < width; c++) next[width * i + c] += weight[k] * values[width * from[k] + c];
+    values = next;
+  }
+  return values;
+}
