@@ -1,7 +1,8 @@
 #!/usr/bin/env bash
 # SPDX-License-Identifier: GPL-3.0-or-later
 # One stage of the viewer's tests: run_viewer_tests.sh types|lint|unit|build|manual|browser|firefox; or `pictures`, which
-# makes clients/web/pictures anew from those of the browser tests that take them.
+# makes clients/web/pictures anew from those of the browser tests that take them; or `wound`, which makes
+# clients/web/pictures/wound anew.
 # Exit code 77: skipped, with the reason. ctest sets the environment (tests/browser/CMakeLists.txt).
 set -euo pipefail
 
@@ -33,7 +34,7 @@ unit)
 	"$CAUTERY_WRITE_FRAMES" "$CAUTERY_FRAMES"
 	exec npm run --silent unit
 	;;
-browser | pictures)
+browser | pictures | wound)
 	[ -x /usr/bin/chromium-headless-shell ] || skip "no /usr/bin/chromium-headless-shell"
 	[ -x "${CAUTERYD:-}" ] || skip "the daemon is not built here"
 	mkdir -p "$CAUTERY_SCREENSHOTS"
@@ -41,6 +42,9 @@ browser | pictures)
 		exec nice npm run --silent browser -- --exclude '**/holds_firefox.test.ts'
 	fi
 	npm run --silent build
+	if [ "$1" = wound ]; then
+		CAUTERY_WOUND="$web/pictures/wound" exec npm run --silent browser -- wound
+	fi
 	npm run --silent browser -- layers first_view asked
 	for picture in pictures/*.png; do
 		cp "$CAUTERY_SCREENSHOTS/$(basename "$picture")" pictures/
@@ -52,7 +56,7 @@ firefox)
 	exec npm run --silent browser -- holds_firefox
 	;;
 *)
-	echo "usage: run_viewer_tests.sh types|lint|unit|build|manual|browser|firefox|pictures" >&2
+	echo "usage: run_viewer_tests.sh types|lint|unit|build|manual|browser|firefox|pictures|wound" >&2
 	exit 2
 	;;
 esac

@@ -36,7 +36,8 @@ export class CutSides {
 
   /** Whether a face has a vertex on a cut. */
   touches(face: number): boolean {
-    return [0, 1, 2].some((c) => this.vertices.has(this.faces[3 * face + c]));
+    const { faces, vertices } = this;
+    return vertices.size > 0 && (vertices.has(faces[3 * face]) || vertices.has(faces[3 * face + 1]) || vertices.has(faces[3 * face + 2]));
   }
 }
 

@@ -5,8 +5,10 @@
 import { SURFACE_FLOATS, type SurfaceShape, type SurfaceSource } from './surface';
 import { refine, refined, RIM, type Refinement } from './refine';
 
-/** Sides of the daemon's mesh are divided into 2^LEVELS: 2 mm into quarters of a millimetre. */
-export const LEVELS = 3;
+/** Sides of the daemon's mesh are divided into two so often: those of sheets, where 2 mm become quarters of a millimetre
+ * along the lip, and those of the inside of fat. */
+const SHEET_LEVELS = 3;
+const INSIDE_LEVELS = 2;
 /** Of the border, and of the inside of fat, so that the cells' teeth do not show. */
 export const EVENINGS = 2;
 const FRAY_M = 0.0011; // longest fibres
@@ -64,6 +66,7 @@ export class Lips {
   private fibres: Fibre[] = [];
   private length: number[] = [];
   private index: { band: Uint32Array; wall: Uint32Array; fringe: Uint32Array } | null = null;
+  private asked: { faces: ArrayLike<number>; goesOn: GoesOn } = { faces: [], goesOn: () => false };
   private told = true;
 
   constructor(
@@ -72,20 +75,22 @@ export class Lips {
     private readonly thicknessM: number,
   ) {}
 
-  get rimVertexCount(): number {
-    return this.rim.length;
-  }
-
   get empty(): boolean {
-    return this.patch.faces.length === 0;
+    return this.asked.faces.length === 0;
   }
 
-  /** After faces of the layer went or came back: those that are drawn finer, vertex indices (x 3). */
+  /** After faces of the layer went or came back: those that are drawn finer, vertex indices (x 3). They are refined
+   * when a shape of them is wanted: the page takes fewer frames than the daemon sends. */
   rebuild(faces: ArrayLike<number>, goesOn: GoesOn): void {
-    this.patch = refine(faces, this.source.position.length / 3, LEVELS, EVENINGS, goesOn);
+    this.asked = { faces, goesOn };
+    this.told = false;
+  }
+
+  private refine(): void {
+    const { faces, goesOn } = this.asked;
+    this.patch = refine(faces, this.source.position.length / 3, this.thicknessM > 0 ? SHEET_LEVELS : INSIDE_LEVELS, EVENINGS, goesOn);
     const { patch } = this;
     this.material = refined(patch, this.gather(this.source.material, 3), 3);
-    this.told = false;
     const row = new Int32Array(patch.vertexCount).fill(-1);
     const sheet = this.thicknessM > 0;
     this.rim = sheet ? Int32Array.from(new Set(patch.rims)) : new Int32Array(0);
@@ -104,6 +109,7 @@ export class Lips {
 
   /** Where the tissue is now. Indices come once after faces have changed, else null. */
   shape(): LipShape {
+    if (!this.told) this.refine();
     const band = this.bandRecords();
     const index = this.told ? null : this.index;
     this.told = true;
@@ -150,19 +156,17 @@ export class Lips {
       const ux = p[b] - p[a], uy = p[b + 1] - p[a + 1], uz = p[b + 2] - p[a + 2];
       const vx = p[c] - p[a], vy = p[c + 1] - p[a + 1], vz = p[c + 2] - p[a + 2];
       const nx = uy * vz - uz * vy, ny = uz * vx - ux * vz, nz = ux * vy - uy * vx;
-      for (const v of [a, b, c]) {
-        normal[v] += nx;
-        normal[v + 1] += ny;
-        normal[v + 2] += nz;
-      }
+      normal[a] += nx; normal[a + 1] += ny; normal[a + 2] += nz;
+      normal[b] += nx; normal[b + 1] += ny; normal[b + 2] += nz;
+      normal[c] += nx; normal[c + 1] += ny; normal[c + 2] += nz;
     }
     still.vertex.forEach((vertex, i) => {
       const [a, b] = [roots[still.between[2 * i]], roots[still.between[2 * i + 1]]];
       for (let c = 0; c < 3; c++) normal[3 * vertex + c] = (1 - still.share[i]) * this.source.normal[3 * a + c] + still.share[i] * this.source.normal[3 * b + c];
     });
     for (let i = 0; i < normal.length; i += 3) {
-      const length = Math.hypot(normal[i], normal[i + 1], normal[i + 2]) || 1;
-      for (let c = 0; c < 3; c++) normal[i + c] /= length;
+      const long = 1 / (Math.sqrt(normal[i] * normal[i] + normal[i + 1] * normal[i + 1] + normal[i + 2] * normal[i + 2]) || 1);
+      normal[i] *= long; normal[i + 1] *= long; normal[i + 2] *= long;
     }
     return normal;
   }

@@ -8,11 +8,17 @@ export const SMOOTH = 0;
 export const RIM = 1; // the surface ends here
 export const STILL = 2; // stays on the mesh: the surface goes on there unrefined
 
-/** One step: vertex i is the sum of weight[k] times vertex from[k], k from start[i] to start[i + 1] - 1. */
+/** One step: a vertex keeps `own` of itself and takes `share` of each neighbour, at a rim of those along it; then, where
+ * the step divides, comes one vertex on each edge. */
 interface Step {
-  start: Int32Array;
-  from: Int32Array;
-  weight: Float32Array;
+  divides: boolean;
+  own: Float32Array;
+  share: Float32Array;
+  vertexKind: Uint8Array;
+  edges: Uint32Array;
+  edgeKind: Uint8Array;
+  /** third vertices of the two faces at each edge; of no use at a rim */
+  thirds: Uint32Array;
 }
 
 export interface Refinement {
@@ -41,80 +47,46 @@ interface Net {
   edgeKind: Uint8Array;
 }
 
-class Rows {
-  private readonly start: number[] = [0];
-  private readonly from: number[] = [];
-  private readonly weight: number[] = [];
-
-  add(vertex: number, weight: number): void {
-    this.from.push(vertex);
-    this.weight.push(weight);
-  }
-
-  end(): void {
-    this.start.push(this.from.length);
-  }
-
-  step(): Step {
-    return { start: Int32Array.from(this.start), from: Int32Array.from(this.from), weight: Float32Array.from(this.weight) };
-  }
-}
-
 /** What a vertex with so many neighbours takes of each (Loop). */
 function ringWeight(count: number): number {
   const turn = 3 / 8 + Math.cos((2 * Math.PI) / count) / 4;
   return (5 / 8 - turn * turn) / count;
 }
 
-/** Neighbours of each vertex along edges that `of` takes. */
-function neighboursBy(net: Net, of: (kind: number) => boolean): number[][] {
-  const lists: number[][] = Array.from({ length: net.vertexCount }, () => []);
-  for (let e = 0; e < net.edgeKind.length; e++) {
-    if (!of(net.edgeKind[e])) continue;
-    lists[net.edges[2 * e]].push(net.edges[2 * e + 1]);
-    lists[net.edges[2 * e + 1]].push(net.edges[2 * e]);
-  }
-  return lists;
+/** Whether a vertex takes of the other end of an edge. */
+const takes = (vertexKind: number, edgeKind: number): boolean => vertexKind === SMOOTH || (vertexKind === RIM && edgeKind === RIM);
+
+/** How many neighbours each vertex takes of. */
+function takenOf({ vertexCount, vertexKind, edges, edgeKind }: Net): Uint16Array {
+  const count = new Uint16Array(vertexCount);
+  for (let i = 0; i < edges.length; i++) if (takes(vertexKind[edges[i]], edgeKind[i >> 1])) count[edges[i]]++;
+  return count;
 }
 
-/** Vertices of the next net: those that were, moved, then one on each edge. */
-function stepOf(net: Net): Step {
-  const rows = new Rows();
-  const ring = neighboursBy(net, () => true);
-  const along = neighboursBy(net, (kind) => kind === RIM);
-  for (let v = 0; v < net.vertexCount; v++) {
-    const kind = net.vertexKind[v];
-    const around = kind === RIM ? along[v] : ring[v];
-    const share = kind === STILL ? 0 : kind === RIM ? 1 / 8 : ringWeight(around.length);
-    rows.add(v, 1 - share * around.length);
-    if (share > 0) for (const other of around) rows.add(other, share);
-    rows.end();
+function stepOf(net: Net, divides: boolean, shareOf: (kind: number, count: number) => number): Step {
+  const { vertexCount, vertexKind, edges, edgeKind, faces, faceEdges } = net;
+  const count = takenOf(net);
+  const own = new Float32Array(vertexCount);
+  const share = new Float32Array(vertexCount);
+  for (let v = 0; v < vertexCount; v++) {
+    share[v] = count[v] > 0 ? shareOf(vertexKind[v], count[v]) : 0;
+    own[v] = 1 - count[v] * share[v];
   }
-  const third: number[][] = Array.from({ length: net.edgeKind.length }, () => []);
-  for (let i = 0; i < net.faceEdges.length; i++) third[net.faceEdges[i]].push(net.faces[i - (i % 3) + ((i + 2) % 3)]);
-  for (let e = 0; e < net.edgeKind.length; e++) {
-    const inside = net.edgeKind[e] === SMOOTH;
-    for (const end of [0, 1]) rows.add(net.edges[2 * e + end], inside ? 3 / 8 : 1 / 2);
-    if (inside) for (const vertex of third[e]) rows.add(vertex, 1 / 8);
-    rows.end();
+  const thirds = new Uint32Array(edges.length);
+  const known = new Uint8Array(edgeKind.length);
+  for (let i = 0; divides && i < faceEdges.length; i++) {
+    const edge = faceEdges[i];
+    thirds[2 * edge + Math.min(known[edge]++, 1)] = faces[i - (i % 3) + ((i + 2) % 3)];
   }
-  return rows.step();
+  return { divides, own, share, vertexKind, edges, edgeKind, thirds };
 }
+
+/** Loop's step: vertices of the next net. */
+const divided = (net: Net): Step => stepOf(net, true, (kind, count) => (kind === RIM ? 1 / 8 : ringWeight(count)));
 
 /** Evens out what the mesh's cells leave of teeth: each vertex to the middle between where it is and where those beside
  * it are, at a rim those along it. */
-function evened(net: Net): Step {
-  const rows = new Rows();
-  const ring = neighboursBy(net, () => true);
-  const along = neighboursBy(net, (kind) => kind === RIM);
-  net.vertexKind.forEach((kind, v) => {
-    const around = kind === STILL ? [] : kind === RIM ? along[v] : ring[v];
-    rows.add(v, around.length > 0 ? 1 / 2 : 1);
-    for (const other of around) rows.add(other, 1 / (2 * around.length));
-    rows.end();
-  });
-  return rows.step();
-}
+const evened = (net: Net): Step => stepOf(net, false, (_kind, count) => 1 / (2 * count));
 
 /** Each face in four: one at each corner, one between the middles of its edges. */
 function split(net: Net): Net {
@@ -133,19 +105,28 @@ function split(net: Net): Net {
   next.vertexKind.set(net.vertexKind);
   next.vertexKind.set(edgeKind, base);
   for (let e = 0; e < edgeCount; e++) {
-    next.edges.set([edges[2 * e], base + e, base + e, edges[2 * e + 1]], 4 * e);
-    next.edgeKind.fill(edgeKind[e], 2 * e, 2 * e + 2);
+    const i = 4 * e;
+    next.edges[i] = edges[2 * e];
+    next.edges[i + 1] = next.edges[i + 2] = base + e;
+    next.edges[i + 3] = edges[2 * e + 1];
+    next.edgeKind[2 * e] = next.edgeKind[2 * e + 1] = edgeKind[e];
   }
   for (let f = 0; f < faceCount; f++) {
     const inner = 2 * edgeCount + 3 * f;
+    const middle = 12 * f + 9;
     for (let c = 0; c < 3; c++) {
-      const [vertex, after, before] = [faces[3 * f + c], faceEdges[3 * f + c], faceEdges[3 * f + ((c + 2) % 3)]];
-      next.edges.set([base + after, base + before], 2 * (inner + c));
-      next.faces.set([vertex, base + after, base + before], 12 * f + 3 * c);
-      next.faceEdges.set([half(after, vertex), inner + c, half(before, vertex)], 12 * f + 3 * c);
+      const vertex = faces[3 * f + c], after = faceEdges[3 * f + c], before = faceEdges[3 * f + ((c + 2) % 3)];
+      const i = 12 * f + 3 * c;
+      next.edges[2 * (inner + c)] = base + after;
+      next.edges[2 * (inner + c) + 1] = base + before;
+      next.faces[i] = vertex;
+      next.faces[i + 1] = next.faces[middle + c] = base + after;
+      next.faces[i + 2] = base + before;
+      next.faceEdges[i] = half(after, vertex);
+      next.faceEdges[i + 1] = inner + c;
+      next.faceEdges[i + 2] = half(before, vertex);
+      next.faceEdges[middle + c] = inner + ((c + 1) % 3);
     }
-    next.faces.set([0, 1, 2].map((c) => base + faceEdges[3 * f + c]), 12 * f + 9);
-    next.faceEdges.set([inner + 1, inner + 2, inner], 12 * f + 9);
   }
   return next;
 }
@@ -284,7 +265,7 @@ export function refine(faces: ArrayLike<number>, vertexCount: number, levels: nu
   let net = first;
   const steps: Step[] = Array.from({ length: evenings }, () => evened(net));
   for (let level = 0; level < levels; level++) {
-    steps.push(stepOf(net));
+    steps.push(divided(net));
     net = split(net);
   }
   const rims: number[] = [];
@@ -294,15 +275,30 @@ export function refine(faces: ArrayLike<number>, vertexCount: number, levels: nu
   return { roots, steps, vertexCount: net.vertexCount, faces: net.faces, rims: Uint32Array.from(rims), kinds: net.vertexKind, still: stillOf(first, net, levels) };
 }
 
+function advance(step: Step, values: Float32Array, width: number): Float32Array<ArrayBuffer> {
+  const { divides, own, share, vertexKind, edges, edgeKind, thirds } = step;
+  const next = new Float32Array(width * (own.length + (divides ? edgeKind.length : 0)));
+  for (let v = 0, i = 0; v < own.length; v++) for (let c = 0; c < width; c++, i++) next[i] = own[v] * values[i];
+  for (let e = 0; e < edgeKind.length; e++) {
+    const kind = edgeKind[e];
+    const v = edges[2 * e], w = edges[2 * e + 1];
+    const a = width * v, b = width * w;
+    const ofB = takes(vertexKind[v], kind) ? share[v] : 0;
+    const ofA = takes(vertexKind[w], kind) ? share[w] : 0;
+    for (let c = 0; c < width; c++) {
+      next[a + c] += ofB * values[b + c];
+      next[b + c] += ofA * values[a + c];
+    }
+    if (!divides) continue;
+    const at = width * (own.length + e);
+    const l = width * thirds[2 * e], r = width * thirds[2 * e + 1];
+    const near = kind === SMOOTH ? 3 / 8 : 1 / 2, far = kind === SMOOTH ? 1 / 8 : 0;
+    for (let c = 0; c < width; c++) next[at + c] = near * (values[a + c] + values[b + c]) + far * (values[l + c] + values[r + c]);
+  }
+  return next;
+}
+
 /** Values of the fine vertices (x width) from those of the patch's (x width). */
 export function refined({ steps }: Refinement, coarse: Float32Array<ArrayBuffer>, width: number): Float32Array<ArrayBuffer> {
-  let values = coarse;
-  for (const { start, from, weight } of steps) {
-    const next = new Float32Array(width * (start.length - 1));
-    for (let i = 0; i + 1 < start.length; i++)
-      for (let k = start[i]; k < start[i + 1]; k++)
-        for (let c = 0; c < width; c++) next[width * i + c] += weight[k] * values[width * from[k] + c];
-    values = next;
-  }
-  return values;
+  return steps.reduce((values, step) => advance(step, values, width), coarse);
 }

@@ -256,8 +256,11 @@ export class Tissue {
     const finer = bared ? drawn : drawn.filter((face) => cuts.touches(face));
     const plain = bared ? new Int32Array(0) : drawn.filter((face) => !cuts.touches(face));
     this.plainFaces[b] = plain.length;
-    this.drawnIndex[b] = Uint32Array.from([...cornersOf(faces, plain), ...cornersOf(faces, finer)]);
-    this.lips[b]?.rebuild(cornersOf(faces, finer), (u, v) => !bared && !cuts.has(u, v));
+    const corners = cornersOf(faces, finer);
+    this.drawnIndex[b] = new Uint32Array(3 * drawn.length);
+    this.drawnIndex[b].set(cornersOf(faces, plain));
+    this.drawnIndex[b].set(corners, 3 * plain.length);
+    this.lips[b]?.rebuild(corners, (u, v) => !bared && !cuts.has(u, v));
   }
 }
 

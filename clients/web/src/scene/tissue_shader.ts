@@ -129,7 +129,7 @@ void main() {
   if (dot(normal, view) < 0.0) normal = -normal;
   float film;
   Surface s = membrane(normal, vMaterial, film);
-  burnt(s, vec3(0.78, 0.62, 0.42), vec3(0.46, 0.185, 0.07), 0.5 * film + 0.5 * n(vMaterial * 70.0));
+  burnt(s, vec3(0.68, 0.48, 0.28), vec3(0.46, 0.185, 0.07), 0.5 * film + 0.5 * n(vMaterial * 70.0));
   finish(s, view);
 }`;
 

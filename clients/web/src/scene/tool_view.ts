@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// One instrument: its solids from the definition, jaws that turn, metal that glows a little when hot. As a
+// One instrument: its solids from the definition, jaws that turn, metal that is a trace warmer when hot. As a
 // ghost it is where its driver wants it while tissue keeps it elsewhere, which is inside the tissue or behind
 // it: so a ghost is seen through everything, as a rim of light around its solids.
 import { BufferGeometry, Color, GLSL3, Group, Mesh, ShaderMaterial, Vector3, type IUniform } from 'three';
@@ -53,6 +53,9 @@ void main() {
   float rim = pow(1.0 - facing, 2.0);
   fragment = linearToOutputTexel(vec4(vec3(0.08, 0.75, 1.0), 0.18 + 0.80 * rim));
 }`;
+/** What goes into the sleeve is as wide as it in some shapes: drawn this much thinner, no two surfaces are at one place,
+ * where they would flicker. */
+const UNDER_SLEEVE_M = 3e-5;
 const LAST = 10; // of what is drawn: over tissue, cloth and instruments
 
 export class ToolView {
@@ -81,7 +84,8 @@ export class ToolView {
     const parts = toolParts(definition);
     for (const part of parts) {
       const isShaft = part === parts.at(-1);
-      const mesh = new Mesh(solidGeometry(part), part.hot ? hot : isShaft ? sleeve : steel);
+      const under = part.solid === 'capsule' && !part.hot && !isShaft ? { ...part, radius: part.radius - UNDER_SLEEVE_M } : part;
+      const mesh = new Mesh(solidGeometry(under), part.hot ? hot : isShaft ? sleeve : steel);
       mesh.userData['hot'] = part.hot;
       this.place(mesh, part);
     }

@@ -11,6 +11,9 @@ import type { Frame, FrameBuffers, Joined, Sample, VertexState } from './worker_
 
 const SAMPLES_MAX = 600;
 const WHOLE: Changes = { whole: true, moved: [], maskWords: [], scalars: true };
+/** After lips the next frame waits so many times as long as these took: decoding comes first. On a machine with time to
+ * spare that is less than a frame lasts. */
+const REST = 4;
 const BYTE = 255; // exposure and charring of one
 
 export class Feed {
@@ -19,6 +22,7 @@ export class Feed {
   private readonly stale = new Set<number>();
   /** batches whose lips were shown when they were last handed over */
   private readonly lipped = new Set<number>();
+  private restUntilMs = 0;
   private spare: FrameBuffers | null;
   private newest: StreamState | null = null;
   private last: StreamState | null = null;
@@ -91,6 +95,11 @@ export class Feed {
     if (buffers.position.length === this.tissue.position.length) this.spare = buffers;
   }
 
+  /** How long the next frame should wait. */
+  get restMs(): number {
+    return this.restUntilMs - performance.now();
+  }
+
   /** The newest state if it was not handed over yet and buffers are here; the caller transfers them. */
   handOver(framesDecoded: number, framesSkipped: number): Frame | null {
     const { newest: state, spare: buffers, tissue, past } = this;
@@ -137,6 +146,14 @@ export class Feed {
 
   /** Of all batches that have any, or had when they were last handed over. */
   private lips(): Frame['lips'] {
+    const beganMs = performance.now();
+    const shapes = this.lipShapes();
+    const nowMs = performance.now();
+    this.restUntilMs = nowMs + REST * (nowMs - beganMs);
+    return shapes;
+  }
+
+  private lipShapes(): Frame['lips'] {
     return this.tissue.lips.flatMap((lips, batch) => {
       if (!lips || (lips.empty && !this.lipped.has(batch))) return [];
       if (lips.empty) this.lipped.delete(batch);

@@ -58,7 +58,17 @@ async function heartbeat(visible: boolean, atUs: number): Promise<void> {
   clockOffsetUs = server - (sent + delay / 2);
 }
 
+let later: ReturnType<typeof setTimeout> | null = null;
+
+/** Behind frames that wait to be decoded: a worker that is late decodes first, and hands the newest of them over. */
 function handOver(): void {
+  later ??= setTimeout(() => {
+    later = null;
+    handOverNow();
+  }, Math.max(feed?.restMs ?? 0, 0));
+}
+
+function handOverNow(): void {
   const frame = feed?.handOver(subscription?.framesDecoded ?? 0, subscription?.framesSkipped ?? 0);
   if (!frame) return;
   const { position, normal, burn } = frame.buffers;
