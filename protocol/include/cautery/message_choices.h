@@ -135,6 +135,7 @@ typedef enum cau_export_format { CAU_EXPORT_TABLE(X) CAU_EXPORT_COUNT } cau_expo
 typedef enum cau_look_stage { CAU_LOOK_STAGE_TABLE(X) CAU_LOOK_STAGE_COUNT } cau_look_stage;
 #undef X
 #define X(code, name) CAU_ADVANCE_##code,
+// What a command of session.advance does: the method of that name.
 typedef enum cau_advance_method {
 	CAU_ADVANCE_METHOD_TABLE(X) CAU_ADVANCE_METHOD_COUNT
 } cau_advance_method;
