@@ -13,7 +13,7 @@ static const double gas_j_molk = 8.314462618;
 static const double zero_k = 273.15;
 static const double damage_from_c = 43; // below it constants of burns do not hold
 static const double stable_share = 0.9; // of the longest step that is stable
-static const double cold_k = 1e-3;
+static const double cold_k = 0.5;       // what is no warmer parts, damages and shows nothing
 
 cau_status cau_bioheat_create(cau_bioheat *bioheat, double side_m, int32_t capacity,
                               const cau_bioheat_material *material, int32_t material_count,
@@ -261,6 +261,15 @@ static bool is_cold(const cau_bioheat *bioheat)
 	return true;
 }
 
+// The last half degree would take blood minutes to carry away.
+static void forget_rest(cau_bioheat *bioheat)
+{
+	for (int32_t i = 0; i < bioheat->cells.count; i++)
+		bioheat->temperature[i] = bioheat->ambient_c;
+	bioheat->ledger.perfused_j += bioheat->ledger.stored_j;
+	bioheat->ledger.stored_j = 0;
+}
+
 bool cau_bioheat_step(cau_bioheat *bioheat, cau_blade *blade, int32_t blade_count,
                       double duration_s)
 {
@@ -272,5 +281,7 @@ bool cau_bioheat_step(cau_bioheat *bioheat, cau_blade *blade, int32_t blade_coun
 	for (int part = 0; part < (int)parts; part++)
 		step_part(bioheat, blade, blade_count, duration_s / parts);
 	bioheat->cold = is_cold(bioheat);
+	if (bioheat->cold)
+		forget_rest(bioheat);
 	return true;
 }

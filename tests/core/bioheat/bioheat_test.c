@@ -227,6 +227,25 @@ static void nothing_flows_through_a_cell_that_is_gone(void **state)
 	cau_arena_finish(&arena);
 }
 
+// What is left below half a degree is forgotten in one step, and counts as perfused.
+static void the_last_warmth_is_forgotten(void **state)
+{
+	(void)state;
+	cau_arena arena = {0};
+	cau_bioheat bar = bar_of(&plain_tissue, 5, SIDE_M, 37, &arena);
+	bar.power_w[2] = 60 * 0.4 * cau_bioheat_capacity(&bar, 2);
+	run(&bar, NULL, 1.0 / 60);
+	assert_false(bar.cold);
+	bar.power_w[2] = 0;
+	run(&bar, NULL, 1.0 / 60);
+	assert_true(bar.cold);
+	for (int i = 0; i < 5; i++)
+		assert_true(bar.temperature[i] == 37);
+	assert_within(bar.ledger.perfused_j, bar.ledger.delivered_j, 1e-9);
+	assert_true(bar.ledger.stored_j == 0);
+	cau_arena_finish(&arena);
+}
+
 static void a_step_that_is_too_long_is_refused(void **state)
 {
 	(void)state;
@@ -249,6 +268,7 @@ int main(void)
 		cmocka_unit_test(damage_follows_arrhenius),
 		cmocka_unit_test(the_ledger_closes),
 		cmocka_unit_test(nothing_flows_through_a_cell_that_is_gone),
+		cmocka_unit_test(the_last_warmth_is_forgotten),
 		cmocka_unit_test(a_step_that_is_too_long_is_refused),
 	};
 	return cmocka_run_group_tests(tests, NULL, NULL);
