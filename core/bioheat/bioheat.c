@@ -253,8 +253,11 @@ static void step_part(cau_bioheat *bioheat, cau_blade *blade, int32_t blade_coun
 	}
 }
 
-static bool is_cold(const cau_bioheat *bioheat)
+static bool is_cold(const cau_bioheat *bioheat, const cau_blade *blade)
 {
+	for (int32_t k = 0; k < bioheat->contact_count; k++)
+		if (fabs(blade[bioheat->contact[k].blade].temperature_c - bioheat->ambient_c) > cold_k)
+			return false;
 	for (int32_t i = 0; i < bioheat->cells.count; i++)
 		if (fabs(bioheat->temperature[i] - bioheat->ambient_c) > cold_k || bioheat->power_w[i] > 0)
 			return false;
@@ -280,7 +283,7 @@ bool cau_bioheat_step(cau_bioheat *bioheat, cau_blade *blade, int32_t blade_coun
 		return false;
 	for (int part = 0; part < (int)parts; part++)
 		step_part(bioheat, blade, blade_count, duration_s / parts);
-	bioheat->cold = is_cold(bioheat);
+	bioheat->cold = is_cold(bioheat, blade);
 	if (bioheat->cold)
 		forget_rest(bioheat);
 	return true;
