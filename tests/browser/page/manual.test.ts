@@ -9,7 +9,8 @@ const BEYOND = /^(https?|mailto):/;
 /** What `default-src 'none'; script-src 'self'; style-src 'self'` refuses. */
 const INLINE = /<script(?![^>]*\bsrc=)[^>]*>|<style\b|\sstyle="|\son[a-z]+="/;
 const TYPES: [RegExp, RegExp][] = [[/\.html$|\/$/, /^text\/html/], [/\.css$/, /^text\/css/], [/\.js$/, /^text\/javascript/],
-  [/\.svg$/, /^image\/svg/], [/\.png$/, /^image\/png/], [/\.json$/, /^application\/json/]];
+  [/\.svg$/, /^image\/svg/], [/\.png$/, /^image\/png/], [/\.jpg$/, /^image\/jpeg/],
+  [/\.json$/, /^application\/json/]];
 
 /** Every address that pages link or load, from the first page on, with the text that is there. */
 async function follow(first: string): Promise<Map<string, string>> {
