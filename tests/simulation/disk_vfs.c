@@ -91,11 +91,10 @@ static int most_of_others(const disk_handle *own)
 static int file_lock(sqlite3_file *file, int wanted)
 {
 	disk_handle *h = of(file);
-	int others = most_of_others(h);
 	sim_point();
 	if (h->lock >= wanted)
 		return SQLITE_OK;
-	others = most_of_others(h);
+	int others = most_of_others(h);
 	if (wanted == SQLITE_LOCK_SHARED && others >= SQLITE_LOCK_PENDING)
 		return SQLITE_BUSY;
 	if (wanted == SQLITE_LOCK_RESERVED && others >= SQLITE_LOCK_RESERVED)
