@@ -175,11 +175,13 @@ WRAPPED void __wrap_cau_decide_next(cau_hosted *h, cau_action *action)
 	work->deciding = NULL;
 }
 
-// The first decision after a restart is about the state that the store led to.
-static void compare(const cau_hosted *h, int place)
+// The first decision after a restart is about the state that the store led to. A daemon that ends
+// gives up the sessions that it is building: these are not there yet, and nobody is served by them.
+static void compare(const cau_hosted *h, const cau_logic *logic, int place)
 {
 	session_book *book = &sim_books[place];
-	if (!book->restarted || !h->core)
+	if (!book->restarted || !h->core || logic->draining || logic->ended ||
+	    logic->state == CAU_SESSION_STARTING)
 		return;
 	books_compare(book, place, books_number(cau_fake_gravity(h->core)[2]));
 	book->restarted = false;
@@ -218,7 +220,7 @@ WRAPPED void __wrap_cau_logic_next(cau_logic *logic, double now_s, cau_action *a
 	int place = work->deciding ? sim_session_of(cau_hosted_id(work->deciding)) : -1;
 	if (place < 0)
 		return;
-	compare(work->deciding, place);
+	compare(work->deciding, logic, place);
 	core_book *core = work->deciding->core ? book_of(work->deciding->core) : NULL;
 	if (core)
 		note_decision(core, logic, action);
