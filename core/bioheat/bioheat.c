@@ -139,8 +139,8 @@ static double contact_w_k(const cau_bioheat *bioheat, const cau_contact_cell *co
 	return cau_bioheat_conductivity(bioheat, contact->cell) * contact->over_length_m;
 }
 
-// A cell may lose no more in a part than what brings it to the mean of its neighbours. Cells that
-// boil off change their capacity within a step: the dry one's counts.
+// Explicit steps are stable while no cell loses more in a part than what brings it to the mean of
+// its neighbours.
 static double longest_part_s(cau_bioheat *bioheat)
 {
 	double longest = INFINITY;
@@ -148,14 +148,9 @@ static double longest_part_s(cau_bioheat *bioheat)
 		bioheat->flow_w[i] = find_faces(bioheat, i);
 	for (int32_t k = 0; k < bioheat->contact_count; k++)
 		bioheat->flow_w[bioheat->contact[k].cell] += contact_w_k(bioheat, &bioheat->contact[k]);
-	for (int32_t i = 0; i < bioheat->cells.count; i++) {
-		const cau_bioheat_material *material = material_of(bioheat, i);
-		double dry = mass_of(bioheat, i) *
-		             (material->specific_heat_j_kgk - material->water * water_heat_j_kgk);
-		double capacity = bioheat->water[i] > 0 ? cau_bioheat_capacity(bioheat, i) : dry;
+	for (int32_t i = 0; i < bioheat->cells.count; i++)
 		if (bioheat->flow_w[i] > 0)
-			longest = fmin(longest, capacity / bioheat->flow_w[i]);
-	}
+			longest = fmin(longest, cau_bioheat_capacity(bioheat, i) / bioheat->flow_w[i]);
 	return stable_share * longest;
 }
 

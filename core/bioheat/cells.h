@@ -13,6 +13,10 @@ enum {
 	CAU_CELL_MATERIALS = 256,
 };
 
+// A pull-back is between its inverse and this. Jaws compress to a fifth; beyond that an element
+// counts as no flatter.
+#define CAU_PULL_MOST 25.0
+
 typedef struct cau_cells {
 	double side_m;
 	int32_t count, capacity;

@@ -258,8 +258,9 @@ void cau_current_solve(cau_current *current, const cau_bioheat *bioheat, double 
 		x[i] = current->potential[current->cell[i]];
 	}
 	iterate(current, &bioheat->cells, x, tolerance, most);
-	for (int32_t i = 0; i < current->count; i++)
-		current->potential[current->cell[i]] = x[i];
+	for (int32_t i = 0; i < current->count;
+	     i++) // the potential is greatest and least at electrodes
+		current->potential[current->cell[i]] = x[i] = fmax(fmin(x[i], 1), 0);
 	read_currents(current, &bioheat->cells);
 }
 

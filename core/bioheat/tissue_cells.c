@@ -12,10 +12,6 @@ enum { SUBPOINTS = 3 }; // along each axis of a cell: its fill is counted in 27t
 // Places of subpoints are shifted by so much of a cell, so that none lies on a face of a regular
 // mesh, which two elements would count.
 static const double shift[] = {0.0137, -0.0071, 0.0043};
-// Cells may conduct 25 times as well or as badly across an element as at rest. Jaws compress to a
-// fifth; beyond that the element is flat.
-static const double most_pull = 25;
-
 // ---- materials (README.md)
 
 static const cau_bioheat_material sheet_tissue = {.conductivity_w_mk = 0.49,
@@ -38,30 +34,17 @@ static const cau_bioheat_material fat_tissue = {.conductivity_w_mk = 0.21,
 
 // ---- elements at rest
 
-typedef struct element_shape {
-	int count; // of vertices: 3 or 4
+typedef struct element_corners {
+	int count; // 3 or 4
 	const int32_t *vertex;
-	uint8_t layer;
-	cau_vec3 rest[4];
-	double half_m; // of a sheet's thickness
-} element_shape;
+} element_corners;
 
-static element_shape shape_of(const cau_tissue *tissue, int32_t element)
+static element_corners corners_of(const cau_tissue *tissue, int32_t element)
 {
-	element_shape shape = {.count = 3};
-	if (element < tissue->triangle_count) {
-		shape.vertex = tissue->triangle + 3 * (size_t)element;
-		shape.layer = (uint8_t)tissue->triangle_layer[element];
-		shape.half_m = cau_triangle_material(tissue, element)->thickness_m / 2;
-	} else {
-		int32_t tetrahedron = element - tissue->triangle_count;
-		shape.count = 4;
-		shape.vertex = tissue->tetrahedron + 4 * (size_t)tetrahedron;
-		shape.layer = (uint8_t)tissue->tetrahedron_layer[tetrahedron];
-	}
-	for (int i = 0; i < shape.count; i++)
-		shape.rest[i] = cau_vec3_of(tissue->rest + 3 * (size_t)shape.vertex[i]);
-	return shape;
+	if (element < tissue->triangle_count)
+		return (element_corners){3, tissue->triangle + 3 * (size_t)element};
+	size_t tetrahedron = (size_t)(element - tissue->triangle_count);
+	return (element_corners){4, tissue->tetrahedron + 4 * tetrahedron};
 }
 
 static cau_vec3 normal_of(const cau_vec3 corner[3])
@@ -70,21 +53,63 @@ static cau_vec3 normal_of(const cau_vec3 corner[3])
 	return cau_unit_or(normal, (cau_vec3){0, 0, 1});
 }
 
-// The third edge of an element's frame: to its fourth vertex, or a triangle's normal.
-static cau_vec3 third_of(const cau_vec3 *corner, int count)
+// The edges from the first corner; a triangle's third one is its normal.
+static void edges_of(const element_corners *corners, const double *position, cau_vec3 *first,
+                     cau_vec3 edge[3])
 {
-	return count == 4 ? cau_sub(corner[3], corner[0]) : normal_of(corner);
+	cau_vec3 at[4];
+	for (int i = 0; i < corners->count; i++)
+		at[i] = cau_vec3_of(position + 3 * (size_t)corners->vertex[i]);
+	*first = at[0];
+	edge[0] = cau_sub(at[1], at[0]);
+	edge[1] = cau_sub(at[2], at[0]);
+	edge[2] = corners->count == 4 ? cau_sub(at[3], at[0]) : normal_of(at);
 }
 
-// Coordinates of a point along the edges from the first corner (Cramer's rule).
+// Rows of the inverse of the matrix with these columns. Returns its determinant.
+static double invert(const cau_vec3 edge[3], cau_vec3 row[3])
+{
+	double volume = cau_dot(edge[0], cau_cross(edge[1], edge[2]));
+	for (int i = 0; i < 3; i++)
+		row[i] = cau_scale(1 / volume, cau_cross(edge[(i + 1) % 3], edge[(i + 2) % 3]));
+	return volume;
+}
+
+typedef struct element_shape {
+	element_corners corners;
+	cau_vec3 first, edge[3]; // at rest
+	cau_vec3 row[3];         // of the inverse of the edges: a point's coordinates along them
+	double half_m;           // of a sheet's thickness
+} element_shape;
+
+static element_shape shape_of(const cau_tissue_cells *cells, int32_t element)
+{
+	element_shape shape = {.corners = corners_of(cells->tissue, element)};
+	edges_of(&shape.corners, cells->tissue->rest, &shape.first, shape.edge);
+	invert(shape.edge, shape.row);
+	if (shape.corners.count == 3)
+		shape.half_m = cells->half_m[element];
+	return shape;
+}
+
+static uint8_t layer_of(const cau_tissue *tissue, int32_t element)
+{
+	int32_t tetrahedron = element - tissue->triangle_count;
+	return (uint8_t)(tetrahedron < 0 ? tissue->triangle_layer[element]
+	                                 : tissue->tetrahedron_layer[tetrahedron]);
+}
+
+// Coordinates of a point along the edges.
 static cau_vec3 coordinates(const element_shape *shape, cau_vec3 point)
 {
-	cau_vec3 a = cau_sub(shape->rest[1], shape->rest[0]);
-	cau_vec3 b = cau_sub(shape->rest[2], shape->rest[0]);
-	cau_vec3 c = third_of(shape->rest, shape->count), d = cau_sub(point, shape->rest[0]);
-	double volume = cau_dot(a, cau_cross(b, c));
-	return (cau_vec3){cau_dot(d, cau_cross(b, c)) / volume, cau_dot(a, cau_cross(d, c)) / volume,
-	                  cau_dot(a, cau_cross(b, d)) / volume};
+	cau_vec3 from = cau_sub(point, shape->first);
+	return (cau_vec3){cau_dot(from, shape->row[0]), cau_dot(from, shape->row[1]),
+	                  cau_dot(from, shape->row[2])};
+}
+
+static cau_vec3 corner_at_rest(const element_shape *shape, int corner)
+{
+	return corner ? cau_add(shape->first, shape->edge[corner - 1]) : shape->first;
 }
 
 // `margin_m`: by which a sheet counts as thicker on each side.
@@ -93,7 +118,7 @@ static bool is_inside(const element_shape *shape, cau_vec3 point, double margin_
 	cau_vec3 at = coordinates(shape, point);
 	if (at.x < 0 || at.y < 0)
 		return false;
-	if (shape->count == 3)
+	if (shape->corners.count == 3)
 		return at.x + at.y <= 1 && fabs(at.z) <= shape->half_m + margin_m;
 	return at.z >= 0 && at.x + at.y + at.z <= 1;
 }
@@ -107,10 +132,9 @@ static cell_box box_of(const element_shape *shape, double side_m)
 	cell_box box;
 	for (int axis = 0; axis < 3; axis++) {
 		double least = INFINITY, most = -INFINITY;
-		for (int i = 0; i < shape->count; i++) {
-			double at = axis == 0   ? shape->rest[i].x
-			            : axis == 1 ? shape->rest[i].y
-			                        : shape->rest[i].z;
+		for (int i = 0; i < shape->corners.count; i++) {
+			cau_vec3 corner = corner_at_rest(shape, i);
+			double at = axis == 0 ? corner.x : axis == 1 ? corner.y : corner.z;
 			least = fmin(least, at);
 			most = fmax(most, at);
 		}
@@ -156,16 +180,32 @@ cau_status cau_tissue_cells_create(cau_tissue_cells *cells, const cau_tissue *ti
 	if (status)
 		return status;
 	size_t elements = (size_t)cau_tissue_cells_elements(cells);
+	cells->half_m = cau_arena_array(arena, (size_t)tissue->triangle_count, sizeof(double));
 	cells->filled = cau_arena_array(arena, elements, sizeof(int32_t));
 	cells->is_filled = cau_arena_array(arena, elements, 1);
 	cells->owner = cau_arena_array(arena, most, sizeof(int32_t));
 	cells->local = cau_arena_array(arena, 3 * most, sizeof(float));
 	cells->member = cau_arena_array(arena, most, sizeof(int32_t));
 	cells->stamp = cau_arena_array(arena, most, sizeof(int32_t));
-	if (!cells->filled || !cells->is_filled || !cells->owner || !cells->local || !cells->member ||
-	    !cells->stamp)
+	if (!cells->half_m || !cells->filled || !cells->is_filled || !cells->owner || !cells->local ||
+	    !cells->member || !cells->stamp)
 		return cau_fail(error, CAU_NO_MEMORY, NULL, "no memory for %d cells of tissue", capacity);
+	for (int32_t t = 0; t < tissue->triangle_count; t++)
+		cells->half_m[t] = cau_triangle_material(tissue, t)->thickness_m / 2;
 	return CAU_OK;
+}
+
+cau_status cau_tissue_cells_create_like(cau_tissue_cells *cells, const cau_tissue_cells *other,
+                                        cau_arena *arena, cau_error *error)
+{
+	const cau_bioheat *bioheat = &other->bioheat;
+	cau_status status =
+		cau_tissue_cells_create(cells, other->tissue, bioheat->cells.side_m,
+	                            bioheat->cells.capacity, bioheat->ambient_c, arena, error);
+	if (!status)
+		memcpy(cells->half_m, other->half_m,
+		       (size_t)other->tissue->triangle_count * sizeof *cells->half_m);
+	return status;
 }
 
 int32_t cau_tissue_cells_elements(const cau_tissue_cells *cells)
@@ -192,16 +232,12 @@ static float share_of(const element_shape *shape, const int32_t place[3], double
 static bool may_meet(const element_shape *shape, const int32_t place[3], double side_m)
 {
 	cau_vec3 at = coordinates(shape, point_in(place, side_m, in_the_middle));
-	cau_vec3 a = cau_sub(shape->rest[1], shape->rest[0]);
-	cau_vec3 b = cau_sub(shape->rest[2], shape->rest[0]);
-	cau_vec3 c = third_of(shape->rest, shape->count);
-	double volume = fabs(cau_dot(a, cau_cross(b, c))), reach = sqrt(0.75) * side_m;
-	double x = reach * cau_length(cau_cross(b, c)) / volume;
-	double y = reach * cau_length(cau_cross(a, c)) / volume;
-	double z = reach * cau_length(cau_cross(a, b)) / volume;
+	double reach = sqrt(0.75) * side_m; // from a cube's middle to its corners
+	double x = reach * cau_length(shape->row[0]), y = reach * cau_length(shape->row[1]);
+	double z = reach * cau_length(shape->row[2]);
 	if (at.x < -x || at.y < -y)
 		return false;
-	if (shape->count == 3)
+	if (shape->corners.count == 3)
 		return fabs(at.z) <= shape->half_m + reach && at.x + at.y <= 1 + x + y;
 	return at.z >= -z && at.x + at.y + at.z <= 1 + x + y + z;
 }
@@ -216,7 +252,7 @@ static void fill_cell(cau_tissue_cells *cells, int32_t element, const element_sh
 			grid->fill[cell] = fminf(grid->fill[cell] + share, 1);
 		return;
 	}
-	cell = cau_bioheat_add(&cells->bioheat, place, shape->layer, share);
+	cell = cau_bioheat_add(&cells->bioheat, place, layer_of(cells->tissue, element), share);
 	CAU_ASSERT(cell >= 0, "no room for a cell of element %d", element);
 	cau_vec3 at = coordinates(shape, point_in(place, grid->side_m, in_the_middle));
 	cells->owner[cell] = element;
@@ -231,7 +267,7 @@ bool cau_tissue_cells_fill(cau_tissue_cells *cells, int32_t element)
 	if (cells->is_filled[element])
 		return true;
 	double side_m = cells->bioheat.cells.side_m;
-	element_shape shape = shape_of(cells->tissue, element);
+	element_shape shape = shape_of(cells, element);
 	cell_box box = box_of(&shape, side_m);
 	int32_t place[3], wanted = 0;
 	memcpy(place, box.least, sizeof place);
@@ -255,50 +291,40 @@ bool cau_tissue_cells_fill(cau_tissue_cells *cells, int32_t element)
 
 cau_vec3 cau_tissue_cells_at(const cau_tissue_cells *cells, int32_t cell, const double *position)
 {
-	element_shape shape = shape_of(cells->tissue, cells->owner[cell]);
+	element_corners corners = corners_of(cells->tissue, cells->owner[cell]);
 	const float *local = cells->local + cau_cell_axis(cell, 0);
-	cau_vec3 corner[4];
-	for (int i = 0; i < shape.count; i++)
-		corner[i] = cau_vec3_of(position + 3 * (size_t)shape.vertex[i]);
-	cau_vec3 at = cau_add(corner[0], cau_scale(local[0], cau_sub(corner[1], corner[0])));
-	at = cau_add(at, cau_scale(local[1], cau_sub(corner[2], corner[0])));
-	return cau_add(at, cau_scale(local[2], third_of(corner, shape.count)));
+	cau_vec3 at, edge[3];
+	edges_of(&corners, position, &at, edge);
+	for (int i = 0; i < 3; i++)
+		at = cau_add(at, cau_scale(local[i], edge[i]));
+	return at;
 }
 
-// With edges a, b, c at rest and A, B, C in the world, F^-1 takes A to a, and so on. Row `axis` of
-// F^-1 is combined from the world's reciprocal edges, and its square is the axis' entry of
-// F^-1 F^-T.
+// F takes an edge at rest to the edge in the world, so row `axis` of F^-1 is the sum of the rest
+// edges' entries times the rows of the inverse in the world. Its square is the entry of F^-1 F^-T.
 void cau_tissue_cells_stretch(cau_tissue_cells *cells, int32_t cell, const double *position)
 {
-	element_shape shape = shape_of(cells->tissue, cells->owner[cell]);
-	cau_vec3 world[4], rest[3], edge[3];
-	for (int i = 0; i < shape.count; i++)
-		world[i] = cau_vec3_of(position + 3 * (size_t)shape.vertex[i]);
-	for (int i = 0; i < 2; i++) {
-		rest[i] = cau_sub(shape.rest[i + 1], shape.rest[0]);
-		edge[i] = cau_sub(world[i + 1], world[0]);
-	}
-	rest[2] = third_of(shape.rest, shape.count);
-	edge[2] = third_of(world, shape.count);
-	if (shape.count == 3) // a sheet keeps its volume: what it gains in area it loses in thickness
+	element_corners corners = corners_of(cells->tissue, cells->owner[cell]);
+	cau_vec3 first, rest[3], edge[3], across[3];
+	edges_of(&corners, cells->tissue->rest, &first, rest);
+	edges_of(&corners, position, &first, edge);
+	if (corners.count == 3) // a sheet keeps its volume: what it gains in area it loses in thickness
 		edge[2] = cau_scale(cau_length(cau_cross(rest[0], rest[1])) /
 		                        cau_length(cau_cross(edge[0], edge[1])),
 		                    edge[2]);
 	double before = cau_dot(rest[0], cau_cross(rest[1], rest[2]));
-	double now = cau_dot(edge[0], cau_cross(edge[1], edge[2])), ratio = now / before;
+	double ratio = invert(edge, across) / before;
 	if (!(ratio > 0) || !isfinite(ratio))
 		return; // inside out or flat: it keeps what it had
-	cau_vec3 across[] = {cau_cross(edge[1], edge[2]), cau_cross(edge[2], edge[0]),
-	                     cau_cross(edge[0], edge[1])};
 	for (int axis = 0; axis < 3; axis++) {
 		cau_vec3 row = {0};
 		for (int i = 0; i < 3; i++) {
 			double along = axis == 0 ? rest[i].x : axis == 1 ? rest[i].y : rest[i].z;
-			row = cau_add(row, cau_scale(along / now, across[i]));
+			row = cau_add(row, cau_scale(along, across[i]));
 		}
 		double pull = ratio * cau_dot(row, row);
 		cells->bioheat.cells.pull[cau_cell_axis(cell, axis)] =
-			(float)fmax(fmin(pull, most_pull), 1 / most_pull);
+			(float)fmax(fmin(pull, CAU_PULL_MOST), 1 / CAU_PULL_MOST);
 	}
 }
 
@@ -356,9 +382,10 @@ static int32_t corner_cell(const cau_tissue_cells *cells, const element_shape *s
 	static const double inwards = 0.4;
 	const cau_cells *grid = &cells->bioheat.cells;
 	cau_vec3 middle = {0};
-	for (int i = 0; i < shape->count; i++)
-		middle = cau_add(middle, cau_scale(1.0 / shape->count, shape->rest[i]));
-	cau_vec3 at = cau_add(cau_scale(1 - inwards, shape->rest[corner]), cau_scale(inwards, middle));
+	for (int i = 0; i < shape->corners.count; i++)
+		middle = cau_add(middle, cau_scale(1.0 / shape->corners.count, corner_at_rest(shape, i)));
+	cau_vec3 at =
+		cau_add(cau_scale(1 - inwards, corner_at_rest(shape, corner)), cau_scale(inwards, middle));
 	int32_t cell = cell_at(grid, at);
 	return cell >= 0 && !grid->severed[cell] ? cell : -1;
 }
@@ -367,13 +394,13 @@ bool cau_tissue_cells_separated(cau_tissue_cells *cells, int32_t element)
 {
 	if (!cells->is_filled[element])
 		return false;
-	element_shape shape = shape_of(cells->tissue, element);
+	element_shape shape = shape_of(cells, element);
 	int32_t first = corner_cell(cells, &shape, 0);
 	if (first < 0)
 		return true;
 	int32_t count = list_members(cells, &shape);
 	int32_t joined = mark_joined(cells, count, first);
-	for (int corner = 1; corner < shape.count; corner++) {
+	for (int corner = 1; corner < shape.corners.count; corner++) {
 		int32_t cell = corner_cell(cells, &shape, corner);
 		if (cell < 0 || cells->stamp[cell] != joined)
 			return true;
@@ -384,7 +411,7 @@ bool cau_tissue_cells_separated(cau_tissue_cells *cells, int32_t element)
 bool cau_tissue_cells_meets(const cau_tissue_cells *cells, int32_t element, const int32_t least[3],
                             const int32_t most[3])
 {
-	element_shape shape = shape_of(cells->tissue, element);
+	element_shape shape = shape_of(cells, element);
 	cell_box box = box_of(&shape, cells->bioheat.cells.side_m);
 	for (int axis = 0; axis < 3; axis++)
 		if (box.least[axis] > most[axis] || box.most[axis] < least[axis])
@@ -403,7 +430,7 @@ void cau_tissue_cells_remove(cau_tissue_cells *cells, int32_t element)
 {
 	if (!cells->is_filled[element])
 		return;
-	element_shape shape = shape_of(cells->tissue, element);
+	element_shape shape = shape_of(cells, element);
 	int32_t count = list_members(cells, &shape);
 	for (int32_t i = 0; i < count; i++)
 		cau_bioheat_take_out(&cells->bioheat, cells->member[i]);

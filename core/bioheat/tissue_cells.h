@@ -12,6 +12,7 @@ typedef struct cau_tissue_cells {
 	cau_bioheat bioheat;
 	cau_current current;
 	cau_bioheat_material material[CAU_MAX_LAYERS];
+	double *half_m; // (triangle_count): half of a sheet's thickness as the cells were created
 	int32_t filled_count;
 	int32_t *filled;    // elements in the order of filling: triangles, then tetrahedra
 	uint8_t *is_filled; // (elements)
@@ -26,6 +27,11 @@ typedef struct cau_tissue_cells {
 cau_status cau_tissue_cells_create(cau_tissue_cells *cells, const cau_tissue *tissue, double side_m,
                                    int32_t capacity, double ambient_c, cau_arena *arena,
                                    cau_error *error);
+
+// The same for the tissue of `other`, with its sizes and the thickness that its sheets had when it
+// was created: materials may have changed since.
+cau_status cau_tissue_cells_create_like(cau_tissue_cells *cells, const cau_tissue_cells *other,
+                                        cau_arena *arena, cau_error *error);
 
 // Elements that may have cells: triangles, and after them tetrahedra.
 int32_t cau_tissue_cells_elements(const cau_tissue_cells *cells);

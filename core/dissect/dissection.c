@@ -228,19 +228,26 @@ void cau_dissection_lose_element(cau_dissection *dissection, int primitive, int3
 	cau_doses_lose(dissection, primitive, index);
 }
 
-// The material that asks for most exposure decides.
+// Of the primitives of a kind that share the edge, the first one's material; NULL: there is none.
+static const cau_heat_material *heat_at(const cau_dissection *dissection, int primitive,
+                                        int32_t edge)
+{
+	CAU_ASSERT_INDEX(edge, dissection->tissue->edges.edge_count);
+	const cau_edge_table *edges = &dissection->tissue->edges;
+	int32_t k = edges->first[primitive][edge];
+	if (k == edges->first[primitive][edge + 1])
+		return NULL;
+	return cau_dissection_heat_of(dissection->tissue, primitive, edges->sharer[primitive][k]);
+}
+
+// The material that needs most exposure decides.
 void cau_dissection_show_heated(cau_dissection *dissection, int32_t edge, double share)
 {
-	const cau_edge_table *edges = &dissection->tissue->edges;
 	double exposure = dissection->exposure[edge];
 	CAU_ASSERT(share >= 0 && share <= 1, "edge %d is heated by %g", edge, share);
 	for (int p = 0; p < CAU_PRIMITIVE_KINDS; p++) {
-		int32_t k = edges->first[p][edge];
-		if (k == edges->first[p][edge + 1])
-			continue;
-		const cau_heat_material *heat =
-			cau_dissection_heat_of(dissection->tissue, p, edges->sharer[p][k]);
-		if (heat->absorption_per_s > 0)
+		const cau_heat_material *heat = heat_at(dissection, p, edge);
+		if (heat && heat->absorption_per_s > 0)
 			exposure = fmax(exposure, share * heat->ignition_c / heat->absorption_per_s);
 	}
 	if (exposure > dissection->exposure[edge])
@@ -250,18 +257,12 @@ void cau_dissection_show_heated(cau_dissection *dissection, int32_t edge, double
 
 double cau_dissection_heated(const cau_dissection *dissection, int32_t edge)
 {
-	CAU_ASSERT_INDEX(edge, dissection->tissue->edges.edge_count);
-	const cau_edge_table *edges = &dissection->tissue->edges;
 	double most = 0;
-	if (dissection->exposure[edge] <= 0)
-		return 0;
-	for (int p = 0; p < CAU_PRIMITIVE_KINDS; p++) {
-		int32_t k = edges->first[p][edge];
-		if (k == edges->first[p][edge + 1])
-			continue;
-		const cau_heat_material *heat =
-			cau_dissection_heat_of(dissection->tissue, p, edges->sharer[p][k]);
-		most = fmax(most, heat->absorption_per_s * dissection->exposure[edge] / heat->ignition_c);
+	for (int p = 0; p < CAU_PRIMITIVE_KINDS && dissection->exposure[edge] > 0; p++) {
+		const cau_heat_material *heat = heat_at(dissection, p, edge);
+		if (heat)
+			most =
+				fmax(most, heat->absorption_per_s * dissection->exposure[edge] / heat->ignition_c);
 	}
 	return fmin(most, 1);
 }

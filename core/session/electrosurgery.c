@@ -10,7 +10,7 @@
 
 enum {
 	CELLS_MOST = 1 << 16,
-	FILLED_A_TICK = 16, // elements that get cells: some 3 ms of work
+	FILLED_A_TICK = 16, // elements that get cells: some 2 ms of work
 	ITERATIONS = 60,    // of the potential, which begins at that of the tick before
 };
 

@@ -114,9 +114,7 @@ static cau_status make_copies(const cau_session *session, snapshot_state *state,
 	copy_elements(&copies, &state->elements);
 	state->cells = session->cells ? array(&copies, 1, sizeof *state->cells) : NULL;
 	if (state->cells &&
-	    cau_tissue_cells_create(state->cells, &session->tissue, session->scene->cell_m,
-	                            session->cells->bioheat.cells.capacity, session->scene->ambient_c,
-	                            &state->copies, error))
+	    cau_tissue_cells_create_like(state->cells, session->cells, &state->copies, error))
 		copies.missing = true;
 	make_columns(&copies, session, state);
 	return copies.missing ? cau_fail(error, CAU_NO_MEMORY, NULL, "no memory to restore") : CAU_OK;

@@ -370,7 +370,7 @@ static void pass_filled(snapshot_archive *archive, cau_tissue_cells *cells)
 // Which cells there are follows from the elements in their order. Reading makes them.
 static void pass_cells(snapshot_archive *archive, cau_tissue_cells *cells)
 {
-	static const double coldest_c = -300, hottest_c = 1e6, most_pull = 100;
+	static const double coldest_c = -100, hottest_c = 1e5;
 	pass_filled(archive, cells);
 	cau_bioheat *bioheat = &cells->bioheat;
 	size_t count = (size_t)bioheat->cells.count;
@@ -380,14 +380,13 @@ static void pass_cells(snapshot_archive *archive, cau_tissue_cells *cells)
 		return;
 	cau_snapshot_octets(archive, "severed cell", bioheat->cells.severed, count, 1);
 	cau_snapshot_floats(archive, "fill of a cell", bioheat->cells.fill, count, 1e-6, 1);
-	cau_snapshot_floats(archive, "pull of a cell", bioheat->cells.pull, 3 * count, 1 / most_pull,
-	                    most_pull);
+	cau_snapshot_floats(archive, "pull of a cell", bioheat->cells.pull, 3 * count,
+	                    1 / CAU_PULL_MOST, CAU_PULL_MOST);
 	cau_snapshot_doubles(archive, "temperature of a cell", bioheat->temperature, count, coldest_c,
 	                     hottest_c);
 	cau_snapshot_doubles(archive, "water of a cell", bioheat->water, count, 0, 1);
 	cau_snapshot_doubles(archive, "damage of a cell", bioheat->damage, count, 0, SNAPSHOT_ANY);
-	cau_snapshot_doubles(archive, "potential of a cell", cells->current.potential, count,
-	                     -SNAPSHOT_ANY, SNAPSHOT_ANY);
+	cau_snapshot_doubles(archive, "potential of a cell", cells->current.potential, count, 0, 1);
 	cau_snapshot_bool(archive, "cold cells", &bioheat->cold);
 	cau_energy_ledger *ledger = &bioheat->ledger;
 	double *energy[] = {&ledger->delivered_j, &ledger->far_j,    &ledger->blade_j,

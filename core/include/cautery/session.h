@@ -216,7 +216,7 @@ typedef struct cau_tool_state {
 	double raw_force_n[3];     // unfiltered
 	double raw_torque_nm[3];   // unfiltered
 	double tip_temperature_c;  // of the hot part
-	double energy_j;   // heat taken up by tissue; with energy `tissue` by its ledger, else rough
+	double energy_j;   // heat taken up by tissue, rough; with energy `tissue`, its power over time
 	uint64_t sequence; // last applied command's
 	// Commanded pose, within the speed limits. The tool is pulled there with force_max_n at most.
 	cau_pose asked_pose;

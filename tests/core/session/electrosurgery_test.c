@@ -156,6 +156,71 @@ static void soft_coagulation_heats_and_parts_nothing(void **state)
 	cau_session_destroy(session);
 }
 
+// Cells are those of the thickness that the sheet was made with, also where it has changed since.
+static void a_changed_thickness_is_restored(void **state)
+{
+	(void)state;
+	cau_scene_def *scene = needle_over_sheet(30);
+	cau_session *session = stage_open(scene, 1), *restored = stage_open(scene, 1);
+	cau_command thicker = stage_command(CAU_COMMAND_SET_MATERIAL);
+	thicker.as.material.kind = CAU_LAYER_FASCIA;
+	thicker.as.material.sheet = scene->layers[0].sheet[0];
+	thicker.as.material.sheet.thickness_m = 1.3e-3;
+	stage_submit(session, &thicker);
+	go(session, 0, 20);
+	stage_bytes bytes = stage_snapshot(session);
+	assert_int_equal(cau_session_restore(restored, bytes.bytes, bytes.count, NULL, NULL), CAU_OK);
+	assert_true(cau_session_hash(restored) == cau_session_hash(session));
+	assert_int_equal(cau_session_restore(session, bytes.bytes, bytes.count, NULL, NULL), CAU_OK);
+	assert_true(cau_session_hash(restored) == cau_session_hash(session));
+	free(bytes.bytes);
+	free(scene);
+	cau_session_destroy(session);
+	cau_session_destroy(restored);
+}
+
+// An instrument with jaws around the sheet's edge, closed and energized for a second.
+static cau_session *clamped(int shape)
+{
+	cau_scene_def *scene = needle_over_sheet(10);
+	scene->tools[0].shape = shape;
+	scene->tools[0].grid_step_m = 2e-4; // jaws are thin
+	scene->tools[0].peak_v = 190;
+	scene->tools[0].pose = (cau_pose){.position_m = {0, 0, -2e-3}, .rotation = {1, 0, 0, 0}};
+	cau_session *session = stage_open(scene, 1);
+	stage_energize(session, "hook", 1);
+	stage_step(session, 60);
+	free(scene);
+	return session;
+}
+
+// Current goes from jaw to jaw, and none leaves through the body.
+static void bipolar_jaws_heat_what_lies_between(void **state)
+{
+	(void)state;
+	cau_session *session = clamped(CAU_TOOL_BIPOLAR);
+	cau_energy_ledger ledger;
+	cau_session_read_ledger(session, &ledger);
+	assert_true(ledger.delivered_j > 0.1);
+	assert_true(ledger.far_j == 0);
+	assert_int_equal(parted(session), 0);
+	assert_ledger_closes(session);
+	cau_session_destroy(session);
+}
+
+// Friction warms the blade, and the blade the tissue: no current.
+static void a_rubbing_blade_heats_tissue(void **state)
+{
+	(void)state;
+	cau_session *session = clamped(CAU_TOOL_SHEARS);
+	cau_energy_ledger ledger;
+	cau_session_read_ledger(session, &ledger);
+	assert_true(stage_tool(session, "hook")->tip_temperature_c > 45);
+	assert_true(ledger.blade_j > 0);
+	assert_true(ledger.delivered_j == 0 && ledger.far_j == 0);
+	cau_session_destroy(session);
+}
+
 static void edges_cannot_part_by_power(void **state)
 {
 	(void)state;
@@ -175,6 +240,9 @@ int main(void)
 		cmocka_unit_test(off_ends_the_power_and_not_the_heat),
 		cmocka_unit_test(threads_and_a_restore_change_no_bit),
 		cmocka_unit_test(soft_coagulation_heats_and_parts_nothing),
+		cmocka_unit_test(a_changed_thickness_is_restored),
+		cmocka_unit_test(bipolar_jaws_heat_what_lies_between),
+		cmocka_unit_test(a_rubbing_blade_heats_tissue),
 		cmocka_unit_test(edges_cannot_part_by_power),
 	};
 	return cmocka_run_group_tests(tests, NULL, NULL);
