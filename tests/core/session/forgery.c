@@ -26,14 +26,16 @@ static cau_tool_def *add_tool(cau_scene_def *scene, const char *name, int shape,
 	return tool;
 }
 
-static cau_scene_def *tiny_scene(int parting)
+static cau_scene_def *tiny_scene(int kind)
 {
 	const double size[3] = {0.02, 0.012, 0.006};
 	const int32_t cells[3] = {4, 3, 1};
 	const double least[3] = {-0.1, -0.1, -0.0061}, most[3] = {0.1, 0.1, -0.0059};
 	cau_scene_def *scene = stage_scene(CAU_PRECISION_SINGLE);
 	cau_default_gravity(scene->gravity_m_s2);
-	scene->parting = parting;
+	scene->parting = kind == FORGERY_BY_POWER ? CAU_PARTING_ELEMENTS : kind;
+	scene->energy = kind == FORGERY_BY_POWER ? CAU_ENERGY_TISSUE : CAU_ENERGY_PAPER;
+	scene->cell_m = 1e-3; // few cells: each forgery makes them
 	scene->contact_thickness_m = 2e-4;
 	cau_layer_def *fascia = stage_add_sheet(scene, "fascia", 0.02, 0.012, 5, 3);
 	stage_mesh_of(scene, fascia)->translate_m[2] = 0.002;
@@ -88,11 +90,11 @@ static void step_scene(cau_session *session, int tick)
 	stage_step(session, 1);
 }
 
-forgery *forgery_create(int parting)
+forgery *forgery_create(int kind)
 {
 	static const int at[FORGERY_SHOTS] = {0, 7, 13, 24, 40, 55};
 	forgery *f = calloc(1, sizeof *f);
-	f->scene = tiny_scene(parting);
+	f->scene = tiny_scene(kind);
 	f->session = stage_open(f->scene, 1);
 	size_t most = 0;
 	for (int tick = 0, shot = 0; shot < FORGERY_SHOTS; tick++) {
@@ -105,6 +107,9 @@ forgery *forgery_create(int parting)
 			queue_commands(f->session);
 		step_scene(f->session, tick);
 	}
+	cau_energy_ledger ledger;
+	cau_session_read_ledger(f->session, &ledger);
+	assert_true((ledger.delivered_j > 0) == (kind == FORGERY_BY_POWER));
 	f->bytes = malloc(most);
 	return f;
 }

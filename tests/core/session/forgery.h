@@ -5,7 +5,11 @@
 
 #include "core/session/stage.h"
 
-enum { FORGERY_SHOTS = 6 };
+enum {
+	FORGERY_SHOTS = 6,
+	FORGERY_BY_POWER = CAU_PARTING_COUNT, // a scene of energy `tissue`
+	FORGERY_KINDS,
+};
 
 typedef struct forgery {
 	cau_scene_def *scene;
@@ -14,8 +18,8 @@ typedef struct forgery {
 	unsigned char *bytes;            // scratch, as long as the longest shot
 } forgery;
 
-// `parting`: CAU_PARTING_*.
-forgery *forgery_create(int parting);
+// `kind`: a CAU_PARTING_*, or FORGERY_BY_POWER.
+forgery *forgery_create(int kind);
 void forgery_destroy(forgery *f);
 
 // Copies a shot into f->bytes and makes the changes that `data` says, at most one for each nine

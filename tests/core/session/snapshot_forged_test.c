@@ -27,40 +27,40 @@ static size_t next_forgery(forgery *f, uint64_t *random)
 }
 
 // Every member of a record counts: a tool's shape and the points in its jaws among them.
-static void forge(int parting)
+static void forge(int kind)
 {
-	forgery *f = forgery_create(parting);
+	forgery *f = forgery_create(kind);
 	uint64_t random = 0x9e3779b97f4a7c15ull;
 	long restored = 0, stepped = 0;
-	for (long k = 0; k < most.restores / CAU_PARTING_COUNT; k++) {
+	for (long k = 0; k < most.restores / FORGERY_KINDS; k++) {
 		if (forgery_restore(f, next_forgery(f, &random)))
 			continue;
 		restored++;
-		if (stepped < most.steps / CAU_PARTING_COUNT) {
+		if (stepped < most.steps / FORGERY_KINDS) {
 			forgery_step(f);
 			stepped++;
 		}
 	}
 	print_message("%ld of %ld forged snapshots were restored, %ld stepped\n", restored,
-	              most.restores / CAU_PARTING_COUNT, stepped);
-	assert_in_range(restored, most.restores / 100, most.restores / CAU_PARTING_COUNT - 1);
-	assert_int_equal(stepped, most.steps / CAU_PARTING_COUNT);
+	              most.restores / FORGERY_KINDS, stepped);
+	assert_in_range(restored, most.restores / 100, most.restores / FORGERY_KINDS - 1);
+	assert_int_equal(stepped, most.steps / FORGERY_KINDS);
 	forgery_destroy(f);
 }
 
 static void forged_numbers_are_refused_or_harmless(void **state)
 {
 	(void)state;
-	for (int parting = 0; parting < CAU_PARTING_COUNT; parting++)
-		forge(parting);
+	for (int kind = 0; kind < FORGERY_KINDS; kind++)
+		forge(kind);
 }
 
 // What is not forged is restored, whatever was restored before.
 static void shots_are_restored(void **state)
 {
 	(void)state;
-	for (int parting = 0; parting < CAU_PARTING_COUNT; parting++) {
-		forgery *f = forgery_create(parting);
+	for (int kind = 0; kind < FORGERY_KINDS; kind++) {
+		forgery *f = forgery_create(kind);
 		for (uint8_t shot = 0; shot < FORGERY_SHOTS; shot++) {
 			assert_int_equal(forgery_restore(f, forgery_make(f, &shot, 1)), CAU_OK);
 			forgery_step(f);

@@ -8,13 +8,13 @@ enum { STEPPED = 16 };
 
 int LLVMFuzzerTestOneInput(const uint8_t *data, size_t bytes)
 {
-	static forgery *of[CAU_PARTING_COUNT];
+	static forgery *of[FORGERY_KINDS];
 	if (!bytes)
 		return -1;
-	size_t parting = data[0] / FORGERY_SHOTS % CAU_PARTING_COUNT;
-	if (!of[parting])
-		of[parting] = forgery_create((int)parting);
-	forgery *f = of[parting];
+	size_t kind = data[0] / FORGERY_SHOTS % FORGERY_KINDS;
+	if (!of[kind])
+		of[kind] = forgery_create((int)kind);
+	forgery *f = of[kind];
 	if (!forgery_restore(f, forgery_make(f, data, bytes)) && data[bytes - 1] % STEPPED == 0)
 		forgery_step(f);
 	return 0;
