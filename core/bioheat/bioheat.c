@@ -29,8 +29,8 @@ cau_status cau_bioheat_create(cau_bioheat *bioheat, double side_m, int32_t capac
 	if (status)
 		return status;
 	size_t most = (size_t)capacity;
-	double **fields[] = {&bioheat->temperature, &bioheat->water, &bioheat->damage,
-	                     &bioheat->power_w, &bioheat->flow_w};
+	double **fields[] = {&bioheat->temperature, &bioheat->water,  &bioheat->damage,
+	                     &bioheat->power_w,     &bioheat->flow_w, &bioheat->open_w_k};
 	bool missing = false;
 	for (size_t i = 0; i < sizeof fields / sizeof *fields; i++) {
 		*fields[i] = cau_arena_array(arena, most, sizeof(double));
@@ -115,23 +115,28 @@ void cau_bioheat_take_out(cau_bioheat *bioheat, int32_t cell)
 
 // ---- one step
 
-// Conductances of a cell's faces (harmonic mean of both sides), and their sum, W/K.
+// Conductances of a cell's faces, to neighbours (harmonic mean of both) and to gas. Returns their
+// sum, W/K.
 static double find_faces(cau_bioheat *bioheat, int32_t cell)
 {
 	const cau_cells *cells = &bioheat->cells;
 	double own = cau_bioheat_conductivity(bioheat, cell), sum = 0;
+	int open = 0;
 	for (int side = 0; side < CAU_CELL_SIDES; side++) {
 		int64_t face = cau_cell_side(cell, side);
 		int32_t other = cells->neighbour[face];
 		bioheat->face_w_k[face] = 0;
-		if (other < 0)
+		if (other < 0) {
+			open++;
 			continue;
+		}
 		double others = cau_bioheat_conductivity(bioheat, other);
 		bioheat->face_w_k[face] =
 			cau_cells_face(cells, cell, side) * 2 * own * others / (own + others);
 		sum += bioheat->face_w_k[face];
 	}
-	return sum;
+	bioheat->open_w_k[cell] = open * bioheat->surface_w_m2k * cells->side_m * cells->side_m;
+	return sum + bioheat->open_w_k[cell];
 }
 
 static double contact_w_k(const cau_bioheat *bioheat, const cau_contact_cell *contact)
@@ -241,9 +246,12 @@ static void step_part(cau_bioheat *bioheat, cau_blade *blade, int32_t blade_coun
 		if (bioheat->cells.severed[i])
 			continue;
 		double perfused = perfusion_w(bioheat, i) * part_s;
+		double lost =
+			bioheat->open_w_k[i] * (bioheat->temperature[i] - bioheat->ambient_c) * part_s;
 		double power = bioheat->power_w[i] > 0 ? power_into(bioheat, i, part_s) : 0;
 		bioheat->ledger.perfused_j += perfused;
-		take_energy(bioheat, i, bioheat->flow_w[i] * part_s - perfused + power);
+		bioheat->ledger.ambient_j += lost;
+		take_energy(bioheat, i, bioheat->flow_w[i] * part_s - perfused - lost + power);
 		damage_cell(bioheat, i, part_s);
 	}
 }

@@ -42,16 +42,18 @@ typedef struct cau_bioheat {
 	cau_cells cells;
 	int32_t material_count;
 	const cau_bioheat_material *material;
-	double ambient_c;    // of blood and of tissue that was not heated
-	double *temperature; // degC, (capacity)
-	double *water;       // share of its first water that a cell still has, (capacity)
-	double *damage;      // Omega, 1, (capacity)
-	double *power_w;     // from outside into each cell in the next step, (capacity); set by callers
+	double ambient_c;     // of blood and of tissue that was not heated
+	double surface_w_m2k; // to gas at ambient_c, through sides without a neighbour; 0 at first
+	double *temperature;  // degC, (capacity)
+	double *water;        // share of its first water that a cell still has, (capacity)
+	double *damage;       // Omega, 1, (capacity)
+	double *power_w; // from outside into each cell in the next step, (capacity); set by callers
 	int32_t contact_count;
 	cau_contact_cell *contact; // (capacity)
 	cau_energy_ledger ledger;
-	bool cold;                 // every cell is at ambient_c and no power is set
-	double *flow_w, *face_w_k; // scratch: (capacity), (capacity x 6)
+	bool cold; // every cell is at ambient_c and no power is set
+	// Scratch: (capacity), (capacity), (capacity x 6).
+	double *flow_w, *open_w_k, *face_w_k;
 } cau_bioheat;
 
 // `material` is borrowed and has material_count entries, at most CAU_CELL_MATERIALS. CAU_NO_MEMORY.
@@ -65,8 +67,8 @@ int32_t cau_bioheat_add(cau_bioheat *bioheat, const int32_t place[3], uint8_t ma
 // Takes a cell out with what it holds, and severs it. Once for a cell.
 void cau_bioheat_take_out(cau_bioheat *bioheat, int32_t cell);
 
-// Advances by duration_s: conduction, perfusion, the power that is set, and blades through
-// `contact`. Water boils at CAU_BOILING_C. A cell takes no more of its set power than dries
+// Advances by duration_s: conduction, perfusion, gas at the surface, the set power, and blades
+// through `contact`. Water boils at CAU_BOILING_C. A cell takes no more of its set power than dries
 // it; the ledger has what all took. Explicit, in as many equal parts as stability asks, at most
 // CAU_BIOHEAT_PARTS; returns false, and has not advanced, if that is too few.
 enum { CAU_BIOHEAT_PARTS = 512 };

@@ -32,6 +32,8 @@ static const cau_bioheat_material fat_tissue = {.conductivity_w_mk = 0.21,
                                                 .damage_log_rate = 91.8,
                                                 .damage_energy_j_mol = 2.577e5};
 
+static const double surface_w_m2k = 20; // still gas, with radiation
+
 // ---- elements at rest
 
 typedef struct element_corners {
@@ -190,6 +192,7 @@ cau_status cau_tissue_cells_create(cau_tissue_cells *cells, const cau_tissue *ti
 	if (!cells->half_m || !cells->filled || !cells->is_filled || !cells->owner || !cells->local ||
 	    !cells->member || !cells->stamp)
 		return cau_fail(error, CAU_NO_MEMORY, NULL, "no memory for %d cells of tissue", capacity);
+	cells->bioheat.surface_w_m2k = surface_w_m2k;
 	for (int32_t t = 0; t < tissue->triangle_count; t++)
 		cells->half_m[t] = cau_triangle_material(tissue, t)->thickness_m / 2;
 	return CAU_OK;

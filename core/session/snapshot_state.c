@@ -391,7 +391,7 @@ static void pass_cells(snapshot_archive *archive, cau_tissue_cells *cells)
 	cau_energy_ledger *ledger = &bioheat->ledger;
 	double *energy[] = {&ledger->delivered_j, &ledger->far_j,    &ledger->blade_j,
 	                    &ledger->stored_j,    &ledger->boiled_j, &ledger->perfused_j,
-	                    &ledger->shed_j};
+	                    &ledger->ambient_j,   &ledger->shed_j};
 	for (size_t i = 0; i < sizeof energy / sizeof *energy; i++)
 		cau_snapshot_doubles(archive, "energy", energy[i], 1, -SNAPSHOT_ANY, SNAPSHOT_ANY);
 }

@@ -358,6 +358,7 @@ typedef struct cau_energy_ledger {
 	double stored_j;    // heat content of the tissue above ambient temperature
 	double boiled_j;    // taken along by water that boiled off
 	double perfused_j;  // taken along by blood
+	double ambient_j;   // lost at surfaces
 	double shed_j;      // heat content of tissue that was removed
 } cau_energy_ledger;
 // Writes the session's ledger.

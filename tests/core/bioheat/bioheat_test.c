@@ -150,6 +150,21 @@ static void a_boiling_front_moves_with_the_root_of_time(void **state)
 	cau_arena_finish(&arena);
 }
 
+// A cube in gas, through its six sides.
+static void a_surface_cools_in_gas(void **state)
+{
+	(void)state;
+	cau_arena arena = {0};
+	cau_bioheat bar = bar_of(&plain_tissue, 1, 1e-3, 37, &arena);
+	bar.surface_w_m2k = 20;
+	bar.temperature[0] = 60;
+	run(&bar, NULL, 20);
+	double per_s = 6 * 20 * 1e-6 / (1079e-9 * 3540);
+	assert_within(bar.temperature[0] - 37, 23 * exp(-20 * per_s), 0.01);
+	assert_within(bar.ledger.ambient_j, 1079e-9 * 3540 * 23 * (1 - exp(-20 * per_s)), 0.01);
+	cau_arena_finish(&arena);
+}
+
 static void a_blade_cools_and_gives_its_heat(void **state)
 {
 	(void)state;
@@ -195,6 +210,7 @@ static void the_ledger_closes(void **state)
 	perfused.perfusion_w_m3k = 40000;
 	cau_arena arena = {0};
 	cau_bioheat bar = bar_of(&perfused, LENGTH, SIDE_M, 37, &arena);
+	bar.surface_w_m2k = 20;
 	cau_blade blade = {.temperature_c = 150, .heat_capacity_j_k = 0.01, .cooling_w_k = 1e-4};
 	bar.contact[bar.contact_count++] = (cau_contact_cell){.cell = 0, .over_length_m = 2 * SIDE_M};
 	for (int i = 20; i < 40; i++)
@@ -209,8 +225,9 @@ static void the_ledger_closes(void **state)
 	assert_true(ledger->boiled_j > 0.1 * ledger->delivered_j);
 	assert_true(ledger->perfused_j > 0 && ledger->shed_j > 0 && ledger->blade_j > 0);
 	assert_within(ledger->stored_j, stored, 1e-9);
-	assert_within(ledger->delivered_j + ledger->blade_j,
-	              stored + ledger->boiled_j + ledger->perfused_j + ledger->shed_j, 1e-9);
+	assert_within(
+		ledger->delivered_j + ledger->blade_j,
+		stored + ledger->boiled_j + ledger->perfused_j + ledger->ambient_j + ledger->shed_j, 1e-9);
 	cau_arena_finish(&arena);
 }
 
@@ -264,6 +281,7 @@ int main(void)
 		cmocka_unit_test(a_perfused_bar_at_a_wall),
 		cmocka_unit_test(water_boils_off_by_its_enthalpy),
 		cmocka_unit_test(a_boiling_front_moves_with_the_root_of_time),
+		cmocka_unit_test(a_surface_cools_in_gas),
 		cmocka_unit_test(a_blade_cools_and_gives_its_heat),
 		cmocka_unit_test(damage_follows_arrhenius),
 		cmocka_unit_test(the_ledger_closes),

@@ -57,7 +57,7 @@ static void assert_ledger_closes(const cau_session *session)
 	double stored = 0;
 	for (int32_t i = 0; i < bioheat->cells.count; i++)
 		stored += cau_bioheat_capacity(bioheat, i) * (bioheat->temperature[i] - bioheat->ambient_c);
-	double found = stored + ledger.boiled_j + ledger.perfused_j + ledger.shed_j;
+	double found = stored + ledger.boiled_j + ledger.perfused_j + ledger.ambient_j + ledger.shed_j;
 	assert_true(fabs(ledger.stored_j - stored) <= 1e-6 * ledger.delivered_j);
 	assert_true(fabs(ledger.delivered_j + ledger.blade_j - found) <= 1e-6 * ledger.delivered_j);
 }
