@@ -13,7 +13,7 @@ static const double gas_j_molk = 8.314462618;
 static const double zero_k = 273.15;
 static const double damage_from_c = 43; // below it constants of burns do not hold
 static const double stable_share = 0.9; // of the longest step that is stable
-static const double cold_k = 0.5;       // what is no warmer parts, damages and shows nothing
+static const double cold_k = 0.5;       // such warmth damages no tissue, and no picture shows it
 
 cau_status cau_bioheat_create(cau_bioheat *bioheat, double side_m, int32_t capacity,
                               const cau_bioheat_material *material, int32_t material_count,
@@ -81,7 +81,7 @@ double cau_bioheat_electric(const cau_bioheat *bioheat, int32_t cell)
 	return material_of(bioheat, cell)->electric_s_m * (1 + electric_per_k * warm) * wet * wet;
 }
 
-// What is dry keeps its heat capacity; water takes its own along.
+// The dry mass keeps its heat capacity. The water that boils off takes its own along.
 double cau_bioheat_capacity(const cau_bioheat *bioheat, int32_t cell)
 {
 	const cau_bioheat_material *material = material_of(bioheat, cell);
@@ -159,8 +159,8 @@ static double longest_part_s(cau_bioheat *bioheat)
 	return stable_share * longest;
 }
 
-// Adds energy to a cell, J: warms it, boils its water, and warms what is dry. Only warm water
-// boils, so a cell that cools keeps what it has left.
+// Adds energy to a cell, J. It warms the cell to 100 degC, then boils its water, then warms the dry
+// cell. A cell that cools keeps the water that it has left.
 static void take_energy(cau_bioheat *bioheat, int32_t cell, double energy_j)
 {
 	double capacity = cau_bioheat_capacity(bioheat, cell);
@@ -267,7 +267,7 @@ static bool is_cold(const cau_bioheat *bioheat, const cau_blade *blade)
 	return true;
 }
 
-// The last half degree would take blood minutes to carry away.
+// Sets all cells to ambient. Blood would take minutes to carry the last half degree away.
 static void forget_rest(cau_bioheat *bioheat)
 {
 	for (int32_t i = 0; i < bioheat->cells.count; i++)

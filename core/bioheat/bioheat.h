@@ -64,7 +64,7 @@ cau_status cau_bioheat_create(cau_bioheat *bioheat, double side_m, int32_t capac
 // Adds a cell at ambient temperature, with all its water. As cau_cells_add.
 int32_t cau_bioheat_add(cau_bioheat *bioheat, const int32_t place[3], uint8_t material, float fill);
 
-// Takes a cell out with what it holds, and severs it. Once for a cell.
+// Removes a cell with its heat, and severs it. Call it once for a cell.
 void cau_bioheat_take_out(cau_bioheat *bioheat, int32_t cell);
 
 // Advances by duration_s: conduction, perfusion, gas at the surface, the set power, and blades

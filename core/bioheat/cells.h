@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Cells of tissue: equal cubes in rest space, in which heat, water, damage and current are
-// reckoned. They lie in rest space, so what they hold moves with the tissue.
+// computed. They lie in rest space, so heat and damage move with the tissue.
 #pragma once
 
 #include <stdint.h>

@@ -10,7 +10,7 @@
 // A sheet's current spreads in its plane, where the potential falls with the logarithm of the
 // distance: to the return electrode, about this far away.
 static const double return_m = 0.03;
-// Tissue that has boiled dry conducts so much of what it did: a matrix needs some.
+// Dry tissue conducts this share of its first conductivity. With 0 the matrix would be singular.
 static const double dry_share = 1e-4;
 
 cau_status cau_current_create(cau_current *current, const cau_bioheat *bioheat, cau_arena *arena,
@@ -67,7 +67,7 @@ static void enter(cau_current *current, int32_t cell, int32_t seed)
 	current->cell[current->count++] = cell;
 }
 
-// What is joined with the electrodes within reach, in order of distance in cells.
+// Lists the cells that are joined with an electrode within reach_m, the nearest first.
 static void find_region(cau_current *current, const cau_cells *cells, double reach_m)
 {
 	for (int32_t i = 0; i < current->count; i++)
@@ -93,8 +93,9 @@ static double conductivity(const cau_bioheat *bioheat, int32_t cell)
 	return fmax(cau_bioheat_electric(bioheat, cell), dry_share * wet);
 }
 
-// Through a face to where the potential is 0, as it falls beyond from a point at `middle`: with 1/r
-// in a solid, with ln(return_m / r) in a sheet.
+// Conductance through a face of the region's border to 0 V, S. Beyond the border the potential is
+// taken to fall as around a point at `middle`: with 1/r in a solid, with ln(return_m / r) in a
+// sheet.
 static double far_conductance(const cau_bioheat *bioheat, int32_t cell, int side, cau_vec3 middle)
 {
 	const cau_cells *cells = &bioheat->cells;
@@ -211,7 +212,7 @@ static void iterate(cau_current *current, const cau_cells *cells, double *x, dou
 
 // ---- results
 
-// Half of what a face turns into heat goes to each side; contact's all goes to the tissue.
+// The heat of a face is divided between its two cells. The heat of a contact goes to its cell.
 static double heat_at_1v(const cau_current *current, const cau_cells *cells, int32_t i)
 {
 	const double *x = current->vector[0];

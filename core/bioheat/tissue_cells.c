@@ -318,7 +318,7 @@ void cau_tissue_cells_stretch(cau_tissue_cells *cells, int32_t cell, const doubl
 	double before = cau_dot(rest[0], cau_cross(rest[1], rest[2]));
 	double ratio = invert(edge, across) / before;
 	if (!(ratio > 0) || !isfinite(ratio))
-		return; // inside out or flat: it keeps what it had
+		return; // inside out or flat: the last value stays
 	for (int axis = 0; axis < 3; axis++) {
 		cau_vec3 row = {0};
 		for (int i = 0; i < 3; i++) {
@@ -349,8 +349,7 @@ static int32_t list_members(cau_tissue_cells *cells, const element_shape *shape)
 	return count;
 }
 
-// Marks with a new stamp what of the members is joined with cell `from`. Members have the stamp
-// before it.
+// Returns a new stamp. It marks the members that are joined with cell `from`.
 static int32_t mark_joined(cau_tissue_cells *cells, int32_t count, int32_t from)
 {
 	int32_t members = ++cells->last_stamp, joined = ++cells->last_stamp, done = 0, found = 0;

@@ -47,7 +47,7 @@ cau_vec3 cau_tissue_cells_at(const cau_tissue_cells *cells, int32_t cell, const 
 // Sets the cell's pull-back (cells.h) from the deformation of its owner.
 void cau_tissue_cells_stretch(cau_tissue_cells *cells, int32_t cell, const double *position);
 
-// Whether what is left of the element's cells no longer joins its vertices.
+// Whether the element's cells no longer join its vertices.
 bool cau_tissue_cells_separated(cau_tissue_cells *cells, int32_t element);
 
 // Whether the element may have cells with places from `least` to `most`.
@@ -57,7 +57,7 @@ bool cau_tissue_cells_meets(const cau_tissue_cells *cells, int32_t element, cons
 // The cell half way between two vertices at rest, also one that was taken out; -1: none.
 int32_t cau_tissue_cells_between(const cau_tissue_cells *cells, int32_t a, int32_t b);
 
-// Takes out what is left of an element that is no more.
+// Removes the cells that a removed element still has.
 void cau_tissue_cells_remove(cau_tissue_cells *cells, int32_t element);
 
 // Makes `to` equal to `from`, which is of the same tissue and capacity.

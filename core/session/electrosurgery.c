@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Energy `tissue`: a generator's power goes through the tissue around a tool, heats it, boils its
-// water, and what is dry goes off in sparks (core/bioheat). An element parts when its cells no
-// longer hold its vertices together.
+// Energy `tissue` (core/bioheat). A generator's current heats the tissue around a tool and boils
+// its water. Sparks remove cells that have lost much of it. An element parts when its cells no
+// longer join its vertices.
 #include <string.h>
 
 #include "bioheat/generator.h"
@@ -23,15 +23,15 @@ static const double spark_v_m = 3e6;      // breakdown of air
 // resistance is there, and most of the heat.
 static const double spot_m = 1e-4;
 static const double cold_k = 0.01;
-// Share of its water with which tissue bursts. Steam that is held by tissue of 1 MPa is at 180
-// degC: of water that is let off from there a sixth boils at once. At the other end all of it has
-// boiled. No measurement was found; a half is between them.
+// Share of its water that tissue still has when it bursts. No measurement was found. Steam in
+// tissue that holds 1 MPa has 180 degC, and a sixth of such water boils at once when it is let off.
+// At most all of the water has boiled. A half is between the two.
 static const double burst_share = 0.5;
 
 // ---- blades
 
-// Of the metal at the hot part, and what leads its heat away along the shaft: J/K and W/K. A wire
-// of 1 mm and 10 mm length has 0.03 J/K; jaws have cubic millimetres by the hundred.
+// Heat capacity of the metal at the hot part, J/K, and conductance along the shaft, W/K. A steel
+// wire of 1 mm and 10 mm length has 0.03 J/K. Jaws have more than 100 mm^3 of metal.
 static const struct {
 	double heat_capacity_j_k, cooling_w_k;
 } blades[CAU_TOOL_SHAPE_COUNT] = {
@@ -94,13 +94,13 @@ static double hot_distance(const cau_tool *tool, cau_vec3 point)
 	                            CAU_PART_HOT, point, NULL);
 }
 
-// A cell that touches metal has its middle half a cell away, and rounding.
+// The middle of a cell that touches metal is half a cell away. A fiftieth is for rounding.
 static double reach_of_metal_m(const cau_session *session)
 {
 	return 0.51 * session->scene->cell_m;
 }
 
-// Tissue that is so near to the hot part touches it, or is reached by its sparks.
+// Distance from the hot part within which its sparks, or its metal, reach a cell's middle.
 static double touch_m(const cau_session *session, const cau_tool *tool)
 {
 	double peak_v = tool->state.definition.peak_v;
@@ -140,7 +140,7 @@ static void fill_sharers(edge_visit *visit, int32_t edge)
 		}
 }
 
-// Viewers see what is coagulated as half heated, and what is dry or gone as wholly so.
+// The exposure that viewers see: 0.5 for coagulated tissue, rising to 1 for dry or removed tissue.
 static void show_heat(cau_session *session, int32_t edge)
 {
 	const int32_t *end = session->tissue.edges.vertex + 2 * (size_t)edge;
@@ -207,7 +207,7 @@ static double contact_over_length(const cau_session *session, int32_t cell, doub
 	return side * side * session->cells->bioheat.cells.fill[cell] / fmax(distance_m, side / 2);
 }
 
-// Lists what tool `index` touches; for an electrode its potential too.
+// Adds a cell to the contacts of tool `index`, if its hot part or its sparks reach the cell.
 static void touch_cell(cau_session *session, int32_t index, int32_t cell)
 {
 	const cau_tool *tool = &session->tool[index];
@@ -228,10 +228,10 @@ static void touch_cell(cau_session *session, int32_t index, int32_t cell)
 			(cau_contact_cell){.blade = index, .cell = cell, .over_length_m = pressed ? over : 0};
 }
 
-// Cells' deformation is looked at in turns: it changes little from tick to tick.
+// A tick updates the pull-back of every eighth cell: deformation changes little from tick to tick.
 enum { STRETCH_TURNS = 8 };
 
-// Arcs jump between all the places within their reach: over a tick each has a share of one spot.
+// Arcs jump between all cells within their reach. Over a tick each cell has a share of one spot.
 static void strike(cau_current *current)
 {
 	for (int32_t k = 0; k < current->electrode_count; k++)
@@ -262,7 +262,7 @@ static void rub(const cau_session *session, cau_tool *tool)
 	tool->state.delivered_w = power;
 }
 
-// Whether what is dry at the tool goes off in sparks.
+// Whether the tool sparks.
 static bool sparks(const cau_tool *tool)
 {
 	return tool->state.energized && tool->state.definition.peak_v >= spark_v &&
@@ -300,10 +300,10 @@ static void energize(cau_session *session, cau_tool *tool)
 		give_power(session, tool);
 }
 
-// ---- what goes
+// ---- removal
 
-// What has lost so much water and is reached by sparks. Returns whether there was any, and the box
-// of their places.
+// Removes the cells within reach of sparks that have lost enough water. Returns whether there were
+// any, and the box of their places.
 static bool vaporise(cau_session *session, int32_t least[3], int32_t most[3])
 {
 	cau_bioheat *bioheat = &session->cells->bioheat;
@@ -342,7 +342,7 @@ static bool lives(const cau_session *session, int32_t element)
 	                           : alive->element[CAU_ELEMENT_TETRAHEDRON][element - triangles];
 }
 
-// Elements of which a cell in the box went, and that are separated by it.
+// Removes the elements with cells in the box that are separated now.
 static void part(cau_session *session, const int32_t least[3], const int32_t most[3],
                  uint32_t *layers)
 {

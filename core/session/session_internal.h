@@ -266,8 +266,8 @@ cau_status cau_session_make_cells(cau_session *session, cau_error *error);
 cau_blade cau_session_blade_of(const cau_session *session, const cau_tool_def *def);
 void cau_session_operate(cau_session *session);
 bool cau_session_has_cooled(const cau_session *session);
-// burn.c: energy `paper`: heat, exposure, parting. Then, with either energy, what follows from what
-// was removed.
+// burn.c. cau_session_burn is energy `paper`: heat, exposure, parting. cau_session_end_burn follows
+// with either energy, and shrinks the tissue beside removed elements.
 void cau_session_burn(cau_session *session);
 void cau_session_end_burn(cau_session *session);
 // Removes the elements from number `first` of the tick's list on from the local step, and puts them

@@ -169,7 +169,7 @@ void cau_hosted_store_takes(cau_hosted *h, bool takes, const char *reason)
 	                                 .cause = reason});
 }
 
-// The order names the maker, who is gone: nobody gets an answer.
+// The order names the maker. The maker is gone, so no answer is sent.
 static void destroy_for(cau_hosted *h)
 {
 	cau_error error = {0};

@@ -418,7 +418,7 @@ static void looked(cau_logic *logic, cau_outcome_kind outcome)
 		cau_queue_remove(logic, order);
 }
 
-// What is off in it went off when it came in, and is cut before it is served.
+// Energy that the order turns off was cut when the order arrived.
 static void advance(cau_logic *logic, const cau_waiting *order, cau_effects *effects)
 {
 	for (int32_t i = 0; i < order->asked.part_count; i++) {

@@ -20,7 +20,7 @@ enum {
 	RESUMES_MOST = 16, // beyond max_connections, for clients that come back to their tools
 };
 
-#define READ_WITHIN_S 0.02 // from its coming, of what a connection sends
+#define READ_WITHIN_S 0.02 // the thread reads bytes within this time of their arrival
 #define REQUEST_S 1.0      // from connecting to a request, on a busy machine
 
 void cau_address_owner(const char *address, char owner[CAU_ADDRESS_BYTES])
@@ -39,7 +39,7 @@ static bool is_unread(const cau_unread *unread, const char *owner)
 	return unread->wsi && (!owner || strcmp(unread->owner, owner) == 0);
 }
 
-// This thread reads what has come within moments. One that is slower is asked again.
+// Bytes that had arrived are read by now, or within moments. Later the connection is asked again.
 static bool is_read_soon(const cau_unread *unread, double now_s)
 {
 	return now_s - unread->input_s < READ_WITHIN_S;

@@ -16,7 +16,7 @@
 #define WRAPPED __attribute__((used)) // by the linker
 #define LATE_S 0.5
 
-enum { UNBOUNDED = 8 }; // times what is set
+enum { UNBOUNDED = 8 }; // a bound that is skipped counts as so many times the set one
 
 sim_fault sim_planted;
 static sim_random choices;

@@ -20,8 +20,8 @@ typedef struct sim_message {
 	char text[];
 } sim_message;
 
-// What a client's end of a connection is told, on the network thread of the daemon. Nothing is told
-// once it has been told `closed`.
+// Callbacks of a client's end of a connection, on the network thread of the daemon. None is called
+// after `closed`.
 typedef struct sim_end {
 	void (*arriving)(void *client, const sim_message *message); // the daemon is about to read it
 	void (*arrived)(void *client, const sim_message *message);  // and has
@@ -31,10 +31,10 @@ typedef struct sim_end {
 } sim_end;
 
 void sim_network_begin(const sim_end *end);
-// The machine's network is gone, with its connections; clients are told.
+// Ends the machine's network and its connections, and calls `closed` of each client.
 void sim_network_kill(int machine);
 
-// NULL: nobody listens there.
+// NULL: no daemon accepts connections on this machine.
 sim_link *sim_link_open(int machine, void *client, int64_t delay_ns);
 // `text` is copied.
 void sim_link_send(sim_link *link, const void *text, size_t bytes, bool binary, uint64_t tag,

@@ -63,7 +63,7 @@ WRAPPED pthread_t __wrap_pthread_self(void)
 // ---- locks
 // In the memory of the C library's mutex, whose static initialiser is all zeros.
 typedef struct sim_mutex {
-	uint64_t owner; // a fiber; 0: nobody. One of a killed machine holds nothing
+	uint64_t owner; // a fiber; 0: free. A fiber of a killed machine holds no lock
 } sim_mutex;
 _Static_assert(sizeof(sim_mutex) <= sizeof(pthread_mutex_t), "it fits");
 

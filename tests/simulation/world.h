@@ -112,7 +112,7 @@ sim_request *clients_request(uint64_t number);
 
 // ---- sessions, by their place
 typedef struct sim_session {
-	int life;    // how often the name was given anew
+	int life;    // how often a session of this name was created
 	int machine; // where it should be
 	bool made;   // its creation was answered
 	bool wanted; // it was asked for and not destroyed

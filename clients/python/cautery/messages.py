@@ -497,7 +497,7 @@ class SessionStep(TypedDict):
 
 
 class AdvanceCommand(TypedDict):
-    """what the client does with a tool before the first tick; as the method of this name, of which it has the members"""
+    """a command about a tool, before the first tick; it has the members of the method that it names"""
 
     # which
     method: Literal["tool.move", "tool.energize", "tool.grasp", "tool.release", "tool.hold"]
@@ -565,7 +565,7 @@ class SessionAdvance(TypedDict):
     # how many; 1 by default, 0 to observe alone (0 to 100000)
     ticks: NotRequired[int]
 
-    # what the client does with tools first: all of it, or nothing and an error; energy is turned off all the same
+    # commands about tools, before the first tick; if one is refused none acts, but energy is still turned off where one asks for it
     commands: NotRequired[Sequence[AdvanceCommand]]
 
     # nothing by default
@@ -3159,7 +3159,7 @@ class Calls:
 
         session: its id; that of the connection's URL by default
         ticks: how many; 1 by default, 0 to observe alone (0 to 100000)
-        commands: what the client does with tools first: all of it, or nothing and an error; energy is turned off all the same
+        commands: commands about tools, before the first tick; if one is refused none acts, but energy is still turned off where one asks for it
         observe: nothing by default
         """
         return self.call("session.advance", {

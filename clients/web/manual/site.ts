@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Which files the manual has: the pages of its table of contents, and whatever these link, and so on. A link that
-// leads nowhere is an error, so that what is built is whole.
+// leads nowhere is an error, so the built manual has no broken link.
 import { existsSync, readFileSync, statSync } from 'node:fs';
 import { dirname, join, normalize } from 'node:path/posix';
 

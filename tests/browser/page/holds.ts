@@ -20,7 +20,7 @@ interface Order {
   at: number;
 }
 
-/** The daemon turned energy off by itself, as the machine held the page up for longer than a driver may be silent. */
+/** The daemon turned energy off: a slow machine delayed the page for longer than a driver may be silent. */
 class EndedByDaemon extends Error {}
 
 /** The commands about energy that pass a door. */

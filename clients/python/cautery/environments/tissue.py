@@ -18,7 +18,7 @@ from ..session import Session
 
 _REST = (1.0, 0.0, 0.0, 0.0)
 _CHANNELS: list[Any] = ["positions", "mask", "exposure", "tools"]
-# Settings of the task's own daemon: its quotas would protect nobody.
+# Settings of the task's own daemon. It has one client, so its quotas have no use.
 _OWN = {"quota_connection": 1000000, "quota_address": 1000000, "quota_operate": 1000000, "quota_admin": 1000000,
         "quota_all": 1000000}
 

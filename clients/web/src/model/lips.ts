@@ -67,7 +67,7 @@ export class Lips {
   private length: number[] = [];
   private index: { band: Uint32Array; wall: Uint32Array; fringe: Uint32Array } | null = null;
   private asked: { faces: ArrayLike<number>; goesOn: GoesOn } = { faces: [], goesOn: () => false };
-  private told = true;
+  private shown = true;
 
   constructor(
     private readonly source: SurfaceSource,
@@ -83,7 +83,7 @@ export class Lips {
    * when a shape of them is wanted: the page takes fewer frames than the daemon sends. */
   rebuild(faces: ArrayLike<number>, goesOn: GoesOn): void {
     this.asked = { faces, goesOn };
-    this.told = false;
+    this.shown = false;
   }
 
   private refine(): void {
@@ -109,10 +109,10 @@ export class Lips {
 
   /** Where the tissue is now. Indices come once after faces have changed, else null. */
   shape(): LipShape {
-    if (!this.told) this.refine();
+    if (!this.shown) this.refine();
     const band = this.bandRecords();
-    const index = this.told ? null : this.index;
-    this.told = true;
+    const index = this.shown ? null : this.index;
+    this.shown = true;
     const { wall, fringe } = this.rimRecords(band);
     return {
       band: { records: band, index: index?.band ?? null },

@@ -41,7 +41,7 @@ export function lobeValues(size: number): Uint8Array {
   return values;
 }
 
-const FALL = 18; // squared texels from a vessel's wall to where nothing is told of it, over a half
+const FALL = 18; // of a vessel's darkness beside its wall: squared texels to where it ends, over a half
 const TRUNKS = 4;
 const STEP = 2.2; // texels
 const RISE = 16; // steps

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // A patch of triangles as a smooth surface, finer than the mesh: Loop's subdivision (1987). Inside it tends to a
 // surface of smooth curvature. Rims tend to the cubic B-spline of the rim's vertices, which depends on nothing
-// beside the rim. What hangs together does so afterwards, and what is apart stays apart. Only sight.
+// beside the rim. Joined triangles stay joined, and separate ones stay separate. It changes the picture alone.
 
 /** Of edges and vertices. */
 export const SMOOTH = 0;
@@ -84,8 +84,8 @@ function stepOf(net: Net, divides: boolean, shareOf: (kind: number, count: numbe
 /** Loop's step: vertices of the next net. */
 const divided = (net: Net): Step => stepOf(net, true, (kind, count) => (kind === RIM ? 1 / 8 : ringWeight(count)));
 
-/** Evens out what the mesh's cells leave of teeth: each vertex to the middle between where it is and where those beside
- * it are, at a rim those along it. */
+/** Evens out the teeth of the mesh's border. Each vertex moves half way to the mean of its neighbours, at a rim of those
+ * along the rim. */
 const evened = (net: Net): Step => stepOf(net, false, (_kind, count) => 1 / (2 * count));
 
 /** Each face in four: one at each corner, one between the middles of its edges. */

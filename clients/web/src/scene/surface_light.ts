@@ -133,9 +133,8 @@ vec3 shade(Surface s, vec3 view) {
   return colour;
 }
 
-// Heat first dries and blanches, then browns; char is only where next to nothing is left of what was there. All of it
-// goes from one to the next without a step. What a tissue blanches and
-// is browned to is its own: collagen to cream and tan, fat to straw and amber.
+// Heated tissue first blanches, then browns. It is black only where nearly all edges have parted. The colours change
+// without a step. Each tissue has its own: collagen is cream and tan, fat is straw and amber.
 void burnt(inout Surface s, vec3 pale, vec3 browned, float blotch) {
   blotch = clamp(2.2 * blotch - 0.6, 0.0, 1.0);
   // Heat made every rim: what is left of a parted edge is burnt even where its own nodes took up less.

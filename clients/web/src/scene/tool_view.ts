@@ -53,8 +53,8 @@ void main() {
   float rim = pow(1.0 - facing, 2.0);
   fragment = linearToOutputTexel(vec4(vec3(0.08, 0.75, 1.0), 0.18 + 0.80 * rim));
 }`;
-/** What goes into the sleeve is as wide as it in some shapes: drawn this much thinner, no two surfaces are at one place,
- * where they would flicker. */
+/** In some shapes the rod is as wide as its sleeve. It is drawn thinner by this much, so that no two surfaces coincide
+ * and flicker. */
 const UNDER_SLEEVE_M = 3e-5;
 const LAST = 10; // of what is drawn: over tissue, cloth and instruments
 

@@ -254,7 +254,7 @@ export interface SessionStep {
   ticks?: number;
 }
 
-/** what the client does with a tool before the first tick; as the method of this name, of which it has the members */
+/** a command about a tool, before the first tick; it has the members of the method that it names */
 export interface AdvanceCommand {
   /** which */
   method: 'tool.move' | 'tool.energize' | 'tool.grasp' | 'tool.release' | 'tool.hold';
@@ -304,7 +304,7 @@ export interface SessionAdvance {
   session?: string;
   /** how many; 1 by default, 0 to observe alone (0 to 100000) */
   ticks?: number;
-  /** what the client does with tools first: all of it, or nothing and an error; energy is turned off all the same */
+  /** commands about tools, before the first tick; if one is refused none acts, but energy is still turned off where one asks for it */
   commands?: AdvanceCommand[];
   /** nothing by default */
   observe?: Observe;
