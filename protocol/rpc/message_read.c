@@ -81,6 +81,17 @@ static void clear_item(cau_wire_object object, char *item)
 			memcpy(item + shape->fields[i].offset, &kept[i], sizeof *kept);
 }
 
+// Goes to the list's next item, if the caller has room for it.
+static bool enter_item(cau_reader *reader, const cau_wire_list *list, size_t *mark)
+{
+	if (list->count >= list->capacity) {
+		cau_reader_fail(reader, CAU_LIMIT, NULL, "more than the capacity of %d", list->capacity);
+		return false;
+	}
+	*mark = cau_reader_enter(reader, NULL, list->count);
+	return true;
+}
+
 static void read_list(cau_reader *reader, const cJSON *value, const cau_wire_field *field,
                       cau_wire_list *list, bool strict)
 {
@@ -92,12 +103,9 @@ static void read_list(cau_reader *reader, const cJSON *value, const cau_wire_fie
 		return;
 	size_t bytes = cau_wire_shapes[field->object].bytes;
 	for (const cJSON *element = value->child; element; element = element->next) {
-		if (list->count >= list->capacity) {
-			cau_reader_fail(reader, CAU_LIMIT, NULL, "more than the capacity of %d",
-			                list->capacity);
+		size_t mark;
+		if (!enter_item(reader, list, &mark))
 			return;
-		}
-		size_t mark = cau_reader_enter(reader, NULL, list->count);
 		void *item = (char *)list->items + (size_t)list->count++ * bytes;
 		clear_item(field->object, item);
 		cau_read_message(reader, element, field->object, item, strict);
@@ -115,12 +123,9 @@ static void read_numbers(cau_reader *reader, const cJSON *value, const cau_wire_
 	if (!cau_read_array(reader, value, 0, field->count) || !value)
 		return;
 	for (const cJSON *element = value->child; element; element = element->next) {
-		if (list->count >= list->capacity) {
-			cau_reader_fail(reader, CAU_LIMIT, NULL, "more than the capacity of %d",
-			                list->capacity);
+		size_t mark;
+		if (!enter_item(reader, list, &mark))
 			return;
-		}
-		size_t mark = cau_reader_enter(reader, NULL, list->count);
 		if (field->type == CAU_WIRE_TYPE_INTEGERS)
 			((int64_t *)list->items)[list->count] =
 				cau_read_integer(reader, element, (int64_t)field->least, (int64_t)field->most);
