@@ -1,7 +1,26 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "cautery/utf8.h"
 
+#include <stdint.h>
+#include <string.h>
+
 #include "cautery/assert.h"
+
+#define HIGH_BITS UINT64_C(0x8080808080808080) // set in bytes that are not ASCII
+
+// Eight bytes at a time while there are eight, for most texts are ASCII alone.
+size_t cau_utf8_ascii(const char *text, size_t bytes)
+{
+	size_t at = 0;
+	for (uint64_t word; bytes - at >= sizeof word; at += sizeof word) {
+		memcpy(&word, text + at, sizeof word);
+		if (word & HIGH_BITS)
+			break;
+	}
+	while (at < bytes && (unsigned char)text[at] < 0x80)
+		at++;
+	return at;
+}
 
 // The second byte is what tells overlong forms, surrogates and codes beyond U+10FFFF (RFC 3629, 4).
 static void second_byte_range(unsigned char first, unsigned char *least, unsigned char *most)

@@ -164,7 +164,11 @@ static void unmask(const cau_frame_reader *r, const unsigned char *from, size_t 
 static bool check_text(cau_frame_reader *r, bool whole)
 {
 	const char *text = (const char *)r->message;
-	while (r->valid_bytes < r->message_bytes) {
+	for (;;) {
+		r->valid_bytes +=
+			cau_utf8_ascii(text + r->valid_bytes, r->message_bytes - r->valid_bytes);
+		if (r->valid_bytes == r->message_bytes)
+			return true;
 		size_t left = r->message_bytes - r->valid_bytes;
 		size_t length = cau_utf8_length(text + r->valid_bytes, left);
 		if (!length && !whole && cau_utf8_is_start(text + r->valid_bytes, left))
@@ -173,7 +177,6 @@ static bool check_text(cau_frame_reader *r, bool whole)
 			return fail(r, CAU_CLOSE_NOT_UTF8, NULL);
 		r->valid_bytes += length;
 	}
-	return true;
 }
 
 // Takes bytes of the payload; false if they break a rule.

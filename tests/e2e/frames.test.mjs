@@ -184,12 +184,14 @@ for (const [what, flood] of [
 test('a message in fragments of their own weight is no flood', async () => {
 	const raw = await Raw.open();
 	const spaces = Buffer.alloc(1024, ' ');
-	raw.socket.write(frame(0x01, Buffer.from('{"jsonrpc":"2.0","id":1,"method":"hello",')));
+	raw.socket.write(hello); // who is known has a share of the processor that such a message needs within hello_timeout_s
+	await raw.until(() => raw.frames.length > 0, 'the answer to hello');
+	raw.socket.write(frame(0x01, Buffer.from('{"jsonrpc":"2.0","id":2,"method":"session.list",')));
 	for (let i = 0; i < 900; i++)
 		raw.socket.write(frame(0x00, spaces));
-	raw.socket.write(frame(0x80, Buffer.from('"params":{"version":1,"client":"x"}}')));
-	await raw.until(() => raw.frames.length > 0, 'the answer');
-	assert.ok(raw.frames[0].payload.includes('"result"'));
+	raw.socket.write(frame(0x80, Buffer.from('"params":{}}')));
+	await raw.until(() => raw.frames.length > 1, 'the answer');
+	assert.match(raw.frames[1].payload.toString(), /"id":2,"result"/);
 	raw.socket.destroy();
 });
 

@@ -5,6 +5,7 @@
 #include <stdarg.h>
 #include <stddef.h>
 #include <stdint.h>
+#include <string.h>
 
 #include <cmocka.h>
 
@@ -66,12 +67,27 @@ static void a_start_is_a_first_byte_of_a_longer_one(void **state)
 	assert_int_equal(starts, 30 + 16 + 5);
 }
 
+// Wherever the first other byte is, and whatever stands behind it.
+static void ascii_ends_at_the_first_other_byte(void **state)
+{
+	(void)state;
+	char text[40];
+	for (size_t bytes = 0; bytes <= sizeof text; bytes++)
+		for (size_t first = 0; first <= bytes; first++) {
+			memset(text, 0x7f, sizeof text);
+			if (first < sizeof text)
+				text[first] = (char)0x80;
+			assert_int_equal(cau_utf8_ascii(text, bytes), first);
+		}
+}
+
 int main(void)
 {
 	const struct CMUnitTest tests[] = {
 		cmocka_unit_test(every_code_point_is_valid),
 		cmocka_unit_test(surrogates_and_beyond_are_not),
 		cmocka_unit_test(counts_of_short_forms),
+		cmocka_unit_test(ascii_ends_at_the_first_other_byte),
 		cmocka_unit_test(a_start_is_a_first_byte_of_a_longer_one),
 	};
 	return cmocka_run_group_tests(tests, NULL, NULL);
