@@ -8,7 +8,10 @@
 
 #include "cautery/assert.h"
 
-enum { GROWS_BY = 4 }; // a piece is larger than asked by one part in so many: cuts, contacts
+enum {
+	GROWS_BY = 4,         // a piece is larger than asked by one part in so many: cuts, contacts
+	TOUCHED_BYTES = 4096, // a page is as large at least
+};
 
 typedef struct piece {
 	cau_shelf *shelf;
@@ -27,16 +30,24 @@ struct cau_shelf {
 
 // ---- pieces
 // From the kernel, past the allocator: so a piece is the shelf's alone, and its pages move with it.
-// `flags`: MAP_POPULATE has each page found now. NULL: no memory.
-static piece *make(cau_shelf *shelf, size_t bytes, int flags)
+// NULL: no memory.
+static piece *make(cau_shelf *shelf, size_t bytes)
 {
 	size_t all = sizeof(piece) + bytes + bytes / GROWS_BY;
-	piece *made =
-		mmap(NULL, all, PROT_READ | PROT_WRITE, MAP_PRIVATE | MAP_ANONYMOUS | flags, -1, 0);
+	piece *made = mmap(NULL, all, PROT_READ | PROT_WRITE, MAP_PRIVATE | MAP_ANONYMOUS, -1, 0);
 	if (made == MAP_FAILED)
 		return NULL;
 	*made = (piece){.shelf = shelf, .bytes = all - sizeof *made};
 	return made;
+}
+
+// MAP_POPULATE would not do: it has the kernel find the pages, and leaves it to the first write that
+// the host of a virtual machine does so too.
+static void touch(piece *made)
+{
+	volatile unsigned char *memory = (void *)made->memory;
+	for (size_t i = 0; i < made->bytes; i += TOUCHED_BYTES)
+		memory[i] = 0;
 }
 
 // NULL: no memory, and the piece is as it was.
@@ -98,9 +109,10 @@ void cau_shelf_stock(cau_shelf *shelf, size_t bytes, int count)
 	shelf->kept = count;
 	pthread_mutex_unlock(&shelf->mutex);
 	for (int i = 0; i < count; i++) {
-		piece *made = make(shelf, bytes, MAP_POPULATE);
+		piece *made = make(shelf, bytes);
 		if (!made)
 			return;
+		touch(made);
 		pthread_mutex_lock(&shelf->mutex);
 		made->next = shelf->first;
 		shelf->first = made;
@@ -130,7 +142,7 @@ void *cau_shelf_take(cau_shelf *shelf, size_t bytes)
 	piece *found = take_lying(shelf);
 	if (found && found->bytes >= bytes)
 		return found->memory;
-	piece *enough = found ? grow(found, bytes) : make(shelf, bytes, 0);
+	piece *enough = found ? grow(found, bytes) : make(shelf, bytes);
 	if (enough)
 		return enough->memory;
 	pthread_mutex_lock(&shelf->mutex);
