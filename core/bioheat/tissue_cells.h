@@ -23,7 +23,8 @@ typedef struct cau_tissue_cells {
 	int32_t last_stamp;
 } cau_tissue_cells;
 
-// Room for `capacity` cells of side_m; none are there yet. CAU_NO_MEMORY.
+// Room for `capacity` cells of side_m; none are there yet. Its parts point to one another, so it
+// stays where it was made: copies do not work. CAU_NO_MEMORY.
 cau_status cau_tissue_cells_create(cau_tissue_cells *cells, const cau_tissue *tissue, double side_m,
                                    int32_t capacity, double ambient_c, cau_arena *arena,
                                    cau_error *error);

@@ -41,8 +41,8 @@ static piece *make(cau_shelf *shelf, size_t bytes)
 	return made;
 }
 
-// MAP_POPULATE would not do: it has the kernel find the pages, and leaves it to the first write that
-// the host of a virtual machine does so too.
+// MAP_POPULATE would not do: it has the kernel find the pages, and leaves it to the first write
+// that the host of a virtual machine does so too.
 static void touch(piece *made)
 {
 	volatile unsigned char *memory = (void *)made->memory;

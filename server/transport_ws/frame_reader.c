@@ -165,8 +165,7 @@ static bool check_text(cau_frame_reader *r, bool whole)
 {
 	const char *text = (const char *)r->message;
 	for (;;) {
-		r->valid_bytes +=
-			cau_utf8_ascii(text + r->valid_bytes, r->message_bytes - r->valid_bytes);
+		r->valid_bytes += cau_utf8_ascii(text + r->valid_bytes, r->message_bytes - r->valid_bytes);
 		if (r->valid_bytes == r->message_bytes)
 			return true;
 		size_t left = r->message_bytes - r->valid_bytes;

@@ -19,7 +19,8 @@
 extern "C" {
 #endif
 
-// How many bytes at the start of `text` are ASCII (0 to `bytes`): each of these is a whole character.
+// How many bytes at the start of `text` are ASCII (0 to `bytes`): each of these is a whole
+// character.
 size_t cau_utf8_ascii(const char *text, size_t bytes);
 
 // Bytes of the valid character at the start of `text` (1 to 4), or 0 if there is none.
