@@ -29,8 +29,9 @@ cau_status cau_bioheat_create(cau_bioheat *bioheat, double side_m, int32_t capac
 	if (status)
 		return status;
 	size_t most = (size_t)capacity;
-	double **fields[] = {&bioheat->temperature, &bioheat->water,  &bioheat->damage,
-	                     &bioheat->power_w,     &bioheat->flow_w, &bioheat->open_w_k};
+	double **fields[] = {&bioheat->temperature, &bioheat->water,    &bioheat->damage,
+	                     &bioheat->power_w,     &bioheat->own_w_mk, &bioheat->flow_w,
+	                     &bioheat->open_w_k};
 	bool missing = false;
 	for (size_t i = 0; i < sizeof fields / sizeof *fields; i++) {
 		*fields[i] = cau_arena_array(arena, most, sizeof(double));
@@ -115,24 +116,37 @@ void cau_bioheat_take_out(cau_bioheat *bioheat, int32_t cell)
 
 // ---- one step
 
-// Conductances of a cell's faces, to neighbours (harmonic mean of both) and to gas. Returns their
-// sum, W/K.
-static double find_faces(cau_bioheat *bioheat, int32_t cell)
+// Conductances of all faces: of both cells the harmonic mean. Each is found once, from the cell on
+// its lesser side. 0 where there is no neighbour.
+static void find_faces(cau_bioheat *bioheat)
 {
 	const cau_cells *cells = &bioheat->cells;
-	double own = cau_bioheat_conductivity(bioheat, cell), sum = 0;
-	int open = 0;
-	for (int side = 0; side < CAU_CELL_SIDES; side++) {
-		int64_t face = cau_cell_side(cell, side);
-		int32_t other = cells->neighbour[face];
-		bioheat->face_w_k[face] = 0;
-		if (other < 0) {
-			open++;
-			continue;
+	double *own = bioheat->own_w_mk;
+	for (int32_t i = 0; i < cells->count; i++)
+		own[i] = cau_bioheat_conductivity(bioheat, i);
+	for (int32_t i = 0; i < cells->count; i++)
+		for (int side = 0; side < CAU_CELL_SIDES; side++) {
+			int64_t face = cau_cell_side(i, side);
+			int32_t other = cells->neighbour[face];
+			if (other < 0) {
+				bioheat->face_w_k[face] = 0;
+			} else if (side % 2) {
+				double mean = 2 * own[i] * own[other] / (own[i] + own[other]);
+				bioheat->face_w_k[face] = bioheat->face_w_k[cau_cell_side(other, side ^ 1)] =
+					cau_cells_face(cells, i, side) * mean;
+			}
 		}
-		double others = cau_bioheat_conductivity(bioheat, other);
-		bioheat->face_w_k[face] =
-			cau_cells_face(cells, cell, side) * 2 * own * others / (own + others);
+}
+
+// Conductance of a cell to gas, through its sides without a neighbour; and with that of all its
+// faces, W/K.
+static double open_and_faces(cau_bioheat *bioheat, int32_t cell)
+{
+	const cau_cells *cells = &bioheat->cells;
+	double sum = 0;
+	int open = 0;
+	for (int64_t face = cau_cell_side(cell, 0); face < cau_cell_side(cell + 1, 0); face++) {
+		open += cells->neighbour[face] < 0;
 		sum += bioheat->face_w_k[face];
 	}
 	bioheat->open_w_k[cell] = open * bioheat->surface_w_m2k * cells->side_m * cells->side_m;
@@ -149,8 +163,9 @@ static double contact_w_k(const cau_bioheat *bioheat, const cau_contact_cell *co
 static double longest_part_s(cau_bioheat *bioheat)
 {
 	double longest = INFINITY;
+	find_faces(bioheat);
 	for (int32_t i = 0; i < bioheat->cells.count; i++)
-		bioheat->flow_w[i] = find_faces(bioheat, i);
+		bioheat->flow_w[i] = open_and_faces(bioheat, i);
 	for (int32_t k = 0; k < bioheat->contact_count; k++)
 		bioheat->flow_w[bioheat->contact[k].cell] += contact_w_k(bioheat, &bioheat->contact[k]);
 	for (int32_t i = 0; i < bioheat->cells.count; i++)
@@ -159,25 +174,33 @@ static double longest_part_s(cau_bioheat *bioheat)
 	return stable_share * longest;
 }
 
+// A cell with water is at 100 degC and has taken up `over_j` beyond. It boils its water, and warms up
+// once it is dry.
+static void boil(cau_bioheat *bioheat, int32_t cell, double over_j)
+{
+	double *wet = &bioheat->water[cell], mass = water_mass(bioheat, cell);
+	double share = fmin(over_j / (mass * boiling_j_kg), *wet);
+	double sensible = share * mass * water_heat_j_kgk * (CAU_BOILING_C - bioheat->ambient_c);
+	*wet = share == *wet ? 0 : *wet - share;
+	bioheat->ledger.boiled_j += share * mass * boiling_j_kg + sensible;
+	double left = fmax(over_j - share * mass * boiling_j_kg, 0);
+	bioheat->temperature[cell] = CAU_BOILING_C + left / cau_bioheat_capacity(bioheat, cell);
+	bioheat->ledger.stored_j += left - sensible;
+}
+
 // Adds energy to a cell, J. It warms the cell to 100 degC, then boils its water, then warms the dry
 // cell. A cell that cools keeps the water that it has left.
 static void take_energy(cau_bioheat *bioheat, int32_t cell, double energy_j)
 {
-	double capacity = cau_bioheat_capacity(bioheat, cell);
-	double *kelvin = &bioheat->temperature[cell], *wet = &bioheat->water[cell];
-	double before = capacity * (*kelvin - bioheat->ambient_c);
-	*kelvin += energy_j / capacity;
-	if (*kelvin > CAU_BOILING_C && *wet > 0) {
-		double over = (*kelvin - CAU_BOILING_C) * capacity, mass = water_mass(bioheat, cell);
-		double share = fmin(over / (mass * boiling_j_kg), *wet);
-		double sensible = share * mass * water_heat_j_kgk * (CAU_BOILING_C - bioheat->ambient_c);
-		over -= share * mass * boiling_j_kg;
-		*wet = share == *wet ? 0 : *wet - share;
-		bioheat->ledger.boiled_j += share * mass * boiling_j_kg + sensible;
-		*kelvin = CAU_BOILING_C + fmax(over, 0) / cau_bioheat_capacity(bioheat, cell);
+	double capacity = cau_bioheat_capacity(bioheat, cell), *kelvin = &bioheat->temperature[cell];
+	double warmed = *kelvin + energy_j / capacity;
+	if (warmed <= CAU_BOILING_C || bioheat->water[cell] <= 0) {
+		*kelvin = warmed;
+		bioheat->ledger.stored_j += energy_j;
+		return;
 	}
-	bioheat->ledger.stored_j +=
-		cau_bioheat_capacity(bioheat, cell) * (*kelvin - bioheat->ambient_c) - before;
+	bioheat->ledger.stored_j += capacity * (CAU_BOILING_C - *kelvin);
+	boil(bioheat, cell, (warmed - CAU_BOILING_C) * capacity);
 }
 
 static void find_flows(cau_bioheat *bioheat)

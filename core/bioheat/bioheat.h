@@ -52,8 +52,8 @@ typedef struct cau_bioheat {
 	cau_contact_cell *contact; // (capacity)
 	cau_energy_ledger ledger;
 	bool cold; // every cell is at ambient_c and no power is set
-	// Scratch: (capacity), (capacity), (capacity x 6).
-	double *flow_w, *open_w_k, *face_w_k;
+	// Scratch: (capacity) each but the last, (capacity x 6).
+	double *own_w_mk, *flow_w, *open_w_k, *face_w_k;
 } cau_bioheat;
 
 // `material` is borrowed and has material_count entries, at most CAU_CELL_MATERIALS. CAU_NO_MEMORY.

@@ -7,7 +7,10 @@
 #include "base/hash.h"
 #include "cautery/assert.h"
 
-enum { SUBPOINTS = 3 }; // along each axis of a cell: its fill is counted in 27ths
+enum {
+	SUBPOINTS = 3,   // along each axis of a cell: its fill is counted in 27ths
+	BOUND_CELLS = 2, // the middle of an element's cell is less than one outside; stretch may double it
+};
 
 // Places of subpoints are shifted by so much of a cell, so that none lies on a face of a regular
 // mesh, which two elements would count.
@@ -81,7 +84,9 @@ typedef struct element_shape {
 	element_corners corners;
 	cau_vec3 first, edge[3]; // at rest
 	cau_vec3 row[3];         // of the inverse of the edges: a point's coordinates along them
+	cau_vec3 reach;          // from a cell's middle to its corners, in such coordinates
 	double half_m;           // of a sheet's thickness
+	double reach_m;
 } element_shape;
 
 static element_shape shape_of(const cau_tissue_cells *cells, int32_t element)
@@ -89,6 +94,10 @@ static element_shape shape_of(const cau_tissue_cells *cells, int32_t element)
 	element_shape shape = {.corners = corners_of(cells->tissue, element)};
 	edges_of(&shape.corners, cells->tissue->rest, &shape.first, shape.edge);
 	invert(shape.edge, shape.row);
+	shape.reach_m = sqrt(0.75) * cells->bioheat.cells.side_m;
+	shape.reach = (cau_vec3){shape.reach_m * cau_length(shape.row[0]),
+	                         shape.reach_m * cau_length(shape.row[1]),
+	                         shape.reach_m * cau_length(shape.row[2])};
 	if (shape.corners.count == 3)
 		shape.half_m = cells->half_m[element];
 	return shape;
@@ -185,11 +194,12 @@ cau_status cau_tissue_cells_create(cau_tissue_cells *cells, const cau_tissue *ti
 	cells->half_m = cau_arena_array(arena, (size_t)tissue->triangle_count, sizeof(double));
 	cells->filled = cau_arena_array(arena, elements, sizeof(int32_t));
 	cells->is_filled = cau_arena_array(arena, elements, 1);
+	cells->is_near = cau_arena_array(arena, elements, 1);
 	cells->owner = cau_arena_array(arena, most, sizeof(int32_t));
 	cells->local = cau_arena_array(arena, 3 * most, sizeof(float));
 	cells->member = cau_arena_array(arena, most, sizeof(int32_t));
 	cells->stamp = cau_arena_array(arena, most, sizeof(int32_t));
-	if (!cells->half_m || !cells->filled || !cells->is_filled || !cells->owner || !cells->local ||
+	if (!cells->half_m || !cells->filled || !cells->is_filled || !cells->is_near || !cells->owner || !cells->local ||
 	    !cells->member || !cells->stamp)
 		return cau_fail(error, CAU_NO_MEMORY, NULL, "no memory for %d cells of tissue", capacity);
 	cells->bioheat.surface_w_m2k = surface_w_m2k;
@@ -216,9 +226,24 @@ int32_t cau_tissue_cells_elements(const cau_tissue_cells *cells)
 	return cells->tissue->triangle_count + cells->tissue->tetrahedron_count;
 }
 
+// Whether all of a cell lies in the element: its middle is farther in than its corners are away.
+static bool holds_all(const element_shape *shape, const int32_t place[3], double side_m)
+{
+	cau_vec3 at = coordinates(shape, point_in(place, side_m, in_the_middle));
+	cau_vec3 reach = shape->reach;
+	if (at.x < reach.x || at.y < reach.y)
+		return false;
+	if (shape->corners.count == 3)
+		return fabs(at.z) <= shape->half_m - shape->reach_m &&
+		       at.x + at.y <= 1 - reach.x - reach.y;
+	return at.z >= reach.z && at.x + at.y + at.z <= 1 - reach.x - reach.y - reach.z;
+}
+
 // Share of a cell that lies in the element.
 static float share_of(const element_shape *shape, const int32_t place[3], double side_m)
 {
+	if (holds_all(shape, place, side_m))
+		return 1;
 	int inside = 0;
 	for (int k = 0; k < SUBPOINTS * SUBPOINTS * SUBPOINTS; k++) {
 		const int step[] = {k % SUBPOINTS, k / SUBPOINTS % SUBPOINTS, k / SUBPOINTS / SUBPOINTS};
@@ -235,14 +260,13 @@ static float share_of(const element_shape *shape, const int32_t place[3], double
 static bool may_meet(const element_shape *shape, const int32_t place[3], double side_m)
 {
 	cau_vec3 at = coordinates(shape, point_in(place, side_m, in_the_middle));
-	double reach = sqrt(0.75) * side_m; // from a cube's middle to its corners
-	double x = reach * cau_length(shape->row[0]), y = reach * cau_length(shape->row[1]);
-	double z = reach * cau_length(shape->row[2]);
-	if (at.x < -x || at.y < -y)
+	cau_vec3 reach = shape->reach;
+	if (at.x < -reach.x || at.y < -reach.y)
 		return false;
 	if (shape->corners.count == 3)
-		return fabs(at.z) <= shape->half_m + reach && at.x + at.y <= 1 + x + y;
-	return at.z >= -z && at.x + at.y + at.z <= 1 + x + y + z;
+		return fabs(at.z) <= shape->half_m + shape->reach_m &&
+		       at.x + at.y <= 1 + reach.x + reach.y;
+	return at.z >= -reach.z && at.x + at.y + at.z <= 1 + reach.x + reach.y + reach.z;
 }
 
 static void fill_cell(cau_tissue_cells *cells, int32_t element, const element_shape *shape,
@@ -262,6 +286,16 @@ static void fill_cell(cau_tissue_cells *cells, int32_t element, const element_sh
 	cells->local[cau_cell_axis(cell, 0)] = (float)at.x;
 	cells->local[cau_cell_axis(cell, 1)] = (float)at.y;
 	cells->local[cau_cell_axis(cell, 2)] = (float)at.z;
+}
+
+int32_t cau_tissue_cells_places(const cau_tissue_cells *cells, int32_t element)
+{
+	element_shape shape = shape_of(cells, element);
+	cell_box box = box_of(&shape, cells->bioheat.cells.side_m);
+	int64_t places = 1;
+	for (int axis = 0; axis < 3; axis++)
+		places *= box.most[axis] - box.least[axis] + 1;
+	return (int32_t)(places < INT32_MAX ? places : INT32_MAX);
 }
 
 bool cau_tissue_cells_fill(cau_tissue_cells *cells, int32_t element)
@@ -301,6 +335,24 @@ cau_vec3 cau_tissue_cells_at(const cau_tissue_cells *cells, int32_t cell, const 
 	for (int i = 0; i < 3; i++)
 		at = cau_add(at, cau_scale(local[i], edge[i]));
 	return at;
+}
+
+void cau_tissue_cells_bound(const cau_tissue_cells *cells, int32_t element, const double *position,
+                            cau_vec3 *middle, double *radius_m)
+{
+	element_corners corners = corners_of(cells->tissue, element);
+	*middle = (cau_vec3){0};
+	for (int i = 0; i < corners.count; i++)
+		*middle = cau_add(*middle, cau_scale(1.0 / corners.count,
+		                                     cau_vec3_of(position + 3 * (size_t)corners.vertex[i])));
+	*radius_m = 0;
+	for (int i = 0; i < corners.count; i++) {
+		cau_vec3 corner = cau_vec3_of(position + 3 * (size_t)corners.vertex[i]);
+		*radius_m = fmax(*radius_m, cau_length(cau_sub(corner, *middle)));
+	}
+	*radius_m += BOUND_CELLS * cells->bioheat.cells.side_m;
+	if (corners.count == 3)
+		*radius_m += cells->half_m[element];
 }
 
 // F takes an edge at rest to the edge in the world, so row `axis` of F^-1 is the sum of the rest

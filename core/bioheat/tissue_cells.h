@@ -19,6 +19,7 @@ typedef struct cau_tissue_cells {
 	int32_t *owner;     // (capacity): the element that a cell moves with
 	float *local;       // (capacity x 3): its middle in the owner, by cau_tissue_cells_at
 	int32_t *member;    // scratch: (capacity)
+	uint8_t *is_near;   // (elements): scratch of callers
 	int32_t *stamp;     // scratch: (capacity)
 	int32_t last_stamp;
 } cau_tissue_cells;
@@ -37,6 +38,9 @@ cau_status cau_tissue_cells_create_like(cau_tissue_cells *cells, const cau_tissu
 // Elements that may have cells: triangles, and after them tetrahedra.
 int32_t cau_tissue_cells_elements(const cau_tissue_cells *cells);
 
+// Places that filling an element looks at, by which it takes its time.
+int32_t cau_tissue_cells_places(const cau_tissue_cells *cells, int32_t element);
+
 // Makes the cells of an element, at ambient temperature. Cells that it shares with elements that
 // were filled before are filled further. Nothing happens if it is filled already. Returns false if
 // there is no room for all its cells: then none is made.
@@ -44,6 +48,10 @@ bool cau_tissue_cells_fill(cau_tissue_cells *cells, int32_t element);
 
 // The cell's middle in the world, where the tissue is at `position` (m, vertex_count x 3).
 cau_vec3 cau_tissue_cells_at(const cau_tissue_cells *cells, int32_t cell, const double *position);
+
+// A sphere in the world around the middles of all cells that the element owns, m.
+void cau_tissue_cells_bound(const cau_tissue_cells *cells, int32_t element, const double *position,
+                            cau_vec3 *middle, double *radius_m);
 
 // Sets the cell's pull-back (cells.h) from the deformation of its owner.
 void cau_tissue_cells_stretch(cau_tissue_cells *cells, int32_t cell, const double *position);

@@ -10,11 +10,12 @@
 
 enum {
 	CELLS_MOST = 1 << 16,
-	FILLED_A_TICK = 16, // elements that get cells: some 2 ms of work
-	ITERATIONS = 60,    // of the potential, which begins at that of the tick before
+	PLACES_A_TICK = 4000, // looked at to give elements their cells: half a millisecond
+	ITERATIONS = 60,      // of the potential, which begins at that of the tick before
 };
 
-static const double filled_m = 4e-3;      // elements so near to a hot part get cells
+static const double filled_m = 3e-3;      // elements so near to a hot part get cells
+static const double urgent_m = 1e-3;      // and so near at once
 static const double reach_m = 3e-3;       // of the current's cells around an electrode
 static const double residual_most = 1e-3; // of the potential
 static const double spark_v = 200;        // peak, from which a metal electrode sparks to tissue
@@ -112,7 +113,8 @@ static double touch_m(const cau_session *session, const cau_tool *tool)
 // Edges near a tool's hot part are visited: their elements get cells.
 typedef struct edge_visit {
 	cau_session *session;
-	int32_t left;         // elements that may still be filled
+	int32_t left; // places that may still be looked at to fill elements that are not urgent
+	bool full;    // there is no room for more cells
 	cau_vec3 least, most; // box at rest around the ends
 } edge_visit;
 
@@ -124,7 +126,8 @@ static void grow(edge_visit *visit, cau_vec3 at)
 		(cau_vec3){fmax(visit->most.x, at.x), fmax(visit->most.y, at.y), fmax(visit->most.z, at.z)};
 }
 
-static void fill_sharers(edge_visit *visit, int32_t edge)
+// `urgent`: heat or sparks may reach them in the next ticks.
+static void fill_sharers(edge_visit *visit, int32_t edge, bool urgent)
 {
 	const cau_tissue *tissue = &visit->session->tissue;
 	const cau_edge_table *edges = &tissue->edges;
@@ -134,9 +137,11 @@ static void fill_sharers(edge_visit *visit, int32_t edge)
 			int kind = p == CAU_PRIMITIVE_TRIANGLE ? CAU_ELEMENT_TRIANGLE : CAU_ELEMENT_TETRAHEDRON;
 			int32_t element = p == CAU_PRIMITIVE_TRIANGLE ? index : tissue->triangle_count + index;
 			if (!visit->session->dissection.alive.element[kind][index] ||
-			    visit->session->cells->is_filled[element] || visit->left == 0)
+			    visit->session->cells->is_filled[element] || visit->full ||
+			    (visit->left <= 0 && !urgent))
 				continue;
-			visit->left -= cau_tissue_cells_fill(visit->session->cells, element);
+			visit->full = !cau_tissue_cells_fill(visit->session->cells, element);
+			visit->left -= cau_tissue_cells_places(visit->session->cells, element);
 		}
 }
 
@@ -161,9 +166,10 @@ static void visit_edge(edge_visit *visit, const cau_tool *tool, int32_t edge)
 	cau_vec3 b = cau_vec3_of(session->position + 3 * (size_t)end[1]);
 	cau_vec3 middle = cau_scale(0.5, cau_add(a, b));
 	double half = cau_length(cau_sub(b, a)) / 2;
-	if (hot_distance(tool, middle) > filled_m + half)
+	double distance = hot_distance(tool, middle) - half;
+	if (distance > filled_m)
 		return;
-	fill_sharers(visit, edge);
+	fill_sharers(visit, edge, distance <= urgent_m);
 	show_heat(session, edge);
 	grow(visit, cau_vec3_of(session->tissue.rest + 3 * (size_t)end[0]));
 	grow(visit, cau_vec3_of(session->tissue.rest + 3 * (size_t)end[1]));
@@ -174,7 +180,7 @@ static void visit_edge(edge_visit *visit, const cau_tool *tool, int32_t edge)
 static edge_visit look_around(cau_session *session, const cau_tool *tool)
 {
 	edge_visit visit = {.session = session,
-	                    .left = FILLED_A_TICK,
+	                    .left = PLACES_A_TICK,
 	                    .least = {INFINITY, INFINITY, INFINITY},
 	                    .most = {-INFINITY, -INFINITY, -INFINITY}};
 	double radius;
@@ -238,17 +244,36 @@ static void strike(cau_current *current)
 		current->electrode[k].over_length_m = 4 * spot_m / current->electrode_count;
 }
 
+// Marks the elements of which a cell may be within reach of the tool: others' cells are not asked.
+static void mark_near(cau_session *session, const cau_tool *tool)
+{
+	cau_tissue_cells *cells = session->cells;
+	double reach = touch_m(session, tool), around, radius;
+	cau_vec3 center, middle;
+	cau_tool_bound(&tool->state.definition, CAU_PART_HOT, &center, &around);
+	center = cau_pose_to_world(&tool->state.pose, center);
+	for (int32_t k = 0; k < cells->filled_count; k++) {
+		int32_t element = cells->filled[k];
+		cau_tissue_cells_bound(cells, element, session->position, &middle, &radius);
+		cells->is_near[element] =
+			cau_length(cau_sub(middle, center)) <= around + radius + reach &&
+			hot_distance(tool, middle) <= radius + reach;
+	}
+}
+
 static void find_touched(cau_session *session, int32_t index, const edge_visit *visit)
 {
 	cau_tissue_cells *cells = session->cells;
 	const cau_cells *grid = &cells->bioheat.cells;
+	mark_near(session, &session->tool[index]);
 	cells->current.electrode_count = 0;
 	for (int32_t cell = 0; cell < grid->count; cell++) {
 		if (grid->severed[cell] || !is_in_box(grid, cell, visit))
 			continue;
 		if ((uint64_t)cell % STRETCH_TURNS == session->tick % STRETCH_TURNS)
 			cau_tissue_cells_stretch(cells, cell, session->position);
-		touch_cell(session, index, cell);
+		if (cells->is_near[cells->owner[cell]])
+			touch_cell(session, index, cell);
 	}
 }
 
